@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef dsm_Counters_h
+#define dsm_Counters_h
+
+#include <cstdint>
+
+namespace dsm
+{
+
+/// What one worker did with the store during one frame. Plain numbers: only that worker writes.
+struct WorkerCounters
+{
+  std::uint64_t Accesses = 0;
+  std::uint64_t Hits = 0;
+  std::uint64_t Misses = 0;
+  /// Misses that joined a request which was already under way; counted among Misses.
+  std::uint64_t Joins = 0;
+  std::uint64_t WaitNanoseconds = 0;
+
+  WorkerCounters& operator+=(const WorkerCounters& other)
+  {
+    this->Accesses += other.Accesses;
+    this->Hits += other.Hits;
+    this->Misses += other.Misses;
+    this->Joins += other.Joins;
+    this->WaitNanoseconds += other.WaitNanoseconds;
+    return *this;
+  }
+};
+
+/// What one rank's store did during one frame, and what it holds.
+struct StoreCounters
+{
+  WorkerCounters Workers; ///< sum over the rank's workers
+  std::uint64_t Evictions = 0;
+  std::uint64_t BytesReceived = 0;
+  std::uint64_t BytesSent = 0;
+  std::uint64_t ResidentBytes = 0; ///< blocks this rank owns
+  std::uint64_t CachedBytes = 0;   ///< remote blocks held now
+  std::uint64_t PeakCachedBytes = 0;
+  std::uint64_t CacheCapacity = 0;
+};
+
+} // namespace dsm
+
+#endif

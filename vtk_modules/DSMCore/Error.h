@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef dsm_Error_h
+#define dsm_Error_h
+
+#include <stdexcept>
+#include <string>
+
+namespace dsm
+{
+
+/// A failure that the user can act upon: its text names what is wrong and what to do about it.
+class Error : public std::runtime_error
+{
+public:
+  using std::runtime_error::runtime_error;
+};
+
+/// How one rank, or all of them, fared in a collective step.
+struct Status
+{
+  /// The first failing rank, or -1 when every rank succeeded.
+  int FailedRank = -1;
+  /// What went wrong there; empty when nothing did.
+  std::string Cause;
+
+  bool IsOk() const { return this->FailedRank < 0; }
+};
+
+} // namespace dsm
+
+#endif

@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef dsm_ObjectStoreInternals_h
+#define dsm_ObjectStoreInternals_h
+
+#include "DSMCore/BlockCache.h"
+#include "DSMCore/ObjectStore.h"
+
+#include <atomic>
+#include <cstdint>
+#include <deque>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <vector>
+
+namespace dsm
+{
+
+/// The store's slow paths: misses, requests, replies, eviction. A block that is missed first is
+/// queued; workers that miss it later join. The communication thread takes the queue in order: it
+/// sets memory aside (evicting if it must, and waiting for the workers to pass a quiescent point),
+/// then sends the request, so a reply always finds room.
+class ObjectStore::Internals
+{
+public:
+  Internals(ObjectStore& store, Messenger& messenger, const Settings& settings);
+
+  const std::byte* Wait(Worker& worker, const Segment& segment, BlockId id);
+  void Enter(Worker& worker);
+  void Leave(Worker& worker);
+
+  void Configure(const Settings& settings);
+  void Add(std::shared_ptr<Segment> segment);
+  void Retire(const BlockSegment& segment);
+
+  void BeginFrame();
+  bool Service();
+  void Cancel(const std::string& cause);
+  void EndFrame();
+  bool IsInFrame() const { return this->Phase != FramePhase::Closed; }
+
+  StoreCounters GetCounters();
+  std::vector<WorkerCounters> GetWorkerCounters();
+
+  Messenger& Messages;
+  Settings Current;
+  std::vector<std::unique_ptr<Worker>> Workers;
+
+private:
+  enum class FramePhase
+  {
+    Closed,
+    Open,
+    Cancelled
+  };
+
+  /// On the wire, as the whole of a request and behind the bytes of a reply.
+  struct BlockName
+  {
+    std::uint32_t Segment;
+    /// Of the asker's frame: an answer to a frame that was cancelled is not taken for one to this.
+    std::uint32_t Frame;
+    BlockId Id;
+  };
+
+  struct Want
+  {
+    const Segment* From;
+    BlockId Id;
+  };
+
+  void CheckBudget() const;
+  void Serve(const Message& message);
+  void Receive(Message&& message);
+  const Segment& Find(const BlockName& name, int source, const char* deed) const;
+  /// Makes room for the next wanted block; false when it must wait for workers.
+  bool MakeRoom(std::size_t blockBytes);
+  void WakeAll();
+  void Abandon(const std::deque<Want>& wants);
+  std::uint64_t GetOldestEpoch() const;
+  std::vector<WorkerCounters> CountWorkers() const;
+  std::size_t GetLargestBlock() const;
+
+  ObjectStore& Store;
+  /// By number. Communication thread only.
+  std::map<std::uint32_t, std::shared_ptr<Segment>> Segments;
+  std::uint32_t FrameSession = 0;
+
+  /// Guards what follows, the lines' slow parts, and Worker::Slow and WaitsFor.
+  mutable std::mutex Guard;
+  FramePhase Phase = FramePhase::Closed;
+  std::string Cause;
+  BlockCache Cache;
+  std::size_t SpareBytes = 0;
+  std::deque<Want> Wanted;
+  /// Of Wanted; lets Service look without the lock.
+  std::atomic<std::size_t> WantedCount{ 0 };
+  std::deque<Want> Pending;
+  StoreCounters Frame;
+  std::vector<WorkerCounters> LastWorkers;
+};
+
+} // namespace dsm
+
+#endif
