@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef rt_Box_h
+#define rt_Box_h
+
+#include <glm/common.hpp>
+#include <glm/ext/vector_int3_sized.hpp>
+#include <glm/vec3.hpp>
+
+#include <cstdint>
+
+namespace rt
+{
+
+using Index3 = glm::i64vec3;
+
+/// A half-open box of cells or of points of a lattice: Min belongs to it, Max does not.
+/// The cells [Min, Max) have their corners at the points [Min, Max + 1).
+struct Box
+{
+  Index3 Min{ 0 };
+  Index3 Max{ 0 };
+
+  Index3 GetSize() const { return glm::max(this->Max - this->Min, Index3(0)); }
+  std::int64_t GetCount() const
+  {
+    const Index3 size = this->GetSize();
+    return size.x * size.y * size.z;
+  }
+  bool IsEmpty() const { return this->GetCount() == 0; }
+};
+
+inline Box Intersect(const Box& a, const Box& b)
+{
+  return { glm::max(a.Min, b.Min), glm::min(a.Max, b.Max) };
+}
+
+} // namespace rt
+
+#endif

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef rt_Frame_h
+#define rt_Frame_h
+
+#include "DSMCore/Counters.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace rt
+{
+
+/// The pixels of one finished tile, row by row from the bottom, x fastest.
+struct Tile
+{
+  int X = 0; ///< of the lower left pixel in the frame
+  int Y = 0;
+  int Width = 0;
+  int Height = 0;
+  int Index = 0; ///< row-major number of the tile in the frame
+  double Seconds = 0.0;
+  /// Four bytes a pixel, red first, alpha premultiplied; alpha 0 where nothing was hit.
+  std::vector<std::uint8_t> Color;
+  /// OpenGL window depth in [0, 1]; 1 where nothing was hit.
+  std::vector<float> Depth;
+};
+
+/// What this rank has of a frame: the tiles that it traced. Together the ranks have all of them.
+struct Frame
+{
+  int Width = 0;
+  int Height = 0;
+  std::vector<Tile> Tiles;
+  double Seconds = 0.0; ///< from the collective start to the collective end
+  dsm::StoreCounters Counters;
+  std::vector<dsm::WorkerCounters> WorkerCounters;
+};
+
+} // namespace rt
+
+#endif

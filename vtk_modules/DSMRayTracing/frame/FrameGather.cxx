@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "DSMRayTracing/frame/FrameGather.h"
+
+#include <cstddef>
+#include <cstring>
+#include <string>
+
+namespace rt
+{
+
+namespace
+{
+
+struct TileHeader
+{
+  std::int32_t X;
+  std::int32_t Y;
+  std::int32_t Width;
+  std::int32_t Height;
+};
+
+template <class T>
+void Append(std::vector<std::byte>& bytes, const T* values, std::size_t count)
+{
+  const std::size_t first = bytes.size();
+  bytes.resize(first + count * sizeof(T));
+  std::memcpy(bytes.data() + first, values, count * sizeof(T));
+}
+
+std::vector<std::byte> Pack(const Frame& frame)
+{
+  std::vector<std::byte> bytes;
+  for (const Tile& tile : frame.Tiles)
+  {
+    const TileHeader header{ tile.X, tile.Y, tile.Width, tile.Height };
+    Append(bytes, &header, 1);
+    Append(bytes, tile.Color.data(), tile.Color.size());
+    Append(bytes, tile.Depth.data(), tile.Depth.size());
+  }
+  return bytes;
+}
+
+/// Puts a rank's packed tiles into the picture; returns how many pixels they have.
+std::size_t Unpack(const std::vector<std::byte>& bytes, Picture& picture)
+{
+  std::size_t pixels = 0;
+  const std::byte* at = bytes.data();
+  const std::byte* end = at + bytes.size();
+  while (at < end)
+  {
+    TileHeader header;
+    std::memcpy(&header, at, sizeof(header));
+    at += sizeof(header);
+    const std::size_t tilePixels = static_cast<std::size_t>(header.Width) * header.Height;
+    const std::byte* colors = at;
+    const std::byte* depths = at + 4 * tilePixels;
+    for (int row = 0; row < header.Height; ++row)
+    {
+      const std::size_t target =
+        static_cast<std::size_t>(header.Y + row) * picture.Width + header.X;
+      const std::size_t source = static_cast<std::size_t>(row) * header.Width;
+      std::memcpy(&picture.Color[4 * target], colors + 4 * source, 4 * header.Width);
+      std::memcpy(
+        &picture.Depth[target], depths + sizeof(float) * source, sizeof(float) * header.Width);
+    }
+    at = depths + sizeof(float) * tilePixels;
+    pixels += tilePixels;
+  }
+  return pixels;
+}
+
+std::uint64_t AddToHash(std::uint64_t hash, const void* data, std::size_t bytes)
+{
+  const auto* at = static_cast<const unsigned char*>(data);
+  for (std::size_t index = 0; index < bytes; ++index)
+  {
+    hash = (hash ^ at[index]) * 0x100000001b3ull;
+  }
+  return hash;
+}
+
+} // namespace
+
+Picture GatherFrame(dsm::Messenger& messenger, const Frame& frame)
+{
+  Picture picture;
+  picture.Width = frame.Width;
+  picture.Height = frame.Height;
+  const std::size_t pixels = static_cast<std::size_t>(frame.Width) * frame.Height;
+  picture.Color.assign(4 * pixels, 0);
+  picture.Depth.assign(pixels, 1.0f);
+  std::size_t filled = 0;
+  for (const auto& bytes : messenger.AllGather(Pack(frame)))
+  {
+    filled += Unpack(bytes, picture);
+  }
+  if (filled != pixels)
+  {
+    throw dsm::Error("The ranks traced " + std::to_string(filled) + " of " +
+      std::to_string(pixels) + " pixels: a tile was lost or traced twice.");
+  }
+  return picture;
+}
+
+std::uint64_t GetHash(const Picture& picture)
+{
+  std::uint64_t hash = 0xcbf29ce484222325ull;
+  const std::int32_t size[2] = { picture.Width, picture.Height };
+  hash = AddToHash(hash, size, sizeof(size));
+  hash = AddToHash(hash, picture.Color.data(), picture.Color.size());
+  return AddToHash(hash, picture.Depth.data(), picture.Depth.size() * sizeof(float));
+}
+
+} // namespace rt

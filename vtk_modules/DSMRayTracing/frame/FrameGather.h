@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef rt_FrameGather_h
+#define rt_FrameGather_h
+
+#include "DSMCore/Messenger.h"
+#include "DSMRayTracing/frame/Frame.h"
+
+#include <cstdint>
+#include <vector>
+
+namespace rt
+{
+
+/// A whole frame: row 0 is the bottom row; four bytes (alpha premultiplied) and one window depth a
+/// pixel.
+struct Picture
+{
+  int Width = 0;
+  int Height = 0;
+  std::vector<std::uint8_t> Color;
+  std::vector<float> Depth;
+};
+
+/// Collective: every rank gets the whole picture out of the ranks' tiles. Throws dsm::Error, on
+/// every rank, when tiles are missing or stand twice.
+Picture GatherFrame(dsm::Messenger& messenger, const Frame& frame);
+
+/// A number that two pictures share if, for all practical purposes, they are equal bit for bit:
+/// 64-bit FNV-1a over size, colours and depths.
+std::uint64_t GetHash(const Picture& picture);
+
+} // namespace rt
+
+#endif

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef rt_FrameRenderer_h
+#define rt_FrameRenderer_h
+
+#include "DSMCore/Messenger.h"
+#include "DSMCore/ObjectStore.h"
+#include "DSMRayTracing/frame/Frame.h"
+#include "DSMRayTracing/frame/FrameRequest.h"
+#include "DSMRayTracing/frame/Scene.h"
+#include "DSMRayTracing/frame/WorkerPool.h"
+#include "DSMRayTracing/schedule/CentralQueueScheduler.h"
+
+namespace rt
+{
+
+/// Traces frames: the workers trace tiles while the calling thread, which alone may call MPI,
+/// carries their requests for bricks and tiles and serves the other ranks (the paper's
+/// communication thread, section 3). After its last tile a rank goes on serving until all have
+/// finished.
+class FrameRenderer
+{
+public:
+  explicit FrameRenderer(dsm::Messenger& messenger);
+  ~FrameRenderer();
+
+  /// Collective; always from the same thread. Every rank passes the same request and scene.
+  /// `store.GetSettings().Workers` threads trace. Returns the tiles that this rank traced. Throws
+  /// the same dsm::Error on every rank when any rank fails, or when the requests differ; the next
+  /// frame is not affected.
+  Frame Render(dsm::ObjectStore& store, const Scene& scene, const FrameRequest& request);
+
+private:
+  template <class Store>
+  Frame RenderWith(Store& store, const Scene& scene, const FrameRequest& request);
+
+  dsm::Messenger& Messenger;
+  CentralQueueScheduler Scheduler;
+  WorkerPool Pool;
+};
+
+} // namespace rt
+
+#endif

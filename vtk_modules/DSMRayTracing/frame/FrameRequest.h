@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef rt_FrameRequest_h
+#define rt_FrameRequest_h
+
+#include <glm/mat4x4.hpp>
+
+namespace rt
+{
+
+/// A picture to trace: the same on every rank.
+struct FrameRequest
+{
+  /// Pixels; row 0 is the bottom row, as in OpenGL.
+  int Width = 0;
+  int Height = 0;
+  /// World to clip space (OpenGL's: -1..1 on each axis after the division by w, near at z = -1) for
+  /// the rectangle of Width x Height pixels; column vectors. Perspective, parallel, oblique alike.
+  glm::dmat4 WorldToClip{ 1.0 };
+  /// Where two-sided lighting and specular highlights look from is derived from the matrix.
+  int TileSize = 16;
+};
+
+} // namespace rt
+
+#endif

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "DSMRayTracing/frame/PixelRays.h"
+
+#include "DSMCore/Error.h"
+
+#include <glm/matrix.hpp>
+#include <glm/vec4.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace rt
+{
+
+PixelRays::PixelRays(const FrameRequest& request)
+  : PixelWidth(2.0 / request.Width)
+  , PixelHeight(2.0 / request.Height)
+  , WorldToClip(request.WorldToClip)
+  , ClipToWorld(glm::inverse(request.WorldToClip))
+{
+  for (int column = 0; column < 4; ++column)
+  {
+    for (int row = 0; row < 4; ++row)
+    {
+      if (!std::isfinite(this->ClipToWorld[column][row]))
+      {
+        throw dsm::Error("The camera's matrix cannot be inverted. Reset the camera.");
+      }
+    }
+  }
+}
+
+Ray PixelRays::GetRay(int x, int y) const
+{
+  const double clipX = (x + 0.5) * this->PixelWidth - 1.0;
+  const double clipY = (y + 0.5) * this->PixelHeight - 1.0;
+  const glm::dvec4 base =
+    this->ClipToWorld[0] * clipX + this->ClipToWorld[1] * clipY + this->ClipToWorld[3];
+  const glm::dvec4 nearPoint = base - this->ClipToWorld[2];
+  const glm::dvec4 farPoint = base + this->ClipToWorld[2];
+  Ray ray;
+  ray.Origin = glm::dvec3(nearPoint) / nearPoint.w;
+  ray.Direction = glm::dvec3(farPoint) / farPoint.w - ray.Origin;
+  ray.Min = 0.0;
+  ray.Max = 1.0;
+  return ray;
+}
+
+float PixelRays::GetDepth(const glm::dvec3& point) const
+{
+  const glm::dvec4 clip = this->WorldToClip * glm::dvec4(point, 1.0);
+  return static_cast<float>(std::clamp(0.5 * clip.z / clip.w + 0.5, 0.0, 1.0));
+}
+
+} // namespace rt

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef rt_PixelRays_h
+#define rt_PixelRays_h
+
+#include "DSMRayTracing/frame/FrameRequest.h"
+#include "DSMRayTracing/kernel/VolumeTracer.h"
+
+#include <glm/mat4x4.hpp>
+
+namespace rt
+{
+
+/// Makes a pixel's ray, and a hit's depth, out of the world-to-clip matrix alone; so perspective,
+/// parallel and oblique cameras need no cases.
+class PixelRays
+{
+public:
+  /// Throws dsm::Error when the matrix cannot be inverted.
+  explicit PixelRays(const FrameRequest& request);
+
+  /// World space, from the near plane (T = 0) to the far plane (T = 1), through the pixel's centre.
+  Ray GetRay(int x, int y) const;
+
+  /// OpenGL window depth in [0, 1] of a world point.
+  float GetDepth(const glm::dvec3& point) const;
+
+private:
+  double PixelWidth;
+  double PixelHeight;
+  glm::dmat4 WorldToClip;
+  glm::dmat4 ClipToWorld;
+};
+
+} // namespace rt
+
+#endif

@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef rt_Scene_h
+#define rt_Scene_h
+
+#include "DSMCore/BlockSegment.h"
+#include "DSMRayTracing/accel/MacrocellHierarchy.h"
+#include "DSMRayTracing/brick/BrickLattice.h"
+
+#include <glm/mat4x4.hpp>
+#include <glm/matrix.hpp>
+#include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
+
+#include <memory>
+#include <vector>
+
+namespace rt
+{
+
+/// One array of a volume, in bricks. Shared by all that draw it.
+struct VoxelField
+{
+  BrickLattice Lattice;
+  std::shared_ptr<dsm::BlockSegment> Segment;
+  MacrocellHierarchy Hierarchy;
+};
+
+/// A sampled colour map. Colours are linear in the value between First and Last, entry 0 belonging
+/// to First; nearest entry. Not premultiplied.
+struct ColorMap
+{
+  double First = 0.0;
+  double Last = 1.0;
+  /// The table is spaced evenly in log10 of the value.
+  bool Logarithmic = false;
+  std::vector<glm::vec4> Table;
+  glm::vec4 Below{ 0.0f };
+  glm::vec4 Above{ 0.0f };
+  glm::vec4 NotANumber{ 0.0f };
+
+  glm::vec4 Map(double value) const;
+};
+
+/// As vtkProperty: colours in [0, 1], coefficients as there.
+struct Material
+{
+  float Ambient = 0.0f;
+  float Diffuse = 1.0f;
+  float Specular = 0.0f;
+  float SpecularPower = 1.0f;
+  glm::vec3 AmbientColor{ 1.0f };
+  glm::vec3 DiffuseColor{ 1.0f };
+  glm::vec3 SpecularColor{ 1.0f };
+  float Opacity = 1.0f;
+  /// Off: the surface shows its colour as it is.
+  bool Lighting = true;
+};
+
+/// Isosurfaces of one volume.
+struct IsosurfaceObject
+{
+  /// Point index space (sample (i,j,k) at (i,j,k) of the lattice) to world; affine, invertible.
+  glm::dmat4 IndexToWorld{ 1.0 };
+  /// Its inverse; SetIndexToWorld keeps the two together.
+  glm::dmat4 WorldToIndex{ 1.0 };
+  void SetIndexToWorld(const glm::dmat4& matrix)
+  {
+    this->IndexToWorld = matrix;
+    this->WorldToIndex = glm::inverse(matrix);
+  }
+  std::shared_ptr<const VoxelField> Field;
+  /// Ascending, finite, no duplicates.
+  std::vector<double> Isovalues;
+  /// May be null: then the material's diffuse colour is used. Same lattice points as Field.
+  std::shared_ptr<const VoxelField> ColorField;
+  ColorMap Colors;
+  Material Surface;
+};
+
+/// World space. Colour includes the intensity.
+struct Light
+{
+  enum class Kind
+  {
+    Directional,
+    Positional,
+    Cone
+  };
+  Kind Type = Kind::Directional;
+  glm::dvec3 Position{ 0.0 };
+  /// Unit, from the light into the scene.
+  glm::dvec3 Direction{ 0.0, 0.0, -1.0 };
+  glm::vec3 Color{ 1.0f };
+  /// Cosine of the cone's half angle, exponent of the fall-off within it, and constant, linear and
+  /// quadratic attenuation, as in vtkLight.
+  float ConeCosine = 0.0f;
+  float Exponent = 1.0f;
+  glm::vec3 Attenuation{ 1.0f, 0.0f, 0.0f };
+};
+
+/// All that one frame shows.
+struct Scene
+{
+  std::vector<IsosurfaceObject> Isosurfaces;
+  std::vector<Light> Lights;
+};
+
+} // namespace rt
+
+#endif

@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "DSMRayTracing/frame/WorkerPool.h"
+
+#include "DSMCore/Error.h"
+
+#include <string>
+#include <system_error>
+
+namespace rt
+{
+
+WorkerPool::~WorkerPool()
+{
+  {
+    const std::lock_guard<std::mutex> lock(this->Mutex);
+    this->Stopping = true;
+  }
+  this->Begun.notify_all();
+  for (std::thread& thread : this->Threads)
+  {
+    thread.join();
+  }
+}
+
+void WorkerPool::Start(int count, std::function<void(int)> task, std::function<void()> finished)
+{
+  try
+  {
+    while (static_cast<int>(this->Threads.size()) < count)
+    {
+      const int index = static_cast<int>(this->Threads.size());
+      this->Threads.emplace_back([this, index] { this->Loop(index); });
+    }
+  }
+  catch (const std::system_error& error)
+  {
+    throw dsm::Error("Only " + std::to_string(this->Threads.size()) + " of " +
+      std::to_string(count) + " tracing threads could be started (" + error.what() +
+      "). Ask for fewer (DSMThreads).");
+  }
+  {
+    const std::lock_guard<std::mutex> lock(this->Mutex);
+    this->Task = std::move(task);
+    this->Finished = std::move(finished);
+    this->Count = count;
+    this->Running = count;
+    ++this->Run;
+  }
+  this->Begun.notify_all();
+}
+
+int WorkerPool::GetRunning() const
+{
+  const std::lock_guard<std::mutex> lock(this->Mutex);
+  return this->Running;
+}
+
+void WorkerPool::Wait()
+{
+  std::unique_lock<std::mutex> lock(this->Mutex);
+  this->Ended.wait(lock, [this] { return this->Running == 0; });
+}
+
+void WorkerPool::Loop(int index)
+{
+  std::uint64_t seen = 0;
+  std::unique_lock<std::mutex> lock(this->Mutex);
+  for (;;)
+  {
+    this->Begun.wait(lock, [&] { return this->Stopping || this->Run != seen; });
+    if (this->Stopping)
+    {
+      return;
+    }
+    seen = this->Run;
+    // Threads beyond the count of this run sit it out.
+    if (index >= this->Count)
+    {
+      continue;
+    }
+    lock.unlock();
+    this->Task(index);
+    lock.lock();
+    --this->Running;
+    lock.unlock();
+    this->Finished();
+    this->Ended.notify_all();
+    lock.lock();
+  }
+}
+
+} // namespace rt

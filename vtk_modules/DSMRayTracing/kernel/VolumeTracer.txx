@@ -1,0 +1,228 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef rt_VolumeTracer_txx
+#define rt_VolumeTracer_txx
+
+#include "DSMRayTracing/brick/VoxelBrick.h"
+#include "DSMRayTracing/kernel/BrickWalk.h"
+#include "DSMRayTracing/kernel/CellNeighbourhood.h"
+#include "DSMRayTracing/kernel/GridTraversal.h"
+#include "DSMRayTracing/kernel/IndexSpace.h"
+#include "DSMRayTracing/kernel/IsovalueLevel.h"
+#include "DSMRayTracing/kernel/TrilinearCell.h"
+
+#include <cmath>
+#include <limits>
+
+namespace rt
+{
+
+template <class Store>
+bool VolumeTracer<Store>::Intersect(
+  const IsosurfaceObject& object, const Ray& ray, SurfaceHit& hit) const
+{
+  const IndexSpace space(object.IndexToWorld, object.WorldToIndex);
+  const BrickLattice& lattice = object.Field->Lattice;
+  GridRay line;
+  double enter = ray.Min;
+  double leave = ray.Max;
+  if (!space.GetGridRay(ray, line) || !line.Clip(lattice.GetCells(), enter, leave))
+  {
+    return false;
+  }
+  return Dispatch(lattice.GetScalarType(),
+    [&](auto sample)
+    {
+      double gradient[3];
+      if (!this->IntersectBricks<decltype(sample)>(object, line, enter, leave, hit, gradient))
+      {
+        return false;
+      }
+      hit.Normal = space.GetNormal(gradient, ray.Direction);
+      return true;
+    });
+}
+
+template <class Store>
+template <class T>
+bool VolumeTracer<Store>::IntersectBricks(const IsosurfaceObject& object, const GridRay& line,
+  double enter, double leave, SurfaceHit& hit, double gradient[3]) const
+{
+  const VoxelField& field = *object.Field;
+  BrickWalk walk(field.Lattice, field.Hierarchy, line, object.Isovalues, enter, leave);
+  while (walk.Next())
+  {
+    CellHit cell;
+    bool hasGradient = false;
+    if (!this->IntersectBrick<T>(object, line, walk.GetBrick(), walk.GetEnter(), walk.GetLeave(),
+          cell, hit.Isovalue, gradient, hasGradient))
+    {
+      continue;
+    }
+    if (!hasGradient)
+    {
+      this->FindGradient<T>(field, cell, object.Isovalues[hit.Isovalue], gradient);
+    }
+    hit.T = cell.T;
+    const int* brick = walk.GetBrick();
+    hit.Brick = field.Lattice.GetId({ brick[0], brick[1], brick[2] });
+    hit.IndexPoint = { cell.Cell[0] + cell.Local[0], cell.Cell[1] + cell.Local[1],
+      cell.Cell[2] + cell.Local[2] };
+    return true;
+  }
+  return false;
+}
+
+template <class Store>
+template <class T>
+bool VolumeTracer<Store>::IntersectBrick(const IsosurfaceObject& object, const GridRay& line,
+  const int brick[3], double enter, double leave, CellHit& cell, int& isovalue, double gradient[3],
+  bool& hasGradient) const
+{
+  const VoxelField& field = *object.Field;
+  const int edge = field.Lattice.GetEdge();
+  const int origin[3] = { brick[0] * edge, brick[1] * edge, brick[2] * edge };
+  const typename Store::Pin pin = this->Blocks.Acquire(
+    this->Self, *field.Segment, field.Lattice.GetId({ brick[0], brick[1], brick[2] }));
+  const VoxelBrick<T> voxels(pin.GetData());
+  const ValueRange range{ voxels.GetHeader().First, voxels.GetHeader().Last };
+  const GridTraversal<T> traversal(line, voxels, origin);
+  bool found = false;
+  double limit = std::numeric_limits<double>::infinity();
+  for (std::size_t index = 0; index < object.Isovalues.size(); ++index)
+  {
+    CellHit candidate;
+    if (range.MayHold(object.Isovalues[index]) &&
+      traversal.FindFirst(
+        IsovalueLevel<T>(object.Isovalues[index]), enter, leave, limit, candidate) &&
+      candidate.T < limit)
+    {
+      found = true;
+      limit = candidate.T;
+      cell = candidate;
+      isovalue = static_cast<int>(index);
+    }
+  }
+  if (!found)
+  {
+    return false;
+  }
+  const int local[3] = { cell.Cell[0] - origin[0], cell.Cell[1] - origin[1],
+    cell.Cell[2] - origin[2] };
+  hasGradient = CellNeighbourhood::IsWithin(voxels, local);
+  if (hasGradient)
+  {
+    CellNeighbourhood samples;
+    samples.CopyAll(voxels, local, IsovalueLevel<T>(object.Isovalues[isovalue]));
+    samples.GetGradient(cell.Local, gradient);
+  }
+  return true;
+}
+
+template <class Store>
+template <class T>
+void VolumeTracer<Store>::FindGradient(
+  const VoxelField& field, const CellHit& cell, double isovalue, double gradient[3]) const
+{
+  const BrickLattice& lattice = field.Lattice;
+  const IsovalueLevel<T> level(isovalue);
+  const Index3 place(cell.Cell[0], cell.Cell[1], cell.Cell[2]);
+  const Index3 edge(lattice.GetEdge());
+  const Index3 home = place / edge;
+  const Index3 first = glm::max(place - Index3(1), Index3(0)) / edge;
+  const Index3 last = glm::min(place + Index3(1), lattice.GetCells() - Index3(1)) / edge;
+  CellNeighbourhood samples;
+  samples.Clear();
+  for (std::int64_t z = first.z; z <= last.z; ++z)
+  {
+    for (std::int64_t y = first.y; y <= last.y; ++y)
+    {
+      for (std::int64_t x = first.x; x <= last.x; ++x)
+      {
+        // Differences along the axes only need the bricks across faces; the others tell no more
+        // than whether their cells are blanked.
+        const int axesApart = (x != home.x) + (y != home.y) + (z != home.z);
+        if (axesApart > 1 && !lattice.HasCellMask())
+        {
+          continue;
+        }
+        const Index3 brick(x, y, z);
+        const Index3 local = place - brick * edge;
+        const int localCell[3] = { static_cast<int>(local.x), static_cast<int>(local.y),
+          static_cast<int>(local.z) };
+        const typename Store::Pin pin =
+          this->Blocks.Acquire(this->Self, *field.Segment, lattice.GetId(brick));
+        samples.CopyPart(VoxelBrick<T>(pin.GetData()), localCell, level);
+      }
+    }
+  }
+  samples.GetGradient(cell.Local, gradient);
+}
+
+template <class Store>
+double VolumeTracer<Store>::Sample(const VoxelField& field, const glm::dvec3& indexPoint) const
+{
+  const Index3 cells = field.Lattice.GetCells();
+  Index3 cell;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    if (!(indexPoint[axis] >= 0.0 && indexPoint[axis] <= static_cast<double>(cells[axis])))
+    {
+      return std::numeric_limits<double>::quiet_NaN();
+    }
+    cell[axis] = std::min(static_cast<std::int64_t>(indexPoint[axis]), cells[axis] - 1);
+  }
+  return Dispatch(field.Lattice.GetScalarType(),
+    [&](auto sample)
+    {
+      using T = decltype(sample);
+      // A point on a face belongs to the cells on both sides; either may hold data.
+      double value = std::numeric_limits<double>::quiet_NaN();
+      for (int side = 0; side < 8 && std::isnan(value); ++side)
+      {
+        const Index3 back(side & 1, side >> 1 & 1, side >> 2);
+        bool touches = true;
+        for (int axis = 0; axis < 3; ++axis)
+        {
+          touches = touches &&
+            (back[axis] == 0 ||
+              (cell[axis] > 0 && indexPoint[axis] == static_cast<double>(cell[axis])));
+        }
+        if (touches)
+        {
+          value = this->SampleCell<T>(field, cell - back, indexPoint);
+        }
+      }
+      return value;
+    });
+}
+
+template <class Store>
+template <class T>
+double VolumeTracer<Store>::SampleCell(
+  const VoxelField& field, const Index3& cell, const glm::dvec3& indexPoint) const
+{
+  const Index3 brick = cell / Index3(field.Lattice.GetEdge());
+  const Index3 local = cell - brick * Index3(field.Lattice.GetEdge());
+  const int x = static_cast<int>(local.x);
+  const int y = static_cast<int>(local.y);
+  const int z = static_cast<int>(local.z);
+  const typename Store::Pin pin =
+    this->Blocks.Acquire(this->Self, *field.Segment, field.Lattice.GetId(brick));
+  const VoxelBrick<T> voxels(pin.GetData());
+  if (!voxels.HoldsData(x, y, z))
+  {
+    return std::numeric_limits<double>::quiet_NaN();
+  }
+  double corners[8];
+  for (int corner = 0; corner < 8; ++corner)
+  {
+    corners[corner] = static_cast<double>(
+      voxels.GetSample(x + (corner & 1), y + (corner >> 1 & 1), z + (corner >> 2)));
+  }
+  const glm::dvec3 inside = indexPoint - glm::dvec3(cell);
+  return EvaluateTrilinear(corners, &inside.x);
+}
+
+} // namespace rt
+
+#endif

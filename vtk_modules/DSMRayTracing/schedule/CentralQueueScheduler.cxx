@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "DSMRayTracing/schedule/CentralQueueScheduler.h"
+
+#include <algorithm>
+#include <cstdint>
+
+namespace rt
+{
+
+namespace
+{
+
+struct TileRequest
+{
+  std::int32_t Count;
+};
+
+/// Tiles [First, First + Count); none means that the frame has no more.
+struct TileGrant
+{
+  std::int32_t First;
+  std::int32_t Count;
+};
+
+} // namespace
+
+CentralQueueScheduler::CentralQueueScheduler(dsm::Messenger& messenger)
+  : Messenger(messenger)
+{
+}
+
+CentralQueueScheduler::~CentralQueueScheduler() = default;
+
+void CentralQueueScheduler::Begin(int tiles, int workers)
+{
+  this->Tiles = tiles;
+  this->Workers = std::max(workers, 1);
+  this->Next = 0;
+  this->Granted.clear();
+  this->Exhausted = false;
+  this->RequestUnderWay = false;
+  if (this->IsSupervisor())
+  {
+    this->Messenger.SetHandler(dsm::MessageKind::TileRequest,
+      [this](dsm::Message&& message) { this->Grant(std::move(message)); });
+  }
+  else
+  {
+    this->Messenger.SetHandler(dsm::MessageKind::TileGrant,
+      [this](dsm::Message&& message) { this->Receive(std::move(message)); });
+  }
+}
+
+void CentralQueueScheduler::End()
+{
+  this->Messenger.SetHandler(dsm::MessageKind::TileRequest, {});
+  this->Messenger.SetHandler(dsm::MessageKind::TileGrant, {});
+}
+
+void CentralQueueScheduler::Cancel()
+{
+  this->Next = this->Tiles;
+  {
+    const std::lock_guard<std::mutex> lock(this->Mutex);
+    this->Granted.clear();
+    this->Exhausted = true;
+  }
+  this->Changed.notify_all();
+}
+
+void CentralQueueScheduler::Grant(dsm::Message&& request)
+{
+  const auto wanted = dsm::Decode<TileRequest>(request, dsm::MessageKind::TileRequest);
+  const int asked = std::clamp(wanted.Count, 1, this->Tiles);
+  const int first = this->Next.fetch_add(asked);
+  // Towards the end of the frame the queue holds less than was asked for, or nothing.
+  const TileGrant grant{ first, std::clamp(this->Tiles - first, 0, asked) };
+  this->Messenger.Post(request.Source, dsm::MessageKind::TileGrant, dsm::Encode(grant));
+}
+
+void CentralQueueScheduler::Receive(dsm::Message&& message)
+{
+  const auto grant = dsm::Decode<TileGrant>(message, dsm::MessageKind::TileGrant);
+  if (grant.Count < 0 ||
+    (grant.Count > 0 && (grant.First < 0 || grant.First + grant.Count > this->Tiles)))
+  {
+    throw dsm::Error("Rank 0 granted tiles that the frame does not have.");
+  }
+  {
+    const std::lock_guard<std::mutex> lock(this->Mutex);
+    // After a Cancel the tiles are dropped: the frame has failed anyway.
+    for (int tile = grant.First; !this->Exhausted && tile < grant.First + grant.Count; ++tile)
+    {
+      this->Granted.push_back(tile);
+    }
+    this->Exhausted = this->Exhausted || grant.Count == 0;
+  }
+  this->RequestUnderWay = false;
+  this->Changed.notify_all();
+}
+
+bool CentralQueueScheduler::Service()
+{
+  if (this->IsSupervisor() || this->RequestUnderWay)
+  {
+    return false;
+  }
+  {
+    const std::lock_guard<std::mutex> lock(this->Mutex);
+    if (this->Exhausted || static_cast<int>(this->Granted.size()) >= this->Workers)
+    {
+      return false;
+    }
+  }
+  this->RequestUnderWay = true;
+  this->Messenger.Post(0, dsm::MessageKind::TileRequest, dsm::Encode(TileRequest{ this->Workers }));
+  return true;
+}
+
+std::optional<int> CentralQueueScheduler::Pop()
+{
+  if (this->IsSupervisor())
+  {
+    const int tile = this->Next.fetch_add(1);
+    return tile < this->Tiles ? std::optional<int>(tile) : std::nullopt;
+  }
+  std::unique_lock<std::mutex> lock(this->Mutex);
+  this->Changed.wait(lock, [this] { return this->Exhausted || !this->Granted.empty(); });
+  if (this->Granted.empty())
+  {
+    return std::nullopt;
+  }
+  const int tile = this->Granted.front();
+  this->Granted.pop_front();
+  const bool low = static_cast<int>(this->Granted.size()) < this->Workers;
+  lock.unlock();
+  if (low)
+  {
+    this->Messenger.WakeUp();
+  }
+  return tile;
+}
+
+} // namespace rt

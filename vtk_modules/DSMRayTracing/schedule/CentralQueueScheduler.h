@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef rt_CentralQueueScheduler_h
+#define rt_CentralQueueScheduler_h
+
+#include "DSMCore/Messenger.h"
+#include "DSMRayTracing/schedule/TileScheduler.h"
+
+#include <atomic>
+#include <condition_variable>
+#include <deque>
+#include <mutex>
+
+namespace rt
+{
+
+/// The paper's central demand queue (section 4.4): rank 0 holds the tiles, and the other ranks ask
+/// it for more. A rank asks before it runs out, for as many tiles as it has workers, so that a
+/// worker seldom waits for the answer.
+class CentralQueueScheduler final : public TileScheduler
+{
+public:
+  explicit CentralQueueScheduler(dsm::Messenger& messenger);
+  ~CentralQueueScheduler() override;
+
+  void Begin(int tiles, int workers) override;
+  bool Service() override;
+  void End() override;
+  void Cancel() override;
+  std::optional<int> Pop() override;
+
+private:
+  void Grant(dsm::Message&& request);
+  void Receive(dsm::Message&& grant);
+  bool IsSupervisor() const { return this->Messenger.GetRank() == 0; }
+
+  dsm::Messenger& Messenger;
+  int Tiles = 0;
+  int Workers = 1;
+
+  /// Supervisor: the next tile nobody has. Its own workers take from here without a message.
+  std::atomic<int> Next{ 0 };
+
+  /// Other ranks: what rank 0 gave and no worker took yet.
+  std::mutex Mutex;
+  std::condition_variable Changed;
+  std::deque<int> Granted;
+  bool Exhausted = false;
+
+  /// Communication thread only.
+  bool RequestUnderWay = false;
+};
+
+} // namespace rt
+
+#endif
