@@ -1,0 +1,86 @@
+# SPDX-License-Identifier: BSD-3-Clause
+# What demo.sh and test.sh share: packages, build, and how to start ranks. To be sourced.
+
+project=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
+build=${DSM_BUILD_DIRECTORY:-$project/build}
+
+say() { printf '%s\n' "$*"; }
+fail() { printf 'error: %s\n' "$*" >&2; exit 1; }
+
+# The packages that the build, the demonstration and the tests need, on Debian 12 (bookworm).
+packages=(
+  g++ cmake ninja-build
+  paraview paraview-dev python3-paraview
+  libopenmpi-dev openmpi-bin
+  libglm-dev nlohmann-json3-dev
+  xvfb xauth libgl1-mesa-dri
+)
+
+# Prints the packages among the arguments that are not installed.
+missing_packages() {
+  local package
+  for package in "$@"; do
+    [ "$(dpkg-query -W -f '${db:Status-Status}' "$package" 2>/dev/null)" = installed ] ||
+      printf '%s ' "$package"
+  done
+}
+
+# Installs what is missing of the packages named; says what it needs when it cannot.
+install_packages() {
+  command -v dpkg-query >/dev/null ||
+    fail "this script installs Debian packages, and this is not Debian. Install the equivalents of: $*"
+  local missing as_root=()
+  missing=$(missing_packages "$@")
+  [ -n "$missing" ] || return 0
+  if [ "$(id -u)" -ne 0 ]; then
+    command -v sudo >/dev/null ||
+      fail "these packages are missing, and neither root nor sudo is at hand to install them: $missing
+       Ask an administrator for: apt-get install --no-install-recommends $missing"
+    as_root=(sudo)
+  fi
+  say "Installing packages (the first time, this takes some minutes): $missing"
+  mkdir -p "$build"
+  if ! { "${as_root[@]}" apt-get update &&
+    "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive \
+      apt-get install --yes --no-install-recommends $missing; } >"$build/packages.log" 2>&1; then
+    tail -n 20 "$build/packages.log" >&2
+    fail "the packages could not be installed; the whole log is $build/packages.log. They are: $missing"
+  fi
+}
+
+# Builds into $build; a second run only checks what has changed.
+build_project() {
+  mkdir -p "$build"
+  if [ ! -f "$build/build.ninja" ]; then
+    say "Configuring ..."
+    cmake -S "$project" -B "$build" -G Ninja -DCMAKE_BUILD_TYPE=Release "$@" >"$build/configure.log" 2>&1 || {
+      tail -n 30 "$build/configure.log" >&2
+      rm -f "$build/build.ninja"
+      fail "the project could not be configured; the whole log is $build/configure.log"
+    }
+  fi
+  say "Building (only what has changed) ..."
+  cmake --build "$build" >"$build/build.log" 2>&1 || {
+    grep -E -A 5 'error|FAILED' "$build/build.log" | head -n 60 >&2
+    fail "the project could not be built; the whole log is $build/build.log"
+  }
+}
+
+# The folder that holds the plugin.
+plugin_directory() {
+  local plugin
+  plugin=$(find "$build" -name DSMRayTracer.so -print -quit)
+  [ -n "$plugin" ] || fail "DSMRayTracer.so is not in $build; did the build stop early?"
+  dirname "$plugin"
+}
+
+# mpirun with N ranks, also where ranks are more than cores, or the user is root.
+start_ranks() {
+  local ranks=$1
+  shift
+  local options=(--oversubscribe --bind-to none -np "$ranks")
+  [ "$(id -u)" -ne 0 ] || options+=(--allow-run-as-root)
+  # Without a screen, ParaView draws into a virtual one. -noreset: X would reset between clients.
+  xvfb-run --auto-servernum --server-args "-noreset -screen 0 1280x1024x24" \
+    mpirun "${options[@]}" "$@"
+}

@@ -1,0 +1,227 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "BenchmarkVolume.h"
+
+#include "DSMCore/ConcurrentFragmentSource.h"
+#include "DSMRayTracing/brick/VoxelBrickBuilder.h"
+#include "DSMRayTracing/sample/SampleVolume.h"
+
+#include <vtkDataArray.h>
+#include <vtkImageData.h>
+#include <vtkInformation.h>
+#include <vtkMatrix4x4.h>
+#include <vtkNew.h>
+#include <vtkPointData.h>
+#include <vtkSmartPointer.h>
+#include <vtkStreamingDemandDrivenPipeline.h>
+#include <vtkXMLImageDataReader.h>
+
+#include <algorithm>
+#include <cstring>
+#include <map>
+#include <sstream>
+
+namespace
+{
+
+/// A whole volume, before it is cut: what it is made of and how to get a box of its cells.
+struct Input
+{
+  rt::Index3 Points;
+  rt::ScalarType Type;
+  glm::dmat4 IndexToWorld{ 1.0 };
+  std::function<std::shared_ptr<const rt::VoxelSource>(const rt::Box& cells)> CreatePiece;
+};
+
+/// One component of the point scalars of an image that holds all points of the piece.
+class ImageSource final : public rt::VoxelSource
+{
+public:
+  ImageSource(vtkImageData* image, const rt::Box& cells)
+    : Image(image)
+    , Cells(cells)
+  {
+  }
+  rt::Box GetCells() const override { return this->Cells; }
+  void ReadSamples(const rt::Box& points, std::byte* out) const override
+  {
+    vtkDataArray* scalars = this->Image->GetPointData()->GetScalars();
+    const std::size_t row = points.GetSize().x * scalars->GetDataTypeSize();
+    for (auto k = points.Min.z; k < points.Max.z; ++k)
+    {
+      for (auto j = points.Min.y; j < points.Max.y; ++j)
+      {
+        int ijk[3] = { static_cast<int>(points.Min.x), static_cast<int>(j), static_cast<int>(k) };
+        std::memcpy(out, scalars->GetVoidPointer(this->Image->ComputePointId(ijk)), row);
+        out += row;
+      }
+    }
+  }
+
+private:
+  vtkSmartPointer<vtkImageData> Image;
+  rt::Box Cells;
+};
+
+rt::ScalarType ToScalarType(const std::string& name)
+{
+  static const std::map<std::string, rt::ScalarType> types{ { "char", rt::ScalarType::Int8 },
+    { "uchar", rt::ScalarType::UInt8 }, { "short", rt::ScalarType::Int16 },
+    { "ushort", rt::ScalarType::UInt16 }, { "int", rt::ScalarType::Int32 },
+    { "uint", rt::ScalarType::UInt32 }, { "long", rt::ScalarType::Int64 },
+    { "ulong", rt::ScalarType::UInt64 }, { "float", rt::ScalarType::Float32 },
+    { "double", rt::ScalarType::Float64 } };
+  const auto type = types.find(name);
+  if (type == types.end())
+  {
+    throw dsm::Error("\"" + name + "\" is not a scalar type that a sample volume can have.");
+  }
+  return type->second;
+}
+
+rt::ScalarType ToScalarType(vtkDataArray* array)
+{
+  const bool floating = array->GetDataType() == VTK_FLOAT || array->GetDataType() == VTK_DOUBLE;
+  const bool isSigned = array->GetDataTypeMin() < 0.0;
+  switch (array->GetDataTypeSize())
+  {
+    case 1:
+      return isSigned ? rt::ScalarType::Int8 : rt::ScalarType::UInt8;
+    case 2:
+      return isSigned ? rt::ScalarType::Int16 : rt::ScalarType::UInt16;
+    case 4:
+      return floating ? rt::ScalarType::Float32
+                      : (isSigned ? rt::ScalarType::Int32 : rt::ScalarType::UInt32);
+    default:
+      return floating ? rt::ScalarType::Float64
+                      : (isSigned ? rt::ScalarType::Int64 : rt::ScalarType::UInt64);
+  }
+}
+
+Input GenerateVolume(const std::string& description)
+{
+  std::istringstream stream(description);
+  std::string kind;
+  std::string size;
+  std::string type;
+  std::getline(stream, kind, ':');
+  std::getline(stream, size, ':');
+  std::getline(stream, type);
+  const int points = std::atoi(size.c_str());
+  if ((kind != "sphere" && kind != "rm") || points < 2)
+  {
+    throw dsm::Error("\"" + description +
+      "\" is neither a .vti file nor a sample volume such as sphere:256:float or rm:256:uchar.");
+  }
+  const rt::SampleVolume volume(
+    kind == "sphere" ? rt::SampleVolume::Kind::Sphere : rt::SampleVolume::Kind::MixingLayer,
+    rt::Index3(points));
+  Input input{ volume.GetPoints(), ToScalarType(type), glm::dmat4(1.0), {} };
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    input.IndexToWorld[axis][axis] = volume.GetSpacing();
+    input.IndexToWorld[3][axis] = volume.GetOrigin()[axis];
+  }
+  input.CreatePiece = [volume, scalars = input.Type](const rt::Box& cells)
+  { return std::make_shared<rt::SampleVolumeSource>(volume, cells, scalars); };
+  return input;
+}
+
+/// Reads this rank's slab only, where the file allows it.
+Input ReadVolume(const std::string& file, int rank, int ranks)
+{
+  vtkNew<vtkXMLImageDataReader> reader;
+  reader->SetFileName(file.c_str());
+  reader->UpdateInformation();
+  int whole[6];
+  reader->GetOutputInformation(0)->Get(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), whole);
+  int extent[6];
+  std::copy_n(whole, 6, extent);
+  const int cells = whole[5] - whole[4];
+  extent[4] = whole[4] + cells * rank / ranks;
+  extent[5] = whole[4] + cells * (rank + 1) / ranks;
+  static_cast<vtkAlgorithm*>(reader)->UpdateExtent(extent);
+  vtkSmartPointer<vtkImageData> image = reader->GetOutput();
+  vtkDataArray* scalars = image->GetPointData()->GetScalars();
+  if (!scalars || scalars->GetNumberOfComponents() != 1)
+  {
+    throw dsm::Error(file + " could not be read, or its points have no scalars of one component.");
+  }
+  const rt::Index3 first(whole[0], whole[2], whole[4]);
+  // The lattice starts at index 0, so the image is moved there.
+  double origin[3];
+  image->TransformIndexToPhysicalPoint(whole[0], whole[2], whole[4], origin);
+  Input input{ rt::Index3(whole[1], whole[3], whole[5]) - first + rt::Index3(1),
+    ToScalarType(scalars), glm::dmat4(1.0), {} };
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    for (int row = 0; row < 3; ++row)
+    {
+      input.IndexToWorld[axis][row] = image->GetIndexToPhysicalMatrix()->GetElement(row, axis);
+    }
+    input.IndexToWorld[3][axis] = origin[axis];
+  }
+  int held[6];
+  image->GetExtent(held);
+  image->SetExtent(held[0] - whole[0], held[1] - whole[0], held[2] - whole[2], held[3] - whole[2],
+    held[4] - whole[4], held[5] - whole[4]);
+  input.CreatePiece = [image](const rt::Box& cells)
+  { return std::make_shared<ImageSource>(image, cells); };
+  return input;
+}
+
+bool EndsWith(const std::string& text, const std::string& end)
+{
+  return text.size() >= end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
+}
+
+/// Cells [count * part / parts, count * (part + 1) / parts) along an axis of the box.
+rt::Box CutAlong(int axis, const rt::Box& box, std::int64_t part, std::int64_t parts)
+{
+  rt::Box piece = box;
+  const std::int64_t count = box.Max[axis] - box.Min[axis];
+  piece.Min[axis] = box.Min[axis] + count * part / parts;
+  piece.Max[axis] = box.Min[axis] + count * (part + 1) / parts;
+  return piece;
+}
+
+} // namespace
+
+rt::IsosurfaceObject PublishBenchmarkVolume(const std::string& description, int brickEdge,
+  int threads, dsm::ObjectStore& store, dsm::Messenger& messenger)
+{
+  Input input;
+  messenger.RunTogether("Reading the volume",
+    [&]
+    {
+      input = EndsWith(description, ".vti")
+        ? ReadVolume(description, messenger.GetRank(), messenger.GetSize())
+        : GenerateVolume(description);
+    });
+  const rt::BrickLattice lattice(input.Points, input.Type, /*cellMask=*/false,
+    brickEdge > 0 ? brickEdge : rt::BrickLattice::GetDefaultEdge(input.Type));
+
+  const rt::Box whole{ rt::Index3(0), lattice.GetCells() };
+  const rt::Box slab = CutAlong(2, whole, messenger.GetRank(), messenger.GetSize());
+  std::vector<std::unique_ptr<dsm::FragmentSource>> sources;
+  for (int thread = 0; thread < threads; ++thread)
+  {
+    const rt::Box cells = CutAlong(1, slab, thread, threads);
+    if (!cells.IsEmpty())
+    {
+      sources.push_back(std::make_unique<rt::VoxelFragmentSource>(
+        lattice, std::vector<std::shared_ptr<const rt::VoxelSource>>{ input.CreatePiece(cells) }));
+    }
+  }
+  dsm::ConcurrentFragmentSource source(std::move(sources));
+  rt::VoxelBrickSink sink(lattice);
+
+  auto field = std::make_shared<rt::VoxelField>();
+  field->Lattice = lattice;
+  field->Segment =
+    store.Publish(description, lattice.CreateDirectory(messenger.GetSize()), source, sink);
+  field->Hierarchy = rt::MacrocellHierarchy(lattice, *field->Segment, messenger);
+  rt::IsosurfaceObject object;
+  object.SetIndexToWorld(input.IndexToWorld);
+  object.Field = field;
+  return object;
+}

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef BenchmarkVolume_h
+#define BenchmarkVolume_h
+
+#include "DSMCore/Messenger.h"
+#include "DSMCore/ObjectStore.h"
+#include "DSMRayTracing/frame/Scene.h"
+
+#include <string>
+
+/// Publishes the volume that `description` names (see BenchmarkOptions::Usage): each rank makes or
+/// reads a slab of its own. Returns the object without isovalues. Collective; throws dsm::Error.
+rt::IsosurfaceObject PublishBenchmarkVolume(const std::string& description, int brickEdge,
+  int threads, dsm::ObjectStore& store, dsm::Messenger& messenger);
+
+#endif

@@ -1,0 +1,159 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Ray traces isosurfaces and draws vtkFlyingEdges3D's triangles from the same cameras.
+
+The two must cover the same pixels (all but 0.5 %), at the same depth (within one cell for 99.9 % of
+the pixels that both cover). Run by pvbatch:
+    compare_with_flying_edges.py --plugin DSMRayTracer.so --case NAME [--data DIR] [--output DIR]
+Exits with 77 (skipped) when a case needs a data file that is not there.
+"""
+import argparse
+import os
+import sys
+
+import numpy
+from paraview import servermanager, simple
+from paraview.vtk.util import numpy_support
+from vtkmodules.vtkCommonCore import vtkFloatArray
+from vtkmodules.vtkFiltersCore import vtkFlyingEdges3D
+from vtkmodules.vtkIOImage import vtkPNGWriter
+from vtkmodules.vtkRenderingCore import vtkWindowToImageFilter
+
+SIZE = 512
+SKIPPED = 77
+
+# Name -> (file or sample volume, array, isovalues)
+CASES = {
+    "sphere": ({"Kind": 0, "Dimensions": [128, 128, 128]}, "f", [0.5]),
+    "sphere_uchar": ({"Kind": 0, "Dimensions": [96, 128, 80], "ScalarType": 3}, "f", [32.0]),
+    "mixing_layer": ({"Kind": 1, "Dimensions": [128, 128, 128]}, "entropy", [100.0]),
+    "teapot": ("boston_teapot_ct_256x256x178_uint8.vti", "density", [40.0, 39.5]),
+    "cranium": ("cranium_ct_256x256x108_int16.vti", "HU", [300.0]),
+    "heptane": ("csafe_heptane_302x302x302_uint8.vti", "heptane", [60.0, 60.5]),
+    "isabel": ("isabel_t30_125x125x25_float64.vti", "velocityMag", [25.0]),
+    "carotid": ("carotid_76x49x45_float32.vtk", "scalars", [240.0]),
+}
+# From outside at three angles, and close by.
+CAMERAS = [((0.3, 0.5, 1.0), 1.0), ((-1.0, 0.2, 0.1), 1.0), ((0.1, -0.9, -0.4), 0.5)]
+
+
+def open_input(case, data):
+    source, array, isovalues = CASES[case]
+    if isinstance(source, dict):
+        return simple.DSMSampleVolume(**source), array, isovalues
+    path = os.path.join(data, source)
+    if not data or not os.path.exists(path):
+        print(f"skipped: {source} is not in the data folder ({data or 'DSM_TEST_DATA'})")
+        sys.exit(SKIPPED)
+    return simple.OpenDataFile(path), array, isovalues
+
+
+def create_view():
+    view = simple.CreateRenderView()
+    view.ViewSize = [SIZE, SIZE]
+    view.Background = [0.0, 0.0, 0.0]
+    view.UseColorPaletteForBackground = 0
+    view.OrientationAxesVisibility = 0
+    view.UseFXAA = 0
+    view.GetRenderWindow().SetMultiSamples(0)
+    return view
+
+
+def place_camera(view, bounds, direction, distance):
+    center = numpy.array([bounds[0] + bounds[1], bounds[2] + bounds[3], bounds[4] + bounds[5]]) / 2
+    size = numpy.linalg.norm([bounds[1] - bounds[0], bounds[3] - bounds[2], bounds[5] - bounds[4]])
+    direction = numpy.array(direction) / numpy.linalg.norm(direction)
+    camera = view.GetActiveCamera()
+    camera.SetFocalPoint(*center)
+    camera.SetPosition(*(center + 2.0 * distance * size * direction))
+    camera.SetViewUp(0.0, 0.1, 1.0)
+    camera.SetClippingRange(0.05 * size, 4.0 * size)
+    view.GetRenderer().ResetCameraClippingRange(bounds)
+
+
+def grab(view, picture):
+    """Renders; returns eye-space distances (inf where there is nothing) and writes the picture."""
+    simple.Render(view)
+    window = view.GetRenderWindow()
+    depths = vtkFloatArray()
+    window.GetZbufferData(0, 0, SIZE - 1, SIZE - 1, depths)
+    depth = numpy_support.vtk_to_numpy(depths).astype(float).reshape(SIZE, SIZE)
+    near, far = view.GetActiveCamera().GetClippingRange()
+    with numpy.errstate(divide="ignore"):
+        distance = near * far / (far - depth * (far - near))
+    distance[depth >= 1.0] = numpy.inf
+    if picture:
+        shot = vtkWindowToImageFilter()
+        shot.SetInput(window)
+        shot.ReadFrontBufferOff()
+        writer = vtkPNGWriter()
+        writer.SetInputConnection(shot.GetOutputPort())
+        writer.SetFileName(picture)
+        writer.Write()
+    return distance
+
+
+def compare(traced, triangles, cell):
+    """Part of the covered pixels that only one has, and of the common ones that are a cell apart."""
+    covered = numpy.isfinite(traced) | numpy.isfinite(triangles)
+    both = numpy.isfinite(traced) & numpy.isfinite(triangles)
+    assert both.sum() > 1000, "the surfaces hardly show"
+    only_one = (covered & ~both).sum() / covered.sum()
+    apart = (numpy.abs(traced[both] - triangles[both]) > cell).sum() / both.sum()
+    return only_one, apart
+
+
+def main():
+    parser = argparse.ArgumentParser()
+    parser.add_argument("--plugin", required=True)
+    parser.add_argument("--case", required=True, choices=sorted(CASES))
+    parser.add_argument("--data", default=os.environ.get("DSM_TEST_DATA", ""))
+    parser.add_argument("--output", default="")
+    arguments = parser.parse_args()
+    simple.LoadPlugin(arguments.plugin, remote=False, ns=vars(simple))
+    simple.LoadPlugin(arguments.plugin, remote=True, ns=vars(simple))
+
+    source, array, isovalues = open_input(arguments.case, arguments.data)
+    source.UpdatePipeline()
+    image = servermanager.Fetch(source)
+    bounds = source.GetDataInformation().GetBounds()
+    cell = max(image.GetSpacing())
+
+    view = create_view()
+    ours = simple.Show(source, view)
+    ours.Representation = "DSM Ray Traced"
+    ours.ColorArrayName = [None, ""]
+    ours.DSMIsoArray = array
+
+    failures = 0
+    for isovalue in isovalues:
+        edges = vtkFlyingEdges3D()
+        edges.SetInputData(image)
+        edges.SetInputArrayToProcess(0, 0, 0, 0, array)
+        edges.SetValue(0, isovalue)
+        edges.Update()
+        producer = simple.TrivialProducer()
+        producer.GetClientSideObject().SetOutput(edges.GetOutput())
+        theirs = simple.Show(producer, view, "GeometryRepresentation")
+        theirs.Representation = "Surface"
+        theirs.ColorArrayName = [None, ""]
+        ours.DSMIsoValues = [isovalue]
+        for number, (direction, distance) in enumerate(CAMERAS):
+            stem = f"{arguments.case}_{isovalue:g}_{number}"
+            pictures = [os.path.join(arguments.output, f"{stem}_{way}.png") if arguments.output
+                        else "" for way in ("traced", "triangles")]
+            place_camera(view, bounds, direction, distance)
+            ours.Visibility, theirs.Visibility = 1, 0
+            traced = grab(view, pictures[0])
+            ours.Visibility, theirs.Visibility = 0, 1
+            place_camera(view, bounds, direction, distance)
+            triangles = grab(view, pictures[1])
+            only_one, apart = compare(traced, triangles, cell)
+            good = only_one < 0.005 and apart < 0.001
+            failures += not good
+            print(f"{'ok' if good else 'FAILED'}: {stem}: covered by one only {100 * only_one:.3f} %, "
+                  f"more than a cell apart {100 * apart:.3f} %")
+        simple.Delete(producer)
+    sys.exit(1 if failures else 0)
+
+
+main()

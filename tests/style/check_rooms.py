@@ -1,0 +1,51 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""Checks who includes whom: the rooms of docs/architecture.md may only use the ones below them."""
+import pathlib
+import re
+import sys
+
+INCLUDE = re.compile(r'^\s*#\s*include\s*[<"]([^>"]+)[>"]', re.MULTILINE)
+
+# Folder -> patterns of includes that it must not have.
+FORBIDDEN = {
+    "vtk_modules/DSMCore": [r"^vtk", r"^glm/", r"^DSMRayTracing/", r"^RenderingDSM/"],
+    "vtk_modules/DSMRayTracing": [r"^vtk", r"^mpi\.h$", r"^RenderingDSM/"],
+    "vtk_modules/RenderingDSM": [r"^vtkPV", r"^vtkSM", r"^vtkSI", r"^mpi\.h$"],
+    "plugin": [r"^mpi\.h$", r"^DSMCore/", r"^glm/"],
+}
+MPI_FILE = "vtk_modules/DSMCore/MpiTransport.cxx"
+
+
+def find_faults(root):
+    files = 0
+    mpi_files = []
+    for folder, patterns in FORBIDDEN.items():
+        for path in sorted((root / folder).rglob("*")):
+            if path.suffix not in (".h", ".cxx"):
+                continue
+            files += 1
+            name = path.relative_to(root).as_posix()
+            text = path.read_text()
+            if not text.startswith("// SPDX-License-Identifier: BSD-3-Clause\n"):
+                yield f"{name}: the licence line is missing"
+            for include in INCLUDE.findall(text):
+                if include == "mpi.h":
+                    mpi_files.append(name)
+                for pattern in patterns:
+                    if re.search(pattern, include) and name != MPI_FILE:
+                        yield f"{name}: includes {include}, which {folder} must not use"
+    if mpi_files != [MPI_FILE]:
+        yield f"mpi.h is included by {mpi_files}, not by {MPI_FILE} alone"
+    if files < 50:
+        yield f"only {files} files were found"
+
+
+def main():
+    faults = list(find_faults(pathlib.Path(sys.argv[1])))
+    print("\n".join(faults) or "every room uses the rooms below it only")
+    return 1 if faults else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef SphereScene_h
+#define SphereScene_h
+
+#include "DSMCore/Messenger.h"
+#include "DSMCore/ObjectStore.h"
+#include "DSMRayTracing/brick/VoxelBrickBuilder.h"
+#include "DSMRayTracing/frame/FrameRequest.h"
+#include "DSMRayTracing/frame/Scene.h"
+#include "DSMRayTracing/sample/SampleVolume.h"
+
+#include <glm/gtc/matrix_transform.hpp>
+
+#include <algorithm>
+#include <memory>
+#include <vector>
+
+/// A small scene for tests of whole frames: a noisy sphere in many small bricks.
+namespace SphereScene
+{
+
+constexpr int Points = 40;
+constexpr int BrickEdge = 8;
+
+/// A noisy sphere; rank r has the r-th slab, the last rank none when there are several.
+inline std::shared_ptr<rt::VoxelField> Publish(dsm::Messenger& messenger, dsm::ObjectStore& store)
+{
+  const rt::SampleVolume volume(rt::SampleVolume::Kind::Sphere, rt::Index3(Points));
+  const rt::BrickLattice lattice(rt::Index3(Points), rt::ScalarType::Float32, false, BrickEdge);
+  const int rank = messenger.GetRank();
+  const int parts = std::max(messenger.GetSize() - 1, 1);
+  std::vector<std::shared_ptr<const rt::VoxelSource>> pieces;
+  if (rank < parts)
+  {
+    const rt::Box cells{ { 0, 0, (Points - 1) * rank / parts },
+      { Points - 1, Points - 1, (Points - 1) * (rank + 1) / parts } };
+    pieces.push_back(
+      std::make_shared<rt::SampleVolumeSource>(volume, cells, rt::ScalarType::Float32));
+  }
+  rt::VoxelFragmentSource source(lattice, pieces);
+  rt::VoxelBrickSink sink(lattice);
+  auto field = std::make_shared<rt::VoxelField>();
+  field->Lattice = lattice;
+  field->Segment =
+    store.Publish("sphere", lattice.CreateDirectory(messenger.GetSize()), source, sink);
+  field->Hierarchy = rt::MacrocellHierarchy(lattice, *field->Segment, messenger);
+  return field;
+}
+
+inline rt::FrameRequest CreateRequest(int width, int height)
+{
+  rt::FrameRequest request;
+  request.Width = width;
+  request.Height = height;
+  request.WorldToClip =
+    glm::perspective(glm::radians(30.0), static_cast<double>(width) / height, 1.0, 400.0) *
+    glm::lookAt(
+      glm::dvec3(60.0, 45.0, 100.0), glm::dvec3(0.5 * (Points - 1)), glm::dvec3(0.0, 1.0, 0.0));
+  return request;
+}
+
+inline rt::Scene CreateScene(const std::shared_ptr<rt::VoxelField>& field, float opacity)
+{
+  rt::Scene scene;
+  scene.Lights.emplace_back();
+  rt::IsosurfaceObject object;
+  object.Field = field;
+  object.Isovalues = { 0.3, 0.5 };
+  object.Surface.Opacity = opacity;
+  scene.Isosurfaces.push_back(object);
+  return scene;
+}
+
+} // namespace SphereScene
+
+#endif

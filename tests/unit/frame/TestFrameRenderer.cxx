@@ -1,0 +1,202 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tests/support/LoopbackCluster.h"
+#include "tests/support/SphereScene.h"
+
+#include "DSMRayTracing/frame/FrameGather.h"
+#include "DSMRayTracing/frame/FrameRenderer.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <mutex>
+#include <string>
+
+namespace
+{
+
+struct Setting
+{
+  int Ranks = 1;
+  int Workers = 1;
+  std::size_t CacheBytes = std::size_t(16) << 20;
+  float Opacity = 1.0f;
+  int Width = 97;
+  int Height = 61;
+};
+
+/// The picture as every rank has it, after three frames.
+rt::Picture Trace(const Setting& setting, dsm::StoreCounters* sum = nullptr)
+{
+  rt::Picture first;
+  std::mutex guard;
+  RunOnCluster(setting.Ranks,
+    [&](dsm::Messenger& messenger)
+    {
+      dsm::ObjectStore store(messenger, { setting.CacheBytes, setting.Workers });
+      const rt::Scene scene =
+        SphereScene::CreateScene(SphereScene::Publish(messenger, store), setting.Opacity);
+      rt::FrameRenderer renderer(messenger);
+      rt::Picture picture;
+      for (int frame = 0; frame < 3; ++frame)
+      {
+        const rt::Frame traced =
+          renderer.Render(store, scene, SphereScene::CreateRequest(setting.Width, setting.Height));
+        picture = rt::GatherFrame(messenger, traced);
+        const std::lock_guard<std::mutex> lock(guard);
+        if (sum && frame == 0)
+        {
+          sum->Workers += traced.Counters.Workers;
+          sum->Evictions += traced.Counters.Evictions;
+          sum->PeakCachedBytes = std::max(sum->PeakCachedBytes, traced.Counters.PeakCachedBytes);
+        }
+      }
+      const std::lock_guard<std::mutex> lock(guard);
+      if (first.Width == 0)
+      {
+        first = picture;
+      }
+      EXPECT_EQ(rt::GetHash(first), rt::GetHash(picture)) << "rank " << messenger.GetRank();
+    });
+  return first;
+}
+
+int CountCovered(const rt::Picture& picture)
+{
+  return static_cast<int>(std::count_if(
+    picture.Depth.begin(), picture.Depth.end(), [](float depth) { return depth < 1.0f; }));
+}
+
+} // namespace
+
+TEST(FrameRenderer, PictureDoesNotDependOnRanksOrWorkers)
+{
+  const rt::Picture expected = Trace({});
+  EXPECT_GT(CountCovered(expected), 97 * 61 / 10);
+  EXPECT_LT(CountCovered(expected), 97 * 61 * 9 / 10);
+  for (const int ranks : { 1, 2, 3, 4 })
+  {
+    for (const int workers : { 1, 2, 3 })
+    {
+      Setting setting;
+      setting.Ranks = ranks;
+      setting.Workers = workers;
+      const rt::Picture picture = Trace(setting);
+      EXPECT_EQ(picture.Color, expected.Color) << ranks << " ranks, " << workers << " workers";
+      EXPECT_EQ(picture.Depth, expected.Depth) << ranks << " ranks, " << workers << " workers";
+    }
+  }
+}
+
+TEST(FrameRenderer, CacheHoldsOneBrick)
+{
+  const rt::BrickLattice lattice(
+    rt::Index3(SphereScene::Points), rt::ScalarType::Float32, false, SphereScene::BrickEdge);
+  const std::size_t oneBrick = lattice.CreateDirectory(1).GetLargest();
+  const std::uint64_t expected = rt::GetHash(Trace({}));
+  for (const int ranks : { 2, 3 })
+  {
+    Setting setting;
+    setting.Ranks = ranks;
+    setting.Workers = 3;
+    setting.CacheBytes =
+      (oneBrick + dsm::BlockAlignment - 1) / dsm::BlockAlignment * dsm::BlockAlignment;
+    dsm::StoreCounters sum;
+    EXPECT_EQ(rt::GetHash(Trace(setting, &sum)), expected) << ranks << " ranks";
+    EXPECT_GT(sum.Evictions, 0u);
+    EXPECT_LE(sum.PeakCachedBytes, setting.CacheBytes);
+    EXPECT_EQ(sum.Workers.Accesses, sum.Workers.Hits + sum.Workers.Misses);
+  }
+}
+
+TEST(FrameRenderer, TranslucentSurfaces)
+{
+  Setting setting;
+  setting.Opacity = 0.4f;
+  const rt::Picture alone = Trace(setting);
+  // Front and back of two nested surfaces: 1 - 0.6^4 where a ray meets all four.
+  const int most = *std::max_element(alone.Color.begin(), alone.Color.end());
+  EXPECT_GE(most, 200);
+  std::uint8_t largestAlpha = 0;
+  for (std::size_t at = 3; at < alone.Color.size(); at += 4)
+  {
+    largestAlpha = std::max(largestAlpha, alone.Color[at]);
+  }
+  EXPECT_GE(largestAlpha, std::lround(255.0 * (1.0 - std::pow(0.6, 4))));
+  setting.Ranks = 3;
+  setting.Workers = 2;
+  EXPECT_EQ(rt::GetHash(Trace(setting)), rt::GetHash(alone));
+}
+
+TEST(FrameRenderer, RequestsThatDifferAreRefusedByAllAndTheNextFrameWorks)
+{
+  std::mutex guard;
+  std::vector<std::string> errors;
+  RunOnCluster(3,
+    [&](dsm::Messenger& messenger)
+    {
+      dsm::ObjectStore store(messenger, { std::size_t(16) << 20, 1 });
+      const rt::Scene scene =
+        SphereScene::CreateScene(SphereScene::Publish(messenger, store), 1.0f);
+      rt::FrameRenderer renderer(messenger);
+      try
+      {
+        renderer.Render(
+          store, scene, SphereScene::CreateRequest(messenger.GetRank() == 2 ? 33 : 32, 32));
+      }
+      catch (const dsm::Error& error)
+      {
+        const std::lock_guard<std::mutex> lock(guard);
+        errors.push_back(error.what());
+      }
+      const rt::Frame frame = renderer.Render(store, scene, SphereScene::CreateRequest(32, 32));
+      EXPECT_GT(CountCovered(rt::GatherFrame(messenger, frame)), 0);
+    });
+  ASSERT_EQ(errors.size(), 3u);
+  EXPECT_NE(errors[0].find("Rank 2"), std::string::npos) << errors[0];
+  EXPECT_EQ(errors[0], errors[1]);
+  EXPECT_EQ(errors[0], errors[2]);
+}
+
+TEST(FrameRenderer, CacheSmallerThanABrickIsRefusedByAllAndTheNextFrameWorks)
+{
+  std::mutex guard;
+  std::vector<std::string> errors;
+  RunOnCluster(2,
+    [&](dsm::Messenger& messenger)
+    {
+      dsm::ObjectStore store(messenger, { std::size_t(16) << 20, 1 });
+      const rt::Scene scene =
+        SphereScene::CreateScene(SphereScene::Publish(messenger, store), 1.0f);
+      rt::FrameRenderer renderer(messenger);
+      store.SetSettings({ messenger.GetRank() == 1 ? std::size_t(64) : std::size_t(16) << 20, 1 });
+      try
+      {
+        renderer.Render(store, scene, SphereScene::CreateRequest(32, 32));
+      }
+      catch (const dsm::Error& error)
+      {
+        const std::lock_guard<std::mutex> lock(guard);
+        errors.push_back(error.what());
+      }
+      store.SetSettings({ std::size_t(16) << 20, 1 });
+      const rt::Frame frame = renderer.Render(store, scene, SphereScene::CreateRequest(32, 32));
+      EXPECT_GT(CountCovered(rt::GatherFrame(messenger, frame)), 0);
+    });
+  ASSERT_EQ(errors.size(), 2u);
+  EXPECT_NE(errors[0].find("DSMCacheSize"), std::string::npos) << errors[0];
+  EXPECT_EQ(errors[0], errors[1]);
+}
+
+TEST(FrameRenderer, EmptySceneIsAnEmptyPicture)
+{
+  RunOnCluster(2,
+    [](dsm::Messenger& messenger)
+    {
+      dsm::ObjectStore store(messenger, { std::size_t(1) << 20, 2 });
+      rt::FrameRenderer renderer(messenger);
+      const rt::Frame frame =
+        renderer.Render(store, rt::Scene{}, SphereScene::CreateRequest(40, 30));
+      EXPECT_EQ(CountCovered(rt::GatherFrame(messenger, frame)), 0);
+    });
+}

@@ -1,0 +1,191 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef tests_TestVolume_h
+#define tests_TestVolume_h
+
+#include "DSMRayTracing/brick/VoxelBrickBuilder.h"
+#include "DSMRayTracing/brick/VoxelBrickHeader.h"
+#include "DSMRayTracing/frame/Scene.h"
+#include "MemoryStore.h"
+
+#include <cstdint>
+#include <cstring>
+#include <functional>
+#include <memory>
+#include <random>
+#include <vector>
+
+/// The C++ type's name among the scalar types.
+template <class T>
+constexpr rt::ScalarType GetScalarType()
+{
+  if constexpr (std::is_same_v<T, float>)
+  {
+    return rt::ScalarType::Float32;
+  }
+  else if constexpr (std::is_same_v<T, double>)
+  {
+    return rt::ScalarType::Float64;
+  }
+  else
+  {
+    constexpr rt::ScalarType types[4][2] = { { rt::ScalarType::Int8, rt::ScalarType::UInt8 },
+      { rt::ScalarType::Int16, rt::ScalarType::UInt16 },
+      { rt::ScalarType::Int32, rt::ScalarType::UInt32 },
+      { rt::ScalarType::Int64, rt::ScalarType::UInt64 } };
+    constexpr int size = sizeof(T) == 1 ? 0 : sizeof(T) == 2 ? 1 : sizeof(T) == 4 ? 2 : 3;
+    return types[size][std::is_unsigned_v<T> ? 1 : 0];
+  }
+}
+
+/// A whole volume in memory, x fastest, with an optional mask of cells.
+template <class T>
+struct TestVolume
+{
+  rt::Index3 Points{ 2 };
+  std::vector<T> Samples;
+  std::vector<std::uint8_t> Mask; ///< empty: all cells hold data
+
+  explicit TestVolume(const rt::Index3& points)
+    : Points(points)
+    , Samples(static_cast<std::size_t>(points.x * points.y * points.z))
+  {
+  }
+  TestVolume(const rt::Index3& points, const std::function<T(int, int, int)>& function)
+    : TestVolume(points)
+  {
+    for (int z = 0; z < points.z; ++z)
+    {
+      for (int y = 0; y < points.y; ++y)
+      {
+        for (int x = 0; x < points.x; ++x)
+        {
+          this->At(x, y, z) = function(x, y, z);
+        }
+      }
+    }
+  }
+
+  rt::Index3 GetCells() const { return this->Points - rt::Index3(1); }
+  T& At(std::int64_t x, std::int64_t y, std::int64_t z)
+  {
+    return this->Samples[x + this->Points.x * (y + this->Points.y * z)];
+  }
+  T At(std::int64_t x, std::int64_t y, std::int64_t z) const
+  {
+    return this->Samples[x + this->Points.x * (y + this->Points.y * z)];
+  }
+  std::size_t GetCellIndex(std::int64_t x, std::int64_t y, std::int64_t z) const
+  {
+    return x + (this->Points.x - 1) * (y + (this->Points.y - 1) * z);
+  }
+  void Blank(int x, int y, int z)
+  {
+    if (this->Mask.empty())
+    {
+      const rt::Index3 cells = this->GetCells();
+      this->Mask.assign(static_cast<std::size_t>(cells.x * cells.y * cells.z), 1);
+    }
+    this->Mask[this->GetCellIndex(x, y, z)] = 0;
+  }
+  bool IsCovered(std::int64_t x, std::int64_t y, std::int64_t z) const
+  {
+    return this->Mask.empty() || this->Mask[this->GetCellIndex(x, y, z)] != 0;
+  }
+};
+
+/// A box of cells of a volume.
+template <class T>
+class VolumePiece final : public rt::VoxelSource
+{
+public:
+  VolumePiece(const TestVolume<T>& volume, const rt::Box& cells)
+    : Volume(volume)
+    , Cells(cells)
+  {
+  }
+  rt::Box GetCells() const override { return this->Cells; }
+  void ReadSamples(const rt::Box& points, std::byte* out) const override
+  {
+    for (std::int64_t z = points.Min.z; z < points.Max.z; ++z)
+    {
+      for (std::int64_t y = points.Min.y; y < points.Max.y; ++y)
+      {
+        for (std::int64_t x = points.Min.x; x < points.Max.x; ++x)
+        {
+          const T sample = this->Volume.At(x, y, z);
+          std::memcpy(out, &sample, sizeof(T));
+          out += sizeof(T);
+        }
+      }
+    }
+  }
+  bool HasCellMask() const override { return !this->Volume.Mask.empty(); }
+  void ReadCellMask(const rt::Box& cells, std::uint8_t* out) const override
+  {
+    for (std::int64_t z = cells.Min.z; z < cells.Max.z; ++z)
+    {
+      for (std::int64_t y = cells.Min.y; y < cells.Max.y; ++y)
+      {
+        for (std::int64_t x = cells.Min.x; x < cells.Max.x; ++x)
+        {
+          *out++ = this->Volume.Mask[this->Volume.GetCellIndex(x, y, z)];
+        }
+      }
+    }
+  }
+
+private:
+  const TestVolume<T>& Volume;
+  rt::Box Cells;
+};
+
+using Pieces = std::vector<std::shared_ptr<const rt::VoxelSource>>;
+
+template <class T>
+Pieces GetWhole(const TestVolume<T>& volume)
+{
+  return { std::make_shared<VolumePiece<T>>(
+    volume, rt::Box{ rt::Index3(0), volume.GetCells() }) };
+}
+
+inline std::shared_ptr<MemoryStore::Segment> PublishPieces(
+  MemoryStore& store, const rt::BrickLattice& lattice, Pieces pieces)
+{
+  rt::VoxelFragmentSource source(lattice, std::move(pieces));
+  rt::VoxelBrickSink sink(lattice);
+  return store.Publish(lattice.CreateDirectory(1), source, sink);
+}
+
+/// The volume in bricks of `edge` cells; 0 means the default edge.
+template <class T>
+std::shared_ptr<rt::VoxelField> CreateField(
+  MemoryStore& store, const TestVolume<T>& volume, int edge = 0)
+{
+  const rt::ScalarType type = GetScalarType<T>();
+  const auto field = std::make_shared<rt::VoxelField>();
+  field->Lattice = rt::BrickLattice(volume.Points, type, !volume.Mask.empty(),
+    edge != 0 ? edge : rt::BrickLattice::GetDefaultEdge(type));
+  const auto segment = PublishPieces(store, field->Lattice, GetWhole(volume));
+  std::vector<rt::ValueRange> ranges;
+  segment->ForEachResident(
+    [&](dsm::BlockId, const std::byte* block, std::size_t)
+    {
+      const auto& header = *reinterpret_cast<const rt::VoxelBrickHeader*>(block);
+      ranges.push_back({ header.First, header.Last });
+    });
+  field->Segment = segment;
+  field->Hierarchy = rt::MacrocellHierarchy(field->Lattice, std::move(ranges));
+  return field;
+}
+
+template <class T>
+rt::IsosurfaceObject CreateObject(MemoryStore& store, const TestVolume<T>& volume,
+  std::vector<double> isovalues, int edge = 0)
+{
+  rt::IsosurfaceObject object;
+  object.Field = CreateField(store, volume, edge);
+  object.Isovalues = std::move(isovalues);
+  return object;
+}
+
+#endif

@@ -1,0 +1,184 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "DSMRayTracing/kernel/VolumeTracer.h"
+#include "Oracle.h"
+#include "RandomRays.h"
+#include "TestVolume.h"
+
+#include <gtest/gtest.h>
+
+#include <glm/geometric.hpp>
+
+#include <cmath>
+#include <limits>
+#include <random>
+
+namespace
+{
+
+/// Values of a type that strain it: of 64-bit integers such that doubles would lose the differences.
+template <class T>
+struct Values
+{
+  static double GetAmplitude() { return sizeof(T) == 1 ? 50.0 : 1000.0; }
+  static T Create(double unit)
+  {
+    if constexpr (std::is_floating_point_v<T>)
+    {
+      return static_cast<T>(unit);
+    }
+    else
+    {
+      return static_cast<T>(GetCenter() + static_cast<T>(std::lround(unit * GetAmplitude())));
+    }
+  }
+  static T GetCenter()
+  {
+    if constexpr (std::is_floating_point_v<T>)
+    {
+      return 0;
+    }
+    else if constexpr (sizeof(T) == 8)
+    {
+      return static_cast<T>(T(1) << 53);
+    }
+    else
+    {
+      return std::is_signed_v<T> ? T(0) : T(std::numeric_limits<T>::max() / 2);
+    }
+  }
+  /// Whole for integers, so that many samples equal it.
+  static double GetIsovalue(double unit)
+  {
+    return static_cast<double>(Create(unit));
+  }
+};
+
+template <class T>
+TestVolume<T> CreateNoise(const rt::Index3& points, unsigned seed)
+{
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+  return TestVolume<T>(points, [&](int, int, int) { return Values<T>::Create(uniform(random)); });
+}
+
+template <class T>
+TestVolume<T> CreateSmooth(const rt::Index3& points, unsigned seed)
+{
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<double> uniform(0.2, 0.9);
+  const double a = uniform(random);
+  const double b = uniform(random);
+  const double c = uniform(random);
+  return TestVolume<T>(points,
+    [&](int x, int y, int z)
+    { return Values<T>::Create((std::sin(a * x + 1) + std::sin(b * y) + std::sin(c * z + a * x)) / 3); });
+}
+
+/// Three values only: plateaus of samples that equal the isovalue.
+template <class T>
+TestVolume<T> CreatePlateaus(const rt::Index3& points, unsigned seed)
+{
+  std::mt19937 random(seed);
+  std::uniform_int_distribution<int> step(-1, 1);
+  return TestVolume<T>(
+    points, [&](int, int, int) { return Values<T>::Create(0.1 * step(random)); });
+}
+
+struct Comparison
+{
+  int Rays = 0;
+  int Hits = 0;
+  /// The oracle itself gives another answer after the smallest change of the isovalue.
+  int Unstable = 0;
+};
+
+template <class T>
+void CompareWithOracle(const TestVolume<T>& volume, double isovalue, int edge, unsigned seed,
+  RandomRays::Kind kind, int rays, Comparison& comparison)
+{
+  MemoryStore store;
+  MemoryStore::Worker worker;
+  const rt::IsosurfaceObject object = CreateObject(store, volume, { isovalue }, edge);
+  const rt::VolumeTracer<MemoryStore> tracer(store, worker);
+  const Oracle<T> oracle(volume, isovalue);
+  RandomRays generator(volume.GetCells(), seed);
+  for (int i = 0; i < rays; ++i)
+  {
+    const rt::Ray ray = generator.Create(kind);
+    const double cells = glm::length(ray.Direction);
+    const std::optional<double> expected = oracle.FindFirst(ray);
+    rt::SurfaceHit hit;
+    const bool found = tracer.Intersect(object, ray, hit);
+    ++comparison.Rays;
+    comparison.Hits += found;
+    if (found)
+    {
+      ASSERT_GE(hit.T, ray.Min);
+      ASSERT_LE(hit.T, ray.Max);
+      ASSERT_NEAR(glm::length(hit.Normal), 1.0, 1e-12);
+      const glm::dvec3 point = ray.Origin + hit.T * ray.Direction;
+      ASSERT_LT(glm::length(point - hit.IndexPoint), 1e-9);
+    }
+    if (found == expected.has_value() && (!found || std::abs(hit.T - *expected) * cells < 1e-4))
+    {
+      continue;
+    }
+    const long double small = 1e-9L * static_cast<long double>(Values<T>::GetAmplitude());
+    const auto above = Oracle<T>(volume, isovalue, small).FindFirst(ray);
+    const auto below = Oracle<T>(volume, isovalue, -small).FindFirst(ray);
+    const bool stable = above.has_value() == below.has_value() &&
+      (!above || std::abs(*above - *below) * cells < 1e-4);
+    ASSERT_FALSE(stable) << "ray " << i << " of kind " << static_cast<int>(kind) << " found "
+                         << (found ? hit.T : -1.0) << " instead of " << expected.value_or(-1.0);
+    ++comparison.Unstable;
+  }
+}
+
+template <class T>
+void CompareAllKinds(const TestVolume<T>& volume, double isovalue, int edge, int raysPerKind)
+{
+  Comparison comparison;
+  for (int kind = 0; kind < static_cast<int>(RandomRays::Kind::Count); ++kind)
+  {
+    CompareWithOracle(volume, isovalue, edge, 17 + kind, static_cast<RandomRays::Kind>(kind),
+      raysPerKind, comparison);
+    if (testing::Test::HasFatalFailure())
+    {
+      return;
+    }
+  }
+  EXPECT_GT(comparison.Hits, comparison.Rays / 5);
+  std::printf("UNSTABLE %d of %d\n",comparison.Unstable,comparison.Rays);
+  EXPECT_LE(comparison.Unstable, comparison.Rays / 100);
+}
+
+} // namespace
+
+template <class T>
+class TestVolumeTracer : public testing::Test
+{
+};
+
+using ScalarTypes = testing::Types<std::int8_t, std::uint8_t, std::int16_t, std::uint16_t,
+  std::int32_t, std::uint32_t, std::int64_t, std::uint64_t, float, double>;
+TYPED_TEST_SUITE(TestVolumeTracer, ScalarTypes);
+
+TYPED_TEST(TestVolumeTracer, NoisyVolumeEqualsBruteForce)
+{
+  using T = TypeParam;
+  CompareAllKinds(CreateNoise<T>({ 8, 7, 9 }, 1), Values<T>::GetIsovalue(0.12), 4, 150);
+  CompareAllKinds(CreateNoise<T>({ 8, 7, 9 }, 2), Values<T>::GetIsovalue(-0.3), 0, 50);
+}
+
+TYPED_TEST(TestVolumeTracer, SmoothVolumeEqualsBruteForce)
+{
+  using T = TypeParam;
+  CompareAllKinds(CreateSmooth<T>({ 12, 11, 10 }, 3), Values<T>::GetIsovalue(0.05), 8, 80);
+}
+
+TYPED_TEST(TestVolumeTracer, PlateausEqualBruteForce)
+{
+  using T = TypeParam;
+  CompareAllKinds(CreatePlateaus<T>({ 7, 8, 9 }, 4), Values<T>::GetIsovalue(0.0), 4, 100);
+  CompareAllKinds(CreatePlateaus<T>({ 7, 8, 9 }, 5), Values<T>::GetIsovalue(0.1), 3, 100);
+}
