@@ -4,6 +4,7 @@
 See demo.sh, which starts it. Without --file a noisy sphere is generated, each rank its own piece.
 """
 import argparse
+import json
 import sys
 import time
 
@@ -50,9 +51,19 @@ def open_input(arguments):
 
 
 def print_statistics(representation):
+    """What each rank holds, and did for the last frame."""
     representation.SMProxy.UpdatePropertyInformation()
-    table = representation.GetProperty("DSMStatistics")
-    print(table)
+    seconds = representation.SMProxy.GetProperty("DSMFrameTime").GetElement(0)
+    ranks = json.loads(representation.SMProxy.GetProperty("DSMStatistics").GetElement(0))
+    pixels = 1024 * 768
+    say(f"frame time {1000 * seconds:.1f} ms ({pixels / seconds / 1e6:.2f} million rays/s)")
+    columns = [("rank", "Rank", 1), ("threads", "Threads", 1), ("MiB resident", "BytesResident", 2**20),
+               ("MiB cached", "BytesCached", 2**20), ("accesses", "Accesses", 1), ("hits", "Hits", 1),
+               ("misses", "Misses", 1), ("MiB received", "BytesReceived", 2**20), ("tiles", "Tiles", 1)]
+    print(" ".join(f"{title:>12}" for title, _, _ in columns))
+    for rank in ranks:
+        cells = [f"{rank[key] / unit:.1f}" if unit > 1 else str(rank[key]) for _, key, unit in columns]
+        print(" ".join(f"{cell:>12}" for cell in cells))
 
 
 def main():

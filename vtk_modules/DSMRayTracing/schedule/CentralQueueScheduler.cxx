@@ -22,6 +22,10 @@ struct TileGrant
   std::int32_t Count;
 };
 
+/// A grant is this part of a rank's fair share of what is left: large at first, so that messages are
+/// few, and ever smaller, so that all ranks finish together (guided self-scheduling).
+constexpr int SharesLeft = 4;
+
 } // namespace
 
 CentralQueueScheduler::CentralQueueScheduler(dsm::Messenger& messenger)
@@ -35,6 +39,7 @@ void CentralQueueScheduler::Begin(int tiles, int workers)
 {
   this->Tiles = tiles;
   this->Workers = std::max(workers, 1);
+  this->LowWater = this->Workers;
   this->Next = 0;
   this->Granted.clear();
   this->Exhausted = false;
@@ -71,10 +76,12 @@ void CentralQueueScheduler::Cancel()
 void CentralQueueScheduler::Grant(dsm::Message&& request)
 {
   const auto wanted = dsm::Decode<TileRequest>(request, dsm::MessageKind::TileRequest);
-  const int asked = std::clamp(wanted.Count, 1, this->Tiles);
-  const int first = this->Next.fetch_add(asked);
-  // Towards the end of the frame the queue holds less than was asked for, or nothing.
-  const TileGrant grant{ first, std::clamp(this->Tiles - first, 0, asked) };
+  const int left = std::max(this->Tiles - this->Next.load(), 0);
+  const int share = left / (SharesLeft * this->Messenger.GetSize());
+  const int count = std::max(share, std::clamp(wanted.Count, 1, this->Tiles));
+  const int first = this->Next.fetch_add(count);
+  // Towards the end of the frame the queue holds less than that, or nothing.
+  const TileGrant grant{ first, std::clamp(this->Tiles - first, 0, count) };
   this->Messenger.Post(request.Source, dsm::MessageKind::TileGrant, dsm::Encode(grant));
 }
 
@@ -94,6 +101,7 @@ void CentralQueueScheduler::Receive(dsm::Message&& message)
       this->Granted.push_back(tile);
     }
     this->Exhausted = this->Exhausted || grant.Count == 0;
+    this->LowWater = std::max(this->Workers, grant.Count / 2);
   }
   this->RequestUnderWay = false;
   this->Changed.notify_all();
@@ -107,7 +115,7 @@ bool CentralQueueScheduler::Service()
   }
   {
     const std::lock_guard<std::mutex> lock(this->Mutex);
-    if (this->Exhausted || static_cast<int>(this->Granted.size()) >= this->Workers)
+    if (this->Exhausted || static_cast<int>(this->Granted.size()) >= this->LowWater)
     {
       return false;
     }
@@ -132,7 +140,7 @@ std::optional<int> CentralQueueScheduler::Pop()
   }
   const int tile = this->Granted.front();
   this->Granted.pop_front();
-  const bool low = static_cast<int>(this->Granted.size()) < this->Workers;
+  const bool low = static_cast<int>(this->Granted.size()) < this->LowWater;
   lock.unlock();
   if (low)
   {

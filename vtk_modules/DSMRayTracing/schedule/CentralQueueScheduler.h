@@ -14,8 +14,8 @@ namespace rt
 {
 
 /// The paper's central demand queue (section 4.4): rank 0 holds the tiles, and the other ranks ask
-/// it for more. A rank asks before it runs out, for as many tiles as it has workers, so that a
-/// worker seldom waits for the answer.
+/// it for more. Where we deviate: a rank asks before it runs out, so that a worker seldom waits for
+/// the answer, and gets several tiles at once as long as many are left.
 class CentralQueueScheduler final : public TileScheduler
 {
 public:
@@ -44,6 +44,8 @@ private:
   std::mutex Mutex;
   std::condition_variable Changed;
   std::deque<int> Granted;
+  /// With fewer than that the rank asks for more.
+  int LowWater = 1;
   bool Exhausted = false;
 
   /// Communication thread only.

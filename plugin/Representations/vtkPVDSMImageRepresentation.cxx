@@ -1,0 +1,305 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkPVDSMImageRepresentation.h"
+
+#include "vtkDSMScene.h"
+#include "vtkDSMStatistics.h"
+#include "vtkDSMVolumeMapper.h"
+
+#include "vtkDataObject.h"
+#include "vtkInformation.h"
+#include "vtkInformationVector.h"
+#include "vtkMatrix4x4.h"
+#include "vtkMultiProcessController.h"
+#include "vtkObjectFactory.h"
+#include "vtkOrderedCompositingHelper.h"
+#include "vtkPVRenderView.h"
+#include "vtkPVRenderViewDataDeliveryManager.h"
+#include "vtkPVSession.h"
+#include "vtkPartitionedDataSet.h"
+#include "vtkProcessModule.h"
+#include "vtkProperty.h"
+#include "vtkRenderer.h"
+#include "vtkScalarsToColors.h"
+#include "vtkVolume.h"
+
+namespace
+{
+
+/// ParaView's client holds every representation and hears every render, but only displays.
+bool IsRenderingProcess()
+{
+  auto* module = vtkProcessModule::GetProcessModule();
+  auto* session = module ? vtkPVSession::SafeDownCast(module->GetActiveSession()) : nullptr;
+  return !session || session->HasProcessRole(vtkPVSession::RENDER_SERVER);
+}
+
+} // namespace
+
+vtkStandardNewMacro(vtkPVDSMImageRepresentation);
+
+vtkPVDSMImageRepresentation::vtkPVDSMImageRepresentation()
+{
+  this->Volume->SetMapper(this->Mapper);
+}
+
+vtkPVDSMImageRepresentation::~vtkPVDSMImageRepresentation() = default;
+
+int vtkPVDSMImageRepresentation::FillInputPortInformation(int, vtkInformation* info)
+{
+  info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkDataObject");
+  info->Set(vtkAlgorithm::INPUT_IS_OPTIONAL(), 1);
+  return 1;
+}
+
+int vtkPVDSMImageRepresentation::RequestData(
+  vtkInformation* request, vtkInformationVector** input, vtkInformationVector* output)
+{
+  vtkSmartPointer<vtkDataObject> data;
+  if (input[0]->GetNumberOfInformationObjects() == 1)
+  {
+    // A copy of the structure only: the source may go on to its next time step while this one is
+    // still shown.
+    if (vtkDataObject* source = vtkDataObject::GetData(input[0], 0))
+    {
+      data.TakeReference(source->NewInstance());
+      data->ShallowCopy(source);
+    }
+  }
+  this->Mapper->SetInputData(data);
+  return this->Superclass::RequestData(request, input, output);
+}
+
+int vtkPVDSMImageRepresentation::ProcessViewRequest(
+  vtkInformationRequestKey* request, vtkInformation* inInfo, vtkInformation* outInfo)
+{
+  if (request == vtkPVView::REQUEST_UPDATE() && this->GetNeedsUpdate())
+  {
+    // The view could only give back our placeholder, not the bricks of another time step.
+    if (auto* view = vtkPVView::SafeDownCast(this->GetView()))
+    {
+      view->ClearCache(this);
+    }
+  }
+  if (!this->Superclass::ProcessViewRequest(request, inInfo, outInfo))
+  {
+    return 0;
+  }
+  if (request == vtkPVView::REQUEST_UPDATE())
+  {
+    this->PrepareUpdate(inInfo, outInfo);
+  }
+  else if (request == vtkPVView::REQUEST_UPDATE_LOD())
+  {
+    vtkPVRenderView::SetRequiresDistributedRenderingLOD(inInfo, this, true);
+  }
+  else if (request == vtkPVView::REQUEST_RENDER() && this->Scene)
+  {
+    this->ChooseDelivery();
+  }
+  return 1;
+}
+
+void vtkPVDSMImageRepresentation::PrepareUpdate(vtkInformation* inInfo, vtkInformation* outInfo)
+{
+  vtkPVRenderView::SetPiece(inInfo, this, this->Placeholder);
+  vtkPVRenderView::SetDeliverToClientAndRenderingProcesses(inInfo, this, false, false);
+  vtkPVRenderView::SetRequiresDistributedRendering(inInfo, this, true);
+  // IceT must call every rank's renderer: each has tiles, wherever its data lie.
+  outInfo->Set(vtkPVRenderView::RENDER_EMPTY_IMAGES(), 1);
+  this->Volume->ComputeMatrix();
+  double bounds[6];
+  this->Mapper->GetBounds(bounds);
+  vtkPVRenderView::SetGeometryBounds(inInfo, this, bounds, this->Volume->GetMatrix());
+}
+
+void vtkPVDSMImageRepresentation::ChooseDelivery()
+{
+  auto* view = vtkPVRenderView::SafeDownCast(this->GetView());
+  auto* controller = this->Scene->GetController();
+  if (!view || !controller || controller->GetNumberOfProcesses() < 2)
+  {
+    this->Scene->DeliverTiles();
+  }
+  else if (view->GetUseOrderedCompositing())
+  {
+    auto* manager = vtkPVRenderViewDataDeliveryManager::SafeDownCast(view->GetDeliveryManager());
+    const auto order = vtkSmartPointer<vtkOrderedCompositingHelper>::New();
+    order->SetBoundingBoxes(manager->GetCuts());
+    const int rank = controller->GetLocalProcessId();
+    this->Scene->DeliverEverywhere(
+      [order, rank](vtkCamera* camera) { return order->ComputeSortOrder(camera).back() == rank; });
+  }
+  else if (view->GetUseSSAO())
+  {
+    // Ambient occlusion looks at the neighbours of a pixel, before the ranks' pictures are merged.
+    this->Scene->DeliverEverywhere([](vtkCamera*) { return true; });
+  }
+  else
+  {
+    this->Scene->DeliverTiles();
+  }
+}
+
+bool vtkPVDSMImageRepresentation::AddToView(vtkView* view)
+{
+  auto* renderView = vtkPVRenderView::SafeDownCast(view);
+  if (!renderView)
+  {
+    return false;
+  }
+  if (IsRenderingProcess())
+  {
+    this->Scene = vtkDSMScene::ForRenderer(renderView->GetRenderer());
+    renderView->GetRenderer()->AddViewProp(this->Volume);
+  }
+  return this->Superclass::AddToView(view);
+}
+
+bool vtkPVDSMImageRepresentation::RemoveFromView(vtkView* view)
+{
+  auto* renderView = vtkPVRenderView::SafeDownCast(view);
+  if (!renderView)
+  {
+    return false;
+  }
+  renderView->GetRenderer()->RemoveViewProp(this->Volume);
+  this->Scene = nullptr;
+  return this->Superclass::RemoveFromView(view);
+}
+
+void vtkPVDSMImageRepresentation::SetVisibility(bool visible)
+{
+  this->Volume->SetVisibility(visible);
+  this->Superclass::SetVisibility(visible);
+}
+
+void vtkPVDSMImageRepresentation::SetInputArrayToProcess(
+  int index, int port, int connection, int association, const char* name)
+{
+  this->Superclass::SetInputArrayToProcess(index, port, connection, association, name);
+  if (index == 0)
+  {
+    this->Mapper->SetColorArray(name ? name : "");
+    this->Mapper->SetScalarVisibility(name && name[0]);
+  }
+}
+
+void vtkPVDSMImageRepresentation::SelectIsoArray(int, int, int, int, const char* name)
+{
+  this->Mapper->SetIsoArray(name ? name : "");
+}
+
+void vtkPVDSMImageRepresentation::SetIsoComponent(int component)
+{
+  this->Mapper->SetIsoComponent(component);
+}
+
+void vtkPVDSMImageRepresentation::SetNumberOfIsoValues(int number)
+{
+  this->Mapper->SetNumberOfIsoValues(number);
+}
+
+void vtkPVDSMImageRepresentation::SetIsoValue(int index, double value)
+{
+  this->Mapper->SetIsoValue(index, value);
+}
+
+void vtkPVDSMImageRepresentation::SetNumberOfThreads(int threads)
+{
+  this->Mapper->SetNumberOfThreads(threads);
+}
+
+void vtkPVDSMImageRepresentation::SetCacheSize(int mebibytes)
+{
+  this->Mapper->SetCacheSize(mebibytes);
+}
+
+void vtkPVDSMImageRepresentation::SetLookupTable(vtkScalarsToColors* table)
+{
+  this->Mapper->SetLookupTable(table);
+}
+
+void vtkPVDSMImageRepresentation::SetAmbientColor(double r, double g, double b)
+{
+  this->Mapper->GetSurfaceProperty()->SetAmbientColor(r, g, b);
+}
+
+void vtkPVDSMImageRepresentation::SetDiffuseColor(double r, double g, double b)
+{
+  this->Mapper->GetSurfaceProperty()->SetDiffuseColor(r, g, b);
+}
+
+void vtkPVDSMImageRepresentation::SetSpecularColor(double r, double g, double b)
+{
+  this->Mapper->GetSurfaceProperty()->SetSpecularColor(r, g, b);
+}
+
+void vtkPVDSMImageRepresentation::SetAmbient(double value)
+{
+  this->Mapper->GetSurfaceProperty()->SetAmbient(value);
+}
+
+void vtkPVDSMImageRepresentation::SetDiffuse(double value)
+{
+  this->Mapper->GetSurfaceProperty()->SetDiffuse(value);
+}
+
+void vtkPVDSMImageRepresentation::SetSpecular(double value)
+{
+  this->Mapper->GetSurfaceProperty()->SetSpecular(value);
+}
+
+void vtkPVDSMImageRepresentation::SetSpecularPower(double value)
+{
+  this->Mapper->GetSurfaceProperty()->SetSpecularPower(value);
+}
+
+void vtkPVDSMImageRepresentation::SetOpacity(double value)
+{
+  this->Mapper->GetSurfaceProperty()->SetOpacity(value);
+}
+
+void vtkPVDSMImageRepresentation::SetPosition(double x, double y, double z)
+{
+  this->Volume->SetPosition(x, y, z);
+}
+
+void vtkPVDSMImageRepresentation::SetOrientation(double x, double y, double z)
+{
+  this->Volume->SetOrientation(x, y, z);
+}
+
+void vtkPVDSMImageRepresentation::SetOrigin(double x, double y, double z)
+{
+  this->Volume->SetOrigin(x, y, z);
+}
+
+void vtkPVDSMImageRepresentation::SetScale(double x, double y, double z)
+{
+  this->Volume->SetScale(x, y, z);
+}
+
+void vtkPVDSMImageRepresentation::SetUserTransform(const double matrix[16])
+{
+  vtkNew<vtkMatrix4x4> transform;
+  transform->DeepCopy(matrix);
+  this->Volume->SetUserMatrix(transform);
+}
+
+double vtkPVDSMImageRepresentation::GetFrameTime()
+{
+  return this->Scene ? this->Scene->GetStatistics()->GetFrameSeconds() : 0.0;
+}
+
+const char* vtkPVDSMImageRepresentation::GetStatistics()
+{
+  this->Statistics = this->Scene ? this->Scene->GetStatistics()->GetJson() : "[]";
+  return this->Statistics.c_str();
+}
+
+void vtkPVDSMImageRepresentation::PrintSelf(ostream& os, vtkIndent indent)
+{
+  this->Superclass::PrintSelf(os, indent);
+  os << indent << "Mapper:\n";
+  this->Mapper->PrintSelf(os, indent.GetNextIndent());
+}

@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @class   vtkPVDSMImageRepresentation
+ * @brief   shows isosurfaces of image data, ray traced by all ranks
+ *
+ * Holds the input and a vtkVolume with a vtkDSMVolumeMapper, and keeps the view's vtkDSMScene alive
+ * on the processes that render. The data never leave the rank: what is delivered is an empty
+ * placeholder, and the view is asked to render where the data are.
+ */
+
+#ifndef vtkPVDSMImageRepresentation_h
+#define vtkPVDSMImageRepresentation_h
+
+#include "vtkNew.h" // for ivars
+#include "vtkPVDataRepresentation.h"
+#include "vtkRepresentationsDSMModule.h" // for the export macro
+#include "vtkSmartPointer.h"             // for ivars
+
+#include <string> // for ivars
+
+class vtkDSMScene;
+class vtkDSMVolumeMapper;
+class vtkMatrix4x4;
+class vtkPartitionedDataSet;
+class vtkPVRenderView;
+class vtkScalarsToColors;
+class vtkVolume;
+
+class VTKREPRESENTATIONSDSM_EXPORT vtkPVDSMImageRepresentation : public vtkPVDataRepresentation
+{
+public:
+  static vtkPVDSMImageRepresentation* New();
+  vtkTypeMacro(vtkPVDSMImageRepresentation, vtkPVDataRepresentation);
+  void PrintSelf(ostream& os, vtkIndent indent) override;
+
+  int ProcessViewRequest(
+    vtkInformationRequestKey* request, vtkInformation* inInfo, vtkInformation* outInfo) override;
+  void SetVisibility(bool visible) override;
+  void SetInputArrayToProcess(
+    int index, int port, int connection, int association, const char* name) override;
+  using Superclass::SetInputArrayToProcess;
+
+  ///@{
+  /**
+   * Forwarded to vtkDSMVolumeMapper.
+   */
+  void SelectIsoArray(int index, int port, int connection, int association, const char* name);
+  void SetIsoComponent(int component);
+  void SetNumberOfIsoValues(int number);
+  void SetIsoValue(int index, double value);
+  void SetNumberOfThreads(int threads);
+  void SetCacheSize(int mebibytes);
+  void SetLookupTable(vtkScalarsToColors* table);
+  ///@}
+
+  ///@{
+  /**
+   * Forwarded to the surfaces' vtkProperty.
+   */
+  void SetAmbientColor(double r, double g, double b);
+  void SetDiffuseColor(double r, double g, double b);
+  void SetSpecularColor(double r, double g, double b);
+  void SetAmbient(double value);
+  void SetDiffuse(double value);
+  void SetSpecular(double value);
+  void SetSpecularPower(double value);
+  void SetOpacity(double value);
+  ///@}
+
+  ///@{
+  /**
+   * Forwarded to vtkVolume.
+   */
+  void SetPosition(double x, double y, double z);
+  void SetOrientation(double x, double y, double z);
+  void SetOrigin(double x, double y, double z);
+  void SetScale(double x, double y, double z);
+  void SetUserTransform(const double matrix[16]);
+  ///@}
+
+  /**
+   * Seconds the view's last frame took to trace; 0 without one.
+   */
+  double GetFrameTime();
+
+  /**
+   * Every rank's counters for the view's last frame, as JSON; see vtkDSMStatistics.
+   */
+  const char* GetStatistics();
+
+protected:
+  vtkPVDSMImageRepresentation();
+  ~vtkPVDSMImageRepresentation() override;
+
+  int FillInputPortInformation(int port, vtkInformation* info) override;
+  int RequestData(
+    vtkInformation* request, vtkInformationVector** input, vtkInformationVector* output) override;
+  bool AddToView(vtkView* view) override;
+  bool RemoveFromView(vtkView* view) override;
+
+private:
+  vtkPVDSMImageRepresentation(const vtkPVDSMImageRepresentation&) = delete;
+  void operator=(const vtkPVDSMImageRepresentation&) = delete;
+
+  void PrepareUpdate(vtkInformation* inInfo, vtkInformation* outInfo);
+  /// By what else the view shows.
+  void ChooseDelivery();
+
+  vtkNew<vtkVolume> Volume;
+  vtkNew<vtkDSMVolumeMapper> Mapper;
+  vtkNew<vtkPartitionedDataSet> Placeholder;
+  vtkSmartPointer<vtkDSMScene> Scene;
+  std::string Statistics;
+};
+
+#endif

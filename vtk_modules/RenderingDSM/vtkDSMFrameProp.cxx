@@ -1,0 +1,238 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkDSMFrameProp.h"
+
+#include "DSMRayTracing/frame/Frame.h"
+
+#include "vtkCamera.h"
+#include "vtkMath.h"
+#include "vtkMatrix4x4.h"
+#include "vtkNew.h"
+#include "vtkObjectFactory.h"
+#include "vtkOpenGLQuadHelper.h"
+#include "vtkOpenGLRenderWindow.h"
+#include "vtkOpenGLShaderCache.h"
+#include "vtkOpenGLState.h"
+#include "vtkRenderer.h"
+#include "vtkShaderProgram.h"
+#include "vtkTextureObject.h"
+
+#include <GL/gl.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstring>
+
+namespace
+{
+
+const char* const FragmentShader = R"(//VTK::System::Dec
+//VTK::Output::Dec
+in vec2 texCoord;
+uniform sampler2D frameColor;
+uniform sampler2D frameDepth;
+void main()
+{
+  vec4 color = texture(frameColor, texCoord);
+  if (color.a == 0.0)
+  {
+    discard;
+  }
+  gl_FragData[0] = color;
+  gl_FragDepth = texture(frameDepth, texCoord).r;
+}
+)";
+
+/// Where the rectangle that was traced lies in the viewport that is drawn to now, in pixels. The two
+/// differ while IceT renders a reduced image, which it puts into the lower left corner by way of the
+/// projection.
+std::array<int, 4> GetTarget(
+  vtkMatrix4x4* traced, vtkMatrix4x4* drawn, const std::array<int, 4>& viewport)
+{
+  vtkNew<vtkMatrix4x4> change;
+  vtkMatrix4x4::Invert(traced, change);
+  vtkMatrix4x4::Multiply4x4(drawn, change, change);
+  std::array<int, 4> target{};
+  for (int axis = 0; axis < 2; ++axis)
+  {
+    const double scale = change->GetElement(axis, axis) / change->GetElement(3, 3);
+    const double shift = change->GetElement(axis, 3) / change->GetElement(3, 3);
+    const double first = viewport[axis] + 0.5 * viewport[axis + 2] * (1.0 + shift - scale);
+    target[axis] = static_cast<int>(std::lround(first));
+    target[axis + 2] = static_cast<int>(std::lround(viewport[axis + 2] * scale));
+  }
+  return target;
+}
+
+vtkMatrix4x4* GetProjection(vtkRenderer* renderer)
+{
+  return renderer->GetActiveCamera()->GetProjectionTransformMatrix(
+    renderer->GetTiledAspectRatio(), -1.0, 1.0);
+}
+
+} // namespace
+
+class vtkDSMFrameProp::Internals
+{
+public:
+  void Store(const rt::Frame& frame)
+  {
+    const std::size_t pixels = static_cast<std::size_t>(frame.Width) * frame.Height;
+    this->Width = frame.Width;
+    this->Height = frame.Height;
+    this->Color.assign(4 * pixels, 0);
+    this->Depth.assign(pixels, 1.0f);
+    for (const rt::Tile& tile : frame.Tiles)
+    {
+      for (int row = 0; row < tile.Height; ++row)
+      {
+        const std::size_t from = static_cast<std::size_t>(row) * tile.Width;
+        const std::size_t to = static_cast<std::size_t>(tile.Y + row) * frame.Width + tile.X;
+        std::memcpy(&this->Color[4 * to], &tile.Color[4 * from], 4 * tile.Width);
+        std::memcpy(&this->Depth[to], &tile.Depth[from], sizeof(float) * tile.Width);
+      }
+    }
+    this->Uploaded = false;
+    this->IsEmpty = frame.Tiles.empty();
+  }
+
+  void Upload(vtkOpenGLRenderWindow* window)
+  {
+    for (vtkTextureObject* texture : { this->ColorTexture.Get(), this->DepthTexture.Get() })
+    {
+      texture->SetContext(window);
+      texture->SetMinificationFilter(vtkTextureObject::Nearest);
+      texture->SetMagnificationFilter(vtkTextureObject::Nearest);
+      texture->SetWrapS(vtkTextureObject::ClampToEdge);
+      texture->SetWrapT(vtkTextureObject::ClampToEdge);
+    }
+    if (!this->Uploaded)
+    {
+      this->ColorTexture->Create2DFromRaw(
+        this->Width, this->Height, 4, VTK_UNSIGNED_CHAR, this->Color.data());
+      this->DepthTexture->Create2DFromRaw(
+        this->Width, this->Height, 1, VTK_FLOAT, this->Depth.data());
+      this->Uploaded = true;
+    }
+  }
+
+  void Draw(vtkOpenGLRenderWindow* window, const std::array<int, 4>& target)
+  {
+    vtkOpenGLState* state = window->GetState();
+    vtkOpenGLState::ScopedglEnableDisable depthTest(state, GL_DEPTH_TEST);
+    vtkOpenGLState::ScopedglEnableDisable blend(state, GL_BLEND);
+    vtkOpenGLState::ScopedglDepthMask depthMask(state);
+    vtkOpenGLState::ScopedglDepthFunc depthFunction(state);
+    vtkOpenGLState::ScopedglBlendFuncSeparate blendFunction(state);
+    vtkOpenGLState::ScopedglColorMask colorMask(state);
+    vtkOpenGLState::ScopedglViewport viewport(state);
+    state->vtkglEnable(GL_DEPTH_TEST);
+    state->vtkglDepthMask(GL_TRUE);
+    state->vtkglDepthFunc(GL_LEQUAL);
+    state->vtkglEnable(GL_BLEND);
+    state->vtkglBlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
+    const unsigned char color = this->DrawsColor ? GL_TRUE : GL_FALSE;
+    state->vtkglColorMask(color, color, color, color);
+    state->vtkglViewport(target[0], target[1], target[2], target[3]);
+
+    if (!this->Quad)
+    {
+      this->Quad = std::make_unique<vtkOpenGLQuadHelper>(window, nullptr, FragmentShader, nullptr);
+    }
+    else
+    {
+      window->GetShaderCache()->ReadyShaderProgram(this->Quad->Program);
+    }
+    if (!this->Quad->Program || !this->Quad->Program->GetCompiled())
+    {
+      return;
+    }
+    this->ColorTexture->Activate();
+    this->DepthTexture->Activate();
+    this->Quad->Program->SetUniformi("frameColor", this->ColorTexture->GetTextureUnit());
+    this->Quad->Program->SetUniformi("frameDepth", this->DepthTexture->GetTextureUnit());
+    this->Quad->Render();
+    this->DepthTexture->Deactivate();
+    this->ColorTexture->Deactivate();
+  }
+
+  int Width = 0;
+  int Height = 0;
+  std::vector<std::uint8_t> Color;
+  std::vector<float> Depth;
+  bool IsEmpty = true;
+  bool DrawsColor = true;
+  bool Uploaded = false;
+  double Bounds[6];
+  vtkNew<vtkMatrix4x4> Projection;
+  vtkNew<vtkTextureObject> ColorTexture;
+  vtkNew<vtkTextureObject> DepthTexture;
+  std::unique_ptr<vtkOpenGLQuadHelper> Quad;
+};
+
+vtkStandardNewMacro(vtkDSMFrameProp);
+
+vtkDSMFrameProp::vtkDSMFrameProp()
+  : Self(std::make_unique<Internals>())
+{
+  vtkMath::UninitializeBounds(this->Self->Bounds);
+  this->PickableOff();
+}
+
+vtkDSMFrameProp::~vtkDSMFrameProp() = default;
+
+void vtkDSMFrameProp::SetFrame(
+  const rt::Frame& frame, vtkMatrix4x4* projection, const double bounds[6], bool drawsColor)
+{
+  this->Self->DrawsColor = drawsColor;
+  this->Self->Store(frame);
+  this->Self->Projection->DeepCopy(projection);
+  std::copy_n(bounds, 6, this->Self->Bounds);
+  this->Modified();
+}
+
+void vtkDSMFrameProp::Clear()
+{
+  if (!this->Self->IsEmpty || vtkMath::AreBoundsInitialized(this->Self->Bounds))
+  {
+    this->Self->Store(rt::Frame());
+    vtkMath::UninitializeBounds(this->Self->Bounds);
+    this->Modified();
+  }
+}
+
+double* vtkDSMFrameProp::GetBounds()
+{
+  return vtkMath::AreBoundsInitialized(this->Self->Bounds) ? this->Self->Bounds : nullptr;
+}
+
+int vtkDSMFrameProp::RenderOpaqueGeometry(vtkViewport* viewport)
+{
+  auto* renderer = vtkRenderer::SafeDownCast(viewport);
+  auto* window =
+    renderer ? vtkOpenGLRenderWindow::SafeDownCast(renderer->GetRenderWindow()) : nullptr;
+  if (!window || this->Self->IsEmpty || renderer->GetSelector())
+  {
+    return 0;
+  }
+  std::array<int, 4> rectangle{};
+  window->GetState()->vtkglGetIntegerv(GL_VIEWPORT, rectangle.data());
+  this->Self->Upload(window);
+  this->Self->Draw(window, GetTarget(this->Self->Projection, GetProjection(renderer), rectangle));
+  return 1;
+}
+
+void vtkDSMFrameProp::ReleaseGraphicsResources(vtkWindow* window)
+{
+  this->Self->Quad.reset();
+  this->Self->ColorTexture->ReleaseGraphicsResources(window);
+  this->Self->DepthTexture->ReleaseGraphicsResources(window);
+  this->Self->Uploaded = false;
+  this->Superclass::ReleaseGraphicsResources(window);
+}
+
+void vtkDSMFrameProp::PrintSelf(ostream& os, vtkIndent indent)
+{
+  this->Superclass::PrintSelf(os, indent);
+  os << indent << "Frame: " << this->Self->Width << " x " << this->Self->Height << "\n";
+}

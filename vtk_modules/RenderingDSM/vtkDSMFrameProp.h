@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @class   vtkDSMFrameProp
+ * @brief   writes traced tiles, colour and depth, into the frame buffer
+ *
+ * Belongs to a vtkDSMScene, which adds it to the renderer. Local: each rank draws what it was given;
+ * the compositing of the application merges the ranks' pictures by depth. Draws in the opaque pass,
+ * and not at all during a selection pass.
+ */
+
+#ifndef vtkDSMFrameProp_h
+#define vtkDSMFrameProp_h
+
+#include "vtkProp.h"
+#include "vtkRenderingDSMModule.h" // for the export macro
+
+#include <memory> // for ivars
+
+namespace rt
+{
+struct Frame;
+}
+class vtkMatrix4x4;
+
+class VTKRENDERINGDSM_EXPORT vtkDSMFrameProp : public vtkProp
+{
+public:
+  static vtkDSMFrameProp* New();
+  vtkTypeMacro(vtkDSMFrameProp, vtkProp);
+  void PrintSelf(ostream& os, vtkIndent indent) override;
+
+  /**
+   * The frame to draw from now on, the projection it was traced with (without the model-view), and
+   * the bounds of what it shows, on all ranks. An empty frame draws nothing. Without `drawsColor`,
+   * only the depth is drawn, which hides what lies behind.
+   */
+  void SetFrame(const rt::Frame& frame, vtkMatrix4x4* projection, const double bounds[6],
+    bool drawsColor = true);
+
+  /**
+   * Draw nothing from now on.
+   */
+  void Clear();
+
+  double* GetBounds() VTK_SIZEHINT(6) override;
+  int RenderOpaqueGeometry(vtkViewport* viewport) override;
+  void ReleaseGraphicsResources(vtkWindow* window) override;
+
+protected:
+  vtkDSMFrameProp();
+  ~vtkDSMFrameProp() override;
+
+private:
+  vtkDSMFrameProp(const vtkDSMFrameProp&) = delete;
+  void operator=(const vtkDSMFrameProp&) = delete;
+
+  class Internals;
+  std::unique_ptr<Internals> Self;
+};
+
+#endif

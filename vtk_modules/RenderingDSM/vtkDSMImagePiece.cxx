@@ -1,0 +1,288 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkDSMImagePiece.h"
+
+#include "DSMCore/Error.h"
+
+#include "vtkCellData.h"
+#include "vtkDataArray.h"
+#include "vtkDataSetAttributes.h"
+#include "vtkImageData.h"
+#include "vtkMatrix3x3.h"
+#include "vtkPointData.h"
+#include "vtkSOADataArrayTemplate.h"
+#include "vtkUnsignedCharArray.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace
+{
+
+using rt::Box;
+using rt::Index3;
+
+constexpr unsigned char CellsWithoutData = vtkDataSetAttributes::DUPLICATECELL |
+  vtkDataSetAttributes::HIDDENCELL | vtkDataSetAttributes::REFINEDCELL;
+
+vtkUnsignedCharArray* GetGhosts(vtkDataSetAttributes* attributes)
+{
+  return vtkUnsignedCharArray::SafeDownCast(
+    attributes->GetAbstractArray(vtkDataSetAttributes::GhostArrayName()));
+}
+
+/// The image's cells in its own indices.
+Box GetCellBox(vtkImageData* image)
+{
+  int extent[6];
+  image->GetExtent(extent);
+  return { { extent[0], extent[2], extent[4] }, { extent[1], extent[3], extent[5] } };
+}
+
+/// Which cells of an image hold data, from its ghost arrays.
+class CellFlags
+{
+public:
+  explicit CellFlags(vtkImageData* image)
+    : Box(GetCellBox(image))
+    , Cells(GetGhosts(image->GetCellData()))
+    , Points(GetGhosts(image->GetPointData()))
+  {
+  }
+  bool IsTrivial() const { return !this->Cells && !this->Points; }
+  bool IsDuplicate(const Index3& cell) const
+  {
+    return this->Cells &&
+      (this->Cells->GetValue(this->GetCellId(cell)) & vtkDataSetAttributes::DUPLICATECELL);
+  }
+  bool HoldsData(const Index3& cell) const
+  {
+    if (this->Cells && (this->Cells->GetValue(this->GetCellId(cell)) & CellsWithoutData))
+    {
+      return false;
+    }
+    if (this->Points)
+    {
+      for (int corner = 0; corner < 8; ++corner)
+      {
+        const Index3 point = cell + Index3(corner & 1, (corner >> 1) & 1, corner >> 2);
+        if (this->Points->GetValue(this->GetPointId(point)) & vtkDataSetAttributes::HIDDENPOINT)
+        {
+          return false;
+        }
+      }
+    }
+    return true;
+  }
+
+private:
+  vtkIdType GetCellId(const Index3& cell) const
+  {
+    const Index3 size = this->Box.GetSize();
+    const Index3 at = cell - this->Box.Min;
+    return at.x + size.x * (at.y + size.y * at.z);
+  }
+  vtkIdType GetPointId(const Index3& point) const
+  {
+    const Index3 size = this->Box.GetSize() + Index3(1);
+    const Index3 at = point - this->Box.Min;
+    return at.x + size.x * (at.y + size.y * at.z);
+  }
+
+  rt::Box Box;
+  vtkUnsignedCharArray* Cells;
+  vtkUnsignedCharArray* Points;
+};
+
+template <class Visit>
+void ForEachIndex(const Box& box, Visit&& visit)
+{
+  for (std::int64_t k = box.Min.z; k < box.Max.z; ++k)
+  {
+    for (std::int64_t j = box.Min.y; j < box.Max.y; ++j)
+    {
+      for (std::int64_t i = box.Min.x; i < box.Max.x; ++i)
+      {
+        visit(Index3(i, j, k));
+      }
+    }
+  }
+}
+
+/// The box of the cells that are not copies of another piece's.
+Box TrimDuplicates(const Box& cells, const CellFlags& flags)
+{
+  Box own{ cells.Max, cells.Min };
+  ForEachIndex(cells,
+    [&](const Index3& cell)
+    {
+      if (!flags.IsDuplicate(cell))
+      {
+        own.Min = glm::min(own.Min, cell);
+        own.Max = glm::max(own.Max, cell + Index3(1));
+      }
+    });
+  return own.IsEmpty() ? Box{ cells.Min, cells.Min } : own;
+}
+
+/// Calls `read(tuple)` for every point of `points` and stores what it returns as T.
+template <class T, class Read>
+void Gather(const Box& points, const Box& image, std::byte* out, Read&& read)
+{
+  T* target = reinterpret_cast<T*>(out);
+  const Index3 size = image.GetSize();
+  for (std::int64_t k = points.Min.z; k < points.Max.z; ++k)
+  {
+    for (std::int64_t j = points.Min.y; j < points.Max.y; ++j)
+    {
+      const vtkIdType row = size.x * ((j - image.Min.y) + size.y * (k - image.Min.z));
+      for (std::int64_t i = points.Min.x; i < points.Max.x; ++i)
+      {
+        *target++ = static_cast<T>(read(row + (i - image.Min.x)));
+      }
+    }
+  }
+}
+
+/// One component as it is; Native is the array's C++ type, which the brick's type represents.
+template <class Native>
+void GatherComponent(
+  vtkDataArray* array, int component, const Box& points, const Box& image, std::byte* out)
+{
+  const int components = array->GetNumberOfComponents();
+  if (auto* soa = dynamic_cast<vtkSOADataArrayTemplate<Native>*>(array))
+  {
+    Gather<Native>(points, image, out,
+      [=](vtkIdType tuple) { return soa->GetTypedComponent(tuple, component); });
+  }
+  else if (array->HasStandardMemoryLayout())
+  {
+    const auto* values = static_cast<const Native*>(array->GetVoidPointer(0)) + component;
+    Gather<Native>(points, image, out, [=](vtkIdType tuple) { return values[tuple * components]; });
+  }
+  else
+  {
+    Gather<Native>(
+      points, image, out, [=](vtkIdType tuple) { return array->GetComponent(tuple, component); });
+  }
+}
+
+double GetMagnitude(vtkDataArray* array, vtkIdType tuple)
+{
+  double sum = 0.0;
+  for (int component = 0; component < array->GetNumberOfComponents(); ++component)
+  {
+    const double value = array->GetComponent(tuple, component);
+    sum += value * value;
+  }
+  return std::sqrt(sum);
+}
+
+} // namespace
+
+vtkDSMPieceInfo vtkDSMImagePiece::Describe(vtkImageData* image, int leaf)
+{
+  vtkDSMPieceInfo info{};
+  image->GetOrigin(info.Origin);
+  image->GetSpacing(info.Spacing);
+  std::copy_n(image->GetDirectionMatrix()->GetData(), 9, info.Direction);
+  info.Leaf = leaf;
+  Box cells = GetCellBox(image);
+  const CellFlags flags(image);
+  if (!cells.IsEmpty() && !flags.IsTrivial())
+  {
+    cells = TrimDuplicates(cells, flags);
+    bool complete = true;
+    ForEachIndex(cells, [&](const Index3& cell) { complete = complete && flags.HoldsData(cell); });
+    info.HasMask = complete ? 0 : 1;
+  }
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    info.Min[axis] = cells.Min[axis];
+    info.Max[axis] = cells.Max[axis];
+  }
+  return info;
+}
+
+rt::ScalarType vtkDSMImagePiece::GetScalarType(vtkDataArray* array, int component)
+{
+  const int type = array->GetDataType();
+  const std::size_t bytes = type == VTK_BIT ? 1 : array->GetDataTypeSize();
+  const bool real = type == VTK_FLOAT || type == VTK_DOUBLE;
+  if (component == Magnitude && array->GetNumberOfComponents() > 1)
+  {
+    const bool fits = type == VTK_FLOAT || (!real && bytes <= 2);
+    return fits ? rt::ScalarType::Float32 : rt::ScalarType::Float64;
+  }
+  if (real)
+  {
+    return type == VTK_FLOAT ? rt::ScalarType::Float32 : rt::ScalarType::Float64;
+  }
+  const bool isSigned = type != VTK_BIT && array->GetDataTypeMin() < 0.0;
+  switch (bytes)
+  {
+    case 1:
+      return isSigned ? rt::ScalarType::Int8 : rt::ScalarType::UInt8;
+    case 2:
+      return isSigned ? rt::ScalarType::Int16 : rt::ScalarType::UInt16;
+    case 4:
+      return isSigned ? rt::ScalarType::Int32 : rt::ScalarType::UInt32;
+    case 8:
+      return isSigned ? rt::ScalarType::Int64 : rt::ScalarType::UInt64;
+    default:
+      throw dsm::Error(std::string("The array '") + (array->GetName() ? array->GetName() : "") +
+        "' of type " + array->GetDataTypeAsString() + " cannot be ray traced.");
+  }
+}
+
+vtkDSMImagePiece::vtkDSMImagePiece(vtkImageData* image, vtkDataArray* array, int component,
+  const vtkDSMLatticePlan::Member& place, bool hasMask)
+  : Image(image)
+  , Array(array)
+  , Component(array->GetNumberOfComponents() == 1 ? 0 : component)
+  , Place(place)
+  , Masked(hasMask)
+  , Type(GetScalarType(array, component))
+  , Points(GetCellBox(image))
+{
+  this->Points.Min += place.IndexToLattice;
+  this->Points.Max += place.IndexToLattice + Index3(1);
+}
+
+vtkDSMImagePiece::~vtkDSMImagePiece() = default;
+
+void vtkDSMImagePiece::ReadSamples(const Box& points, std::byte* out) const
+{
+  vtkDataArray* array = this->Array;
+  if (this->Component == Magnitude)
+  {
+    const auto read = [array](vtkIdType tuple) { return GetMagnitude(array, tuple); };
+    if (this->Type == rt::ScalarType::Float32)
+    {
+      Gather<float>(points, this->Points, out, read);
+    }
+    else
+    {
+      Gather<double>(points, this->Points, out, read);
+    }
+    return;
+  }
+  if (array->GetDataType() == VTK_BIT)
+  {
+    Gather<std::uint8_t>(points, this->Points, out,
+      [&](vtkIdType tuple) { return array->GetComponent(tuple, this->Component); });
+    return;
+  }
+  switch (array->GetDataType())
+  {
+    vtkTemplateMacro((GatherComponent<VTK_TT>(array, this->Component, points, this->Points, out)));
+  }
+}
+
+void vtkDSMImagePiece::ReadCellMask(const Box& cells, std::uint8_t* out) const
+{
+  const CellFlags flags(this->Image);
+  ForEachIndex(cells,
+    [&](const Index3& cell)
+    { *out++ = flags.HoldsData(cell - this->Place.IndexToLattice) ? 1 : 0; });
+}

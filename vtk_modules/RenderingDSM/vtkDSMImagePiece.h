@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef vtkDSMImagePiece_h
+#define vtkDSMImagePiece_h
+
+#include "DSMRayTracing/brick/ScalarType.h"
+#include "DSMRayTracing/brick/VoxelSource.h"
+#include "vtkDSMLatticePlan.h"
+
+#include "vtkSmartPointer.h"
+
+class vtkDataArray;
+class vtkImageData;
+class vtkUnsignedCharArray;
+
+/// One vtkImageData of this rank as a piece of a lattice: one component of a point array, or the
+/// magnitude of all. Copies nothing; reading is safe from any thread while the image is not
+/// modified.
+class vtkDSMImagePiece final : public rt::VoxelSource
+{
+public:
+  /// Component that stands for the magnitude of all components.
+  static constexpr int Magnitude = -1;
+
+  /// What the other ranks need to know of an image: ghost cells are trimmed off; ghost and blanked
+  /// cells that remain make a mask.
+  static vtkDSMPieceInfo Describe(vtkImageData* image, int leaf);
+
+  /// Arrays keep their type; the magnitude is float where that holds it, else double.
+  static rt::ScalarType GetScalarType(vtkDataArray* array, int component);
+
+  vtkDSMImagePiece(vtkImageData* image, vtkDataArray* array, int component,
+    const vtkDSMLatticePlan::Member& place, bool hasMask);
+  ~vtkDSMImagePiece() override;
+
+  rt::Box GetCells() const override { return this->Place.Cells; }
+  void ReadSamples(const rt::Box& points, std::byte* out) const override;
+  bool HasCellMask() const override { return this->Masked; }
+  void ReadCellMask(const rt::Box& cells, std::uint8_t* out) const override;
+
+private:
+  vtkSmartPointer<vtkImageData> Image;
+  vtkSmartPointer<vtkDataArray> Array;
+  int Component;
+  vtkDSMLatticePlan::Member Place;
+  bool Masked;
+  rt::ScalarType Type;
+  rt::Box Points; ///< of the image, in lattice indices
+};
+
+#endif

@@ -1,0 +1,251 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkDSMLatticePlan.h"
+
+#include "DSMCore/Error.h"
+
+#include <glm/gtc/matrix_inverse.hpp>
+#include <glm/vec4.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+namespace
+{
+
+using rt::Box;
+using rt::Index3;
+
+/// Two pieces share sampling points when their origins differ by whole cells, within this part of
+/// one: files keep origins in single precision, too.
+constexpr double AlignmentTolerance = 1e-3;
+constexpr double SpacingTolerance = 1e-7;
+
+glm::dmat4 GetIndexToWorld(const vtkDSMPieceInfo& piece)
+{
+  glm::dmat4 matrix(1.0);
+  for (int row = 0; row < 3; ++row)
+  {
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      matrix[axis][row] = piece.Direction[3 * row + axis] * piece.Spacing[axis];
+    }
+    matrix[3][row] = piece.Origin[row];
+  }
+  return matrix;
+}
+
+bool HasSameAxes(const vtkDSMPieceInfo& a, const vtkDSMPieceInfo& b)
+{
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    if (std::abs(a.Spacing[axis] - b.Spacing[axis]) > SpacingTolerance * std::abs(a.Spacing[axis]))
+    {
+      return false;
+    }
+  }
+  return std::equal(a.Direction, a.Direction + 9, b.Direction,
+    [](double x, double y) { return std::abs(x - y) <= SpacingTolerance; });
+}
+
+/// Whether b's points are among a's; `shift` takes b's indices to a's.
+bool IsAligned(const vtkDSMPieceInfo& a, const vtkDSMPieceInfo& b, Index3& shift)
+{
+  if (!HasSameAxes(a, b))
+  {
+    return false;
+  }
+  const glm::dvec4 origin(b.Origin[0], b.Origin[1], b.Origin[2], 1.0);
+  const glm::dvec4 index = glm::inverse(GetIndexToWorld(a)) * origin;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    const double rounded = std::round(index[axis]);
+    if (!(std::abs(index[axis] - rounded) <= AlignmentTolerance) || std::abs(rounded) > 1e15)
+    {
+      return false;
+    }
+    shift[axis] = static_cast<std::int64_t>(rounded);
+  }
+  return true;
+}
+
+struct Placed
+{
+  int Piece;
+  int Leaf;
+  int Class; ///< piece whose indices Cells are in
+  Index3 Shift;
+  Box Cells;
+};
+
+struct Group
+{
+  std::vector<Placed> Members;
+};
+
+/// Whether two boxes of cells have a point in common.
+bool Touches(const Box& a, const Box& b)
+{
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    if (std::max(a.Min[axis], b.Min[axis]) > std::min(a.Max[axis], b.Max[axis]))
+    {
+      return false;
+    }
+  }
+  return true;
+}
+
+/// Blocks that overlap are different volumes; overlapping pieces of one block are copies.
+bool Conflicts(const Placed& a, const Placed& b)
+{
+  return a.Leaf != b.Leaf && !rt::Intersect(a.Cells, b.Cells).IsEmpty();
+}
+
+bool CanJoin(const Group& a, const Group& b)
+{
+  if (a.Members.front().Class != b.Members.front().Class)
+  {
+    return false;
+  }
+  bool touches = false;
+  for (const Placed& x : a.Members)
+  {
+    for (const Placed& y : b.Members)
+    {
+      if (Conflicts(x, y))
+      {
+        return false;
+      }
+      touches = touches || Touches(x.Cells, y.Cells);
+    }
+  }
+  return touches;
+}
+
+std::vector<Placed> Place(const std::vector<vtkDSMPieceInfo>& pieces)
+{
+  std::vector<Placed> placed;
+  std::vector<int> classes;
+  for (int index = 0; index < static_cast<int>(pieces.size()); ++index)
+  {
+    const vtkDSMPieceInfo& piece = pieces[index];
+    Placed entry{ index, piece.Leaf, index, Index3(0),
+      { { piece.Min[0], piece.Min[1], piece.Min[2] },
+        { piece.Max[0], piece.Max[1], piece.Max[2] } } };
+    if (entry.Cells.IsEmpty())
+    {
+      continue;
+    }
+    const auto known = std::find_if(classes.begin(), classes.end(),
+      [&](int candidate) { return IsAligned(pieces[candidate], piece, entry.Shift); });
+    if (known == classes.end())
+    {
+      classes.push_back(index);
+      entry.Shift = Index3(0);
+    }
+    else
+    {
+      entry.Class = *known;
+    }
+    entry.Cells.Min += entry.Shift;
+    entry.Cells.Max += entry.Shift;
+    placed.push_back(entry);
+  }
+  return placed;
+}
+
+void RefuseFlatData(const std::vector<vtkDSMPieceInfo>& pieces)
+{
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    if (std::all_of(pieces.begin(), pieces.end(),
+          [axis](const vtkDSMPieceInfo& piece) { return piece.Max[axis] <= piece.Min[axis]; }))
+    {
+      throw dsm::Error(std::string("The dataset has no cells in ") + "xyz"[axis] +
+        "; an isosurface needs a volume, with at least two points on every axis. Use Contour for "
+        "images of two dimensions.");
+    }
+  }
+}
+
+} // namespace
+
+vtkDSMLatticePlan::vtkDSMLatticePlan(const std::vector<vtkDSMPieceInfo>& pieces)
+{
+  std::vector<Group> groups;
+  for (const Placed& entry : Place(pieces))
+  {
+    Group joined{ { entry } };
+    for (auto group = groups.begin(); group != groups.end();)
+    {
+      if (CanJoin(*group, joined))
+      {
+        joined.Members.insert(joined.Members.begin(), group->Members.begin(), group->Members.end());
+        group = groups.erase(group);
+      }
+      else
+      {
+        ++group;
+      }
+    }
+    groups.push_back(std::move(joined));
+  }
+  if (groups.empty() && !pieces.empty())
+  {
+    RefuseFlatData(pieces);
+  }
+
+  for (const Group& group : groups)
+  {
+    Box box = group.Members.front().Cells;
+    for (const Placed& member : group.Members)
+    {
+      box.Min = glm::min(box.Min, member.Cells.Min);
+      box.Max = glm::max(box.Max, member.Cells.Max);
+    }
+    Lattice lattice;
+    lattice.Points = box.GetSize() + Index3(1);
+    lattice.IndexToWorld = GetIndexToWorld(pieces[group.Members.front().Class]);
+    lattice.IndexToWorld[3] = lattice.IndexToWorld * glm::dvec4(glm::dvec3(box.Min), 1.0);
+    for (const Placed& member : group.Members)
+    {
+      lattice.Members.push_back({ member.Piece, member.Shift - box.Min,
+        { member.Cells.Min - box.Min, member.Cells.Max - box.Min } });
+    }
+    this->Lattices.push_back(std::move(lattice));
+  }
+}
+
+bool vtkDSMLatticePlan::IsCovered(const Box& box, const std::vector<Box>& parts)
+{
+  if (box.IsEmpty())
+  {
+    return true;
+  }
+  for (const Box& part : parts)
+  {
+    const Box common = rt::Intersect(box, part);
+    if (common.IsEmpty())
+    {
+      continue;
+    }
+    // What the part leaves over: two slabs an axis, each axis narrowing the rest.
+    Box rest = box;
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      Box below = rest;
+      Box above = rest;
+      below.Max[axis] = common.Min[axis];
+      above.Min[axis] = common.Max[axis];
+      if (!IsCovered(below, parts) || !IsCovered(above, parts))
+      {
+        return false;
+      }
+      rest.Min[axis] = common.Min[axis];
+      rest.Max[axis] = common.Max[axis];
+    }
+    return true;
+  }
+  return false;
+}

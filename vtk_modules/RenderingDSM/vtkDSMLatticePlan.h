@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef vtkDSMLatticePlan_h
+#define vtkDSMLatticePlan_h
+
+#include "DSMRayTracing/brick/Box.h"
+
+#include <glm/mat4x4.hpp>
+
+#include <cstdint>
+#include <vector>
+
+/// Where one piece of image data lies; plain, so that it travels between ranks.
+struct vtkDSMPieceInfo
+{
+  double Origin[3]; ///< world position of index (0, 0, 0), as vtkImageData's
+  double Spacing[3];
+  double Direction[9]; ///< row-major
+  /// Cells without ghosts, in the piece's own indices; empty on an axis with a single point.
+  std::int64_t Min[3];
+  std::int64_t Max[3];
+  /// Number of the block of a composite dataset; pieces of one block are parts of one image.
+  std::int32_t Leaf;
+  /// Some cells within the box hold no data.
+  std::int32_t HasMask;
+};
+
+/// Finds which pieces, of all ranks, continue one another: pieces on the same sampling points that
+/// touch form one lattice. The result depends on the pieces' order, which is the same everywhere.
+class vtkDSMLatticePlan
+{
+public:
+  struct Member
+  {
+    int Piece;                 ///< index into the pieces
+    rt::Index3 IndexToLattice; ///< add to a piece's own index
+    rt::Box Cells;             ///< in lattice indices, which start at 0
+  };
+  struct Lattice
+  {
+    rt::Index3 Points;
+    glm::dmat4 IndexToWorld;
+    std::vector<Member> Members;
+  };
+
+  vtkDSMLatticePlan() = default;
+  /// Throws dsm::Error when there are pieces, but none has a cell.
+  explicit vtkDSMLatticePlan(const std::vector<vtkDSMPieceInfo>& pieces);
+
+  const std::vector<Lattice>& GetLattices() const { return this->Lattices; }
+
+  /// Whether every cell of `box` lies in one of `parts`.
+  static bool IsCovered(const rt::Box& box, const std::vector<rt::Box>& parts);
+
+private:
+  std::vector<Lattice> Lattices;
+};
+
+#endif

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @class   vtkDSMScene
+ * @brief   traces all volumes of a renderer that have a vtkDSMVolumeMapper, once a frame
+ *
+ * One for each renderer. Hears the renderer's StartEvent with priority -1, after the camera has been
+ * synchronised between the ranks, and then, on all ranks at once, takes in data that changed, traces
+ * the frame, and gives it to its vtkDSMFrameProp, which draws it when the renderer comes to it. Every
+ * rank that renders must hold the scene, also one that has no data; a process that only displays
+ * (ParaView's client) must not.
+ *
+ * Usage: `vtkSmartPointer<vtkDSMScene> scene = vtkDSMScene::ForRenderer(renderer)`, kept for as long
+ * as the volumes shall be drawn; add vtkVolumes to the renderer as usual.
+ *
+ * Failures are reported with vtkErrorMacro, once for each change of state, on every rank; the picture
+ * then lacks what could not be drawn, and the application goes on.
+ */
+
+#ifndef vtkDSMScene_h
+#define vtkDSMScene_h
+
+#include "vtkNew.h" // for ivars
+#include "vtkObject.h"
+#include "vtkRenderingDSMModule.h" // for the export macro
+#include "vtkSmartPointer.h"       // for ivars
+#include "vtkWeakPointer.h"        // for ivars
+
+#include <functional> // for a parameter
+#include <memory>     // for ivars
+#include <string>     // for ivars
+
+class vtkCamera;
+class vtkDSMFrameProp;
+class vtkDSMStatistics;
+class vtkMultiProcessController;
+class vtkRenderer;
+
+class VTKRENDERINGDSM_EXPORT vtkDSMScene : public vtkObject
+{
+public:
+  vtkTypeMacro(vtkDSMScene, vtkObject);
+  void PrintSelf(ostream& os, vtkIndent indent) override;
+
+  /**
+   * The renderer's scene, made when there is none. It lives as long as somebody holds it.
+   */
+  static vtkSmartPointer<vtkDSMScene> ForRenderer(vtkRenderer* renderer);
+
+  ///@{
+  /**
+   * The processes that render together; by default the global controller. Set before the first frame.
+   */
+  void SetController(vtkMultiProcessController* controller);
+  vtkMultiProcessController* GetController() const;
+  ///@}
+
+  vtkRenderer* GetRenderer() const;
+
+  /**
+   * How the frame reaches the picture. By default each rank draws the tiles that it traced, colour
+   * and depth, and the application composites by depth.
+   */
+  void DeliverTiles();
+
+  /**
+   * Every rank gets the whole frame and draws its depth; colour only where `drawsColor`, asked once a
+   * frame, says so. For an application that blends the ranks' pictures in order: the farthest rank
+   * draws the colour, and what lies behind it is hidden on the others. Same call on every rank.
+   */
+  void DeliverEverywhere(std::function<bool(vtkCamera*)> drawsColor);
+
+  /**
+   * Of the last frame; the same on every rank.
+   */
+  vtkDSMStatistics* GetStatistics() const;
+
+protected:
+  vtkDSMScene();
+  ~vtkDSMScene() override;
+
+private:
+  vtkDSMScene(const vtkDSMScene&) = delete;
+  void operator=(const vtkDSMScene&) = delete;
+
+  static vtkDSMScene* New();
+  void Attach(vtkRenderer* renderer);
+  void Trace();
+
+  class Internals;
+  std::unique_ptr<Internals> Self;
+};
+
+#endif

@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkDSMTranslation.h"
+
+#include "vtkCamera.h"
+#include "vtkLight.h"
+#include "vtkLightCollection.h"
+#include "vtkMath.h"
+#include "vtkMatrix4x4.h"
+#include "vtkProperty.h"
+#include "vtkRenderer.h"
+#include "vtkScalarsToColors.h"
+
+#include <glm/geometric.hpp>
+
+#include <cmath>
+#include <limits>
+
+namespace
+{
+
+/// Entries of a sampled colour map: well above the 256 of ParaView's discretised ones.
+constexpr int ColorMapEntries = 4096;
+
+glm::vec3 ToColor(const double color[3])
+{
+  return { color[0], color[1], color[2] };
+}
+
+glm::vec4 MapValue(vtkScalarsToColors* table, double value)
+{
+  double color[3];
+  table->GetColor(value, color);
+  return { color[0], color[1], color[2], table->GetOpacity(value) };
+}
+
+} // namespace
+
+glm::dmat4 vtkDSMTranslation::ToMatrix(vtkMatrix4x4* matrix)
+{
+  glm::dmat4 result;
+  for (int row = 0; row < 4; ++row)
+  {
+    for (int column = 0; column < 4; ++column)
+    {
+      result[column][row] = matrix->GetElement(row, column);
+    }
+  }
+  return result;
+}
+
+rt::Material vtkDSMTranslation::ToMaterial(vtkProperty* property)
+{
+  rt::Material material;
+  material.Ambient = static_cast<float>(property->GetAmbient());
+  material.Diffuse = static_cast<float>(property->GetDiffuse());
+  material.Specular = static_cast<float>(property->GetSpecular());
+  material.SpecularPower = static_cast<float>(property->GetSpecularPower());
+  material.AmbientColor = ToColor(property->GetAmbientColor());
+  material.DiffuseColor = ToColor(property->GetDiffuseColor());
+  material.SpecularColor = ToColor(property->GetSpecularColor());
+  material.Opacity = static_cast<float>(property->GetOpacity());
+  material.Lighting = property->GetLighting();
+  return material;
+}
+
+rt::ColorMap vtkDSMTranslation::ToColorMap(vtkScalarsToColors* table)
+{
+  table->Build();
+  rt::ColorMap map;
+  const double* range = table->GetRange();
+  map.First = range[0];
+  map.Last = range[1];
+  map.Logarithmic = table->UsingLogScale() != 0 && map.First > 0.0;
+  map.Table.reserve(ColorMapEntries);
+  for (int entry = 0; entry < ColorMapEntries; ++entry)
+  {
+    const double part = static_cast<double>(entry) / (ColorMapEntries - 1);
+    const double value = map.Logarithmic ? map.First * std::pow(map.Last / map.First, part)
+                                         : map.First + part * (map.Last - map.First);
+    map.Table.push_back(MapValue(table, std::min(std::max(value, map.First), map.Last)));
+  }
+  const double infinity = std::numeric_limits<double>::infinity();
+  map.Below = MapValue(table, std::nextafter(map.First, -infinity));
+  map.Above = MapValue(table, std::nextafter(map.Last, infinity));
+  map.NotANumber = MapValue(table, vtkMath::Nan());
+  return map;
+}
+
+std::vector<rt::Light> vtkDSMTranslation::ToLights(vtkRenderer* renderer)
+{
+  if (renderer->GetLights()->GetNumberOfItems() == 0 && renderer->GetAutomaticLightCreation())
+  {
+    renderer->CreateLight();
+  }
+  if (renderer->GetLightFollowCamera())
+  {
+    renderer->UpdateLightsGeometryToFollowCamera();
+  }
+  std::vector<rt::Light> lights;
+  vtkCollectionSimpleIterator position;
+  renderer->GetLights()->InitTraversal(position);
+  while (vtkLight* source = renderer->GetLights()->GetNextLight(position))
+  {
+    if (!source->GetSwitch())
+    {
+      continue;
+    }
+    rt::Light light;
+    double from[3];
+    double to[3];
+    source->GetTransformedPosition(from);
+    source->GetTransformedFocalPoint(to);
+    light.Position = { from[0], from[1], from[2] };
+    const glm::dvec3 way = glm::dvec3(to[0], to[1], to[2]) - light.Position;
+    const double length = glm::length(way);
+    light.Direction = length > 0.0 ? way / length : glm::dvec3(0.0, 0.0, -1.0);
+    light.Color = ToColor(source->GetDiffuseColor()) * static_cast<float>(source->GetIntensity());
+    if (source->GetPositional())
+    {
+      light.Type =
+        source->GetConeAngle() < 90.0 ? rt::Light::Kind::Cone : rt::Light::Kind::Positional;
+      light.ConeCosine =
+        static_cast<float>(std::cos(vtkMath::RadiansFromDegrees(source->GetConeAngle())));
+      light.Exponent = static_cast<float>(source->GetExponent());
+      light.Attenuation = ToColor(source->GetAttenuationValues());
+    }
+    lights.push_back(light);
+  }
+  return lights;
+}
+
+rt::FrameRequest vtkDSMTranslation::ToRequest(vtkRenderer* renderer, vtkMatrix4x4* projection)
+{
+  vtkCamera* camera = renderer->GetActiveCamera();
+  rt::FrameRequest request;
+  int origin[2];
+  renderer->GetTiledSizeAndOrigin(&request.Width, &request.Height, &origin[0], &origin[1]);
+  projection->DeepCopy(
+    camera->GetProjectionTransformMatrix(renderer->GetTiledAspectRatio(), -1.0, 1.0));
+  request.WorldToClip = ToMatrix(projection) * ToMatrix(camera->GetModelViewTransformMatrix());
+  return request;
+}

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef vtkDSMTranslation_h
+#define vtkDSMTranslation_h
+
+#include "DSMRayTracing/frame/FrameRequest.h"
+#include "DSMRayTracing/frame/Scene.h"
+
+#include <vector>
+
+class vtkMatrix4x4;
+class vtkProperty;
+class vtkRenderer;
+class vtkScalarsToColors;
+
+/// VTK's words for a picture in the tracer's.
+class vtkDSMTranslation
+{
+public:
+  static glm::dmat4 ToMatrix(vtkMatrix4x4* matrix);
+
+  static rt::Material ToMaterial(vtkProperty* property);
+
+  /// Samples any lookup table or transfer function; finely enough for one that is discretised.
+  static rt::ColorMap ToColorMap(vtkScalarsToColors* table);
+
+  /// The lights that are on, in world space. Moves the lights that follow the camera to where the
+  /// renderer will have them, and makes the renderer's automatic light if there is none.
+  static std::vector<rt::Light> ToLights(vtkRenderer* renderer);
+
+  /// The picture that the renderer is about to draw; `projection` is filled with its projection.
+  static rt::FrameRequest ToRequest(vtkRenderer* renderer, vtkMatrix4x4* projection);
+};
+
+#endif

@@ -1,0 +1,358 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkDSMVolumeData.h"
+
+#include "DSMRayTracing/brick/VoxelBrickBuilder.h"
+#include "vtkDSMImagePiece.h"
+
+#include "vtkBoundingBox.h"
+#include "vtkCellData.h"
+#include "vtkCompositeDataIterator.h"
+#include "vtkDataArray.h"
+#include "vtkDataObjectTree.h"
+#include "vtkImageData.h"
+#include "vtkPointData.h"
+#include "vtkUniformGridAMR.h"
+
+#include <algorithm>
+#include <cstring>
+#include <set>
+
+namespace
+{
+
+enum class ArrayState : std::int32_t
+{
+  Usable,
+  Missing,
+  NotNumeric,
+  OnCells,
+  NoSuchComponent,
+  WrongLength
+};
+
+/// Every rank's items, in rank order; `first` is where this rank's begin.
+template <class T>
+std::vector<T> GatherItems(dsm::Messenger& messenger, const std::vector<T>& mine, int& first)
+{
+  static_assert(std::is_trivially_copyable_v<T>, "only plain values travel");
+  std::vector<std::byte> bytes(mine.size() * sizeof(T));
+  if (!mine.empty())
+  {
+    std::memcpy(bytes.data(), mine.data(), bytes.size());
+  }
+  const auto parts = messenger.AllGather(std::move(bytes));
+  std::vector<T> all;
+  for (int rank = 0; rank < static_cast<int>(parts.size()); ++rank)
+  {
+    if (rank == messenger.GetRank())
+    {
+      first = static_cast<int>(all.size());
+    }
+    const std::size_t offset = all.size();
+    const std::size_t count = parts[rank].size() / sizeof(T);
+    all.resize(offset + count);
+    if (count > 0)
+    {
+      std::memcpy(&all[offset], parts[rank].data(), count * sizeof(T));
+    }
+  }
+  return all;
+}
+
+} // namespace
+
+struct vtkDSMVolumeData::ArrayInfo
+{
+  ArrayState State = ArrayState::Missing;
+  rt::ScalarType Type = rt::ScalarType::Float32;
+  std::int32_t Components = 0;
+};
+
+vtkDSMVolumeData::vtkDSMVolumeData(std::shared_ptr<vtkDSMRankGroup> group, vtkDataObject* data)
+  : Group(std::move(group))
+{
+  dsm::Messenger& messenger = this->Group->GetMessenger();
+  std::vector<vtkDSMPieceInfo> mine;
+  messenger.RunTogether("Reading the volume",
+    [&]
+    {
+      this->CollectImages(data);
+      for (std::size_t index = 0; index < this->Images.size(); ++index)
+      {
+        mine.push_back(vtkDSMImagePiece::Describe(this->Images[index], this->Leaves[index]));
+      }
+    });
+  this->Pieces = GatherItems(messenger, mine, this->FirstOwnPiece);
+  this->GatherArrays();
+  this->Plan = vtkDSMLatticePlan(this->Pieces);
+}
+
+vtkDSMVolumeData::~vtkDSMVolumeData() = default;
+
+void vtkDSMVolumeData::CollectImages(vtkDataObject* data)
+{
+  const auto add = [this](vtkDataObject* object, int leaf)
+  {
+    auto* image = vtkImageData::SafeDownCast(object);
+    if (image && image->GetNumberOfPoints() > 0)
+    {
+      this->Images.emplace_back(image);
+      this->Leaves.push_back(leaf);
+    }
+    return image != nullptr;
+  };
+  if (!data || add(data, 0))
+  {
+    return;
+  }
+  auto* tree = vtkDataObjectTree::SafeDownCast(data);
+  if (!tree || vtkUniformGridAMR::SafeDownCast(data))
+  {
+    throw dsm::Error(std::string("A dataset of type ") + data->GetClassName() +
+      " cannot be ray traced: image data (or blocks of image data) is needed. Apply Resample To "
+      "Image first.");
+  }
+  vtkSmartPointer<vtkCompositeDataIterator> leaf;
+  leaf.TakeReference(tree->NewIterator());
+  bool anyOther = false;
+  for (leaf->InitTraversal(); !leaf->IsDoneWithTraversal(); leaf->GoToNextItem())
+  {
+    anyOther =
+      !add(leaf->GetCurrentDataObject(), static_cast<int>(leaf->GetCurrentFlatIndex())) || anyOther;
+  }
+  if (anyOther && this->Images.empty())
+  {
+    throw dsm::Error("The blocks of the dataset are not image data, which ray tracing needs. Apply "
+                     "Resample To Image first.");
+  }
+}
+
+void vtkDSMVolumeData::GetBounds(double bounds[6]) const
+{
+  vtkBoundingBox box;
+  for (const auto& lattice : this->Plan.GetLattices())
+  {
+    for (int corner = 0; corner < 8; ++corner)
+    {
+      const rt::Index3 end = lattice.Points - rt::Index3(1);
+      const glm::dvec4 point = lattice.IndexToWorld *
+        glm::dvec4(corner & 1 ? end.x : 0, corner & 2 ? end.y : 0, corner & 4 ? end.z : 0, 1);
+      box.AddPoint(point.x, point.y, point.z);
+    }
+  }
+  box.GetBounds(bounds);
+}
+
+vtkDataArray* vtkDSMVolumeData::FindArray(
+  vtkImageData* image, const Choice& choice, ArrayInfo& info) const
+{
+  vtkAbstractArray* found = choice.Name.empty()
+    ? static_cast<vtkAbstractArray*>(image->GetPointData()->GetScalars())
+    : image->GetPointData()->GetAbstractArray(choice.Name.c_str());
+  if (!found)
+  {
+    const bool onCells = choice.Name.empty() ? image->GetPointData()->GetNumberOfArrays() == 0 &&
+        image->GetCellData()->GetNumberOfArrays() > 0
+                                             : image->GetCellData()->HasArray(choice.Name.c_str());
+    info.State = onCells ? ArrayState::OnCells : ArrayState::Missing;
+    return nullptr;
+  }
+  auto* array = vtkDataArray::SafeDownCast(found);
+  if (!array)
+  {
+    info.State = ArrayState::NotNumeric;
+    return nullptr;
+  }
+  info.Components = array->GetNumberOfComponents();
+  if (choice.Component >= info.Components || choice.Component < vtkDSMImagePiece::Magnitude)
+  {
+    info.State = ArrayState::NoSuchComponent;
+    return nullptr;
+  }
+  if (array->GetNumberOfTuples() != image->GetNumberOfPoints())
+  {
+    info.State = ArrayState::WrongLength;
+    return nullptr;
+  }
+  info.State = ArrayState::Usable;
+  info.Type = vtkDSMImagePiece::GetScalarType(array, choice.Component);
+  return array;
+}
+
+void vtkDSMVolumeData::GatherArrays()
+{
+  std::vector<char> mine;
+  const auto append = [&mine](const std::string& text)
+  { mine.insert(mine.end(), text.c_str(), text.c_str() + text.size() + 1); };
+  for (vtkImageData* image : this->Images)
+  {
+    for (int index = 0; index < image->GetPointData()->GetNumberOfArrays(); ++index)
+    {
+      vtkDataArray* array = image->GetPointData()->GetArray(index);
+      if (array && array->GetName() &&
+        std::strcmp(array->GetName(), vtkDataSetAttributes::GhostArrayName()) != 0)
+      {
+        append(array->GetName());
+        append(std::to_string(array->GetNumberOfComponents()));
+      }
+    }
+  }
+  int first = 0;
+  const std::vector<char> all = GatherItems(this->Group->GetMessenger(), mine, first);
+  for (auto name = all.begin(); name != all.end();)
+  {
+    const auto components = std::find(name, all.end(), '\0') + 1;
+    const auto next = std::find(components, all.end(), '\0') + 1;
+    this->PointArrays[&*name] = std::stoi(&*components);
+    name = next;
+  }
+}
+
+vtkDSMVolumeData::Choice vtkDSMVolumeData::Normalize(const Choice& choice) const
+{
+  const auto known = this->PointArrays.find(choice.Name);
+  if (known == this->PointArrays.end())
+  {
+    return choice;
+  }
+  const int components = known->second;
+  if (components == 1)
+  {
+    return { choice.Name, 0 };
+  }
+  // ParaView's panels number the magnitude after the last component.
+  return { choice.Name,
+    choice.Component == components ? vtkDSMImagePiece::Magnitude : choice.Component };
+}
+
+void vtkDSMVolumeData::RefuseArray(
+  const Choice& choice, const std::string& purpose, const std::vector<ArrayInfo>& infos) const
+{
+  std::string list;
+  for (const auto& [name, components] : this->PointArrays)
+  {
+    list += (list.empty() ? "'" : ", '") + name + "'";
+  }
+  const std::string array = "The " + purpose + " '" + choice.Name + "'";
+  const std::string remedy =
+    list.empty() ? " The dataset has no point array of numbers." : " Choose one of " + list + ".";
+  const auto is = [&](ArrayState state)
+  {
+    return std::any_of(
+      infos.begin(), infos.end(), [=](const ArrayInfo& info) { return info.State == state; });
+  };
+  if (is(ArrayState::NotNumeric))
+  {
+    throw dsm::Error(array + " holds text, not numbers." + remedy);
+  }
+  if (is(ArrayState::NoSuchComponent))
+  {
+    throw dsm::Error(array + " has no component " + std::to_string(choice.Component) + ".");
+  }
+  if (is(ArrayState::WrongLength))
+  {
+    throw dsm::Error(array + " does not have one value for every point of the image." + remedy);
+  }
+  if (is(ArrayState::OnCells))
+  {
+    throw dsm::Error(
+      (choice.Name.empty() ? "The dataset has cell data only" : array + " belongs to the cells") +
+      ", but isosurfaces need values at the points. Apply Cell Data to Point Data first.");
+  }
+  throw dsm::Error((choice.Name.empty() ? "No " + purpose + " is chosen."
+                                        : array + " does not exist in the dataset.") +
+    remedy);
+}
+
+vtkDSMVolumeData::Fields vtkDSMVolumeData::Publish(const Choice& choice, const std::string& purpose,
+  const std::function<void(double)>& progress) const
+{
+  dsm::Messenger& messenger = this->Group->GetMessenger();
+  std::vector<ArrayInfo> mine(this->Images.size());
+  messenger.RunTogether("Reading the " + purpose,
+    [&]
+    {
+      for (std::size_t index = 0; index < this->Images.size(); ++index)
+      {
+        this->FindArray(this->Images[index], choice, mine[index]);
+      }
+    });
+  int first = 0;
+  const std::vector<ArrayInfo> infos = GatherItems(messenger, mine, first);
+  const auto isUsable = [](const ArrayInfo& info) { return info.State == ArrayState::Usable; };
+  if (!infos.empty() && std::none_of(infos.begin(), infos.end(), isUsable))
+  {
+    this->RefuseArray(choice, purpose, infos);
+  }
+
+  Fields fields;
+  for (std::size_t lattice = 0; lattice < this->GetNumberOfLattices(); ++lattice)
+  {
+    fields.push_back(this->PublishLattice(lattice, choice, purpose, infos, progress));
+  }
+  return fields;
+}
+
+std::shared_ptr<const rt::VoxelField> vtkDSMVolumeData::PublishLattice(std::size_t number,
+  const Choice& choice, const std::string& purpose, const std::vector<ArrayInfo>& infos,
+  const std::function<void(double)>& progress) const
+{
+  const vtkDSMLatticePlan::Lattice& lattice = this->Plan.GetLattices()[number];
+  std::vector<rt::Box> parts;
+  std::set<rt::ScalarType> types;
+  bool masked = false;
+  for (const auto& member : lattice.Members)
+  {
+    if (infos[member.Piece].State == ArrayState::Usable)
+    {
+      parts.push_back(member.Cells);
+      types.insert(infos[member.Piece].Type);
+      masked = masked || this->Pieces[member.Piece].HasMask != 0;
+    }
+  }
+  if (parts.empty())
+  {
+    return nullptr;
+  }
+  if (types.size() > 1)
+  {
+    throw dsm::Error("The pieces of the " + purpose + " '" + choice.Name +
+      "' do not all have the same type. Convert them to one type, for example with Calculator.");
+  }
+  const rt::Box whole{ rt::Index3(0), lattice.Points - rt::Index3(1) };
+  masked = masked || !vtkDSMLatticePlan::IsCovered(whole, parts);
+
+  std::vector<std::shared_ptr<const rt::VoxelSource>> sources;
+  for (const auto& member : lattice.Members)
+  {
+    const int own = member.Piece - this->FirstOwnPiece;
+    if (own >= 0 && own < static_cast<int>(this->Images.size()))
+    {
+      ArrayInfo info;
+      if (vtkDataArray* array = this->FindArray(this->Images[own], choice, info))
+      {
+        sources.push_back(std::make_shared<vtkDSMImagePiece>(this->Images[own], array,
+          choice.Component, member, this->Pieces[member.Piece].HasMask != 0));
+      }
+    }
+  }
+
+  const std::shared_ptr<vtkDSMRankGroup> group = this->Group;
+  const std::shared_ptr<rt::VoxelField> field(new rt::VoxelField,
+    [group](rt::VoxelField* old)
+    {
+      if (old->Segment)
+      {
+        group->GetStore().Retire(old->Segment);
+      }
+      delete old;
+    });
+  dsm::Messenger& messenger = group->GetMessenger();
+  field->Lattice = rt::BrickLattice(lattice.Points, *types.begin(), masked);
+  rt::VoxelFragmentSource source(field->Lattice, std::move(sources));
+  rt::VoxelBrickSink sink(field->Lattice);
+  field->Segment = group->GetStore().Publish("the " + purpose + " '" + choice.Name + "'",
+    field->Lattice.CreateDirectory(messenger.GetSize()), source, sink, progress);
+  field->Hierarchy = rt::MacrocellHierarchy(field->Lattice, *field->Segment, messenger);
+  return field;
+}

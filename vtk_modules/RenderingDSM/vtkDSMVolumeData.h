@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef vtkDSMVolumeData_h
+#define vtkDSMVolumeData_h
+
+#include "DSMRayTracing/frame/Scene.h"
+#include "vtkDSMLatticePlan.h"
+#include "vtkDSMRankGroup.h"
+
+#include "vtkSmartPointer.h"
+
+#include <functional>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+class vtkDataArray;
+class vtkDataObject;
+class vtkImageData;
+
+/// A dataset of images that is spread over the ranks, seen as lattices, and its arrays as fields of
+/// bricks. Keeps the images alive, without a copy. Every method that says so is collective; a rank
+/// without data takes part. Failures are dsm::Error, the same on every rank.
+class vtkDSMVolumeData
+{
+public:
+  /// One array, as the user chose it.
+  struct Choice
+  {
+    std::string Name;  ///< empty: the active scalars
+    int Component = 0; ///< vtkDSMImagePiece::Magnitude for the magnitude
+
+    bool operator==(const Choice& other) const
+    {
+      return this->Name == other.Name && this->Component == other.Component;
+    }
+  };
+  /// One field a lattice; null where no piece of the lattice has the array.
+  using Fields = std::vector<std::shared_ptr<const rt::VoxelField>>;
+
+  /// Collective. `data` is this rank's part: vtkImageData, a composite dataset of images, or null.
+  vtkDSMVolumeData(std::shared_ptr<vtkDSMRankGroup> group, vtkDataObject* data);
+  ~vtkDSMVolumeData();
+
+  std::size_t GetNumberOfLattices() const { return this->Plan.GetLattices().size(); }
+  const glm::dmat4& GetIndexToWorld(std::size_t lattice) const
+  {
+    return this->Plan.GetLattices()[lattice].IndexToWorld;
+  }
+  /// The choice with its component made definite: an array of one component has but one. The same on
+  /// every rank, also where there is no data.
+  Choice Normalize(const Choice& choice) const;
+  /// Of all ranks' pieces; uninitialised bounds (min > max) without any.
+  void GetBounds(double bounds[6]) const;
+
+  /// Collective. Cuts an array into bricks and hands them to their owners. `purpose` names the array
+  /// in messages ("isosurface array"). The fields leave the store when their last user lets go,
+  /// which must happen in the same order on every rank.
+  Fields Publish(const Choice& choice, const std::string& purpose,
+    const std::function<void(double)>& progress) const;
+
+private:
+  struct ArrayInfo;
+
+  void CollectImages(vtkDataObject* data);
+  vtkDataArray* FindArray(vtkImageData* image, const Choice& choice, ArrayInfo& info) const;
+  void GatherArrays();
+  [[noreturn]] void RefuseArray(
+    const Choice& choice, const std::string& purpose, const std::vector<ArrayInfo>& infos) const;
+  std::shared_ptr<const rt::VoxelField> PublishLattice(std::size_t lattice, const Choice& choice,
+    const std::string& purpose, const std::vector<ArrayInfo>& infos,
+    const std::function<void(double)>& progress) const;
+
+  std::shared_ptr<vtkDSMRankGroup> Group;
+  vtkDSMLatticePlan Plan;
+  std::vector<vtkDSMPieceInfo> Pieces; ///< of all ranks, in rank order
+  int FirstOwnPiece = 0;
+  std::vector<vtkSmartPointer<vtkImageData>> Images; ///< of this rank
+  std::vector<int> Leaves;                           ///< of this rank's images
+  std::map<std::string, int> PointArrays; ///< all ranks' numeric ones: number of components
+};
+
+#endif

@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkDSMVolumeMapper.h"
+
+#include "vtkCompositeDataSet.h"
+#include "vtkDataSet.h"
+#include "vtkInformation.h"
+#include "vtkMath.h"
+#include "vtkObjectFactory.h"
+#include "vtkProperty.h"
+#include "vtkScalarsToColors.h"
+#include "vtkTrivialProducer.h"
+
+vtkStandardNewMacro(vtkDSMVolumeMapper);
+
+vtkDSMVolumeMapper::vtkDSMVolumeMapper()
+  : SurfaceProperty(vtkSmartPointer<vtkProperty>::New())
+{
+  vtkMath::UninitializeBounds(this->GlobalBounds);
+}
+
+vtkDSMVolumeMapper::~vtkDSMVolumeMapper() = default;
+
+void vtkDSMVolumeMapper::SetInputData(vtkDataObject* data)
+{
+  vtkMath::UninitializeBounds(this->GlobalBounds);
+  this->SetInputDataObject(0, data);
+}
+
+void vtkDSMVolumeMapper::SetNumberOfIsoValues(int number)
+{
+  const auto size = static_cast<std::size_t>(number > 0 ? number : 0);
+  if (this->IsoValues.size() != size)
+  {
+    this->IsoValues.resize(size, 0.0);
+    this->Modified();
+  }
+}
+
+int vtkDSMVolumeMapper::GetNumberOfIsoValues() const
+{
+  return static_cast<int>(this->IsoValues.size());
+}
+
+void vtkDSMVolumeMapper::SetIsoValue(int index, double value)
+{
+  if (index < 0)
+  {
+    return;
+  }
+  if (index >= this->GetNumberOfIsoValues())
+  {
+    this->SetNumberOfIsoValues(index + 1);
+  }
+  if (this->IsoValues[index] != value)
+  {
+    this->IsoValues[index] = value;
+    this->Modified();
+  }
+}
+
+double vtkDSMVolumeMapper::GetIsoValue(int index) const
+{
+  return index >= 0 && index < this->GetNumberOfIsoValues() ? this->IsoValues[index] : 0.0;
+}
+
+void vtkDSMVolumeMapper::SetLookupTable(vtkScalarsToColors* table)
+{
+  if (this->LookupTable != table)
+  {
+    this->LookupTable = table;
+    this->Modified();
+  }
+}
+
+vtkScalarsToColors* vtkDSMVolumeMapper::GetLookupTable() const
+{
+  return this->LookupTable;
+}
+
+vtkProperty* vtkDSMVolumeMapper::GetSurfaceProperty() const
+{
+  return this->SurfaceProperty;
+}
+
+double* vtkDSMVolumeMapper::GetBounds()
+{
+  if (vtkMath::AreBoundsInitialized(this->GlobalBounds))
+  {
+    std::copy_n(this->GlobalBounds, 6, this->Bounds);
+    return this->Bounds;
+  }
+  vtkMath::UninitializeBounds(this->Bounds);
+  vtkDataObject* data = this->GetDataObjectInput();
+  if (auto* dataSet = vtkDataSet::SafeDownCast(data))
+  {
+    dataSet->GetBounds(this->Bounds);
+  }
+  else if (auto* composite = vtkCompositeDataSet::SafeDownCast(data))
+  {
+    composite->GetBounds(this->Bounds);
+  }
+  return this->Bounds;
+}
+
+void vtkDSMVolumeMapper::SetGlobalBounds(const double bounds[6])
+{
+  std::copy_n(bounds, 6, this->GlobalBounds);
+}
+
+void vtkDSMVolumeMapper::UpdatePiece(int piece, int numberOfPieces)
+{
+  if (this->GetNumberOfInputConnections(0) == 0)
+  {
+    return;
+  }
+  int port = 0;
+  vtkAlgorithm* producer = this->GetInputAlgorithm(0, 0, port);
+  if (!vtkTrivialProducer::SafeDownCast(producer))
+  {
+    producer->UpdatePiece(piece, numberOfPieces, 0);
+  }
+}
+
+void vtkDSMVolumeMapper::Render(vtkRenderer*, vtkVolume*) {}
+
+vtkMTimeType vtkDSMVolumeMapper::GetMTime()
+{
+  vtkMTimeType time = std::max(this->Superclass::GetMTime(), this->SurfaceProperty->GetMTime());
+  if (this->LookupTable)
+  {
+    time = std::max(time, this->LookupTable->GetMTime());
+  }
+  return time;
+}
+
+int vtkDSMVolumeMapper::FillInputPortInformation(int, vtkInformation* info)
+{
+  info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkDataObject");
+  info->Set(vtkAlgorithm::INPUT_IS_OPTIONAL(), 1);
+  return 1;
+}
+
+void vtkDSMVolumeMapper::PrintSelf(ostream& os, vtkIndent indent)
+{
+  this->Superclass::PrintSelf(os, indent);
+  os << indent << "IsoArray: " << this->IsoArray << "\n";
+  os << indent << "IsoComponent: " << this->IsoComponent << "\n";
+  os << indent << "IsoValues:";
+  for (const double value : this->IsoValues)
+  {
+    os << " " << value;
+  }
+  os << "\n";
+  os << indent << "ColorArray: " << this->ColorArray << "\n";
+  os << indent << "ScalarVisibility: " << this->ScalarVisibility << "\n";
+  os << indent << "LookupTable: " << this->LookupTable.Get() << "\n";
+  os << indent << "SurfaceProperty: " << this->SurfaceProperty.Get() << "\n";
+  os << indent << "NumberOfThreads: " << this->NumberOfThreads << "\n";
+  os << indent << "CacheSize: " << this->CacheSize << " MiB\n";
+}
