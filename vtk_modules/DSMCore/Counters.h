@@ -36,8 +36,10 @@ struct StoreCounters
   std::uint64_t BytesReceived = 0;
   std::uint64_t BytesSent = 0;
   std::uint64_t ResidentBytes = 0; ///< blocks this rank owns
-  std::uint64_t CachedBytes = 0;   ///< remote blocks held now
-  std::uint64_t PeakCachedBytes = 0;
+  /// Memory that remote blocks take now: those held, those evicted whose memory is not free yet, and
+  /// the room set aside for those requested. Never more than CacheCapacity.
+  std::uint64_t CachedBytes = 0;
+  std::uint64_t PeakCachedBytes = 0; ///< the most during the frame
   std::uint64_t CacheCapacity = 0;
 };
 

@@ -116,8 +116,12 @@ bool FragmentExchange::Feed(FragmentSource& source, FragmentSink& sink)
   }
   else
   {
-    AttachTail(fragment.Bytes, FragmentTail{ fragment.Block });
-    this->Messages.Post(owner, MessageKind::Fragment, std::move(fragment.Bytes));
+    this->Try(
+      [&]
+      {
+        AttachTail(fragment.Bytes, FragmentTail{ fragment.Block });
+        this->Messages.Post(owner, MessageKind::Fragment, std::move(fragment.Bytes));
+      });
   }
   return true;
 }

@@ -1,20 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "DSMCore/Messenger.h"
 
+#include "DSMCore/BackOff.h"
+
 #include <unistd.h>
 
 #include <algorithm>
 #include <array>
-#include <atomic>
-#include <chrono>
-#include <condition_variable>
 #include <deque>
 #include <exception>
 #include <fstream>
 #include <iterator>
-#include <mutex>
 #include <new>
-#include <thread>
 #include <utility>
 
 namespace dsm
@@ -52,70 +49,6 @@ std::string GetHostIdentity()
   std::ifstream("/proc/sys/kernel/random/boot_id") >> boot;
   return std::string(name.data()) + " " + boot;
 }
-
-/// A thread that waits for messages polls a few times (a reply within the host takes microseconds),
-/// then gives its core away, then sleeps, ever longer.
-class BackOff
-{
-public:
-  void Reset()
-  {
-    this->Idle = 0;
-    this->Sleep = ShortestSleep;
-  }
-
-  void Wait()
-  {
-    if (this->Idle < Polls + Yields)
-    {
-      ++this->Idle;
-      if (this->Idle > Polls)
-      {
-        std::this_thread::yield();
-      }
-      return;
-    }
-    std::unique_lock<std::mutex> lock(this->Guard);
-    this->Sleeping = true;
-    this->Condition.wait_for(lock, this->Sleep, [this] { return this->Woken.load(); });
-    this->Sleeping = false;
-    if (this->Woken.exchange(false))
-    {
-      this->Reset();
-    }
-    else
-    {
-      this->Sleep = std::min(2 * this->Sleep, LongestSleep);
-    }
-  }
-
-  /// Any thread. Both flags are sequentially consistent: either the sleeper sees Woken before it
-  /// sleeps, or this thread sees Sleeping and notifies.
-  void WakeUp()
-  {
-    this->Woken = true;
-    if (this->Sleeping)
-    {
-      {
-        const std::lock_guard<std::mutex> lock(this->Guard);
-      }
-      this->Condition.notify_one();
-    }
-  }
-
-private:
-  static constexpr int Polls = 8;
-  static constexpr int Yields = 32;
-  static constexpr std::chrono::microseconds ShortestSleep{ 20 };
-  static constexpr std::chrono::microseconds LongestSleep{ 200 };
-
-  int Idle = 0;
-  std::chrono::microseconds Sleep = ShortestSleep;
-  std::mutex Guard;
-  std::condition_variable Condition;
-  std::atomic<bool> Sleeping{ false };
-  std::atomic<bool> Woken{ false };
-};
 
 } // namespace
 

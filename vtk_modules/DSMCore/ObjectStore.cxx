@@ -2,6 +2,7 @@
 #include "DSMCore/ObjectStore.h"
 
 #include "DSMCore/FragmentExchange.h"
+#include "DSMCore/HostMemory.h"
 #include "DSMCore/ObjectStoreInternals.h"
 
 #include <algorithm>
@@ -25,6 +26,18 @@ std::uint64_t GetFingerprint(const BlockDirectory& directory)
     hash = (hash ^ static_cast<std::uint64_t>(directory.GetOwner(id))) * 0x100000001b3u;
   }
   return hash;
+}
+
+/// Blocks are dealt evenly, so the other ranks of the host want as much as this one.
+void CheckHostMemory(std::uint64_t bytes, int ranksOnHost, std::uint64_t available)
+{
+  if (bytes > available / static_cast<std::uint64_t>(ranksOnHost))
+  {
+    throw Error("out of memory: " + std::to_string(bytes >> 20) + " MiB are needed for each of " +
+      std::to_string(ranksOnHost) + " ranks on the host, which has " +
+      std::to_string(available >> 20) +
+      " MiB left. Use more hosts, so that each holds fewer bytes, or smaller data.");
+  }
 }
 
 } // namespace
@@ -100,6 +113,9 @@ std::shared_ptr<BlockSegment> ObjectStore::Publish(const std::string& what,
   // Stores that share a messenger draw from one sequence, so the number names the segment among all
   // of theirs.
   const std::uint32_t number = messages.BeginSession();
+  const int ranksOnHost = messages.GetRanksOnHost();
+  // Asked before the ranks meet in the next line, hence before any of them takes memory.
+  const std::uint64_t available = GetAvailableHostMemory();
   const auto fingerprints = messages.AllGatherValue(GetFingerprint(directory));
   std::shared_ptr<Segment> segment;
   messages.RunTogether(what,
@@ -124,6 +140,7 @@ std::shared_ptr<BlockSegment> ObjectStore::Publish(const std::string& what,
             std::to_string(messages.GetSize()) + " ranks.");
         }
       }
+      CheckHostMemory(directory.GetResidentBytes(messages.GetRank()), ranksOnHost, available);
       segment = std::make_shared<Segment>(number, std::move(directory), messages.GetRank());
       segment->ForEachResident([&](BlockId id, const std::byte*, std::size_t bytes)
         { sink.Begin(id, segment->GetOwned(id), bytes); });

@@ -166,11 +166,17 @@ inline std::size_t CountWrongBytes(dsm::BlockId id, const std::byte* block, std:
 
 /// A frame as a renderer drives it: `trace` runs on a thread for each of the store's workers, this
 /// thread serves until every rank's workers are done. What a worker throws cancels the frame on its
-/// rank; then every rank throws the same Error.
+/// rank; then every rank throws the same Error. `first` (may be empty) runs on this thread when the
+/// frame has begun.
 inline void RunFrame(dsm::Messenger& messenger, dsm::ObjectStore& store,
-  const std::function<void(dsm::ObjectStore::Worker&, int)>& trace)
+  const std::function<void(dsm::ObjectStore::Worker&, int)>& trace,
+  const std::function<void()>& first = {})
 {
   store.BeginFrame();
+  if (first)
+  {
+    first();
+  }
   const int workers = store.GetSettings().Workers;
   std::atomic<int> running{ workers };
   std::vector<std::string> causes(static_cast<std::size_t>(workers));

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "DSMCore/ObjectStore.h"
 
+#include "DSMCore/HostMemory.h"
 #include "tests/unit/dsmcore/StoreScenarios.h"
 
 namespace
@@ -69,6 +70,27 @@ TEST(ObjectStore, MoreMemoryThanThereIsIsAnErrorOfThePublication)
       const std::string text =
         dsm_test::GetErrorText([&] { store.Publish("Loading", directory, source, sink); });
       EXPECT_EQ(text.find("Loading: Rank 0: out of memory"), 0u) << text;
+    });
+}
+
+/// The system would grant the memory and end the process later.
+TEST(ObjectStore, MoreMemoryThanTheHostHasLeftIsAnErrorOfThePublication)
+{
+  // Together three quarters more than there is.
+  const std::uint64_t blocks = (dsm::GetAvailableHostMemory() / 4 * 7) >> 28;
+  dsm_test::RunRanks(2,
+    [&](dsm::Messenger& messenger)
+    {
+      dsm::ObjectStore store(messenger, dsm_test::MakeSettings(1000, 1));
+      const dsm::BlockDirectory directory(
+        std::vector<std::uint32_t>(blocks, 1u << 28), dsm::RoundRobinAssigner(2));
+      dsm_test::PatternSource source(
+        dsm_test::MakeDirectory(2, 0, 0), 0, 2, dsm_test::Spread::EveryRankASlice, 100);
+      dsm_test::PatternSink sink;
+      const std::string text =
+        dsm_test::GetErrorText([&] { store.Publish("Loading", directory, source, sink); });
+      EXPECT_EQ(text.find("Loading: Rank 0: out of memory: "), 0u) << text;
+      EXPECT_TRUE(sink.Begun.empty());
     });
 }
 
@@ -282,20 +304,37 @@ TEST_F(MalformedMessage, ReplyWithoutAName)
     [](const dsm::BlockSegment&, std::uint32_t) { return dsm::Encode('x'); });
 }
 
-TEST(FragmentExchange, FragmentForABlockOutOfRangeIsAnError)
+/// Left over from a frame that was cancelled: its segment may be gone, its answer is not wanted.
+TEST(ObjectStore, MessagesOfAnOlderFrameAreIgnored)
 {
   dsm_test::RunRanks(2,
     [](dsm::Messenger& messenger)
     {
       dsm::ObjectStore store(messenger, dsm_test::MakeSettings(1 << 16, 1));
-      // The source believes in one block more than there are.
-      dsm_test::PatternSource source(dsm_test::MakeDirectory(2, 5, 100), messenger.GetRank(), 2,
-        dsm_test::Spread::EveryRankASlice, 100);
-      dsm_test::PatternSink sink;
-      const std::string text = dsm_test::GetErrorText(
-        [&] { store.Publish("Loading", dsm_test::MakeDirectory(2, 4, 100), source, sink); });
-      EXPECT_NE(text.find("Rank 0: A fragment was produced for block 4"), std::string::npos)
-        << text;
+      const auto segment =
+        dsm_test::PublishPattern(messenger, store, dsm_test::MakeDirectory(2, 4, 100));
+      const auto nothing = [](dsm::ObjectStore::Worker&, int) {};
+      dsm_test::RunFrame(messenger, store, nothing);
+      const std::uint32_t older = messenger.GetSession() - 1;
+      const int other = 1 - messenger.GetRank();
+      dsm_test::RunFrame(
+        messenger, store,
+        [&](dsm::ObjectStore::Worker& worker, int)
+        {
+          // Wrong bytes, which must not be taken for the block's.
+          EXPECT_EQ(dsm_test::Visit(store, worker, *segment, static_cast<dsm::BlockId>(other)), 0u);
+        },
+        [&]
+        {
+          messenger.Post(other, dsm::MessageKind::BlockRequest,
+            dsm::Encode(Request{ segment->GetNumber() + 77, older, 9 }));
+          std::vector<std::byte> wrong(100);
+          dsm::AttachTail(wrong,
+            Request{ segment->GetNumber(), older, static_cast<dsm::BlockId>(messenger.GetRank()) });
+          messenger.Post(other, dsm::MessageKind::BlockReply, std::move(wrong));
+        });
+      EXPECT_EQ(store.GetCounters().BytesReceived, 100u);
+      EXPECT_EQ(store.GetCounters().BytesSent, 100u);
     });
 }
 

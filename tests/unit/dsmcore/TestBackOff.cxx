@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "DSMCore/BackOff.h"
+
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <thread>
+
+namespace
+{
+
+using Clock = std::chrono::steady_clock;
+
+TEST(BackOff, FirstWaitsAreShortLaterOnesSleep)
+{
+  dsm::BackOff backOff;
+  for (int i = 0; i < 40; ++i)
+  {
+    backOff.Wait();
+  }
+  const auto start = Clock::now();
+  for (int i = 0; i < 10; ++i)
+  {
+    backOff.Wait();
+  }
+  // 20 + 40 + 80 + 160 + 6 x 200 microseconds.
+  EXPECT_GE(Clock::now() - start, std::chrono::microseconds(1500));
+}
+
+TEST(BackOff, WakeUpBeforeASleepEndsIt)
+{
+  dsm::BackOff backOff;
+  for (int i = 0; i < 50; ++i)
+  {
+    backOff.Wait();
+  }
+  int quick = 0;
+  for (int i = 0; i < 20; ++i)
+  {
+    backOff.WakeUp();
+    const auto start = Clock::now();
+    for (int wait = 0; wait < 5; ++wait)
+    {
+      backOff.Wait(); // the first finds the notice and starts over; the others only poll
+    }
+    quick += Clock::now() - start < std::chrono::microseconds(200) ? 1 : 0;
+    for (int wait = 0; wait < 50; ++wait)
+    {
+      backOff.Wait();
+    }
+  }
+  // A busy host may delay some.
+  EXPECT_GE(quick, 10);
+}
+
+} // namespace

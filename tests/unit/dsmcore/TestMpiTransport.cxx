@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "DSMCore/MpiTransport.h"
+
+#include <gtest/gtest.h>
+
+namespace
+{
+
+/// The builtin GUI never initialises MPI; it must get along without.
+TEST(MpiTransport, IsAbsentUnlessMpiWasInitialised)
+{
+  EXPECT_EQ(dsm::MpiTransport::Create(nullptr), nullptr);
+}
+
+} // namespace

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef dsm_BackOff_h
+#define dsm_BackOff_h
+
+#include <atomic>
+#include <chrono>
+#include <condition_variable>
+#include <mutex>
+
+namespace dsm
+{
+
+/// How a thread waits for messages, which nothing announces: it polls a few times (an answer within
+/// the host takes microseconds), then gives its core away between polls, then sleeps, ever longer,
+/// so that it does not starve the tracing threads of a host that it shares.
+class BackOff
+{
+public:
+  /// Something happened: the next wait is short again. The waiting thread.
+  void Reset();
+  /// Nothing happened: waits a little more than the last time, until WakeUp at most. The waiting
+  /// thread.
+  void Wait();
+  /// Any thread: ends the wait, or the next one. Cheap while nobody sleeps.
+  void WakeUp();
+
+private:
+  static constexpr int Polls = 8;
+  static constexpr int Yields = 32;
+  static constexpr std::chrono::microseconds ShortestSleep{ 20 };
+  static constexpr std::chrono::microseconds LongestSleep{ 200 };
+
+  int Idle = 0;
+  std::chrono::microseconds Sleep = ShortestSleep;
+  std::mutex Guard;
+  std::condition_variable Condition;
+  std::atomic<bool> Sleeping{ false };
+  std::atomic<bool> Woken{ false };
+};
+
+} // namespace dsm
+
+#endif

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef dsm_HostMemory_h
+#define dsm_HostMemory_h
+
+#include <cstdint>
+
+namespace dsm
+{
+
+/// What the host can still give without taking it from running programs, swap included; the largest
+/// number where the system does not tell. Linux grants more than it has and later ends a process
+/// that uses it, so whoever wants to fail with a message must ask before.
+std::uint64_t GetAvailableHostMemory();
+
+} // namespace dsm
+
+#endif
