@@ -37,7 +37,6 @@ def main():
     parser.add_argument("--json", default="")
     arguments = parser.parse_args()
     simple.LoadPlugin(arguments.plugin, remote=False, ns=vars(simple))
-    simple.LoadPlugin(arguments.plugin, remote=True, ns=vars(simple))
     kind, array, isovalue, step = KINDS[arguments.kind]
     isovalues = [isovalue + step * (index % 5 - 2) / 5 for index in range(arguments.repeat + 1)]
 

@@ -4,6 +4,8 @@
 
 #include "DSMCore/Counters.h"
 
+#include <glm/vec4.hpp>
+
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -24,6 +26,9 @@ struct Tile
   std::vector<std::uint8_t> Color;
   /// OpenGL window depth in [0, 1]; 1 where nothing was hit.
   std::vector<float> Depth;
+  /// Premultiplied colours, summed over the samples so far, in order: what further samples are
+  /// added to.
+  std::vector<glm::vec4> Sum;
 };
 
 /// What this rank has of a frame: the tiles that it traced. Together the ranks have all of them.

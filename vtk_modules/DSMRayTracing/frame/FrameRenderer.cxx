@@ -131,7 +131,7 @@ Frame FrameRenderer::RenderWith(Store& store, const Scene& scene, const FrameReq
     auto& worker = store.GetWorker(index);
     try
     {
-      const TileTracer<Store> tracer(store, worker, scene, rays);
+      const TileTracer<Store> tracer(store, worker, scene, rays, request);
       while (const auto number = this->Scheduler.Pop())
       {
         const auto tileStart = Clock::now();

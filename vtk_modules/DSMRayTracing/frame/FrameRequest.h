@@ -16,8 +16,11 @@ struct FrameRequest
   /// World to clip space (OpenGL's: -1..1 on each axis after the division by w, near at z = -1) for
   /// the rectangle of Width x Height pixels; column vectors. Perspective, parallel, oblique alike.
   glm::dmat4 WorldToClip{ 1.0 };
-  /// Where two-sided lighting and specular highlights look from is derived from the matrix.
   int TileSize = 16;
+  /// Samples [FirstSample, FirstSample + Samples) of every pixel are averaged. Sample 0 is the
+  /// pixel's centre; the others are spread over the pixel.
+  int FirstSample = 0;
+  int Samples = 1;
 };
 
 } // namespace rt

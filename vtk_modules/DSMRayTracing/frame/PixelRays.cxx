@@ -30,10 +30,10 @@ PixelRays::PixelRays(const FrameRequest& request)
   }
 }
 
-Ray PixelRays::GetRay(int x, int y) const
+Ray PixelRays::GetRay(int x, int y, const glm::dvec2& position) const
 {
-  const double clipX = (x + 0.5) * this->PixelWidth - 1.0;
-  const double clipY = (y + 0.5) * this->PixelHeight - 1.0;
+  const double clipX = (x + position.x) * this->PixelWidth - 1.0;
+  const double clipY = (y + position.y) * this->PixelHeight - 1.0;
   const glm::dvec4 base =
     this->ClipToWorld[0] * clipX + this->ClipToWorld[1] * clipY + this->ClipToWorld[3];
   const glm::dvec4 nearPoint = base - this->ClipToWorld[2];

@@ -6,6 +6,7 @@
 #include "DSMRayTracing/kernel/VolumeTracer.h"
 
 #include <glm/mat4x4.hpp>
+#include <glm/vec2.hpp>
 
 namespace rt
 {
@@ -18,8 +19,9 @@ public:
   /// Throws dsm::Error when the matrix cannot be inverted.
   explicit PixelRays(const FrameRequest& request);
 
-  /// World space, from the near plane (T = 0) to the far plane (T = 1), through the pixel's centre.
-  Ray GetRay(int x, int y) const;
+  /// World space, from the near plane (T = 0) to the far plane (T = 1). `position` in the pixel is in
+  /// [0, 1), its centre being at one half.
+  Ray GetRay(int x, int y, const glm::dvec2& position = glm::dvec2(0.5)) const;
 
   /// OpenGL window depth in [0, 1] of a world point.
   float GetDepth(const glm::dvec3& point) const;

@@ -52,6 +52,8 @@ struct Material
   glm::vec3 DiffuseColor{ 1.0f };
   glm::vec3 SpecularColor{ 1.0f };
   float Opacity = 1.0f;
+  /// Part of the light that is mirrored; the rest is the surface's own colour.
+  float Reflectivity = 0.0f;
   /// Off: the surface shows its colour as it is.
   bool Lighting = true;
 };
@@ -71,6 +73,8 @@ struct IsosurfaceObject
   std::shared_ptr<const VoxelField> Field;
   /// Ascending, finite, no duplicates.
   std::vector<double> Isovalues;
+  /// One for each isovalue, times the material's; empty: 1.
+  std::vector<float> Opacities;
   /// May be null: then the material's diffuse colour is used. Same lattice points as Field.
   std::shared_ptr<const VoxelField> ColorField;
   ColorMap Colors;
@@ -98,11 +102,29 @@ struct Light
   glm::vec3 Attenuation{ 1.0f, 0.0f, 0.0f };
 };
 
+/// What is done beyond the first hit of each ray.
+struct LightTransport
+{
+  bool Shadows = false;
+  /// Apparent radius of every light: the tangent of half the angle that it fills as seen from a
+  /// surface; 0 gives hard shadows.
+  double LightRadius = 0.0;
+  /// Rays for each hit and sample of the pixel; 0 switches ambient occlusion off.
+  int AmbientOcclusionSamples = 0;
+  /// World units; what is farther away does not occlude.
+  double AmbientOcclusionDistance = 0.0;
+  /// How often a ray may be mirrored.
+  int MaxBounces = 1;
+  /// What a mirrored ray sees where it meets nothing.
+  glm::vec3 Background{ 0.0f };
+};
+
 /// All that one frame shows.
 struct Scene
 {
   std::vector<IsosurfaceObject> Isosurfaces;
   std::vector<Light> Lights;
+  LightTransport Transport;
 };
 
 } // namespace rt

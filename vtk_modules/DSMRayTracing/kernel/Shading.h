@@ -4,25 +4,86 @@
 
 #include "DSMRayTracing/frame/Scene.h"
 
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
 #include <glm/vec3.hpp>
 
+#include <algorithm>
+#include <cmath>
 #include <vector>
 
 namespace rt
 {
+
+/// What of a light arrives at a point, were nothing in between.
+struct Incidence
+{
+  glm::dvec3 Direction{ 0.0 }; ///< unit, from the light to the point
+  double Distance = 0.0;       ///< to the light; infinite for a directional one
+  double Attenuation = 0.0;
+};
+
+/// World space.
+Incidence GetIncidence(const Light& light, const glm::dvec3& point);
+
+/// A point of a surface, and from where it is looked at. World space; vectors are unit.
+struct ShadingPoint
+{
+  glm::dvec3 Position{ 0.0 };
+  glm::dvec3 Normal{ 0.0 };
+  glm::dvec3 ToViewer{ 0.0 };
+  /// Takes the place of the diffuse colour, and, as in VTK, when it comes from an array also of the
+  /// ambient one.
+  glm::vec3 Color{ 1.0f };
+  bool ColorIsFromArray = false;
+  /// Part of the surroundings that the point sees; dims what comes from all sides, and the diffuse
+  /// light as ParaView's own ambient occlusion does.
+  double AmbientVisibility = 1.0;
+};
 
 /// The colour, in [0, 1], that a surface sends to the viewer; the formula of VTK's OpenGL polydata
 /// mapper (Phong, for any number of lights):
 ///
 ///   ambient + sum over lights of attenuation * light * (diffuse * N.L + specular * (R.V)^power)
 ///
-/// World space. `normal` and `toViewer` are unit; the surface is lit on both sides, so the normal
-/// is turned towards the viewer first. `surfaceColor` takes the place of the diffuse colour, and, as
-/// in VTK, when it comes from an array (`fromArray`) also of the ambient one. Without lighting, or
-/// without a light, the surface shows ambient + diffuse.
-glm::vec3 Shade(const std::vector<Light>& lights, const Material& surface, const glm::dvec3& point,
-  const glm::dvec3& normal, const glm::dvec3& toViewer, const glm::vec3& surfaceColor,
-  bool fromArray);
+/// The surface is lit on both sides, so the normal is turned towards the viewer first. Without
+/// lighting, or without a light, the surface shows ambient + diffuse. `visibility(light, incidence)`
+/// is called for lights that face the surface: the part of each colour that arrives (glm::dvec3).
+template <class Visibility>
+glm::vec3 Shade(const std::vector<Light>& lights, const Material& surface,
+  const ShadingPoint& point, Visibility&& visibility)
+{
+  const glm::vec3 ambientColor = point.ColorIsFromArray ? point.Color : surface.AmbientColor;
+  glm::dvec3 color = point.AmbientVisibility * glm::dvec3(surface.Ambient * ambientColor);
+  const glm::dvec3 diffuseColor =
+    point.AmbientVisibility * glm::dvec3(surface.Diffuse * point.Color);
+  if (!surface.Lighting || lights.empty())
+  {
+    return glm::clamp(glm::vec3(color + diffuseColor), 0.0f, 1.0f);
+  }
+  const glm::dvec3 specularColor = surface.Specular * surface.SpecularColor;
+  const glm::dvec3 facing =
+    glm::dot(point.Normal, point.ToViewer) < 0.0 ? -point.Normal : point.Normal;
+  for (const Light& light : lights)
+  {
+    const Incidence incidence = GetIncidence(light, point.Position);
+    const double cosine = -glm::dot(facing, incidence.Direction);
+    if (!(cosine > 0.0 && incidence.Attenuation > 0.0))
+    {
+      continue;
+    }
+    const glm::dvec3 arriving =
+      incidence.Attenuation * glm::dvec3(light.Color) * visibility(light, incidence);
+    color += arriving * diffuseColor * cosine;
+    if (surface.Specular > 0.0f)
+    {
+      const glm::dvec3 mirrored = glm::reflect(incidence.Direction, facing);
+      const double highlight = std::max(0.0, glm::dot(mirrored, point.ToViewer));
+      color += arriving * specularColor * std::pow(highlight, surface.SpecularPower);
+    }
+  }
+  return glm::clamp(glm::vec3(color), 0.0f, 1.0f);
+}
 
 } // namespace rt
 

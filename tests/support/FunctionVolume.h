@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef FunctionVolume_h
+#define FunctionVolume_h
+
+#include "DSMCore/Messenger.h"
+#include "DSMCore/ObjectStore.h"
+#include "DSMRayTracing/brick/VoxelBrickBuilder.h"
+#include "DSMRayTracing/frame/Scene.h"
+
+#include <cstring>
+#include <functional>
+#include <memory>
+
+/// A volume of doubles that samples a function of the world position over [-1, 1]^3.
+class FunctionVolume final : public rt::VoxelSource
+{
+public:
+  using Function = std::function<double(const glm::dvec3&)>;
+
+  FunctionVolume(std::int64_t points, Function function)
+    : Points(points)
+    , Evaluate(std::move(function))
+  {
+  }
+
+  rt::Box GetCells() const override { return { rt::Index3(0), rt::Index3(this->Points - 1) }; }
+
+  void ReadSamples(const rt::Box& points, std::byte* out) const override
+  {
+    for (auto k = points.Min.z; k < points.Max.z; ++k)
+    {
+      for (auto j = points.Min.y; j < points.Max.y; ++j)
+      {
+        for (auto i = points.Min.x; i < points.Max.x; ++i)
+        {
+          const double value =
+            this->Evaluate(glm::dvec3(GetIndexToWorld(this->Points) * glm::dvec4(i, j, k, 1.0)));
+          std::memcpy(out, &value, sizeof(value));
+          out += sizeof(value);
+        }
+      }
+    }
+  }
+
+  static glm::dmat4 GetIndexToWorld(std::int64_t points)
+  {
+    const double spacing = 2.0 / static_cast<double>(points - 1);
+    glm::dmat4 matrix(1.0);
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      matrix[axis][axis] = spacing;
+      matrix[3][axis] = -1.0;
+    }
+    return matrix;
+  }
+
+  /// The function's surface at zero, published by the only rank.
+  static rt::IsosurfaceObject Publish(
+    std::int64_t points, Function function, dsm::Messenger& messenger, dsm::ObjectStore& store)
+  {
+    const rt::BrickLattice lattice(rt::Index3(points), rt::ScalarType::Float64, false, 16);
+    rt::VoxelFragmentSource source(
+      lattice, { std::make_shared<FunctionVolume>(points, std::move(function)) });
+    rt::VoxelBrickSink sink(lattice);
+    auto field = std::make_shared<rt::VoxelField>();
+    field->Lattice = lattice;
+    field->Segment = store.Publish("function", lattice.CreateDirectory(1), source, sink);
+    field->Hierarchy = rt::MacrocellHierarchy(lattice, *field->Segment, messenger);
+    rt::IsosurfaceObject object;
+    object.Field = field;
+    object.SetIndexToWorld(GetIndexToWorld(points));
+    object.Isovalues = { 0.0 };
+    return object;
+  }
+
+private:
+  std::int64_t Points;
+  Function Evaluate;
+};
+
+#endif

@@ -1,0 +1,268 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Shadows, occlusion, transparency and mirrors against what analysis says of spheres and planes.
+#include "tests/support/FunctionVolume.h"
+
+#include "DSMCore/LoopbackTransport.h"
+#include "DSMRayTracing/frame/FrameGather.h"
+#include "DSMRayTracing/frame/FrameRenderer.h"
+
+#include <glm/gtc/constants.hpp>
+#include <glm/gtc/matrix_transform.hpp>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace
+{
+
+constexpr int Size = 96;
+/// The camera looks down the z axis, in parallel, at [-1, 1]^2.
+const glm::dmat4 Parallel = glm::ortho(-1.0, 1.0, -1.0, 1.0, 0.0, 10.0) *
+  glm::lookAt(glm::dvec3(0.0, 0.0, 5.0), glm::dvec3(0.0), glm::dvec3(0.0, 1.0, 0.0));
+
+constexpr double BallRadius = 0.25;
+const glm::dvec3 BallCenter(0.1, -0.05, 0.3);
+constexpr double FloorHeight = -0.6;
+
+double GetBall(const glm::dvec3& p)
+{
+  return glm::distance(p, BallCenter) - BallRadius;
+}
+
+double GetBallAboveFloor(const glm::dvec3& p)
+{
+  return std::min(GetBall(p), p.z - FloorHeight);
+}
+
+class LightTransportTest : public testing::Test
+{
+protected:
+  rt::IsosurfaceObject Publish(const FunctionVolume::Function& function, int points = 65)
+  {
+    return FunctionVolume::Publish(points, function, this->Messenger, this->Store);
+  }
+
+  rt::Picture Trace(const rt::Scene& scene, int samples = 1)
+  {
+    rt::FrameRequest request;
+    request.Width = Size;
+    request.Height = Size;
+    request.WorldToClip = Parallel;
+    request.Samples = samples;
+    rt::FrameRenderer renderer(this->Messenger);
+    return rt::GatherFrame(this->Messenger, renderer.Render(this->Store, scene, request));
+  }
+
+  static glm::dvec2 GetPlace(int x, int y)
+  {
+    return { (x + 0.5) * 2.0 / Size - 1.0, (y + 0.5) * 2.0 / Size - 1.0 };
+  }
+
+  static int GetRed(const rt::Picture& picture, int x, int y)
+  {
+    return picture.Color[4 * (static_cast<std::size_t>(y) * Size + x)];
+  }
+
+  dsm::Messenger Messenger{ std::move(dsm::LoopbackTransport::CreateGroup(1).front()) };
+  dsm::ObjectStore Store{ Messenger, { std::size_t(1) << 20, 2 } };
+};
+
+rt::Light GetSlantedLight()
+{
+  rt::Light light;
+  light.Direction = glm::normalize(glm::dvec3(0.4, 0.3, -1.0));
+  return light;
+}
+
+} // namespace
+
+TEST_F(LightTransportTest, HardShadowOfABallOnAFloor)
+{
+  rt::Scene scene;
+  scene.Isosurfaces = { this->Publish(GetBallAboveFloor) };
+  scene.Lights = { GetSlantedLight() };
+  scene.Transport.Shadows = true;
+  const rt::Picture picture = this->Trace(scene);
+  const glm::dvec3 toLight = -scene.Lights.front().Direction;
+  int wrong = 0;
+  int dark = 0;
+  for (int y = 0; y < Size; ++y)
+  {
+    for (int x = 0; x < Size; ++x)
+    {
+      const glm::dvec2 place = GetPlace(x, y);
+      if (glm::distance(place, glm::dvec2(BallCenter)) < BallRadius + 0.05)
+      {
+        continue; // the ball itself
+      }
+      const glm::dvec3 toBall = BallCenter - glm::dvec3(place, FloorHeight);
+      const double miss = glm::length(toBall - glm::dot(toBall, toLight) * toLight);
+      const bool shadowed = miss < BallRadius;
+      dark += shadowed;
+      wrong += (GetRed(picture, x, y) == 0) != shadowed && std::fabs(miss - BallRadius) > 0.02;
+    }
+  }
+  EXPECT_GT(dark, 100);
+  EXPECT_EQ(wrong, 0);
+}
+
+TEST_F(LightTransportTest, WithoutShadowsTheFloorIsLitAllOver)
+{
+  rt::Scene scene;
+  scene.Isosurfaces = { this->Publish(GetBallAboveFloor) };
+  scene.Lights = { GetSlantedLight() };
+  const rt::Picture picture = this->Trace(scene);
+  const int expected = static_cast<int>(std::lround(255.0 * -scene.Lights.front().Direction.z));
+  EXPECT_NEAR(GetRed(picture, 5, 5), expected, 1);
+  EXPECT_NEAR(GetRed(picture, Size - 5, 40), expected, 1);
+}
+
+TEST_F(LightTransportTest, SoftShadowHasAPenumbraAroundTheHardOne)
+{
+  rt::Scene scene;
+  scene.Isosurfaces = { this->Publish(GetBallAboveFloor) };
+  rt::Light above;
+  scene.Lights = { above }; // straight down, so the camera sees only the rim of the shadow
+  scene.Transport.Shadows = true;
+  scene.Transport.LightRadius = 0.3;
+  const rt::Picture picture = this->Trace(scene, 64);
+  // A light of tangent 0.3 and a ball 0.9 above the floor: half of the light at the hard rim, all
+  // of it beyond the rim by 0.3 * 0.9.
+  const double fullyLit = BallRadius + 0.3 * 0.9 * 1.2;
+  for (int x = 0; x < Size; ++x)
+  {
+    const int y = Size / 2;
+    const double distance = glm::distance(GetPlace(x, y), glm::dvec2(BallCenter));
+    if (distance > fullyLit)
+    {
+      EXPECT_EQ(GetRed(picture, x, y), 255) << distance;
+    }
+    else if (distance > BallRadius + 0.03 && distance < BallRadius + 0.1)
+    {
+      EXPECT_GT(GetRed(picture, x, y), 60) << distance;
+      EXPECT_LT(GetRed(picture, x, y), 245) << distance;
+    }
+  }
+}
+
+TEST_F(LightTransportTest, ShadowOfATranslucentBallIsDimmedAndTinted)
+{
+  rt::Scene scene;
+  scene.Isosurfaces = { this->Publish(GetBall),
+    this->Publish([](const glm::dvec3& p) { return p.z - FloorHeight; }) };
+  scene.Isosurfaces[0].Surface.Opacity = 0.5f;
+  scene.Isosurfaces[0].Surface.DiffuseColor = { 1.0f, 0.0f, 0.0f };
+  scene.Lights = { GetSlantedLight() };
+  scene.Transport.Shadows = true;
+  const rt::Picture picture = this->Trace(scene);
+  // Where the light through the ball's centre meets the floor.
+  const glm::dvec3 way = scene.Lights.front().Direction;
+  const glm::dvec3 place = BallCenter + way * ((FloorHeight - BallCenter.z) / way.z);
+  const auto pixel = static_cast<std::size_t>(std::floor((place.y + 1.0) * Size / 2.0)) * Size +
+    static_cast<std::size_t>(std::floor((place.x + 1.0) * Size / 2.0));
+  // Twice through a surface of opacity one half: a quarter of the red light, a sixteenth of the rest.
+  const double full = 255.0 * -way.z;
+  EXPECT_NEAR(picture.Color[4 * pixel], full / 4.0, 2.0);
+  EXPECT_NEAR(picture.Color[4 * pixel + 1], full / 16.0, 2.0);
+}
+
+TEST_F(LightTransportTest, OcclusionOfACornerIsThatOfBruteForce)
+{
+  // A floor, and a wall on it that ends where the volume ends.
+  rt::Scene scene;
+  scene.Isosurfaces = { this->Publish(
+    [](const glm::dvec3& p) { return std::min(p.z - FloorHeight, p.x + 0.5); }) };
+  scene.Lights = { rt::Light() };
+  scene.Transport.AmbientOcclusionSamples = 4;
+  scene.Transport.AmbientOcclusionDistance = 100.0;
+  const rt::Picture picture = this->Trace(scene, 64);
+  const auto getVisible = [](const glm::dvec2& place)
+  {
+    constexpr int Steps = 128;
+    int visible = 0;
+    for (int step = 0; step < Steps * Steps; ++step)
+    {
+      const double square = (step % Steps + 0.5) / Steps;
+      const double angle = glm::two_pi<double>() * (step / Steps + 0.5) / Steps;
+      const glm::dvec3 way(std::sqrt(square) * std::cos(angle), std::sqrt(square) * std::sin(angle),
+        std::sqrt(1.0 - square));
+      const double t = (-0.5 - place.x) / way.x;
+      visible +=
+        !(t > 0.0 && std::fabs(place.y + t * way.y) < 1.0 && FloorHeight + t * way.z < 1.0);
+    }
+    return static_cast<double>(visible) / (Steps * Steps);
+  };
+  for (const int x : { Size / 4 + 3, Size / 2, 3 * Size / 4, Size - 8 })
+  {
+    double traced = 0.0;
+    double expected = 0.0;
+    for (int y = 0; y < Size; ++y)
+    {
+      traced += GetRed(picture, x, y) / 255.0;
+      expected += getVisible(GetPlace(x, y));
+    }
+    EXPECT_NEAR(traced / Size, expected / Size, 0.01) << x;
+  }
+}
+
+TEST_F(LightTransportTest, OcclusionEndsAtItsDistance)
+{
+  rt::Scene scene;
+  scene.Isosurfaces = { this->Publish(
+    [](const glm::dvec3& p) { return std::min(p.z - FloorHeight, p.x + 0.5); }) };
+  scene.Lights = { rt::Light() };
+  scene.Transport.AmbientOcclusionSamples = 8;
+  scene.Transport.AmbientOcclusionDistance = 0.2;
+  const rt::Picture picture = this->Trace(scene, 8);
+  EXPECT_EQ(GetRed(picture, 3 * Size / 4, Size / 2), 255);
+  EXPECT_LT(GetRed(picture, Size / 4 + 2, Size / 2), 230);
+}
+
+TEST_F(LightTransportTest, NestOfTranslucentSpheres)
+{
+  const auto distance = [](const glm::dvec3& p) { return glm::length(p); };
+  rt::Scene scene;
+  scene.Isosurfaces = { this->Publish(distance) };
+  rt::IsosurfaceObject& nest = scene.Isosurfaces.front();
+  nest.Isovalues = { 0.2, 0.5, 0.8 };
+  nest.Opacities = { 1.0f, 0.5f, 0.25f };
+  nest.Surface.Lighting = false;
+  const rt::Picture picture = this->Trace(scene);
+  const auto getAlpha = [&](double radius)
+  {
+    const int x = static_cast<int>((radius + 1.0) * Size / 2.0);
+    return picture.Color[4 * (static_cast<std::size_t>(Size / 2) * Size + x) + 3] / 255.0;
+  };
+  EXPECT_NEAR(getAlpha(0.9), 0.0, 0.005);
+  EXPECT_NEAR(getAlpha(0.65), 1.0 - 0.75 * 0.75, 0.005);
+  EXPECT_NEAR(getAlpha(0.35), 1.0 - 0.75 * 0.5 * 0.5 * 0.75, 0.005);
+  EXPECT_NEAR(getAlpha(0.0), 1.0, 0.005);
+}
+
+TEST_F(LightTransportTest, MirrorShowsTheBackground)
+{
+  rt::Scene scene;
+  scene.Isosurfaces = { this->Publish([](const glm::dvec3& p) { return p.z; }) };
+  scene.Isosurfaces.front().Surface.Reflectivity = 0.75f;
+  scene.Isosurfaces.front().Surface.Lighting = false;
+  scene.Isosurfaces.front().Surface.DiffuseColor = glm::vec3(0.0f);
+  scene.Transport.Background = { 0.2f, 0.4f, 0.8f };
+  const rt::Picture picture = this->Trace(scene);
+  EXPECT_NEAR(GetRed(picture, 40, 50), 255.0 * 0.75 * 0.2, 1.0);
+  scene.Transport.MaxBounces = 0;
+  EXPECT_EQ(GetRed(this->Trace(scene), 40, 50), 0);
+}
+
+TEST_F(LightTransportTest, MirrorsNeverBrightenAWhiteScene)
+{
+  rt::Scene scene;
+  scene.Isosurfaces = { this->Publish(GetBallAboveFloor) };
+  scene.Isosurfaces.front().Surface.Reflectivity = 0.5f;
+  scene.Isosurfaces.front().Surface.Lighting = false;
+  scene.Transport.Background = glm::vec3(1.0f);
+  scene.Transport.MaxBounces = 8;
+  for (const std::uint8_t channel : this->Trace(scene).Color)
+  {
+    ASSERT_EQ(channel, 255);
+  }
+}

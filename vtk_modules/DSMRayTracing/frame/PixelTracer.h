@@ -1,0 +1,185 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef rt_PixelTracer_h
+#define rt_PixelTracer_h
+
+#include "DSMRayTracing/frame/PixelRays.h"
+#include "DSMRayTracing/frame/SampleSequence.h"
+#include "DSMRayTracing/frame/SceneTracer.h"
+#include "DSMRayTracing/kernel/Shading.h"
+
+#include <glm/geometric.hpp>
+#include <glm/gtc/constants.hpp>
+#include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace rt
+{
+
+/// Colour, premultiplied, and window depth of what a sample of a pixel shows.
+struct PixelSample
+{
+  glm::vec4 Color{ 0.0f };
+  float Depth = 1.0f;
+};
+
+/// Follows the light of one sample of a pixel: what lies behind translucent surfaces, shadows,
+/// ambient occlusion, mirrors. A sample depends on the scene, the camera, the pixel and the sample's
+/// number only.
+template <class Store>
+class PixelTracer
+{
+public:
+  PixelTracer(
+    Store& store, typename Store::Worker& worker, const Scene& scene, const PixelRays& rays)
+    : Surfaces(store, worker, scene)
+    , World(scene)
+    , Rays(rays)
+  {
+  }
+
+  PixelSample Trace(int x, int y, int sample) const
+  {
+    SampleSequence random(x, y, sample);
+    PixelSample result;
+    const Ray ray = this->Rays.GetRay(x, y, random.GetPositionInPixel());
+    result.Color = this->Follow(ray, this->World.Transport.MaxBounces, random, &result.Depth);
+    return result;
+  }
+
+private:
+  /// What lies behind contributes less than half a step of an 8-bit channel.
+  static constexpr float OpaqueEnough = 1.0f - 0.5f / 255.0f;
+
+  /// Front to back. `depth`, where given, is set to the first surface's.
+  glm::vec4 Follow(Ray ray, int bounces, SampleSequence& random, float* depth) const
+  {
+    const glm::dvec3 toViewer = -glm::normalize(ray.Direction);
+    glm::vec4 color(0.0f);
+    SurfacePoint point;
+    while (color.w < OpaqueEnough && this->Surfaces.Intersect(ray, point))
+    {
+      const float weight = (1.0f - color.w) * point.Color.w;
+      if (weight > 0.0f)
+      {
+        color += glm::vec4(weight * this->ShadePoint(point, toViewer, bounces, random), weight);
+        if (depth)
+        {
+          *depth = this->Rays.GetDepth(point.Position);
+          depth = nullptr;
+        }
+      }
+      ray.Min = point.T + point.Clearance / glm::length(ray.Direction);
+    }
+    return color;
+  }
+
+  glm::vec3 ShadePoint(const SurfacePoint& point, const glm::dvec3& toViewer, int bounces,
+    SampleSequence& random) const
+  {
+    ShadingPoint shading;
+    shading.Position = point.Position;
+    shading.Normal = glm::dot(point.Normal, toViewer) < 0.0 ? -point.Normal : point.Normal;
+    shading.ToViewer = toViewer;
+    shading.Color = glm::vec3(point.Color);
+    shading.ColorIsFromArray = point.ColorIsFromArray;
+    shading.AmbientVisibility = this->GetAmbientVisibility(point, shading.Normal, random);
+    const glm::vec3 own = Shade(this->World.Lights, *point.Surface, shading,
+      [&](const Light& light, const Incidence& incidence)
+      { return this->GetLightVisibility(point, light, incidence, random); });
+    const float reflectivity = point.Surface->Reflectivity;
+    if (reflectivity <= 0.0f || bounces <= 0)
+    {
+      return own;
+    }
+    Ray mirrored;
+    mirrored.Origin = point.Position;
+    mirrored.Direction = glm::reflect(-toViewer, shading.Normal);
+    mirrored.Min = point.Clearance;
+    mirrored.Max = std::numeric_limits<double>::infinity();
+    const glm::vec4 seen = this->Follow(mirrored, bounces - 1, random, nullptr);
+    const glm::vec3 reflection =
+      glm::vec3(seen) + (1.0f - seen.w) * this->World.Transport.Background;
+    return (1.0f - reflectivity) * own + reflectivity * reflection;
+  }
+
+  glm::dvec3 GetLightVisibility(const SurfacePoint& point, const Light&, const Incidence& incidence,
+    SampleSequence& random) const
+  {
+    const LightTransport& transport = this->World.Transport;
+    if (!transport.Shadows)
+    {
+      return glm::dvec3(1.0);
+    }
+    Ray ray;
+    ray.Origin = point.Position;
+    ray.Direction = -incidence.Direction;
+    if (transport.LightRadius > 0.0)
+    {
+      const Frame3 frame(ray.Direction);
+      const double radius = transport.LightRadius * std::sqrt(random.Next());
+      const double angle = glm::two_pi<double>() * random.Next();
+      ray.Direction = glm::normalize(ray.Direction + radius * std::cos(angle) * frame.Tangent +
+        radius * std::sin(angle) * frame.Bitangent);
+    }
+    ray.Min = point.Clearance;
+    ray.Max = incidence.Distance;
+    return this->Surfaces.GetTransmittance(ray);
+  }
+
+  /// The part of the hemisphere, weighted by the cosine, in which nothing is near.
+  double GetAmbientVisibility(
+    const SurfacePoint& point, const glm::dvec3& normal, SampleSequence& random) const
+  {
+    const LightTransport& transport = this->World.Transport;
+    if (transport.AmbientOcclusionSamples <= 0)
+    {
+      return 1.0;
+    }
+    const Frame3 frame(normal);
+    double visible = 0.0;
+    for (int sample = 0; sample < transport.AmbientOcclusionSamples; ++sample)
+    {
+      // Uniform on the disc, then up to the sphere: the density is the cosine over pi.
+      const double square = random.Next();
+      const double radius = std::sqrt(square);
+      const double angle = glm::two_pi<double>() * random.Next();
+      Ray ray;
+      ray.Origin = point.Position;
+      ray.Direction = radius * std::cos(angle) * frame.Tangent +
+        radius * std::sin(angle) * frame.Bitangent + std::sqrt(1.0 - square) * normal;
+      ray.Min = point.Clearance;
+      ray.Max = transport.AmbientOcclusionDistance;
+      const glm::dvec3 transmittance = this->Surfaces.GetTransmittance(ray);
+      visible += (transmittance.x + transmittance.y + transmittance.z) / 3.0;
+    }
+    return visible / transport.AmbientOcclusionSamples;
+  }
+
+  /// Two directions at right angles to a unit one, and to each other (Duff et al., Building an
+  /// Orthonormal Basis, Revisited, JCGT 2017).
+  struct Frame3
+  {
+    explicit Frame3(const glm::dvec3& unit)
+    {
+      const double sign = std::copysign(1.0, unit.z);
+      const double a = -1.0 / (sign + unit.z);
+      const double b = unit.x * unit.y * a;
+      this->Tangent = { 1.0 + sign * unit.x * unit.x * a, sign * b, -sign * unit.x };
+      this->Bitangent = { b, sign + unit.y * unit.y * a, -unit.y };
+    }
+    glm::dvec3 Tangent;
+    glm::dvec3 Bitangent;
+  };
+
+  SceneTracer<Store> Surfaces;
+  const Scene& World;
+  const PixelRays& Rays;
+};
+
+} // namespace rt
+
+#endif

@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef rt_SceneTracer_h
+#define rt_SceneTracer_h
+
+#include "DSMRayTracing/frame/Scene.h"
+#include "DSMRayTracing/kernel/VolumeTracer.h"
+
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
+
+#include <algorithm>
+
+namespace rt
+{
+
+/// Where a ray meets the scene first, and what is there.
+struct SurfacePoint
+{
+  double T = 0.0;
+  glm::dvec3 Position{ 0.0 };
+  glm::dvec3 Normal{ 0.0 }; ///< unit, world
+  /// Of the surface itself, before light; straight (not premultiplied), alpha is opacity.
+  glm::vec4 Color{ 1.0f };
+  bool ColorIsFromArray = false;
+  const Material* Surface = nullptr;
+  /// World length that is more than the error of the hit, and less than the distance of two
+  /// surfaces that can be told apart: where rays that leave the surface begin.
+  double Clearance = 0.0;
+};
+
+/// Finds what a ray meets among all objects of a scene. One for each worker.
+template <class Store>
+class SceneTracer
+{
+public:
+  SceneTracer(Store& store, typename Store::Worker& worker, const Scene& scene)
+    : Volumes(store, worker)
+    , World(scene)
+  {
+  }
+
+  /// The first surface in [ray.Min, ray.Max]; of equally near ones that of the first object.
+  bool Intersect(Ray ray, SurfacePoint& point) const
+  {
+    SurfaceHit nearest;
+    const IsosurfaceObject* object = nullptr;
+    for (const IsosurfaceObject& candidate : this->World.Isosurfaces)
+    {
+      SurfaceHit hit;
+      if (candidate.Surface.Opacity > 0.0f && this->Volumes.Intersect(candidate, ray, hit) &&
+        (!object || hit.T < nearest.T))
+      {
+        nearest = hit;
+        object = &candidate;
+        ray.Max = hit.T;
+      }
+    }
+    if (!object)
+    {
+      return false;
+    }
+    this->Describe(*object, nearest, ray, point);
+    return true;
+  }
+
+  /// The part of each colour of light that gets along the ray: translucent surfaces dim and tint it.
+  glm::dvec3 GetTransmittance(Ray ray) const
+  {
+    glm::dvec3 transmittance(1.0);
+    SurfacePoint point;
+    while (Largest(transmittance) > Dark && this->Intersect(ray, point))
+    {
+      const double opacity = point.Color.w;
+      const glm::dvec3 tint = glm::mix(glm::dvec3(1.0), glm::dvec3(point.Color), opacity);
+      transmittance *= (1.0 - opacity) * tint;
+      ray.Min = point.T + point.Clearance / glm::length(ray.Direction);
+    }
+    return Largest(transmittance) > Dark ? transmittance : glm::dvec3(0.0);
+  }
+
+private:
+  /// Less than half a step of an 8-bit channel.
+  static constexpr double Dark = 0.5 / 255.0;
+  /// Of the shortest edge of a cell. Roots are found to about 1e-12 of a cell.
+  static constexpr double ClearancePart = 1e-4;
+
+  static double Largest(const glm::dvec3& color) { return std::max({ color.x, color.y, color.z }); }
+
+  void Describe(const IsosurfaceObject& object, const SurfaceHit& hit, const Ray& ray,
+    SurfacePoint& point) const
+  {
+    point.T = hit.T;
+    point.Position = ray.Origin + hit.T * ray.Direction;
+    point.Normal = hit.Normal;
+    point.Surface = &object.Surface;
+    point.ColorIsFromArray = object.ColorField != nullptr;
+    point.Color = point.ColorIsFromArray
+      ? object.Colors.Map(this->Volumes.Sample(*object.ColorField, hit.IndexPoint))
+      : glm::vec4(object.Surface.DiffuseColor, 1.0f);
+    point.Color.w *= object.Surface.Opacity;
+    if (!object.Opacities.empty())
+    {
+      point.Color.w *= object.Opacities[hit.Isovalue];
+    }
+    double shortest = glm::length(glm::dvec3(object.IndexToWorld[0]));
+    shortest = std::min(shortest, glm::length(glm::dvec3(object.IndexToWorld[1])));
+    shortest = std::min(shortest, glm::length(glm::dvec3(object.IndexToWorld[2])));
+    point.Clearance = ClearancePart * shortest;
+  }
+
+  VolumeTracer<Store> Volumes;
+  const Scene& World;
+};
+
+} // namespace rt
+
+#endif
