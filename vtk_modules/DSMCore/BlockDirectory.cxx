@@ -31,4 +31,15 @@ std::uint64_t BlockDirectory::GetTotalBytes() const
   return std::accumulate(this->Bytes.begin(), this->Bytes.end(), std::uint64_t(0));
 }
 
+std::uint64_t BlockDirectory::GetFingerprint() const
+{
+  std::uint64_t hash = 0xcbf29ce484222325u; // FNV-1a
+  for (BlockId id = 0; id < this->GetCount(); ++id)
+  {
+    hash = (hash ^ this->GetBytes(id)) * 0x100000001b3u;
+    hash = (hash ^ static_cast<std::uint64_t>(this->GetOwner(id))) * 0x100000001b3u;
+  }
+  return hash;
+}
+
 } // namespace dsm

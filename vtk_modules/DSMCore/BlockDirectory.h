@@ -29,6 +29,8 @@ public:
   /// Sum over the blocks of one owner, each rounded up to BlockAlignment.
   std::uint64_t GetResidentBytes(int owner) const;
   std::uint64_t GetTotalBytes() const;
+  /// Equal directories have equal ones.
+  std::uint64_t GetFingerprint() const;
 
 private:
   std::vector<std::uint32_t> Bytes;

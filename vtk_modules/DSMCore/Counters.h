@@ -36,11 +36,17 @@ struct StoreCounters
   std::uint64_t BytesReceived = 0;
   std::uint64_t BytesSent = 0;
   std::uint64_t ResidentBytes = 0; ///< blocks this rank owns
+  /// Blocks of other ranks of the host that are read in place; they take no memory of this rank.
+  std::uint64_t SharedBytes = 0;
+  /// Copies for good of other ranks' blocks, in this rank's memory (ReplicatedStore).
+  std::uint64_t ReplicaBytes = 0;
   /// Memory that remote blocks take now: those held, those evicted whose memory is not free yet, and
   /// the room set aside for those requested. Never more than CacheCapacity.
   std::uint64_t CachedBytes = 0;
   std::uint64_t PeakCachedBytes = 0; ///< the most during the frame
   std::uint64_t CacheCapacity = 0;
+  /// What the rank may take for all of these (see BlockStore); 0 where nobody said.
+  std::uint64_t MemoryBudget = 0;
 };
 
 } // namespace dsm

@@ -164,7 +164,7 @@ public:
   std::uint32_t Session = 0;
   std::vector<Message> Received; ///< of the collective under way
   bool Changed = false;          ///< whether a message in the inbox may have become due
-  int RanksOnHost = 0;
+  std::vector<int> Hosts;        ///< empty: not compared yet
   BackOff Idle;
 
 private:
@@ -261,15 +261,25 @@ int Messenger::GetSize() const
 
 int Messenger::GetRanksOnHost()
 {
-  if (this->Self->RanksOnHost == 0)
+  const std::vector<int>& hosts = this->GetHosts();
+  const int mine = hosts[static_cast<std::size_t>(this->GetRank())];
+  return static_cast<int>(std::count(hosts.begin(), hosts.end(), mine));
+}
+
+const std::vector<int>& Messenger::GetHosts()
+{
+  if (this->Self->Hosts.empty())
   {
     const std::string mine = GetHostIdentity();
     const auto* bytes = reinterpret_cast<const std::byte*>(mine.data());
     const auto all = this->AllGather(std::vector<std::byte>(bytes, bytes + mine.size()));
-    this->Self->RanksOnHost =
-      static_cast<int>(std::count(all.begin(), all.end(), all[this->GetRank()]));
+    for (const auto& identity : all)
+    {
+      this->Self->Hosts.push_back(
+        static_cast<int>(std::find(all.begin(), all.end(), identity) - all.begin()));
+    }
   }
-  return this->Self->RanksOnHost;
+  return this->Self->Hosts;
 }
 
 std::uint32_t Messenger::BeginSession()

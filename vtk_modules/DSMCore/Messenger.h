@@ -44,6 +44,9 @@ public:
   /// host names and boot identities; later ones answer from memory.
   int GetRanksOnHost();
 
+  /// For every rank the lowest rank of its host. Collective like GetRanksOnHost.
+  const std::vector<int>& GetHosts();
+
   /// Enters the next collective step; the next Progress delivers what arrived early for it.
   /// Collective in order; does not wait. Returns the session's number.
   std::uint32_t BeginSession();

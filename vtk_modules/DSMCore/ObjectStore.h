@@ -3,10 +3,10 @@
 #define dsm_ObjectStore_h
 
 #include "DSMCore/Block.h"
-#include "DSMCore/BlockArena.h"
 #include "DSMCore/BlockDirectory.h"
 #include "DSMCore/BlockLine.h"
 #include "DSMCore/BlockSegment.h"
+#include "DSMCore/BlockTable.h"
 #include "DSMCore/Counters.h"
 #include "DSMCore/Messenger.h"
 #include "DSMCore/Publication.h"
@@ -42,9 +42,12 @@ public:
     std::size_t CacheBytes = std::size_t(64) << 20;
     /// Number of tracing threads.
     int Workers = 1;
+    /// Ranks of one host read one another's blocks in place: such accesses are hits, and take
+    /// nothing of the cache. For what is published from then on; the same on every rank.
+    bool HostSharing = false;
   };
 
-  class Segment;
+  using Segment = BlockTable;
   class Worker;
   class Pin;
 
@@ -68,6 +71,11 @@ public:
   /// Collective in order (no message is exchanged), between frames: forgets the segment and its
   /// cached blocks. What this rank owns of it stays until the last shared pointer goes.
   void Retire(const std::shared_ptr<BlockSegment>& segment);
+
+  /// Collective in order, between frames: takes over what another store on this messenger has
+  /// published, or hands it over, its cached blocks forgotten.
+  void Adopt(std::shared_ptr<BlockTable> table);
+  void Surrender(const BlockTable& table);
 
   /// Collective. Resets the counters of the frame; from now on workers may Acquire, and this rank
   /// serves others. Throws Error, on every rank alike, when a rank's cache cannot hold its largest
@@ -118,28 +126,6 @@ private:
   /// either it is seen, or it sees.
   alignas(64) std::atomic<std::uint64_t> Epoch{ 1 };
   std::unique_ptr<Internals> Self;
-};
-
-/// The table of entries and the memory of the blocks that this rank owns.
-class ObjectStore::Segment final : public BlockSegment
-{
-public:
-  /// Sets out zeroed memory for the blocks of `rank`. Throws std::bad_alloc.
-  Segment(std::uint32_t number, BlockDirectory directory, int rank);
-  void ForEachResident(const Visit& visit) const override;
-  std::uint64_t GetResidentBytes() const override { return this->ResidentBytes; }
-
-private:
-  friend class ObjectStore;
-
-  /// Of a block that this rank owns.
-  std::byte* GetOwned(BlockId id) const;
-
-  std::unique_ptr<BlockLine[]> Lines;
-  BlockArena Arena;
-  std::uint64_t ResidentBytes = 0;
-  int Rank = 0;
-  bool Retired = false; ///< under the store's lock
 };
 
 /// A tracing thread's part of the store. On a cache line of its own.

@@ -175,7 +175,9 @@ std::size_t ObjectStore::Internals::GetLargestBlock() const
   std::size_t largest = 0;
   for (const auto& [number, segment] : this->Segments)
   {
-    largest = std::max(largest, std::size_t(segment->GetDirectory().GetLargest()));
+    // What is all here needs no cache.
+    largest =
+      std::max(largest, segment->IsWhole() ? 0 : std::size_t(segment->GetDirectory().GetLargest()));
   }
   return largest;
 }
@@ -187,8 +189,7 @@ void ObjectStore::Internals::CheckBudget() const
     throw Error("The previous frame of the store was not ended.");
   }
   const std::size_t largest = this->GetLargestBlock();
-  if (this->Messages.GetSize() > 1 && largest > 0 &&
-    this->Current.CacheBytes < BlockCache::GetFootprint(largest))
+  if (largest > 0 && this->Current.CacheBytes < BlockCache::GetFootprint(largest))
   {
     throw Error("The cache of " + std::to_string(this->Current.CacheBytes) +
       " bytes is smaller than one brick (" + std::to_string(BlockCache::GetFootprint(largest)) +
@@ -438,6 +439,7 @@ StoreCounters ObjectStore::Internals::GetCounters()
   for (const auto& [number, segment] : this->Segments)
   {
     counters.ResidentBytes += segment->GetResidentBytes();
+    counters.SharedBytes += segment->GetSharedBytes();
   }
   counters.CachedBytes = this->Cache.GetUsed();
   counters.PeakCachedBytes = this->Cache.GetPeak();

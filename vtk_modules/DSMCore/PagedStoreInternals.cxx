@@ -1,0 +1,645 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "DSMCore/PagedStoreInternals.h"
+
+#include "DSMCore/SegmentationSignal.h"
+
+#include <sys/syscall.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+namespace dsm
+{
+
+namespace
+{
+
+int GetThread()
+{
+  static thread_local const int number = static_cast<int>(syscall(SYS_gettid));
+  return number;
+}
+
+std::uint64_t NanosecondsSince(std::chrono::steady_clock::time_point start)
+{
+  return static_cast<std::uint64_t>(
+    std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::steady_clock::now() - start)
+      .count());
+}
+
+} // namespace
+
+PagedStore::Internals::Internals(Messenger& messenger, const Settings& settings)
+  : Messages(messenger)
+  , Process(getpid())
+{
+  this->Configure(settings);
+}
+
+PagedStore::Internals::~Internals()
+{
+  this->EndFrame();
+  this->StopListening();
+  for (const auto& [number, segment] : this->Segments)
+  {
+    segment->Detach(); // it may live on
+    segment->Retired = true;
+  }
+}
+
+// -- Workers ---------------------------------------------------------------------------------------
+
+void PagedStore::Internals::Enter(Worker& worker)
+{
+  if (this->Faults && this->Faults->GetKind() == FaultHandling::Signal)
+  {
+    SegmentationSignal::Unblock();
+  }
+  worker.Thread.store(GetThread(), std::memory_order_relaxed);
+}
+
+void PagedStore::Internals::Leave(Worker& worker)
+{
+  worker.Thread.store(0, std::memory_order_relaxed);
+}
+
+void PagedStore::Internals::Refuse(const Segment& segment) const
+{
+  if (this->Phase == FramePhase::Cancelled)
+  {
+    throw Error(this->Cause);
+  }
+  throw Error(segment.Retired
+      ? "A block of a retired segment was read. This is a defect of the tracer."
+      : "A block of another rank was read outside of a frame. This is a defect of the tracer.");
+}
+
+void PagedStore::Internals::Wait(Worker& worker, const Segment& segment, BlockId id)
+{
+  std::unique_lock<std::mutex> lock(this->Guard);
+  PageLine& line = segment.Lines[id];
+  if (segment.IsAlwaysHere(id) && this->Phase != FramePhase::Cancelled)
+  {
+    return;
+  }
+  if (this->Phase != FramePhase::Open || segment.Retired)
+  {
+    this->Refuse(segment);
+  }
+  const int thread = worker.Thread.load(std::memory_order_relaxed);
+  if (thread == 0 || thread == this->CommunicationThread)
+  {
+    throw Error(thread == 0
+        ? "A worker missed a block without having entered the frame. This is a defect of the "
+          "tracer."
+        : "The communication thread missed a block, for which it alone can send. This is a defect "
+          "of the tracer.");
+  }
+  if (line.State == PageState::Cached) // it came in the meantime: a hit after all
+  {
+    segment.SetHint(id, PageHint::Recent);
+    return;
+  }
+
+  const auto start = Clock::now();
+  ++worker.Slow.Misses;
+  worker.Slow.Joins += this->Request(segment, id) ? 1 : 0;
+  ++line.Waiters;
+  worker.WaitsFor = &line;
+  this->Messages.WakeUp();
+  worker.Woken.wait(
+    lock, [&] { return line.State == PageState::Cached || this->Phase != FramePhase::Open; });
+  worker.WaitsFor = nullptr;
+  --line.Waiters;
+  worker.Slow.WaitNanoseconds += NanosecondsSince(start);
+  if (line.State != PageState::Cached)
+  {
+    this->Refuse(segment);
+  }
+}
+
+bool PagedStore::Internals::Request(const Segment& segment, BlockId id)
+{
+  PageLine& line = segment.Lines[id];
+  if (line.State != PageState::Absent)
+  {
+    return true;
+  }
+  line.MoveTo(PageState::Wanted);
+  this->Wanted.push_back(Want{ &segment, id });
+  this->WantedCount.store(this->Wanted.size(), std::memory_order_release);
+  return false;
+}
+
+void PagedStore::Internals::WakeAll()
+{
+  for (const auto& worker : this->Workers)
+  {
+    worker->Woken.notify_one();
+  }
+}
+
+// -- Between frames --------------------------------------------------------------------------------
+
+void PagedStore::Internals::Configure(const Settings& settings)
+{
+  if (settings.Workers < 1 || settings.Workers > std::numeric_limits<std::uint16_t>::max())
+  {
+    throw Error("A rank cannot trace with " + std::to_string(settings.Workers) +
+      " threads. Set the number of threads (DSMThreads) to 0 for an automatic choice, or to at "
+      "least 1.");
+  }
+  if (this->Phase != FramePhase::Closed)
+  {
+    throw Error("The settings of a store cannot change within a frame.");
+  }
+  const bool changes = settings.Handling != this->Current.Handling;
+  if (changes && !this->Segments.empty())
+  {
+    throw Error("The handling of page faults cannot change while data is loaded.");
+  }
+  if (this->Messages.GetSize() > 1 && (changes || !this->Faults))
+  {
+    this->StopListening();
+    this->Faults.reset();
+    this->FaultsRefusal.clear();
+    try
+    {
+      this->Faults = PageFaults::Create(settings.Handling);
+      this->StartListening();
+    }
+    catch (const std::exception& exception)
+    {
+      // Told by Publish, on all ranks: another one may have had more luck.
+      this->Faults.reset();
+      this->FaultsRefusal = exception.what();
+    }
+  }
+  std::vector<PageCache::Frame> evicted;
+  {
+    const std::lock_guard<std::mutex> lock(this->Guard);
+    this->Current = settings;
+    this->Workers.resize(static_cast<std::size_t>(settings.Workers));
+    for (auto& worker : this->Workers)
+    {
+      if (!worker)
+      {
+        worker = std::make_unique<Worker>();
+      }
+    }
+    this->Cache.SetCapacity(settings.CacheBytes);
+    while (this->Cache.GetUsed() > settings.CacheBytes && this->TryEvict(false, evicted))
+    {
+    }
+  }
+  this->Remove(evicted);
+}
+
+void PagedStore::Internals::CheckFaults() const
+{
+  if (getpid() != this->Process)
+  {
+    throw Error("A process made by fork cannot use the paged memory of its parent. Start a new "
+                "program, or choose the object based memory organisation "
+                "(DSMMemoryOrganization).");
+  }
+  if (!this->FaultsRefusal.empty())
+  {
+    throw Error(this->FaultsRefusal);
+  }
+}
+
+void PagedStore::Internals::Add(std::shared_ptr<Segment> segment)
+{
+  const std::lock_guard<std::mutex> lock(this->Guard);
+  this->Segments.emplace(segment->GetNumber(), std::move(segment));
+}
+
+void PagedStore::Internals::Retire(const BlockSegment& segment)
+{
+  const auto found = this->Segments.find(segment.GetNumber());
+  if (found == this->Segments.end() || found->second.get() != &segment)
+  {
+    return;
+  }
+  if (this->Phase != FramePhase::Closed)
+  {
+    throw Error("A segment cannot be retired within a frame.");
+  }
+  const std::shared_ptr<Segment> retired = found->second;
+  {
+    const std::lock_guard<std::mutex> lock(this->Guard);
+    retired->Retired = true;
+    for (const PageCache::Frame& frame : this->Cache.Forget(*retired))
+    {
+      this->MarkEvicted(frame);
+    }
+    this->Segments.erase(found);
+  }
+  retired->Detach();
+}
+
+// -- The frame, on the communication thread --------------------------------------------------------
+
+std::size_t PagedStore::Internals::GetLargestBlock() const
+{
+  std::size_t largest = 0;
+  for (const auto& [number, segment] : this->Segments)
+  {
+    largest = std::max(largest, std::size_t(segment->GetDirectory().GetLargest()));
+  }
+  return AddressRange::RoundUpToPages(largest);
+}
+
+void PagedStore::Internals::CheckFrame()
+{
+  if (this->Phase != FramePhase::Closed)
+  {
+    throw Error("The previous frame of the store was not ended.");
+  }
+  this->CheckFaults();
+  const std::size_t largest = this->GetLargestBlock();
+  if (this->Messages.GetSize() > 1 && largest > 0 && this->Current.CacheBytes < largest)
+  {
+    throw Error("The cache of " + std::to_string(this->Current.CacheBytes) +
+      " bytes is smaller than one brick (" + std::to_string(largest) +
+      " bytes in whole pages). Raise the cache size (DSMCacheSize).");
+  }
+  if (this->Faults)
+  {
+    this->LargestRuns = this->Faults->Open(this->Runs);
+  }
+}
+
+void PagedStore::Internals::BeginFrame()
+{
+  try
+  {
+    this->Messages.RunTogether("The frame cannot begin", [this] { this->CheckFrame(); });
+  }
+  catch (...)
+  {
+    if (this->Faults && this->Phase == FramePhase::Closed)
+    {
+      this->Faults->Close();
+    }
+    throw;
+  }
+  this->Messages.SetHandler(
+    MessageKind::BlockRequest, [this](Message&& message) { this->Serve(message); });
+  this->Messages.SetHandler(
+    MessageKind::BlockReply, [this](Message&& message) { this->Receive(message); });
+  this->FrameSession = this->Messages.BeginSession();
+
+  const std::lock_guard<std::mutex> lock(this->Guard);
+  this->CommunicationThread = GetThread();
+  this->Hold = ShortestHold;
+  this->Cache.ResetPeak();
+  this->Frame = StoreCounters{};
+  this->Strangers = WorkerCounters{};
+  for (const auto& worker : this->Workers)
+  {
+    worker->Slow = WorkerCounters{};
+    worker->LastFault = nullptr;
+    worker->Accesses.store(0, std::memory_order_relaxed);
+  }
+  this->Phase = FramePhase::Open;
+  for (const auto& [number, segment] : this->Segments)
+  {
+    if (segment->IsPure != this->Current.PureFaulting)
+    {
+      segment->ResetHints(this->Current.PureFaulting);
+    }
+    segment->Open(true);
+  }
+  this->IsEntranceOpen.store(true, std::memory_order_release);
+}
+
+bool PagedStore::Internals::Service()
+{
+  if (this->WantedCount.load(std::memory_order_acquire) == 0)
+  {
+    return false;
+  }
+  std::vector<Want> granted;
+  std::vector<PageCache::Frame> evicted;
+  {
+    const std::lock_guard<std::mutex> lock(this->Guard);
+    while (!this->Wanted.empty() && this->MakeRoom(this->Wanted.front(), evicted))
+    {
+      const Want& want = this->Wanted.front();
+      want.From->Lines[want.Id].MoveTo(PageState::Pending);
+      granted.push_back(want);
+      this->Pending.push_back(want);
+      this->Wanted.pop_front();
+    }
+    this->WantedCount.store(this->Wanted.size(), std::memory_order_release);
+  }
+  // An evicted block may be wanted again already, but only this thread can fetch it.
+  this->Remove(evicted);
+  for (const Want& want : granted)
+  {
+    this->Messages.Post(want.From->GetDirectory().GetOwner(want.Id), MessageKind::BlockRequest,
+      Encode(BlockName{ want.From->GetNumber(), this->FrameSession, want.Id }));
+  }
+  return !granted.empty();
+}
+
+bool PagedStore::Internals::MakeRoom(const Want& want, std::vector<PageCache::Frame>& evicted)
+{
+  // Every block under way may become a run of its own, and one that leaves the middle of a run
+  // makes two of it.
+  const auto isTight = [this](std::size_t more)
+  { return this->Runs + this->Pending.size() + more > this->LargestRuns; };
+  while (isTight(1))
+  {
+    if (!this->TryEvict(true, evicted))
+    {
+      return false;
+    }
+  }
+  const std::size_t footprint = want.From->Layout.GetFootprint(want.Id);
+  while (!this->Cache.TryReserve(footprint))
+  {
+    if (!this->TryEvict(isTight(2), evicted))
+    {
+      return false;
+    }
+  }
+  return true;
+}
+
+bool PagedStore::Internals::TryEvict(bool atEndOfRun, std::vector<PageCache::Frame>& evicted)
+{
+  std::function<bool(const PageCache::Frame&)> mayGo;
+  if (atEndOfRun)
+  {
+    mayGo = [this](const PageCache::Frame& frame)
+    { return this->CountNeighbours(*frame.From, frame.Id) < 2; };
+  }
+  const auto latest = this->Phase == FramePhase::Open ? Clock::now() - this->Hold : Clock::now();
+  PageCache::Frame frame;
+  if (!this->Cache.TryEvict(latest, mayGo, frame))
+  {
+    return false;
+  }
+  this->MarkEvicted(frame);
+  ++this->Frame.Evictions;
+  evicted.push_back(frame);
+  return true;
+}
+
+void PagedStore::Internals::Remove(const std::vector<PageCache::Frame>& evicted)
+{
+  for (const PageCache::Frame& frame : evicted)
+  {
+    this->Faults->Remove(frame.From->GetAddress(frame.Id), frame.Footprint);
+  }
+}
+
+std::size_t PagedStore::Internals::CountNeighbours(const Segment& segment, BlockId id) const
+{
+  const std::uint64_t begin = segment.Layout.GetOffset(id);
+  const std::uint64_t end = begin + segment.Layout.GetFootprint(id);
+  std::size_t count = 0;
+  BlockId neighbour = 0;
+  if (begin > 0 && segment.Layout.Find(begin - 1, neighbour))
+  {
+    count += segment.Lines[neighbour].State == PageState::Cached ? 1 : 0;
+  }
+  if (segment.Layout.Find(end, neighbour))
+  {
+    count += segment.Lines[neighbour].State == PageState::Cached ? 1 : 0;
+  }
+  return count;
+}
+
+void PagedStore::Internals::MarkCached(const Segment& segment, BlockId id)
+{
+  this->Runs = this->Runs + 1 - this->CountNeighbours(segment, id);
+  segment.Lines[id].MoveTo(PageState::Cached);
+  if (!segment.IsPure)
+  {
+    segment.SetHint(id, PageHint::Recent);
+  }
+}
+
+void PagedStore::Internals::MarkEvicted(const PageCache::Frame& frame)
+{
+  frame.From->Lines[frame.Id].MoveTo(PageState::Absent);
+  this->Runs = this->Runs + this->CountNeighbours(*frame.From, frame.Id) - 1;
+}
+
+const PagedStore::Segment& PagedStore::Internals::Find(
+  const BlockName& name, int source, const char* deed) const
+{
+  const auto found = this->Segments.find(name.Segment);
+  if (found == this->Segments.end() || name.Id >= found->second->GetDirectory().GetCount() ||
+    name.Frame != this->FrameSession)
+  {
+    throw Error("Rank " + std::to_string(source) + " " + deed + " block " +
+      std::to_string(name.Id) + " of segment " + std::to_string(name.Segment) + " in frame " +
+      std::to_string(name.Frame) + ", which rank " + std::to_string(this->Messages.GetRank()) +
+      " does not know. Do all ranks run the same build?");
+  }
+  return *found->second;
+}
+
+void PagedStore::Internals::Serve(const Message& message)
+{
+  const auto name = Decode<BlockName>(message, MessageKind::BlockRequest);
+  if (name.Frame < this->FrameSession)
+  {
+    return; // left over from a frame that was cancelled; its segment may be gone
+  }
+  const Segment& segment = this->Find(name, message.Source, "asked for");
+  if (!segment.IsOwned(name.Id))
+  {
+    throw Error("Rank " + std::to_string(message.Source) + " asked rank " +
+      std::to_string(this->Messages.GetRank()) + " for block " + std::to_string(name.Id) +
+      ", which rank " + std::to_string(segment.GetDirectory().GetOwner(name.Id)) +
+      " owns. Do all ranks run the same build?");
+  }
+  const std::byte* const bytes = segment.GetAddress(name.Id);
+  const std::uint32_t count = segment.GetDirectory().GetBytes(name.Id);
+  std::vector<std::byte> reply;
+  reply.reserve(count + 3 * sizeof(BlockName)); // the transport puts its header behind
+  reply.assign(bytes, bytes + count);
+  AttachTail(reply, name);
+  this->Messages.Post(message.Source, MessageKind::BlockReply, std::move(reply));
+  this->Frame.BytesSent += count;
+}
+
+void PagedStore::Internals::Receive(Message& message)
+{
+  const auto name = DetachTail<BlockName>(message, MessageKind::BlockReply);
+  if (name.Frame < this->FrameSession || this->Phase != FramePhase::Open)
+  {
+    return;
+  }
+  const Segment& segment = this->Find(name, message.Source, "sent");
+  const std::uint32_t bytes = segment.GetDirectory().GetBytes(name.Id);
+  // Only this thread changes the list; the listener changes no line in it.
+  const auto asked = std::find_if(this->Pending.begin(), this->Pending.end(),
+    [&](const Want& want) { return want.From == &segment && want.Id == name.Id; });
+  if (asked == this->Pending.end() || message.Payload.size() != bytes ||
+    message.Source != segment.GetDirectory().GetOwner(name.Id))
+  {
+    throw Error("Rank " + std::to_string(message.Source) + " sent " +
+      std::to_string(message.Payload.size()) + " bytes as block " + std::to_string(name.Id) +
+      ", which rank " + std::to_string(this->Messages.GetRank()) +
+      " did not ask it for or knows with " + std::to_string(bytes) +
+      " bytes. Do all ranks run the same build?");
+  }
+  this->Faults->Place(segment.GetAddress(name.Id), message.Payload.data(), bytes);
+
+  const std::lock_guard<std::mutex> lock(this->Guard);
+  this->Pending.erase(asked);
+  this->MarkCached(segment, name.Id);
+  this->Cache.Insert({ &segment, name.Id, segment.Layout.GetFootprint(name.Id), Clock::now() });
+  this->Frame.BytesReceived += bytes;
+  const PageLine* const line = &segment.Lines[name.Id];
+  for (const auto& worker : this->Workers)
+  {
+    if (worker->WaitsFor == line)
+    {
+      worker->Woken.notify_one();
+    }
+  }
+  const auto isOther = [&](const Stopped& stopped)
+  { return stopped.From != &segment || stopped.Id != name.Id; };
+  const auto first = std::partition(this->Waiting.begin(), this->Waiting.end(), isOther);
+  std::for_each(first, this->Waiting.end(),
+    [this](const Stopped& stopped)
+    {
+      WorkerCounters& counters = stopped.Who ? stopped.Who->Slow : this->Strangers;
+      counters.WaitNanoseconds += NanosecondsSince(stopped.Since);
+      this->Faults->Answer(stopped.Fault, PageFaults::Reply::Placed);
+    });
+  this->Waiting.erase(first, this->Waiting.end());
+}
+
+void PagedStore::Internals::AbandonRequests()
+{
+  for (const Want& want : this->Wanted)
+  {
+    want.From->Lines[want.Id].MoveTo(PageState::Absent);
+  }
+  this->Wanted.clear();
+  this->WantedCount.store(0, std::memory_order_release);
+  for (const Want& want : this->Pending)
+  {
+    this->Cache.Release(want.From->Layout.GetFootprint(want.Id));
+    want.From->Lines[want.Id].MoveTo(PageState::Absent);
+  }
+  this->Pending.clear();
+}
+
+void PagedStore::Internals::CloseEntrance()
+{
+  this->IsEntranceOpen.store(false, std::memory_order_release);
+  for (const auto& [number, segment] : this->Segments)
+  {
+    segment->Open(false);
+  }
+}
+
+void PagedStore::Internals::Cancel(const std::string& cause)
+{
+  const std::lock_guard<std::mutex> lock(this->Guard);
+  if (this->Phase != FramePhase::Open)
+  {
+    return; // the first cause stands
+  }
+  this->Phase = FramePhase::Cancelled;
+  this->Cause = cause;
+  this->CloseEntrance();
+  this->AbandonRequests();
+  this->WakeAll();
+  for (const Stopped& stopped : this->Waiting)
+  {
+    this->TakeCancelled(stopped.Fault, stopped.From, true, stopped.Id);
+  }
+  this->Waiting.clear();
+}
+
+void PagedStore::Internals::EndFrame()
+{
+  const std::lock_guard<std::mutex> lock(this->Guard);
+  if (this->Phase == FramePhase::Closed)
+  {
+    return;
+  }
+  this->Messages.SetHandler(MessageKind::BlockRequest, {});
+  this->Messages.SetHandler(MessageKind::BlockReply, {});
+  this->Phase = FramePhase::Closed;
+  this->CloseEntrance();
+  this->LastWorkers = this->CountWorkers();
+  this->AbandonRequests();
+  this->WakeAll();
+  if (!this->Faults)
+  {
+    return;
+  }
+  this->Faults->Close();
+  for (const Stopped& stopped : this->Waiting) // though all workers should have stopped
+  {
+    this->Faults->Answer(stopped.Fault, PageFaults::Reply::Refused);
+  }
+  this->Waiting.clear();
+  for (const Zeros& zeros : this->Zeroed)
+  {
+    this->Faults->RemoveZeros(zeros.Begin, zeros.Bytes);
+    if (zeros.Line)
+    {
+      zeros.Line->MoveTo(PageState::Absent);
+    }
+  }
+  this->Zeroed.clear();
+}
+
+// -- Counters --------------------------------------------------------------------------------------
+
+std::vector<WorkerCounters> PagedStore::Internals::CountWorkers() const
+{
+  std::vector<WorkerCounters> counters;
+  for (const auto& worker : this->Workers)
+  {
+    WorkerCounters counter = worker->Slow;
+    counter.Accesses = worker->Accesses.load(std::memory_order_relaxed);
+    // One access may fault several times, when its block is evicted while it is read.
+    counter.Hits = counter.Accesses - std::min(counter.Accesses, counter.Misses);
+    counters.push_back(counter);
+  }
+  return counters;
+}
+
+std::vector<WorkerCounters> PagedStore::Internals::GetWorkerCounters()
+{
+  const std::lock_guard<std::mutex> lock(this->Guard);
+  return this->Phase == FramePhase::Closed ? this->LastWorkers : this->CountWorkers();
+}
+
+StoreCounters PagedStore::Internals::GetCounters()
+{
+  const auto workers = this->GetWorkerCounters();
+  const std::lock_guard<std::mutex> lock(this->Guard);
+  StoreCounters counters = this->Frame;
+  counters.Workers = this->Strangers;
+  for (const WorkerCounters& worker : workers)
+  {
+    counters.Workers += worker;
+  }
+  for (const auto& [number, segment] : this->Segments)
+  {
+    counters.ResidentBytes += segment->GetResidentBytes();
+  }
+  counters.CachedBytes = this->Cache.GetUsed();
+  counters.PeakCachedBytes = this->Cache.GetPeak();
+  counters.CacheCapacity = this->Cache.GetCapacity();
+  return counters;
+}
+
+} // namespace dsm

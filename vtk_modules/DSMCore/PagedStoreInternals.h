@@ -1,0 +1,180 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef dsm_PagedStoreInternals_h
+#define dsm_PagedStoreInternals_h
+
+#include "DSMCore/PageCache.h"
+#include "DSMCore/PageFaults.h"
+#include "DSMCore/PagedStore.h"
+
+#include <sys/types.h>
+
+#include <atomic>
+#include <chrono>
+#include <cstdint>
+#include <deque>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <thread>
+#include <vector>
+
+namespace dsm
+{
+
+/// The store's slow paths: misses, faults, requests, replies, eviction. A block that is missed first
+/// is queued; threads that miss it later join, whether they wait politely or in a fault. The
+/// communication thread takes the queue in order: it makes room, then sends the request, so a reply
+/// always finds room.
+///
+/// A listening thread takes the faults: it queues them, answers those that are none of ours, and
+/// after a cancellation satisfies them with zeros, so that no thread waits for a communication
+/// thread that has left the frame.
+class PagedStore::Internals
+{
+public:
+  Internals(Messenger& messenger, const Settings& settings);
+  ~Internals();
+
+  void Wait(Worker& worker, const Segment& segment, BlockId id);
+  void Enter(Worker& worker);
+  void Leave(Worker& worker);
+
+  void Configure(const Settings& settings);
+  /// Throws Error when faults cannot be handled as they should, or this process is a fork of the
+  /// store's.
+  void CheckFaults() const;
+  void Add(std::shared_ptr<Segment> segment);
+  void Retire(const BlockSegment& segment);
+
+  void BeginFrame();
+  bool Service();
+  void Cancel(const std::string& cause);
+  void EndFrame();
+  bool IsInFrame() const { return this->Phase != FramePhase::Closed; }
+  /// Any thread: whether a frame runs that was not cancelled.
+  bool IsOpen() const { return this->IsEntranceOpen.load(std::memory_order_acquire); }
+
+  StoreCounters GetCounters();
+  std::vector<WorkerCounters> GetWorkerCounters();
+
+  Messenger& Messages;
+  Settings Current;
+  std::vector<std::unique_ptr<Worker>> Workers;
+  /// Null with one rank, and when it cannot be had.
+  std::shared_ptr<PageFaults> Faults;
+  std::string FaultsRefusal;
+
+private:
+  using Clock = std::chrono::steady_clock;
+
+  enum class FramePhase
+  {
+    Closed,
+    Open,
+    Cancelled
+  };
+
+  /// On the wire, as the whole of a request and behind the bytes of a reply.
+  struct BlockName
+  {
+    std::uint32_t Segment;
+    /// Of the asker's frame: an answer to a frame that was cancelled is not taken for one to this.
+    std::uint32_t Frame;
+    BlockId Id;
+  };
+
+  struct Want
+  {
+    const Segment* From;
+    BlockId Id;
+  };
+
+  /// A thread that waits in a fault.
+  struct Stopped
+  {
+    PageFaults::Fault Fault;
+    const Segment* From;
+    BlockId Id;
+    Worker* Who; ///< null: a thread that did not enter
+    Clock::time_point Since;
+  };
+
+  /// Pages that stand in for a block, or for what is between blocks (no line).
+  struct Zeros
+  {
+    std::byte* Begin;
+    std::size_t Bytes;
+    PageLine* Line;
+  };
+
+  // -- Faults, on the listening thread --
+  void StartListening();
+  void StopListening();
+  void Listen();
+  /// Under the lock. Returns whether the communication thread has something to do.
+  bool Take(const PageFaults::Fault& fault);
+  void TakeCancelled(
+    const PageFaults::Fault& fault, const Segment* segment, bool isBlock, BlockId id);
+  void AdjustHold(Worker& worker, const PageFaults::Fault& fault);
+  Worker* FindWorker(int thread) const;
+
+  // -- The communication thread --
+  void CheckFrame();
+  void Serve(const Message& message);
+  void Receive(Message& message);
+  const Segment& Find(const BlockName& name, int source, const char* deed) const;
+  /// Makes room for a block, evicting into `evicted`; false when it must wait.
+  bool MakeRoom(const Want& want, std::vector<PageCache::Frame>& evicted);
+  bool TryEvict(bool atEndOfRun, std::vector<PageCache::Frame>& evicted);
+  void Remove(const std::vector<PageCache::Frame>& evicted);
+
+  // -- Under the lock --
+  /// Queues a block that is absent; or joins those who wait for it. Returns whether it joined.
+  bool Request(const Segment& segment, BlockId id);
+  /// Cached blocks right before and behind a block's pages.
+  std::size_t CountNeighbours(const Segment& segment, BlockId id) const;
+  void MarkCached(const Segment& segment, BlockId id);
+  void MarkEvicted(const PageCache::Frame& frame);
+  void WakeAll();
+  /// What is wanted and what was asked for will not come.
+  void AbandonRequests();
+  void CloseEntrance();
+  [[noreturn]] void Refuse(const Segment& segment) const;
+  std::vector<WorkerCounters> CountWorkers() const;
+  std::size_t GetLargestBlock() const;
+
+  pid_t Process;
+  std::thread Listener;
+  std::uint32_t FrameSession = 0;
+
+  /// Guards what follows, the segments' lines, and what workers have for the slow path.
+  mutable std::mutex Guard;
+  /// By number. Changed by the communication thread alone, which needs no lock to read it.
+  std::map<std::uint32_t, std::shared_ptr<Segment>> Segments;
+  FramePhase Phase = FramePhase::Closed;
+  std::atomic<bool> IsEntranceOpen{ false };
+  int CommunicationThread = 0;
+  std::string Cause;
+  PageCache Cache;
+  std::deque<Want> Wanted;
+  /// Of Wanted; lets Service look without the lock.
+  std::atomic<std::size_t> WantedCount{ 0 };
+  std::deque<Want> Pending;
+  std::vector<Stopped> Waiting;
+  std::vector<Zeros> Zeroed;
+  /// Runs of neighbouring cached blocks: each takes mappings of the process.
+  std::size_t Runs = 0;
+  std::size_t LargestRuns = 0;
+  /// A block stays at least this long, so that the threads that were woken for it get to read it.
+  static constexpr std::chrono::microseconds ShortestHold{ 10 };
+  static constexpr std::chrono::microseconds LongestHold{ 4000 };
+  Clock::duration Hold = ShortestHold;
+  StoreCounters Frame;
+  WorkerCounters Strangers; ///< faults of threads that did not enter
+  std::vector<WorkerCounters> LastWorkers;
+};
+
+} // namespace dsm
+
+#endif
