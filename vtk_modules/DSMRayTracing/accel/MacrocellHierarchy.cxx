@@ -50,6 +50,8 @@ MacrocellHierarchy::Level Coarsen(const MacrocellHierarchy::Level& fine)
 {
   constexpr int ratio = 1 << MacrocellHierarchy::Shift;
   MacrocellHierarchy::Level coarse;
+  coarse.Edge = fine.Edge * ratio;
+  coarse.InverseEdge = 1.0 / coarse.Edge;
   for (int axis = 0; axis < 3; ++axis)
   {
     coarse.Size[axis] = (fine.Size[axis] + ratio - 1) / ratio;
@@ -90,6 +92,8 @@ MacrocellHierarchy::MacrocellHierarchy(
 MacrocellHierarchy::MacrocellHierarchy(const BrickLattice& lattice, std::vector<ValueRange> bricks)
 {
   Level finest;
+  finest.Edge = lattice.GetEdge();
+  finest.InverseEdge = 1.0 / finest.Edge;
   for (int axis = 0; axis < 3; ++axis)
   {
     finest.Size[axis] = static_cast<int>(lattice.GetBricks()[axis]);

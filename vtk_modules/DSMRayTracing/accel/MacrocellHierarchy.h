@@ -6,7 +6,6 @@
 #include "DSMCore/Messenger.h"
 #include "DSMRayTracing/brick/BrickLattice.h"
 
-#include <cstddef>
 #include <vector>
 
 namespace rt
@@ -41,15 +40,9 @@ public:
   struct Level
   {
     int Size[3];
+    double Edge; ///< of a macrocell, in cells
+    double InverseEdge;
     std::vector<ValueRange> Ranges;
-
-    const ValueRange& Get(int x, int y, int z) const
-    {
-      return this->Ranges[static_cast<std::size_t>(x) +
-        static_cast<std::size_t>(this->Size[0]) *
-          (static_cast<std::size_t>(y) +
-            static_cast<std::size_t>(this->Size[1]) * static_cast<std::size_t>(z))];
-    }
   };
 
   MacrocellHierarchy() = default;

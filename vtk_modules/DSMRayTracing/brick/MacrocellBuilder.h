@@ -47,32 +47,77 @@ float RoundUp(T value)
     : std::nextafter(nearest, std::numeric_limits<float>::infinity());
 }
 
-/// The range of the corners of those cells of a box [first, last) that hold data.
+/// A range that no sample was added to.
 template <class T>
-MacrocellRange<T> FindRange(const VoxelBrick<T>& brick, const int first[3], const int last[3])
+constexpr MacrocellRange<T> EmptyRange{ std::numeric_limits<T>::max(),
+  std::numeric_limits<T>::lowest() };
+
+/// A box of cells of a brick.
+struct CellBox
 {
-  MacrocellRange<T> range{ std::numeric_limits<T>::max(), std::numeric_limits<T>::lowest() };
-  for (int z = first[2]; z < last[2]; ++z)
+  int First[3];
+  int Last[3]; ///< not of the box
+};
+
+/// The range of all the samples at the corners of a box. Returns false when one is not finite.
+template <class T>
+bool FindSampleRange(const VoxelBrick<T>& brick, const CellBox& box, MacrocellRange<T>& range)
+{
+  range = EmptyRange<T>;
+  T check{ 0 };
+  for (int z = box.First[2]; z <= box.Last[2]; ++z)
   {
-    for (int y = first[1]; y < last[1]; ++y)
+    for (int y = box.First[1]; y <= box.Last[1]; ++y)
     {
-      for (int x = first[0]; x < last[0]; ++x)
+      const T* row = brick.GetSamples() + brick.GetOffset(0, y, z);
+      for (int x = box.First[0]; x <= box.Last[0]; ++x)
       {
-        if (!brick.HoldsData(x, y, z))
+        range.Min = std::min(range.Min, row[x]);
+        range.Max = std::max(range.Max, row[x]);
+        if constexpr (std::is_floating_point_v<T>)
         {
-          continue;
+          // Becomes, and stays, not a number.
+          check += row[x] * T{ 0 };
         }
-        for (int corner = 0; corner < 8; ++corner)
+      }
+    }
+  }
+  return check == T{ 0 };
+}
+
+/// The range of the corners of those cells of a box that hold data.
+template <class T>
+MacrocellRange<T> FindCellRange(const VoxelBrick<T>& brick, const CellBox& box)
+{
+  MacrocellRange<T> range = EmptyRange<T>;
+  for (int z = box.First[2]; z < box.Last[2]; ++z)
+  {
+    for (int y = box.First[1]; y < box.Last[1]; ++y)
+    {
+      for (int x = box.First[0]; x < box.Last[0]; ++x)
+      {
+        MacrocellRange<T> cell;
+        if (brick.HoldsData(x, y, z) &&
+          FindSampleRange(brick, { { x, y, z }, { x + 1, y + 1, z + 1 } }, cell))
         {
-          const T sample =
-            brick.GetSample(x + (corner & 1), y + (corner >> 1 & 1), z + (corner >> 2));
-          range.Min = std::min(range.Min, sample);
-          range.Max = std::max(range.Max, sample);
+          range.Min = std::min(range.Min, cell.Min);
+          range.Max = std::max(range.Max, cell.Max);
         }
       }
     }
   }
   return range;
+}
+
+template <class T>
+MacrocellRange<T> FindRange(const VoxelBrick<T>& brick, const CellBox& box)
+{
+  MacrocellRange<T> range;
+  if (brick.GetHeader().MaskOffset == 0 && FindSampleRange(brick, box, range))
+  {
+    return range;
+  }
+  return FindCellRange(brick, box);
 }
 
 /// Derives, out of the samples and the mask of a brick, its macrocells and its own range.
@@ -84,18 +129,17 @@ void BuildMacrocells(std::byte* block)
   const VoxelBrick<T> brick(block);
   header.First = std::numeric_limits<float>::infinity();
   header.Last = -std::numeric_limits<float>::infinity();
-  int first[3];
-  int last[3];
-  for (first[2] = 0; first[2] < brick.GetCells(2); first[2] += MacrocellEdge)
+  CellBox box;
+  for (box.First[2] = 0; box.First[2] < brick.GetCells(2); box.First[2] += MacrocellEdge)
   {
-    last[2] = std::min(first[2] + MacrocellEdge, brick.GetCells(2));
-    for (first[1] = 0; first[1] < brick.GetCells(1); first[1] += MacrocellEdge)
+    box.Last[2] = std::min(box.First[2] + MacrocellEdge, brick.GetCells(2));
+    for (box.First[1] = 0; box.First[1] < brick.GetCells(1); box.First[1] += MacrocellEdge)
     {
-      last[1] = std::min(first[1] + MacrocellEdge, brick.GetCells(1));
-      for (first[0] = 0; first[0] < brick.GetCells(0); first[0] += MacrocellEdge)
+      box.Last[1] = std::min(box.First[1] + MacrocellEdge, brick.GetCells(1));
+      for (box.First[0] = 0; box.First[0] < brick.GetCells(0); box.First[0] += MacrocellEdge)
       {
-        last[0] = std::min(first[0] + MacrocellEdge, brick.GetCells(0));
-        const MacrocellRange<T> range = FindRange(brick, first, last);
+        box.Last[0] = std::min(box.First[0] + MacrocellEdge, brick.GetCells(0));
+        const MacrocellRange<T> range = FindRange(brick, box);
         *ranges++ = range;
         if (range.Min <= range.Max)
         {

@@ -3,6 +3,7 @@
 #define rt_Frame_h
 
 #include "DSMCore/Counters.h"
+#include "DSMCore/MemoryOrganization.h"
 
 #include <glm/vec4.hpp>
 
@@ -38,6 +39,8 @@ struct Frame
   int Height = 0;
   std::vector<Tile> Tiles;
   double Seconds = 0.0; ///< from the collective start to the collective end
+  /// How the bricks were kept; never Automatic.
+  dsm::MemoryOrganization Organization = dsm::MemoryOrganization::ObjectBased;
   dsm::StoreCounters Counters;
   std::vector<dsm::WorkerCounters> WorkerCounters;
 };

@@ -6,6 +6,7 @@
 #include "DSMRayTracing/frame/TileGrid.h"
 #include "DSMRayTracing/frame/TileTracer.h"
 
+#include <algorithm>
 #include <chrono>
 #include <cstring>
 #include <iterator>
@@ -58,6 +59,13 @@ struct RequestDigest
   double WorldToClip[16];
 };
 
+/// What a rank brings to the frame.
+struct Entry
+{
+  RequestDigest Request;
+  std::uint64_t Settled; ///< whether its store is
+};
+
 RequestDigest GetDigest(const FrameRequest& request, const Scene& scene)
 {
   RequestDigest digest{ request.Width, request.Height,
@@ -69,12 +77,14 @@ RequestDigest GetDigest(const FrameRequest& request, const Scene& scene)
   return digest;
 }
 
-void CheckRequest(dsm::Messenger& messenger, const FrameRequest& request, const Scene& scene)
+/// Returns whether every rank's store is settled.
+bool CheckRequest(
+  dsm::Messenger& messenger, const FrameRequest& request, const Scene& scene, bool settled)
 {
-  const auto digests = messenger.AllGatherValue(GetDigest(request, scene));
-  for (std::size_t rank = 0; rank < digests.size(); ++rank)
+  const auto entries = messenger.AllGatherValue(Entry{ GetDigest(request, scene), settled });
+  for (std::size_t rank = 0; rank < entries.size(); ++rank)
   {
-    if (std::memcmp(&digests[rank], &digests.front(), sizeof(RequestDigest)) != 0)
+    if (std::memcmp(&entries[rank].Request, &entries.front().Request, sizeof(RequestDigest)) != 0)
     {
       throw dsm::Error("Rank " + std::to_string(rank) +
         " was asked to draw another picture than rank 0 (camera, size or objects differ); the "
@@ -87,6 +97,8 @@ void CheckRequest(dsm::Messenger& messenger, const FrameRequest& request, const 
     throw dsm::Error("A frame of " + std::to_string(request.Width) + " x " +
       std::to_string(request.Height) + " pixels cannot be traced.");
   }
+  return std::all_of(
+    entries.begin(), entries.end(), [](const Entry& entry) { return entry.Settled != 0; });
 }
 
 } // namespace
@@ -99,17 +111,24 @@ FrameRenderer::FrameRenderer(dsm::Messenger& messenger)
 
 FrameRenderer::~FrameRenderer() = default;
 
-Frame FrameRenderer::Render(
-  dsm::ObjectStore& store, const Scene& scene, const FrameRequest& request)
+Frame FrameRenderer::Render(dsm::BlockStore& store, const Scene& scene, const FrameRequest& request)
 {
-  return this->RenderWith(store, scene, request);
+  const auto start = Clock::now();
+  if (!CheckRequest(this->Messenger, request, scene, store.IsSettled()))
+  {
+    store.Settle();
+  }
+  Frame frame = store.Visit([&](auto& blocks) { return this->RenderWith(blocks, scene, request); });
+  frame.Counters = store.GetCounters();
+  frame.WorkerCounters = store.GetWorkerCounters();
+  frame.Organization = store.GetOrganization();
+  frame.Seconds = SecondsSince(start);
+  return frame;
 }
 
 template <class Store>
 Frame FrameRenderer::RenderWith(Store& store, const Scene& scene, const FrameRequest& request)
 {
-  const auto start = Clock::now();
-  CheckRequest(this->Messenger, request, scene);
   const PixelRays rays(request);
   const TileGrid grid(request.Width, request.Height, request.TileSize);
   const int workers = store.GetSettings().Workers;
@@ -216,9 +235,6 @@ Frame FrameRenderer::RenderWith(Store& store, const Scene& scene, const FrameReq
   {
     std::move(tiles.begin(), tiles.end(), std::back_inserter(frame.Tiles));
   }
-  frame.Counters = store.GetCounters();
-  frame.WorkerCounters = store.GetWorkerCounters();
-  frame.Seconds = SecondsSince(start);
   return frame;
 }
 

@@ -2,8 +2,8 @@
 #ifndef rt_FrameRenderer_h
 #define rt_FrameRenderer_h
 
+#include "DSMCore/BlockStore.h"
 #include "DSMCore/Messenger.h"
-#include "DSMCore/ObjectStore.h"
 #include "DSMRayTracing/frame/Frame.h"
 #include "DSMRayTracing/frame/FrameRequest.h"
 #include "DSMRayTracing/frame/Scene.h"
@@ -23,11 +23,12 @@ public:
   explicit FrameRenderer(dsm::Messenger& messenger);
   ~FrameRenderer();
 
-  /// Collective; always from the same thread. Every rank passes the same request and scene.
+  /// Collective; always from the same thread. Every rank passes the same request and scene. Settles
+  /// the store first.
   /// `store.GetSettings().Workers` threads trace. Returns the tiles that this rank traced. Throws
   /// the same dsm::Error on every rank when any rank fails, or when the requests differ; the next
   /// frame is not affected.
-  Frame Render(dsm::ObjectStore& store, const Scene& scene, const FrameRequest& request);
+  Frame Render(dsm::BlockStore& store, const Scene& scene, const FrameRequest& request);
 
 private:
   template <class Store>

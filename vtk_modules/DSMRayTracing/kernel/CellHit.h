@@ -2,15 +2,17 @@
 #ifndef rt_CellHit_h
 #define rt_CellHit_h
 
+#include "DSMRayTracing/kernel/Lanes.h"
+
 namespace rt
 {
 
-/// Where a ray meets an isosurface, in index space.
+/// Where a ray meets an isosurface within a brick.
 struct CellHit
 {
   double T = 0.0;
-  int Cell[3] = { 0, 0, 0 };           ///< of the volume
-  double Local[3] = { 0.0, 0.0, 0.0 }; ///< within the cell, in [0, 1]
+  int Cell[3] = { 0, 0, 0 };         ///< of the brick
+  Lanes Local{ 0.0, 0.0, 0.0, 0.0 }; ///< within the cell, in [0, 1]
 };
 
 } // namespace rt

@@ -15,6 +15,23 @@ constexpr int SampleStrides[3] = { 1, 4, 16 };
 
 } // namespace
 
+void CellNeighbourhood::CoverWithin(const Index3& cell, const Index3& cells)
+{
+  bool* covered = this->Covered;
+  for (int z = -1; z <= 1; ++z)
+  {
+    for (int y = -1; y <= 1; ++y)
+    {
+      for (int x = -1; x <= 1; ++x)
+      {
+        const Index3 place = cell + Index3(x, y, z);
+        *covered++ = place.x >= 0 && place.y >= 0 && place.z >= 0 && place.x < cells.x &&
+          place.y < cells.y && place.z < cells.z;
+      }
+    }
+  }
+}
+
 /// Whether a cell that has the edge from the sample (x, y, z) to the next one on `axis` is covered.
 bool CellNeighbourhood::IsEdgeCovered(int axis, int x, int y, int z) const
 {
@@ -57,7 +74,7 @@ double CellNeighbourhood::GetCarefulDifference(int axis, int x, int y, int z) co
   return after ? sample[stride] - sample[0] : before ? sample[0] - sample[-stride] : 0.0;
 }
 
-void CellNeighbourhood::GetGradient(const double local[3], double gradient[3]) const
+void CellNeighbourhood::GetGradient(const Lanes& local, double gradient[3]) const
 {
   const bool complete =
     std::all_of(this->Covered, this->Covered + 27, [](bool covered) { return covered; });

@@ -2,8 +2,10 @@
 #ifndef rt_CellNeighbourhood_h
 #define rt_CellNeighbourhood_h
 
+#include "DSMRayTracing/brick/Box.h"
 #include "DSMRayTracing/brick/VoxelBrick.h"
 #include "DSMRayTracing/kernel/IsovalueLevel.h"
+#include "DSMRayTracing/kernel/Lanes.h"
 
 #include <algorithm>
 
@@ -43,10 +45,14 @@ public:
     std::fill_n(this->Covered, 27, true);
   }
 
-  /// Nothing is known yet.
+  /// Before any CopyPart of a lattice without mask: all cells are covered that the volume has.
+  /// `cell` is the volume's.
+  void CoverWithin(const Index3& cell, const Index3& cells);
+
+  /// Before any CopyPart of a lattice with mask: no cell is known to be covered.
   void Clear() { std::fill_n(this->Covered, 27, false); }
 
-  /// What a brick has of it; `cell` is in the brick's coordinates, but may lie outside of it.
+  /// Adds what a brick has of it; `cell` is in the brick's coordinates, but may lie outside of it.
   template <class T>
   void CopyPart(const VoxelBrick<T>& brick, const int cell[3], const IsovalueLevel<T>& level)
   {
@@ -73,6 +79,10 @@ public:
         }
       }
     }
+    if (brick.GetHeader().MaskOffset == 0)
+    {
+      return;
+    }
     for (int z = first[2]; z < last[2]; ++z)
     {
       for (int y = first[1]; y < last[1]; ++y)
@@ -89,7 +99,7 @@ public:
   /// The gradient, in index space, at a point of the cell: trilinear between those at the corners,
   /// hence continuous across cells. At the corners it is the central difference; one-sided at the
   /// border of the volume, and next to samples that are missing or not finite.
-  void GetGradient(const double local[3], double gradient[3]) const;
+  void GetGradient(const Lanes& local, double gradient[3]) const;
 
 private:
   /// The derivative along an axis at the sample with the given place in Samples. The fast form

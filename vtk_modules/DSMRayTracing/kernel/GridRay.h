@@ -3,6 +3,7 @@
 #define rt_GridRay_h
 
 #include "DSMRayTracing/brick/Box.h"
+#include "DSMRayTracing/kernel/Lanes.h"
 
 #include <algorithm>
 #include <cmath>
@@ -14,44 +15,53 @@ namespace rt
 /// A ray in index space: sample (i, j, k) lies at the point (i, j, k), so the planes between cells
 /// are the whole numbers. T is that of the world ray.
 ///
-/// Where a ray crosses a plane is a function of the ray and the plane alone (PlaneT), never a sum of
-/// steps. So cells, macrocells, bricks and coarser boxes agree bit for bit where they meet, and what
-/// a ray finds does not depend on how the volume is cut.
+/// Where a ray crosses a plane is a function of the ray and the plane alone (GetPlaneT), never a sum
+/// of steps. So cells, macrocells, bricks and coarser boxes agree bit for bit where they meet, and
+/// what a ray finds does not depend on how the volume is cut.
+///
+/// The idle lane is an axis along which the ray does not move.
 struct GridRay
 {
-  double Origin[3];
-  double Direction[3];
-  double Inverse[3];
+  Lanes Origin;
+  Lanes Direction;
+  Lanes Inverse;
   /// Origin, but minus infinity for an axis along which the ray does not move: then the ray meets
   /// its planes at T = infinity without a case of its own.
-  double PlaneOrigin[3];
+  Lanes PlaneOrigin;
+  /// 1 where the ray leaves a node through its upper plane, 0 where through the lower one.
+  Lanes Forward;
   /// -1, 0 or 1.
-  int Step[3];
+  Lanes Step;
+
+  IntegerLanes Backward; ///< where Step is negative
+  IntegerLanes Moving;   ///< where it is not 0
 
   /// Returns false when the ray has no direction or is not finite.
   bool Set(const double origin[3], const double direction[3])
   {
-    bool moves = false;
-    for (int axis = 0; axis < 3; ++axis)
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    this->Origin = Lanes(origin[0], origin[1], origin[2], 0.0);
+    this->Direction = Lanes(direction[0], direction[1], direction[2], 0.0);
+    this->Inverse = Lanes(1.0 / direction[0], 1.0 / direction[1], 1.0 / direction[2], infinity);
+    this->PlaneOrigin = this->Origin;
+    this->PlaneOrigin.Set(3, -infinity);
+    this->Inverse.Set(3, 1.0);
+    // Not finite when any of them is not.
+    const double sum = this->Origin.GetSum() + this->Direction.GetSum();
+    if (!(std::abs(sum) < infinity))
     {
-      if (!std::isfinite(origin[axis]) || !std::isfinite(direction[axis]))
-      {
-        return false;
-      }
-      this->Origin[axis] = origin[axis];
-      this->Direction[axis] = direction[axis];
-      this->Inverse[axis] = 1.0 / direction[axis];
-      this->PlaneOrigin[axis] = origin[axis];
-      this->Step[axis] = direction[axis] > 0.0 ? 1 : -1;
-      if (!std::isfinite(this->Inverse[axis]))
-      {
-        this->Direction[axis] = 0.0;
-        this->Inverse[axis] = 1.0;
-        this->PlaneOrigin[axis] = -std::numeric_limits<double>::infinity();
-        this->Step[axis] = 0;
-      }
-      moves = moves || this->Step[axis] != 0;
+      return false;
     }
+    bool moves = true;
+    if (!(std::abs(this->Inverse.GetSum()) < infinity))
+    {
+      moves = this->HoldStillAxes();
+    }
+    const Lanes none(0.0);
+    this->Moving = this->PlaneOrigin > Lanes(-infinity);
+    this->Backward = none > this->Direction;
+    this->Forward = Lanes(1.0) - (Lanes(1.0) & this->Backward);
+    this->Step = (Lanes(1.0) & this->Moving) - (Lanes(2.0) & this->Backward);
     return moves;
   }
 
@@ -59,10 +69,11 @@ struct GridRay
   {
     return (plane - this->PlaneOrigin[axis]) * this->Inverse[axis];
   }
-  double GetCoordinate(int axis, double t) const
+  Lanes GetPlaneT(const Lanes& planes) const
   {
-    return this->Origin[axis] + t * this->Direction[axis];
+    return (planes - this->PlaneOrigin) * this->Inverse;
   }
+  Lanes GetPoint(double t) const { return this->Origin + Lanes(t) * this->Direction; }
 
   /// Shortens [enter, leave] to the part inside of the box from 0 to `cells`; false when none of
   /// positive length is left.
@@ -71,7 +82,7 @@ struct GridRay
     for (int axis = 0; axis < 3; ++axis)
     {
       const auto size = static_cast<double>(cells[axis]);
-      if (this->Step[axis] == 0)
+      if (this->Step[axis] == 0.0)
       {
         if (!(this->Origin[axis] >= 0.0 && this->Origin[axis] <= size))
         {
@@ -79,39 +90,32 @@ struct GridRay
         }
         continue;
       }
-      const bool forward = this->Step[axis] > 0;
-      enter = std::max(enter, this->GetPlaneT(axis, forward ? 0.0 : size));
-      leave = std::min(leave, this->GetPlaneT(axis, forward ? size : 0.0));
+      const double a = this->GetPlaneT(axis, 0.0);
+      const double b = this->GetPlaneT(axis, size);
+      enter = std::max(enter, std::min(a, b));
+      leave = std::min(leave, std::max(a, b));
     }
     return enter < leave;
   }
 
-  /// Along one axis, the node in which the ray goes on at t: of a row of `count` nodes of `edge`
-  /// cells that begins at the plane `first`. Planes that are met at t or before count as crossed.
-  int Locate(int axis, double t, int first, int edge, double inverseEdge, int count) const
+private:
+  /// Takes out the axes along which the ray moves too little for a division, or not at all; returns
+  /// whether any other is left.
+  bool HoldStillAxes()
   {
-    const double place = (this->GetCoordinate(axis, t) - first) * inverseEdge;
-    int node = static_cast<int>(std::clamp(place, 0.0, count - 1.0));
-    const int step = this->Step[axis];
-    if (step == 0)
+    bool moves = false;
+    for (int axis = 0; axis < 3; ++axis)
     {
-      return node;
+      if (std::isfinite(this->Inverse[axis]))
+      {
+        moves = true;
+        continue;
+      }
+      this->Direction.Set(axis, 0.0);
+      this->Inverse.Set(axis, 1.0);
+      this->PlaneOrigin.Set(axis, -std::numeric_limits<double>::infinity());
     }
-    // The rounding of `place` may differ by a node from what GetPlaneT says, which decides.
-    const int ahead = step > 0 ? 1 : 0;
-    const int behind = 1 - ahead;
-    const auto planeT = [&](int plane) { return this->GetPlaneT(axis, first + plane * edge); };
-    const int last = step > 0 ? count - 1 : 0;
-    while (node != last && planeT(node + ahead) <= t)
-    {
-      node += step;
-    }
-    const int begin = count - 1 - last;
-    while (node != begin && planeT(node + behind) > t)
-    {
-      node -= step;
-    }
-    return node;
+    return moves;
   }
 };
 

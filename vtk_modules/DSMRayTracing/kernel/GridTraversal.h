@@ -4,6 +4,7 @@
 
 #include "DSMRayTracing/brick/VoxelBrick.h"
 #include "DSMRayTracing/kernel/CellHit.h"
+#include "DSMRayTracing/kernel/CornerTest.h"
 #include "DSMRayTracing/kernel/GridRay.h"
 #include "DSMRayTracing/kernel/GridWalk.h"
 #include "DSMRayTracing/kernel/IsovalueLevel.h"
@@ -18,11 +19,11 @@ class GridTraversal
 {
 public:
   /// `origin`: the brick's first cell.
-  GridTraversal(const GridRay& ray, const VoxelBrick<T>& brick, const int origin[3])
+  GridTraversal(const GridRay& ray, const VoxelBrick<T>& brick, const Lanes& origin)
     : Line(ray)
     , Brick(brick)
-    , Origin{ origin[0], origin[1], origin[2] }
-    , CellStrides{ ray.Step[0], ray.Step[1] * brick.GetRow(), ray.Step[2] * brick.GetSlice() }
+    , Origin(origin)
+    , CellStrides(brick.GetRow(), brick.GetSlice())
   {
   }
 
@@ -31,21 +32,14 @@ public:
   bool FindFirst(
     const IsovalueLevel<T>& level, double enter, double leave, double limit, CellHit& hit) const
   {
-    const int counts[3] = { this->Brick.GetMacrocells(0), this->Brick.GetMacrocells(1),
-      this->Brick.GetMacrocells(2) };
-    const int strides[3] = { this->Line.Step[0], this->Line.Step[1] * counts[0],
-      this->Line.Step[2] * counts[0] * counts[1] };
-    int node[3];
-    double lower[3];
-    for (int axis = 0; axis < 3; ++axis)
-    {
-      node[axis] = this->Line.Locate(
-        axis, enter, this->Origin[axis], MacrocellEdge, 1.0 / MacrocellEdge, counts[axis]);
-      lower[axis] = this->Origin[axis] + node[axis] * MacrocellEdge;
-    }
+    const int rows = this->Brick.GetMacrocells(0);
+    const int slices = this->Brick.GetMacrocells(1);
+    const NodeStrides strides(rows, rows * slices);
+    const NodeGrid macrocells{ this->Origin, MacrocellEdge, 1.0 / MacrocellEdge,
+      Lanes(rows, slices, this->Brick.GetMacrocells(2), 1.0), strides };
+    GridWalk walk;
     const MacrocellRange<T>* range =
-      this->Brick.GetMacrocellRanges() + node[0] + counts[0] * (node[1] + counts[1] * node[2]);
-    GridWalk walk(this->Line, lower, MacrocellEdge);
+      this->Brick.GetMacrocellRanges() + walk.Start(this->Line, enter, macrocells);
     double t = enter;
     while (t < limit)
     {
@@ -58,7 +52,7 @@ public:
       {
         return false;
       }
-      range += walk.Advance(this->Line, exit, strides);
+      range += walk.Advance(this->Line, exit);
       t = exit;
     }
     return false;
@@ -69,25 +63,23 @@ private:
   bool WalkCells(const IsovalueLevel<T>& level, const GridWalk& macrocells, double enter,
     double leave, CellHit& hit) const
   {
-    int local[3];
-    double lower[3];
-    for (int axis = 0; axis < 3; ++axis)
-    {
-      const int first = static_cast<int>(macrocells.GetLower(this->Line, axis, MacrocellEdge));
-      const int count =
-        std::min(MacrocellEdge, this->Origin[axis] + this->Brick.GetCells(axis) - first);
-      const int cell = first + this->Line.Locate(axis, enter, first, 1, 1.0, count);
-      lower[axis] = cell;
-      local[axis] = cell - this->Origin[axis];
-    }
-    const T* corner =
-      this->Brick.GetSamples() + this->Brick.GetOffset(local[0], local[1], local[2]);
-    GridWalk walk(this->Line, lower, 1.0);
+    const Lanes first = macrocells.GetFirst(this->Line, MacrocellEdge);
+    const Lanes size(
+      this->Brick.GetCells(0), this->Brick.GetCells(1), this->Brick.GetCells(2), 1.0);
+    const Lanes place = first - this->Origin;
+    const Lanes counts = Min(size - place, Lanes(MacrocellEdge));
+    GridWalk walk;
+    const T* corner = this->Brick.GetSamples() +
+      static_cast<std::int64_t>((place * this->CellStrides.Real).GetSum()) +
+      walk.Start(this->Line, enter, NodeGrid{ first, 1.0, 1.0, counts, this->CellStrides });
+    const std::ptrdiff_t row = this->Brick.GetRow();
+    const std::ptrdiff_t slice = this->Brick.GetSlice();
     double t = enter;
     for (;;)
     {
       const double exit = std::min(walk.GetExit(), leave);
-      if (this->IsSeparated(level, corner) && this->IntersectCell(level, walk, t, exit, hit))
+      if (CornerTest<T>::IsSeparated(corner, row, slice, level.GetFirst()) &&
+        this->IntersectCell(level, walk, corner, t, exit, hit))
       {
         return true;
       }
@@ -95,79 +87,80 @@ private:
       {
         return false;
       }
-      corner += walk.Advance(this->Line, exit, this->CellStrides);
+      corner += walk.Advance(this->Line, exit);
       t = exit;
     }
   }
 
-  /// Whether the corners of the cell whose first one is given are on both sides.
-  bool IsSeparated(const IsovalueLevel<T>& level, const T* corner) const
+  /// Where the ray is in a cell at t, given its point there: exactly 0 or 1 where it meets a plane
+  /// of the cell.
+  Lanes GetLocal(const Lanes& cell, double t) const
   {
-    const T* upper = corner + this->Brick.GetSlice();
-    const int row = this->Brick.GetRow();
-    const int inside = level.IsInside(corner[0]) + level.IsInside(corner[1]) +
-      level.IsInside(corner[row]) + level.IsInside(corner[row + 1]) + level.IsInside(upper[0]) +
-      level.IsInside(upper[1]) + level.IsInside(upper[row]) + level.IsInside(upper[row + 1]);
-    return (inside & 7) != 0;
+    const Lanes zero(0.0);
+    const Lanes one(1.0);
+    const Lanes inside = Clamp(this->Line.GetPoint(t) - cell, zero, one);
+    const Lanes lower = Select(this->Line.GetPlaneT(cell) == Lanes(t), zero, inside);
+    return Select(this->Line.GetPlaneT(cell + one) == Lanes(t), one, lower);
   }
 
-  /// Where the ray is in a cell at t: exactly 0 or 1 where it meets a plane.
-  double GetLocal(int axis, int cell, double t) const
+  /// Whether the cell holds data, and where it does its corners less the isovalue.
+  bool GetCorners(
+    const IsovalueLevel<T>& level, const T* corner, const Lanes& cell, double corners[8]) const
   {
-    if (t == this->Line.GetPlaneT(axis, cell))
+    if (this->Brick.GetHeader().MaskOffset != 0)
     {
-      return 0.0;
+      const Lanes local = cell - this->Origin;
+      if (!this->Brick.IsCovered(
+            static_cast<int>(local[0]), static_cast<int>(local[1]), static_cast<int>(local[2])))
+      {
+        return false;
+      }
     }
-    if (t == this->Line.GetPlaneT(axis, cell + 1.0))
+    const std::ptrdiff_t row = this->Brick.GetRow();
+    const std::ptrdiff_t slice = this->Brick.GetSlice();
+    double check = 0.0;
+    for (int pair = 0; pair < 4; ++pair)
     {
-      return 1.0;
+      const T* from = corner + (pair & 1) * row + (pair >> 1) * slice;
+      corners[2 * pair] = level.Subtract(from[0]);
+      corners[2 * pair + 1] = level.Subtract(from[1]);
+      // Becomes, and stays, not a number where one of them is not finite.
+      check += (corners[2 * pair] + corners[2 * pair + 1]) * 0.0;
     }
-    return std::clamp(this->Line.GetCoordinate(axis, t) - cell, 0.0, 1.0);
+    return std::is_integral_v<T> || check == 0.0;
   }
 
-  /// The first hit in a cell, which the ray crosses from enter to leave.
-  bool IntersectCell(const IsovalueLevel<T>& level, const GridWalk& cells, double enter,
-    double leave, CellHit& hit) const
+  /// The first hit in the cell with the given first corner, which the ray crosses from enter to
+  /// leave.
+  bool IntersectCell(const IsovalueLevel<T>& level, const GridWalk& cells, const T* corner,
+    double enter, double leave, CellHit& hit) const
   {
-    int cell[3];
-    int local[3];
-    double start[3];
-    double end[3];
-    for (int axis = 0; axis < 3; ++axis)
-    {
-      cell[axis] = static_cast<int>(cells.GetLower(this->Line, axis, 1.0));
-      local[axis] = cell[axis] - this->Origin[axis];
-      start[axis] = this->GetLocal(axis, cell[axis], enter);
-      end[axis] = this->GetLocal(axis, cell[axis], leave);
-    }
-    if (!this->Brick.HoldsData(local[0], local[1], local[2]))
+    const Lanes cell = cells.GetFirst(this->Line, 1.0);
+    double corners[8];
+    if (!this->GetCorners(level, corner, cell, corners))
     {
       return false;
     }
-    double corners[8];
-    for (int corner = 0; corner < 8; ++corner)
-    {
-      corners[corner] = level.Subtract(this->Brick.GetSample(
-        local[0] + (corner & 1), local[1] + (corner >> 1 & 1), local[2] + (corner >> 2)));
-    }
+    const Lanes start = this->GetLocal(cell, enter);
+    const Lanes end = this->GetLocal(cell, leave);
     double s;
     if (!FindFirstCrossing(corners, start, end, s))
     {
       return false;
     }
     hit.T = std::min(enter + s * (leave - enter), leave);
+    hit.Local = Clamp(start + Lanes(s) * (end - start), Lanes(0.0), Lanes(1.0));
     for (int axis = 0; axis < 3; ++axis)
     {
-      hit.Cell[axis] = cell[axis];
-      hit.Local[axis] = std::clamp(start[axis] + s * (end[axis] - start[axis]), 0.0, 1.0);
+      hit.Cell[axis] = static_cast<int>(cell[axis] - this->Origin[axis]);
     }
     return true;
   }
 
   const GridRay& Line;
   const VoxelBrick<T>& Brick;
-  int Origin[3];
-  int CellStrides[3];
+  Lanes Origin;
+  NodeStrides CellStrides;
 };
 
 } // namespace rt

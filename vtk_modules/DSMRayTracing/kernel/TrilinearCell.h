@@ -2,6 +2,8 @@
 #ifndef rt_TrilinearCell_h
 #define rt_TrilinearCell_h
 
+#include "DSMRayTracing/kernel/Lanes.h"
+
 namespace rt
 {
 
@@ -14,7 +16,7 @@ inline double Interpolate(double a, double b, double u)
 /// The trilinear function of a cell. Corners are numbered with x in bit 0, y in bit 1, z in bit 2.
 /// On a face (a coordinate exactly 0 or 1) the value depends on the corners of that face only, and
 /// is bit for bit the same in both cells that share it.
-inline double EvaluateTrilinear(const double corners[8], const double point[3])
+inline double EvaluateTrilinear(const double corners[8], const Lanes& point)
 {
   const double x00 = Interpolate(corners[0], corners[1], point[0]);
   const double x10 = Interpolate(corners[2], corners[3], point[0]);
@@ -29,7 +31,7 @@ struct Cubic
   double Coefficients[4];
 
   /// At start + s direction. The constant term is EvaluateTrilinear(corners, start), bit for bit.
-  Cubic(const double corners[8], const double start[3], const double direction[3])
+  Cubic(const double corners[8], const Lanes& start, const Lanes& direction)
   {
     double linear[4][2];
     for (int edge = 0; edge < 4; ++edge)

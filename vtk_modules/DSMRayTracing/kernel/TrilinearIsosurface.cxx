@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "DSMRayTracing/kernel/TrilinearIsosurface.h"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -10,29 +11,47 @@ namespace rt
 namespace
 {
 
-/// The cubic is monotone, or at least on different sides, at the ends of [low, high]: Newton's
-/// method, kept within the bracket by bisection.
-double Refine(const Cubic& cubic, double low, double high, bool lowInside)
+/// One end of a bracket.
+struct End
 {
-  constexpr double tolerance = 1e-14;
-  double s = 0.5 * (low + high);
+  double S;
+  double Value;
+};
+
+/// The crossing between two places of different sides: Newton's method from where the chord
+/// crosses, kept within the bracket by bisection.
+double Refine(const Cubic& cubic, const End& begin, const End& end)
+{
+  // Newton squares the error, so after a step this small nothing is left of it.
+  constexpr double tolerance = 1e-9;
+  const bool beginInside = begin.Value >= 0.0;
+  const auto isBefore = [&](double place) { return (cubic.Evaluate(place) >= 0.0) == beginInside; };
+  double low = begin.S;
+  double high = end.S;
+  // A root is not enough: the values may touch zero at the beginning, and cross it later.
+  const auto isCrossing = [&](double place)
+  {
+    return (place - tolerance <= low || isBefore(place - tolerance)) &&
+      (place + tolerance >= high || !isBefore(place + tolerance));
+  };
+  // Not at the ends themselves: where the values are zero there, Newton would stay.
+  const double chord = begin.Value / (begin.Value - end.Value);
+  double s = low + (high - low) * std::clamp(chord, 0.015625, 0.984375);
   double lastStep = high - low;
-  for (int iteration = 0; iteration < 100 && high - low > tolerance; ++iteration)
+  while (high - low > tolerance)
   {
     const double value = cubic.Evaluate(s);
-    ((value >= 0.0) == lowInside ? low : high) = s;
-    double next = s - value / cubic.EvaluateDerivative(s);
-    // Bisect when Newton leaves the bracket, or does not converge at least as fast.
-    if (!(next > low && next < high && std::abs(next - s) < 0.5 * lastStep))
+    ((value >= 0.0) == beginInside ? low : high) = s;
+    const double next = s - value / cubic.EvaluateDerivative(s);
+    const double step = std::abs(next - s);
+    if (step <= tolerance && isCrossing(next))
     {
-      next = 0.5 * (low + high);
+      return std::clamp(next, low, high);
     }
-    lastStep = std::abs(next - s);
-    s = next;
-    if (lastStep <= tolerance)
-    {
-      break;
-    }
+    // Bisect when Newton leaves the bracket, or does not halve its steps.
+    const bool newton = next > low && next < high && step > tolerance && step < 0.5 * lastStep;
+    s = newton ? next : 0.5 * (low + high);
+    lastStep = newton ? step : high - low;
   }
   return s;
 }
@@ -79,11 +98,9 @@ int FindExtrema(const Cubic& cubic, double extrema[2])
 
 } // namespace
 
-bool FindFirstCrossing(
-  const double corners[8], const double start[3], const double end[3], double& s)
+bool FindFirstCrossing(const double corners[8], const Lanes& start, const Lanes& end, double& s)
 {
-  const double direction[3] = { end[0] - start[0], end[1] - start[1], end[2] - start[2] };
-  const Cubic cubic(corners, start, direction);
+  const Cubic cubic(corners, start, end - start);
   const double last = EvaluateTrilinear(corners, end);
   const bool startInside = cubic.Coefficients[0] >= 0.0;
   const bool endInside = last >= 0.0;
@@ -92,26 +109,27 @@ bool FindFirstCrossing(
   {
     return false;
   }
-  double low = 0.0;
+  End begin{ 0.0, cubic.Coefficients[0] };
   if (changes > 1)
   {
     double extrema[2];
     const int count = FindExtrema(cubic, extrema);
     for (int i = 0; i < count; ++i)
     {
-      if ((cubic.Evaluate(extrema[i]) >= 0.0) != startInside)
+      const End extremum{ extrema[i], cubic.Evaluate(extrema[i]) };
+      if ((extremum.Value >= 0.0) != startInside)
       {
-        s = Refine(cubic, low, extrema[i], startInside);
+        s = Refine(cubic, begin, extremum);
         return true;
       }
-      low = extrema[i];
+      begin = extremum;
     }
   }
   if (startInside == endInside)
   {
     return false;
   }
-  s = Refine(cubic, low, 1.0, startInside);
+  s = Refine(cubic, begin, End{ 1.0, last });
   return true;
 }
 

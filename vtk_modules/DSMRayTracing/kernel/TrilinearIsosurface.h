@@ -2,6 +2,7 @@
 #ifndef rt_TrilinearIsosurface_h
 #define rt_TrilinearIsosurface_h
 
+#include "DSMRayTracing/kernel/Lanes.h"
 #include "DSMRayTracing/kernel/TrilinearCell.h"
 
 namespace rt
@@ -14,8 +15,7 @@ namespace rt
 /// A change between the two ends always yields a place, whatever rounding does in between. Two
 /// changes within the cell are found through the extrema of the cubic (Marmitt et al. 2004, "Fast
 /// and accurate ray-voxel intersection techniques for iso-surface ray tracing").
-bool FindFirstCrossing(
-  const double corners[8], const double start[3], const double end[3], double& s);
+bool FindFirstCrossing(const double corners[8], const Lanes& start, const Lanes& end, double& s);
 
 } // namespace rt
 

@@ -3,6 +3,7 @@
 #define rt_VolumeTracer_h
 
 #include "DSMRayTracing/frame/Scene.h"
+#include "DSMRayTracing/kernel/BrickWalk.h"
 #include "DSMRayTracing/kernel/CellHit.h"
 #include "DSMRayTracing/kernel/GridRay.h"
 #include "DSMRayTracing/kernel/Ray.h"
@@ -50,17 +51,16 @@ private:
   bool IntersectBricks(const IsosurfaceObject& object, const GridRay& line, double enter,
     double leave, SurfaceHit& hit, double gradient[3]) const;
 
-  /// Searches one brick for all isovalues of its range; `hasGradient` tells that the gradient was found
-  /// too, as it is when its samples are all in the brick.
+  /// Searches the brick of the walk for all isovalues of its range; `hasGradient` tells that the
+  /// gradient was found too, as it is when its samples are all in the brick.
   template <class T>
-  bool IntersectBrick(const IsosurfaceObject& object, const GridRay& line, const int brick[3],
-    double enter, double leave, CellHit& cell, int& isovalue, double gradient[3],
-    bool& hasGradient) const;
+  bool IntersectBrick(const IsosurfaceObject& object, const GridRay& line, const BrickWalk& walk,
+    CellHit& cell, int& isovalue, double gradient[3], bool& hasGradient) const;
 
-  /// The gradient at a hit whose neighbourhood reaches into other bricks.
+  /// The gradient at a hit in a brick whose neighbourhood reaches into other bricks.
   template <class T>
-  void FindGradient(
-    const VoxelField& field, const CellHit& cell, double isovalue, double gradient[3]) const;
+  void FindGradient(const VoxelField& field, dsm::BlockId id, const CellHit& cell, double isovalue,
+    double gradient[3]) const;
 
   template <class T>
   double SampleCell(

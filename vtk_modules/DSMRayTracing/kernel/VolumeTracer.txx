@@ -48,25 +48,25 @@ bool VolumeTracer<Store>::IntersectBricks(const IsosurfaceObject& object, const 
   double enter, double leave, SurfaceHit& hit, double gradient[3]) const
 {
   const VoxelField& field = *object.Field;
-  BrickWalk walk(field.Lattice, field.Hierarchy, line, object.Isovalues, enter, leave);
+  BrickWalk walk(field.Hierarchy, line, object.Isovalues, enter, leave);
   while (walk.Next())
   {
     CellHit cell;
     bool hasGradient = false;
-    if (!this->IntersectBrick<T>(object, line, walk.GetBrick(), walk.GetEnter(), walk.GetLeave(),
-          cell, hit.Isovalue, gradient, hasGradient))
+    if (!this->IntersectBrick<T>(object, line, walk, cell, hit.Isovalue, gradient, hasGradient))
     {
       continue;
     }
     if (!hasGradient)
     {
-      this->FindGradient<T>(field, cell, object.Isovalues[hit.Isovalue], gradient);
+      this->FindGradient<T>(field, walk.GetId(), cell, object.Isovalues[hit.Isovalue], gradient);
     }
     hit.T = cell.T;
-    const int* brick = walk.GetBrick();
-    hit.Brick = field.Lattice.GetId({ brick[0], brick[1], brick[2] });
-    hit.IndexPoint = { cell.Cell[0] + cell.Local[0], cell.Cell[1] + cell.Local[1],
-      cell.Cell[2] + cell.Local[2] };
+    hit.Brick = walk.GetId();
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      hit.IndexPoint[axis] = walk.GetOrigin()[axis] + cell.Cell[axis] + cell.Local[axis];
+    }
     return true;
   }
   return false;
@@ -75,25 +75,21 @@ bool VolumeTracer<Store>::IntersectBricks(const IsosurfaceObject& object, const 
 template <class Store>
 template <class T>
 bool VolumeTracer<Store>::IntersectBrick(const IsosurfaceObject& object, const GridRay& line,
-  const int brick[3], double enter, double leave, CellHit& cell, int& isovalue, double gradient[3],
-  bool& hasGradient) const
+  const BrickWalk& walk, CellHit& cell, int& isovalue, double gradient[3], bool& hasGradient) const
 {
-  const VoxelField& field = *object.Field;
-  const int edge = field.Lattice.GetEdge();
-  const int origin[3] = { brick[0] * edge, brick[1] * edge, brick[2] * edge };
-  const typename Store::Pin pin = this->Blocks.Acquire(
-    this->Self, *field.Segment, field.Lattice.GetId({ brick[0], brick[1], brick[2] }));
+  const typename Store::Pin pin =
+    this->Blocks.Acquire(this->Self, *object.Field->Segment, walk.GetId());
   const VoxelBrick<T> voxels(pin.GetData());
   const ValueRange range{ voxels.GetHeader().First, voxels.GetHeader().Last };
-  const GridTraversal<T> traversal(line, voxels, origin);
+  const GridTraversal<T> traversal(line, voxels, walk.GetOrigin());
   bool found = false;
   double limit = std::numeric_limits<double>::infinity();
   for (std::size_t index = 0; index < object.Isovalues.size(); ++index)
   {
     CellHit candidate;
     if (range.MayHold(object.Isovalues[index]) &&
-      traversal.FindFirst(
-        IsovalueLevel<T>(object.Isovalues[index]), enter, leave, limit, candidate) &&
+      traversal.FindFirst(IsovalueLevel<T>(object.Isovalues[index]), walk.GetEnter(),
+        walk.GetLeave(), limit, candidate) &&
       candidate.T < limit)
     {
       found = true;
@@ -106,13 +102,11 @@ bool VolumeTracer<Store>::IntersectBrick(const IsosurfaceObject& object, const G
   {
     return false;
   }
-  const int local[3] = { cell.Cell[0] - origin[0], cell.Cell[1] - origin[1],
-    cell.Cell[2] - origin[2] };
-  hasGradient = CellNeighbourhood::IsWithin(voxels, local);
+  hasGradient = CellNeighbourhood::IsWithin(voxels, cell.Cell);
   if (hasGradient)
   {
     CellNeighbourhood samples;
-    samples.CopyAll(voxels, local, IsovalueLevel<T>(object.Isovalues[isovalue]));
+    samples.CopyAll(voxels, cell.Cell, IsovalueLevel<T>(object.Isovalues[isovalue]));
     samples.GetGradient(cell.Local, gradient);
   }
   return true;
@@ -120,18 +114,25 @@ bool VolumeTracer<Store>::IntersectBrick(const IsosurfaceObject& object, const G
 
 template <class Store>
 template <class T>
-void VolumeTracer<Store>::FindGradient(
-  const VoxelField& field, const CellHit& cell, double isovalue, double gradient[3]) const
+void VolumeTracer<Store>::FindGradient(const VoxelField& field, dsm::BlockId id,
+  const CellHit& cell, double isovalue, double gradient[3]) const
 {
   const BrickLattice& lattice = field.Lattice;
   const IsovalueLevel<T> level(isovalue);
-  const Index3 place(cell.Cell[0], cell.Cell[1], cell.Cell[2]);
   const Index3 edge(lattice.GetEdge());
-  const Index3 home = place / edge;
+  const Index3 home = lattice.GetBrick(id);
+  const Index3 place = home * edge + Index3(cell.Cell[0], cell.Cell[1], cell.Cell[2]);
   const Index3 first = glm::max(place - Index3(1), Index3(0)) / edge;
   const Index3 last = glm::min(place + Index3(1), lattice.GetCells() - Index3(1)) / edge;
   CellNeighbourhood samples;
-  samples.Clear();
+  if (lattice.HasCellMask())
+  {
+    samples.Clear();
+  }
+  else
+  {
+    samples.CoverWithin(place, lattice.GetCells());
+  }
   for (std::int64_t z = first.z; z <= last.z; ++z)
   {
     for (std::int64_t y = first.y; y <= last.y; ++y)
@@ -220,7 +221,7 @@ double VolumeTracer<Store>::SampleCell(
       voxels.GetSample(x + (corner & 1), y + (corner >> 1 & 1), z + (corner >> 2)));
   }
   const glm::dvec3 inside = indexPoint - glm::dvec3(cell);
-  return EvaluateTrilinear(corners, &inside.x);
+  return EvaluateTrilinear(corners, Lanes(inside.x, inside.y, inside.z, 0.0));
 }
 
 } // namespace rt

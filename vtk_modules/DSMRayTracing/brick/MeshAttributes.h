@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef rt_MeshAttributes_h
+#define rt_MeshAttributes_h
+
+#include <cstdint>
+
+namespace rt
+{
+
+/// What the numbers of an attribute belong to.
+enum class Attachment : std::uint8_t
+{
+  None,     ///< the mesh does not have the attribute
+  Points,   ///< one for every point; interpolated in a triangle
+  Triangles ///< one for every triangle
+};
+
+/// What the triangles of a mesh carry beside their positions; the same for all its pieces.
+struct MeshAttributes
+{
+  bool Normals = false; ///< of the points
+  Attachment Values = Attachment::None;
+  Attachment Colors = Attachment::None;
+  bool TextureCoordinates = false; ///< of the points
+
+  bool operator==(const MeshAttributes& other) const
+  {
+    return this->Normals == other.Normals && this->Values == other.Values &&
+      this->Colors == other.Colors && this->TextureCoordinates == other.TextureCoordinates;
+  }
+  bool operator!=(const MeshAttributes& other) const { return !(*this == other); }
+};
+
+} // namespace rt
+
+#endif
