@@ -2,9 +2,10 @@
 #include "vtkPVDSMImageRepresentation.h"
 
 #include "vtkDSMScene.h"
-#include "vtkDSMStatistics.h"
 #include "vtkDSMVolumeMapper.h"
+#include "vtkPVDSMFrameReport.h"
 
+#include "vtkCommand.h"
 #include "vtkDataObject.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
@@ -12,6 +13,7 @@
 #include "vtkMultiProcessController.h"
 #include "vtkObjectFactory.h"
 #include "vtkOrderedCompositingHelper.h"
+#include "vtkPVDataRepresentationPipeline.h"
 #include "vtkPVRenderView.h"
 #include "vtkPVRenderViewDataDeliveryManager.h"
 #include "vtkPVSession.h"
@@ -40,6 +42,8 @@ vtkStandardNewMacro(vtkPVDSMImageRepresentation);
 vtkPVDSMImageRepresentation::vtkPVDSMImageRepresentation()
 {
   this->Volume->SetMapper(this->Mapper);
+  this->Mapper->AddObserver(
+    vtkCommand::ProgressEvent, this, &vtkPVDSMImageRepresentation::ForwardProgress);
 }
 
 vtkPVDSMImageRepresentation::~vtkPVDSMImageRepresentation() = default;
@@ -66,23 +70,25 @@ int vtkPVDSMImageRepresentation::RequestData(
     }
   }
   this->Mapper->SetInputData(data);
+  this->Executed = true;
   return this->Superclass::RequestData(request, input, output);
 }
 
 int vtkPVDSMImageRepresentation::ProcessViewRequest(
   vtkInformationRequestKey* request, vtkInformation* inInfo, vtkInformation* outInfo)
 {
-  if (request == vtkPVView::REQUEST_UPDATE() && this->GetNeedsUpdate())
-  {
-    // The view could only give back our placeholder, not the bricks of another time step.
-    if (auto* view = vtkPVView::SafeDownCast(this->GetView()))
-    {
-      view->ClearCache(this);
-    }
-  }
+  const bool needsUpdate = request == vtkPVView::REQUEST_UPDATE() && this->GetNeedsUpdate();
+  this->Executed = false;
   if (!this->Superclass::ProcessViewRequest(request, inInfo, outInfo))
   {
     return 0;
+  }
+  if (needsUpdate && !this->Executed)
+  {
+    // The view relies on its cache of time steps, but that holds our placeholder, not the data.
+    this->MarkModified();
+    this->Update();
+    vtkPVDataRepresentationPipeline::SafeDownCast(this->GetExecutive())->SetNeedsUpdate(false);
   }
   if (request == vtkPVView::REQUEST_UPDATE())
   {
@@ -106,10 +112,17 @@ void vtkPVDSMImageRepresentation::PrepareUpdate(vtkInformation* inInfo, vtkInfor
   vtkPVRenderView::SetRequiresDistributedRendering(inInfo, this, true);
   // IceT must call every rank's renderer: each has tiles, wherever its data lie.
   outInfo->Set(vtkPVRenderView::RENDER_EMPTY_IMAGES(), 1);
-  this->Volume->ComputeMatrix();
-  double bounds[6];
-  this->Mapper->GetBounds(bounds);
-  vtkPVRenderView::SetGeometryBounds(inInfo, this, bounds, this->Volume->GetMatrix());
+  // In world space: with a matrix, the view would transform two corners of the box only.
+  if (const double* bounds = this->Volume->GetBounds())
+  {
+    vtkPVRenderView::SetGeometryBounds(inInfo, this, bounds);
+  }
+}
+
+void vtkPVDSMImageRepresentation::ForwardProgress()
+{
+  this->SetProgressText("Cutting the volume into bricks");
+  this->UpdateProgress(this->Mapper->GetProgress());
 }
 
 void vtkPVDSMImageRepresentation::ChooseDelivery()
@@ -151,6 +164,7 @@ bool vtkPVDSMImageRepresentation::AddToView(vtkView* view)
   {
     this->Scene = vtkDSMScene::ForRenderer(renderView->GetRenderer());
     renderView->GetRenderer()->AddViewProp(this->Volume);
+    this->ConnectFrameReport();
   }
   return this->Superclass::AddToView(view);
 }
@@ -164,6 +178,7 @@ bool vtkPVDSMImageRepresentation::RemoveFromView(vtkView* view)
   }
   renderView->GetRenderer()->RemoveViewProp(this->Volume);
   this->Scene = nullptr;
+  this->ConnectFrameReport();
   return this->Superclass::RemoveFromView(view);
 }
 
@@ -286,15 +301,18 @@ void vtkPVDSMImageRepresentation::SetUserTransform(const double matrix[16])
   this->Volume->SetUserMatrix(transform);
 }
 
-double vtkPVDSMImageRepresentation::GetFrameTime()
+void vtkPVDSMImageRepresentation::SetFrameReport(vtkPVDSMFrameReport* report)
 {
-  return this->Scene ? this->Scene->GetStatistics()->GetFrameSeconds() : 0.0;
+  this->FrameReport = report;
+  this->ConnectFrameReport();
 }
 
-const char* vtkPVDSMImageRepresentation::GetStatistics()
+void vtkPVDSMImageRepresentation::ConnectFrameReport()
 {
-  this->Statistics = this->Scene ? this->Scene->GetStatistics()->GetJson() : "[]";
-  return this->Statistics.c_str();
+  if (this->FrameReport)
+  {
+    this->FrameReport->SetSource(this->Scene ? this->Scene->GetStatistics() : nullptr);
+  }
 }
 
 void vtkPVDSMImageRepresentation::PrintSelf(ostream& os, vtkIndent indent)

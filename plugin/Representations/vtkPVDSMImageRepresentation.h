@@ -16,12 +16,11 @@
 #include "vtkRepresentationsDSMModule.h" // for the export macro
 #include "vtkSmartPointer.h"             // for ivars
 
-#include <string> // for ivars
-
 class vtkDSMScene;
 class vtkDSMVolumeMapper;
 class vtkMatrix4x4;
 class vtkPartitionedDataSet;
+class vtkPVDSMFrameReport;
 class vtkPVRenderView;
 class vtkScalarsToColors;
 class vtkVolume;
@@ -79,14 +78,9 @@ public:
   ///@}
 
   /**
-   * Seconds the view's last frame took to trace; 0 without one.
+   * What shall tell of the view's frames; null on the client.
    */
-  double GetFrameTime();
-
-  /**
-   * Every rank's counters for the view's last frame, as JSON; see vtkDSMStatistics.
-   */
-  const char* GetStatistics();
+  void SetFrameReport(vtkPVDSMFrameReport* report);
 
 protected:
   vtkPVDSMImageRepresentation();
@@ -105,12 +99,16 @@ private:
   void PrepareUpdate(vtkInformation* inInfo, vtkInformation* outInfo);
   /// By what else the view shows.
   void ChooseDelivery();
+  void ConnectFrameReport();
+  /// Taking in data happens while the view renders; ParaView watches the representation, only.
+  void ForwardProgress();
 
+  bool Executed = false; ///< RequestData, during the current request of the view
   vtkNew<vtkVolume> Volume;
   vtkNew<vtkDSMVolumeMapper> Mapper;
   vtkNew<vtkPartitionedDataSet> Placeholder;
   vtkSmartPointer<vtkDSMScene> Scene;
-  std::string Statistics;
+  vtkSmartPointer<vtkPVDSMFrameReport> FrameReport;
 };
 
 #endif

@@ -90,9 +90,23 @@ std::shared_ptr<vtkDSMRankGroup> vtkDSMRankGroup::Get(vtkMultiProcessController*
   return group;
 }
 
+namespace
+{
+
+/// Bricks are owned round robin, and what a rank needs of the others' goes through its cache.
+dsm::BlockStore::Settings GetFirstSettings()
+{
+  dsm::BlockStore::Settings settings;
+  settings.Organization = dsm::MemoryOrganization::ObjectBased;
+  settings.HostSharing = false;
+  return settings;
+}
+
+} // namespace
+
 vtkDSMRankGroup::vtkDSMRankGroup(std::unique_ptr<dsm::Transport> transport)
   : Messenger(std::move(transport))
-  , Store(this->Messenger, dsm::ObjectStore::Settings())
+  , Store(this->Messenger, GetFirstSettings())
   , FrameRenderer(this->Messenger)
 {
 }
@@ -100,7 +114,7 @@ vtkDSMRankGroup::vtkDSMRankGroup(std::unique_ptr<dsm::Transport> transport)
 void vtkDSMRankGroup::Configure(std::size_t cacheBytes, int threads)
 {
   const int ranksOnHost = this->Messenger.GetRanksOnHost();
-  dsm::ObjectStore::Settings settings = this->Store.GetSettings();
+  dsm::BlockStore::Settings settings = this->Store.GetSettings();
   settings.CacheBytes = cacheBytes;
   if (threads < 1)
   {

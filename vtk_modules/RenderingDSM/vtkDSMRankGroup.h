@@ -2,8 +2,8 @@
 #ifndef vtkDSMRankGroup_h
 #define vtkDSMRankGroup_h
 
+#include "DSMCore/BlockStore.h"
 #include "DSMCore/Messenger.h"
-#include "DSMCore/ObjectStore.h"
 #include "DSMRayTracing/frame/FrameRenderer.h"
 
 #include <memory>
@@ -26,7 +26,7 @@ public:
   vtkDSMRankGroup& operator=(const vtkDSMRankGroup&) = delete;
 
   dsm::Messenger& GetMessenger() { return this->Messenger; }
-  dsm::ObjectStore& GetStore() { return this->Store; }
+  dsm::BlockStore& GetStore() { return this->Store; }
   rt::FrameRenderer& GetFrameRenderer() { return this->FrameRenderer; }
 
   /// `threads` 0 means the cores of the host divided by the ranks on it. Collective the first time.
@@ -34,7 +34,7 @@ public:
 
 private:
   dsm::Messenger Messenger;
-  dsm::ObjectStore Store;
+  dsm::BlockStore Store;
   rt::FrameRenderer FrameRenderer;
 };
 

@@ -50,6 +50,7 @@ public:
   void Configure();
   void Update();
   void Draw();
+  void DrawLast(const rt::Scene& scene);
   void Clear();
 
   vtkWeakPointer<vtkRenderer> Renderer;
@@ -227,6 +228,7 @@ void vtkDSMScene::Internals::Draw()
     this->Clear();
     return;
   }
+  this->DrawLast(scene);
   scene.Lights = vtkDSMTranslation::ToLights(this->Renderer);
   vtkNew<vtkMatrix4x4> projection;
   const rt::FrameRequest request = vtkDSMTranslation::ToRequest(this->Renderer, projection);
@@ -251,6 +253,18 @@ void vtkDSMScene::Internals::Draw()
   whole.Tiles[0].Color = std::move(picture.Color);
   whole.Tiles[0].Depth = std::move(picture.Depth);
   this->Prop->SetFrame(whole, projection, bounds, drawsColor);
+}
+
+/// What shows through a translucent surface must have been drawn before it.
+void vtkDSMScene::Internals::DrawLast(const rt::Scene& scene)
+{
+  const bool translucent = std::any_of(scene.Isosurfaces.begin(), scene.Isosurfaces.end(),
+    [](const rt::IsosurfaceObject& object) { return object.Surface.Opacity < 1.0f; });
+  if (translucent && this->Renderer->GetViewProps()->GetLastProp() != this->Prop)
+  {
+    this->Renderer->RemoveViewProp(this->Prop);
+    this->Renderer->AddViewProp(this->Prop);
+  }
 }
 
 void vtkDSMScene::Internals::Clear()

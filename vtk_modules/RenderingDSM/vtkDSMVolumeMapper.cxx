@@ -99,7 +99,8 @@ double* vtkDSMVolumeMapper::GetBounds()
   {
     composite->GetBounds(this->Bounds);
   }
-  return this->Bounds;
+  // vtkVolume would make a box of uninitialised bounds.
+  return vtkMath::AreBoundsInitialized(this->Bounds) ? this->Bounds : nullptr;
 }
 
 void vtkDSMVolumeMapper::SetGlobalBounds(const double bounds[6])

@@ -105,7 +105,7 @@ public:
   ///@{
   /**
    * Bounds of all ranks' data, without the volume's transform. Until the scene has taken in the data,
-   * those of this rank's.
+   * those of this rank's; null where there are none.
    */
   using vtkAbstractVolumeMapper::GetBounds;
   double* GetBounds() VTK_SIZEHINT(6) override;
