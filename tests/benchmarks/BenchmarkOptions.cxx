@@ -1,41 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "BenchmarkOptions.h"
 
-#include "DSMCore/Error.h"
-
-#include <functional>
-#include <map>
-#include <sstream>
-
-namespace
-{
-
-template <class T>
-T ToNumber(const std::string& name, const std::string& text, T smallest)
-{
-  std::istringstream stream(text);
-  T value{};
-  if (!(stream >> value) || !stream.eof() || value < smallest)
-  {
-    std::ostringstream message;
-    message << name << " takes a number of at least " << smallest << ", not \"" << text << "\".";
-    throw dsm::Error(message.str());
-  }
-  return value;
-}
-
-std::vector<double> ToNumbers(const std::string& name, const std::string& text)
-{
-  std::vector<double> values;
-  std::istringstream stream(text);
-  for (std::string part; std::getline(stream, part, ',');)
-  {
-    values.push_back(ToNumber<double>(name, part, -1e300));
-  }
-  return values;
-}
-
-} // namespace
+#include "OptionValues.h"
 
 const char* BenchmarkOptions::Usage()
 {
@@ -48,7 +14,12 @@ const char* BenchmarkOptions::Usage()
          "  --frames N          camera positions around the volume (default 20)\n"
          "  --repeat R          orbits; for every position the fastest counts (default 1)\n"
          "  --threads T         tracing threads per rank (default 0: cores / ranks of the host)\n"
-         "  --store object      memory organisation\n"
+         "  --store S           automatic, replicated, object (default) or paged\n"
+         "  --host-sharing H    on: ranks of one host read one another's bricks in place; off\n"
+         "                      (default): one machine plays many hosts, as the paper's figures "
+         "need\n"
+         "  --memory MIB        memory per rank for bricks and cache (default 0: half of what the\n"
+         "                      host has left, divided by its ranks)\n"
          "  --cache-fraction F  cache per rank, as a part of the bytes of all bricks (default 1)\n"
          "  --brick-edge E      cells along a brick's edge (default: by the scalar type)\n"
          "  --picture FILE.ppm  writes the picture of the first position\n"
@@ -57,11 +28,13 @@ const char* BenchmarkOptions::Usage()
 
 BenchmarkOptions BenchmarkOptions::Parse(int argc, char** argv)
 {
+  using namespace OptionValues;
   BenchmarkOptions options;
-  const std::map<std::string, std::function<void(const std::string&, const std::string&)>> setters{
+  const Setters setters{
     { "--volume", [&](const auto&, const auto& text) { options.Volume = text; } },
     { "--isovalue",
-      [&](const auto& name, const auto& text) { options.Isovalues = ToNumbers(name, text); } },
+      [&](const auto& name, const auto& text)
+      { options.Isovalues = ToNumbers<double>(name, text, -1e300); } },
     { "--size",
       [&](const auto& name, const auto& text)
       {
@@ -78,12 +51,19 @@ BenchmarkOptions BenchmarkOptions::Parse(int argc, char** argv)
     { "--store",
       [&](const auto& name, const auto& text)
       {
-        if (text != "object")
-        {
-          throw dsm::Error(name + " knows object, not \"" + text + "\".");
-        }
-        options.Store = text;
+        options.Store = ToChoice<dsm::MemoryOrganization>(name, text,
+          { { "automatic", dsm::MemoryOrganization::Automatic },
+            { "replicated", dsm::MemoryOrganization::Replicated },
+            { "object", dsm::MemoryOrganization::ObjectBased },
+            { "paged", dsm::MemoryOrganization::PageBased } });
       } },
+    { "--host-sharing",
+      [&](const auto& name, const auto& text) {
+        options.HostSharing = ToChoice<bool>(name, text, { { "on", true }, { "off", false } });
+      } },
+    { "--memory",
+      [&](const auto& name, const auto& text)
+      { options.MemoryBytes = ToNumber<std::uint64_t>(name, text, 0) << 20; } },
     { "--cache-fraction",
       [&](const auto& name, const auto& text)
       { options.CacheFraction = ToNumber<double>(name, text, 0.0); } },
@@ -92,21 +72,6 @@ BenchmarkOptions BenchmarkOptions::Parse(int argc, char** argv)
     { "--picture", [&](const auto&, const auto& text) { options.Picture = text; } },
     { "--json", [&](const auto&, const auto& text) { options.Json = text; } },
   };
-  if (argc < 2 || std::string(argv[1]) != "isosurface")
-  {
-    throw dsm::Error(
-      std::string("The first argument names the benchmark: isosurface.\n") + Usage());
-  }
-  for (int argument = 2; argument < argc; argument += 2)
-  {
-    const std::string name = argv[argument];
-    const auto setter = setters.find(name);
-    if (setter == setters.end() || argument + 1 >= argc)
-    {
-      throw dsm::Error("Option " + name +
-        (setter == setters.end() ? " is not known.\n" : " lacks its value.\n") + Usage());
-    }
-    setter->second(name, argv[argument + 1]);
-  }
+  OptionValues::Parse(argc, argv, setters, Usage());
   return options;
 }

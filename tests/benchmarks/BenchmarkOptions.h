@@ -2,6 +2,9 @@
 #ifndef BenchmarkOptions_h
 #define BenchmarkOptions_h
 
+#include "DSMCore/MemoryOrganization.h"
+
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -15,11 +18,13 @@ struct BenchmarkOptions
   int Frames = 20;
   int Repeat = 1;
   int Threads = 0; ///< 0: the host's cores divided by its ranks
-  std::string Store = "object";
-  double CacheFraction = 1.0; ///< of the bytes of all bricks
-  int BrickEdge = 0;          ///< cells; 0: the default of the scalar type
-  std::string Json;           ///< file, or - for standard output; empty: none
-  std::string Picture;        ///< PPM file of the first frame; empty: none
+  dsm::MemoryOrganization Store = dsm::MemoryOrganization::ObjectBased;
+  double CacheFraction = 1.0;    ///< of the bytes of all bricks
+  bool HostSharing = false;      ///< off: one machine plays many hosts
+  std::uint64_t MemoryBytes = 0; ///< per rank; 0: a part of what the host has
+  int BrickEdge = 0;             ///< cells; 0: the default of the scalar type
+  std::string Json;              ///< file, or - for standard output; empty: none
+  std::string Picture;           ///< PPM file of the first frame; empty: none
 
   static const char* Usage();
 

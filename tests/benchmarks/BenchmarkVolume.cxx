@@ -187,7 +187,7 @@ rt::Box CutAlong(int axis, const rt::Box& box, std::int64_t part, std::int64_t p
 } // namespace
 
 rt::IsosurfaceObject PublishBenchmarkVolume(const std::string& description, int brickEdge,
-  int threads, dsm::ObjectStore& store, dsm::Messenger& messenger)
+  int threads, dsm::BlockStore& store, dsm::Messenger& messenger)
 {
   Input input;
   messenger.RunTogether("Reading the volume",

@@ -2,8 +2,8 @@
 #ifndef BenchmarkVolume_h
 #define BenchmarkVolume_h
 
+#include "DSMCore/BlockStore.h"
 #include "DSMCore/Messenger.h"
-#include "DSMCore/ObjectStore.h"
 #include "DSMRayTracing/frame/Scene.h"
 
 #include <string>
@@ -11,6 +11,6 @@
 /// Publishes the volume that `description` names (see BenchmarkOptions::Usage): each rank makes or
 /// reads a slab of its own. Returns the object without isovalues. Collective; throws dsm::Error.
 rt::IsosurfaceObject PublishBenchmarkVolume(const std::string& description, int brickEdge,
-  int threads, dsm::ObjectStore& store, dsm::Messenger& messenger);
+  int threads, dsm::BlockStore& store, dsm::Messenger& messenger);
 
 #endif

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Times the tracer without ParaView: a camera orbits a volume. See BenchmarkOptions::Usage.
+// Times the tracer and the memory below it without ParaView. See the Usage of each benchmark.
+#include "AccessBenchmark.h"
 #include "BenchmarkOptions.h"
 #include "BenchmarkVolume.h"
 
+#include "DSMCore/BlockStore.h"
 #include "DSMCore/LoopbackTransport.h"
 #include "DSMCore/Messenger.h"
 #include "DSMCore/MpiTransport.h"
-#include "DSMCore/ObjectStore.h"
 #include "DSMRayTracing/frame/FrameGather.h"
 #include "DSMRayTracing/frame/FrameRenderer.h"
 
@@ -116,7 +117,7 @@ std::uint64_t GetPeakRssBytes()
 /// Counts are sums over the ranks and the frames of the last orbit; bytes held are the largest of
 /// any rank.
 Json Summarise(const BenchmarkOptions& options, int threads, double orbitSeconds,
-  std::uint64_t hash, const std::vector<RankResult>& ranks)
+  std::uint64_t hash, dsm::MemoryOrganization organization, const std::vector<RankResult>& ranks)
 {
   RankResult total;
   Json each = Json::array();
@@ -136,9 +137,10 @@ Json Summarise(const BenchmarkOptions& options, int threads, double orbitSeconds
   std::snprintf(hexadecimal, sizeof(hexadecimal), "%016llx", static_cast<unsigned long long>(hash));
   return { { "volume", options.Volume }, { "isovalues", options.Isovalues },
     { "size", { options.Width, options.Height } }, { "frames", options.Frames },
-    { "repeat", options.Repeat }, { "store", options.Store },
-    { "cache_fraction", options.CacheFraction }, { "rank_count", ranks.size() },
-    { "threads", threads }, { "frames_per_second", framesPerSecond },
+    { "repeat", options.Repeat }, { "store", dsm::GetText(organization) },
+    { "host_sharing", options.HostSharing }, { "cache_fraction", options.CacheFraction },
+    { "rank_count", ranks.size() }, { "threads", threads },
+    { "frames_per_second", framesPerSecond },
     { "rays_per_second", framesPerSecond * options.Width * options.Height },
     { "accesses", total.Accesses }, { "hits", total.Hits }, { "misses", total.Misses },
     { "bytes_received", total.BytesReceived }, { "resident_bytes", total.ResidentBytes },
@@ -151,9 +153,12 @@ void RunIsosurface(const BenchmarkOptions& options, dsm::Messenger& messenger)
   const int cores = static_cast<int>(std::max(std::thread::hardware_concurrency(), 1u));
   const int threads =
     options.Threads > 0 ? options.Threads : std::max(cores / messenger.GetRanksOnHost(), 1);
-  dsm::ObjectStore::Settings settings;
+  dsm::BlockStore::Settings settings;
+  settings.Organization = options.Store;
+  settings.HostSharing = options.HostSharing;
+  settings.MemoryBytes = options.MemoryBytes;
   settings.Workers = threads;
-  dsm::ObjectStore store(messenger, settings);
+  dsm::BlockStore store(messenger, settings);
 
   rt::Scene scene;
   scene.Isosurfaces.push_back(
@@ -212,7 +217,8 @@ void RunIsosurface(const BenchmarkOptions& options, dsm::Messenger& messenger)
     {
       orbitSeconds += seconds;
     }
-    const Json result = Summarise(options, threads, orbitSeconds, hash, ranks);
+    const Json result =
+      Summarise(options, threads, orbitSeconds, hash, store.GetOrganization(), ranks);
     if (options.Json == "-")
     {
       std::cout << result.dump(2) << std::endl;
@@ -240,7 +246,20 @@ int main(int argc, char** argv)
     transport ? std::move(transport) : std::move(dsm::LoopbackTransport::CreateGroup(1).front()));
   try
   {
-    RunIsosurface(BenchmarkOptions::Parse(argc, argv), messenger);
+    const std::string name = argc > 1 ? argv[1] : "";
+    if (name == "isosurface")
+    {
+      RunIsosurface(BenchmarkOptions::Parse(argc, argv), messenger);
+    }
+    else if (name == "access")
+    {
+      AccessBenchmark::Run(AccessBenchmark::Parse(argc, argv), messenger);
+    }
+    else
+    {
+      throw dsm::Error(std::string("The first argument names the benchmark.\n") +
+        BenchmarkOptions::Usage() + AccessBenchmark::Usage());
+    }
   }
   catch (const std::exception& error)
   {

@@ -9,6 +9,7 @@
 
 #include <gtest/gtest.h>
 
+#include <tuple>
 #include <utility>
 
 namespace
@@ -16,9 +17,9 @@ namespace
 
 constexpr std::size_t PlentyOfCache = std::size_t(16) << 20;
 
-rt::Picture TraceTurning(dsm::Messenger& messenger, std::size_t cacheBytes, int workers)
+rt::Picture TraceTurning(dsm::Messenger& messenger, const dsm::BlockStore::Settings& settings)
 {
-  dsm::ObjectStore store(messenger, { cacheBytes, workers });
+  dsm::BlockStore store(messenger, settings);
   const rt::Scene scene = SphereScene::CreateScene(SphereScene::Publish(messenger, store), 1.0f);
   rt::FrameRenderer renderer(messenger);
   rt::Picture picture;
@@ -33,34 +34,51 @@ rt::Picture TraceTurning(dsm::Messenger& messenger, std::size_t cacheBytes, int 
 std::uint64_t GetReference()
 {
   std::uint64_t hash = 0;
-  RunOnCluster(
-    1, [&](dsm::Messenger& alone) { hash = rt::GetHash(TraceTurning(alone, PlentyOfCache, 1)); });
+  RunOnCluster(1,
+    [&](dsm::Messenger& alone)
+    { hash = rt::GetHash(TraceTurning(alone, SphereScene::CreateSettings(PlentyOfCache, 1))); });
   return hash;
 }
 
-class FrameOverMpi : public testing::Test
+/// The organisation, and whether ranks of a host read one another's bricks in place.
+class FrameOverMpi : public testing::TestWithParam<std::tuple<dsm::MemoryOrganization, bool>>
 {
 protected:
+  static dsm::BlockStore::Settings Create(std::size_t cacheBytes, int workers)
+  {
+    dsm::BlockStore::Settings settings =
+      SphereScene::CreateSettings(cacheBytes, workers, std::get<0>(GetParam()));
+    settings.HostSharing = std::get<1>(GetParam());
+    return settings;
+  }
+
   dsm::Messenger Messenger{ dsm::MpiTransport::Create(nullptr) };
 };
 
+INSTANTIATE_TEST_SUITE_P(Organizations, FrameOverMpi,
+  testing::Combine(
+    testing::Values(dsm::MemoryOrganization::Automatic, dsm::MemoryOrganization::Replicated,
+      dsm::MemoryOrganization::ObjectBased, dsm::MemoryOrganization::PageBased),
+    testing::Bool()));
+
 } // namespace
 
-TEST_F(FrameOverMpi, EqualsOneRankAlone)
+TEST_P(FrameOverMpi, EqualsOneRankAlone)
 {
   const std::uint64_t expected = GetReference();
   for (const int workers : { 1, 2 })
   {
-    EXPECT_EQ(rt::GetHash(TraceTurning(this->Messenger, PlentyOfCache, workers)), expected)
+    EXPECT_EQ(
+      rt::GetHash(TraceTurning(this->Messenger, this->Create(PlentyOfCache, workers))), expected)
       << workers << " workers";
   }
 }
 
-TEST_F(FrameOverMpi, CacheHoldsOneBrick)
+TEST_P(FrameOverMpi, CacheHoldsOneBrick)
 {
   const rt::BrickLattice lattice(
     rt::Index3(SphereScene::Points), rt::ScalarType::Float32, false, SphereScene::BrickEdge);
-  const std::size_t oneBrick =
-    (lattice.CreateDirectory(1).GetLargest() / dsm::BlockAlignment + 1) * dsm::BlockAlignment;
-  EXPECT_EQ(rt::GetHash(TraceTurning(this->Messenger, oneBrick, 2)), GetReference());
+  const std::size_t page = 4096; // a brick takes whole ones, where it is paged
+  const std::size_t oneBrick = (lattice.CreateDirectory(1).GetLargest() + page - 1) / page * page;
+  EXPECT_EQ(rt::GetHash(TraceTurning(this->Messenger, this->Create(oneBrick, 2))), GetReference());
 }

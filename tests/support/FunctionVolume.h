@@ -2,8 +2,8 @@
 #ifndef FunctionVolume_h
 #define FunctionVolume_h
 
+#include "DSMCore/BlockStore.h"
 #include "DSMCore/Messenger.h"
-#include "DSMCore/ObjectStore.h"
 #include "DSMRayTracing/brick/VoxelBrickBuilder.h"
 #include "DSMRayTracing/frame/Scene.h"
 
@@ -56,7 +56,7 @@ public:
 
   /// The function's surface at zero, published by the only rank.
   static rt::IsosurfaceObject Publish(
-    std::int64_t points, Function function, dsm::Messenger& messenger, dsm::ObjectStore& store)
+    std::int64_t points, Function function, dsm::Messenger& messenger, dsm::BlockStore& store)
   {
     const rt::BrickLattice lattice(rt::Index3(points), rt::ScalarType::Float64, false, 16);
     rt::VoxelFragmentSource source(

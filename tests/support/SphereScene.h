@@ -2,8 +2,8 @@
 #ifndef SphereScene_h
 #define SphereScene_h
 
+#include "DSMCore/BlockStore.h"
 #include "DSMCore/Messenger.h"
-#include "DSMCore/ObjectStore.h"
 #include "DSMRayTracing/brick/VoxelBrickBuilder.h"
 #include "DSMRayTracing/frame/FrameRequest.h"
 #include "DSMRayTracing/frame/Scene.h"
@@ -22,8 +22,20 @@ namespace SphereScene
 constexpr int Points = 40;
 constexpr int BrickEdge = 8;
 
+/// Of a store in which bricks are fetched, as by ranks on different hosts.
+inline dsm::BlockStore::Settings CreateSettings(std::size_t cacheBytes, int workers,
+  dsm::MemoryOrganization organization = dsm::MemoryOrganization::ObjectBased)
+{
+  dsm::BlockStore::Settings settings;
+  settings.Organization = organization;
+  settings.CacheBytes = cacheBytes;
+  settings.Workers = workers;
+  settings.HostSharing = false;
+  return settings;
+}
+
 /// A noisy sphere; rank r has the r-th slab, the last rank none when there are several.
-inline std::shared_ptr<rt::VoxelField> Publish(dsm::Messenger& messenger, dsm::ObjectStore& store)
+inline std::shared_ptr<rt::VoxelField> Publish(dsm::Messenger& messenger, dsm::BlockStore& store)
 {
   const rt::SampleVolume volume(rt::SampleVolume::Kind::Sphere, rt::Index3(Points));
   const rt::BrickLattice lattice(rt::Index3(Points), rt::ScalarType::Float32, false, BrickEdge);

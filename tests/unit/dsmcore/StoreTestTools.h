@@ -141,9 +141,10 @@ inline dsm::BlockDirectory MakeDirectory(int ranks, std::size_t count, std::uint
     std::vector<std::uint32_t>(count, bytes), dsm::RoundRobinAssigner(ranks));
 }
 
-inline std::shared_ptr<dsm::BlockSegment> PublishPattern(dsm::Messenger& messenger,
-  dsm::ObjectStore& store, const dsm::BlockDirectory& directory,
-  Spread spread = Spread::EveryRankASlice, std::size_t piece = 1000)
+template <class Store>
+std::shared_ptr<dsm::BlockSegment> PublishPattern(dsm::Messenger& messenger, Store& store,
+  const dsm::BlockDirectory& directory, Spread spread = Spread::EveryRankASlice,
+  std::size_t piece = 1000)
 {
   PatternSource source(directory, messenger.GetRank(), messenger.GetSize(), spread, piece);
   PatternSink sink;
@@ -168,8 +169,9 @@ inline std::size_t CountWrongBytes(dsm::BlockId id, const std::byte* block, std:
 /// thread serves until every rank's workers are done. What a worker throws cancels the frame on its
 /// rank; then every rank throws the same Error. `first` (may be empty) runs on this thread when the
 /// frame has begun.
-inline void RunFrame(dsm::Messenger& messenger, dsm::ObjectStore& store,
-  const std::function<void(dsm::ObjectStore::Worker&, int)>& trace,
+template <class Store>
+void RunFrame(dsm::Messenger& messenger, Store& store,
+  const std::function<void(typename Store::Worker&, int)>& trace,
   const std::function<void()>& first = {})
 {
   store.BeginFrame();
@@ -186,7 +188,7 @@ inline void RunFrame(dsm::Messenger& messenger, dsm::ObjectStore& store,
     threads.emplace_back(
       [&, index]
       {
-        dsm::ObjectStore::Worker& worker = store.GetWorker(index);
+        typename Store::Worker& worker = store.GetWorker(index);
         store.Enter(worker);
         try
         {
@@ -254,10 +256,11 @@ inline void RunFrame(dsm::Messenger& messenger, dsm::ObjectStore& store,
 }
 
 /// One worker's look at a block.
-inline std::size_t Visit(dsm::ObjectStore& store, dsm::ObjectStore::Worker& worker,
-  const dsm::BlockSegment& segment, dsm::BlockId id)
+template <class Store>
+std::size_t Visit(
+  Store& store, typename Store::Worker& worker, const dsm::BlockSegment& segment, dsm::BlockId id)
 {
-  const dsm::ObjectStore::Pin pin = store.Acquire(worker, segment, id);
+  const typename Store::Pin pin = store.Acquire(worker, segment, id);
   EXPECT_EQ(pin.GetBytes(), segment.GetDirectory().GetBytes(id));
   return CountWrongBytes(id, pin.GetData(), pin.GetBytes());
 }

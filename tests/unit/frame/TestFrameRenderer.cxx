@@ -17,6 +17,8 @@ namespace
 
 struct Setting
 {
+  dsm::MemoryOrganization Organization = dsm::MemoryOrganization::Replicated;
+  bool HostSharing = false;
   int Ranks = 1;
   int Workers = 1;
   std::size_t CacheBytes = std::size_t(16) << 20;
@@ -33,7 +35,10 @@ rt::Picture Trace(const Setting& setting, dsm::StoreCounters* sum = nullptr)
   RunOnCluster(setting.Ranks,
     [&](dsm::Messenger& messenger)
     {
-      dsm::ObjectStore store(messenger, { setting.CacheBytes, setting.Workers });
+      dsm::BlockStore::Settings settings =
+        SphereScene::CreateSettings(setting.CacheBytes, setting.Workers, setting.Organization);
+      settings.HostSharing = setting.HostSharing;
+      dsm::BlockStore store(messenger, settings);
       const rt::Scene scene =
         SphereScene::CreateScene(SphereScene::Publish(messenger, store), setting.Opacity);
       rt::FrameRenderer renderer(messenger);
@@ -69,7 +74,40 @@ int CountCovered(const rt::Picture& picture)
 
 } // namespace
 
-TEST(FrameRenderer, PictureDoesNotDependOnRanksOrWorkers)
+/// How bricks are kept, and whether ranks of a host read one another's in place.
+struct Keeping
+{
+  dsm::MemoryOrganization Organization;
+  bool HostSharing;
+};
+
+class FrameInOrganization : public testing::TestWithParam<Keeping>
+{
+protected:
+  static Setting Create()
+  {
+    Setting setting;
+    setting.Organization = GetParam().Organization;
+    setting.HostSharing = GetParam().HostSharing;
+    return setting;
+  }
+};
+
+INSTANTIATE_TEST_SUITE_P(Organizations, FrameInOrganization,
+  testing::Values(Keeping{ dsm::MemoryOrganization::Automatic, true },
+    Keeping{ dsm::MemoryOrganization::Replicated, false },
+    Keeping{ dsm::MemoryOrganization::Replicated, true },
+    Keeping{ dsm::MemoryOrganization::ObjectBased, false },
+    Keeping{ dsm::MemoryOrganization::ObjectBased, true },
+    Keeping{ dsm::MemoryOrganization::PageBased, false }),
+  [](const auto& info)
+  {
+    std::string name = dsm::GetText(info.param.Organization);
+    name.erase(std::remove(name.begin(), name.end(), ' '), name.end());
+    return name + (info.param.HostSharing ? "_shared" : "");
+  });
+
+TEST_P(FrameInOrganization, PictureDoesNotDependOnRanksOrWorkers)
 {
   const rt::Picture expected = Trace({});
   EXPECT_GT(CountCovered(expected), 97 * 61 / 10);
@@ -78,7 +116,7 @@ TEST(FrameRenderer, PictureDoesNotDependOnRanksOrWorkers)
   {
     for (const int workers : { 1, 2, 3 })
     {
-      Setting setting;
+      Setting setting = this->Create();
       setting.Ranks = ranks;
       setting.Workers = workers;
       const rt::Picture picture = Trace(setting);
@@ -88,24 +126,31 @@ TEST(FrameRenderer, PictureDoesNotDependOnRanksOrWorkers)
   }
 }
 
-TEST(FrameRenderer, CacheHoldsOneBrick)
+TEST_P(FrameInOrganization, CacheHoldsOneBrick)
 {
   const rt::BrickLattice lattice(
     rt::Index3(SphereScene::Points), rt::ScalarType::Float32, false, SphereScene::BrickEdge);
-  const std::size_t oneBrick = lattice.CreateDirectory(1).GetLargest();
+  const std::size_t page = 4096; // a brick takes whole ones, where it is paged
+  const std::size_t oneBrick = (lattice.CreateDirectory(1).GetLargest() + page - 1) / page * page;
   const std::uint64_t expected = rt::GetHash(Trace({}));
+  const bool fetches = GetParam().Organization == dsm::MemoryOrganization::PageBased ||
+    (GetParam().Organization == dsm::MemoryOrganization::ObjectBased && !GetParam().HostSharing);
   for (const int ranks : { 2, 3 })
   {
-    Setting setting;
+    Setting setting = this->Create();
     setting.Ranks = ranks;
     setting.Workers = 3;
-    setting.CacheBytes =
-      (oneBrick + dsm::BlockAlignment - 1) / dsm::BlockAlignment * dsm::BlockAlignment;
+    setting.CacheBytes = oneBrick;
     dsm::StoreCounters sum;
     EXPECT_EQ(rt::GetHash(Trace(setting, &sum)), expected) << ranks << " ranks";
-    EXPECT_GT(sum.Evictions, 0u);
+    EXPECT_EQ(sum.Evictions > 0, fetches);
+    EXPECT_EQ(sum.Workers.Misses > 0, fetches);
     EXPECT_LE(sum.PeakCachedBytes, setting.CacheBytes);
-    EXPECT_EQ(sum.Workers.Accesses, sum.Workers.Hits + sum.Workers.Misses);
+    EXPECT_GT(sum.Workers.Accesses, 0u);
+    if (GetParam().Organization != dsm::MemoryOrganization::PageBased)
+    {
+      EXPECT_EQ(sum.Workers.Accesses, sum.Workers.Hits + sum.Workers.Misses);
+    }
   }
 }
 
@@ -125,6 +170,7 @@ TEST(FrameRenderer, TranslucentSurfaces)
   EXPECT_GE(largestAlpha, std::lround(255.0 * (1.0 - std::pow(0.6, 4))));
   setting.Ranks = 3;
   setting.Workers = 2;
+  setting.Organization = dsm::MemoryOrganization::ObjectBased;
   EXPECT_EQ(rt::GetHash(Trace(setting)), rt::GetHash(alone));
 }
 
@@ -135,7 +181,7 @@ TEST(FrameRenderer, RequestsThatDifferAreRefusedByAllAndTheNextFrameWorks)
   RunOnCluster(3,
     [&](dsm::Messenger& messenger)
     {
-      dsm::ObjectStore store(messenger, { std::size_t(16) << 20, 1 });
+      dsm::BlockStore store(messenger, SphereScene::CreateSettings(std::size_t(16) << 20, 1));
       const rt::Scene scene =
         SphereScene::CreateScene(SphereScene::Publish(messenger, store), 1.0f);
       rt::FrameRenderer renderer(messenger);
@@ -165,11 +211,12 @@ TEST(FrameRenderer, CacheSmallerThanABrickIsRefusedByAllAndTheNextFrameWorks)
   RunOnCluster(2,
     [&](dsm::Messenger& messenger)
     {
-      dsm::ObjectStore store(messenger, { std::size_t(16) << 20, 1 });
+      dsm::BlockStore store(messenger, SphereScene::CreateSettings(std::size_t(16) << 20, 1));
       const rt::Scene scene =
         SphereScene::CreateScene(SphereScene::Publish(messenger, store), 1.0f);
       rt::FrameRenderer renderer(messenger);
-      store.SetSettings({ messenger.GetRank() == 1 ? std::size_t(64) : std::size_t(16) << 20, 1 });
+      store.SetSettings(SphereScene::CreateSettings(
+        messenger.GetRank() == 1 ? std::size_t(64) : std::size_t(16) << 20, 1));
       try
       {
         renderer.Render(store, scene, SphereScene::CreateRequest(32, 32));
@@ -179,7 +226,7 @@ TEST(FrameRenderer, CacheSmallerThanABrickIsRefusedByAllAndTheNextFrameWorks)
         const std::lock_guard<std::mutex> lock(guard);
         errors.push_back(error.what());
       }
-      store.SetSettings({ std::size_t(16) << 20, 1 });
+      store.SetSettings(SphereScene::CreateSettings(std::size_t(16) << 20, 1));
       const rt::Frame frame = renderer.Render(store, scene, SphereScene::CreateRequest(32, 32));
       EXPECT_GT(CountCovered(rt::GatherFrame(messenger, frame)), 0);
     });
@@ -193,7 +240,7 @@ TEST(FrameRenderer, EmptySceneIsAnEmptyPicture)
   RunOnCluster(2,
     [](dsm::Messenger& messenger)
     {
-      dsm::ObjectStore store(messenger, { std::size_t(1) << 20, 2 });
+      dsm::BlockStore store(messenger, SphereScene::CreateSettings(std::size_t(1) << 20, 2));
       rt::FrameRenderer renderer(messenger);
       const rt::Frame frame =
         renderer.Render(store, rt::Scene{}, SphereScene::CreateRequest(40, 30));

@@ -64,7 +64,7 @@ protected:
   }
 
   dsm::Messenger Messenger{ std::move(dsm::LoopbackTransport::CreateGroup(1).front()) };
-  dsm::ObjectStore Store{ Messenger, { std::size_t(1) << 20, 2 } };
+  dsm::BlockStore Store{ Messenger, dsm::BlockStore::Settings{} };
 };
 
 rt::Light GetSlantedLight()

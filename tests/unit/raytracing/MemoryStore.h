@@ -66,10 +66,7 @@ public:
         visit(id, this->GetBlock(id), this->GetDirectory().GetBytes(id));
       }
     }
-    std::uint64_t GetResidentBytes() const override
-    {
-      return this->GetDirectory().GetTotalBytes();
-    }
+    std::uint64_t GetResidentBytes() const override { return this->GetDirectory().GetTotalBytes(); }
 
   private:
     struct alignas(64) Chunk
@@ -91,8 +88,8 @@ public:
     dsm::Fragment fragment;
     while (source.Next(fragment))
     {
-      sink.Absorb(fragment.Block, segment->GetBlock(fragment.Block),
-        sizes.GetBytes(fragment.Block), fragment.Bytes.data(), fragment.Bytes.size());
+      sink.Absorb(fragment.Block, segment->GetBlock(fragment.Block), sizes.GetBytes(fragment.Block),
+        fragment.Bytes.data(), fragment.Bytes.size());
     }
     for (dsm::BlockId id = 0; id < sizes.GetCount(); ++id)
     {

@@ -16,10 +16,10 @@ class RandomRays
 public:
   enum class Kind
   {
-    Through,      ///< from outside, at a point of the volume
-    AxisParallel, ///< two zeros in the direction
+    Through,       ///< from outside, at a point of the volume
+    AxisParallel,  ///< two zeros in the direction
     PlaneParallel, ///< one zero
-    AlongPlane,   ///< runs in planes between cells
+    AlongPlane,    ///< runs in planes between cells
     ThroughCorner, ///< meets a lattice point exactly, on a diagonal
     FromInside,
     Short, ///< begins and ends inside

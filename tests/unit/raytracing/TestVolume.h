@@ -144,8 +144,7 @@ using Pieces = std::vector<std::shared_ptr<const rt::VoxelSource>>;
 template <class T>
 Pieces GetWhole(const TestVolume<T>& volume)
 {
-  return { std::make_shared<VolumePiece<T>>(
-    volume, rt::Box{ rt::Index3(0), volume.GetCells() }) };
+  return { std::make_shared<VolumePiece<T>>(volume, rt::Box{ rt::Index3(0), volume.GetCells() }) };
 }
 
 inline std::shared_ptr<MemoryStore::Segment> PublishPieces(
@@ -179,8 +178,8 @@ std::shared_ptr<rt::VoxelField> CreateField(
 }
 
 template <class T>
-rt::IsosurfaceObject CreateObject(MemoryStore& store, const TestVolume<T>& volume,
-  std::vector<double> isovalues, int edge = 0)
+rt::IsosurfaceObject CreateObject(
+  MemoryStore& store, const TestVolume<T>& volume, std::vector<double> isovalues, int edge = 0)
 {
   rt::IsosurfaceObject object;
   object.Field = CreateField(store, volume, edge);

@@ -47,10 +47,7 @@ struct Values
     }
   }
   /// Whole for integers, so that many samples equal it.
-  static double GetIsovalue(double unit)
-  {
-    return static_cast<double>(Create(unit));
-  }
+  static double GetIsovalue(double unit) { return static_cast<double>(Create(unit)); }
 };
 
 template <class T>
@@ -71,7 +68,10 @@ TestVolume<T> CreateSmooth(const rt::Index3& points, unsigned seed)
   const double c = uniform(random);
   return TestVolume<T>(points,
     [&](int x, int y, int z)
-    { return Values<T>::Create((std::sin(a * x + 1) + std::sin(b * y) + std::sin(c * z + a * x)) / 3); });
+    {
+      return Values<T>::Create(
+        (std::sin(a * x + 1) + std::sin(b * y) + std::sin(c * z + a * x)) / 3);
+    });
 }
 
 /// Three values only: plateaus of samples that equal the isovalue.
@@ -148,7 +148,6 @@ void CompareAllKinds(const TestVolume<T>& volume, double isovalue, int edge, int
     }
   }
   EXPECT_GT(comparison.Hits, comparison.Rays / 5);
-  std::printf("UNSTABLE %d of %d\n",comparison.Unstable,comparison.Rays);
   EXPECT_LE(comparison.Unstable, comparison.Rays / 100);
 }
 

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef OptionValues_h
+#define OptionValues_h
+
+#include "DSMCore/Error.h"
+
+#include <functional>
+#include <map>
+#include <sstream>
+#include <string>
+#include <vector>
+
+/// How the values of command line options are read. All throw dsm::Error, naming the option.
+namespace OptionValues
+{
+
+template <class T>
+T ToNumber(const std::string& name, const std::string& text, T smallest)
+{
+  std::istringstream stream(text);
+  T value{};
+  if (!(stream >> value) || !stream.eof() || value < smallest)
+  {
+    std::ostringstream message;
+    message << name << " takes a number of at least " << smallest << ", not \"" << text << "\".";
+    throw dsm::Error(message.str());
+  }
+  return value;
+}
+
+template <class T>
+std::vector<T> ToNumbers(const std::string& name, const std::string& text, T smallest)
+{
+  std::vector<T> values;
+  std::istringstream stream(text);
+  for (std::string part; std::getline(stream, part, ',');)
+  {
+    values.push_back(ToNumber<T>(name, part, smallest));
+  }
+  return values;
+}
+
+template <class T>
+T ToChoice(const std::string& name, const std::string& text, const std::map<std::string, T>& known)
+{
+  const auto found = known.find(text);
+  if (found == known.end())
+  {
+    std::string all;
+    for (const auto& [word, value] : known)
+    {
+      all += (all.empty() ? "" : ", ") + word;
+    }
+    throw dsm::Error(name + " knows " + all + ", not \"" + text + "\".");
+  }
+  return found->second;
+}
+
+/// What to do with an option's name and value.
+using Setters = std::map<std::string, std::function<void(const std::string&, const std::string&)>>;
+
+/// Reads "--name value" pairs from argument 2 on.
+inline void Parse(int argc, char** argv, const Setters& setters, const char* usage)
+{
+  for (int argument = 2; argument < argc; argument += 2)
+  {
+    const std::string name = argv[argument];
+    const auto setter = setters.find(name);
+    if (setter == setters.end() || argument + 1 >= argc)
+    {
+      throw dsm::Error("Option " + name +
+        (setter == setters.end() ? " is not known.\n" : " lacks its value.\n") + usage);
+    }
+    setter->second(name, argv[argument + 1]);
+  }
+}
+
+} // namespace OptionValues
+
+#endif

@@ -1,0 +1,52 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""A client that draws on a server. Called as TestClient.py PLUGIN OUTPUT PORT RANKS, where OUTPUT
+holds the pictures of TestViews.py."""
+
+import json
+
+import dsm_testing
+from dsm_testing import *
+
+PORT, RANKS = int(sys.argv[3]), int(sys.argv[4])
+simple.Connect("localhost", PORT)
+load_plugin()
+view = create_view()
+source = simple.Wavelet()
+display = show(source, view, [130.0, 200.0])
+place_camera(view)
+picture = render(view)
+reference = numpy.load(os.path.join(OUTPUT, "FirstView.npy"))
+check_equal(picture, reference, "the server's picture is that of one rank")
+
+display.SMProxy.UpdatePropertyInformation()
+rows = json.loads(str(display.GetProperty("DSMStatistics")).strip("'"))
+check(len(rows) == RANKS, "every rank of the server reports to the client")
+check(sum(row["Tiles"] for row in rows) > 0, "and traced")
+
+# Remote rendering of a reduced image, as while interacting.
+view.RemoteRenderThreshold = 0.0
+view.LODThreshold = 0.0
+view.ImageReductionFactor = 4
+view.SMProxy.InteractiveRender()
+view.StillRenderImageReductionFactor = 2
+reduced = render(view)
+wrong = (get_covered(reduced) != get_covered(picture)).mean()
+check(wrong < 0.02, f"a reduced image shows the same ({100 * wrong:.2f} %)")
+view.StillRenderImageReductionFactor = 1
+check_equal(render(view), picture, "and the full one again")
+
+with Messages():
+    display.DSMIsoArray = ["POINTS", "nonsense"]
+    check(not get_covered(render(view)).any(), "a wrong array shows nothing")
+display.DSMIsoArray = ["POINTS", "RTData"]
+check_equal(render(view), picture, "and the right one the surface")
+
+outline = show_surface(simple.Outline(source), view)
+outline.Opacity = 0.5
+check(get_covered(render(view)).any(), "with something translucent")
+simple.Delete(outline)
+simple.Hide(source, view)
+render(view)
+simple.Delete(source)
+render(view)
+simple.Disconnect()

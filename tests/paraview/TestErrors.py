@@ -1,0 +1,115 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What cannot be drawn is named, together with what to do; the picture stays background, and the
+session goes on."""
+
+from dsm_testing import *
+
+load_plugin()
+view = create_view()
+
+GOOD = """
+image.SetExtent(piece)
+add(image, distance(piece), 'other')
+add(image, distance(piece))
+"""
+
+
+def expect(source, words, isovalues=(0.7,), array="f", empty=True, **properties):
+    """Shows a source and looks for the words in what is reported, which must be reported once."""
+    with Messages() as messages:
+        display = show(source, view, list(isovalues), array, **properties)
+        place_camera(view)
+        pixels = render(view)
+        first = messages.text
+        render(view)
+        again = messages.text
+    for word in words:
+        check(word in first, f"'{word}' is in: {first.strip()}")
+    if words:
+        check(first.count(words[0]) == again.count(words[0]) == 1, "it is said once")
+    if not words:
+        check(first.strip() == "", f"nothing is reported: {first.strip()}")
+    check(get_covered(pixels).any() != empty, "the picture " + ("is empty" if empty else "is drawn"))
+    return display
+
+
+def expect_then_delete(source, *arguments, **keywords):
+    expect(source, *arguments, **keywords)
+    simple.Delete(source)
+
+
+expect_then_delete(image_source(GOOD), ["'nonsense' does not exist", "'f', 'other'"],
+                   array="nonsense")
+
+TEXTS = """
+from vtkmodules.vtkCommonCore import vtkStringArray
+image.SetExtent(piece)
+add(image, distance(piece))
+texts = vtkStringArray(); texts.SetName('names')
+texts.SetNumberOfValues(image.GetNumberOfPoints())
+image.GetPointData().AddArray(texts)
+"""
+expect_then_delete(image_source(TEXTS), ["'names' holds text", "'f'"], array="names")
+
+CELLS = """
+image.SetExtent(piece)
+array = numpy_to_vtk(np.zeros(image.GetNumberOfCells()), deep=True); array.SetName('onCells')
+image.GetCellData().AddArray(array)
+"""
+expect_then_delete(image_source(CELLS), ["'onCells'", "Cell Data to Point Data"], array="onCells")
+
+expect_then_delete(image_source(GOOD), ["Isovalue 1 is not a number"],
+                   isovalues=[0.7, float("nan")], empty=False)
+expect_then_delete(image_source(GOOD), ["Isovalue 0 is infinite"], isovalues=[float("inf")])
+expect_then_delete(image_source(GOOD), [], isovalues=[1000.0])
+expect_then_delete(image_source(GOOD), [], isovalues=[])
+
+expect_then_delete(image_source("image.SetExtent(piece)\nadd(image, points(piece)[0])\n",
+                                (0, 20, 0, 20, 3, 3)), ["no cells in z", "volume"])
+expect_then_delete(image_source("image.SetExtent(0, -1, 0, -1, 0, -1)\n"), [])
+
+VECTOR = "image.SetExtent(piece)\nadd(image, np.stack(points(piece), axis=1), 'v')\n"
+expect_then_delete(image_source(VECTOR), ["'v' has no component 7"], array="v", DSMIsoComponent=7)
+
+grid = simple.ProgrammableSource(OutputDataSetType="vtkRectilinearGrid")
+grid.ScriptRequestInformation = IMAGE_SOURCE_INFORMATION % "0, 4, 0, 4, 0, 4"
+grid.Script = """
+from vtkmodules.util.numpy_support import numpy_to_vtk
+import numpy as np
+grid = self.GetOutputDataObject(0)
+grid.SetDimensions(5, 5, 5)
+for set in (grid.SetXCoordinates, grid.SetYCoordinates, grid.SetZCoordinates):
+    set(numpy_to_vtk(np.arange(5.0), deep=True))
+array = numpy_to_vtk(np.arange(125.0), deep=True); array.SetName('f')
+grid.GetPointData().SetScalars(array)
+"""
+expect_then_delete(grid, ["vtkRectilinearGrid", "Resample To Image"], [60.0])
+
+# A colour array that is on the cells: the surface appears, in its solid colour.
+both = image_source(GOOD + """
+array = numpy_to_vtk(np.zeros(image.GetNumberOfCells()), deep=True); array.SetName('onCells')
+image.GetCellData().AddArray(array)
+""")
+with Messages() as messages:
+    display = show(both, view, [0.7], "f")
+    simple.ColorBy(display, ("CELLS", "onCells"))
+    place_camera(view)
+    pixels = render(view)
+    text = messages.text
+check("colour array 'onCells'" in text and "Cell Data to Point Data" in text, "colour by cells: " + text)
+check(get_covered(pixels).any(), "the surface is still drawn")
+simple.Delete(both)
+
+# After all that, the same view still draws.
+good = image_source(GOOD)
+display = expect(good, [], empty=False)
+with Messages() as messages:
+    display.DSMIsoArray = ["POINTS", "gone"]
+    check(not get_covered(render(view)).any(), "nothing is drawn while the array is wrong")
+    check("'gone' does not exist" in messages.text, "which is reported")
+    display.DSMIsoArray = ["POINTS", "other"]
+    check(get_covered(render(view)).any(), "and the surface is back when it is right again")
+    before = messages.text
+    display.DSMIsoArray = ["POINTS", "gone"]
+    render(view)
+    check(messages.text.count("'gone'") > before.count("'gone'"), "the same mistake is told anew")

@@ -1,0 +1,158 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Volumes of every kind: the same surface as vtkFlyingEdges3D's, the same picture on any number of
+ranks."""
+
+from dsm_testing import *
+
+load_plugin()
+view = create_view()
+
+
+def compare(*arguments, **keywords):
+    compare_with_triangles(view, *arguments, **keywords)
+
+
+compare("Wavelet", simple.Wavelet(), [130.0, 200.0], share=0.02)
+
+compare(
+    "AnisotropicWithNegativeExtent",
+    image_source(
+        """
+image.SetExtent(piece); image.SetSpacing(0.5, 1.0, 2.5); image.SetOrigin(-7.0, 3.0, 100.0)
+add(image, distance(piece))
+""",
+        (-30, 10, -5, 25, 7, 21),
+    ),
+)
+
+DIRECTION = """
+from math import cos, sin
+a, b = 0.5, 0.8
+image.SetExtent(piece); image.SetSpacing(1.0, 1.5, 2.0); image.SetOrigin(3.0, 2.0, 1.0)
+image.SetDirectionMatrix(cos(a), -sin(a) * cos(b), sin(a) * sin(b),
+    sin(a), cos(a) * cos(b), -cos(a) * sin(b), 0.0, sin(b), cos(b))
+add(image, distance(piece) + 0.1 * points(piece)[0] / 24.0)
+"""
+compare("ObliqueDirections", image_source(DIRECTION), [0.6, 0.9])
+
+LEFT_HANDED = """
+image.SetExtent(piece); image.SetDirectionMatrix(0, 1, 0, 1, 0, 0, 0, 0, 1)
+add(image, distance(piece) + 0.2 * points(piece)[0] / 24.0)
+"""
+compare("LeftHandedDirections", image_source(LEFT_HANDED), [0.8])
+
+VECTOR = """
+image.SetExtent(piece)
+i, j, k = points(piece)
+add(image, np.stack([i - 12, j - 12, k - 12], axis=1) / 12.0, 'vector')
+add(image, {scalars}, 'scalar')
+"""
+component = image_source(VECTOR.format(scalars="(j - 12) / 12.0"))
+compare("Component", component, [0.3], "vector", DSMIsoComponent=1)
+magnitude = image_source(VECTOR.format(scalars="distance(piece)"))
+compare("Magnitude", magnitude, [0.7], "vector", DSMIsoComponent=3)
+
+WITHOUT_GHOSTS = "image.SetExtent(piece)\nadd(image, distance(piece))\n"
+WITH_GHOSTS = """
+wider = list(piece)
+for axis in range(3):
+    wider[2 * axis] = max(whole[2 * axis], piece[2 * axis] - 2)
+    wider[2 * axis + 1] = min(whole[2 * axis + 1], piece[2 * axis + 1] + 2)
+image.SetExtent(wider)
+# What lies in ghost cells only is wrong, and must not be seen.
+i, j, k = points(wider)
+own = np.ones(len(i), bool)
+for axis, p in enumerate((i, j, k)):
+    own &= (p >= piece[2 * axis]) & (p <= piece[2 * axis + 1])
+add(image, np.where(own, distance(wider), 0.0))
+cells = [wider[0], wider[1] - 1, wider[2], wider[3] - 1, wider[4], wider[5] - 1]
+ghost = np.zeros(len(points(cells)[0]), np.uint8)
+for axis, p in enumerate(points(cells)):
+    ghost[(p < piece[2 * axis]) | (p >= piece[2 * axis + 1])] = 1
+array = numpy_to_vtk(ghost, deep=True); array.SetName('vtkGhostType')
+image.GetCellData().AddArray(array)
+"""
+compare("GhostCells", image_source(WITH_GHOSTS), reference=image_source(WITHOUT_GHOSTS))
+
+BLANKED = """
+image.SetExtent(piece)
+add(image, distance(piece){cut})
+if {blank}:
+    hidden = np.where(points(piece)[0] > 16, 2, 0).astype(np.uint8)
+    array = numpy_to_vtk(hidden, deep=True); array.SetName('vtkGhostType')
+    image.GetPointData().AddArray(array)
+"""
+NANS = """
+image.SetExtent(piece)
+add(image, np.where(points(piece)[0] > 16, np.nan, distance(piece)))
+"""
+CUT = """
+end = min(piece[1], 16)
+if end > piece[0]:
+    piece[1] = end
+    image.SetExtent(piece)
+    add(image, distance(piece))
+else:
+    image.SetExtent(0, -1, 0, -1, 0, -1)
+"""
+compare("BlankedPoints", image_source(BLANKED.format(cut="", blank=1)), reference=image_source(CUT))
+compare("NotANumber", image_source(NANS), reference=image_source(CUT))
+
+compare(
+    "OneRankHasEverything",
+    image_source(
+        """
+if rank == ranks - 1:
+    image.SetExtent(whole)
+    add(image, distance(whole))
+else:
+    image.SetExtent(0, -1, 0, -1, 0, -1)
+"""
+    ),
+)
+
+compare(
+    "PiecesOneCellThick",
+    image_source(
+        """
+# Slabs of one cell; the last rank has the rest.
+first = whole[4] + rank
+last = first + 1 if rank < ranks - 1 else whole[5]
+slab = whole[:4] + [first, last]
+image.SetExtent(slab)
+add(image, distance(slab))
+"""
+    ),
+)
+
+ONE_CELL = """
+image.SetExtent(piece)
+add(image, points(piece)[0] + 0.5 * points(piece)[1])
+"""
+compare("OneCell", image_source(ONE_CELL, (0, 1) * 3), [0.6], share=0.01)
+
+BLOCKS = """
+from vtkmodules.vtkCommonDataModel import vtkImageData
+output = self.GetOutputDataObject(0)
+bounds = [0, 7, 16, 24]
+for block in range(3):
+    part = [bounds[block], bounds[block + 1], 0, 24, 0, 24]
+    if block % ranks == rank:
+        child = vtkImageData()
+        child.SetOrigin(2.0 * part[0], 0.0, 0.0); child.SetSpacing(2.0, 1.0, 1.0)
+        child.SetDimensions(part[1] - part[0] + 1, 25, 25)
+        add(child, distance(part))
+        {set}
+"""
+for kind, set_ in (
+    ("vtkMultiblockDataSet", "output.SetBlock(block, child)"),
+    ("vtkPartitionedDataSet", "output.SetPartition(block, child)"),
+    ("vtkPartitionedDataSetCollection", "output.SetPartition(block, 0, child)"),
+):
+    text = ", ".join(["0, 24"] * 3)
+    source = simple.ProgrammableSource(OutputDataSetType=kind)
+    script = IMAGE_SOURCE.format(extent=text, script=BLOCKS.format(set=set_))
+    # Composite datasets have no extent to be asked for.
+    asks = "request.Get(vtkStreamingDemandDrivenPipeline.UPDATE_EXTENT(), piece)"
+    source.Script = script.replace(asks, "")
+    compare(kind, source)

@@ -1,0 +1,61 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""Starts a server on a free port and runs a client against it:
+    with_server.py --server COMMAND... --client COMMAND...
+@PORT@ in the client's command stands for the port. Returns what the client returns; fails when the
+server does not come up, or does not end by itself after the client has left."""
+
+import os
+import signal
+import socket
+import subprocess
+import sys
+import tempfile
+import time
+
+
+def find_free_port():
+    with socket.socket() as probe:
+        probe.bind(("localhost", 0))
+        return probe.getsockname()[1]
+
+
+def wait_until_listening(server, log, seconds):
+    deadline = time.monotonic() + seconds
+    while time.monotonic() < deadline and server.poll() is None:
+        log.seek(0)
+        if "Accepting connection" in log.read():
+            return True
+        time.sleep(0.1)
+    return False
+
+
+def main():
+    split = sys.argv.index("--client")
+    port = find_free_port()
+    server_command = sys.argv[2:split] + [f"--server-port={port}"]
+    client_command = [word.replace("@PORT@", str(port)) for word in sys.argv[split + 1 :]]
+    with tempfile.TemporaryFile("w+") as log:
+        server = subprocess.Popen(
+            server_command, stdout=log, stderr=subprocess.STDOUT, start_new_session=True
+        )
+        result = 1
+        try:
+            if wait_until_listening(server, log, 60):
+                result = subprocess.call(client_command)
+                result = result or server.wait(timeout=30)
+            else:
+                print("the server did not come up")
+        except subprocess.TimeoutExpired:
+            print("the server did not end after its client had left")
+            result = 1
+        finally:
+            if server.poll() is None:
+                os.killpg(server.pid, signal.SIGTERM)
+                server.wait(timeout=20)
+            log.seek(0)
+            print("--- server ---", log.read(), sep="\n")
+    return result
+
+
+sys.exit(main())

@@ -1,0 +1,213 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The classes as any VTK application uses them: a renderer, a volume, and no ParaView. Draws on the
+// X server, off screen.
+#include "vtkDSMScene.h"
+#include "vtkDSMStatistics.h"
+#include "vtkDSMVolumeMapper.h"
+
+#include "vtkActor.h"
+#include "vtkAutoInit.h"
+#include "vtkCamera.h"
+#include "vtkDoubleArray.h"
+#include "vtkFloatArray.h"
+#include "vtkFlyingEdges3D.h"
+#include "vtkImageData.h"
+#include "vtkNew.h"
+#include "vtkPointData.h"
+#include "vtkPolyDataMapper.h"
+#include "vtkProperty.h"
+#include "vtkRenderWindow.h"
+#include "vtkRenderer.h"
+#include "vtkTable.h"
+#include "vtkTestErrorObserver.h"
+#include "vtkVolume.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+namespace
+{
+
+constexpr int Size = 200;
+constexpr int Edge = 32;
+
+/// The distance from the middle, over the edge; and the distance along x.
+vtkSmartPointer<vtkImageData> MakeBall()
+{
+  auto image = vtkSmartPointer<vtkImageData>::New();
+  image->SetExtent(-Edge / 2, Edge / 2, -Edge / 2, Edge / 2, -Edge / 2, Edge / 2);
+  image->SetSpacing(1.0, 1.0, 0.5);
+  vtkNew<vtkDoubleArray> distance;
+  distance->SetName("distance");
+  for (int k = -Edge / 2; k <= Edge / 2; ++k)
+  {
+    for (int j = -Edge / 2; j <= Edge / 2; ++j)
+    {
+      for (int i = -Edge / 2; i <= Edge / 2; ++i)
+      {
+        distance->InsertNextValue(std::sqrt(double(i * i + j * j + k * k)) / Edge);
+      }
+    }
+  }
+  image->GetPointData()->SetScalars(distance);
+  return image;
+}
+
+class VolumeMapper : public testing::Test
+{
+protected:
+  VolumeMapper()
+    : Scene(vtkDSMScene::ForRenderer(this->Renderer))
+  {
+    this->Window->SetOffScreenRendering(1);
+    this->Window->SetMultiSamples(0);
+    this->Window->SetSize(Size, Size);
+    this->Window->AddRenderer(this->Renderer);
+    this->Mapper->SetInputData(MakeBall());
+    this->Mapper->SetIsoArray("distance");
+    this->Mapper->SetIsoValue(0, 0.4);
+    this->Mapper->SetNumberOfThreads(2);
+    this->Volume->SetMapper(this->Mapper);
+    this->Renderer->GetActiveCamera()->SetPosition(20.0, 30.0, 60.0);
+    this->Renderer->GetActiveCamera()->SetFocalPoint(0.0, 0.0, 0.0);
+    this->Renderer->ResetCameraClippingRange(-16.0, 16.0, -16.0, 16.0, -16.0, 16.0);
+  }
+
+  /// Distances from the eye along the view direction; infinite where nothing was drawn.
+  std::vector<double> RenderDistances()
+  {
+    this->Window->Render();
+    vtkNew<vtkFloatArray> depths;
+    this->Window->GetZbufferData(0, 0, Size - 1, Size - 1, depths);
+    double nearest;
+    double farthest;
+    this->Renderer->GetActiveCamera()->GetClippingRange(nearest, farthest);
+    std::vector<double> distances;
+    for (vtkIdType pixel = 0; pixel < depths->GetNumberOfTuples(); ++pixel)
+    {
+      const double depth = depths->GetValue(pixel);
+      distances.push_back(
+        depth < 1.0 ? nearest * farthest / (farthest - depth * (farthest - nearest)) : INFINITY);
+    }
+    return distances;
+  }
+
+  vtkNew<vtkRenderer> Renderer;
+  vtkNew<vtkRenderWindow> Window;
+  vtkSmartPointer<vtkDSMScene> Scene;
+  vtkNew<vtkDSMVolumeMapper> Mapper;
+  vtkNew<vtkVolume> Volume;
+};
+
+int CountCovered(const std::vector<double>& distances)
+{
+  return static_cast<int>(std::count_if(
+    distances.begin(), distances.end(), [](double distance) { return std::isfinite(distance); }));
+}
+
+TEST_F(VolumeMapper, DrawsTheSurfaceAndDepthOfFlyingEdges)
+{
+  this->Renderer->AddVolume(this->Volume);
+  this->Volume->SetPosition(1.0, 2.0, 3.0);
+  this->Volume->RotateY(30.0);
+  const std::vector<double> traced = this->RenderDistances();
+  this->Renderer->RemoveVolume(this->Volume);
+
+  vtkNew<vtkFlyingEdges3D> edges;
+  edges->SetInputData(MakeBall());
+  edges->SetValue(0, 0.4);
+  vtkNew<vtkPolyDataMapper> triangleMapper;
+  triangleMapper->SetInputConnection(edges->GetOutputPort());
+  triangleMapper->ScalarVisibilityOff();
+  vtkNew<vtkActor> actor;
+  actor->SetMapper(triangleMapper);
+  actor->SetPosition(1.0, 2.0, 3.0);
+  actor->RotateY(30.0);
+  this->Renderer->AddActor(actor);
+  const std::vector<double> triangles = this->RenderDistances();
+
+  int different = 0;
+  int apart = 0;
+  int both = 0;
+  for (std::size_t pixel = 0; pixel < traced.size(); ++pixel)
+  {
+    different += std::isfinite(traced[pixel]) != std::isfinite(triangles[pixel]);
+    if (std::isfinite(traced[pixel]) && std::isfinite(triangles[pixel]))
+    {
+      ++both;
+      apart += std::abs(traced[pixel] - triangles[pixel]) > 0.25;
+    }
+  }
+  EXPECT_GT(both, 2000);
+  EXPECT_LE(different, both / 100);
+  EXPECT_LE(apart, both / 100);
+}
+
+TEST_F(VolumeMapper, FollowsWhatChanges)
+{
+  this->Renderer->AddVolume(this->Volume);
+  const int before = CountCovered(this->RenderDistances());
+  EXPECT_GT(before, 1000);
+  this->Mapper->SetIsoValue(0, 0.3);
+  const int smaller = CountCovered(this->RenderDistances());
+  EXPECT_LT(smaller, before);
+  EXPECT_GT(smaller, 500);
+  this->Mapper->SetIsoValue(0, 5.0);
+  EXPECT_EQ(CountCovered(this->RenderDistances()), 0);
+  this->Mapper->SetIsoValue(0, 0.4);
+  this->Volume->VisibilityOff();
+  EXPECT_EQ(CountCovered(this->RenderDistances()), 0);
+  this->Volume->VisibilityOn();
+  this->Window->SetSize(Size, Size);
+  EXPECT_EQ(CountCovered(this->RenderDistances()), before);
+  this->Renderer->RemoveVolume(this->Volume);
+  EXPECT_EQ(CountCovered(this->RenderDistances()), 0);
+}
+
+TEST_F(VolumeMapper, TheSceneIsTheRenderersAndEndsWithItsLastHolder)
+{
+  EXPECT_EQ(vtkDSMScene::ForRenderer(this->Renderer), this->Scene);
+  this->Renderer->AddVolume(this->Volume);
+  EXPECT_GT(CountCovered(this->RenderDistances()), 0);
+  this->Scene = nullptr;
+  EXPECT_EQ(CountCovered(this->RenderDistances()), 0);
+  this->Scene = vtkDSMScene::ForRenderer(this->Renderer);
+  EXPECT_GT(CountCovered(this->RenderDistances()), 0);
+}
+
+TEST_F(VolumeMapper, ReportsWhatItDid)
+{
+  this->Renderer->AddVolume(this->Volume);
+  this->Window->Render();
+  vtkDSMStatistics* statistics = this->Scene->GetStatistics();
+  EXPECT_GT(statistics->GetFrameSeconds(), 0.0);
+  vtkNew<vtkTable> table;
+  statistics->GetTable(table);
+  ASSERT_EQ(table->GetNumberOfRows(), 1);
+  EXPECT_EQ(table->GetValueByName(0, "Tiles").ToInt(), 13 * 13);
+  EXPECT_EQ(table->GetValueByName(0, "Threads").ToInt(), 2);
+  EXPECT_GT(table->GetValueByName(0, "BytesResident").ToDouble(), 8.0 * 33 * 33 * 33);
+  EXPECT_GT(table->GetValueByName(0, "Accesses").ToDouble(), 0.0);
+}
+
+TEST_F(VolumeMapper, NamesAMissingArrayOnce)
+{
+  vtkNew<vtkTest::ErrorObserver> observer;
+  this->Mapper->AddObserver(vtkCommand::ErrorEvent, observer);
+  this->Renderer->AddVolume(this->Volume);
+  this->Mapper->SetIsoArray("pressure");
+  EXPECT_EQ(CountCovered(this->RenderDistances()), 0);
+  ASSERT_TRUE(observer->GetError());
+  const std::string message = observer->GetErrorMessage();
+  EXPECT_NE(message.find("'pressure'"), std::string::npos) << message;
+  EXPECT_NE(message.find("'distance'"), std::string::npos) << message;
+  observer->Clear();
+  this->Window->Render();
+  EXPECT_FALSE(observer->GetError());
+  this->Mapper->SetIsoArray("distance");
+  EXPECT_GT(CountCovered(this->RenderDistances()), 0);
+}
+
+} // namespace

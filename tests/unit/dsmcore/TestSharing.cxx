@@ -1,0 +1,393 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "DSMCore/HostGroups.h"
+#include "DSMCore/HostMemory.h"
+#include "DSMCore/HostSharedMemory.h"
+#include "tests/unit/dsmcore/SharingScenarios.h"
+
+#include <fcntl.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstring>
+
+namespace
+{
+
+class SharingOnLoopback : public testing::TestWithParam<int>
+{
+};
+
+INSTANTIATE_TEST_SUITE_P(Ranks, SharingOnLoopback, testing::Values(1, 2, 3, 4));
+
+#define RUN_SCENARIO(scenario)                                                                     \
+  TEST_P(SharingOnLoopback, scenario)                                                              \
+  {                                                                                                \
+    dsm_test::RunRanks(this->GetParam(), dsm_test::scenario);                                      \
+  }
+
+RUN_SCENARIO(EveryRankHasEveryBlock)
+RUN_SCENARIO(EveryHostHasEveryBlockOnce)
+RUN_SCENARIO(SharedBlocksAreHits)
+RUN_SCENARIO(SharedMemoryOutlivesItsOwner)
+RUN_SCENARIO(CopiesOnceAGroup)
+RUN_SCENARIO(AutomaticFollowsTheData)
+RUN_SCENARIO(OrganizationsChangeUnderTheData)
+RUN_SCENARIO(TooLittleMemoryIsRefusedWithNumbers)
+
+TEST(SharingOnLoopback, GroupsOfManyRanks)
+{
+  dsm_test::RunRanks(7, dsm_test::CopiesOnceAGroup);
+}
+
+/// As long as it lives, the process can open no more files.
+class NoMoreFiles
+{
+public:
+  NoMoreFiles()
+  {
+    getrlimit(RLIMIT_NOFILE, &this->Before);
+    rlimit limit = this->Before;
+    const int next = open("/dev/null", O_RDONLY | O_CLOEXEC);
+    close(next);
+    limit.rlim_cur = static_cast<rlim_t>(next);
+    setrlimit(RLIMIT_NOFILE, &limit);
+  }
+  ~NoMoreFiles() { setrlimit(RLIMIT_NOFILE, &this->Before); }
+
+private:
+  rlimit Before{};
+};
+
+/// Whoever cannot map the others' memory gets their blocks by messages.
+TEST(HostSharing, FallsBackToMessages)
+{
+  const NoMoreFiles limit;
+  dsm_test::RunRanks(3,
+    [](dsm::Messenger& messenger)
+    {
+      const auto directory = dsm_test::MakeOddDirectory(3);
+      dsm::ObjectStore::Settings settings;
+      settings.HostSharing = true;
+      dsm::ObjectStore store(messenger, settings);
+      const auto segment = dsm_test::PublishPattern(messenger, store, directory);
+      dsm_test::ReadEverything(messenger, store, *segment);
+      EXPECT_GT(store.GetCounters().Workers.Misses, 0u);
+      EXPECT_EQ(store.GetCounters().SharedBytes, 0u);
+      dsm::ReplicatedStore::Settings everywhere;
+      everywhere.HostSharing = true;
+      dsm::ReplicatedStore replicated(messenger, everywhere);
+      const auto copied = dsm_test::PublishPattern(messenger, replicated, directory);
+      dsm_test::ReadEverything(messenger, replicated, *copied);
+      EXPECT_GT(replicated.GetCounters().ReplicaBytes, 0u);
+      EXPECT_EQ(replicated.GetCounters().SharedBytes, 0u);
+    });
+}
+
+/// The trial succeeded, but then there is no memory to share.
+TEST(HostSharing, MemoryThatCannotBeMappedStaysRemote)
+{
+  const NoMoreFiles limit;
+  dsm_test::RunRanks(2,
+    [](dsm::Messenger& messenger)
+    {
+      dsm::BlockTable table(messenger.BeginSession(), dsm_test::MakeDirectory(2, 4, 100),
+        messenger.GetRank(), dsm::HostGroups({ 0, 0 }));
+      table.ShareWithGroup(messenger);
+      EXPECT_EQ(table.GetSharedBytes(), 0u);
+      EXPECT_FALSE(table.IsWhole());
+      EXPECT_EQ(table.Find(static_cast<dsm::BlockId>(1 - messenger.GetRank())), nullptr);
+      const std::string text =
+        dsm_test::GetErrorText([&] { table.Replicate(messenger, "Copying"); });
+      EXPECT_EQ(text.find("Copying: Rank 0: The memory of rank 1"), 0u) << text;
+      EXPECT_NE(text.find("DSMHostSharing"), std::string::npos) << text;
+      EXPECT_FALSE(table.IsReplicated());
+    });
+}
+
+/// One rank that does not share keeps to itself; the others share.
+TEST(HostSharing, RankThatDoesNotWantToShareIsLeftOut)
+{
+  dsm_test::RunRanks(3,
+    [](dsm::Messenger& messenger)
+    {
+      const auto groups = dsm::HostGroups::Find(messenger, messenger.GetRank() != 1);
+      EXPECT_EQ(groups.GetGroupCount(), 2);
+      EXPECT_TRUE(groups.AreTogether(0, 2));
+      EXPECT_FALSE(groups.AreTogether(0, 1));
+      EXPECT_EQ(groups.GetMembers(2), (std::vector<int>{ 0, 2 }));
+      EXPECT_EQ(groups.GetMembers(1), (std::vector<int>{ 1 }));
+    });
+}
+
+TEST(HostGroups, HoldersTakeTurns)
+{
+  const dsm::HostGroups groups({ 0, 0, 2, 2, 2 });
+  EXPECT_EQ(groups.GetGroupCount(), 2);
+  std::vector<int> held(5, 0);
+  for (dsm::BlockId id = 0; id < 300; ++id)
+  {
+    const int owner = static_cast<int>(id % 5);
+    EXPECT_EQ(groups.GetHolder(id, owner, groups.GetGroup(owner)), owner);
+    ++held[static_cast<std::size_t>(groups.GetHolder(id, owner, 1 - groups.GetGroup(owner)))];
+  }
+  EXPECT_EQ(held, (std::vector<int>{ 90, 90, 40, 40, 40 }));
+}
+
+// -- HostSharedMemory ------------------------------------------------------------------------------
+
+TEST(HostSharedMemory, IsZeroedAndSeenByOthers)
+{
+  for (const std::size_t bytes :
+    { std::size_t(0), std::size_t(1), std::size_t(4096), std::size_t(4097), std::size_t(5) << 20 })
+  {
+    dsm::HostSharedMemory memory(bytes, true);
+    const auto ticket = memory.GetTicket();
+    ASSERT_GE(ticket.File, 0);
+    std::byte* const data = memory.GetData();
+    EXPECT_EQ(reinterpret_cast<std::uintptr_t>(data) % dsm::BlockAlignment, 0u);
+    EXPECT_TRUE(std::all_of(data, data + bytes, [](std::byte b) { return b == std::byte{ 0 }; }));
+    const auto view = dsm::HostSharedMemory::Open(ticket);
+    ASSERT_TRUE(view);
+    ASSERT_NE(view->GetData(), data);
+    if (bytes > 0)
+    {
+      data[bytes - 1] = std::byte{ 42 };
+      EXPECT_EQ(view->GetData()[bytes - 1], std::byte{ 42 });
+    }
+  }
+}
+
+TEST(HostSharedMemory, ViewsOutliveTheOwner)
+{
+  std::optional<dsm::HostSharedMemory::View> view;
+  dsm::HostSharedMemory::Ticket ticket;
+  {
+    dsm::HostSharedMemory memory(100, true);
+    std::memset(memory.GetData(), 7, 100);
+    ticket = memory.GetTicket();
+    view = dsm::HostSharedMemory::Open(ticket);
+    memory.CloseDoor();
+    EXPECT_LT(memory.GetTicket().File, 0);
+    EXPECT_FALSE(dsm::HostSharedMemory::Open(ticket));
+    dsm::HostSharedMemory moved(std::move(memory));
+    EXPECT_EQ(moved.GetData()[99], std::byte{ 7 });
+  }
+  ASSERT_TRUE(view);
+  EXPECT_EQ(view->GetData()[99], std::byte{ 7 });
+}
+
+TEST(HostSharedMemory, WrongTicketsAreRefused)
+{
+  dsm::HostSharedMemory memory(100, true);
+  const auto good = memory.GetTicket();
+  EXPECT_TRUE(dsm::HostSharedMemory::Open(good));
+  auto ticket = good;
+  ++ticket.Token[1]; // another container's process of the same number
+  EXPECT_FALSE(dsm::HostSharedMemory::Open(ticket));
+  ticket = good;
+  ticket.Bytes = 200;
+  EXPECT_FALSE(dsm::HostSharedMemory::Open(ticket));
+  ticket = good;
+  ticket.Process = 1u << 30;
+  EXPECT_FALSE(dsm::HostSharedMemory::Open(ticket));
+  ticket = good;
+  ticket.File = 0;
+  EXPECT_FALSE(dsm::HostSharedMemory::Open(ticket));
+  EXPECT_FALSE(dsm::HostSharedMemory::Open(dsm::HostSharedMemory::Ticket{}));
+}
+
+TEST(HostSharedMemory, WithoutSharingItIsOrdinaryMemory)
+{
+  dsm::HostSharedMemory memory(100, false);
+  ASSERT_NE(memory.GetData(), nullptr);
+  EXPECT_LT(memory.GetTicket().File, 0);
+  const NoMoreFiles limit;
+  dsm::HostSharedMemory refused(100, true);
+  ASSERT_NE(refused.GetData(), nullptr);
+  refused.GetData()[99] = std::byte{ 1 };
+  EXPECT_LT(refused.GetTicket().File, 0);
+}
+
+// -- Stores ----------------------------------------------------------------------------------------
+
+TEST(ReplicatedStore, MoreThanItsMemoryIsRefusedWithTheNumberOfBytes)
+{
+  dsm_test::RunRanks(2,
+    [](dsm::Messenger& messenger)
+    {
+      const auto directory = dsm_test::MakeDirectory(2, 10, 1000);
+      dsm::ReplicatedStore::Settings settings;
+      // Only rank 1 is short; both hear of it.
+      settings.MemoryBytes = messenger.GetRank() == 1 ? 10 * 1024 - 1 : 1 << 20;
+      dsm::ReplicatedStore store(messenger, settings);
+      dsm_test::PatternSource source(
+        directory, messenger.GetRank(), 2, dsm_test::Spread::EveryRankASlice, 100);
+      dsm_test::PatternSink sink;
+      const std::string text =
+        dsm_test::GetErrorText([&] { store.Publish("Loading", directory, source, sink); });
+      EXPECT_EQ(text.find("Loading: Rank 1: out of memory: "), 0u) << text;
+      EXPECT_NE(text.find("10240 bytes"), std::string::npos) << text;
+      EXPECT_EQ(sink.Begun.empty(), messenger.GetRank() == 1);
+      settings.MemoryBytes = 10 * 1024;
+      store.SetSettings(settings);
+      const auto segment = dsm_test::PublishPattern(messenger, store, directory);
+      dsm_test::ReadEverything(messenger, store, *segment);
+      // What is there counts.
+      dsm_test::PatternSource again(
+        directory, messenger.GetRank(), 2, dsm_test::Spread::EveryRankASlice, 100);
+      EXPECT_THROW(store.Publish("Loading", directory, again, sink), dsm::Error);
+    });
+}
+
+TEST(ReplicatedStore, WithinAFrameNothingIsRearranged)
+{
+  dsm_test::RunRanks(1,
+    [](dsm::Messenger& messenger)
+    {
+      dsm::ReplicatedStore store(messenger, {});
+      const auto directory = dsm_test::MakeDirectory(1, 2, 100);
+      const auto segment = dsm_test::PublishPattern(messenger, store, directory);
+      dsm::ReplicatedStore::Settings none;
+      none.Workers = 0;
+      EXPECT_THROW(store.SetSettings(none), dsm::Error);
+      store.BeginFrame();
+      EXPECT_THROW(store.SetSettings({}), dsm::Error);
+      EXPECT_THROW(store.Retire(segment), dsm::Error);
+      EXPECT_THROW(store.BeginFrame(), dsm::Error);
+      EXPECT_THROW(dsm_test::PublishPattern(messenger, store, directory), dsm::Error);
+      store.EndFrame();
+      store.Retire(segment);
+      store.Retire(segment); // nothing left to do
+      store.Retire(nullptr);
+    });
+}
+
+TEST(BlockStore, RanksThatDisagreeAreTold)
+{
+  dsm_test::RunRanks(2,
+    [](dsm::Messenger& messenger)
+    {
+      const bool last = messenger.GetRank() == 1;
+      dsm::BlockStore store(
+        messenger, dsm_test::MakeStoreSettings(dsm::MemoryOrganization::Automatic, 1 << 20));
+      const auto publish = [&](std::size_t blocks)
+      {
+        const auto directory = dsm_test::MakeDirectory(2, blocks, 100);
+        dsm_test::PatternSource source(
+          directory, messenger.GetRank(), 2, dsm_test::Spread::EveryRankASlice, 100);
+        dsm_test::PatternSink sink;
+        return dsm_test::GetErrorText([&] { store.Publish("Loading", directory, source, sink); });
+      };
+      EXPECT_NE(publish(last ? 5 : 4).find("disagree"), std::string::npos);
+      store.SetSettings(dsm_test::MakeStoreSettings(
+        last ? dsm::MemoryOrganization::Replicated : dsm::MemoryOrganization::ObjectBased,
+        1 << 20));
+      EXPECT_NE(publish(4).find("disagree"), std::string::npos);
+    });
+}
+
+/// The rank with the least memory decides for all.
+TEST(BlockStore, AutomaticHeedsEveryRanksMemory)
+{
+  dsm_test::RunRanks(3,
+    [](dsm::Messenger& messenger)
+    {
+      dsm::BlockStore store(messenger,
+        dsm_test::MakeStoreSettings(
+          dsm::MemoryOrganization::Automatic, messenger.GetRank() == 2 ? 9 * 1024 : 1 << 20));
+      const auto directory = dsm_test::MakeDirectory(3, 12, 1000);
+      const auto segment = dsm_test::PublishPattern(messenger, store, directory);
+      EXPECT_EQ(store.GetOrganization(), dsm::MemoryOrganization::ObjectBased);
+      dsm_test::ReadEverything(messenger, store, *segment);
+      EXPECT_LE(store.GetCounters().ResidentBytes + store.GetCounters().PeakCachedBytes,
+        store.GetCounters().MemoryBudget);
+    });
+}
+
+/// An explicit size limits the cache below what the budget leaves.
+TEST(BlockStore, CacheSizeIsAnUpperLimit)
+{
+  dsm_test::RunRanks(2,
+    [](dsm::Messenger& messenger)
+    {
+      auto settings = dsm_test::MakeStoreSettings(dsm::MemoryOrganization::ObjectBased, 1 << 20);
+      settings.CacheBytes = 3 * 1024;
+      dsm::BlockStore store(messenger, settings);
+      const auto segment =
+        dsm_test::PublishPattern(messenger, store, dsm_test::MakeDirectory(2, 40, 1000));
+      EXPECT_EQ(store.GetCounters().CacheCapacity, 3 * 1024u);
+      settings.CacheBytes = SIZE_MAX;
+      store.SetSettings(settings);
+      EXPECT_FALSE(store.IsSettled());
+      store.Settle();
+      EXPECT_EQ(store.GetCounters().CacheCapacity, (1u << 20) - 20 * 1024u);
+      dsm_test::ReadEverything(messenger, store, *segment);
+    });
+}
+
+TEST(BlockStore, WithoutABudgetHalfOfTheHostIsShared)
+{
+  dsm_test::RunRanks(2,
+    [](dsm::Messenger& messenger)
+    {
+      dsm::BlockStore store(
+        messenger, dsm_test::MakeStoreSettings(dsm::MemoryOrganization::Automatic, 0));
+      EXPECT_EQ(store.GetMemoryBytes(), 0u);
+      const auto segment =
+        dsm_test::PublishPattern(messenger, store, dsm_test::MakeDirectory(2, 4, 1000));
+      const std::uint64_t share = dsm::GetAvailableHostMemory() / 4;
+      EXPECT_GT(store.GetMemoryBytes(), share / 2);
+      EXPECT_LT(store.GetMemoryBytes(), share * 2);
+      EXPECT_EQ(store.GetOrganization(), dsm::MemoryOrganization::Replicated);
+    });
+}
+
+// -- MemoryPlan ------------------------------------------------------------------------------------
+
+using Budget = dsm::MemoryPlan::Budget;
+
+TEST(MemoryPlan, RankCountThatWouldDo)
+{
+  const auto directory = dsm_test::MakeDirectory(2, 100, 1024);
+  const dsm::BlockDirectory small({ 64, 64, 64 }, dsm::RoundRobinAssigner(2));
+  const auto find = [&](std::uint64_t bytes)
+  {
+    const dsm::MemoryPlan plan({ &directory, &small }, dsm::HostGroups::Separate(2),
+      std::vector<Budget>(2, Budget{ bytes, bytes }), 4096);
+    return plan.FindRankCount(dsm::MemoryOrganization::ObjectBased);
+  };
+  // A rank of 10 has ten blocks, the first three a small one, and all a cache of one.
+  EXPECT_EQ(find(11 * 1024 + 64), 10);
+  EXPECT_EQ(find(11 * 1024 + 63), 12);
+  EXPECT_EQ(find(200 * 1024), 1);
+  EXPECT_EQ(find(2 * 1024 + 64), 100);
+  EXPECT_EQ(find(2 * 1024 + 63), 0);
+  EXPECT_EQ(find(100), 0);
+}
+
+TEST(MemoryPlan, PagesAreWhole)
+{
+  const auto directory = dsm_test::MakeDirectory(2, 10, 1000);
+  const dsm::MemoryPlan plan({ &directory }, dsm::HostGroups::Separate(2),
+    std::vector<Budget>(2, Budget{ 24 * 1024, 24 * 1024 }), 4096);
+  EXPECT_EQ(plan.GetNeed(dsm::MemoryOrganization::PageBased, 0), 6 * 4096u);
+  EXPECT_EQ(plan.GetCacheBytes(dsm::MemoryOrganization::PageBased, 0), 4096u);
+  EXPECT_EQ(plan.GetNeed(dsm::MemoryOrganization::ObjectBased, 0), 6 * 1024u);
+  EXPECT_EQ(plan.GetNeed(dsm::MemoryOrganization::Replicated, 0), 10 * 1024u);
+  EXPECT_EQ(plan.Decide(dsm::MemoryOrganization::Automatic), dsm::MemoryOrganization::Replicated);
+}
+
+/// Where the user said nothing, the resident set may take more than the part thought fit.
+TEST(MemoryPlan, OwnBlocksMayExceedWhatIsThoughtFit)
+{
+  const auto directory = dsm_test::MakeDirectory(2, 10, 1024);
+  const dsm::MemoryPlan plan({ &directory }, dsm::HostGroups::Separate(2),
+    std::vector<Budget>(2, Budget{ 3 * 1024, 8 * 1024 }), 4096);
+  EXPECT_EQ(plan.Decide(dsm::MemoryOrganization::Automatic), dsm::MemoryOrganization::ObjectBased);
+  EXPECT_EQ(plan.GetCacheBytes(dsm::MemoryOrganization::ObjectBased, 1), 1024u);
+  EXPECT_THROW(plan.Decide(dsm::MemoryOrganization::Replicated), dsm::Error);
+  EXPECT_THROW(plan.Decide(dsm::MemoryOrganization::PageBased), dsm::Error);
+}
+
+} // namespace

@@ -1,0 +1,228 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "DSMRayTracing/accel/BrickBvh.h"
+#include "DSMRayTracing/accel/WideBvhBuilder.h"
+#include "DSMRayTracing/kernel/WideBvhTraversal.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <random>
+#include <set>
+#include <vector>
+
+namespace
+{
+
+rt::BoundingBox CreateBox(const float lower[3], const float upper[3])
+{
+  const float low[4] = { lower[0], lower[1], lower[2], 0.0f };
+  const float high[4] = { upper[0], upper[1], upper[2], 0.0f };
+  return { rt::Float4::Load(low), rt::Float4::Load(high) };
+}
+
+std::vector<rt::BoundingBox> CreateBoxes(int count, unsigned seed, float spread)
+{
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<float> uniform(0.0f, 1.0f);
+  std::vector<rt::BoundingBox> boxes;
+  for (int box = 0; box < count; ++box)
+  {
+    float lower[3];
+    float upper[3];
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      lower[axis] = spread * uniform(random);
+      upper[axis] = lower[axis] + 0.05f * uniform(random);
+    }
+    boxes.push_back(CreateBox(lower, upper));
+  }
+  return boxes;
+}
+
+/// Every item stands in one leaf, and lies within the boxes of all nodes above it.
+template <class Reference>
+void CheckNode(const rt::WideBvhBuilder<Reference>& tree, const std::vector<rt::BoundingBox>& boxes,
+  std::uint32_t leafSize, std::size_t index, std::multiset<std::uint32_t>& found,
+  std::vector<std::uint32_t>& below, int depth)
+{
+  using Node = rt::WideBvhNode<Reference>;
+  ASSERT_LT(index, tree.GetNodes().size());
+  ASSERT_LT(depth, 33);
+  const Node& node = tree.GetNodes()[index];
+  ASSERT_GE(node.Children, 1);
+  ASSERT_LE(node.Children, Node::Width);
+  for (int child = 0; child < node.Children; ++child)
+  {
+    std::vector<std::uint32_t> items;
+    const Reference reference = node.References[child];
+    if (reference & Node::LeafBit)
+    {
+      const int countShift = 8 * sizeof(Reference) - 3;
+      const std::uint32_t count = (reference >> countShift & 3u) + 1;
+      const std::uint32_t first = reference & ((Reference(1) << countShift) - 1);
+      ASSERT_LE(count, leafSize);
+      ASSERT_LE(first + count, tree.GetOrder().size());
+      items.assign(tree.GetOrder().begin() + first, tree.GetOrder().begin() + first + count);
+      found.insert(items.begin(), items.end());
+    }
+    else
+    {
+      CheckNode(tree, boxes, leafSize, reference, found, items, depth + 1);
+    }
+    for (const std::uint32_t item : items)
+    {
+      float lower[4];
+      float upper[4];
+      boxes[item].Lower.Store(lower);
+      boxes[item].Upper.Store(upper);
+      for (int axis = 0; axis < 3; ++axis)
+      {
+        const double scale = std::ldexp(1.0, node.Exponent[axis] - 127);
+        const double low = node.Origin[axis] + scale * node.Bounds[8 * axis + child];
+        const double high = node.Origin[axis] + scale * node.Bounds[8 * (3 + axis) + child];
+        ASSERT_LE(low, lower[axis]);
+        ASSERT_GE(high, upper[axis]);
+      }
+    }
+    below.insert(below.end(), items.begin(), items.end());
+  }
+}
+
+template <class Reference>
+void CheckTree(const std::vector<rt::BoundingBox>& boxes, std::uint32_t leafSize)
+{
+  rt::WideBvhBuilder<Reference> tree(leafSize);
+  tree.Build(boxes);
+  std::multiset<std::uint32_t> found;
+  std::vector<std::uint32_t> below;
+  CheckNode(tree, boxes, leafSize, 0, found, below, 0);
+  ASSERT_EQ(found.size(), boxes.size());
+  EXPECT_EQ(std::set<std::uint32_t>(found.begin(), found.end()).size(), boxes.size());
+}
+
+} // namespace
+
+TEST(WideBvh, HoldsEveryItemOnceWithinItsBoxes)
+{
+  for (const int count : { 1, 2, 4, 5, 8, 9, 63, 1000, 8000 })
+  {
+    CheckTree<std::uint16_t>(CreateBoxes(count, 60, 1.0f), 4);
+    CheckTree<std::uint32_t>(CreateBoxes(count, 61, 1.0f), 1);
+  }
+}
+
+TEST(WideBvh, ItemsInOnePlaceAreCutByNumber)
+{
+  CheckTree<std::uint16_t>(std::vector<rt::BoundingBox>(8191, CreateBoxes(1, 62, 1.0f)[0]), 4);
+}
+
+TEST(WideBvh, ItemsThatNoBinningPartsWell)
+{
+  // Each is a tenth of the size of the one before: every cut takes off one.
+  std::vector<rt::BoundingBox> boxes;
+  for (int item = 0; item < 3000; ++item)
+  {
+    const float place = std::pow(0.98f, static_cast<float>(item));
+    const float lower[3] = { place, 0.0f, 0.0f };
+    const float upper[3] = { place, place, place };
+    boxes.push_back(CreateBox(lower, upper));
+  }
+  CheckTree<std::uint16_t>(boxes, 4);
+  CheckTree<std::uint32_t>(boxes, 1);
+}
+
+TEST(WideBvh, PointsAndHugeBoxes)
+{
+  std::vector<rt::BoundingBox> boxes = CreateBoxes(100, 63, 1e18f);
+  const float point[3] = { 0.0f, 0.0f, 0.0f };
+  boxes.push_back(CreateBox(point, point));
+  CheckTree<std::uint16_t>(boxes, 4);
+  CheckTree<std::uint16_t>({ CreateBox(point, point) }, 4);
+}
+
+TEST(BrickBvh, RaysMeetEveryBrickOnTheirWayNearestFirst)
+{
+  const std::vector<rt::BoundingBox> boxes = CreateBoxes(2000, 64, 1.0f);
+  const rt::BrickBvh bvh(boxes);
+  std::mt19937 random(65);
+  std::uniform_real_distribution<double> uniform(-0.5, 1.5);
+  for (int count = 0; count < 500; ++count)
+  {
+    const double origin[3] = { uniform(random), uniform(random), -1.0 };
+    double direction[3] = { 0.3 * uniform(random), 0.3 * uniform(random), 1.0 };
+    if (count % 5 == 0)
+    {
+      direction[0] = 0.0;
+    }
+    double inverse[3];
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      inverse[axis] = 1.0 / direction[axis];
+    }
+    rt::BoxRay ray;
+    ray.Set(origin, inverse, 1e-6);
+    float last = 1.9f;
+    std::set<std::uint32_t> visited;
+    rt::TraverseWideBvh(bvh.GetNodes(), ray, last,
+      [&](std::uint32_t leaf)
+      { EXPECT_TRUE(visited.insert(rt::BrickBvh::GetBrick(leaf)).second); });
+    std::size_t expected = 0;
+    for (std::size_t brick = 0; brick < boxes.size(); ++brick)
+    {
+      float lower[4];
+      float upper[4];
+      boxes[brick].Lower.Store(lower);
+      boxes[brick].Upper.Store(upper);
+      double enter = 0.0;
+      double leave = last;
+      for (int axis = 0; axis < 3; ++axis)
+      {
+        if (direction[axis] == 0.0)
+        {
+          leave = origin[axis] < lower[axis] || origin[axis] > upper[axis] ? -1.0 : leave;
+          continue;
+        }
+        const double a = (lower[axis] - origin[axis]) * inverse[axis];
+        const double b = (upper[axis] - origin[axis]) * inverse[axis];
+        enter = std::max(enter, std::min(a, b));
+        leave = std::min(leave, std::max(a, b));
+      }
+      if (enter <= leave)
+      {
+        ++expected;
+        EXPECT_EQ(visited.count(static_cast<std::uint32_t>(brick)), 1u) << brick;
+      }
+    }
+    // The boxes are rounded outward, so a few more.
+    EXPECT_LE(visited.size(), 2 * expected + 10);
+  }
+}
+
+TEST(BrickBvh, ShorteningTheRayEndsTheWalk)
+{
+  std::vector<rt::BoundingBox> boxes;
+  for (int slab = 0; slab < 200; ++slab)
+  {
+    const float lower[3] = { 0.0f, 0.0f, static_cast<float>(slab) };
+    const float upper[3] = { 1.0f, 1.0f, slab + 0.5f };
+    boxes.push_back(CreateBox(lower, upper));
+  }
+  const rt::BrickBvh bvh(boxes);
+  const double origin[3] = { 0.5, 0.5, -1.0 };
+  const double infinity = std::numeric_limits<double>::infinity();
+  const double inverse[3] = { infinity, infinity, 1.0 };
+  rt::BoxRay ray;
+  ray.Set(origin, inverse, 1e-6);
+  float last = 1000.0f;
+  std::vector<std::uint32_t> visited;
+  rt::TraverseWideBvh(bvh.GetNodes(), ray, last,
+    [&](std::uint32_t leaf)
+    {
+      visited.push_back(rt::BrickBvh::GetBrick(leaf));
+      last = visited.size() == 5 ? 6.2f : last;
+    });
+  EXPECT_EQ(visited, (std::vector<std::uint32_t>{ 0, 1, 2, 3, 4, 5 }));
+  EXPECT_TRUE(rt::BrickBvh(std::vector<rt::BoundingBox>()).IsEmpty());
+}

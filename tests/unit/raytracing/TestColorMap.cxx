@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "DSMRayTracing/frame/Scene.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+namespace
+{
+
+/// The red channel is the number of the entry.
+rt::ColorMap CreateMap(double first, double last, int entries)
+{
+  rt::ColorMap map;
+  map.First = first;
+  map.Last = last;
+  for (int entry = 0; entry < entries; ++entry)
+  {
+    map.Table.push_back({ static_cast<float>(entry), 0.0f, 0.0f, 1.0f });
+  }
+  map.Below = { -1.0f, 0.0f, 0.0f, 1.0f };
+  map.Above = { -2.0f, 0.0f, 0.0f, 1.0f };
+  map.NotANumber = { -3.0f, 0.0f, 0.0f, 1.0f };
+  return map;
+}
+
+} // namespace
+
+TEST(TestColorMap, EntriesRunFromFirstToLast)
+{
+  const rt::ColorMap map = CreateMap(10.0, 20.0, 11);
+  EXPECT_EQ(map.Map(10.0).x, 0.0f);
+  EXPECT_EQ(map.Map(10.49).x, 0.0f);
+  EXPECT_EQ(map.Map(10.51).x, 1.0f);
+  EXPECT_EQ(map.Map(15.0).x, 5.0f);
+  EXPECT_EQ(map.Map(20.0).x, 10.0f);
+}
+
+TEST(TestColorMap, OutsideOfTheRangeAndNaN)
+{
+  const rt::ColorMap map = CreateMap(10.0, 20.0, 11);
+  EXPECT_EQ(map.Map(9.999).x, -1.0f);
+  EXPECT_EQ(map.Map(-std::numeric_limits<double>::infinity()).x, -1.0f);
+  EXPECT_EQ(map.Map(20.001).x, -2.0f);
+  EXPECT_EQ(map.Map(std::numeric_limits<double>::infinity()).x, -2.0f);
+  EXPECT_EQ(map.Map(std::nan("")).x, -3.0f);
+}
+
+TEST(TestColorMap, Logarithmic)
+{
+  rt::ColorMap map = CreateMap(1.0, 10000.0, 5);
+  map.Logarithmic = true;
+  EXPECT_EQ(map.Map(1.0).x, 0.0f);
+  EXPECT_EQ(map.Map(3.0).x, 0.0f);
+  EXPECT_EQ(map.Map(4.0).x, 1.0f);
+  EXPECT_EQ(map.Map(100.0).x, 2.0f);
+  EXPECT_EQ(map.Map(10000.0).x, 4.0f);
+  EXPECT_EQ(map.Map(0.5).x, -1.0f);
+  EXPECT_EQ(map.Map(-5.0).x, -1.0f);
+}
+
+TEST(TestColorMap, DegenerateRangesAndTables)
+{
+  EXPECT_EQ(CreateMap(5.0, 5.0, 4).Map(5.0).x, 0.0f);
+  EXPECT_EQ(CreateMap(0.0, 1.0, 1).Map(0.7).x, 0.0f);
+  EXPECT_EQ(CreateMap(0.0, 1.0, 0).Map(0.7).x, -3.0f);
+}

@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "DSMCore/Error.h"
+#include "DSMCore/LoopbackTransport.h"
+#include "DSMRayTracing/accel/MacrocellHierarchy.h"
+#include "DSMRayTracing/brick/VoxelBrickHeader.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <thread>
+
+namespace
+{
+
+constexpr int Bricks[3] = { 10, 3, 17 };
+
+rt::BrickLattice CreateLattice()
+{
+  return rt::BrickLattice(
+    { 4 * Bricks[0] + 1, 4 * Bricks[1], 4 * Bricks[2] - 2 }, rt::ScalarType::Float32, false, 4);
+}
+
+rt::ValueRange CreateRange(dsm::BlockId id)
+{
+  const auto value = static_cast<float>(id * 37 % 101);
+  return { value, value + static_cast<float>(id % 7) };
+}
+
+std::vector<rt::ValueRange> CreateRanges(const rt::BrickLattice& lattice)
+{
+  std::vector<rt::ValueRange> ranges;
+  for (dsm::BlockId id = 0; id < lattice.GetBrickCount(); ++id)
+  {
+    ranges.push_back(CreateRange(id));
+  }
+  return ranges;
+}
+
+/// The blocks of one of several ranks; only their headers.
+class HeaderSegment final : public dsm::BlockSegment
+{
+public:
+  HeaderSegment(const rt::BrickLattice& lattice, int rank, int ranks)
+    : BlockSegment(0, lattice.CreateDirectory(ranks))
+    , Rank(rank)
+  {
+  }
+  void ForEachResident(const Visit& visit) const override
+  {
+    for (dsm::BlockId id = 0; id < this->GetDirectory().GetCount(); ++id)
+    {
+      if (this->GetDirectory().GetOwner(id) == this->Rank)
+      {
+        rt::VoxelBrickHeader header{};
+        header.First = CreateRange(id).First;
+        header.Last = CreateRange(id).Last;
+        visit(id, reinterpret_cast<const std::byte*>(&header), sizeof(header));
+      }
+    }
+  }
+  std::uint64_t GetResidentBytes() const override { return 0; }
+
+private:
+  int Rank;
+};
+
+} // namespace
+
+TEST(TestMacrocellHierarchy, EachLevelSpansTheOneBelow)
+{
+  const rt::BrickLattice lattice = CreateLattice();
+  const rt::MacrocellHierarchy hierarchy(lattice, CreateRanges(lattice));
+  const auto& levels = hierarchy.GetLevels();
+  ASSERT_EQ(levels.size(), 4u);
+  EXPECT_EQ(levels[1].Size[0], 3);
+  EXPECT_EQ(levels[1].Size[1], 1);
+  EXPECT_EQ(levels[1].Size[2], 5);
+  EXPECT_EQ(levels[3].Ranges.size(), 1u);
+  EXPECT_EQ(levels[2].Edge, 64.0);
+  for (std::size_t level = 0; level < levels.size(); ++level)
+  {
+    const auto& macrocells = levels[level];
+    std::vector<rt::ValueRange> expected(macrocells.Ranges.size(), { 1e30f, -1e30f });
+    for (dsm::BlockId id = 0; id < lattice.GetBrickCount(); ++id)
+    {
+      const rt::Index3 place = lattice.GetBrick(id) >> rt::Index3(2 * level);
+      auto& range = expected[static_cast<std::size_t>(
+        place.x + macrocells.Size[0] * (place.y + macrocells.Size[1] * place.z))];
+      range.First = std::min(range.First, CreateRange(id).First);
+      range.Last = std::max(range.Last, CreateRange(id).Last);
+    }
+    for (std::size_t i = 0; i < expected.size(); ++i)
+    {
+      EXPECT_EQ(macrocells.Ranges[i].First, expected[i].First);
+      EXPECT_EQ(macrocells.Ranges[i].Last, expected[i].Last);
+    }
+  }
+  EXPECT_EQ(hierarchy.GetRange().First, 0.0f);
+}
+
+TEST(TestMacrocellHierarchy, EveryRankGathersAllRanges)
+{
+  const rt::BrickLattice lattice = CreateLattice();
+  for (const int ranks : { 1, 2, 3, 4 })
+  {
+    auto transports = dsm::LoopbackTransport::CreateGroup(ranks);
+    std::vector<rt::MacrocellHierarchy> hierarchies(ranks);
+    std::vector<std::thread> threads;
+    for (int rank = 0; rank < ranks; ++rank)
+    {
+      threads.emplace_back(
+        [&, rank]
+        {
+          dsm::Messenger messenger(std::move(transports[rank]));
+          hierarchies[rank] =
+            rt::MacrocellHierarchy(lattice, HeaderSegment(lattice, rank, ranks), messenger);
+          messenger.Barrier();
+        });
+    }
+    for (std::thread& thread : threads)
+    {
+      thread.join();
+    }
+    for (const rt::MacrocellHierarchy& hierarchy : hierarchies)
+    {
+      const auto& finest = hierarchy.GetLevels().front().Ranges;
+      ASSERT_EQ(finest.size(), lattice.GetBrickCount());
+      for (dsm::BlockId id = 0; id < finest.size(); ++id)
+      {
+        ASSERT_EQ(finest[id].First, CreateRange(id).First);
+        ASSERT_EQ(finest[id].Last, CreateRange(id).Last);
+      }
+    }
+  }
+}
+
+TEST(TestMacrocellHierarchy, RefusesRangesOfAnotherLattice)
+{
+  EXPECT_THROW(rt::MacrocellHierarchy(CreateLattice(), std::vector<rt::ValueRange>(5)), dsm::Error);
+}
+
+TEST(TestMacrocellHierarchy, RangeHoldsIsovaluesAboveItsFirst)
+{
+  const rt::ValueRange range{ 1.0f, 2.0f };
+  EXPECT_FALSE(range.MayHold(1.0));
+  EXPECT_TRUE(range.MayHold(1.5));
+  EXPECT_TRUE(range.MayHold(2.0));
+  EXPECT_FALSE(range.MayHold(2.0000001));
+  EXPECT_FALSE((rt::ValueRange{ 1.0f, -1.0f }).MayHold(0.0));
+}

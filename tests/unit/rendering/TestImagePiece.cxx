@@ -1,0 +1,204 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkDSMImagePiece.h"
+
+#include "vtkBitArray.h"
+#include "vtkCellData.h"
+#include "vtkDataArray.h"
+#include "vtkDataSetAttributes.h"
+#include "vtkFloatArray.h"
+#include "vtkImageData.h"
+#include "vtkNew.h"
+#include "vtkPointData.h"
+#include "vtkSOADataArrayTemplate.h"
+#include "vtkUnsignedCharArray.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+namespace
+{
+
+/// 4 x 3 x 3 points from (-1, 2, 5) on; the value of a point is 100 i + 10 j + k.
+constexpr int Extent[6] = { -1, 2, 2, 4, 5, 7 };
+
+double GetValue(std::int64_t i, std::int64_t j, std::int64_t k)
+{
+  return 100.0 * static_cast<double>(i) + 10.0 * static_cast<double>(j) + static_cast<double>(k);
+}
+
+vtkSmartPointer<vtkImageData> MakeImage()
+{
+  auto image = vtkSmartPointer<vtkImageData>::New();
+  image->SetExtent(const_cast<int*>(Extent));
+  return image;
+}
+
+template <class Set>
+void ForEachPoint(Set&& set)
+{
+  vtkIdType tuple = 0;
+  for (int k = Extent[4]; k <= Extent[5]; ++k)
+  {
+    for (int j = Extent[2]; j <= Extent[3]; ++j)
+    {
+      for (int i = Extent[0]; i <= Extent[1]; ++i)
+      {
+        set(tuple++, GetValue(i, j, k));
+      }
+    }
+  }
+}
+
+/// The lattice starts at the image's first point.
+vtkDSMLatticePlan::Member MakePlace(const vtkDSMPieceInfo& info)
+{
+  const rt::Index3 shift(1, -2, -5);
+  return { 0, shift,
+    { rt::Index3(info.Min[0], info.Min[1], info.Min[2]) + shift,
+      rt::Index3(info.Max[0], info.Max[1], info.Max[2]) + shift } };
+}
+
+template <class T>
+std::vector<T> Read(vtkImageData* image, vtkDataArray* array, int component, const rt::Box& points)
+{
+  const vtkDSMImagePiece piece(
+    image, array, component, MakePlace(vtkDSMImagePiece::Describe(image, 0)), false);
+  std::vector<T> samples(static_cast<std::size_t>(points.GetCount()));
+  piece.ReadSamples(points, reinterpret_cast<std::byte*>(samples.data()));
+  return samples;
+}
+
+const rt::Box Some{ { 1, 0, 1 }, { 3, 2, 3 } };
+
+/// What Some holds, through `change`.
+template <class T, class Change>
+std::vector<T> GetExpected(Change&& change)
+{
+  std::vector<T> expected;
+  for (std::int64_t k = Some.Min.z; k < Some.Max.z; ++k)
+  {
+    for (std::int64_t j = Some.Min.y; j < Some.Max.y; ++j)
+    {
+      for (std::int64_t i = Some.Min.x; i < Some.Max.x; ++i)
+      {
+        expected.push_back(static_cast<T>(change(GetValue(i - 1, j + 2, k + 5))));
+      }
+    }
+  }
+  return expected;
+}
+
+TEST(ImagePiece, ReadsOneComponentOfInterleavedTuples)
+{
+  const auto image = MakeImage();
+  vtkNew<vtkFloatArray> array;
+  array->SetNumberOfComponents(3);
+  array->SetNumberOfTuples(image->GetNumberOfPoints());
+  ForEachPoint([&](vtkIdType tuple, double value) { array->SetTuple3(tuple, 0.0, value, -1.0); });
+  EXPECT_EQ(Read<float>(image, array, 1, Some), GetExpected<float>([](double v) { return v; }));
+}
+
+TEST(ImagePiece, KeepsAll64BitsOfIntegersInEitherLayout)
+{
+  const auto image = MakeImage();
+  // Neighbours in int64 that a double cannot tell apart.
+  const auto widen = [](double value)
+  { return (std::int64_t(1) << 60) + static_cast<std::int64_t>(value); };
+  const auto expected = GetExpected<std::int64_t>(widen);
+  vtkSmartPointer<vtkDataArray> interleaved;
+  interleaved.TakeReference(vtkDataArray::CreateDataArray(VTK_LONG_LONG));
+  interleaved->SetNumberOfTuples(image->GetNumberOfPoints());
+  auto* values = static_cast<long long*>(interleaved->GetVoidPointer(0));
+  vtkNew<vtkSOADataArrayTemplate<long long>> separate;
+  separate->SetNumberOfComponents(2);
+  separate->SetNumberOfTuples(image->GetNumberOfPoints());
+  ForEachPoint(
+    [&](vtkIdType tuple, double value)
+    {
+      values[tuple] = widen(value);
+      separate->SetTypedComponent(tuple, 0, 0);
+      separate->SetTypedComponent(tuple, 1, widen(value));
+    });
+  EXPECT_EQ(vtkDSMImagePiece::GetScalarType(interleaved, 0), rt::ScalarType::Int64);
+  EXPECT_EQ(Read<std::int64_t>(image, interleaved, 0, Some), expected);
+  EXPECT_EQ(Read<std::int64_t>(image, separate, 1, Some), expected);
+}
+
+TEST(ImagePiece, ReadsBits)
+{
+  const auto image = MakeImage();
+  vtkNew<vtkBitArray> array;
+  array->SetNumberOfTuples(image->GetNumberOfPoints());
+  const auto toBit = [](double value) { return std::fmod(value, 2.0) != 0.0 ? 1 : 0; };
+  ForEachPoint([&](vtkIdType tuple, double value) { array->SetValue(tuple, toBit(value)); });
+  EXPECT_EQ(vtkDSMImagePiece::GetScalarType(array, 0), rt::ScalarType::UInt8);
+  EXPECT_EQ(Read<std::uint8_t>(image, array, 0, Some), GetExpected<std::uint8_t>(toBit));
+}
+
+TEST(ImagePiece, ComputesTheMagnitude)
+{
+  const auto image = MakeImage();
+  vtkNew<vtkFloatArray> array;
+  array->SetNumberOfComponents(2);
+  array->SetNumberOfTuples(image->GetNumberOfPoints());
+  ForEachPoint(
+    [&](vtkIdType tuple, double value) { array->SetTuple2(tuple, 3.0 * value, 4.0 * value); });
+  EXPECT_EQ(Read<float>(image, array, vtkDSMImagePiece::Magnitude, Some),
+    GetExpected<float>([](double v) { return 5.0 * std::abs(v); }));
+}
+
+TEST(ImagePiece, TypesKeepSizeAndSign)
+{
+  const std::vector<std::pair<int, rt::ScalarType>> types = {
+    { VTK_SIGNED_CHAR, rt::ScalarType::Int8 }, { VTK_UNSIGNED_CHAR, rt::ScalarType::UInt8 },
+    { VTK_SHORT, rt::ScalarType::Int16 }, { VTK_UNSIGNED_SHORT, rt::ScalarType::UInt16 },
+    { VTK_INT, rt::ScalarType::Int32 }, { VTK_UNSIGNED_INT, rt::ScalarType::UInt32 },
+    { VTK_LONG_LONG, rt::ScalarType::Int64 }, { VTK_UNSIGNED_LONG_LONG, rt::ScalarType::UInt64 },
+    { VTK_FLOAT, rt::ScalarType::Float32 }, { VTK_DOUBLE, rt::ScalarType::Float64 }
+  };
+  for (const auto& [number, type] : types)
+  {
+    vtkSmartPointer<vtkDataArray> array;
+    array.TakeReference(vtkDataArray::CreateDataArray(number));
+    EXPECT_EQ(vtkDSMImagePiece::GetScalarType(array, 0), type) << array->GetClassName();
+  }
+}
+
+TEST(ImagePiece, DuplicateCellsAreTrimmedAndHiddenPointsMasked)
+{
+  const auto image = MakeImage();
+  vtkNew<vtkUnsignedCharArray> cells;
+  cells->SetName(vtkDataSetAttributes::GhostArrayName());
+  cells->SetNumberOfTuples(image->GetNumberOfCells());
+  for (vtkIdType cell = 0; cell < image->GetNumberOfCells(); ++cell)
+  {
+    // The first of three cells along x belongs to another piece.
+    cells->SetValue(cell, cell % 3 == 0 ? vtkDataSetAttributes::DUPLICATECELL : 0);
+  }
+  image->GetCellData()->AddArray(cells);
+  vtkDSMPieceInfo info = vtkDSMImagePiece::Describe(image, 7);
+  EXPECT_EQ(info.Leaf, 7);
+  EXPECT_EQ(info.Min[0], 0);
+  EXPECT_EQ(info.Max[0], 2);
+  EXPECT_EQ(info.Min[1], 2);
+  EXPECT_EQ(info.HasMask, 0);
+
+  vtkNew<vtkUnsignedCharArray> points;
+  points->SetName(vtkDataSetAttributes::GhostArrayName());
+  points->SetNumberOfTuples(image->GetNumberOfPoints());
+  points->FillValue(0);
+  points->SetValue(image->GetNumberOfPoints() - 1, vtkDataSetAttributes::HIDDENPOINT);
+  image->GetPointData()->AddArray(points);
+  info = vtkDSMImagePiece::Describe(image, 0);
+  EXPECT_EQ(info.Max[0], 2);
+  EXPECT_EQ(info.HasMask, 1);
+
+  const vtkDSMImagePiece piece(image, points, 0, MakePlace(info), true);
+  std::vector<std::uint8_t> mask(2 * 2 * 2);
+  piece.ReadCellMask(piece.GetCells(), mask.data());
+  EXPECT_EQ(mask, (std::vector<std::uint8_t>{ 1, 1, 1, 1, 1, 1, 1, 0 }));
+}
+
+} // namespace

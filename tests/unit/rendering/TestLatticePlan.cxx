@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "DSMCore/Error.h"
+#include "vtkDSMLatticePlan.h"
+
+#include <gtest/gtest.h>
+
+#include <glm/vec4.hpp>
+
+#include <array>
+#include <string>
+#include <vector>
+
+namespace
+{
+
+using Extent = std::array<std::int64_t, 6>;
+
+vtkDSMPieceInfo MakePiece(const Extent& cells, int leaf = 0)
+{
+  vtkDSMPieceInfo piece{};
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    piece.Spacing[axis] = 1.0 + axis;
+    piece.Direction[4 * axis] = 1.0;
+    piece.Min[axis] = cells[2 * axis];
+    piece.Max[axis] = cells[2 * axis + 1];
+  }
+  piece.Leaf = leaf;
+  return piece;
+}
+
+rt::Box MakeBox(const Extent& cells)
+{
+  return { { cells[0], cells[2], cells[4] }, { cells[1], cells[3], cells[5] } };
+}
+
+glm::dvec3 GetCorner(const vtkDSMLatticePlan::Lattice& lattice)
+{
+  return glm::dvec3(lattice.IndexToWorld * glm::dvec4(0.0, 0.0, 0.0, 1.0));
+}
+
+TEST(LatticePlan, PiecesOfOneImageMakeOneLatticeThatStartsAtItsFirstPoint)
+{
+  const vtkDSMLatticePlan plan({ MakePiece({ -5, 3, 2, 8, 10, 14 }),
+    MakePiece({ 3, 9, 2, 8, 10, 14 }), MakePiece({ -5, 9, 8, 9, 10, 14 }) });
+  ASSERT_EQ(plan.GetLattices().size(), 1u);
+  const auto& lattice = plan.GetLattices()[0];
+  EXPECT_EQ(lattice.Points, rt::Index3(15, 8, 5));
+  EXPECT_EQ(GetCorner(lattice), glm::dvec3(-5.0, 4.0, 30.0));
+  ASSERT_EQ(lattice.Members.size(), 3u);
+  EXPECT_EQ(lattice.Members[1].Piece, 1);
+  EXPECT_EQ(lattice.Members[1].Cells.Min, rt::Index3(8, 0, 0));
+  EXPECT_EQ(lattice.Members[1].IndexToLattice, rt::Index3(5, -2, -10));
+}
+
+TEST(LatticePlan, ShiftedOriginsAreAligned)
+{
+  vtkDSMPieceInfo second = MakePiece({ 0, 4, 0, 4, 0, 4 }, 1);
+  second.Origin[0] = 4.00001;
+  const vtkDSMLatticePlan plan({ MakePiece({ 0, 4, 0, 4, 0, 4 }), second });
+  ASSERT_EQ(plan.GetLattices().size(), 1u);
+  EXPECT_EQ(plan.GetLattices()[0].Points, rt::Index3(9, 5, 5));
+  EXPECT_EQ(plan.GetLattices()[0].Members[1].IndexToLattice, rt::Index3(4, 0, 0));
+}
+
+TEST(LatticePlan, ALaterPieceJoinsTwoGroups)
+{
+  const vtkDSMLatticePlan plan({ MakePiece({ 0, 4, 0, 4, 0, 4 }), MakePiece({ 8, 12, 0, 4, 0, 4 }),
+    MakePiece({ 4, 8, 0, 4, 0, 4 }) });
+  ASSERT_EQ(plan.GetLattices().size(), 1u);
+  EXPECT_EQ(plan.GetLattices()[0].Points, rt::Index3(13, 5, 5));
+}
+
+TEST(LatticePlan, WhatDoesNotFitStaysApart)
+{
+  vtkDSMPieceInfo offGrid = MakePiece({ 4, 8, 0, 4, 0, 4 });
+  offGrid.Origin[1] = 0.5;
+  vtkDSMPieceInfo coarse = MakePiece({ 4, 8, 0, 4, 0, 4 });
+  coarse.Spacing[2] = 6.0;
+  vtkDSMPieceInfo turned = MakePiece({ 4, 8, 0, 4, 0, 4 });
+  turned.Direction[0] = turned.Direction[4] = 0.0;
+  turned.Direction[1] = -1.0;
+  turned.Direction[3] = 1.0;
+  const vtkDSMPieceInfo distant = MakePiece({ 100, 104, 0, 4, 0, 4 });
+  const vtkDSMLatticePlan plan(
+    { MakePiece({ 0, 4, 0, 4, 0, 4 }), offGrid, coarse, turned, distant });
+  EXPECT_EQ(plan.GetLattices().size(), 5u);
+}
+
+TEST(LatticePlan, OverlappingBlocksAreDifferentVolumesButCopiesOfOneImageAreNot)
+{
+  const Extent cells = { 0, 4, 0, 4, 0, 4 };
+  const Extent shifted = { 2, 6, 0, 4, 0, 4 };
+  EXPECT_EQ(
+    vtkDSMLatticePlan({ MakePiece(cells, 1), MakePiece(shifted, 2) }).GetLattices().size(), 2u);
+  EXPECT_EQ(
+    vtkDSMLatticePlan({ MakePiece(cells, 1), MakePiece(shifted, 1) }).GetLattices().size(), 1u);
+}
+
+TEST(LatticePlan, FlatDataAreRefusedByAxis)
+{
+  try
+  {
+    vtkDSMLatticePlan({ MakePiece({ 0, 4, 3, 3, 0, 4 }) });
+    FAIL() << "an image without cells was accepted";
+  }
+  catch (const dsm::Error& error)
+  {
+    EXPECT_NE(std::string(error.what()).find("no cells in y"), std::string::npos) << error.what();
+  }
+  const std::vector<vtkDSMPieceInfo> none;
+  EXPECT_TRUE(vtkDSMLatticePlan(none).GetLattices().empty());
+}
+
+TEST(LatticePlan, FlatPiecesAmongVolumesAreLeftOut)
+{
+  const vtkDSMLatticePlan plan(
+    { MakePiece({ 0, 4, 3, 3, 0, 4 }), MakePiece({ 0, 4, 0, 4, 0, 4 }) });
+  ASSERT_EQ(plan.GetLattices().size(), 1u);
+  EXPECT_EQ(plan.GetLattices()[0].Members.front().Piece, 1);
+}
+
+TEST(LatticePlan, CoverageFindsOneMissingCell)
+{
+  const rt::Box whole = MakeBox({ 0, 4, 0, 4, 0, 4 });
+  const rt::Box left = MakeBox({ 0, 2, 0, 4, 0, 4 });
+  const rt::Box right = MakeBox({ 1, 4, 0, 4, 0, 4 });
+  EXPECT_TRUE(vtkDSMLatticePlan::IsCovered(whole, { left, right }));
+  EXPECT_FALSE(vtkDSMLatticePlan::IsCovered(whole, { left }));
+  const rt::Box allButOneLayer = MakeBox({ 1, 4, 0, 4, 0, 3 });
+  const rt::Box allButOneCell = MakeBox({ 2, 4, 0, 4, 3, 4 });
+  const rt::Box lastRow = MakeBox({ 0, 2, 0, 3, 3, 4 });
+  EXPECT_FALSE(vtkDSMLatticePlan::IsCovered(
+    whole, { MakeBox({ 0, 1, 0, 4, 0, 3 }), allButOneLayer, allButOneCell, lastRow }));
+  EXPECT_TRUE(vtkDSMLatticePlan::IsCovered(whole,
+    { MakeBox({ 0, 1, 0, 4, 0, 3 }), allButOneLayer, allButOneCell, lastRow,
+      MakeBox({ 0, 2, 3, 4, 3, 4 }) }));
+}
+
+} // namespace
