@@ -22,6 +22,9 @@ fi
 
 install_packages "${packages[@]}"
 build_project
+picture=$PWD/demo.png
+rm -f "$picture"
 start_ranks "${DSM_RANKS:-4}" timeout 3600 \
   pvbatch "$project/examples/demo.py" --plugin "$(plugin_directory)/DSMRayTracer.so" \
-  --size "${DSM_SIZE:-256}" --output "$PWD/demo.png" "${arguments[@]}"
+  --size "${DSM_SIZE:-256}" --output "$picture" "${arguments[@]}"
+[ -s "$picture" ] || fail "no picture was made; the messages above say why"

@@ -18,10 +18,8 @@ def say(text):
         print(f"[{time.perf_counter() - START:6.1f} s] {text}", flush=True)
 
 
-def fail(text):
-    if servermanager.vtkProcessModule.GetProcessModule().GetPartitionId() == 0:
-        print(f"error: {text}", file=sys.stderr, flush=True)
-    sys.exit(1)
+class DemoError(Exception):
+    """What is wrong with what the user asked for."""
 
 
 def open_input(arguments):
@@ -34,19 +32,19 @@ def open_input(arguments):
     say(f"reading {arguments.file}")
     source = simple.OpenDataFile(arguments.file)
     if source is None:
-        fail(f"ParaView has no reader for {arguments.file}")
+        raise DemoError(f"ParaView has no reader for {arguments.file}")
     source.UpdatePipeline()
     data = source.GetDataInformation()
     if not data.DataInformation.IsDataStructured() and not data.IsCompositeDataSet():
-        fail(f"{arguments.file} is a {data.GetDataSetTypeAsString()}, not image data; resample it "
+        raise DemoError(f"{arguments.file} is a {data.GetDataSetTypeAsString()}, not image data; resample it "
              "to an image (filter Resample To Image) and save that")
     names = [array.Name for array in source.PointData]
     if not names:
-        fail(f"{arguments.file} has no arrays on its points; if it has some on its cells, apply Cell "
+        raise DemoError(f"{arguments.file} has no arrays on its points; if it has some on its cells, apply Cell "
              "Data to Point Data and save that")
     array = arguments.array or names[0]
     if array not in names:
-        fail(f"{arguments.file} has no point array {array}; it has: {', '.join(names)}")
+        raise DemoError(f"{arguments.file} has no point array {array}; it has: {', '.join(names)}")
     return source, array, arguments.isovalue
 
 
@@ -66,7 +64,7 @@ def print_statistics(representation):
         print(" ".join(f"{cell:>12}" for cell in cells))
 
 
-def main():
+def parse_arguments():
     parser = argparse.ArgumentParser()
     parser.add_argument("--plugin", required=True)
     parser.add_argument("--output", default="demo.png")
@@ -74,7 +72,11 @@ def main():
     parser.add_argument("--file", default="")
     parser.add_argument("--isovalue", type=float)
     parser.add_argument("--array", default="")
-    arguments = parser.parse_args()
+    return parser.parse_args()
+
+
+def main():
+    arguments = parse_arguments()
     simple.LoadPlugin(arguments.plugin, remote=False, ns=vars(simple))
 
     source, array, isovalue = open_input(arguments)
@@ -100,4 +102,9 @@ def main():
     print_statistics(representation)
 
 
-main()
+try:
+    main()
+except DemoError as error:
+    # Not an exit code: mpirun would kill the other ranks, noisily. demo.sh sees that there is no
+    # picture.
+    print(f"error: {error}", file=sys.stderr, flush=True)

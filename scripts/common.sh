@@ -78,7 +78,8 @@ plugin_directory() {
 start_ranks() {
   local ranks=$1
   shift
-  local options=(--oversubscribe --bind-to none -np "$ranks")
+  # A rank that waits gives its core to those that trace.
+  local options=(--oversubscribe --bind-to none --mca mpi_yield_when_idle 1 -np "$ranks")
   [ "$(id -u)" -ne 0 ] || options+=(--allow-run-as-root)
   # Without a screen, ParaView draws into a virtual one. -noreset: X would reset between clients.
   xvfb-run --auto-servernum --server-args "-noreset -screen 0 1280x1024x24" \
