@@ -97,8 +97,6 @@ private:
   void operator=(const vtkPVDSMImageRepresentation&) = delete;
 
   void PrepareUpdate(vtkInformation* inInfo, vtkInformation* outInfo);
-  /// By what else the view shows.
-  void ChooseDelivery();
   void ConnectFrameReport();
   /// Taking in data happens while the view renders; ParaView watches the representation, only.
   void ForwardProgress();

@@ -3,15 +3,20 @@
 
 #include "DSMRayTracing/frame/FrameGather.h"
 #include "vtkDSMFrameProp.h"
+#include "vtkDSMPolyDataMapper.h"
 #include "vtkDSMRankGroup.h"
+#include "vtkDSMSceneMesh.h"
 #include "vtkDSMSceneVolume.h"
 #include "vtkDSMStatistics.h"
 #include "vtkDSMTranslation.h"
 #include "vtkDSMVolumeMapper.h"
 
+#include "vtkActor.h"
 #include "vtkBoundingBox.h"
 #include "vtkCamera.h"
 #include "vtkCommand.h"
+#include "vtkMapper.h"
+#include "vtkMath.h"
 #include "vtkMatrix4x4.h"
 #include "vtkMultiProcessController.h"
 #include "vtkObjectFactory.h"
@@ -43,10 +48,11 @@ class vtkDSMScene::Internals
 public:
   struct Member
   {
-    vtkVolume* Volume;
-    vtkDSMSceneVolume* State;
+    vtkProp3D* Prop;
+    vtkDSMSceneMember* State;
   };
 
+  static std::unique_ptr<vtkDSMSceneMember> CreateState(vtkAlgorithm* mapper);
   void FindMembers();
   void Configure();
   void Update();
@@ -61,7 +67,7 @@ public:
   vtkNew<vtkDSMFrameProp> Prop;
   vtkNew<vtkDSMStatistics> Statistics;
   std::shared_ptr<vtkDSMRankGroup> Group;
-  std::vector<std::unique_ptr<vtkDSMSceneVolume>> Volumes;
+  std::vector<std::unique_ptr<vtkDSMSceneMember>> States;
   std::vector<Member> Members;                ///< of the frame, in the renderer's order
   std::string Failure;                        ///< that was reported last
   std::function<bool(vtkCamera*)> DrawsColor; ///< set: the frame is delivered everywhere
@@ -147,32 +153,55 @@ vtkDSMStatistics* vtkDSMScene::GetStatistics() const
   return this->Self->Statistics;
 }
 
+/// Null for what is not traced.
+std::unique_ptr<vtkDSMSceneMember> vtkDSMScene::Internals::CreateState(vtkAlgorithm* mapper)
+{
+  if (auto* volumeMapper = vtkDSMVolumeMapper::SafeDownCast(mapper))
+  {
+    return std::make_unique<vtkDSMSceneVolume>(volumeMapper);
+  }
+  if (auto* polyDataMapper = vtkDSMPolyDataMapper::SafeDownCast(mapper))
+  {
+    return std::make_unique<vtkDSMSceneMesh>(polyDataMapper);
+  }
+  return nullptr;
+}
+
 void vtkDSMScene::Internals::FindMembers()
 {
   this->Members.clear();
-  std::vector<std::unique_ptr<vtkDSMSceneVolume>> kept;
+  std::vector<std::unique_ptr<vtkDSMSceneMember>> kept;
   vtkCollectionSimpleIterator position;
   vtkPropCollection* props = this->Renderer->GetViewProps();
   props->InitTraversal(position);
   while (vtkProp* prop = props->GetNextProp(position))
   {
     auto* volume = vtkVolume::SafeDownCast(prop);
-    auto* mapper = volume ? vtkDSMVolumeMapper::SafeDownCast(volume->GetMapper()) : nullptr;
-    if (!mapper)
+    auto* actor = vtkActor::SafeDownCast(prop);
+    vtkAlgorithm* mapper = nullptr;
+    if (volume)
+    {
+      mapper = volume->GetMapper();
+    }
+    else if (actor)
+    {
+      mapper = actor->GetMapper();
+    }
+    const auto known = std::find_if(this->States.begin(), this->States.end(),
+      [=](const auto& state) { return state && mapper && state->GetAlgorithm() == mapper; });
+    auto state = known == this->States.end() ? CreateState(mapper) : std::move(*known);
+    if (!state)
     {
       continue;
     }
-    auto known = std::find_if(this->Volumes.begin(), this->Volumes.end(),
-      [=](const auto& candidate) { return candidate && candidate->GetMapper() == mapper; });
-    kept.push_back(known == this->Volumes.end() ? std::make_unique<vtkDSMSceneVolume>(mapper)
-                                                : std::move(*known));
-    if (volume->GetVisibility())
+    kept.push_back(std::move(state));
+    if (prop->GetVisibility())
     {
-      this->Members.push_back({ volume, kept.back().get() });
+      this->Members.push_back({ vtkProp3D::SafeDownCast(prop), kept.back().get() });
     }
   }
-  // What is left belonged to volumes that were removed; their bricks leave the store.
-  this->Volumes = std::move(kept);
+  // What is left belonged to props that were removed; their bricks leave the store.
+  this->States = std::move(kept);
 }
 
 void vtkDSMScene::Internals::Configure()
@@ -181,8 +210,8 @@ void vtkDSMScene::Internals::Configure()
   int threads = 0;
   for (const Member& member : this->Members)
   {
-    cache = std::max(cache, member.State->GetMapper()->GetCacheSize());
-    threads = std::max(threads, member.State->GetMapper()->GetNumberOfThreads());
+    cache = std::max(cache, member.State->GetCacheSize());
+    threads = std::max(threads, member.State->GetNumberOfThreads());
   }
   this->Group->Configure(static_cast<std::size_t>(cache) << 20, threads);
 }
@@ -197,7 +226,7 @@ void vtkDSMScene::Internals::Update()
       this->Configure();
       for (const Member& member : this->Members)
       {
-        member.State->GetMapper()->UpdatePiece(messenger.GetRank(), messenger.GetSize());
+        member.State->UpdatePiece(messenger.GetRank(), messenger.GetSize());
         mine.push_back(std::byte(member.State->HasNewData() ? 1 : 0));
       }
     });
@@ -207,7 +236,7 @@ void vtkDSMScene::Internals::Update()
   {
     if (flags.size() != all.front().size())
     {
-      throw dsm::Error("The ranks do not show the same volumes; the frame was left out.");
+      throw dsm::Error("The ranks do not show the same datasets; the frame was left out.");
     }
   }
   for (std::size_t index = 0; index < mine.size(); ++index)
@@ -229,13 +258,13 @@ void vtkDSMScene::Internals::Draw()
     {
       for (const Member& member : this->Members)
       {
-        member.State->AddTo(scene, member.Volume);
+        member.State->AddTo(scene, member.Prop);
       }
       this->DrawLast(scene);
       scene.Lights = vtkDSMTranslation::ToLights(this->Renderer);
       request = vtkDSMTranslation::ToRequest(this->Renderer, projection);
     });
-  if (scene.Isosurfaces.empty())
+  if (scene.Isosurfaces.empty() && scene.Meshes.empty())
   {
     this->Clear();
     return;
@@ -265,7 +294,8 @@ void vtkDSMScene::Internals::GetBounds(double bounds[6]) const
   vtkBoundingBox box;
   for (const Member& member : this->Members)
   {
-    if (const double* part = member.Volume->GetBounds())
+    const double* part = member.Prop->GetBounds();
+    if (part && vtkMath::AreBoundsInitialized(part))
     {
       box.AddBounds(part);
     }
@@ -276,8 +306,16 @@ void vtkDSMScene::Internals::GetBounds(double bounds[6]) const
 /// What shows through a translucent surface must have been drawn before it.
 void vtkDSMScene::Internals::DrawLast(const rt::Scene& scene)
 {
-  const bool translucent = std::any_of(scene.Isosurfaces.begin(), scene.Isosurfaces.end(),
-    [](const rt::IsosurfaceObject& object) { return object.Surface.Opacity < 1.0f; });
+  const bool translucent =
+    std::any_of(scene.Isosurfaces.begin(), scene.Isosurfaces.end(),
+      [](const rt::IsosurfaceObject& object) { return object.Surface.Opacity < 1.0f; }) ||
+    std::any_of(scene.Meshes.begin(), scene.Meshes.end(),
+      [](const rt::MeshObject& object)
+      {
+        return object.Surface.Opacity < 1.0f ||
+          object.ColoredBy == rt::MeshObject::Coloring::Colors ||
+          (object.BackSurface && object.BackSurface->Opacity < 1.0f);
+      });
   if (translucent && this->Renderer->GetViewProps()->GetLastProp() != this->Prop)
   {
     this->Renderer->RemoveViewProp(this->Prop);
@@ -335,6 +373,6 @@ void vtkDSMScene::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
   os << indent << "Renderer: " << this->Self->Renderer.Get() << "\n";
-  os << indent << "Volumes: " << this->Self->Volumes.size() << "\n";
+  os << indent << "Mappers: " << this->Self->States.size() << "\n";
   this->Self->Statistics->PrintSelf(os, indent.GetNextIndent());
 }

@@ -9,11 +9,10 @@
 #include "vtkCompositeDataSet.h"
 #include "vtkDataObject.h"
 #include "vtkMatrix4x4.h"
-#include "vtkObject.h"
+#include "vtkProp3D.h"
 #include "vtkProperty.h"
 #include "vtkScalarsToColors.h"
 #include "vtkSmartPointer.h"
-#include "vtkVolume.h"
 
 #include <algorithm>
 #include <cmath>
@@ -46,9 +45,24 @@ vtkDSMSceneVolume::vtkDSMSceneVolume(vtkDSMVolumeMapper* mapper)
 
 vtkDSMSceneVolume::~vtkDSMSceneVolume() = default;
 
-vtkDSMVolumeMapper* vtkDSMSceneVolume::GetMapper() const
+vtkAlgorithm* vtkDSMSceneVolume::GetAlgorithm() const
 {
   return this->Mapper;
+}
+
+int vtkDSMSceneVolume::GetCacheSize() const
+{
+  return this->Mapper->GetCacheSize();
+}
+
+int vtkDSMSceneVolume::GetNumberOfThreads() const
+{
+  return this->Mapper->GetNumberOfThreads();
+}
+
+void vtkDSMSceneVolume::UpdatePiece(int piece, int numberOfPieces)
+{
+  this->Mapper->UpdatePiece(piece, numberOfPieces);
 }
 
 bool vtkDSMSceneVolume::HasNewData() const
@@ -173,7 +187,7 @@ const rt::ColorMap& vtkDSMSceneVolume::GetColorMap()
   return this->Colors;
 }
 
-void vtkDSMSceneVolume::AddTo(rt::Scene& scene, vtkVolume* volume)
+void vtkDSMSceneVolume::AddTo(rt::Scene& scene, vtkProp3D* prop)
 {
   if (!this->Data || !this->Iso)
   {
@@ -184,8 +198,8 @@ void vtkDSMSceneVolume::AddTo(rt::Scene& scene, vtkVolume* volume)
   {
     return;
   }
-  volume->ComputeMatrix();
-  const glm::dmat4 dataToWorld = vtkDSMTranslation::ToMatrix(volume->GetMatrix());
+  prop->ComputeMatrix();
+  const glm::dmat4 dataToWorld = vtkDSMTranslation::ToMatrix(prop->GetMatrix());
   const rt::Material material = vtkDSMTranslation::ToMaterial(this->Mapper->GetSurfaceProperty());
   const bool colored = this->Color && !this->Color->Fields.empty();
   for (std::size_t lattice = 0; lattice < this->Data->GetNumberOfLattices(); ++lattice)
@@ -206,16 +220,4 @@ void vtkDSMSceneVolume::AddTo(rt::Scene& scene, vtkVolume* volume)
     }
     scene.Isosurfaces.push_back(std::move(object));
   }
-}
-
-void vtkDSMSceneVolume::ReportMessages()
-{
-  for (const std::string& message : this->Messages)
-  {
-    if (std::find(this->Reported.begin(), this->Reported.end(), message) == this->Reported.end())
-    {
-      vtkErrorWithObjectMacro(this->Mapper, << message);
-    }
-  }
-  this->Reported = this->Messages;
 }

@@ -2,6 +2,7 @@
 #include "vtkDSMVolumeData.h"
 
 #include "DSMRayTracing/brick/VoxelBrickBuilder.h"
+#include "vtkDSMGather.h"
 #include "vtkDSMImagePiece.h"
 
 #include "vtkBoundingBox.h"
@@ -31,35 +32,6 @@ enum class ArrayState : std::int32_t
   WrongLength
 };
 
-/// Every rank's items, in rank order; `first` is where this rank's begin.
-template <class T>
-std::vector<T> GatherItems(dsm::Messenger& messenger, const std::vector<T>& mine, int& first)
-{
-  static_assert(std::is_trivially_copyable_v<T>, "only plain values travel");
-  std::vector<std::byte> bytes(mine.size() * sizeof(T));
-  if (!mine.empty())
-  {
-    std::memcpy(bytes.data(), mine.data(), bytes.size());
-  }
-  const auto parts = messenger.AllGather(std::move(bytes));
-  std::vector<T> all;
-  for (int rank = 0; rank < static_cast<int>(parts.size()); ++rank)
-  {
-    if (rank == messenger.GetRank())
-    {
-      first = static_cast<int>(all.size());
-    }
-    const std::size_t offset = all.size();
-    const std::size_t count = parts[rank].size() / sizeof(T);
-    all.resize(offset + count);
-    if (count > 0)
-    {
-      std::memcpy(&all[offset], parts[rank].data(), count * sizeof(T));
-    }
-  }
-  return all;
-}
-
 } // namespace
 
 struct vtkDSMVolumeData::ArrayInfo
@@ -83,7 +55,7 @@ vtkDSMVolumeData::vtkDSMVolumeData(std::shared_ptr<vtkDSMRankGroup> group, vtkDa
         mine.push_back(vtkDSMImagePiece::Describe(this->Images[index], this->Leaves[index]));
       }
     });
-  this->Pieces = GatherItems(messenger, mine, this->FirstOwnPiece);
+  this->Pieces = vtkDSMGather::Items(messenger, mine, this->FirstOwnPiece);
   this->GatherArrays();
   messenger.RunTogether(
     "Joining the volume's pieces", [&] { this->Plan = vtkDSMLatticePlan(this->Pieces); });
@@ -200,7 +172,7 @@ void vtkDSMVolumeData::GatherArrays()
     }
   }
   int first = 0;
-  const std::vector<char> all = GatherItems(this->Group->GetMessenger(), mine, first);
+  const std::vector<char> all = vtkDSMGather::Items(this->Group->GetMessenger(), mine, first);
   for (auto name = all.begin(); name != all.end();)
   {
     const auto components = std::find(name, all.end(), '\0') + 1;
@@ -280,7 +252,7 @@ vtkDSMVolumeData::Fields vtkDSMVolumeData::Publish(const Choice& choice, const s
       }
     });
   int first = 0;
-  const std::vector<ArrayInfo> infos = GatherItems(messenger, mine, first);
+  const std::vector<ArrayInfo> infos = vtkDSMGather::Items(messenger, mine, first);
   const auto isUsable = [](const ArrayInfo& info) { return info.State == ArrayState::Usable; };
   if (!infos.empty() && std::none_of(infos.begin(), infos.end(), isUsable))
   {

@@ -70,7 +70,7 @@ struct Entry
 RequestDigest GetDigest(const FrameRequest& request, const Scene& scene)
 {
   RequestDigest digest{ request.Width, request.Height,
-    static_cast<std::int64_t>(scene.Isosurfaces.size()), {} };
+    static_cast<std::int64_t>(scene.Isosurfaces.size() + scene.Meshes.size()), {} };
   for (int element = 0; element < 16; ++element)
   {
     digest.WorldToClip[element] = request.WorldToClip[element / 4][element % 4];
