@@ -5,6 +5,7 @@
 #include "vtkDSMScene.h"
 #include "vtkPVDSMDelivery.h"
 #include "vtkPVDSMFrameReport.h"
+#include "vtkPVDSMLightOptions.h"
 
 #include "vtkCommand.h"
 #include "vtkCompositeDataDisplayAttributes.h"
@@ -171,6 +172,11 @@ void vtkPVDSMGeometryRepresentation::SetNumberOfThreads(int threads)
 void vtkPVDSMGeometryRepresentation::SetCacheSize(int mebibytes)
 {
   this->GetMapper()->SetCacheSize(mebibytes);
+}
+
+void vtkPVDSMGeometryRepresentation::SetLightOptions(vtkPVDSMLightOptions* options)
+{
+  this->GetMapper()->SetLightOptions(options);
 }
 
 void vtkPVDSMGeometryRepresentation::SetFrameReport(vtkPVDSMFrameReport* report)
