@@ -26,6 +26,7 @@
 
 #include <algorithm>
 #include <map>
+#include <optional>
 #include <vector>
 
 namespace
@@ -56,6 +57,7 @@ public:
   void Configure();
   void Update();
   void Draw();
+  void GetBounds(double bounds[6]) const;
   void DrawLast(const rt::Scene& scene);
   void Clear();
 
@@ -218,11 +220,16 @@ void vtkDSMScene::Internals::Update()
 {
   dsm::Messenger& messenger = this->Group->GetMessenger();
   std::vector<std::byte> mine;
-  for (const Member& member : this->Members)
-  {
-    member.State->UpdatePiece(messenger.GetRank(), messenger.GetSize());
-    mine.push_back(std::byte(member.State->HasNewData() ? 1 : 0));
-  }
+  messenger.RunTogether("Updating the data",
+    [&]
+    {
+      this->Configure();
+      for (const Member& member : this->Members)
+      {
+        member.State->UpdatePiece(messenger.GetRank(), messenger.GetSize());
+        mine.push_back(std::byte(member.State->HasNewData() ? 1 : 0));
+      }
+    });
   // One rank's change time says nothing of another's.
   const auto all = messenger.AllGather(mine);
   for (const auto& flags : all)
@@ -242,47 +249,58 @@ void vtkDSMScene::Internals::Update()
 
 void vtkDSMScene::Internals::Draw()
 {
+  dsm::Messenger& messenger = this->Group->GetMessenger();
   rt::Scene scene;
-  vtkBoundingBox box;
-  for (const Member& member : this->Members)
-  {
-    member.State->AddTo(scene, member.Prop);
-    const double* bounds = member.Prop->GetBounds();
-    if (bounds && vtkMath::AreBoundsInitialized(bounds))
+  rt::FrameRequest request;
+  vtkNew<vtkMatrix4x4> projection;
+  messenger.RunTogether("Preparing the frame",
+    [&]
     {
-      box.AddBounds(bounds);
-    }
-  }
+      for (const Member& member : this->Members)
+      {
+        member.State->AddTo(scene, member.Prop);
+      }
+      this->DrawLast(scene);
+      scene.Lights = vtkDSMTranslation::ToLights(this->Renderer);
+      request = vtkDSMTranslation::ToRequest(this->Renderer, projection);
+    });
   if (scene.Isosurfaces.empty() && scene.Meshes.empty())
   {
     this->Clear();
     return;
   }
-  this->DrawLast(scene);
-  scene.Lights = vtkDSMTranslation::ToLights(this->Renderer);
-  vtkNew<vtkMatrix4x4> projection;
-  const rt::FrameRequest request = vtkDSMTranslation::ToRequest(this->Renderer, projection);
   const rt::Frame frame =
     this->Group->GetFrameRenderer().Render(this->Group->GetStore(), scene, request);
-  this->Statistics->Gather(this->Group->GetMessenger(), frame);
-  double bounds[6];
-  box.GetBounds(bounds);
-  if (!this->DrawsColor)
+  this->Statistics->Gather(messenger, frame);
+  std::optional<rt::Picture> whole;
+  if (this->DrawsColor)
   {
-    this->Prop->SetFrame(frame, projection, bounds);
-    return;
+    whole = rt::GatherFrame(messenger, frame);
   }
-  const bool drawsColor = this->DrawsColor(this->Renderer->GetActiveCamera());
-  rt::Picture picture = rt::GatherFrame(this->Group->GetMessenger(), frame);
-  rt::Frame whole;
-  whole.Width = picture.Width;
-  whole.Height = picture.Height;
-  whole.Tiles.resize(1);
-  whole.Tiles[0].Width = picture.Width;
-  whole.Tiles[0].Height = picture.Height;
-  whole.Tiles[0].Color = std::move(picture.Color);
-  whole.Tiles[0].Depth = std::move(picture.Depth);
-  this->Prop->SetFrame(whole, projection, bounds, drawsColor);
+  messenger.RunTogether("Showing the frame",
+    [&]
+    {
+      double bounds[6];
+      this->GetBounds(bounds);
+      const bool drawsColor = !whole || this->DrawsColor(this->Renderer->GetActiveCamera());
+      this->Prop->SetFrame(
+        whole ? std::move(*whole) : rt::AssembleTiles(frame), projection, bounds, drawsColor);
+    });
+}
+
+/// Of what is drawn, in world space.
+void vtkDSMScene::Internals::GetBounds(double bounds[6]) const
+{
+  vtkBoundingBox box;
+  for (const Member& member : this->Members)
+  {
+    const double* part = member.Prop->GetBounds();
+    if (part && vtkMath::AreBoundsInitialized(part))
+    {
+      box.AddBounds(part);
+    }
+  }
+  box.GetBounds(bounds);
 }
 
 /// What shows through a translucent surface must have been drawn before it.
@@ -331,7 +349,6 @@ void vtkDSMScene::Trace()
   try
   {
     self.Group = vtkDSMRankGroup::Get(this->GetController());
-    self.Configure();
     self.Update();
     self.Draw();
   }

@@ -16,6 +16,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <optional>
 #include <set>
 
 namespace
@@ -56,7 +57,8 @@ vtkDSMVolumeData::vtkDSMVolumeData(std::shared_ptr<vtkDSMRankGroup> group, vtkDa
     });
   this->Pieces = vtkDSMGather::Items(messenger, mine, this->FirstOwnPiece);
   this->GatherArrays();
-  this->Plan = vtkDSMLatticePlan(this->Pieces);
+  messenger.RunTogether(
+    "Joining the volume's pieces", [&] { this->Plan = vtkDSMLatticePlan(this->Pieces); });
 }
 
 vtkDSMVolumeData::~vtkDSMVolumeData() = default;
@@ -269,6 +271,35 @@ std::shared_ptr<const rt::VoxelField> vtkDSMVolumeData::PublishLattice(std::size
   const Choice& choice, const std::string& purpose, const std::vector<ArrayInfo>& infos,
   const std::function<void(double)>& progress) const
 {
+  dsm::Messenger& messenger = this->Group->GetMessenger();
+  std::shared_ptr<rt::VoxelField> field;
+  std::vector<std::shared_ptr<const rt::VoxelSource>> sources;
+  std::optional<dsm::BlockDirectory> directory;
+  messenger.RunTogether("Preparing the " + purpose,
+    [&]
+    {
+      field = this->CreateField(number, choice, purpose, infos);
+      if (field)
+      {
+        sources = this->CreateSources(number, choice);
+        directory = field->Lattice.CreateDirectory(messenger.GetSize());
+      }
+    });
+  if (!field)
+  {
+    return nullptr;
+  }
+  rt::VoxelFragmentSource source(field->Lattice, std::move(sources));
+  rt::VoxelBrickSink sink(field->Lattice);
+  field->Segment = this->Group->GetStore().Publish(
+    "the " + purpose + " '" + choice.Name + "'", std::move(*directory), source, sink, progress);
+  field->Hierarchy = rt::MacrocellHierarchy(field->Lattice, *field->Segment, messenger);
+  return field;
+}
+
+std::shared_ptr<rt::VoxelField> vtkDSMVolumeData::CreateField(std::size_t number,
+  const Choice& choice, const std::string& purpose, const std::vector<ArrayInfo>& infos) const
+{
   const vtkDSMLatticePlan::Lattice& lattice = this->Plan.GetLattices()[number];
   std::vector<rt::Box> parts;
   std::set<rt::ScalarType> types;
@@ -294,8 +325,25 @@ std::shared_ptr<const rt::VoxelField> vtkDSMVolumeData::PublishLattice(std::size
   const rt::Box whole{ rt::Index3(0), lattice.Points - rt::Index3(1) };
   masked = masked || !vtkDSMLatticePlan::IsCovered(whole, parts);
 
+  const std::shared_ptr<vtkDSMRankGroup> group = this->Group;
+  std::shared_ptr<rt::VoxelField> field(new rt::VoxelField,
+    [group](rt::VoxelField* old)
+    {
+      if (old->Segment)
+      {
+        group->GetStore().Retire(old->Segment);
+      }
+      delete old;
+    });
+  field->Lattice = rt::BrickLattice(lattice.Points, *types.begin(), masked);
+  return field;
+}
+
+std::vector<std::shared_ptr<const rt::VoxelSource>> vtkDSMVolumeData::CreateSources(
+  std::size_t lattice, const Choice& choice) const
+{
   std::vector<std::shared_ptr<const rt::VoxelSource>> sources;
-  for (const auto& member : lattice.Members)
+  for (const auto& member : this->Plan.GetLattices()[lattice].Members)
   {
     const int own = member.Piece - this->FirstOwnPiece;
     if (own >= 0 && own < static_cast<int>(this->Images.size()))
@@ -308,23 +356,5 @@ std::shared_ptr<const rt::VoxelField> vtkDSMVolumeData::PublishLattice(std::size
       }
     }
   }
-
-  const std::shared_ptr<vtkDSMRankGroup> group = this->Group;
-  const std::shared_ptr<rt::VoxelField> field(new rt::VoxelField,
-    [group](rt::VoxelField* old)
-    {
-      if (old->Segment)
-      {
-        group->GetStore().Retire(old->Segment);
-      }
-      delete old;
-    });
-  dsm::Messenger& messenger = group->GetMessenger();
-  field->Lattice = rt::BrickLattice(lattice.Points, *types.begin(), masked);
-  rt::VoxelFragmentSource source(field->Lattice, std::move(sources));
-  rt::VoxelBrickSink sink(field->Lattice);
-  field->Segment = group->GetStore().Publish("the " + purpose + " '" + choice.Name + "'",
-    field->Lattice.CreateDirectory(messenger.GetSize()), source, sink, progress);
-  field->Hierarchy = rt::MacrocellHierarchy(field->Lattice, *field->Segment, messenger);
-  return field;
+  return sources;
 }

@@ -7,6 +7,7 @@
 #include "DSMRayTracing/frame/TileTracer.h"
 
 #include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <cstring>
 #include <iterator>
@@ -137,12 +138,21 @@ Frame FrameRenderer::RenderWith(Store& store, const Scene& scene, const FrameReq
 
   store.BeginFrame();
   this->Scheduler.Begin(grid.GetCount(), workers);
-  FrameAgreement agreement(this->Messenger, [this] { this->Scheduler.Cancel(); });
+  std::atomic<bool> stopped{ false }; // by another rank's failure, which that rank reports
+  FrameAgreement agreement(this->Messenger,
+    [&]
+    {
+      stopped = true;
+      this->Scheduler.Cancel();
+    });
   this->Messenger.BeginSession();
 
   const auto fail = [&](const std::string& cause)
   {
-    failure.Set(cause);
+    if (!stopped)
+    {
+      failure.Set(cause);
+    }
     this->Scheduler.Cancel();
   };
   const auto work = [&](int index)
@@ -182,15 +192,20 @@ Frame FrameRenderer::RenderWith(Store& store, const Scene& scene, const FrameReq
     {
       fail(dsm::Messenger::DescribeException());
     }
+    const bool idle = this->Pool.GetRunning() == 0; // asked first: a worker fails before it stops
     const std::string cause = failure.Get();
-    if (!cause.empty() && !cancelled)
+    if ((stopped || !cause.empty()) && !cancelled)
     {
       cancelled = true;
-      store.Cancel(cause);
+      store.Cancel(cause.empty() ? "another rank has failed" : cause);
     }
-    if (!agreement.HasReported() && this->Pool.GetRunning() == 0)
+    if (!cause.empty())
     {
-      agreement.ReportDone(cause);
+      agreement.ReportFailure(cause);
+    }
+    if (!agreement.IsDone() && idle)
+    {
+      agreement.ReportDone();
       didSomething = true;
     }
     return didSomething;
@@ -225,6 +240,8 @@ Frame FrameRenderer::RenderWith(Store& store, const Scene& scene, const FrameReq
   const dsm::Status& outcome = agreement.GetOutcome();
   if (!outcome.IsOk())
   {
+    // A rank that gave up may not have taken what it had asked for; it takes it while it waits here.
+    this->Messenger.Barrier();
     throw dsm::Error("The frame could not be traced. Rank " + std::to_string(outcome.FailedRank) +
       ": " + outcome.Cause);
   }
