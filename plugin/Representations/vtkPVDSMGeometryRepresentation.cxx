@@ -7,6 +7,7 @@
 #include "vtkPVDSMFrameReport.h"
 #include "vtkPVDSMLightOptions.h"
 
+#include "vtkBoundingBox.h"
 #include "vtkCommand.h"
 #include "vtkCompositeDataDisplayAttributes.h"
 #include "vtkInformation.h"
@@ -18,6 +19,9 @@
 #include "vtkPartitionedDataSet.h"
 #include "vtkProperty.h"
 #include "vtkRenderer.h"
+
+#include <algorithm>
+#include <string>
 
 vtkStandardNewMacro(vtkPVDSMGeometryRepresentation);
 
@@ -88,7 +92,15 @@ void vtkPVDSMGeometryRepresentation::PrepareUpdate(vtkInformation* inInfo, vtkIn
   this->ComputeVisibleDataBounds();
   vtkNew<vtkMatrix4x4> matrix;
   this->Actor->GetMatrix(matrix);
-  vtkPVRenderView::SetGeometryBounds(inInfo, this, this->VisibleDataBounds, matrix);
+  vtkBoundingBox bounds(this->VisibleDataBounds);
+  if (bounds.IsValid())
+  {
+    bounds.Inflate(
+      std::max({ this->GetMapper()->GetLineRadius(), this->GetMapper()->GetPointRadius(), 0.0 }));
+  }
+  double inflated[6];
+  bounds.GetBounds(inflated);
+  vtkPVRenderView::SetGeometryBounds(inInfo, this, inflated, matrix);
 }
 
 void vtkPVDSMGeometryRepresentation::PrepareRender()
@@ -161,7 +173,9 @@ void vtkPVDSMGeometryRepresentation::SetPointRadius(double radius)
 
 void vtkPVDSMGeometryRepresentation::SelectRadiusArray(int, int, int, int, const char* name)
 {
-  this->GetMapper()->SetRadiusArray(name ? name : "");
+  const std::string array = name ? name : "";
+  // The word that the panel offers beside the arrays.
+  this->GetMapper()->SetRadiusArray(array == "None" ? "" : array);
 }
 
 void vtkPVDSMGeometryRepresentation::SetNumberOfThreads(int threads)

@@ -412,6 +412,7 @@ TEST_F(PolyDataMapper, SaysWhatIsWrongOnceAndShowsTheRest)
   this->Mapper->AddObserver(vtkCommand::ErrorEvent, observer);
   const auto ball = MakeBall();
   this->Mapper->SetInputData(ball);
+  this->Render();
   this->Mapper->SetScalarModeToUsePointFieldData();
   this->Mapper->SelectColorArray("pressure");
   EXPECT_GT(CountCovered(this->Render()), 500);

@@ -20,6 +20,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <functional>
 #include <set>
 #include <tuple>
 
@@ -67,32 +68,43 @@ vtkDSMMeshData::vtkDSMMeshData(std::shared_ptr<vtkDSMRankGroup> group, vtkDSMPol
   dsm::Messenger& messenger = this->Group->GetMessenger();
   const std::string what = "Reading the surface";
   messenger.RunTogether(what, [&] { this->Blocks = vtkDSMMeshBlock::Collect(mapper); });
-  this->FindBounds();
+  std::vector<vtkPolyData*> data;
+  for (const vtkDSMMeshBlock& block : this->Blocks)
+  {
+    data.push_back(block.Data);
+  }
+  this->FindBounds(data);
   const vtkDSMTubesAndSpheres solids(ChooseRadius(mapper->GetLineRadius(), this->Diagonal),
     ChooseRadius(mapper->GetPointRadius(), this->Diagonal), mapper->GetRadiusArray());
   messenger.RunTogether(what, [&] { this->CheckSolids(solids); });
   messenger.RunTogether(what, [&] { this->CollectSurfaces(solids); });
+  // Tubes and spheres reach beyond the points.
+  for (const Surface& surface : this->Surfaces)
+  {
+    data.push_back(surface.Data);
+  }
+  this->FindBounds(data);
   this->CheckColors();
   this->Publish();
   this->Blocks.clear();
   this->Surfaces.clear();
 }
 
-void vtkDSMMeshData::FindBounds()
+void vtkDSMMeshData::FindBounds(const std::vector<vtkPolyData*>& mine)
 {
   struct Box
   {
     double Bounds[6];
   };
   vtkBoundingBox box;
-  for (const vtkDSMMeshBlock& block : this->Blocks)
+  for (vtkPolyData* data : mine)
   {
-    box.AddBounds(block.Data->GetBounds());
+    box.AddBounds(data->GetBounds());
   }
-  Box mine;
-  box.GetBounds(mine.Bounds);
+  Box own;
+  box.GetBounds(own.Bounds);
   vtkBoundingBox whole;
-  for (const Box& one : this->Group->GetMessenger().AllGatherValue(mine))
+  for (const Box& one : this->Group->GetMessenger().AllGatherValue(own))
   {
     if (vtkMath::AreBoundsInitialized(one.Bounds))
     {
@@ -100,6 +112,7 @@ void vtkDSMMeshData::FindBounds()
     }
   }
   vtkMath::UninitializeBounds(this->Bounds);
+  this->Diagonal = 0.0;
   if (whole.IsValid())
   {
     whole.GetBounds(this->Bounds);
@@ -285,6 +298,13 @@ std::vector<std::uint64_t> vtkDSMMeshData::Describe(vtkDSMPolyDataMapper* mapper
   };
   addNumber(mapper->GetLineRadius());
   addNumber(mapper->GetPointRadius());
+  if (mapper->GetScalarVisibility())
+  {
+    // Also when there is no such array: that must be said.
+    addNumber(mapper->GetScalarMode());
+    const char* name = mapper->GetArrayName();
+    numbers.push_back(std::hash<std::string>{}(name ? name : ""));
+  }
   vtkScalarsToColors* table = mapper->GetLookupTable();
   for (const vtkDSMMeshBlock& block : vtkDSMMeshBlock::Collect(mapper))
   {

@@ -64,7 +64,7 @@ private:
   };
   struct ColorReport;
 
-  void FindBounds();
+  void FindBounds(const std::vector<vtkPolyData*>& mine);
   void CheckSolids(const vtkDSMTubesAndSpheres& solids) const;
   void CollectSurfaces(const vtkDSMTubesAndSpheres& solids);
   void AddSurface(const vtkDSMMeshBlock& block, vtkPolyData* data);
