@@ -229,6 +229,21 @@ void vtkPVDSMImageRepresentation::SetCacheSize(int mebibytes)
   this->Mapper->SetCacheSize(mebibytes);
 }
 
+void vtkPVDSMImageRepresentation::SetMemoryOrganization(int organization)
+{
+  this->Mapper->SetMemoryOrganization(organization);
+}
+
+void vtkPVDSMImageRepresentation::SetHostSharing(bool shared)
+{
+  this->Mapper->SetHostSharing(shared);
+}
+
+void vtkPVDSMImageRepresentation::SetMemory(int mebibytes)
+{
+  this->Mapper->SetMemory(mebibytes);
+}
+
 void vtkPVDSMImageRepresentation::SetLookupTable(vtkScalarsToColors* table)
 {
   this->Mapper->SetLookupTable(table);

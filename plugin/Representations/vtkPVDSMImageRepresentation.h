@@ -49,6 +49,9 @@ public:
   void SetIsoValue(int index, double value);
   void SetNumberOfThreads(int threads);
   void SetCacheSize(int mebibytes);
+  void SetMemoryOrganization(int organization);
+  void SetHostSharing(bool shared);
+  void SetMemory(int mebibytes);
   void SetLookupTable(vtkScalarsToColors* table);
   ///@}
 

@@ -20,6 +20,7 @@
 #include "vtkVolume.h"
 
 #include <algorithm>
+#include <array>
 #include <map>
 #include <vector>
 
@@ -37,9 +38,12 @@ std::map<vtkRenderer*, vtkDSMScene*>& GetRegistry()
 
 } // namespace
 
-class vtkDSMScene::Internals
+class vtkDSMScene::Internals : public vtkDSMRankGroup::Publisher
 {
 public:
+  ~Internals() override;
+  void GiveUpBlocks() override;
+
   struct Member
   {
     vtkVolume* Volume;
@@ -47,6 +51,7 @@ public:
   };
 
   void FindMembers();
+  void FindGroup(vtkMultiProcessController* controller);
   void Configure();
   void Update();
   void Draw();
@@ -64,6 +69,7 @@ public:
   std::string Failure;                        ///< that was reported last
   std::function<bool(vtkCamera*)> DrawsColor; ///< set: the frame is delivered everywhere
   bool Tracing = false;
+  vtkDSMMemorySettings Settings; ///< that the volumes ask for
 };
 
 vtkStandardNewMacro(vtkDSMScene);
@@ -173,22 +179,57 @@ void vtkDSMScene::Internals::FindMembers()
   this->Volumes = std::move(kept);
 }
 
+void vtkDSMScene::Internals::FindGroup(vtkMultiProcessController* controller)
+{
+  const auto group = vtkDSMRankGroup::Get(controller);
+  if (group == this->Group)
+  {
+    return;
+  }
+  if (this->Group)
+  {
+    this->GiveUpBlocks();
+    this->Group->Leave(this);
+  }
+  this->Group = group;
+  this->Group->Join(this);
+}
+
+vtkDSMScene::Internals::~Internals()
+{
+  if (this->Group)
+  {
+    this->Group->Leave(this);
+  }
+}
+
+void vtkDSMScene::Internals::GiveUpBlocks()
+{
+  for (const auto& volume : this->Volumes)
+  {
+    volume->GiveUpBlocks();
+  }
+}
+
 void vtkDSMScene::Internals::Configure()
 {
-  int cache = 1;
-  int threads = 0;
-  for (const Member& member : this->Members)
+  this->Settings = {};
+  for (const auto& volume : this->Volumes)
   {
-    cache = std::max(cache, member.State->GetMapper()->GetCacheSize());
-    threads = std::max(threads, member.State->GetMapper()->GetNumberOfThreads());
+    this->Settings.Merge(volume->GetMemorySettings());
   }
-  this->Group->Configure(static_cast<std::size_t>(cache) << 20, threads);
+  this->Group->Configure(this, this->Settings);
 }
 
 void vtkDSMScene::Internals::Update()
 {
   dsm::Messenger& messenger = this->Group->GetMessenger();
-  std::vector<std::byte> mine;
+  // To publish in step, the ranks must agree on the settings of the memory; threads may differ.
+  const vtkDSMMemorySettings& settings = this->Settings;
+  using Digest = std::array<std::uint64_t, 4>;
+  std::vector<std::byte> mine =
+    dsm::Encode(Digest{ static_cast<std::uint64_t>(settings.Organization),
+      settings.HostSharing ? 1u : 0u, settings.MemoryBytes, settings.CacheBytes });
   for (const Member& member : this->Members)
   {
     member.State->GetMapper()->UpdatePiece(messenger.GetRank(), messenger.GetSize());
@@ -202,11 +243,17 @@ void vtkDSMScene::Internals::Update()
     {
       throw dsm::Error("The ranks do not show the same volumes; the frame was left out.");
     }
+    if (!std::equal(flags.begin(), flags.begin() + sizeof(Digest), all.front().begin()))
+    {
+      throw dsm::Error("The ranks have different settings of the memory (DSMMemoryOrganization, "
+                       "DSMHostSharing, DSMMemory, DSMCacheSize); the frame was left out. Set them "
+                       "alike.");
+    }
   }
-  for (std::size_t index = 0; index < mine.size(); ++index)
+  for (std::size_t index = 0; index < this->Members.size(); ++index)
   {
-    const bool newData = std::any_of(
-      all.begin(), all.end(), [=](const auto& flags) { return flags[index] != std::byte(0); });
+    const bool newData = std::any_of(all.begin(), all.end(),
+      [=](const auto& flags) { return flags[sizeof(Digest) + index] != std::byte(0); });
     this->Members[index].State->Update(this->Group, newData);
   }
 }
@@ -292,10 +339,11 @@ void vtkDSMScene::Trace()
   std::string failure;
   try
   {
-    self.Group = vtkDSMRankGroup::Get(this->GetController());
+    self.FindGroup(this->GetController());
     self.Configure();
     self.Update();
     self.Draw();
+    self.Group->TellOrganization();
   }
   catch (const std::exception& error)
   {

@@ -57,20 +57,47 @@ bool vtkDSMSceneVolume::HasNewData() const
   return !this->Taken || data != this->SeenData || GetDataTime(data) != this->SeenTime;
 }
 
+vtkDSMMemorySettings vtkDSMSceneVolume::GetMemorySettings() const
+{
+  static_assert(
+    static_cast<int>(dsm::MemoryOrganization::Automatic) == vtkDSMVolumeMapper::Automatic &&
+      static_cast<int>(dsm::MemoryOrganization::Replicated) == vtkDSMVolumeMapper::Replicated &&
+      static_cast<int>(dsm::MemoryOrganization::ObjectBased) == vtkDSMVolumeMapper::ObjectBased &&
+      static_cast<int>(dsm::MemoryOrganization::PageBased) == vtkDSMVolumeMapper::PageBased,
+    "the mapper numbers the organisations as the store does");
+  vtkDSMMemorySettings settings;
+  settings.Organization =
+    static_cast<dsm::MemoryOrganization>(this->Mapper->GetMemoryOrganization());
+  settings.HostSharing = this->Mapper->GetHostSharing();
+  settings.MemoryBytes = static_cast<std::uint64_t>(this->Mapper->GetMemory()) << 20;
+  settings.CacheBytes = static_cast<std::uint64_t>(this->Mapper->GetCacheSize()) << 20;
+  settings.Threads = this->Mapper->GetNumberOfThreads();
+  return settings;
+}
+
+void vtkDSMSceneVolume::GiveUpBlocks()
+{
+  this->Color.reset();
+  this->Iso.reset();
+  this->Taken = false;
+}
+
 std::shared_ptr<vtkDSMSceneVolume::Published> vtkDSMSceneVolume::Require(
-  const vtkDSMVolumeData::Choice& wanted, const char* purpose,
+  const vtkDSMVolumeData::Choice& wanted, const char* purpose, unsigned settingsVersion,
   const std::vector<std::shared_ptr<Published>>& known)
 {
   const vtkDSMVolumeData::Choice choice = this->Data->Normalize(wanted);
   for (const auto& candidate : known)
   {
-    if (candidate && candidate->Choice == choice)
+    if (candidate && candidate->Choice == choice &&
+      (candidate->Failure.empty() || candidate->SettingsVersion == settingsVersion))
     {
       return candidate;
     }
   }
   auto published = std::make_shared<Published>();
   published->Choice = choice;
+  published->SettingsVersion = settingsVersion;
   try
   {
     vtkDSMVolumeMapper* mapper = this->Mapper;
@@ -118,8 +145,9 @@ void vtkDSMSceneVolume::Update(const std::shared_ptr<vtkDSMRankGroup>& group, bo
   }
   const std::shared_ptr<Published> oldIso = this->Iso;
   const std::shared_ptr<Published> oldColor = this->Color;
-  this->Iso = this->Require(
-    { mapper->GetIsoArray(), mapper->GetIsoComponent() }, "isosurface array", { oldIso, oldColor });
+  const unsigned version = group->GetSettingsVersion();
+  this->Iso = this->Require({ mapper->GetIsoArray(), mapper->GetIsoComponent() },
+    "isosurface array", version, { oldIso, oldColor });
   this->Color.reset();
   if (mapper->GetScalarVisibility() && !mapper->GetColorArray().empty() && mapper->GetLookupTable())
   {
@@ -127,8 +155,8 @@ void vtkDSMSceneVolume::Update(const std::shared_ptr<vtkDSMRankGroup>& group, bo
     const int component = table->GetVectorMode() == vtkScalarsToColors::COMPONENT
       ? table->GetVectorComponent()
       : vtkDSMImagePiece::Magnitude;
-    this->Color = this->Require(
-      { mapper->GetColorArray(), component }, "colour array", { this->Iso, oldIso, oldColor });
+    this->Color = this->Require({ mapper->GetColorArray(), component }, "colour array", version,
+      { this->Iso, oldIso, oldColor });
   }
   for (const auto& published : { this->Iso, this->Color })
   {

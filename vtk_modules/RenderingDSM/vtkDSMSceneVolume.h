@@ -3,6 +3,7 @@
 #define vtkDSMSceneVolume_h
 
 #include "DSMRayTracing/frame/Scene.h"
+#include "vtkDSMMemorySettings.h"
 #include "vtkDSMVolumeData.h"
 
 #include "vtkType.h"
@@ -27,6 +28,12 @@ public:
   /// Local: whether this rank's data are other than what was taken in.
   bool HasNewData() const;
 
+  /// What it asks for.
+  vtkDSMMemorySettings GetMemorySettings() const;
+
+  /// Local, in the same order on every rank: retires its bricks; the next Update publishes them again.
+  void GiveUpBlocks();
+
   /// Collective. Takes in what is missing: everything when any rank has new data, else the arrays
   /// that the mapper names and that are not there yet. What goes wrong is kept as a message.
   void Update(const std::shared_ptr<vtkDSMRankGroup>& group, bool newData);
@@ -43,10 +50,11 @@ private:
     vtkDSMVolumeData::Choice Choice;
     vtkDSMVolumeData::Fields Fields; ///< empty when it failed
     std::string Failure;
+    unsigned SettingsVersion = 0; ///< of the memory's settings when it was tried
   };
 
   std::shared_ptr<Published> Require(const vtkDSMVolumeData::Choice& choice, const char* purpose,
-    const std::vector<std::shared_ptr<Published>>& known);
+    unsigned settingsVersion, const std::vector<std::shared_ptr<Published>>& known);
   std::vector<double> GetIsovalues();
   const rt::ColorMap& GetColorMap();
 

@@ -158,4 +158,7 @@ void vtkDSMVolumeMapper::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "SurfaceProperty: " << this->SurfaceProperty.Get() << "\n";
   os << indent << "NumberOfThreads: " << this->NumberOfThreads << "\n";
   os << indent << "CacheSize: " << this->CacheSize << " MiB\n";
+  os << indent << "MemoryOrganization: " << this->MemoryOrganization << "\n";
+  os << indent << "HostSharing: " << this->HostSharing << "\n";
+  os << indent << "Memory: " << this->Memory << " MiB\n";
 }

@@ -104,6 +104,41 @@ public:
 
   ///@{
   /**
+   * How the ranks keep the bricks; the picture is the same. All scenes share one memory: the first
+   * among all volumes that is not Automatic counts.
+   */
+  enum MemoryOrganizationType
+  {
+    Automatic = 0,   ///< Replicated where everything fits the memory, else ObjectBased (default)
+    Replicated = 1,  ///< every rank has all bricks
+    ObjectBased = 2, ///< each has its own; those of others are fetched into a cache, by a table
+    PageBased = 3    ///< the same, by page faults
+  };
+  vtkSetClampMacro(MemoryOrganization, int, Automatic, PageBased);
+  vtkGetMacro(MemoryOrganization, int);
+  ///@}
+
+  ///@{
+  /**
+   * Whether ranks of one host read one another's bricks in place, where the organisation allows it
+   * (default on). Off when any volume wants it off.
+   */
+  vtkSetMacro(HostSharing, bool);
+  vtkGetMacro(HostSharing, bool);
+  vtkBooleanMacro(HostSharing, bool);
+  ///@}
+
+  ///@{
+  /**
+   * What each rank may take for its own bricks, copies and the cache, in MiB. 0 (the default): half of
+   * what its host has left, divided by the ranks there. The largest among all volumes counts.
+   */
+  vtkSetClampMacro(Memory, int, 0, VTK_INT_MAX);
+  vtkGetMacro(Memory, int);
+  ///@}
+
+  ///@{
+  /**
    * Bounds of all ranks' data, without the volume's transform. Until the scene has taken in the data,
    * those of this rank's; null where there are none.
    */
@@ -148,6 +183,9 @@ private:
   vtkSmartPointer<vtkProperty> SurfaceProperty;
   int NumberOfThreads = 0;
   int CacheSize = 256;
+  int MemoryOrganization = Automatic;
+  bool HostSharing = true;
+  int Memory = 0;
   double GlobalBounds[6];
 };
 

@@ -122,6 +122,7 @@ Frame FrameRenderer::Render(dsm::BlockStore& store, const Scene& scene, const Fr
   frame.Counters = store.GetCounters();
   frame.WorkerCounters = store.GetWorkerCounters();
   frame.Organization = store.GetOrganization();
+  frame.Explanation = store.GetExplanation();
   frame.Seconds = SecondsSince(start);
   return frame;
 }
