@@ -61,19 +61,14 @@ vtkAlgorithm* vtkDSMSceneMesh::GetAlgorithm() const
   return this->Mapper;
 }
 
-int vtkDSMSceneMesh::GetCacheSize() const
-{
-  return this->Mapper->GetCacheSize();
-}
-
 vtkDSMLightOptions* vtkDSMSceneMesh::GetLightOptions() const
 {
   return this->Mapper->GetLightOptions();
 }
 
-int vtkDSMSceneMesh::GetNumberOfThreads() const
+vtkDSMMemoryOptions* vtkDSMSceneMesh::GetMemoryOptions() const
 {
-  return this->Mapper->GetNumberOfThreads();
+  return this->Mapper->GetMemoryOptions();
 }
 
 void vtkDSMSceneMesh::UpdatePiece(int piece, int numberOfPieces)
@@ -99,10 +94,18 @@ bool vtkDSMSceneMesh::HasNewData() const
   return !this->Taken || this->Describe() != this->Seen;
 }
 
+void vtkDSMSceneMesh::GiveUpBlocks()
+{
+  this->Data.reset();
+  this->Taken = false;
+}
+
 void vtkDSMSceneMesh::Update(const std::shared_ptr<vtkDSMRankGroup>& group, bool newData)
 {
   this->Messages.clear();
-  if (newData)
+  // What was refused may succeed with other settings of the memory.
+  const unsigned version = group->GetSettingsVersion();
+  if (newData || (!this->Failure.empty() && this->FailureVersion != version))
   {
     // The old bricks go first: there may not be room for both.
     this->Data.reset();
@@ -118,6 +121,7 @@ void vtkDSMSceneMesh::Update(const std::shared_ptr<vtkDSMRankGroup>& group, bool
     catch (const dsm::Error& error)
     {
       this->Failure = error.what();
+      this->FailureVersion = version;
     }
   }
   if (!this->Data)
