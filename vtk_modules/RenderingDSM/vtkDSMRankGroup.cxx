@@ -97,6 +97,7 @@ vtkDSMRankGroup::vtkDSMRankGroup(std::unique_ptr<dsm::Transport> transport)
   , Store(this->Messenger, dsm::BlockStore::Settings{})
   , FrameRenderer(this->Messenger)
 {
+  this->Messenger.GetHosts(); // collective the first time
 }
 
 void vtkDSMRankGroup::Join(Publisher* publisher)

@@ -48,7 +48,7 @@ public:
 
   /// What a publisher that has joined asks for from now on; what all ask for together has its effect
   /// with the next publication or frame. All publishers give up their blocks when these cannot pass to
-  /// the new organisation as they are. Between frames; collective the first time. Throws dsm::Error.
+  /// the new organisation as they are. Local, between frames. Throws dsm::Error.
   void Configure(Publisher* publisher, const vtkDSMMemorySettings& settings);
 
   /// Grows when memory is to be kept otherwise: what was refused may succeed now.

@@ -3,6 +3,7 @@
 #define rt_SceneTracer_h
 
 #include "DSMRayTracing/frame/Scene.h"
+#include "DSMRayTracing/kernel/MeshTracer.h"
 #include "DSMRayTracing/kernel/VolumeTracer.h"
 
 #include <glm/common.hpp>
@@ -37,32 +38,28 @@ class SceneTracer
 public:
   SceneTracer(Store& store, typename Store::Worker& worker, const Scene& scene)
     : Volumes(store, worker)
+    , Meshes(store, worker)
     , World(scene)
   {
   }
 
-  /// The first surface in [ray.Min, ray.Max]; of equally near ones that of the first object.
+  /// The first surface in [ray.Min, ray.Max]; of equally near ones that of the first object,
+  /// isosurfaces before meshes.
   bool Intersect(Ray ray, SurfacePoint& point) const
   {
-    SurfaceHit nearest;
-    const IsosurfaceObject* object = nullptr;
-    for (const IsosurfaceObject& candidate : this->World.Isosurfaces)
+    SurfaceHit isosurfaceHit;
+    const IsosurfaceObject* isosurface = this->FindIsosurface(ray, isosurfaceHit);
+    MeshHit meshHit;
+    const MeshObject* mesh = this->FindMesh(ray, isosurface != nullptr, meshHit);
+    if (mesh)
     {
-      SurfaceHit hit;
-      if (candidate.Surface.Opacity > 0.0f && this->Volumes.Intersect(candidate, ray, hit) &&
-        (!object || hit.T < nearest.T))
-      {
-        nearest = hit;
-        object = &candidate;
-        ray.Max = hit.T;
-      }
+      Describe(*mesh, meshHit, ray, point);
     }
-    if (!object)
+    else if (isosurface)
     {
-      return false;
+      this->Describe(*isosurface, isosurfaceHit, ray, point);
     }
-    this->Describe(*object, nearest, ray, point);
-    return true;
+    return mesh || isosurface;
   }
 
   /// The part of each colour of light that gets along the ray: translucent surfaces dim and tint it.
@@ -86,7 +83,81 @@ private:
   /// Of the shortest edge of a cell. Roots are found to about 1e-12 of a cell.
   static constexpr double ClearancePart = 1e-4;
 
+  /// Of a mesh's diagonal. Hits are found to about 1e-15 of it, and of the distance from the origin
+  /// of the world, which HitError stands for.
+  static constexpr double MeshClearancePart = 1e-6;
+  static constexpr double HitError = 1e-13;
+
   static double Largest(const glm::dvec3& color) { return std::max({ color.x, color.y, color.z }); }
+
+  /// The object that the ray meets first, or null; the ray ends there afterwards.
+  const IsosurfaceObject* FindIsosurface(Ray& ray, SurfaceHit& nearest) const
+  {
+    const IsosurfaceObject* object = nullptr;
+    for (const IsosurfaceObject& candidate : this->World.Isosurfaces)
+    {
+      SurfaceHit hit;
+      if (candidate.Surface.Opacity > 0.0f && this->Volumes.Intersect(candidate, ray, hit) &&
+        (!object || hit.T < nearest.T))
+      {
+        nearest = hit;
+        object = &candidate;
+        ray.Max = hit.T;
+      }
+    }
+    return object;
+  }
+
+  /// As FindIsosurface. `ended`: something else is at the ray's end, and hides what is no nearer.
+  const MeshObject* FindMesh(Ray& ray, bool ended, MeshHit& nearest) const
+  {
+    const MeshObject* object = nullptr;
+    for (const MeshObject& candidate : this->World.Meshes)
+    {
+      MeshHit hit;
+      if (this->Meshes.Intersect(*candidate.Instance, ray, hit) && (!ended || hit.T < ray.Max))
+      {
+        nearest = hit;
+        object = &candidate;
+        ray.Max = hit.T;
+        ended = true;
+      }
+    }
+    return object;
+  }
+
+  static void Describe(
+    const MeshObject& object, const MeshHit& hit, const Ray& ray, SurfacePoint& point)
+  {
+    point.T = hit.T;
+    point.Position = ray.Origin + hit.T * ray.Direction;
+    point.Normal = object.Flat ? hit.GeometricNormal : hit.Normal;
+    point.Surface = !hit.Front && object.BackSurface ? &*object.BackSurface : &object.Surface;
+    point.ColorIsFromArray = object.ColoredBy != MeshObject::Coloring::Material;
+    point.Color = GetColor(object, hit, *point.Surface);
+    point.Color.w *= point.Surface->Opacity;
+    const glm::dvec3 distance = glm::abs(point.Position) + glm::abs(ray.Origin);
+    point.Clearance = MeshClearancePart * object.Instance->GetDiagonal() +
+      HitError * (distance.x + distance.y + distance.z);
+  }
+
+  static glm::vec4 GetColor(const MeshObject& object, const MeshHit& hit, const Material& surface)
+  {
+    switch (object.ColoredBy)
+    {
+      case MeshObject::Coloring::Values:
+        return object.Colors->Map(hit.Value);
+      case MeshObject::Coloring::CornerValues:
+        return static_cast<float>(hit.Weights[0]) * object.Colors->Map(hit.CornerValues[0]) +
+          static_cast<float>(hit.Weights[1]) * object.Colors->Map(hit.CornerValues[1]) +
+          static_cast<float>(hit.Weights[2]) * object.Colors->Map(hit.CornerValues[2]);
+      case MeshObject::Coloring::Colors:
+        return hit.Color;
+      case MeshObject::Coloring::Material:
+        break;
+    }
+    return glm::vec4(surface.DiffuseColor, 1.0f);
+  }
 
   void Describe(const IsosurfaceObject& object, const SurfaceHit& hit, const Ray& ray,
     SurfacePoint& point) const
@@ -111,6 +182,7 @@ private:
   }
 
   VolumeTracer<Store> Volumes;
+  MeshTracer<Store> Meshes;
   const Scene& World;
 };
 
