@@ -462,8 +462,10 @@ rt::LightTransport vtkDSMScene::Internals::GetTransport() const
   {
     double bounds[6];
     this->GetBounds(bounds);
+    const vtkBoundingBox box(bounds);
+    // Where nothing has bounds, nothing is shown.
     transport.AmbientOcclusionDistance =
-      AmbientOcclusionPart * vtkBoundingBox(bounds).GetDiagonalLength();
+      box.IsValid() ? AmbientOcclusionPart * box.GetDiagonalLength() : 0.0;
   }
   return transport;
 }
