@@ -46,7 +46,7 @@ public:
     /// nothing of the cache. For what is published from then on; the same on every rank.
     bool HostSharing = false;
     /// Who shares; null: found out with every publication.
-    std::shared_ptr<const HostGroups> Groups;
+    std::shared_ptr<const HostGroups> Groups = nullptr;
   };
 
   using Segment = BlockTable;
