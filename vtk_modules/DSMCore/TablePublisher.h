@@ -21,7 +21,7 @@ public:
   {
     bool HostSharing = false;
     /// Null: found out.
-    std::shared_ptr<const HostGroups> Groups;
+    std::shared_ptr<const HostGroups> Groups = nullptr;
     bool Replicate = false;
     /// What this rank may still take.
     std::uint64_t MemoryBytes = UINT64_MAX;
