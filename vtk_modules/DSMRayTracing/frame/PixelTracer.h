@@ -15,6 +15,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <vector>
 
 namespace rt
 {
@@ -50,17 +51,75 @@ public:
     return result;
   }
 
+  /// What the pixels of a box have in common: for TraceBlock.
+  std::vector<BeamBricks> FindBricks(int x, int y, int width, int height) const
+  {
+    const auto getCorner = [&](int right, int top)
+    { return this->Rays.GetRay(x + right * width, y + top * height, glm::dvec2(0.0)); };
+    const Ray corners[4] = { getCorner(0, 0), getCorner(1, 0), getCorner(1, 1), getCorner(0, 1) };
+    return this->Surfaces.FindBricks(corners);
+  }
+
+  /// Whether anything may be seen in the pixels of the box that `bricks` was found for.
+  bool MayMeet(const std::vector<BeamBricks>& bricks) const
+  {
+    return this->Surfaces.MayMeet(bricks);
+  }
+
+  /// Trace for a block of pixels, at most BlockEdge wide and high, x fastest with BlockEdge samples a
+  /// row; within the box that `bricks` was found for.
+  void TraceBlock(const std::vector<BeamBricks>& bricks, int x, int y, int width, int height,
+    int sample, PixelSample* results) const
+  {
+    Ray rays[RayPacket::Size];
+    SurfacePoint points[RayPacket::Size];
+    RayPacket::Mask wanted = 0;
+    for (int j = 0; j < height; ++j)
+    {
+      for (int i = 0; i < width; ++i)
+      {
+        const int index = i + BlockEdge * j;
+        rays[index] = this->Rays.GetRay(
+          x + i, y + j, SampleSequence(x + i, y + j, sample).GetPositionInPixel());
+        wanted |= RayPacket::Mask{ 1 } << index;
+      }
+    }
+    RayPacket::Mask left = this->Surfaces.IntersectPacket(bricks, rays, wanted, points);
+    std::fill_n(results, RayPacket::Size, PixelSample());
+    for (; left != 0; left &= left - 1)
+    {
+      const int index = GetLowest(left);
+      SampleSequence random(x + index % BlockEdge, y + index / BlockEdge, sample);
+      PixelSample& result = results[index];
+      result.Color = this->FollowFrom(
+        points[index], rays[index], this->World.Transport.MaxBounces, random, &result.Depth);
+    }
+  }
+
+  /// Of the blocks of pixels whose rays make a packet.
+  static constexpr int BlockEdge = 4;
+  static_assert(BlockEdge * BlockEdge == RayPacket::Size, "a block is a packet");
+
 private:
   /// What lies behind contributes less than half a step of an 8-bit channel.
   static constexpr float OpaqueEnough = 1.0f - 0.5f / 255.0f;
 
   /// Front to back. `depth`, where given, is set to the first surface's.
-  glm::vec4 Follow(Ray ray, int bounces, SampleSequence& random, float* depth) const
+  glm::vec4 Follow(const Ray& ray, int bounces, SampleSequence& random, float* depth) const
+  {
+    SurfacePoint point;
+    return this->Surfaces.Intersect(ray, point)
+      ? this->FollowFrom(point, ray, bounces, random, depth)
+      : glm::vec4(0.0f);
+  }
+
+  /// Follow, what the ray meets first being known.
+  glm::vec4 FollowFrom(
+    SurfacePoint point, Ray ray, int bounces, SampleSequence& random, float* depth) const
   {
     const glm::dvec3 toViewer = -glm::normalize(ray.Direction);
     glm::vec4 color(0.0f);
-    SurfacePoint point;
-    while (color.w < OpaqueEnough && this->Surfaces.Intersect(ray, point))
+    do
     {
       const float weight = (1.0f - color.w) * point.Color.w;
       if (weight > 0.0f)
@@ -73,7 +132,7 @@ private:
         }
       }
       ray.Min = point.T + point.Clearance / glm::length(ray.Direction);
-    }
+    } while (color.w < OpaqueEnough && this->Surfaces.Intersect(ray, point));
     return color;
   }
 

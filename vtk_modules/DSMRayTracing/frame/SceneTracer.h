@@ -11,6 +11,7 @@
 #include <glm/vec4.hpp>
 
 #include <algorithm>
+#include <vector>
 
 namespace rt
 {
@@ -44,25 +45,49 @@ public:
   /// The first surface in [ray.Min, ray.Max]; of equally near ones that of the first object.
   bool Intersect(Ray ray, SurfacePoint& point) const
   {
-    SurfaceHit nearest;
-    const IsosurfaceObject* object = nullptr;
-    for (const IsosurfaceObject& candidate : this->World.Isosurfaces)
+    SurfaceHit isosurfaceHit;
+    const IsosurfaceObject* isosurface = this->FindIsosurface(ray, isosurfaceHit);
+    return this->Complete(ray, isosurface, isosurfaceHit, point);
+  }
+
+  /// For each isosurface object, what rays between those of `corners` have in common.
+  std::vector<BeamBricks> FindBricks(const Ray corners[4]) const
+  {
+    std::vector<BeamBricks> bricks;
+    for (const IsosurfaceObject& object : this->World.Isosurfaces)
     {
-      SurfaceHit hit;
-      if (candidate.Surface.Opacity > 0.0f && this->Volumes.Intersect(candidate, ray, hit) &&
-        (!object || hit.T < nearest.T))
+      bricks.push_back(this->Volumes.FindBricks(object, corners));
+    }
+    return bricks;
+  }
+
+  /// Whether rays within the beam that `bricks` was found for may meet anything.
+  bool MayMeet(const std::vector<BeamBricks>& bricks) const
+  {
+    return std::any_of(bricks.begin(), bricks.end(),
+      [](const BeamBricks& object) { return !object.Usable || !object.Bricks.empty(); });
+  }
+
+  /// Intersect for each ray of `wanted`, with the same result. All lie within the beam that `bricks`
+  /// was found for. Returns those that meet something.
+  RayPacket::Mask IntersectPacket(const std::vector<BeamBricks>& bricks, const Ray* rays,
+    RayPacket::Mask wanted, SurfacePoint* points) const
+  {
+    Ray shortened[RayPacket::Size];
+    SurfaceHit hits[RayPacket::Size];
+    const IsosurfaceObject* objects[RayPacket::Size] = {};
+    std::copy_n(rays, RayPacket::Size, shortened);
+    this->FindIsosurfaces(bricks, shortened, wanted, objects, hits);
+    RayPacket::Mask found = 0;
+    for (RayPacket::Mask left = wanted; left != 0; left &= left - 1)
+    {
+      const int index = GetLowest(left);
+      if (this->Complete(shortened[index], objects[index], hits[index], points[index]))
       {
-        nearest = hit;
-        object = &candidate;
-        ray.Max = hit.T;
+        found |= RayPacket::Mask{ 1 } << index;
       }
     }
-    if (!object)
-    {
-      return false;
-    }
-    this->Describe(*object, nearest, ray, point);
-    return true;
+    return found;
   }
 
   /// The part of each colour of light that gets along the ray: translucent surfaces dim and tint it.
@@ -87,6 +112,63 @@ private:
   static constexpr double ClearancePart = 1e-4;
 
   static double Largest(const glm::dvec3& color) { return std::max({ color.x, color.y, color.z }); }
+
+  /// The object that the ray meets first, or null; the ray ends there afterwards.
+  const IsosurfaceObject* FindIsosurface(Ray& ray, SurfaceHit& nearest) const
+  {
+    const IsosurfaceObject* object = nullptr;
+    for (const IsosurfaceObject& candidate : this->World.Isosurfaces)
+    {
+      SurfaceHit hit;
+      if (candidate.Surface.Opacity > 0.0f && this->Volumes.Intersect(candidate, ray, hit) &&
+        (!object || hit.T < nearest.T))
+      {
+        nearest = hit;
+        object = &candidate;
+        ray.Max = hit.T;
+      }
+    }
+    return object;
+  }
+
+  /// FindIsosurface for each ray of `wanted`; `objects` are null before.
+  void FindIsosurfaces(const std::vector<BeamBricks>& bricks, Ray* rays, RayPacket::Mask wanted,
+    const IsosurfaceObject** objects, SurfaceHit* nearest) const
+  {
+    for (std::size_t number = 0; number < bricks.size(); ++number)
+    {
+      const IsosurfaceObject& candidate = this->World.Isosurfaces[number];
+      if (!(candidate.Surface.Opacity > 0.0f))
+      {
+        continue;
+      }
+      SurfaceHit hits[RayPacket::Size];
+      RayPacket::Mask met =
+        this->Volumes.IntersectPacket(candidate, bricks[number], rays, wanted, hits);
+      for (; met != 0; met &= met - 1)
+      {
+        const int index = GetLowest(met);
+        if (!objects[index] || hits[index].T < nearest[index].T)
+        {
+          nearest[index] = hits[index];
+          objects[index] = &candidate;
+          rays[index].Max = hits[index].T;
+        }
+      }
+    }
+  }
+
+  /// Describes what the ray meets, the isosurface that it meets first being known.
+  bool Complete(const Ray& ray, const IsosurfaceObject* isosurface,
+    const SurfaceHit& isosurfaceHit, SurfacePoint& point) const
+  {
+    if (!isosurface)
+    {
+      return false;
+    }
+    this->Describe(*isosurface, isosurfaceHit, ray, point);
+    return true;
+  }
 
   void Describe(const IsosurfaceObject& object, const SurfaceHit& hit, const Ray& ray,
     SurfacePoint& point) const

@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <vector>
 
 namespace rt
 {
@@ -37,10 +38,18 @@ public:
       tile.Sum.assign(pixels, glm::vec4(0.0f));
       tile.Depth.assign(pixels, 1.0f);
     }
+    const std::vector<BeamBricks> bricks =
+      this->Pixels.FindBricks(tile.X, tile.Y, tile.Width, tile.Height);
+    if (this->Pixels.MayMeet(bricks))
+    {
+      for (int sample = 0; sample < this->Request.Samples; ++sample)
+      {
+        this->AddSample(tile, bricks, this->Request.FirstSample + sample);
+      }
+    }
     const float scale = 1.0f / (this->Request.FirstSample + this->Request.Samples);
     for (std::size_t pixel = 0; pixel < pixels; ++pixel)
     {
-      this->AddSamples(tile, pixel);
       const glm::vec4 color = scale * tile.Sum[pixel];
       for (int channel = 0; channel < 4; ++channel)
       {
@@ -51,17 +60,34 @@ public:
   }
 
 private:
-  void AddSamples(Tile& tile, std::size_t pixel) const
+  static constexpr int BlockEdge = PixelTracer<Store>::BlockEdge;
+
+  /// One sample of each pixel.
+  void AddSample(Tile& tile, const std::vector<BeamBricks>& bricks, int sample) const
   {
-    const int x = tile.X + static_cast<int>(pixel % tile.Width);
-    const int y = tile.Y + static_cast<int>(pixel / tile.Width);
-    for (int sample = 0; sample < this->Request.Samples; ++sample)
+    PixelSample traced[RayPacket::Size];
+    for (int top = 0; top < tile.Height; top += BlockEdge)
     {
-      const PixelSample traced = this->Pixels.Trace(x, y, this->Request.FirstSample + sample);
-      tile.Sum[pixel] += traced.Color;
-      // A pixel is as near as the nearest of its samples, so that a surface's antialiased border
-      // still covers what is behind.
-      tile.Depth[pixel] = std::min(tile.Depth[pixel], traced.Depth);
+      for (int left = 0; left < tile.Width; left += BlockEdge)
+      {
+        const int width = std::min(BlockEdge, tile.Width - left);
+        const int height = std::min(BlockEdge, tile.Height - top);
+        this->Pixels.TraceBlock(
+          bricks, tile.X + left, tile.Y + top, width, height, sample, traced);
+        for (int j = 0; j < height; ++j)
+        {
+          for (int i = 0; i < width; ++i)
+          {
+            const PixelSample& from = traced[i + BlockEdge * j];
+            const std::size_t pixel =
+              static_cast<std::size_t>(top + j) * tile.Width + static_cast<std::size_t>(left + i);
+            tile.Sum[pixel] += from.Color;
+            // A pixel is as near as the nearest of its samples, so that a surface's antialiased
+            // border still covers what is behind.
+            tile.Depth[pixel] = std::min(tile.Depth[pixel], from.Depth);
+          }
+        }
+      }
     }
   }
 

@@ -9,6 +9,7 @@
 #include "DSMRayTracing/kernel/IndexSpace.h"
 #include "DSMRayTracing/kernel/IsovalueLevel.h"
 #include "DSMRayTracing/kernel/TrilinearCell.h"
+#include "DSMRayTracing/kernel/TypedPacketBrick.h"
 
 #include <cmath>
 #include <limits>
@@ -110,6 +111,164 @@ bool VolumeTracer<Store>::IntersectBrick(const IsosurfaceObject& object, const G
     samples.GetGradient(cell.Local, gradient);
   }
   return true;
+}
+
+template <class Store>
+BeamBricks VolumeTracer<Store>::FindBricks(
+  const IsosurfaceObject& object, const Ray corners[4]) const
+{
+  const IndexSpace space(object.IndexToWorld, object.WorldToIndex);
+  GridRay lines[4];
+  for (int corner = 0; corner < 4; ++corner)
+  {
+    if (!space.GetGridRay(corners[corner], lines[corner]))
+    {
+      return BeamBricks();
+    }
+  }
+  return BeamBricks(object.Field->Hierarchy, object.Isovalues, lines);
+}
+
+template <class Store>
+RayPacket::Mask VolumeTracer<Store>::IntersectPacket(const IsosurfaceObject& object,
+  const BeamBricks& bricks, const Ray* rays, RayPacket::Mask wanted, SurfaceHit* hits) const
+{
+  const IndexSpace space(object.IndexToWorld, object.WorldToIndex);
+  const BrickLattice& lattice = object.Field->Lattice;
+  RayPacket::Mask found = 0;
+  RayPacket packet;
+  packet.Clear();
+  std::copy_n(bricks.Forward, 3, packet.Forward);
+  for (RayPacket::Mask left = wanted; left != 0; left &= left - 1)
+  {
+    const int index = GetLowest(left);
+    GridRay line;
+    double enter = rays[index].Min;
+    double leave = rays[index].Max;
+    if (!bricks.Usable || !space.GetGridRay(rays[index], line) ||
+      !RayPacket::Fits(line, bricks.Forward))
+    {
+      found |= RayPacket::Mask{ this->Intersect(object, rays[index], hits[index]) } << index;
+    }
+    else if (line.Clip(lattice.GetCells(), enter, leave))
+    {
+      packet.Set(index, line, enter, leave);
+    }
+  }
+  if (packet.Rays == 0)
+  {
+    return found;
+  }
+  return Dispatch(lattice.GetScalarType(),
+    [&](auto sample)
+    {
+      glm::dvec3 gradients[RayPacket::Size];
+      const RayPacket::Mask met =
+        this->IntersectBricks<decltype(sample)>(object, packet, bricks, hits, gradients);
+      for (RayPacket::Mask left = met; left != 0; left &= left - 1)
+      {
+        const int index = GetLowest(left);
+        hits[index].Normal = space.GetNormal(&gradients[index].x, rays[index].Direction);
+      }
+      return found | met;
+    });
+}
+
+template <class Store>
+template <class T>
+RayPacket::Mask VolumeTracer<Store>::IntersectBricks(const IsosurfaceObject& object,
+  const RayPacket& packet, const BeamBricks& bricks, SurfaceHit* hits,
+  glm::dvec3* gradients) const
+{
+  alignas(64) double enter[RayPacket::Size];
+  alignas(64) double leave[RayPacket::Size];
+  PacketHits cells;
+  int isovalues[RayPacket::Size];
+  RayPacket::Mask found = 0;
+  for (const BeamBricks::Brick& brick : bricks.Bricks)
+  {
+    const RayPacket::Mask rays = this->Kernel.MeetBox(
+      packet, packet.Rays & ~found, brick.Lower, brick.Upper, enter, leave);
+    if (rays == 0)
+    {
+      continue;
+    }
+    RayPacket::Mask haveGradients = 0;
+    const RayPacket::Mask met = this->IntersectBrick<T>(
+      object, packet, rays, brick, enter, leave, cells, isovalues, gradients, haveGradients);
+    for (RayPacket::Mask left = met; left != 0; left &= left - 1)
+    {
+      const int index = GetLowest(left);
+      const CellHit cell = cells.Get(index);
+      SurfaceHit& hit = hits[index];
+      hit.T = cell.T;
+      hit.Isovalue = isovalues[index];
+      hit.Brick = brick.Id;
+      for (int axis = 0; axis < 3; ++axis)
+      {
+        hit.IndexPoint[axis] = brick.Lower[axis] + cell.Cell[axis] + cell.Local[axis];
+      }
+      if ((haveGradients >> index & 1) == 0)
+      {
+        this->FindGradient<T>(*object.Field, brick.Id, cell, object.Isovalues[hit.Isovalue],
+          &gradients[index].x);
+      }
+    }
+    found |= met;
+    if (found == packet.Rays)
+    {
+      break;
+    }
+  }
+  return found;
+}
+
+template <class Store>
+template <class T>
+RayPacket::Mask VolumeTracer<Store>::IntersectBrick(const IsosurfaceObject& object,
+  const RayPacket& packet, RayPacket::Mask rays, const BeamBricks::Brick& brick,
+  const double* enter, const double* leave, PacketHits& cells, int* isovalues,
+  glm::dvec3* gradients, RayPacket::Mask& haveGradients) const
+{
+  const typename Store::Pin pin = this->Blocks.Acquire(this->Self, *object.Field->Segment, brick.Id);
+  const VoxelBrick<T> voxels(pin.GetData());
+  const ValueRange range{ voxels.GetHeader().First, voxels.GetHeader().Last };
+  RayPacket::Mask found = 0;
+  for (std::size_t number = 0; number < object.Isovalues.size(); ++number)
+  {
+    if (!range.MayHold(object.Isovalues[number]))
+    {
+      continue;
+    }
+    const IsovalueLevel<T> level(object.Isovalues[number]);
+    PacketHits candidates;
+    const RayPacket::Mask met = this->Kernel.SearchBrick(packet, rays,
+      TypedPacketBrick<T>(voxels, level), brick.Lower, enter, leave, candidates);
+    for (RayPacket::Mask left = met; left != 0; left &= left - 1)
+    {
+      const int index = GetLowest(left);
+      if ((found >> index & 1) == 0 || candidates.T[index] < cells.T[index])
+      {
+        cells.Set(index, candidates);
+        isovalues[index] = static_cast<int>(number);
+      }
+    }
+    found |= met;
+  }
+  haveGradients = 0;
+  for (RayPacket::Mask left = found; left != 0; left &= left - 1)
+  {
+    const int index = GetLowest(left);
+    const CellHit cell = cells.Get(index);
+    if (CellNeighbourhood::IsWithin(voxels, cell.Cell))
+    {
+      CellNeighbourhood samples;
+      samples.CopyAll(voxels, cell.Cell, IsovalueLevel<T>(object.Isovalues[isovalues[index]]));
+      samples.GetGradient(cell.Local, &gradients[index].x);
+      haveGradients |= RayPacket::Mask{ 1 } << index;
+    }
+  }
+  return found;
 }
 
 template <class Store>
