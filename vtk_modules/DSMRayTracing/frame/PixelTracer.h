@@ -9,6 +9,7 @@
 
 #include <glm/geometric.hpp>
 #include <glm/gtc/constants.hpp>
+#include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
 
@@ -51,7 +52,7 @@ public:
     return result;
   }
 
-  /// What the pixels of a box have in common: for TraceBlock.
+  /// What the pixels of a box have in common: for TraceBox.
   std::vector<BeamBricks> FindBricks(int x, int y, int width, int height) const
   {
     const auto getCorner = [&](int right, int top)
@@ -60,45 +61,70 @@ public:
     return this->Surfaces.FindBricks(corners);
   }
 
-  /// Whether anything may be seen in the pixels of the box that `bricks` was found for.
-  bool MayMeet(const std::vector<BeamBricks>& bricks) const
+  /// Whether TraceBox gains from `bricks`; else a smaller box may.
+  static bool AreUsable(const std::vector<BeamBricks>& bricks)
   {
-    return this->Surfaces.MayMeet(bricks);
+    return SceneTracer<Store>::AreUsable(bricks);
   }
 
-  /// Trace for a block of pixels, at most BlockEdge wide and high, x fastest with BlockEdge samples a
-  /// row; within the box that `bricks` was found for.
-  void TraceBlock(const std::vector<BeamBricks>& bricks, int x, int y, int width, int height,
-    int sample, PixelSample* results) const
+  /// Trace for a box of pixels, at most BoxEdge wide and high, within the one that `bricks` was found
+  /// for. Calls `take(i, j, sample)` for those that show something, with their places in the box.
+  template <class Take>
+  void TraceBox(const std::vector<BeamBricks>& bricks, int x, int y, int width, int height,
+    int sample, Take&& take) const
   {
-    Ray rays[RayPacket::Size];
-    SurfacePoint points[RayPacket::Size];
-    RayPacket::Mask wanted = 0;
-    for (int j = 0; j < height; ++j)
+    if (!this->Surfaces.MayMeet(bricks))
     {
-      for (int i = 0; i < width; ++i)
+      return;
+    }
+    // Neighbouring pixels share a packet: the blocks of BlockEdge x BlockEdge.
+    const int blocks = (width + BlockEdge - 1) / BlockEdge;
+    const int packets = blocks * ((height + BlockEdge - 1) / BlockEdge);
+    const auto getPlace = [blocks](int index)
+    {
+      const int packet = index / RayPacket::Size;
+      const int lane = index % RayPacket::Size;
+      return glm::ivec2(BlockEdge * (packet % blocks) + lane % BlockEdge,
+        BlockEdge * (packet / blocks) + lane / BlockEdge);
+    };
+    constexpr int mostPackets = PacketTracer<Store>::MaxPackets;
+    Ray rays[RayPacket::Size * mostPackets];
+    SurfacePoint points[RayPacket::Size * mostPackets];
+    RayPacket::Mask wanted[mostPackets] = {};
+    RayPacket::Mask found[mostPackets];
+    for (int index = 0; index < RayPacket::Size * packets; ++index)
+    {
+      const glm::ivec2 place = getPlace(index);
+      if (place.x < width && place.y < height)
       {
-        const int index = i + BlockEdge * j;
-        rays[index] = this->Rays.GetRay(
-          x + i, y + j, SampleSequence(x + i, y + j, sample).GetPositionInPixel());
-        wanted |= RayPacket::Mask{ 1 } << index;
+        const SampleSequence random(x + place.x, y + place.y, sample);
+        rays[index] =
+          this->Rays.GetRay(x + place.x, y + place.y, random.GetPositionInPixel());
+        wanted[index / RayPacket::Size] |= RayPacket::Mask{ 1 } << index % RayPacket::Size;
       }
     }
-    RayPacket::Mask left = this->Surfaces.IntersectPacket(bricks, rays, wanted, points);
-    std::fill_n(results, RayPacket::Size, PixelSample());
-    for (; left != 0; left &= left - 1)
+    this->Surfaces.Intersect(bricks, packets, rays, wanted, points, found);
+    for (int packet = 0; packet < packets; ++packet)
     {
-      const int index = GetLowest(left);
-      SampleSequence random(x + index % BlockEdge, y + index / BlockEdge, sample);
-      PixelSample& result = results[index];
-      result.Color = this->FollowFrom(
-        points[index], rays[index], this->World.Transport.MaxBounces, random, &result.Depth);
+      for (; found[packet] != 0; found[packet] &= found[packet] - 1)
+      {
+        const int index = RayPacket::Size * packet + GetLowest(found[packet]);
+        const glm::ivec2 place = getPlace(index);
+        SampleSequence random(x + place.x, y + place.y, sample);
+        PixelSample result;
+        result.Color = this->FollowFrom(
+          points[index], rays[index], this->World.Transport.MaxBounces, random, &result.Depth);
+        take(place.x, place.y, result);
+      }
     }
   }
 
-  /// Of the blocks of pixels whose rays make a packet.
+  /// Of the blocks of pixels whose rays make a packet, and of what is traced at once.
   static constexpr int BlockEdge = 4;
-  static_assert(BlockEdge * BlockEdge == RayPacket::Size, "a block is a packet");
+  static constexpr int BoxEdge = 16;
+  static_assert(BlockEdge * BlockEdge == RayPacket::Size &&
+      BoxEdge * BoxEdge == RayPacket::Size * PacketTracer<Store>::MaxPackets,
+    "a block is a packet, and a box as many as are traced together");
 
 private:
   /// What lies behind contributes less than half a step of an 8-bit channel.

@@ -3,6 +3,7 @@
 #define rt_SceneTracer_h
 
 #include "DSMRayTracing/frame/Scene.h"
+#include "DSMRayTracing/kernel/PacketTracer.h"
 #include "DSMRayTracing/kernel/VolumeTracer.h"
 
 #include <glm/common.hpp>
@@ -38,6 +39,7 @@ class SceneTracer
 public:
   SceneTracer(Store& store, typename Store::Worker& worker, const Scene& scene)
     : Volumes(store, worker)
+    , Packets(store, worker)
     , World(scene)
   {
   }
@@ -56,7 +58,7 @@ public:
     std::vector<BeamBricks> bricks;
     for (const IsosurfaceObject& object : this->World.Isosurfaces)
     {
-      bricks.push_back(this->Volumes.FindBricks(object, corners));
+      bricks.push_back(this->Packets.FindBricks(object, corners));
     }
     return bricks;
   }
@@ -68,26 +70,38 @@ public:
       [](const BeamBricks& object) { return !object.Usable || !object.Bricks.empty(); });
   }
 
-  /// Intersect for each ray of `wanted`, with the same result. All lie within the beam that `bricks`
-  /// was found for. Returns those that meet something.
-  RayPacket::Mask IntersectPacket(const std::vector<BeamBricks>& bricks, const Ray* rays,
-    RayPacket::Mask wanted, SurfacePoint* points) const
+  /// Whether rays can be traced together with the help of `bricks`.
+  static bool AreUsable(const std::vector<BeamBricks>& bricks)
   {
-    Ray shortened[RayPacket::Size];
-    SurfaceHit hits[RayPacket::Size];
-    const IsosurfaceObject* objects[RayPacket::Size] = {};
-    std::copy_n(rays, RayPacket::Size, shortened);
-    this->FindIsosurfaces(bricks, shortened, wanted, objects, hits);
-    RayPacket::Mask found = 0;
-    for (RayPacket::Mask left = wanted; left != 0; left &= left - 1)
+    return std::all_of(
+      bricks.begin(), bricks.end(), [](const BeamBricks& object) { return object.Usable; });
+  }
+
+  /// Intersect for the rays of `wanted` in each packet of RayPacket::Size rays, at most
+  /// PacketTracer::MaxPackets, with the same result. All lie within the beam that `bricks` was found
+  /// for. `found` tells those that meet something.
+  void Intersect(const std::vector<BeamBricks>& bricks, int packets, const Ray* rays,
+    const RayPacket::Mask* wanted, SurfacePoint* points, RayPacket::Mask* found) const
+  {
+    constexpr int most = RayPacket::Size * PacketTracer<Store>::MaxPackets;
+    Ray shortened[most];
+    SurfaceHit hits[most];
+    const IsosurfaceObject* objects[most] = {};
+    std::copy_n(rays, RayPacket::Size * packets, shortened);
+    this->FindIsosurfaces(bricks, packets, shortened, wanted, objects, hits);
+    for (int packet = 0; packet < packets; ++packet)
     {
-      const int index = GetLowest(left);
-      if (this->Complete(shortened[index], objects[index], hits[index], points[index]))
+      found[packet] = 0;
+      for (RayPacket::Mask left = wanted[packet]; left != 0; left &= left - 1)
       {
-        found |= RayPacket::Mask{ 1 } << index;
+        const int lane = GetLowest(left);
+        const int index = RayPacket::Size * packet + lane;
+        if (this->Complete(shortened[index], objects[index], hits[index], points[index]))
+        {
+          found[packet] |= RayPacket::Mask{ 1 } << lane;
+        }
       }
     }
-    return found;
   }
 
   /// The part of each colour of light that gets along the ray: translucent surfaces dim and tint it.
@@ -131,10 +145,13 @@ private:
     return object;
   }
 
-  /// FindIsosurface for each ray of `wanted`; `objects` are null before.
-  void FindIsosurfaces(const std::vector<BeamBricks>& bricks, Ray* rays, RayPacket::Mask wanted,
-    const IsosurfaceObject** objects, SurfaceHit* nearest) const
+  /// FindIsosurface for the rays of `wanted` in each packet; `objects` are null before.
+  void FindIsosurfaces(const std::vector<BeamBricks>& bricks, int packets, Ray* rays,
+    const RayPacket::Mask* wanted, const IsosurfaceObject** objects, SurfaceHit* nearest) const
   {
+    constexpr int most = RayPacket::Size * PacketTracer<Store>::MaxPackets;
+    SurfaceHit hits[most];
+    RayPacket::Mask found[PacketTracer<Store>::MaxPackets];
     for (std::size_t number = 0; number < bricks.size(); ++number)
     {
       const IsosurfaceObject& candidate = this->World.Isosurfaces[number];
@@ -142,17 +159,18 @@ private:
       {
         continue;
       }
-      SurfaceHit hits[RayPacket::Size];
-      RayPacket::Mask met =
-        this->Volumes.IntersectPacket(candidate, bricks[number], rays, wanted, hits);
-      for (; met != 0; met &= met - 1)
+      this->Packets.Intersect(candidate, bricks[number], packets, rays, wanted, hits, found);
+      for (int packet = 0; packet < packets; ++packet)
       {
-        const int index = GetLowest(met);
-        if (!objects[index] || hits[index].T < nearest[index].T)
+        for (RayPacket::Mask left = found[packet]; left != 0; left &= left - 1)
         {
-          nearest[index] = hits[index];
-          objects[index] = &candidate;
-          rays[index].Max = hits[index].T;
+          const int index = RayPacket::Size * packet + GetLowest(left);
+          if (!objects[index] || hits[index].T < nearest[index].T)
+          {
+            nearest[index] = hits[index];
+            objects[index] = &candidate;
+            rays[index].Max = hits[index].T;
+          }
         }
       }
     }
@@ -193,6 +211,7 @@ private:
   }
 
   VolumeTracer<Store> Volumes;
+  PacketTracer<Store> Packets;
   const Scene& World;
 };
 

@@ -38,13 +38,12 @@ public:
       tile.Sum.assign(pixels, glm::vec4(0.0f));
       tile.Depth.assign(pixels, 1.0f);
     }
-    const std::vector<BeamBricks> bricks =
-      this->Pixels.FindBricks(tile.X, tile.Y, tile.Width, tile.Height);
-    if (this->Pixels.MayMeet(bricks))
+    for (int top = 0; top < tile.Height; top += BoxEdge)
     {
-      for (int sample = 0; sample < this->Request.Samples; ++sample)
+      for (int left = 0; left < tile.Width; left += BoxEdge)
       {
-        this->AddSample(tile, bricks, this->Request.FirstSample + sample);
+        this->TraceBox(tile, left, top, std::min(BoxEdge, tile.Width - left),
+          std::min(BoxEdge, tile.Height - top));
       }
     }
     const float scale = 1.0f / (this->Request.FirstSample + this->Request.Samples);
@@ -61,33 +60,39 @@ public:
 
 private:
   static constexpr int BlockEdge = PixelTracer<Store>::BlockEdge;
+  static constexpr int BoxEdge = PixelTracer<Store>::BoxEdge;
 
-  /// One sample of each pixel.
-  void AddSample(Tile& tile, const std::vector<BeamBricks>& bricks, int sample) const
+  /// Adds the samples of a box of the tile's pixels.
+  void TraceBox(Tile& tile, int left, int top, int width, int height) const
   {
-    PixelSample traced[RayPacket::Size];
-    for (int top = 0; top < tile.Height; top += BlockEdge)
+    const std::vector<BeamBricks> bricks =
+      this->Pixels.FindBricks(tile.X + left, tile.Y + top, width, height);
+    if (!this->Pixels.AreUsable(bricks) && (width > BlockEdge || height > BlockEdge))
     {
-      for (int left = 0; left < tile.Width; left += BlockEdge)
+      // Rays on both sides of where they run along an axis: fewer of them have more in common.
+      for (int j = 0; j < height; j += BlockEdge)
       {
-        const int width = std::min(BlockEdge, tile.Width - left);
-        const int height = std::min(BlockEdge, tile.Height - top);
-        this->Pixels.TraceBlock(
-          bricks, tile.X + left, tile.Y + top, width, height, sample, traced);
-        for (int j = 0; j < height; ++j)
+        for (int i = 0; i < width; i += BlockEdge)
         {
-          for (int i = 0; i < width; ++i)
-          {
-            const PixelSample& from = traced[i + BlockEdge * j];
-            const std::size_t pixel =
-              static_cast<std::size_t>(top + j) * tile.Width + static_cast<std::size_t>(left + i);
-            tile.Sum[pixel] += from.Color;
-            // A pixel is as near as the nearest of its samples, so that a surface's antialiased
-            // border still covers what is behind.
-            tile.Depth[pixel] = std::min(tile.Depth[pixel], from.Depth);
-          }
+          this->TraceBox(tile, left + i, top + j, std::min(BlockEdge, width - i),
+            std::min(BlockEdge, height - j));
         }
       }
+      return;
+    }
+    for (int sample = 0; sample < this->Request.Samples; ++sample)
+    {
+      this->Pixels.TraceBox(bricks, tile.X + left, tile.Y + top, width, height,
+        this->Request.FirstSample + sample,
+        [&](int i, int j, const PixelSample& traced)
+        {
+          const std::size_t pixel =
+            static_cast<std::size_t>(top + j) * tile.Width + static_cast<std::size_t>(left + i);
+          tile.Sum[pixel] += traced.Color;
+          // A pixel is as near as the nearest of its samples, so that a surface's antialiased
+          // border still covers what is behind.
+          tile.Depth[pixel] = std::min(tile.Depth[pixel], traced.Depth);
+        });
     }
   }
 

@@ -16,9 +16,21 @@ namespace HWY_NAMESPACE
 {
 namespace hn = hwy::HWY_NAMESPACE;
 
+/// A part of a way at whose two ends a cubic differs in sign; see End in TrilinearIsosurface.cxx.
+template <class D>
+struct Bracket
+{
+  hn::Vec<D> BeginS;
+  hn::Vec<D> BeginValue;
+  hn::Vec<D> EndS;
+  hn::Vec<D> EndValue;
+};
+
 /// FindFirstCrossing of TrilinearIsosurface.h, and what it rests on in TrilinearCell.h, for a vector
 /// of rays: the same operations in the same order, so that the results are equal bit for bit. What
-/// is a branch there is a choice here, or a loop that goes on while any ray needs it.
+/// is a branch there is a choice here, or a loop that goes on while any ray needs it. That a ray
+/// crosses is known before it is known where: so the last, long part can wait until many rays are at
+/// that point.
 template <class D>
 class PacketCrossing
 {
@@ -42,8 +54,30 @@ public:
       this->Interpolate(x00, x10, end[1]), this->Interpolate(x01, x11, end[1]), end[2]);
   }
 
-  /// Which of `rays` cross, and at which s; undefined for the others.
-  Mask FindFirst(Mask rays, Vector& s) const
+  /// From coefficients, for Refine.
+  PacketCrossing(D tag, const Vector coefficients[4])
+    : Tag(tag)
+    , Zero(hn::Zero(tag))
+    , One(hn::Set(tag, 1.0))
+    , C0(coefficients[0])
+    , C1(coefficients[1])
+    , C2(coefficients[2])
+    , C3(coefficients[3])
+    , Last(coefficients[0])
+  {
+  }
+
+  /// The cubic along the way is [0] + [1] s + [2] s^2 + [3] s^3.
+  void GetCoefficients(Vector coefficients[4]) const
+  {
+    coefficients[0] = this->C0;
+    coefficients[1] = this->C1;
+    coefficients[2] = this->C2;
+    coefficients[3] = this->C3;
+  }
+
+  /// Which of `rays` cross, and where the first crossing of each is; undefined for the others.
+  Mask FindFirst(Mask rays, Bracket<D>& bracket) const
   {
     // Signs of the four Bernstein coefficients; there are no more crossings than they have changes.
     const Vector third = hn::Set(this->Tag, 1.0 / 3.0);
@@ -59,37 +93,73 @@ public:
     const Mask single = hn::Xor(inside0, inside3);
     const Mask several = hn::And(rays,
       hn::Or(hn::And(change0, hn::Or(change1, change2)), hn::And(change1, change2)));
-    // The part of the way at whose two ends the sides differ.
-    Vector beginS = this->Zero;
-    Vector beginValue = this->C0;
-    Vector endS = this->One;
-    Vector endValue = this->Last;
+    bracket = { this->Zero, this->C0, this->One, this->Last };
     Mask crossing = hn::And(rays, single);
-    if (!hn::AllFalse(this->Tag, several))
+    if (hn::AllFalse(this->Tag, several))
     {
-      Vector extrema[2];
-      this->FindExtrema(extrema);
-      Mask open = several; // no bracket found yet
-      for (const Vector& place : extrema)
-      {
-        const Mask valid =
-          hn::And(open, hn::And(hn::Gt(place, this->Zero), hn::Lt(place, this->One)));
-        const Vector value = this->Evaluate(place);
-        const Mask found = hn::And(valid, hn::Xor(this->IsInside(value), inside0));
-        const Mask passed = hn::AndNot(found, valid);
-        endS = hn::IfThenElse(found, place, endS);
-        endValue = hn::IfThenElse(found, value, endValue);
-        beginS = hn::IfThenElse(passed, place, beginS);
-        beginValue = hn::IfThenElse(passed, value, beginValue);
-        crossing = hn::Or(crossing, found);
-        open = hn::AndNot(found, open);
-      }
+      return crossing;
     }
-    if (!hn::AllFalse(this->Tag, crossing))
+    Vector extrema[2];
+    this->FindExtrema(extrema);
+    Mask open = several; // no bracket found yet
+    for (const Vector& place : extrema)
     {
-      s = this->Refine(crossing, beginS, beginValue, endS, endValue);
+      const Mask valid =
+        hn::And(open, hn::And(hn::Gt(place, this->Zero), hn::Lt(place, this->One)));
+      const Vector value = this->Evaluate(place);
+      const Mask found = hn::And(valid, hn::Xor(this->IsInside(value), inside0));
+      const Mask passed = hn::AndNot(found, valid);
+      bracket.EndS = hn::IfThenElse(found, place, bracket.EndS);
+      bracket.EndValue = hn::IfThenElse(found, value, bracket.EndValue);
+      bracket.BeginS = hn::IfThenElse(passed, place, bracket.BeginS);
+      bracket.BeginValue = hn::IfThenElse(passed, value, bracket.BeginValue);
+      crossing = hn::Or(crossing, found);
+      open = hn::AndNot(found, open);
     }
     return crossing;
+  }
+
+  /// Where in their brackets `rays` cross; undefined for the others.
+  Vector Refine(Mask rays, const Bracket<D>& bracket) const
+  {
+    const D tag = this->Tag;
+    const Vector tolerance = hn::Set(tag, 1e-9);
+    const Vector half = hn::Set(tag, 0.5);
+    const Mask beginInside = this->IsInside(bracket.BeginValue);
+    Vector low = bracket.BeginS;
+    Vector high = bracket.EndS;
+    const Vector chord =
+      hn::Div(bracket.BeginValue, hn::Sub(bracket.BeginValue, bracket.EndValue));
+    const Vector width = hn::Sub(high, low);
+    const Vector clamped = Clamp(chord, hn::Set(tag, 0.015625), hn::Set(tag, 0.984375));
+    Vector s = hn::Add(low, hn::Mul(width, clamped));
+    Vector lastStep = width;
+    Mask active = hn::And(rays, hn::Gt(hn::Sub(high, low), tolerance));
+    while (!hn::AllFalse(tag, active))
+    {
+      const Vector value = this->Evaluate(s);
+      const Mask before = hn::Not(hn::Xor(this->IsInside(value), beginInside));
+      low = hn::IfThenElse(hn::And(active, before), s, low);
+      high = hn::IfThenElse(hn::AndNot(before, active), s, high);
+      const Vector next = hn::Sub(s, hn::Div(value, this->EvaluateDerivative(s)));
+      const Vector step = hn::Abs(hn::Sub(next, s));
+      const Mask small = hn::And(active, hn::Le(step, tolerance));
+      Mask done = small;
+      if (!hn::AllFalse(tag, small))
+      {
+        done = hn::And(small, this->IsCrossing(next, low, high, tolerance, beginInside));
+      }
+      const Mask inBracket = hn::And(hn::Gt(next, low), hn::Lt(next, high));
+      const Mask newton = hn::And(inBracket,
+        hn::And(hn::Gt(step, tolerance), hn::Lt(step, hn::Mul(half, lastStep))));
+      const Vector middle = hn::Mul(half, hn::Add(low, high));
+      const Vector going = hn::IfThenElse(newton, next, middle);
+      lastStep = hn::IfThenElse(active,
+        hn::IfThenElse(newton, step, hn::Sub(high, low)), lastStep);
+      s = hn::IfThenElse(active, hn::IfThenElse(done, Clamp(next, low, high), going), s);
+      active = hn::And(hn::AndNot(done, active), hn::Gt(hn::Sub(high, low), tolerance));
+    }
+    return s;
   }
 
 private:
@@ -165,48 +235,6 @@ private:
   {
     return hn::IfThenElse(
       hn::Lt(value, low), low, hn::IfThenElse(hn::Lt(high, value), high, value));
-  }
-
-  Vector Refine(
-    Mask rays, Vector beginS, Vector beginValue, Vector endS, Vector endValue) const
-  {
-    const D tag = this->Tag;
-    const Vector tolerance = hn::Set(tag, 1e-9);
-    const Vector half = hn::Set(tag, 0.5);
-    const Mask beginInside = this->IsInside(beginValue);
-    Vector low = beginS;
-    Vector high = endS;
-    const Vector chord = hn::Div(beginValue, hn::Sub(beginValue, endValue));
-    const Vector width = hn::Sub(high, low);
-    const Vector clamped = Clamp(chord, hn::Set(tag, 0.015625), hn::Set(tag, 0.984375));
-    Vector s = hn::Add(low, hn::Mul(width, clamped));
-    Vector lastStep = width;
-    Mask active = hn::And(rays, hn::Gt(hn::Sub(high, low), tolerance));
-    while (!hn::AllFalse(tag, active))
-    {
-      const Vector value = this->Evaluate(s);
-      const Mask before = hn::Not(hn::Xor(this->IsInside(value), beginInside));
-      low = hn::IfThenElse(hn::And(active, before), s, low);
-      high = hn::IfThenElse(hn::AndNot(before, active), s, high);
-      const Vector next = hn::Sub(s, hn::Div(value, this->EvaluateDerivative(s)));
-      const Vector step = hn::Abs(hn::Sub(next, s));
-      const Mask small = hn::And(active, hn::Le(step, tolerance));
-      Mask done = small;
-      if (!hn::AllFalse(tag, small))
-      {
-        done = hn::And(small, this->IsCrossing(next, low, high, tolerance, beginInside));
-      }
-      const Mask inBracket = hn::And(hn::Gt(next, low), hn::Lt(next, high));
-      const Mask newton = hn::And(inBracket,
-        hn::And(hn::Gt(step, tolerance), hn::Lt(step, hn::Mul(half, lastStep))));
-      const Vector middle = hn::Mul(half, hn::Add(low, high));
-      const Vector going = hn::IfThenElse(newton, next, middle);
-      lastStep = hn::IfThenElse(active,
-        hn::IfThenElse(newton, step, hn::Sub(high, low)), lastStep);
-      s = hn::IfThenElse(active, hn::IfThenElse(done, Clamp(next, low, high), going), s);
-      active = hn::And(hn::AndNot(done, active), hn::Gt(hn::Sub(high, low), tolerance));
-    }
-    return s;
   }
 
   Mask IsCrossing(

@@ -64,21 +64,19 @@ public:
     NodeBox box = GetNodes(packet, rays, brick, origin, enter, leave);
     PlaneTable planes;
     FillPlanes(packet, origin, box, planes);
+    PacketCrossings crossings;
     RayPacket::Mask found = 0;
-    for (int k = 0; k < box.Size[2]; ++k)
+    for (int k = 0; k < box.Size[2] && found != rays; ++k)
     {
       const int z = packet.Forward[2] ? box.First[2] + k : box.First[2] + box.Size[2] - 1 - k;
-      for (int j = 0; j < box.Size[1]; ++j)
+      for (int j = 0; j < box.Size[1] && found != rays; ++j)
       {
         const int y = packet.Forward[1] ? box.First[1] + j : box.First[1] + box.Size[1] - 1 - j;
         found |= SearchRow(packet, rays & ~found, brick, origin, enter, leave, box, planes, y, z,
-          hits);
-        if (found == rays)
-        {
-          return found;
-        }
+          crossings);
       }
     }
+    Refine(crossings, found, hits);
     return found;
   }
 
@@ -169,7 +167,8 @@ private:
   /// The macrocells of a row along x, in the order in which they are met.
   static RayPacket::Mask SearchRow(const RayPacket& packet, RayPacket::Mask rays,
     const PacketBrick& brick, const double origin[3], const double* enter, const double* leave,
-    const NodeBox& box, const PlaneTable& planes, int y, int z, PacketHits& hits)
+    const NodeBox& box, const PlaneTable& planes, int y, int z,
+    PacketCrossings& crossings)
   {
     const D tag;
     const int ahead[3] = { packet.Forward[0], packet.Forward[1], packet.Forward[2] };
@@ -225,13 +224,48 @@ private:
         {
           break;
         }
-        PacketWalk<D> walk(tag, packet, first, brick, origin, hits);
+        PacketWalk<D> walk(tag, packet, first, brick, origin, crossings);
         const Mask hit = walk.Search(place, cells, meet, in, out);
         inRow[part] = hn::AndNot(hit, inRow[part]);
         found |= GetBits(hit) << first;
       }
     }
     return found;
+  }
+
+  /// Where exactly the rays of `found` meet the surface.
+  static void Refine(
+    const PacketCrossings& crossings, RayPacket::Mask found, PacketHits& hits)
+  {
+    const D tag;
+    for (int first = 0; first < RayPacket::Size; first += Width)
+    {
+      const Mask rays = GetMask(found, first);
+      if (hn::AllFalse(tag, rays))
+      {
+        continue;
+      }
+      Vector coefficients[4];
+      for (int power = 0; power < 4; ++power)
+      {
+        coefficients[power] = hn::Load(tag, crossings.Coefficients[power] + first);
+      }
+      const Bracket<D> bracket{ hn::Load(tag, crossings.BeginS + first),
+        hn::Load(tag, crossings.BeginValue + first), hn::Load(tag, crossings.EndS + first),
+        hn::Load(tag, crossings.EndValue + first) };
+      const Vector s = PacketCrossing<D>(tag, coefficients).Refine(rays, bracket);
+      const Vector enter = hn::Load(tag, crossings.Enter + first);
+      const Vector leave = hn::Load(tag, crossings.Leave + first);
+      const Vector t = hn::Add(enter, hn::Mul(s, hn::Sub(leave, enter)));
+      hn::Store(hn::IfThenElse(hn::Lt(leave, t), leave, t), tag, hits.T + first);
+      for (int axis = 0; axis < 3; ++axis)
+      {
+        const Vector start = hn::Load(tag, crossings.Start[axis] + first);
+        const Vector way = hn::Load(tag, crossings.Way[axis] + first);
+        hn::Store(ClampToUnit(hn::Add(start, hn::Mul(s, way))), tag, hits.Local[axis] + first);
+        hn::Store(hn::Load(tag, crossings.Cell[axis] + first), tag, hits.Cell[axis] + first);
+      }
+    }
   }
 };
 

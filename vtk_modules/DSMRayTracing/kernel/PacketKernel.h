@@ -26,7 +26,7 @@ struct PacketKernel
     const double upper[3], double* enter, double* leave);
 
   /// Those of `rays` that meet the surface in a brick, which they cross from `enter` to `leave`.
-  /// `origin` is the brick's first cell. The numbers of the others in `hits` are left as they are.
+  /// `origin` is the brick's first cell. The numbers of the others in `hits` mean nothing.
   RayPacket::Mask (*SearchBrick)(const RayPacket& packet, RayPacket::Mask rays,
     const PacketBrick& brick, const double origin[3], const double* enter, const double* leave,
     PacketHits& hits);

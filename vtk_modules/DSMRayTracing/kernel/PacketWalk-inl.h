@@ -21,6 +21,35 @@ namespace HWY_NAMESPACE
 {
 namespace hn = hwy::HWY_NAMESPACE;
 
+/// Rays that meet the surface in a cell, before it is known where in the cell.
+struct PacketCrossings
+{
+  static constexpr int Size = RayPacket::Size;
+
+  HWY_ALIGN double Coefficients[4][Size];
+  HWY_ALIGN double BeginS[Size];
+  HWY_ALIGN double BeginValue[Size];
+  HWY_ALIGN double EndS[Size];
+  HWY_ALIGN double EndValue[Size];
+  /// Where the ray is in the cell.
+  HWY_ALIGN double Enter[Size];
+  HWY_ALIGN double Leave[Size];
+  HWY_ALIGN double Start[3][Size];
+  HWY_ALIGN double Way[3][Size];
+  HWY_ALIGN double Cell[3][Size]; ///< of the brick
+};
+
+/// Into [0, 1].
+template <class Vector>
+Vector ClampToUnit(Vector value)
+{
+  const hn::DFromV<Vector> tag;
+  const Vector zero = hn::Zero(tag);
+  const Vector one = hn::Set(tag, 1.0);
+  const Vector raised = hn::IfThenElse(hn::Gt(value, zero), value, zero);
+  return hn::IfThenElse(hn::Lt(raised, one), raised, one);
+}
+
 /// One vector of a packet's rays in the cells of one macrocell; what GridTraversal::WalkCells does
 /// for one ray, with the same bits. A ray walks on until it comes to a cell that has corners on both
 /// sides; when all have come to one, or to their ends, the cells are searched together.
@@ -33,11 +62,11 @@ public:
 
   /// Rays `first` and on of the packet, in the brick whose first cell is `origin`.
   PacketWalk(D tag, const RayPacket& packet, int first, const PacketBrick& brick,
-    const double origin[3], PacketHits& hits)
+    const double origin[3], PacketCrossings& crossings)
     : Tag(tag)
     , Brick(brick)
     , First(first)
-    , Hits(hits)
+    , Crossings(crossings)
   {
     for (int axis = 0; axis < 3; ++axis)
     {
@@ -50,7 +79,8 @@ public:
   }
 
   /// Searches the macrocell with the first cell `place`; bit x + 4 y + 16 z of `cells` is set for
-  /// those to search. `rays` cross it from `enter` to `leave`. Returns those that meet the surface.
+  /// those to search. `rays` cross it from `enter` to `leave`. Returns those that meet the surface,
+  /// having stored how.
   Mask Search(const int place[3], std::uint64_t cells, Mask rays, Vector enter, Vector leave)
   {
     const D tag = this->Tag;
@@ -91,6 +121,7 @@ public:
 private:
   using NumberTag = hn::RebindToUnsigned<D>;
   using Number = hn::Vec<NumberTag>;
+  static constexpr int Width = static_cast<int>(hn::MaxLanes(D()));
 
   Vector GetPlaneT(int axis, Vector plane) const
   {
@@ -143,28 +174,20 @@ private:
     }
   }
 
-  /// Where rays are in their cells at `t`, exactly 0 or 1 where they meet a plane of the cell.
+  /// Where rays are in their cells at `t`: exactly 0 or 1 where they meet a plane of the cell.
   Vector GetLocal(int axis, Vector lower, Vector lowerT, Vector upperT, Vector t) const
   {
     const Vector point = hn::Add(this->Origin[axis], hn::Mul(t, this->Direction[axis]));
-    const Vector inside = this->ClampToUnit(hn::Sub(point, lower));
+    const Vector inside = ClampToUnit(hn::Sub(point, lower));
     return hn::IfThenElse(hn::Eq(upperT, t), hn::Set(this->Tag, 1.0),
       hn::IfThenZeroElse(hn::Eq(lowerT, t), inside));
-  }
-
-  Vector ClampToUnit(Vector value) const
-  {
-    const Vector zero = hn::Zero(this->Tag);
-    const Vector one = hn::Set(this->Tag, 1.0);
-    const Vector raised = hn::IfThenElse(hn::Gt(value, zero), value, zero);
-    return hn::IfThenElse(hn::Lt(raised, one), raised, one);
   }
 
   /// Those of `rays` that meet the surface in the cells in which they are, from `enter` to `exit`.
   Mask SearchCells(const int place[3], Mask rays, Vector enter, Vector exit)
   {
     const D tag = this->Tag;
-    HWY_ALIGN double corners[8][RayPacket::Size] = {};
+    HWY_ALIGN double corners[8][Width] = {};
     rays = this->GetCorners(place, rays, corners[0]);
     if (hn::AllFalse(tag, rays))
     {
@@ -188,23 +211,32 @@ private:
       end[axis] = this->GetLocal(axis, lower, lowerT, upperT, exit);
     }
     const PacketCrossing<D> crossing(tag, values, start, end);
-    Vector s = hn::Zero(tag);
-    const Mask found = crossing.FindFirst(rays, s);
+    Bracket<D> bracket;
+    const Mask found = crossing.FindFirst(rays, bracket);
     if (hn::AllFalse(tag, found))
     {
       return found;
     }
-    const Vector t = hn::Add(enter, hn::Mul(s, hn::Sub(exit, enter)));
-    this->Put(found, hn::IfThenElse(hn::Lt(exit, t), exit, t), this->Hits.T);
+    Vector coefficients[4];
+    crossing.GetCoefficients(coefficients);
+    for (int power = 0; power < 4; ++power)
+    {
+      this->Put(found, coefficients[power], this->Crossings.Coefficients[power]);
+    }
+    this->Put(found, bracket.BeginS, this->Crossings.BeginS);
+    this->Put(found, bracket.BeginValue, this->Crossings.BeginValue);
+    this->Put(found, bracket.EndS, this->Crossings.EndS);
+    this->Put(found, bracket.EndValue, this->Crossings.EndValue);
+    this->Put(found, enter, this->Crossings.Enter);
+    this->Put(found, exit, this->Crossings.Leave);
     for (int axis = 0; axis < 3; ++axis)
     {
+      this->Put(found, start[axis], this->Crossings.Start[axis]);
+      this->Put(found, hn::Sub(end[axis], start[axis]), this->Crossings.Way[axis]);
       const Vector lower =
         this->Forward[axis] ? hn::Sub(this->Plane[axis], one) : this->Plane[axis];
       this->Put(found, hn::Sub(lower, hn::Set(tag, this->BrickOrigin[axis])),
-        this->Hits.Cell[axis]);
-      const Vector way = hn::Sub(end[axis], start[axis]);
-      this->Put(found, this->ClampToUnit(hn::Add(start[axis], hn::Mul(s, way))),
-        this->Hits.Local[axis]);
+        this->Crossings.Cell[axis]);
     }
     return found;
   }
@@ -213,13 +245,12 @@ private:
   /// whose cells hold data.
   Mask GetCorners(const int place[3], Mask rays, double* corners) const
   {
-    HWY_ALIGN std::uint64_t cells[RayPacket::Size];
+    HWY_ALIGN std::uint64_t cells[Width];
     hn::Store(this->Cell, this->Numbers, cells);
     std::uint8_t wanted[8] = {};
     hn::StoreMaskBits(this->Tag, rays, wanted);
     std::uint8_t held[8] = {};
-    const int width = static_cast<int>(hn::Lanes(this->Tag));
-    for (int ray = 0; ray < width; ++ray)
+    for (int ray = 0; ray < Width; ++ray)
     {
       if ((wanted[0] >> ray & 1) == 0)
       {
@@ -228,7 +259,7 @@ private:
       const auto number = static_cast<int>(cells[ray]);
       const int cell[3] = { place[0] + (number & 3), place[1] + (number >> 2 & 3),
         place[2] + (number >> 4) };
-      if (this->Brick.GetCorners(cell, corners + ray, RayPacket::Size))
+      if (this->Brick.GetCorners(cell, corners + ray, Width))
       {
         held[0] = static_cast<std::uint8_t>(held[0] | 1u << ray);
       }
@@ -239,15 +270,14 @@ private:
   /// Stores the numbers of some rays.
   void Put(Mask rays, Vector value, double* to) const
   {
-    double* const place = to + this->First;
-    hn::Store(hn::IfThenElse(rays, value, hn::Load(this->Tag, place)), this->Tag, place);
+    hn::BlendedStore(value, rays, this->Tag, to + this->First);
   }
 
   D Tag;
   NumberTag Numbers;
   const PacketBrick& Brick;
   int First;
-  PacketHits& Hits;
+  PacketCrossings& Crossings;
   double BrickOrigin[3];
   bool Forward[3];
   Vector Origin[3];

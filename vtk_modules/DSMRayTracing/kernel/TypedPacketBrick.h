@@ -14,7 +14,8 @@
 namespace rt
 {
 
-/// A brick of samples of type T as packets see it. Keeps references.
+/// A brick of samples of type T as packets see it. Remembers what it has found, since neighbouring
+/// packets ask for the same. Keeps references; for one thread.
 template <class T>
 class TypedPacketBrick final : public PacketBrick
 {
@@ -23,6 +24,14 @@ public:
     : Brick(brick)
     , Level(level)
   {
+    for (Memory& memory : this->Rows)
+    {
+      memory.Key = Unknown;
+    }
+    for (Memory& memory : this->Macrocells)
+    {
+      memory.Key = Unknown;
+    }
   }
 
   int GetCells(int axis) const override { return this->Brick.GetCells(axis); }
@@ -30,40 +39,17 @@ public:
 
   std::uint64_t FindMacrocells(int y, int z) const override
   {
-    const int count = this->Brick.GetMacrocells(0);
-    const MacrocellRange<T>* range =
-      this->Brick.GetMacrocellRanges() + count * (y + this->Brick.GetMacrocells(1) * z);
-    std::uint64_t found = 0;
-    for (int x = 0; x < count; ++x)
-    {
-      found |= std::uint64_t{ this->Level.Separates(range[x].Min, range[x].Max) } << x;
-    }
-    return found;
+    const int row = y + this->Brick.GetMacrocells(1) * z;
+    return this->Rows[row % RowCount].Get(row, [&] { return this->CompareRow(row); });
   }
 
   std::uint64_t FindCells(const int first[3]) const override
   {
-    int counts[3];
-    for (int axis = 0; axis < 3; ++axis)
-    {
-      counts[axis] = std::min(MacrocellEdge, this->Brick.GetCells(axis) - first[axis]);
-    }
-    const bool whole = counts[0] == MacrocellEdge && counts[1] == MacrocellEdge;
-    std::uint64_t cells = 0;
-    Slice last = whole ? this->GetWholeSlice(first, 0) : this->GetSlice(first, counts, 0);
-    for (int z = 0; z < counts[2]; ++z)
-    {
-      const Slice next =
-        whole ? this->GetWholeSlice(first, z + 1) : this->GetSlice(first, counts, z + 1);
-      const std::uint32_t mixed = (last.Any | next.Any) & ~(last.All & next.All);
-      for (int y = 0; y < MacrocellEdge; ++y)
-      {
-        const std::uint64_t row = mixed >> (RowBits * y) & 15u;
-        cells |= row << (4 * y + 16 * z);
-      }
-      last = next;
-    }
-    return whole ? cells : cells & GetBox(counts);
+    const int macrocell = first[0] / MacrocellEdge +
+      this->Brick.GetMacrocells(0) *
+        (first[1] / MacrocellEdge + this->Brick.GetMacrocells(1) * (first[2] / MacrocellEdge));
+    return this->Macrocells[macrocell % MacrocellCount].Get(
+      macrocell, [&] { return this->CompareCells(first); });
   }
 
   bool GetCorners(const int cell[3], double* corners, int stride) const override
@@ -95,6 +81,67 @@ private:
 
   /// Bits from one row of samples to the next within a word.
   static constexpr int RowBits = 6;
+
+  /// Rows of macrocells, and macrocells, that are remembered: all of a brick of 32 cells, or those
+  /// of the last few rows.
+  static constexpr int RowCount = 64;
+  static constexpr int MacrocellCount = 256;
+  static constexpr int Unknown = -1;
+
+  /// What was found for one of several keys, the last one asked for.
+  struct Memory
+  {
+    int Key;
+    std::uint64_t Found;
+
+    template <class Function>
+    std::uint64_t Get(int key, Function&& find)
+    {
+      if (this->Key != key)
+      {
+        this->Key = key;
+        this->Found = find();
+      }
+      return this->Found;
+    }
+  };
+
+  std::uint64_t CompareRow(int row) const
+  {
+    const int count = this->Brick.GetMacrocells(0);
+    const MacrocellRange<T>* range = this->Brick.GetMacrocellRanges() + count * row;
+    std::uint64_t found = 0;
+    for (int x = 0; x < count; ++x)
+    {
+      found |= std::uint64_t{ this->Level.Separates(range[x].Min, range[x].Max) } << x;
+    }
+    return found;
+  }
+
+  std::uint64_t CompareCells(const int first[3]) const
+  {
+    int counts[3];
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      counts[axis] = std::min(MacrocellEdge, this->Brick.GetCells(axis) - first[axis]);
+    }
+    const bool whole = counts[0] == MacrocellEdge && counts[1] == MacrocellEdge;
+    std::uint64_t cells = 0;
+    Slice last = whole ? this->GetWholeSlice(first, 0) : this->GetSlice(first, counts, 0);
+    for (int z = 0; z < counts[2]; ++z)
+    {
+      const Slice next =
+        whole ? this->GetWholeSlice(first, z + 1) : this->GetSlice(first, counts, z + 1);
+      const std::uint32_t mixed = (last.Any | next.Any) & ~(last.All & next.All);
+      for (int y = 0; y < MacrocellEdge; ++y)
+      {
+        const std::uint64_t row = mixed >> (RowBits * y) & 15u;
+        cells |= row << (4 * y + 16 * z);
+      }
+      last = next;
+    }
+    return whole ? cells : cells & GetBox(counts);
+  }
 
   /// Of the cells that have the samples of a slice as corners: whether some of those are inside,
   /// and whether all are.
@@ -166,6 +213,8 @@ private:
 
   const VoxelBrick<T>& Brick;
   const IsovalueLevel<T>& Level;
+  mutable Memory Rows[RowCount];
+  mutable Memory Macrocells[MacrocellCount];
 };
 
 } // namespace rt

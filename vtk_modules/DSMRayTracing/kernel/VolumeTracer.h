@@ -3,11 +3,10 @@
 #define rt_VolumeTracer_h
 
 #include "DSMRayTracing/frame/Scene.h"
-#include "DSMRayTracing/kernel/BeamBricks.h"
 #include "DSMRayTracing/kernel/BrickWalk.h"
 #include "DSMRayTracing/kernel/CellHit.h"
 #include "DSMRayTracing/kernel/GridRay.h"
-#include "DSMRayTracing/kernel/PacketKernel.h"
+#include "DSMRayTracing/kernel/HitGradient.h"
 #include "DSMRayTracing/kernel/Ray.h"
 
 #include <glm/vec3.hpp>
@@ -35,25 +34,15 @@ template <class Store>
 class VolumeTracer
 {
 public:
-  VolumeTracer(Store& store, typename Store::Worker& worker,
-    const PacketKernel& kernel = PacketKernel::GetBest())
+  VolumeTracer(Store& store, typename Store::Worker& worker)
     : Blocks(store)
     , Self(worker)
-    , Kernel(kernel)
   {
   }
 
   /// The first hit in [ray.Min, ray.Max], normal included. May wait for bricks. Of several
   /// isovalues the nearest hit counts, of equally near ones the lowest isovalue.
   bool Intersect(const IsosurfaceObject& object, const Ray& ray, SurfaceHit& hit) const;
-
-  /// The bricks that rays between those of `corners`, in order around them, may find hits in.
-  BeamBricks FindBricks(const IsosurfaceObject& object, const Ray corners[4]) const;
-
-  /// Intersect for each ray of `wanted` (RayPacket::Size of them at most), with the same result; all
-  /// of them lie within the beam that `bricks` was found for. Returns those that hit something.
-  RayPacket::Mask IntersectPacket(const IsosurfaceObject& object, const BeamBricks& bricks,
-    const Ray* rays, RayPacket::Mask wanted, SurfaceHit* hits) const;
 
   /// The trilinear value of a field at a point in index space; NaN where it holds no data.
   double Sample(const VoxelField& field, const glm::dvec3& indexPoint) const;
@@ -69,29 +58,12 @@ private:
   bool IntersectBrick(const IsosurfaceObject& object, const GridRay& line, const BrickWalk& walk,
     CellHit& cell, int& isovalue, double gradient[3], bool& hasGradient) const;
 
-  /// The same for the rays of a packet that cross the brick.
-  template <class T>
-  RayPacket::Mask IntersectBrick(const IsosurfaceObject& object, const RayPacket& packet,
-    RayPacket::Mask rays, const BeamBricks::Brick& brick, const double* enter,
-    const double* leave, PacketHits& cells, int* isovalues, glm::dvec3* gradients,
-    RayPacket::Mask& haveGradients) const;
-
-  template <class T>
-  RayPacket::Mask IntersectBricks(const IsosurfaceObject& object, const RayPacket& packet,
-    const BeamBricks& bricks, SurfaceHit* hits, glm::dvec3* gradients) const;
-
-  /// The gradient at a hit in a brick whose neighbourhood reaches into other bricks.
-  template <class T>
-  void FindGradient(const VoxelField& field, dsm::BlockId id, const CellHit& cell, double isovalue,
-    double gradient[3]) const;
-
   template <class T>
   double SampleCell(
     const VoxelField& field, const Index3& cell, const glm::dvec3& indexPoint) const;
 
   Store& Blocks;
   typename Store::Worker& Self;
-  const PacketKernel& Kernel;
 };
 
 } // namespace rt
