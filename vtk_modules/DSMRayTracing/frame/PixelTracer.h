@@ -68,60 +68,58 @@ public:
   }
 
   /// Trace for a box of pixels, at most BoxEdge wide and high, within the one that `bricks` was found
-  /// for. Calls `take(i, j, sample)` for those that show something, with their places in the box.
+  /// for. Calls `take(x, y, sample)` for those that show something.
   template <class Take>
   void TraceBox(const std::vector<BeamBricks>& bricks, int x, int y, int width, int height,
     int sample, Take&& take) const
   {
-    if (!this->Surfaces.MayMeet(bricks))
+    constexpr int most = PacketTracer<Store>::MaxPackets;
+    Ray rays[RayPacket::Size * most];
+    glm::ivec2 places[RayPacket::Size * most];
+    RayPacket::Mask wanted[most] = {};
+    int packets = 0;
+    for (int top = 0; top < height; top += BlockEdge)
     {
-      return;
-    }
-    // Neighbouring pixels share a packet: the blocks of BlockEdge x BlockEdge.
-    const int blocks = (width + BlockEdge - 1) / BlockEdge;
-    const int packets = blocks * ((height + BlockEdge - 1) / BlockEdge);
-    const auto getPlace = [blocks](int index)
-    {
-      const int packet = index / RayPacket::Size;
-      const int lane = index % RayPacket::Size;
-      return glm::ivec2(BlockEdge * (packet % blocks) + lane % BlockEdge,
-        BlockEdge * (packet / blocks) + lane / BlockEdge);
-    };
-    constexpr int mostPackets = PacketTracer<Store>::MaxPackets;
-    Ray rays[RayPacket::Size * mostPackets];
-    SurfacePoint points[RayPacket::Size * mostPackets];
-    RayPacket::Mask wanted[mostPackets] = {};
-    RayPacket::Mask found[mostPackets];
-    for (int index = 0; index < RayPacket::Size * packets; ++index)
-    {
-      const glm::ivec2 place = getPlace(index);
-      if (place.x < width && place.y < height)
+      for (int left = 0; left < width; left += BlockEdge, ++packets)
       {
-        const SampleSequence random(x + place.x, y + place.y, sample);
-        rays[index] =
-          this->Rays.GetRay(x + place.x, y + place.y, random.GetPositionInPixel());
-        wanted[index / RayPacket::Size] |= RayPacket::Mask{ 1 } << index % RayPacket::Size;
+        for (int lane = 0; lane < RayPacket::Size; ++lane)
+        {
+          const glm::ivec2 place(left + lane % BlockEdge, top + lane / BlockEdge);
+          if (place.x < width && place.y < height)
+          {
+            const int index = RayPacket::Size * packets + lane;
+            places[index] = place + glm::ivec2(x, y);
+            const SampleSequence random(x + place.x, y + place.y, sample);
+            rays[index] =
+              this->Rays.GetRay(x + place.x, y + place.y, random.GetPositionInPixel());
+            wanted[packets] |= RayPacket::Mask{ 1 } << lane;
+          }
+        }
       }
     }
-    this->Surfaces.Intersect(bricks, packets, rays, wanted, points, found);
-    for (int packet = 0; packet < packets; ++packet)
-    {
-      for (; found[packet] != 0; found[packet] &= found[packet] - 1)
+    this->Surfaces.Intersect(bricks, packets, rays, wanted,
+      [&](int index, const SurfacePoint& point)
       {
-        const int index = RayPacket::Size * packet + GetLowest(found[packet]);
-        const glm::ivec2 place = getPlace(index);
-        SampleSequence random(x + place.x, y + place.y, sample);
+        const glm::ivec2& place = places[index];
+        SampleSequence random(place.x, place.y, sample);
         PixelSample result;
+        Ray ray = rays[index];
+        ray.Max = PixelRays::Last;
         result.Color = this->FollowFrom(
-          points[index], rays[index], this->World.Transport.MaxBounces, random, &result.Depth);
+          point, ray, this->World.Transport.MaxBounces, random, &result.Depth);
         take(place.x, place.y, result);
-      }
-    }
+      });
+  }
+
+  /// Whether anything may be seen in the pixels that `bricks` was found for.
+  bool MayMeet(const std::vector<BeamBricks>& bricks) const
+  {
+    return this->Surfaces.MayMeet(bricks);
   }
 
   /// Of the blocks of pixels whose rays make a packet, and of what is traced at once.
   static constexpr int BlockEdge = 4;
-  static constexpr int BoxEdge = 16;
+  static constexpr int BoxEdge = 8;
   static_assert(BlockEdge * BlockEdge == RayPacket::Size &&
       BoxEdge * BoxEdge == RayPacket::Size * PacketTracer<Store>::MaxPackets,
     "a block is a packet, and a box as many as are traced together");

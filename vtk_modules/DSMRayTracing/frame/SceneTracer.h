@@ -79,26 +79,24 @@ public:
 
   /// Intersect for the rays of `wanted` in each packet of RayPacket::Size rays, at most
   /// PacketTracer::MaxPackets, with the same result. All lie within the beam that `bricks` was found
-  /// for. `found` tells those that meet something.
-  void Intersect(const std::vector<BeamBricks>& bricks, int packets, const Ray* rays,
-    const RayPacket::Mask* wanted, SurfacePoint* points, RayPacket::Mask* found) const
+  /// for. Calls `take(index, point)` for those that meet something; they end there afterwards.
+  template <class Take>
+  void Intersect(const std::vector<BeamBricks>& bricks, int packets, Ray* rays,
+    const RayPacket::Mask* wanted, Take&& take) const
   {
     constexpr int most = RayPacket::Size * PacketTracer<Store>::MaxPackets;
-    Ray shortened[most];
     SurfaceHit hits[most];
     const IsosurfaceObject* objects[most] = {};
-    std::copy_n(rays, RayPacket::Size * packets, shortened);
-    this->FindIsosurfaces(bricks, packets, shortened, wanted, objects, hits);
+    this->FindIsosurfaces(bricks, packets, rays, wanted, objects, hits);
+    SurfacePoint point;
     for (int packet = 0; packet < packets; ++packet)
     {
-      found[packet] = 0;
       for (RayPacket::Mask left = wanted[packet]; left != 0; left &= left - 1)
       {
-        const int lane = GetLowest(left);
-        const int index = RayPacket::Size * packet + lane;
-        if (this->Complete(shortened[index], objects[index], hits[index], points[index]))
+        const int index = RayPacket::Size * packet + GetLowest(left);
+        if (this->Complete(rays[index], objects[index], hits[index], point))
         {
-          found[packet] |= RayPacket::Mask{ 1 } << lane;
+          take(index, point);
         }
       }
     }
@@ -150,8 +148,9 @@ private:
     const RayPacket::Mask* wanted, const IsosurfaceObject** objects, SurfaceHit* nearest) const
   {
     constexpr int most = RayPacket::Size * PacketTracer<Store>::MaxPackets;
-    SurfaceHit hits[most];
+    SurfaceHit further[most];
     RayPacket::Mask found[PacketTracer<Store>::MaxPackets];
+    bool isFirst = true;
     for (std::size_t number = 0; number < bricks.size(); ++number)
     {
       const IsosurfaceObject& candidate = this->World.Isosurfaces[number];
@@ -159,6 +158,8 @@ private:
       {
         continue;
       }
+      SurfaceHit* const hits = isFirst ? nearest : further;
+      isFirst = false;
       this->Packets.Intersect(candidate, bricks[number], packets, rays, wanted, hits, found);
       for (int packet = 0; packet < packets; ++packet)
       {

@@ -7,10 +7,12 @@
 #include "DSMRayTracing/frame/Scene.h"
 #include "DSMRayTracing/kernel/CellHit.h"
 #include "DSMRayTracing/kernel/CellNeighbourhood.h"
+#include "DSMRayTracing/kernel/GradientStencil.h"
 #include "DSMRayTracing/kernel/IsovalueLevel.h"
 
 #include <algorithm>
-#include <cmath>
+#include <cstddef>
+#include <cstdint>
 
 namespace rt
 {
@@ -34,31 +36,15 @@ public:
     const std::ptrdiff_t slice = brick.GetSlice();
     const T* const first =
       brick.GetSamples() + brick.GetOffset(hit.Cell[0], hit.Cell[1], hit.Cell[2]);
-    // The two corners of a row at once; y and z count rows.
-    const auto load = [&](int x, int y, int z)
-    { return level.SubtractPair(first + x + y * row + z * slice); };
-    Pair corners[2][2];
-    Pair differences[3][2][2];
-    for (int z = 0; z < 2; ++z)
-    {
-      for (int y = 0; y < 2; ++y)
-      {
-        corners[z][y] = load(0, y, z);
-        differences[0][z][y] = 0.5 * (load(1, y, z) - load(-1, y, z));
-      }
-    }
-    for (int other = 0; other < 2; ++other)
-    {
-      differences[1][other][0] = 0.5 * (corners[other][1] - load(0, -1, other));
-      differences[1][other][1] = 0.5 * (load(0, 2, other) - corners[other][0]);
-      differences[2][0][other] = 0.5 * (corners[1][other] - load(0, other, -1));
-      differences[2][1][other] = 0.5 * (load(0, other, 2) - corners[0][other]);
-    }
-    for (int axis = 0; axis < 3; ++axis)
-    {
-      gradient[axis] = CellNeighbourhood::Interpolate(differences[axis], hit.Local);
-    }
-    return std::isfinite(gradient[0] + gradient[1] + gradient[2]);
+    GradientStencil stencil;
+    stencil.SetCorners(first, row, slice, level);
+    stencil.SetFace(0, 0, first - 1, row, slice, level);
+    stencil.SetFace(0, 1, first + 2, row, slice, level);
+    stencil.SetFace(1, 0, first - row, row, slice, level);
+    stencil.SetFace(1, 1, first + 2 * row, row, slice, level);
+    stencil.SetFace(2, 0, first - slice, row, slice, level);
+    stencil.SetFace(2, 1, first + 2 * slice, row, slice, level);
+    return stencil.GetGradient(hit.Local, gradient);
   }
 
   /// At any hit; acquires the bricks that it needs, so no pin may be held.
@@ -66,10 +52,83 @@ public:
   static void Find(Store& store, typename Store::Worker& worker, const VoxelField& field,
     dsm::BlockId id, const CellHit& cell, double isovalue, double gradient[3])
   {
-    const BrickLattice& lattice = field.Lattice;
     const IsovalueLevel<T> level(isovalue);
+    const Index3 home = field.Lattice.GetBrick(id);
+    if (!FindAcrossFaces(store, worker, field, home, cell, level, gradient))
+    {
+      FindCarefully(store, worker, field, home, cell, level, gradient);
+    }
+  }
+
+private:
+  /// Where no sample is missing; else returns false.
+  template <class T, class Store>
+  static bool FindAcrossFaces(Store& store, typename Store::Worker& worker,
+    const VoxelField& field, const Index3& home, const CellHit& cell,
+    const IsovalueLevel<T>& level, double gradient[3])
+  {
+    const BrickLattice& lattice = field.Lattice;
+    const int edge = lattice.GetEdge();
+    if (lattice.HasCellMask())
+    {
+      return false;
+    }
+    GradientStencil stencil;
+    {
+      const typename Store::Pin pin = store.Acquire(worker, *field.Segment, lattice.GetId(home));
+      const VoxelBrick<T> brick(pin.GetData());
+      const int strides[3] = { 1, brick.GetRow(), brick.GetSlice() };
+      const T* const first =
+        brick.GetSamples() + brick.GetOffset(cell.Cell[0], cell.Cell[1], cell.Cell[2]);
+      stencil.SetCorners(first, strides[1], strides[2], level);
+      for (int axis = 0; axis < 3; ++axis)
+      {
+        if (cell.Cell[axis] >= 1)
+        {
+          stencil.SetFace(axis, 0, first - strides[axis], strides[1], strides[2], level);
+        }
+        if (cell.Cell[axis] + 2 <= brick.GetCells(axis))
+        {
+          stencil.SetFace(axis, 1, first + 2 * strides[axis], strides[1], strides[2], level);
+        }
+      }
+    }
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      const std::int64_t place = home[axis] * edge + cell.Cell[axis];
+      if (place < 1 || place + 2 > lattice.GetCells()[axis])
+      {
+        return false;
+      }
+      for (int side = 0; side < 2; ++side)
+      {
+        const bool beyond = side == 0 ? cell.Cell[axis] == 0 : cell.Cell[axis] + 1 == edge;
+        if (!beyond)
+        {
+          continue;
+        }
+        Index3 next = home;
+        next[axis] += side == 0 ? -1 : 1;
+        int sample[3] = { cell.Cell[0], cell.Cell[1], cell.Cell[2] };
+        // Neighbours share the samples between them.
+        sample[axis] = side == 0 ? edge - 1 : 1;
+        const typename Store::Pin pin = store.Acquire(worker, *field.Segment, lattice.GetId(next));
+        const VoxelBrick<T> brick(pin.GetData());
+        stencil.SetFace(axis, side,
+          brick.GetSamples() + brick.GetOffset(sample[0], sample[1], sample[2]), brick.GetRow(),
+          brick.GetSlice(), level);
+      }
+    }
+    return stencil.GetGradient(cell.Local, gradient);
+  }
+
+  /// Whatever is missing.
+  template <class T, class Store>
+  static void FindCarefully(Store& store, typename Store::Worker& worker, const VoxelField& field,
+    const Index3& home, const CellHit& cell, const IsovalueLevel<T>& level, double gradient[3])
+  {
+    const BrickLattice& lattice = field.Lattice;
     const Index3 edge(lattice.GetEdge());
-    const Index3 home = lattice.GetBrick(id);
     const Index3 place = home * edge + Index3(cell.Cell[0], cell.Cell[1], cell.Cell[2]);
     const Index3 first = glm::max(place - Index3(1), Index3(0)) / edge;
     const Index3 last = glm::min(place + Index3(1), lattice.GetCells() - Index3(1)) / edge;
@@ -107,9 +166,6 @@ public:
     }
     samples.GetGradient(cell.Local, gradient);
   }
-
-private:
-  using Pair = CellNeighbourhood::Pair;
 };
 
 } // namespace rt

@@ -24,7 +24,7 @@ class PacketTracer
 {
 public:
   /// At once.
-  static constexpr int MaxPackets = 16;
+  static constexpr int MaxPackets = 4;
 
   PacketTracer(Store& store, typename Store::Worker& worker,
     const PacketKernel& kernel = PacketKernel::GetBest())

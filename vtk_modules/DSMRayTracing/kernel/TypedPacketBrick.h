@@ -4,6 +4,7 @@
 
 #include "DSMRayTracing/brick/VoxelBrick.h"
 #include "DSMRayTracing/kernel/IsovalueLevel.h"
+#include "DSMRayTracing/kernel/Lanes.h"
 #include "DSMRayTracing/kernel/PacketBrick.h"
 
 #include <algorithm>
@@ -59,19 +60,18 @@ public:
       return false;
     }
     const T* first = this->Brick.GetSamples() + this->Brick.GetOffset(cell[0], cell[1], cell[2]);
-    double check = 0.0;
+    Lanes::Half check = {};
     for (int pair = 0; pair < 4; ++pair)
     {
       const T* from =
         first + (pair & 1) * this->Brick.GetRow() + (pair >> 1) * this->Brick.GetSlice();
-      const double a = this->Level.Subtract(from[0]);
-      const double b = this->Level.Subtract(from[1]);
-      corners[2 * pair * stride] = a;
-      corners[(2 * pair + 1) * stride] = b;
+      const Lanes::Half two = this->Level.SubtractPair(from);
+      corners[2 * pair * stride] = two[0];
+      corners[(2 * pair + 1) * stride] = two[1];
       // Becomes, and stays, not a number where one of them is not finite.
-      check += (a + b) * 0.0;
+      check += two * 0.0;
     }
-    return std::is_integral_v<T> || check == 0.0;
+    return std::is_integral_v<T> || check[0] + check[1] == 0.0;
   }
 
 private:
