@@ -12,11 +12,10 @@ namespace rt
 class PacketBrick
 {
 public:
-  virtual int GetCells(int axis) const = 0;
   virtual int GetMacrocells(int axis) const = 0;
 
-  /// Bit x is set where the macrocell (x, y, z) may hold the surface.
-  virtual std::uint64_t FindMacrocells(int y, int z) const = 0;
+  /// Bit x + 4 y + 16 z is set where the macrocell 4 part + (x, y, z) may hold the surface.
+  virtual std::uint64_t FindMacrocells(const int part[3]) const = 0;
 
   /// Bit x + 4 y + 16 z is set where the cell (x, y, z) of the macrocell with the given first cell
   /// has corners on both sides.

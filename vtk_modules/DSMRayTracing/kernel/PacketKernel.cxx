@@ -9,14 +9,12 @@
 
 #include "DSMRayTracing/kernel/PacketKernel.h"
 
-#include "DSMRayTracing/brick/BrickLattice.h"
 #include "DSMRayTracing/brick/VoxelBrickHeader.h"
 #include "DSMRayTracing/kernel/PacketWalk-inl.h"
 
 #include <hwy/highway.h>
 
-#include <algorithm>
-#include <cmath>
+#include <cstdint>
 
 HWY_BEFORE_NAMESPACE();
 namespace rt
@@ -61,19 +59,25 @@ public:
     const PacketBrick& brick, const double origin[3], const double* enter, const double* leave,
     PacketHits& hits)
   {
-    NodeBox box = GetNodes(packet, rays, brick, origin, enter, leave);
-    PlaneTable planes;
-    FillPlanes(packet, origin, box, planes);
+    int parts[3];
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      parts[axis] = (brick.GetMacrocells(axis) + 3) / 4;
+    }
     PacketCrossings crossings;
     RayPacket::Mask found = 0;
-    for (int k = 0; k < box.Size[2] && found != rays; ++k)
+    for (int k = 0; k < parts[2] && found != rays; ++k)
     {
-      const int z = packet.Forward[2] ? box.First[2] + k : box.First[2] + box.Size[2] - 1 - k;
-      for (int j = 0; j < box.Size[1] && found != rays; ++j)
+      for (int j = 0; j < parts[1] && found != rays; ++j)
       {
-        const int y = packet.Forward[1] ? box.First[1] + j : box.First[1] + box.Size[1] - 1 - j;
-        found |= SearchRow(packet, rays & ~found, brick, origin, enter, leave, box, planes, y, z,
-          crossings);
+        for (int i = 0; i < parts[0] && found != rays; ++i)
+        {
+          // In the order in which they are met.
+          const int part[3] = { packet.Forward[0] ? i : parts[0] - 1 - i,
+            packet.Forward[1] ? j : parts[1] - 1 - j, packet.Forward[2] ? k : parts[2] - 1 - k };
+          found |= SearchPart(
+            packet, rays & ~found, brick, origin, enter, leave, part, crossings);
+        }
       }
     }
     Refine(crossings, found, hits);
@@ -81,18 +85,6 @@ public:
   }
 
 private:
-  static constexpr int MostMacrocells = BrickLattice::LargestEdge / MacrocellEdge;
-
-  /// Macrocells of a brick.
-  struct NodeBox
-  {
-    int First[3];
-    int Size[3];
-  };
-
-  /// Where each ray meets the planes between macrocells.
-  using PlaneTable = double[3][MostMacrocells + 1][RayPacket::Size];
-
   static RayPacket::Mask GetBits(Mask mask)
   {
     std::uint8_t bits[8] = {};
@@ -112,123 +104,39 @@ private:
       hn::Load(tag, packet.Inverse[axis] + first));
   }
 
-  /// All macrocells that the rays may meet, and few others: only they are looked at.
-  static NodeBox GetNodes(const RayPacket& packet, RayPacket::Mask rays, const PacketBrick& brick,
-    const double origin[3], const double* enter, const double* leave)
-  {
-    // In cells; more than the rounding of a point.
-    constexpr double margin = 1e-3;
-    const D tag;
-    const Vector infinity = hn::Set(tag, HUGE_VAL);
-    NodeBox box;
-    for (int axis = 0; axis < 3; ++axis)
-    {
-      Vector low = infinity;
-      Vector high = hn::Neg(infinity);
-      for (int first = 0; first < RayPacket::Size; first += Width)
-      {
-        const Mask here = GetMask(rays, first);
-        const Vector start = hn::Load(tag, packet.Origin[axis] + first);
-        const Vector direction = hn::Load(tag, packet.Direction[axis] + first);
-        const Vector in = hn::Add(start, hn::Mul(hn::Load(tag, enter + first), direction));
-        const Vector out = hn::Add(start, hn::Mul(hn::Load(tag, leave + first), direction));
-        low = hn::Min(low, hn::IfThenElse(here, hn::Min(in, out), infinity));
-        high = hn::Max(high, hn::IfThenElse(here, hn::Max(in, out), hn::Neg(infinity)));
-      }
-      const double lowest = hn::GetLane(hn::MinOfLanes(tag, low)) - margin - origin[axis];
-      const double highest = hn::GetLane(hn::MaxOfLanes(tag, high)) + margin - origin[axis];
-      const int last = brick.GetMacrocells(axis) - 1;
-      const auto toNode = [last](double place)
-      { return static_cast<int>(std::clamp(place * (1.0 / MacrocellEdge), 0.0, double(last))); };
-      box.First[axis] = toNode(lowest);
-      box.Size[axis] = toNode(highest) - box.First[axis] + 1;
-    }
-    return box;
-  }
-
-  static void FillPlanes(
-    const RayPacket& packet, const double origin[3], const NodeBox& box, PlaneTable& planes)
-  {
-    const D tag;
-    for (int axis = 0; axis < 3; ++axis)
-    {
-      for (int node = 0; node <= box.Size[axis]; ++node)
-      {
-        const double plane = origin[axis] + MacrocellEdge * (box.First[axis] + node);
-        for (int first = 0; first < RayPacket::Size; first += Width)
-        {
-          hn::Store(
-            GetPlaneT(packet, first, axis, plane), tag, planes[axis][node] + first);
-        }
-      }
-    }
-  }
-
-  /// The macrocells of a row along x, in the order in which they are met.
-  static RayPacket::Mask SearchRow(const RayPacket& packet, RayPacket::Mask rays,
+  /// The 4 x 4 x 4 macrocells of a part of the brick.
+  static RayPacket::Mask SearchPart(const RayPacket& packet, RayPacket::Mask rays,
     const PacketBrick& brick, const double origin[3], const double* enter, const double* leave,
-    const NodeBox& box, const PlaneTable& planes, int y, int z,
-    PacketCrossings& crossings)
+    const int part[3], PacketCrossings& crossings)
   {
-    const D tag;
-    const int ahead[3] = { packet.Forward[0], packet.Forward[1], packet.Forward[2] };
-    const int j = y - box.First[1];
-    const int k = z - box.First[2];
-    Vector rowEnter[Vectors];
-    Vector rowLeave[Vectors];
-    Mask inRow[Vectors];
-    bool any = false;
-    for (int part = 0; part < Vectors; ++part)
+    const std::uint64_t macrocells = brick.FindMacrocells(part);
+    if (macrocells == 0)
     {
-      const int first = part * Width;
-      rowEnter[part] = hn::Max(hn::Load(tag, enter + first),
-        hn::Max(hn::Load(tag, planes[1][j + 1 - ahead[1]] + first),
-          hn::Load(tag, planes[2][k + 1 - ahead[2]] + first)));
-      rowLeave[part] = hn::Min(hn::Load(tag, leave + first),
-        hn::Min(hn::Load(tag, planes[1][j + ahead[1]] + first),
-          hn::Load(tag, planes[2][k + ahead[2]] + first)));
-      inRow[part] = hn::And(GetMask(rays, first), hn::Lt(rowEnter[part], rowLeave[part]));
-      any = any || !hn::AllFalse(tag, inRow[part]);
+      return 0;
     }
-    const std::uint64_t mayHold = any ? brick.FindMacrocells(y, z) : 0;
+    const D tag;
+    constexpr int edge = 4 * MacrocellEdge;
+    const int place[3] = { edge * part[0], edge * part[1], edge * part[2] };
     RayPacket::Mask found = 0;
-    for (int i = 0; i < box.Size[0] && mayHold != 0; ++i)
+    for (int first = 0; first < RayPacket::Size; first += Width)
     {
-      const int x = packet.Forward[0] ? i : box.Size[0] - 1 - i;
-      if ((mayHold >> (box.First[0] + x) & 1) == 0)
+      Mask meet = GetMask(rays, first);
+      if (hn::AllFalse(tag, meet))
       {
         continue;
       }
-      const int place[3] = { MacrocellEdge * (box.First[0] + x), MacrocellEdge * y,
-        MacrocellEdge * z };
-      std::uint64_t cells = 0;
-      bool haveCells = false;
-      for (int part = 0; part < Vectors; ++part)
+      Vector in = hn::Load(tag, enter + first);
+      Vector out = hn::Load(tag, leave + first);
+      for (int axis = 0; axis < 3; ++axis)
       {
-        const int first = part * Width;
-        const Vector in =
-          hn::Max(rowEnter[part], hn::Load(tag, planes[0][x + 1 - ahead[0]] + first));
-        const Vector out =
-          hn::Min(rowLeave[part], hn::Load(tag, planes[0][x + ahead[0]] + first));
-        const Mask meet = hn::And(inRow[part], hn::Lt(in, out));
-        if (hn::AllFalse(tag, meet))
-        {
-          continue;
-        }
-        if (!haveCells)
-        {
-          cells = brick.FindCells(place);
-          haveCells = true;
-        }
-        if (cells == 0)
-        {
-          break;
-        }
-        PacketWalk<D> walk(tag, packet, first, brick, origin, crossings);
-        const Mask hit = walk.Search(place, cells, meet, in, out);
-        inRow[part] = hn::AndNot(hit, inRow[part]);
-        found |= GetBits(hit) << first;
+        const bool forward = packet.Forward[axis];
+        const double lower = origin[axis] + place[axis];
+        in = hn::Max(in, GetPlaneT(packet, first, axis, forward ? lower : lower + edge));
+        out = hn::Min(out, GetPlaneT(packet, first, axis, forward ? lower + edge : lower));
       }
+      meet = hn::And(meet, hn::Lt(in, out));
+      PacketWalk<D> walk(tag, packet, first, brick, origin, crossings);
+      found |= GetBits(walk.Search(place, macrocells, meet, in, out)) << first;
     }
     return found;
   }

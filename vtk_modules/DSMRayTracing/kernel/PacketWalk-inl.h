@@ -50,9 +50,144 @@ Vector ClampToUnit(Vector value)
   return hn::IfThenElse(hn::Lt(raised, one), raised, one);
 }
 
-/// One vector of a packet's rays in the cells of one macrocell; what GridTraversal::WalkCells does
-/// for one ray, with the same bits. A ray walks on until it comes to a cell that has corners on both
-/// sides; when all have come to one, or to their ends, the cells are searched together.
+/// One vector of rays.
+template <class D>
+struct RayVector
+{
+  using Vector = hn::Vec<D>;
+
+  Vector Origin[3];
+  Vector Direction[3];
+  Vector Inverse[3];
+  bool Forward[3];
+
+  /// Rays `first` and on of a packet.
+  RayVector(D tag, const RayPacket& packet, int first)
+  {
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      this->Origin[axis] = hn::Load(tag, packet.Origin[axis] + first);
+      this->Direction[axis] = hn::Load(tag, packet.Direction[axis] + first);
+      this->Inverse[axis] = hn::Load(tag, packet.Inverse[axis] + first);
+      this->Forward[axis] = packet.Forward[axis];
+    }
+  }
+
+  Vector GetPlaneT(int axis, Vector plane) const
+  {
+    return hn::Mul(hn::Sub(plane, this->Origin[axis]), this->Inverse[axis]);
+  }
+};
+
+/// Walks of a vector of rays, each through a box of 4 x 4 x 4 nodes of its own, of one size; what
+/// GridWalk does for one ray. Where the volume ends within a box, its planes outside are met before
+/// the ray enters, or after it leaves.
+template <class D>
+class NodeWalks
+{
+public:
+  using Vector = hn::Vec<D>;
+  using Mask = hn::Mask<D>;
+  using NumberTag = hn::RebindToUnsigned<D>;
+  using Numbers = hn::Vec<NumberTag>;
+
+  /// `lower`: the lower planes of the boxes. Planes that are met at t or before count as crossed.
+  NodeWalks(const RayVector<D>& rays, const Vector lower[3], double edge, Vector t)
+    : Rays(rays)
+    , Nodes(hn::Zero(NumberTag()))
+  {
+    const D tag;
+    const NumberTag numbers;
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      const bool forward = rays.Forward[axis];
+      const Vector step = hn::Set(tag, forward ? edge : -edge);
+      Vector node = hn::Set(tag, forward ? 0.0 : 3.0 * edge);
+      // The planes between the nodes, in any order.
+      for (int between = 1; between < 4; ++between)
+      {
+        const Vector plane = hn::Add(lower[axis], hn::Set(tag, between * edge));
+        const Mask crossed = hn::Le(rays.GetPlaneT(axis, plane), t);
+        node = hn::Add(node, hn::IfThenElseZero(crossed, step));
+      }
+      this->Plane[axis] =
+        hn::Add(hn::Add(lower[axis], node), hn::Set(tag, forward ? edge : 0.0));
+      this->PlaneT[axis] = rays.GetPlaneT(axis, this->Plane[axis]);
+      this->Step[axis] = step;
+      // Whole numbers below 2^52, added to it, stand in the lowest bits.
+      const Vector large = hn::Set(tag, 4503599627370496.0);
+      const Vector count = hn::Mul(node, hn::Set(tag, 1.0 / edge));
+      const Numbers whole = hn::Sub(
+        hn::BitCast(numbers, hn::Add(large, count)), hn::BitCast(numbers, large));
+      this->Nodes = hn::Add(this->Nodes, hn::ShiftLeftSame(whole, 2 * axis));
+      const std::uint64_t stride = std::uint64_t{ 1 } << (2 * axis);
+      this->Stride[axis] = hn::Set(numbers, forward ? stride : 0 - stride);
+    }
+  }
+
+  /// x + 4 y + 16 z of the nodes in which the rays are.
+  Numbers GetNodes() const { return this->Nodes; }
+
+  /// Where the rays leave their nodes.
+  Vector GetExit() const
+  {
+    return hn::Min(hn::Min(this->PlaneT[0], this->PlaneT[1]), this->PlaneT[2]);
+  }
+
+  /// The lower planes of the nodes.
+  Vector GetLower(int axis) const
+  {
+    return this->Rays.Forward[axis] ? hn::Sub(this->Plane[axis], this->Step[axis])
+                                    : this->Plane[axis];
+  }
+
+  /// Goes on until each of `walking` is in a node whose bit is set in `bits`, or has ended at
+  /// `leave`. Returns those in such a node, which they cross from `t`, where they are now, to `exit`.
+  Mask FindNodes(Mask walking, Numbers bits, Vector leave, Vector& t, Vector& exit)
+  {
+    const D tag;
+    const Numbers lowest = hn::Set(NumberTag(), std::uint64_t{ 1 });
+    Mask waiting = hn::MaskFromVec(hn::Zero(tag));
+    while (!hn::AllFalse(tag, walking))
+    {
+      exit = hn::IfThenElse(walking, hn::Min(this->GetExit(), leave), exit);
+      const Mask here = hn::And(walking,
+        hn::RebindMask(tag, hn::Eq(hn::And(hn::Shr(bits, this->Nodes), lowest), lowest)));
+      waiting = hn::Or(waiting, here);
+      walking = this->Leave(hn::AndNot(here, walking), leave, t, exit);
+    }
+    return waiting;
+  }
+
+  /// Moves `rays` out of their nodes, at `exit`; returns those that have not ended there.
+  Mask Leave(Mask rays, Vector leave, Vector& t, Vector exit)
+  {
+    rays = hn::And(rays, hn::Lt(exit, leave));
+    t = hn::IfThenElse(rays, exit, t);
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      const Mask crossed = hn::And(rays, hn::Le(this->PlaneT[axis], exit));
+      this->Plane[axis] =
+        hn::Add(this->Plane[axis], hn::IfThenElseZero(crossed, this->Step[axis]));
+      this->Nodes = hn::Add(this->Nodes,
+        hn::IfThenElseZero(hn::RebindMask(NumberTag(), crossed), this->Stride[axis]));
+      this->PlaneT[axis] = this->Rays.GetPlaneT(axis, this->Plane[axis]);
+    }
+    return rays;
+  }
+
+private:
+  const RayVector<D>& Rays;
+  Vector Plane[3];  ///< coordinate of the plane through which a ray leaves its node
+  Vector PlaneT[3]; ///< where it meets that plane
+  Vector Step[3];
+  Numbers Stride[3]; ///< of the node's number
+  Numbers Nodes;
+};
+
+/// One vector of a packet's rays in a part of a brick; what GridTraversal does for one ray, with the
+/// same bits. A ray walks on until it comes to a macrocell, and then to a cell, that may hold the
+/// surface; when all have come to one, or to their ends, those are searched together.
 template <class D>
 class PacketWalk
 {
@@ -64,131 +199,113 @@ public:
   PacketWalk(D tag, const RayPacket& packet, int first, const PacketBrick& brick,
     const double origin[3], PacketCrossings& crossings)
     : Tag(tag)
+    , Rays(tag, packet, first)
     , Brick(brick)
+    , BrickOrigin(origin)
     , First(first)
     , Crossings(crossings)
   {
-    for (int axis = 0; axis < 3; ++axis)
-    {
-      this->Origin[axis] = hn::Load(tag, packet.Origin[axis] + first);
-      this->Direction[axis] = hn::Load(tag, packet.Direction[axis] + first);
-      this->Inverse[axis] = hn::Load(tag, packet.Inverse[axis] + first);
-      this->BrickOrigin[axis] = origin[axis];
-      this->Forward[axis] = packet.Forward[axis];
-    }
   }
 
-  /// Searches the macrocell with the first cell `place`; bit x + 4 y + 16 z of `cells` is set for
-  /// those to search. `rays` cross it from `enter` to `leave`. Returns those that meet the surface,
+  /// Searches the 4 x 4 x 4 macrocells from the cell `place` on, those whose bits are set in
+  /// `macrocells`. `rays` cross them from `enter` to `leave`. Returns those that meet the surface,
   /// having stored how.
-  Mask Search(const int place[3], std::uint64_t cells, Mask rays, Vector enter, Vector leave)
+  Mask Search(
+    const int place[3], std::uint64_t macrocells, Mask rays, Vector enter, Vector leave)
   {
     const D tag = this->Tag;
-    this->Start(place, enter);
-    const auto bits = hn::Set(this->Numbers, cells);
-    const auto lowest = hn::Set(this->Numbers, std::uint64_t{ 1 });
+    Vector lower[3];
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      lower[axis] = hn::Set(tag, this->BrickOrigin[axis] + place[axis]);
+    }
+    NodeWalks<D> walks(this->Rays, lower, MacrocellEdge, enter);
+    const Numbers bits = hn::Set(NumberTag(), macrocells);
     Vector t = enter;
     Vector exit = leave;
     Mask found = hn::MaskFromVec(hn::Zero(tag));
     Mask walking = rays;
-    while (!hn::AllFalse(tag, walking))
+    for (;;)
     {
-      Mask waiting = hn::MaskFromVec(hn::Zero(tag));
-      while (!hn::AllFalse(tag, walking))
-      {
-        const Vector near = hn::Min(hn::Min(this->PlaneT[0], this->PlaneT[1]), this->PlaneT[2]);
-        exit = hn::IfThenElse(walking, hn::Min(near, leave), exit);
-        const Mask mixed = hn::And(walking,
-          hn::RebindMask(tag, hn::Eq(hn::And(hn::Shr(bits, this->Cell), lowest), lowest)));
-        waiting = hn::Or(waiting, mixed);
-        walking = hn::And(hn::AndNot(mixed, walking), hn::Lt(exit, leave));
-        t = hn::IfThenElse(walking, exit, t);
-        this->Advance(walking, exit);
-      }
+      const Mask waiting = walks.FindNodes(walking, bits, leave, t, exit);
       if (hn::AllFalse(tag, waiting))
       {
-        break;
+        return found;
       }
-      const Mask met = this->SearchCells(place, waiting, t, exit);
+      const Mask met = this->SearchMacrocells(place, walks, waiting, t, exit);
       found = hn::Or(found, met);
-      walking = hn::And(hn::AndNot(met, waiting), hn::Lt(exit, leave));
-      t = hn::IfThenElse(walking, exit, t);
-      this->Advance(walking, exit);
+      walking = walks.Leave(hn::AndNot(met, waiting), leave, t, exit);
     }
-    return found;
   }
 
 private:
   using NumberTag = hn::RebindToUnsigned<D>;
-  using Number = hn::Vec<NumberTag>;
+  using Numbers = hn::Vec<NumberTag>;
   static constexpr int Width = static_cast<int>(hn::MaxLanes(D()));
 
-  Vector GetPlaneT(int axis, Vector plane) const
-  {
-    return hn::Mul(hn::Sub(plane, this->Origin[axis]), this->Inverse[axis]);
-  }
-
-  /// Planes that are met at t or before count as crossed.
-  void Start(const int place[3], Vector t)
+  /// The macrocells in which `rays` are, from `enter` to `leave`.
+  Mask SearchMacrocells(const int place[3], const NodeWalks<D>& macrocells, Mask rays,
+    Vector enter, Vector leave)
   {
     const D tag = this->Tag;
-    this->Cell = hn::Zero(this->Numbers);
-    for (int axis = 0; axis < 3; ++axis)
+    HWY_ALIGN std::uint64_t bits[Width] = {};
+    HWY_ALIGN std::uint64_t nodes[Width];
+    hn::Store(macrocells.GetNodes(), NumberTag(), nodes);
+    int places[Width][3];
+    for (unsigned left = GetBits(rays); left != 0; left &= left - 1)
     {
-      const int count = HWY_MIN(MacrocellEdge, this->Brick.GetCells(axis) - place[axis]);
-      const double first = this->BrickOrigin[axis] + place[axis];
-      const bool forward = this->Forward[axis];
-      const double step = forward ? 1.0 : -1.0;
-      // The planes between the cells, in the order in which they are met.
-      double plane = forward ? first + 1.0 : first + count - 1.0;
-      Vector cell = hn::Set(tag, forward ? 0.0 : count - 1.0);
-      for (int between = 1; between < count; ++between, plane += step)
+      const int ray = __builtin_ctz(left);
+      const auto node = static_cast<int>(nodes[ray]);
+      places[ray][0] = place[0] + MacrocellEdge * (node & 3);
+      places[ray][1] = place[1] + MacrocellEdge * (node >> 2 & 3);
+      places[ray][2] = place[2] + MacrocellEdge * (node >> 4);
+      bits[ray] = this->Brick.FindCells(places[ray]);
+    }
+    const Numbers cells = hn::Load(NumberTag(), bits);
+    const Vector lower[3] = { macrocells.GetLower(0), macrocells.GetLower(1),
+      macrocells.GetLower(2) };
+    NodeWalks<D> walks(this->Rays, lower, 1.0, enter);
+    Vector t = enter;
+    Vector exit = leave;
+    Mask found = hn::MaskFromVec(hn::Zero(tag));
+    Mask walking = rays;
+    for (;;)
+    {
+      const Mask waiting = walks.FindNodes(walking, cells, leave, t, exit);
+      if (hn::AllFalse(tag, waiting))
       {
-        const Mask crossed = hn::Le(this->GetPlaneT(axis, hn::Set(tag, plane)), t);
-        cell = hn::Add(cell, hn::IfThenElseZero(crossed, hn::Set(tag, step)));
+        return found;
       }
-      this->Plane[axis] = hn::Add(hn::Set(tag, first + (forward ? 1.0 : 0.0)), cell);
-      this->PlaneT[axis] = this->GetPlaneT(axis, this->Plane[axis]);
-      this->Step[axis] = hn::Set(tag, step);
-      // Whole numbers below 2^52, added to it, stand in the lowest bits.
-      const Vector large = hn::Set(tag, 4503599627370496.0);
-      const auto whole = hn::Sub(hn::BitCast(this->Numbers, hn::Add(large, cell)),
-        hn::BitCast(this->Numbers, large));
-      this->Cell = hn::Add(this->Cell, hn::ShiftLeftSame(whole, 2 * axis));
-      const std::uint64_t stride = std::uint64_t{ 1 } << (2 * axis);
-      this->Stride[axis] = hn::Set(this->Numbers, forward ? stride : 0 - stride);
+      const Mask met = this->SearchCells(places, walks, waiting, t, exit);
+      found = hn::Or(found, met);
+      walking = walks.Leave(hn::AndNot(met, waiting), leave, t, exit);
     }
   }
 
-  /// Crosses all planes that `rays` meet at `exit` or before.
-  void Advance(Mask rays, Vector exit)
+  unsigned GetBits(Mask rays) const
   {
-    for (int axis = 0; axis < 3; ++axis)
-    {
-      const Mask crossed = hn::And(rays, hn::Le(this->PlaneT[axis], exit));
-      this->Plane[axis] =
-        hn::Add(this->Plane[axis], hn::IfThenElseZero(crossed, this->Step[axis]));
-      this->Cell = hn::Add(this->Cell,
-        hn::IfThenElseZero(hn::RebindMask(this->Numbers, crossed), this->Stride[axis]));
-      this->PlaneT[axis] = this->GetPlaneT(axis, this->Plane[axis]);
-    }
+    std::uint8_t bits[8] = {};
+    hn::StoreMaskBits(this->Tag, rays, bits);
+    return bits[0];
   }
 
   /// Where rays are in their cells at `t`: exactly 0 or 1 where they meet a plane of the cell.
   Vector GetLocal(int axis, Vector lower, Vector lowerT, Vector upperT, Vector t) const
   {
-    const Vector point = hn::Add(this->Origin[axis], hn::Mul(t, this->Direction[axis]));
+    const Vector point = hn::Add(this->Rays.Origin[axis], hn::Mul(t, this->Rays.Direction[axis]));
     const Vector inside = ClampToUnit(hn::Sub(point, lower));
     return hn::IfThenElse(hn::Eq(upperT, t), hn::Set(this->Tag, 1.0),
       hn::IfThenZeroElse(hn::Eq(lowerT, t), inside));
   }
 
   /// Those of `rays` that meet the surface in the cells in which they are, from `enter` to `exit`.
-  Mask SearchCells(const int place[3], Mask rays, Vector enter, Vector exit)
+  /// `places`: the first cells of their macrocells.
+  Mask SearchCells(const int places[][3], const NodeWalks<D>& cells, Mask rays, Vector enter,
+    Vector exit)
   {
     const D tag = this->Tag;
     HWY_ALIGN double corners[8][Width] = {};
-    rays = this->GetCorners(place, rays, corners[0]);
+    rays = this->GetCorners(places, cells, rays, corners[0]);
     if (hn::AllFalse(tag, rays))
     {
       return rays;
@@ -203,10 +320,9 @@ private:
     Vector end[3];
     for (int axis = 0; axis < 3; ++axis)
     {
-      const Vector lower =
-        this->Forward[axis] ? hn::Sub(this->Plane[axis], one) : this->Plane[axis];
-      const Vector lowerT = this->GetPlaneT(axis, lower);
-      const Vector upperT = this->GetPlaneT(axis, hn::Add(lower, one));
+      const Vector lower = cells.GetLower(axis);
+      const Vector lowerT = this->Rays.GetPlaneT(axis, lower);
+      const Vector upperT = this->Rays.GetPlaneT(axis, hn::Add(lower, one));
       start[axis] = this->GetLocal(axis, lower, lowerT, upperT, enter);
       end[axis] = this->GetLocal(axis, lower, lowerT, upperT, exit);
     }
@@ -233,9 +349,7 @@ private:
     {
       this->Put(found, start[axis], this->Crossings.Start[axis]);
       this->Put(found, hn::Sub(end[axis], start[axis]), this->Crossings.Way[axis]);
-      const Vector lower =
-        this->Forward[axis] ? hn::Sub(this->Plane[axis], one) : this->Plane[axis];
-      this->Put(found, hn::Sub(lower, hn::Set(tag, this->BrickOrigin[axis])),
+      this->Put(found, hn::Sub(cells.GetLower(axis), hn::Set(tag, this->BrickOrigin[axis])),
         this->Crossings.Cell[axis]);
     }
     return found;
@@ -243,28 +357,25 @@ private:
 
   /// Corners of the cells in which `rays` are, those of a ray under one another. Returns the rays
   /// whose cells hold data.
-  Mask GetCorners(const int place[3], Mask rays, double* corners) const
+  Mask GetCorners(
+    const int places[][3], const NodeWalks<D>& cells, Mask rays, double* corners) const
   {
-    HWY_ALIGN std::uint64_t cells[Width];
-    hn::Store(this->Cell, this->Numbers, cells);
-    std::uint8_t wanted[8] = {};
-    hn::StoreMaskBits(this->Tag, rays, wanted);
-    std::uint8_t held[8] = {};
-    for (int ray = 0; ray < Width; ++ray)
+    HWY_ALIGN std::uint64_t nodes[Width];
+    hn::Store(cells.GetNodes(), NumberTag(), nodes);
+    unsigned held = 0;
+    for (unsigned left = GetBits(rays); left != 0; left &= left - 1)
     {
-      if ((wanted[0] >> ray & 1) == 0)
-      {
-        continue;
-      }
-      const auto number = static_cast<int>(cells[ray]);
-      const int cell[3] = { place[0] + (number & 3), place[1] + (number >> 2 & 3),
-        place[2] + (number >> 4) };
+      const int ray = __builtin_ctz(left);
+      const auto node = static_cast<int>(nodes[ray]);
+      const int cell[3] = { places[ray][0] + (node & 3), places[ray][1] + (node >> 2 & 3),
+        places[ray][2] + (node >> 4) };
       if (this->Brick.GetCorners(cell, corners + ray, Width))
       {
-        held[0] = static_cast<std::uint8_t>(held[0] | 1u << ray);
+        held |= 1u << ray;
       }
     }
-    return hn::LoadMaskBits(this->Tag, held);
+    const std::uint8_t bits[8] = { static_cast<std::uint8_t>(held) };
+    return hn::LoadMaskBits(this->Tag, bits);
   }
 
   /// Stores the numbers of some rays.
@@ -274,20 +385,11 @@ private:
   }
 
   D Tag;
-  NumberTag Numbers;
+  RayVector<D> Rays;
   const PacketBrick& Brick;
+  const double* BrickOrigin;
   int First;
   PacketCrossings& Crossings;
-  double BrickOrigin[3];
-  bool Forward[3];
-  Vector Origin[3];
-  Vector Direction[3];
-  Vector Inverse[3];
-  Vector Plane[3];  ///< coordinate of the plane through which a ray leaves its cell
-  Vector PlaneT[3]; ///< where it meets that plane
-  Vector Step[3];
-  Number Stride[3]; ///< of the cell's number
-  Number Cell; ///< x + 4 y + 16 z within the macrocell
 };
 
 } // namespace HWY_NAMESPACE

@@ -25,7 +25,7 @@ public:
     : Brick(brick)
     , Level(level)
   {
-    for (Memory& memory : this->Rows)
+    for (Memory& memory : this->Parts)
     {
       memory.Key = Unknown;
     }
@@ -35,13 +35,12 @@ public:
     }
   }
 
-  int GetCells(int axis) const override { return this->Brick.GetCells(axis); }
   int GetMacrocells(int axis) const override { return this->Brick.GetMacrocells(axis); }
 
-  std::uint64_t FindMacrocells(int y, int z) const override
+  std::uint64_t FindMacrocells(const int part[3]) const override
   {
-    const int row = y + this->Brick.GetMacrocells(1) * z;
-    return this->Rows[row % RowCount].Get(row, [&] { return this->CompareRow(row); });
+    const int number = part[0] + MostParts * (part[1] + MostParts * part[2]);
+    return this->Parts[number % PartCount].Get(number, [&] { return this->ComparePart(part); });
   }
 
   std::uint64_t FindCells(const int first[3]) const override
@@ -82,10 +81,10 @@ private:
   /// Bits from one row of samples to the next within a word.
   static constexpr int RowBits = 6;
 
-  /// Rows of macrocells, and macrocells, that are remembered: all of a brick of 32 cells, or those
-  /// of the last few rows.
-  static constexpr int RowCount = 64;
-  static constexpr int MacrocellCount = 256;
+  /// Parts on an axis; how many parts, and macrocells, are remembered.
+  static constexpr int MostParts = 16;
+  static constexpr int PartCount = 4;
+  static constexpr int MacrocellCount = 128;
   static constexpr int Unknown = -1;
 
   /// What was found for one of several keys, the last one asked for.
@@ -106,14 +105,28 @@ private:
     }
   };
 
-  std::uint64_t CompareRow(int row) const
+  std::uint64_t ComparePart(const int part[3]) const
   {
-    const int count = this->Brick.GetMacrocells(0);
-    const MacrocellRange<T>* range = this->Brick.GetMacrocellRanges() + count * row;
-    std::uint64_t found = 0;
-    for (int x = 0; x < count; ++x)
+    const MacrocellRange<T>* const ranges = this->Brick.GetMacrocellRanges();
+    int last[3];
+    for (int axis = 0; axis < 3; ++axis)
     {
-      found |= std::uint64_t{ this->Level.Separates(range[x].Min, range[x].Max) } << x;
+      last[axis] = std::min(4, this->Brick.GetMacrocells(axis) - 4 * part[axis]);
+    }
+    std::uint64_t found = 0;
+    for (int z = 0; z < last[2]; ++z)
+    {
+      for (int y = 0; y < last[1]; ++y)
+      {
+        const MacrocellRange<T>* const row = ranges + 4 * part[0] +
+          this->Brick.GetMacrocells(0) *
+            (4 * part[1] + y + this->Brick.GetMacrocells(1) * (4 * part[2] + z));
+        for (int x = 0; x < last[0]; ++x)
+        {
+          found |= std::uint64_t{ this->Level.Separates(row[x].Min, row[x].Max) }
+            << (x + 4 * y + 16 * z);
+        }
+      }
     }
     return found;
   }
@@ -213,7 +226,7 @@ private:
 
   const VoxelBrick<T>& Brick;
   const IsovalueLevel<T>& Level;
-  mutable Memory Rows[RowCount];
+  mutable Memory Parts[PartCount];
   mutable Memory Macrocells[MacrocellCount];
 };
 
