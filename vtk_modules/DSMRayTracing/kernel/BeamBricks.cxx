@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "DSMRayTracing/kernel/BeamBricks.h"
 
+#include "DSMRayTracing/brick/MacrocellBuilder.h"
+
 #include <algorithm>
 #include <cstdint>
 
@@ -17,10 +19,13 @@ public:
   Descent(const MacrocellHierarchy& hierarchy, const std::vector<double>& isovalues,
     const RayBeam& beam, std::vector<BeamBricks::Brick>& bricks)
     : Levels(hierarchy.GetLevels())
-    , Isovalues(isovalues)
     , Beam(beam)
     , Bricks(bricks)
   {
+    for (const double isovalue : isovalues)
+    {
+      this->Thresholds.push_back(RoundUp(isovalue));
+    }
   }
 
   void Start()
@@ -88,12 +93,13 @@ private:
 
   bool MayHold(const ValueRange& range) const
   {
-    return std::any_of(this->Isovalues.begin(), this->Isovalues.end(),
-      [&](double isovalue) { return range.MayHold(isovalue); });
+    // ValueRange::MayHold: a float is below a value exactly when it is below the next float.
+    return std::any_of(this->Thresholds.begin(), this->Thresholds.end(),
+      [&](float threshold) { return range.First < threshold && threshold <= range.Last; });
   }
 
   const std::vector<MacrocellHierarchy::Level>& Levels;
-  const std::vector<double>& Isovalues;
+  std::vector<float> Thresholds; ///< the isovalues, rounded up
   const RayBeam& Beam;
   std::vector<BeamBricks::Brick>& Bricks;
 };

@@ -86,10 +86,10 @@ public:
 private:
   using Pair = CellNeighbourhood::Pair;
 
-  Pair Corners[2][2]; ///< [z][y]
-  double X[2][2][2];  ///< [side][z][y]
-  Pair Y[2][2];       ///< [side][z]
-  Pair Z[2][2];       ///< [side][y]
+  Pair Corners[2][2] = {}; ///< [z][y]
+  double X[2][2][2] = {};  ///< [side][z][y]
+  Pair Y[2][2] = {};       ///< [side][z]
+  Pair Z[2][2] = {};       ///< [side][y]
 };
 
 } // namespace rt

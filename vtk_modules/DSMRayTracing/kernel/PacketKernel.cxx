@@ -14,6 +14,7 @@
 
 #include <hwy/highway.h>
 
+#include <cmath>
 #include <cstdint>
 
 HWY_BEFORE_NAMESPACE();
@@ -32,6 +33,54 @@ public:
   using Mask = hn::Mask<D>;
   static constexpr int Width = static_cast<int>(hn::MaxLanes(D()));
   static constexpr int Vectors = RayPacket::Size / Width;
+
+  static RayPacket::Mask SetRays(RayPacket& packet, const Ray* rays, RayPacket::Mask wanted,
+    const IndexSpace& space, const Index3& cells)
+  {
+    const D tag;
+    const WorldRays world(rays, wanted);
+    const glm::dmat3& matrix = space.GetWorldToIndex();
+    const Vector infinity = hn::Set(tag, HUGE_VAL);
+    RayPacket::Mask fitting = 0;
+    RayPacket::Mask crossing = 0;
+    for (int first = 0; first < RayPacket::Size; first += Width)
+    {
+      Vector origin[3];
+      Vector direction[3];
+      for (int axis = 0; axis < 3; ++axis)
+      {
+        origin[axis] = hn::Sub(
+          hn::Load(tag, world.Origin[axis] + first), hn::Set(tag, space.GetOrigin()[axis]));
+        direction[axis] = hn::Load(tag, world.Direction[axis] + first);
+      }
+      Vector enter = hn::Load(tag, world.Min + first);
+      Vector leave = hn::Load(tag, world.Max + first);
+      Mask fits = GetMask(wanted, first);
+      for (int axis = 0; axis < 3; ++axis)
+      {
+        const Vector start = Multiply(matrix, axis, origin);
+        const Vector way = Multiply(matrix, axis, direction);
+        const Vector inverse = hn::Div(hn::Set(tag, 1.0), way);
+        const bool forward = packet.Forward[axis];
+        const Vector ahead = forward ? way : hn::Neg(way);
+        fits = hn::And(hn::And(fits, hn::Gt(ahead, hn::Zero(tag))),
+          hn::And(hn::Lt(hn::Abs(hn::Add(start, way)), infinity),
+            hn::Lt(hn::Abs(inverse), infinity)));
+        hn::Store(start, tag, packet.Origin[axis] + first);
+        hn::Store(way, tag, packet.Direction[axis] + first);
+        hn::Store(inverse, tag, packet.Inverse[axis] + first);
+        const auto end = static_cast<double>(cells[axis]);
+        enter = hn::Max(enter, GetPlaneT(packet, first, axis, forward ? 0.0 : end));
+        leave = hn::Min(leave, GetPlaneT(packet, first, axis, forward ? end : 0.0));
+      }
+      hn::Store(enter, tag, packet.Enter + first);
+      hn::Store(leave, tag, packet.Leave + first);
+      fitting |= GetBits(fits) << first;
+      crossing |= GetBits(hn::And(fits, hn::Lt(enter, leave))) << first;
+    }
+    packet.Rays = crossing;
+    return wanted & ~fitting;
+  }
 
   static RayPacket::Mask MeetBox(const RayPacket& packet, RayPacket::Mask rays,
     const double lower[3], const double upper[3], double* enter, double* leave)
@@ -85,6 +134,41 @@ public:
   }
 
 private:
+  /// Rays as vectors want them. Those that are not wanted are copies of one that is.
+  struct WorldRays
+  {
+    HWY_ALIGN double Origin[3][RayPacket::Size];
+    HWY_ALIGN double Direction[3][RayPacket::Size];
+    HWY_ALIGN double Min[RayPacket::Size];
+    HWY_ALIGN double Max[RayPacket::Size];
+
+    WorldRays(const Ray* rays, RayPacket::Mask wanted)
+    {
+      const int any = wanted != 0 ? GetLowest(wanted) : 0;
+      for (int index = 0; index < RayPacket::Size; ++index)
+      {
+        const Ray& ray = rays[(wanted >> index & 1) != 0 ? index : any];
+        for (int axis = 0; axis < 3; ++axis)
+        {
+          this->Origin[axis][index] = ray.Origin[axis];
+          this->Direction[axis][index] = ray.Direction[axis];
+        }
+        this->Min[index] = ray.Min;
+        this->Max[index] = ray.Max;
+      }
+    }
+  };
+
+  /// A row of a matrix times a vector, in the order of glm's.
+  static Vector Multiply(const glm::dmat3& matrix, int row, const Vector vector[3])
+  {
+    const D tag;
+    const Vector x = hn::Mul(hn::Set(tag, matrix[0][row]), vector[0]);
+    const Vector y = hn::Mul(hn::Set(tag, matrix[1][row]), vector[1]);
+    const Vector z = hn::Mul(hn::Set(tag, matrix[2][row]), vector[2]);
+    return hn::Add(hn::Add(x, y), z);
+  }
+
   static RayPacket::Mask GetBits(Mask mask)
   {
     std::uint8_t bits[8] = {};
@@ -116,7 +200,6 @@ private:
     }
     const D tag;
     constexpr int edge = 4 * MacrocellEdge;
-    const int place[3] = { edge * part[0], edge * part[1], edge * part[2] };
     RayPacket::Mask found = 0;
     for (int first = 0; first < RayPacket::Size; first += Width)
     {
@@ -130,13 +213,13 @@ private:
       for (int axis = 0; axis < 3; ++axis)
       {
         const bool forward = packet.Forward[axis];
-        const double lower = origin[axis] + place[axis];
+        const double lower = origin[axis] + edge * part[axis];
         in = hn::Max(in, GetPlaneT(packet, first, axis, forward ? lower : lower + edge));
         out = hn::Min(out, GetPlaneT(packet, first, axis, forward ? lower + edge : lower));
       }
       meet = hn::And(meet, hn::Lt(in, out));
       PacketWalk<D> walk(tag, packet, first, brick, origin, crossings);
-      found |= GetBits(walk.Search(place, macrocells, meet, in, out)) << first;
+      found |= GetBits(walk.Search(part, macrocells, meet, in, out)) << first;
     }
     return found;
   }
@@ -180,7 +263,8 @@ private:
 template <class D>
 PacketKernel Create(const char* name)
 {
-  return { name, PacketSteps<D>::Width, &PacketSteps<D>::MeetBox, &PacketSteps<D>::SearchBrick };
+  return { name, PacketSteps<D>::Width, &PacketSteps<D>::SetRays, &PacketSteps<D>::MeetBox,
+    &PacketSteps<D>::SearchBrick };
 }
 
 PacketKernel CreateWide()

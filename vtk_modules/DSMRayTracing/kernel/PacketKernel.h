@@ -2,7 +2,10 @@
 #ifndef rt_PacketKernel_h
 #define rt_PacketKernel_h
 
+#include "DSMRayTracing/brick/Box.h"
+#include "DSMRayTracing/kernel/IndexSpace.h"
 #include "DSMRayTracing/kernel/PacketBrick.h"
+#include "DSMRayTracing/kernel/Ray.h"
 #include "DSMRayTracing/kernel/RayPacket.h"
 
 #include <vector>
@@ -12,7 +15,7 @@ namespace rt
 
 /// The steps of a packet that are done with the vector instructions of the processor, for as many
 /// rays at once as its registers hold. There is one for each kind of processor in the same binary,
-/// and one for rays one by one. All give the same bits, those of GridWalk, GridTraversal and
+/// and one for rays one by one. All give the same bits, those of IndexSpace, GridRay, GridWalk, GridTraversal and
 /// FindFirstCrossing: each ray's numbers come from the same operations, none of them contracted.
 ///
 /// Pure; any thread.
@@ -20,6 +23,11 @@ struct PacketKernel
 {
   const char* Name;
   int Width; ///< rays at once
+
+  /// Makes the packet of those rays (world space) of `wanted` that cross the volume's `cells`, Forward
+  /// being set. Returns those that do not fit into a packet.
+  RayPacket::Mask (*SetRays)(RayPacket& packet, const Ray* rays, RayPacket::Mask wanted,
+    const IndexSpace& space, const Index3& cells);
 
   /// Those of `rays` that cross a box (planes in cells) within the volume, and where.
   RayPacket::Mask (*MeetBox)(const RayPacket& packet, RayPacket::Mask rays, const double lower[3],

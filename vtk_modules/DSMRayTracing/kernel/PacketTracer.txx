@@ -40,27 +40,20 @@ void PacketTracer<Store>::Intersect(const IsosurfaceObject& object, const BeamBr
   for (int number = 0; number < packets; ++number)
   {
     RayPacket& packet = progress[number].Rays;
-    packet.Clear();
     std::copy_n(bricks.Forward, 3, packet.Forward);
-    found[number] = 0;
-    for (RayPacket::Mask left = wanted[number]; left != 0; left &= left - 1)
+    const Ray* const own = rays + RayPacket::Size * number;
+    RayPacket::Mask alone = wanted[number];
+    if (bricks.Usable)
     {
-      const int index = GetLowest(left);
-      const Ray& ray = rays[RayPacket::Size * number + index];
-      GridRay line;
-      double enter = ray.Min;
-      double leave = ray.Max;
-      if (!bricks.Usable || !space.GetGridRay(ray, line) ||
-        !RayPacket::Fits(line, bricks.Forward))
-      {
-        found[number] |= RayPacket::Mask{ this->Single.Intersect(
-                           object, ray, hits[RayPacket::Size * number + index]) }
-          << index;
-      }
-      else if (line.Clip(lattice.GetCells(), enter, leave))
-      {
-        packet.Set(index, line, enter, leave);
-      }
+      alone = this->Kernel.SetRays(packet, own, wanted[number], space, lattice.GetCells());
+    }
+    found[number] = 0;
+    for (; alone != 0; alone &= alone - 1)
+    {
+      const int index = GetLowest(alone);
+      const bool hit =
+        this->Single.Intersect(object, own[index], hits[RayPacket::Size * number + index]);
+      found[number] |= RayPacket::Mask{ hit } << index;
     }
   }
   Dispatch(lattice.GetScalarType(),

@@ -14,6 +14,8 @@
 
 #include <hwy/highway.h>
 
+#include <cstdint>
+
 HWY_BEFORE_NAMESPACE();
 namespace rt
 {
@@ -207,17 +209,16 @@ public:
   {
   }
 
-  /// Searches the 4 x 4 x 4 macrocells from the cell `place` on, those whose bits are set in
-  /// `macrocells`. `rays` cross them from `enter` to `leave`. Returns those that meet the surface,
+  /// Searches the macrocells of a part of the brick whose bits are set in `macrocells`. `rays` cross them from `enter` to `leave`. Returns those that meet the surface,
   /// having stored how.
   Mask Search(
-    const int place[3], std::uint64_t macrocells, Mask rays, Vector enter, Vector leave)
+    const int part[3], std::uint64_t macrocells, Mask rays, Vector enter, Vector leave)
   {
     const D tag = this->Tag;
     Vector lower[3];
     for (int axis = 0; axis < 3; ++axis)
     {
-      lower[axis] = hn::Set(tag, this->BrickOrigin[axis] + place[axis]);
+      lower[axis] = hn::Set(tag, this->BrickOrigin[axis] + 4.0 * MacrocellEdge * part[axis]);
     }
     NodeWalks<D> walks(this->Rays, lower, MacrocellEdge, enter);
     const Numbers bits = hn::Set(NumberTag(), macrocells);
@@ -232,7 +233,7 @@ public:
       {
         return found;
       }
-      const Mask met = this->SearchMacrocells(place, walks, waiting, t, exit);
+      const Mask met = this->SearchMacrocells(part, walks, waiting, t, exit);
       found = hn::Or(found, met);
       walking = walks.Leave(hn::AndNot(met, waiting), leave, t, exit);
     }
@@ -244,23 +245,16 @@ private:
   static constexpr int Width = static_cast<int>(hn::MaxLanes(D()));
 
   /// The macrocells in which `rays` are, from `enter` to `leave`.
-  Mask SearchMacrocells(const int place[3], const NodeWalks<D>& macrocells, Mask rays,
+  Mask SearchMacrocells(const int part[3], const NodeWalks<D>& macrocells, Mask rays,
     Vector enter, Vector leave)
   {
     const D tag = this->Tag;
-    HWY_ALIGN std::uint64_t bits[Width] = {};
+    HWY_ALIGN std::uint64_t bits[Width];
     HWY_ALIGN std::uint64_t nodes[Width];
-    hn::Store(macrocells.GetNodes(), NumberTag(), nodes);
     int places[Width][3];
-    for (unsigned left = GetBits(rays); left != 0; left &= left - 1)
-    {
-      const int ray = __builtin_ctz(left);
-      const auto node = static_cast<int>(nodes[ray]);
-      places[ray][0] = place[0] + MacrocellEdge * (node & 3);
-      places[ray][1] = place[1] + MacrocellEdge * (node >> 2 & 3);
-      places[ray][2] = place[2] + MacrocellEdge * (node >> 4);
-      bits[ray] = this->Brick.FindCells(places[ray]);
-    }
+    hn::Store(hn::Zero(NumberTag()), NumberTag(), bits);
+    hn::Store(macrocells.GetNodes(), NumberTag(), nodes);
+    this->Brick.FindCells(part, GetBits(rays), nodes, places, bits);
     const Numbers cells = hn::Load(NumberTag(), bits);
     const Vector lower[3] = { macrocells.GetLower(0), macrocells.GetLower(1),
       macrocells.GetLower(2) };
@@ -304,8 +298,16 @@ private:
     Vector exit)
   {
     const D tag = this->Tag;
-    HWY_ALIGN double corners[8][Width] = {};
-    rays = this->GetCorners(places, cells, rays, corners[0]);
+    HWY_ALIGN double corners[8][Width];
+    for (double* const corner : corners)
+    {
+      hn::Store(hn::Zero(tag), tag, corner);
+    }
+    HWY_ALIGN std::uint64_t nodes[Width];
+    hn::Store(cells.GetNodes(), NumberTag(), nodes);
+    const std::uint8_t held[8] = { static_cast<std::uint8_t>(
+      this->Brick.GetCorners(GetBits(rays), places, nodes, corners[0], Width)) };
+    rays = hn::LoadMaskBits(tag, held);
     if (hn::AllFalse(tag, rays))
     {
       return rays;
@@ -353,29 +355,6 @@ private:
         this->Crossings.Cell[axis]);
     }
     return found;
-  }
-
-  /// Corners of the cells in which `rays` are, those of a ray under one another. Returns the rays
-  /// whose cells hold data.
-  Mask GetCorners(
-    const int places[][3], const NodeWalks<D>& cells, Mask rays, double* corners) const
-  {
-    HWY_ALIGN std::uint64_t nodes[Width];
-    hn::Store(cells.GetNodes(), NumberTag(), nodes);
-    unsigned held = 0;
-    for (unsigned left = GetBits(rays); left != 0; left &= left - 1)
-    {
-      const int ray = __builtin_ctz(left);
-      const auto node = static_cast<int>(nodes[ray]);
-      const int cell[3] = { places[ray][0] + (node & 3), places[ray][1] + (node >> 2 & 3),
-        places[ray][2] + (node >> 4) };
-      if (this->Brick.GetCorners(cell, corners + ray, Width))
-      {
-        held |= 1u << ray;
-      }
-    }
-    const std::uint8_t bits[8] = { static_cast<std::uint8_t>(held) };
-    return hn::LoadMaskBits(this->Tag, bits);
   }
 
   /// Stores the numbers of some rays.

@@ -3,7 +3,6 @@
 #define rt_RayPacket_h
 
 #include "DSMRayTracing/kernel/CellHit.h"
-#include "DSMRayTracing/kernel/GridRay.h"
 
 #include <cstdint>
 
@@ -28,46 +27,8 @@ struct RayPacket
   alignas(64) double Leave[Size];
   /// Whether the rays move towards larger coordinates.
   bool Forward[3];
-  /// Those that are there; the numbers of the others are not read, or make no difference.
+  /// Those that are there; the numbers of the others mean nothing.
   Mask Rays = 0;
-
-  /// Whether a ray may be in a packet with those that move as `forward` says.
-  static bool Fits(const GridRay& ray, const bool forward[3])
-  {
-    return ray.Step[0] == (forward[0] ? 1.0 : -1.0) && ray.Step[1] == (forward[1] ? 1.0 : -1.0) &&
-      ray.Step[2] == (forward[2] ? 1.0 : -1.0);
-  }
-
-  /// Adds one that fits.
-  void Set(int index, const GridRay& ray, double enter, double leave)
-  {
-    for (int axis = 0; axis < 3; ++axis)
-    {
-      this->Origin[axis][index] = ray.Origin[axis];
-      this->Direction[axis][index] = ray.Direction[axis];
-      this->Inverse[axis][index] = ray.Inverse[axis];
-    }
-    this->Enter[index] = enter;
-    this->Leave[index] = leave;
-    this->Rays |= Mask(1) << index;
-  }
-
-  /// Makes the numbers of all rays defined.
-  void Clear()
-  {
-    for (int index = 0; index < Size; ++index)
-    {
-      for (int axis = 0; axis < 3; ++axis)
-      {
-        this->Origin[axis][index] = 0.0;
-        this->Direction[axis][index] = 1.0;
-        this->Inverse[axis][index] = 1.0;
-      }
-      this->Enter[index] = 0.0;
-      this->Leave[index] = 0.0;
-    }
-    this->Rays = 0;
-  }
 };
 
 /// Where the rays of a packet meet an isosurface within a brick; see CellHit.

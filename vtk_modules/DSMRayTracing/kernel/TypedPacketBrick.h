@@ -43,34 +43,51 @@ public:
     return this->Parts[number % PartCount].Get(number, [&] { return this->ComparePart(part); });
   }
 
-  std::uint64_t FindCells(const int first[3]) const override
+  void FindCells(const int part[3], unsigned rays, const std::uint64_t* macrocells,
+    int (*first)[3], std::uint64_t* cells) const override
   {
-    const int macrocell = first[0] / MacrocellEdge +
-      this->Brick.GetMacrocells(0) *
-        (first[1] / MacrocellEdge + this->Brick.GetMacrocells(1) * (first[2] / MacrocellEdge));
-    return this->Macrocells[macrocell % MacrocellCount].Get(
-      macrocell, [&] { return this->CompareCells(first); });
+    int last = -1;
+    for (; rays != 0; rays &= rays - 1)
+    {
+      const int ray = __builtin_ctz(rays);
+      // Neighbours are often in the same macrocell.
+      if (last >= 0 && macrocells[last] == macrocells[ray])
+      {
+        std::copy_n(first[last], 3, first[ray]);
+        cells[ray] = cells[last];
+        continue;
+      }
+      last = ray;
+      const auto number = static_cast<int>(macrocells[ray]);
+      const int place[3] = { 4 * part[0] + (number & 3), 4 * part[1] + (number >> 2 & 3),
+        4 * part[2] + (number >> 4) };
+      for (int axis = 0; axis < 3; ++axis)
+      {
+        first[ray][axis] = MacrocellEdge * place[axis];
+      }
+      const int key = place[0] +
+        this->Brick.GetMacrocells(0) * (place[1] + this->Brick.GetMacrocells(1) * place[2]);
+      cells[ray] = this->Macrocells[key % MacrocellCount].Get(
+        key, [&] { return this->CompareCells(first[ray]); });
+    }
   }
 
-  bool GetCorners(const int cell[3], double* corners, int stride) const override
+  unsigned GetCorners(unsigned rays, const int (*first)[3], const std::uint64_t* cells,
+    double* corners, int stride) const override
   {
-    if (!this->Brick.IsCovered(cell[0], cell[1], cell[2]))
+    unsigned held = 0;
+    for (; rays != 0; rays &= rays - 1)
     {
-      return false;
+      const int ray = __builtin_ctz(rays);
+      const auto number = static_cast<int>(cells[ray]);
+      const int cell[3] = { first[ray][0] + (number & 3), first[ray][1] + (number >> 2 & 3),
+        first[ray][2] + (number >> 4) };
+      if (this->GetCorners(cell, corners + ray, stride))
+      {
+        held |= 1u << ray;
+      }
     }
-    const T* first = this->Brick.GetSamples() + this->Brick.GetOffset(cell[0], cell[1], cell[2]);
-    Lanes::Half check = {};
-    for (int pair = 0; pair < 4; ++pair)
-    {
-      const T* from =
-        first + (pair & 1) * this->Brick.GetRow() + (pair >> 1) * this->Brick.GetSlice();
-      const Lanes::Half two = this->Level.SubtractPair(from);
-      corners[2 * pair * stride] = two[0];
-      corners[(2 * pair + 1) * stride] = two[1];
-      // Becomes, and stays, not a number where one of them is not finite.
-      check += two * 0.0;
-    }
-    return std::is_integral_v<T> || check[0] + check[1] == 0.0;
+    return held;
   }
 
 private:
@@ -129,6 +146,27 @@ private:
       }
     }
     return found;
+  }
+
+  bool GetCorners(const int cell[3], double* corners, int stride) const
+  {
+    if (!this->Brick.IsCovered(cell[0], cell[1], cell[2]))
+    {
+      return false;
+    }
+    const T* first = this->Brick.GetSamples() + this->Brick.GetOffset(cell[0], cell[1], cell[2]);
+    Lanes::Half check = {};
+    for (int pair = 0; pair < 4; ++pair)
+    {
+      const T* from =
+        first + (pair & 1) * this->Brick.GetRow() + (pair >> 1) * this->Brick.GetSlice();
+      const Lanes::Half two = this->Level.SubtractPair(from);
+      corners[2 * pair * stride] = two[0];
+      corners[(2 * pair + 1) * stride] = two[1];
+      // Becomes, and stays, not a number where one of them is not finite.
+      check += two * 0.0;
+    }
+    return std::is_integral_v<T> || check[0] + check[1] == 0.0;
   }
 
   std::uint64_t CompareCells(const int first[3]) const
