@@ -120,7 +120,7 @@ public:
 private:
   /// Less than half a step of an 8-bit channel.
   static constexpr double Dark = 0.5 / 255.0;
-  /// Of the shortest edge of a cell. Roots are found to about 1e-12 of a cell.
+  /// Of the shortest edge of a cell. Roots are found to 1e-7 of the way through a cell, mostly to 1e-12.
   static constexpr double ClearancePart = 1e-4;
 
   static double Largest(const glm::dvec3& color) { return std::max({ color.x, color.y, color.z }); }

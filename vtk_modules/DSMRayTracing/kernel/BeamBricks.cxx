@@ -26,6 +26,10 @@ public:
     {
       this->Thresholds.push_back(RoundUp(isovalue));
     }
+    for (const MacrocellHierarchy::Level& level : this->Levels)
+    {
+      this->Cubes.push_back(beam.GetCubes(level.Edge));
+    }
   }
 
   void Start()
@@ -40,6 +44,7 @@ private:
   void VisitBox(int number, const int first[3], const int last[3])
   {
     const MacrocellHierarchy::Level& level = this->Levels[number];
+    const RayBeam::Cubes& cubes = this->Cubes[number];
     const bool* forward = this->Beam.GetForward();
     const int size[3] = { last[0] - first[0], last[1] - first[1], last[2] - first[2] };
     for (int k = 0; k < size[2]; ++k)
@@ -48,10 +53,16 @@ private:
       for (int j = 0; j < size[1]; ++j)
       {
         const int y = forward[1] ? first[1] + j : last[1] - 1 - j;
-        const std::int64_t row = level.Size[0] * (y + std::int64_t{ level.Size[1] } * z);
-        for (int i = 0; i < size[0]; ++i)
+        int low = first[0];
+        int high = last[0] - 1;
+        if (!this->Beam.ClipRow(cubes, y * level.Edge, z * level.Edge, low, high))
         {
-          const int x = forward[0] ? first[0] + i : last[0] - 1 - i;
+          continue;
+        }
+        const std::int64_t row = level.Size[0] * (y + std::int64_t{ level.Size[1] } * z);
+        for (int i = low; i <= high; ++i)
+        {
+          const int x = forward[0] ? i : low + high - i;
           if (this->MayHold(level.Ranges[static_cast<std::size_t>(row + x)]))
           {
             this->Visit(number, row + x, { x, y, z });
@@ -70,17 +81,12 @@ private:
 
   void Visit(int number, std::int64_t index, const Place& place)
   {
-    const MacrocellHierarchy::Level& level = this->Levels[number];
-    const Lanes lower = Lanes(place.x, place.y, place.z, 0.0) * Lanes(level.Edge);
-    const Lanes upper = lower + Lanes(level.Edge);
-    if (!this->Beam.MayMeet(lower, upper))
-    {
-      return;
-    }
     if (number == 0)
     {
+      const double edge = this->Levels[0].Edge;
       this->Bricks.push_back({ static_cast<dsm::BlockId>(index),
-        { lower[0], lower[1], lower[2] }, { upper[0], upper[1], upper[2] } });
+        { place.x * edge, place.y * edge, place.z * edge },
+        { (place.x + 1) * edge, (place.y + 1) * edge, (place.z + 1) * edge } });
       return;
     }
     constexpr int ratio = 1 << MacrocellHierarchy::Shift;
@@ -100,6 +106,7 @@ private:
 
   const std::vector<MacrocellHierarchy::Level>& Levels;
   std::vector<float> Thresholds; ///< the isovalues, rounded up
+  std::vector<RayBeam::Cubes> Cubes; ///< of each level
   const RayBeam& Beam;
   std::vector<BeamBricks::Brick>& Bricks;
 };

@@ -123,7 +123,7 @@ public:
   Vector Refine(Mask rays, const Bracket<D>& bracket) const
   {
     const D tag = this->Tag;
-    const Vector tolerance = hn::Set(tag, 1e-9);
+    const Vector tolerance = hn::Set(tag, 1e-7);
     const Vector half = hn::Set(tag, 0.5);
     const Mask beginInside = this->IsInside(bracket.BeginValue);
     Vector low = bracket.BeginS;

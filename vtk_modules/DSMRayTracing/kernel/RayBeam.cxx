@@ -4,6 +4,7 @@
 #include <glm/geometric.hpp>
 #include <glm/vec3.hpp>
 
+#include <algorithm>
 #include <cmath>
 
 namespace rt
@@ -56,11 +57,31 @@ bool RayBeam::Set(const GridRay corners[4])
       return false;
     }
     Side& side = this->Sides[corner];
-    side.Normal = Lanes(normal.x, normal.y, normal.z, 0.0);
-    side.Positive = side.Normal > Lanes(0.0);
+    // Not so flat that its reciprocal is infinite: by much less than the margin.
+    constexpr double flat = 1e-30;
+    const double x = std::abs(normal.x) < flat ? flat : normal.x;
+    side.Normal[0] = x;
+    side.Normal[1] = normal.y;
+    side.Normal[2] = normal.z;
+    side.InverseX = 1.0 / x;
     side.Least = least;
   }
   return true;
+}
+
+RayBeam::Cubes RayBeam::GetCubes(double edge) const
+{
+  Cubes cubes{ edge, {} };
+  for (int number = 0; number < 4; ++number)
+  {
+    const Side& side = this->Sides[number];
+    // From a cube's lower corner to the one that is farthest inside.
+    const double reach = edge *
+      (std::max(side.Normal[0], 0.0) + std::max(side.Normal[1], 0.0) +
+        std::max(side.Normal[2], 0.0));
+    cubes.Least[number] = side.Least - reach;
+  }
+  return cubes;
 }
 
 } // namespace rt

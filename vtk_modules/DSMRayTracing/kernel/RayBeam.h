@@ -4,6 +4,9 @@
 
 #include "DSMRayTracing/kernel/GridRay.h"
 
+#include <algorithm>
+#include <cmath>
+
 namespace rt
 {
 
@@ -19,28 +22,45 @@ public:
   /// Whether all rays of the beam move towards larger coordinates.
   const bool* GetForward() const { return this->Forward; }
 
-  /// Whether any ray may meet a box. May say so of a box that none meets, but only near the beam.
-  bool MayMeet(const Lanes& lower, const Lanes& upper) const
+  /// Cubes of `edge`, on one lattice.
+  struct Cubes
   {
-    for (const Side& side : this->Sides)
+    double Edge;
+    double Least[4]; ///< for each side: normal * lower corner of a cube that may be met
+  };
+  Cubes GetCubes(double edge) const;
+
+  /// Which of the cubes whose lower corners are at (x Edge, y, z), for whole numbers x from `first`
+  /// to `last`, rays may meet: shortens the row to them; false when there is none. May keep cubes
+  /// that no ray meets, but only near the beam.
+  bool ClipRow(const Cubes& cubes, double y, double z, int& first, int& last) const
+  {
+    double low = first;
+    double high = last;
+    for (int side = 0; side < 4; ++side)
     {
-      // The corner of the box that is farthest inside.
-      const Lanes corner = Select(side.Positive, upper, lower);
-      if ((corner * side.Normal).GetSum() < side.Least)
-      {
-        return false;
-      }
+      const Side& plane = this->Sides[side];
+      const double missing = cubes.Least[side] - (plane.Normal[1] * y + plane.Normal[2] * z);
+      const double x = missing * plane.InverseX / cubes.Edge;
+      low = plane.Normal[0] > 0.0 ? std::max(low, x) : low;
+      high = plane.Normal[0] < 0.0 ? std::min(high, x) : high;
     }
-    return true;
+    if (!(low <= high))
+    {
+      return false;
+    }
+    first = static_cast<int>(std::ceil(low));
+    last = static_cast<int>(std::floor(high));
+    return first <= last;
   }
 
 private:
-  /// A plane between two corners; the normal points into the beam. Idle lanes are 0.
+  /// A plane between two corners; the normal points into the beam.
   struct Side
   {
-    Lanes Normal;
-    IntegerLanes Positive; ///< where the normal is
-    double Least;          ///< of normal * point within the beam
+    double Normal[3];
+    double InverseX; ///< of the normal; finite
+    double Least;    ///< of normal * point within the beam
   };
 
   Side Sides[4];
