@@ -27,8 +27,8 @@ public:
     const glm::dvec3 size(cells);
     const double largest = std::max({ size.x, size.y, size.z });
     const glm::dvec3 target = size * glm::dvec3(this->Get(), this->Get(), this->Get());
-    const glm::dvec3 eye = target +
-      largest * glm::dvec3(this->Get() - 0.5, this->Get() - 0.5, this->Get() - 0.5) * 6.0;
+    const glm::dvec3 eye =
+      target + largest * glm::dvec3(this->Get() - 0.5, this->Get() - 0.5, this->Get() - 0.5) * 6.0;
     const glm::dvec3 right = spread * largest * glm::dvec3(this->Get(), -this->Get(), 0.3);
     const glm::dvec3 up = spread * largest * glm::dvec3(0.2, this->Get(), this->Get());
     const bool parallel = seed % 3 == 0;
@@ -95,8 +95,8 @@ Tally ComparePackets(const TestVolume<T>& volume, const std::vector<double>& iso
         const int packet = index / rt::RayPacket::Size;
         const rt::RayPacket::Mask bit = 1u << index % rt::RayPacket::Size;
         rt::SurfaceHit expected;
-        const bool hit = (wanted[packet] & bit) != 0 &&
-          alone.Intersect(object, beam.Rays[index], expected);
+        const bool hit =
+          (wanted[packet] & bit) != 0 && alone.Intersect(object, beam.Rays[index], expected);
         EXPECT_EQ((found[packet] & bit) != 0, hit) << "beam " << seed << ", ray " << index;
         if (hit && (found[packet] & bit) != 0)
         {

@@ -90,8 +90,7 @@ public:
             const int index = RayPacket::Size * packets + lane;
             places[index] = place + glm::ivec2(x, y);
             const SampleSequence random(x + place.x, y + place.y, sample);
-            rays[index] =
-              this->Rays.GetRay(x + place.x, y + place.y, random.GetPositionInPixel());
+            rays[index] = this->Rays.GetRay(x + place.x, y + place.y, random.GetPositionInPixel());
             wanted[packets] |= RayPacket::Mask{ 1 } << lane;
           }
         }
@@ -105,8 +104,8 @@ public:
         PixelSample result;
         Ray ray = rays[index];
         ray.Max = PixelRays::Last;
-        result.Color = this->FollowFrom(
-          point, ray, this->World.Transport.MaxBounces, random, &result.Depth);
+        result.Color =
+          this->FollowFrom(point, ray, this->World.Transport.MaxBounces, random, &result.Depth);
         take(place.x, place.y, result);
       });
   }

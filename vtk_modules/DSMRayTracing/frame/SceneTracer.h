@@ -178,8 +178,8 @@ private:
   }
 
   /// Describes what the ray meets, the isosurface that it meets first being known.
-  bool Complete(const Ray& ray, const IsosurfaceObject* isosurface,
-    const SurfaceHit& isosurfaceHit, SurfacePoint& point) const
+  bool Complete(const Ray& ray, const IsosurfaceObject* isosurface, const SurfaceHit& isosurfaceHit,
+    SurfacePoint& point) const
   {
     if (!isosurface)
     {

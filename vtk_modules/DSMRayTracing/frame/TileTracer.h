@@ -103,8 +103,8 @@ private:
         this->Request.FirstSample + sample,
         [&tile](int x, int y, const PixelSample& traced)
         {
-          const std::size_t pixel =
-            static_cast<std::size_t>(y - tile.Y) * tile.Width + static_cast<std::size_t>(x - tile.X);
+          const std::size_t pixel = static_cast<std::size_t>(y - tile.Y) * tile.Width +
+            static_cast<std::size_t>(x - tile.X);
           tile.Sum[pixel] += traced.Color;
           // A pixel is as near as the nearest of its samples, so that a surface's antialiased
           // border still covers what is behind.

@@ -84,16 +84,16 @@ private:
     if (number == 0)
     {
       const double edge = this->Levels[0].Edge;
-      this->Bricks.push_back({ static_cast<dsm::BlockId>(index),
-        { place.x * edge, place.y * edge, place.z * edge },
-        { (place.x + 1) * edge, (place.y + 1) * edge, (place.z + 1) * edge } });
+      this->Bricks.push_back(
+        { static_cast<dsm::BlockId>(index), { place.x * edge, place.y * edge, place.z * edge },
+          { (place.x + 1) * edge, (place.y + 1) * edge, (place.z + 1) * edge } });
       return;
     }
     constexpr int ratio = 1 << MacrocellHierarchy::Shift;
     const int first[3] = { ratio * place.x, ratio * place.y, ratio * place.z };
     const int* size = this->Levels[number - 1].Size;
-    const int last[3] = { std::min(first[0] + ratio, size[0]),
-      std::min(first[1] + ratio, size[1]), std::min(first[2] + ratio, size[2]) };
+    const int last[3] = { std::min(first[0] + ratio, size[0]), std::min(first[1] + ratio, size[1]),
+      std::min(first[2] + ratio, size[2]) };
     this->VisitBox(number - 1, first, last);
   }
 
@@ -105,7 +105,7 @@ private:
   }
 
   const std::vector<MacrocellHierarchy::Level>& Levels;
-  std::vector<float> Thresholds; ///< the isovalues, rounded up
+  std::vector<float> Thresholds;     ///< the isovalues, rounded up
   std::vector<RayBeam::Cubes> Cubes; ///< of each level
   const RayBeam& Beam;
   std::vector<BeamBricks::Brick>& Bricks;

@@ -99,7 +99,8 @@ void CellNeighbourhood::GetGradient(const Lanes& local, double gradient[3]) cons
           axis, 1 + (corner & 1), 1 + (corner >> 1 & 1), 1 + (corner >> 2));
       }
     }
-    const Pair rows[2][2] = { { { differences[0], differences[1] }, { differences[2], differences[3] } },
+    const Pair rows[2][2] = { { { differences[0], differences[1] },
+                                { differences[2], differences[3] } },
       { { differences[4], differences[5] }, { differences[6], differences[7] } } };
     gradient[axis] = Interpolate(rows, local);
   }

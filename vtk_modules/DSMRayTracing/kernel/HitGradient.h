@@ -63,9 +63,8 @@ public:
 private:
   /// Where no sample is missing; else returns false.
   template <class T, class Store>
-  static bool FindAcrossFaces(Store& store, typename Store::Worker& worker,
-    const VoxelField& field, const Index3& home, const CellHit& cell,
-    const IsovalueLevel<T>& level, double gradient[3])
+  static bool FindAcrossFaces(Store& store, typename Store::Worker& worker, const VoxelField& field,
+    const Index3& home, const CellHit& cell, const IsovalueLevel<T>& level, double gradient[3])
   {
     const BrickLattice& lattice = field.Lattice;
     const int edge = lattice.GetEdge();

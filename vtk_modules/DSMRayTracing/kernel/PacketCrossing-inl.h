@@ -84,15 +84,15 @@ public:
     const Vector two = hn::Set(this->Tag, 2.0);
     const Mask inside0 = this->IsInside(this->C0);
     const Mask inside1 = this->IsInside(hn::Add(this->C0, hn::Mul(this->C1, third)));
-    const Mask inside2 = this->IsInside(
-      hn::Add(this->C0, hn::Mul(hn::Add(hn::Mul(two, this->C1), this->C2), third)));
+    const Mask inside2 =
+      this->IsInside(hn::Add(this->C0, hn::Mul(hn::Add(hn::Mul(two, this->C1), this->C2), third)));
     const Mask inside3 = this->IsInside(this->Last);
     const Mask change0 = hn::Xor(inside0, inside1);
     const Mask change1 = hn::Xor(inside1, inside2);
     const Mask change2 = hn::Xor(inside2, inside3);
     const Mask single = hn::Xor(inside0, inside3);
-    const Mask several = hn::And(rays,
-      hn::Or(hn::And(change0, hn::Or(change1, change2)), hn::And(change1, change2)));
+    const Mask several =
+      hn::And(rays, hn::Or(hn::And(change0, hn::Or(change1, change2)), hn::And(change1, change2)));
     bracket = { this->Zero, this->C0, this->One, this->Last };
     Mask crossing = hn::And(rays, single);
     if (hn::AllFalse(this->Tag, several))
@@ -128,8 +128,7 @@ public:
     const Mask beginInside = this->IsInside(bracket.BeginValue);
     Vector low = bracket.BeginS;
     Vector high = bracket.EndS;
-    const Vector chord =
-      hn::Div(bracket.BeginValue, hn::Sub(bracket.BeginValue, bracket.EndValue));
+    const Vector chord = hn::Div(bracket.BeginValue, hn::Sub(bracket.BeginValue, bracket.EndValue));
     const Vector width = hn::Sub(high, low);
     const Vector clamped = Clamp(chord, hn::Set(tag, 0.015625), hn::Set(tag, 0.984375));
     Vector s = hn::Add(low, hn::Mul(width, clamped));
@@ -150,12 +149,11 @@ public:
         done = hn::And(small, this->IsCrossing(next, low, high, tolerance, beginInside));
       }
       const Mask inBracket = hn::And(hn::Gt(next, low), hn::Lt(next, high));
-      const Mask newton = hn::And(inBracket,
-        hn::And(hn::Gt(step, tolerance), hn::Lt(step, hn::Mul(half, lastStep))));
+      const Mask newton =
+        hn::And(inBracket, hn::And(hn::Gt(step, tolerance), hn::Lt(step, hn::Mul(half, lastStep))));
       const Vector middle = hn::Mul(half, hn::Add(low, high));
       const Vector going = hn::IfThenElse(newton, next, middle);
-      lastStep = hn::IfThenElse(active,
-        hn::IfThenElse(newton, step, hn::Sub(high, low)), lastStep);
+      lastStep = hn::IfThenElse(active, hn::IfThenElse(newton, step, hn::Sub(high, low)), lastStep);
       s = hn::IfThenElse(active, hn::IfThenElse(done, Clamp(next, low, high), going), s);
       active = hn::And(hn::AndNot(done, active), hn::Gt(hn::Sub(high, low), tolerance));
     }
@@ -186,17 +184,17 @@ private:
       const Vector* a = linear[2 * face];
       const Vector* b = linear[2 * face + 1];
       quadratic[face][0] = this->Interpolate(a[0], b[0], start[1]);
-      quadratic[face][1] = hn::Add(this->Interpolate(a[1], b[1], start[1]),
-        hn::Mul(direction[1], hn::Sub(b[0], a[0])));
+      quadratic[face][1] = hn::Add(
+        this->Interpolate(a[1], b[1], start[1]), hn::Mul(direction[1], hn::Sub(b[0], a[0])));
       quadratic[face][2] = hn::Mul(direction[1], hn::Sub(b[1], a[1]));
     }
     const Vector* a = quadratic[0];
     const Vector* b = quadratic[1];
     this->C0 = this->Interpolate(a[0], b[0], start[2]);
-    this->C1 = hn::Add(this->Interpolate(a[1], b[1], start[2]),
-      hn::Mul(direction[2], hn::Sub(b[0], a[0])));
-    this->C2 = hn::Add(this->Interpolate(a[2], b[2], start[2]),
-      hn::Mul(direction[2], hn::Sub(b[1], a[1])));
+    this->C1 =
+      hn::Add(this->Interpolate(a[1], b[1], start[2]), hn::Mul(direction[2], hn::Sub(b[0], a[0])));
+    this->C2 =
+      hn::Add(this->Interpolate(a[2], b[2], start[2]), hn::Mul(direction[2], hn::Sub(b[1], a[1])));
     this->C3 = hn::Mul(direction[2], hn::Sub(b[2], a[2]));
   }
 
@@ -209,8 +207,7 @@ private:
   {
     const Vector two = hn::Set(this->Tag, 2.0);
     const Vector three = hn::Set(this->Tag, 3.0);
-    const Vector inner =
-      hn::Add(hn::Mul(two, this->C2), hn::Mul(hn::Mul(s, three), this->C3));
+    const Vector inner = hn::Add(hn::Mul(two, this->C2), hn::Mul(hn::Mul(s, three), this->C3));
     return hn::Add(this->C1, hn::Mul(s, inner));
   }
 
@@ -237,8 +234,7 @@ private:
       hn::Lt(value, low), low, hn::IfThenElse(hn::Lt(high, value), high, value));
   }
 
-  Mask IsCrossing(
-    Vector place, Vector low, Vector high, Vector tolerance, Mask beginInside) const
+  Mask IsCrossing(Vector place, Vector low, Vector high, Vector tolerance, Mask beginInside) const
   {
     const Vector back = hn::Sub(place, tolerance);
     const Vector ahead = hn::Add(place, tolerance);

@@ -49,8 +49,8 @@ public:
       Vector direction[3];
       for (int axis = 0; axis < 3; ++axis)
       {
-        origin[axis] = hn::Sub(
-          hn::Load(tag, world.Origin[axis] + first), hn::Set(tag, space.GetOrigin()[axis]));
+        origin[axis] =
+          hn::Sub(hn::Load(tag, world.Origin[axis] + first), hn::Set(tag, space.GetOrigin()[axis]));
         direction[axis] = hn::Load(tag, world.Direction[axis] + first);
       }
       Vector enter = hn::Load(tag, world.Min + first);
@@ -64,8 +64,8 @@ public:
         const bool forward = packet.Forward[axis];
         const Vector ahead = forward ? way : hn::Neg(way);
         fits = hn::And(hn::And(fits, hn::Gt(ahead, hn::Zero(tag))),
-          hn::And(hn::Lt(hn::Abs(hn::Add(start, way)), infinity),
-            hn::Lt(hn::Abs(inverse), infinity)));
+          hn::And(
+            hn::Lt(hn::Abs(hn::Add(start, way)), infinity), hn::Lt(hn::Abs(inverse), infinity)));
         hn::Store(start, tag, packet.Origin[axis] + first);
         hn::Store(way, tag, packet.Direction[axis] + first);
         hn::Store(inverse, tag, packet.Inverse[axis] + first);
@@ -124,8 +124,8 @@ public:
           // In the order in which they are met.
           const int part[3] = { packet.Forward[0] ? i : parts[0] - 1 - i,
             packet.Forward[1] ? j : parts[1] - 1 - j, packet.Forward[2] ? k : parts[2] - 1 - k };
-          found |= SearchPart(
-            packet, rays & ~found, brick, origin, enter, leave, part, crossings);
+          found |= SearchPart(packet, rays & ~found, brick, origin, enter, leave, part,
+            /*whole=*/parts[0] * parts[1] * parts[2] == 1, crossings);
         }
       }
     }
@@ -188,10 +188,10 @@ private:
       hn::Load(tag, packet.Inverse[axis] + first));
   }
 
-  /// The 4 x 4 x 4 macrocells of a part of the brick.
+  /// The 4 x 4 x 4 macrocells of a part of the brick; `whole`: that is all of it.
   static RayPacket::Mask SearchPart(const RayPacket& packet, RayPacket::Mask rays,
     const PacketBrick& brick, const double origin[3], const double* enter, const double* leave,
-    const int part[3], PacketCrossings& crossings)
+    const int part[3], bool whole, PacketCrossings& crossings)
   {
     const std::uint64_t macrocells = brick.FindMacrocells(part);
     if (macrocells == 0)
@@ -210,7 +210,7 @@ private:
       }
       Vector in = hn::Load(tag, enter + first);
       Vector out = hn::Load(tag, leave + first);
-      for (int axis = 0; axis < 3; ++axis)
+      for (int axis = 0; axis < 3 && !whole; ++axis)
       {
         const bool forward = packet.Forward[axis];
         const double lower = origin[axis] + edge * part[axis];
@@ -225,8 +225,7 @@ private:
   }
 
   /// Where exactly the rays of `found` meet the surface.
-  static void Refine(
-    const PacketCrossings& crossings, RayPacket::Mask found, PacketHits& hits)
+  static void Refine(const PacketCrossings& crossings, RayPacket::Mask found, PacketHits& hits)
   {
     const D tag;
     for (int first = 0; first < RayPacket::Size; first += Width)

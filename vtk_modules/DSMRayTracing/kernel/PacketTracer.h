@@ -41,8 +41,7 @@ public:
   /// VolumeTracer::Intersect for the rays of `wanted` in each packet of RayPacket::Size rays. All of
   /// them lie within the beam that `bricks` was found for. `found` tells those that hit something.
   void Intersect(const IsosurfaceObject& object, const BeamBricks& bricks, int packets,
-    const Ray* rays, const RayPacket::Mask* wanted, SurfaceHit* hits,
-    RayPacket::Mask* found) const;
+    const Ray* rays, const RayPacket::Mask* wanted, SurfaceHit* hits, RayPacket::Mask* found) const;
 
 private:
   /// A packet on its way through the bricks.

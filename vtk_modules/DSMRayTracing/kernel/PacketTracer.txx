@@ -58,9 +58,7 @@ void PacketTracer<Store>::Intersect(const IsosurfaceObject& object, const BeamBr
   }
   Dispatch(lattice.GetScalarType(),
     [&](auto sample)
-    {
-      this->SearchBricks<decltype(sample)>(object, bricks, packets, progress, rays, hits);
-    });
+    { this->SearchBricks<decltype(sample)>(object, bricks, packets, progress, rays, hits); });
   for (int number = 0; number < packets; ++number)
   {
     found[number] |= progress[number].Found;
@@ -80,10 +78,9 @@ void PacketTracer<Store>::SearchBricks(const IsosurfaceObject& object, const Bea
     {
       Progress& packet = progress[number];
       const RayPacket::Mask open = packet.Rays.Rays & ~packet.Found;
-      packet.Meets = open == 0
-        ? 0
-        : this->Kernel.MeetBox(
-            packet.Rays, open, brick.Lower, brick.Upper, packet.Enter, packet.Leave);
+      packet.Meets = open == 0 ? 0
+                               : this->Kernel.MeetBox(packet.Rays, open, brick.Lower, brick.Upper,
+                                   packet.Enter, packet.Leave);
       isMet = isMet || packet.Meets != 0;
     }
     if (!isMet)
@@ -161,10 +158,10 @@ void PacketTracer<Store>::SearchBrick(const IsosurfaceObject& object,
         packet.Cells.Set(index, candidates);
         packet.Isovalue[index] = static_cast<int>(isovalue);
         packet.Hit |= bit;
-        const bool within = HitGradient::FindWithin(
-          voxels, candidates.Get(index), level, &packet.Gradient[index].x);
-        packet.WithoutGradient = within ? packet.WithoutGradient & ~bit
-                                        : packet.WithoutGradient | bit;
+        const bool within =
+          HitGradient::FindWithin(voxels, candidates.Get(index), level, &packet.Gradient[index].x);
+        packet.WithoutGradient =
+          within ? packet.WithoutGradient & ~bit : packet.WithoutGradient | bit;
       }
     }
   }

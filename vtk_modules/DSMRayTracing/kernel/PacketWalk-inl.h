@@ -112,15 +112,14 @@ public:
         const Mask crossed = hn::Le(rays.GetPlaneT(axis, plane), t);
         node = hn::Add(node, hn::IfThenElseZero(crossed, step));
       }
-      this->Plane[axis] =
-        hn::Add(hn::Add(lower[axis], node), hn::Set(tag, forward ? edge : 0.0));
+      this->Plane[axis] = hn::Add(hn::Add(lower[axis], node), hn::Set(tag, forward ? edge : 0.0));
       this->PlaneT[axis] = rays.GetPlaneT(axis, this->Plane[axis]);
       this->Step[axis] = step;
       // Whole numbers below 2^52, added to it, stand in the lowest bits.
       const Vector large = hn::Set(tag, 4503599627370496.0);
       const Vector count = hn::Mul(node, hn::Set(tag, 1.0 / edge));
-      const Numbers whole = hn::Sub(
-        hn::BitCast(numbers, hn::Add(large, count)), hn::BitCast(numbers, large));
+      const Numbers whole =
+        hn::Sub(hn::BitCast(numbers, hn::Add(large, count)), hn::BitCast(numbers, large));
       this->Nodes = hn::Add(this->Nodes, hn::ShiftLeftSame(whole, 2 * axis));
       const std::uint64_t stride = std::uint64_t{ 1 } << (2 * axis);
       this->Stride[axis] = hn::Set(numbers, forward ? stride : 0 - stride);
@@ -153,8 +152,8 @@ public:
     while (!hn::AllFalse(tag, walking))
     {
       exit = hn::IfThenElse(walking, hn::Min(this->GetExit(), leave), exit);
-      const Mask here = hn::And(walking,
-        hn::RebindMask(tag, hn::Eq(hn::And(hn::Shr(bits, this->Nodes), lowest), lowest)));
+      const Mask here = hn::And(
+        walking, hn::RebindMask(tag, hn::Eq(hn::And(hn::Shr(bits, this->Nodes), lowest), lowest)));
       waiting = hn::Or(waiting, here);
       walking = this->Leave(hn::AndNot(here, walking), leave, t, exit);
     }
@@ -169,10 +168,9 @@ public:
     for (int axis = 0; axis < 3; ++axis)
     {
       const Mask crossed = hn::And(rays, hn::Le(this->PlaneT[axis], exit));
-      this->Plane[axis] =
-        hn::Add(this->Plane[axis], hn::IfThenElseZero(crossed, this->Step[axis]));
-      this->Nodes = hn::Add(this->Nodes,
-        hn::IfThenElseZero(hn::RebindMask(NumberTag(), crossed), this->Stride[axis]));
+      this->Plane[axis] = hn::Add(this->Plane[axis], hn::IfThenElseZero(crossed, this->Step[axis]));
+      this->Nodes = hn::Add(
+        this->Nodes, hn::IfThenElseZero(hn::RebindMask(NumberTag(), crossed), this->Stride[axis]));
       this->PlaneT[axis] = this->Rays.GetPlaneT(axis, this->Plane[axis]);
     }
     return rays;
@@ -211,8 +209,7 @@ public:
 
   /// Searches the macrocells of a part of the brick whose bits are set in `macrocells`. `rays` cross them from `enter` to `leave`. Returns those that meet the surface,
   /// having stored how.
-  Mask Search(
-    const int part[3], std::uint64_t macrocells, Mask rays, Vector enter, Vector leave)
+  Mask Search(const int part[3], std::uint64_t macrocells, Mask rays, Vector enter, Vector leave)
   {
     const D tag = this->Tag;
     Vector lower[3];
@@ -245,8 +242,8 @@ private:
   static constexpr int Width = static_cast<int>(hn::MaxLanes(D()));
 
   /// The macrocells in which `rays` are, from `enter` to `leave`.
-  Mask SearchMacrocells(const int part[3], const NodeWalks<D>& macrocells, Mask rays,
-    Vector enter, Vector leave)
+  Mask SearchMacrocells(
+    const int part[3], const NodeWalks<D>& macrocells, Mask rays, Vector enter, Vector leave)
   {
     const D tag = this->Tag;
     HWY_ALIGN std::uint64_t bits[Width];
@@ -288,14 +285,14 @@ private:
   {
     const Vector point = hn::Add(this->Rays.Origin[axis], hn::Mul(t, this->Rays.Direction[axis]));
     const Vector inside = ClampToUnit(hn::Sub(point, lower));
-    return hn::IfThenElse(hn::Eq(upperT, t), hn::Set(this->Tag, 1.0),
-      hn::IfThenZeroElse(hn::Eq(lowerT, t), inside));
+    return hn::IfThenElse(
+      hn::Eq(upperT, t), hn::Set(this->Tag, 1.0), hn::IfThenZeroElse(hn::Eq(lowerT, t), inside));
   }
 
   /// Those of `rays` that meet the surface in the cells in which they are, from `enter` to `exit`.
   /// `places`: the first cells of their macrocells.
-  Mask SearchCells(const int places[][3], const NodeWalks<D>& cells, Mask rays, Vector enter,
-    Vector exit)
+  Mask SearchCells(
+    const int places[][3], const NodeWalks<D>& cells, Mask rays, Vector enter, Vector exit)
   {
     const D tag = this->Tag;
     HWY_ALIGN double corners[8][Width];

@@ -31,8 +31,7 @@ bool RayBeam::Set(const GridRay corners[4])
     this->Forward[axis] = corners[0].Step[axis] > 0.0;
     for (int corner = 0; corner < 4; ++corner)
     {
-      if (corners[corner].Step[axis] == 0.0 ||
-        corners[corner].Step[axis] != corners[0].Step[axis])
+      if (corners[corner].Step[axis] == 0.0 || corners[corner].Step[axis] != corners[0].Step[axis])
       {
         return false;
       }

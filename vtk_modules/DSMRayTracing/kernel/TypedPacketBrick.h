@@ -43,8 +43,8 @@ public:
     return this->Parts[number % PartCount].Get(number, [&] { return this->ComparePart(part); });
   }
 
-  void FindCells(const int part[3], unsigned rays, const std::uint64_t* macrocells,
-    int (*first)[3], std::uint64_t* cells) const override
+  void FindCells(const int part[3], unsigned rays, const std::uint64_t* macrocells, int (*first)[3],
+    std::uint64_t* cells) const override
   {
     int last = -1;
     for (; rays != 0; rays &= rays - 1)
@@ -212,8 +212,8 @@ private:
   /// 5 x 5 samples, four of a row at once.
   Slice GetWholeSlice(const int first[3], int z) const
   {
-    const T* row = this->Brick.GetSamples() +
-      this->Brick.GetOffset(first[0], first[1], first[2] + z);
+    const T* row =
+      this->Brick.GetSamples() + this->Brick.GetOffset(first[0], first[1], first[2] + z);
     const T level = this->Level.GetFirst();
     const Four levels = Four{} + level;
     Bits bits = { 1, 2, 4, 8 };
@@ -238,8 +238,8 @@ private:
     std::uint32_t inside = 0;
     for (int y = 0; y <= counts[1]; ++y)
     {
-      const T* row = this->Brick.GetSamples() +
-        this->Brick.GetOffset(first[0], first[1] + y, first[2] + z);
+      const T* row =
+        this->Brick.GetSamples() + this->Brick.GetOffset(first[0], first[1] + y, first[2] + z);
       for (int x = 0; x <= counts[0]; ++x)
       {
         inside |= std::uint32_t{ this->Level.IsInside(row[x]) } << (x + RowBits * y);

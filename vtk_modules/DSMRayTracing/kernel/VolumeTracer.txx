@@ -102,8 +102,8 @@ bool VolumeTracer<Store>::IntersectBrick(const IsosurfaceObject& object, const G
   {
     return false;
   }
-  hasGradient = HitGradient::FindWithin(
-    voxels, cell, IsovalueLevel<T>(object.Isovalues[isovalue]), gradient);
+  hasGradient =
+    HitGradient::FindWithin(voxels, cell, IsovalueLevel<T>(object.Isovalues[isovalue]), gradient);
   return true;
 }
 
