@@ -3,39 +3,23 @@
 
 #include "vtkDSMScene.h"
 #include "vtkDSMVolumeMapper.h"
+#include "vtkPVDSMDelivery.h"
 #include "vtkPVDSMFrameReport.h"
+#include "vtkPVDSMLightOptions.h"
 
 #include "vtkCommand.h"
 #include "vtkDataObject.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
 #include "vtkMatrix4x4.h"
-#include "vtkMultiProcessController.h"
 #include "vtkObjectFactory.h"
-#include "vtkOrderedCompositingHelper.h"
 #include "vtkPVDataRepresentationPipeline.h"
 #include "vtkPVRenderView.h"
-#include "vtkPVRenderViewDataDeliveryManager.h"
-#include "vtkPVSession.h"
 #include "vtkPartitionedDataSet.h"
-#include "vtkProcessModule.h"
 #include "vtkProperty.h"
 #include "vtkRenderer.h"
 #include "vtkScalarsToColors.h"
 #include "vtkVolume.h"
-
-namespace
-{
-
-/// ParaView's client holds every representation and hears every render, but only displays.
-bool IsRenderingProcess()
-{
-  auto* module = vtkProcessModule::GetProcessModule();
-  auto* session = module ? vtkPVSession::SafeDownCast(module->GetActiveSession()) : nullptr;
-  return !session || session->HasProcessRole(vtkPVSession::RENDER_SERVER);
-}
-
-} // namespace
 
 vtkStandardNewMacro(vtkPVDSMImageRepresentation);
 
@@ -100,18 +84,14 @@ int vtkPVDSMImageRepresentation::ProcessViewRequest(
   }
   else if (request == vtkPVView::REQUEST_RENDER() && this->Scene)
   {
-    this->ChooseDelivery();
+    vtkPVDSMDelivery::Choose(this->Scene, this->GetView());
   }
   return 1;
 }
 
 void vtkPVDSMImageRepresentation::PrepareUpdate(vtkInformation* inInfo, vtkInformation* outInfo)
 {
-  vtkPVRenderView::SetPiece(inInfo, this, this->Placeholder);
-  vtkPVRenderView::SetDeliverToClientAndRenderingProcesses(inInfo, this, false, false);
-  vtkPVRenderView::SetRequiresDistributedRendering(inInfo, this, true);
-  // IceT must call every rank's renderer: each has tiles, wherever its data lie.
-  outInfo->Set(vtkPVRenderView::RENDER_EMPTY_IMAGES(), 1);
+  vtkPVDSMDelivery::KeepData(this, this->Placeholder, inInfo, outInfo);
   // In world space: with a matrix, the view would transform two corners of the box only.
   if (const double* bounds = this->Volume->GetBounds())
   {
@@ -125,34 +105,6 @@ void vtkPVDSMImageRepresentation::ForwardProgress()
   this->UpdateProgress(this->Mapper->GetProgress());
 }
 
-void vtkPVDSMImageRepresentation::ChooseDelivery()
-{
-  auto* view = vtkPVRenderView::SafeDownCast(this->GetView());
-  auto* controller = this->Scene->GetController();
-  if (!view || !controller || controller->GetNumberOfProcesses() < 2)
-  {
-    this->Scene->DeliverTiles();
-  }
-  else if (view->GetUseOrderedCompositing())
-  {
-    auto* manager = vtkPVRenderViewDataDeliveryManager::SafeDownCast(view->GetDeliveryManager());
-    const auto order = vtkSmartPointer<vtkOrderedCompositingHelper>::New();
-    order->SetBoundingBoxes(manager->GetCuts());
-    const int rank = controller->GetLocalProcessId();
-    this->Scene->DeliverEverywhere(
-      [order, rank](vtkCamera* camera) { return order->ComputeSortOrder(camera).back() == rank; });
-  }
-  else if (view->GetUseSSAO())
-  {
-    // Ambient occlusion looks at the neighbours of a pixel, before the ranks' pictures are merged.
-    this->Scene->DeliverEverywhere([](vtkCamera*) { return true; });
-  }
-  else
-  {
-    this->Scene->DeliverTiles();
-  }
-}
-
 bool vtkPVDSMImageRepresentation::AddToView(vtkView* view)
 {
   auto* renderView = vtkPVRenderView::SafeDownCast(view);
@@ -160,7 +112,7 @@ bool vtkPVDSMImageRepresentation::AddToView(vtkView* view)
   {
     return false;
   }
-  if (IsRenderingProcess())
+  if (vtkPVDSMDelivery::IsRenderingProcess())
   {
     this->Scene = vtkDSMScene::ForRenderer(renderView->GetRenderer());
     renderView->GetRenderer()->AddViewProp(this->Volume);
@@ -299,6 +251,11 @@ void vtkPVDSMImageRepresentation::SetUserTransform(const double matrix[16])
   vtkNew<vtkMatrix4x4> transform;
   transform->DeepCopy(matrix);
   this->Volume->SetUserMatrix(transform);
+}
+
+void vtkPVDSMImageRepresentation::SetLightOptions(vtkPVDSMLightOptions* options)
+{
+  this->Mapper->SetLightOptions(options);
 }
 
 void vtkPVDSMImageRepresentation::SetFrameReport(vtkPVDSMFrameReport* report)

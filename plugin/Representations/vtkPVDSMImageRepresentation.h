@@ -21,6 +21,7 @@ class vtkDSMVolumeMapper;
 class vtkMatrix4x4;
 class vtkPartitionedDataSet;
 class vtkPVDSMFrameReport;
+class vtkPVDSMLightOptions;
 class vtkPVRenderView;
 class vtkScalarsToColors;
 class vtkVolume;
@@ -78,6 +79,11 @@ public:
   ///@}
 
   /**
+   * Shadows, ambient occlusion, mirrors and samples.
+   */
+  void SetLightOptions(vtkPVDSMLightOptions* options);
+
+  /**
    * What shall tell of the view's frames; null on the client.
    */
   void SetFrameReport(vtkPVDSMFrameReport* report);
@@ -97,8 +103,6 @@ private:
   void operator=(const vtkPVDSMImageRepresentation&) = delete;
 
   void PrepareUpdate(vtkInformation* inInfo, vtkInformation* outInfo);
-  /// By what else the view shows.
-  void ChooseDelivery();
   void ConnectFrameReport();
   /// Taking in data happens while the view renders; ParaView watches the representation, only.
   void ForwardProgress();

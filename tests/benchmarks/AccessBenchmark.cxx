@@ -177,9 +177,13 @@ void RunFrame(dsm::Messenger& messenger, Store& store, rt::WorkerPool& pool,
     [&]
     {
       bool any = store.Service();
-      if (!agreement.HasReported() && (workers == 0 || pool.GetRunning() == 0))
+      if (!agreement.IsDone() && (workers == 0 || pool.GetRunning() == 0))
       {
-        agreement.ReportDone(cause);
+        if (!cause.empty())
+        {
+          agreement.ReportFailure(cause);
+        }
+        agreement.ReportDone();
         any = true;
       }
       return any;

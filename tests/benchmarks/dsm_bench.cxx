@@ -3,6 +3,7 @@
 #include "AccessBenchmark.h"
 #include "BenchmarkOptions.h"
 #include "BenchmarkVolume.h"
+#include "MeshBenchmark.h"
 
 #include "DSMCore/BlockStore.h"
 #include "DSMCore/LoopbackTransport.h"
@@ -255,10 +256,14 @@ int main(int argc, char** argv)
     {
       AccessBenchmark::Run(AccessBenchmark::Parse(argc, argv), messenger);
     }
+    else if (name == "mesh")
+    {
+      MeshBenchmark::Run(MeshBenchmark::Parse(argc, argv), messenger);
+    }
     else
     {
       throw dsm::Error(std::string("The first argument names the benchmark.\n") +
-        BenchmarkOptions::Usage() + AccessBenchmark::Usage());
+        BenchmarkOptions::Usage() + AccessBenchmark::Usage() + MeshBenchmark::Usage());
     }
   }
   catch (const std::exception& error)

@@ -46,14 +46,27 @@ std::string BlockSpread::Run()
   this->Messages.SetHandler(MessageKind::PublishDone,
     [this](Message&& message) { this->Finished += message.Session == this->Session ? 1 : 0; });
   // The own messages must have left, as in FragmentExchange.
-  this->Messages.ProgressUntil(
-    [this]
+  const auto done = [this]
+  {
+    return this->Finished == this->Messages.GetSize() &&
+      !this->Messages.HasUnsent(MessageKind::Fragment) &&
+      !this->Messages.HasUnsent(MessageKind::PublishDone);
+  };
+  while (!done())
+  {
+    try
     {
-      return this->Finished == this->Messages.GetSize() &&
-        !this->Messages.HasUnsent(MessageKind::Fragment) &&
-        !this->Messages.HasUnsent(MessageKind::PublishDone);
-    },
-    [this] { return this->Feed(); });
+      this->Messages.ProgressUntil(done, [this] { return this->Feed(); });
+    }
+    catch (...)
+    {
+      // A message that is lost or rejected is this rank's failure; the others still need it.
+      if (this->Cause.empty())
+      {
+        this->Cause = Messenger::DescribeException();
+      }
+    }
+  }
   return this->Cause;
 }
 

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <iterator>
 #include <limits>
+#include <optional>
 
 namespace dsm
 {
@@ -232,8 +233,9 @@ void BlockStore::MoveTo(MemoryOrganization organization)
 std::shared_ptr<BlockSegment> BlockStore::Publish(const std::string& what, BlockDirectory directory,
   FragmentSource& source, FragmentSink& sink, const std::function<void(double)>& progress)
 {
-  const BlockDirectory next = directory;
-  const MemoryPlan plan = this->MakePlan(&next);
+  std::optional<BlockDirectory> next;
+  this->Messages.RunTogether(what, [&] { next = directory; });
+  const MemoryPlan plan = this->MakePlan(&*next);
   MemoryOrganization chosen = MemoryOrganization::Automatic;
   try
   {

@@ -22,6 +22,8 @@ struct Status
   int FailedRank = -1;
   /// What went wrong there; empty when nothing did.
   std::string Cause;
+  /// Whether every rank failed for this reason.
+  bool IsEverywhere = false;
 
   bool IsOk() const { return this->FailedRank < 0; }
 };

@@ -53,25 +53,29 @@ std::string FragmentExchange::Run(
       !this->Messages.HasUnsent(MessageKind::Fragment) &&
       !this->Messages.HasUnsent(MessageKind::PublishDone);
   };
-  this->Messages.ProgressUntil(done,
-    [&]
+  const auto work = [&]
+  {
+    const bool fed = this->Feed(source, sink);
+    if (progress && fed && this->Cause.empty())
     {
-      const bool fed = this->Feed(source, sink);
-      if (progress && fed && this->Cause.empty())
-      {
-        this->Try(
-          [&]
+      this->Try(
+        [&]
+        {
+          const double part = std::clamp(source.GetProgress(), 0.0, 1.0);
+          if (part >= shown + ProgressStep && part < 1.0) // all is not done yet
           {
-            const double part = std::clamp(source.GetProgress(), 0.0, 1.0);
-            if (part >= shown + ProgressStep && part < 1.0) // all is not done yet
-            {
-              shown = part;
-              progress(part);
-            }
-          });
-      }
-      return fed;
-    });
+            shown = part;
+            progress(part);
+          }
+        });
+    }
+    return fed;
+  };
+  while (!done())
+  {
+    // A message that is lost or rejected is this rank's failure; the others still need it.
+    this->Try([&] { this->Messages.ProgressUntil(done, work); });
+  }
   return this->Cause;
 }
 

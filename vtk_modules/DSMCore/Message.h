@@ -24,6 +24,7 @@ enum class MessageKind : std::uint32_t
   TileRequest,
   TileGrant,
   FrameDone,
+  FrameStop,
   FrameEnd,
   Last = FrameEnd
 };

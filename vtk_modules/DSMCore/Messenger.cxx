@@ -407,6 +407,8 @@ Status Messenger::Agree(const std::string& cause)
     {
       status.FailedRank = static_cast<int>(rank);
       status.Cause.assign(reinterpret_cast<const char*>(causes[rank].data()), causes[rank].size());
+      status.IsEverywhere = std::all_of(
+        causes.begin(), causes.end(), [&](const auto& other) { return other == causes[rank]; });
       break;
     }
   }
@@ -428,7 +430,7 @@ void Messenger::RunTogether(const std::string& what, const std::function<void()>
   if (!status.IsOk())
   {
     throw Error(what + ": " +
-      (this->GetSize() > 1 ? "Rank " + std::to_string(status.FailedRank) + ": " : std::string()) +
+      (status.IsEverywhere ? std::string() : "Rank " + std::to_string(status.FailedRank) + ": ") +
       status.Cause);
   }
 }

@@ -95,7 +95,7 @@ public:
 
   /// Runs `step` on this rank, turns whatever it throws (bad_alloc too) into a cause, agrees, and
   /// throws the same Error on every rank when any failed: collectives fail collectively. Its text
-  /// is "`what`: Rank 2: cause", without the rank when there is only one.
+  /// is "`what`: Rank 2: cause", without the rank when every rank failed for the same reason.
   void RunTogether(const std::string& what, const std::function<void()>& step);
 
   /// The text for the exception that is being handled; for use in a catch block.

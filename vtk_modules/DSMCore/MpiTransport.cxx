@@ -13,6 +13,7 @@
 #include <chrono>
 #include <deque>
 #include <limits>
+#include <new>
 #include <string>
 #include <thread>
 #include <utility>
@@ -27,6 +28,8 @@ namespace
 constexpr int Tag = 0;
 /// Matched messages that may be under way to this rank before it looks for more.
 constexpr std::size_t MaximumArrivingBytes = std::size_t(16) << 20;
+/// Lets a rank without memory take part in what all must agree on.
+constexpr std::size_t ReserveBytes = std::size_t(1) << 20;
 /// How long a transport waits, on destruction, for the other ranks to take its last messages.
 constexpr std::chrono::seconds DrainTime(5);
 
@@ -156,7 +159,43 @@ private:
   {
     MPI_Request Request = MPI_REQUEST_NULL;
     std::vector<std::byte> Buffer;
+    std::size_t LostBytes = 0; ///< of a message that there is no memory for
   };
+
+  void FillReserve() noexcept
+  {
+    if (this->Reserve.capacity() < ReserveBytes)
+    {
+      try
+      {
+        this->Reserve.reserve(ReserveBytes);
+      }
+      catch (const std::bad_alloc&)
+      {
+        // Tried again before the next message.
+      }
+    }
+  }
+
+  /// Memory for a message of `bytes`: when there is none left, the reserve. Empty when that is too
+  /// small, too.
+  std::vector<std::byte> TakeBuffer(std::size_t bytes)
+  {
+    this->FillReserve();
+    try
+    {
+      return std::vector<std::byte>(bytes);
+    }
+    catch (const std::bad_alloc&)
+    {
+      if (bytes > this->Reserve.capacity())
+      {
+        return {};
+      }
+      this->Reserve.resize(bytes);
+      return std::exchange(this->Reserve, {});
+    }
+  }
 
   void Check(int code, const char* call) const
   {
@@ -220,7 +259,13 @@ private:
       this->Check(MPI_Get_count(&status, MPI_BYTE, &bytes), "MPI_Get_count");
       auto& queue = this->Arriving[static_cast<std::size_t>(status.MPI_SOURCE)];
       Receiving receiving;
-      receiving.Buffer.resize(static_cast<std::size_t>(bytes));
+      receiving.Buffer = this->TakeBuffer(static_cast<std::size_t>(bytes));
+      if (receiving.Buffer.empty())
+      {
+        // Taken all the same, cut to nothing: the sender, and what follows, must not wait for it.
+        receiving.LostBytes = static_cast<std::size_t>(bytes);
+        bytes = 0;
+      }
       this->Check(
         MPI_Imrecv(receiving.Buffer.data(), bytes, MPI_BYTE, &matched, &receiving.Request),
         "MPI_Imrecv");
@@ -239,7 +284,20 @@ private:
     while (!queue.empty())
     {
       int arrived = 0;
-      this->Check(MPI_Test(&queue.front().Request, &arrived, MPI_STATUS_IGNORE), "MPI_Test");
+      const int code = MPI_Test(&queue.front().Request, &arrived, MPI_STATUS_IGNORE);
+      if (const std::size_t lost = queue.front().LostBytes)
+      {
+        if (!arrived && code == MPI_SUCCESS)
+        {
+          break;
+        }
+        queue.pop_front();
+        throw Error("out of memory: a message of " + std::to_string(lost) + " bytes from rank " +
+          std::to_string(source) +
+          " could not be taken in. Use more ranks or more hosts, so that "
+          "each rank holds fewer bytes.");
+      }
+      this->Check(code, "MPI_Test");
       if (!arrived)
       {
         break;
@@ -319,6 +377,7 @@ private:
   std::vector<std::deque<Receiving>> Arriving; ///< per source
   std::size_t ArrivingBytes = 0;
   std::deque<Message> ToSelf;
+  std::vector<std::byte> Reserve; ///< for receiving when no memory is left; untouched until then
 };
 
 bool IsRunning()

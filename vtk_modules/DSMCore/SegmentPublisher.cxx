@@ -6,6 +6,7 @@
 #include "DSMCore/HostMemory.h"
 
 #include <algorithm>
+#include <optional>
 #include <utility>
 
 namespace dsm
@@ -57,7 +58,9 @@ void SegmentPublisher::Run(BlockDirectory directory, FragmentSource& source, Fra
   // Asked before the ranks meet in the next line, hence before any of them takes memory.
   const std::uint64_t available = GetAvailableHostMemory();
   const auto fingerprints = this->Messages.AllGatherValue(GetFingerprint(directory));
-  const BlockDirectory blocks = directory;
+  std::optional<BlockDirectory> copy;
+  this->Messages.RunTogether(this->What, [&] { copy = directory; });
+  const BlockDirectory& blocks = *copy;
   this->Messages.RunTogether(this->What,
     [&]
     {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkDSMFrameProp.h"
 
-#include "DSMRayTracing/frame/Frame.h"
+#include "DSMRayTracing/frame/FrameGather.h"
 
 #include "vtkCamera.h"
 #include "vtkMath.h"
@@ -21,7 +21,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstring>
+#include <utility>
 
 namespace
 {
@@ -75,26 +75,13 @@ vtkMatrix4x4* GetProjection(vtkRenderer* renderer)
 class vtkDSMFrameProp::Internals
 {
 public:
-  void Store(const rt::Frame& frame)
+  void Store(rt::Picture picture)
   {
-    const std::size_t pixels = static_cast<std::size_t>(frame.Width) * frame.Height;
-    this->Width = frame.Width;
-    this->Height = frame.Height;
-    this->Color.assign(4 * pixels, 0);
-    this->Depth.assign(pixels, 1.0f);
-    for (const rt::Tile& tile : frame.Tiles)
-    {
-      for (int row = 0; row < tile.Height; ++row)
-      {
-        const std::size_t from = static_cast<std::size_t>(row) * tile.Width;
-        const std::size_t to = static_cast<std::size_t>(tile.Y + row) * frame.Width + tile.X;
-        std::memcpy(&this->Color[4 * to], &tile.Color[4 * from], 4 * tile.Width);
-        std::memcpy(&this->Depth[to], &tile.Depth[from], sizeof(float) * tile.Width);
-      }
-    }
+    this->Frame = std::move(picture);
     this->Uploaded = false;
-    this->IsEmpty = frame.Tiles.empty();
   }
+
+  bool IsEmpty() const { return this->Frame.Depth.empty(); }
 
   void Upload(vtkOpenGLRenderWindow* window)
   {
@@ -109,9 +96,9 @@ public:
     if (!this->Uploaded)
     {
       this->ColorTexture->Create2DFromRaw(
-        this->Width, this->Height, 4, VTK_UNSIGNED_CHAR, this->Color.data());
+        this->Frame.Width, this->Frame.Height, 4, VTK_UNSIGNED_CHAR, this->Frame.Color.data());
       this->DepthTexture->Create2DFromRaw(
-        this->Width, this->Height, 1, VTK_FLOAT, this->Depth.data());
+        this->Frame.Width, this->Frame.Height, 1, VTK_FLOAT, this->Frame.Depth.data());
       this->Uploaded = true;
     }
   }
@@ -156,11 +143,7 @@ public:
     this->ColorTexture->Deactivate();
   }
 
-  int Width = 0;
-  int Height = 0;
-  std::vector<std::uint8_t> Color;
-  std::vector<float> Depth;
-  bool IsEmpty = true;
+  rt::Picture Frame;
   bool DrawsColor = true;
   bool Uploaded = false;
   double Bounds[6];
@@ -182,10 +165,10 @@ vtkDSMFrameProp::vtkDSMFrameProp()
 vtkDSMFrameProp::~vtkDSMFrameProp() = default;
 
 void vtkDSMFrameProp::SetFrame(
-  const rt::Frame& frame, vtkMatrix4x4* projection, const double bounds[6], bool drawsColor)
+  rt::Picture frame, vtkMatrix4x4* projection, const double bounds[6], bool drawsColor)
 {
   this->Self->DrawsColor = drawsColor;
-  this->Self->Store(frame);
+  this->Self->Store(std::move(frame));
   this->Self->Projection->DeepCopy(projection);
   std::copy_n(bounds, 6, this->Self->Bounds);
   this->Modified();
@@ -193,9 +176,9 @@ void vtkDSMFrameProp::SetFrame(
 
 void vtkDSMFrameProp::Clear()
 {
-  if (!this->Self->IsEmpty || vtkMath::AreBoundsInitialized(this->Self->Bounds))
+  if (!this->Self->IsEmpty() || vtkMath::AreBoundsInitialized(this->Self->Bounds))
   {
-    this->Self->Store(rt::Frame());
+    this->Self->Store({});
     vtkMath::UninitializeBounds(this->Self->Bounds);
     this->Modified();
   }
@@ -211,7 +194,7 @@ int vtkDSMFrameProp::RenderOpaqueGeometry(vtkViewport* viewport)
   auto* renderer = vtkRenderer::SafeDownCast(viewport);
   auto* window =
     renderer ? vtkOpenGLRenderWindow::SafeDownCast(renderer->GetRenderWindow()) : nullptr;
-  if (!window || this->Self->IsEmpty || renderer->GetSelector())
+  if (!window || this->Self->IsEmpty() || renderer->GetSelector())
   {
     return 0;
   }
@@ -234,5 +217,5 @@ void vtkDSMFrameProp::ReleaseGraphicsResources(vtkWindow* window)
 void vtkDSMFrameProp::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
-  os << indent << "Frame: " << this->Self->Width << " x " << this->Self->Height << "\n";
+  os << indent << "Frame: " << this->Self->Frame.Width << " x " << this->Self->Frame.Height << "\n";
 }

@@ -18,7 +18,7 @@
 
 namespace rt
 {
-struct Frame;
+struct Picture;
 }
 class vtkMatrix4x4;
 
@@ -34,8 +34,8 @@ public:
    * the bounds of what it shows, on all ranks. An empty frame draws nothing. Without `drawsColor`,
    * only the depth is drawn, which hides what lies behind.
    */
-  void SetFrame(const rt::Frame& frame, vtkMatrix4x4* projection, const double bounds[6],
-    bool drawsColor = true);
+  void SetFrame(
+    rt::Picture frame, vtkMatrix4x4* projection, const double bounds[6], bool drawsColor = true);
 
   /**
    * Draw nothing from now on.

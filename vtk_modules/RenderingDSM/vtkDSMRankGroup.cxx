@@ -109,6 +109,7 @@ vtkDSMRankGroup::vtkDSMRankGroup(std::unique_ptr<dsm::Transport> transport)
   , Store(this->Messenger, GetFirstSettings())
   , FrameRenderer(this->Messenger)
 {
+  this->Messenger.GetHosts(); // collective the first time
 }
 
 void vtkDSMRankGroup::Configure(std::size_t cacheBytes, int threads)

@@ -29,7 +29,7 @@ public:
   dsm::BlockStore& GetStore() { return this->Store; }
   rt::FrameRenderer& GetFrameRenderer() { return this->FrameRenderer; }
 
-  /// `threads` 0 means the cores of the host divided by the ranks on it. Collective the first time.
+  /// `threads` 0 means the cores of the host divided by the ranks on it. Local.
   void Configure(std::size_t cacheBytes, int threads);
 
 private:

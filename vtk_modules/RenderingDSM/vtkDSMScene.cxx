@@ -2,25 +2,34 @@
 #include "vtkDSMScene.h"
 
 #include "DSMRayTracing/frame/FrameGather.h"
+#include "DSMRayTracing/frame/SceneDigest.h"
 #include "vtkDSMFrameProp.h"
+#include "vtkDSMLightOptions.h"
+#include "vtkDSMPolyDataMapper.h"
 #include "vtkDSMRankGroup.h"
+#include "vtkDSMSceneMesh.h"
 #include "vtkDSMSceneVolume.h"
 #include "vtkDSMStatistics.h"
 #include "vtkDSMTranslation.h"
 #include "vtkDSMVolumeMapper.h"
 
+#include "vtkActor.h"
 #include "vtkBoundingBox.h"
 #include "vtkCamera.h"
 #include "vtkCommand.h"
+#include "vtkMapper.h"
+#include "vtkMath.h"
 #include "vtkMatrix4x4.h"
 #include "vtkMultiProcessController.h"
 #include "vtkObjectFactory.h"
 #include "vtkPropCollection.h"
+#include "vtkRenderWindow.h"
 #include "vtkRenderer.h"
 #include "vtkVolume.h"
 
 #include <algorithm>
 #include <map>
+#include <optional>
 #include <vector>
 
 namespace
@@ -28,6 +37,14 @@ namespace
 
 /// After vtkSynchronizedRenderers (0), which brings the camera.
 constexpr float TracePriority = -1.0f;
+/// Before vtkSynchronizedRenderers, which makes it black while the ranks render.
+constexpr float BackgroundPriority = 1.0f;
+
+/// Frames per second; an application that wants as many from its window is moving the camera.
+constexpr double InteractiveRate = 1.0;
+
+/// Of the diagonal of what is shown: as far as ambient occlusion looks when nothing is said.
+constexpr double AmbientOcclusionPart = 0.2;
 
 std::map<vtkRenderer*, vtkDSMScene*>& GetRegistry()
 {
@@ -42,28 +59,41 @@ class vtkDSMScene::Internals
 public:
   struct Member
   {
-    vtkVolume* Volume;
-    vtkDSMSceneVolume* State;
+    vtkProp3D* Prop;
+    vtkDSMSceneMember* State;
   };
 
+  static std::unique_ptr<vtkDSMSceneMember> CreateState(vtkAlgorithm* mapper);
   void FindMembers();
   void Configure();
   void Update();
   void Draw();
+  void GetBounds(double bounds[6]) const;
   void DrawLast(const rt::Scene& scene);
   void Clear();
+  rt::LightTransport GetTransport() const;
+  glm::vec3 AgreeOnBackground();
+  int CountSamplesOfFrame(int missing) const;
+  void TraceSamples(const rt::Scene& scene, rt::FrameRequest& request);
 
   vtkWeakPointer<vtkRenderer> Renderer;
-  unsigned long Observer = 0;
+  unsigned long Observers[2] = { 0, 0 };
+  glm::vec3 Background{ 0.0f }; ///< of this rank's renderer, as the application set it
   vtkSmartPointer<vtkMultiProcessController> Controller;
   vtkNew<vtkDSMFrameProp> Prop;
   vtkNew<vtkDSMStatistics> Statistics;
   std::shared_ptr<vtkDSMRankGroup> Group;
-  std::vector<std::unique_ptr<vtkDSMSceneVolume>> Volumes;
+  std::vector<std::unique_ptr<vtkDSMSceneMember>> States;
   std::vector<Member> Members;                ///< of the frame, in the renderer's order
   std::string Failure;                        ///< that was reported last
   std::function<bool(vtkCamera*)> DrawsColor; ///< set: the frame is delivered everywhere
   bool Tracing = false;
+  int SamplesPerFrame = 0;
+  /// The last frame, and what it shows; further samples are added while that stays the same.
+  rt::Frame Frame;
+  std::uint64_t Digest = 0;
+  int Samples = 0; ///< that the frame has; 0 when there is nothing to add to
+  int SamplesWanted = 1;
 };
 
 vtkStandardNewMacro(vtkDSMScene);
@@ -82,7 +112,10 @@ vtkDSMScene::~vtkDSMScene()
   }
   if (vtkRenderer* renderer = this->Self->Renderer)
   {
-    renderer->RemoveObserver(this->Self->Observer);
+    for (const unsigned long observer : this->Self->Observers)
+    {
+      renderer->RemoveObserver(observer);
+    }
     renderer->RemoveViewProp(this->Self->Prop);
   }
 }
@@ -105,7 +138,9 @@ vtkSmartPointer<vtkDSMScene> vtkDSMScene::ForRenderer(vtkRenderer* renderer)
 void vtkDSMScene::Attach(vtkRenderer* renderer)
 {
   this->Self->Renderer = renderer;
-  this->Self->Observer =
+  this->Self->Observers[0] = renderer->AddObserver(
+    vtkCommand::StartEvent, this, &vtkDSMScene::NoteBackground, BackgroundPriority);
+  this->Self->Observers[1] =
     renderer->AddObserver(vtkCommand::StartEvent, this, &vtkDSMScene::Trace, TracePriority);
   renderer->AddViewProp(this->Self->Prop);
 }
@@ -140,47 +175,88 @@ void vtkDSMScene::DeliverEverywhere(std::function<bool(vtkCamera*)> drawsColor)
   this->Self->DrawsColor = std::move(drawsColor);
 }
 
+void vtkDSMScene::SetSamplesPerFrame(int samples)
+{
+  this->Self->SamplesPerFrame = std::max(0, samples);
+}
+
+int vtkDSMScene::GetSamplesPerFrame() const
+{
+  return this->Self->SamplesPerFrame;
+}
+
+bool vtkDSMScene::IsRefined() const
+{
+  return this->Self->Samples == 0 || this->Self->Samples >= this->Self->SamplesWanted;
+}
+
 vtkDSMStatistics* vtkDSMScene::GetStatistics() const
 {
   return this->Self->Statistics;
 }
 
+/// Null for what is not traced.
+std::unique_ptr<vtkDSMSceneMember> vtkDSMScene::Internals::CreateState(vtkAlgorithm* mapper)
+{
+  if (auto* volumeMapper = vtkDSMVolumeMapper::SafeDownCast(mapper))
+  {
+    return std::make_unique<vtkDSMSceneVolume>(volumeMapper);
+  }
+  if (auto* polyDataMapper = vtkDSMPolyDataMapper::SafeDownCast(mapper))
+  {
+    return std::make_unique<vtkDSMSceneMesh>(polyDataMapper);
+  }
+  return nullptr;
+}
+
 void vtkDSMScene::Internals::FindMembers()
 {
   this->Members.clear();
-  std::vector<std::unique_ptr<vtkDSMSceneVolume>> kept;
+  std::vector<std::unique_ptr<vtkDSMSceneMember>> kept;
   vtkCollectionSimpleIterator position;
   vtkPropCollection* props = this->Renderer->GetViewProps();
   props->InitTraversal(position);
   while (vtkProp* prop = props->GetNextProp(position))
   {
     auto* volume = vtkVolume::SafeDownCast(prop);
-    auto* mapper = volume ? vtkDSMVolumeMapper::SafeDownCast(volume->GetMapper()) : nullptr;
-    if (!mapper)
+    auto* actor = vtkActor::SafeDownCast(prop);
+    vtkAlgorithm* mapper = nullptr;
+    if (volume)
+    {
+      mapper = volume->GetMapper();
+    }
+    else if (actor)
+    {
+      mapper = actor->GetMapper();
+    }
+    const auto known = std::find_if(this->States.begin(), this->States.end(),
+      [=](const auto& state) { return state && mapper && state->GetAlgorithm() == mapper; });
+    auto state = known == this->States.end() ? CreateState(mapper) : std::move(*known);
+    if (!state)
     {
       continue;
     }
-    auto known = std::find_if(this->Volumes.begin(), this->Volumes.end(),
-      [=](const auto& candidate) { return candidate && candidate->GetMapper() == mapper; });
-    kept.push_back(known == this->Volumes.end() ? std::make_unique<vtkDSMSceneVolume>(mapper)
-                                                : std::move(*known));
-    if (volume->GetVisibility())
+    kept.push_back(std::move(state));
+    if (prop->GetVisibility())
     {
-      this->Members.push_back({ volume, kept.back().get() });
+      this->Members.push_back({ vtkProp3D::SafeDownCast(prop), kept.back().get() });
     }
   }
-  // What is left belonged to volumes that were removed; their bricks leave the store.
-  this->Volumes = std::move(kept);
+  // What is left belonged to props that were removed; their bricks leave the store.
+  this->States = std::move(kept);
 }
 
 void vtkDSMScene::Internals::Configure()
 {
   int cache = 1;
   int threads = 0;
+  this->SamplesWanted = 1;
   for (const Member& member : this->Members)
   {
-    cache = std::max(cache, member.State->GetMapper()->GetCacheSize());
-    threads = std::max(threads, member.State->GetMapper()->GetNumberOfThreads());
+    cache = std::max(cache, member.State->GetCacheSize());
+    threads = std::max(threads, member.State->GetNumberOfThreads());
+    this->SamplesWanted =
+      std::max(this->SamplesWanted, member.State->GetLightOptions()->GetSamplesPerPixel());
   }
   this->Group->Configure(static_cast<std::size_t>(cache) << 20, threads);
 }
@@ -189,18 +265,23 @@ void vtkDSMScene::Internals::Update()
 {
   dsm::Messenger& messenger = this->Group->GetMessenger();
   std::vector<std::byte> mine;
-  for (const Member& member : this->Members)
-  {
-    member.State->GetMapper()->UpdatePiece(messenger.GetRank(), messenger.GetSize());
-    mine.push_back(std::byte(member.State->HasNewData() ? 1 : 0));
-  }
+  messenger.RunTogether("Updating the data",
+    [&]
+    {
+      this->Configure();
+      for (const Member& member : this->Members)
+      {
+        member.State->UpdatePiece(messenger.GetRank(), messenger.GetSize());
+        mine.push_back(std::byte(member.State->HasNewData() ? 1 : 0));
+      }
+    });
   // One rank's change time says nothing of another's.
   const auto all = messenger.AllGather(mine);
   for (const auto& flags : all)
   {
     if (flags.size() != all.front().size())
     {
-      throw dsm::Error("The ranks do not show the same volumes; the frame was left out.");
+      throw dsm::Error("The ranks do not show the same datasets; the frame was left out.");
     }
   }
   for (std::size_t index = 0; index < mine.size(); ++index)
@@ -213,53 +294,158 @@ void vtkDSMScene::Internals::Update()
 
 void vtkDSMScene::Internals::Draw()
 {
+  dsm::Messenger& messenger = this->Group->GetMessenger();
   rt::Scene scene;
-  vtkBoundingBox box;
-  for (const Member& member : this->Members)
-  {
-    member.State->AddTo(scene, member.Volume);
-    if (const double* bounds = member.Volume->GetBounds())
+  rt::FrameRequest request;
+  vtkNew<vtkMatrix4x4> projection;
+  messenger.RunTogether("Preparing the frame",
+    [&]
     {
-      box.AddBounds(bounds);
-    }
-  }
-  if (scene.Isosurfaces.empty())
+      for (const Member& member : this->Members)
+      {
+        member.State->AddTo(scene, member.Prop);
+      }
+      this->DrawLast(scene);
+      scene.Lights = vtkDSMTranslation::ToLights(this->Renderer);
+      scene.Transport = this->GetTransport();
+      request = vtkDSMTranslation::ToRequest(this->Renderer, projection);
+    });
+  if (scene.Isosurfaces.empty() && scene.Meshes.empty())
   {
     this->Clear();
     return;
   }
-  this->DrawLast(scene);
-  scene.Lights = vtkDSMTranslation::ToLights(this->Renderer);
-  vtkNew<vtkMatrix4x4> projection;
-  const rt::FrameRequest request = vtkDSMTranslation::ToRequest(this->Renderer, projection);
-  const rt::Frame frame =
-    this->Group->GetFrameRenderer().Render(this->Group->GetStore(), scene, request);
-  this->Statistics->Gather(this->Group->GetMessenger(), frame);
-  double bounds[6];
-  box.GetBounds(bounds);
-  if (!this->DrawsColor)
+  scene.Transport.Background = this->AgreeOnBackground();
+  this->TraceSamples(scene, request);
+  std::optional<rt::Picture> whole;
+  if (this->DrawsColor)
   {
-    this->Prop->SetFrame(frame, projection, bounds);
+    whole = rt::GatherFrame(messenger, this->Frame);
+  }
+  messenger.RunTogether("Showing the frame",
+    [&]
+    {
+      double bounds[6];
+      this->GetBounds(bounds);
+      const bool drawsColor = !whole || this->DrawsColor(this->Renderer->GetActiveCamera());
+      this->Prop->SetFrame(
+        whole ? std::move(*whole) : rt::AssembleTiles(this->Frame), projection, bounds, drawsColor);
+    });
+}
+
+/// Collective. What mirrored rays see where they meet nothing: rank 0's background, since ParaView's
+/// other ranks have none.
+glm::vec3 vtkDSMScene::Internals::AgreeOnBackground()
+{
+  return this->Group->GetMessenger().AllGatherValue(this->Background).front();
+}
+
+/// Collective. Traces the frame, or what is missing of it.
+void vtkDSMScene::Internals::TraceSamples(const rt::Scene& scene, rt::FrameRequest& request)
+{
+  dsm::Messenger& messenger = this->Group->GetMessenger();
+  std::uint64_t digest = 0;
+  if (this->SamplesWanted > 1)
+  {
+    digest = rt::GetSceneDigest(scene, request);
+    // A rank may have seen a change that the others have not.
+    const std::uint8_t same = this->Samples > 0 && digest == this->Digest;
+    const auto all = messenger.AllGatherValue(same);
+    if (std::count(all.begin(), all.end(), 0) > 0)
+    {
+      this->Samples = 0;
+    }
+  }
+  else
+  {
+    this->Samples = 0;
+  }
+  const int missing = this->SamplesWanted - this->Samples;
+  if (missing <= 0)
+  {
     return;
   }
-  const bool drawsColor = this->DrawsColor(this->Renderer->GetActiveCamera());
-  rt::Picture picture = rt::GatherFrame(this->Group->GetMessenger(), frame);
-  rt::Frame whole;
-  whole.Width = picture.Width;
-  whole.Height = picture.Height;
-  whole.Tiles.resize(1);
-  whole.Tiles[0].Width = picture.Width;
-  whole.Tiles[0].Height = picture.Height;
-  whole.Tiles[0].Color = std::move(picture.Color);
-  whole.Tiles[0].Depth = std::move(picture.Depth);
-  this->Prop->SetFrame(whole, projection, bounds, drawsColor);
+  request.FirstSample = this->Samples;
+  request.Samples = this->CountSamplesOfFrame(missing);
+  this->Samples = 0;
+  rt::FrameRenderer& renderer = this->Group->GetFrameRenderer();
+  if (request.FirstSample == 0)
+  {
+    this->Frame = renderer.Render(this->Group->GetStore(), scene, request);
+  }
+  else
+  {
+    renderer.Refine(this->Group->GetStore(), scene, request, this->Frame);
+  }
+  this->Statistics->Gather(messenger, this->Frame);
+  this->Samples = request.FirstSample + request.Samples;
+  this->Digest = digest;
+}
+
+int vtkDSMScene::Internals::CountSamplesOfFrame(int missing) const
+{
+  vtkRenderWindow* window = this->Renderer->GetRenderWindow();
+  if (window && window->GetDesiredUpdateRate() >= InteractiveRate)
+  {
+    return 1;
+  }
+  return this->SamplesPerFrame > 0 ? std::min(this->SamplesPerFrame, missing) : missing;
+}
+
+/// Of each property, what the most demanding object wants.
+rt::LightTransport vtkDSMScene::Internals::GetTransport() const
+{
+  rt::LightTransport transport;
+  transport.MaxBounces = 0;
+  for (const Member& member : this->Members)
+  {
+    vtkDSMLightOptions* options = member.State->GetLightOptions();
+    transport.Shadows = transport.Shadows || options->GetShadows();
+    transport.LightRadius = std::max(transport.LightRadius, options->GetLightRadius());
+    transport.AmbientOcclusionSamples =
+      std::max(transport.AmbientOcclusionSamples, options->GetAmbientOcclusionSamples());
+    transport.AmbientOcclusionDistance =
+      std::max(transport.AmbientOcclusionDistance, options->GetAmbientOcclusionDistance());
+    transport.MaxBounces = std::max(transport.MaxBounces, options->GetMaxBounces());
+  }
+  if (transport.AmbientOcclusionDistance == 0.0)
+  {
+    double bounds[6];
+    this->GetBounds(bounds);
+    transport.AmbientOcclusionDistance =
+      AmbientOcclusionPart * vtkBoundingBox(bounds).GetDiagonalLength();
+  }
+  return transport;
+}
+
+/// Of what is drawn, in world space.
+void vtkDSMScene::Internals::GetBounds(double bounds[6]) const
+{
+  vtkBoundingBox box;
+  for (const Member& member : this->Members)
+  {
+    const double* part = member.Prop->GetBounds();
+    if (part && vtkMath::AreBoundsInitialized(part))
+    {
+      box.AddBounds(part);
+    }
+  }
+  box.GetBounds(bounds);
 }
 
 /// What shows through a translucent surface must have been drawn before it.
 void vtkDSMScene::Internals::DrawLast(const rt::Scene& scene)
 {
-  const bool translucent = std::any_of(scene.Isosurfaces.begin(), scene.Isosurfaces.end(),
-    [](const rt::IsosurfaceObject& object) { return object.Surface.Opacity < 1.0f; });
+  const bool translucent =
+    std::any_of(scene.Isosurfaces.begin(), scene.Isosurfaces.end(),
+      [](const rt::IsosurfaceObject& object) { return object.Surface.Opacity < 1.0f; }) ||
+    std::any_of(scene.Meshes.begin(), scene.Meshes.end(),
+      [](const rt::MeshObject& object)
+      {
+        return object.Surface.Opacity < 1.0f ||
+          object.ColoredBy == rt::MeshObject::Coloring::Colors ||
+          (object.BackSurface && object.BackSurface->Opacity < 1.0f);
+      });
   if (translucent && this->Renderer->GetViewProps()->GetLastProp() != this->Prop)
   {
     this->Renderer->RemoveViewProp(this->Prop);
@@ -271,6 +457,14 @@ void vtkDSMScene::Internals::Clear()
 {
   this->Prop->Clear();
   this->Statistics->Clear();
+  this->Frame = {};
+  this->Samples = 0;
+}
+
+void vtkDSMScene::NoteBackground()
+{
+  const double* background = this->Self->Renderer->GetBackground();
+  this->Self->Background = { background[0], background[1], background[2] };
 }
 
 void vtkDSMScene::Trace()
@@ -293,7 +487,6 @@ void vtkDSMScene::Trace()
   try
   {
     self.Group = vtkDSMRankGroup::Get(this->GetController());
-    self.Configure();
     self.Update();
     self.Draw();
   }
@@ -318,6 +511,6 @@ void vtkDSMScene::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
   os << indent << "Renderer: " << this->Self->Renderer.Get() << "\n";
-  os << indent << "Volumes: " << this->Self->Volumes.size() << "\n";
+  os << indent << "Mappers: " << this->Self->States.size() << "\n";
   this->Self->Statistics->PrintSelf(os, indent.GetNextIndent());
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class   vtkDSMScene
- * @brief   traces all volumes of a renderer that have a vtkDSMVolumeMapper, once a frame
+ * @brief   traces all volumes and actors of a renderer that have one of our mappers, once a frame
  *
  * One for each renderer. Hears the renderer's StartEvent with priority -1, after the camera has been
  * synchronised between the ranks, and then, on all ranks at once, takes in data that changed, traces
@@ -10,7 +10,8 @@
  * (ParaView's client) must not.
  *
  * Usage: `vtkSmartPointer<vtkDSMScene> scene = vtkDSMScene::ForRenderer(renderer)`, kept for as long
- * as the volumes shall be drawn; add vtkVolumes to the renderer as usual.
+ * as they shall be drawn; add vtkVolumes that have a vtkDSMVolumeMapper, and vtkActors that have a
+ * vtkDSMPolyDataMapper, to the renderer as usual. Light and shadow go across all of them.
  *
  * Failures are reported with vtkErrorMacro, once for each change of state, on every rank; the picture
  * then lacks what could not be drawn, and the application goes on.
@@ -69,6 +70,23 @@ public:
    */
   void DeliverEverywhere(std::function<bool(vtkCamera*)> drawsColor);
 
+  ///@{
+  /**
+   * Samples of each pixel that one render adds to the picture as long as camera, data and look stay
+   * as they are, until it has as many as the objects' vtkDSMLightOptions ask for; 0 (the default):
+   * all at once. An interactive application takes 1, and renders again while IsRefined() is false.
+   * While the window wants interactive rates (its DesiredUpdateRate is 1 or more), it is 1.
+   * Same value on every rank.
+   */
+  void SetSamplesPerFrame(int samples);
+  int GetSamplesPerFrame() const;
+  ///@}
+
+  /**
+   * Whether the last picture has all the samples that were asked for; the same on every rank.
+   */
+  bool IsRefined() const;
+
   /**
    * Of the last frame; the same on every rank.
    */
@@ -84,6 +102,7 @@ private:
 
   static vtkDSMScene* New();
   void Attach(vtkRenderer* renderer);
+  void NoteBackground();
   void Trace();
 
   class Internals;

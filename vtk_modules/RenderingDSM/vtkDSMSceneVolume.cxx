@@ -2,6 +2,7 @@
 #include "vtkDSMSceneVolume.h"
 
 #include "vtkDSMImagePiece.h"
+#include "vtkDSMLightOptions.h"
 #include "vtkDSMTranslation.h"
 #include "vtkDSMVolumeMapper.h"
 
@@ -9,11 +10,10 @@
 #include "vtkCompositeDataSet.h"
 #include "vtkDataObject.h"
 #include "vtkMatrix4x4.h"
-#include "vtkObject.h"
+#include "vtkProp3D.h"
 #include "vtkProperty.h"
 #include "vtkScalarsToColors.h"
 #include "vtkSmartPointer.h"
-#include "vtkVolume.h"
 
 #include <algorithm>
 #include <cmath>
@@ -46,9 +46,29 @@ vtkDSMSceneVolume::vtkDSMSceneVolume(vtkDSMVolumeMapper* mapper)
 
 vtkDSMSceneVolume::~vtkDSMSceneVolume() = default;
 
-vtkDSMVolumeMapper* vtkDSMSceneVolume::GetMapper() const
+vtkAlgorithm* vtkDSMSceneVolume::GetAlgorithm() const
 {
   return this->Mapper;
+}
+
+int vtkDSMSceneVolume::GetCacheSize() const
+{
+  return this->Mapper->GetCacheSize();
+}
+
+vtkDSMLightOptions* vtkDSMSceneVolume::GetLightOptions() const
+{
+  return this->Mapper->GetLightOptions();
+}
+
+int vtkDSMSceneVolume::GetNumberOfThreads() const
+{
+  return this->Mapper->GetNumberOfThreads();
+}
+
+void vtkDSMSceneVolume::UpdatePiece(int piece, int numberOfPieces)
+{
+  this->Mapper->UpdatePiece(piece, numberOfPieces);
 }
 
 bool vtkDSMSceneVolume::HasNewData() const
@@ -173,7 +193,7 @@ const rt::ColorMap& vtkDSMSceneVolume::GetColorMap()
   return this->Colors;
 }
 
-void vtkDSMSceneVolume::AddTo(rt::Scene& scene, vtkVolume* volume)
+void vtkDSMSceneVolume::AddTo(rt::Scene& scene, vtkProp3D* prop)
 {
   if (!this->Data || !this->Iso)
   {
@@ -184,9 +204,10 @@ void vtkDSMSceneVolume::AddTo(rt::Scene& scene, vtkVolume* volume)
   {
     return;
   }
-  volume->ComputeMatrix();
-  const glm::dmat4 dataToWorld = vtkDSMTranslation::ToMatrix(volume->GetMatrix());
-  const rt::Material material = vtkDSMTranslation::ToMaterial(this->Mapper->GetSurfaceProperty());
+  prop->ComputeMatrix();
+  const glm::dmat4 dataToWorld = vtkDSMTranslation::ToMatrix(prop->GetMatrix());
+  rt::Material material = vtkDSMTranslation::ToMaterial(this->Mapper->GetSurfaceProperty());
+  material.Reflectivity = static_cast<float>(this->GetLightOptions()->GetReflectivity());
   const bool colored = this->Color && !this->Color->Fields.empty();
   for (std::size_t lattice = 0; lattice < this->Data->GetNumberOfLattices(); ++lattice)
   {
@@ -206,16 +227,4 @@ void vtkDSMSceneVolume::AddTo(rt::Scene& scene, vtkVolume* volume)
     }
     scene.Isosurfaces.push_back(std::move(object));
   }
-}
-
-void vtkDSMSceneVolume::ReportMessages()
-{
-  for (const std::string& message : this->Messages)
-  {
-    if (std::find(this->Reported.begin(), this->Reported.end(), message) == this->Reported.end())
-    {
-      vtkErrorWithObjectMacro(this->Mapper, << message);
-    }
-  }
-  this->Reported = this->Messages;
 }

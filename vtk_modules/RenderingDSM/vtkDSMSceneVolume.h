@@ -2,7 +2,7 @@
 #ifndef vtkDSMSceneVolume_h
 #define vtkDSMSceneVolume_h
 
-#include "DSMRayTracing/frame/Scene.h"
+#include "vtkDSMSceneMember.h"
 #include "vtkDSMVolumeData.h"
 
 #include "vtkType.h"
@@ -13,29 +13,23 @@
 #include <vector>
 
 class vtkDSMVolumeMapper;
-class vtkVolume;
 
-/// What a scene keeps of one volume: its data in bricks, and what was wrong with it.
-class vtkDSMSceneVolume
+/// A volume of a scene.
+class vtkDSMSceneVolume : public vtkDSMSceneMember
 {
 public:
   explicit vtkDSMSceneVolume(vtkDSMVolumeMapper* mapper);
-  ~vtkDSMSceneVolume();
+  ~vtkDSMSceneVolume() override;
 
-  vtkDSMVolumeMapper* GetMapper() const;
-
-  /// Local: whether this rank's data are other than what was taken in.
-  bool HasNewData() const;
-
-  /// Collective. Takes in what is missing: everything when any rank has new data, else the arrays
-  /// that the mapper names and that are not there yet. What goes wrong is kept as a message.
-  void Update(const std::shared_ptr<vtkDSMRankGroup>& group, bool newData);
-
-  /// Local: one object for each of the volume's lattices.
-  void AddTo(rt::Scene& scene, vtkVolume* volume);
-
-  /// Reports the messages that are new since the last call.
-  void ReportMessages();
+  vtkAlgorithm* GetAlgorithm() const override;
+  int GetCacheSize() const override;
+  int GetNumberOfThreads() const override;
+  vtkDSMLightOptions* GetLightOptions() const override;
+  void UpdatePiece(int piece, int numberOfPieces) override;
+  bool HasNewData() const override;
+  void Update(const std::shared_ptr<vtkDSMRankGroup>& group, bool newData) override;
+  /// One object for each of the volume's lattices.
+  void AddTo(rt::Scene& scene, vtkProp3D* prop) override;
 
 private:
   struct Published
@@ -61,8 +55,6 @@ private:
   vtkMTimeType ColorsTime = 0;
   const void* ColorsSource = nullptr;
   std::string DataFailure;
-  std::vector<std::string> Messages;
-  std::vector<std::string> Reported;
 };
 
 #endif

@@ -2,6 +2,7 @@
 #include "vtkDSMVolumeData.h"
 
 #include "DSMRayTracing/brick/VoxelBrickBuilder.h"
+#include "vtkDSMGather.h"
 #include "vtkDSMImagePiece.h"
 
 #include "vtkBoundingBox.h"
@@ -15,6 +16,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <optional>
 #include <set>
 
 namespace
@@ -29,35 +31,6 @@ enum class ArrayState : std::int32_t
   NoSuchComponent,
   WrongLength
 };
-
-/// Every rank's items, in rank order; `first` is where this rank's begin.
-template <class T>
-std::vector<T> GatherItems(dsm::Messenger& messenger, const std::vector<T>& mine, int& first)
-{
-  static_assert(std::is_trivially_copyable_v<T>, "only plain values travel");
-  std::vector<std::byte> bytes(mine.size() * sizeof(T));
-  if (!mine.empty())
-  {
-    std::memcpy(bytes.data(), mine.data(), bytes.size());
-  }
-  const auto parts = messenger.AllGather(std::move(bytes));
-  std::vector<T> all;
-  for (int rank = 0; rank < static_cast<int>(parts.size()); ++rank)
-  {
-    if (rank == messenger.GetRank())
-    {
-      first = static_cast<int>(all.size());
-    }
-    const std::size_t offset = all.size();
-    const std::size_t count = parts[rank].size() / sizeof(T);
-    all.resize(offset + count);
-    if (count > 0)
-    {
-      std::memcpy(&all[offset], parts[rank].data(), count * sizeof(T));
-    }
-  }
-  return all;
-}
 
 } // namespace
 
@@ -82,9 +55,10 @@ vtkDSMVolumeData::vtkDSMVolumeData(std::shared_ptr<vtkDSMRankGroup> group, vtkDa
         mine.push_back(vtkDSMImagePiece::Describe(this->Images[index], this->Leaves[index]));
       }
     });
-  this->Pieces = GatherItems(messenger, mine, this->FirstOwnPiece);
+  this->Pieces = vtkDSMGather::Items(messenger, mine, this->FirstOwnPiece);
   this->GatherArrays();
-  this->Plan = vtkDSMLatticePlan(this->Pieces);
+  messenger.RunTogether(
+    "Joining the volume's pieces", [&] { this->Plan = vtkDSMLatticePlan(this->Pieces); });
 }
 
 vtkDSMVolumeData::~vtkDSMVolumeData() = default;
@@ -198,7 +172,7 @@ void vtkDSMVolumeData::GatherArrays()
     }
   }
   int first = 0;
-  const std::vector<char> all = GatherItems(this->Group->GetMessenger(), mine, first);
+  const std::vector<char> all = vtkDSMGather::Items(this->Group->GetMessenger(), mine, first);
   for (auto name = all.begin(); name != all.end();)
   {
     const auto components = std::find(name, all.end(), '\0') + 1;
@@ -278,7 +252,7 @@ vtkDSMVolumeData::Fields vtkDSMVolumeData::Publish(const Choice& choice, const s
       }
     });
   int first = 0;
-  const std::vector<ArrayInfo> infos = GatherItems(messenger, mine, first);
+  const std::vector<ArrayInfo> infos = vtkDSMGather::Items(messenger, mine, first);
   const auto isUsable = [](const ArrayInfo& info) { return info.State == ArrayState::Usable; };
   if (!infos.empty() && std::none_of(infos.begin(), infos.end(), isUsable))
   {
@@ -296,6 +270,35 @@ vtkDSMVolumeData::Fields vtkDSMVolumeData::Publish(const Choice& choice, const s
 std::shared_ptr<const rt::VoxelField> vtkDSMVolumeData::PublishLattice(std::size_t number,
   const Choice& choice, const std::string& purpose, const std::vector<ArrayInfo>& infos,
   const std::function<void(double)>& progress) const
+{
+  dsm::Messenger& messenger = this->Group->GetMessenger();
+  std::shared_ptr<rt::VoxelField> field;
+  std::vector<std::shared_ptr<const rt::VoxelSource>> sources;
+  std::optional<dsm::BlockDirectory> directory;
+  messenger.RunTogether("Preparing the " + purpose,
+    [&]
+    {
+      field = this->CreateField(number, choice, purpose, infos);
+      if (field)
+      {
+        sources = this->CreateSources(number, choice);
+        directory = field->Lattice.CreateDirectory(messenger.GetSize());
+      }
+    });
+  if (!field)
+  {
+    return nullptr;
+  }
+  rt::VoxelFragmentSource source(field->Lattice, std::move(sources));
+  rt::VoxelBrickSink sink(field->Lattice);
+  field->Segment = this->Group->GetStore().Publish(
+    "the " + purpose + " '" + choice.Name + "'", std::move(*directory), source, sink, progress);
+  field->Hierarchy = rt::MacrocellHierarchy(field->Lattice, *field->Segment, messenger);
+  return field;
+}
+
+std::shared_ptr<rt::VoxelField> vtkDSMVolumeData::CreateField(std::size_t number,
+  const Choice& choice, const std::string& purpose, const std::vector<ArrayInfo>& infos) const
 {
   const vtkDSMLatticePlan::Lattice& lattice = this->Plan.GetLattices()[number];
   std::vector<rt::Box> parts;
@@ -322,8 +325,25 @@ std::shared_ptr<const rt::VoxelField> vtkDSMVolumeData::PublishLattice(std::size
   const rt::Box whole{ rt::Index3(0), lattice.Points - rt::Index3(1) };
   masked = masked || !vtkDSMLatticePlan::IsCovered(whole, parts);
 
+  const std::shared_ptr<vtkDSMRankGroup> group = this->Group;
+  std::shared_ptr<rt::VoxelField> field(new rt::VoxelField,
+    [group](rt::VoxelField* old)
+    {
+      if (old->Segment)
+      {
+        group->GetStore().Retire(old->Segment);
+      }
+      delete old;
+    });
+  field->Lattice = rt::BrickLattice(lattice.Points, *types.begin(), masked);
+  return field;
+}
+
+std::vector<std::shared_ptr<const rt::VoxelSource>> vtkDSMVolumeData::CreateSources(
+  std::size_t lattice, const Choice& choice) const
+{
   std::vector<std::shared_ptr<const rt::VoxelSource>> sources;
-  for (const auto& member : lattice.Members)
+  for (const auto& member : this->Plan.GetLattices()[lattice].Members)
   {
     const int own = member.Piece - this->FirstOwnPiece;
     if (own >= 0 && own < static_cast<int>(this->Images.size()))
@@ -336,23 +356,5 @@ std::shared_ptr<const rt::VoxelField> vtkDSMVolumeData::PublishLattice(std::size
       }
     }
   }
-
-  const std::shared_ptr<vtkDSMRankGroup> group = this->Group;
-  const std::shared_ptr<rt::VoxelField> field(new rt::VoxelField,
-    [group](rt::VoxelField* old)
-    {
-      if (old->Segment)
-      {
-        group->GetStore().Retire(old->Segment);
-      }
-      delete old;
-    });
-  dsm::Messenger& messenger = group->GetMessenger();
-  field->Lattice = rt::BrickLattice(lattice.Points, *types.begin(), masked);
-  rt::VoxelFragmentSource source(field->Lattice, std::move(sources));
-  rt::VoxelBrickSink sink(field->Lattice);
-  field->Segment = group->GetStore().Publish("the " + purpose + " '" + choice.Name + "'",
-    field->Lattice.CreateDirectory(messenger.GetSize()), source, sink, progress);
-  field->Hierarchy = rt::MacrocellHierarchy(field->Lattice, *field->Segment, messenger);
-  return field;
+  return sources;
 }

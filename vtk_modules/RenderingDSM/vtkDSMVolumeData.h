@@ -2,6 +2,7 @@
 #ifndef vtkDSMVolumeData_h
 #define vtkDSMVolumeData_h
 
+#include "DSMRayTracing/brick/VoxelSource.h"
 #include "DSMRayTracing/frame/Scene.h"
 #include "vtkDSMLatticePlan.h"
 #include "vtkDSMRankGroup.h"
@@ -70,6 +71,12 @@ private:
   std::shared_ptr<const rt::VoxelField> PublishLattice(std::size_t lattice, const Choice& choice,
     const std::string& purpose, const std::vector<ArrayInfo>& infos,
     const std::function<void(double)>& progress) const;
+  /// Local. A lattice's field without its bricks; null where no piece has the array.
+  std::shared_ptr<rt::VoxelField> CreateField(std::size_t lattice, const Choice& choice,
+    const std::string& purpose, const std::vector<ArrayInfo>& infos) const;
+  /// Local. This rank's pieces of a lattice.
+  std::vector<std::shared_ptr<const rt::VoxelSource>> CreateSources(
+    std::size_t lattice, const Choice& choice) const;
 
   std::shared_ptr<vtkDSMRankGroup> Group;
   vtkDSMLatticePlan Plan;

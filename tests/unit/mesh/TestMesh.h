@@ -219,9 +219,9 @@ inline void TraceOnWorker(dsm::ObjectStore& store, dsm::Messenger& messenger,
   messenger.ProgressUntil([&] { return agreement.IsOver(); },
     [&]
     {
-      if (done && !agreement.HasReported())
+      if (done && !agreement.IsDone())
       {
-        agreement.ReportDone({});
+        agreement.ReportDone();
       }
       return store.Service();
     });

@@ -15,9 +15,9 @@ namespace rt
 namespace
 {
 
-/// Each rank sends the ranges of its own bricks in ascending order of id; since all know who owns
-/// what, no id need travel.
-std::vector<ValueRange> GatherRanges(const dsm::BlockSegment& segment, dsm::Messenger& messenger)
+/// The ranges of this rank's own bricks in ascending order of id; since all know who owns what, no
+/// id need travel.
+std::vector<std::byte> PackOwnRanges(const dsm::BlockSegment& segment)
 {
   std::vector<std::byte> mine;
   segment.ForEachResident(
@@ -27,8 +27,13 @@ std::vector<ValueRange> GatherRanges(const dsm::BlockSegment& segment, dsm::Mess
       const std::vector<std::byte> bytes = dsm::Encode(ValueRange{ header.First, header.Last });
       mine.insert(mine.end(), bytes.begin(), bytes.end());
     });
-  const std::vector<std::vector<std::byte>> all = messenger.AllGather(std::move(mine));
-  const dsm::BlockDirectory& directory = segment.GetDirectory();
+  return mine;
+}
+
+/// The ranges of all bricks, by id, out of what each rank packed.
+std::vector<ValueRange> Unpack(
+  const std::vector<std::vector<std::byte>>& all, const dsm::BlockDirectory& directory)
+{
   std::vector<std::size_t> next(all.size(), 0);
   std::vector<ValueRange> ranges(directory.GetCount());
   for (dsm::BlockId id = 0; id < ranges.size(); ++id)
@@ -37,8 +42,7 @@ std::vector<ValueRange> GatherRanges(const dsm::BlockSegment& segment, dsm::Mess
     if (next[owner] + sizeof(ValueRange) > all[owner].size())
     {
       throw dsm::Error("Rank " + std::to_string(owner) +
-        " does not have all the bricks that it "
-        "owns. Do all ranks run the same build?");
+        " does not have all the bricks that it owns. Do all ranks run the same build?");
     }
     std::memcpy(&ranges[id], all[owner].data() + next[owner], sizeof(ValueRange));
     next[owner] += sizeof(ValueRange);
@@ -85,8 +89,13 @@ MacrocellHierarchy::Level Coarsen(const MacrocellHierarchy::Level& fine)
 
 MacrocellHierarchy::MacrocellHierarchy(
   const BrickLattice& lattice, const dsm::BlockSegment& segment, dsm::Messenger& messenger)
-  : MacrocellHierarchy(lattice, GatherRanges(segment, messenger))
 {
+  const char* const what = "Building the macrocells";
+  std::vector<std::byte> mine;
+  messenger.RunTogether(what, [&] { mine = PackOwnRanges(segment); });
+  const auto all = messenger.AllGather(std::move(mine));
+  messenger.RunTogether(
+    what, [&] { *this = MacrocellHierarchy(lattice, Unpack(all, segment.GetDirectory())); });
 }
 
 MacrocellHierarchy::MacrocellHierarchy(const BrickLattice& lattice, std::vector<ValueRange> bricks)

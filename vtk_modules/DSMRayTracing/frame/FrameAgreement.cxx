@@ -39,6 +39,7 @@ FrameAgreement::FrameAgreement(dsm::Messenger& messenger, std::function<void()> 
   }
   else
   {
+    messenger.SetHandler(dsm::MessageKind::FrameStop, [this](dsm::Message&&) { this->Stop(); });
     messenger.SetHandler(dsm::MessageKind::FrameEnd,
       [this](dsm::Message&& message) { this->End(std::move(message)); });
   }
@@ -47,12 +48,28 @@ FrameAgreement::FrameAgreement(dsm::Messenger& messenger, std::function<void()> 
 FrameAgreement::~FrameAgreement()
 {
   this->Messenger.SetHandler(dsm::MessageKind::FrameDone, {});
+  this->Messenger.SetHandler(dsm::MessageKind::FrameStop, {});
   this->Messenger.SetHandler(dsm::MessageKind::FrameEnd, {});
 }
 
-void FrameAgreement::ReportDone(const std::string& cause)
+void FrameAgreement::ReportFailure(const std::string& cause)
 {
-  this->Reported = true;
+  if (!this->Failed)
+  {
+    this->Failed = true;
+    this->Tell(cause);
+  }
+}
+
+void FrameAgreement::ReportDone()
+{
+  this->Done = true;
+  this->Tell({});
+}
+
+/// An empty cause says that this rank is done.
+void FrameAgreement::Tell(const std::string& cause)
+{
   if (this->Messenger.GetRank() == 0)
   {
     this->Collect(0, cause);
@@ -70,9 +87,15 @@ void FrameAgreement::Collect(int source, const std::string& cause)
     // The lowest failing rank speaks for all, whichever was heard first.
     if (this->Outcome.IsOk() || source < this->Outcome.FailedRank)
     {
-      this->Outcome = { source, cause };
+      this->Outcome.FailedRank = source;
+      this->Outcome.Cause = cause;
     }
-    this->FailureSeen();
+    for (int rank = 1; !this->Stopped && rank < this->Messenger.GetSize(); ++rank)
+    {
+      this->Messenger.Post(rank, dsm::MessageKind::FrameStop, {});
+    }
+    this->Stop();
+    return;
   }
   if (--this->Missing > 0)
   {
@@ -86,6 +109,15 @@ void FrameAgreement::Collect(int source, const std::string& cause)
     this->Messenger.Post(rank, dsm::MessageKind::FrameEnd, payload);
   }
   this->Over = true;
+}
+
+void FrameAgreement::Stop()
+{
+  if (!this->Stopped)
+  {
+    this->Stopped = true;
+    this->FailureSeen();
+  }
 }
 
 void FrameAgreement::End(dsm::Message&& message)

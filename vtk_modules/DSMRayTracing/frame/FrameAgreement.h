@@ -12,17 +12,21 @@ namespace rt
 {
 
 /// How the ranks of a frame come to its common end: each reports to rank 0 that its workers are
-/// through, and how it fared; when all have, rank 0 tells all. Communication thread only.
+/// through, and how it fared; when all have, rank 0 tells all. When one fails, rank 0 tells the others
+/// at once, since they may be waiting for what that rank will never send. Communication thread only.
 class FrameAgreement
 {
 public:
-  /// `failureSeen` is called on rank 0 as soon as any rank reports a failure.
+  /// `failureSeen` is called once, as soon as this rank hears that another one has failed.
   FrameAgreement(dsm::Messenger& messenger, std::function<void()> failureSeen);
   ~FrameAgreement();
 
-  /// This rank's workers have stopped; `cause` is empty when all went well. Once a frame.
-  void ReportDone(const std::string& cause);
-  bool HasReported() const { return this->Reported; }
+  /// This rank has failed, for a cause that is not empty; the first one counts. Before or after it is
+  /// done: it may fail while it serves the others.
+  void ReportFailure(const std::string& cause);
+  /// This rank's workers have stopped. Once a frame.
+  void ReportDone();
+  bool IsDone() const { return this->Done; }
 
   /// Whether all ranks have stopped.
   bool IsOver() const { return this->Over; }
@@ -30,13 +34,17 @@ public:
   const dsm::Status& GetOutcome() const { return this->Outcome; }
 
 private:
+  void Tell(const std::string& cause);
   void Collect(int source, const std::string& cause);
+  void Stop();
   void End(dsm::Message&& message);
 
   dsm::Messenger& Messenger;
   std::function<void()> FailureSeen;
   int Missing;
-  bool Reported = false;
+  bool Failed = false;
+  bool Done = false;
+  bool Stopped = false;
   bool Over = false;
   dsm::Status Outcome;
 };

@@ -40,6 +40,20 @@ std::vector<std::byte> Pack(const Frame& frame)
   return bytes;
 }
 
+/// Puts one tile's pixels where they belong.
+void Place(const TileHeader& tile, const void* colors, const void* depths, Picture& picture)
+{
+  const auto* color = static_cast<const std::byte*>(colors);
+  const auto* depth = static_cast<const std::byte*>(depths);
+  for (int row = 0; row < tile.Height; ++row)
+  {
+    const std::size_t target = static_cast<std::size_t>(tile.Y + row) * picture.Width + tile.X;
+    const std::size_t source = static_cast<std::size_t>(row) * tile.Width;
+    std::memcpy(&picture.Color[4 * target], color + 4 * source, 4 * tile.Width);
+    std::memcpy(&picture.Depth[target], depth + sizeof(float) * source, sizeof(float) * tile.Width);
+  }
+}
+
 /// Puts a rank's packed tiles into the picture; returns how many pixels they have.
 std::size_t Unpack(const std::vector<std::byte>& bytes, Picture& picture)
 {
@@ -52,21 +66,22 @@ std::size_t Unpack(const std::vector<std::byte>& bytes, Picture& picture)
     std::memcpy(&header, at, sizeof(header));
     at += sizeof(header);
     const std::size_t tilePixels = static_cast<std::size_t>(header.Width) * header.Height;
-    const std::byte* colors = at;
-    const std::byte* depths = at + 4 * tilePixels;
-    for (int row = 0; row < header.Height; ++row)
-    {
-      const std::size_t target =
-        static_cast<std::size_t>(header.Y + row) * picture.Width + header.X;
-      const std::size_t source = static_cast<std::size_t>(row) * header.Width;
-      std::memcpy(&picture.Color[4 * target], colors + 4 * source, 4 * header.Width);
-      std::memcpy(
-        &picture.Depth[target], depths + sizeof(float) * source, sizeof(float) * header.Width);
-    }
-    at = depths + sizeof(float) * tilePixels;
+    Place(header, at, at + 4 * tilePixels, picture);
+    at += (4 + sizeof(float)) * tilePixels;
     pixels += tilePixels;
   }
   return pixels;
+}
+
+Picture CreatePicture(const Frame& frame)
+{
+  Picture picture;
+  picture.Width = frame.Width;
+  picture.Height = frame.Height;
+  const std::size_t pixels = static_cast<std::size_t>(frame.Width) * frame.Height;
+  picture.Color.assign(4 * pixels, 0);
+  picture.Depth.assign(pixels, 1.0f);
+  return picture;
 }
 
 std::uint64_t AddToHash(std::uint64_t hash, const void* data, std::size_t bytes)
@@ -81,23 +96,37 @@ std::uint64_t AddToHash(std::uint64_t hash, const void* data, std::size_t bytes)
 
 } // namespace
 
+Picture AssembleTiles(const Frame& frame)
+{
+  Picture picture = CreatePicture(frame);
+  for (const Tile& tile : frame.Tiles)
+  {
+    Place(
+      { tile.X, tile.Y, tile.Width, tile.Height }, tile.Color.data(), tile.Depth.data(), picture);
+  }
+  return picture;
+}
+
 Picture GatherFrame(dsm::Messenger& messenger, const Frame& frame)
 {
+  const char* const what = "Gathering the frame";
   Picture picture;
-  picture.Width = frame.Width;
-  picture.Height = frame.Height;
-  const std::size_t pixels = static_cast<std::size_t>(frame.Width) * frame.Height;
-  picture.Color.assign(4 * pixels, 0);
-  picture.Depth.assign(pixels, 1.0f);
+  std::vector<std::byte> mine;
+  messenger.RunTogether(what,
+    [&]
+    {
+      picture = CreatePicture(frame);
+      mine = Pack(frame);
+    });
   std::size_t filled = 0;
-  for (const auto& bytes : messenger.AllGather(Pack(frame)))
+  for (const auto& bytes : messenger.AllGather(std::move(mine)))
   {
     filled += Unpack(bytes, picture);
   }
-  if (filled != pixels)
+  if (filled != picture.Depth.size())
   {
     throw dsm::Error("The ranks traced " + std::to_string(filled) + " of " +
-      std::to_string(pixels) + " pixels: a tile was lost or traced twice.");
+      std::to_string(picture.Depth.size()) + " pixels: a tile was lost or traced twice.");
   }
   return picture;
 }

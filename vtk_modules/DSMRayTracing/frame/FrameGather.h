@@ -21,6 +21,9 @@ struct Picture
   std::vector<float> Depth;
 };
 
+/// Local: this rank's tiles; the rest is transparent and infinitely far away.
+Picture AssembleTiles(const Frame& frame);
+
 /// Collective: every rank gets the whole picture out of the ranks' tiles. Throws dsm::Error, on
 /// every rank, when tiles are missing or stand twice.
 Picture GatherFrame(dsm::Messenger& messenger, const Frame& frame);

@@ -5,6 +5,7 @@
 #include "DSMCore/BlockSegment.h"
 #include "DSMRayTracing/accel/MacrocellHierarchy.h"
 #include "DSMRayTracing/brick/BrickLattice.h"
+#include "DSMRayTracing/kernel/MeshInstance.h"
 
 #include <glm/mat4x4.hpp>
 #include <glm/matrix.hpp>
@@ -12,6 +13,7 @@
 #include <glm/vec4.hpp>
 
 #include <memory>
+#include <optional>
 #include <vector>
 
 namespace rt
@@ -81,6 +83,28 @@ struct IsosurfaceObject
   Material Surface;
 };
 
+/// The triangles of one mesh at one place.
+struct MeshObject
+{
+  /// Where a point of the surface has its colour from.
+  enum class Coloring
+  {
+    Material,     ///< the diffuse colour
+    Values,       ///< the colour of the interpolated value
+    CornerValues, ///< the interpolated colours of the corners' values
+    Colors        ///< the mesh's own colours
+  };
+  std::shared_ptr<const MeshInstance> Instance;
+  Coloring ColoredBy = Coloring::Material;
+  /// Of the values; not null when they give the colour.
+  std::shared_ptr<const ColorMap> Colors;
+  /// Shaded by the triangles' planes, also where points have normals.
+  bool Flat = false;
+  Material Surface;
+  /// Of the side from which a triangle's corners are clockwise; without, both sides are alike.
+  std::optional<Material> BackSurface;
+};
+
 /// World space. Colour includes the intensity.
 struct Light
 {
@@ -91,6 +115,9 @@ struct Light
     Cone
   };
   Kind Type = Kind::Directional;
+  /// The scene's only light, and it shines along the view: as VTK, the highlight is then a power of
+  /// the light's angle, not of the mirrored light's.
+  bool IsLoneHeadlight = false;
   glm::dvec3 Position{ 0.0 };
   /// Unit, from the light into the scene.
   glm::dvec3 Direction{ 0.0, 0.0, -1.0 };
@@ -123,6 +150,7 @@ struct LightTransport
 struct Scene
 {
   std::vector<IsosurfaceObject> Isosurfaces;
+  std::vector<MeshObject> Meshes;
   std::vector<Light> Lights;
   LightTransport Transport;
 };

@@ -3,6 +3,7 @@
 #define rt_SceneTracer_h
 
 #include "DSMRayTracing/frame/Scene.h"
+#include "DSMRayTracing/kernel/MeshTracer.h"
 #include "DSMRayTracing/kernel/PacketTracer.h"
 #include "DSMRayTracing/kernel/VolumeTracer.h"
 
@@ -40,11 +41,13 @@ public:
   SceneTracer(Store& store, typename Store::Worker& worker, const Scene& scene)
     : Volumes(store, worker)
     , Packets(store, worker)
+    , Meshes(store, worker)
     , World(scene)
   {
   }
 
-  /// The first surface in [ray.Min, ray.Max]; of equally near ones that of the first object.
+  /// The first surface in [ray.Min, ray.Max]; of equally near ones that of the first object,
+  /// isosurfaces before meshes.
   bool Intersect(Ray ray, SurfacePoint& point) const
   {
     SurfaceHit isosurfaceHit;
@@ -66,8 +69,9 @@ public:
   /// Whether rays within the beam that `bricks` was found for may meet anything.
   bool MayMeet(const std::vector<BeamBricks>& bricks) const
   {
-    return std::any_of(bricks.begin(), bricks.end(),
-      [](const BeamBricks& object) { return !object.Usable || !object.Bricks.empty(); });
+    return !this->World.Meshes.empty() ||
+      std::any_of(bricks.begin(), bricks.end(),
+        [](const BeamBricks& object) { return !object.Usable || !object.Bricks.empty(); });
   }
 
   /// Whether rays can be traced together with the help of `bricks`.
@@ -79,7 +83,8 @@ public:
 
   /// Intersect for the rays of `wanted` in each packet of RayPacket::Size rays, at most
   /// PacketTracer::MaxPackets, with the same result. All lie within the beam that `bricks` was found
-  /// for. Calls `take(index, point)` for those that meet something; they end there afterwards.
+  /// for. Calls `take(index, point)` for those that meet something. A ray that meets an isosurface
+  /// ends there afterwards.
   template <class Take>
   void Intersect(const std::vector<BeamBricks>& bricks, int packets, Ray* rays,
     const RayPacket::Mask* wanted, Take&& take) const
@@ -120,8 +125,13 @@ public:
 private:
   /// Less than half a step of an 8-bit channel.
   static constexpr double Dark = 0.5 / 255.0;
-  /// Of the shortest edge of a cell. Roots are found to 1e-7 of the way through a cell, mostly to 1e-12.
+  /// Of the shortest edge of a cell. Roots are found to 1e-7 of the way through a cell.
   static constexpr double ClearancePart = 1e-4;
+
+  /// Of a mesh's diagonal. Hits are found to about 1e-15 of it, and of the distance from the origin
+  /// of the world, which HitError stands for.
+  static constexpr double MeshClearancePart = 1e-6;
+  static constexpr double HitError = 1e-13;
 
   static double Largest(const glm::dvec3& color) { return std::max({ color.x, color.y, color.z }); }
 
@@ -177,16 +187,73 @@ private:
     }
   }
 
-  /// Describes what the ray meets, the isosurface that it meets first being known.
-  bool Complete(const Ray& ray, const IsosurfaceObject* isosurface, const SurfaceHit& isosurfaceHit,
+  /// Describes what the ray meets first, the isosurface that it meets first, or null, being known;
+  /// that is where the ray ends.
+  bool Complete(Ray ray, const IsosurfaceObject* isosurface, const SurfaceHit& isosurfaceHit,
     SurfacePoint& point) const
   {
-    if (!isosurface)
+    MeshHit meshHit;
+    const MeshObject* mesh = this->FindMesh(ray, isosurface != nullptr, meshHit);
+    if (mesh)
     {
-      return false;
+      Describe(*mesh, meshHit, ray, point);
     }
-    this->Describe(*isosurface, isosurfaceHit, ray, point);
-    return true;
+    else if (isosurface)
+    {
+      this->Describe(*isosurface, isosurfaceHit, ray, point);
+    }
+    return mesh || isosurface;
+  }
+
+  /// As FindIsosurface. `ended`: something else is at the ray's end, and hides what is no nearer.
+  const MeshObject* FindMesh(Ray& ray, bool ended, MeshHit& nearest) const
+  {
+    const MeshObject* object = nullptr;
+    for (const MeshObject& candidate : this->World.Meshes)
+    {
+      MeshHit hit;
+      if (this->Meshes.Intersect(*candidate.Instance, ray, hit) && (!ended || hit.T < ray.Max))
+      {
+        nearest = hit;
+        object = &candidate;
+        ray.Max = hit.T;
+        ended = true;
+      }
+    }
+    return object;
+  }
+
+  static void Describe(
+    const MeshObject& object, const MeshHit& hit, const Ray& ray, SurfacePoint& point)
+  {
+    point.T = hit.T;
+    point.Position = ray.Origin + hit.T * ray.Direction;
+    point.Normal = object.Flat ? hit.GeometricNormal : hit.Normal;
+    point.Surface = !hit.Front && object.BackSurface ? &*object.BackSurface : &object.Surface;
+    point.ColorIsFromArray = object.ColoredBy != MeshObject::Coloring::Material;
+    point.Color = GetColor(object, hit, *point.Surface);
+    point.Color.w *= point.Surface->Opacity;
+    const glm::dvec3 distance = glm::abs(point.Position) + glm::abs(ray.Origin);
+    point.Clearance = MeshClearancePart * object.Instance->GetDiagonal() +
+      HitError * (distance.x + distance.y + distance.z);
+  }
+
+  static glm::vec4 GetColor(const MeshObject& object, const MeshHit& hit, const Material& surface)
+  {
+    switch (object.ColoredBy)
+    {
+      case MeshObject::Coloring::Values:
+        return object.Colors->Map(hit.Value);
+      case MeshObject::Coloring::CornerValues:
+        return static_cast<float>(hit.Weights[0]) * object.Colors->Map(hit.CornerValues[0]) +
+          static_cast<float>(hit.Weights[1]) * object.Colors->Map(hit.CornerValues[1]) +
+          static_cast<float>(hit.Weights[2]) * object.Colors->Map(hit.CornerValues[2]);
+      case MeshObject::Coloring::Colors:
+        return hit.Color;
+      case MeshObject::Coloring::Material:
+        break;
+    }
+    return glm::vec4(surface.DiffuseColor, 1.0f);
   }
 
   void Describe(const IsosurfaceObject& object, const SurfaceHit& hit, const Ray& ray,
@@ -213,6 +280,7 @@ private:
 
   VolumeTracer<Store> Volumes;
   PacketTracer<Store> Packets;
+  MeshTracer<Store> Meshes;
   const Scene& World;
 };
 

@@ -6,6 +6,7 @@
 #include "DSMRayTracing/kernel/MeshRay.h"
 #include "DSMRayTracing/kernel/Ray.h"
 
+#include <glm/geometric.hpp>
 #include <glm/mat3x3.hpp>
 #include <glm/mat4x4.hpp>
 #include <glm/matrix.hpp>
@@ -35,6 +36,7 @@ public:
     , WorldOrigin(meshToWorld * glm::dvec4(this->Shape->Origin, 1.0))
     , WorldToMesh(glm::inverse(glm::dmat3(meshToWorld)))
     , NormalToWorld(glm::transpose(this->WorldToMesh))
+    , Diagonal(GetLength(glm::dmat3(meshToWorld), this->Shape->Upper - this->Shape->Lower))
   {
   }
 
@@ -42,6 +44,9 @@ public:
 
   const TriangleMesh& GetMesh() const { return *this->Shape; }
   const glm::dmat4& GetMeshToWorld() const { return this->MeshToWorld; }
+
+  /// World length, about, of the mesh's extent.
+  double GetDiagonal() const { return this->Diagonal; }
 
   /// The same T in both spaces. False when the ray cannot hit the mesh.
   bool GetMeshRay(const Ray& ray, MeshRay& line) const
@@ -57,11 +62,18 @@ public:
   glm::dvec3 TurnNormal(const glm::dvec3& normal) const { return this->NormalToWorld * normal; }
 
 private:
+  static double GetLength(const glm::dmat3& meshToWorld, const glm::dvec3& extent)
+  {
+    return glm::length(extent.x * meshToWorld[0]) + glm::length(extent.y * meshToWorld[1]) +
+      glm::length(extent.z * meshToWorld[2]);
+  }
+
   std::shared_ptr<const TriangleMesh> Shape;
   glm::dmat4 MeshToWorld;
   glm::dvec3 WorldOrigin; ///< of the positions in bricks
   glm::dmat3 WorldToMesh;
   glm::dmat3 NormalToWorld;
+  double Diagonal;
 };
 
 } // namespace rt

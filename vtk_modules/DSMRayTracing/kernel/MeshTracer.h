@@ -27,6 +27,7 @@ struct MeshHit
   /// Whether the ray comes from the side to which the geometric normal points.
   bool Front = true;
   double Value = 0.0;                  ///< interpolated, or the triangle's; NaN without values
+  glm::dvec3 CornerValues{ 0.0 };      ///< in the order of Weights; NaN without values
   glm::vec4 Color{ 1.0f };             ///< in [0, 1], not premultiplied; white without colours
   glm::dvec2 TextureCoordinate{ 0.0 }; ///< 0 without
   /// Of the corners as the brick has them: the smallest position first.

@@ -71,8 +71,13 @@ void MeshTracer<Store>::Complete(const MeshInstance& instance, const Ray& ray,
   }
 
   const MeshAttributes& has = instance.GetMesh().Attributes;
-  hit.Value = has.Values != Attachment::None ? attributes.GetValue(triangle.Weights)
-                                             : std::numeric_limits<double>::quiet_NaN();
+  const bool hasValues = has.Values != Attachment::None;
+  const double notANumber = std::numeric_limits<double>::quiet_NaN();
+  hit.Value = hasValues ? attributes.GetValue(triangle.Weights) : notANumber;
+  for (int corner = 0; corner < 3; ++corner)
+  {
+    hit.CornerValues[corner] = hasValues ? attributes.Values[corner] : notANumber;
+  }
   hit.Color =
     has.Colors != Attachment::None ? attributes.GetColor(triangle.Weights) : glm::vec4(1.0f);
   hit.TextureCoordinate =

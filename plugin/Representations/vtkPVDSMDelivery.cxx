@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkPVDSMDelivery.h"
+
+#include "vtkDSMScene.h"
+
+#include "vtkInformation.h"
+#include "vtkMultiProcessController.h"
+#include "vtkOrderedCompositingHelper.h"
+#include "vtkPVDataRepresentation.h"
+#include "vtkPVRenderView.h"
+#include "vtkPVRenderViewDataDeliveryManager.h"
+#include "vtkPVSession.h"
+#include "vtkProcessModule.h"
+#include "vtkSmartPointer.h"
+
+bool vtkPVDSMDelivery::IsRenderingProcess()
+{
+  auto* module = vtkProcessModule::GetProcessModule();
+  auto* session = module ? vtkPVSession::SafeDownCast(module->GetActiveSession()) : nullptr;
+  return !session || session->HasProcessRole(vtkPVSession::RENDER_SERVER);
+}
+
+void vtkPVDSMDelivery::KeepData(vtkPVDataRepresentation* representation, vtkDataObject* placeholder,
+  vtkInformation* inInfo, vtkInformation* outInfo)
+{
+  vtkPVRenderView::SetPiece(inInfo, representation, placeholder);
+  vtkPVRenderView::SetDeliverToClientAndRenderingProcesses(inInfo, representation, false, false);
+  vtkPVRenderView::SetRequiresDistributedRendering(inInfo, representation, true);
+  // IceT must call every rank's renderer: each has tiles, wherever its data lie.
+  outInfo->Set(vtkPVRenderView::RENDER_EMPTY_IMAGES(), 1);
+}
+
+void vtkPVDSMDelivery::Choose(vtkDSMScene* scene, vtkView* anyView)
+{
+  auto* view = vtkPVRenderView::SafeDownCast(anyView);
+  auto* controller = scene->GetController();
+  if (!view || !controller || controller->GetNumberOfProcesses() < 2)
+  {
+    scene->DeliverTiles();
+  }
+  else if (view->GetUseOrderedCompositing())
+  {
+    auto* manager = vtkPVRenderViewDataDeliveryManager::SafeDownCast(view->GetDeliveryManager());
+    const auto order = vtkSmartPointer<vtkOrderedCompositingHelper>::New();
+    order->SetBoundingBoxes(manager->GetCuts());
+    const int rank = controller->GetLocalProcessId();
+    scene->DeliverEverywhere(
+      [order, rank](vtkCamera* camera) { return order->ComputeSortOrder(camera).back() == rank; });
+  }
+  else if (view->GetUseSSAO())
+  {
+    // Ambient occlusion looks at the neighbours of a pixel, before the ranks' pictures are merged.
+    scene->DeliverEverywhere([](vtkCamera*) { return true; });
+  }
+  else
+  {
+    scene->DeliverTiles();
+  }
+}

@@ -1,0 +1,215 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkPVDSMGeometryRepresentation.h"
+
+#include "vtkDSMPolyDataMapper.h"
+#include "vtkDSMScene.h"
+#include "vtkPVDSMDelivery.h"
+#include "vtkPVDSMFrameReport.h"
+#include "vtkPVDSMLightOptions.h"
+
+#include "vtkBoundingBox.h"
+#include "vtkCommand.h"
+#include "vtkCompositeDataDisplayAttributes.h"
+#include "vtkInformation.h"
+#include "vtkMatrix4x4.h"
+#include "vtkObjectFactory.h"
+#include "vtkPVDataRepresentationPipeline.h"
+#include "vtkPVLODActor.h"
+#include "vtkPVRenderView.h"
+#include "vtkPartitionedDataSet.h"
+#include "vtkProperty.h"
+#include "vtkRenderer.h"
+
+#include <algorithm>
+#include <string>
+
+vtkStandardNewMacro(vtkPVDSMGeometryRepresentation);
+
+vtkPVDSMGeometryRepresentation::vtkPVDSMGeometryRepresentation()
+{
+  auto* mapper = vtkDSMPolyDataMapper::New();
+  vtkNew<vtkCompositeDataDisplayAttributes> attributes;
+  mapper->SetCompositeDataDisplayAttributes(attributes);
+  mapper->AddObserver(
+    vtkCommand::ProgressEvent, this, &vtkPVDSMGeometryRepresentation::ForwardProgress);
+  this->Mapper->Delete();
+  this->Mapper = mapper;
+  this->SetupDefaults();
+  // Interactive frames are traced, too.
+  this->Actor->SetLODMapper(nullptr);
+  this->Actor->ForceOpaqueOn();
+}
+
+vtkPVDSMGeometryRepresentation::~vtkPVDSMGeometryRepresentation() = default;
+
+vtkDSMPolyDataMapper* vtkPVDSMGeometryRepresentation::GetMapper() const
+{
+  return static_cast<vtkDSMPolyDataMapper*>(this->Mapper);
+}
+
+int vtkPVDSMGeometryRepresentation::RequestData(
+  vtkInformation* request, vtkInformationVector** input, vtkInformationVector* output)
+{
+  this->Executed = true;
+  return this->Superclass::RequestData(request, input, output);
+}
+
+int vtkPVDSMGeometryRepresentation::ProcessViewRequest(
+  vtkInformationRequestKey* request, vtkInformation* inInfo, vtkInformation* outInfo)
+{
+  const bool needsUpdate = request == vtkPVView::REQUEST_UPDATE() && this->GetNeedsUpdate();
+  this->Executed = false;
+  // Not what a Surface does: it delivers its geometry, or a coarser one.
+  if (!this->vtkPVDataRepresentation::ProcessViewRequest(request, inInfo, outInfo))
+  {
+    return 0;
+  }
+  if (needsUpdate && !this->Executed)
+  {
+    // The view relies on its cache of time steps, but that holds our placeholder, not the data.
+    this->MarkModified();
+    this->Update();
+    vtkPVDataRepresentationPipeline::SafeDownCast(this->GetExecutive())->SetNeedsUpdate(false);
+  }
+  if (request == vtkPVView::REQUEST_UPDATE())
+  {
+    this->PrepareUpdate(inInfo, outInfo);
+  }
+  else if (request == vtkPVView::REQUEST_UPDATE_LOD())
+  {
+    vtkPVRenderView::SetRequiresDistributedRenderingLOD(inInfo, this, true);
+  }
+  else if (request == vtkPVView::REQUEST_RENDER())
+  {
+    this->PrepareRender();
+  }
+  return 1;
+}
+
+void vtkPVDSMGeometryRepresentation::PrepareUpdate(vtkInformation* inInfo, vtkInformation* outInfo)
+{
+  vtkPVDSMDelivery::KeepData(this, this->Placeholder, inInfo, outInfo);
+  this->ComputeVisibleDataBounds();
+  vtkNew<vtkMatrix4x4> matrix;
+  this->Actor->GetMatrix(matrix);
+  vtkBoundingBox bounds(this->VisibleDataBounds);
+  if (bounds.IsValid())
+  {
+    bounds.Inflate(
+      std::max({ this->GetMapper()->GetLineRadius(), this->GetMapper()->GetPointRadius(), 0.0 }));
+  }
+  double inflated[6];
+  bounds.GetBounds(inflated);
+  vtkPVRenderView::SetGeometryBounds(inInfo, this, inflated, matrix);
+}
+
+void vtkPVDSMGeometryRepresentation::PrepareRender()
+{
+  vtkDataObject* data = this->GetRenderedDataObject(0);
+  this->GetMapper()->SetInputDataObject(data);
+  this->UpdateColoringParameters();
+  if (data && (this->BlockAttributeTime < data->GetMTime() || this->BlockAttrChanged))
+  {
+    this->PopulateBlockAttributes(this->GetMapper()->GetCompositeDataDisplayAttributes(), data);
+    this->BlockAttributeTime.Modified();
+    this->BlockAttrChanged = false;
+  }
+  if (this->Scene)
+  {
+    vtkPVDSMDelivery::Choose(this->Scene, this->GetView());
+  }
+}
+
+void vtkPVDSMGeometryRepresentation::UpdateColoringParameters()
+{
+  this->Superclass::UpdateColoringParameters();
+  // A Surface draws its back with an actor of its own; the tracer knows both sides of one.
+  const bool hasBack = this->BackfaceActor->GetVisibility() != 0;
+  if (hasBack)
+  {
+    this->BackfaceActor->VisibilityOff();
+    this->Property->BackfaceCullingOff();
+  }
+  this->Actor->SetBackfaceProperty(hasBack ? this->BackfaceProperty : nullptr);
+}
+
+bool vtkPVDSMGeometryRepresentation::AddToView(vtkView* view)
+{
+  auto* renderView = vtkPVRenderView::SafeDownCast(view);
+  if (renderView && vtkPVDSMDelivery::IsRenderingProcess())
+  {
+    this->Scene = vtkDSMScene::ForRenderer(renderView->GetRenderer());
+    this->ConnectFrameReport();
+  }
+  return this->Superclass::AddToView(view);
+}
+
+bool vtkPVDSMGeometryRepresentation::RemoveFromView(vtkView* view)
+{
+  const bool removed = this->Superclass::RemoveFromView(view);
+  this->Scene = nullptr;
+  this->ConnectFrameReport();
+  return removed;
+}
+
+void vtkPVDSMGeometryRepresentation::ForwardProgress()
+{
+  this->SetProgressText("Cutting the surface into bricks");
+  this->UpdateProgress(this->Mapper->GetProgress());
+}
+
+// The superclass would set the names at a mapper of another class; nothing here is picked by them.
+void vtkPVDSMGeometryRepresentation::SetArrayIdNames(const char*, const char*) {}
+
+void vtkPVDSMGeometryRepresentation::SetLineRadius(double radius)
+{
+  this->GetMapper()->SetLineRadius(radius);
+}
+
+void vtkPVDSMGeometryRepresentation::SetPointRadius(double radius)
+{
+  this->GetMapper()->SetPointRadius(radius);
+}
+
+void vtkPVDSMGeometryRepresentation::SelectRadiusArray(int, int, int, int, const char* name)
+{
+  const std::string array = name ? name : "";
+  // The word that the panel offers beside the arrays.
+  this->GetMapper()->SetRadiusArray(array == "None" ? "" : array);
+}
+
+void vtkPVDSMGeometryRepresentation::SetNumberOfThreads(int threads)
+{
+  this->GetMapper()->SetNumberOfThreads(threads);
+}
+
+void vtkPVDSMGeometryRepresentation::SetCacheSize(int mebibytes)
+{
+  this->GetMapper()->SetCacheSize(mebibytes);
+}
+
+void vtkPVDSMGeometryRepresentation::SetLightOptions(vtkPVDSMLightOptions* options)
+{
+  this->GetMapper()->SetLightOptions(options);
+}
+
+void vtkPVDSMGeometryRepresentation::SetFrameReport(vtkPVDSMFrameReport* report)
+{
+  this->FrameReport = report;
+  this->ConnectFrameReport();
+}
+
+void vtkPVDSMGeometryRepresentation::ConnectFrameReport()
+{
+  if (this->FrameReport)
+  {
+    this->FrameReport->SetSource(this->Scene ? this->Scene->GetStatistics() : nullptr);
+  }
+}
+
+void vtkPVDSMGeometryRepresentation::PrintSelf(ostream& os, vtkIndent indent)
+{
+  this->Superclass::PrintSelf(os, indent);
+  os << indent << "Mapper:\n";
+  this->Mapper->PrintSelf(os, indent.GetNextIndent());
+}

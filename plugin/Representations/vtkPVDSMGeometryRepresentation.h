@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @class   vtkPVDSMGeometryRepresentation
+ * @brief   shows the surface of any dataset, ray traced by all ranks
+ *
+ * A Surface representation (the same geometry filter, properties, blocks and colouring) whose mapper
+ * is a vtkDSMPolyDataMapper. The geometry never leaves the rank: what is delivered is an empty
+ * placeholder, and the view is asked to render where the data are. Keeps the view's vtkDSMScene alive
+ * on the processes that render.
+ */
+
+#ifndef vtkPVDSMGeometryRepresentation_h
+#define vtkPVDSMGeometryRepresentation_h
+
+#include "vtkGeometryRepresentationWithFaces.h"
+#include "vtkNew.h"                      // for ivars
+#include "vtkRepresentationsDSMModule.h" // for the export macro
+#include "vtkSmartPointer.h"             // for ivars
+
+class vtkDSMPolyDataMapper;
+class vtkDSMScene;
+class vtkPartitionedDataSet;
+class vtkPVDSMFrameReport;
+class vtkPVDSMLightOptions;
+
+class VTKREPRESENTATIONSDSM_EXPORT vtkPVDSMGeometryRepresentation
+  : public vtkGeometryRepresentationWithFaces
+{
+public:
+  static vtkPVDSMGeometryRepresentation* New();
+  vtkTypeMacro(vtkPVDSMGeometryRepresentation, vtkGeometryRepresentationWithFaces);
+  void PrintSelf(ostream& os, vtkIndent indent) override;
+
+  int ProcessViewRequest(
+    vtkInformationRequestKey* request, vtkInformation* inInfo, vtkInformation* outInfo) override;
+  void SetArrayIdNames(const char* pointArray, const char* cellArray) override;
+
+  ///@{
+  /**
+   * Forwarded to vtkDSMPolyDataMapper.
+   */
+  void SetLineRadius(double radius);
+  void SetPointRadius(double radius);
+  void SelectRadiusArray(int index, int port, int connection, int association, const char* name);
+  void SetNumberOfThreads(int threads);
+  void SetCacheSize(int mebibytes);
+  ///@}
+
+  /**
+   * Shadows, ambient occlusion, mirrors and samples.
+   */
+  void SetLightOptions(vtkPVDSMLightOptions* options);
+
+  /**
+   * What shall tell of the view's frames; null on the client.
+   */
+  void SetFrameReport(vtkPVDSMFrameReport* report);
+
+protected:
+  vtkPVDSMGeometryRepresentation();
+  ~vtkPVDSMGeometryRepresentation() override;
+
+  int RequestData(
+    vtkInformation* request, vtkInformationVector** input, vtkInformationVector* output) override;
+  bool AddToView(vtkView* view) override;
+  bool RemoveFromView(vtkView* view) override;
+  void UpdateColoringParameters() override;
+  /// Its data are not redistributed.
+  bool NeedsOrderedCompositing() override { return false; }
+
+private:
+  vtkPVDSMGeometryRepresentation(const vtkPVDSMGeometryRepresentation&) = delete;
+  void operator=(const vtkPVDSMGeometryRepresentation&) = delete;
+
+  vtkDSMPolyDataMapper* GetMapper() const;
+  void PrepareUpdate(vtkInformation* inInfo, vtkInformation* outInfo);
+  void PrepareRender();
+  void ConnectFrameReport();
+  void ForwardProgress();
+
+  bool Executed = false; ///< RequestData, during the current request of the view
+  vtkNew<vtkPartitionedDataSet> Placeholder;
+  vtkSmartPointer<vtkDSMScene> Scene;
+  vtkSmartPointer<vtkPVDSMFrameReport> FrameReport;
+};
+
+#endif

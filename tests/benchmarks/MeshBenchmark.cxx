@@ -1,0 +1,429 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "MeshBenchmark.h"
+
+#include "OptionValues.h"
+
+#include "DSMCore/BlockStore.h"
+#include "DSMRayTracing/frame/FrameGather.h"
+#include "DSMRayTracing/frame/FrameRenderer.h"
+#include "DSMRayTracing/frame/PixelRays.h"
+#include "DSMRayTracing/kernel/MeshTracer.h"
+#ifdef DSM_HAS_EMBREE
+#include "EmbreeMesh.h"
+#endif
+
+#include <glm/gtc/constants.hpp>
+#include <glm/gtc/matrix_transform.hpp>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <fstream>
+#include <functional>
+#include <iomanip>
+#include <iostream>
+#include <optional>
+#include <thread>
+
+namespace
+{
+
+using Json = nlohmann::ordered_json;
+using Clock = std::chrono::steady_clock;
+using Order = BenchmarkMesh::Order;
+
+const std::map<std::string, Order> Orders{ { "sorted", Order::Sorted },
+  { "original", Order::Original }, { "random", Order::Random } };
+
+double SecondsSince(Clock::time_point start)
+{
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+const std::string& GetText(Order order)
+{
+  return std::find_if(
+    Orders.begin(), Orders.end(), [=](const auto& entry) { return entry.second == order; })
+    ->first;
+}
+
+/// A camera around the mesh, 20 degrees above, near enough that the mesh fills the picture.
+struct Orbit
+{
+  glm::dvec3 Center;
+  double Radius;
+
+  explicit Orbit(const rt::TriangleMesh& mesh)
+    : Center(0.5 * (mesh.Lower + mesh.Upper) + mesh.Origin)
+    , Radius(0.5 * glm::length(mesh.Upper - mesh.Lower))
+  {
+  }
+
+  rt::FrameRequest GetRequest(const MeshBenchmark::Options& options, int position) const
+  {
+    const double azimuth = glm::two_pi<double>() * position / options.Frames;
+    const double elevation = glm::radians(20.0);
+    const double distance = 3.2 * this->Radius;
+    const glm::dvec3 outward(std::cos(elevation) * std::sin(azimuth), std::sin(elevation),
+      std::cos(elevation) * std::cos(azimuth));
+    rt::FrameRequest request;
+    request.Width = options.Width;
+    request.Height = options.Height;
+    request.WorldToClip =
+      glm::perspective(glm::radians(30.0), static_cast<double>(options.Width) / options.Height,
+        distance - 1.01 * this->Radius, distance + 1.01 * this->Radius) *
+      glm::lookAt(this->Center + distance * outward, this->Center, glm::dvec3(0.0, 1.0, 0.0));
+    return request;
+  }
+};
+
+/// What a set of frames did, over all ranks.
+struct FrameResult
+{
+  double Seconds = 0.0; ///< of all positions, the fastest of each
+  std::uint64_t Accesses = 0;
+  std::uint64_t Misses = 0;
+  std::uint64_t Hash = 0;
+};
+
+FrameResult TraceFrames(const MeshBenchmark::Options& options,
+  const std::shared_ptr<const rt::TriangleMesh>& mesh, dsm::BlockStore& store,
+  dsm::Messenger& messenger)
+{
+  rt::Scene scene;
+  scene.Lights.emplace_back();
+  rt::MeshObject object;
+  object.Instance = std::make_shared<rt::MeshInstance>(mesh, glm::dmat4(1.0));
+  scene.Meshes.push_back(object);
+  const Orbit orbit(*mesh);
+  rt::FrameRenderer renderer(messenger);
+  FrameResult result;
+  std::vector<double> fastest(options.Frames, 1e300);
+  struct Counts
+  {
+    std::uint64_t Accesses = 0;
+    std::uint64_t Misses = 0;
+  };
+  Counts mine;
+  for (int repeat = 0; repeat < options.Repeat; ++repeat)
+  {
+    mine = {};
+    for (int position = 0; position < options.Frames; ++position)
+    {
+      const rt::Frame frame = renderer.Render(store, scene, orbit.GetRequest(options, position));
+      fastest[position] = std::min(fastest[position], frame.Seconds);
+      mine.Accesses += frame.Counters.Workers.Accesses;
+      mine.Misses += frame.Counters.Workers.Misses;
+      if (repeat == 0)
+      {
+        result.Hash =
+          result.Hash * 0x100000001b3ull ^ rt::GetHash(rt::GatherFrame(messenger, frame));
+      }
+    }
+  }
+  for (const Counts& counts : messenger.AllGatherValue(mine))
+  {
+    result.Accesses += counts.Accesses;
+    result.Misses += counts.Misses;
+  }
+  for (const double seconds : fastest)
+  {
+    result.Seconds += seconds;
+  }
+  return result;
+}
+
+#ifdef DSM_HAS_EMBREE
+
+/// Seconds to trace a ray through every pixel of all positions, the fastest round of each.
+/// `start(worker)` gives what finds the hit of a ray for a worker: bool(const rt::Ray&, double& t).
+struct RayResult
+{
+  double Seconds = 0.0;
+  std::uint64_t Hits = 0;
+  double Sum = 0.0; ///< of T
+};
+
+template <class Start>
+RayResult TraceRays(const MeshBenchmark::Options& options, const Orbit& orbit, int threads,
+  int position, const Start& start)
+{
+  const rt::FrameRequest request = orbit.GetRequest(options, position);
+  const rt::PixelRays rays(request);
+  std::vector<RayResult> results(threads);
+  std::atomic<int> next{ 0 };
+  const int tiles = (request.Width + 15) / 16 * ((request.Height + 15) / 16);
+  const auto work = [&](int worker)
+  {
+    auto&& intersect = start(worker);
+    RayResult mine;
+    for (int tile = next++; tile < tiles; tile = next++)
+    {
+      const int left = tile % ((request.Width + 15) / 16) * 16;
+      const int bottom = tile / ((request.Width + 15) / 16) * 16;
+      for (int y = bottom; y < std::min(bottom + 16, request.Height); ++y)
+      {
+        for (int x = left; x < std::min(left + 16, request.Width); ++x)
+        {
+          double t = 0.0;
+          if (intersect(rays.GetRay(x, y), t))
+          {
+            ++mine.Hits;
+            mine.Sum += t;
+          }
+        }
+      }
+    }
+    results[worker] = mine;
+  };
+  const auto begin = Clock::now();
+  std::vector<std::thread> workers;
+  for (int worker = 0; worker < threads; ++worker)
+  {
+    workers.emplace_back(work, worker);
+  }
+  for (std::thread& worker : workers)
+  {
+    worker.join();
+  }
+  RayResult result;
+  result.Seconds = SecondsSince(begin);
+  for (const RayResult& one : results)
+  {
+    result.Hits += one.Hits;
+    result.Sum += one.Sum;
+  }
+  return result;
+}
+
+/// One rank has all bricks, so nothing needs to be served.
+template <class Store>
+RayResult TraceOwnRays(const MeshBenchmark::Options& options, const Orbit& orbit, int threads,
+  int position, const rt::MeshInstance& instance, Store& store)
+{
+  struct Session
+  {
+    Session(Store& blocks, int worker)
+      : Blocks(blocks)
+      , Self(blocks.GetWorker(worker))
+    {
+      this->Blocks.Enter(this->Self);
+    }
+    ~Session() { this->Blocks.Leave(this->Self); }
+    Store& Blocks;
+    typename Store::Worker& Self;
+  };
+  store.BeginFrame();
+  const RayResult result = TraceRays(options, orbit, threads, position,
+    [&](int worker)
+    {
+      auto session = std::make_shared<Session>(store, worker);
+      return [session, tracer = rt::MeshTracer<Store>(store, session->Self), &instance](
+               const rt::Ray& ray, double& t)
+      {
+        rt::MeshHit hit;
+        const bool found = tracer.Intersect(instance, ray, hit);
+        t = hit.T;
+        return found;
+      };
+    });
+  store.EndFrame();
+  return result;
+}
+
+Json CompareWithEmbree(const MeshBenchmark::Options& options, const MeshFile::Mesh& triangles,
+  const std::shared_ptr<const rt::TriangleMesh>& mesh, double buildSeconds, int threads,
+  dsm::BlockStore& store)
+{
+  const EmbreeMesh embree(triangles, threads);
+  const rt::MeshInstance instance(mesh, glm::dmat4(1.0));
+  const Orbit orbit(*mesh);
+  RayResult own;
+  RayResult theirs;
+  for (int position = 0; position < options.Frames; ++position)
+  {
+    double ownFastest = 1e300;
+    double theirFastest = 1e300;
+    for (int repeat = 0; repeat < options.Repeat; ++repeat)
+    {
+      const RayResult ownRound = store.Visit([&](auto& blocks)
+        { return TraceOwnRays(options, orbit, threads, position, instance, blocks); });
+      const RayResult theirRound = TraceRays(options, orbit, threads, position,
+        [&](int)
+        { return [&](const rt::Ray& ray, double& t) { return embree.Intersect(ray, t); }; });
+      ownFastest = std::min(ownFastest, ownRound.Seconds);
+      theirFastest = std::min(theirFastest, theirRound.Seconds);
+      own.Hits += repeat == 0 ? ownRound.Hits : 0;
+      own.Sum += repeat == 0 ? ownRound.Sum : 0.0;
+      theirs.Hits += repeat == 0 ? theirRound.Hits : 0;
+      theirs.Sum += repeat == 0 ? theirRound.Sum : 0.0;
+    }
+    own.Seconds += ownFastest;
+    theirs.Seconds += theirFastest;
+  }
+  const double rays = static_cast<double>(options.Width) * options.Height * options.Frames;
+  return { { "embree", EmbreeMesh::GetVersion() }, { "rays_per_second", rays / own.Seconds },
+    { "embree_rays_per_second", rays / theirs.Seconds },
+    { "rays_ratio", theirs.Seconds / own.Seconds }, { "hits", own.Hits },
+    { "embree_hits", theirs.Hits },
+    { "mean_distance_ratio",
+      own.Sum / static_cast<double>(own.Hits) / (theirs.Sum / static_cast<double>(theirs.Hits)) },
+    { "build_seconds", buildSeconds }, { "embree_build_seconds", embree.GetBuildSeconds() },
+    { "build_ratio", buildSeconds / embree.GetBuildSeconds() } };
+}
+
+#endif
+
+} // namespace
+
+const char* MeshBenchmark::Usage()
+{
+  return "usage: dsm_bench mesh [options], alone or under mpirun\n"
+         "  --mesh M            grid:N (2 N^2 triangles; default grid:708), or a PLY or OBJ file\n"
+         "  --subdivide K       cuts every triangle into four, K times (default 0)\n"
+         "  --order O[,O..]     sorted (default), original, random: how triangles share bricks. A "
+         "ray\n"
+         "                      must visit nearly all bricks of a mesh in random order, so take a\n"
+         "                      small one\n"
+         "  --cache-fraction F[,F..]  cache per rank, as a part of the bytes of all bricks\n"
+         "                      (default 1)\n"
+         "  --size WxH          pixels (default 512x512)\n"
+         "  --frames N          camera positions around the mesh (default 8)\n"
+         "  --repeat R          orbits; for every position the fastest counts (default 3)\n"
+         "  --threads T         tracing threads per rank (default 0: cores / ranks of the host)\n"
+         "  --store S           automatic, replicated, object (default) or paged\n"
+         "  --host-sharing H    on, or off (default): one machine plays many hosts\n"
+         "  --json FILE         writes the result; - is standard output\n";
+}
+
+MeshBenchmark::Options MeshBenchmark::Parse(int argc, char** argv)
+{
+  using namespace OptionValues;
+  Options options;
+  OptionValues::Parse(argc, argv,
+    { { "--mesh", [&](const auto&, const auto& text) { options.Mesh = text; } },
+      { "--subdivide",
+        [&](const auto& name, const auto& text)
+        { options.Subdivisions = ToNumber(name, text, 0); } },
+      { "--order",
+        [&](const auto& name, const auto& text)
+        {
+          options.Orders.clear();
+          std::istringstream stream(text);
+          for (std::string part; std::getline(stream, part, ',');)
+          {
+            options.Orders.push_back(ToChoice<Order>(name, part, Orders));
+          }
+        } },
+      { "--cache-fraction",
+        [&](const auto& name, const auto& text)
+        { options.CacheFractions = ToNumbers<double>(name, text, 0.0); } },
+      { "--size",
+        [&](const auto& name, const auto& text)
+        {
+          const auto x = text.find('x');
+          options.Width = ToNumber(name, text.substr(0, x), 1);
+          options.Height = ToNumber(name, x == std::string::npos ? "" : text.substr(x + 1), 1);
+        } },
+      { "--frames",
+        [&](const auto& name, const auto& text) { options.Frames = ToNumber(name, text, 1); } },
+      { "--repeat",
+        [&](const auto& name, const auto& text) { options.Repeat = ToNumber(name, text, 1); } },
+      { "--threads",
+        [&](const auto& name, const auto& text) { options.Threads = ToNumber(name, text, 0); } },
+      { "--store",
+        [&](const auto& name, const auto& text)
+        {
+          options.Store = ToChoice<dsm::MemoryOrganization>(name, text,
+            { { "automatic", dsm::MemoryOrganization::Automatic },
+              { "replicated", dsm::MemoryOrganization::Replicated },
+              { "object", dsm::MemoryOrganization::ObjectBased },
+              { "paged", dsm::MemoryOrganization::PageBased } });
+        } },
+      { "--host-sharing",
+        [&](const auto& name, const auto& text) {
+          options.HostSharing = ToChoice<bool>(name, text, { { "on", true }, { "off", false } });
+        } },
+      { "--json", [&](const auto&, const auto& text) { options.Json = text; } } },
+    Usage());
+  return options;
+}
+
+void MeshBenchmark::Run(const Options& options, dsm::Messenger& messenger)
+{
+  const bool speaks = messenger.GetRank() == 0;
+  const int cores = static_cast<int>(std::max(std::thread::hardware_concurrency(), 1u));
+  const int threads =
+    options.Threads > 0 ? options.Threads : std::max(cores / messenger.GetRanksOnHost(), 1);
+  dsm::BlockStore::Settings settings;
+  settings.Organization = options.Store;
+  settings.HostSharing = options.HostSharing;
+  settings.Workers = threads;
+  dsm::BlockStore store(messenger, settings);
+  std::optional<BenchmarkMesh> source;
+  messenger.RunTogether(
+    "Reading the mesh", [&] { source.emplace(options.Mesh, options.Subdivisions); });
+
+  Json result{ { "mesh", options.Mesh }, { "subdivisions", options.Subdivisions },
+    { "triangles", source->GetTriangles().GetTriangleCount() },
+    { "size", { options.Width, options.Height } }, { "frames", options.Frames },
+    { "repeat", options.Repeat }, { "rank_count", messenger.GetSize() }, { "threads", threads },
+    { "host_sharing", options.HostSharing }, { "orders", Json::array() } };
+  std::ostringstream silence;
+  std::ostream& table = speaks && options.Json != "-" ? std::cout : silence;
+  table << std::fixed;
+  for (const Order order : options.Orders)
+  {
+    double seconds = 0.0;
+    const auto mesh = source->Publish(order, threads, store, messenger, seconds);
+    const double bytes = static_cast<double>(mesh->Segment->GetDirectory().GetTotalBytes());
+    const double each =
+      (bytes + static_cast<double>(mesh->Bricks.GetBytes())) / static_cast<double>(mesh->Triangles);
+    Json ofOrder{ { "order", GetText(order) },
+      { "bricks", mesh->Segment->GetDirectory().GetCount() }, { "build_seconds", seconds },
+      { "bytes_per_triangle", each }, { "caches", Json::array() } };
+    table << options.Mesh << ", " << mesh->Triangles << " triangles, " << GetText(order) << ": "
+          << std::setprecision(1) << each << " bytes a triangle, built in " << std::setprecision(2)
+          << seconds << " s\n";
+    for (const double fraction : options.CacheFractions)
+    {
+      settings.CacheBytes = static_cast<std::size_t>(fraction * bytes);
+      store.SetSettings(settings);
+      const FrameResult frames = TraceFrames(options, mesh, store, messenger);
+      const double framesPerSecond = options.Frames / frames.Seconds;
+      char hash[17];
+      std::snprintf(hash, sizeof(hash), "%016llx", static_cast<unsigned long long>(frames.Hash));
+      ofOrder["caches"].push_back(
+        { { "cache_fraction", fraction }, { "frames_per_second", framesPerSecond },
+          { "accesses", frames.Accesses }, { "misses", frames.Misses }, { "image_hash", hash } });
+      table << "  cache " << std::setprecision(2) << fraction << ": " << framesPerSecond
+            << " frames/s, " << frames.Accesses / options.Frames << " accesses and "
+            << frames.Misses / options.Frames << " misses a frame, picture " << hash << std::endl;
+    }
+#ifdef DSM_HAS_EMBREE
+    if (messenger.GetSize() == 1)
+    {
+      const Json peer =
+        CompareWithEmbree(options, source->GetTriangles(), mesh, seconds, threads, store);
+      ofOrder["peer"] = peer;
+      table << "  single rays: " << std::setprecision(2)
+            << 1e-6 * peer["rays_per_second"].get<double>() << " million/s, Embree "
+            << 1e-6 * peer["embree_rays_per_second"].get<double>() << ": "
+            << peer["rays_ratio"].get<double>() << " x; building took "
+            << peer["build_ratio"].get<double>() << " x as long\n";
+    }
+#endif
+    result["orders"].push_back(ofOrder);
+    result["store"] = dsm::GetText(store.GetOrganization());
+    store.Retire(mesh->Segment);
+  }
+  if (speaks && options.Json == "-")
+  {
+    std::cout << result.dump(2) << std::endl;
+  }
+  else if (speaks && !options.Json.empty())
+  {
+    std::ofstream(options.Json) << result.dump(2) << '\n';
+  }
+}

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef MeshBenchmark_h
+#define MeshBenchmark_h
+
+#include "BenchmarkMesh.h"
+
+#include "DSMCore/MemoryOrganization.h"
+#include "DSMCore/Messenger.h"
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+/// Frames of a mesh out of shared bricks: the paper's Figure 8 (frame rate and misses by the size of
+/// the cache, for three orders of the triangles), bytes for each triangle, and, on one rank where
+/// Embree is there, building and single rays against it in the same run.
+class MeshBenchmark
+{
+public:
+  struct Options
+  {
+    std::string Mesh = "grid:708";
+    int Subdivisions = 0;
+    std::vector<BenchmarkMesh::Order> Orders{ BenchmarkMesh::Order::Sorted };
+    std::vector<double> CacheFractions{ 1.0 }; ///< of the bytes of all bricks
+    int Width = 512;
+    int Height = 512;
+    int Frames = 8;
+    int Repeat = 3;
+    int Threads = 0; ///< 0: the host's cores divided by its ranks
+    dsm::MemoryOrganization Store = dsm::MemoryOrganization::ObjectBased;
+    bool HostSharing = false; ///< off: one machine plays many hosts
+    std::string Json;         ///< file, or - for standard output; empty: none
+  };
+
+  static const char* Usage();
+  /// Throws dsm::Error naming the argument that is wrong.
+  static Options Parse(int argc, char** argv);
+
+  /// Collective. Prints on rank 0.
+  static void Run(const Options& options, dsm::Messenger& messenger);
+};
+
+#endif

@@ -1,0 +1,204 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// One rank runs out of memory, in turn at each of the larger allocations that it makes between the
+// data and the frame: every rank reports it, none waits, and the next frame is as it should be.
+// Several MPI ranks; draws nothing.
+#include "vtkDSMScene.h"
+#include "vtkDSMStatistics.h"
+#include "vtkDSMVolumeMapper.h"
+
+#include "vtkAutoInit.h"
+#include "vtkCamera.h"
+#include "vtkCommand.h"
+#include "vtkFloatArray.h"
+#include "vtkImageData.h"
+#include "vtkMPIController.h"
+#include "vtkNew.h"
+#include "vtkPointData.h"
+#include "vtkRenderWindow.h"
+#include "vtkRenderer.h"
+#include "vtkTestErrorObserver.h"
+#include "vtkVolume.h"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <cmath>
+#include <cstdlib>
+#include <new>
+#include <string>
+
+namespace
+{
+
+/// Smaller ones are left alone: messages of a few bytes must get through for ranks to agree, and a
+/// file stream wants 8 KiB.
+constexpr std::size_t Large = 9000;
+
+/// How many more large allocations succeed; negative: all.
+std::atomic<long> Left{ -1 };
+
+void* Allocate(std::size_t bytes)
+{
+  if (bytes >= Large && Left.load() >= 0 && Left.fetch_sub(1) == 0)
+  {
+    throw std::bad_alloc();
+  }
+  void* memory = std::malloc(bytes > 0 ? bytes : 1);
+  if (!memory)
+  {
+    throw std::bad_alloc();
+  }
+  return memory;
+}
+
+} // namespace
+
+void* operator new(std::size_t bytes)
+{
+  return Allocate(bytes);
+}
+
+void* operator new[](std::size_t bytes)
+{
+  return Allocate(bytes);
+}
+
+void operator delete(void* memory) noexcept
+{
+  std::free(memory);
+}
+
+void operator delete[](void* memory) noexcept
+{
+  std::free(memory);
+}
+
+void operator delete(void* memory, std::size_t) noexcept
+{
+  std::free(memory);
+}
+
+void operator delete[](void* memory, std::size_t) noexcept
+{
+  std::free(memory);
+}
+
+namespace
+{
+
+constexpr int Edge = 60;
+
+/// This rank's slab, along z, of the distance from the middle.
+vtkSmartPointer<vtkImageData> MakeSlab(int rank, int ranks)
+{
+  auto image = vtkSmartPointer<vtkImageData>::New();
+  image->SetExtent(0, Edge, 0, Edge, Edge * rank / ranks, Edge * (rank + 1) / ranks);
+  vtkNew<vtkFloatArray> distance;
+  distance->SetName("distance");
+  distance->SetNumberOfTuples(image->GetNumberOfPoints());
+  for (vtkIdType point = 0; point < image->GetNumberOfPoints(); ++point)
+  {
+    double x[3];
+    image->GetPoint(point, x);
+    double square = 0.0;
+    for (const double coordinate : x)
+    {
+      square += (coordinate - 0.5 * Edge) * (coordinate - 0.5 * Edge);
+    }
+    distance->SetValue(point, static_cast<float>(std::sqrt(square)));
+  }
+  image->GetPointData()->SetScalars(distance);
+  return image;
+}
+
+class OutOfMemory : public testing::Test
+{
+protected:
+  OutOfMemory()
+    : Controller(vtkMultiProcessController::GetGlobalController())
+    , Scene(vtkDSMScene::ForRenderer(this->Renderer))
+  {
+    this->Window->SetSize(100, 80);
+    this->Window->AddRenderer(this->Renderer);
+    this->Mapper->SetIsoArray("distance");
+    this->Mapper->SetIsoValue(0, 20.0);
+    this->Mapper->SetNumberOfThreads(2);
+    this->Mapper->SetCacheSize(8);
+    this->Volume->SetMapper(this->Mapper);
+    this->Renderer->AddVolume(this->Volume);
+    this->Renderer->GetActiveCamera()->SetPosition(60.0, 90.0, 200.0);
+    this->Renderer->GetActiveCamera()->SetFocalPoint(30.0, 30.0, 30.0);
+    this->Renderer->ResetCameraClippingRange(0.0, Edge, 0.0, Edge, 0.0, Edge);
+    this->Scene->AddObserver(vtkCommand::ErrorEvent, this->Errors);
+    this->Mapper->AddObserver(vtkCommand::ErrorEvent, this->Errors);
+  }
+
+  void GiveNewData()
+  {
+    this->Mapper->SetInputData(
+      MakeSlab(this->Controller->GetLocalProcessId(), this->Controller->GetNumberOfProcesses()));
+  }
+
+  /// Traces a frame; returns what was reported.
+  std::string Trace()
+  {
+    this->Errors->Clear();
+    this->Renderer->InvokeEvent(vtkCommand::StartEvent);
+    return this->Errors->GetError() ? this->Errors->GetErrorMessage() : std::string();
+  }
+
+  vtkMultiProcessController* Controller;
+  vtkNew<vtkRenderer> Renderer;
+  vtkNew<vtkRenderWindow> Window;
+  vtkSmartPointer<vtkDSMScene> Scene;
+  vtkNew<vtkDSMVolumeMapper> Mapper;
+  vtkNew<vtkVolume> Volume;
+  vtkNew<vtkTest::ErrorObserver> Errors;
+};
+
+TEST_F(OutOfMemory, OfOneRankIsReportedByAllAndTheNextFrameIsDrawn)
+{
+  const int last = this->Controller->GetNumberOfProcesses() - 1;
+  int failures = 0;
+  for (long allocation = 0;; ++allocation)
+  {
+    this->GiveNewData();
+    if (this->Controller->GetLocalProcessId() == last)
+    {
+      Left = allocation;
+    }
+    const std::string report = this->Trace();
+    int reached = Left.exchange(-1) < 0;
+    // Only the last rank knows whether its allocation came.
+    this->Controller->Broadcast(&reached, 1, last);
+    if (!reached)
+    {
+      EXPECT_EQ(report, "");
+      break;
+    }
+    // Automatic memory organisation may go on without the memory; else it is said.
+    if (this->Scene->GetStatistics()->GetFrameSeconds() == 0.0)
+    {
+      ++failures;
+      EXPECT_NE(report.find("out of memory"), std::string::npos) << allocation << ": " << report;
+    }
+    this->GiveNewData();
+    EXPECT_EQ(this->Trace(), "") << "after allocation " << allocation;
+    EXPECT_GT(this->Scene->GetStatistics()->GetFrameSeconds(), 0.0) << allocation;
+  }
+  EXPECT_GT(failures, 3) << "the sweep came by the places where memory is taken";
+}
+
+} // namespace
+
+int main(int argc, char** argv)
+{
+  vtkNew<vtkMPIController> controller;
+  controller->Initialize(&argc, &argv);
+  vtkMultiProcessController::SetGlobalController(controller);
+  testing::InitGoogleTest(&argc, argv);
+  const int result = RUN_ALL_TESTS();
+  vtkMultiProcessController::SetGlobalController(nullptr);
+  controller->Finalize();
+  return result;
+}

@@ -1,0 +1,286 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Pictures of meshes: against trying all triangles, and the same however bricks are kept.
+#include "tests/support/MeshScene.h"
+
+#include "DSMRayTracing/frame/FrameGather.h"
+#include "DSMRayTracing/frame/FrameRenderer.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <mutex>
+
+namespace
+{
+
+struct Keeping
+{
+  dsm::MemoryOrganization Organization = dsm::MemoryOrganization::Replicated;
+  bool HostSharing = false;
+  std::size_t CacheBytes = std::size_t(16) << 20;
+};
+
+rt::Picture Trace(const Keeping& keeping, int ranks, int workers)
+{
+  rt::Picture first;
+  std::mutex guard;
+  RunOnCluster(ranks,
+    [&](dsm::Messenger& messenger)
+    {
+      dsm::BlockStore::Settings settings =
+        SphereScene::CreateSettings(keeping.CacheBytes, workers, keeping.Organization);
+      settings.HostSharing = keeping.HostSharing;
+      dsm::BlockStore store(messenger, settings);
+      const rt::Scene scene = MeshScene::Create(messenger, store);
+      rt::FrameRenderer renderer(messenger);
+      renderer.Render(store, scene, SphereScene::CreateRequest(40, 30));
+      const rt::Picture picture = rt::GatherFrame(
+        messenger, renderer.Render(store, scene, SphereScene::CreateRequest(97, 61)));
+      const std::lock_guard<std::mutex> lock(guard);
+      if (first.Width == 0)
+      {
+        first = picture;
+      }
+      EXPECT_EQ(rt::GetHash(first), rt::GetHash(picture)) << "rank " << messenger.GetRank();
+    });
+  return first;
+}
+
+class MeshFrame : public testing::TestWithParam<Keeping>
+{
+};
+
+INSTANTIATE_TEST_SUITE_P(Organizations, MeshFrame,
+  testing::Values(Keeping{ dsm::MemoryOrganization::Automatic, true },
+    Keeping{ dsm::MemoryOrganization::Replicated, true },
+    Keeping{ dsm::MemoryOrganization::ObjectBased, false },
+    Keeping{ dsm::MemoryOrganization::ObjectBased, false, 4 * MeshScene::BrickBytes },
+    Keeping{ dsm::MemoryOrganization::ObjectBased, true },
+    Keeping{ dsm::MemoryOrganization::PageBased, false }));
+
+/// One mesh, looked at by a camera that looks down the z axis, in parallel, at [-1.5, 1.5]^2.
+class MeshPicture : public testing::Test
+{
+protected:
+  static constexpr int Size = 80;
+
+  rt::MeshObject Publish(const TestMesh::Mesh& mesh, const glm::dmat4& place = glm::dmat4(1.0))
+  {
+    rt::MeshObject object;
+    object.Instance = std::make_shared<rt::MeshInstance>(
+      MeshScene::Publish(mesh, this->Messenger, this->Store), place);
+    object.Surface.Lighting = false;
+    return object;
+  }
+
+  rt::Picture Trace(std::vector<rt::MeshObject> meshes)
+  {
+    this->World.Meshes = std::move(meshes);
+    rt::FrameRequest request;
+    request.Width = Size;
+    request.Height = Size;
+    request.WorldToClip = glm::ortho(-1.5, 1.5, -1.5, 1.5, 0.0, 10.0) *
+      glm::lookAt(glm::dvec3(0.0, 0.0, 5.0), glm::dvec3(0.0), glm::dvec3(0.0, 1.0, 0.0));
+    rt::FrameRenderer renderer(this->Messenger);
+    return rt::GatherFrame(this->Messenger, renderer.Render(this->Store, this->World, request));
+  }
+
+  /// World position of the middle of a pixel.
+  static double GetPlace(int pixel) { return (pixel + 0.5) * 3.0 / Size - 1.5; }
+  static glm::ivec4 GetColor(const rt::Picture& picture, double x, double y)
+  {
+    const auto column = static_cast<std::size_t>((x + 1.5) / 3.0 * Size);
+    const auto row = static_cast<std::size_t>((y + 1.5) / 3.0 * Size);
+    const std::uint8_t* color = &picture.Color[4 * (row * Size + column)];
+    return { color[0], color[1], color[2], color[3] };
+  }
+
+  dsm::Messenger Messenger{ std::move(dsm::LoopbackTransport::CreateGroup(1).front()) };
+  dsm::BlockStore Store{ Messenger, dsm::BlockStore::Settings{} };
+  rt::Scene World;
+};
+
+/// The square [-1, 1]^2 at a height, its front towards the camera; values and colours grow with x.
+TestMesh::Mesh CreateSquare(double height)
+{
+  TestMesh::Mesh mesh;
+  mesh.Positions = { -1, -1, height, 1, -1, height, 1, 1, height, -1, 1, height };
+  mesh.Triangles = { 0, 1, 2, 0, 2, 3 };
+  mesh.Values = { 0.0, 1.0, 1.0, 0.0 };
+  mesh.Colors = { 0, 0, 0, 255, 255, 0, 0, 255, 255, 0, 0, 255, 0, 0, 0, 255 };
+  return mesh;
+}
+
+std::shared_ptr<rt::ColorMap> CreateRainbow()
+{
+  auto colors = std::make_shared<rt::ColorMap>();
+  colors->Table = { { 1.0f, 0.0f, 0.0f, 1.0f }, { 0.0f, 1.0f, 0.0f, 1.0f },
+    { 0.0f, 0.0f, 1.0f, 1.0f } };
+  return colors;
+}
+
+} // namespace
+
+TEST_P(MeshFrame, PictureDoesNotDependOnRanksOrWorkers)
+{
+  const rt::Picture expected = Trace({}, 1, 1);
+  for (const int ranks : { 1, 2, 3, 4 })
+  {
+    for (const int workers : { 1, 2 })
+    {
+      const rt::Picture picture = Trace(GetParam(), ranks, workers);
+      EXPECT_EQ(picture.Color, expected.Color) << ranks << " ranks, " << workers << " workers";
+      EXPECT_EQ(picture.Depth, expected.Depth) << ranks << " ranks, " << workers << " workers";
+    }
+  }
+}
+
+TEST_F(MeshPicture, EveryPixelIsThatOfTryingAllTriangles)
+{
+  const TestMesh::Mesh blob = TestMesh::CreateBlob(3);
+  const rt::Picture picture = this->Trace({ this->Publish(blob) });
+  int covered = 0;
+  for (int y = 0; y < Size; ++y)
+  {
+    for (int x = 0; x < Size; ++x)
+    {
+      rt::Ray ray;
+      ray.Origin = { GetPlace(x), GetPlace(y), 5.0 };
+      ray.Direction = { 0.0, 0.0, -10.0 };
+      ray.Max = 1.0;
+      const TestMesh::Oracle hit = TestMesh::FindByTryingAll(blob, ray);
+      EXPECT_NEAR(picture.Depth[y * Size + x], hit.Found ? hit.T : 1.0, 1e-6) << x << ", " << y;
+      covered += hit.Found;
+    }
+  }
+  EXPECT_GT(covered, Size * Size / 5);
+}
+
+TEST_F(MeshPicture, IsosurfacesAndMeshesHideOneAnother)
+{
+  const auto field = SphereScene::Publish(this->Messenger, this->Store);
+  this->World = SphereScene::CreateScene(field, 1.0f);
+  rt::IsosurfaceObject& ball = this->World.Isosurfaces.front();
+  const double scale = 2.0 / (SphereScene::Points - 1);
+  ball.SetIndexToWorld(glm::translate(glm::dmat4(1.0), glm::dvec3(-1.0)) *
+    glm::scale(glm::dmat4(1.0), glm::dvec3(scale)));
+  ball.Isovalues = { 0.5 };
+  ball.Surface.Lighting = false;
+  rt::MeshObject square = this->Publish(CreateSquare(0.0));
+  square.Surface.DiffuseColor = { 0.0f, 0.0f, 1.0f };
+  const rt::Picture picture = this->Trace({ square });
+  EXPECT_EQ(GetColor(picture, 0.0, 0.0), glm::ivec4(255)); // the ball's upper half
+  EXPECT_EQ(GetColor(picture, 0.95, 0.95), glm::ivec4(0, 0, 255, 255));
+  const rt::Picture under = this->Trace({ this->Publish(CreateSquare(-0.9)), square });
+  EXPECT_EQ(picture.Color, under.Color);
+}
+
+TEST_F(MeshPicture, CullingAndTheColourOfTheBack)
+{
+  const glm::dmat4 turned =
+    glm::rotate(glm::dmat4(1.0), glm::pi<double>(), glm::dvec3(0.0, 1.0, 0.0));
+  for (const bool back : { false, true })
+  {
+    rt::MeshObject object = this->Publish(CreateSquare(0.0), back ? turned : glm::dmat4(1.0));
+    object.Surface.DiffuseColor = { 1.0f, 0.0f, 0.0f };
+    EXPECT_EQ(GetColor(this->Trace({ object }), 0.1, 0.2), glm::ivec4(255, 0, 0, 255)) << back;
+    object.BackSurface = object.Surface;
+    object.BackSurface->DiffuseColor = { 0.0f, 0.0f, 1.0f };
+    EXPECT_EQ(GetColor(this->Trace({ object }), 0.1, 0.2),
+      back ? glm::ivec4(0, 0, 255, 255) : glm::ivec4(255, 0, 0, 255));
+    auto culled = std::make_shared<rt::MeshInstance>(*object.Instance);
+    culled->Culling.Back = true;
+    object.Instance = culled;
+    EXPECT_EQ(GetColor(this->Trace({ object }), 0.1, 0.2),
+      back ? glm::ivec4(0) : glm::ivec4(255, 0, 0, 255));
+  }
+}
+
+TEST_F(MeshPicture, ColoursByTheirSource)
+{
+  rt::MeshObject object = this->Publish(CreateSquare(0.0));
+  object.Colors = CreateRainbow();
+  object.ColoredBy = rt::MeshObject::Coloring::Values;
+  rt::Picture picture = this->Trace({ object });
+  EXPECT_EQ(GetColor(picture, -0.8, 0.3), glm::ivec4(255, 0, 0, 255));
+  EXPECT_EQ(GetColor(picture, 0.02, -0.4), glm::ivec4(0, 255, 0, 255));
+  EXPECT_EQ(GetColor(picture, 0.8, 0.3), glm::ivec4(0, 0, 255, 255));
+
+  object.ColoredBy = rt::MeshObject::Coloring::CornerValues;
+  picture = this->Trace({ object });
+  const double part = (GetPlace(Size / 2) + 1.0) / 2.0; // of the way from red to blue
+  const glm::ivec4 middle = GetColor(picture, 0.01, 0.3);
+  EXPECT_NEAR(middle.x, 255.0 * (1.0 - part), 1.0);
+  EXPECT_EQ(middle.y, 0);
+  EXPECT_NEAR(middle.z, 255.0 * part, 1.0);
+
+  object.ColoredBy = rt::MeshObject::Coloring::Colors;
+  picture = this->Trace({ object });
+  EXPECT_NEAR(GetColor(picture, 0.01, 0.3).x, 255.0 * part, 1.0);
+  EXPECT_EQ(GetColor(picture, 0.01, 0.3).z, 0);
+}
+
+TEST_F(MeshPicture, TwoTranslucentSquaresAndTheirCommonEdges)
+{
+  rt::MeshObject above = this->Publish(CreateSquare(0.5));
+  rt::MeshObject below = this->Publish(CreateSquare(-0.5));
+  above.Surface.Opacity = below.Surface.Opacity = 0.5f;
+  const rt::Picture picture = this->Trace({ below, above });
+  for (int y = 0; y < Size; ++y)
+  {
+    for (int x = 0; x < Size; ++x)
+    {
+      const bool inside = std::fabs(GetPlace(x)) < 1.0 && std::fabs(GetPlace(y)) < 1.0;
+      // Also along the diagonal, where a ray meets two triangles of each square.
+      EXPECT_EQ(picture.Color[4 * (y * Size + x) + 3], inside ? 191 : 0) << x << ", " << y;
+    }
+  }
+}
+
+TEST_F(MeshPicture, NormalsOfPointsOrOfPlanes)
+{
+  TestMesh::Mesh square = CreateSquare(0.0);
+  square.Normals = { 1, 0, 1, 1, 0, 1, 1, 0, 1, 1, 0, 1 };
+  rt::MeshObject object = this->Publish(square);
+  object.Surface.Lighting = true;
+  this->World.Lights.emplace_back(); // along -z
+  EXPECT_NEAR(GetColor(this->Trace({ object }), 0.3, 0.2).x, 255.0 * std::sqrt(0.5), 1.0);
+  object.Flat = true;
+  EXPECT_EQ(GetColor(this->Trace({ object }), 0.3, 0.2).x, 255);
+}
+
+TEST_F(MeshPicture, NoSurfaceShadowsItself)
+{
+  for (const double farAway : { 0.0, 1e6 })
+  {
+    // A plane of many bricks, lit at a low angle: any shadow would be its own.
+    TestMesh::Mesh plane = TestMesh::CreateTerrain(40);
+    for (std::size_t z = 2; z < plane.Positions.size(); z += 3)
+    {
+      plane.Positions[z] = 0.0;
+    }
+    plane.Normals.clear();
+    const glm::dvec3 center(farAway, -farAway, farAway);
+    rt::MeshObject object = this->Publish(plane, glm::translate(glm::dmat4(1.0), center));
+    object.Surface.Lighting = true;
+    this->World.Lights.resize(1);
+    this->World.Lights[0].Direction = glm::normalize(glm::dvec3(1.0, 0.3, -0.02));
+    this->World.Lights[0].Color = glm::vec3(40.0f);
+    this->World.Transport.Shadows = true;
+    this->World.Meshes = { object };
+    rt::FrameRequest request;
+    request.Width = Size;
+    request.Height = Size;
+    request.WorldToClip = glm::ortho(0.0, 1.0, 0.0, 1.0, 0.0, 10.0) *
+      glm::lookAt(center + glm::dvec3(0.0, 0.0, 5.0), center, glm::dvec3(0.0, 1.0, 0.0));
+    rt::FrameRenderer renderer(this->Messenger);
+    const rt::Picture picture =
+      rt::GatherFrame(this->Messenger, renderer.Render(this->Store, this->World, request));
+    int dark = 0;
+    for (std::size_t pixel = 0; pixel < picture.Depth.size(); ++pixel)
+    {
+      dark += picture.Color[4 * pixel] < 150;
+    }
+    EXPECT_EQ(dark, 0) << farAway;
+  }
+}

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef vtkDSMMeshColors_h
+#define vtkDSMMeshColors_h
+
+#include "DSMRayTracing/brick/MeshAttributes.h"
+
+#include "vtkSmartPointer.h"
+#include "vtkType.h"
+
+#include <cstdint>
+
+class vtkAbstractArray;
+class vtkDSMPolyDataMapper;
+class vtkDataArray;
+class vtkPolyData;
+class vtkUnsignedCharArray;
+
+/// What colours one vtkPolyData, as the mapper's settings choose it: values, which the colour map
+/// turns into colours where a ray hits, or colours of the points or cells themselves.
+class vtkDSMMeshColors
+{
+public:
+  enum class State : std::int32_t
+  {
+    NotAsked,
+    Usable,
+    Missing,
+    WrongLength
+  };
+
+  vtkDSMMeshColors() = default;
+  /// Local. Looks the array up; no element is read yet.
+  vtkDSMMeshColors(vtkDSMPolyDataMapper* mapper, vtkPolyData* data);
+
+  State GetState() const { return this->Found; }
+  /// Elements of the array, and of what it should have one for each.
+  vtkIdType GetLength() const { return this->Length; }
+  vtkIdType GetExpectedLength() const { return this->ExpectedLength; }
+
+  /// At most one of the two is there.
+  rt::Attachment GetValues() const;
+  rt::Attachment GetColors() const;
+
+  /// Of a point or cell; may be called by several threads at a time.
+  double GetValue(vtkIdType element) const;
+  void GetColor(vtkIdType element, std::uint8_t rgba[4]) const;
+
+  /// The array that the mapper names, or null.
+  static vtkAbstractArray* FindArray(vtkDSMPolyDataMapper* mapper, vtkPolyData* data, int& field);
+  /// Whether the colours, not only what they are made of, depend on the lookup table.
+  static bool DependsOnTable(vtkDSMPolyDataMapper* mapper, vtkAbstractArray* array);
+
+private:
+  /// Null when the colours are the array's own.
+  vtkSmartPointer<vtkDataArray> Values;
+  vtkSmartPointer<vtkUnsignedCharArray> Colors;
+  rt::Attachment Attached = rt::Attachment::None;
+  int Component = 0;          ///< -1 is the magnitude
+  vtkIdType OnlyElement = -1; ///< the one that all share, or -1
+  State Found = State::NotAsked;
+  vtkIdType Length = 0;
+  vtkIdType ExpectedLength = 0;
+};
+
+#endif

@@ -1,0 +1,345 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkDSMMeshData.h"
+
+#include "DSMCore/HostMemory.h"
+#include "DSMRayTracing/accel/TriangleMeshBuilder.h"
+#include "vtkDSMGather.h"
+#include "vtkDSMPolyDataMapper.h"
+#include "vtkDSMTubesAndSpheres.h"
+
+#include "vtkBoundingBox.h"
+#include "vtkCellArray.h"
+#include "vtkCellData.h"
+#include "vtkDataArray.h"
+#include "vtkDataSetAttributes.h"
+#include "vtkMath.h"
+#include "vtkPointData.h"
+#include "vtkPoints.h"
+#include "vtkPolyData.h"
+#include "vtkScalarsToColors.h"
+
+#include <algorithm>
+#include <cstring>
+#include <functional>
+#include <set>
+#include <tuple>
+
+namespace
+{
+
+/// The part of the data's diagonal that lines and points are thick when nobody says how thick.
+constexpr double DefaultRadiusPart = 1.0 / 300.0;
+
+/// What a triangle that stands for a part of a line or a point takes, arrays included, until it is in
+/// its brick.
+constexpr std::uint64_t SolidTriangleBytes = 200;
+
+double ChooseRadius(double radius, double diagonal)
+{
+  return radius == 0.0 ? DefaultRadiusPart * diagonal : radius;
+}
+
+} // namespace
+
+/// What one rank knows of the colour array of one surface.
+struct vtkDSMMeshData::ColorReport
+{
+  vtkDSMMeshColors::State State;
+  std::int32_t Unused;
+  std::int64_t Length;
+  std::int64_t ExpectedLength;
+};
+
+bool vtkDSMMeshData::Key::operator<(const Key& other) const
+{
+  const auto order = [](const Key& key)
+  {
+    const vtkDSMMeshBlock::Look& look = key.Appearance;
+    return std::make_tuple(look.Opacity, look.Color[0], look.Color[1], look.Color[2], key.Normals,
+      key.Values, key.Colors);
+  };
+  return order(*this) < order(other);
+}
+
+vtkDSMMeshData::vtkDSMMeshData(std::shared_ptr<vtkDSMRankGroup> group, vtkDSMPolyDataMapper* mapper)
+  : Group(std::move(group))
+  , Mapper(mapper)
+{
+  dsm::Messenger& messenger = this->Group->GetMessenger();
+  const std::string what = "Reading the surface";
+  messenger.RunTogether(what, [&] { this->Blocks = vtkDSMMeshBlock::Collect(mapper); });
+  std::vector<vtkPolyData*> data;
+  for (const vtkDSMMeshBlock& block : this->Blocks)
+  {
+    data.push_back(block.Data);
+  }
+  this->FindBounds(data);
+  const vtkDSMTubesAndSpheres solids(ChooseRadius(mapper->GetLineRadius(), this->Diagonal),
+    ChooseRadius(mapper->GetPointRadius(), this->Diagonal), mapper->GetRadiusArray());
+  messenger.RunTogether(what, [&] { this->CheckSolids(solids); });
+  messenger.RunTogether(what, [&] { this->CollectSurfaces(solids); });
+  // Tubes and spheres reach beyond the points.
+  for (const Surface& surface : this->Surfaces)
+  {
+    data.push_back(surface.Data);
+  }
+  this->FindBounds(data);
+  this->CheckColors();
+  this->Publish();
+  this->Blocks.clear();
+  this->Surfaces.clear();
+}
+
+void vtkDSMMeshData::FindBounds(const std::vector<vtkPolyData*>& mine)
+{
+  struct Box
+  {
+    double Bounds[6];
+  };
+  vtkBoundingBox box;
+  for (vtkPolyData* data : mine)
+  {
+    box.AddBounds(data->GetBounds());
+  }
+  Box own;
+  box.GetBounds(own.Bounds);
+  vtkBoundingBox whole;
+  for (const Box& one : this->Group->GetMessenger().AllGatherValue(own))
+  {
+    if (vtkMath::AreBoundsInitialized(one.Bounds))
+    {
+      whole.AddBounds(one.Bounds);
+    }
+  }
+  vtkMath::UninitializeBounds(this->Bounds);
+  this->Diagonal = 0.0;
+  if (whole.IsValid())
+  {
+    whole.GetBounds(this->Bounds);
+    this->Diagonal = whole.GetDiagonalLength();
+  }
+}
+
+void vtkDSMMeshData::CheckSolids(const vtkDSMTubesAndSpheres& solids) const
+{
+  std::uint64_t triangles = 0;
+  for (const vtkDSMMeshBlock& block : this->Blocks)
+  {
+    triangles += solids.EstimateTriangles(block.Data);
+  }
+  const std::uint64_t available = dsm::GetAvailableHostMemory() /
+    static_cast<std::uint64_t>(this->Group->GetMessenger().GetRanksOnHost());
+  if (triangles > available / SolidTriangleBytes)
+  {
+    throw dsm::Error("Lines and points would become " + std::to_string(triangles) +
+      " triangles of tubes and spheres, for which this rank has not enough memory (" +
+      dsm::FormatMebibytes(available) +
+      "). Set the line or point radius to a negative number to leave them out, or use more ranks.");
+  }
+}
+
+void vtkDSMMeshData::CollectSurfaces(const vtkDSMTubesAndSpheres& solids)
+{
+  for (const vtkDSMMeshBlock& block : this->Blocks)
+  {
+    if (block.Data->GetNumberOfPolys() > 0 || block.Data->GetNumberOfStrips() > 0)
+    {
+      this->AddSurface(block, block.Data);
+    }
+    for (const auto& solid : { solids.MakeTubes(block.Data), solids.MakeSpheres(block.Data) })
+    {
+      if (solid && solid->GetNumberOfCells() > 0)
+      {
+        this->AddSurface(block, solid);
+      }
+    }
+  }
+}
+
+void vtkDSMMeshData::AddSurface(const vtkDSMMeshBlock& block, vtkPolyData* data)
+{
+  Surface surface;
+  surface.Data = data;
+  if (block.Appearance.Color[0] < 0.0f)
+  {
+    surface.Colors = vtkDSMMeshColors(this->Mapper, data);
+  }
+  const rt::MeshAttributes attributes = vtkDSMMeshPiece::GetAttributes(data, surface.Colors);
+  surface.Kind.Appearance = block.Appearance;
+  surface.Kind.Normals = attributes.Normals ? 1 : 0;
+  surface.Kind.Values = static_cast<std::uint32_t>(attributes.Values);
+  surface.Kind.Colors = static_cast<std::uint32_t>(attributes.Colors);
+  this->Surfaces.push_back(std::move(surface));
+}
+
+void vtkDSMMeshData::CheckColors()
+{
+  using State = vtkDSMMeshColors::State;
+  dsm::Messenger& messenger = this->Group->GetMessenger();
+  std::vector<ColorReport> mine;
+  for (const vtkDSMMeshBlock& block : this->Blocks)
+  {
+    if (block.Appearance.Color[0] < 0.0f && block.Data->GetNumberOfCells() > 0)
+    {
+      const vtkDSMMeshColors colors(this->Mapper, block.Data);
+      mine.push_back({ colors.GetState(), 0, colors.GetLength(), colors.GetExpectedLength() });
+    }
+  }
+  const auto reports = vtkDSMGather::Items(messenger, mine);
+  const char* name = this->Mapper->GetArrayName();
+  const std::string array = std::string("The colour array '") + (name ? name : "") + "'";
+  bool usable = false;
+  bool missing = false;
+  for (const ColorReport& report : reports)
+  {
+    usable = usable || report.State == State::Usable;
+    missing = missing || report.State == State::Missing;
+    if (report.State == State::WrongLength && this->Message.empty())
+    {
+      this->Message = array + " has " + std::to_string(report.Length) + " values, but " +
+        std::to_string(report.ExpectedLength) +
+        " are needed; the surface is shown without them. Check the dataset's source.";
+    }
+  }
+  if (missing && !usable && this->Message.empty())
+  {
+    this->Message = array + " does not exist in the dataset." + this->ListArrays();
+  }
+}
+
+std::string vtkDSMMeshData::ListArrays() const
+{
+  const int mode = this->Mapper->GetScalarMode();
+  std::vector<char> mine;
+  for (const vtkDSMMeshBlock& block : this->Blocks)
+  {
+    vtkFieldData* fields = mode == VTK_SCALAR_MODE_USE_CELL_FIELD_DATA ? block.Data->GetCellData()
+      : mode == VTK_SCALAR_MODE_USE_POINT_FIELD_DATA                   ? block.Data->GetPointData()
+                                                                       : block.Data->GetFieldData();
+    for (int index = 0; index < fields->GetNumberOfArrays(); ++index)
+    {
+      const char* name = fields->GetArrayName(index);
+      if (name && std::strcmp(name, vtkDataSetAttributes::GhostArrayName()) != 0)
+      {
+        mine.insert(mine.end(), name, name + std::strlen(name) + 1);
+      }
+    }
+  }
+  const auto all = vtkDSMGather::Items(this->Group->GetMessenger(), mine);
+  std::set<std::string> names;
+  for (auto name = all.begin(); name != all.end();)
+  {
+    const auto end = std::find(name, all.end(), '\0');
+    names.emplace(name, end);
+    name = end + 1;
+  }
+  std::string list;
+  for (const std::string& name : names)
+  {
+    list += (list.empty() ? " Choose one of '" : ", '") + name + "'";
+  }
+  return list.empty() ? std::string(" It has no arrays of that kind.") : list + ".";
+}
+
+void vtkDSMMeshData::Publish()
+{
+  const std::shared_ptr<vtkDSMRankGroup> group = this->Group;
+  dsm::Messenger& messenger = group->GetMessenger();
+  std::vector<Key> mine;
+  for (const Surface& surface : this->Surfaces)
+  {
+    mine.push_back(surface.Kind);
+  }
+  const auto all = vtkDSMGather::Items(messenger, mine);
+  const std::set<Key> kinds(all.begin(), all.end());
+  rt::TriangleMeshSettings settings;
+  settings.Threads = group->GetStore().GetSettings().Workers;
+  double done = 0.0;
+  for (const Key& kind : kinds)
+  {
+    vtkDSMMeshPiece piece;
+    messenger.RunTogether("Reading the surface",
+      [&]
+      {
+        for (const Surface& surface : this->Surfaces)
+        {
+          if (!(surface.Kind < kind) && !(kind < surface.Kind))
+          {
+            piece.Add(surface.Data, surface.Colors);
+          }
+        }
+      });
+    const double share = 1.0 / static_cast<double>(kinds.size());
+    const auto progress = [this, done, share](double part)
+    { this->Mapper->UpdateProgress(done + share * part); };
+    const std::shared_ptr<rt::TriangleMesh> mesh =
+      rt::PublishMesh("the surface", piece, settings, group->GetStore(), messenger, progress);
+    done += share;
+    this->Parts.push_back({ kind.Appearance,
+      std::shared_ptr<const rt::TriangleMesh>(mesh.get(),
+        [group, mesh](const rt::TriangleMesh*) { group->GetStore().Retire(mesh->Segment); }) });
+  }
+}
+
+std::vector<std::uint64_t> vtkDSMMeshData::Describe(vtkDSMPolyDataMapper* mapper)
+{
+  std::vector<std::uint64_t> numbers;
+  const auto addNumber = [&numbers](double number)
+  {
+    std::uint64_t bits;
+    std::memcpy(&bits, &number, sizeof(bits));
+    numbers.push_back(bits);
+  };
+  // Times of change are unique in a process: the same place and time is the same content.
+  const auto addObject = [&numbers](vtkObject* object)
+  {
+    numbers.push_back(reinterpret_cast<std::uintptr_t>(object));
+    numbers.push_back(object ? object->GetMTime() : 0);
+  };
+  addNumber(mapper->GetLineRadius());
+  addNumber(mapper->GetPointRadius());
+  if (mapper->GetScalarVisibility())
+  {
+    // Also when there is no such array: that must be said.
+    addNumber(mapper->GetScalarMode());
+    const char* name = mapper->GetArrayName();
+    numbers.push_back(std::hash<std::string>{}(name ? name : ""));
+  }
+  vtkScalarsToColors* table = mapper->GetLookupTable();
+  for (const vtkDSMMeshBlock& block : vtkDSMMeshBlock::Collect(mapper))
+  {
+    vtkPolyData* data = block.Data;
+    addObject(data->GetPoints()->GetData());
+    for (vtkCellArray* cells :
+      { data->GetVerts(), data->GetLines(), data->GetPolys(), data->GetStrips() })
+    {
+      addObject(cells->GetNumberOfCells() > 0 ? cells : nullptr);
+      addObject(cells->GetNumberOfCells() > 0 ? cells->GetConnectivityArray() : nullptr);
+    }
+    addObject(data->GetPointData()->GetNormals());
+    addObject(data->GetCellData()->GetAbstractArray(vtkDataSetAttributes::GhostArrayName()));
+    addObject(data->GetPointData()->GetAbstractArray(mapper->GetRadiusArray().c_str()));
+    addNumber(block.Appearance.Opacity);
+    for (const float channel : block.Appearance.Color)
+    {
+      addNumber(channel);
+    }
+    int field = 0;
+    vtkAbstractArray* colors = vtkDSMMeshColors::FindArray(mapper, data, field);
+    addObject(colors);
+    if (colors)
+    {
+      addNumber(field);
+      addNumber(mapper->GetColorMode());
+      addNumber(mapper->GetArrayComponent());
+      addNumber(static_cast<double>(mapper->GetFieldDataTupleId()));
+      if (colors->GetNumberOfComponents() > 1)
+      {
+        addNumber(table->GetVectorMode());
+        addNumber(table->GetVectorComponent());
+      }
+      addObject(vtkDSMMeshColors::DependsOnTable(mapper, colors) ? table : nullptr);
+    }
+  }
+  return numbers;
+}

@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkDSMMeshPiece.h"
+
+#include "vtkDataArray.h"
+#include "vtkPointData.h"
+#include "vtkPoints.h"
+#include "vtkPolyData.h"
+
+#include <algorithm>
+
+namespace
+{
+
+vtkDataArray* FindNormals(vtkPolyData* data)
+{
+  vtkDataArray* normals = data->GetPointData()->GetNormals();
+  return normals && normals->GetNumberOfTuples() == data->GetNumberOfPoints() ? normals : nullptr;
+}
+
+} // namespace
+
+rt::MeshAttributes vtkDSMMeshPiece::GetAttributes(vtkPolyData* data, const vtkDSMMeshColors& colors)
+{
+  rt::MeshAttributes attributes;
+  attributes.Normals = FindNormals(data) != nullptr;
+  attributes.Values = colors.GetValues();
+  attributes.Colors = colors.GetColors();
+  return attributes;
+}
+
+void vtkDSMMeshPiece::Add(vtkPolyData* data, const vtkDSMMeshColors& colors)
+{
+  this->Attributes = GetAttributes(data, colors);
+  this->Parts.push_back({ data, vtkDSMTriangleList(data), colors, data->GetPoints()->GetData(),
+    FindNormals(data), this->Triangles, this->Points });
+  this->Triangles += this->Parts.back().List.GetCount();
+  this->Points += static_cast<std::uint64_t>(data->GetNumberOfPoints());
+}
+
+const vtkDSMMeshPiece::Part& vtkDSMMeshPiece::FindByTriangle(std::uint64_t triangle) const
+{
+  return *std::prev(std::upper_bound(this->Parts.begin(), this->Parts.end(), triangle,
+    [](std::uint64_t number, const Part& part) { return number < part.FirstTriangle; }));
+}
+
+const vtkDSMMeshPiece::Part& vtkDSMMeshPiece::FindByPoint(std::uint64_t point) const
+{
+  return *std::prev(std::upper_bound(this->Parts.begin(), this->Parts.end(), point,
+    [](std::uint64_t number, const Part& part) { return number < part.FirstPoint; }));
+}
+
+void vtkDSMMeshPiece::GetTriangle(std::uint64_t triangle, std::uint64_t points[3]) const
+{
+  const Part& part = this->FindByTriangle(triangle);
+  part.List.GetTriangle(triangle - part.FirstTriangle, points);
+  const auto size = static_cast<std::uint64_t>(part.Data->GetNumberOfPoints());
+  for (int corner = 0; corner < 3; ++corner)
+  {
+    // A point that the part does not have must not become another part's.
+    points[corner] = points[corner] < size ? part.FirstPoint + points[corner]
+                                           : std::max(points[corner], this->Points);
+  }
+}
+
+void vtkDSMMeshPiece::GetPosition(std::uint64_t point, double position[3]) const
+{
+  const Part& part = this->FindByPoint(point);
+  part.Positions->GetTuple(static_cast<vtkIdType>(point - part.FirstPoint), position);
+}
+
+void vtkDSMMeshPiece::GetNormal(std::uint64_t point, double normal[3]) const
+{
+  const Part& part = this->FindByPoint(point);
+  part.Normals->GetTuple(static_cast<vtkIdType>(point - part.FirstPoint), normal);
+}
+
+const vtkDSMMeshPiece::Part& vtkDSMMeshPiece::FindElement(
+  rt::Attachment attachment, std::uint64_t element, vtkIdType& number) const
+{
+  if (attachment == rt::Attachment::Points)
+  {
+    const Part& part = this->FindByPoint(element);
+    number = static_cast<vtkIdType>(element - part.FirstPoint);
+    return part;
+  }
+  const Part& part = this->FindByTriangle(element);
+  number = part.List.GetCell(element - part.FirstTriangle);
+  return part;
+}
+
+double vtkDSMMeshPiece::GetValue(std::uint64_t element) const
+{
+  vtkIdType number = 0;
+  const Part& part = this->FindElement(this->Attributes.Values, element, number);
+  return part.Colors.GetValue(number);
+}
+
+void vtkDSMMeshPiece::GetColor(std::uint64_t element, std::uint8_t rgba[4]) const
+{
+  vtkIdType number = 0;
+  const Part& part = this->FindElement(this->Attributes.Colors, element, number);
+  part.Colors.GetColor(number, rgba);
+}
+
+void vtkDSMMeshPiece::GetTextureCoordinate(std::uint64_t, double coordinate[2]) const
+{
+  std::fill_n(coordinate, 2, 0.0);
+}

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef vtkDSMMeshPiece_h
+#define vtkDSMMeshPiece_h
+
+#include "DSMRayTracing/brick/TriangleSource.h"
+#include "vtkDSMMeshColors.h"
+#include "vtkDSMTriangleList.h"
+
+#include "vtkSmartPointer.h"
+
+#include <cstdint>
+#include <vector>
+
+class vtkDataArray;
+class vtkPolyData;
+
+/// This rank's part of one mesh: the triangles of several vtkPolyData that have the same attributes,
+/// read where they lie.
+class vtkDSMMeshPiece final : public rt::TriangleSource
+{
+public:
+  /// What a mesh made of the data would carry.
+  static rt::MeshAttributes GetAttributes(vtkPolyData* data, const vtkDSMMeshColors& colors);
+
+  /// All that are added must have the same attributes. Throws dsm::Error for invalid cells.
+  void Add(vtkPolyData* data, const vtkDSMMeshColors& colors);
+
+  rt::MeshAttributes GetAttributes() const override { return this->Attributes; }
+  std::uint64_t GetTriangleCount() const override { return this->Triangles; }
+  std::uint64_t GetPointCount() const override { return this->Points; }
+  void GetTriangle(std::uint64_t triangle, std::uint64_t points[3]) const override;
+  void GetPosition(std::uint64_t point, double position[3]) const override;
+  void GetNormal(std::uint64_t point, double normal[3]) const override;
+  double GetValue(std::uint64_t element) const override;
+  void GetColor(std::uint64_t element, std::uint8_t rgba[4]) const override;
+  /// Meshes of VTK are not textured.
+  void GetTextureCoordinate(std::uint64_t point, double coordinate[2]) const override;
+
+private:
+  struct Part
+  {
+    vtkSmartPointer<vtkPolyData> Data;
+    vtkDSMTriangleList List;
+    vtkDSMMeshColors Colors;
+    vtkDataArray* Positions;
+    vtkDataArray* Normals; ///< may be null
+    std::uint64_t FirstTriangle;
+    std::uint64_t FirstPoint;
+  };
+
+  const Part& FindByTriangle(std::uint64_t triangle) const;
+  const Part& FindByPoint(std::uint64_t point) const;
+  /// The part that has the element, and the point or cell that the element is in it.
+  const Part& FindElement(
+    rt::Attachment attachment, std::uint64_t element, vtkIdType& number) const;
+
+  rt::MeshAttributes Attributes;
+  std::vector<Part> Parts;
+  std::uint64_t Triangles = 0;
+  std::uint64_t Points = 0;
+};
+
+#endif

@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkDSMPolyDataMapper.h"
+
+#include "vtkDSMLightOptions.h"
+
+#include "vtkCompositeDataDisplayAttributes.h"
+#include "vtkCompositeDataSet.h"
+#include "vtkInformation.h"
+#include "vtkMath.h"
+#include "vtkObjectFactory.h"
+#include "vtkPolyData.h"
+#include "vtkTrivialProducer.h"
+
+#include <algorithm>
+
+vtkStandardNewMacro(vtkDSMPolyDataMapper);
+
+vtkDSMPolyDataMapper::vtkDSMPolyDataMapper()
+  : LightOptions(vtkSmartPointer<vtkDSMLightOptions>::New())
+{
+  vtkMath::UninitializeBounds(this->GlobalBounds);
+}
+
+vtkDSMPolyDataMapper::~vtkDSMPolyDataMapper() = default;
+
+void vtkDSMPolyDataMapper::SetCompositeDataDisplayAttributes(
+  vtkCompositeDataDisplayAttributes* attributes)
+{
+  if (this->BlockAttributes != attributes)
+  {
+    this->BlockAttributes = attributes;
+    this->Modified();
+  }
+}
+
+vtkCompositeDataDisplayAttributes* vtkDSMPolyDataMapper::GetCompositeDataDisplayAttributes() const
+{
+  return this->BlockAttributes;
+}
+
+void vtkDSMPolyDataMapper::SetLightOptions(vtkDSMLightOptions* options)
+{
+  this->LightOptions = options ? options : vtkSmartPointer<vtkDSMLightOptions>::New().Get();
+  this->Modified();
+}
+
+vtkDSMLightOptions* vtkDSMPolyDataMapper::GetLightOptions() const
+{
+  return this->LightOptions;
+}
+
+double* vtkDSMPolyDataMapper::GetBounds()
+{
+  if (vtkMath::AreBoundsInitialized(this->GlobalBounds))
+  {
+    std::copy_n(this->GlobalBounds, 6, this->Bounds);
+    return this->Bounds;
+  }
+  vtkMath::UninitializeBounds(this->Bounds);
+  this->UpdatePiece(this->Piece, this->NumberOfPieces);
+  vtkDataObject* data =
+    this->GetNumberOfInputConnections(0) > 0 ? this->GetInputDataObject(0, 0) : nullptr;
+  if (auto* polyData = vtkPolyData::SafeDownCast(data))
+  {
+    polyData->GetBounds(this->Bounds);
+  }
+  else if (auto* composite = vtkCompositeDataSet::SafeDownCast(data))
+  {
+    composite->GetBounds(this->Bounds);
+  }
+  return this->Bounds;
+}
+
+void vtkDSMPolyDataMapper::SetGlobalBounds(const double bounds[6])
+{
+  std::copy_n(bounds, 6, this->GlobalBounds);
+}
+
+void vtkDSMPolyDataMapper::UpdatePiece(int piece, int numberOfPieces)
+{
+  if (this->Static || this->GetNumberOfInputConnections(0) == 0)
+  {
+    return;
+  }
+  if (this->NumberOfPieces == 1)
+  {
+    this->Piece = piece;
+    this->NumberOfPieces = numberOfPieces;
+  }
+  int port = 0;
+  vtkAlgorithm* producer = this->GetInputAlgorithm(0, 0, port);
+  if (!vtkTrivialProducer::SafeDownCast(producer))
+  {
+    producer->UpdatePiece(this->Piece, this->NumberOfPieces, this->GhostLevel);
+  }
+}
+
+void vtkDSMPolyDataMapper::Render(vtkRenderer*, vtkActor*) {}
+
+int vtkDSMPolyDataMapper::FillInputPortInformation(int, vtkInformation* info)
+{
+  info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkPolyData");
+  info->Append(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkCompositeDataSet");
+  info->Set(vtkAlgorithm::INPUT_IS_OPTIONAL(), 1);
+  return 1;
+}
+
+void vtkDSMPolyDataMapper::PrintSelf(ostream& os, vtkIndent indent)
+{
+  this->Superclass::PrintSelf(os, indent);
+  os << indent << "CompositeDataDisplayAttributes: " << this->BlockAttributes.Get() << "\n";
+  os << indent << "LineRadius: " << this->LineRadius << "\n";
+  os << indent << "PointRadius: " << this->PointRadius << "\n";
+  os << indent << "RadiusArray: " << this->RadiusArray << "\n";
+  os << indent << "NumberOfThreads: " << this->NumberOfThreads << "\n";
+  os << indent << "CacheSize: " << this->CacheSize << " MiB\n";
+}

@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @class   vtkDSMPolyDataMapper
+ * @brief   ray traces polygons, lines and points that are spread over the ranks
+ *
+ * Used by a vtkActor in place of any other vtkPolyDataMapper. The input is this rank's part of the
+ * dataset: vtkPolyData, or a composite dataset of vtkPolyData, or nothing. What it looks like comes
+ * from the actor's property and backface property and from the mapper's own settings, as usual:
+ * ScalarVisibility, ScalarMode, the colour array (SelectColorArray), ColorMode, LookupTable,
+ * UseLookupTableScalarRange and ScalarRange, InterpolateScalarsBeforeMapping, Static. Culling,
+ * interpolation (flat, or by the points' normals), opacity and lighting are the property's. A
+ * property's representation (points, wireframe), edges and textures are not used.
+ *
+ * Values are mapped to colours where a ray meets the surface, so a change of the colour map, the
+ * material or the actor's matrix takes effect at once; a change of points, cells, the colour array
+ * or a block's look puts the mesh in bricks anew.
+ *
+ * The mapper draws nothing itself: the renderer's vtkDSMScene traces all that it shows together when
+ * the renderer starts to render, on all ranks at once. Every rank must have the same actors, in the
+ * same order, with the same settings; only the input differs.
+ */
+
+#ifndef vtkDSMPolyDataMapper_h
+#define vtkDSMPolyDataMapper_h
+
+#include "vtkPolyDataMapper.h"
+#include "vtkRenderingDSMModule.h" // for the export macro
+#include "vtkSmartPointer.h"       // for ivars
+
+#include <string> // for ivars
+
+class vtkCompositeDataDisplayAttributes;
+class vtkDSMLightOptions;
+
+class VTKRENDERINGDSM_EXPORT vtkDSMPolyDataMapper : public vtkPolyDataMapper
+{
+public:
+  static vtkDSMPolyDataMapper* New();
+  vtkTypeMacro(vtkDSMPolyDataMapper, vtkPolyDataMapper);
+  void PrintSelf(ostream& os, vtkIndent indent) override;
+
+  ///@{
+  /**
+   * Visibility, colour and opacity of the blocks of a composite dataset, by their data objects, for
+   * blocks in blocks as well. Null (the default): all blocks are alike.
+   */
+  void SetCompositeDataDisplayAttributes(vtkCompositeDataDisplayAttributes* attributes);
+  vtkCompositeDataDisplayAttributes* GetCompositeDataDisplayAttributes() const;
+  ///@}
+
+  ///@{
+  /**
+   * Radius, in the units of the points, of the tubes that lines are drawn as, and of the spheres that
+   * vertices are drawn as. 0 (the default) is a three-hundredth of the diagonal of all ranks' data;
+   * less than 0 leaves them out.
+   */
+  vtkSetMacro(LineRadius, double);
+  vtkGetMacro(LineRadius, double);
+  vtkSetMacro(PointRadius, double);
+  vtkGetMacro(PointRadius, double);
+  ///@}
+
+  ///@{
+  /**
+   * A point array of one component that both radii are multiplied by; empty (the default): none.
+   * Where it is negative or not a number nothing is drawn.
+   */
+  vtkSetMacro(RadiusArray, std::string);
+  vtkGetMacro(RadiusArray, std::string);
+  ///@}
+
+  ///@{
+  /**
+   * Tracing threads of each rank; 0 (the default) divides the host's cores by its ranks. The largest
+   * of a scene counts.
+   */
+  vtkSetClampMacro(NumberOfThreads, int, 0, 1024);
+  vtkGetMacro(NumberOfThreads, int);
+  ///@}
+
+  ///@{
+  /**
+   * Memory of each rank for bricks of other ranks, in MiB. Default 256. The largest of a scene counts.
+   */
+  vtkSetClampMacro(CacheSize, int, 1, VTK_INT_MAX);
+  vtkGetMacro(CacheSize, int);
+  ///@}
+
+  ///@{
+  /**
+   * Shadows, ambient occlusion, mirrors and samples; never null. Null makes new ones.
+   */
+  void SetLightOptions(vtkDSMLightOptions* options);
+  vtkDSMLightOptions* GetLightOptions() const;
+  ///@}
+
+  ///@{
+  /**
+   * Bounds of all ranks' data, without the actor's transform. Until the scene has taken in the data,
+   * those of this rank's.
+   */
+  using vtkPolyDataMapper::GetBounds;
+  double* GetBounds() VTK_SIZEHINT(6) override;
+  ///@}
+
+  /**
+   * For the scene, which knows all ranks' bounds.
+   */
+  void SetGlobalBounds(const double bounds[6]);
+
+  /**
+   * Brings the input up to date, unless the mapper is static. Each rank asks its pipeline for its own
+   * piece, unless the application has chosen one with SetPiece and SetNumberOfPieces.
+   */
+  void UpdatePiece(int piece, int numberOfPieces);
+
+  /**
+   * Does nothing: the scene's vtkDSMFrameProp draws.
+   */
+  void Render(vtkRenderer* renderer, vtkActor* actor) override;
+
+  ///@{
+  /**
+   * Not OpenGL's to draw, neither before nor after translucent props.
+   */
+  bool HasOpaqueGeometry() override { return true; }
+  bool HasTranslucentPolygonalGeometry() override { return false; }
+  ///@}
+
+protected:
+  vtkDSMPolyDataMapper();
+  ~vtkDSMPolyDataMapper() override;
+
+  int FillInputPortInformation(int port, vtkInformation* info) override;
+
+private:
+  vtkDSMPolyDataMapper(const vtkDSMPolyDataMapper&) = delete;
+  void operator=(const vtkDSMPolyDataMapper&) = delete;
+
+  vtkSmartPointer<vtkCompositeDataDisplayAttributes> BlockAttributes;
+  double LineRadius = 0.0;
+  double PointRadius = 0.0;
+  std::string RadiusArray;
+  int NumberOfThreads = 0;
+  int CacheSize = 256;
+  vtkSmartPointer<vtkDSMLightOptions> LightOptions;
+  double GlobalBounds[6];
+};
+
+#endif

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef vtkDSMSceneMember_h
+#define vtkDSMSceneMember_h
+
+#include "DSMRayTracing/frame/Scene.h"
+#include "vtkDSMRankGroup.h"
+
+#include <memory>
+#include <string>
+#include <vector>
+
+class vtkAlgorithm;
+class vtkDSMLightOptions;
+class vtkProp3D;
+
+/// What a scene keeps of one mapper: its data in bricks, and what was wrong with it.
+class vtkDSMSceneMember
+{
+public:
+  virtual ~vtkDSMSceneMember() = default;
+
+  /// Whose data these are; null once it is gone.
+  virtual vtkAlgorithm* GetAlgorithm() const = 0;
+
+  /// What the mapper asks for: MiB per rank, and threads per rank (0: the host's cores divided).
+  virtual int GetCacheSize() const = 0;
+  virtual int GetNumberOfThreads() const = 0;
+  virtual vtkDSMLightOptions* GetLightOptions() const = 0;
+
+  /// Local: brings the mapper's input up to date.
+  virtual void UpdatePiece(int piece, int numberOfPieces) = 0;
+
+  /// Local: whether this rank's data are other than what was taken in.
+  virtual bool HasNewData() const = 0;
+
+  /// Collective. Takes in what is missing: everything when any rank has new data, else what the
+  /// mapper names and is not there yet. What goes wrong is kept as a message.
+  virtual void Update(const std::shared_ptr<vtkDSMRankGroup>& group, bool newData) = 0;
+
+  /// Local: what the prop that uses the mapper shows.
+  virtual void AddTo(rt::Scene& scene, vtkProp3D* prop) = 0;
+
+  /// Reports the messages that are new since the last call.
+  void ReportMessages();
+
+protected:
+  /// Of the last Update and AddTo.
+  std::vector<std::string> Messages;
+  std::vector<std::string> Reported;
+};
+
+#endif

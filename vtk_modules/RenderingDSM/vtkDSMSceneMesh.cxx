@@ -1,0 +1,194 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkDSMSceneMesh.h"
+
+#include "vtkDSMLightOptions.h"
+#include "vtkDSMPolyDataMapper.h"
+#include "vtkDSMTranslation.h"
+
+#include "vtkActor.h"
+#include "vtkMath.h"
+#include "vtkMatrix4x4.h"
+#include "vtkProperty.h"
+#include "vtkScalarsToColors.h"
+
+#include <utility>
+
+namespace
+{
+
+/// What was set for a block takes the place of what the property says.
+void Apply(const vtkDSMMeshBlock::Look& look, rt::Material& material)
+{
+  if (look.Opacity >= 0.0f)
+  {
+    material.Opacity = look.Opacity;
+  }
+  if (look.Color[0] >= 0.0f)
+  {
+    material.DiffuseColor = { look.Color[0], look.Color[1], look.Color[2] };
+    material.AmbientColor = material.DiffuseColor;
+  }
+}
+
+rt::MeshObject::Coloring GetColoring(
+  const rt::MeshAttributes& has, bool interpolateScalarsBeforeMapping)
+{
+  using Coloring = rt::MeshObject::Coloring;
+  if (has.Colors != rt::Attachment::None)
+  {
+    return Coloring::Colors;
+  }
+  if (has.Values == rt::Attachment::None)
+  {
+    return Coloring::Material;
+  }
+  return interpolateScalarsBeforeMapping || has.Values == rt::Attachment::Triangles
+    ? Coloring::Values
+    : Coloring::CornerValues;
+}
+
+} // namespace
+
+vtkDSMSceneMesh::vtkDSMSceneMesh(vtkDSMPolyDataMapper* mapper)
+  : Mapper(mapper)
+{
+}
+
+vtkDSMSceneMesh::~vtkDSMSceneMesh() = default;
+
+vtkAlgorithm* vtkDSMSceneMesh::GetAlgorithm() const
+{
+  return this->Mapper;
+}
+
+int vtkDSMSceneMesh::GetCacheSize() const
+{
+  return this->Mapper->GetCacheSize();
+}
+
+vtkDSMLightOptions* vtkDSMSceneMesh::GetLightOptions() const
+{
+  return this->Mapper->GetLightOptions();
+}
+
+int vtkDSMSceneMesh::GetNumberOfThreads() const
+{
+  return this->Mapper->GetNumberOfThreads();
+}
+
+void vtkDSMSceneMesh::UpdatePiece(int piece, int numberOfPieces)
+{
+  this->Mapper->UpdatePiece(piece, numberOfPieces);
+}
+
+std::vector<std::uint64_t> vtkDSMSceneMesh::Describe() const
+{
+  try
+  {
+    return vtkDSMMeshData::Describe(this->Mapper);
+  }
+  catch (const dsm::Error&)
+  {
+    // Data that are no surfaces, like no other data; taking them in says why.
+    return { 0 };
+  }
+}
+
+bool vtkDSMSceneMesh::HasNewData() const
+{
+  return !this->Taken || this->Describe() != this->Seen;
+}
+
+void vtkDSMSceneMesh::Update(const std::shared_ptr<vtkDSMRankGroup>& group, bool newData)
+{
+  this->Messages.clear();
+  if (newData)
+  {
+    // The old bricks go first: there may not be room for both.
+    this->Data.reset();
+    this->Failure.clear();
+    this->Reported.clear();
+    this->Taken = true;
+    this->Seen = this->Describe();
+    try
+    {
+      this->Data = std::make_unique<vtkDSMMeshData>(group, this->Mapper);
+      this->Mapper->SetGlobalBounds(this->Data->GetBounds());
+    }
+    catch (const dsm::Error& error)
+    {
+      this->Failure = error.what();
+    }
+  }
+  if (!this->Data)
+  {
+    this->Messages.push_back(this->Failure);
+  }
+  else if (!this->Data->GetMessage().empty())
+  {
+    this->Messages.push_back(this->Data->GetMessage());
+  }
+}
+
+const std::shared_ptr<const rt::ColorMap>& vtkDSMSceneMesh::GetColorMap()
+{
+  vtkScalarsToColors* table = this->Mapper->GetLookupTable();
+  if (!this->Mapper->GetUseLookupTableScalarRange())
+  {
+    table->SetRange(this->Mapper->GetScalarRange());
+  }
+  if (table != this->ColorsSource || table->GetMTime() != this->ColorsTime)
+  {
+    this->Colors = std::make_shared<rt::ColorMap>(vtkDSMTranslation::ToColorMap(table));
+    this->ColorsSource = table;
+    this->ColorsTime = table->GetMTime();
+  }
+  return this->Colors;
+}
+
+rt::MeshObject vtkDSMSceneMesh::CreateObject(const vtkDSMMeshData::Part& part, vtkActor* actor)
+{
+  vtkProperty* property = actor->GetProperty();
+  rt::MeshObject object;
+  auto instance =
+    std::make_shared<rt::MeshInstance>(part.Mesh, vtkDSMTranslation::ToMatrix(actor->GetMatrix()));
+  instance->Culling.Front = property->GetFrontfaceCulling() != 0;
+  instance->Culling.Back = property->GetBackfaceCulling() != 0;
+  object.Instance = std::move(instance);
+  object.Flat = property->GetInterpolation() == VTK_FLAT;
+  object.Surface = vtkDSMTranslation::ToMaterial(property);
+  object.Surface.Reflectivity = static_cast<float>(this->GetLightOptions()->GetReflectivity());
+  Apply(part.Appearance, object.Surface);
+  if (vtkProperty* back = actor->GetBackfaceProperty())
+  {
+    object.BackSurface = vtkDSMTranslation::ToMaterial(back);
+    object.BackSurface->Reflectivity = object.Surface.Reflectivity;
+  }
+  object.ColoredBy =
+    GetColoring(part.Mesh->Attributes, this->Mapper->GetInterpolateScalarsBeforeMapping() != 0);
+  if (object.ColoredBy == rt::MeshObject::Coloring::Values ||
+    object.ColoredBy == rt::MeshObject::Coloring::CornerValues)
+  {
+    object.Colors = this->GetColorMap();
+  }
+  return object;
+}
+
+void vtkDSMSceneMesh::AddTo(rt::Scene& scene, vtkProp3D* prop)
+{
+  auto* actor = vtkActor::SafeDownCast(prop);
+  // A surface that is squeezed flat has no inside to look into.
+  actor->ComputeMatrix();
+  if (!this->Data || actor->GetMatrix()->Determinant() == 0.0)
+  {
+    return;
+  }
+  for (const vtkDSMMeshData::Part& part : this->Data->GetParts())
+  {
+    rt::MeshObject object = this->CreateObject(part, actor);
+    if (object.Surface.Opacity > 0.0f || (object.BackSurface && object.BackSurface->Opacity > 0.0f))
+    {
+      scene.Meshes.push_back(std::move(object));
+    }
+  }
+}

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef vtkDSMSceneMesh_h
+#define vtkDSMSceneMesh_h
+
+#include "vtkDSMMeshData.h"
+#include "vtkDSMSceneMember.h"
+
+#include "vtkType.h"
+#include "vtkWeakPointer.h"
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+class vtkActor;
+class vtkDSMPolyDataMapper;
+
+/// The surfaces of one vtkDSMPolyDataMapper in a scene.
+class vtkDSMSceneMesh : public vtkDSMSceneMember
+{
+public:
+  explicit vtkDSMSceneMesh(vtkDSMPolyDataMapper* mapper);
+  ~vtkDSMSceneMesh() override;
+
+  vtkAlgorithm* GetAlgorithm() const override;
+  int GetCacheSize() const override;
+  int GetNumberOfThreads() const override;
+  vtkDSMLightOptions* GetLightOptions() const override;
+  void UpdatePiece(int piece, int numberOfPieces) override;
+  bool HasNewData() const override;
+  void Update(const std::shared_ptr<vtkDSMRankGroup>& group, bool newData) override;
+  /// One object for each of the meshes.
+  void AddTo(rt::Scene& scene, vtkProp3D* prop) override;
+
+private:
+  std::vector<std::uint64_t> Describe() const;
+  rt::MeshObject CreateObject(const vtkDSMMeshData::Part& part, vtkActor* actor);
+  const std::shared_ptr<const rt::ColorMap>& GetColorMap();
+
+  vtkWeakPointer<vtkDSMPolyDataMapper> Mapper;
+  /// Of what was taken in; see vtkDSMMeshData::Describe.
+  std::vector<std::uint64_t> Seen;
+  bool Taken = false;
+  std::unique_ptr<vtkDSMMeshData> Data;
+  std::string Failure;
+  std::shared_ptr<const rt::ColorMap> Colors;
+  const void* ColorsSource = nullptr;
+  vtkMTimeType ColorsTime = 0;
+};
+
+#endif

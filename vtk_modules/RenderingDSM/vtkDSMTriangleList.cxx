@@ -1,0 +1,212 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkDSMTriangleList.h"
+
+#include "DSMCore/Error.h"
+
+#include "vtkCellArray.h"
+#include "vtkCellData.h"
+#include "vtkDataSetAttributes.h"
+#include "vtkIdList.h"
+#include "vtkNew.h"
+#include "vtkPoints.h"
+#include "vtkPolyData.h"
+#include "vtkPolygon.h"
+#include "vtkUnsignedCharArray.h"
+
+#include <glm/geometric.hpp>
+#include <glm/vec3.hpp>
+
+#include <string>
+
+namespace
+{
+
+glm::dvec3 GetPoint(vtkPolyData* data, vtkIdType point)
+{
+  glm::dvec3 position;
+  data->GetPoints()->GetPoint(point, &position.x);
+  return position;
+}
+
+} // namespace
+
+vtkDSMTriangleList::vtkDSMTriangleList(vtkPolyData* data)
+  : Data(data)
+  , FirstCell(data->GetNumberOfVerts() + data->GetNumberOfLines())
+{
+  auto* ghosts = vtkUnsignedCharArray::SafeDownCast(
+    data->GetCellData()->GetAbstractArray(vtkDataSetAttributes::GhostArrayName()));
+  if (ghosts && ghosts->GetNumberOfTuples() == data->GetNumberOfCells())
+  {
+    this->Ghosts = ghosts->GetPointer(0);
+  }
+  if (!this->UseInPlace())
+  {
+    this->AddPolygons();
+    this->AddStrips();
+    this->Count = this->Cells.size();
+  }
+}
+
+std::uint64_t vtkDSMTriangleList::GetLargestCount(vtkPolyData* data)
+{
+  vtkIdType count = 0;
+  for (vtkCellArray* cells : { data->GetPolys(), data->GetStrips() })
+  {
+    count += cells->GetNumberOfConnectivityIds() - 2 * cells->GetNumberOfCells();
+  }
+  return static_cast<std::uint64_t>(count > 0 ? count : 0);
+}
+
+bool vtkDSMTriangleList::UseInPlace()
+{
+  vtkCellArray* polygons = this->Data->GetPolys();
+  if (this->Ghosts || this->Data->GetNumberOfStrips() > 0 || polygons->IsHomogeneous() != 3)
+  {
+    return false;
+  }
+  if (polygons->IsStorage64Bit())
+  {
+    this->InPlace64 = polygons->GetConnectivityArray64()->GetPointer(0);
+  }
+  else
+  {
+    this->InPlace32 = polygons->GetConnectivityArray32()->GetPointer(0);
+  }
+  this->Count = static_cast<std::uint64_t>(polygons->GetNumberOfCells());
+  return true;
+}
+
+void vtkDSMTriangleList::AddPolygons()
+{
+  vtkCellArray* polygons = this->Data->GetPolys();
+  const auto most = static_cast<std::size_t>(GetLargestCount(this->Data));
+  this->Corners.reserve(3 * most);
+  this->Cells.reserve(most);
+  for (vtkIdType index = 0; index < polygons->GetNumberOfCells(); ++index)
+  {
+    const vtkIdType cell = this->FirstCell + index;
+    vtkIdType size = 0;
+    const vtkIdType* points = nullptr;
+    polygons->GetCellAtId(index, size, points);
+    if (size >= 3 && !this->IsGhost(cell))
+    {
+      this->CheckPoints(cell, size, points);
+      this->AddPolygon(cell, size, points);
+    }
+  }
+}
+
+void vtkDSMTriangleList::AddStrips()
+{
+  vtkCellArray* strips = this->Data->GetStrips();
+  const vtkIdType first = this->FirstCell + this->Data->GetNumberOfPolys();
+  for (vtkIdType index = 0; index < strips->GetNumberOfCells(); ++index)
+  {
+    const vtkIdType cell = first + index;
+    vtkIdType size = 0;
+    const vtkIdType* points = nullptr;
+    strips->GetCellAtId(index, size, points);
+    if (this->IsGhost(cell))
+    {
+      continue;
+    }
+    this->CheckPoints(cell, size, points);
+    for (vtkIdType corner = 2; corner < size; ++corner)
+    {
+      // Every other triangle is the other way round.
+      const vtkIdType odd = corner & 1;
+      this->AddTriangle(cell, points[corner - 2 + odd], points[corner - 1 - odd], points[corner]);
+    }
+  }
+}
+
+void vtkDSMTriangleList::AddPolygon(vtkIdType cell, vtkIdType size, const vtkIdType* points)
+{
+  if (size > 3 && !this->IsFan(size, points))
+  {
+    vtkNew<vtkPolygon> polygon;
+    polygon->GetPointIds()->SetNumberOfIds(size);
+    polygon->GetPoints()->SetNumberOfPoints(size);
+    for (vtkIdType corner = 0; corner < size; ++corner)
+    {
+      polygon->GetPointIds()->SetId(corner, corner);
+      polygon->GetPoints()->SetPoint(corner, this->Data->GetPoint(points[corner]));
+    }
+    vtkNew<vtkIdList> triangles;
+    if (polygon->Triangulate(triangles) && triangles->GetNumberOfIds() >= 3)
+    {
+      for (vtkIdType corner = 0; corner + 2 < triangles->GetNumberOfIds(); corner += 3)
+      {
+        this->AddTriangle(cell, points[triangles->GetId(corner)],
+          points[triangles->GetId(corner + 1)], points[triangles->GetId(corner + 2)]);
+      }
+      return;
+    }
+  }
+  for (vtkIdType corner = 2; corner < size; ++corner)
+  {
+    this->AddTriangle(cell, points[0], points[corner - 1], points[corner]);
+  }
+}
+
+void vtkDSMTriangleList::AddTriangle(vtkIdType cell, vtkIdType a, vtkIdType b, vtkIdType c)
+{
+  this->Corners.insert(this->Corners.end(), { a, b, c });
+  this->Cells.push_back(cell);
+}
+
+void vtkDSMTriangleList::CheckPoints(vtkIdType cell, vtkIdType size, const vtkIdType* points) const
+{
+  for (vtkIdType corner = 0; corner < size; ++corner)
+  {
+    if (points[corner] < 0 || points[corner] >= this->Data->GetNumberOfPoints())
+    {
+      throw dsm::Error("Cell " + std::to_string(cell) + " of the surface has point " +
+        std::to_string(points[corner]) + ", but there are only " +
+        std::to_string(this->Data->GetNumberOfPoints()) + " points. Check the dataset's cells.");
+    }
+  }
+}
+
+bool vtkDSMTriangleList::IsFan(vtkIdType size, const vtkIdType* points) const
+{
+  const glm::dvec3 first = GetPoint(this->Data, points[0]);
+  glm::dvec3 normal(0.0);
+  for (int pass = 0; pass < 2; ++pass)
+  {
+    glm::dvec3 last = GetPoint(this->Data, points[1]) - first;
+    for (vtkIdType corner = 2; corner < size; ++corner)
+    {
+      const glm::dvec3 next = GetPoint(this->Data, points[corner]) - first;
+      const glm::dvec3 area = glm::cross(last, next);
+      if (pass == 0)
+      {
+        normal += area;
+      }
+      else if (glm::dot(area, normal) < 0.0)
+      {
+        return false;
+      }
+      last = next;
+    }
+  }
+  return true;
+}
+
+void vtkDSMTriangleList::GetTriangle(std::uint64_t triangle, std::uint64_t points[3]) const
+{
+  for (int corner = 0; corner < 3; ++corner)
+  {
+    const std::uint64_t index = 3 * triangle + static_cast<std::uint64_t>(corner);
+    points[corner] = this->InPlace64 ? static_cast<std::uint64_t>(this->InPlace64[index])
+      : this->InPlace32              ? static_cast<std::uint64_t>(this->InPlace32[index])
+                                     : static_cast<std::uint64_t>(this->Corners[index]);
+  }
+}
+
+vtkIdType vtkDSMTriangleList::GetCell(std::uint64_t triangle) const
+{
+  return this->Cells.empty() ? this->FirstCell + static_cast<vtkIdType>(triangle)
+                             : this->Cells[triangle];
+}

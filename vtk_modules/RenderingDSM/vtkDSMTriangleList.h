@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef vtkDSMTriangleList_h
+#define vtkDSMTriangleList_h
+
+#include "vtkSmartPointer.h"
+#include "vtkType.h"
+
+#include <cstdint>
+#include <vector>
+
+class vtkIdList;
+class vtkPolyData;
+
+/// The triangles of a vtkPolyData's polygons and strips, ghost cells left out. Polygons are cut as
+/// VTK's OpenGL mapper cuts them, into a fan, if they are convex, so that both shade alike; concave
+/// ones by VTK's ear cutting, where a fan would cover too much. Cells that are triangles already are
+/// read where they lie.
+class vtkDSMTriangleList
+{
+public:
+  /// Local; keeps the data. Throws dsm::Error for a cell with a point that does not exist.
+  explicit vtkDSMTriangleList(vtkPolyData* data);
+
+  std::uint64_t GetCount() const { return this->Count; }
+  /// May be called by several threads at a time, as all below.
+  void GetTriangle(std::uint64_t triangle, std::uint64_t points[3]) const;
+  /// The number of the cell, as VTK counts: verts, lines, polygons, strips.
+  vtkIdType GetCell(std::uint64_t triangle) const;
+
+  /// At most so many triangles, found without reading the cells.
+  static std::uint64_t GetLargestCount(vtkPolyData* data);
+
+private:
+  bool UseInPlace();
+  void AddPolygons();
+  void AddStrips();
+  void AddPolygon(vtkIdType cell, vtkIdType size, const vtkIdType* points);
+  void AddTriangle(vtkIdType cell, vtkIdType a, vtkIdType b, vtkIdType c);
+  void CheckPoints(vtkIdType cell, vtkIdType size, const vtkIdType* points) const;
+  /// Whether the triangles of a fan around the first point do not overlap.
+  bool IsFan(vtkIdType size, const vtkIdType* points) const;
+  bool IsGhost(vtkIdType cell) const { return this->Ghosts && (this->Ghosts[cell] & 0x21) != 0; }
+
+  vtkSmartPointer<vtkPolyData> Data;
+  const std::uint8_t* Ghosts = nullptr; ///< of the cells
+  std::uint64_t Count = 0;
+  vtkIdType FirstCell = 0;
+  /// Where three numbers a triangle lie: at most one of the two, or Corners.
+  const vtkTypeInt32* InPlace32 = nullptr;
+  const vtkTypeInt64* InPlace64 = nullptr;
+  std::vector<vtkIdType> Corners;
+  std::vector<vtkIdType> Cells;
+};
+
+#endif
