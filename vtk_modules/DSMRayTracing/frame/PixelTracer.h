@@ -43,6 +43,7 @@ public:
   {
   }
 
+  /// One pixel by itself: what TraceBox finds for it, and has to equal.
   PixelSample Trace(int x, int y, int sample) const
   {
     SampleSequence random(x, y, sample);
