@@ -2,6 +2,7 @@
 
 find_package(Threads REQUIRED)
 find_package(glm REQUIRED)
+find_package(hwy REQUIRED CONFIG)
 
 # Distributions build ParaView against their own Python; another one in the PATH does not fit.
 if (NOT DEFINED Python3_EXECUTABLE AND EXISTS "/usr/bin/python3")

@@ -12,7 +12,7 @@ packages=(
   g++ cmake ninja-build
   paraview paraview-dev python3-paraview
   libopenmpi-dev openmpi-bin
-  libglm-dev nlohmann-json3-dev
+  libglm-dev libhwy-dev nlohmann-json3-dev
   libx11-dev libgl-dev libopengl-dev libpng-dev
   xvfb xauth libgl1-mesa-dri
 )

@@ -3,7 +3,6 @@
 #define vtkDSMSceneMember_h
 
 #include "DSMRayTracing/frame/Scene.h"
-#include "vtkDSMMemorySettings.h"
 #include "vtkDSMRankGroup.h"
 
 #include <memory>
@@ -40,9 +39,6 @@ public:
   /// Collective. Takes in what is missing: everything when any rank has new data, else what the
   /// mapper names and is not there yet. What goes wrong is kept as a message.
   virtual void Update(const std::shared_ptr<vtkDSMRankGroup>& group, bool newData) = 0;
-
-  /// Local, in the same order on every rank: retires its bricks; the next Update publishes them again.
-  virtual void GiveUpBlocks() = 0;
 
   /// Local: what the prop that uses the mapper shows.
   virtual void AddTo(rt::Scene& scene, vtkProp3D* prop) = 0;

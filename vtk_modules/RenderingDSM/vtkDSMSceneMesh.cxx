@@ -107,7 +107,6 @@ void vtkDSMSceneMesh::Update(const std::shared_ptr<vtkDSMRankGroup>& group, bool
   const unsigned version = group->GetSettingsVersion();
   if (newData || (!this->Failure.empty() && this->FailureVersion != version))
   {
-    this->SettingsVersion = group->GetSettingsVersion();
     // The old bricks go first: there may not be room for both.
     this->Data.reset();
     this->Failure.clear();

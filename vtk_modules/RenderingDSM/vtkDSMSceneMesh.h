@@ -41,7 +41,6 @@ private:
   vtkWeakPointer<vtkDSMPolyDataMapper> Mapper;
   /// Of what was taken in; see vtkDSMMeshData::Describe.
   std::vector<std::uint64_t> Seen;
-  unsigned SettingsVersion = 0; ///< of the memory's settings when it was taken in
   bool Taken = false;
   std::unique_ptr<vtkDSMMeshData> Data;
   std::string Failure;

@@ -42,7 +42,7 @@ Ray PixelRays::GetRay(int x, int y, const glm::dvec2& position) const
   ray.Origin = glm::dvec3(nearPoint) / nearPoint.w;
   ray.Direction = glm::dvec3(farPoint) / farPoint.w - ray.Origin;
   ray.Min = 0.0;
-  ray.Max = 1.0;
+  ray.Max = Last;
   return ray;
 }
 

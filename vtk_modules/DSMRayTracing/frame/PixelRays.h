@@ -19,7 +19,10 @@ public:
   /// Throws dsm::Error when the matrix cannot be inverted.
   explicit PixelRays(const FrameRequest& request);
 
-  /// World space, from the near plane (T = 0) to the far plane (T = 1). `position` in the pixel is in
+  /// T at the far plane.
+  static constexpr double Last = 1.0;
+
+  /// World space, from the near plane (T = 0) to the far plane (T = Last). `position` in the pixel is in
   /// [0, 1), its centre being at one half.
   Ray GetRay(int x, int y, const glm::dvec2& position = glm::dvec2(0.5)) const;
 

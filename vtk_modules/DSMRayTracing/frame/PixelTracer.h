@@ -9,12 +9,14 @@
 
 #include <glm/geometric.hpp>
 #include <glm/gtc/constants.hpp>
+#include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <vector>
 
 namespace rt
 {
@@ -41,6 +43,7 @@ public:
   {
   }
 
+  /// One pixel by itself: what TraceBox finds for it, and has to equal.
   PixelSample Trace(int x, int y, int sample) const
   {
     SampleSequence random(x, y, sample);
@@ -50,17 +53,97 @@ public:
     return result;
   }
 
+  /// What the pixels of a box have in common: for TraceBox.
+  std::vector<BeamBricks> FindBricks(int x, int y, int width, int height) const
+  {
+    const auto getCorner = [&](int right, int top)
+    { return this->Rays.GetRay(x + right * width, y + top * height, glm::dvec2(0.0)); };
+    const Ray corners[4] = { getCorner(0, 0), getCorner(1, 0), getCorner(1, 1), getCorner(0, 1) };
+    return this->Surfaces.FindBricks(corners);
+  }
+
+  /// Whether TraceBox gains from `bricks`; else a smaller box may.
+  static bool AreUsable(const std::vector<BeamBricks>& bricks)
+  {
+    return SceneTracer<Store>::AreUsable(bricks);
+  }
+
+  /// Trace for a box of pixels, at most BoxEdge wide and high, within the one that `bricks` was found
+  /// for. Calls `take(x, y, sample)` for those that show something.
+  template <class Take>
+  void TraceBox(const std::vector<BeamBricks>& bricks, int x, int y, int width, int height,
+    int sample, Take&& take) const
+  {
+    constexpr int most = PacketTracer<Store>::MaxPackets;
+    Ray rays[RayPacket::Size * most];
+    glm::ivec2 places[RayPacket::Size * most];
+    RayPacket::Mask wanted[most] = {};
+    int packets = 0;
+    for (int top = 0; top < height; top += BlockEdge)
+    {
+      for (int left = 0; left < width; left += BlockEdge, ++packets)
+      {
+        for (int lane = 0; lane < RayPacket::Size; ++lane)
+        {
+          const glm::ivec2 place(left + lane % BlockEdge, top + lane / BlockEdge);
+          if (place.x < width && place.y < height)
+          {
+            const int index = RayPacket::Size * packets + lane;
+            places[index] = place + glm::ivec2(x, y);
+            const SampleSequence random(x + place.x, y + place.y, sample);
+            rays[index] = this->Rays.GetRay(x + place.x, y + place.y, random.GetPositionInPixel());
+            wanted[packets] |= RayPacket::Mask{ 1 } << lane;
+          }
+        }
+      }
+    }
+    this->Surfaces.Intersect(bricks, packets, rays, wanted,
+      [&](int index, const SurfacePoint& point)
+      {
+        const glm::ivec2& place = places[index];
+        SampleSequence random(place.x, place.y, sample);
+        PixelSample result;
+        Ray ray = rays[index];
+        ray.Max = PixelRays::Last;
+        result.Color =
+          this->FollowFrom(point, ray, this->World.Transport.MaxBounces, random, &result.Depth);
+        take(place.x, place.y, result);
+      });
+  }
+
+  /// Whether anything may be seen in the pixels that `bricks` was found for.
+  bool MayMeet(const std::vector<BeamBricks>& bricks) const
+  {
+    return this->Surfaces.MayMeet(bricks);
+  }
+
+  /// Of the blocks of pixels whose rays make a packet, and of what is traced at once.
+  static constexpr int BlockEdge = 4;
+  static constexpr int BoxEdge = 8;
+  static_assert(BlockEdge * BlockEdge == RayPacket::Size &&
+      BoxEdge * BoxEdge == RayPacket::Size * PacketTracer<Store>::MaxPackets,
+    "a block is a packet, and a box as many as are traced together");
+
 private:
   /// What lies behind contributes less than half a step of an 8-bit channel.
   static constexpr float OpaqueEnough = 1.0f - 0.5f / 255.0f;
 
   /// Front to back. `depth`, where given, is set to the first surface's.
-  glm::vec4 Follow(Ray ray, int bounces, SampleSequence& random, float* depth) const
+  glm::vec4 Follow(const Ray& ray, int bounces, SampleSequence& random, float* depth) const
+  {
+    SurfacePoint point;
+    return this->Surfaces.Intersect(ray, point)
+      ? this->FollowFrom(point, ray, bounces, random, depth)
+      : glm::vec4(0.0f);
+  }
+
+  /// Follow, what the ray meets first being known.
+  glm::vec4 FollowFrom(
+    SurfacePoint point, Ray ray, int bounces, SampleSequence& random, float* depth) const
   {
     const glm::dvec3 toViewer = -glm::normalize(ray.Direction);
     glm::vec4 color(0.0f);
-    SurfacePoint point;
-    while (color.w < OpaqueEnough && this->Surfaces.Intersect(ray, point))
+    do
     {
       const float weight = (1.0f - color.w) * point.Color.w;
       if (weight > 0.0f)
@@ -73,7 +156,7 @@ private:
         }
       }
       ray.Min = point.T + point.Clearance / glm::length(ray.Direction);
-    }
+    } while (color.w < OpaqueEnough && this->Surfaces.Intersect(ray, point));
     return color;
   }
 

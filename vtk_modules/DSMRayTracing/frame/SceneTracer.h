@@ -4,6 +4,7 @@
 
 #include "DSMRayTracing/frame/Scene.h"
 #include "DSMRayTracing/kernel/MeshTracer.h"
+#include "DSMRayTracing/kernel/PacketTracer.h"
 #include "DSMRayTracing/kernel/VolumeTracer.h"
 
 #include <glm/common.hpp>
@@ -12,6 +13,7 @@
 #include <glm/vec4.hpp>
 
 #include <algorithm>
+#include <vector>
 
 namespace rt
 {
@@ -38,6 +40,7 @@ class SceneTracer
 public:
   SceneTracer(Store& store, typename Store::Worker& worker, const Scene& scene)
     : Volumes(store, worker)
+    , Packets(store, worker)
     , Meshes(store, worker)
     , World(scene)
   {
@@ -49,17 +52,59 @@ public:
   {
     SurfaceHit isosurfaceHit;
     const IsosurfaceObject* isosurface = this->FindIsosurface(ray, isosurfaceHit);
-    MeshHit meshHit;
-    const MeshObject* mesh = this->FindMesh(ray, isosurface != nullptr, meshHit);
-    if (mesh)
+    return this->Complete(ray, isosurface, isosurfaceHit, point);
+  }
+
+  /// For each isosurface object, what rays between those of `corners` have in common.
+  std::vector<BeamBricks> FindBricks(const Ray corners[4]) const
+  {
+    std::vector<BeamBricks> bricks;
+    for (const IsosurfaceObject& object : this->World.Isosurfaces)
     {
-      Describe(*mesh, meshHit, ray, point);
+      bricks.push_back(this->Packets.FindBricks(object, corners));
     }
-    else if (isosurface)
+    return bricks;
+  }
+
+  /// Whether rays within the beam that `bricks` was found for may meet anything.
+  bool MayMeet(const std::vector<BeamBricks>& bricks) const
+  {
+    return !this->World.Meshes.empty() ||
+      std::any_of(bricks.begin(), bricks.end(),
+        [](const BeamBricks& object) { return !object.Usable || !object.Bricks.empty(); });
+  }
+
+  /// Whether rays can be traced together with the help of `bricks`.
+  static bool AreUsable(const std::vector<BeamBricks>& bricks)
+  {
+    return std::all_of(
+      bricks.begin(), bricks.end(), [](const BeamBricks& object) { return object.Usable; });
+  }
+
+  /// Intersect for the rays of `wanted` in each packet of RayPacket::Size rays, at most
+  /// PacketTracer::MaxPackets, with the same result. All lie within the beam that `bricks` was found
+  /// for. Calls `take(index, point)` for those that meet something. A ray that meets an isosurface
+  /// ends there afterwards.
+  template <class Take>
+  void Intersect(const std::vector<BeamBricks>& bricks, int packets, Ray* rays,
+    const RayPacket::Mask* wanted, Take&& take) const
+  {
+    constexpr int most = RayPacket::Size * PacketTracer<Store>::MaxPackets;
+    SurfaceHit hits[most];
+    const IsosurfaceObject* objects[most] = {};
+    this->FindIsosurfaces(bricks, packets, rays, wanted, objects, hits);
+    SurfacePoint point;
+    for (int packet = 0; packet < packets; ++packet)
     {
-      this->Describe(*isosurface, isosurfaceHit, ray, point);
+      for (RayPacket::Mask left = wanted[packet]; left != 0; left &= left - 1)
+      {
+        const int index = RayPacket::Size * packet + GetLowest(left);
+        if (this->Complete(rays[index], objects[index], hits[index], point))
+        {
+          take(index, point);
+        }
+      }
     }
-    return mesh || isosurface;
   }
 
   /// The part of each colour of light that gets along the ray: translucent surfaces dim and tint it.
@@ -80,7 +125,7 @@ public:
 private:
   /// Less than half a step of an 8-bit channel.
   static constexpr double Dark = 0.5 / 255.0;
-  /// Of the shortest edge of a cell. Roots are found to about 1e-12 of a cell.
+  /// Of the shortest edge of a cell. Roots are found to 1e-7 of the way through a cell.
   static constexpr double ClearancePart = 1e-4;
 
   /// Of a mesh's diagonal. Hits are found to about 1e-15 of it, and of the distance from the origin
@@ -106,6 +151,58 @@ private:
       }
     }
     return object;
+  }
+
+  /// FindIsosurface for the rays of `wanted` in each packet; `objects` are null before.
+  void FindIsosurfaces(const std::vector<BeamBricks>& bricks, int packets, Ray* rays,
+    const RayPacket::Mask* wanted, const IsosurfaceObject** objects, SurfaceHit* nearest) const
+  {
+    constexpr int most = RayPacket::Size * PacketTracer<Store>::MaxPackets;
+    SurfaceHit further[most];
+    RayPacket::Mask found[PacketTracer<Store>::MaxPackets];
+    bool isFirst = true;
+    for (std::size_t number = 0; number < bricks.size(); ++number)
+    {
+      const IsosurfaceObject& candidate = this->World.Isosurfaces[number];
+      if (!(candidate.Surface.Opacity > 0.0f))
+      {
+        continue;
+      }
+      SurfaceHit* const hits = isFirst ? nearest : further;
+      isFirst = false;
+      this->Packets.Intersect(candidate, bricks[number], packets, rays, wanted, hits, found);
+      for (int packet = 0; packet < packets; ++packet)
+      {
+        for (RayPacket::Mask left = found[packet]; left != 0; left &= left - 1)
+        {
+          const int index = RayPacket::Size * packet + GetLowest(left);
+          if (!objects[index] || hits[index].T < nearest[index].T)
+          {
+            nearest[index] = hits[index];
+            objects[index] = &candidate;
+            rays[index].Max = hits[index].T;
+          }
+        }
+      }
+    }
+  }
+
+  /// Describes what the ray meets first, the isosurface that it meets first, or null, being known;
+  /// that is where the ray ends.
+  bool Complete(Ray ray, const IsosurfaceObject* isosurface, const SurfaceHit& isosurfaceHit,
+    SurfacePoint& point) const
+  {
+    MeshHit meshHit;
+    const MeshObject* mesh = this->FindMesh(ray, isosurface != nullptr, meshHit);
+    if (mesh)
+    {
+      Describe(*mesh, meshHit, ray, point);
+    }
+    else if (isosurface)
+    {
+      this->Describe(*isosurface, isosurfaceHit, ray, point);
+    }
+    return mesh || isosurface;
   }
 
   /// As FindIsosurface. `ended`: something else is at the ray's end, and hides what is no nearer.
@@ -182,6 +279,7 @@ private:
   }
 
   VolumeTracer<Store> Volumes;
+  PacketTracer<Store> Packets;
   MeshTracer<Store> Meshes;
   const Scene& World;
 };

@@ -8,8 +8,8 @@
 #include <glm/vec4.hpp>
 
 #include <algorithm>
-#include <cmath>
 #include <cstdint>
+#include <vector>
 
 namespace rt
 {
@@ -37,31 +37,79 @@ public:
       tile.Sum.assign(pixels, glm::vec4(0.0f));
       tile.Depth.assign(pixels, 1.0f);
     }
+    for (int top = 0; top < tile.Height; top += BeamEdge)
+    {
+      for (int left = 0; left < tile.Width; left += BeamEdge)
+      {
+        this->TraceBeam(tile, left, top, std::min(BeamEdge, tile.Width - left),
+          std::min(BeamEdge, tile.Height - top));
+      }
+    }
     const float scale = 1.0f / (this->Request.FirstSample + this->Request.Samples);
     for (std::size_t pixel = 0; pixel < pixels; ++pixel)
     {
-      this->AddSamples(tile, pixel);
-      const glm::vec4 color = scale * tile.Sum[pixel];
       for (int channel = 0; channel < 4; ++channel)
       {
-        tile.Color[4 * pixel + channel] =
-          static_cast<std::uint8_t>(std::lround(255.0f * std::clamp(color[channel], 0.0f, 1.0f)));
+        const float value = std::clamp(scale * tile.Sum[pixel][channel], 0.0f, 1.0f);
+        tile.Color[4 * pixel + channel] = static_cast<std::uint8_t>(255.0f * value + 0.5f);
       }
     }
   }
 
 private:
-  void AddSamples(Tile& tile, std::size_t pixel) const
+  static constexpr int BlockEdge = PixelTracer<Store>::BlockEdge;
+  static constexpr int BoxEdge = PixelTracer<Store>::BoxEdge;
+  /// Of the pixels that share the walk through the levels above the bricks. Fewer rays than that are
+  /// traced at once, so that what is known of them stays in the nearest cache.
+  static constexpr int BeamEdge = 16;
+
+  /// Adds the samples of a part of the tile's pixels.
+  void TraceBeam(Tile& tile, int left, int top, int width, int height) const
   {
-    const int x = tile.X + static_cast<int>(pixel % tile.Width);
-    const int y = tile.Y + static_cast<int>(pixel / tile.Width);
+    const std::vector<BeamBricks> bricks =
+      this->Pixels.FindBricks(tile.X + left, tile.Y + top, width, height);
+    const bool usable = this->Pixels.AreUsable(bricks);
+    const bool splits = !usable && (width > BlockEdge || height > BlockEdge);
+    if (!this->Pixels.MayMeet(bricks))
+    {
+      return;
+    }
+    const int edge = splits ? BlockEdge : BoxEdge;
+    for (int j = 0; j < height; j += edge)
+    {
+      for (int i = 0; i < width; i += edge)
+      {
+        const int boxWidth = std::min(edge, width - i);
+        const int boxHeight = std::min(edge, height - j);
+        if (splits)
+        {
+          // Rays on both sides of where they run along an axis: fewer have more in common.
+          this->TraceBeam(tile, left + i, top + j, boxWidth, boxHeight);
+        }
+        else
+        {
+          this->TraceBox(tile, bricks, left + i, top + j, boxWidth, boxHeight);
+        }
+      }
+    }
+  }
+
+  void TraceBox(Tile& tile, const std::vector<BeamBricks>& bricks, int left, int top, int width,
+    int height) const
+  {
     for (int sample = 0; sample < this->Request.Samples; ++sample)
     {
-      const PixelSample traced = this->Pixels.Trace(x, y, this->Request.FirstSample + sample);
-      tile.Sum[pixel] += traced.Color;
-      // A pixel is as near as the nearest of its samples, so that a surface's antialiased border
-      // still covers what is behind.
-      tile.Depth[pixel] = std::min(tile.Depth[pixel], traced.Depth);
+      this->Pixels.TraceBox(bricks, tile.X + left, tile.Y + top, width, height,
+        this->Request.FirstSample + sample,
+        [&tile](int x, int y, const PixelSample& traced)
+        {
+          const std::size_t pixel = static_cast<std::size_t>(y - tile.Y) * tile.Width +
+            static_cast<std::size_t>(x - tile.X);
+          tile.Sum[pixel] += traced.Color;
+          // A pixel is as near as the nearest of its samples, so that a surface's antialiased
+          // border still covers what is behind.
+          tile.Depth[pixel] = std::min(tile.Depth[pixel], traced.Depth);
+        });
     }
   }
 

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "DSMRayTracing/kernel/CellNeighbourhood.h"
 
-#include "DSMRayTracing/kernel/TrilinearCell.h"
-
 #include <cmath>
 
 namespace rt
@@ -101,7 +99,10 @@ void CellNeighbourhood::GetGradient(const Lanes& local, double gradient[3]) cons
           axis, 1 + (corner & 1), 1 + (corner >> 1 & 1), 1 + (corner >> 2));
       }
     }
-    gradient[axis] = EvaluateTrilinear(differences, local);
+    const Pair rows[2][2] = { { { differences[0], differences[1] },
+                                { differences[2], differences[3] } },
+      { { differences[4], differences[5] }, { differences[6], differences[7] } } };
+    gradient[axis] = Interpolate(rows, local);
   }
 }
 

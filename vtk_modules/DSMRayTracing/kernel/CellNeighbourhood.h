@@ -18,7 +18,7 @@ namespace rt
 class CellNeighbourhood
 {
 public:
-  /// From a brick that has all of it, and no mask. `cell` is the brick's.
+  /// Whether a brick has all of it, and no mask. `cell` is the brick's.
   template <class T>
   static bool IsWithin(const VoxelBrick<T>& brick, const int cell[3])
   {
@@ -26,25 +26,6 @@ public:
       cell[0] + 2 <= brick.GetCells(0) && cell[1] + 2 <= brick.GetCells(1) &&
       cell[2] + 2 <= brick.GetCells(2);
   }
-  template <class T>
-  void CopyAll(const VoxelBrick<T>& brick, const int cell[3], const IsovalueLevel<T>& level)
-  {
-    double* out = this->Samples;
-    for (int z = 0; z < 4; ++z)
-    {
-      for (int y = 0; y < 4; ++y)
-      {
-        const T* row =
-          brick.GetSamples() + brick.GetOffset(cell[0] - 1, cell[1] - 1 + y, cell[2] - 1 + z);
-        for (int x = 0; x < 4; ++x)
-        {
-          *out++ = level.Subtract(row[x]);
-        }
-      }
-    }
-    std::fill_n(this->Covered, 27, true);
-  }
-
   /// Before any CopyPart of a lattice without mask: all cells are covered that the volume has.
   /// `cell` is the volume's.
   void CoverWithin(const Index3& cell, const Index3& cells);
@@ -94,6 +75,18 @@ public:
         }
       }
     }
+  }
+
+  /// Numbers at the two corners of a row, lower x first.
+  using Pair = Lanes::Half;
+  /// The trilinear interpolation of numbers at the corners, in rows [z][y].
+  static double Interpolate(const Pair rows[2][2], const Lanes& local)
+  {
+    const auto mix = [](const auto& a, const auto& b, double u) { return (1.0 - u) * a + u * b; };
+    const Pair front = mix(rows[0][0], rows[1][0], local[2]);
+    const Pair back = mix(rows[0][1], rows[1][1], local[2]);
+    const Pair row = mix(front, back, local[1]);
+    return mix(row[0], row[1], local[0]);
   }
 
   /// The gradient, in index space, at a point of the cell: trilinear between those at the corners,

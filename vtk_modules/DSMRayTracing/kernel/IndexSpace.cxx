@@ -33,6 +33,13 @@ glm::dvec3 IndexSpace::GetNormal(const double gradient[3], const glm::dvec3& ray
 {
   // A gradient is a covector: it goes to world space by the inverse transpose.
   glm::dvec3 normal = glm::dvec3(-gradient[0], -gradient[1], -gradient[2]);
+  const glm::dvec3 inWorld = normal * this->WorldToIndex;
+  const double square = glm::dot(inWorld, inWorld);
+  // Squares neither overflow nor lose digits.
+  if (square > 1e-200 && square < 1e200)
+  {
+    return inWorld * (1.0 / std::sqrt(square));
+  }
   if (Normalize(normal))
   {
     normal = normal * this->WorldToIndex;

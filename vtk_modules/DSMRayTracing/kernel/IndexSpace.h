@@ -23,6 +23,11 @@ public:
   {
   }
 
+  /// Of the index space, in world space.
+  const glm::dvec3& GetOrigin() const { return this->WorldOrigin; }
+  /// Takes differences of world points to index space.
+  const glm::dmat3& GetWorldToIndex() const { return this->WorldToIndex; }
+
   /// The same T in both spaces. False when the ray cannot be traced (no direction, not finite).
   bool GetGridRay(const Ray& ray, GridRay& line) const
   {

@@ -2,9 +2,12 @@
 #ifndef rt_IsovalueLevel_h
 #define rt_IsovalueLevel_h
 
+#include "DSMRayTracing/kernel/Lanes.h"
+
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <cstring>
 #include <limits>
 #include <type_traits>
 
@@ -81,7 +84,25 @@ public:
     }
   }
 
+  /// The same of two samples that follow one another.
+  Lanes::Half SubtractPair(const T* samples) const
+  {
+    if constexpr (std::is_integral_v<T> && sizeof(T) == 8)
+    {
+      return Lanes::Half{ this->Subtract(samples[0]), this->Subtract(samples[1]) };
+    }
+    else
+    {
+      Two two;
+      std::memcpy(&two, samples, sizeof(two));
+      return __builtin_convertvector(two, Lanes::Half) - this->Isovalue;
+    }
+  }
+
 private:
+  // The attribute of a dependent type is only taken from a typedef.
+  typedef T Two __attribute__((vector_size(2 * sizeof(T))));
+
   double Isovalue;
   double Rest = 0.0; ///< First - isovalue, for integers
   T First;

@@ -22,8 +22,8 @@ struct End
 /// crosses, kept within the bracket by bisection.
 double Refine(const Cubic& cubic, const End& begin, const End& end)
 {
-  // Newton squares the error, so after a step this small nothing is left of it.
-  constexpr double tolerance = 1e-9;
+  // Newton squares the error, so after a step this small hardly anything is left of it.
+  constexpr double tolerance = 1e-7;
   const bool beginInside = begin.Value >= 0.0;
   const auto isBefore = [&](double place) { return (cubic.Evaluate(place) >= 0.0) == beginInside; };
   double low = begin.S;

@@ -6,6 +6,7 @@
 #include "DSMRayTracing/kernel/BrickWalk.h"
 #include "DSMRayTracing/kernel/CellHit.h"
 #include "DSMRayTracing/kernel/GridRay.h"
+#include "DSMRayTracing/kernel/HitGradient.h"
 #include "DSMRayTracing/kernel/Ray.h"
 
 #include <glm/vec3.hpp>
@@ -56,11 +57,6 @@ private:
   template <class T>
   bool IntersectBrick(const IsosurfaceObject& object, const GridRay& line, const BrickWalk& walk,
     CellHit& cell, int& isovalue, double gradient[3], bool& hasGradient) const;
-
-  /// The gradient at a hit in a brick whose neighbourhood reaches into other bricks.
-  template <class T>
-  void FindGradient(const VoxelField& field, dsm::BlockId id, const CellHit& cell, double isovalue,
-    double gradient[3]) const;
 
   template <class T>
   double SampleCell(

@@ -4,7 +4,6 @@
 
 #include "DSMRayTracing/brick/VoxelBrick.h"
 #include "DSMRayTracing/kernel/BrickWalk.h"
-#include "DSMRayTracing/kernel/CellNeighbourhood.h"
 #include "DSMRayTracing/kernel/GridTraversal.h"
 #include "DSMRayTracing/kernel/IndexSpace.h"
 #include "DSMRayTracing/kernel/IsovalueLevel.h"
@@ -59,7 +58,8 @@ bool VolumeTracer<Store>::IntersectBricks(const IsosurfaceObject& object, const 
     }
     if (!hasGradient)
     {
-      this->FindGradient<T>(field, walk.GetId(), cell, object.Isovalues[hit.Isovalue], gradient);
+      HitGradient::Find<T>(this->Blocks, this->Self, field, walk.GetId(), cell,
+        object.Isovalues[hit.Isovalue], gradient);
     }
     hit.T = cell.T;
     hit.Brick = walk.GetId();
@@ -102,61 +102,9 @@ bool VolumeTracer<Store>::IntersectBrick(const IsosurfaceObject& object, const G
   {
     return false;
   }
-  hasGradient = CellNeighbourhood::IsWithin(voxels, cell.Cell);
-  if (hasGradient)
-  {
-    CellNeighbourhood samples;
-    samples.CopyAll(voxels, cell.Cell, IsovalueLevel<T>(object.Isovalues[isovalue]));
-    samples.GetGradient(cell.Local, gradient);
-  }
+  hasGradient =
+    HitGradient::FindWithin(voxels, cell, IsovalueLevel<T>(object.Isovalues[isovalue]), gradient);
   return true;
-}
-
-template <class Store>
-template <class T>
-void VolumeTracer<Store>::FindGradient(const VoxelField& field, dsm::BlockId id,
-  const CellHit& cell, double isovalue, double gradient[3]) const
-{
-  const BrickLattice& lattice = field.Lattice;
-  const IsovalueLevel<T> level(isovalue);
-  const Index3 edge(lattice.GetEdge());
-  const Index3 home = lattice.GetBrick(id);
-  const Index3 place = home * edge + Index3(cell.Cell[0], cell.Cell[1], cell.Cell[2]);
-  const Index3 first = glm::max(place - Index3(1), Index3(0)) / edge;
-  const Index3 last = glm::min(place + Index3(1), lattice.GetCells() - Index3(1)) / edge;
-  CellNeighbourhood samples;
-  if (lattice.HasCellMask())
-  {
-    samples.Clear();
-  }
-  else
-  {
-    samples.CoverWithin(place, lattice.GetCells());
-  }
-  for (std::int64_t z = first.z; z <= last.z; ++z)
-  {
-    for (std::int64_t y = first.y; y <= last.y; ++y)
-    {
-      for (std::int64_t x = first.x; x <= last.x; ++x)
-      {
-        // Differences along the axes only need the bricks across faces; the others tell no more
-        // than whether their cells are blanked.
-        const int axesApart = (x != home.x) + (y != home.y) + (z != home.z);
-        if (axesApart > 1 && !lattice.HasCellMask())
-        {
-          continue;
-        }
-        const Index3 brick(x, y, z);
-        const Index3 local = place - brick * edge;
-        const int localCell[3] = { static_cast<int>(local.x), static_cast<int>(local.y),
-          static_cast<int>(local.z) };
-        const typename Store::Pin pin =
-          this->Blocks.Acquire(this->Self, *field.Segment, lattice.GetId(brick));
-        samples.CopyPart(VoxelBrick<T>(pin.GetData()), localCell, level);
-      }
-    }
-  }
-  samples.GetGradient(cell.Local, gradient);
 }
 
 template <class Store>

@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A tile's pixels, traced in packets, against the same pixels traced alone.
+#include "tests/support/FunctionVolume.h"
+
+#include "DSMCore/LoopbackTransport.h"
+#include "DSMRayTracing/frame/TileGrid.h"
+#include "DSMRayTracing/frame/TileTracer.h"
+
+#include <glm/gtc/constants.hpp>
+#include <glm/gtc/matrix_transform.hpp>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace
+{
+
+double GetWaves(const glm::dvec3& p)
+{
+  return std::sin(7.0 * p.x) + std::sin(6.0 * p.y + p.x) + std::sin(8.0 * p.z) - 0.4;
+}
+
+struct Difference
+{
+  int Covered = 0;
+  int Pixels = 0; ///< that differ
+};
+
+class TestTileTracer : public testing::Test
+{
+protected:
+  Difference Compare(const glm::dmat4& worldToClip, int width, int height, int tileSize)
+  {
+    rt::Scene scene;
+    scene.Isosurfaces = { FunctionVolume::Publish(65, GetWaves, this->Messenger, this->Store),
+      FunctionVolume::Publish(
+        50, [](const glm::dvec3& p) { return glm::length(p) - 0.8; }, this->Messenger,
+        this->Store) };
+    scene.Isosurfaces[1].Surface.Opacity = 0.4f;
+    scene.Lights.emplace_back();
+    rt::FrameRequest request;
+    request.Width = width;
+    request.Height = height;
+    request.TileSize = tileSize;
+    request.Samples = 2;
+    request.WorldToClip = worldToClip;
+    return this->Store.Visit([&](auto& store) { return CompareTiles(store, scene, request); });
+  }
+
+  dsm::Messenger Messenger{ std::move(dsm::LoopbackTransport::CreateGroup(1).front()) };
+  dsm::BlockStore Store{ Messenger, dsm::BlockStore::Settings{} };
+
+private:
+  template <class Store>
+  static Difference CompareTiles(
+    Store& store, const rt::Scene& scene, const rt::FrameRequest& request)
+  {
+    auto& worker = store.GetWorker(0);
+    const rt::PixelRays rays(request);
+    const rt::TileTracer<Store> together(store, worker, scene, rays, request);
+    const rt::PixelTracer<Store> alone(store, worker, scene, rays);
+    const rt::TileGrid grid(request.Width, request.Height, request.TileSize);
+    Difference difference;
+    store.BeginFrame();
+    store.Enter(worker);
+    for (int number = 0; number < grid.GetCount(); ++number)
+    {
+      rt::Tile tile = grid.CreateTile(number);
+      together.Trace(tile);
+      for (int pixel = 0; pixel < tile.Width * tile.Height; ++pixel)
+      {
+        const int x = tile.X + pixel % tile.Width;
+        const int y = tile.Y + pixel / tile.Width;
+        const rt::PixelSample first = alone.Trace(x, y, 0);
+        const rt::PixelSample second = alone.Trace(x, y, 1);
+        difference.Covered += first.Depth < 1.0f;
+        difference.Pixels += tile.Sum[pixel] != first.Color + second.Color ||
+          tile.Depth[pixel] != std::min(first.Depth, second.Depth);
+      }
+    }
+    store.Leave(worker);
+    store.EndFrame();
+    return difference;
+  }
+};
+
+glm::dmat4 LookAt(const glm::dvec3& eye)
+{
+  return glm::perspective(glm::radians(40.0), 1.0, 0.1, 10.0) *
+    glm::lookAt(eye, glm::dvec3(0.0), glm::dvec3(0.1, 1.0, 0.0));
+}
+
+} // namespace
+
+TEST_F(TestTileTracer, SlantedViewEqualsSinglePixels)
+{
+  const Difference difference = this->Compare(LookAt({ 2.5, 1.8, 2.1 }), 64, 64, 16);
+  EXPECT_GT(difference.Covered, 1000);
+  EXPECT_EQ(difference.Pixels, 0);
+}
+
+/// Rays to both sides of two axes; tiles that are no multiple of a packet.
+TEST_F(TestTileTracer, ViewAlongAnAxisEqualsSinglePixels)
+{
+  const Difference difference = this->Compare(LookAt({ 0.01, 0.02, 3.6 }), 61, 47, 19);
+  EXPECT_GT(difference.Covered, 500);
+  EXPECT_EQ(difference.Pixels, 0);
+}
+
+TEST_F(TestTileTracer, ViewFromInsideEqualsSinglePixels)
+{
+  const Difference difference = this->Compare(LookAt({ 0.11, 0.2, 0.31 }), 33, 35, 16);
+  EXPECT_GT(difference.Covered, 300);
+  EXPECT_EQ(difference.Pixels, 0);
+}
+
+/// All rays are parallel to an axis.
+TEST_F(TestTileTracer, ParallelViewAlongAnAxisEqualsSinglePixels)
+{
+  const glm::dmat4 parallel = glm::ortho(-1.0, 1.0, -1.0, 1.0, 0.0, 10.0) *
+    glm::lookAt(glm::dvec3(0.0, 0.0, 5.0), glm::dvec3(0.0), glm::dvec3(0.0, 1.0, 0.0));
+  const Difference difference = this->Compare(parallel, 40, 40, 16);
+  EXPECT_GT(difference.Covered, 500);
+  EXPECT_EQ(difference.Pixels, 0);
+}

@@ -1,0 +1,262 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Included once for each instruction set; see PacketKernel.cxx.
+#if defined(rt_PacketCrossing_inl_h) == defined(HWY_TARGET_TOGGLE)
+#ifdef rt_PacketCrossing_inl_h
+#undef rt_PacketCrossing_inl_h
+#else
+#define rt_PacketCrossing_inl_h
+#endif
+
+#include <hwy/highway.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace rt
+{
+namespace HWY_NAMESPACE
+{
+namespace hn = hwy::HWY_NAMESPACE;
+
+/// A part of a way at whose two ends a cubic differs in sign; see End in TrilinearIsosurface.cxx.
+template <class D>
+struct Bracket
+{
+  hn::Vec<D> BeginS;
+  hn::Vec<D> BeginValue;
+  hn::Vec<D> EndS;
+  hn::Vec<D> EndValue;
+};
+
+/// FindFirstCrossing of TrilinearIsosurface.h, and what it rests on in TrilinearCell.h, for a vector
+/// of rays: the same operations in the same order, so that the results are equal bit for bit. What
+/// is a branch there is a choice here, or a loop that goes on while any ray needs it. That a ray
+/// crosses is known before it is known where: so the last, long part can wait until many rays are at
+/// that point.
+template <class D>
+class PacketCrossing
+{
+public:
+  using Vector = hn::Vec<D>;
+  using Mask = hn::Mask<D>;
+
+  PacketCrossing(D tag, const Vector corners[8], const Vector start[3], const Vector end[3])
+    : Tag(tag)
+    , Zero(hn::Zero(tag))
+    , One(hn::Set(tag, 1.0))
+  {
+    const Vector direction[3] = { hn::Sub(end[0], start[0]), hn::Sub(end[1], start[1]),
+      hn::Sub(end[2], start[2]) };
+    this->SetCoefficients(corners, start, direction);
+    const Vector x00 = this->Interpolate(corners[0], corners[1], end[0]);
+    const Vector x10 = this->Interpolate(corners[2], corners[3], end[0]);
+    const Vector x01 = this->Interpolate(corners[4], corners[5], end[0]);
+    const Vector x11 = this->Interpolate(corners[6], corners[7], end[0]);
+    this->Last = this->Interpolate(
+      this->Interpolate(x00, x10, end[1]), this->Interpolate(x01, x11, end[1]), end[2]);
+  }
+
+  /// From coefficients, for Refine.
+  PacketCrossing(D tag, const Vector coefficients[4])
+    : Tag(tag)
+    , Zero(hn::Zero(tag))
+    , One(hn::Set(tag, 1.0))
+    , C0(coefficients[0])
+    , C1(coefficients[1])
+    , C2(coefficients[2])
+    , C3(coefficients[3])
+    , Last(coefficients[0])
+  {
+  }
+
+  /// The cubic along the way is [0] + [1] s + [2] s^2 + [3] s^3.
+  void GetCoefficients(Vector coefficients[4]) const
+  {
+    coefficients[0] = this->C0;
+    coefficients[1] = this->C1;
+    coefficients[2] = this->C2;
+    coefficients[3] = this->C3;
+  }
+
+  /// Which of `rays` cross, and where the first crossing of each is; undefined for the others.
+  Mask FindFirst(Mask rays, Bracket<D>& bracket) const
+  {
+    // Signs of the four Bernstein coefficients; there are no more crossings than they have changes.
+    const Vector third = hn::Set(this->Tag, 1.0 / 3.0);
+    const Vector two = hn::Set(this->Tag, 2.0);
+    const Mask inside0 = this->IsInside(this->C0);
+    const Mask inside1 = this->IsInside(hn::Add(this->C0, hn::Mul(this->C1, third)));
+    const Mask inside2 =
+      this->IsInside(hn::Add(this->C0, hn::Mul(hn::Add(hn::Mul(two, this->C1), this->C2), third)));
+    const Mask inside3 = this->IsInside(this->Last);
+    const Mask change0 = hn::Xor(inside0, inside1);
+    const Mask change1 = hn::Xor(inside1, inside2);
+    const Mask change2 = hn::Xor(inside2, inside3);
+    const Mask single = hn::Xor(inside0, inside3);
+    const Mask several =
+      hn::And(rays, hn::Or(hn::And(change0, hn::Or(change1, change2)), hn::And(change1, change2)));
+    bracket = { this->Zero, this->C0, this->One, this->Last };
+    Mask crossing = hn::And(rays, single);
+    if (hn::AllFalse(this->Tag, several))
+    {
+      return crossing;
+    }
+    Vector extrema[2];
+    this->FindExtrema(extrema);
+    Mask open = several; // no bracket found yet
+    for (const Vector& place : extrema)
+    {
+      const Mask valid =
+        hn::And(open, hn::And(hn::Gt(place, this->Zero), hn::Lt(place, this->One)));
+      const Vector value = this->Evaluate(place);
+      const Mask found = hn::And(valid, hn::Xor(this->IsInside(value), inside0));
+      const Mask passed = hn::AndNot(found, valid);
+      bracket.EndS = hn::IfThenElse(found, place, bracket.EndS);
+      bracket.EndValue = hn::IfThenElse(found, value, bracket.EndValue);
+      bracket.BeginS = hn::IfThenElse(passed, place, bracket.BeginS);
+      bracket.BeginValue = hn::IfThenElse(passed, value, bracket.BeginValue);
+      crossing = hn::Or(crossing, found);
+      open = hn::AndNot(found, open);
+    }
+    return crossing;
+  }
+
+  /// Where in their brackets `rays` cross; undefined for the others.
+  Vector Refine(Mask rays, const Bracket<D>& bracket) const
+  {
+    const D tag = this->Tag;
+    const Vector tolerance = hn::Set(tag, 1e-7);
+    const Vector half = hn::Set(tag, 0.5);
+    const Mask beginInside = this->IsInside(bracket.BeginValue);
+    Vector low = bracket.BeginS;
+    Vector high = bracket.EndS;
+    const Vector chord = hn::Div(bracket.BeginValue, hn::Sub(bracket.BeginValue, bracket.EndValue));
+    const Vector width = hn::Sub(high, low);
+    const Vector clamped = Clamp(chord, hn::Set(tag, 0.015625), hn::Set(tag, 0.984375));
+    Vector s = hn::Add(low, hn::Mul(width, clamped));
+    Vector lastStep = width;
+    Mask active = hn::And(rays, hn::Gt(hn::Sub(high, low), tolerance));
+    while (!hn::AllFalse(tag, active))
+    {
+      const Vector value = this->Evaluate(s);
+      const Mask before = hn::Not(hn::Xor(this->IsInside(value), beginInside));
+      low = hn::IfThenElse(hn::And(active, before), s, low);
+      high = hn::IfThenElse(hn::AndNot(before, active), s, high);
+      const Vector next = hn::Sub(s, hn::Div(value, this->EvaluateDerivative(s)));
+      const Vector step = hn::Abs(hn::Sub(next, s));
+      const Mask small = hn::And(active, hn::Le(step, tolerance));
+      Mask done = small;
+      if (!hn::AllFalse(tag, small))
+      {
+        done = hn::And(small, this->IsCrossing(next, low, high, tolerance, beginInside));
+      }
+      const Mask inBracket = hn::And(hn::Gt(next, low), hn::Lt(next, high));
+      const Mask newton =
+        hn::And(inBracket, hn::And(hn::Gt(step, tolerance), hn::Lt(step, hn::Mul(half, lastStep))));
+      const Vector middle = hn::Mul(half, hn::Add(low, high));
+      const Vector going = hn::IfThenElse(newton, next, middle);
+      lastStep = hn::IfThenElse(active, hn::IfThenElse(newton, step, hn::Sub(high, low)), lastStep);
+      s = hn::IfThenElse(active, hn::IfThenElse(done, Clamp(next, low, high), going), s);
+      active = hn::And(hn::AndNot(done, active), hn::Gt(hn::Sub(high, low), tolerance));
+    }
+    return s;
+  }
+
+private:
+  Mask IsInside(Vector value) const { return hn::Ge(value, this->Zero); }
+
+  Vector Interpolate(Vector a, Vector b, Vector u) const
+  {
+    return hn::Add(hn::Mul(hn::Sub(this->One, u), a), hn::Mul(u, b));
+  }
+
+  void SetCoefficients(const Vector corners[8], const Vector start[3], const Vector direction[3])
+  {
+    Vector linear[4][2];
+    for (int edge = 0; edge < 4; ++edge)
+    {
+      const Vector a = corners[2 * edge];
+      const Vector b = corners[2 * edge + 1];
+      linear[edge][0] = this->Interpolate(a, b, start[0]);
+      linear[edge][1] = hn::Mul(direction[0], hn::Sub(b, a));
+    }
+    Vector quadratic[2][3];
+    for (int face = 0; face < 2; ++face)
+    {
+      const Vector* a = linear[2 * face];
+      const Vector* b = linear[2 * face + 1];
+      quadratic[face][0] = this->Interpolate(a[0], b[0], start[1]);
+      quadratic[face][1] = hn::Add(
+        this->Interpolate(a[1], b[1], start[1]), hn::Mul(direction[1], hn::Sub(b[0], a[0])));
+      quadratic[face][2] = hn::Mul(direction[1], hn::Sub(b[1], a[1]));
+    }
+    const Vector* a = quadratic[0];
+    const Vector* b = quadratic[1];
+    this->C0 = this->Interpolate(a[0], b[0], start[2]);
+    this->C1 =
+      hn::Add(this->Interpolate(a[1], b[1], start[2]), hn::Mul(direction[2], hn::Sub(b[0], a[0])));
+    this->C2 =
+      hn::Add(this->Interpolate(a[2], b[2], start[2]), hn::Mul(direction[2], hn::Sub(b[1], a[1])));
+    this->C3 = hn::Mul(direction[2], hn::Sub(b[2], a[2]));
+  }
+
+  Vector Evaluate(Vector s) const
+  {
+    const Vector inner = hn::Add(this->C2, hn::Mul(s, this->C3));
+    return hn::Add(this->C0, hn::Mul(s, hn::Add(this->C1, hn::Mul(s, inner))));
+  }
+  Vector EvaluateDerivative(Vector s) const
+  {
+    const Vector two = hn::Set(this->Tag, 2.0);
+    const Vector three = hn::Set(this->Tag, 3.0);
+    const Vector inner = hn::Add(hn::Mul(two, this->C2), hn::Mul(hn::Mul(s, three), this->C3));
+    return hn::Add(this->C1, hn::Mul(s, inner));
+  }
+
+  /// Ascending; where there are none, not in (0, 1).
+  void FindExtrema(Vector extrema[2]) const
+  {
+    const Vector a = hn::Mul(hn::Set(this->Tag, 3.0), this->C3);
+    const Vector b = this->C2;
+    const Vector c = this->C1;
+    const Vector discriminant = hn::Sub(hn::Mul(b, b), hn::Mul(a, c));
+    const Mask exist = hn::Gt(discriminant, this->Zero);
+    const Vector q = hn::Neg(hn::Add(b, hn::CopySign(hn::Sqrt(discriminant), b)));
+    const Vector first = hn::Div(q, a);
+    const Vector second = hn::Div(c, q);
+    const Mask swap = hn::Lt(second, first);
+    extrema[0] = hn::IfThenElseZero(exist, hn::IfThenElse(swap, second, first));
+    extrema[1] = hn::IfThenElseZero(exist, hn::IfThenElse(swap, first, second));
+  }
+
+  /// `value` within [low, high]; what is not a number stays so.
+  static Vector Clamp(Vector value, Vector low, Vector high)
+  {
+    return hn::IfThenElse(
+      hn::Lt(value, low), low, hn::IfThenElse(hn::Lt(high, value), high, value));
+  }
+
+  Mask IsCrossing(Vector place, Vector low, Vector high, Vector tolerance, Mask beginInside) const
+  {
+    const Vector back = hn::Sub(place, tolerance);
+    const Vector ahead = hn::Add(place, tolerance);
+    const Mask otherSideBack = hn::Xor(this->IsInside(this->Evaluate(back)), beginInside);
+    const Mask otherSideAhead = hn::Xor(this->IsInside(this->Evaluate(ahead)), beginInside);
+    return hn::And(hn::Or(hn::Le(back, low), hn::Not(otherSideBack)),
+      hn::Or(hn::Ge(ahead, high), otherSideAhead));
+  }
+
+  D Tag;
+  Vector Zero;
+  Vector One;
+  // The cubic, and its value at s = 1 by way of the corners.
+  Vector C0;
+  Vector C1;
+  Vector C2;
+  Vector C3;
+  Vector Last;
+};
+
+} // namespace HWY_NAMESPACE
+} // namespace rt
+HWY_AFTER_NAMESPACE();
+
+#endif

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef rt_PacketKernel_h
+#define rt_PacketKernel_h
+
+#include "DSMRayTracing/brick/Box.h"
+#include "DSMRayTracing/kernel/IndexSpace.h"
+#include "DSMRayTracing/kernel/PacketBrick.h"
+#include "DSMRayTracing/kernel/Ray.h"
+#include "DSMRayTracing/kernel/RayPacket.h"
+
+#include <vector>
+
+namespace rt
+{
+
+/// The steps of a packet that are done with the vector instructions of the processor, for as many
+/// rays at once as its registers hold. There is one for each kind of processor in the same binary,
+/// and one for rays one by one. All give the same bits, those of IndexSpace, GridRay, GridWalk, GridTraversal and
+/// FindFirstCrossing: each ray's numbers come from the same operations, none of them contracted.
+///
+/// Pure; any thread.
+struct PacketKernel
+{
+  const char* Name;
+  int Width; ///< rays at once
+
+  /// Makes the packet of those rays (world space) of `wanted` that cross the volume's `cells`, Forward
+  /// being set. Returns those that do not fit into a packet.
+  RayPacket::Mask (*SetRays)(RayPacket& packet, const Ray* rays, RayPacket::Mask wanted,
+    const IndexSpace& space, const Index3& cells);
+
+  /// Those of `rays` that cross a box (planes in cells) within the volume, and where.
+  RayPacket::Mask (*MeetBox)(const RayPacket& packet, RayPacket::Mask rays, const double lower[3],
+    const double upper[3], double* enter, double* leave);
+
+  /// Those of `rays` that meet the surface in a brick, which they cross from `enter` to `leave`.
+  /// `origin` is the brick's first cell. The numbers of the others in `hits` mean nothing.
+  RayPacket::Mask (*SearchBrick)(const RayPacket& packet, RayPacket::Mask rays,
+    const PacketBrick& brick, const double origin[3], const double* enter, const double* leave,
+    PacketHits& hits);
+
+  /// The fastest that this processor can run.
+  static const PacketKernel& GetBest();
+  /// All that this processor can run, that of width 1 first. For tests: not while any thread
+  /// traces.
+  static std::vector<PacketKernel> GetAll();
+};
+
+} // namespace rt
+
+#endif

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef rt_PacketTracer_h
+#define rt_PacketTracer_h
+
+#include "DSMRayTracing/frame/Scene.h"
+#include "DSMRayTracing/kernel/BeamBricks.h"
+#include "DSMRayTracing/kernel/PacketKernel.h"
+#include "DSMRayTracing/kernel/Ray.h"
+#include "DSMRayTracing/kernel/VolumeTracer.h"
+
+#include <glm/vec3.hpp>
+
+namespace rt
+{
+
+/// Finds isosurface hits for the rays of a tile: the bricks that lie in the tile's beam are acquired
+/// one after the other, front to back, and each is searched by all packets of the tile. A ray finds,
+/// bit for bit, what VolumeTracer finds for it, whatever packets, mates and vectors it has; rays that
+/// do not fit the others are left to VolumeTracer.
+///
+/// Threads and pins as VolumeTracer.
+template <class Store>
+class PacketTracer
+{
+public:
+  /// At once.
+  static constexpr int MaxPackets = 4;
+
+  PacketTracer(Store& store, typename Store::Worker& worker,
+    const PacketKernel& kernel = PacketKernel::GetBest())
+    : Blocks(store)
+    , Self(worker)
+    , Single(store, worker)
+    , Kernel(kernel)
+  {
+  }
+
+  /// The bricks that rays between those of `corners`, in order around them, may find hits in.
+  BeamBricks FindBricks(const IsosurfaceObject& object, const Ray corners[4]) const;
+
+  /// VolumeTracer::Intersect for the rays of `wanted` in each packet of RayPacket::Size rays. All of
+  /// them lie within the beam that `bricks` was found for. `found` tells those that hit something.
+  void Intersect(const IsosurfaceObject& object, const BeamBricks& bricks, int packets,
+    const Ray* rays, const RayPacket::Mask* wanted, SurfaceHit* hits, RayPacket::Mask* found) const;
+
+private:
+  /// A packet on its way through the bricks.
+  struct Progress
+  {
+    RayPacket Rays;
+    RayPacket::Mask Found = 0;
+    // In the current brick:
+    RayPacket::Mask Meets = 0;
+    alignas(64) double Enter[RayPacket::Size];
+    alignas(64) double Leave[RayPacket::Size];
+    RayPacket::Mask Hit = 0;
+    RayPacket::Mask WithoutGradient = 0;
+    PacketHits Cells;
+    int Isovalue[RayPacket::Size];
+    glm::dvec3 Gradient[RayPacket::Size];
+  };
+
+  template <class T>
+  void SearchBricks(const IsosurfaceObject& object, const BeamBricks& bricks, int packets,
+    Progress* progress, const Ray* rays, SurfaceHit* hits) const;
+
+  /// Acquires the brick and searches it for all packets that meet it.
+  template <class T>
+  void SearchBrick(const IsosurfaceObject& object, const BeamBricks::Brick& brick, int packets,
+    Progress* progress) const;
+
+  Store& Blocks;
+  typename Store::Worker& Self;
+  VolumeTracer<Store> Single;
+  const PacketKernel& Kernel;
+};
+
+} // namespace rt
+
+#include "DSMRayTracing/kernel/PacketTracer.txx"
+
+#endif

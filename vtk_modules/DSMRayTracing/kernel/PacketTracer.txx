@@ -1,0 +1,172 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef rt_PacketTracer_txx
+#define rt_PacketTracer_txx
+
+#include "DSMRayTracing/brick/VoxelBrick.h"
+#include "DSMRayTracing/kernel/HitGradient.h"
+#include "DSMRayTracing/kernel/IndexSpace.h"
+#include "DSMRayTracing/kernel/IsovalueLevel.h"
+#include "DSMRayTracing/kernel/TypedPacketBrick.h"
+
+#include <algorithm>
+
+namespace rt
+{
+
+template <class Store>
+BeamBricks PacketTracer<Store>::FindBricks(
+  const IsosurfaceObject& object, const Ray corners[4]) const
+{
+  const IndexSpace space(object.IndexToWorld, object.WorldToIndex);
+  GridRay lines[4];
+  for (int corner = 0; corner < 4; ++corner)
+  {
+    if (!space.GetGridRay(corners[corner], lines[corner]))
+    {
+      return BeamBricks();
+    }
+  }
+  return BeamBricks(object.Field->Hierarchy, object.Isovalues, lines);
+}
+
+template <class Store>
+void PacketTracer<Store>::Intersect(const IsosurfaceObject& object, const BeamBricks& bricks,
+  int packets, const Ray* rays, const RayPacket::Mask* wanted, SurfaceHit* hits,
+  RayPacket::Mask* found) const
+{
+  const IndexSpace space(object.IndexToWorld, object.WorldToIndex);
+  const BrickLattice& lattice = object.Field->Lattice;
+  Progress progress[MaxPackets];
+  for (int number = 0; number < packets; ++number)
+  {
+    RayPacket& packet = progress[number].Rays;
+    std::copy_n(bricks.Forward, 3, packet.Forward);
+    const Ray* const own = rays + RayPacket::Size * number;
+    RayPacket::Mask alone = wanted[number];
+    if (bricks.Usable)
+    {
+      alone = this->Kernel.SetRays(packet, own, wanted[number], space, lattice.GetCells());
+    }
+    found[number] = 0;
+    for (; alone != 0; alone &= alone - 1)
+    {
+      const int index = GetLowest(alone);
+      const bool hit =
+        this->Single.Intersect(object, own[index], hits[RayPacket::Size * number + index]);
+      found[number] |= RayPacket::Mask{ hit } << index;
+    }
+  }
+  Dispatch(lattice.GetScalarType(),
+    [&](auto sample)
+    { this->SearchBricks<decltype(sample)>(object, bricks, packets, progress, rays, hits); });
+  for (int number = 0; number < packets; ++number)
+  {
+    found[number] |= progress[number].Found;
+  }
+}
+
+template <class Store>
+template <class T>
+void PacketTracer<Store>::SearchBricks(const IsosurfaceObject& object, const BeamBricks& bricks,
+  int packets, Progress* progress, const Ray* rays, SurfaceHit* hits) const
+{
+  const IndexSpace space(object.IndexToWorld, object.WorldToIndex);
+  for (const BeamBricks::Brick& brick : bricks.Bricks)
+  {
+    bool isMet = false;
+    for (int number = 0; number < packets; ++number)
+    {
+      Progress& packet = progress[number];
+      const RayPacket::Mask open = packet.Rays.Rays & ~packet.Found;
+      packet.Meets = open == 0 ? 0
+                               : this->Kernel.MeetBox(packet.Rays, open, brick.Lower, brick.Upper,
+                                   packet.Enter, packet.Leave);
+      isMet = isMet || packet.Meets != 0;
+    }
+    if (!isMet)
+    {
+      continue;
+    }
+    this->SearchBrick<T>(object, brick, packets, progress);
+    for (int number = 0; number < packets; ++number)
+    {
+      Progress& packet = progress[number];
+      for (RayPacket::Mask left = packet.Hit; left != 0; left &= left - 1)
+      {
+        const int index = GetLowest(left);
+        const CellHit cell = packet.Cells.Get(index);
+        double* const gradient = &packet.Gradient[index].x;
+        const int isovalue = packet.Isovalue[index];
+        if ((packet.WithoutGradient >> index & 1) != 0)
+        {
+          HitGradient::Find<T>(this->Blocks, this->Self, *object.Field, brick.Id, cell,
+            object.Isovalues[isovalue], gradient);
+        }
+        SurfaceHit& hit = hits[RayPacket::Size * number + index];
+        hit.T = cell.T;
+        hit.Normal = space.GetNormal(gradient, rays[RayPacket::Size * number + index].Direction);
+        hit.Isovalue = isovalue;
+        hit.Brick = brick.Id;
+        for (int axis = 0; axis < 3; ++axis)
+        {
+          hit.IndexPoint[axis] = brick.Lower[axis] + cell.Cell[axis] + cell.Local[axis];
+        }
+      }
+      packet.Found |= packet.Hit;
+    }
+  }
+}
+
+template <class Store>
+template <class T>
+void PacketTracer<Store>::SearchBrick(const IsosurfaceObject& object,
+  const BeamBricks::Brick& brick, int packets, Progress* progress) const
+{
+  const typename Store::Pin pin =
+    this->Blocks.Acquire(this->Self, *object.Field->Segment, brick.Id);
+  const VoxelBrick<T> voxels(pin.GetData());
+  const ValueRange range{ voxels.GetHeader().First, voxels.GetHeader().Last };
+  for (int number = 0; number < packets; ++number)
+  {
+    progress[number].Hit = 0;
+    progress[number].WithoutGradient = 0;
+  }
+  for (std::size_t isovalue = 0; isovalue < object.Isovalues.size(); ++isovalue)
+  {
+    if (!range.MayHold(object.Isovalues[isovalue]))
+    {
+      continue;
+    }
+    const IsovalueLevel<T> level(object.Isovalues[isovalue]);
+    TypedPacketBrick<T> surface(voxels, level);
+    for (int number = 0; number < packets; ++number)
+    {
+      Progress& packet = progress[number];
+      PacketHits candidates;
+      RayPacket::Mask met = packet.Meets == 0
+        ? 0
+        : this->Kernel.SearchBrick(packet.Rays, packet.Meets, surface, brick.Lower, packet.Enter,
+            packet.Leave, candidates);
+      for (; met != 0; met &= met - 1)
+      {
+        const int index = GetLowest(met);
+        const RayPacket::Mask bit = RayPacket::Mask{ 1 } << index;
+        if ((packet.Hit & bit) != 0 && !(candidates.T[index] < packet.Cells.T[index]))
+        {
+          continue;
+        }
+        packet.Cells.Set(index, candidates);
+        packet.Isovalue[index] = static_cast<int>(isovalue);
+        packet.Hit |= bit;
+        const bool within =
+          HitGradient::FindWithin(voxels, candidates.Get(index), level, &packet.Gradient[index].x);
+        packet.WithoutGradient =
+          within ? packet.WithoutGradient & ~bit : packet.WithoutGradient | bit;
+      }
+    }
+  }
+}
+
+} // namespace rt
+
+#endif

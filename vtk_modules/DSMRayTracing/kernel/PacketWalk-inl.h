@@ -1,0 +1,375 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Included once for each instruction set; see PacketKernel.cxx.
+#if defined(rt_PacketWalk_inl_h) == defined(HWY_TARGET_TOGGLE)
+#ifdef rt_PacketWalk_inl_h
+#undef rt_PacketWalk_inl_h
+#else
+#define rt_PacketWalk_inl_h
+#endif
+
+#include "DSMRayTracing/brick/VoxelBrickHeader.h"
+#include "DSMRayTracing/kernel/PacketBrick.h"
+#include "DSMRayTracing/kernel/PacketCrossing-inl.h"
+#include "DSMRayTracing/kernel/RayPacket.h"
+
+#include <hwy/highway.h>
+
+#include <cstdint>
+
+HWY_BEFORE_NAMESPACE();
+namespace rt
+{
+namespace HWY_NAMESPACE
+{
+namespace hn = hwy::HWY_NAMESPACE;
+
+/// Rays that meet the surface in a cell, before it is known where in the cell.
+struct PacketCrossings
+{
+  static constexpr int Size = RayPacket::Size;
+
+  HWY_ALIGN double Coefficients[4][Size];
+  HWY_ALIGN double BeginS[Size];
+  HWY_ALIGN double BeginValue[Size];
+  HWY_ALIGN double EndS[Size];
+  HWY_ALIGN double EndValue[Size];
+  /// Where the ray is in the cell.
+  HWY_ALIGN double Enter[Size];
+  HWY_ALIGN double Leave[Size];
+  HWY_ALIGN double Start[3][Size];
+  HWY_ALIGN double Way[3][Size];
+  HWY_ALIGN double Cell[3][Size]; ///< of the brick
+};
+
+/// Into [0, 1].
+template <class Vector>
+Vector ClampToUnit(Vector value)
+{
+  const hn::DFromV<Vector> tag;
+  const Vector zero = hn::Zero(tag);
+  const Vector one = hn::Set(tag, 1.0);
+  const Vector raised = hn::IfThenElse(hn::Gt(value, zero), value, zero);
+  return hn::IfThenElse(hn::Lt(raised, one), raised, one);
+}
+
+/// One vector of rays.
+template <class D>
+struct RayVector
+{
+  using Vector = hn::Vec<D>;
+
+  Vector Origin[3];
+  Vector Direction[3];
+  Vector Inverse[3];
+  bool Forward[3];
+
+  /// Rays `first` and on of a packet.
+  RayVector(D tag, const RayPacket& packet, int first)
+  {
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      this->Origin[axis] = hn::Load(tag, packet.Origin[axis] + first);
+      this->Direction[axis] = hn::Load(tag, packet.Direction[axis] + first);
+      this->Inverse[axis] = hn::Load(tag, packet.Inverse[axis] + first);
+      this->Forward[axis] = packet.Forward[axis];
+    }
+  }
+
+  Vector GetPlaneT(int axis, Vector plane) const
+  {
+    return hn::Mul(hn::Sub(plane, this->Origin[axis]), this->Inverse[axis]);
+  }
+};
+
+/// Walks of a vector of rays, each through a box of 4 x 4 x 4 nodes of its own, of one size; what
+/// GridWalk does for one ray. Where the volume ends within a box, its planes outside are met before
+/// the ray enters, or after it leaves.
+template <class D>
+class NodeWalks
+{
+public:
+  using Vector = hn::Vec<D>;
+  using Mask = hn::Mask<D>;
+  using NumberTag = hn::RebindToUnsigned<D>;
+  using Numbers = hn::Vec<NumberTag>;
+
+  /// `lower`: the lower planes of the boxes. Planes that are met at t or before count as crossed.
+  NodeWalks(const RayVector<D>& rays, const Vector lower[3], double edge, Vector t)
+    : Rays(rays)
+    , Nodes(hn::Zero(NumberTag()))
+  {
+    const D tag;
+    const NumberTag numbers;
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      const bool forward = rays.Forward[axis];
+      const Vector step = hn::Set(tag, forward ? edge : -edge);
+      Vector node = hn::Set(tag, forward ? 0.0 : 3.0 * edge);
+      // The planes between the nodes, in any order.
+      for (int between = 1; between < 4; ++between)
+      {
+        const Vector plane = hn::Add(lower[axis], hn::Set(tag, between * edge));
+        const Mask crossed = hn::Le(rays.GetPlaneT(axis, plane), t);
+        node = hn::Add(node, hn::IfThenElseZero(crossed, step));
+      }
+      this->Plane[axis] = hn::Add(hn::Add(lower[axis], node), hn::Set(tag, forward ? edge : 0.0));
+      this->PlaneT[axis] = rays.GetPlaneT(axis, this->Plane[axis]);
+      this->Step[axis] = step;
+      // Whole numbers below 2^52, added to it, stand in the lowest bits.
+      const Vector large = hn::Set(tag, 4503599627370496.0);
+      const Vector count = hn::Mul(node, hn::Set(tag, 1.0 / edge));
+      const Numbers whole =
+        hn::Sub(hn::BitCast(numbers, hn::Add(large, count)), hn::BitCast(numbers, large));
+      this->Nodes = hn::Add(this->Nodes, hn::ShiftLeftSame(whole, 2 * axis));
+      const std::uint64_t stride = std::uint64_t{ 1 } << (2 * axis);
+      this->Stride[axis] = hn::Set(numbers, forward ? stride : 0 - stride);
+    }
+  }
+
+  /// x + 4 y + 16 z of the nodes in which the rays are.
+  Numbers GetNodes() const { return this->Nodes; }
+
+  /// Where the rays leave their nodes.
+  Vector GetExit() const
+  {
+    return hn::Min(hn::Min(this->PlaneT[0], this->PlaneT[1]), this->PlaneT[2]);
+  }
+
+  /// The lower planes of the nodes.
+  Vector GetLower(int axis) const
+  {
+    return this->Rays.Forward[axis] ? hn::Sub(this->Plane[axis], this->Step[axis])
+                                    : this->Plane[axis];
+  }
+
+  /// Goes on until each of `walking` is in a node whose bit is set in `bits`, or has ended at
+  /// `leave`. Returns those in such a node, which they cross from `t`, where they are now, to `exit`.
+  Mask FindNodes(Mask walking, Numbers bits, Vector leave, Vector& t, Vector& exit)
+  {
+    const D tag;
+    const Numbers lowest = hn::Set(NumberTag(), std::uint64_t{ 1 });
+    Mask waiting = hn::MaskFromVec(hn::Zero(tag));
+    while (!hn::AllFalse(tag, walking))
+    {
+      exit = hn::IfThenElse(walking, hn::Min(this->GetExit(), leave), exit);
+      const Mask here = hn::And(
+        walking, hn::RebindMask(tag, hn::Eq(hn::And(hn::Shr(bits, this->Nodes), lowest), lowest)));
+      waiting = hn::Or(waiting, here);
+      walking = this->Leave(hn::AndNot(here, walking), leave, t, exit);
+    }
+    return waiting;
+  }
+
+  /// Moves `rays` out of their nodes, at `exit`; returns those that have not ended there.
+  Mask Leave(Mask rays, Vector leave, Vector& t, Vector exit)
+  {
+    rays = hn::And(rays, hn::Lt(exit, leave));
+    t = hn::IfThenElse(rays, exit, t);
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      const Mask crossed = hn::And(rays, hn::Le(this->PlaneT[axis], exit));
+      this->Plane[axis] = hn::Add(this->Plane[axis], hn::IfThenElseZero(crossed, this->Step[axis]));
+      this->Nodes = hn::Add(
+        this->Nodes, hn::IfThenElseZero(hn::RebindMask(NumberTag(), crossed), this->Stride[axis]));
+      this->PlaneT[axis] = this->Rays.GetPlaneT(axis, this->Plane[axis]);
+    }
+    return rays;
+  }
+
+private:
+  const RayVector<D>& Rays;
+  Vector Plane[3];  ///< coordinate of the plane through which a ray leaves its node
+  Vector PlaneT[3]; ///< where it meets that plane
+  Vector Step[3];
+  Numbers Stride[3]; ///< of the node's number
+  Numbers Nodes;
+};
+
+/// One vector of a packet's rays in a part of a brick; what GridTraversal does for one ray, with the
+/// same bits. A ray walks on until it comes to a macrocell, and then to a cell, that may hold the
+/// surface; when all have come to one, or to their ends, those are searched together.
+template <class D>
+class PacketWalk
+{
+public:
+  using Vector = hn::Vec<D>;
+  using Mask = hn::Mask<D>;
+
+  /// Rays `first` and on of the packet, in the brick whose first cell is `origin`.
+  PacketWalk(D tag, const RayPacket& packet, int first, const PacketBrick& brick,
+    const double origin[3], PacketCrossings& crossings)
+    : Tag(tag)
+    , Rays(tag, packet, first)
+    , Brick(brick)
+    , BrickOrigin(origin)
+    , First(first)
+    , Crossings(crossings)
+  {
+  }
+
+  /// Searches the macrocells of a part of the brick whose bits are set in `macrocells`. `rays` cross them from `enter` to `leave`. Returns those that meet the surface,
+  /// having stored how.
+  Mask Search(const int part[3], std::uint64_t macrocells, Mask rays, Vector enter, Vector leave)
+  {
+    const D tag = this->Tag;
+    Vector lower[3];
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      lower[axis] = hn::Set(tag, this->BrickOrigin[axis] + 4.0 * MacrocellEdge * part[axis]);
+    }
+    NodeWalks<D> walks(this->Rays, lower, MacrocellEdge, enter);
+    const Numbers bits = hn::Set(NumberTag(), macrocells);
+    Vector t = enter;
+    Vector exit = leave;
+    Mask found = hn::MaskFromVec(hn::Zero(tag));
+    Mask walking = rays;
+    for (;;)
+    {
+      const Mask waiting = walks.FindNodes(walking, bits, leave, t, exit);
+      if (hn::AllFalse(tag, waiting))
+      {
+        return found;
+      }
+      const Mask met = this->SearchMacrocells(part, walks, waiting, t, exit);
+      found = hn::Or(found, met);
+      walking = walks.Leave(hn::AndNot(met, waiting), leave, t, exit);
+    }
+  }
+
+private:
+  using NumberTag = hn::RebindToUnsigned<D>;
+  using Numbers = hn::Vec<NumberTag>;
+  static constexpr int Width = static_cast<int>(hn::MaxLanes(D()));
+
+  /// The macrocells in which `rays` are, from `enter` to `leave`.
+  Mask SearchMacrocells(
+    const int part[3], const NodeWalks<D>& macrocells, Mask rays, Vector enter, Vector leave)
+  {
+    const D tag = this->Tag;
+    HWY_ALIGN std::uint64_t bits[Width];
+    HWY_ALIGN std::uint64_t nodes[Width];
+    int places[Width][3];
+    hn::Store(hn::Zero(NumberTag()), NumberTag(), bits);
+    hn::Store(macrocells.GetNodes(), NumberTag(), nodes);
+    this->Brick.FindCells(part, GetBits(rays), nodes, places, bits);
+    const Numbers cells = hn::Load(NumberTag(), bits);
+    const Vector lower[3] = { macrocells.GetLower(0), macrocells.GetLower(1),
+      macrocells.GetLower(2) };
+    NodeWalks<D> walks(this->Rays, lower, 1.0, enter);
+    Vector t = enter;
+    Vector exit = leave;
+    Mask found = hn::MaskFromVec(hn::Zero(tag));
+    Mask walking = rays;
+    for (;;)
+    {
+      const Mask waiting = walks.FindNodes(walking, cells, leave, t, exit);
+      if (hn::AllFalse(tag, waiting))
+      {
+        return found;
+      }
+      const Mask met = this->SearchCells(places, walks, waiting, t, exit);
+      found = hn::Or(found, met);
+      walking = walks.Leave(hn::AndNot(met, waiting), leave, t, exit);
+    }
+  }
+
+  unsigned GetBits(Mask rays) const
+  {
+    std::uint8_t bits[8] = {};
+    hn::StoreMaskBits(this->Tag, rays, bits);
+    return bits[0];
+  }
+
+  /// Where rays are in their cells at `t`: exactly 0 or 1 where they meet a plane of the cell.
+  Vector GetLocal(int axis, Vector lower, Vector lowerT, Vector upperT, Vector t) const
+  {
+    const Vector point = hn::Add(this->Rays.Origin[axis], hn::Mul(t, this->Rays.Direction[axis]));
+    const Vector inside = ClampToUnit(hn::Sub(point, lower));
+    return hn::IfThenElse(
+      hn::Eq(upperT, t), hn::Set(this->Tag, 1.0), hn::IfThenZeroElse(hn::Eq(lowerT, t), inside));
+  }
+
+  /// Those of `rays` that meet the surface in the cells in which they are, from `enter` to `exit`.
+  /// `places`: the first cells of their macrocells.
+  Mask SearchCells(
+    const int places[][3], const NodeWalks<D>& cells, Mask rays, Vector enter, Vector exit)
+  {
+    const D tag = this->Tag;
+    HWY_ALIGN double corners[8][Width];
+    for (double* const corner : corners)
+    {
+      hn::Store(hn::Zero(tag), tag, corner);
+    }
+    HWY_ALIGN std::uint64_t nodes[Width];
+    hn::Store(cells.GetNodes(), NumberTag(), nodes);
+    const std::uint8_t held[8] = { static_cast<std::uint8_t>(
+      this->Brick.GetCorners(GetBits(rays), places, nodes, corners[0], Width)) };
+    rays = hn::LoadMaskBits(tag, held);
+    if (hn::AllFalse(tag, rays))
+    {
+      return rays;
+    }
+    Vector values[8];
+    for (int corner = 0; corner < 8; ++corner)
+    {
+      values[corner] = hn::Load(tag, corners[corner]);
+    }
+    const Vector one = hn::Set(tag, 1.0);
+    Vector start[3];
+    Vector end[3];
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      const Vector lower = cells.GetLower(axis);
+      const Vector lowerT = this->Rays.GetPlaneT(axis, lower);
+      const Vector upperT = this->Rays.GetPlaneT(axis, hn::Add(lower, one));
+      start[axis] = this->GetLocal(axis, lower, lowerT, upperT, enter);
+      end[axis] = this->GetLocal(axis, lower, lowerT, upperT, exit);
+    }
+    const PacketCrossing<D> crossing(tag, values, start, end);
+    Bracket<D> bracket;
+    const Mask found = crossing.FindFirst(rays, bracket);
+    if (hn::AllFalse(tag, found))
+    {
+      return found;
+    }
+    Vector coefficients[4];
+    crossing.GetCoefficients(coefficients);
+    for (int power = 0; power < 4; ++power)
+    {
+      this->Put(found, coefficients[power], this->Crossings.Coefficients[power]);
+    }
+    this->Put(found, bracket.BeginS, this->Crossings.BeginS);
+    this->Put(found, bracket.BeginValue, this->Crossings.BeginValue);
+    this->Put(found, bracket.EndS, this->Crossings.EndS);
+    this->Put(found, bracket.EndValue, this->Crossings.EndValue);
+    this->Put(found, enter, this->Crossings.Enter);
+    this->Put(found, exit, this->Crossings.Leave);
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      this->Put(found, start[axis], this->Crossings.Start[axis]);
+      this->Put(found, hn::Sub(end[axis], start[axis]), this->Crossings.Way[axis]);
+      this->Put(found, hn::Sub(cells.GetLower(axis), hn::Set(tag, this->BrickOrigin[axis])),
+        this->Crossings.Cell[axis]);
+    }
+    return found;
+  }
+
+  /// Stores the numbers of some rays.
+  void Put(Mask rays, Vector value, double* to) const
+  {
+    hn::BlendedStore(value, rays, this->Tag, to + this->First);
+  }
+
+  D Tag;
+  RayVector<D> Rays;
+  const PacketBrick& Brick;
+  const double* BrickOrigin;
+  int First;
+  PacketCrossings& Crossings;
+};
+
+} // namespace HWY_NAMESPACE
+} // namespace rt
+HWY_AFTER_NAMESPACE();
+
+#endif

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef rt_RayPacket_h
+#define rt_RayPacket_h
+
+#include "DSMRayTracing/kernel/CellHit.h"
+
+#include <cstdint>
+
+namespace rt
+{
+
+/// Rays of one volume that are traced together, in its index space: GridRay, one array for each
+/// number. All move along all three axes, in the same direction on each, so that any order of boxes
+/// that is front to back for one of them is so for all. They have nothing else in common: what one
+/// finds does not depend on the others.
+struct RayPacket
+{
+  static constexpr int Size = 16;
+  /// Bit i is ray i.
+  using Mask = std::uint32_t;
+
+  alignas(64) double Origin[3][Size];
+  alignas(64) double Direction[3][Size];
+  alignas(64) double Inverse[3][Size];
+  /// Where the ray is in the volume.
+  alignas(64) double Enter[Size];
+  alignas(64) double Leave[Size];
+  /// Whether the rays move towards larger coordinates.
+  bool Forward[3];
+  /// Those that are there; the numbers of the others mean nothing.
+  Mask Rays = 0;
+};
+
+/// Where the rays of a packet meet an isosurface within a brick; see CellHit.
+struct PacketHits
+{
+  alignas(64) double T[RayPacket::Size];
+  alignas(64) double Cell[3][RayPacket::Size];  ///< of the brick; whole numbers
+  alignas(64) double Local[3][RayPacket::Size]; ///< within the cell, in [0, 1]
+
+  CellHit Get(int index) const
+  {
+    CellHit hit;
+    hit.T = this->T[index];
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      hit.Cell[axis] = static_cast<int>(this->Cell[axis][index]);
+      hit.Local.Set(axis, this->Local[axis][index]);
+    }
+    return hit;
+  }
+  void Set(int index, const PacketHits& from)
+  {
+    this->T[index] = from.T[index];
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      this->Cell[axis][index] = from.Cell[axis][index];
+      this->Local[axis][index] = from.Local[axis][index];
+    }
+  }
+};
+
+/// The number of the first ray of a mask, which is not empty.
+inline int GetLowest(RayPacket::Mask rays)
+{
+  return __builtin_ctz(rays);
+}
+
+} // namespace rt
+
+#endif

@@ -1,0 +1,273 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef rt_TypedPacketBrick_h
+#define rt_TypedPacketBrick_h
+
+#include "DSMRayTracing/brick/VoxelBrick.h"
+#include "DSMRayTracing/kernel/IsovalueLevel.h"
+#include "DSMRayTracing/kernel/Lanes.h"
+#include "DSMRayTracing/kernel/PacketBrick.h"
+
+#include <algorithm>
+#include <cstdint>
+#include <cstring>
+#include <type_traits>
+
+namespace rt
+{
+
+/// A brick of samples of type T as packets see it. Remembers what it has found, since neighbouring
+/// packets ask for the same. Keeps references; for one thread.
+template <class T>
+class TypedPacketBrick final : public PacketBrick
+{
+public:
+  TypedPacketBrick(const VoxelBrick<T>& brick, const IsovalueLevel<T>& level)
+    : Brick(brick)
+    , Level(level)
+  {
+    for (Memory& memory : this->Parts)
+    {
+      memory.Key = Unknown;
+    }
+    for (Memory& memory : this->Macrocells)
+    {
+      memory.Key = Unknown;
+    }
+  }
+
+  int GetMacrocells(int axis) const override { return this->Brick.GetMacrocells(axis); }
+
+  std::uint64_t FindMacrocells(const int part[3]) const override
+  {
+    const int number = part[0] + MostParts * (part[1] + MostParts * part[2]);
+    return this->Parts[number % PartCount].Get(number, [&] { return this->ComparePart(part); });
+  }
+
+  void FindCells(const int part[3], unsigned rays, const std::uint64_t* macrocells, int (*first)[3],
+    std::uint64_t* cells) const override
+  {
+    int last = -1;
+    for (; rays != 0; rays &= rays - 1)
+    {
+      const int ray = __builtin_ctz(rays);
+      // Neighbours are often in the same macrocell.
+      if (last >= 0 && macrocells[last] == macrocells[ray])
+      {
+        std::copy_n(first[last], 3, first[ray]);
+        cells[ray] = cells[last];
+        continue;
+      }
+      last = ray;
+      const auto number = static_cast<int>(macrocells[ray]);
+      const int place[3] = { 4 * part[0] + (number & 3), 4 * part[1] + (number >> 2 & 3),
+        4 * part[2] + (number >> 4) };
+      for (int axis = 0; axis < 3; ++axis)
+      {
+        first[ray][axis] = MacrocellEdge * place[axis];
+      }
+      const int key = place[0] +
+        this->Brick.GetMacrocells(0) * (place[1] + this->Brick.GetMacrocells(1) * place[2]);
+      cells[ray] = this->Macrocells[key % MacrocellCount].Get(
+        key, [&] { return this->CompareCells(first[ray]); });
+    }
+  }
+
+  unsigned GetCorners(unsigned rays, const int (*first)[3], const std::uint64_t* cells,
+    double* corners, int stride) const override
+  {
+    unsigned held = 0;
+    for (; rays != 0; rays &= rays - 1)
+    {
+      const int ray = __builtin_ctz(rays);
+      const auto number = static_cast<int>(cells[ray]);
+      const int cell[3] = { first[ray][0] + (number & 3), first[ray][1] + (number >> 2 & 3),
+        first[ray][2] + (number >> 4) };
+      if (this->GetCorners(cell, corners + ray, stride))
+      {
+        held |= 1u << ray;
+      }
+    }
+    return held;
+  }
+
+private:
+  // The attribute of a dependent type is only taken from a typedef.
+  typedef T Four __attribute__((vector_size(4 * sizeof(T))));
+  using Bits = std::int32_t __attribute__((vector_size(16)));
+
+  /// Bits from one row of samples to the next within a word.
+  static constexpr int RowBits = 6;
+
+  /// Parts on an axis; how many parts, and macrocells, are remembered.
+  static constexpr int MostParts = 16;
+  static constexpr int PartCount = 4;
+  static constexpr int MacrocellCount = 128;
+  static constexpr int Unknown = -1;
+
+  /// What was found for one of several keys, the last one asked for.
+  struct Memory
+  {
+    int Key;
+    std::uint64_t Found;
+
+    template <class Function>
+    std::uint64_t Get(int key, Function&& find)
+    {
+      if (this->Key != key)
+      {
+        this->Key = key;
+        this->Found = find();
+      }
+      return this->Found;
+    }
+  };
+
+  std::uint64_t ComparePart(const int part[3]) const
+  {
+    const MacrocellRange<T>* const ranges = this->Brick.GetMacrocellRanges();
+    int last[3];
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      last[axis] = std::min(4, this->Brick.GetMacrocells(axis) - 4 * part[axis]);
+    }
+    std::uint64_t found = 0;
+    for (int z = 0; z < last[2]; ++z)
+    {
+      for (int y = 0; y < last[1]; ++y)
+      {
+        const MacrocellRange<T>* const row = ranges + 4 * part[0] +
+          this->Brick.GetMacrocells(0) *
+            (4 * part[1] + y + this->Brick.GetMacrocells(1) * (4 * part[2] + z));
+        for (int x = 0; x < last[0]; ++x)
+        {
+          found |= std::uint64_t{ this->Level.Separates(row[x].Min, row[x].Max) }
+            << (x + 4 * y + 16 * z);
+        }
+      }
+    }
+    return found;
+  }
+
+  bool GetCorners(const int cell[3], double* corners, int stride) const
+  {
+    if (!this->Brick.IsCovered(cell[0], cell[1], cell[2]))
+    {
+      return false;
+    }
+    const T* first = this->Brick.GetSamples() + this->Brick.GetOffset(cell[0], cell[1], cell[2]);
+    Lanes::Half check = {};
+    for (int pair = 0; pair < 4; ++pair)
+    {
+      const T* from =
+        first + (pair & 1) * this->Brick.GetRow() + (pair >> 1) * this->Brick.GetSlice();
+      const Lanes::Half two = this->Level.SubtractPair(from);
+      corners[2 * pair * stride] = two[0];
+      corners[(2 * pair + 1) * stride] = two[1];
+      // Becomes, and stays, not a number where one of them is not finite.
+      check += two * 0.0;
+    }
+    return std::is_integral_v<T> || check[0] + check[1] == 0.0;
+  }
+
+  std::uint64_t CompareCells(const int first[3]) const
+  {
+    int counts[3];
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      counts[axis] = std::min(MacrocellEdge, this->Brick.GetCells(axis) - first[axis]);
+    }
+    const bool whole = counts[0] == MacrocellEdge && counts[1] == MacrocellEdge;
+    std::uint64_t cells = 0;
+    Slice last = whole ? this->GetWholeSlice(first, 0) : this->GetSlice(first, counts, 0);
+    for (int z = 0; z < counts[2]; ++z)
+    {
+      const Slice next =
+        whole ? this->GetWholeSlice(first, z + 1) : this->GetSlice(first, counts, z + 1);
+      const std::uint32_t mixed = (last.Any | next.Any) & ~(last.All & next.All);
+      for (int y = 0; y < MacrocellEdge; ++y)
+      {
+        const std::uint64_t row = mixed >> (RowBits * y) & 15u;
+        cells |= row << (4 * y + 16 * z);
+      }
+      last = next;
+    }
+    return whole ? cells : cells & GetBox(counts);
+  }
+
+  /// Of the cells that have the samples of a slice as corners: whether some of those are inside,
+  /// and whether all are.
+  struct Slice
+  {
+    std::uint32_t Any;
+    std::uint32_t All;
+  };
+
+  static Slice GetSlice(std::uint32_t inside)
+  {
+    const std::uint32_t any = inside | inside >> 1;
+    const std::uint32_t all = inside & inside >> 1;
+    return { any | any >> RowBits, all & all >> RowBits };
+  }
+
+  /// 5 x 5 samples, four of a row at once.
+  Slice GetWholeSlice(const int first[3], int z) const
+  {
+    const T* row =
+      this->Brick.GetSamples() + this->Brick.GetOffset(first[0], first[1], first[2] + z);
+    const T level = this->Level.GetFirst();
+    const Four levels = Four{} + level;
+    Bits bits = { 1, 2, 4, 8 };
+    Bits inside = {};
+    std::uint32_t lastColumn = 0;
+    for (int y = 0; y <= MacrocellEdge; ++y, row += this->Brick.GetRow())
+    {
+      Four samples;
+      std::memcpy(&samples, row, sizeof(samples));
+      const auto isInside = samples >= levels;
+      inside |= bits & __builtin_convertvector(isInside, Bits);
+      bits <<= RowBits;
+      lastColumn |= std::uint32_t{ row[MacrocellEdge] >= level } << (MacrocellEdge + RowBits * y);
+    }
+    return GetSlice(
+      static_cast<std::uint32_t>(inside[0] | inside[1] | inside[2] | inside[3]) | lastColumn);
+  }
+
+  /// At the end of the brick, where there are fewer samples.
+  Slice GetSlice(const int first[3], const int counts[3], int z) const
+  {
+    std::uint32_t inside = 0;
+    for (int y = 0; y <= counts[1]; ++y)
+    {
+      const T* row =
+        this->Brick.GetSamples() + this->Brick.GetOffset(first[0], first[1] + y, first[2] + z);
+      for (int x = 0; x <= counts[0]; ++x)
+      {
+        inside |= std::uint32_t{ this->Level.IsInside(row[x]) } << (x + RowBits * y);
+      }
+    }
+    return GetSlice(inside);
+  }
+
+  /// The bits of the cells that there are.
+  static std::uint64_t GetBox(const int counts[3])
+  {
+    std::uint64_t box = 0;
+    for (int z = 0; z < counts[2]; ++z)
+    {
+      for (int y = 0; y < counts[1]; ++y)
+      {
+        box |= ((std::uint64_t{ 1 } << counts[0]) - 1) << (4 * y + 16 * z);
+      }
+    }
+    return box;
+  }
+
+  const VoxelBrick<T>& Brick;
+  const IsovalueLevel<T>& Level;
+  mutable Memory Parts[PartCount];
+  mutable Memory Macrocells[MacrocellCount];
+};
+
+} // namespace rt
+
+#endif
