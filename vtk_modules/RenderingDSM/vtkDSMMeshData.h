@@ -66,9 +66,9 @@ private:
 
   void FindBounds(const std::vector<vtkPolyData*>& mine);
   void CheckSolids(const vtkDSMTubesAndSpheres& solids) const;
-  void CollectSurfaces(const vtkDSMTubesAndSpheres& solids);
-  void AddSurface(const vtkDSMMeshBlock& block, vtkPolyData* data);
-  void CheckColors();
+  void CollectSurfaces(const vtkDSMTubesAndSpheres& solids, std::vector<ColorReport>& reports);
+  void AddSurface(const vtkDSMMeshBlock& block, vtkPolyData* data, const vtkDSMMeshColors& colors);
+  void CheckColors(const std::vector<ColorReport>& mine);
   std::string ListArrays() const;
   void Publish();
 
