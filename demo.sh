@@ -21,7 +21,9 @@ if [ $# -ge 2 ]; then
 fi
 
 install_packages "${packages[@]}"
-build_project
+# Without the tests, unless they are built already.
+grep -qs BUILD_TESTING=ON "$build/configured.txt" && tests=ON || tests=OFF
+build_project -DDSM_BUILD_TESTING=$tests
 picture=$PWD/demo.png
 rm -f "$picture"
 start_ranks "${DSM_RANKS:-4}" timeout 3600 \

@@ -12,7 +12,8 @@ find_package(Python3 COMPONENTS Interpreter Development)
 # Debian's package names targets of development packages that it does not depend on; nothing here
 # uses them.
 foreach (target IN ITEMS
-    GLEW::GLEW LZ4::LZ4 double-conversion::double-conversion TIFF::TIFF utf8cpp::utf8cpp)
+    double-conversion::double-conversion EXPAT::EXPAT Freetype::Freetype GLEW::GLEW JPEG::JPEG
+    LZ4::LZ4 LZMA::LZMA PNG::PNG TIFF::TIFF utf8cpp::utf8cpp)
   if (NOT TARGET "${target}")
     add_library("${target}" INTERFACE IMPORTED)
   endif ()

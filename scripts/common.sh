@@ -13,6 +13,7 @@ packages=(
   paraview paraview-dev python3-paraview
   libopenmpi-dev openmpi-bin
   libglm-dev nlohmann-json3-dev
+  libx11-dev libgl-dev libopengl-dev libpng-dev
   xvfb xauth libgl1-mesa-dri
 )
 
@@ -48,16 +49,17 @@ install_packages() {
   fi
 }
 
-# Builds into $build; a second run only checks what has changed.
+# Builds into $build, configured with the arguments; a second run only checks what has changed.
 build_project() {
   mkdir -p "$build"
-  if [ ! -f "$build/build.ninja" ]; then
+  if [ ! -f "$build/build.ninja" ] || [ "$(cat "$build/configured.txt" 2>/dev/null)" != "$*" ]; then
     say "Configuring ..."
     cmake -S "$project" -B "$build" -G Ninja -DCMAKE_BUILD_TYPE=Release "$@" >"$build/configure.log" 2>&1 || {
       tail -n 30 "$build/configure.log" >&2
       rm -f "$build/build.ninja"
       fail "the project could not be configured; the whole log is $build/configure.log"
     }
+    printf '%s\n' "$*" >"$build/configured.txt"
   fi
   say "Building (only what has changed) ..."
   cmake --build "$build" >"$build/build.log" 2>&1 || {

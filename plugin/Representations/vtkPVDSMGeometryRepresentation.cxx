@@ -5,6 +5,7 @@
 #include "vtkDSMScene.h"
 #include "vtkPVDSMDelivery.h"
 #include "vtkPVDSMFrameReport.h"
+#include "vtkPVDSMLightOptions.h"
 
 #include "vtkBoundingBox.h"
 #include "vtkCommand.h"
@@ -185,6 +186,11 @@ void vtkPVDSMGeometryRepresentation::SetNumberOfThreads(int threads)
 void vtkPVDSMGeometryRepresentation::SetCacheSize(int mebibytes)
 {
   this->GetMapper()->SetCacheSize(mebibytes);
+}
+
+void vtkPVDSMGeometryRepresentation::SetLightOptions(vtkPVDSMLightOptions* options)
+{
+  this->GetMapper()->SetLightOptions(options);
 }
 
 void vtkPVDSMGeometryRepresentation::SetFrameReport(vtkPVDSMFrameReport* report)

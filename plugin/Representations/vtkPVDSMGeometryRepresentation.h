@@ -21,6 +21,7 @@ class vtkDSMPolyDataMapper;
 class vtkDSMScene;
 class vtkPartitionedDataSet;
 class vtkPVDSMFrameReport;
+class vtkPVDSMLightOptions;
 
 class VTKREPRESENTATIONSDSM_EXPORT vtkPVDSMGeometryRepresentation
   : public vtkGeometryRepresentationWithFaces
@@ -44,6 +45,11 @@ public:
   void SetNumberOfThreads(int threads);
   void SetCacheSize(int mebibytes);
   ///@}
+
+  /**
+   * Shadows, ambient occlusion, mirrors and samples.
+   */
+  void SetLightOptions(vtkPVDSMLightOptions* options);
 
   /**
    * What shall tell of the view's frames; null on the client.

@@ -5,6 +5,7 @@
 #include "vtkDSMVolumeMapper.h"
 #include "vtkPVDSMDelivery.h"
 #include "vtkPVDSMFrameReport.h"
+#include "vtkPVDSMLightOptions.h"
 
 #include "vtkCommand.h"
 #include "vtkDataObject.h"
@@ -250,6 +251,11 @@ void vtkPVDSMImageRepresentation::SetUserTransform(const double matrix[16])
   vtkNew<vtkMatrix4x4> transform;
   transform->DeepCopy(matrix);
   this->Volume->SetUserMatrix(transform);
+}
+
+void vtkPVDSMImageRepresentation::SetLightOptions(vtkPVDSMLightOptions* options)
+{
+  this->Mapper->SetLightOptions(options);
 }
 
 void vtkPVDSMImageRepresentation::SetFrameReport(vtkPVDSMFrameReport* report)

@@ -21,6 +21,7 @@ class vtkDSMVolumeMapper;
 class vtkMatrix4x4;
 class vtkPartitionedDataSet;
 class vtkPVDSMFrameReport;
+class vtkPVDSMLightOptions;
 class vtkPVRenderView;
 class vtkScalarsToColors;
 class vtkVolume;
@@ -76,6 +77,11 @@ public:
   void SetScale(double x, double y, double z);
   void SetUserTransform(const double matrix[16]);
   ///@}
+
+  /**
+   * Shadows, ambient occlusion, mirrors and samples.
+   */
+  void SetLightOptions(vtkPVDSMLightOptions* options);
 
   /**
    * What shall tell of the view's frames; null on the client.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The classes as any VTK application uses them: a renderer, a volume, and no ParaView. Draws on the
 // X server, off screen.
+#include "vtkDSMLightOptions.h"
 #include "vtkDSMScene.h"
 #include "vtkDSMStatistics.h"
 #include "vtkDSMVolumeMapper.h"
@@ -190,6 +191,35 @@ TEST_F(VolumeMapper, ReportsWhatItDid)
   EXPECT_EQ(table->GetValueByName(0, "Threads").ToInt(), 2);
   EXPECT_GT(table->GetValueByName(0, "BytesResident").ToDouble(), 8.0 * 33 * 33 * 33);
   EXPECT_GT(table->GetValueByName(0, "Accesses").ToDouble(), 0.0);
+}
+
+TEST_F(VolumeMapper, CollectsSamplesUntilSomethingChanges)
+{
+  this->Renderer->AddVolume(this->Volume);
+  this->Mapper->GetLightOptions()->SetSamplesPerPixel(3);
+  const auto countFrames = [this]
+  {
+    int frames = 0;
+    do
+    {
+      this->Window->Render();
+      ++frames;
+    } while (!this->Scene->IsRefined() && frames < 10);
+    return frames;
+  };
+  EXPECT_EQ(countFrames(), 1) << "all samples at once";
+  this->Scene->SetSamplesPerFrame(1);
+  EXPECT_EQ(countFrames(), 1) << "there is nothing to add";
+  this->Mapper->SetIsoValue(0, 0.3);
+  EXPECT_EQ(countFrames(), 3);
+  this->Renderer->GetActiveCamera()->Azimuth(3.0);
+  EXPECT_EQ(countFrames(), 3);
+  this->Mapper->GetLightOptions()->SetSamplesPerPixel(5);
+  EXPECT_EQ(countFrames(), 2) << "the three that are there count";
+  this->Scene->SetSamplesPerFrame(0);
+  this->Window->SetDesiredUpdateRate(15.0);
+  this->Mapper->SetIsoValue(0, 0.35);
+  EXPECT_EQ(countFrames(), 5) << "one each while the camera moves";
 }
 
 TEST_F(VolumeMapper, NamesAMissingArrayOnce)

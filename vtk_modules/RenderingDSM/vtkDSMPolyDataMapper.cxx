@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkDSMPolyDataMapper.h"
 
+#include "vtkDSMLightOptions.h"
+
 #include "vtkCompositeDataDisplayAttributes.h"
 #include "vtkCompositeDataSet.h"
 #include "vtkInformation.h"
@@ -14,6 +16,7 @@
 vtkStandardNewMacro(vtkDSMPolyDataMapper);
 
 vtkDSMPolyDataMapper::vtkDSMPolyDataMapper()
+  : LightOptions(vtkSmartPointer<vtkDSMLightOptions>::New())
 {
   vtkMath::UninitializeBounds(this->GlobalBounds);
 }
@@ -33,6 +36,17 @@ void vtkDSMPolyDataMapper::SetCompositeDataDisplayAttributes(
 vtkCompositeDataDisplayAttributes* vtkDSMPolyDataMapper::GetCompositeDataDisplayAttributes() const
 {
   return this->BlockAttributes;
+}
+
+void vtkDSMPolyDataMapper::SetLightOptions(vtkDSMLightOptions* options)
+{
+  this->LightOptions = options ? options : vtkSmartPointer<vtkDSMLightOptions>::New().Get();
+  this->Modified();
+}
+
+vtkDSMLightOptions* vtkDSMPolyDataMapper::GetLightOptions() const
+{
+  return this->LightOptions;
 }
 
 double* vtkDSMPolyDataMapper::GetBounds()

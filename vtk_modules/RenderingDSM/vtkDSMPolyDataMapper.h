@@ -30,6 +30,7 @@
 #include <string> // for ivars
 
 class vtkCompositeDataDisplayAttributes;
+class vtkDSMLightOptions;
 
 class VTKRENDERINGDSM_EXPORT vtkDSMPolyDataMapper : public vtkPolyDataMapper
 {
@@ -87,6 +88,14 @@ public:
 
   ///@{
   /**
+   * Shadows, ambient occlusion, mirrors and samples; never null. Null makes new ones.
+   */
+  void SetLightOptions(vtkDSMLightOptions* options);
+  vtkDSMLightOptions* GetLightOptions() const;
+  ///@}
+
+  ///@{
+  /**
    * Bounds of all ranks' data, without the actor's transform. Until the scene has taken in the data,
    * those of this rank's.
    */
@@ -134,6 +143,7 @@ private:
   std::string RadiusArray;
   int NumberOfThreads = 0;
   int CacheSize = 256;
+  vtkSmartPointer<vtkDSMLightOptions> LightOptions;
   double GlobalBounds[6];
 };
 

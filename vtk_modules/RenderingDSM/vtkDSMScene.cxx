@@ -2,7 +2,9 @@
 #include "vtkDSMScene.h"
 
 #include "DSMRayTracing/frame/FrameGather.h"
+#include "DSMRayTracing/frame/SceneDigest.h"
 #include "vtkDSMFrameProp.h"
+#include "vtkDSMLightOptions.h"
 #include "vtkDSMPolyDataMapper.h"
 #include "vtkDSMRankGroup.h"
 #include "vtkDSMSceneMesh.h"
@@ -21,6 +23,7 @@
 #include "vtkMultiProcessController.h"
 #include "vtkObjectFactory.h"
 #include "vtkPropCollection.h"
+#include "vtkRenderWindow.h"
 #include "vtkRenderer.h"
 #include "vtkVolume.h"
 
@@ -34,6 +37,14 @@ namespace
 
 /// After vtkSynchronizedRenderers (0), which brings the camera.
 constexpr float TracePriority = -1.0f;
+/// Before vtkSynchronizedRenderers, which makes it black while the ranks render.
+constexpr float BackgroundPriority = 1.0f;
+
+/// Frames per second; an application that wants as many from its window is moving the camera.
+constexpr double InteractiveRate = 1.0;
+
+/// Of the diagonal of what is shown: as far as ambient occlusion looks when nothing is said.
+constexpr double AmbientOcclusionPart = 0.2;
 
 std::map<vtkRenderer*, vtkDSMScene*>& GetRegistry()
 {
@@ -60,9 +71,14 @@ public:
   void GetBounds(double bounds[6]) const;
   void DrawLast(const rt::Scene& scene);
   void Clear();
+  rt::LightTransport GetTransport() const;
+  glm::vec3 AgreeOnBackground();
+  int CountSamplesOfFrame(int missing) const;
+  void TraceSamples(const rt::Scene& scene, rt::FrameRequest& request);
 
   vtkWeakPointer<vtkRenderer> Renderer;
-  unsigned long Observer = 0;
+  unsigned long Observers[2] = { 0, 0 };
+  glm::vec3 Background{ 0.0f }; ///< of this rank's renderer, as the application set it
   vtkSmartPointer<vtkMultiProcessController> Controller;
   vtkNew<vtkDSMFrameProp> Prop;
   vtkNew<vtkDSMStatistics> Statistics;
@@ -72,6 +88,12 @@ public:
   std::string Failure;                        ///< that was reported last
   std::function<bool(vtkCamera*)> DrawsColor; ///< set: the frame is delivered everywhere
   bool Tracing = false;
+  int SamplesPerFrame = 0;
+  /// The last frame, and what it shows; further samples are added while that stays the same.
+  rt::Frame Frame;
+  std::uint64_t Digest = 0;
+  int Samples = 0; ///< that the frame has; 0 when there is nothing to add to
+  int SamplesWanted = 1;
 };
 
 vtkStandardNewMacro(vtkDSMScene);
@@ -90,7 +112,10 @@ vtkDSMScene::~vtkDSMScene()
   }
   if (vtkRenderer* renderer = this->Self->Renderer)
   {
-    renderer->RemoveObserver(this->Self->Observer);
+    for (const unsigned long observer : this->Self->Observers)
+    {
+      renderer->RemoveObserver(observer);
+    }
     renderer->RemoveViewProp(this->Self->Prop);
   }
 }
@@ -113,7 +138,9 @@ vtkSmartPointer<vtkDSMScene> vtkDSMScene::ForRenderer(vtkRenderer* renderer)
 void vtkDSMScene::Attach(vtkRenderer* renderer)
 {
   this->Self->Renderer = renderer;
-  this->Self->Observer =
+  this->Self->Observers[0] = renderer->AddObserver(
+    vtkCommand::StartEvent, this, &vtkDSMScene::NoteBackground, BackgroundPriority);
+  this->Self->Observers[1] =
     renderer->AddObserver(vtkCommand::StartEvent, this, &vtkDSMScene::Trace, TracePriority);
   renderer->AddViewProp(this->Self->Prop);
 }
@@ -146,6 +173,21 @@ void vtkDSMScene::DeliverTiles()
 void vtkDSMScene::DeliverEverywhere(std::function<bool(vtkCamera*)> drawsColor)
 {
   this->Self->DrawsColor = std::move(drawsColor);
+}
+
+void vtkDSMScene::SetSamplesPerFrame(int samples)
+{
+  this->Self->SamplesPerFrame = std::max(0, samples);
+}
+
+int vtkDSMScene::GetSamplesPerFrame() const
+{
+  return this->Self->SamplesPerFrame;
+}
+
+bool vtkDSMScene::IsRefined() const
+{
+  return this->Self->Samples == 0 || this->Self->Samples >= this->Self->SamplesWanted;
 }
 
 vtkDSMStatistics* vtkDSMScene::GetStatistics() const
@@ -208,10 +250,13 @@ void vtkDSMScene::Internals::Configure()
 {
   int cache = 1;
   int threads = 0;
+  this->SamplesWanted = 1;
   for (const Member& member : this->Members)
   {
     cache = std::max(cache, member.State->GetCacheSize());
     threads = std::max(threads, member.State->GetNumberOfThreads());
+    this->SamplesWanted =
+      std::max(this->SamplesWanted, member.State->GetLightOptions()->GetSamplesPerPixel());
   }
   this->Group->Configure(static_cast<std::size_t>(cache) << 20, threads);
 }
@@ -262,6 +307,7 @@ void vtkDSMScene::Internals::Draw()
       }
       this->DrawLast(scene);
       scene.Lights = vtkDSMTranslation::ToLights(this->Renderer);
+      scene.Transport = this->GetTransport();
       request = vtkDSMTranslation::ToRequest(this->Renderer, projection);
     });
   if (scene.Isosurfaces.empty() && scene.Meshes.empty())
@@ -269,13 +315,12 @@ void vtkDSMScene::Internals::Draw()
     this->Clear();
     return;
   }
-  const rt::Frame frame =
-    this->Group->GetFrameRenderer().Render(this->Group->GetStore(), scene, request);
-  this->Statistics->Gather(messenger, frame);
+  scene.Transport.Background = this->AgreeOnBackground();
+  this->TraceSamples(scene, request);
   std::optional<rt::Picture> whole;
   if (this->DrawsColor)
   {
-    whole = rt::GatherFrame(messenger, frame);
+    whole = rt::GatherFrame(messenger, this->Frame);
   }
   messenger.RunTogether("Showing the frame",
     [&]
@@ -284,8 +329,93 @@ void vtkDSMScene::Internals::Draw()
       this->GetBounds(bounds);
       const bool drawsColor = !whole || this->DrawsColor(this->Renderer->GetActiveCamera());
       this->Prop->SetFrame(
-        whole ? std::move(*whole) : rt::AssembleTiles(frame), projection, bounds, drawsColor);
+        whole ? std::move(*whole) : rt::AssembleTiles(this->Frame), projection, bounds, drawsColor);
     });
+}
+
+/// Collective. What mirrored rays see where they meet nothing: rank 0's background, since ParaView's
+/// other ranks have none.
+glm::vec3 vtkDSMScene::Internals::AgreeOnBackground()
+{
+  return this->Group->GetMessenger().AllGatherValue(this->Background).front();
+}
+
+/// Collective. Traces the frame, or what is missing of it.
+void vtkDSMScene::Internals::TraceSamples(const rt::Scene& scene, rt::FrameRequest& request)
+{
+  dsm::Messenger& messenger = this->Group->GetMessenger();
+  std::uint64_t digest = 0;
+  if (this->SamplesWanted > 1)
+  {
+    digest = rt::GetSceneDigest(scene, request);
+    // A rank may have seen a change that the others have not.
+    const std::uint8_t same = this->Samples > 0 && digest == this->Digest;
+    const auto all = messenger.AllGatherValue(same);
+    if (std::count(all.begin(), all.end(), 0) > 0)
+    {
+      this->Samples = 0;
+    }
+  }
+  else
+  {
+    this->Samples = 0;
+  }
+  const int missing = this->SamplesWanted - this->Samples;
+  if (missing <= 0)
+  {
+    return;
+  }
+  request.FirstSample = this->Samples;
+  request.Samples = this->CountSamplesOfFrame(missing);
+  this->Samples = 0;
+  rt::FrameRenderer& renderer = this->Group->GetFrameRenderer();
+  if (request.FirstSample == 0)
+  {
+    this->Frame = renderer.Render(this->Group->GetStore(), scene, request);
+  }
+  else
+  {
+    renderer.Refine(this->Group->GetStore(), scene, request, this->Frame);
+  }
+  this->Statistics->Gather(messenger, this->Frame);
+  this->Samples = request.FirstSample + request.Samples;
+  this->Digest = digest;
+}
+
+int vtkDSMScene::Internals::CountSamplesOfFrame(int missing) const
+{
+  vtkRenderWindow* window = this->Renderer->GetRenderWindow();
+  if (window && window->GetDesiredUpdateRate() >= InteractiveRate)
+  {
+    return 1;
+  }
+  return this->SamplesPerFrame > 0 ? std::min(this->SamplesPerFrame, missing) : missing;
+}
+
+/// Of each property, what the most demanding object wants.
+rt::LightTransport vtkDSMScene::Internals::GetTransport() const
+{
+  rt::LightTransport transport;
+  transport.MaxBounces = 0;
+  for (const Member& member : this->Members)
+  {
+    vtkDSMLightOptions* options = member.State->GetLightOptions();
+    transport.Shadows = transport.Shadows || options->GetShadows();
+    transport.LightRadius = std::max(transport.LightRadius, options->GetLightRadius());
+    transport.AmbientOcclusionSamples =
+      std::max(transport.AmbientOcclusionSamples, options->GetAmbientOcclusionSamples());
+    transport.AmbientOcclusionDistance =
+      std::max(transport.AmbientOcclusionDistance, options->GetAmbientOcclusionDistance());
+    transport.MaxBounces = std::max(transport.MaxBounces, options->GetMaxBounces());
+  }
+  if (transport.AmbientOcclusionDistance == 0.0)
+  {
+    double bounds[6];
+    this->GetBounds(bounds);
+    transport.AmbientOcclusionDistance =
+      AmbientOcclusionPart * vtkBoundingBox(bounds).GetDiagonalLength();
+  }
+  return transport;
 }
 
 /// Of what is drawn, in world space.
@@ -327,6 +457,14 @@ void vtkDSMScene::Internals::Clear()
 {
   this->Prop->Clear();
   this->Statistics->Clear();
+  this->Frame = {};
+  this->Samples = 0;
+}
+
+void vtkDSMScene::NoteBackground()
+{
+  const double* background = this->Self->Renderer->GetBackground();
+  this->Self->Background = { background[0], background[1], background[2] };
 }
 
 void vtkDSMScene::Trace()

@@ -70,6 +70,23 @@ public:
    */
   void DeliverEverywhere(std::function<bool(vtkCamera*)> drawsColor);
 
+  ///@{
+  /**
+   * Samples of each pixel that one render adds to the picture as long as camera, data and look stay
+   * as they are, until it has as many as the objects' vtkDSMLightOptions ask for; 0 (the default):
+   * all at once. An interactive application takes 1, and renders again while IsRefined() is false.
+   * While the window wants interactive rates (its DesiredUpdateRate is 1 or more), it is 1.
+   * Same value on every rank.
+   */
+  void SetSamplesPerFrame(int samples);
+  int GetSamplesPerFrame() const;
+  ///@}
+
+  /**
+   * Whether the last picture has all the samples that were asked for; the same on every rank.
+   */
+  bool IsRefined() const;
+
   /**
    * Of the last frame; the same on every rank.
    */
@@ -85,6 +102,7 @@ private:
 
   static vtkDSMScene* New();
   void Attach(vtkRenderer* renderer);
+  void NoteBackground();
   void Trace();
 
   class Internals;

@@ -10,6 +10,7 @@
 #include <vector>
 
 class vtkAlgorithm;
+class vtkDSMLightOptions;
 class vtkProp3D;
 
 /// What a scene keeps of one mapper: its data in bricks, and what was wrong with it.
@@ -24,6 +25,7 @@ public:
   /// What the mapper asks for: MiB per rank, and threads per rank (0: the host's cores divided).
   virtual int GetCacheSize() const = 0;
   virtual int GetNumberOfThreads() const = 0;
+  virtual vtkDSMLightOptions* GetLightOptions() const = 0;
 
   /// Local: brings the mapper's input up to date.
   virtual void UpdatePiece(int piece, int numberOfPieces) = 0;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkDSMSceneMesh.h"
 
+#include "vtkDSMLightOptions.h"
 #include "vtkDSMPolyDataMapper.h"
 #include "vtkDSMTranslation.h"
 
@@ -63,6 +64,11 @@ vtkAlgorithm* vtkDSMSceneMesh::GetAlgorithm() const
 int vtkDSMSceneMesh::GetCacheSize() const
 {
   return this->Mapper->GetCacheSize();
+}
+
+vtkDSMLightOptions* vtkDSMSceneMesh::GetLightOptions() const
+{
+  return this->Mapper->GetLightOptions();
 }
 
 int vtkDSMSceneMesh::GetNumberOfThreads() const
@@ -151,10 +157,12 @@ rt::MeshObject vtkDSMSceneMesh::CreateObject(const vtkDSMMeshData::Part& part, v
   object.Instance = std::move(instance);
   object.Flat = property->GetInterpolation() == VTK_FLAT;
   object.Surface = vtkDSMTranslation::ToMaterial(property);
+  object.Surface.Reflectivity = static_cast<float>(this->GetLightOptions()->GetReflectivity());
   Apply(part.Appearance, object.Surface);
   if (vtkProperty* back = actor->GetBackfaceProperty())
   {
     object.BackSurface = vtkDSMTranslation::ToMaterial(back);
+    object.BackSurface->Reflectivity = object.Surface.Reflectivity;
   }
   object.ColoredBy =
     GetColoring(part.Mesh->Attributes, this->Mapper->GetInterpolateScalarsBeforeMapping() != 0);

@@ -26,6 +26,7 @@ public:
   vtkAlgorithm* GetAlgorithm() const override;
   int GetCacheSize() const override;
   int GetNumberOfThreads() const override;
+  vtkDSMLightOptions* GetLightOptions() const override;
   void UpdatePiece(int piece, int numberOfPieces) override;
   bool HasNewData() const override;
   void Update(const std::shared_ptr<vtkDSMRankGroup>& group, bool newData) override;

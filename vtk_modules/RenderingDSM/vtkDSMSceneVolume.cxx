@@ -2,6 +2,7 @@
 #include "vtkDSMSceneVolume.h"
 
 #include "vtkDSMImagePiece.h"
+#include "vtkDSMLightOptions.h"
 #include "vtkDSMTranslation.h"
 #include "vtkDSMVolumeMapper.h"
 
@@ -53,6 +54,11 @@ vtkAlgorithm* vtkDSMSceneVolume::GetAlgorithm() const
 int vtkDSMSceneVolume::GetCacheSize() const
 {
   return this->Mapper->GetCacheSize();
+}
+
+vtkDSMLightOptions* vtkDSMSceneVolume::GetLightOptions() const
+{
+  return this->Mapper->GetLightOptions();
 }
 
 int vtkDSMSceneVolume::GetNumberOfThreads() const
@@ -200,7 +206,8 @@ void vtkDSMSceneVolume::AddTo(rt::Scene& scene, vtkProp3D* prop)
   }
   prop->ComputeMatrix();
   const glm::dmat4 dataToWorld = vtkDSMTranslation::ToMatrix(prop->GetMatrix());
-  const rt::Material material = vtkDSMTranslation::ToMaterial(this->Mapper->GetSurfaceProperty());
+  rt::Material material = vtkDSMTranslation::ToMaterial(this->Mapper->GetSurfaceProperty());
+  material.Reflectivity = static_cast<float>(this->GetLightOptions()->GetReflectivity());
   const bool colored = this->Color && !this->Color->Fields.empty();
   for (std::size_t lattice = 0; lattice < this->Data->GetNumberOfLattices(); ++lattice)
   {

@@ -12,6 +12,7 @@
 
 #include <glm/geometric.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -124,7 +125,13 @@ std::vector<rt::Light> vtkDSMTranslation::ToLights(vtkRenderer* renderer)
       light.Exponent = static_cast<float>(source->GetExponent());
       light.Attenuation = ToColor(source->GetAttenuationValues());
     }
+    light.IsLoneHeadlight = source->LightTypeIsHeadlight() && !source->GetPositional();
     lights.push_back(light);
+  }
+  if (lights.size() > 1)
+  {
+    std::for_each(
+      lights.begin(), lights.end(), [](rt::Light& light) { light.IsLoneHeadlight = false; });
   }
   return lights;
 }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkDSMVolumeMapper.h"
 
+#include "vtkDSMLightOptions.h"
+
 #include "vtkCompositeDataSet.h"
 #include "vtkDataSet.h"
 #include "vtkInformation.h"
@@ -14,6 +16,7 @@ vtkStandardNewMacro(vtkDSMVolumeMapper);
 
 vtkDSMVolumeMapper::vtkDSMVolumeMapper()
   : SurfaceProperty(vtkSmartPointer<vtkProperty>::New())
+  , LightOptions(vtkSmartPointer<vtkDSMLightOptions>::New())
 {
   vtkMath::UninitializeBounds(this->GlobalBounds);
 }
@@ -82,6 +85,17 @@ vtkProperty* vtkDSMVolumeMapper::GetSurfaceProperty() const
   return this->SurfaceProperty;
 }
 
+void vtkDSMVolumeMapper::SetLightOptions(vtkDSMLightOptions* options)
+{
+  this->LightOptions = options ? options : vtkSmartPointer<vtkDSMLightOptions>::New().Get();
+  this->Modified();
+}
+
+vtkDSMLightOptions* vtkDSMVolumeMapper::GetLightOptions() const
+{
+  return this->LightOptions;
+}
+
 double* vtkDSMVolumeMapper::GetBounds()
 {
   if (vtkMath::AreBoundsInitialized(this->GlobalBounds))
@@ -126,7 +140,8 @@ void vtkDSMVolumeMapper::Render(vtkRenderer*, vtkVolume*) {}
 
 vtkMTimeType vtkDSMVolumeMapper::GetMTime()
 {
-  vtkMTimeType time = std::max(this->Superclass::GetMTime(), this->SurfaceProperty->GetMTime());
+  vtkMTimeType time = std::max({ this->Superclass::GetMTime(), this->SurfaceProperty->GetMTime(),
+    this->LightOptions->GetMTime() });
   if (this->LookupTable)
   {
     time = std::max(time, this->LookupTable->GetMTime());

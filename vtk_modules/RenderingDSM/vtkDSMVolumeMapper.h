@@ -23,6 +23,7 @@
 #include <string> // for ivars
 #include <vector> // for ivars
 
+class vtkDSMLightOptions;
 class vtkProperty;
 class vtkScalarsToColors;
 
@@ -104,6 +105,14 @@ public:
 
   ///@{
   /**
+   * Shadows, ambient occlusion, mirrors and samples; never null. Null makes new ones.
+   */
+  void SetLightOptions(vtkDSMLightOptions* options);
+  vtkDSMLightOptions* GetLightOptions() const;
+  ///@}
+
+  ///@{
+  /**
    * Bounds of all ranks' data, without the volume's transform. Until the scene has taken in the data,
    * those of this rank's; null where there are none.
    */
@@ -148,6 +157,7 @@ private:
   vtkSmartPointer<vtkProperty> SurfaceProperty;
   int NumberOfThreads = 0;
   int CacheSize = 256;
+  vtkSmartPointer<vtkDSMLightOptions> LightOptions;
   double GlobalBounds[6];
 };
 

@@ -247,3 +247,42 @@ TEST(FrameRenderer, EmptySceneIsAnEmptyPicture)
       EXPECT_EQ(CountCovered(rt::GatherFrame(messenger, frame)), 0);
     });
 }
+
+TEST(TestFrameRenderer, SamplesAddedLaterGiveTheSamePicture)
+{
+  rt::Picture atOnce;
+  for (const int ranks : { 1, 3 })
+  {
+    RunOnCluster(ranks,
+      [&](dsm::Messenger& messenger)
+      {
+        dsm::BlockStore store(messenger, SphereScene::CreateSettings(std::size_t(1) << 20, 2));
+        rt::Scene scene = SphereScene::CreateScene(SphereScene::Publish(messenger, store), 0.5f);
+        scene.Transport.Shadows = true;
+        scene.Transport.LightRadius = 0.2;
+        rt::FrameRenderer renderer(messenger);
+        rt::FrameRequest request = SphereScene::CreateRequest(97, 61);
+        request.Samples = 6;
+        const rt::Picture whole =
+          rt::GatherFrame(messenger, renderer.Render(store, scene, request));
+        request.Samples = 1;
+        rt::Frame frame = renderer.Render(store, scene, request);
+        for (const int samples : { 2, 3 })
+        {
+          request.FirstSample += request.Samples;
+          request.Samples = samples;
+          renderer.Refine(store, scene, request, frame);
+        }
+        const rt::Picture refined = rt::GatherFrame(messenger, frame);
+        EXPECT_EQ(rt::GetHash(refined), rt::GetHash(whole));
+        if (messenger.GetRank() == 0)
+        {
+          if (ranks == 1)
+          {
+            atOnce = whole;
+          }
+          EXPECT_EQ(rt::GetHash(whole), rt::GetHash(atOnce)) << ranks << " ranks";
+        }
+      });
+  }
+}

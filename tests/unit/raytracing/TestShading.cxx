@@ -89,6 +89,20 @@ TEST(TestShading, BothSidesAreLit)
   EXPECT_EQ(ShadeWith(CreateLight(), Up), ShadeWith(CreateLight(), -Up));
 }
 
+TEST(TestShading, HighlightOfALoneHeadlightIsAPowerOfItsAngle)
+{
+  rt::Light light = CreateLight();
+  light.IsLoneHeadlight = true;
+  const rt::Material m = CreateMaterial();
+  const double cosine = glm::dot(Up, -light.Direction);
+  const glm::dvec3 expected = double(m.Ambient) * glm::dvec3(m.AmbientColor) +
+    glm::dvec3(light.Color) *
+      (cosine * double(m.Diffuse) * glm::dvec3(m.DiffuseColor) +
+        std::pow(cosine, double(m.SpecularPower)) * double(m.Specular) *
+          glm::dvec3(m.SpecularColor));
+  ExpectNear(ShadeWith(light), expected);
+}
+
 TEST(TestShading, LightFromBehindLeavesTheAmbient)
 {
   rt::Light light = CreateLight();

@@ -4,6 +4,7 @@
 #include "DSMRayTracing/frame/FrameAgreement.h"
 #include "DSMRayTracing/frame/PixelRays.h"
 #include "DSMRayTracing/frame/TileGrid.h"
+#include "DSMRayTracing/frame/TileSource.h"
 #include "DSMRayTracing/frame/TileTracer.h"
 
 #include <algorithm>
@@ -56,6 +57,8 @@ struct RequestDigest
 {
   std::int64_t Width;
   std::int64_t Height;
+  std::int64_t FirstSample;
+  std::int64_t Samples;
   std::int64_t Objects;
   double WorldToClip[16];
 };
@@ -69,7 +72,7 @@ struct Entry
 
 RequestDigest GetDigest(const FrameRequest& request, const Scene& scene)
 {
-  RequestDigest digest{ request.Width, request.Height,
+  RequestDigest digest{ request.Width, request.Height, request.FirstSample, request.Samples,
     static_cast<std::int64_t>(scene.Isosurfaces.size() + scene.Meshes.size()), {} };
   for (int element = 0; element < 16; ++element)
   {
@@ -114,36 +117,55 @@ FrameRenderer::~FrameRenderer() = default;
 
 Frame FrameRenderer::Render(dsm::BlockStore& store, const Scene& scene, const FrameRequest& request)
 {
+  NewTiles tiles(TileGrid(request.Width, request.Height, request.TileSize), this->Scheduler);
+  Frame frame;
+  this->RenderTiles(store, scene, request, tiles, frame);
+  return frame;
+}
+
+void FrameRenderer::Refine(
+  dsm::BlockStore& store, const Scene& scene, const FrameRequest& request, Frame& frame)
+{
+  KeptTiles tiles(std::move(frame.Tiles));
+  frame.Tiles.clear();
+  this->RenderTiles(store, scene, request, tiles, frame);
+}
+
+void FrameRenderer::RenderTiles(dsm::BlockStore& store, const Scene& scene,
+  const FrameRequest& request, TileSource& tiles, Frame& frame)
+{
   const auto start = Clock::now();
   if (!CheckRequest(this->Messenger, request, scene, store.IsSettled()))
   {
     store.Settle();
   }
-  Frame frame = store.Visit([&](auto& blocks) { return this->RenderWith(blocks, scene, request); });
+  frame.Tiles =
+    store.Visit([&](auto& blocks) { return this->TraceTiles(blocks, scene, request, tiles); });
+  frame.Width = request.Width;
+  frame.Height = request.Height;
   frame.Counters = store.GetCounters();
   frame.WorkerCounters = store.GetWorkerCounters();
   frame.Organization = store.GetOrganization();
   frame.Seconds = SecondsSince(start);
-  return frame;
 }
 
 template <class Store>
-Frame FrameRenderer::RenderWith(Store& store, const Scene& scene, const FrameRequest& request)
+std::vector<Tile> FrameRenderer::TraceTiles(
+  Store& store, const Scene& scene, const FrameRequest& request, TileSource& tiles)
 {
   const PixelRays rays(request);
-  const TileGrid grid(request.Width, request.Height, request.TileSize);
   const int workers = store.GetSettings().Workers;
   std::vector<std::vector<Tile>> tilesOfWorker(workers);
   FirstFailure failure;
 
   store.BeginFrame();
-  this->Scheduler.Begin(grid.GetCount(), workers);
+  tiles.Begin(workers);
   std::atomic<bool> stopped{ false }; // by another rank's failure, which that rank reports
   FrameAgreement agreement(this->Messenger,
     [&]
     {
       stopped = true;
-      this->Scheduler.Cancel();
+      tiles.Cancel();
     });
   this->Messenger.BeginSession();
 
@@ -153,7 +175,7 @@ Frame FrameRenderer::RenderWith(Store& store, const Scene& scene, const FrameReq
     {
       failure.Set(cause);
     }
-    this->Scheduler.Cancel();
+    tiles.Cancel();
   };
   const auto work = [&](int index)
   {
@@ -161,15 +183,14 @@ Frame FrameRenderer::RenderWith(Store& store, const Scene& scene, const FrameReq
     try
     {
       const TileTracer<Store> tracer(store, worker, scene, rays, request);
-      while (const auto number = this->Scheduler.Pop())
+      while (std::optional<Tile> tile = tiles.Pop())
       {
         const auto tileStart = Clock::now();
-        Tile tile = grid.CreateTile(*number);
         store.Enter(worker);
-        tracer.Trace(tile);
+        tracer.Trace(*tile);
         store.Leave(worker);
-        tile.Seconds = SecondsSince(tileStart);
-        tilesOfWorker[index].push_back(std::move(tile));
+        tile->Seconds = SecondsSince(tileStart);
+        tilesOfWorker[index].push_back(std::move(*tile));
       }
     }
     catch (...)
@@ -186,7 +207,7 @@ Frame FrameRenderer::RenderWith(Store& store, const Scene& scene, const FrameReq
     try
     {
       didSomething = store.Service();
-      didSomething = this->Scheduler.Service() || didSomething;
+      didSomething = tiles.Service() || didSomething;
     }
     catch (...)
     {
@@ -232,7 +253,7 @@ Frame FrameRenderer::RenderWith(Store& store, const Scene& scene, const FrameReq
     }
   }
   this->Pool.Wait();
-  this->Scheduler.End();
+  tiles.End();
   store.EndFrame();
   // What was posted last must leave before the application goes about something else.
   this->Messenger.ProgressUntil([this] { return this->Messenger.GetUnsentBytes() == 0; });
@@ -245,14 +266,12 @@ Frame FrameRenderer::RenderWith(Store& store, const Scene& scene, const FrameReq
     throw dsm::Error("The frame could not be traced. Rank " + std::to_string(outcome.FailedRank) +
       ": " + outcome.Cause);
   }
-  Frame frame;
-  frame.Width = request.Width;
-  frame.Height = request.Height;
-  for (auto& tiles : tilesOfWorker)
+  std::vector<Tile> traced;
+  for (auto& some : tilesOfWorker)
   {
-    std::move(tiles.begin(), tiles.end(), std::back_inserter(frame.Tiles));
+    std::move(some.begin(), some.end(), std::back_inserter(traced));
   }
-  return frame;
+  return traced;
 }
 
 } // namespace rt

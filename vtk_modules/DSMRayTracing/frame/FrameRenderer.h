@@ -10,8 +10,12 @@
 #include "DSMRayTracing/frame/WorkerPool.h"
 #include "DSMRayTracing/schedule/CentralQueueScheduler.h"
 
+#include <vector>
+
 namespace rt
 {
+
+class TileSource;
 
 /// Traces frames: the workers trace tiles while the calling thread, which alone may call MPI,
 /// carries their requests for bricks and tiles and serves the other ranks (the paper's
@@ -30,9 +34,17 @@ public:
   /// frame is not affected.
   Frame Render(dsm::BlockStore& store, const Scene& scene, const FrameRequest& request);
 
+  /// Adds the request's samples to a frame that has all samples before them: each rank goes on with
+  /// the tiles that it has. Collective; as Render, but that a failure leaves the frame without tiles.
+  void Refine(
+    dsm::BlockStore& store, const Scene& scene, const FrameRequest& request, Frame& frame);
+
 private:
+  void RenderTiles(dsm::BlockStore& store, const Scene& scene, const FrameRequest& request,
+    TileSource& tiles, Frame& frame);
   template <class Store>
-  Frame RenderWith(Store& store, const Scene& scene, const FrameRequest& request);
+  std::vector<Tile> TraceTiles(
+    Store& store, const Scene& scene, const FrameRequest& request, TileSource& tiles);
 
   dsm::Messenger& Messenger;
   CentralQueueScheduler Scheduler;

@@ -17,8 +17,7 @@ class SampleSequence
 public:
   SampleSequence(int x, int y, int sample)
     : Sample(sample)
-    , State(Mix(static_cast<std::uint32_t>(x) +
-        Mix(static_cast<std::uint32_t>(y) + Mix(static_cast<std::uint32_t>(sample) + 1u))))
+    , Pixel(Mix(static_cast<std::uint32_t>(x) + Mix(static_cast<std::uint32_t>(y) + 1u)))
   {
   }
 
@@ -33,11 +32,16 @@ public:
     return { x - std::floor(x), y - std::floor(y) };
   }
 
-  /// The next number, uniform in [0, 1).
+  /// The next number, uniform in [0, 1). Of successive samples of a pixel, the n-th numbers fill the
+  /// interval evenly, and the n-th pairs of numbers the square (steps of Richtmyer's sequence); where
+  /// they begin is as good as random from pixel to pixel and from number to number.
   double Next()
   {
-    this->State += 0x9e3779b9u;
-    return Mix(this->State) * (1.0 / 4294967296.0);
+    constexpr double Steps[2] = { 0.4142135623730951, 0.7320508075688772 }; // of sqrt(2), sqrt(3)
+    const std::uint32_t number = this->Numbers++;
+    const double start = Mix(this->Pixel + number * 0x9e3779b9u) * (1.0 / 4294967296.0);
+    const double value = start + this->Sample * Steps[number % 2];
+    return value - std::floor(value);
   }
 
 private:
@@ -53,7 +57,8 @@ private:
   }
 
   int Sample;
-  std::uint32_t State;
+  std::uint32_t Pixel;
+  std::uint32_t Numbers = 0;
 };
 
 } // namespace rt

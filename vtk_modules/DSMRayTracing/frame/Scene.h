@@ -115,6 +115,9 @@ struct Light
     Cone
   };
   Kind Type = Kind::Directional;
+  /// The scene's only light, and it shines along the view: as VTK, the highlight is then a power of
+  /// the light's angle, not of the mirrored light's.
+  bool IsLoneHeadlight = false;
   glm::dvec3 Position{ 0.0 };
   /// Unit, from the light into the scene.
   glm::dvec3 Direction{ 0.0, 0.0, -1.0 };

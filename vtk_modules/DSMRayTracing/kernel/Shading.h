@@ -46,7 +46,7 @@ struct ShadingPoint
 ///
 ///   ambient + sum over lights of attenuation * light * (diffuse * N.L + specular * (R.V)^power)
 ///
-/// The surface is lit on both sides, so the normal is turned towards the viewer first. Without
+/// with (N.L)^power for a lone headlight, as there. /// The surface is lit on both sides, so the normal is turned towards the viewer first. Without
 /// lighting, or without a light, the surface shows ambient + diffuse. `visibility(light, incidence)`
 /// is called for lights that face the surface: the part of each colour that arrives (glm::dvec3).
 template <class Visibility>
@@ -78,7 +78,8 @@ glm::vec3 Shade(const std::vector<Light>& lights, const Material& surface,
     if (surface.Specular > 0.0f)
     {
       const glm::dvec3 mirrored = glm::reflect(incidence.Direction, facing);
-      const double highlight = std::max(0.0, glm::dot(mirrored, point.ToViewer));
+      const double highlight =
+        light.IsLoneHeadlight ? cosine : std::max(0.0, glm::dot(mirrored, point.ToViewer));
       color += arriving * specularColor * std::pow(highlight, surface.SpecularPower);
     }
   }

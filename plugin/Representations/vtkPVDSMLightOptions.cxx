@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkPVDSMLightOptions.h"
+
+#include "vtkObjectFactory.h"
+
+vtkStandardNewMacro(vtkPVDSMLightOptions);
+
+vtkPVDSMLightOptions::vtkPVDSMLightOptions() = default;
+vtkPVDSMLightOptions::~vtkPVDSMLightOptions() = default;
+
+void vtkPVDSMLightOptions::SetShadows(bool shadows)
+{
+  this->Superclass::SetShadows(shadows);
+}
+
+void vtkPVDSMLightOptions::SetLightRadius(double radius)
+{
+  this->Superclass::SetLightRadius(radius);
+}
+
+void vtkPVDSMLightOptions::SetAmbientOcclusionSamples(int samples)
+{
+  this->Superclass::SetAmbientOcclusionSamples(samples);
+}
+
+void vtkPVDSMLightOptions::SetAmbientOcclusionDistance(double distance)
+{
+  this->Superclass::SetAmbientOcclusionDistance(distance);
+}
+
+void vtkPVDSMLightOptions::SetReflectivity(double part)
+{
+  this->Superclass::SetReflectivity(part);
+}
+
+void vtkPVDSMLightOptions::SetMaxBounces(int bounces)
+{
+  this->Superclass::SetMaxBounces(bounces);
+}
+
+void vtkPVDSMLightOptions::SetSamplesPerPixel(int samples)
+{
+  this->Superclass::SetSamplesPerPixel(samples);
+}

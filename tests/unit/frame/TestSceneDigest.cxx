@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "DSMRayTracing/frame/SceneDigest.h"
+
+#include "tests/support/LoopbackCluster.h"
+#include "tests/support/SphereScene.h"
+
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <set>
+#include <vector>
+
+TEST(TestSceneDigest, ChangesWithAllThatThePictureShows)
+{
+  RunOnCluster(1,
+    [](dsm::Messenger& messenger)
+    {
+      dsm::BlockStore store(messenger, SphereScene::CreateSettings(std::size_t(1) << 20, 1));
+      const rt::Scene scene =
+        SphereScene::CreateScene(SphereScene::Publish(messenger, store), 1.0f);
+      const rt::FrameRequest request = SphereScene::CreateRequest(40, 30);
+      std::set<std::uint64_t> digests{ rt::GetSceneDigest(scene, request) };
+      EXPECT_EQ(rt::GetSceneDigest(scene, request), *digests.begin());
+
+      const std::vector<std::function<void(rt::Scene&, rt::FrameRequest&)>> changes = {
+        [](rt::Scene&, rt::FrameRequest& r) { r.Width = 41; },
+        [](rt::Scene&, rt::FrameRequest& r) { r.WorldToClip[3][0] += 1e-12; },
+        [](rt::Scene& s, rt::FrameRequest&) { s.Isosurfaces[0].Isovalues[0] += 1e-12; },
+        [](rt::Scene& s, rt::FrameRequest&) { s.Isosurfaces[0].Isovalues.push_back(1e3); },
+        [](rt::Scene& s, rt::FrameRequest&) { s.Isosurfaces[0].Surface.DiffuseColor.y = 0.1f; },
+        [](rt::Scene& s, rt::FrameRequest&) { s.Isosurfaces[0].Surface.Reflectivity = 0.5f; },
+        [](rt::Scene& s, rt::FrameRequest&) { s.Isosurfaces[0].IndexToWorld[3][1] += 1.0; },
+        [](rt::Scene& s, rt::FrameRequest&) { s.Isosurfaces.push_back(s.Isosurfaces[0]); },
+        [](rt::Scene& s, rt::FrameRequest&) { s.Lights.emplace_back(); },
+        [](rt::Scene& s, rt::FrameRequest&) { s.Transport.Shadows = true; },
+        [](rt::Scene& s, rt::FrameRequest&) { s.Transport.Background.z = 0.3f; },
+        [&](rt::Scene& s, rt::FrameRequest&)
+        { s.Isosurfaces[0].Field = SphereScene::Publish(messenger, store); },
+      };
+      for (const auto& change : changes)
+      {
+        rt::Scene other = scene;
+        rt::FrameRequest otherRequest = request;
+        change(other, otherRequest);
+        digests.insert(rt::GetSceneDigest(other, otherRequest));
+      }
+      EXPECT_EQ(digests.size(), changes.size() + 1);
+
+      rt::FrameRequest more = request;
+      more.FirstSample = 3;
+      more.Samples = 2;
+      EXPECT_EQ(rt::GetSceneDigest(scene, more), rt::GetSceneDigest(scene, request));
+    });
+}

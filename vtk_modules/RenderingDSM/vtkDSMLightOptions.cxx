@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkDSMLightOptions.h"
+
+#include "vtkObjectFactory.h"
+
+vtkStandardNewMacro(vtkDSMLightOptions);
+
+vtkDSMLightOptions::vtkDSMLightOptions() = default;
+vtkDSMLightOptions::~vtkDSMLightOptions() = default;
+
+void vtkDSMLightOptions::PrintSelf(ostream& os, vtkIndent indent)
+{
+  this->Superclass::PrintSelf(os, indent);
+  os << indent << "Shadows: " << this->Shadows << "\n";
+  os << indent << "LightRadius: " << this->LightRadius << "\n";
+  os << indent << "AmbientOcclusionSamples: " << this->AmbientOcclusionSamples << "\n";
+  os << indent << "AmbientOcclusionDistance: " << this->AmbientOcclusionDistance << "\n";
+  os << indent << "Reflectivity: " << this->Reflectivity << "\n";
+  os << indent << "MaxBounces: " << this->MaxBounces << "\n";
+  os << indent << "SamplesPerPixel: " << this->SamplesPerPixel << "\n";
+}
