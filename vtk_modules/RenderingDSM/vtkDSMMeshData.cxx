@@ -56,14 +56,16 @@ bool vtkDSMMeshData::Key::operator<(const Key& other) const
   {
     const vtkDSMMeshBlock::Look& look = key.Appearance;
     return std::make_tuple(look.Opacity, look.Color[0], look.Color[1], look.Color[2], key.Normals,
-      key.Values, key.Colors);
+      key.Values, key.Colors, key.TextureCoordinates);
   };
   return order(*this) < order(other);
 }
 
-vtkDSMMeshData::vtkDSMMeshData(std::shared_ptr<vtkDSMRankGroup> group, vtkDSMPolyDataMapper* mapper)
+vtkDSMMeshData::vtkDSMMeshData(
+  std::shared_ptr<vtkDSMRankGroup> group, vtkDSMPolyDataMapper* mapper, bool textured)
   : Group(std::move(group))
   , Mapper(mapper)
+  , Textured(textured)
 {
   dsm::Messenger& messenger = this->Group->GetMessenger();
   const std::string what = "Reading the surface";
@@ -169,7 +171,8 @@ void vtkDSMMeshData::CollectSurfaces(
 void vtkDSMMeshData::AddSurface(
   const vtkDSMMeshBlock& block, vtkPolyData* data, const vtkDSMMeshColors& colors)
 {
-  const rt::MeshAttributes attributes = vtkDSMMeshPiece::GetAttributes(data, colors);
+  const rt::MeshAttributes attributes =
+    vtkDSMMeshPiece::GetAttributes(data, colors, this->Textured);
   Surface surface;
   surface.Data = data;
   surface.Colors = colors;
@@ -177,6 +180,7 @@ void vtkDSMMeshData::AddSurface(
   surface.Kind.Normals = attributes.Normals ? 1 : 0;
   surface.Kind.Values = static_cast<std::uint32_t>(attributes.Values);
   surface.Kind.Colors = static_cast<std::uint32_t>(attributes.Colors);
+  surface.Kind.TextureCoordinates = attributes.TextureCoordinates ? 1 : 0;
   this->Surfaces.push_back(std::move(surface));
 }
 
@@ -264,7 +268,7 @@ void vtkDSMMeshData::Publish()
         {
           if (!(surface.Kind < kind) && !(kind < surface.Kind))
           {
-            piece.Add(surface.Data, surface.Colors);
+            piece.Add(surface.Data, surface.Colors, this->Textured);
           }
         }
       });
@@ -280,7 +284,7 @@ void vtkDSMMeshData::Publish()
   }
 }
 
-std::vector<std::uint64_t> vtkDSMMeshData::Describe(vtkDSMPolyDataMapper* mapper)
+std::vector<std::uint64_t> vtkDSMMeshData::Describe(vtkDSMPolyDataMapper* mapper, bool textured)
 {
   std::vector<std::uint64_t> numbers;
   const auto addNumber = [&numbers](double number)
@@ -316,6 +320,7 @@ std::vector<std::uint64_t> vtkDSMMeshData::Describe(vtkDSMPolyDataMapper* mapper
       addObject(cells->GetNumberOfCells() > 0 ? cells->GetConnectivityArray() : nullptr);
     }
     addObject(data->GetPointData()->GetNormals());
+    addObject(textured ? data->GetPointData()->GetTCoords() : nullptr);
     addObject(data->GetCellData()->GetAbstractArray(vtkDataSetAttributes::GhostArrayName()));
     addObject(data->GetPointData()->GetAbstractArray(mapper->GetRadiusArray().c_str()));
     addNumber(block.Appearance.Opacity);
