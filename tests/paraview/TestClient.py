@@ -47,6 +47,20 @@ check(get_covered(render(view)).any(), "with something translucent")
 simple.Delete(outline)
 simple.Hide(source, view)
 render(view)
+
+# A mesh, which never leaves the server.
+ball = simple.Sphere(ThetaResolution=64, PhiResolution=48)
+mesh = simple.Show(ball, view)
+mesh.Representation = REPRESENTATION
+simple.ColorBy(mesh, ("POINTS", "Normals", "X"))
+place_camera(view)
+traced = render(view)
+mesh.SMProxy.UpdatePropertyInformation()
+rows = json.loads(str(mesh.GetProperty("DSMStatistics")).strip("'"))
+check(len(rows) == RANKS, "every rank reports on the mesh")
+mesh.Representation = "Surface"
+check_same_surface(traced, render(view), "a mesh on the server")
+simple.Delete(ball)
 simple.Delete(source)
 render(view)
 simple.Disconnect()

@@ -14,7 +14,9 @@
 #include "vtkCompositeDataDisplayAttributes.h"
 #include "vtkDoubleArray.h"
 #include "vtkElevationFilter.h"
+#include "vtkFloatArray.h"
 #include "vtkIdList.h"
+#include "vtkImageData.h"
 #include "vtkLookupTable.h"
 #include "vtkMultiBlockDataSet.h"
 #include "vtkNew.h"
@@ -27,6 +29,7 @@
 #include "vtkRenderer.h"
 #include "vtkSphereSource.h"
 #include "vtkTestErrorObserver.h"
+#include "vtkTexture.h"
 #include "vtkUnsignedCharArray.h"
 #include "vtkWindowToImageFilter.h"
 
@@ -228,6 +231,49 @@ TEST_F(PolyDataMapper, ColoursAreVtks)
   ExpectAlike(this->Render(), this->RenderWithTriangles(ball), 0.02);
   this->Mapper->GetLookupTable()->SetVectorModeToMagnitude();
   ExpectAlike(this->Render(), this->RenderWithTriangles(ball), 0.02);
+}
+
+TEST_F(PolyDataMapper, TexturesLookAsInVtk)
+{
+  const auto ball = MakeBall();
+  ball->GetPointData()->SetActiveScalars(nullptr);
+  vtkNew<vtkFloatArray> coordinates;
+  coordinates->SetName("texture");
+  coordinates->SetNumberOfComponents(2);
+  for (vtkIdType point = 0; point < ball->GetNumberOfPoints(); ++point)
+  {
+    const double* place = ball->GetPoint(point);
+    coordinates->InsertNextTuple2(3.0 * place[0], 2.0 * place[1] + 0.3);
+  }
+  ball->GetPointData()->SetTCoords(coordinates);
+  vtkNew<vtkImageData> image;
+  image->SetDimensions(16, 8, 1);
+  image->AllocateScalars(VTK_UNSIGNED_CHAR, 3);
+  for (int y = 0; y < 8; ++y)
+  {
+    for (int x = 0; x < 16; ++x)
+    {
+      auto* texel = static_cast<unsigned char*>(image->GetScalarPointer(x, y, 0));
+      texel[0] = static_cast<unsigned char>(16 * x);
+      texel[1] = static_cast<unsigned char>(32 * y);
+      texel[2] = (x + y) % 2 ? 200 : 0;
+    }
+  }
+  vtkNew<vtkTexture> texture;
+  texture->SetInputData(image);
+  texture->InterpolateOn();
+  this->Mapper->SetInputData(ball);
+  this->Actor->SetTexture(texture);
+  const Picture smooth = this->Render();
+  texture->InterpolateOff();
+  const Picture sharp = this->Render();
+  EXPECT_FALSE(this->Building) << "the texture's settings";
+  EXPECT_NE(smooth, sharp);
+  ExpectAlike(sharp, this->RenderWithTriangles(ball), 0.03);
+  texture->InterpolateOn();
+  ExpectAlike(smooth, this->RenderWithTriangles(ball), 0.02);
+  this->Actor->SetTexture(nullptr);
+  ExpectAlike(this->Render(), this->RenderWithTriangles(ball));
 }
 
 TEST_F(PolyDataMapper, OnlyDataThatChangeAreTakenInAgain)

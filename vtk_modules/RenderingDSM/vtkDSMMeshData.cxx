@@ -56,14 +56,16 @@ bool vtkDSMMeshData::Key::operator<(const Key& other) const
   {
     const vtkDSMMeshBlock::Look& look = key.Appearance;
     return std::make_tuple(look.Opacity, look.Color[0], look.Color[1], look.Color[2], key.Normals,
-      key.Values, key.Colors);
+      key.Values, key.Colors, key.TextureCoordinates);
   };
   return order(*this) < order(other);
 }
 
-vtkDSMMeshData::vtkDSMMeshData(std::shared_ptr<vtkDSMRankGroup> group, vtkDSMPolyDataMapper* mapper)
+vtkDSMMeshData::vtkDSMMeshData(
+  std::shared_ptr<vtkDSMRankGroup> group, vtkDSMPolyDataMapper* mapper, bool textured)
   : Group(std::move(group))
   , Mapper(mapper)
+  , Textured(textured)
 {
   dsm::Messenger& messenger = this->Group->GetMessenger();
   const std::string what = "Reading the surface";
@@ -77,14 +79,15 @@ vtkDSMMeshData::vtkDSMMeshData(std::shared_ptr<vtkDSMRankGroup> group, vtkDSMPol
   const vtkDSMTubesAndSpheres solids(ChooseRadius(mapper->GetLineRadius(), this->Diagonal),
     ChooseRadius(mapper->GetPointRadius(), this->Diagonal), mapper->GetRadiusArray());
   messenger.RunTogether(what, [&] { this->CheckSolids(solids); });
-  messenger.RunTogether(what, [&] { this->CollectSurfaces(solids); });
+  std::vector<ColorReport> reports;
+  messenger.RunTogether(what, [&] { this->CollectSurfaces(solids, reports); });
   // Tubes and spheres reach beyond the points.
   for (const Surface& surface : this->Surfaces)
   {
     data.push_back(surface.Data);
   }
   this->FindBounds(data);
-  this->CheckColors();
+  this->CheckColors(reports);
   this->Publish();
   this->Blocks.clear();
   this->Surfaces.clear();
@@ -138,53 +141,53 @@ void vtkDSMMeshData::CheckSolids(const vtkDSMTubesAndSpheres& solids) const
   }
 }
 
-void vtkDSMMeshData::CollectSurfaces(const vtkDSMTubesAndSpheres& solids)
+void vtkDSMMeshData::CollectSurfaces(
+  const vtkDSMTubesAndSpheres& solids, std::vector<ColorReport>& reports)
 {
   for (const vtkDSMMeshBlock& block : this->Blocks)
   {
-    if (block.Data->GetNumberOfPolys() > 0 || block.Data->GetNumberOfStrips() > 0)
+    const bool hasOwnColor = block.Appearance.Color[0] >= 0.0f;
+    const auto findColors = [&](vtkPolyData* data)
+    { return hasOwnColor ? vtkDSMMeshColors() : vtkDSMMeshColors(this->Mapper, data); };
+    if (block.Data->GetNumberOfCells() > 0)
     {
-      this->AddSurface(block, block.Data);
+      const vtkDSMMeshColors colors = findColors(block.Data);
+      reports.push_back({ colors.GetState(), 0, colors.GetLength(), colors.GetExpectedLength() });
+      if (block.Data->GetNumberOfPolys() > 0 || block.Data->GetNumberOfStrips() > 0)
+      {
+        this->AddSurface(block, block.Data, colors);
+      }
     }
     for (const auto& solid : { solids.MakeTubes(block.Data), solids.MakeSpheres(block.Data) })
     {
       if (solid && solid->GetNumberOfCells() > 0)
       {
-        this->AddSurface(block, solid);
+        this->AddSurface(block, solid, findColors(solid));
       }
     }
   }
 }
 
-void vtkDSMMeshData::AddSurface(const vtkDSMMeshBlock& block, vtkPolyData* data)
+void vtkDSMMeshData::AddSurface(
+  const vtkDSMMeshBlock& block, vtkPolyData* data, const vtkDSMMeshColors& colors)
 {
+  const rt::MeshAttributes attributes =
+    vtkDSMMeshPiece::GetAttributes(data, colors, this->Textured);
   Surface surface;
   surface.Data = data;
-  if (block.Appearance.Color[0] < 0.0f)
-  {
-    surface.Colors = vtkDSMMeshColors(this->Mapper, data);
-  }
-  const rt::MeshAttributes attributes = vtkDSMMeshPiece::GetAttributes(data, surface.Colors);
+  surface.Colors = colors;
   surface.Kind.Appearance = block.Appearance;
   surface.Kind.Normals = attributes.Normals ? 1 : 0;
   surface.Kind.Values = static_cast<std::uint32_t>(attributes.Values);
   surface.Kind.Colors = static_cast<std::uint32_t>(attributes.Colors);
+  surface.Kind.TextureCoordinates = attributes.TextureCoordinates ? 1 : 0;
   this->Surfaces.push_back(std::move(surface));
 }
 
-void vtkDSMMeshData::CheckColors()
+void vtkDSMMeshData::CheckColors(const std::vector<ColorReport>& mine)
 {
   using State = vtkDSMMeshColors::State;
   dsm::Messenger& messenger = this->Group->GetMessenger();
-  std::vector<ColorReport> mine;
-  for (const vtkDSMMeshBlock& block : this->Blocks)
-  {
-    if (block.Appearance.Color[0] < 0.0f && block.Data->GetNumberOfCells() > 0)
-    {
-      const vtkDSMMeshColors colors(this->Mapper, block.Data);
-      mine.push_back({ colors.GetState(), 0, colors.GetLength(), colors.GetExpectedLength() });
-    }
-  }
   const auto reports = vtkDSMGather::Items(messenger, mine);
   const char* name = this->Mapper->GetArrayName();
   const std::string array = std::string("The colour array '") + (name ? name : "") + "'";
@@ -265,7 +268,7 @@ void vtkDSMMeshData::Publish()
         {
           if (!(surface.Kind < kind) && !(kind < surface.Kind))
           {
-            piece.Add(surface.Data, surface.Colors);
+            piece.Add(surface.Data, surface.Colors, this->Textured);
           }
         }
       });
@@ -281,7 +284,7 @@ void vtkDSMMeshData::Publish()
   }
 }
 
-std::vector<std::uint64_t> vtkDSMMeshData::Describe(vtkDSMPolyDataMapper* mapper)
+std::vector<std::uint64_t> vtkDSMMeshData::Describe(vtkDSMPolyDataMapper* mapper, bool textured)
 {
   std::vector<std::uint64_t> numbers;
   const auto addNumber = [&numbers](double number)
@@ -317,6 +320,7 @@ std::vector<std::uint64_t> vtkDSMMeshData::Describe(vtkDSMPolyDataMapper* mapper
       addObject(cells->GetNumberOfCells() > 0 ? cells->GetConnectivityArray() : nullptr);
     }
     addObject(data->GetPointData()->GetNormals());
+    addObject(textured ? data->GetPointData()->GetTCoords() : nullptr);
     addObject(data->GetCellData()->GetAbstractArray(vtkDataSetAttributes::GhostArrayName()));
     addObject(data->GetPointData()->GetAbstractArray(mapper->GetRadiusArray().c_str()));
     addNumber(block.Appearance.Opacity);

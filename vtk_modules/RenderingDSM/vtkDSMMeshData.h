@@ -32,8 +32,9 @@ public:
     std::shared_ptr<const rt::TriangleMesh> Mesh;
   };
 
-  /// Collective; a rank without data takes part. Failures are dsm::Error, the same on every rank.
-  vtkDSMMeshData(std::shared_ptr<vtkDSMRankGroup> group, vtkDSMPolyDataMapper* mapper);
+  /// Collective; a rank without data takes part. `textured`: texture coordinates are wanted. Failures are dsm::Error, the same on every rank.
+  vtkDSMMeshData(
+    std::shared_ptr<vtkDSMRankGroup> group, vtkDSMPolyDataMapper* mapper, bool textured);
 
   const std::vector<Part>& GetParts() const { return this->Parts; }
   /// Of all ranks' visible blocks; uninitialised bounds (min > max) without any.
@@ -43,7 +44,7 @@ public:
 
   /// Local: numbers that are others when, and only when, this rank's data or what is read of them
   /// are.
-  static std::vector<std::uint64_t> Describe(vtkDSMPolyDataMapper* mapper);
+  static std::vector<std::uint64_t> Describe(vtkDSMPolyDataMapper* mapper, bool textured);
 
 private:
   /// What tells meshes apart; plain, so that ranks can exchange it.
@@ -53,6 +54,7 @@ private:
     std::uint32_t Normals = 0;
     std::uint32_t Values = 0;
     std::uint32_t Colors = 0;
+    std::uint32_t TextureCoordinates = 0;
 
     bool operator<(const Key& other) const;
   };
@@ -66,14 +68,15 @@ private:
 
   void FindBounds(const std::vector<vtkPolyData*>& mine);
   void CheckSolids(const vtkDSMTubesAndSpheres& solids) const;
-  void CollectSurfaces(const vtkDSMTubesAndSpheres& solids);
-  void AddSurface(const vtkDSMMeshBlock& block, vtkPolyData* data);
-  void CheckColors();
+  void CollectSurfaces(const vtkDSMTubesAndSpheres& solids, std::vector<ColorReport>& reports);
+  void AddSurface(const vtkDSMMeshBlock& block, vtkPolyData* data, const vtkDSMMeshColors& colors);
+  void CheckColors(const std::vector<ColorReport>& mine);
   std::string ListArrays() const;
   void Publish();
 
   std::shared_ptr<vtkDSMRankGroup> Group;
   vtkDSMPolyDataMapper* Mapper;
+  bool Textured;
   std::vector<vtkDSMMeshBlock> Blocks; ///< of this rank, while its data are read
   std::vector<Surface> Surfaces;       ///< likewise
   std::vector<Part> Parts;

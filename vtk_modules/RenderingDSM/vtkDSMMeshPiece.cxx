@@ -17,22 +17,33 @@ vtkDataArray* FindNormals(vtkPolyData* data)
   return normals && normals->GetNumberOfTuples() == data->GetNumberOfPoints() ? normals : nullptr;
 }
 
+vtkDataArray* FindTextureCoordinates(vtkPolyData* data)
+{
+  vtkDataArray* coordinates = data->GetPointData()->GetTCoords();
+  return coordinates && coordinates->GetNumberOfComponents() >= 2 &&
+      coordinates->GetNumberOfTuples() == data->GetNumberOfPoints()
+    ? coordinates
+    : nullptr;
+}
+
 } // namespace
 
-rt::MeshAttributes vtkDSMMeshPiece::GetAttributes(vtkPolyData* data, const vtkDSMMeshColors& colors)
+rt::MeshAttributes vtkDSMMeshPiece::GetAttributes(
+  vtkPolyData* data, const vtkDSMMeshColors& colors, bool textured)
 {
   rt::MeshAttributes attributes;
+  attributes.TextureCoordinates = textured && FindTextureCoordinates(data);
   attributes.Normals = FindNormals(data) != nullptr;
   attributes.Values = colors.GetValues();
   attributes.Colors = colors.GetColors();
   return attributes;
 }
 
-void vtkDSMMeshPiece::Add(vtkPolyData* data, const vtkDSMMeshColors& colors)
+void vtkDSMMeshPiece::Add(vtkPolyData* data, const vtkDSMMeshColors& colors, bool textured)
 {
-  this->Attributes = GetAttributes(data, colors);
+  this->Attributes = GetAttributes(data, colors, textured);
   this->Parts.push_back({ data, vtkDSMTriangleList(data), colors, data->GetPoints()->GetData(),
-    FindNormals(data), this->Triangles, this->Points });
+    FindNormals(data), FindTextureCoordinates(data), this->Triangles, this->Points });
   this->Triangles += this->Parts.back().List.GetCount();
   this->Points += static_cast<std::uint64_t>(data->GetNumberOfPoints());
 }
@@ -102,7 +113,10 @@ void vtkDSMMeshPiece::GetColor(std::uint64_t element, std::uint8_t rgba[4]) cons
   part.Colors.GetColor(number, rgba);
 }
 
-void vtkDSMMeshPiece::GetTextureCoordinate(std::uint64_t, double coordinate[2]) const
+void vtkDSMMeshPiece::GetTextureCoordinate(std::uint64_t point, double coordinate[2]) const
 {
-  std::fill_n(coordinate, 2, 0.0);
+  const Part& part = this->FindByPoint(point);
+  const auto number = static_cast<vtkIdType>(point - part.FirstPoint);
+  coordinate[0] = part.TextureCoordinates->GetComponent(number, 0);
+  coordinate[1] = part.TextureCoordinates->GetComponent(number, 1);
 }

@@ -19,11 +19,12 @@ class vtkPolyData;
 class vtkDSMMeshPiece final : public rt::TriangleSource
 {
 public:
-  /// What a mesh made of the data would carry.
-  static rt::MeshAttributes GetAttributes(vtkPolyData* data, const vtkDSMMeshColors& colors);
+  /// What a mesh made of the data would carry; texture coordinates only if `textured`.
+  static rt::MeshAttributes GetAttributes(
+    vtkPolyData* data, const vtkDSMMeshColors& colors, bool textured);
 
   /// All that are added must have the same attributes. Throws dsm::Error for invalid cells.
-  void Add(vtkPolyData* data, const vtkDSMMeshColors& colors);
+  void Add(vtkPolyData* data, const vtkDSMMeshColors& colors, bool textured);
 
   rt::MeshAttributes GetAttributes() const override { return this->Attributes; }
   std::uint64_t GetTriangleCount() const override { return this->Triangles; }
@@ -33,7 +34,6 @@ public:
   void GetNormal(std::uint64_t point, double normal[3]) const override;
   double GetValue(std::uint64_t element) const override;
   void GetColor(std::uint64_t element, std::uint8_t rgba[4]) const override;
-  /// Meshes of VTK are not textured.
   void GetTextureCoordinate(std::uint64_t point, double coordinate[2]) const override;
 
 private:
@@ -43,7 +43,8 @@ private:
     vtkDSMTriangleList List;
     vtkDSMMeshColors Colors;
     vtkDataArray* Positions;
-    vtkDataArray* Normals; ///< may be null
+    vtkDataArray* Normals;            ///< may be null
+    vtkDataArray* TextureCoordinates; ///< likewise
     std::uint64_t FirstTriangle;
     std::uint64_t FirstPoint;
   };

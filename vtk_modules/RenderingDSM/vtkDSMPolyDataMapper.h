@@ -9,7 +9,8 @@
  * ScalarVisibility, ScalarMode, the colour array (SelectColorArray), ColorMode, LookupTable,
  * UseLookupTableScalarRange and ScalarRange, InterpolateScalarsBeforeMapping, Static. Culling,
  * interpolation (flat, or by the points' normals), opacity and lighting are the property's. A
- * property's representation (points, wireframe), edges and textures are not used.
+ * property's representation (points, wireframe) and edges are not used. The actor's texture, whole
+ * on every rank, is laid on the surface by its texture coordinates.
  *
  * Values are mapped to colours where a ray meets the surface, so a change of the colour map, the
  * material or the actor's matrix takes effect at once; a change of points, cells, the colour array

@@ -245,6 +245,7 @@ void vtkDSMScene::Internals::FindMembers()
     kept.push_back(std::move(state));
     if (prop->GetVisibility())
     {
+      kept.back()->SetProp(vtkProp3D::SafeDownCast(prop));
       this->Members.push_back({ vtkProp3D::SafeDownCast(prop), kept.back().get() });
     }
   }
@@ -354,7 +355,7 @@ void vtkDSMScene::Internals::Draw()
     {
       for (const Member& member : this->Members)
       {
-        member.State->AddTo(scene, member.Prop);
+        member.State->AddTo(scene);
       }
       this->DrawLast(scene);
       scene.Lights = vtkDSMTranslation::ToLights(this->Renderer);
@@ -464,6 +465,7 @@ rt::LightTransport vtkDSMScene::Internals::GetTransport() const
     double bounds[6];
     this->GetBounds(bounds);
     const vtkBoundingBox box(bounds);
+    // Without anything to show there is no diagonal.
     transport.AmbientOcclusionDistance =
       box.IsValid() ? AmbientOcclusionPart * box.GetDiagonalLength() : 0.0;
   }

@@ -40,13 +40,17 @@ public:
   /// mapper names and is not there yet. What goes wrong is kept as a message.
   virtual void Update(const std::shared_ptr<vtkDSMRankGroup>& group, bool newData) = 0;
 
-  /// Local: what the prop that uses the mapper shows.
-  virtual void AddTo(rt::Scene& scene, vtkProp3D* prop) = 0;
+  /// Local: what the prop shows.
+  virtual void AddTo(rt::Scene& scene) = 0;
+
+  /// The prop of the frame that uses the mapper.
+  void SetProp(vtkProp3D* prop) { this->Prop = prop; }
 
   /// Reports the messages that are new since the last call.
   void ReportMessages();
 
 protected:
+  vtkProp3D* Prop = nullptr;
   /// Of the last Update and AddTo.
   std::vector<std::string> Messages;
   std::vector<std::string> Reported;

@@ -6,10 +6,16 @@
 #include "vtkDSMTranslation.h"
 
 #include "vtkActor.h"
+#include "vtkImageData.h"
+#include "vtkInformation.h"
+#include "vtkInformationDoubleVectorKey.h"
 #include "vtkMath.h"
 #include "vtkMatrix4x4.h"
+#include "vtkNew.h"
 #include "vtkProperty.h"
 #include "vtkScalarsToColors.h"
+#include "vtkTexture.h"
+#include "vtkTransform.h"
 
 #include <utility>
 
@@ -76,11 +82,17 @@ void vtkDSMSceneMesh::UpdatePiece(int piece, int numberOfPieces)
   this->Mapper->UpdatePiece(piece, numberOfPieces);
 }
 
+bool vtkDSMSceneMesh::IsTextured() const
+{
+  auto* actor = vtkActor::SafeDownCast(this->Prop);
+  return actor && actor->GetTexture();
+}
+
 std::vector<std::uint64_t> vtkDSMSceneMesh::Describe() const
 {
   try
   {
-    return vtkDSMMeshData::Describe(this->Mapper);
+    return vtkDSMMeshData::Describe(this->Mapper, this->IsTextured());
   }
   catch (const dsm::Error&)
   {
@@ -115,7 +127,7 @@ void vtkDSMSceneMesh::Update(const std::shared_ptr<vtkDSMRankGroup>& group, bool
     this->Seen = this->Describe();
     try
     {
-      this->Data = std::make_unique<vtkDSMMeshData>(group, this->Mapper);
+      this->Data = std::make_unique<vtkDSMMeshData>(group, this->Mapper, this->IsTextured());
       this->Mapper->SetGlobalBounds(this->Data->GetBounds());
     }
     catch (const dsm::Error& error)
@@ -175,12 +187,44 @@ rt::MeshObject vtkDSMSceneMesh::CreateObject(const vtkDSMMeshData::Part& part, v
   {
     object.Colors = this->GetColorMap();
   }
+  if (part.Mesh->Attributes.TextureCoordinates && actor->GetTexture())
+  {
+    object.Picture = this->GetPicture(actor);
+  }
   return object;
 }
 
-void vtkDSMSceneMesh::AddTo(rt::Scene& scene, vtkProp3D* prop)
+const std::shared_ptr<const rt::Texture>& vtkDSMSceneMesh::GetPicture(vtkActor* actor)
 {
-  auto* actor = vtkActor::SafeDownCast(prop);
+  vtkTexture* texture = actor->GetTexture();
+  vtkInformation* keys = actor->GetPropertyKeys();
+  const double* place = keys && keys->Has(vtkProp::GeneralTextureTransform())
+    ? keys->Get(vtkProp::GeneralTextureTransform())
+    : nullptr;
+  const std::vector<std::uint64_t> source{ reinterpret_cast<std::uintptr_t>(texture),
+    texture->GetMTime(), texture->GetInput() ? texture->GetInput()->GetMTime() : 0,
+    texture->GetTransform() ? texture->GetTransform()->GetMTime() : 0, keys ? keys->GetMTime() : 0,
+    place ? 1u : 0u };
+  if (source != this->PictureSource)
+  {
+    vtkNew<vtkMatrix4x4> transform;
+    if (texture->GetTransform())
+    {
+      transform->DeepCopy(texture->GetTransform()->GetMatrix());
+    }
+    else if (place)
+    {
+      transform->DeepCopy(place);
+    }
+    this->Picture = vtkDSMTranslation::ToTexture(texture, transform);
+    this->PictureSource = source;
+  }
+  return this->Picture;
+}
+
+void vtkDSMSceneMesh::AddTo(rt::Scene& scene)
+{
+  auto* actor = vtkActor::SafeDownCast(this->Prop);
   // A surface that is squeezed flat has no inside to look into.
   actor->ComputeMatrix();
   if (!this->Data || actor->GetMatrix()->Determinant() == 0.0)

@@ -31,12 +31,14 @@ public:
   void GiveUpBlocks() override;
   void Update(const std::shared_ptr<vtkDSMRankGroup>& group, bool newData) override;
   /// One object for each of the meshes.
-  void AddTo(rt::Scene& scene, vtkProp3D* prop) override;
+  void AddTo(rt::Scene& scene) override;
 
 private:
   std::vector<std::uint64_t> Describe() const;
+  bool IsTextured() const;
   rt::MeshObject CreateObject(const vtkDSMMeshData::Part& part, vtkActor* actor);
   const std::shared_ptr<const rt::ColorMap>& GetColorMap();
+  const std::shared_ptr<const rt::Texture>& GetPicture(vtkActor* actor);
 
   vtkWeakPointer<vtkDSMPolyDataMapper> Mapper;
   /// Of what was taken in; see vtkDSMMeshData::Describe.
@@ -48,6 +50,9 @@ private:
   std::shared_ptr<const rt::ColorMap> Colors;
   const void* ColorsSource = nullptr;
   vtkMTimeType ColorsTime = 0;
+  std::shared_ptr<const rt::Texture> Picture;
+  /// Of the texture, its image and what places it.
+  std::vector<std::uint64_t> PictureSource;
 };
 
 #endif

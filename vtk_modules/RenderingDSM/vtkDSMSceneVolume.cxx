@@ -198,7 +198,7 @@ const rt::ColorMap& vtkDSMSceneVolume::GetColorMap()
   return this->Colors;
 }
 
-void vtkDSMSceneVolume::AddTo(rt::Scene& scene, vtkProp3D* prop)
+void vtkDSMSceneVolume::AddTo(rt::Scene& scene)
 {
   if (!this->Data || !this->Iso)
   {
@@ -209,8 +209,8 @@ void vtkDSMSceneVolume::AddTo(rt::Scene& scene, vtkProp3D* prop)
   {
     return;
   }
-  prop->ComputeMatrix();
-  const glm::dmat4 dataToWorld = vtkDSMTranslation::ToMatrix(prop->GetMatrix());
+  this->Prop->ComputeMatrix();
+  const glm::dmat4 dataToWorld = vtkDSMTranslation::ToMatrix(this->Prop->GetMatrix());
   rt::Material material = vtkDSMTranslation::ToMaterial(this->Mapper->GetSurfaceProperty());
   material.Reflectivity = static_cast<float>(this->GetLightOptions()->GetReflectivity());
   const bool colored = this->Color && !this->Color->Fields.empty();

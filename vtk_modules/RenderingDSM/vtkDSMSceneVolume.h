@@ -29,7 +29,7 @@ public:
   void GiveUpBlocks() override;
   void Update(const std::shared_ptr<vtkDSMRankGroup>& group, bool newData) override;
   /// One object for each of the volume's lattices.
-  void AddTo(rt::Scene& scene, vtkProp3D* prop) override;
+  void AddTo(rt::Scene& scene) override;
 
 private:
   struct Published

@@ -3,14 +3,19 @@
 
 #include "vtkDSMMemoryOptions.h"
 
+#include "vtkAlgorithm.h"
 #include "vtkCamera.h"
+#include "vtkImageData.h"
 #include "vtkLight.h"
 #include "vtkLightCollection.h"
 #include "vtkMath.h"
 #include "vtkMatrix4x4.h"
+#include "vtkPointData.h"
 #include "vtkProperty.h"
 #include "vtkRenderer.h"
 #include "vtkScalarsToColors.h"
+#include "vtkTexture.h"
+#include "vtkUnsignedCharArray.h"
 
 #include <glm/geometric.hpp>
 
@@ -64,6 +69,41 @@ rt::Material vtkDSMTranslation::ToMaterial(vtkProperty* property)
   material.Opacity = static_cast<float>(property->GetOpacity());
   material.Lighting = property->GetLighting();
   return material;
+}
+
+std::shared_ptr<const rt::Texture> vtkDSMTranslation::ToTexture(
+  vtkTexture* texture, vtkMatrix4x4* transform)
+{
+  if (texture->GetInputAlgorithm())
+  {
+    texture->GetInputAlgorithm()->Update();
+  }
+  vtkImageData* image = texture->GetInput();
+  auto* colors =
+    image ? vtkUnsignedCharArray::SafeDownCast(image->GetPointData()->GetScalars()) : nullptr;
+  if (!colors || colors->GetNumberOfTuples() == 0)
+  {
+    return nullptr;
+  }
+  auto picture = std::make_shared<rt::Texture>();
+  picture->Width = image->GetDimensions()[0];
+  picture->Height = image->GetDimensions()[1];
+  picture->Repeat = texture->GetRepeat() != 0;
+  picture->Interpolate = texture->GetInterpolate() != 0;
+  picture->Transform = ToMatrix(transform);
+  const int components = colors->GetNumberOfComponents();
+  picture->Texels.resize(4 * static_cast<std::size_t>(picture->Width) * picture->Height);
+  for (std::size_t texel = 0; texel < picture->Texels.size() / 4; ++texel)
+  {
+    const unsigned char* from = colors->GetPointer(static_cast<vtkIdType>(texel) * components);
+    std::uint8_t* to = &picture->Texels[4 * texel];
+    // Gray, gray and alpha, colour, colour and alpha.
+    to[0] = from[0];
+    to[1] = components > 2 ? from[1] : from[0];
+    to[2] = components > 2 ? from[2] : from[0];
+    to[3] = components % 2 == 0 ? from[components - 1] : 255;
+  }
+  return picture;
 }
 
 rt::ColorMap vtkDSMTranslation::ToColorMap(vtkScalarsToColors* table)

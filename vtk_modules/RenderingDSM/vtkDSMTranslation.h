@@ -6,6 +6,7 @@
 #include "DSMRayTracing/frame/Scene.h"
 #include "vtkDSMMemorySettings.h"
 
+#include <memory>
 #include <vector>
 
 class vtkDSMMemoryOptions;
@@ -13,6 +14,7 @@ class vtkMatrix4x4;
 class vtkProperty;
 class vtkRenderer;
 class vtkScalarsToColors;
+class vtkTexture;
 
 /// VTK's words for a picture in the tracer's.
 class vtkDSMTranslation
@@ -21,6 +23,10 @@ public:
   static glm::dmat4 ToMatrix(vtkMatrix4x4* matrix);
 
   static rt::Material ToMaterial(vtkProperty* property);
+
+  /// The texture's picture with its settings, after `transform` of the coordinates. Null when
+  /// the texture has no picture of bytes.
+  static std::shared_ptr<const rt::Texture> ToTexture(vtkTexture* texture, vtkMatrix4x4* transform);
 
   /// Samples any lookup table or transfer function; finely enough for one that is discretised.
   static rt::ColorMap ToColorMap(vtkScalarsToColors* table);

@@ -2,13 +2,13 @@
 #ifndef vtkDSMTriangleList_h
 #define vtkDSMTriangleList_h
 
+#include "vtkDataSetAttributes.h"
 #include "vtkSmartPointer.h"
 #include "vtkType.h"
 
 #include <cstdint>
 #include <vector>
 
-class vtkIdList;
 class vtkPolyData;
 
 /// The triangles of a vtkPolyData's polygons and strips, ghost cells left out. Polygons are cut as
@@ -31,6 +31,9 @@ public:
   static std::uint64_t GetLargestCount(vtkPolyData* data);
 
 private:
+  static constexpr int HiddenCells =
+    vtkDataSetAttributes::DUPLICATECELL | vtkDataSetAttributes::HIDDENCELL;
+
   bool UseInPlace();
   void AddPolygons();
   void AddStrips();
@@ -39,7 +42,10 @@ private:
   void CheckPoints(vtkIdType cell, vtkIdType size, const vtkIdType* points) const;
   /// Whether the triangles of a fan around the first point do not overlap.
   bool IsFan(vtkIdType size, const vtkIdType* points) const;
-  bool IsGhost(vtkIdType cell) const { return this->Ghosts && (this->Ghosts[cell] & 0x21) != 0; }
+  bool IsGhost(vtkIdType cell) const
+  {
+    return this->Ghosts && (this->Ghosts[cell] & HiddenCells) != 0;
+  }
 
   vtkSmartPointer<vtkPolyData> Data;
   const std::uint8_t* Ghosts = nullptr; ///< of the cells

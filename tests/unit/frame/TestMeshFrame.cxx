@@ -220,6 +220,31 @@ TEST_F(MeshPicture, ColoursByTheirSource)
   EXPECT_EQ(GetColor(picture, 0.01, 0.3).z, 0);
 }
 
+TEST_F(MeshPicture, ATextureIsLaidOnByItsCoordinates)
+{
+  TestMesh::Mesh square = CreateSquare(0.0);
+  square.TextureCoordinates = { 0, 0, 2, 0, 2, 1, 0, 1 };
+  rt::MeshObject object = this->Publish(square);
+  auto texture = std::make_shared<rt::Texture>();
+  texture->Width = 2;
+  texture->Height = 1;
+  texture->Texels = { 255, 0, 0, 255, 0, 255, 0, 255 };
+  object.Picture = texture;
+  rt::Picture picture = this->Trace({ object });
+  EXPECT_EQ(GetColor(picture, -0.8, 0.1), glm::ivec4(255, 0, 0, 255));
+  EXPECT_EQ(GetColor(picture, -0.3, 0.1), glm::ivec4(0, 255, 0, 255));
+  EXPECT_EQ(GetColor(picture, 0.2, 0.1), glm::ivec4(255, 0, 0, 255)) << "repeated";
+  texture->Repeat = false;
+  EXPECT_EQ(GetColor(this->Trace({ object }), 0.2, 0.1), glm::ivec4(0, 255, 0, 255)) << "border";
+  texture->Interpolate = true;
+  const glm::ivec4 between = GetColor(this->Trace({ object }), -0.49, 0.1);
+  EXPECT_NEAR(between.x, 127, 12);
+  EXPECT_NEAR(between.x + between.y, 255, 1);
+  texture->Interpolate = false;
+  texture->Transform = glm::translate(glm::dmat4(1.0), glm::dvec3(0.5, 0.0, 0.0));
+  EXPECT_EQ(GetColor(this->Trace({ object }), -0.8, 0.1), glm::ivec4(0, 255, 0, 255)) << "moved";
+}
+
 TEST_F(MeshPicture, TwoTranslucentSquaresAndTheirCommonEdges)
 {
   rt::MeshObject above = this->Publish(CreateSquare(0.5));

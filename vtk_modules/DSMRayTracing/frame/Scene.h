@@ -5,6 +5,7 @@
 #include "DSMCore/BlockSegment.h"
 #include "DSMRayTracing/accel/MacrocellHierarchy.h"
 #include "DSMRayTracing/brick/BrickLattice.h"
+#include "DSMRayTracing/frame/Texture.h"
 #include "DSMRayTracing/kernel/MeshInstance.h"
 
 #include <glm/mat4x4.hpp>
@@ -98,6 +99,8 @@ struct MeshObject
   Coloring ColoredBy = Coloring::Material;
   /// Of the values; not null when they give the colour.
   std::shared_ptr<const ColorMap> Colors;
+  /// Times the colour, where the mesh has texture coordinates; may be null.
+  std::shared_ptr<const Texture> Picture;
   /// Shaded by the triangles' planes, also where points have normals.
   bool Flat = false;
   Material Surface;

@@ -232,6 +232,11 @@ private:
     point.Surface = !hit.Front && object.BackSurface ? &*object.BackSurface : &object.Surface;
     point.ColorIsFromArray = object.ColoredBy != MeshObject::Coloring::Material;
     point.Color = GetColor(object, hit, *point.Surface);
+    if (object.Picture)
+    {
+      point.Color *= object.Picture->Sample(hit.TextureCoordinate);
+      point.ColorIsFromArray = true;
+    }
     point.Color.w *= point.Surface->Opacity;
     const glm::dvec3 distance = glm::abs(point.Position) + glm::abs(ray.Origin);
     point.Clearance = MeshClearancePart * object.Instance->GetDiagonal() +
