@@ -87,6 +87,9 @@ def main():
     representation.ColorArrayName = [None, ""]
     representation.DSMIsoArray = array
     representation.DSMIsoValues = [isovalue]
+    # As if each rank had a host of its own; else the data, which fit here, would be replicated.
+    representation.DSMMemoryOrganization = "Object based"
+    representation.DSMHostSharing = 0
     simple.ResetCamera(view)
     camera = simple.GetActiveCamera()
     camera.Azimuth(30)

@@ -1,0 +1,52 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""A state file brings back the representation with all of its settings, and the same picture."""
+
+from dsm_testing import *
+
+load_plugin()
+SETTINGS = {
+    "Representation": REPRESENTATION, "DSMIsoValues": [0.5, 0.8], "DSMIsoComponent": 0,
+    "DSMThreads": 1, "DSMCacheSize": 33, "DSMMemoryOrganization": "Object based",
+    "DSMHostSharing": 0, "DSMMemory": 123, "DSMShadows": 1, "DSMLightRadius": 0.02,
+    "DSMAmbientOcclusionSamples": 2, "DSMAmbientOcclusionDistance": 0.75, "DSMReflectivity": 0.25,
+    "DSMMaxBounces": 3, "DSMSamplesPerPixel": 2, "Opacity": 0.5,
+}
+
+
+def find(kind):
+    """The display of the source of a kind, in the only view."""
+    sources = [source for source in simple.GetSources().values() if source.GetXMLName() == kind]
+    check(len(sources) == 1, "the state has one " + kind)
+    return simple.GetRepresentation(sources[0], simple.GetActiveView())
+
+
+def set_up():
+    view = create_view()
+    view.UseFXAA = 0
+    volume = simple.DSMSampleVolume(Dimensions=[40, 40, 40])
+    display = simple.Show(volume, view)
+    display.DSMIsoArray = ["POINTS", "f"]
+    mesh = simple.Cone(Resolution=40, Height=4.0)
+    meshDisplay = simple.Show(mesh, view)
+    meshDisplay.Representation = REPRESENTATION
+    meshDisplay.DSMReflectivity = 0.5
+    for name, value in SETTINGS.items():
+        setattr(display, name, value)
+    display.ColorArrayName = [None, ""]
+    place_camera(view)
+    return view
+
+
+reference = render(set_up(), "state")
+check(get_covered(reference).mean() > 0.05, "there is something to compare")
+path = os.path.join(OUTPUT, f"state.{get_ranks()}.pvsm")
+simple.SaveState(path)
+simple.ResetSession()
+load_plugin()
+simple.LoadState(path)
+display = find("DSMSampleVolume")
+for name, value in SETTINGS.items():
+    restored = display.GetPropertyValue(name)
+    check(restored == value or list(restored) == list(value), f"{name} is {restored}")
+check(find("ConeSource").GetPropertyValue("DSMReflectivity") == 0.5, "the mesh has its own")
+check_equal(render(simple.GetActiveView()), reference, "the picture is the same", 0)
