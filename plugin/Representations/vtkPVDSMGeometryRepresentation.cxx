@@ -6,6 +6,7 @@
 #include "vtkPVDSMDelivery.h"
 #include "vtkPVDSMFrameReport.h"
 #include "vtkPVDSMLightOptions.h"
+#include "vtkPVDSMMemoryOptions.h"
 
 #include "vtkBoundingBox.h"
 #include "vtkCommand.h"
@@ -178,19 +179,14 @@ void vtkPVDSMGeometryRepresentation::SelectRadiusArray(int, int, int, int, const
   this->GetMapper()->SetRadiusArray(array == "None" ? "" : array);
 }
 
-void vtkPVDSMGeometryRepresentation::SetNumberOfThreads(int threads)
-{
-  this->GetMapper()->SetNumberOfThreads(threads);
-}
-
-void vtkPVDSMGeometryRepresentation::SetCacheSize(int mebibytes)
-{
-  this->GetMapper()->SetCacheSize(mebibytes);
-}
-
 void vtkPVDSMGeometryRepresentation::SetLightOptions(vtkPVDSMLightOptions* options)
 {
   this->GetMapper()->SetLightOptions(options);
+}
+
+void vtkPVDSMGeometryRepresentation::SetMemoryOptions(vtkPVDSMMemoryOptions* options)
+{
+  this->GetMapper()->SetMemoryOptions(options);
 }
 
 void vtkPVDSMGeometryRepresentation::SetFrameReport(vtkPVDSMFrameReport* report)

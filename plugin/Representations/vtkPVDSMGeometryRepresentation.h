@@ -22,6 +22,7 @@ class vtkDSMScene;
 class vtkPartitionedDataSet;
 class vtkPVDSMFrameReport;
 class vtkPVDSMLightOptions;
+class vtkPVDSMMemoryOptions;
 
 class VTKREPRESENTATIONSDSM_EXPORT vtkPVDSMGeometryRepresentation
   : public vtkGeometryRepresentationWithFaces
@@ -42,14 +43,15 @@ public:
   void SetLineRadius(double radius);
   void SetPointRadius(double radius);
   void SelectRadiusArray(int index, int port, int connection, int association, const char* name);
-  void SetNumberOfThreads(int threads);
-  void SetCacheSize(int mebibytes);
   ///@}
 
+  ///@{
   /**
-   * Shadows, ambient occlusion, mirrors and samples.
+   * Shadows, ambient occlusion, mirrors and samples; memory organisation, sizes and threads.
    */
   void SetLightOptions(vtkPVDSMLightOptions* options);
+  void SetMemoryOptions(vtkPVDSMMemoryOptions* options);
+  ///@}
 
   /**
    * What shall tell of the view's frames; null on the client.

@@ -6,6 +6,7 @@
 #include "vtkPVDSMDelivery.h"
 #include "vtkPVDSMFrameReport.h"
 #include "vtkPVDSMLightOptions.h"
+#include "vtkPVDSMMemoryOptions.h"
 
 #include "vtkCommand.h"
 #include "vtkDataObject.h"
@@ -171,16 +172,6 @@ void vtkPVDSMImageRepresentation::SetIsoValue(int index, double value)
   this->Mapper->SetIsoValue(index, value);
 }
 
-void vtkPVDSMImageRepresentation::SetNumberOfThreads(int threads)
-{
-  this->Mapper->SetNumberOfThreads(threads);
-}
-
-void vtkPVDSMImageRepresentation::SetCacheSize(int mebibytes)
-{
-  this->Mapper->SetCacheSize(mebibytes);
-}
-
 void vtkPVDSMImageRepresentation::SetLookupTable(vtkScalarsToColors* table)
 {
   this->Mapper->SetLookupTable(table);
@@ -256,6 +247,11 @@ void vtkPVDSMImageRepresentation::SetUserTransform(const double matrix[16])
 void vtkPVDSMImageRepresentation::SetLightOptions(vtkPVDSMLightOptions* options)
 {
   this->Mapper->SetLightOptions(options);
+}
+
+void vtkPVDSMImageRepresentation::SetMemoryOptions(vtkPVDSMMemoryOptions* options)
+{
+  this->Mapper->SetMemoryOptions(options);
 }
 
 void vtkPVDSMImageRepresentation::SetFrameReport(vtkPVDSMFrameReport* report)

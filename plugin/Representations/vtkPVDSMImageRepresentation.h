@@ -22,6 +22,7 @@ class vtkMatrix4x4;
 class vtkPartitionedDataSet;
 class vtkPVDSMFrameReport;
 class vtkPVDSMLightOptions;
+class vtkPVDSMMemoryOptions;
 class vtkPVRenderView;
 class vtkScalarsToColors;
 class vtkVolume;
@@ -48,8 +49,6 @@ public:
   void SetIsoComponent(int component);
   void SetNumberOfIsoValues(int number);
   void SetIsoValue(int index, double value);
-  void SetNumberOfThreads(int threads);
-  void SetCacheSize(int mebibytes);
   void SetLookupTable(vtkScalarsToColors* table);
   ///@}
 
@@ -78,10 +77,13 @@ public:
   void SetUserTransform(const double matrix[16]);
   ///@}
 
+  ///@{
   /**
-   * Shadows, ambient occlusion, mirrors and samples.
+   * Shadows, ambient occlusion, mirrors and samples; memory organisation, sizes and threads.
    */
   void SetLightOptions(vtkPVDSMLightOptions* options);
+  void SetMemoryOptions(vtkPVDSMMemoryOptions* options);
+  ///@}
 
   /**
    * What shall tell of the view's frames; null on the client.

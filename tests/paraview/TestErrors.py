@@ -38,6 +38,12 @@ def expect_then_delete(source, *arguments, **keywords):
     simple.Delete(source)
 
 
+# How the ranks keep the bricks is said with the first picture, and is no error.
+first = image_source(GOOD)
+show(first, view, [0.7], "f")
+render(view)
+simple.Delete(first)
+
 expect_then_delete(image_source(GOOD), ["'nonsense' does not exist", "'f', 'other'"],
                    array="nonsense")
 

@@ -2,6 +2,7 @@
 // One rank runs out of memory, in turn at each of the larger allocations that it makes between the
 // data and the frame: every rank reports it, none waits, and the next frame is as it should be.
 // Several MPI ranks; draws nothing.
+#include "vtkDSMMemoryOptions.h"
 #include "vtkDSMScene.h"
 #include "vtkDSMStatistics.h"
 #include "vtkDSMVolumeMapper.h"
@@ -122,8 +123,8 @@ protected:
     this->Window->AddRenderer(this->Renderer);
     this->Mapper->SetIsoArray("distance");
     this->Mapper->SetIsoValue(0, 20.0);
-    this->Mapper->SetNumberOfThreads(2);
-    this->Mapper->SetCacheSize(8);
+    this->Mapper->GetMemoryOptions()->SetNumberOfThreads(2);
+    this->Mapper->GetMemoryOptions()->SetCacheSize(8);
     this->Volume->SetMapper(this->Mapper);
     this->Renderer->AddVolume(this->Volume);
     this->Renderer->GetActiveCamera()->SetPosition(60.0, 90.0, 200.0);

@@ -2,6 +2,7 @@
 // Polygons, lines and points as any VTK application draws them, without ParaView: against VTK's own
 // mapper with the same actor.
 #include "vtkDSMPolyDataMapper.h"
+#include "vtkDSMMemoryOptions.h"
 #include "vtkDSMScene.h"
 
 #include "vtkActor.h"
@@ -92,7 +93,7 @@ protected:
     this->Window->SetMultiSamples(0);
     this->Window->SetSize(Size, Size);
     this->Window->AddRenderer(this->Renderer);
-    this->Mapper->SetNumberOfThreads(2);
+    this->Mapper->GetMemoryOptions()->SetNumberOfThreads(2);
     this->Actor->SetMapper(this->Mapper);
     this->Renderer->AddActor(this->Actor);
     this->Renderer->GetActiveCamera()->SetPosition(0.3, 0.4, 3.0);

@@ -2,6 +2,7 @@
 // The classes as any VTK application uses them: a renderer, a volume, and no ParaView. Draws on the
 // X server, off screen.
 #include "vtkDSMLightOptions.h"
+#include "vtkDSMMemoryOptions.h"
 #include "vtkDSMScene.h"
 #include "vtkDSMStatistics.h"
 #include "vtkDSMVolumeMapper.h"
@@ -69,7 +70,7 @@ protected:
     this->Mapper->SetInputData(MakeBall());
     this->Mapper->SetIsoArray("distance");
     this->Mapper->SetIsoValue(0, 0.4);
-    this->Mapper->SetNumberOfThreads(2);
+    this->Mapper->GetMemoryOptions()->SetNumberOfThreads(2);
     this->Volume->SetMapper(this->Mapper);
     this->Renderer->GetActiveCamera()->SetPosition(20.0, 30.0, 60.0);
     this->Renderer->GetActiveCamera()->SetFocalPoint(0.0, 0.0, 0.0);

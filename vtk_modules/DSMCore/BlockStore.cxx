@@ -29,7 +29,6 @@ bool IsPaged(MemoryOrganization organization)
 
 BlockStore::BlockStore(Messenger& messenger, const Settings& settings)
   : Messages(messenger)
-  , Groups(HostGroups::Separate(messenger.GetSize()))
   , Objects(messenger, ObjectStore::Settings{})
   , Replicated(messenger, ReplicatedStore::Settings{})
 {
@@ -81,9 +80,11 @@ void BlockStore::Configure()
     static_cast<std::size_t>(std::min<std::uint64_t>(this->CacheBytes, this->Current.CacheBytes));
   objects.Workers = this->Current.Workers;
   objects.HostSharing = this->Current.HostSharing;
+  objects.Groups = this->Groups;
   ReplicatedStore::Settings replicated;
   replicated.Workers = this->Current.Workers;
   replicated.HostSharing = this->Current.HostSharing;
+  replicated.Groups = this->Groups;
   if (this->Paged)
   {
     PagedStore::Settings paged;
@@ -119,7 +120,9 @@ MemoryPlan BlockStore::MakePlan(const BlockDirectory* next)
 {
   this->Messages.GetRanksOnHost(); // collective the first time
   this->FindBudget();
-  this->Groups = HostGroups::Find(this->Messages, this->Current.HostSharing);
+  this->Groups =
+    std::make_shared<const HostGroups>(HostGroups::Find(this->Messages, this->Current.HostSharing));
+  this->Configure();
   Stance mine{ this->Budget, static_cast<std::uint64_t>(this->Current.Organization) };
   for (const std::uint64_t part : { std::uint64_t(this->Segments.size()),
          next ? next->GetFingerprint() : std::uint64_t(0), std::uint64_t(next != nullptr),
@@ -149,7 +152,7 @@ MemoryPlan BlockStore::MakePlan(const BlockDirectory* next)
     directories.push_back(next);
   }
   return MemoryPlan(
-    std::move(directories), this->Groups, std::move(budgets), AddressRange::GetPageBytes());
+    std::move(directories), *this->Groups, std::move(budgets), AddressRange::GetPageBytes());
 }
 
 void BlockStore::TakePlan(const MemoryPlan& plan, MemoryOrganization chosen)

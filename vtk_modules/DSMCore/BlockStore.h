@@ -133,7 +133,8 @@ private:
   MemoryPlan::Budget Budget;
   std::uint64_t AvailableBytes = 0; ///< to this rank, when first asked
   std::uint64_t CacheBytes = 0;
-  HostGroups Groups;
+  /// As of the last plan.
+  std::shared_ptr<const HostGroups> Groups;
   std::map<std::uint32_t, std::shared_ptr<BlockSegment>> Segments; ///< by number
 
   ObjectStore Objects;

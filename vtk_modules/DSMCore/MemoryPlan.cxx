@@ -201,7 +201,7 @@ std::string MemoryPlan::Explain(MemoryOrganization wanted, MemoryOrganization ch
     least = std::min(least, this->Budgets[rank].Bytes);
   }
   const bool fits = this->FindPoorest(MemoryOrganization::Replicated) < 0;
-  text += std::string(": all data take ") + FormatMebibytes(need) + " of a rank's memory, which " +
+  text += std::string(": all data take ") + FormatMebibytes(need) + " on a rank, which " +
     (fits ? "fit" : "do not fit") + " the " + FormatMebibytes(least) + " that it may take";
   if (fits && chosen != MemoryOrganization::Replicated)
   {

@@ -69,6 +69,26 @@ T Decode(const Message& message, MessageKind kind, bool exact = true)
   return value;
 }
 
+/// The values, one or more, that a message of kind `kind` consists of. Throws Error when the kind
+/// differs, or the payload is anything else.
+template <class T>
+std::vector<T> DecodeSeveral(const Message& message, MessageKind kind)
+{
+  static_assert(std::is_trivially_copyable_v<T>, "only plain values travel");
+  const std::size_t bytes = message.Payload.size();
+  if (message.Kind != kind || bytes == 0 || bytes % sizeof(T) != 0)
+  {
+    throw Error("A message from rank " + std::to_string(message.Source) + " of kind " +
+      std::to_string(static_cast<unsigned>(message.Kind)) + " with " + std::to_string(bytes) +
+      " bytes was rejected: kind " + std::to_string(static_cast<unsigned>(kind)) +
+      " with a multiple of " + std::to_string(sizeof(T)) +
+      " bytes was expected. Do all ranks run the same build?");
+  }
+  std::vector<T> values(bytes / sizeof(T));
+  std::memcpy(values.data(), message.Payload.data(), bytes);
+  return values;
+}
+
 /// Puts a value behind a run of bytes. Behind, not before, so that the receiver takes it off
 /// (DetachTail) without moving what precedes it.
 template <class T>

@@ -36,6 +36,7 @@ std::shared_ptr<BlockSegment> ObjectStore::Publish(const std::string& what,
 {
   TablePublisher::Plan plan;
   plan.HostSharing = this->GetSettings().HostSharing;
+  plan.Groups = this->GetSettings().Groups;
   plan.Check = [this]
   {
     if (this->Self->IsInFrame())

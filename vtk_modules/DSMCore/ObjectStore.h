@@ -45,6 +45,8 @@ public:
     /// Ranks of one host read one another's blocks in place: such accesses are hits, and take
     /// nothing of the cache. For what is published from then on; the same on every rank.
     bool HostSharing = false;
+    /// Who shares; null: found out with every publication.
+    std::shared_ptr<const HostGroups> Groups = nullptr;
   };
 
   using Segment = BlockTable;

@@ -22,6 +22,7 @@ ObjectStore::Internals::Internals(
   ObjectStore& store, Messenger& messenger, const Settings& settings)
   : Messages(messenger)
   , Store(store)
+  , Requests(messenger, this->MakeCallbacks())
 {
   this->Configure(settings);
 }
@@ -75,7 +76,7 @@ const std::byte* ObjectStore::Internals::Wait(Worker& worker, const Segment& seg
   if (line.State == LineState::Absent)
   {
     line.MoveTo(LineState::Wanted);
-    this->Wanted.push_back(Want{ &segment, id });
+    this->Wanted.push_back({ &segment, id });
     this->WantedCount.store(this->Wanted.size(), std::memory_order_release);
   }
   else
@@ -200,11 +201,7 @@ void ObjectStore::Internals::CheckBudget() const
 void ObjectStore::Internals::BeginFrame()
 {
   this->Messages.RunTogether("The frame cannot begin", [this] { this->CheckBudget(); });
-  this->Messages.SetHandler(
-    MessageKind::BlockRequest, [this](Message&& message) { this->Serve(message); });
-  this->Messages.SetHandler(
-    MessageKind::BlockReply, [this](Message&& message) { this->Receive(std::move(message)); });
-  this->FrameSession = this->Messages.BeginSession();
+  this->Requests.BeginFrame();
 
   const std::size_t footprint = BlockCache::GetFootprint(this->GetLargestBlock());
   const std::lock_guard<std::mutex> lock(this->Guard);
@@ -226,31 +223,24 @@ bool ObjectStore::Internals::Service()
   {
     return false;
   }
-  std::vector<Want> granted;
   bool any = false;
   {
     const std::lock_guard<std::mutex> lock(this->Guard);
     any = this->Cache.Reclaim(this->GetOldestEpoch());
     while (!this->Wanted.empty())
     {
-      BlockLine& line = this->Wanted.front().From->Lines[this->Wanted.front().Id];
+      BlockLine& line = GetLine(this->Wanted.front());
       if (!this->MakeRoom(line.Bytes))
       {
         break;
       }
       line.MoveTo(LineState::Pending);
-      granted.push_back(this->Wanted.front());
-      this->Pending.push_back(this->Wanted.front());
+      this->Requests.Add(this->Wanted.front());
       this->Wanted.pop_front();
     }
     this->WantedCount.store(this->Wanted.size(), std::memory_order_release);
   }
-  for (const Want& want : granted)
-  {
-    this->Messages.Post(want.From->GetDirectory().GetOwner(want.Id), MessageKind::BlockRequest,
-      Encode(BlockName{ want.From->GetNumber(), this->FrameSession, want.Id }));
-  }
-  return any || !granted.empty();
+  return this->Requests.Send() || any;
 }
 
 bool ObjectStore::Internals::MakeRoom(std::size_t blockBytes)
@@ -285,70 +275,26 @@ std::uint64_t ObjectStore::Internals::GetOldestEpoch() const
   return oldest;
 }
 
-const ObjectStore::Segment& ObjectStore::Internals::Find(
-  const BlockName& name, int source, const char* deed) const
+BlockRequests::Callbacks ObjectStore::Internals::MakeCallbacks()
 {
-  const auto found = this->Segments.find(name.Segment);
-  if (found == this->Segments.end() || name.Id >= found->second->GetDirectory().GetCount() ||
-    name.Frame != this->FrameSession)
+  BlockRequests::Callbacks callbacks;
+  callbacks.Find = [this](std::uint32_t number) -> const BlockSegment*
   {
-    throw Error("Rank " + std::to_string(source) + " " + deed + " block " +
-      std::to_string(name.Id) + " of segment " + std::to_string(name.Segment) + " in frame " +
-      std::to_string(name.Frame) + ", which rank " + std::to_string(this->Messages.GetRank()) +
-      " does not know. Do all ranks run the same build?");
-  }
-  return *found->second;
+    const auto found = this->Segments.find(number);
+    return found == this->Segments.end() ? nullptr : found->second.get();
+  };
+  callbacks.GetOwned = [](const BlockWant& block)
+  { return GetLine(block).Address.load(std::memory_order_relaxed); };
+  callbacks.Take = [this](const BlockWant& block, const std::byte* bytes)
+  { this->Take(block, bytes); };
+  return callbacks;
 }
 
-void ObjectStore::Internals::Serve(const Message& message)
+void ObjectStore::Internals::Take(const BlockWant& block, const std::byte* bytes)
 {
-  const auto name = Decode<BlockName>(message, MessageKind::BlockRequest);
-  if (name.Frame < this->FrameSession)
-  {
-    return; // left over from a frame that was cancelled; its segment may be gone
-  }
-  const Segment& segment = this->Find(name, message.Source, "asked for");
-  const BlockLine& line = segment.Lines[name.Id];
-  if (segment.GetDirectory().GetOwner(name.Id) != this->Messages.GetRank())
-  {
-    throw Error("Rank " + std::to_string(message.Source) + " asked rank " +
-      std::to_string(this->Messages.GetRank()) + " for block " + std::to_string(name.Id) +
-      ", which rank " + std::to_string(segment.GetDirectory().GetOwner(name.Id)) +
-      " owns. Do all ranks run the same build?");
-  }
-  const std::byte* const bytes = line.Address.load(std::memory_order_relaxed);
-  std::vector<std::byte> reply;
-  reply.reserve(line.Bytes + 3 * sizeof(BlockName)); // the transport puts its header behind
-  reply.assign(bytes, bytes + line.Bytes);
-  AttachTail(reply, name);
-  this->Messages.Post(message.Source, MessageKind::BlockReply, std::move(reply));
-  this->Frame.BytesSent += line.Bytes;
-}
-
-void ObjectStore::Internals::Receive(Message&& message)
-{
-  const auto name = DetachTail<BlockName>(message, MessageKind::BlockReply);
-  if (name.Frame < this->FrameSession)
-  {
-    return;
-  }
-  const Segment& segment = this->Find(name, message.Source, "sent");
-  BlockLine& line = segment.Lines[name.Id];
+  BlockLine& line = GetLine(block);
   const std::lock_guard<std::mutex> lock(this->Guard);
-  const auto asked = std::find_if(this->Pending.begin(), this->Pending.end(),
-    [&](const Want& want) { return want.From == &segment && want.Id == name.Id; });
-  if (asked == this->Pending.end() || message.Payload.size() != line.Bytes ||
-    message.Source != segment.GetDirectory().GetOwner(name.Id))
-  {
-    throw Error("Rank " + std::to_string(message.Source) + " sent " +
-      std::to_string(message.Payload.size()) + " bytes as block " + std::to_string(name.Id) +
-      ", which rank " + std::to_string(this->Messages.GetRank()) +
-      " did not ask it for or knows with " + std::to_string(line.Bytes) +
-      " bytes. Do all ranks run the same build?");
-  }
-  this->Cache.Insert(line, message.Payload.data());
-  this->Pending.erase(asked);
-  this->Frame.BytesReceived += line.Bytes;
+  this->Cache.Insert(line, bytes);
   for (const auto& worker : this->Workers)
   {
     if (worker->WaitsFor == &line)
@@ -367,9 +313,7 @@ void ObjectStore::Internals::Cancel(const std::string& cause)
   }
   this->Phase = FramePhase::Cancelled;
   this->Cause = cause;
-  this->Abandon(this->Wanted);
-  this->Wanted.clear();
-  this->WantedCount.store(0, std::memory_order_release);
+  this->AbandonWanted();
   this->WakeAll();
 }
 
@@ -380,29 +324,27 @@ void ObjectStore::Internals::EndFrame()
   {
     return;
   }
-  this->Messages.SetHandler(MessageKind::BlockRequest, {});
-  this->Messages.SetHandler(MessageKind::BlockReply, {});
+  this->Requests.EndFrame();
   this->Phase = FramePhase::Closed;
   this->WakeAll();
-  this->Abandon(this->Wanted);
-  this->Wanted.clear();
-  this->WantedCount.store(0, std::memory_order_release);
-  for (const Want& want : this->Pending)
+  this->AbandonWanted();
+  for (const BlockWant& want : this->Requests.Abandon())
   {
-    this->Cache.Release(want.From->Lines[want.Id].Bytes);
+    this->Cache.Release(GetLine(want).Bytes);
+    GetLine(want).MoveTo(LineState::Absent);
   }
-  this->Abandon(this->Pending);
-  this->Pending.clear();
   this->Cache.Reclaim(this->GetOldestEpoch());
   this->LastWorkers = this->CountWorkers();
 }
 
-void ObjectStore::Internals::Abandon(const std::deque<Want>& wants)
+void ObjectStore::Internals::AbandonWanted()
 {
-  for (const Want& want : wants)
+  for (const BlockWant& want : this->Wanted)
   {
-    want.From->Lines[want.Id].MoveTo(LineState::Absent);
+    GetLine(want).MoveTo(LineState::Absent);
   }
+  this->Wanted.clear();
+  this->WantedCount.store(0, std::memory_order_release);
 }
 
 // -- Counters --------------------------------------------------------------------------------------
@@ -432,6 +374,8 @@ StoreCounters ObjectStore::Internals::GetCounters()
   const auto workers = this->GetWorkerCounters();
   const std::lock_guard<std::mutex> lock(this->Guard);
   StoreCounters counters = this->Frame;
+  counters.BytesSent = this->Requests.GetBytesSent();
+  counters.BytesReceived = this->Requests.GetBytesReceived();
   for (const WorkerCounters& worker : workers)
   {
     counters.Workers += worker;

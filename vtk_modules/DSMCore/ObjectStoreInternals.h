@@ -3,6 +3,7 @@
 #define dsm_ObjectStoreInternals_h
 
 #include "DSMCore/BlockCache.h"
+#include "DSMCore/BlockRequests.h"
 #include "DSMCore/ObjectStore.h"
 
 #include <atomic>
@@ -55,29 +56,18 @@ private:
     Cancelled
   };
 
-  /// On the wire, as the whole of a request and behind the bytes of a reply.
-  struct BlockName
+  static BlockLine& GetLine(const BlockWant& block)
   {
-    std::uint32_t Segment;
-    /// Of the asker's frame: an answer to a frame that was cancelled is not taken for one to this.
-    std::uint32_t Frame;
-    BlockId Id;
-  };
-
-  struct Want
-  {
-    const Segment* From;
-    BlockId Id;
-  };
+    return static_cast<const Segment*>(block.From)->Lines[block.Id];
+  }
 
   void CheckBudget() const;
-  void Serve(const Message& message);
-  void Receive(Message&& message);
-  const Segment& Find(const BlockName& name, int source, const char* deed) const;
+  BlockRequests::Callbacks MakeCallbacks();
+  void Take(const BlockWant& block, const std::byte* bytes);
   /// Makes room for the next wanted block; false when it must wait for workers.
   bool MakeRoom(std::size_t blockBytes);
   void WakeAll();
-  void Abandon(const std::deque<Want>& wants);
+  void AbandonWanted();
   std::uint64_t GetOldestEpoch() const;
   std::vector<WorkerCounters> CountWorkers() const;
   std::size_t GetLargestBlock() const;
@@ -85,7 +75,7 @@ private:
   ObjectStore& Store;
   /// By number. Communication thread only.
   std::map<std::uint32_t, std::shared_ptr<Segment>> Segments;
-  std::uint32_t FrameSession = 0;
+  BlockRequests Requests;
 
   /// Guards what follows, the lines' slow parts, and Worker::Slow and WaitsFor.
   mutable std::mutex Guard;
@@ -93,10 +83,9 @@ private:
   std::string Cause;
   BlockCache Cache;
   std::size_t SpareBytes = 0;
-  std::deque<Want> Wanted;
+  std::deque<BlockWant> Wanted;
   /// Of Wanted; lets Service look without the lock.
   std::atomic<std::size_t> WantedCount{ 0 };
-  std::deque<Want> Pending;
   StoreCounters Frame;
   std::vector<WorkerCounters> LastWorkers;
 };

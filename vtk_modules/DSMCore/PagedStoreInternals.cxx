@@ -34,6 +34,7 @@ std::uint64_t NanosecondsSince(std::chrono::steady_clock::time_point start)
 PagedStore::Internals::Internals(Messenger& messenger, const Settings& settings)
   : Messages(messenger)
   , Process(getpid())
+  , Requests(messenger, this->MakeCallbacks())
 {
   this->Configure(settings);
 }
@@ -128,7 +129,7 @@ bool PagedStore::Internals::Request(const Segment& segment, BlockId id)
     return true;
   }
   line.MoveTo(PageState::Wanted);
-  this->Wanted.push_back(Want{ &segment, id });
+  this->Wanted.push_back({ &segment, id });
   this->WantedCount.store(this->Wanted.size(), std::memory_order_release);
   return false;
 }
@@ -287,11 +288,7 @@ void PagedStore::Internals::BeginFrame()
     }
     throw;
   }
-  this->Messages.SetHandler(
-    MessageKind::BlockRequest, [this](Message&& message) { this->Serve(message); });
-  this->Messages.SetHandler(
-    MessageKind::BlockReply, [this](Message&& message) { this->Receive(message); });
-  this->FrameSession = this->Messages.BeginSession();
+  this->Requests.BeginFrame();
 
   const std::lock_guard<std::mutex> lock(this->Guard);
   this->CommunicationThread = GetThread();
@@ -323,36 +320,29 @@ bool PagedStore::Internals::Service()
   {
     return false;
   }
-  std::vector<Want> granted;
   std::vector<PageCache::Frame> evicted;
   {
     const std::lock_guard<std::mutex> lock(this->Guard);
     while (!this->Wanted.empty() && this->MakeRoom(this->Wanted.front(), evicted))
     {
-      const Want& want = this->Wanted.front();
-      want.From->Lines[want.Id].MoveTo(PageState::Pending);
-      granted.push_back(want);
-      this->Pending.push_back(want);
+      const BlockWant& want = this->Wanted.front();
+      GetLine(want).MoveTo(PageState::Pending);
+      this->Requests.Add(want);
       this->Wanted.pop_front();
     }
     this->WantedCount.store(this->Wanted.size(), std::memory_order_release);
   }
   // An evicted block may be wanted again already, but only this thread can fetch it.
   this->Remove(evicted);
-  for (const Want& want : granted)
-  {
-    this->Messages.Post(want.From->GetDirectory().GetOwner(want.Id), MessageKind::BlockRequest,
-      Encode(BlockName{ want.From->GetNumber(), this->FrameSession, want.Id }));
-  }
-  return !granted.empty();
+  return this->Requests.Send();
 }
 
-bool PagedStore::Internals::MakeRoom(const Want& want, std::vector<PageCache::Frame>& evicted)
+bool PagedStore::Internals::MakeRoom(const BlockWant& want, std::vector<PageCache::Frame>& evicted)
 {
   // Every block under way may become a run of its own, and one that leaves the middle of a run
   // makes two of it.
   const auto isTight = [this](std::size_t more)
-  { return this->Runs + this->Pending.size() + more > this->LargestRuns; };
+  { return this->Runs + this->Requests.GetPendingCount() + more > this->LargestRuns; };
   while (isTight(1))
   {
     if (!this->TryEvict(true, evicted))
@@ -360,7 +350,7 @@ bool PagedStore::Internals::MakeRoom(const Want& want, std::vector<PageCache::Fr
       return false;
     }
   }
-  const std::size_t footprint = want.From->Layout.GetFootprint(want.Id);
+  const std::size_t footprint = GetFootprint(want);
   while (!this->Cache.TryReserve(footprint))
   {
     if (!this->TryEvict(isTight(2), evicted))
@@ -432,75 +422,31 @@ void PagedStore::Internals::MarkEvicted(const PageCache::Frame& frame)
   this->Runs = this->Runs + this->CountNeighbours(*frame.From, frame.Id) - 1;
 }
 
-const PagedStore::Segment& PagedStore::Internals::Find(
-  const BlockName& name, int source, const char* deed) const
+BlockRequests::Callbacks PagedStore::Internals::MakeCallbacks()
 {
-  const auto found = this->Segments.find(name.Segment);
-  if (found == this->Segments.end() || name.Id >= found->second->GetDirectory().GetCount() ||
-    name.Frame != this->FrameSession)
+  BlockRequests::Callbacks callbacks;
+  callbacks.Find = [this](std::uint32_t number) -> const BlockSegment*
   {
-    throw Error("Rank " + std::to_string(source) + " " + deed + " block " +
-      std::to_string(name.Id) + " of segment " + std::to_string(name.Segment) + " in frame " +
-      std::to_string(name.Frame) + ", which rank " + std::to_string(this->Messages.GetRank()) +
-      " does not know. Do all ranks run the same build?");
-  }
-  return *found->second;
+    const auto found = this->Segments.find(number);
+    return found == this->Segments.end() ? nullptr : found->second.get();
+  };
+  callbacks.GetOwned = [](const BlockWant& block) -> const std::byte*
+  { return GetSegment(block).GetAddress(block.Id); };
+  callbacks.Take = [this](const BlockWant& block, const std::byte* bytes)
+  { this->Take(block, bytes); };
+  return callbacks;
 }
 
-void PagedStore::Internals::Serve(const Message& message)
+void PagedStore::Internals::Take(const BlockWant& block, const std::byte* bytes)
 {
-  const auto name = Decode<BlockName>(message, MessageKind::BlockRequest);
-  if (name.Frame < this->FrameSession)
-  {
-    return; // left over from a frame that was cancelled; its segment may be gone
-  }
-  const Segment& segment = this->Find(name, message.Source, "asked for");
-  if (!segment.IsOwned(name.Id))
-  {
-    throw Error("Rank " + std::to_string(message.Source) + " asked rank " +
-      std::to_string(this->Messages.GetRank()) + " for block " + std::to_string(name.Id) +
-      ", which rank " + std::to_string(segment.GetDirectory().GetOwner(name.Id)) +
-      " owns. Do all ranks run the same build?");
-  }
-  const std::byte* const bytes = segment.GetAddress(name.Id);
-  const std::uint32_t count = segment.GetDirectory().GetBytes(name.Id);
-  std::vector<std::byte> reply;
-  reply.reserve(count + 3 * sizeof(BlockName)); // the transport puts its header behind
-  reply.assign(bytes, bytes + count);
-  AttachTail(reply, name);
-  this->Messages.Post(message.Source, MessageKind::BlockReply, std::move(reply));
-  this->Frame.BytesSent += count;
-}
-
-void PagedStore::Internals::Receive(Message& message)
-{
-  const auto name = DetachTail<BlockName>(message, MessageKind::BlockReply);
-  if (name.Frame < this->FrameSession || this->Phase != FramePhase::Open)
-  {
-    return;
-  }
-  const Segment& segment = this->Find(name, message.Source, "sent");
-  const std::uint32_t bytes = segment.GetDirectory().GetBytes(name.Id);
-  // Only this thread changes the list; the listener changes no line in it.
-  const auto asked = std::find_if(this->Pending.begin(), this->Pending.end(),
-    [&](const Want& want) { return want.From == &segment && want.Id == name.Id; });
-  if (asked == this->Pending.end() || message.Payload.size() != bytes ||
-    message.Source != segment.GetDirectory().GetOwner(name.Id))
-  {
-    throw Error("Rank " + std::to_string(message.Source) + " sent " +
-      std::to_string(message.Payload.size()) + " bytes as block " + std::to_string(name.Id) +
-      ", which rank " + std::to_string(this->Messages.GetRank()) +
-      " did not ask it for or knows with " + std::to_string(bytes) +
-      " bytes. Do all ranks run the same build?");
-  }
-  this->Faults->Place(segment.GetAddress(name.Id), message.Payload.data(), bytes);
+  const Segment& segment = GetSegment(block);
+  this->Faults->Place(
+    segment.GetAddress(block.Id), bytes, segment.GetDirectory().GetBytes(block.Id));
 
   const std::lock_guard<std::mutex> lock(this->Guard);
-  this->Pending.erase(asked);
-  this->MarkCached(segment, name.Id);
-  this->Cache.Insert({ &segment, name.Id, segment.Layout.GetFootprint(name.Id), Clock::now() });
-  this->Frame.BytesReceived += bytes;
-  const PageLine* const line = &segment.Lines[name.Id];
+  this->MarkCached(segment, block.Id);
+  this->Cache.Insert({ &segment, block.Id, GetFootprint(block), Clock::now() });
+  const PageLine* const line = &GetLine(block);
   for (const auto& worker : this->Workers)
   {
     if (worker->WaitsFor == line)
@@ -509,7 +455,7 @@ void PagedStore::Internals::Receive(Message& message)
     }
   }
   const auto isOther = [&](const Stopped& stopped)
-  { return stopped.From != &segment || stopped.Id != name.Id; };
+  { return stopped.From != &segment || stopped.Id != block.Id; };
   const auto first = std::partition(this->Waiting.begin(), this->Waiting.end(), isOther);
   std::for_each(first, this->Waiting.end(),
     [this](const Stopped& stopped)
@@ -523,18 +469,17 @@ void PagedStore::Internals::Receive(Message& message)
 
 void PagedStore::Internals::AbandonRequests()
 {
-  for (const Want& want : this->Wanted)
+  for (const BlockWant& want : this->Wanted)
   {
-    want.From->Lines[want.Id].MoveTo(PageState::Absent);
+    GetLine(want).MoveTo(PageState::Absent);
   }
   this->Wanted.clear();
   this->WantedCount.store(0, std::memory_order_release);
-  for (const Want& want : this->Pending)
+  for (const BlockWant& want : this->Requests.Abandon())
   {
-    this->Cache.Release(want.From->Layout.GetFootprint(want.Id));
-    want.From->Lines[want.Id].MoveTo(PageState::Absent);
+    this->Cache.Release(GetFootprint(want));
+    GetLine(want).MoveTo(PageState::Absent);
   }
-  this->Pending.clear();
 }
 
 void PagedStore::Internals::CloseEntrance()
@@ -572,8 +517,7 @@ void PagedStore::Internals::EndFrame()
   {
     return;
   }
-  this->Messages.SetHandler(MessageKind::BlockRequest, {});
-  this->Messages.SetHandler(MessageKind::BlockReply, {});
+  this->Requests.EndFrame();
   this->Phase = FramePhase::Closed;
   this->CloseEntrance();
   this->LastWorkers = this->CountWorkers();
@@ -627,6 +571,8 @@ StoreCounters PagedStore::Internals::GetCounters()
   const auto workers = this->GetWorkerCounters();
   const std::lock_guard<std::mutex> lock(this->Guard);
   StoreCounters counters = this->Frame;
+  counters.BytesSent = this->Requests.GetBytesSent();
+  counters.BytesReceived = this->Requests.GetBytesReceived();
   counters.Workers = this->Strangers;
   for (const WorkerCounters& worker : workers)
   {

@@ -2,6 +2,7 @@
 #ifndef dsm_PagedStoreInternals_h
 #define dsm_PagedStoreInternals_h
 
+#include "DSMCore/BlockRequests.h"
 #include "DSMCore/PageCache.h"
 #include "DSMCore/PageFaults.h"
 #include "DSMCore/PagedStore.h"
@@ -75,20 +76,15 @@ private:
     Cancelled
   };
 
-  /// On the wire, as the whole of a request and behind the bytes of a reply.
-  struct BlockName
+  static const Segment& GetSegment(const BlockWant& block)
   {
-    std::uint32_t Segment;
-    /// Of the asker's frame: an answer to a frame that was cancelled is not taken for one to this.
-    std::uint32_t Frame;
-    BlockId Id;
-  };
-
-  struct Want
+    return *static_cast<const Segment*>(block.From);
+  }
+  static PageLine& GetLine(const BlockWant& block) { return GetSegment(block).Lines[block.Id]; }
+  static std::size_t GetFootprint(const BlockWant& block)
   {
-    const Segment* From;
-    BlockId Id;
-  };
+    return GetSegment(block).Layout.GetFootprint(block.Id);
+  }
 
   /// A thread that waits in a fault.
   struct Stopped
@@ -121,11 +117,10 @@ private:
 
   // -- The communication thread --
   void CheckFrame();
-  void Serve(const Message& message);
-  void Receive(Message& message);
-  const Segment& Find(const BlockName& name, int source, const char* deed) const;
+  BlockRequests::Callbacks MakeCallbacks();
+  void Take(const BlockWant& block, const std::byte* bytes);
   /// Makes room for a block, evicting into `evicted`; false when it must wait.
-  bool MakeRoom(const Want& want, std::vector<PageCache::Frame>& evicted);
+  bool MakeRoom(const BlockWant& want, std::vector<PageCache::Frame>& evicted);
   bool TryEvict(bool atEndOfRun, std::vector<PageCache::Frame>& evicted);
   void Remove(const std::vector<PageCache::Frame>& evicted);
 
@@ -146,7 +141,7 @@ private:
 
   pid_t Process;
   std::thread Listener;
-  std::uint32_t FrameSession = 0;
+  BlockRequests Requests;
 
   /// Guards what follows, the segments' lines, and what workers have for the slow path.
   mutable std::mutex Guard;
@@ -157,10 +152,9 @@ private:
   int CommunicationThread = 0;
   std::string Cause;
   PageCache Cache;
-  std::deque<Want> Wanted;
+  std::deque<BlockWant> Wanted;
   /// Of Wanted; lets Service look without the lock.
   std::atomic<std::size_t> WantedCount{ 0 };
-  std::deque<Want> Pending;
   std::vector<Stopped> Waiting;
   std::vector<Zeros> Zeroed;
   /// Runs of neighbouring cached blocks: each takes mappings of the process.

@@ -59,6 +59,7 @@ std::shared_ptr<BlockSegment> ReplicatedStore::Publish(const std::string& what,
 {
   TablePublisher::Plan plan;
   plan.HostSharing = this->Current.HostSharing;
+  plan.Groups = this->Current.Groups;
   plan.Replicate = true;
   plan.MemoryBytes =
     this->Current.MemoryBytes - std::min(this->Current.MemoryBytes, this->CountBytes());

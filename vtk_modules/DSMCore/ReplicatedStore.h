@@ -36,6 +36,8 @@ public:
     int Workers = 1;
     /// See ObjectStore.
     bool HostSharing = false;
+    /// Who shares; null: found out with every publication.
+    std::shared_ptr<const HostGroups> Groups = nullptr;
     /// What this rank may take for all segments, its own blocks included.
     std::uint64_t MemoryBytes = UINT64_MAX;
   };

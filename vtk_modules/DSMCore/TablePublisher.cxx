@@ -42,7 +42,8 @@ std::shared_ptr<BlockTable> TablePublisher::Run(Messenger& messenger, const std:
   const Plan& plan, BlockDirectory directory, FragmentSource& source, FragmentSink& sink,
   const std::function<void(double)>& progress)
 {
-  const HostGroups groups = HostGroups::Find(messenger, plan.HostSharing);
+  const HostGroups groups =
+    plan.Groups ? *plan.Groups : HostGroups::Find(messenger, plan.HostSharing);
   const int ranksOnHost = messenger.GetRanksOnHost();
   // Asked before the ranks meet in the next steps, hence before any of them takes memory.
   const std::uint64_t available = GetAvailableHostMemory();

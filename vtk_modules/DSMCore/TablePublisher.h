@@ -20,6 +20,8 @@ public:
   struct Plan
   {
     bool HostSharing = false;
+    /// Null: found out.
+    std::shared_ptr<const HostGroups> Groups = nullptr;
     bool Replicate = false;
     /// What this rank may still take.
     std::uint64_t MemoryBytes = UINT64_MAX;

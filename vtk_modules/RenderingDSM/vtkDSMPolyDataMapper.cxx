@@ -2,6 +2,7 @@
 #include "vtkDSMPolyDataMapper.h"
 
 #include "vtkDSMLightOptions.h"
+#include "vtkDSMMemoryOptions.h"
 
 #include "vtkCompositeDataDisplayAttributes.h"
 #include "vtkCompositeDataSet.h"
@@ -17,6 +18,7 @@ vtkStandardNewMacro(vtkDSMPolyDataMapper);
 
 vtkDSMPolyDataMapper::vtkDSMPolyDataMapper()
   : LightOptions(vtkSmartPointer<vtkDSMLightOptions>::New())
+  , MemoryOptions(vtkSmartPointer<vtkDSMMemoryOptions>::New())
 {
   vtkMath::UninitializeBounds(this->GlobalBounds);
 }
@@ -42,6 +44,17 @@ void vtkDSMPolyDataMapper::SetLightOptions(vtkDSMLightOptions* options)
 {
   this->LightOptions = options ? options : vtkSmartPointer<vtkDSMLightOptions>::New().Get();
   this->Modified();
+}
+
+void vtkDSMPolyDataMapper::SetMemoryOptions(vtkDSMMemoryOptions* options)
+{
+  this->MemoryOptions = options ? options : vtkSmartPointer<vtkDSMMemoryOptions>::New().Get();
+  this->Modified();
+}
+
+vtkDSMMemoryOptions* vtkDSMPolyDataMapper::GetMemoryOptions() const
+{
+  return this->MemoryOptions;
 }
 
 vtkDSMLightOptions* vtkDSMPolyDataMapper::GetLightOptions() const
@@ -112,6 +125,4 @@ void vtkDSMPolyDataMapper::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "LineRadius: " << this->LineRadius << "\n";
   os << indent << "PointRadius: " << this->PointRadius << "\n";
   os << indent << "RadiusArray: " << this->RadiusArray << "\n";
-  os << indent << "NumberOfThreads: " << this->NumberOfThreads << "\n";
-  os << indent << "CacheSize: " << this->CacheSize << " MiB\n";
 }

@@ -32,6 +32,7 @@
 
 class vtkCompositeDataDisplayAttributes;
 class vtkDSMLightOptions;
+class vtkDSMMemoryOptions;
 
 class VTKRENDERINGDSM_EXPORT vtkDSMPolyDataMapper : public vtkPolyDataMapper
 {
@@ -72,27 +73,18 @@ public:
 
   ///@{
   /**
-   * Tracing threads of each rank; 0 (the default) divides the host's cores by its ranks. The largest
-   * of a scene counts.
-   */
-  vtkSetClampMacro(NumberOfThreads, int, 0, 1024);
-  vtkGetMacro(NumberOfThreads, int);
-  ///@}
-
-  ///@{
-  /**
-   * Memory of each rank for bricks of other ranks, in MiB. Default 256. The largest of a scene counts.
-   */
-  vtkSetClampMacro(CacheSize, int, 1, VTK_INT_MAX);
-  vtkGetMacro(CacheSize, int);
-  ///@}
-
-  ///@{
-  /**
    * Shadows, ambient occlusion, mirrors and samples; never null. Null makes new ones.
    */
   void SetLightOptions(vtkDSMLightOptions* options);
   vtkDSMLightOptions* GetLightOptions() const;
+  ///@}
+
+  ///@{
+  /**
+   * Memory organisation, sizes and threads; never null. Null makes new ones.
+   */
+  void SetMemoryOptions(vtkDSMMemoryOptions* options);
+  vtkDSMMemoryOptions* GetMemoryOptions() const;
   ///@}
 
   ///@{
@@ -142,9 +134,8 @@ private:
   double LineRadius = 0.0;
   double PointRadius = 0.0;
   std::string RadiusArray;
-  int NumberOfThreads = 0;
-  int CacheSize = 256;
   vtkSmartPointer<vtkDSMLightOptions> LightOptions;
+  vtkSmartPointer<vtkDSMMemoryOptions> MemoryOptions;
   double GlobalBounds[6];
 };
 

@@ -5,6 +5,7 @@
 #include "DSMCore/MpiTransport.h"
 
 #include "vtkMultiProcessController.h"
+#include "vtkOutputWindow.h"
 
 #if VTK_MODULE_ENABLE_VTK_ParallelMPI
 #include "vtkMPI.h"
@@ -15,6 +16,7 @@
 #include <cstdint>
 #include <cstring>
 #include <map>
+#include <string>
 #include <thread>
 
 namespace
@@ -90,38 +92,89 @@ std::shared_ptr<vtkDSMRankGroup> vtkDSMRankGroup::Get(vtkMultiProcessController*
   return group;
 }
 
-namespace
-{
-
-/// Bricks are owned round robin, and what a rank needs of the others' goes through its cache.
-dsm::BlockStore::Settings GetFirstSettings()
-{
-  dsm::BlockStore::Settings settings;
-  settings.Organization = dsm::MemoryOrganization::ObjectBased;
-  settings.HostSharing = false;
-  return settings;
-}
-
-} // namespace
-
 vtkDSMRankGroup::vtkDSMRankGroup(std::unique_ptr<dsm::Transport> transport)
   : Messenger(std::move(transport))
-  , Store(this->Messenger, GetFirstSettings())
+  , Store(this->Messenger, dsm::BlockStore::Settings{})
   , FrameRenderer(this->Messenger)
 {
   this->Messenger.GetHosts(); // collective the first time
 }
 
-void vtkDSMRankGroup::Configure(std::size_t cacheBytes, int threads)
+void vtkDSMRankGroup::Join(Publisher* publisher)
+{
+  this->Publishers.emplace_back(publisher, vtkDSMMemorySettings{});
+}
+
+void vtkDSMRankGroup::Leave(Publisher* publisher)
+{
+  this->Publishers.erase(std::remove_if(this->Publishers.begin(), this->Publishers.end(),
+                           [=](const auto& candidate) { return candidate.first == publisher; }),
+    this->Publishers.end());
+}
+
+vtkDSMMemorySettings vtkDSMRankGroup::MergeSettings() const
+{
+  vtkDSMMemorySettings merged;
+  for (const auto& [publisher, settings] : this->Publishers)
+  {
+    merged.Merge(settings);
+  }
+  return merged;
+}
+
+void vtkDSMRankGroup::Configure(Publisher* publisher, const vtkDSMMemorySettings& settings)
 {
   const int ranksOnHost = this->Messenger.GetRanksOnHost();
-  dsm::BlockStore::Settings settings = this->Store.GetSettings();
-  settings.CacheBytes = cacheBytes;
-  if (threads < 1)
+  for (auto& [candidate, known] : this->Publishers)
+  {
+    known = candidate == publisher ? settings : known;
+  }
+  const vtkDSMMemorySettings merged = this->MergeSettings();
+  const dsm::BlockStore::Settings old = this->Store.GetSettings();
+  dsm::BlockStore::Settings next = old;
+  next.Organization = merged.Organization;
+  next.HostSharing = merged.HostSharing;
+  next.MemoryBytes = merged.MemoryBytes;
+  next.CacheBytes = static_cast<std::size_t>(merged.CacheBytes);
+  next.Workers = merged.Threads;
+  if (next.Workers < 1)
   {
     const int cores = static_cast<int>(std::thread::hardware_concurrency());
-    threads = cores / std::max(1, ranksOnHost);
+    next.Workers = std::max(1, cores / std::max(1, ranksOnHost));
   }
-  settings.Workers = std::max(1, threads);
-  this->Store.SetSettings(settings);
+  const auto isPaged = [](dsm::MemoryOrganization organization)
+  { return organization == dsm::MemoryOrganization::PageBased; };
+  if (next.HostSharing != old.HostSharing ||
+    isPaged(next.Organization) != isPaged(this->Store.GetOrganization()))
+  {
+    for (const auto& [candidate, known] : this->Publishers)
+    {
+      candidate->GiveUpBlocks();
+    }
+  }
+  if (next.Organization != old.Organization || next.HostSharing != old.HostSharing ||
+    next.MemoryBytes != old.MemoryBytes)
+  {
+    ++this->SettingsVersion;
+  }
+  this->Store.SetSettings(next);
+}
+
+void vtkDSMRankGroup::TellOrganization()
+{
+  const bool automatic =
+    this->Store.GetSettings().Organization == dsm::MemoryOrganization::Automatic;
+  // Groups come and go with what is shown; the user need not hear the same again.
+  static dsm::MemoryOrganization told = dsm::MemoryOrganization::Automatic;
+  if (!automatic || this->Store.GetOrganization() == told)
+  {
+    return;
+  }
+  told = this->Store.GetOrganization();
+  // One rank has no choice to make.
+  if (this->Messenger.GetRank() == 0 && this->Messenger.GetSize() > 1)
+  {
+    const std::string text = "DSM Ray Tracer: " + this->Store.GetExplanation() + "\n";
+    vtkOutputWindow::GetInstance()->DisplayText(text.c_str());
+  }
 }

@@ -5,8 +5,11 @@
 #include "DSMCore/BlockStore.h"
 #include "DSMCore/Messenger.h"
 #include "DSMRayTracing/frame/FrameRenderer.h"
+#include "vtkDSMMemorySettings.h"
 
 #include <memory>
+#include <utility>
+#include <vector>
 
 class vtkMultiProcessController;
 
@@ -16,6 +19,16 @@ class vtkMultiProcessController;
 class vtkDSMRankGroup
 {
 public:
+  /// Who publishes blocks: a scene. On every rank the same ones, which joined in the same order.
+  class Publisher
+  {
+  public:
+    virtual ~Publisher() = default;
+    /// The blocks are to be kept in another way: retires what this one has published. It
+    /// publishes again when it draws the next time.
+    virtual void GiveUpBlocks() = 0;
+  };
+
   /// The group of a controller, made at the first call and kept until its last user lets go. Without
   /// MPI, or with one process, a group of one. Collective over the controller when the group does
   /// not exist yet. Throws dsm::Error.
@@ -29,10 +42,28 @@ public:
   dsm::BlockStore& GetStore() { return this->Store; }
   rt::FrameRenderer& GetFrameRenderer() { return this->FrameRenderer; }
 
-  /// `threads` 0 means the cores of the host divided by the ranks on it. Local.
-  void Configure(std::size_t cacheBytes, int threads);
+  /// Local, in the same order on every rank.
+  void Join(Publisher* publisher);
+  void Leave(Publisher* publisher);
+
+  /// What a publisher that has joined asks for from now on; what all ask for together has its effect
+  /// with the next publication or frame. All publishers give up their blocks when these cannot pass to
+  /// the new organisation as they are. Between frames; local, in the same order on every rank. Throws
+  /// dsm::Error.
+  void Configure(Publisher* publisher, const vtkDSMMemorySettings& settings);
+
+  /// Grows when memory is to be kept otherwise: what was refused may succeed now.
+  unsigned GetSettingsVersion() const { return this->SettingsVersion; }
+
+  /// Says on rank 0, in the output window, what Automatic has chosen; again when that changes.
+  void TellOrganization();
 
 private:
+  vtkDSMMemorySettings MergeSettings() const;
+
+  std::vector<std::pair<Publisher*, vtkDSMMemorySettings>>
+    Publishers; ///< in the order in which they joined
+  unsigned SettingsVersion = 0;
   dsm::Messenger Messenger;
   dsm::BlockStore Store;
   rt::FrameRenderer FrameRenderer;

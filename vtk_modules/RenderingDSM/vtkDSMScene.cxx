@@ -28,6 +28,7 @@
 #include "vtkVolume.h"
 
 #include <algorithm>
+#include <array>
 #include <map>
 #include <optional>
 #include <vector>
@@ -54,9 +55,12 @@ std::map<vtkRenderer*, vtkDSMScene*>& GetRegistry()
 
 } // namespace
 
-class vtkDSMScene::Internals
+class vtkDSMScene::Internals : public vtkDSMRankGroup::Publisher
 {
 public:
+  ~Internals() override;
+  void GiveUpBlocks() override;
+
   struct Member
   {
     vtkProp3D* Prop;
@@ -65,6 +69,7 @@ public:
 
   static std::unique_ptr<vtkDSMSceneMember> CreateState(vtkAlgorithm* mapper);
   void FindMembers();
+  void FindGroup(vtkMultiProcessController* controller);
   void Configure();
   void Update();
   void Draw();
@@ -94,6 +99,7 @@ public:
   std::uint64_t Digest = 0;
   int Samples = 0; ///< that the frame has; 0 when there is nothing to add to
   int SamplesWanted = 1;
+  vtkDSMMemorySettings Settings; ///< that the objects ask for
 };
 
 vtkStandardNewMacro(vtkDSMScene);
@@ -247,29 +253,68 @@ void vtkDSMScene::Internals::FindMembers()
   this->States = std::move(kept);
 }
 
+void vtkDSMScene::Internals::FindGroup(vtkMultiProcessController* controller)
+{
+  const auto group = vtkDSMRankGroup::Get(controller);
+  if (group == this->Group)
+  {
+    return;
+  }
+  if (this->Group)
+  {
+    this->GiveUpBlocks();
+    this->Group->Leave(this);
+  }
+  this->Group = group;
+  this->Group->Join(this);
+}
+
+vtkDSMScene::Internals::~Internals()
+{
+  if (this->Group)
+  {
+    this->Group->Leave(this);
+  }
+}
+
+void vtkDSMScene::Internals::GiveUpBlocks()
+{
+  for (const auto& state : this->States)
+  {
+    state->GiveUpBlocks();
+  }
+  this->Samples = 0;
+}
+
 void vtkDSMScene::Internals::Configure()
 {
-  int cache = 1;
-  int threads = 0;
+  this->Settings = {};
   this->SamplesWanted = 1;
+  for (const auto& state : this->States)
+  {
+    this->Settings.Merge(vtkDSMTranslation::ToMemorySettings(state->GetMemoryOptions()));
+  }
   for (const Member& member : this->Members)
   {
-    cache = std::max(cache, member.State->GetCacheSize());
-    threads = std::max(threads, member.State->GetNumberOfThreads());
     this->SamplesWanted =
       std::max(this->SamplesWanted, member.State->GetLightOptions()->GetSamplesPerPixel());
   }
-  this->Group->Configure(static_cast<std::size_t>(cache) << 20, threads);
+  this->Group->Configure(this, this->Settings);
 }
 
 void vtkDSMScene::Internals::Update()
 {
   dsm::Messenger& messenger = this->Group->GetMessenger();
+  // To publish in step, the ranks must agree on the settings of the memory; threads may differ.
+  using Digest = std::array<std::uint64_t, 4>;
   std::vector<std::byte> mine;
   messenger.RunTogether("Updating the data",
     [&]
     {
       this->Configure();
+      const vtkDSMMemorySettings& settings = this->Settings;
+      mine = dsm::Encode(Digest{ static_cast<std::uint64_t>(settings.Organization),
+        settings.HostSharing ? 1u : 0u, settings.MemoryBytes, settings.CacheBytes });
       for (const Member& member : this->Members)
       {
         member.State->UpdatePiece(messenger.GetRank(), messenger.GetSize());
@@ -284,11 +329,17 @@ void vtkDSMScene::Internals::Update()
     {
       throw dsm::Error("The ranks do not show the same datasets; the frame was left out.");
     }
+    if (!std::equal(flags.begin(), flags.begin() + sizeof(Digest), all.front().begin()))
+    {
+      throw dsm::Error("The ranks have different settings of the memory (DSMMemoryOrganization, "
+                       "DSMHostSharing, DSMMemory, DSMCacheSize); the frame was left out. Set them "
+                       "alike.");
+    }
   }
-  for (std::size_t index = 0; index < mine.size(); ++index)
+  for (std::size_t index = 0; index < this->Members.size(); ++index)
   {
-    const bool newData = std::any_of(
-      all.begin(), all.end(), [=](const auto& flags) { return flags[index] != std::byte(0); });
+    const bool newData = std::any_of(all.begin(), all.end(),
+      [=](const auto& flags) { return flags[sizeof(Digest) + index] != std::byte(0); });
     this->Members[index].State->Update(this->Group, newData);
   }
 }
@@ -489,9 +540,10 @@ void vtkDSMScene::Trace()
   std::string failure;
   try
   {
-    self.Group = vtkDSMRankGroup::Get(this->GetController());
+    self.FindGroup(this->GetController());
     self.Update();
     self.Draw();
+    self.Group->TellOrganization();
   }
   catch (const std::exception& error)
   {

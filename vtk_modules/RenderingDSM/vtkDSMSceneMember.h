@@ -3,6 +3,7 @@
 #define vtkDSMSceneMember_h
 
 #include "DSMRayTracing/frame/Scene.h"
+#include "vtkDSMMemorySettings.h"
 #include "vtkDSMRankGroup.h"
 
 #include <memory>
@@ -11,6 +12,7 @@
 
 class vtkAlgorithm;
 class vtkDSMLightOptions;
+class vtkDSMMemoryOptions;
 class vtkProp3D;
 
 /// What a scene keeps of one mapper: its data in bricks, and what was wrong with it.
@@ -22,9 +24,8 @@ public:
   /// Whose data these are; null once it is gone.
   virtual vtkAlgorithm* GetAlgorithm() const = 0;
 
-  /// What the mapper asks for: MiB per rank, and threads per rank (0: the host's cores divided).
-  virtual int GetCacheSize() const = 0;
-  virtual int GetNumberOfThreads() const = 0;
+  /// What the mapper asks for.
+  virtual vtkDSMMemoryOptions* GetMemoryOptions() const = 0;
   virtual vtkDSMLightOptions* GetLightOptions() const = 0;
 
   /// Local: brings the mapper's input up to date.
@@ -32,6 +33,9 @@ public:
 
   /// Local: whether this rank's data are other than what was taken in.
   virtual bool HasNewData() const = 0;
+
+  /// Local, in the same order on every rank: retires the bricks; the next Update publishes them again.
+  virtual void GiveUpBlocks() = 0;
 
   /// Collective. Takes in what is missing: everything when any rank has new data, else what the
   /// mapper names and is not there yet. What goes wrong is kept as a message.

@@ -67,19 +67,14 @@ vtkAlgorithm* vtkDSMSceneMesh::GetAlgorithm() const
   return this->Mapper;
 }
 
-int vtkDSMSceneMesh::GetCacheSize() const
-{
-  return this->Mapper->GetCacheSize();
-}
-
 vtkDSMLightOptions* vtkDSMSceneMesh::GetLightOptions() const
 {
   return this->Mapper->GetLightOptions();
 }
 
-int vtkDSMSceneMesh::GetNumberOfThreads() const
+vtkDSMMemoryOptions* vtkDSMSceneMesh::GetMemoryOptions() const
 {
-  return this->Mapper->GetNumberOfThreads();
+  return this->Mapper->GetMemoryOptions();
 }
 
 void vtkDSMSceneMesh::UpdatePiece(int piece, int numberOfPieces)
@@ -111,11 +106,20 @@ bool vtkDSMSceneMesh::HasNewData() const
   return !this->Taken || this->Describe() != this->Seen;
 }
 
+void vtkDSMSceneMesh::GiveUpBlocks()
+{
+  this->Data.reset();
+  this->Taken = false;
+}
+
 void vtkDSMSceneMesh::Update(const std::shared_ptr<vtkDSMRankGroup>& group, bool newData)
 {
   this->Messages.clear();
-  if (newData)
+  // What was refused may succeed with other settings of the memory.
+  const unsigned version = group->GetSettingsVersion();
+  if (newData || (!this->Failure.empty() && this->FailureVersion != version))
   {
+    this->SettingsVersion = group->GetSettingsVersion();
     // The old bricks go first: there may not be room for both.
     this->Data.reset();
     this->Failure.clear();
@@ -130,6 +134,7 @@ void vtkDSMSceneMesh::Update(const std::shared_ptr<vtkDSMRankGroup>& group, bool
     catch (const dsm::Error& error)
     {
       this->Failure = error.what();
+      this->FailureVersion = version;
     }
   }
   if (!this->Data)

@@ -24,11 +24,11 @@ public:
   ~vtkDSMSceneMesh() override;
 
   vtkAlgorithm* GetAlgorithm() const override;
-  int GetCacheSize() const override;
-  int GetNumberOfThreads() const override;
+  vtkDSMMemoryOptions* GetMemoryOptions() const override;
   vtkDSMLightOptions* GetLightOptions() const override;
   void UpdatePiece(int piece, int numberOfPieces) override;
   bool HasNewData() const override;
+  void GiveUpBlocks() override;
   void Update(const std::shared_ptr<vtkDSMRankGroup>& group, bool newData) override;
   /// One object for each of the meshes.
   void AddTo(rt::Scene& scene) override;
@@ -43,9 +43,11 @@ private:
   vtkWeakPointer<vtkDSMPolyDataMapper> Mapper;
   /// Of what was taken in; see vtkDSMMeshData::Describe.
   std::vector<std::uint64_t> Seen;
+  unsigned SettingsVersion = 0; ///< of the memory's settings when it was taken in
   bool Taken = false;
   std::unique_ptr<vtkDSMMeshData> Data;
   std::string Failure;
+  unsigned FailureVersion = 0; ///< of the group's settings
   std::shared_ptr<const rt::ColorMap> Colors;
   const void* ColorsSource = nullptr;
   vtkMTimeType ColorsTime = 0;

@@ -51,19 +51,14 @@ vtkAlgorithm* vtkDSMSceneVolume::GetAlgorithm() const
   return this->Mapper;
 }
 
-int vtkDSMSceneVolume::GetCacheSize() const
-{
-  return this->Mapper->GetCacheSize();
-}
-
 vtkDSMLightOptions* vtkDSMSceneVolume::GetLightOptions() const
 {
   return this->Mapper->GetLightOptions();
 }
 
-int vtkDSMSceneVolume::GetNumberOfThreads() const
+vtkDSMMemoryOptions* vtkDSMSceneVolume::GetMemoryOptions() const
 {
-  return this->Mapper->GetNumberOfThreads();
+  return this->Mapper->GetMemoryOptions();
 }
 
 void vtkDSMSceneVolume::UpdatePiece(int piece, int numberOfPieces)
@@ -77,20 +72,29 @@ bool vtkDSMSceneVolume::HasNewData() const
   return !this->Taken || data != this->SeenData || GetDataTime(data) != this->SeenTime;
 }
 
+void vtkDSMSceneVolume::GiveUpBlocks()
+{
+  this->Color.reset();
+  this->Iso.reset();
+  this->Taken = false;
+}
+
 std::shared_ptr<vtkDSMSceneVolume::Published> vtkDSMSceneVolume::Require(
-  const vtkDSMVolumeData::Choice& wanted, const char* purpose,
+  const vtkDSMVolumeData::Choice& wanted, const char* purpose, unsigned settingsVersion,
   const std::vector<std::shared_ptr<Published>>& known)
 {
   const vtkDSMVolumeData::Choice choice = this->Data->Normalize(wanted);
   for (const auto& candidate : known)
   {
-    if (candidate && candidate->Choice == choice)
+    if (candidate && candidate->Choice == choice &&
+      (candidate->Failure.empty() || candidate->SettingsVersion == settingsVersion))
     {
       return candidate;
     }
   }
   auto published = std::make_shared<Published>();
   published->Choice = choice;
+  published->SettingsVersion = settingsVersion;
   try
   {
     vtkDSMVolumeMapper* mapper = this->Mapper;
@@ -138,8 +142,9 @@ void vtkDSMSceneVolume::Update(const std::shared_ptr<vtkDSMRankGroup>& group, bo
   }
   const std::shared_ptr<Published> oldIso = this->Iso;
   const std::shared_ptr<Published> oldColor = this->Color;
-  this->Iso = this->Require(
-    { mapper->GetIsoArray(), mapper->GetIsoComponent() }, "isosurface array", { oldIso, oldColor });
+  const unsigned version = group->GetSettingsVersion();
+  this->Iso = this->Require({ mapper->GetIsoArray(), mapper->GetIsoComponent() },
+    "isosurface array", version, { oldIso, oldColor });
   this->Color.reset();
   if (mapper->GetScalarVisibility() && !mapper->GetColorArray().empty() && mapper->GetLookupTable())
   {
@@ -147,8 +152,8 @@ void vtkDSMSceneVolume::Update(const std::shared_ptr<vtkDSMRankGroup>& group, bo
     const int component = table->GetVectorMode() == vtkScalarsToColors::COMPONENT
       ? table->GetVectorComponent()
       : vtkDSMImagePiece::Magnitude;
-    this->Color = this->Require(
-      { mapper->GetColorArray(), component }, "colour array", { this->Iso, oldIso, oldColor });
+    this->Color = this->Require({ mapper->GetColorArray(), component }, "colour array", version,
+      { this->Iso, oldIso, oldColor });
   }
   for (const auto& published : { this->Iso, this->Color })
   {

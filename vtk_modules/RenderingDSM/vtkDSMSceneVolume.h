@@ -22,11 +22,11 @@ public:
   ~vtkDSMSceneVolume() override;
 
   vtkAlgorithm* GetAlgorithm() const override;
-  int GetCacheSize() const override;
-  int GetNumberOfThreads() const override;
+  vtkDSMMemoryOptions* GetMemoryOptions() const override;
   vtkDSMLightOptions* GetLightOptions() const override;
   void UpdatePiece(int piece, int numberOfPieces) override;
   bool HasNewData() const override;
+  void GiveUpBlocks() override;
   void Update(const std::shared_ptr<vtkDSMRankGroup>& group, bool newData) override;
   /// One object for each of the volume's lattices.
   void AddTo(rt::Scene& scene) override;
@@ -37,10 +37,11 @@ private:
     vtkDSMVolumeData::Choice Choice;
     vtkDSMVolumeData::Fields Fields; ///< empty when it failed
     std::string Failure;
+    unsigned SettingsVersion = 0; ///< of the memory's settings when it was tried
   };
 
   std::shared_ptr<Published> Require(const vtkDSMVolumeData::Choice& choice, const char* purpose,
-    const std::vector<std::shared_ptr<Published>>& known);
+    unsigned settingsVersion, const std::vector<std::shared_ptr<Published>>& known);
   std::vector<double> GetIsovalues();
   const rt::ColorMap& GetColorMap();
 

@@ -14,37 +14,118 @@
 #include <vtksys/SystemInformation.hxx>
 
 #include <algorithm>
-#include <array>
 #include <cstring>
 #include <sstream>
+#include <type_traits>
 #include <utility>
+
+namespace
+{
+
+/// A column's name, and where a row has its value.
+template <class Row, class Value>
+using Column = std::pair<const char*, Value Row::*>;
+
+template <class Row, class Value>
+void AddColumn(vtkTable* table, const std::vector<Row>& rows, const Column<Row, Value>& column)
+{
+  using Array =
+    std::conditional_t<std::is_same_v<Value, double>, vtkDoubleArray, vtkTypeInt64Array>;
+  vtkNew<Array> array;
+  array->SetName(column.first);
+  for (const Row& row : rows)
+  {
+    array->InsertNextValue(row.*column.second);
+  }
+  table->AddColumn(array);
+}
+
+template <class Row, class Value>
+void AddMember(std::ostream& json, const Row& row, const Column<Row, Value>& column)
+{
+  json << ", \"" << column.first << "\": " << row.*column.second;
+}
+
+double ToSeconds(std::uint64_t nanoseconds)
+{
+  return 1e-9 * static_cast<double>(nanoseconds);
+}
+
+} // namespace
 
 /// Plain, so that it travels between ranks.
 struct vtkDSMStatistics::RankRow
 {
+  std::int64_t Rank;
   char Host[64];
   std::int64_t Threads;
   std::int64_t BytesResident;
+  std::int64_t BytesShared;
+  std::int64_t BytesCopied;
   std::int64_t BytesCached;
+  std::int64_t PeakBytesCached;
   std::int64_t CacheCapacity;
+  std::int64_t MemoryBudget;
   std::int64_t Accesses;
   std::int64_t Hits;
   std::int64_t Misses;
+  std::int64_t Joins;
+  std::int64_t Evictions;
   std::int64_t BytesReceived;
+  std::int64_t BytesSent;
+  double WaitSeconds;
   std::int64_t Tiles;
   double Seconds;
   double FrameSeconds;
 
-  using Column = std::pair<const char*, std::int64_t RankRow::*>;
-  static const std::array<Column, 9>& GetColumns()
+  /// Calls `visit` with every column behind Rank, Host and Organization.
+  template <class Visit>
+  static void ForEachColumn(const Visit& visit)
   {
-    static const std::array<Column, 9> columns = { Column("Threads", &RankRow::Threads),
-      Column("BytesResident", &RankRow::BytesResident),
-      Column("BytesCached", &RankRow::BytesCached),
-      Column("CacheCapacity", &RankRow::CacheCapacity), Column("Accesses", &RankRow::Accesses),
-      Column("Hits", &RankRow::Hits), Column("Misses", &RankRow::Misses),
-      Column("BytesReceived", &RankRow::BytesReceived), Column("Tiles", &RankRow::Tiles) };
-    return columns;
+    using Count = Column<RankRow, std::int64_t>;
+    using Time = Column<RankRow, double>;
+    visit(Count("Threads", &RankRow::Threads));
+    visit(Count("BytesResident", &RankRow::BytesResident));
+    visit(Count("BytesShared", &RankRow::BytesShared));
+    visit(Count("BytesCopied", &RankRow::BytesCopied));
+    visit(Count("BytesCached", &RankRow::BytesCached));
+    visit(Count("PeakBytesCached", &RankRow::PeakBytesCached));
+    visit(Count("CacheCapacity", &RankRow::CacheCapacity));
+    visit(Count("MemoryBudget", &RankRow::MemoryBudget));
+    visit(Count("Accesses", &RankRow::Accesses));
+    visit(Count("Hits", &RankRow::Hits));
+    visit(Count("Misses", &RankRow::Misses));
+    visit(Count("Joins", &RankRow::Joins));
+    visit(Count("Evictions", &RankRow::Evictions));
+    visit(Count("BytesReceived", &RankRow::BytesReceived));
+    visit(Count("BytesSent", &RankRow::BytesSent));
+    visit(Time("WaitSeconds", &RankRow::WaitSeconds));
+    visit(Count("Tiles", &RankRow::Tiles));
+    visit(Time("Seconds", &RankRow::Seconds));
+  }
+};
+
+struct vtkDSMStatistics::WorkerRow
+{
+  std::int64_t Rank;
+  std::int64_t Worker;
+  std::int64_t Accesses;
+  std::int64_t Hits;
+  std::int64_t Misses;
+  std::int64_t Joins;
+  double WaitSeconds;
+
+  /// Calls `visit` with every column behind Rank.
+  template <class Visit>
+  static void ForEachColumn(const Visit& visit)
+  {
+    using Count = Column<WorkerRow, std::int64_t>;
+    visit(Count("Worker", &WorkerRow::Worker));
+    visit(Count("Accesses", &WorkerRow::Accesses));
+    visit(Count("Hits", &WorkerRow::Hits));
+    visit(Count("Misses", &WorkerRow::Misses));
+    visit(Count("Joins", &WorkerRow::Joins));
+    visit(Column<WorkerRow, double>("WaitSeconds", &WorkerRow::WaitSeconds));
   }
 };
 
@@ -56,18 +137,27 @@ vtkDSMStatistics::~vtkDSMStatistics() = default;
 void vtkDSMStatistics::Gather(dsm::Messenger& messenger, const rt::Frame& frame)
 {
   RankRow mine{};
+  mine.Rank = messenger.GetRank();
   vtksys::SystemInformation system;
   const char* host = system.GetHostname();
   std::strncpy(mine.Host, host ? host : "", sizeof(mine.Host) - 1);
   const dsm::StoreCounters& counters = frame.Counters;
   mine.Threads = static_cast<std::int64_t>(frame.WorkerCounters.size());
   mine.BytesResident = static_cast<std::int64_t>(counters.ResidentBytes);
+  mine.BytesShared = static_cast<std::int64_t>(counters.SharedBytes);
+  mine.BytesCopied = static_cast<std::int64_t>(counters.ReplicaBytes);
   mine.BytesCached = static_cast<std::int64_t>(counters.CachedBytes);
+  mine.PeakBytesCached = static_cast<std::int64_t>(counters.PeakCachedBytes);
   mine.CacheCapacity = static_cast<std::int64_t>(counters.CacheCapacity);
+  mine.MemoryBudget = static_cast<std::int64_t>(counters.MemoryBudget);
   mine.Accesses = static_cast<std::int64_t>(counters.Workers.Accesses);
   mine.Hits = static_cast<std::int64_t>(counters.Workers.Hits);
   mine.Misses = static_cast<std::int64_t>(counters.Workers.Misses);
+  mine.Joins = static_cast<std::int64_t>(counters.Workers.Joins);
+  mine.Evictions = static_cast<std::int64_t>(counters.Evictions);
   mine.BytesReceived = static_cast<std::int64_t>(counters.BytesReceived);
+  mine.BytesSent = static_cast<std::int64_t>(counters.BytesSent);
+  mine.WaitSeconds = ToSeconds(counters.Workers.WaitNanoseconds);
   mine.Tiles = static_cast<std::int64_t>(frame.Tiles.size());
   for (const rt::Tile& tile : frame.Tiles)
   {
@@ -75,65 +165,94 @@ void vtkDSMStatistics::Gather(dsm::Messenger& messenger, const rt::Frame& frame)
   }
   mine.FrameSeconds = frame.Seconds;
 
-  this->Rows = messenger.AllGatherValue(mine);
+  std::vector<std::byte> bytes = dsm::Encode(mine);
+  for (std::size_t index = 0; index < frame.WorkerCounters.size(); ++index)
+  {
+    const dsm::WorkerCounters& worker = frame.WorkerCounters[index];
+    dsm::AttachTail(bytes,
+      WorkerRow{ mine.Rank, static_cast<std::int64_t>(index),
+        static_cast<std::int64_t>(worker.Accesses), static_cast<std::int64_t>(worker.Hits),
+        static_cast<std::int64_t>(worker.Misses), static_cast<std::int64_t>(worker.Joins),
+        ToSeconds(worker.WaitNanoseconds) });
+  }
+  this->Rows.clear();
+  this->Workers.clear();
+  for (const auto& part : messenger.AllGather(std::move(bytes)))
+  {
+    std::memcpy(&this->Rows.emplace_back(), part.data(), sizeof(RankRow));
+    for (std::size_t at = sizeof(RankRow); at < part.size(); at += sizeof(WorkerRow))
+    {
+      std::memcpy(&this->Workers.emplace_back(), part.data() + at, sizeof(WorkerRow));
+    }
+  }
   this->FrameSeconds = 0.0;
   for (const RankRow& row : this->Rows)
   {
     this->FrameSeconds = std::max(this->FrameSeconds, row.FrameSeconds);
   }
+  this->Organization = dsm::GetText(frame.Organization);
+  this->Explanation = frame.Explanation;
   this->Modified();
 }
 
 void vtkDSMStatistics::Clear()
 {
   this->Rows.clear();
+  this->Workers.clear();
   this->FrameSeconds = 0.0;
+  this->Organization.clear();
+  this->Explanation.clear();
   this->Modified();
 }
 
 void vtkDSMStatistics::GetTable(vtkTable* table) const
 {
   table->Initialize();
-  vtkNew<vtkTypeInt64Array> ranks;
+  AddColumn(table, this->Rows, Column<RankRow, std::int64_t>("Rank", &RankRow::Rank));
   vtkNew<vtkStringArray> hosts;
-  vtkNew<vtkDoubleArray> seconds;
-  ranks->SetName("Rank");
+  vtkNew<vtkStringArray> organizations;
   hosts->SetName("Host");
-  seconds->SetName("Seconds");
-  for (std::size_t rank = 0; rank < this->Rows.size(); ++rank)
+  organizations->SetName("Organization");
+  for (const RankRow& row : this->Rows)
   {
-    ranks->InsertNextValue(static_cast<vtkTypeInt64>(rank));
-    hosts->InsertNextValue(this->Rows[rank].Host);
-    seconds->InsertNextValue(this->Rows[rank].Seconds);
+    hosts->InsertNextValue(row.Host);
+    organizations->InsertNextValue(this->Organization);
   }
-  table->AddColumn(ranks);
   table->AddColumn(hosts);
-  for (const auto& [name, member] : RankRow::GetColumns())
-  {
-    vtkNew<vtkTypeInt64Array> column;
-    column->SetName(name);
-    for (const RankRow& row : this->Rows)
-    {
-      column->InsertNextValue(row.*member);
-    }
-    table->AddColumn(column);
-  }
-  table->AddColumn(seconds);
+  table->AddColumn(organizations);
+  RankRow::ForEachColumn([&](const auto& column) { AddColumn(table, this->Rows, column); });
+}
+
+void vtkDSMStatistics::GetWorkerTable(vtkTable* table) const
+{
+  table->Initialize();
+  AddColumn(table, this->Workers, Column<WorkerRow, std::int64_t>("Rank", &WorkerRow::Rank));
+  WorkerRow::ForEachColumn([&](const auto& column) { AddColumn(table, this->Workers, column); });
 }
 
 std::string vtkDSMStatistics::GetJson() const
 {
   std::ostringstream json;
   json << "[";
-  for (std::size_t rank = 0; rank < this->Rows.size(); ++rank)
+  for (const RankRow& row : this->Rows)
   {
-    const RankRow& row = this->Rows[rank];
-    json << (rank ? ", " : "") << "{\"Rank\": " << rank << ", \"Host\": \"" << row.Host << "\"";
-    for (const auto& [name, member] : RankRow::GetColumns())
+    json << (row.Rank > 0 ? ", " : "") << "{\"Rank\": " << row.Rank << ", \"Host\": \"" << row.Host
+         << "\", \"Organization\": \"" << this->Organization << "\", \"Explanation\": \""
+         << this->Explanation << "\"";
+    RankRow::ForEachColumn([&](const auto& column) { AddMember(json, row, column); });
+    json << ", \"Workers\": [";
+    bool first = true;
+    for (const WorkerRow& worker : this->Workers)
     {
-      json << ", \"" << name << "\": " << row.*member;
+      if (worker.Rank == row.Rank)
+      {
+        json << (first ? "" : ", ") << "{\"Rank\": " << worker.Rank;
+        WorkerRow::ForEachColumn([&](const auto& column) { AddMember(json, worker, column); });
+        json << "}";
+        first = false;
+      }
     }
-    json << ", \"Seconds\": " << row.Seconds << "}";
+    json << "]}";
   }
   json << "]";
   return json.str();
@@ -143,5 +262,6 @@ void vtkDSMStatistics::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
   os << indent << "FrameSeconds: " << this->FrameSeconds << "\n";
+  os << indent << "Explanation: " << this->Explanation << "\n";
   os << indent << "Ranks: " << this->GetJson() << "\n";
 }

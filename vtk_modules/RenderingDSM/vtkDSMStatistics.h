@@ -47,13 +47,29 @@ public:
   vtkGetMacro(FrameSeconds, double);
 
   /**
-   * One row for each rank. Columns: Rank, Host, Threads, BytesResident, BytesCached, CacheCapacity,
-   * Accesses, Hits, Misses, BytesReceived, Tiles, Seconds (of tracing, summed over the threads).
+   * A sentence for the user: how the ranks keep their bricks, and why. Empty without a frame.
+   */
+  vtkGetMacro(Explanation, std::string);
+
+  /**
+   * One row for each rank. Columns: Rank, Host, Organization (as the frame found it), Threads,
+   * BytesResident (bricks that it owns), BytesShared (read in place, on its host), BytesCopied
+   * (replicated), BytesCached, PeakBytesCached, CacheCapacity, MemoryBudget, Accesses, Hits, Misses,
+   * Joins (misses that found the brick requested already), Evictions, BytesReceived, BytesSent,
+   * WaitSeconds (of the workers, for bricks), Tiles, Seconds (of tracing). What workers count is
+   * summed over the rank's workers.
    */
   void GetTable(vtkTable* table) const;
 
   /**
-   * The same as JSON: an array with an object for each rank, keys as the table's columns.
+   * One row for each tracing thread of each rank. Columns: Rank, Worker, Accesses, Hits, Misses, Joins,
+   * WaitSeconds.
+   */
+  void GetWorkerTable(vtkTable* table) const;
+
+  /**
+   * The same as JSON: an array with an object for each rank, keys as the table's columns, and
+   * Explanation; under Workers an array with an object for each thread.
    */
   std::string GetJson() const;
 
@@ -66,8 +82,12 @@ private:
   void operator=(const vtkDSMStatistics&) = delete;
 
   struct RankRow;
+  struct WorkerRow;
   double FrameSeconds = 0.0;
+  std::string Explanation;
+  std::string Organization;
   std::vector<RankRow> Rows;
+  std::vector<WorkerRow> Workers; ///< of all ranks, in rank order
 };
 
 #endif

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkDSMTranslation.h"
 
+#include "vtkDSMMemoryOptions.h"
+
 #include "vtkAlgorithm.h"
 #include "vtkCamera.h"
 #include "vtkImageData.h"
@@ -125,6 +127,23 @@ rt::ColorMap vtkDSMTranslation::ToColorMap(vtkScalarsToColors* table)
   map.Above = MapValue(table, std::nextafter(map.Last, infinity));
   map.NotANumber = MapValue(table, vtkMath::Nan());
   return map;
+}
+
+vtkDSMMemorySettings vtkDSMTranslation::ToMemorySettings(vtkDSMMemoryOptions* options)
+{
+  using Options = vtkDSMMemoryOptions;
+  static_assert(static_cast<int>(dsm::MemoryOrganization::Automatic) == Options::Automatic &&
+      static_cast<int>(dsm::MemoryOrganization::Replicated) == Options::Replicated &&
+      static_cast<int>(dsm::MemoryOrganization::ObjectBased) == Options::ObjectBased &&
+      static_cast<int>(dsm::MemoryOrganization::PageBased) == Options::PageBased,
+    "the options number the organisations as the store does");
+  vtkDSMMemorySettings settings;
+  settings.Organization = static_cast<dsm::MemoryOrganization>(options->GetMemoryOrganization());
+  settings.HostSharing = options->GetHostSharing();
+  settings.MemoryBytes = static_cast<std::uint64_t>(options->GetMemory()) << 20;
+  settings.CacheBytes = static_cast<std::uint64_t>(options->GetCacheSize()) << 20;
+  settings.Threads = options->GetNumberOfThreads();
+  return settings;
 }
 
 std::vector<rt::Light> vtkDSMTranslation::ToLights(vtkRenderer* renderer)

@@ -4,10 +4,12 @@
 
 #include "DSMRayTracing/frame/FrameRequest.h"
 #include "DSMRayTracing/frame/Scene.h"
+#include "vtkDSMMemorySettings.h"
 
 #include <memory>
 #include <vector>
 
+class vtkDSMMemoryOptions;
 class vtkMatrix4x4;
 class vtkProperty;
 class vtkRenderer;
@@ -28,6 +30,8 @@ public:
 
   /// Samples any lookup table or transfer function; finely enough for one that is discretised.
   static rt::ColorMap ToColorMap(vtkScalarsToColors* table);
+
+  static vtkDSMMemorySettings ToMemorySettings(vtkDSMMemoryOptions* options);
 
   /// The lights that are on, in world space. Moves the lights that follow the camera to where the
   /// renderer will have them, and makes the renderer's automatic light if there is none.

@@ -2,6 +2,7 @@
 #include "vtkDSMVolumeMapper.h"
 
 #include "vtkDSMLightOptions.h"
+#include "vtkDSMMemoryOptions.h"
 
 #include "vtkCompositeDataSet.h"
 #include "vtkDataSet.h"
@@ -17,6 +18,7 @@ vtkStandardNewMacro(vtkDSMVolumeMapper);
 vtkDSMVolumeMapper::vtkDSMVolumeMapper()
   : SurfaceProperty(vtkSmartPointer<vtkProperty>::New())
   , LightOptions(vtkSmartPointer<vtkDSMLightOptions>::New())
+  , MemoryOptions(vtkSmartPointer<vtkDSMMemoryOptions>::New())
 {
   vtkMath::UninitializeBounds(this->GlobalBounds);
 }
@@ -89,6 +91,17 @@ void vtkDSMVolumeMapper::SetLightOptions(vtkDSMLightOptions* options)
 {
   this->LightOptions = options ? options : vtkSmartPointer<vtkDSMLightOptions>::New().Get();
   this->Modified();
+}
+
+void vtkDSMVolumeMapper::SetMemoryOptions(vtkDSMMemoryOptions* options)
+{
+  this->MemoryOptions = options ? options : vtkSmartPointer<vtkDSMMemoryOptions>::New().Get();
+  this->Modified();
+}
+
+vtkDSMMemoryOptions* vtkDSMVolumeMapper::GetMemoryOptions() const
+{
+  return this->MemoryOptions;
 }
 
 vtkDSMLightOptions* vtkDSMVolumeMapper::GetLightOptions() const
@@ -171,6 +184,4 @@ void vtkDSMVolumeMapper::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "ScalarVisibility: " << this->ScalarVisibility << "\n";
   os << indent << "LookupTable: " << this->LookupTable.Get() << "\n";
   os << indent << "SurfaceProperty: " << this->SurfaceProperty.Get() << "\n";
-  os << indent << "NumberOfThreads: " << this->NumberOfThreads << "\n";
-  os << indent << "CacheSize: " << this->CacheSize << " MiB\n";
 }

@@ -24,6 +24,7 @@
 #include <vector> // for ivars
 
 class vtkDSMLightOptions;
+class vtkDSMMemoryOptions;
 class vtkProperty;
 class vtkScalarsToColors;
 
@@ -87,28 +88,18 @@ public:
 
   ///@{
   /**
-   * Tracing threads of each rank; 0 (the default) divides the host's cores by its ranks. The largest
-   * among a scene's volumes counts.
-   */
-  vtkSetClampMacro(NumberOfThreads, int, 0, 1024);
-  vtkGetMacro(NumberOfThreads, int);
-  ///@}
-
-  ///@{
-  /**
-   * Memory of each rank for bricks of other ranks, in MiB. Default 256. The largest among a scene's
-   * volumes counts.
-   */
-  vtkSetClampMacro(CacheSize, int, 1, VTK_INT_MAX);
-  vtkGetMacro(CacheSize, int);
-  ///@}
-
-  ///@{
-  /**
    * Shadows, ambient occlusion, mirrors and samples; never null. Null makes new ones.
    */
   void SetLightOptions(vtkDSMLightOptions* options);
   vtkDSMLightOptions* GetLightOptions() const;
+  ///@}
+
+  ///@{
+  /**
+   * Memory organisation, sizes and threads; never null. Null makes new ones.
+   */
+  void SetMemoryOptions(vtkDSMMemoryOptions* options);
+  vtkDSMMemoryOptions* GetMemoryOptions() const;
   ///@}
 
   ///@{
@@ -155,9 +146,8 @@ private:
   bool ScalarVisibility = false;
   vtkSmartPointer<vtkScalarsToColors> LookupTable;
   vtkSmartPointer<vtkProperty> SurfaceProperty;
-  int NumberOfThreads = 0;
-  int CacheSize = 256;
   vtkSmartPointer<vtkDSMLightOptions> LightOptions;
+  vtkSmartPointer<vtkDSMMemoryOptions> MemoryOptions;
   double GlobalBounds[6];
 };
 

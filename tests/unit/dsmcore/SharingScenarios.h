@@ -247,7 +247,7 @@ inline void AutomaticFollowsTheData(dsm::Messenger& messenger)
   }
   const auto two = PublishPattern(messenger, store, directory);
   EXPECT_EQ(store.GetOrganization(), dsm::MemoryOrganization::ObjectBased);
-  EXPECT_NE(store.GetExplanation().find("object based: all data take 1 MiB of a rank's memory, "
+  EXPECT_NE(store.GetExplanation().find("object based: all data take 1 MiB on a rank, "
                                         "which do not fit the 1 MiB"),
     std::string::npos)
     << store.GetExplanation();

@@ -43,6 +43,13 @@ TEST(ObjectStoreStress, FourRanksTimesTwoWorkersThroughACacheOfThreeBlocks)
     { dsm_test::RandomAccessThroughASmallCache(messenger, 2, 12500); });
 }
 
+TEST(ObjectStoreStress, TwoRanksTimesEightWorkersAMillionAccesses)
+{
+  dsm_test::RunRanks(2,
+    [](dsm::Messenger& messenger)
+    { dsm_test::RandomAccessThroughASmallCache(messenger, 8, 62500); });
+}
+
 TEST(ObjectStore, NoWorkersAreRefused)
 {
   dsm_test::RunRanks(1,

@@ -9,6 +9,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <string>
 #include <vector>
 
 namespace rt
@@ -41,6 +42,7 @@ struct Frame
   double Seconds = 0.0; ///< from the collective start to the collective end
   /// How the bricks were kept; never Automatic.
   dsm::MemoryOrganization Organization = dsm::MemoryOrganization::ObjectBased;
+  std::string Explanation; ///< a sentence: why they are kept so
   dsm::StoreCounters Counters;
   std::vector<dsm::WorkerCounters> WorkerCounters;
 };

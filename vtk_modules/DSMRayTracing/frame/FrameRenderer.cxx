@@ -146,6 +146,7 @@ void FrameRenderer::RenderTiles(dsm::BlockStore& store, const Scene& scene,
   frame.Counters = store.GetCounters();
   frame.WorkerCounters = store.GetWorkerCounters();
   frame.Organization = store.GetOrganization();
+  frame.Explanation = store.GetExplanation();
   frame.Seconds = SecondsSince(start);
 }
 

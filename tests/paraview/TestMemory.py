@@ -1,0 +1,126 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""How the ranks keep their bricks: the picture is the same whatever the user chooses, what Automatic
+chooses is said once, and what does not fit the memory is refused with what would."""
+
+import json
+
+from dsm_testing import *
+
+load_plugin()
+EXTENT = (0, 89, 0, 89, 0, 89)  # doubles: more than 1 MiB on each of 4 ranks
+SCRIPT = "image.SetExtent(piece)\nadd(image, distance(piece) + 0.05 * np.sin(points(piece)[0]))\n"
+ORGANIZATIONS = ["Replicated", "Object based", "Page based"]
+several = get_ranks() > 1
+view = create_view()
+view.UseFXAA = 0
+
+
+def get_rows(display):
+    display.SMProxy.UpdatePropertyInformation()
+    return json.loads(str(display.GetProperty("DSMStatistics")).strip("'"))
+
+
+def check_report(display, organization):
+    rows = get_rows(display)
+    check(len(rows) == get_ranks(), "every rank reports")
+    check(all(row["Organization"] == organization.lower() for row in rows), f"it is {organization}")
+    check(all(organization.lower() in row["Explanation"] for row in rows), rows[0]["Explanation"])
+    for row in rows:
+        check(row["Accesses"] == row["Hits"] + row["Misses"], "accesses are hits or misses")
+        check(row["Joins"] <= row["Misses"], "a join is a miss")
+        check(len(row["Workers"]) == row["Threads"], "every thread reports")
+        for key in ("Accesses", "Hits", "Misses", "Joins"):
+            check(sum(worker[key] for worker in row["Workers"]) == row[key], f"the threads' {key}")
+        check(row["BytesCached"] <= row["CacheCapacity"], "the cache keeps within its capacity")
+        held = row["BytesResident"] + row["BytesCopied"] + row["CacheCapacity"]
+        check(held <= row["MemoryBudget"], "and all of it within the memory")
+    check(sum(row["Accesses"] for row in rows) > 0, "there were some")
+    check(sum(row["BytesSent"] for row in rows) == sum(row["BytesReceived"] for row in rows),
+          "what is sent is received")
+    return rows
+
+
+# What Automatic chose.
+source = image_source(SCRIPT, EXTENT)
+with Messages() as messages:
+    display = show(source, view, [0.7], "f")
+    place_camera(view)
+    picture = render(view, "Automatic")
+    render(view)
+    said = messages.text
+check(get_covered(picture).any(), "the surface is there")
+check(said.count("memory organisation is replicated: all data take") == (1 if several else 0),
+      "what was chosen is said once: " + said)
+check("ERROR" not in said and "arning" not in said, "and is no warning")
+check_report(display, "Replicated")
+
+# Every organisation, with and without the memory of the others on the host.
+for sharing in (0, 1):
+    display.DSMHostSharing = sharing
+    for organization in ORGANIZATIONS:
+        display.DSMMemoryOrganization = organization
+        with Messages() as messages:
+            again = render(view)
+        check(messages.text.strip() == "", "nothing is reported: " + messages.text)
+        check_equal(again, picture, f"{organization}, sharing {sharing}: same picture", tolerance=0)
+        rows = check_report(display, organization)
+        in_place = sharing and len({row["Host"] for row in rows}) == 1
+        fetches = several and organization != "Replicated" and not (
+            in_place and organization == "Object based")
+        check(any(row["Misses"] > 0 for row in rows) == fetches, f"bricks are fetched: {fetches}")
+        check(any(row["BytesCopied"] > 0 for row in rows) == (
+            several and organization == "Replicated" and not in_place), "and copied when replicated")
+
+# A cache of very few bricks.
+display.DSMHostSharing = 0
+display.DSMCacheSize = 1
+for organization in ORGANIZATIONS[1:]:
+    display.DSMMemoryOrganization = organization
+    for position in ((0.6, 0.5, 1.0), (-1.0, 0.2, 0.3), (0.6, 0.5, 1.0)):
+        place_camera(view, position)
+        last = render(view)
+    check_equal(last, picture, f"{organization} with a small cache: same picture", tolerance=0)
+    check(all(row["CacheCapacity"] <= 1 << 20 for row in get_rows(display)), "as small as asked for")
+
+# Too little memory: refused with numbers, and the session goes on.
+display.DSMCacheSize = 256
+for organization, remedy in (("Object based", "ranks with as much memory"),
+                             ("Page based", "ranks with as much memory"),
+                             ("Replicated", "object based memory organisation")):
+    display.DSMMemoryOrganization = "Automatic"
+    display.DSMMemory = 0
+    check_equal(render(view), picture, "the surface is there", tolerance=0)
+    display.DSMMemoryOrganization = organization
+    display.DSMMemory = 1
+    with Messages() as messages:
+        refused = render(view)
+        render(view)
+    text = messages.text
+    check(not get_covered(refused).any(), f"{organization}: nothing is drawn")
+    check("DSMMemory" in text and "bytes" in text and remedy in text, "it says why: " + text)
+    check(text.count("Raise the memory per rank") == 1, "once")
+    display.DSMMemory = 64
+    with Messages() as messages:
+        again = render(view)
+    check_equal(again, picture, f"{organization} with enough memory", tolerance=0)
+    check(messages.text.strip() == "", "nothing is reported: " + messages.text)
+
+# Two views share one memory: what one asks for is done for both.
+second = create_view(200, 160)
+second.UseFXAA = 0
+other = show(source, second, [0.7], "f")
+place_camera(second)
+display.DSMMemoryOrganization = "Automatic"
+references = []
+for each in (view, second):  # the views of a layout may have changed their sizes
+    render(each)
+    references.append(render(each))
+for organization in ("Page based", "Object based", "Automatic", "Page based"):
+    display.DSMMemoryOrganization = organization
+    for each, reference in zip((view, second) * 2, references * 2):
+        check_equal(render(each), reference, f"{organization} in both views", tolerance=0)
+    expected = "Replicated" if organization == "Automatic" else organization
+    for each in (display, other):
+        check(get_rows(each)[0]["Organization"] == expected.lower(), "both say so")
+simple.Delete(source)
+render(view)

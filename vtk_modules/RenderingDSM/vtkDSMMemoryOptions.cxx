@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkDSMMemoryOptions.h"
+
+#include "vtkObjectFactory.h"
+
+vtkStandardNewMacro(vtkDSMMemoryOptions);
+
+vtkDSMMemoryOptions::vtkDSMMemoryOptions() = default;
+vtkDSMMemoryOptions::~vtkDSMMemoryOptions() = default;
+
+void vtkDSMMemoryOptions::PrintSelf(ostream& os, vtkIndent indent)
+{
+  this->Superclass::PrintSelf(os, indent);
+  os << indent << "MemoryOrganization: " << this->MemoryOrganization << "\n";
+  os << indent << "HostSharing: " << this->HostSharing << "\n";
+  os << indent << "Memory: " << this->Memory << " MiB\n";
+  os << indent << "CacheSize: " << this->CacheSize << " MiB\n";
+  os << indent << "NumberOfThreads: " << this->NumberOfThreads << "\n";
+}

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @class   vtkDSMMemoryOptions
+ * @brief   how the ranks keep the bricks of a dataset, and with how many threads they trace
+ *
+ * Held by each mapper of a vtkDSMScene. All that is shown shares one memory, so what the datasets ask
+ * for is merged as said below; the picture is the same whatever is chosen. Same values on every rank,
+ * but that the number of threads may differ.
+ */
+
+#ifndef vtkDSMMemoryOptions_h
+#define vtkDSMMemoryOptions_h
+
+#include "vtkObject.h"
+#include "vtkRenderingDSMModule.h" // for the export macro
+
+class VTKRENDERINGDSM_EXPORT vtkDSMMemoryOptions : public vtkObject
+{
+public:
+  static vtkDSMMemoryOptions* New();
+  vtkTypeMacro(vtkDSMMemoryOptions, vtkObject);
+  void PrintSelf(ostream& os, vtkIndent indent) override;
+
+  ///@{
+  /**
+   * How the ranks keep the bricks. The first among all datasets that is not Automatic counts.
+   */
+  enum MemoryOrganizationType
+  {
+    Automatic = 0,   ///< Replicated where everything fits the memory, else ObjectBased (default)
+    Replicated = 1,  ///< every rank has all bricks
+    ObjectBased = 2, ///< each has its own; those of others are fetched into a cache, by a table
+    PageBased = 3    ///< the same, by page faults
+  };
+  vtkSetClampMacro(MemoryOrganization, int, Automatic, PageBased);
+  vtkGetMacro(MemoryOrganization, int);
+  ///@}
+
+  ///@{
+  /**
+   * Whether ranks of one host read one another's bricks in place, where the organisation allows it
+   * (default on). Off when any dataset wants it off.
+   */
+  vtkSetMacro(HostSharing, bool);
+  vtkGetMacro(HostSharing, bool);
+  vtkBooleanMacro(HostSharing, bool);
+  ///@}
+
+  ///@{
+  /**
+   * What each rank may take for its own bricks, copies and the cache, in MiB. 0 (the default): half
+   * of what its host has left, divided by the ranks there. The largest among all datasets counts.
+   */
+  vtkSetClampMacro(Memory, int, 0, VTK_INT_MAX);
+  vtkGetMacro(Memory, int);
+  ///@}
+
+  ///@{
+  /**
+   * Memory of each rank for bricks of other ranks, in MiB. Default 256. The largest among all datasets
+   * counts.
+   */
+  vtkSetClampMacro(CacheSize, int, 1, VTK_INT_MAX);
+  vtkGetMacro(CacheSize, int);
+  ///@}
+
+  ///@{
+  /**
+   * Tracing threads of each rank; 0 (the default) divides the host's cores by its ranks. The largest
+   * among all datasets counts.
+   */
+  vtkSetClampMacro(NumberOfThreads, int, 0, 1024);
+  vtkGetMacro(NumberOfThreads, int);
+  ///@}
+
+protected:
+  vtkDSMMemoryOptions();
+  ~vtkDSMMemoryOptions() override;
+
+private:
+  vtkDSMMemoryOptions(const vtkDSMMemoryOptions&) = delete;
+  void operator=(const vtkDSMMemoryOptions&) = delete;
+
+  int MemoryOrganization = Automatic;
+  bool HostSharing = true;
+  int Memory = 0;
+  int CacheSize = 256;
+  int NumberOfThreads = 0;
+};
+
+#endif

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef vtkDSMMemorySettings_h
+#define vtkDSMMemorySettings_h
+
+#include "DSMCore/MemoryOrganization.h"
+
+#include <algorithm>
+#include <cstdint>
+
+/// How the ranks keep their bricks, as one object of a scene, a scene, or all scenes together ask for
+/// it. All that is shown shares one memory, so what differs is merged, by the present values alone:
+/// neither the order of the user's changes nor a saved session's order of loading makes a difference.
+struct vtkDSMMemorySettings
+{
+  /// Of several that are not Automatic, the first counts.
+  dsm::MemoryOrganization Organization = dsm::MemoryOrganization::Automatic;
+  /// Off when anyone wants it off.
+  bool HostSharing = true;
+  /// Of each rank, for its own bricks, copies and cache; 0: automatic. The largest counts.
+  std::uint64_t MemoryBytes = 0;
+  /// The most that the cache may take of it. The largest counts.
+  std::uint64_t CacheBytes = std::uint64_t(1) << 20;
+  /// Tracing threads of each rank; 0: the cores of the host divided by its ranks. The largest counts.
+  int Threads = 0;
+
+  void Merge(const vtkDSMMemorySettings& other)
+  {
+    if (this->Organization == dsm::MemoryOrganization::Automatic)
+    {
+      this->Organization = other.Organization;
+    }
+    this->HostSharing = this->HostSharing && other.HostSharing;
+    this->MemoryBytes = std::max(this->MemoryBytes, other.MemoryBytes);
+    this->CacheBytes = std::max(this->CacheBytes, other.CacheBytes);
+    this->Threads = std::max(this->Threads, other.Threads);
+  }
+};
+
+#endif
