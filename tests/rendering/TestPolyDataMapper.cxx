@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Polygons, lines and points as any VTK application draws them, without ParaView: against VTK's own
 // mapper with the same actor.
-#include "vtkDSMPolyDataMapper.h"
 #include "vtkDSMMemoryOptions.h"
+#include "vtkDSMPolyDataMapper.h"
 #include "vtkDSMScene.h"
 
 #include "vtkActor.h"
