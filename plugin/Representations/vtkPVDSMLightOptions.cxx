@@ -42,3 +42,8 @@ void vtkPVDSMLightOptions::SetSamplesPerPixel(int samples)
 {
   this->Superclass::SetSamplesPerPixel(samples);
 }
+
+void vtkPVDSMLightOptions::SetDebugView(int view)
+{
+  this->Superclass::SetDebugView(view);
+}

@@ -28,6 +28,7 @@ public:
   void SetReflectivity(double part) override;
   void SetMaxBounces(int bounces) override;
   void SetSamplesPerPixel(int samples) override;
+  void SetDebugView(int view) override;
   ///@}
 
 protected:

@@ -17,8 +17,8 @@ REPRESENTATION = "DSM Ray Traced"
 
 def load_plugin():
     if servermanager.ActiveConnection.IsRemote():
-        simple.LoadPlugin(PLUGIN, remote=True, ns=globals())
-    simple.LoadPlugin(PLUGIN, remote=False, ns=globals())
+        simple.LoadPlugin(PLUGIN, remote=True, ns=vars(simple))
+    simple.LoadPlugin(PLUGIN, remote=False, ns=vars(simple))
     os.makedirs(OUTPUT, exist_ok=True)
 
 

@@ -18,4 +18,5 @@ void vtkDSMLightOptions::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "Reflectivity: " << this->Reflectivity << "\n";
   os << indent << "MaxBounces: " << this->MaxBounces << "\n";
   os << indent << "SamplesPerPixel: " << this->SamplesPerPixel << "\n";
+  os << indent << "DebugView: " << this->DebugView << "\n";
 }

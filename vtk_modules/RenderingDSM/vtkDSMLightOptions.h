@@ -82,6 +82,25 @@ public:
   vtkGetMacro(SamplesPerPixel, int);
   ///@}
 
+  ///@{
+  /**
+   * What the surfaces' colours tell instead of their look. The first among a scene's visible objects
+   * that is not Off counts. TracingRank and TileTime differ from frame to frame.
+   */
+  enum DebugViewType
+  {
+    Off = 0,
+    Owner = 1,       ///< which rank owns the brick
+    TracingRank = 2, ///< which rank traced the pixel
+    Brick = 3,       ///< which brick it is
+    TileTime = 4,    ///< how long the tile took: black, red, yellow, white (2 ms or more)
+    Normal = 5,      ///< x, y, z as red, green, blue
+    Depth = 6        ///< near is bright
+  };
+  vtkSetClampMacro(DebugView, int, Off, Depth);
+  vtkGetMacro(DebugView, int);
+  ///@}
+
 protected:
   vtkDSMLightOptions();
   ~vtkDSMLightOptions() override;
@@ -97,6 +116,7 @@ private:
   double Reflectivity = 0.0;
   int MaxBounces = 2;
   int SamplesPerPixel = 1;
+  int DebugView = Off;
 };
 
 #endif

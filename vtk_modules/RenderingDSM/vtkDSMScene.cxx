@@ -77,6 +77,7 @@ public:
   void DrawLast(const rt::Scene& scene);
   void Clear();
   rt::LightTransport GetTransport() const;
+  rt::DebugView GetDebugView() const;
   glm::vec3 AgreeOnBackground();
   int CountSamplesOfFrame(int missing) const;
   void TraceSamples(const rt::Scene& scene, rt::FrameRequest& request);
@@ -360,6 +361,7 @@ void vtkDSMScene::Internals::Draw()
       this->DrawLast(scene);
       scene.Lights = vtkDSMTranslation::ToLights(this->Renderer);
       scene.Transport = this->GetTransport();
+      scene.View = this->GetDebugView();
       request = vtkDSMTranslation::ToRequest(this->Renderer, projection);
     });
   if (scene.Isosurfaces.empty() && scene.Meshes.empty())
@@ -383,6 +385,27 @@ void vtkDSMScene::Internals::Draw()
       this->Prop->SetFrame(
         whole ? std::move(*whole) : rt::AssembleTiles(this->Frame), projection, bounds, drawsColor);
     });
+}
+
+rt::DebugView vtkDSMScene::Internals::GetDebugView() const
+{
+  using Options = vtkDSMLightOptions;
+  static_assert(static_cast<int>(rt::DebugView::Off) == Options::Off &&
+      static_cast<int>(rt::DebugView::Owner) == Options::Owner &&
+      static_cast<int>(rt::DebugView::TracingRank) == Options::TracingRank &&
+      static_cast<int>(rt::DebugView::Brick) == Options::Brick &&
+      static_cast<int>(rt::DebugView::TileTime) == Options::TileTime &&
+      static_cast<int>(rt::DebugView::Normal) == Options::Normal &&
+      static_cast<int>(rt::DebugView::Depth) == Options::Depth,
+    "the options number the views as the tracer does");
+  for (const Member& member : this->Members)
+  {
+    if (const int view = member.State->GetLightOptions()->GetDebugView())
+    {
+      return static_cast<rt::DebugView>(view);
+    }
+  }
+  return rt::DebugView::Off;
 }
 
 /// Collective. What mirrored rays see where they meet nothing: rank 0's background, since ParaView's

@@ -4,6 +4,8 @@
 #include "DSMCore/Error.h"
 #include "DSMRayTracing/brick/VoxelBrickHeader.h"
 
+#include <glm/common.hpp>
+
 #include <limits>
 #include <string>
 #include <vector>
@@ -65,6 +67,13 @@ Index3 BrickLattice::GetBrick(dsm::BlockId id) const
   const auto number = static_cast<std::int64_t>(id);
   return { number % this->Bricks.x, number / this->Bricks.x % this->Bricks.y,
     number / (this->Bricks.x * this->Bricks.y) };
+}
+
+dsm::BlockId BrickLattice::FindBrick(const glm::dvec3& point) const
+{
+  const Index3 brick =
+    glm::clamp(Index3(glm::floor(point)) / Index3(this->Edge), Index3(0), this->Bricks - Index3(1));
+  return static_cast<dsm::BlockId>(brick.x + this->Bricks.x * (brick.y + this->Bricks.y * brick.z));
 }
 
 Box BrickLattice::GetCellsOfBrick(dsm::BlockId id) const

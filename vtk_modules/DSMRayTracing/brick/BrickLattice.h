@@ -6,6 +6,8 @@
 #include "DSMRayTracing/brick/Box.h"
 #include "DSMRayTracing/brick/ScalarType.h"
 
+#include <glm/vec3.hpp>
+
 #include <cstdint>
 
 namespace rt
@@ -45,6 +47,8 @@ public:
   Index3 GetBrick(dsm::BlockId id) const;
   /// The cells of a brick, clipped to the volume.
   Box GetCellsOfBrick(dsm::BlockId id) const;
+  /// The brick that a point of index space lies in; the nearest one for a point outside.
+  dsm::BlockId FindBrick(const glm::dvec3& point) const;
   std::uint32_t GetBlockBytes(dsm::BlockId id) const;
   dsm::BlockDirectory CreateDirectory(int ranks) const;
 

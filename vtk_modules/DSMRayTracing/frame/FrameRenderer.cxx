@@ -29,6 +29,20 @@ double SecondsSince(Clock::time_point start)
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
+/// What a whole tile is tinted with.
+glm::vec3 GetTint(DebugView view, int rank, double seconds)
+{
+  switch (view)
+  {
+    case DebugView::TracingRank:
+      return GetNumberColor(static_cast<std::uint64_t>(rank));
+    case DebugView::TileTime:
+      return GetHeatColor(std::min(seconds / LongTileSeconds, 1.0));
+    default:
+      return glm::vec3(1.0f);
+  }
+}
+
 /// The first failure among a rank's workers and its communication thread.
 class FirstFailure
 {
@@ -191,6 +205,7 @@ std::vector<Tile> FrameRenderer::TraceTiles(
         tracer.Trace(*tile);
         store.Leave(worker);
         tile->Seconds = SecondsSince(tileStart);
+        tracer.Finish(*tile, GetTint(scene.View, this->Messenger.GetRank(), tile->Seconds));
         tilesOfWorker[index].push_back(std::move(*tile));
       }
     }

@@ -163,6 +163,10 @@ private:
   glm::vec3 ShadePoint(const SurfacePoint& point, const glm::dvec3& toViewer, int bounces,
     SampleSequence& random) const
   {
+    if (this->World.View != DebugView::Off)
+    {
+      return this->ShowForDebugging(point, toViewer);
+    }
     ShadingPoint shading;
     shading.Position = point.Position;
     shading.Normal = glm::dot(point.Normal, toViewer) < 0.0 ? -point.Normal : point.Normal;
@@ -187,6 +191,24 @@ private:
     const glm::vec3 reflection =
       glm::vec3(seen) + (1.0f - seen.w) * this->World.Transport.Background;
     return (1.0f - reflectivity) * own + reflectivity * reflection;
+  }
+
+  glm::vec3 ShowForDebugging(const SurfacePoint& point, const glm::dvec3& toViewer) const
+  {
+    // What faces the viewer is brighter, so that the shape can be seen.
+    const float facing = static_cast<float>(0.4 + 0.6 * std::abs(glm::dot(point.Normal, toViewer)));
+    switch (this->World.View)
+    {
+      case DebugView::Normal:
+        return glm::vec3(0.5 + 0.5 * point.Normal);
+      case DebugView::Depth:
+        return glm::vec3(1.0f - this->Rays.GetDepth(point.Position));
+      case DebugView::Owner:
+      case DebugView::Brick:
+        return facing * GetNumberColor(point.Number);
+      default:
+        return glm::vec3(facing); // tinted when the tile is done
+    }
   }
 
   glm::dvec3 GetLightVisibility(const SurfacePoint& point, const Light&, const Incidence& incidence,

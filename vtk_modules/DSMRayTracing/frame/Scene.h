@@ -5,6 +5,7 @@
 #include "DSMCore/BlockSegment.h"
 #include "DSMRayTracing/accel/MacrocellHierarchy.h"
 #include "DSMRayTracing/brick/BrickLattice.h"
+#include "DSMRayTracing/frame/DebugView.h"
 #include "DSMRayTracing/frame/Texture.h"
 #include "DSMRayTracing/kernel/MeshInstance.h"
 
@@ -156,6 +157,7 @@ struct Scene
   std::vector<MeshObject> Meshes;
   std::vector<Light> Lights;
   LightTransport Transport;
+  DebugView View = DebugView::Off;
 };
 
 } // namespace rt

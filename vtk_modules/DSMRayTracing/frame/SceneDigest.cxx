@@ -135,6 +135,7 @@ std::uint64_t GetSceneDigest(const Scene& scene, const FrameRequest& request)
   digest.Add(request.WorldToClip);
   digest.Add(request.TileSize);
   digest.Add(scene.Transport);
+  digest.Add(scene.View);
   digest.AddAll(scene.Lights);
   digest.AddAll(scene.Isosurfaces);
   digest.AddAll(scene.Meshes);

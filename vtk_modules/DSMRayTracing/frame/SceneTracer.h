@@ -31,6 +31,8 @@ struct SurfacePoint
   /// World length that is more than the error of the hit, and less than the distance of two
   /// surfaces that can be told apart: where rays that leave the surface begin.
   double Clearance = 0.0;
+  /// What a debug view of owners or bricks numbers.
+  std::uint64_t Number = 0;
 };
 
 /// Finds what a ray meets among all objects of a scene. One for each worker.
@@ -133,6 +135,13 @@ private:
   static constexpr double MeshClearancePart = 1e-6;
   static constexpr double HitError = 1e-13;
 
+  std::uint64_t GetNumber(const dsm::BlockSegment& segment, dsm::BlockId id) const
+  {
+    return this->World.View == DebugView::Owner
+      ? static_cast<std::uint64_t>(segment.GetDirectory().GetOwner(id))
+      : id;
+  }
+
   static double Largest(const glm::dvec3& color) { return std::max({ color.x, color.y, color.z }); }
 
   /// The object that the ray meets first, or null; the ray ends there afterwards.
@@ -197,10 +206,20 @@ private:
     if (mesh)
     {
       Describe(*mesh, meshHit, ray, point);
+      if (this->World.View != DebugView::Off)
+      {
+        point.Number = this->GetNumber(*mesh->Instance->GetMesh().Segment, meshHit.Brick);
+      }
     }
     else if (isosurface)
     {
       this->Describe(*isosurface, isosurfaceHit, ray, point);
+      if (this->World.View != DebugView::Off)
+      {
+        const VoxelField& field = *isosurface->Field;
+        point.Number =
+          this->GetNumber(*field.Segment, field.Lattice.FindBrick(isosurfaceHit.IndexPoint));
+      }
     }
     return mesh || isosurface;
   }

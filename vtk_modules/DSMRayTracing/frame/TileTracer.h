@@ -26,8 +26,8 @@ public:
   {
   }
 
-  /// Adds the request's samples to the tile's sums (which must hold the samples before them) and
-  /// makes its pixels of them. May wait for bricks.
+  /// Adds the request's samples to the tile's sums (which must hold the samples before them). May wait
+  /// for bricks.
   void Trace(Tile& tile) const
   {
     const std::size_t pixels = static_cast<std::size_t>(tile.Width) * tile.Height;
@@ -45,12 +45,19 @@ public:
           std::min(BeamEdge, tile.Height - top));
       }
     }
-    const float scale = 1.0f / (this->Request.FirstSample + this->Request.Samples);
+  }
+
+  /// Makes pixels of the sums, in the colours of `tint`.
+  void Finish(Tile& tile, const glm::vec3& tint) const
+  {
+    const std::size_t pixels = tile.Sum.size();
+    const glm::vec4 scale =
+      glm::vec4(tint, 1.0f) / float(this->Request.FirstSample + this->Request.Samples);
     for (std::size_t pixel = 0; pixel < pixels; ++pixel)
     {
       for (int channel = 0; channel < 4; ++channel)
       {
-        const float value = std::clamp(scale * tile.Sum[pixel][channel], 0.0f, 1.0f);
+        const float value = std::clamp(scale[channel] * tile.Sum[pixel][channel], 0.0f, 1.0f);
         tile.Color[4 * pixel + channel] = static_cast<std::uint8_t>(255.0f * value + 0.5f);
       }
     }

@@ -1,0 +1,39 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Debug views: what they show has the colours it should, over the same pixels."""
+
+from dsm_testing import *
+
+load_plugin()
+view = create_view()
+view.UseFXAA = 0
+volume = simple.DSMSampleVolume(Dimensions=[64, 64, 64])
+display = show(volume, view, [0.5], "f", DSMMemoryOrganization="Object based", DSMHostSharing=0)
+place_camera(view)
+
+
+def draw(mode, name=None):
+    display.DSMDebugView = mode
+    return render(view, name)
+
+
+def count_hues(pixels):
+    """The colours, without their brightness, of the pixels that are covered."""
+    colors = pixels[covered].astype(float)
+    colors = colors[colors.max(axis=1) > 60]
+    return len({tuple(color) for color in numpy.round(4 * colors / colors.max(axis=1)[:, None])})
+
+
+plain = draw("Off", "off")
+covered = get_covered(plain)
+check(covered.mean() > 0.05, "there is a surface")
+for mode in ("Owner of the data", "Rank that traced", "Brick", "Normal", "Depth"):
+    pixels = draw(mode)
+    check((get_covered(pixels) == covered).mean() > 0.995, mode + " covers the same pixels")
+owners = count_hues(draw("Owner of the data"))
+check(get_ranks() <= owners <= 2 * get_ranks(), f"{owners} hues for {get_ranks()} owners")
+tracers = count_hues(draw("Rank that traced"))
+check(1 <= tracers <= 2 * get_ranks(), f"{tracers} hues for {get_ranks()} ranks that traced")
+check(count_hues(draw("Brick", "brick")) > 8, "bricks have many colours")
+draw("Normal", "normal")
+draw("Depth", "depth")
+check_equal(draw("Off"), plain, "and off again", 0)

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef rt_DebugView_h
+#define rt_DebugView_h
+
+#include <glm/common.hpp>
+#include <glm/vec3.hpp>
+
+#include <cmath>
+#include <cstdint>
+
+namespace rt
+{
+
+/// What the surfaces' colours tell instead of their look. Pictures of TracingRank and TileTime differ
+/// from frame to frame, and with the number of ranks, as what they show does.
+enum class DebugView
+{
+  Off,
+  Owner,       ///< which rank owns the brick (the paper's Fig. 2)
+  TracingRank, ///< which rank traced the pixel (the paper's Fig. 1)
+  Brick,       ///< which brick, or treelet, it is
+  TileTime,    ///< how long the tile took: black, red, yellow, white at LongTileSeconds
+  Normal,      ///< x, y, z of the world as red, green, blue
+  Depth        ///< near is bright, far is dark
+};
+
+/// A tile that takes as long, or longer, is white.
+constexpr double LongTileSeconds = 0.002;
+
+/// Colours of numbers: neighbouring numbers differ much (hues at steps of the golden ratio).
+inline glm::vec3 GetNumberColor(std::uint64_t number)
+{
+  const double hue = std::fmod(0.61803398874989484 * static_cast<double>(number), 1.0);
+  const glm::vec3 phase = glm::vec3(0.0f, 4.0f, 2.0f) + static_cast<float>(6.0 * hue);
+  return glm::clamp(
+    glm::abs(glm::mod(phase, 6.0f) - 3.0f) - 1.0f, glm::vec3(0.15f), glm::vec3(1.0f));
+}
+
+/// Black, red, yellow, white.
+inline glm::vec3 GetHeatColor(double part)
+{
+  const float heat = static_cast<float>(3.0 * part);
+  return glm::clamp(glm::vec3(heat, heat - 1.0f, heat - 2.0f), 0.0f, 1.0f);
+}
+
+} // namespace rt
+
+#endif
