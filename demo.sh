@@ -22,7 +22,7 @@ fi
 
 install_packages "${packages[@]}"
 # Without the tests, unless they are built already.
-grep -qs BUILD_TESTING=ON "$build/configured.txt" && tests=ON || tests=OFF
+grep -qs DSM_BUILD_TESTING:BOOL=ON "$build/CMakeCache.txt" && tests=ON || tests=OFF
 build_project -DDSM_BUILD_TESTING=$tests
 picture=$PWD/demo.png
 rm -f "$picture"

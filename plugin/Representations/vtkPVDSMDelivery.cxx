@@ -9,6 +9,7 @@
 #include "vtkPVDataRepresentation.h"
 #include "vtkPVRenderView.h"
 #include "vtkPVRenderViewDataDeliveryManager.h"
+#include "vtkPVRenderingCapabilitiesInformation.h"
 #include "vtkPVSession.h"
 #include "vtkProcessModule.h"
 #include "vtkSmartPointer.h"
@@ -18,6 +19,24 @@ bool vtkPVDSMDelivery::IsRenderingProcess()
   auto* module = vtkProcessModule::GetProcessModule();
   auto* session = module ? vtkPVSession::SafeDownCast(module->GetActiveSession()) : nullptr;
   return !session || session->HasProcessRole(vtkPVSession::RENDER_SERVER);
+}
+
+std::string vtkPVDSMDelivery::FindObstacle()
+{
+  auto* module = vtkProcessModule::GetProcessModule();
+  auto* session = module ? vtkPVSession::SafeDownCast(module->GetActiveSession()) : nullptr;
+  if (session && !session->HasProcessRole(vtkPVSession::DATA_SERVER))
+  {
+    return "DSM Ray Traced traces where the data are, but here data and pictures have different "
+           "servers. Start pvserver in the place of pvdataserver and pvrenderserver.";
+  }
+  using Capabilities = vtkPVRenderingCapabilitiesInformation;
+  if (!Capabilities::Supports(Capabilities::GetLocalCapabilities(), Capabilities::RENDERING))
+  {
+    return "There is no display to draw on, and ParaView is going to stop. Start it with: "
+           "xvfb-run -a -s \"-noreset -screen 0 1280x1024x24\" COMMAND";
+  }
+  return {};
 }
 
 void vtkPVDSMDelivery::KeepData(vtkPVDataRepresentation* representation, vtkDataObject* placeholder,

@@ -2,6 +2,8 @@
 #ifndef vtkPVDSMDelivery_h
 #define vtkPVDSMDelivery_h
 
+#include <string>
+
 class vtkDataObject;
 class vtkDSMScene;
 class vtkInformation;
@@ -15,6 +17,9 @@ class vtkPVDSMDelivery
 public:
   /// ParaView's client holds every representation and hears every render, but only displays.
   static bool IsRenderingProcess();
+
+  /// Why this rendering process cannot draw anything, and what to do; empty when it can.
+  static std::string FindObstacle();
 
   /// For REQUEST_UPDATE: an empty placeholder is delivered, and every rank renders.
   static void KeepData(vtkPVDataRepresentation* representation, vtkDataObject* placeholder,

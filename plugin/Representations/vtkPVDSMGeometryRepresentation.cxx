@@ -139,6 +139,11 @@ bool vtkPVDSMGeometryRepresentation::AddToView(vtkView* view)
   auto* renderView = vtkPVRenderView::SafeDownCast(view);
   if (renderView && vtkPVDSMDelivery::IsRenderingProcess())
   {
+    const std::string obstacle = vtkPVDSMDelivery::FindObstacle();
+    if (!obstacle.empty())
+    {
+      vtkErrorMacro(<< obstacle);
+    }
     this->Scene = vtkDSMScene::ForRenderer(renderView->GetRenderer());
     this->ConnectFrameReport();
   }

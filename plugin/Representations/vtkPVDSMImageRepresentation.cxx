@@ -115,6 +115,11 @@ bool vtkPVDSMImageRepresentation::AddToView(vtkView* view)
   }
   if (vtkPVDSMDelivery::IsRenderingProcess())
   {
+    const std::string obstacle = vtkPVDSMDelivery::FindObstacle();
+    if (!obstacle.empty())
+    {
+      vtkErrorMacro(<< obstacle);
+    }
     this->Scene = vtkDSMScene::ForRenderer(renderView->GetRenderer());
     renderView->GetRenderer()->AddViewProp(this->Volume);
     this->ConnectFrameReport();
