@@ -76,7 +76,9 @@ TEST(ObjectStore, MoreMemoryThanThereIsIsAnErrorOfThePublication)
       dsm_test::PatternSink sink;
       const std::string text =
         dsm_test::GetErrorText([&] { store.Publish("Loading", directory, source, sink); });
-      EXPECT_EQ(text.find("Loading: out of memory"), 0u) << text;
+      // The ranks name what each of them found left, which may differ.
+      EXPECT_EQ(text.find("Loading: "), 0u) << text;
+      EXPECT_NE(text.find("out of memory: "), std::string::npos) << text;
     });
 }
 
@@ -96,7 +98,9 @@ TEST(ObjectStore, MoreMemoryThanTheHostHasLeftIsAnErrorOfThePublication)
       dsm_test::PatternSink sink;
       const std::string text =
         dsm_test::GetErrorText([&] { store.Publish("Loading", directory, source, sink); });
-      EXPECT_EQ(text.find("Loading: out of memory: "), 0u) << text;
+      // The ranks name what each of them found left, which may differ.
+      EXPECT_EQ(text.find("Loading: "), 0u) << text;
+      EXPECT_NE(text.find("out of memory: "), std::string::npos) << text;
       EXPECT_TRUE(sink.Begun.empty());
     });
 }
