@@ -5,7 +5,7 @@
 set -uo pipefail
 . "$(dirname "${BASH_SOURCE[0]}")/scripts/common.sh"
 
-install_packages "${packages[@]}" libgtest-dev clang-format
+install_packages "${packages[@]}" libgtest-dev clang-format iproute2
 build_project -DDSM_BUILD_TESTING=ON
 results=$build/tests.xml
 rm -f "$results"
