@@ -8,7 +8,7 @@ import dsm_testing
 from dsm_testing import *
 
 PORT, RANKS = int(sys.argv[3]), int(sys.argv[4])
-simple.Connect("localhost", PORT)
+simple.Connect("127.0.0.1", PORT)
 load_plugin()
 view = create_view()
 source = simple.Wavelet()

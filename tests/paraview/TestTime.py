@@ -74,6 +74,7 @@ def write(maximum):
     generator.SetMaximum(maximum)
     generator.Update()
     writer = vtkXMLImageDataWriter()
+    writer.SetDataModeToBinary()
     writer.SetInputData(generator.GetOutput())
     writer.SetFileName(path)
     writer.Write()
