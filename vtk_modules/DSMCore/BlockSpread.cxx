@@ -52,21 +52,8 @@ std::string BlockSpread::Run()
       !this->Messages.HasUnsent(MessageKind::Fragment) &&
       !this->Messages.HasUnsent(MessageKind::PublishDone);
   };
-  while (!done())
-  {
-    try
-    {
-      this->Messages.ProgressUntil(done, [this] { return this->Feed(); });
-    }
-    catch (...)
-    {
-      // A message that is lost or rejected is this rank's failure; the others still need it.
-      if (this->Cause.empty())
-      {
-        this->Cause = Messenger::DescribeException();
-      }
-    }
-  }
+  this->Messages.ServeUntil(
+    done, [this] { return this->Feed(); }, [this](const std::string& cause) { this->Fail(cause); });
   return this->Cause;
 }
 
@@ -107,7 +94,7 @@ bool BlockSpread::Feed()
   }
   catch (...)
   {
-    this->Cause = Messenger::DescribeException();
+    this->Fail(Messenger::DescribeException());
   }
   for (int other = 0; other < this->Messages.GetSize(); ++other)
   {
@@ -146,10 +133,15 @@ void BlockSpread::Receive(Message&& message)
   }
   catch (...)
   {
-    if (this->Cause.empty())
-    {
-      this->Cause = Messenger::DescribeException();
-    }
+    this->Fail(Messenger::DescribeException());
+  }
+}
+
+void BlockSpread::Fail(const std::string& cause)
+{
+  if (this->Cause.empty())
+  {
+    this->Cause = cause;
   }
 }
 

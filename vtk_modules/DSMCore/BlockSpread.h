@@ -38,6 +38,7 @@ public:
 private:
   bool Feed();
   void Receive(Message&& message);
+  void Fail(const std::string& cause);
 
   Messenger& Messages;
   const BlockDirectory& Directory;

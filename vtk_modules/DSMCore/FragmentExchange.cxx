@@ -71,11 +71,7 @@ std::string FragmentExchange::Run(
     }
     return fed;
   };
-  while (!done())
-  {
-    // A message that is lost or rejected is this rank's failure; the others still need it.
-    this->Try([&] { this->Messages.ProgressUntil(done, work); });
-  }
+  this->Messages.ServeUntil(done, work, [this](const std::string& cause) { this->Fail(cause); });
   return this->Cause;
 }
 
@@ -168,10 +164,15 @@ void FragmentExchange::Try(const std::function<void()>& step)
   }
   catch (...)
   {
-    if (this->Cause.empty())
-    {
-      this->Cause = Messenger::DescribeException();
-    }
+    this->Fail(Messenger::DescribeException());
+  }
+}
+
+void FragmentExchange::Fail(const std::string& cause)
+{
+  if (this->Cause.empty())
+  {
+    this->Cause = cause;
   }
 }
 

@@ -42,6 +42,7 @@ private:
   void Absorb(FragmentSink& sink, BlockId id, const std::byte* bytes, std::size_t count);
   /// Runs a step of the caller's code; its first failure becomes the cause.
   void Try(const std::function<void()>& step);
+  void Fail(const std::string& cause);
 
   Messenger& Messages;
   const BlockDirectory& Directory;

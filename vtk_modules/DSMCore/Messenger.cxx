@@ -12,6 +12,7 @@
 #include <fstream>
 #include <iterator>
 #include <new>
+#include <thread>
 #include <utility>
 
 namespace dsm
@@ -266,6 +267,12 @@ int Messenger::GetRanksOnHost()
   return static_cast<int>(std::count(hosts.begin(), hosts.end(), mine));
 }
 
+int Messenger::GetCoresPerRank()
+{
+  const int cores = static_cast<int>(std::thread::hardware_concurrency());
+  return std::max(1, cores / this->GetRanksOnHost());
+}
+
 const std::vector<int>& Messenger::GetHosts()
 {
   if (this->Self->Hosts.empty())
@@ -316,6 +323,22 @@ bool Messenger::Progress()
 void Messenger::ProgressUntil(const std::function<bool()>& done, const std::function<bool()>& work)
 {
   this->Self->ProgressUntil(done, work);
+}
+
+void Messenger::ServeUntil(const std::function<bool()>& done, const std::function<bool()>& work,
+  const std::function<void(const std::string&)>& fail)
+{
+  while (!done())
+  {
+    try
+    {
+      this->ProgressUntil(done, work);
+    }
+    catch (...)
+    {
+      fail(DescribeException());
+    }
+  }
 }
 
 void Messenger::WakeUp()

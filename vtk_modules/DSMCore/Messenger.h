@@ -44,6 +44,10 @@ public:
   /// host names and boot identities; later ones answer from memory.
   int GetRanksOnHost();
 
+  /// The cores of this rank's host divided by the ranks on it, at least 1: threads that each of them
+  /// may have. Collective the first time.
+  int GetCoresPerRank();
+
   /// For every rank the lowest rank of its host. Collective like GetRanksOnHost.
   const std::vector<int>& GetHosts();
 
@@ -69,6 +73,11 @@ public:
   /// short sleeps while nothing happens, so that a rank that waits does not starve the tracing
   /// threads of a host that it shares. WakeUp ends a sleep early.
   void ProgressUntil(const std::function<bool()>& done, const std::function<bool()>& work = {});
+
+  /// ProgressUntil for what other ranks rely on: an exception, such as of a message that is lost or
+  /// rejected, is this rank's failure, told to `fail` by its text, and this rank goes on serving.
+  void ServeUntil(const std::function<bool()>& done, const std::function<bool()>& work,
+    const std::function<void(const std::string&)>& fail);
 
   /// Any thread: there is something to do for the communication thread.
   void WakeUp();

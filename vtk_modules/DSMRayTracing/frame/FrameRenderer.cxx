@@ -256,18 +256,7 @@ std::vector<Tile> FrameRenderer::TraceTiles(
   {
     fail(dsm::Messenger::DescribeException());
   }
-  while (!agreement.IsOver())
-  {
-    try
-    {
-      this->Messenger.ProgressUntil([&] { return agreement.IsOver(); }, service);
-    }
-    catch (...)
-    {
-      // A rejected message: this rank gives up its part, and goes on serving.
-      fail(dsm::Messenger::DescribeException());
-    }
-  }
+  this->Messenger.ServeUntil([&] { return agreement.IsOver(); }, service, fail);
   this->Pool.Wait();
   tiles.End();
   store.EndFrame();
