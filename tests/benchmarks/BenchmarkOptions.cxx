@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "BenchmarkOptions.h"
 
-#include "OptionValues.h"
-
 const char* BenchmarkOptions::Usage()
 {
   return "usage: dsm_bench isosurface [options], alone or under mpirun\n"
@@ -30,37 +28,11 @@ BenchmarkOptions BenchmarkOptions::Parse(int argc, char** argv)
 {
   using namespace OptionValues;
   BenchmarkOptions options;
-  const Setters setters{
+  Setters setters{
     { "--volume", [&](const auto&, const auto& text) { options.Volume = text; } },
     { "--isovalue",
       [&](const auto& name, const auto& text)
       { options.Isovalues = ToNumbers<double>(name, text, -1e300); } },
-    { "--size",
-      [&](const auto& name, const auto& text)
-      {
-        const auto x = text.find('x');
-        options.Width = ToNumber(name, text.substr(0, x), 1);
-        options.Height = ToNumber(name, x == std::string::npos ? "" : text.substr(x + 1), 1);
-      } },
-    { "--frames",
-      [&](const auto& name, const auto& text) { options.Frames = ToNumber(name, text, 1); } },
-    { "--repeat",
-      [&](const auto& name, const auto& text) { options.Repeat = ToNumber(name, text, 1); } },
-    { "--threads",
-      [&](const auto& name, const auto& text) { options.Threads = ToNumber(name, text, 0); } },
-    { "--store",
-      [&](const auto& name, const auto& text)
-      {
-        options.Store = ToChoice<dsm::MemoryOrganization>(name, text,
-          { { "automatic", dsm::MemoryOrganization::Automatic },
-            { "replicated", dsm::MemoryOrganization::Replicated },
-            { "object", dsm::MemoryOrganization::ObjectBased },
-            { "paged", dsm::MemoryOrganization::PageBased } });
-      } },
-    { "--host-sharing",
-      [&](const auto& name, const auto& text) {
-        options.HostSharing = ToChoice<bool>(name, text, { { "on", true }, { "off", false } });
-      } },
     { "--memory",
       [&](const auto& name, const auto& text)
       { options.MemoryBytes = ToNumber<std::uint64_t>(name, text, 0) << 20; } },
@@ -70,8 +42,8 @@ BenchmarkOptions BenchmarkOptions::Parse(int argc, char** argv)
     { "--brick-edge",
       [&](const auto& name, const auto& text) { options.BrickEdge = ToNumber(name, text, 4); } },
     { "--picture", [&](const auto&, const auto& text) { options.Picture = text; } },
-    { "--json", [&](const auto&, const auto& text) { options.Json = text; } },
   };
+  options.AddTo(setters);
   OptionValues::Parse(argc, argv, setters, Usage());
   return options;
 }

@@ -301,65 +301,32 @@ MeshBenchmark::Options MeshBenchmark::Parse(int argc, char** argv)
 {
   using namespace OptionValues;
   Options options;
-  OptionValues::Parse(argc, argv,
-    { { "--mesh", [&](const auto&, const auto& text) { options.Mesh = text; } },
-      { "--subdivide",
-        [&](const auto& name, const auto& text)
-        { options.Subdivisions = ToNumber(name, text, 0); } },
-      { "--order",
-        [&](const auto& name, const auto& text)
+  Setters setters{ { "--mesh", [&](const auto&, const auto& text) { options.Mesh = text; } },
+    { "--subdivide",
+      [&](const auto& name, const auto& text) { options.Subdivisions = ToNumber(name, text, 0); } },
+    { "--order",
+      [&](const auto& name, const auto& text)
+      {
+        options.Orders.clear();
+        std::istringstream stream(text);
+        for (std::string part; std::getline(stream, part, ',');)
         {
-          options.Orders.clear();
-          std::istringstream stream(text);
-          for (std::string part; std::getline(stream, part, ',');)
-          {
-            options.Orders.push_back(ToChoice<Order>(name, part, Orders));
-          }
-        } },
-      { "--cache-fraction",
-        [&](const auto& name, const auto& text)
-        { options.CacheFractions = ToNumbers<double>(name, text, 0.0); } },
-      { "--size",
-        [&](const auto& name, const auto& text)
-        {
-          const auto x = text.find('x');
-          options.Width = ToNumber(name, text.substr(0, x), 1);
-          options.Height = ToNumber(name, x == std::string::npos ? "" : text.substr(x + 1), 1);
-        } },
-      { "--frames",
-        [&](const auto& name, const auto& text) { options.Frames = ToNumber(name, text, 1); } },
-      { "--repeat",
-        [&](const auto& name, const auto& text) { options.Repeat = ToNumber(name, text, 1); } },
-      { "--threads",
-        [&](const auto& name, const auto& text) { options.Threads = ToNumber(name, text, 0); } },
-      { "--store",
-        [&](const auto& name, const auto& text)
-        {
-          options.Store = ToChoice<dsm::MemoryOrganization>(name, text,
-            { { "automatic", dsm::MemoryOrganization::Automatic },
-              { "replicated", dsm::MemoryOrganization::Replicated },
-              { "object", dsm::MemoryOrganization::ObjectBased },
-              { "paged", dsm::MemoryOrganization::PageBased } });
-        } },
-      { "--host-sharing",
-        [&](const auto& name, const auto& text) {
-          options.HostSharing = ToChoice<bool>(name, text, { { "on", true }, { "off", false } });
-        } },
-      { "--json", [&](const auto&, const auto& text) { options.Json = text; } } },
-    Usage());
+          options.Orders.push_back(ToChoice<Order>(name, part, Orders));
+        }
+      } },
+    { "--cache-fraction", [&](const auto& name, const auto& text) {
+       options.CacheFractions = ToNumbers<double>(name, text, 0.0);
+     } } };
+  options.AddTo(setters);
+  OptionValues::Parse(argc, argv, setters, Usage());
   return options;
 }
 
 void MeshBenchmark::Run(const Options& options, dsm::Messenger& messenger)
 {
   const bool speaks = messenger.GetRank() == 0;
-  const int cores = static_cast<int>(std::max(std::thread::hardware_concurrency(), 1u));
-  const int threads =
-    options.Threads > 0 ? options.Threads : std::max(cores / messenger.GetRanksOnHost(), 1);
-  dsm::BlockStore::Settings settings;
-  settings.Organization = options.Store;
-  settings.HostSharing = options.HostSharing;
-  settings.Workers = threads;
+  dsm::BlockStore::Settings settings = options.CreateSettings(messenger);
+  const int threads = settings.Workers;
   dsm::BlockStore store(messenger, settings);
   std::optional<BenchmarkMesh> source;
   messenger.RunTogether(

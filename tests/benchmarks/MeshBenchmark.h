@@ -3,8 +3,8 @@
 #define MeshBenchmark_h
 
 #include "BenchmarkMesh.h"
+#include "RunOptions.h"
 
-#include "DSMCore/MemoryOrganization.h"
 #include "DSMCore/Messenger.h"
 
 #include <cstdint>
@@ -17,20 +17,18 @@
 class MeshBenchmark
 {
 public:
-  struct Options
+  struct Options : RunOptions
   {
+    Options()
+    {
+      this->Frames = 8;
+      this->Repeat = 3;
+    }
+
     std::string Mesh = "grid:708";
     int Subdivisions = 0;
     std::vector<BenchmarkMesh::Order> Orders{ BenchmarkMesh::Order::Sorted };
     std::vector<double> CacheFractions{ 1.0 }; ///< of the bytes of all bricks
-    int Width = 512;
-    int Height = 512;
-    int Frames = 8;
-    int Repeat = 3;
-    int Threads = 0; ///< 0: the host's cores divided by its ranks
-    dsm::MemoryOrganization Store = dsm::MemoryOrganization::ObjectBased;
-    bool HostSharing = false; ///< off: one machine plays many hosts
-    std::string Json;         ///< file, or - for standard output; empty: none
   };
 
   static const char* Usage();

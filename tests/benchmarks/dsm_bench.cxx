@@ -21,7 +21,6 @@
 #include <algorithm>
 #include <fstream>
 #include <iostream>
-#include <thread>
 
 namespace
 {
@@ -151,19 +150,13 @@ Json Summarise(const BenchmarkOptions& options, int threads, double orbitSeconds
 
 void RunIsosurface(const BenchmarkOptions& options, dsm::Messenger& messenger)
 {
-  const int cores = static_cast<int>(std::max(std::thread::hardware_concurrency(), 1u));
-  const int threads =
-    options.Threads > 0 ? options.Threads : std::max(cores / messenger.GetRanksOnHost(), 1);
-  dsm::BlockStore::Settings settings;
-  settings.Organization = options.Store;
-  settings.HostSharing = options.HostSharing;
+  dsm::BlockStore::Settings settings = options.CreateSettings(messenger);
   settings.MemoryBytes = options.MemoryBytes;
-  settings.Workers = threads;
   dsm::BlockStore store(messenger, settings);
 
   rt::Scene scene;
   scene.Isosurfaces.push_back(
-    PublishBenchmarkVolume(options.Volume, options.BrickEdge, threads, store, messenger));
+    PublishBenchmarkVolume(options.Volume, options.BrickEdge, settings.Workers, store, messenger));
   rt::IsosurfaceObject& object = scene.Isosurfaces.front();
   object.Isovalues = options.Isovalues;
   std::sort(object.Isovalues.begin(), object.Isovalues.end());
@@ -219,7 +212,7 @@ void RunIsosurface(const BenchmarkOptions& options, dsm::Messenger& messenger)
       orbitSeconds += seconds;
     }
     const Json result =
-      Summarise(options, threads, orbitSeconds, hash, store.GetOrganization(), ranks);
+      Summarise(options, settings.Workers, orbitSeconds, hash, store.GetOrganization(), ranks);
     if (options.Json == "-")
     {
       std::cout << result.dump(2) << std::endl;

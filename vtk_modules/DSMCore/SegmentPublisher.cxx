@@ -59,11 +59,10 @@ void SegmentPublisher::Run(BlockDirectory directory, FragmentSource& source, Fra
   const std::uint64_t available = GetAvailableHostMemory();
   const auto fingerprints = this->Messages.AllGatherValue(GetFingerprint(directory));
   std::optional<BlockDirectory> copy;
-  this->Messages.RunTogether(this->What, [&] { copy = directory; });
-  const BlockDirectory& blocks = *copy;
   this->Messages.RunTogether(this->What,
     [&]
     {
+      const BlockDirectory& blocks = copy.emplace(directory);
       this->Check(blocks, fingerprints);
       CheckHostMemory(blocks.GetResidentBytes(this->Messages.GetRank()), ranksOnHost, available);
       this->Store.Allocate(number, std::move(directory));
@@ -71,6 +70,7 @@ void SegmentPublisher::Run(BlockDirectory directory, FragmentSource& source, Fra
         [&](BlockId id, std::byte* block, std::size_t bytes) { sink.Begin(id, block, bytes); });
     });
 
+  const BlockDirectory& blocks = *copy;
   this->Messages.BeginSession();
   std::string cause;
   {

@@ -17,7 +17,6 @@
 #include <cstring>
 #include <map>
 #include <string>
-#include <thread>
 
 namespace
 {
@@ -124,7 +123,7 @@ vtkDSMMemorySettings vtkDSMRankGroup::MergeSettings() const
 
 void vtkDSMRankGroup::Configure(Publisher* publisher, const vtkDSMMemorySettings& settings)
 {
-  const int ranksOnHost = this->Messenger.GetRanksOnHost();
+  const int coresPerRank = this->Messenger.GetCoresPerRank();
   for (auto& [candidate, known] : this->Publishers)
   {
     known = candidate == publisher ? settings : known;
@@ -136,12 +135,7 @@ void vtkDSMRankGroup::Configure(Publisher* publisher, const vtkDSMMemorySettings
   next.HostSharing = merged.HostSharing;
   next.MemoryBytes = merged.MemoryBytes;
   next.CacheBytes = static_cast<std::size_t>(merged.CacheBytes);
-  next.Workers = merged.Threads;
-  if (next.Workers < 1)
-  {
-    const int cores = static_cast<int>(std::thread::hardware_concurrency());
-    next.Workers = std::max(1, cores / std::max(1, ranksOnHost));
-  }
+  next.Workers = merged.Threads > 0 ? merged.Threads : coresPerRank;
   const auto isPaged = [](dsm::MemoryOrganization organization)
   { return organization == dsm::MemoryOrganization::PageBased; };
   if (next.HostSharing != old.HostSharing ||

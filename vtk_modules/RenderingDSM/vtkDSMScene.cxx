@@ -483,7 +483,7 @@ rt::LightTransport vtkDSMScene::Internals::GetTransport() const
       std::max(transport.AmbientOcclusionDistance, options->GetAmbientOcclusionDistance());
     transport.MaxBounces = std::max(transport.MaxBounces, options->GetMaxBounces());
   }
-  if (transport.AmbientOcclusionDistance == 0.0)
+  if (transport.AmbientOcclusionSamples > 0 && transport.AmbientOcclusionDistance == 0.0)
   {
     double bounds[6];
     this->GetBounds(bounds);

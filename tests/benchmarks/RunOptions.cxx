@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "RunOptions.h"
+
+void RunOptions::AddTo(OptionValues::Setters& setters)
+{
+  using namespace OptionValues;
+  setters.merge(Setters{
+    { "--size",
+      [this](const auto& name, const auto& text)
+      {
+        const auto x = text.find('x');
+        this->Width = ToNumber(name, text.substr(0, x), 1);
+        this->Height = ToNumber(name, x == std::string::npos ? "" : text.substr(x + 1), 1);
+      } },
+    { "--frames",
+      [this](const auto& name, const auto& text) { this->Frames = ToNumber(name, text, 1); } },
+    { "--repeat",
+      [this](const auto& name, const auto& text) { this->Repeat = ToNumber(name, text, 1); } },
+    { "--threads",
+      [this](const auto& name, const auto& text) { this->Threads = ToNumber(name, text, 0); } },
+    { "--store",
+      [this](const auto& name, const auto& text)
+      {
+        this->Store = ToChoice<dsm::MemoryOrganization>(name, text,
+          { { "automatic", dsm::MemoryOrganization::Automatic },
+            { "replicated", dsm::MemoryOrganization::Replicated },
+            { "object", dsm::MemoryOrganization::ObjectBased },
+            { "paged", dsm::MemoryOrganization::PageBased } });
+      } },
+    { "--host-sharing",
+      [this](const auto& name, const auto& text) {
+        this->HostSharing = ToChoice<bool>(name, text, { { "on", true }, { "off", false } });
+      } },
+    { "--json", [this](const auto&, const auto& text) { this->Json = text; } },
+  });
+}
+
+dsm::BlockStore::Settings RunOptions::CreateSettings(dsm::Messenger& messenger) const
+{
+  dsm::BlockStore::Settings settings;
+  settings.Organization = this->Store;
+  settings.HostSharing = this->HostSharing;
+  settings.Workers = this->Threads > 0 ? this->Threads : messenger.GetCoresPerRank();
+  return settings;
+}

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef RunOptions_h
+#define RunOptions_h
+
+#include "OptionValues.h"
+
+#include "DSMCore/BlockStore.h"
+#include "DSMCore/Messenger.h"
+
+#include <string>
+
+/// What all benchmarks that trace frames are told.
+struct RunOptions
+{
+  int Width = 512;
+  int Height = 512;
+  int Frames = 20;
+  int Repeat = 1;
+  int Threads = 0; ///< 0: the host's cores divided by its ranks
+  dsm::MemoryOrganization Store = dsm::MemoryOrganization::ObjectBased;
+  bool HostSharing = false; ///< off: one machine plays many hosts
+  std::string Json;         ///< file, or - for standard output; empty: none
+
+  /// Adds the options' setters, which change this object.
+  void AddTo(OptionValues::Setters& setters);
+
+  /// How the store is to be set up. Collective the first time.
+  dsm::BlockStore::Settings CreateSettings(dsm::Messenger& messenger) const;
+};
+
+#endif
