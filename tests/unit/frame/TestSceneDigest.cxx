@@ -2,11 +2,12 @@
 #include "DSMRayTracing/frame/SceneDigest.h"
 
 #include "tests/support/LoopbackCluster.h"
-#include "tests/support/SphereScene.h"
+#include "tests/support/MeshScene.h"
 
 #include <gtest/gtest.h>
 
 #include <functional>
+#include <memory>
 #include <set>
 #include <vector>
 
@@ -50,5 +51,37 @@ TEST(TestSceneDigest, ChangesWithAllThatThePictureShows)
       more.FirstSample = 3;
       more.Samples = 2;
       EXPECT_EQ(rt::GetSceneDigest(scene, more), rt::GetSceneDigest(scene, request));
+    });
+}
+
+TEST(TestSceneDigest, ChangesWithWhatIsLaidOnAMesh)
+{
+  RunOnCluster(1,
+    [](dsm::Messenger& messenger)
+    {
+      dsm::BlockStore store(messenger, SphereScene::CreateSettings(std::size_t(1) << 20, 1));
+      const rt::Scene scene = MeshScene::Create(messenger, store);
+      const rt::FrameRequest request = SphereScene::CreateRequest(40, 30);
+      rt::Texture texture;
+      texture.Width = texture.Height = 3;
+      texture.Texels.assign(4 * 9, 128);
+      const std::vector<std::function<void(rt::Texture&)>> changes = {
+        [](rt::Texture&) {},
+        [](rt::Texture& t) { t.Texels.front() = 129; },
+        [](rt::Texture& t) { t.Texels.back() = 129; },
+        [](rt::Texture& t) { t.Repeat = false; },
+        [](rt::Texture& t) { t.Interpolate = true; },
+        [](rt::Texture& t) { t.Transform[3][0] = 0.5; },
+      };
+      std::set<std::uint64_t> digests{ rt::GetSceneDigest(scene, request) };
+      for (const auto& change : changes)
+      {
+        rt::Texture other = texture;
+        change(other);
+        rt::Scene textured = scene;
+        textured.Meshes.front().Picture = std::make_shared<rt::Texture>(other);
+        digests.insert(rt::GetSceneDigest(textured, request));
+      }
+      EXPECT_EQ(digests.size(), changes.size() + 1);
     });
 }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "DSMRayTracing/frame/FrameGather.h"
 
+#include "DSMRayTracing/frame/ByteHash.h"
+
 #include <cstddef>
 #include <cstring>
 #include <string>
@@ -84,16 +86,6 @@ Picture CreatePicture(const Frame& frame)
   return picture;
 }
 
-std::uint64_t AddToHash(std::uint64_t hash, const void* data, std::size_t bytes)
-{
-  const auto* at = static_cast<const unsigned char*>(data);
-  for (std::size_t index = 0; index < bytes; ++index)
-  {
-    hash = (hash ^ at[index]) * 0x100000001b3ull;
-  }
-  return hash;
-}
-
 } // namespace
 
 Picture AssembleTiles(const Frame& frame)
@@ -133,11 +125,12 @@ Picture GatherFrame(dsm::Messenger& messenger, const Frame& frame)
 
 std::uint64_t GetHash(const Picture& picture)
 {
-  std::uint64_t hash = 0xcbf29ce484222325ull;
+  ByteHash hash;
   const std::int32_t size[2] = { picture.Width, picture.Height };
-  hash = AddToHash(hash, size, sizeof(size));
-  hash = AddToHash(hash, picture.Color.data(), picture.Color.size());
-  return AddToHash(hash, picture.Depth.data(), picture.Depth.size() * sizeof(float));
+  hash.Add(size, sizeof(size));
+  hash.Add(picture.Color.data(), picture.Color.size());
+  hash.Add(picture.Depth.data(), picture.Depth.size() * sizeof(float));
+  return hash.Get();
 }
 
 } // namespace rt

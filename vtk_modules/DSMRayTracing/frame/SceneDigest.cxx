@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "DSMRayTracing/frame/SceneDigest.h"
 
+#include "DSMRayTracing/frame/ByteHash.h"
 #include "DSMRayTracing/kernel/MeshInstance.h"
 
-#include <cstring>
 #include <type_traits>
 #include <vector>
 
@@ -16,18 +16,14 @@ namespace
 class Digest
 {
 public:
-  std::uint64_t Get() const { return this->Value; }
+  std::uint64_t Get() const { return this->Bytes.Get(); }
 
   /// Only types without padding.
   template <class T>
   void Add(const T& value)
   {
     static_assert(std::is_trivially_copyable_v<T>, "only plain values have bytes of their own");
-    const auto* bytes = reinterpret_cast<const unsigned char*>(&value);
-    for (std::size_t index = 0; index < sizeof(T); ++index)
-    {
-      this->Value = (this->Value ^ bytes[index]) * 0x100000001b3ull;
-    }
+    this->Bytes.Add(&value, sizeof(T));
   }
 
   template <class T>
@@ -97,6 +93,21 @@ public:
     {
       this->Add(*object.BackSurface);
     }
+    this->Add(object.Picture != nullptr);
+    if (object.Picture)
+    {
+      this->Add(*object.Picture);
+    }
+  }
+
+  void Add(const Texture& picture)
+  {
+    this->Add(picture.Width);
+    this->Add(picture.Height);
+    this->Bytes.Add(picture.Texels.data(), picture.Texels.size());
+    this->Add(picture.Repeat);
+    this->Add(picture.Interpolate);
+    this->Add(picture.Transform);
   }
 
   void Add(const Light& light)
@@ -122,7 +133,7 @@ public:
   }
 
 private:
-  std::uint64_t Value = 0xcbf29ce484222325ull;
+  ByteHash Bytes;
 };
 
 } // namespace

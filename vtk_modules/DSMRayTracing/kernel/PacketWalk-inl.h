@@ -207,8 +207,8 @@ public:
   {
   }
 
-  /// Searches the macrocells of a part of the brick whose bits are set in `macrocells`. `rays` cross them from `enter` to `leave`. Returns those that meet the surface,
-  /// having stored how.
+  /// Searches the macrocells of a part of the brick whose bits are set in `macrocells`. `rays` cross
+  /// them from `enter` to `leave`. Returns those that meet the surface, having stored how.
   Mask Search(const int part[3], std::uint64_t macrocells, Mask rays, Vector enter, Vector leave)
   {
     const D tag = this->Tag;
