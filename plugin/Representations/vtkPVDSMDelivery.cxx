@@ -7,6 +7,7 @@
 #include "vtkMultiProcessController.h"
 #include "vtkOrderedCompositingHelper.h"
 #include "vtkPVDataRepresentation.h"
+#include "vtkPVDataRepresentationPipeline.h"
 #include "vtkPVRenderView.h"
 #include "vtkPVRenderViewDataDeliveryManager.h"
 #include "vtkPVRenderingCapabilitiesInformation.h"
@@ -14,18 +15,22 @@
 #include "vtkProcessModule.h"
 #include "vtkSmartPointer.h"
 
-bool vtkPVDSMDelivery::IsRenderingProcess()
+#include <string>
+
+namespace
+{
+
+bool HasRole(vtkPVSession::ServerFlags role)
 {
   auto* module = vtkProcessModule::GetProcessModule();
   auto* session = module ? vtkPVSession::SafeDownCast(module->GetActiveSession()) : nullptr;
-  return !session || session->HasProcessRole(vtkPVSession::RENDER_SERVER);
+  return !session || session->HasProcessRole(role);
 }
 
-std::string vtkPVDSMDelivery::FindObstacle()
+/// Why this rendering process cannot draw anything, and what to do; empty when it can.
+std::string FindObstacle()
 {
-  auto* module = vtkProcessModule::GetProcessModule();
-  auto* session = module ? vtkPVSession::SafeDownCast(module->GetActiveSession()) : nullptr;
-  if (session && !session->HasProcessRole(vtkPVSession::DATA_SERVER))
+  if (!HasRole(vtkPVSession::DATA_SERVER))
   {
     return "DSM Ray Traced traces where the data are, but here data and pictures have different "
            "servers. Start pvserver in the place of pvdataserver and pvrenderserver.";
@@ -37,6 +42,31 @@ std::string vtkPVDSMDelivery::FindObstacle()
            "xvfb-run -a -s \"-noreset -screen 0 1280x1024x24\" COMMAND";
   }
   return {};
+}
+
+} // namespace
+
+vtkSmartPointer<vtkDSMScene> vtkPVDSMDelivery::FindScene(
+  vtkPVDataRepresentation* representation, vtkPVRenderView* view)
+{
+  if (!HasRole(vtkPVSession::RENDER_SERVER))
+  {
+    return nullptr;
+  }
+  const std::string obstacle = FindObstacle();
+  if (!obstacle.empty())
+  {
+    vtkErrorWithObjectMacro(representation, << obstacle);
+  }
+  return vtkDSMScene::ForRenderer(view->GetRenderer());
+}
+
+void vtkPVDSMDelivery::UpdateInSpiteOfCache(vtkPVDataRepresentation* representation)
+{
+  representation->MarkModified();
+  representation->Update();
+  vtkPVDataRepresentationPipeline::SafeDownCast(representation->GetExecutive())
+    ->SetNeedsUpdate(false);
 }
 
 void vtkPVDSMDelivery::KeepData(vtkPVDataRepresentation* representation, vtkDataObject* placeholder,

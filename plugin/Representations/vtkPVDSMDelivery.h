@@ -2,12 +2,13 @@
 #ifndef vtkPVDSMDelivery_h
 #define vtkPVDSMDelivery_h
 
-#include <string>
+#include "vtkSmartPointer.h"
 
 class vtkDataObject;
 class vtkDSMScene;
 class vtkInformation;
 class vtkPVDataRepresentation;
+class vtkPVRenderView;
 class vtkView;
 
 /// How what our representations show gets into ParaView's picture: the data stay on their rank, and
@@ -15,11 +16,14 @@ class vtkView;
 class vtkPVDSMDelivery
 {
 public:
-  /// ParaView's client holds every representation and hears every render, but only displays.
-  static bool IsRenderingProcess();
+  /// For AddToView: the view's scene; null on ParaView's client, which holds every representation and
+  /// hears every render, but only displays. Reports why nothing can be drawn, if so.
+  static vtkSmartPointer<vtkDSMScene> FindScene(
+    vtkPVDataRepresentation* representation, vtkPVRenderView* view);
 
-  /// Why this rendering process cannot draw anything, and what to do; empty when it can.
-  static std::string FindObstacle();
+  /// For REQUEST_UPDATE, where the representation needed an update but its RequestData did not come:
+  /// the view relies on its cache of time steps, but that holds our placeholder, not the data.
+  static void UpdateInSpiteOfCache(vtkPVDataRepresentation* representation);
 
   /// For REQUEST_UPDATE: an empty placeholder is delivered, and every rank renders.
   static void KeepData(vtkPVDataRepresentation* representation, vtkDataObject* placeholder,

@@ -14,7 +14,6 @@
 #include "vtkInformation.h"
 #include "vtkMatrix4x4.h"
 #include "vtkObjectFactory.h"
-#include "vtkPVDataRepresentationPipeline.h"
 #include "vtkPVLODActor.h"
 #include "vtkPVRenderView.h"
 #include "vtkPartitionedDataSet.h"
@@ -67,10 +66,7 @@ int vtkPVDSMGeometryRepresentation::ProcessViewRequest(
   }
   if (needsUpdate && !this->Executed)
   {
-    // The view relies on its cache of time steps, but that holds our placeholder, not the data.
-    this->MarkModified();
-    this->Update();
-    vtkPVDataRepresentationPipeline::SafeDownCast(this->GetExecutive())->SetNeedsUpdate(false);
+    vtkPVDSMDelivery::UpdateInSpiteOfCache(this);
   }
   if (request == vtkPVView::REQUEST_UPDATE())
   {
@@ -137,14 +133,9 @@ void vtkPVDSMGeometryRepresentation::UpdateColoringParameters()
 bool vtkPVDSMGeometryRepresentation::AddToView(vtkView* view)
 {
   auto* renderView = vtkPVRenderView::SafeDownCast(view);
-  if (renderView && vtkPVDSMDelivery::IsRenderingProcess())
+  if (renderView)
   {
-    const std::string obstacle = vtkPVDSMDelivery::FindObstacle();
-    if (!obstacle.empty())
-    {
-      vtkErrorMacro(<< obstacle);
-    }
-    this->Scene = vtkDSMScene::ForRenderer(renderView->GetRenderer());
+    this->Scene = vtkPVDSMDelivery::FindScene(this, renderView);
     this->ConnectFrameReport();
   }
   return this->Superclass::AddToView(view);

@@ -14,7 +14,6 @@
 #include "vtkInformationVector.h"
 #include "vtkMatrix4x4.h"
 #include "vtkObjectFactory.h"
-#include "vtkPVDataRepresentationPipeline.h"
 #include "vtkPVRenderView.h"
 #include "vtkPartitionedDataSet.h"
 #include "vtkProperty.h"
@@ -70,10 +69,7 @@ int vtkPVDSMImageRepresentation::ProcessViewRequest(
   }
   if (needsUpdate && !this->Executed)
   {
-    // The view relies on its cache of time steps, but that holds our placeholder, not the data.
-    this->MarkModified();
-    this->Update();
-    vtkPVDataRepresentationPipeline::SafeDownCast(this->GetExecutive())->SetNeedsUpdate(false);
+    vtkPVDSMDelivery::UpdateInSpiteOfCache(this);
   }
   if (request == vtkPVView::REQUEST_UPDATE())
   {
@@ -113,14 +109,9 @@ bool vtkPVDSMImageRepresentation::AddToView(vtkView* view)
   {
     return false;
   }
-  if (vtkPVDSMDelivery::IsRenderingProcess())
+  this->Scene = vtkPVDSMDelivery::FindScene(this, renderView);
+  if (this->Scene)
   {
-    const std::string obstacle = vtkPVDSMDelivery::FindObstacle();
-    if (!obstacle.empty())
-    {
-      vtkErrorMacro(<< obstacle);
-    }
-    this->Scene = vtkDSMScene::ForRenderer(renderView->GetRenderer());
     renderView->GetRenderer()->AddViewProp(this->Volume);
     this->ConnectFrameReport();
   }
