@@ -12,15 +12,13 @@ import sys
 
 import numpy
 from paraview import servermanager, simple
-from paraview.vtk.util import numpy_support
-from vtkmodules.vtkCommonCore import vtkFloatArray
 from vtkmodules.vtkFiltersCore import vtkFlyingEdges3D
 from vtkmodules.vtkImagingCore import vtkImageCast, vtkImageResample
 from vtkmodules.vtkIOImage import vtkPNGWriter
 from vtkmodules.vtkRenderingCore import vtkWindowToImageFilter
 
-SIZE = 512
-SKIPPED = 77
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+from view_tools import SKIPPED, create_view, get_distances
 
 # Name -> (file or sample volume, array, isovalues[, refinement]). Where a cell covers many pixels,
 # triangles are no good picture of the trilinear surface; there the volume is first interpolated
@@ -75,17 +73,6 @@ def extract_triangles(image, array, isovalue, refinement):
     return edges.GetOutput()
 
 
-def create_view():
-    view = simple.CreateRenderView()
-    view.ViewSize = [SIZE, SIZE]
-    view.Background = [0.0, 0.0, 0.0]
-    view.UseColorPaletteForBackground = 0
-    view.OrientationAxesVisibility = 0
-    view.UseFXAA = 0
-    view.GetRenderWindow().SetMultiSamples(0)
-    return view
-
-
 def place_camera(view, bounds, direction, distance):
     center = numpy.array([bounds[0] + bounds[1], bounds[2] + bounds[3], bounds[4] + bounds[5]]) / 2
     size = numpy.linalg.norm([bounds[1] - bounds[0], bounds[3] - bounds[2], bounds[5] - bounds[4]])
@@ -101,17 +88,10 @@ def place_camera(view, bounds, direction, distance):
 def grab(view, picture):
     """Renders; returns eye-space distances (inf where there is nothing) and writes the picture."""
     simple.Render(view)
-    window = view.GetRenderWindow()
-    depths = vtkFloatArray()
-    window.GetZbufferData(0, 0, SIZE - 1, SIZE - 1, depths)
-    depth = numpy_support.vtk_to_numpy(depths).astype(float).reshape(SIZE, SIZE)
-    near, far = view.GetActiveCamera().GetClippingRange()
-    with numpy.errstate(divide="ignore"):
-        distance = near * far / (far - depth * (far - near))
-    distance[depth >= 1.0] = numpy.inf
+    distance = get_distances(view)
     if picture:
         shot = vtkWindowToImageFilter()
-        shot.SetInput(window)
+        shot.SetInput(view.GetRenderWindow())
         shot.ReadFrontBufferOff()
         writer = vtkPNGWriter()
         writer.SetInputConnection(shot.GetOutputPort())
@@ -145,7 +125,7 @@ def main():
     bounds = source.GetDataInformation().GetBounds()
     cell = max(image.GetSpacing())
 
-    view = create_view()
+    view = create_view([0.0, 0.0, 0.0])
     ours = simple.Show(source, view)
     ours.Representation = "DSM Ray Traced"
     ours.ColorArrayName = [None, ""]

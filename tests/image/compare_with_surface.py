@@ -13,23 +13,12 @@ import sys
 import numpy
 from paraview import simple
 from paraview.vtk.util import numpy_support
-from vtkmodules.vtkCommonCore import vtkFloatArray
 
-SIZE = 512
-SKIPPED = 77
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+from view_tools import SIZE, SKIPPED, create_view, get_distances
+
 # From outside at three angles, and close by.
 CAMERAS = [((0.3, 0.5, 1.0), 1.0), ((-1.0, 0.2, 0.1), 1.0), ((0.1, -0.9, -0.4), 0.5)]
-
-
-def create_view():
-    view = simple.CreateRenderView()
-    view.ViewSize = [SIZE, SIZE]
-    view.Background = [0.0, 0.0, 0.2]
-    view.UseColorPaletteForBackground = 0
-    view.OrientationAxesVisibility = 0
-    view.UseFXAA = 0
-    view.GetRenderWindow().SetMultiSamples(0)
-    return view
 
 
 def place_camera(view, bounds, direction, distance):
@@ -49,13 +38,7 @@ def grab(view, picture):
     image = view.SMProxy.CaptureWindow(1)
     colors = numpy_support.vtk_to_numpy(image.GetPointData().GetScalars())
     colors = colors.reshape(SIZE, SIZE, -1)[:, :, :3].astype(int)
-    depths = vtkFloatArray()
-    view.GetRenderWindow().GetZbufferData(0, 0, SIZE - 1, SIZE - 1, depths)
-    depth = numpy_support.vtk_to_numpy(depths).astype(float).reshape(SIZE, SIZE)
-    near, far = view.GetActiveCamera().GetClippingRange()
-    with numpy.errstate(divide="ignore"):
-        distance = near * far / (far - depth * (far - near))
-    distance[depth >= 1.0] = numpy.inf
+    distance = get_distances(view)
     if picture:
         simple.SaveScreenshot(picture, view)
     return colors, distance
@@ -73,7 +56,7 @@ def main():
         print(f"skipped: {path} is not there")
         sys.exit(SKIPPED)
     simple.LoadPlugin(arguments.plugin, remote=False, ns=vars(simple))
-    view = create_view()
+    view = create_view([0.0, 0.0, 0.2])
     source = simple.OpenDataFile(path)
     source.UpdatePipeline()
     bounds = source.GetDataInformation().GetBounds()
