@@ -21,9 +21,7 @@ if [ $# -ge 2 ]; then
 fi
 
 install_packages "${packages[@]}"
-# Without the tests, unless they are built already.
-grep -qs DSM_BUILD_TESTING:BOOL=ON "$build/CMakeCache.txt" && tests=ON || tests=OFF
-build_project -DDSM_BUILD_TESTING=$tests
+build_project
 picture=$PWD/demo.png
 rm -f "$picture"
 start_ranks "${DSM_RANKS:-4}" timeout 3600 \

@@ -6,7 +6,7 @@ set -uo pipefail
 . "$(dirname "${BASH_SOURCE[0]}")/scripts/common.sh"
 
 install_packages "${packages[@]}" libgtest-dev clang-format iproute2
-build_project -DDSM_BUILD_TESTING=ON
+build_project --with-tests
 results=$build/tests.xml
 rm -f "$results"
 ctest --test-dir "$build" --output-on-failure --output-junit "$results" "$@"

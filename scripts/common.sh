@@ -49,17 +49,23 @@ install_packages() {
   fi
 }
 
-# Builds into $build, configured with the arguments; a second run only checks what has changed.
+# Whether $build is configured with the tests.
+builds_tests() { grep -qs DSM_BUILD_TESTING:BOOL=ON "$build/CMakeCache.txt"; }
+
+# Builds into $build; a second run only checks what has changed. --with-tests: the tests as well;
+# without it, they are built where they were before.
 build_project() {
+  local tests=OFF
   mkdir -p "$build"
-  if [ ! -f "$build/build.ninja" ] || [ "$(cat "$build/configured.txt" 2>/dev/null)" != "$*" ]; then
+  if [ "${1:-}" = --with-tests ] || builds_tests; then tests=ON; fi
+  if [ ! -f "$build/build.ninja" ] || { [ $tests = ON ] && ! builds_tests; }; then
     say "Configuring ..."
-    cmake -S "$project" -B "$build" -G Ninja -DCMAKE_BUILD_TYPE=Release "$@" >"$build/configure.log" 2>&1 || {
+    cmake -S "$project" -B "$build" -G Ninja -DCMAKE_BUILD_TYPE=Release \
+      -DDSM_BUILD_TESTING=$tests >"$build/configure.log" 2>&1 || {
       tail -n 30 "$build/configure.log" >&2
       rm -f "$build/build.ninja"
       fail "the project could not be configured; the whole log is $build/configure.log"
     }
-    printf '%s\n' "$*" >"$build/configured.txt"
   fi
   say "Building (only what has changed) ..."
   cmake --build "$build" >"$build/build.log" 2>&1 || {
