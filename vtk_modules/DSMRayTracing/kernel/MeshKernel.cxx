@@ -31,7 +31,8 @@ public:
   static void FindBricks(
     const MeshPacket& packet, Mask rays, const BrickBvh& bricks, MeshKernel::Visitor& visitor)
   {
-    MeshPacketWalk<D>(packet).Traverse(bricks.GetNodes(), rays,
+    MeshPacketWalk<D>(packet).Traverse(
+      bricks.GetNodes(), rays, [](std::uint32_t) {},
       [&](std::uint32_t leaf, Mask met) { visitor.Visit(BrickBvh::GetBrick(leaf), met); });
   }
 
@@ -43,7 +44,7 @@ public:
       const int index = GetLowest(left);
       packet.Filters[index] = FilterRay(packet.Rays[index].Line, brick);
     }
-    switch (packet.Axis)
+    switch (packet.GetAxis())
     {
       case 0:
         return SearchAlong<0>(packet, rays, brick, number);
@@ -59,30 +60,57 @@ private:
   static Mask SearchAlong(
     MeshPacket& packet, Mask rays, const TriangleBrick& brick, std::uint32_t number)
   {
-    Mask better = 0;
-    MeshPacketWalk<D>(packet).Traverse(brick.GetNodes(), rays,
-      [&](std::uint16_t reference, Mask met)
+    using Walk = MeshPacketWalk<D>;
+    LeafSearch<Axis> search(packet, brick, number);
+    Walk(packet).Traverse(
+      brick.GetNodes(), rays,
+      [&](std::uint16_t leaf)
+      { Walk::Fetch(brick.GetTriangle(TriangleBrick::Leaf(leaf).First), 1); },
+      [&](std::uint16_t leaf, Mask met) { search.Search(TriangleBrick::Leaf(leaf), met); });
+    return search.GetBetter();
+  }
+
+  /// Tries the triangles of leaves.
+  template <int Axis>
+  class LeafSearch
+  {
+  public:
+    LeafSearch(MeshPacket& packet, const TriangleBrick& brick, std::uint32_t number)
+      : Packet(packet)
+      , Brick(brick)
+      , Number(number)
+    {
+    }
+
+    HWY_INLINE void Search(const TriangleBrick::Leaf& leaf, Mask rays)
+    {
+      const TriangleFilter<Axis> filter(this->Brick, leaf.First);
+      for (; rays != 0; rays &= rays - 1)
       {
-        const TriangleBrick::Leaf leaf(reference);
-        const TriangleFilter<Axis> filter(brick, leaf.First);
-        for (; met != 0; met &= met - 1)
+        const int index = GetLowest(rays);
+        NearestTriangle& ray = this->Packet.Rays[index];
+        unsigned candidates = filter.FindCandidates(this->Packet.Filters[index]) & leaf.GetMask();
+        for (; candidates != 0; candidates &= candidates - 1)
         {
-          const int index = GetLowest(met);
-          unsigned candidates = filter.FindCandidates(packet.Filters[index]) & leaf.GetMask();
-          for (; candidates != 0; candidates &= candidates - 1)
+          const auto lane = static_cast<std::uint32_t>(__builtin_ctz(candidates));
+          if (ray.Try(this->Brick, this->Number, leaf.First + lane, this->Packet.Culling))
           {
-            const auto lane = static_cast<std::uint32_t>(__builtin_ctz(candidates));
-            NearestTriangle& ray = packet.Rays[index];
-            if (ray.Try(brick, number, leaf.First + lane, packet.Culling))
-            {
-              packet.Last[index] = ray.Line.BoxesEnd;
-              better |= Mask{ 1 } << index;
-            }
+            this->Packet.Last[index] = ray.Line.BoxesEnd;
+            this->Better |= Mask{ 1 } << index;
           }
         }
-      });
-    return better;
-  }
+      }
+    }
+
+    /// Rays that have found something nearer.
+    Mask GetBetter() const { return this->Better; }
+
+  private:
+    MeshPacket& Packet;
+    const TriangleBrick& Brick;
+    std::uint32_t Number;
+    Mask Better = 0;
+  };
 };
 
 template <class D>

@@ -29,9 +29,13 @@ struct MeshPacket
   /// In the brick that is being searched.
   FilterRay Filters[Size];
 
-  bool Backward[3]; ///< whether the rays move towards smaller coordinates
-  int Axis;         ///< along which they move most
+  unsigned Heading; ///< MeshRay::Heading of all of them
   MeshCulling Culling;
+
+  /// Along which the rays move most.
+  int GetAxis() const { return static_cast<int>(this->Heading & 3u); }
+  /// Whether they move towards smaller coordinates.
+  bool IsBackward(int axis) const { return (this->Heading >> axis & 4u) != 0; }
 
   /// Makes the packet of those rays of `wanted` (world space) that may meet the mesh and have in
   /// common what they must. Returns the former; `alone` are those that must be traced one by one.
@@ -49,18 +53,12 @@ struct MeshPacket
       {
         continue;
       }
+      const Mask bit = Mask{ 1 } << index;
       if (fitting == 0)
       {
-        this->SetCommon(ray.Line);
+        this->Heading = ray.Line.Heading;
       }
-      if (this->HasCommon(ray.Line))
-      {
-        fitting |= Mask{ 1 } << index;
-      }
-      else
-      {
-        alone |= Mask{ 1 } << index;
-      }
+      (ray.Line.Heading == this->Heading ? fitting : alone) |= bit;
     }
     const int any = fitting != 0 ? GetLowest(fitting) : 0;
     for (int index = 0; index < Size && fitting != 0; ++index)
@@ -76,22 +74,6 @@ struct MeshPacket
       this->Last[index] = line.BoxesEnd;
     }
     return fitting;
-  }
-
-private:
-  void SetCommon(const MeshRay& line)
-  {
-    for (int axis = 0; axis < 3; ++axis)
-    {
-      this->Backward[axis] = line.Boxes.Inverse[axis] < 0.0f;
-    }
-    this->Axis = line.Axes[2];
-  }
-  bool HasCommon(const MeshRay& line) const
-  {
-    return line.Axes[2] == this->Axis && (line.Boxes.Inverse[0] < 0.0f) == this->Backward[0] &&
-      (line.Boxes.Inverse[1] < 0.0f) == this->Backward[1] &&
-      (line.Boxes.Inverse[2] < 0.0f) == this->Backward[2];
   }
 };
 

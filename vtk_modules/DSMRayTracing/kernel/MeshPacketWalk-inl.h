@@ -11,8 +11,10 @@
 #include "DSMRayTracing/kernel/MeshPacket.h"
 #include "DSMRayTracing/kernel/WideBvhTraversal.h"
 
+#include <hwy/cache_control.h>
 #include <hwy/highway.h>
 
+#include <cstddef>
 #include <cstdint>
 #include <cstring>
 
@@ -39,9 +41,11 @@ public:
   {
   }
 
-  /// Calls `visit(reference, rays)` for leaves, about front to back; it may lower packet.Last.
-  template <class Reference, class Visit>
-  HWY_INLINE void Traverse(const WideBvhNode<Reference>* nodes, Mask rays, Visit&& visit) const
+  /// Calls `visit(reference, rays)` for leaves, about front to back; it may lower packet.Last; before,
+  /// and ahead of time, `prepare(reference)`.
+  template <class Reference, class Prepare, class Visit>
+  HWY_INLINE void Traverse(
+    const WideBvhNode<Reference>* nodes, Mask rays, Prepare&& prepare, Visit&& visit) const
   {
     using Node = WideBvhNode<Reference>;
     constexpr int depth = LargestWideBvhDepth;
@@ -73,6 +77,15 @@ public:
           {
             continue;
           }
+          const Reference reference = node.References[slot];
+          if (reference & Node::LeafBit)
+          {
+            prepare(reference);
+          }
+          else
+          {
+            Fetch(&nodes[reference], sizeof(Node));
+          }
           const int lane = GetLowest(met.Rays[slot]);
           const float enter = met.Enter[slot][lane];
           int place = size++;
@@ -83,7 +96,7 @@ public:
             stack[place] = stack[place - 1];
           }
           Copy(met.Enter[slot], enters[place]);
-          stack[place] = { node.References[slot], met.Rays[slot] };
+          stack[place] = { reference, met.Rays[slot] };
         }
       }
       do
@@ -96,6 +109,17 @@ public:
         rays = this->FindOpen(enters[size], stack[size].Rays);
       } while (rays == 0);
       child = stack[size].Child;
+    }
+  }
+
+  /// Asks for memory that will be read soon.
+  static HWY_INLINE void Fetch(const void* start, std::size_t bytes)
+  {
+    constexpr std::size_t line = 64;
+    const auto* const first = static_cast<const char*>(start);
+    for (const char* at = first; at < first + bytes; at += line)
+    {
+      hwy::Prefetch(at);
     }
   }
 
@@ -153,8 +177,8 @@ private:
     {
       const std::uint32_t bits = std::uint32_t{ node.Exponent[axis] } << 23;
       std::memcpy(&scale[axis], &bits, sizeof(bits));
-      nearest[axis] = planes + WideBvhWidth * (this->Packet.Backward[axis] ? 3 + axis : axis);
-      farthest[axis] = planes + WideBvhWidth * (this->Packet.Backward[axis] ? axis : 3 + axis);
+      nearest[axis] = planes + WideBvhWidth * (this->Packet.IsBackward(axis) ? 3 + axis : axis);
+      farthest[axis] = planes + WideBvhWidth * (this->Packet.IsBackward(axis) ? axis : 3 + axis);
     }
     for (Mask& child : met.Rays)
     {

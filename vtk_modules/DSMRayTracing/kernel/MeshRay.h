@@ -23,6 +23,8 @@ struct MeshRay
   /// such that the winding of triangles is kept.
   int Axes[3];
   double Shear[3];
+  /// Equal for rays that move in the same direction on each axis, and most along the same one.
+  unsigned Heading;
   /// Shear along the axes that follow Axes[2] in turn, not exchanged.
   float FilterShear[2];
 
@@ -140,6 +142,11 @@ private:
       inverse[axis] *= longest;
     }
     this->Boxes.Set(start, inverse, margin);
+    this->Heading = static_cast<unsigned>(this->Axes[2]);
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      this->Heading |= (inverse[axis] < 0.0 ? 4u : 0u) << axis;
+    }
     this->BoxesEnd = this->GetBoxesT(leave);
   }
 };
