@@ -113,7 +113,7 @@ Tally ComparePackets(const rt::TriangleSource& mesh, const std::vector<Packet>& 
           }
           rt::MeshPacket packet;
           rt::MeshPacket::Mask single = 0;
-          const auto together = packet.SetRays(instance, rays.data(), 0xffffu, single);
+          const auto together = kernel.SetRays(packet, instance, rays.data(), 0xffffu, single);
           EXPECT_EQ(together & single, 0u);
           tally.Together += __builtin_popcount(together) > 1 ? __builtin_popcount(together) : 0;
         }

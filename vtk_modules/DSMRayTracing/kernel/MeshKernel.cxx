@@ -8,6 +8,7 @@
 
 #include "DSMRayTracing/kernel/MeshKernel.h"
 
+#include "DSMRayTracing/kernel/MeshPacketSetup-inl.h"
 #include "DSMRayTracing/kernel/MeshPacketWalk-inl.h"
 
 #include <hwy/highway.h>
@@ -28,6 +29,18 @@ class MeshSteps
 public:
   using Mask = MeshPacket::Mask;
 
+  static Mask SetRays(
+    MeshPacket& packet, const MeshInstance& instance, const Ray* rays, Mask wanted, Mask& alone)
+  {
+    alone = 0;
+    if (wanted == 0)
+    {
+      return 0;
+    }
+    packet.Culling = instance.Culling;
+    return MeshPacketSetup<D>(packet, instance, rays, wanted).Set(alone);
+  }
+
   static void FindBricks(
     const MeshPacket& packet, Mask rays, const BrickBvh& bricks, MeshKernel::Visitor& visitor)
   {
@@ -41,10 +54,9 @@ public:
   {
     for (Mask left = rays; left != 0; left &= left - 1)
     {
-      const int index = GetLowest(left);
-      packet.Filters[index] = FilterRay(packet.Rays[index].Line, brick);
+      packet.SetFilter(GetLowest(left), brick);
     }
-    switch (packet.GetAxis())
+    switch (packet.Axes[2])
     {
       case 0:
         return SearchAlong<0>(packet, rays, brick, number);
@@ -88,14 +100,15 @@ private:
       for (; rays != 0; rays &= rays - 1)
       {
         const int index = GetLowest(rays);
-        NearestTriangle& ray = this->Packet.Rays[index];
+        NearestTriangle& nearest = this->Packet.Nearest[index];
         unsigned candidates = filter.FindCandidates(this->Packet.Filters[index]) & leaf.GetMask();
         for (; candidates != 0; candidates &= candidates - 1)
         {
           const auto lane = static_cast<std::uint32_t>(__builtin_ctz(candidates));
-          if (ray.Try(this->Brick, this->Number, leaf.First + lane, this->Packet.Culling))
+          if (nearest.Try(this->Packet.GetTriangleRay(index), this->Packet.Culling, this->Brick,
+                this->Number, leaf.First + lane))
           {
-            this->Packet.Last[index] = ray.Line.BoxesEnd;
+            this->Packet.Shorten(index, nearest.Hit.T);
             this->Better |= Mask{ 1 } << index;
           }
         }
@@ -116,7 +129,8 @@ private:
 template <class D>
 MeshKernel CreateMeshKernel(const char* name)
 {
-  return { name, MeshPacketWalk<D>::Width, &MeshSteps<D>::FindBricks, &MeshSteps<D>::SearchBrick };
+  return { name, MeshPacketWalk<D>::Width, &MeshSteps<D>::SetRays, &MeshSteps<D>::FindBricks,
+    &MeshSteps<D>::SearchBrick };
 }
 
 MeshKernel CreateWideMeshKernel()

@@ -12,10 +12,11 @@
 namespace rt
 {
 
-/// The walks of a packet through the hierarchies of a mesh, with the vector instructions of the
+/// The steps of a packet through the hierarchies of a mesh, with the vector instructions of the
 /// processor, for as many rays at once as its registers hold. There is one for each kind of processor
 /// in the same binary, and one for rays one by one. All find the same bits, those of
-/// TreeletTraversal: vectors only tell which boxes and triangles need not be looked at.
+/// TreeletTraversal: rays are made by the same operations as MeshRay, none of them contracted, and
+/// beyond that vectors only tell which boxes need not be looked at.
 ///
 /// Pure, but for what a visitor does; any thread.
 struct MeshKernel
@@ -32,6 +33,11 @@ struct MeshKernel
 
   const char* Name;
   int Width; ///< rays at once
+
+  /// Makes the packet of those rays of `wanted` (world space) that may meet the mesh and have in
+  /// common what they must. Returns the former; `alone` are those that must be traced one by one.
+  MeshPacket::Mask (*SetRays)(MeshPacket& packet, const MeshInstance& instance, const Ray* rays,
+    MeshPacket::Mask wanted, MeshPacket::Mask& alone);
 
   /// Visits the bricks whose boxes any of `rays` meet before their ends, about front to back. A visit
   /// may shorten rays.

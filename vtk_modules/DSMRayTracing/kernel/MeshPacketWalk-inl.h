@@ -41,7 +41,7 @@ public:
   {
   }
 
-  /// Calls `visit(reference, rays)` for leaves, about front to back; it may lower packet.Last; before,
+  /// Calls `visit(reference, rays)` for leaves, about front to back; it may lower packet.BoxesEnd; before,
   /// and ahead of time, `prepare(reference)`.
   template <class Reference, class Prepare, class Visit>
   HWY_INLINE void Traverse(
@@ -154,7 +154,7 @@ private:
     for (int first = 0; first < Size; first += Width)
     {
       open |=
-        GetBits(hn::Le(hn::Load(tag, enter + first), hn::Load(tag, this->Packet.Last + first)))
+        GetBits(hn::Le(hn::Load(tag, enter + first), hn::Load(tag, this->Packet.BoxesEnd + first)))
         << first;
     }
     return open & rays;
@@ -177,8 +177,8 @@ private:
     {
       const std::uint32_t bits = std::uint32_t{ node.Exponent[axis] } << 23;
       std::memcpy(&scale[axis], &bits, sizeof(bits));
-      nearest[axis] = planes + WideBvhWidth * (this->Packet.IsBackward(axis) ? 3 + axis : axis);
-      farthest[axis] = planes + WideBvhWidth * (this->Packet.IsBackward(axis) ? axis : 3 + axis);
+      nearest[axis] = planes + WideBvhWidth * (this->Packet.Backward[axis] ? 3 + axis : axis);
+      farthest[axis] = planes + WideBvhWidth * (this->Packet.Backward[axis] ? axis : 3 + axis);
     }
     for (Mask& child : met.Rays)
     {
@@ -197,14 +197,14 @@ private:
       {
         const Vector inverse = hn::Load(tag, this->Packet.Inverse[axis] + first);
         const Vector margin = hn::Load(tag, this->Packet.Margin[axis] + first);
-        const Vector start = hn::Mul(hn::Sub(hn::Set(tag, node.Origin[axis]),
-                                       hn::Load(tag, this->Packet.Origin[axis] + first)),
+        const Vector start = hn::Mul(
+          hn::Sub(hn::Set(tag, node.Origin[axis]), hn::Load(tag, this->Packet.Start[axis] + first)),
           inverse);
         step[axis] = hn::Mul(hn::Set(tag, scale[axis]), inverse);
         nearStart[axis] = hn::Sub(start, margin);
         farStart[axis] = hn::Add(start, margin);
       }
-      const Vector last = hn::Load(tag, this->Packet.Last + first);
+      const Vector last = hn::Load(tag, this->Packet.BoxesEnd + first);
       for (int child = 0; child < node.Children; ++child)
       {
         Vector enter = hn::Zero(tag);

@@ -13,19 +13,20 @@ template <class Store>
 bool MeshTracer<Store>::Intersect(const MeshInstance& instance, const Ray& ray, MeshHit& hit) const
 {
   const TriangleMesh& mesh = instance.GetMesh();
-  NearestTriangle nearest;
-  if (mesh.Bricks.IsEmpty() || !instance.GetMeshRay(ray, nearest.Line))
+  MeshRay line;
+  if (mesh.Bricks.IsEmpty() || !instance.GetMeshRay(ray, line))
   {
     return false;
   }
+  NearestTriangle nearest;
   TriangleAttributes attributes;
-  TraverseWideBvh(mesh.Bricks.GetNodes(), nearest.Line.Boxes, nearest.Line.BoxesEnd,
+  TraverseWideBvh(mesh.Bricks.GetNodes(), line.Boxes, line.BoxesEnd,
     [&](std::uint32_t leaf)
     {
       const std::uint32_t number = BrickBvh::GetBrick(leaf);
       const typename Store::Pin pin = this->Blocks.Acquire(this->Self, *mesh.Segment, number);
       const TriangleBrick brick(pin.GetData());
-      if (TreeletTraversal(brick, number, instance.Culling).Intersect(nearest))
+      if (TreeletTraversal(brick, number, instance.Culling).Intersect(line, nearest))
       {
         attributes.Copy(brick, nearest.Hit.Triangle);
       }
@@ -58,7 +59,7 @@ public:
     for (; better != 0; better &= better - 1)
     {
       const int index = GetLowest(better);
-      this->Attributes[index].Copy(brick, this->Packet.Rays[index].Hit.Triangle);
+      this->Attributes[index].Copy(brick, this->Packet.Nearest[index].Hit.Triangle);
     }
   }
 
@@ -82,7 +83,8 @@ MeshPacket::Mask MeshTracer<Store>::Intersect(
   }
   PacketVisitor visitor(*this, mesh);
   MeshPacket::Mask alone = 0;
-  const MeshPacket::Mask together = visitor.Packet.SetRays(instance, rays, wanted, alone);
+  const MeshPacket::Mask together =
+    this->Kernel.SetRays(visitor.Packet, instance, rays, wanted, alone);
   if (together != 0)
   {
     this->Kernel.FindBricks(visitor.Packet, together, mesh.Bricks, visitor);
@@ -91,7 +93,7 @@ MeshPacket::Mask MeshTracer<Store>::Intersect(
   {
     const int index = GetLowest(left);
     hits[index].Set(
-      instance, rays[index], visitor.Packet.Rays[index].Hit, visitor.Attributes[index]);
+      instance, rays[index], visitor.Packet.Nearest[index].Hit, visitor.Attributes[index]);
   }
   for (; alone != 0; alone &= alone - 1)
   {

@@ -4,9 +4,9 @@
 
 #include "DSMRayTracing/brick/TriangleBrick.h"
 #include "DSMRayTracing/kernel/MeshInstance.h"
-#include "DSMRayTracing/kernel/MeshRay.h"
 #include "DSMRayTracing/kernel/TriangleHit.h"
 #include "DSMRayTracing/kernel/TriangleIntersector.h"
+#include "DSMRayTracing/kernel/TriangleRay.h"
 
 #include <cstdint>
 
@@ -17,20 +17,20 @@ namespace rt
 /// depend on the order in which they were; see ComesFirst.
 struct NearestTriangle
 {
-  MeshRay Line; ///< shortened by every hit
   TriangleHit Hit;
   bool Found = false;
 
-  /// Whether a triangle of a brick is the nearest so far.
-  bool Try(const TriangleBrick& brick, std::uint32_t number, std::uint32_t triangle,
-    const MeshCulling& culling)
+  /// Whether a triangle of a brick is the nearest so far. If so the ray ends there: ray.Max is to be
+  /// lowered to Hit.T.
+  bool Try(const TriangleRay& ray, const MeshCulling& culling, const TriangleBrick& brick,
+    std::uint32_t number, std::uint32_t triangle)
   {
     const TriangleBrickVertex* vertices = brick.GetVertices();
     const std::uint16_t* corners = brick.GetTriangle(triangle);
     TriangleHit hit;
     hit.Brick = number;
     hit.Triangle = triangle;
-    if (!IntersectTriangle(this->Line, vertices[corners[0]].Position, vertices[corners[1]].Position,
+    if (!IntersectTriangle(ray, vertices[corners[0]].Position, vertices[corners[1]].Position,
           vertices[corners[2]].Position, hit) ||
       (hit.Front ? culling.Front : culling.Back) ||
       (this->Found && hit.T == this->Hit.T && !ComesFirst(hit, this->Hit)))
@@ -39,7 +39,6 @@ struct NearestTriangle
     }
     this->Hit = hit;
     this->Found = true;
-    this->Line.Shorten(hit.T);
     return true;
   }
 };

@@ -4,6 +4,7 @@
 
 #include "DSMRayTracing/brick/TriangleBrick.h"
 #include "DSMRayTracing/kernel/MeshInstance.h"
+#include "DSMRayTracing/kernel/MeshRay.h"
 #include "DSMRayTracing/kernel/NearestTriangle.h"
 #include "DSMRayTracing/kernel/TriangleFilter.h"
 #include "DSMRayTracing/kernel/WideBvhTraversal.h"
@@ -25,27 +26,28 @@ public:
   {
   }
 
-  /// Whether the brick has a nearer hit than those so far, or one as near that comes first.
-  bool Intersect(NearestTriangle& ray) const
+  /// Whether the brick has a nearer hit than those so far, or one as near that comes first. Hits
+  /// shorten the ray.
+  bool Intersect(MeshRay& ray, NearestTriangle& nearest) const
   {
-    switch (ray.Line.Axes[2])
+    switch (ray.Triangles.Axes[2])
     {
       case 0:
-        return this->IntersectAlong<0>(ray);
+        return this->IntersectAlong<0>(ray, nearest);
       case 1:
-        return this->IntersectAlong<1>(ray);
+        return this->IntersectAlong<1>(ray, nearest);
       default:
-        return this->IntersectAlong<2>(ray);
+        return this->IntersectAlong<2>(ray, nearest);
     }
   }
 
 private:
   template <int Axis>
-  bool IntersectAlong(NearestTriangle& ray) const
+  bool IntersectAlong(MeshRay& ray, NearestTriangle& nearest) const
   {
-    const FilterRay line(ray.Line, this->Brick);
+    const FilterRay line(ray.Boxes.Origin, ray.FilterShear, ray.Uncertainty, this->Brick);
     bool better = false;
-    TraverseWideBvh(this->Brick.GetNodes(), ray.Line.Boxes, ray.Line.BoxesEnd,
+    TraverseWideBvh(this->Brick.GetNodes(), ray.Boxes, ray.BoxesEnd,
       [&](std::uint16_t reference)
       {
         const TriangleBrick::Leaf leaf(reference);
@@ -54,7 +56,12 @@ private:
         for (; candidates != 0; candidates &= candidates - 1)
         {
           const auto lane = static_cast<std::uint32_t>(__builtin_ctz(candidates));
-          better = ray.Try(this->Brick, this->Number, leaf.First + lane, this->Culling) || better;
+          if (nearest.Try(
+                ray.Triangles, this->Culling, this->Brick, this->Number, leaf.First + lane))
+          {
+            ray.Shorten(nearest.Hit.T);
+            better = true;
+          }
         }
       });
     return better;

@@ -4,7 +4,6 @@
 
 #include "DSMRayTracing/brick/TriangleBrick.h"
 #include "DSMRayTracing/kernel/Float4.h"
-#include "DSMRayTracing/kernel/MeshRay.h"
 
 #include <cstdint>
 
@@ -20,11 +19,13 @@ struct FilterRay
   float Error;
 
   FilterRay() = default;
-  FilterRay(const MeshRay& ray, const TriangleBrick& brick)
-    : Origin{ ray.Boxes.Origin[0], ray.Boxes.Origin[1], ray.Boxes.Origin[2] }
-    , Shear{ ray.FilterShear[0], ray.FilterShear[1] }
+  /// `uncertainty`: see MeshRay.
+  FilterRay(
+    const float origin[3], const float shear[2], float uncertainty, const TriangleBrick& brick)
+    : Origin{ origin[0], origin[1], origin[2] }
+    , Shear{ shear[0], shear[1] }
   {
-    const float d = ray.Uncertainty;
+    const float d = uncertainty;
     const float e = brick.GetHeader().LargestExtent;
     this->Error = 20.0f * d * e + 10.0f * d * d + 0x1p-19f * e * e;
   }
