@@ -192,6 +192,28 @@ TEST_F(PolyDataMapper, DrawsWhatVtkDraws)
   ExpectAlike(this->Render(), this->RenderWithTriangles(ball));
 }
 
+TEST_F(PolyDataMapper, NormalsOfCellsAreUsedWherePointsHaveNone)
+{
+  const auto ball = MakeBall();
+  ball->GetPointData()->SetNormals(nullptr);
+  vtkNew<vtkFloatArray> normals;
+  normals->SetNumberOfComponents(3);
+  for (vtkIdType cell = 0; cell < ball->GetNumberOfCells(); ++cell)
+  {
+    normals->InsertNextTuple3(0.2 * static_cast<double>(cell % 5), 0.3, 1.0);
+  }
+  this->Mapper->SetInputData(ball);
+  this->Mapper->ScalarVisibilityOff();
+  const Picture without = this->Render();
+  ball->GetCellData()->SetNormals(normals);
+  const Picture with = this->Render();
+  EXPECT_TRUE(this->Building);
+  EXPECT_NE(with, without);
+  ExpectAlike(with, this->RenderWithTriangles(ball), 0.02);
+  this->Actor->GetProperty()->SetInterpolationToFlat();
+  ExpectAlike(this->Render(), this->RenderWithTriangles(ball), 0.02);
+}
+
 TEST_F(PolyDataMapper, ColoursAreVtks)
 {
   const auto ball = MakeBall();

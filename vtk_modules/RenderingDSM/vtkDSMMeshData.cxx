@@ -299,7 +299,7 @@ void vtkDSMMeshData::AddSurface(std::uint32_t group, vtkPolyData* data)
   const rt::MeshAttributes attributes =
     vtkDSMMeshPiece::GetAttributes(data, surface.Colors, this->Textured);
   surface.Kind.Group = group;
-  surface.Kind.Normals = attributes.Normals ? 1 : 0;
+  surface.Kind.Normals = static_cast<std::uint32_t>(attributes.Normals);
   surface.Kind.Values = static_cast<std::uint32_t>(attributes.Values);
   surface.Kind.Colors = static_cast<std::uint32_t>(attributes.Colors);
   surface.Kind.TextureCoordinates = attributes.TextureCoordinates ? 1 : 0;
@@ -430,6 +430,7 @@ std::vector<std::uint64_t> vtkDSMMeshData::DescribeBlock(
     addObject(cells->GetNumberOfCells() > 0 ? cells->GetConnectivityArray() : nullptr);
   }
   addObject(data->GetPointData()->GetNormals());
+  addObject(data->GetPointData()->GetNormals() ? nullptr : data->GetCellData()->GetNormals());
   addObject(textured ? data->GetPointData()->GetTCoords() : nullptr);
   addObject(data->GetCellData()->GetAbstractArray(vtkDataSetAttributes::GhostArrayName()));
   addObject(data->GetPointData()->GetAbstractArray(mapper->GetRadiusArray().c_str()));

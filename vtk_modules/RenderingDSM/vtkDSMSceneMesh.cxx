@@ -174,7 +174,8 @@ rt::MeshObject vtkDSMSceneMesh::CreateObject(const vtkDSMMeshData::Part& part, v
   instance->Culling.Front = property->GetFrontfaceCulling() != 0;
   instance->Culling.Back = property->GetBackfaceCulling() != 0;
   object.Instance = std::move(instance);
-  object.Flat = property->GetInterpolation() == VTK_FLAT;
+  object.Flat = property->GetInterpolation() == VTK_FLAT &&
+    part.Mesh->Attributes.Normals != rt::Attachment::Triangles;
   object.Surface = vtkDSMTranslation::ToMaterial(property);
   object.Surface.Reflectivity = static_cast<float>(this->GetLightOptions()->GetReflectivity());
   Apply(part.Appearance, object.Surface);
