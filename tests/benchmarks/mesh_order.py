@@ -2,9 +2,9 @@
 """Misses and frames/s of a mesh whose triangles share bricks by place, as in the file, or at random,
 as the cache shrinks: Fig. 8 of the paper.
 
-    python3 mesh_order.py --bench build/bin/dsm_bench --mesh SCAN.ply [--subdivide 2] [--ranks 2]
+    python3 mesh_order.py --mesh SCAN.ply [--bench build/bin/dsm_bench] [--subdivide 2] [--ranks 2]
                           [--caches 1,0.5,0.25,0.1,0.05] [--size 64x64] [--frames 2]
-                          [--chart FILE.svg] [--json FILE]
+                          [--chart FILE.svg] [--json FILE] [--from-json FILE]
 
 A ray of a mesh in random order visits nearly every brick, so the pictures are small. The camera goes
 round twice, and the second time counts: the caches are warm. Every setting must give the same picture. Prints a table in Markdown; the chart needs no other program.
@@ -108,7 +108,7 @@ def draw_chart(table, path):
     for left, title, column in ((70, "misses a frame", 1), (420, "frames/s", 2)):
         lines = [(color, [(row[0], row[column]) for row in table[name][1]])
                  for name, _, color in ORDERS]
-        plot = Plot(left, title + " over the cache, as a part of the mesh", caches,
+        plot = Plot(left, title + ", over cache / mesh", caches,
                     [value for _, points in lines for _, value in points])
         parts += plot.draw(lines)
     for index, (_, title, color) in enumerate(ORDERS):
@@ -121,8 +121,9 @@ def draw_chart(table, path):
 
 def main():
     parser = argparse.ArgumentParser()
-    parser.add_argument("--bench", required=True)
-    parser.add_argument("--mesh", required=True)
+    parser.add_argument("--bench", default="build/bin/dsm_bench")
+    parser.add_argument("--mesh", default="")
+    parser.add_argument("--from-json", default="", help="what --json wrote; nothing is run")
     parser.add_argument("--subdivide", type=int, default=2)
     parser.add_argument("--ranks", type=int, default=2)
     parser.add_argument("--caches", default="1,0.5,0.25,0.1,0.05")
@@ -132,7 +133,11 @@ def main():
     parser.add_argument("--chart", default="")
     parser.add_argument("--json", default="")
     arguments = parser.parse_args()
-    result = run(arguments)
+    if arguments.from_json:
+        with open(arguments.from_json, encoding="utf-8") as file:
+            result = json.load(file)
+    else:
+        result = run(arguments)
     table = read(result)
     print_table(result, table)
     if arguments.json:
