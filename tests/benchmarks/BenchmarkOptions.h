@@ -19,6 +19,7 @@ struct BenchmarkOptions : RunOptions
   std::string Session;           ///< file; empty: an orbit
   std::string Picture;           ///< PPM file of the first frame; empty: none
 
+  void AddTo(OptionValues::Setters& setters);
   static const char* Usage();
 
   /// Throws dsm::Error naming the argument that is wrong.
