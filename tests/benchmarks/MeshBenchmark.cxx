@@ -19,6 +19,7 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <ctime>
 #include <fstream>
 #include <functional>
 #include <iomanip>
@@ -137,45 +138,92 @@ FrameResult TraceFrames(const MeshBenchmark::Options& options,
 
 #ifdef DSM_HAS_EMBREE
 
-/// Seconds to trace a ray through every pixel of all positions, the fastest round of each.
-/// `start(worker)` gives what finds the hit of a ray for a worker: bool(const rt::Ray&, double& t).
+/// What tracing a ray through every pixel took. `start(worker)` gives what finds the hits of a block
+/// of 4 x 4 pixels for a worker: Mask(const rt::Ray*, Mask wanted, double* t).
 struct RayResult
 {
   double Seconds = 0.0;
+  /// Of processor, all threads together: other programs of the machine count less.
+  double ProcessorSeconds = 0.0;
   std::uint64_t Hits = 0;
   double Sum = 0.0; ///< of T
+
+  /// Adds a position, whose `rounds` all gave the same hits.
+  void AddFastest(const std::vector<RayResult>& rounds)
+  {
+    const auto lowest = [&](double RayResult::*member)
+    {
+      double value = 1e300;
+      for (const RayResult& round : rounds)
+      {
+        value = std::min(value, round.*member);
+      }
+      return value;
+    };
+    this->Seconds += lowest(&RayResult::Seconds);
+    this->ProcessorSeconds += lowest(&RayResult::ProcessorSeconds);
+    this->Hits += rounds.front().Hits;
+    this->Sum += rounds.front().Sum;
+  }
 };
+
+double GetProcessorSeconds()
+{
+  timespec time{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
+  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
+}
+
+using Mask = rt::MeshPacket::Mask;
 
 template <class Start>
 RayResult TraceRays(const MeshBenchmark::Options& options, const Orbit& orbit, int threads,
   int position, const Start& start)
 {
   const rt::FrameRequest request = orbit.GetRequest(options, position);
-  const rt::PixelRays rays(request);
+  const rt::PixelRays pixels(request);
   std::vector<RayResult> results(threads);
   std::atomic<int> next{ 0 };
-  const int tiles = (request.Width + 15) / 16 * ((request.Height + 15) / 16);
+  constexpr int tileEdge = 16;
+  constexpr int blockEdge = 4;
+  const int columns = (request.Width + tileEdge - 1) / tileEdge;
+  const int tiles = columns * ((request.Height + tileEdge - 1) / tileEdge);
+  const auto traceBlock = [&](auto& intersect, int left, int bottom, RayResult& result)
+  {
+    rt::Ray rays[rt::MeshPacket::Size];
+    double t[rt::MeshPacket::Size];
+    Mask wanted = 0;
+    for (int lane = 0; lane < rt::MeshPacket::Size; ++lane)
+    {
+      const int x = left + lane % blockEdge;
+      const int y = bottom + lane / blockEdge;
+      if (x < request.Width && y < request.Height)
+      {
+        rays[lane] = pixels.GetRay(x, y);
+        wanted |= Mask{ 1 } << lane;
+      }
+    }
+    for (Mask found = intersect(rays, wanted, t); found != 0; found &= found - 1)
+    {
+      ++result.Hits;
+      result.Sum += t[rt::GetLowest(found)];
+    }
+  };
   const auto work = [&](int worker)
   {
     auto&& intersect = start(worker);
     RayResult mine;
+    const double begin = GetProcessorSeconds();
     for (int tile = next++; tile < tiles; tile = next++)
     {
-      const int left = tile % ((request.Width + 15) / 16) * 16;
-      const int bottom = tile / ((request.Width + 15) / 16) * 16;
-      for (int y = bottom; y < std::min(bottom + 16, request.Height); ++y)
+      for (int block = 0; block < tileEdge * tileEdge / (blockEdge * blockEdge); ++block)
       {
-        for (int x = left; x < std::min(left + 16, request.Width); ++x)
-        {
-          double t = 0.0;
-          if (intersect(rays.GetRay(x, y), t))
-          {
-            ++mine.Hits;
-            mine.Sum += t;
-          }
-        }
+        constexpr int across = tileEdge / blockEdge;
+        traceBlock(intersect, tile % columns * tileEdge + block % across * blockEdge,
+          tile / columns * tileEdge + block / across * blockEdge, mine);
       }
     }
+    mine.ProcessorSeconds = GetProcessorSeconds() - begin;
     results[worker] = mine;
   };
   const auto begin = Clock::now();
@@ -192,16 +240,30 @@ RayResult TraceRays(const MeshBenchmark::Options& options, const Orbit& orbit, i
   result.Seconds = SecondsSince(begin);
   for (const RayResult& one : results)
   {
+    result.ProcessorSeconds += one.ProcessorSeconds;
     result.Hits += one.Hits;
     result.Sum += one.Sum;
   }
   return result;
 }
 
+/// Finds the hits of rays one by one; `intersect` is bool(const rt::Ray&, double& t).
+template <class Intersect>
+Mask TraceOneByOne(const rt::Ray* rays, Mask wanted, double* t, const Intersect& intersect)
+{
+  Mask found = 0;
+  for (; wanted != 0; wanted &= wanted - 1)
+  {
+    const int index = rt::GetLowest(wanted);
+    found |= Mask{ intersect(rays[index], t[index]) } << index;
+  }
+  return found;
+}
+
 /// One rank has all bricks, so nothing needs to be served.
 template <class Store>
 RayResult TraceOwnRays(const MeshBenchmark::Options& options, const Orbit& orbit, int threads,
-  int position, const rt::MeshInstance& instance, Store& store)
+  int position, const rt::MeshInstance& instance, bool together, Store& store)
 {
   struct Session
   {
@@ -220,12 +282,25 @@ RayResult TraceOwnRays(const MeshBenchmark::Options& options, const Orbit& orbit
     [&](int worker)
     {
       auto session = std::make_shared<Session>(store, worker);
-      return [session, tracer = rt::MeshTracer<Store>(store, session->Self), &instance](
-               const rt::Ray& ray, double& t)
+      return [session, tracer = rt::MeshTracer<Store>(store, session->Self), &instance, together](
+               const rt::Ray* rays, Mask wanted, double* t)
       {
-        rt::MeshHit hit;
-        const bool found = tracer.Intersect(instance, ray, hit);
-        t = hit.T;
+        rt::MeshHit hits[rt::MeshPacket::Size];
+        if (!together)
+        {
+          return TraceOneByOne(rays, wanted, t,
+            [&](const rt::Ray& ray, double& at)
+            {
+              const bool found = tracer.Intersect(instance, ray, hits[0]);
+              at = hits[0].T;
+              return found;
+            });
+        }
+        const Mask found = tracer.Intersect(instance, rays, wanted, hits);
+        for (Mask left = found; left != 0; left &= left - 1)
+        {
+          t[rt::GetLowest(left)] = hits[rt::GetLowest(left)].T;
+        }
         return found;
       };
     });
@@ -240,36 +315,44 @@ Json CompareWithEmbree(const MeshBenchmark::Options& options, const MeshFile::Me
   const EmbreeMesh embree(triangles, threads);
   const rt::MeshInstance instance(mesh, glm::dmat4(1.0));
   const Orbit orbit(*mesh);
-  RayResult own;
+  RayResult packets;
+  RayResult singles;
   RayResult theirs;
   for (int position = 0; position < options.Frames; ++position)
   {
-    double ownFastest = 1e300;
-    double theirFastest = 1e300;
+    std::vector<RayResult> rounds[3];
     for (int repeat = 0; repeat < options.Repeat; ++repeat)
     {
-      const RayResult ownRound = store.Visit([&](auto& blocks)
-        { return TraceOwnRays(options, orbit, threads, position, instance, blocks); });
-      const RayResult theirRound = TraceRays(options, orbit, threads, position,
+      for (const bool together : { true, false })
+      {
+        rounds[together ? 0 : 1].push_back(store.Visit([&](auto& blocks)
+          { return TraceOwnRays(options, orbit, threads, position, instance, together, blocks); }));
+      }
+      rounds[2].push_back(TraceRays(options, orbit, threads, position,
         [&](int)
-        { return [&](const rt::Ray& ray, double& t) { return embree.Intersect(ray, t); }; });
-      ownFastest = std::min(ownFastest, ownRound.Seconds);
-      theirFastest = std::min(theirFastest, theirRound.Seconds);
-      own.Hits += repeat == 0 ? ownRound.Hits : 0;
-      own.Sum += repeat == 0 ? ownRound.Sum : 0.0;
-      theirs.Hits += repeat == 0 ? theirRound.Hits : 0;
-      theirs.Sum += repeat == 0 ? theirRound.Sum : 0.0;
+        {
+          return [&](const rt::Ray* rays, Mask wanted, double* t)
+          {
+            return TraceOneByOne(rays, wanted, t,
+              [&](const rt::Ray& ray, double& at) { return embree.Intersect(ray, at); });
+          };
+        }));
     }
-    own.Seconds += ownFastest;
-    theirs.Seconds += theirFastest;
+    packets.AddFastest(rounds[0]);
+    singles.AddFastest(rounds[1]);
+    theirs.AddFastest(rounds[2]);
   }
   const double rays = static_cast<double>(options.Width) * options.Height * options.Frames;
-  return { { "embree", EmbreeMesh::GetVersion() }, { "rays_per_second", rays / own.Seconds },
-    { "embree_rays_per_second", rays / theirs.Seconds },
-    { "rays_ratio", theirs.Seconds / own.Seconds }, { "hits", own.Hits },
-    { "embree_hits", theirs.Hits },
-    { "mean_distance_ratio",
-      own.Sum / static_cast<double>(own.Hits) / (theirs.Sum / static_cast<double>(theirs.Hits)) },
+  const auto describe = [&](const RayResult& result)
+  {
+    return Json{ { "rays_per_second", rays / result.Seconds },
+      { "rays_per_processor_second", rays / result.ProcessorSeconds }, { "hits", result.Hits },
+      { "mean_distance", result.Sum / static_cast<double>(result.Hits) },
+      { "ratio", theirs.Seconds / result.Seconds },
+      { "processor_ratio", theirs.ProcessorSeconds / result.ProcessorSeconds } };
+  };
+  return { { "embree", EmbreeMesh::GetVersion() }, { "packets", describe(packets) },
+    { "single_rays", describe(singles) }, { "embree_single_rays", describe(theirs) },
     { "build_seconds", buildSeconds }, { "embree_build_seconds", embree.GetBuildSeconds() },
     { "build_ratio", buildSeconds / embree.GetBuildSeconds() } };
 }
@@ -379,11 +462,18 @@ void MeshBenchmark::Run(const Options& options, dsm::Messenger& messenger)
       const Json peer =
         CompareWithEmbree(options, source->GetTriangles(), mesh, seconds, threads, store);
       ofOrder["peer"] = peer;
-      table << "  single rays: " << std::setprecision(2)
-            << 1e-6 * peer["rays_per_second"].get<double>() << " million/s, Embree "
-            << 1e-6 * peer["embree_rays_per_second"].get<double>() << ": "
-            << peer["rays_ratio"].get<double>() << " x; building took "
-            << peer["build_ratio"].get<double>() << " x as long\n";
+      const auto write = [&](const char* name)
+      {
+        table << "  " << name << ": " << std::setprecision(2)
+              << 1e-6 * peer[name]["rays_per_second"].get<double>() << " million/s, "
+              << 1e-6 * peer[name]["rays_per_processor_second"].get<double>()
+              << " a processor second: " << peer[name]["ratio"].get<double>() << " and "
+              << peer[name]["processor_ratio"].get<double>() << " of Embree\n";
+      };
+      write("packets");
+      write("single_rays");
+      write("embree_single_rays");
+      table << "  building took " << peer["build_ratio"].get<double>() << " x as long\n";
     }
 #endif
     result["orders"].push_back(ofOrder);

@@ -3,6 +3,9 @@
 number of ranks."""
 
 from dsm_testing import *
+from vtkmodules.util.numpy_support import numpy_to_vtk
+from vtkmodules.vtkCommonDataModel import vtkImageData
+from vtkmodules.vtkIOImage import vtkPNGWriter
 
 load_plugin()
 view = create_view()
@@ -77,6 +80,31 @@ bent.Transform.Rotate = [20.0, 30.0, 0.0]
 bent.UpdatePipeline()
 check(bent.GetDataInformation().GetDataSetTypeAsString() == "vtkStructuredGrid", "curvilinear")
 compare("Structured", bent, lambda d: color_by(d, "POINTS", "RTData"), share=0.01, shading=5.0)
+
+# AMR and trees show the surface of their cells.
+compare("Amr", simple.AMRGaussianPulseSource(),
+        lambda d: color_by(d, "CELLS", "Gaussian-Pulse"), share=0.01, shading=5.0)
+compare("HyperTreeGrid", simple.HyperTreeGridRandom(),
+        lambda d: color_by(d, "CELLS", "Depth"), share=0.01, shading=5.0)
+
+# Textures, also where each rank has a part of the surface.
+CHECKS = os.path.join(OUTPUT, "checks.png")
+if vtkMultiProcessController.GetGlobalController().GetLocalProcessId() == 0:
+    row = [255, 60, 20, 40, 90, 255]
+    rows = numpy.array(2 * (2 * row + 2 * (row[3:] + row[:3])), numpy.uint8).reshape(-1, 3)
+    checks = numpy_to_vtk(rows, deep=True)
+    image = vtkImageData()
+    image.SetDimensions(4, 4, 1)
+    image.GetPointData().SetScalars(checks)
+    writer = vtkPNGWriter()
+    writer.SetFileName(CHECKS)
+    writer.SetInputData(image)
+    writer.Write()
+texture = simple.CreateTexture(CHECKS)
+plane = simple.TextureMaptoPlane(Input=simple.Clip(Input=grid, ClipType="Sphere"))
+plane.Automatic = 0  # it would be another one on each rank
+plane.Origin, plane.Point1, plane.Point2 = [-8, -8, 0], [8, -8, 0], [-8, 8, 0]
+compare("Textured", plane, lambda d: setattr(d, "Texture", texture), shading=5.0)
 
 # Colour: mapped per pixel, or at the corners; vectors; colours of the data themselves.
 normals = simple.Elevation(Input=simple.Sphere(ThetaResolution=12, PhiResolution=9),

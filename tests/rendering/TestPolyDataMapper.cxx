@@ -192,6 +192,28 @@ TEST_F(PolyDataMapper, DrawsWhatVtkDraws)
   ExpectAlike(this->Render(), this->RenderWithTriangles(ball));
 }
 
+TEST_F(PolyDataMapper, NormalsOfCellsAreUsedWherePointsHaveNone)
+{
+  const auto ball = MakeBall();
+  ball->GetPointData()->SetNormals(nullptr);
+  vtkNew<vtkFloatArray> normals;
+  normals->SetNumberOfComponents(3);
+  for (vtkIdType cell = 0; cell < ball->GetNumberOfCells(); ++cell)
+  {
+    normals->InsertNextTuple3(0.2 * static_cast<double>(cell % 5), 0.3, 1.0);
+  }
+  this->Mapper->SetInputData(ball);
+  this->Mapper->ScalarVisibilityOff();
+  const Picture without = this->Render();
+  ball->GetCellData()->SetNormals(normals);
+  const Picture with = this->Render();
+  EXPECT_TRUE(this->Building);
+  EXPECT_NE(with, without);
+  ExpectAlike(with, this->RenderWithTriangles(ball), 0.02);
+  this->Actor->GetProperty()->SetInterpolationToFlat();
+  ExpectAlike(this->Render(), this->RenderWithTriangles(ball), 0.02);
+}
+
 TEST_F(PolyDataMapper, ColoursAreVtks)
 {
   const auto ball = MakeBall();
@@ -448,9 +470,103 @@ TEST_F(PolyDataMapper, BlocksHaveVisibilityColourAndOpacity)
   EXPECT_EQ(getColor(picture, 0), (std::vector<int>{ 0, 255, 0 }));
   EXPECT_EQ(getColor(picture, 1), (std::vector<int>{ 0, 0, 0 }));
   EXPECT_NEAR(getColor(picture, 2)[0], 128, 1);
+  EXPECT_FALSE(this->Building) << "looks of blocks";
+  const double red[3] = { 1.0, 0.0, 0.0 };
+  attributes->SetBlockColor(blocks->GetBlock(1), red);
   attributes->RemoveBlockVisibilities();
+  attributes->RemoveBlockColor(blocks->GetBlock(0));
+  attributes->RemoveBlockOpacity(blocks->GetBlock(2));
+  picture = this->Render();
+  EXPECT_FALSE(this->Building) << "other looks of blocks";
+  EXPECT_EQ(getColor(picture, 0), (std::vector<int>{ 255, 255, 255 }));
+  EXPECT_EQ(getColor(picture, 1), (std::vector<int>{ 255, 0, 0 }));
+  EXPECT_EQ(getColor(picture, 2), (std::vector<int>{ 255, 255, 255 }));
   attributes->SetBlockVisibility(blocks, false);
   EXPECT_EQ(CountCovered(this->Render()), 0);
+  EXPECT_FALSE(this->Building);
+  attributes->RemoveBlockVisibilities();
+  EXPECT_EQ(this->Render(), picture);
+  EXPECT_FALSE(this->Building) << "shown again";
+}
+
+TEST_F(PolyDataMapper, AChangedBlockIsTakenInAgain)
+{
+  vtkNew<vtkMultiBlockDataSet> blocks;
+  for (unsigned int block = 0; block < 2; ++block)
+  {
+    vtkNew<vtkSphereSource> sphere;
+    sphere->SetCenter(block - 0.5, 0.0, 0.0);
+    sphere->SetRadius(0.3);
+    sphere->Update();
+    blocks->SetBlock(block, sphere->GetOutput());
+  }
+  this->Mapper->SetInputDataObject(blocks);
+  vtkNew<vtkCompositeDataDisplayAttributes> attributes;
+  this->Mapper->SetCompositeDataDisplayAttributes(attributes);
+  attributes->SetBlockVisibility(blocks->GetBlock(1), false);
+  const int one = CountCovered(this->Render());
+  EXPECT_GT(one, 500);
+  attributes->RemoveBlockVisibilities();
+  EXPECT_NEAR(CountCovered(this->Render()), 2 * one, one / 5);
+  EXPECT_TRUE(this->Building) << "shown for the first time";
+  // While it is hidden.
+  attributes->SetBlockVisibility(blocks->GetBlock(1), false);
+  auto* changed = vtkPolyData::SafeDownCast(blocks->GetBlock(1));
+  changed->GetPoints()->SetPoint(0, 0.5, 0.0, 1.0);
+  changed->GetPoints()->Modified();
+  EXPECT_EQ(CountCovered(this->Render()), one);
+  EXPECT_FALSE(this->Building) << "what is hidden";
+  attributes->RemoveBlockVisibilities();
+  EXPECT_GT(CountCovered(this->Render()), 2 * one);
+  EXPECT_TRUE(this->Building);
+}
+
+TEST_F(PolyDataMapper, ManyBlocksShareTheirMeshes)
+{
+  // More than have meshes of their own; every other one is red.
+  constexpr unsigned int count = 144;
+  vtkNew<vtkMultiBlockDataSet> blocks;
+  vtkNew<vtkCompositeDataDisplayAttributes> attributes;
+  const double red[3] = { 1.0, 0.0, 0.0 };
+  for (unsigned int block = 0; block < count; ++block)
+  {
+    const double x = -0.9 + 0.15 * (block % 12);
+    const double y = -0.9 + 0.15 * (block / 12);
+    const auto square =
+      MakeCells({ { x, y }, { x + 0.15, y }, { x + 0.15, y + 0.15 }, { x, y + 0.15 } });
+    vtkNew<vtkCellArray> polygons;
+    Connect(polygons, { 0, 1, 2, 3 });
+    square->SetPolys(polygons);
+    blocks->SetBlock(block, square);
+    if (block % 2 == 0)
+    {
+      attributes->SetBlockColor(square, red);
+    }
+  }
+  this->Actor->GetProperty()->LightingOff();
+  this->Mapper->SetInputDataObject(blocks);
+  this->Mapper->SetCompositeDataDisplayAttributes(attributes);
+  const auto countRed = [](const Picture& picture)
+  {
+    int number = 0;
+    for (std::size_t pixel = 0; pixel < picture.size(); pixel += 3)
+    {
+      number += picture[pixel] == 255 && picture[pixel + 1] == 0;
+    }
+    return number;
+  };
+  const Picture picture = this->Render();
+  const int covered = CountCovered(picture);
+  EXPECT_GT(covered, 5000);
+  EXPECT_NEAR(countRed(picture), covered / 2, covered / 50);
+  for (unsigned int block = 1; block < count; block += 2)
+  {
+    attributes->SetBlockVisibility(blocks->GetBlock(block), false);
+  }
+  const Picture half = this->Render();
+  EXPECT_FALSE(this->Building) << "the red ones are as they were";
+  EXPECT_EQ(CountCovered(half), countRed(half));
+  EXPECT_NEAR(countRed(half), covered / 2, covered / 50);
 }
 
 TEST_F(PolyDataMapper, SaysWhatIsWrongOnceAndShowsTheRest)

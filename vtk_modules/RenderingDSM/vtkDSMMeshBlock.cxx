@@ -11,59 +11,104 @@
 
 #include <algorithm>
 #include <string>
+#include <tuple>
 
 namespace
 {
 
-/// What holds for a block unless it is set for the block itself.
-struct Inherited
+/// Walks the tree of a dataset. Nodes are counted also where this rank has nothing.
+class Walk
 {
-  bool Visible = true;
-  vtkDSMMeshBlock::Look Appearance;
-};
-
-void Visit(vtkDataObject* data, vtkCompositeDataDisplayAttributes* attributes, Inherited state,
-  std::vector<vtkDSMMeshBlock>& blocks)
-{
-  if (attributes)
+public:
+  Walk(vtkCompositeDataDisplayAttributes* attributes, std::vector<vtkDSMMeshBlock>& blocks)
+    : Attributes(attributes)
+    , Blocks(blocks)
   {
-    if (attributes->HasBlockVisibility(data))
+  }
+
+  /// `look`: what holds for the data unless it is set for them.
+  void Visit(vtkDataObject* data, vtkDSMMeshBlock::Look look)
+  {
+    const std::uint32_t number = this->Count++;
+    if (data)
     {
-      state.Visible = attributes->GetBlockVisibility(data);
+      this->Override(data, look);
+      this->VisitAs(data, number, look);
     }
-    if (attributes->HasBlockOpacity(data))
+  }
+
+private:
+  void Override(vtkDataObject* data, vtkDSMMeshBlock::Look& look) const
+  {
+    if (!this->Attributes)
     {
-      state.Appearance.Opacity =
-        static_cast<float>(std::clamp(attributes->GetBlockOpacity(data), 0.0, 1.0));
+      return;
     }
-    if (attributes->HasBlockColor(data))
+    if (this->Attributes->HasBlockVisibility(data))
+    {
+      look.Visible = this->Attributes->GetBlockVisibility(data) ? 1 : 0;
+    }
+    if (this->Attributes->HasBlockOpacity(data))
+    {
+      look.Opacity =
+        static_cast<float>(std::clamp(this->Attributes->GetBlockOpacity(data), 0.0, 1.0));
+    }
+    if (this->Attributes->HasBlockColor(data))
     {
       double color[3];
-      attributes->GetBlockColor(data, color);
-      std::copy_n(color, 3, state.Appearance.Color);
+      this->Attributes->GetBlockColor(data, color);
+      std::copy_n(color, 3, look.Color);
     }
   }
-  if (auto* tree = vtkDataObjectTree::SafeDownCast(data))
+
+  void VisitAs(vtkDataObject* data, std::uint32_t number, const vtkDSMMeshBlock::Look& look)
   {
-    for (vtkDataObject* child : vtk::Range(tree, vtk::DataObjectTreeOptions::SkipEmptyNodes))
+    if (auto* tree = vtkDataObjectTree::SafeDownCast(data))
     {
-      Visit(child, attributes, state, blocks);
+      // How many pieces a surface has is each rank's own affair.
+      const bool pieces = tree->IsA("vtkPartitionedDataSet") || tree->IsA("vtkMultiPieceDataSet");
+      for (vtkDataObject* child : vtk::Range(tree, vtk::DataObjectTreeOptions::None))
+      {
+        if (!pieces)
+        {
+          this->Visit(child, look);
+        }
+        else if (child)
+        {
+          vtkDSMMeshBlock::Look own = look;
+          this->Override(child, own);
+          this->VisitAs(child, number, own);
+        }
+      }
+      return;
     }
-    return;
+    auto* polyData = vtkPolyData::SafeDownCast(data);
+    if (!polyData)
+    {
+      throw dsm::Error(std::string("A dataset of type ") + data->GetClassName() +
+        " is not a surface. Apply Extract Surface first.");
+    }
+    if (polyData->GetNumberOfPoints() > 0)
+    {
+      this->Blocks.push_back({ polyData, number, look });
+    }
   }
-  auto* polyData = vtkPolyData::SafeDownCast(data);
-  if (!polyData)
-  {
-    throw dsm::Error(std::string("A dataset of type ") + data->GetClassName() +
-      " is not a surface. Apply Extract Surface first.");
-  }
-  if (state.Visible && polyData->GetNumberOfPoints() > 0)
-  {
-    blocks.push_back({ polyData, state.Appearance });
-  }
-}
+
+  vtkCompositeDataDisplayAttributes* Attributes; ///< may be null
+  std::vector<vtkDSMMeshBlock>& Blocks;
+  std::uint32_t Count = 0;
+};
 
 } // namespace
+
+bool vtkDSMMeshBlock::Look::operator<(const Look& other) const
+{
+  const auto order = [](const Look& look)
+  {
+    return std::make_tuple(look.Visible, look.Opacity, look.Color[0], look.Color[1], look.Color[2]);
+  };
+  return order(*this) < order(other);
+}
 
 std::vector<vtkDSMMeshBlock> vtkDSMMeshBlock::Collect(vtkDSMPolyDataMapper* mapper)
 {
@@ -72,7 +117,7 @@ std::vector<vtkDSMMeshBlock> vtkDSMMeshBlock::Collect(vtkDSMPolyDataMapper* mapp
   {
     if (vtkDataObject* data = mapper->GetInputDataObject(0, 0))
     {
-      Visit(data, mapper->GetCompositeDataDisplayAttributes(), {}, blocks);
+      Walk(mapper->GetCompositeDataDisplayAttributes(), blocks).Visit(data, {});
     }
   }
   return blocks;

@@ -34,6 +34,17 @@ constexpr double DefaultRadiusPart = 1.0 / 300.0;
 /// its brick.
 constexpr std::uint64_t SolidTriangleBytes = 200;
 
+/// Up to so many blocks have meshes of their own, so that a new look for one of them leaves all bricks
+/// as they are. Every ray is tested against every mesh.
+constexpr std::size_t MostOwnMeshes = 64;
+
+void AddNumber(std::vector<std::uint64_t>& numbers, double number)
+{
+  std::uint64_t bits;
+  std::memcpy(&bits, &number, sizeof(bits));
+  numbers.push_back(bits);
+}
+
 double ChooseRadius(double radius, double diagonal)
 {
   return radius == 0.0 ? DefaultRadiusPart * diagonal : radius;
@@ -52,17 +63,14 @@ struct vtkDSMMeshData::ColorReport
 
 bool vtkDSMMeshData::Key::operator<(const Key& other) const
 {
-  const auto order = [](const Key& key)
-  {
-    const vtkDSMMeshBlock::Look& look = key.Appearance;
-    return std::make_tuple(look.Opacity, look.Color[0], look.Color[1], look.Color[2], key.Normals,
-      key.Values, key.Colors, key.TextureCoordinates);
+  const auto order = [](const Key& key) {
+    return std::make_tuple(key.Group, key.Normals, key.Values, key.Colors, key.TextureCoordinates);
   };
   return order(*this) < order(other);
 }
 
-vtkDSMMeshData::vtkDSMMeshData(
-  std::shared_ptr<vtkDSMRankGroup> group, vtkDSMPolyDataMapper* mapper, bool textured)
+vtkDSMMeshData::vtkDSMMeshData(std::shared_ptr<vtkDSMRankGroup> group, vtkDSMPolyDataMapper* mapper,
+  bool textured, std::unique_ptr<vtkDSMMeshData> old)
   : Group(std::move(group))
   , Mapper(mapper)
   , Textured(textured)
@@ -70,12 +78,21 @@ vtkDSMMeshData::vtkDSMMeshData(
   dsm::Messenger& messenger = this->Group->GetMessenger();
   const std::string what = "Reading the surface";
   messenger.RunTogether(what, [&] { this->Blocks = vtkDSMMeshBlock::Collect(mapper); });
+  this->FormGroups();
   std::vector<vtkPolyData*> data;
   for (const vtkDSMMeshBlock& block : this->Blocks)
   {
-    data.push_back(block.Data);
+    if (block.Appearance.Visible)
+    {
+      data.push_back(block.Data);
+    }
   }
   this->FindBounds(data);
+  this->DescribeSources();
+  if (old && old->Group == this->Group)
+  {
+    this->TakeOver(std::move(old->Parts));
+  }
   const vtkDSMTubesAndSpheres solids(ChooseRadius(mapper->GetLineRadius(), this->Diagonal),
     ChooseRadius(mapper->GetPointRadius(), this->Diagonal), mapper->GetRadiusArray());
   messenger.RunTogether(what, [&] { this->CheckSolids(solids); });
@@ -90,7 +107,106 @@ vtkDSMMeshData::vtkDSMMeshData(
   this->CheckColors(reports);
   this->Publish();
   this->Blocks.clear();
+  this->Groups.clear();
   this->Surfaces.clear();
+  this->Sources.clear();
+}
+
+void vtkDSMMeshData::FormGroups()
+{
+  struct Member
+  {
+    std::uint32_t Number;
+    vtkDSMMeshBlock::Look Appearance;
+  };
+  std::vector<Member> mine;
+  for (const vtkDSMMeshBlock& block : this->Blocks)
+  {
+    mine.push_back({ block.Number, block.Appearance });
+  }
+  std::set<std::uint32_t> numbers;
+  std::map<vtkDSMMeshBlock::Look, std::uint32_t> looks;
+  const auto all = vtkDSMGather::Items(this->Group->GetMessenger(), mine);
+  for (const Member& member : all)
+  {
+    numbers.insert(member.Number);
+    looks.emplace(member.Appearance, 0);
+  }
+  std::uint32_t count = 0;
+  for (auto& look : looks)
+  {
+    look.second = count++;
+  }
+  this->OwnMeshes = numbers.size() <= MostOwnMeshes;
+  const auto getGroup = [&](std::uint32_t number, const vtkDSMMeshBlock::Look& look)
+  { return this->OwnMeshes ? number : looks.at(look); };
+  for (const Member& member : all)
+  {
+    this->Looks.emplace(getGroup(member.Number, member.Appearance), member.Appearance);
+  }
+  for (const vtkDSMMeshBlock& block : this->Blocks)
+  {
+    this->Groups.push_back(getGroup(block.Number, block.Appearance));
+  }
+}
+
+std::uint32_t vtkDSMMeshData::FindGroup(const Part& part) const
+{
+  constexpr std::uint32_t none = ~std::uint32_t(0);
+  if (this->OwnMeshes)
+  {
+    return this->Looks.count(part.Kind.Group) != 0 ? part.Kind.Group : none;
+  }
+  const auto found = std::find_if(this->Looks.begin(), this->Looks.end(),
+    [&](const auto& group)
+    { return !(group.second < part.Appearance) && !(part.Appearance < group.second); });
+  return found != this->Looks.end() ? found->first : none;
+}
+
+void vtkDSMMeshData::DescribeSources()
+{
+  for (std::size_t index = 0; index < this->Blocks.size(); ++index)
+  {
+    const vtkDSMMeshBlock& block = this->Blocks[index];
+    std::vector<std::uint64_t> numbers = DescribeBlock(this->Mapper, block, this->Textured);
+    if (block.Data->GetNumberOfVerts() > 0 || block.Data->GetNumberOfLines() > 0)
+    {
+      AddNumber(numbers, ChooseRadius(this->Mapper->GetLineRadius(), this->Diagonal));
+      AddNumber(numbers, ChooseRadius(this->Mapper->GetPointRadius(), this->Diagonal));
+    }
+    std::vector<std::uint64_t>& source = this->Sources[this->Groups[index]];
+    source.insert(source.end(), numbers.begin(), numbers.end());
+  }
+}
+
+void vtkDSMMeshData::TakeOver(std::vector<Part>&& old)
+{
+  std::vector<std::byte> mine;
+  for (Part& part : old)
+  {
+    part.Kind.Group = this->FindGroup(part);
+    const auto source = this->Sources.find(part.Kind.Group);
+    const bool same =
+      source != this->Sources.end() ? source->second == part.Source : part.Source.empty();
+    mine.push_back(std::byte(same && this->Looks.count(part.Kind.Group) != 0 ? 1 : 0));
+  }
+  std::vector<char> same(old.size(), 1);
+  for (const auto& rank : this->Group->GetMessenger().AllGather(std::move(mine)))
+  {
+    for (std::size_t index = 0; index < same.size(); ++index)
+    {
+      same[index] = same[index] && rank[index] != std::byte(0);
+    }
+  }
+  for (std::size_t index = 0; index < same.size(); ++index)
+  {
+    if (same[index])
+    {
+      old[index].Appearance = this->Looks.at(old[index].Kind.Group);
+      this->Parts.push_back(old[index]);
+    }
+    old[index].Mesh.reset();
+  }
 }
 
 void vtkDSMMeshData::FindBounds(const std::vector<vtkPolyData*>& mine)
@@ -128,6 +244,10 @@ void vtkDSMMeshData::CheckSolids(const vtkDSMTubesAndSpheres& solids) const
   std::uint64_t triangles = 0;
   for (const vtkDSMMeshBlock& block : this->Blocks)
   {
+    if (!block.Appearance.Visible)
+    {
+      continue;
+    }
     triangles += solids.EstimateTriangles(block.Data);
   }
   const std::uint64_t available = dsm::GetAvailableHostMemory() /
@@ -144,40 +264,42 @@ void vtkDSMMeshData::CheckSolids(const vtkDSMTubesAndSpheres& solids) const
 void vtkDSMMeshData::CollectSurfaces(
   const vtkDSMTubesAndSpheres& solids, std::vector<ColorReport>& reports)
 {
-  for (const vtkDSMMeshBlock& block : this->Blocks)
+  for (std::size_t index = 0; index < this->Blocks.size(); ++index)
   {
-    const bool hasOwnColor = block.Appearance.Color[0] >= 0.0f;
-    const auto findColors = [&](vtkPolyData* data)
-    { return hasOwnColor ? vtkDSMMeshColors() : vtkDSMMeshColors(this->Mapper, data); };
-    if (block.Data->GetNumberOfCells() > 0)
+    vtkPolyData* data = this->Blocks[index].Data;
+    const std::uint32_t group = this->Groups[index];
+    if (!this->Blocks[index].Appearance.Visible)
     {
-      const vtkDSMMeshColors colors = findColors(block.Data);
+      continue;
+    }
+    if (data->GetNumberOfCells() > 0)
+    {
+      const vtkDSMMeshColors colors(this->Mapper, data);
       reports.push_back({ colors.GetState(), 0, colors.GetLength(), colors.GetExpectedLength() });
-      if (block.Data->GetNumberOfPolys() > 0 || block.Data->GetNumberOfStrips() > 0)
+      if (data->GetNumberOfPolys() > 0 || data->GetNumberOfStrips() > 0)
       {
-        this->AddSurface(block, block.Data, colors);
+        this->AddSurface(group, data);
       }
     }
-    for (const auto& solid : { solids.MakeTubes(block.Data), solids.MakeSpheres(block.Data) })
+    for (const auto& solid : { solids.MakeTubes(data), solids.MakeSpheres(data) })
     {
       if (solid && solid->GetNumberOfCells() > 0)
       {
-        this->AddSurface(block, solid, findColors(solid));
+        this->AddSurface(group, solid);
       }
     }
   }
 }
 
-void vtkDSMMeshData::AddSurface(
-  const vtkDSMMeshBlock& block, vtkPolyData* data, const vtkDSMMeshColors& colors)
+void vtkDSMMeshData::AddSurface(std::uint32_t group, vtkPolyData* data)
 {
-  const rt::MeshAttributes attributes =
-    vtkDSMMeshPiece::GetAttributes(data, colors, this->Textured);
   Surface surface;
   surface.Data = data;
-  surface.Colors = colors;
-  surface.Kind.Appearance = block.Appearance;
-  surface.Kind.Normals = attributes.Normals ? 1 : 0;
+  surface.Colors = vtkDSMMeshColors(this->Mapper, data);
+  const rt::MeshAttributes attributes =
+    vtkDSMMeshPiece::GetAttributes(data, surface.Colors, this->Textured);
+  surface.Kind.Group = group;
+  surface.Kind.Normals = static_cast<std::uint32_t>(attributes.Normals);
   surface.Kind.Values = static_cast<std::uint32_t>(attributes.Values);
   surface.Kind.Colors = static_cast<std::uint32_t>(attributes.Colors);
   surface.Kind.TextureCoordinates = attributes.TextureCoordinates ? 1 : 0;
@@ -254,7 +376,11 @@ void vtkDSMMeshData::Publish()
     mine.push_back(surface.Kind);
   }
   const auto all = vtkDSMGather::Items(messenger, mine);
-  const std::set<Key> kinds(all.begin(), all.end());
+  std::set<Key> kinds(all.begin(), all.end());
+  for (const Part& part : this->Parts)
+  {
+    kinds.erase(part.Kind);
+  }
   rt::TriangleMeshSettings settings;
   settings.Threads = group->GetStore().GetSettings().Workers;
   double done = 0.0;
@@ -278,72 +404,78 @@ void vtkDSMMeshData::Publish()
     const std::shared_ptr<rt::TriangleMesh> mesh =
       rt::PublishMesh("the surface", piece, settings, group->GetStore(), messenger, progress);
     done += share;
-    this->Parts.push_back({ kind.Appearance,
-      std::shared_ptr<const rt::TriangleMesh>(mesh.get(),
-        [group, mesh](const rt::TriangleMesh*) { group->GetStore().Retire(mesh->Segment); }) });
+    const std::shared_ptr<const rt::TriangleMesh> shared(mesh.get(),
+      [group, mesh](const rt::TriangleMesh*) { group->GetStore().Retire(mesh->Segment); });
+    this->Parts.push_back({ this->Looks.at(kind.Group), shared, kind, this->Sources[kind.Group] });
   }
 }
 
-std::vector<std::uint64_t> vtkDSMMeshData::Describe(vtkDSMPolyDataMapper* mapper, bool textured)
+std::vector<std::uint64_t> vtkDSMMeshData::DescribeBlock(
+  vtkDSMPolyDataMapper* mapper, const vtkDSMMeshBlock& block, bool textured)
 {
   std::vector<std::uint64_t> numbers;
-  const auto addNumber = [&numbers](double number)
-  {
-    std::uint64_t bits;
-    std::memcpy(&bits, &number, sizeof(bits));
-    numbers.push_back(bits);
-  };
   // Times of change are unique in a process: the same place and time is the same content.
   const auto addObject = [&numbers](vtkObject* object)
   {
     numbers.push_back(reinterpret_cast<std::uintptr_t>(object));
     numbers.push_back(object ? object->GetMTime() : 0);
   };
-  addNumber(mapper->GetLineRadius());
-  addNumber(mapper->GetPointRadius());
+  vtkScalarsToColors* table = mapper->GetLookupTable();
+  vtkPolyData* data = block.Data;
+  addObject(data->GetPoints()->GetData());
+  for (vtkCellArray* cells :
+    { data->GetVerts(), data->GetLines(), data->GetPolys(), data->GetStrips() })
+  {
+    addObject(cells->GetNumberOfCells() > 0 ? cells : nullptr);
+    addObject(cells->GetNumberOfCells() > 0 ? cells->GetConnectivityArray() : nullptr);
+  }
+  addObject(data->GetPointData()->GetNormals());
+  addObject(data->GetPointData()->GetNormals() ? nullptr : data->GetCellData()->GetNormals());
+  addObject(textured ? data->GetPointData()->GetTCoords() : nullptr);
+  addObject(data->GetCellData()->GetAbstractArray(vtkDataSetAttributes::GhostArrayName()));
+  addObject(data->GetPointData()->GetAbstractArray(mapper->GetRadiusArray().c_str()));
+  int field = 0;
+  vtkAbstractArray* colors = vtkDSMMeshColors::FindArray(mapper, data, field);
+  addObject(colors);
+  if (colors)
+  {
+    AddNumber(numbers, field);
+    AddNumber(numbers, mapper->GetColorMode());
+    AddNumber(numbers, mapper->GetArrayComponent());
+    AddNumber(numbers, static_cast<double>(mapper->GetFieldDataTupleId()));
+    if (colors->GetNumberOfComponents() > 1)
+    {
+      AddNumber(numbers, table->GetVectorMode());
+      AddNumber(numbers, table->GetVectorComponent());
+    }
+    addObject(vtkDSMMeshColors::DependsOnTable(mapper, colors) ? table : nullptr);
+  }
+  return numbers;
+}
+
+std::vector<std::uint64_t> vtkDSMMeshData::Describe(vtkDSMPolyDataMapper* mapper, bool textured)
+{
+  std::vector<std::uint64_t> numbers;
+  AddNumber(numbers, mapper->GetLineRadius());
+  AddNumber(numbers, mapper->GetPointRadius());
   if (mapper->GetScalarVisibility())
   {
     // Also when there is no such array: that must be said.
-    addNumber(mapper->GetScalarMode());
+    AddNumber(numbers, mapper->GetScalarMode());
     const char* name = mapper->GetArrayName();
     numbers.push_back(std::hash<std::string>{}(name ? name : ""));
   }
-  vtkScalarsToColors* table = mapper->GetLookupTable();
   for (const vtkDSMMeshBlock& block : vtkDSMMeshBlock::Collect(mapper))
   {
-    vtkPolyData* data = block.Data;
-    addObject(data->GetPoints()->GetData());
-    for (vtkCellArray* cells :
-      { data->GetVerts(), data->GetLines(), data->GetPolys(), data->GetStrips() })
-    {
-      addObject(cells->GetNumberOfCells() > 0 ? cells : nullptr);
-      addObject(cells->GetNumberOfCells() > 0 ? cells->GetConnectivityArray() : nullptr);
-    }
-    addObject(data->GetPointData()->GetNormals());
-    addObject(textured ? data->GetPointData()->GetTCoords() : nullptr);
-    addObject(data->GetCellData()->GetAbstractArray(vtkDataSetAttributes::GhostArrayName()));
-    addObject(data->GetPointData()->GetAbstractArray(mapper->GetRadiusArray().c_str()));
-    addNumber(block.Appearance.Opacity);
+    numbers.push_back(block.Number);
+    AddNumber(numbers, block.Appearance.Visible);
+    AddNumber(numbers, block.Appearance.Opacity);
     for (const float channel : block.Appearance.Color)
     {
-      addNumber(channel);
+      AddNumber(numbers, channel);
     }
-    int field = 0;
-    vtkAbstractArray* colors = vtkDSMMeshColors::FindArray(mapper, data, field);
-    addObject(colors);
-    if (colors)
-    {
-      addNumber(field);
-      addNumber(mapper->GetColorMode());
-      addNumber(mapper->GetArrayComponent());
-      addNumber(static_cast<double>(mapper->GetFieldDataTupleId()));
-      if (colors->GetNumberOfComponents() > 1)
-      {
-        addNumber(table->GetVectorMode());
-        addNumber(table->GetVectorComponent());
-      }
-      addObject(vtkDSMMeshColors::DependsOnTable(mapper, colors) ? table : nullptr);
-    }
+    const std::vector<std::uint64_t> source = DescribeBlock(mapper, block, textured);
+    numbers.insert(numbers.end(), source.begin(), source.end());
   }
   return numbers;
 }

@@ -11,6 +11,7 @@
 #include "vtkSmartPointer.h"
 
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <string>
 #include <vector>
@@ -19,22 +20,41 @@ class vtkDSMPolyDataMapper;
 class vtkDSMTubesAndSpheres;
 class vtkPolyData;
 
-/// A dataset of surfaces that is spread over the ranks, as meshes in bricks: one for each look that
-/// blocks have, and for each set of arrays. Keeps nothing of the dataset.
+/// A dataset of surfaces that is spread over the ranks, as meshes in bricks: one for each block and
+/// set of arrays, or where there are many blocks for each look that blocks have. Keeps nothing of the
+/// dataset.
 class vtkDSMMeshData
 {
 public:
+  /// What tells meshes apart; plain, so that ranks can exchange it.
+  struct Key
+  {
+    std::uint32_t Group = 0; ///< of blocks
+    std::uint32_t Normals = 0;
+    std::uint32_t Values = 0;
+    std::uint32_t Colors = 0;
+    std::uint32_t TextureCoordinates = 0;
+
+    bool operator<(const Key& other) const;
+  };
   struct Part
   {
     vtkDSMMeshBlock::Look Appearance;
     /// Leaves the store when its last user lets go, which must happen in the same order on every
     /// rank.
     std::shared_ptr<const rt::TriangleMesh> Mesh;
+    Key Kind;
+    /// Describes what this rank's part of the mesh was made of.
+    std::vector<std::uint64_t> Source;
   };
 
-  /// Collective; a rank without data takes part. `textured`: texture coordinates are wanted. Failures are dsm::Error, the same on every rank.
-  vtkDSMMeshData(
-    std::shared_ptr<vtkDSMRankGroup> group, vtkDSMPolyDataMapper* mapper, bool textured);
+  /// Collective; a rank without data takes part. `textured`: texture coordinates are wanted. `old`:
+  /// what was made of the mapper's data before, or null; its meshes are taken
+  /// over where they would be the same, also those of blocks that are hidden now, and else leave the
+  /// store first, since there may not be room for both. Failures are dsm::Error, the same on every
+  /// rank.
+  vtkDSMMeshData(std::shared_ptr<vtkDSMRankGroup> group, vtkDSMPolyDataMapper* mapper,
+    bool textured, std::unique_ptr<vtkDSMMeshData> old);
 
   const std::vector<Part>& GetParts() const { return this->Parts; }
   /// Of all ranks' visible blocks; uninitialised bounds (min > max) without any.
@@ -47,17 +67,6 @@ public:
   static std::vector<std::uint64_t> Describe(vtkDSMPolyDataMapper* mapper, bool textured);
 
 private:
-  /// What tells meshes apart; plain, so that ranks can exchange it.
-  struct Key
-  {
-    vtkDSMMeshBlock::Look Appearance;
-    std::uint32_t Normals = 0;
-    std::uint32_t Values = 0;
-    std::uint32_t Colors = 0;
-    std::uint32_t TextureCoordinates = 0;
-
-    bool operator<(const Key& other) const;
-  };
   struct Surface
   {
     Key Kind;
@@ -66,10 +75,18 @@ private:
   };
   struct ColorReport;
 
+  static std::vector<std::uint64_t> DescribeBlock(
+    vtkDSMPolyDataMapper* mapper, const vtkDSMMeshBlock& block, bool textured);
+
+  void FormGroups();
+  /// The group that an old part would be of; one that does not exist if there is none.
+  std::uint32_t FindGroup(const Part& part) const;
+  void DescribeSources();
+  void TakeOver(std::vector<Part>&& old);
   void FindBounds(const std::vector<vtkPolyData*>& mine);
   void CheckSolids(const vtkDSMTubesAndSpheres& solids) const;
   void CollectSurfaces(const vtkDSMTubesAndSpheres& solids, std::vector<ColorReport>& reports);
-  void AddSurface(const vtkDSMMeshBlock& block, vtkPolyData* data, const vtkDSMMeshColors& colors);
+  void AddSurface(std::uint32_t group, vtkPolyData* data);
   void CheckColors(const std::vector<ColorReport>& mine);
   std::string ListArrays() const;
   void Publish();
@@ -77,8 +94,15 @@ private:
   std::shared_ptr<vtkDSMRankGroup> Group;
   vtkDSMPolyDataMapper* Mapper;
   bool Textured;
-  std::vector<vtkDSMMeshBlock> Blocks; ///< of this rank, while its data are read
-  std::vector<Surface> Surfaces;       ///< likewise
+  // Of this rank, while its data are read:
+  std::vector<vtkDSMMeshBlock> Blocks;
+  std::vector<std::uint32_t> Groups; ///< of each block
+  std::vector<Surface> Surfaces;
+  std::map<std::uint32_t, std::vector<std::uint64_t>> Sources; ///< of each group
+
+  /// Groups are blocks, and not looks.
+  bool OwnMeshes = true;
+  std::map<std::uint32_t, vtkDSMMeshBlock::Look> Looks; ///< of each group, of all ranks
   std::vector<Part> Parts;
   double Bounds[6];
   double Diagonal = 0.0;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkDSMMeshPiece.h"
 
+#include "vtkCellData.h"
 #include "vtkDataArray.h"
 #include "vtkPointData.h"
 #include "vtkPoints.h"
@@ -11,10 +12,23 @@
 namespace
 {
 
-vtkDataArray* FindNormals(vtkPolyData* data)
+/// As VTK: those of the cells where points have none.
+vtkDataArray* FindNormals(vtkPolyData* data, rt::Attachment& attachment)
 {
   vtkDataArray* normals = data->GetPointData()->GetNormals();
-  return normals && normals->GetNumberOfTuples() == data->GetNumberOfPoints() ? normals : nullptr;
+  attachment = rt::Attachment::Points;
+  if (normals && normals->GetNumberOfTuples() == data->GetNumberOfPoints())
+  {
+    return normals;
+  }
+  normals = data->GetCellData()->GetNormals();
+  attachment = rt::Attachment::Triangles;
+  if (normals && normals->GetNumberOfTuples() == data->GetNumberOfCells())
+  {
+    return normals;
+  }
+  attachment = rt::Attachment::None;
+  return nullptr;
 }
 
 vtkDataArray* FindTextureCoordinates(vtkPolyData* data)
@@ -33,7 +47,7 @@ rt::MeshAttributes vtkDSMMeshPiece::GetAttributes(
 {
   rt::MeshAttributes attributes;
   attributes.TextureCoordinates = textured && FindTextureCoordinates(data);
-  attributes.Normals = FindNormals(data) != nullptr;
+  FindNormals(data, attributes.Normals);
   attributes.Values = colors.GetValues();
   attributes.Colors = colors.GetColors();
   return attributes;
@@ -43,7 +57,8 @@ void vtkDSMMeshPiece::Add(vtkPolyData* data, const vtkDSMMeshColors& colors, boo
 {
   this->Attributes = GetAttributes(data, colors, textured);
   this->Parts.push_back({ data, vtkDSMTriangleList(data), colors, data->GetPoints()->GetData(),
-    FindNormals(data), FindTextureCoordinates(data), this->Triangles, this->Points });
+    FindNormals(data, this->Attributes.Normals), FindTextureCoordinates(data), this->Triangles,
+    this->Points });
   this->Triangles += this->Parts.back().List.GetCount();
   this->Points += static_cast<std::uint64_t>(data->GetNumberOfPoints());
 }
@@ -79,10 +94,11 @@ void vtkDSMMeshPiece::GetPosition(std::uint64_t point, double position[3]) const
   part.Positions->GetTuple(static_cast<vtkIdType>(point - part.FirstPoint), position);
 }
 
-void vtkDSMMeshPiece::GetNormal(std::uint64_t point, double normal[3]) const
+void vtkDSMMeshPiece::GetNormal(std::uint64_t element, double normal[3]) const
 {
-  const Part& part = this->FindByPoint(point);
-  part.Normals->GetTuple(static_cast<vtkIdType>(point - part.FirstPoint), normal);
+  vtkIdType number = 0;
+  const Part& part = this->FindElement(this->Attributes.Normals, element, number);
+  part.Normals->GetTuple(number, normal);
 }
 
 const vtkDSMMeshPiece::Part& vtkDSMMeshPiece::FindElement(

@@ -31,7 +31,7 @@ public:
   std::uint64_t GetPointCount() const override { return this->Points; }
   void GetTriangle(std::uint64_t triangle, std::uint64_t points[3]) const override;
   void GetPosition(std::uint64_t point, double position[3]) const override;
-  void GetNormal(std::uint64_t point, double normal[3]) const override;
+  void GetNormal(std::uint64_t element, double normal[3]) const override;
   double GetValue(std::uint64_t element) const override;
   void GetColor(std::uint64_t element, std::uint8_t rgba[4]) const override;
   void GetTextureCoordinate(std::uint64_t point, double coordinate[2]) const override;

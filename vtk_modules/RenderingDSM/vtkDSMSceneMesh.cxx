@@ -36,10 +36,14 @@ void Apply(const vtkDSMMeshBlock::Look& look, rt::Material& material)
   }
 }
 
-rt::MeshObject::Coloring GetColoring(
+rt::MeshObject::Coloring GetColoring(const vtkDSMMeshBlock::Look& look,
   const rt::MeshAttributes& has, bool interpolateScalarsBeforeMapping)
 {
   using Coloring = rt::MeshObject::Coloring;
+  if (look.Color[0] >= 0.0f)
+  {
+    return Coloring::Material;
+  }
   if (has.Colors != rt::Attachment::None)
   {
     return Coloring::Colors;
@@ -119,15 +123,14 @@ void vtkDSMSceneMesh::Update(const std::shared_ptr<vtkDSMRankGroup>& group, bool
   const unsigned version = group->GetSettingsVersion();
   if (newData || (!this->Failure.empty() && this->FailureVersion != version))
   {
-    // The old bricks go first: there may not be room for both.
-    this->Data.reset();
     this->Failure.clear();
     this->Reported.clear();
     this->Taken = true;
     this->Seen = this->Describe();
     try
     {
-      this->Data = std::make_unique<vtkDSMMeshData>(group, this->Mapper, this->IsTextured());
+      this->Data = std::make_unique<vtkDSMMeshData>(
+        group, this->Mapper, this->IsTextured(), std::move(this->Data));
       this->Mapper->SetGlobalBounds(this->Data->GetBounds());
     }
     catch (const dsm::Error& error)
@@ -171,7 +174,8 @@ rt::MeshObject vtkDSMSceneMesh::CreateObject(const vtkDSMMeshData::Part& part, v
   instance->Culling.Front = property->GetFrontfaceCulling() != 0;
   instance->Culling.Back = property->GetBackfaceCulling() != 0;
   object.Instance = std::move(instance);
-  object.Flat = property->GetInterpolation() == VTK_FLAT;
+  object.Flat = property->GetInterpolation() == VTK_FLAT &&
+    part.Mesh->Attributes.Normals != rt::Attachment::Triangles;
   object.Surface = vtkDSMTranslation::ToMaterial(property);
   object.Surface.Reflectivity = static_cast<float>(this->GetLightOptions()->GetReflectivity());
   Apply(part.Appearance, object.Surface);
@@ -180,8 +184,8 @@ rt::MeshObject vtkDSMSceneMesh::CreateObject(const vtkDSMMeshData::Part& part, v
     object.BackSurface = vtkDSMTranslation::ToMaterial(back);
     object.BackSurface->Reflectivity = object.Surface.Reflectivity;
   }
-  object.ColoredBy =
-    GetColoring(part.Mesh->Attributes, this->Mapper->GetInterpolateScalarsBeforeMapping() != 0);
+  object.ColoredBy = GetColoring(part.Appearance, part.Mesh->Attributes,
+    this->Mapper->GetInterpolateScalarsBeforeMapping() != 0);
   if (object.ColoredBy == rt::MeshObject::Coloring::Values ||
     object.ColoredBy == rt::MeshObject::Coloring::CornerValues)
   {
@@ -233,6 +237,10 @@ void vtkDSMSceneMesh::AddTo(rt::Scene& scene)
   }
   for (const vtkDSMMeshData::Part& part : this->Data->GetParts())
   {
+    if (!part.Appearance.Visible)
+    {
+      continue;
+    }
     rt::MeshObject object = this->CreateObject(part, actor);
     if (object.Surface.Opacity > 0.0f || (object.BackSurface && object.BackSurface->Opacity > 0.0f))
     {

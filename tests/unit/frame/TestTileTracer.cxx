@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A tile's pixels, traced in packets, against the same pixels traced alone.
 #include "tests/support/FunctionVolume.h"
+#include "tests/support/MeshScene.h"
 
 #include "DSMCore/LoopbackTransport.h"
 #include "DSMRayTracing/frame/TileGrid.h"
@@ -38,6 +39,12 @@ protected:
         50, [](const glm::dvec3& p) { return glm::length(p) - 0.8; }, this->Messenger,
         this->Store) };
     scene.Isosurfaces[1].Surface.Opacity = 0.4f;
+    return this->Compare(scene, worldToClip, width, height, tileSize);
+  }
+
+  Difference Compare(
+    rt::Scene scene, const glm::dmat4& worldToClip, int width, int height, int tileSize)
+  {
     scene.Lights.emplace_back();
     rt::FrameRequest request;
     request.Width = width;
@@ -46,6 +53,15 @@ protected:
     request.Samples = 2;
     request.WorldToClip = worldToClip;
     return this->Store.Visit([&](auto& store) { return CompareTiles(store, scene, request); });
+  }
+
+  rt::MeshObject Publish(const TestMesh::Mesh& mesh, float opacity)
+  {
+    rt::MeshObject object;
+    object.Instance = std::make_shared<rt::MeshInstance>(
+      MeshScene::Publish(mesh, this->Messenger, this->Store), glm::dmat4(1.0));
+    object.Surface.Opacity = opacity;
+    return object;
   }
 
   dsm::Messenger Messenger{ std::move(dsm::LoopbackTransport::CreateGroup(1).front()) };
@@ -123,4 +139,28 @@ TEST_F(TestTileTracer, ParallelViewAlongAnAxisEqualsSinglePixels)
   const Difference difference = this->Compare(parallel, 40, 40, 16);
   EXPECT_GT(difference.Covered, 500);
   EXPECT_EQ(difference.Pixels, 0);
+}
+
+/// Meshes that cut through one another, one of them translucent, without and with an isosurface.
+TEST_F(TestTileTracer, MeshesEqualSinglePixels)
+{
+  rt::Scene scene;
+  scene.Meshes = { this->Publish(TestMesh::CreateSoup(500, 5), 0.6f),
+    this->Publish(TestMesh::CreateBlob(4), 1.0f) };
+  const glm::dmat4 parallel = glm::ortho(-1.5, 1.5, -1.5, 1.5, 0.0, 10.0) *
+    glm::lookAt(glm::dvec3(0.0, 0.0, 5.0), glm::dvec3(0.0), glm::dvec3(0.0, 1.0, 0.0));
+  for (const bool withVolume : { false, true })
+  {
+    if (withVolume)
+    {
+      scene.Isosurfaces = { FunctionVolume::Publish(65, GetWaves, this->Messenger, this->Store) };
+    }
+    for (const glm::dmat4& view : { LookAt({ 2.5, 1.8, 2.1 }), LookAt({ 0.01, 0.02, 3.6 }),
+           LookAt({ 0.11, 0.2, 0.31 }), parallel })
+    {
+      const Difference difference = this->Compare(scene, view, 61, 47, 19);
+      EXPECT_GT(difference.Covered, 1000);
+      EXPECT_EQ(difference.Pixels, 0);
+    }
+  }
 }

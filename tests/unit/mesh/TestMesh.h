@@ -192,7 +192,7 @@ rt::TriangleArrays<Real> TakePart(
 
 /// Runs `work` on a thread as the store's worker 0, while this one serves; rethrows.
 inline void TraceOnWorker(dsm::ObjectStore& store, dsm::Messenger& messenger,
-  const std::function<void(const Tracer&)>& work)
+  const std::function<void(dsm::ObjectStore::Worker&)>& work)
 {
   store.BeginFrame();
   rt::FrameAgreement agreement(messenger, [] {});
@@ -206,7 +206,7 @@ inline void TraceOnWorker(dsm::ObjectStore& store, dsm::Messenger& messenger,
       store.Enter(worker);
       try
       {
-        work(Tracer(store, worker));
+        work(worker);
       }
       catch (...)
       {
@@ -233,9 +233,10 @@ inline void TraceOnWorker(dsm::ObjectStore& store, dsm::Messenger& messenger,
   }
 }
 
-/// Publishes `mesh` on one rank, in small bricks, and runs `work` with a tracer.
-inline void TraceAlone(const rt::TriangleSource& mesh,
-  const std::function<void(const Tracer&, const std::shared_ptr<rt::TriangleMesh>&)>& work,
+/// Publishes `mesh` on one rank, in small bricks, and runs `work` on a worker.
+inline void TraceOnStore(const rt::TriangleSource& mesh,
+  const std::function<void(
+    dsm::ObjectStore&, dsm::ObjectStore::Worker&, const std::shared_ptr<rt::TriangleMesh>&)>& work,
   std::uint32_t brickBytes = 1024)
 {
   RunOnCluster(1,
@@ -246,8 +247,22 @@ inline void TraceAlone(const rt::TriangleSource& mesh,
       settings.BrickBytes = brickBytes;
       settings.Threads = 2;
       const auto published = rt::PublishMesh("mesh", mesh, settings, store, messenger);
-      TraceOnWorker(store, messenger, [&](const Tracer& tracer) { work(tracer, published); });
+      TraceOnWorker(store, messenger,
+        [&](dsm::ObjectStore::Worker& worker) { work(store, worker, published); });
     });
+}
+
+/// The same with a tracer.
+inline void TraceAlone(const rt::TriangleSource& mesh,
+  const std::function<void(const Tracer&, const std::shared_ptr<rt::TriangleMesh>&)>& work,
+  std::uint32_t brickBytes = 1024)
+{
+  TraceOnStore(
+    mesh,
+    [&](dsm::ObjectStore& store, dsm::ObjectStore::Worker& worker,
+      const std::shared_ptr<rt::TriangleMesh>& published)
+    { work(Tracer(store, worker), published); },
+    brickBytes);
 }
 
 /// The nearest hit by trying all triangles, in double precision (Moller, Trumbore 1997).

@@ -134,6 +134,25 @@ TEST(MeshAttributes, OfTrianglesAreExact)
     });
 }
 
+TEST(MeshAttributes, NormalsOfTrianglesAreNotInterpolated)
+{
+  Mesh mesh = CreateTerrain(10);
+  mesh.NormalsOf = rt::Attachment::Triangles;
+  mesh.Normals.clear();
+  for (std::uint64_t triangle = 0; triangle < mesh.GetTriangleCount(); ++triangle)
+  {
+    const float x = 0.1f * static_cast<float>(triangle % 7);
+    mesh.Normals.insert(mesh.Normals.end(), { x, 0.2f, 1.0f });
+  }
+  LookDown(mesh,
+    [&](double, double, const Oracle& oracle, const rt::MeshHit& hit)
+    {
+      const float* own = &mesh.Normals[3 * oracle.Triangle];
+      const glm::dvec3 expected = glm::normalize(glm::dvec3(own[0], own[1], own[2]));
+      EXPECT_NEAR(glm::distance(hit.Normal, expected), 0.0, 2e-4);
+    });
+}
+
 TEST(MeshAttributes, WithoutAnyThereAreDefaults)
 {
   Mesh mesh = CreateTerrain(12);

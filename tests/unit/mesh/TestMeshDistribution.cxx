@@ -53,8 +53,9 @@ Outcome Publish(const Mesh& mesh, const Setting& setting)
       const rt::MeshInstance instance(published, glm::dmat4(1.0));
       std::vector<double> hits;
       TraceOnWorker(store, messenger,
-        [&](const Tracer& tracer)
+        [&](dsm::ObjectStore::Worker& worker)
         {
+          const Tracer tracer(store, worker);
           for (const rt::Ray& ray : rays)
           {
             rt::MeshHit hit;
@@ -174,7 +175,7 @@ TEST(MeshDistribution, TheStoreHoldsNothingButTheBricks)
       dsm::ObjectStore store(messenger, { CacheBytes, 1 });
       const Mesh piece = TakePart(CreateBlob(3), messenger.GetRank(), 2, 5);
       const auto published = rt::PublishMesh("mesh", piece, {}, store, messenger);
-      TraceOnWorker(store, messenger, [](const Tracer&) {});
+      TraceOnWorker(store, messenger, [](dsm::ObjectStore::Worker&) {});
       EXPECT_EQ(store.GetCounters().ResidentBytes, published->Segment->GetResidentBytes());
     });
 }

@@ -34,7 +34,7 @@ std::string GetError(const std::vector<const rt::TriangleSource*>& pieces,
       }
       const Mesh good = TakePart(CreateBlob(2), messenger.GetRank(), messenger.GetSize(), 1);
       EXPECT_EQ(rt::PublishMesh("mesh", good, {}, store, messenger)->Triangles, 320u);
-      TraceOnWorker(store, messenger, [](const Tracer&) {});
+      TraceOnWorker(store, messenger, [](dsm::ObjectStore::Worker&) {});
     });
   for (const std::string& error : errors)
   {
@@ -72,8 +72,9 @@ TEST(MeshInput, EmptyOnAllRanks)
         EXPECT_EQ(published->Triangles, 0u);
         EXPECT_TRUE(published->Bricks.IsEmpty());
         TraceOnWorker(store, messenger,
-          [&](const Tracer& tracer)
+          [&](dsm::ObjectStore::Worker& worker)
           {
+            const Tracer tracer(store, worker);
             rt::Ray ray;
             ray.Max = 10.0;
             rt::MeshHit hit;

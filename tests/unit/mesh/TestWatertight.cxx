@@ -178,20 +178,20 @@ TEST(TriangleIntersector, WeightsAndSides)
     const double direction[3] = { 0.0, 0.0, -1.5 * side };
     ASSERT_TRUE(ray.Set(origin, direction, 0.0, 10.0, lower, upper));
     rt::TriangleHit hit;
-    ASSERT_TRUE(rt::IntersectTriangle(ray, a, b, c, hit));
+    ASSERT_TRUE(rt::IntersectTriangle(ray.Triangles, a, b, c, hit));
     EXPECT_EQ(hit.T, 2.0);
     EXPECT_EQ(hit.Front, side > 0.0);
     EXPECT_DOUBLE_EQ(hit.Weights[0], 0.25);
     EXPECT_DOUBLE_EQ(hit.Weights[1], 0.25);
     EXPECT_DOUBLE_EQ(hit.Weights[2], 0.5);
     // Within the plane, and a triangle without area.
-    EXPECT_FALSE(rt::IntersectTriangle(ray, a, b, b, hit));
-    ray.Max = 1.9;
-    EXPECT_FALSE(rt::IntersectTriangle(ray, a, b, c, hit));
+    EXPECT_FALSE(rt::IntersectTriangle(ray.Triangles, a, b, b, hit));
+    ray.Triangles.Max = 1.9;
+    EXPECT_FALSE(rt::IntersectTriangle(ray.Triangles, a, b, c, hit));
   }
   const double origin[3] = { -1.0, 0.2, 0.0 };
   const double direction[3] = { 1.0, 0.0, 0.0 };
   ASSERT_TRUE(ray.Set(origin, direction, 0.0, 10.0, lower, upper));
   rt::TriangleHit hit;
-  EXPECT_FALSE(rt::IntersectTriangle(ray, a, b, c, hit));
+  EXPECT_FALSE(rt::IntersectTriangle(ray.Triangles, a, b, c, hit));
 }

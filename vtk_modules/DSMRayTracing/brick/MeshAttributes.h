@@ -18,7 +18,7 @@ enum class Attachment : std::uint8_t
 /// What the triangles of a mesh carry beside their positions; the same for all its pieces.
 struct MeshAttributes
 {
-  bool Normals = false; ///< of the points
+  Attachment Normals = Attachment::None;
   Attachment Values = Attachment::None;
   Attachment Colors = Attachment::None;
   bool TextureCoordinates = false; ///< of the points

@@ -21,18 +21,19 @@ class TriangleArrays final : public TriangleSource
 public:
   std::vector<Real> Positions;          ///< three a point
   std::vector<std::uint64_t> Triangles; ///< three points a triangle
-  std::vector<float> Normals;           ///< three a point
+  std::vector<float> Normals;           ///< three an element
   std::vector<double> Values;
   std::vector<std::uint8_t> Colors;      ///< four an element
   std::vector<float> TextureCoordinates; ///< two a point
-  /// What Values and Colors belong to, when there are any.
+  /// What Normals, Values and Colors belong to, when there are any.
+  Attachment NormalsOf = Attachment::Points;
   Attachment ValuesOf = Attachment::Points;
   Attachment ColorsOf = Attachment::Points;
 
   MeshAttributes GetAttributes() const override
   {
     MeshAttributes attributes;
-    attributes.Normals = !this->Normals.empty();
+    attributes.Normals = this->Normals.empty() ? Attachment::None : this->NormalsOf;
     attributes.Values = this->Values.empty() ? Attachment::None : this->ValuesOf;
     attributes.Colors = this->Colors.empty() ? Attachment::None : this->ColorsOf;
     attributes.TextureCoordinates = !this->TextureCoordinates.empty();
@@ -48,9 +49,9 @@ public:
   {
     std::copy_n(this->Positions.data() + 3 * point, 3, position);
   }
-  void GetNormal(std::uint64_t point, double normal[3]) const override
+  void GetNormal(std::uint64_t element, double normal[3]) const override
   {
-    std::copy_n(this->Normals.data() + 3 * point, 3, normal);
+    std::copy_n(this->Normals.data() + 3 * element, 3, normal);
   }
   double GetValue(std::uint64_t element) const override { return this->Values[element]; }
   void GetColor(std::uint64_t element, std::uint8_t rgba[4]) const override

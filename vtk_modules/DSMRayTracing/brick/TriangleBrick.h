@@ -18,6 +18,21 @@ class TriangleBrick
 public:
   using Node = WideBvhNode<std::uint16_t>;
 
+  /// Triangles that a leaf of the tree refers to.
+  struct Leaf
+  {
+    explicit Leaf(std::uint16_t reference)
+      : First(reference & 0x1fffu)
+      , Count((reference >> 13 & 3u) + 1)
+    {
+    }
+    /// A bit for each.
+    unsigned GetMask() const { return (1u << this->Count) - 1u; }
+
+    std::uint32_t First;
+    std::uint32_t Count;
+  };
+
   explicit TriangleBrick(const std::byte* block)
     : Block(block)
   {

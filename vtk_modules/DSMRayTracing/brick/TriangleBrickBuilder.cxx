@@ -122,8 +122,8 @@ void TriangleBrickBuilder::GetVertex(
   const std::uint32_t* record, int corner, std::uint32_t* words) const
 {
   words = std::copy_n(record + 3 * corner, 3, words);
-  *words++ =
-    this->Attributes.Normals ? record[this->Layout.Normals + corner] : OctahedralNormal::None;
+  *words++ = this->Attributes.Normals != Attachment::None ? record[this->Layout.Normals + corner]
+                                                          : OctahedralNormal::None;
   if (this->Attributes.Values == Attachment::Points)
   {
     *words++ = record[this->Layout.Values + corner];
@@ -172,7 +172,7 @@ TriangleBrickHeader TriangleBrickBuilder::LayOut(std::uint32_t triangles) const
   header.Vertices = static_cast<std::uint16_t>(vertices);
   header.Nodes = static_cast<std::uint32_t>(this->Tree.GetNodes().size());
   header.LargestExtent = this->LargestExtent;
-  header.Normals = this->Attributes.Normals;
+  header.Normals = this->Attributes.Normals != Attachment::None;
   header.Values = this->Attributes.Values;
   header.Colors = this->Attributes.Colors;
   std::uint32_t offset = TriangleBrickHeader::NodeOffset +

@@ -137,14 +137,16 @@ void TriangleReader::ReadRecord(std::uint64_t triangle, std::uint32_t* record) c
   this->Source.GetTriangle(triangle, read);
   const std::uint64_t points[3] = { read[order[0]], read[order[1]], read[order[2]] };
 
-  WriteElements(this->Attributes.Normals ? Attachment::Points : Attachment::None, triangle, points,
-    record + this->Layout.Normals,
-    [this](std::uint64_t point)
+  if (this->Attributes.Normals != Attachment::None)
+  {
+    for (int corner = 0; corner < 3; ++corner)
     {
+      const bool own = this->Attributes.Normals == Attachment::Triangles;
       double normal[3];
-      this->Source.GetNormal(point, normal);
-      return OctahedralNormal::Pack(normal);
-    });
+      this->Source.GetNormal(own ? triangle : points[corner], normal);
+      record[this->Layout.Normals + corner] = OctahedralNormal::Pack(normal);
+    }
+  }
   WriteElements(this->Attributes.Values, triangle, points, record + this->Layout.Values,
     [this](std::uint64_t element)
     { return GetBits(static_cast<float>(this->Source.GetValue(element)) + 0.0f); });

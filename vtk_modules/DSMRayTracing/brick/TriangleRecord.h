@@ -14,7 +14,8 @@ namespace rt
 /// How one triangle travels between ranks: a run of 32-bit words.
 ///
 ///   nine floats       positions of the three corners, relative to the mesh's origin
-///   three words       packed normals of the corners (OctahedralNormal), if the mesh has normals
+///   three words       packed normals of the corners (OctahedralNormal), if the mesh has normals; those
+///                     of the triangle three times
 ///   one or three      values (float): of the triangle, or of the corners
 ///   one or three      colours (red in the lowest byte): of the triangle, or of the corners
 ///   six floats        texture coordinates of the corners
@@ -32,7 +33,7 @@ public:
     const auto wordsOf = [](Attachment attachment) {
       return attachment == Attachment::Points ? 3 : attachment == Attachment::Triangles ? 1 : 0;
     };
-    this->Values = this->Normals + (attributes.Normals ? 3 : 0);
+    this->Values = this->Normals + (attributes.Normals != Attachment::None ? 3 : 0);
     this->Colors = this->Values + wordsOf(attributes.Values);
     this->TextureCoordinates = this->Colors + wordsOf(attributes.Colors);
     this->Words = this->TextureCoordinates + (attributes.TextureCoordinates ? 6 : 0);

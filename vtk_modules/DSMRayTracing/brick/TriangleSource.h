@@ -30,8 +30,9 @@ public:
 
   // -- Each only when the piece has the attribute --------------------------------------------------
 
-  /// Of any length; where it is zero or not finite, the surface is shaded flat.
-  virtual void GetNormal(std::uint64_t point, double normal[3]) const = 0;
+  /// Of a point or triangle. Of any length; where it is zero or not finite, the surface is shaded
+  /// flat.
+  virtual void GetNormal(std::uint64_t element, double normal[3]) const = 0;
   /// `element` is a point or a triangle, as the attachment says.
   virtual double GetValue(std::uint64_t element) const = 0;
   virtual void GetColor(std::uint64_t element, std::uint8_t rgba[4]) const = 0;

@@ -54,7 +54,9 @@ public:
   {
     SurfaceHit isosurfaceHit;
     const IsosurfaceObject* isosurface = this->FindIsosurface(ray, isosurfaceHit);
-    return this->Complete(ray, isosurface, isosurfaceHit, point);
+    MeshHit meshHit;
+    const MeshObject* mesh = this->FindMesh(ray, isosurface != nullptr, meshHit);
+    return this->Complete(ray, isosurface, isosurfaceHit, mesh, meshHit, point);
   }
 
   /// For each isosurface object, what rays between those of `corners` have in common.
@@ -85,8 +87,7 @@ public:
 
   /// Intersect for the rays of `wanted` in each packet of RayPacket::Size rays, at most
   /// PacketTracer::MaxPackets, with the same result. All lie within the beam that `bricks` was found
-  /// for. Calls `take(index, point)` for those that meet something. A ray that meets an isosurface
-  /// ends there afterwards.
+  /// for. Calls `take(index, point)` for those that meet something; they end there afterwards.
   template <class Take>
   void Intersect(const std::vector<BeamBricks>& bricks, int packets, Ray* rays,
     const RayPacket::Mask* wanted, Take&& take) const
@@ -95,13 +96,19 @@ public:
     SurfaceHit hits[most];
     const IsosurfaceObject* objects[most] = {};
     this->FindIsosurfaces(bricks, packets, rays, wanted, objects, hits);
+    MeshHit meshHits[RayPacket::Size];
     SurfacePoint point;
     for (int packet = 0; packet < packets; ++packet)
     {
+      const int first = RayPacket::Size * packet;
+      const MeshObject* meshes[RayPacket::Size] = {};
+      this->FindMeshes(rays + first, wanted[packet], objects + first, meshes, meshHits);
       for (RayPacket::Mask left = wanted[packet]; left != 0; left &= left - 1)
       {
-        const int index = RayPacket::Size * packet + GetLowest(left);
-        if (this->Complete(rays[index], objects[index], hits[index], point))
+        const int lane = GetLowest(left);
+        const int index = first + lane;
+        if (this->Complete(
+              rays[index], objects[index], hits[index], meshes[lane], meshHits[lane], point))
         {
           take(index, point);
         }
@@ -196,13 +203,11 @@ private:
     }
   }
 
-  /// Describes what the ray meets first, the isosurface that it meets first, or null, being known;
-  /// that is where the ray ends.
-  bool Complete(Ray ray, const IsosurfaceObject* isosurface, const SurfaceHit& isosurfaceHit,
-    SurfacePoint& point) const
+  /// Describes what the ray meets first: the mesh, or if there is none the isosurface. Either may be
+  /// null.
+  bool Complete(const Ray& ray, const IsosurfaceObject* isosurface, const SurfaceHit& isosurfaceHit,
+    const MeshObject* mesh, const MeshHit& meshHit, SurfacePoint& point) const
   {
-    MeshHit meshHit;
-    const MeshObject* mesh = this->FindMesh(ray, isosurface != nullptr, meshHit);
     if (mesh)
     {
       Describe(*mesh, meshHit, ray, point);
@@ -240,6 +245,29 @@ private:
       }
     }
     return object;
+  }
+
+  /// FindMesh for those of a packet's rays that are `wanted`; `isosurfaces` are what they meet, or
+  /// null, and `objects` are null before.
+  void FindMeshes(Ray* rays, RayPacket::Mask wanted, const IsosurfaceObject* const* isosurfaces,
+    const MeshObject** objects, MeshHit* nearest) const
+  {
+    MeshHit further[RayPacket::Size];
+    for (const MeshObject& candidate : this->World.Meshes)
+    {
+      MeshHit* const hits = &candidate == this->World.Meshes.data() ? nearest : further;
+      RayPacket::Mask found = this->Meshes.Intersect(*candidate.Instance, rays, wanted, hits);
+      for (; found != 0; found &= found - 1)
+      {
+        const int index = GetLowest(found);
+        if ((!isosurfaces[index] && !objects[index]) || hits[index].T < rays[index].Max)
+        {
+          nearest[index] = hits[index];
+          objects[index] = &candidate;
+          rays[index].Max = hits[index].T;
+        }
+      }
+    }
   }
 
   static void Describe(

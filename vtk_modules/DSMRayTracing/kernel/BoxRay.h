@@ -27,15 +27,16 @@ struct BoxRay
   std::size_t Near[3];
   std::size_t Far[3];
 
+  static constexpr double LargestInverse = 1e9;
+
   /// `inverse` are the reciprocals of the direction, infinite where it has no component; `margin` is
   /// in units of the mesh. A direction almost along a plane is turned away from it by less than the
   /// margin.
   void Set(const double origin[3], const double inverse[3], double margin)
   {
-    constexpr double largest = 1e9;
     for (int axis = 0; axis < 3; ++axis)
     {
-      const double size = std::min(std::abs(inverse[axis]), largest);
+      const double size = std::min(std::abs(inverse[axis]), LargestInverse);
       this->Origin[axis] = static_cast<float>(origin[axis]);
       this->Inverse[axis] = static_cast<float>(std::copysign(size, inverse[axis]));
       this->Margin[axis] = static_cast<float>(margin * size);

@@ -58,6 +58,10 @@ public:
       &origin.x, &direction.x, ray.Min, ray.Max, &this->Shape->Lower.x, &this->Shape->Upper.x);
   }
 
+  /// The steps of GetMeshRay: world, less this point, times this matrix.
+  const glm::dvec3& GetWorldOrigin() const { return this->WorldOrigin; }
+  const glm::dmat3& GetWorldToMesh() const { return this->WorldToMesh; }
+
   /// Turns a normal of the mesh's space, of any length, to the world.
   glm::dvec3 TurnNormal(const glm::dvec3& normal) const { return this->NormalToWorld * normal; }
 

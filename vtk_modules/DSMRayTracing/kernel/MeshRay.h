@@ -3,10 +3,10 @@
 #define rt_MeshRay_h
 
 #include "DSMRayTracing/kernel/BoxRay.h"
+#include "DSMRayTracing/kernel/TriangleRay.h"
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 namespace rt
 {
@@ -15,15 +15,8 @@ namespace rt
 /// triangles need. T is that of the world ray.
 struct MeshRay
 {
-  double Origin[3];
-  double Direction[3];
-  double Min;
-  double Max;
-  /// Axes after Woop et al. 2013: Axes[2] is the one along which the ray moves most; the others are
-  /// such that the winding of triangles is kept.
-  int Axes[3];
-  double Shear[3];
-  /// Shear along the axes that follow Axes[2] in turn, not exchanged.
+  TriangleRay Triangles;
+  /// Shear along the axes that follow Triangles.Axes[2] in turn, not exchanged.
   float FilterShear[2];
 
   BoxRay Boxes;
@@ -45,8 +38,6 @@ struct MeshRay
     double distance = 0.0;
     for (int axis = 0; axis < 3; ++axis)
     {
-      this->Origin[axis] = origin[axis];
-      this->Direction[axis] = direction[axis];
       longest = std::max(longest, std::abs(direction[axis]));
       extent = std::max(extent, upper[axis] - lower[axis]);
       distance = std::max(distance, std::abs(origin[axis]) + std::abs(lower[axis]));
@@ -56,9 +47,9 @@ struct MeshRay
       return false;
     }
     // Moving the planes by this much makes up for rounding here and in the single precision tests.
-    const double margin = extent * 0x1p-20 + distance * 0x1p-46 + SmallestMargin;
-    this->Min = first;
-    this->Max = last;
+    const double margin = extent * ExtentPart + distance * DistancePart + SmallestMargin;
+    this->Triangles.Min = first;
+    this->Triangles.Max = last;
     double enter = first;
     double leave = last;
     double inverse[3];
@@ -83,64 +74,68 @@ struct MeshRay
       return false;
     }
     this->Uncertainty = static_cast<float>(margin);
-    this->SetShear(inverse);
-    this->SetBoxes(enter, leave, longest, inverse, margin);
+    this->SetShear(origin, direction, inverse);
+    this->SetBoxes(origin, direction, enter, leave, longest, inverse, margin);
     return true;
   }
 
   /// What lies behind `t` need not be visited any more.
   void Shorten(double t)
   {
-    this->Max = t;
-    this->BoxesEnd = this->GetBoxesT(t);
+    this->Triangles.Max = t;
+    this->BoxesEnd = GetBoxesT(t, this->StartT, this->BoxesPerT, this->Uncertainty);
   }
 
-private:
+  /// A T in units of boxes, rounded up.
+  static float GetBoxesT(double t, double startT, double boxesPerT, float uncertainty)
+  {
+    const double place = (t - startT) * boxesPerT;
+    return static_cast<float>(place + std::abs(place) * PlacePart + uncertainty);
+  }
+
+  /// A ray that moves less than this part of its way along an axis is parallel to its planes.
   static constexpr double SmallestSlope = 1e-15;
+  /// Of the extent of the mesh, its distance, and a place on the ray: what rounding can amount to.
+  static constexpr double ExtentPart = 0x1p-20;
+  static constexpr double DistancePart = 0x1p-46;
+  static constexpr double PlacePart = 0x1p-20;
   /// Keeps the reciprocals of differences of coordinates finite.
   static constexpr double SmallestMargin = 1e-25;
 
-  float GetBoxesT(double t) const
-  {
-    const double place = (t - this->StartT) * this->BoxesPerT;
-    return static_cast<float>(place + std::abs(place) * 0x1p-20 + this->Uncertainty);
-  }
-
-  void SetShear(const double inverse[3])
+private:
+  void SetShear(const double origin[3], const double direction[3], const double inverse[3])
   {
     int largest = 0;
     for (int axis = 1; axis < 3; ++axis)
     {
-      largest =
-        std::abs(this->Direction[axis]) > std::abs(this->Direction[largest]) ? axis : largest;
+      largest = std::abs(direction[axis]) > std::abs(direction[largest]) ? axis : largest;
     }
-    this->Axes[0] = (largest + 1) % 3;
-    this->Axes[1] = (largest + 2) % 3;
-    this->Axes[2] = largest;
+    this->Triangles.SetAxes(largest, direction[largest] < 0.0);
     const double scale = inverse[largest];
-    this->FilterShear[0] = static_cast<float>(this->Direction[this->Axes[0]] * scale);
-    this->FilterShear[1] = static_cast<float>(this->Direction[this->Axes[1]] * scale);
-    if (this->Direction[largest] < 0.0)
+    this->FilterShear[0] = static_cast<float>(direction[(largest + 1) % 3] * scale);
+    this->FilterShear[1] = static_cast<float>(direction[(largest + 2) % 3] * scale);
+    for (int place = 0; place < 3; ++place)
     {
-      std::swap(this->Axes[0], this->Axes[1]);
+      this->Triangles.Origin[place] = origin[this->Triangles.Axes[place]];
     }
-    this->Shear[0] = this->Direction[this->Axes[0]] * scale;
-    this->Shear[1] = this->Direction[this->Axes[1]] * scale;
-    this->Shear[2] = scale;
+    this->Triangles.Shear[0] = direction[this->Triangles.Axes[0]] * scale;
+    this->Triangles.Shear[1] = direction[this->Triangles.Axes[1]] * scale;
+    this->Triangles.Shear[2] = scale;
   }
 
-  void SetBoxes(double enter, double leave, double longest, double inverse[3], double margin)
+  void SetBoxes(const double origin[3], const double direction[3], double enter, double leave,
+    double longest, double inverse[3], double margin)
   {
     this->StartT = enter;
     this->BoxesPerT = longest;
     double start[3];
     for (int axis = 0; axis < 3; ++axis)
     {
-      start[axis] = this->Origin[axis] + enter * this->Direction[axis];
+      start[axis] = origin[axis] + enter * direction[axis];
       inverse[axis] *= longest;
     }
     this->Boxes.Set(start, inverse, margin);
-    this->BoxesEnd = this->GetBoxesT(leave);
+    this->BoxesEnd = GetBoxesT(leave, enter, longest, this->Uncertainty);
   }
 };
 

@@ -2,11 +2,9 @@
 #ifndef rt_MeshTracer_txx
 #define rt_MeshTracer_txx
 
+#include "DSMRayTracing/kernel/TreeletTraversal.h"
+#include "DSMRayTracing/kernel/TriangleAttributes.h"
 #include "DSMRayTracing/kernel/WideBvhTraversal.h"
-
-#include <glm/geometric.hpp>
-
-#include <limits>
 
 namespace rt
 {
@@ -20,68 +18,90 @@ bool MeshTracer<Store>::Intersect(const MeshInstance& instance, const Ray& ray, 
   {
     return false;
   }
-  TreeletTraversal traversal(line, instance.Culling);
+  NearestTriangle nearest;
   TriangleAttributes attributes;
   TraverseWideBvh(mesh.Bricks.GetNodes(), line.Boxes, line.BoxesEnd,
     [&](std::uint32_t leaf)
     {
-      const dsm::BlockId id = BrickBvh::GetBrick(leaf);
-      const typename Store::Pin pin = this->Blocks.Acquire(this->Self, *mesh.Segment, id);
+      const std::uint32_t number = BrickBvh::GetBrick(leaf);
+      const typename Store::Pin pin = this->Blocks.Acquire(this->Self, *mesh.Segment, number);
       const TriangleBrick brick(pin.GetData());
-      if (traversal.Intersect(brick))
+      if (TreeletTraversal(brick, number, instance.Culling).Intersect(line, nearest))
       {
-        attributes.Copy(brick, traversal.GetHit().Triangle);
-        hit.Brick = id;
+        attributes.Copy(brick, nearest.Hit.Triangle);
       }
     });
-  if (!traversal.HasHit())
+  if (nearest.Found)
   {
-    return false;
+    hit.Set(instance, ray, nearest.Hit, attributes);
   }
-  Complete(instance, ray, traversal.GetHit(), attributes, hit);
-  return true;
+  return nearest.Found;
 }
 
+/// Searches the bricks that a packet meets.
 template <class Store>
-void MeshTracer<Store>::Complete(const MeshInstance& instance, const Ray& ray,
-  const TriangleHit& triangle, const TriangleAttributes& attributes, MeshHit& hit)
+class MeshTracer<Store>::PacketVisitor final : public MeshKernel::Visitor
 {
-  hit.T = triangle.T;
-  hit.Front = triangle.Front;
-  hit.Triangle = triangle.Triangle;
-  hit.Weights = { triangle.Weights[0], triangle.Weights[1], triangle.Weights[2] };
-
-  glm::dvec3 corners[3];
-  for (int corner = 0; corner < 3; ++corner)
+public:
+  PacketVisitor(const MeshTracer& tracer, const TriangleMesh& mesh)
+    : Tracer(tracer)
+    , Mesh(mesh)
   {
-    const float* position = triangle.Corners[corner];
-    corners[corner] = { position[0], position[1], position[2] };
-  }
-  const glm::dvec3 plane =
-    instance.TurnNormal(glm::cross(corners[1] - corners[0], corners[2] - corners[0]));
-  const double length = glm::length(plane);
-  hit.GeometricNormal = length > 0.0 ? plane / length : -glm::normalize(ray.Direction);
-  hit.Normal = hit.GeometricNormal;
-  glm::dvec3 normal;
-  if (attributes.GetNormal(triangle.Weights, normal))
-  {
-    normal = instance.TurnNormal(normal);
-    const double size = glm::length(normal);
-    hit.Normal = size > 0.0 ? normal / size : hit.GeometricNormal;
   }
 
-  const MeshAttributes& has = instance.GetMesh().Attributes;
-  const bool hasValues = has.Values != Attachment::None;
-  const double notANumber = std::numeric_limits<double>::quiet_NaN();
-  hit.Value = hasValues ? attributes.GetValue(triangle.Weights) : notANumber;
-  for (int corner = 0; corner < 3; ++corner)
+  void Visit(std::uint32_t number, MeshPacket::Mask rays) override
   {
-    hit.CornerValues[corner] = hasValues ? attributes.Values[corner] : notANumber;
+    const typename Store::Pin pin =
+      this->Tracer.Blocks.Acquire(this->Tracer.Self, *this->Mesh.Segment, number);
+    const TriangleBrick brick(pin.GetData());
+    MeshPacket::Mask better = this->Tracer.Kernel.SearchBrick(this->Packet, rays, brick, number);
+    this->Found |= better;
+    for (; better != 0; better &= better - 1)
+    {
+      const int index = GetLowest(better);
+      this->Attributes[index].Copy(brick, this->Packet.Nearest[index].Hit.Triangle);
+    }
   }
-  hit.Color =
-    has.Colors != Attachment::None ? attributes.GetColor(triangle.Weights) : glm::vec4(1.0f);
-  hit.TextureCoordinate =
-    has.TextureCoordinates ? attributes.GetTextureCoordinate(triangle.Weights) : glm::dvec2(0.0);
+
+  MeshPacket Packet;
+  MeshPacket::Mask Found = 0;
+  TriangleAttributes Attributes[MeshPacket::Size];
+
+private:
+  const MeshTracer& Tracer;
+  const TriangleMesh& Mesh;
+};
+
+template <class Store>
+MeshPacket::Mask MeshTracer<Store>::Intersect(
+  const MeshInstance& instance, const Ray* rays, MeshPacket::Mask wanted, MeshHit* hits) const
+{
+  const TriangleMesh& mesh = instance.GetMesh();
+  if (mesh.Bricks.IsEmpty())
+  {
+    return 0;
+  }
+  PacketVisitor visitor(*this, mesh);
+  MeshPacket::Mask alone = 0;
+  const MeshPacket::Mask together =
+    this->Kernel.SetRays(visitor.Packet, instance, rays, wanted, alone);
+  if (together != 0)
+  {
+    this->Kernel.FindBricks(visitor.Packet, together, mesh.Bricks, visitor);
+  }
+  for (MeshPacket::Mask left = visitor.Found; left != 0; left &= left - 1)
+  {
+    const int index = GetLowest(left);
+    hits[index].Set(
+      instance, rays[index], visitor.Packet.Nearest[index].Hit, visitor.Attributes[index]);
+  }
+  for (; alone != 0; alone &= alone - 1)
+  {
+    const int index = GetLowest(alone);
+    const bool found = this->Intersect(instance, rays[index], hits[index]);
+    visitor.Found |= MeshPacket::Mask{ found } << index;
+  }
+  return visitor.Found;
 }
 
 } // namespace rt

@@ -5,9 +5,8 @@
 #include "DSMRayTracing/brick/TriangleBrick.h"
 #include "DSMRayTracing/kernel/MeshInstance.h"
 #include "DSMRayTracing/kernel/MeshRay.h"
+#include "DSMRayTracing/kernel/NearestTriangle.h"
 #include "DSMRayTracing/kernel/TriangleFilter.h"
-#include "DSMRayTracing/kernel/TriangleHit.h"
-#include "DSMRayTracing/kernel/TriangleIntersector.h"
 #include "DSMRayTracing/kernel/WideBvhTraversal.h"
 
 #include <cstdint>
@@ -15,79 +14,62 @@
 namespace rt
 {
 
-/// The nearest hit of a ray among what it met before and the triangles of a brick.
+/// Searches one brick with one ray.
 class TreeletTraversal
 {
 public:
-  /// `ray` is shortened by every hit.
-  TreeletTraversal(MeshRay& ray, const MeshCulling& culling)
-    : Line(ray)
+  /// `number`: of the brick.
+  TreeletTraversal(const TriangleBrick& brick, std::uint32_t number, const MeshCulling& culling)
+    : Brick(brick)
+    , Number(number)
     , Culling(culling)
   {
   }
 
-  /// Whether the brick has a nearer hit than those so far, or one as near that comes first.
-  bool Intersect(const TriangleBrick& brick)
+  /// Whether the brick has a nearer hit than those so far, or one as near that comes first. Hits
+  /// shorten the ray.
+  bool Intersect(MeshRay& ray, NearestTriangle& nearest) const
   {
-    switch (this->Line.Axes[2])
+    switch (ray.Triangles.Axes[2])
     {
       case 0:
-        return this->IntersectAlong<0>(brick);
+        return this->IntersectAlong<0>(ray, nearest);
       case 1:
-        return this->IntersectAlong<1>(brick);
+        return this->IntersectAlong<1>(ray, nearest);
       default:
-        return this->IntersectAlong<2>(brick);
+        return this->IntersectAlong<2>(ray, nearest);
     }
   }
 
-  bool HasHit() const { return this->Found; }
-  const TriangleHit& GetHit() const { return this->Nearest; }
-
 private:
   template <int Axis>
-  bool IntersectAlong(const TriangleBrick& brick)
+  bool IntersectAlong(MeshRay& ray, NearestTriangle& nearest) const
   {
-    const TriangleFilter<Axis> filter(this->Line, brick);
+    const FilterRay line(ray.Boxes.Origin, ray.FilterShear, ray.Uncertainty, this->Brick);
     bool better = false;
-    TraverseWideBvh(brick.GetNodes(), this->Line.Boxes, this->Line.BoxesEnd,
-      [&](std::uint16_t leaf)
+    TraverseWideBvh(this->Brick.GetNodes(), ray.Boxes, ray.BoxesEnd,
+      [&](std::uint16_t reference)
       {
-        const std::uint32_t first = leaf & 0x1fffu;
-        const std::uint32_t count = (leaf >> 13 & 3u) + 1;
-        unsigned candidates = filter.FindCandidates(first) & ((1u << count) - 1u);
-        while (candidates != 0)
+        const TriangleBrick::Leaf leaf(reference);
+        const TriangleFilter<Axis> filter(this->Brick, leaf.First);
+        unsigned candidates = filter.FindCandidates(line) & leaf.GetMask();
+        for (; candidates != 0; candidates &= candidates - 1)
         {
           const auto lane = static_cast<std::uint32_t>(__builtin_ctz(candidates));
-          candidates &= candidates - 1;
-          better = this->Try(brick, first + lane) || better;
+          if (nearest.Try(
+                ray.Triangles, this->Culling, this->Brick, this->Number, leaf.First + lane))
+          {
+            ray.Shorten(nearest.Hit.T);
+            better = true;
+          }
         }
       });
     return better;
   }
 
-  bool Try(const TriangleBrick& brick, std::uint32_t triangle)
-  {
-    const TriangleBrickVertex* vertices = brick.GetVertices();
-    const std::uint16_t* corners = brick.GetTriangle(triangle);
-    TriangleHit hit;
-    if (!IntersectTriangle(this->Line, vertices[corners[0]].Position, vertices[corners[1]].Position,
-          vertices[corners[2]].Position, hit) ||
-      (hit.Front ? this->Culling.Front : this->Culling.Back) ||
-      (this->Found && hit.T == this->Nearest.T && !ComesFirst(hit, this->Nearest)))
-    {
-      return false;
-    }
-    hit.Triangle = triangle;
-    this->Nearest = hit;
-    this->Found = true;
-    this->Line.Shorten(hit.T);
-    return true;
-  }
-
-  MeshRay& Line;
+  TriangleBrick Brick;
+  std::uint32_t Number;
   MeshCulling Culling;
-  TriangleHit Nearest;
-  bool Found = false;
 };
 
 } // namespace rt

@@ -15,12 +15,13 @@ struct TriangleHit
   double Weights[3] = { 0.0, 0.0, 0.0 };
   float Corners[3][3] = {}; ///< relative to the mesh's origin
   bool Front = false;       ///< whether the ray comes from where the corners are counter-clockwise
+  std::uint32_t Brick = 0;
   std::uint32_t Triangle = 0; ///< of the brick
 };
 
-/// Whether `a` comes before `b` among hits at the same T: the lexicographically smaller corners.
-/// A rule of geometry alone, so that where a ray meets an edge, the brick or the rank that a
-/// triangle came from makes no difference.
+/// Whether `a` comes before `b` among hits at the same T: the lexicographically smaller corners. A
+/// rule of geometry, so that where a ray meets an edge, the order in which triangles are tried makes
+/// no difference; of triangles that are in the mesh twice, the first in the order of the bricks.
 inline bool ComesFirst(const TriangleHit& a, const TriangleHit& b)
 {
   for (int corner = 0; corner < 3; ++corner)
@@ -33,7 +34,7 @@ inline bool ComesFirst(const TriangleHit& a, const TriangleHit& b)
       }
     }
   }
-  return false;
+  return a.Brick != b.Brick ? a.Brick < b.Brick : a.Triangle < b.Triangle;
 }
 
 } // namespace rt

@@ -2,8 +2,8 @@
 #ifndef rt_TriangleIntersector_h
 #define rt_TriangleIntersector_h
 
-#include "DSMRayTracing/kernel/MeshRay.h"
 #include "DSMRayTracing/kernel/TriangleHit.h"
+#include "DSMRayTracing/kernel/TriangleRay.h"
 
 namespace rt
 {
@@ -18,20 +18,20 @@ namespace rt
 /// False for triangles without area as seen along the ray. Not for hits before ray.Min or behind
 /// ray.Max. Fills in all of the hit but Triangle.
 inline bool IntersectTriangle(
-  const MeshRay& ray, const float* a, const float* b, const float* c, TriangleHit& hit)
+  const TriangleRay& ray, const float* a, const float* b, const float* c, TriangleHit& hit)
 {
   const int x = ray.Axes[0];
   const int y = ray.Axes[1];
   const int z = ray.Axes[2];
-  const double az = a[z] - ray.Origin[z];
-  const double bz = b[z] - ray.Origin[z];
-  const double cz = c[z] - ray.Origin[z];
-  const double ax = (a[x] - ray.Origin[x]) - ray.Shear[0] * az;
-  const double ay = (a[y] - ray.Origin[y]) - ray.Shear[1] * az;
-  const double bx = (b[x] - ray.Origin[x]) - ray.Shear[0] * bz;
-  const double by = (b[y] - ray.Origin[y]) - ray.Shear[1] * bz;
-  const double cx = (c[x] - ray.Origin[x]) - ray.Shear[0] * cz;
-  const double cy = (c[y] - ray.Origin[y]) - ray.Shear[1] * cz;
+  const double az = a[z] - ray.Origin[2];
+  const double bz = b[z] - ray.Origin[2];
+  const double cz = c[z] - ray.Origin[2];
+  const double ax = (a[x] - ray.Origin[0]) - ray.Shear[0] * az;
+  const double ay = (a[y] - ray.Origin[1]) - ray.Shear[1] * az;
+  const double bx = (b[x] - ray.Origin[0]) - ray.Shear[0] * bz;
+  const double by = (b[y] - ray.Origin[1]) - ray.Shear[1] * bz;
+  const double cx = (c[x] - ray.Origin[0]) - ray.Shear[0] * cz;
+  const double cy = (c[y] - ray.Origin[1]) - ray.Shear[1] * cz;
   const double u = cx * by - cy * bx;
   const double v = ax * cy - ay * cx;
   const double w = bx * ay - by * ax;

@@ -10,6 +10,10 @@
 namespace rt
 {
 
+/// A level leaves at most seven children behind. The builder bounds the depth: 21 levels, and then
+/// those in which a node has an eighth of its parent's items, at most 11 for 2^32 items.
+constexpr int LargestWideBvhDepth = 33;
+
 /// Visits the leaves of a hierarchy whose boxes a ray meets within [0, last], nearest box first.
 /// `visit(reference)` may lower `last`. Kernels under it must be inlined: no call but the leaf's.
 template <class Reference, class Visit>
@@ -22,10 +26,7 @@ inline void TraverseWideBvh(
     float Enter;
     Reference Child;
   };
-  // A level leaves at most seven entries behind. The builder bounds the depth: 21 levels, and then
-  // those in which a node has an eighth of its parent's items, at most 11 for 2^32 items.
-  constexpr int largestDepth = 33;
-  Entry stack[(Node::Width - 1) * largestDepth + Node::Width];
+  Entry stack[(Node::Width - 1) * LargestWideBvhDepth + Node::Width];
   int size = 0;
   Reference child = 0;
   while (true)

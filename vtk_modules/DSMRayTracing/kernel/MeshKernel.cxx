@@ -1,0 +1,183 @@
+// SPDX-License-Identifier: BSD-3-Clause
+
+// See PacketKernel.cxx.
+#define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV)
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "DSMRayTracing/kernel/MeshKernel.cxx"
+#include <hwy/foreach_target.h> // IWYU pragma: keep
+
+#include "DSMRayTracing/kernel/MeshKernel.h"
+
+#include "DSMRayTracing/kernel/MeshPacketSetup-inl.h"
+#include "DSMRayTracing/kernel/MeshPacketWalk-inl.h"
+
+#include <hwy/highway.h>
+
+#include <cstdint>
+
+HWY_BEFORE_NAMESPACE();
+namespace rt
+{
+namespace HWY_NAMESPACE
+{
+namespace hn = hwy::HWY_NAMESPACE;
+
+/// The functions of MeshKernel with vectors of D.
+template <class D>
+class MeshSteps
+{
+public:
+  using Mask = MeshPacket::Mask;
+
+  static Mask SetRays(
+    MeshPacket& packet, const MeshInstance& instance, const Ray* rays, Mask wanted, Mask& alone)
+  {
+    alone = 0;
+    if (wanted == 0)
+    {
+      return 0;
+    }
+    packet.Culling = instance.Culling;
+    return MeshPacketSetup<D>(packet, instance, rays, wanted).Set(alone);
+  }
+
+  static void FindBricks(
+    const MeshPacket& packet, Mask rays, const BrickBvh& bricks, MeshKernel::Visitor& visitor)
+  {
+    MeshPacketWalk<D>(packet).Traverse(
+      bricks.GetNodes(), rays, [](std::uint32_t) {},
+      [&](std::uint32_t leaf, Mask met) { visitor.Visit(BrickBvh::GetBrick(leaf), met); });
+  }
+
+  static Mask SearchBrick(
+    MeshPacket& packet, Mask rays, const TriangleBrick& brick, std::uint32_t number)
+  {
+    for (Mask left = rays; left != 0; left &= left - 1)
+    {
+      packet.SetFilter(GetLowest(left), brick);
+    }
+    switch (packet.Axes[2])
+    {
+      case 0:
+        return SearchAlong<0>(packet, rays, brick, number);
+      case 1:
+        return SearchAlong<1>(packet, rays, brick, number);
+      default:
+        return SearchAlong<2>(packet, rays, brick, number);
+    }
+  }
+
+private:
+  template <int Axis>
+  static Mask SearchAlong(
+    MeshPacket& packet, Mask rays, const TriangleBrick& brick, std::uint32_t number)
+  {
+    using Walk = MeshPacketWalk<D>;
+    LeafSearch<Axis> search(packet, brick, number);
+    Walk(packet).Traverse(
+      brick.GetNodes(), rays,
+      [&](std::uint16_t leaf)
+      { Walk::Fetch(brick.GetTriangle(TriangleBrick::Leaf(leaf).First), 1); },
+      [&](std::uint16_t leaf, Mask met) { search.Search(TriangleBrick::Leaf(leaf), met); });
+    return search.GetBetter();
+  }
+
+  /// Tries the triangles of leaves.
+  template <int Axis>
+  class LeafSearch
+  {
+  public:
+    LeafSearch(MeshPacket& packet, const TriangleBrick& brick, std::uint32_t number)
+      : Packet(packet)
+      , Brick(brick)
+      , Number(number)
+    {
+    }
+
+    HWY_INLINE void Search(const TriangleBrick::Leaf& leaf, Mask rays)
+    {
+      const TriangleFilter<Axis> filter(this->Brick, leaf.First);
+      for (; rays != 0; rays &= rays - 1)
+      {
+        const int index = GetLowest(rays);
+        NearestTriangle& nearest = this->Packet.Nearest[index];
+        unsigned candidates = filter.FindCandidates(this->Packet.Filters[index]) & leaf.GetMask();
+        for (; candidates != 0; candidates &= candidates - 1)
+        {
+          const auto lane = static_cast<std::uint32_t>(__builtin_ctz(candidates));
+          if (nearest.Try(this->Packet.GetTriangleRay(index), this->Packet.Culling, this->Brick,
+                this->Number, leaf.First + lane))
+          {
+            this->Packet.Shorten(index, nearest.Hit.T);
+            this->Better |= Mask{ 1 } << index;
+          }
+        }
+      }
+    }
+
+    /// Rays that have found something nearer.
+    Mask GetBetter() const { return this->Better; }
+
+  private:
+    MeshPacket& Packet;
+    const TriangleBrick& Brick;
+    std::uint32_t Number;
+    Mask Better = 0;
+  };
+};
+
+template <class D>
+MeshKernel CreateMeshKernel(const char* name)
+{
+  return { name, MeshPacketWalk<D>::Width, &MeshSteps<D>::SetRays, &MeshSteps<D>::FindBricks,
+    &MeshSteps<D>::SearchBrick };
+}
+
+MeshKernel CreateWideMeshKernel()
+{
+  return CreateMeshKernel<hn::CappedTag<float, MeshPacket::Size>>(hwy::TargetName(HWY_TARGET));
+}
+
+MeshKernel CreateSingleMeshKernel()
+{
+  return CreateMeshKernel<hn::CappedTag<float, 1>>("one ray at a time");
+}
+
+} // namespace HWY_NAMESPACE
+} // namespace rt
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace rt
+{
+
+namespace
+{
+
+HWY_EXPORT(CreateWideMeshKernel);
+HWY_EXPORT(CreateSingleMeshKernel);
+
+} // namespace
+
+const MeshKernel& MeshKernel::GetBest()
+{
+  static const MeshKernel best = HWY_DYNAMIC_DISPATCH(CreateWideMeshKernel)();
+  return best;
+}
+
+std::vector<MeshKernel> MeshKernel::GetAll()
+{
+  std::vector<MeshKernel> kernels{ HWY_DYNAMIC_DISPATCH(CreateSingleMeshKernel)() };
+  for (const auto target : hwy::SupportedAndGeneratedTargets())
+  {
+    hwy::SetSupportedTargetsForTest(target);
+    hwy::GetChosenTarget().Update(target);
+    kernels.push_back(HWY_DYNAMIC_DISPATCH(CreateWideMeshKernel)());
+  }
+  hwy::SetSupportedTargetsForTest(0);
+  hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+  return kernels;
+}
+
+} // namespace rt
+#endif
