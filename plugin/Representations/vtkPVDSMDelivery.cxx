@@ -3,6 +3,8 @@
 
 #include "vtkDSMScene.h"
 
+#include "vtkBoundingBox.h"
+#include "vtkCompositeRepresentation.h"
 #include "vtkInformation.h"
 #include "vtkMultiProcessController.h"
 #include "vtkOrderedCompositingHelper.h"
@@ -12,10 +14,15 @@
 #include "vtkPVRenderViewDataDeliveryManager.h"
 #include "vtkPVRenderingCapabilitiesInformation.h"
 #include "vtkPVSession.h"
+#include "vtkPartitionedDataSet.h"
+#include "vtkPoints.h"
+#include "vtkPolyData.h"
 #include "vtkProcessModule.h"
 #include "vtkSmartPointer.h"
 
+#include <algorithm>
 #include <string>
+#include <vector>
 
 namespace
 {
@@ -42,6 +49,70 @@ std::string FindObstacle()
            "xvfb-run -a -s \"-noreset -screen 0 1280x1024x24\" COMMAND";
   }
   return {};
+}
+
+/// Whether the view shows anything but ours.
+bool ShowsOthers(vtkView* view)
+{
+  for (int number = 0; view && number < view->GetNumberOfRepresentations(); ++number)
+  {
+    auto* shown = vtkPVDataRepresentation::SafeDownCast(view->GetRepresentation(number));
+    if (auto* composite = vtkCompositeRepresentation::SafeDownCast(shown))
+    {
+      shown = composite->GetVisibility() ? composite->GetActiveRepresentation() : nullptr;
+    }
+    if (shown && shown->GetVisibility() && !shown->IsA("vtkPVDSMImageRepresentation") &&
+      !shown->IsA("vtkPVDSMGeometryRepresentation"))
+    {
+      return true;
+    }
+  }
+  return false;
+}
+
+/// Points evenly in a box. They stand for the data when the view divides the space between the ranks;
+/// its kd-tree fails where many points share coordinates, as the corners would.
+vtkSmartPointer<vtkPoints> SpreadPoints(const double bounds[6])
+{
+  constexpr int count = 10;
+  auto points = vtkSmartPointer<vtkPoints>::New();
+  points->SetDataTypeToDouble();
+  for (int number = 0; number < count * count * count; ++number)
+  {
+    const double places[3] = { number % count + 0.5, number / count % count + 0.5,
+      number / (count * count) + 0.5 };
+    double point[3];
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      const double size = bounds[2 * axis + 1] - bounds[2 * axis];
+      point[axis] = bounds[2 * axis] + size * places[axis] / count;
+    }
+    points->InsertNextPoint(point);
+  }
+  return points;
+}
+
+/// The first of the nearest boxes.
+int FindPart(const std::vector<vtkBoundingBox>& parts, const double place[3])
+{
+  int nearest = 0;
+  double least = VTK_DOUBLE_MAX;
+  for (std::size_t part = 0; part < parts.size() && least > 0.0; ++part)
+  {
+    double square = 0.0;
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      const double outside = std::max({ parts[part].GetMinPoint()[axis] - place[axis],
+        place[axis] - parts[part].GetMaxPoint()[axis], 0.0 });
+      square += outside * outside;
+    }
+    if (square < least)
+    {
+      least = square;
+      nearest = static_cast<int>(part);
+    }
+  }
+  return nearest;
 }
 
 } // namespace
@@ -79,6 +150,30 @@ void vtkPVDSMDelivery::KeepData(vtkPVDataRepresentation* representation, vtkData
   outInfo->Set(vtkPVRenderView::RENDER_EMPTY_IMAGES(), 1);
 }
 
+void vtkPVDSMDelivery::KeepOrder(vtkPVDataRepresentation* representation, bool translucent,
+  vtkPartitionedDataSet* placeholder, const double* bounds, vtkInformation* inInfo,
+  vtkInformation* outInfo)
+{
+  const bool needed = translucent && ShowsOthers(representation->GetView());
+  outInfo->Set(vtkPVRenderView::NEED_ORDERED_COMPOSITING(), needed ? 1 : 0);
+  if (!needed || !bounds)
+  {
+    return;
+  }
+  auto* known = vtkPolyData::SafeDownCast(placeholder->GetPartition(0));
+  const auto points = SpreadPoints(bounds);
+  double spread[6];
+  points->GetBounds(spread);
+  if (!known || !std::equal(spread, spread + 6, known->GetPoints()->GetBounds()))
+  {
+    vtkNew<vtkPolyData> sample;
+    sample->SetPoints(points);
+    placeholder->SetPartition(0, sample);
+  }
+  vtkPVRenderView::SetOrderedCompositingConfiguration(
+    inInfo, representation, vtkPVRenderView::USE_DATA_FOR_LOAD_BALANCING);
+}
+
 void vtkPVDSMDelivery::Choose(vtkDSMScene* scene, vtkView* anyView)
 {
   auto* view = vtkPVRenderView::SafeDownCast(anyView);
@@ -93,8 +188,10 @@ void vtkPVDSMDelivery::Choose(vtkDSMScene* scene, vtkView* anyView)
     const auto order = vtkSmartPointer<vtkOrderedCompositingHelper>::New();
     order->SetBoundingBoxes(manager->GetCuts());
     const int rank = controller->GetLocalProcessId();
-    scene->DeliverEverywhere(
-      [order, rank](vtkCamera* camera) { return order->ComputeSortOrder(camera).back() == rank; });
+    scene->DeliverByPlace([order, rank](vtkCamera* camera)
+      { return order->ComputeSortOrder(camera).back() == rank; },
+      [parts = manager->GetCuts(), rank](const double place[3])
+      { return FindPart(parts, place) == rank; });
   }
   else if (view->GetUseSSAO())
   {

@@ -7,6 +7,7 @@
 class vtkDataObject;
 class vtkDSMScene;
 class vtkInformation;
+class vtkPartitionedDataSet;
 class vtkPVDataRepresentation;
 class vtkPVRenderView;
 class vtkView;
@@ -28,6 +29,13 @@ public:
   /// For REQUEST_UPDATE: an empty placeholder is delivered, and every rank renders.
   static void KeepData(vtkPVDataRepresentation* representation, vtkDataObject* placeholder,
     vtkInformation* inInfo, vtkInformation* outInfo);
+
+  /// For REQUEST_UPDATE: surfaces that other objects of the view can be seen through need the ranks to
+  /// draw a part of space each, and their pictures to be blended in order. `bounds` of what is shown,
+  /// on all ranks, null where it is not known; the view divides the space by what it shows.
+  static void KeepOrder(vtkPVDataRepresentation* representation, bool translucent,
+    vtkPartitionedDataSet* placeholder, const double* bounds, vtkInformation* inInfo,
+    vtkInformation* outInfo);
 
   /// For REQUEST_RENDER: the way that suits what else the view shows.
   static void Choose(vtkDSMScene* scene, vtkView* view);

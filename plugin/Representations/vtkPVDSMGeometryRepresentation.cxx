@@ -3,6 +3,7 @@
 
 #include "vtkDSMPolyDataMapper.h"
 #include "vtkDSMScene.h"
+#include "vtkPVDSMClipping.h"
 #include "vtkPVDSMDelivery.h"
 #include "vtkPVDSMFrameReport.h"
 #include "vtkPVDSMLightOptions.h"
@@ -26,6 +27,7 @@
 vtkStandardNewMacro(vtkPVDSMGeometryRepresentation);
 
 vtkPVDSMGeometryRepresentation::vtkPVDSMGeometryRepresentation()
+  : Clipping(std::make_unique<vtkPVDSMClipping>())
 {
   auto* mapper = vtkDSMPolyDataMapper::New();
   vtkNew<vtkCompositeDataDisplayAttributes> attributes;
@@ -98,6 +100,15 @@ void vtkPVDSMGeometryRepresentation::PrepareUpdate(vtkInformation* inInfo, vtkIn
   double inflated[6];
   bounds.GetBounds(inflated);
   vtkPVRenderView::SetGeometryBounds(inInfo, this, inflated, matrix);
+  vtkPVDSMDelivery::KeepOrder(this, this->IsTranslucent(), this->Placeholder,
+    bounds.IsValid() ? inflated : nullptr, inInfo, outInfo);
+}
+
+bool vtkPVDSMGeometryRepresentation::IsTranslucent() const
+{
+  return this->Property->GetOpacity() < 1.0 ||
+    std::any_of(this->BlockOpacities.begin(), this->BlockOpacities.end(),
+      [](const auto& block) { return block.second < 1.0; });
 }
 
 void vtkPVDSMGeometryRepresentation::PrepareRender()
@@ -111,6 +122,9 @@ void vtkPVDSMGeometryRepresentation::PrepareRender()
     this->BlockAttributeTime.Modified();
     this->BlockAttrChanged = false;
   }
+  vtkNew<vtkMatrix4x4> matrix;
+  this->Actor->GetMatrix(matrix);
+  this->Clipping->ApplyTo(this->GetMapper(), matrix);
   if (this->Scene)
   {
     vtkPVDSMDelivery::Choose(this->Scene, this->GetView());
@@ -173,6 +187,33 @@ void vtkPVDSMGeometryRepresentation::SelectRadiusArray(int, int, int, int, const
   const std::string array = name ? name : "";
   // The word that the panel offers beside the arrays.
   this->GetMapper()->SetRadiusArray(array == "None" ? "" : array);
+}
+
+void vtkPVDSMGeometryRepresentation::SetClip(bool clip)
+{
+  this->Clipping->Clips = clip;
+}
+
+void vtkPVDSMGeometryRepresentation::SetClipOrigin(double x, double y, double z)
+{
+  const double origin[3] = { x, y, z };
+  std::copy_n(origin, 3, this->Clipping->Origin);
+}
+
+void vtkPVDSMGeometryRepresentation::SetClipNormal(double x, double y, double z)
+{
+  const double normal[3] = { x, y, z };
+  std::copy_n(normal, 3, this->Clipping->Normal);
+}
+
+void vtkPVDSMGeometryRepresentation::SetCropping(bool crop)
+{
+  this->Clipping->Crops = crop;
+}
+
+void vtkPVDSMGeometryRepresentation::SetCroppingBox(const double box[6])
+{
+  std::copy_n(box, 6, this->Clipping->Box);
 }
 
 void vtkPVDSMGeometryRepresentation::SetLightOptions(vtkPVDSMLightOptions* options)

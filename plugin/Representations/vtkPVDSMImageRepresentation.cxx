@@ -3,6 +3,7 @@
 
 #include "vtkDSMScene.h"
 #include "vtkDSMVolumeMapper.h"
+#include "vtkPVDSMClipping.h"
 #include "vtkPVDSMDelivery.h"
 #include "vtkPVDSMFrameReport.h"
 #include "vtkPVDSMLightOptions.h"
@@ -21,9 +22,12 @@
 #include "vtkScalarsToColors.h"
 #include "vtkVolume.h"
 
+#include <algorithm>
+
 vtkStandardNewMacro(vtkPVDSMImageRepresentation);
 
 vtkPVDSMImageRepresentation::vtkPVDSMImageRepresentation()
+  : Clipping(std::make_unique<vtkPVDSMClipping>())
 {
   this->Volume->SetMapper(this->Mapper);
   this->Mapper->AddObserver(
@@ -81,6 +85,8 @@ int vtkPVDSMImageRepresentation::ProcessViewRequest(
   }
   else if (request == vtkPVView::REQUEST_RENDER() && this->Scene)
   {
+    this->Volume->ComputeMatrix();
+    this->Clipping->ApplyTo(this->Mapper, this->Volume->GetMatrix());
     vtkPVDSMDelivery::Choose(this->Scene, this->GetView());
   }
   return 1;
@@ -88,7 +94,10 @@ int vtkPVDSMImageRepresentation::ProcessViewRequest(
 
 void vtkPVDSMImageRepresentation::PrepareUpdate(vtkInformation* inInfo, vtkInformation* outInfo)
 {
+  const double opacity = this->Mapper->GetSurfaceProperty()->GetOpacity();
   vtkPVDSMDelivery::KeepData(this, this->Placeholder, inInfo, outInfo);
+  vtkPVDSMDelivery::KeepOrder(
+    this, opacity < 1.0, this->Placeholder, this->Volume->GetBounds(), inInfo, outInfo);
   // In world space: with a matrix, the view would transform two corners of the box only.
   if (const double* bounds = this->Volume->GetBounds())
   {
@@ -238,6 +247,33 @@ void vtkPVDSMImageRepresentation::SetUserTransform(const double matrix[16])
   vtkNew<vtkMatrix4x4> transform;
   transform->DeepCopy(matrix);
   this->Volume->SetUserMatrix(transform);
+}
+
+void vtkPVDSMImageRepresentation::SetClip(bool clip)
+{
+  this->Clipping->Clips = clip;
+}
+
+void vtkPVDSMImageRepresentation::SetClipOrigin(double x, double y, double z)
+{
+  const double origin[3] = { x, y, z };
+  std::copy_n(origin, 3, this->Clipping->Origin);
+}
+
+void vtkPVDSMImageRepresentation::SetClipNormal(double x, double y, double z)
+{
+  const double normal[3] = { x, y, z };
+  std::copy_n(normal, 3, this->Clipping->Normal);
+}
+
+void vtkPVDSMImageRepresentation::SetCropping(bool crop)
+{
+  this->Clipping->Crops = crop;
+}
+
+void vtkPVDSMImageRepresentation::SetCroppingBox(const double box[6])
+{
+  std::copy_n(box, 6, this->Clipping->Box);
 }
 
 void vtkPVDSMImageRepresentation::SetLightOptions(vtkPVDSMLightOptions* options)

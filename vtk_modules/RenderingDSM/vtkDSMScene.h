@@ -70,6 +70,16 @@ public:
    */
   void DeliverEverywhere(std::function<bool(vtkCamera*)> drawsColor);
 
+  /**
+   * The same for an application in which each rank draws a part of space of its own: surfaces that
+   * other objects may be seen through are drawn, one by one, by the rank that `drawsPlace` says it
+   * for, asked for places in world coordinates; exactly one rank must say so. Then translucent
+   * surfaces of this scene and whatever else the renderer shows are in right order. `drawsColor` is
+   * asked for opaque ones.
+   */
+  void DeliverByPlace(std::function<bool(vtkCamera*)> drawsColor,
+    std::function<bool(const double place[3])> drawsPlace);
+
   ///@{
   /**
    * Samples of each pixel that one render adds to the picture as long as camera, data and look stay

@@ -15,7 +15,9 @@
 namespace rt
 {
 
-/// The pixels of one finished tile, row by row from the bottom, x fastest.
+/// The pixels of one finished tile, row by row from the bottom, x fastest; where surfaces are kept
+/// apart, layer after layer, the nearest first. Colours of layers are what each contributes to the
+/// pixel through those before it: their sum is the pixel.
 struct Tile
 {
   int X = 0; ///< of the lower left pixel in the frame
@@ -23,6 +25,7 @@ struct Tile
   int Width = 0;
   int Height = 0;
   int Index = 0; ///< row-major number of the tile in the frame
+  int Layers = 1;
   double Seconds = 0.0;
   /// Four bytes a pixel, red first, alpha premultiplied; alpha 0 where nothing was hit.
   std::vector<std::uint8_t> Color;

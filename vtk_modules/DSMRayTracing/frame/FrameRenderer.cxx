@@ -73,6 +73,7 @@ struct RequestDigest
   std::int64_t Height;
   std::int64_t FirstSample;
   std::int64_t Samples;
+  std::int64_t Layers;
   std::int64_t Objects;
   double WorldToClip[16];
 };
@@ -87,7 +88,7 @@ struct Entry
 RequestDigest GetDigest(const FrameRequest& request, const Scene& scene)
 {
   RequestDigest digest{ request.Width, request.Height, request.FirstSample, request.Samples,
-    static_cast<std::int64_t>(scene.Isosurfaces.size() + scene.Meshes.size()), {} };
+    request.Layers, static_cast<std::int64_t>(scene.Isosurfaces.size() + scene.Meshes.size()), {} };
   for (int element = 0; element < 16; ++element)
   {
     digest.WorldToClip[element] = request.WorldToClip[element / 4][element % 4];
