@@ -92,6 +92,24 @@ vtkSmartPointer<vtkPoints> SpreadPoints(const double bounds[6])
   return points;
 }
 
+/// The view takes the placeholder's points for the data when it divides the space. It fails without
+/// any, so where nothing is known there are some, too.
+void FillPlaceholder(vtkPartitionedDataSet* placeholder, const double* bounds)
+{
+  const double anywhere[6] = { 0.0, 1.0, 0.0, 1.0, 0.0, 1.0 };
+  const auto points = SpreadPoints(bounds ? bounds : anywhere);
+  auto* known = vtkPolyData::SafeDownCast(placeholder->GetPartition(0));
+  double spread[6];
+  points->GetBounds(spread);
+  if (known && std::equal(spread, spread + 6, known->GetPoints()->GetBounds()))
+  {
+    return;
+  }
+  vtkNew<vtkPolyData> sample;
+  sample->SetPoints(points);
+  placeholder->SetPartition(0, sample);
+}
+
 /// The first of the nearest boxes.
 int FindPart(const std::vector<vtkBoundingBox>& parts, const double place[3])
 {
@@ -140,38 +158,28 @@ void vtkPVDSMDelivery::UpdateInSpiteOfCache(vtkPVDataRepresentation* representat
     ->SetNeedsUpdate(false);
 }
 
-void vtkPVDSMDelivery::KeepData(vtkPVDataRepresentation* representation, vtkDataObject* placeholder,
-  vtkInformation* inInfo, vtkInformation* outInfo)
+void vtkPVDSMDelivery::KeepData(vtkPVDataRepresentation* representation,
+  vtkPartitionedDataSet* placeholder, const Shown& shown, vtkInformation* inInfo,
+  vtkInformation* outInfo)
 {
+  FillPlaceholder(placeholder, shown.Bounds);
   vtkPVRenderView::SetPiece(inInfo, representation, placeholder);
   vtkPVRenderView::SetDeliverToClientAndRenderingProcesses(inInfo, representation, false, false);
   vtkPVRenderView::SetRequiresDistributedRendering(inInfo, representation, true);
-  // IceT must call every rank's renderer: each has tiles, wherever its data lie.
-  outInfo->Set(vtkPVRenderView::RENDER_EMPTY_IMAGES(), 1);
-}
-
-void vtkPVDSMDelivery::KeepOrder(vtkPVDataRepresentation* representation, bool translucent,
-  vtkPartitionedDataSet* placeholder, const double* bounds, vtkInformation* inInfo,
-  vtkInformation* outInfo)
-{
-  const bool needed = translucent && ShowsOthers(representation->GetView());
-  outInfo->Set(vtkPVRenderView::NEED_ORDERED_COMPOSITING(), needed ? 1 : 0);
-  if (!needed || !bounds)
-  {
-    return;
-  }
-  auto* known = vtkPolyData::SafeDownCast(placeholder->GetPartition(0));
-  const auto points = SpreadPoints(bounds);
-  double spread[6];
-  points->GetBounds(spread);
-  if (!known || !std::equal(spread, spread + 6, known->GetPoints()->GetBounds()))
-  {
-    vtkNew<vtkPolyData> sample;
-    sample->SetPoints(points);
-    placeholder->SetPartition(0, sample);
-  }
   vtkPVRenderView::SetOrderedCompositingConfiguration(
     inInfo, representation, vtkPVRenderView::USE_DATA_FOR_LOAD_BALANCING);
+  if (shown.IsTranslucent && ShowsOthers(representation->GetView()))
+  {
+    outInfo->Set(vtkPVRenderView::NEED_ORDERED_COMPOSITING(), 1);
+  }
+  else
+  {
+    outInfo->Remove(vtkPVRenderView::NEED_ORDERED_COMPOSITING());
+    // IceT must call every rank's renderer: each has tiles, wherever its data lie. The view looks at
+    // one of the two keys only; in order, the ranks are called that have anything to draw, and all
+    // have the bounds of the whole frame.
+    outInfo->Set(vtkPVRenderView::RENDER_EMPTY_IMAGES(), 1);
+  }
 }
 
 void vtkPVDSMDelivery::Choose(vtkDSMScene* scene, vtkView* anyView)

@@ -4,7 +4,6 @@
 
 #include "vtkSmartPointer.h"
 
-class vtkDataObject;
 class vtkDSMScene;
 class vtkInformation;
 class vtkPartitionedDataSet;
@@ -26,16 +25,18 @@ public:
   /// the view relies on its cache of time steps, but that holds our placeholder, not the data.
   static void UpdateInSpiteOfCache(vtkPVDataRepresentation* representation);
 
-  /// For REQUEST_UPDATE: an empty placeholder is delivered, and every rank renders.
-  static void KeepData(vtkPVDataRepresentation* representation, vtkDataObject* placeholder,
-    vtkInformation* inInfo, vtkInformation* outInfo);
+  /// What a representation shows.
+  struct Shown
+  {
+    const double* Bounds;       ///< world; null where nothing is known
+    bool IsTranslucent = false; ///< the same on every rank
+  };
 
-  /// For REQUEST_UPDATE: surfaces that other objects of the view can be seen through need the ranks to
-  /// draw a part of space each, and their pictures to be blended in order. `bounds` of what is shown,
-  /// on all ranks, null where it is not known; the view divides the space by what it shows.
-  static void KeepOrder(vtkPVDataRepresentation* representation, bool translucent,
-    vtkPartitionedDataSet* placeholder, const double* bounds, vtkInformation* inInfo,
-    vtkInformation* outInfo);
+  /// For REQUEST_UPDATE: a placeholder is delivered, and every rank renders. When other objects of the
+  /// view can be seen through what is shown, the ranks draw a part of space each, and their pictures
+  /// are blended in order.
+  static void KeepData(vtkPVDataRepresentation* representation, vtkPartitionedDataSet* placeholder,
+    const Shown& shown, vtkInformation* inInfo, vtkInformation* outInfo);
 
   /// For REQUEST_RENDER: the way that suits what else the view shows.
   static void Choose(vtkDSMScene* scene, vtkView* view);

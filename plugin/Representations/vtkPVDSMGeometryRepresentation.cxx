@@ -87,7 +87,6 @@ int vtkPVDSMGeometryRepresentation::ProcessViewRequest(
 
 void vtkPVDSMGeometryRepresentation::PrepareUpdate(vtkInformation* inInfo, vtkInformation* outInfo)
 {
-  vtkPVDSMDelivery::KeepData(this, this->Placeholder, inInfo, outInfo);
   this->ComputeVisibleDataBounds();
   vtkNew<vtkMatrix4x4> matrix;
   this->Actor->GetMatrix(matrix);
@@ -99,9 +98,20 @@ void vtkPVDSMGeometryRepresentation::PrepareUpdate(vtkInformation* inInfo, vtkIn
   }
   double inflated[6];
   bounds.GetBounds(inflated);
+  vtkBoundingBox inWorld;
+  for (int corner = 0; bounds.IsValid() && corner < 8; ++corner)
+  {
+    const double point[4] = { inflated[corner & 1], inflated[2 + (corner >> 1 & 1)],
+      inflated[4 + (corner >> 2)], 1.0 };
+    double world[4];
+    matrix->MultiplyPoint(point, world);
+    inWorld.AddPoint(world);
+  }
+  double worldBounds[6];
+  inWorld.GetBounds(worldBounds);
+  vtkPVDSMDelivery::KeepData(this, this->Placeholder,
+    { inWorld.IsValid() ? worldBounds : nullptr, this->IsTranslucent() }, inInfo, outInfo);
   vtkPVRenderView::SetGeometryBounds(inInfo, this, inflated, matrix);
-  vtkPVDSMDelivery::KeepOrder(this, this->IsTranslucent(), this->Placeholder,
-    bounds.IsValid() ? inflated : nullptr, inInfo, outInfo);
 }
 
 bool vtkPVDSMGeometryRepresentation::IsTranslucent() const

@@ -94,10 +94,9 @@ int vtkPVDSMImageRepresentation::ProcessViewRequest(
 
 void vtkPVDSMImageRepresentation::PrepareUpdate(vtkInformation* inInfo, vtkInformation* outInfo)
 {
-  const double opacity = this->Mapper->GetSurfaceProperty()->GetOpacity();
-  vtkPVDSMDelivery::KeepData(this, this->Placeholder, inInfo, outInfo);
-  vtkPVDSMDelivery::KeepOrder(
-    this, opacity < 1.0, this->Placeholder, this->Volume->GetBounds(), inInfo, outInfo);
+  const bool isTranslucent = this->Mapper->GetSurfaceProperty()->GetOpacity() < 1.0;
+  vtkPVDSMDelivery::KeepData(
+    this, this->Placeholder, { this->Volume->GetBounds(), isTranslucent }, inInfo, outInfo);
   // In world space: with a matrix, the view would transform two corners of the box only.
   if (const double* bounds = this->Volume->GetBounds())
   {
