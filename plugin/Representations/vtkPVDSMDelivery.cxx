@@ -51,16 +51,15 @@ std::string FindObstacle()
   return {};
 }
 
-/// Whether the view shows anything but ours.
+/// Whether the view shows any dataset in another way than ours. Selections, axes and text, which are
+/// no composite representations, do not count.
 bool ShowsOthers(vtkView* view)
 {
   for (int number = 0; view && number < view->GetNumberOfRepresentations(); ++number)
   {
-    auto* shown = vtkPVDataRepresentation::SafeDownCast(view->GetRepresentation(number));
-    if (auto* composite = vtkCompositeRepresentation::SafeDownCast(shown))
-    {
-      shown = composite->GetVisibility() ? composite->GetActiveRepresentation() : nullptr;
-    }
+    auto* composite = vtkCompositeRepresentation::SafeDownCast(view->GetRepresentation(number));
+    vtkPVDataRepresentation* shown =
+      composite && composite->GetVisibility() ? composite->GetActiveRepresentation() : nullptr;
     if (shown && shown->GetVisibility() && !shown->IsA("vtkPVDSMImageRepresentation") &&
       !shown->IsA("vtkPVDSMGeometryRepresentation"))
     {
