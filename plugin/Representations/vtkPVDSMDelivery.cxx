@@ -51,6 +51,16 @@ std::string FindObstacle()
   return {};
 }
 
+/// Only subclasses of a view may ask whether it selects. None of these is ever made.
+class SelectingView : public vtkPVRenderView
+{
+public:
+  static bool IsSelecting(vtkPVRenderView* view)
+  {
+    return (view->*&SelectingView::GetMakingSelection)();
+  }
+};
+
 /// Whether the view shows any dataset in another way than ours. Selections, axes and text, which are
 /// no composite representations, do not count.
 bool ShowsOthers(vtkView* view)
@@ -181,10 +191,17 @@ void vtkPVDSMDelivery::KeepData(vtkPVDataRepresentation* representation,
   }
 }
 
+bool vtkPVDSMDelivery::IsSelecting(vtkView* view)
+{
+  auto* renderView = vtkPVRenderView::SafeDownCast(view);
+  return renderView && SelectingView::IsSelecting(renderView);
+}
+
 void vtkPVDSMDelivery::Choose(vtkDSMScene* scene, vtkView* anyView)
 {
   auto* view = vtkPVRenderView::SafeDownCast(anyView);
   auto* controller = scene->GetController();
+  scene->SetHidden(IsSelecting(anyView));
   if (!view || !controller || controller->GetNumberOfProcesses() < 2)
   {
     scene->DeliverTiles();

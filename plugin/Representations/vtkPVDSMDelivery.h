@@ -38,6 +38,9 @@ public:
   static void KeepData(vtkPVDataRepresentation* representation, vtkPartitionedDataSet* placeholder,
     const Shown& shown, vtkInformation* inInfo, vtkInformation* outInfo);
 
+  /// For REQUEST_RENDER: whether the view is going to draw for a selection, until the next request.
+  static bool IsSelecting(vtkView* view);
+
   /// For REQUEST_RENDER: the way that suits what else the view shows.
   static void Choose(vtkDSMScene* scene, vtkView* view);
 };

@@ -8,7 +8,9 @@
 #include "vtkPVDSMFrameReport.h"
 #include "vtkPVDSMLightOptions.h"
 #include "vtkPVDSMMemoryOptions.h"
+#include "vtkPVDSMSelectionMapper.h"
 
+#include "vtkActor.h"
 #include "vtkBoundingBox.h"
 #include "vtkCommand.h"
 #include "vtkCompositeDataDisplayAttributes.h"
@@ -40,6 +42,11 @@ vtkPVDSMGeometryRepresentation::vtkPVDSMGeometryRepresentation()
   // Interactive frames are traced, too.
   this->Actor->SetLODMapper(nullptr);
   this->Actor->ForceOpaqueOn();
+  this->SelectionMapper->SetCompositeDataDisplayAttributes(attributes);
+  this->SelectionMapper->SetSource(
+    [this]() -> vtkSmartPointer<vtkDataObject> { return this->GetRenderedDataObject(0); });
+  this->SelectionActor->SetMapper(this->SelectionMapper);
+  this->SelectionActor->UseBoundsOff();
 }
 
 vtkPVDSMGeometryRepresentation::~vtkPVDSMGeometryRepresentation() = default;
@@ -135,6 +142,10 @@ void vtkPVDSMGeometryRepresentation::PrepareRender()
   vtkNew<vtkMatrix4x4> matrix;
   this->Actor->GetMatrix(matrix);
   this->Clipping->ApplyTo(this->GetMapper(), matrix);
+  this->SelectionMapper->SetClippingPlanes(this->GetMapper()->GetClippingPlanes());
+  this->SelectionMapper->SetSelecting(vtkPVDSMDelivery::IsSelecting(this->GetView()));
+  this->SelectionMapper->SetShownBounds(this->VisibleDataBounds);
+  this->SelectionActor->SetUserMatrix(matrix);
   if (this->Scene)
   {
     vtkPVDSMDelivery::Choose(this->Scene, this->GetView());
@@ -161,6 +172,8 @@ bool vtkPVDSMGeometryRepresentation::AddToView(vtkView* view)
   {
     this->Scene = vtkPVDSMDelivery::FindScene(this, renderView);
     this->ConnectFrameReport();
+    renderView->GetRenderer()->AddViewProp(this->SelectionActor);
+    renderView->RegisterPropForHardwareSelection(this, this->SelectionActor);
   }
   return this->Superclass::AddToView(view);
 }
@@ -168,6 +181,11 @@ bool vtkPVDSMGeometryRepresentation::AddToView(vtkView* view)
 bool vtkPVDSMGeometryRepresentation::RemoveFromView(vtkView* view)
 {
   const bool removed = this->Superclass::RemoveFromView(view);
+  if (auto* renderView = vtkPVRenderView::SafeDownCast(view))
+  {
+    renderView->GetRenderer()->RemoveViewProp(this->SelectionActor);
+    renderView->UnRegisterPropForHardwareSelection(this, this->SelectionActor);
+  }
   this->Scene = nullptr;
   this->ConnectFrameReport();
   return removed;
@@ -179,8 +197,18 @@ void vtkPVDSMGeometryRepresentation::ForwardProgress()
   this->UpdateProgress(this->Mapper->GetProgress());
 }
 
-// The superclass would set the names at a mapper of another class; nothing here is picked by them.
-void vtkPVDSMGeometryRepresentation::SetArrayIdNames(const char*, const char*) {}
+// The superclass would set the names at a mapper of another class.
+void vtkPVDSMGeometryRepresentation::SetArrayIdNames(const char* points, const char* cells)
+{
+  this->SelectionMapper->SetPointIdArrayName(points ? points : "vtkOriginalPointIds");
+  this->SelectionMapper->SetCellIdArrayName(cells ? cells : "vtkOriginalCellIds");
+}
+
+void vtkPVDSMGeometryRepresentation::SetVisibility(bool visible)
+{
+  this->Superclass::SetVisibility(visible);
+  this->SelectionActor->SetVisibility(visible);
+}
 
 void vtkPVDSMGeometryRepresentation::SetLineRadius(double radius)
 {

@@ -19,6 +19,7 @@
 
 #include <memory> // for ivars
 
+class vtkActor;
 class vtkDSMPolyDataMapper;
 class vtkDSMScene;
 class vtkPVDSMClipping;
@@ -26,6 +27,7 @@ class vtkPartitionedDataSet;
 class vtkPVDSMFrameReport;
 class vtkPVDSMLightOptions;
 class vtkPVDSMMemoryOptions;
+class vtkPVDSMSelectionMapper;
 
 class VTKREPRESENTATIONSDSM_EXPORT vtkPVDSMGeometryRepresentation
   : public vtkGeometryRepresentationWithFaces
@@ -38,6 +40,7 @@ public:
   int ProcessViewRequest(
     vtkInformationRequestKey* request, vtkInformation* inInfo, vtkInformation* outInfo) override;
   void SetArrayIdNames(const char* pointArray, const char* cellArray) override;
+  void SetVisibility(bool visible) override;
 
   ///@{
   /**
@@ -100,6 +103,9 @@ private:
   vtkNew<vtkPartitionedDataSet> Placeholder;
   vtkSmartPointer<vtkDSMScene> Scene;
   std::unique_ptr<vtkPVDSMClipping> Clipping;
+  /// What selections see.
+  vtkNew<vtkActor> SelectionActor;
+  vtkNew<vtkPVDSMSelectionMapper> SelectionMapper;
   vtkSmartPointer<vtkPVDSMFrameReport> FrameReport;
 };
 

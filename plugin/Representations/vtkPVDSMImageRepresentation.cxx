@@ -6,14 +6,18 @@
 #include "vtkPVDSMClipping.h"
 #include "vtkPVDSMDelivery.h"
 #include "vtkPVDSMFrameReport.h"
+#include "vtkPVDSMIsosurfaceGeometry.h"
 #include "vtkPVDSMLightOptions.h"
 #include "vtkPVDSMMemoryOptions.h"
+#include "vtkPVDSMSelectionMapper.h"
 
+#include "vtkActor.h"
 #include "vtkCommand.h"
 #include "vtkDataObject.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
 #include "vtkMatrix4x4.h"
+#include "vtkMultiBlockDataSet.h"
 #include "vtkObjectFactory.h"
 #include "vtkPVRenderView.h"
 #include "vtkPartitionedDataSet.h"
@@ -32,6 +36,10 @@ vtkPVDSMImageRepresentation::vtkPVDSMImageRepresentation()
   this->Volume->SetMapper(this->Mapper);
   this->Mapper->AddObserver(
     vtkCommand::ProgressEvent, this, &vtkPVDSMImageRepresentation::ForwardProgress);
+  this->SelectionMapper->SetSource([this]() -> vtkSmartPointer<vtkDataObject>
+    { return vtkPVDSMIsosurfaceGeometry::Make(this->Mapper); });
+  this->SelectionActor->SetMapper(this->SelectionMapper);
+  this->SelectionActor->UseBoundsOff();
 }
 
 vtkPVDSMImageRepresentation::~vtkPVDSMImageRepresentation() = default;
@@ -87,6 +95,10 @@ int vtkPVDSMImageRepresentation::ProcessViewRequest(
   {
     this->Volume->ComputeMatrix();
     this->Clipping->ApplyTo(this->Mapper, this->Volume->GetMatrix());
+    this->SelectionMapper->SetClippingPlanes(this->Mapper->GetClippingPlanes());
+    this->SelectionMapper->SetSelecting(vtkPVDSMDelivery::IsSelecting(this->GetView()));
+    this->SelectionMapper->SetShownBounds(this->Mapper->GetBounds());
+    this->SelectionActor->SetUserMatrix(this->Volume->GetMatrix());
     vtkPVDSMDelivery::Choose(this->Scene, this->GetView());
   }
   return 1;
@@ -121,8 +133,10 @@ bool vtkPVDSMImageRepresentation::AddToView(vtkView* view)
   if (this->Scene)
   {
     renderView->GetRenderer()->AddViewProp(this->Volume);
+    renderView->GetRenderer()->AddViewProp(this->SelectionActor);
     this->ConnectFrameReport();
   }
+  renderView->RegisterPropForHardwareSelection(this, this->SelectionActor);
   return this->Superclass::AddToView(view);
 }
 
@@ -134,6 +148,8 @@ bool vtkPVDSMImageRepresentation::RemoveFromView(vtkView* view)
     return false;
   }
   renderView->GetRenderer()->RemoveViewProp(this->Volume);
+  renderView->GetRenderer()->RemoveViewProp(this->SelectionActor);
+  renderView->UnRegisterPropForHardwareSelection(this, this->SelectionActor);
   this->Scene = nullptr;
   this->ConnectFrameReport();
   return this->Superclass::RemoveFromView(view);
@@ -142,6 +158,7 @@ bool vtkPVDSMImageRepresentation::RemoveFromView(vtkView* view)
 void vtkPVDSMImageRepresentation::SetVisibility(bool visible)
 {
   this->Volume->SetVisibility(visible);
+  this->SelectionActor->SetVisibility(visible);
   this->Superclass::SetVisibility(visible);
 }
 

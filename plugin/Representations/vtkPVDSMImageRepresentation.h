@@ -19,6 +19,7 @@
 #include <memory> // for ivars
 
 class vtkDSMScene;
+class vtkActor;
 class vtkPVDSMClipping;
 class vtkDSMVolumeMapper;
 class vtkMatrix4x4;
@@ -26,6 +27,7 @@ class vtkPartitionedDataSet;
 class vtkPVDSMFrameReport;
 class vtkPVDSMLightOptions;
 class vtkPVDSMMemoryOptions;
+class vtkPVDSMSelectionMapper;
 class vtkPVRenderView;
 class vtkScalarsToColors;
 class vtkVolume;
@@ -130,6 +132,9 @@ private:
   vtkNew<vtkPartitionedDataSet> Placeholder;
   vtkSmartPointer<vtkDSMScene> Scene;
   std::unique_ptr<vtkPVDSMClipping> Clipping;
+  /// What selections see.
+  vtkNew<vtkActor> SelectionActor;
+  vtkNew<vtkPVDSMSelectionMapper> SelectionMapper;
   vtkSmartPointer<vtkPVDSMFrameReport> FrameReport;
 };
 

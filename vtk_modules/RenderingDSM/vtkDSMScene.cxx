@@ -224,6 +224,11 @@ void vtkDSMScene::DeliverByPlace(
   this->Self->DrawsPlace = std::move(drawsPlace);
 }
 
+void vtkDSMScene::SetHidden(bool hidden)
+{
+  this->Self->Prop->SetVisibility(!hidden);
+}
+
 void vtkDSMScene::SetSamplesPerFrame(int samples)
 {
   this->Self->SamplesPerFrame = std::max(0, samples);
@@ -552,9 +557,9 @@ bool vtkDSMScene::Internals::ShowsOthers() const
   while (vtkProp* prop = props->GetNextProp(position))
   {
     const auto isProp = [=](const Member& member) { return member.Prop == prop; };
-    // What cannot be picked, such as axes, is decoration.
+    // What cannot be picked, such as axes, is decoration; what has no bounds of its own is no object.
     if (vtkProp3D::SafeDownCast(prop) && prop->GetVisibility() && prop->GetPickable() &&
-      std::none_of(this->Members.begin(), this->Members.end(), isProp))
+      prop->GetUseBounds() && std::none_of(this->Members.begin(), this->Members.end(), isProp))
     {
       return true;
     }
@@ -705,7 +710,7 @@ void vtkDSMScene::Trace()
 {
   Internals& self = *this->Self;
   // A selection pass shows no traced surface; taking in data may make an application render.
-  if (!self.Renderer || self.Renderer->GetSelector() || self.Tracing)
+  if (!self.Renderer || self.Renderer->GetSelector() || self.Tracing || !self.Prop->GetVisibility())
   {
     return;
   }

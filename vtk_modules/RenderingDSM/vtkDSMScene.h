@@ -80,6 +80,12 @@ public:
   void DeliverByPlace(std::function<bool(vtkCamera*)> drawsColor,
     std::function<bool(const double place[3])> drawsPlace);
 
+  /**
+   * While it is hidden the scene neither traces nor draws, and keeps what it has: for renders that are
+   * not for the eye, such as those of a selection. Same value on every rank.
+   */
+  void SetHidden(bool hidden);
+
   ///@{
   /**
    * Samples of each pixel that one render adds to the picture as long as camera, data and look stay
