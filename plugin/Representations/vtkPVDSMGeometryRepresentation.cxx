@@ -143,7 +143,9 @@ void vtkPVDSMGeometryRepresentation::PrepareRender()
   this->Actor->GetMatrix(matrix);
   this->Clipping->ApplyTo(this->GetMapper(), matrix);
   this->SelectionMapper->SetClippingPlanes(this->GetMapper()->GetClippingPlanes());
-  this->SelectionMapper->SetSelecting(vtkPVDSMDelivery::IsSelecting(this->GetView()));
+  const bool selecting = vtkPVDSMDelivery::IsSelecting(this->GetView());
+  this->SelectionMapper->SetSelecting(selecting);
+  this->SelectionActor->SetUseBounds(selecting); // ranks draw where there is something
   this->SelectionMapper->SetShownBounds(this->VisibleDataBounds);
   this->SelectionActor->SetUserMatrix(matrix);
   if (this->Scene)

@@ -96,7 +96,9 @@ int vtkPVDSMImageRepresentation::ProcessViewRequest(
     this->Volume->ComputeMatrix();
     this->Clipping->ApplyTo(this->Mapper, this->Volume->GetMatrix());
     this->SelectionMapper->SetClippingPlanes(this->Mapper->GetClippingPlanes());
-    this->SelectionMapper->SetSelecting(vtkPVDSMDelivery::IsSelecting(this->GetView()));
+    const bool selecting = vtkPVDSMDelivery::IsSelecting(this->GetView());
+    this->SelectionMapper->SetSelecting(selecting);
+    this->SelectionActor->SetUseBounds(selecting); // ranks draw where there is something
     this->SelectionMapper->SetShownBounds(this->Mapper->GetBounds());
     this->SelectionActor->SetUserMatrix(this->Volume->GetMatrix());
     vtkPVDSMDelivery::Choose(this->Scene, this->GetView());

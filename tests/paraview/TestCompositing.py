@@ -80,7 +80,8 @@ check((pixels[covered] < opaque[covered]).any(axis=1).mean() > 0.99, "the backgr
 # A mesh of ours that is translucent, with an opaque surface in it.
 simple.Hide(source, view)
 ball = simple.Sphere(Radius=9.0, Center=[12.0, 12.0, 12.0], ThetaResolution=60, PhiResolution=60)
-inner = show_surface(simple.Cone(Center=[12.0, 12.0, 12.0], Height=14.0, Radius=4.0), view)
+cone = simple.Cone(Center=[12.0, 12.0, 12.0], Height=14.0, Radius=4.0)
+inner = show_surface(cone, view)
 inner.DiffuseColor = inner.AmbientColor = [0.2, 1.0, 0.3]
 pictures = []
 for name in (REPRESENTATION, "Surface"):
@@ -94,3 +95,29 @@ difference = abs(pictures[0] - pictures[1])
 check(get_covered(pictures[1]).mean() > 0.1, "the mesh shows")
 check((difference > 30).any(axis=2).mean() < 0.002, "a translucent mesh over a surface")
 check(difference.mean() < 0.3, f"which differs by {difference.mean():.2f} from Surface")
+
+# What ParaView draws around and on the data: axes, legend, text, markers, a selection.
+simple.Hide(cone, view)
+view.OrientationAxesVisibility = 1
+view.CenterAxesVisibility = 1
+view.AxesGrid.Visibility = 1
+text = simple.Text(Text="a text")
+simple.Show(text, view)
+for opacity in (1.0, 0.5):
+    pictures = []
+    for name in (REPRESENTATION, "Surface"):
+        mesh = simple.Show(ball, view)
+        mesh.Representation = name
+        mesh.Opacity = opacity
+        simple.ColorBy(mesh, ("POINTS", "Normals", "X"))
+        mesh.SetScalarBarVisibility(view, True)
+        simple.Render(view)
+        simple.SelectSurfaceCells(Rectangle=[120, 100, 170, 150], View=view)
+        pictures.append(render(view))
+        simple.SaveScreenshot(
+            os.path.join(OUTPUT, f"Annotations{opacity}.{len(pictures)}.{get_ranks()}.png"), view)
+        simple.ClearSelection(ball)
+    difference = abs(pictures[0] - pictures[1])
+    different = (difference > 60).any(axis=2).mean()
+    check(different < 0.01, f"axes, legend, text and selection at opacity {opacity}: "
+          f"{100 * different:.2f} % of the pixels differ, by {difference.mean():.2f} in the mean")

@@ -188,6 +188,18 @@ std::vector<vtkDSMFrameNotes::Entry> vtkDSMFrameNotes::CreateLegend(
       legend = { { glm::vec3(1.0f), "at the near plane" },
         { glm::vec3(0.0f), "at the far plane" } };
       break;
+    case rt::DebugView::NewTiles:
+      legend = { { rt::GetNewTileColor(), "tile of another rank before" },
+        { glm::vec3(1.0f), "tile of the same rank" } };
+      break;
+    case rt::DebugView::Misses:
+      for (const double part : { 0.0, 0.25, 0.5, 0.75, 1.0 })
+      {
+        const auto bricks = static_cast<int>(part * rt::ManyMisses + 0.5);
+        legend.push_back({ rt::GetHeatColor(part),
+          (part < 1.0 ? "" : ">= ") + std::to_string(bricks) + " bricks waited for" });
+      }
+      break;
     case rt::DebugView::Off:
       break;
   }

@@ -2,6 +2,8 @@
 #ifndef rt_FrameRequest_h
 #define rt_FrameRequest_h
 
+#include "DSMRayTracing/schedule/TileScheduler.h"
+
 #include <glm/mat4x4.hpp>
 
 namespace rt
@@ -25,6 +27,7 @@ struct FrameRequest
   /// counts as part of it. More than one where something else is to be drawn between them.
   static constexpr int MaxLayers = 8;
   int Layers = 1;
+  TileScheduling Scheduling = TileScheduling::WorkStealing;
 };
 
 } // namespace rt
