@@ -74,6 +74,7 @@ check_equal(render(first), picture, "still rendering after interactive rendering
 # A selection, which renders the view in passes of its own.
 outline = show_surface(simple.Outline(source), first)
 simple.SelectSurfacePoints(Rectangle=[0, 0, 299, 239], View=first)
+simple.ClearSelection(source)
 simple.ClearSelection()
 simple.Delete(outline)
 check_equal(render(first), picture, "after a selection")

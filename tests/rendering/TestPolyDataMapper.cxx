@@ -20,6 +20,7 @@
 #include "vtkLookupTable.h"
 #include "vtkMultiBlockDataSet.h"
 #include "vtkNew.h"
+#include "vtkPlane.h"
 #include "vtkPointData.h"
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
@@ -212,6 +213,28 @@ TEST_F(PolyDataMapper, NormalsOfCellsAreUsedWherePointsHaveNone)
   ExpectAlike(with, this->RenderWithTriangles(ball), 0.02);
   this->Actor->GetProperty()->SetInterpolationToFlat();
   ExpectAlike(this->Render(), this->RenderWithTriangles(ball), 0.02);
+}
+
+TEST_F(PolyDataMapper, ClipsAsVtkDoes)
+{
+  const auto ball = MakeBall();
+  this->Mapper->SetInputData(ball);
+  this->Actor->SetPosition(0.2, -0.1, 0.3);
+  this->Actor->RotateY(30.0);
+  const int whole = CountCovered(this->Render());
+  vtkNew<vtkPlane> front;
+  front->SetOrigin(0.0, 0.0, 0.35);
+  front->SetNormal(0.1, 0.2, -0.5);
+  vtkNew<vtkPlane> side;
+  side->SetOrigin(0.15, 0.0, 0.0);
+  side->SetNormal(1.0, -0.3, 0.0);
+  this->Mapper->AddClippingPlane(front);
+  this->Mapper->AddClippingPlane(side);
+  const Picture clipped = this->Render();
+  EXPECT_LT(CountCovered(clipped), 0.9 * whole);
+  ExpectAlike(clipped, this->RenderWithTriangles(ball));
+  this->Mapper->RemoveAllClippingPlanes();
+  EXPECT_EQ(CountCovered(this->Render()), whole);
 }
 
 TEST_F(PolyDataMapper, ColoursAreVtks)

@@ -70,6 +70,22 @@ public:
    */
   void DeliverEverywhere(std::function<bool(vtkCamera*)> drawsColor);
 
+  /**
+   * The same for an application in which each rank draws a part of space of its own: surfaces that
+   * other objects may be seen through are drawn, one by one, by the rank that `drawsPlace` says it
+   * for, asked for places in world coordinates; exactly one rank must say so. Then translucent
+   * surfaces of this scene and whatever else the renderer shows are in right order. `drawsColor` is
+   * asked for opaque ones.
+   */
+  void DeliverByPlace(std::function<bool(vtkCamera*)> drawsColor,
+    std::function<bool(const double place[3])> drawsPlace);
+
+  /**
+   * While it is hidden the scene neither traces nor draws, and keeps what it has: for renders that are
+   * not for the eye, such as those of a selection. Same value on every rank.
+   */
+  void SetHidden(bool hidden);
+
   ///@{
   /**
    * Samples of each pixel that one render adds to the picture as long as camera, data and look stay

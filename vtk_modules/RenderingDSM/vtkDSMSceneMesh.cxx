@@ -174,6 +174,7 @@ rt::MeshObject vtkDSMSceneMesh::CreateObject(const vtkDSMMeshData::Part& part, v
   instance->Culling.Front = property->GetFrontfaceCulling() != 0;
   instance->Culling.Back = property->GetBackfaceCulling() != 0;
   object.Instance = std::move(instance);
+  object.Clipping = vtkDSMTranslation::ToClipRegion(this->Mapper);
   object.Flat = property->GetInterpolation() == VTK_FLAT &&
     part.Mesh->Attributes.Normals != rt::Attachment::Triangles;
   object.Surface = vtkDSMTranslation::ToMaterial(property);

@@ -198,6 +198,25 @@ const rt::ColorMap& vtkDSMSceneVolume::GetColorMap()
   return this->Colors;
 }
 
+rt::ClipRegion vtkDSMSceneVolume::GetClipRegion(const glm::dmat4& dataToWorld) const
+{
+  rt::ClipRegion region = vtkDSMTranslation::ToClipRegion(this->Mapper);
+  if (this->Mapper->GetCropping())
+  {
+    const double* planes = this->Mapper->GetCroppingRegionPlanes();
+    rt::ClipRegion::Grid boxes;
+    boxes.WorldToGrid = glm::inverse(dataToWorld);
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      boxes.Lower[axis] = std::min(planes[2 * axis], planes[2 * axis + 1]);
+      boxes.Upper[axis] = std::max(planes[2 * axis], planes[2 * axis + 1]);
+    }
+    boxes.Kept = static_cast<std::uint32_t>(this->Mapper->GetCroppingRegionFlags());
+    region.Boxes = boxes;
+  }
+  return region;
+}
+
 void vtkDSMSceneVolume::AddTo(rt::Scene& scene)
 {
   if (!this->Data || !this->Iso)
@@ -213,6 +232,7 @@ void vtkDSMSceneVolume::AddTo(rt::Scene& scene)
   const glm::dmat4 dataToWorld = vtkDSMTranslation::ToMatrix(this->Prop->GetMatrix());
   rt::Material material = vtkDSMTranslation::ToMaterial(this->Mapper->GetSurfaceProperty());
   material.Reflectivity = static_cast<float>(this->GetLightOptions()->GetReflectivity());
+  const rt::ClipRegion clipping = this->GetClipRegion(dataToWorld);
   const bool colored = this->Color && !this->Color->Fields.empty();
   for (std::size_t lattice = 0; lattice < this->Data->GetNumberOfLattices(); ++lattice)
   {
@@ -225,6 +245,7 @@ void vtkDSMSceneVolume::AddTo(rt::Scene& scene)
     object.Field = this->Iso->Fields[lattice];
     object.Isovalues = isovalues;
     object.Surface = material;
+    object.Clipping = clipping;
     if (colored && this->Color->Fields[lattice])
     {
       object.ColorField = this->Color->Fields[lattice];

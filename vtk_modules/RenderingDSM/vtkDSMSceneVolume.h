@@ -44,6 +44,7 @@ private:
     unsigned settingsVersion, const std::vector<std::shared_ptr<Published>>& known);
   std::vector<double> GetIsovalues();
   const rt::ColorMap& GetColorMap();
+  rt::ClipRegion GetClipRegion(const glm::dmat4& dataToWorld) const;
 
   vtkWeakPointer<vtkDSMVolumeMapper> Mapper;
   const vtkDataObject* SeenData = nullptr;

@@ -69,6 +69,21 @@ public:
   void GetWorkerTable(vtkTable* table) const;
 
   /**
+   * The most telling figures in a few lines of text; empty without a frame.
+   */
+  std::string GetSummary() const;
+
+  /**
+   * Of the last frame; 0 without one.
+   */
+  int GetNumberOfRanks() const;
+
+  /**
+   * The name of the host that a rank runs on; empty for a rank that there is not.
+   */
+  std::string GetHost(int rank) const;
+
+  /**
    * The same as JSON: an array with an object for each rank, keys as the table's columns, and
    * Explanation; under Workers an array with an object for each thread.
    */

@@ -3,6 +3,7 @@
 
 #include "vtkDSMMemoryOptions.h"
 
+#include "vtkAbstractMapper.h"
 #include "vtkAlgorithm.h"
 #include "vtkCamera.h"
 #include "vtkImageData.h"
@@ -10,6 +11,8 @@
 #include "vtkLightCollection.h"
 #include "vtkMath.h"
 #include "vtkMatrix4x4.h"
+#include "vtkPlane.h"
+#include "vtkPlaneCollection.h"
 #include "vtkPointData.h"
 #include "vtkProperty.h"
 #include "vtkRenderer.h"
@@ -127,6 +130,21 @@ rt::ColorMap vtkDSMTranslation::ToColorMap(vtkScalarsToColors* table)
   map.Above = MapValue(table, std::nextafter(map.Last, infinity));
   map.NotANumber = MapValue(table, vtkMath::Nan());
   return map;
+}
+
+rt::ClipRegion vtkDSMTranslation::ToClipRegion(vtkAbstractMapper* mapper)
+{
+  rt::ClipRegion region;
+  vtkPlaneCollection* planes = mapper->GetClippingPlanes();
+  for (int number = 0; planes && number < planes->GetNumberOfItems(); ++number)
+  {
+    // As VTK's mappers, without regard to a transform that a plane may have as a function.
+    const double* normal = planes->GetItem(number)->GetNormal();
+    const double* origin = planes->GetItem(number)->GetOrigin();
+    region.HalfSpaces.push_back(
+      { { normal[0], normal[1], normal[2] }, { origin[0], origin[1], origin[2] } });
+  }
+  return region;
 }
 
 vtkDSMMemorySettings vtkDSMTranslation::ToMemorySettings(vtkDSMMemoryOptions* options)

@@ -9,6 +9,7 @@
 #include <memory>
 #include <vector>
 
+class vtkAbstractMapper;
 class vtkDSMMemoryOptions;
 class vtkMatrix4x4;
 class vtkProperty;
@@ -30,6 +31,9 @@ public:
 
   /// Samples any lookup table or transfer function; finely enough for one that is discretised.
   static rt::ColorMap ToColorMap(vtkScalarsToColors* table);
+
+  /// What a mapper's clipping planes leave, in world space.
+  static rt::ClipRegion ToClipRegion(vtkAbstractMapper* mapper);
 
   static vtkDSMMemorySettings ToMemorySettings(vtkDSMMemoryOptions* options);
 
