@@ -143,7 +143,8 @@ TEST_F(TestTileTracer, ParallelViewAlongAnAxisEqualsSinglePixels)
   EXPECT_EQ(difference.Pixels, 0);
 }
 
-/// Meshes that cut through one another, one of them translucent, without and with an isosurface.
+/// Meshes that cut through one another, one of them translucent; then with an isosurface, and one of
+/// them clipped.
 TEST_F(TestTileTracer, MeshesEqualSinglePixels)
 {
   rt::Scene scene;
@@ -156,6 +157,7 @@ TEST_F(TestTileTracer, MeshesEqualSinglePixels)
     if (withVolume)
     {
       scene.Isosurfaces = { FunctionVolume::Publish(65, GetWaves, this->Messenger, this->Store) };
+      scene.Meshes[1].Clipping.HalfSpaces = { { { 0.3, -1.0, 0.2 }, { 0.0, 0.2, 0.0 } } };
     }
     for (const glm::dmat4& view : { LookAt({ 2.5, 1.8, 2.1 }), LookAt({ 0.01, 0.02, 3.6 }),
            LookAt({ 0.11, 0.2, 0.31 }), parallel })
