@@ -26,6 +26,7 @@ vtkStandardNewMacro(vtkPVDSMImageRepresentation);
 vtkPVDSMImageRepresentation::vtkPVDSMImageRepresentation()
 {
   this->Volume->SetMapper(this->Mapper);
+  this->Mapper->MakesSceneOff(); // on ParaView's client there shall be none
   this->Mapper->AddObserver(
     vtkCommand::ProgressEvent, this, &vtkPVDSMImageRepresentation::ForwardProgress);
 }
