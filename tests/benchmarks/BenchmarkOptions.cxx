@@ -10,6 +10,10 @@ const char* BenchmarkOptions::Usage()
          "  --isovalue A[,B..]  isovalues (default 0.5)\n"
          "  --size WxH          pixels (default 512x512)\n"
          "  --frames N          camera positions around the volume (default 20)\n"
+         "  --session FILE      positions and isovalues from a file instead; each repetition "
+         "counts "
+         "as a\n"
+         "                      whole, the first one apart\n"
          "  --repeat R          orbits; for every position the fastest counts (default 1)\n"
          "  --threads T         tracing threads per rank (default 0: cores / ranks of the host)\n"
          "  --store S           automatic, replicated, object (default) or paged\n"
@@ -21,6 +25,9 @@ const char* BenchmarkOptions::Usage()
          "  --cache-fraction F  cache per rank, as a part of the bytes of all bricks (default 1)\n"
          "  --brick-edge E      cells along a brick's edge (default: by the scalar type)\n"
          "  --picture FILE.ppm  writes the picture of the first position\n"
+         "  --overlap N         workers per thread: while some wait for bricks, others trace "
+         "(default 4)\n"
+         "  --latency US        microseconds that are added to every message's way (default 0)\n"
          "  --json FILE         writes the result; - is standard output\n";
 }
 
@@ -41,6 +48,7 @@ BenchmarkOptions BenchmarkOptions::Parse(int argc, char** argv)
       { options.CacheFraction = ToNumber<double>(name, text, 0.0); } },
     { "--brick-edge",
       [&](const auto& name, const auto& text) { options.BrickEdge = ToNumber(name, text, 4); } },
+    { "--session", [&](const auto&, const auto& text) { options.Session = text; } },
     { "--picture", [&](const auto&, const auto& text) { options.Picture = text; } },
   };
   options.AddTo(setters);

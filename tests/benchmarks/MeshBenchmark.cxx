@@ -294,6 +294,9 @@ const char* MeshBenchmark::Usage()
          "  --threads T         tracing threads per rank (default 0: cores / ranks of the host)\n"
          "  --store S           automatic, replicated, object (default) or paged\n"
          "  --host-sharing H    on, or off (default): one machine plays many hosts\n"
+         "  --overlap N         workers per thread: while some wait for bricks, others trace "
+         "(default 4)\n"
+         "  --latency US        microseconds that are added to every message's way (default 0)\n"
          "  --json FILE         writes the result; - is standard output\n";
 }
 

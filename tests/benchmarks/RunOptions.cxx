@@ -31,6 +31,11 @@ void RunOptions::AddTo(OptionValues::Setters& setters)
       [this](const auto& name, const auto& text) {
         this->HostSharing = ToChoice<bool>(name, text, { { "on", true }, { "off", false } });
       } },
+    { "--overlap",
+      [this](const auto& name, const auto& text) { this->Overlap = ToNumber(name, text, 1); } },
+    { "--latency",
+      [this](const auto& name, const auto& text)
+      { this->Latency = 1e-6 * ToNumber<double>(name, text, 0.0); } },
     { "--json", [this](const auto&, const auto& text) { this->Json = text; } },
   });
 }
@@ -41,5 +46,6 @@ dsm::BlockStore::Settings RunOptions::CreateSettings(dsm::Messenger& messenger) 
   settings.Organization = this->Store;
   settings.HostSharing = this->HostSharing;
   settings.Workers = this->Threads > 0 ? this->Threads : messenger.GetCoresPerRank();
+  settings.Overlap = this->Overlap > 0 ? this->Overlap : settings.Overlap;
   return settings;
 }

@@ -19,6 +19,8 @@ struct RunOptions
   int Threads = 0; ///< 0: the host's cores divided by its ranks
   dsm::MemoryOrganization Store = dsm::MemoryOrganization::ObjectBased;
   bool HostSharing = false; ///< off: one machine plays many hosts
+  int Overlap = 0;          ///< workers per thread; 0: the store's default
+  double Latency = 0.0;     ///< seconds that are added to every message's way
   std::string Json;         ///< file, or - for standard output; empty: none
 
   /// Adds the options' setters, which change this object.

@@ -10,6 +10,7 @@
 #include "DSMCore/Counters.h"
 #include "DSMCore/Messenger.h"
 #include "DSMCore/Publication.h"
+#include "DSMCore/WorkerSlots.h"
 
 #include <atomic>
 #include <condition_variable>
@@ -47,6 +48,8 @@ public:
     bool HostSharing = false;
     /// Who shares; null: found out with every publication.
     std::shared_ptr<const HostGroups> Groups = nullptr;
+    /// Who of them runs: a worker gives its slot to others while it waits. Null: all run.
+    std::shared_ptr<WorkerSlots> Slots = nullptr;
   };
 
   using Segment = BlockTable;

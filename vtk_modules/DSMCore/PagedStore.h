@@ -13,6 +13,7 @@
 #include "DSMCore/PageLayout.h"
 #include "DSMCore/PageLine.h"
 #include "DSMCore/Publication.h"
+#include "DSMCore/WorkerSlots.h"
 
 #include <atomic>
 #include <condition_variable>
@@ -60,6 +61,8 @@ public:
     FaultHandling Handling = FaultHandling::Automatic;
     /// Never look whether a block is here before it is read.
     bool PureFaulting = false;
+    /// Who of them runs: a worker gives its slot to others while it waits. Null: all run.
+    std::shared_ptr<WorkerSlots> Slots = nullptr;
   };
 
   class Segment;

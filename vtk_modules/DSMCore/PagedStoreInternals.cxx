@@ -110,8 +110,8 @@ void PagedStore::Internals::Wait(Worker& worker, const Segment& segment, BlockId
   ++line.Waiters;
   worker.WaitsFor = &line;
   this->Messages.WakeUp();
-  worker.Woken.wait(
-    lock, [&] { return line.State == PageState::Cached || this->Phase != FramePhase::Open; });
+  WaitWithoutSlot(this->Current.Slots.get(), lock, worker.Woken,
+    [&] { return line.State == PageState::Cached || this->Phase != FramePhase::Open; });
   worker.WaitsFor = nullptr;
   --line.Waiters;
   worker.Slow.WaitNanoseconds += NanosecondsSince(start);

@@ -74,6 +74,7 @@ struct vtkDSMStatistics::RankRow
   std::int64_t BytesReceived;
   std::int64_t BytesSent;
   double WaitSeconds;
+  double IdleSeconds;
   std::int64_t Tiles;
   double Seconds;
   double FrameSeconds;
@@ -100,6 +101,7 @@ struct vtkDSMStatistics::RankRow
     visit(Count("BytesReceived", &RankRow::BytesReceived));
     visit(Count("BytesSent", &RankRow::BytesSent));
     visit(Time("WaitSeconds", &RankRow::WaitSeconds));
+    visit(Time("IdleSeconds", &RankRow::IdleSeconds));
     visit(Count("Tiles", &RankRow::Tiles));
     visit(Time("Seconds", &RankRow::Seconds));
   }
@@ -158,6 +160,7 @@ void vtkDSMStatistics::Gather(dsm::Messenger& messenger, const rt::Frame& frame)
   mine.BytesReceived = static_cast<std::int64_t>(counters.BytesReceived);
   mine.BytesSent = static_cast<std::int64_t>(counters.BytesSent);
   mine.WaitSeconds = ToSeconds(counters.Workers.WaitNanoseconds);
+  mine.IdleSeconds = ToSeconds(frame.IdleNanoseconds);
   mine.Tiles = static_cast<std::int64_t>(frame.Tiles.size());
   for (const rt::Tile& tile : frame.Tiles)
   {

@@ -56,8 +56,9 @@ public:
    * BytesResident (bricks that it owns), BytesShared (read in place, on its host), BytesCopied
    * (replicated), BytesCached, PeakBytesCached, CacheCapacity, MemoryBudget, Accesses, Hits, Misses,
    * Joins (misses that found the brick requested already), Evictions, BytesReceived, BytesSent,
-   * WaitSeconds (of the workers, for bricks), Tiles, Seconds (of tracing). What workers count is
-   * summed over the rank's workers.
+   * WaitSeconds (of tiles, for bricks), IdleSeconds (of threads that found no other tile to trace
+   * meanwhile), Tiles, Seconds (of tracing, processor time). Times and what workers count are summed
+   * over the rank's threads.
    */
   void GetTable(vtkTable* table) const;
 

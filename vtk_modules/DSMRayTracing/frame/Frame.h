@@ -23,7 +23,7 @@ struct Tile
   int Width = 0;
   int Height = 0;
   int Index = 0; ///< row-major number of the tile in the frame
-  double Seconds = 0.0;
+  double Seconds = 0.0; ///< of processor time that its tracing took
   /// Four bytes a pixel, red first, alpha premultiplied; alpha 0 where nothing was hit.
   std::vector<std::uint8_t> Color;
   /// OpenGL window depth in [0, 1]; 1 where nothing was hit.
@@ -45,6 +45,8 @@ struct Frame
   std::string Explanation; ///< a sentence: why they are kept so
   dsm::StoreCounters Counters;
   std::vector<dsm::WorkerCounters> WorkerCounters;
+  /// That threads had nothing to trace, before this rank's last tile was done; summed over them.
+  std::uint64_t IdleNanoseconds = 0;
 };
 
 } // namespace rt

@@ -7,6 +7,8 @@
 #include "DSMRayTracing/frame/TileSource.h"
 #include "DSMRayTracing/frame/TileTracer.h"
 
+#include <time.h>
+
 #include <algorithm>
 #include <atomic>
 #include <chrono>
@@ -27,6 +29,14 @@ using Clock = std::chrono::steady_clock;
 double SecondsSince(Clock::time_point start)
 {
   return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+/// Processor time of the calling thread: what a tile costs, not what it waits.
+double GetThreadSeconds()
+{
+  timespec time{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
+  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
 }
 
 /// What a whole tile is tinted with.
@@ -153,11 +163,14 @@ void FrameRenderer::RenderTiles(dsm::BlockStore& store, const Scene& scene,
   {
     store.Settle();
   }
-  frame.Tiles =
-    store.Visit([&](auto& blocks) { return this->TraceTiles(blocks, scene, request, tiles); });
+  dsm::WorkerSlots& slots = store.GetSlots();
+  slots.BeginFrame(store.GetSettings().Workers);
+  frame.Tiles = store.Visit(
+    [&](auto& blocks) { return this->TraceTiles(blocks, slots, scene, request, tiles); });
   frame.Width = request.Width;
   frame.Height = request.Height;
   frame.Counters = store.GetCounters();
+  frame.IdleNanoseconds = slots.GetIdleNanoseconds();
   frame.WorkerCounters = store.GetWorkerCounters();
   frame.Organization = store.GetOrganization();
   frame.Explanation = store.GetExplanation();
@@ -165,8 +178,8 @@ void FrameRenderer::RenderTiles(dsm::BlockStore& store, const Scene& scene,
 }
 
 template <class Store>
-std::vector<Tile> FrameRenderer::TraceTiles(
-  Store& store, const Scene& scene, const FrameRequest& request, TileSource& tiles)
+std::vector<Tile> FrameRenderer::TraceTiles(Store& store, dsm::WorkerSlots& slots,
+  const Scene& scene, const FrameRequest& request, TileSource& tiles)
 {
   const PixelRays rays(request);
   const int workers = store.GetSettings().Workers;
@@ -195,18 +208,20 @@ std::vector<Tile> FrameRenderer::TraceTiles(
   const auto work = [&](int index)
   {
     auto& worker = store.GetWorker(index);
+    const dsm::WorkerSlots::Hold slot(slots);
     try
     {
       const TileTracer<Store> tracer(store, worker, scene, rays, request);
-      while (std::optional<Tile> tile = tiles.Pop())
+      while (std::optional<Tile> tile = tiles.Pop(slots))
       {
-        const auto tileStart = Clock::now();
+        const double tileStart = GetThreadSeconds();
         store.Enter(worker);
         tracer.Trace(*tile);
         store.Leave(worker);
-        tile->Seconds = SecondsSince(tileStart);
+        tile->Seconds = GetThreadSeconds() - tileStart;
         tracer.Finish(*tile, GetTint(scene.View, this->Messenger.GetRank(), tile->Seconds));
         tilesOfWorker[index].push_back(std::move(*tile));
+        slots.LetOthersResume();
       }
     }
     catch (...)

@@ -29,7 +29,7 @@ public:
 
   /// Collective; always from the same thread. Every rank passes the same request and scene. Settles
   /// the store first.
-  /// `store.GetSettings().Workers` threads trace. Returns the tiles that this rank traced. Throws
+  /// `store.GetSettings().Workers` threads trace at a time. Returns the tiles that this rank traced. Throws
   /// the same dsm::Error on every rank when any rank fails, or when the requests differ; the next
   /// frame is not affected.
   Frame Render(dsm::BlockStore& store, const Scene& scene, const FrameRequest& request);
@@ -43,8 +43,8 @@ private:
   void RenderTiles(dsm::BlockStore& store, const Scene& scene, const FrameRequest& request,
     TileSource& tiles, Frame& frame);
   template <class Store>
-  std::vector<Tile> TraceTiles(
-    Store& store, const Scene& scene, const FrameRequest& request, TileSource& tiles);
+  std::vector<Tile> TraceTiles(Store& store, dsm::WorkerSlots& slots, const Scene& scene,
+    const FrameRequest& request, TileSource& tiles);
 
   dsm::Messenger& Messenger;
   CentralQueueScheduler Scheduler;

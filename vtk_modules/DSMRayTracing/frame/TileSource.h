@@ -23,7 +23,7 @@ public:
   virtual bool Service() = 0;
   virtual void End() = 0;
   virtual void Cancel() = 0;
-  virtual std::optional<Tile> Pop() = 0;
+  virtual std::optional<Tile> Pop(dsm::WorkerSlots& slots) = 0;
 };
 
 /// New tiles, dealt out between the ranks.
@@ -40,9 +40,9 @@ public:
   bool Service() override { return this->Scheduler.Service(); }
   void End() override { this->Scheduler.End(); }
   void Cancel() override { this->Scheduler.Cancel(); }
-  std::optional<Tile> Pop() override
+  std::optional<Tile> Pop(dsm::WorkerSlots& slots) override
   {
-    const std::optional<int> number = this->Scheduler.Pop();
+    const std::optional<int> number = this->Scheduler.Pop(slots);
     return number ? std::optional<Tile>(this->Grid.CreateTile(*number)) : std::nullopt;
   }
 
@@ -65,7 +65,7 @@ public:
   bool Service() override { return false; }
   void End() override {}
   void Cancel() override { this->Next = this->Tiles.size(); }
-  std::optional<Tile> Pop() override
+  std::optional<Tile> Pop(dsm::WorkerSlots&) override
   {
     const std::size_t index = this->Next.fetch_add(1);
     return index < this->Tiles.size() ? std::optional<Tile>(std::move(this->Tiles[index]))

@@ -125,7 +125,7 @@ bool CentralQueueScheduler::Service()
   return true;
 }
 
-std::optional<int> CentralQueueScheduler::Pop()
+std::optional<int> CentralQueueScheduler::Pop(dsm::WorkerSlots& slots)
 {
   if (this->IsSupervisor())
   {
@@ -133,7 +133,11 @@ std::optional<int> CentralQueueScheduler::Pop()
     return tile < this->Tiles ? std::optional<int>(tile) : std::nullopt;
   }
   std::unique_lock<std::mutex> lock(this->Mutex);
-  this->Changed.wait(lock, [this] { return this->Exhausted || !this->Granted.empty(); });
+  const auto isSettled = [this] { return this->Exhausted || !this->Granted.empty(); };
+  while (!isSettled())
+  {
+    dsm::WaitWithoutSlot(&slots, lock, this->Changed, isSettled);
+  }
   if (this->Granted.empty())
   {
     return std::nullopt;

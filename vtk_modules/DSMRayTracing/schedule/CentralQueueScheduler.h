@@ -26,7 +26,7 @@ public:
   bool Service() override;
   void End() override;
   void Cancel() override;
-  std::optional<int> Pop() override;
+  std::optional<int> Pop(dsm::WorkerSlots& slots) override;
 
 private:
   void Grant(dsm::Message&& request);

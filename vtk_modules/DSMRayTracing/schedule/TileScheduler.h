@@ -2,6 +2,8 @@
 #ifndef rt_TileScheduler_h
 #define rt_TileScheduler_h
 
+#include "DSMCore/WorkerSlots.h"
+
 #include <optional>
 
 namespace rt
@@ -27,9 +29,9 @@ public:
   /// Any thread: this rank, and where this rank gives tiles to others also they, get no more tiles.
   virtual void Cancel() = 0;
 
-  /// Worker: the next tile to trace; waits for an answer from other ranks where that is needed.
-  /// Empty when the frame has no tile left for this rank.
-  virtual std::optional<int> Pop() = 0;
+  /// Worker, which has one of the slots: the next tile to trace; waits for an answer from other ranks
+  /// where that is needed, without the slot. Empty when the frame has no tile left for this rank.
+  virtual std::optional<int> Pop(dsm::WorkerSlots& slots) = 0;
 };
 
 } // namespace rt
