@@ -40,7 +40,8 @@ install(FILES LICENSE README.md CHANGELOG.md
   COMPONENT runtime)
 install(DIRECTORY docs examples
   DESTINATION "${CMAKE_INSTALL_DATAROOTDIR}/doc/dsmraytracer"
-  COMPONENT runtime)
+  COMPONENT runtime
+  PATTERN "__pycache__" EXCLUDE)
 
 set(CPACK_PACKAGE_NAME dsmraytracer)
 set(CPACK_PACKAGE_VENDOR "The DSM Ray Tracer developers")
