@@ -62,10 +62,13 @@ set -eu
 say() { printf '%s\\n' "\$*"; }
 export DEBIAN_FRONTEND=noninteractive LC_ALL=C.UTF-8 CCACHE_DIR=/ccache
 packages="${with[*]} ${test_packages[*]} ccache"
-if ! dpkg-query -W \$packages >/dev/null 2>&1; then
-  say "Installing packages ..."
-  { apt-get update && apt-get install --yes --no-install-recommends \$packages; } >>/log 2>&1
-fi
+for package in \$packages; do
+  if [ "\$(dpkg-query -W -f '\${db:Status-Status}' \$package 2>/dev/null)" != installed ]; then
+    say "Installing packages ..."
+    { apt-get update && apt-get install --yes --no-install-recommends \$packages; } >>/log 2>&1
+    break
+  fi
+done
 say "Configuring and building ..."
 cmake -S /project -B /build-$flavour -G Ninja -DCMAKE_BUILD_TYPE=Release \\
   -DCMAKE_CXX_COMPILER_LAUNCHER=ccache -DDSM_BUILD_TESTING=ON -DDSM_TEST_DATA=/data \\
