@@ -89,6 +89,7 @@ unshare --mount --propagation private sh -c '
   mount -o remount,bind,ro "$tree/project"
   [ -z "$data" ] || mount --bind "$data" "$tree/data"
   mount -t proc proc "$tree/proc"
+  mount -t sysfs -o ro sysfs "$tree/sys"
   mount --rbind /dev "$tree/dev"
   mount -t tmpfs tmpfs "$tree/dev/shm"
   mount -t tmpfs tmpfs "$tree/tmp"
