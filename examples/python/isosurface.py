@@ -80,7 +80,7 @@ def write(window, file_name):
 def draw(controller):
     renderer = make_renderer()
     # Several ranks need it before the first frame; in one process, the mappers would make it.
-    scene = vtkDSMScene.ForRenderer(renderer)
+    scene = vtkDSMScene.NewForRenderer(renderer)
     scene.DeliverEverywhere()  # every rank's window gets the whole picture
     window = vtkRenderWindow()
     window.SetSize(600, 450)

@@ -144,6 +144,13 @@ vtkSmartPointer<vtkDSMScene> vtkDSMScene::ForRenderer(vtkRenderer* renderer)
   return scene;
 }
 
+vtkDSMScene* vtkDSMScene::NewForRenderer(vtkRenderer* renderer)
+{
+  const vtkSmartPointer<vtkDSMScene> scene = ForRenderer(renderer);
+  scene->Register(nullptr);
+  return scene;
+}
+
 void vtkDSMScene::DrawWithoutScene(vtkRenderer* renderer, vtkObject* mapper)
 {
   const auto known = GetRegistry().find(renderer);

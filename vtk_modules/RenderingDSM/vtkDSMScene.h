@@ -26,6 +26,7 @@
 #include "vtkRenderingDSMModule.h" // for the export macro
 #include "vtkSmartPointer.h"       // for ivars
 #include "vtkWeakPointer.h"        // for ivars
+#include "vtkWrappingHints.h"      // for VTK_NEWINSTANCE
 
 #include <functional> // for a parameter
 #include <memory>     // for ivars
@@ -43,10 +44,14 @@ public:
   vtkTypeMacro(vtkDSMScene, vtkObject);
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
+  ///@{
   /**
-   * The renderer's scene, made when there is none. It lives as long as somebody holds it.
+   * The renderer's scene, made when there is none. It lives as long as somebody holds it. The second is
+   * for wrapped languages, and what it returns is the caller's to delete: VTK 9.1 wraps no smart pointers.
    */
-  static vtkSmartPointer<vtkDSMScene> ForRenderer(vtkRenderer* renderer);
+  VTK_WRAPEXCLUDE static vtkSmartPointer<vtkDSMScene> ForRenderer(vtkRenderer* renderer);
+  VTK_NEWINSTANCE static vtkDSMScene* NewForRenderer(vtkRenderer* renderer);
+  ///@}
 
   /**
    * For a mapper that is asked to draw: where the renderer has no scene, makes one that ends with the
