@@ -369,6 +369,12 @@ std::vector<WorkerCounters> ObjectStore::Internals::GetWorkerCounters()
   return this->Phase == FramePhase::Closed ? this->LastWorkers : this->CountWorkers();
 }
 
+std::uint64_t ObjectStore::Internals::GetMisses(const Worker& worker) const
+{
+  const std::lock_guard<std::mutex> lock(this->Guard);
+  return worker.Slow.Misses;
+}
+
 StoreCounters ObjectStore::Internals::GetCounters()
 {
   const auto workers = this->GetWorkerCounters();

@@ -123,6 +123,8 @@ public:
   void Enter(Worker& worker);
   void Leave(Worker& worker);
 
+  /// The worker: how often it has waited for a block in this frame.
+  std::uint64_t GetMisses(const Worker& worker) const;
   /// Of the frame so far; after EndFrame, of the last frame. Communication thread. Misses are
   /// accesses or faults that waited for a fetch.
   StoreCounters GetCounters() const;

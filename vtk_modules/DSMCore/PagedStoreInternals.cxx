@@ -566,6 +566,12 @@ std::vector<WorkerCounters> PagedStore::Internals::GetWorkerCounters()
   return this->Phase == FramePhase::Closed ? this->LastWorkers : this->CountWorkers();
 }
 
+std::uint64_t PagedStore::Internals::GetMisses(const Worker& worker) const
+{
+  const std::lock_guard<std::mutex> lock(this->Guard);
+  return worker.Slow.Misses;
+}
+
 StoreCounters PagedStore::Internals::GetCounters()
 {
   const auto workers = this->GetWorkerCounters();

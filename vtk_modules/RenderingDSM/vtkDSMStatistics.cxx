@@ -76,6 +76,7 @@ struct vtkDSMStatistics::RankRow
   double WaitSeconds;
   double IdleSeconds;
   std::int64_t Tiles;
+  std::int64_t NewTiles;
   double Seconds;
   double FrameSeconds;
 
@@ -103,6 +104,7 @@ struct vtkDSMStatistics::RankRow
     visit(Time("WaitSeconds", &RankRow::WaitSeconds));
     visit(Time("IdleSeconds", &RankRow::IdleSeconds));
     visit(Count("Tiles", &RankRow::Tiles));
+    visit(Count("NewTiles", &RankRow::NewTiles));
     visit(Time("Seconds", &RankRow::Seconds));
   }
 };
@@ -164,6 +166,7 @@ void vtkDSMStatistics::Gather(dsm::Messenger& messenger, const rt::Frame& frame)
   mine.Tiles = static_cast<std::int64_t>(frame.Tiles.size());
   for (const rt::Tile& tile : frame.Tiles)
   {
+    mine.NewTiles += tile.IsNew ? 1 : 0;
     mine.Seconds += tile.Seconds;
   }
   mine.FrameSeconds = frame.Seconds;

@@ -57,8 +57,8 @@ public:
    * (replicated), BytesCached, PeakBytesCached, CacheCapacity, MemoryBudget, Accesses, Hits, Misses,
    * Joins (misses that found the brick requested already), Evictions, BytesReceived, BytesSent,
    * WaitSeconds (of tiles, for bricks), IdleSeconds (of threads that found no other tile to trace
-   * meanwhile), Tiles, Seconds (of tracing, processor time). Times and what workers count are summed
-   * over the rank's threads.
+   * meanwhile), Tiles, NewTiles (those that another rank traced in the last frame), Seconds (of
+   * tracing, processor time). Times and what workers count are summed over the rank's threads.
    */
   void GetTable(vtkTable* table) const;
 

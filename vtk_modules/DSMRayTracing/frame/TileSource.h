@@ -19,7 +19,8 @@ class TileSource
 {
 public:
   virtual ~TileSource() = default;
-  virtual void Begin(int workers) = 0;
+  /// `plan`: with what is known of the last frame; the tiles are the source's own.
+  virtual void Begin(TilePlan plan, int workers) = 0;
   virtual bool Service() = 0;
   virtual void End() = 0;
   virtual void Cancel() = 0;
@@ -36,7 +37,12 @@ public:
   {
   }
 
-  void Begin(int workers) override { this->Scheduler.Begin(this->Grid.GetCount(), workers); }
+  void Begin(TilePlan plan, int workers) override
+  {
+    plan.Tiles = this->Grid.GetCount();
+    plan.Columns = this->Grid.GetColumns();
+    this->Scheduler.Begin(plan, workers);
+  }
   bool Service() override { return this->Scheduler.Service(); }
   void End() override { this->Scheduler.End(); }
   void Cancel() override { this->Scheduler.Cancel(); }
@@ -61,7 +67,7 @@ public:
   {
   }
 
-  void Begin(int) override {}
+  void Begin(TilePlan, int) override {}
   bool Service() override { return false; }
   void End() override {}
   void Cancel() override { this->Next = this->Tiles.size(); }

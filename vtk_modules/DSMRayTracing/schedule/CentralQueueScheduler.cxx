@@ -35,9 +35,9 @@ CentralQueueScheduler::CentralQueueScheduler(dsm::Messenger& messenger)
 
 CentralQueueScheduler::~CentralQueueScheduler() = default;
 
-void CentralQueueScheduler::Begin(int tiles, int workers)
+void CentralQueueScheduler::Begin(const TilePlan& plan, int workers)
 {
-  this->Tiles = tiles;
+  this->Tiles = plan.Tiles;
   this->Workers = std::max(workers, 1);
   this->LowWater = this->Workers;
   this->Next = 0;

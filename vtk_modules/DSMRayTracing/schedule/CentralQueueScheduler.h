@@ -22,7 +22,7 @@ public:
   explicit CentralQueueScheduler(dsm::Messenger& messenger);
   ~CentralQueueScheduler() override;
 
-  void Begin(int tiles, int workers) override;
+  void Begin(const TilePlan& plan, int workers) override;
   bool Service() override;
   void End() override;
   void Cancel() override;
