@@ -24,33 +24,46 @@ const char* BenchmarkOptions::Usage()
          "                      host has left, divided by its ranks)\n"
          "  --cache-fraction F  cache per rank, as a part of the bytes of all bricks (default 1)\n"
          "  --brick-edge E      cells along a brick's edge (default: by the scalar type)\n"
+         "  --tile-seconds T    on: the result has the cost of each tile of the last frame "
+         "(default off)\n"
          "  --picture FILE.ppm  writes the picture of the first position\n"
          "  --overlap N         workers per thread: while some wait for bricks, others trace "
          "(default 4)\n"
+         "  --scheduler S       queue (rank 0 deals out tiles) or stealing (default)\n"
          "  --latency US        microseconds that are added to every message's way (default 0)\n"
          "  --json FILE         writes the result; - is standard output\n";
 }
 
-BenchmarkOptions BenchmarkOptions::Parse(int argc, char** argv)
+void BenchmarkOptions::AddTo(OptionValues::Setters& setters)
 {
   using namespace OptionValues;
-  BenchmarkOptions options;
-  Setters setters{
-    { "--volume", [&](const auto&, const auto& text) { options.Volume = text; } },
+  this->RunOptions::AddTo(setters);
+  setters.merge(Setters{
+    { "--volume", [this](const auto&, const auto& text) { this->Volume = text; } },
     { "--isovalue",
-      [&](const auto& name, const auto& text)
-      { options.Isovalues = ToNumbers<double>(name, text, -1e300); } },
+      [this](const auto& name, const auto& text)
+      { this->Isovalues = ToNumbers<double>(name, text, -1e300); } },
     { "--memory",
-      [&](const auto& name, const auto& text)
-      { options.MemoryBytes = ToNumber<std::uint64_t>(name, text, 0) << 20; } },
+      [this](const auto& name, const auto& text)
+      { this->MemoryBytes = ToNumber<std::uint64_t>(name, text, 0) << 20; } },
     { "--cache-fraction",
-      [&](const auto& name, const auto& text)
-      { options.CacheFraction = ToNumber<double>(name, text, 0.0); } },
+      [this](const auto& name, const auto& text)
+      { this->CacheFraction = ToNumber<double>(name, text, 0.0); } },
     { "--brick-edge",
-      [&](const auto& name, const auto& text) { options.BrickEdge = ToNumber(name, text, 4); } },
-    { "--session", [&](const auto&, const auto& text) { options.Session = text; } },
-    { "--picture", [&](const auto&, const auto& text) { options.Picture = text; } },
-  };
+      [this](const auto& name, const auto& text) { this->BrickEdge = ToNumber(name, text, 4); } },
+    { "--session", [this](const auto&, const auto& text) { this->Session = text; } },
+    { "--tile-seconds",
+      [this](const auto& name, const auto& text) {
+        this->TileSeconds = ToChoice<bool>(name, text, { { "on", true }, { "off", false } });
+      } },
+    { "--picture", [this](const auto&, const auto& text) { this->Picture = text; } },
+  });
+}
+
+BenchmarkOptions BenchmarkOptions::Parse(int argc, char** argv)
+{
+  BenchmarkOptions options;
+  OptionValues::Setters setters;
   options.AddTo(setters);
   OptionValues::Parse(argc, argv, setters, Usage());
   return options;

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Times the tracer and the memory below it without ParaView. See the Usage of each benchmark.
 #include "AccessBenchmark.h"
+#include "BenchmarkCamera.h"
 #include "BenchmarkOptions.h"
 #include "BenchmarkVolume.h"
+#include "ConsolidationBenchmark.h"
 #include "DelayedTransport.h"
 #include "MeshBenchmark.h"
 
@@ -13,15 +15,15 @@
 #include "DSMRayTracing/frame/FrameGather.h"
 #include "DSMRayTracing/frame/FrameRenderer.h"
 
-#include <glm/gtc/constants.hpp>
-#include <glm/gtc/matrix_transform.hpp>
 #include <nlohmann/json.hpp>
 
 #include <sys/resource.h>
 
 #include <algorithm>
+#include <cstring>
 #include <fstream>
 #include <iostream>
+#include <iterator>
 #include <limits>
 #include <numeric>
 #include <sstream>
@@ -30,77 +32,6 @@ namespace
 {
 
 using Json = nlohmann::ordered_json;
-
-/// A position of the camera, and what the isovalues are multiplied with.
-struct Position
-{
-  double Azimuth = 0.0; ///< degrees
-  double Elevation = 20.0;
-  double Distance = 4.0; ///< in half-extents of the longest axis
-  double IsovalueFactor = 1.0;
-};
-
-/// An orbit, or what the session's file says. Every rank reads it.
-std::vector<Position> GetPositions(const BenchmarkOptions& options)
-{
-  std::vector<Position> positions;
-  if (options.Session.empty())
-  {
-    for (int frame = 0; frame < options.Frames; ++frame)
-    {
-      positions.emplace_back().Azimuth = 360.0 * frame / options.Frames;
-    }
-    return positions;
-  }
-  std::ifstream file(options.Session);
-  for (std::string line; std::getline(file, line);)
-  {
-    if (line.empty() || line.front() == '#')
-    {
-      continue;
-    }
-    std::istringstream numbers(line);
-    Position& next = positions.emplace_back();
-    if (!(numbers >> next.Azimuth >> next.Elevation >> next.Distance >> next.IsovalueFactor))
-    {
-      throw dsm::Error("A line of " + options.Session + " is not four numbers: " + line);
-    }
-  }
-  if (positions.empty())
-  {
-    throw dsm::Error("There is no session in " + options.Session + ".");
-  }
-  return positions;
-}
-
-struct Camera
-{
-  glm::dmat4 WorldToClip;
-  glm::dvec3 ViewDirection;
-};
-
-/// Looks at the volume's centre, view angle 30 degrees.
-Camera GetCamera(const rt::IsosurfaceObject& object, double aspect, const Position& position)
-{
-  const glm::dvec3 last(object.Field->Lattice.GetCells());
-  const glm::dvec3 center(object.IndexToWorld * glm::dvec4(0.5 * last, 1.0));
-  glm::dvec3 halfExtents(0.0);
-  for (int axis = 0; axis < 3; ++axis)
-  {
-    halfExtents += 0.5 * last[axis] * glm::abs(glm::dvec3(object.IndexToWorld[axis]));
-  }
-  const double distance =
-    position.Distance * std::max({ halfExtents.x, halfExtents.y, halfExtents.z });
-  const double elevation = glm::radians(position.Elevation);
-  const double azimuth = glm::radians(position.Azimuth);
-  const glm::dvec3 outward(std::cos(elevation) * std::sin(azimuth), std::sin(elevation),
-    std::cos(elevation) * std::cos(azimuth));
-  const double radius = 1.01 * glm::length(halfExtents);
-  return { glm::perspective(glm::radians(30.0), aspect, std::max(distance - radius, 0.01 * radius),
-             distance + radius) *
-      glm::lookAt(center + distance * outward, center, glm::dvec3(0.0, 1.0, 0.0)),
-    -outward };
-}
 
 void WritePicture(const rt::Picture& picture, const std::string& path)
 {
@@ -126,11 +57,13 @@ struct RankResult
   std::uint64_t Evictions = 0;
   std::uint64_t BytesReceived = 0;
   std::uint64_t Tiles = 0;
+  std::uint64_t NewTiles = 0;
   std::uint64_t ResidentBytes = 0;
   std::uint64_t CacheBytes = 0;
   std::uint64_t PeakRssBytes = 0;
   double WaitSeconds = 0.0;
   double IdleSeconds = 0.0;
+  double BusySeconds = 0.0;
 
   void Add(const rt::Frame& frame)
   {
@@ -141,6 +74,9 @@ struct RankResult
     this->Evictions += frame.Counters.Evictions;
     this->BytesReceived += frame.Counters.BytesReceived;
     this->Tiles += frame.Tiles.size();
+    this->NewTiles += std::count_if(
+      frame.Tiles.begin(), frame.Tiles.end(), [](const rt::Tile& tile) { return tile.IsNew; });
+    this->BusySeconds += frame.BusySeconds;
     this->WaitSeconds += 1e-9 * frame.Counters.Workers.WaitNanoseconds;
     this->IdleSeconds += 1e-9 * frame.IdleNanoseconds;
     this->ResidentBytes = frame.Counters.ResidentBytes;
@@ -153,6 +89,7 @@ Json ToJson(const RankResult& rank)
   return { { "accesses", rank.Accesses }, { "hits", rank.Hits }, { "misses", rank.Misses },
     { "joins", rank.Joins }, { "evictions", rank.Evictions },
     { "bytes_received", rank.BytesReceived }, { "tiles", rank.Tiles },
+    { "new_tiles", rank.NewTiles }, { "busy_seconds", rank.BusySeconds },
     { "wait_seconds", rank.WaitSeconds }, { "idle_seconds", rank.IdleSeconds },
     { "resident_bytes", rank.ResidentBytes }, { "cache_bytes", rank.CacheBytes },
     { "peak_rss_bytes", rank.PeakRssBytes } };
@@ -189,6 +126,7 @@ Json Summarise(const BenchmarkOptions& options, const dsm::BlockStore& store, co
     total.Misses += rank.Misses;
     total.Joins += rank.Joins;
     total.BytesReceived += rank.BytesReceived;
+    total.NewTiles += rank.NewTiles;
     total.IdleSeconds += rank.IdleSeconds;
     total.ResidentBytes = std::max(total.ResidentBytes, rank.ResidentBytes);
     total.CacheBytes = std::max(total.CacheBytes, rank.CacheBytes);
@@ -211,9 +149,38 @@ Json Summarise(const BenchmarkOptions& options, const dsm::BlockStore& store, co
     { "rays_per_second", framesPerSecond * options.Width * options.Height },
     { "accesses", total.Accesses }, { "hits", total.Hits }, { "misses", total.Misses },
     { "joins", total.Joins }, { "bytes_received", total.BytesReceived },
+    { "new_tiles", total.NewTiles },
     { "idle_part", total.IdleSeconds / (timing.LastSeconds * threads * ranks.size()) },
     { "resident_bytes", total.ResidentBytes }, { "cache_bytes", total.CacheBytes },
     { "peak_rss_bytes", total.PeakRssBytes }, { "image_hash", hexadecimal }, { "ranks", each } };
+}
+
+/// What each tile of the frame took; collective.
+std::vector<double> GatherTileSeconds(dsm::Messenger& messenger, const rt::Frame& frame)
+{
+  struct Cost
+  {
+    std::int64_t Tile;
+    double Seconds;
+  };
+  std::vector<std::byte> mine;
+  for (const rt::Tile& tile : frame.Tiles)
+  {
+    dsm::AttachTail(mine, Cost{ tile.Index, tile.Seconds });
+  }
+  std::vector<Cost> costs;
+  for (const auto& part : messenger.AllGather(mine))
+  {
+    const std::size_t before = costs.size();
+    costs.resize(before + part.size() / sizeof(Cost));
+    std::memcpy(costs.data() + before, part.data(), part.size());
+  }
+  std::sort(
+    costs.begin(), costs.end(), [](const Cost& a, const Cost& b) { return a.Tile < b.Tile; });
+  std::vector<double> seconds;
+  std::transform(costs.begin(), costs.end(), std::back_inserter(seconds),
+    [](const Cost& cost) { return cost.Seconds; });
+  return seconds;
 }
 
 void RunIsosurface(const BenchmarkOptions& options, dsm::Messenger& messenger)
@@ -236,6 +203,7 @@ void RunIsosurface(const BenchmarkOptions& options, dsm::Messenger& messenger)
   scene.Lights.emplace_back();
   const std::vector<double> isovalues = object.Isovalues;
   const std::vector<Position> positions = GetPositions(options);
+  rt::Frame frame;
   const auto trace = [&](const Position& position)
   {
     const Camera camera =
@@ -247,7 +215,8 @@ void RunIsosurface(const BenchmarkOptions& options, dsm::Messenger& messenger)
     request.Width = options.Width;
     request.Height = options.Height;
     request.WorldToClip = camera.WorldToClip;
-    return renderer.Render(store, scene, request);
+    request.Scheduling = options.Scheduling;
+    frame = renderer.Render(store, scene, request, &frame);
   };
 
   Timing timing;
@@ -265,7 +234,7 @@ void RunIsosurface(const BenchmarkOptions& options, dsm::Messenger& messenger)
     timing.LastSeconds = 0.0;
     for (std::size_t number = 0; number < positions.size(); ++number)
     {
-      const rt::Frame frame = trace(positions[number]);
+      trace(positions[number]);
       fastest[number] = std::min(fastest[number], frame.Seconds);
       timing.LastSeconds += frame.Seconds;
       mine.Add(frame);
@@ -288,23 +257,19 @@ void RunIsosurface(const BenchmarkOptions& options, dsm::Messenger& messenger)
   }
   mine.PeakRssBytes = GetPeakRssBytes();
   const auto ranks = messenger.AllGatherValue(mine);
+  const std::vector<double> tileSeconds = GatherTileSeconds(messenger, frame);
   if (messenger.GetRank() == 0)
   {
-    const Json result = Summarise(options, store, timing, ranks);
-    if (options.Json == "-")
+    Json result = Summarise(options, store, timing, ranks);
+    if (options.TileSeconds)
     {
-      std::cout << result.dump(2) << std::endl;
+      result["tile_seconds"] = tileSeconds;
     }
-    else if (!options.Json.empty())
-    {
-      std::ofstream(options.Json) << result.dump(2) << '\n';
-    }
-    if (options.Json != "-")
-    {
-      std::cout << options.Volume << ": " << result["frames_per_second"].get<double>()
-                << " frames/s, " << 1e-6 * result["rays_per_second"].get<double>()
-                << " million rays/s, picture " << result["image_hash"].get<std::string>() << '\n';
-    }
+    std::ostringstream text;
+    text << options.Volume << ": " << result["frames_per_second"].get<double>() << " frames/s, "
+         << 1e-6 * result["rays_per_second"].get<double>() << " million rays/s, picture "
+         << result["image_hash"].get<std::string>() << '\n';
+    RunOptions::Write(options.Json, result.dump(2), text.str());
   }
 }
 
@@ -327,6 +292,12 @@ int main(int argc, char** argv)
       network.SetLatency(options.Latency);
       RunIsosurface(options, messenger);
     }
+    else if (name == "consolidation")
+    {
+      const ConsolidationBenchmark::Options options = ConsolidationBenchmark::Parse(argc, argv);
+      network.SetLatency(options.Latency);
+      ConsolidationBenchmark::Run(options, messenger);
+    }
     else if (name == "access")
     {
       AccessBenchmark::Run(AccessBenchmark::Parse(argc, argv), messenger);
@@ -340,7 +311,8 @@ int main(int argc, char** argv)
     else
     {
       throw dsm::Error(std::string("The first argument names the benchmark.\n") +
-        BenchmarkOptions::Usage() + AccessBenchmark::Usage() + MeshBenchmark::Usage());
+        BenchmarkOptions::Usage() + ConsolidationBenchmark::Usage() + AccessBenchmark::Usage() +
+        MeshBenchmark::Usage());
     }
   }
   catch (const std::exception& error)

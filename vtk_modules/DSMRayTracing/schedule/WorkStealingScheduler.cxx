@@ -28,6 +28,17 @@ std::uint32_t Spread(std::uint32_t x)
   return (x | x << 1) & 0x55555555u;
 }
 
+/// Neighbours on the curve are near one another.
+void SortAlongCurve(std::vector<int>& tiles, int columns)
+{
+  const auto place = [=](int tile)
+  {
+    return Spread(static_cast<std::uint32_t>(tile % columns)) |
+      Spread(static_cast<std::uint32_t>(tile / columns)) << 1;
+  };
+  std::sort(tiles.begin(), tiles.end(), [&](int a, int b) { return place(a) < place(b); });
+}
+
 std::vector<std::byte> Pack(const std::vector<std::int32_t>& tiles)
 {
   std::vector<std::byte> bytes;
@@ -52,12 +63,7 @@ std::vector<int> WorkStealingScheduler::CutInitially(const TilePlan& plan, int r
 {
   std::vector<int> tiles(static_cast<std::size_t>(plan.Tiles));
   std::iota(tiles.begin(), tiles.end(), 0);
-  const auto place = [&](int tile)
-  {
-    return Spread(static_cast<std::uint32_t>(tile % plan.Columns)) |
-      Spread(static_cast<std::uint32_t>(tile / plan.Columns)) << 1;
-  };
-  std::sort(tiles.begin(), tiles.end(), [&](int a, int b) { return place(a) < place(b); });
+  SortAlongCurve(tiles, plan.Columns);
   const auto border = [&](int of)
   { return tiles.begin() + static_cast<std::ptrdiff_t>(std::int64_t(plan.Tiles) * of / ranks); };
   return { border(rank), border(rank + 1) };
@@ -68,7 +74,14 @@ void WorkStealingScheduler::Begin(const TilePlan& plan, int)
   const int rank = this->Messenger.GetRank();
   const int ranks = this->Messenger.GetSize();
   this->Tiles = plan.Tiles;
-  const std::vector<int> own = plan.HasHistory ? plan.Mine : CutInitially(plan, rank, ranks);
+  std::vector<int> own = plan.HasHistory ? plan.Mine : CutInitially(plan, rank, ranks);
+  SortAlongCurve(own, plan.Columns);
+  // To and fro: a frame begins where the one before ended, whose bricks are still in the cache.
+  this->Backward = plan.HasHistory && !this->Backward;
+  if (this->Backward)
+  {
+    std::reverse(own.begin(), own.end());
+  }
   this->Own.assign(own.begin(), own.end());
   this->Cancelled = false;
   this->RequestUnderWay = false;

@@ -19,8 +19,9 @@ namespace rt
 /// in the last frame, whose bricks it has; without a tile left it steals from other ranks in random
 /// order; and the rank that was the slowest gives some away at the start. No rank sees all tiles, and
 /// as long as all have work no message is sent. Where we deviate: the first frame is cut along a
-/// space-filling curve; a victim gives half of what it has left, so that steals are few; and the
-/// slowest gives to the fastest, which every rank knows.
+/// space-filling curve; a victim gives half of what it has left, so that steals are few; the
+/// slowest gives to the fastest, which every rank knows; and a rank goes through its tiles along the
+/// curve, to and fro from frame to frame, so that it begins with bricks that it has just used.
 class WorkStealingScheduler final : public TileScheduler
 {
 public:
@@ -47,6 +48,7 @@ private:
 
   dsm::Messenger& Messenger;
   int Tiles = 0;
+  bool Backward = false;
   std::mt19937 Random;
 
   // Communication thread only.
