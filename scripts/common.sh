@@ -78,10 +78,10 @@ build_project() {
 
 # The folder that holds the plugin.
 plugin_directory() {
-  local plugin
-  plugin=$(find "$build" -name DSMRayTracer.so -print -quit)
-  [ -n "$plugin" ] || fail "DSMRayTracer.so is not in $build; did the build stop early?"
-  dirname "$plugin"
+  local directory=$build/lib/DSMRayTracer
+  [ -f "$directory/DSMRayTracer.so" ] ||
+    fail "DSMRayTracer.so is not in $directory; did the build stop early?"
+  say "$directory"
 }
 
 # mpirun with N ranks, also where ranks are more than cores, or the user is root.
