@@ -34,6 +34,7 @@ vtkPVDSMGeometryRepresentation::vtkPVDSMGeometryRepresentation()
   auto* mapper = vtkDSMPolyDataMapper::New();
   vtkNew<vtkCompositeDataDisplayAttributes> attributes;
   mapper->SetCompositeDataDisplayAttributes(attributes);
+  mapper->MakesSceneOff(); // on ParaView's client there shall be none
   mapper->AddObserver(
     vtkCommand::ProgressEvent, this, &vtkPVDSMGeometryRepresentation::ForwardProgress);
   this->Mapper->Delete();

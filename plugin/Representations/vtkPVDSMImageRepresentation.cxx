@@ -34,6 +34,7 @@ vtkPVDSMImageRepresentation::vtkPVDSMImageRepresentation()
   : Clipping(std::make_unique<vtkPVDSMClipping>())
 {
   this->Volume->SetMapper(this->Mapper);
+  this->Mapper->MakesSceneOff(); // on ParaView's client there shall be none
   this->Mapper->AddObserver(
     vtkCommand::ProgressEvent, this, &vtkPVDSMImageRepresentation::ForwardProgress);
   this->SelectionMapper->SetSource([this]() -> vtkSmartPointer<vtkDataObject>

@@ -248,6 +248,7 @@ TEST_F(VolumeMapper, FollowsWhatChanges)
 TEST_F(VolumeMapper, TheSceneIsTheRenderersAndEndsWithItsLastHolder)
 {
   EXPECT_EQ(vtkDSMScene::ForRenderer(this->Renderer), this->Scene);
+  this->Mapper->MakesSceneOff();
   this->Renderer->AddVolume(this->Volume);
   EXPECT_GT(CountCovered(this->RenderDistances()), 0);
   this->Scene = nullptr;

@@ -33,6 +33,7 @@
 #include <array>
 #include <map>
 #include <optional>
+#include <set>
 #include <vector>
 
 namespace
@@ -115,8 +116,9 @@ public:
   void TraceSamples(const rt::Scene& scene, rt::FrameRequest& request);
 
   vtkWeakPointer<vtkRenderer> Renderer;
-  unsigned long Observers[2] = { 0, 0 };
-  glm::vec3 Background{ 0.0f }; ///< of this rank's renderer, as the application set it
+  unsigned long Observers[3] = { 0, 0, 0 };
+  vtkSmartPointer<vtkDSMScene> Keeper; ///< the scene itself, when nobody but the renderer has it
+  glm::vec3 Background{ 0.0f };        ///< of this rank's renderer, as the application set it
   vtkSmartPointer<vtkMultiProcessController> Controller;
   vtkNew<vtkDSMFrameProp> Prop;
   vtkNew<vtkDSMStatistics> Statistics;
@@ -175,6 +177,47 @@ vtkSmartPointer<vtkDSMScene> vtkDSMScene::ForRenderer(vtkRenderer* renderer)
   return scene;
 }
 
+vtkDSMScene* vtkDSMScene::NewForRenderer(vtkRenderer* renderer)
+{
+  const vtkSmartPointer<vtkDSMScene> scene = ForRenderer(renderer);
+  scene->Register(nullptr);
+  return scene;
+}
+
+void vtkDSMScene::DrawWithoutScene(vtkRenderer* renderer, vtkObject* mapper)
+{
+  const auto known = GetRegistry().find(renderer);
+  if (known != GetRegistry().end() && known->second->GetRenderer() == renderer)
+  {
+    return;
+  }
+  auto* controller = vtkMultiProcessController::GetGlobalController();
+  if (controller && controller->GetNumberOfProcesses() > 1)
+  {
+    static std::set<vtkWeakPointer<vtkRenderer>> told;
+    if (told.insert(renderer).second)
+    {
+      vtkErrorWithObjectMacro(mapper,
+        << controller->GetNumberOfProcesses()
+        << " processes render, but the renderer has no scene. "
+        << "Call vtkDSMScene::ForRenderer(renderer) on every rank before the first frame, and keep "
+        << "what it returns.");
+    }
+    return;
+  }
+  const vtkSmartPointer<vtkDSMScene> scene = ForRenderer(renderer);
+  scene->Self->Keeper = scene;
+  scene->NoteBackground();
+  scene->Trace();
+  scene->Self->Prop->RenderOpaqueGeometry(renderer);
+}
+
+void vtkDSMScene::EndWithRenderer()
+{
+  // This may be the last reference, so `this` may be gone when it returns.
+  const vtkSmartPointer<vtkDSMScene> last = std::move(this->Self->Keeper);
+}
+
 void vtkDSMScene::Attach(vtkRenderer* renderer)
 {
   this->Self->Renderer = renderer;
@@ -182,6 +225,8 @@ void vtkDSMScene::Attach(vtkRenderer* renderer)
     vtkCommand::StartEvent, this, &vtkDSMScene::NoteBackground, BackgroundPriority);
   this->Self->Observers[1] =
     renderer->AddObserver(vtkCommand::StartEvent, this, &vtkDSMScene::Trace, TracePriority);
+  this->Self->Observers[2] =
+    renderer->AddObserver(vtkCommand::DeleteEvent, this, &vtkDSMScene::EndWithRenderer);
   renderer->AddViewProp(this->Self->Prop);
 }
 
@@ -209,6 +254,11 @@ void vtkDSMScene::DeliverTiles()
 {
   this->Self->DrawsColor = nullptr;
   this->Self->DrawsPlace = nullptr;
+}
+
+void vtkDSMScene::DeliverEverywhere()
+{
+  this->Self->DrawsColor = [](vtkCamera*) { return true; };
 }
 
 void vtkDSMScene::DeliverEverywhere(std::function<bool(vtkCamera*)> drawsColor)

@@ -8,12 +8,17 @@
 
 #include "vtkCompositeDataIterator.h"
 #include "vtkCompositeDataSet.h"
+#include "vtkContourValues.h"
 #include "vtkDataObject.h"
+#include "vtkDataSet.h"
 #include "vtkMatrix4x4.h"
+#include "vtkPointData.h"
 #include "vtkProp3D.h"
 #include "vtkProperty.h"
 #include "vtkScalarsToColors.h"
 #include "vtkSmartPointer.h"
+#include "vtkVolume.h"
+#include "vtkVolumeProperty.h"
 
 #include <algorithm>
 #include <cmath>
@@ -143,8 +148,8 @@ void vtkDSMSceneVolume::Update(const std::shared_ptr<vtkDSMRankGroup>& group, bo
   const std::shared_ptr<Published> oldIso = this->Iso;
   const std::shared_ptr<Published> oldColor = this->Color;
   const unsigned version = group->GetSettingsVersion();
-  this->Iso = this->Require({ mapper->GetIsoArray(), mapper->GetIsoComponent() },
-    "isosurface array", version, { oldIso, oldColor });
+  this->Iso = this->Require({ this->GetIsoArray(), mapper->GetIsoComponent() }, "isosurface array",
+    version, { oldIso, oldColor });
   this->Color.reset();
   if (mapper->GetScalarVisibility() && !mapper->GetColorArray().empty() && mapper->GetLookupTable())
   {
@@ -164,12 +169,79 @@ void vtkDSMSceneVolume::Update(const std::shared_ptr<vtkDSMRankGroup>& group, bo
   }
 }
 
+bool vtkDSMSceneVolume::IsLikeRayCastMapper() const
+{
+  return this->Mapper->GetBlendMode() == vtkVolumeMapper::ISOSURFACE_BLEND &&
+    vtkVolume::SafeDownCast(this->Prop);
+}
+
+/// Empty: the active scalars.
+std::string vtkDSMSceneVolume::GetIsoArray()
+{
+  vtkDSMVolumeMapper* mapper = this->Mapper;
+  if (!mapper->GetIsoArray().empty() || !this->IsLikeRayCastMapper())
+  {
+    return mapper->GetIsoArray();
+  }
+  const int mode = mapper->GetScalarMode();
+  if (mode == VTK_SCALAR_MODE_USE_CELL_DATA || mode == VTK_SCALAR_MODE_USE_CELL_FIELD_DATA)
+  {
+    this->Messages.push_back(
+      "The scalar mode asks for cell data, but isosurfaces need values at the "
+      "points; those are taken. Use vtkCellDataToPointData.");
+  }
+  if (mode != VTK_SCALAR_MODE_USE_POINT_FIELD_DATA)
+  {
+    return {};
+  }
+  if (mapper->GetArrayAccessMode() == VTK_GET_ARRAY_BY_NAME)
+  {
+    return mapper->GetArrayName() ? mapper->GetArrayName() : "";
+  }
+  auto* data = vtkDataSet::SafeDownCast(mapper->GetDataObjectInput());
+  const char* name = data ? data->GetPointData()->GetArrayName(mapper->GetArrayId()) : nullptr;
+  return name ? name : "";
+}
+
+rt::Material vtkDSMSceneVolume::GetMaterial(double isovalue)
+{
+  rt::Material material = this->IsLikeRayCastMapper()
+    ? vtkDSMTranslation::ToMaterial(vtkVolume::SafeDownCast(this->Prop)->GetProperty(), isovalue)
+    : vtkDSMTranslation::ToMaterial(this->Mapper->GetSurfaceProperty());
+  material.Reflectivity = static_cast<float>(this->GetLightOptions()->GetReflectivity());
+  return material;
+}
+
 std::vector<double> vtkDSMSceneVolume::GetIsovalues()
 {
-  std::vector<double> values;
-  for (int index = 0; index < this->Mapper->GetNumberOfIsoValues(); ++index)
+  vtkDSMVolumeMapper* mapper = this->Mapper;
+  std::vector<double> chosen;
+  if (this->IsLikeRayCastMapper())
   {
-    const double value = this->Mapper->GetIsoValue(index);
+    vtkContourValues* contours =
+      vtkVolume::SafeDownCast(this->Prop)->GetProperty()->GetIsoSurfaceValues();
+    for (int index = 0; index < contours->GetNumberOfContours(); ++index)
+    {
+      chosen.push_back(contours->GetValue(index));
+    }
+  }
+  else
+  {
+    for (int index = 0; index < mapper->GetNumberOfIsoValues(); ++index)
+    {
+      chosen.push_back(mapper->GetIsoValue(index));
+    }
+    if (mapper->GetBlendMode() != vtkVolumeMapper::COMPOSITE_BLEND)
+    {
+      this->Messages.push_back(
+        "The mapper draws isosurfaces; its other blend modes are not there. Call "
+        "SetBlendModeToIsoSurface(), or use VTK's own mapper.");
+    }
+  }
+  std::vector<double> values;
+  for (std::size_t index = 0; index < chosen.size(); ++index)
+  {
+    const double value = chosen[index];
     if (std::isfinite(value))
     {
       values.push_back(value);
@@ -230,9 +302,20 @@ void vtkDSMSceneVolume::AddTo(rt::Scene& scene)
   }
   this->Prop->ComputeMatrix();
   const glm::dmat4 dataToWorld = vtkDSMTranslation::ToMatrix(this->Prop->GetMatrix());
-  rt::Material material = vtkDSMTranslation::ToMaterial(this->Mapper->GetSurfaceProperty());
-  material.Reflectivity = static_cast<float>(this->GetLightOptions()->GetReflectivity());
   const rt::ClipRegion clipping = this->GetClipRegion(dataToWorld);
+  // A property's transfer functions may give each isovalue a look of its own.
+  std::vector<std::vector<double>> groups;
+  if (this->IsLikeRayCastMapper())
+  {
+    for (const double isovalue : isovalues)
+    {
+      groups.push_back({ isovalue });
+    }
+  }
+  else
+  {
+    groups.push_back(isovalues);
+  }
   const bool colored = this->Color && !this->Color->Fields.empty();
   for (std::size_t lattice = 0; lattice < this->Data->GetNumberOfLattices(); ++lattice)
   {
@@ -240,17 +323,20 @@ void vtkDSMSceneVolume::AddTo(rt::Scene& scene)
     {
       continue;
     }
-    rt::IsosurfaceObject object;
-    object.SetIndexToWorld(dataToWorld * this->Data->GetIndexToWorld(lattice));
-    object.Field = this->Iso->Fields[lattice];
-    object.Isovalues = isovalues;
-    object.Surface = material;
-    object.Clipping = clipping;
-    if (colored && this->Color->Fields[lattice])
+    for (const std::vector<double>& group : groups)
     {
-      object.ColorField = this->Color->Fields[lattice];
-      object.Colors = this->GetColorMap();
+      rt::IsosurfaceObject object;
+      object.SetIndexToWorld(dataToWorld * this->Data->GetIndexToWorld(lattice));
+      object.Field = this->Iso->Fields[lattice];
+      object.Isovalues = group;
+      object.Surface = this->GetMaterial(group.front());
+      object.Clipping = clipping;
+      if (colored && this->Color->Fields[lattice])
+      {
+        object.ColorField = this->Color->Fields[lattice];
+        object.Colors = this->GetColorMap();
+      }
+      scene.Isosurfaces.push_back(std::move(object));
     }
-    scene.Isosurfaces.push_back(std::move(object));
   }
 }

@@ -42,7 +42,11 @@ private:
 
   std::shared_ptr<Published> Require(const vtkDSMVolumeData::Choice& choice, const char* purpose,
     unsigned settingsVersion, const std::vector<std::shared_ptr<Published>>& known);
+  /// Whether isovalues and look come from the volume's property; else they are the mapper's.
+  bool IsLikeRayCastMapper() const;
+  std::string GetIsoArray();
   std::vector<double> GetIsovalues();
+  rt::Material GetMaterial(double isovalue);
   const rt::ColorMap& GetColorMap();
   rt::ClipRegion GetClipRegion(const glm::dmat4& dataToWorld) const;
 

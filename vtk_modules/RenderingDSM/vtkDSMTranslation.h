@@ -16,6 +16,7 @@ class vtkProperty;
 class vtkRenderer;
 class vtkScalarsToColors;
 class vtkTexture;
+class vtkVolumeProperty;
 
 /// VTK's words for a picture in the tracer's.
 class vtkDSMTranslation
@@ -24,6 +25,9 @@ public:
   static glm::dmat4 ToMatrix(vtkMatrix4x4* matrix);
 
   static rt::Material ToMaterial(vtkProperty* property);
+
+  /// The look of an isosurface by the transfer functions and the shading of a volume's property.
+  static rt::Material ToMaterial(vtkVolumeProperty* property, double isovalue);
 
   /// The texture's picture with its settings, after `transform` of the coordinates. Null when
   /// the texture has no picture of bytes.
