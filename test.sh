@@ -5,7 +5,7 @@
 set -uo pipefail
 . "$(dirname "${BASH_SOURCE[0]}")/scripts/common.sh"
 
-install_packages "${packages[@]}" libgtest-dev clang-format iproute2
+install_packages "${packages[@]}" libgtest-dev clang-format iproute2 python3-mpi4py
 build_project --with-tests
 results=$build/tests.xml
 rm -f "$results"

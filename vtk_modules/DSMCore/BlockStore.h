@@ -128,6 +128,7 @@ private:
   Messenger& Messages;
   Settings Current;
   bool Settled = true;
+  std::uint64_t Publications = 0;
   MemoryOrganization InForce = MemoryOrganization::ObjectBased;
   std::string Explanation;
   MemoryPlan::Budget Budget;

@@ -3,6 +3,8 @@
 
 #include "DSMCore/HostMemory.h"
 #include "DSMRayTracing/accel/TriangleMeshBuilder.h"
+#include "DSMRayTracing/frame/ByteHash.h"
+#include "vtkDSMContent.h"
 #include "vtkDSMGather.h"
 #include "vtkDSMPolyDataMapper.h"
 #include "vtkDSMTubesAndSpheres.h"
@@ -284,7 +286,40 @@ void vtkDSMMeshData::Publish()
   }
 }
 
-std::vector<std::uint64_t> vtkDSMMeshData::Describe(vtkDSMPolyDataMapper* mapper, bool textured)
+std::vector<std::uint64_t> vtkDSMMeshData::GetStamp(vtkDSMPolyDataMapper* mapper, bool textured)
+{
+  // Times of change are unique in a process: the same place and time is the same array.
+  std::vector<std::uint64_t> numbers = Describe(mapper, textured,
+    [](vtkAbstractArray* array)
+    {
+      const std::uint64_t identity[] = { reinterpret_cast<std::uintptr_t>(array),
+        array ? array->GetMTime() : 0 };
+      rt::ByteHash hash;
+      hash.Add(identity, sizeof(identity));
+      return hash.Get();
+    });
+  // Who writes new values to an old array need not say so at the array.
+  for (const vtkDSMMeshBlock& block : vtkDSMMeshBlock::Collect(mapper))
+  {
+    numbers.push_back(block.Data->GetMTime());
+  }
+  vtkDataObject* data =
+    mapper->GetNumberOfInputConnections(0) > 0 ? mapper->GetInputDataObject(0, 0) : nullptr;
+  numbers.push_back(reinterpret_cast<std::uintptr_t>(data));
+  numbers.push_back(data ? data->GetMTime() : 0);
+  numbers.push_back(data ? data->GetUpdateTime() : 0);
+  return numbers;
+}
+
+std::vector<std::uint64_t> vtkDSMMeshData::HashContent(
+  vtkDSMPolyDataMapper* mapper, bool textured, int threads)
+{
+  return Describe(mapper, textured,
+    [threads](vtkAbstractArray* array) { return vtkDSMContent::Hash(array, threads); });
+}
+
+std::vector<std::uint64_t> vtkDSMMeshData::Describe(vtkDSMPolyDataMapper* mapper, bool textured,
+  const std::function<std::uint64_t(vtkAbstractArray*)>& identify)
 {
   std::vector<std::uint64_t> numbers;
   const auto addNumber = [&numbers](double number)
@@ -293,12 +328,7 @@ std::vector<std::uint64_t> vtkDSMMeshData::Describe(vtkDSMPolyDataMapper* mapper
     std::memcpy(&bits, &number, sizeof(bits));
     numbers.push_back(bits);
   };
-  // Times of change are unique in a process: the same place and time is the same content.
-  const auto addObject = [&numbers](vtkObject* object)
-  {
-    numbers.push_back(reinterpret_cast<std::uintptr_t>(object));
-    numbers.push_back(object ? object->GetMTime() : 0);
-  };
+  const auto addArray = [&](vtkAbstractArray* array) { numbers.push_back(identify(array)); };
   addNumber(mapper->GetLineRadius());
   addNumber(mapper->GetPointRadius());
   if (mapper->GetScalarVisibility())
@@ -312,17 +342,17 @@ std::vector<std::uint64_t> vtkDSMMeshData::Describe(vtkDSMPolyDataMapper* mapper
   for (const vtkDSMMeshBlock& block : vtkDSMMeshBlock::Collect(mapper))
   {
     vtkPolyData* data = block.Data;
-    addObject(data->GetPoints()->GetData());
+    addArray(data->GetPoints()->GetData());
     for (vtkCellArray* cells :
       { data->GetVerts(), data->GetLines(), data->GetPolys(), data->GetStrips() })
     {
-      addObject(cells->GetNumberOfCells() > 0 ? cells : nullptr);
-      addObject(cells->GetNumberOfCells() > 0 ? cells->GetConnectivityArray() : nullptr);
+      addArray(cells->GetNumberOfCells() > 0 ? cells->GetOffsetsArray() : nullptr);
+      addArray(cells->GetNumberOfCells() > 0 ? cells->GetConnectivityArray() : nullptr);
     }
-    addObject(data->GetPointData()->GetNormals());
-    addObject(textured ? data->GetPointData()->GetTCoords() : nullptr);
-    addObject(data->GetCellData()->GetAbstractArray(vtkDataSetAttributes::GhostArrayName()));
-    addObject(data->GetPointData()->GetAbstractArray(mapper->GetRadiusArray().c_str()));
+    addArray(data->GetPointData()->GetNormals());
+    addArray(textured ? data->GetPointData()->GetTCoords() : nullptr);
+    addArray(data->GetCellData()->GetAbstractArray(vtkDataSetAttributes::GhostArrayName()));
+    addArray(data->GetPointData()->GetAbstractArray(mapper->GetRadiusArray().c_str()));
     addNumber(block.Appearance.Opacity);
     for (const float channel : block.Appearance.Color)
     {
@@ -330,7 +360,7 @@ std::vector<std::uint64_t> vtkDSMMeshData::Describe(vtkDSMPolyDataMapper* mapper
     }
     int field = 0;
     vtkAbstractArray* colors = vtkDSMMeshColors::FindArray(mapper, data, field);
-    addObject(colors);
+    addArray(colors);
     if (colors)
     {
       addNumber(field);
@@ -342,7 +372,11 @@ std::vector<std::uint64_t> vtkDSMMeshData::Describe(vtkDSMPolyDataMapper* mapper
         addNumber(table->GetVectorMode());
         addNumber(table->GetVectorComponent());
       }
-      addObject(vtkDSMMeshColors::DependsOnTable(mapper, colors) ? table : nullptr);
+      if (vtkDSMMeshColors::DependsOnTable(mapper, colors))
+      {
+        numbers.push_back(reinterpret_cast<std::uintptr_t>(table));
+        numbers.push_back(table->GetMTime());
+      }
     }
   }
   return numbers;

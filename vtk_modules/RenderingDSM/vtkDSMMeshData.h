@@ -11,10 +11,12 @@
 #include "vtkSmartPointer.h"
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
 
+class vtkAbstractArray;
 class vtkDSMPolyDataMapper;
 class vtkDSMTubesAndSpheres;
 class vtkPolyData;
@@ -42,9 +44,13 @@ public:
   /// What is wrong, but can be shown in another way; empty when nothing is. The same on every rank.
   const std::string& GetMessage() const { return this->Message; }
 
-  /// Local: numbers that are others when, and only when, this rank's data or what is read of them
-  /// are.
-  static std::vector<std::uint64_t> Describe(vtkDSMPolyDataMapper* mapper, bool textured);
+  /// Local, quick: numbers that are others when anything may be.
+  static std::vector<std::uint64_t> GetStamp(vtkDSMPolyDataMapper* mapper, bool textured);
+
+  /// Local, reads the data: numbers that are others when, and only when, this rank's data or what is
+  /// read of them are.
+  static std::vector<std::uint64_t> HashContent(
+    vtkDSMPolyDataMapper* mapper, bool textured, int threads);
 
 private:
   /// What tells meshes apart; plain, so that ranks can exchange it.
@@ -72,6 +78,8 @@ private:
   void AddSurface(const vtkDSMMeshBlock& block, vtkPolyData* data, const vtkDSMMeshColors& colors);
   void CheckColors(const std::vector<ColorReport>& mine);
   std::string ListArrays() const;
+  static std::vector<std::uint64_t> Describe(vtkDSMPolyDataMapper* mapper, bool textured,
+    const std::function<std::uint64_t(vtkAbstractArray*)>& identify);
   void Publish();
 
   std::shared_ptr<vtkDSMRankGroup> Group;

@@ -54,7 +54,8 @@ public:
   /**
    * One row for each rank. Columns: Rank, Host, Organization (as the frame found it), Threads,
    * BytesResident (bricks that it owns), BytesShared (read in place, on its host), BytesCopied
-   * (replicated), BytesCached, PeakBytesCached, CacheCapacity, MemoryBudget, Accesses, Hits, Misses,
+   * (replicated), BytesCached, PeakBytesCached, CacheCapacity, MemoryBudget, Publications (how often
+   * an array or a surface was cut into bricks since the ranks came together), Accesses, Hits, Misses,
    * Joins (misses that found the brick requested already), Evictions, BytesReceived, BytesSent,
    * WaitSeconds (of the workers, for bricks), Tiles, Seconds (of tracing). What workers count is
    * summed over the rank's workers.
