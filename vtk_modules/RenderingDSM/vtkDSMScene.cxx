@@ -29,6 +29,9 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstring>
 #include <map>
 #include <optional>
 #include <vector>
@@ -46,6 +49,22 @@ constexpr double InteractiveRate = 1.0;
 
 /// Of the diagonal of what is shown: as far as ambient occlusion looks when nothing is said.
 constexpr double AmbientOcclusionPart = 0.2;
+
+/// Whether matrices differ by rounding only.
+bool IsNearly(const glm::dmat4& a, const glm::dmat4& b)
+{
+  constexpr double tolerance = 1e-9;
+  double difference = 0.0;
+  double largest = 0.0;
+  for (int element = 0; element < 16; ++element)
+  {
+    const double one = a[element / 4][element % 4];
+    const double other = b[element / 4][element % 4];
+    difference = std::max(difference, std::abs(one - other));
+    largest = std::max(largest, std::abs(one));
+  }
+  return difference <= tolerance * largest;
+}
 
 std::map<vtkRenderer*, vtkDSMScene*>& GetRegistry()
 {
@@ -78,7 +97,7 @@ public:
   void Clear();
   rt::LightTransport GetTransport() const;
   rt::DebugView GetDebugView() const;
-  glm::vec3 AgreeOnBackground();
+  void AgreeOnView(rt::Scene& scene, rt::FrameRequest& request) const;
   int CountSamplesOfFrame(int missing) const;
   void TraceSamples(const rt::Scene& scene, rt::FrameRequest& request);
 
@@ -369,7 +388,7 @@ void vtkDSMScene::Internals::Draw()
     this->Clear();
     return;
   }
-  scene.Transport.Background = this->AgreeOnBackground();
+  this->AgreeOnView(scene, request);
   this->TraceSamples(scene, request);
   std::optional<rt::Picture> whole;
   if (this->DrawsColor)
@@ -408,11 +427,36 @@ rt::DebugView vtkDSMScene::Internals::GetDebugView() const
   return rt::DebugView::Off;
 }
 
-/// Collective. What mirrored rays see where they meet nothing: rank 0's background, since ParaView's
-/// other ranks have none.
-glm::vec3 vtkDSMScene::Internals::AgreeOnBackground()
+/// Collective. Takes rank 0's view: the camera that came from there is not always the same to the last
+/// bit, ParaView's other ranks have no background, which mirrored rays see where they meet nothing, and
+/// lights may follow the camera. A camera that differs by more than rounding is left to be refused.
+void vtkDSMScene::Internals::AgreeOnView(rt::Scene& scene, rt::FrameRequest& request) const
 {
-  return this->Group->GetMessenger().AllGatherValue(this->Background).front();
+  struct View
+  {
+    glm::dmat4 WorldToClip;
+    glm::vec3 Background;
+  };
+  std::vector<std::byte> mine = dsm::Encode(View{ request.WorldToClip, this->Background });
+  for (const rt::Light& light : scene.Lights)
+  {
+    dsm::AttachTail(mine, light);
+  }
+  const auto all = this->Group->GetMessenger().AllGather(std::move(mine));
+  const std::vector<std::byte>& first = all.front();
+  View view;
+  std::memcpy(&view, first.data(), sizeof(view));
+  scene.Transport.Background = view.Background;
+  scene.Lights.resize((first.size() - sizeof(view)) / sizeof(rt::Light));
+  for (std::size_t index = 0; index < scene.Lights.size(); ++index)
+  {
+    std::memcpy(&scene.Lights[index], first.data() + sizeof(view) + index * sizeof(rt::Light),
+      sizeof(rt::Light));
+  }
+  if (IsNearly(view.WorldToClip, request.WorldToClip))
+  {
+    request.WorldToClip = view.WorldToClip;
+  }
 }
 
 /// Collective. Traces the frame, or what is missing of it.
