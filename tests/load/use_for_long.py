@@ -157,7 +157,8 @@ class Dataset:
         elif action == 4:
             self.source.UpdatePipeline()
             arrays = list(self.source.PointData.keys())
-            simple.ColorBy(display, ("POINTS", random_numbers.choice(arrays)) if arrays else None)
+            if arrays:
+                simple.ColorBy(display, ("POINTS", random_numbers.choice(arrays)))
         else:
             toggle_one(random_numbers, display, {} if self.is_volume else MESH_OPTIONS)
 

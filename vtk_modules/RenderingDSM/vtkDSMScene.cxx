@@ -22,6 +22,8 @@
 #include "vtkMatrix4x4.h"
 #include "vtkMultiProcessController.h"
 #include "vtkObjectFactory.h"
+#include "vtkOpenGLRenderWindow.h"
+#include "vtkOpenGLState.h"
 #include "vtkPropCollection.h"
 #include "vtkRenderWindow.h"
 #include "vtkRenderer.h"
@@ -49,6 +51,34 @@ constexpr double InteractiveRate = 1.0;
 
 /// Of the diagonal of what is shown: as far as ambient occlusion looks when nothing is said.
 constexpr double AmbientOcclusionPart = 0.2;
+
+/// Leaves OpenGL as it was found: an application that shows progress and messages draws windows of its
+/// own meanwhile.
+class OpenGLGuard
+{
+public:
+  explicit OpenGLGuard(vtkRenderWindow* window)
+    : Window(vtkOpenGLRenderWindow::SafeDownCast(window))
+  {
+    if (this->Window)
+    {
+      this->Window->GetState()->Push();
+    }
+  }
+  ~OpenGLGuard()
+  {
+    if (this->Window)
+    {
+      this->Window->MakeCurrent();
+      this->Window->GetState()->Pop();
+    }
+  }
+  OpenGLGuard(const OpenGLGuard&) = delete;
+  OpenGLGuard& operator=(const OpenGLGuard&) = delete;
+
+private:
+  vtkOpenGLRenderWindow* Window;
+};
 
 /// Whether matrices differ by rounding only.
 bool IsNearly(const glm::dmat4& a, const glm::dmat4& b)
@@ -214,6 +244,11 @@ int vtkDSMScene::GetSamplesPerFrame() const
 bool vtkDSMScene::IsRefined() const
 {
   return this->Self->Samples == 0 || this->Self->Samples >= this->Self->SamplesWanted;
+}
+
+bool vtkDSMScene::IsTracing() const
+{
+  return this->Self->Tracing;
 }
 
 vtkDSMStatistics* vtkDSMScene::GetStatistics() const
@@ -604,6 +639,7 @@ void vtkDSMScene::Trace()
     self.Tracing = false;
     return;
   }
+  const OpenGLGuard guard(self.Renderer->GetRenderWindow());
   std::string failure;
   try
   {
