@@ -7,6 +7,7 @@
 #include "vtkDSMContent.h"
 #include "vtkDSMGather.h"
 #include "vtkDSMPolyDataMapper.h"
+#include "vtkDSMProgress.h"
 #include "vtkDSMTubesAndSpheres.h"
 
 #include "vtkBoundingBox.h"
@@ -260,6 +261,7 @@ void vtkDSMMeshData::Publish()
   rt::TriangleMeshSettings settings;
   settings.Threads = group->GetStore().GetSettings().Workers;
   double done = 0.0;
+  vtkDSMProgress::Begin(this->Mapper);
   for (const Key& kind : kinds)
   {
     vtkDSMMeshPiece piece;
@@ -276,7 +278,7 @@ void vtkDSMMeshData::Publish()
       });
     const double share = 1.0 / static_cast<double>(kinds.size());
     const auto progress = [this, done, share](double part)
-    { this->Mapper->UpdateProgress(done + share * part); };
+    { vtkDSMProgress::Tell(this->Mapper, done + share * part); };
     const std::shared_ptr<rt::TriangleMesh> mesh =
       rt::PublishMesh("the surface", piece, settings, group->GetStore(), messenger, progress);
     done += share;

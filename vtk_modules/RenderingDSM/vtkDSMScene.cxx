@@ -60,6 +60,10 @@ public:
   explicit OpenGLGuard(vtkRenderWindow* window)
     : Window(vtkOpenGLRenderWindow::SafeDownCast(window))
   {
+    if (this->Window && !this->Window->IsCurrent())
+    {
+      this->Window = nullptr; // nothing is being drawn
+    }
     if (this->Window)
     {
       this->Window->GetState()->Push();

@@ -124,7 +124,7 @@ bool vtkDSMSceneMesh::HasNewData()
   {
     return false;
   }
-  if (this->HashContent() != this->SeenContent)
+  if (!this->Failure.empty() || this->HashContent() != this->SeenContent)
   {
     return true;
   }

@@ -3,6 +3,7 @@
 
 #include "vtkDSMImagePiece.h"
 #include "vtkDSMLightOptions.h"
+#include "vtkDSMProgress.h"
 #include "vtkDSMTranslation.h"
 #include "vtkDSMVolumeMapper.h"
 
@@ -98,8 +99,9 @@ std::shared_ptr<vtkDSMSceneVolume::Published> vtkDSMSceneVolume::Require(
   try
   {
     vtkDSMVolumeMapper* mapper = this->Mapper;
-    published->Fields =
-      this->Data->Publish(choice, purpose, [mapper](double part) { mapper->UpdateProgress(part); });
+    vtkDSMProgress::Begin(mapper);
+    published->Fields = this->Data->Publish(
+      choice, purpose, [mapper](double part) { vtkDSMProgress::Tell(mapper, part); });
     if (this->Hashes)
     {
       published->Content = this->Data->HashContent(choice);
