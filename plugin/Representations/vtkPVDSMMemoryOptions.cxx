@@ -32,3 +32,8 @@ void vtkPVDSMMemoryOptions::SetNumberOfThreads(int threads)
 {
   this->Superclass::SetNumberOfThreads(threads);
 }
+
+void vtkPVDSMMemoryOptions::SetScheduler(int scheduler)
+{
+  this->Superclass::SetScheduler(scheduler);
+}

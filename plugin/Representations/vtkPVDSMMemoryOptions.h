@@ -26,6 +26,7 @@ public:
   void SetMemory(int mebibytes) override;
   void SetCacheSize(int mebibytes) override;
   void SetNumberOfThreads(int threads) override;
+  void SetScheduler(int scheduler) override;
   ///@}
 
 protected:

@@ -3,15 +3,13 @@
 
 #include "HitTiming.h"
 #include "MissTiming.h"
-#include "OptionValues.h"
+#include "RunOptions.h"
 
 #include "DSMCore/BlockStore.h"
 
 #include <nlohmann/json.hpp>
 
-#include <fstream>
 #include <iomanip>
-#include <iostream>
 #include <map>
 #include <sstream>
 
@@ -50,6 +48,7 @@ dsm::BlockStore::Settings MakeSettings(const Way& way, int threads)
   settings.HostSharing = way.HostSharing;
   settings.PureFaulting = way.PureFaulting;
   settings.Workers = threads;
+  settings.Overlap = 1;
   // Not to be cut short: what a hit costs is the question.
   settings.MemoryBytes = std::uint64_t(1) << 50;
   return settings;
@@ -190,14 +189,5 @@ void AccessBenchmark::Run(const Options& options, dsm::Messenger& messenger)
   }
   const Json result = { { "ranks", messenger.GetSize() }, { "block_bytes", options.BlockBytes },
     { "hits", hits }, { "misses", misses } };
-  if (options.Json == "-")
-  {
-    std::cout << result.dump(2) << std::endl;
-    return;
-  }
-  if (!options.Json.empty())
-  {
-    std::ofstream(options.Json) << result.dump(2) << '\n';
-  }
-  std::cout << table.str() << std::flush;
+  RunOptions::Write(options.Json, result.dump(2), table.str());
 }

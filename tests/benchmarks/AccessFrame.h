@@ -15,15 +15,15 @@
 namespace AccessTiming
 {
 
-/// A frame in which rank 0's workers call `work`, and all ranks serve. Collective.
+/// A frame in which the first `workers` workers of each rank, which may differ, call `work`, and all
+/// ranks serve. Collective.
 template <class Store>
-void RunFrame(dsm::Messenger& messenger, Store& store, rt::WorkerPool& pool,
+void RunFrame(dsm::Messenger& messenger, Store& store, rt::WorkerPool& pool, int workers,
   const std::function<void(typename Store::Worker&, int)>& work)
 {
   store.BeginFrame();
   rt::FrameAgreement agreement(messenger, [] {});
   messenger.BeginSession();
-  const int workers = messenger.GetRank() == 0 ? store.GetSettings().Workers : 0;
   std::mutex guard;
   std::string cause;
   if (workers > 0)

@@ -10,6 +10,10 @@ const char* BenchmarkOptions::Usage()
          "  --isovalue A[,B..]  isovalues (default 0.5)\n"
          "  --size WxH          pixels (default 512x512)\n"
          "  --frames N          camera positions around the volume (default 20)\n"
+         "  --session FILE      positions and isovalues from a file instead; each repetition "
+         "counts "
+         "as a\n"
+         "                      whole, the first one apart\n"
          "  --repeat R          orbits; for every position the fastest counts (default 1)\n"
          "  --threads T         tracing threads per rank (default 0: cores / ranks of the host)\n"
          "  --store S           automatic, replicated, object (default) or paged\n"
@@ -21,28 +25,39 @@ const char* BenchmarkOptions::Usage()
          "  --cache-fraction F  cache per rank, as a part of the bytes of all bricks (default 1)\n"
          "  --brick-edge E      cells along a brick's edge (default: by the scalar type)\n"
          "  --picture FILE.ppm  writes the picture of the first position\n"
+         "  --overlap N         workers per thread: while some wait for bricks, others trace "
+         "(default 4)\n"
+         "  --scheduler S       queue (rank 0 deals out tiles) or stealing (default)\n"
+         "  --latency US        microseconds that are added to every message's way (default 0)\n"
          "  --json FILE         writes the result; - is standard output\n";
+}
+
+void BenchmarkOptions::AddTo(OptionValues::Setters& setters)
+{
+  using namespace OptionValues;
+  this->RunOptions::AddTo(setters);
+  setters.merge(Setters{
+    { "--volume", [this](const auto&, const auto& text) { this->Volume = text; } },
+    { "--isovalue",
+      [this](const auto& name, const auto& text)
+      { this->Isovalues = ToNumbers<double>(name, text, -1e300); } },
+    { "--memory",
+      [this](const auto& name, const auto& text)
+      { this->MemoryBytes = ToNumber<std::uint64_t>(name, text, 0) << 20; } },
+    { "--cache-fraction",
+      [this](const auto& name, const auto& text)
+      { this->CacheFraction = ToNumber<double>(name, text, 0.0); } },
+    { "--brick-edge",
+      [this](const auto& name, const auto& text) { this->BrickEdge = ToNumber(name, text, 4); } },
+    { "--session", [this](const auto&, const auto& text) { this->Session = text; } },
+    { "--picture", [this](const auto&, const auto& text) { this->Picture = text; } },
+  });
 }
 
 BenchmarkOptions BenchmarkOptions::Parse(int argc, char** argv)
 {
-  using namespace OptionValues;
   BenchmarkOptions options;
-  Setters setters{
-    { "--volume", [&](const auto&, const auto& text) { options.Volume = text; } },
-    { "--isovalue",
-      [&](const auto& name, const auto& text)
-      { options.Isovalues = ToNumbers<double>(name, text, -1e300); } },
-    { "--memory",
-      [&](const auto& name, const auto& text)
-      { options.MemoryBytes = ToNumber<std::uint64_t>(name, text, 0) << 20; } },
-    { "--cache-fraction",
-      [&](const auto& name, const auto& text)
-      { options.CacheFraction = ToNumber<double>(name, text, 0.0); } },
-    { "--brick-edge",
-      [&](const auto& name, const auto& text) { options.BrickEdge = ToNumber(name, text, 4); } },
-    { "--picture", [&](const auto&, const auto& text) { options.Picture = text; } },
-  };
+  OptionValues::Setters setters;
   options.AddTo(setters);
   OptionValues::Parse(argc, argv, setters, Usage());
   return options;

@@ -16,8 +16,10 @@ struct BenchmarkOptions : RunOptions
   double CacheFraction = 1.0;    ///< of the bytes of all bricks
   std::uint64_t MemoryBytes = 0; ///< per rank; 0: a part of what the host has
   int BrickEdge = 0;             ///< cells; 0: the default of the scalar type
+  std::string Session;           ///< file; empty: an orbit
   std::string Picture;           ///< PPM file of the first frame; empty: none
 
+  void AddTo(OptionValues::Setters& setters);
   static const char* Usage();
 
   /// Throws dsm::Error naming the argument that is wrong.

@@ -104,8 +104,9 @@ HitCost TimeHits(const AccessBenchmark::Options& options, dsm::Messenger& messen
   const auto choose = [=](std::uint64_t block)
   { return some ? block / (ranks - 1) * ranks + 1 + block % (ranks - 1) : block; };
   const int workers = store.GetSettings().Workers;
+  const int reading = messenger.GetRank() == 0 ? workers : 0;
   rt::WorkerPool pool;
-  RunFrame<Store>(messenger, store, pool,
+  RunFrame<Store>(messenger, store, pool, reading,
     [&](Worker& worker, int)
     {
       for (std::uint64_t id = 0; id < blocks; ++id)
@@ -132,7 +133,7 @@ HitCost TimeHits(const AccessBenchmark::Options& options, dsm::Messenger& messen
       best = std::min(best, array->Time(pool, workers, accesses, dependent, round));
     }
     std::vector<double> times(static_cast<std::size_t>(workers), 0.0);
-    RunFrame<Store>(messenger, store, pool,
+    RunFrame<Store>(messenger, store, pool, reading,
       [&](Worker& worker, int index)
       {
         const double start = GetThreadNanoseconds();

@@ -98,6 +98,7 @@ FrameResult TraceFrames(const MeshBenchmark::Options& options,
   scene.Meshes.push_back(object);
   const Orbit orbit(*mesh);
   rt::FrameRenderer renderer(messenger);
+  rt::Frame frame;
   FrameResult result;
   std::vector<double> fastest(options.Frames, 1e300);
   struct Counts
@@ -111,7 +112,7 @@ FrameResult TraceFrames(const MeshBenchmark::Options& options,
     mine = {};
     for (int position = 0; position < options.Frames; ++position)
     {
-      const rt::Frame frame = renderer.Render(store, scene, orbit.GetRequest(options, position));
+      frame = renderer.Render(store, scene, orbit.GetRequest(options, position), &frame);
       fastest[position] = std::min(fastest[position], frame.Seconds);
       mine.Accesses += frame.Counters.Workers.Accesses;
       mine.Misses += frame.Counters.Workers.Misses;
@@ -294,6 +295,10 @@ const char* MeshBenchmark::Usage()
          "  --threads T         tracing threads per rank (default 0: cores / ranks of the host)\n"
          "  --store S           automatic, replicated, object (default) or paged\n"
          "  --host-sharing H    on, or off (default): one machine plays many hosts\n"
+         "  --overlap N         workers per thread: while some wait for bricks, others trace "
+         "(default 4)\n"
+         "  --scheduler S       queue (rank 0 deals out tiles) or stealing (default)\n"
+         "  --latency US        microseconds that are added to every message's way (default 0)\n"
          "  --json FILE         writes the result; - is standard output\n";
 }
 

@@ -32,7 +32,7 @@ inline double TimeMisses(const AccessBenchmark::Options& options, dsm::Messenger
   for (int round = 0; round < options.Repeat; ++round)
   {
     double time = 0.0;
-    RunFrame<Store>(messenger, store, pool,
+    RunFrame<Store>(messenger, store, pool, messenger.GetRank() == 0 ? 1 : 0,
       [&](typename Store::Worker& worker, int)
       {
         const auto start = std::chrono::steady_clock::now();

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "RunOptions.h"
 
+#include <fstream>
+#include <iostream>
+
 void RunOptions::AddTo(OptionValues::Setters& setters)
 {
   using namespace OptionValues;
@@ -31,6 +34,18 @@ void RunOptions::AddTo(OptionValues::Setters& setters)
       [this](const auto& name, const auto& text) {
         this->HostSharing = ToChoice<bool>(name, text, { { "on", true }, { "off", false } });
       } },
+    { "--overlap",
+      [this](const auto& name, const auto& text) { this->Overlap = ToNumber(name, text, 1); } },
+    { "--scheduler",
+      [this](const auto& name, const auto& text)
+      {
+        this->Scheduling = ToChoice<rt::TileScheduling>(name, text,
+          { { "queue", rt::TileScheduling::CentralQueue },
+            { "stealing", rt::TileScheduling::WorkStealing } });
+      } },
+    { "--latency",
+      [this](const auto& name, const auto& text)
+      { this->Latency = 1e-6 * ToNumber<double>(name, text, 0.0); } },
     { "--json", [this](const auto&, const auto& text) { this->Json = text; } },
   });
 }
@@ -41,5 +56,20 @@ dsm::BlockStore::Settings RunOptions::CreateSettings(dsm::Messenger& messenger) 
   settings.Organization = this->Store;
   settings.HostSharing = this->HostSharing;
   settings.Workers = this->Threads > 0 ? this->Threads : messenger.GetCoresPerRank();
+  settings.Overlap = this->Overlap > 0 ? this->Overlap : settings.Overlap;
   return settings;
+}
+
+void RunOptions::Write(const std::string& file, const std::string& result, const std::string& text)
+{
+  if (file == "-")
+  {
+    std::cout << result << std::endl;
+    return;
+  }
+  if (!file.empty())
+  {
+    std::ofstream(file) << result << '\n';
+  }
+  std::cout << text << std::flush;
 }

@@ -6,6 +6,7 @@
 
 #include "DSMCore/BlockStore.h"
 #include "DSMCore/Messenger.h"
+#include "DSMRayTracing/schedule/TileScheduler.h"
 
 #include <string>
 
@@ -19,13 +20,19 @@ struct RunOptions
   int Threads = 0; ///< 0: the host's cores divided by its ranks
   dsm::MemoryOrganization Store = dsm::MemoryOrganization::ObjectBased;
   bool HostSharing = false; ///< off: one machine plays many hosts
-  std::string Json;         ///< file, or - for standard output; empty: none
+  int Overlap = 0;          ///< workers per thread; 0: the store's default
+  rt::TileScheduling Scheduling = rt::TileScheduling::WorkStealing;
+  double Latency = 0.0; ///< seconds that are added to every message's way
+  std::string Json;     ///< file, or - for standard output; empty: none
 
   /// Adds the options' setters, which change this object.
   void AddTo(OptionValues::Setters& setters);
 
   /// How the store is to be set up. Collective the first time.
   dsm::BlockStore::Settings CreateSettings(dsm::Messenger& messenger) const;
+
+  /// Writes a result to a file and the text about it to standard output; with - only the result, there.
+  static void Write(const std::string& file, const std::string& result, const std::string& text);
 };
 
 #endif

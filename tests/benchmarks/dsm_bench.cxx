@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Times the tracer and the memory below it without ParaView. See the Usage of each benchmark.
 #include "AccessBenchmark.h"
+#include "BenchmarkCamera.h"
 #include "BenchmarkOptions.h"
 #include "BenchmarkVolume.h"
+#include "ConsolidationBenchmark.h"
+#include "DelayedTransport.h"
 #include "MeshBenchmark.h"
 
 #include "DSMCore/BlockStore.h"
@@ -12,8 +15,6 @@
 #include "DSMRayTracing/frame/FrameGather.h"
 #include "DSMRayTracing/frame/FrameRenderer.h"
 
-#include <glm/gtc/constants.hpp>
-#include <glm/gtc/matrix_transform.hpp>
 #include <nlohmann/json.hpp>
 
 #include <sys/resource.h>
@@ -21,40 +22,14 @@
 #include <algorithm>
 #include <fstream>
 #include <iostream>
+#include <limits>
+#include <numeric>
+#include <sstream>
 
 namespace
 {
 
 using Json = nlohmann::ordered_json;
-
-/// Where the camera is for one position of an orbit: around the volume's centre, elevation 20
-/// degrees, four half-extents of the longest axis away, view angle 30 degrees.
-struct OrbitCamera
-{
-  glm::dmat4 WorldToClip;
-  glm::dvec3 ViewDirection;
-};
-
-OrbitCamera GetCamera(const rt::IsosurfaceObject& object, double aspect, double turn)
-{
-  const glm::dvec3 last(object.Field->Lattice.GetCells());
-  const glm::dvec3 center(object.IndexToWorld * glm::dvec4(0.5 * last, 1.0));
-  glm::dvec3 halfExtents(0.0);
-  for (int axis = 0; axis < 3; ++axis)
-  {
-    halfExtents += 0.5 * last[axis] * glm::abs(glm::dvec3(object.IndexToWorld[axis]));
-  }
-  const double distance = 4.0 * std::max({ halfExtents.x, halfExtents.y, halfExtents.z });
-  const double elevation = glm::radians(20.0);
-  const double azimuth = turn * glm::two_pi<double>();
-  const glm::dvec3 outward(std::cos(elevation) * std::sin(azimuth), std::sin(elevation),
-    std::cos(elevation) * std::cos(azimuth));
-  const double radius = glm::length(halfExtents);
-  return { glm::perspective(
-             glm::radians(30.0), aspect, distance - 1.01 * radius, distance + 1.01 * radius) *
-      glm::lookAt(center + distance * outward, center, glm::dvec3(0.0, 1.0, 0.0)),
-    -outward };
-}
 
 void WritePicture(const rt::Picture& picture, const std::string& path)
 {
@@ -76,23 +51,32 @@ struct RankResult
   std::uint64_t Accesses = 0;
   std::uint64_t Hits = 0;
   std::uint64_t Misses = 0;
+  std::uint64_t Joins = 0;
   std::uint64_t Evictions = 0;
   std::uint64_t BytesReceived = 0;
   std::uint64_t Tiles = 0;
+  std::uint64_t NewTiles = 0;
   std::uint64_t ResidentBytes = 0;
   std::uint64_t CacheBytes = 0;
   std::uint64_t PeakRssBytes = 0;
   double WaitSeconds = 0.0;
+  double IdleSeconds = 0.0;
+  double BusySeconds = 0.0;
 
   void Add(const rt::Frame& frame)
   {
     this->Accesses += frame.Counters.Workers.Accesses;
     this->Hits += frame.Counters.Workers.Hits;
     this->Misses += frame.Counters.Workers.Misses;
+    this->Joins += frame.Counters.Workers.Joins;
     this->Evictions += frame.Counters.Evictions;
     this->BytesReceived += frame.Counters.BytesReceived;
     this->Tiles += frame.Tiles.size();
+    this->NewTiles += std::count_if(
+      frame.Tiles.begin(), frame.Tiles.end(), [](const rt::Tile& tile) { return tile.IsNew; });
+    this->BusySeconds += frame.BusySeconds;
     this->WaitSeconds += 1e-9 * frame.Counters.Workers.WaitNanoseconds;
+    this->IdleSeconds += 1e-9 * frame.IdleNanoseconds;
     this->ResidentBytes = frame.Counters.ResidentBytes;
     this->CacheBytes = std::max(this->CacheBytes, frame.Counters.PeakCachedBytes);
   }
@@ -101,8 +85,10 @@ struct RankResult
 Json ToJson(const RankResult& rank)
 {
   return { { "accesses", rank.Accesses }, { "hits", rank.Hits }, { "misses", rank.Misses },
-    { "evictions", rank.Evictions }, { "bytes_received", rank.BytesReceived },
-    { "tiles", rank.Tiles }, { "wait_seconds", rank.WaitSeconds },
+    { "joins", rank.Joins }, { "evictions", rank.Evictions },
+    { "bytes_received", rank.BytesReceived }, { "tiles", rank.Tiles },
+    { "new_tiles", rank.NewTiles }, { "busy_seconds", rank.BusySeconds },
+    { "wait_seconds", rank.WaitSeconds }, { "idle_seconds", rank.IdleSeconds },
     { "resident_bytes", rank.ResidentBytes }, { "cache_bytes", rank.CacheBytes },
     { "peak_rss_bytes", rank.PeakRssBytes } };
 }
@@ -114,10 +100,20 @@ std::uint64_t GetPeakRssBytes()
   return static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;
 }
 
-/// Counts are sums over the ranks and the frames of the last orbit; bytes held are the largest of
-/// any rank.
-Json Summarise(const BenchmarkOptions& options, int threads, double orbitSeconds,
-  std::uint64_t hash, dsm::MemoryOrganization organization, const std::vector<RankResult>& ranks)
+/// How long one repetition took, and what it drew.
+struct Timing
+{
+  std::size_t Frames = 0;
+  double BestSeconds = 0.0; ///< of a session as a whole; of an orbit, position by position
+  double FirstSeconds = 0.0;
+  double LastSeconds = 0.0;
+  std::uint64_t Hash = 0;
+};
+
+/// Counts are sums over the ranks and the frames of the last repetition; bytes held are the largest
+/// of any rank.
+Json Summarise(const BenchmarkOptions& options, const dsm::BlockStore& store, const Timing& timing,
+  const std::vector<RankResult>& ranks)
 {
   RankResult total;
   Json each = Json::array();
@@ -126,26 +122,35 @@ Json Summarise(const BenchmarkOptions& options, int threads, double orbitSeconds
     total.Accesses += rank.Accesses;
     total.Hits += rank.Hits;
     total.Misses += rank.Misses;
+    total.Joins += rank.Joins;
     total.BytesReceived += rank.BytesReceived;
+    total.NewTiles += rank.NewTiles;
+    total.IdleSeconds += rank.IdleSeconds;
     total.ResidentBytes = std::max(total.ResidentBytes, rank.ResidentBytes);
     total.CacheBytes = std::max(total.CacheBytes, rank.CacheBytes);
     total.PeakRssBytes = std::max(total.PeakRssBytes, rank.PeakRssBytes);
     each.push_back(ToJson(rank));
   }
-  const double framesPerSecond = options.Frames / orbitSeconds;
+  const int threads = store.GetSettings().Workers;
+  const double frames = static_cast<double>(timing.Frames);
+  const double framesPerSecond = frames / timing.BestSeconds;
   char hexadecimal[17];
-  std::snprintf(hexadecimal, sizeof(hexadecimal), "%016llx", static_cast<unsigned long long>(hash));
+  std::snprintf(
+    hexadecimal, sizeof(hexadecimal), "%016llx", static_cast<unsigned long long>(timing.Hash));
   return { { "volume", options.Volume }, { "isovalues", options.Isovalues },
-    { "size", { options.Width, options.Height } }, { "frames", options.Frames },
-    { "repeat", options.Repeat }, { "store", dsm::GetText(organization) },
+    { "size", { options.Width, options.Height } }, { "frames", timing.Frames },
+    { "repeat", options.Repeat }, { "store", dsm::GetText(store.GetOrganization()) },
     { "host_sharing", options.HostSharing }, { "cache_fraction", options.CacheFraction },
     { "rank_count", ranks.size() }, { "threads", threads },
-    { "frames_per_second", framesPerSecond },
+    { "overlap", store.GetSettings().Overlap }, { "frames_per_second", framesPerSecond },
+    { "first_frames_per_second", frames / timing.FirstSeconds },
     { "rays_per_second", framesPerSecond * options.Width * options.Height },
     { "accesses", total.Accesses }, { "hits", total.Hits }, { "misses", total.Misses },
-    { "bytes_received", total.BytesReceived }, { "resident_bytes", total.ResidentBytes },
-    { "cache_bytes", total.CacheBytes }, { "peak_rss_bytes", total.PeakRssBytes },
-    { "image_hash", hexadecimal }, { "ranks", each } };
+    { "joins", total.Joins }, { "bytes_received", total.BytesReceived },
+    { "new_tiles", total.NewTiles },
+    { "idle_part", total.IdleSeconds / (timing.LastSeconds * threads * ranks.size()) },
+    { "resident_bytes", total.ResidentBytes }, { "cache_bytes", total.CacheBytes },
+    { "peak_rss_bytes", total.PeakRssBytes }, { "image_hash", hexadecimal }, { "ranks", each } };
 }
 
 void RunIsosurface(const BenchmarkOptions& options, dsm::Messenger& messenger)
@@ -166,67 +171,70 @@ void RunIsosurface(const BenchmarkOptions& options, dsm::Messenger& messenger)
 
   rt::FrameRenderer renderer(messenger);
   scene.Lights.emplace_back();
-  const auto trace = [&](int position)
+  const std::vector<double> isovalues = object.Isovalues;
+  const std::vector<Position> positions = GetPositions(options);
+  rt::Frame frame;
+  const auto trace = [&](const Position& position)
   {
-    const OrbitCamera camera =
-      GetCamera(object, static_cast<double>(options.Width) / options.Height,
-        static_cast<double>(position) / options.Frames);
+    const Camera camera =
+      GetCamera(object, static_cast<double>(options.Width) / options.Height, position);
+    std::transform(isovalues.begin(), isovalues.end(), object.Isovalues.begin(),
+      [&](double isovalue) { return position.IsovalueFactor * isovalue; });
     scene.Lights.front().Direction = camera.ViewDirection;
     rt::FrameRequest request;
     request.Width = options.Width;
     request.Height = options.Height;
     request.WorldToClip = camera.WorldToClip;
-    return renderer.Render(store, scene, request);
+    request.Scheduling = options.Scheduling;
+    frame = renderer.Render(store, scene, request, &frame);
   };
 
-  trace(0);
-  std::vector<double> fastest(options.Frames, 1e300);
-  std::uint64_t hash = 0;
+  Timing timing;
+  timing.Frames = positions.size();
+  timing.BestSeconds = std::numeric_limits<double>::infinity();
+  if (options.Session.empty())
+  {
+    trace(positions.front());
+  }
+  std::vector<double> fastest(positions.size(), std::numeric_limits<double>::infinity());
   RankResult mine;
-  for (int orbit = 0; orbit < options.Repeat; ++orbit)
+  for (int repetition = 0; repetition < options.Repeat; ++repetition)
   {
     mine = {};
-    for (int position = 0; position < options.Frames; ++position)
+    timing.LastSeconds = 0.0;
+    for (std::size_t number = 0; number < positions.size(); ++number)
     {
-      const rt::Frame frame = trace(position);
-      fastest[position] = std::min(fastest[position], frame.Seconds);
+      trace(positions[number]);
+      fastest[number] = std::min(fastest[number], frame.Seconds);
+      timing.LastSeconds += frame.Seconds;
       mine.Add(frame);
-      if (orbit == 0)
+      if (repetition == 0)
       {
         const rt::Picture picture = rt::GatherFrame(messenger, frame);
-        hash = hash * 0x100000001b3ull ^ rt::GetHash(picture);
-        if (position == 0 && !options.Picture.empty() && messenger.GetRank() == 0)
+        timing.Hash = timing.Hash * 0x100000001b3ull ^ rt::GetHash(picture);
+        if (number == 0 && !options.Picture.empty() && messenger.GetRank() == 0)
         {
           WritePicture(picture, options.Picture);
         }
       }
     }
+    timing.FirstSeconds = repetition == 0 ? timing.LastSeconds : timing.FirstSeconds;
+    timing.BestSeconds = std::min(timing.BestSeconds, timing.LastSeconds);
+  }
+  if (options.Session.empty())
+  {
+    timing.BestSeconds = std::accumulate(fastest.begin(), fastest.end(), 0.0);
   }
   mine.PeakRssBytes = GetPeakRssBytes();
   const auto ranks = messenger.AllGatherValue(mine);
   if (messenger.GetRank() == 0)
   {
-    double orbitSeconds = 0.0;
-    for (const double seconds : fastest)
-    {
-      orbitSeconds += seconds;
-    }
-    const Json result =
-      Summarise(options, settings.Workers, orbitSeconds, hash, store.GetOrganization(), ranks);
-    if (options.Json == "-")
-    {
-      std::cout << result.dump(2) << std::endl;
-    }
-    else if (!options.Json.empty())
-    {
-      std::ofstream(options.Json) << result.dump(2) << '\n';
-    }
-    if (options.Json != "-")
-    {
-      std::cout << options.Volume << ": " << result["frames_per_second"].get<double>()
-                << " frames/s, " << 1e-6 * result["rays_per_second"].get<double>()
-                << " million rays/s, picture " << result["image_hash"].get<std::string>() << '\n';
-    }
+    const Json result = Summarise(options, store, timing, ranks);
+    std::ostringstream text;
+    text << options.Volume << ": " << result["frames_per_second"].get<double>() << " frames/s, "
+         << 1e-6 * result["rays_per_second"].get<double>() << " million rays/s, picture "
+         << result["image_hash"].get<std::string>() << '\n';
+    RunOptions::Write(options.Json, result.dump(2), text.str());
   }
 }
 
@@ -236,14 +244,24 @@ int main(int argc, char** argv)
 {
   const dsm::MpiTransport::Environment environment(argc, argv);
   auto transport = dsm::MpiTransport::Create(nullptr);
-  dsm::Messenger messenger(
+  auto delayed = std::make_unique<DelayedTransport>(
     transport ? std::move(transport) : std::move(dsm::LoopbackTransport::CreateGroup(1).front()));
+  DelayedTransport& network = *delayed;
+  dsm::Messenger messenger(std::move(delayed));
   try
   {
     const std::string name = argc > 1 ? argv[1] : "";
     if (name == "isosurface")
     {
-      RunIsosurface(BenchmarkOptions::Parse(argc, argv), messenger);
+      const BenchmarkOptions options = BenchmarkOptions::Parse(argc, argv);
+      network.SetLatency(options.Latency);
+      RunIsosurface(options, messenger);
+    }
+    else if (name == "consolidation")
+    {
+      const ConsolidationBenchmark::Options options = ConsolidationBenchmark::Parse(argc, argv);
+      network.SetLatency(options.Latency);
+      ConsolidationBenchmark::Run(options, messenger);
     }
     else if (name == "access")
     {
@@ -251,12 +269,15 @@ int main(int argc, char** argv)
     }
     else if (name == "mesh")
     {
-      MeshBenchmark::Run(MeshBenchmark::Parse(argc, argv), messenger);
+      const MeshBenchmark::Options options = MeshBenchmark::Parse(argc, argv);
+      network.SetLatency(options.Latency);
+      MeshBenchmark::Run(options, messenger);
     }
     else
     {
       throw dsm::Error(std::string("The first argument names the benchmark.\n") +
-        BenchmarkOptions::Usage() + AccessBenchmark::Usage() + MeshBenchmark::Usage());
+        BenchmarkOptions::Usage() + ConsolidationBenchmark::Usage() + AccessBenchmark::Usage() +
+        MeshBenchmark::Usage());
     }
   }
   catch (const std::exception& error)

@@ -26,7 +26,8 @@ def count_hues(pixels):
 plain = draw("Off", "off")
 covered = get_covered(plain)
 check(covered.mean() > 0.05, "there is a surface")
-for mode in ("Owner of the data", "Rank that traced", "Brick", "Normal", "Depth"):
+for mode in ("Owner of the data", "Rank that traced", "Brick", "Normal", "Depth",
+             "Tiles that changed hands"):
     pixels = draw(mode)
     check((get_covered(pixels) == covered).mean() > 0.995, mode + " covers the same pixels")
 owners = count_hues(draw("Owner of the data"))
@@ -34,6 +35,21 @@ check(get_ranks() <= owners <= 2 * get_ranks(), f"{owners} hues for {get_ranks()
 tracers = count_hues(draw("Rank that traced"))
 check(1 <= tracers <= 2 * get_ranks(), f"{tracers} hues for {get_ranks()} ranks that traced")
 check(count_hues(draw("Brick", "brick")) > 8, "bricks have many colours")
+changed = draw("Tiles that changed hands")[covered].astype(int)
+is_red = changed[:, 0] > 2 * changed[:, 1] + 20
+check(get_ranks() > 1 or not is_red.any(), "one rank keeps its tiles")
+display.DSMScheduler = "Central queue"
+draw("Rank that traced")
+display.DSMScheduler = "Work stealing"
+# Published anew, nothing is cached; and drawn once, since what was fetched stays.
+display.DSMDebugView = "Misses"
+display.DSMHostSharing = 1
+render(view)
+display.DSMHostSharing = 0
+image = view.SMProxy.CaptureWindow(1)
+width, height, _ = image.GetDimensions()
+misses = vtk_to_numpy(image.GetPointData().GetScalars()).reshape(height, width, -1)[:, :, :3]
+check((misses[covered].max() > 0) == (get_ranks() > 1), "tiles wait for what other ranks own")
 draw("Normal", "normal")
 draw("Depth", "depth")
 check_equal(draw("Off"), plain, "and off again", 0)

@@ -73,12 +73,22 @@ void BlockStore::SetSettings(const Settings& settings)
   }
 }
 
+int BlockStore::CountWorkers() const
+{
+  if (this->Current.Overlap < 1)
+  {
+    throw Error("There cannot be fewer than one worker for each that traces.");
+  }
+  return this->Current.Workers * (this->Messages.GetSize() > 1 ? this->Current.Overlap : 1);
+}
+
 void BlockStore::Configure()
 {
   ObjectStore::Settings objects;
   objects.CacheBytes =
     static_cast<std::size_t>(std::min<std::uint64_t>(this->CacheBytes, this->Current.CacheBytes));
-  objects.Workers = this->Current.Workers;
+  objects.Workers = this->CountWorkers();
+  objects.Slots = this->Slots;
   objects.HostSharing = this->Current.HostSharing;
   objects.Groups = this->Groups;
   ReplicatedStore::Settings replicated;
@@ -89,7 +99,8 @@ void BlockStore::Configure()
   {
     PagedStore::Settings paged;
     paged.CacheBytes = objects.CacheBytes;
-    paged.Workers = this->Current.Workers;
+    paged.Workers = objects.Workers;
+    paged.Slots = this->Slots;
     paged.Handling = this->Current.Faults;
     paged.PureFaulting = this->Current.PureFaulting;
     this->Paged->SetSettings(paged);
@@ -298,7 +309,13 @@ StoreCounters BlockStore::GetCounters()
 
 std::vector<WorkerCounters> BlockStore::GetWorkerCounters()
 {
-  return this->Visit([](auto& store) { return store.GetWorkerCounters(); });
+  const auto all = this->Visit([](auto& store) { return store.GetWorkerCounters(); });
+  std::vector<WorkerCounters> counters(static_cast<std::size_t>(this->Current.Workers));
+  for (std::size_t worker = 0; worker < all.size(); ++worker)
+  {
+    counters[worker % counters.size()] += all[worker];
+  }
+  return counters;
 }
 
 } // namespace dsm

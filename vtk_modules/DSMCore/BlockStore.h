@@ -14,6 +14,7 @@
 #include "DSMCore/PagedStore.h"
 #include "DSMCore/Publication.h"
 #include "DSMCore/ReplicatedStore.h"
+#include "DSMCore/WorkerSlots.h"
 
 #include <cstdint>
 #include <functional>
@@ -45,8 +46,11 @@ public:
     std::uint64_t MemoryBytes = 0;
     /// The most that the cache may take of it.
     std::size_t CacheBytes = SIZE_MAX;
-    /// Number of tracing threads.
+    /// Number of workers that trace at a time.
     int Workers = 1;
+    /// As many times the threads, where blocks are fetched: while some wait, others trace. 1: a
+    /// worker that waits idles.
+    int Overlap = 4;
     /// Ranks of one host read one another's blocks in place. For what is published from then on.
     bool HostSharing = true;
     /// Page based only; see PagedStore.
@@ -104,8 +108,12 @@ public:
     }
   }
 
+  /// Of those that trace at a time. To be taken while a worker traces.
+  WorkerSlots& GetSlots() { return *this->Slots; }
+
   /// See ObjectStore; of the store in force.
   StoreCounters GetCounters();
+  /// Settings::Workers of them: the workers beyond are added to those that they take turns with.
   std::vector<WorkerCounters> GetWorkerCounters();
 
 private:
@@ -119,6 +127,8 @@ private:
   /// Collective. The plan for what is published and, unless null, for what is to be.
   MemoryPlan MakePlan(const BlockDirectory* next);
   void FindBudget();
+  /// Of the stores that fetch.
+  int CountWorkers() const;
   /// Collective: moves segments between the stores. Throws when they cannot be replicated.
   void MoveTo(MemoryOrganization organization);
   /// Local: hands the settings to the stores.
@@ -127,6 +137,7 @@ private:
 
   Messenger& Messages;
   Settings Current;
+  const std::shared_ptr<WorkerSlots> Slots = std::make_shared<WorkerSlots>();
   bool Settled = true;
   std::uint64_t Publications = 0;
   MemoryOrganization InForce = MemoryOrganization::ObjectBased;

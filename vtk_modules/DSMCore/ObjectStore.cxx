@@ -123,6 +123,11 @@ void ObjectStore::Leave(Worker& worker)
   this->Self->Leave(worker);
 }
 
+std::uint64_t ObjectStore::GetMisses(const Worker& worker) const
+{
+  return this->Self->GetMisses(worker);
+}
+
 StoreCounters ObjectStore::GetCounters() const
 {
   return this->Self->GetCounters();

@@ -10,6 +10,7 @@
 #include "DSMCore/Counters.h"
 #include "DSMCore/Messenger.h"
 #include "DSMCore/Publication.h"
+#include "DSMCore/WorkerSlots.h"
 
 #include <atomic>
 #include <condition_variable>
@@ -47,6 +48,8 @@ public:
     bool HostSharing = false;
     /// Who shares; null: found out with every publication.
     std::shared_ptr<const HostGroups> Groups = nullptr;
+    /// Who of them runs: a worker gives its slot to others while it waits. Null: all run.
+    std::shared_ptr<WorkerSlots> Slots = nullptr;
   };
 
   using Segment = BlockTable;
@@ -107,6 +110,8 @@ public:
   void Enter(Worker& worker);
   void Leave(Worker& worker);
 
+  /// The worker: how often it has waited for a block in this frame.
+  std::uint64_t GetMisses(const Worker& worker) const;
   /// Of the frame so far; after EndFrame, of the last frame. Communication thread.
   StoreCounters GetCounters() const;
   /// Per worker of the last frame.

@@ -87,7 +87,7 @@ const std::byte* ObjectStore::Internals::Wait(Worker& worker, const Segment& seg
   worker.WaitsFor = &line;
   worker.Epoch.store(Worker::Offline, std::memory_order_release);
   this->Messages.WakeUp();
-  worker.Woken.wait(lock,
+  WaitWithoutSlot(this->Current.Slots.get(), lock, worker.Woken,
     [&]
     { return line.Address.load(std::memory_order_relaxed) || this->Phase != FramePhase::Open; });
   // Online again before the waiter is taken off: from then on the block may be evicted, but its
@@ -367,6 +367,12 @@ std::vector<WorkerCounters> ObjectStore::Internals::GetWorkerCounters()
 {
   const std::lock_guard<std::mutex> lock(this->Guard);
   return this->Phase == FramePhase::Closed ? this->LastWorkers : this->CountWorkers();
+}
+
+std::uint64_t ObjectStore::Internals::GetMisses(const Worker& worker) const
+{
+  const std::lock_guard<std::mutex> lock(this->Guard);
+  return worker.Slow.Misses;
 }
 
 StoreCounters ObjectStore::Internals::GetCounters()

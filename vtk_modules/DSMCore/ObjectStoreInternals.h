@@ -41,6 +41,7 @@ public:
   void EndFrame();
   bool IsInFrame() const { return this->Phase != FramePhase::Closed; }
 
+  std::uint64_t GetMisses(const Worker& worker) const;
   StoreCounters GetCounters();
   std::vector<WorkerCounters> GetWorkerCounters();
 

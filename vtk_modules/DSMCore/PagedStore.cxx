@@ -287,6 +287,11 @@ void PagedStore::Leave(Worker& worker)
   this->Self->Leave(worker);
 }
 
+std::uint64_t PagedStore::GetMisses(const Worker& worker) const
+{
+  return this->Self->GetMisses(worker);
+}
+
 StoreCounters PagedStore::GetCounters() const
 {
   return this->Self->GetCounters();

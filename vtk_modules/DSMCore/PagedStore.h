@@ -13,6 +13,7 @@
 #include "DSMCore/PageLayout.h"
 #include "DSMCore/PageLine.h"
 #include "DSMCore/Publication.h"
+#include "DSMCore/WorkerSlots.h"
 
 #include <atomic>
 #include <condition_variable>
@@ -60,6 +61,8 @@ public:
     FaultHandling Handling = FaultHandling::Automatic;
     /// Never look whether a block is here before it is read.
     bool PureFaulting = false;
+    /// Who of them runs: a worker gives its slot to others while it waits. Null: all run.
+    std::shared_ptr<WorkerSlots> Slots = nullptr;
   };
 
   class Segment;
@@ -120,6 +123,8 @@ public:
   void Enter(Worker& worker);
   void Leave(Worker& worker);
 
+  /// The worker: how often it has waited for a block in this frame.
+  std::uint64_t GetMisses(const Worker& worker) const;
   /// Of the frame so far; after EndFrame, of the last frame. Communication thread. Misses are
   /// accesses or faults that waited for a fetch.
   StoreCounters GetCounters() const;

@@ -110,8 +110,8 @@ void PagedStore::Internals::Wait(Worker& worker, const Segment& segment, BlockId
   ++line.Waiters;
   worker.WaitsFor = &line;
   this->Messages.WakeUp();
-  worker.Woken.wait(
-    lock, [&] { return line.State == PageState::Cached || this->Phase != FramePhase::Open; });
+  WaitWithoutSlot(this->Current.Slots.get(), lock, worker.Woken,
+    [&] { return line.State == PageState::Cached || this->Phase != FramePhase::Open; });
   worker.WaitsFor = nullptr;
   --line.Waiters;
   worker.Slow.WaitNanoseconds += NanosecondsSince(start);
@@ -564,6 +564,12 @@ std::vector<WorkerCounters> PagedStore::Internals::GetWorkerCounters()
 {
   const std::lock_guard<std::mutex> lock(this->Guard);
   return this->Phase == FramePhase::Closed ? this->LastWorkers : this->CountWorkers();
+}
+
+std::uint64_t PagedStore::Internals::GetMisses(const Worker& worker) const
+{
+  const std::lock_guard<std::mutex> lock(this->Guard);
+  return worker.Slow.Misses;
 }
 
 StoreCounters PagedStore::Internals::GetCounters()

@@ -56,6 +56,7 @@ public:
   /// Any thread: whether a frame runs that was not cancelled.
   bool IsOpen() const { return this->IsEntranceOpen.load(std::memory_order_acquire); }
 
+  std::uint64_t GetMisses(const Worker& worker) const;
   StoreCounters GetCounters();
   std::vector<WorkerCounters> GetWorkerCounters();
 

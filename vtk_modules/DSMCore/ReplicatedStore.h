@@ -87,6 +87,7 @@ public:
   void Enter(Worker&) {}
   void Leave(Worker&) {}
 
+  std::uint64_t GetMisses(const Worker&) const { return 0; }
   StoreCounters GetCounters() const;
   std::vector<WorkerCounters> GetWorkerCounters() const;
 

@@ -85,7 +85,7 @@ public:
   ///@{
   /**
    * What the surfaces' colours tell instead of their look. The first among a scene's visible objects
-   * that is not Off counts. TracingRank and TileTime differ from frame to frame.
+   * that is not Off counts. TracingRank, TileTime, NewTiles and Misses differ from frame to frame.
    */
   enum DebugViewType
   {
@@ -95,9 +95,11 @@ public:
     Brick = 3,       ///< which brick it is
     TileTime = 4,    ///< how long the tile took: black, red, yellow, white (2 ms or more)
     Normal = 5,      ///< x, y, z as red, green, blue
-    Depth = 6        ///< near is bright
+    Depth = 6,       ///< near is bright
+    NewTiles = 7,    ///< red: another rank traced the tile in the last frame
+    Misses = 8       ///< bricks that the tile waited for: black, red, yellow, white (16 or more)
   };
-  vtkSetClampMacro(DebugView, int, Off, Depth);
+  vtkSetClampMacro(DebugView, int, Off, Misses);
   vtkGetMacro(DebugView, int);
   ///@}
 

@@ -16,4 +16,5 @@ void vtkDSMMemoryOptions::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "Memory: " << this->Memory << " MiB\n";
   os << indent << "CacheSize: " << this->CacheSize << " MiB\n";
   os << indent << "NumberOfThreads: " << this->NumberOfThreads << "\n";
+  os << indent << "Scheduler: " << this->Scheduler << "\n";
 }

@@ -73,6 +73,21 @@ public:
   vtkGetMacro(NumberOfThreads, int);
   ///@}
 
+  ///@{
+  /**
+   * How the tiles of the picture come to the ranks. WorkStealing (the default): a rank begins with those
+   * that it traced in the last picture, and takes from others when it has none left. CentralQueue: rank
+   * 0 deals them out; so it is in a renderer where any dataset asks for it.
+   */
+  enum SchedulerType
+  {
+    WorkStealing = 0,
+    CentralQueue = 1
+  };
+  vtkSetClampMacro(Scheduler, int, WorkStealing, CentralQueue);
+  vtkGetMacro(Scheduler, int);
+  ///@}
+
 protected:
   vtkDSMMemoryOptions();
   ~vtkDSMMemoryOptions() override;
@@ -86,6 +101,7 @@ private:
   int Memory = 0;
   int CacheSize = 256;
   int NumberOfThreads = 0;
+  int Scheduler = WorkStealing;
 };
 
 #endif

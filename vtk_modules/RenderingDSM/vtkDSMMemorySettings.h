@@ -3,6 +3,7 @@
 #define vtkDSMMemorySettings_h
 
 #include "DSMCore/MemoryOrganization.h"
+#include "DSMRayTracing/schedule/TileScheduler.h"
 
 #include <algorithm>
 #include <cstdint>
@@ -22,6 +23,8 @@ struct vtkDSMMemorySettings
   std::uint64_t CacheBytes = std::uint64_t(1) << 20;
   /// Tracing threads of each rank; 0: the cores of the host divided by its ranks. The largest counts.
   int Threads = 0;
+  /// The central queue when anyone wants it.
+  rt::TileScheduling Scheduling = rt::TileScheduling::WorkStealing;
 
   void Merge(const vtkDSMMemorySettings& other)
   {
@@ -33,6 +36,10 @@ struct vtkDSMMemorySettings
     this->MemoryBytes = std::max(this->MemoryBytes, other.MemoryBytes);
     this->CacheBytes = std::max(this->CacheBytes, other.CacheBytes);
     this->Threads = std::max(this->Threads, other.Threads);
+    if (other.Scheduling == rt::TileScheduling::CentralQueue)
+    {
+      this->Scheduling = other.Scheduling;
+    }
   }
 };
 

@@ -421,6 +421,7 @@ void vtkDSMScene::Internals::Draw()
       scene.Transport = this->GetTransport();
       scene.View = this->GetDebugView();
       request = vtkDSMTranslation::ToRequest(this->Renderer, projection);
+      request.Scheduling = this->Settings.Scheduling;
     });
   if (scene.Isosurfaces.empty() && scene.Meshes.empty())
   {
@@ -454,7 +455,9 @@ rt::DebugView vtkDSMScene::Internals::GetDebugView() const
       static_cast<int>(rt::DebugView::Brick) == Options::Brick &&
       static_cast<int>(rt::DebugView::TileTime) == Options::TileTime &&
       static_cast<int>(rt::DebugView::Normal) == Options::Normal &&
-      static_cast<int>(rt::DebugView::Depth) == Options::Depth,
+      static_cast<int>(rt::DebugView::Depth) == Options::Depth &&
+      static_cast<int>(rt::DebugView::NewTiles) == Options::NewTiles &&
+      static_cast<int>(rt::DebugView::Misses) == Options::Misses,
     "the options number the views as the tracer does");
   for (const Member& member : this->Members)
   {
@@ -529,7 +532,7 @@ void vtkDSMScene::Internals::TraceSamples(const rt::Scene& scene, rt::FrameReque
   rt::FrameRenderer& renderer = this->Group->GetFrameRenderer();
   if (request.FirstSample == 0)
   {
-    this->Frame = renderer.Render(this->Group->GetStore(), scene, request);
+    this->Frame = renderer.Render(this->Group->GetStore(), scene, request, &this->Frame);
   }
   else
   {

@@ -75,7 +75,9 @@ struct vtkDSMStatistics::RankRow
   std::int64_t BytesReceived;
   std::int64_t BytesSent;
   double WaitSeconds;
+  double IdleSeconds;
   std::int64_t Tiles;
+  std::int64_t NewTiles;
   double Seconds;
   double FrameSeconds;
 
@@ -102,7 +104,9 @@ struct vtkDSMStatistics::RankRow
     visit(Count("BytesReceived", &RankRow::BytesReceived));
     visit(Count("BytesSent", &RankRow::BytesSent));
     visit(Time("WaitSeconds", &RankRow::WaitSeconds));
+    visit(Time("IdleSeconds", &RankRow::IdleSeconds));
     visit(Count("Tiles", &RankRow::Tiles));
+    visit(Count("NewTiles", &RankRow::NewTiles));
     visit(Time("Seconds", &RankRow::Seconds));
   }
 };
@@ -161,9 +165,11 @@ void vtkDSMStatistics::Gather(dsm::Messenger& messenger, const rt::Frame& frame)
   mine.BytesReceived = static_cast<std::int64_t>(counters.BytesReceived);
   mine.BytesSent = static_cast<std::int64_t>(counters.BytesSent);
   mine.WaitSeconds = ToSeconds(counters.Workers.WaitNanoseconds);
+  mine.IdleSeconds = ToSeconds(frame.IdleNanoseconds);
   mine.Tiles = static_cast<std::int64_t>(frame.Tiles.size());
   for (const rt::Tile& tile : frame.Tiles)
   {
+    mine.NewTiles += tile.IsNew ? 1 : 0;
     mine.Seconds += tile.Seconds;
   }
   mine.FrameSeconds = frame.Seconds;

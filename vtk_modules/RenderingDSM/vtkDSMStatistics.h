@@ -57,8 +57,9 @@ public:
    * (replicated), BytesCached, PeakBytesCached, CacheCapacity, MemoryBudget, Publications (how often
    * an array or a surface was cut into bricks since the ranks came together), Accesses, Hits, Misses,
    * Joins (misses that found the brick requested already), Evictions, BytesReceived, BytesSent,
-   * WaitSeconds (of the workers, for bricks), Tiles, Seconds (of tracing). What workers count is
-   * summed over the rank's workers.
+   * WaitSeconds (of tiles, for bricks), IdleSeconds (of threads that found no other tile to trace
+   * meanwhile), Tiles, NewTiles (those that another rank traced in the last frame), Seconds (of
+   * tracing, processor time). Times and what workers count are summed over the rank's threads.
    */
   void GetTable(vtkTable* table) const;
 

@@ -12,7 +12,7 @@ namespace rt
 {
 
 /// What the surfaces' colours tell instead of their look. Pictures of TracingRank and TileTime differ
-/// from frame to frame, and with the number of ranks, as what they show does.
+/// from frame to frame, and with the number of ranks, as what they show does; NewTiles and Misses too.
 enum class DebugView
 {
   Off,
@@ -21,11 +21,16 @@ enum class DebugView
   Brick,       ///< which brick, or treelet, it is
   TileTime,    ///< how long the tile took: black, red, yellow, white at LongTileSeconds
   Normal,      ///< x, y, z of the world as red, green, blue
-  Depth        ///< near is bright, far is dark
+  Depth,       ///< near is bright, far is dark
+  NewTiles,    ///< red: another rank traced the tile in the last frame (the paper's Fig. 9)
+  Misses       ///< how many bricks the tile waited for: black, red, yellow, white at ManyMisses
 };
 
 /// A tile that takes as long, or longer, is white.
 constexpr double LongTileSeconds = 0.002;
+
+/// A tile that waited for as many bricks, or more, is white.
+constexpr std::uint64_t ManyMisses = 16;
 
 /// Colours of numbers: neighbouring numbers differ much (hues at steps of the golden ratio).
 inline glm::vec3 GetNumberColor(std::uint64_t number)

@@ -22,8 +22,10 @@ struct Tile
   int Y = 0;
   int Width = 0;
   int Height = 0;
-  int Index = 0; ///< row-major number of the tile in the frame
-  double Seconds = 0.0;
+  int Index = 0;            ///< row-major number of the tile in the frame
+  bool IsNew = false;       ///< another rank traced it in the last frame
+  std::uint64_t Misses = 0; ///< that its tracing waited for
+  double Seconds = 0.0;     ///< of processor time that its tracing took
   /// Four bytes a pixel, red first, alpha premultiplied; alpha 0 where nothing was hit.
   std::vector<std::uint8_t> Color;
   /// OpenGL window depth in [0, 1]; 1 where nothing was hit.
@@ -38,13 +40,21 @@ struct Frame
 {
   int Width = 0;
   int Height = 0;
+  int TileSize = 0;
   std::vector<Tile> Tiles;
+  /// Of the frames of a group of ranks: the same on every rank. 0: there is no frame.
+  std::uint32_t Number = 0;
+  double BusySeconds = 0.0; ///< from the start to the end of this rank's last tile
+  /// Whether the ranks had the last frame's tiles to begin with.
+  bool HasHistory = false;
   double Seconds = 0.0; ///< from the collective start to the collective end
   /// How the bricks were kept; never Automatic.
   dsm::MemoryOrganization Organization = dsm::MemoryOrganization::ObjectBased;
   std::string Explanation; ///< a sentence: why they are kept so
   dsm::StoreCounters Counters;
   std::vector<dsm::WorkerCounters> WorkerCounters;
+  /// That threads had nothing to trace, before this rank's last tile was done; summed over them.
+  std::uint64_t IdleNanoseconds = 0;
 };
 
 } // namespace rt

@@ -7,6 +7,8 @@
 #include "DSMRayTracing/frame/TileSource.h"
 #include "DSMRayTracing/frame/TileTracer.h"
 
+#include <time.h>
+
 #include <algorithm>
 #include <atomic>
 #include <chrono>
@@ -29,15 +31,27 @@ double SecondsSince(Clock::time_point start)
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
+/// Processor time of the calling thread: what a tile costs, not what it waits.
+double GetThreadSeconds()
+{
+  timespec time{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
+  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
+}
+
 /// What a whole tile is tinted with.
-glm::vec3 GetTint(DebugView view, int rank, double seconds)
+glm::vec3 GetTint(DebugView view, int rank, const Tile& tile)
 {
   switch (view)
   {
     case DebugView::TracingRank:
       return GetNumberColor(static_cast<std::uint64_t>(rank));
     case DebugView::TileTime:
-      return GetHeatColor(std::min(seconds / LongTileSeconds, 1.0));
+      return GetHeatColor(std::min(tile.Seconds / LongTileSeconds, 1.0));
+    case DebugView::NewTiles:
+      return tile.IsNew ? glm::vec3(1.0f, 0.2f, 0.1f) : glm::vec3(1.0f);
+    case DebugView::Misses:
+      return GetHeatColor(std::min(static_cast<double>(tile.Misses) / ManyMisses, 1.0));
     default:
       return glm::vec3(1.0f);
   }
@@ -74,6 +88,7 @@ struct RequestDigest
   std::int64_t FirstSample;
   std::int64_t Samples;
   std::int64_t Objects;
+  std::int64_t Scheduling;
   double WorldToClip[16];
 };
 
@@ -81,13 +96,20 @@ struct RequestDigest
 struct Entry
 {
   RequestDigest Request;
-  std::uint64_t Settled; ///< whether its store is
+  std::uint64_t Settled;    ///< whether its store is
+  std::uint64_t LastNumber; ///< of the last frame, when it had the same tiles; else 0
+  std::uint64_t LastTiles;
+  double LastBusySeconds;
 };
+
+/// A slowest rank is one that took so much longer than the fastest.
+constexpr double Unbalanced = 1.02;
 
 RequestDigest GetDigest(const FrameRequest& request, const Scene& scene)
 {
   RequestDigest digest{ request.Width, request.Height, request.FirstSample, request.Samples,
-    static_cast<std::int64_t>(scene.Isosurfaces.size() + scene.Meshes.size()), {} };
+    static_cast<std::int64_t>(scene.Isosurfaces.size() + scene.Meshes.size()),
+    static_cast<std::int64_t>(request.Scheduling), {} };
   for (int element = 0; element < 16; ++element)
   {
     digest.WorldToClip[element] = request.WorldToClip[element / 4][element % 4];
@@ -95,11 +117,23 @@ RequestDigest GetDigest(const FrameRequest& request, const Scene& scene)
   return digest;
 }
 
-/// Returns whether every rank's store is settled.
-bool CheckRequest(
-  dsm::Messenger& messenger, const FrameRequest& request, const Scene& scene, bool settled)
+Entry CreateEntry(const FrameRequest& request, const Scene& scene, const Frame* last, bool settled)
 {
-  const auto entries = messenger.AllGatherValue(Entry{ GetDigest(request, scene), settled });
+  Entry entry{ GetDigest(request, scene), settled, 0, 0, 0.0 };
+  if (last && last->Width == request.Width && last->Height == request.Height &&
+    last->TileSize == request.TileSize)
+  {
+    entry.LastNumber = last->Number;
+    entry.LastTiles = last->Tiles.size();
+    entry.LastBusySeconds = last->BusySeconds;
+  }
+  return entry;
+}
+
+/// Throws, on every rank alike, when the ranks were asked for different frames, or for an impossible
+/// one.
+void CheckRequest(const std::vector<Entry>& entries, const FrameRequest& request)
+{
   for (std::size_t rank = 0; rank < entries.size(); ++rank)
   {
     if (std::memcmp(&entries[rank].Request, &entries.front().Request, sizeof(RequestDigest)) != 0)
@@ -115,25 +149,63 @@ bool CheckRequest(
     throw dsm::Error("A frame of " + std::to_string(request.Width) + " x " +
       std::to_string(request.Height) + " pixels cannot be traced.");
   }
-  return std::all_of(
-    entries.begin(), entries.end(), [](const Entry& entry) { return entry.Settled != 0; });
+}
+
+/// What the ranks know together of the last frame; `mine`: what this rank traced of it.
+TilePlan CreatePlan(
+  const std::vector<Entry>& entries, const FrameRequest& request, const Frame* last)
+{
+  TilePlan plan;
+  const int tiles = TileGrid(request.Width, request.Height, request.TileSize).GetCount();
+  std::uint64_t traced = 0;
+  for (const Entry& entry : entries)
+  {
+    traced += entry.LastTiles;
+    if (entry.LastNumber == 0 || entry.LastNumber != entries.front().LastNumber)
+    {
+      return plan;
+    }
+  }
+  if (traced != static_cast<std::uint64_t>(tiles))
+  {
+    return plan;
+  }
+  plan.HasHistory = true;
+  for (const Tile& tile : last->Tiles)
+  {
+    plan.Mine.push_back(tile.Index);
+  }
+  const auto isFaster = [](const Entry& a, const Entry& b)
+  { return a.LastBusySeconds < b.LastBusySeconds; };
+  const auto [fastest, slowest] = std::minmax_element(entries.begin(), entries.end(), isFaster);
+  if (slowest->LastBusySeconds > Unbalanced * fastest->LastBusySeconds)
+  {
+    plan.Slowest = static_cast<int>(slowest - entries.begin());
+    plan.Fastest = static_cast<int>(fastest - entries.begin());
+  }
+  return plan;
 }
 
 } // namespace
 
 FrameRenderer::FrameRenderer(dsm::Messenger& messenger)
   : Messenger(messenger)
-  , Scheduler(messenger)
+  , Queue(messenger)
+  , Stealing(messenger)
 {
 }
 
 FrameRenderer::~FrameRenderer() = default;
 
-Frame FrameRenderer::Render(dsm::BlockStore& store, const Scene& scene, const FrameRequest& request)
+Frame FrameRenderer::Render(
+  dsm::BlockStore& store, const Scene& scene, const FrameRequest& request, const Frame* last)
 {
-  NewTiles tiles(TileGrid(request.Width, request.Height, request.TileSize), this->Scheduler);
+  TileScheduler& scheduler = request.Scheduling == TileScheduling::CentralQueue
+    ? static_cast<TileScheduler&>(this->Queue)
+    : this->Stealing;
+  NewTiles tiles(TileGrid(request.Width, request.Height, request.TileSize), scheduler);
   Frame frame;
-  this->RenderTiles(store, scene, request, tiles, frame);
+  this->RenderTiles(store, scene, request, last, tiles, frame);
   return frame;
 }
 
@@ -142,22 +214,32 @@ void FrameRenderer::Refine(
 {
   KeptTiles tiles(std::move(frame.Tiles));
   frame.Tiles.clear();
-  this->RenderTiles(store, scene, request, tiles, frame);
+  frame.Number = 0; // as long as it has no tiles
+  this->RenderTiles(store, scene, request, nullptr, tiles, frame);
 }
 
 void FrameRenderer::RenderTiles(dsm::BlockStore& store, const Scene& scene,
-  const FrameRequest& request, TileSource& tiles, Frame& frame)
+  const FrameRequest& request, const Frame* last, TileSource& tiles, Frame& frame)
 {
   const auto start = Clock::now();
-  if (!CheckRequest(this->Messenger, request, scene, store.IsSettled()))
+  const auto entries =
+    this->Messenger.AllGatherValue(CreateEntry(request, scene, last, store.IsSettled()));
+  CheckRequest(entries, request);
+  if (std::any_of(entries.begin(), entries.end(), [](const Entry& each) { return !each.Settled; }))
   {
     store.Settle();
   }
-  frame.Tiles =
-    store.Visit([&](auto& blocks) { return this->TraceTiles(blocks, scene, request, tiles); });
+  const TilePlan plan = CreatePlan(entries, request, last);
+  dsm::WorkerSlots& slots = store.GetSlots();
+  slots.BeginFrame(store.GetSettings().Workers);
+  store.Visit(
+    [&](auto& blocks) { this->TraceTiles(blocks, slots, scene, request, plan, tiles, frame); });
   frame.Width = request.Width;
   frame.Height = request.Height;
+  frame.TileSize = request.TileSize;
+  frame.HasHistory = plan.HasHistory;
   frame.Counters = store.GetCounters();
+  frame.IdleNanoseconds = slots.GetIdleNanoseconds();
   frame.WorkerCounters = store.GetWorkerCounters();
   frame.Organization = store.GetOrganization();
   frame.Explanation = store.GetExplanation();
@@ -165,16 +247,18 @@ void FrameRenderer::RenderTiles(dsm::BlockStore& store, const Scene& scene,
 }
 
 template <class Store>
-std::vector<Tile> FrameRenderer::TraceTiles(
-  Store& store, const Scene& scene, const FrameRequest& request, TileSource& tiles)
+void FrameRenderer::TraceTiles(Store& store, dsm::WorkerSlots& slots, const Scene& scene,
+  const FrameRequest& request, const TilePlan& plan, TileSource& tiles, Frame& frame)
 {
   const PixelRays rays(request);
   const int workers = store.GetSettings().Workers;
   std::vector<std::vector<Tile>> tilesOfWorker(workers);
   FirstFailure failure;
+  std::vector<int> mine = plan.Mine;
+  std::sort(mine.begin(), mine.end());
 
   store.BeginFrame();
-  tiles.Begin(workers);
+  tiles.Begin(plan, workers);
   std::atomic<bool> stopped{ false }; // by another rank's failure, which that rank reports
   FrameAgreement agreement(this->Messenger,
     [&]
@@ -182,7 +266,8 @@ std::vector<Tile> FrameRenderer::TraceTiles(
       stopped = true;
       tiles.Cancel();
     });
-  this->Messenger.BeginSession();
+  const std::uint32_t number = this->Messenger.BeginSession();
+  const auto start = Clock::now();
 
   const auto fail = [&](const std::string& cause)
   {
@@ -195,18 +280,24 @@ std::vector<Tile> FrameRenderer::TraceTiles(
   const auto work = [&](int index)
   {
     auto& worker = store.GetWorker(index);
+    const dsm::WorkerSlots::Hold slot(slots);
     try
     {
       const TileTracer<Store> tracer(store, worker, scene, rays, request);
-      while (std::optional<Tile> tile = tiles.Pop())
+      while (std::optional<Tile> tile = tiles.Pop(slots))
       {
-        const auto tileStart = Clock::now();
+        const double tileStart = GetThreadSeconds();
+        const std::uint64_t misses = store.GetMisses(worker);
         store.Enter(worker);
         tracer.Trace(*tile);
         store.Leave(worker);
-        tile->Seconds = SecondsSince(tileStart);
-        tracer.Finish(*tile, GetTint(scene.View, this->Messenger.GetRank(), tile->Seconds));
+        tile->Seconds = GetThreadSeconds() - tileStart;
+        tile->Misses += store.GetMisses(worker) - misses;
+        tile->IsNew = tile->IsNew ||
+          (plan.HasHistory && !std::binary_search(mine.begin(), mine.end(), tile->Index));
+        tracer.Finish(*tile, GetTint(scene.View, this->Messenger.GetRank(), *tile));
         tilesOfWorker[index].push_back(std::move(*tile));
+        slots.LetOthersResume();
       }
     }
     catch (...)
@@ -216,6 +307,7 @@ std::vector<Tile> FrameRenderer::TraceTiles(
     }
   };
 
+  std::atomic<double> busySeconds{ 0.0 };
   bool cancelled = false;
   const auto service = [&]
   {
@@ -250,7 +342,12 @@ std::vector<Tile> FrameRenderer::TraceTiles(
 
   try
   {
-    this->Pool.Start(workers, work, [this] { this->Messenger.WakeUp(); });
+    this->Pool.Start(workers, work,
+      [&]
+      {
+        busySeconds = SecondsSince(start);
+        this->Messenger.WakeUp();
+      });
   }
   catch (...)
   {
@@ -271,12 +368,12 @@ std::vector<Tile> FrameRenderer::TraceTiles(
     throw dsm::Error("The frame could not be traced. Rank " + std::to_string(outcome.FailedRank) +
       ": " + outcome.Cause);
   }
-  std::vector<Tile> traced;
   for (auto& some : tilesOfWorker)
   {
-    std::move(some.begin(), some.end(), std::back_inserter(traced));
+    std::move(some.begin(), some.end(), std::back_inserter(frame.Tiles));
   }
-  return traced;
+  frame.Number = number;
+  frame.BusySeconds = busySeconds;
 }
 
 } // namespace rt

@@ -9,6 +9,7 @@
 #include "DSMRayTracing/frame/Scene.h"
 #include "DSMRayTracing/frame/WorkerPool.h"
 #include "DSMRayTracing/schedule/CentralQueueScheduler.h"
+#include "DSMRayTracing/schedule/WorkStealingScheduler.h"
 
 #include <vector>
 
@@ -29,10 +30,13 @@ public:
 
   /// Collective; always from the same thread. Every rank passes the same request and scene. Settles
   /// the store first.
-  /// `store.GetSettings().Workers` threads trace. Returns the tiles that this rank traced. Throws
+  /// `store.GetSettings().Workers` threads trace at a time. Returns the tiles that this rank traced. Throws
   /// the same dsm::Error on every rank when any rank fails, or when the requests differ; the next
   /// frame is not affected.
-  Frame Render(dsm::BlockStore& store, const Scene& scene, const FrameRequest& request);
+  /// `last`: the view's last frame, if there is one; with work stealing, a rank begins with the tiles
+  /// that it traced then.
+  Frame Render(dsm::BlockStore& store, const Scene& scene, const FrameRequest& request,
+    const Frame* last = nullptr);
 
   /// Adds the request's samples to a frame that has all samples before them: each rank goes on with
   /// the tiles that it has. Collective; as Render, but that a failure leaves the frame without tiles.
@@ -41,13 +45,14 @@ public:
 
 private:
   void RenderTiles(dsm::BlockStore& store, const Scene& scene, const FrameRequest& request,
-    TileSource& tiles, Frame& frame);
+    const Frame* last, TileSource& tiles, Frame& frame);
   template <class Store>
-  std::vector<Tile> TraceTiles(
-    Store& store, const Scene& scene, const FrameRequest& request, TileSource& tiles);
+  void TraceTiles(Store& store, dsm::WorkerSlots& slots, const Scene& scene,
+    const FrameRequest& request, const TilePlan& plan, TileSource& tiles, Frame& frame);
 
   dsm::Messenger& Messenger;
-  CentralQueueScheduler Scheduler;
+  CentralQueueScheduler Queue;
+  WorkStealingScheduler Stealing;
   WorkerPool Pool;
 };
 

@@ -2,6 +2,8 @@
 #ifndef rt_FrameRequest_h
 #define rt_FrameRequest_h
 
+#include "DSMRayTracing/schedule/TileScheduler.h"
+
 #include <glm/mat4x4.hpp>
 
 namespace rt
@@ -21,6 +23,7 @@ struct FrameRequest
   /// pixel's centre; the others are spread over the pixel.
   int FirstSample = 0;
   int Samples = 1;
+  TileScheduling Scheduling = TileScheduling::WorkStealing;
 };
 
 } // namespace rt

@@ -24,6 +24,7 @@ public:
   }
 
   int GetCount() const { return this->Columns * this->Rows; }
+  int GetColumns() const { return this->Columns; }
 
   /// The tile's place and size, without pixels.
   Tile CreateTile(int index) const

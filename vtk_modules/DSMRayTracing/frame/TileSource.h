@@ -19,11 +19,12 @@ class TileSource
 {
 public:
   virtual ~TileSource() = default;
-  virtual void Begin(int workers) = 0;
+  /// `plan`: with what is known of the last frame; the tiles are the source's own.
+  virtual void Begin(TilePlan plan, int workers) = 0;
   virtual bool Service() = 0;
   virtual void End() = 0;
   virtual void Cancel() = 0;
-  virtual std::optional<Tile> Pop() = 0;
+  virtual std::optional<Tile> Pop(dsm::WorkerSlots& slots) = 0;
 };
 
 /// New tiles, dealt out between the ranks.
@@ -36,13 +37,18 @@ public:
   {
   }
 
-  void Begin(int workers) override { this->Scheduler.Begin(this->Grid.GetCount(), workers); }
+  void Begin(TilePlan plan, int workers) override
+  {
+    plan.Tiles = this->Grid.GetCount();
+    plan.Columns = this->Grid.GetColumns();
+    this->Scheduler.Begin(plan, workers);
+  }
   bool Service() override { return this->Scheduler.Service(); }
   void End() override { this->Scheduler.End(); }
   void Cancel() override { this->Scheduler.Cancel(); }
-  std::optional<Tile> Pop() override
+  std::optional<Tile> Pop(dsm::WorkerSlots& slots) override
   {
-    const std::optional<int> number = this->Scheduler.Pop();
+    const std::optional<int> number = this->Scheduler.Pop(slots);
     return number ? std::optional<Tile>(this->Grid.CreateTile(*number)) : std::nullopt;
   }
 
@@ -61,11 +67,11 @@ public:
   {
   }
 
-  void Begin(int) override {}
+  void Begin(TilePlan, int) override {}
   bool Service() override { return false; }
   void End() override {}
   void Cancel() override { this->Next = this->Tiles.size(); }
-  std::optional<Tile> Pop() override
+  std::optional<Tile> Pop(dsm::WorkerSlots&) override
   {
     const std::size_t index = this->Next.fetch_add(1);
     return index < this->Tiles.size() ? std::optional<Tile>(std::move(this->Tiles[index]))

@@ -14,14 +14,17 @@ namespace rt
 {
 
 /// A ray in one brick: over its macrocells, then over the cells of those that the isovalue is in.
-template <class T>
+/// `Access` is told what is read; see BrickAccess.
+template <class T, class Access>
 class GridTraversal
 {
 public:
   /// `origin`: the brick's first cell.
-  GridTraversal(const GridRay& ray, const VoxelBrick<T>& brick, const Lanes& origin)
+  GridTraversal(
+    const GridRay& ray, const VoxelBrick<T>& brick, const Lanes& origin, const Access& access)
     : Line(ray)
     , Brick(brick)
+    , Reads(access)
     , Origin(origin)
     , CellStrides(brick.GetRow(), brick.GetSlice())
   {
@@ -44,6 +47,7 @@ public:
     while (t < limit)
     {
       const double exit = std::min(walk.GetExit(), leave);
+      this->Reads.ReadRange();
       if (level.Separates(range->Min, range->Max) && this->WalkCells(level, walk, t, exit, hit))
       {
         return true;
@@ -78,6 +82,7 @@ private:
     for (;;)
     {
       const double exit = std::min(walk.GetExit(), leave);
+      this->Reads.ReadCell();
       if (CornerTest<T>::IsSeparated(corner, row, slice, level.GetFirst()) &&
         this->IntersectCell(level, walk, corner, t, exit, hit))
       {
@@ -159,6 +164,7 @@ private:
 
   const GridRay& Line;
   const VoxelBrick<T>& Brick;
+  const Access& Reads;
   Lanes Origin;
   NodeStrides CellStrides;
 };

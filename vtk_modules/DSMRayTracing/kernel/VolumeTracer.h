@@ -3,6 +3,7 @@
 #define rt_VolumeTracer_h
 
 #include "DSMRayTracing/frame/Scene.h"
+#include "DSMRayTracing/kernel/BrickAccess.h"
 #include "DSMRayTracing/kernel/BrickWalk.h"
 #include "DSMRayTracing/kernel/CellHit.h"
 #include "DSMRayTracing/kernel/GridRay.h"
@@ -30,7 +31,7 @@ struct SurfaceHit
 /// coarse macrocells front to back, acquires each brick that may hold a surface once a visit, and
 /// searches it (GridTraversal). Pure: the result depends on the ray and the data only. One for each
 /// worker: it holds at most one pin, and none while it acquires or when a call returns.
-template <class Store>
+template <class Store, Consolidation Mode = Consolidation::PerBrick>
 class VolumeTracer
 {
 public:

@@ -15,8 +15,8 @@
 namespace rt
 {
 
-template <class Store>
-bool VolumeTracer<Store>::Intersect(
+template <class Store, Consolidation Mode>
+bool VolumeTracer<Store, Mode>::Intersect(
   const IsosurfaceObject& object, const Ray& ray, SurfaceHit& hit) const
 {
   const IndexSpace space(object.IndexToWorld, object.WorldToIndex);
@@ -41,9 +41,9 @@ bool VolumeTracer<Store>::Intersect(
     });
 }
 
-template <class Store>
+template <class Store, Consolidation Mode>
 template <class T>
-bool VolumeTracer<Store>::IntersectBricks(const IsosurfaceObject& object, const GridRay& line,
+bool VolumeTracer<Store, Mode>::IntersectBricks(const IsosurfaceObject& object, const GridRay& line,
   double enter, double leave, SurfaceHit& hit, double gradient[3]) const
 {
   const VoxelField& field = *object.Field;
@@ -72,16 +72,19 @@ bool VolumeTracer<Store>::IntersectBricks(const IsosurfaceObject& object, const 
   return false;
 }
 
-template <class Store>
+template <class Store, Consolidation Mode>
 template <class T>
-bool VolumeTracer<Store>::IntersectBrick(const IsosurfaceObject& object, const GridRay& line,
+bool VolumeTracer<Store, Mode>::IntersectBrick(const IsosurfaceObject& object, const GridRay& line,
   const BrickWalk& walk, CellHit& cell, int& isovalue, double gradient[3], bool& hasGradient) const
 {
   const typename Store::Pin pin =
     this->Blocks.Acquire(this->Self, *object.Field->Segment, walk.GetId());
   const VoxelBrick<T> voxels(pin.GetData());
   const ValueRange range{ voxels.GetHeader().First, voxels.GetHeader().Last };
-  const GridTraversal<T> traversal(line, voxels, walk.GetOrigin());
+  const BrickAccess<Store, Mode> access(
+    this->Blocks, this->Self, *object.Field->Segment, walk.GetId());
+  const GridTraversal<T, BrickAccess<Store, Mode>> traversal(
+    line, voxels, walk.GetOrigin(), access);
   bool found = false;
   double limit = std::numeric_limits<double>::infinity();
   for (std::size_t index = 0; index < object.Isovalues.size(); ++index)
@@ -107,8 +110,9 @@ bool VolumeTracer<Store>::IntersectBrick(const IsosurfaceObject& object, const G
   return true;
 }
 
-template <class Store>
-double VolumeTracer<Store>::Sample(const VoxelField& field, const glm::dvec3& indexPoint) const
+template <class Store, Consolidation Mode>
+double VolumeTracer<Store, Mode>::Sample(
+  const VoxelField& field, const glm::dvec3& indexPoint) const
 {
   const Index3 cells = field.Lattice.GetCells();
   Index3 cell;
@@ -145,9 +149,9 @@ double VolumeTracer<Store>::Sample(const VoxelField& field, const glm::dvec3& in
     });
 }
 
-template <class Store>
+template <class Store, Consolidation Mode>
 template <class T>
-double VolumeTracer<Store>::SampleCell(
+double VolumeTracer<Store, Mode>::SampleCell(
   const VoxelField& field, const Index3& cell, const glm::dvec3& indexPoint) const
 {
   const Index3 brick = cell / Index3(field.Lattice.GetEdge());

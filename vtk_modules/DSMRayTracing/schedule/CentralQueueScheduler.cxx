@@ -35,9 +35,9 @@ CentralQueueScheduler::CentralQueueScheduler(dsm::Messenger& messenger)
 
 CentralQueueScheduler::~CentralQueueScheduler() = default;
 
-void CentralQueueScheduler::Begin(int tiles, int workers)
+void CentralQueueScheduler::Begin(const TilePlan& plan, int workers)
 {
-  this->Tiles = tiles;
+  this->Tiles = plan.Tiles;
   this->Workers = std::max(workers, 1);
   this->LowWater = this->Workers;
   this->Next = 0;
@@ -125,7 +125,7 @@ bool CentralQueueScheduler::Service()
   return true;
 }
 
-std::optional<int> CentralQueueScheduler::Pop()
+std::optional<int> CentralQueueScheduler::Pop(dsm::WorkerSlots& slots)
 {
   if (this->IsSupervisor())
   {
@@ -133,7 +133,11 @@ std::optional<int> CentralQueueScheduler::Pop()
     return tile < this->Tiles ? std::optional<int>(tile) : std::nullopt;
   }
   std::unique_lock<std::mutex> lock(this->Mutex);
-  this->Changed.wait(lock, [this] { return this->Exhausted || !this->Granted.empty(); });
+  const auto isSettled = [this] { return this->Exhausted || !this->Granted.empty(); };
+  while (!isSettled())
+  {
+    dsm::WaitWithoutSlot(&slots, lock, this->Changed, isSettled);
+  }
   if (this->Granted.empty())
   {
     return std::nullopt;

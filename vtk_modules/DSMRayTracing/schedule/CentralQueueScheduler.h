@@ -22,11 +22,11 @@ public:
   explicit CentralQueueScheduler(dsm::Messenger& messenger);
   ~CentralQueueScheduler() override;
 
-  void Begin(int tiles, int workers) override;
+  void Begin(const TilePlan& plan, int workers) override;
   bool Service() override;
   void End() override;
   void Cancel() override;
-  std::optional<int> Pop() override;
+  std::optional<int> Pop(dsm::WorkerSlots& slots) override;
 
 private:
   void Grant(dsm::Message&& request);

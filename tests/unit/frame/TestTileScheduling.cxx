@@ -1,0 +1,289 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "DSMRayTracing/frame/FrameAgreement.h"
+#include "DSMRayTracing/frame/TileGrid.h"
+#include "DSMRayTracing/frame/WorkerPool.h"
+#include "DSMRayTracing/schedule/CentralQueueScheduler.h"
+#include "DSMRayTracing/schedule/WorkStealingScheduler.h"
+
+#include "tests/support/LoopbackCluster.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <chrono>
+#include <memory>
+#include <mutex>
+#include <random>
+#include <set>
+#include <string>
+#include <thread>
+#include <vector>
+
+namespace
+{
+
+/// Frames whose tiles are only waited for.
+class Cluster
+{
+public:
+  Cluster(dsm::Messenger& messenger, rt::TileScheduling scheduling, int workers)
+    : Messenger(messenger)
+    , Workers(workers)
+  {
+    if (scheduling == rt::TileScheduling::CentralQueue)
+    {
+      this->Scheduler = std::make_unique<rt::CentralQueueScheduler>(messenger);
+    }
+    else
+    {
+      this->Scheduler = std::make_unique<rt::WorkStealingScheduler>(messenger);
+    }
+  }
+
+  /// Collective. `trace(tile)` stands for the tracing of a tile, by workers. Returns this rank's
+  /// tiles.
+  template <class Trace>
+  std::vector<int> RunFrame(const rt::TilePlan& plan, const Trace& trace, bool cancels = false)
+  {
+    std::mutex guard;
+    std::vector<int> mine;
+    dsm::WorkerSlots slots;
+    slots.BeginFrame(this->Workers);
+    this->Messenger.Barrier();
+    this->Scheduler->Begin(plan, this->Workers);
+    rt::FrameAgreement agreement(this->Messenger, [this] { this->Scheduler->Cancel(); });
+    this->Messenger.BeginSession();
+    this->Pool.Start(
+      this->Workers,
+      [&](int)
+      {
+        const dsm::WorkerSlots::Hold slot(slots);
+        while (const std::optional<int> tile = this->Scheduler->Pop(slots))
+        {
+          trace(*tile);
+          const std::lock_guard<std::mutex> lock(guard);
+          mine.push_back(*tile);
+        }
+      },
+      [this] { this->Messenger.WakeUp(); });
+    this->Messenger.ProgressUntil([&] { return agreement.IsOver(); },
+      [&]
+      {
+        bool any = this->Scheduler->Service();
+        if (cancels)
+        {
+          this->Scheduler->Cancel();
+          agreement.ReportFailure("cancelled for the test");
+        }
+        if (!agreement.IsDone() && this->Pool.GetRunning() == 0)
+        {
+          agreement.ReportDone();
+          any = true;
+        }
+        return any;
+      });
+    this->Pool.Wait();
+    this->Scheduler->End();
+    this->Messenger.ProgressUntil([this] { return this->Messenger.GetUnsentBytes() == 0; });
+    if (!agreement.GetOutcome().IsOk())
+    {
+      this->Messenger.Barrier();
+      mine.clear();
+    }
+    return mine;
+  }
+
+  /// Collective: every tile was traced once.
+  void ExpectAllTilesOnce(const std::vector<int>& mine, int tiles)
+  {
+    std::vector<std::byte> bytes;
+    for (const int tile : mine)
+    {
+      dsm::AttachTail(bytes, tile);
+    }
+    std::vector<int> all;
+    for (const auto& part : this->Messenger.AllGather(bytes))
+    {
+      const auto* first = reinterpret_cast<const int*>(part.data());
+      all.insert(all.end(), first, first + part.size() / sizeof(int));
+    }
+    std::sort(all.begin(), all.end());
+    bool complete = static_cast<int>(all.size()) == tiles;
+    for (int tile = 0; complete && tile < tiles; ++tile)
+    {
+      complete = all[tile] == tile;
+    }
+    ASSERT_TRUE(complete) << all.size() << " tiles of " << tiles;
+  }
+
+  dsm::Messenger& Messenger;
+
+private:
+  const int Workers;
+  std::unique_ptr<rt::TileScheduler> Scheduler;
+  rt::WorkerPool Pool;
+};
+
+void Spin(double microseconds)
+{
+  const auto end =
+    std::chrono::steady_clock::now() + std::chrono::duration<double, std::micro>(microseconds);
+  while (std::chrono::steady_clock::now() < end)
+  {
+  }
+}
+
+struct Case
+{
+  rt::TileScheduling Scheduling;
+  int Ranks;
+  int Frames;
+};
+
+class TileScheduling : public testing::TestWithParam<Case>
+{
+};
+
+std::string GetName(const testing::TestParamInfo<Case>& info)
+{
+  return (info.param.Scheduling == rt::TileScheduling::CentralQueue ? "Queue" : "Stealing") +
+    std::to_string(info.param.Ranks);
+}
+
+INSTANTIATE_TEST_SUITE_P(Schedulers, TileScheduling,
+  testing::Values(Case{ rt::TileScheduling::CentralQueue, 2, 3000 },
+    Case{ rt::TileScheduling::CentralQueue, 3, 3000 },
+    Case{ rt::TileScheduling::CentralQueue, 4, 4000 },
+    Case{ rt::TileScheduling::WorkStealing, 1, 500 },
+    Case{ rt::TileScheduling::WorkStealing, 2, 3000 },
+    Case{ rt::TileScheduling::WorkStealing, 3, 3000 },
+    Case{ rt::TileScheduling::WorkStealing, 4, 4000 }),
+  GetName);
+
+} // namespace
+
+TEST_P(TileScheduling, NeitherHangsNorLosesNorDoublesATile)
+{
+  const Case& setting = this->GetParam();
+  RunOnCluster(setting.Ranks,
+    [&](dsm::Messenger& messenger)
+    {
+      Cluster cluster(messenger, setting.Scheduling, 2);
+      std::mt19937 common(1);
+      std::mt19937 own(static_cast<std::mt19937::result_type>(100 + messenger.GetRank()));
+      const auto pick = [](std::mt19937& from, int least, int most)
+      { return std::uniform_int_distribution<int>(least, most)(from); };
+      rt::TilePlan plan;
+      for (int frame = 0; frame < setting.Frames; ++frame)
+      {
+        if (frame == 0 || pick(common, 0, 9) == 0) // a resize
+        {
+          plan = {};
+          plan.Columns = pick(common, 1, 9);
+          plan.Tiles = plan.Columns * pick(common, 1, 7);
+        }
+        // A rank is late; tiles cost differently; now and then a rank gives up.
+        if (pick(own, 0, 19) == 0)
+        {
+          std::this_thread::sleep_for(std::chrono::microseconds(pick(own, 1, 500)));
+        }
+        const int longest = pick(own, 0, 15);
+        const bool fails = pick(common, 0, 49) == 0;
+        const int failing = pick(common, 0, messenger.GetSize() - 1);
+        const auto seed = static_cast<unsigned>(frame);
+        const std::vector<int> mine = cluster.RunFrame(
+          plan,
+          [=](int tile)
+          { Spin((seed * 31u + static_cast<unsigned>(tile) * 17u) % 8 * longest * 0.1); },
+          fails && failing == messenger.GetRank());
+        if (fails)
+        {
+          plan.HasHistory = false;
+          plan.Slowest = plan.Fastest = -1;
+          continue;
+        }
+        cluster.ExpectAllTilesOnce(mine, plan.Tiles);
+        plan.Mine = mine;
+        plan.HasHistory = true;
+        if (messenger.GetSize() > 1 && pick(common, 0, 1) == 0)
+        {
+          plan.Slowest = pick(common, 0, messenger.GetSize() - 1);
+          plan.Fastest = (plan.Slowest + 1) % messenger.GetSize();
+        }
+        else
+        {
+          plan.Slowest = plan.Fastest = -1;
+        }
+      }
+    });
+}
+
+TEST(TestTileScheduling, TheFirstCutIsFairAndWhole)
+{
+  for (const int ranks : { 1, 2, 3, 7, 64 })
+  {
+    rt::TilePlan plan;
+    plan.Columns = 13;
+    plan.Tiles = 13 * 9;
+    std::set<int> all;
+    for (int rank = 0; rank < ranks; ++rank)
+    {
+      const auto cut = rt::WorkStealingScheduler::CutInitially(plan, rank, ranks);
+      EXPECT_GE(static_cast<int>(cut.size()), plan.Tiles / ranks);
+      EXPECT_LE(static_cast<int>(cut.size()), plan.Tiles / ranks + 1);
+      all.insert(cut.begin(), cut.end());
+    }
+    EXPECT_EQ(static_cast<int>(all.size()), plan.Tiles);
+  }
+}
+
+TEST(TestTileScheduling, WithoutNeedARankKeepsItsTiles)
+{
+  RunOnCluster(2,
+    [](dsm::Messenger& messenger)
+    {
+      Cluster cluster(messenger, rt::TileScheduling::WorkStealing, 1);
+      rt::TilePlan plan;
+      plan.Columns = 8;
+      plan.Tiles = 64;
+      plan.HasHistory = true;
+      for (int tile = messenger.GetRank(); tile < plan.Tiles; tile += 2)
+      {
+        plan.Mine.push_back(tile);
+      }
+      // Equal ranks, 32 tiles of 2 ms each: at the end one may steal, but of few that are left.
+      const auto mine = cluster.RunFrame(
+        plan, [](int) { std::this_thread::sleep_for(std::chrono::milliseconds(2)); });
+      const auto changed = std::count_if(
+        mine.begin(), mine.end(), [&](int tile) { return tile % 2 != messenger.GetRank(); });
+      EXPECT_LE(changed, 16);
+      cluster.ExpectAllTilesOnce(mine, plan.Tiles);
+    });
+}
+
+TEST(TestTileScheduling, AnIdleRankStealsAndTheSlowestGives)
+{
+  RunOnCluster(3,
+    [](dsm::Messenger& messenger)
+    {
+      Cluster cluster(messenger, rt::TileScheduling::WorkStealing, 1);
+      rt::TilePlan plan;
+      plan.Columns = 30;
+      plan.Tiles = 300;
+      plan.HasHistory = true;
+      plan.Slowest = 0;
+      plan.Fastest = 2;
+      for (int tile = 0; messenger.GetRank() == 0 && tile < plan.Tiles; ++tile)
+      {
+        plan.Mine.push_back(tile);
+      }
+      const auto mine = cluster.RunFrame(
+        plan, [](int) { std::this_thread::sleep_for(std::chrono::milliseconds(1)); });
+      EXPECT_GT(mine.size(), 30u) << "all had something to do";
+      if (messenger.GetRank() == 2)
+      {
+        EXPECT_TRUE(std::count(mine.begin(), mine.end(), 295)) << "what was given at the start";
+      }
+      cluster.ExpectAllTilesOnce(mine, plan.Tiles);
+    });
+}
