@@ -20,7 +20,7 @@ from vtkmodules.vtkIOImage import vtkPNGReader
 
 EXAMPLE, PLUGIN, OUTPUT = sys.argv[1:4]
 MPIRUN = sys.argv[4:]
-WARM_UP, STEPS = 20, 50
+WARM_UP, STEPS = 15, 40
 KIBIBYTES_FOR_ALL_STEPS = 4096  # less than the bricks of five steps
 
 

@@ -14,6 +14,7 @@
 
 #include <array>
 #include <cstddef>
+#include <cstring>
 #include <vector>
 
 namespace
@@ -67,16 +68,37 @@ bool FindBytes(vtkDataArray* array, std::vector<Bytes>& parts)
   return found;
 }
 
+/// Four interleaved hashes, as a processor does four multiplications at once that do not wait for one
+/// another.
+std::uint64_t HashChunk(const std::byte* data, std::size_t bytes)
+{
+  constexpr std::size_t lanes = 4;
+  constexpr std::size_t step = lanes * sizeof(std::uint64_t);
+  constexpr std::uint64_t prime = 0x100000001b3ull;
+  std::array<std::uint64_t, lanes> state{ 1, 2, 3, 4 };
+  std::size_t at = 0;
+  for (; at + step <= bytes; at += step)
+  {
+    std::array<std::uint64_t, lanes> words;
+    std::memcpy(words.data(), data + at, step);
+    for (std::size_t lane = 0; lane < lanes; ++lane)
+    {
+      state[lane] = (state[lane] ^ words[lane]) * prime;
+      state[lane] ^= state[lane] >> 32;
+    }
+  }
+  rt::ByteHash hash;
+  hash.Add(state.data(), sizeof(state));
+  hash.Add(data + at, bytes - at);
+  return hash.Get();
+}
+
 std::uint64_t HashBytes(const Bytes& bytes, int threads)
 {
   std::vector<std::uint64_t> chunks((bytes.Size + ChunkBytes - 1) / ChunkBytes);
   rt::ParallelForChunks(threads, bytes.Size, ChunkBytes,
     [&](std::size_t begin, std::size_t end, std::size_t chunk, int)
-    {
-      rt::ByteHash hash;
-      hash.Add(static_cast<const std::byte*>(bytes.Data) + begin, end - begin);
-      chunks[chunk] = hash.Get();
-    });
+    { chunks[chunk] = HashChunk(static_cast<const std::byte*>(bytes.Data) + begin, end - begin); });
   rt::ByteHash hash;
   hash.Add(chunks.data(), chunks.size() * sizeof(chunks[0]));
   return hash.Get();
