@@ -196,8 +196,12 @@ bool vtkPVDSMGeometryRepresentation::RemoveFromView(vtkView* view)
 
 void vtkPVDSMGeometryRepresentation::ForwardProgress()
 {
-  this->SetProgressText("Cutting the surface into bricks");
-  this->UpdateProgress(this->Mapper->GetProgress());
+  // Not what the mapper says when VTK executes it while the frame is drawn.
+  if (this->Scene && this->Scene->IsTracing())
+  {
+    this->SetProgressText("Cutting the surface into bricks");
+    this->UpdateProgress(this->Mapper->GetProgress());
+  }
 }
 
 // The superclass would set the names at a mapper of another class.

@@ -121,8 +121,12 @@ void vtkPVDSMImageRepresentation::PrepareUpdate(vtkInformation* inInfo, vtkInfor
 
 void vtkPVDSMImageRepresentation::ForwardProgress()
 {
-  this->SetProgressText("Cutting the volume into bricks");
-  this->UpdateProgress(this->Mapper->GetProgress());
+  // Not what the mapper says when VTK executes it while the frame is drawn.
+  if (this->Scene && this->Scene->IsTracing())
+  {
+    this->SetProgressText("Cutting the volume into bricks");
+    this->UpdateProgress(this->Mapper->GetProgress());
+  }
 }
 
 bool vtkPVDSMImageRepresentation::AddToView(vtkView* view)

@@ -355,6 +355,27 @@ TEST_F(PolyDataMapper, OnlyDataThatChangeAreTakenInAgain)
   EXPECT_FALSE(this->Building);
 }
 
+TEST_F(PolyDataMapper, BuildingCanBeAborted)
+{
+  this->Mapper->SetInputDataObject(MakeBall());
+  vtkNew<vtkCallbackCommand> abort;
+  abort->SetClientData(this->Mapper);
+  abort->SetCallback([](vtkObject*, unsigned long, void* mapper, void*)
+    { static_cast<vtkDSMPolyDataMapper*>(mapper)->SetAbortExecute(1); });
+  const unsigned long observer = this->Mapper->AddObserver(vtkCommand::ProgressEvent, abort);
+  vtkNew<vtkTest::ErrorObserver> errors;
+  this->Mapper->AddObserver(vtkCommand::ErrorEvent, errors);
+  const Picture nothing = this->Render();
+  EXPECT_EQ(std::count(nothing.begin(), nothing.end(), nothing.front()), nothing.size());
+  EXPECT_NE(errors->GetErrorMessage().find("aborted"), std::string::npos);
+
+  this->Mapper->RemoveObserver(observer);
+  errors->Clear();
+  this->Mapper->SetInputDataObject(MakeBall());
+  EXPECT_NE(this->Render(), nothing);
+  EXPECT_FALSE(errors->GetError());
+}
+
 TEST_F(PolyDataMapper, EveryKindOfCell)
 {
   // A concave polygon, a quad, a strip, and a triangle hidden as a ghost.

@@ -9,6 +9,7 @@
 
 #include "vtkActor.h"
 #include "vtkAutoInit.h"
+#include "vtkCallbackCommand.h"
 #include "vtkCamera.h"
 #include "vtkDoubleArray.h"
 #include "vtkFloatArray.h"
@@ -29,7 +30,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <string>
 #include <vector>
 
 namespace
@@ -299,6 +302,47 @@ TEST_F(VolumeMapper, CollectsSamplesUntilSomethingChanges)
   this->Window->SetDesiredUpdateRate(15.0);
   this->Mapper->SetIsoValue(0, 0.35);
   EXPECT_EQ(countFrames(), 5) << "one each while the camera moves";
+}
+
+TEST_F(VolumeMapper, TellsTheProgressAndCanBeAborted)
+{
+  struct Watch
+  {
+    vtkDSMScene* Scene;
+    vtkDSMVolumeMapper* Mapper;
+    std::vector<double> Parts;
+    bool Aborts;
+  } watch{ this->Scene, this->Mapper, {}, true };
+  vtkNew<vtkCallbackCommand> progress;
+  progress->SetClientData(&watch);
+  progress->SetCallback(
+    [](vtkObject*, unsigned long, void* data, void*)
+    {
+      auto* self = static_cast<Watch*>(data);
+      // VTK executes the mapper once more when it draws.
+      if (self->Scene->IsTracing())
+      {
+        self->Parts.push_back(self->Mapper->GetProgress());
+        self->Mapper->SetAbortExecute(self->Aborts ? 1 : 0);
+      }
+    });
+  this->Mapper->AddObserver(vtkCommand::ProgressEvent, progress);
+  vtkNew<vtkTest::ErrorObserver> errors;
+  this->Mapper->AddObserver(vtkCommand::ErrorEvent, errors);
+  this->Renderer->AddVolume(this->Volume);
+
+  EXPECT_EQ(CountCovered(this->RenderDistances()), 0);
+  EXPECT_NE(errors->GetErrorMessage().find("aborted"), std::string::npos);
+  EXPECT_EQ(watch.Parts.size(), 1u);
+
+  watch = { this->Scene, this->Mapper, {}, false };
+  errors->Clear();
+  this->Mapper->SetInputData(MakeBall());
+  EXPECT_GT(CountCovered(this->RenderDistances()), 1000);
+  EXPECT_FALSE(errors->GetError());
+  EXPECT_GT(watch.Parts.size(), 2u);
+  EXPECT_TRUE(std::is_sorted(watch.Parts.begin(), watch.Parts.end()));
+  EXPECT_EQ(watch.Parts.back(), 1.0);
 }
 
 TEST_F(VolumeMapper, NamesAMissingArrayOnce)

@@ -24,6 +24,8 @@
 #include "vtkMatrix4x4.h"
 #include "vtkMultiProcessController.h"
 #include "vtkObjectFactory.h"
+#include "vtkOpenGLRenderWindow.h"
+#include "vtkOpenGLState.h"
 #include "vtkPropCollection.h"
 #include "vtkRenderWindow.h"
 #include "vtkRenderer.h"
@@ -31,6 +33,9 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstring>
 #include <map>
 #include <optional>
 #include <set>
@@ -49,6 +54,54 @@ constexpr double InteractiveRate = 1.0;
 
 /// Of the diagonal of what is shown: as far as ambient occlusion looks when nothing is said.
 constexpr double AmbientOcclusionPart = 0.2;
+
+/// Leaves OpenGL as it was found: an application that shows progress and messages draws windows of its
+/// own meanwhile.
+class OpenGLGuard
+{
+public:
+  explicit OpenGLGuard(vtkRenderWindow* window)
+    : Window(vtkOpenGLRenderWindow::SafeDownCast(window))
+  {
+    if (this->Window && !this->Window->IsCurrent())
+    {
+      this->Window = nullptr; // nothing is being drawn
+    }
+    if (this->Window)
+    {
+      this->Window->GetState()->Push();
+    }
+  }
+  ~OpenGLGuard()
+  {
+    if (this->Window)
+    {
+      this->Window->MakeCurrent();
+      this->Window->GetState()->Pop();
+    }
+  }
+  OpenGLGuard(const OpenGLGuard&) = delete;
+  OpenGLGuard& operator=(const OpenGLGuard&) = delete;
+
+private:
+  vtkOpenGLRenderWindow* Window;
+};
+
+/// Whether matrices differ by rounding only.
+bool IsNearly(const glm::dmat4& a, const glm::dmat4& b)
+{
+  constexpr double tolerance = 1e-9;
+  double difference = 0.0;
+  double largest = 0.0;
+  for (int element = 0; element < 16; ++element)
+  {
+    const double one = a[element / 4][element % 4];
+    const double other = b[element / 4][element % 4];
+    difference = std::max(difference, std::abs(one - other));
+    largest = std::max(largest, std::abs(one));
+  }
+  return difference <= tolerance * largest;
+}
 
 std::map<vtkRenderer*, vtkDSMScene*>& GetRegistry()
 {
@@ -105,7 +158,7 @@ public:
   void Clear();
   rt::LightTransport GetTransport() const;
   rt::DebugView GetDebugView() const;
-  void Agree(rt::Scene& scene, rt::FrameRequest& request);
+  void AgreeOnView(rt::Scene& scene, rt::FrameRequest& request) const;
   bool ShowsOthers() const;
   void DrawPicture(rt::Picture picture, const rt::FrameRequest& request, vtkMatrix4x4* projection,
     rt::DebugView view);
@@ -294,6 +347,11 @@ bool vtkDSMScene::IsRefined() const
   return this->Self->Samples == 0 || this->Self->Samples >= this->Self->SamplesWanted;
 }
 
+bool vtkDSMScene::IsTracing() const
+{
+  return this->Self->Tracing;
+}
+
 vtkDSMStatistics* vtkDSMScene::GetStatistics() const
 {
   return this->Self->Statistics;
@@ -467,7 +525,7 @@ void vtkDSMScene::Internals::Draw()
     this->Clear();
     return;
   }
-  this->Agree(scene, request);
+  this->AgreeOnView(scene, request);
   this->TraceSamples(scene, request);
   std::optional<rt::Picture> whole;
   if (this->DrawsColor)
@@ -620,24 +678,48 @@ bool vtkDSMScene::Internals::ShowsOthers() const
   return false;
 }
 
-/// Collective. What the ranks' own renderers may say differently: what mirrored rays see where they
-/// meet nothing is rank 0's background, since ParaView's other ranks have none; surfaces are kept
-/// apart when any rank has something that may be between them.
-void vtkDSMScene::Internals::Agree(rt::Scene& scene, rt::FrameRequest& request)
+/// Collective. Takes rank 0's view: the camera that came from there is not always the same to the last
+/// bit, ParaView's other ranks have no background, which mirrored rays see where they meet nothing, and
+/// lights may follow the camera. A camera that differs by more than rounding is left to be refused.
+/// Surfaces are kept apart when any rank has something that may be between them.
+void vtkDSMScene::Internals::AgreeOnView(rt::Scene& scene, rt::FrameRequest& request) const
 {
-  struct Opinion
+  struct View
   {
+    glm::dmat4 WorldToClip;
     glm::vec3 Background;
-    std::uint32_t Apart;
+    std::uint32_t IsApart;
   };
   const bool canBeApart = this->Group->GetMessenger().GetSize() == 1 || this->DrawsPlace;
-  const bool apart = canBeApart && IsTranslucent(scene) && this->ShowsOthers();
-  const auto all =
-    this->Group->GetMessenger().AllGatherValue(Opinion{ this->Background, apart ? 1u : 0u });
-  scene.Transport.Background = all.front().Background;
-  const bool anyApart =
-    std::any_of(all.begin(), all.end(), [](const Opinion& opinion) { return opinion.Apart != 0; });
-  request.Layers = anyApart ? rt::FrameRequest::MaxLayers : 1;
+  const bool isApart = canBeApart && IsTranslucent(scene) && this->ShowsOthers();
+  std::vector<std::byte> mine =
+    dsm::Encode(View{ request.WorldToClip, this->Background, isApart ? 1u : 0u });
+  for (const rt::Light& light : scene.Lights)
+  {
+    dsm::AttachTail(mine, light);
+  }
+  const auto all = this->Group->GetMessenger().AllGather(std::move(mine));
+  request.Layers = 1;
+  for (const std::vector<std::byte>& other : all)
+  {
+    View theirs;
+    std::memcpy(&theirs, other.data(), sizeof(theirs));
+    request.Layers = theirs.IsApart != 0 ? rt::FrameRequest::MaxLayers : request.Layers;
+  }
+  const std::vector<std::byte>& first = all.front();
+  View view;
+  std::memcpy(&view, first.data(), sizeof(view));
+  scene.Transport.Background = view.Background;
+  scene.Lights.resize((first.size() - sizeof(view)) / sizeof(rt::Light));
+  for (std::size_t index = 0; index < scene.Lights.size(); ++index)
+  {
+    std::memcpy(&scene.Lights[index], first.data() + sizeof(view) + index * sizeof(rt::Light),
+      sizeof(rt::Light));
+  }
+  if (IsNearly(view.WorldToClip, request.WorldToClip))
+  {
+    request.WorldToClip = view.WorldToClip;
+  }
 }
 
 /// Collective. Traces the frame, or what is missing of it.
@@ -775,6 +857,7 @@ void vtkDSMScene::Trace()
     self.Tracing = false;
     return;
   }
+  const OpenGLGuard guard(self.Renderer->GetRenderWindow());
   std::string failure;
   try
   {

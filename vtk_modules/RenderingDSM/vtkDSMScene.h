@@ -123,6 +123,12 @@ public:
   bool IsRefined() const;
 
   /**
+   * Whether a frame is being made: from taking in data, of which the mappers tell the progress, to the
+   * last tile.
+   */
+  bool IsTracing() const;
+
+  /**
    * Of the last frame; the same on every rank.
    */
   vtkDSMStatistics* GetStatistics() const;

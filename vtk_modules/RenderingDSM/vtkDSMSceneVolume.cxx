@@ -3,6 +3,7 @@
 
 #include "vtkDSMImagePiece.h"
 #include "vtkDSMLightOptions.h"
+#include "vtkDSMProgress.h"
 #include "vtkDSMTranslation.h"
 #include "vtkDSMVolumeMapper.h"
 
@@ -71,7 +72,7 @@ void vtkDSMSceneVolume::UpdatePiece(int piece, int numberOfPieces)
   this->Mapper->UpdatePiece(piece, numberOfPieces);
 }
 
-bool vtkDSMSceneVolume::HasNewData() const
+bool vtkDSMSceneVolume::HasNewData()
 {
   vtkDataObject* data = this->Mapper->GetDataObjectInput();
   return !this->Taken || data != this->SeenData || GetDataTime(data) != this->SeenTime;
@@ -103,8 +104,13 @@ std::shared_ptr<vtkDSMSceneVolume::Published> vtkDSMSceneVolume::Require(
   try
   {
     vtkDSMVolumeMapper* mapper = this->Mapper;
-    published->Fields =
-      this->Data->Publish(choice, purpose, [mapper](double part) { mapper->UpdateProgress(part); });
+    vtkDSMProgress::Begin(mapper);
+    published->Fields = this->Data->Publish(
+      choice, purpose, [mapper](double part) { vtkDSMProgress::Tell(mapper, part); });
+    if (this->Hashes)
+    {
+      published->Content = this->Data->HashContent(choice);
+    }
   }
   catch (const dsm::Error& error)
   {
@@ -113,32 +119,75 @@ std::shared_ptr<vtkDSMSceneVolume::Published> vtkDSMSceneVolume::Require(
   return published;
 }
 
+void vtkDSMSceneVolume::TakeData(const std::shared_ptr<vtkDSMRankGroup>& group)
+{
+  vtkDSMVolumeMapper* mapper = this->Mapper;
+  this->Data.reset();
+  this->DataFailure.clear();
+  this->SeenData = mapper->GetDataObjectInput();
+  this->SeenTime = GetDataTime(mapper->GetDataObjectInput());
+  this->Taken = true;
+  ++this->TimesTaken;
+  this->Reported.clear();
+  try
+  {
+    this->Data = std::make_unique<vtkDSMVolumeData>(group, mapper->GetDataObjectInput());
+    double bounds[6];
+    this->Data->GetBounds(bounds);
+    mapper->SetGlobalBounds(bounds);
+    this->KeepUnchanged(group->GetMessenger());
+  }
+  catch (const dsm::Error& error)
+  {
+    this->Data.reset();
+    this->DataFailure = error.what();
+    this->Color.reset();
+    this->Iso.reset();
+  }
+}
+
+// What has changed goes before its successor comes: there may not be room for both.
+void vtkDSMSceneVolume::KeepUnchanged(dsm::Messenger& messenger)
+{
+  struct Flags
+  {
+    std::uint8_t OfTimeStep = 0;
+    std::uint8_t SameColor = 0;
+    std::uint8_t SameIso = 0;
+  };
+  Flags mine;
+  messenger.RunTogether("Looking for changes",
+    [&]
+    {
+      const auto isSame = [this](const std::shared_ptr<Published>& known) {
+        return known && known->Content && *known->Content == this->Data->HashContent(known->Choice);
+      };
+      mine.OfTimeStep = this->Data->IsOfTimeStep();
+      mine.SameIso = isSame(this->Iso);
+      mine.SameColor = this->Color == this->Iso ? mine.SameIso : isSame(this->Color);
+    });
+  const auto all = messenger.AllGatherValue(mine);
+  const auto everywhere = [&](std::uint8_t Flags::*flag)
+  { return std::all_of(all.begin(), all.end(), [=](const Flags& one) { return one.*flag != 0; }); };
+  if (!everywhere(&Flags::SameColor))
+  {
+    this->Color.reset();
+  }
+  if (!everywhere(&Flags::SameIso))
+  {
+    this->Iso.reset();
+  }
+  this->Hashes = this->TimesTaken > 1 ||
+    std::any_of(all.begin(), all.end(), [](const Flags& one) { return one.OfTimeStep != 0; });
+}
+
 void vtkDSMSceneVolume::Update(const std::shared_ptr<vtkDSMRankGroup>& group, bool newData)
 {
   this->Messages.clear();
   vtkDSMVolumeMapper* mapper = this->Mapper;
   if (newData)
   {
-    // The old bricks go first: there may not be room for both.
-    this->Color.reset();
-    this->Iso.reset();
-    this->Data.reset();
-    this->DataFailure.clear();
-    this->SeenData = mapper->GetDataObjectInput();
-    this->SeenTime = GetDataTime(mapper->GetDataObjectInput());
-    this->Taken = true;
-    this->Reported.clear();
-    try
-    {
-      this->Data = std::make_unique<vtkDSMVolumeData>(group, mapper->GetDataObjectInput());
-      double bounds[6];
-      this->Data->GetBounds(bounds);
-      mapper->SetGlobalBounds(bounds);
-    }
-    catch (const dsm::Error& error)
-    {
-      this->DataFailure = error.what();
-    }
+    this->TakeData(group);
   }
   if (!this->Data)
   {

@@ -67,6 +67,7 @@ struct vtkDSMStatistics::RankRow
   std::int64_t PeakBytesCached;
   std::int64_t CacheCapacity;
   std::int64_t MemoryBudget;
+  std::int64_t Publications;
   std::int64_t Accesses;
   std::int64_t Hits;
   std::int64_t Misses;
@@ -95,6 +96,7 @@ struct vtkDSMStatistics::RankRow
     visit(Count("PeakBytesCached", &RankRow::PeakBytesCached));
     visit(Count("CacheCapacity", &RankRow::CacheCapacity));
     visit(Count("MemoryBudget", &RankRow::MemoryBudget));
+    visit(Count("Publications", &RankRow::Publications));
     visit(Count("Accesses", &RankRow::Accesses));
     visit(Count("Hits", &RankRow::Hits));
     visit(Count("Misses", &RankRow::Misses));
@@ -155,6 +157,7 @@ void vtkDSMStatistics::Gather(dsm::Messenger& messenger, const rt::Frame& frame)
   mine.PeakBytesCached = static_cast<std::int64_t>(counters.PeakCachedBytes);
   mine.CacheCapacity = static_cast<std::int64_t>(counters.CacheCapacity);
   mine.MemoryBudget = static_cast<std::int64_t>(counters.MemoryBudget);
+  mine.Publications = static_cast<std::int64_t>(counters.Publications);
   mine.Accesses = static_cast<std::int64_t>(counters.Workers.Accesses);
   mine.Hits = static_cast<std::int64_t>(counters.Workers.Hits);
   mine.Misses = static_cast<std::int64_t>(counters.Workers.Misses);
