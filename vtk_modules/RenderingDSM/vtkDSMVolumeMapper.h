@@ -13,6 +13,9 @@
  * and opacity by the transfer functions of the first component, and the shading. Interpolation is
  * trilinear always.
  *
+ * vtkVolumeMapper's cropping is honoured; its planes are in the data's coordinates, without the volume's
+ * transform. So are the mapper's clipping planes, which are in world coordinates.
+ *
  * The mapper draws nothing itself: the renderer's vtkDSMScene traces all of its volumes together
  * when the renderer starts to render, on all ranks at once. Every rank must have the same volumes, in
  * the same order, with the same settings; only the input differs.
@@ -84,22 +87,6 @@ public:
   vtkBooleanMacro(ScalarVisibility, bool);
   void SetLookupTable(vtkScalarsToColors* table);
   vtkScalarsToColors* GetLookupTable() const;
-  ///@}
-
-  ///@{
-  /**
-   * As in vtkVolumeMapper: whether surfaces are shown in some of 27 boxes only, the planes that
-   * separate them (x min, x max, y min, y max, z min, z max, in the data's coordinates, without the
-   * volume's transform), and which boxes those are (bit x + 3 y + 9 z; by default the middle one).
-   * Off by default. The mapper's clipping planes, which are in world coordinates, cut as well.
-   */
-  vtkSetMacro(Cropping, bool);
-  vtkGetMacro(Cropping, bool);
-  vtkBooleanMacro(Cropping, bool);
-  vtkSetVector6Macro(CroppingRegionPlanes, double);
-  vtkGetVectorMacro(CroppingRegionPlanes, double, 6);
-  vtkSetClampMacro(CroppingRegionFlags, int, 0x0, 0x7ffffff);
-  vtkGetMacro(CroppingRegionFlags, int);
   ///@}
 
   /**
@@ -206,9 +193,6 @@ private:
   std::vector<double> IsoValues;
   std::string ColorArray;
   bool ScalarVisibility = false;
-  bool Cropping = false;
-  double CroppingRegionPlanes[6] = { 0.0, 1.0, 0.0, 1.0, 0.0, 1.0 };
-  int CroppingRegionFlags = 1 << 13; // the middle box
   vtkSmartPointer<vtkScalarsToColors> LookupTable;
   vtkSmartPointer<vtkProperty> SurfaceProperty;
   vtkSmartPointer<vtkDSMLightOptions> LightOptions;
