@@ -226,14 +226,6 @@ void vtkDSMVolumeMapper::PrintSelf(ostream& os, vtkIndent indent)
   os << "\n";
   os << indent << "ColorArray: " << this->ColorArray << "\n";
   os << indent << "ScalarVisibility: " << this->ScalarVisibility << "\n";
-  os << indent << "Cropping: " << this->Cropping << "\n";
-  os << indent << "CroppingRegionPlanes:";
-  for (const double plane : this->CroppingRegionPlanes)
-  {
-    os << " " << plane;
-  }
-  os << "\n";
-  os << indent << "CroppingRegionFlags: " << this->CroppingRegionFlags << "\n";
   os << indent << "LookupTable: " << this->LookupTable.Get() << "\n";
   os << indent << "SurfaceProperty: " << this->SurfaceProperty.Get() << "\n";
   os << indent << "MakesScene: " << this->MakesScene << "\n";

@@ -86,22 +86,6 @@ public:
   vtkScalarsToColors* GetLookupTable() const;
   ///@}
 
-  ///@{
-  /**
-   * As in vtkVolumeMapper: whether surfaces are shown in some of 27 boxes only, the planes that
-   * separate them (x min, x max, y min, y max, z min, z max, in the data's coordinates, without the
-   * volume's transform), and which boxes those are (bit x + 3 y + 9 z; by default the middle one).
-   * Off by default. The mapper's clipping planes, which are in world coordinates, cut as well.
-   */
-  vtkSetMacro(Cropping, bool);
-  vtkGetMacro(Cropping, bool);
-  vtkBooleanMacro(Cropping, bool);
-  vtkSetVector6Macro(CroppingRegionPlanes, double);
-  vtkGetVectorMacro(CroppingRegionPlanes, double, 6);
-  vtkSetClampMacro(CroppingRegionFlags, int, 0x0, 0x7ffffff);
-  vtkGetMacro(CroppingRegionFlags, int);
-  ///@}
-
   /**
    * Colours and coefficients of the surfaces; never null.
    */
@@ -206,9 +190,6 @@ private:
   std::vector<double> IsoValues;
   std::string ColorArray;
   bool ScalarVisibility = false;
-  bool Cropping = false;
-  double CroppingRegionPlanes[6] = { 0.0, 1.0, 0.0, 1.0, 0.0, 1.0 };
-  int CroppingRegionFlags = 1 << 13; // the middle box
   vtkSmartPointer<vtkScalarsToColors> LookupTable;
   vtkSmartPointer<vtkProperty> SurfaceProperty;
   vtkSmartPointer<vtkDSMLightOptions> LightOptions;
