@@ -24,6 +24,8 @@ const char* BenchmarkOptions::Usage()
          "                      host has left, divided by its ranks)\n"
          "  --cache-fraction F  cache per rank, as a part of the bytes of all bricks (default 1)\n"
          "  --brick-edge E      cells along a brick's edge (default: by the scalar type)\n"
+         "  --tile-seconds T    on: the result has the cost of each tile of the last frame "
+         "(default off)\n"
          "  --picture FILE.ppm  writes the picture of the first position\n"
          "  --overlap N         workers per thread: while some wait for bricks, others trace "
          "(default 4)\n"
@@ -50,6 +52,10 @@ void BenchmarkOptions::AddTo(OptionValues::Setters& setters)
     { "--brick-edge",
       [this](const auto& name, const auto& text) { this->BrickEdge = ToNumber(name, text, 4); } },
     { "--session", [this](const auto&, const auto& text) { this->Session = text; } },
+    { "--tile-seconds",
+      [this](const auto& name, const auto& text) {
+        this->TileSeconds = ToChoice<bool>(name, text, { { "on", true }, { "off", false } });
+      } },
     { "--picture", [this](const auto&, const auto& text) { this->Picture = text; } },
   });
 }

@@ -17,6 +17,7 @@ struct BenchmarkOptions : RunOptions
   std::uint64_t MemoryBytes = 0; ///< per rank; 0: a part of what the host has
   int BrickEdge = 0;             ///< cells; 0: the default of the scalar type
   std::string Session;           ///< file; empty: an orbit
+  bool TileSeconds = false;      ///< the result has those of the last frame's tiles
   std::string Picture;           ///< PPM file of the first frame; empty: none
 
   void AddTo(OptionValues::Setters& setters);

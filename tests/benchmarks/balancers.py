@@ -4,34 +4,18 @@
 
     balancers.py [--bench build/bin/dsm_bench] [--ranks 2] [--threads 1] [--volume rm:128:float] ...
 
-Plays tests/benchmarks/session.txt; prints misses, frames/s, imbalance (the busiest rank's time over the
-mean), and how many tiles change hands from frame to frame. Both take turns, so that other programs
-disturb both.
+Plays session.txt; prints misses, frames/s, imbalance (the busiest rank's time over the mean), and how
+many tiles change hands from frame to frame. Both take turns, so that other programs disturb both.
 """
 import argparse
-import json
-import os
-import subprocess
 
-HERE = os.path.dirname(os.path.abspath(__file__))
-
-
-def run(arguments, scheduler, cache):
-    command = ["mpirun", "--oversubscribe", "--bind-to", "none", "--mca", "mpi_yield_when_idle", "1"]
-    if os.geteuid() == 0:
-        command.append("--allow-run-as-root")
-    command += ["-np", str(arguments.ranks), arguments.bench, "isosurface", "--json", "-",
-                "--volume", arguments.volume, "--isovalue", arguments.isovalue,
-                "--size", arguments.size, "--threads", str(arguments.threads), "--repeat", "2",
-                "--session", os.path.join(HERE, "session.txt"), "--scheduler", scheduler,
-                "--latency", arguments.latency, "--cache-fraction", str(cache)]
-    return json.loads(subprocess.run(command, check=True, stdout=subprocess.PIPE).stdout)
+from measuring import BENCH, SESSION, run_bench
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--bench", default=os.path.join(HERE, "../../build/bin/dsm_bench"))
+    parser.add_argument("--bench", default=BENCH)
     parser.add_argument("--ranks", type=int, default=2)
     parser.add_argument("--threads", type=int, default=1)
     parser.add_argument("--volume", default="rm:128:float")
@@ -43,7 +27,11 @@ def main():
     print("cache  balancer   misses/frame   frames/s   imbalance   tiles that change hands/frame")
     for cache in [float(part) for part in arguments.cache.split(",")]:
         for scheduler in ("queue", "stealing"):
-            result = run(arguments, scheduler, cache)
+            result = run_bench(
+                arguments.bench, arguments.ranks, "isosurface", volume=arguments.volume,
+                isovalue=arguments.isovalue, size=arguments.size, threads=arguments.threads,
+                session=SESSION, scheduler=scheduler, latency=arguments.latency,
+                cache_fraction=cache, repeat=2)
             busy = [rank["busy_seconds"] for rank in result["ranks"]]
             frames = result["frames"]
             print(f"{cache:5.2f}  {scheduler:9}{(result['misses'] - result['joins']) / frames:14.1f}"

@@ -20,8 +20,10 @@
 #include <sys/resource.h>
 
 #include <algorithm>
+#include <cstring>
 #include <fstream>
 #include <iostream>
+#include <iterator>
 #include <limits>
 #include <numeric>
 #include <sstream>
@@ -153,6 +155,34 @@ Json Summarise(const BenchmarkOptions& options, const dsm::BlockStore& store, co
     { "peak_rss_bytes", total.PeakRssBytes }, { "image_hash", hexadecimal }, { "ranks", each } };
 }
 
+/// What each tile of the frame took; collective.
+std::vector<double> GatherTileSeconds(dsm::Messenger& messenger, const rt::Frame& frame)
+{
+  struct Cost
+  {
+    std::int64_t Tile;
+    double Seconds;
+  };
+  std::vector<std::byte> mine;
+  for (const rt::Tile& tile : frame.Tiles)
+  {
+    dsm::AttachTail(mine, Cost{ tile.Index, tile.Seconds });
+  }
+  std::vector<Cost> costs;
+  for (const auto& part : messenger.AllGather(mine))
+  {
+    const std::size_t before = costs.size();
+    costs.resize(before + part.size() / sizeof(Cost));
+    std::memcpy(costs.data() + before, part.data(), part.size());
+  }
+  std::sort(
+    costs.begin(), costs.end(), [](const Cost& a, const Cost& b) { return a.Tile < b.Tile; });
+  std::vector<double> seconds;
+  std::transform(costs.begin(), costs.end(), std::back_inserter(seconds),
+    [](const Cost& cost) { return cost.Seconds; });
+  return seconds;
+}
+
 void RunIsosurface(const BenchmarkOptions& options, dsm::Messenger& messenger)
 {
   dsm::BlockStore::Settings settings = options.CreateSettings(messenger);
@@ -227,9 +257,14 @@ void RunIsosurface(const BenchmarkOptions& options, dsm::Messenger& messenger)
   }
   mine.PeakRssBytes = GetPeakRssBytes();
   const auto ranks = messenger.AllGatherValue(mine);
+  const std::vector<double> tileSeconds = GatherTileSeconds(messenger, frame);
   if (messenger.GetRank() == 0)
   {
-    const Json result = Summarise(options, store, timing, ranks);
+    Json result = Summarise(options, store, timing, ranks);
+    if (options.TileSeconds)
+    {
+      result["tile_seconds"] = tileSeconds;
+    }
     std::ostringstream text;
     text << options.Volume << ": " << result["frames_per_second"].get<double>() << " frames/s, "
          << 1e-6 * result["rays_per_second"].get<double>() << " million rays/s, picture "

@@ -1,0 +1,20 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""How the scripts here start dsm_bench."""
+import json
+import os
+import subprocess
+
+HERE = os.path.dirname(os.path.abspath(__file__))
+BENCH = os.path.join(HERE, "..", "..", "build", "bin", "dsm_bench")
+SESSION = os.path.join(HERE, "session.txt")
+
+
+def run_bench(bench, ranks, benchmark, **options):
+    """The result of a benchmark under mpirun; an option `cache_fraction` is --cache-fraction."""
+    command = ["mpirun", "--oversubscribe", "--bind-to", "none", "--mca", "mpi_yield_when_idle", "1"]
+    if os.geteuid() == 0:
+        command.append("--allow-run-as-root")
+    command += ["-np", str(ranks), bench, benchmark, "--json", "-"]
+    for name, value in options.items():
+        command += ["--" + name.replace("_", "-"), str(value)]
+    return json.loads(subprocess.run(command, check=True, stdout=subprocess.PIPE).stdout)
