@@ -5,25 +5,9 @@
 set -uo pipefail
 . "$(dirname "${BASH_SOURCE[0]}")/scripts/common.sh"
 
-install_packages "${packages[@]}" libgtest-dev clang-format iproute2
+install_packages "${packages[@]}" "${test_packages[@]}"
 build_project --with-tests
 results=$build/tests.xml
 rm -f "$results"
 ctest --test-dir "$build" --output-on-failure --output-junit "$results" "$@"
-[ -s "$results" ] || fail "ctest did not write $results"
-
-python3 - "$results" <<'PYTHON'
-import sys
-import xml.etree.ElementTree as tree
-
-suite = tree.parse(sys.argv[1]).getroot()
-states = [case.get("status") for case in suite.iter("testcase")]
-skipped = sum(state in ("notrun", "disabled") for state in states)
-passed = states.count("run")
-failed = len(states) - passed - skipped
-for case in suite.iter("testcase"):
-    if case.get("status") in ("notrun", "disabled"):
-        print("skipped:", case.get("name"))
-print(f"{passed} passed, {failed} failed, {skipped} skipped")
-sys.exit(0 if failed == 0 and passed > 0 else 1)
-PYTHON
+count_tests "$results"

@@ -10,22 +10,24 @@ if (NOT DEFINED Python3_EXECUTABLE AND EXISTS "/usr/bin/python3")
 endif ()
 find_package(Python3 COMPONENTS Interpreter Development)
 
-# Debian's package names targets of development packages that it does not depend on; nothing here
-# uses them.
-foreach (target IN ITEMS
-    double-conversion::double-conversion EXPAT::EXPAT Freetype::Freetype GLEW::GLEW JPEG::JPEG
-    LZ4::LZ4 LZMA::LZMA PNG::PNG TIFF::TIFF utf8cpp::utf8cpp)
-  if (NOT TARGET "${target}")
-    add_library("${target}" INTERFACE IMPORTED)
-  endif ()
-endforeach ()
+include(DSMDistributionTargets)
 
 if (DSM_BUILD_PARAVIEW_PLUGIN)
   # Without COMPONENTS, Qt's development files are demanded.
   find_package(ParaView REQUIRED COMPONENTS RemotingViews)
 else ()
-  find_package(VTK REQUIRED COMPONENTS RenderingOpenGL2 IOXML
-    OPTIONAL_COMPONENTS RenderingParallel ParallelMPI)
+  find_package(VTK 9.1 REQUIRED
+    COMPONENTS ImagingCore IOXML RenderingOpenGL2 RenderingVolume RenderingVolumeOpenGL2
+    OPTIONAL_COMPONENTS RenderingParallel ParallelMPI TestingCore)
+endif ()
+dsm_add_targets_of_distribution()
+
+set(DSM_HAS_PYTHON OFF)
+if (DSM_WRAP_PYTHON AND VTK_WRAP_PYTHON AND Python3_Development_FOUND)
+  find_package(VTK COMPONENTS CommonCore OPTIONAL_COMPONENTS Python WrappingPythonCore WrapPython)
+  if (TARGET VTK::Python AND TARGET VTK::WrappingPythonCore AND TARGET VTK::WrapPython)
+    set(DSM_HAS_PYTHON ON)
+  endif ()
 endif ()
 
 set(DSM_HAS_MPI OFF)

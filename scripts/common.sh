@@ -13,9 +13,11 @@ packages=(
   paraview paraview-dev python3-paraview
   libopenmpi-dev openmpi-bin
   libglm-dev libhwy-dev nlohmann-json3-dev
-  libx11-dev libgl-dev libopengl-dev libpng-dev
+  libx11-dev libgl-dev libopengl-dev libpng-dev libpython3-dev
   xvfb xauth libgl1-mesa-dri
 )
+# And those that the tests need besides.
+test_packages=(libgtest-dev clang-format iproute2 python3-numpy python3-mpi4py)
 
 # Prints the packages among the arguments that are not installed.
 missing_packages() {
@@ -76,10 +78,10 @@ build_project() {
 
 # The folder that holds the plugin.
 plugin_directory() {
-  local plugin
-  plugin=$(find "$build" -name DSMRayTracer.so -print -quit)
-  [ -n "$plugin" ] || fail "DSMRayTracer.so is not in $build; did the build stop early?"
-  dirname "$plugin"
+  local directory=$build/lib/DSMRayTracer
+  [ -f "$directory/DSMRayTracer.so" ] ||
+    fail "DSMRayTracer.so is not in $directory; did the build stop early?"
+  say "$directory"
 }
 
 # mpirun with N ranks, also where ranks are more than cores, or the user is root.
@@ -92,4 +94,25 @@ start_ranks() {
   # Without a screen, ParaView draws into a virtual one. -noreset: X would reset between clients.
   xvfb-run --auto-servernum --server-args "-noreset -screen 0 1280x1024x24" \
     mpirun "${options[@]}" "$@"
+}
+
+# Names the skipped tests of a ctest run and counts all, from its JUnit file; fails unless some passed
+# and none failed.
+count_tests() {
+  [ -s "$1" ] || fail "ctest did not write $1"
+  python3 - "$1" <<'PYTHON'
+import sys
+import xml.etree.ElementTree as tree
+
+suite = tree.parse(sys.argv[1]).getroot()
+states = [case.get("status") for case in suite.iter("testcase")]
+skipped = sum(state in ("notrun", "disabled") for state in states)
+passed = states.count("run")
+failed = len(states) - passed - skipped
+for case in suite.iter("testcase"):
+    if case.get("status") in ("notrun", "disabled"):
+        print("skipped:", case.get("name"))
+print(f"{passed} passed, {failed} failed, {skipped} skipped")
+sys.exit(0 if failed == 0 and passed > 0 else 1)
+PYTHON
 }

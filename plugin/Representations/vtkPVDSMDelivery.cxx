@@ -3,6 +3,8 @@
 
 #include "vtkDSMScene.h"
 
+#include "vtkBoundingBox.h"
+#include "vtkCompositeRepresentation.h"
 #include "vtkInformation.h"
 #include "vtkMultiProcessController.h"
 #include "vtkOrderedCompositingHelper.h"
@@ -12,10 +14,15 @@
 #include "vtkPVRenderViewDataDeliveryManager.h"
 #include "vtkPVRenderingCapabilitiesInformation.h"
 #include "vtkPVSession.h"
+#include "vtkPartitionedDataSet.h"
+#include "vtkPoints.h"
+#include "vtkPolyData.h"
 #include "vtkProcessModule.h"
 #include "vtkSmartPointer.h"
 
+#include <algorithm>
 #include <string>
+#include <vector>
 
 namespace
 {
@@ -44,6 +51,97 @@ std::string FindObstacle()
   return {};
 }
 
+/// Only subclasses of a view may ask whether it selects. None of these is ever made.
+class SelectingView : public vtkPVRenderView
+{
+public:
+  static bool IsSelecting(vtkPVRenderView* view)
+  {
+    return (view->*&SelectingView::GetMakingSelection)();
+  }
+};
+
+/// Whether the view shows any dataset in another way than ours. Selections, axes and text, which are
+/// no composite representations, do not count.
+bool ShowsOthers(vtkView* view)
+{
+  for (int number = 0; view && number < view->GetNumberOfRepresentations(); ++number)
+  {
+    auto* composite = vtkCompositeRepresentation::SafeDownCast(view->GetRepresentation(number));
+    vtkPVDataRepresentation* shown =
+      composite && composite->GetVisibility() ? composite->GetActiveRepresentation() : nullptr;
+    if (shown && shown->GetVisibility() && !shown->IsA("vtkPVDSMImageRepresentation") &&
+      !shown->IsA("vtkPVDSMGeometryRepresentation"))
+    {
+      return true;
+    }
+  }
+  return false;
+}
+
+/// Points evenly in a box. They stand for the data when the view divides the space between the ranks;
+/// its kd-tree fails where many points share coordinates, as the corners would.
+vtkSmartPointer<vtkPoints> SpreadPoints(const double bounds[6])
+{
+  constexpr int count = 10;
+  auto points = vtkSmartPointer<vtkPoints>::New();
+  points->SetDataTypeToDouble();
+  for (int number = 0; number < count * count * count; ++number)
+  {
+    const double places[3] = { number % count + 0.5, number / count % count + 0.5,
+      number / (count * count) + 0.5 };
+    double point[3];
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      const double size = bounds[2 * axis + 1] - bounds[2 * axis];
+      point[axis] = bounds[2 * axis] + size * places[axis] / count;
+    }
+    points->InsertNextPoint(point);
+  }
+  return points;
+}
+
+/// The view takes the placeholder's points for the data when it divides the space. It fails without
+/// any, so where nothing is known there are some, too.
+void FillPlaceholder(vtkPartitionedDataSet* placeholder, const double* bounds)
+{
+  const double anywhere[6] = { 0.0, 1.0, 0.0, 1.0, 0.0, 1.0 };
+  const auto points = SpreadPoints(bounds ? bounds : anywhere);
+  auto* known = vtkPolyData::SafeDownCast(placeholder->GetPartition(0));
+  double spread[6];
+  points->GetBounds(spread);
+  if (known && std::equal(spread, spread + 6, known->GetPoints()->GetBounds()))
+  {
+    return;
+  }
+  vtkNew<vtkPolyData> sample;
+  sample->SetPoints(points);
+  placeholder->SetPartition(0, sample);
+}
+
+/// The first of the nearest boxes.
+int FindPart(const std::vector<vtkBoundingBox>& parts, const double place[3])
+{
+  int nearest = 0;
+  double least = VTK_DOUBLE_MAX;
+  for (std::size_t part = 0; part < parts.size() && least > 0.0; ++part)
+  {
+    double square = 0.0;
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      const double outside = std::max({ parts[part].GetMinPoint()[axis] - place[axis],
+        place[axis] - parts[part].GetMaxPoint()[axis], 0.0 });
+      square += outside * outside;
+    }
+    if (square < least)
+    {
+      least = square;
+      nearest = static_cast<int>(part);
+    }
+  }
+  return nearest;
+}
+
 } // namespace
 
 vtkSmartPointer<vtkDSMScene> vtkPVDSMDelivery::FindScene(
@@ -69,20 +167,41 @@ void vtkPVDSMDelivery::UpdateInSpiteOfCache(vtkPVDataRepresentation* representat
     ->SetNeedsUpdate(false);
 }
 
-void vtkPVDSMDelivery::KeepData(vtkPVDataRepresentation* representation, vtkDataObject* placeholder,
-  vtkInformation* inInfo, vtkInformation* outInfo)
+void vtkPVDSMDelivery::KeepData(vtkPVDataRepresentation* representation,
+  vtkPartitionedDataSet* placeholder, const Shown& shown, vtkInformation* inInfo,
+  vtkInformation* outInfo)
 {
+  FillPlaceholder(placeholder, shown.Bounds);
   vtkPVRenderView::SetPiece(inInfo, representation, placeholder);
   vtkPVRenderView::SetDeliverToClientAndRenderingProcesses(inInfo, representation, false, false);
   vtkPVRenderView::SetRequiresDistributedRendering(inInfo, representation, true);
-  // IceT must call every rank's renderer: each has tiles, wherever its data lie.
-  outInfo->Set(vtkPVRenderView::RENDER_EMPTY_IMAGES(), 1);
+  vtkPVRenderView::SetOrderedCompositingConfiguration(
+    inInfo, representation, vtkPVRenderView::USE_DATA_FOR_LOAD_BALANCING);
+  if (shown.IsTranslucent && ShowsOthers(representation->GetView()))
+  {
+    outInfo->Set(vtkPVRenderView::NEED_ORDERED_COMPOSITING(), 1);
+  }
+  else
+  {
+    outInfo->Remove(vtkPVRenderView::NEED_ORDERED_COMPOSITING());
+    // IceT must call every rank's renderer: each has tiles, wherever its data lie. The view looks at
+    // one of the two keys only; in order, the ranks are called that have anything to draw, and all
+    // have the bounds of the whole frame.
+    outInfo->Set(vtkPVRenderView::RENDER_EMPTY_IMAGES(), 1);
+  }
+}
+
+bool vtkPVDSMDelivery::IsSelecting(vtkView* view)
+{
+  auto* renderView = vtkPVRenderView::SafeDownCast(view);
+  return renderView && SelectingView::IsSelecting(renderView);
 }
 
 void vtkPVDSMDelivery::Choose(vtkDSMScene* scene, vtkView* anyView)
 {
   auto* view = vtkPVRenderView::SafeDownCast(anyView);
   auto* controller = scene->GetController();
+  scene->SetHidden(IsSelecting(anyView));
   if (!view || !controller || controller->GetNumberOfProcesses() < 2)
   {
     scene->DeliverTiles();
@@ -93,8 +212,10 @@ void vtkPVDSMDelivery::Choose(vtkDSMScene* scene, vtkView* anyView)
     const auto order = vtkSmartPointer<vtkOrderedCompositingHelper>::New();
     order->SetBoundingBoxes(manager->GetCuts());
     const int rank = controller->GetLocalProcessId();
-    scene->DeliverEverywhere(
-      [order, rank](vtkCamera* camera) { return order->ComputeSortOrder(camera).back() == rank; });
+    scene->DeliverByPlace([order, rank](vtkCamera* camera)
+      { return order->ComputeSortOrder(camera).back() == rank; },
+      [parts = manager->GetCuts(), rank](const double place[3])
+      { return FindPart(parts, place) == rank; });
   }
   else if (view->GetUseSSAO())
   {

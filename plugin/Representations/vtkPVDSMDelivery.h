@@ -4,9 +4,9 @@
 
 #include "vtkSmartPointer.h"
 
-class vtkDataObject;
 class vtkDSMScene;
 class vtkInformation;
+class vtkPartitionedDataSet;
 class vtkPVDataRepresentation;
 class vtkPVRenderView;
 class vtkView;
@@ -25,9 +25,21 @@ public:
   /// the view relies on its cache of time steps, but that holds our placeholder, not the data.
   static void UpdateInSpiteOfCache(vtkPVDataRepresentation* representation);
 
-  /// For REQUEST_UPDATE: an empty placeholder is delivered, and every rank renders.
-  static void KeepData(vtkPVDataRepresentation* representation, vtkDataObject* placeholder,
-    vtkInformation* inInfo, vtkInformation* outInfo);
+  /// What a representation shows.
+  struct Shown
+  {
+    const double* Bounds;       ///< world; null where nothing is known
+    bool IsTranslucent = false; ///< the same on every rank
+  };
+
+  /// For REQUEST_UPDATE: a placeholder is delivered, and every rank renders. When other objects of the
+  /// view can be seen through what is shown, the ranks draw a part of space each, and their pictures
+  /// are blended in order.
+  static void KeepData(vtkPVDataRepresentation* representation, vtkPartitionedDataSet* placeholder,
+    const Shown& shown, vtkInformation* inInfo, vtkInformation* outInfo);
+
+  /// For REQUEST_RENDER: whether the view is going to draw for a selection, until the next request.
+  static bool IsSelecting(vtkView* view);
 
   /// For REQUEST_RENDER: the way that suits what else the view shows.
   static void Choose(vtkDSMScene* scene, vtkView* view);

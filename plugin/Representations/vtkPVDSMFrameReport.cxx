@@ -26,6 +26,12 @@ const char* vtkPVDSMFrameReport::GetStatistics()
   return this->Text.c_str();
 }
 
+const char* vtkPVDSMFrameReport::GetSummary()
+{
+  this->Text = this->Source ? this->Source->GetSummary() : std::string();
+  return this->Text.c_str();
+}
+
 void vtkPVDSMFrameReport::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);

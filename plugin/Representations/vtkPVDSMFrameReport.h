@@ -40,6 +40,11 @@ public:
    */
   const char* GetStatistics();
 
+  /**
+   * The same in a few lines for the eye.
+   */
+  const char* GetSummary();
+
 protected:
   vtkPVDSMFrameReport();
   ~vtkPVDSMFrameReport() override;

@@ -3,11 +3,14 @@
 
 #include "vtkDSMPolyDataMapper.h"
 #include "vtkDSMScene.h"
+#include "vtkPVDSMClipping.h"
 #include "vtkPVDSMDelivery.h"
 #include "vtkPVDSMFrameReport.h"
 #include "vtkPVDSMLightOptions.h"
 #include "vtkPVDSMMemoryOptions.h"
+#include "vtkPVDSMSelectionMapper.h"
 
+#include "vtkActor.h"
 #include "vtkBoundingBox.h"
 #include "vtkCommand.h"
 #include "vtkCompositeDataDisplayAttributes.h"
@@ -26,10 +29,12 @@
 vtkStandardNewMacro(vtkPVDSMGeometryRepresentation);
 
 vtkPVDSMGeometryRepresentation::vtkPVDSMGeometryRepresentation()
+  : Clipping(std::make_unique<vtkPVDSMClipping>())
 {
   auto* mapper = vtkDSMPolyDataMapper::New();
   vtkNew<vtkCompositeDataDisplayAttributes> attributes;
   mapper->SetCompositeDataDisplayAttributes(attributes);
+  mapper->MakesSceneOff(); // on ParaView's client there shall be none
   mapper->AddObserver(
     vtkCommand::ProgressEvent, this, &vtkPVDSMGeometryRepresentation::ForwardProgress);
   this->Mapper->Delete();
@@ -38,6 +43,11 @@ vtkPVDSMGeometryRepresentation::vtkPVDSMGeometryRepresentation()
   // Interactive frames are traced, too.
   this->Actor->SetLODMapper(nullptr);
   this->Actor->ForceOpaqueOn();
+  this->SelectionMapper->SetCompositeDataDisplayAttributes(attributes);
+  this->SelectionMapper->SetSource(
+    [this]() -> vtkSmartPointer<vtkDataObject> { return this->GetRenderedDataObject(0); });
+  this->SelectionActor->SetMapper(this->SelectionMapper);
+  this->SelectionActor->UseBoundsOff();
 }
 
 vtkPVDSMGeometryRepresentation::~vtkPVDSMGeometryRepresentation() = default;
@@ -85,7 +95,6 @@ int vtkPVDSMGeometryRepresentation::ProcessViewRequest(
 
 void vtkPVDSMGeometryRepresentation::PrepareUpdate(vtkInformation* inInfo, vtkInformation* outInfo)
 {
-  vtkPVDSMDelivery::KeepData(this, this->Placeholder, inInfo, outInfo);
   this->ComputeVisibleDataBounds();
   vtkNew<vtkMatrix4x4> matrix;
   this->Actor->GetMatrix(matrix);
@@ -97,7 +106,27 @@ void vtkPVDSMGeometryRepresentation::PrepareUpdate(vtkInformation* inInfo, vtkIn
   }
   double inflated[6];
   bounds.GetBounds(inflated);
+  vtkBoundingBox inWorld;
+  for (int corner = 0; bounds.IsValid() && corner < 8; ++corner)
+  {
+    const double point[4] = { inflated[corner & 1], inflated[2 + (corner >> 1 & 1)],
+      inflated[4 + (corner >> 2)], 1.0 };
+    double world[4];
+    matrix->MultiplyPoint(point, world);
+    inWorld.AddPoint(world);
+  }
+  double worldBounds[6];
+  inWorld.GetBounds(worldBounds);
+  vtkPVDSMDelivery::KeepData(this, this->Placeholder,
+    { inWorld.IsValid() ? worldBounds : nullptr, this->IsTranslucent() }, inInfo, outInfo);
   vtkPVRenderView::SetGeometryBounds(inInfo, this, inflated, matrix);
+}
+
+bool vtkPVDSMGeometryRepresentation::IsTranslucent() const
+{
+  return this->Property->GetOpacity() < 1.0 ||
+    std::any_of(this->BlockOpacities.begin(), this->BlockOpacities.end(),
+      [](const auto& block) { return block.second < 1.0; });
 }
 
 void vtkPVDSMGeometryRepresentation::PrepareRender()
@@ -111,6 +140,15 @@ void vtkPVDSMGeometryRepresentation::PrepareRender()
     this->BlockAttributeTime.Modified();
     this->BlockAttrChanged = false;
   }
+  vtkNew<vtkMatrix4x4> matrix;
+  this->Actor->GetMatrix(matrix);
+  this->Clipping->ApplyTo(this->GetMapper(), matrix);
+  this->SelectionMapper->SetClippingPlanes(this->GetMapper()->GetClippingPlanes());
+  const bool selecting = vtkPVDSMDelivery::IsSelecting(this->GetView());
+  this->SelectionMapper->SetSelecting(selecting);
+  this->SelectionActor->SetUseBounds(selecting); // ranks draw where there is something
+  this->SelectionMapper->SetShownBounds(this->VisibleDataBounds);
+  this->SelectionActor->SetUserMatrix(matrix);
   if (this->Scene)
   {
     vtkPVDSMDelivery::Choose(this->Scene, this->GetView());
@@ -137,6 +175,8 @@ bool vtkPVDSMGeometryRepresentation::AddToView(vtkView* view)
   {
     this->Scene = vtkPVDSMDelivery::FindScene(this, renderView);
     this->ConnectFrameReport();
+    renderView->GetRenderer()->AddViewProp(this->SelectionActor);
+    renderView->RegisterPropForHardwareSelection(this, this->SelectionActor);
   }
   return this->Superclass::AddToView(view);
 }
@@ -144,6 +184,11 @@ bool vtkPVDSMGeometryRepresentation::AddToView(vtkView* view)
 bool vtkPVDSMGeometryRepresentation::RemoveFromView(vtkView* view)
 {
   const bool removed = this->Superclass::RemoveFromView(view);
+  if (auto* renderView = vtkPVRenderView::SafeDownCast(view))
+  {
+    renderView->GetRenderer()->RemoveViewProp(this->SelectionActor);
+    renderView->UnRegisterPropForHardwareSelection(this, this->SelectionActor);
+  }
   this->Scene = nullptr;
   this->ConnectFrameReport();
   return removed;
@@ -151,12 +196,26 @@ bool vtkPVDSMGeometryRepresentation::RemoveFromView(vtkView* view)
 
 void vtkPVDSMGeometryRepresentation::ForwardProgress()
 {
-  this->SetProgressText("Cutting the surface into bricks");
-  this->UpdateProgress(this->Mapper->GetProgress());
+  // Not what the mapper says when VTK executes it while the frame is drawn.
+  if (this->Scene && this->Scene->IsTracing())
+  {
+    this->SetProgressText("Cutting the surface into bricks");
+    this->UpdateProgress(this->Mapper->GetProgress());
+  }
 }
 
-// The superclass would set the names at a mapper of another class; nothing here is picked by them.
-void vtkPVDSMGeometryRepresentation::SetArrayIdNames(const char*, const char*) {}
+// The superclass would set the names at a mapper of another class.
+void vtkPVDSMGeometryRepresentation::SetArrayIdNames(const char* points, const char* cells)
+{
+  this->SelectionMapper->SetPointIdArrayName(points ? points : "vtkOriginalPointIds");
+  this->SelectionMapper->SetCellIdArrayName(cells ? cells : "vtkOriginalCellIds");
+}
+
+void vtkPVDSMGeometryRepresentation::SetVisibility(bool visible)
+{
+  this->Superclass::SetVisibility(visible);
+  this->SelectionActor->SetVisibility(visible);
+}
 
 void vtkPVDSMGeometryRepresentation::SetLineRadius(double radius)
 {
@@ -173,6 +232,33 @@ void vtkPVDSMGeometryRepresentation::SelectRadiusArray(int, int, int, int, const
   const std::string array = name ? name : "";
   // The word that the panel offers beside the arrays.
   this->GetMapper()->SetRadiusArray(array == "None" ? "" : array);
+}
+
+void vtkPVDSMGeometryRepresentation::SetClip(bool clip)
+{
+  this->Clipping->Clips = clip;
+}
+
+void vtkPVDSMGeometryRepresentation::SetClipOrigin(double x, double y, double z)
+{
+  const double origin[3] = { x, y, z };
+  std::copy_n(origin, 3, this->Clipping->Origin);
+}
+
+void vtkPVDSMGeometryRepresentation::SetClipNormal(double x, double y, double z)
+{
+  const double normal[3] = { x, y, z };
+  std::copy_n(normal, 3, this->Clipping->Normal);
+}
+
+void vtkPVDSMGeometryRepresentation::SetCropping(bool crop)
+{
+  this->Clipping->Crops = crop;
+}
+
+void vtkPVDSMGeometryRepresentation::SetCroppingBox(const double box[6])
+{
+  std::copy_n(box, 6, this->Clipping->Box);
 }
 
 void vtkPVDSMGeometryRepresentation::SetLightOptions(vtkPVDSMLightOptions* options)

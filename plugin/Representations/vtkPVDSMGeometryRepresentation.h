@@ -17,12 +17,17 @@
 #include "vtkRepresentationsDSMModule.h" // for the export macro
 #include "vtkSmartPointer.h"             // for ivars
 
+#include <memory> // for ivars
+
+class vtkActor;
 class vtkDSMPolyDataMapper;
 class vtkDSMScene;
+class vtkPVDSMClipping;
 class vtkPartitionedDataSet;
 class vtkPVDSMFrameReport;
 class vtkPVDSMLightOptions;
 class vtkPVDSMMemoryOptions;
+class vtkPVDSMSelectionMapper;
 
 class VTKREPRESENTATIONSDSM_EXPORT vtkPVDSMGeometryRepresentation
   : public vtkGeometryRepresentationWithFaces
@@ -35,6 +40,7 @@ public:
   int ProcessViewRequest(
     vtkInformationRequestKey* request, vtkInformation* inInfo, vtkInformation* outInfo) override;
   void SetArrayIdNames(const char* pointArray, const char* cellArray) override;
+  void SetVisibility(bool visible) override;
 
   ///@{
   /**
@@ -43,6 +49,18 @@ public:
   void SetLineRadius(double radius);
   void SetPointRadius(double radius);
   void SelectRadiusArray(int index, int port, int connection, int association, const char* name);
+  ///@}
+
+  ///@{
+  /**
+   * What is shown of the dataset: the side of a plane (world coordinates) that its normal points to,
+   * the inside of a box (x, y and z from, to; in the dataset's coordinates).
+   */
+  void SetClip(bool clip);
+  void SetClipOrigin(double x, double y, double z);
+  void SetClipNormal(double x, double y, double z);
+  void SetCropping(bool crop);
+  void SetCroppingBox(const double box[6]);
   ///@}
 
   ///@{
@@ -77,12 +95,17 @@ private:
   vtkDSMPolyDataMapper* GetMapper() const;
   void PrepareUpdate(vtkInformation* inInfo, vtkInformation* outInfo);
   void PrepareRender();
+  bool IsTranslucent() const;
   void ConnectFrameReport();
   void ForwardProgress();
 
   bool Executed = false; ///< RequestData, during the current request of the view
   vtkNew<vtkPartitionedDataSet> Placeholder;
   vtkSmartPointer<vtkDSMScene> Scene;
+  std::unique_ptr<vtkPVDSMClipping> Clipping;
+  /// What selections see.
+  vtkNew<vtkActor> SelectionActor;
+  vtkNew<vtkPVDSMSelectionMapper> SelectionMapper;
   vtkSmartPointer<vtkPVDSMFrameReport> FrameReport;
 };
 

@@ -3,16 +3,21 @@
 
 #include "vtkDSMScene.h"
 #include "vtkDSMVolumeMapper.h"
+#include "vtkPVDSMClipping.h"
 #include "vtkPVDSMDelivery.h"
 #include "vtkPVDSMFrameReport.h"
+#include "vtkPVDSMIsosurfaceGeometry.h"
 #include "vtkPVDSMLightOptions.h"
 #include "vtkPVDSMMemoryOptions.h"
+#include "vtkPVDSMSelectionMapper.h"
 
+#include "vtkActor.h"
 #include "vtkCommand.h"
 #include "vtkDataObject.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
 #include "vtkMatrix4x4.h"
+#include "vtkMultiBlockDataSet.h"
 #include "vtkObjectFactory.h"
 #include "vtkPVRenderView.h"
 #include "vtkPartitionedDataSet.h"
@@ -21,13 +26,21 @@
 #include "vtkScalarsToColors.h"
 #include "vtkVolume.h"
 
+#include <algorithm>
+
 vtkStandardNewMacro(vtkPVDSMImageRepresentation);
 
 vtkPVDSMImageRepresentation::vtkPVDSMImageRepresentation()
+  : Clipping(std::make_unique<vtkPVDSMClipping>())
 {
   this->Volume->SetMapper(this->Mapper);
+  this->Mapper->MakesSceneOff(); // on ParaView's client there shall be none
   this->Mapper->AddObserver(
     vtkCommand::ProgressEvent, this, &vtkPVDSMImageRepresentation::ForwardProgress);
+  this->SelectionMapper->SetSource([this]() -> vtkSmartPointer<vtkDataObject>
+    { return vtkPVDSMIsosurfaceGeometry::Make(this->Mapper); });
+  this->SelectionActor->SetMapper(this->SelectionMapper);
+  this->SelectionActor->UseBoundsOff();
 }
 
 vtkPVDSMImageRepresentation::~vtkPVDSMImageRepresentation() = default;
@@ -81,6 +94,14 @@ int vtkPVDSMImageRepresentation::ProcessViewRequest(
   }
   else if (request == vtkPVView::REQUEST_RENDER() && this->Scene)
   {
+    this->Volume->ComputeMatrix();
+    this->Clipping->ApplyTo(this->Mapper, this->Volume->GetMatrix());
+    this->SelectionMapper->SetClippingPlanes(this->Mapper->GetClippingPlanes());
+    const bool selecting = vtkPVDSMDelivery::IsSelecting(this->GetView());
+    this->SelectionMapper->SetSelecting(selecting);
+    this->SelectionActor->SetUseBounds(selecting); // ranks draw where there is something
+    this->SelectionMapper->SetShownBounds(this->Mapper->GetBounds());
+    this->SelectionActor->SetUserMatrix(this->Volume->GetMatrix());
     vtkPVDSMDelivery::Choose(this->Scene, this->GetView());
   }
   return 1;
@@ -88,7 +109,9 @@ int vtkPVDSMImageRepresentation::ProcessViewRequest(
 
 void vtkPVDSMImageRepresentation::PrepareUpdate(vtkInformation* inInfo, vtkInformation* outInfo)
 {
-  vtkPVDSMDelivery::KeepData(this, this->Placeholder, inInfo, outInfo);
+  const bool isTranslucent = this->Mapper->GetSurfaceProperty()->GetOpacity() < 1.0;
+  vtkPVDSMDelivery::KeepData(
+    this, this->Placeholder, { this->Volume->GetBounds(), isTranslucent }, inInfo, outInfo);
   // In world space: with a matrix, the view would transform two corners of the box only.
   if (const double* bounds = this->Volume->GetBounds())
   {
@@ -98,8 +121,12 @@ void vtkPVDSMImageRepresentation::PrepareUpdate(vtkInformation* inInfo, vtkInfor
 
 void vtkPVDSMImageRepresentation::ForwardProgress()
 {
-  this->SetProgressText("Cutting the volume into bricks");
-  this->UpdateProgress(this->Mapper->GetProgress());
+  // Not what the mapper says when VTK executes it while the frame is drawn.
+  if (this->Scene && this->Scene->IsTracing())
+  {
+    this->SetProgressText("Cutting the volume into bricks");
+    this->UpdateProgress(this->Mapper->GetProgress());
+  }
 }
 
 bool vtkPVDSMImageRepresentation::AddToView(vtkView* view)
@@ -113,8 +140,10 @@ bool vtkPVDSMImageRepresentation::AddToView(vtkView* view)
   if (this->Scene)
   {
     renderView->GetRenderer()->AddViewProp(this->Volume);
+    renderView->GetRenderer()->AddViewProp(this->SelectionActor);
     this->ConnectFrameReport();
   }
+  renderView->RegisterPropForHardwareSelection(this, this->SelectionActor);
   return this->Superclass::AddToView(view);
 }
 
@@ -126,6 +155,8 @@ bool vtkPVDSMImageRepresentation::RemoveFromView(vtkView* view)
     return false;
   }
   renderView->GetRenderer()->RemoveViewProp(this->Volume);
+  renderView->GetRenderer()->RemoveViewProp(this->SelectionActor);
+  renderView->UnRegisterPropForHardwareSelection(this, this->SelectionActor);
   this->Scene = nullptr;
   this->ConnectFrameReport();
   return this->Superclass::RemoveFromView(view);
@@ -134,6 +165,7 @@ bool vtkPVDSMImageRepresentation::RemoveFromView(vtkView* view)
 void vtkPVDSMImageRepresentation::SetVisibility(bool visible)
 {
   this->Volume->SetVisibility(visible);
+  this->SelectionActor->SetVisibility(visible);
   this->Superclass::SetVisibility(visible);
 }
 
@@ -238,6 +270,33 @@ void vtkPVDSMImageRepresentation::SetUserTransform(const double matrix[16])
   vtkNew<vtkMatrix4x4> transform;
   transform->DeepCopy(matrix);
   this->Volume->SetUserMatrix(transform);
+}
+
+void vtkPVDSMImageRepresentation::SetClip(bool clip)
+{
+  this->Clipping->Clips = clip;
+}
+
+void vtkPVDSMImageRepresentation::SetClipOrigin(double x, double y, double z)
+{
+  const double origin[3] = { x, y, z };
+  std::copy_n(origin, 3, this->Clipping->Origin);
+}
+
+void vtkPVDSMImageRepresentation::SetClipNormal(double x, double y, double z)
+{
+  const double normal[3] = { x, y, z };
+  std::copy_n(normal, 3, this->Clipping->Normal);
+}
+
+void vtkPVDSMImageRepresentation::SetCropping(bool crop)
+{
+  this->Clipping->Crops = crop;
+}
+
+void vtkPVDSMImageRepresentation::SetCroppingBox(const double box[6])
+{
+  std::copy_n(box, 6, this->Clipping->Box);
 }
 
 void vtkPVDSMImageRepresentation::SetLightOptions(vtkPVDSMLightOptions* options)

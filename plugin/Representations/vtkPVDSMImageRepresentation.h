@@ -16,13 +16,18 @@
 #include "vtkRepresentationsDSMModule.h" // for the export macro
 #include "vtkSmartPointer.h"             // for ivars
 
+#include <memory> // for ivars
+
 class vtkDSMScene;
+class vtkActor;
+class vtkPVDSMClipping;
 class vtkDSMVolumeMapper;
 class vtkMatrix4x4;
 class vtkPartitionedDataSet;
 class vtkPVDSMFrameReport;
 class vtkPVDSMLightOptions;
 class vtkPVDSMMemoryOptions;
+class vtkPVDSMSelectionMapper;
 class vtkPVRenderView;
 class vtkScalarsToColors;
 class vtkVolume;
@@ -79,6 +84,18 @@ public:
 
   ///@{
   /**
+   * What is shown of the dataset: the side of a plane (world coordinates) that its normal points to,
+   * the inside of a box (x, y and z from, to; in the dataset's coordinates).
+   */
+  void SetClip(bool clip);
+  void SetClipOrigin(double x, double y, double z);
+  void SetClipNormal(double x, double y, double z);
+  void SetCropping(bool crop);
+  void SetCroppingBox(const double box[6]);
+  ///@}
+
+  ///@{
+  /**
    * Shadows, ambient occlusion, mirrors and samples; memory organisation, sizes and threads.
    */
   void SetLightOptions(vtkPVDSMLightOptions* options);
@@ -114,6 +131,10 @@ private:
   vtkNew<vtkDSMVolumeMapper> Mapper;
   vtkNew<vtkPartitionedDataSet> Placeholder;
   vtkSmartPointer<vtkDSMScene> Scene;
+  std::unique_ptr<vtkPVDSMClipping> Clipping;
+  /// What selections see.
+  vtkNew<vtkActor> SelectionActor;
+  vtkNew<vtkPVDSMSelectionMapper> SelectionMapper;
   vtkSmartPointer<vtkPVDSMFrameReport> FrameReport;
 };
 

@@ -43,6 +43,16 @@ void vtkPVDSMLightOptions::SetSamplesPerPixel(int samples)
   this->Superclass::SetSamplesPerPixel(samples);
 }
 
+void vtkPVDSMLightOptions::SetShowLegend(bool show)
+{
+  this->Superclass::SetShowLegend(show);
+}
+
+void vtkPVDSMLightOptions::SetShowStatistics(bool show)
+{
+  this->Superclass::SetShowStatistics(show);
+}
+
 void vtkPVDSMLightOptions::SetDebugView(int view)
 {
   this->Superclass::SetDebugView(view);

@@ -29,6 +29,8 @@ public:
   void SetMaxBounces(int bounces) override;
   void SetSamplesPerPixel(int samples) override;
   void SetDebugView(int view) override;
+  void SetShowLegend(bool show) override;
+  void SetShowStatistics(bool show) override;
   ///@}
 
 protected:

@@ -24,6 +24,9 @@ const char* BenchmarkOptions::Usage()
          "                      host has left, divided by its ranks)\n"
          "  --cache-fraction F  cache per rank, as a part of the bytes of all bricks (default 1)\n"
          "  --brick-edge E      cells along a brick's edge (default: by the scalar type)\n"
+         "  --shadows S         on: hard shadows of a lamp beside the camera; off (default)\n"
+         "  --occlusion N       ambient occlusion rays for each hit, a fifth of the volume's\n"
+         "                      diagonal long (default 0)\n"
          "  --tile-seconds T    on: the result has the cost of each tile of the last frame "
          "(default off)\n"
          "  --picture FILE.ppm  writes the picture of the first position\n"
@@ -51,6 +54,12 @@ void BenchmarkOptions::AddTo(OptionValues::Setters& setters)
       { this->CacheFraction = ToNumber<double>(name, text, 0.0); } },
     { "--brick-edge",
       [this](const auto& name, const auto& text) { this->BrickEdge = ToNumber(name, text, 4); } },
+    { "--shadows",
+      [this](const auto& name, const auto& text) {
+        this->Shadows = ToChoice<bool>(name, text, { { "on", true }, { "off", false } });
+      } },
+    { "--occlusion",
+      [this](const auto& name, const auto& text) { this->Occlusion = ToNumber(name, text, 0); } },
     { "--session", [this](const auto&, const auto& text) { this->Session = text; } },
     { "--tile-seconds",
       [this](const auto& name, const auto& text) {

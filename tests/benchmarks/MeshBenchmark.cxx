@@ -37,7 +37,7 @@ using Order = BenchmarkMesh::Order;
 const std::map<std::string, Order> Orders{ { "sorted", Order::Sorted },
   { "original", Order::Original }, { "random", Order::Random } };
 
-double SecondsSince(Clock::time_point start)
+[[maybe_unused]] double SecondsSince(Clock::time_point start)
 {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }

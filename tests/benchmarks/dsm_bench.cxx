@@ -201,6 +201,10 @@ void RunIsosurface(const BenchmarkOptions& options, dsm::Messenger& messenger)
 
   rt::FrameRenderer renderer(messenger);
   scene.Lights.emplace_back();
+  scene.Transport.Shadows = options.Shadows;
+  scene.Transport.AmbientOcclusionSamples = options.Occlusion;
+  scene.Transport.AmbientOcclusionDistance = 0.2 *
+    glm::length(glm::dmat3(object.IndexToWorld) * glm::dvec3(object.Field->Lattice.GetCells()));
   const std::vector<double> isovalues = object.Isovalues;
   const std::vector<Position> positions = GetPositions(options);
   rt::Frame frame;
@@ -210,7 +214,9 @@ void RunIsosurface(const BenchmarkOptions& options, dsm::Messenger& messenger)
       GetCamera(object, static_cast<double>(options.Width) / options.Height, position);
     std::transform(isovalues.begin(), isovalues.end(), object.Isovalues.begin(),
       [&](double isovalue) { return position.IsovalueFactor * isovalue; });
-    scene.Lights.front().Direction = camera.ViewDirection;
+    const glm::dvec3 aside = glm::cross(camera.ViewDirection, glm::dvec3(0.0, 0.0, 1.0));
+    scene.Lights.front().Direction =
+      glm::normalize(camera.ViewDirection + (options.Shadows ? 0.7 : 0.0) * aside);
     rt::FrameRequest request;
     request.Width = options.Width;
     request.Height = options.Height;

@@ -60,6 +60,37 @@ rows = json.loads(str(mesh.GetProperty("DSMStatistics")).strip("'"))
 check(len(rows) == RANKS, "every rank reports on the mesh")
 mesh.Representation = "Surface"
 check_same_surface(traced, render(view), "a mesh on the server")
+
+# Translucent, with something else behind and in it.
+cone = simple.Cone(Height=0.6, Radius=0.2, Resolution=20)
+inner = show_surface(cone, view)
+inner.DiffuseColor = inner.AmbientColor = [0.2, 1.0, 0.3]
+mesh.ColorArrayName = [None, ""]
+mesh.Opacity = 0.5
+view.UseFXAA = 0
+pictures = []
+for name in (REPRESENTATION, "Surface"):
+    mesh.Representation = name
+    pictures.append(render(view))
+difference = abs(pictures[0] - pictures[1])
+check((difference > 30).any(axis=2).mean() < 0.002 and difference.mean() < 0.3,
+      f"a translucent mesh on the server differs by {difference.mean():.2f}")
+simple.Delete(cone)
+
+# Selected.
+mesh.Opacity = 1.0
+selections = []
+for name in (REPRESENTATION, "Surface"):
+    mesh.Representation = name
+    render(view)
+    simple.SelectSurfaceCells(Rectangle=[140, 100, 160, 140], View=view)
+    extract = simple.ExtractSelection(Input=ball)
+    extract.UpdatePipeline()
+    selections.append(extract.GetDataInformation().GetNumberOfCells())
+    simple.Delete(extract)
+    simple.ClearSelection(ball)
+check(selections[0] > 3 and selections[0] == selections[1],
+      f"{selections} cells are selected, traced and as Surface")
 simple.Delete(ball)
 simple.Delete(source)
 render(view)

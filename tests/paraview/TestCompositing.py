@@ -20,7 +20,7 @@ def compare(name, share=0.01, shading=8):
     simple.Show(source, view)
     with_ours = render(view)
     simple.Hide(source, view)
-    show_surface(surface, view)
+    show_surface(surface, view).Opacity = traced.Opacity
     with_triangles = render(view)
     different = (abs(with_ours - with_triangles) > 60).any(axis=2).mean()
     check(different <= share, f"{name}: {100 * different:.2f} % of the pixels differ")
@@ -53,17 +53,71 @@ view.Background2 = [0.6, 0.6, 0.9]
 compare("GradientBackground")
 view.BackgroundColorMode = "Single Color"
 
-# Translucent itself: what is behind shows through, on one rank and on several.
+# Translucent itself: whatever lies behind its surfaces, and between them, shows through, in order.
+view.UseFXAA = 0
+traced.Opacity = 0.4
+traced.DSMIsoValues = [0.5, 0.8]
+simple.Delete(surface)
+surface = flying_edges(source, [0.5, 0.8])
+compare("TranslucentOverSlice", 0.001, 0.3)
+plane.Opacity = 0.5
+compare("TranslucentOverTranslucentSlice", 0.001, 0.3)
+view.CameraParallelProjection = 1
+compare("TranslucentInParallelProjection", 0.001, 0.3)
+view.CameraParallelProjection = 0
+plane.Opacity = 1.0
 simple.Hide(slices, view)
+compare("TranslucentWithOutline", 0.002, 0.3)
+
 simple.Hide(outline, view)
+traced.Opacity = 1.0
 opaque = render(view)
 traced.Opacity = 0.4
 pixels = render(view, "Translucent")
 covered = get_covered(opaque)
 check((pixels[covered] < opaque[covered]).any(axis=1).mean() > 0.99, "the background shows through")
-if get_ranks() == 1:
-    # Several ranks see through to what they have themselves, only.
-    simple.Show(slices, view)
-    red = render(view, "TranslucentOverSlice") - pixels
-    check((red[covered][:, 0] > 20).mean() > 0.2, "and so does the slice behind it")
-traced.Opacity = 1.0
+
+# A mesh of ours that is translucent, with an opaque surface in it.
+simple.Hide(source, view)
+ball = simple.Sphere(Radius=9.0, Center=[12.0, 12.0, 12.0], ThetaResolution=60, PhiResolution=60)
+cone = simple.Cone(Center=[12.0, 12.0, 12.0], Height=14.0, Radius=4.0)
+inner = show_surface(cone, view)
+inner.DiffuseColor = inner.AmbientColor = [0.2, 1.0, 0.3]
+pictures = []
+for name in (REPRESENTATION, "Surface"):
+    mesh = simple.Show(ball, view)
+    mesh.ColorArrayName = [None, ""]
+    mesh.Representation = name
+    mesh.Opacity = 0.5
+    pictures.append(render(view))
+    simple.SaveScreenshot(os.path.join(OUTPUT, f"Mesh{len(pictures)}.{get_ranks()}.png"), view)
+difference = abs(pictures[0] - pictures[1])
+check(get_covered(pictures[1]).mean() > 0.1, "the mesh shows")
+check((difference > 30).any(axis=2).mean() < 0.002, "a translucent mesh over a surface")
+check(difference.mean() < 0.3, f"which differs by {difference.mean():.2f} from Surface")
+
+# What ParaView draws around and on the data: axes, legend, text, markers, a selection.
+simple.Hide(cone, view)
+view.OrientationAxesVisibility = 1
+view.CenterAxesVisibility = 1
+view.AxesGrid.Visibility = 1
+text = simple.Text(Text="a text")
+simple.Show(text, view)
+for opacity in (1.0, 0.5):
+    pictures = []
+    for name in (REPRESENTATION, "Surface"):
+        mesh = simple.Show(ball, view)
+        mesh.Representation = name
+        mesh.Opacity = opacity
+        simple.ColorBy(mesh, ("POINTS", "Normals", "X"))
+        mesh.SetScalarBarVisibility(view, True)
+        simple.Render(view)
+        simple.SelectSurfaceCells(Rectangle=[120, 100, 170, 150], View=view)
+        pictures.append(render(view))
+        simple.SaveScreenshot(
+            os.path.join(OUTPUT, f"Annotations{opacity}.{len(pictures)}.{get_ranks()}.png"), view)
+        simple.ClearSelection(ball)
+    difference = abs(pictures[0] - pictures[1])
+    different = (difference > 60).any(axis=2).mean()
+    check(different < 0.01, f"axes, legend, text and selection at opacity {opacity}: "
+          f"{100 * different:.2f} % of the pixels differ, by {difference.mean():.2f} in the mean")

@@ -24,6 +24,7 @@ def count_hues(pixels):
 
 
 plain = draw("Off", "off")
+display.DSMShowLegend = 0
 covered = get_covered(plain)
 check(covered.mean() > 0.05, "there is a surface")
 for mode in ("Owner of the data", "Rank that traced", "Brick", "Normal", "Depth",
@@ -52,4 +53,30 @@ misses = vtk_to_numpy(image.GetPointData().GetScalars()).reshape(height, width, 
 check((misses[covered].max() > 0) == (get_ranks() > 1), "tiles wait for what other ranks own")
 draw("Normal", "normal")
 draw("Depth", "depth")
+
+# The legend says which colour is whose, at the lower left, and the figures stand above.
+without = draw("Owner of the data")
+display.DSMShowLegend = 1
+legend = render(view)
+changed = abs(legend - without).max(axis=2) > 0
+rows, columns = numpy.nonzero(changed)
+check(changed.mean() > 0.02, "there is a legend")
+check(rows.max() < 100 and columns.max() < 200, "in its corner")
+panel = legend[: rows.max() + 1, : columns.max() + 1].reshape(-1, 3)
+colors = {tuple(color) for color in panel if color.max() - color.min() > 60}
+check(len(colors) >= get_ranks(), f"{len(colors)} colours in the legend of {get_ranks()} ranks")
+simple.SaveScreenshot(os.path.join(OUTPUT, f"legend.{get_ranks()}.png"), view)
 check_equal(draw("Off"), plain, "and off again", 0)
+
+display.DSMShowStatistics = 1
+view.ViewSize = [420, 240]
+annotated = render(view)
+display.SMProxy.UpdatePropertyInformation()
+summary = display.GetPropertyValue("DSMStatisticsSummary")
+simple.SaveScreenshot(os.path.join(OUTPUT, f"statistics.{get_ranks()}.png"), view)
+display.DSMShowStatistics = 0
+changed = abs(annotated - render(view)).max(axis=2) > 0
+rows, columns = numpy.nonzero(changed)
+check(changed.mean() > 0.05 and rows.min() > 120, "the figures stand at the upper border")
+check(f"{get_ranks()} ranks" in summary and " ms, " in summary, f"and say: {summary!r}")
+check("object based" in summary.lower(), "how the bricks are kept")

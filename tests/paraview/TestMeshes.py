@@ -63,8 +63,7 @@ compare("Lit", simple.Sphere(ThetaResolution=64, PhiResolution=48),
         lambda d: (setattr(d, "Specular", 0.6), setattr(d, "SpecularPower", 30.0),
                    setattr(d, "Ambient", 0.1), setattr(d, "Interpolation", "Flat")))
 compare("Placed", simple.Box(),
-        lambda d: (setattr(d, "Position", [0.3, 0.2, -0.1]), setattr(d, "Scale", [1.0, 0.4, 2.0]),
-                   setattr(d, "Orientation", [20.0, 30.0, 40.0])))
+        lambda d: transform(d, [0.3, 0.2, -0.1], [20.0, 30.0, 40.0], [1.0, 0.4, 2.0]))
 compare("FarFromTheOrigin", simple.Sphere(Center=[5e5, -3e5, 1e5], ThetaResolution=64,
                                           PhiResolution=48), shading=6.0)
 

@@ -10,6 +10,9 @@ SETTINGS = {
     "DSMHostSharing": 0, "DSMScheduler": "Central queue", "DSMMemory": 123, "DSMShadows": 1, "DSMLightRadius": 0.02,
     "DSMAmbientOcclusionSamples": 2, "DSMAmbientOcclusionDistance": 0.75, "DSMReflectivity": 0.25,
     "DSMMaxBounces": 3, "DSMSamplesPerPixel": 2, "Opacity": 0.5,
+    "DSMClip": 1, "DSMClipOrigin": [0.25, 0.0, 0.0], "DSMClipNormal": [-1.0, 0.5, 0.0],
+    "DSMCropping": 1, "DSMCroppingBox": [-2.0, 2.0, -1.0, 0.5, -2.0, 2.0],
+    "DSMShowLegend": 0, "DSMShowStatistics": 0,
 }
 
 
@@ -50,5 +53,34 @@ for name, value in SETTINGS.items():
     check(restored == value or list(restored) == list(value), f"{name} is {restored}")
 check(find("ConeSource").GetPropertyValue("DSMReflectivity") == 0.5, "the mesh has its own")
 view = simple.GetActiveView()
+check(find("ConeSource").GetPropertyValue("DSMClip") == 0, "and is not clipped")
 view.UseFXAA = 0  # a setting, which ParaView's states leave alone
 check_equal(render(view), reference, "the picture is the same", 0)
+
+# The settings page gives the defaults, for as long as a display has none of its own.
+simple.ResetSession()
+load_plugin()
+# As the application does when it loads a plugin.
+controller = servermanager.vtkSMParaViewPipelineController()
+controller.UpdateSettingsProxies(servermanager.ActiveConnection.Session)
+settings = servermanager.ProxyManager().SMProxyManager.GetProxy("settings", "DSMRayTracerSettings")
+check(settings is not None, "there is a settings page")
+
+
+def set_defaults(threads, cache):
+    servermanager.vtkSMPropertyHelper(settings, "DSMThreads").Set(threads)
+    servermanager.vtkSMPropertyHelper(settings, "DSMCacheSize").Set(cache)
+    settings.UpdateVTKObjects()
+
+
+set_defaults(3, 77)
+view = create_view()
+first = simple.Show(simple.DSMSampleVolume(Dimensions=[20, 20, 20]), view)
+check(first.DSMThreads == 3 and first.DSMCacheSize == 77, "a new display begins with the settings")
+first.DSMThreads = 1
+set_defaults(4, 78)
+check(first.DSMThreads == 1, "what was set for a display stays")
+check(first.DSMCacheSize == 78, "and what was not follows the settings")
+second = simple.Show(simple.Sphere(), view)
+check(second.DSMThreads == 4, "also of a mesh")
+set_defaults(0, 256)

@@ -74,6 +74,7 @@ check_equal(render(first), picture, "still rendering after interactive rendering
 # A selection, which renders the view in passes of its own.
 outline = show_surface(simple.Outline(source), first)
 simple.SelectSurfacePoints(Rectangle=[0, 0, 299, 239], View=first)
+simple.ClearSelection(source)
 simple.ClearSelection()
 simple.Delete(outline)
 check_equal(render(first), picture, "after a selection")
@@ -98,19 +99,17 @@ first.CameraFocalPoint = [0.0, 0.0, 0.0]
 first.CameraPosition = position
 
 # Moved by the representation's own transform.
-display.Position = [3.0, 0.0, 0.0]
-display.Orientation = [0.0, 30.0, 0.0]
-display.Scale = [1.0, 0.5, 1.0]
+PLACE = ([3.0, 0.0, 0.0], [0.0, 30.0, 0.0], [1.0, 0.5, 1.0])
+transform(display, *PLACE)
 moved = render(first, "Transformed")
 surface = flying_edges(source, ISOVALUES)
 simple.Hide(source, first)
 triangles = show_surface(surface, first)
-triangles.Position, triangles.Orientation, triangles.Scale = (
-    [3.0, 0.0, 0.0], [0.0, 30.0, 0.0], [1.0, 0.5, 1.0])
+transform(triangles, *PLACE)
 check_same_surface(moved, render(first), "Transformed", 0.02)
 simple.Delete(surface)
 simple.Show(source, first)
-display.Position, display.Orientation, display.Scale = [0] * 3, [0] * 3, [1] * 3
+transform(display)
 
 # A second view of the same source, with other settings, leaves the first alone.
 second = create_view(200, 200)

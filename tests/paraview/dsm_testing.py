@@ -54,6 +54,14 @@ def show_surface(source, view):
     return display
 
 
+def transform(display, translation=(0, 0, 0), orientation=(0, 0, 0), scale=(1, 1, 1)):
+    """Sets a representation's transform; ParaView 5.13 calls Translation what was Position."""
+    name = "Translation" if display.SMProxy.GetProperty("Translation") else "Position"
+    setattr(display, name, list(translation))
+    display.Orientation = list(orientation)
+    display.Scale = list(scale)
+
+
 def place_camera(view, position=(0.6, 0.5, 1.0)):
     """Looks at everything from a direction."""
     view.CameraViewUp = [0, 1, 0]

@@ -136,8 +136,11 @@ protected:
 
   void GiveNewData()
   {
-    this->Mapper->SetInputData(
-      MakeSlab(this->Controller->GetLocalProcessId(), this->Controller->GetNumberOfProcesses()));
+    const auto slab =
+      MakeSlab(this->Controller->GetLocalProcessId(), this->Controller->GetNumberOfProcesses());
+    // In a corner; bricks of data that are the same would be kept.
+    slab->GetPointData()->GetScalars()->SetComponent(0, 0, 200.0 + ++this->TimesGiven);
+    this->Mapper->SetInputData(slab);
   }
 
   /// Traces a frame; returns what was reported.
@@ -155,6 +158,7 @@ protected:
   vtkNew<vtkDSMVolumeMapper> Mapper;
   vtkNew<vtkVolume> Volume;
   vtkNew<vtkTest::ErrorObserver> Errors;
+  int TimesGiven = 0;
 };
 
 TEST_F(OutOfMemory, OfOneRankIsReportedByAllAndTheNextFrameIsDrawn)

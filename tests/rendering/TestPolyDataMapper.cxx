@@ -20,6 +20,7 @@
 #include "vtkLookupTable.h"
 #include "vtkMultiBlockDataSet.h"
 #include "vtkNew.h"
+#include "vtkPlane.h"
 #include "vtkPointData.h"
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
@@ -214,6 +215,28 @@ TEST_F(PolyDataMapper, NormalsOfCellsAreUsedWherePointsHaveNone)
   ExpectAlike(this->Render(), this->RenderWithTriangles(ball), 0.02);
 }
 
+TEST_F(PolyDataMapper, ClipsAsVtkDoes)
+{
+  const auto ball = MakeBall();
+  this->Mapper->SetInputData(ball);
+  this->Actor->SetPosition(0.2, -0.1, 0.3);
+  this->Actor->RotateY(30.0);
+  const int whole = CountCovered(this->Render());
+  vtkNew<vtkPlane> front;
+  front->SetOrigin(0.0, 0.0, 0.35);
+  front->SetNormal(0.1, 0.2, -0.5);
+  vtkNew<vtkPlane> side;
+  side->SetOrigin(0.15, 0.0, 0.0);
+  side->SetNormal(1.0, -0.3, 0.0);
+  this->Mapper->AddClippingPlane(front);
+  this->Mapper->AddClippingPlane(side);
+  const Picture clipped = this->Render();
+  EXPECT_LT(CountCovered(clipped), 0.9 * whole);
+  ExpectAlike(clipped, this->RenderWithTriangles(ball));
+  this->Mapper->RemoveAllClippingPlanes();
+  EXPECT_EQ(CountCovered(this->Render()), whole);
+}
+
 TEST_F(PolyDataMapper, ColoursAreVtks)
 {
   const auto ball = MakeBall();
@@ -330,6 +353,27 @@ TEST_F(PolyDataMapper, OnlyDataThatChangeAreTakenInAgain)
   EXPECT_TRUE(this->Building) << "the colour array";
   this->Render();
   EXPECT_FALSE(this->Building);
+}
+
+TEST_F(PolyDataMapper, BuildingCanBeAborted)
+{
+  this->Mapper->SetInputDataObject(MakeBall());
+  vtkNew<vtkCallbackCommand> abort;
+  abort->SetClientData(this->Mapper);
+  abort->SetCallback([](vtkObject*, unsigned long, void* mapper, void*)
+    { static_cast<vtkDSMPolyDataMapper*>(mapper)->SetAbortExecute(1); });
+  const unsigned long observer = this->Mapper->AddObserver(vtkCommand::ProgressEvent, abort);
+  vtkNew<vtkTest::ErrorObserver> errors;
+  this->Mapper->AddObserver(vtkCommand::ErrorEvent, errors);
+  const Picture nothing = this->Render();
+  EXPECT_EQ(std::count(nothing.begin(), nothing.end(), nothing.front()), nothing.size());
+  EXPECT_NE(errors->GetErrorMessage().find("aborted"), std::string::npos);
+
+  this->Mapper->RemoveObserver(observer);
+  errors->Clear();
+  this->Mapper->SetInputDataObject(MakeBall());
+  EXPECT_NE(this->Render(), nothing);
+  EXPECT_FALSE(errors->GetError());
 }
 
 TEST_F(PolyDataMapper, EveryKindOfCell)

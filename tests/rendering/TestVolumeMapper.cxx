@@ -9,12 +9,15 @@
 
 #include "vtkActor.h"
 #include "vtkAutoInit.h"
+#include "vtkCallbackCommand.h"
 #include "vtkCamera.h"
 #include "vtkDoubleArray.h"
 #include "vtkFloatArray.h"
 #include "vtkFlyingEdges3D.h"
 #include "vtkImageData.h"
 #include "vtkNew.h"
+#include "vtkPlane.h"
+#include "vtkPlaneCollection.h"
 #include "vtkPointData.h"
 #include "vtkPolyDataMapper.h"
 #include "vtkProperty.h"
@@ -22,11 +25,14 @@
 #include "vtkRenderer.h"
 #include "vtkTable.h"
 #include "vtkTestErrorObserver.h"
+#include "vtkTransform.h"
 #include "vtkVolume.h"
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <string>
 #include <vector>
 
 namespace
@@ -96,6 +102,40 @@ protected:
     return distances;
   }
 
+  void Place()
+  {
+    this->Volume->SetPosition(1.0, 2.0, 3.0);
+    this->Volume->RotateY(30.0);
+  }
+
+  std::vector<double> RenderTraced()
+  {
+    this->Renderer->AddVolume(this->Volume);
+    std::vector<double> distances = this->RenderDistances();
+    this->Renderer->RemoveVolume(this->Volume);
+    return distances;
+  }
+
+  /// The same surface as triangles that VTK draws, where the volume is.
+  std::vector<double> RenderTriangles(vtkPlaneCollection* clippingPlanes = nullptr)
+  {
+    vtkNew<vtkFlyingEdges3D> edges;
+    edges->SetInputData(MakeBall());
+    edges->SetValue(0, 0.4);
+    vtkNew<vtkPolyDataMapper> triangleMapper;
+    triangleMapper->SetInputConnection(edges->GetOutputPort());
+    triangleMapper->ScalarVisibilityOff();
+    triangleMapper->SetClippingPlanes(clippingPlanes);
+    vtkNew<vtkActor> actor;
+    actor->SetMapper(triangleMapper);
+    actor->SetPosition(this->Volume->GetPosition());
+    actor->SetOrientation(this->Volume->GetOrientation());
+    this->Renderer->AddActor(actor);
+    std::vector<double> distances = this->RenderDistances();
+    this->Renderer->RemoveActor(actor);
+    return distances;
+  }
+
   vtkNew<vtkRenderer> Renderer;
   vtkNew<vtkRenderWindow> Window;
   vtkSmartPointer<vtkDSMScene> Scene;
@@ -109,27 +149,9 @@ int CountCovered(const std::vector<double>& distances)
     distances.begin(), distances.end(), [](double distance) { return std::isfinite(distance); }));
 }
 
-TEST_F(VolumeMapper, DrawsTheSurfaceAndDepthOfFlyingEdges)
+/// The same surface at the same distances, but for a hundredth of the pixels.
+void ExpectAlike(const std::vector<double>& traced, const std::vector<double>& triangles)
 {
-  this->Renderer->AddVolume(this->Volume);
-  this->Volume->SetPosition(1.0, 2.0, 3.0);
-  this->Volume->RotateY(30.0);
-  const std::vector<double> traced = this->RenderDistances();
-  this->Renderer->RemoveVolume(this->Volume);
-
-  vtkNew<vtkFlyingEdges3D> edges;
-  edges->SetInputData(MakeBall());
-  edges->SetValue(0, 0.4);
-  vtkNew<vtkPolyDataMapper> triangleMapper;
-  triangleMapper->SetInputConnection(edges->GetOutputPort());
-  triangleMapper->ScalarVisibilityOff();
-  vtkNew<vtkActor> actor;
-  actor->SetMapper(triangleMapper);
-  actor->SetPosition(1.0, 2.0, 3.0);
-  actor->RotateY(30.0);
-  this->Renderer->AddActor(actor);
-  const std::vector<double> triangles = this->RenderDistances();
-
   int different = 0;
   int apart = 0;
   int both = 0;
@@ -145,6 +167,64 @@ TEST_F(VolumeMapper, DrawsTheSurfaceAndDepthOfFlyingEdges)
   EXPECT_GT(both, 2000);
   EXPECT_LE(different, both / 100);
   EXPECT_LE(apart, both / 100);
+}
+
+TEST_F(VolumeMapper, DrawsTheSurfaceAndDepthOfFlyingEdges)
+{
+  this->Place();
+  ExpectAlike(this->RenderTraced(), this->RenderTriangles());
+}
+
+TEST_F(VolumeMapper, ClipsAsVtkClipsTriangles)
+{
+  this->Place();
+  const int whole = CountCovered(this->RenderTraced());
+  vtkNew<vtkPlane> front;
+  front->SetOrigin(0.0, 0.0, 4.0);
+  front->SetNormal(0.2, -0.1, -3.0);
+  vtkNew<vtkPlane> side;
+  side->SetOrigin(-2.0, 0.0, 0.0);
+  side->SetNormal(1.0, 0.3, 0.0);
+  this->Mapper->AddClippingPlane(front);
+  this->Mapper->AddClippingPlane(side);
+  const std::vector<double> clipped = this->RenderTraced();
+  EXPECT_LT(CountCovered(clipped), 0.9 * whole);
+  ExpectAlike(clipped, this->RenderTriangles(this->Mapper->GetClippingPlanes()));
+}
+
+TEST_F(VolumeMapper, CropsInTheCoordinatesOfTheData)
+{
+  this->Place();
+  const int whole = CountCovered(this->RenderTraced());
+  const double box[6] = { -11.0, 9.0, -20.0, 10.0, -6.0, 4.5 };
+  this->Mapper->CroppingOn();
+  this->Mapper->SetCroppingRegionPlanes(box);
+  const std::vector<double> cropped = this->RenderTraced();
+  EXPECT_LT(CountCovered(cropped), 0.9 * whole);
+  // The six planes that the box has in the data's coordinates.
+  vtkNew<vtkTransform> dataToWorld;
+  dataToWorld->SetMatrix(this->Volume->GetMatrix());
+  vtkNew<vtkPlaneCollection> planes;
+  for (int side = 0; side < 6; ++side)
+  {
+    double point[3] = { 0.0, 0.0, 0.0 };
+    double normal[3] = { 0.0, 0.0, 0.0 };
+    point[side / 2] = box[side];
+    normal[side / 2] = side % 2 == 0 ? 1.0 : -1.0;
+    dataToWorld->TransformPoint(point, point);
+    dataToWorld->TransformNormal(normal, normal);
+    vtkNew<vtkPlane> plane;
+    plane->SetOrigin(point);
+    plane->SetNormal(normal);
+    planes->AddItem(plane);
+  }
+  ExpectAlike(cropped, this->RenderTriangles(planes));
+  this->Mapper->SetCroppingRegionFlags(0x7ffffff);
+  EXPECT_EQ(CountCovered(this->RenderTraced()), whole);
+  this->Mapper->SetCroppingRegionFlags(0);
+  EXPECT_EQ(CountCovered(this->RenderTraced()), 0);
+  this->Mapper->CroppingOff();
+  EXPECT_EQ(CountCovered(this->RenderTraced()), whole);
 }
 
 TEST_F(VolumeMapper, FollowsWhatChanges)
@@ -171,6 +251,7 @@ TEST_F(VolumeMapper, FollowsWhatChanges)
 TEST_F(VolumeMapper, TheSceneIsTheRenderersAndEndsWithItsLastHolder)
 {
   EXPECT_EQ(vtkDSMScene::ForRenderer(this->Renderer), this->Scene);
+  this->Mapper->MakesSceneOff();
   this->Renderer->AddVolume(this->Volume);
   EXPECT_GT(CountCovered(this->RenderDistances()), 0);
   this->Scene = nullptr;
@@ -221,6 +302,47 @@ TEST_F(VolumeMapper, CollectsSamplesUntilSomethingChanges)
   this->Window->SetDesiredUpdateRate(15.0);
   this->Mapper->SetIsoValue(0, 0.35);
   EXPECT_EQ(countFrames(), 5) << "one each while the camera moves";
+}
+
+TEST_F(VolumeMapper, TellsTheProgressAndCanBeAborted)
+{
+  struct Watch
+  {
+    vtkDSMScene* Scene;
+    vtkDSMVolumeMapper* Mapper;
+    std::vector<double> Parts;
+    bool Aborts;
+  } watch{ this->Scene, this->Mapper, {}, true };
+  vtkNew<vtkCallbackCommand> progress;
+  progress->SetClientData(&watch);
+  progress->SetCallback(
+    [](vtkObject*, unsigned long, void* data, void*)
+    {
+      auto* self = static_cast<Watch*>(data);
+      // VTK executes the mapper once more when it draws.
+      if (self->Scene->IsTracing())
+      {
+        self->Parts.push_back(self->Mapper->GetProgress());
+        self->Mapper->SetAbortExecute(self->Aborts ? 1 : 0);
+      }
+    });
+  this->Mapper->AddObserver(vtkCommand::ProgressEvent, progress);
+  vtkNew<vtkTest::ErrorObserver> errors;
+  this->Mapper->AddObserver(vtkCommand::ErrorEvent, errors);
+  this->Renderer->AddVolume(this->Volume);
+
+  EXPECT_EQ(CountCovered(this->RenderDistances()), 0);
+  EXPECT_NE(errors->GetErrorMessage().find("aborted"), std::string::npos);
+  EXPECT_EQ(watch.Parts.size(), 1u);
+
+  watch = { this->Scene, this->Mapper, {}, false };
+  errors->Clear();
+  this->Mapper->SetInputData(MakeBall());
+  EXPECT_GT(CountCovered(this->RenderDistances()), 1000);
+  EXPECT_FALSE(errors->GetError());
+  EXPECT_GT(watch.Parts.size(), 2u);
+  EXPECT_TRUE(std::is_sorted(watch.Parts.begin(), watch.Parts.end()));
+  EXPECT_EQ(watch.Parts.back(), 1.0);
 }
 
 TEST_F(VolumeMapper, NamesAMissingArrayOnce)

@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Checks who includes whom: the rooms of docs/architecture.md may only use the ones below them."""
+"""Checks who includes whom: the rooms of docs/architecture.md may only use the ones below them; and that
+each module's CMakeLists.txt names its files."""
 import pathlib
 import re
 import sys
@@ -41,9 +42,20 @@ def find_faults(root):
         yield f"only {files} files were found"
 
 
+def find_unlisted(root):
+    for listing in sorted((root / "vtk_modules").glob("*/CMakeLists.txt")):
+        # Classes are listed by name, files by path.
+        named = set(re.findall(r"[\w./-]+", listing.read_text()))
+        for path in sorted(listing.parent.rglob("*")):
+            name = path.relative_to(listing.parent).as_posix()
+            if path.suffix in (".h", ".cxx", ".txx") and not named & {name, path.stem}:
+                yield f"{path.relative_to(root).as_posix()}: {listing.relative_to(root).as_posix()} does not name it"
+
+
 def main():
-    faults = list(find_faults(pathlib.Path(sys.argv[1])))
-    print("\n".join(faults) or "every room uses the rooms below it only")
+    root = pathlib.Path(sys.argv[1])
+    faults = [*find_faults(root), *find_unlisted(root)]
+    print("\n".join(faults) or "every room uses the rooms below it only, and every file is listed")
     return 1 if faults else 0
 
 

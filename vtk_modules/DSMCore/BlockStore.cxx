@@ -284,6 +284,7 @@ std::shared_ptr<BlockSegment> BlockStore::Publish(const std::string& what, Block
   }
   this->TakePlan(plan, chosen);
   this->Settled = true;
+  ++this->Publications;
   return segment;
 }
 
@@ -302,6 +303,7 @@ StoreCounters BlockStore::GetCounters()
 {
   StoreCounters counters = this->Visit([](auto& store) { return store.GetCounters(); });
   counters.MemoryBudget = this->Budget.Bytes;
+  counters.Publications = this->Publications;
   return counters;
 }
 

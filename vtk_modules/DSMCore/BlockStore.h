@@ -139,6 +139,7 @@ private:
   Settings Current;
   const std::shared_ptr<WorkerSlots> Slots = std::make_shared<WorkerSlots>();
   bool Settled = true;
+  std::uint64_t Publications = 0;
   MemoryOrganization InForce = MemoryOrganization::ObjectBased;
   std::string Explanation;
   MemoryPlan::Budget Budget;

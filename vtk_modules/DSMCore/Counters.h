@@ -47,6 +47,8 @@ struct StoreCounters
   std::uint64_t CacheCapacity = 0;
   /// What the rank may take for all of these (see BlockStore); 0 where nobody said.
   std::uint64_t MemoryBudget = 0;
+  /// How often something was cut into bricks, since the ranks came together.
+  std::uint64_t Publications = 0;
 };
 
 } // namespace dsm

@@ -2,6 +2,7 @@
 #include "vtkDSMFrameProp.h"
 
 #include "DSMRayTracing/frame/FrameGather.h"
+#include "vtkDSMFrameLayers.h"
 
 #include "vtkCamera.h"
 #include "vtkMath.h"
@@ -144,6 +145,7 @@ public:
   }
 
   rt::Picture Frame;
+  vtkDSMFrameLayers Layers;
   bool DrawsColor = true;
   bool Uploaded = false;
   double Bounds[6];
@@ -169,6 +171,17 @@ void vtkDSMFrameProp::SetFrame(
 {
   this->Self->DrawsColor = drawsColor;
   this->Self->Store(std::move(frame));
+  this->Self->Layers.SetPicture({});
+  this->Self->Projection->DeepCopy(projection);
+  std::copy_n(bounds, 6, this->Self->Bounds);
+  this->Modified();
+}
+
+void vtkDSMFrameProp::SetLayers(
+  const rt::Picture& frame, vtkMatrix4x4* projection, const double bounds[6])
+{
+  this->Self->Store({});
+  this->Self->Layers.SetPicture(frame);
   this->Self->Projection->DeepCopy(projection);
   std::copy_n(bounds, 6, this->Self->Bounds);
   this->Modified();
@@ -176,9 +189,11 @@ void vtkDSMFrameProp::SetFrame(
 
 void vtkDSMFrameProp::Clear()
 {
-  if (!this->Self->IsEmpty() || vtkMath::AreBoundsInitialized(this->Self->Bounds))
+  if (!this->Self->IsEmpty() || !this->Self->Layers.IsEmpty() ||
+    vtkMath::AreBoundsInitialized(this->Self->Bounds))
   {
     this->Self->Store({});
+    this->Self->Layers.SetPicture({});
     vtkMath::UninitializeBounds(this->Self->Bounds);
     this->Modified();
   }
@@ -205,8 +220,38 @@ int vtkDSMFrameProp::RenderOpaqueGeometry(vtkViewport* viewport)
   return 1;
 }
 
+vtkTypeBool vtkDSMFrameProp::HasTranslucentPolygonalGeometry()
+{
+  return !this->Self->Layers.IsEmpty();
+}
+
+int vtkDSMFrameProp::RenderTranslucentPolygonalGeometry(vtkViewport* viewport)
+{
+  auto* renderer = vtkRenderer::SafeDownCast(viewport);
+  if (!renderer || this->Self->Layers.IsEmpty() || renderer->GetSelector())
+  {
+    return 0;
+  }
+  // As pixels of the viewport, so that the frame's pixels fall on those.
+  std::array<int, 4> rectangle{};
+  auto* window = vtkOpenGLRenderWindow::SafeDownCast(renderer->GetRenderWindow());
+  window->GetState()->vtkglGetIntegerv(GL_VIEWPORT, rectangle.data());
+  const std::array<int, 4> target =
+    GetTarget(this->Self->Projection, GetProjection(renderer), rectangle);
+  std::array<double, 4> place{};
+  for (int axis = 0; axis < 2; ++axis)
+  {
+    const double first = target[axis] - rectangle[axis];
+    place[2 * axis] = 2.0 * first / rectangle[axis + 2] - 1.0;
+    place[2 * axis + 1] = 2.0 * (first + target[axis + 2]) / rectangle[axis + 2] - 1.0;
+  }
+  this->Self->Layers.Render(viewport, this->GetPropertyKeys(), place);
+  return 1;
+}
+
 void vtkDSMFrameProp::ReleaseGraphicsResources(vtkWindow* window)
 {
+  this->Self->Layers.ReleaseGraphicsResources(window);
   this->Self->Quad.reset();
   this->Self->ColorTexture->ReleaseGraphicsResources(window);
   this->Self->DepthTexture->ReleaseGraphicsResources(window);

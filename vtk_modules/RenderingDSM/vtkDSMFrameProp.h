@@ -5,7 +5,8 @@
  *
  * Belongs to a vtkDSMScene, which adds it to the renderer. Local: each rank draws what it was given;
  * the compositing of the application merges the ranks' pictures by depth. Draws in the opaque pass,
- * and not at all during a selection pass.
+ * or, surfaces that other objects may be between, in the translucent one; and not at all during a
+ * selection pass.
  */
 
 #ifndef vtkDSMFrameProp_h
@@ -38,12 +39,20 @@ public:
     rt::Picture frame, vtkMatrix4x4* projection, const double bounds[6], bool drawsColor = true);
 
   /**
+   * The same for a frame whose surfaces have been kept apart: they are drawn one by one among the
+   * renderer's translucent geometry. Colours and alpha are those of the surfaces (not premultiplied).
+   */
+  void SetLayers(const rt::Picture& frame, vtkMatrix4x4* projection, const double bounds[6]);
+
+  /**
    * Draw nothing from now on.
    */
   void Clear();
 
   double* GetBounds() VTK_SIZEHINT(6) override;
   int RenderOpaqueGeometry(vtkViewport* viewport) override;
+  vtkTypeBool HasTranslucentPolygonalGeometry() override;
+  int RenderTranslucentPolygonalGeometry(vtkViewport* viewport) override;
   void ReleaseGraphicsResources(vtkWindow* window) override;
 
 protected:

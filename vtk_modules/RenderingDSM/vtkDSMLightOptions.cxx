@@ -19,4 +19,6 @@ void vtkDSMLightOptions::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "MaxBounces: " << this->MaxBounces << "\n";
   os << indent << "SamplesPerPixel: " << this->SamplesPerPixel << "\n";
   os << indent << "DebugView: " << this->DebugView << "\n";
+  os << indent << "ShowLegend: " << this->ShowLegend << "\n";
+  os << indent << "ShowStatistics: " << this->ShowStatistics << "\n";
 }

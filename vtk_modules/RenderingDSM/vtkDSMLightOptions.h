@@ -103,6 +103,19 @@ public:
   vtkGetMacro(DebugView, int);
   ///@}
 
+  ///@{
+  /**
+   * Whether a legend in the picture says what the colours of the debug view mean (the default), and
+   * whether the figures of the frame are written into it (off by default).
+   */
+  vtkSetMacro(ShowLegend, bool);
+  vtkGetMacro(ShowLegend, bool);
+  vtkBooleanMacro(ShowLegend, bool);
+  vtkSetMacro(ShowStatistics, bool);
+  vtkGetMacro(ShowStatistics, bool);
+  vtkBooleanMacro(ShowStatistics, bool);
+  ///@}
+
 protected:
   vtkDSMLightOptions();
   ~vtkDSMLightOptions() override;
@@ -119,6 +132,8 @@ private:
   int MaxBounces = 2;
   int SamplesPerPixel = 1;
   int DebugView = Off;
+  bool ShowLegend = true;
+  bool ShowStatistics = false;
 };
 
 #endif

@@ -3,8 +3,11 @@
 
 #include "DSMCore/HostMemory.h"
 #include "DSMRayTracing/accel/TriangleMeshBuilder.h"
+#include "DSMRayTracing/frame/ByteHash.h"
+#include "vtkDSMContent.h"
 #include "vtkDSMGather.h"
 #include "vtkDSMPolyDataMapper.h"
+#include "vtkDSMProgress.h"
 #include "vtkDSMTubesAndSpheres.h"
 
 #include "vtkBoundingBox.h"
@@ -165,10 +168,14 @@ std::uint32_t vtkDSMMeshData::FindGroup(const Part& part) const
 
 void vtkDSMMeshData::DescribeSources()
 {
+  const int threads = this->Group->GetStore().GetSettings().Workers;
+  const auto identify = [threads](vtkAbstractArray* array)
+  { return vtkDSMContent::Hash(array, threads); };
   for (std::size_t index = 0; index < this->Blocks.size(); ++index)
   {
     const vtkDSMMeshBlock& block = this->Blocks[index];
-    std::vector<std::uint64_t> numbers = DescribeBlock(this->Mapper, block, this->Textured);
+    std::vector<std::uint64_t> numbers =
+      DescribeBlock(this->Mapper, block, this->Textured, identify);
     if (block.Data->GetNumberOfVerts() > 0 || block.Data->GetNumberOfLines() > 0)
     {
       AddNumber(numbers, ChooseRadius(this->Mapper->GetLineRadius(), this->Diagonal));
@@ -384,6 +391,7 @@ void vtkDSMMeshData::Publish()
   rt::TriangleMeshSettings settings;
   settings.Threads = group->GetStore().GetSettings().Workers;
   double done = 0.0;
+  vtkDSMProgress::Begin(this->Mapper);
   for (const Key& kind : kinds)
   {
     vtkDSMMeshPiece piece;
@@ -400,7 +408,7 @@ void vtkDSMMeshData::Publish()
       });
     const double share = 1.0 / static_cast<double>(kinds.size());
     const auto progress = [this, done, share](double part)
-    { this->Mapper->UpdateProgress(done + share * part); };
+    { vtkDSMProgress::Tell(this->Mapper, done + share * part); };
     const std::shared_ptr<rt::TriangleMesh> mesh =
       rt::PublishMesh("the surface", piece, settings, group->GetStore(), messenger, progress);
     done += share;
@@ -410,33 +418,60 @@ void vtkDSMMeshData::Publish()
   }
 }
 
-std::vector<std::uint64_t> vtkDSMMeshData::DescribeBlock(
-  vtkDSMPolyDataMapper* mapper, const vtkDSMMeshBlock& block, bool textured)
+std::vector<std::uint64_t> vtkDSMMeshData::GetStamp(vtkDSMPolyDataMapper* mapper, bool textured)
+{
+  // Times of change are unique in a process: the same place and time is the same array.
+  std::vector<std::uint64_t> numbers = Describe(mapper, textured,
+    [](vtkAbstractArray* array)
+    {
+      const std::uint64_t identity[] = { reinterpret_cast<std::uintptr_t>(array),
+        array ? array->GetMTime() : 0 };
+      rt::ByteHash hash;
+      hash.Add(identity, sizeof(identity));
+      return hash.Get();
+    });
+  // Who writes new values to an old array need not say so at the array.
+  for (const vtkDSMMeshBlock& block : vtkDSMMeshBlock::Collect(mapper))
+  {
+    numbers.push_back(block.Data->GetMTime());
+  }
+  vtkDataObject* data =
+    mapper->GetNumberOfInputConnections(0) > 0 ? mapper->GetInputDataObject(0, 0) : nullptr;
+  numbers.push_back(reinterpret_cast<std::uintptr_t>(data));
+  numbers.push_back(data ? data->GetMTime() : 0);
+  numbers.push_back(data ? data->GetUpdateTime() : 0);
+  return numbers;
+}
+
+std::vector<std::uint64_t> vtkDSMMeshData::HashContent(
+  vtkDSMPolyDataMapper* mapper, bool textured, int threads)
+{
+  return Describe(mapper, textured,
+    [threads](vtkAbstractArray* array) { return vtkDSMContent::Hash(array, threads); });
+}
+
+std::vector<std::uint64_t> vtkDSMMeshData::DescribeBlock(vtkDSMPolyDataMapper* mapper,
+  const vtkDSMMeshBlock& block, bool textured, const Identify& identify)
 {
   std::vector<std::uint64_t> numbers;
-  // Times of change are unique in a process: the same place and time is the same content.
-  const auto addObject = [&numbers](vtkObject* object)
-  {
-    numbers.push_back(reinterpret_cast<std::uintptr_t>(object));
-    numbers.push_back(object ? object->GetMTime() : 0);
-  };
+  const auto addArray = [&](vtkAbstractArray* array) { numbers.push_back(identify(array)); };
   vtkScalarsToColors* table = mapper->GetLookupTable();
   vtkPolyData* data = block.Data;
-  addObject(data->GetPoints()->GetData());
+  addArray(data->GetPoints()->GetData());
   for (vtkCellArray* cells :
     { data->GetVerts(), data->GetLines(), data->GetPolys(), data->GetStrips() })
   {
-    addObject(cells->GetNumberOfCells() > 0 ? cells : nullptr);
-    addObject(cells->GetNumberOfCells() > 0 ? cells->GetConnectivityArray() : nullptr);
+    addArray(cells->GetNumberOfCells() > 0 ? cells->GetOffsetsArray() : nullptr);
+    addArray(cells->GetNumberOfCells() > 0 ? cells->GetConnectivityArray() : nullptr);
   }
-  addObject(data->GetPointData()->GetNormals());
-  addObject(data->GetPointData()->GetNormals() ? nullptr : data->GetCellData()->GetNormals());
-  addObject(textured ? data->GetPointData()->GetTCoords() : nullptr);
-  addObject(data->GetCellData()->GetAbstractArray(vtkDataSetAttributes::GhostArrayName()));
-  addObject(data->GetPointData()->GetAbstractArray(mapper->GetRadiusArray().c_str()));
+  addArray(data->GetPointData()->GetNormals());
+  addArray(data->GetPointData()->GetNormals() ? nullptr : data->GetCellData()->GetNormals());
+  addArray(textured ? data->GetPointData()->GetTCoords() : nullptr);
+  addArray(data->GetCellData()->GetAbstractArray(vtkDataSetAttributes::GhostArrayName()));
+  addArray(data->GetPointData()->GetAbstractArray(mapper->GetRadiusArray().c_str()));
   int field = 0;
   vtkAbstractArray* colors = vtkDSMMeshColors::FindArray(mapper, data, field);
-  addObject(colors);
+  addArray(colors);
   if (colors)
   {
     AddNumber(numbers, field);
@@ -448,12 +483,17 @@ std::vector<std::uint64_t> vtkDSMMeshData::DescribeBlock(
       AddNumber(numbers, table->GetVectorMode());
       AddNumber(numbers, table->GetVectorComponent());
     }
-    addObject(vtkDSMMeshColors::DependsOnTable(mapper, colors) ? table : nullptr);
+    if (vtkDSMMeshColors::DependsOnTable(mapper, colors))
+    {
+      numbers.push_back(reinterpret_cast<std::uintptr_t>(table));
+      numbers.push_back(table->GetMTime());
+    }
   }
   return numbers;
 }
 
-std::vector<std::uint64_t> vtkDSMMeshData::Describe(vtkDSMPolyDataMapper* mapper, bool textured)
+std::vector<std::uint64_t> vtkDSMMeshData::Describe(
+  vtkDSMPolyDataMapper* mapper, bool textured, const Identify& identify)
 {
   std::vector<std::uint64_t> numbers;
   AddNumber(numbers, mapper->GetLineRadius());
@@ -474,7 +514,7 @@ std::vector<std::uint64_t> vtkDSMMeshData::Describe(vtkDSMPolyDataMapper* mapper
     {
       AddNumber(numbers, channel);
     }
-    const std::vector<std::uint64_t> source = DescribeBlock(mapper, block, textured);
+    const std::vector<std::uint64_t> source = DescribeBlock(mapper, block, textured, identify);
     numbers.insert(numbers.end(), source.begin(), source.end());
   }
   return numbers;

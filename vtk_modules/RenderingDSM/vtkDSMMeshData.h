@@ -11,11 +11,13 @@
 #include "vtkSmartPointer.h"
 
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <memory>
 #include <string>
 #include <vector>
 
+class vtkAbstractArray;
 class vtkDSMPolyDataMapper;
 class vtkDSMTubesAndSpheres;
 class vtkPolyData;
@@ -62,9 +64,13 @@ public:
   /// What is wrong, but can be shown in another way; empty when nothing is. The same on every rank.
   const std::string& GetMessage() const { return this->Message; }
 
-  /// Local: numbers that are others when, and only when, this rank's data or what is read of them
-  /// are.
-  static std::vector<std::uint64_t> Describe(vtkDSMPolyDataMapper* mapper, bool textured);
+  /// Local, quick: numbers that are others when anything may be.
+  static std::vector<std::uint64_t> GetStamp(vtkDSMPolyDataMapper* mapper, bool textured);
+
+  /// Local, reads the data: numbers that are others when, and only when, this rank's data or what is
+  /// read of them are.
+  static std::vector<std::uint64_t> HashContent(
+    vtkDSMPolyDataMapper* mapper, bool textured, int threads);
 
 private:
   struct Surface
@@ -75,8 +81,13 @@ private:
   };
   struct ColorReport;
 
-  static std::vector<std::uint64_t> DescribeBlock(
-    vtkDSMPolyDataMapper* mapper, const vtkDSMMeshBlock& block, bool textured);
+  /// Numbers an array, by its identity or by what it holds.
+  using Identify = std::function<std::uint64_t(vtkAbstractArray*)>;
+
+  static std::vector<std::uint64_t> Describe(
+    vtkDSMPolyDataMapper* mapper, bool textured, const Identify& identify);
+  static std::vector<std::uint64_t> DescribeBlock(vtkDSMPolyDataMapper* mapper,
+    const vtkDSMMeshBlock& block, bool textured, const Identify& identify);
 
   void FormGroups();
   /// The group that an old part would be of; one that does not exist if there is none.

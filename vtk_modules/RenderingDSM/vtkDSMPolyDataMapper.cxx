@@ -3,6 +3,7 @@
 
 #include "vtkDSMLightOptions.h"
 #include "vtkDSMMemoryOptions.h"
+#include "vtkDSMScene.h"
 
 #include "vtkCompositeDataDisplayAttributes.h"
 #include "vtkCompositeDataSet.h"
@@ -108,7 +109,13 @@ void vtkDSMPolyDataMapper::UpdatePiece(int piece, int numberOfPieces)
   }
 }
 
-void vtkDSMPolyDataMapper::Render(vtkRenderer*, vtkActor*) {}
+void vtkDSMPolyDataMapper::Render(vtkRenderer* renderer, vtkActor*)
+{
+  if (this->MakesScene)
+  {
+    vtkDSMScene::DrawWithoutScene(renderer, this);
+  }
+}
 
 int vtkDSMPolyDataMapper::FillInputPortInformation(int, vtkInformation* info)
 {
@@ -125,4 +132,5 @@ void vtkDSMPolyDataMapper::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "LineRadius: " << this->LineRadius << "\n";
   os << indent << "PointRadius: " << this->PointRadius << "\n";
   os << indent << "RadiusArray: " << this->RadiusArray << "\n";
+  os << indent << "MakesScene: " << this->MakesScene << "\n";
 }

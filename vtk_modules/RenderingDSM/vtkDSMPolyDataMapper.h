@@ -107,8 +107,18 @@ public:
    */
   void UpdatePiece(int piece, int numberOfPieces);
 
+  ///@{
   /**
-   * Does nothing: the scene's vtkDSMFrameProp draws.
+   * Whether the mapper makes the renderer's vtkDSMScene when it is first drawn and there is none; on by
+   * default. In one process only: ranks must make it together, before the first frame.
+   */
+  vtkSetMacro(MakesScene, bool);
+  vtkGetMacro(MakesScene, bool);
+  vtkBooleanMacro(MakesScene, bool);
+  ///@}
+
+  /**
+   * Draws nothing: the scene's vtkDSMFrameProp does. The first time, see MakesScene.
    */
   void Render(vtkRenderer* renderer, vtkActor* actor) override;
 
@@ -134,6 +144,7 @@ private:
   double LineRadius = 0.0;
   double PointRadius = 0.0;
   std::string RadiusArray;
+  bool MakesScene = true;
   vtkSmartPointer<vtkDSMLightOptions> LightOptions;
   vtkSmartPointer<vtkDSMMemoryOptions> MemoryOptions;
   double GlobalBounds[6];

@@ -3,6 +3,8 @@
 
 #include "DSMRayTracing/frame/FrameGather.h"
 #include "DSMRayTracing/frame/SceneDigest.h"
+#include "vtkDSMFrameLayers.h"
+#include "vtkDSMFrameNotes.h"
 #include "vtkDSMFrameProp.h"
 #include "vtkDSMLightOptions.h"
 #include "vtkDSMPolyDataMapper.h"
@@ -22,6 +24,8 @@
 #include "vtkMatrix4x4.h"
 #include "vtkMultiProcessController.h"
 #include "vtkObjectFactory.h"
+#include "vtkOpenGLRenderWindow.h"
+#include "vtkOpenGLState.h"
 #include "vtkPropCollection.h"
 #include "vtkRenderWindow.h"
 #include "vtkRenderer.h"
@@ -29,8 +33,12 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstring>
 #include <map>
 #include <optional>
+#include <set>
 #include <vector>
 
 namespace
@@ -47,10 +55,82 @@ constexpr double InteractiveRate = 1.0;
 /// Of the diagonal of what is shown: as far as ambient occlusion looks when nothing is said.
 constexpr double AmbientOcclusionPart = 0.2;
 
+/// Leaves OpenGL as it was found: an application that shows progress and messages draws windows of its
+/// own meanwhile.
+class OpenGLGuard
+{
+public:
+  explicit OpenGLGuard(vtkRenderWindow* window)
+    : Window(vtkOpenGLRenderWindow::SafeDownCast(window))
+  {
+    if (this->Window && !this->Window->IsCurrent())
+    {
+      this->Window = nullptr; // nothing is being drawn
+    }
+    if (this->Window)
+    {
+      this->Window->GetState()->Push();
+    }
+  }
+  ~OpenGLGuard()
+  {
+    if (this->Window)
+    {
+      this->Window->MakeCurrent();
+      this->Window->GetState()->Pop();
+    }
+  }
+  OpenGLGuard(const OpenGLGuard&) = delete;
+  OpenGLGuard& operator=(const OpenGLGuard&) = delete;
+
+private:
+  vtkOpenGLRenderWindow* Window;
+};
+
+/// Whether matrices differ by rounding only.
+bool IsNearly(const glm::dmat4& a, const glm::dmat4& b)
+{
+  constexpr double tolerance = 1e-9;
+  double difference = 0.0;
+  double largest = 0.0;
+  for (int element = 0; element < 16; ++element)
+  {
+    const double one = a[element / 4][element % 4];
+    const double other = b[element / 4][element % 4];
+    difference = std::max(difference, std::abs(one - other));
+    largest = std::max(largest, std::abs(one));
+  }
+  return difference <= tolerance * largest;
+}
+
 std::map<vtkRenderer*, vtkDSMScene*>& GetRegistry()
 {
   static std::map<vtkRenderer*, vtkDSMScene*> registry;
   return registry;
+}
+
+bool IsTranslucent(const rt::ColorMap& map)
+{
+  return std::any_of(
+    map.Table.begin(), map.Table.end(), [](const glm::vec4& color) { return color.w < 1.0f; });
+}
+
+/// Whether anything may be seen through what the tracer draws.
+bool IsTranslucent(const rt::Scene& scene)
+{
+  return std::any_of(scene.Isosurfaces.begin(), scene.Isosurfaces.end(),
+           [](const rt::IsosurfaceObject& object) {
+             return object.Surface.Opacity < 1.0f ||
+               (object.ColorField && IsTranslucent(object.Colors));
+           }) ||
+    std::any_of(scene.Meshes.begin(), scene.Meshes.end(),
+      [](const rt::MeshObject& object)
+      {
+        return object.Surface.Opacity < 1.0f ||
+          object.ColoredBy == rt::MeshObject::Coloring::Colors ||
+          (object.Colors && IsTranslucent(*object.Colors)) ||
+          (object.BackSurface && object.BackSurface->Opacity < 1.0f);
+      });
 }
 
 } // namespace
@@ -78,13 +158,20 @@ public:
   void Clear();
   rt::LightTransport GetTransport() const;
   rt::DebugView GetDebugView() const;
-  glm::vec3 AgreeOnBackground();
+  void AgreeOnView(rt::Scene& scene, rt::FrameRequest& request) const;
+  bool ShowsOthers() const;
+  void DrawPicture(rt::Picture picture, const rt::FrameRequest& request, vtkMatrix4x4* projection,
+    rt::DebugView view);
+  bool WriteNotes(rt::DebugView view, rt::Picture& picture) const;
+  void AddWholeView(const rt::FrameRequest& request, double bounds[6]) const;
+  void LeaveToOthers(const rt::FrameRequest& request, rt::Picture& picture) const;
   int CountSamplesOfFrame(int missing) const;
   void TraceSamples(const rt::Scene& scene, rt::FrameRequest& request);
 
   vtkWeakPointer<vtkRenderer> Renderer;
-  unsigned long Observers[2] = { 0, 0 };
-  glm::vec3 Background{ 0.0f }; ///< of this rank's renderer, as the application set it
+  unsigned long Observers[3] = { 0, 0, 0 };
+  vtkSmartPointer<vtkDSMScene> Keeper; ///< the scene itself, when nobody but the renderer has it
+  glm::vec3 Background{ 0.0f };        ///< of this rank's renderer, as the application set it
   vtkSmartPointer<vtkMultiProcessController> Controller;
   vtkNew<vtkDSMFrameProp> Prop;
   vtkNew<vtkDSMStatistics> Statistics;
@@ -93,6 +180,7 @@ public:
   std::vector<Member> Members;                ///< of the frame, in the renderer's order
   std::string Failure;                        ///< that was reported last
   std::function<bool(vtkCamera*)> DrawsColor; ///< set: the frame is delivered everywhere
+  std::function<bool(const double[3])> DrawsPlace;
   bool Tracing = false;
   int SamplesPerFrame = 0;
   /// The last frame, and what it shows; further samples are added while that stays the same.
@@ -142,6 +230,47 @@ vtkSmartPointer<vtkDSMScene> vtkDSMScene::ForRenderer(vtkRenderer* renderer)
   return scene;
 }
 
+vtkDSMScene* vtkDSMScene::NewForRenderer(vtkRenderer* renderer)
+{
+  const vtkSmartPointer<vtkDSMScene> scene = ForRenderer(renderer);
+  scene->Register(nullptr);
+  return scene;
+}
+
+void vtkDSMScene::DrawWithoutScene(vtkRenderer* renderer, vtkObject* mapper)
+{
+  const auto known = GetRegistry().find(renderer);
+  if (known != GetRegistry().end() && known->second->GetRenderer() == renderer)
+  {
+    return;
+  }
+  auto* controller = vtkMultiProcessController::GetGlobalController();
+  if (controller && controller->GetNumberOfProcesses() > 1)
+  {
+    static std::set<vtkWeakPointer<vtkRenderer>> told;
+    if (told.insert(renderer).second)
+    {
+      vtkErrorWithObjectMacro(mapper,
+        << controller->GetNumberOfProcesses()
+        << " processes render, but the renderer has no scene. "
+        << "Call vtkDSMScene::ForRenderer(renderer) on every rank before the first frame, and keep "
+        << "what it returns.");
+    }
+    return;
+  }
+  const vtkSmartPointer<vtkDSMScene> scene = ForRenderer(renderer);
+  scene->Self->Keeper = scene;
+  scene->NoteBackground();
+  scene->Trace();
+  scene->Self->Prop->RenderOpaqueGeometry(renderer);
+}
+
+void vtkDSMScene::EndWithRenderer()
+{
+  // This may be the last reference, so `this` may be gone when it returns.
+  const vtkSmartPointer<vtkDSMScene> last = std::move(this->Self->Keeper);
+}
+
 void vtkDSMScene::Attach(vtkRenderer* renderer)
 {
   this->Self->Renderer = renderer;
@@ -149,6 +278,8 @@ void vtkDSMScene::Attach(vtkRenderer* renderer)
     vtkCommand::StartEvent, this, &vtkDSMScene::NoteBackground, BackgroundPriority);
   this->Self->Observers[1] =
     renderer->AddObserver(vtkCommand::StartEvent, this, &vtkDSMScene::Trace, TracePriority);
+  this->Self->Observers[2] =
+    renderer->AddObserver(vtkCommand::DeleteEvent, this, &vtkDSMScene::EndWithRenderer);
   renderer->AddViewProp(this->Self->Prop);
 }
 
@@ -175,11 +306,30 @@ vtkRenderer* vtkDSMScene::GetRenderer() const
 void vtkDSMScene::DeliverTiles()
 {
   this->Self->DrawsColor = nullptr;
+  this->Self->DrawsPlace = nullptr;
+}
+
+void vtkDSMScene::DeliverEverywhere()
+{
+  this->Self->DrawsColor = [](vtkCamera*) { return true; };
 }
 
 void vtkDSMScene::DeliverEverywhere(std::function<bool(vtkCamera*)> drawsColor)
 {
   this->Self->DrawsColor = std::move(drawsColor);
+  this->Self->DrawsPlace = nullptr;
+}
+
+void vtkDSMScene::DeliverByPlace(
+  std::function<bool(vtkCamera*)> drawsColor, std::function<bool(const double place[3])> drawsPlace)
+{
+  this->Self->DrawsColor = std::move(drawsColor);
+  this->Self->DrawsPlace = std::move(drawsPlace);
+}
+
+void vtkDSMScene::SetHidden(bool hidden)
+{
+  this->Self->Prop->SetVisibility(!hidden);
 }
 
 void vtkDSMScene::SetSamplesPerFrame(int samples)
@@ -195,6 +345,11 @@ int vtkDSMScene::GetSamplesPerFrame() const
 bool vtkDSMScene::IsRefined() const
 {
   return this->Self->Samples == 0 || this->Self->Samples >= this->Self->SamplesWanted;
+}
+
+bool vtkDSMScene::IsTracing() const
+{
+  return this->Self->Tracing;
 }
 
 vtkDSMStatistics* vtkDSMScene::GetStatistics() const
@@ -370,7 +525,7 @@ void vtkDSMScene::Internals::Draw()
     this->Clear();
     return;
   }
-  scene.Transport.Background = this->AgreeOnBackground();
+  this->AgreeOnView(scene, request);
   this->TraceSamples(scene, request);
   std::optional<rt::Picture> whole;
   if (this->DrawsColor)
@@ -380,12 +535,105 @@ void vtkDSMScene::Internals::Draw()
   messenger.RunTogether("Showing the frame",
     [&]
     {
-      double bounds[6];
-      this->GetBounds(bounds);
-      const bool drawsColor = !whole || this->DrawsColor(this->Renderer->GetActiveCamera());
-      this->Prop->SetFrame(
-        whole ? std::move(*whole) : rt::AssembleTiles(this->Frame), projection, bounds, drawsColor);
+      this->DrawPicture(whole ? std::move(*whole) : rt::AssembleTiles(this->Frame), request,
+        projection, scene.View);
     });
+}
+
+void vtkDSMScene::Internals::DrawPicture(rt::Picture picture, const rt::FrameRequest& request,
+  vtkMatrix4x4* projection, rt::DebugView view)
+{
+  double bounds[6];
+  this->GetBounds(bounds);
+  if (request.Layers > 1)
+  {
+    vtkDSMFrameLayers::Separate(picture);
+    if (this->DrawsPlace)
+    {
+      this->LeaveToOthers(request, picture);
+    }
+  }
+  // Where the ranks' pictures are blended, each has the notes; where the nearest counts, one does.
+  const bool writesNotes = this->DrawsColor || this->Group->GetMessenger().GetRank() == 0;
+  rt::Picture unseen;
+  if (this->WriteNotes(view, writesNotes ? picture : unseen))
+  {
+    this->AddWholeView(request, bounds);
+  }
+  if (request.Layers > 1)
+  {
+    this->Prop->SetLayers(picture, projection, bounds);
+    return;
+  }
+  const bool drawsColor = !this->DrawsColor || this->DrawsColor(this->Renderer->GetActiveCamera());
+  this->Prop->SetFrame(std::move(picture), projection, bounds, drawsColor);
+}
+
+/// Returns whether there is anything to write, on any rank.
+bool vtkDSMScene::Internals::WriteNotes(rt::DebugView view, rt::Picture& picture) const
+{
+  bool showsStatistics = false;
+  bool showsLegend = view != rt::DebugView::Off;
+  for (const Member& member : this->Members)
+  {
+    vtkDSMLightOptions* options = member.State->GetLightOptions();
+    showsStatistics = showsStatistics || options->GetShowStatistics();
+    showsLegend = showsLegend && options->GetShowLegend();
+  }
+  if (!showsStatistics && !showsLegend)
+  {
+    return false;
+  }
+  std::vector<vtkDSMFrameNotes::Entry> legend;
+  if (showsLegend)
+  {
+    legend = vtkDSMFrameNotes::CreateLegend(view, this->Statistics);
+  }
+  vtkDSMFrameNotes::Draw(
+    showsStatistics ? this->Statistics->GetSummary() : std::string(), legend, picture);
+  return true;
+}
+
+/// Ranks exchange only the part of the picture where there is anything by the bounds.
+void vtkDSMScene::Internals::AddWholeView(const rt::FrameRequest& request, double bounds[6]) const
+{
+  if (this->Group->GetMessenger().GetSize() == 1)
+  {
+    return;
+  }
+  vtkBoundingBox box(bounds);
+  const glm::dmat4 clipToWorld = glm::inverse(request.WorldToClip);
+  for (int corner = 0; corner < 4; ++corner)
+  {
+    const glm::dvec4 world =
+      clipToWorld * glm::dvec4(corner % 2 == 0 ? -1.0 : 1.0, corner < 2 ? -1.0 : 1.0, 0.0, 1.0);
+    box.AddPoint(world.x / world.w, world.y / world.w, world.z / world.w);
+  }
+  box.GetBounds(bounds);
+}
+
+/// Takes out what other ranks draw.
+void vtkDSMScene::Internals::LeaveToOthers(
+  const rt::FrameRequest& request, rt::Picture& picture) const
+{
+  const glm::dmat4 clipToWorld = glm::inverse(request.WorldToClip);
+  const std::size_t pixels = static_cast<std::size_t>(picture.Width) * picture.Height;
+  for (std::size_t place = 0; place < pixels * picture.Layers; ++place)
+  {
+    std::uint8_t& alpha = picture.Color[4 * place + 3];
+    if (alpha == 0)
+    {
+      continue;
+    }
+    const std::size_t pixel = place % pixels;
+    const double x = static_cast<double>(pixel % picture.Width) + 0.5;
+    const double y = static_cast<double>(pixel / picture.Width) + 0.5;
+    const glm::dvec4 clip(2.0 * x / picture.Width - 1.0, 2.0 * y / picture.Height - 1.0,
+      2.0 * static_cast<double>(picture.Depth[place]) - 1.0, 1.0);
+    const glm::dvec4 world = clipToWorld * clip;
+    const double point[3] = { world.x / world.w, world.y / world.w, world.z / world.w };
+    alpha = this->DrawsPlace(point) ? alpha : std::uint8_t{ 0 };
+  }
 }
 
 rt::DebugView vtkDSMScene::Internals::GetDebugView() const
@@ -411,11 +659,67 @@ rt::DebugView vtkDSMScene::Internals::GetDebugView() const
   return rt::DebugView::Off;
 }
 
-/// Collective. What mirrored rays see where they meet nothing: rank 0's background, since ParaView's
-/// other ranks have none.
-glm::vec3 vtkDSMScene::Internals::AgreeOnBackground()
+/// Whether the renderer has anything to show that may be behind, or between, translucent surfaces.
+bool vtkDSMScene::Internals::ShowsOthers() const
 {
-  return this->Group->GetMessenger().AllGatherValue(this->Background).front();
+  vtkCollectionSimpleIterator position;
+  vtkPropCollection* props = this->Renderer->GetViewProps();
+  props->InitTraversal(position);
+  while (vtkProp* prop = props->GetNextProp(position))
+  {
+    const auto isProp = [=](const Member& member) { return member.Prop == prop; };
+    // What cannot be picked, such as axes, is decoration; what has no bounds of its own is no object.
+    if (vtkProp3D::SafeDownCast(prop) && prop->GetVisibility() && prop->GetPickable() &&
+      prop->GetUseBounds() && std::none_of(this->Members.begin(), this->Members.end(), isProp))
+    {
+      return true;
+    }
+  }
+  return false;
+}
+
+/// Collective. Takes rank 0's view: the camera that came from there is not always the same to the last
+/// bit, ParaView's other ranks have no background, which mirrored rays see where they meet nothing, and
+/// lights may follow the camera. A camera that differs by more than rounding is left to be refused.
+/// Surfaces are kept apart when any rank has something that may be between them.
+void vtkDSMScene::Internals::AgreeOnView(rt::Scene& scene, rt::FrameRequest& request) const
+{
+  struct View
+  {
+    glm::dmat4 WorldToClip;
+    glm::vec3 Background;
+    std::uint32_t IsApart;
+  };
+  const bool canBeApart = this->Group->GetMessenger().GetSize() == 1 || this->DrawsPlace;
+  const bool isApart = canBeApart && IsTranslucent(scene) && this->ShowsOthers();
+  std::vector<std::byte> mine =
+    dsm::Encode(View{ request.WorldToClip, this->Background, isApart ? 1u : 0u });
+  for (const rt::Light& light : scene.Lights)
+  {
+    dsm::AttachTail(mine, light);
+  }
+  const auto all = this->Group->GetMessenger().AllGather(std::move(mine));
+  request.Layers = 1;
+  for (const std::vector<std::byte>& other : all)
+  {
+    View theirs;
+    std::memcpy(&theirs, other.data(), sizeof(theirs));
+    request.Layers = theirs.IsApart != 0 ? rt::FrameRequest::MaxLayers : request.Layers;
+  }
+  const std::vector<std::byte>& first = all.front();
+  View view;
+  std::memcpy(&view, first.data(), sizeof(view));
+  scene.Transport.Background = view.Background;
+  scene.Lights.resize((first.size() - sizeof(view)) / sizeof(rt::Light));
+  for (std::size_t index = 0; index < scene.Lights.size(); ++index)
+  {
+    std::memcpy(&scene.Lights[index], first.data() + sizeof(view) + index * sizeof(rt::Light),
+      sizeof(rt::Light));
+  }
+  if (IsNearly(view.WorldToClip, request.WorldToClip))
+  {
+    request.WorldToClip = view.WorldToClip;
+  }
 }
 
 /// Collective. Traces the frame, or what is missing of it.
@@ -516,17 +820,7 @@ void vtkDSMScene::Internals::GetBounds(double bounds[6]) const
 /// What shows through a translucent surface must have been drawn before it.
 void vtkDSMScene::Internals::DrawLast(const rt::Scene& scene)
 {
-  const bool translucent =
-    std::any_of(scene.Isosurfaces.begin(), scene.Isosurfaces.end(),
-      [](const rt::IsosurfaceObject& object) { return object.Surface.Opacity < 1.0f; }) ||
-    std::any_of(scene.Meshes.begin(), scene.Meshes.end(),
-      [](const rt::MeshObject& object)
-      {
-        return object.Surface.Opacity < 1.0f ||
-          object.ColoredBy == rt::MeshObject::Coloring::Colors ||
-          (object.BackSurface && object.BackSurface->Opacity < 1.0f);
-      });
-  if (translucent && this->Renderer->GetViewProps()->GetLastProp() != this->Prop)
+  if (IsTranslucent(scene) && this->Renderer->GetViewProps()->GetLastProp() != this->Prop)
   {
     this->Renderer->RemoveViewProp(this->Prop);
     this->Renderer->AddViewProp(this->Prop);
@@ -551,7 +845,7 @@ void vtkDSMScene::Trace()
 {
   Internals& self = *this->Self;
   // A selection pass shows no traced surface; taking in data may make an application render.
-  if (!self.Renderer || self.Renderer->GetSelector() || self.Tracing)
+  if (!self.Renderer || self.Renderer->GetSelector() || self.Tracing || !self.Prop->GetVisibility())
   {
     return;
   }
@@ -563,6 +857,7 @@ void vtkDSMScene::Trace()
     self.Tracing = false;
     return;
   }
+  const OpenGLGuard guard(self.Renderer->GetRenderWindow());
   std::string failure;
   try
   {

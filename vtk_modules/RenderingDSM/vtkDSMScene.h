@@ -11,7 +11,8 @@
  *
  * Usage: `vtkSmartPointer<vtkDSMScene> scene = vtkDSMScene::ForRenderer(renderer)`, kept for as long
  * as they shall be drawn; add vtkVolumes that have a vtkDSMVolumeMapper, and vtkActors that have a
- * vtkDSMPolyDataMapper, to the renderer as usual. Light and shadow go across all of them.
+ * vtkDSMPolyDataMapper, to the renderer as usual. Light and shadow go across all of them. In one process
+ * the mappers make a scene where there is none, and the renderer keeps it.
  *
  * Failures are reported with vtkErrorMacro, once for each change of state, on every rank; the picture
  * then lacks what could not be drawn, and the application goes on.
@@ -25,6 +26,7 @@
 #include "vtkRenderingDSMModule.h" // for the export macro
 #include "vtkSmartPointer.h"       // for ivars
 #include "vtkWeakPointer.h"        // for ivars
+#include "vtkWrappingHints.h"      // for VTK_NEWINSTANCE
 
 #include <functional> // for a parameter
 #include <memory>     // for ivars
@@ -42,10 +44,21 @@ public:
   vtkTypeMacro(vtkDSMScene, vtkObject);
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
+  ///@{
   /**
-   * The renderer's scene, made when there is none. It lives as long as somebody holds it.
+   * The renderer's scene, made when there is none. It lives as long as somebody holds it. The second is
+   * for wrapped languages, and what it returns is the caller's to delete: VTK 9.1 wraps no smart pointers.
    */
-  static vtkSmartPointer<vtkDSMScene> ForRenderer(vtkRenderer* renderer);
+  VTK_WRAPEXCLUDE static vtkSmartPointer<vtkDSMScene> ForRenderer(vtkRenderer* renderer);
+  VTK_NEWINSTANCE static vtkDSMScene* NewForRenderer(vtkRenderer* renderer);
+  ///@}
+
+  /**
+   * For a mapper that is asked to draw: where the renderer has no scene, makes one that ends with the
+   * renderer, and draws its first frame. With several processes this is an error, which is reported once
+   * for each renderer: other ranks may not be drawing.
+   */
+  static void DrawWithoutScene(vtkRenderer* renderer, vtkObject* mapper);
 
   ///@{
   /**
@@ -64,11 +77,33 @@ public:
   void DeliverTiles();
 
   /**
+   * Every rank gets the whole frame and draws it. For an application that shows one rank's window
+   * and composites nothing. Same call on every rank.
+   */
+  void DeliverEverywhere();
+
+  /**
    * Every rank gets the whole frame and draws its depth; colour only where `drawsColor`, asked once a
    * frame, says so. For an application that blends the ranks' pictures in order: the farthest rank
    * draws the colour, and what lies behind it is hidden on the others. Same call on every rank.
    */
   void DeliverEverywhere(std::function<bool(vtkCamera*)> drawsColor);
+
+  /**
+   * The same for an application in which each rank draws a part of space of its own: surfaces that
+   * other objects may be seen through are drawn, one by one, by the rank that `drawsPlace` says it
+   * for, asked for places in world coordinates; exactly one rank must say so. Then translucent
+   * surfaces of this scene and whatever else the renderer shows are in right order. `drawsColor` is
+   * asked for opaque ones.
+   */
+  void DeliverByPlace(std::function<bool(vtkCamera*)> drawsColor,
+    std::function<bool(const double place[3])> drawsPlace);
+
+  /**
+   * While it is hidden the scene neither traces nor draws, and keeps what it has: for renders that are
+   * not for the eye, such as those of a selection. Same value on every rank.
+   */
+  void SetHidden(bool hidden);
 
   ///@{
   /**
@@ -88,6 +123,12 @@ public:
   bool IsRefined() const;
 
   /**
+   * Whether a frame is being made: from taking in data, of which the mappers tell the progress, to the
+   * last tile.
+   */
+  bool IsTracing() const;
+
+  /**
    * Of the last frame; the same on every rank.
    */
   vtkDSMStatistics* GetStatistics() const;
@@ -102,6 +143,7 @@ private:
 
   static vtkDSMScene* New();
   void Attach(vtkRenderer* renderer);
+  void EndWithRenderer();
   void NoteBackground();
   void Trace();
 

@@ -30,8 +30,9 @@ public:
   /// Local: brings the mapper's input up to date.
   virtual void UpdatePiece(int piece, int numberOfPieces) = 0;
 
-  /// Local: whether this rank's data are other than what was taken in.
-  virtual bool HasNewData() const = 0;
+  /// Local: whether this rank's data are other than what was taken in. True also where that would
+  /// only be found out by reading all of them.
+  virtual bool HasNewData() = 0;
 
   /// Local, in the same order on every rank: retires the bricks; the next Update publishes them again.
   virtual void GiveUpBlocks() = 0;

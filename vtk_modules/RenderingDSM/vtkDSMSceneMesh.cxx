@@ -92,11 +92,11 @@ bool vtkDSMSceneMesh::IsTextured() const
   return actor && actor->GetTexture();
 }
 
-std::vector<std::uint64_t> vtkDSMSceneMesh::Describe() const
+std::vector<std::uint64_t> vtkDSMSceneMesh::GetStamp() const
 {
   try
   {
-    return vtkDSMMeshData::Describe(this->Mapper, this->IsTextured());
+    return vtkDSMMeshData::GetStamp(this->Mapper, this->IsTextured());
   }
   catch (const dsm::Error&)
   {
@@ -105,9 +105,35 @@ std::vector<std::uint64_t> vtkDSMSceneMesh::Describe() const
   }
 }
 
-bool vtkDSMSceneMesh::HasNewData() const
+std::vector<std::uint64_t> vtkDSMSceneMesh::HashContent() const
 {
-  return !this->Taken || this->Describe() != this->Seen;
+  try
+  {
+    return vtkDSMMeshData::HashContent(this->Mapper, this->IsTextured(), this->Threads);
+  }
+  catch (const dsm::Error&)
+  {
+    return { 0 };
+  }
+}
+
+bool vtkDSMSceneMesh::HasNewData()
+{
+  if (!this->Taken)
+  {
+    return true;
+  }
+  std::vector<std::uint64_t> stamp = this->GetStamp();
+  if (stamp == this->SeenStamp)
+  {
+    return false;
+  }
+  if (!this->Failure.empty() || this->HashContent() != this->SeenContent)
+  {
+    return true;
+  }
+  this->SeenStamp = std::move(stamp);
+  return false;
 }
 
 void vtkDSMSceneMesh::GiveUpBlocks()
@@ -126,7 +152,9 @@ void vtkDSMSceneMesh::Update(const std::shared_ptr<vtkDSMRankGroup>& group, bool
     this->Failure.clear();
     this->Reported.clear();
     this->Taken = true;
-    this->Seen = this->Describe();
+    this->Threads = group->GetStore().GetSettings().Workers;
+    this->SeenStamp = this->GetStamp();
+    this->SeenContent = this->HashContent();
     try
     {
       this->Data = std::make_unique<vtkDSMMeshData>(
@@ -174,6 +202,7 @@ rt::MeshObject vtkDSMSceneMesh::CreateObject(const vtkDSMMeshData::Part& part, v
   instance->Culling.Front = property->GetFrontfaceCulling() != 0;
   instance->Culling.Back = property->GetBackfaceCulling() != 0;
   object.Instance = std::move(instance);
+  object.Clipping = vtkDSMTranslation::ToClipRegion(this->Mapper);
   object.Flat = property->GetInterpolation() == VTK_FLAT &&
     part.Mesh->Attributes.Normals != rt::Attachment::Triangles;
   object.Surface = vtkDSMTranslation::ToMaterial(property);

@@ -27,22 +27,25 @@ public:
   vtkDSMMemoryOptions* GetMemoryOptions() const override;
   vtkDSMLightOptions* GetLightOptions() const override;
   void UpdatePiece(int piece, int numberOfPieces) override;
-  bool HasNewData() const override;
+  bool HasNewData() override;
   void GiveUpBlocks() override;
   void Update(const std::shared_ptr<vtkDSMRankGroup>& group, bool newData) override;
   /// One object for each of the meshes.
   void AddTo(rt::Scene& scene) override;
 
 private:
-  std::vector<std::uint64_t> Describe() const;
+  std::vector<std::uint64_t> GetStamp() const;
+  std::vector<std::uint64_t> HashContent() const;
   bool IsTextured() const;
   rt::MeshObject CreateObject(const vtkDSMMeshData::Part& part, vtkActor* actor);
   const std::shared_ptr<const rt::ColorMap>& GetColorMap();
   const std::shared_ptr<const rt::Texture>& GetPicture(vtkActor* actor);
 
   vtkWeakPointer<vtkDSMPolyDataMapper> Mapper;
-  /// Of what was taken in; see vtkDSMMeshData::Describe.
-  std::vector<std::uint64_t> Seen;
+  /// Of what was taken in, or is the same; see vtkDSMMeshData.
+  std::vector<std::uint64_t> SeenStamp;
+  std::vector<std::uint64_t> SeenContent;
+  int Threads = 1; ///< to look for changes with
   bool Taken = false;
   std::unique_ptr<vtkDSMMeshData> Data;
   std::string Failure;

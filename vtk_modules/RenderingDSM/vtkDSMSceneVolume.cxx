@@ -3,17 +3,23 @@
 
 #include "vtkDSMImagePiece.h"
 #include "vtkDSMLightOptions.h"
+#include "vtkDSMProgress.h"
 #include "vtkDSMTranslation.h"
 #include "vtkDSMVolumeMapper.h"
 
 #include "vtkCompositeDataIterator.h"
 #include "vtkCompositeDataSet.h"
+#include "vtkContourValues.h"
 #include "vtkDataObject.h"
+#include "vtkDataSet.h"
 #include "vtkMatrix4x4.h"
+#include "vtkPointData.h"
 #include "vtkProp3D.h"
 #include "vtkProperty.h"
 #include "vtkScalarsToColors.h"
 #include "vtkSmartPointer.h"
+#include "vtkVolume.h"
+#include "vtkVolumeProperty.h"
 
 #include <algorithm>
 #include <cmath>
@@ -66,7 +72,7 @@ void vtkDSMSceneVolume::UpdatePiece(int piece, int numberOfPieces)
   this->Mapper->UpdatePiece(piece, numberOfPieces);
 }
 
-bool vtkDSMSceneVolume::HasNewData() const
+bool vtkDSMSceneVolume::HasNewData()
 {
   vtkDataObject* data = this->Mapper->GetDataObjectInput();
   return !this->Taken || data != this->SeenData || GetDataTime(data) != this->SeenTime;
@@ -98,8 +104,13 @@ std::shared_ptr<vtkDSMSceneVolume::Published> vtkDSMSceneVolume::Require(
   try
   {
     vtkDSMVolumeMapper* mapper = this->Mapper;
-    published->Fields =
-      this->Data->Publish(choice, purpose, [mapper](double part) { mapper->UpdateProgress(part); });
+    vtkDSMProgress::Begin(mapper);
+    published->Fields = this->Data->Publish(
+      choice, purpose, [mapper](double part) { vtkDSMProgress::Tell(mapper, part); });
+    if (this->Hashes)
+    {
+      published->Content = this->Data->HashContent(choice);
+    }
   }
   catch (const dsm::Error& error)
   {
@@ -108,32 +119,75 @@ std::shared_ptr<vtkDSMSceneVolume::Published> vtkDSMSceneVolume::Require(
   return published;
 }
 
+void vtkDSMSceneVolume::TakeData(const std::shared_ptr<vtkDSMRankGroup>& group)
+{
+  vtkDSMVolumeMapper* mapper = this->Mapper;
+  this->Data.reset();
+  this->DataFailure.clear();
+  this->SeenData = mapper->GetDataObjectInput();
+  this->SeenTime = GetDataTime(mapper->GetDataObjectInput());
+  this->Taken = true;
+  ++this->TimesTaken;
+  this->Reported.clear();
+  try
+  {
+    this->Data = std::make_unique<vtkDSMVolumeData>(group, mapper->GetDataObjectInput());
+    double bounds[6];
+    this->Data->GetBounds(bounds);
+    mapper->SetGlobalBounds(bounds);
+    this->KeepUnchanged(group->GetMessenger());
+  }
+  catch (const dsm::Error& error)
+  {
+    this->Data.reset();
+    this->DataFailure = error.what();
+    this->Color.reset();
+    this->Iso.reset();
+  }
+}
+
+// What has changed goes before its successor comes: there may not be room for both.
+void vtkDSMSceneVolume::KeepUnchanged(dsm::Messenger& messenger)
+{
+  struct Flags
+  {
+    std::uint8_t OfTimeStep = 0;
+    std::uint8_t SameColor = 0;
+    std::uint8_t SameIso = 0;
+  };
+  Flags mine;
+  messenger.RunTogether("Looking for changes",
+    [&]
+    {
+      const auto isSame = [this](const std::shared_ptr<Published>& known) {
+        return known && known->Content && *known->Content == this->Data->HashContent(known->Choice);
+      };
+      mine.OfTimeStep = this->Data->IsOfTimeStep();
+      mine.SameIso = isSame(this->Iso);
+      mine.SameColor = this->Color == this->Iso ? mine.SameIso : isSame(this->Color);
+    });
+  const auto all = messenger.AllGatherValue(mine);
+  const auto everywhere = [&](std::uint8_t Flags::*flag)
+  { return std::all_of(all.begin(), all.end(), [=](const Flags& one) { return one.*flag != 0; }); };
+  if (!everywhere(&Flags::SameColor))
+  {
+    this->Color.reset();
+  }
+  if (!everywhere(&Flags::SameIso))
+  {
+    this->Iso.reset();
+  }
+  this->Hashes = this->TimesTaken > 1 ||
+    std::any_of(all.begin(), all.end(), [](const Flags& one) { return one.OfTimeStep != 0; });
+}
+
 void vtkDSMSceneVolume::Update(const std::shared_ptr<vtkDSMRankGroup>& group, bool newData)
 {
   this->Messages.clear();
   vtkDSMVolumeMapper* mapper = this->Mapper;
   if (newData)
   {
-    // The old bricks go first: there may not be room for both.
-    this->Color.reset();
-    this->Iso.reset();
-    this->Data.reset();
-    this->DataFailure.clear();
-    this->SeenData = mapper->GetDataObjectInput();
-    this->SeenTime = GetDataTime(mapper->GetDataObjectInput());
-    this->Taken = true;
-    this->Reported.clear();
-    try
-    {
-      this->Data = std::make_unique<vtkDSMVolumeData>(group, mapper->GetDataObjectInput());
-      double bounds[6];
-      this->Data->GetBounds(bounds);
-      mapper->SetGlobalBounds(bounds);
-    }
-    catch (const dsm::Error& error)
-    {
-      this->DataFailure = error.what();
-    }
+    this->TakeData(group);
   }
   if (!this->Data)
   {
@@ -143,8 +197,8 @@ void vtkDSMSceneVolume::Update(const std::shared_ptr<vtkDSMRankGroup>& group, bo
   const std::shared_ptr<Published> oldIso = this->Iso;
   const std::shared_ptr<Published> oldColor = this->Color;
   const unsigned version = group->GetSettingsVersion();
-  this->Iso = this->Require({ mapper->GetIsoArray(), mapper->GetIsoComponent() },
-    "isosurface array", version, { oldIso, oldColor });
+  this->Iso = this->Require({ this->GetIsoArray(), mapper->GetIsoComponent() }, "isosurface array",
+    version, { oldIso, oldColor });
   this->Color.reset();
   if (mapper->GetScalarVisibility() && !mapper->GetColorArray().empty() && mapper->GetLookupTable())
   {
@@ -164,12 +218,79 @@ void vtkDSMSceneVolume::Update(const std::shared_ptr<vtkDSMRankGroup>& group, bo
   }
 }
 
+bool vtkDSMSceneVolume::IsLikeRayCastMapper() const
+{
+  return this->Mapper->GetBlendMode() == vtkVolumeMapper::ISOSURFACE_BLEND &&
+    vtkVolume::SafeDownCast(this->Prop);
+}
+
+/// Empty: the active scalars.
+std::string vtkDSMSceneVolume::GetIsoArray()
+{
+  vtkDSMVolumeMapper* mapper = this->Mapper;
+  if (!mapper->GetIsoArray().empty() || !this->IsLikeRayCastMapper())
+  {
+    return mapper->GetIsoArray();
+  }
+  const int mode = mapper->GetScalarMode();
+  if (mode == VTK_SCALAR_MODE_USE_CELL_DATA || mode == VTK_SCALAR_MODE_USE_CELL_FIELD_DATA)
+  {
+    this->Messages.push_back(
+      "The scalar mode asks for cell data, but isosurfaces need values at the "
+      "points; those are taken. Use vtkCellDataToPointData.");
+  }
+  if (mode != VTK_SCALAR_MODE_USE_POINT_FIELD_DATA)
+  {
+    return {};
+  }
+  if (mapper->GetArrayAccessMode() == VTK_GET_ARRAY_BY_NAME)
+  {
+    return mapper->GetArrayName() ? mapper->GetArrayName() : "";
+  }
+  auto* data = vtkDataSet::SafeDownCast(mapper->GetDataObjectInput());
+  const char* name = data ? data->GetPointData()->GetArrayName(mapper->GetArrayId()) : nullptr;
+  return name ? name : "";
+}
+
+rt::Material vtkDSMSceneVolume::GetMaterial(double isovalue)
+{
+  rt::Material material = this->IsLikeRayCastMapper()
+    ? vtkDSMTranslation::ToMaterial(vtkVolume::SafeDownCast(this->Prop)->GetProperty(), isovalue)
+    : vtkDSMTranslation::ToMaterial(this->Mapper->GetSurfaceProperty());
+  material.Reflectivity = static_cast<float>(this->GetLightOptions()->GetReflectivity());
+  return material;
+}
+
 std::vector<double> vtkDSMSceneVolume::GetIsovalues()
 {
-  std::vector<double> values;
-  for (int index = 0; index < this->Mapper->GetNumberOfIsoValues(); ++index)
+  vtkDSMVolumeMapper* mapper = this->Mapper;
+  std::vector<double> chosen;
+  if (this->IsLikeRayCastMapper())
   {
-    const double value = this->Mapper->GetIsoValue(index);
+    vtkContourValues* contours =
+      vtkVolume::SafeDownCast(this->Prop)->GetProperty()->GetIsoSurfaceValues();
+    for (int index = 0; index < contours->GetNumberOfContours(); ++index)
+    {
+      chosen.push_back(contours->GetValue(index));
+    }
+  }
+  else
+  {
+    for (int index = 0; index < mapper->GetNumberOfIsoValues(); ++index)
+    {
+      chosen.push_back(mapper->GetIsoValue(index));
+    }
+    if (mapper->GetBlendMode() != vtkVolumeMapper::COMPOSITE_BLEND)
+    {
+      this->Messages.push_back(
+        "The mapper draws isosurfaces; its other blend modes are not there. Call "
+        "SetBlendModeToIsoSurface(), or use VTK's own mapper.");
+    }
+  }
+  std::vector<double> values;
+  for (std::size_t index = 0; index < chosen.size(); ++index)
+  {
+    const double value = chosen[index];
     if (std::isfinite(value))
     {
       values.push_back(value);
@@ -198,6 +319,25 @@ const rt::ColorMap& vtkDSMSceneVolume::GetColorMap()
   return this->Colors;
 }
 
+rt::ClipRegion vtkDSMSceneVolume::GetClipRegion(const glm::dmat4& dataToWorld) const
+{
+  rt::ClipRegion region = vtkDSMTranslation::ToClipRegion(this->Mapper);
+  if (this->Mapper->GetCropping())
+  {
+    const double* planes = this->Mapper->GetCroppingRegionPlanes();
+    rt::ClipRegion::Grid boxes;
+    boxes.WorldToGrid = glm::inverse(dataToWorld);
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      boxes.Lower[axis] = std::min(planes[2 * axis], planes[2 * axis + 1]);
+      boxes.Upper[axis] = std::max(planes[2 * axis], planes[2 * axis + 1]);
+    }
+    boxes.Kept = static_cast<std::uint32_t>(this->Mapper->GetCroppingRegionFlags());
+    region.Boxes = boxes;
+  }
+  return region;
+}
+
 void vtkDSMSceneVolume::AddTo(rt::Scene& scene)
 {
   if (!this->Data || !this->Iso)
@@ -211,8 +351,20 @@ void vtkDSMSceneVolume::AddTo(rt::Scene& scene)
   }
   this->Prop->ComputeMatrix();
   const glm::dmat4 dataToWorld = vtkDSMTranslation::ToMatrix(this->Prop->GetMatrix());
-  rt::Material material = vtkDSMTranslation::ToMaterial(this->Mapper->GetSurfaceProperty());
-  material.Reflectivity = static_cast<float>(this->GetLightOptions()->GetReflectivity());
+  const rt::ClipRegion clipping = this->GetClipRegion(dataToWorld);
+  // A property's transfer functions may give each isovalue a look of its own.
+  std::vector<std::vector<double>> groups;
+  if (this->IsLikeRayCastMapper())
+  {
+    for (const double isovalue : isovalues)
+    {
+      groups.push_back({ isovalue });
+    }
+  }
+  else
+  {
+    groups.push_back(isovalues);
+  }
   const bool colored = this->Color && !this->Color->Fields.empty();
   for (std::size_t lattice = 0; lattice < this->Data->GetNumberOfLattices(); ++lattice)
   {
@@ -220,16 +372,20 @@ void vtkDSMSceneVolume::AddTo(rt::Scene& scene)
     {
       continue;
     }
-    rt::IsosurfaceObject object;
-    object.SetIndexToWorld(dataToWorld * this->Data->GetIndexToWorld(lattice));
-    object.Field = this->Iso->Fields[lattice];
-    object.Isovalues = isovalues;
-    object.Surface = material;
-    if (colored && this->Color->Fields[lattice])
+    for (const std::vector<double>& group : groups)
     {
-      object.ColorField = this->Color->Fields[lattice];
-      object.Colors = this->GetColorMap();
+      rt::IsosurfaceObject object;
+      object.SetIndexToWorld(dataToWorld * this->Data->GetIndexToWorld(lattice));
+      object.Field = this->Iso->Fields[lattice];
+      object.Isovalues = group;
+      object.Surface = this->GetMaterial(group.front());
+      object.Clipping = clipping;
+      if (colored && this->Color->Fields[lattice])
+      {
+        object.ColorField = this->Color->Fields[lattice];
+        object.Colors = this->GetColorMap();
+      }
+      scene.Isosurfaces.push_back(std::move(object));
     }
-    scene.Isosurfaces.push_back(std::move(object));
   }
 }

@@ -8,7 +8,9 @@
 #include "vtkType.h"
 #include "vtkWeakPointer.h"
 
+#include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -25,7 +27,7 @@ public:
   vtkDSMMemoryOptions* GetMemoryOptions() const override;
   vtkDSMLightOptions* GetLightOptions() const override;
   void UpdatePiece(int piece, int numberOfPieces) override;
-  bool HasNewData() const override;
+  bool HasNewData() override;
   void GiveUpBlocks() override;
   void Update(const std::shared_ptr<vtkDSMRankGroup>& group, bool newData) override;
   /// One object for each of the volume's lattices.
@@ -38,17 +40,30 @@ private:
     vtkDSMVolumeData::Fields Fields; ///< empty when it failed
     std::string Failure;
     unsigned SettingsVersion = 0; ///< of the memory's settings when it was tried
+    /// Of this rank's data; not set for the first data that belong to no time step, since others may
+    /// never follow. Set on all ranks or on none.
+    std::optional<std::uint64_t> Content;
   };
 
+  /// Collective. Takes in the mapper's dataset; bricks of arrays that hold what they held are kept.
+  void TakeData(const std::shared_ptr<vtkDSMRankGroup>& group);
+  void KeepUnchanged(dsm::Messenger& messenger);
   std::shared_ptr<Published> Require(const vtkDSMVolumeData::Choice& choice, const char* purpose,
     unsigned settingsVersion, const std::vector<std::shared_ptr<Published>>& known);
+  /// Whether isovalues and look come from the volume's property; else they are the mapper's.
+  bool IsLikeRayCastMapper() const;
+  std::string GetIsoArray();
   std::vector<double> GetIsovalues();
+  rt::Material GetMaterial(double isovalue);
   const rt::ColorMap& GetColorMap();
+  rt::ClipRegion GetClipRegion(const glm::dmat4& dataToWorld) const;
 
   vtkWeakPointer<vtkDSMVolumeMapper> Mapper;
   const vtkDataObject* SeenData = nullptr;
   vtkMTimeType SeenTime = 0;
   bool Taken = false;
+  int TimesTaken = 0;
+  bool Hashes = false; ///< further data are expected; the same on every rank
   std::unique_ptr<vtkDSMVolumeData> Data;
   std::shared_ptr<Published> Iso;
   std::shared_ptr<Published> Color;

@@ -15,6 +15,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <iomanip>
 #include <sstream>
 #include <type_traits>
 #include <utility>
@@ -66,6 +67,7 @@ struct vtkDSMStatistics::RankRow
   std::int64_t PeakBytesCached;
   std::int64_t CacheCapacity;
   std::int64_t MemoryBudget;
+  std::int64_t Publications;
   std::int64_t Accesses;
   std::int64_t Hits;
   std::int64_t Misses;
@@ -94,6 +96,7 @@ struct vtkDSMStatistics::RankRow
     visit(Count("PeakBytesCached", &RankRow::PeakBytesCached));
     visit(Count("CacheCapacity", &RankRow::CacheCapacity));
     visit(Count("MemoryBudget", &RankRow::MemoryBudget));
+    visit(Count("Publications", &RankRow::Publications));
     visit(Count("Accesses", &RankRow::Accesses));
     visit(Count("Hits", &RankRow::Hits));
     visit(Count("Misses", &RankRow::Misses));
@@ -154,6 +157,7 @@ void vtkDSMStatistics::Gather(dsm::Messenger& messenger, const rt::Frame& frame)
   mine.PeakBytesCached = static_cast<std::int64_t>(counters.PeakCachedBytes);
   mine.CacheCapacity = static_cast<std::int64_t>(counters.CacheCapacity);
   mine.MemoryBudget = static_cast<std::int64_t>(counters.MemoryBudget);
+  mine.Publications = static_cast<std::int64_t>(counters.Publications);
   mine.Accesses = static_cast<std::int64_t>(counters.Workers.Accesses);
   mine.Hits = static_cast<std::int64_t>(counters.Workers.Hits);
   mine.Misses = static_cast<std::int64_t>(counters.Workers.Misses);
@@ -234,6 +238,60 @@ void vtkDSMStatistics::GetWorkerTable(vtkTable* table) const
   table->Initialize();
   AddColumn(table, this->Workers, Column<WorkerRow, std::int64_t>("Rank", &WorkerRow::Rank));
   WorkerRow::ForEachColumn([&](const auto& column) { AddColumn(table, this->Workers, column); });
+}
+
+int vtkDSMStatistics::GetNumberOfRanks() const
+{
+  return static_cast<int>(this->Rows.size());
+}
+
+std::string vtkDSMStatistics::GetHost(int rank) const
+{
+  return rank >= 0 && rank < this->GetNumberOfRanks() ? this->Rows[rank].Host : "";
+}
+
+std::string vtkDSMStatistics::GetSummary() const
+{
+  if (this->Rows.empty())
+  {
+    return {};
+  }
+  RankRow sum{};
+  double longest = 0.0;
+  for (const RankRow& row : this->Rows)
+  {
+    sum.Threads += row.Threads;
+    sum.BytesResident += row.BytesResident;
+    sum.BytesShared += row.BytesShared;
+    sum.BytesCopied += row.BytesCopied;
+    sum.BytesCached += row.BytesCached;
+    sum.Accesses += row.Accesses;
+    sum.Misses += row.Misses;
+    sum.BytesReceived += row.BytesReceived;
+    sum.WaitSeconds += row.WaitSeconds;
+    sum.Seconds += row.Seconds;
+    longest =
+      std::max(longest, row.Seconds / static_cast<double>(std::max<std::int64_t>(row.Threads, 1)));
+  }
+  const double threads = static_cast<double>(std::max<std::int64_t>(sum.Threads, 1));
+  const auto toMebibytes = [](std::int64_t bytes)
+  { return static_cast<double>(bytes) / 1048576.0; };
+  const auto toPercent = [](double part, double whole)
+  { return whole > 0.0 ? 100.0 * part / whole : 0.0; };
+  std::ostringstream text;
+  text << std::fixed << std::setprecision(1);
+  text << 1e3 * this->FrameSeconds << " ms, " << this->Rows.size() << " ranks, " << sum.Threads
+       << " threads\n";
+  text << this->Organization << ", MiB: " << toMebibytes(sum.BytesResident) << " owned,\n"
+       << toMebibytes(sum.BytesCopied) << " copied, " << toMebibytes(sum.BytesShared) << " shared, "
+       << toMebibytes(sum.BytesCached) << " cached\n";
+  text << sum.Accesses << " bricks asked for,\n"
+       << toPercent(static_cast<double>(sum.Misses), static_cast<double>(sum.Accesses))
+       << " % missed, " << toMebibytes(sum.BytesReceived) << " MiB fetched\n";
+  text << "waited " << toPercent(sum.WaitSeconds, sum.Seconds) << " %, busiest rank "
+       << std::setprecision(2) << (sum.Seconds > 0.0 ? longest * threads / sum.Seconds : 1.0)
+       << " of mean";
+  return text.str();
 }
 
 std::string vtkDSMStatistics::GetJson() const

@@ -54,7 +54,8 @@ public:
   /**
    * One row for each rank. Columns: Rank, Host, Organization (as the frame found it), Threads,
    * BytesResident (bricks that it owns), BytesShared (read in place, on its host), BytesCopied
-   * (replicated), BytesCached, PeakBytesCached, CacheCapacity, MemoryBudget, Accesses, Hits, Misses,
+   * (replicated), BytesCached, PeakBytesCached, CacheCapacity, MemoryBudget, Publications (how often
+   * an array or a surface was cut into bricks since the ranks came together), Accesses, Hits, Misses,
    * Joins (misses that found the brick requested already), Evictions, BytesReceived, BytesSent,
    * WaitSeconds (of tiles, for bricks), IdleSeconds (of threads that found no other tile to trace
    * meanwhile), Tiles, NewTiles (those that another rank traced in the last frame), Seconds (of
@@ -67,6 +68,21 @@ public:
    * WaitSeconds.
    */
   void GetWorkerTable(vtkTable* table) const;
+
+  /**
+   * The most telling figures in a few lines of text; empty without a frame.
+   */
+  std::string GetSummary() const;
+
+  /**
+   * Of the last frame; 0 without one.
+   */
+  int GetNumberOfRanks() const;
+
+  /**
+   * The name of the host that a rank runs on; empty for a rank that there is not.
+   */
+  std::string GetHost(int rank) const;
 
   /**
    * The same as JSON: an array with an object for each rank, keys as the table's columns, and

@@ -3,19 +3,25 @@
 
 #include "vtkDSMMemoryOptions.h"
 
+#include "vtkAbstractMapper.h"
 #include "vtkAlgorithm.h"
 #include "vtkCamera.h"
+#include "vtkColorTransferFunction.h"
 #include "vtkImageData.h"
 #include "vtkLight.h"
 #include "vtkLightCollection.h"
 #include "vtkMath.h"
 #include "vtkMatrix4x4.h"
+#include "vtkPiecewiseFunction.h"
+#include "vtkPlane.h"
+#include "vtkPlaneCollection.h"
 #include "vtkPointData.h"
 #include "vtkProperty.h"
 #include "vtkRenderer.h"
 #include "vtkScalarsToColors.h"
 #include "vtkTexture.h"
 #include "vtkUnsignedCharArray.h"
+#include "vtkVolumeProperty.h"
 
 #include <glm/geometric.hpp>
 
@@ -68,6 +74,30 @@ rt::Material vtkDSMTranslation::ToMaterial(vtkProperty* property)
   material.SpecularColor = ToColor(property->GetSpecularColor());
   material.Opacity = static_cast<float>(property->GetOpacity());
   material.Lighting = property->GetLighting();
+  return material;
+}
+
+rt::Material vtkDSMTranslation::ToMaterial(vtkVolumeProperty* property, double isovalue)
+{
+  double color[3];
+  if (property->GetColorChannels(0) == 1)
+  {
+    std::fill_n(color, 3, property->GetGrayTransferFunction(0)->GetValue(isovalue));
+  }
+  else
+  {
+    property->GetRGBTransferFunction(0)->GetColor(isovalue, color);
+  }
+  rt::Material material;
+  material.Lighting = property->GetShade(0) != 0;
+  // Without shading, the transfer function's colour as it is.
+  material.Ambient = material.Lighting ? static_cast<float>(property->GetAmbient(0)) : 1.0f;
+  material.Diffuse = material.Lighting ? static_cast<float>(property->GetDiffuse(0)) : 0.0f;
+  material.Specular = static_cast<float>(property->GetSpecular(0));
+  material.SpecularPower = static_cast<float>(property->GetSpecularPower(0));
+  material.AmbientColor = ToColor(color);
+  material.DiffuseColor = ToColor(color);
+  material.Opacity = static_cast<float>(property->GetScalarOpacity(0)->GetValue(isovalue));
   return material;
 }
 
@@ -127,6 +157,21 @@ rt::ColorMap vtkDSMTranslation::ToColorMap(vtkScalarsToColors* table)
   map.Above = MapValue(table, std::nextafter(map.Last, infinity));
   map.NotANumber = MapValue(table, vtkMath::Nan());
   return map;
+}
+
+rt::ClipRegion vtkDSMTranslation::ToClipRegion(vtkAbstractMapper* mapper)
+{
+  rt::ClipRegion region;
+  vtkPlaneCollection* planes = mapper->GetClippingPlanes();
+  for (int number = 0; planes && number < planes->GetNumberOfItems(); ++number)
+  {
+    // As VTK's mappers, without regard to a transform that a plane may have as a function.
+    const double* normal = planes->GetItem(number)->GetNormal();
+    const double* origin = planes->GetItem(number)->GetOrigin();
+    region.HalfSpaces.push_back(
+      { { normal[0], normal[1], normal[2] }, { origin[0], origin[1], origin[2] } });
+  }
+  return region;
 }
 
 vtkDSMMemorySettings vtkDSMTranslation::ToMemorySettings(vtkDSMMemoryOptions* options)

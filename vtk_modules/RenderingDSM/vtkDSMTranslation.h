@@ -9,12 +9,14 @@
 #include <memory>
 #include <vector>
 
+class vtkAbstractMapper;
 class vtkDSMMemoryOptions;
 class vtkMatrix4x4;
 class vtkProperty;
 class vtkRenderer;
 class vtkScalarsToColors;
 class vtkTexture;
+class vtkVolumeProperty;
 
 /// VTK's words for a picture in the tracer's.
 class vtkDSMTranslation
@@ -24,12 +26,18 @@ public:
 
   static rt::Material ToMaterial(vtkProperty* property);
 
+  /// The look of an isosurface by the transfer functions and the shading of a volume's property.
+  static rt::Material ToMaterial(vtkVolumeProperty* property, double isovalue);
+
   /// The texture's picture with its settings, after `transform` of the coordinates. Null when
   /// the texture has no picture of bytes.
   static std::shared_ptr<const rt::Texture> ToTexture(vtkTexture* texture, vtkMatrix4x4* transform);
 
   /// Samples any lookup table or transfer function; finely enough for one that is discretised.
   static rt::ColorMap ToColorMap(vtkScalarsToColors* table);
+
+  /// What a mapper's clipping planes leave, in world space.
+  static rt::ClipRegion ToClipRegion(vtkAbstractMapper* mapper);
 
   static vtkDSMMemorySettings ToMemorySettings(vtkDSMMemoryOptions* options);
 

@@ -2,6 +2,7 @@
 #include "vtkDSMTriangleList.h"
 
 #include "DSMCore/Error.h"
+#include "vtkDSMCompatibility.h"
 
 #include "vtkCellArray.h"
 #include "vtkCellData.h"
@@ -10,7 +11,6 @@
 #include "vtkNew.h"
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
-#include "vtkPolygon.h"
 #include "vtkUnsignedCharArray.h"
 
 #include <glm/geometric.hpp>
@@ -134,7 +134,7 @@ void vtkDSMTriangleList::AddPolygon(vtkIdType cell, vtkIdType size, const vtkIdT
       polygon->GetPoints()->SetPoint(corner, this->Data->GetPoint(points[corner]));
     }
     vtkNew<vtkIdList> triangles;
-    if (polygon->Triangulate(triangles) && triangles->GetNumberOfIds() >= 3)
+    if (vtkDSMCompatibility::Triangulate(polygon, triangles) && triangles->GetNumberOfIds() >= 3)
     {
       for (vtkIdType corner = 0; corner + 2 < triangles->GetNumberOfIds(); corner += 3)
       {

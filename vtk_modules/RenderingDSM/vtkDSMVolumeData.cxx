@@ -2,6 +2,8 @@
 #include "vtkDSMVolumeData.h"
 
 #include "DSMRayTracing/brick/VoxelBrickBuilder.h"
+#include "DSMRayTracing/frame/ByteHash.h"
+#include "vtkDSMContent.h"
 #include "vtkDSMGather.h"
 #include "vtkDSMImagePiece.h"
 
@@ -50,6 +52,7 @@ vtkDSMVolumeData::vtkDSMVolumeData(std::shared_ptr<vtkDSMRankGroup> group, vtkDa
     [&]
     {
       this->CollectImages(data);
+      this->OfTimeStep = vtkDSMContent::IsOfTimeStep(data);
       for (std::size_t index = 0; index < this->Images.size(); ++index)
       {
         mine.push_back(vtkDSMImagePiece::Describe(this->Images[index], this->Leaves[index]));
@@ -236,6 +239,27 @@ void vtkDSMVolumeData::RefuseArray(
   throw dsm::Error((choice.Name.empty() ? "No " + purpose + " is chosen."
                                         : array + " does not exist in the dataset.") +
     remedy);
+}
+
+std::uint64_t vtkDSMVolumeData::HashContent(const Choice& choice) const
+{
+  const int threads = this->Group->GetStore().GetSettings().Workers;
+  rt::ByteHash hash;
+  hash.Add(this->Pieces.data(), this->Pieces.size() * sizeof(vtkDSMPieceInfo));
+  const auto add = [&](vtkAbstractArray* array)
+  {
+    const std::uint64_t value = vtkDSMContent::Hash(array, threads);
+    hash.Add(&value, sizeof(value));
+  };
+  for (vtkImageData* image : this->Images)
+  {
+    ArrayInfo info;
+    const char* const ghosts = vtkDataSetAttributes::GhostArrayName();
+    add(this->FindArray(image, choice, info));
+    add(image->GetPointData()->GetAbstractArray(ghosts));
+    add(image->GetCellData()->GetAbstractArray(ghosts));
+  }
+  return hash.Get();
 }
 
 vtkDSMVolumeData::Fields vtkDSMVolumeData::Publish(const Choice& choice, const std::string& purpose,

@@ -9,6 +9,7 @@
 
 #include "vtkSmartPointer.h"
 
+#include <cstdint>
 #include <functional>
 #include <map>
 #include <memory>
@@ -51,6 +52,11 @@ public:
   /// The choice with its component made definite: an array of one component has but one. The same on
   /// every rank, also where there is no data.
   Choice Normalize(const Choice& choice) const;
+  /// Local: whether this rank's data belong to a time step.
+  bool IsOfTimeStep() const { return this->OfTimeStep; }
+  /// Local. Of all that this rank's part of a field depends on: equal only where Publish would make
+  /// the same again.
+  std::uint64_t HashContent(const Choice& choice) const;
   /// Of all ranks' pieces; uninitialised bounds (min > max) without any.
   void GetBounds(double bounds[6]) const;
 
@@ -82,6 +88,7 @@ private:
   vtkDSMLatticePlan Plan;
   std::vector<vtkDSMPieceInfo> Pieces; ///< of all ranks, in rank order
   int FirstOwnPiece = 0;
+  bool OfTimeStep = false;
   std::vector<vtkSmartPointer<vtkImageData>> Images; ///< of this rank
   std::vector<int> Leaves;                           ///< of this rank's images
   std::map<std::string, int> PointArrays; ///< all ranks' numeric ones: number of components

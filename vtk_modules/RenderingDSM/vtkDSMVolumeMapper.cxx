@@ -3,15 +3,47 @@
 
 #include "vtkDSMLightOptions.h"
 #include "vtkDSMMemoryOptions.h"
+#include "vtkDSMScene.h"
 
 #include "vtkCompositeDataSet.h"
 #include "vtkDataSet.h"
+#include "vtkImageData.h"
 #include "vtkInformation.h"
 #include "vtkMath.h"
+#include "vtkNew.h"
 #include "vtkObjectFactory.h"
 #include "vtkProperty.h"
 #include "vtkScalarsToColors.h"
+#include "vtkStreamingDemandDrivenPipeline.h"
 #include "vtkTrivialProducer.h"
+
+namespace
+{
+
+/// Of the whole image that a pipeline tells of before it makes it. False when it does not tell.
+bool GetAnnouncedBounds(vtkAlgorithm* producer, int port, double bounds[6])
+{
+  producer->UpdateInformation();
+  vtkInformation* info = producer->GetOutputInformation(port);
+  using Pipeline = vtkStreamingDemandDrivenPipeline;
+  if (!info || !info->Has(Pipeline::WHOLE_EXTENT()) || !info->Has(vtkDataObject::ORIGIN()) ||
+    !info->Has(vtkDataObject::SPACING()))
+  {
+    return false;
+  }
+  vtkNew<vtkImageData> image; // of no memory: it has no arrays
+  image->SetExtent(info->Get(Pipeline::WHOLE_EXTENT()));
+  image->SetOrigin(info->Get(vtkDataObject::ORIGIN()));
+  image->SetSpacing(info->Get(vtkDataObject::SPACING()));
+  if (info->Has(vtkDataObject::DIRECTION()))
+  {
+    image->SetDirectionMatrix(info->Get(vtkDataObject::DIRECTION()));
+  }
+  image->GetBounds(bounds);
+  return vtkMath::AreBoundsInitialized(bounds);
+}
+
+} // namespace
 
 vtkStandardNewMacro(vtkDSMVolumeMapper);
 
@@ -126,6 +158,12 @@ double* vtkDSMVolumeMapper::GetBounds()
   {
     composite->GetBounds(this->Bounds);
   }
+  if (!vtkMath::AreBoundsInitialized(this->Bounds) && this->GetNumberOfInputConnections(0) > 0)
+  {
+    int port = 0;
+    vtkAlgorithm* producer = this->GetInputAlgorithm(0, 0, port);
+    GetAnnouncedBounds(producer, port, this->Bounds);
+  }
   // vtkVolume would make a box of uninitialised bounds.
   return vtkMath::AreBoundsInitialized(this->Bounds) ? this->Bounds : nullptr;
 }
@@ -149,7 +187,13 @@ void vtkDSMVolumeMapper::UpdatePiece(int piece, int numberOfPieces)
   }
 }
 
-void vtkDSMVolumeMapper::Render(vtkRenderer*, vtkVolume*) {}
+void vtkDSMVolumeMapper::Render(vtkRenderer* renderer, vtkVolume*)
+{
+  if (this->MakesScene)
+  {
+    vtkDSMScene::DrawWithoutScene(renderer, this);
+  }
+}
 
 vtkMTimeType vtkDSMVolumeMapper::GetMTime()
 {
@@ -182,6 +226,15 @@ void vtkDSMVolumeMapper::PrintSelf(ostream& os, vtkIndent indent)
   os << "\n";
   os << indent << "ColorArray: " << this->ColorArray << "\n";
   os << indent << "ScalarVisibility: " << this->ScalarVisibility << "\n";
+  os << indent << "Cropping: " << this->Cropping << "\n";
+  os << indent << "CroppingRegionPlanes:";
+  for (const double plane : this->CroppingRegionPlanes)
+  {
+    os << " " << plane;
+  }
+  os << "\n";
+  os << indent << "CroppingRegionFlags: " << this->CroppingRegionFlags << "\n";
   os << indent << "LookupTable: " << this->LookupTable.Get() << "\n";
   os << indent << "SurfaceProperty: " << this->SurfaceProperty.Get() << "\n";
+  os << indent << "MakesScene: " << this->MakesScene << "\n";
 }

@@ -4,9 +4,14 @@
  * @brief   ray traces isosurfaces of a volume that is spread over the ranks
  *
  * Used by a vtkVolume, which gives its transform and visibility. The input is this rank's part of
- * the dataset: vtkImageData, or a composite dataset of images, or nothing. What the surfaces look
- * like comes from the mapper's surface property, a vtkProperty; the vtkVolume's own vtkVolumeProperty
- * is not used.
+ * the dataset: vtkImageData, or a composite dataset of images, or nothing.
+ *
+ * Isovalues and look are the mapper's own: IsoArray, IsoValues, ColorArray, and a vtkProperty, the
+ * surface property. After SetBlendModeToIsoSurface() they are instead where vtkGPUVolumeRayCastMapper
+ * has them, which it then stands in for: ScalarMode and SelectScalarArray() choose the point array, and
+ * the vtkVolume's vtkVolumeProperty gives the isovalues (GetIsoSurfaceValues), and for each its colour
+ * and opacity by the transfer functions of the first component, and the shading. Interpolation is
+ * trilinear always.
  *
  * The mapper draws nothing itself: the renderer's vtkDSMScene traces all of its volumes together
  * when the renderer starts to render, on all ranks at once. Every rank must have the same volumes, in
@@ -16,9 +21,9 @@
 #ifndef vtkDSMVolumeMapper_h
 #define vtkDSMVolumeMapper_h
 
-#include "vtkAbstractVolumeMapper.h"
 #include "vtkRenderingDSMModule.h" // for the export macro
 #include "vtkSmartPointer.h"       // for ivars
+#include "vtkVolumeMapper.h"
 
 #include <string> // for ivars
 #include <vector> // for ivars
@@ -28,11 +33,11 @@ class vtkDSMMemoryOptions;
 class vtkProperty;
 class vtkScalarsToColors;
 
-class VTKRENDERINGDSM_EXPORT vtkDSMVolumeMapper : public vtkAbstractVolumeMapper
+class VTKRENDERINGDSM_EXPORT vtkDSMVolumeMapper : public vtkVolumeMapper
 {
 public:
   static vtkDSMVolumeMapper* New();
-  vtkTypeMacro(vtkDSMVolumeMapper, vtkAbstractVolumeMapper);
+  vtkTypeMacro(vtkDSMVolumeMapper, vtkVolumeMapper);
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
   /**
@@ -81,6 +86,22 @@ public:
   vtkScalarsToColors* GetLookupTable() const;
   ///@}
 
+  ///@{
+  /**
+   * As in vtkVolumeMapper: whether surfaces are shown in some of 27 boxes only, the planes that
+   * separate them (x min, x max, y min, y max, z min, z max, in the data's coordinates, without the
+   * volume's transform), and which boxes those are (bit x + 3 y + 9 z; by default the middle one).
+   * Off by default. The mapper's clipping planes, which are in world coordinates, cut as well.
+   */
+  vtkSetMacro(Cropping, bool);
+  vtkGetMacro(Cropping, bool);
+  vtkBooleanMacro(Cropping, bool);
+  vtkSetVector6Macro(CroppingRegionPlanes, double);
+  vtkGetVectorMacro(CroppingRegionPlanes, double, 6);
+  vtkSetClampMacro(CroppingRegionFlags, int, 0x0, 0x7ffffff);
+  vtkGetMacro(CroppingRegionFlags, int);
+  ///@}
+
   /**
    * Colours and coefficients of the surfaces; never null.
    */
@@ -105,9 +126,10 @@ public:
   ///@{
   /**
    * Bounds of all ranks' data, without the volume's transform. Until the scene has taken in the data,
-   * those of this rank's; null where there are none.
+   * those of this rank's, or of the whole image that the pipeline tells of before it makes it; null
+   * where there are none.
    */
-  using vtkAbstractVolumeMapper::GetBounds;
+  using vtkVolumeMapper::GetBounds;
   double* GetBounds() VTK_SIZEHINT(6) override;
   ///@}
 
@@ -119,11 +141,51 @@ public:
   /**
    * Brings the input up to date; each rank asks its pipeline for its own piece.
    */
-  using vtkAbstractVolumeMapper::Update;
+  using vtkVolumeMapper::Update;
   void UpdatePiece(int piece, int numberOfPieces);
 
+  ///@{
   /**
-   * Does nothing: the scene's vtkDSMFrameProp draws.
+   * Whether the mapper makes the renderer's vtkDSMScene when it is first drawn and there is none; on by
+   * default. In one process only: ranks must make it together, before the first frame.
+   */
+  vtkSetMacro(MakesScene, bool);
+  vtkGetMacro(MakesScene, bool);
+  vtkBooleanMacro(MakesScene, bool);
+  ///@}
+
+  ///@{
+  /**
+   * What vtkGPUVolumeRayCastMapper is told about its samples and its graphics card. Kept, and without
+   * effect: a ray finds the exact place of the surface, and memory is vtkDSMMemoryOptions' matter.
+   */
+  vtkSetMacro(AutoAdjustSampleDistances, vtkTypeBool);
+  vtkGetMacro(AutoAdjustSampleDistances, vtkTypeBool);
+  vtkBooleanMacro(AutoAdjustSampleDistances, vtkTypeBool);
+  vtkSetMacro(LockSampleDistanceToInputSpacing, vtkTypeBool);
+  vtkGetMacro(LockSampleDistanceToInputSpacing, vtkTypeBool);
+  vtkBooleanMacro(LockSampleDistanceToInputSpacing, vtkTypeBool);
+  vtkSetMacro(UseJittering, vtkTypeBool);
+  vtkGetMacro(UseJittering, vtkTypeBool);
+  vtkBooleanMacro(UseJittering, vtkTypeBool);
+  vtkSetMacro(SampleDistance, float);
+  vtkGetMacro(SampleDistance, float);
+  vtkSetMacro(ImageSampleDistance, float);
+  vtkGetMacro(ImageSampleDistance, float);
+  vtkSetMacro(MinimumImageSampleDistance, float);
+  vtkGetMacro(MinimumImageSampleDistance, float);
+  vtkSetMacro(MaximumImageSampleDistance, float);
+  vtkGetMacro(MaximumImageSampleDistance, float);
+  vtkSetMacro(MaxMemoryInBytes, vtkIdType);
+  vtkGetMacro(MaxMemoryInBytes, vtkIdType);
+  vtkSetMacro(MaxMemoryFraction, float);
+  vtkGetMacro(MaxMemoryFraction, float);
+  vtkSetMacro(ReportProgress, bool);
+  vtkGetMacro(ReportProgress, bool);
+  ///@}
+
+  /**
+   * Draws nothing: the scene's vtkDSMFrameProp does. The first time, see MakesScene.
    */
   void Render(vtkRenderer* renderer, vtkVolume* volume) override;
 
@@ -144,10 +206,24 @@ private:
   std::vector<double> IsoValues;
   std::string ColorArray;
   bool ScalarVisibility = false;
+  bool Cropping = false;
+  double CroppingRegionPlanes[6] = { 0.0, 1.0, 0.0, 1.0, 0.0, 1.0 };
+  int CroppingRegionFlags = 1 << 13; // the middle box
   vtkSmartPointer<vtkScalarsToColors> LookupTable;
   vtkSmartPointer<vtkProperty> SurfaceProperty;
   vtkSmartPointer<vtkDSMLightOptions> LightOptions;
   vtkSmartPointer<vtkDSMMemoryOptions> MemoryOptions;
+  bool MakesScene = true;
+  vtkTypeBool AutoAdjustSampleDistances = 1;
+  vtkTypeBool LockSampleDistanceToInputSpacing = 0;
+  vtkTypeBool UseJittering = 0;
+  float SampleDistance = 1.0f;
+  float ImageSampleDistance = 1.0f;
+  float MinimumImageSampleDistance = 1.0f;
+  float MaximumImageSampleDistance = 10.0f;
+  vtkIdType MaxMemoryInBytes = 0;
+  float MaxMemoryFraction = 0.75f;
+  bool ReportProgress = true;
   double GlobalBounds[6];
 };
 

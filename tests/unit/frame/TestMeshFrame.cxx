@@ -20,7 +20,24 @@ struct Keeping
   std::size_t CacheBytes = std::size_t(16) << 20;
 };
 
-rt::Picture Trace(const Keeping& keeping, int ranks, int workers)
+/// The half towards the camera is cut away of everything, a corner of the volume as well.
+void Clip(rt::Scene& scene)
+{
+  rt::ClipRegion region;
+  region.HalfSpaces = { { { -1.0, -0.2, -0.6 }, glm::dvec3(0.5 * SphereScene::Points) } };
+  for (rt::MeshObject& object : scene.Meshes)
+  {
+    object.Clipping = region;
+  }
+  rt::ClipRegion::Grid boxes;
+  boxes.Lower = glm::dvec3(0.3 * SphereScene::Points);
+  boxes.Upper = glm::dvec3(0.7 * SphereScene::Points);
+  boxes.Kept = 0x7ffffff & ~(1u << 26 | 1u << 13 | 1u);
+  region.Boxes = boxes;
+  scene.Isosurfaces.front().Clipping = region;
+}
+
+rt::Picture Trace(const Keeping& keeping, int ranks, int workers, bool clipped = false)
 {
   rt::Picture first;
   std::mutex guard;
@@ -31,7 +48,11 @@ rt::Picture Trace(const Keeping& keeping, int ranks, int workers)
         SphereScene::CreateSettings(keeping.CacheBytes, workers, keeping.Organization);
       settings.HostSharing = keeping.HostSharing;
       dsm::BlockStore store(messenger, settings);
-      const rt::Scene scene = MeshScene::Create(messenger, store);
+      rt::Scene scene = MeshScene::Create(messenger, store);
+      if (clipped)
+      {
+        Clip(scene);
+      }
       rt::FrameRenderer renderer(messenger);
       renderer.Render(store, scene, SphereScene::CreateRequest(40, 30));
       const rt::Picture picture = rt::GatherFrame(
@@ -79,6 +100,7 @@ protected:
     rt::FrameRequest request;
     request.Width = Size;
     request.Height = Size;
+    request.Layers = this->Layers;
     request.WorldToClip = glm::ortho(-1.5, 1.5, -1.5, 1.5, 0.0, 10.0) *
       glm::lookAt(glm::dvec3(0.0, 0.0, 5.0), glm::dvec3(0.0), glm::dvec3(0.0, 1.0, 0.0));
     rt::FrameRenderer renderer(this->Messenger);
@@ -98,6 +120,7 @@ protected:
   dsm::Messenger Messenger{ std::move(dsm::LoopbackTransport::CreateGroup(1).front()) };
   dsm::BlockStore Store{ Messenger, dsm::BlockStore::Settings{} };
   rt::Scene World;
+  int Layers = 1;
 };
 
 /// The square [-1, 1]^2 at a height, its front towards the camera; values and colours grow with x.
@@ -133,6 +156,55 @@ TEST_P(MeshFrame, PictureDoesNotDependOnRanksOrWorkers)
       EXPECT_EQ(picture.Depth, expected.Depth) << ranks << " ranks, " << workers << " workers";
     }
   }
+}
+
+TEST_P(MeshFrame, ClippedPictureDoesNotDependOnRanks)
+{
+  const rt::Picture expected = Trace({}, 1, 1, true);
+  EXPECT_NE(rt::GetHash(expected), rt::GetHash(Trace({}, 1, 1)));
+  for (const int ranks : { 2, 3 })
+  {
+    EXPECT_EQ(rt::GetHash(Trace(GetParam(), ranks, 2, true)), rt::GetHash(expected)) << ranks;
+  }
+}
+
+TEST_F(MeshPicture, ClippingShowsWhatLiesBehind)
+{
+  rt::MeshObject above = this->Publish(CreateSquare(0.5));
+  above.Surface.DiffuseColor = { 1.0f, 0.0f, 0.0f };
+  rt::MeshObject below = this->Publish(CreateSquare(-0.5));
+  below.Surface.DiffuseColor = { 0.0f, 0.0f, 1.0f };
+  below.Clipping.HalfSpaces = { { { 0.0, 1.0, 0.0 }, { 0.0, -0.4, 0.0 } } };
+  above.Clipping.HalfSpaces = { { { 2.0, 0.0, 0.0 }, { 0.2, 0.0, 0.0 } },
+    { { 0.0, 0.0, 1.0 }, { 0.0, 0.0, 0.5 } } }; // it lies in the border itself
+  const rt::Picture picture = this->Trace({ above, below });
+  EXPECT_EQ(GetColor(picture, 0.3, 0.0), glm::ivec4(255, 0, 0, 255));
+  EXPECT_EQ(GetColor(picture, 0.1, 0.0), glm::ivec4(0, 0, 255, 255));
+  EXPECT_EQ(GetColor(picture, 0.1, -0.6), glm::ivec4(0));
+  EXPECT_EQ(GetColor(picture, 0.3, -0.6), glm::ivec4(255, 0, 0, 255));
+  for (int x = 0; x < Size; ++x)
+  {
+    // The camera's rays are parallel to the plane: the cut is exact.
+    const std::size_t pixel = std::size_t(Size) / 2 * Size + x;
+    const double place = GetPlace(x);
+    EXPECT_EQ(picture.Color[4 * pixel] == 255, place >= 0.2 && place <= 1.0) << place;
+  }
+}
+
+TEST_F(MeshPicture, WhatIsClippedCastsNoShadow)
+{
+  rt::MeshObject floor = this->Publish(CreateSquare(-0.5));
+  floor.Surface.Lighting = true;
+  rt::MeshObject roof =
+    this->Publish(CreateSquare(0.5), glm::translate(glm::dmat4(1.0), glm::dvec3(1.0, 0.0, 0.0)));
+  this->World.Lights.resize(1);
+  this->World.Lights[0].Direction = glm::normalize(glm::dvec3(-1.0, 0.0, -1.0));
+  this->World.Transport.Shadows = true;
+  const int dark = GetColor(this->Trace({ floor, roof }), -0.5, 0.2).x;
+  roof.Clipping.HalfSpaces = { { { 1.0, 0.0, 0.0 }, { 0.9, 0.0, 0.0 } } };
+  const int lit = GetColor(this->Trace({ floor, roof }), -0.5, 0.2).x;
+  EXPECT_EQ(dark, 0);
+  EXPECT_NEAR(lit, 255.0 * std::sqrt(0.5), 1.0);
 }
 
 TEST_F(MeshPicture, EveryPixelIsThatOfTryingAllTriangles)
@@ -258,6 +330,68 @@ TEST_F(MeshPicture, TwoTranslucentSquaresAndTheirCommonEdges)
       const bool inside = std::fabs(GetPlace(x)) < 1.0 && std::fabs(GetPlace(y)) < 1.0;
       // Also along the diagonal, where a ray meets two triangles of each square.
       EXPECT_EQ(picture.Color[4 * (y * Size + x) + 3], inside ? 191 : 0) << x << ", " << y;
+    }
+  }
+}
+
+TEST_F(MeshPicture, LayersAreWhatEachSurfaceContributes)
+{
+  std::vector<rt::MeshObject> squares;
+  for (const double height : { -0.5, 0.5, 0.0 })
+  {
+    squares.push_back(this->Publish(CreateSquare(height)));
+    squares.back().Surface.Opacity = 0.5f;
+  }
+  squares[1].Clipping.HalfSpaces = { { { 1.0, 0.0, 0.0 }, glm::dvec3(0.0) } };
+  const auto trace = [&](int layers)
+  {
+    this->Layers = layers;
+    return this->Trace(squares);
+  };
+  const rt::Picture whole = trace(1);
+  const rt::Picture two = trace(2);
+  const rt::Picture all = trace(8);
+  ASSERT_EQ(two.Layers, 2);
+  ASSERT_EQ(all.Layers, 3) << "those that show nothing are left out";
+  const auto getAlpha = [](const rt::Picture& picture, int layer, int x)
+  { return static_cast<int>(picture.Color[4 * (Size * (Size * layer + Size / 2) + x) + 3]); };
+  const int left = Size / 3;
+  const int right = Size - left;
+  EXPECT_EQ(getAlpha(whole, 0, right), 223);
+  EXPECT_EQ(getAlpha(all, 0, right), 128);
+  EXPECT_EQ(getAlpha(all, 1, right), 64);
+  EXPECT_EQ(getAlpha(all, 2, right), 32);
+  EXPECT_EQ(getAlpha(all, 1, left), 64);
+  EXPECT_EQ(getAlpha(all, 2, left), 0);
+  EXPECT_EQ(getAlpha(two, 0, right), 128);
+  EXPECT_EQ(getAlpha(two, 1, right), 96) << "the last layer stands for what is behind it";
+  const auto getDepth = [](const rt::Picture& picture, int layer, int x)
+  { return picture.Depth[Size * (Size * layer + Size / 2) + x]; };
+  EXPECT_FLOAT_EQ(getDepth(all, 0, right), 0.45f);
+  EXPECT_FLOAT_EQ(getDepth(all, 1, right), 0.5f);
+  EXPECT_FLOAT_EQ(getDepth(all, 2, right), 0.55f);
+  EXPECT_FLOAT_EQ(getDepth(all, 1, left), 0.55f);
+  EXPECT_FLOAT_EQ(getDepth(all, 2, left), 1.0f);
+  EXPECT_FLOAT_EQ(getDepth(two, 1, right), 0.5f);
+}
+
+TEST_F(MeshPicture, BothSidesAreLitWhereverTheNormalsPoint)
+{
+  for (const double side : { 1.0, -1.0 })
+  {
+    for (const double points : { 1.0, -1.0 })
+    {
+      TestMesh::Mesh square = CreateSquare(0.0);
+      for (int corner = 0; corner < 4; ++corner)
+      {
+        square.Normals.insert(square.Normals.end(), { 0.5, 0.0, points });
+      }
+      rt::MeshObject object =
+        this->Publish(square, glm::scale(glm::dmat4(1.0), glm::dvec3(1.0, side, side)));
+      object.Surface.Lighting = true;
+      this->World.Lights.resize(1);
+      EXPECT_NEAR(GetColor(this->Trace({ object }), 0.3, 0.2).x, 255.0 / std::sqrt(1.25), 1.5)
+        << side << ", " << points;
     }
   }
 }

@@ -25,6 +25,7 @@ TEST(TestSceneDigest, ChangesWithAllThatThePictureShows)
 
       const std::vector<std::function<void(rt::Scene&, rt::FrameRequest&)>> changes = {
         [](rt::Scene&, rt::FrameRequest& r) { r.Width = 41; },
+        [](rt::Scene&, rt::FrameRequest& r) { r.Layers = 4; },
         [](rt::Scene&, rt::FrameRequest& r) { r.WorldToClip[3][0] += 1e-12; },
         [](rt::Scene& s, rt::FrameRequest&) { s.Isosurfaces[0].Isovalues[0] += 1e-12; },
         [](rt::Scene& s, rt::FrameRequest&) { s.Isosurfaces[0].Isovalues.push_back(1e3); },
@@ -32,6 +33,9 @@ TEST(TestSceneDigest, ChangesWithAllThatThePictureShows)
         [](rt::Scene& s, rt::FrameRequest&) { s.Isosurfaces[0].Surface.Reflectivity = 0.5f; },
         [](rt::Scene& s, rt::FrameRequest&) { s.Isosurfaces[0].IndexToWorld[3][1] += 1.0; },
         [](rt::Scene& s, rt::FrameRequest&) { s.Isosurfaces.push_back(s.Isosurfaces[0]); },
+        [](rt::Scene& s, rt::FrameRequest&)
+        { s.Isosurfaces[0].Clipping.HalfSpaces.emplace_back(); },
+        [](rt::Scene& s, rt::FrameRequest&) { s.Isosurfaces[0].Clipping.Boxes.emplace(); },
         [](rt::Scene& s, rt::FrameRequest&) { s.Lights.emplace_back(); },
         [](rt::Scene& s, rt::FrameRequest&) { s.Transport.Shadows = true; },
         [](rt::Scene& s, rt::FrameRequest&) { s.Transport.Background.z = 0.3f; },

@@ -31,13 +31,15 @@ struct Difference
 class TestTileTracer : public testing::Test
 {
 protected:
-  Difference Compare(const glm::dmat4& worldToClip, int width, int height, int tileSize)
+  Difference Compare(const glm::dmat4& worldToClip, int width, int height, int tileSize,
+    const rt::ClipRegion& clipping = rt::ClipRegion())
   {
     rt::Scene scene;
     scene.Isosurfaces = { FunctionVolume::Publish(65, GetWaves, this->Messenger, this->Store),
       FunctionVolume::Publish(
         50, [](const glm::dvec3& p) { return glm::length(p) - 0.8; }, this->Messenger,
         this->Store) };
+    scene.Isosurfaces[0].Clipping = clipping;
     scene.Isosurfaces[1].Surface.Opacity = 0.4f;
     return this->Compare(scene, worldToClip, width, height, tileSize);
   }
@@ -141,7 +143,8 @@ TEST_F(TestTileTracer, ParallelViewAlongAnAxisEqualsSinglePixels)
   EXPECT_EQ(difference.Pixels, 0);
 }
 
-/// Meshes that cut through one another, one of them translucent, without and with an isosurface.
+/// Meshes that cut through one another, one of them translucent; then with an isosurface, and one of
+/// them clipped.
 TEST_F(TestTileTracer, MeshesEqualSinglePixels)
 {
   rt::Scene scene;
@@ -154,6 +157,7 @@ TEST_F(TestTileTracer, MeshesEqualSinglePixels)
     if (withVolume)
     {
       scene.Isosurfaces = { FunctionVolume::Publish(65, GetWaves, this->Messenger, this->Store) };
+      scene.Meshes[1].Clipping.HalfSpaces = { { { 0.3, -1.0, 0.2 }, { 0.0, 0.2, 0.0 } } };
     }
     for (const glm::dmat4& view : { LookAt({ 2.5, 1.8, 2.1 }), LookAt({ 0.01, 0.02, 3.6 }),
            LookAt({ 0.11, 0.2, 0.31 }), parallel })
@@ -163,4 +167,25 @@ TEST_F(TestTileTracer, MeshesEqualSinglePixels)
       EXPECT_EQ(difference.Pixels, 0);
     }
   }
+}
+
+/// Cut by planes, and by boxes of which rays meet several: each part of a ray is searched.
+TEST_F(TestTileTracer, ClippedViewEqualsSinglePixels)
+{
+  const Difference whole = this->Compare(LookAt({ 2.5, 1.8, 2.1 }), 64, 64, 16);
+  rt::ClipRegion clipping;
+  clipping.HalfSpaces = { { { 0.3, -1.0, 0.2 }, { 0.0, 0.4, 0.0 } },
+    { { 0.0, 0.0, -2.0 }, { 0.0, 0.0, 0.7 } } };
+  const Difference cut = this->Compare(LookAt({ 2.5, 1.8, 2.1 }), 64, 64, 16, clipping);
+  EXPECT_GT(cut.Covered, 1000);
+  EXPECT_NE(cut.Covered, whole.Covered);
+  EXPECT_EQ(cut.Pixels, 0);
+  rt::ClipRegion::Grid boxes;
+  boxes.Lower = { -0.3, -0.2, -0.5 };
+  boxes.Upper = { 0.4, 0.35, 0.1 };
+  boxes.Kept = 0x5aa555a; // every other box
+  clipping.Boxes = boxes;
+  const Difference parts = this->Compare(LookAt({ 2.5, 1.8, 2.1 }), 64, 64, 16, clipping);
+  EXPECT_GT(parts.Covered, 1000);
+  EXPECT_EQ(parts.Pixels, 0);
 }

@@ -105,6 +105,7 @@ Tally ComparePackets(const TestVolume<T>& volume, const std::vector<double>& iso
           EXPECT_EQ(hits[index].Normal, expected.Normal);
           EXPECT_EQ(hits[index].IndexPoint, expected.IndexPoint);
           EXPECT_EQ(hits[index].Isovalue, expected.Isovalue);
+          EXPECT_EQ(hits[index].FromInside, expected.FromInside);
         }
         if (testing::Test::HasFailure())
         {

@@ -84,9 +84,13 @@ TEST(TestShading, DirectionalLight)
   ExpectNear(ShadeWith(CreateLight()), GetExpected(CreateLight().Direction, 1.0));
 }
 
-TEST(TestShading, BothSidesAreLit)
+TEST(TestShading, ANormalThatTurnsAwayAtASilhouetteIsNotTurnedBack)
 {
-  EXPECT_EQ(ShadeWith(CreateLight(), Up), ShadeWith(CreateLight(), -Up));
+  rt::Light light = CreateLight();
+  light.Direction = -ToViewer;
+  const glm::dvec3 away = glm::normalize(glm::dvec3(1.0, 0.0, -0.7));
+  EXPECT_LT(glm::dot(away, ToViewer), 0.0);
+  ExpectNear(ShadeWith(light, away), { 0.1, 0.05, 0.0 });
 }
 
 TEST(TestShading, HighlightOfALoneHeadlightIsAPowerOfItsAngle)

@@ -32,6 +32,12 @@ constexpr double LongTileSeconds = 0.002;
 /// A tile that waited for as many bricks, or more, is white.
 constexpr std::uint64_t ManyMisses = 16;
 
+/// Of a tile that another rank traced in the last frame.
+inline glm::vec3 GetNewTileColor()
+{
+  return { 1.0f, 0.2f, 0.1f };
+}
+
 /// Colours of numbers: neighbouring numbers differ much (hues at steps of the golden ratio).
 inline glm::vec3 GetNumberColor(std::uint64_t number)
 {

@@ -15,14 +15,17 @@
 namespace rt
 {
 
-/// The pixels of one finished tile, row by row from the bottom, x fastest.
+/// The pixels of one finished tile, row by row from the bottom, x fastest; where surfaces are kept
+/// apart, layer after layer, the nearest first. Colours of layers are what each contributes to the
+/// pixel through those before it: their sum is the pixel.
 struct Tile
 {
   int X = 0; ///< of the lower left pixel in the frame
   int Y = 0;
   int Width = 0;
   int Height = 0;
-  int Index = 0;            ///< row-major number of the tile in the frame
+  int Index = 0; ///< row-major number of the tile in the frame
+  int Layers = 1;
   bool IsNew = false;       ///< another rank traced it in the last frame
   std::uint64_t Misses = 0; ///< that its tracing waited for
   double Seconds = 0.0;     ///< of processor time that its tracing took

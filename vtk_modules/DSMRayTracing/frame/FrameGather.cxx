@@ -3,6 +3,7 @@
 
 #include "DSMRayTracing/frame/ByteHash.h"
 
+#include <algorithm>
 #include <cstddef>
 #include <cstring>
 #include <string>
@@ -19,7 +20,28 @@ struct TileHeader
   std::int32_t Y;
   std::int32_t Width;
   std::int32_t Height;
+  std::int32_t Layers;
+
+  std::size_t GetPixels() const { return static_cast<std::size_t>(this->Width) * this->Height; }
 };
+
+/// Without the last layers that show nothing, but for the first one.
+TileHeader Describe(const Tile& tile)
+{
+  TileHeader header{ tile.X, tile.Y, tile.Width, tile.Height, tile.Layers };
+  const std::size_t pixels = header.GetPixels();
+  const auto isEmpty = [&](int layer)
+  {
+    const auto first = tile.Depth.begin() + static_cast<std::ptrdiff_t>(pixels * layer);
+    return std::all_of(first, first + static_cast<std::ptrdiff_t>(pixels),
+      [](float depth) { return depth == 1.0f; });
+  };
+  while (header.Layers > 1 && isEmpty(header.Layers - 1))
+  {
+    --header.Layers;
+  }
+  return header;
+}
 
 template <class T>
 void Append(std::vector<std::byte>& bytes, const T* values, std::size_t count)
@@ -34,12 +56,25 @@ std::vector<std::byte> Pack(const Frame& frame)
   std::vector<std::byte> bytes;
   for (const Tile& tile : frame.Tiles)
   {
-    const TileHeader header{ tile.X, tile.Y, tile.Width, tile.Height };
+    const TileHeader header = Describe(tile);
+    const std::size_t pixels = header.Layers * header.GetPixels();
     Append(bytes, &header, 1);
-    Append(bytes, tile.Color.data(), tile.Color.size());
-    Append(bytes, tile.Depth.data(), tile.Depth.size());
+    Append(bytes, tile.Color.data(), 4 * pixels);
+    Append(bytes, tile.Depth.data(), pixels);
   }
   return bytes;
+}
+
+/// Makes room for as many layers.
+void Extend(int layers, Picture& picture)
+{
+  if (layers > picture.Layers)
+  {
+    const std::size_t pixels = static_cast<std::size_t>(picture.Width) * picture.Height;
+    picture.Layers = layers;
+    picture.Color.resize(4 * layers * pixels, 0);
+    picture.Depth.resize(layers * pixels, 1.0f);
+  }
 }
 
 /// Puts one tile's pixels where they belong.
@@ -47,10 +82,13 @@ void Place(const TileHeader& tile, const void* colors, const void* depths, Pictu
 {
   const auto* color = static_cast<const std::byte*>(colors);
   const auto* depth = static_cast<const std::byte*>(depths);
-  for (int row = 0; row < tile.Height; ++row)
+  Extend(tile.Layers, picture);
+  for (int line = 0; line < tile.Layers * tile.Height; ++line)
   {
-    const std::size_t target = static_cast<std::size_t>(tile.Y + row) * picture.Width + tile.X;
-    const std::size_t source = static_cast<std::size_t>(row) * tile.Width;
+    const std::size_t layer = static_cast<std::size_t>(line) / tile.Height;
+    const std::size_t row = layer * picture.Height + tile.Y + line % tile.Height;
+    const std::size_t target = row * picture.Width + tile.X;
+    const std::size_t source = static_cast<std::size_t>(line) * tile.Width;
     std::memcpy(&picture.Color[4 * target], color + 4 * source, 4 * tile.Width);
     std::memcpy(&picture.Depth[target], depth + sizeof(float) * source, sizeof(float) * tile.Width);
   }
@@ -67,10 +105,10 @@ std::size_t Unpack(const std::vector<std::byte>& bytes, Picture& picture)
     TileHeader header;
     std::memcpy(&header, at, sizeof(header));
     at += sizeof(header);
-    const std::size_t tilePixels = static_cast<std::size_t>(header.Width) * header.Height;
+    const std::size_t tilePixels = header.Layers * header.GetPixels();
     Place(header, at, at + 4 * tilePixels, picture);
     at += (4 + sizeof(float)) * tilePixels;
-    pixels += tilePixels;
+    pixels += header.GetPixels();
   }
   return pixels;
 }
@@ -93,8 +131,7 @@ Picture AssembleTiles(const Frame& frame)
   Picture picture = CreatePicture(frame);
   for (const Tile& tile : frame.Tiles)
   {
-    Place(
-      { tile.X, tile.Y, tile.Width, tile.Height }, tile.Color.data(), tile.Depth.data(), picture);
+    Place(Describe(tile), tile.Color.data(), tile.Depth.data(), picture);
   }
   return picture;
 }
@@ -115,10 +152,11 @@ Picture GatherFrame(dsm::Messenger& messenger, const Frame& frame)
   {
     filled += Unpack(bytes, picture);
   }
-  if (filled != picture.Depth.size())
+  const std::size_t pixels = static_cast<std::size_t>(frame.Width) * frame.Height;
+  if (filled != pixels)
   {
     throw dsm::Error("The ranks traced " + std::to_string(filled) + " of " +
-      std::to_string(picture.Depth.size()) + " pixels: a tile was lost or traced twice.");
+      std::to_string(pixels) + " pixels: a tile was lost or traced twice.");
   }
   return picture;
 }

@@ -49,7 +49,7 @@ glm::vec3 GetTint(DebugView view, int rank, const Tile& tile)
     case DebugView::TileTime:
       return GetHeatColor(std::min(tile.Seconds / LongTileSeconds, 1.0));
     case DebugView::NewTiles:
-      return tile.IsNew ? glm::vec3(1.0f, 0.2f, 0.1f) : glm::vec3(1.0f);
+      return tile.IsNew ? GetNewTileColor() : glm::vec3(1.0f);
     case DebugView::Misses:
       return GetHeatColor(std::min(static_cast<double>(tile.Misses) / ManyMisses, 1.0));
     default:
@@ -87,6 +87,7 @@ struct RequestDigest
   std::int64_t Height;
   std::int64_t FirstSample;
   std::int64_t Samples;
+  std::int64_t Layers;
   std::int64_t Objects;
   std::int64_t Scheduling;
   double WorldToClip[16];
@@ -108,7 +109,7 @@ constexpr double Unbalanced = 1.02;
 RequestDigest GetDigest(const FrameRequest& request, const Scene& scene)
 {
   RequestDigest digest{ request.Width, request.Height, request.FirstSample, request.Samples,
-    static_cast<std::int64_t>(scene.Isosurfaces.size() + scene.Meshes.size()),
+    request.Layers, static_cast<std::int64_t>(scene.Isosurfaces.size() + scene.Meshes.size()),
     static_cast<std::int64_t>(request.Scheduling), {} };
   for (int element = 0; element < 16; ++element)
   {

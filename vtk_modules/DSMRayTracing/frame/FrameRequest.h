@@ -23,6 +23,10 @@ struct FrameRequest
   /// pixel's centre; the others are spread over the pixel.
   int FirstSample = 0;
   int Samples = 1;
+  /// Surfaces that a pixel shows, front to back, which are kept apart; what is behind the last of them
+  /// counts as part of it. More than one where something else is to be drawn between them.
+  static constexpr int MaxLayers = 8;
+  int Layers = 1;
   TileScheduling Scheduling = TileScheduling::WorkStealing;
 };
 

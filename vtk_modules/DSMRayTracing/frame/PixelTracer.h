@@ -24,8 +24,28 @@ namespace rt
 /// Colour, premultiplied, and window depth of what a sample of a pixel shows.
 struct PixelSample
 {
+  static constexpr int MaxLayers = FrameRequest::MaxLayers;
+
   glm::vec4 Color{ 0.0f };
-  float Depth = 1.0f;
+  float Depth = 1.0f; ///< of the nearest surface
+
+  /// The same surface by surface, front to back: what each contributes to the colour, and its depth.
+  /// The last one stands for all behind it.
+  int Layers = 0;
+  glm::vec4 LayerColors[MaxLayers];
+  float LayerDepths[MaxLayers];
+
+  void AddLayer(const glm::vec4& color, float depth)
+  {
+    if (this->Layers == MaxLayers)
+    {
+      this->LayerColors[MaxLayers - 1] += color;
+      return;
+    }
+    this->Depth = this->Layers == 0 ? depth : this->Depth;
+    this->LayerColors[this->Layers] = color;
+    this->LayerDepths[this->Layers++] = depth;
+  }
 };
 
 /// Follows the light of one sample of a pixel: what lies behind translucent surfaces, shadows,
@@ -49,7 +69,7 @@ public:
     SampleSequence random(x, y, sample);
     PixelSample result;
     const Ray ray = this->Rays.GetRay(x, y, random.GetPositionInPixel());
-    result.Color = this->Follow(ray, this->World.Transport.MaxBounces, random, &result.Depth);
+    result.Color = this->Follow(ray, this->World.Transport.MaxBounces, random, &result);
     return result;
   }
 
@@ -106,7 +126,7 @@ public:
         Ray ray = rays[index];
         ray.Max = PixelRays::Last;
         result.Color =
-          this->FollowFrom(point, ray, this->World.Transport.MaxBounces, random, &result.Depth);
+          this->FollowFrom(point, ray, this->World.Transport.MaxBounces, random, &result);
         take(place.x, place.y, result);
       });
   }
@@ -128,18 +148,18 @@ private:
   /// What lies behind contributes less than half a step of an 8-bit channel.
   static constexpr float OpaqueEnough = 1.0f - 0.5f / 255.0f;
 
-  /// Front to back. `depth`, where given, is set to the first surface's.
-  glm::vec4 Follow(const Ray& ray, int bounces, SampleSequence& random, float* depth) const
+  /// Front to back. `layers`, where given, gets the surfaces one by one.
+  glm::vec4 Follow(const Ray& ray, int bounces, SampleSequence& random, PixelSample* layers) const
   {
     SurfacePoint point;
     return this->Surfaces.Intersect(ray, point)
-      ? this->FollowFrom(point, ray, bounces, random, depth)
+      ? this->FollowFrom(point, ray, bounces, random, layers)
       : glm::vec4(0.0f);
   }
 
   /// Follow, what the ray meets first being known.
   glm::vec4 FollowFrom(
-    SurfacePoint point, Ray ray, int bounces, SampleSequence& random, float* depth) const
+    SurfacePoint point, Ray ray, int bounces, SampleSequence& random, PixelSample* layers) const
   {
     const glm::dvec3 toViewer = -glm::normalize(ray.Direction);
     glm::vec4 color(0.0f);
@@ -148,11 +168,11 @@ private:
       const float weight = (1.0f - color.w) * point.Color.w;
       if (weight > 0.0f)
       {
-        color += glm::vec4(weight * this->ShadePoint(point, toViewer, bounces, random), weight);
-        if (depth)
+        const glm::vec4 layer(weight * this->ShadePoint(point, toViewer, bounces, random), weight);
+        color += layer;
+        if (layers)
         {
-          *depth = this->Rays.GetDepth(point.Position);
-          depth = nullptr;
+          layers->AddLayer(layer, this->Rays.GetDepth(point.Position));
         }
       }
       ray.Min = point.T + point.Clearance / glm::length(ray.Direction);
@@ -169,7 +189,7 @@ private:
     }
     ShadingPoint shading;
     shading.Position = point.Position;
-    shading.Normal = glm::dot(point.Normal, toViewer) < 0.0 ? -point.Normal : point.Normal;
+    shading.Normal = point.Facing;
     shading.ToViewer = toViewer;
     shading.Color = glm::vec3(point.Color);
     shading.ColorIsFromArray = point.ColorIsFromArray;

@@ -7,6 +7,7 @@
 #include "DSMRayTracing/brick/BrickLattice.h"
 #include "DSMRayTracing/frame/DebugView.h"
 #include "DSMRayTracing/frame/Texture.h"
+#include "DSMRayTracing/kernel/ClipRegion.h"
 #include "DSMRayTracing/kernel/MeshInstance.h"
 
 #include <glm/mat4x4.hpp>
@@ -83,6 +84,7 @@ struct IsosurfaceObject
   std::shared_ptr<const VoxelField> ColorField;
   ColorMap Colors;
   Material Surface;
+  ClipRegion Clipping;
 };
 
 /// The triangles of one mesh at one place.
@@ -107,6 +109,7 @@ struct MeshObject
   Material Surface;
   /// Of the side from which a triangle's corners are clockwise; without, both sides are alike.
   std::optional<Material> BackSurface;
+  ClipRegion Clipping;
 };
 
 /// World space. Colour includes the intensity.

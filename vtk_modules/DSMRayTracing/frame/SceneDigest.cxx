@@ -60,6 +60,24 @@ public:
     this->Add(map.NotANumber);
   }
 
+  void Add(const ClipRegion& region)
+  {
+    this->Add(region.HalfSpaces.size());
+    for (const ClipRegion::HalfSpace& half : region.HalfSpaces)
+    {
+      this->Add(half.Normal);
+      this->Add(half.Point);
+    }
+    this->Add(region.Boxes.has_value());
+    if (region.Boxes)
+    {
+      this->Add(region.Boxes->WorldToGrid);
+      this->Add(region.Boxes->Lower);
+      this->Add(region.Boxes->Upper);
+      this->Add(region.Boxes->Kept);
+    }
+  }
+
   void Add(const IsosurfaceObject& object)
   {
     this->Add(object.IndexToWorld);
@@ -73,6 +91,7 @@ public:
       this->Add(object.Colors);
     }
     this->Add(object.Surface);
+    this->Add(object.Clipping);
   }
 
   void Add(const MeshObject& object)
@@ -98,6 +117,7 @@ public:
     {
       this->Add(*object.Picture);
     }
+    this->Add(object.Clipping);
   }
 
   void Add(const Texture& picture)
@@ -145,6 +165,7 @@ std::uint64_t GetSceneDigest(const Scene& scene, const FrameRequest& request)
   digest.Add(request.Height);
   digest.Add(request.WorldToClip);
   digest.Add(request.TileSize);
+  digest.Add(request.Layers);
   digest.Add(scene.Transport);
   digest.Add(scene.View);
   digest.AddAll(scene.Lights);

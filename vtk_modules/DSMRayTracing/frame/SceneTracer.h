@@ -24,6 +24,8 @@ struct SurfacePoint
   double T = 0.0;
   glm::dvec3 Position{ 0.0 };
   glm::dvec3 Normal{ 0.0 }; ///< unit, world
+  /// Normal or its opposite: that of the side from which the ray comes.
+  glm::dvec3 Facing{ 0.0 };
   /// Of the surface itself, before light; straight (not premultiplied), alpha is opacity.
   glm::vec4 Color{ 1.0f };
   bool ColorIsFromArray = false;
@@ -158,7 +160,9 @@ private:
     for (const IsosurfaceObject& candidate : this->World.Isosurfaces)
     {
       SurfaceHit hit;
-      if (candidate.Surface.Opacity > 0.0f && this->Volumes.Intersect(candidate, ray, hit) &&
+      const auto find = [&](const Ray& part)
+      { return this->Volumes.Intersect(candidate, part, hit); };
+      if (candidate.Surface.Opacity > 0.0f && candidate.Clipping.FindFirst(ray, find) &&
         (!object || hit.T < nearest.T))
       {
         nearest = hit;
@@ -186,7 +190,7 @@ private:
       }
       SurfaceHit* const hits = isFirst ? nearest : further;
       isFirst = false;
-      this->Packets.Intersect(candidate, bricks[number], packets, rays, wanted, hits, found);
+      this->IntersectParts(candidate, bricks[number], packets, rays, wanted, hits, found);
       for (int packet = 0; packet < packets; ++packet)
       {
         for (RayPacket::Mask left = found[packet]; left != 0; left &= left - 1)
@@ -201,6 +205,67 @@ private:
         }
       }
     }
+  }
+
+  /// PacketTracer::Intersect in the part of the object that is shown.
+  void IntersectParts(const IsosurfaceObject& object, const BeamBricks& bricks, int packets,
+    const Ray* rays, const RayPacket::Mask* wanted, SurfaceHit* hits, RayPacket::Mask* found) const
+  {
+    if (object.Clipping.KeepsAll())
+    {
+      this->Packets.Intersect(object, bricks, packets, rays, wanted, hits, found);
+      return;
+    }
+    std::fill_n(found, packets, 0);
+    bool goesOn = true;
+    for (int number = 0; number < ClipRegion::MaxParts && goesOn; ++number)
+    {
+      goesOn = this->IntersectPart(object, number, bricks, packets, rays, wanted, hits, found);
+    }
+  }
+
+  /// The same in part `number` of each ray, for those that are not in `found`; returns whether there
+  /// is any.
+  bool IntersectPart(const IsosurfaceObject& object, int number, const BeamBricks& bricks,
+    int packets, const Ray* rays, const RayPacket::Mask* wanted, SurfaceHit* hits,
+    RayPacket::Mask* found) const
+  {
+    constexpr int most = PacketTracer<Store>::MaxPackets;
+    Ray parts[RayPacket::Size * most];
+    RayPacket::Mask searching[most] = {};
+    bool isAny = false;
+    for (int packet = 0; packet < packets; ++packet)
+    {
+      for (RayPacket::Mask left = wanted[packet] & ~found[packet]; left != 0; left &= left - 1)
+      {
+        const int index = RayPacket::Size * packet + GetLowest(left);
+        ClipRegion::Interval intervals[ClipRegion::MaxParts];
+        if (number < object.Clipping.FindParts(rays[index], intervals))
+        {
+          parts[index] = rays[index];
+          parts[index].Min = intervals[number].First;
+          parts[index].Max = intervals[number].Last;
+          searching[packet] |= left & (~left + 1);
+          isAny = true;
+        }
+      }
+    }
+    if (isAny)
+    {
+      SurfaceHit met[RayPacket::Size * most];
+      RayPacket::Mask now[most];
+      this->Packets.Intersect(object, bricks, packets, parts, searching, met, now);
+      for (int packet = 0; packet < packets; ++packet)
+      {
+        found[packet] |= now[packet];
+        for (RayPacket::Mask left = now[packet]; left != 0; left &= left - 1)
+        {
+          const int index = RayPacket::Size * packet + GetLowest(left);
+          hits[index] = met[index];
+        }
+      }
+    }
+    return isAny;
   }
 
   /// Describes what the ray meets first: the mesh, or if there is none the isosurface. Either may be
@@ -236,7 +301,9 @@ private:
     for (const MeshObject& candidate : this->World.Meshes)
     {
       MeshHit hit;
-      if (this->Meshes.Intersect(*candidate.Instance, ray, hit) && (!ended || hit.T < ray.Max))
+      const auto find = [&](const Ray& part)
+      { return this->Meshes.Intersect(*candidate.Instance, part, hit); };
+      if (candidate.Clipping.FindFirst(ray, find) && (!ended || hit.T < ray.Max))
       {
         nearest = hit;
         object = &candidate;
@@ -256,7 +323,9 @@ private:
     for (const MeshObject& candidate : this->World.Meshes)
     {
       MeshHit* const hits = &candidate == this->World.Meshes.data() ? nearest : further;
-      RayPacket::Mask found = this->Meshes.Intersect(*candidate.Instance, rays, wanted, hits);
+      RayPacket::Mask found = candidate.Clipping.KeepsAll()
+        ? this->Meshes.Intersect(*candidate.Instance, rays, wanted, hits)
+        : this->IntersectClipped(candidate, rays, wanted, hits);
       for (; found != 0; found &= found - 1)
       {
         const int index = GetLowest(found);
@@ -270,12 +339,30 @@ private:
     }
   }
 
+  /// MeshTracer::Intersect in the part of the mesh that is shown, one ray after the other.
+  RayPacket::Mask IntersectClipped(
+    const MeshObject& object, const Ray* rays, RayPacket::Mask wanted, MeshHit* hits) const
+  {
+    RayPacket::Mask found = 0;
+    for (RayPacket::Mask left = wanted; left != 0; left &= left - 1)
+    {
+      const int index = GetLowest(left);
+      const auto find = [&](const Ray& part)
+      { return this->Meshes.Intersect(*object.Instance, part, hits[index]); };
+      found |= RayPacket::Mask{ object.Clipping.FindFirst(rays[index], find) } << index;
+    }
+    return found;
+  }
+
   static void Describe(
     const MeshObject& object, const MeshHit& hit, const Ray& ray, SurfacePoint& point)
   {
     point.T = hit.T;
     point.Position = ray.Origin + hit.T * ray.Direction;
     point.Normal = object.Flat ? hit.GeometricNormal : hit.Normal;
+    // The triangle tells the side; the points' normals may point to either.
+    const bool agrees = glm::dot(point.Normal, hit.GeometricNormal) >= 0.0;
+    point.Facing = agrees == hit.Front ? point.Normal : -point.Normal;
     point.Surface = !hit.Front && object.BackSurface ? &*object.BackSurface : &object.Surface;
     point.ColorIsFromArray = object.ColoredBy != MeshObject::Coloring::Material;
     point.Color = GetColor(object, hit, *point.Surface);
@@ -314,6 +401,7 @@ private:
     point.T = hit.T;
     point.Position = ray.Origin + hit.T * ray.Direction;
     point.Normal = hit.Normal;
+    point.Facing = hit.FromInside ? -hit.Normal : hit.Normal;
     point.Surface = &object.Surface;
     point.ColorIsFromArray = object.ColorField != nullptr;
     point.Color = point.ColorIsFromArray

@@ -31,12 +31,13 @@ public:
   void Trace(Tile& tile) const
   {
     const std::size_t pixels = static_cast<std::size_t>(tile.Width) * tile.Height;
-    tile.Color.resize(4 * pixels);
     if (this->Request.FirstSample == 0)
     {
-      tile.Sum.assign(pixels, glm::vec4(0.0f));
-      tile.Depth.assign(pixels, 1.0f);
+      tile.Layers = this->Request.Layers;
+      tile.Sum.assign(tile.Layers * pixels, glm::vec4(0.0f));
+      tile.Depth.assign(tile.Layers * pixels, 1.0f);
     }
+    tile.Color.resize(4 * tile.Layers * pixels);
     for (int top = 0; top < tile.Height; top += BeamEdge)
     {
       for (int left = 0; left < tile.Width; left += BeamEdge)
@@ -112,11 +113,29 @@ private:
         {
           const std::size_t pixel = static_cast<std::size_t>(y - tile.Y) * tile.Width +
             static_cast<std::size_t>(x - tile.X);
-          tile.Sum[pixel] += traced.Color;
-          // A pixel is as near as the nearest of its samples, so that a surface's antialiased
-          // border still covers what is behind.
-          tile.Depth[pixel] = std::min(tile.Depth[pixel], traced.Depth);
+          if (tile.Layers == 1)
+          {
+            tile.Sum[pixel] += traced.Color;
+            // A pixel is as near as the nearest of its samples, so that a surface's antialiased
+            // border still covers what is behind.
+            tile.Depth[pixel] = std::min(tile.Depth[pixel], traced.Depth);
+          }
+          else
+          {
+            AddLayers(traced, pixel, tile);
+          }
         });
+    }
+  }
+
+  static void AddLayers(const PixelSample& traced, std::size_t pixel, Tile& tile)
+  {
+    const std::size_t pixels = static_cast<std::size_t>(tile.Width) * tile.Height;
+    for (int layer = 0; layer < traced.Layers; ++layer)
+    {
+      const std::size_t place = pixels * std::min(layer, tile.Layers - 1) + pixel;
+      tile.Sum[place] += traced.LayerColors[layer];
+      tile.Depth[place] = std::min(tile.Depth[place], traced.LayerDepths[layer]);
     }
   }
 

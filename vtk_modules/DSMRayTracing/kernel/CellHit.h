@@ -13,6 +13,7 @@ struct CellHit
   double T = 0.0;
   int Cell[3] = { 0, 0, 0 };         ///< of the brick
   Lanes Local{ 0.0, 0.0, 0.0, 0.0 }; ///< within the cell, in [0, 1]
+  bool FromInside = false;           ///< the ray comes from values that are not below the isovalue
 };
 
 } // namespace rt

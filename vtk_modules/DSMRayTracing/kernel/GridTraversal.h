@@ -154,6 +154,7 @@ private:
       return false;
     }
     hit.T = std::min(enter + s * (leave - enter), leave);
+    hit.FromInside = EvaluateTrilinear(corners, start) >= 0.0;
     hit.Local = Clamp(start + Lanes(s) * (end - start), Lanes(0.0), Lanes(1.0));
     for (int axis = 0; axis < 3; ++axis)
     {

@@ -228,6 +228,7 @@ private:
   static void Refine(const PacketCrossings& crossings, RayPacket::Mask found, PacketHits& hits)
   {
     const D tag;
+    hits.FromInside = 0;
     for (int first = 0; first < RayPacket::Size; first += Width)
     {
       const Mask rays = GetMask(found, first);
@@ -248,6 +249,8 @@ private:
       const Vector leave = hn::Load(tag, crossings.Leave + first);
       const Vector t = hn::Add(enter, hn::Mul(s, hn::Sub(leave, enter)));
       hn::Store(hn::IfThenElse(hn::Lt(leave, t), leave, t), tag, hits.T + first);
+      // Nothing changes its side before the bracket.
+      hits.FromInside |= GetBits(hn::Ge(bracket.BeginValue, hn::Zero(tag))) << first;
       for (int axis = 0; axis < 3; ++axis)
       {
         const Vector start = hn::Load(tag, crossings.Start[axis] + first);

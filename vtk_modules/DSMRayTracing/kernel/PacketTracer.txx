@@ -106,6 +106,7 @@ void PacketTracer<Store>::SearchBricks(const IsosurfaceObject& object, const Bea
         hit.T = cell.T;
         hit.Normal = space.GetNormal(gradient, rays[RayPacket::Size * number + index].Direction);
         hit.Isovalue = isovalue;
+        hit.FromInside = cell.FromInside;
         hit.Brick = brick.Id;
         for (int axis = 0; axis < 3; ++axis)
         {

@@ -37,11 +37,13 @@ struct PacketHits
   alignas(64) double T[RayPacket::Size];
   alignas(64) double Cell[3][RayPacket::Size];  ///< of the brick; whole numbers
   alignas(64) double Local[3][RayPacket::Size]; ///< within the cell, in [0, 1]
+  RayPacket::Mask FromInside = 0;
 
   CellHit Get(int index) const
   {
     CellHit hit;
     hit.T = this->T[index];
+    hit.FromInside = (this->FromInside >> index & 1u) != 0;
     for (int axis = 0; axis < 3; ++axis)
     {
       hit.Cell[axis] = static_cast<int>(this->Cell[axis][index]);
@@ -52,6 +54,8 @@ struct PacketHits
   void Set(int index, const PacketHits& from)
   {
     this->T[index] = from.T[index];
+    const RayPacket::Mask bit = RayPacket::Mask{ 1 } << index;
+    this->FromInside = (this->FromInside & ~bit) | (from.FromInside & bit);
     for (int axis = 0; axis < 3; ++axis)
     {
       this->Cell[axis][index] = from.Cell[axis][index];

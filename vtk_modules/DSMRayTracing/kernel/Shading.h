@@ -30,6 +30,7 @@ Incidence GetIncidence(const Light& light, const glm::dvec3& point);
 struct ShadingPoint
 {
   glm::dvec3 Position{ 0.0 };
+  /// Of the side that is seen. At silhouettes an interpolated one may turn away from the viewer.
   glm::dvec3 Normal{ 0.0 };
   glm::dvec3 ToViewer{ 0.0 };
   /// Takes the place of the diffuse colour, and, as in VTK, when it comes from an array also of the
@@ -46,7 +47,7 @@ struct ShadingPoint
 ///
 ///   ambient + sum over lights of attenuation * light * (diffuse * N.L + specular * (R.V)^power)
 ///
-/// with (N.L)^power for a lone headlight, as there. /// The surface is lit on both sides, so the normal is turned towards the viewer first. Without
+/// with (N.L)^power for a lone headlight, as there. Without
 /// lighting, or without a light, the surface shows ambient + diffuse. `visibility(light, incidence)`
 /// is called for lights that face the surface: the part of each colour that arrives (glm::dvec3).
 template <class Visibility>
@@ -62,12 +63,10 @@ glm::vec3 Shade(const std::vector<Light>& lights, const Material& surface,
     return glm::clamp(glm::vec3(color + diffuseColor), 0.0f, 1.0f);
   }
   const glm::dvec3 specularColor = surface.Specular * surface.SpecularColor;
-  const glm::dvec3 facing =
-    glm::dot(point.Normal, point.ToViewer) < 0.0 ? -point.Normal : point.Normal;
   for (const Light& light : lights)
   {
     const Incidence incidence = GetIncidence(light, point.Position);
-    const double cosine = -glm::dot(facing, incidence.Direction);
+    const double cosine = -glm::dot(point.Normal, incidence.Direction);
     if (!(cosine > 0.0 && incidence.Attenuation > 0.0))
     {
       continue;
@@ -77,7 +76,7 @@ glm::vec3 Shade(const std::vector<Light>& lights, const Material& surface,
     color += arriving * diffuseColor * cosine;
     if (surface.Specular > 0.0f)
     {
-      const glm::dvec3 mirrored = glm::reflect(incidence.Direction, facing);
+      const glm::dvec3 mirrored = glm::reflect(incidence.Direction, point.Normal);
       const double highlight =
         light.IsLoneHeadlight ? cosine : std::max(0.0, glm::dot(mirrored, point.ToViewer));
       color += arriving * specularColor * std::pow(highlight, surface.SpecularPower);

@@ -22,8 +22,9 @@ struct SurfaceHit
   /// Unit, world space; the direction in which the scalar falls (away from the larger values), as
   /// Contour's normals point.
   glm::dvec3 Normal{ 0.0 };
-  int Isovalue = 0;       ///< index into IsosurfaceObject::Isovalues
-  dsm::BlockId Brick = 0; ///< the brick that holds the hit
+  int Isovalue = 0;        ///< index into IsosurfaceObject::Isovalues
+  dsm::BlockId Brick = 0;  ///< the brick that holds the hit
+  bool FromInside = false; ///< the ray comes from values that are not below the isovalue
   glm::dvec3 IndexPoint{ 0.0 };
 };
 

@@ -63,6 +63,7 @@ bool VolumeTracer<Store, Mode>::IntersectBricks(const IsosurfaceObject& object, 
     }
     hit.T = cell.T;
     hit.Brick = walk.GetId();
+    hit.FromInside = cell.FromInside;
     for (int axis = 0; axis < 3; ++axis)
     {
       hit.IndexPoint[axis] = walk.GetOrigin()[axis] + cell.Cell[axis] + cell.Local[axis];

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkPVDSMClipping.h"
+
+#include "vtkAbstractMapper.h"
+#include "vtkMatrix4x4.h"
+#include "vtkNew.h"
+#include "vtkPlane.h"
+#include "vtkTransform.h"
+
+#include <algorithm>
+
+namespace
+{
+
+void AddPlane(vtkAbstractMapper* mapper, const double origin[3], const double normal[3])
+{
+  vtkNew<vtkPlane> plane;
+  plane->SetOrigin(origin);
+  plane->SetNormal(normal);
+  mapper->AddClippingPlane(plane);
+}
+
+} // namespace
+
+void vtkPVDSMClipping::ApplyTo(vtkAbstractMapper* mapper, vtkMatrix4x4* dataToWorld) const
+{
+  mapper->RemoveAllClippingPlanes();
+  if (this->Clips)
+  {
+    AddPlane(mapper, this->Origin, this->Normal);
+  }
+  vtkNew<vtkTransform> transform;
+  transform->SetMatrix(dataToWorld);
+  for (int side = 0; side < 6 && this->Crops; ++side)
+  {
+    const int axis = side / 2;
+    const bool isLower = side % 2 == 0;
+    const double* limits = this->Box + 2 * axis;
+    double origin[3] = { 0.0, 0.0, 0.0 };
+    double normal[3] = { 0.0, 0.0, 0.0 };
+    origin[axis] = isLower ? std::min(limits[0], limits[1]) : std::max(limits[0], limits[1]);
+    normal[axis] = isLower ? 1.0 : -1.0;
+    transform->TransformPoint(origin, origin);
+    transform->TransformNormal(normal, normal);
+    AddPlane(mapper, origin, normal);
+  }
+}

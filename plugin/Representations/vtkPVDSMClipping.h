@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef vtkPVDSMClipping_h
+#define vtkPVDSMClipping_h
+
+class vtkAbstractMapper;
+class vtkMatrix4x4;
+
+/// What a representation shows of its dataset: the side of a plane, the inside of a box.
+class vtkPVDSMClipping
+{
+public:
+  bool Clips = false;
+  double Origin[3] = { 0.0, 0.0, 0.0 }; ///< of the plane, world
+  double Normal[3] = { 1.0, 0.0, 0.0 }; ///< to the side that is shown
+  bool Crops = false;
+  /// x, y and z from, to; in the dataset's coordinates.
+  double Box[6] = { 0.0, 1.0, 0.0, 1.0, 0.0, 1.0 };
+
+  /// Gives the mapper its clipping planes, `dataToWorld` being where the dataset is.
+  void ApplyTo(vtkAbstractMapper* mapper, vtkMatrix4x4* dataToWorld) const;
+};
+
+#endif

@@ -1,0 +1,211 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkPVDSMIsosurfaceGeometry.h"
+
+#include "vtkDSMVolumeMapper.h"
+
+#include "vtkCellArray.h"
+#include "vtkCellData.h"
+#include "vtkCompositeDataIterator.h"
+#include "vtkCompositeDataSet.h"
+#include "vtkDataSetAttributes.h"
+#include "vtkDoubleArray.h"
+#include "vtkFlyingEdges3D.h"
+#include "vtkIdTypeArray.h"
+#include "vtkImageData.h"
+#include "vtkMultiBlockDataSet.h"
+#include "vtkNew.h"
+#include "vtkPointData.h"
+#include "vtkPolyData.h"
+#include "vtkStructuredData.h"
+#include "vtkUnsignedCharArray.h"
+#include "vtkUnsignedIntArray.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace
+{
+
+/// One component, or the magnitude, as double: differences of unsigned integers would wrap around.
+vtkSmartPointer<vtkDoubleArray> GetValues(vtkDataArray* array, int component)
+{
+  auto values = vtkSmartPointer<vtkDoubleArray>::New();
+  values->SetName("values");
+  values->SetNumberOfTuples(array->GetNumberOfTuples());
+  const int components = array->GetNumberOfComponents();
+  for (vtkIdType tuple = 0; tuple < array->GetNumberOfTuples(); ++tuple)
+  {
+    double value = 0.0;
+    if (component >= 0 && component < components)
+    {
+      value = array->GetComponent(tuple, component);
+    }
+    else
+    {
+      for (int part = 0; part < components; ++part)
+      {
+        value = std::hypot(value, array->GetComponent(tuple, part));
+      }
+    }
+    values->SetValue(tuple, value);
+  }
+  return values;
+}
+
+vtkSmartPointer<vtkPolyData> Extract(
+  vtkDSMVolumeMapper* mapper, vtkImageData* image, vtkDataArray* array)
+{
+  vtkNew<vtkImageData> plain;
+  plain->CopyStructure(image);
+  plain->GetPointData()->SetScalars(GetValues(array, mapper->GetIsoComponent()));
+  vtkNew<vtkFlyingEdges3D> edges;
+  edges->SetInputData(plain);
+  edges->ComputeNormalsOff();
+  edges->ComputeScalarsOff();
+  for (int index = 0; index < mapper->GetNumberOfIsoValues(); ++index)
+  {
+    edges->SetValue(index, mapper->GetIsoValue(index));
+  }
+  edges->Update();
+  return edges->GetOutput();
+}
+
+/// The place of a point among the image's samples, from its first one on.
+void GetPlace(vtkImageData* image, const double point[3], double place[3])
+{
+  image->TransformPhysicalPointToContinuousIndex(point, place);
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    place[axis] -= image->GetExtent()[2 * axis];
+  }
+}
+
+vtkIdType FindCell(vtkImageData* image, const double point[3])
+{
+  double place[3];
+  GetPlace(image, point, place);
+  int cell[3];
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    const int last = std::max(image->GetDimensions()[axis] - 2, 0);
+    cell[axis] = std::clamp(static_cast<int>(std::floor(place[axis])), 0, last);
+  }
+  return vtkStructuredData::ComputeCellId(image->GetDimensions(), cell);
+}
+
+vtkIdType FindPoint(vtkImageData* image, const double point[3])
+{
+  double place[3];
+  GetPlace(image, point, place);
+  int sample[3];
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    sample[axis] =
+      std::clamp(static_cast<int>(std::lround(place[axis])), 0, image->GetDimensions()[axis] - 1);
+  }
+  return vtkStructuredData::ComputePointId(image->GetDimensions(), sample);
+}
+
+/// Says of each triangle which cell it is in, and of each point which sample is nearest.
+vtkSmartPointer<vtkPolyData> AttachIds(vtkImageData* image, vtkPolyData* triangles, unsigned block)
+{
+  auto result = vtkSmartPointer<vtkPolyData>::New();
+  result->SetPoints(triangles->GetPoints());
+  vtkNew<vtkIdTypeArray> cells;
+  vtkNew<vtkUnsignedIntArray> blocks;
+  cells->SetName("vtkOriginalCellIds");
+  blocks->SetName("vtkCompositeIndex");
+  vtkUnsignedCharArray* ghosts = image->GetCellGhostArray();
+  vtkNew<vtkCellArray> kept;
+  vtkCellArray* all = triangles->GetPolys();
+  vtkIdType size;
+  const vtkIdType* corners;
+  for (all->InitTraversal(); all->GetNextCell(size, corners) != 0;)
+  {
+    double center[3] = { 0.0, 0.0, 0.0 };
+    for (vtkIdType corner = 0; corner < size; ++corner)
+    {
+      double point[3];
+      triangles->GetPoint(corners[corner], point);
+      for (int axis = 0; axis < 3; ++axis)
+      {
+        center[axis] += point[axis] / static_cast<double>(size);
+      }
+    }
+    const vtkIdType cell = FindCell(image, center);
+    constexpr int hidden = vtkDataSetAttributes::DUPLICATECELL | vtkDataSetAttributes::HIDDENCELL;
+    if (!ghosts || (ghosts->GetValue(cell) & hidden) == 0)
+    {
+      kept->InsertNextCell(size, corners);
+      cells->InsertNextValue(cell);
+      blocks->InsertNextValue(block);
+    }
+  }
+  result->SetPolys(kept);
+  result->GetCellData()->AddArray(cells);
+  vtkNew<vtkIdTypeArray> points;
+  points->SetName("vtkOriginalPointIds");
+  vtkNew<vtkUnsignedIntArray> pointBlocks;
+  pointBlocks->SetName("vtkCompositeIndex");
+  for (vtkIdType number = 0; number < triangles->GetNumberOfPoints(); ++number)
+  {
+    points->InsertNextValue(FindPoint(image, triangles->GetPoint(number)));
+    pointBlocks->InsertNextValue(block);
+  }
+  result->GetPointData()->AddArray(points);
+  if (block > 0)
+  {
+    result->GetCellData()->AddArray(blocks);
+    result->GetPointData()->AddArray(pointBlocks);
+  }
+  return result;
+}
+
+void AddImage(
+  vtkDSMVolumeMapper* mapper, vtkImageData* image, unsigned block, vtkMultiBlockDataSet* geometry)
+{
+  if (!image || image->GetNumberOfCells() == 0)
+  {
+    return;
+  }
+  const std::string name = mapper->GetIsoArray();
+  vtkPointData* data = image->GetPointData();
+  vtkDataArray* array = name.empty() ? data->GetScalars() : data->GetArray(name.c_str());
+  if (!array)
+  {
+    return;
+  }
+  if (image->GetNumberOfCells() > vtkPVDSMIsosurfaceGeometry::MostCells)
+  {
+    vtkErrorWithObjectMacro(mapper,
+      "Nothing can be selected in a block of "
+        << image->GetNumberOfCells() << " cells on one rank; at most "
+        << vtkPVDSMIsosurfaceGeometry::MostCells << " can. Take more ranks, or extract a part.");
+    return;
+  }
+  geometry->SetBlock(
+    geometry->GetNumberOfBlocks(), AttachIds(image, Extract(mapper, image, array), block));
+}
+
+} // namespace
+
+vtkSmartPointer<vtkMultiBlockDataSet> vtkPVDSMIsosurfaceGeometry::Make(vtkDSMVolumeMapper* mapper)
+{
+  auto geometry = vtkSmartPointer<vtkMultiBlockDataSet>::New();
+  vtkDataObject* data = mapper->GetDataObjectInput();
+  if (auto* composite = vtkCompositeDataSet::SafeDownCast(data))
+  {
+    vtkSmartPointer<vtkCompositeDataIterator> leaf;
+    leaf.TakeReference(composite->NewIterator());
+    for (leaf->InitTraversal(); !leaf->IsDoneWithTraversal(); leaf->GoToNextItem())
+    {
+      AddImage(mapper, vtkImageData::SafeDownCast(leaf->GetCurrentDataObject()),
+        leaf->GetCurrentFlatIndex(), geometry);
+    }
+  }
+  else
+  {
+    AddImage(mapper, vtkImageData::SafeDownCast(data), 0, geometry);
+  }
+  return geometry;
+}

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What the documents' C++ blocks take for granted.
+#include "vtkDSMLightOptions.h"
+#include "vtkDSMPolyDataMapper.h"
+#include "vtkDSMScene.h"
+#include "vtkDSMVolumeMapper.h"
+
+#include "vtkActor.h"
+#include "vtkAlgorithm.h"
+#include "vtkNew.h"
+#include "vtkRenderer.h"
+#include "vtkSmartPointer.h"
+#include "vtkVolume.h"
+
+extern vtkAlgorithm* reader;
+extern vtkAlgorithm* source;
+extern vtkRenderer* renderer;

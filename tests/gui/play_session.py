@@ -1,0 +1,70 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""Has ParaView's test player go through session.xml in the real application, and compares the ray traced
+pictures with Contour's. Called as
+    play_session.py PLUGIN OUTPUT [--server-url=URL] PARAVIEW"""
+
+import os
+import shutil
+import subprocess
+import sys
+
+from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.vtkIOImage import vtkPNGReader
+
+PLUGIN, OUTPUT, *OPTIONS, PARAVIEW = sys.argv[1:]
+HERE = os.path.dirname(os.path.abspath(__file__))
+
+
+def check(condition, what):
+    if not condition:
+        raise AssertionError(what)
+    print("ok:", what, flush=True)
+
+
+def write_session(path):
+    with open(os.path.join(HERE, "session.xml"), encoding="utf-8") as text:
+        lines = text.read().replace("@PLUGIN@", PLUGIN).replace("@OUTPUT@", OUTPUT).splitlines()
+    head, events = lines[:6], lines[6:]
+    with open(path, "w", encoding="utf-8") as text:
+        for line in [head[0], head[1]] + events:
+            if "@REMOTE@" not in line:
+                text.write(line + "\n")
+            elif OPTIONS:
+                text.write(line.replace("@REMOTE@", "") + "\n")
+
+
+def read_picture(name):
+    reader = vtkPNGReader()
+    reader.SetFileName(os.path.join(OUTPUT, name))
+    reader.Update()
+    width, height, _ = reader.GetOutput().GetDimensions()
+    values = vtk_to_numpy(reader.GetOutput().GetPointData().GetScalars())
+    return values.reshape(height, width, -1)[:, :, :3].astype(int)
+
+
+def main():
+    shutil.rmtree(OUTPUT, ignore_errors=True)
+    os.makedirs(OUTPUT)
+    session = os.path.join(OUTPUT, "session.xml")
+    write_session(session)
+    command = [PARAVIEW, "--dr", *OPTIONS, f"--test-directory={OUTPUT}", f"--test-script={session}", "--exit"]
+    result = subprocess.run(command, capture_output=True, text=True, timeout=150)
+    print(result.stdout, result.stderr)
+    check(result.returncode == 0, "every step of the session can be done")
+    said = result.stdout + result.stderr
+    check(not any(word in said for word in ("ERR|", "WARN|", "ERROR")), "without errors and warnings")
+    contour = read_picture("contour.png")
+    expected = (abs(contour - contour[0, 0]) > 8).any(axis=2)
+    check(0.05 < expected.mean() < 0.9, f"Contour covers {100 * expected.mean():.0f} % of the view")
+    for name in ("traced.png", "mesh.png"):
+        picture = read_picture(name)
+        check(picture.shape == contour.shape, f"{name}: as large as Contour's")
+        covered = (abs(picture - picture[0, 0]) > 8).any(axis=2)
+        share = (covered != expected).mean()
+        check(share < 0.01, f"{name}: covers the same pixels but {100 * share:.2f} %")
+        difference = abs(picture - contour).mean(axis=2)[covered & expected].mean()
+        check(difference < 12, f"{name}: its colours differ by {difference:.1f} of 255 on average")
+
+
+main()

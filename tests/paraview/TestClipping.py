@@ -1,0 +1,73 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Clipping planes and cropping boxes: what is left is what clipping the triangles leaves."""
+
+from dsm_testing import *
+
+load_plugin()
+view = create_view()
+view.UseFXAA = 0
+source = image_source("image.SetExtent(piece)\nadd(image, distance(piece))\n")
+traced = show(source, view, [0.5, 0.8], "f")
+surface = flying_edges(source, [0.5, 0.8])
+place_camera(view)
+
+
+def compare(what, clips):
+    """With the triangles on this number of ranks, clipped by filters."""
+    picture = render(view, what.replace(" ", "_"))
+    simple.Hide(source, view)
+    clipped = surface
+    for parameters in clips:
+        clipped = simple.Clip(clipped, ClipType="Plane", Crinkleclip=0, Invert=0)
+        clipped.ClipType.Origin, clipped.ClipType.Normal = parameters
+    display = show_surface(clipped, view)
+    display.Position, display.Orientation = traced.Position, traced.Orientation
+    reference = render(view)
+    simple.SaveScreenshot(os.path.join(OUTPUT, f"{what}.triangles.{get_ranks()}.png"), view)
+    simple.Hide(clipped, view)
+    simple.Show(source, view)
+    check_same_surface(picture, reference, what)
+    return picture
+
+
+whole = render(view)
+check(list(traced.DSMClipOrigin) == [12.0, 12.0, 12.0], "the plane starts in the middle")
+check(list(traced.DSMCroppingBox) == [0.0, 24.0] * 3, "and the box as large as the data")
+traced.DSMCropping = 1
+check_equal(render(view), whole, "which hides nothing", 0)
+traced.DSMCropping = 0
+
+normal = [0.2, 0.1, -1.0]
+traced.DSMClip = 1
+traced.DSMClipOrigin = [12.0, 12.0, 13.0]
+traced.DSMClipNormal = normal
+plane = ([12.0, 12.0, 13.0], normal)
+clipped = compare("clipped volume", [plane])
+check((abs(clipped - whole) > 10).any(axis=2).mean() > 0.05, "and it looks different")
+traced.DSMCropping = 1
+traced.DSMCroppingBox = [3.0, 24.0, 0.0, 14.5, 0.0, 24.0]
+compare("clipped and cropped", [plane, ([3.0, 0, 0], [1, 0, 0]), ([0, 14.5, 0], [0, -1, 0])])
+
+# The box moves with the dataset, the plane does not.
+traced.DSMClip = 0
+traced.Position = [2.0, -3.0, 1.0]
+traced.Orientation = [0.0, 20.0, 0.0]
+compare("cropped and moved", [([3.0, 0, 0], [1, 0, 0]), ([0, 14.5, 0], [0, -1, 0])])
+traced.Position = traced.Orientation = [0.0, 0.0, 0.0]
+traced.DSMCropping = 0
+check_equal(render(view), whole, "and whole again", 0)
+simple.Hide(source, view)
+
+# A mesh.
+ball = simple.Sphere(Radius=10.0, Center=[12.0, 12.0, 12.0], ThetaResolution=60, PhiResolution=60)
+traced = source = None
+mesh = simple.Show(ball, view)
+mesh.Representation = REPRESENTATION
+mesh.ColorArrayName = [None, ""]
+mesh.DSMClip = 1
+mesh.DSMClipOrigin = [12.0, 12.0, 15.0]
+mesh.DSMClipNormal = normal
+mesh.DSMCropping = 1
+mesh.DSMCroppingBox = [0.0, 24.0, 5.0, 24.0, 0.0, 24.0]
+source, traced, surface = ball, mesh, ball
+compare("clipped mesh", [([12.0, 12.0, 15.0], normal), ([0, 5, 0], [0, 1, 0])])

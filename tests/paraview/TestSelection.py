@@ -1,0 +1,83 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What is selected on traced surfaces is what is selected on the same surfaces as geometry."""
+
+from dsm_testing import *
+
+load_plugin()
+view = create_view()
+view.UseFXAA = 0
+
+
+def get_selected(source, kind, region):
+    """Coordinates of the cells or points that are selected, as ParaView extracts them."""
+    simple.ClearSelection(source)
+    {"cells": simple.SelectSurfaceCells, "points": simple.SelectSurfacePoints}[kind](
+        Rectangle=region, View=view)
+    extract = simple.ExtractSelection(Input=source)
+    extract.UpdatePipeline()
+    merged = simple.MergeBlocks(extract)
+    merged.UpdatePipeline()
+    information = merged.GetDataInformation()
+    result = (information.GetNumberOfCells(), information.GetNumberOfPoints(),
+              numpy.round(information.GetBounds(), 5).tolist())
+    simple.Delete(merged)
+    simple.Delete(extract)
+    return result
+
+
+# A mesh: cells and points of the dataset itself.
+ball = simple.Sphere(Radius=9.0, ThetaResolution=24, PhiResolution=18)
+mesh = simple.Show(ball, view)
+mesh.ColorArrayName = [None, ""]
+place_camera(view)
+region = [130, 90, 180, 150]
+everything = [0, 0, 299, 239]
+for kind in ("cells", "points"):
+    for rectangle in (region, everything):
+        results = []
+        for representation in (REPRESENTATION, "Surface"):
+            mesh.Representation = representation
+            simple.Render(view)
+            results.append(get_selected(ball, kind, rectangle))
+        check(results[1][0] > 3, f"Surface has {results[1][0]} selected {kind} of the mesh")
+        check(results[0] == results[1], f"and the same ones are selected when traced: {results[0]}")
+mesh.Representation = REPRESENTATION
+check(get_selected(ball, "cells", [0, 0, 5, 5])[0] == 0, "beside it there is nothing")
+mesh.DSMClip = 1
+mesh.DSMClipNormal = [-0.6, -0.5, -1.0]
+mesh.DSMClipOrigin = [0.0, 0.0, 0.0]
+simple.Render(view)
+whole = results[1][2]
+clipped = get_selected(ball, "cells", everything)
+check(clipped[0] > 0 and clipped[2] != whole, "what is clipped away is not selected")
+simple.Delete(ball)
+
+# A volume: the voxels in which the surface is seen.
+source = image_source("image.SetExtent(piece)\nadd(image, distance(piece))\n")
+traced = show(source, view, [0.8], "f")
+place_camera(view)
+simple.Render(view)
+cells = get_selected(source, "cells", everything)
+check(100 < cells[0] < 24**3 / 4, f"{cells[0]} voxels are selected")
+low, high = cells[2][0::2], cells[2][1::2]
+check(min(high) > 20 and max(low) < 10, f"on the side that is seen: {cells[2]}")
+center = get_selected(source, "cells", [148, 118, 150, 120])
+check(1 <= center[0] <= 4, f"few are under a few pixels: {center}")
+corner = numpy.array(center[2][1::2])
+distance = numpy.linalg.norm((corner - 12.0) / 12.0)
+check(abs(distance - 0.8) < 0.2, "and they are at the surface")
+points = get_selected(source, "points", [140, 110, 160, 130])
+check(points[1] > 0, f"points are, too: {points}")
+check(get_selected(source, "cells", [0, 0, 5, 5])[0] == 0, "beside it there is nothing")
+
+# All ranks select what one does.
+reference = os.path.join(OUTPUT, "selected.npy")
+numbers = numpy.array([cells[0], *cells[2], center[0], *center[2]])
+if get_ranks() == 1:
+    numpy.save(reference, numbers)
+else:
+    expected = numpy.load(reference)
+    check(numpy.allclose(numbers[1:7], expected[1:7]) and numpy.allclose(numbers[7:], expected[7:]),
+          "the same place is selected as on one rank")
+    check(abs(numbers[0] - expected[0]) <= 0.02 * expected[0],
+          f"{numbers[0]} voxels, and {expected[0]} on one rank")

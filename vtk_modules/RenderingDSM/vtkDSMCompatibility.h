@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// Where the versions of VTK differ: 9.1, as in Debian 12, to 9.6. Nothing else asks for the version.
+#ifndef vtkDSMCompatibility_h
+#define vtkDSMCompatibility_h
+
+#include "vtkIdList.h"
+#include "vtkPolygon.h"
+
+#include <type_traits>
+#include <utility>
+
+namespace vtkDSMCompatibility
+{
+
+/// Cuts a polygon into triangles, three of its corners' positions in the polygon each. False when it
+/// degenerates. Since 9.4, VTK has another name for it, and since 9.6 no longer the old one.
+template <class Polygon, class = void>
+struct Triangulation
+{
+  static bool Make(Polygon* polygon, vtkIdList* corners)
+  {
+    return polygon->Triangulate(corners) != 0;
+  }
+};
+
+template <class Polygon>
+struct Triangulation<Polygon,
+  std::void_t<decltype(std::declval<Polygon>().TriangulateLocalIds(0, nullptr))>>
+{
+  static bool Make(Polygon* polygon, vtkIdList* corners)
+  {
+    return polygon->TriangulateLocalIds(0, corners) != 0;
+  }
+};
+
+inline bool Triangulate(vtkPolygon* polygon, vtkIdList* corners)
+{
+  return Triangulation<vtkPolygon>::Make(polygon, corners);
+}
+
+} // namespace vtkDSMCompatibility
+
+#endif

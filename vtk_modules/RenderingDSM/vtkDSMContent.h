@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef vtkDSMContent_h
+#define vtkDSMContent_h
+
+#include <cstdint>
+
+class vtkAbstractArray;
+class vtkDataObject;
+
+/// Tells whether arrays hold what they held, whatever object they are in and whether or not anybody
+/// called Modified: a simulation may write to the same memory, a reader may read the same again.
+namespace vtkDSMContent
+{
+/// Local. Of the array's type, shape and values: equal, for all practical purposes, only for equal
+/// ones. An array whose values cannot be read as bytes is unlike any other and unlike itself. Null
+/// is an array, too. Reads with as many threads.
+std::uint64_t Hash(vtkAbstractArray* array, int threads);
+
+/// Local. Whether a dataset, or a block of it, belongs to a time step: then others may follow.
+bool IsOfTimeStep(vtkDataObject* data);
+}
+
+#endif

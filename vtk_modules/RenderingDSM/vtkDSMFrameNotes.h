@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef vtkDSMFrameNotes_h
+#define vtkDSMFrameNotes_h
+
+#include "DSMRayTracing/frame/DebugView.h"
+#include "DSMRayTracing/frame/FrameGather.h"
+
+#include <string>
+#include <vector>
+
+class vtkDSMStatistics;
+
+/// What is written into a picture: the figures of the frame, and what a debug view's colours mean. As
+/// pixels that are nearer than anything, so that they get to the screen the way the picture does.
+class vtkDSMFrameNotes
+{
+public:
+  /// An entry of a legend.
+  struct Entry
+  {
+    glm::vec3 Color;
+    std::string Text;
+  };
+
+  /// What the colours of a debug view stand for; ranks are those of `statistics`.
+  static std::vector<Entry> CreateLegend(rt::DebugView view, const vtkDSMStatistics* statistics);
+
+  /// Each into a corner on the left: the text above, the legend below. What is empty, or does not fit,
+  /// is left out, all of it where the application has no text renderer (VTK's RenderingFreeType).
+  static void Draw(const std::string& text, const std::vector<Entry>& legend, rt::Picture& picture);
+};
+
+#endif

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkDSMProgress.h"
+
+#include "DSMCore/Error.h"
+
+#include "vtkAlgorithm.h"
+
+void vtkDSMProgress::Begin(vtkAlgorithm* mapper)
+{
+  mapper->SetAbortExecute(0);
+}
+
+void vtkDSMProgress::Tell(vtkAlgorithm* mapper, double part)
+{
+  mapper->UpdateProgress(part);
+  if (mapper->GetAbortExecute())
+  {
+    throw dsm::Error("It was aborted, and is not shown. Update the dataset to show it after all.");
+  }
+}
