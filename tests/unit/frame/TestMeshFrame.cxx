@@ -384,7 +384,7 @@ TEST_F(MeshPicture, BothSidesAreLitWhereverTheNormalsPoint)
       TestMesh::Mesh square = CreateSquare(0.0);
       for (int corner = 0; corner < 4; ++corner)
       {
-        square.Normals.insert(square.Normals.end(), { 0.5, 0.0, points });
+        square.Normals.insert(square.Normals.end(), { 0.5f, 0.0f, static_cast<float>(points) });
       }
       rt::MeshObject object =
         this->Publish(square, glm::scale(glm::dmat4(1.0), glm::dvec3(1.0, side, side)));
