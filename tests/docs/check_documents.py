@@ -9,6 +9,7 @@ the compiler with the flags of the tests. There, `build` is the build folder, `.
 examples. LANGUAGE `marks` checks that every block has one of these languages, and that those which
 are not run are named in not_run.txt and say so in the document."""
 
+import glob
 import json
 import os
 import re
@@ -137,7 +138,11 @@ def run_python(document, blocks):
         for block in blocks:
             # Messages name the document's line.
             text.write(f"exec(compile({block.text!r}, {block.name!r}, 'exec'), globals())\n")
-    out = run([*MPIRUN, "-np", "2", PVBATCH, script], folder, document)
+    # Programs of VTK are one process; the package is as the build has it.
+    ranks = "1" if any("dsmraytracer" in block.text for block in blocks) else "2"
+    packages = glob.glob(os.path.join(BUILD, "lib*", "**", "dsmraytracer"), recursive=True)
+    environment = dict(os.environ, PYTHONPATH=os.pathsep.join(map(os.path.dirname, packages)))
+    out = run([*MPIRUN, "-np", ranks, PVBATCH, script], folder, document, env=environment)
     check("ERR|" not in out and "Error" not in out, f"{document}: without errors")
     for block in blocks:
         check_pictures(folder, block.text, block.name)

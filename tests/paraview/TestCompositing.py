@@ -117,7 +117,11 @@ for opacity in (1.0, 0.5):
         simple.SaveScreenshot(
             os.path.join(OUTPUT, f"Annotations{opacity}.{len(pictures)}.{get_ranks()}.png"), view)
         simple.ClearSelection(ball)
-    difference = abs(pictures[0] - pictures[1])
+    # On several ranks ParaView draws the axes over a translucent Surface more than once.
+    reference = os.path.join(OUTPUT, f"annotations{opacity}.npy")
+    if get_ranks() == 1:
+        numpy.save(reference, pictures[1])
+    difference = abs(pictures[0] - numpy.load(reference))
     different = (difference > 60).any(axis=2).mean()
     check(different < 0.01, f"axes, legend, text and selection at opacity {opacity}: "
           f"{100 * different:.2f} % of the pixels differ, by {difference.mean():.2f} in the mean")
