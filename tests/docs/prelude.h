@@ -7,7 +7,10 @@
 
 #include "vtkActor.h"
 #include "vtkAlgorithm.h"
+#include "vtkMPIController.h"
 #include "vtkNew.h"
+#include "vtkProperty.h"
+#include "vtkRenderWindow.h"
 #include "vtkRenderer.h"
 #include "vtkSmartPointer.h"
 #include "vtkVolume.h"
@@ -15,3 +18,6 @@
 extern vtkAlgorithm* reader;
 extern vtkAlgorithm* source;
 extern vtkRenderer* renderer;
+extern vtkRenderWindow* window;
+extern int argc;
+extern char** argv;
