@@ -42,6 +42,12 @@ check(get_ranks() > 1 or not is_red.any(), "one rank keeps its tiles")
 display.DSMScheduler = "Central queue"
 draw("Rank that traced")
 display.DSMScheduler = "Work stealing"
+# The legend reaches over the picture, on several ranks too; what is shown does not.
+position = list(view.CameraPosition)
+for _ in range(3):
+    render(view)
+    place_camera(view)
+check(numpy.allclose(position, view.CameraPosition), "a reset of the camera finds what is shown")
 # Published anew, nothing is cached; and drawn once, since what was fetched stays.
 display.DSMDebugView = "Misses"
 display.DSMHostSharing = 1

@@ -169,7 +169,7 @@ public:
   void TraceSamples(const rt::Scene& scene, rt::FrameRequest& request);
 
   vtkWeakPointer<vtkRenderer> Renderer;
-  unsigned long Observers[3] = { 0, 0, 0 };
+  unsigned long Observers[4] = { 0, 0, 0, 0 };
   vtkSmartPointer<vtkDSMScene> Keeper; ///< the scene itself, when nobody but the renderer has it
   glm::vec3 Background{ 0.0f };        ///< of this rank's renderer, as the application set it
   vtkSmartPointer<vtkMultiProcessController> Controller;
@@ -271,6 +271,14 @@ void vtkDSMScene::EndWithRenderer()
   const vtkSmartPointer<vtkDSMScene> last = std::move(this->Self->Keeper);
 }
 
+/// What was added to the bounds for the frame's delivery must not be seen by who looks for all there is.
+void vtkDSMScene::EndFrame()
+{
+  double bounds[6];
+  this->Self->GetBounds(bounds);
+  this->Self->Prop->SetBounds(bounds);
+}
+
 void vtkDSMScene::Attach(vtkRenderer* renderer)
 {
   this->Self->Renderer = renderer;
@@ -278,6 +286,8 @@ void vtkDSMScene::Attach(vtkRenderer* renderer)
     vtkCommand::StartEvent, this, &vtkDSMScene::NoteBackground, BackgroundPriority);
   this->Self->Observers[1] =
     renderer->AddObserver(vtkCommand::StartEvent, this, &vtkDSMScene::Trace, TracePriority);
+  this->Self->Observers[3] =
+    renderer->AddObserver(vtkCommand::EndEvent, this, &vtkDSMScene::EndFrame);
   this->Self->Observers[2] =
     renderer->AddObserver(vtkCommand::DeleteEvent, this, &vtkDSMScene::EndWithRenderer);
   renderer->AddViewProp(this->Self->Prop);

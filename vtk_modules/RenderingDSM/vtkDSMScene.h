@@ -146,6 +146,7 @@ private:
   void EndWithRenderer();
   void NoteBackground();
   void Trace();
+  void EndFrame();
 
   class Internals;
   std::unique_ptr<Internals> Self;
