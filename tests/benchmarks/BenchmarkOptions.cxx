@@ -27,7 +27,7 @@ const char* BenchmarkOptions::Usage()
          "  --shadows S         on: hard shadows of a lamp beside the camera; off (default)\n"
          "  --occlusion N       ambient occlusion rays for each hit, a fifth of the volume's\n"
          "                      diagonal long (default 0)\n"
-         "  --tile-seconds T    on: the result has the cost of each tile of the last frame "
+         "  --tile-seconds T    on: the result has the mean cost of each tile "
          "(default off)\n"
          "  --picture FILE.ppm  writes the picture of the first position\n"
          "  --overlap N         workers per thread: while some wait for bricks, others trace "

@@ -19,7 +19,7 @@ struct BenchmarkOptions : RunOptions
   bool Shadows = false;          ///< of a lamp beside the camera
   int Occlusion = 0;             ///< ambient occlusion rays for each hit
   std::string Session;           ///< file; empty: an orbit
-  bool TileSeconds = false;      ///< the result has those of the last frame's tiles
+  bool TileSeconds = false;      ///< the result has those of the tiles
   std::string Picture;           ///< PPM file of the first frame; empty: none
 
   void AddTo(OptionValues::Setters& setters);

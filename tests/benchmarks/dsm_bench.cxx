@@ -14,6 +14,7 @@
 #include "DSMCore/MpiTransport.h"
 #include "DSMRayTracing/frame/FrameGather.h"
 #include "DSMRayTracing/frame/FrameRenderer.h"
+#include "DSMRayTracing/frame/TileGrid.h"
 
 #include <nlohmann/json.hpp>
 
@@ -22,8 +23,8 @@
 #include <algorithm>
 #include <cstring>
 #include <fstream>
+#include <functional>
 #include <iostream>
-#include <iterator>
 #include <limits>
 #include <numeric>
 #include <sstream>
@@ -155,32 +156,19 @@ Json Summarise(const BenchmarkOptions& options, const dsm::BlockStore& store, co
     { "peak_rss_bytes", total.PeakRssBytes }, { "image_hash", hexadecimal }, { "ranks", each } };
 }
 
-/// What each tile of the frame took; collective.
-std::vector<double> GatherTileSeconds(dsm::Messenger& messenger, const rt::Frame& frame)
+/// Sums of what each rank adds up for each tile; collective.
+std::vector<double> SumTileSeconds(dsm::Messenger& messenger, const std::vector<double>& mine)
 {
-  struct Cost
+  std::vector<std::byte> bytes(mine.size() * sizeof(double));
+  std::memcpy(bytes.data(), mine.data(), bytes.size());
+  std::vector<double> sums(mine.size());
+  for (const auto& part : messenger.AllGather(std::move(bytes)))
   {
-    std::int64_t Tile;
-    double Seconds;
-  };
-  std::vector<std::byte> mine;
-  for (const rt::Tile& tile : frame.Tiles)
-  {
-    dsm::AttachTail(mine, Cost{ tile.Index, tile.Seconds });
+    std::vector<double> theirs(part.size() / sizeof(double));
+    std::memcpy(theirs.data(), part.data(), part.size());
+    std::transform(sums.begin(), sums.end(), theirs.begin(), sums.begin(), std::plus<double>());
   }
-  std::vector<Cost> costs;
-  for (const auto& part : messenger.AllGather(mine))
-  {
-    const std::size_t before = costs.size();
-    costs.resize(before + part.size() / sizeof(Cost));
-    std::memcpy(costs.data() + before, part.data(), part.size());
-  }
-  std::sort(
-    costs.begin(), costs.end(), [](const Cost& a, const Cost& b) { return a.Tile < b.Tile; });
-  std::vector<double> seconds;
-  std::transform(costs.begin(), costs.end(), std::back_inserter(seconds),
-    [](const Cost& cost) { return cost.Seconds; });
-  return seconds;
+  return sums;
 }
 
 void RunIsosurface(const BenchmarkOptions& options, dsm::Messenger& messenger)
@@ -233,16 +221,25 @@ void RunIsosurface(const BenchmarkOptions& options, dsm::Messenger& messenger)
     trace(positions.front());
   }
   std::vector<double> fastest(positions.size(), std::numeric_limits<double>::infinity());
+  const int tileSize = rt::FrameRequest().TileSize;
+  std::vector<double> tiles(
+    static_cast<std::size_t>(rt::TileGrid(options.Width, options.Height, tileSize).GetCount()));
   RankResult mine;
   for (int repetition = 0; repetition < options.Repeat; ++repetition)
   {
     mine = {};
+    tiles.assign(tiles.size(), 0.0);
     timing.LastSeconds = 0.0;
     for (std::size_t number = 0; number < positions.size(); ++number)
     {
       trace(positions[number]);
       fastest[number] = std::min(fastest[number], frame.Seconds);
       timing.LastSeconds += frame.Seconds;
+      for (const rt::Tile& tile : frame.Tiles)
+      {
+        tiles[static_cast<std::size_t>(tile.Index)] +=
+          tile.Seconds / static_cast<double>(positions.size());
+      }
       mine.Add(frame);
       if (repetition == 0)
       {
@@ -263,7 +260,7 @@ void RunIsosurface(const BenchmarkOptions& options, dsm::Messenger& messenger)
   }
   mine.PeakRssBytes = GetPeakRssBytes();
   const auto ranks = messenger.AllGatherValue(mine);
-  const std::vector<double> tileSeconds = GatherTileSeconds(messenger, frame);
+  const std::vector<double> tileSeconds = SumTileSeconds(messenger, tiles);
   if (messenger.GetRank() == 0)
   {
     Json result = Summarise(options, store, timing, ranks);

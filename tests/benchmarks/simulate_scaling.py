@@ -172,7 +172,7 @@ def main():
     arguments = parser.parse_args()
     random.seed(1)
     options = {"volume": arguments.volume, "isovalue": arguments.isovalue, "threads": 1,
-               "frames": 20, "repeat": 3}
+               "frames": 20, "repeat": 2}
 
     costs = run_bench(arguments.bench, 1, "isosurface", tile_seconds="on", **options)["tile_seconds"]
     exchange = run_bench(arguments.bench, 2, "access", sizes=8, block=4096, accesses=1000,
