@@ -260,6 +260,21 @@ TEST_F(VolumeMapper, TheSceneIsTheRenderersAndEndsWithItsLastHolder)
   EXPECT_GT(CountCovered(this->RenderDistances()), 0);
 }
 
+TEST_F(VolumeMapper, WhatWasDeletedWhileTheSceneWasHiddenIsNotTouched)
+{
+  auto volume = vtkSmartPointer<vtkVolume>::New();
+  volume->SetMapper(this->Mapper);
+  this->Renderer->AddVolume(volume);
+  ASSERT_GT(CountCovered(this->RenderDistances()), 0);
+  this->Scene->SetHidden(true);
+  this->Renderer->RemoveVolume(volume);
+  ASSERT_EQ(volume->GetReferenceCount(), 1);
+  volume = nullptr;
+  EXPECT_EQ(CountCovered(this->RenderDistances()), 0);
+  this->Scene->SetHidden(false);
+  EXPECT_EQ(CountCovered(this->RenderDistances()), 0);
+}
+
 TEST_F(VolumeMapper, ReportsWhatItDid)
 {
   this->Renderer->AddVolume(this->Volume);

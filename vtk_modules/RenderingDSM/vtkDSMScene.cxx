@@ -185,6 +185,7 @@ public:
   int SamplesPerFrame = 0;
   /// The last frame, and what it shows; further samples are added while that stays the same.
   rt::Frame Frame;
+  double Bounds[6] = { 0.0, 0.0, 0.0, 0.0, 0.0, 0.0 }; ///< of what it shows
   std::uint64_t Digest = 0;
   int Samples = 0; ///< that the frame has; 0 when there is nothing to add to
   int SamplesWanted = 1;
@@ -274,9 +275,7 @@ void vtkDSMScene::EndWithRenderer()
 /// What was added to the bounds for the frame's delivery must not be seen by who looks for all there is.
 void vtkDSMScene::EndFrame()
 {
-  double bounds[6];
-  this->Self->GetBounds(bounds);
-  this->Self->Prop->SetBounds(bounds);
+  this->Self->Prop->SetBounds(this->Self->Bounds);
 }
 
 void vtkDSMScene::Attach(vtkRenderer* renderer)
@@ -321,7 +320,7 @@ void vtkDSMScene::DeliverTiles()
 
 void vtkDSMScene::DeliverEverywhere()
 {
-  this->Self->DrawsColor = [](vtkCamera*) { return true; };
+  this->DeliverEverywhere([](vtkCamera*) { return true; });
 }
 
 void vtkDSMScene::DeliverEverywhere(std::function<bool(vtkCamera*)> drawsColor)
@@ -553,8 +552,9 @@ void vtkDSMScene::Internals::Draw()
 void vtkDSMScene::Internals::DrawPicture(rt::Picture picture, const rt::FrameRequest& request,
   vtkMatrix4x4* projection, rt::DebugView view)
 {
+  this->GetBounds(this->Bounds);
   double bounds[6];
-  this->GetBounds(bounds);
+  std::copy_n(this->Bounds, 6, bounds);
   if (request.Layers > 1)
   {
     vtkDSMFrameLayers::Separate(picture);
