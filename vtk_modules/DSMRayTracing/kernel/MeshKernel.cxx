@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
-// See PacketKernel.cxx.
-#define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV)
+#include "DSMRayTracing/kernel/VectorTargets.h"
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "DSMRayTracing/kernel/MeshKernel.cxx"
 #include <hwy/foreach_target.h> // IWYU pragma: keep
@@ -167,16 +167,8 @@ const MeshKernel& MeshKernel::GetBest()
 
 std::vector<MeshKernel> MeshKernel::GetAll()
 {
-  std::vector<MeshKernel> kernels{ HWY_DYNAMIC_DISPATCH(CreateSingleMeshKernel)() };
-  for (const auto target : hwy::SupportedAndGeneratedTargets())
-  {
-    hwy::SetSupportedTargetsForTest(target);
-    hwy::GetChosenTarget().Update(target);
-    kernels.push_back(HWY_DYNAMIC_DISPATCH(CreateWideMeshKernel)());
-  }
-  hwy::SetSupportedTargetsForTest(0);
-  hwy::GetChosenTarget().Update(hwy::SupportedTargets());
-  return kernels;
+  return CreateForAllTargets<MeshKernel>({ HWY_DYNAMIC_DISPATCH(CreateSingleMeshKernel)() },
+    [] { return HWY_DYNAMIC_DISPATCH(CreateWideMeshKernel)(); });
 }
 
 } // namespace rt

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
-// Vectors of a size that is only known at run time cannot be members; SSSE3 alone is not worth code
-// of its own.
-#define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV)
+#include "DSMRayTracing/kernel/VectorTargets.h"
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "DSMRayTracing/kernel/PacketKernel.cxx"
 #include <hwy/foreach_target.h> // IWYU pragma: keep
@@ -303,16 +302,8 @@ const PacketKernel& PacketKernel::GetBest()
 
 std::vector<PacketKernel> PacketKernel::GetAll()
 {
-  std::vector<PacketKernel> kernels{ HWY_DYNAMIC_DISPATCH(CreateSingle)() };
-  for (const auto target : hwy::SupportedAndGeneratedTargets())
-  {
-    hwy::SetSupportedTargetsForTest(target);
-    hwy::GetChosenTarget().Update(target);
-    kernels.push_back(HWY_DYNAMIC_DISPATCH(CreateWide)());
-  }
-  hwy::SetSupportedTargetsForTest(0);
-  hwy::GetChosenTarget().Update(hwy::SupportedTargets());
-  return kernels;
+  return CreateForAllTargets<PacketKernel>({ HWY_DYNAMIC_DISPATCH(CreateSingle)() },
+    [] { return HWY_DYNAMIC_DISPATCH(CreateWide)(); });
 }
 
 } // namespace rt
