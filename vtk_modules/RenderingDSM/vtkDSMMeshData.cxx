@@ -73,14 +73,22 @@ bool vtkDSMMeshData::Key::operator<(const Key& other) const
 }
 
 vtkDSMMeshData::vtkDSMMeshData(std::shared_ptr<vtkDSMRankGroup> group, vtkDSMPolyDataMapper* mapper,
-  bool textured, std::unique_ptr<vtkDSMMeshData> old)
+  bool textured, const Content& content, std::unique_ptr<vtkDSMMeshData> old)
   : Group(std::move(group))
   , Mapper(mapper)
   , Textured(textured)
 {
   dsm::Messenger& messenger = this->Group->GetMessenger();
   const std::string what = "Reading the surface";
-  messenger.RunTogether(what, [&] { this->Blocks = vtkDSMMeshBlock::Collect(mapper); });
+  messenger.RunTogether(what,
+    [&]
+    {
+      this->Blocks = vtkDSMMeshBlock::Collect(mapper);
+      if (this->Blocks.size() != content.Blocks.size())
+      {
+        throw dsm::Error("The blocks of a surface changed while it was read.");
+      }
+    });
   this->FormGroups();
   std::vector<vtkPolyData*> data;
   for (const vtkDSMMeshBlock& block : this->Blocks)
@@ -91,7 +99,7 @@ vtkDSMMeshData::vtkDSMMeshData(std::shared_ptr<vtkDSMRankGroup> group, vtkDSMPol
     }
   }
   this->FindBounds(data);
-  this->DescribeSources();
+  this->DescribeSources(content);
   if (old && old->Group == this->Group)
   {
     this->TakeOver(std::move(old->Parts));
@@ -166,16 +174,12 @@ std::uint32_t vtkDSMMeshData::FindGroup(const Part& part) const
   return found != this->Looks.end() ? found->first : none;
 }
 
-void vtkDSMMeshData::DescribeSources()
+void vtkDSMMeshData::DescribeSources(const Content& content)
 {
-  const int threads = this->Group->GetStore().GetSettings().Workers;
-  const auto identify = [threads](vtkAbstractArray* array)
-  { return vtkDSMContent::Hash(array, threads); };
   for (std::size_t index = 0; index < this->Blocks.size(); ++index)
   {
     const vtkDSMMeshBlock& block = this->Blocks[index];
-    std::vector<std::uint64_t> numbers =
-      DescribeBlock(this->Mapper, block, this->Textured, identify);
+    std::vector<std::uint64_t> numbers = content.Blocks[index];
     if (block.Data->GetNumberOfVerts() > 0 || block.Data->GetNumberOfLines() > 0)
     {
       AddNumber(numbers, ChooseRadius(this->Mapper->GetLineRadius(), this->Diagonal));
@@ -429,7 +433,7 @@ std::vector<std::uint64_t> vtkDSMMeshData::GetStamp(vtkDSMPolyDataMapper* mapper
       rt::ByteHash hash;
       hash.Add(identity, sizeof(identity));
       return hash.Get();
-    });
+    }).Whole;
   // Who writes new values to an old array need not say so at the array.
   for (const vtkDSMMeshBlock& block : vtkDSMMeshBlock::Collect(mapper))
   {
@@ -443,7 +447,7 @@ std::vector<std::uint64_t> vtkDSMMeshData::GetStamp(vtkDSMPolyDataMapper* mapper
   return numbers;
 }
 
-std::vector<std::uint64_t> vtkDSMMeshData::HashContent(
+vtkDSMMeshData::Content vtkDSMMeshData::HashContent(
   vtkDSMPolyDataMapper* mapper, bool textured, int threads)
 {
   return Describe(mapper, textured,
@@ -492,10 +496,11 @@ std::vector<std::uint64_t> vtkDSMMeshData::DescribeBlock(vtkDSMPolyDataMapper* m
   return numbers;
 }
 
-std::vector<std::uint64_t> vtkDSMMeshData::Describe(
+vtkDSMMeshData::Content vtkDSMMeshData::Describe(
   vtkDSMPolyDataMapper* mapper, bool textured, const Identify& identify)
 {
-  std::vector<std::uint64_t> numbers;
+  Content content;
+  std::vector<std::uint64_t>& numbers = content.Whole;
   AddNumber(numbers, mapper->GetLineRadius());
   AddNumber(numbers, mapper->GetPointRadius());
   if (mapper->GetScalarVisibility())
@@ -514,8 +519,8 @@ std::vector<std::uint64_t> vtkDSMMeshData::Describe(
     {
       AddNumber(numbers, channel);
     }
-    const std::vector<std::uint64_t> source = DescribeBlock(mapper, block, textured, identify);
-    numbers.insert(numbers.end(), source.begin(), source.end());
+    content.Blocks.push_back(DescribeBlock(mapper, block, textured, identify));
+    numbers.insert(numbers.end(), content.Blocks.back().begin(), content.Blocks.back().end());
   }
-  return numbers;
+  return content;
 }

@@ -50,13 +50,21 @@ public:
     std::vector<std::uint64_t> Source;
   };
 
-  /// Collective; a rank without data takes part. `textured`: texture coordinates are wanted. `old`:
+  /// What this rank's data, and what is read of them, hold.
+  struct Content
+  {
+    std::vector<std::uint64_t> Whole;
+    std::vector<std::vector<std::uint64_t>> Blocks; ///< of each, in vtkDSMMeshBlock::Collect's order
+  };
+
+  /// Collective; a rank without data takes part. `textured`: texture coordinates are wanted. `content`:
+  /// what HashContent says of the mapper's data now. `old`:
   /// what was made of the mapper's data before, or null; its meshes are taken
   /// over where they would be the same, also those of blocks that are hidden now, and else leave the
   /// store first, since there may not be room for both. Failures are dsm::Error, the same on every
   /// rank.
   vtkDSMMeshData(std::shared_ptr<vtkDSMRankGroup> group, vtkDSMPolyDataMapper* mapper,
-    bool textured, std::unique_ptr<vtkDSMMeshData> old);
+    bool textured, const Content& content, std::unique_ptr<vtkDSMMeshData> old);
 
   const std::vector<Part>& GetParts() const { return this->Parts; }
   /// Of all ranks' visible blocks; uninitialised bounds (min > max) without any.
@@ -69,8 +77,7 @@ public:
 
   /// Local, reads the data: numbers that are others when, and only when, this rank's data or what is
   /// read of them are.
-  static std::vector<std::uint64_t> HashContent(
-    vtkDSMPolyDataMapper* mapper, bool textured, int threads);
+  static Content HashContent(vtkDSMPolyDataMapper* mapper, bool textured, int threads);
 
 private:
   struct Surface
@@ -84,7 +91,7 @@ private:
   /// Numbers an array, by its identity or by what it holds.
   using Identify = std::function<std::uint64_t(vtkAbstractArray*)>;
 
-  static std::vector<std::uint64_t> Describe(
+  static Content Describe(
     vtkDSMPolyDataMapper* mapper, bool textured, const Identify& identify);
   static std::vector<std::uint64_t> DescribeBlock(vtkDSMPolyDataMapper* mapper,
     const vtkDSMMeshBlock& block, bool textured, const Identify& identify);
@@ -92,7 +99,7 @@ private:
   void FormGroups();
   /// The group that an old part would be of; one that does not exist if there is none.
   std::uint32_t FindGroup(const Part& part) const;
-  void DescribeSources();
+  void DescribeSources(const Content& content);
   void TakeOver(std::vector<Part>&& old);
   void FindBounds(const std::vector<vtkPolyData*>& mine);
   void CheckSolids(const vtkDSMTubesAndSpheres& solids) const;

@@ -105,7 +105,7 @@ std::vector<std::uint64_t> vtkDSMSceneMesh::GetStamp() const
   }
 }
 
-std::vector<std::uint64_t> vtkDSMSceneMesh::HashContent() const
+vtkDSMMeshData::Content vtkDSMSceneMesh::HashContent() const
 {
   try
   {
@@ -113,7 +113,7 @@ std::vector<std::uint64_t> vtkDSMSceneMesh::HashContent() const
   }
   catch (const dsm::Error&)
   {
-    return { 0 };
+    return { { 0 }, {} };
   }
 }
 
@@ -124,15 +124,20 @@ bool vtkDSMSceneMesh::HasNewData()
     return true;
   }
   std::vector<std::uint64_t> stamp = this->GetStamp();
-  if (stamp == this->SeenStamp)
+  if (stamp == this->Seen.Stamp)
   {
     return false;
   }
-  if (!this->Failure.empty() || this->HashContent() != this->SeenContent)
+  if (!this->Failure.empty())
   {
     return true;
   }
-  this->SeenStamp = std::move(stamp);
+  this->Found = { std::move(stamp), this->HashContent() };
+  if (this->Found.Content.Whole != this->Seen.Content.Whole)
+  {
+    return true;
+  }
+  this->Seen = std::move(this->Found);
   return false;
 }
 
@@ -153,12 +158,20 @@ void vtkDSMSceneMesh::Update(const std::shared_ptr<vtkDSMRankGroup>& group, bool
     this->Reported.clear();
     this->Taken = true;
     this->Threads = group->GetStore().GetSettings().Workers;
-    this->SeenStamp = this->GetStamp();
-    this->SeenContent = this->HashContent();
+    std::vector<std::uint64_t> stamp = this->GetStamp();
+    if (stamp == this->Found.Stamp)
+    {
+      this->Seen = std::move(this->Found);
+    }
+    else if (stamp != this->Seen.Stamp)
+    {
+      this->Seen = { std::move(stamp), this->HashContent() };
+    }
+    this->Found = {};
     try
     {
       this->Data = std::make_unique<vtkDSMMeshData>(
-        group, this->Mapper, this->IsTextured(), std::move(this->Data));
+        group, this->Mapper, this->IsTextured(), this->Seen.Content, std::move(this->Data));
       this->Mapper->SetGlobalBounds(this->Data->GetBounds());
     }
     catch (const dsm::Error& error)

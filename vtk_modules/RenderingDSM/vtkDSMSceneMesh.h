@@ -35,16 +35,20 @@ public:
 
 private:
   std::vector<std::uint64_t> GetStamp() const;
-  std::vector<std::uint64_t> HashContent() const;
+  vtkDSMMeshData::Content HashContent() const;
   bool IsTextured() const;
   rt::MeshObject CreateObject(const vtkDSMMeshData::Part& part, vtkActor* actor);
   const std::shared_ptr<const rt::ColorMap>& GetColorMap();
   const std::shared_ptr<const rt::Texture>& GetPicture(vtkActor* actor);
 
   vtkWeakPointer<vtkDSMPolyDataMapper> Mapper;
-  /// Of what was taken in, or is the same; see vtkDSMMeshData.
-  std::vector<std::uint64_t> SeenStamp;
-  std::vector<std::uint64_t> SeenContent;
+  struct State
+  {
+    std::vector<std::uint64_t> Stamp;
+    vtkDSMMeshData::Content Content;
+  };
+  State Seen;  ///< of what was taken in, or is the same; see vtkDSMMeshData
+  State Found; ///< of what HasNewData found to be new, until it is taken in
   int Threads = 1; ///< to look for changes with
   bool Taken = false;
   std::unique_ptr<vtkDSMMeshData> Data;
