@@ -7,7 +7,6 @@ namespace dsm
 void WorkerSlots::BeginFrame(int slots)
 {
   const std::lock_guard<std::mutex> lock(this->Guard);
-  this->Slots = slots;
   this->Free = slots;
   this->Since = Clock::now();
   this->Idle = Clock::duration(0);

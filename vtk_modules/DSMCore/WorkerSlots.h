@@ -60,7 +60,6 @@ private:
   mutable std::mutex Guard;
   std::condition_variable ForNew;
   std::condition_variable ForBegun;
-  int Slots = 1;
   int Free = 1;
   int Resuming = 0; ///< workers in Resume that have no slot yet
   Clock::time_point Since;

@@ -74,7 +74,6 @@ std::uint64_t HashChunk(const std::byte* data, std::size_t bytes)
 {
   constexpr std::size_t lanes = 4;
   constexpr std::size_t step = lanes * sizeof(std::uint64_t);
-  constexpr std::uint64_t prime = 0x100000001b3ull;
   std::array<std::uint64_t, lanes> state{ 1, 2, 3, 4 };
   std::size_t at = 0;
   for (; at + step <= bytes; at += step)
@@ -83,8 +82,7 @@ std::uint64_t HashChunk(const std::byte* data, std::size_t bytes)
     std::memcpy(words.data(), data + at, step);
     for (std::size_t lane = 0; lane < lanes; ++lane)
     {
-      state[lane] = (state[lane] ^ words[lane]) * prime;
-      state[lane] ^= state[lane] >> 32;
+      state[lane] = rt::ByteHash::AddWord(state[lane], words[lane]);
     }
   }
   rt::ByteHash hash;

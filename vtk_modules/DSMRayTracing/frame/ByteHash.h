@@ -22,12 +22,18 @@ public:
     {
       std::uint64_t word = 0;
       std::memcpy(&word, at + index, std::min(sizeof(word), bytes - index));
-      this->Value = (this->Value ^ word) * 0x100000001b3ull;
-      this->Value ^= this->Value >> 32;
+      this->Value = AddWord(this->Value, word);
     }
   }
 
   std::uint64_t Get() const { return this->Value; }
+
+  /// One step: the hash of what `state` is the hash of, and a word behind it.
+  static std::uint64_t AddWord(std::uint64_t state, std::uint64_t word)
+  {
+    state = (state ^ word) * 0x100000001b3ull;
+    return state ^ state >> 32;
+  }
 
 private:
   std::uint64_t Value = 0xcbf29ce484222325ull;

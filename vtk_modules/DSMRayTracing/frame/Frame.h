@@ -48,9 +48,7 @@ struct Frame
   /// Of the frames of a group of ranks: the same on every rank. 0: there is no frame.
   std::uint32_t Number = 0;
   double BusySeconds = 0.0; ///< from the start to the end of this rank's last tile
-  /// Whether the ranks had the last frame's tiles to begin with.
-  bool HasHistory = false;
-  double Seconds = 0.0; ///< from the collective start to the collective end
+  double Seconds = 0.0;     ///< from the collective start to the collective end
   /// How the bricks were kept; never Automatic.
   dsm::MemoryOrganization Organization = dsm::MemoryOrganization::ObjectBased;
   std::string Explanation; ///< a sentence: why they are kept so

@@ -238,7 +238,6 @@ void FrameRenderer::RenderTiles(dsm::BlockStore& store, const Scene& scene,
   frame.Width = request.Width;
   frame.Height = request.Height;
   frame.TileSize = request.TileSize;
-  frame.HasHistory = plan.HasHistory;
   frame.Counters = store.GetCounters();
   frame.IdleNanoseconds = slots.GetIdleNanoseconds();
   frame.WorkerCounters = store.GetWorkerCounters();
@@ -284,16 +283,17 @@ void FrameRenderer::TraceTiles(Store& store, dsm::WorkerSlots& slots, const Scen
     const dsm::WorkerSlots::Hold slot(slots);
     try
     {
+      std::uint64_t misses = 0; // of the tiles before
       const TileTracer<Store> tracer(store, worker, scene, rays, request);
       while (std::optional<Tile> tile = tiles.Pop(slots))
       {
         const double tileStart = GetThreadSeconds();
-        const std::uint64_t misses = store.GetMisses(worker);
         store.Enter(worker);
         tracer.Trace(*tile);
         store.Leave(worker);
         tile->Seconds = GetThreadSeconds() - tileStart;
-        tile->Misses += store.GetMisses(worker) - misses;
+        const std::uint64_t before = std::exchange(misses, store.GetMisses(worker));
+        tile->Misses += misses - before;
         tile->IsNew = tile->IsNew ||
           (plan.HasHistory && !std::binary_search(mine.begin(), mine.end(), tile->Index));
         tracer.Finish(*tile, GetTint(scene.View, this->Messenger.GetRank(), *tile));
