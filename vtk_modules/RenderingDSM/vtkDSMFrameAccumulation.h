@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef vtkDSMFrameAccumulation_h
+#define vtkDSMFrameAccumulation_h
+
+#include "DSMRayTracing/frame/Frame.h"
+#include "DSMRayTracing/frame/FrameRequest.h"
+#include "DSMRayTracing/frame/Scene.h"
+
+#include <cstdint>
+
+class vtkDSMRankGroup;
+
+/// A frame that gets its samples in one or several renders: as long as it shows the same, samples are
+/// added to those that are there.
+class vtkDSMFrameAccumulation
+{
+public:
+  /// Collective. Traces the samples of the request that are missing to `wanted` for each pixel, no more
+  /// than `atOnce` of them; 0: all. Returns whether there were any. Throws dsm::Error on every rank;
+  /// then there is nothing to add to.
+  bool Trace(vtkDSMRankGroup& group, const rt::Scene& scene, rt::FrameRequest request, int wanted,
+    int atOnce);
+
+  const rt::Frame& GetFrame() const { return this->Frame; }
+
+  /// Whether the frame has what was wanted, or there is none; the same on every rank.
+  bool IsComplete() const { return this->Samples == 0 || this->Samples >= this->Wanted; }
+
+  /// Begins anew with the next frame, which ranks start with the tiles that they have.
+  void Restart() { this->Samples = 0; }
+  /// The same without the tiles.
+  void Clear();
+
+private:
+  rt::Frame Frame;
+  std::uint64_t Digest = 0; ///< of what it shows
+  int Samples = 0;          ///< that it has; 0 when there is nothing to add to
+  int Wanted = 1;
+};
+
+#endif
