@@ -18,6 +18,7 @@
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
 #include "vtkProcessModule.h"
+#include "vtkRenderWindow.h"
 #include "vtkSmartPointer.h"
 
 #include <algorithm>
@@ -51,15 +52,28 @@ std::string FindObstacle()
   return {};
 }
 
-/// Only subclasses of a view may ask whether it selects. None of these is ever made.
-class SelectingView : public vtkPVRenderView
+/// Only subclasses of a view may ask what it renders for. None of these is ever made.
+class AskedView : public vtkPVRenderView
 {
 public:
   static bool IsSelecting(vtkPVRenderView* view)
   {
-    return (view->*&SelectingView::GetMakingSelection)();
+    return (view->*&AskedView::GetMakingSelection)();
+  }
+  static bool IsCapturing(vtkPVRenderView* view)
+  {
+    return (view->*&AskedView::GetInCaptureScreenshot)();
   }
 };
+
+/// Seconds that a render takes at most to add samples to a still picture, if one takes less.
+constexpr double SecondsPerFrame = 0.15;
+
+/// What is kept is not only looked at in passing, and so is what two eyes see in turns.
+bool CanRefine(vtkPVRenderView* view)
+{
+  return view && !AskedView::IsCapturing(view) && !view->GetRenderWindow()->GetStereoRender();
+}
 
 /// Whether the view shows any dataset in another way than ours. Selections, axes and text, which are
 /// no composite representations, do not count.
@@ -194,14 +208,16 @@ void vtkPVDSMDelivery::KeepData(vtkPVDataRepresentation* representation,
 bool vtkPVDSMDelivery::IsSelecting(vtkView* view)
 {
   auto* renderView = vtkPVRenderView::SafeDownCast(view);
-  return renderView && SelectingView::IsSelecting(renderView);
+  return renderView && AskedView::IsSelecting(renderView);
 }
 
-void vtkPVDSMDelivery::Choose(vtkDSMScene* scene, vtkView* anyView)
+void vtkPVDSMDelivery::Choose(vtkDSMScene* scene, vtkView* anyView, bool progressive)
 {
   auto* view = vtkPVRenderView::SafeDownCast(anyView);
   auto* controller = scene->GetController();
   scene->SetHidden(IsSelecting(anyView));
+  scene->SetSamplesPerFrame(progressive && CanRefine(view) ? 1 : 0);
+  scene->SetSecondsPerFrame(SecondsPerFrame);
   if (!view || !controller || controller->GetNumberOfProcesses() < 2)
   {
     scene->DeliverTiles();

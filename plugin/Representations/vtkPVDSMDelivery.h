@@ -41,8 +41,9 @@ public:
   /// For REQUEST_RENDER: whether the view is going to draw for a selection, until the next request.
   static bool IsSelecting(vtkView* view);
 
-  /// For REQUEST_RENDER: the way that suits what else the view shows.
-  static void Choose(vtkDSMScene* scene, vtkView* view);
+  /// For REQUEST_RENDER: the way that suits what else the view shows. `progressive`: the client goes
+  /// on rendering a still view while there are samples missing.
+  static void Choose(vtkDSMScene* scene, vtkView* view, bool progressive);
 };
 
 #endif

@@ -8,6 +8,7 @@
 #include "vtkPVDSMFrameReport.h"
 #include "vtkPVDSMLightOptions.h"
 #include "vtkPVDSMMemoryOptions.h"
+#include "vtkPVDSMRefinement.h"
 #include "vtkPVDSMSelectionMapper.h"
 
 #include "vtkActor.h"
@@ -151,7 +152,8 @@ void vtkPVDSMGeometryRepresentation::PrepareRender()
   this->SelectionActor->SetUserMatrix(matrix);
   if (this->Scene)
   {
-    vtkPVDSMDelivery::Choose(this->Scene, this->GetView());
+    vtkPVDSMDelivery::Choose(
+      this->Scene, this->GetView(), this->FrameReport && this->FrameReport->GetProgressive());
   }
 }
 
@@ -175,6 +177,7 @@ bool vtkPVDSMGeometryRepresentation::AddToView(vtkView* view)
   {
     this->Scene = vtkPVDSMDelivery::FindScene(this, renderView);
     this->ConnectFrameReport();
+    this->Refinement = vtkPVDSMRefinement::Follow(renderView);
     renderView->GetRenderer()->AddViewProp(this->SelectionActor);
     renderView->RegisterPropForHardwareSelection(this, this->SelectionActor);
   }
@@ -190,6 +193,7 @@ bool vtkPVDSMGeometryRepresentation::RemoveFromView(vtkView* view)
     renderView->UnRegisterPropForHardwareSelection(this, this->SelectionActor);
   }
   this->Scene = nullptr;
+  this->Refinement = nullptr;
   this->ConnectFrameReport();
   return removed;
 }
@@ -281,7 +285,7 @@ void vtkPVDSMGeometryRepresentation::ConnectFrameReport()
 {
   if (this->FrameReport)
   {
-    this->FrameReport->SetSource(this->Scene ? this->Scene->GetStatistics() : nullptr);
+    this->FrameReport->SetSource(this->Scene);
   }
 }
 

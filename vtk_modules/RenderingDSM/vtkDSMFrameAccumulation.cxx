@@ -5,9 +5,10 @@
 #include "vtkDSMRankGroup.h"
 
 #include <algorithm>
+#include <cmath>
 
-bool vtkDSMFrameAccumulation::Trace(
-  vtkDSMRankGroup& group, const rt::Scene& scene, rt::FrameRequest request, int wanted, int atOnce)
+bool vtkDSMFrameAccumulation::Trace(vtkDSMRankGroup& group, const rt::Scene& scene,
+  rt::FrameRequest request, int wanted, const Pace& pace, double lastSeconds)
 {
   std::uint64_t digest = 0;
   this->Wanted = wanted;
@@ -26,13 +27,12 @@ bool vtkDSMFrameAccumulation::Trace(
   {
     this->Samples = 0;
   }
-  const int missing = wanted - this->Samples;
-  if (missing <= 0)
+  if (this->Samples >= wanted)
   {
     return false;
   }
   request.FirstSample = this->Samples;
-  request.Samples = atOnce > 0 ? std::min(atOnce, missing) : missing;
+  request.Samples = this->CountNext(pace, lastSeconds);
   this->Samples = 0;
   rt::FrameRenderer& renderer = group.GetFrameRenderer();
   if (request.FirstSample == 0)
@@ -44,12 +44,27 @@ bool vtkDSMFrameAccumulation::Trace(
     renderer.Refine(group.GetStore(), scene, request, this->Frame);
   }
   this->Samples = request.FirstSample + request.Samples;
+  this->LastSamples = request.Samples;
   this->Digest = digest;
   return true;
 }
 
+int vtkDSMFrameAccumulation::CountNext(const Pace& pace, double lastSeconds) const
+{
+  const int missing = this->Wanted - this->Samples;
+  if (pace.Samples == 0)
+  {
+    return missing;
+  }
+  double samples = pace.Samples;
+  if (this->Samples > 0 && lastSeconds > 0.0)
+  {
+    samples = std::max(samples, std::floor(pace.Seconds * this->LastSamples / lastSeconds));
+  }
+  return static_cast<int>(std::min<double>(samples, missing));
+}
+
 void vtkDSMFrameAccumulation::Clear()
 {
-  this->Frame = {};
-  this->Samples = 0;
+  *this = {};
 }

@@ -15,16 +15,27 @@ class vtkDSMRankGroup;
 class vtkDSMFrameAccumulation
 {
 public:
-  /// Collective. Traces the samples of the request that are missing to `wanted` for each pixel, no more
-  /// than `atOnce` of them; 0: all. Returns whether there were any. Throws dsm::Error on every rank;
-  /// then there is nothing to add to.
+  /// How many samples a render adds.
+  struct Pace
+  {
+    int Samples = 0;      ///< 0: all
+    double Seconds = 0.0; ///< more than Samples, as long as they take less, when added to others
+  };
+
+  /// Collective. Traces the samples of the request that are missing to `wanted` for each pixel, or as
+  /// many as the pace allows. `lastSeconds`: that the last ones took, on every rank the same. Returns
+  /// whether there were any. Throws dsm::Error on every rank; then there is nothing to add to.
   bool Trace(vtkDSMRankGroup& group, const rt::Scene& scene, rt::FrameRequest request, int wanted,
-    int atOnce);
+    const Pace& pace, double lastSeconds);
 
   const rt::Frame& GetFrame() const { return this->Frame; }
 
   /// Whether the frame has what was wanted, or there is none; the same on every rank.
   bool IsComplete() const { return this->Samples == 0 || this->Samples >= this->Wanted; }
+
+  /// Of each pixel; 0 without a frame.
+  int GetSamples() const { return this->Samples; }
+  int GetWanted() const { return this->Wanted; }
 
   /// Begins anew with the next frame, which ranks start with the tiles that they have.
   void Restart() { this->Samples = 0; }
@@ -32,10 +43,13 @@ public:
   void Clear();
 
 private:
+  int CountNext(const Pace& pace, double lastSeconds) const;
+
   rt::Frame Frame;
   std::uint64_t Digest = 0; ///< of what it shows
   int Samples = 0;          ///< that it has; 0 when there is nothing to add to
-  int Wanted = 1;
+  int LastSamples = 0;      ///< that were added last
+  int Wanted = 0;
 };
 
 #endif

@@ -179,17 +179,37 @@ void vtkDSMScene::SetHidden(bool hidden)
 
 void vtkDSMScene::SetSamplesPerFrame(int samples)
 {
-  this->Self->SamplesPerFrame = std::max(0, samples);
+  this->Self->Pace.Samples = std::max(0, samples);
 }
 
 int vtkDSMScene::GetSamplesPerFrame() const
 {
-  return this->Self->SamplesPerFrame;
+  return this->Self->Pace.Samples;
+}
+
+void vtkDSMScene::SetSecondsPerFrame(double seconds)
+{
+  this->Self->Pace.Seconds = std::max(0.0, seconds);
+}
+
+double vtkDSMScene::GetSecondsPerFrame() const
+{
+  return this->Self->Pace.Seconds;
 }
 
 bool vtkDSMScene::IsRefined() const
 {
   return this->Self->Accumulation.IsComplete();
+}
+
+int vtkDSMScene::GetNumberOfSamples() const
+{
+  return this->Self->Accumulation.GetSamples();
+}
+
+int vtkDSMScene::GetNumberOfSamplesWanted() const
+{
+  return this->Self->Accumulation.GetWanted();
 }
 
 bool vtkDSMScene::IsTracing() const

@@ -167,7 +167,8 @@ void vtkDSMScene::Internals::Draw()
   }
   this->AgreeOnView(scene, request);
   const int wanted = this->Members.GetSamplesPerPixel();
-  if (this->Accumulation.Trace(*this->Group, scene, request, wanted, this->GetSamplesAtOnce()))
+  if (this->Accumulation.Trace(
+        *this->Group, scene, request, wanted, this->GetPace(), this->Statistics->GetFrameSeconds()))
   {
     this->Statistics->Gather(messenger, this->Accumulation.GetFrame());
   }
@@ -283,11 +284,11 @@ void vtkDSMScene::Internals::AgreeOnView(rt::Scene& scene, rt::FrameRequest& req
   }
 }
 
-int vtkDSMScene::Internals::GetSamplesAtOnce() const
+vtkDSMFrameAccumulation::Pace vtkDSMScene::Internals::GetPace() const
 {
   vtkRenderWindow* window = this->Renderer->GetRenderWindow();
   const bool isInteractive = window && window->GetDesiredUpdateRate() >= InteractiveRate;
-  return isInteractive ? 1 : this->SamplesPerFrame;
+  return isInteractive ? vtkDSMFrameAccumulation::Pace{ 1, 0.0 } : this->Pace;
 }
 
 /// What shows through a translucent surface must have been drawn before it.

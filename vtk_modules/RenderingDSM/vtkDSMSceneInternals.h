@@ -50,13 +50,13 @@ public:
   vtkDSMFrameDelivery Delivery;
   std::string Failure; ///< that was reported last
   bool Tracing = false;
-  int SamplesPerFrame = 0;
-  vtkDSMMemorySettings Settings; ///< that the objects ask for
+  vtkDSMFrameAccumulation::Pace Pace; ///< of still pictures
+  vtkDSMMemorySettings Settings;      ///< that the objects ask for
 
 private:
   void AgreeOnView(rt::Scene& scene, rt::FrameRequest& request) const;
   void DrawLast(const rt::Scene& scene);
-  int GetSamplesAtOnce() const;
+  vtkDSMFrameAccumulation::Pace GetPace() const;
   void DrawPicture(rt::Picture picture, const rt::FrameRequest& request, vtkMatrix4x4* projection,
     rt::DebugView view);
   bool WriteNotes(rt::DebugView view, rt::Picture& picture) const;
