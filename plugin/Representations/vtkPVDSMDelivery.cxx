@@ -5,6 +5,7 @@
 
 #include "vtkBoundingBox.h"
 #include "vtkCompositeRepresentation.h"
+#include "vtkDataObject.h"
 #include "vtkInformation.h"
 #include "vtkMultiProcessController.h"
 #include "vtkOrderedCompositingHelper.h"
@@ -22,6 +23,7 @@
 #include "vtkSmartPointer.h"
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -73,6 +75,13 @@ constexpr double SecondsPerFrame = 0.15;
 bool CanRefine(vtkPVRenderView* view)
 {
   return view && !AskedView::IsCapturing(view) && !view->GetRenderWindow()->GetStereoRender();
+}
+
+/// The edge of the squares of pixels of which one is traced: from 1, at the finest level of detail, to 4.
+int GetReduction(double resolution)
+{
+  constexpr double coarsest = 4.0;
+  return static_cast<int>(std::lround(std::pow(coarsest, 1.0 - resolution)));
 }
 
 /// Whether the view shows any dataset in another way than ours. Selections, axes and text, which are
@@ -186,7 +195,9 @@ void vtkPVDSMDelivery::KeepData(vtkPVDataRepresentation* representation,
   vtkInformation* outInfo)
 {
   FillPlaceholder(placeholder, shown.Bounds);
-  vtkPVRenderView::SetPiece(inInfo, representation, placeholder);
+  // The size is what the view's thresholds are compared with.
+  const unsigned long kibibytes = shown.Data ? shown.Data->GetActualMemorySize() : 0;
+  vtkPVRenderView::SetPiece(inInfo, representation, placeholder, kibibytes);
   vtkPVRenderView::SetDeliverToClientAndRenderingProcesses(inInfo, representation, false, false);
   vtkPVRenderView::SetRequiresDistributedRendering(inInfo, representation, true);
   vtkPVRenderView::SetOrderedCompositingConfiguration(
@@ -211,13 +222,18 @@ bool vtkPVDSMDelivery::IsSelecting(vtkView* view)
   return renderView && AskedView::IsSelecting(renderView);
 }
 
-void vtkPVDSMDelivery::Choose(vtkDSMScene* scene, vtkView* anyView, bool progressive)
+void vtkPVDSMDelivery::Choose(
+  vtkDSMScene* scene, vtkView* anyView, vtkInformation* inInfo, bool progressive)
 {
   auto* view = vtkPVRenderView::SafeDownCast(anyView);
   auto* controller = scene->GetController();
   scene->SetHidden(IsSelecting(anyView));
   scene->SetSamplesPerFrame(progressive && CanRefine(view) ? 1 : 0);
   scene->SetSecondsPerFrame(SecondsPerFrame);
+  scene->SetInteractiveReduction(
+    view && inInfo->Has(vtkPVRenderView::USE_LOD()) && !AskedView::IsCapturing(view)
+      ? GetReduction(view->GetLODResolution())
+      : 0);
   if (!view || !controller || controller->GetNumberOfProcesses() < 2)
   {
     scene->DeliverTiles();

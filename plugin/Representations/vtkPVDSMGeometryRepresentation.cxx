@@ -89,7 +89,7 @@ int vtkPVDSMGeometryRepresentation::ProcessViewRequest(
   }
   else if (request == vtkPVView::REQUEST_RENDER())
   {
-    this->PrepareRender();
+    this->PrepareRender(inInfo);
   }
   return 1;
 }
@@ -119,7 +119,9 @@ void vtkPVDSMGeometryRepresentation::PrepareUpdate(vtkInformation* inInfo, vtkIn
   double worldBounds[6];
   inWorld.GetBounds(worldBounds);
   vtkPVDSMDelivery::KeepData(this, this->Placeholder,
-    { inWorld.IsValid() ? worldBounds : nullptr, this->IsTranslucent() }, inInfo, outInfo);
+    { inWorld.IsValid() ? worldBounds : nullptr, this->IsTranslucent(),
+      this->GetRenderedDataObject(0) },
+    inInfo, outInfo);
   vtkPVRenderView::SetGeometryBounds(inInfo, this, inflated, matrix);
 }
 
@@ -130,7 +132,7 @@ bool vtkPVDSMGeometryRepresentation::IsTranslucent() const
       [](const auto& block) { return block.second < 1.0; });
 }
 
-void vtkPVDSMGeometryRepresentation::PrepareRender()
+void vtkPVDSMGeometryRepresentation::PrepareRender(vtkInformation* inInfo)
 {
   vtkDataObject* data = this->GetRenderedDataObject(0);
   this->GetMapper()->SetInputDataObject(data);
@@ -152,8 +154,8 @@ void vtkPVDSMGeometryRepresentation::PrepareRender()
   this->SelectionActor->SetUserMatrix(matrix);
   if (this->Scene)
   {
-    vtkPVDSMDelivery::Choose(
-      this->Scene, this->GetView(), this->FrameReport && this->FrameReport->GetProgressive());
+    vtkPVDSMDelivery::Choose(this->Scene, this->GetView(), inInfo,
+      this->FrameReport && this->FrameReport->GetProgressive());
   }
 }
 

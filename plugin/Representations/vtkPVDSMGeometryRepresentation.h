@@ -95,7 +95,7 @@ private:
 
   vtkDSMPolyDataMapper* GetMapper() const;
   void PrepareUpdate(vtkInformation* inInfo, vtkInformation* outInfo);
-  void PrepareRender();
+  void PrepareRender(vtkInformation* inInfo);
   bool IsTranslucent() const;
   void ConnectFrameReport();
   void ForwardProgress();

@@ -103,8 +103,8 @@ int vtkPVDSMImageRepresentation::ProcessViewRequest(
     this->SelectionActor->SetUseBounds(selecting); // ranks draw where there is something
     this->SelectionMapper->SetShownBounds(this->Mapper->GetBounds());
     this->SelectionActor->SetUserMatrix(this->Volume->GetMatrix());
-    vtkPVDSMDelivery::Choose(
-      this->Scene, this->GetView(), this->FrameReport && this->FrameReport->GetProgressive());
+    vtkPVDSMDelivery::Choose(this->Scene, this->GetView(), inInfo,
+      this->FrameReport && this->FrameReport->GetProgressive());
   }
   return 1;
 }
@@ -112,8 +112,9 @@ int vtkPVDSMImageRepresentation::ProcessViewRequest(
 void vtkPVDSMImageRepresentation::PrepareUpdate(vtkInformation* inInfo, vtkInformation* outInfo)
 {
   const bool isTranslucent = this->Mapper->GetSurfaceProperty()->GetOpacity() < 1.0;
-  vtkPVDSMDelivery::KeepData(
-    this, this->Placeholder, { this->Volume->GetBounds(), isTranslucent }, inInfo, outInfo);
+  vtkPVDSMDelivery::KeepData(this, this->Placeholder,
+    { this->Volume->GetBounds(), isTranslucent, this->Mapper->GetInputDataObject(0, 0) }, inInfo,
+    outInfo);
   // In world space: with a matrix, the view would transform two corners of the box only.
   if (const double* bounds = this->Volume->GetBounds())
   {

@@ -64,6 +64,13 @@ int vtkDSMFrameAccumulation::CountNext(const Pace& pace, double lastSeconds) con
   return static_cast<int>(std::min<double>(samples, missing));
 }
 
+double vtkDSMFrameAccumulation::GetSecondsPerPixel(double lastSeconds) const
+{
+  const double samples =
+    static_cast<double>(this->LastSamples) * this->Frame.Width * this->Frame.Height;
+  return samples > 0.0 ? lastSeconds / samples : 0.0;
+}
+
 void vtkDSMFrameAccumulation::Clear()
 {
   *this = {};

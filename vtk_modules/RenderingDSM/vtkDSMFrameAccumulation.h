@@ -37,6 +37,10 @@ public:
   int GetSamples() const { return this->Samples; }
   int GetWanted() const { return this->Wanted; }
 
+  /// What one sample of a pixel took in the last render; 0 where nothing is known. `lastSeconds`: as in
+  /// Trace.
+  double GetSecondsPerPixel(double lastSeconds) const;
+
   /// Begins anew with the next frame, which ranks start with the tiles that they have.
   void Restart() { this->Samples = 0; }
   /// The same without the tiles.

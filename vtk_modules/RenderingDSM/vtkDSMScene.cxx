@@ -197,6 +197,16 @@ double vtkDSMScene::GetSecondsPerFrame() const
   return this->Self->Pace.Seconds;
 }
 
+void vtkDSMScene::SetInteractiveReduction(int edge)
+{
+  this->Self->InteractiveReduction = std::max(0, edge);
+}
+
+int vtkDSMScene::GetInteractiveReduction() const
+{
+  return this->Self->InteractiveReduction;
+}
+
 bool vtkDSMScene::IsRefined() const
 {
   return this->Self->Accumulation.IsComplete();

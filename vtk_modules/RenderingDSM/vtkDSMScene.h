@@ -126,6 +126,16 @@ public:
   double GetSecondsPerFrame() const;
   ///@}
 
+  ///@{
+  /**
+   * While the window wants interactive rates, one pixel is traced for a square of pixels, which it
+   * fills: of this edge at least, and of up to 8 where the frame would take longer than about 0.07 s by
+   * what the last one took. 0 (the default): every pixel is traced. Same value on every rank.
+   */
+  void SetInteractiveReduction(int edge);
+  int GetInteractiveReduction() const;
+  ///@}
+
   /**
    * Whether the last picture has all the samples that were asked for; the same on every rank.
    */

@@ -24,6 +24,10 @@ namespace
 /// Frames per second; an application that wants as many from its window is moving the camera.
 constexpr double InteractiveRate = 1.0;
 
+/// That an interactive frame may take, where its resolution may be lowered, and the lowest one.
+constexpr double InteractiveSeconds = 0.07;
+constexpr int LargestReduction = 8;
+
 /// Whether matrices differ by rounding only.
 bool IsNearly(const glm::dmat4& a, const glm::dmat4& b)
 {
@@ -166,6 +170,9 @@ void vtkDSMScene::Internals::Draw()
     return;
   }
   this->AgreeOnView(scene, request);
+  const int reduction = this->GetReduction(request);
+  request.Width = (request.Width + reduction - 1) / reduction;
+  request.Height = (request.Height + reduction - 1) / reduction;
   const int wanted = this->Members.GetSamplesPerPixel();
   if (this->Accumulation.Trace(
         *this->Group, scene, request, wanted, this->GetPace(), this->Statistics->GetFrameSeconds()))
@@ -179,12 +186,12 @@ void vtkDSMScene::Internals::Draw()
     {
       this->DrawPicture(
         whole ? std::move(*whole) : rt::AssembleTiles(this->Accumulation.GetFrame()), request,
-        projection, scene.View);
+        projection, scene.View, reduction == 1);
     });
 }
 
 void vtkDSMScene::Internals::DrawPicture(rt::Picture picture, const rt::FrameRequest& request,
-  vtkMatrix4x4* projection, rt::DebugView view)
+  vtkMatrix4x4* projection, rt::DebugView view, bool hasNotes)
 {
   this->Members.GetBounds(this->Bounds);
   double bounds[6];
@@ -194,7 +201,7 @@ void vtkDSMScene::Internals::DrawPicture(rt::Picture picture, const rt::FrameReq
   const bool writesNotes =
     this->Delivery.AreBlended() || this->Group->GetMessenger().GetRank() == 0;
   rt::Picture unseen;
-  if (this->WriteNotes(view, writesNotes ? picture : unseen))
+  if (hasNotes && this->WriteNotes(view, writesNotes ? picture : unseen))
   {
     this->AddWholeView(request, bounds);
   }
@@ -284,11 +291,30 @@ void vtkDSMScene::Internals::AgreeOnView(rt::Scene& scene, rt::FrameRequest& req
   }
 }
 
-vtkDSMFrameAccumulation::Pace vtkDSMScene::Internals::GetPace() const
+bool vtkDSMScene::Internals::IsInteractive() const
 {
   vtkRenderWindow* window = this->Renderer->GetRenderWindow();
-  const bool isInteractive = window && window->GetDesiredUpdateRate() >= InteractiveRate;
-  return isInteractive ? vtkDSMFrameAccumulation::Pace{ 1, 0.0 } : this->Pace;
+  return window && window->GetDesiredUpdateRate() >= InteractiveRate;
+}
+
+/// The edge of the squares of which one pixel is traced; the same on every rank.
+int vtkDSMScene::Internals::GetReduction(const rt::FrameRequest& request) const
+{
+  if (this->InteractiveReduction == 0 || !this->IsInteractive())
+  {
+    return 1;
+  }
+  const double pixels = static_cast<double>(request.Width) * request.Height;
+  const double seconds =
+    pixels * this->Accumulation.GetSecondsPerPixel(this->Statistics->GetFrameSeconds());
+  const int least = this->InteractiveReduction;
+  return std::clamp(static_cast<int>(std::lround(std::sqrt(seconds / InteractiveSeconds))), least,
+    std::max(least, LargestReduction));
+}
+
+vtkDSMFrameAccumulation::Pace vtkDSMScene::Internals::GetPace() const
+{
+  return this->IsInteractive() ? vtkDSMFrameAccumulation::Pace{ 1, 0.0 } : this->Pace;
 }
 
 /// What shows through a translucent surface must have been drawn before it.

@@ -51,14 +51,17 @@ public:
   std::string Failure; ///< that was reported last
   bool Tracing = false;
   vtkDSMFrameAccumulation::Pace Pace; ///< of still pictures
-  vtkDSMMemorySettings Settings;      ///< that the objects ask for
+  int InteractiveReduction = 0;
+  vtkDSMMemorySettings Settings; ///< that the objects ask for
 
 private:
   void AgreeOnView(rt::Scene& scene, rt::FrameRequest& request) const;
   void DrawLast(const rt::Scene& scene);
+  bool IsInteractive() const;
   vtkDSMFrameAccumulation::Pace GetPace() const;
+  int GetReduction(const rt::FrameRequest& request) const;
   void DrawPicture(rt::Picture picture, const rt::FrameRequest& request, vtkMatrix4x4* projection,
-    rt::DebugView view);
+    rt::DebugView view, bool hasNotes);
   bool WriteNotes(rt::DebugView view, rt::Picture& picture) const;
   void AddWholeView(const rt::FrameRequest& request, double bounds[6]) const;
 };
