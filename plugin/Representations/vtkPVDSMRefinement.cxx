@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkPVDSMRefinement.h"
+#include "vtkPVDSMVersionCheck.h"
 
 #include "vtkClientServerStream.h"
 #include "vtkCollection.h"
@@ -132,6 +133,7 @@ vtkSmartPointer<vtkPVDSMRefinement> vtkPVDSMRefinement::Follow(vtkPVRenderView* 
 void vtkPVDSMRefinement::Attach(vtkSMRenderViewProxy* view)
 {
   this->View = view;
+  vtkPVDSMVersionCheck::Run(view->GetSession());
   this->ViewObservers = { view->AddObserver(
                             vtkCommand::StartEvent, this, &vtkPVDSMRefinement::OnRenderBegins),
     view->AddObserver(vtkCommand::EndEvent, this, &vtkPVDSMRefinement::OnRenderEnds) };
