@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkPVDSMRefinement.h"
 
+#include "vtkPVDSMDelivery.h"
+
 #include "vtkClientServerStream.h"
 #include "vtkCollection.h"
 #include "vtkCommand.h"
@@ -8,6 +10,7 @@
 #include "vtkObjectFactory.h"
 #include "vtkPVRenderView.h"
 #include "vtkProcessModule.h"
+#include "vtkRenderWindow.h"
 #include "vtkRenderWindowInteractor.h"
 #include "vtkSMProperty.h"
 #include "vtkSMPropertyHelper.h"
@@ -147,6 +150,7 @@ void vtkPVDSMRefinement::FollowInteractor()
   }
   this->LeaveInteractor();
   this->Interactor = interactor;
+  this->Window = this->View->GetRenderWindow();
   if (interactor)
   {
     this->InteractorObservers = { interactor->AddObserver(vtkCommand::StartInteractionEvent, this,
@@ -154,6 +158,11 @@ void vtkPVDSMRefinement::FollowInteractor()
       interactor->AddObserver(
         vtkCommand::EndInteractionEvent, this, &vtkPVDSMRefinement::OnInteractionEnds),
       interactor->AddObserver(vtkCommand::TimerEvent, this, &vtkPVDSMRefinement::OnTimer) };
+  }
+  if (this->Window)
+  {
+    this->WindowObserver = this->Window->AddObserver(
+      vtkCommand::AbortCheckEvent, this, &vtkPVDSMRefinement::OnAbortCheck);
   }
 }
 
@@ -167,6 +176,10 @@ void vtkPVDSMRefinement::LeaveInteractor()
     }
   }
   this->InteractorObservers.clear();
+  if (this->Window)
+  {
+    this->Window->RemoveObserver(this->WindowObserver);
+  }
 }
 
 /// Whether the application handles events, so that timers expire.
@@ -176,7 +189,7 @@ bool vtkPVDSMRefinement::CanGoOn() const
     !this->View->GetSession()->IsMultiClients();
 }
 
-void vtkPVDSMRefinement::OnRenderBegins()
+void vtkPVDSMRefinement::OnRenderBegins(vtkObject*, unsigned long, void* interactive)
 {
   this->Forget();
   this->FollowInteractor();
@@ -184,6 +197,10 @@ void vtkPVDSMRefinement::OnRenderBegins()
   {
     return;
   }
+  this->CanAbort = *static_cast<int*>(interactive) == 0 &&
+    !vtkPVDSMDelivery::IsCapturing(
+      vtkPVRenderView::SafeDownCast(this->View->GetClientSideObject()));
+  this->Input.Begin();
   ForEachReport(this->View,
     [this](vtkSMProxy* report)
     {
@@ -200,6 +217,7 @@ void vtkPVDSMRefinement::OnRenderBegins()
 
 void vtkPVDSMRefinement::OnRenderEnds(vtkObject*, unsigned long, void* interactive)
 {
+  this->CanAbort = false;
   this->IsRefined = true;
   if (*static_cast<int*>(interactive) != 0 || !this->CanGoOn())
   {
@@ -222,6 +240,14 @@ void vtkPVDSMRefinement::OnRenderEnds(vtkObject*, unsigned long, void* interacti
   if (!this->IsRefined && !this->IsInteracting)
   {
     this->RenderLater(ShortDelay);
+  }
+}
+
+void vtkPVDSMRefinement::OnAbortCheck(vtkObject*, unsigned long, void*)
+{
+  if (this->CanAbort && this->Input.HasPressed())
+  {
+    this->Window->SetAbortRender(1);
   }
 }
 
