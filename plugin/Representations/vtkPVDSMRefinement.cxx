@@ -2,6 +2,7 @@
 #include "vtkPVDSMRefinement.h"
 
 #include "vtkPVDSMDelivery.h"
+#include "vtkPVDSMVersionCheck.h"
 
 #include "vtkClientServerStream.h"
 #include "vtkCollection.h"
@@ -135,6 +136,7 @@ vtkSmartPointer<vtkPVDSMRefinement> vtkPVDSMRefinement::Follow(vtkPVRenderView* 
 void vtkPVDSMRefinement::Attach(vtkSMRenderViewProxy* view)
 {
   this->View = view;
+  vtkPVDSMVersionCheck::Run(view->GetSession());
   this->ViewObservers = { view->AddObserver(
                             vtkCommand::StartEvent, this, &vtkPVDSMRefinement::OnRenderBegins),
     view->AddObserver(vtkCommand::EndEvent, this, &vtkPVDSMRefinement::OnRenderEnds) };
