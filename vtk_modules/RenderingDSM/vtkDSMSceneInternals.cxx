@@ -174,8 +174,19 @@ void vtkDSMScene::Internals::Draw()
   request.Width = (request.Width + reduction - 1) / reduction;
   request.Height = (request.Height + reduction - 1) / reduction;
   const int wanted = this->Members.GetSamplesPerPixel();
-  if (this->Accumulation.Trace(
-        *this->Group, scene, request, wanted, this->GetPace(), this->Statistics->GetFrameSeconds()))
+  vtkRenderWindow* window = this->Renderer->GetRenderWindow();
+  this->Group->GetFrameRenderer().SetAbortCheck(
+    [=] { return window && window->CheckAbortStatus() != 0; });
+  using Result = vtkDSMFrameAccumulation::Result;
+  const Result result = this->Accumulation.Trace(
+    *this->Group, scene, request, wanted, this->GetPace(), this->Statistics->GetFrameSeconds());
+  if (result == Result::Aborted)
+  {
+    // The renderer goes on, with the last picture: other ranks may wait for what this one draws.
+    window->SetAbortRender(0);
+    return;
+  }
+  if (result == Result::Traced)
   {
     this->Statistics->Gather(messenger, this->Accumulation.GetFrame());
   }
