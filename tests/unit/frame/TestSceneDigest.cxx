@@ -8,6 +8,7 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <set>
 #include <vector>
 
@@ -87,5 +88,20 @@ TEST(TestSceneDigest, ChangesWithWhatIsLaidOnAMesh)
         digests.insert(rt::GetSceneDigest(textured, request));
       }
       EXPECT_EQ(digests.size(), changes.size() + 1);
+
+      const std::vector<std::function<void(std::optional<rt::EdgeLines>&)>> lines = {
+        [](std::optional<rt::EdgeLines>& e) { e.reset(); },
+        [](std::optional<rt::EdgeLines>& e) { e->Color.y = 0.7f; },
+        [](std::optional<rt::EdgeLines>& e) { e->Width = 5.0f; },
+        [](std::optional<rt::EdgeLines>& e) { e->Opacity = 0.5f; },
+      };
+      const std::size_t before = digests.size();
+      for (const auto& change : lines)
+      {
+        rt::Scene other = scene;
+        change(other.Meshes.front().Edges);
+        digests.insert(rt::GetSceneDigest(other, request));
+      }
+      EXPECT_EQ(digests.size(), before + lines.size());
     });
 }

@@ -56,6 +56,7 @@ public:
   double GetValue(std::uint64_t) const override { return 0.0; }
   void GetColor(std::uint64_t, std::uint8_t*) const override {}
   void GetTextureCoordinate(std::uint64_t, double*) const override {}
+  unsigned GetEdgeFlags(std::uint64_t) const override { return rt::AllEdges; }
 };
 
 } // namespace

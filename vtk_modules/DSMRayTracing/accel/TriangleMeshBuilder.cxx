@@ -94,8 +94,8 @@ void TriangleMeshBuilder::AgreeOnPieces()
     {
       throw dsm::Error(this->What + ": The pieces of the mesh on ranks " + std::to_string(first) +
         " and " + std::to_string(rank) +
-        " differ in having normals, values, colours or texture coordinates. Give all pieces the "
-        "same arrays.");
+        " differ in having normals, values, colours, texture coordinates or edge flags. Give all "
+        "pieces the same arrays.");
     }
   }
 }

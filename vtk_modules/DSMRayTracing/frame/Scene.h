@@ -87,6 +87,16 @@ struct IsosurfaceObject
   ClipRegion Clipping;
 };
 
+/// Lines along the edges of a mesh's polygons, as VTK draws them on a surface: they take their share
+/// of the triangles beside them, and are not lit.
+struct EdgeLines
+{
+  glm::vec3 Color{ 0.0f };
+  /// Pixels, of both triangles beside an edge together.
+  float Width = 1.0f;
+  float Opacity = 1.0f; ///< over the surface
+};
+
 /// The triangles of one mesh at one place.
 struct MeshObject
 {
@@ -109,6 +119,7 @@ struct MeshObject
   Material Surface;
   /// Of the side from which a triangle's corners are clockwise; without, both sides are alike.
   std::optional<Material> BackSurface;
+  std::optional<EdgeLines> Edges;
   ClipRegion Clipping;
 };
 

@@ -40,6 +40,10 @@ struct ShadingPoint
   /// Part of the surroundings that the point sees; dims what comes from all sides, and the diffuse
   /// light as ParaView's own ambient occlusion does.
   double AmbientVisibility = 1.0;
+  /// A line on the surface, and how much of the point it covers, in [0, 1]. There the surface shows the
+  /// line's colour in place of ambient and diffuse light, as in VTK.
+  glm::vec3 LineColor{ 0.0f };
+  double LineCover = 0.0;
 };
 
 /// The colour, in [0, 1], that a surface sends to the viewer; the formula of VTK's OpenGL polydata
@@ -55,9 +59,12 @@ glm::vec3 Shade(const std::vector<Light>& lights, const Material& surface,
   const ShadingPoint& point, Visibility&& visibility)
 {
   const glm::vec3 ambientColor = point.ColorIsFromArray ? point.Color : surface.AmbientColor;
-  glm::dvec3 color = point.AmbientVisibility * glm::dvec3(surface.Ambient * ambientColor);
+  const double uncovered = 1.0 - point.LineCover;
+  glm::dvec3 color =
+    uncovered * point.AmbientVisibility * glm::dvec3(surface.Ambient * ambientColor) +
+    point.LineCover * glm::dvec3(point.LineColor);
   const glm::dvec3 diffuseColor =
-    point.AmbientVisibility * glm::dvec3(surface.Diffuse * point.Color);
+    uncovered * point.AmbientVisibility * glm::dvec3(surface.Diffuse * point.Color);
   if (!surface.Lighting || lights.empty())
   {
     return glm::clamp(glm::vec3(color + diffuseColor), 0.0f, 1.0f);
