@@ -362,6 +362,12 @@ void vtkDSMMeshData::CheckColors(const std::vector<ColorReport>& mine)
         std::to_string(report.ExpectedLength) +
         " are needed; the surface is shown without them. Check the dataset's source.";
     }
+    if (report.State == State::Text && this->Message.empty())
+    {
+      this->Message = array +
+        " holds text, for which the colour map has no colours; the surface is shown without them. "
+        "Let the colour map interpret values as categories, or choose an array of numbers.";
+    }
   }
   if (missing && !usable && this->Message.empty())
   {
