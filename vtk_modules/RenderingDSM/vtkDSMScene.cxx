@@ -157,6 +157,7 @@ public:
   void DrawLast(const rt::Scene& scene);
   void Clear();
   rt::LightTransport GetTransport() const;
+  double GetEnvironmentLight() const;
   rt::DebugView GetDebugView() const;
   void AgreeOnView(rt::Scene& scene, rt::FrameRequest& request) const;
   bool ShowsOthers() const;
@@ -171,7 +172,13 @@ public:
   vtkWeakPointer<vtkRenderer> Renderer;
   unsigned long Observers[4] = { 0, 0, 0, 0 };
   vtkSmartPointer<vtkDSMScene> Keeper; ///< the scene itself, when nobody but the renderer has it
-  glm::vec3 Background{ 0.0f };        ///< of this rank's renderer, as the application set it
+  /// Of this rank's renderer, as the application set them; the same when there is no gradient.
+  struct Backdrop
+  {
+    glm::dvec3 Up{ 0.0, 1.0, 0.0 };
+    glm::vec3 Lower{ 0.0f };
+    glm::vec3 Upper{ 0.0f };
+  } Background;
   vtkSmartPointer<vtkMultiProcessController> Controller;
   vtkNew<vtkDSMFrameProp> Prop;
   vtkNew<vtkDSMStatistics> Statistics;
@@ -689,16 +696,16 @@ bool vtkDSMScene::Internals::ShowsOthers() const
 }
 
 /// Collective. Takes rank 0's view: the camera that came from there is not always the same to the last
-/// bit, ParaView's other ranks have no background, which mirrored rays see where they meet nothing, and
-/// lights may follow the camera. A camera that differs by more than rounding is left to be refused.
+/// bit, ParaView's other ranks have no background, which gives light and which mirrored rays see where
+/// they meet nothing, and lights may follow the camera. A camera that differs by more than rounding is left to be refused.
 /// Surfaces are kept apart when any rank has something that may be between them.
 void vtkDSMScene::Internals::AgreeOnView(rt::Scene& scene, rt::FrameRequest& request) const
 {
   struct View
   {
     glm::dmat4 WorldToClip;
-    glm::vec3 Background;
-    std::uint32_t IsApart;
+    Backdrop Background;
+    std::uint64_t IsApart;
   };
   const bool canBeApart = this->Group->GetMessenger().GetSize() == 1 || this->DrawsPlace;
   const bool isApart = canBeApart && IsTranslucent(scene) && this->ShowsOthers();
@@ -719,7 +726,11 @@ void vtkDSMScene::Internals::AgreeOnView(rt::Scene& scene, rt::FrameRequest& req
   const std::vector<std::byte>& first = all.front();
   View view;
   std::memcpy(&view, first.data(), sizeof(view));
-  scene.Transport.Background = view.Background;
+  scene.Transport.Background = view.Background.Lower;
+  const float strength = static_cast<float>(this->GetEnvironmentLight());
+  scene.Transport.Surroundings.Up = view.Background.Up;
+  scene.Transport.Surroundings.Lower = strength * view.Background.Lower;
+  scene.Transport.Surroundings.Upper = strength * view.Background.Upper;
   scene.Lights.resize((first.size() - sizeof(view)) / sizeof(rt::Light));
   for (std::size_t index = 0; index < scene.Lights.size(); ++index)
   {
@@ -812,6 +823,17 @@ rt::LightTransport vtkDSMScene::Internals::GetTransport() const
   return transport;
 }
 
+/// What the most demanding object wants.
+double vtkDSMScene::Internals::GetEnvironmentLight() const
+{
+  double strength = 0.0;
+  for (const Member& member : this->Members)
+  {
+    strength = std::max(strength, member.State->GetLightOptions()->GetEnvironmentLight());
+  }
+  return strength;
+}
+
 /// Of what is drawn, in world space.
 void vtkDSMScene::Internals::GetBounds(double bounds[6]) const
 {
@@ -847,8 +869,16 @@ void vtkDSMScene::Internals::Clear()
 
 void vtkDSMScene::NoteBackground()
 {
-  const double* background = this->Self->Renderer->GetBackground();
-  this->Self->Background = { background[0], background[1], background[2] };
+  vtkRenderer* renderer = this->Self->Renderer;
+  const double* lower = renderer->GetBackground();
+  const double* upper = renderer->GetGradientBackground() ? renderer->GetBackground2() : lower;
+  const double* up = renderer->GetEnvironmentUp();
+  Internals::Backdrop& backdrop = this->Self->Background;
+  backdrop.Lower = { lower[0], lower[1], lower[2] };
+  backdrop.Upper = { upper[0], upper[1], upper[2] };
+  const glm::dvec3 direction(up[0], up[1], up[2]);
+  const double length = glm::length(direction);
+  backdrop.Up = length > 0.0 ? direction / length : glm::dvec3(0.0, 1.0, 0.0);
 }
 
 void vtkDSMScene::Trace()

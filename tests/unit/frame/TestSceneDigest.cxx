@@ -40,6 +40,9 @@ TEST(TestSceneDigest, ChangesWithAllThatThePictureShows)
         [](rt::Scene& s, rt::FrameRequest&) { s.Lights.emplace_back(); },
         [](rt::Scene& s, rt::FrameRequest&) { s.Transport.Shadows = true; },
         [](rt::Scene& s, rt::FrameRequest&) { s.Transport.Background.z = 0.3f; },
+        [](rt::Scene& s, rt::FrameRequest&) { s.Transport.Surroundings.Lower.z = 0.3f; },
+        [](rt::Scene& s, rt::FrameRequest&) { s.Transport.Surroundings.Upper.z = 0.3f; },
+        [](rt::Scene& s, rt::FrameRequest&) { s.Transport.Surroundings.Up.x = 0.3; },
         [&](rt::Scene& s, rt::FrameRequest&)
         { s.Isosurfaces[0].Field = SphereScene::Publish(messenger, store); },
       };

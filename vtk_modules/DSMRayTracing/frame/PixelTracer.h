@@ -198,7 +198,7 @@ private:
     shading.ToViewer = toViewer;
     shading.Color = glm::vec3(point.Color);
     shading.ColorIsFromArray = point.ColorIsFromArray;
-    shading.AmbientVisibility = this->GetAmbientVisibility(point, shading.Normal, random);
+    this->LookAround(point, random, shading);
     if (point.Edges)
     {
       shading.LineColor = point.Edges->Color;
@@ -269,17 +269,24 @@ private:
     return this->Surfaces.GetTransmittance(ray);
   }
 
-  /// The part of the hemisphere, weighted by the cosine, in which nothing is near.
-  double GetAmbientVisibility(
-    const SurfacePoint& point, const glm::dvec3& normal, SampleSequence& random) const
+  /// Finds the part of the hemisphere, weighted by the cosine, in which nothing is near, and the light
+  /// that comes from there.
+  void LookAround(const SurfacePoint& point, SampleSequence& random, ShadingPoint& shading) const
   {
     const LightTransport& transport = this->World.Transport;
+    const glm::dvec3& normal = shading.Normal;
+    shading.HasSurroundings = !transport.Surroundings.IsBlack();
     if (transport.AmbientOcclusionSamples <= 0)
     {
-      return 1.0;
+      if (shading.HasSurroundings)
+      {
+        shading.Surroundings = transport.Surroundings.GetLightOnto(normal);
+      }
+      return;
     }
     const Frame3 frame(normal);
     double visible = 0.0;
+    glm::dvec3 arriving(0.0);
     for (int sample = 0; sample < transport.AmbientOcclusionSamples; ++sample)
     {
       // Uniform on the disc, then up to the sphere: the density is the cosine over pi.
@@ -294,8 +301,13 @@ private:
       ray.Max = transport.AmbientOcclusionDistance;
       const glm::dvec3 transmittance = this->Surfaces.GetTransmittance(ray);
       visible += (transmittance.x + transmittance.y + transmittance.z) / 3.0;
+      if (shading.HasSurroundings)
+      {
+        arriving += transmittance * transport.Surroundings.GetLight(ray.Direction);
+      }
     }
-    return visible / transport.AmbientOcclusionSamples;
+    shading.AmbientVisibility = visible / transport.AmbientOcclusionSamples;
+    shading.Surroundings = arriving / static_cast<double>(transport.AmbientOcclusionSamples);
   }
 
   /// Two directions at right angles to a unit one, and to each other (Duff et al., Building an

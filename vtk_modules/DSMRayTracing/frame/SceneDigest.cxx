@@ -160,6 +160,9 @@ public:
     this->Add(transport.LightRadius);
     this->Add(transport.AmbientOcclusionSamples);
     this->Add(transport.AmbientOcclusionDistance);
+    this->Add(transport.Surroundings.Up);
+    this->Add(transport.Surroundings.Lower);
+    this->Add(transport.Surroundings.Upper);
     this->Add(transport.MaxBounces);
     this->Add(transport.Background);
   }
