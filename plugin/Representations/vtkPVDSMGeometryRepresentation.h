@@ -27,6 +27,7 @@ class vtkPartitionedDataSet;
 class vtkPVDSMFrameReport;
 class vtkPVDSMLightOptions;
 class vtkPVDSMMemoryOptions;
+class vtkPVDSMRefinement;
 class vtkPVDSMSelectionMapper;
 
 class VTKREPRESENTATIONSDSM_EXPORT vtkPVDSMGeometryRepresentation
@@ -99,7 +100,7 @@ private:
 
   vtkDSMPolyDataMapper* GetMapper() const;
   void PrepareUpdate(vtkInformation* inInfo, vtkInformation* outInfo);
-  void PrepareRender();
+  void PrepareRender(vtkInformation* inInfo);
   bool IsTranslucent() const;
   void ConnectFrameReport();
   void ForwardProgress();
@@ -113,6 +114,7 @@ private:
   vtkNew<vtkActor> SelectionActor;
   vtkNew<vtkPVDSMSelectionMapper> SelectionMapper;
   vtkSmartPointer<vtkPVDSMFrameReport> FrameReport;
+  vtkSmartPointer<vtkPVDSMRefinement> Refinement; ///< on the client
 };
 
 #endif

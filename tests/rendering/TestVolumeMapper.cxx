@@ -313,6 +313,12 @@ TEST_F(VolumeMapper, CollectsSamplesUntilSomethingChanges)
   EXPECT_EQ(countFrames(), 3);
   this->Mapper->GetLightOptions()->SetSamplesPerPixel(5);
   EXPECT_EQ(countFrames(), 2) << "the three that are there count";
+  constexpr double manySeconds = 1e6;
+  this->Scene->SetSecondsPerFrame(manySeconds);
+  this->Mapper->SetIsoValue(0, 0.32);
+  EXPECT_EQ(countFrames(), 2) << "the first one at once, then as many as there is time for";
+  EXPECT_EQ(this->Scene->GetNumberOfSamples(), 5);
+  EXPECT_EQ(this->Scene->GetNumberOfSamplesWanted(), 5);
   this->Scene->SetSamplesPerFrame(0);
   this->Window->SetDesiredUpdateRate(15.0);
   this->Mapper->SetIsoValue(0, 0.35);
