@@ -170,6 +170,7 @@ void vtkPVDSMGeometryRepresentation::UpdateColoringParameters()
     this->Property->BackfaceCullingOff();
   }
   this->Actor->SetBackfaceProperty(hasBack ? this->BackfaceProperty : nullptr);
+  this->Property->SetEdgeVisibility(this->ShowEdges);
 }
 
 bool vtkPVDSMGeometryRepresentation::AddToView(vtkView* view)
@@ -221,6 +222,11 @@ void vtkPVDSMGeometryRepresentation::SetVisibility(bool visible)
 {
   this->Superclass::SetVisibility(visible);
   this->SelectionActor->SetVisibility(visible);
+}
+
+void vtkPVDSMGeometryRepresentation::SetShowEdges(bool show)
+{
+  this->ShowEdges = show;
 }
 
 void vtkPVDSMGeometryRepresentation::SetLineRadius(double radius)

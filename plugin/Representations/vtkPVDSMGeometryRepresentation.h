@@ -43,6 +43,11 @@ public:
   void SetArrayIdNames(const char* pointArray, const char* cellArray) override;
   void SetVisibility(bool visible) override;
 
+  /**
+   * Whether the edges of polygons are drawn on the surface; off by default.
+   */
+  void SetShowEdges(bool show);
+
   ///@{
   /**
    * Forwarded to vtkDSMPolyDataMapper.
@@ -100,6 +105,7 @@ private:
   void ConnectFrameReport();
   void ForwardProgress();
 
+  bool ShowEdges = false;
   bool Executed = false; ///< RequestData, during the current request of the view
   vtkNew<vtkPartitionedDataSet> Placeholder;
   vtkSmartPointer<vtkDSMScene> Scene;

@@ -234,8 +234,16 @@ vtkDSMStatistics* vtkDSMScene::GetStatistics() const
 
 void vtkDSMScene::NoteBackground()
 {
-  const double* background = this->Self->Renderer->GetBackground();
-  this->Self->Background = { background[0], background[1], background[2] };
+  vtkRenderer* renderer = this->Self->Renderer;
+  const double* lower = renderer->GetBackground();
+  const double* upper = renderer->GetGradientBackground() ? renderer->GetBackground2() : lower;
+  const double* up = renderer->GetEnvironmentUp();
+  rt::Environment& background = this->Self->Background;
+  background.Lower = { lower[0], lower[1], lower[2] };
+  background.Upper = { upper[0], upper[1], upper[2] };
+  const glm::dvec3 direction(up[0], up[1], up[2]);
+  const double length = glm::length(direction);
+  background.Up = length > 0.0 ? direction / length : rt::Environment().Up;
 }
 
 void vtkDSMScene::Trace()

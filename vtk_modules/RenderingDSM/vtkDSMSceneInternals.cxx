@@ -173,6 +173,13 @@ void vtkDSMScene::Internals::Draw()
   const int reduction = this->GetReduction(request);
   request.Width = (request.Width + reduction - 1) / reduction;
   request.Height = (request.Height + reduction - 1) / reduction;
+  for (rt::MeshObject& mesh : scene.Meshes)
+  {
+    if (mesh.Edges)
+    {
+      mesh.Edges->Width /= static_cast<float>(reduction); // as wide on the screen
+    }
+  }
   const int wanted = this->Members.GetSamplesPerPixel();
   vtkRenderWindow* window = this->Renderer->GetRenderWindow();
   this->Group->GetFrameRenderer().SetAbortCheck(
@@ -258,16 +265,16 @@ void vtkDSMScene::Internals::AddWholeView(const rt::FrameRequest& request, doubl
 }
 
 /// Collective. Takes rank 0's view: the camera that came from there is not always the same to the last
-/// bit, ParaView's other ranks have no background, which mirrored rays see where they meet nothing, and
-/// lights may follow the camera. A camera that differs by more than rounding is left to be refused.
+/// bit, ParaView's other ranks have no background, which gives light and which mirrored rays see where
+/// they meet nothing, and lights may follow the camera. A camera that differs by more than rounding is left to be refused.
 /// Surfaces are kept apart when any rank has something that may be between them.
 void vtkDSMScene::Internals::AgreeOnView(rt::Scene& scene, rt::FrameRequest& request) const
 {
   struct View
   {
     glm::dmat4 WorldToClip;
-    glm::vec3 Background;
-    std::uint32_t IsApart;
+    rt::Environment Background;
+    std::uint64_t IsApart;
   };
   const bool canBeApart = this->Delivery.CanSeparate(this->Group->GetMessenger().GetSize());
   const bool isApart =
@@ -289,7 +296,11 @@ void vtkDSMScene::Internals::AgreeOnView(rt::Scene& scene, rt::FrameRequest& req
   const std::vector<std::byte>& first = all.front();
   View view;
   std::memcpy(&view, first.data(), sizeof(view));
-  scene.Transport.Background = view.Background;
+  scene.Transport.Background = view.Background.Lower;
+  const auto strength = static_cast<float>(this->Members.GetEnvironmentLight());
+  scene.Transport.Surroundings = view.Background;
+  scene.Transport.Surroundings.Lower *= strength;
+  scene.Transport.Surroundings.Upper *= strength;
   scene.Lights.resize((first.size() - sizeof(view)) / sizeof(rt::Light));
   for (std::size_t index = 0; index < scene.Lights.size(); ++index)
   {

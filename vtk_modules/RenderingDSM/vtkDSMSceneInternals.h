@@ -39,7 +39,7 @@ public:
   vtkWeakPointer<vtkRenderer> Renderer;
   unsigned long Observers[4] = { 0, 0, 0, 0 };
   vtkSmartPointer<vtkDSMScene> Keeper; ///< the scene itself, when nobody but the renderer has it
-  glm::vec3 Background{ 0.0f };        ///< of this rank's renderer, as the application set it
+  rt::Environment Background;          ///< of this rank's renderer, as the application set it
   vtkSmartPointer<vtkMultiProcessController> Controller;
   vtkNew<vtkDSMFrameProp> Prop;
   double Bounds[6] = { 0.0, 0.0, 0.0, 0.0, 0.0, 0.0 }; ///< of what the prop shows

@@ -145,6 +145,16 @@ rt::LightTransport vtkDSMSceneMembers::GetTransport() const
   return transport;
 }
 
+double vtkDSMSceneMembers::GetEnvironmentLight() const
+{
+  double strength = 0.0;
+  for (const Member& member : this->Shown)
+  {
+    strength = std::max(strength, member.State->GetLightOptions()->GetEnvironmentLight());
+  }
+  return strength;
+}
+
 vtkDSMMemorySettings vtkDSMSceneMembers::GetMemorySettings() const
 {
   vtkDSMMemorySettings settings;

@@ -44,6 +44,7 @@ public:
 
   /// Of each property, what the most demanding object wants.
   rt::LightTransport GetTransport() const;
+  double GetEnvironmentLight() const;
   vtkDSMMemorySettings GetMemorySettings() const;
   int GetSamplesPerPixel() const;
   bool ShowStatistics() const;

@@ -2,6 +2,7 @@
 #ifndef rt_PixelTracer_h
 #define rt_PixelTracer_h
 
+#include "DSMRayTracing/frame/EdgeCover.h"
 #include "DSMRayTracing/frame/PixelRays.h"
 #include "DSMRayTracing/frame/SampleSequence.h"
 #include "DSMRayTracing/frame/SceneTracer.h"
@@ -69,7 +70,8 @@ public:
     SampleSequence random(x, y, sample);
     PixelSample result;
     const Ray ray = this->Rays.GetRay(x, y, random.GetPositionInPixel());
-    result.Color = this->Follow(ray, this->World.Transport.MaxBounces, random, &result);
+    result.Color = this->Follow(
+      ray, this->World.Transport.MaxBounces, this->Rays.GetWorldToPixels(), random, &result);
     return result;
   }
 
@@ -125,8 +127,8 @@ public:
         PixelSample result;
         Ray ray = rays[index];
         ray.Max = PixelRays::Last;
-        result.Color =
-          this->FollowFrom(point, ray, this->World.Transport.MaxBounces, random, &result);
+        result.Color = this->FollowFrom(point, ray, this->World.Transport.MaxBounces,
+          this->Rays.GetWorldToPixels(), random, &result);
         take(place.x, place.y, result);
       });
   }
@@ -148,18 +150,20 @@ private:
   /// What lies behind contributes less than half a step of an 8-bit channel.
   static constexpr float OpaqueEnough = 1.0f - 0.5f / 255.0f;
 
-  /// Front to back. `layers`, where given, gets the surfaces one by one.
-  glm::vec4 Follow(const Ray& ray, int bounces, SampleSequence& random, PixelSample* layers) const
+  /// Front to back. `view` tells where in the picture the ray sees a point of the world. `layers`,
+  /// where given, gets the surfaces one by one.
+  glm::vec4 Follow(const Ray& ray, int bounces, const glm::dmat4x3& view, SampleSequence& random,
+    PixelSample* layers) const
   {
     SurfacePoint point;
     return this->Surfaces.Intersect(ray, point)
-      ? this->FollowFrom(point, ray, bounces, random, layers)
+      ? this->FollowFrom(point, ray, bounces, view, random, layers)
       : glm::vec4(0.0f);
   }
 
   /// Follow, what the ray meets first being known.
-  glm::vec4 FollowFrom(
-    SurfacePoint point, Ray ray, int bounces, SampleSequence& random, PixelSample* layers) const
+  glm::vec4 FollowFrom(SurfacePoint point, Ray ray, int bounces, const glm::dmat4x3& view,
+    SampleSequence& random, PixelSample* layers) const
   {
     const glm::dvec3 toViewer = -glm::normalize(ray.Direction);
     glm::vec4 color(0.0f);
@@ -168,7 +172,8 @@ private:
       const float weight = (1.0f - color.w) * point.Color.w;
       if (weight > 0.0f)
       {
-        const glm::vec4 layer(weight * this->ShadePoint(point, toViewer, bounces, random), weight);
+        const glm::vec4 layer(
+          weight * this->ShadePoint(point, toViewer, bounces, view, random), weight);
         color += layer;
         if (layers)
         {
@@ -181,7 +186,7 @@ private:
   }
 
   glm::vec3 ShadePoint(const SurfacePoint& point, const glm::dvec3& toViewer, int bounces,
-    SampleSequence& random) const
+    const glm::dmat4x3& view, SampleSequence& random) const
   {
     if (this->World.View != DebugView::Off)
     {
@@ -193,11 +198,19 @@ private:
     shading.ToViewer = toViewer;
     shading.Color = glm::vec3(point.Color);
     shading.ColorIsFromArray = point.ColorIsFromArray;
-    shading.AmbientVisibility = this->GetAmbientVisibility(point, shading.Normal, random);
+    this->LookAround(point, random, shading);
+    if (point.Edges)
+    {
+      shading.LineColor = point.Edges->Color;
+      shading.LineCover = point.Edges->Opacity *
+        GetEdgeCover(point.Position, point.Corners, point.EdgeFlags, point.Edges->Width, view);
+    }
     const glm::vec3 own = Shade(this->World.Lights, *point.Surface, shading,
       [&](const Light& light, const Incidence& incidence)
       { return this->GetLightVisibility(point, light, incidence, random); });
-    const float reflectivity = point.Surface->Reflectivity;
+    // A line is painted on the mirror.
+    const float reflectivity =
+      static_cast<float>(1.0 - shading.LineCover) * point.Surface->Reflectivity;
     if (reflectivity <= 0.0f || bounces <= 0)
     {
       return own;
@@ -207,7 +220,8 @@ private:
     mirrored.Direction = glm::reflect(-toViewer, shading.Normal);
     mirrored.Min = point.Clearance;
     mirrored.Max = std::numeric_limits<double>::infinity();
-    const glm::vec4 seen = this->Follow(mirrored, bounces - 1, random, nullptr);
+    const glm::vec4 seen = this->Follow(mirrored, bounces - 1,
+      GetMirroredView(view, point.Position, shading.Normal), random, nullptr);
     const glm::vec3 reflection =
       glm::vec3(seen) + (1.0f - seen.w) * this->World.Transport.Background;
     return (1.0f - reflectivity) * own + reflectivity * reflection;
@@ -255,17 +269,24 @@ private:
     return this->Surfaces.GetTransmittance(ray);
   }
 
-  /// The part of the hemisphere, weighted by the cosine, in which nothing is near.
-  double GetAmbientVisibility(
-    const SurfacePoint& point, const glm::dvec3& normal, SampleSequence& random) const
+  /// Finds the part of the hemisphere, weighted by the cosine, in which nothing is near, and the light
+  /// that comes from there.
+  void LookAround(const SurfacePoint& point, SampleSequence& random, ShadingPoint& shading) const
   {
     const LightTransport& transport = this->World.Transport;
+    const glm::dvec3& normal = shading.Normal;
+    shading.HasSurroundings = !transport.Surroundings.IsBlack();
     if (transport.AmbientOcclusionSamples <= 0)
     {
-      return 1.0;
+      if (shading.HasSurroundings)
+      {
+        shading.Surroundings = transport.Surroundings.GetLightOnto(normal);
+      }
+      return;
     }
     const Frame3 frame(normal);
     double visible = 0.0;
+    glm::dvec3 arriving(0.0);
     for (int sample = 0; sample < transport.AmbientOcclusionSamples; ++sample)
     {
       // Uniform on the disc, then up to the sphere: the density is the cosine over pi.
@@ -280,8 +301,13 @@ private:
       ray.Max = transport.AmbientOcclusionDistance;
       const glm::dvec3 transmittance = this->Surfaces.GetTransmittance(ray);
       visible += (transmittance.x + transmittance.y + transmittance.z) / 3.0;
+      if (shading.HasSurroundings)
+      {
+        arriving += transmittance * transport.Surroundings.GetLight(ray.Direction);
+      }
     }
-    return visible / transport.AmbientOcclusionSamples;
+    shading.AmbientVisibility = visible / transport.AmbientOcclusionSamples;
+    shading.Surroundings = arriving / static_cast<double>(transport.AmbientOcclusionSamples);
   }
 
   /// Two directions at right angles to a unit one, and to each other (Duff et al., Building an
