@@ -222,6 +222,12 @@ bool vtkPVDSMDelivery::IsSelecting(vtkView* view)
   return renderView && AskedView::IsSelecting(renderView);
 }
 
+bool vtkPVDSMDelivery::IsCapturing(vtkView* view)
+{
+  auto* renderView = vtkPVRenderView::SafeDownCast(view);
+  return renderView && AskedView::IsCapturing(renderView);
+}
+
 void vtkPVDSMDelivery::Choose(
   vtkDSMScene* scene, vtkView* anyView, vtkInformation* inInfo, bool progressive)
 {

@@ -43,6 +43,9 @@ public:
   /// For REQUEST_RENDER: whether the view is going to draw for a selection, until the next request.
   static bool IsSelecting(vtkView* view);
 
+  /// Whether the view renders a picture that is kept, such as a screenshot.
+  static bool IsCapturing(vtkView* view);
+
   /// For REQUEST_RENDER: the way that suits what else the view shows, and what it renders for.
   /// `progressive`: the client goes on rendering a still view while there are samples missing.
   static void Choose(vtkDSMScene* scene, vtkView* view, vtkInformation* inInfo, bool progressive);

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkPVDSMRefinement.h"
+
+#include "vtkPVDSMDelivery.h"
 #include "vtkPVDSMVersionCheck.h"
 
 #include "vtkClientServerStream.h"
@@ -9,6 +11,7 @@
 #include "vtkObjectFactory.h"
 #include "vtkPVRenderView.h"
 #include "vtkProcessModule.h"
+#include "vtkRenderWindow.h"
 #include "vtkRenderWindowInteractor.h"
 #include "vtkSMProperty.h"
 #include "vtkSMPropertyHelper.h"
@@ -149,6 +152,7 @@ void vtkPVDSMRefinement::FollowInteractor()
   }
   this->LeaveInteractor();
   this->Interactor = interactor;
+  this->Window = this->View->GetRenderWindow();
   if (interactor)
   {
     this->InteractorObservers = { interactor->AddObserver(vtkCommand::StartInteractionEvent, this,
@@ -156,6 +160,11 @@ void vtkPVDSMRefinement::FollowInteractor()
       interactor->AddObserver(
         vtkCommand::EndInteractionEvent, this, &vtkPVDSMRefinement::OnInteractionEnds),
       interactor->AddObserver(vtkCommand::TimerEvent, this, &vtkPVDSMRefinement::OnTimer) };
+  }
+  if (this->Window)
+  {
+    this->WindowObserver = this->Window->AddObserver(
+      vtkCommand::AbortCheckEvent, this, &vtkPVDSMRefinement::OnAbortCheck);
   }
 }
 
@@ -169,6 +178,10 @@ void vtkPVDSMRefinement::LeaveInteractor()
     }
   }
   this->InteractorObservers.clear();
+  if (this->Window)
+  {
+    this->Window->RemoveObserver(this->WindowObserver);
+  }
 }
 
 /// Whether the application handles events, so that timers expire.
@@ -178,7 +191,7 @@ bool vtkPVDSMRefinement::CanGoOn() const
     !this->View->GetSession()->IsMultiClients();
 }
 
-void vtkPVDSMRefinement::OnRenderBegins()
+void vtkPVDSMRefinement::OnRenderBegins(vtkObject*, unsigned long, void* interactive)
 {
   this->Forget();
   this->FollowInteractor();
@@ -186,6 +199,10 @@ void vtkPVDSMRefinement::OnRenderBegins()
   {
     return;
   }
+  this->CanAbort = *static_cast<int*>(interactive) == 0 &&
+    !vtkPVDSMDelivery::IsCapturing(
+      vtkPVRenderView::SafeDownCast(this->View->GetClientSideObject()));
+  this->Input.Begin();
   ForEachReport(this->View,
     [this](vtkSMProxy* report)
     {
@@ -202,6 +219,7 @@ void vtkPVDSMRefinement::OnRenderBegins()
 
 void vtkPVDSMRefinement::OnRenderEnds(vtkObject*, unsigned long, void* interactive)
 {
+  this->CanAbort = false;
   this->IsRefined = true;
   if (*static_cast<int*>(interactive) != 0 || !this->CanGoOn())
   {
@@ -224,6 +242,14 @@ void vtkPVDSMRefinement::OnRenderEnds(vtkObject*, unsigned long, void* interacti
   if (!this->IsRefined && !this->IsInteracting)
   {
     this->RenderLater(ShortDelay);
+  }
+}
+
+void vtkPVDSMRefinement::OnAbortCheck(vtkObject*, unsigned long, void*)
+{
+  if (this->CanAbort && this->Input.HasPressed())
+  {
+    this->Window->SetAbortRender(1);
   }
 }
 

@@ -2,6 +2,8 @@
 #ifndef vtkPVDSMRefinement_h
 #define vtkPVDSMRefinement_h
 
+#include "vtkPVDSMInputWatch.h"
+
 #include "vtkObject.h"
 #include "vtkSmartPointer.h"
 #include "vtkWeakPointer.h"
@@ -10,6 +12,7 @@
 #include <vector>
 
 class vtkPVRenderView;
+class vtkRenderWindow;
 class vtkRenderWindowInteractor;
 class vtkSMProxy;
 class vtkSMRenderViewProxy;
@@ -19,6 +22,7 @@ class vtkSMRenderViewProxy;
 /// next ones are added, until there are as many as asked for. Lives on the client, once for each view
 /// that shows anything of ours; its thread is the application's. Where no application handles events
 /// between renders (pvpython, pvbatch), and with several clients, renders take all samples as usual.
+/// Where the client itself traces, a render ends early when the user presses anything.
 class vtkPVDSMRefinement : public vtkObject
 {
 public:
@@ -42,8 +46,9 @@ private:
   void LeaveInteractor();
   bool CanGoOn() const;
 
-  void OnRenderBegins();
+  void OnRenderBegins(vtkObject* caller, unsigned long event, void* interactive);
   void OnRenderEnds(vtkObject* caller, unsigned long event, void* interactive);
+  void OnAbortCheck(vtkObject* caller, unsigned long event, void* data);
   void OnInteractionBegins();
   void OnInteractionEnds();
   void OnTimer(vtkObject* caller, unsigned long event, void* timer);
@@ -52,12 +57,16 @@ private:
 
   vtkWeakPointer<vtkSMRenderViewProxy> View;
   vtkWeakPointer<vtkRenderWindowInteractor> Interactor;
+  vtkWeakPointer<vtkRenderWindow> Window;
+  vtkPVDSMInputWatch Input;
   std::vector<unsigned long> ViewObservers;
   std::vector<unsigned long> InteractorObservers;
+  unsigned long WindowObserver = 0;
   std::set<unsigned int> Told; ///< frame reports that know that this client goes on
   bool IsInteracting = false;
   bool IsRefined = true;   ///< the last picture, as far as this client knows
   bool IsRefining = false; ///< in a render of its own
+  bool CanAbort = false;   ///< in a still render, which is to be looked at
   int Samples = 0;         ///< of the last picture
   int Standstill = 0;      ///< renders of its own that added nothing
   int Timer = 0;           ///< 0: none is set

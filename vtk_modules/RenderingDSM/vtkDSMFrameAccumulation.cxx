@@ -6,47 +6,77 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
-bool vtkDSMFrameAccumulation::Trace(vtkDSMRankGroup& group, const rt::Scene& scene,
-  rt::FrameRequest request, int wanted, const Pace& pace, double lastSeconds)
+vtkDSMFrameAccumulation::Result vtkDSMFrameAccumulation::Trace(vtkDSMRankGroup& group,
+  const rt::Scene& scene, rt::FrameRequest request, int wanted, const Pace& pace,
+  double lastSeconds)
 {
-  std::uint64_t digest = 0;
-  this->Wanted = wanted;
+  bool isSame = false;
   if (wanted > 1)
   {
-    digest = rt::GetSceneDigest(scene, request);
+    const std::uint64_t digest = rt::GetSceneDigest(scene, request);
     // A rank may have seen a change that the others have not.
     const std::uint8_t same = this->Samples > 0 && digest == this->Digest;
     const auto all = group.GetMessenger().AllGatherValue(same);
-    if (std::count(all.begin(), all.end(), 0) > 0)
+    isSame = std::count(all.begin(), all.end(), 0) == 0;
+    this->Digest = digest;
+  }
+  if (!isSame)
+  {
+    this->Restart();
+  }
+  this->Wanted = wanted;
+  Result result = Result::Nothing;
+  while (this->SamplesUnderWay > 0 || this->Samples < wanted)
+  {
+    request.FirstSample = this->Samples;
+    request.Samples =
+      this->SamplesUnderWay > 0 ? this->SamplesUnderWay : this->CountNext(pace, lastSeconds);
+    result = this->TraceOnce(group, scene, request);
+    if (result == Result::Aborted || pace.Samples > 0)
     {
-      this->Samples = 0;
+      break;
     }
   }
-  else
-  {
-    this->Samples = 0;
-  }
-  if (this->Samples >= wanted)
-  {
-    return false;
-  }
-  request.FirstSample = this->Samples;
-  request.Samples = this->CountNext(pace, lastSeconds);
-  this->Samples = 0;
+  return result;
+}
+
+vtkDSMFrameAccumulation::Result vtkDSMFrameAccumulation::TraceOnce(
+  vtkDSMRankGroup& group, const rt::Scene& scene, rt::FrameRequest request)
+{
+  this->Samples = 0; // unless it succeeds
+  this->SamplesUnderWay = 0;
   rt::FrameRenderer& renderer = group.GetFrameRenderer();
   if (request.FirstSample == 0)
   {
-    this->Frame = renderer.Render(group.GetStore(), scene, request, &this->Frame);
+    rt::Frame frame = renderer.Render(group.GetStore(), scene, request, &this->Frame);
+    if (frame.IsAborted)
+    {
+      return Result::Aborted;
+    }
+    this->Frame = std::move(frame);
   }
   else
   {
     renderer.Refine(group.GetStore(), scene, request, this->Frame);
+    if (this->Frame.IsAborted)
+    {
+      this->Samples = request.FirstSample;
+      this->SamplesUnderWay = request.Samples;
+      return Result::Aborted;
+    }
   }
   this->Samples = request.FirstSample + request.Samples;
   this->LastSamples = request.Samples;
-  this->Digest = digest;
-  return true;
+  return Result::Traced;
+}
+
+void vtkDSMFrameAccumulation::Restart()
+{
+  this->Samples = 0;
+  this->SamplesUnderWay = 0;
+  this->Wanted = 0;
 }
 
 int vtkDSMFrameAccumulation::CountNext(const Pace& pace, double lastSeconds) const

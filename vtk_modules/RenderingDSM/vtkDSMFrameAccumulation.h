@@ -22,16 +22,24 @@ public:
     double Seconds = 0.0; ///< more than Samples, as long as they take less, when added to others
   };
 
+  enum class Result
+  {
+    Nothing, ///< was missing
+    Traced,
+    Aborted ///< the frame is not to be shown; the next Trace goes on
+  };
+
   /// Collective. Traces the samples of the request that are missing to `wanted` for each pixel, or as
   /// many as the pace allows. `lastSeconds`: that the last ones took, on every rank the same. Returns
-  /// whether there were any. Throws dsm::Error on every rank; then there is nothing to add to.
-  bool Trace(vtkDSMRankGroup& group, const rt::Scene& scene, rt::FrameRequest request, int wanted,
+  /// what came of it, the same on every rank. Throws dsm::Error on every rank; then there is nothing to
+  /// add to.
+  Result Trace(vtkDSMRankGroup& group, const rt::Scene& scene, rt::FrameRequest request, int wanted,
     const Pace& pace, double lastSeconds);
 
   const rt::Frame& GetFrame() const { return this->Frame; }
 
   /// Whether the frame has what was wanted, or there is none; the same on every rank.
-  bool IsComplete() const { return this->Samples == 0 || this->Samples >= this->Wanted; }
+  bool IsComplete() const { return this->Samples >= this->Wanted && this->SamplesUnderWay == 0; }
 
   /// Of each pixel; 0 without a frame.
   int GetSamples() const { return this->Samples; }
@@ -42,16 +50,18 @@ public:
   double GetSecondsPerPixel(double lastSeconds) const;
 
   /// Begins anew with the next frame, which ranks start with the tiles that they have.
-  void Restart() { this->Samples = 0; }
+  void Restart();
   /// The same without the tiles.
   void Clear();
 
 private:
+  Result TraceOnce(vtkDSMRankGroup& group, const rt::Scene& scene, rt::FrameRequest request);
   int CountNext(const Pace& pace, double lastSeconds) const;
 
   rt::Frame Frame;
   std::uint64_t Digest = 0; ///< of what it shows
   int Samples = 0;          ///< that it has; 0 when there is nothing to add to
+  int SamplesUnderWay = 0;  ///< that some tiles have got already: their adding was aborted
   int LastSamples = 0;      ///< that were added last
   int Wanted = 0;
 };

@@ -137,7 +137,10 @@ public:
   ///@}
 
   /**
-   * Whether the last picture has all the samples that were asked for; the same on every rank.
+   * Whether the last picture has all the samples that were asked for; the same on every rank. Not so
+   * either when the last render was aborted: while it traces, the window of rank 0 is asked for its
+   * abort status (vtkRenderWindow::CheckAbortStatus, AbortCheckEvent), and then all ranks keep the last
+   * picture; what was traced of samples that are added to it is not lost.
    */
   bool IsRefined() const;
 

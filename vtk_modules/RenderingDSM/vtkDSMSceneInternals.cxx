@@ -181,8 +181,19 @@ void vtkDSMScene::Internals::Draw()
     }
   }
   const int wanted = this->Members.GetSamplesPerPixel();
-  if (this->Accumulation.Trace(
-        *this->Group, scene, request, wanted, this->GetPace(), this->Statistics->GetFrameSeconds()))
+  vtkRenderWindow* window = this->Renderer->GetRenderWindow();
+  this->Group->GetFrameRenderer().SetAbortCheck(
+    [=] { return window && window->CheckAbortStatus() != 0; });
+  using Result = vtkDSMFrameAccumulation::Result;
+  const Result result = this->Accumulation.Trace(
+    *this->Group, scene, request, wanted, this->GetPace(), this->Statistics->GetFrameSeconds());
+  if (result == Result::Aborted)
+  {
+    // The renderer goes on, with the last picture: other ranks may wait for what this one draws.
+    window->SetAbortRender(0);
+    return;
+  }
+  if (result == Result::Traced)
   {
     this->Statistics->Gather(messenger, this->Accumulation.GetFrame());
   }
