@@ -17,7 +17,7 @@ packages=(
   xvfb xauth libgl1-mesa-dri
 )
 # And those that the tests need besides.
-test_packages=(libgtest-dev clang-format iproute2 python3-numpy python3-mpi4py)
+test_packages=(libgtest-dev clang-format doxygen iproute2 python3-numpy python3-mpi4py)
 
 # Prints the packages among the arguments that are not installed.
 missing_packages() {

@@ -5,6 +5,7 @@
 
 #include "vtkBoundingBox.h"
 #include "vtkCompositeRepresentation.h"
+#include "vtkDataObject.h"
 #include "vtkInformation.h"
 #include "vtkMultiProcessController.h"
 #include "vtkOrderedCompositingHelper.h"
@@ -18,9 +19,11 @@
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
 #include "vtkProcessModule.h"
+#include "vtkRenderWindow.h"
 #include "vtkSmartPointer.h"
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -51,15 +54,35 @@ std::string FindObstacle()
   return {};
 }
 
-/// Only subclasses of a view may ask whether it selects. None of these is ever made.
-class SelectingView : public vtkPVRenderView
+/// Only subclasses of a view may ask what it renders for. None of these is ever made.
+class AskedView : public vtkPVRenderView
 {
 public:
   static bool IsSelecting(vtkPVRenderView* view)
   {
-    return (view->*&SelectingView::GetMakingSelection)();
+    return (view->*&AskedView::GetMakingSelection)();
+  }
+  static bool IsCapturing(vtkPVRenderView* view)
+  {
+    return (view->*&AskedView::GetInCaptureScreenshot)();
   }
 };
+
+/// Seconds that a render takes at most to add samples to a still picture, if one takes less.
+constexpr double SecondsPerFrame = 0.15;
+
+/// What is kept is not only looked at in passing, and so is what two eyes see in turns.
+bool CanRefine(vtkPVRenderView* view)
+{
+  return view && !AskedView::IsCapturing(view) && !view->GetRenderWindow()->GetStereoRender();
+}
+
+/// The edge of the squares of pixels of which one is traced: from 1, at the finest level of detail, to 4.
+int GetReduction(double resolution)
+{
+  constexpr double coarsest = 4.0;
+  return static_cast<int>(std::lround(std::pow(coarsest, 1.0 - resolution)));
+}
 
 /// Whether the view shows any dataset in another way than ours. Selections, axes and text, which are
 /// no composite representations, do not count.
@@ -172,7 +195,9 @@ void vtkPVDSMDelivery::KeepData(vtkPVDataRepresentation* representation,
   vtkInformation* outInfo)
 {
   FillPlaceholder(placeholder, shown.Bounds);
-  vtkPVRenderView::SetPiece(inInfo, representation, placeholder);
+  // The size is what the view's thresholds are compared with.
+  const unsigned long kibibytes = shown.Data ? shown.Data->GetActualMemorySize() : 0;
+  vtkPVRenderView::SetPiece(inInfo, representation, placeholder, kibibytes);
   vtkPVRenderView::SetDeliverToClientAndRenderingProcesses(inInfo, representation, false, false);
   vtkPVRenderView::SetRequiresDistributedRendering(inInfo, representation, true);
   vtkPVRenderView::SetOrderedCompositingConfiguration(
@@ -194,14 +219,27 @@ void vtkPVDSMDelivery::KeepData(vtkPVDataRepresentation* representation,
 bool vtkPVDSMDelivery::IsSelecting(vtkView* view)
 {
   auto* renderView = vtkPVRenderView::SafeDownCast(view);
-  return renderView && SelectingView::IsSelecting(renderView);
+  return renderView && AskedView::IsSelecting(renderView);
 }
 
-void vtkPVDSMDelivery::Choose(vtkDSMScene* scene, vtkView* anyView)
+bool vtkPVDSMDelivery::IsCapturing(vtkView* view)
+{
+  auto* renderView = vtkPVRenderView::SafeDownCast(view);
+  return renderView && AskedView::IsCapturing(renderView);
+}
+
+void vtkPVDSMDelivery::Choose(
+  vtkDSMScene* scene, vtkView* anyView, vtkInformation* inInfo, bool progressive)
 {
   auto* view = vtkPVRenderView::SafeDownCast(anyView);
   auto* controller = scene->GetController();
   scene->SetHidden(IsSelecting(anyView));
+  scene->SetSamplesPerFrame(progressive && CanRefine(view) ? 1 : 0);
+  scene->SetSecondsPerFrame(SecondsPerFrame);
+  scene->SetInteractiveReduction(
+    view && inInfo->Has(vtkPVRenderView::USE_LOD()) && !AskedView::IsCapturing(view)
+      ? GetReduction(view->GetLODResolution())
+      : 0);
   if (!view || !controller || controller->GetNumberOfProcesses() < 2)
   {
     scene->DeliverTiles();

@@ -4,6 +4,7 @@
 
 #include "vtkSmartPointer.h"
 
+class vtkDataObject;
 class vtkDSMScene;
 class vtkInformation;
 class vtkPartitionedDataSet;
@@ -28,8 +29,9 @@ public:
   /// What a representation shows.
   struct Shown
   {
-    const double* Bounds;       ///< world; null where nothing is known
-    bool IsTranslucent = false; ///< the same on every rank
+    const double* Bounds;          ///< world; null where nothing is known
+    bool IsTranslucent = false;    ///< the same on every rank
+    vtkDataObject* Data = nullptr; ///< of this rank, whose size is that of what the view shows
   };
 
   /// For REQUEST_UPDATE: a placeholder is delivered, and every rank renders. When other objects of the
@@ -41,8 +43,12 @@ public:
   /// For REQUEST_RENDER: whether the view is going to draw for a selection, until the next request.
   static bool IsSelecting(vtkView* view);
 
-  /// For REQUEST_RENDER: the way that suits what else the view shows.
-  static void Choose(vtkDSMScene* scene, vtkView* view);
+  /// Whether the view renders a picture that is kept, such as a screenshot.
+  static bool IsCapturing(vtkView* view);
+
+  /// For REQUEST_RENDER: the way that suits what else the view shows, and what it renders for.
+  /// `progressive`: the client goes on rendering a still view while there are samples missing.
+  static void Choose(vtkDSMScene* scene, vtkView* view, vtkInformation* inInfo, bool progressive);
 };
 
 #endif

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkPVDSMFrameReport.h"
 
+#include "vtkDSMScene.h"
 #include "vtkDSMStatistics.h"
 
 #include "vtkObjectFactory.h"
@@ -10,26 +11,43 @@ vtkStandardNewMacro(vtkPVDSMFrameReport);
 vtkPVDSMFrameReport::vtkPVDSMFrameReport() = default;
 vtkPVDSMFrameReport::~vtkPVDSMFrameReport() = default;
 
-void vtkPVDSMFrameReport::SetSource(vtkDSMStatistics* source)
+void vtkPVDSMFrameReport::SetSource(vtkDSMScene* source)
 {
   this->Source = source;
 }
 
 double vtkPVDSMFrameReport::GetFrameTime()
 {
-  return this->Source ? this->Source->GetFrameSeconds() : 0.0;
+  return this->Source ? this->Source->GetStatistics()->GetFrameSeconds() : 0.0;
 }
 
 const char* vtkPVDSMFrameReport::GetStatistics()
 {
-  this->Text = this->Source ? this->Source->GetJson() : "[]";
+  this->Text = this->Source ? this->Source->GetStatistics()->GetJson() : "[]";
   return this->Text.c_str();
 }
 
 const char* vtkPVDSMFrameReport::GetSummary()
 {
-  this->Text = this->Source ? this->Source->GetSummary() : std::string();
+  this->Text = this->Source ? this->Source->GetStatistics()->GetSummary() : std::string();
   return this->Text.c_str();
+}
+
+int* vtkPVDSMFrameReport::GetSamples()
+{
+  this->Samples[0] = this->Source ? this->Source->GetNumberOfSamples() : 0;
+  this->Samples[1] = this->Source ? this->Source->GetNumberOfSamplesWanted() : 0;
+  return this->Samples;
+}
+
+void vtkPVDSMFrameReport::SetProgressive(bool progressive)
+{
+  this->Progressive = progressive;
+}
+
+bool vtkPVDSMFrameReport::GetProgressive()
+{
+  return this->Progressive;
 }
 
 void vtkPVDSMFrameReport::PrintSelf(ostream& os, vtkIndent indent)

@@ -12,11 +12,11 @@
 
 #include "vtkObject.h"
 #include "vtkRepresentationsDSMModule.h" // for the export macro
-#include "vtkSmartPointer.h"             // for ivars
+#include "vtkWeakPointer.h"              // for ivars
 
 #include <string> // for ivars
 
-class vtkDSMStatistics;
+class vtkDSMScene;
 
 class VTKREPRESENTATIONSDSM_EXPORT vtkPVDSMFrameReport : public vtkObject
 {
@@ -28,7 +28,7 @@ public:
   /**
    * Where to read from; null when the representation is in no view.
    */
-  void SetSource(vtkDSMStatistics* source);
+  void SetSource(vtkDSMScene* source);
 
   /**
    * Seconds the last frame took to trace; 0 without one.
@@ -45,6 +45,21 @@ public:
    */
   const char* GetSummary();
 
+  /**
+   * Samples of each pixel that the view's picture has, and those that were asked for; zeros without
+   * a picture.
+   */
+  int* GetSamples() VTK_SIZEHINT(2);
+
+  ///@{
+  /**
+   * Whether the client goes on rendering a still view until it is refined, so that a render need not
+   * take all samples. Off by default.
+   */
+  void SetProgressive(bool progressive);
+  bool GetProgressive();
+  ///@}
+
 protected:
   vtkPVDSMFrameReport();
   ~vtkPVDSMFrameReport() override;
@@ -53,7 +68,9 @@ private:
   vtkPVDSMFrameReport(const vtkPVDSMFrameReport&) = delete;
   void operator=(const vtkPVDSMFrameReport&) = delete;
 
-  vtkSmartPointer<vtkDSMStatistics> Source;
+  vtkWeakPointer<vtkDSMScene> Source;
+  bool Progressive = false;
+  int Samples[2] = { 0, 0 };
   std::string Text;
 };
 

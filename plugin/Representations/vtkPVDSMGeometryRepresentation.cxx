@@ -8,6 +8,7 @@
 #include "vtkPVDSMFrameReport.h"
 #include "vtkPVDSMLightOptions.h"
 #include "vtkPVDSMMemoryOptions.h"
+#include "vtkPVDSMRefinement.h"
 #include "vtkPVDSMSelectionMapper.h"
 
 #include "vtkActor.h"
@@ -88,7 +89,7 @@ int vtkPVDSMGeometryRepresentation::ProcessViewRequest(
   }
   else if (request == vtkPVView::REQUEST_RENDER())
   {
-    this->PrepareRender();
+    this->PrepareRender(inInfo);
   }
   return 1;
 }
@@ -118,7 +119,9 @@ void vtkPVDSMGeometryRepresentation::PrepareUpdate(vtkInformation* inInfo, vtkIn
   double worldBounds[6];
   inWorld.GetBounds(worldBounds);
   vtkPVDSMDelivery::KeepData(this, this->Placeholder,
-    { inWorld.IsValid() ? worldBounds : nullptr, this->IsTranslucent() }, inInfo, outInfo);
+    { inWorld.IsValid() ? worldBounds : nullptr, this->IsTranslucent(),
+      this->GetRenderedDataObject(0) },
+    inInfo, outInfo);
   vtkPVRenderView::SetGeometryBounds(inInfo, this, inflated, matrix);
 }
 
@@ -129,7 +132,7 @@ bool vtkPVDSMGeometryRepresentation::IsTranslucent() const
       [](const auto& block) { return block.second < 1.0; });
 }
 
-void vtkPVDSMGeometryRepresentation::PrepareRender()
+void vtkPVDSMGeometryRepresentation::PrepareRender(vtkInformation* inInfo)
 {
   vtkDataObject* data = this->GetRenderedDataObject(0);
   this->GetMapper()->SetInputDataObject(data);
@@ -151,7 +154,8 @@ void vtkPVDSMGeometryRepresentation::PrepareRender()
   this->SelectionActor->SetUserMatrix(matrix);
   if (this->Scene)
   {
-    vtkPVDSMDelivery::Choose(this->Scene, this->GetView());
+    vtkPVDSMDelivery::Choose(this->Scene, this->GetView(), inInfo,
+      this->FrameReport && this->FrameReport->GetProgressive());
   }
 }
 
@@ -166,6 +170,7 @@ void vtkPVDSMGeometryRepresentation::UpdateColoringParameters()
     this->Property->BackfaceCullingOff();
   }
   this->Actor->SetBackfaceProperty(hasBack ? this->BackfaceProperty : nullptr);
+  this->Property->SetEdgeVisibility(this->ShowEdges);
 }
 
 bool vtkPVDSMGeometryRepresentation::AddToView(vtkView* view)
@@ -175,6 +180,7 @@ bool vtkPVDSMGeometryRepresentation::AddToView(vtkView* view)
   {
     this->Scene = vtkPVDSMDelivery::FindScene(this, renderView);
     this->ConnectFrameReport();
+    this->Refinement = vtkPVDSMRefinement::Follow(renderView);
     renderView->GetRenderer()->AddViewProp(this->SelectionActor);
     renderView->RegisterPropForHardwareSelection(this, this->SelectionActor);
   }
@@ -190,6 +196,7 @@ bool vtkPVDSMGeometryRepresentation::RemoveFromView(vtkView* view)
     renderView->UnRegisterPropForHardwareSelection(this, this->SelectionActor);
   }
   this->Scene = nullptr;
+  this->Refinement = nullptr;
   this->ConnectFrameReport();
   return removed;
 }
@@ -215,6 +222,11 @@ void vtkPVDSMGeometryRepresentation::SetVisibility(bool visible)
 {
   this->Superclass::SetVisibility(visible);
   this->SelectionActor->SetVisibility(visible);
+}
+
+void vtkPVDSMGeometryRepresentation::SetShowEdges(bool show)
+{
+  this->ShowEdges = show;
 }
 
 void vtkPVDSMGeometryRepresentation::SetLineRadius(double radius)
@@ -281,7 +293,7 @@ void vtkPVDSMGeometryRepresentation::ConnectFrameReport()
 {
   if (this->FrameReport)
   {
-    this->FrameReport->SetSource(this->Scene ? this->Scene->GetStatistics() : nullptr);
+    this->FrameReport->SetSource(this->Scene);
   }
 }
 

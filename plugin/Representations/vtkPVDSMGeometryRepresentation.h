@@ -27,6 +27,7 @@ class vtkPartitionedDataSet;
 class vtkPVDSMFrameReport;
 class vtkPVDSMLightOptions;
 class vtkPVDSMMemoryOptions;
+class vtkPVDSMRefinement;
 class vtkPVDSMSelectionMapper;
 
 class VTKREPRESENTATIONSDSM_EXPORT vtkPVDSMGeometryRepresentation
@@ -41,6 +42,11 @@ public:
     vtkInformationRequestKey* request, vtkInformation* inInfo, vtkInformation* outInfo) override;
   void SetArrayIdNames(const char* pointArray, const char* cellArray) override;
   void SetVisibility(bool visible) override;
+
+  /**
+   * Whether the edges of polygons are drawn on the surface; off by default.
+   */
+  void SetShowEdges(bool show);
 
   ///@{
   /**
@@ -94,11 +100,12 @@ private:
 
   vtkDSMPolyDataMapper* GetMapper() const;
   void PrepareUpdate(vtkInformation* inInfo, vtkInformation* outInfo);
-  void PrepareRender();
+  void PrepareRender(vtkInformation* inInfo);
   bool IsTranslucent() const;
   void ConnectFrameReport();
   void ForwardProgress();
 
+  bool ShowEdges = false;
   bool Executed = false; ///< RequestData, during the current request of the view
   vtkNew<vtkPartitionedDataSet> Placeholder;
   vtkSmartPointer<vtkDSMScene> Scene;
@@ -107,6 +114,7 @@ private:
   vtkNew<vtkActor> SelectionActor;
   vtkNew<vtkPVDSMSelectionMapper> SelectionMapper;
   vtkSmartPointer<vtkPVDSMFrameReport> FrameReport;
+  vtkSmartPointer<vtkPVDSMRefinement> Refinement; ///< on the client
 };
 
 #endif

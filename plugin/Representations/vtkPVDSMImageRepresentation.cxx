@@ -9,6 +9,7 @@
 #include "vtkPVDSMIsosurfaceGeometry.h"
 #include "vtkPVDSMLightOptions.h"
 #include "vtkPVDSMMemoryOptions.h"
+#include "vtkPVDSMRefinement.h"
 #include "vtkPVDSMSelectionMapper.h"
 
 #include "vtkActor.h"
@@ -102,7 +103,8 @@ int vtkPVDSMImageRepresentation::ProcessViewRequest(
     this->SelectionActor->SetUseBounds(selecting); // ranks draw where there is something
     this->SelectionMapper->SetShownBounds(this->Mapper->GetBounds());
     this->SelectionActor->SetUserMatrix(this->Volume->GetMatrix());
-    vtkPVDSMDelivery::Choose(this->Scene, this->GetView());
+    vtkPVDSMDelivery::Choose(this->Scene, this->GetView(), inInfo,
+      this->FrameReport && this->FrameReport->GetProgressive());
   }
   return 1;
 }
@@ -110,8 +112,9 @@ int vtkPVDSMImageRepresentation::ProcessViewRequest(
 void vtkPVDSMImageRepresentation::PrepareUpdate(vtkInformation* inInfo, vtkInformation* outInfo)
 {
   const bool isTranslucent = this->Mapper->GetSurfaceProperty()->GetOpacity() < 1.0;
-  vtkPVDSMDelivery::KeepData(
-    this, this->Placeholder, { this->Volume->GetBounds(), isTranslucent }, inInfo, outInfo);
+  vtkPVDSMDelivery::KeepData(this, this->Placeholder,
+    { this->Volume->GetBounds(), isTranslucent, this->Mapper->GetInputDataObject(0, 0) }, inInfo,
+    outInfo);
   // In world space: with a matrix, the view would transform two corners of the box only.
   if (const double* bounds = this->Volume->GetBounds())
   {
@@ -143,6 +146,7 @@ bool vtkPVDSMImageRepresentation::AddToView(vtkView* view)
     renderView->GetRenderer()->AddViewProp(this->SelectionActor);
     this->ConnectFrameReport();
   }
+  this->Refinement = vtkPVDSMRefinement::Follow(renderView);
   renderView->RegisterPropForHardwareSelection(this, this->SelectionActor);
   return this->Superclass::AddToView(view);
 }
@@ -158,6 +162,7 @@ bool vtkPVDSMImageRepresentation::RemoveFromView(vtkView* view)
   renderView->GetRenderer()->RemoveViewProp(this->SelectionActor);
   renderView->UnRegisterPropForHardwareSelection(this, this->SelectionActor);
   this->Scene = nullptr;
+  this->Refinement = nullptr;
   this->ConnectFrameReport();
   return this->Superclass::RemoveFromView(view);
 }
@@ -319,7 +324,7 @@ void vtkPVDSMImageRepresentation::ConnectFrameReport()
 {
   if (this->FrameReport)
   {
-    this->FrameReport->SetSource(this->Scene ? this->Scene->GetStatistics() : nullptr);
+    this->FrameReport->SetSource(this->Scene);
   }
 }
 

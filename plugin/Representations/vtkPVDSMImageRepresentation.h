@@ -27,6 +27,7 @@ class vtkPartitionedDataSet;
 class vtkPVDSMFrameReport;
 class vtkPVDSMLightOptions;
 class vtkPVDSMMemoryOptions;
+class vtkPVDSMRefinement;
 class vtkPVDSMSelectionMapper;
 class vtkPVRenderView;
 class vtkScalarsToColors;
@@ -136,6 +137,7 @@ private:
   vtkNew<vtkActor> SelectionActor;
   vtkNew<vtkPVDSMSelectionMapper> SelectionMapper;
   vtkSmartPointer<vtkPVDSMFrameReport> FrameReport;
+  vtkSmartPointer<vtkPVDSMRefinement> Refinement; ///< on the client
 };
 
 #endif

@@ -28,6 +28,11 @@ void vtkPVDSMLightOptions::SetAmbientOcclusionDistance(double distance)
   this->Superclass::SetAmbientOcclusionDistance(distance);
 }
 
+void vtkPVDSMLightOptions::SetEnvironmentLight(double strength)
+{
+  this->Superclass::SetEnvironmentLight(strength);
+}
+
 void vtkPVDSMLightOptions::SetReflectivity(double part)
 {
   this->Superclass::SetReflectivity(part);

@@ -80,6 +80,10 @@ public:
   {
     this->Mesh.GetTextureCoordinate(point, coordinate);
   }
+  unsigned GetEdgeFlags(std::uint64_t triangle) const override
+  {
+    return this->Mesh.GetEdgeFlags(this->First + triangle);
+  }
 
 private:
   const MeshFile::Mesh& Mesh;

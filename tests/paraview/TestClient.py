@@ -22,6 +22,12 @@ display.SMProxy.UpdatePropertyInformation()
 rows = json.loads(str(display.GetProperty("DSMStatistics")).strip("'"))
 check(len(rows) == RANKS, "every rank of the server reports to the client")
 check(sum(row["Tiles"] for row in rows) > 0, "and traced")
+display.DSMSamplesPerPixel = 3
+simple.Render(view)
+display.SMProxy.UpdatePropertyInformation()
+check(list(display.GetPropertyValue("DSMSamples")) == [3, 3],
+      "where nobody waits for more, a render takes all samples at once")
+display.DSMSamplesPerPixel = 1
 
 # Remote rendering of a reduced image, as while interacting.
 view.RemoteRenderThreshold = 0.0

@@ -91,3 +91,38 @@ check_equal(draw("plainAgain"), plain, "and all can be switched off again", 0)
 display.Opacity = 0.4
 translucent = draw("translucent", DSMShadows=1)
 check(abs(translucent - shadows).max() > 30, "what lies behind shows through")
+
+# Light from all around: a white ball shows the mean of what its normals look at.
+simple.Delete(volume)
+ball = simple.Sphere(ThetaResolution=128, PhiResolution=96)
+display = simple.Show(ball, view)
+display.Representation = REPRESENTATION
+display.ColorArrayName = [None, ""]
+display.DiffuseColor = display.AmbientColor = [1.0, 1.0, 1.0]
+lamp.Enable = 0
+view.CameraParallelProjection = 1
+place_camera(view, (0, 0, 1))
+LOWER, UPPER = [0.1, 0.7, 0.0], [0.9, 0.2, 0.5]
+display.DSMEnvironmentLight = 0.8
+
+
+view.Background = LOWER
+rows, columns = numpy.nonzero(get_covered(render(view)))
+middle, radius = 0.5 * (rows.min() + rows.max()), 0.5 * (rows.max() - rows.min() + 1)
+column = int(round(0.5 * (columns.min() + columns.max())))
+
+
+def check_ball(name, upper):
+    pixels = render(view, name)
+    worst = 0
+    for row in range(rows.min() + 6, rows.max() - 5):
+        up = (row - middle) / radius
+        light = [0.8 * (low + (high - low) * (0.5 + up / 3)) for low, high in zip(LOWER, upper)]
+        worst = max(worst, abs(pixels[row, column] - 255 * numpy.array(light)).max())
+    check(worst < 4, f"{name}: differs by {worst:.1f} from the integral")
+
+
+check_ball("environment", LOWER)
+view.Background2 = UPPER
+view.BackgroundColorMode = "Gradient"
+check_ball("gradient", UPPER)

@@ -27,14 +27,15 @@ def color_by(display, association, array, *component):
     return simple.GetColorTransferFunction(array)
 
 
-def compare(name, source, prepare=None, share=0.005, shading=3.0, position=(0.6, 0.5, 1.0)):
+def compare(name, source, prepare=None, share=0.005, shading=3.0, position=(0.6, 0.5, 1.0),
+            reference="Surface"):
     """Draws a source as we do and as a Surface; `prepare(display)` sets it up. Deletes it."""
     display = show_traced(source)
     if prepare:
         prepare(display)
     place_camera(view, position)
     traced = render(view, name)
-    display.Representation = "Surface"
+    display.Representation = reference
     surface = render(view)
     # Several ranks have been compared with one; ParaView's own redistribution, for what is
     # translucent, fails with Debian's libexpat 2.5.0-1+deb12u2.
@@ -130,6 +131,20 @@ if output.GetNumberOfPoints():
 compare("DirectColours", colors,
         lambda d: (setattr(d, "ColorArrayName", ["POINTS", "paint"]), setattr(d, "MapScalars", 0)),
         shading=5.0)
+
+# Edges, of the polygons and not of the triangles that they are cut into.
+def with_edges(name, source, width=1.0, **properties):
+    def prepare(display):
+        display.DSMShowEdges = 1
+        display.EdgeColor = [0.9, 0.1, 0.1]
+        display.LineWidth = width
+    compare(name, source, prepare, reference="Surface With Edges", **properties)
+
+
+with_edges("EdgesOfQuads", simple.Plane(XResolution=9, YResolution=7), shading=1.0)
+with_edges("EdgesOfPolygons", simple.Cylinder(Resolution=14), 3.0, share=0.01, shading=1.0)
+with_edges("EdgesOfTriangles", simple.Sphere(ThetaResolution=24, PhiResolution=16), shading=1.0)
+with_edges("EdgesOfCells", simple.Clip(Input=grid, ClipType="Sphere"), shading=1.0)
 
 # Both sides of a surface.
 def open_sphere():

@@ -9,6 +9,7 @@ SETTINGS = {
     "DSMThreads": 1, "DSMCacheSize": 33, "DSMMemoryOrganization": "Object based",
     "DSMHostSharing": 0, "DSMScheduler": "Central queue", "DSMMemory": 123, "DSMShadows": 1, "DSMLightRadius": 0.02,
     "DSMAmbientOcclusionSamples": 2, "DSMAmbientOcclusionDistance": 0.75, "DSMReflectivity": 0.25,
+    "DSMEnvironmentLight": 0.5,
     "DSMMaxBounces": 3, "DSMSamplesPerPixel": 2, "Opacity": 0.5,
     "DSMClip": 1, "DSMClipOrigin": [0.25, 0.0, 0.0], "DSMClipNormal": [-1.0, 0.5, 0.0],
     "DSMCropping": 1, "DSMCroppingBox": [-2.0, 2.0, -1.0, 0.5, -2.0, 2.0],
@@ -33,6 +34,7 @@ def set_up():
     meshDisplay = simple.Show(mesh, view)
     meshDisplay.Representation = REPRESENTATION
     meshDisplay.DSMReflectivity = 0.5
+    meshDisplay.DSMShowEdges = 1
     for name, value in SETTINGS.items():
         setattr(display, name, value)
     display.ColorArrayName = [None, ""]
@@ -52,6 +54,7 @@ for name, value in SETTINGS.items():
     restored = display.GetPropertyValue(name)
     check(restored == value or list(restored) == list(value), f"{name} is {restored}")
 check(find("ConeSource").GetPropertyValue("DSMReflectivity") == 0.5, "the mesh has its own")
+check(find("ConeSource").GetPropertyValue("DSMShowEdges") == 1, "and its edges")
 view = simple.GetActiveView()
 check(find("ConeSource").GetPropertyValue("DSMClip") == 0, "and is not clipped")
 view.UseFXAA = 0  # a setting, which ParaView's states leave alone

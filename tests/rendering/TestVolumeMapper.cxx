@@ -31,8 +31,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <string>
+#include <thread>
 #include <vector>
 
 namespace
@@ -313,10 +315,73 @@ TEST_F(VolumeMapper, CollectsSamplesUntilSomethingChanges)
   EXPECT_EQ(countFrames(), 3);
   this->Mapper->GetLightOptions()->SetSamplesPerPixel(5);
   EXPECT_EQ(countFrames(), 2) << "the three that are there count";
+  constexpr double manySeconds = 1e6;
+  this->Scene->SetSecondsPerFrame(manySeconds);
+  this->Mapper->SetIsoValue(0, 0.32);
+  EXPECT_EQ(countFrames(), 2) << "the first one at once, then as many as there is time for";
+  EXPECT_EQ(this->Scene->GetNumberOfSamples(), 5);
+  EXPECT_EQ(this->Scene->GetNumberOfSamplesWanted(), 5);
   this->Scene->SetSamplesPerFrame(0);
   this->Window->SetDesiredUpdateRate(15.0);
   this->Mapper->SetIsoValue(0, 0.35);
   EXPECT_EQ(countFrames(), 5) << "one each while the camera moves";
+}
+
+TEST_F(VolumeMapper, KeepsTheLastPictureWhenTheWindowAborts)
+{
+  this->Renderer->AddVolume(this->Volume);
+  const std::vector<double> shown = this->RenderDistances();
+  const int covered = CountCovered(shown);
+  vtkNew<vtkCallbackCommand> abort;
+  abort->SetCallback([](vtkObject* window, unsigned long, void*, void*)
+    { static_cast<vtkRenderWindow*>(window)->SetAbortRender(1); });
+  this->Mapper->SetIsoValue(0, 0.2);
+  // VTK asks five times a second at most.
+  std::this_thread::sleep_for(std::chrono::milliseconds(250));
+  const unsigned long observer = this->Window->AddObserver(vtkCommand::AbortCheckEvent, abort);
+  EXPECT_EQ(CountCovered(this->RenderDistances()), covered);
+  EXPECT_FALSE(this->Scene->IsRefined());
+  EXPECT_EQ(this->Scene->GetNumberOfSamples(), 0);
+  this->Window->RemoveObserver(observer);
+  EXPECT_LT(CountCovered(this->RenderDistances()), covered);
+  EXPECT_TRUE(this->Scene->IsRefined());
+
+  // Samples that are added.
+  this->Mapper->GetLightOptions()->SetSamplesPerPixel(3);
+  this->Scene->SetSamplesPerFrame(1);
+  this->Window->Render();
+  std::this_thread::sleep_for(std::chrono::milliseconds(250));
+  this->Window->AddObserver(vtkCommand::AbortCheckEvent, abort);
+  this->Window->Render();
+  EXPECT_EQ(this->Scene->GetNumberOfSamples(), 1) << "those that were there";
+  EXPECT_FALSE(this->Scene->IsRefined());
+  this->Window->RemoveObserver(abort);
+  this->Scene->SetSamplesPerFrame(0);
+  this->Window->Render();
+  EXPECT_EQ(this->Scene->GetNumberOfSamples(), 3) << "what was begun, and the rest";
+  EXPECT_TRUE(this->Scene->IsRefined());
+}
+
+TEST_F(VolumeMapper, LowersTheResolutionAtInteractiveRates)
+{
+  this->Renderer->AddVolume(this->Volume);
+  const int covered = CountCovered(this->RenderDistances());
+  const auto countTiles = [this]
+  {
+    vtkNew<vtkTable> table;
+    this->Scene->GetStatistics()->GetTable(table);
+    return table->GetValueByName(0, "Tiles").ToInt();
+  };
+  constexpr int edge = 8; // of pixels, the largest
+  this->Scene->SetInteractiveReduction(edge);
+  EXPECT_EQ(CountCovered(this->RenderDistances()), covered);
+  EXPECT_EQ(countTiles(), 13 * 13) << "a still picture is whole";
+  this->Window->SetDesiredUpdateRate(15.0);
+  EXPECT_NEAR(CountCovered(this->RenderDistances()), covered, 0.1 * covered);
+  EXPECT_EQ(countTiles(), 2 * 2);
+  this->Window->SetDesiredUpdateRate(0.001);
+  EXPECT_EQ(CountCovered(this->RenderDistances()), covered);
+  EXPECT_EQ(countTiles(), 13 * 13);
 }
 
 TEST_F(VolumeMapper, TellsTheProgressAndCanBeAborted)

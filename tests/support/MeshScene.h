@@ -8,7 +8,7 @@
 #include "DSMRayTracing/accel/TriangleMeshBuilder.h"
 
 /// The noisy sphere's isosurfaces, a blob of triangles that cuts through them, and a coloured
-/// terrain below, with shadows and translucency across the objects.
+/// terrain of squares below, with edges, shadows and translucency across the objects.
 namespace MeshScene
 {
 
@@ -44,15 +44,22 @@ inline rt::Scene Create(dsm::Messenger& messenger, dsm::BlockStore& store)
   blob.Surface.DiffuseColor = { 1.0f, 0.5f, 0.2f };
   blob.BackSurface = blob.Surface;
   blob.BackSurface->DiffuseColor = { 0.1f, 0.2f, 1.0f };
+  blob.Edges = rt::EdgeLines{ { 0.2f, 0.0f, 0.0f }, 1.1f };
   scene.Meshes.push_back(blob);
 
   const glm::dmat4 terrainToWorld = glm::scale(
     glm::rotate(glm::translate(glm::dmat4(1.0), glm::dvec3(0.0, 4.0, SphereScene::Points)),
       -glm::half_pi<double>(), glm::dvec3(1.0, 0.0, 0.0)),
     glm::dvec3(SphereScene::Points));
+  TestMesh::Mesh squares = TestMesh::CreateTerrain(24);
+  for (std::uint64_t square = 0; square < squares.GetTriangleCount() / 2; ++square)
+  {
+    squares.EdgeFlags.insert(squares.EdgeFlags.end(), { 0b011, 0b110 });
+  }
   rt::MeshObject terrain;
-  terrain.Instance = std::make_shared<rt::MeshInstance>(
-    Publish(TestMesh::CreateTerrain(24), messenger, store), terrainToWorld);
+  terrain.Instance =
+    std::make_shared<rt::MeshInstance>(Publish(squares, messenger, store), terrainToWorld);
+  terrain.Edges = rt::EdgeLines{ { 1.0f, 1.0f, 1.0f }, 2.0f, 0.5f };
   terrain.ColoredBy = rt::MeshObject::Coloring::Values;
   auto colors = std::make_shared<rt::ColorMap>();
   colors->First = -2.0;

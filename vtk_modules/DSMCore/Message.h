@@ -28,6 +28,7 @@ enum class MessageKind : std::uint32_t
   GivenTiles,
   FrameDone,
   FrameStop,
+  FrameAbort,
   FrameEnd,
   Last = FrameEnd
 };

@@ -91,7 +91,7 @@ void ObjectStore::EndFrame()
 
 ObjectStore::Worker& ObjectStore::GetWorker(int index)
 {
-  return *this->Self->Workers.at(static_cast<std::size_t>(index));
+  return this->Self->Workers.Get(index);
 }
 
 const std::byte* ObjectStore::Wait(Worker& worker, const Segment& segment, BlockId id)

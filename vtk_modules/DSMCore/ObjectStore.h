@@ -24,6 +24,9 @@
 namespace dsm
 {
 
+template <class>
+class StoreWorkers;
+
 /// The paper's object-based DSM (section 3.1): a block is reached through a table of entries. Where
 /// we deviate: instead of a semaphore per block, a hit is one load of the entry's address and at
 /// most one store of its reference bit; a block leaves the cache by CLOCK, and its memory is
@@ -145,6 +148,8 @@ public:
 
 private:
   friend class ObjectStore;
+  template <class>
+  friend class StoreWorkers;
   friend class ObjectStore::Pin;
 
   static constexpr std::uint64_t Offline = 0;

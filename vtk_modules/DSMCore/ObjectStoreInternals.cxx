@@ -110,38 +110,18 @@ const std::byte* ObjectStore::Internals::Wait(Worker& worker, const Segment& seg
   return address;
 }
 
-void ObjectStore::Internals::WakeAll()
-{
-  for (const auto& worker : this->Workers)
-  {
-    worker->Woken.notify_one();
-  }
-}
-
 // -- Between frames --------------------------------------------------------------------------------
 
 void ObjectStore::Internals::Configure(const Settings& settings)
 {
-  if (settings.Workers < 1 || settings.Workers > std::numeric_limits<std::uint16_t>::max())
-  {
-    throw Error("A rank cannot trace with " + std::to_string(settings.Workers) +
-      " threads. Set the number of threads (DSMThreads) to 0 for an automatic choice, or to at "
-      "least 1.");
-  }
+  CheckWorkerCount(settings.Workers);
   const std::lock_guard<std::mutex> lock(this->Guard);
   if (this->Phase != FramePhase::Closed)
   {
     throw Error("The settings of a store cannot change within a frame.");
   }
   this->Current = settings;
-  this->Workers.resize(static_cast<std::size_t>(settings.Workers));
-  for (auto& worker : this->Workers)
-  {
-    if (!worker)
-    {
-      worker = std::make_unique<Worker>();
-    }
-  }
+  this->Workers.Resize(settings.Workers);
   this->Cache.SetCapacity(settings.CacheBytes);
   this->Cache.Shrink();
 }
@@ -209,11 +189,7 @@ void ObjectStore::Internals::BeginFrame()
   this->Cache.Reclaim(this->GetOldestEpoch());
   this->Cache.ResetPeak();
   this->Frame = StoreCounters{};
-  for (const auto& worker : this->Workers)
-  {
-    worker->Slow = WorkerCounters{};
-    worker->Accesses.store(0, std::memory_order_relaxed);
-  }
+  this->Workers.BeginFrame();
   this->Phase = FramePhase::Open;
 }
 
@@ -295,13 +271,7 @@ void ObjectStore::Internals::Take(const BlockWant& block, const std::byte* bytes
   BlockLine& line = GetLine(block);
   const std::lock_guard<std::mutex> lock(this->Guard);
   this->Cache.Insert(line, bytes);
-  for (const auto& worker : this->Workers)
-  {
-    if (worker->WaitsFor == &line)
-    {
-      worker->Woken.notify_one();
-    }
-  }
+  this->Workers.WakeThoseThatWaitFor(line);
 }
 
 void ObjectStore::Internals::Cancel(const std::string& cause)
@@ -314,7 +284,7 @@ void ObjectStore::Internals::Cancel(const std::string& cause)
   this->Phase = FramePhase::Cancelled;
   this->Cause = cause;
   this->AbandonWanted();
-  this->WakeAll();
+  this->Workers.WakeAll();
 }
 
 void ObjectStore::Internals::EndFrame()
@@ -326,7 +296,7 @@ void ObjectStore::Internals::EndFrame()
   }
   this->Requests.EndFrame();
   this->Phase = FramePhase::Closed;
-  this->WakeAll();
+  this->Workers.WakeAll();
   this->AbandonWanted();
   for (const BlockWant& want : this->Requests.Abandon())
   {
@@ -334,7 +304,7 @@ void ObjectStore::Internals::EndFrame()
     GetLine(want).MoveTo(LineState::Absent);
   }
   this->Cache.Reclaim(this->GetOldestEpoch());
-  this->LastWorkers = this->CountWorkers();
+  this->Workers.EndFrame();
 }
 
 void ObjectStore::Internals::AbandonWanted()
@@ -349,24 +319,10 @@ void ObjectStore::Internals::AbandonWanted()
 
 // -- Counters --------------------------------------------------------------------------------------
 
-std::vector<WorkerCounters> ObjectStore::Internals::CountWorkers() const
-{
-  std::vector<WorkerCounters> counters;
-  for (const auto& worker : this->Workers)
-  {
-    WorkerCounters counter = worker->Slow;
-    counter.Accesses = worker->Accesses.load(std::memory_order_relaxed);
-    // A miss that is being counted right now may be ahead of its access.
-    counter.Hits = counter.Accesses - std::min(counter.Accesses, counter.Misses);
-    counters.push_back(counter);
-  }
-  return counters;
-}
-
 std::vector<WorkerCounters> ObjectStore::Internals::GetWorkerCounters()
 {
   const std::lock_guard<std::mutex> lock(this->Guard);
-  return this->Phase == FramePhase::Closed ? this->LastWorkers : this->CountWorkers();
+  return this->Workers.GetCounters();
 }
 
 std::uint64_t ObjectStore::Internals::GetMisses(const Worker& worker) const

@@ -5,6 +5,7 @@
 #include "DSMCore/BlockCache.h"
 #include "DSMCore/BlockRequests.h"
 #include "DSMCore/ObjectStore.h"
+#include "DSMCore/StoreWorkers.h"
 
 #include <atomic>
 #include <cstdint>
@@ -47,7 +48,7 @@ public:
 
   Messenger& Messages;
   Settings Current;
-  std::vector<std::unique_ptr<Worker>> Workers;
+  StoreWorkers<Worker> Workers;
 
 private:
   enum class FramePhase
@@ -67,10 +68,8 @@ private:
   void Take(const BlockWant& block, const std::byte* bytes);
   /// Makes room for the next wanted block; false when it must wait for workers.
   bool MakeRoom(std::size_t blockBytes);
-  void WakeAll();
   void AbandonWanted();
   std::uint64_t GetOldestEpoch() const;
-  std::vector<WorkerCounters> CountWorkers() const;
   std::size_t GetLargestBlock() const;
 
   ObjectStore& Store;
@@ -88,7 +87,6 @@ private:
   /// Of Wanted; lets Service look without the lock.
   std::atomic<std::size_t> WantedCount{ 0 };
   StoreCounters Frame;
-  std::vector<WorkerCounters> LastWorkers;
 };
 
 } // namespace dsm

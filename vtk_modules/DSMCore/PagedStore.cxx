@@ -265,7 +265,7 @@ void PagedStore::EndFrame()
 
 PagedStore::Worker& PagedStore::GetWorker(int index)
 {
-  return *this->Self->Workers.at(static_cast<std::size_t>(index));
+  return this->Self->Workers.Get(index);
 }
 
 PagedStore::Pin PagedStore::Admit(Worker& worker, const Segment& segment, BlockId id)

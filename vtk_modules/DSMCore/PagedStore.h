@@ -27,6 +27,9 @@
 namespace dsm
 {
 
+template <class>
+class StoreWorkers;
+
 /// The paper's page-based DSM (section 3.2): a segment is a range of addresses, a block is the bytes
 /// at base + offset, and a page that is not here faults until it is fetched. Where we deviate: any
 /// number of threads, since a page is seen whole or not at all; 64 bits; and the entry from which
@@ -202,6 +205,8 @@ public:
 
 private:
   friend class PagedStore;
+  template <class>
+  friend class StoreWorkers;
 
   /// Only the worker writes (no read-modify-write is needed); atomic, so that the communication
   /// thread may read it while the frame runs.

@@ -134,24 +134,11 @@ bool PagedStore::Internals::Request(const Segment& segment, BlockId id)
   return false;
 }
 
-void PagedStore::Internals::WakeAll()
-{
-  for (const auto& worker : this->Workers)
-  {
-    worker->Woken.notify_one();
-  }
-}
-
 // -- Between frames --------------------------------------------------------------------------------
 
 void PagedStore::Internals::Configure(const Settings& settings)
 {
-  if (settings.Workers < 1 || settings.Workers > std::numeric_limits<std::uint16_t>::max())
-  {
-    throw Error("A rank cannot trace with " + std::to_string(settings.Workers) +
-      " threads. Set the number of threads (DSMThreads) to 0 for an automatic choice, or to at "
-      "least 1.");
-  }
+  CheckWorkerCount(settings.Workers);
   if (this->Phase != FramePhase::Closed)
   {
     throw Error("The settings of a store cannot change within a frame.");
@@ -182,14 +169,7 @@ void PagedStore::Internals::Configure(const Settings& settings)
   {
     const std::lock_guard<std::mutex> lock(this->Guard);
     this->Current = settings;
-    this->Workers.resize(static_cast<std::size_t>(settings.Workers));
-    for (auto& worker : this->Workers)
-    {
-      if (!worker)
-      {
-        worker = std::make_unique<Worker>();
-      }
-    }
+    this->Workers.Resize(settings.Workers);
     this->Cache.SetCapacity(settings.CacheBytes);
     while (this->Cache.GetUsed() > settings.CacheBytes && this->TryEvict(false, evicted))
     {
@@ -296,11 +276,10 @@ void PagedStore::Internals::BeginFrame()
   this->Cache.ResetPeak();
   this->Frame = StoreCounters{};
   this->Strangers = WorkerCounters{};
+  this->Workers.BeginFrame();
   for (const auto& worker : this->Workers)
   {
-    worker->Slow = WorkerCounters{};
     worker->LastFault = nullptr;
-    worker->Accesses.store(0, std::memory_order_relaxed);
   }
   this->Phase = FramePhase::Open;
   for (const auto& [number, segment] : this->Segments)
@@ -446,14 +425,7 @@ void PagedStore::Internals::Take(const BlockWant& block, const std::byte* bytes)
   const std::lock_guard<std::mutex> lock(this->Guard);
   this->MarkCached(segment, block.Id);
   this->Cache.Insert({ &segment, block.Id, GetFootprint(block), Clock::now() });
-  const PageLine* const line = &GetLine(block);
-  for (const auto& worker : this->Workers)
-  {
-    if (worker->WaitsFor == line)
-    {
-      worker->Woken.notify_one();
-    }
-  }
+  this->Workers.WakeThoseThatWaitFor(GetLine(block));
   const auto isOther = [&](const Stopped& stopped)
   { return stopped.From != &segment || stopped.Id != block.Id; };
   const auto first = std::partition(this->Waiting.begin(), this->Waiting.end(), isOther);
@@ -502,7 +474,7 @@ void PagedStore::Internals::Cancel(const std::string& cause)
   this->Cause = cause;
   this->CloseEntrance();
   this->AbandonRequests();
-  this->WakeAll();
+  this->Workers.WakeAll();
   for (const Stopped& stopped : this->Waiting)
   {
     this->TakeCancelled(stopped.Fault, stopped.From, true, stopped.Id);
@@ -520,9 +492,9 @@ void PagedStore::Internals::EndFrame()
   this->Requests.EndFrame();
   this->Phase = FramePhase::Closed;
   this->CloseEntrance();
-  this->LastWorkers = this->CountWorkers();
+  this->Workers.EndFrame();
   this->AbandonRequests();
-  this->WakeAll();
+  this->Workers.WakeAll();
   if (!this->Faults)
   {
     return;
@@ -546,24 +518,10 @@ void PagedStore::Internals::EndFrame()
 
 // -- Counters --------------------------------------------------------------------------------------
 
-std::vector<WorkerCounters> PagedStore::Internals::CountWorkers() const
-{
-  std::vector<WorkerCounters> counters;
-  for (const auto& worker : this->Workers)
-  {
-    WorkerCounters counter = worker->Slow;
-    counter.Accesses = worker->Accesses.load(std::memory_order_relaxed);
-    // One access may fault several times, when its block is evicted while it is read.
-    counter.Hits = counter.Accesses - std::min(counter.Accesses, counter.Misses);
-    counters.push_back(counter);
-  }
-  return counters;
-}
-
 std::vector<WorkerCounters> PagedStore::Internals::GetWorkerCounters()
 {
   const std::lock_guard<std::mutex> lock(this->Guard);
-  return this->Phase == FramePhase::Closed ? this->LastWorkers : this->CountWorkers();
+  return this->Workers.GetCounters();
 }
 
 std::uint64_t PagedStore::Internals::GetMisses(const Worker& worker) const

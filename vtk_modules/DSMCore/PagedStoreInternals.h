@@ -6,6 +6,7 @@
 #include "DSMCore/PageCache.h"
 #include "DSMCore/PageFaults.h"
 #include "DSMCore/PagedStore.h"
+#include "DSMCore/StoreWorkers.h"
 
 #include <sys/types.h>
 
@@ -62,7 +63,7 @@ public:
 
   Messenger& Messages;
   Settings Current;
-  std::vector<std::unique_ptr<Worker>> Workers;
+  StoreWorkers<Worker> Workers;
   /// Null with one rank, and when it cannot be had.
   std::shared_ptr<PageFaults> Faults;
   std::string FaultsRefusal;
@@ -132,12 +133,10 @@ private:
   std::size_t CountNeighbours(const Segment& segment, BlockId id) const;
   void MarkCached(const Segment& segment, BlockId id);
   void MarkEvicted(const PageCache::Frame& frame);
-  void WakeAll();
   /// What is wanted and what was asked for will not come.
   void AbandonRequests();
   void CloseEntrance();
   [[noreturn]] void Refuse(const Segment& segment) const;
-  std::vector<WorkerCounters> CountWorkers() const;
   std::size_t GetLargestBlock() const;
 
   pid_t Process;
@@ -167,7 +166,6 @@ private:
   Clock::duration Hold = ShortestHold;
   StoreCounters Frame;
   WorkerCounters Strangers; ///< faults of threads that did not enter
-  std::vector<WorkerCounters> LastWorkers;
 };
 
 } // namespace dsm

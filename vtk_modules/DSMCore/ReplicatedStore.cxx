@@ -2,6 +2,7 @@
 #include "DSMCore/ReplicatedStore.h"
 
 #include "DSMCore/Error.h"
+#include "DSMCore/StoreWorkers.h"
 #include "DSMCore/TablePublisher.h"
 
 #include <algorithm>
@@ -20,12 +21,7 @@ ReplicatedStore::~ReplicatedStore() = default;
 
 void ReplicatedStore::SetSettings(const Settings& settings)
 {
-  if (settings.Workers < 1)
-  {
-    throw Error("A rank cannot trace with " + std::to_string(settings.Workers) +
-      " threads. Set the number of threads (DSMThreads) to 0 for an automatic choice, or to at "
-      "least 1.");
-  }
+  CheckWorkerCount(settings.Workers);
   if (this->InFrame)
   {
     throw Error("The settings of a store cannot change within a frame.");

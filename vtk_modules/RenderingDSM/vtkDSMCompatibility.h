@@ -5,6 +5,7 @@
 
 #include "vtkIdList.h"
 #include "vtkPolygon.h"
+#include "vtkProperty.h"
 
 #include <type_traits>
 #include <utility>
@@ -36,6 +37,24 @@ struct Triangulation<Polygon,
 inline bool Triangulate(vtkPolygon* polygon, vtkIdList* corners)
 {
   return Triangulation<vtkPolygon>::Make(polygon, corners);
+}
+
+/// Edges have an opacity of their own since 9.3.
+template <class Property, class = void>
+struct EdgeOpacity
+{
+  static double Get(Property*) { return 1.0; }
+};
+
+template <class Property>
+struct EdgeOpacity<Property, std::void_t<decltype(std::declval<Property>().GetEdgeOpacity())>>
+{
+  static double Get(Property* property) { return property->GetEdgeOpacity(); }
+};
+
+inline double GetEdgeOpacity(vtkProperty* property)
+{
+  return EdgeOpacity<vtkProperty>::Get(property);
 }
 
 } // namespace vtkDSMCompatibility

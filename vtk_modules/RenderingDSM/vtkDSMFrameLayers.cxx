@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkDSMFrameLayers.h"
 
+#include "vtkDSMFrameTextures.h"
+
 #include "vtkCallbackCommand.h"
 #include "vtkCellArray.h"
 #include "vtkCommand.h"
@@ -14,7 +16,6 @@
 #include "vtkRenderer.h"
 #include "vtkShaderProgram.h"
 #include "vtkShaderProperty.h"
-#include "vtkTextureObject.h"
 
 #include <algorithm>
 #include <cmath>
@@ -92,11 +93,8 @@ public:
   void SetPixels(int width, int height, const std::uint8_t* colors, const float* depths)
   {
     const std::size_t pixels = static_cast<std::size_t>(width) * height;
-    this->Width = width;
-    this->Height = height;
-    this->Colors.assign(colors, colors + 4 * pixels);
-    this->Depths.assign(depths, depths + pixels);
-    this->Uploaded = false;
+    this->Textures.SetPixels(
+      width, height, { colors, colors + 4 * pixels }, { depths, depths + pixels });
   }
 
   void Render(vtkViewport* viewport, vtkInformation* keys, const std::array<double, 4>& target)
@@ -107,49 +105,24 @@ public:
     {
       return;
     }
-    this->Upload(window);
     this->Target = target;
-    this->ColorTexture->Activate();
-    this->DepthTexture->Activate();
+    this->Textures.Activate(window);
     this->Actor->SetPropertyKeys(keys);
     this->Actor->RenderTranslucentPolygonalGeometry(viewport);
-    this->DepthTexture->Deactivate();
-    this->ColorTexture->Deactivate();
+    this->Textures.Deactivate();
   }
 
   void ReleaseGraphicsResources(vtkWindow* window)
   {
     this->Actor->ReleaseGraphicsResources(window);
-    this->ColorTexture->ReleaseGraphicsResources(window);
-    this->DepthTexture->ReleaseGraphicsResources(window);
-    this->Uploaded = false;
+    this->Textures.ReleaseGraphicsResources(window);
   }
 
 private:
-  void Upload(vtkOpenGLRenderWindow* window)
-  {
-    for (vtkTextureObject* texture : { this->ColorTexture.Get(), this->DepthTexture.Get() })
-    {
-      texture->SetContext(window);
-      texture->SetMinificationFilter(vtkTextureObject::Nearest);
-      texture->SetMagnificationFilter(vtkTextureObject::Nearest);
-      texture->SetWrapS(vtkTextureObject::ClampToEdge);
-      texture->SetWrapT(vtkTextureObject::ClampToEdge);
-    }
-    if (!this->Uploaded)
-    {
-      this->ColorTexture->Create2DFromRaw(
-        this->Width, this->Height, 4, VTK_UNSIGNED_CHAR, this->Colors.data());
-      this->DepthTexture->Create2DFromRaw(
-        this->Width, this->Height, 1, VTK_FLOAT, this->Depths.data());
-      this->Uploaded = true;
-    }
-  }
-
   void SetUniforms(vtkShaderProgram* program)
   {
-    program->SetUniformi("dsmColors", this->ColorTexture->GetTextureUnit());
-    program->SetUniformi("dsmDepths", this->DepthTexture->GetTextureUnit());
+    program->SetUniformi("dsmColors", this->Textures.GetColorUnit());
+    program->SetUniformi("dsmDepths", this->Textures.GetDepthUnit());
     const float scale[2] = { static_cast<float>(0.5 * (this->Target[1] - this->Target[0])),
       static_cast<float>(0.5 * (this->Target[3] - this->Target[2])) };
     const float shift[2] = { static_cast<float>(0.5 * (this->Target[1] + this->Target[0])),
@@ -158,14 +131,8 @@ private:
     program->SetUniform2f("dsmShift", shift);
   }
 
-  int Width = 0;
-  int Height = 0;
-  std::vector<std::uint8_t> Colors;
-  std::vector<float> Depths;
-  bool Uploaded = false;
   std::array<double, 4> Target{};
-  vtkNew<vtkTextureObject> ColorTexture;
-  vtkNew<vtkTextureObject> DepthTexture;
+  vtkDSMFrameTextures Textures;
   vtkNew<vtkOpenGLPolyDataMapper> Mapper;
   vtkNew<vtkOpenGLActor> Actor;
 };

@@ -3,6 +3,7 @@
 
 #include "DSMRayTracing/frame/FrameGather.h"
 #include "vtkDSMFrameLayers.h"
+#include "vtkDSMFrameTextures.h"
 
 #include "vtkCamera.h"
 #include "vtkMath.h"
@@ -15,7 +16,6 @@
 #include "vtkOpenGLState.h"
 #include "vtkRenderer.h"
 #include "vtkShaderProgram.h"
-#include "vtkTextureObject.h"
 
 #include <GL/gl.h>
 
@@ -78,30 +78,8 @@ class vtkDSMFrameProp::Internals
 public:
   void Store(rt::Picture picture)
   {
-    this->Frame = std::move(picture);
-    this->Uploaded = false;
-  }
-
-  bool IsEmpty() const { return this->Frame.Depth.empty(); }
-
-  void Upload(vtkOpenGLRenderWindow* window)
-  {
-    for (vtkTextureObject* texture : { this->ColorTexture.Get(), this->DepthTexture.Get() })
-    {
-      texture->SetContext(window);
-      texture->SetMinificationFilter(vtkTextureObject::Nearest);
-      texture->SetMagnificationFilter(vtkTextureObject::Nearest);
-      texture->SetWrapS(vtkTextureObject::ClampToEdge);
-      texture->SetWrapT(vtkTextureObject::ClampToEdge);
-    }
-    if (!this->Uploaded)
-    {
-      this->ColorTexture->Create2DFromRaw(
-        this->Frame.Width, this->Frame.Height, 4, VTK_UNSIGNED_CHAR, this->Frame.Color.data());
-      this->DepthTexture->Create2DFromRaw(
-        this->Frame.Width, this->Frame.Height, 1, VTK_FLOAT, this->Frame.Depth.data());
-      this->Uploaded = true;
-    }
+    this->Textures.SetPixels(
+      picture.Width, picture.Height, std::move(picture.Color), std::move(picture.Depth));
   }
 
   void Draw(vtkOpenGLRenderWindow* window, const std::array<int, 4>& target)
@@ -135,23 +113,18 @@ public:
     {
       return;
     }
-    this->ColorTexture->Activate();
-    this->DepthTexture->Activate();
-    this->Quad->Program->SetUniformi("frameColor", this->ColorTexture->GetTextureUnit());
-    this->Quad->Program->SetUniformi("frameDepth", this->DepthTexture->GetTextureUnit());
+    this->Textures.Activate(window);
+    this->Quad->Program->SetUniformi("frameColor", this->Textures.GetColorUnit());
+    this->Quad->Program->SetUniformi("frameDepth", this->Textures.GetDepthUnit());
     this->Quad->Render();
-    this->DepthTexture->Deactivate();
-    this->ColorTexture->Deactivate();
+    this->Textures.Deactivate();
   }
 
-  rt::Picture Frame;
+  vtkDSMFrameTextures Textures;
   vtkDSMFrameLayers Layers;
   bool DrawsColor = true;
-  bool Uploaded = false;
   double Bounds[6];
   vtkNew<vtkMatrix4x4> Projection;
-  vtkNew<vtkTextureObject> ColorTexture;
-  vtkNew<vtkTextureObject> DepthTexture;
   std::unique_ptr<vtkOpenGLQuadHelper> Quad;
 };
 
@@ -189,7 +162,7 @@ void vtkDSMFrameProp::SetLayers(
 
 void vtkDSMFrameProp::Clear()
 {
-  if (!this->Self->IsEmpty() || !this->Self->Layers.IsEmpty() ||
+  if (!this->Self->Textures.IsEmpty() || !this->Self->Layers.IsEmpty() ||
     vtkMath::AreBoundsInitialized(this->Self->Bounds))
   {
     this->Self->Store({});
@@ -217,13 +190,12 @@ int vtkDSMFrameProp::RenderOpaqueGeometry(vtkViewport* viewport)
   auto* renderer = vtkRenderer::SafeDownCast(viewport);
   auto* window =
     renderer ? vtkOpenGLRenderWindow::SafeDownCast(renderer->GetRenderWindow()) : nullptr;
-  if (!window || this->Self->IsEmpty() || renderer->GetSelector())
+  if (!window || this->Self->Textures.IsEmpty() || renderer->GetSelector())
   {
     return 0;
   }
   std::array<int, 4> rectangle{};
   window->GetState()->vtkglGetIntegerv(GL_VIEWPORT, rectangle.data());
-  this->Self->Upload(window);
   this->Self->Draw(window, GetTarget(this->Self->Projection, GetProjection(renderer), rectangle));
   return 1;
 }
@@ -261,14 +233,13 @@ void vtkDSMFrameProp::ReleaseGraphicsResources(vtkWindow* window)
 {
   this->Self->Layers.ReleaseGraphicsResources(window);
   this->Self->Quad.reset();
-  this->Self->ColorTexture->ReleaseGraphicsResources(window);
-  this->Self->DepthTexture->ReleaseGraphicsResources(window);
-  this->Self->Uploaded = false;
+  this->Self->Textures.ReleaseGraphicsResources(window);
   this->Superclass::ReleaseGraphicsResources(window);
 }
 
 void vtkDSMFrameProp::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
-  os << indent << "Frame: " << this->Self->Frame.Width << " x " << this->Self->Frame.Height << "\n";
+  os << indent << "Frame: " << this->Self->Textures.GetWidth() << " x "
+     << this->Self->Textures.GetHeight() << "\n";
 }

@@ -59,6 +59,16 @@ public:
 
   ///@{
   /**
+   * Light from all around, in the colours of the renderer's background: of a gradient, Background from
+   * below and Background2 from above, as the renderer's EnvironmentUp has it; times this number. 0 (the
+   * default): none. With ambient occlusion, what its rays meet keeps that light away.
+   */
+  vtkSetClampMacro(EnvironmentLight, double, 0.0, 100.0);
+  vtkGetMacro(EnvironmentLight, double);
+  ///@}
+
+  ///@{
+  /**
    * Part of the light that this dataset's surfaces mirror, 0 (the default) to 1.
    */
   vtkSetClampMacro(Reflectivity, double, 0.0, 1.0);
@@ -128,6 +138,7 @@ private:
   double LightRadius = 0.0;
   int AmbientOcclusionSamples = 0;
   double AmbientOcclusionDistance = 0.0;
+  double EnvironmentLight = 0.0;
   double Reflectivity = 0.0;
   int MaxBounces = 2;
   int SamplesPerPixel = 1;

@@ -109,8 +109,13 @@ vtkDSMMeshColors::vtkDSMMeshColors(vtkDSMPolyDataMapper* mapper, vtkPolyData* da
     this->Found = State::WrongLength;
     return;
   }
-  const bool colored = HoldsColors(mapper, array) || DependsOnTable(mapper, array);
   auto* numbers = vtkDataArray::SafeDownCast(array);
+  if (!numbers && !mapper->GetLookupTable()->GetIndexedLookup())
+  {
+    this->Found = State::Text;
+    return;
+  }
+  const bool colored = HoldsColors(mapper, array) || DependsOnTable(mapper, array);
   if (colored)
   {
     this->Colors.TakeReference(mapper->GetLookupTable()->MapScalars(

@@ -25,7 +25,8 @@ public:
     NotAsked,
     Usable,
     Missing,
-    WrongLength
+    WrongLength,
+    Text ///< and the colour map has no colours for words
   };
 
   vtkDSMMeshColors() = default;

@@ -20,6 +20,7 @@
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
 #include "vtkScalarsToColors.h"
+#include "vtkUnsignedCharArray.h"
 
 #include <algorithm>
 #include <cstring>
@@ -48,6 +49,16 @@ void AddNumber(std::vector<std::uint64_t>& numbers, double number)
   numbers.push_back(bits);
 }
 
+/// Tubes and spheres are cut into triangles for us only.
+void HideEdges(vtkPolyData* data)
+{
+  vtkNew<vtkUnsignedCharArray> flags;
+  flags->SetName("vtkDSMEdgeFlags");
+  flags->SetNumberOfTuples(data->GetNumberOfPoints());
+  flags->FillValue(0);
+  data->GetPointData()->SetAttribute(flags, vtkDataSetAttributes::EDGEFLAG);
+}
+
 double ChooseRadius(double radius, double diagonal)
 {
   return radius == 0.0 ? DefaultRadiusPart * diagonal : radius;
@@ -73,10 +84,10 @@ bool vtkDSMMeshData::Key::operator<(const Key& other) const
 }
 
 vtkDSMMeshData::vtkDSMMeshData(std::shared_ptr<vtkDSMRankGroup> group, vtkDSMPolyDataMapper* mapper,
-  bool textured, const Content& content, std::unique_ptr<vtkDSMMeshData> old)
+  const vtkDSMMeshWish& wish, const Content& content, std::unique_ptr<vtkDSMMeshData> old)
   : Group(std::move(group))
   , Mapper(mapper)
-  , Textured(textured)
+  , Wish(wish)
 {
   dsm::Messenger& messenger = this->Group->GetMessenger();
   const std::string what = "Reading the surface";
@@ -129,11 +140,15 @@ void vtkDSMMeshData::FormGroups()
   {
     std::uint32_t Number;
     vtkDSMMeshBlock::Look Appearance;
+    std::int32_t Flagged;
   };
   std::vector<Member> mine;
   for (const vtkDSMMeshBlock& block : this->Blocks)
   {
-    mine.push_back({ block.Number, block.Appearance });
+    const bool flagged = this->Wish.EdgeFlags &&
+      (block.Data->GetNumberOfVerts() > 0 || block.Data->GetNumberOfLines() > 0 ||
+        vtkDSMTriangleList::NeedsEdgeFlags(block.Data));
+    mine.push_back({ block.Number, block.Appearance, flagged ? 1 : 0 });
   }
   std::set<std::uint32_t> numbers;
   std::map<vtkDSMMeshBlock::Look, std::uint32_t> looks;
@@ -153,7 +168,12 @@ void vtkDSMMeshData::FormGroups()
   { return this->OwnMeshes ? number : looks.at(look); };
   for (const Member& member : all)
   {
-    this->Looks.emplace(getGroup(member.Number, member.Appearance), member.Appearance);
+    const std::uint32_t group = getGroup(member.Number, member.Appearance);
+    this->Looks.emplace(group, member.Appearance);
+    if (member.Flagged != 0)
+    {
+      this->Flagged.insert(group);
+    }
   }
   for (const vtkDSMMeshBlock& block : this->Blocks)
   {
@@ -199,7 +219,9 @@ void vtkDSMMeshData::TakeOver(std::vector<Part>&& old)
     const auto source = this->Sources.find(part.Kind.Group);
     const bool same =
       source != this->Sources.end() ? source->second == part.Source : part.Source.empty();
-    mine.push_back(std::byte(same && this->Looks.count(part.Kind.Group) != 0 ? 1 : 0));
+    const bool usable = this->Looks.count(part.Kind.Group) != 0 &&
+      (part.Mesh->Attributes.EdgeFlags || this->Flagged.count(part.Kind.Group) == 0);
+    mine.push_back(std::byte(same && usable ? 1 : 0));
   }
   std::vector<char> same(old.size(), 1);
   for (const auto& rank : this->Group->GetMessenger().AllGather(std::move(mine)))
@@ -296,6 +318,10 @@ void vtkDSMMeshData::CollectSurfaces(
     {
       if (solid && solid->GetNumberOfCells() > 0)
       {
+        if (this->Wish.EdgeFlags)
+        {
+          HideEdges(solid);
+        }
         this->AddSurface(group, solid);
       }
     }
@@ -308,7 +334,7 @@ void vtkDSMMeshData::AddSurface(std::uint32_t group, vtkPolyData* data)
   surface.Data = data;
   surface.Colors = vtkDSMMeshColors(this->Mapper, data);
   const rt::MeshAttributes attributes =
-    vtkDSMMeshPiece::GetAttributes(data, surface.Colors, this->Textured);
+    vtkDSMMeshPiece::GetAttributes(data, surface.Colors, this->Wish);
   surface.Kind.Group = group;
   surface.Kind.Normals = static_cast<std::uint32_t>(attributes.Normals);
   surface.Kind.Values = static_cast<std::uint32_t>(attributes.Values);
@@ -335,6 +361,12 @@ void vtkDSMMeshData::CheckColors(const std::vector<ColorReport>& mine)
       this->Message = array + " has " + std::to_string(report.Length) + " values, but " +
         std::to_string(report.ExpectedLength) +
         " are needed; the surface is shown without them. Check the dataset's source.";
+    }
+    if (report.State == State::Text && this->Message.empty())
+    {
+      this->Message = array +
+        " holds text, for which the colour map has no colours; the surface is shown without them. "
+        "Let the colour map interpret values as categories, or choose an array of numbers.";
     }
   }
   if (missing && !usable && this->Message.empty())
@@ -399,6 +431,8 @@ void vtkDSMMeshData::Publish()
   for (const Key& kind : kinds)
   {
     vtkDSMMeshPiece piece;
+    vtkDSMMeshWish wish = this->Wish;
+    wish.EdgeFlags = this->Flagged.count(kind.Group) != 0;
     messenger.RunTogether("Reading the surface",
       [&]
       {
@@ -406,7 +440,7 @@ void vtkDSMMeshData::Publish()
         {
           if (!(surface.Kind < kind) && !(kind < surface.Kind))
           {
-            piece.Add(surface.Data, surface.Colors, this->Textured);
+            piece.Add(surface.Data, surface.Colors, wish);
           }
         }
       });
@@ -472,6 +506,7 @@ std::vector<std::uint64_t> vtkDSMMeshData::DescribeBlock(vtkDSMPolyDataMapper* m
   addArray(data->GetPointData()->GetNormals() ? nullptr : data->GetCellData()->GetNormals());
   addArray(textured ? data->GetPointData()->GetTCoords() : nullptr);
   addArray(data->GetCellData()->GetAbstractArray(vtkDataSetAttributes::GhostArrayName()));
+  addArray(data->GetPointData()->GetAttribute(vtkDataSetAttributes::EDGEFLAG));
   addArray(data->GetPointData()->GetAbstractArray(mapper->GetRadiusArray().c_str()));
   int field = 0;
   vtkAbstractArray* colors = vtkDSMMeshColors::FindArray(mapper, data, field);

@@ -14,6 +14,7 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -54,19 +55,22 @@ public:
   struct Content
   {
     std::vector<std::uint64_t> Whole;
-    std::vector<std::vector<std::uint64_t>> Blocks; ///< of each, in vtkDSMMeshBlock::Collect's order
+    std::vector<std::vector<std::uint64_t>>
+      Blocks; ///< of each, in vtkDSMMeshBlock::Collect's order
   };
 
-  /// Collective; a rank without data takes part. `textured`: texture coordinates are wanted. `content`:
-  /// what HashContent says of the mapper's data now. `old`:
+  /// Collective; a rank without data takes part. `wish` is the same on every rank. `content`: what
+  /// HashContent says of the mapper's data now. `old`:
   /// what was made of the mapper's data before, or null; its meshes are taken
   /// over where they would be the same, also those of blocks that are hidden now, and else leave the
   /// store first, since there may not be room for both. Failures are dsm::Error, the same on every
   /// rank.
   vtkDSMMeshData(std::shared_ptr<vtkDSMRankGroup> group, vtkDSMPolyDataMapper* mapper,
-    bool textured, const Content& content, std::unique_ptr<vtkDSMMeshData> old);
+    const vtkDSMMeshWish& wish, const Content& content, std::unique_ptr<vtkDSMMeshData> old);
 
   const std::vector<Part>& GetParts() const { return this->Parts; }
+  /// Without edge flags, the meshes may yet have them: those that were taken over.
+  const vtkDSMMeshWish& GetWish() const { return this->Wish; }
   /// Of all ranks' visible blocks; uninitialised bounds (min > max) without any.
   const double* GetBounds() const { return this->Bounds; }
   /// What is wrong, but can be shown in another way; empty when nothing is. The same on every rank.
@@ -91,8 +95,7 @@ private:
   /// Numbers an array, by its identity or by what it holds.
   using Identify = std::function<std::uint64_t(vtkAbstractArray*)>;
 
-  static Content Describe(
-    vtkDSMPolyDataMapper* mapper, bool textured, const Identify& identify);
+  static Content Describe(vtkDSMPolyDataMapper* mapper, bool textured, const Identify& identify);
   static std::vector<std::uint64_t> DescribeBlock(vtkDSMPolyDataMapper* mapper,
     const vtkDSMMeshBlock& block, bool textured, const Identify& identify);
 
@@ -111,7 +114,7 @@ private:
 
   std::shared_ptr<vtkDSMRankGroup> Group;
   vtkDSMPolyDataMapper* Mapper;
-  bool Textured;
+  vtkDSMMeshWish Wish;
   // Of this rank, while its data are read:
   std::vector<vtkDSMMeshBlock> Blocks;
   std::vector<std::uint32_t> Groups; ///< of each block
@@ -121,6 +124,8 @@ private:
   /// Groups are blocks, and not looks.
   bool OwnMeshes = true;
   std::map<std::uint32_t, vtkDSMMeshBlock::Look> Looks; ///< of each group, of all ranks
+  /// Groups in which edge flags are wanted, and not all would be rt::AllEdges.
+  std::set<std::uint32_t> Flagged;
   std::vector<Part> Parts;
   double Bounds[6];
   double Diagonal = 0.0;

@@ -43,19 +43,21 @@ vtkDataArray* FindTextureCoordinates(vtkPolyData* data)
 } // namespace
 
 rt::MeshAttributes vtkDSMMeshPiece::GetAttributes(
-  vtkPolyData* data, const vtkDSMMeshColors& colors, bool textured)
+  vtkPolyData* data, const vtkDSMMeshColors& colors, const vtkDSMMeshWish& wish)
 {
   rt::MeshAttributes attributes;
-  attributes.TextureCoordinates = textured && FindTextureCoordinates(data);
+  attributes.TextureCoordinates = wish.TextureCoordinates && FindTextureCoordinates(data);
+  attributes.EdgeFlags = wish.EdgeFlags;
   FindNormals(data, attributes.Normals);
   attributes.Values = colors.GetValues();
   attributes.Colors = colors.GetColors();
   return attributes;
 }
 
-void vtkDSMMeshPiece::Add(vtkPolyData* data, const vtkDSMMeshColors& colors, bool textured)
+void vtkDSMMeshPiece::Add(
+  vtkPolyData* data, const vtkDSMMeshColors& colors, const vtkDSMMeshWish& wish)
 {
-  this->Attributes = GetAttributes(data, colors, textured);
+  this->Attributes = GetAttributes(data, colors, wish);
   this->Parts.push_back({ data, vtkDSMTriangleList(data), colors, data->GetPoints()->GetData(),
     FindNormals(data, this->Attributes.Normals), FindTextureCoordinates(data), this->Triangles,
     this->Points });
@@ -135,4 +137,10 @@ void vtkDSMMeshPiece::GetTextureCoordinate(std::uint64_t point, double coordinat
   const auto number = static_cast<vtkIdType>(point - part.FirstPoint);
   coordinate[0] = part.TextureCoordinates->GetComponent(number, 0);
   coordinate[1] = part.TextureCoordinates->GetComponent(number, 1);
+}
+
+unsigned vtkDSMMeshPiece::GetEdgeFlags(std::uint64_t triangle) const
+{
+  const Part& part = this->FindByTriangle(triangle);
+  return part.List.GetEdgeFlags(triangle - part.FirstTriangle);
 }

@@ -14,17 +14,24 @@
 class vtkDataArray;
 class vtkPolyData;
 
+/// What is wanted of a mesh beside what its points and cells have, and are coloured by.
+struct vtkDSMMeshWish
+{
+  bool TextureCoordinates = false;
+  bool EdgeFlags = false;
+};
+
 /// This rank's part of one mesh: the triangles of several vtkPolyData that have the same attributes,
 /// read where they lie.
 class vtkDSMMeshPiece final : public rt::TriangleSource
 {
 public:
-  /// What a mesh made of the data would carry; texture coordinates only if `textured`.
+  /// What a mesh made of the data would carry.
   static rt::MeshAttributes GetAttributes(
-    vtkPolyData* data, const vtkDSMMeshColors& colors, bool textured);
+    vtkPolyData* data, const vtkDSMMeshColors& colors, const vtkDSMMeshWish& wish);
 
   /// All that are added must have the same attributes. Throws dsm::Error for invalid cells.
-  void Add(vtkPolyData* data, const vtkDSMMeshColors& colors, bool textured);
+  void Add(vtkPolyData* data, const vtkDSMMeshColors& colors, const vtkDSMMeshWish& wish);
 
   rt::MeshAttributes GetAttributes() const override { return this->Attributes; }
   std::uint64_t GetTriangleCount() const override { return this->Triangles; }
@@ -35,6 +42,7 @@ public:
   double GetValue(std::uint64_t element) const override;
   void GetColor(std::uint64_t element, std::uint8_t rgba[4]) const override;
   void GetTextureCoordinate(std::uint64_t point, double coordinate[2]) const override;
+  unsigned GetEdgeFlags(std::uint64_t triangle) const override;
 
 private:
   struct Part

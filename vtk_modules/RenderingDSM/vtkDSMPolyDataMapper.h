@@ -9,12 +9,14 @@
  * ScalarVisibility, ScalarMode, the colour array (SelectColorArray), ColorMode, LookupTable,
  * UseLookupTableScalarRange and ScalarRange, InterpolateScalarsBeforeMapping, Static. Culling,
  * interpolation (flat, or by the points' normals), opacity and lighting are the property's. A
- * property's representation (points, wireframe) and edges are not used. The actor's texture, whole
- * on every rank, is laid on the surface by its texture coordinates.
+ * property's representation (points, wireframe) is not used. With EdgeVisibility, the edges of the
+ * input's polygons are drawn on the surface, in EdgeColor and LineWidth pixels wide. The actor's
+ * texture, whole on every rank, is laid on the surface by its texture coordinates.
  *
  * Values are mapped to colours where a ray meets the surface, so a change of the colour map, the
- * material or the actor's matrix takes effect at once; a change of points, cells, the colour array
- * or a block's look puts the mesh in bricks anew.
+ * material, the edges or the actor's matrix takes effect at once; a change of points, cells, the
+ * colour array or a block's look puts the mesh in bricks anew, and so does EdgeVisibility the first
+ * time that it is on, where there are polygons other than triangles.
  *
  * The mapper draws nothing itself: the renderer's vtkDSMScene traces all that it shows together when
  * the renderer starts to render, on all ranks at once. Every rank must have the same actors, in the

@@ -117,10 +117,42 @@ public:
   int GetSamplesPerFrame() const;
   ///@}
 
+  ///@{
   /**
-   * Whether the last picture has all the samples that were asked for; the same on every rank.
+   * Seconds that a render may take that adds to a picture: where SamplesPerFrame is set, and takes
+   * less by the render before, it adds more samples. 0 (the default): never. Same value on every rank.
+   */
+  void SetSecondsPerFrame(double seconds);
+  double GetSecondsPerFrame() const;
+  ///@}
+
+  ///@{
+  /**
+   * While the window wants interactive rates, one pixel is traced for a square of pixels, which it
+   * fills: of this edge at least, and of up to 8 where the frame would take longer than about 0.07 s by
+   * what the last one took. 0 (the default): every pixel is traced. Same value on every rank.
+   */
+  void SetInteractiveReduction(int edge);
+  int GetInteractiveReduction() const;
+  ///@}
+
+  /**
+   * Whether the last picture has all the samples that were asked for; the same on every rank. Not so
+   * either when the last render was aborted: while it traces, the window of rank 0 is asked for its
+   * abort status (vtkRenderWindow::CheckAbortStatus, AbortCheckEvent), and then all ranks keep the last
+   * picture; what was traced of samples that are added to it is not lost.
    */
   bool IsRefined() const;
+
+  /**
+   * Samples of each pixel that the last picture has; 0 without one. The same on every rank.
+   */
+  int GetNumberOfSamples() const;
+
+  /**
+   * Samples of each pixel that the objects of the last picture ask for; 0 without one.
+   */
+  int GetNumberOfSamplesWanted() const;
 
   /**
    * Whether a frame is being made: from taking in data, of which the mappers tell the progress, to the

@@ -92,6 +92,17 @@ bool vtkDSMSceneMesh::IsTextured() const
   return actor && actor->GetTexture();
 }
 
+bool vtkDSMSceneMesh::ShowsEdges() const
+{
+  auto* actor = vtkActor::SafeDownCast(this->Prop);
+  return actor && actor->GetProperty()->GetEdgeVisibility() != 0;
+}
+
+bool vtkDSMSceneMesh::LacksEdges() const
+{
+  return this->Data && this->ShowsEdges() && !this->Data->GetWish().EdgeFlags;
+}
+
 std::vector<std::uint64_t> vtkDSMSceneMesh::GetStamp() const
 {
   try
@@ -126,7 +137,7 @@ bool vtkDSMSceneMesh::HasNewData()
   std::vector<std::uint64_t> stamp = this->GetStamp();
   if (stamp == this->Seen.Stamp)
   {
-    return false;
+    return this->LacksEdges();
   }
   if (!this->Failure.empty())
   {
@@ -138,7 +149,7 @@ bool vtkDSMSceneMesh::HasNewData()
     return true;
   }
   this->Seen = std::move(this->Found);
-  return false;
+  return this->LacksEdges();
 }
 
 void vtkDSMSceneMesh::GiveUpBlocks()
@@ -170,8 +181,9 @@ void vtkDSMSceneMesh::Update(const std::shared_ptr<vtkDSMRankGroup>& group, bool
     this->Found = {};
     try
     {
+      const vtkDSMMeshWish wish{ this->IsTextured(), this->ShowsEdges() };
       this->Data = std::make_unique<vtkDSMMeshData>(
-        group, this->Mapper, this->IsTextured(), this->Seen.Content, std::move(this->Data));
+        group, this->Mapper, wish, this->Seen.Content, std::move(this->Data));
       this->Mapper->SetGlobalBounds(this->Data->GetBounds());
     }
     catch (const dsm::Error& error)
@@ -225,6 +237,10 @@ rt::MeshObject vtkDSMSceneMesh::CreateObject(const vtkDSMMeshData::Part& part, v
   {
     object.BackSurface = vtkDSMTranslation::ToMaterial(back);
     object.BackSurface->Reflectivity = object.Surface.Reflectivity;
+  }
+  if (this->ShowsEdges())
+  {
+    object.Edges = vtkDSMTranslation::ToEdgeLines(property);
   }
   object.ColoredBy = GetColoring(part.Appearance, part.Mesh->Attributes,
     this->Mapper->GetInterpolateScalarsBeforeMapping() != 0);

@@ -37,6 +37,9 @@ private:
   std::vector<std::uint64_t> GetStamp() const;
   vtkDSMMeshData::Content HashContent() const;
   bool IsTextured() const;
+  bool ShowsEdges() const;
+  /// Edges are to be shown, but the data were taken in without their flags.
+  bool LacksEdges() const;
   rt::MeshObject CreateObject(const vtkDSMMeshData::Part& part, vtkActor* actor);
   const std::shared_ptr<const rt::ColorMap>& GetColorMap();
   const std::shared_ptr<const rt::Texture>& GetPicture(vtkActor* actor);
@@ -47,8 +50,8 @@ private:
     std::vector<std::uint64_t> Stamp;
     vtkDSMMeshData::Content Content;
   };
-  State Seen;  ///< of what was taken in, or is the same; see vtkDSMMeshData
-  State Found; ///< of what HasNewData found to be new, until it is taken in
+  State Seen;      ///< of what was taken in, or is the same; see vtkDSMMeshData
+  State Found;     ///< of what HasNewData found to be new, until it is taken in
   int Threads = 1; ///< to look for changes with
   bool Taken = false;
   std::unique_ptr<vtkDSMMeshData> Data;

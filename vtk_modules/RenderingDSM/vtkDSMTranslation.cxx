@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkDSMTranslation.h"
 
+#include "vtkDSMCompatibility.h"
 #include "vtkDSMMemoryOptions.h"
 
 #include "vtkAbstractMapper.h"
@@ -75,6 +76,17 @@ rt::Material vtkDSMTranslation::ToMaterial(vtkProperty* property)
   material.Opacity = static_cast<float>(property->GetOpacity());
   material.Lighting = property->GetLighting();
   return material;
+}
+
+rt::EdgeLines vtkDSMTranslation::ToEdgeLines(vtkProperty* property)
+{
+  // VTK draws none that are thinner.
+  constexpr float thinnest = 1.1f;
+  rt::EdgeLines lines;
+  lines.Color = ToColor(property->GetEdgeColor());
+  lines.Width = std::max(property->GetLineWidth(), thinnest);
+  lines.Opacity = static_cast<float>(vtkDSMCompatibility::GetEdgeOpacity(property));
+  return lines;
 }
 
 rt::Material vtkDSMTranslation::ToMaterial(vtkVolumeProperty* property, double isovalue)

@@ -26,6 +26,9 @@ public:
 
   static rt::Material ToMaterial(vtkProperty* property);
 
+  /// The lines that VTK's OpenGL mapper draws along edges.
+  static rt::EdgeLines ToEdgeLines(vtkProperty* property);
+
   /// The look of an isosurface by the transfer functions and the shading of a volume's property.
   static rt::Material ToMaterial(vtkVolumeProperty* property, double isovalue);
 

@@ -2,6 +2,7 @@
 #include "vtkDSMTriangleList.h"
 
 #include "DSMCore/Error.h"
+#include "DSMRayTracing/brick/MeshAttributes.h"
 #include "vtkDSMCompatibility.h"
 
 #include "vtkCellArray.h"
@@ -9,6 +10,7 @@
 #include "vtkDataSetAttributes.h"
 #include "vtkIdList.h"
 #include "vtkNew.h"
+#include "vtkPointData.h"
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
 #include "vtkUnsignedCharArray.h"
@@ -28,11 +30,23 @@ glm::dvec3 GetPoint(vtkPolyData* data, vtkIdType point)
   return position;
 }
 
+/// As VTK: bytes, one a point.
+vtkUnsignedCharArray* FindPointFlags(vtkPolyData* data)
+{
+  auto* flags = vtkUnsignedCharArray::SafeDownCast(
+    data->GetPointData()->GetAttribute(vtkDataSetAttributes::EDGEFLAG));
+  return flags && flags->GetNumberOfComponents() == 1 &&
+      flags->GetNumberOfTuples() == data->GetNumberOfPoints()
+    ? flags
+    : nullptr;
+}
+
 } // namespace
 
 vtkDSMTriangleList::vtkDSMTriangleList(vtkPolyData* data)
   : Data(data)
   , FirstCell(data->GetNumberOfVerts() + data->GetNumberOfLines())
+  , PointFlags(FindPointFlags(data))
 {
   auto* ghosts = vtkUnsignedCharArray::SafeDownCast(
     data->GetCellData()->GetAbstractArray(vtkDataSetAttributes::GhostArrayName()));
@@ -83,6 +97,7 @@ void vtkDSMTriangleList::AddPolygons()
   const auto most = static_cast<std::size_t>(GetLargestCount(this->Data));
   this->Corners.reserve(3 * most);
   this->Cells.reserve(most);
+  this->Edges.reserve(most);
   for (vtkIdType index = 0; index < polygons->GetNumberOfCells(); ++index)
   {
     const vtkIdType cell = this->FirstCell + index;
@@ -116,7 +131,9 @@ void vtkDSMTriangleList::AddStrips()
     {
       // Every other triangle is the other way round.
       const vtkIdType odd = corner & 1;
-      this->AddTriangle(cell, points[corner - 2 + odd], points[corner - 1 - odd], points[corner]);
+      const vtkIdType turned[3] = { points[corner - 2 + odd], points[corner - 1 - odd],
+        points[corner] };
+      this->AddTriangle(cell, 3, turned, 0, 1, 2);
     }
   }
 }
@@ -138,22 +155,27 @@ void vtkDSMTriangleList::AddPolygon(vtkIdType cell, vtkIdType size, const vtkIdT
     {
       for (vtkIdType corner = 0; corner + 2 < triangles->GetNumberOfIds(); corner += 3)
       {
-        this->AddTriangle(cell, points[triangles->GetId(corner)],
-          points[triangles->GetId(corner + 1)], points[triangles->GetId(corner + 2)]);
+        this->AddTriangle(cell, size, points, triangles->GetId(corner),
+          triangles->GetId(corner + 1), triangles->GetId(corner + 2));
       }
       return;
     }
   }
   for (vtkIdType corner = 2; corner < size; ++corner)
   {
-    this->AddTriangle(cell, points[0], points[corner - 1], points[corner]);
+    this->AddTriangle(cell, size, points, 0, corner - 1, corner);
   }
 }
 
-void vtkDSMTriangleList::AddTriangle(vtkIdType cell, vtkIdType a, vtkIdType b, vtkIdType c)
+void vtkDSMTriangleList::AddTriangle(
+  vtkIdType cell, vtkIdType size, const vtkIdType* points, vtkIdType a, vtkIdType b, vtkIdType c)
 {
-  this->Corners.insert(this->Corners.end(), { a, b, c });
+  this->Corners.insert(this->Corners.end(), { points[a], points[b], points[c] });
   this->Cells.push_back(cell);
+  const auto isEdge = [size](vtkIdType from, vtkIdType to)
+  { return (from + 1) % size == to || (to + 1) % size == from ? 1u : 0u; };
+  this->Edges.push_back(
+    static_cast<std::uint8_t>(isEdge(a, b) | isEdge(b, c) << 1 | isEdge(c, a) << 2));
 }
 
 void vtkDSMTriangleList::CheckPoints(vtkIdType cell, vtkIdType size, const vtkIdType* points) const
@@ -209,4 +231,26 @@ vtkIdType vtkDSMTriangleList::GetCell(std::uint64_t triangle) const
 {
   return this->Cells.empty() ? this->FirstCell + static_cast<vtkIdType>(triangle)
                              : this->Cells[triangle];
+}
+
+unsigned vtkDSMTriangleList::GetEdgeFlags(std::uint64_t triangle) const
+{
+  unsigned flags = this->Edges.empty() ? rt::AllEdges : this->Edges[triangle];
+  if (this->PointFlags)
+  {
+    std::uint64_t points[3];
+    this->GetTriangle(triangle, points);
+    for (int side = 0; side < 3; ++side)
+    {
+      const auto point = static_cast<vtkIdType>(points[side]);
+      flags &= this->PointFlags->GetValue(point) != 0 ? rt::AllEdges : ~(1u << side);
+    }
+  }
+  return flags;
+}
+
+bool vtkDSMTriangleList::NeedsEdgeFlags(vtkPolyData* data)
+{
+  const vtkIdType polygons = data->GetNumberOfPolys();
+  return (polygons > 0 && data->GetPolys()->IsHomogeneous() != 3) || FindPointFlags(data);
 }

@@ -10,6 +10,7 @@
 #include <vector>
 
 class vtkPolyData;
+class vtkUnsignedCharArray;
 
 /// The triangles of a vtkPolyData's polygons and strips, ghost cells left out. Polygons are cut as
 /// VTK's OpenGL mapper cuts them, into a fan, if they are convex, so that both shade alike; concave
@@ -26,6 +27,13 @@ public:
   void GetTriangle(std::uint64_t triangle, std::uint64_t points[3]) const;
   /// The number of the cell, as VTK counts: verts, lines, polygons, strips.
   vtkIdType GetCell(std::uint64_t triangle) const;
+  /// Which sides of a triangle are edges of its polygon (rt::AllEdges), and not hidden by the edge flags
+  /// that points may have (vtkDataSetAttributes::EDGEFLAG: of the edge that begins at the point). Of
+  /// strips all sides are, as VTK draws them.
+  unsigned GetEdgeFlags(std::uint64_t triangle) const;
+
+  /// Whether the data may have triangles with sides that are no edges.
+  static bool NeedsEdgeFlags(vtkPolyData* data);
 
   /// At most so many triangles, found without reading the cells.
   static std::uint64_t GetLargestCount(vtkPolyData* data);
@@ -38,7 +46,9 @@ private:
   void AddPolygons();
   void AddStrips();
   void AddPolygon(vtkIdType cell, vtkIdType size, const vtkIdType* points);
-  void AddTriangle(vtkIdType cell, vtkIdType a, vtkIdType b, vtkIdType c);
+  /// Of the polygon's corners with these numbers.
+  void AddTriangle(
+    vtkIdType cell, vtkIdType size, const vtkIdType* points, vtkIdType a, vtkIdType b, vtkIdType c);
   void CheckPoints(vtkIdType cell, vtkIdType size, const vtkIdType* points) const;
   /// Whether the triangles of a fan around the first point do not overlap.
   bool IsFan(vtkIdType size, const vtkIdType* points) const;
@@ -56,6 +66,8 @@ private:
   const vtkTypeInt64* InPlace64 = nullptr;
   std::vector<vtkIdType> Corners;
   std::vector<vtkIdType> Cells;
+  std::vector<std::uint8_t> Edges;  ///< of each triangle; empty: all are
+  vtkUnsignedCharArray* PointFlags; ///< the data's edge flags, or null
 };
 
 #endif

@@ -8,9 +8,12 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <mutex>
+#include <random>
 #include <string>
+#include <tuple>
 
 namespace
 {
@@ -285,4 +288,64 @@ TEST(TestFrameRenderer, SamplesAddedLaterGiveTheSamePicture)
         }
       });
   }
+}
+
+/// Whether the ranks are waited for in vain is a matter of the moment, so there are many.
+class AbortedFrame : public testing::TestWithParam<std::tuple<int, rt::TileScheduling>>
+{
+};
+
+INSTANTIATE_TEST_SUITE_P(RanksAndSchedulers, AbortedFrame,
+  testing::Combine(testing::Values(1, 2, 3, 4),
+    testing::Values(rt::TileScheduling::CentralQueue, rt::TileScheduling::WorkStealing)));
+
+TEST_P(AbortedFrame, EndsOnAllRanksAndTheNextOneIsRight)
+{
+  const auto [ranks, scheduling] = GetParam();
+  constexpr int rounds = 10;
+  constexpr int latest = 400;
+  std::atomic<int> aborted{ 0 };
+  RunOnCluster(ranks,
+    [&, scheduling = scheduling](dsm::Messenger& messenger)
+    {
+      dsm::BlockStore store(messenger,
+        SphereScene::CreateSettings(std::size_t(1) << 16, 2, dsm::MemoryOrganization::ObjectBased));
+      const rt::Scene scene =
+        SphereScene::CreateScene(SphereScene::Publish(messenger, store), 0.5f);
+      rt::FrameRenderer renderer(messenger);
+      rt::FrameRequest request = SphereScene::CreateRequest(97, 61);
+      request.Scheduling = scheduling;
+      request.Samples = 3;
+      const std::uint64_t expected =
+        rt::GetHash(rt::GatherFrame(messenger, renderer.Render(store, scene, request)));
+      std::mt19937 random(7);
+      int left = -1; // looks at the abort status, before it is set; negative: it is not
+      renderer.SetAbortCheck([&] { return left >= 0 && left-- == 0; });
+      for (int round = 0; round < rounds; ++round)
+      {
+        request.FirstSample = 0;
+        request.Samples = 1;
+        left = static_cast<int>(random() % latest);
+        rt::Frame frame = renderer.Render(store, scene, request);
+        left = -1;
+        if (frame.IsAborted)
+        {
+          ++aborted;
+          frame = renderer.Render(store, scene, request);
+        }
+        request.FirstSample = 1;
+        request.Samples = 2;
+        left = static_cast<int>(random() % latest);
+        renderer.Refine(store, scene, request, frame);
+        left = -1;
+        if (frame.IsAborted)
+        {
+          ++aborted;
+          renderer.Refine(store, scene, request, frame);
+        }
+        EXPECT_EQ(rt::GetHash(rt::GatherFrame(messenger, frame)), expected) << "round " << round;
+      }
+    });
+  EXPECT_GE(aborted, ranks) << "no frame was aborted";
+  EXPECT_EQ(aborted % ranks, 0) << "a frame is aborted on all ranks, or on none";
 }

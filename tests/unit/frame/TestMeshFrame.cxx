@@ -317,6 +317,55 @@ TEST_F(MeshPicture, ATextureIsLaidOnByItsCoordinates)
   EXPECT_EQ(GetColor(this->Trace({ object }), -0.8, 0.1), glm::ivec4(0, 255, 0, 255)) << "moved";
 }
 
+TEST_F(MeshPicture, EdgesAreDrawnWithoutTheDiagonal)
+{
+  TestMesh::Mesh square = CreateSquare(0.0);
+  square.EdgeFlags = { 0b011, 0b110 };
+  rt::MeshObject object = this->Publish(square);
+  object.Surface.DiffuseColor = { 0.0f, 1.0f, 0.0f };
+  object.Edges = rt::EdgeLines{ { 1.0f, 0.0f, 0.0f }, 3.0f };
+  const rt::Picture picture = this->Trace({ object });
+  const double pixel = 3.0 / Size;
+  for (int y = 0; y < Size; ++y)
+  {
+    for (int x = 0; x < Size; ++x)
+    {
+      const double border = std::max(std::fabs(GetPlace(x)), std::fabs(GetPlace(y)));
+      if (border < 1.0)
+      {
+        const double cover = std::clamp(2.0 - (1.0 - border) / pixel, 0.0, 1.0);
+        const std::uint8_t* color = &picture.Color[4 * (y * Size + x)];
+        EXPECT_NEAR(color[0], 255.0 * cover, 0.6) << x << ", " << y;
+        EXPECT_NEAR(color[1], 255.0 * (1.0 - cover), 0.6) << x << ", " << y;
+      }
+    }
+  }
+}
+
+TEST_F(MeshPicture, EdgesAreSeenInMirrorsAndPaintedOnThem)
+{
+  // Looked at from above, a mirror on a slant shows the square that stands beside it.
+  TestMesh::Mesh square = CreateSquare(0.0);
+  square.EdgeFlags = { 0b011, 0b110 };
+  rt::MeshObject mirror = this->Publish(
+    square, glm::rotate(glm::dmat4(1.0), -glm::quarter_pi<double>(), glm::dvec3(0.0, 1.0, 0.0)));
+  mirror.Surface.Reflectivity = 1.0f;
+  mirror.Edges = rt::EdgeLines{ { 0.0f, 0.0f, 1.0f }, 4.0f };
+  const glm::dmat4 upright =
+    glm::rotate(glm::translate(glm::dmat4(1.0), glm::dvec3(-2.0, 0.0, 0.0)), glm::half_pi<double>(),
+      glm::dvec3(0.0, 1.0, 0.0));
+  rt::MeshObject wall = this->Publish(square, glm::scale(upright, glm::dvec3(0.5)));
+  wall.Surface.DiffuseColor = { 0.0f, 1.0f, 0.0f };
+  wall.Edges = rt::EdgeLines{ { 1.0f, 0.0f, 0.0f }, 4.0f };
+  const rt::Picture picture = this->Trace({ mirror, wall });
+  const double pixel = 3.0 / Size;
+  EXPECT_EQ(GetColor(picture, 0.1, 0.1), glm::ivec4(0, 255, 0, 255)) << "no diagonal";
+  EXPECT_EQ(GetColor(picture, 0.1, 0.5 - 0.75 * pixel), glm::ivec4(255, 0, 0, 255));
+  EXPECT_EQ(GetColor(picture, 0.5 - 0.75 * pixel, 0.1), glm::ivec4(255, 0, 0, 255));
+  EXPECT_EQ(GetColor(picture, 0.1, 0.5 - 3.5 * pixel), glm::ivec4(0, 255, 0, 255));
+  EXPECT_EQ(GetColor(picture, 0.1, 1.0 - 0.75 * pixel), glm::ivec4(0, 0, 255, 255));
+}
+
 TEST_F(MeshPicture, TwoTranslucentSquaresAndTheirCommonEdges)
 {
   rt::MeshObject above = this->Publish(CreateSquare(0.5));

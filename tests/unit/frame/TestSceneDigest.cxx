@@ -8,6 +8,7 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <set>
 #include <vector>
 
@@ -39,6 +40,9 @@ TEST(TestSceneDigest, ChangesWithAllThatThePictureShows)
         [](rt::Scene& s, rt::FrameRequest&) { s.Lights.emplace_back(); },
         [](rt::Scene& s, rt::FrameRequest&) { s.Transport.Shadows = true; },
         [](rt::Scene& s, rt::FrameRequest&) { s.Transport.Background.z = 0.3f; },
+        [](rt::Scene& s, rt::FrameRequest&) { s.Transport.Surroundings.Lower.z = 0.3f; },
+        [](rt::Scene& s, rt::FrameRequest&) { s.Transport.Surroundings.Upper.z = 0.3f; },
+        [](rt::Scene& s, rt::FrameRequest&) { s.Transport.Surroundings.Up.x = 0.3; },
         [&](rt::Scene& s, rt::FrameRequest&)
         { s.Isosurfaces[0].Field = SphereScene::Publish(messenger, store); },
       };
@@ -87,5 +91,20 @@ TEST(TestSceneDigest, ChangesWithWhatIsLaidOnAMesh)
         digests.insert(rt::GetSceneDigest(textured, request));
       }
       EXPECT_EQ(digests.size(), changes.size() + 1);
+
+      const std::vector<std::function<void(std::optional<rt::EdgeLines>&)>> lines = {
+        [](std::optional<rt::EdgeLines>& e) { e.reset(); },
+        [](std::optional<rt::EdgeLines>& e) { e->Color.y = 0.7f; },
+        [](std::optional<rt::EdgeLines>& e) { e->Width = 5.0f; },
+        [](std::optional<rt::EdgeLines>& e) { e->Opacity = 0.5f; },
+      };
+      const std::size_t before = digests.size();
+      for (const auto& change : lines)
+      {
+        rt::Scene other = scene;
+        change(other.Meshes.front().Edges);
+        digests.insert(rt::GetSceneDigest(other, request));
+      }
+      EXPECT_EQ(digests.size(), before + lines.size());
     });
 }

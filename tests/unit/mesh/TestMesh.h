@@ -186,6 +186,7 @@ rt::TriangleArrays<Real> TakePart(
     {
       copy(mesh.Colors, triangle, 4, piece.Colors);
     }
+    copy(mesh.EdgeFlags, triangle, 1, piece.EdgeFlags);
   }
   return piece;
 }

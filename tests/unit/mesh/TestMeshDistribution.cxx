@@ -88,7 +88,8 @@ void ExpectSame(const Outcome& a, const Outcome& b, const std::string& what)
   EXPECT_EQ(std::memcmp(a.Hits.data(), b.Hits.data(), a.Hits.size() * sizeof(double)), 0) << what;
 }
 
-/// A blob with all attributes and with duplicates of some triangles that differ in their values.
+/// A blob with all attributes and with duplicates of some triangles that differ in their values and
+/// edge flags.
 Mesh CreateRichMesh()
 {
   Mesh mesh = CreateBlob(3);
@@ -110,8 +111,9 @@ Mesh CreateRichMesh()
   mesh.ColorsOf = rt::Attachment::Triangles;
   for (std::uint64_t triangle = 0; triangle < mesh.GetTriangleCount(); ++triangle)
   {
-    mesh.Values.push_back(static_cast<double>(triangle));
-    mesh.Colors.insert(mesh.Colors.end(), { static_cast<std::uint8_t>(triangle), 7, 8, 255 });
+    mesh.Values.push_back(static_cast<double>(triangle / 2));
+    mesh.EdgeFlags.push_back(static_cast<std::uint8_t>(triangle % 8));
+    mesh.Colors.insert(mesh.Colors.end(), { static_cast<std::uint8_t>(triangle / 2), 7, 8, 255 });
   }
   return mesh;
 }

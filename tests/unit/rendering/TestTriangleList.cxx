@@ -8,6 +8,7 @@
 #include "vtkCellData.h"
 #include "vtkDataSetAttributes.h"
 #include "vtkNew.h"
+#include "vtkPointData.h"
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
 #include "vtkUnsignedCharArray.h"
@@ -143,6 +144,67 @@ TEST(TriangleList, StripsTurnAllTheSameWay)
     EXPECT_DOUBLE_EQ(GetArea(data, corners), 1.0);
   }
   EXPECT_EQ(list.GetCell(2), 0);
+}
+
+TEST(TriangleList, SidesOfPolygonsAreEdgesAndCutsAreNot)
+{
+  const auto data = MakePoints({ { 0, 0 }, { 2, 0 }, { 3, 1 }, { 2, 2 }, { 0, 2 } });
+  vtkNew<vtkCellArray> polygons;
+  polygons->InsertNextCell({ 0, 1, 2 });
+  polygons->InsertNextCell({ 0, 1, 2, 3, 4 });
+  polygons->InsertNextCell({ 4, 3, 1, 0 });
+  vtkNew<vtkCellArray> strips;
+  strips->InsertNextCell({ 0, 1, 4, 3 });
+  data->SetPolys(polygons);
+  data->SetStrips(strips);
+  const vtkDSMTriangleList list(data);
+  ASSERT_EQ(list.GetCount(), 8u);
+  const unsigned expected[8] = { 0b111, 0b011, 0b010, 0b110, 0b011, 0b110, 0b111, 0b111 };
+  for (std::uint64_t triangle = 0; triangle < list.GetCount(); ++triangle)
+  {
+    EXPECT_EQ(list.GetEdgeFlags(triangle), expected[triangle]) << triangle;
+  }
+  EXPECT_TRUE(vtkDSMTriangleList::NeedsEdgeFlags(data));
+}
+
+TEST(TriangleList, EveryTriangleOfAConcavePolygonKnowsItsEdges)
+{
+  const auto data = MakePoints({ { 0, 0 }, { 2, 1.5 }, { 0, 3 }, { 1, 1.5 } });
+  vtkNew<vtkCellArray> polygons;
+  polygons->InsertNextCell({ 0, 1, 2, 3 });
+  data->SetPolys(polygons);
+  const vtkDSMTriangleList list(data);
+  ASSERT_EQ(list.GetCount(), 2u);
+  for (std::uint64_t triangle = 0; triangle < 2; ++triangle)
+  {
+    Corners corners;
+    list.GetTriangle(triangle, corners.data());
+    for (int side = 0; side < 3; ++side)
+    {
+      const std::uint64_t way = (corners[(side + 1) % 3] + 4 - corners[side]) % 4;
+      EXPECT_EQ(list.GetEdgeFlags(triangle) >> side & 1u, way == 2 ? 0u : 1u);
+    }
+  }
+}
+
+TEST(TriangleList, EdgeFlagsOfPointsAreThoseOfTheEdgesThatBeginThere)
+{
+  const auto data = MakePoints({ { 0, 0 }, { 1, 0 }, { 1, 1 }, { 0, 1 } });
+  vtkNew<vtkCellArray> polygons;
+  polygons->InsertNextCell({ 0, 1, 2 });
+  polygons->InsertNextCell({ 3, 0, 2 });
+  data->SetPolys(polygons);
+  EXPECT_FALSE(vtkDSMTriangleList::NeedsEdgeFlags(data));
+  vtkNew<vtkUnsignedCharArray> flags;
+  for (const int flag : { 1, 0, 1, 0 })
+  {
+    flags->InsertNextValue(static_cast<unsigned char>(flag));
+  }
+  data->GetPointData()->SetAttribute(flags, vtkDataSetAttributes::EDGEFLAG);
+  EXPECT_TRUE(vtkDSMTriangleList::NeedsEdgeFlags(data));
+  const vtkDSMTriangleList list(data);
+  EXPECT_EQ(list.GetEdgeFlags(0), 0b101u);
+  EXPECT_EQ(list.GetEdgeFlags(1), 0b110u);
 }
 
 TEST(TriangleList, GhostsAreLeftOut)

@@ -24,6 +24,9 @@ constexpr std::size_t ChunkSize = std::size_t(1) << 16;
 /// Beyond this, products of coordinates leave the range of floats.
 constexpr double LargestCoordinate = 1e18;
 
+/// What a triangle of a rank's own piece takes while it is sorted.
+constexpr double OwnTriangleBytes = 32.0;
+
 /// What every rank tells of its piece.
 struct PieceSummary
 {
@@ -94,8 +97,8 @@ void TriangleMeshBuilder::AgreeOnPieces()
     {
       throw dsm::Error(this->What + ": The pieces of the mesh on ranks " + std::to_string(first) +
         " and " + std::to_string(rank) +
-        " differ in having normals, values, colours or texture coordinates. Give all pieces the "
-        "same arrays.");
+        " differ in having normals, values, colours, texture coordinates or edge flags. Give all "
+        "pieces the same arrays.");
     }
   }
 }
@@ -126,17 +129,21 @@ void TriangleMeshBuilder::CheckMemory()
       const std::uint64_t available = this->Settings.MemoryBytes > 0
         ? this->Settings.MemoryBytes
         : dsm::GetAvailableHostMemory() / static_cast<std::uint64_t>(ranksOnHost);
-      const double own = 32.0 * static_cast<double>(this->Source.GetTriangleCount());
-      const double share = static_cast<double>(this->Mesh->Triangles) / this->Messages.GetSize() *
-        (static_cast<double>(TriangleRecord(this->Mesh->Attributes).GetBytes()) +
-          this->EstimateBrickBytesPerTriangle());
+      const double own = OwnTriangleBytes * static_cast<double>(this->Source.GetTriangleCount());
+      const double each = static_cast<double>(TriangleRecord(this->Mesh->Attributes).GetBytes()) +
+        this->EstimateBrickBytesPerTriangle();
+      const auto all = static_cast<double>(this->Mesh->Triangles);
+      const double share = all * each / this->Messages.GetSize();
       if (own + share > static_cast<double>(available))
       {
         throw dsm::Error("The mesh has " + std::to_string(this->Mesh->Triangles) +
           " triangles. To put them in bricks this rank needs about " +
           dsm::FormatMebibytes(static_cast<std::uint64_t>(own + share)) + ", but has " +
-          dsm::FormatMebibytes(available) +
-          ". Use more ranks on more hosts, or a mesh of fewer triangles.");
+          dsm::FormatMebibytes(available) + ". Use at least " +
+          std::to_string(static_cast<std::uint64_t>(
+            std::ceil(all * (OwnTriangleBytes + each) / static_cast<double>(available)))) +
+          " ranks with as much memory, each with a part of the mesh, or a mesh of fewer "
+          "triangles.");
       }
     });
 }

@@ -25,6 +25,7 @@ public:
   std::vector<double> Values;
   std::vector<std::uint8_t> Colors;      ///< four an element
   std::vector<float> TextureCoordinates; ///< two a point
+  std::vector<std::uint8_t> EdgeFlags;   ///< one a triangle
   /// What Normals, Values and Colors belong to, when there are any.
   Attachment NormalsOf = Attachment::Points;
   Attachment ValuesOf = Attachment::Points;
@@ -37,6 +38,7 @@ public:
     attributes.Values = this->Values.empty() ? Attachment::None : this->ValuesOf;
     attributes.Colors = this->Colors.empty() ? Attachment::None : this->ColorsOf;
     attributes.TextureCoordinates = !this->TextureCoordinates.empty();
+    attributes.EdgeFlags = !this->EdgeFlags.empty();
     return attributes;
   }
   std::uint64_t GetTriangleCount() const override { return this->Triangles.size() / 3; }
@@ -62,6 +64,7 @@ public:
   {
     std::copy_n(this->TextureCoordinates.data() + 2 * point, 2, coordinate);
   }
+  unsigned GetEdgeFlags(std::uint64_t triangle) const override { return this->EdgeFlags[triangle]; }
 };
 
 } // namespace rt

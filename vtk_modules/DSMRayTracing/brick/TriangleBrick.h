@@ -64,6 +64,15 @@ public:
   {
     return this->Get<float>(this->GetHeader().TextureOffset);
   }
+  /// AllEdges where the brick has no flags.
+  unsigned GetEdgeFlags(std::uint32_t triangle) const
+  {
+    const std::uint32_t offset = this->GetHeader().EdgeFlagOffset;
+    constexpr std::uint32_t perWord = TriangleBrickHeader::EdgeFlagsPerWord;
+    return offset == 0
+      ? AllEdges
+      : this->Get<std::uint32_t>(offset)[triangle / perWord] >> 3 * (triangle % perWord) & AllEdges;
+  }
 
 private:
   template <class T>

@@ -195,6 +195,9 @@ TriangleBrickHeader TriangleBrickBuilder::LayOut(std::uint32_t triangles) const
   header.ColorOffset = takeFor(this->Attributes.Colors, 4);
   header.TextureOffset =
     takeFor(this->Attributes.TextureCoordinates ? Attachment::Points : Attachment::None, 8);
+  header.EdgeFlagOffset = this->Attributes.EdgeFlags
+    ? take(4 * (triangles / TriangleBrickHeader::EdgeFlagsPerWord + 1))
+    : 0;
   header.BlockBytes = offset;
   return header;
 }
@@ -233,6 +236,15 @@ void TriangleBrickBuilder::WriteElements(
     if (header.Colors == Attachment::Triangles)
     {
       write(header.ColorOffset, triangle, record + this->Layout.Colors, 1);
+    }
+    if (header.EdgeFlagOffset != 0)
+    {
+      constexpr std::uint32_t perWord = TriangleBrickHeader::EdgeFlagsPerWord;
+      std::byte* place = block + header.EdgeFlagOffset + 4 * (triangle / perWord);
+      std::uint32_t word;
+      std::memcpy(&word, place, sizeof(word));
+      word |= record[this->Layout.EdgeFlags] << 3 * (triangle % perWord);
+      std::memcpy(place, &word, sizeof(word));
     }
   }
 }

@@ -21,6 +21,8 @@ namespace rt
 ///   values                 one float a vertex or a triangle, if the mesh has values
 ///   colours                four bytes a vertex or a triangle, red first, if it has colours
 ///   texture coordinates    two floats a vertex, if it has texture coordinates
+///   edge flags             three bits a triangle, ten triangles in a 32-bit word, the first in its
+///                          lowest bits, if it has edge flags (AllEdges)
 ///
 /// Every part starts at a multiple of 16 bytes. Offsets are from the start of the block, so it can
 /// lie anywhere; an offset of 0 means that the part is not there. Vertices are shared between
@@ -36,14 +38,16 @@ struct TriangleBrickHeader
   std::uint32_t ValueOffset;
   std::uint32_t ColorOffset;
   std::uint32_t TextureOffset;
+  std::uint32_t EdgeFlagOffset;
   /// The longest edge along an axis of any triangle's bounds; see TriangleFilter.
   float LargestExtent;
   bool Normals;
   Attachment Values;
   Attachment Colors;
-  std::uint8_t Unused[25];
+  std::uint8_t Unused[21];
 
   static constexpr std::uint32_t NodeOffset = 64;
+  static constexpr std::uint32_t EdgeFlagsPerWord = 10;
   /// Triangles of a brick are numbered with 13 bits in the leaves of its tree.
   static constexpr std::uint32_t LargestTriangles = 8191;
 };

@@ -170,6 +170,16 @@ void TriangleReader::ReadRecord(std::uint64_t triangle, std::uint32_t* record) c
       words[1] = GetBits(static_cast<float>(coordinate[1]) + 0.0f);
     }
   }
+  if (this->Attributes.EdgeFlags)
+  {
+    const unsigned flags = this->Source.GetEdgeFlags(triangle);
+    std::uint32_t turned = 0;
+    for (int side = 0; side < 3; ++side)
+    {
+      turned |= (flags >> order[side] & 1u) << side;
+    }
+    record[this->Layout.EdgeFlags] = turned;
+  }
 }
 
 } // namespace rt

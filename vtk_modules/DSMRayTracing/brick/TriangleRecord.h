@@ -19,6 +19,7 @@ namespace rt
 ///   one or three      values (float): of the triangle, or of the corners
 ///   one or three      colours (red in the lowest byte): of the triangle, or of the corners
 ///   six floats        texture coordinates of the corners
+///   one word          edge flags, in its lowest three bits, of the corners as they are turned
 ///
 /// A record is a function of the triangle alone, not of the rank or the order in which it came: the
 /// corners are turned so that the smallest position comes first, and zeros are positive. Where
@@ -36,7 +37,8 @@ public:
     this->Values = this->Normals + (attributes.Normals != Attachment::None ? 3 : 0);
     this->Colors = this->Values + wordsOf(attributes.Values);
     this->TextureCoordinates = this->Colors + wordsOf(attributes.Colors);
-    this->Words = this->TextureCoordinates + (attributes.TextureCoordinates ? 6 : 0);
+    this->EdgeFlags = this->TextureCoordinates + (attributes.TextureCoordinates ? 6 : 0);
+    this->Words = this->EdgeFlags + (attributes.EdgeFlags ? 1 : 0);
   }
 
   /// Offsets in words, and the number of words.
@@ -44,9 +46,10 @@ public:
   int Values = 9;
   int Colors = 9;
   int TextureCoordinates = 9;
+  int EdgeFlags = 9;
   int Words = 9;
 
-  static constexpr int LargestWords = 9 + 3 + 3 + 3 + 6;
+  static constexpr int LargestWords = 9 + 3 + 3 + 3 + 6 + 1;
 
   std::size_t GetBytes() const { return sizeof(std::uint32_t) * this->Words; }
 

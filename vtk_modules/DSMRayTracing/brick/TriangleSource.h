@@ -37,6 +37,8 @@ public:
   virtual double GetValue(std::uint64_t element) const = 0;
   virtual void GetColor(std::uint64_t element, std::uint8_t rgba[4]) const = 0;
   virtual void GetTextureCoordinate(std::uint64_t point, double coordinate[2]) const = 0;
+  /// In the order of the triangle's points; see AllEdges.
+  virtual unsigned GetEdgeFlags(std::uint64_t triangle) const = 0;
 };
 
 } // namespace rt

@@ -26,6 +26,7 @@ struct Tile
   int Height = 0;
   int Index = 0; ///< row-major number of the tile in the frame
   int Layers = 1;
+  int Samples = 0;          ///< that Sum has
   bool IsNew = false;       ///< another rank traced it in the last frame
   std::uint64_t Misses = 0; ///< that its tracing waited for
   double Seconds = 0.0;     ///< of processor time that its tracing took
@@ -49,6 +50,7 @@ struct Frame
   std::vector<Tile> Tiles;
   /// Of the frames of a group of ranks: the same on every rank. 0: there is no frame.
   std::uint32_t Number = 0;
+  bool IsAborted = false;   ///< on every rank; tiles, or samples of tiles, are missing
   double BusySeconds = 0.0; ///< from the start to the end of this rank's last tile
   double Seconds = 0.0;     ///< from the collective start to the collective end
   /// How the bricks were kept; never Automatic.

@@ -24,11 +24,20 @@ std::string ToText(const std::vector<std::byte>& bytes, std::size_t first)
   return { reinterpret_cast<const char*>(bytes.data()) + first, bytes.size() - first };
 }
 
+/// How a frame ended; the text of a failure follows.
+struct Ending
+{
+  std::int32_t FailedRank;
+  std::int32_t IsAborted;
+};
+
 } // namespace
 
-FrameAgreement::FrameAgreement(dsm::Messenger& messenger, std::function<void()> failureSeen)
+FrameAgreement::FrameAgreement(
+  dsm::Messenger& messenger, std::function<void()> failureSeen, std::function<void()> abortSeen)
   : Messenger(messenger)
   , FailureSeen(std::move(failureSeen))
+  , AbortSeen(std::move(abortSeen))
   , Missing(messenger.GetSize())
 {
   if (messenger.GetRank() == 0)
@@ -40,6 +49,7 @@ FrameAgreement::FrameAgreement(dsm::Messenger& messenger, std::function<void()> 
   else
   {
     messenger.SetHandler(dsm::MessageKind::FrameStop, [this](dsm::Message&&) { this->Stop(); });
+    messenger.SetHandler(dsm::MessageKind::FrameAbort, [this](dsm::Message&&) { this->Cease(); });
     messenger.SetHandler(dsm::MessageKind::FrameEnd,
       [this](dsm::Message&& message) { this->End(std::move(message)); });
   }
@@ -49,6 +59,7 @@ FrameAgreement::~FrameAgreement()
 {
   this->Messenger.SetHandler(dsm::MessageKind::FrameDone, {});
   this->Messenger.SetHandler(dsm::MessageKind::FrameStop, {});
+  this->Messenger.SetHandler(dsm::MessageKind::FrameAbort, {});
   this->Messenger.SetHandler(dsm::MessageKind::FrameEnd, {});
 }
 
@@ -59,6 +70,15 @@ void FrameAgreement::ReportFailure(const std::string& cause)
     this->Failed = true;
     this->Tell(cause);
   }
+}
+
+void FrameAgreement::Abort()
+{
+  for (int rank = 1; !this->Aborted && rank < this->Messenger.GetSize(); ++rank)
+  {
+    this->Messenger.Post(rank, dsm::MessageKind::FrameAbort, {});
+  }
+  this->Cease();
 }
 
 void FrameAgreement::ReportDone()
@@ -101,7 +121,7 @@ void FrameAgreement::Collect(int source, const std::string& cause)
   {
     return;
   }
-  auto payload = dsm::Encode<std::int32_t>(this->Outcome.FailedRank);
+  auto payload = dsm::Encode(Ending{ this->Outcome.FailedRank, this->Aborted ? 1 : 0 });
   const auto text = ToBytes(this->Outcome.Cause);
   payload.insert(payload.end(), text.begin(), text.end());
   for (int rank = 1; rank < this->Messenger.GetSize(); ++rank)
@@ -120,11 +140,24 @@ void FrameAgreement::Stop()
   }
 }
 
+void FrameAgreement::Cease()
+{
+  if (!this->Aborted)
+  {
+    this->Aborted = true;
+    if (this->AbortSeen)
+    {
+      this->AbortSeen();
+    }
+  }
+}
+
 void FrameAgreement::End(dsm::Message&& message)
 {
-  this->Outcome.FailedRank =
-    dsm::Decode<std::int32_t>(message, dsm::MessageKind::FrameEnd, /*exact=*/false);
-  this->Outcome.Cause = ToText(message.Payload, sizeof(std::int32_t));
+  const auto ending = dsm::Decode<Ending>(message, dsm::MessageKind::FrameEnd, /*exact=*/false);
+  this->Outcome.FailedRank = ending.FailedRank;
+  this->Outcome.Cause = ToText(message.Payload, sizeof(Ending));
+  this->Aborted = ending.IsAborted != 0;
   this->Over = true;
 }
 

@@ -213,10 +213,11 @@ Frame FrameRenderer::Render(
 void FrameRenderer::Refine(
   dsm::BlockStore& store, const Scene& scene, const FrameRequest& request, Frame& frame)
 {
-  KeptTiles tiles(std::move(frame.Tiles));
+  KeptTiles tiles(std::move(frame.Tiles), request.FirstSample + request.Samples);
   frame.Tiles.clear();
   frame.Number = 0; // as long as it has no tiles
   this->RenderTiles(store, scene, request, nullptr, tiles, frame);
+  tiles.TakeRest(frame.Tiles);
 }
 
 void FrameRenderer::RenderTiles(dsm::BlockStore& store, const Scene& scene,
@@ -260,12 +261,14 @@ void FrameRenderer::TraceTiles(Store& store, dsm::WorkerSlots& slots, const Scen
   store.BeginFrame();
   tiles.Begin(plan, workers);
   std::atomic<bool> stopped{ false }; // by another rank's failure, which that rank reports
-  FrameAgreement agreement(this->Messenger,
+  FrameAgreement agreement(
+    this->Messenger,
     [&]
     {
       stopped = true;
       tiles.Cancel();
-    });
+    },
+    [&] { tiles.Cancel(); });
   const std::uint32_t number = this->Messenger.BeginSession();
   const auto start = Clock::now();
 
@@ -317,6 +320,11 @@ void FrameRenderer::TraceTiles(Store& store, dsm::WorkerSlots& slots, const Scen
     {
       didSomething = store.Service();
       didSomething = tiles.Service() || didSomething;
+      const bool mayAbort = this->AbortCheck && this->Messenger.GetRank() == 0;
+      if (mayAbort && !agreement.IsAborted() && !agreement.IsOver() && this->AbortCheck())
+      {
+        agreement.Abort();
+      }
     }
     catch (...)
     {
@@ -362,10 +370,13 @@ void FrameRenderer::TraceTiles(Store& store, dsm::WorkerSlots& slots, const Scen
   this->Messenger.ProgressUntil([this] { return this->Messenger.GetUnsentBytes() == 0; });
 
   const dsm::Status& outcome = agreement.GetOutcome();
-  if (!outcome.IsOk())
+  if (!outcome.IsOk() || agreement.IsAborted())
   {
     // A rank that gave up may not have taken what it had asked for; it takes it while it waits here.
     this->Messenger.Barrier();
+  }
+  if (!outcome.IsOk())
+  {
     throw dsm::Error("The frame could not be traced. Rank " + std::to_string(outcome.FailedRank) +
       ": " + outcome.Cause);
   }
@@ -373,6 +384,7 @@ void FrameRenderer::TraceTiles(Store& store, dsm::WorkerSlots& slots, const Scen
   {
     std::move(some.begin(), some.end(), std::back_inserter(frame.Tiles));
   }
+  frame.IsAborted = agreement.IsAborted();
   frame.Number = number;
   frame.BusySeconds = busySeconds;
 }

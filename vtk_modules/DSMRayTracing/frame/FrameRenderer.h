@@ -11,6 +11,8 @@
 #include "DSMRayTracing/schedule/CentralQueueScheduler.h"
 #include "DSMRayTracing/schedule/WorkStealingScheduler.h"
 
+#include <functional>
+#include <utility>
 #include <vector>
 
 namespace rt
@@ -40,8 +42,15 @@ public:
 
   /// Adds the request's samples to a frame that has all samples before them: each rank goes on with
   /// the tiles that it has. Collective; as Render, but that a failure leaves the frame without tiles.
+  /// A frame that was aborted while it got samples has to get the same ones again, before others:
+  /// then only tiles that lack them are traced.
   void Refine(
     dsm::BlockStore& store, const Scene& scene, const FrameRequest& request, Frame& frame);
+
+  /// Asked on rank 0, by the calling thread, again and again during a frame: whether the frame is to be
+  /// aborted. The ranks then finish the tiles that they are tracing, and every rank's frame says so: one
+  /// that was rendered is of no use, one that was refined can be refined again.
+  void SetAbortCheck(std::function<bool()> check) { this->AbortCheck = std::move(check); }
 
 private:
   void RenderTiles(dsm::BlockStore& store, const Scene& scene, const FrameRequest& request,
@@ -54,6 +63,7 @@ private:
   CentralQueueScheduler Queue;
   WorkStealingScheduler Stealing;
   WorkerPool Pool;
+  std::function<bool()> AbortCheck;
 };
 
 } // namespace rt

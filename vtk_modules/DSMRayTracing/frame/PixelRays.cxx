@@ -20,6 +20,9 @@ PixelRays::PixelRays(const FrameRequest& request)
 {
   for (int column = 0; column < 4; ++column)
   {
+    const glm::dvec4& clip = this->WorldToClip[column];
+    this->WorldToPixels[column] = { (clip.x + clip.w) / this->PixelWidth,
+      (clip.y + clip.w) / this->PixelHeight, clip.w };
     for (int row = 0; row < 4; ++row)
     {
       if (!std::isfinite(this->ClipToWorld[column][row]))

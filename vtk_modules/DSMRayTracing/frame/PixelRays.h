@@ -5,6 +5,7 @@
 #include "DSMRayTracing/frame/FrameRequest.h"
 #include "DSMRayTracing/kernel/VolumeTracer.h"
 
+#include <glm/mat4x3.hpp>
 #include <glm/mat4x4.hpp>
 #include <glm/vec2.hpp>
 
@@ -29,11 +30,16 @@ public:
   /// OpenGL window depth in [0, 1] of a world point.
   float GetDepth(const glm::dvec3& point) const;
 
+  /// Takes a world point (with a fourth coordinate of 1) to the picture: x and y in pixels, both times
+  /// the third coordinate.
+  const glm::dmat4x3& GetWorldToPixels() const { return this->WorldToPixels; }
+
 private:
   double PixelWidth;
   double PixelHeight;
   glm::dmat4 WorldToClip;
   glm::dmat4 ClipToWorld;
+  glm::dmat4x3 WorldToPixels;
 };
 
 } // namespace rt

@@ -2,6 +2,7 @@
 #ifndef rt_PixelTracer_h
 #define rt_PixelTracer_h
 
+#include "DSMRayTracing/frame/EdgeCover.h"
 #include "DSMRayTracing/frame/LightTracer.h"
 #include "DSMRayTracing/frame/PixelRays.h"
 #include "DSMRayTracing/frame/SampleSequence.h"
@@ -75,7 +76,7 @@ public:
     path.Random = SampleSequence(x, y, sample);
     path.Layers = &result;
     const Ray ray = this->Rays.GetRay(x, y, path.Random.GetPositionInPixel());
-    this->Follow(ray, this->World.Transport.MaxBounces, path);
+    this->Follow(ray, this->World.Transport.MaxBounces, this->Rays.GetWorldToPixels(), path);
     result.Color = path.Color;
     result.LightRays = path.LightRays;
     return result;
@@ -217,7 +218,8 @@ private:
     for (int count = List(wanted, packets, paths, list); count > 0;
          count = List(wanted, packets, paths, list))
     {
-      this->AddSurfaces(list, count, this->World.Transport.MaxBounces);
+      this->AddSurfaces(
+        list, count, this->World.Transport.MaxBounces, this->Rays.GetWorldToPixels());
       bool isAny = false;
       for (int number = 0; number < count; ++number)
       {
@@ -241,20 +243,20 @@ private:
     }
   }
 
-  /// Front to back, by itself.
-  void Follow(Ray ray, int bounces, Path& path) const
+  /// Front to back, by itself. `view` tells where in the picture the ray sees a point of the world.
+  void Follow(Ray ray, int bounces, const glm::dmat4x3& view, Path& path) const
   {
     path.ToViewer = -glm::normalize(ray.Direction);
     Path* const list[] = { &path };
     while (path.GoesOn() && this->Surfaces.Intersect(ray, path.Point))
     {
-      this->AddSurfaces(list, 1, bounces);
+      this->AddSurfaces(list, 1, bounces, view);
       path.Pass(ray);
     }
   }
 
   /// Adds what the surfaces at which paths are contribute.
-  void AddSurfaces(Path* const* paths, int count, int bounces) const
+  void AddSurfaces(Path* const* paths, int count, int bounces, const glm::dmat4x3& view) const
   {
     Path* seen[MaxPaths] = {};
     int seenCount = 0;
@@ -266,7 +268,7 @@ private:
       }
     }
     glm::vec3 colors[MaxPaths];
-    this->ShadePoints(seen, seenCount, bounces, colors);
+    this->ShadePoints(seen, seenCount, bounces, view, colors);
     for (int number = 0; number < seenCount; ++number)
     {
       Path& path = *seen[number];
@@ -280,7 +282,8 @@ private:
     }
   }
 
-  void ShadePoints(Path* const* paths, int count, int bounces, glm::vec3* colors) const
+  void ShadePoints(
+    Path* const* paths, int count, int bounces, const glm::dmat4x3& view, glm::vec3* colors) const
   {
     if (this->World.View != DebugView::Off)
     {
@@ -300,8 +303,14 @@ private:
       shading.ToViewer = paths[number]->ToViewer;
       shading.Color = glm::vec3(point.Color);
       shading.ColorIsFromArray = point.ColorIsFromArray;
+      if (point.Edges)
+      {
+        shading.LineColor = point.Edges->Color;
+        shading.LineCover = point.Edges->Opacity *
+          GetEdgeCover(point.Position, point.Corners, point.EdgeFlags, point.Edges->Width, view);
+      }
     }
-    this->FindAmbientVisibility(paths, count, points);
+    this->LookAround(paths, count, points);
     const std::vector<Light>& lights = this->World.Lights;
     std::vector<glm::dvec3> visibility;
     if (this->World.Transport.Shadows)
@@ -321,13 +330,16 @@ private:
           return visibility.empty() ? glm::dvec3(1.0)
                                     : visibility[MaxPaths * (&light - lights.data()) + number];
         });
-      this->AddReflection(bounces, *paths[number], points[number], colors[number]);
+      this->AddReflection(bounces, view, *paths[number], points[number], colors[number]);
     }
   }
 
-  void AddReflection(int bounces, Path& path, const ShadingPoint& shading, glm::vec3& color) const
+  void AddReflection(int bounces, const glm::dmat4x3& view, Path& path, const ShadingPoint& shading,
+    glm::vec3& color) const
   {
-    const float reflectivity = path.Point.Surface->Reflectivity;
+    // A line is painted on the mirror.
+    const float reflectivity =
+      static_cast<float>(1.0 - shading.LineCover) * path.Point.Surface->Reflectivity;
     if (reflectivity <= 0.0f || bounces <= 0)
     {
       return;
@@ -339,7 +351,8 @@ private:
     mirrored.Max = std::numeric_limits<double>::infinity();
     Path behind;
     behind.Random = path.Random;
-    this->Follow(mirrored, bounces - 1, behind);
+    this->Follow(
+      mirrored, bounces - 1, GetMirroredView(view, path.Point.Position, shading.Normal), behind);
     path.Random = behind.Random;
     path.LightRays += behind.LightRays;
     const glm::vec4 seen = behind.Color;
@@ -423,15 +436,28 @@ private:
     return ray;
   }
 
-  /// The parts of the hemispheres, weighted by the cosine, in which nothing is near.
-  void FindAmbientVisibility(Path* const* paths, int count, ShadingPoint* points) const
+  /// Finds the parts of the hemispheres, weighted by the cosine, in which nothing is near, and the
+  /// light that comes from there.
+  void LookAround(Path* const* paths, int count, ShadingPoint* points) const
   {
-    const int samples = this->World.Transport.AmbientOcclusionSamples;
+    const LightTransport& transport = this->World.Transport;
+    const int samples = transport.AmbientOcclusionSamples;
+    const bool hasSurroundings = !transport.Surroundings.IsBlack();
+    for (int number = 0; number < count; ++number)
+    {
+      points[number].HasSurroundings = hasSurroundings;
+      if (hasSurroundings && samples <= 0)
+      {
+        points[number].Surroundings = transport.Surroundings.GetLightOnto(points[number].Normal);
+      }
+    }
     if (samples <= 0)
     {
       return;
     }
     double visible[MaxPaths] = {};
+    glm::dvec3 arriving[MaxPaths];
+    std::fill_n(arriving, count, glm::dvec3(0.0));
     for (int sample = 0; sample < samples; ++sample)
     {
       Ray rays[MaxPaths];
@@ -445,11 +471,17 @@ private:
       {
         const glm::dvec3& transmittance = transmittances[number];
         visible[number] += (transmittance.x + transmittance.y + transmittance.z) / 3.0;
+        if (hasSurroundings)
+        {
+          arriving[number] +=
+            transmittance * transport.Surroundings.GetLight(rays[number].Direction);
+        }
       }
     }
     for (int number = 0; number < count; ++number)
     {
       points[number].AmbientVisibility = visible[number] / samples;
+      points[number].Surroundings = arriving[number] / static_cast<double>(samples);
     }
   }
 

@@ -10,6 +10,8 @@
 #include "DSMRayTracing/kernel/ClipRegion.h"
 #include "DSMRayTracing/kernel/MeshInstance.h"
 
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
 #include <glm/mat4x4.hpp>
 #include <glm/matrix.hpp>
 #include <glm/vec3.hpp>
@@ -87,6 +89,16 @@ struct IsosurfaceObject
   ClipRegion Clipping;
 };
 
+/// Lines along the edges of a mesh's polygons, as VTK draws them on a surface: they take their share
+/// of the triangles beside them, and are not lit.
+struct EdgeLines
+{
+  glm::vec3 Color{ 0.0f };
+  /// Pixels, of both triangles beside an edge together.
+  float Width = 1.0f;
+  float Opacity = 1.0f; ///< over the surface
+};
+
 /// The triangles of one mesh at one place.
 struct MeshObject
 {
@@ -109,6 +121,7 @@ struct MeshObject
   Material Surface;
   /// Of the side from which a triangle's corners are clockwise; without, both sides are alike.
   std::optional<Material> BackSurface;
+  std::optional<EdgeLines> Edges;
   ClipRegion Clipping;
 };
 
@@ -136,6 +149,30 @@ struct Light
   glm::vec3 Attenuation{ 1.0f, 0.0f, 0.0f };
 };
 
+/// Light that comes from everywhere, a gradient from below to above. World space.
+struct Environment
+{
+  glm::dvec3 Up{ 0.0, 1.0, 0.0 }; ///< unit
+  /// Of the directions straight down and straight up; in between by the cosine. Black: none.
+  glm::vec3 Lower{ 0.0f };
+  glm::vec3 Upper{ 0.0f };
+
+  bool IsBlack() const { return this->Lower == glm::vec3(0.0f) && this->Upper == glm::vec3(0.0f); }
+  /// From a unit direction.
+  glm::dvec3 GetLight(const glm::dvec3& from) const
+  {
+    return glm::mix(
+      glm::dvec3(this->Lower), glm::dvec3(this->Upper), 0.5 + 0.5 * glm::dot(from, this->Up));
+  }
+  /// That all directions over a surface with this unit normal send it, weighted by the cosine, were
+  /// nothing in between.
+  glm::dvec3 GetLightOnto(const glm::dvec3& normal) const
+  {
+    // The weighted mean of the directions is two thirds of the normal.
+    return this->GetLight(2.0 / 3.0 * normal);
+  }
+};
+
 /// What is done beyond the first hit of each ray.
 struct LightTransport
 {
@@ -147,6 +184,8 @@ struct LightTransport
   int AmbientOcclusionSamples = 0;
   /// World units; what is farther away does not occlude.
   double AmbientOcclusionDistance = 0.0;
+  /// Is occluded by what ambient occlusion's rays meet.
+  Environment Surroundings;
   /// How often a ray may be mirrored.
   int MaxBounces = 1;
   /// What a mirrored ray sees where it meets nothing.

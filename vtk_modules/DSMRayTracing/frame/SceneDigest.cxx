@@ -112,12 +112,24 @@ public:
     {
       this->Add(*object.BackSurface);
     }
+    this->Add(object.Edges.has_value());
+    if (object.Edges)
+    {
+      this->Add(*object.Edges);
+    }
     this->Add(object.Picture != nullptr);
     if (object.Picture)
     {
       this->Add(*object.Picture);
     }
     this->Add(object.Clipping);
+  }
+
+  void Add(const EdgeLines& lines)
+  {
+    this->Add(lines.Color);
+    this->Add(lines.Width);
+    this->Add(lines.Opacity);
   }
 
   void Add(const Texture& picture)
@@ -148,6 +160,9 @@ public:
     this->Add(transport.LightRadius);
     this->Add(transport.AmbientOcclusionSamples);
     this->Add(transport.AmbientOcclusionDistance);
+    this->Add(transport.Surroundings.Up);
+    this->Add(transport.Surroundings.Lower);
+    this->Add(transport.Surroundings.Upper);
     this->Add(transport.MaxBounces);
     this->Add(transport.Background);
   }

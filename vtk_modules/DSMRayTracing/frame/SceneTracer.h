@@ -36,6 +36,10 @@ struct SurfacePoint
   double Clearance = 0.0;
   /// What a debug view of owners or bricks numbers.
   std::uint64_t Number = 0;
+  /// Of the triangle's sides; null: none are drawn.
+  const EdgeLines* Edges = nullptr;
+  glm::dvec3 Corners[3]; ///< of the triangle, world, when edges are drawn
+  unsigned EdgeFlags = 0;
 };
 
 /// Finds what a ray meets among all objects of a scene. One for each worker.
@@ -366,6 +370,15 @@ private:
     const glm::dvec3 distance = glm::abs(point.Position) + glm::abs(ray.Origin);
     point.Clearance = MeshClearancePart * object.Instance->GetDiagonal() +
       HitError * (distance.x + distance.y + distance.z);
+    point.Edges = object.Edges ? &*object.Edges : nullptr;
+    if (point.Edges)
+    {
+      point.EdgeFlags = hit.EdgeFlags;
+      for (int corner = 0; corner < 3; ++corner)
+      {
+        point.Corners[corner] = object.Instance->Place(hit.Corners[corner]);
+      }
+    }
   }
 
   static glm::vec4 GetColor(const MeshObject& object, const MeshHit& hit, const Material& surface)
@@ -407,6 +420,7 @@ private:
     shortest = std::min(shortest, glm::length(glm::dvec3(object.IndexToWorld[1])));
     shortest = std::min(shortest, glm::length(glm::dvec3(object.IndexToWorld[2])));
     point.Clearance = ClearancePart * shortest;
+    point.Edges = nullptr;
   }
 
   VolumeTracer<Store> Volumes;

@@ -58,12 +58,14 @@ private:
 };
 
 /// The tiles that a rank has traced already, with their sums: further samples of them cost about
-/// what the first ones did, so the balance that was found for those holds.
+/// what the first ones did, so the balance that was found for those holds. Tiles that have `samples`
+/// samples, because such a frame was aborted before, are not given out.
 class KeptTiles : public TileSource
 {
 public:
-  explicit KeptTiles(std::vector<Tile> tiles)
+  KeptTiles(std::vector<Tile> tiles, int samples)
     : Tiles(std::move(tiles))
+    , Samples(samples)
   {
   }
 
@@ -73,13 +75,41 @@ public:
   void Cancel() override { this->Next = this->Tiles.size(); }
   std::optional<Tile> Pop(dsm::WorkerSlots&) override
   {
-    const std::size_t index = this->Next.fetch_add(1);
-    return index < this->Tiles.size() ? std::optional<Tile>(std::move(this->Tiles[index]))
-                                      : std::nullopt;
+    for (;;)
+    {
+      const std::size_t index = this->Next.fetch_add(1);
+      if (index >= this->Tiles.size())
+      {
+        return std::nullopt;
+      }
+      Tile& tile = this->Tiles[index];
+      if (tile.Samples < this->Samples)
+      {
+        std::optional<Tile> given = std::move(tile);
+        tile.Index = Given;
+        return given;
+      }
+    }
+  }
+
+  /// After the workers have stopped: adds those that were not given out to `tiles`.
+  void TakeRest(std::vector<Tile>& tiles)
+  {
+    for (Tile& tile : this->Tiles)
+    {
+      if (tile.Index != Given)
+      {
+        tiles.push_back(std::move(tile));
+      }
+    }
+    this->Tiles.clear();
   }
 
 private:
+  static constexpr int Given = -1;
+
   std::vector<Tile> Tiles;
+  int Samples;
   std::atomic<std::size_t> Next{ 0 };
 };
 

@@ -26,8 +26,8 @@ public:
   {
   }
 
-  /// Adds the request's samples to the tile's sums (which must hold the samples before them). May wait
-  /// for bricks.
+  /// Adds the request's samples to the tile's sums, which hold the samples before them. May wait for
+  /// bricks.
   void Trace(Tile& tile) const
   {
     const std::size_t pixels = static_cast<std::size_t>(tile.Width) * tile.Height;
@@ -38,6 +38,7 @@ public:
       tile.Depth.assign(tile.Layers * pixels, 1.0f);
     }
     tile.Color.resize(4 * tile.Layers * pixels);
+    tile.Samples = this->Request.FirstSample + this->Request.Samples;
     for (int top = 0; top < tile.Height; top += BeamEdge)
     {
       for (int left = 0; left < tile.Width; left += BeamEdge)

@@ -36,6 +36,8 @@ struct MeshHit
   glm::dvec2 TextureCoordinate{ 0.0 }; ///< 0 without
   /// Of the corners as the brick has them: the smallest position first.
   glm::dvec3 Weights{ 0.0 };
+  glm::vec3 Corners[3]; ///< in that order, relative to the mesh's origin
+  unsigned EdgeFlags = AllEdges;
   dsm::BlockId Brick = 0;
   std::uint32_t Triangle = 0; ///< of the brick
 
@@ -48,12 +50,14 @@ struct MeshHit
     this->Brick = triangle.Brick;
     this->Triangle = triangle.Triangle;
     this->Weights = { triangle.Weights[0], triangle.Weights[1], triangle.Weights[2] };
+    this->EdgeFlags = attributes.EdgeFlags;
 
     glm::dvec3 corners[3];
     for (int corner = 0; corner < 3; ++corner)
     {
       const float* position = triangle.Corners[corner];
-      corners[corner] = { position[0], position[1], position[2] };
+      this->Corners[corner] = { position[0], position[1], position[2] };
+      corners[corner] = this->Corners[corner];
     }
     const glm::dvec3 plane =
       instance.TurnNormal(glm::cross(corners[1] - corners[0], corners[2] - corners[0]));

@@ -62,6 +62,12 @@ public:
   const glm::dvec3& GetWorldOrigin() const { return this->WorldOrigin; }
   const glm::dmat3& GetWorldToMesh() const { return this->WorldToMesh; }
 
+  /// World place of a corner as bricks have it: relative to the mesh's origin.
+  glm::dvec3 Place(const glm::vec3& corner) const
+  {
+    return this->WorldOrigin + glm::dmat3(this->MeshToWorld) * glm::dvec3(corner);
+  }
+
   /// Turns a normal of the mesh's space, of any length, to the world.
   glm::dvec3 TurnNormal(const glm::dvec3& normal) const { return this->NormalToWorld * normal; }
 

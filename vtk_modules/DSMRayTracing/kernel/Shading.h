@@ -40,6 +40,13 @@ struct ShadingPoint
   /// Part of the surroundings that the point sees; dims what comes from all sides, and the diffuse
   /// light as ParaView's own ambient occlusion does.
   double AmbientVisibility = 1.0;
+  /// Light from all around, as far as it arrives; reflected as diffuse light.
+  glm::dvec3 Surroundings{ 0.0 };
+  bool HasSurroundings = false;
+  /// A line on the surface, and how much of the point it covers, in [0, 1]. There the surface shows the
+  /// line's colour in place of ambient and diffuse light, as in VTK.
+  glm::vec3 LineColor{ 0.0f };
+  double LineCover = 0.0;
 };
 
 /// Whether light from there makes the surface brighter, unless something is in between.
@@ -53,21 +60,25 @@ inline bool Arrives(const Incidence& incidence, const ShadingPoint& point)
 ///
 ///   ambient + sum over lights of attenuation * light * (diffuse * N.L + specular * (R.V)^power)
 ///
-/// with (N.L)^power for a lone headlight, as there. Without
-/// lighting, or without a light, the surface shows ambient + diffuse. `visibility(light, incidence)`
+/// with (N.L)^power for a lone headlight, as there, and diffuse times the light from all around. Without
+/// lighting, or without any light, the surface shows ambient + diffuse. `visibility(light, incidence)`
 /// is called for lights that face the surface: the part of each colour that arrives (glm::dvec3).
 template <class Visibility>
 glm::vec3 Shade(const std::vector<Light>& lights, const Material& surface,
   const ShadingPoint& point, Visibility&& visibility)
 {
   const glm::vec3 ambientColor = point.ColorIsFromArray ? point.Color : surface.AmbientColor;
-  glm::dvec3 color = point.AmbientVisibility * glm::dvec3(surface.Ambient * ambientColor);
+  const double uncovered = 1.0 - point.LineCover;
+  glm::dvec3 color =
+    uncovered * point.AmbientVisibility * glm::dvec3(surface.Ambient * ambientColor) +
+    point.LineCover * glm::dvec3(point.LineColor);
   const glm::dvec3 diffuseColor =
-    point.AmbientVisibility * glm::dvec3(surface.Diffuse * point.Color);
-  if (!surface.Lighting || lights.empty())
+    uncovered * point.AmbientVisibility * glm::dvec3(surface.Diffuse * point.Color);
+  if (!surface.Lighting || (lights.empty() && !point.HasSurroundings))
   {
     return glm::clamp(glm::vec3(color + diffuseColor), 0.0f, 1.0f);
   }
+  color += uncovered * glm::dvec3(surface.Diffuse * point.Color) * point.Surroundings;
   const glm::dvec3 specularColor = surface.Specular * surface.SpecularColor;
   for (const Light& light : lights)
   {

@@ -24,11 +24,13 @@ struct TriangleAttributes
   float Values[3];
   std::uint8_t Colors[3][4];
   float TextureCoordinates[3][2];
+  unsigned EdgeFlags;
 
   void Copy(const TriangleBrick& brick, std::uint32_t triangle)
   {
     const TriangleBrickHeader& header = brick.GetHeader();
     const std::uint16_t* corners = brick.GetTriangle(triangle);
+    this->EdgeFlags = brick.GetEdgeFlags(triangle);
     for (int corner = 0; corner < 3; ++corner)
     {
       const std::uint32_t vertex = corners[corner];

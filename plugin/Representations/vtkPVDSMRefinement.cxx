@@ -1,0 +1,316 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkPVDSMRefinement.h"
+
+#include "vtkPVDSMDelivery.h"
+#include "vtkPVDSMVersionCheck.h"
+
+#include "vtkClientServerStream.h"
+#include "vtkCollection.h"
+#include "vtkCommand.h"
+#include "vtkNew.h"
+#include "vtkObjectFactory.h"
+#include "vtkPVRenderView.h"
+#include "vtkProcessModule.h"
+#include "vtkRenderWindow.h"
+#include "vtkRenderWindowInteractor.h"
+#include "vtkSMProperty.h"
+#include "vtkSMPropertyHelper.h"
+#include "vtkSMProxy.h"
+#include "vtkSMProxyManager.h"
+#include "vtkSMRenderViewProxy.h"
+#include "vtkSMSession.h"
+#include "vtkSMSessionProxyManager.h"
+#include "vtkSMTrace.h"
+
+#include <map>
+#include <string>
+
+namespace
+{
+
+/// Milliseconds that the application has for its events before the next render begins. While
+/// something else is going on, the next look at it is later.
+constexpr unsigned long ShortDelay = 10;
+constexpr unsigned long LongDelay = 100;
+
+/// Renders that add no sample, one after the other: then something other than the user draws the view
+/// with changing cameras, which would never end.
+constexpr int LongestStandstill = 20;
+
+std::map<vtkPVRenderView*, vtkWeakPointer<vtkPVDSMRefinement>>& GetRegistry()
+{
+  static std::map<vtkPVRenderView*, vtkWeakPointer<vtkPVDSMRefinement>> registry;
+  return registry;
+}
+
+vtkSMRenderViewProxy* FindProxy(vtkPVRenderView* view)
+{
+  auto* module = vtkProcessModule::GetProcessModule();
+  if (!module || module->GetProcessType() != vtkProcessModule::PROCESS_CLIENT ||
+    !vtkSMProxyManager::IsInitialized())
+  {
+    return nullptr;
+  }
+  auto* manager = vtkSMProxyManager::GetProxyManager()->GetActiveSessionProxyManager();
+  vtkNew<vtkCollection> views;
+  if (manager)
+  {
+    manager->GetProxies("views", views);
+  }
+  for (int index = 0; index < views->GetNumberOfItems(); ++index)
+  {
+    auto* proxy = vtkSMRenderViewProxy::SafeDownCast(views->GetItemAsObject(index));
+    if (proxy && proxy->GetClientSideObject() == view)
+    {
+      return proxy;
+    }
+  }
+  return nullptr;
+}
+
+/// What tells of the frames that a dataset of the view is in; null where it is not traced.
+vtkSMProxy* FindReport(vtkSMProxy* representation)
+{
+  const auto helper = [=](const char* name)
+  { return vtkSMPropertyHelper(representation, name, /*quiet=*/true); };
+  if (!representation || helper("Visibility").GetAsInt() == 0 ||
+    std::string(helper("Representation").GetAsString()) != "DSM Ray Traced")
+  {
+    return nullptr;
+  }
+  vtkSMProperty* samples = representation->GetProperty("DSMSamples");
+  return samples ? samples->GetParent() : nullptr;
+}
+
+/// Calls `visit` with the report of each dataset that is traced.
+template <class Visit>
+void ForEachReport(vtkSMProxy* view, const Visit& visit)
+{
+  const vtkSMPropertyHelper representations(view, "Representations", /*quiet=*/true);
+  for (unsigned int index = 0; index < representations.GetNumberOfElements(); ++index)
+  {
+    if (vtkSMProxy* report = FindReport(representations.GetAsProxy(index)))
+    {
+      visit(report);
+    }
+  }
+}
+
+} // namespace
+
+vtkStandardNewMacro(vtkPVDSMRefinement);
+
+vtkPVDSMRefinement::~vtkPVDSMRefinement()
+{
+  this->Forget();
+  for (const unsigned long tag : this->ViewObservers)
+  {
+    if (this->View)
+    {
+      this->View->RemoveObserver(tag);
+    }
+  }
+  this->LeaveInteractor();
+}
+
+vtkSmartPointer<vtkPVDSMRefinement> vtkPVDSMRefinement::Follow(vtkPVRenderView* view)
+{
+  auto& known = GetRegistry()[view];
+  vtkSMRenderViewProxy* proxy = FindProxy(view);
+  if (!proxy)
+  {
+    return nullptr;
+  }
+  // The address of a view that is gone may be another's now.
+  if (known && known->View == proxy)
+  {
+    return known.Get();
+  }
+  vtkSmartPointer<vtkPVDSMRefinement> refinement;
+  refinement.TakeReference(vtkPVDSMRefinement::New());
+  refinement->Attach(proxy);
+  known = refinement;
+  return refinement;
+}
+
+void vtkPVDSMRefinement::Attach(vtkSMRenderViewProxy* view)
+{
+  this->View = view;
+  vtkPVDSMVersionCheck::Run(view->GetSession());
+  this->ViewObservers = { view->AddObserver(
+                            vtkCommand::StartEvent, this, &vtkPVDSMRefinement::OnRenderBegins),
+    view->AddObserver(vtkCommand::EndEvent, this, &vtkPVDSMRefinement::OnRenderEnds) };
+}
+
+/// The application gives the view its interactor after it was made.
+void vtkPVDSMRefinement::FollowInteractor()
+{
+  vtkRenderWindowInteractor* interactor = this->View->GetInteractor();
+  if (interactor == this->Interactor)
+  {
+    return;
+  }
+  this->LeaveInteractor();
+  this->Interactor = interactor;
+  this->Window = this->View->GetRenderWindow();
+  if (interactor)
+  {
+    this->InteractorObservers = { interactor->AddObserver(vtkCommand::StartInteractionEvent, this,
+                                    &vtkPVDSMRefinement::OnInteractionBegins),
+      interactor->AddObserver(
+        vtkCommand::EndInteractionEvent, this, &vtkPVDSMRefinement::OnInteractionEnds),
+      interactor->AddObserver(vtkCommand::TimerEvent, this, &vtkPVDSMRefinement::OnTimer) };
+  }
+  if (this->Window)
+  {
+    this->WindowObserver = this->Window->AddObserver(
+      vtkCommand::AbortCheckEvent, this, &vtkPVDSMRefinement::OnAbortCheck);
+  }
+}
+
+void vtkPVDSMRefinement::LeaveInteractor()
+{
+  for (const unsigned long tag : this->InteractorObservers)
+  {
+    if (this->Interactor)
+    {
+      this->Interactor->RemoveObserver(tag);
+    }
+  }
+  this->InteractorObservers.clear();
+  if (this->Window)
+  {
+    this->Window->RemoveObserver(this->WindowObserver);
+  }
+}
+
+/// Whether the application handles events, so that timers expire.
+bool vtkPVDSMRefinement::CanGoOn() const
+{
+  return this->Interactor && this->Interactor->IsA("QVTKInteractor") &&
+    !this->View->GetSession()->IsMultiClients();
+}
+
+void vtkPVDSMRefinement::OnRenderBegins(vtkObject*, unsigned long, void* interactive)
+{
+  this->Forget();
+  this->FollowInteractor();
+  if (!this->CanGoOn())
+  {
+    return;
+  }
+  this->CanAbort = *static_cast<int*>(interactive) == 0 &&
+    !vtkPVDSMDelivery::IsCapturing(
+      vtkPVRenderView::SafeDownCast(this->View->GetClientSideObject()));
+  this->Input.Begin();
+  ForEachReport(this->View,
+    [this](vtkSMProxy* report)
+    {
+      if (this->Told.insert(report->GetGlobalID()).second)
+      {
+        report->UpdateVTKObjects();
+        vtkClientServerStream stream;
+        stream << vtkClientServerStream::Invoke << VTKOBJECT(report) << "SetProgressive" << 1
+               << vtkClientServerStream::End;
+        this->View->GetSession()->ExecuteStream(report->GetLocation(), stream);
+      }
+    });
+}
+
+void vtkPVDSMRefinement::OnRenderEnds(vtkObject*, unsigned long, void* interactive)
+{
+  this->CanAbort = false;
+  this->IsRefined = true;
+  if (*static_cast<int*>(interactive) != 0 || !this->CanGoOn())
+  {
+    return;
+  }
+  const int before = this->Samples;
+  int samples[2] = { 0, 0 };
+  ForEachReport(this->View,
+    [&](vtkSMProxy* report)
+    {
+      if (samples[1] == 0)
+      {
+        report->UpdatePropertyInformation(report->GetProperty("DSMSamples"));
+        vtkSMPropertyHelper(report, "DSMSamples").Get(samples, 2);
+      }
+    });
+  this->Samples = samples[0];
+  this->Standstill = this->IsRefining && this->Samples <= before ? this->Standstill + 1 : 0;
+  this->IsRefined = samples[0] >= samples[1] || this->Standstill > LongestStandstill;
+  if (!this->IsRefined && !this->IsInteracting)
+  {
+    this->RenderLater(ShortDelay);
+  }
+}
+
+void vtkPVDSMRefinement::OnAbortCheck(vtkObject*, unsigned long, void*)
+{
+  if (this->CanAbort && this->Input.HasPressed())
+  {
+    this->Window->SetAbortRender(1);
+  }
+}
+
+void vtkPVDSMRefinement::OnInteractionBegins()
+{
+  this->IsInteracting = true;
+  this->Forget();
+}
+
+void vtkPVDSMRefinement::OnInteractionEnds()
+{
+  this->IsInteracting = false;
+  // After a movement ParaView renders, when its delay is over.
+  if (!this->IsRefined)
+  {
+    this->RenderLater(ShortDelay);
+  }
+}
+
+void vtkPVDSMRefinement::OnTimer(vtkObject*, unsigned long, void* timer)
+{
+  if (this->Timer == 0 || *static_cast<int*>(timer) != this->Timer || !this->View)
+  {
+    return;
+  }
+  this->Timer = 0; // the interactor destroys it
+  if (this->View->GetSession()->GetPendingProgress())
+  {
+    this->RenderLater(LongDelay);
+    return;
+  }
+  // A trace of what the user does has no place for these renders.
+  vtkSMTrace* trace = vtkSMTrace::GetActiveTracer();
+  const bool tracesCameras = trace && trace->GetFullyTraceCameraAdjustments();
+  if (tracesCameras)
+  {
+    trace->SetFullyTraceCameraAdjustments(false);
+  }
+  this->IsRefining = true;
+  this->View->StillRender();
+  this->IsRefining = false;
+  if (tracesCameras && trace == vtkSMTrace::GetActiveTracer())
+  {
+    trace->SetFullyTraceCameraAdjustments(true);
+  }
+}
+
+void vtkPVDSMRefinement::RenderLater(unsigned long milliseconds)
+{
+  this->Forget();
+  if (this->Interactor)
+  {
+    this->Timer = this->Interactor->CreateOneShotTimer(milliseconds);
+  }
+}
+
+void vtkPVDSMRefinement::Forget()
+{
+  if (this->Timer != 0 && this->Interactor)
+  {
+    this->Interactor->DestroyTimer(this->Timer);
+  }
+  this->Timer = 0;
+}

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef vtkPVDSMRefinement_h
+#define vtkPVDSMRefinement_h
+
+#include "vtkPVDSMInputWatch.h"
+
+#include "vtkObject.h"
+#include "vtkSmartPointer.h"
+#include "vtkWeakPointer.h"
+
+#include <set>
+#include <vector>
+
+class vtkPVRenderView;
+class vtkRenderWindow;
+class vtkRenderWindowInteractor;
+class vtkSMProxy;
+class vtkSMRenderViewProxy;
+
+/// Lets the pictures of a view get better while nothing happens: in the ParaView application, a still
+/// render takes few samples of each pixel, and whenever the application has nothing else to do, the
+/// next ones are added, until there are as many as asked for. Lives on the client, once for each view
+/// that shows anything of ours; its thread is the application's. Where no application handles events
+/// between renders (pvpython, pvbatch), and with several clients, renders take all samples as usual.
+/// Where the client itself traces, a render ends early when the user presses anything.
+class vtkPVDSMRefinement : public vtkObject
+{
+public:
+  vtkTypeMacro(vtkPVDSMRefinement, vtkObject);
+
+  /// The view's; made when there is none, for as long as somebody holds it. Null where this process is
+  /// no client, or nobody has registered a proxy for the view.
+  static vtkSmartPointer<vtkPVDSMRefinement> Follow(vtkPVRenderView* view);
+
+protected:
+  vtkPVDSMRefinement() = default;
+  ~vtkPVDSMRefinement() override;
+
+private:
+  vtkPVDSMRefinement(const vtkPVDSMRefinement&) = delete;
+  void operator=(const vtkPVDSMRefinement&) = delete;
+
+  static vtkPVDSMRefinement* New();
+  void Attach(vtkSMRenderViewProxy* view);
+  void FollowInteractor();
+  void LeaveInteractor();
+  bool CanGoOn() const;
+
+  void OnRenderBegins(vtkObject* caller, unsigned long event, void* interactive);
+  void OnRenderEnds(vtkObject* caller, unsigned long event, void* interactive);
+  void OnAbortCheck(vtkObject* caller, unsigned long event, void* data);
+  void OnInteractionBegins();
+  void OnInteractionEnds();
+  void OnTimer(vtkObject* caller, unsigned long event, void* timer);
+  void RenderLater(unsigned long milliseconds);
+  void Forget();
+
+  vtkWeakPointer<vtkSMRenderViewProxy> View;
+  vtkWeakPointer<vtkRenderWindowInteractor> Interactor;
+  vtkWeakPointer<vtkRenderWindow> Window;
+  vtkPVDSMInputWatch Input;
+  std::vector<unsigned long> ViewObservers;
+  std::vector<unsigned long> InteractorObservers;
+  unsigned long WindowObserver = 0;
+  std::set<unsigned int> Told; ///< frame reports that know that this client goes on
+  bool IsInteracting = false;
+  bool IsRefined = true;   ///< the last picture, as far as this client knows
+  bool IsRefining = false; ///< in a render of its own
+  bool CanAbort = false;   ///< in a still render, which is to be looked at
+  int Samples = 0;         ///< of the last picture
+  int Standstill = 0;      ///< renders of its own that added nothing
+  int Timer = 0;           ///< 0: none is set
+};
+
+#endif

@@ -1,0 +1,225 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Run by ParaView's application, which has loaded the plugin, alone or connected to a server: a still view
+of 1920 x 1080 pixels gets its samples by itself, while the application goes on handling events; whatever
+changes begins anew; what is saved has all samples at once. DSM_TEST_PICTURE names the pictures."""
+
+import ctypes
+import os
+import subprocess
+import sys
+import time
+import traceback
+
+from paraview import servermanager, simple
+from vtkmodules.util.misc import calldata_type
+from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.vtkCommonCore import VTK_INT
+from vtkmodules.vtkIOImage import vtkPNGReader
+from vtkmodules.vtkRenderingCore import vtkWindowToImageFilter
+
+SAMPLES = 16
+PICTURE = os.environ["DSM_TEST_PICTURE"]
+BEAT = 0.02  # seconds between two looks at the application
+PATIENCE = 150.0  # seconds for everything
+
+# Presses the left button of the mouse after some seconds, and holds it down for some.
+PRESS = """
+import ctypes, sys, time
+x11, xtst = ctypes.CDLL('libX11.so.6'), ctypes.CDLL('libXtst.so.6')
+x11.XOpenDisplay.restype = ctypes.c_void_p
+display = ctypes.c_void_p(x11.XOpenDisplay(None))
+for pressed, seconds in ((1, float(sys.argv[1])), (0, float(sys.argv[2]))):
+    time.sleep(seconds)
+    xtst.XTestFakeButtonEvent(display, 1, pressed, 0)
+    x11.XFlush(display)
+"""
+
+
+def check(condition, what):
+    if not condition:
+        raise AssertionError(what)
+    print("ok:", what, flush=True)
+
+
+def read_picture(name):
+    reader = vtkPNGReader()
+    reader.SetFileName(name)
+    reader.Update()
+    width, height, _ = reader.GetOutput().GetDimensions()
+    values = vtk_to_numpy(reader.GetOutput().GetPointData().GetScalars())
+    return values.reshape(height, width, -1)[:, :, :3].astype(int)
+
+
+class Watch:
+    """Sees, between the application's other events, how many samples the picture has."""
+
+    def __init__(self, view, display):
+        self.view, self.display = view, display
+        self.property = display.SMProxy.GetProperty("DSMSamples")
+        self.steps = self.go()
+        self.start = time.monotonic()
+        self.begin()
+        interactor = view.GetInteractor()
+        interactor.AddObserver("TimerEvent", self.look)
+        self.timer = interactor.CreateRepeatingTimer(int(1000 * BEAT))
+
+    def begin(self):
+        self.last = None
+        self.begun = time.monotonic()
+        self.gaps = []
+        self.seen = []
+
+    def get_samples(self):
+        report = self.property.GetParent()
+        report.UpdatePropertyInformation(self.property)
+        return self.property.GetElement(0)
+
+    @calldata_type(VTK_INT)
+    def look(self, interactor, event, timer):
+        if timer != self.timer:
+            return
+        now = time.monotonic()
+        if self.last is not None:
+            self.gaps.append(now - self.last)
+        samples = self.get_samples()
+        if not self.seen or self.seen[-1] != samples:
+            self.seen.append(samples)
+        try:
+            if now - self.start > PATIENCE:
+                raise AssertionError(f"still waiting after {PATIENCE} s; samples seen: {self.seen}")
+            next(self.steps)
+        except StopIteration:
+            print("the application refined its pictures", flush=True)
+            finish(0)
+        except BaseException:
+            traceback.print_exc()
+            finish(1)
+        self.last = time.monotonic()
+
+    def wait_until_refined(self, what):
+        while self.get_samples() < SAMPLES:
+            yield
+        seconds = time.monotonic() - self.begun
+        rises = all(a < b for a, b in zip(self.seen, self.seen[1:]))
+        check(rises and len(self.seen) >= 4 and self.seen[-1] == SAMPLES, f"{what}: samples rise: {self.seen}")
+        # No render takes much longer than one sample, or the time that a render may take; on a machine that
+        # does other things, too, one of them may.
+        middle = sorted(self.gaps)[len(self.gaps) // 2]
+        check(middle < 0.25 * seconds,
+              f"{what}: took {seconds:.2f} s; events waited for {middle:.2f} s, and {max(self.gaps):.2f} s at most")
+
+    def go(self):
+        width, height = self.view.ViewSize
+        check(width * height >= 1920 * 1080, f"the view has {width} x {height} pixels")
+        yield from self.wait_until_refined("the first picture")
+
+        # The mouse turns the scene.
+        interactor = self.view.GetInteractor()
+        position = list(self.view.CameraPosition)
+        interactor.SetEventInformation(width // 2, height // 2)
+        interactor.InvokeEvent("LeftButtonPressEvent")
+        for step in range(1, 4):
+            interactor.SetEventInformation(width // 2 + 20 * step, height // 2 + 10 * step)
+            interactor.InvokeEvent("MouseMoveEvent")
+            yield
+            check(self.get_samples() == 1, f"while the mouse moves, there is one sample ({step})")
+        interactor.InvokeEvent("LeftButtonReleaseEvent")
+        check(list(self.view.CameraPosition) != position, "the mouse turns the scene")
+        self.begin()
+        while self.get_samples() < 4:
+            yield
+        check(self.seen[0] < 4, f"and then samples are added: {self.seen}")
+
+        # A picture that is saved on the way.
+        self.display.DSMIsoValues = [150.0]
+        simple.Render(self.view)
+        self.begin()
+        while self.get_samples() < 2:
+            yield
+        before = self.get_samples()
+        check(before < SAMPLES, f"the view has {before} samples")
+        simple.SaveScreenshot(PICTURE + ".early.png", self.view)
+        check(self.get_samples() == SAMPLES, "a saved picture has all samples")
+        # Another change, and back.
+        self.display.DSMIsoValues = [157.0]
+        simple.Render(self.view)
+        check(self.get_samples() < SAMPLES, "another isovalue begins anew")
+        self.display.DSMIsoValues = [150.0]
+        simple.Render(self.view)
+        self.begin()
+        yield from self.wait_until_refined("another isovalue")
+        simple.SaveScreenshot(PICTURE + ".late.png", self.view)
+        early, late = read_picture(PICTURE + ".early.png"), read_picture(PICTURE + ".late.png")
+        check(early.shape == late.shape and (early == late).all(), "early or late, the saved picture is the same")
+        simple.Render(self.view)
+        yield
+        check(self.get_samples() == SAMPLES, "nothing changes once all samples are there")
+        if not servermanager.ActiveConnection.IsRemote():
+            yield from self.press_while_tracing()
+
+    def press_while_tracing(self):
+        """Where the application itself traces, a press of the mouse ends the frame."""
+        try:
+            ctypes.CDLL("libXtst.so.6")
+        except OSError:
+            print("skipped: without libXtst, nothing can press the mouse", flush=True)
+            return
+
+        def time_render():
+            self.display.DSMIsoValues = [self.display.DSMIsoValues[0] + 0.01]
+            start = time.monotonic()
+            simple.Render(self.view)
+            return time.monotonic() - start
+
+        while (whole := time_render()) < 4.0:
+            self.display.DSMAmbientOcclusionSamples = min(2 * self.display.DSMAmbientOcclusionSamples, 64)
+        shown = self.get_picture()
+        press = subprocess.Popen(["python3", "-c", PRESS, str(0.1 * whole), str(whole)])
+        seconds = time_render()
+        check(self.get_samples() == 0, f"a press of the mouse ends a frame of {whole:.2f} s after {seconds:.2f} s")
+        check((self.get_picture() == shown).all(), "which leaves the last picture")
+        check(press.wait(timeout=60) == 0, "the mouse could be pressed")
+        self.display.DSMAmbientOcclusionSamples = 1
+        self.display.DSMIsoValues = [140.0]
+        simple.Render(self.view)
+        self.begin()
+        while self.get_samples() < 3:
+            yield
+        check((self.get_picture() != shown).any(), "the next pictures are drawn and refined")
+
+    def get_picture(self):
+        image = vtkWindowToImageFilter()
+        image.SetInput(self.view.GetRenderWindow())
+        image.ShouldRerenderOff()
+        image.ReadFrontBufferOff()
+        image.Update()
+        return vtk_to_numpy(image.GetOutput().GetPointData().GetScalars()).copy()
+
+
+def finish(code):
+    simple.Disconnect()
+    os._exit(code)
+
+
+def test():
+    layout = simple.GetLayout()
+    layout.SetSize(1920, 1080)
+    view = simple.GetActiveViewOrCreate("RenderView")
+    view.OrientationAxesVisibility = 0
+    source = simple.Wavelet(WholeExtent=[-20, 20, -20, 20, -20, 20])
+    display = simple.Show(source, view)
+    display.Representation = "DSM Ray Traced"
+    display.DSMIsoValues = [157.0]
+    display.DSMAmbientOcclusionSamples = 1
+    display.DSMSamplesPerPixel = SAMPLES
+    simple.ResetCamera(view)
+    simple.Render(view)
+    return Watch(view, display)
+
+
+try:
+    watch = test()
+except BaseException:
+    traceback.print_exc()
+    sys.stdout.flush()
+    os._exit(1)

@@ -1,0 +1,58 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""ParaView's trace records our properties when they are changed, as the application's panels change them, and
+running it brings them back."""
+
+from dsm_testing import *
+from paraview import smtrace
+
+load_plugin()
+CHANGES = {
+    "DSMIsoValues": [0.5, 0.8], "DSMIsoComponent": 1, "DSMThreads": 1, "DSMCacheSize": 33,
+    "DSMMemoryOrganization": "Object based", "DSMHostSharing": 0, "DSMScheduler": "Central queue",
+    "DSMMemory": 123, "DSMShadows": 1, "DSMLightRadius": 0.02, "DSMAmbientOcclusionSamples": 2,
+    "DSMAmbientOcclusionDistance": 0.75, "DSMReflectivity": 0.25, "DSMMaxBounces": 3,
+    "DSMSamplesPerPixel": 2, "DSMDebugView": "Brick", "DSMShowLegend": 0, "DSMShowStatistics": 1,
+    "DSMClip": 1, "DSMClipOrigin": [0.25, 0.0, 0.0], "DSMClipNormal": [-1.0, 0.5, 0.0],
+    "DSMCropping": 1, "DSMCroppingBox": [-2.0, 2.0, -1.0, 0.5, -2.0, 2.0],
+}
+MESH_CHANGES = {"DSMLineRadius": 0.1, "DSMPointRadius": 0.2, "DSMReflectivity": 0.5}
+
+
+def change(proxy, changes):
+    """Changes properties the way that a panel does, which tells the trace."""
+    item = smtrace._create_trace_item_internal("PropertiesModified", kwargs={"proxy": proxy.SMProxy})
+    for name, value in changes.items():
+        setattr(proxy, name, value)
+    item.finalize()
+
+
+def read(proxy, names):
+    values = [proxy.GetPropertyValue(name) for name in names]
+    return [list(value) if hasattr(value, "__len__") and not isinstance(value, str) else value for value in values]
+
+
+smtrace.start_trace()
+view = simple.GetActiveViewOrCreate("RenderView")
+volume = simple.DSMSampleVolume(Dimensions=[24, 24, 24])
+display = simple.Show(volume, view)
+display.SetRepresentationType(REPRESENTATION)
+change(display, CHANGES)
+mesh = simple.Cone()
+meshDisplay = simple.Show(mesh, view)
+meshDisplay.SetRepresentationType(REPRESENTATION)
+change(meshDisplay, MESH_CHANGES)
+text = smtrace.stop_trace()
+for name in list(CHANGES) + list(MESH_CHANGES):
+    check(f"Display.{name} = " in text, name + " is in the trace")
+check("DSMSamples " not in text and "DSMStatistics" not in text, "what is only told is not")
+
+expected = read(display, CHANGES), read(meshDisplay, MESH_CHANGES)
+for proxy in (mesh, volume, view):
+    simple.Delete(proxy)
+exec(text, {})
+view = simple.GetActiveView()
+found = {source.GetXMLName(): simple.GetRepresentation(source, view) for source in simple.GetSources().values()}
+check(read(found["DSMSampleVolume"], CHANGES) == expected[0], "run again, it gives the volume the same settings")
+check(read(found["ConeSource"], MESH_CHANGES) == expected[1], "and the mesh")
+for source in found:
+    check(found[source].Representation == REPRESENTATION, source + " is traced")

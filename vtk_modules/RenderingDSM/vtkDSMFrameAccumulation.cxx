@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkDSMFrameAccumulation.h"
+
+#include "DSMRayTracing/frame/SceneDigest.h"
+#include "vtkDSMRankGroup.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+vtkDSMFrameAccumulation::Result vtkDSMFrameAccumulation::Trace(vtkDSMRankGroup& group,
+  const rt::Scene& scene, rt::FrameRequest request, int wanted, const Pace& pace,
+  double lastSeconds)
+{
+  bool isSame = false;
+  if (wanted > 1)
+  {
+    const std::uint64_t digest = rt::GetSceneDigest(scene, request);
+    // A rank may have seen a change that the others have not.
+    const std::uint8_t same = this->Samples > 0 && digest == this->Digest;
+    const auto all = group.GetMessenger().AllGatherValue(same);
+    isSame = std::count(all.begin(), all.end(), 0) == 0;
+    this->Digest = digest;
+  }
+  if (!isSame)
+  {
+    this->Restart();
+  }
+  this->Wanted = wanted;
+  Result result = Result::Nothing;
+  while (this->SamplesUnderWay > 0 || this->Samples < wanted)
+  {
+    request.FirstSample = this->Samples;
+    request.Samples =
+      this->SamplesUnderWay > 0 ? this->SamplesUnderWay : this->CountNext(pace, lastSeconds);
+    result = this->TraceOnce(group, scene, request);
+    if (result == Result::Aborted || pace.Samples > 0)
+    {
+      break;
+    }
+  }
+  return result;
+}
+
+vtkDSMFrameAccumulation::Result vtkDSMFrameAccumulation::TraceOnce(
+  vtkDSMRankGroup& group, const rt::Scene& scene, rt::FrameRequest request)
+{
+  this->Samples = 0; // unless it succeeds
+  this->SamplesUnderWay = 0;
+  rt::FrameRenderer& renderer = group.GetFrameRenderer();
+  if (request.FirstSample == 0)
+  {
+    rt::Frame frame = renderer.Render(group.GetStore(), scene, request, &this->Frame);
+    if (frame.IsAborted)
+    {
+      return Result::Aborted;
+    }
+    this->Frame = std::move(frame);
+  }
+  else
+  {
+    renderer.Refine(group.GetStore(), scene, request, this->Frame);
+    if (this->Frame.IsAborted)
+    {
+      this->Samples = request.FirstSample;
+      this->SamplesUnderWay = request.Samples;
+      return Result::Aborted;
+    }
+  }
+  this->Samples = request.FirstSample + request.Samples;
+  this->LastSamples = request.Samples;
+  return Result::Traced;
+}
+
+void vtkDSMFrameAccumulation::Restart()
+{
+  this->Samples = 0;
+  this->SamplesUnderWay = 0;
+  this->Wanted = 0;
+}
+
+int vtkDSMFrameAccumulation::CountNext(const Pace& pace, double lastSeconds) const
+{
+  const int missing = this->Wanted - this->Samples;
+  if (pace.Samples == 0)
+  {
+    return missing;
+  }
+  double samples = pace.Samples;
+  if (this->Samples > 0 && lastSeconds > 0.0)
+  {
+    samples = std::max(samples, std::floor(pace.Seconds * this->LastSamples / lastSeconds));
+  }
+  return static_cast<int>(std::min<double>(samples, missing));
+}
+
+double vtkDSMFrameAccumulation::GetSecondsPerPixel(double lastSeconds) const
+{
+  const double samples =
+    static_cast<double>(this->LastSamples) * this->Frame.Width * this->Frame.Height;
+  return samples > 0.0 ? lastSeconds / samples : 0.0;
+}
+
+void vtkDSMFrameAccumulation::Clear()
+{
+  *this = {};
+}

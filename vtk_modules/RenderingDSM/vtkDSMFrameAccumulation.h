@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef vtkDSMFrameAccumulation_h
+#define vtkDSMFrameAccumulation_h
+
+#include "DSMRayTracing/frame/Frame.h"
+#include "DSMRayTracing/frame/FrameRequest.h"
+#include "DSMRayTracing/frame/Scene.h"
+
+#include <cstdint>
+
+class vtkDSMRankGroup;
+
+/// A frame that gets its samples in one or several renders: as long as it shows the same, samples are
+/// added to those that are there.
+class vtkDSMFrameAccumulation
+{
+public:
+  /// How many samples a render adds.
+  struct Pace
+  {
+    int Samples = 0;      ///< 0: all
+    double Seconds = 0.0; ///< more than Samples, as long as they take less, when added to others
+  };
+
+  enum class Result
+  {
+    Nothing, ///< was missing
+    Traced,
+    Aborted ///< the frame is not to be shown; the next Trace goes on
+  };
+
+  /// Collective. Traces the samples of the request that are missing to `wanted` for each pixel, or as
+  /// many as the pace allows. `lastSeconds`: that the last ones took, on every rank the same. Returns
+  /// what came of it, the same on every rank. Throws dsm::Error on every rank; then there is nothing to
+  /// add to.
+  Result Trace(vtkDSMRankGroup& group, const rt::Scene& scene, rt::FrameRequest request, int wanted,
+    const Pace& pace, double lastSeconds);
+
+  const rt::Frame& GetFrame() const { return this->Frame; }
+
+  /// Whether the frame has what was wanted, or there is none; the same on every rank.
+  bool IsComplete() const { return this->Samples >= this->Wanted && this->SamplesUnderWay == 0; }
+
+  /// Of each pixel; 0 without a frame.
+  int GetSamples() const { return this->Samples; }
+  int GetWanted() const { return this->Wanted; }
+
+  /// What one sample of a pixel took in the last render; 0 where nothing is known. `lastSeconds`: as in
+  /// Trace.
+  double GetSecondsPerPixel(double lastSeconds) const;
+
+  /// Begins anew with the next frame, which ranks start with the tiles that they have.
+  void Restart();
+  /// The same without the tiles.
+  void Clear();
+
+private:
+  Result TraceOnce(vtkDSMRankGroup& group, const rt::Scene& scene, rt::FrameRequest request);
+  int CountNext(const Pace& pace, double lastSeconds) const;
+
+  rt::Frame Frame;
+  std::uint64_t Digest = 0; ///< of what it shows
+  int Samples = 0;          ///< that it has; 0 when there is nothing to add to
+  int SamplesUnderWay = 0;  ///< that some tiles have got already: their adding was aborted
+  int LastSamples = 0;      ///< that were added last
+  int Wanted = 0;
+};
+
+#endif

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef vtkDSMFrameDelivery_h
+#define vtkDSMFrameDelivery_h
+
+#include "DSMCore/Messenger.h"
+#include "DSMRayTracing/frame/Frame.h"
+#include "DSMRayTracing/frame/FrameGather.h"
+#include "DSMRayTracing/frame/FrameRequest.h"
+
+#include <functional>
+#include <optional>
+
+class vtkCamera;
+class vtkDSMFrameProp;
+class vtkMatrix4x4;
+
+/// How a frame gets from the ranks that traced its tiles to those that draw it. Which way is the
+/// application's choice, the same on every rank; see vtkDSMScene.
+class vtkDSMFrameDelivery
+{
+public:
+  using ColorChoice = std::function<bool(vtkCamera*)>;
+  using PlaceChoice = std::function<bool(const double place[3])>;
+
+  /// Each rank draws its own tiles.
+  void UseTiles();
+  /// Each rank draws everything, but colour only where `drawsColor` says so, and of surfaces that are
+  /// kept apart, where `drawsPlace` is set, those for whose place that says so.
+  void UseWholeFrames(ColorChoice drawsColor, PlaceChoice drawsPlace = nullptr);
+
+  /// Whether surfaces can be kept apart when there are so many ranks.
+  bool CanSeparate(int ranks) const { return ranks == 1 || this->DrawsPlace; }
+  /// Whether the application blends the ranks' pictures; otherwise the nearest of them counts.
+  bool AreBlended() const { return static_cast<bool>(this->DrawsColor); }
+
+  /// Collective: the whole frame, where the ranks do not draw their own tiles.
+  std::optional<rt::Picture> Gather(dsm::Messenger& messenger, const rt::Frame& frame) const;
+
+  /// Local: leaves, of surfaces that are kept apart, what this rank has to draw.
+  void Prepare(const rt::FrameRequest& request, rt::Picture& picture) const;
+
+  /// Local: the prop draws a prepared picture from now on. `bounds`: of what it shows, on all ranks.
+  void Show(const rt::FrameRequest& request, rt::Picture picture, vtkCamera* camera,
+    vtkMatrix4x4* projection, const double bounds[6], vtkDSMFrameProp* prop) const;
+
+private:
+  void LeaveToOthers(const rt::FrameRequest& request, rt::Picture& picture) const;
+
+  ColorChoice DrawsColor; ///< set: the frame is delivered everywhere
+  PlaceChoice DrawsPlace;
+};
+
+#endif

@@ -1,0 +1,357 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkDSMSceneInternals.h"
+
+#include "vtkDSMFrameNotes.h"
+#include "vtkDSMTranslation.h"
+
+#include "vtkBoundingBox.h"
+#include "vtkMatrix4x4.h"
+#include "vtkPropCollection.h"
+#include "vtkRenderWindow.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstring>
+#include <optional>
+#include <utility>
+#include <vector>
+
+namespace
+{
+
+/// Frames per second; an application that wants as many from its window is moving the camera.
+constexpr double InteractiveRate = 1.0;
+
+/// That an interactive frame may take, where its resolution may be lowered, and the lowest one.
+constexpr double InteractiveSeconds = 0.07;
+constexpr int LargestReduction = 8;
+
+/// Whether matrices differ by rounding only.
+bool IsNearly(const glm::dmat4& a, const glm::dmat4& b)
+{
+  constexpr double tolerance = 1e-9;
+  double difference = 0.0;
+  double largest = 0.0;
+  for (int element = 0; element < 16; ++element)
+  {
+    const double one = a[element / 4][element % 4];
+    const double other = b[element / 4][element % 4];
+    difference = std::max(difference, std::abs(one - other));
+    largest = std::max(largest, std::abs(one));
+  }
+  return difference <= tolerance * largest;
+}
+
+bool IsTranslucent(const rt::ColorMap& map)
+{
+  return std::any_of(
+    map.Table.begin(), map.Table.end(), [](const glm::vec4& color) { return color.w < 1.0f; });
+}
+
+/// Whether anything may be seen through what the tracer draws.
+bool IsTranslucent(const rt::Scene& scene)
+{
+  return std::any_of(scene.Isosurfaces.begin(), scene.Isosurfaces.end(),
+           [](const rt::IsosurfaceObject& object) {
+             return object.Surface.Opacity < 1.0f ||
+               (object.ColorField && IsTranslucent(object.Colors));
+           }) ||
+    std::any_of(scene.Meshes.begin(), scene.Meshes.end(),
+      [](const rt::MeshObject& object)
+      {
+        return object.Surface.Opacity < 1.0f ||
+          object.ColoredBy == rt::MeshObject::Coloring::Colors ||
+          (object.Colors && IsTranslucent(*object.Colors)) ||
+          (object.BackSurface && object.BackSurface->Opacity < 1.0f);
+      });
+}
+
+} // namespace
+
+vtkDSMScene::Internals::~Internals()
+{
+  if (this->Group)
+  {
+    this->Group->Leave(this);
+  }
+}
+
+void vtkDSMScene::Internals::GiveUpBlocks()
+{
+  this->Members.GiveUpBlocks();
+  this->Accumulation.Restart();
+}
+
+void vtkDSMScene::Internals::FindGroup(vtkMultiProcessController* controller)
+{
+  const auto group = vtkDSMRankGroup::Get(controller);
+  if (group == this->Group)
+  {
+    return;
+  }
+  if (this->Group)
+  {
+    this->GiveUpBlocks();
+    this->Group->Leave(this);
+  }
+  this->Group = group;
+  this->Group->Join(this);
+}
+
+void vtkDSMScene::Internals::Update()
+{
+  dsm::Messenger& messenger = this->Group->GetMessenger();
+  const auto& members = this->Members.GetShown();
+  // To publish in step, the ranks must agree on the settings of the memory; threads may differ.
+  using Digest = std::array<std::uint64_t, 4>;
+  std::vector<std::byte> mine;
+  messenger.RunTogether("Updating the data",
+    [&]
+    {
+      this->Settings = this->Members.GetMemorySettings();
+      this->Group->Configure(this, this->Settings);
+      const vtkDSMMemorySettings& settings = this->Settings;
+      mine = dsm::Encode(Digest{ static_cast<std::uint64_t>(settings.Organization),
+        settings.HostSharing ? 1u : 0u, settings.MemoryBytes, settings.CacheBytes });
+      for (const auto& member : members)
+      {
+        member.State->UpdatePiece(messenger.GetRank(), messenger.GetSize());
+        mine.push_back(std::byte(member.State->HasNewData() ? 1 : 0));
+      }
+    });
+  // One rank's change time says nothing of another's.
+  const auto all = messenger.AllGather(mine);
+  for (const auto& flags : all)
+  {
+    if (flags.size() != all.front().size())
+    {
+      throw dsm::Error("The ranks do not show the same datasets; the frame was left out.");
+    }
+    if (!std::equal(flags.begin(), flags.begin() + sizeof(Digest), all.front().begin()))
+    {
+      throw dsm::Error("The ranks have different settings of the memory (DSMMemoryOrganization, "
+                       "DSMHostSharing, DSMMemory, DSMCacheSize); the frame was left out. Set them "
+                       "alike.");
+    }
+  }
+  for (std::size_t index = 0; index < members.size(); ++index)
+  {
+    const bool newData = std::any_of(all.begin(), all.end(),
+      [=](const auto& flags) { return flags[sizeof(Digest) + index] != std::byte(0); });
+    members[index].State->Update(this->Group, newData);
+  }
+}
+
+void vtkDSMScene::Internals::Draw()
+{
+  dsm::Messenger& messenger = this->Group->GetMessenger();
+  rt::Scene scene;
+  rt::FrameRequest request;
+  vtkNew<vtkMatrix4x4> projection;
+  messenger.RunTogether("Preparing the frame",
+    [&]
+    {
+      for (const auto& member : this->Members.GetShown())
+      {
+        member.State->AddTo(scene);
+      }
+      this->DrawLast(scene);
+      scene.Lights = vtkDSMTranslation::ToLights(this->Renderer);
+      scene.Transport = this->Members.GetTransport();
+      scene.View = this->Members.GetDebugView();
+      request = vtkDSMTranslation::ToRequest(this->Renderer, projection);
+      request.Scheduling = this->Settings.Scheduling;
+    });
+  if (scene.Isosurfaces.empty() && scene.Meshes.empty())
+  {
+    this->Clear();
+    return;
+  }
+  this->AgreeOnView(scene, request);
+  const int reduction = this->GetReduction(request);
+  request.Width = (request.Width + reduction - 1) / reduction;
+  request.Height = (request.Height + reduction - 1) / reduction;
+  for (rt::MeshObject& mesh : scene.Meshes)
+  {
+    if (mesh.Edges)
+    {
+      mesh.Edges->Width /= static_cast<float>(reduction); // as wide on the screen
+    }
+  }
+  const int wanted = this->Members.GetSamplesPerPixel();
+  vtkRenderWindow* window = this->Renderer->GetRenderWindow();
+  this->Group->GetFrameRenderer().SetAbortCheck(
+    [=] { return window && window->CheckAbortStatus() != 0; });
+  using Result = vtkDSMFrameAccumulation::Result;
+  const Result result = this->Accumulation.Trace(
+    *this->Group, scene, request, wanted, this->GetPace(), this->Statistics->GetFrameSeconds());
+  if (result == Result::Aborted)
+  {
+    // The renderer goes on, with the last picture: other ranks may wait for what this one draws.
+    window->SetAbortRender(0);
+    return;
+  }
+  if (result == Result::Traced)
+  {
+    this->Statistics->Gather(messenger, this->Accumulation.GetFrame());
+  }
+  std::optional<rt::Picture> whole =
+    this->Delivery.Gather(messenger, this->Accumulation.GetFrame());
+  messenger.RunTogether("Showing the frame",
+    [&]
+    {
+      this->DrawPicture(
+        whole ? std::move(*whole) : rt::AssembleTiles(this->Accumulation.GetFrame()), request,
+        projection, scene.View, reduction == 1);
+    });
+}
+
+void vtkDSMScene::Internals::DrawPicture(rt::Picture picture, const rt::FrameRequest& request,
+  vtkMatrix4x4* projection, rt::DebugView view, bool hasNotes)
+{
+  this->Members.GetBounds(this->Bounds);
+  double bounds[6];
+  std::copy_n(this->Bounds, 6, bounds);
+  this->Delivery.Prepare(request, picture);
+  // Where the ranks' pictures are blended, each has the notes; where the nearest counts, one does.
+  const bool writesNotes =
+    this->Delivery.AreBlended() || this->Group->GetMessenger().GetRank() == 0;
+  rt::Picture unseen;
+  if (hasNotes && this->WriteNotes(view, writesNotes ? picture : unseen))
+  {
+    this->AddWholeView(request, bounds);
+  }
+  this->Delivery.Show(
+    request, std::move(picture), this->Renderer->GetActiveCamera(), projection, bounds, this->Prop);
+}
+
+/// Returns whether there is anything to write, on any rank.
+bool vtkDSMScene::Internals::WriteNotes(rt::DebugView view, rt::Picture& picture) const
+{
+  const bool showsStatistics = this->Members.ShowStatistics();
+  const bool showsLegend = view != rt::DebugView::Off && this->Members.ShowLegend();
+  if (!showsStatistics && !showsLegend)
+  {
+    return false;
+  }
+  std::vector<vtkDSMFrameNotes::Entry> legend;
+  if (showsLegend)
+  {
+    legend = vtkDSMFrameNotes::CreateLegend(view, this->Statistics);
+  }
+  vtkDSMFrameNotes::Draw(
+    showsStatistics ? this->Statistics->GetSummary() : std::string(), legend, picture);
+  return true;
+}
+
+/// Ranks exchange only the part of the picture where there is anything by the bounds.
+void vtkDSMScene::Internals::AddWholeView(const rt::FrameRequest& request, double bounds[6]) const
+{
+  if (this->Group->GetMessenger().GetSize() == 1)
+  {
+    return;
+  }
+  vtkBoundingBox box(bounds);
+  const glm::dmat4 clipToWorld = glm::inverse(request.WorldToClip);
+  for (int corner = 0; corner < 4; ++corner)
+  {
+    const glm::dvec4 world =
+      clipToWorld * glm::dvec4(corner % 2 == 0 ? -1.0 : 1.0, corner < 2 ? -1.0 : 1.0, 0.0, 1.0);
+    box.AddPoint(world.x / world.w, world.y / world.w, world.z / world.w);
+  }
+  box.GetBounds(bounds);
+}
+
+/// Collective. Takes rank 0's view: the camera that came from there is not always the same to the last
+/// bit, ParaView's other ranks have no background, which gives light and which mirrored rays see where
+/// they meet nothing, and lights may follow the camera. A camera that differs by more than rounding is left to be refused.
+/// Surfaces are kept apart when any rank has something that may be between them.
+void vtkDSMScene::Internals::AgreeOnView(rt::Scene& scene, rt::FrameRequest& request) const
+{
+  struct View
+  {
+    glm::dmat4 WorldToClip;
+    rt::Environment Background;
+    std::uint64_t IsApart;
+  };
+  const bool canBeApart = this->Delivery.CanSeparate(this->Group->GetMessenger().GetSize());
+  const bool isApart =
+    canBeApart && IsTranslucent(scene) && this->Members.AreBesideOthers(this->Renderer);
+  std::vector<std::byte> mine =
+    dsm::Encode(View{ request.WorldToClip, this->Background, isApart ? 1u : 0u });
+  for (const rt::Light& light : scene.Lights)
+  {
+    dsm::AttachTail(mine, light);
+  }
+  const auto all = this->Group->GetMessenger().AllGather(std::move(mine));
+  request.Layers = 1;
+  for (const std::vector<std::byte>& other : all)
+  {
+    View theirs;
+    std::memcpy(&theirs, other.data(), sizeof(theirs));
+    request.Layers = theirs.IsApart != 0 ? rt::FrameRequest::MaxLayers : request.Layers;
+  }
+  const std::vector<std::byte>& first = all.front();
+  View view;
+  std::memcpy(&view, first.data(), sizeof(view));
+  scene.Transport.Background = view.Background.Lower;
+  const auto strength = static_cast<float>(this->Members.GetEnvironmentLight());
+  scene.Transport.Surroundings = view.Background;
+  scene.Transport.Surroundings.Lower *= strength;
+  scene.Transport.Surroundings.Upper *= strength;
+  scene.Lights.resize((first.size() - sizeof(view)) / sizeof(rt::Light));
+  for (std::size_t index = 0; index < scene.Lights.size(); ++index)
+  {
+    std::memcpy(&scene.Lights[index], first.data() + sizeof(view) + index * sizeof(rt::Light),
+      sizeof(rt::Light));
+  }
+  if (IsNearly(view.WorldToClip, request.WorldToClip))
+  {
+    request.WorldToClip = view.WorldToClip;
+  }
+}
+
+bool vtkDSMScene::Internals::IsInteractive() const
+{
+  vtkRenderWindow* window = this->Renderer->GetRenderWindow();
+  return window && window->GetDesiredUpdateRate() >= InteractiveRate;
+}
+
+/// The edge of the squares of which one pixel is traced; the same on every rank.
+int vtkDSMScene::Internals::GetReduction(const rt::FrameRequest& request) const
+{
+  if (this->InteractiveReduction == 0 || !this->IsInteractive())
+  {
+    return 1;
+  }
+  const double pixels = static_cast<double>(request.Width) * request.Height;
+  const double seconds =
+    pixels * this->Accumulation.GetSecondsPerPixel(this->Statistics->GetFrameSeconds());
+  const int least = this->InteractiveReduction;
+  return std::clamp(static_cast<int>(std::lround(std::sqrt(seconds / InteractiveSeconds))), least,
+    std::max(least, LargestReduction));
+}
+
+vtkDSMFrameAccumulation::Pace vtkDSMScene::Internals::GetPace() const
+{
+  return this->IsInteractive() ? vtkDSMFrameAccumulation::Pace{ 1, 0.0 } : this->Pace;
+}
+
+/// What shows through a translucent surface must have been drawn before it.
+void vtkDSMScene::Internals::DrawLast(const rt::Scene& scene)
+{
+  if (IsTranslucent(scene) && this->Renderer->GetViewProps()->GetLastProp() != this->Prop)
+  {
+    this->Renderer->RemoveViewProp(this->Prop);
+    this->Renderer->AddViewProp(this->Prop);
+  }
+}
+
+void vtkDSMScene::Internals::Clear()
+{
+  this->Prop->Clear();
+  this->Statistics->Clear();
+  this->Accumulation.Clear();
+}

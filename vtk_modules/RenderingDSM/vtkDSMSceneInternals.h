@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef vtkDSMSceneInternals_h
+#define vtkDSMSceneInternals_h
+
+#include "vtkDSMFrameAccumulation.h"
+#include "vtkDSMFrameDelivery.h"
+#include "vtkDSMFrameProp.h"
+#include "vtkDSMRankGroup.h"
+#include "vtkDSMScene.h"
+#include "vtkDSMSceneMembers.h"
+#include "vtkDSMStatistics.h"
+
+#include "vtkMultiProcessController.h"
+#include "vtkNew.h"
+#include "vtkRenderer.h"
+#include "vtkSmartPointer.h"
+#include "vtkWeakPointer.h"
+
+#include <memory>
+#include <string>
+
+/// What a scene is made of. What takes part in a frame is collective: on every rank, in this order,
+/// Members.Find, FindGroup, Update and Draw.
+class vtkDSMScene::Internals : public vtkDSMRankGroup::Publisher
+{
+public:
+  ~Internals() override;
+  void GiveUpBlocks() override;
+
+  /// The ranks that trace together; joins them. Throws dsm::Error, as all that follows, on all ranks.
+  void FindGroup(vtkMultiProcessController* controller);
+  /// Takes in data that changed.
+  void Update();
+  /// Traces the frame, and gives it to the prop.
+  void Draw();
+  /// Nothing is shown.
+  void Clear();
+
+  vtkWeakPointer<vtkRenderer> Renderer;
+  unsigned long Observers[4] = { 0, 0, 0, 0 };
+  vtkSmartPointer<vtkDSMScene> Keeper; ///< the scene itself, when nobody but the renderer has it
+  rt::Environment Background;          ///< of this rank's renderer, as the application set it
+  vtkSmartPointer<vtkMultiProcessController> Controller;
+  vtkNew<vtkDSMFrameProp> Prop;
+  double Bounds[6] = { 0.0, 0.0, 0.0, 0.0, 0.0, 0.0 }; ///< of what the prop shows
+  vtkNew<vtkDSMStatistics> Statistics;
+  std::shared_ptr<vtkDSMRankGroup> Group;
+  vtkDSMSceneMembers Members;
+  vtkDSMFrameAccumulation Accumulation;
+  vtkDSMFrameDelivery Delivery;
+  std::string Failure; ///< that was reported last
+  bool Tracing = false;
+  vtkDSMFrameAccumulation::Pace Pace; ///< of still pictures
+  int InteractiveReduction = 0;
+  vtkDSMMemorySettings Settings; ///< that the objects ask for
+
+private:
+  void AgreeOnView(rt::Scene& scene, rt::FrameRequest& request) const;
+  void DrawLast(const rt::Scene& scene);
+  bool IsInteractive() const;
+  vtkDSMFrameAccumulation::Pace GetPace() const;
+  int GetReduction(const rt::FrameRequest& request) const;
+  void DrawPicture(rt::Picture picture, const rt::FrameRequest& request, vtkMatrix4x4* projection,
+    rt::DebugView view, bool hasNotes);
+  bool WriteNotes(rt::DebugView view, rt::Picture& picture) const;
+  void AddWholeView(const rt::FrameRequest& request, double bounds[6]) const;
+};
+
+#endif

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef vtkDSMSceneMembers_h
+#define vtkDSMSceneMembers_h
+
+#include "DSMRayTracing/frame/DebugView.h"
+#include "DSMRayTracing/frame/Scene.h"
+#include "vtkDSMMemorySettings.h"
+#include "vtkDSMSceneMember.h"
+
+#include <memory>
+#include <vector>
+
+class vtkAlgorithm;
+class vtkProp3D;
+class vtkRenderer;
+
+/// The objects of a renderer that are traced, and what they ask for together. Local; but the ranks find
+/// the same objects in the same order.
+class vtkDSMSceneMembers
+{
+public:
+  struct Member
+  {
+    vtkProp3D* Prop;
+    vtkDSMSceneMember* State;
+  };
+
+  /// Looks through the renderer's props. What belongs to props that were removed is let go; what is
+  /// hidden is kept, but not shown.
+  void Find(vtkRenderer* renderer);
+
+  /// Those that are visible, in the renderer's order.
+  const std::vector<Member>& GetShown() const { return this->Shown; }
+  /// With those that are hidden.
+  std::size_t GetCount() const { return this->States.size(); }
+
+  void GiveUpBlocks();
+
+  /// Of what is shown, in world space; not initialised where nothing is.
+  void GetBounds(double bounds[6]) const;
+
+  /// Whether the renderer has anything else to show, that may be behind, or between, translucent surfaces.
+  bool AreBesideOthers(vtkRenderer* renderer) const;
+
+  /// Of each property, what the most demanding object wants.
+  rt::LightTransport GetTransport() const;
+  double GetEnvironmentLight() const;
+  vtkDSMMemorySettings GetMemorySettings() const;
+  int GetSamplesPerPixel() const;
+  bool ShowStatistics() const;
+  /// The first that an object asks for.
+  rt::DebugView GetDebugView() const;
+  /// Whether every object agrees to a debug view's legend.
+  bool ShowLegend() const;
+
+private:
+  static std::unique_ptr<vtkDSMSceneMember> CreateState(vtkAlgorithm* mapper);
+
+  std::vector<std::unique_ptr<vtkDSMSceneMember>> States;
+  std::vector<Member> Shown;
+};
+
+#endif
