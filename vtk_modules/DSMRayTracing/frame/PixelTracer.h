@@ -129,14 +129,14 @@ public:
       }
     }
     this->Intersect(bricks, packets, rays, wanted, paths);
-    PixelSample samples[MaxPaths];
     Path* met[MaxPaths];
     const int count = List(wanted, packets, paths, met);
+    std::vector<PixelSample> samples(count);
     for (int number = 0; number < count; ++number)
     {
       const std::ptrdiff_t index = met[number] - paths;
       met[number]->ToViewer = -glm::normalize(rays[index].Direction);
-      met[number]->Layers = &samples[index];
+      met[number]->Layers = &samples[number];
     }
     this->FollowAll(bricks, packets, rays, wanted, paths);
     for (int number = 0; number < count; ++number)
@@ -293,7 +293,7 @@ private:
       }
       return;
     }
-    ShadingPoint points[MaxPaths];
+    std::vector<ShadingPoint> points(count);
     for (int number = 0; number < count; ++number)
     {
       const SurfacePoint& point = paths[number]->Point;
@@ -310,7 +310,7 @@ private:
           GetEdgeCover(point.Position, point.Corners, point.EdgeFlags, point.Edges->Width, view);
       }
     }
-    this->LookAround(paths, count, points);
+    this->LookAround(paths, count, points.data());
     const std::vector<Light>& lights = this->World.Lights;
     std::vector<glm::dvec3> visibility;
     if (this->World.Transport.Shadows)
@@ -319,7 +319,7 @@ private:
       for (std::size_t light = 0; light < lights.size(); ++light)
       {
         this->FindLightVisibility(
-          lights[light], paths, count, points, visibility.data() + MaxPaths * light);
+          lights[light], paths, count, points.data(), visibility.data() + MaxPaths * light);
       }
     }
     for (int number = 0; number < count; ++number)
