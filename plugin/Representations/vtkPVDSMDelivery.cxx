@@ -15,6 +15,7 @@
 #include "vtkPVRenderViewDataDeliveryManager.h"
 #include "vtkPVRenderingCapabilitiesInformation.h"
 #include "vtkPVSession.h"
+#include "vtkPVSynchronizedRenderer.h"
 #include "vtkPartitionedDataSet.h"
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
@@ -65,6 +66,10 @@ public:
   static bool IsCapturing(vtkPVRenderView* view)
   {
     return (view->*&AskedView::GetInCaptureScreenshot)();
+  }
+  static vtkPVSynchronizedRenderer* GetSynchronizedRenderers(vtkPVRenderView* view)
+  {
+    return view->*&AskedView::SynchronizedRenderers;
   }
 };
 
@@ -228,12 +233,29 @@ bool vtkPVDSMDelivery::IsCapturing(vtkView* view)
   return renderView && AskedView::IsCapturing(renderView);
 }
 
+/// Each rank draws the geometry that it has, wherever the view has divided the space: what is nearest in
+/// any of the ranks' pictures is selected, and every rank has one.
+void vtkPVDSMDelivery::SelectTheNearest(vtkView* view)
+{
+  auto* renderView = vtkPVRenderView::SafeDownCast(view);
+  if (renderView && renderView->GetUseOrderedCompositing())
+  {
+    vtkPVSynchronizedRenderer* renderers = AskedView::GetSynchronizedRenderers(renderView);
+    renderers->SetOrderedCompositingHelper(nullptr);
+    renderers->SetRenderEmptyImages(true);
+  }
+}
+
 void vtkPVDSMDelivery::Choose(
   vtkDSMScene* scene, vtkView* anyView, vtkInformation* inInfo, bool progressive)
 {
   auto* view = vtkPVRenderView::SafeDownCast(anyView);
   auto* controller = scene->GetController();
   scene->SetHidden(IsSelecting(anyView));
+  if (IsSelecting(anyView))
+  {
+    SelectTheNearest(anyView);
+  }
   scene->SetSamplesPerFrame(progressive && CanRefine(view) ? 1 : 0);
   scene->SetSecondsPerFrame(SecondsPerFrame);
   scene->SetInteractiveReduction(

@@ -49,6 +49,9 @@ public:
   /// For REQUEST_RENDER: the way that suits what else the view shows, and what it renders for.
   /// `progressive`: the client goes on rendering a still view while there are samples missing.
   static void Choose(vtkDSMScene* scene, vtkView* view, vtkInformation* inInfo, bool progressive);
+
+private:
+  static void SelectTheNearest(vtkView* view);
 };
 
 #endif

@@ -58,11 +58,19 @@ public:
 
 void vtkPVDSMInputWatch::Begin()
 {
+  if (!this->Self)
+  {
+    this->Self = std::make_unique<Internals>();
+  }
   this->Self->Before = this->Self->Ask();
 }
 
 bool vtkPVDSMInputWatch::HasPressed() const
 {
+  if (!this->Self)
+  {
+    return false;
+  }
   const Internals::Held now = this->Self->Ask();
   return !std::equal(now.begin(), now.end(), this->Self->Before.begin(),
     [](unsigned char held, unsigned char before) { return (held & ~before) == 0; });
@@ -83,9 +91,5 @@ bool vtkPVDSMInputWatch::HasPressed() const
 
 #endif
 
-vtkPVDSMInputWatch::vtkPVDSMInputWatch()
-  : Self(std::make_unique<Internals>())
-{
-}
-
+vtkPVDSMInputWatch::vtkPVDSMInputWatch() = default;
 vtkPVDSMInputWatch::~vtkPVDSMInputWatch() = default;

@@ -22,7 +22,7 @@ public:
 
 private:
   class Internals;
-  std::unique_ptr<Internals> Self;
+  std::unique_ptr<Internals> Self; ///< from the first Begin on
 };
 
 #endif

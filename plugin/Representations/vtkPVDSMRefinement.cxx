@@ -115,12 +115,12 @@ vtkPVDSMRefinement::~vtkPVDSMRefinement()
 
 vtkSmartPointer<vtkPVDSMRefinement> vtkPVDSMRefinement::Follow(vtkPVRenderView* view)
 {
-  auto& known = GetRegistry()[view];
   vtkSMRenderViewProxy* proxy = FindProxy(view);
   if (!proxy)
   {
     return nullptr;
   }
+  auto& known = GetRegistry()[view];
   // The address of a view that is gone may be another's now.
   if (known && known->View == proxy)
   {

@@ -9,6 +9,7 @@
 
 #include <gtest/gtest.h>
 
+#include <random>
 #include <tuple>
 #include <utility>
 
@@ -81,4 +82,36 @@ TEST_P(FrameOverMpi, CacheHoldsOneBrick)
   const std::size_t page = 4096; // a brick takes whole ones, where it is paged
   const std::size_t oneBrick = (lattice.CreateDirectory(1).GetLargest() + page - 1) / page * page;
   EXPECT_EQ(rt::GetHash(TraceTurning(this->Messenger, this->Create(oneBrick, 2))), GetReference());
+}
+
+TEST_P(FrameOverMpi, AbortedFramesEndOnAllRanks)
+{
+  dsm::BlockStore store(this->Messenger, this->Create(PlentyOfCache, 2));
+  const rt::Scene scene =
+    SphereScene::CreateScene(SphereScene::Publish(this->Messenger, store), 1.0f);
+  rt::FrameRenderer renderer(this->Messenger);
+  int left = -1; // looks at the abort status before it is set
+  renderer.SetAbortCheck([&] { return left >= 0 && left-- == 0; });
+  std::mt19937 random(11);
+  int aborted = 0;
+  std::uint64_t expected = 0;
+  for (int round = 0; round < 12; ++round)
+  {
+    rt::FrameRequest request = SphereScene::CreateRequest(97, 61);
+    request.Scheduling =
+      round % 2 == 0 ? rt::TileScheduling::CentralQueue : rt::TileScheduling::WorkStealing;
+    // The first one begins with it.
+    left = round == 0 ? -1 : static_cast<int>(random() % (2 * round - 1));
+    rt::Frame frame = renderer.Render(store, scene, request);
+    left = -1;
+    if (frame.IsAborted)
+    {
+      ++aborted;
+      frame = renderer.Render(store, scene, request);
+    }
+    const std::uint64_t hash = rt::GetHash(rt::GatherFrame(this->Messenger, frame));
+    expected = round == 0 ? hash : expected;
+    EXPECT_EQ(hash, expected) << "round " << round;
+  }
+  EXPECT_GT(aborted, 0);
 }

@@ -43,6 +43,23 @@ for kind in ("cells", "points"):
         check(results[0] == results[1], f"and the same ones are selected when traced: {results[0]}")
 mesh.Representation = REPRESENTATION
 check(get_selected(ball, "cells", [0, 0, 5, 5])[0] == 0, "beside it there is nothing")
+
+# Translucent, with something else in the view, so that several ranks divide the space between them.
+cone = simple.Cone(Height=30.0, Radius=4.0, Resolution=40)
+show_surface(cone, view)
+for rectangle in (region, everything):
+    results = []
+    for representation, opacity in (("Surface", 1.0), (REPRESENTATION, 0.5)):
+        mesh.Representation = representation
+        mesh.Opacity = opacity
+        simple.Render(view)
+        results.append(get_selected(ball, "cells", rectangle))
+    check(results[0][0] > 3 and results[0] == results[1],
+          f"beside something else, the same cells of a translucent mesh are selected: {results}")
+simple.Delete(cone)
+mesh.Opacity = 1.0
+simple.Render(view)
+
 mesh.DSMClip = 1
 mesh.DSMClipNormal = [-0.6, -0.5, -1.0]
 mesh.DSMClipOrigin = [0.0, 0.0, 0.0]
