@@ -24,9 +24,12 @@ const char* BenchmarkOptions::Usage()
          "                      host has left, divided by its ranks)\n"
          "  --cache-fraction F  cache per rank, as a part of the bytes of all bricks (default 1)\n"
          "  --brick-edge E      cells along a brick's edge (default: by the scalar type)\n"
+         "  --tile-size N       pixels along a tile's edge (default 16)\n"
          "  --shadows S         on: hard shadows of a lamp beside the camera; off (default)\n"
          "  --occlusion N       ambient occlusion rays for each hit, a fifth of the volume's\n"
-         "                      diagonal long (default 0)\n"
+         "                      diagonal long (default 0). With either, every frame is also "
+         "traced\n"
+         "                      without, and the result has the rates of both kinds of rays\n"
          "  --tile-seconds T    on: the result has the mean cost of each tile "
          "(default off)\n"
          "  --picture FILE.ppm  writes the picture of the first position\n"
@@ -54,6 +57,8 @@ void BenchmarkOptions::AddTo(OptionValues::Setters& setters)
       { this->CacheFraction = ToNumber<double>(name, text, 0.0); } },
     { "--brick-edge",
       [this](const auto& name, const auto& text) { this->BrickEdge = ToNumber(name, text, 4); } },
+    { "--tile-size",
+      [this](const auto& name, const auto& text) { this->TileSize = ToNumber(name, text, 1); } },
     { "--shadows",
       [this](const auto& name, const auto& text) {
         this->Shadows = ToChoice<bool>(name, text, { { "on", true }, { "off", false } });

@@ -4,6 +4,8 @@
 
 #include "RunOptions.h"
 
+#include "DSMRayTracing/frame/FrameRequest.h"
+
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -16,11 +18,12 @@ struct BenchmarkOptions : RunOptions
   double CacheFraction = 1.0;    ///< of the bytes of all bricks
   std::uint64_t MemoryBytes = 0; ///< per rank; 0: a part of what the host has
   int BrickEdge = 0;             ///< cells; 0: the default of the scalar type
-  bool Shadows = false;          ///< of a lamp beside the camera
-  int Occlusion = 0;             ///< ambient occlusion rays for each hit
-  std::string Session;           ///< file; empty: an orbit
-  bool TileSeconds = false;      ///< the result has those of the tiles
-  std::string Picture;           ///< PPM file of the first frame; empty: none
+  int TileSize = rt::FrameRequest().TileSize;
+  bool Shadows = false;     ///< of a lamp beside the camera
+  int Occlusion = 0;        ///< ambient occlusion rays for each hit
+  std::string Session;      ///< file; empty: an orbit
+  bool TileSeconds = false; ///< the result has those of the tiles
+  std::string Picture;      ///< PPM file of the first frame; empty: none
 
   void AddTo(OptionValues::Setters& setters);
   static const char* Usage();

@@ -103,6 +103,51 @@ std::uint64_t GetPeakRssBytes()
   return static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;
 }
 
+/// Processor time of the tiles of a set of frames that a rank traced.
+struct TracingCost
+{
+  double Seconds = 0.0;
+  std::uint64_t LightRays = 0;
+
+  void Add(const rt::Frame& frame)
+  {
+    for (const rt::Tile& tile : frame.Tiles)
+    {
+      this->Seconds += tile.Seconds;
+      this->LightRays += tile.LightRays;
+    }
+  }
+  void Add(const TracingCost& other)
+  {
+    this->Seconds += other.Seconds;
+    this->LightRays += other.LightRays;
+  }
+};
+
+/// Rays per second of one core: primary rays by frames without light rays, light rays by what they
+/// add to them. Collective.
+Json CompareRays(const BenchmarkOptions& options, dsm::Messenger& messenger, std::size_t frames,
+  const TracingCost& with, const TracingCost& without)
+{
+  TracingCost all;
+  TracingCost primary;
+  for (const TracingCost& cost : messenger.AllGatherValue(with))
+  {
+    all.Add(cost);
+  }
+  for (const TracingCost& cost : messenger.AllGatherValue(without))
+  {
+    primary.Add(cost);
+  }
+  const double pixels = static_cast<double>(frames) * options.Width * options.Height;
+  const double primaryRate = pixels / primary.Seconds;
+  const double lightRate = static_cast<double>(all.LightRays) / (all.Seconds - primary.Seconds);
+  return { { "light_rays", all.LightRays }, { "primary_rays_per_second_and_core", primaryRate },
+    { "light_rays_per_second_and_core", lightRate },
+    { "light_over_primary", lightRate / primaryRate },
+    { "frame_over_primary_frame", all.Seconds / primary.Seconds } };
+}
+
 /// How long one repetition took, and what it drew.
 struct Timing
 {
@@ -208,6 +253,7 @@ void RunIsosurface(const BenchmarkOptions& options, dsm::Messenger& messenger)
     rt::FrameRequest request;
     request.Width = options.Width;
     request.Height = options.Height;
+    request.TileSize = options.TileSize;
     request.WorldToClip = camera.WorldToClip;
     request.Scheduling = options.Scheduling;
     frame = renderer.Render(store, scene, request, &frame);
@@ -221,10 +267,19 @@ void RunIsosurface(const BenchmarkOptions& options, dsm::Messenger& messenger)
     trace(positions.front());
   }
   std::vector<double> fastest(positions.size(), std::numeric_limits<double>::infinity());
-  const int tileSize = rt::FrameRequest().TileSize;
-  std::vector<double> tiles(
-    static_cast<std::size_t>(rt::TileGrid(options.Width, options.Height, tileSize).GetCount()));
+  std::vector<double> tiles(static_cast<std::size_t>(
+    rt::TileGrid(options.Width, options.Height, options.TileSize).GetCount()));
   RankResult mine;
+  const rt::LightTransport transport = scene.Transport;
+  const bool hasLightRays = transport.Shadows || transport.AmbientOcclusionSamples > 0;
+  std::vector<TracingCost> with(positions.size());
+  std::vector<TracingCost> without(positions.size());
+  const auto keepLeast = [&](TracingCost& least)
+  {
+    TracingCost cost;
+    cost.Add(frame);
+    least = least.Seconds > 0.0 && least.Seconds < cost.Seconds ? least : cost;
+  };
   for (int repetition = 0; repetition < options.Repeat; ++repetition)
   {
     mine = {};
@@ -232,7 +287,16 @@ void RunIsosurface(const BenchmarkOptions& options, dsm::Messenger& messenger)
     timing.LastSeconds = 0.0;
     for (std::size_t number = 0; number < positions.size(); ++number)
     {
+      if (hasLightRays)
+      {
+        scene.Transport.Shadows = false;
+        scene.Transport.AmbientOcclusionSamples = 0;
+        trace(positions[number]);
+        keepLeast(without[number]);
+        scene.Transport = transport;
+      }
       trace(positions[number]);
+      keepLeast(with[number]);
       fastest[number] = std::min(fastest[number], frame.Seconds);
       timing.LastSeconds += frame.Seconds;
       for (const rt::Tile& tile : frame.Tiles)
@@ -261,6 +325,13 @@ void RunIsosurface(const BenchmarkOptions& options, dsm::Messenger& messenger)
   mine.PeakRssBytes = GetPeakRssBytes();
   const auto ranks = messenger.AllGatherValue(mine);
   const std::vector<double> tileSeconds = SumTileSeconds(messenger, tiles);
+  TracingCost sums[2];
+  for (std::size_t number = 0; number < positions.size(); ++number)
+  {
+    sums[0].Add(with[number]);
+    sums[1].Add(without[number]);
+  }
+  const Json rates = CompareRays(options, messenger, positions.size(), sums[0], sums[1]);
   if (messenger.GetRank() == 0)
   {
     Json result = Summarise(options, store, timing, ranks);
@@ -268,10 +339,24 @@ void RunIsosurface(const BenchmarkOptions& options, dsm::Messenger& messenger)
     {
       result["tile_seconds"] = tileSeconds;
     }
+    if (hasLightRays)
+    {
+      result.update(rates);
+    }
     std::ostringstream text;
     text << options.Volume << ": " << result["frames_per_second"].get<double>() << " frames/s, "
          << 1e-6 * result["rays_per_second"].get<double>() << " million rays/s, picture "
          << result["image_hash"].get<std::string>() << '\n';
+    if (hasLightRays)
+    {
+      text << "by processor time of a core: "
+           << 1e-6 * rates["primary_rays_per_second_and_core"].get<double>()
+           << " million primary rays/s, "
+           << 1e-6 * rates["light_rays_per_second_and_core"].get<double>()
+           << " million light rays/s (" << rates["light_over_primary"].get<double>()
+           << "); the frame takes " << rates["frame_over_primary_frame"].get<double>()
+           << " times that of primary rays\n";
+    }
     RunOptions::Write(options.Json, result.dump(2), text.str());
   }
 }

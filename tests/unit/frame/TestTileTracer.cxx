@@ -169,6 +169,43 @@ TEST_F(TestTileTracer, MeshesEqualSinglePixels)
   }
 }
 
+/// Hard and soft shadows, occlusion and mirrors, of opaque surfaces, of translucent ones that tint
+/// the light, of clipped ones.
+TEST_F(TestTileTracer, LightRaysEqualSinglePixels)
+{
+  rt::Scene scene;
+  scene.Isosurfaces = { FunctionVolume::Publish(65, GetWaves, this->Messenger, this->Store) };
+  scene.Meshes = { this->Publish(TestMesh::CreateBlob(4), 1.0f) };
+  scene.Lights.emplace_back();
+  scene.Lights.back().Direction = glm::normalize(glm::dvec3(-0.4, -1.0, -0.3));
+  scene.Lights.emplace_back();
+  scene.Lights.back().Type = rt::Light::Kind::Positional;
+  scene.Lights.back().Position = { 1.5, 1.0, 0.2 };
+  scene.Transport.Shadows = true;
+  scene.Isosurfaces[0].Surface.Reflectivity = 0.3f;
+  for (int variant = 0; variant < 5; ++variant)
+  {
+    SCOPED_TRACE(variant);
+    scene.Transport.AmbientOcclusionSamples = variant == 0 ? 0 : 2;
+    scene.Transport.AmbientOcclusionDistance = 0.7;
+    scene.Transport.LightRadius = variant == 2 ? 0.1 : 0.0;
+    scene.Isosurfaces[0].Surface.Opacity = variant == 3 ? 0.5f : 1.0f;
+    scene.Meshes[0].Surface.Opacity = variant == 1 ? 0.6f : 1.0f;
+    scene.Meshes[0].Surface.DiffuseColor = { 0.9f, 0.4f, 0.2f };
+    if (variant == 4)
+    {
+      scene.Isosurfaces[0].Clipping.HalfSpaces = { { { 0.3, -1.0, 0.2 }, { 0.0, 0.2, 0.0 } } };
+      scene.Meshes[0].Clipping.HalfSpaces = { { { -1.0, 0.2, 0.2 }, { 0.3, 0.0, 0.0 } } };
+    }
+    for (const glm::dmat4& view : { LookAt({ 2.5, 1.8, 2.1 }), LookAt({ 0.01, 0.02, 3.6 }) })
+    {
+      const Difference difference = this->Compare(scene, view, 45, 39, 16);
+      EXPECT_GT(difference.Covered, 500);
+      EXPECT_EQ(difference.Pixels, 0);
+    }
+  }
+}
+
 /// Cut by planes, and by boxes of which rays meet several: each part of a ray is searched.
 TEST_F(TestTileTracer, ClippedViewEqualsSinglePixels)
 {

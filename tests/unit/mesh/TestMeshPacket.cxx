@@ -94,6 +94,7 @@ Tally ComparePackets(const rt::TriangleSource& mesh, const std::vector<Packet>& 
           rt::MeshHit hits[rt::MeshPacket::Size];
           const rt::MeshPacket::Mask found = tracer.Intersect(instance, rays.data(), wanted, hits);
           EXPECT_EQ(found & ~wanted, 0u);
+          EXPECT_EQ(tracer.FindOccluded(instance, rays.data(), wanted), found);
           for (int lane = 0; lane < rt::MeshPacket::Size; ++lane)
           {
             SCOPED_TRACE(testing::Message() << "packet " << number << ", ray " << lane);
@@ -101,6 +102,7 @@ Tally ComparePackets(const rt::TriangleSource& mesh, const std::vector<Packet>& 
             const bool isHit =
               (wanted >> lane & 1) != 0 && alone.Intersect(instance, rays[lane], expected);
             EXPECT_EQ((found >> lane & 1) != 0, isHit);
+            EXPECT_EQ((wanted >> lane & 1) != 0 && alone.IsOccluded(instance, rays[lane]), isHit);
             if (isHit && (found >> lane & 1) != 0)
             {
               ++tally.Hits;

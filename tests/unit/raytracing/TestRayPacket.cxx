@@ -7,6 +7,7 @@
 #include <glm/geometric.hpp>
 
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <random>
 
@@ -117,6 +118,68 @@ Tally ComparePackets(const TestVolume<T>& volume, const std::vector<double>& iso
   return tally;
 }
 
+/// Rays from a place in the volume: to one side, as to a lamp, or to all, as ambient occlusion's.
+std::vector<rt::Ray> CreateLightRays(const rt::Index3& cells, unsigned seed, bool toOneSide)
+{
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+  const auto create = [&] { return glm::dvec3(uniform(random), uniform(random), uniform(random)); };
+  const glm::dvec3 size(cells);
+  const glm::dvec3 start = size * (0.5 + 0.4 * create());
+  const glm::dvec3 side = create();
+  std::vector<rt::Ray> rays(64);
+  for (rt::Ray& ray : rays)
+  {
+    ray.Origin = start + 2.0 * create();
+    ray.Direction = toOneSide ? side + 0.01 * (seed % 2) * create() : create();
+    ray.Min = 1e-4;
+    ray.Max = seed % 3 == 0 ? std::numeric_limits<double>::infinity() : 0.3 * size.x;
+  }
+  // Rays that are like no other.
+  rays[seed % 64].Direction = glm::dvec3(0.0, 0.0, -1.0);
+  rays[(seed + 5) % 64].Direction = glm::dvec3(0.0);
+  rays[(seed + 9) % 64].Origin = 3.0 * size;
+  return rays;
+}
+
+/// Rays are occluded together exactly where they are alone, and where there is a hit.
+template <class T>
+void CompareOcclusion(const TestVolume<T>& volume, const std::vector<double>& isovalues, int edge)
+{
+  MemoryStore store;
+  MemoryStore::Worker worker;
+  const rt::IsosurfaceObject object = CreateObject(store, volume, isovalues, edge);
+  const rt::VolumeTracer<MemoryStore> alone(store, worker);
+  int counts[2] = { 0, 0 };
+  for (const rt::PacketKernel& kernel : rt::PacketKernel::GetAll())
+  {
+    SCOPED_TRACE(kernel.Name);
+    const rt::PacketTracer<MemoryStore> tracer(store, worker, kernel);
+    for (unsigned seed = 0; seed < 60; ++seed)
+    {
+      const auto rays = CreateLightRays(volume.GetCells(), seed, seed % 4 < 2);
+      const std::uint64_t wanted = seed % 5 == 0 ? 0x8421fffe7373abcdull : ~std::uint64_t{ 0 };
+      const std::uint64_t occluded = tracer.FindOccluded(object, rays.data(), wanted);
+      for (int index = 0; index < 64; ++index)
+      {
+        SCOPED_TRACE(testing::Message() << "rays " << seed << ", ray " << index);
+        const bool isWanted = (wanted >> index & 1) != 0;
+        rt::SurfaceHit hit;
+        const bool isOccluded = alone.IsOccluded(object, rays[index]);
+        EXPECT_EQ(isOccluded, alone.Intersect(object, rays[index], hit));
+        EXPECT_EQ((occluded >> index & 1) != 0, isWanted && isOccluded);
+        ++counts[isOccluded ? 1 : 0];
+        if (testing::Test::HasFailure())
+        {
+          return;
+        }
+      }
+    }
+  }
+  EXPECT_GT(counts[0], 500);
+  EXPECT_GT(counts[1], 500);
+}
+
 template <class T>
 TestVolume<T> CreateWaves(const rt::Index3& points)
 {
@@ -168,6 +231,27 @@ TYPED_TEST(TestRayPacket, EqualsSingleRaysInNoise)
   {
     EXPECT_GT(ComparePackets(CreateNoise<T>({ 14, 15, 13 }), { 50.0 }, edge).Hits, 1000);
   }
+}
+
+TYPED_TEST(TestRayPacket, OcclusionEqualsSingleRays)
+{
+  using T = TypeParam;
+  CompareOcclusion(CreateWaves<T>({ 37, 41, 34 }), { GetMiddle<T>() }, 0);
+  CompareOcclusion(CreateNoise<T>({ 14, 15, 13 }), { 80.0 }, 4);
+}
+
+TEST(TestRayPacketCases, OcclusionBySeveralIsovaluesAndAcrossManyBricks)
+{
+  CompareOcclusion(CreateWaves<float>({ 35, 36, 37 }), { -60.0, 95.0 }, 5);
+  TestVolume<float> volume = CreateWaves<float>({ 70, 60, 67 });
+  std::mt19937 random(3);
+  for (int i = 0; i < 300; ++i)
+  {
+    volume.Blank(random() % 69, random() % 59, random() % 66);
+    volume.At(random() % 70, random() % 60, random() % 67) =
+      std::numeric_limits<float>::quiet_NaN();
+  }
+  CompareOcclusion(volume, { 90.0 }, 16);
 }
 
 TEST(TestRayPacketCases, SeveralIsovalues)

@@ -30,6 +30,8 @@ struct Tile
   bool IsNew = false;       ///< another rank traced it in the last frame
   std::uint64_t Misses = 0; ///< that its tracing waited for
   double Seconds = 0.0;     ///< of processor time that its tracing took
+  /// Shadow and occlusion rays that were traced for it.
+  std::uint64_t LightRays = 0;
   /// Four bytes a pixel, red first, alpha premultiplied; alpha 0 where nothing was hit.
   std::vector<std::uint8_t> Color;
   /// OpenGL window depth in [0, 1]; 1 where nothing was hit.

@@ -3,6 +3,7 @@
 #define rt_PixelTracer_h
 
 #include "DSMRayTracing/frame/EdgeCover.h"
+#include "DSMRayTracing/frame/LightTracer.h"
 #include "DSMRayTracing/frame/PixelRays.h"
 #include "DSMRayTracing/frame/SampleSequence.h"
 #include "DSMRayTracing/frame/SceneTracer.h"
@@ -16,6 +17,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <limits>
 #include <vector>
 
@@ -29,6 +31,7 @@ struct PixelSample
 
   glm::vec4 Color{ 0.0f };
   float Depth = 1.0f; ///< of the nearest surface
+  int LightRays = 0;  ///< shadow and occlusion rays that were traced for it
 
   /// The same surface by surface, front to back: what each contributes to the colour, and its depth.
   /// The last one stands for all behind it.
@@ -59,6 +62,7 @@ public:
   PixelTracer(
     Store& store, typename Store::Worker& worker, const Scene& scene, const PixelRays& rays)
     : Surfaces(store, worker, scene)
+    , LightRays(store, worker, scene, this->Surfaces)
     , World(scene)
     , Rays(rays)
   {
@@ -67,11 +71,14 @@ public:
   /// One pixel by itself: what TraceBox finds for it, and has to equal.
   PixelSample Trace(int x, int y, int sample) const
   {
-    SampleSequence random(x, y, sample);
     PixelSample result;
-    const Ray ray = this->Rays.GetRay(x, y, random.GetPositionInPixel());
-    result.Color = this->Follow(
-      ray, this->World.Transport.MaxBounces, this->Rays.GetWorldToPixels(), random, &result);
+    Path path;
+    path.Random = SampleSequence(x, y, sample);
+    path.Layers = &result;
+    const Ray ray = this->Rays.GetRay(x, y, path.Random.GetPositionInPixel());
+    this->Follow(ray, this->World.Transport.MaxBounces, this->Rays.GetWorldToPixels(), path);
+    result.Color = path.Color;
+    result.LightRays = path.LightRays;
     return result;
   }
 
@@ -97,8 +104,8 @@ public:
     int sample, Take&& take) const
   {
     constexpr int most = PacketTracer<Store>::MaxPackets;
-    Ray rays[RayPacket::Size * most];
-    glm::ivec2 places[RayPacket::Size * most];
+    Ray rays[MaxPaths];
+    Path paths[MaxPaths];
     RayPacket::Mask wanted[most] = {};
     int packets = 0;
     for (int top = 0; top < height; top += BlockEdge)
@@ -111,26 +118,34 @@ public:
           if (place.x < width && place.y < height)
           {
             const int index = RayPacket::Size * packets + lane;
-            places[index] = place + glm::ivec2(x, y);
-            const SampleSequence random(x + place.x, y + place.y, sample);
-            rays[index] = this->Rays.GetRay(x + place.x, y + place.y, random.GetPositionInPixel());
+            Path& path = paths[index];
+            path.Place = place + glm::ivec2(x, y);
+            path.Random = SampleSequence(path.Place.x, path.Place.y, sample);
+            rays[index] =
+              this->Rays.GetRay(path.Place.x, path.Place.y, path.Random.GetPositionInPixel());
             wanted[packets] |= RayPacket::Mask{ 1 } << lane;
           }
         }
       }
     }
-    this->Surfaces.Intersect(bricks, packets, rays, wanted,
-      [&](int index, const SurfacePoint& point)
-      {
-        const glm::ivec2& place = places[index];
-        SampleSequence random(place.x, place.y, sample);
-        PixelSample result;
-        Ray ray = rays[index];
-        ray.Max = PixelRays::Last;
-        result.Color = this->FollowFrom(point, ray, this->World.Transport.MaxBounces,
-          this->Rays.GetWorldToPixels(), random, &result);
-        take(place.x, place.y, result);
-      });
+    this->Intersect(bricks, packets, rays, wanted, paths);
+    Path* met[MaxPaths];
+    const int count = List(wanted, packets, paths, met);
+    std::vector<PixelSample> samples(count);
+    for (int number = 0; number < count; ++number)
+    {
+      const std::ptrdiff_t index = met[number] - paths;
+      met[number]->ToViewer = -glm::normalize(rays[index].Direction);
+      met[number]->Layers = &samples[number];
+    }
+    this->FollowAll(bricks, packets, rays, wanted, paths);
+    for (int number = 0; number < count; ++number)
+    {
+      const Path& path = *met[number];
+      path.Layers->Color = path.Color;
+      path.Layers->LightRays = path.LightRays;
+      take(path.Place.x, path.Place.y, *path.Layers);
+    }
   }
 
   /// Whether anything may be seen in the pixels that `bricks` was found for.
@@ -150,81 +165,200 @@ private:
   /// What lies behind contributes less than half a step of an 8-bit channel.
   static constexpr float OpaqueEnough = 1.0f - 0.5f / 255.0f;
 
-  /// Front to back. `view` tells where in the picture the ray sees a point of the world. `layers`,
-  /// where given, gets the surfaces one by one.
-  glm::vec4 Follow(const Ray& ray, int bounces, const glm::dmat4x3& view, SampleSequence& random,
-    PixelSample* layers) const
+  static constexpr int MaxPaths = LightTracer<Store>::MaxRays;
+
+  /// A sample of a pixel on its way through the scene, and the surface that it has come to.
+  struct Path
   {
-    SurfacePoint point;
-    return this->Surfaces.Intersect(ray, point)
-      ? this->FollowFrom(point, ray, bounces, view, random, layers)
-      : glm::vec4(0.0f);
+    glm::ivec2 Place{ 0 };
+    SurfacePoint Point;
+    glm::dvec3 ToViewer{ 0.0 };
+    SampleSequence Random;
+    glm::vec4 Color{ 0.0f };
+    int LightRays = 0;
+    PixelSample* Layers = nullptr; ///< gets the surfaces one by one, if not null
+
+    /// What the surface contributes to the colour.
+    float GetWeight() const { return (1.0f - this->Color.w) * this->Point.Color.w; }
+    bool GoesOn() const { return this->Color.w < OpaqueEnough; }
+    /// Moves the start of the ray, which goes on behind the surface.
+    void Pass(Ray& ray) const
+    {
+      ray.Min = this->Point.T + this->Point.Clearance / glm::length(ray.Direction);
+    }
+  };
+
+  /// Paths of `wanted`; returns how many.
+  static int List(const RayPacket::Mask* wanted, int packets, Path* paths, Path** list)
+  {
+    int count = 0;
+    for (int packet = 0; packet < packets; ++packet)
+    {
+      for (RayPacket::Mask left = wanted[packet]; left != 0; left &= left - 1)
+      {
+        list[count++] = &paths[RayPacket::Size * packet + GetLowest(left)];
+      }
+    }
+    return count;
   }
 
-  /// Follow, what the ray meets first being known.
-  glm::vec4 FollowFrom(SurfacePoint point, Ray ray, int bounces, const glm::dmat4x3& view,
-    SampleSequence& random, PixelSample* layers) const
+  /// Takes the paths that meet nothing out of `wanted`.
+  void Intersect(const std::vector<BeamBricks>& bricks, int packets, Ray* rays,
+    RayPacket::Mask* wanted, Path* paths) const
   {
-    const glm::dvec3 toViewer = -glm::normalize(ray.Direction);
-    glm::vec4 color(0.0f);
-    do
+    this->Surfaces.Intersect(bricks, packets, rays, wanted,
+      [paths](int index) -> SurfacePoint& { return paths[index].Point; });
+  }
+
+  /// Front to back, from where the paths of `wanted` are.
+  void FollowAll(const std::vector<BeamBricks>& bricks, int packets, Ray* rays,
+    RayPacket::Mask* wanted, Path* paths) const
+  {
+    Path* list[MaxPaths];
+    for (int count = List(wanted, packets, paths, list); count > 0;
+         count = List(wanted, packets, paths, list))
     {
-      const float weight = (1.0f - color.w) * point.Color.w;
-      if (weight > 0.0f)
+      this->AddSurfaces(
+        list, count, this->World.Transport.MaxBounces, this->Rays.GetWorldToPixels());
+      bool isAny = false;
+      for (int number = 0; number < count; ++number)
       {
-        const glm::vec4 layer(
-          weight * this->ShadePoint(point, toViewer, bounces, view, random), weight);
-        color += layer;
-        if (layers)
+        const auto index = static_cast<int>(list[number] - paths);
+        if (list[number]->GoesOn())
         {
-          layers->AddLayer(layer, this->Rays.GetDepth(point.Position));
+          list[number]->Pass(rays[index]);
+          rays[index].Max = PixelRays::Last;
+          isAny = true;
+        }
+        else
+        {
+          wanted[index / RayPacket::Size] &= ~(RayPacket::Mask{ 1 } << index % RayPacket::Size);
         }
       }
-      ray.Min = point.T + point.Clearance / glm::length(ray.Direction);
-    } while (color.w < OpaqueEnough && this->Surfaces.Intersect(ray, point));
-    return color;
+      if (!isAny)
+      {
+        return;
+      }
+      this->Intersect(bricks, packets, rays, wanted, paths);
+    }
   }
 
-  glm::vec3 ShadePoint(const SurfacePoint& point, const glm::dvec3& toViewer, int bounces,
-    const glm::dmat4x3& view, SampleSequence& random) const
+  /// Front to back, by itself. `view` tells where in the picture the ray sees a point of the world.
+  void Follow(Ray ray, int bounces, const glm::dmat4x3& view, Path& path) const
+  {
+    path.ToViewer = -glm::normalize(ray.Direction);
+    Path* const list[] = { &path };
+    while (path.GoesOn() && this->Surfaces.Intersect(ray, path.Point))
+    {
+      this->AddSurfaces(list, 1, bounces, view);
+      path.Pass(ray);
+    }
+  }
+
+  /// Adds what the surfaces at which paths are contribute.
+  void AddSurfaces(Path* const* paths, int count, int bounces, const glm::dmat4x3& view) const
+  {
+    Path* seen[MaxPaths] = {};
+    int seenCount = 0;
+    for (int number = 0; number < count; ++number)
+    {
+      if (paths[number]->GetWeight() > 0.0f)
+      {
+        seen[seenCount++] = paths[number];
+      }
+    }
+    glm::vec3 colors[MaxPaths];
+    this->ShadePoints(seen, seenCount, bounces, view, colors);
+    for (int number = 0; number < seenCount; ++number)
+    {
+      Path& path = *seen[number];
+      const float weight = path.GetWeight();
+      const glm::vec4 layer(weight * colors[number], weight);
+      path.Color += layer;
+      if (path.Layers)
+      {
+        path.Layers->AddLayer(layer, this->Rays.GetDepth(path.Point.Position));
+      }
+    }
+  }
+
+  void ShadePoints(
+    Path* const* paths, int count, int bounces, const glm::dmat4x3& view, glm::vec3* colors) const
   {
     if (this->World.View != DebugView::Off)
     {
-      return this->ShowForDebugging(point, toViewer);
+      for (int number = 0; number < count; ++number)
+      {
+        colors[number] = this->ShowForDebugging(paths[number]->Point, paths[number]->ToViewer);
+      }
+      return;
     }
-    ShadingPoint shading;
-    shading.Position = point.Position;
-    shading.Normal = point.Facing;
-    shading.ToViewer = toViewer;
-    shading.Color = glm::vec3(point.Color);
-    shading.ColorIsFromArray = point.ColorIsFromArray;
-    this->LookAround(point, random, shading);
-    if (point.Edges)
+    std::vector<ShadingPoint> points(count);
+    for (int number = 0; number < count; ++number)
     {
-      shading.LineColor = point.Edges->Color;
-      shading.LineCover = point.Edges->Opacity *
-        GetEdgeCover(point.Position, point.Corners, point.EdgeFlags, point.Edges->Width, view);
+      const SurfacePoint& point = paths[number]->Point;
+      ShadingPoint& shading = points[number];
+      shading.Position = point.Position;
+      shading.Normal = point.Facing;
+      shading.ToViewer = paths[number]->ToViewer;
+      shading.Color = glm::vec3(point.Color);
+      shading.ColorIsFromArray = point.ColorIsFromArray;
+      if (point.Edges)
+      {
+        shading.LineColor = point.Edges->Color;
+        shading.LineCover = point.Edges->Opacity *
+          GetEdgeCover(point.Position, point.Corners, point.EdgeFlags, point.Edges->Width, view);
+      }
     }
-    const glm::vec3 own = Shade(this->World.Lights, *point.Surface, shading,
-      [&](const Light& light, const Incidence& incidence)
-      { return this->GetLightVisibility(point, light, incidence, random); });
+    this->LookAround(paths, count, points.data());
+    const std::vector<Light>& lights = this->World.Lights;
+    std::vector<glm::dvec3> visibility;
+    if (this->World.Transport.Shadows)
+    {
+      visibility.resize(MaxPaths * lights.size());
+      for (std::size_t light = 0; light < lights.size(); ++light)
+      {
+        this->FindLightVisibility(
+          lights[light], paths, count, points.data(), visibility.data() + MaxPaths * light);
+      }
+    }
+    for (int number = 0; number < count; ++number)
+    {
+      colors[number] = Shade(lights, *paths[number]->Point.Surface, points[number],
+        [&](const Light& light, const Incidence&)
+        {
+          return visibility.empty() ? glm::dvec3(1.0)
+                                    : visibility[MaxPaths * (&light - lights.data()) + number];
+        });
+      this->AddReflection(bounces, view, *paths[number], points[number], colors[number]);
+    }
+  }
+
+  void AddReflection(int bounces, const glm::dmat4x3& view, Path& path, const ShadingPoint& shading,
+    glm::vec3& color) const
+  {
     // A line is painted on the mirror.
     const float reflectivity =
-      static_cast<float>(1.0 - shading.LineCover) * point.Surface->Reflectivity;
+      static_cast<float>(1.0 - shading.LineCover) * path.Point.Surface->Reflectivity;
     if (reflectivity <= 0.0f || bounces <= 0)
     {
-      return own;
+      return;
     }
     Ray mirrored;
-    mirrored.Origin = point.Position;
-    mirrored.Direction = glm::reflect(-toViewer, shading.Normal);
-    mirrored.Min = point.Clearance;
+    mirrored.Origin = path.Point.Position;
+    mirrored.Direction = glm::reflect(-path.ToViewer, shading.Normal);
+    mirrored.Min = path.Point.Clearance;
     mirrored.Max = std::numeric_limits<double>::infinity();
-    const glm::vec4 seen = this->Follow(mirrored, bounces - 1,
-      GetMirroredView(view, point.Position, shading.Normal), random, nullptr);
+    Path behind;
+    behind.Random = path.Random;
+    this->Follow(
+      mirrored, bounces - 1, GetMirroredView(view, path.Point.Position, shading.Normal), behind);
+    path.Random = behind.Random;
+    path.LightRays += behind.LightRays;
+    const glm::vec4 seen = behind.Color;
     const glm::vec3 reflection =
       glm::vec3(seen) + (1.0f - seen.w) * this->World.Transport.Background;
-    return (1.0f - reflectivity) * own + reflectivity * reflection;
+    color = (1.0f - reflectivity) * color + reflectivity * reflection;
   }
 
   glm::vec3 ShowForDebugging(const SurfacePoint& point, const glm::dvec3& toViewer) const
@@ -245,69 +379,127 @@ private:
     }
   }
 
-  glm::dvec3 GetLightVisibility(const SurfacePoint& point, const Light&, const Incidence& incidence,
-    SampleSequence& random) const
+  /// Traces one ray for each of some paths: together, but a single one by itself.
+  void FindTransmittances(const Ray* rays, int count, glm::dvec3* transmittances) const
   {
-    const LightTransport& transport = this->World.Transport;
-    if (!transport.Shadows)
+    if (count > 1)
     {
-      return glm::dvec3(1.0);
+      this->LightRays.GetTransmittances(rays, count, transmittances);
     }
+    else if (count == 1)
+    {
+      transmittances[0] = this->LightRays.GetTransmittance(rays[0]);
+    }
+  }
+
+  /// How much of a light arrives at the points that face it.
+  void FindLightVisibility(const Light& light, Path* const* paths, int count,
+    const ShadingPoint* points, glm::dvec3* visibility) const
+  {
+    Ray rays[MaxPaths];
+    int numbers[MaxPaths];
+    int rayCount = 0;
+    for (int number = 0; number < count; ++number)
+    {
+      const Incidence incidence = GetIncidence(light, points[number].Position);
+      if (paths[number]->Point.Surface->Lighting && Arrives(incidence, points[number]))
+      {
+        rays[rayCount] = this->GetLightRay(incidence, *paths[number]);
+        numbers[rayCount++] = number;
+      }
+    }
+    glm::dvec3 transmittances[MaxPaths];
+    this->FindTransmittances(rays, rayCount, transmittances);
+    for (int ray = 0; ray < rayCount; ++ray)
+    {
+      visibility[numbers[ray]] = transmittances[ray];
+    }
+  }
+
+  /// From a surface to a light, or to a random place on it.
+  Ray GetLightRay(const Incidence& incidence, Path& path) const
+  {
     Ray ray;
-    ray.Origin = point.Position;
+    ray.Origin = path.Point.Position;
     ray.Direction = -incidence.Direction;
-    if (transport.LightRadius > 0.0)
+    if (this->World.Transport.LightRadius > 0.0)
     {
       const Frame3 frame(ray.Direction);
-      const double radius = transport.LightRadius * std::sqrt(random.Next());
-      const double angle = glm::two_pi<double>() * random.Next();
+      const double radius = this->World.Transport.LightRadius * std::sqrt(path.Random.Next());
+      const double angle = glm::two_pi<double>() * path.Random.Next();
       ray.Direction = glm::normalize(ray.Direction + radius * std::cos(angle) * frame.Tangent +
         radius * std::sin(angle) * frame.Bitangent);
     }
-    ray.Min = point.Clearance;
+    ray.Min = path.Point.Clearance;
     ray.Max = incidence.Distance;
-    return this->Surfaces.GetTransmittance(ray);
+    ++path.LightRays;
+    return ray;
   }
 
-  /// Finds the part of the hemisphere, weighted by the cosine, in which nothing is near, and the light
-  /// that comes from there.
-  void LookAround(const SurfacePoint& point, SampleSequence& random, ShadingPoint& shading) const
+  /// Finds the parts of the hemispheres, weighted by the cosine, in which nothing is near, and the
+  /// light that comes from there.
+  void LookAround(Path* const* paths, int count, ShadingPoint* points) const
   {
     const LightTransport& transport = this->World.Transport;
-    const glm::dvec3& normal = shading.Normal;
-    shading.HasSurroundings = !transport.Surroundings.IsBlack();
-    if (transport.AmbientOcclusionSamples <= 0)
+    const int samples = transport.AmbientOcclusionSamples;
+    const bool hasSurroundings = !transport.Surroundings.IsBlack();
+    for (int number = 0; number < count; ++number)
     {
-      if (shading.HasSurroundings)
+      points[number].HasSurroundings = hasSurroundings;
+      if (hasSurroundings && samples <= 0)
       {
-        shading.Surroundings = transport.Surroundings.GetLightOnto(normal);
+        points[number].Surroundings = transport.Surroundings.GetLightOnto(points[number].Normal);
       }
+    }
+    if (samples <= 0)
+    {
       return;
     }
-    const Frame3 frame(normal);
-    double visible = 0.0;
-    glm::dvec3 arriving(0.0);
-    for (int sample = 0; sample < transport.AmbientOcclusionSamples; ++sample)
+    double visible[MaxPaths] = {};
+    glm::dvec3 arriving[MaxPaths];
+    std::fill_n(arriving, count, glm::dvec3(0.0));
+    for (int sample = 0; sample < samples; ++sample)
     {
-      // Uniform on the disc, then up to the sphere: the density is the cosine over pi.
-      const double square = random.Next();
-      const double radius = std::sqrt(square);
-      const double angle = glm::two_pi<double>() * random.Next();
-      Ray ray;
-      ray.Origin = point.Position;
-      ray.Direction = radius * std::cos(angle) * frame.Tangent +
-        radius * std::sin(angle) * frame.Bitangent + std::sqrt(1.0 - square) * normal;
-      ray.Min = point.Clearance;
-      ray.Max = transport.AmbientOcclusionDistance;
-      const glm::dvec3 transmittance = this->Surfaces.GetTransmittance(ray);
-      visible += (transmittance.x + transmittance.y + transmittance.z) / 3.0;
-      if (shading.HasSurroundings)
+      Ray rays[MaxPaths];
+      for (int number = 0; number < count; ++number)
       {
-        arriving += transmittance * transport.Surroundings.GetLight(ray.Direction);
+        rays[number] = this->GetOcclusionRay(points[number].Normal, *paths[number]);
+      }
+      glm::dvec3 transmittances[MaxPaths];
+      this->FindTransmittances(rays, count, transmittances);
+      for (int number = 0; number < count; ++number)
+      {
+        const glm::dvec3& transmittance = transmittances[number];
+        visible[number] += (transmittance.x + transmittance.y + transmittance.z) / 3.0;
+        if (hasSurroundings)
+        {
+          arriving[number] +=
+            transmittance * transport.Surroundings.GetLight(rays[number].Direction);
+        }
       }
     }
-    shading.AmbientVisibility = visible / transport.AmbientOcclusionSamples;
-    shading.Surroundings = arriving / static_cast<double>(transport.AmbientOcclusionSamples);
+    for (int number = 0; number < count; ++number)
+    {
+      points[number].AmbientVisibility = visible[number] / samples;
+      points[number].Surroundings = arriving[number] / static_cast<double>(samples);
+    }
+  }
+
+  Ray GetOcclusionRay(const glm::dvec3& normal, Path& path) const
+  {
+    const Frame3 frame(normal);
+    // Uniform on the disc, then up to the sphere: the density is the cosine over pi.
+    const double square = path.Random.Next();
+    const double radius = std::sqrt(square);
+    const double angle = glm::two_pi<double>() * path.Random.Next();
+    Ray ray;
+    ray.Origin = path.Point.Position;
+    ray.Direction = radius * std::cos(angle) * frame.Tangent +
+      radius * std::sin(angle) * frame.Bitangent + std::sqrt(1.0 - square) * normal;
+    ray.Min = path.Point.Clearance;
+    ray.Max = this->World.Transport.AmbientOcclusionDistance;
+    ++path.LightRays;
+    return ray;
   }
 
   /// Two directions at right angles to a unit one, and to each other (Duff et al., Building an
@@ -327,6 +519,7 @@ private:
   };
 
   SceneTracer<Store> Surfaces;
+  LightTracer<Store> LightRays;
   const Scene& World;
   const PixelRays& Rays;
 };

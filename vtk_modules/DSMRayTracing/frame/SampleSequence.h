@@ -15,6 +15,7 @@ namespace rt
 class SampleSequence
 {
 public:
+  SampleSequence() = default;
   SampleSequence(int x, int y, int sample)
     : Sample(sample)
     , Pixel(Mix(static_cast<std::uint32_t>(x) + Mix(static_cast<std::uint32_t>(y) + 1u)))
@@ -56,8 +57,8 @@ private:
     return value;
   }
 
-  int Sample;
-  std::uint32_t Pixel;
+  int Sample = 0;
+  std::uint32_t Pixel = 0;
   std::uint32_t Numbers = 0;
 };
 

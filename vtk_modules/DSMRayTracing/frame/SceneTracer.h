@@ -2,6 +2,7 @@
 #ifndef rt_SceneTracer_h
 #define rt_SceneTracer_h
 
+#include "DSMRayTracing/frame/Occluders.h"
 #include "DSMRayTracing/frame/Scene.h"
 #include "DSMRayTracing/kernel/MeshTracer.h"
 #include "DSMRayTracing/kernel/PacketTracer.h"
@@ -55,13 +56,13 @@ public:
   }
 
   /// The first surface in [ray.Min, ray.Max]; of equally near ones that of the first object,
-  /// isosurfaces before meshes.
-  bool Intersect(Ray ray, SurfacePoint& point) const
+  /// isosurfaces before meshes. What is in `without` is passed by.
+  bool Intersect(Ray ray, SurfacePoint& point, const Occluders* without = nullptr) const
   {
     SurfaceHit isosurfaceHit;
-    const IsosurfaceObject* isosurface = this->FindIsosurface(ray, isosurfaceHit);
+    const IsosurfaceObject* isosurface = this->FindIsosurface(ray, without, isosurfaceHit);
     MeshHit meshHit;
-    const MeshObject* mesh = this->FindMesh(ray, isosurface != nullptr, meshHit);
+    const MeshObject* mesh = this->FindMesh(ray, without, isosurface != nullptr, meshHit);
     return this->Complete(ray, isosurface, isosurfaceHit, mesh, meshHit, point);
   }
 
@@ -93,17 +94,17 @@ public:
 
   /// Intersect for the rays of `wanted` in each packet of RayPacket::Size rays, at most
   /// PacketTracer::MaxPackets, with the same result. All lie within the beam that `bricks` was found
-  /// for. Calls `take(index, point)` for those that meet something; they end there afterwards.
-  template <class Take>
+  /// for. Takes those that meet nothing out of `wanted`; the others end there afterwards.
+  /// `getPoint(index)` gives where what a ray meets is stored.
+  template <class GetPoint>
   void Intersect(const std::vector<BeamBricks>& bricks, int packets, Ray* rays,
-    const RayPacket::Mask* wanted, Take&& take) const
+    RayPacket::Mask* wanted, const GetPoint& getPoint) const
   {
     constexpr int most = RayPacket::Size * PacketTracer<Store>::MaxPackets;
     SurfaceHit hits[most];
     const IsosurfaceObject* objects[most] = {};
     this->FindIsosurfaces(bricks, packets, rays, wanted, objects, hits);
     MeshHit meshHits[RayPacket::Size];
-    SurfacePoint point;
     for (int packet = 0; packet < packets; ++packet)
     {
       const int first = RayPacket::Size * packet;
@@ -113,33 +114,16 @@ public:
       {
         const int lane = GetLowest(left);
         const int index = first + lane;
-        if (this->Complete(
-              rays[index], objects[index], hits[index], meshes[lane], meshHits[lane], point))
+        if (!this->Complete(rays[index], objects[index], hits[index], meshes[lane], meshHits[lane],
+              getPoint(index)))
         {
-          take(index, point);
+          wanted[packet] &= ~(RayPacket::Mask{ 1 } << lane);
         }
       }
     }
   }
 
-  /// The part of each colour of light that gets along the ray: translucent surfaces dim and tint it.
-  glm::dvec3 GetTransmittance(Ray ray) const
-  {
-    glm::dvec3 transmittance(1.0);
-    SurfacePoint point;
-    while (Largest(transmittance) > Dark && this->Intersect(ray, point))
-    {
-      const double opacity = point.Color.w;
-      const glm::dvec3 tint = glm::mix(glm::dvec3(1.0), glm::dvec3(point.Color), opacity);
-      transmittance *= (1.0 - opacity) * tint;
-      ray.Min = point.T + point.Clearance / glm::length(ray.Direction);
-    }
-    return Largest(transmittance) > Dark ? transmittance : glm::dvec3(0.0);
-  }
-
 private:
-  /// Less than half a step of an 8-bit channel.
-  static constexpr double Dark = 0.5 / 255.0;
   /// Of the shortest edge of a cell. Roots are found to 1e-7 of the way through a cell.
   static constexpr double ClearancePart = 1e-4;
 
@@ -155,14 +139,17 @@ private:
       : id;
   }
 
-  static double Largest(const glm::dvec3& color) { return std::max({ color.x, color.y, color.z }); }
-
   /// The object that the ray meets first, or null; the ray ends there afterwards.
-  const IsosurfaceObject* FindIsosurface(Ray& ray, SurfaceHit& nearest) const
+  const IsosurfaceObject* FindIsosurface(
+    Ray& ray, const Occluders* without, SurfaceHit& nearest) const
   {
     const IsosurfaceObject* object = nullptr;
     for (const IsosurfaceObject& candidate : this->World.Isosurfaces)
     {
+      if (without && without->Has(candidate))
+      {
+        continue;
+      }
       SurfaceHit hit;
       const auto find = [&](const Ray& part)
       { return this->Volumes.Intersect(candidate, part, hit); };
@@ -299,11 +286,15 @@ private:
   }
 
   /// As FindIsosurface. `ended`: something else is at the ray's end, and hides what is no nearer.
-  const MeshObject* FindMesh(Ray& ray, bool ended, MeshHit& nearest) const
+  const MeshObject* FindMesh(Ray& ray, const Occluders* without, bool ended, MeshHit& nearest) const
   {
     const MeshObject* object = nullptr;
     for (const MeshObject& candidate : this->World.Meshes)
     {
+      if (without && without->Has(candidate))
+      {
+        continue;
+      }
       MeshHit hit;
       const auto find = [&](const Ray& part)
       { return this->Meshes.Intersect(*candidate.Instance, part, hit); };

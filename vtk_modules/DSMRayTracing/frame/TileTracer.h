@@ -112,6 +112,7 @@ private:
         this->Request.FirstSample + sample,
         [&tile](int x, int y, const PixelSample& traced)
         {
+          tile.LightRays += static_cast<std::uint64_t>(traced.LightRays);
           const std::size_t pixel = static_cast<std::size_t>(y - tile.Y) * tile.Width +
             static_cast<std::size_t>(x - tile.X);
           if (tile.Layers == 1)

@@ -40,11 +40,18 @@ public:
   }
 
 private:
-  /// Macrocells [first, last) of a level.
-  void VisitBox(int number, const int first[3], const int last[3])
+  /// Macrocells [begin, end) of a level.
+  void VisitBox(int number, const int begin[3], const int end[3])
   {
     const MacrocellHierarchy::Level& level = this->Levels[number];
     const RayBeam::Cubes& cubes = this->Cubes[number];
+    int first[3];
+    int last[3];
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      first[axis] = std::max(begin[axis], cubes.First[axis]);
+      last[axis] = std::min(end[axis], cubes.Last[axis] + 1);
+    }
     const bool* forward = this->Beam.GetForward();
     const int size[3] = { last[0] - first[0], last[1] - first[1], last[2] - first[2] };
     for (int k = 0; k < size[2]; ++k)
@@ -117,12 +124,18 @@ BeamBricks::BeamBricks(const MacrocellHierarchy& hierarchy, const std::vector<do
   const GridRay corners[4])
 {
   RayBeam beam;
-  this->Usable = beam.Set(corners);
-  if (this->Usable)
+  if (beam.Set(corners))
   {
-    std::copy_n(beam.GetForward(), 3, this->Forward);
-    Descent(hierarchy, isovalues, beam, this->Bricks).Start();
+    *this = BeamBricks(hierarchy, isovalues, beam);
   }
+}
+
+BeamBricks::BeamBricks(
+  const MacrocellHierarchy& hierarchy, const std::vector<double>& isovalues, const RayBeam& beam)
+  : Usable(true)
+{
+  std::copy_n(beam.GetForward(), 3, this->Forward);
+  Descent(hierarchy, isovalues, beam, this->Bricks).Start();
 }
 
 } // namespace rt

@@ -33,6 +33,8 @@ struct BeamBricks
   /// `corners`: see RayBeam. `isovalues` as in IsosurfaceObject.
   BeamBricks(const MacrocellHierarchy& hierarchy, const std::vector<double>& isovalues,
     const GridRay corners[4]);
+  BeamBricks(
+    const MacrocellHierarchy& hierarchy, const std::vector<double>& isovalues, const RayBeam& beam);
 };
 
 } // namespace rt

@@ -35,6 +35,32 @@ public:
   bool FindFirst(
     const IsovalueLevel<T>& level, double enter, double leave, double limit, CellHit& hit) const
   {
+    return this->Walk(level, enter, leave, limit,
+      [&](const GridWalk& cells, const T* corner, double in, double out)
+      { return this->IntersectCell(level, cells, corner, in, out, hit); });
+  }
+
+  /// Whether there is a hit in [enter, leave].
+  bool HasHit(const IsovalueLevel<T>& level, double enter, double leave) const
+  {
+    return this->Walk(level, enter, leave, leave,
+      [&](const GridWalk& cells, const T* corner, double in, double out)
+      {
+        double corners[8];
+        Lanes start;
+        Lanes end;
+        return this->EnterCell(level, cells, corner, in, out, corners, start, end) &&
+          HasCrossing(corners, start, end);
+      });
+  }
+
+private:
+  /// Calls `intersect(cells, corner, enter, leave)` for the cells that the isovalue is in, until it
+  /// says that there is a hit, and returns whether it did.
+  template <class Intersect>
+  bool Walk(const IsovalueLevel<T>& level, double enter, double leave, double limit,
+    const Intersect& intersect) const
+  {
     const int rows = this->Brick.GetMacrocells(0);
     const int slices = this->Brick.GetMacrocells(1);
     const NodeStrides strides(rows, rows * slices);
@@ -48,7 +74,8 @@ public:
     {
       const double exit = std::min(walk.GetExit(), leave);
       this->Reads.ReadRange();
-      if (level.Separates(range->Min, range->Max) && this->WalkCells(level, walk, t, exit, hit))
+      if (level.Separates(range->Min, range->Max) &&
+        this->WalkCells(level, walk, t, exit, intersect))
       {
         return true;
       }
@@ -62,10 +89,10 @@ public:
     return false;
   }
 
-private:
-  /// The first hit in the macrocell of `macrocells`, which the ray crosses from enter to leave.
+  /// The same in the macrocell of `macrocells`, which the ray crosses from enter to leave.
+  template <class Intersect>
   bool WalkCells(const IsovalueLevel<T>& level, const GridWalk& macrocells, double enter,
-    double leave, CellHit& hit) const
+    double leave, const Intersect& intersect) const
   {
     const Lanes first = macrocells.GetFirst(this->Line, MacrocellEdge);
     const Lanes size(
@@ -84,7 +111,7 @@ private:
       const double exit = std::min(walk.GetExit(), leave);
       this->Reads.ReadCell();
       if (CornerTest<T>::IsSeparated(corner, row, slice, level.GetFirst()) &&
-        this->IntersectCell(level, walk, corner, t, exit, hit))
+        intersect(walk, corner, t, exit))
       {
         return true;
       }
@@ -135,24 +162,31 @@ private:
     return std::is_integral_v<T> || check == 0.0;
   }
 
-  /// The first hit in the cell with the given first corner, which the ray crosses from enter to
-  /// leave.
+  /// What is known of the cell with the given first corner, which the ray crosses from enter to
+  /// leave; false when it holds no data.
+  bool EnterCell(const IsovalueLevel<T>& level, const GridWalk& cells, const T* corner,
+    double enter, double leave, double corners[8], Lanes& start, Lanes& end) const
+  {
+    const Lanes cell = cells.GetFirst(this->Line, 1.0);
+    start = this->GetLocal(cell, enter);
+    end = this->GetLocal(cell, leave);
+    return this->GetCorners(level, corner, cell, corners);
+  }
+
+  /// The first hit in that cell.
   bool IntersectCell(const IsovalueLevel<T>& level, const GridWalk& cells, const T* corner,
     double enter, double leave, CellHit& hit) const
   {
-    const Lanes cell = cells.GetFirst(this->Line, 1.0);
     double corners[8];
-    if (!this->GetCorners(level, corner, cell, corners))
-    {
-      return false;
-    }
-    const Lanes start = this->GetLocal(cell, enter);
-    const Lanes end = this->GetLocal(cell, leave);
+    Lanes start;
+    Lanes end;
     double s;
-    if (!FindFirstCrossing(corners, start, end, s))
+    if (!this->EnterCell(level, cells, corner, enter, leave, corners, start, end) ||
+      !FindFirstCrossing(corners, start, end, s))
     {
       return false;
     }
+    const Lanes cell = cells.GetFirst(this->Line, 1.0);
     hit.T = std::min(enter + s * (leave - enter), leave);
     hit.FromInside = EvaluateTrilinear(corners, start) >= 0.0;
     hit.Local = Clamp(start + Lanes(s) * (end - start), Lanes(0.0), Lanes(1.0));

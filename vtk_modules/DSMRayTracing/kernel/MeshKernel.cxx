@@ -52,6 +52,77 @@ public:
   static Mask SearchBrick(
     MeshPacket& packet, Mask rays, const TriangleBrick& brick, std::uint32_t number)
   {
+    return Search(packet, rays, brick, NearestSearch(packet, brick, number));
+  }
+
+  static Mask FindOccluded(MeshPacket& packet, Mask rays, const TriangleBrick& brick)
+  {
+    return Search(packet, rays, brick, AnySearch(packet, brick));
+  }
+
+private:
+  /// Keeps the nearest hit of each ray.
+  class NearestSearch
+  {
+  public:
+    NearestSearch(MeshPacket& packet, const TriangleBrick& brick, std::uint32_t number)
+      : Packet(packet)
+      , Brick(brick)
+      , Number(number)
+    {
+    }
+
+    /// Whether a ray has found something nearer.
+    HWY_INLINE bool Try(int index, std::uint32_t triangle)
+    {
+      NearestTriangle& nearest = this->Packet.Nearest[index];
+      const bool better = nearest.Try(this->Packet.GetTriangleRay(index), this->Packet.Culling,
+        this->Brick, this->Number, triangle);
+      if (better)
+      {
+        this->Packet.Shorten(index, nearest.Hit.T);
+      }
+      return better;
+    }
+    static constexpr bool EndsAtHit = false;
+
+  private:
+    MeshPacket& Packet;
+    const TriangleBrick& Brick;
+    std::uint32_t Number;
+  };
+
+  /// Ends each ray that hits anything.
+  class AnySearch
+  {
+  public:
+    AnySearch(MeshPacket& packet, const TriangleBrick& brick)
+      : Packet(packet)
+      , Brick(brick)
+    {
+    }
+
+    HWY_INLINE bool Try(int index, std::uint32_t triangle)
+    {
+      TriangleHit hit;
+      const bool meets = NearestTriangle::Meets(
+        this->Packet.GetTriangleRay(index), this->Packet.Culling, this->Brick, triangle, hit);
+      if (meets)
+      {
+        this->Packet.End(index);
+      }
+      return meets;
+    }
+    static constexpr bool EndsAtHit = true;
+
+  private:
+    MeshPacket& Packet;
+    const TriangleBrick& Brick;
+  };
+
+  template <class Rule>
+  static Mask Search(MeshPacket& packet, Mask rays, const TriangleBrick& brick, Rule rule)
+  {
     for (Mask left = rays; left != 0; left &= left - 1)
     {
       packet.SetFilter(GetLowest(left), brick);
@@ -59,38 +130,36 @@ public:
     switch (packet.Axes[2])
     {
       case 0:
-        return SearchAlong<0>(packet, rays, brick, number);
+        return SearchAlong<0>(packet, rays, brick, rule);
       case 1:
-        return SearchAlong<1>(packet, rays, brick, number);
+        return SearchAlong<1>(packet, rays, brick, rule);
       default:
-        return SearchAlong<2>(packet, rays, brick, number);
+        return SearchAlong<2>(packet, rays, brick, rule);
     }
   }
 
-private:
-  template <int Axis>
-  static Mask SearchAlong(
-    MeshPacket& packet, Mask rays, const TriangleBrick& brick, std::uint32_t number)
+  template <int Axis, class Rule>
+  static Mask SearchAlong(MeshPacket& packet, Mask rays, const TriangleBrick& brick, Rule& rule)
   {
     using Walk = MeshPacketWalk<D>;
-    LeafSearch<Axis> search(packet, brick, number);
+    LeafSearch<Axis, Rule> search(packet, brick, rule);
     Walk(packet).Traverse(
       brick.GetNodes(), rays,
       [&](std::uint16_t leaf)
       { Walk::Fetch(brick.GetTriangle(TriangleBrick::Leaf(leaf).First), 1); },
       [&](std::uint16_t leaf, Mask met) { search.Search(TriangleBrick::Leaf(leaf), met); });
-    return search.GetBetter();
+    return search.GetFound();
   }
 
   /// Tries the triangles of leaves.
-  template <int Axis>
+  template <int Axis, class Rule>
   class LeafSearch
   {
   public:
-    LeafSearch(MeshPacket& packet, const TriangleBrick& brick, std::uint32_t number)
+    LeafSearch(const MeshPacket& packet, const TriangleBrick& brick, Rule& rule)
       : Packet(packet)
       , Brick(brick)
-      , Number(number)
+      , Hits(rule)
     {
     }
 
@@ -100,29 +169,30 @@ private:
       for (; rays != 0; rays &= rays - 1)
       {
         const int index = GetLowest(rays);
-        NearestTriangle& nearest = this->Packet.Nearest[index];
         unsigned candidates = filter.FindCandidates(this->Packet.Filters[index]) & leaf.GetMask();
         for (; candidates != 0; candidates &= candidates - 1)
         {
           const auto lane = static_cast<std::uint32_t>(__builtin_ctz(candidates));
-          if (nearest.Try(this->Packet.GetTriangleRay(index), this->Packet.Culling, this->Brick,
-                this->Number, leaf.First + lane))
+          if (this->Hits.Try(index, leaf.First + lane))
           {
-            this->Packet.Shorten(index, nearest.Hit.T);
-            this->Better |= Mask{ 1 } << index;
+            this->Found |= Mask{ 1 } << index;
+            if constexpr (Rule::EndsAtHit)
+            {
+              break;
+            }
           }
         }
       }
     }
 
-    /// Rays that have found something nearer.
-    Mask GetBetter() const { return this->Better; }
+    /// Rays that have found something.
+    Mask GetFound() const { return this->Found; }
 
   private:
-    MeshPacket& Packet;
+    const MeshPacket& Packet;
     const TriangleBrick& Brick;
-    std::uint32_t Number;
-    Mask Better = 0;
+    Rule& Hits;
+    Mask Found = 0;
   };
 };
 
@@ -130,7 +200,7 @@ template <class D>
 MeshKernel CreateMeshKernel(const char* name)
 {
   return { name, MeshPacketWalk<D>::Width, &MeshSteps<D>::SetRays, &MeshSteps<D>::FindBricks,
-    &MeshSteps<D>::SearchBrick };
+    &MeshSteps<D>::SearchBrick, &MeshSteps<D>::FindOccluded };
 }
 
 MeshKernel CreateWideMeshKernel()

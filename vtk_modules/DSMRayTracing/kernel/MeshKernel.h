@@ -49,6 +49,10 @@ struct MeshKernel
   MeshPacket::Mask (*SearchBrick)(
     MeshPacket& packet, MeshPacket::Mask rays, const TriangleBrick& brick, std::uint32_t number);
 
+  /// Searches a brick for any hit. Returns those of `rays` that have one, and ends them.
+  MeshPacket::Mask (*FindOccluded)(
+    MeshPacket& packet, MeshPacket::Mask rays, const TriangleBrick& brick);
+
   /// The fastest that this processor can run.
   static const MeshKernel& GetBest();
   /// All that this processor can run, that of width 1 first. For tests: not while any thread

@@ -66,6 +66,7 @@ struct MeshPacket
     this->Filters[index] = FilterRay(start, shear, this->Uncertainty[index], brick);
   }
 
+  void End(int index) { this->BoxesEnd[index] = MeshRay::NoBoxes; }
   void Shorten(int index, double t)
   {
     this->Max[index] = t;

@@ -86,6 +86,12 @@ struct MeshRay
     this->BoxesEnd = GetBoxesT(t, this->StartT, this->BoxesPerT, this->Uncertainty);
   }
 
+  /// Nothing need be visited any more.
+  void End() { this->BoxesEnd = NoBoxes; }
+
+  /// An end before the start of all boxes.
+  static constexpr float NoBoxes = -1.0f;
+
   /// A T in units of boxes, rounded up.
   static float GetBoxesT(double t, double startT, double boxesPerT, float uncertainty)
   {

@@ -36,8 +36,17 @@ public:
   MeshPacket::Mask Intersect(
     const MeshInstance& instance, const Ray* rays, MeshPacket::Mask wanted, MeshHit* hits) const;
 
+  /// Whether there is any hit in [ray.Min, ray.Max]: whether Intersect finds one. May wait for
+  /// bricks.
+  bool IsOccluded(const MeshInstance& instance, const Ray& ray) const;
+
+  /// The same for those of MeshPacket::Size rays that are `wanted`.
+  MeshPacket::Mask FindOccluded(
+    const MeshInstance& instance, const Ray* rays, MeshPacket::Mask wanted) const;
+
 private:
   class PacketVisitor;
+  class OcclusionVisitor;
 
   Store& Blocks;
   typename Store::Worker& Self;

@@ -38,6 +38,27 @@ bool MeshTracer<Store>::Intersect(const MeshInstance& instance, const Ray& ray, 
   return nearest.Found;
 }
 
+template <class Store>
+bool MeshTracer<Store>::IsOccluded(const MeshInstance& instance, const Ray& ray) const
+{
+  const TriangleMesh& mesh = instance.GetMesh();
+  MeshRay line;
+  if (mesh.Bricks.IsEmpty() || !instance.GetMeshRay(ray, line))
+  {
+    return false;
+  }
+  bool occluded = false;
+  TraverseWideBvh(mesh.Bricks.GetNodes(), line.Boxes, line.BoxesEnd,
+    [&](std::uint32_t leaf)
+    {
+      const std::uint32_t number = BrickBvh::GetBrick(leaf);
+      const typename Store::Pin pin = this->Blocks.Acquire(this->Self, *mesh.Segment, number);
+      const TriangleBrick brick(pin.GetData());
+      occluded = TreeletTraversal(brick, number, instance.Culling).IsOccluded(line) || occluded;
+    });
+  return occluded;
+}
+
 /// Searches the bricks that a packet meets.
 template <class Store>
 class MeshTracer<Store>::PacketVisitor final : public MeshKernel::Visitor
@@ -100,6 +121,58 @@ MeshPacket::Mask MeshTracer<Store>::Intersect(
     const int index = GetLowest(alone);
     const bool found = this->Intersect(instance, rays[index], hits[index]);
     visitor.Found |= MeshPacket::Mask{ found } << index;
+  }
+  return visitor.Found;
+}
+
+/// Searches the bricks that a packet meets for any hit.
+template <class Store>
+class MeshTracer<Store>::OcclusionVisitor final : public MeshKernel::Visitor
+{
+public:
+  OcclusionVisitor(const MeshTracer& tracer, const TriangleMesh& mesh)
+    : Tracer(tracer)
+    , Mesh(mesh)
+  {
+  }
+
+  void Visit(std::uint32_t number, MeshPacket::Mask rays) override
+  {
+    const typename Store::Pin pin =
+      this->Tracer.Blocks.Acquire(this->Tracer.Self, *this->Mesh.Segment, number);
+    this->Found |=
+      this->Tracer.Kernel.FindOccluded(this->Packet, rays, TriangleBrick(pin.GetData()));
+  }
+
+  MeshPacket Packet;
+  MeshPacket::Mask Found = 0;
+
+private:
+  const MeshTracer& Tracer;
+  const TriangleMesh& Mesh;
+};
+
+template <class Store>
+MeshPacket::Mask MeshTracer<Store>::FindOccluded(
+  const MeshInstance& instance, const Ray* rays, MeshPacket::Mask wanted) const
+{
+  const TriangleMesh& mesh = instance.GetMesh();
+  if (mesh.Bricks.IsEmpty())
+  {
+    return 0;
+  }
+  OcclusionVisitor visitor(*this, mesh);
+  MeshPacket::Mask alone = 0;
+  const MeshPacket::Mask together =
+    this->Kernel.SetRays(visitor.Packet, instance, rays, wanted, alone);
+  if (together != 0)
+  {
+    this->Kernel.FindBricks(visitor.Packet, together, mesh.Bricks, visitor);
+  }
+  for (; alone != 0; alone &= alone - 1)
+  {
+    const int index = GetLowest(alone);
+    visitor.Found |= MeshPacket::Mask{ this->IsOccluded(instance, rays[index]) } << index;
   }
   return visitor.Found;
 }

@@ -107,12 +107,30 @@ public:
     const PacketBrick& brick, const double origin[3], const double* enter, const double* leave,
     PacketHits& hits)
   {
+    PacketCrossings crossings;
+    const RayPacket::Mask found =
+      SearchParts(packet, rays, brick, origin, enter, leave, &crossings);
+    Refine(crossings, found, hits);
+    return found;
+  }
+
+  static RayPacket::Mask FindOccluded(const RayPacket& packet, RayPacket::Mask rays,
+    const PacketBrick& brick, const double origin[3], const double* enter, const double* leave)
+  {
+    return SearchParts(packet, rays, brick, origin, enter, leave, nullptr);
+  }
+
+private:
+  /// Those of `rays` that meet the surface in a brick; how is stored where `crossings` is not null.
+  static RayPacket::Mask SearchParts(const RayPacket& packet, RayPacket::Mask rays,
+    const PacketBrick& brick, const double origin[3], const double* enter, const double* leave,
+    PacketCrossings* crossings)
+  {
     int parts[3];
     for (int axis = 0; axis < 3; ++axis)
     {
       parts[axis] = (brick.GetMacrocells(axis) + 3) / 4;
     }
-    PacketCrossings crossings;
     RayPacket::Mask found = 0;
     for (int k = 0; k < parts[2] && found != rays; ++k)
     {
@@ -128,11 +146,9 @@ public:
         }
       }
     }
-    Refine(crossings, found, hits);
     return found;
   }
 
-private:
   /// Rays as vectors want them. Those that are not wanted are copies of one that is.
   struct WorldRays
   {
@@ -190,7 +206,7 @@ private:
   /// The 4 x 4 x 4 macrocells of a part of the brick; `whole`: that is all of it.
   static RayPacket::Mask SearchPart(const RayPacket& packet, RayPacket::Mask rays,
     const PacketBrick& brick, const double origin[3], const double* enter, const double* leave,
-    const int part[3], bool whole, PacketCrossings& crossings)
+    const int part[3], bool whole, PacketCrossings* crossings)
   {
     const std::uint64_t macrocells = brick.FindMacrocells(part);
     if (macrocells == 0)
@@ -265,7 +281,7 @@ template <class D>
 PacketKernel Create(const char* name)
 {
   return { name, PacketSteps<D>::Width, &PacketSteps<D>::SetRays, &PacketSteps<D>::MeetBox,
-    &PacketSteps<D>::SearchBrick };
+    &PacketSteps<D>::SearchBrick, &PacketSteps<D>::FindOccluded };
 }
 
 PacketKernel CreateWide()

@@ -39,6 +39,10 @@ struct PacketKernel
     const PacketBrick& brick, const double origin[3], const double* enter, const double* leave,
     PacketHits& hits);
 
+  /// Those of `rays` for which SearchBrick finds a hit, without the hits.
+  RayPacket::Mask (*FindOccluded)(const RayPacket& packet, RayPacket::Mask rays,
+    const PacketBrick& brick, const double origin[3], const double* enter, const double* leave);
+
   /// The fastest that this processor can run.
   static const PacketKernel& GetBest();
   /// All that this processor can run, that of width 1 first. For tests: not while any thread

@@ -10,6 +10,8 @@
 
 #include <glm/vec3.hpp>
 
+#include <cstdint>
+
 namespace rt
 {
 
@@ -43,6 +45,11 @@ public:
   void Intersect(const IsosurfaceObject& object, const BeamBricks& bricks, int packets,
     const Ray* rays, const RayPacket::Mask* wanted, SurfaceHit* hits, RayPacket::Mask* found) const;
 
+  /// VolumeTracer::IsOccluded for those of up to 64 rays (bits) that are `wanted`. They need not
+  /// have anything in common, but are traced together where they go the same way.
+  std::uint64_t FindOccluded(
+    const IsosurfaceObject& object, const Ray* rays, std::uint64_t wanted) const;
+
 private:
   /// A packet on its way through the bricks.
   struct Progress
@@ -60,6 +67,10 @@ private:
     glm::dvec3 Gradient[RayPacket::Size];
   };
 
+  /// Where the rays of packets that have not found anything yet cross a brick; returns whether any
+  /// does.
+  bool MeetBrick(const BeamBricks::Brick& brick, int packets, Progress* progress) const;
+
   template <class T>
   void SearchBricks(const IsosurfaceObject& object, const BeamBricks& bricks, int packets,
     Progress* progress, const Ray* rays, SurfaceHit* hits) const;
@@ -68,6 +79,27 @@ private:
   template <class T>
   void SearchBrick(const IsosurfaceObject& object, const BeamBricks::Brick& brick, int packets,
     Progress* progress) const;
+
+  /// Fewer rays are as fast one by one.
+  static constexpr int FewestInBeam = 8;
+  /// Length of the mean of unit directions: those of less have too little in common for a beam.
+  static constexpr double BeamCoherence = 0.98;
+
+  /// Rays that all move to the same sides, in order and without gaps.
+  struct Group
+  {
+    Ray Rays[MaxPackets * RayPacket::Size];
+    int Count = 0;
+    bool Forward[3];
+  };
+
+  /// FindOccluded for a group; bit i is its ray i.
+  std::uint64_t FindOccludedInGroup(const IsosurfaceObject& object, const Group& group) const;
+
+  /// Adds those of `packets` that meet a surface in a brick to what they have found.
+  template <class T>
+  void FindOccludedInBrick(const IsosurfaceObject& object, const BeamBricks::Brick& brick,
+    int packets, Progress* progress) const;
 
   Store& Blocks;
   typename Store::Worker& Self;

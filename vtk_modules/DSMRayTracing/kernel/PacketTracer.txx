@@ -8,6 +8,8 @@
 #include "DSMRayTracing/kernel/IsovalueLevel.h"
 #include "DSMRayTracing/kernel/TypedPacketBrick.h"
 
+#include <glm/geometric.hpp>
+
 #include <algorithm>
 
 namespace rt
@@ -66,6 +68,23 @@ void PacketTracer<Store>::Intersect(const IsosurfaceObject& object, const BeamBr
 }
 
 template <class Store>
+bool PacketTracer<Store>::MeetBrick(
+  const BeamBricks::Brick& brick, int packets, Progress* progress) const
+{
+  bool isMet = false;
+  for (int number = 0; number < packets; ++number)
+  {
+    Progress& packet = progress[number];
+    const RayPacket::Mask open = packet.Rays.Rays & ~packet.Found;
+    packet.Meets = open == 0 ? 0
+                             : this->Kernel.MeetBox(packet.Rays, open, brick.Lower, brick.Upper,
+                                 packet.Enter, packet.Leave);
+    isMet = isMet || packet.Meets != 0;
+  }
+  return isMet;
+}
+
+template <class Store>
 template <class T>
 void PacketTracer<Store>::SearchBricks(const IsosurfaceObject& object, const BeamBricks& bricks,
   int packets, Progress* progress, const Ray* rays, SurfaceHit* hits) const
@@ -73,17 +92,7 @@ void PacketTracer<Store>::SearchBricks(const IsosurfaceObject& object, const Bea
   const IndexSpace space(object.IndexToWorld, object.WorldToIndex);
   for (const BeamBricks::Brick& brick : bricks.Bricks)
   {
-    bool isMet = false;
-    for (int number = 0; number < packets; ++number)
-    {
-      Progress& packet = progress[number];
-      const RayPacket::Mask open = packet.Rays.Rays & ~packet.Found;
-      packet.Meets = open == 0 ? 0
-                               : this->Kernel.MeetBox(packet.Rays, open, brick.Lower, brick.Upper,
-                                   packet.Enter, packet.Leave);
-      isMet = isMet || packet.Meets != 0;
-    }
-    if (!isMet)
+    if (!this->MeetBrick(brick, packets, progress))
     {
       continue;
     }
@@ -163,6 +172,135 @@ void PacketTracer<Store>::SearchBrick(const IsosurfaceObject& object,
           HitGradient::FindWithin(voxels, candidates.Get(index), level, &packet.Gradient[index].x);
         packet.WithoutGradient =
           within ? packet.WithoutGradient & ~bit : packet.WithoutGradient | bit;
+      }
+    }
+  }
+}
+
+template <class Store>
+std::uint64_t PacketTracer<Store>::FindOccluded(
+  const IsosurfaceObject& object, const Ray* rays, std::uint64_t wanted) const
+{
+  const IndexSpace space(object.IndexToWorld, object.WorldToIndex);
+  std::uint64_t sides[8] = {};
+  glm::dvec3 sums[8] = {};
+  for (std::uint64_t left = wanted; left != 0; left &= left - 1)
+  {
+    const int index = __builtin_ctzll(left);
+    const glm::dvec3 direction = space.GetWorldToIndex() * rays[index].Direction;
+    const int side = (direction.x > 0.0) | (direction.y > 0.0) << 1 | (direction.z > 0.0) << 2;
+    sides[side] |= left & (~left + 1);
+    sums[side] += direction / glm::length(direction);
+  }
+  std::uint64_t occluded = 0;
+  for (int side = 0; side < 8; ++side)
+  {
+    const int count = __builtin_popcountll(sides[side]);
+    if (count < FewestInBeam || !(glm::length(sums[side]) > BeamCoherence * count))
+    {
+      for (std::uint64_t left = sides[side]; left != 0; left &= left - 1)
+      {
+        const int index = __builtin_ctzll(left);
+        occluded |= std::uint64_t{ this->Single.IsOccluded(object, rays[index]) } << index;
+      }
+      continue;
+    }
+    Group group;
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      group.Forward[axis] = (side >> axis & 1) != 0;
+    }
+    for (std::uint64_t left = sides[side]; left != 0; left &= left - 1)
+    {
+      group.Rays[group.Count++] = rays[__builtin_ctzll(left)];
+    }
+    std::uint64_t met = this->FindOccludedInGroup(object, group);
+    for (std::uint64_t left = sides[side]; left != 0; left &= left - 1, met >>= 1)
+    {
+      occluded |= (met & 1) != 0 ? left & (~left + 1) : 0;
+    }
+  }
+  return occluded;
+}
+
+template <class Store>
+std::uint64_t PacketTracer<Store>::FindOccludedInGroup(
+  const IsosurfaceObject& object, const Group& group) const
+{
+  const IndexSpace space(object.IndexToWorld, object.WorldToIndex);
+  const BrickLattice& lattice = object.Field->Lattice;
+  Progress progress[MaxPackets];
+  const RayPacket* crossing[MaxPackets];
+  int packets = 0;
+  int crossingCount = 0;
+  for (int first = 0; first < group.Count; first += RayPacket::Size, ++packets)
+  {
+    Progress& packet = progress[packets];
+    std::copy_n(group.Forward, 3, packet.Rays.Forward);
+    const Ray* const own = group.Rays + first;
+    const int count = std::min(RayPacket::Size, group.Count - first);
+    RayPacket::Mask alone = this->Kernel.SetRays(
+      packet.Rays, own, (RayPacket::Mask{ 1 } << count) - 1, space, lattice.GetCells());
+    for (; alone != 0; alone &= alone - 1)
+    {
+      const int index = GetLowest(alone);
+      packet.Found |= RayPacket::Mask{ this->Single.IsOccluded(object, own[index]) } << index;
+    }
+    if (packet.Rays.Rays != 0)
+    {
+      crossing[crossingCount++] = &packet.Rays;
+    }
+  }
+  if (crossingCount > 0)
+  {
+    RayBeam beam;
+    beam.Set(crossing, crossingCount);
+    const BeamBricks bricks(object.Field->Hierarchy, object.Isovalues, beam);
+    Dispatch(lattice.GetScalarType(),
+      [&](auto sample)
+      {
+        for (const BeamBricks::Brick& brick : bricks.Bricks)
+        {
+          if (this->MeetBrick(brick, packets, progress))
+          {
+            this->FindOccludedInBrick<decltype(sample)>(object, brick, packets, progress);
+          }
+        }
+      });
+  }
+  std::uint64_t occluded = 0;
+  for (int number = 0; number < packets; ++number)
+  {
+    occluded |= std::uint64_t{ progress[number].Found } << (RayPacket::Size * number);
+  }
+  return occluded;
+}
+
+template <class Store>
+template <class T>
+void PacketTracer<Store>::FindOccludedInBrick(const IsosurfaceObject& object,
+  const BeamBricks::Brick& brick, int packets, Progress* progress) const
+{
+  const typename Store::Pin pin =
+    this->Blocks.Acquire(this->Self, *object.Field->Segment, brick.Id);
+  const VoxelBrick<T> voxels(pin.GetData());
+  const ValueRange range{ voxels.GetHeader().First, voxels.GetHeader().Last };
+  for (const double isovalue : object.Isovalues)
+  {
+    if (!range.MayHold(isovalue))
+    {
+      continue;
+    }
+    const IsovalueLevel<T> level(isovalue);
+    const TypedPacketBrick<T> surface(voxels, level);
+    for (int number = 0; number < packets; ++number)
+    {
+      Progress& packet = progress[number];
+      const RayPacket::Mask open = packet.Meets & ~packet.Found;
+      if (open != 0)
+      {
+        packet.Found |= this->Kernel.FindOccluded(
+          packet.Rays, open, surface, brick.Lower, packet.Enter, packet.Leave);
       }
     }
   }

@@ -195,9 +195,10 @@ public:
   using Vector = hn::Vec<D>;
   using Mask = hn::Mask<D>;
 
-  /// Rays `first` and on of the packet, in the brick whose first cell is `origin`.
+  /// Rays `first` and on of the packet, in the brick whose first cell is `origin`. `crossings` is null
+  /// when only those that meet the surface are asked for, not where.
   PacketWalk(D tag, const RayPacket& packet, int first, const PacketBrick& brick,
-    const double origin[3], PacketCrossings& crossings)
+    const double origin[3], PacketCrossings* crossings)
     : Tag(tag)
     , Rays(tag, packet, first)
     , Brick(brick)
@@ -328,28 +329,29 @@ private:
     const PacketCrossing<D> crossing(tag, values, start, end);
     Bracket<D> bracket;
     const Mask found = crossing.FindFirst(rays, bracket);
-    if (hn::AllFalse(tag, found))
+    if (!this->Crossings || hn::AllFalse(tag, found))
     {
       return found;
     }
+    PacketCrossings& crossings = *this->Crossings;
     Vector coefficients[4];
     crossing.GetCoefficients(coefficients);
     for (int power = 0; power < 4; ++power)
     {
-      this->Put(found, coefficients[power], this->Crossings.Coefficients[power]);
+      this->Put(found, coefficients[power], crossings.Coefficients[power]);
     }
-    this->Put(found, bracket.BeginS, this->Crossings.BeginS);
-    this->Put(found, bracket.BeginValue, this->Crossings.BeginValue);
-    this->Put(found, bracket.EndS, this->Crossings.EndS);
-    this->Put(found, bracket.EndValue, this->Crossings.EndValue);
-    this->Put(found, enter, this->Crossings.Enter);
-    this->Put(found, exit, this->Crossings.Leave);
+    this->Put(found, bracket.BeginS, crossings.BeginS);
+    this->Put(found, bracket.BeginValue, crossings.BeginValue);
+    this->Put(found, bracket.EndS, crossings.EndS);
+    this->Put(found, bracket.EndValue, crossings.EndValue);
+    this->Put(found, enter, crossings.Enter);
+    this->Put(found, exit, crossings.Leave);
     for (int axis = 0; axis < 3; ++axis)
     {
-      this->Put(found, start[axis], this->Crossings.Start[axis]);
-      this->Put(found, hn::Sub(end[axis], start[axis]), this->Crossings.Way[axis]);
+      this->Put(found, start[axis], crossings.Start[axis]);
+      this->Put(found, hn::Sub(end[axis], start[axis]), crossings.Way[axis]);
       this->Put(found, hn::Sub(cells.GetLower(axis), hn::Set(tag, this->BrickOrigin[axis])),
-        this->Crossings.Cell[axis]);
+        crossings.Cell[axis]);
     }
     return found;
   }
@@ -365,7 +367,7 @@ private:
   const PacketBrick& Brick;
   const double* BrickOrigin;
   int First;
-  PacketCrossings& Crossings;
+  PacketCrossings* Crossings;
 };
 
 } // namespace HWY_NAMESPACE

@@ -3,6 +3,7 @@
 #define rt_RayBeam_h
 
 #include "DSMRayTracing/kernel/GridRay.h"
+#include "DSMRayTracing/kernel/RayPacket.h"
 
 #include <algorithm>
 #include <cmath>
@@ -10,14 +11,18 @@
 namespace rt
 {
 
-/// The space, in a volume's index space, that the rays between four others pass through: those of a
-/// tile lie between the rays of its corners, whatever the camera.
+/// The space, in a volume's index space, that rays pass through which have something in common.
 class RayBeam
 {
 public:
-  /// `corners`: in order around the beam. Returns false when it is of no use: corners that move to
+  /// The rays between four others: those of a tile lie between the rays of its corners, whatever the
+  /// camera. `corners`: in order around the beam. Returns false when it is of no use: corners that move to
   /// different sides or not at all on an axis, or that are not apart.
   bool Set(const GridRay corners[4]);
+
+  /// The rays of packets, which all move to the same sides; from where they enter the volume to where
+  /// they leave it. There is at least one.
+  void Set(const RayPacket* const* packets, int count);
 
   /// Whether all rays of the beam move towards larger coordinates.
   const bool* GetForward() const { return this->Forward; }
@@ -27,6 +32,8 @@ public:
   {
     double Edge;
     double Least[4]; ///< for each side: normal * lower corner of a cube that may be met
+    int First[3];    ///< cubes before have no part of the beam
+    int Last[3];
   };
   Cubes GetCubes(double edge) const;
 
@@ -55,6 +62,8 @@ public:
   }
 
 private:
+  void SetSide(int number, const double normal[3], double least);
+
   /// A plane between two corners; the normal points into the beam.
   struct Side
   {
@@ -64,6 +73,8 @@ private:
   };
 
   Side Sides[4];
+  double Lower[3];
+  double Upper[3];
   bool Forward[3];
 };
 

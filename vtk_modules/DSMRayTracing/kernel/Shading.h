@@ -49,6 +49,12 @@ struct ShadingPoint
   double LineCover = 0.0;
 };
 
+/// Whether light from there makes the surface brighter, unless something is in between.
+inline bool Arrives(const Incidence& incidence, const ShadingPoint& point)
+{
+  return -glm::dot(point.Normal, incidence.Direction) > 0.0 && incidence.Attenuation > 0.0;
+}
+
 /// The colour, in [0, 1], that a surface sends to the viewer; the formula of VTK's OpenGL polydata
 /// mapper (Phong, for any number of lights):
 ///
@@ -77,11 +83,11 @@ glm::vec3 Shade(const std::vector<Light>& lights, const Material& surface,
   for (const Light& light : lights)
   {
     const Incidence incidence = GetIncidence(light, point.Position);
-    const double cosine = -glm::dot(point.Normal, incidence.Direction);
-    if (!(cosine > 0.0 && incidence.Attenuation > 0.0))
+    if (!Arrives(incidence, point))
     {
       continue;
     }
+    const double cosine = -glm::dot(point.Normal, incidence.Direction);
     const glm::dvec3 arriving =
       incidence.Attenuation * glm::dvec3(light.Color) * visibility(light, incidence);
     color += arriving * diffuseColor * cosine;

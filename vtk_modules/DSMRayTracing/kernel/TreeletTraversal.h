@@ -41,12 +41,60 @@ public:
     }
   }
 
+  /// Whether the brick has any hit; if so the ray ends.
+  bool IsOccluded(MeshRay& ray) const
+  {
+    switch (ray.Triangles.Axes[2])
+    {
+      case 0:
+        return this->IsOccludedAlong<0>(ray);
+      case 1:
+        return this->IsOccludedAlong<1>(ray);
+      default:
+        return this->IsOccludedAlong<2>(ray);
+    }
+  }
+
 private:
+  template <int Axis>
+  bool IsOccludedAlong(MeshRay& ray) const
+  {
+    bool occluded = false;
+    this->FindCandidates<Axis>(ray,
+      [&](std::uint32_t triangle)
+      {
+        TriangleHit hit;
+        if (!occluded &&
+          NearestTriangle::Meets(ray.Triangles, this->Culling, this->Brick, triangle, hit))
+        {
+          occluded = true;
+          ray.End();
+        }
+      });
+    return occluded;
+  }
+
   template <int Axis>
   bool IntersectAlong(MeshRay& ray, NearestTriangle& nearest) const
   {
-    const FilterRay line(ray.Boxes.Origin, ray.FilterShear, ray.Uncertainty, this->Brick);
     bool better = false;
+    this->FindCandidates<Axis>(ray,
+      [&](std::uint32_t triangle)
+      {
+        if (nearest.Try(ray.Triangles, this->Culling, this->Brick, this->Number, triangle))
+        {
+          ray.Shorten(nearest.Hit.T);
+          better = true;
+        }
+      });
+    return better;
+  }
+
+  /// Calls `take(triangle)` for those that the ray may hit.
+  template <int Axis, class Take>
+  void FindCandidates(const MeshRay& ray, Take&& take) const
+  {
+    const FilterRay line(ray.Boxes.Origin, ray.FilterShear, ray.Uncertainty, this->Brick);
     TraverseWideBvh(this->Brick.GetNodes(), ray.Boxes, ray.BoxesEnd,
       [&](std::uint16_t reference)
       {
@@ -55,16 +103,9 @@ private:
         unsigned candidates = filter.FindCandidates(line) & leaf.GetMask();
         for (; candidates != 0; candidates &= candidates - 1)
         {
-          const auto lane = static_cast<std::uint32_t>(__builtin_ctz(candidates));
-          if (nearest.Try(
-                ray.Triangles, this->Culling, this->Brick, this->Number, leaf.First + lane))
-          {
-            ray.Shorten(nearest.Hit.T);
-            better = true;
-          }
+          take(leaf.First + static_cast<std::uint32_t>(__builtin_ctz(candidates)));
         }
       });
-    return better;
   }
 
   TriangleBrick Brick;

@@ -96,12 +96,10 @@ int FindExtrema(const Cubic& cubic, double extrema[2])
   return count;
 }
 
-} // namespace
-
-bool FindFirstCrossing(const double corners[8], const Lanes& start, const Lanes& end, double& s)
+/// Two places of different sides between which the first crossing is; false when there is none.
+/// `last`: the value at 1.
+bool FindBracket(const Cubic& cubic, double last, End& begin, End& end)
 {
-  const Cubic cubic(corners, start, end - start);
-  const double last = EvaluateTrilinear(corners, end);
   const bool startInside = cubic.Coefficients[0] >= 0.0;
   const bool endInside = last >= 0.0;
   const int changes = CountSignChanges(cubic, last);
@@ -109,28 +107,46 @@ bool FindFirstCrossing(const double corners[8], const Lanes& start, const Lanes&
   {
     return false;
   }
-  End begin{ 0.0, cubic.Coefficients[0] };
+  begin = { 0.0, cubic.Coefficients[0] };
   if (changes > 1)
   {
     double extrema[2];
     const int count = FindExtrema(cubic, extrema);
     for (int i = 0; i < count; ++i)
     {
-      const End extremum{ extrema[i], cubic.Evaluate(extrema[i]) };
-      if ((extremum.Value >= 0.0) != startInside)
+      end = { extrema[i], cubic.Evaluate(extrema[i]) };
+      if ((end.Value >= 0.0) != startInside)
       {
-        s = Refine(cubic, begin, extremum);
         return true;
       }
-      begin = extremum;
+      begin = end;
     }
   }
-  if (startInside == endInside)
+  end = { 1.0, last };
+  return startInside != endInside;
+}
+
+} // namespace
+
+bool FindFirstCrossing(const double corners[8], const Lanes& start, const Lanes& end, double& s)
+{
+  const Cubic cubic(corners, start, end - start);
+  End before;
+  End after;
+  if (!FindBracket(cubic, EvaluateTrilinear(corners, end), before, after))
   {
     return false;
   }
-  s = Refine(cubic, begin, End{ 1.0, last });
+  s = Refine(cubic, before, after);
   return true;
+}
+
+bool HasCrossing(const double corners[8], const Lanes& start, const Lanes& end)
+{
+  End before;
+  End after;
+  return FindBracket(
+    Cubic(corners, start, end - start), EvaluateTrilinear(corners, end), before, after);
 }
 
 } // namespace rt

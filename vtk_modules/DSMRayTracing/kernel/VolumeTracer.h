@@ -46,6 +46,10 @@ public:
   /// isovalues the nearest hit counts, of equally near ones the lowest isovalue.
   bool Intersect(const IsosurfaceObject& object, const Ray& ray, SurfaceHit& hit) const;
 
+  /// Whether there is any hit in [ray.Min, ray.Max]: whether Intersect finds one. May wait for
+  /// bricks.
+  bool IsOccluded(const IsosurfaceObject& object, const Ray& ray) const;
+
   /// The trilinear value of a field at a point in index space; NaN where it holds no data.
   double Sample(const VoxelField& field, const glm::dvec3& indexPoint) const;
 
@@ -59,6 +63,10 @@ private:
   template <class T>
   bool IntersectBrick(const IsosurfaceObject& object, const GridRay& line, const BrickWalk& walk,
     CellHit& cell, int& isovalue, double gradient[3], bool& hasGradient) const;
+
+  template <class T>
+  bool IsOccludedInBrick(
+    const IsosurfaceObject& object, const GridRay& line, const BrickWalk& walk) const;
 
   template <class T>
   double SampleCell(

@@ -9,6 +9,7 @@
 #include "DSMRayTracing/kernel/IsovalueLevel.h"
 #include "DSMRayTracing/kernel/TrilinearCell.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -109,6 +110,53 @@ bool VolumeTracer<Store, Mode>::IntersectBrick(const IsosurfaceObject& object, c
   hasGradient =
     HitGradient::FindWithin(voxels, cell, IsovalueLevel<T>(object.Isovalues[isovalue]), gradient);
   return true;
+}
+
+template <class Store, Consolidation Mode>
+bool VolumeTracer<Store, Mode>::IsOccluded(const IsosurfaceObject& object, const Ray& ray) const
+{
+  const IndexSpace space(object.IndexToWorld, object.WorldToIndex);
+  const VoxelField& field = *object.Field;
+  GridRay line;
+  double enter = ray.Min;
+  double leave = ray.Max;
+  if (!space.GetGridRay(ray, line) || !line.Clip(field.Lattice.GetCells(), enter, leave))
+  {
+    return false;
+  }
+  return Dispatch(field.Lattice.GetScalarType(),
+    [&](auto sample)
+    {
+      BrickWalk walk(field.Hierarchy, line, object.Isovalues, enter, leave);
+      while (walk.Next())
+      {
+        if (this->IsOccludedInBrick<decltype(sample)>(object, line, walk))
+        {
+          return true;
+        }
+      }
+      return false;
+    });
+}
+
+template <class Store, Consolidation Mode>
+template <class T>
+bool VolumeTracer<Store, Mode>::IsOccludedInBrick(
+  const IsosurfaceObject& object, const GridRay& line, const BrickWalk& walk) const
+{
+  const dsm::BlockSegment& segment = *object.Field->Segment;
+  const typename Store::Pin pin = this->Blocks.Acquire(this->Self, segment, walk.GetId());
+  const VoxelBrick<T> voxels(pin.GetData());
+  const ValueRange range{ voxels.GetHeader().First, voxels.GetHeader().Last };
+  const BrickAccess<Store, Mode> access(this->Blocks, this->Self, segment, walk.GetId());
+  const GridTraversal<T, BrickAccess<Store, Mode>> traversal(
+    line, voxels, walk.GetOrigin(), access);
+  return std::any_of(object.Isovalues.begin(), object.Isovalues.end(),
+    [&](double isovalue)
+    {
+      return range.MayHold(isovalue) &&
+        traversal.HasHit(IsovalueLevel<T>(isovalue), walk.GetEnter(), walk.GetLeave());
+    });
 }
 
 template <class Store, Consolidation Mode>
