@@ -63,7 +63,7 @@ struct Orbit
 
   rt::FrameRequest GetRequest(const MeshBenchmark::Options& options, int position) const
   {
-    const double azimuth = glm::two_pi<double>() * position / options.Frames;
+    const double azimuth = glm::radians(options.Arc) * position / options.Frames;
     const double elevation = glm::radians(20.0);
     const double distance = 3.2 * this->Radius;
     const glm::dvec3 outward(std::cos(elevation) * std::sin(azimuth), std::sin(elevation),
@@ -373,8 +373,11 @@ const char* MeshBenchmark::Usage()
          "  --cache-fraction F[,F..]  cache per rank, as a part of the bytes of all bricks\n"
          "                      (default 1)\n"
          "  --size WxH          pixels (default 512x512)\n"
-         "  --frames N          camera positions around the mesh (default 8)\n"
-         "  --repeat R          orbits; for every position the fastest counts (default 3)\n"
+         "  --frames N          camera positions on the way around the mesh (default 8)\n"
+         "  --arc D             degrees of that way (default 360)\n"
+         "  --repeat R          times that the camera takes it; for every position the fastest "
+         "counts\n"
+         "                      (default 3), of accesses and misses those of the last time\n"
          "  --threads T         tracing threads per rank (default 0: cores / ranks of the host)\n"
          "  --store S           automatic, replicated, object (default) or paged\n"
          "  --host-sharing H    on, or off (default): one machine plays many hosts\n"
@@ -392,6 +395,9 @@ MeshBenchmark::Options MeshBenchmark::Parse(int argc, char** argv)
   Setters setters{ { "--mesh", [&](const auto&, const auto& text) { options.Mesh = text; } },
     { "--subdivide",
       [&](const auto& name, const auto& text) { options.Subdivisions = ToNumber(name, text, 0); } },
+    { "--arc",
+      [&](const auto& name, const auto& text)
+      { options.Arc = ToNumber<double>(name, text, 0.0); } },
     { "--order",
       [&](const auto& name, const auto& text)
       {
@@ -423,8 +429,8 @@ void MeshBenchmark::Run(const Options& options, dsm::Messenger& messenger)
   Json result{ { "mesh", options.Mesh }, { "subdivisions", options.Subdivisions },
     { "triangles", source->GetTriangles().GetTriangleCount() },
     { "size", { options.Width, options.Height } }, { "frames", options.Frames },
-    { "repeat", options.Repeat }, { "rank_count", messenger.GetSize() }, { "threads", threads },
-    { "host_sharing", options.HostSharing }, { "orders", Json::array() } };
+    { "arc", options.Arc }, { "repeat", options.Repeat }, { "rank_count", messenger.GetSize() },
+    { "threads", threads }, { "host_sharing", options.HostSharing }, { "orders", Json::array() } };
   std::ostringstream silence;
   std::ostream& table = speaks && options.Json != "-" ? std::cout : silence;
   table << std::fixed;

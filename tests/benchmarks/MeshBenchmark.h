@@ -29,6 +29,7 @@ public:
     int Subdivisions = 0;
     std::vector<BenchmarkMesh::Order> Orders{ BenchmarkMesh::Order::Sorted };
     std::vector<double> CacheFractions{ 1.0 }; ///< of the bytes of all bricks
+    double Arc = 360.0;                        ///< degrees of the way around the mesh
   };
 
   static const char* Usage();

@@ -2,35 +2,31 @@
 """Misses and frames/s of a mesh whose triangles share bricks by place, as in the file, or at random,
 as the cache shrinks: Fig. 8 of the paper.
 
-    python3 mesh_order.py --mesh SCAN.ply [--bench build/bin/dsm_bench] [--subdivide 2] [--ranks 2]
-                          [--caches 1,0.5,0.25,0.1,0.05] [--size 64x64] [--frames 2]
-                          [--chart FILE.svg] [--json FILE] [--from-json FILE]
+    mesh_order.py --mesh SCAN.ply [--subdivide 2] [--ranks 2] [--caches 1,0.5,0.25,0.1,0.05]
+                  [--size 32x32] [--frames 4] [--arc 40] [--chart FILE.svg] [--json FILE]
+                  [--from-json FILE]
 
-A ray of a mesh in random order visits nearly every brick, so the pictures are small. The camera goes
-round twice, and the second time counts: the caches are warm. Every setting must give the same picture. Prints a table in Markdown; the chart needs no other program.
+A ray of a mesh in random order visits nearly every brick, so the pictures are small. The camera moves
+along a part of an orbit, twice, and the second time counts: the caches are warm. Every setting must
+give the same pictures. Prints a table in Markdown; the chart needs no other program.
 """
 import argparse
 import json
 import math
-import subprocess
 import sys
+
+from measuring import BENCH, run_bench
 
 ORDERS = (("sorted", "sorted in space", "#1a7f37"), ("original", "as in the file", "#0969da"),
           ("random", "random", "#cf222e"))
 
 
 def run(arguments):
-    command = ["mpirun", "--allow-run-as-root", "--oversubscribe", "--bind-to", "none",
-               "--mca", "mpi_yield_when_idle", "1", "-np", str(arguments.ranks), arguments.bench,
-               "mesh", "--mesh", arguments.mesh, "--subdivide", str(arguments.subdivide),
-               "--order", ",".join(name for name, _, _ in ORDERS),
-               "--cache-fraction", arguments.caches, "--size", arguments.size,
-               "--frames", str(arguments.frames), "--repeat", "2", "--threads", "1",
-               "--store", "object", "--json", "-"]
-    done = subprocess.run(command, stdout=subprocess.PIPE, timeout=arguments.timeout, check=False)
-    if done.returncode != 0:
-        sys.exit("dsm_bench failed; its message is above.")
-    return json.loads(done.stdout)
+    return run_bench(
+        arguments.bench, arguments.ranks, "mesh", mesh=arguments.mesh,
+        subdivide=arguments.subdivide, order=",".join(name for name, _, _ in ORDERS),
+        cache_fraction=arguments.caches, size=arguments.size, frames=arguments.frames,
+        arc=arguments.arc, repeat=2, threads=1, store="object")
 
 
 def read(result):
@@ -50,7 +46,8 @@ def read(result):
 def print_table(result, table):
     width, height = result["size"]
     print(f"{result['triangles']:,} triangles, {result['rank_count']} ranks, {width} x {height} "
-          f"pixels, {result['frames']} positions; all pictures are equal bit for bit.\n")
+          f"pixels, {result['frames']} positions along {result['arc']:g} degrees; all pictures are "
+          "equal bit for bit.\n")
     print("| cache | " + " | ".join(
         f"{title}: misses a frame | frames/s" for _, title, _ in ORDERS) + " |")
     print("|---" * (1 + 2 * len(ORDERS)) + "|")
@@ -120,16 +117,17 @@ def draw_chart(table, path):
 
 
 def main():
-    parser = argparse.ArgumentParser()
-    parser.add_argument("--bench", default="build/bin/dsm_bench")
+    parser = argparse.ArgumentParser(description=__doc__,
+                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--bench", default=BENCH)
     parser.add_argument("--mesh", default="")
     parser.add_argument("--from-json", default="", help="what --json wrote; nothing is run")
     parser.add_argument("--subdivide", type=int, default=2)
     parser.add_argument("--ranks", type=int, default=2)
     parser.add_argument("--caches", default="1,0.5,0.25,0.1,0.05")
-    parser.add_argument("--size", default="64x64")
-    parser.add_argument("--frames", type=int, default=2)
-    parser.add_argument("--timeout", type=float, default=3600.0, help="seconds")
+    parser.add_argument("--size", default="32x32")
+    parser.add_argument("--frames", type=int, default=4, help="camera positions")
+    parser.add_argument("--arc", type=float, default=40.0, help="degrees that the camera moves")
     parser.add_argument("--chart", default="")
     parser.add_argument("--json", default="")
     arguments = parser.parse_args()
@@ -147,4 +145,5 @@ def main():
         draw_chart(table, arguments.chart)
 
 
-main()
+if __name__ == "__main__":
+    main()

@@ -302,8 +302,8 @@ const PacketKernel& PacketKernel::GetBest()
 
 std::vector<PacketKernel> PacketKernel::GetAll()
 {
-  return CreateForAllTargets<PacketKernel>({ HWY_DYNAMIC_DISPATCH(CreateSingle)() },
-    [] { return HWY_DYNAMIC_DISPATCH(CreateWide)(); });
+  return CreateForAllTargets<PacketKernel>(
+    { HWY_DYNAMIC_DISPATCH(CreateSingle)() }, [] { return HWY_DYNAMIC_DISPATCH(CreateWide)(); });
 }
 
 } // namespace rt
