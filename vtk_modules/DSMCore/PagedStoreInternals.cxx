@@ -110,12 +110,18 @@ void PagedStore::Internals::Wait(Worker& worker, const Segment& segment, BlockId
   ++line.Waiters;
   worker.WaitsFor = &line;
   this->Messages.WakeUp();
-  WaitWithoutSlot(this->Current.Slots.get(), lock, worker.Woken,
-    [&] { return line.State == PageState::Cached || this->Phase != FramePhase::Open; });
-  worker.WaitsFor = nullptr;
-  --line.Waiters;
+  // The block may be evicted while the worker waits for a slot: who has the slots may wait for room, in a
+  // fault, and would keep them for ever. It is fetched again then, by the fault of who reads it.
+  WaitWithoutSlot(
+    this->Current.Slots.get(), lock, worker.Woken,
+    [&] { return line.State == PageState::Cached || this->Phase != FramePhase::Open; },
+    [&]
+    {
+      worker.WaitsFor = nullptr;
+      --line.Waiters;
+    });
   worker.Slow.WaitNanoseconds += NanosecondsSince(start);
-  if (line.State != PageState::Cached)
+  if (this->Phase != FramePhase::Open)
   {
     this->Refuse(segment);
   }

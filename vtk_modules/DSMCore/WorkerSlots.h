@@ -67,16 +67,18 @@ private:
 };
 
 /// A worker's wait for `ready`, which `lock` guards; without a slot meanwhile, where there are slots.
-/// Whether it is still ready when the worker is back is for the caller to see to.
-template <class Ready>
+/// `then` is called, with the lock, when it is ready; the wait for a slot comes after, and whether it is
+/// still ready when the worker is back is for the caller to see to.
+template <class Ready, class Then>
 void WaitWithoutSlot(WorkerSlots* slots, std::unique_lock<std::mutex>& lock,
-  std::condition_variable& woken, Ready ready)
+  std::condition_variable& woken, Ready ready, Then then)
 {
   if (slots)
   {
     slots->Give();
   }
   woken.wait(lock, ready);
+  then();
   if (slots)
   {
     lock.unlock(); // those that have the slots may need it to come to an end
