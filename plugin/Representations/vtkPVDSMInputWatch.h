@@ -5,8 +5,8 @@
 #include <memory>
 
 /// Whether the user has pressed a mouse button or a key that the application has not heard of yet,
-/// because it is busy: asks the X server, by a connection of its own. Without X11, nobody ever has. One
-/// thread.
+/// because it is busy: asks the X server, by a connection of its own. What is typed or pressed in another
+/// application does not count. Without X11, nobody ever has. One thread.
 class vtkPVDSMInputWatch
 {
 public:

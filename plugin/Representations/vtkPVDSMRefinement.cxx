@@ -22,6 +22,7 @@
 #include "vtkSMSessionProxyManager.h"
 #include "vtkSMTrace.h"
 
+#include <iterator>
 #include <map>
 #include <string>
 
@@ -111,6 +112,12 @@ vtkPVDSMRefinement::~vtkPVDSMRefinement()
     }
   }
   this->LeaveInteractor();
+  auto& registry = GetRegistry();
+  for (auto entry = registry.begin(); entry != registry.end();)
+  {
+    // A weak pointer to what is being destroyed may be null already.
+    entry = !entry->second || entry->second == this ? registry.erase(entry) : std::next(entry);
+  }
 }
 
 vtkSmartPointer<vtkPVDSMRefinement> vtkPVDSMRefinement::Follow(vtkPVRenderView* view)
