@@ -131,7 +131,7 @@ public:
     this->Intersect(bricks, packets, rays, wanted, paths);
     Path* met[MaxPaths];
     const int count = List(wanted, packets, paths, met);
-    std::vector<PixelSample> samples(count);
+    PixelSample samples[MaxPaths];
     for (int number = 0; number < count; ++number)
     {
       const std::ptrdiff_t index = met[number] - paths;

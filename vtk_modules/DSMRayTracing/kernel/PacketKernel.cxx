@@ -122,7 +122,7 @@ public:
 
 private:
   /// Those of `rays` that meet the surface in a brick; how is stored where `crossings` is not null.
-  static RayPacket::Mask SearchParts(const RayPacket& packet, RayPacket::Mask rays,
+  static HWY_INLINE RayPacket::Mask SearchParts(const RayPacket& packet, RayPacket::Mask rays,
     const PacketBrick& brick, const double origin[3], const double* enter, const double* leave,
     PacketCrossings* crossings)
   {
@@ -204,7 +204,7 @@ private:
   }
 
   /// The 4 x 4 x 4 macrocells of a part of the brick; `whole`: that is all of it.
-  static RayPacket::Mask SearchPart(const RayPacket& packet, RayPacket::Mask rays,
+  static HWY_INLINE RayPacket::Mask SearchPart(const RayPacket& packet, RayPacket::Mask rays,
     const PacketBrick& brick, const double origin[3], const double* enter, const double* leave,
     const int part[3], bool whole, PacketCrossings* crossings)
   {

@@ -210,7 +210,8 @@ public:
 
   /// Searches the macrocells of a part of the brick whose bits are set in `macrocells`. `rays` cross
   /// them from `enter` to `leave`. Returns those that meet the surface, having stored how.
-  Mask Search(const int part[3], std::uint64_t macrocells, Mask rays, Vector enter, Vector leave)
+  HWY_INLINE Mask Search(
+    const int part[3], std::uint64_t macrocells, Mask rays, Vector enter, Vector leave)
   {
     const D tag = this->Tag;
     Vector lower[3];
@@ -243,7 +244,7 @@ private:
   static constexpr int Width = static_cast<int>(hn::MaxLanes(D()));
 
   /// The macrocells in which `rays` are, from `enter` to `leave`.
-  Mask SearchMacrocells(
+  HWY_INLINE Mask SearchMacrocells(
     const int part[3], const NodeWalks<D>& macrocells, Mask rays, Vector enter, Vector leave)
   {
     const D tag = this->Tag;
@@ -292,7 +293,7 @@ private:
 
   /// Those of `rays` that meet the surface in the cells in which they are, from `enter` to `exit`.
   /// `places`: the first cells of their macrocells.
-  Mask SearchCells(
+  HWY_INLINE Mask SearchCells(
     const int places[][3], const NodeWalks<D>& cells, Mask rays, Vector enter, Vector exit)
   {
     const D tag = this->Tag;
