@@ -87,10 +87,9 @@ const std::byte* ObjectStore::Internals::Wait(Worker& worker, const Segment& seg
   worker.WaitsFor = &line;
   worker.Epoch.store(Worker::Offline, std::memory_order_release);
   this->Messages.WakeUp();
-  WaitWithoutSlot(
-    this->Current.Slots.get(), lock, worker.Woken,
-    [&] { return line.Address.load(std::memory_order_relaxed) || this->Phase != FramePhase::Open; },
-    [] {});
+  WaitWithoutSlot(this->Current.Slots.get(), lock, worker.Woken,
+    [&]
+    { return line.Address.load(std::memory_order_relaxed) || this->Phase != FramePhase::Open; });
   // Online again before the waiter is taken off: from then on the block may be evicted, but its
   // memory waits for this worker.
   worker.Epoch.store(this->Store.Epoch.load(std::memory_order_relaxed), std::memory_order_release);

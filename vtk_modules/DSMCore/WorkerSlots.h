@@ -69,9 +69,10 @@ private:
 /// A worker's wait for `ready`, which `lock` guards; without a slot meanwhile, where there are slots.
 /// `then` is called, with the lock, when it is ready; the wait for a slot comes after, and whether it is
 /// still ready when the worker is back is for the caller to see to.
-template <class Ready, class Then>
-void WaitWithoutSlot(WorkerSlots* slots, std::unique_lock<std::mutex>& lock,
-  std::condition_variable& woken, Ready ready, Then then)
+template <class Ready, class Then = void (*)()>
+void WaitWithoutSlot(
+  WorkerSlots* slots, std::unique_lock<std::mutex>& lock, std::condition_variable& woken,
+  Ready ready, Then then = [] {})
 {
   if (slots)
   {
