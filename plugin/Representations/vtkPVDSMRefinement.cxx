@@ -74,8 +74,13 @@ vtkSMProxy* FindReport(vtkSMProxy* representation)
 {
   const auto helper = [=](const char* name)
   { return vtkSMPropertyHelper(representation, name, /*quiet=*/true); };
-  if (!representation || helper("Visibility").GetAsInt() == 0 ||
-    std::string(helper("Representation").GetAsString()) != "DSM Ray Traced")
+  if (!representation || helper("Visibility").GetAsInt() == 0)
+  {
+    return nullptr;
+  }
+  // Not every representation has a choice of what it shows (scalar bars have none).
+  const char* shown = helper("Representation").GetAsString();
+  if (!shown || std::string(shown) != "DSM Ray Traced")
   {
     return nullptr;
   }
