@@ -44,8 +44,8 @@ template <int Axis>
 class TriangleFilter
 {
 public:
-  /// The triangles `first` and on; reads four whatever their number.
-  TriangleFilter(const TriangleBrick& brick, std::uint32_t first)
+  /// The triangles `first` and on; reads four whatever their number. Called, it costs packets 6 %.
+  [[gnu::always_inline]] TriangleFilter(const TriangleBrick& brick, std::uint32_t first)
   {
     const TriangleBrickVertex* vertices = brick.GetVertices();
     const std::uint16_t* corners = brick.GetTriangle(first);
