@@ -9,15 +9,6 @@ view = create_view()
 view.UseFXAA = 0
 
 
-def show_traced(source, **properties):
-    display = simple.Show(source, view)
-    display.Representation = REPRESENTATION
-    display.ColorArrayName = [None, ""]
-    for name, value in properties.items():
-        setattr(display, name, value)
-    return display
-
-
 def render_and_listen():
     """The picture, and what was said about it; that must not be said again for the next one."""
     with Messages() as messages:
@@ -31,10 +22,10 @@ def render_and_listen():
 
 # A small surface that stays in the view all the while, on the left of what comes.
 companion = simple.Sphere(Center=[-1.5, 0, 0], ThetaResolution=32, PhiResolution=24)
-small = show_traced(companion, DSMMemory=64)
+small = show_traced(companion, view, DSMMemory=64)
 # 290,000 triangles, on each of 4 ranks more than a MiB.
 large = simple.Sphere(Center=[1.5, 0, 0], ThetaResolution=480, PhiResolution=300)
-display = show_traced(large, DSMMemory=64, DSMMemoryOrganization="Object based")
+display = show_traced(large, view, DSMMemory=64, DSMMemoryOrganization="Object based")
 place_camera(view, (0, 0, 1))
 with Messages():
     both = render(view)
@@ -82,7 +73,7 @@ simple.Delete(large)
 ball = simple.Sphere(Center=[1.5, 0, 0], ThetaResolution=480, PhiResolution=301)
 colored = simple.ProgrammableFilter(Input=ball, Script=ARRAYS)
 with Messages() as messages:
-    display = show_traced(colored, DSMMemory=64)
+    display = show_traced(colored, view, DSMMemory=64)
     solid = render(view)
 check(get_covered(solid)[:, middle:].any(), "without a colour array it is drawn")
 for array, words in (("short", ["'short' has 7 values", "shown without them"]),

@@ -12,15 +12,6 @@ view = create_view()
 view.UseFXAA = 0  # it would blur each picture in its own way
 
 
-def show_traced(source, **properties):
-    display = simple.Show(source, view)
-    display.Representation = REPRESENTATION
-    display.ColorArrayName = [None, ""]
-    for name, value in properties.items():
-        setattr(display, name, value)
-    return display
-
-
 def color_by(display, association, array, *component):
     simple.ColorBy(display, (association, array) + component)
     display.RescaleTransferFunctionToDataRange(False, True)
@@ -30,7 +21,7 @@ def color_by(display, association, array, *component):
 def compare(name, source, prepare=None, share=0.005, shading=3.0, position=(0.6, 0.5, 1.0),
             reference="Surface"):
     """Draws a source as we do and as a Surface; `prepare(display)` sets it up. Deletes it."""
-    display = show_traced(source)
+    display = show_traced(source, view)
     if prepare:
         prepare(display)
     place_camera(view, position)
@@ -192,7 +183,7 @@ output.SetLines(lines)
 output.SetVerts(vertices)
 """
 source = simple.ProgrammableSource(OutputDataSetType="vtkPolyData", Script=LINES_AND_POINTS)
-display = show_traced(source, DSMLineRadius=0.1, DSMPointRadius=-1.0)
+display = show_traced(source, view, DSMLineRadius=0.1, DSMPointRadius=-1.0)
 place_camera(view, (0.0, 0.0, 1.0))
 tubes = get_covered(render(view, "Tubes")).mean()
 display.DSMLineRadius = 0.0
@@ -210,7 +201,7 @@ simple.Delete(source)
 image = simple.Wavelet(WholeExtent=[-8, 8] * 3)
 isosurface = show(image, view, [157.0], "RTData", DiffuseColor=[0.3, 0.6, 1.0])
 ball = show_traced(simple.Sphere(Radius=5.0, Center=[3, 2, 4], ThetaResolution=64,
-                                 PhiResolution=48), DiffuseColor=[1.0, 0.5, 0.2])
+                                 PhiResolution=48), view, DiffuseColor=[1.0, 0.5, 0.2])
 box = simple.Show(simple.Box(XLength=9.0, YLength=3.0, ZLength=9.0), view)
 place_camera(view)
 together = render(view, "Together")
@@ -229,7 +220,7 @@ simple.Delete(box.Input)
 
 # What changes is followed.
 source = simple.Sphere(ThetaResolution=64, PhiResolution=48)
-display = show_traced(source)
+display = show_traced(source, view)
 place_camera(view)
 before = get_covered(render(view)).sum()
 source.Radius = 0.25
@@ -257,7 +248,7 @@ if controller.GetLocalProcessId() == controller.GetNumberOfProcesses() - 1:
 """
 empty = simple.ProgrammableSource(OutputDataSetType="vtkPolyData", Script=NOTHING)
 with Messages() as messages:
-    show_traced(empty)
+    show_traced(empty, view)
     pixels = render(view)
     text = messages.text
 check(not get_covered(pixels).any(), "an empty mesh is an empty picture")
@@ -266,7 +257,7 @@ simple.Delete(empty)
 
 one = simple.ProgrammableSource(OutputDataSetType="vtkPolyData", Script=ONLY_ONE_RANK)
 with Messages() as messages:
-    display = show_traced(one)
+    display = show_traced(one, view)
     place_camera(view)
     simple.Render(view)
     text = messages.text

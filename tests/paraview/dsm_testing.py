@@ -35,16 +35,19 @@ def create_view(width=300, height=240):
     return view
 
 
-def show(source, view, isovalues, array=None, **properties):
+def show_traced(source, view, **properties):
+    """A dataset of any kind, as its surface, in its own colour."""
     display = simple.Show(source, view)
     display.Representation = REPRESENTATION
-    if array:
-        display.DSMIsoArray = ["POINTS", array]
-    display.DSMIsoValues = isovalues
     display.ColorArrayName = [None, ""]
     for name, value in properties.items():
         setattr(display, name, value)
     return display
+
+
+def show(source, view, isovalues, array=None, **properties):
+    chosen = {"DSMIsoArray": ["POINTS", array]} if array else {}
+    return show_traced(source, view, **chosen, DSMIsoValues=isovalues, **properties)
 
 
 def show_surface(source, view):
