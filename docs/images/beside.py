@@ -7,9 +7,9 @@ import sys
 
 import numpy
 from paraview import simple
-from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
-from vtkmodules.vtkCommonDataModel import vtkImageData
-from vtkmodules.vtkIOImage import vtkPNGWriter
+
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+from pictures import draw, write
 
 PLUGIN, FOLDER = sys.argv[1:]
 
@@ -35,13 +35,6 @@ def show(source, color):
     return display
 
 
-def draw():
-    simple.Render(view)
-    image = view.SMProxy.CaptureWindow(1)
-    width, height, _ = image.GetDimensions()
-    return vtk_to_numpy(image.GetPointData().GetScalars()).reshape(height, width, -1)[:, :, :3]
-
-
 solid = show(cone, [0.85, 0.35, 0.2])
 surface = show(contour, [0.9, 0.87, 0.8])
 surface.Representation = solid.Representation = "Surface"
@@ -50,7 +43,7 @@ camera = view.GetActiveCamera()
 camera.Azimuth(-25.0)
 camera.Elevation(20.0)
 camera.Dolly(1.45)
-pictures = [draw()]
+beside = [draw(view)]
 
 simple.Hide(contour, view)
 traced = show(volume, [0.9, 0.87, 0.8])
@@ -61,14 +54,6 @@ traced.DSMShadows = 1
 traced.DSMLightRadius = 0.05
 traced.DSMAmbientOcclusionSamples = 1
 traced.DSMSamplesPerPixel = 64
-pictures.append(draw())
+beside.append(draw(view))
 
-pixels = numpy.hstack(pictures)
-height, width, _ = pixels.shape
-image = vtkImageData()
-image.SetDimensions(width, height, 1)
-image.GetPointData().SetScalars(numpy_to_vtk(numpy.ascontiguousarray(pixels).reshape(-1, 3), deep=True))
-writer = vtkPNGWriter()
-writer.SetFileName(os.path.join(FOLDER, "beside.png"))
-writer.SetInputData(image)
-writer.Write()
+write(os.path.join(FOLDER, "beside.png"), numpy.hstack(beside))

@@ -7,9 +7,9 @@ import sys
 
 import numpy
 from paraview import simple
-from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
-from vtkmodules.vtkCommonDataModel import vtkImageData
-from vtkmodules.vtkIOImage import vtkPNGWriter
+
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+from pictures import draw, write
 
 PLUGIN, FOLDER = sys.argv[1:]
 VIEWS = ("Owner of the data", "Rank that traced", "Brick", "Tile time",
@@ -31,39 +31,21 @@ view.GetActiveCamera().Dolly(1.55)
 camera = view.GetActiveCamera()
 
 
-def draw():
-    simple.Render(view)
-    image = view.SMProxy.CaptureWindow(1)
-    width, height, _ = image.GetDimensions()
-    return vtk_to_numpy(image.GetPointData().GetScalars()).reshape(height, width, -1)[:, :, :3]
-
-
-def write(name, pixels):
-    height, width, _ = pixels.shape
-    image = vtkImageData()
-    image.SetDimensions(width, height, 1)
-    scalars = numpy_to_vtk(numpy.ascontiguousarray(pixels).reshape(-1, 3), deep=True)
-    image.GetPointData().SetScalars(scalars)
-    writer = vtkPNGWriter()
-    writer.SetFileName(os.path.join(FOLDER, name))
-    writer.SetInputData(image)
-    writer.Write()
-
-
 def draw_moved(scheduler, mode):
     """The last of some frames with a camera that moves."""
     display.DSMScheduler = scheduler
     display.DSMDebugView = mode
     for _ in range(4):
         camera.Azimuth(4.0)
-        pixels = draw()
+        pixels = draw(view)
     camera.Azimuth(-16.0)
     return pixels
 
 
 sheet = [draw_moved("Work stealing", mode) for mode in VIEWS]
 # The first row of pixels is the lowest one.
-write("debug_views.png", numpy.vstack([numpy.hstack(sheet[4:]), numpy.hstack(sheet[:4])]))
+write(os.path.join(FOLDER, "debug_views.png"),
+      numpy.vstack([numpy.hstack(sheet[4:]), numpy.hstack(sheet[:4])]))
 display.DSMCacheSize = 0
-write("handed_tiles.png", numpy.hstack(
+write(os.path.join(FOLDER, "handed_tiles.png"), numpy.hstack(
     [draw_moved(scheduler, "Tiles that changed hands") for scheduler in ("Work stealing", "Central queue")]))
