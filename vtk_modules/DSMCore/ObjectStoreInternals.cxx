@@ -322,7 +322,7 @@ void ObjectStore::Internals::AbandonWanted()
 std::vector<WorkerCounters> ObjectStore::Internals::GetWorkerCounters()
 {
   const std::lock_guard<std::mutex> lock(this->Guard);
-  return this->Workers.GetCounters();
+  return this->Workers.GetCounters(this->IsInFrame());
 }
 
 std::uint64_t ObjectStore::Internals::GetMisses(const Worker& worker) const

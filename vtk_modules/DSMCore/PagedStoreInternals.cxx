@@ -527,7 +527,7 @@ void PagedStore::Internals::EndFrame()
 std::vector<WorkerCounters> PagedStore::Internals::GetWorkerCounters()
 {
   const std::lock_guard<std::mutex> lock(this->Guard);
-  return this->Workers.GetCounters();
+  return this->Workers.GetCounters(this->IsInFrame());
 }
 
 std::uint64_t PagedStore::Internals::GetMisses(const Worker& worker) const

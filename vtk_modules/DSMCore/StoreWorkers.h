@@ -60,20 +60,15 @@ public:
       worker->Slow = WorkerCounters{};
       worker->Accesses.store(0, std::memory_order_relaxed);
     }
-    this->IsInFrame = true;
   }
 
   /// Workers may come and go afterwards: the counters are those of the frame.
-  void EndFrame()
-  {
-    this->Last = this->Count();
-    this->IsInFrame = false;
-  }
+  void EndFrame() { this->Last = this->Count(); }
 
   /// Of the frame, or of the last one.
-  std::vector<WorkerCounters> GetCounters() const
+  std::vector<WorkerCounters> GetCounters(bool isInFrame) const
   {
-    return this->IsInFrame ? this->Count() : this->Last;
+    return isInFrame ? this->Count() : this->Last;
   }
 
   void WakeAll() const
@@ -114,7 +109,6 @@ private:
 
   std::vector<std::unique_ptr<Worker>> Workers;
   std::vector<WorkerCounters> Last;
-  bool IsInFrame = false;
 };
 
 } // namespace dsm
