@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The main job on a cluster (see run_cluster.py): every memory organisation draws bit for bit what one
-rank draws. Prints frames/s as ratios to replication, which needs no messages for bricks.
+rank draws. Prints frames/s as ratios to replication, which needs no messages for bricks. The frames
+are those of a session, whose counts begin with empty caches: in a second round every brick that a rank
+needs may be there already.
 
     TestIsosurface.py DSM_BENCH RANKS"""
 
@@ -13,7 +15,8 @@ import tempfile
 BENCH, RANKS = sys.argv[1], sys.argv[2]
 FOLDER = os.path.dirname(os.path.abspath(__file__))
 JOB = ["isosurface", "--volume", "sphere:160:float", "--isovalue", "0.5", "--size", "320x240",
-       "--frames", "6", "--repeat", "2", "--threads", "1", "--cache-fraction", "0.16"]
+       "--session", os.path.join(FOLDER, "..", "benchmarks", "session.txt"), "--threads", "1",
+       "--cache-fraction", "0.16"]
 
 
 def run(store, cluster):
