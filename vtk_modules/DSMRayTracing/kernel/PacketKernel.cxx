@@ -9,6 +9,7 @@
 #include "DSMRayTracing/kernel/PacketKernel.h"
 
 #include "DSMRayTracing/brick/VoxelBrickHeader.h"
+#include "DSMRayTracing/kernel/MacrocellComparison-inl.h"
 #include "DSMRayTracing/kernel/PacketWalk-inl.h"
 
 #include <hwy/highway.h>
@@ -278,20 +279,21 @@ private:
 };
 
 template <class D>
-PacketKernel Create(const char* name)
+PacketKernel Create(const char* name, const MacrocellKernel& macrocells)
 {
   return { name, PacketSteps<D>::Width, &PacketSteps<D>::SetRays, &PacketSteps<D>::MeetBox,
-    &PacketSteps<D>::SearchBrick, &PacketSteps<D>::FindOccluded };
+    &PacketSteps<D>::SearchBrick, &PacketSteps<D>::FindOccluded, macrocells };
 }
 
 PacketKernel CreateWide()
 {
-  return Create<hn::CappedTag<double, 8>>(hwy::TargetName(HWY_TARGET));
+  return Create<hn::CappedTag<double, 8>>(
+    hwy::TargetName(HWY_TARGET), CreateMacrocellKernel<8>());
 }
 
 PacketKernel CreateSingle()
 {
-  return Create<hn::CappedTag<double, 1>>("one ray at a time");
+  return Create<hn::CappedTag<double, 1>>("one ray at a time", CreateMacrocellKernel<1>());
 }
 
 } // namespace HWY_NAMESPACE

@@ -4,6 +4,7 @@
 
 #include "DSMRayTracing/brick/Box.h"
 #include "DSMRayTracing/kernel/IndexSpace.h"
+#include "DSMRayTracing/kernel/MacrocellKernel.h"
 #include "DSMRayTracing/kernel/PacketBrick.h"
 #include "DSMRayTracing/kernel/Ray.h"
 #include "DSMRayTracing/kernel/RayPacket.h"
@@ -42,6 +43,9 @@ struct PacketKernel
   /// Those of `rays` for which SearchBrick finds a hit, without the hits.
   RayPacket::Mask (*FindOccluded)(const RayPacket& packet, RayPacket::Mask rays,
     const PacketBrick& brick, const double origin[3], const double* enter, const double* leave);
+
+  /// For TypedPacketBrick.
+  MacrocellKernel Macrocells;
 
   /// The fastest that this processor can run.
   static const PacketKernel& GetBest();

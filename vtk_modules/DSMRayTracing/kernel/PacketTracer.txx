@@ -148,7 +148,7 @@ void PacketTracer<Store>::SearchBrick(const IsosurfaceObject& object,
       continue;
     }
     const IsovalueLevel<T> level(object.Isovalues[isovalue]);
-    TypedPacketBrick<T> surface(voxels, level);
+    TypedPacketBrick<T> surface(voxels, level, this->Kernel.Macrocells.Get<T>());
     for (int number = 0; number < packets; ++number)
     {
       Progress& packet = progress[number];
@@ -292,7 +292,7 @@ void PacketTracer<Store>::FindOccludedInBrick(const IsosurfaceObject& object,
       continue;
     }
     const IsovalueLevel<T> level(isovalue);
-    const TypedPacketBrick<T> surface(voxels, level);
+    const TypedPacketBrick<T> surface(voxels, level, this->Kernel.Macrocells.Get<T>());
     for (int number = 0; number < packets; ++number)
     {
       Progress& packet = progress[number];

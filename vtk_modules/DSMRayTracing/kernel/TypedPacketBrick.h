@@ -5,11 +5,12 @@
 #include "DSMRayTracing/brick/VoxelBrick.h"
 #include "DSMRayTracing/kernel/IsovalueLevel.h"
 #include "DSMRayTracing/kernel/Lanes.h"
+#include "DSMRayTracing/kernel/MacrocellKernel.h"
 #include "DSMRayTracing/kernel/PacketBrick.h"
 
 #include <algorithm>
+#include <cstddef>
 #include <cstdint>
-#include <cstring>
 #include <type_traits>
 
 namespace rt
@@ -21,18 +22,12 @@ template <class T>
 class TypedPacketBrick final : public PacketBrick
 {
 public:
-  TypedPacketBrick(const VoxelBrick<T>& brick, const IsovalueLevel<T>& level)
+  TypedPacketBrick(const VoxelBrick<T>& brick, const IsovalueLevel<T>& level,
+    const MacrocellComparison<T>& comparison)
     : Brick(brick)
     , Level(level)
+    , Comparison(comparison)
   {
-    for (Memory& memory : this->Parts)
-    {
-      memory.Key = Unknown;
-    }
-    for (Memory& memory : this->Macrocells)
-    {
-      memory.Key = Unknown;
-    }
   }
 
   int GetMacrocells(int axis) const override { return this->Brick.GetMacrocells(axis); }
@@ -40,7 +35,7 @@ public:
   std::uint64_t FindMacrocells(const int part[3]) const override
   {
     const int number = part[0] + MostParts * (part[1] + MostParts * part[2]);
-    return this->Parts[number % PartCount].Get(number, [&] { return this->ComparePart(part); });
+    return this->Parts.Get(number, [&] { return this->ComparePart(part); });
   }
 
   void FindCells(const int part[3], unsigned rays, const std::uint64_t* macrocells, int (*first)[3],
@@ -67,8 +62,8 @@ public:
       }
       const int key = place[0] +
         this->Brick.GetMacrocells(0) * (place[1] + this->Brick.GetMacrocells(1) * place[2]);
-      cells[ray] = this->Macrocells[key % MacrocellCount].Get(
-        key, [&] { return this->CompareCells(first[ray]); });
+      cells[ray] =
+        this->Macrocells.Get(key, [&] { return this->CompareCells(first[ray]); });
     }
   }
 
@@ -91,10 +86,6 @@ public:
   }
 
 private:
-  // The attribute of a dependent type is only taken from a typedef.
-  typedef T Four __attribute__((vector_size(4 * sizeof(T))));
-  using Bits = std::int32_t __attribute__((vector_size(16)));
-
   /// Bits from one row of samples to the next within a word.
   static constexpr int RowBits = 6;
 
@@ -102,24 +93,31 @@ private:
   static constexpr int MostParts = 16;
   static constexpr int PartCount = 4;
   static constexpr int MacrocellCount = 128;
-  static constexpr int Unknown = -1;
 
-  /// What was found for one of several keys, the last one asked for.
-  struct Memory
+  /// What was found for the last asked for of the keys that share a place.
+  template <int Count>
+  class Memory
   {
-    int Key;
-    std::uint64_t Found;
-
+  public:
     template <class Function>
     std::uint64_t Get(int key, Function&& find)
     {
-      if (this->Key != key)
+      const int place = key % Count;
+      std::uint64_t& known = this->Known[place / 64];
+      const std::uint64_t bit = std::uint64_t{ 1 } << place % 64;
+      if ((known & bit) == 0 || this->Keys[place] != key)
       {
-        this->Key = key;
-        this->Found = find();
+        known |= bit;
+        this->Keys[place] = key;
+        this->Found[place] = find();
       }
-      return this->Found;
+      return this->Found[place];
     }
+
+  private:
+    std::uint64_t Known[(Count + 63) / 64] = {}; ///< bits: whether the others mean anything
+    int Keys[Count];
+    std::uint64_t Found[Count];
   };
 
   std::uint64_t ComparePart(const int part[3]) const
@@ -129,6 +127,15 @@ private:
     for (int axis = 0; axis < 3; ++axis)
     {
       last[axis] = std::min(4, this->Brick.GetMacrocells(axis) - 4 * part[axis]);
+    }
+    if (last[0] == 4 && last[1] == 4 && last[2] == 4)
+    {
+      const std::ptrdiff_t row = this->Brick.GetMacrocells(0);
+      const std::ptrdiff_t slice = row * this->Brick.GetMacrocells(1);
+      return this->Level.IsReachable()
+        ? this->Comparison.FindMacrocells(ranges + 4 * (part[0] + row * part[1] + slice * part[2]),
+            row, slice, this->Level.GetFirst())
+        : 0;
     }
     std::uint64_t found = 0;
     for (int z = 0; z < last[2]; ++z)
@@ -176,22 +183,28 @@ private:
     {
       counts[axis] = std::min(MacrocellEdge, this->Brick.GetCells(axis) - first[axis]);
     }
-    const bool whole = counts[0] == MacrocellEdge && counts[1] == MacrocellEdge;
+    const int row = this->Brick.GetRow();
+    if (*std::min_element(counts, counts + 3) == MacrocellEdge &&
+      row >= MacrocellComparison<T>::RowSamples)
+    {
+      return this->Comparison.FindCells(
+        this->Brick.GetSamples() + this->Brick.GetOffset(0, first[1], first[2]), first[0], row,
+        this->Brick.GetSlice(), this->Level.GetFirst());
+    }
     std::uint64_t cells = 0;
-    Slice last = whole ? this->GetWholeSlice(first, 0) : this->GetSlice(first, counts, 0);
+    Slice last = this->GetSlice(first, counts, 0);
     for (int z = 0; z < counts[2]; ++z)
     {
-      const Slice next =
-        whole ? this->GetWholeSlice(first, z + 1) : this->GetSlice(first, counts, z + 1);
+      const Slice next = this->GetSlice(first, counts, z + 1);
       const std::uint32_t mixed = (last.Any | next.Any) & ~(last.All & next.All);
       for (int y = 0; y < MacrocellEdge; ++y)
       {
-        const std::uint64_t row = mixed >> (RowBits * y) & 15u;
-        cells |= row << (4 * y + 16 * z);
+        const std::uint64_t bits = mixed >> (RowBits * y) & 15u;
+        cells |= bits << (4 * y + 16 * z);
       }
       last = next;
     }
-    return whole ? cells : cells & GetBox(counts);
+    return cells & GetBox(counts);
   }
 
   /// Of the cells that have the samples of a slice as corners: whether some of those are inside,
@@ -207,29 +220,6 @@ private:
     const std::uint32_t any = inside | inside >> 1;
     const std::uint32_t all = inside & inside >> 1;
     return { any | any >> RowBits, all & all >> RowBits };
-  }
-
-  /// 5 x 5 samples, four of a row at once.
-  Slice GetWholeSlice(const int first[3], int z) const
-  {
-    const T* row =
-      this->Brick.GetSamples() + this->Brick.GetOffset(first[0], first[1], first[2] + z);
-    const T level = this->Level.GetFirst();
-    const Four levels = Four{} + level;
-    Bits bits = { 1, 2, 4, 8 };
-    Bits inside = {};
-    std::uint32_t lastColumn = 0;
-    for (int y = 0; y <= MacrocellEdge; ++y, row += this->Brick.GetRow())
-    {
-      Four samples;
-      std::memcpy(&samples, row, sizeof(samples));
-      const auto isInside = samples >= levels;
-      inside |= bits & __builtin_convertvector(isInside, Bits);
-      bits <<= RowBits;
-      lastColumn |= std::uint32_t{ row[MacrocellEdge] >= level } << (MacrocellEdge + RowBits * y);
-    }
-    return GetSlice(
-      static_cast<std::uint32_t>(inside[0] | inside[1] | inside[2] | inside[3]) | lastColumn);
   }
 
   /// At the end of the brick, where there are fewer samples.
@@ -264,8 +254,9 @@ private:
 
   const VoxelBrick<T>& Brick;
   const IsovalueLevel<T>& Level;
-  mutable Memory Parts[PartCount];
-  mutable Memory Macrocells[MacrocellCount];
+  const MacrocellComparison<T>& Comparison;
+  mutable Memory<PartCount> Parts;
+  mutable Memory<MacrocellCount> Macrocells;
 };
 
 } // namespace rt
