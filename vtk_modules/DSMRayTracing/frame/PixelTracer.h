@@ -3,6 +3,7 @@
 #define rt_PixelTracer_h
 
 #include "DSMRayTracing/frame/EdgeCover.h"
+#include "DSMRayTracing/frame/FixedList.h"
 #include "DSMRayTracing/frame/LightTracer.h"
 #include "DSMRayTracing/frame/PixelRays.h"
 #include "DSMRayTracing/frame/SampleSequence.h"
@@ -75,7 +76,7 @@ public:
     Path path;
     path.Random = SampleSequence(x, y, sample);
     path.Layers = &result;
-    const Ray ray = this->Rays.GetRay(x, y, path.Random.GetPositionInPixel());
+    const Ray ray = this->Rays.GetRay(x, y, SampleSequence::GetPositionInPixel(sample));
     this->Follow(ray, this->World.Transport.MaxBounces, this->Rays.GetWorldToPixels(), path);
     result.Color = path.Color;
     result.LightRays = path.LightRays;
@@ -103,45 +104,48 @@ public:
   void TraceBox(const std::vector<BeamBricks>& bricks, int x, int y, int width, int height,
     int sample, Take&& take) const
   {
-    constexpr int most = PacketTracer<Store>::MaxPackets;
-    Ray rays[MaxPaths];
-    Path paths[MaxPaths];
-    RayPacket::Mask wanted[most] = {};
-    int packets = 0;
-    for (int top = 0; top < height; top += BlockEdge)
+    const int columns = (width + BlockEdge - 1) / BlockEdge;
+    const int packets = columns * ((height + BlockEdge - 1) / BlockEdge);
+    const auto getPlace = [columns](int index)
     {
-      for (int left = 0; left < width; left += BlockEdge, ++packets)
+      const int packet = index / RayPacket::Size;
+      const int lane = index % RayPacket::Size;
+      return BlockEdge * glm::ivec2(packet % columns, packet / columns) +
+        glm::ivec2(lane % BlockEdge, lane / BlockEdge);
+    };
+    const glm::dvec2 position = SampleSequence::GetPositionInPixel(sample);
+    Ray rays[MaxPaths];
+    RayPacket::Mask wanted[PacketTracer<Store>::MaxPackets] = {};
+    for (int index = 0; index < RayPacket::Size * packets; ++index)
+    {
+      const glm::ivec2 place = getPlace(index);
+      if (place.x < width && place.y < height)
       {
-        for (int lane = 0; lane < RayPacket::Size; ++lane)
-        {
-          const glm::ivec2 place(left + lane % BlockEdge, top + lane / BlockEdge);
-          if (place.x < width && place.y < height)
-          {
-            const int index = RayPacket::Size * packets + lane;
-            Path& path = paths[index];
-            path.Place = place + glm::ivec2(x, y);
-            path.Random = SampleSequence(path.Place.x, path.Place.y, sample);
-            rays[index] =
-              this->Rays.GetRay(path.Place.x, path.Place.y, path.Random.GetPositionInPixel());
-            wanted[packets] |= RayPacket::Mask{ 1 } << lane;
-          }
-        }
+        rays[index] = this->Rays.GetRay(x + place.x, y + place.y, position);
+        wanted[index / RayPacket::Size] |= RayPacket::Mask{ 1 } << index % RayPacket::Size;
       }
     }
-    this->Intersect(bricks, packets, rays, wanted, paths);
-    Path* met[MaxPaths];
-    const int count = List(wanted, packets, paths, met);
-    PixelSample samples[MaxPaths];
-    for (int number = 0; number < count; ++number)
+    FixedList<Path, MaxPaths> paths;
+    FixedList<PixelSample, MaxPaths> samples;
+    this->Surfaces.Intersect(bricks, packets, rays, wanted,
+      [&](int index) -> SurfacePoint&
+      {
+        Path& path = paths.Add();
+        path.Index = index;
+        return path.Point;
+      });
+    for (int number = 0; number < paths.GetCount(); ++number)
     {
-      const std::ptrdiff_t index = met[number] - paths;
-      met[number]->ToViewer = -glm::normalize(rays[index].Direction);
-      met[number]->Layers = &samples[number];
+      Path& path = paths[number];
+      path.Place = glm::ivec2(x, y) + getPlace(path.Index);
+      path.Random = SampleSequence(path.Place.x, path.Place.y, sample);
+      path.ToViewer = -glm::normalize(rays[path.Index].Direction);
+      path.Layers = &samples.Add();
     }
-    this->FollowAll(bricks, packets, rays, wanted, paths);
-    for (int number = 0; number < count; ++number)
+    this->FollowAll(bricks, packets, rays, paths);
+    for (int number = 0; number < paths.GetCount(); ++number)
     {
-      const Path& path = *met[number];
+      const Path& path = paths[number];
       path.Layers->Color = path.Color;
       path.Layers->LightRays = path.LightRays;
       take(path.Place.x, path.Place.y, *path.Layers);
@@ -170,6 +174,7 @@ private:
   /// A sample of a pixel on its way through the scene, and the surface that it has come to.
   struct Path
   {
+    int Index = 0; ///< of its ray in the box
     glm::ivec2 Place{ 0 };
     SurfacePoint Point;
     glm::dvec3 ToViewer{ 0.0 };
@@ -188,58 +193,46 @@ private:
     }
   };
 
-  /// Paths of `wanted`; returns how many.
-  static int List(const RayPacket::Mask* wanted, int packets, Path* paths, Path** list)
-  {
-    int count = 0;
-    for (int packet = 0; packet < packets; ++packet)
-    {
-      for (RayPacket::Mask left = wanted[packet]; left != 0; left &= left - 1)
-      {
-        list[count++] = &paths[RayPacket::Size * packet + GetLowest(left)];
-      }
-    }
-    return count;
-  }
-
-  /// Takes the paths that meet nothing out of `wanted`.
-  void Intersect(const std::vector<BeamBricks>& bricks, int packets, Ray* rays,
-    RayPacket::Mask* wanted, Path* paths) const
-  {
-    this->Surfaces.Intersect(bricks, packets, rays, wanted,
-      [paths](int index) -> SurfacePoint& { return paths[index].Point; });
-  }
-
-  /// Front to back, from where the paths of `wanted` are.
+  /// Front to back, from where the paths are.
   void FollowAll(const std::vector<BeamBricks>& bricks, int packets, Ray* rays,
-    RayPacket::Mask* wanted, Path* paths) const
+    FixedList<Path, MaxPaths>& paths) const
   {
     Path* list[MaxPaths];
-    for (int count = List(wanted, packets, paths, list); count > 0;
-         count = List(wanted, packets, paths, list))
+    Path* byRay[MaxPaths];
+    int count = 0;
+    for (; count < paths.GetCount(); ++count)
+    {
+      list[count] = &paths[count];
+      byRay[paths[count].Index] = &paths[count];
+    }
+    while (count > 0)
     {
       this->AddSurfaces(
         list, count, this->World.Transport.MaxBounces, this->Rays.GetWorldToPixels());
+      RayPacket::Mask wanted[PacketTracer<Store>::MaxPackets] = {};
       bool isAny = false;
       for (int number = 0; number < count; ++number)
       {
-        const auto index = static_cast<int>(list[number] - paths);
-        if (list[number]->GoesOn())
+        const Path& path = *list[number];
+        if (path.GoesOn())
         {
-          list[number]->Pass(rays[index]);
-          rays[index].Max = PixelRays::Last;
+          path.Pass(rays[path.Index]);
+          rays[path.Index].Max = PixelRays::Last;
+          wanted[path.Index / RayPacket::Size] |= RayPacket::Mask{ 1 }
+            << path.Index % RayPacket::Size;
           isAny = true;
         }
-        else
-        {
-          wanted[index / RayPacket::Size] &= ~(RayPacket::Mask{ 1 } << index % RayPacket::Size);
-        }
       }
-      if (!isAny)
+      count = 0;
+      if (isAny)
       {
-        return;
+        this->Surfaces.Intersect(bricks, packets, rays, wanted,
+          [&](int index) -> SurfacePoint&
+          {
+            list[count++] = byRay[index];
+            return byRay[index]->Point;
+          });
       }
-      this->Intersect(bricks, packets, rays, wanted, paths);
     }
   }
 
@@ -293,22 +286,21 @@ private:
       }
       return;
     }
-    std::vector<ShadingPoint> points(count);
+    if (!this->World.Transport.Shadows && this->World.Transport.AmbientOcclusionSamples <= 0)
+    {
+      for (int number = 0; number < count; ++number)
+      {
+        ShadingPoint point = this->GetShadingPoint(*paths[number], view);
+        this->LookAround(&paths[number], 1, &point);
+        colors[number] = this->ShadePoint(*paths[number], point, bounces, view,
+          [](const Light&) { return glm::dvec3(1.0); });
+      }
+      return;
+    }
+    std::vector<ShadingPoint> points;
     for (int number = 0; number < count; ++number)
     {
-      const SurfacePoint& point = paths[number]->Point;
-      ShadingPoint& shading = points[number];
-      shading.Position = point.Position;
-      shading.Normal = point.Facing;
-      shading.ToViewer = paths[number]->ToViewer;
-      shading.Color = glm::vec3(point.Color);
-      shading.ColorIsFromArray = point.ColorIsFromArray;
-      if (point.Edges)
-      {
-        shading.LineColor = point.Edges->Color;
-        shading.LineCover = point.Edges->Opacity *
-          GetEdgeCover(point.Position, point.Corners, point.EdgeFlags, point.Edges->Width, view);
-      }
+      points.push_back(this->GetShadingPoint(*paths[number], view));
     }
     this->LookAround(paths, count, points.data());
     const std::vector<Light>& lights = this->World.Lights;
@@ -324,14 +316,42 @@ private:
     }
     for (int number = 0; number < count; ++number)
     {
-      colors[number] = Shade(lights, *paths[number]->Point.Surface, points[number],
-        [&](const Light& light, const Incidence&)
+      colors[number] = this->ShadePoint(*paths[number], points[number], bounces, view,
+        [&](const Light& light)
         {
           return visibility.empty() ? glm::dvec3(1.0)
                                     : visibility[MaxPaths * (&light - lights.data()) + number];
         });
-      this->AddReflection(bounces, view, *paths[number], points[number], colors[number]);
     }
+  }
+
+  static ShadingPoint GetShadingPoint(const Path& path, const glm::dmat4x3& view)
+  {
+    const SurfacePoint& point = path.Point;
+    ShadingPoint shading;
+    shading.Position = point.Position;
+    shading.Normal = point.Facing;
+    shading.ToViewer = path.ToViewer;
+    shading.Color = glm::vec3(point.Color);
+    shading.ColorIsFromArray = point.ColorIsFromArray;
+    if (point.Edges)
+    {
+      shading.LineColor = point.Edges->Color;
+      shading.LineCover = point.Edges->Opacity *
+        GetEdgeCover(point.Position, point.Corners, point.EdgeFlags, point.Edges->Width, view);
+    }
+    return shading;
+  }
+
+  /// `visibility(light)`: how much of a light arrives.
+  template <class Visibility>
+  glm::vec3 ShadePoint(Path& path, const ShadingPoint& point, int bounces,
+    const glm::dmat4x3& view, const Visibility& visibility) const
+  {
+    glm::vec3 color = Shade(this->World.Lights, *path.Point.Surface, point,
+      [&](const Light& light, const Incidence&) { return visibility(light); });
+    this->AddReflection(bounces, view, path, point, color);
+    return color;
   }
 
   void AddReflection(int bounces, const glm::dmat4x3& view, Path& path, const ShadingPoint& shading,

@@ -22,14 +22,14 @@ public:
   {
   }
 
-  /// Where in the pixel the sample lies, each in [0, 1): the first one in the centre, the others on
+  /// Where in any pixel a sample lies, each in [0, 1): the first one in the centre, the others on
   /// the additive sequence of the plastic number (M. Roberts, 2018), which fills the pixel evenly.
-  glm::dvec2 GetPositionInPixel() const
+  static glm::dvec2 GetPositionInPixel(int sample)
   {
     constexpr double StepX = 0.7548776662466927;
     constexpr double StepY = 0.5698402909980532;
-    const double x = 0.5 + this->Sample * StepX;
-    const double y = 0.5 + this->Sample * StepY;
+    const double x = 0.5 + sample * StepX;
+    const double y = 0.5 + sample * StepY;
     return { x - std::floor(x), y - std::floor(y) };
   }
 

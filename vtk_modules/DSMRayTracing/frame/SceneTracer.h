@@ -94,11 +94,11 @@ public:
 
   /// Intersect for the rays of `wanted` in each packet of RayPacket::Size rays, at most
   /// PacketTracer::MaxPackets, with the same result. All lie within the beam that `bricks` was found
-  /// for. Takes those that meet nothing out of `wanted`; the others end there afterwards.
-  /// `getPoint(index)` gives where what a ray meets is stored.
+  /// for. `getPoint(index)` is called once for each ray that meets something, and gives where that is
+  /// stored; the ray ends there afterwards.
   template <class GetPoint>
   void Intersect(const std::vector<BeamBricks>& bricks, int packets, Ray* rays,
-    RayPacket::Mask* wanted, const GetPoint& getPoint) const
+    const RayPacket::Mask* wanted, const GetPoint& getPoint) const
   {
     constexpr int most = RayPacket::Size * PacketTracer<Store>::MaxPackets;
     SurfaceHit hits[most];
@@ -109,15 +109,18 @@ public:
     {
       const int first = RayPacket::Size * packet;
       const MeshObject* meshes[RayPacket::Size] = {};
-      this->FindMeshes(rays + first, wanted[packet], objects + first, meshes, meshHits);
+      if (!this->World.Meshes.empty())
+      {
+        this->FindMeshes(rays + first, wanted[packet], objects + first, meshes, meshHits);
+      }
       for (RayPacket::Mask left = wanted[packet]; left != 0; left &= left - 1)
       {
         const int lane = GetLowest(left);
         const int index = first + lane;
-        if (!this->Complete(rays[index], objects[index], hits[index], meshes[lane], meshHits[lane],
-              getPoint(index)))
+        if (objects[index] || meshes[lane])
         {
-          wanted[packet] &= ~(RayPacket::Mask{ 1 } << lane);
+          this->Complete(rays[index], objects[index], hits[index], meshes[lane], meshHits[lane],
+            getPoint(index));
         }
       }
     }
