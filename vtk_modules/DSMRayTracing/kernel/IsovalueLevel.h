@@ -55,6 +55,7 @@ public:
     }
   }
 
+  double GetIsovalue() const { return this->Isovalue; }
   /// The smallest sample that is inside. Nothing is when not IsReachable.
   T GetFirst() const { return this->First; }
   bool IsReachable() const { return this->Reachable; }

@@ -29,6 +29,16 @@ public:
   virtual unsigned GetCorners(unsigned rays, const int (*first)[3], const std::uint64_t* cells,
     double* corners, int stride) const = 0;
 
+  /// Samples that can be read without asking.
+  struct FloatSamples
+  {
+    const float* First = nullptr; ///< null: ask GetCorners
+    double Row = 0.0;             ///< samples to the next one on y, and on z
+    double Slice = 0.0;
+    double Isovalue = 0.0;
+  };
+  FloatSamples Floats;
+
 protected:
   ~PacketBrick() = default;
 };

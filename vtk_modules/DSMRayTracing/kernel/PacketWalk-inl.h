@@ -81,6 +81,17 @@ struct RayVector
   }
 };
 
+/// Whole numbers from 0 to 2^52.
+template <class Vector>
+auto ToNumbers(Vector whole)
+{
+  const hn::DFromV<Vector> tag;
+  const hn::RebindToUnsigned<decltype(tag)> numbers;
+  // Added to this, they stand in the lowest bits.
+  const Vector large = hn::Set(tag, 4503599627370496.0);
+  return hn::Sub(hn::BitCast(numbers, hn::Add(large, whole)), hn::BitCast(numbers, large));
+}
+
 /// Walks of a vector of rays, each through a box of 4 x 4 x 4 nodes of its own, of one size; what
 /// GridWalk does for one ray. Where the volume ends within a box, its planes outside are met before
 /// the ray enters, or after it leaves.
@@ -115,11 +126,7 @@ public:
       this->Plane[axis] = hn::Add(hn::Add(lower[axis], node), hn::Set(tag, forward ? edge : 0.0));
       this->PlaneT[axis] = rays.GetPlaneT(axis, this->Plane[axis]);
       this->Step[axis] = step;
-      // Whole numbers below 2^52, added to it, stand in the lowest bits.
-      const Vector large = hn::Set(tag, 4503599627370496.0);
-      const Vector count = hn::Mul(node, hn::Set(tag, 1.0 / edge));
-      const Numbers whole =
-        hn::Sub(hn::BitCast(numbers, hn::Add(large, count)), hn::BitCast(numbers, large));
+      const Numbers whole = ToNumbers(hn::Mul(node, hn::Set(tag, 1.0 / edge)));
       this->Nodes = hn::Add(this->Nodes, hn::ShiftLeftSame(whole, 2 * axis));
       const std::uint64_t stride = std::uint64_t{ 1 } << (2 * axis);
       this->Stride[axis] = hn::Set(numbers, forward ? stride : 0 - stride);
@@ -282,6 +289,60 @@ private:
     return bits[0];
   }
 
+  /// The corners of the cells of `rays`, less the isovalue; returns those whose cells hold data.
+  HWY_INLINE Mask LoadCorners(Mask rays, const NodeWalks<D>& cells, Vector values[8]) const
+  {
+    const D tag = this->Tag;
+    const PacketBrick::FloatSamples& samples = this->Brick.Floats;
+    const hn::RebindToSigned<D> integers;
+    const hn::Rebind<float, D> floats;
+    const hn::RebindToUnsigned<decltype(floats)> words;
+    const auto getPlace = [&](int axis)
+    { return hn::Sub(cells.GetLower(axis), hn::Set(tag, this->BrickOrigin[axis])); };
+    const Vector row = hn::Mul(getPlace(1), hn::Set(tag, samples.Row));
+    const Vector slice = hn::Mul(getPlace(2), hn::Set(tag, samples.Slice));
+    const Vector place =
+      hn::IfThenElseZero(rays, hn::Add(hn::Add(getPlace(0), row), slice));
+    const auto bytes = hn::ShiftLeft<2>(hn::BitCast(integers, ToNumbers(place)));
+    const Vector isovalue = hn::Set(tag, samples.Isovalue);
+    Vector check = hn::Zero(tag);
+    for (int pair = 0; pair < 4; ++pair)
+    {
+      const float* const first = samples.First + (pair & 1) * static_cast<int>(samples.Row) +
+        (pair >> 1) * static_cast<int>(samples.Slice);
+      // A row of two corners at once.
+      const Numbers both = hn::BitCast(
+        NumberTag(), hn::GatherOffset(integers, reinterpret_cast<const std::int64_t*>(first), bytes));
+      const auto low = hn::BitCast(floats, hn::TruncateTo(words, both));
+      const auto high = hn::BitCast(floats, hn::TruncateTo(words, hn::ShiftRight<32>(both)));
+      values[2 * pair] = hn::Sub(hn::PromoteTo(tag, low), isovalue);
+      values[2 * pair + 1] = hn::Sub(hn::PromoteTo(tag, high), isovalue);
+      // Becomes, and stays, not a number where one of them is not finite.
+      check = hn::Add(check, hn::Mul(hn::Add(values[2 * pair], values[2 * pair + 1]), hn::Zero(tag)));
+    }
+    return hn::And(rays, hn::Eq(check, hn::Zero(tag)));
+  }
+
+  HWY_INLINE Mask AskForCorners(
+    Mask rays, const int places[][3], const NodeWalks<D>& cells, Vector values[8]) const
+  {
+    const D tag = this->Tag;
+    HWY_ALIGN double corners[8][Width];
+    for (double* const corner : corners)
+    {
+      hn::Store(hn::Zero(tag), tag, corner);
+    }
+    HWY_ALIGN std::uint64_t nodes[Width];
+    hn::Store(cells.GetNodes(), NumberTag(), nodes);
+    const std::uint8_t held[8] = { static_cast<std::uint8_t>(
+      this->Brick.GetCorners(GetBits(rays), places, nodes, corners[0], Width)) };
+    for (int corner = 0; corner < 8; ++corner)
+    {
+      values[corner] = hn::Load(tag, corners[corner]);
+    }
+    return hn::LoadMaskBits(tag, held);
+  }
+
   /// Where rays are in their cells at `t`: exactly 0 or 1 where they meet a plane of the cell.
   Vector GetLocal(int axis, Vector lower, Vector lowerT, Vector upperT, Vector t) const
   {
@@ -297,24 +358,12 @@ private:
     const int places[][3], const NodeWalks<D>& cells, Mask rays, Vector enter, Vector exit)
   {
     const D tag = this->Tag;
-    HWY_ALIGN double corners[8][Width];
-    for (double* const corner : corners)
-    {
-      hn::Store(hn::Zero(tag), tag, corner);
-    }
-    HWY_ALIGN std::uint64_t nodes[Width];
-    hn::Store(cells.GetNodes(), NumberTag(), nodes);
-    const std::uint8_t held[8] = { static_cast<std::uint8_t>(
-      this->Brick.GetCorners(GetBits(rays), places, nodes, corners[0], Width)) };
-    rays = hn::LoadMaskBits(tag, held);
+    Vector values[8];
+    rays = this->Brick.Floats.First ? this->LoadCorners(rays, cells, values)
+                                    : this->AskForCorners(rays, places, cells, values);
     if (hn::AllFalse(tag, rays))
     {
       return rays;
-    }
-    Vector values[8];
-    for (int corner = 0; corner < 8; ++corner)
-    {
-      values[corner] = hn::Load(tag, corners[corner]);
     }
     const Vector one = hn::Set(tag, 1.0);
     Vector start[3];

@@ -28,6 +28,14 @@ public:
     , Level(level)
     , Comparison(comparison)
   {
+    if constexpr (std::is_same_v<T, float>)
+    {
+      if (brick.GetHeader().MaskOffset == 0)
+      {
+        this->Floats = { brick.GetSamples(), static_cast<double>(brick.GetRow()),
+          static_cast<double>(brick.GetSlice()), level.GetIsovalue() };
+      }
+    }
   }
 
   int GetMacrocells(int axis) const override { return this->Brick.GetMacrocells(axis); }
