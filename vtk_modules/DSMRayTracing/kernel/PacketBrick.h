@@ -7,6 +7,15 @@
 namespace rt
 {
 
+/// What is known of 4 x 4 x 4 macrocells of a brick. Bit, and place, x + 4 y + 16 z is that of a
+/// macrocell of the part, or of a cell of the macrocell.
+struct PacketPart
+{
+  std::uint64_t Macrocells; ///< those that may hold the surface
+  std::uint64_t Known;      ///< those of which Cells tells something
+  std::uint64_t Cells[64];  ///< of each macrocell: those that have corners on both sides
+};
+
 /// What a packet asks of a brick and an isovalue, whatever the type of the samples. Coordinates are
 /// the brick's.
 class PacketBrick
@@ -14,20 +23,19 @@ class PacketBrick
 public:
   virtual int GetMacrocells(int axis) const = 0;
 
-  /// Bit x + 4 y + 16 z is set where the macrocell 4 part + (x, y, z) may hold the surface.
-  virtual std::uint64_t FindMacrocells(const int part[3]) const = 0;
+  /// The macrocells from 4 part on. Valid until the next call.
+  virtual const PacketPart& FindPart(const int part[3]) const = 0;
 
-  /// For each of `rays` (bits), which is in the macrocell of the part with the number
-  /// x + 4 y + 16 z in `macrocells`: its first cell, and in `cells` a bit x + 4 y + 16 z for each
-  /// cell of it that has corners on both sides.
-  virtual void FindCells(const int part[3], unsigned rays, const std::uint64_t* macrocells,
-    int (*first)[3], std::uint64_t* cells) const = 0;
+  /// Adds the cells of the macrocells of the part in which `rays` (bits) are; `macrocells` are their
+  /// numbers there.
+  virtual void FindCells(
+    const int part[3], unsigned rays, const std::uint64_t* macrocells) const = 0;
 
-  /// For each of `rays`, which is in a cell that has the number x + 4 y + 16 z in `cells` within the
-  /// macrocell from the cell `first` on: the corners less the isovalue, `stride` numbers from one to
-  /// the next, those of ray i from `corners` + i on. Returns the rays whose cells hold data.
-  virtual unsigned GetCorners(unsigned rays, const int (*first)[3], const std::uint64_t* cells,
-    double* corners, int stride) const = 0;
+  /// For each of `rays`, which is in the cell with the coordinates cell[axis * stride + ray]: the
+  /// corners less the isovalue, `stride` numbers from one to the next, those of a ray from
+  /// `corners` + ray on. Returns the rays whose cells hold data.
+  virtual unsigned GetCorners(
+    unsigned rays, const double* cell, double* corners, int stride) const = 0;
 
   /// Samples that can be read without asking.
   struct FloatSamples

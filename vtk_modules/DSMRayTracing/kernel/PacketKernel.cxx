@@ -209,8 +209,8 @@ private:
     const PacketBrick& brick, const double origin[3], const double* enter, const double* leave,
     const int part[3], bool whole, PacketCrossings* crossings)
   {
-    const std::uint64_t macrocells = brick.FindMacrocells(part);
-    if (macrocells == 0)
+    const PacketPart& macrocells = brick.FindPart(part);
+    if (macrocells.Macrocells == 0)
     {
       return 0;
     }

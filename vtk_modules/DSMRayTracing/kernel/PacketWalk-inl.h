@@ -215,10 +215,10 @@ public:
   {
   }
 
-  /// Searches the macrocells of a part of the brick whose bits are set in `macrocells`. `rays` cross
-  /// them from `enter` to `leave`. Returns those that meet the surface, having stored how.
+  /// Searches a part of the brick. `rays` cross it from `enter` to `leave`. Returns those that meet
+  /// the surface, having stored how.
   HWY_INLINE Mask Search(
-    const int part[3], std::uint64_t macrocells, Mask rays, Vector enter, Vector leave)
+    const int part[3], const PacketPart& macrocells, Mask rays, Vector enter, Vector leave)
   {
     const D tag = this->Tag;
     Vector lower[3];
@@ -227,7 +227,7 @@ public:
       lower[axis] = hn::Set(tag, this->BrickOrigin[axis] + 4.0 * MacrocellEdge * part[axis]);
     }
     NodeWalks<D> walks(this->Rays, lower, MacrocellEdge, enter);
-    const Numbers bits = hn::Set(NumberTag(), macrocells);
+    const Numbers bits = hn::Set(NumberTag(), macrocells.Macrocells);
     Vector t = enter;
     Vector exit = leave;
     Mask found = hn::MaskFromVec(hn::Zero(tag));
@@ -239,7 +239,7 @@ public:
       {
         return found;
       }
-      const Mask met = this->SearchMacrocells(part, walks, waiting, t, exit);
+      const Mask met = this->SearchMacrocells(part, macrocells, walks, waiting, t, exit);
       found = hn::Or(found, met);
       walking = walks.Leave(hn::AndNot(met, waiting), leave, t, exit);
     }
@@ -251,35 +251,49 @@ private:
   static constexpr int Width = static_cast<int>(hn::MaxLanes(D()));
 
   /// The macrocells in which `rays` are, from `enter` to `leave`.
-  HWY_INLINE Mask SearchMacrocells(
-    const int part[3], const NodeWalks<D>& macrocells, Mask rays, Vector enter, Vector leave)
+  HWY_INLINE Mask SearchMacrocells(const int part[3], const PacketPart& found,
+    const NodeWalks<D>& macrocells, Mask rays, Vector enter, Vector leave)
   {
     const D tag = this->Tag;
-    HWY_ALIGN std::uint64_t bits[Width];
-    HWY_ALIGN std::uint64_t nodes[Width];
-    int places[Width][3];
-    hn::Store(hn::Zero(NumberTag()), NumberTag(), bits);
-    hn::Store(macrocells.GetNodes(), NumberTag(), nodes);
-    this->Brick.FindCells(part, GetBits(rays), nodes, places, bits);
-    const Numbers cells = hn::Load(NumberTag(), bits);
+    const Numbers cells = this->FindCells(part, found, macrocells.GetNodes(), rays);
     const Vector lower[3] = { macrocells.GetLower(0), macrocells.GetLower(1),
       macrocells.GetLower(2) };
     NodeWalks<D> walks(this->Rays, lower, 1.0, enter);
     Vector t = enter;
     Vector exit = leave;
-    Mask found = hn::MaskFromVec(hn::Zero(tag));
+    Mask hit = hn::MaskFromVec(hn::Zero(tag));
     Mask walking = rays;
     for (;;)
     {
       const Mask waiting = walks.FindNodes(walking, cells, leave, t, exit);
       if (hn::AllFalse(tag, waiting))
       {
-        return found;
+        return hit;
       }
-      const Mask met = this->SearchCells(places, walks, waiting, t, exit);
-      found = hn::Or(found, met);
+      const Mask met = this->SearchCells(walks, waiting, t, exit);
+      hit = hn::Or(hit, met);
       walking = walks.Leave(hn::AndNot(met, waiting), leave, t, exit);
     }
+  }
+
+  /// The cells of the macrocells in which `rays` are.
+  HWY_INLINE Numbers FindCells(
+    const int part[3], const PacketPart& found, Numbers macrocells, Mask rays) const
+  {
+    const NumberTag numbers;
+    const hn::RebindToSigned<D> integers;
+    const Numbers one = hn::Set(numbers, std::uint64_t{ 1 });
+    const Numbers known = hn::And(hn::Shr(hn::Set(numbers, found.Known), macrocells), one);
+    const Mask unknown = hn::AndNot(hn::RebindMask(this->Tag, hn::Eq(known, one)), rays);
+    if (!hn::AllFalse(this->Tag, unknown))
+    {
+      HWY_ALIGN std::uint64_t places[Width];
+      hn::Store(macrocells, numbers, places);
+      this->Brick.FindCells(part, GetBits(unknown), places);
+    }
+    const auto places = hn::BitCast(
+      integers, hn::IfThenElseZero(hn::RebindMask(numbers, rays), macrocells));
+    return hn::GatherIndex(numbers, found.Cells, places);
   }
 
   unsigned GetBits(Mask rays) const
@@ -287,6 +301,12 @@ private:
     std::uint8_t bits[8] = {};
     hn::StoreMaskBits(this->Tag, rays, bits);
     return bits[0];
+  }
+
+  /// Coordinates of the cells in which rays are, in the brick.
+  Vector GetPlace(int axis, const NodeWalks<D>& cells) const
+  {
+    return hn::Sub(cells.GetLower(axis), hn::Set(this->Tag, this->BrickOrigin[axis]));
   }
 
   /// The corners of the cells of `rays`, less the isovalue; returns those whose cells hold data.
@@ -297,12 +317,10 @@ private:
     const hn::RebindToSigned<D> integers;
     const hn::Rebind<float, D> floats;
     const hn::RebindToUnsigned<decltype(floats)> words;
-    const auto getPlace = [&](int axis)
-    { return hn::Sub(cells.GetLower(axis), hn::Set(tag, this->BrickOrigin[axis])); };
-    const Vector row = hn::Mul(getPlace(1), hn::Set(tag, samples.Row));
-    const Vector slice = hn::Mul(getPlace(2), hn::Set(tag, samples.Slice));
+    const Vector row = hn::Mul(this->GetPlace(1, cells), hn::Set(tag, samples.Row));
+    const Vector slice = hn::Mul(this->GetPlace(2, cells), hn::Set(tag, samples.Slice));
     const Vector place =
-      hn::IfThenElseZero(rays, hn::Add(hn::Add(getPlace(0), row), slice));
+      hn::IfThenElseZero(rays, hn::Add(hn::Add(this->GetPlace(0, cells), row), slice));
     const auto bytes = hn::ShiftLeft<2>(hn::BitCast(integers, ToNumbers(place)));
     const Vector isovalue = hn::Set(tag, samples.Isovalue);
     Vector check = hn::Zero(tag);
@@ -323,8 +341,7 @@ private:
     return hn::And(rays, hn::Eq(check, hn::Zero(tag)));
   }
 
-  HWY_INLINE Mask AskForCorners(
-    Mask rays, const int places[][3], const NodeWalks<D>& cells, Vector values[8]) const
+  HWY_INLINE Mask AskForCorners(Mask rays, const NodeWalks<D>& cells, Vector values[8]) const
   {
     const D tag = this->Tag;
     HWY_ALIGN double corners[8][Width];
@@ -332,10 +349,13 @@ private:
     {
       hn::Store(hn::Zero(tag), tag, corner);
     }
-    HWY_ALIGN std::uint64_t nodes[Width];
-    hn::Store(cells.GetNodes(), NumberTag(), nodes);
+    HWY_ALIGN double places[3][Width];
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      hn::Store(this->GetPlace(axis, cells), tag, places[axis]);
+    }
     const std::uint8_t held[8] = { static_cast<std::uint8_t>(
-      this->Brick.GetCorners(GetBits(rays), places, nodes, corners[0], Width)) };
+      this->Brick.GetCorners(GetBits(rays), places[0], corners[0], Width)) };
     for (int corner = 0; corner < 8; ++corner)
     {
       values[corner] = hn::Load(tag, corners[corner]);
@@ -353,14 +373,13 @@ private:
   }
 
   /// Those of `rays` that meet the surface in the cells in which they are, from `enter` to `exit`.
-  /// `places`: the first cells of their macrocells.
   HWY_INLINE Mask SearchCells(
-    const int places[][3], const NodeWalks<D>& cells, Mask rays, Vector enter, Vector exit)
+    const NodeWalks<D>& cells, Mask rays, Vector enter, Vector exit)
   {
     const D tag = this->Tag;
     Vector values[8];
     rays = this->Brick.Floats.First ? this->LoadCorners(rays, cells, values)
-                                    : this->AskForCorners(rays, places, cells, values);
+                                    : this->AskForCorners(rays, cells, values);
     if (hn::AllFalse(tag, rays))
     {
       return rays;
@@ -400,8 +419,7 @@ private:
     {
       this->Put(found, start[axis], crossings.Start[axis]);
       this->Put(found, hn::Sub(end[axis], start[axis]), crossings.Way[axis]);
-      this->Put(found, hn::Sub(cells.GetLower(axis), hn::Set(tag, this->BrickOrigin[axis])),
-        crossings.Cell[axis]);
+      this->Put(found, this->GetPlace(axis, cells), crossings.Cell[axis]);
     }
     return found;
   }

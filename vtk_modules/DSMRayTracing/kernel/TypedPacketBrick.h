@@ -40,52 +40,48 @@ public:
 
   int GetMacrocells(int axis) const override { return this->Brick.GetMacrocells(axis); }
 
-  std::uint64_t FindMacrocells(const int part[3]) const override
+  const PacketPart& FindPart(const int part[3]) const override
   {
+    Memory& memory = this->GetMemory(part);
     const int number = part[0] + MostParts * (part[1] + MostParts * part[2]);
-    return this->Parts.Get(number, [&] { return this->ComparePart(part); });
+    if (memory.Number != number)
+    {
+      memory.Number = number;
+      memory.Part.Macrocells = this->ComparePart(part);
+      memory.Part.Known = 0;
+    }
+    return memory.Part;
   }
 
-  void FindCells(const int part[3], unsigned rays, const std::uint64_t* macrocells, int (*first)[3],
-    std::uint64_t* cells) const override
+  void FindCells(
+    const int part[3], unsigned rays, const std::uint64_t* macrocells) const override
   {
-    int last = -1;
+    PacketPart& found = this->GetMemory(part).Part;
     for (; rays != 0; rays &= rays - 1)
     {
-      const int ray = __builtin_ctz(rays);
-      // Neighbours are often in the same macrocell.
-      if (last >= 0 && macrocells[last] == macrocells[ray])
+      const std::uint64_t number = macrocells[__builtin_ctz(rays)];
+      const std::uint64_t bit = std::uint64_t{ 1 } << number;
+      if ((found.Known & bit) == 0)
       {
-        std::copy_n(first[last], 3, first[ray]);
-        cells[ray] = cells[last];
-        continue;
+        const int first[3] = { MacrocellEdge * (4 * part[0] + static_cast<int>(number & 3)),
+          MacrocellEdge * (4 * part[1] + static_cast<int>(number >> 2 & 3)),
+          MacrocellEdge * (4 * part[2] + static_cast<int>(number >> 4)) };
+        found.Cells[number] = this->CompareCells(first);
+        found.Known |= bit;
       }
-      last = ray;
-      const auto number = static_cast<int>(macrocells[ray]);
-      const int place[3] = { 4 * part[0] + (number & 3), 4 * part[1] + (number >> 2 & 3),
-        4 * part[2] + (number >> 4) };
-      for (int axis = 0; axis < 3; ++axis)
-      {
-        first[ray][axis] = MacrocellEdge * place[axis];
-      }
-      const int key = place[0] +
-        this->Brick.GetMacrocells(0) * (place[1] + this->Brick.GetMacrocells(1) * place[2]);
-      cells[ray] =
-        this->Macrocells.Get(key, [&] { return this->CompareCells(first[ray]); });
     }
   }
 
-  unsigned GetCorners(unsigned rays, const int (*first)[3], const std::uint64_t* cells,
-    double* corners, int stride) const override
+  unsigned GetCorners(
+    unsigned rays, const double* cell, double* corners, int stride) const override
   {
     unsigned held = 0;
     for (; rays != 0; rays &= rays - 1)
     {
       const int ray = __builtin_ctz(rays);
-      const auto number = static_cast<int>(cells[ray]);
-      const int cell[3] = { first[ray][0] + (number & 3), first[ray][1] + (number >> 2 & 3),
-        first[ray][2] + (number >> 4) };
-      if (this->GetCorners(cell, corners + ray, stride))
+      const int place[3] = { static_cast<int>(cell[ray]), static_cast<int>(cell[stride + ray]),
+        static_cast<int>(cell[2 * stride + ray]) };
+      if (this->GetCorners(place, corners + ray, stride))
       {
         held |= 1u << ray;
       }
@@ -97,36 +93,19 @@ private:
   /// Bits from one row of samples to the next within a word.
   static constexpr int RowBits = 6;
 
-  /// Parts on an axis; how many parts, and macrocells, are remembered.
+  /// Parts on an axis, at most.
   static constexpr int MostParts = 16;
-  static constexpr int PartCount = 4;
-  static constexpr int MacrocellCount = 128;
 
-  /// What was found for the last asked for of the keys that share a place.
-  template <int Count>
-  class Memory
+  /// What was found for the last one asked for of the parts that share a place.
+  struct Memory
   {
-  public:
-    template <class Function>
-    std::uint64_t Get(int key, Function&& find)
-    {
-      const int place = key % Count;
-      std::uint64_t& known = this->Known[place / 64];
-      const std::uint64_t bit = std::uint64_t{ 1 } << place % 64;
-      if ((known & bit) == 0 || this->Keys[place] != key)
-      {
-        known |= bit;
-        this->Keys[place] = key;
-        this->Found[place] = find();
-      }
-      return this->Found[place];
-    }
-
-  private:
-    std::uint64_t Known[(Count + 63) / 64] = {}; ///< bits: whether the others mean anything
-    int Keys[Count];
-    std::uint64_t Found[Count];
+    int Number = -1;
+    PacketPart Part;
   };
+  Memory& GetMemory(const int part[3]) const
+  {
+    return this->Parts[(part[0] & 1) + 2 * (part[1] & 1) + 4 * (part[2] & 1)];
+  }
 
   std::uint64_t ComparePart(const int part[3]) const
   {
@@ -263,8 +242,7 @@ private:
   const VoxelBrick<T>& Brick;
   const IsovalueLevel<T>& Level;
   const MacrocellComparison<T>& Comparison;
-  mutable Memory<PartCount> Parts;
-  mutable Memory<MacrocellCount> Macrocells;
+  mutable Memory Parts[8];
 };
 
 } // namespace rt
