@@ -42,8 +42,8 @@ Ray PixelRays::GetRay(int x, int y, const glm::dvec2& position) const
   const glm::dvec4 nearPoint = base - this->ClipToWorld[2];
   const glm::dvec4 farPoint = base + this->ClipToWorld[2];
   Ray ray;
-  ray.Origin = glm::dvec3(nearPoint) / nearPoint.w;
-  ray.Direction = glm::dvec3(farPoint) / farPoint.w - ray.Origin;
+  ray.Origin = glm::dvec3(nearPoint) * (1.0 / nearPoint.w);
+  ray.Direction = glm::dvec3(farPoint) * (1.0 / farPoint.w) - ray.Origin;
   ray.Min = 0.0;
   ray.Max = Last;
   return ray;

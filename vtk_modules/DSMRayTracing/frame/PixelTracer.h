@@ -104,14 +104,15 @@ public:
   void TraceBox(const std::vector<BeamBricks>& bricks, int x, int y, int width, int height,
     int sample, Take&& take) const
   {
-    const int columns = (width + BlockEdge - 1) / BlockEdge;
-    const int packets = columns * ((height + BlockEdge - 1) / BlockEdge);
-    const auto getPlace = [columns](int index)
+    constexpr unsigned columns = BoxEdge / BlockEdge;
+    const int packets =
+      static_cast<int>(columns) * ((height - 1) / BlockEdge) + (width - 1) / BlockEdge + 1;
+    const auto getPlace = [](unsigned index)
     {
-      const int packet = index / RayPacket::Size;
-      const int lane = index % RayPacket::Size;
-      return BlockEdge * glm::ivec2(packet % columns, packet / columns) +
-        glm::ivec2(lane % BlockEdge, lane / BlockEdge);
+      const unsigned packet = index / RayPacket::Size;
+      const unsigned lane = index % RayPacket::Size;
+      return glm::ivec2(BlockEdge * (packet % columns) + lane % BlockEdge,
+        BlockEdge * (packet / columns) + lane / BlockEdge);
     };
     const glm::dvec2 position = SampleSequence::GetPositionInPixel(sample);
     Ray rays[MaxPaths];

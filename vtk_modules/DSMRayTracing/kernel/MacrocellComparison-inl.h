@@ -32,6 +32,7 @@ public:
 
 private:
   static constexpr int Edge = MacrocellComparison<T>::Edge;
+  static constexpr int RowSamples = MacrocellComparison<T>::RowSamples;
 
   template <class D>
   static std::uint32_t GetBits(D tag, hn::Mask<D> mask)
@@ -55,29 +56,20 @@ private:
     }
   }
 
-  /// Whether the five samples from `x` on are inside: bits.
-  static HWY_INLINE std::uint32_t CompareRow(
-    const T* samples, int x, std::ptrdiff_t length, T first)
+  /// Bits of the samples from `row` on that are inside: of RowSamples where that many are compared at
+  /// once, else of five.
+  static HWY_INLINE std::uint64_t CompareRow(const T* row, T first)
   {
-    const hn::CappedTag<T, std::min<std::size_t>(Lanes, MacrocellComparison<T>::RowSamples)> tag;
+    const hn::CappedTag<T, std::min<std::size_t>(Lanes, RowSamples)> tag;
     constexpr int width = static_cast<int>(hn::MaxLanes(tag));
     const auto level = hn::Set(tag, first);
-    if constexpr (width > Edge)
+    std::uint32_t inside = 0;
+    for (int part = 0; part <= Edge; part += width)
     {
-      // Not beyond the row: what follows the last one may not be there.
-      const int begin = std::min(x, static_cast<int>(length) - width);
-      return GetBits(tag, IsInside(hn::LoadU(tag, samples + begin), level)) >> (x - begin) & 31u;
+      const int begin = std::max(0, std::min(part, Edge + 1 - width));
+      inside |= GetBits(tag, IsInside(hn::LoadU(tag, row + begin), level)) << begin;
     }
-    else
-    {
-      std::uint32_t inside = 0;
-      for (int part = 0; part <= Edge; part += width)
-      {
-        const int begin = std::min(part, Edge + 1 - width);
-        inside |= GetBits(tag, IsInside(hn::LoadU(tag, samples + x + begin), level)) << begin;
-      }
-      return inside;
-    }
+    return inside;
   }
 
   static std::uint64_t FindCells(
@@ -85,6 +77,11 @@ private:
   {
     // Rows of samples lie 8 bits apart. A cell has its corners where its own bit is, on the next one,
     // and on those of the next row.
+    // What follows the last row may not be there: vectors end with the row.
+    const bool isWide =
+      hn::MaxLanes(hn::CappedTag<T, std::min<std::size_t>(Lanes, RowSamples)>()) > Edge;
+    const int begin = isWide ? std::min(x, static_cast<int>(row) - RowSamples) : x;
+    const int shift = x - begin;
     std::uint64_t cells = 0;
     std::uint64_t lastAny = 0;
     std::uint64_t lastAll = 0;
@@ -93,9 +90,9 @@ private:
       std::uint64_t inside = 0;
       for (int y = 0; y <= Edge; ++y)
       {
-        const T* const begin = samples + y * row + z * slice;
-        inside |= std::uint64_t{ CompareRow(begin, x, row, first) } << (8 * y);
+        inside |= CompareRow(samples + begin + y * row + z * slice, first) << (8 * y);
       }
+      inside >>= shift;
       std::uint64_t any = inside | inside >> 1;
       std::uint64_t all = inside & inside >> 1;
       any |= any >> 8;
