@@ -10,6 +10,7 @@
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
+#include <glm/mat3x3.hpp>
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
 
@@ -53,6 +54,12 @@ public:
     , Meshes(store, worker)
     , World(scene)
   {
+    for (const IsosurfaceObject& object : scene.Isosurfaces)
+    {
+      const glm::dmat3 edges(object.IndexToWorld);
+      this->Clearances.push_back(ClearancePart *
+        std::min({ glm::length(edges[0]), glm::length(edges[1]), glm::length(edges[2]) }));
+    }
   }
 
   /// The first surface in [ray.Min, ray.Max]; of equally near ones that of the first object,
@@ -419,10 +426,7 @@ private:
     {
       point.Color.w *= object.Opacities[hit.Isovalue];
     }
-    double shortest = glm::length(glm::dvec3(object.IndexToWorld[0]));
-    shortest = std::min(shortest, glm::length(glm::dvec3(object.IndexToWorld[1])));
-    shortest = std::min(shortest, glm::length(glm::dvec3(object.IndexToWorld[2])));
-    point.Clearance = ClearancePart * shortest;
+    point.Clearance = this->Clearances[&object - this->World.Isosurfaces.data()];
     point.Edges = nullptr;
   }
 
@@ -430,6 +434,7 @@ private:
   PacketTracer<Store> Packets;
   MeshTracer<Store> Meshes;
   const Scene& World;
+  std::vector<double> Clearances; ///< of the isosurfaces' points
 };
 
 } // namespace rt

@@ -57,10 +57,17 @@ public:
       glm::vec4(tint, 1.0f) / float(this->Request.FirstSample + this->Request.Samples);
     for (std::size_t pixel = 0; pixel < pixels; ++pixel)
     {
+      const glm::vec4 sum = tile.Sum[pixel];
+      std::uint8_t* const color = &tile.Color[4 * pixel];
+      if (sum == glm::vec4(0.0f))
+      {
+        std::fill_n(color, 4, std::uint8_t{ 0 });
+        continue;
+      }
       for (int channel = 0; channel < 4; ++channel)
       {
-        const float value = std::clamp(scale[channel] * tile.Sum[pixel][channel], 0.0f, 1.0f);
-        tile.Color[4 * pixel + channel] = static_cast<std::uint8_t>(255.0f * value + 0.5f);
+        const float value = std::clamp(scale[channel] * sum[channel], 0.0f, 1.0f);
+        color[channel] = static_cast<std::uint8_t>(255.0f * value + 0.5f);
       }
     }
   }

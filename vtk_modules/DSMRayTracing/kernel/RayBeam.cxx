@@ -147,7 +147,7 @@ void RayBeam::Set(const RayPacket* const* packets, int count)
 
 RayBeam::Cubes RayBeam::GetCubes(double edge) const
 {
-  Cubes cubes{ edge, {}, {}, {} };
+  Cubes cubes{};
   for (int axis = 0; axis < 3; ++axis)
   {
     constexpr double most = 1 << 30;
@@ -164,6 +164,7 @@ RayBeam::Cubes RayBeam::GetCubes(double edge) const
       (std::max(side.Normal[0], 0.0) + std::max(side.Normal[1], 0.0) +
         std::max(side.Normal[2], 0.0));
     cubes.Least[number] = side.Least - reach;
+    cubes.InverseX[number] = side.InverseX / edge;
   }
   return cubes;
 }

@@ -30,8 +30,8 @@ public:
   /// Cubes of `edge`, on one lattice.
   struct Cubes
   {
-    double Edge;
-    double Least[4]; ///< for each side: normal * lower corner of a cube that may be met
+    double Least[4];    ///< for each side: normal * lower corner of a cube that may be met
+    double InverseX[4]; ///< of each side's normal, in cubes
     int First[3];    ///< cubes before have no part of the beam
     int Last[3];
   };
@@ -48,7 +48,7 @@ public:
     {
       const Side& plane = this->Sides[side];
       const double missing = cubes.Least[side] - (plane.Normal[1] * y + plane.Normal[2] * z);
-      const double x = missing * plane.InverseX / cubes.Edge;
+      const double x = missing * cubes.InverseX[side];
       low = plane.Normal[0] > 0.0 ? std::max(low, x) : low;
       high = plane.Normal[0] < 0.0 ? std::min(high, x) : high;
     }
