@@ -293,8 +293,8 @@ private:
       {
         ShadingPoint point = this->GetShadingPoint(*paths[number], view);
         this->LookAround(&paths[number], 1, &point);
-        colors[number] = this->ShadePoint(*paths[number], point, bounces, view,
-          [](const Light&) { return glm::dvec3(1.0); });
+        colors[number] = this->ShadePoint(
+          *paths[number], point, bounces, view, [](const Light&) { return glm::dvec3(1.0); });
       }
       return;
     }
@@ -346,8 +346,8 @@ private:
 
   /// `visibility(light)`: how much of a light arrives.
   template <class Visibility>
-  glm::vec3 ShadePoint(Path& path, const ShadingPoint& point, int bounces,
-    const glm::dmat4x3& view, const Visibility& visibility) const
+  glm::vec3 ShadePoint(Path& path, const ShadingPoint& point, int bounces, const glm::dmat4x3& view,
+    const Visibility& visibility) const
   {
     glm::vec3 color = Shade(this->World.Lights, *path.Point.Surface, point,
       [&](const Light& light, const Incidence&) { return visibility(light); });

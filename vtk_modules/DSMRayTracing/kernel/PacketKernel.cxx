@@ -287,8 +287,7 @@ PacketKernel Create(const char* name, const MacrocellKernel& macrocells)
 
 PacketKernel CreateWide()
 {
-  return Create<hn::CappedTag<double, 8>>(
-    hwy::TargetName(HWY_TARGET), CreateMacrocellKernel<8>());
+  return Create<hn::CappedTag<double, 8>>(hwy::TargetName(HWY_TARGET), CreateMacrocellKernel<8>());
 }
 
 PacketKernel CreateSingle()

@@ -291,8 +291,8 @@ private:
       hn::Store(macrocells, numbers, places);
       this->Brick.FindCells(part, GetBits(unknown), places);
     }
-    const auto places = hn::BitCast(
-      integers, hn::IfThenElseZero(hn::RebindMask(numbers, rays), macrocells));
+    const auto places =
+      hn::BitCast(integers, hn::IfThenElseZero(hn::RebindMask(numbers, rays), macrocells));
     return hn::GatherIndex(numbers, found.Cells, places);
   }
 
@@ -329,14 +329,15 @@ private:
       const float* const first = samples.First + (pair & 1) * static_cast<int>(samples.Row) +
         (pair >> 1) * static_cast<int>(samples.Slice);
       // A row of two corners at once.
-      const Numbers both = hn::BitCast(
-        NumberTag(), hn::GatherOffset(integers, reinterpret_cast<const std::int64_t*>(first), bytes));
+      const Numbers both = hn::BitCast(NumberTag(),
+        hn::GatherOffset(integers, reinterpret_cast<const std::int64_t*>(first), bytes));
       const auto low = hn::BitCast(floats, hn::TruncateTo(words, both));
       const auto high = hn::BitCast(floats, hn::TruncateTo(words, hn::ShiftRight<32>(both)));
       values[2 * pair] = hn::Sub(hn::PromoteTo(tag, low), isovalue);
       values[2 * pair + 1] = hn::Sub(hn::PromoteTo(tag, high), isovalue);
       // Becomes, and stays, not a number where one of them is not finite.
-      check = hn::Add(check, hn::Mul(hn::Add(values[2 * pair], values[2 * pair + 1]), hn::Zero(tag)));
+      check =
+        hn::Add(check, hn::Mul(hn::Add(values[2 * pair], values[2 * pair + 1]), hn::Zero(tag)));
     }
     return hn::And(rays, hn::Eq(check, hn::Zero(tag)));
   }
@@ -373,8 +374,7 @@ private:
   }
 
   /// Those of `rays` that meet the surface in the cells in which they are, from `enter` to `exit`.
-  HWY_INLINE Mask SearchCells(
-    const NodeWalks<D>& cells, Mask rays, Vector enter, Vector exit)
+  HWY_INLINE Mask SearchCells(const NodeWalks<D>& cells, Mask rays, Vector enter, Vector exit)
   {
     const D tag = this->Tag;
     Vector values[8];

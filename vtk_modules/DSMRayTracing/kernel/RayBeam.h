@@ -32,7 +32,7 @@ public:
   {
     double Least[4];    ///< for each side: normal * lower corner of a cube that may be met
     double InverseX[4]; ///< of each side's normal, in cubes
-    int First[3];    ///< cubes before have no part of the beam
+    int First[3];       ///< cubes before have no part of the beam
     int Last[3];
   };
   Cubes GetCubes(double edge) const;

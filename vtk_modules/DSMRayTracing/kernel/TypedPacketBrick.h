@@ -53,8 +53,7 @@ public:
     return memory.Part;
   }
 
-  void FindCells(
-    const int part[3], unsigned rays, const std::uint64_t* macrocells) const override
+  void FindCells(const int part[3], unsigned rays, const std::uint64_t* macrocells) const override
   {
     PacketPart& found = this->GetMemory(part).Part;
     for (; rays != 0; rays &= rays - 1)
@@ -72,8 +71,7 @@ public:
     }
   }
 
-  unsigned GetCorners(
-    unsigned rays, const double* cell, double* corners, int stride) const override
+  unsigned GetCorners(unsigned rays, const double* cell, double* corners, int stride) const override
   {
     unsigned held = 0;
     for (; rays != 0; rays &= rays - 1)
