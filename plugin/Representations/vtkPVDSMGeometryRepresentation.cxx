@@ -23,6 +23,8 @@
 #include "vtkPartitionedDataSet.h"
 #include "vtkProperty.h"
 #include "vtkRenderer.h"
+#include "vtkScalarsToColors.h"
+#include "vtkTexture.h"
 
 #include <algorithm>
 #include <string>
@@ -125,11 +127,20 @@ void vtkPVDSMGeometryRepresentation::PrepareUpdate(vtkInformation* inInfo, vtkIn
   vtkPVRenderView::SetGeometryBounds(inInfo, this, inflated, matrix);
 }
 
-bool vtkPVDSMGeometryRepresentation::IsTranslucent() const
+bool vtkPVDSMGeometryRepresentation::IsTranslucent()
 {
+  const char* array = this->GetColorArrayName();
+  const bool isColored = array && *array != '\0';
+  vtkScalarsToColors* map = this->Mapper->GetLookupTable();
+  vtkTexture* texture = this->Actor->GetTexture();
+  // Colours that are taken as they are may have an opacity on another rank.
   return this->Property->GetOpacity() < 1.0 ||
     std::any_of(this->BlockOpacities.begin(), this->BlockOpacities.end(),
-      [](const auto& block) { return block.second < 1.0; });
+      [](const auto& block) { return block.second < 1.0; }) ||
+    (isColored &&
+      (this->Mapper->GetColorMode() == VTK_COLOR_MODE_DIRECT_SCALARS ||
+        (map && map->IsOpaque() == 0))) ||
+    (texture && texture->IsTranslucent());
 }
 
 void vtkPVDSMGeometryRepresentation::PrepareRender(vtkInformation* inInfo)

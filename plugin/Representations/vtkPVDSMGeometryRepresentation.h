@@ -101,7 +101,7 @@ private:
   vtkDSMPolyDataMapper* GetMapper() const;
   void PrepareUpdate(vtkInformation* inInfo, vtkInformation* outInfo);
   void PrepareRender(vtkInformation* inInfo);
-  bool IsTranslucent() const;
+  bool IsTranslucent();
   void ConnectFrameReport();
   void ForwardProgress();
 

@@ -111,7 +111,9 @@ int vtkPVDSMImageRepresentation::ProcessViewRequest(
 
 void vtkPVDSMImageRepresentation::PrepareUpdate(vtkInformation* inInfo, vtkInformation* outInfo)
 {
-  const bool isTranslucent = this->Mapper->GetSurfaceProperty()->GetOpacity() < 1.0;
+  vtkScalarsToColors* colors = this->Mapper->GetLookupTable();
+  const bool isTranslucent = this->Mapper->GetSurfaceProperty()->GetOpacity() < 1.0 ||
+    (colors && !this->Mapper->GetColorArray().empty() && colors->IsOpaque() == 0);
   vtkPVDSMDelivery::KeepData(this, this->Placeholder,
     { this->Volume->GetBounds(), isTranslucent, this->Mapper->GetInputDataObject(0, 0) }, inInfo,
     outInfo);

@@ -4,6 +4,8 @@
 #include "vtkDSMFrameNotes.h"
 #include "vtkDSMTranslation.h"
 
+#include "DSMRayTracing/frame/Occluders.h"
+
 #include "vtkBoundingBox.h"
 #include "vtkMatrix4x4.h"
 #include "vtkPropCollection.h"
@@ -44,28 +46,10 @@ bool IsNearly(const glm::dmat4& a, const glm::dmat4& b)
   return difference <= tolerance * largest;
 }
 
-bool IsTranslucent(const rt::ColorMap& map)
-{
-  return std::any_of(
-    map.Table.begin(), map.Table.end(), [](const glm::vec4& color) { return color.w < 1.0f; });
-}
-
 /// Whether anything may be seen through what the tracer draws.
 bool IsTranslucent(const rt::Scene& scene)
 {
-  return std::any_of(scene.Isosurfaces.begin(), scene.Isosurfaces.end(),
-           [](const rt::IsosurfaceObject& object) {
-             return object.Surface.Opacity < 1.0f ||
-               (object.ColorField && IsTranslucent(object.Colors));
-           }) ||
-    std::any_of(scene.Meshes.begin(), scene.Meshes.end(),
-      [](const rt::MeshObject& object)
-      {
-        return object.Surface.Opacity < 1.0f ||
-          object.ColoredBy == rt::MeshObject::Coloring::Colors ||
-          (object.Colors && IsTranslucent(*object.Colors)) ||
-          (object.BackSurface && object.BackSurface->Opacity < 1.0f);
-      });
+  return !rt::Occluders(scene).AreAll();
 }
 
 } // namespace
