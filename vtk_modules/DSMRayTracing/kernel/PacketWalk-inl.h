@@ -342,6 +342,7 @@ private:
     return hn::And(rays, hn::Eq(check, hn::Zero(tag)));
   }
 
+  /// The same for samples of other types, and where cells are masked.
   HWY_INLINE Mask AskForCorners(Mask rays, const NodeWalks<D>& cells, Vector values[8]) const
   {
     const D tag = this->Tag;
