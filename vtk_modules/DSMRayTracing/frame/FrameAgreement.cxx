@@ -3,7 +3,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <cstring>
 #include <vector>
 
 namespace rt
@@ -14,9 +13,8 @@ namespace
 
 std::vector<std::byte> ToBytes(const std::string& text)
 {
-  std::vector<std::byte> bytes(text.size());
-  std::memcpy(bytes.data(), text.data(), text.size());
-  return bytes;
+  const auto* first = reinterpret_cast<const std::byte*>(text.data());
+  return { first, first + text.size() };
 }
 
 std::string ToText(const std::vector<std::byte>& bytes, std::size_t first)
