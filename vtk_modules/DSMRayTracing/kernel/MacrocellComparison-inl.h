@@ -8,6 +8,7 @@
 #endif
 
 #include "DSMRayTracing/kernel/MacrocellKernel.h"
+#include "DSMRayTracing/kernel/MaskBits-inl.h"
 
 #include <hwy/highway.h>
 
@@ -34,14 +35,6 @@ private:
   static constexpr int Edge = MacrocellComparison<T>::Edge;
   static constexpr int RowSamples = MacrocellComparison<T>::RowSamples;
 
-  template <class D>
-  static std::uint32_t GetBits(D tag, hn::Mask<D> mask)
-  {
-    std::uint8_t bits[8] = {};
-    hn::StoreMaskBits(tag, mask, bits);
-    return bits[0];
-  }
-
   /// Not so for what is not a number.
   template <class Vector>
   static auto IsInside(Vector samples, Vector first)
@@ -67,7 +60,7 @@ private:
     for (int part = 0; part <= Edge; part += width)
     {
       const int begin = std::max(0, std::min(part, Edge + 1 - width));
-      inside |= GetBits(tag, IsInside(hn::LoadU(tag, row + begin), level)) << begin;
+      inside |= GetMaskBits(tag, IsInside(hn::LoadU(tag, row + begin), level)) << begin;
     }
     return inside;
   }
@@ -127,7 +120,7 @@ private:
         hn::Vec<decltype(tag)> most;
         hn::LoadInterleaved2(tag, &begin[x].Min, least, most);
         const auto separated = hn::And(hn::Lt(least, level), IsInside(most, level));
-        found |= std::uint64_t{ GetBits(tag, separated) } << (x + Edge * number);
+        found |= std::uint64_t{ GetMaskBits(tag, separated) } << (x + Edge * number);
       }
     }
     return found;

@@ -7,6 +7,7 @@
 #define rt_MeshPacketSetup_inl_h
 #endif
 
+#include "DSMRayTracing/kernel/MaskBits-inl.h"
 #include "DSMRayTracing/kernel/MeshPacket.h"
 
 #include <hwy/highway.h>
@@ -80,12 +81,7 @@ public:
   }
 
 private:
-  static Mask GetBits(Lanes lanes)
-  {
-    std::uint8_t bytes[8] = {};
-    hn::StoreMaskBits(Tag(), lanes, bytes);
-    return bytes[0];
-  }
+  static Mask GetBits(Lanes lanes) { return static_cast<Mask>(GetMaskBits(Tag(), lanes)); }
 
   static void StoreFloats(Vector value, float* to)
   {

@@ -8,6 +8,7 @@
 #endif
 
 #include "DSMRayTracing/accel/WideBvhNode.h"
+#include "DSMRayTracing/kernel/MaskBits-inl.h"
 #include "DSMRayTracing/kernel/MeshPacket.h"
 #include "DSMRayTracing/kernel/WideBvhTraversal.h"
 
@@ -130,12 +131,7 @@ private:
     Mask Rays[WideBvhWidth];
   };
 
-  static Mask GetBits(hn::Mask<D> mask)
-  {
-    std::uint8_t bytes[8] = {};
-    hn::StoreMaskBits(D(), mask, bytes);
-    return static_cast<Mask>(bytes[0] | bytes[1] << 8);
-  }
+  static Mask GetBits(hn::Mask<D> mask) { return static_cast<Mask>(GetMaskBits(D(), mask)); }
   static constexpr Mask GetLanes(int first) { return ((Mask{ 1 } << Width) - 1) << first; }
 
   static HWY_INLINE void Copy(const float* from, float* to)

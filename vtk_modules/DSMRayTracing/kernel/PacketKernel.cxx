@@ -10,6 +10,7 @@
 
 #include "DSMRayTracing/brick/VoxelBrickHeader.h"
 #include "DSMRayTracing/kernel/MacrocellComparison-inl.h"
+#include "DSMRayTracing/kernel/MaskBits-inl.h"
 #include "DSMRayTracing/kernel/PacketWalk-inl.h"
 
 #include <hwy/highway.h>
@@ -185,12 +186,7 @@ private:
     return hn::Add(hn::Add(x, y), z);
   }
 
-  static RayPacket::Mask GetBits(Mask mask)
-  {
-    std::uint8_t bits[8] = {};
-    hn::StoreMaskBits(D(), mask, bits);
-    return bits[0];
-  }
+  static RayPacket::Mask GetBits(Mask mask) { return GetMaskBits(D(), mask); }
   static Mask GetMask(RayPacket::Mask rays, int first)
   {
     const std::uint8_t bits[8] = { static_cast<std::uint8_t>(rays >> first) };

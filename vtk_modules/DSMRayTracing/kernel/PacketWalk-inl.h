@@ -8,6 +8,7 @@
 #endif
 
 #include "DSMRayTracing/brick/VoxelBrickHeader.h"
+#include "DSMRayTracing/kernel/MaskBits-inl.h"
 #include "DSMRayTracing/kernel/PacketBrick.h"
 #include "DSMRayTracing/kernel/PacketCrossing-inl.h"
 #include "DSMRayTracing/kernel/RayPacket.h"
@@ -296,12 +297,7 @@ private:
     return hn::GatherIndex(numbers, found.Cells, places);
   }
 
-  unsigned GetBits(Mask rays) const
-  {
-    std::uint8_t bits[8] = {};
-    hn::StoreMaskBits(this->Tag, rays, bits);
-    return bits[0];
-  }
+  unsigned GetBits(Mask rays) const { return GetMaskBits(this->Tag, rays); }
 
   /// Coordinates of the cells in which rays are, in the brick.
   Vector GetPlace(int axis, const NodeWalks<D>& cells) const
