@@ -7,6 +7,7 @@
 #include <cstring>
 #include <limits>
 #include <new>
+#include <utility>
 
 namespace dsm
 {
@@ -70,14 +71,18 @@ void BlockCache::Insert(BlockLine& line, const std::byte* bytes)
   this->EmptySlots.pop_back();
   std::copy_n(bytes, line.Bytes, memory);
   line.MoveTo(LineState::Cached);
-  line.Referenced.store(0, std::memory_order_relaxed);
+  if (line.Use.load(std::memory_order_relaxed) != BlockUse::Prefetched)
+  {
+    line.Use.store(BlockUse::Idle, std::memory_order_relaxed);
+  }
   line.Address.store(memory, std::memory_order_release);
 }
 
-std::size_t BlockCache::Evict(std::size_t blockBytes, std::size_t spareBytes, std::uint64_t epoch)
+BlockCache::Evictions BlockCache::Evict(
+  std::size_t blockBytes, std::size_t spareBytes, std::uint64_t epoch)
 {
   const std::size_t needed = GetFootprint(blockBytes) + spareBytes;
-  std::size_t evicted = 0;
+  Evictions evicted;
   // Twice around: the first time may do no more than clear reference bits.
   for (std::size_t step = 0; step < 2 * this->Frames.size(); ++step)
   {
@@ -92,13 +97,20 @@ std::size_t BlockCache::Evict(std::size_t blockBytes, std::size_t spareBytes, st
     {
       continue;
     }
-    if (line->Referenced.load(std::memory_order_relaxed))
+    if (line->Use.load(std::memory_order_relaxed) == BlockUse::Recent)
     {
-      line->Referenced.store(0, std::memory_order_relaxed);
+      line->Use.store(BlockUse::Idle, std::memory_order_relaxed);
       continue;
     }
+    const bool isUnused = line->Use.load(std::memory_order_relaxed) == BlockUse::Prefetched;
+    if (isUnused && !std::exchange(this->Frames[slot].IsSpared, true))
+    {
+      continue;
+    }
+    const BlockUse use = line->Use.exchange(BlockUse::Idle, std::memory_order_relaxed);
+    evicted.Unused += use == BlockUse::Prefetched ? 1 : 0;
+    ++evicted.Count;
     this->EvictFrame(slot, epoch);
-    ++evicted;
   }
   return evicted;
 }
@@ -141,7 +153,7 @@ void BlockCache::Shrink()
     const std::size_t slot = this->Hand;
     this->Hand = (this->Hand + 1) % this->Frames.size();
     BlockLine* const line = this->Frames[slot].Line;
-    if (line && !line->Referenced.exchange(0, std::memory_order_relaxed))
+    if (line && line->Use.exchange(BlockUse::Idle, std::memory_order_relaxed) != BlockUse::Recent)
     {
       this->EvictFrame(slot, 0);
     }

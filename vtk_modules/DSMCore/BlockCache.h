@@ -15,7 +15,7 @@ namespace dsm
 /// The memory for copies of remote blocks, within a budget that is never exceeded: room is set
 /// aside before a block is requested, and what was evicted counts until it is freed. Replacement is
 /// CLOCK, one sweeping hand, an approximation of the paper's least recently used order that needs
-/// no list to be kept on a hit.
+/// no list to be kept on a hit. What was prefetched and not used yet is passed by once.
 ///
 /// Communication thread only, under the store's lock. Epochs: see ObjectStore::Worker.
 class BlockCache
@@ -25,6 +25,12 @@ public:
   ~BlockCache();
   BlockCache(const BlockCache&) = delete;
   BlockCache& operator=(const BlockCache&) = delete;
+
+  struct Evictions
+  {
+    std::size_t Count = 0;
+    std::size_t Unused = 0; ///< of them: prefetched, and never used
+  };
 
   /// What a block takes of the budget.
   static std::size_t GetFootprint(std::size_t blockBytes);
@@ -41,14 +47,15 @@ public:
   bool TryReserve(std::size_t blockBytes);
   /// The room of a block that will not come.
   void Release(std::size_t blockBytes);
-  /// Copies a block into the room that was set aside for it, and publishes its address. Throws
+  /// Copies a block into the room that was set aside for it, and publishes its address; one that was
+  /// prefetched, and that nobody waits for, stays marked so. Throws
   /// std::bad_alloc; the room then stays set aside.
   void Insert(BlockLine& line, const std::byte* bytes);
 
   /// Evicts until a block of this size, and `spareBytes` on top, will fit once memory in limbo is
   /// freed; or until nothing can be evicted. A worker whose epoch is at least `epoch` no longer
-  /// sees what is evicted now. Returns the number evicted.
-  std::size_t Evict(std::size_t blockBytes, std::size_t spareBytes, std::uint64_t epoch);
+  /// sees what is evicted now.
+  Evictions Evict(std::size_t blockBytes, std::size_t spareBytes, std::uint64_t epoch);
   /// Frees what was evicted at `oldestEpoch` or before. Returns whether it freed anything.
   bool Reclaim(std::uint64_t oldestEpoch);
   bool HasLimbo() const { return !this->Limbo.empty(); }
@@ -64,6 +71,7 @@ private:
     BlockLine* Line = nullptr; ///< null: the slot is empty
     std::byte* Memory = nullptr;
     std::size_t Footprint = 0;
+    bool IsSpared = false; ///< the hand has passed it once, prefetched and unused
   };
   struct Evicted
   {

@@ -22,6 +22,7 @@ void BlockRequests::BeginFrame()
   this->Pending.clear();
   this->Unsent.clear();
   this->Abandoned = false;
+  this->Count = 0;
   this->BytesSent = 0;
   this->BytesReceived = 0;
   this->Messages.SetHandler(
@@ -59,6 +60,7 @@ bool BlockRequests::Send()
   for (auto& [owner, request] : requests)
   {
     this->Messages.Post(owner, MessageKind::BlockRequest, std::move(request));
+    ++this->Count;
   }
   return true;
 }

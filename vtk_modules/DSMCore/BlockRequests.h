@@ -57,6 +57,8 @@ public:
   /// Returns what is pending; answers to it are dropped, for the rest of the frame.
   std::vector<BlockWant> Abandon();
 
+  /// Messages that asked for blocks, in this frame.
+  std::uint64_t GetCount() const { return this->Count; }
   /// Bytes of blocks, in this frame.
   std::uint64_t GetBytesSent() const { return this->BytesSent; }
   std::uint64_t GetBytesReceived() const { return this->BytesReceived; }
@@ -80,6 +82,7 @@ private:
   std::vector<BlockWant> Unsent; ///< those of Pending that Send has not seen
   bool Abandoned = false;
   std::uint32_t FrameSession = 0;
+  std::uint64_t Count = 0;
   std::uint64_t BytesSent = 0;
   std::uint64_t BytesReceived = 0;
 };

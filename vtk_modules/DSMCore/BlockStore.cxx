@@ -89,6 +89,7 @@ void BlockStore::Configure()
     static_cast<std::size_t>(std::min<std::uint64_t>(this->CacheBytes, this->Current.CacheBytes));
   objects.Workers = this->CountWorkers();
   objects.Slots = this->Slots;
+  objects.Prefetch = this->Current.Prefetch;
   objects.HostSharing = this->Current.HostSharing;
   objects.Groups = this->Groups;
   ReplicatedStore::Settings replicated;
@@ -101,6 +102,7 @@ void BlockStore::Configure()
     paged.CacheBytes = objects.CacheBytes;
     paged.Workers = objects.Workers;
     paged.Slots = this->Slots;
+    paged.Prefetch = this->Current.Prefetch;
     paged.Handling = this->Current.Faults;
     paged.PureFaulting = this->Current.PureFaulting;
     this->Paged->SetSettings(paged);

@@ -51,6 +51,8 @@ public:
     /// As many times the threads, where blocks are fetched: while some wait, others trace. 1: a
     /// worker that waits idles.
     int Overlap = 4;
+    /// Bricks that a tile will probably need are asked for before it gets to them.
+    bool Prefetch = true;
     /// Ranks of one host read one another's blocks in place. For what is published from then on.
     bool HostSharing = true;
     /// Page based only; see PagedStore.

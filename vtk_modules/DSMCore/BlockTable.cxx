@@ -63,7 +63,7 @@ void BlockTable::Place(BlockId id, LineState state, const std::byte* address)
 {
   BlockLine& line = this->Lines[id];
   line.MoveTo(state);
-  line.Referenced.store(1, std::memory_order_relaxed);
+  line.Use.store(BlockUse::Recent, std::memory_order_relaxed);
   line.Address.store(address, std::memory_order_release);
   --this->Missing;
 }
@@ -217,7 +217,7 @@ void BlockTable::DropReplicas()
     if (line.State == LineState::Replica)
     {
       line.MoveTo(LineState::Absent);
-      line.Referenced.store(0, std::memory_order_relaxed);
+      line.Use.store(BlockUse::Idle, std::memory_order_relaxed);
       line.Address.store(nullptr, std::memory_order_relaxed);
       ++this->Missing;
     }

@@ -33,6 +33,11 @@ struct StoreCounters
 {
   WorkerCounters Workers; ///< sum over the rank's workers
   std::uint64_t Evictions = 0;
+  /// Blocks that were asked for before anybody needed them; those that came to be needed before they
+  /// were evicted and the frame was over, which is known at its end.
+  std::uint64_t Prefetches = 0;
+  std::uint64_t PrefetchesUsed = 0;
+  std::uint64_t Requests = 0; ///< messages that asked other ranks for blocks, one or several
   std::uint64_t BytesReceived = 0;
   std::uint64_t BytesSent = 0;
   std::uint64_t ResidentBytes = 0; ///< blocks this rank owns

@@ -4,6 +4,7 @@
 #include "DSMCore/ObjectStoreInternals.h"
 #include "DSMCore/TablePublisher.h"
 
+#include <algorithm>
 #include <string>
 #include <utility>
 
@@ -84,6 +85,11 @@ void ObjectStore::Cancel(const std::string& cause)
   this->Self->Cancel(cause);
 }
 
+bool ObjectStore::Drain()
+{
+  return this->Self->Drain();
+}
+
 void ObjectStore::EndFrame()
 {
   this->Self->EndFrame();
@@ -97,6 +103,29 @@ ObjectStore::Worker& ObjectStore::GetWorker(int index)
 const std::byte* ObjectStore::Wait(Worker& worker, const Segment& segment, BlockId id)
 {
   return this->Self->Wait(worker, segment, id);
+}
+
+bool ObjectStore::MayPrefetch() const
+{
+  return this->Self->MayPrefetch();
+}
+
+bool ObjectStore::Prefetch(const BlockSegment& segment, const BlockId* ids, std::size_t count)
+{
+  const Segment& self = static_cast<const Segment&>(segment);
+  // Mostly all is here; then the lock is not taken.
+  const BlockId* const last = ids + count;
+  const BlockId* const absent = std::find_if(ids, last,
+    [&](BlockId id)
+    {
+      return id < self.GetDirectory().GetCount() &&
+        !self.Lines[id].Address.load(std::memory_order_relaxed);
+    });
+  if (absent != last)
+  {
+    this->Self->Prefetch(self, absent, static_cast<std::size_t>(last - absent));
+  }
+  return absent != last;
 }
 
 void ObjectStore::Announce(Worker& worker)

@@ -53,6 +53,8 @@ public:
     std::shared_ptr<const HostGroups> Groups = nullptr;
     /// Who of them runs: a worker gives its slot to others while it waits. Null: all run.
     std::shared_ptr<WorkerSlots> Slots = nullptr;
+    /// See Prefetch.
+    bool Prefetch = true;
   };
 
   using Segment = BlockTable;
@@ -95,6 +97,11 @@ public:
   bool Service();
   /// Communication thread: from now on every Acquire that would wait throws Error(cause).
   void Cancel(const std::string& cause);
+  /// Communication thread, often after this rank's workers have stopped: gives up what Prefetch wanted
+  /// and was not asked for yet. Whether the rest has come; only then may the rank say that it is done,
+  /// since no answer may be under way to a rank that has left the frame. True after Cancel, behind
+  /// which all ranks wait for one another anyway.
+  bool Drain();
   /// Communication thread, after all ranks' workers have stopped.
   void EndFrame();
 
@@ -105,6 +112,14 @@ public:
   /// The pin is valid until it goes out of scope. Throws Error after Cancel, and when it would have
   /// to wait while the worker holds another pin, has not entered, or the segment was retired.
   Pin Acquire(Worker& worker, const BlockSegment& segment, BlockId id);
+
+  /// Communication thread: whether Prefetch does anything, with the settings and what is published.
+  bool MayPrefetch() const;
+  /// Worker: it will probably need these blocks soon. Those that are absent are asked for in one go,
+  /// unless too much of the cache is taken by blocks that were foreseen and not used yet. Never waits;
+  /// ids that there are not, blocks that are here or on their way, retired segments and frames that are
+  /// not open are passed by. Returns whether any block was not here.
+  bool Prefetch(const BlockSegment& segment, const BlockId* ids, std::size_t count);
 
   /// Worker: holds no pin; memory of blocks evicted before may be reused. Call between tiles; it
   /// costs two loads as long as nothing was evicted.
@@ -222,9 +237,9 @@ inline ObjectStore::Pin ObjectStore::Acquire(
     address = this->Wait(worker, self, id);
   }
   // Tested first: a store on every hit would take the line away from the other workers' caches.
-  else if (!line.Referenced.load(std::memory_order_relaxed))
+  else if (line.Use.load(std::memory_order_relaxed) != BlockUse::Recent)
   {
-    line.Referenced.store(1, std::memory_order_relaxed);
+    line.Use.store(BlockUse::Recent, std::memory_order_relaxed);
   }
   return Pin(address, line.Bytes, worker);
 }

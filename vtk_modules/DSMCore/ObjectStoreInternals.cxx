@@ -57,7 +57,7 @@ const std::byte* ObjectStore::Internals::Wait(Worker& worker, const Segment& seg
   std::unique_lock<std::mutex> lock(this->Guard);
   if (const std::byte* const address = line.Address.load(std::memory_order_relaxed))
   {
-    line.Referenced.store(1, std::memory_order_relaxed);
+    line.Use.store(BlockUse::Recent, std::memory_order_relaxed);
     return address; // it came in the meantime: a hit after all
   }
   ++worker.Slow.Misses;
@@ -73,15 +73,24 @@ const std::byte* ObjectStore::Internals::Wait(Worker& worker, const Segment& seg
   }
 
   const auto start = std::chrono::steady_clock::now();
-  if (line.State == LineState::Absent)
+  const bool wasForeseen = line.Use.load(std::memory_order_relaxed) == BlockUse::Prefetched;
+  if (line.State == LineState::Absent || line.State == LineState::Foreseen)
   {
     line.MoveTo(LineState::Wanted);
     this->Wanted.push_back({ &segment, id });
-    this->WantedCount.store(this->Wanted.size(), std::memory_order_release);
+    this->UpdateQueuedCount();
   }
   else
   {
     ++worker.Slow.Joins;
+    if (wasForeseen)
+    {
+      this->Prefetches.CountJoin();
+    }
+  }
+  if (wasForeseen)
+  {
+    line.Use.store(BlockUse::Idle, std::memory_order_relaxed);
   }
   ++line.Waiters;
   worker.WaitsFor = &line;
@@ -108,6 +117,42 @@ const std::byte* ObjectStore::Internals::Wait(Worker& worker, const Segment& seg
           "renderer.");
   }
   return address;
+}
+
+void ObjectStore::Internals::Prefetch(const Segment& segment, const BlockId* ids, std::size_t count)
+{
+  const auto isUnused = [](const BlockWant& block)
+  { return GetLine(block).Use.load(std::memory_order_relaxed) == BlockUse::Prefetched; };
+  bool any = false;
+  {
+    const std::lock_guard<std::mutex> lock(this->Guard);
+    if (this->Phase != FramePhase::Open || segment.Retired || !this->Current.Prefetch)
+    {
+      return;
+    }
+    for (const BlockId* id = ids; id != ids + count; ++id)
+    {
+      if (*id >= segment.GetDirectory().GetCount() || segment.Lines[*id].State != LineState::Absent)
+      {
+        continue;
+      }
+      BlockLine& line = segment.Lines[*id];
+      const BlockWant want{ &segment, *id };
+      if (!this->Prefetches.TryAdd(want, BlockCache::GetFootprint(line.Bytes), isUnused))
+      {
+        break;
+      }
+      line.MoveTo(LineState::Foreseen);
+      line.Use.store(BlockUse::Prefetched, std::memory_order_relaxed);
+      this->Foreseen.push_back(want);
+      any = true;
+    }
+    this->UpdateQueuedCount();
+  }
+  if (any)
+  {
+    this->Messages.WakeUp();
+  }
 }
 
 // -- Between frames --------------------------------------------------------------------------------
@@ -163,6 +208,11 @@ std::size_t ObjectStore::Internals::GetLargestBlock() const
   return largest;
 }
 
+bool ObjectStore::Internals::MayPrefetch() const
+{
+  return this->Current.Prefetch && this->GetLargestBlock() > 0;
+}
+
 void ObjectStore::Internals::CheckBudget() const
 {
   if (this->Phase != FramePhase::Closed)
@@ -189,13 +239,14 @@ void ObjectStore::Internals::BeginFrame()
   this->Cache.Reclaim(this->GetOldestEpoch());
   this->Cache.ResetPeak();
   this->Frame = StoreCounters{};
+  this->Prefetches.BeginFrame(this->Cache.GetCapacity());
   this->Workers.BeginFrame();
   this->Phase = FramePhase::Open;
 }
 
 bool ObjectStore::Internals::Service()
 {
-  if (this->WantedCount.load(std::memory_order_acquire) == 0 && !this->Cache.HasLimbo())
+  if (this->QueuedCount.load(std::memory_order_acquire) == 0 && !this->Cache.HasLimbo())
   {
     return false;
   }
@@ -203,20 +254,53 @@ bool ObjectStore::Internals::Service()
   {
     const std::lock_guard<std::mutex> lock(this->Guard);
     any = this->Cache.Reclaim(this->GetOldestEpoch());
-    while (!this->Wanted.empty())
+    this->AskForWanted();
+    if (this->Wanted.empty())
     {
-      BlockLine& line = GetLine(this->Wanted.front());
-      if (!this->MakeRoom(line.Bytes))
-      {
-        break;
-      }
-      line.MoveTo(LineState::Pending);
-      this->Requests.Add(this->Wanted.front());
-      this->Wanted.pop_front();
+      this->AskForForeseen();
     }
-    this->WantedCount.store(this->Wanted.size(), std::memory_order_release);
+    this->UpdateQueuedCount();
   }
   return this->Requests.Send() || any;
+}
+
+void ObjectStore::Internals::AskForWanted()
+{
+  while (!this->Wanted.empty())
+  {
+    BlockLine& line = GetLine(this->Wanted.front());
+    if (!this->MakeRoom(line.Bytes))
+    {
+      return;
+    }
+    line.MoveTo(LineState::Pending);
+    this->Requests.Add(this->Wanted.front());
+    this->Wanted.pop_front();
+  }
+}
+
+void ObjectStore::Internals::AskForForeseen()
+{
+  while (!this->Foreseen.empty())
+  {
+    BlockLine& line = GetLine(this->Foreseen.front());
+    if (line.State == LineState::Foreseen)
+    {
+      if (!this->MakeRoom(line.Bytes))
+      {
+        return;
+      }
+      line.MoveTo(LineState::Pending);
+      this->Requests.Add(this->Foreseen.front());
+      ++this->Frame.Prefetches;
+    }
+    this->Foreseen.pop_front();
+  }
+}
+
+void ObjectStore::Internals::UpdateQueuedCount()
+{
+  this->QueuedCount.store(this->Wanted.size() + this->Foreseen.size(), std::memory_order_release);
 }
 
 bool ObjectStore::Internals::MakeRoom(std::size_t blockBytes)
@@ -226,12 +310,13 @@ bool ObjectStore::Internals::MakeRoom(std::size_t blockBytes)
     return true;
   }
   const std::uint64_t next = this->Store.Epoch.load(std::memory_order_relaxed) + 1;
-  const std::size_t evicted = this->Cache.Evict(blockBytes, this->SpareBytes, next);
-  if (evicted == 0)
+  const BlockCache::Evictions evicted = this->Cache.Evict(blockBytes, this->SpareBytes, next);
+  if (evicted.Count == 0)
   {
     return false;
   }
-  this->Frame.Evictions += evicted;
+  this->Frame.Evictions += evicted.Count;
+  this->Prefetches.CountLosses(evicted.Unused);
   this->Store.Epoch.store(next, std::memory_order_release);
   this->Cache.Reclaim(this->GetOldestEpoch());
   return this->Cache.TryReserve(blockBytes);
@@ -271,6 +356,10 @@ void ObjectStore::Internals::Take(const BlockWant& block, const std::byte* bytes
   BlockLine& line = GetLine(block);
   const std::lock_guard<std::mutex> lock(this->Guard);
   this->Cache.Insert(line, bytes);
+  if (line.Use.load(std::memory_order_relaxed) == BlockUse::Prefetched)
+  {
+    this->Prefetches.CountArrival();
+  }
   this->Workers.WakeThoseThatWaitFor(line);
 }
 
@@ -284,7 +373,15 @@ void ObjectStore::Internals::Cancel(const std::string& cause)
   this->Phase = FramePhase::Cancelled;
   this->Cause = cause;
   this->AbandonWanted();
+  this->AbandonForeseen();
   this->Workers.WakeAll();
+}
+
+bool ObjectStore::Internals::Drain()
+{
+  const std::lock_guard<std::mutex> lock(this->Guard);
+  this->AbandonForeseen();
+  return this->Phase != FramePhase::Open || this->Requests.GetPendingCount() == 0;
 }
 
 void ObjectStore::Internals::EndFrame()
@@ -298,11 +395,20 @@ void ObjectStore::Internals::EndFrame()
   this->Phase = FramePhase::Closed;
   this->Workers.WakeAll();
   this->AbandonWanted();
+  this->AbandonForeseen();
   for (const BlockWant& want : this->Requests.Abandon())
   {
     this->Cache.Release(GetLine(want).Bytes);
     GetLine(want).MoveTo(LineState::Absent);
   }
+  this->Frame.PrefetchesUsed = this->Prefetches.EndFrame(
+    [](const BlockWant& block)
+    {
+      BlockLine& line = GetLine(block);
+      auto unused = BlockUse::Prefetched;
+      return line.Use.compare_exchange_strong(unused, BlockUse::Idle) &&
+        line.State == LineState::Cached;
+    });
   this->Cache.Reclaim(this->GetOldestEpoch());
   this->Workers.EndFrame();
 }
@@ -314,7 +420,22 @@ void ObjectStore::Internals::AbandonWanted()
     GetLine(want).MoveTo(LineState::Absent);
   }
   this->Wanted.clear();
-  this->WantedCount.store(0, std::memory_order_release);
+  this->UpdateQueuedCount();
+}
+
+void ObjectStore::Internals::AbandonForeseen()
+{
+  for (const BlockWant& want : this->Foreseen)
+  {
+    BlockLine& line = GetLine(want);
+    if (line.State == LineState::Foreseen)
+    {
+      line.MoveTo(LineState::Absent);
+      line.Use.store(BlockUse::Idle, std::memory_order_relaxed);
+    }
+  }
+  this->Foreseen.clear();
+  this->UpdateQueuedCount();
 }
 
 // -- Counters --------------------------------------------------------------------------------------
@@ -336,6 +457,7 @@ StoreCounters ObjectStore::Internals::GetCounters()
   const auto workers = this->GetWorkerCounters();
   const std::lock_guard<std::mutex> lock(this->Guard);
   StoreCounters counters = this->Frame;
+  counters.Requests = this->Requests.GetCount();
   counters.BytesSent = this->Requests.GetBytesSent();
   counters.BytesReceived = this->Requests.GetBytesReceived();
   for (const WorkerCounters& worker : workers)

@@ -5,6 +5,7 @@
 #include "DSMCore/BlockCache.h"
 #include "DSMCore/BlockRequests.h"
 #include "DSMCore/ObjectStore.h"
+#include "DSMCore/PrefetchLedger.h"
 #include "DSMCore/StoreWorkers.h"
 
 #include <atomic>
@@ -22,13 +23,16 @@ namespace dsm
 /// The store's slow paths: misses, requests, replies, eviction. A block that is missed first is
 /// queued; workers that miss it later join. The communication thread takes the queue in order: it
 /// sets memory aside (evicting if it must, and waiting for the workers to pass a quiescent point),
-/// then sends the request, so a reply always finds room.
+/// then sends the request, so a reply always finds room. What workers foresee waits in a queue of its
+/// own, which is looked at when nothing is wanted.
 class ObjectStore::Internals
 {
 public:
   Internals(ObjectStore& store, Messenger& messenger, const Settings& settings);
 
   const std::byte* Wait(Worker& worker, const Segment& segment, BlockId id);
+  void Prefetch(const Segment& segment, const BlockId* ids, std::size_t count);
+  bool MayPrefetch() const;
   void Enter(Worker& worker);
   void Leave(Worker& worker);
 
@@ -39,6 +43,7 @@ public:
   void BeginFrame();
   bool Service();
   void Cancel(const std::string& cause);
+  bool Drain();
   void EndFrame();
   bool IsInFrame() const { return this->Phase != FramePhase::Closed; }
 
@@ -69,6 +74,11 @@ private:
   /// Makes room for the next wanted block; false when it must wait for workers.
   bool MakeRoom(std::size_t blockBytes);
   void AbandonWanted();
+  void AbandonForeseen();
+  /// Moves those that room can be made for to Requests.
+  void AskForWanted();
+  void AskForForeseen();
+  void UpdateQueuedCount();
   std::uint64_t GetOldestEpoch() const;
   std::size_t GetLargestBlock() const;
 
@@ -84,8 +94,11 @@ private:
   BlockCache Cache;
   std::size_t SpareBytes = 0;
   std::deque<BlockWant> Wanted;
-  /// Of Wanted; lets Service look without the lock.
-  std::atomic<std::size_t> WantedCount{ 0 };
+  /// Some may have become wanted, or come, since they were queued.
+  std::deque<BlockWant> Foreseen;
+  PrefetchLedger Prefetches;
+  /// Of Wanted and Foreseen; lets Service look without the lock.
+  std::atomic<std::size_t> QueuedCount{ 0 };
   StoreCounters Frame;
 };
 

@@ -2,6 +2,7 @@
 #include "DSMCore/PageCache.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace dsm
 {
@@ -44,23 +45,31 @@ bool PageCache::TryEvict(
   for (std::size_t step = 0; step < 2 * this->Frames.size(); ++step)
   {
     this->Hand = this->Hand + 1 < this->Frames.size() ? this->Hand + 1 : 0;
-    const Frame& frame = this->Frames[this->Hand];
+    Frame& frame = this->Frames[this->Hand];
     if (!frame.From || frame.Placed > before || frame.From->Lines[frame.Id].Waiters > 0 ||
       (mayGo && !mayGo(frame)))
     {
       continue;
     }
+    bool wasUnused = false;
     if (!frame.From->IsPure)
     {
-      if (frame.From->GetHint(frame.Id) == PageHint::Recent)
+      const PageHint hint = frame.From->GetHint(frame.Id);
+      wasUnused = hint == PageHint::Prefetched;
+      if (hint == PageHint::Recent)
       {
         frame.From->SetHint(frame.Id, PageHint::Idle);
+        continue;
+      }
+      if (wasUnused && !std::exchange(frame.IsSpared, true))
+      {
         continue;
       }
       // A worker that finds it idle right now may be about to mark it again; it will fault.
       frame.From->SetHint(frame.Id, PageHint::Absent);
     }
     evicted = this->TakeOut(this->Hand);
+    evicted.WasUnused = wasUnused;
     return true;
   }
   return false;

@@ -15,8 +15,8 @@ namespace dsm
 
 /// Which remote blocks have pages, within a budget that is never exceeded: room is set aside before
 /// a block is requested. Replacement is CLOCK, its reference bits being the blocks' hints; in a store
-/// of pure faults nobody tells what is in use, and it is first in, first out. It keeps the accounts only: the
-/// pages themselves are the store's to move.
+/// of pure faults nobody tells what is in use, and it is first in, first out. What was prefetched and not
+/// used yet is passed by once. It keeps the accounts only: the pages themselves are the store's to move.
 ///
 /// Communication thread only, under the store's lock.
 class PageCache
@@ -31,6 +31,8 @@ public:
     BlockId Id = 0;
     std::size_t Footprint = 0;
     Time Placed;
+    bool IsSpared = false;  ///< the hand has passed it once, prefetched and unused
+    bool WasUnused = false; ///< of what was evicted: prefetched, and never used
   };
 
   void SetCapacity(std::size_t bytes) { this->Capacity = bytes; }

@@ -13,12 +13,13 @@ namespace dsm
 /// Where the pages of a block stand, seen from one rank.
 enum class PageState : std::uint8_t
 {
-  Absent,  ///< another rank owns it, and nobody here asked for it
-  Wanted,  ///< a worker waits for it; the request is not sent, for want of memory
-  Pending, ///< requested from its owner; memory is set aside for it
-  Cached,  ///< a copy is here, and may be evicted
-  Zeroed,  ///< stands in for it until the end of a frame that was cancelled
-  Owned    ///< here for good
+  Absent,   ///< another rank owns it, and nobody here asked for it
+  Foreseen, ///< likely to be needed; nobody waits for it, and the request is not sent
+  Wanted,   ///< a worker waits for it; the request is not sent, for want of memory
+  Pending,  ///< requested from its owner; memory is set aside for it
+  Cached,   ///< a copy is here, and may be evicted
+  Zeroed,   ///< stands in for it until the end of a frame that was cancelled
+  Owned     ///< here for good
 };
 
 /// What a page store keeps of a block, for the way of a miss: under the store's lock.
@@ -28,12 +29,18 @@ struct PageLine
   /// Workers that wait for the block, or were woken and are not on their way with it yet: while
   /// there are any, it is not evicted.
   std::uint16_t Waiters = 0;
+  /// Was foreseen, and nobody has waited for it. When it is here, its hint tells whether it was used.
+  bool IsPrefetched = false;
 
   /// Throws Error when there is no way from the present state to `next`.
   void MoveTo(PageState next)
   {
     const PageState now = this->State;
     const bool legal = (now == PageState::Absent && next == PageState::Wanted) ||
+      (now == PageState::Absent && next == PageState::Foreseen) ||
+      (now == PageState::Foreseen && next == PageState::Wanted) ||
+      (now == PageState::Foreseen && next == PageState::Pending) ||
+      (now == PageState::Foreseen && next == PageState::Absent) ||
       (now == PageState::Absent && next == PageState::Owned) ||
       (now == PageState::Absent && next == PageState::Zeroed) ||
       (now == PageState::Wanted && next == PageState::Pending) ||
@@ -58,8 +65,9 @@ struct PageLine
 enum class PageHint : std::uintptr_t
 {
   Absent = 0,
-  Recent = 1, ///< here, and used since the clock's hand passed
-  Idle = 2    ///< here, not used since
+  Recent = 1,    ///< here, and used since the clock's hand passed
+  Idle = 2,      ///< here, not used since
+  Prefetched = 4 ///< here, not used yet
 };
 
 } // namespace dsm

@@ -6,6 +6,7 @@
 
 #include <sys/mman.h>
 
+#include <algorithm>
 #include <new>
 #include <utility>
 
@@ -102,11 +103,15 @@ void PagedStore::Segment::SetHint(BlockId id, PageHint hint) const
 
 bool PagedStore::Segment::TryMarkRecent(BlockId id) const
 {
-  // By exchange, not over the mark of an eviction that happens right now.
   const std::uintptr_t address = reinterpret_cast<std::uintptr_t>(this->GetAddress(id));
-  std::uintptr_t idle = address + static_cast<std::uintptr_t>(PageHint::Idle);
-  return this->Entries[id].compare_exchange_strong(
-    idle, address + static_cast<std::uintptr_t>(PageHint::Recent), std::memory_order_relaxed);
+  const auto mark = [&](PageHint from)
+  {
+    // By exchange, not over the mark of an eviction that happens right now.
+    std::uintptr_t expected = address + static_cast<std::uintptr_t>(from);
+    return this->Entries[id].compare_exchange_strong(
+      expected, address + static_cast<std::uintptr_t>(PageHint::Recent), std::memory_order_relaxed);
+  };
+  return mark(PageHint::Idle) || mark(PageHint::Prefetched);
 }
 
 bool PagedStore::Segment::IsAlwaysHere(BlockId id) const
@@ -258,6 +263,11 @@ void PagedStore::Cancel(const std::string& cause)
   this->Self->Cancel(cause);
 }
 
+bool PagedStore::Drain()
+{
+  return this->Self->Drain();
+}
+
 void PagedStore::EndFrame()
 {
   this->Self->EndFrame();
@@ -275,6 +285,26 @@ PagedStore::Pin PagedStore::Admit(Worker& worker, const Segment& segment, BlockI
     this->Self->Wait(worker, segment, id);
   }
   return Pin(segment.GetAddress(id), segment, id);
+}
+
+bool PagedStore::MayPrefetch() const
+{
+  return this->Self->MayPrefetch();
+}
+
+bool PagedStore::Prefetch(const BlockSegment& segment, const BlockId* ids, std::size_t count)
+{
+  const Segment& self = static_cast<const Segment&>(segment);
+  // Mostly all is here; then the lock is not taken.
+  const BlockId* const last = ids + count;
+  const BlockId* const absent = std::find_if(ids, last,
+    [&](BlockId id)
+    { return id < self.GetDirectory().GetCount() && self.GetHint(id) == PageHint::Absent; });
+  if (absent != last)
+  {
+    this->Self->Prefetch(self, absent, static_cast<std::size_t>(last - absent));
+  }
+  return absent != last;
 }
 
 void PagedStore::Enter(Worker& worker)

@@ -66,6 +66,8 @@ public:
     bool PureFaulting = false;
     /// Who of them runs: a worker gives its slot to others while it waits. Null: all run.
     std::shared_ptr<WorkerSlots> Slots = nullptr;
+    /// See Prefetch.
+    bool Prefetch = true;
   };
 
   class Segment;
@@ -109,6 +111,8 @@ public:
   bool Service();
   /// Communication thread: from now on every Acquire throws Error(cause).
   void Cancel(const std::string& cause);
+  /// Communication thread, often after this rank's workers have stopped; see ObjectStore.
+  bool Drain();
   /// Communication thread, after all ranks' workers have stopped.
   void EndFrame();
 
@@ -119,6 +123,10 @@ public:
   /// absent. Throws Error after Cancel, and for another rank's block when the worker has not
   /// entered, outside of a frame, and when the segment was retired.
   Pin Acquire(Worker& worker, const BlockSegment& segment, BlockId id);
+
+  /// See ObjectStore. With Settings::PureFaulting nothing is prefetched, as in the paper.
+  bool MayPrefetch() const;
+  bool Prefetch(const BlockSegment& segment, const BlockId* ids, std::size_t count);
 
   /// Nothing needs it here.
   void Quiesce(Worker&) {}
@@ -162,7 +170,7 @@ private:
   std::byte* GetAddress(BlockId id) const { return this->Base + this->Layout.GetOffset(id); }
   PageHint GetHint(BlockId id) const;
   void SetHint(BlockId id, PageHint hint) const;
-  /// A worker uses an idle block; false when it is not idle.
+  /// A worker uses a block that is idle or was prefetched; false when it is neither.
   bool TryMarkRecent(BlockId id) const;
   /// Whether a block has nothing to wait for: owned, or of no bytes.
   bool IsAlwaysHere(BlockId id) const;

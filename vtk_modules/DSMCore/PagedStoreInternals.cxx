@@ -130,14 +130,66 @@ void PagedStore::Internals::Wait(Worker& worker, const Segment& segment, BlockId
 bool PagedStore::Internals::Request(const Segment& segment, BlockId id)
 {
   PageLine& line = segment.Lines[id];
-  if (line.State != PageState::Absent)
+  const bool wasForeseen = std::exchange(line.IsPrefetched, false);
+  if (line.State != PageState::Absent && line.State != PageState::Foreseen)
   {
+    if (wasForeseen)
+    {
+      this->Prefetches.CountJoin();
+    }
     return true;
   }
   line.MoveTo(PageState::Wanted);
   this->Wanted.push_back({ &segment, id });
-  this->WantedCount.store(this->Wanted.size(), std::memory_order_release);
+  this->UpdateQueuedCount();
   return false;
+}
+
+void PagedStore::Internals::Prefetch(const Segment& segment, const BlockId* ids, std::size_t count)
+{
+  const auto isUnused = [](const BlockWant& block)
+  {
+    const PageLine& line = GetLine(block);
+    return line.IsPrefetched &&
+      (line.State != PageState::Cached ||
+        GetSegment(block).GetHint(block.Id) == PageHint::Prefetched);
+  };
+  bool any = false;
+  {
+    const std::lock_guard<std::mutex> lock(this->Guard);
+    if (this->Phase != FramePhase::Open || segment.Retired || !this->MayPrefetch())
+    {
+      return;
+    }
+    for (const BlockId* id = ids; id != ids + count; ++id)
+    {
+      if (*id >= segment.GetDirectory().GetCount() ||
+        segment.Lines[*id].State != PageState::Absent || segment.IsAlwaysHere(*id))
+      {
+        continue;
+      }
+      PageLine& line = segment.Lines[*id];
+      const BlockWant want{ &segment, *id };
+      if (!this->Prefetches.TryAdd(want, GetFootprint(want), isUnused))
+      {
+        break;
+      }
+      line.MoveTo(PageState::Foreseen);
+      line.IsPrefetched = true;
+      this->Foreseen.push_back(want);
+      any = true;
+    }
+    this->UpdateQueuedCount();
+  }
+  if (any)
+  {
+    this->Messages.WakeUp();
+  }
+}
+
+bool PagedStore::Internals::MayPrefetch() const
+{
+  return this->Current.Prefetch && !this->Current.PureFaulting && this->Messages.GetSize() > 1;
 }
 
 // -- Between frames --------------------------------------------------------------------------------
@@ -282,6 +334,7 @@ void PagedStore::Internals::BeginFrame()
   this->Cache.ResetPeak();
   this->Frame = StoreCounters{};
   this->Strangers = WorkerCounters{};
+  this->Prefetches.BeginFrame(this->Cache.GetCapacity());
   this->Workers.BeginFrame();
   for (const auto& worker : this->Workers)
   {
@@ -301,25 +354,58 @@ void PagedStore::Internals::BeginFrame()
 
 bool PagedStore::Internals::Service()
 {
-  if (this->WantedCount.load(std::memory_order_acquire) == 0)
+  if (this->QueuedCount.load(std::memory_order_acquire) == 0)
   {
     return false;
   }
   std::vector<PageCache::Frame> evicted;
   {
     const std::lock_guard<std::mutex> lock(this->Guard);
-    while (!this->Wanted.empty() && this->MakeRoom(this->Wanted.front(), evicted))
+    this->AskForWanted(evicted);
+    if (this->Wanted.empty())
     {
-      const BlockWant& want = this->Wanted.front();
-      GetLine(want).MoveTo(PageState::Pending);
-      this->Requests.Add(want);
-      this->Wanted.pop_front();
+      this->AskForForeseen(evicted);
     }
-    this->WantedCount.store(this->Wanted.size(), std::memory_order_release);
+    this->UpdateQueuedCount();
   }
   // An evicted block may be wanted again already, but only this thread can fetch it.
   this->Remove(evicted);
   return this->Requests.Send();
+}
+
+void PagedStore::Internals::AskForWanted(std::vector<PageCache::Frame>& evicted)
+{
+  while (!this->Wanted.empty() && this->MakeRoom(this->Wanted.front(), evicted))
+  {
+    const BlockWant& want = this->Wanted.front();
+    GetLine(want).MoveTo(PageState::Pending);
+    this->Requests.Add(want);
+    this->Wanted.pop_front();
+  }
+}
+
+void PagedStore::Internals::AskForForeseen(std::vector<PageCache::Frame>& evicted)
+{
+  while (!this->Foreseen.empty())
+  {
+    const BlockWant& want = this->Foreseen.front();
+    if (GetLine(want).State == PageState::Foreseen)
+    {
+      if (!this->MakeRoom(want, evicted))
+      {
+        return;
+      }
+      GetLine(want).MoveTo(PageState::Pending);
+      this->Requests.Add(want);
+      ++this->Frame.Prefetches;
+    }
+    this->Foreseen.pop_front();
+  }
+}
+
+void PagedStore::Internals::UpdateQueuedCount()
+{
+  this->QueuedCount.store(this->Wanted.size() + this->Foreseen.size(), std::memory_order_release);
 }
 
 bool PagedStore::Internals::MakeRoom(const BlockWant& want, std::vector<PageCache::Frame>& evicted)
@@ -394,16 +480,24 @@ std::size_t PagedStore::Internals::CountNeighbours(const Segment& segment, Block
 void PagedStore::Internals::MarkCached(const Segment& segment, BlockId id)
 {
   this->Runs = this->Runs + 1 - this->CountNeighbours(segment, id);
-  segment.Lines[id].MoveTo(PageState::Cached);
+  PageLine& line = segment.Lines[id];
+  line.MoveTo(PageState::Cached);
+  if (line.IsPrefetched)
+  {
+    this->Prefetches.CountArrival();
+  }
   if (!segment.IsPure)
   {
-    segment.SetHint(id, PageHint::Recent);
+    segment.SetHint(id, line.IsPrefetched ? PageHint::Prefetched : PageHint::Recent);
   }
 }
 
 void PagedStore::Internals::MarkEvicted(const PageCache::Frame& frame)
 {
-  frame.From->Lines[frame.Id].MoveTo(PageState::Absent);
+  PageLine& line = frame.From->Lines[frame.Id];
+  line.MoveTo(PageState::Absent);
+  line.IsPrefetched = false;
+  this->Prefetches.CountLosses(frame.WasUnused ? 1 : 0);
   this->Runs = this->Runs + this->CountNeighbours(*frame.From, frame.Id) - 1;
 }
 
@@ -452,12 +546,27 @@ void PagedStore::Internals::AbandonRequests()
     GetLine(want).MoveTo(PageState::Absent);
   }
   this->Wanted.clear();
-  this->WantedCount.store(0, std::memory_order_release);
+  this->AbandonForeseen();
   for (const BlockWant& want : this->Requests.Abandon())
   {
     this->Cache.Release(GetFootprint(want));
     GetLine(want).MoveTo(PageState::Absent);
   }
+}
+
+void PagedStore::Internals::AbandonForeseen()
+{
+  for (const BlockWant& want : this->Foreseen)
+  {
+    PageLine& line = GetLine(want);
+    if (line.State == PageState::Foreseen)
+    {
+      line.MoveTo(PageState::Absent);
+      line.IsPrefetched = false;
+    }
+  }
+  this->Foreseen.clear();
+  this->UpdateQueuedCount();
 }
 
 void PagedStore::Internals::CloseEntrance()
@@ -488,6 +597,13 @@ void PagedStore::Internals::Cancel(const std::string& cause)
   this->Waiting.clear();
 }
 
+bool PagedStore::Internals::Drain()
+{
+  const std::lock_guard<std::mutex> lock(this->Guard);
+  this->AbandonForeseen();
+  return this->Phase != FramePhase::Open || this->Requests.GetPendingCount() == 0;
+}
+
 void PagedStore::Internals::EndFrame()
 {
   const std::lock_guard<std::mutex> lock(this->Guard);
@@ -500,6 +616,19 @@ void PagedStore::Internals::EndFrame()
   this->CloseEntrance();
   this->Workers.EndFrame();
   this->AbandonRequests();
+  this->Frame.PrefetchesUsed = this->Prefetches.EndFrame(
+    [](const BlockWant& block)
+    {
+      PageLine& line = GetLine(block);
+      const bool isUnused = std::exchange(line.IsPrefetched, false) &&
+        line.State == PageState::Cached &&
+        GetSegment(block).GetHint(block.Id) == PageHint::Prefetched;
+      if (isUnused)
+      {
+        GetSegment(block).SetHint(block.Id, PageHint::Idle);
+      }
+      return isUnused;
+    });
   this->Workers.WakeAll();
   if (!this->Faults)
   {
@@ -541,6 +670,7 @@ StoreCounters PagedStore::Internals::GetCounters()
   const auto workers = this->GetWorkerCounters();
   const std::lock_guard<std::mutex> lock(this->Guard);
   StoreCounters counters = this->Frame;
+  counters.Requests = this->Requests.GetCount();
   counters.BytesSent = this->Requests.GetBytesSent();
   counters.BytesReceived = this->Requests.GetBytesReceived();
   counters.Workers = this->Strangers;

@@ -6,6 +6,7 @@
 #include "DSMCore/PageCache.h"
 #include "DSMCore/PageFaults.h"
 #include "DSMCore/PagedStore.h"
+#include "DSMCore/PrefetchLedger.h"
 #include "DSMCore/StoreWorkers.h"
 
 #include <sys/types.h>
@@ -27,7 +28,8 @@ namespace dsm
 /// The store's slow paths: misses, faults, requests, replies, eviction. A block that is missed first
 /// is queued; threads that miss it later join, whether they wait politely or in a fault. The
 /// communication thread takes the queue in order: it makes room, then sends the request, so a reply
-/// always finds room.
+/// always finds room. What workers foresee waits in a queue of its own, which is looked at when nothing
+/// is wanted.
 ///
 /// A listening thread takes the faults: it queues them, answers those that are none of ours, and
 /// after a cancellation satisfies them with zeros, so that no thread waits for a communication
@@ -39,6 +41,8 @@ public:
   ~Internals();
 
   void Wait(Worker& worker, const Segment& segment, BlockId id);
+  void Prefetch(const Segment& segment, const BlockId* ids, std::size_t count);
+  bool MayPrefetch() const;
   void Enter(Worker& worker);
   void Leave(Worker& worker);
 
@@ -52,6 +56,7 @@ public:
   void BeginFrame();
   bool Service();
   void Cancel(const std::string& cause);
+  bool Drain();
   void EndFrame();
   bool IsInFrame() const { return this->Phase != FramePhase::Closed; }
   /// Any thread: whether a frame runs that was not cancelled.
@@ -133,8 +138,13 @@ private:
   std::size_t CountNeighbours(const Segment& segment, BlockId id) const;
   void MarkCached(const Segment& segment, BlockId id);
   void MarkEvicted(const PageCache::Frame& frame);
-  /// What is wanted and what was asked for will not come.
+  /// Moves those that room can be made for to Requests.
+  void AskForWanted(std::vector<PageCache::Frame>& evicted);
+  void AskForForeseen(std::vector<PageCache::Frame>& evicted);
+  void UpdateQueuedCount();
+  /// What is wanted or foreseen, and what was asked for, will not come.
   void AbandonRequests();
+  void AbandonForeseen();
   void CloseEntrance();
   [[noreturn]] void Refuse(const Segment& segment) const;
   std::size_t GetLargestBlock() const;
@@ -153,8 +163,11 @@ private:
   std::string Cause;
   PageCache Cache;
   std::deque<BlockWant> Wanted;
-  /// Of Wanted; lets Service look without the lock.
-  std::atomic<std::size_t> WantedCount{ 0 };
+  /// Some may have become wanted, or come, since they were queued.
+  std::deque<BlockWant> Foreseen;
+  PrefetchLedger Prefetches;
+  /// Of Wanted and Foreseen; lets Service look without the lock.
+  std::atomic<std::size_t> QueuedCount{ 0 };
   std::vector<Stopped> Waiting;
   std::vector<Zeros> Zeroed;
   /// Runs of neighbouring cached blocks: each takes mappings of the process.

@@ -77,12 +77,15 @@ public:
   bool Service() { return false; }
   /// Nobody waits.
   void Cancel(const std::string&) {}
+  bool Drain() { return true; }
   void EndFrame();
 
   Worker& GetWorker(int index);
 
   /// Worker: the block. The pin is valid as long as the segment is published.
   Pin Acquire(Worker& worker, const BlockSegment& segment, BlockId id);
+  bool MayPrefetch() const { return false; }
+  bool Prefetch(const BlockSegment&, const BlockId*, std::size_t) { return false; }
   void Quiesce(Worker&) {}
   void Enter(Worker&) {}
   void Leave(Worker&) {}

@@ -210,7 +210,7 @@ void RunFrame(dsm::Messenger& messenger, Store& store,
   const auto serve = [&]
   {
     bool any = store.Service();
-    if (running == 0 && !told)
+    if (running == 0 && !told && store.Drain())
     {
       for (int rank = 0; rank < messenger.GetSize(); ++rank)
       {

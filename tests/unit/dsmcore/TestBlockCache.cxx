@@ -66,7 +66,7 @@ TEST_F(BlockCacheOfThree, BudgetIsNeverExceeded)
   this->Fill();
   EXPECT_FALSE(this->Fetch(3));
   EXPECT_EQ(this->Cache.GetUsed(), 3 * Bytes);
-  EXPECT_EQ(this->Cache.Evict(Bytes, 0, 2), 1u);
+  EXPECT_EQ(this->Cache.Evict(Bytes, 0, 2).Count, 1u);
   EXPECT_FALSE(this->Fetch(3)) << "memory in limbo is not free";
   EXPECT_FALSE(this->Cache.Reclaim(1));
   EXPECT_TRUE(this->Cache.Reclaim(2));
@@ -77,12 +77,12 @@ TEST_F(BlockCacheOfThree, BudgetIsNeverExceeded)
 TEST_F(BlockCacheOfThree, ReferencedBlocksGetASecondChance)
 {
   this->Fill();
-  this->Lines[0].Referenced = 1;
-  EXPECT_EQ(this->Cache.Evict(Bytes, 0, 1), 1u);
+  this->Lines[0].Use = dsm::BlockUse::Recent;
+  EXPECT_EQ(this->Cache.Evict(Bytes, 0, 1).Count, 1u);
   EXPECT_EQ(this->Lines[1].State, LineState::Absent);
   EXPECT_EQ(this->Lines[1].Address, nullptr);
   EXPECT_EQ(this->Lines[0].State, LineState::Cached);
-  EXPECT_EQ(this->Lines[0].Referenced, 0);
+  EXPECT_EQ(this->Lines[0].Use, dsm::BlockUse::Idle);
 }
 
 TEST_F(BlockCacheOfThree, AllReferencedStillYieldsOne)
@@ -90,9 +90,9 @@ TEST_F(BlockCacheOfThree, AllReferencedStillYieldsOne)
   this->Fill();
   for (auto& line : this->Lines)
   {
-    line.Referenced = 1;
+    line.Use = dsm::BlockUse::Recent;
   }
-  EXPECT_EQ(this->Cache.Evict(Bytes, 0, 1), 1u);
+  EXPECT_EQ(this->Cache.Evict(Bytes, 0, 1).Count, 1u);
 }
 
 TEST_F(BlockCacheOfThree, AwaitedBlocksStay)
@@ -102,18 +102,18 @@ TEST_F(BlockCacheOfThree, AwaitedBlocksStay)
   {
     line.Waiters = 1;
   }
-  EXPECT_EQ(this->Cache.Evict(Bytes, 0, 1), 0u);
+  EXPECT_EQ(this->Cache.Evict(Bytes, 0, 1).Count, 0u);
   this->Lines[2].Waiters = 0;
-  EXPECT_EQ(this->Cache.Evict(Bytes, 0, 1), 1u);
+  EXPECT_EQ(this->Cache.Evict(Bytes, 0, 1).Count, 1u);
   EXPECT_EQ(this->Lines[2].State, LineState::Absent);
 }
 
 TEST_F(BlockCacheOfThree, LimboCountsAsRoomToCome)
 {
   this->Fill();
-  EXPECT_EQ(this->Cache.Evict(Bytes, 0, 1), 1u);
-  EXPECT_EQ(this->Cache.Evict(Bytes, 0, 2), 0u) << "one is enough for one block";
-  EXPECT_EQ(this->Cache.Evict(Bytes, Bytes, 2), 1u);
+  EXPECT_EQ(this->Cache.Evict(Bytes, 0, 1).Count, 1u);
+  EXPECT_EQ(this->Cache.Evict(Bytes, 0, 2).Count, 0u) << "one is enough for one block";
+  EXPECT_EQ(this->Cache.Evict(Bytes, Bytes, 2).Count, 1u);
 }
 
 TEST_F(BlockCacheOfThree, ReleasedRoomIsFree)
@@ -145,7 +145,7 @@ TEST_F(BlockCacheOfThree, ForgetDropsOnlyTheGivenLines)
 TEST_F(BlockCacheOfThree, ShrinkMeetsTheBudget)
 {
   this->Fill();
-  this->Lines[0].Referenced = 1;
+  this->Lines[0].Use = dsm::BlockUse::Recent;
   this->Cache.SetCapacity(Bytes);
   this->Cache.Shrink();
   EXPECT_EQ(this->Cache.GetUsed(), Bytes);
@@ -157,7 +157,7 @@ TEST_F(BlockCacheOfThree, ShrinkMeetsTheBudget)
 
 TEST_F(BlockCacheOfThree, NothingToEvict)
 {
-  EXPECT_EQ(this->Cache.Evict(4 * Bytes, 0, Never), 0u);
+  EXPECT_EQ(this->Cache.Evict(4 * Bytes, 0, Never).Count, 0u);
   EXPECT_FALSE(this->Cache.Reclaim(Always));
   EXPECT_FALSE(this->Cache.HasLimbo());
 }
@@ -173,7 +173,7 @@ TEST_F(BlockCacheOfThree, SlotsAreReused)
     }
     while (!this->Fetch(index))
     {
-      EXPECT_EQ(this->Cache.Evict(Bytes, 0, 1), 1u);
+      EXPECT_EQ(this->Cache.Evict(Bytes, 0, 1).Count, 1u);
       this->Cache.Reclaim(Always);
     }
     EXPECT_LE(this->Cache.GetUsed(), 3 * Bytes);

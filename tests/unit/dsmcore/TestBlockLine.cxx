@@ -21,6 +21,19 @@ TEST(BlockLine, LifeOfARemoteBlock)
   }
 }
 
+TEST(BlockLine, LifeOfAForeseenBlock)
+{
+  dsm::BlockLine line;
+  for (const LineState next :
+    { LineState::Foreseen, LineState::Absent, LineState::Foreseen, LineState::Wanted,
+      LineState::Absent, LineState::Foreseen, LineState::Pending, LineState::Cached })
+  {
+    line.MoveTo(next);
+    EXPECT_EQ(line.State, next);
+  }
+  EXPECT_THROW(line.MoveTo(LineState::Foreseen), dsm::Error);
+}
+
 TEST(BlockLine, IllegalTransitionsFailLoudly)
 {
   dsm::BlockLine absent;
