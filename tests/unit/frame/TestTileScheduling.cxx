@@ -261,6 +261,48 @@ TEST(TestTileScheduling, WithoutNeedARankKeepsItsTiles)
     });
 }
 
+TEST(TestTileScheduling, PeekTellsWhatPopGivesLater)
+{
+  RunOnCluster(1,
+    [](dsm::Messenger& messenger)
+    {
+      for (const auto scheduling :
+        { rt::TileScheduling::CentralQueue, rt::TileScheduling::WorkStealing })
+      {
+        constexpr int tiles = 20;
+        std::unique_ptr<rt::TileScheduler> scheduler;
+        if (scheduling == rt::TileScheduling::CentralQueue)
+        {
+          scheduler = std::make_unique<rt::CentralQueueScheduler>(messenger);
+        }
+        else
+        {
+          scheduler = std::make_unique<rt::WorkStealingScheduler>(messenger);
+        }
+        dsm::WorkerSlots slots;
+        slots.BeginFrame(1);
+        const dsm::WorkerSlots::Hold slot(slots);
+        rt::TilePlan plan;
+        plan.Tiles = tiles;
+        plan.Columns = 5;
+        scheduler->Begin(plan, 1);
+        std::vector<std::optional<int>> foretold;
+        for (int ahead = 0; ahead < tiles + 2; ++ahead)
+        {
+          foretold.push_back(scheduler->Peek(ahead));
+        }
+        for (int number = 0; number < tiles + 2; ++number)
+        {
+          EXPECT_EQ(scheduler->Peek(0), foretold[number]);
+          EXPECT_EQ(scheduler->Pop(slots), foretold[number]);
+        }
+        EXPECT_TRUE(foretold[tiles - 1].has_value());
+        EXPECT_FALSE(foretold[tiles].has_value());
+        scheduler->End();
+      }
+    });
+}
+
 TEST(TestTileScheduling, AnIdleRankSteals)
 {
   RunOnCluster(3,

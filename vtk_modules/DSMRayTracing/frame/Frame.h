@@ -9,11 +9,14 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
 namespace rt
 {
+
+class BeamHistory;
 
 /// The pixels of one finished tile, row by row from the bottom, x fastest; where surfaces are kept
 /// apart, layer after layer, the nearest first. Colours of layers are what each contributes to the
@@ -58,6 +61,8 @@ struct Frame
   std::string Explanation; ///< a sentence: why they are kept so
   dsm::StoreCounters Counters;
   std::vector<dsm::WorkerCounters> WorkerCounters;
+  /// What the next frame of the view foresees the need of bricks by; null where none are fetched.
+  std::shared_ptr<const BeamHistory> Beams;
   /// That threads had nothing to trace, before this rank's last tile was done; summed over them.
   std::uint64_t IdleNanoseconds = 0;
 };

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "DSMRayTracing/frame/FrameRenderer.h"
 
+#include "DSMRayTracing/frame/BeamHistory.h"
 #include "DSMRayTracing/frame/FrameAgreement.h"
 #include "DSMRayTracing/frame/PixelRays.h"
 #include "DSMRayTracing/frame/TileGrid.h"
@@ -14,6 +15,7 @@
 #include <chrono>
 #include <cstring>
 #include <iterator>
+#include <memory>
 #include <mutex>
 #include <string>
 #include <utility>
@@ -102,6 +104,9 @@ struct Entry
   std::uint64_t LastTiles;
   double LastBusySeconds;
 };
+
+/// Bricks are asked for so many tiles, for each worker, before the tile that will need them.
+constexpr int LeadOfWorker = 4;
 
 /// A slowest rank is one that took so much longer than the fastest.
 constexpr double Unbalanced = 1.02;
@@ -232,10 +237,11 @@ void FrameRenderer::RenderTiles(dsm::BlockStore& store, const Scene& scene,
     store.Settle();
   }
   const TilePlan plan = CreatePlan(entries, request, last);
+  const std::shared_ptr<const BeamHistory> history = last ? last->Beams : frame.Beams;
   dsm::WorkerSlots& slots = store.GetSlots();
   slots.BeginFrame(store.GetSettings().Workers);
-  store.Visit(
-    [&](auto& blocks) { this->TraceTiles(blocks, slots, scene, request, plan, tiles, frame); });
+  store.Visit([&](auto& blocks)
+    { this->TraceTiles(blocks, slots, scene, request, plan, history.get(), tiles, frame); });
   frame.Width = request.Width;
   frame.Height = request.Height;
   frame.TileSize = request.TileSize;
@@ -249,9 +255,13 @@ void FrameRenderer::RenderTiles(dsm::BlockStore& store, const Scene& scene,
 
 template <class Store>
 void FrameRenderer::TraceTiles(Store& store, dsm::WorkerSlots& slots, const Scene& scene,
-  const FrameRequest& request, const TilePlan& plan, TileSource& tiles, Frame& frame)
+  const FrameRequest& request, const TilePlan& plan, const BeamHistory* last, TileSource& tiles,
+  Frame& frame)
 {
   const PixelRays rays(request);
+  const auto beams = store.MayPrefetch()
+    ? std::make_shared<BeamHistory>(request.Width, request.Height, scene.Isosurfaces.size(), last)
+    : nullptr;
   const int workers = store.GetSettings().Workers;
   std::vector<std::vector<Tile>> tilesOfWorker(workers);
   FirstFailure failure;
@@ -287,16 +297,23 @@ void FrameRenderer::TraceTiles(Store& store, dsm::WorkerSlots& slots, const Scen
     try
     {
       std::uint64_t misses = 0; // of the tiles before
-      const TileTracer<Store> tracer(store, worker, scene, rays, request);
+      bool looksAhead = true;   // as long as bricks are absent
+      const TileTracer<Store> tracer(store, worker, scene, rays, request, beams.get());
       while (std::optional<Tile> tile = tiles.Pop(slots))
       {
         const double tileStart = GetThreadSeconds();
         store.Enter(worker);
+        if (beams && looksAhead)
+        {
+          const std::optional<Tile> later = tiles.Peek(LeadOfWorker * workers);
+          looksAhead = later && tracer.Prefetch(*later);
+        }
         tracer.Trace(*tile);
         store.Leave(worker);
         tile->Seconds = GetThreadSeconds() - tileStart;
         const std::uint64_t before = std::exchange(misses, store.GetMisses(worker));
         tile->Misses += misses - before;
+        looksAhead = looksAhead || misses > before;
         tile->IsNew = tile->IsNew ||
           (plan.HasHistory && !std::binary_search(mine.begin(), mine.end(), tile->Index));
         tracer.Finish(*tile, GetTint(scene.View, this->Messenger.GetRank(), *tile));
@@ -341,7 +358,7 @@ void FrameRenderer::TraceTiles(Store& store, dsm::WorkerSlots& slots, const Scen
     {
       agreement.ReportFailure(cause);
     }
-    if (!agreement.IsDone() && idle)
+    if (!agreement.IsDone() && idle && store.Drain())
     {
       agreement.ReportDone();
       didSomething = true;
@@ -386,6 +403,7 @@ void FrameRenderer::TraceTiles(Store& store, dsm::WorkerSlots& slots, const Scen
   }
   frame.IsAborted = agreement.IsAborted();
   frame.Number = number;
+  frame.Beams = beams;
   frame.BusySeconds = busySeconds;
 }
 

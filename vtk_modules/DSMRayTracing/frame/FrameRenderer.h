@@ -36,7 +36,7 @@ public:
   /// the same dsm::Error on every rank when any rank fails, or when the requests differ; the next
   /// frame is not affected.
   /// `last`: the view's last frame, if there is one; with work stealing, a rank begins with the tiles
-  /// that it traced then.
+  /// that it traced then; it also tells which bricks the tiles will probably need.
   Frame Render(dsm::BlockStore& store, const Scene& scene, const FrameRequest& request,
     const Frame* last = nullptr);
 
@@ -57,7 +57,8 @@ private:
     const Frame* last, TileSource& tiles, Frame& frame);
   template <class Store>
   void TraceTiles(Store& store, dsm::WorkerSlots& slots, const Scene& scene,
-    const FrameRequest& request, const TilePlan& plan, TileSource& tiles, Frame& frame);
+    const FrameRequest& request, const TilePlan& plan, const BeamHistory* last, TileSource& tiles,
+    Frame& frame);
 
   dsm::Messenger& Messenger;
   CentralQueueScheduler Queue;

@@ -92,6 +92,12 @@ public:
     return this->Surfaces.FindBricks(corners);
   }
 
+  /// SceneTracer::Prefetch, ahead of TraceBox.
+  bool Prefetch(std::size_t object, const std::vector<dsm::BlockId>& bricks) const
+  {
+    return this->Surfaces.Prefetch(object, bricks);
+  }
+
   /// Whether TraceBox gains from `bricks`; else a smaller box may.
   static bool AreUsable(const std::vector<BeamBricks>& bricks)
   {

@@ -84,6 +84,13 @@ public:
     return bricks;
   }
 
+  /// PacketTracer::Prefetch for the isosurface object of that number, unless it cannot be seen.
+  bool Prefetch(std::size_t object, const std::vector<dsm::BlockId>& bricks) const
+  {
+    const IsosurfaceObject& surface = this->World.Isosurfaces[object];
+    return surface.Surface.Opacity > 0.0f && this->Packets.Prefetch(surface, bricks);
+  }
+
   /// Whether rays within the beam that `bricks` was found for may meet anything.
   bool MayMeet(const std::vector<BeamBricks>& bricks) const
   {

@@ -25,6 +25,8 @@ public:
   virtual void End() = 0;
   virtual void Cancel() = 0;
   virtual std::optional<Tile> Pop(dsm::WorkerSlots& slots) = 0;
+  /// As TileScheduler; without pixels.
+  virtual std::optional<Tile> Peek(int ahead) = 0;
 };
 
 /// New tiles, dealt out between the ranks.
@@ -49,6 +51,11 @@ public:
   std::optional<Tile> Pop(dsm::WorkerSlots& slots) override
   {
     const std::optional<int> number = this->Scheduler.Pop(slots);
+    return number ? std::optional<Tile>(this->Grid.CreateTile(*number)) : std::nullopt;
+  }
+  std::optional<Tile> Peek(int ahead) override
+  {
+    const std::optional<int> number = this->Scheduler.Peek(ahead);
     return number ? std::optional<Tile>(this->Grid.CreateTile(*number)) : std::nullopt;
   }
 
@@ -91,6 +98,9 @@ public:
       }
     }
   }
+
+  /// Nothing: the bricks of a still picture are where they were.
+  std::optional<Tile> Peek(int) override { return std::nullopt; }
 
   /// After the workers have stopped: adds those that were not given out to `tiles`.
   void TakeRest(std::vector<Tile>& tiles)

@@ -2,27 +2,31 @@
 #ifndef rt_TileTracer_h
 #define rt_TileTracer_h
 
+#include "DSMRayTracing/frame/BeamHistory.h"
 #include "DSMRayTracing/frame/Frame.h"
 #include "DSMRayTracing/frame/PixelTracer.h"
 
 #include <glm/vec4.hpp>
 
 #include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
 namespace rt
 {
 
-/// Traces the pixels of a tile, one worker's view of one frame.
+/// Traces the pixels of a tile, one worker's view of one frame. With a BeamHistory, bricks that the
+/// tile's beams will probably need are prefetched.
 template <class Store>
 class TileTracer
 {
 public:
   TileTracer(Store& store, typename Store::Worker& worker, const Scene& scene,
-    const PixelRays& rays, const FrameRequest& request)
+    const PixelRays& rays, const FrameRequest& request, BeamHistory* beams = nullptr)
     : Pixels(store, worker, scene, rays)
     , Request(request)
+    , Beams(beams)
   {
   }
 
@@ -47,6 +51,23 @@ public:
           std::min(BeamEdge, tile.Height - top));
       }
     }
+  }
+
+  /// Asks for the bricks that the tile will probably need, before it is traced by any worker. Returns
+  /// whether any was absent. Never waits.
+  bool Prefetch(const Tile& tile) const
+  {
+    bool anyAbsent = false;
+    for (int y = tile.Y; y < tile.Y + tile.Height; y += BeamEdge)
+    {
+      for (int x = tile.X; x < tile.X + tile.Width; x += BeamEdge)
+      {
+        const int width = std::min(BeamEdge, tile.X + tile.Width - x);
+        const int height = std::min(BeamEdge, tile.Y + tile.Height - y);
+        anyAbsent |= this->Prefetch(this->Pixels.FindBricks(x, y, width, height), x, y);
+      }
+    }
+    return anyAbsent;
   }
 
   /// Makes pixels of the sums, in the colours of `tint`.
@@ -88,8 +109,10 @@ private:
     const bool splits = !usable && (width > BlockEdge || height > BlockEdge);
     if (!this->Pixels.MayMeet(bricks))
     {
+      this->Record(bricks, tile.X + left, tile.Y + top);
       return;
     }
+    this->Prefetch(bricks, tile.X + left, tile.Y + top);
     const int edge = splits ? BlockEdge : BoxEdge;
     for (int j = 0; j < height; j += edge)
     {
@@ -106,6 +129,30 @@ private:
         {
           this->TraceBox(tile, bricks, left + i, top + j, boxWidth, boxHeight);
         }
+      }
+    }
+    this->Record(bricks, tile.X + left, tile.Y + top);
+  }
+
+  /// For the beam at a pixel; returns whether any brick was absent.
+  bool Prefetch(const std::vector<BeamBricks>& bricks, int x, int y) const
+  {
+    bool anyAbsent = false;
+    for (std::size_t object = 0; this->Beams && object < bricks.size(); ++object)
+    {
+      anyAbsent |=
+        this->Pixels.Prefetch(object, this->Beams->Predict(x, y, object, bricks[object]));
+    }
+    return anyAbsent;
+  }
+
+  void Record(const std::vector<BeamBricks>& bricks, int x, int y) const
+  {
+    for (std::size_t object = 0; this->Beams && object < bricks.size(); ++object)
+    {
+      if (bricks[object].Usable)
+      {
+        this->Beams->Record(x, y, object, bricks[object]);
       }
     }
   }
@@ -150,6 +197,7 @@ private:
 
   PixelTracer<Store> Pixels;
   const FrameRequest& Request;
+  BeamHistory* Beams; ///< null: nothing is prefetched
 };
 
 } // namespace rt

@@ -6,6 +6,7 @@
 #include "DSMRayTracing/accel/MacrocellHierarchy.h"
 #include "DSMRayTracing/kernel/RayBeam.h"
 
+#include <cstddef>
 #include <vector>
 
 namespace rt
@@ -28,6 +29,9 @@ struct BeamBricks
   /// Whether all rays move towards larger coordinates.
   bool Forward[3] = { false, false, false };
   std::vector<Brick> Bricks;
+  /// How many of them, from the front, rays have come to so far: told by PacketTracer::Intersect. Belongs
+  /// to the worker that has the beam.
+  mutable std::size_t Reached = 0;
 
   BeamBricks() = default;
   /// `corners`: see RayBeam. `isovalues` as in IsosurfaceObject.

@@ -11,6 +11,7 @@
 #include <glm/vec3.hpp>
 
 #include <cstdint>
+#include <vector>
 
 namespace rt
 {
@@ -39,6 +40,12 @@ public:
 
   /// The bricks that rays between those of `corners`, in order around them, may find hits in.
   BeamBricks FindBricks(const IsosurfaceObject& object, const Ray corners[4]) const;
+
+  /// Asks for bricks ahead of Intersect; returns whether any was absent. Never waits.
+  bool Prefetch(const IsosurfaceObject& object, const std::vector<dsm::BlockId>& bricks) const
+  {
+    return this->Blocks.Prefetch(*object.Field->Segment, bricks.data(), bricks.size());
+  }
 
   /// VolumeTracer::Intersect for the rays of `wanted` in each packet of RayPacket::Size rays. All of
   /// them lie within the beam that `bricks` was found for. `found` tells those that hit something.

@@ -11,6 +11,7 @@
 #include <glm/geometric.hpp>
 
 #include <algorithm>
+#include <cstddef>
 
 namespace rt
 {
@@ -96,6 +97,8 @@ void PacketTracer<Store>::SearchBricks(const IsosurfaceObject& object, const Bea
     {
       continue;
     }
+    const std::ptrdiff_t place = &brick - bricks.Bricks.data();
+    bricks.Reached = std::max(bricks.Reached, static_cast<std::size_t>(place) + 1);
     this->SearchBrick<T>(object, brick, packets, progress);
     for (int number = 0; number < packets; ++number)
     {

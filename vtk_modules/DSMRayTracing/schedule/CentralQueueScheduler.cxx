@@ -153,4 +153,16 @@ std::optional<int> CentralQueueScheduler::Pop(dsm::WorkerSlots& slots)
   return tile;
 }
 
+std::optional<int> CentralQueueScheduler::Peek(int ahead)
+{
+  if (this->IsSupervisor())
+  {
+    const int tile = this->Next.load() + ahead;
+    return tile < this->Tiles ? std::optional<int>(tile) : std::nullopt;
+  }
+  const std::lock_guard<std::mutex> lock(this->Mutex);
+  const auto index = static_cast<std::size_t>(ahead);
+  return index < this->Granted.size() ? std::optional<int>(this->Granted[index]) : std::nullopt;
+}
+
 } // namespace rt

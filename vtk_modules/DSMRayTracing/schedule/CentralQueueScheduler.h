@@ -27,6 +27,7 @@ public:
   void End() override;
   void Cancel() override;
   std::optional<int> Pop(dsm::WorkerSlots& slots) override;
+  std::optional<int> Peek(int ahead) override;
 
 private:
   void Grant(dsm::Message&& request);

@@ -55,6 +55,10 @@ public:
   /// Worker, which has one of the slots: the next tile to trace; waits for an answer from other ranks
   /// where that is needed, without the slot. Empty when the frame has no tile left for this rank.
   virtual std::optional<int> Pop(dsm::WorkerSlots& slots) = 0;
+
+  /// Worker: the tile that Pop will give after `ahead` others, as far as is known here now; another rank
+  /// may get it yet. Does not wait.
+  virtual std::optional<int> Peek(int ahead) = 0;
 };
 
 } // namespace rt

@@ -249,4 +249,11 @@ std::optional<int> WorkStealingScheduler::Pop(dsm::WorkerSlots& slots)
   return tile;
 }
 
+std::optional<int> WorkStealingScheduler::Peek(int ahead)
+{
+  const std::lock_guard<std::mutex> lock(this->Mutex);
+  const auto index = static_cast<std::size_t>(ahead);
+  return index < this->Own.size() ? std::optional<int>(this->Own[index]) : std::nullopt;
+}
+
 } // namespace rt

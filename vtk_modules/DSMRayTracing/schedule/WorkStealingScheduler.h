@@ -33,6 +33,7 @@ public:
   void End() override;
   void Cancel() override;
   std::optional<int> Pop(dsm::WorkerSlots& slots) override;
+  std::optional<int> Peek(int ahead) override;
 
   /// The tiles that a rank begins with when nothing is known of a last frame: an equal part of a
   /// Z-order curve through all.

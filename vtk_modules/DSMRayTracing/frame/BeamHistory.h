@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef rt_BeamHistory_h
+#define rt_BeamHistory_h
+
+#include "DSMCore/Block.h"
+#include "DSMRayTracing/kernel/BeamBricks.h"
+
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace rt
+{
+
+/// How many bricks each beam of a view's last frames went through, from the front of its BeamBricks, as
+/// far as this rank traced it: what the beams around it foretell of a beam, whatever bricks it crosses
+/// now. A byte for each beam and object. No pixel depends on it, only what is fetched ahead.
+///
+/// Any thread, but for construction.
+class BeamHistory
+{
+public:
+  /// Of a picture of so many pixels with so many objects. `last`: of the view's last frame, or null; it
+  /// counts when its picture was as large and had as many objects.
+  BeamHistory(int width, int height, std::size_t objects, const BeamHistory* last = nullptr);
+
+  /// The bricks that an object's beam at a pixel will probably need: as many, from the front, as the
+  /// beams there and around it went through on the mean, those of this frame where they are traced. None
+  /// where nothing is known.
+  std::vector<dsm::BlockId> Predict(
+    int x, int y, std::size_t object, const BeamBricks& bricks) const;
+
+  /// What an object's beam at a pixel has come to (BeamBricks::Reached).
+  void Record(int x, int y, std::size_t object, const BeamBricks& bricks);
+
+  /// Pixels along the edge of a square whose beams share a record.
+  static constexpr int Edge = 16;
+
+private:
+  using Depth = std::uint8_t; ///< 0: not known; else one more than the number of bricks
+
+  std::size_t GetPlace(int column, int row, std::size_t object) const;
+
+  int Columns;
+  int Rows;
+  std::size_t Objects;
+  std::vector<Depth> Last;
+  std::vector<std::atomic<Depth>> Now;
+};
+
+} // namespace rt
+
+#endif
