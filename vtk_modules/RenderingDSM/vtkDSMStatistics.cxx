@@ -73,6 +73,9 @@ struct vtkDSMStatistics::RankRow
   std::int64_t Misses;
   std::int64_t Joins;
   std::int64_t Evictions;
+  std::int64_t Prefetches;
+  std::int64_t PrefetchesUsed;
+  std::int64_t Requests;
   std::int64_t BytesReceived;
   std::int64_t BytesSent;
   double WaitSeconds;
@@ -102,6 +105,9 @@ struct vtkDSMStatistics::RankRow
     visit(Count("Misses", &RankRow::Misses));
     visit(Count("Joins", &RankRow::Joins));
     visit(Count("Evictions", &RankRow::Evictions));
+    visit(Count("Prefetches", &RankRow::Prefetches));
+    visit(Count("PrefetchesUsed", &RankRow::PrefetchesUsed));
+    visit(Count("Requests", &RankRow::Requests));
     visit(Count("BytesReceived", &RankRow::BytesReceived));
     visit(Count("BytesSent", &RankRow::BytesSent));
     visit(Time("WaitSeconds", &RankRow::WaitSeconds));
@@ -163,6 +169,9 @@ void vtkDSMStatistics::Gather(dsm::Messenger& messenger, const rt::Frame& frame)
   mine.Misses = static_cast<std::int64_t>(counters.Workers.Misses);
   mine.Joins = static_cast<std::int64_t>(counters.Workers.Joins);
   mine.Evictions = static_cast<std::int64_t>(counters.Evictions);
+  mine.Prefetches = static_cast<std::int64_t>(counters.Prefetches);
+  mine.PrefetchesUsed = static_cast<std::int64_t>(counters.PrefetchesUsed);
+  mine.Requests = static_cast<std::int64_t>(counters.Requests);
   mine.BytesReceived = static_cast<std::int64_t>(counters.BytesReceived);
   mine.BytesSent = static_cast<std::int64_t>(counters.BytesSent);
   mine.WaitSeconds = ToSeconds(counters.Workers.WaitNanoseconds);
