@@ -35,6 +35,8 @@ const char* BenchmarkOptions::Usage()
          "  --picture FILE.ppm  writes the picture of the first position\n"
          "  --overlap N         workers per thread: while some wait for bricks, others trace "
          "(default 4)\n"
+         "  --prefetch P        off: bricks are asked for when rays come to them, none ahead "
+         "(default on)\n"
          "  --scheduler S       queue (rank 0 deals out tiles) or stealing (default)\n"
          "  --latency US        microseconds that are added to every message's way (default 0)\n"
          "  --json FILE         writes the result; - is standard output\n";

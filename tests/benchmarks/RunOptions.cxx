@@ -36,6 +36,10 @@ void RunOptions::AddTo(OptionValues::Setters& setters)
       } },
     { "--overlap",
       [this](const auto& name, const auto& text) { this->Overlap = ToNumber(name, text, 1); } },
+    { "--prefetch",
+      [this](const auto& name, const auto& text) {
+        this->Prefetch = ToChoice<bool>(name, text, { { "on", true }, { "off", false } });
+      } },
     { "--scheduler",
       [this](const auto& name, const auto& text)
       {
@@ -57,6 +61,7 @@ dsm::BlockStore::Settings RunOptions::CreateSettings(dsm::Messenger& messenger) 
   settings.HostSharing = this->HostSharing;
   settings.Workers = this->Threads > 0 ? this->Threads : messenger.GetCoresPerRank();
   settings.Overlap = this->Overlap > 0 ? this->Overlap : settings.Overlap;
+  settings.Prefetch = this->Prefetch;
   return settings;
 }
 

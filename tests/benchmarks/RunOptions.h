@@ -21,6 +21,7 @@ struct RunOptions
   dsm::MemoryOrganization Store = dsm::MemoryOrganization::ObjectBased;
   bool HostSharing = false; ///< off: one machine plays many hosts
   int Overlap = 0;          ///< workers per thread; 0: the store's default
+  bool Prefetch = true;     ///< of bricks that tiles will probably need
   rt::TileScheduling Scheduling = rt::TileScheduling::WorkStealing;
   double Latency = 0.0; ///< seconds that are added to every message's way
   std::string Json;     ///< file, or - for standard output; empty: none

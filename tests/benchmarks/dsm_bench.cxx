@@ -56,6 +56,9 @@ struct RankResult
   std::uint64_t Misses = 0;
   std::uint64_t Joins = 0;
   std::uint64_t Evictions = 0;
+  std::uint64_t Prefetches = 0;
+  std::uint64_t PrefetchesUsed = 0;
+  std::uint64_t Requests = 0;
   std::uint64_t BytesReceived = 0;
   std::uint64_t Tiles = 0;
   std::uint64_t NewTiles = 0;
@@ -73,6 +76,9 @@ struct RankResult
     this->Misses += frame.Counters.Workers.Misses;
     this->Joins += frame.Counters.Workers.Joins;
     this->Evictions += frame.Counters.Evictions;
+    this->Prefetches += frame.Counters.Prefetches;
+    this->PrefetchesUsed += frame.Counters.PrefetchesUsed;
+    this->Requests += frame.Counters.Requests;
     this->BytesReceived += frame.Counters.BytesReceived;
     this->Tiles += frame.Tiles.size();
     this->NewTiles += std::count_if(
@@ -88,7 +94,8 @@ struct RankResult
 Json ToJson(const RankResult& rank)
 {
   return { { "accesses", rank.Accesses }, { "hits", rank.Hits }, { "misses", rank.Misses },
-    { "joins", rank.Joins }, { "evictions", rank.Evictions },
+    { "joins", rank.Joins }, { "evictions", rank.Evictions }, { "prefetches", rank.Prefetches },
+    { "prefetches_used", rank.PrefetchesUsed }, { "requests", rank.Requests },
     { "bytes_received", rank.BytesReceived }, { "tiles", rank.Tiles },
     { "new_tiles", rank.NewTiles }, { "busy_seconds", rank.BusySeconds },
     { "wait_seconds", rank.WaitSeconds }, { "idle_seconds", rank.IdleSeconds },
@@ -171,6 +178,10 @@ Json Summarise(const BenchmarkOptions& options, const dsm::BlockStore& store, co
     total.Hits += rank.Hits;
     total.Misses += rank.Misses;
     total.Joins += rank.Joins;
+    total.Prefetches += rank.Prefetches;
+    total.PrefetchesUsed += rank.PrefetchesUsed;
+    total.Requests += rank.Requests;
+    total.WaitSeconds += rank.WaitSeconds;
     total.BytesReceived += rank.BytesReceived;
     total.NewTiles += rank.NewTiles;
     total.IdleSeconds += rank.IdleSeconds;
@@ -190,11 +201,14 @@ Json Summarise(const BenchmarkOptions& options, const dsm::BlockStore& store, co
     { "repeat", options.Repeat }, { "store", dsm::GetText(store.GetOrganization()) },
     { "host_sharing", options.HostSharing }, { "cache_fraction", options.CacheFraction },
     { "rank_count", ranks.size() }, { "threads", threads },
-    { "overlap", store.GetSettings().Overlap }, { "frames_per_second", framesPerSecond },
+    { "overlap", store.GetSettings().Overlap }, { "prefetch", store.GetSettings().Prefetch },
+    { "frames_per_second", framesPerSecond },
     { "first_frames_per_second", frames / timing.FirstSeconds },
     { "rays_per_second", framesPerSecond * options.Width * options.Height },
     { "accesses", total.Accesses }, { "hits", total.Hits }, { "misses", total.Misses },
-    { "joins", total.Joins }, { "bytes_received", total.BytesReceived },
+    { "joins", total.Joins }, { "prefetches", total.Prefetches },
+    { "prefetches_used", total.PrefetchesUsed }, { "requests", total.Requests },
+    { "bytes_received", total.BytesReceived }, { "wait_seconds", total.WaitSeconds },
     { "new_tiles", total.NewTiles },
     { "idle_part", total.IdleSeconds / (timing.LastSeconds * threads * ranks.size()) },
     { "resident_bytes", total.ResidentBytes }, { "cache_bytes", total.CacheBytes },
