@@ -62,16 +62,12 @@ void BenchmarkOptions::AddTo(OptionValues::Setters& setters)
     { "--tile-size",
       [this](const auto& name, const auto& text) { this->TileSize = ToNumber(name, text, 1); } },
     { "--shadows",
-      [this](const auto& name, const auto& text) {
-        this->Shadows = ToChoice<bool>(name, text, { { "on", true }, { "off", false } });
-      } },
+      [this](const auto& name, const auto& text) { this->Shadows = ToSwitch(name, text); } },
     { "--occlusion",
       [this](const auto& name, const auto& text) { this->Occlusion = ToNumber(name, text, 0); } },
     { "--session", [this](const auto&, const auto& text) { this->Session = text; } },
     { "--tile-seconds",
-      [this](const auto& name, const auto& text) {
-        this->TileSeconds = ToChoice<bool>(name, text, { { "on", true }, { "off", false } });
-      } },
+      [this](const auto& name, const auto& text) { this->TileSeconds = ToSwitch(name, text); } },
     { "--picture", [this](const auto&, const auto& text) { this->Picture = text; } },
   });
 }

@@ -56,6 +56,11 @@ T ToChoice(const std::string& name, const std::string& text, const std::map<std:
   return found->second;
 }
 
+inline bool ToSwitch(const std::string& name, const std::string& text)
+{
+  return ToChoice<bool>(name, text, { { "on", true }, { "off", false } });
+}
+
 /// What to do with an option's name and value.
 using Setters = std::map<std::string, std::function<void(const std::string&, const std::string&)>>;
 

@@ -31,15 +31,11 @@ void RunOptions::AddTo(OptionValues::Setters& setters)
             { "paged", dsm::MemoryOrganization::PageBased } });
       } },
     { "--host-sharing",
-      [this](const auto& name, const auto& text) {
-        this->HostSharing = ToChoice<bool>(name, text, { { "on", true }, { "off", false } });
-      } },
+      [this](const auto& name, const auto& text) { this->HostSharing = ToSwitch(name, text); } },
     { "--overlap",
       [this](const auto& name, const auto& text) { this->Overlap = ToNumber(name, text, 1); } },
     { "--prefetch",
-      [this](const auto& name, const auto& text) {
-        this->Prefetch = ToChoice<bool>(name, text, { { "on", true }, { "off", false } });
-      } },
+      [this](const auto& name, const auto& text) { this->Prefetch = ToSwitch(name, text); } },
     { "--scheduler",
       [this](const auto& name, const auto& text)
       {

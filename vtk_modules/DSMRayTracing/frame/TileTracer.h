@@ -43,14 +43,9 @@ public:
     }
     tile.Color.resize(4 * tile.Layers * pixels);
     tile.Samples = this->Request.FirstSample + this->Request.Samples;
-    for (int top = 0; top < tile.Height; top += BeamEdge)
-    {
-      for (int left = 0; left < tile.Width; left += BeamEdge)
-      {
-        this->TraceBeam(tile, left, top, std::min(BeamEdge, tile.Width - left),
-          std::min(BeamEdge, tile.Height - top));
-      }
-    }
+    VisitBeams(tile,
+      [&](int left, int top, int width, int height)
+      { this->TraceBeam(tile, left, top, width, height); });
   }
 
   /// Asks for the bricks that the tile will probably need, before it is traced by any worker. Returns
@@ -58,15 +53,13 @@ public:
   bool Prefetch(const Tile& tile) const
   {
     bool anyAbsent = false;
-    for (int y = tile.Y; y < tile.Y + tile.Height; y += BeamEdge)
-    {
-      for (int x = tile.X; x < tile.X + tile.Width; x += BeamEdge)
+    VisitBeams(tile,
+      [&](int left, int top, int width, int height)
       {
-        const int width = std::min(BeamEdge, tile.X + tile.Width - x);
-        const int height = std::min(BeamEdge, tile.Y + tile.Height - y);
+        const int x = tile.X + left;
+        const int y = tile.Y + top;
         anyAbsent |= this->Prefetch(this->Pixels.FindBricks(x, y, width, height), x, y);
-      }
-    }
+      });
     return anyAbsent;
   }
 
@@ -98,7 +91,21 @@ private:
   static constexpr int BoxEdge = PixelTracer<Store>::BoxEdge;
   /// Of the pixels that share the walk through the levels above the bricks. Fewer rays than that are
   /// traced at once, so that what is known of them stays in the nearest cache.
-  static constexpr int BeamEdge = 16;
+  static constexpr int BeamEdge = BeamHistory::Edge;
+
+  /// Calls `visit(left, top, width, height)` for the parts of the tile's pixels that share a beam.
+  template <class Visit>
+  static void VisitBeams(const Tile& tile, const Visit& visit)
+  {
+    for (int top = 0; top < tile.Height; top += BeamEdge)
+    {
+      for (int left = 0; left < tile.Width; left += BeamEdge)
+      {
+        visit(
+          left, top, std::min(BeamEdge, tile.Width - left), std::min(BeamEdge, tile.Height - top));
+      }
+    }
+  }
 
   /// Adds the samples of a part of the tile's pixels.
   void TraceBeam(Tile& tile, int left, int top, int width, int height) const
