@@ -14,12 +14,11 @@
 namespace
 {
 
-/// Packets of rays between four corners, as those of a tile are.
+/// A packet of rays between four corners, as those of a tile are.
 class Beam
 {
 public:
-  static constexpr int Packets = 3;
-  static constexpr int RayCount = Packets * rt::RayPacket::Size;
+  static constexpr int RayCount = rt::RayPacket::Size;
 
   /// `spread`: how far apart the rays are at the volume, in parts of its size.
   Beam(const rt::Index3& cells, unsigned seed, double spread)
@@ -88,18 +87,17 @@ Tally ComparePackets(const TestVolume<T>& volume, const std::vector<double>& iso
       const rt::BeamBricks bricks = tracer.FindBricks(object, beam.Corners);
       tally.Shared += bricks.Usable;
       rt::SurfaceHit hits[Beam::RayCount];
-      rt::RayPacket::Mask wanted[Beam::Packets] = { 0xffffu, 0x9137u, seed % 5 == 0 ? 0u : 1u };
-      rt::RayPacket::Mask found[Beam::Packets];
-      tracer.Intersect(object, bricks, Beam::Packets, beam.Rays, wanted, hits, found);
+      const rt::RayPacket::Mask wanted = seed % 5 == 0 ? 0x00009137ffffu
+        : seed % 5 == 1                                ? ~std::uint64_t{ 0 }
+                                                       : 0x80019137ffffu;
+      const rt::RayPacket::Mask found = tracer.Intersect(object, bricks, beam.Rays, wanted, hits);
       for (int index = 0; index < Beam::RayCount; ++index)
       {
-        const int packet = index / rt::RayPacket::Size;
-        const rt::RayPacket::Mask bit = 1u << index % rt::RayPacket::Size;
+        const rt::RayPacket::Mask bit = rt::RayPacket::Mask{ 1 } << index;
         rt::SurfaceHit expected;
-        const bool hit =
-          (wanted[packet] & bit) != 0 && alone.Intersect(object, beam.Rays[index], expected);
-        EXPECT_EQ((found[packet] & bit) != 0, hit) << "beam " << seed << ", ray " << index;
-        if (hit && (found[packet] & bit) != 0)
+        const bool hit = (wanted & bit) != 0 && alone.Intersect(object, beam.Rays[index], expected);
+        EXPECT_EQ((found & bit) != 0, hit) << "beam " << seed << ", ray " << index;
+        if (hit && (found & bit) != 0)
         {
           ++tally.Hits;
           EXPECT_EQ(hits[index].T, expected.T) << "beam " << seed << ", ray " << index;

@@ -38,7 +38,7 @@ public:
   }
 
   /// How many rays are traced together at most.
-  static constexpr int MaxRays = RayPacket::Size * PacketTracer<Store>::MaxPackets;
+  static constexpr int MaxRays = RayPacket::Size;
 
   glm::dvec3 GetTransmittance(const Ray& ray) const
   {
@@ -111,7 +111,7 @@ private:
     std::uint64_t occluded = 0;
     for (int first = 0; first < MaxRays; first += MeshPacket::Size)
     {
-      const auto some = static_cast<MeshPacket::Mask>(wanted >> first & 0xffffu);
+      const MeshPacket::Mask some = MeshPacket::GetPart(wanted, first);
       if (some != 0)
       {
         occluded |= std::uint64_t{ this->Meshes.FindOccluded(*object.Instance, rays + first, some) }

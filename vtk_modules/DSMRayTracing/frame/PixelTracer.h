@@ -66,6 +66,7 @@ public:
     , LightRays(store, worker, scene, this->Surfaces)
     , World(scene)
     , Rays(rays)
+    , HasSurroundings(!scene.Transport.Surroundings.IsBlack())
   {
   }
 
@@ -110,31 +111,30 @@ public:
   void TraceBox(const std::vector<BeamBricks>& bricks, int x, int y, int width, int height,
     int sample, Take&& take) const
   {
-    constexpr unsigned columns = BoxEdge / BlockEdge;
-    const int packets =
-      static_cast<int>(columns) * ((height - 1) / BlockEdge) + (width - 1) / BlockEdge + 1;
+    // The rays of a block follow one another, so that mesh packets are as small as can be.
     const auto getPlace = [](unsigned index)
     {
-      const unsigned packet = index / RayPacket::Size;
-      const unsigned lane = index % RayPacket::Size;
-      return glm::ivec2(BlockEdge * (packet % columns) + lane % BlockEdge,
-        BlockEdge * (packet / columns) + lane / BlockEdge);
+      constexpr unsigned columns = BoxEdge / BlockEdge;
+      const unsigned block = index / MeshPacket::Size;
+      const unsigned lane = index % MeshPacket::Size;
+      return glm::ivec2(BlockEdge * (block % columns) + lane % BlockEdge,
+        BlockEdge * (block / columns) + lane / BlockEdge);
     };
     const glm::dvec2 position = SampleSequence::GetPositionInPixel(sample);
     Ray rays[MaxPaths];
-    RayPacket::Mask wanted[PacketTracer<Store>::MaxPackets] = {};
-    for (int index = 0; index < RayPacket::Size * packets; ++index)
+    RayPacket::Mask wanted = 0;
+    for (int index = 0; index < RayPacket::Size; ++index)
     {
       const glm::ivec2 place = getPlace(index);
       if (place.x < width && place.y < height)
       {
         rays[index] = this->Rays.GetRay(x + place.x, y + place.y, position);
-        wanted[index / RayPacket::Size] |= RayPacket::Mask{ 1 } << index % RayPacket::Size;
+        wanted |= RayPacket::Mask{ 1 } << index;
       }
     }
     FixedList<Path, MaxPaths> paths;
     FixedList<PixelSample, MaxPaths> samples;
-    this->Surfaces.Intersect(bricks, packets, rays, wanted,
+    this->Surfaces.Intersect(bricks, rays, wanted,
       [&](int index) -> SurfacePoint&
       {
         Path& path = paths.Add();
@@ -149,7 +149,7 @@ public:
       path.ToViewer = -glm::normalize(rays[path.Index].Direction);
       path.Layers = &samples.Add();
     }
-    this->FollowAll(bricks, packets, rays, paths);
+    this->FollowAll(bricks, rays, paths);
     for (int number = 0; number < paths.GetCount(); ++number)
     {
       const Path& path = paths[number];
@@ -165,12 +165,11 @@ public:
     return this->Surfaces.MayMeet(bricks);
   }
 
-  /// Of the blocks of pixels whose rays make a packet, and of what is traced at once.
+  /// Of the blocks of pixels whose rays make a mesh packet, and of what is traced at once.
   static constexpr int BlockEdge = 4;
   static constexpr int BoxEdge = 8;
-  static_assert(BlockEdge * BlockEdge == RayPacket::Size &&
-      BoxEdge * BoxEdge == RayPacket::Size * PacketTracer<Store>::MaxPackets,
-    "a block is a packet, and a box as many as are traced together");
+  static_assert(BlockEdge * BlockEdge == MeshPacket::Size && BoxEdge * BoxEdge == RayPacket::Size,
+    "a box is a packet, and a block one of meshes");
 
 private:
   /// What lies behind contributes less than half a step of an 8-bit channel.
@@ -201,8 +200,8 @@ private:
   };
 
   /// Front to back, from where the paths are.
-  void FollowAll(const std::vector<BeamBricks>& bricks, int packets, Ray* rays,
-    FixedList<Path, MaxPaths>& paths) const
+  void FollowAll(
+    const std::vector<BeamBricks>& bricks, Ray* rays, FixedList<Path, MaxPaths>& paths) const
   {
     Path* list[MaxPaths];
     Path* byRay[MaxPaths];
@@ -216,8 +215,7 @@ private:
     {
       this->AddSurfaces(
         list, count, this->World.Transport.MaxBounces, this->Rays.GetWorldToPixels());
-      RayPacket::Mask wanted[PacketTracer<Store>::MaxPackets] = {};
-      bool isAny = false;
+      RayPacket::Mask wanted = 0;
       for (int number = 0; number < count; ++number)
       {
         const Path& path = *list[number];
@@ -225,15 +223,13 @@ private:
         {
           path.Pass(rays[path.Index]);
           rays[path.Index].Max = PixelRays::Last;
-          wanted[path.Index / RayPacket::Size] |= RayPacket::Mask{ 1 }
-            << path.Index % RayPacket::Size;
-          isAny = true;
+          wanted |= RayPacket::Mask{ 1 } << path.Index;
         }
       }
       count = 0;
-      if (isAny)
+      if (wanted != 0)
       {
-        this->Surfaces.Intersect(bricks, packets, rays, wanted,
+        this->Surfaces.Intersect(bricks, rays, wanted,
           [&](int index) -> SurfacePoint&
           {
             list[count++] = byRay[index];
@@ -297,19 +293,22 @@ private:
     {
       for (int number = 0; number < count; ++number)
       {
-        ShadingPoint point = this->GetShadingPoint(*paths[number], view);
-        this->LookAround(&paths[number], 1, &point);
+        const ShadingPoint point = this->GetShadingPoint(*paths[number], view);
         colors[number] = this->ShadePoint(
           *paths[number], point, bounces, view, [](const Light&) { return glm::dvec3(1.0); });
       }
       return;
     }
     std::vector<ShadingPoint> points;
+    points.reserve(static_cast<std::size_t>(count));
     for (int number = 0; number < count; ++number)
     {
       points.push_back(this->GetShadingPoint(*paths[number], view));
     }
-    this->LookAround(paths, count, points.data());
+    if (this->World.Transport.AmbientOcclusionSamples > 0)
+    {
+      this->LookAround(paths, count, points.data());
+    }
     const std::vector<Light>& lights = this->World.Lights;
     std::vector<glm::dvec3> visibility;
     if (this->World.Transport.Shadows)
@@ -332,7 +331,8 @@ private:
     }
   }
 
-  static ShadingPoint GetShadingPoint(const Path& path, const glm::dmat4x3& view)
+  /// The point when nothing is near it.
+  ShadingPoint GetShadingPoint(const Path& path, const glm::dmat4x3& view) const
   {
     const SurfacePoint& point = path.Point;
     ShadingPoint shading;
@@ -346,6 +346,11 @@ private:
       shading.LineColor = point.Edges->Color;
       shading.LineCover = point.Edges->Opacity *
         GetEdgeCover(point.Position, point.Corners, point.EdgeFlags, point.Edges->Width, view);
+    }
+    shading.HasSurroundings = this->HasSurroundings;
+    if (this->HasSurroundings)
+    {
+      shading.Surroundings = this->World.Transport.Surroundings.GetLightOnto(shading.Normal);
     }
     return shading;
   }
@@ -469,19 +474,6 @@ private:
   {
     const LightTransport& transport = this->World.Transport;
     const int samples = transport.AmbientOcclusionSamples;
-    const bool hasSurroundings = !transport.Surroundings.IsBlack();
-    for (int number = 0; number < count; ++number)
-    {
-      points[number].HasSurroundings = hasSurroundings;
-      if (hasSurroundings && samples <= 0)
-      {
-        points[number].Surroundings = transport.Surroundings.GetLightOnto(points[number].Normal);
-      }
-    }
-    if (samples <= 0)
-    {
-      return;
-    }
     double visible[MaxPaths] = {};
     glm::dvec3 arriving[MaxPaths];
     std::fill_n(arriving, count, glm::dvec3(0.0));
@@ -498,7 +490,7 @@ private:
       {
         const glm::dvec3& transmittance = transmittances[number];
         visible[number] += (transmittance.x + transmittance.y + transmittance.z) / 3.0;
-        if (hasSurroundings)
+        if (this->HasSurroundings)
         {
           arriving[number] +=
             transmittance * transport.Surroundings.GetLight(rays[number].Direction);
@@ -549,6 +541,7 @@ private:
   LightTracer<Store> LightRays;
   const Scene& World;
   const PixelRays& Rays;
+  bool HasSurroundings; ///< light comes from everywhere
 };
 
 } // namespace rt

@@ -106,28 +106,26 @@ public:
       bricks.begin(), bricks.end(), [](const BeamBricks& object) { return object.Usable; });
   }
 
-  /// Intersect for the rays of `wanted` in each packet of RayPacket::Size rays, at most
-  /// PacketTracer::MaxPackets, with the same result. All lie within the beam that `bricks` was found
-  /// for. `getPoint(index)` is called once for each ray that meets something, and gives where that is
-  /// stored; the ray ends there afterwards.
+  /// Intersect for those of a packet's rays that are `wanted`, with the same result. All lie within
+  /// the beam that `bricks` was found for. `getPoint(index)` is called once for each ray that meets
+  /// something, and gives where that is stored; the ray ends there afterwards.
   template <class GetPoint>
-  void Intersect(const std::vector<BeamBricks>& bricks, int packets, Ray* rays,
-    const RayPacket::Mask* wanted, const GetPoint& getPoint) const
+  void Intersect(const std::vector<BeamBricks>& bricks, Ray* rays, RayPacket::Mask wanted,
+    const GetPoint& getPoint) const
   {
-    constexpr int most = RayPacket::Size * PacketTracer<Store>::MaxPackets;
-    SurfaceHit hits[most];
-    const IsosurfaceObject* objects[most] = {};
-    this->FindIsosurfaces(bricks, packets, rays, wanted, objects, hits);
-    MeshHit meshHits[RayPacket::Size];
-    for (int packet = 0; packet < packets; ++packet)
+    SurfaceHit hits[RayPacket::Size];
+    const IsosurfaceObject* objects[RayPacket::Size] = {};
+    this->FindIsosurfaces(bricks, rays, wanted, objects, hits);
+    MeshHit meshHits[MeshPacket::Size];
+    for (int first = 0; first < RayPacket::Size; first += MeshPacket::Size)
     {
-      const int first = RayPacket::Size * packet;
-      const MeshObject* meshes[RayPacket::Size] = {};
-      if (!this->World.Meshes.empty())
+      const MeshPacket::Mask some = MeshPacket::GetPart(wanted, first);
+      const MeshObject* meshes[MeshPacket::Size] = {};
+      if (some != 0 && !this->World.Meshes.empty())
       {
-        this->FindMeshes(rays + first, wanted[packet], objects + first, meshes, meshHits);
+        this->FindMeshes(rays + first, some, objects + first, meshes, meshHits);
       }
-      for (RayPacket::Mask left = wanted[packet]; left != 0; left &= left - 1)
+      for (MeshPacket::Mask left = some; left != 0; left &= left - 1)
       {
         const int lane = GetLowest(left);
         const int index = first + lane;
@@ -181,13 +179,11 @@ private:
     return object;
   }
 
-  /// FindIsosurface for the rays of `wanted` in each packet; `objects` are null before.
-  void FindIsosurfaces(const std::vector<BeamBricks>& bricks, int packets, Ray* rays,
-    const RayPacket::Mask* wanted, const IsosurfaceObject** objects, SurfaceHit* nearest) const
+  /// FindIsosurface for the rays of `wanted`; `objects` are null before.
+  void FindIsosurfaces(const std::vector<BeamBricks>& bricks, Ray* rays, RayPacket::Mask wanted,
+    const IsosurfaceObject** objects, SurfaceHit* nearest) const
   {
-    constexpr int most = RayPacket::Size * PacketTracer<Store>::MaxPackets;
-    SurfaceHit further[most];
-    RayPacket::Mask found[PacketTracer<Store>::MaxPackets];
+    SurfaceHit further[RayPacket::Size];
     bool isFirst = true;
     for (std::size_t number = 0; number < bricks.size(); ++number)
     {
@@ -198,82 +194,69 @@ private:
       }
       SurfaceHit* const hits = isFirst ? nearest : further;
       isFirst = false;
-      this->IntersectParts(candidate, bricks[number], packets, rays, wanted, hits, found);
-      for (int packet = 0; packet < packets; ++packet)
+      RayPacket::Mask left = this->IntersectParts(candidate, bricks[number], rays, wanted, hits);
+      for (; left != 0; left &= left - 1)
       {
-        for (RayPacket::Mask left = found[packet]; left != 0; left &= left - 1)
+        const int index = GetLowest(left);
+        if (!objects[index] || hits[index].T < nearest[index].T)
         {
-          const int index = RayPacket::Size * packet + GetLowest(left);
-          if (!objects[index] || hits[index].T < nearest[index].T)
-          {
-            nearest[index] = hits[index];
-            objects[index] = &candidate;
-            rays[index].Max = hits[index].T;
-          }
+          nearest[index] = hits[index];
+          objects[index] = &candidate;
+          rays[index].Max = hits[index].T;
         }
       }
     }
   }
 
   /// PacketTracer::Intersect in the part of the object that is shown.
-  void IntersectParts(const IsosurfaceObject& object, const BeamBricks& bricks, int packets,
-    const Ray* rays, const RayPacket::Mask* wanted, SurfaceHit* hits, RayPacket::Mask* found) const
+  RayPacket::Mask IntersectParts(const IsosurfaceObject& object, const BeamBricks& bricks,
+    const Ray* rays, RayPacket::Mask wanted, SurfaceHit* hits) const
   {
     if (object.Clipping.KeepsAll())
     {
-      this->Packets.Intersect(object, bricks, packets, rays, wanted, hits, found);
-      return;
+      return this->Packets.Intersect(object, bricks, rays, wanted, hits);
     }
-    std::fill_n(found, packets, 0);
+    RayPacket::Mask found = 0;
     bool goesOn = true;
     for (int number = 0; number < ClipRegion::MaxParts && goesOn; ++number)
     {
-      goesOn = this->IntersectPart(object, number, bricks, packets, rays, wanted, hits, found);
+      goesOn = this->IntersectPart(object, number, bricks, rays, wanted, hits, found);
     }
+    return found;
   }
 
   /// The same in part `number` of each ray, for those that are not in `found`; returns whether there
   /// is any.
   bool IntersectPart(const IsosurfaceObject& object, int number, const BeamBricks& bricks,
-    int packets, const Ray* rays, const RayPacket::Mask* wanted, SurfaceHit* hits,
-    RayPacket::Mask* found) const
+    const Ray* rays, RayPacket::Mask wanted, SurfaceHit* hits, RayPacket::Mask& found) const
   {
-    constexpr int most = PacketTracer<Store>::MaxPackets;
-    Ray parts[RayPacket::Size * most];
-    RayPacket::Mask searching[most] = {};
-    bool isAny = false;
-    for (int packet = 0; packet < packets; ++packet)
+    Ray parts[RayPacket::Size];
+    RayPacket::Mask searching = 0;
+    for (RayPacket::Mask left = wanted & ~found; left != 0; left &= left - 1)
     {
-      for (RayPacket::Mask left = wanted[packet] & ~found[packet]; left != 0; left &= left - 1)
+      const int index = GetLowest(left);
+      ClipRegion::Interval intervals[ClipRegion::MaxParts];
+      if (number < object.Clipping.FindParts(rays[index], intervals))
       {
-        const int index = RayPacket::Size * packet + GetLowest(left);
-        ClipRegion::Interval intervals[ClipRegion::MaxParts];
-        if (number < object.Clipping.FindParts(rays[index], intervals))
-        {
-          parts[index] = rays[index];
-          parts[index].Min = intervals[number].First;
-          parts[index].Max = intervals[number].Last;
-          searching[packet] |= left & (~left + 1);
-          isAny = true;
-        }
+        parts[index] = rays[index];
+        parts[index].Min = intervals[number].First;
+        parts[index].Max = intervals[number].Last;
+        searching |= RayPacket::Mask{ 1 } << index;
       }
     }
-    if (isAny)
+    if (searching == 0)
     {
-      SurfaceHit met[RayPacket::Size * most];
-      RayPacket::Mask now[most];
-      this->Packets.Intersect(object, bricks, packets, parts, searching, met, now);
-      for (int packet = 0; packet < packets; ++packet)
-      {
-        found[packet] |= now[packet];
-        for (RayPacket::Mask left = now[packet]; left != 0; left &= left - 1)
-        {
-          const int index = RayPacket::Size * packet + GetLowest(left);
-          hits[index] = met[index];
-        }
-      }
+      return false;
     }
-    return isAny;
+    SurfaceHit met[RayPacket::Size];
+    const RayPacket::Mask now = this->Packets.Intersect(object, bricks, parts, searching, met);
+    found |= now;
+    for (RayPacket::Mask left = now; left != 0; left &= left - 1)
+    {
+      const int index = GetLowest(left);
+      hits[index] = met[index];
+    }
+    return true;
   }
 
   /// Describes what the ray meets first: the mesh, or if there is none the isosurface. Either may be
@@ -328,14 +311,14 @@ private:
 
   /// FindMesh for those of a packet's rays that are `wanted`; `isosurfaces` are what they meet, or
   /// null, and `objects` are null before.
-  void FindMeshes(Ray* rays, RayPacket::Mask wanted, const IsosurfaceObject* const* isosurfaces,
+  void FindMeshes(Ray* rays, MeshPacket::Mask wanted, const IsosurfaceObject* const* isosurfaces,
     const MeshObject** objects, MeshHit* nearest) const
   {
-    MeshHit further[RayPacket::Size];
+    MeshHit further[MeshPacket::Size];
     for (const MeshObject& candidate : this->World.Meshes)
     {
       MeshHit* const hits = &candidate == this->World.Meshes.data() ? nearest : further;
-      RayPacket::Mask found = candidate.Clipping.KeepsAll()
+      MeshPacket::Mask found = candidate.Clipping.KeepsAll()
         ? this->Meshes.Intersect(*candidate.Instance, rays, wanted, hits)
         : this->IntersectClipped(candidate, rays, wanted, hits);
       for (; found != 0; found &= found - 1)
@@ -352,16 +335,16 @@ private:
   }
 
   /// MeshTracer::Intersect in the part of the mesh that is shown, one ray after the other.
-  RayPacket::Mask IntersectClipped(
-    const MeshObject& object, const Ray* rays, RayPacket::Mask wanted, MeshHit* hits) const
+  MeshPacket::Mask IntersectClipped(
+    const MeshObject& object, const Ray* rays, MeshPacket::Mask wanted, MeshHit* hits) const
   {
-    RayPacket::Mask found = 0;
-    for (RayPacket::Mask left = wanted; left != 0; left &= left - 1)
+    MeshPacket::Mask found = 0;
+    for (MeshPacket::Mask left = wanted; left != 0; left &= left - 1)
     {
       const int index = GetLowest(left);
       const auto find = [&](const Ray& part)
       { return this->Meshes.Intersect(*object.Instance, part, hits[index]); };
-      found |= RayPacket::Mask{ object.Clipping.FindFirst(rays[index], find) } << index;
+      found |= MeshPacket::Mask{ object.Clipping.FindFirst(rays[index], find) } << index;
     }
     return found;
   }

@@ -19,7 +19,7 @@ class GradientStencil
 public:
   /// `first`: the cell's first corner; `row` and `slice` lead to the next sample on y and z.
   template <class T>
-  void SetCorners(
+  [[gnu::always_inline]] void SetCorners(
     const T* first, std::ptrdiff_t row, std::ptrdiff_t slice, const IsovalueLevel<T>& level)
   {
     for (int z = 0; z < 2; ++z)
@@ -34,8 +34,8 @@ public:
   /// The samples beyond the lower (side 0) or upper (1) face on an axis; `first` is the one next to
   /// the face's first corner.
   template <class T>
-  void SetFace(int axis, int side, const T* first, std::ptrdiff_t row, std::ptrdiff_t slice,
-    const IsovalueLevel<T>& level)
+  [[gnu::always_inline]] void SetFace(int axis, int side, const T* first, std::ptrdiff_t row,
+    std::ptrdiff_t slice, const IsovalueLevel<T>& level)
   {
     for (int i = 0; i < 2; ++i)
     {
@@ -57,7 +57,7 @@ public:
 
   /// As CellNeighbourhood::GetGradient, with the same operations. Returns false when a sample is not
   /// finite.
-  bool GetGradient(const Lanes& local, double gradient[3]) const
+  [[gnu::always_inline]] bool GetGradient(const Lanes& local, double gradient[3]) const
   {
     Pair differences[3][2][2];
     for (int z = 0; z < 2; ++z)

@@ -8,7 +8,7 @@ namespace rt
 {
 
 /// What is known of 4 x 4 x 4 macrocells of a brick. Bit, and place, x + 4 y + 16 z is that of a
-/// macrocell of the part, or of a cell of the macrocell.
+/// macrocell of the part, or of a cell of the macrocell, counted in the order of NodeOrder.
 struct PacketPart
 {
   std::uint64_t Macrocells; ///< those that may hold the surface
@@ -26,10 +26,8 @@ public:
   /// The macrocells from 4 part on. Valid until the next call.
   virtual const PacketPart& FindPart(const int part[3]) const = 0;
 
-  /// Adds the cells of the macrocells of the part in which `rays` (bits) are; `macrocells` are their
-  /// numbers there.
-  virtual void FindCells(
-    const int part[3], unsigned rays, const std::uint64_t* macrocells) const = 0;
+  /// Adds the cells of a macrocell of the part that FindPart was last called for.
+  virtual void FindCells(const int part[3], int macrocell) const = 0;
 
   /// For each of `rays`, which is in the cell with the coordinates cell[axis * stride + ray]: the
   /// corners less the isovalue, `stride` numbers from one to the next, those of a ray from

@@ -8,14 +8,16 @@
 
 #include "DSMRayTracing/kernel/PacketKernel.h"
 
-#include "DSMRayTracing/brick/VoxelBrickHeader.h"
+#include "DSMRayTracing/kernel/BrickSearch-inl.h"
 #include "DSMRayTracing/kernel/MacrocellComparison-inl.h"
 #include "DSMRayTracing/kernel/MaskBits-inl.h"
-#include "DSMRayTracing/kernel/PacketWalk-inl.h"
+#include "DSMRayTracing/kernel/NodePath-inl.h"
 
 #include <hwy/highway.h>
 
+#include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 
 HWY_BEFORE_NAMESPACE();
@@ -33,29 +35,40 @@ public:
   using Vector = hn::Vec<D>;
   using Mask = hn::Mask<D>;
   static constexpr int Width = static_cast<int>(hn::MaxLanes(D()));
-  static constexpr int Vectors = RayPacket::Size / Width;
 
   static RayPacket::Mask SetRays(RayPacket& packet, const Ray* rays, RayPacket::Mask wanted,
     const IndexSpace& space, const Index3& cells)
   {
     const D tag;
-    const WorldRays world(rays, wanted);
     const glm::dmat3& matrix = space.GetWorldToIndex();
     const Vector infinity = hn::Set(tag, HUGE_VAL);
     RayPacket::Mask fitting = 0;
     RayPacket::Mask crossing = 0;
     for (int first = 0; first < RayPacket::Size; first += Width)
     {
+      const std::uint32_t lanes = GetLanes(wanted, first);
+      if (lanes == 0)
+      {
+        continue;
+      }
+      // Copies of one that is wanted stand for those that are not.
+      const Ray* own[Width];
+      for (int lane = 0; lane < Width; ++lane)
+      {
+        own[lane] = rays + first + ((lanes >> lane & 1) != 0 ? lane : __builtin_ctz(lanes));
+      }
       Vector origin[3];
       Vector direction[3];
       for (int axis = 0; axis < 3; ++axis)
       {
-        origin[axis] =
-          hn::Sub(hn::Load(tag, world.Origin[axis] + first), hn::Set(tag, space.GetOrigin()[axis]));
-        direction[axis] = hn::Load(tag, world.Direction[axis] + first);
+        const Vector start =
+          SetLanes<double, Width>([&](int lane) { return own[lane]->Origin[axis]; });
+        origin[axis] = hn::Sub(start, hn::Set(tag, space.GetOrigin()[axis]));
+        direction[axis] =
+          SetLanes<double, Width>([&](int lane) { return own[lane]->Direction[axis]; });
       }
-      Vector enter = hn::Load(tag, world.Min + first);
-      Vector leave = hn::Load(tag, world.Max + first);
+      Vector enter = SetLanes<double, Width>([&](int lane) { return own[lane]->Min; });
+      Vector leave = SetLanes<double, Width>([&](int lane) { return own[lane]->Max; });
       Mask fits = GetMask(wanted, first);
       for (int axis = 0; axis < 3; ++axis)
       {
@@ -76,106 +89,55 @@ public:
       }
       hn::Store(enter, tag, packet.Enter + first);
       hn::Store(leave, tag, packet.Leave + first);
-      fitting |= GetBits(fits) << first;
-      crossing |= GetBits(hn::And(fits, hn::Lt(enter, leave))) << first;
+      fitting |= RayPacket::Mask{ GetBits(fits) } << first;
+      crossing |= RayPacket::Mask{ GetBits(hn::And(fits, hn::Lt(enter, leave))) } << first;
     }
     packet.Rays = crossing;
     return wanted & ~fitting;
   }
 
-  static RayPacket::Mask MeetBox(const RayPacket& packet, RayPacket::Mask rays,
-    const double lower[3], const double upper[3], double* enter, double* leave)
+  static RayPacket::Mask MeetBrick(
+    RayPacket& packet, RayPacket::Mask rays, const double lower[3], const double upper[3])
   {
     const D tag;
     RayPacket::Mask met = 0;
     for (int first = 0; first < RayPacket::Size; first += Width)
     {
-      Vector in = hn::Load(tag, packet.Enter + first);
-      Vector out = hn::Load(tag, packet.Leave + first);
+      if (GetLanes(rays, first) == 0)
+      {
+        continue;
+      }
+      Vector enter = hn::Load(tag, packet.Enter + first);
+      Vector leave = hn::Load(tag, packet.Leave + first);
       for (int axis = 0; axis < 3; ++axis)
       {
         const bool forward = packet.Forward[axis];
-        in = hn::Max(in, GetPlaneT(packet, first, axis, forward ? lower[axis] : upper[axis]));
-        out = hn::Min(out, GetPlaneT(packet, first, axis, forward ? upper[axis] : lower[axis]));
+        enter = hn::Max(enter, GetPlaneT(packet, first, axis, forward ? lower[axis] : upper[axis]));
+        leave = hn::Min(leave, GetPlaneT(packet, first, axis, forward ? upper[axis] : lower[axis]));
       }
-      hn::Store(in, tag, enter + first);
-      hn::Store(out, tag, leave + first);
-      met |= GetBits(hn::Lt(in, out)) << first;
+      hn::Store(enter, tag, packet.BrickEnter + first);
+      hn::Store(leave, tag, packet.BrickLeave + first);
+      met |= RayPacket::Mask{ GetBits(hn::Lt(enter, leave)) } << first;
     }
     return met & rays;
   }
 
   static RayPacket::Mask SearchBrick(const RayPacket& packet, RayPacket::Mask rays,
-    const PacketBrick& brick, const double origin[3], const double* enter, const double* leave,
-    PacketHits& hits)
+    const PacketBrick& brick, const double origin[3], PacketHits& hits)
   {
-    PacketCrossings crossings;
-    const RayPacket::Mask found =
-      SearchParts(packet, rays, brick, origin, enter, leave, &crossings);
-    Refine(crossings, found, hits);
+    CellCrossings crossings;
+    const RayPacket::Mask found = BrickSearch<D>(packet, brick, origin, &crossings).Search(rays);
+    Refine(crossings, hits);
     return found;
   }
 
-  static RayPacket::Mask FindOccluded(const RayPacket& packet, RayPacket::Mask rays,
-    const PacketBrick& brick, const double origin[3], const double* enter, const double* leave)
+  static RayPacket::Mask FindOccluded(
+    const RayPacket& packet, RayPacket::Mask rays, const PacketBrick& brick, const double origin[3])
   {
-    return SearchParts(packet, rays, brick, origin, enter, leave, nullptr);
+    return BrickSearch<D>(packet, brick, origin, nullptr).Search(rays);
   }
 
 private:
-  /// Those of `rays` that meet the surface in a brick; how is stored where `crossings` is not null.
-  static HWY_INLINE RayPacket::Mask SearchParts(const RayPacket& packet, RayPacket::Mask rays,
-    const PacketBrick& brick, const double origin[3], const double* enter, const double* leave,
-    PacketCrossings* crossings)
-  {
-    int parts[3];
-    for (int axis = 0; axis < 3; ++axis)
-    {
-      parts[axis] = (brick.GetMacrocells(axis) + 3) / 4;
-    }
-    RayPacket::Mask found = 0;
-    for (int k = 0; k < parts[2] && found != rays; ++k)
-    {
-      for (int j = 0; j < parts[1] && found != rays; ++j)
-      {
-        for (int i = 0; i < parts[0] && found != rays; ++i)
-        {
-          // In the order in which they are met.
-          const int part[3] = { packet.Forward[0] ? i : parts[0] - 1 - i,
-            packet.Forward[1] ? j : parts[1] - 1 - j, packet.Forward[2] ? k : parts[2] - 1 - k };
-          found |= SearchPart(packet, rays & ~found, brick, origin, enter, leave, part,
-            /*whole=*/parts[0] * parts[1] * parts[2] == 1, crossings);
-        }
-      }
-    }
-    return found;
-  }
-
-  /// Rays as vectors want them. Those that are not wanted are copies of one that is.
-  struct WorldRays
-  {
-    HWY_ALIGN double Origin[3][RayPacket::Size];
-    HWY_ALIGN double Direction[3][RayPacket::Size];
-    HWY_ALIGN double Min[RayPacket::Size];
-    HWY_ALIGN double Max[RayPacket::Size];
-
-    WorldRays(const Ray* rays, RayPacket::Mask wanted)
-    {
-      const int any = wanted != 0 ? GetLowest(wanted) : 0;
-      for (int index = 0; index < RayPacket::Size; ++index)
-      {
-        const Ray& ray = rays[(wanted >> index & 1) != 0 ? index : any];
-        for (int axis = 0; axis < 3; ++axis)
-        {
-          this->Origin[axis][index] = ray.Origin[axis];
-          this->Direction[axis][index] = ray.Direction[axis];
-        }
-        this->Min[index] = ray.Min;
-        this->Max[index] = ray.Max;
-      }
-    }
-  };
-
   /// A row of a matrix times a vector, in the order of glm's.
   static Vector Multiply(const glm::dmat3& matrix, int row, const Vector vector[3])
   {
@@ -186,7 +148,12 @@ private:
     return hn::Add(hn::Add(x, y), z);
   }
 
-  static RayPacket::Mask GetBits(Mask mask) { return GetMaskBits(D(), mask); }
+  static std::uint32_t GetBits(Mask mask) { return GetMaskBits(D(), mask); }
+  /// Those of rays that are in the vector of ray `first`.
+  static std::uint32_t GetLanes(RayPacket::Mask rays, int first)
+  {
+    return static_cast<std::uint32_t>(rays >> first) & ((1u << Width) - 1);
+  }
   static Mask GetMask(RayPacket::Mask rays, int first)
   {
     const std::uint8_t bits[8] = { static_cast<std::uint8_t>(rays >> first) };
@@ -200,75 +167,39 @@ private:
       hn::Load(tag, packet.Inverse[axis] + first));
   }
 
-  /// The 4 x 4 x 4 macrocells of a part of the brick; `whole`: that is all of it.
-  static HWY_INLINE RayPacket::Mask SearchPart(const RayPacket& packet, RayPacket::Mask rays,
-    const PacketBrick& brick, const double origin[3], const double* enter, const double* leave,
-    const int part[3], bool whole, PacketCrossings* crossings)
+  /// Where exactly rays meet the surface.
+  static void Refine(const CellCrossings& crossings, PacketHits& hits)
   {
-    const PacketPart& macrocells = brick.FindPart(part);
-    if (macrocells.Macrocells == 0)
-    {
-      return 0;
-    }
+    using Number = CellCrossings::Number;
     const D tag;
-    constexpr int edge = 4 * MacrocellEdge;
-    RayPacket::Mask found = 0;
-    for (int first = 0; first < RayPacket::Size; first += Width)
-    {
-      Mask meet = GetMask(rays, first);
-      if (hn::AllFalse(tag, meet))
-      {
-        continue;
-      }
-      Vector in = hn::Load(tag, enter + first);
-      Vector out = hn::Load(tag, leave + first);
-      for (int axis = 0; axis < 3 && !whole; ++axis)
-      {
-        const bool forward = packet.Forward[axis];
-        const double lower = origin[axis] + edge * part[axis];
-        in = hn::Max(in, GetPlaneT(packet, first, axis, forward ? lower : lower + edge));
-        out = hn::Min(out, GetPlaneT(packet, first, axis, forward ? lower + edge : lower));
-      }
-      meet = hn::And(meet, hn::Lt(in, out));
-      PacketWalk<D> walk(tag, packet, first, brick, origin, crossings);
-      found |= GetBits(walk.Search(part, macrocells, meet, in, out)) << first;
-    }
-    return found;
-  }
-
-  /// Where exactly the rays of `found` meet the surface.
-  static void Refine(const PacketCrossings& crossings, RayPacket::Mask found, PacketHits& hits)
-  {
-    const D tag;
+    hits.Count = crossings.Count;
     hits.FromInside = 0;
-    for (int first = 0; first < RayPacket::Size; first += Width)
+    std::copy_n(crossings.Ray, crossings.Count, hits.Ray);
+    for (int first = 0; first < crossings.Count; first += Width)
     {
-      const Mask rays = GetMask(found, first);
-      if (hn::AllFalse(tag, rays))
-      {
-        continue;
-      }
+      const auto load = [&](int number) { return hn::Load(tag, crossings.Values[number] + first); };
+      const Mask rays = hn::FirstN(tag, static_cast<std::size_t>(crossings.Count - first));
       Vector coefficients[4];
       for (int power = 0; power < 4; ++power)
       {
-        coefficients[power] = hn::Load(tag, crossings.Coefficients[power] + first);
+        coefficients[power] = load(Number::Coefficients + power);
       }
-      const Bracket<D> bracket{ hn::Load(tag, crossings.BeginS + first),
-        hn::Load(tag, crossings.BeginValue + first), hn::Load(tag, crossings.EndS + first),
-        hn::Load(tag, crossings.EndValue + first) };
+      const Bracket<D> bracket{ load(Number::BeginS), load(Number::BeginValue), load(Number::EndS),
+        load(Number::EndValue) };
       const Vector s = PacketCrossing<D>(tag, coefficients).Refine(rays, bracket);
-      const Vector enter = hn::Load(tag, crossings.Enter + first);
-      const Vector leave = hn::Load(tag, crossings.Leave + first);
+      const Vector enter = load(Number::Enter);
+      const Vector leave = load(Number::Leave);
       const Vector t = hn::Add(enter, hn::Mul(s, hn::Sub(leave, enter)));
       hn::Store(hn::IfThenElse(hn::Lt(leave, t), leave, t), tag, hits.T + first);
       // Nothing changes its side before the bracket.
-      hits.FromInside |= GetBits(hn::Ge(bracket.BeginValue, hn::Zero(tag))) << first;
+      hits.FromInside |= RayPacket::Mask{ GetBits(hn::Ge(bracket.BeginValue, hn::Zero(tag))) }
+        << first;
       for (int axis = 0; axis < 3; ++axis)
       {
-        const Vector start = hn::Load(tag, crossings.Start[axis] + first);
-        const Vector way = hn::Load(tag, crossings.Way[axis] + first);
+        const Vector start = load(Number::Start + axis);
+        const Vector way = load(Number::Way + axis);
         hn::Store(ClampToUnit(hn::Add(start, hn::Mul(s, way))), tag, hits.Local[axis] + first);
-        hn::Store(hn::Load(tag, crossings.Cell[axis] + first), tag, hits.Cell[axis] + first);
+        hn::Store(load(Number::Cell + axis), tag, hits.Cell[axis] + first);
       }
     }
   }
@@ -277,7 +208,7 @@ private:
 template <class D>
 PacketKernel Create(const char* name, const MacrocellKernel& macrocells)
 {
-  return { name, PacketSteps<D>::Width, &PacketSteps<D>::SetRays, &PacketSteps<D>::MeetBox,
+  return { name, PacketSteps<D>::Width, &PacketSteps<D>::SetRays, &PacketSteps<D>::MeetBrick,
     &PacketSteps<D>::SearchBrick, &PacketSteps<D>::FindOccluded, macrocells };
 }
 

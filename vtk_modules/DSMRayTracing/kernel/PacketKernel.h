@@ -30,19 +30,18 @@ struct PacketKernel
   RayPacket::Mask (*SetRays)(RayPacket& packet, const Ray* rays, RayPacket::Mask wanted,
     const IndexSpace& space, const Index3& cells);
 
-  /// Those of `rays` that cross a box (planes in cells) within the volume, and where.
-  RayPacket::Mask (*MeetBox)(const RayPacket& packet, RayPacket::Mask rays, const double lower[3],
-    const double upper[3], double* enter, double* leave);
+  /// Those of `rays` that cross a brick (planes in cells) within the volume, and where.
+  RayPacket::Mask (*MeetBrick)(
+    RayPacket& packet, RayPacket::Mask rays, const double lower[3], const double upper[3]);
 
-  /// Those of `rays` that meet the surface in a brick, which they cross from `enter` to `leave`.
-  /// `origin` is the brick's first cell. The numbers of the others in `hits` mean nothing.
+  /// Those of `rays` that meet the surface in the brick that they are in, and where. `origin` is the
+  /// brick's first cell.
   RayPacket::Mask (*SearchBrick)(const RayPacket& packet, RayPacket::Mask rays,
-    const PacketBrick& brick, const double origin[3], const double* enter, const double* leave,
-    PacketHits& hits);
+    const PacketBrick& brick, const double origin[3], PacketHits& hits);
 
   /// Those of `rays` for which SearchBrick finds a hit, without the hits.
   RayPacket::Mask (*FindOccluded)(const RayPacket& packet, RayPacket::Mask rays,
-    const PacketBrick& brick, const double origin[3], const double* enter, const double* leave);
+    const PacketBrick& brick, const double origin[3]);
 
   /// For TypedPacketBrick.
   MacrocellKernel Macrocells;

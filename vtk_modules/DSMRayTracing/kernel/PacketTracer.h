@@ -26,9 +26,6 @@ template <class Store>
 class PacketTracer
 {
 public:
-  /// At once.
-  static constexpr int MaxPackets = 4;
-
   PacketTracer(Store& store, typename Store::Worker& worker,
     const PacketKernel& kernel = PacketKernel::GetBest())
     : Blocks(store)
@@ -47,15 +44,15 @@ public:
     return this->Blocks.Prefetch(*object.Field->Segment, bricks.data(), bricks.size());
   }
 
-  /// VolumeTracer::Intersect for the rays of `wanted` in each packet of RayPacket::Size rays. All of
-  /// them lie within the beam that `bricks` was found for. `found` tells those that hit something.
-  void Intersect(const IsosurfaceObject& object, const BeamBricks& bricks, int packets,
-    const Ray* rays, const RayPacket::Mask* wanted, SurfaceHit* hits, RayPacket::Mask* found) const;
+  /// VolumeTracer::Intersect for those of RayPacket::Size rays that are `wanted`. All of them lie
+  /// within the beam that `bricks` was found for. Returns those that hit something.
+  RayPacket::Mask Intersect(const IsosurfaceObject& object, const BeamBricks& bricks,
+    const Ray* rays, RayPacket::Mask wanted, SurfaceHit* hits) const;
 
-  /// VolumeTracer::IsOccluded for those of up to 64 rays (bits) that are `wanted`. They need not
-  /// have anything in common, but are traced together where they go the same way.
-  std::uint64_t FindOccluded(
-    const IsosurfaceObject& object, const Ray* rays, std::uint64_t wanted) const;
+  /// VolumeTracer::IsOccluded for those of RayPacket::Size rays that are `wanted`. They need not have
+  /// anything in common, but are traced together where they go the same way.
+  RayPacket::Mask FindOccluded(
+    const IsosurfaceObject& object, const Ray* rays, RayPacket::Mask wanted) const;
 
 private:
   /// A packet on its way through the bricks.
@@ -65,48 +62,39 @@ private:
     RayPacket::Mask Found = 0;
     // In the current brick:
     RayPacket::Mask Meets = 0;
-    alignas(64) double Enter[RayPacket::Size];
-    alignas(64) double Leave[RayPacket::Size];
     RayPacket::Mask Hit = 0;
     RayPacket::Mask WithoutGradient = 0;
-    PacketHits Cells;
+    CellHit Cells[RayPacket::Size];
     int Isovalue[RayPacket::Size];
     glm::dvec3 Gradient[RayPacket::Size];
   };
 
-  /// Where the rays of packets that have not found anything yet cross a brick; returns whether any
-  /// does.
-  bool MeetBrick(const BeamBricks::Brick& brick, int packets, Progress* progress) const;
+  /// Finds out which rays that have not found anything yet cross a brick, and where; returns whether
+  /// any does.
+  bool MeetBrick(const BeamBricks::Brick& brick, Progress& progress) const;
 
   template <class T>
-  void SearchBricks(const IsosurfaceObject& object, const BeamBricks& bricks, int packets,
-    Progress* progress, const Ray* rays, SurfaceHit* hits) const;
+  void SearchBricks(const IsosurfaceObject& object, const BeamBricks& bricks, Progress& progress,
+    const Ray* rays, SurfaceHit* hits) const;
 
-  /// Acquires the brick and searches it for all packets that meet it.
+  /// Acquires the brick and searches it for all rays that meet it.
   template <class T>
-  void SearchBrick(const IsosurfaceObject& object, const BeamBricks::Brick& brick, int packets,
-    Progress* progress) const;
+  void SearchBrick(
+    const IsosurfaceObject& object, const BeamBricks::Brick& brick, Progress& progress) const;
 
   /// Fewer rays are as fast one by one.
   static constexpr int FewestInBeam = 8;
   /// Length of the mean of unit directions: those of less have too little in common for a beam.
   static constexpr double BeamCoherence = 0.98;
 
-  /// Rays that all move to the same sides, in order and without gaps.
-  struct Group
-  {
-    Ray Rays[MaxPackets * RayPacket::Size];
-    int Count = 0;
-    bool Forward[3];
-  };
+  /// FindOccluded for rays that all move to the same sides.
+  RayPacket::Mask FindOccludedInPacket(const IsosurfaceObject& object, const bool forward[3],
+    const Ray* rays, RayPacket::Mask wanted) const;
 
-  /// FindOccluded for a group; bit i is its ray i.
-  std::uint64_t FindOccludedInGroup(const IsosurfaceObject& object, const Group& group) const;
-
-  /// Adds those of `packets` that meet a surface in a brick to what they have found.
+  /// Adds those rays that meet a surface in a brick to what they have found.
   template <class T>
-  void FindOccludedInBrick(const IsosurfaceObject& object, const BeamBricks::Brick& brick,
-    int packets, Progress* progress) const;
+  void FindOccludedInBrick(
+    const IsosurfaceObject& object, const BeamBricks::Brick& brick, Progress& progress) const;
 
   Store& Blocks;
   typename Store::Worker& Self;

@@ -75,24 +75,21 @@ void RayBeam::SetSide(int number, const double normal[3], double least)
   side.Least = least;
 }
 
-void RayBeam::Set(const RayPacket* const* packets, int count)
+void RayBeam::Set(const RayPacket& packet)
 {
   glm::dvec3 sum(0.0);
   std::fill_n(this->Lower, 3, HUGE_VAL);
   std::fill_n(this->Upper, 3, -HUGE_VAL);
   const auto visit = [&](const auto& take)
   {
-    for (int number = 0; number < count; ++number)
+    for (RayPacket::Mask left = packet.Rays; left != 0; left &= left - 1)
     {
-      for (RayPacket::Mask left = packets[number]->Rays; left != 0; left &= left - 1)
-      {
-        take(*packets[number], GetLowest(left));
-      }
+      take(GetLowest(left));
     }
   };
-  std::copy_n(packets[0]->Forward, 3, this->Forward);
+  std::copy_n(packet.Forward, 3, this->Forward);
   visit(
-    [&](const RayPacket& packet, int lane)
+    [&](int lane)
     {
       for (int axis = 0; axis < 3; ++axis)
       {
@@ -115,7 +112,7 @@ void RayBeam::Set(const RayPacket* const* packets, int count)
     double low[2] = { HUGE_VAL, HUGE_VAL };
     double high[2] = { -HUGE_VAL, -HUGE_VAL };
     visit(
-      [&](const RayPacket& packet, int lane)
+      [&](int lane)
       {
         const double slope = packet.Direction[axis][lane] * packet.Inverse[most][lane];
         const double origin = packet.Origin[axis][lane];

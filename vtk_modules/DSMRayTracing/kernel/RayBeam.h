@@ -20,9 +20,9 @@ public:
   /// different sides or not at all on an axis, or that are not apart.
   bool Set(const GridRay corners[4]);
 
-  /// The rays of packets, which all move to the same sides; from where they enter the volume to where
-  /// they leave it. There is at least one.
-  void Set(const RayPacket* const* packets, int count);
+  /// The rays of a packet, from where they enter the volume to where they leave it. There is at least
+  /// one.
+  void Set(const RayPacket& packet);
 
   /// Whether all rays of the beam move towards larger coordinates.
   const bool* GetForward() const { return this->Forward; }

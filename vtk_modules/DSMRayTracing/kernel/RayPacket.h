@@ -15,9 +15,9 @@ namespace rt
 /// finds does not depend on the others.
 struct RayPacket
 {
-  static constexpr int Size = 16;
+  static constexpr int Size = 64;
   /// Bit i is ray i.
-  using Mask = std::uint32_t;
+  using Mask = std::uint64_t;
 
   alignas(64) double Origin[3][Size];
   alignas(64) double Direction[3][Size];
@@ -25,19 +25,24 @@ struct RayPacket
   /// Where the ray is in the volume.
   alignas(64) double Enter[Size];
   alignas(64) double Leave[Size];
+  /// Where it is in the brick that it was last asked about.
+  alignas(64) double BrickEnter[Size];
+  alignas(64) double BrickLeave[Size];
   /// Whether the rays move towards larger coordinates.
   bool Forward[3];
   /// Those that are there; the numbers of the others mean nothing.
   Mask Rays = 0;
 };
 
-/// Where the rays of a packet meet an isosurface within a brick; see CellHit.
+/// Where rays of a packet meet an isosurface within a brick, in any order; see CellHit.
 struct PacketHits
 {
+  int Count = 0;
+  int Ray[RayPacket::Size];
   alignas(64) double T[RayPacket::Size];
   alignas(64) double Cell[3][RayPacket::Size];  ///< of the brick; whole numbers
   alignas(64) double Local[3][RayPacket::Size]; ///< within the cell, in [0, 1]
-  RayPacket::Mask FromInside = 0;
+  std::uint64_t FromInside = 0;                 ///< bit i is hit i
 
   CellHit Get(int index) const
   {
@@ -51,23 +56,12 @@ struct PacketHits
     }
     return hit;
   }
-  void Set(int index, const PacketHits& from)
-  {
-    this->T[index] = from.T[index];
-    const RayPacket::Mask bit = RayPacket::Mask{ 1 } << index;
-    this->FromInside = (this->FromInside & ~bit) | (from.FromInside & bit);
-    for (int axis = 0; axis < 3; ++axis)
-    {
-      this->Cell[axis][index] = from.Cell[axis][index];
-      this->Local[axis][index] = from.Local[axis][index];
-    }
-  }
 };
 
 /// The number of the first ray of a mask, which is not empty.
-inline int GetLowest(RayPacket::Mask rays)
+inline int GetLowest(std::uint64_t rays)
 {
-  return __builtin_ctz(rays);
+  return __builtin_ctzll(rays);
 }
 
 } // namespace rt

@@ -6,6 +6,7 @@
 #include "DSMRayTracing/kernel/IsovalueLevel.h"
 #include "DSMRayTracing/kernel/Lanes.h"
 #include "DSMRayTracing/kernel/MacrocellKernel.h"
+#include "DSMRayTracing/kernel/NodeOrder.h"
 #include "DSMRayTracing/kernel/PacketBrick.h"
 
 #include <algorithm>
@@ -16,17 +17,18 @@
 namespace rt
 {
 
-/// A brick of samples of type T as packets see it. Remembers what it has found, since neighbouring
-/// packets ask for the same. Keeps references; for one thread.
+/// A brick of samples of type T as rays see it that move `forward` or not on each axis. Remembers what
+/// it has found in a part, since neighbouring rays ask for the same. Keeps references; for one thread.
 template <class T>
 class TypedPacketBrick final : public PacketBrick
 {
 public:
   TypedPacketBrick(const VoxelBrick<T>& brick, const IsovalueLevel<T>& level,
-    const MacrocellComparison<T>& comparison)
+    const MacrocellComparison<T>& comparison, const bool forward[3])
     : Brick(brick)
     , Level(level)
     , Comparison(comparison)
+    , Order(forward)
   {
     if constexpr (std::is_same_v<T, float>)
     {
@@ -42,33 +44,19 @@ public:
 
   const PacketPart& FindPart(const int part[3]) const override
   {
-    Memory& memory = this->GetMemory(part);
-    const int number = part[0] + MostParts * (part[1] + MostParts * part[2]);
-    if (memory.Number != number)
-    {
-      memory.Number = number;
-      memory.Part.Macrocells = this->ComparePart(part);
-      memory.Part.Known = 0;
-    }
-    return memory.Part;
+    this->Part.Macrocells = this->Order.TurnAll(this->ComparePart(part));
+    this->Part.Known = 0;
+    return this->Part;
   }
 
-  void FindCells(const int part[3], unsigned rays, const std::uint64_t* macrocells) const override
+  void FindCells(const int part[3], int macrocell) const override
   {
-    PacketPart& found = this->GetMemory(part).Part;
-    for (; rays != 0; rays &= rays - 1)
-    {
-      const std::uint64_t number = macrocells[__builtin_ctz(rays)];
-      const std::uint64_t bit = std::uint64_t{ 1 } << number;
-      if ((found.Known & bit) == 0)
-      {
-        const int first[3] = { MacrocellEdge * (4 * part[0] + static_cast<int>(number & 3)),
-          MacrocellEdge * (4 * part[1] + static_cast<int>(number >> 2 & 3)),
-          MacrocellEdge * (4 * part[2] + static_cast<int>(number >> 4)) };
-        found.Cells[number] = this->CompareCells(first);
-        found.Known |= bit;
-      }
-    }
+    const int number = this->Order.Turn(macrocell);
+    const int first[3] = { MacrocellEdge * (4 * part[0] + (number & 3)),
+      MacrocellEdge * (4 * part[1] + (number >> 2 & 3)),
+      MacrocellEdge * (4 * part[2] + (number >> 4)) };
+    this->Part.Cells[macrocell] = this->Order.TurnAll(this->CompareCells(first));
+    this->Part.Known |= std::uint64_t{ 1 } << macrocell;
   }
 
   unsigned GetCorners(unsigned rays, const double* cell, double* corners, int stride) const override
@@ -90,20 +78,6 @@ public:
 private:
   /// Bits from one row of samples to the next within a word.
   static constexpr int RowBits = 6;
-
-  /// Parts on an axis, at most.
-  static constexpr int MostParts = 16;
-
-  /// What was found for the last one asked for of the parts that share a place.
-  struct Memory
-  {
-    int Number = -1;
-    PacketPart Part;
-  };
-  Memory& GetMemory(const int part[3]) const
-  {
-    return this->Parts[(part[0] & 1) + 2 * (part[1] & 1) + 4 * (part[2] & 1)];
-  }
 
   std::uint64_t ComparePart(const int part[3]) const
   {
@@ -240,7 +214,8 @@ private:
   const VoxelBrick<T>& Brick;
   const IsovalueLevel<T>& Level;
   const MacrocellComparison<T>& Comparison;
-  mutable Memory Parts[8];
+  NodeOrder Order;
+  mutable PacketPart Part;
 };
 
 } // namespace rt
