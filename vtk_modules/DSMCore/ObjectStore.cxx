@@ -70,9 +70,14 @@ void ObjectStore::Surrender(const BlockTable& table)
   this->Self->Retire(table);
 }
 
-void ObjectStore::BeginFrame()
+bool ObjectStore::MayBeginFrame() const
 {
-  this->Self->BeginFrame();
+  return this->Self->MayBeginFrame();
+}
+
+void ObjectStore::BeginFrame(bool agreed)
+{
+  this->Self->BeginFrame(agreed);
 }
 
 bool ObjectStore::Service()

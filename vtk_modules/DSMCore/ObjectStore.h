@@ -87,10 +87,14 @@ public:
   void Adopt(std::shared_ptr<BlockTable> table);
   void Surrender(const BlockTable& table);
 
+  /// Local, between frames: whether BeginFrame will do without an agreement of the ranks when this
+  /// holds on all of them.
+  bool MayBeginFrame() const;
+
   /// Collective. Resets the counters of the frame; from now on workers may Acquire, and this rank
   /// serves others. Throws Error, on every rank alike, when a rank's cache cannot hold its largest
-  /// block.
-  void BeginFrame();
+  /// block. `agreed`: the ranks have told one another that MayBeginFrame; no message is sent.
+  void BeginFrame(bool agreed = false);
   /// Communication thread, often: sends what the workers miss, hands arrived blocks to them,
   /// reclaims memory. Returns whether it did anything. (Serving others happens in
   /// Messenger::Progress, through handlers.)

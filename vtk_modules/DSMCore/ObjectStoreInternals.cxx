@@ -228,9 +228,25 @@ void ObjectStore::Internals::CheckBudget() const
   }
 }
 
-void ObjectStore::Internals::BeginFrame()
+bool ObjectStore::Internals::MayBeginFrame() const
 {
-  this->Messages.RunTogether("The frame cannot begin", [this] { this->CheckBudget(); });
+  try
+  {
+    this->CheckBudget();
+    return true;
+  }
+  catch (const Error&)
+  {
+    return false; // BeginFrame will say why, on every rank
+  }
+}
+
+void ObjectStore::Internals::BeginFrame(bool agreed)
+{
+  if (!agreed)
+  {
+    this->Messages.RunTogether("The frame cannot begin", [this] { this->CheckBudget(); });
+  }
   this->Requests.BeginFrame();
 
   const std::size_t footprint = BlockCache::GetFootprint(this->GetLargestBlock());

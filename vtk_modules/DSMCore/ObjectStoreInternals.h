@@ -40,7 +40,8 @@ public:
   void Add(std::shared_ptr<Segment> segment);
   void Retire(const BlockSegment& segment);
 
-  void BeginFrame();
+  bool MayBeginFrame() const;
+  void BeginFrame(bool agreed);
   bool Service();
   void Cancel(const std::string& cause);
   bool Drain();

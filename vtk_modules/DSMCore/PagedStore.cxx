@@ -248,9 +248,14 @@ void PagedStore::Retire(const std::shared_ptr<BlockSegment>& segment)
   }
 }
 
-void PagedStore::BeginFrame()
+bool PagedStore::MayBeginFrame() const
 {
-  this->Self->BeginFrame();
+  return this->Self->MayBeginFrame();
+}
+
+void PagedStore::BeginFrame(bool agreed)
+{
+  this->Self->BeginFrame(agreed);
 }
 
 bool PagedStore::Service()

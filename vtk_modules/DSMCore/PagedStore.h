@@ -102,10 +102,14 @@ public:
   /// cached blocks. What this rank owns of it stays until the last shared pointer goes.
   void Retire(const std::shared_ptr<BlockSegment>& segment);
 
+  /// See ObjectStore. Never where faults are signalled, since it is not known before whether the address
+  /// space has room.
+  bool MayBeginFrame() const;
+
   /// Collective. Resets the counters of the frame; from now on workers may Acquire, and this rank
   /// serves others. Throws Error, on every rank alike, when a rank's cache cannot hold its largest
-  /// block, or its address space has too many mappings (see SignalFaults).
-  void BeginFrame();
+  /// block, or its address space has too many mappings (see SignalFaults). `agreed`: as ObjectStore's.
+  void BeginFrame(bool agreed = false);
   /// Communication thread, often: sends what the workers miss. Returns whether it did anything.
   /// (Serving others happens in Messenger::Progress, through handlers.)
   bool Service();

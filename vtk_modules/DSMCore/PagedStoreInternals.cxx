@@ -292,7 +292,7 @@ std::size_t PagedStore::Internals::GetLargestBlock() const
   return AddressRange::RoundUpToPages(largest);
 }
 
-void PagedStore::Internals::CheckFrame()
+void PagedStore::Internals::CheckBudget() const
 {
   if (this->Phase != FramePhase::Closed)
   {
@@ -306,17 +306,37 @@ void PagedStore::Internals::CheckFrame()
       " bytes is smaller than one brick (" + std::to_string(largest) +
       " bytes in whole pages). Raise the cache size (DSMCacheSize).");
   }
-  if (this->Faults)
-  {
-    this->LargestRuns = this->Faults->Open(this->Runs);
-  }
 }
 
-void PagedStore::Internals::BeginFrame()
+bool PagedStore::Internals::MayBeginFrame() const
 {
   try
   {
-    this->Messages.RunTogether("The frame cannot begin", [this] { this->CheckFrame(); });
+    this->CheckBudget();
+    return this->Faults == nullptr;
+  }
+  catch (const Error&)
+  {
+    return false; // BeginFrame will say why, on every rank
+  }
+}
+
+void PagedStore::Internals::BeginFrame(bool agreed)
+{
+  const auto prepare = [this]
+  {
+    this->CheckBudget();
+    if (this->Faults)
+    {
+      this->LargestRuns = this->Faults->Open(this->Runs);
+    }
+  };
+  try
+  {
+    if (!agreed)
+    {
+      this->Messages.RunTogether("The frame cannot begin", prepare);
+    }
   }
   catch (...)
   {

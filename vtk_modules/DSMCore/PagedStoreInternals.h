@@ -53,7 +53,8 @@ public:
   void Add(std::shared_ptr<Segment> segment);
   void Retire(const BlockSegment& segment);
 
-  void BeginFrame();
+  bool MayBeginFrame() const;
+  void BeginFrame(bool agreed);
   bool Service();
   void Cancel(const std::string& cause);
   bool Drain();
@@ -123,7 +124,7 @@ private:
   Worker* FindWorker(int thread) const;
 
   // -- The communication thread --
-  void CheckFrame();
+  void CheckBudget() const;
   BlockRequests::Callbacks MakeCallbacks();
   void Take(const BlockWant& block, const std::byte* bytes);
   /// Makes room for a block, evicting into `evicted`; false when it must wait.

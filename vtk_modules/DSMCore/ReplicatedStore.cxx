@@ -101,7 +101,7 @@ void ReplicatedStore::Surrender(BlockTable& table)
 
 // -- The frame -------------------------------------------------------------------------------------
 
-void ReplicatedStore::BeginFrame()
+void ReplicatedStore::BeginFrame(bool)
 {
   if (this->InFrame)
   {

@@ -71,8 +71,10 @@ public:
   void Adopt(std::shared_ptr<BlockTable> table);
   void Surrender(BlockTable& table);
 
-  /// Local. Resets the counters of the frame.
-  void BeginFrame();
+  /// See ObjectStore; always.
+  static constexpr bool MayBeginFrame() { return true; }
+  /// Local. Resets the counters of the frame. Nothing has to be agreed on.
+  void BeginFrame(bool agreed = false);
   /// Nothing to do.
   bool Service() { return false; }
   /// Nobody waits.

@@ -100,6 +100,7 @@ struct Entry
 {
   RequestDigest Request;
   std::uint64_t Settled;    ///< whether its store is
+  std::uint64_t MayBegin;   ///< whether its store may begin the frame without asking others
   std::uint64_t LastNumber; ///< of the last frame, when it had the same tiles; else 0
   std::uint64_t LastTiles;
   double LastBusySeconds;
@@ -123,9 +124,11 @@ RequestDigest GetDigest(const FrameRequest& request, const Scene& scene)
   return digest;
 }
 
-Entry CreateEntry(const FrameRequest& request, const Scene& scene, const Frame* last, bool settled)
+Entry CreateEntry(
+  const FrameRequest& request, const Scene& scene, const Frame* last, dsm::BlockStore& store)
 {
-  Entry entry{ GetDigest(request, scene), settled, 0, 0, 0.0 };
+  const bool mayBegin = store.Visit([](auto& blocks) { return blocks.MayBeginFrame(); });
+  Entry entry{ GetDigest(request, scene), store.IsSettled(), mayBegin, 0, 0, 0.0 };
   if (last && last->Width == request.Width && last->Height == request.Height &&
     last->TileSize == request.TileSize)
   {
@@ -229,19 +232,26 @@ void FrameRenderer::RenderTiles(dsm::BlockStore& store, const Scene& scene,
   const FrameRequest& request, const Frame* last, TileSource& tiles, Frame& frame)
 {
   const auto start = Clock::now();
-  const auto entries =
-    this->Messenger.AllGatherValue(CreateEntry(request, scene, last, store.IsSettled()));
+  const auto entries = this->Messenger.AllGatherValue(CreateEntry(request, scene, last, store));
   CheckRequest(entries, request);
-  if (std::any_of(entries.begin(), entries.end(), [](const Entry& each) { return !each.Settled; }))
+  const bool settled =
+    std::all_of(entries.begin(), entries.end(), [](const Entry& each) { return each.Settled; });
+  if (!settled)
   {
     store.Settle();
   }
+  const bool agreed = settled &&
+    std::all_of(entries.begin(), entries.end(), [](const Entry& each) { return each.MayBegin; });
   const TilePlan plan = CreatePlan(entries, request, last);
   const std::shared_ptr<const BeamHistory> history = last ? last->Beams : frame.Beams;
   dsm::WorkerSlots& slots = store.GetSlots();
   slots.BeginFrame(store.GetSettings().Workers);
-  store.Visit([&](auto& blocks)
-    { this->TraceTiles(blocks, slots, scene, request, plan, history.get(), tiles, frame); });
+  store.Visit(
+    [&](auto& blocks)
+    {
+      blocks.BeginFrame(agreed);
+      this->TraceTiles(blocks, slots, scene, request, plan, history.get(), tiles, frame);
+    });
   frame.Width = request.Width;
   frame.Height = request.Height;
   frame.TileSize = request.TileSize;
@@ -268,7 +278,6 @@ void FrameRenderer::TraceTiles(Store& store, dsm::WorkerSlots& slots, const Scen
   std::vector<int> mine = plan.Mine;
   std::sort(mine.begin(), mine.end());
 
-  store.BeginFrame();
   tiles.Begin(plan, workers);
   std::atomic<bool> stopped{ false }; // by another rank's failure, which that rank reports
   FrameAgreement agreement(
