@@ -157,6 +157,26 @@ TEST_P(FrameInOrganization, CacheHoldsOneBrick)
   }
 }
 
+TEST_P(FrameInOrganization, CameraThatCannotBeInvertedIsRefusedAndTheNextFrameWorks)
+{
+  RunOnCluster(2,
+    [](dsm::Messenger& messenger)
+    {
+      dsm::BlockStore::Settings settings =
+        SphereScene::CreateSettings(std::size_t(16) << 20, 1, GetParam().Organization);
+      settings.HostSharing = GetParam().HostSharing;
+      dsm::BlockStore store(messenger, settings);
+      const rt::Scene scene =
+        SphereScene::CreateScene(SphereScene::Publish(messenger, store), 1.0f);
+      rt::FrameRenderer renderer(messenger);
+      rt::FrameRequest flat = SphereScene::CreateRequest(32, 32);
+      flat.WorldToClip = glm::dmat4(0.0);
+      EXPECT_THROW(renderer.Render(store, scene, flat), dsm::Error);
+      const rt::Frame frame = renderer.Render(store, scene, SphereScene::CreateRequest(32, 32));
+      EXPECT_GT(CountCovered(rt::GatherFrame(messenger, frame)), 0);
+    });
+}
+
 TEST(FrameRenderer, TranslucentSurfaces)
 {
   Setting setting;

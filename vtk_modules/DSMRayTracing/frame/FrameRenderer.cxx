@@ -247,10 +247,8 @@ void FrameRenderer::RenderTiles(dsm::BlockStore& store, const Scene& scene,
   dsm::WorkerSlots& slots = store.GetSlots();
   slots.BeginFrame(store.GetSettings().Workers);
   store.Visit(
-    [&](auto& blocks)
-    {
-      blocks.BeginFrame(agreed);
-      this->TraceTiles(blocks, slots, scene, request, plan, history.get(), tiles, frame);
+    [&](auto& blocks) {
+      this->TraceTiles(blocks, agreed, slots, scene, request, plan, history.get(), tiles, frame);
     });
   frame.Width = request.Width;
   frame.Height = request.Height;
@@ -264,9 +262,9 @@ void FrameRenderer::RenderTiles(dsm::BlockStore& store, const Scene& scene,
 }
 
 template <class Store>
-void FrameRenderer::TraceTiles(Store& store, dsm::WorkerSlots& slots, const Scene& scene,
-  const FrameRequest& request, const TilePlan& plan, const BeamHistory* last, TileSource& tiles,
-  Frame& frame)
+void FrameRenderer::TraceTiles(Store& store, bool agreed, dsm::WorkerSlots& slots,
+  const Scene& scene, const FrameRequest& request, const TilePlan& plan, const BeamHistory* last,
+  TileSource& tiles, Frame& frame)
 {
   const PixelRays rays(request);
   const auto beams = store.MayPrefetch()
@@ -278,6 +276,7 @@ void FrameRenderer::TraceTiles(Store& store, dsm::WorkerSlots& slots, const Scen
   std::vector<int> mine = plan.Mine;
   std::sort(mine.begin(), mine.end());
 
+  store.BeginFrame(agreed);
   tiles.Begin(plan, workers);
   std::atomic<bool> stopped{ false }; // by another rank's failure, which that rank reports
   FrameAgreement agreement(

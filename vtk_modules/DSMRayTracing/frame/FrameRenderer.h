@@ -55,8 +55,9 @@ public:
 private:
   void RenderTiles(dsm::BlockStore& store, const Scene& scene, const FrameRequest& request,
     const Frame* last, TileSource& tiles, Frame& frame);
+  /// `agreed`: see the stores' BeginFrame.
   template <class Store>
-  void TraceTiles(Store& store, dsm::WorkerSlots& slots, const Scene& scene,
+  void TraceTiles(Store& store, bool agreed, dsm::WorkerSlots& slots, const Scene& scene,
     const FrameRequest& request, const TilePlan& plan, const BeamHistory* last, TileSource& tiles,
     Frame& frame);
 
