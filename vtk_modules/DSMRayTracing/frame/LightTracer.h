@@ -111,7 +111,7 @@ private:
     std::uint64_t occluded = 0;
     for (int first = 0; first < MaxRays; first += MeshPacket::Size)
     {
-      const MeshPacket::Mask some = MeshPacket::GetPart(wanted, first);
+      const MeshPacket::Mask some = GetPart(wanted, first, MeshPacket::Size);
       if (some != 0)
       {
         occluded |= std::uint64_t{ this->Meshes.FindOccluded(*object.Instance, rays + first, some) }

@@ -119,7 +119,7 @@ public:
     MeshHit meshHits[MeshPacket::Size];
     for (int first = 0; first < RayPacket::Size; first += MeshPacket::Size)
     {
-      const MeshPacket::Mask some = MeshPacket::GetPart(wanted, first);
+      const MeshPacket::Mask some = GetPart(wanted, first, MeshPacket::Size);
       const MeshObject* meshes[MeshPacket::Size] = {};
       if (some != 0 && !this->World.Meshes.empty())
       {

@@ -219,7 +219,7 @@ private:
     }
     for (int first = 0; first < RayPacket::Size; first += Width)
     {
-      const auto some = static_cast<std::uint32_t>(rays >> first) & ((1u << Width) - 1);
+      const std::uint32_t some = GetPart(rays, first, Width);
       if (some != 0)
       {
         this->FindMacrocells(first, some, known);
@@ -249,12 +249,10 @@ private:
   HWY_INLINE void FindMacrocells(int first, std::uint32_t some, const PacketPart& known)
   {
     const D tag;
-    RayLines<D> lines;
+    const RayLines<D> lines(this->Packet, first);
     Vector entry[3];
     for (int axis = 0; axis < 3; ++axis)
     {
-      lines.Origin[axis] = hn::Load(tag, this->Packet.Origin[axis] + first);
-      lines.Inverse[axis] = hn::Load(tag, this->Packet.Inverse[axis] + first);
       entry[axis] = hn::Set(tag, this->Start[axis]);
     }
     const Numbers crossed = FindCrossedNodes(lines, this->Forward, entry, MacrocellEdge,

@@ -20,11 +20,6 @@ struct MeshPacket
   static constexpr int Size = 16;
   /// Bit i is ray i.
   using Mask = std::uint32_t;
-  /// Those of 64 rays (bits) that are in the packet of ray `first` and those after it.
-  static Mask GetPart(std::uint64_t rays, int first)
-  {
-    return static_cast<Mask>(rays >> first) & ((Mask{ 1 } << Size) - 1);
-  }
 
   // TriangleRay:
   int Axes[3];

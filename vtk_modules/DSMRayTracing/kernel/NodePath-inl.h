@@ -7,6 +7,8 @@
 #define rt_NodePath_inl_h
 #endif
 
+#include "DSMRayTracing/kernel/RayPacket.h"
+
 #include <hwy/highway.h>
 
 #include <cstddef>
@@ -116,6 +118,17 @@ struct RayLines
 
   Vector Origin[3];
   Vector Inverse[3];
+
+  RayLines() = default;
+  /// Rays `first` and those after it.
+  HWY_INLINE RayLines(const RayPacket& packet, int first)
+  {
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      this->Origin[axis] = hn::Load(D(), packet.Origin[axis] + first);
+      this->Inverse[axis] = hn::Load(D(), packet.Inverse[axis] + first);
+    }
+  }
 
   HWY_INLINE Vector GetPlaneT(int axis, Vector plane) const
   {

@@ -46,7 +46,7 @@ public:
     RayPacket::Mask crossing = 0;
     for (int first = 0; first < RayPacket::Size; first += Width)
     {
-      const std::uint32_t lanes = GetLanes(wanted, first);
+      const std::uint32_t lanes = GetPart(wanted, first, Width);
       if (lanes == 0)
       {
         continue;
@@ -69,6 +69,7 @@ public:
       }
       Vector enter = SetLanes<double, Width>([&](int lane) { return own[lane]->Min; });
       Vector leave = SetLanes<double, Width>([&](int lane) { return own[lane]->Max; });
+      RayLines<D> lines;
       Mask fits = GetMask(wanted, first);
       for (int axis = 0; axis < 3; ++axis)
       {
@@ -83,9 +84,11 @@ public:
         hn::Store(start, tag, packet.Origin[axis] + first);
         hn::Store(way, tag, packet.Direction[axis] + first);
         hn::Store(inverse, tag, packet.Inverse[axis] + first);
-        const auto end = static_cast<double>(cells[axis]);
-        enter = hn::Max(enter, GetPlaneT(packet, first, axis, forward ? 0.0 : end));
-        leave = hn::Min(leave, GetPlaneT(packet, first, axis, forward ? end : 0.0));
+        lines.Origin[axis] = start;
+        lines.Inverse[axis] = inverse;
+        const Vector end = hn::Set(tag, static_cast<double>(cells[axis]));
+        enter = hn::Max(enter, lines.GetPlaneT(axis, forward ? hn::Zero(tag) : end));
+        leave = hn::Min(leave, lines.GetPlaneT(axis, forward ? end : hn::Zero(tag)));
       }
       hn::Store(enter, tag, packet.Enter + first);
       hn::Store(leave, tag, packet.Leave + first);
@@ -103,17 +106,20 @@ public:
     RayPacket::Mask met = 0;
     for (int first = 0; first < RayPacket::Size; first += Width)
     {
-      if (GetLanes(rays, first) == 0)
+      if (GetPart(rays, first, Width) == 0)
       {
         continue;
       }
+      const RayLines<D> lines(packet, first);
       Vector enter = hn::Load(tag, packet.Enter + first);
       Vector leave = hn::Load(tag, packet.Leave + first);
       for (int axis = 0; axis < 3; ++axis)
       {
         const bool forward = packet.Forward[axis];
-        enter = hn::Max(enter, GetPlaneT(packet, first, axis, forward ? lower[axis] : upper[axis]));
-        leave = hn::Min(leave, GetPlaneT(packet, first, axis, forward ? upper[axis] : lower[axis]));
+        const Vector entry = hn::Set(tag, forward ? lower[axis] : upper[axis]);
+        const Vector end = hn::Set(tag, forward ? upper[axis] : lower[axis]);
+        enter = hn::Max(enter, lines.GetPlaneT(axis, entry));
+        leave = hn::Min(leave, lines.GetPlaneT(axis, end));
       }
       hn::Store(enter, tag, packet.BrickEnter + first);
       hn::Store(leave, tag, packet.BrickLeave + first);
@@ -122,13 +128,12 @@ public:
     return met & rays;
   }
 
-  static RayPacket::Mask SearchBrick(const RayPacket& packet, RayPacket::Mask rays,
-    const PacketBrick& brick, const double origin[3], PacketHits& hits)
+  static void SearchBrick(const RayPacket& packet, RayPacket::Mask rays, const PacketBrick& brick,
+    const double origin[3], PacketHits& hits)
   {
     CellCrossings crossings;
-    const RayPacket::Mask found = BrickSearch<D>(packet, brick, origin, &crossings).Search(rays);
+    BrickSearch<D>(packet, brick, origin, &crossings).Search(rays);
     Refine(crossings, hits);
-    return found;
   }
 
   static RayPacket::Mask FindOccluded(
@@ -149,22 +154,10 @@ private:
   }
 
   static std::uint32_t GetBits(Mask mask) { return GetMaskBits(D(), mask); }
-  /// Those of rays that are in the vector of ray `first`.
-  static std::uint32_t GetLanes(RayPacket::Mask rays, int first)
-  {
-    return static_cast<std::uint32_t>(rays >> first) & ((1u << Width) - 1);
-  }
   static Mask GetMask(RayPacket::Mask rays, int first)
   {
     const std::uint8_t bits[8] = { static_cast<std::uint8_t>(rays >> first) };
     return hn::LoadMaskBits(D(), bits);
-  }
-
-  static Vector GetPlaneT(const RayPacket& packet, int first, int axis, double plane)
-  {
-    const D tag;
-    return hn::Mul(hn::Sub(hn::Set(tag, plane), hn::Load(tag, packet.Origin[axis] + first)),
-      hn::Load(tag, packet.Inverse[axis] + first));
   }
 
   /// Where exactly rays meet the surface.

@@ -34,12 +34,11 @@ struct PacketKernel
   RayPacket::Mask (*MeetBrick)(
     RayPacket& packet, RayPacket::Mask rays, const double lower[3], const double upper[3]);
 
-  /// Those of `rays` that meet the surface in the brick that they are in, and where. `origin` is the
-  /// brick's first cell.
-  RayPacket::Mask (*SearchBrick)(const RayPacket& packet, RayPacket::Mask rays,
-    const PacketBrick& brick, const double origin[3], PacketHits& hits);
+  /// Where `rays` meet the surface in the brick that they are in. `origin` is the brick's first cell.
+  void (*SearchBrick)(const RayPacket& packet, RayPacket::Mask rays, const PacketBrick& brick,
+    const double origin[3], PacketHits& hits);
 
-  /// Those of `rays` for which SearchBrick finds a hit, without the hits.
+  /// Those of `rays` for which SearchBrick finds a hit.
   RayPacket::Mask (*FindOccluded)(const RayPacket& packet, RayPacket::Mask rays,
     const PacketBrick& brick, const double origin[3]);
 

@@ -64,6 +64,12 @@ inline int GetLowest(std::uint64_t rays)
   return __builtin_ctzll(rays);
 }
 
+/// Of the rays of a mask those from `first` on, at most 31.
+inline std::uint32_t GetPart(std::uint64_t rays, int first, int count)
+{
+  return static_cast<std::uint32_t>(rays >> first) & ((std::uint32_t{ 1 } << count) - 1);
+}
+
 } // namespace rt
 
 #endif
