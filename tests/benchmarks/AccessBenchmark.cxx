@@ -5,7 +5,7 @@
 #include "MissTiming.h"
 #include "RunOptions.h"
 
-#include "DSMCore/BlockStore.h"
+#include "DSMCore/store/BlockStore.h"
 
 #include <nlohmann/json.hpp>
 

@@ -2,7 +2,7 @@
 #ifndef AccessBenchmark_h
 #define AccessBenchmark_h
 
-#include "DSMCore/Messenger.h"
+#include "DSMCore/transport/Messenger.h"
 
 #include <cstdint>
 #include <string>

@@ -2,7 +2,7 @@
 #ifndef AccessFrame_h
 #define AccessFrame_h
 
-#include "DSMCore/Messenger.h"
+#include "DSMCore/transport/Messenger.h"
 #include "DSMRayTracing/frame/FrameAgreement.h"
 #include "DSMRayTracing/frame/WorkerPool.h"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "BenchmarkCamera.h"
 
-#include "DSMCore/Error.h"
+#include "DSMCore/base/Error.h"
 
 #include <glm/gtc/constants.hpp>
 #include <glm/gtc/matrix_transform.hpp>

@@ -4,7 +4,7 @@
 
 #include "BenchmarkOptions.h"
 
-#include "DSMRayTracing/frame/Scene.h"
+#include "DSMRayTracing/scene/Scene.h"
 
 #include <glm/mat4x4.hpp>
 #include <glm/vec3.hpp>

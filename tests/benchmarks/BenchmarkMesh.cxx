@@ -3,8 +3,8 @@
 
 #include "OptionValues.h"
 
-#include "DSMRayTracing/accel/TriangleMeshBuilder.h"
-#include "DSMRayTracing/brick/TriangleReader.h"
+#include "DSMRayTracing/build/TriangleMeshBuilder.h"
+#include "DSMRayTracing/build/TriangleReader.h"
 
 #include <glm/common.hpp>
 

@@ -4,9 +4,9 @@
 
 #include "tests/support/MeshFile.h"
 
-#include "DSMCore/BlockStore.h"
-#include "DSMCore/Messenger.h"
-#include "DSMRayTracing/accel/TriangleMesh.h"
+#include "DSMCore/store/BlockStore.h"
+#include "DSMCore/transport/Messenger.h"
+#include "DSMRayTracing/layout/TriangleMesh.h"
 
 #include <cstdint>
 #include <memory>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "BenchmarkVolume.h"
 
-#include "DSMCore/ConcurrentFragmentSource.h"
-#include "DSMRayTracing/brick/VoxelBrickBuilder.h"
+#include "DSMCore/publish/ConcurrentFragmentSource.h"
+#include "DSMRayTracing/build/VoxelBrickBuilder.h"
 #include "DSMRayTracing/sample/SampleVolume.h"
 
 #include <vtkDataArray.h>

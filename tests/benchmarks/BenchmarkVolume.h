@@ -2,9 +2,9 @@
 #ifndef BenchmarkVolume_h
 #define BenchmarkVolume_h
 
-#include "DSMCore/BlockStore.h"
-#include "DSMCore/Messenger.h"
-#include "DSMRayTracing/frame/Scene.h"
+#include "DSMCore/store/BlockStore.h"
+#include "DSMCore/transport/Messenger.h"
+#include "DSMRayTracing/scene/Scene.h"
 
 #include <string>
 

@@ -7,7 +7,7 @@
 
 #include "DSMRayTracing/frame/PixelRays.h"
 #include "DSMRayTracing/frame/TileGrid.h"
-#include "DSMRayTracing/kernel/VolumeTracer.h"
+#include "DSMRayTracing/volume/VolumeTracer.h"
 
 #include <nlohmann/json.hpp>
 

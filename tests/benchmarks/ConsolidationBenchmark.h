@@ -4,8 +4,8 @@
 
 #include "BenchmarkOptions.h"
 
-#include "DSMCore/Messenger.h"
-#include "DSMRayTracing/kernel/BrickAccess.h"
+#include "DSMCore/transport/Messenger.h"
+#include "DSMRayTracing/volume/BrickAccess.h"
 
 #include <string>
 #include <vector>

@@ -2,7 +2,7 @@
 #ifndef DelayedTransport_h
 #define DelayedTransport_h
 
-#include "DSMCore/Transport.h"
+#include "DSMCore/transport/Transport.h"
 
 #include <chrono>
 #include <deque>

@@ -4,7 +4,7 @@
 
 #include "tests/support/MeshFile.h"
 
-#include "DSMRayTracing/kernel/Ray.h"
+#include "DSMRayTracing/ray/Ray.h"
 
 #include <memory>
 

@@ -6,7 +6,7 @@
 #include "AccessFrame.h"
 #include "NumberedWords.h"
 
-#include "DSMCore/BlockArena.h"
+#include "DSMCore/memory/BlockArena.h"
 
 #include <algorithm>
 #include <atomic>

@@ -3,11 +3,11 @@
 
 #include "OptionValues.h"
 
-#include "DSMCore/BlockStore.h"
+#include "DSMCore/store/BlockStore.h"
 #include "DSMRayTracing/frame/FrameGather.h"
 #include "DSMRayTracing/frame/FrameRenderer.h"
 #include "DSMRayTracing/frame/PixelRays.h"
-#include "DSMRayTracing/kernel/MeshTracer.h"
+#include "DSMRayTracing/mesh/MeshTracer.h"
 #ifdef DSM_HAS_EMBREE
 #include "EmbreeMesh.h"
 #endif

@@ -5,7 +5,7 @@
 #include "BenchmarkMesh.h"
 #include "RunOptions.h"
 
-#include "DSMCore/Messenger.h"
+#include "DSMCore/transport/Messenger.h"
 
 #include <cstdint>
 #include <string>

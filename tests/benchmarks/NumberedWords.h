@@ -2,9 +2,9 @@
 #ifndef NumberedWords_h
 #define NumberedWords_h
 
-#include "DSMCore/BlockStore.h"
-#include "DSMCore/Error.h"
-#include "DSMCore/Publication.h"
+#include "DSMCore/base/Error.h"
+#include "DSMCore/publish/Publication.h"
+#include "DSMCore/store/BlockStore.h"
 
 #include <cstddef>
 #include <cstdint>

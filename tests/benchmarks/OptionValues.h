@@ -2,7 +2,7 @@
 #ifndef OptionValues_h
 #define OptionValues_h
 
-#include "DSMCore/Error.h"
+#include "DSMCore/base/Error.h"
 
 #include <functional>
 #include <map>

@@ -4,8 +4,8 @@
 
 #include "OptionValues.h"
 
-#include "DSMCore/BlockStore.h"
-#include "DSMCore/Messenger.h"
+#include "DSMCore/store/BlockStore.h"
+#include "DSMCore/transport/Messenger.h"
 #include "DSMRayTracing/schedule/TileScheduler.h"
 
 #include <string>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Runs the tests of one executable on every rank. What fails on one rank fails the run on all.
-#include "DSMCore/Messenger.h"
-#include "DSMCore/MpiTransport.h"
+#include "DSMCore/transport/Messenger.h"
+#include "DSMCore/transport/MpiTransport.h"
 
 #include <gtest/gtest.h>
 

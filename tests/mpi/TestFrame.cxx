@@ -3,7 +3,7 @@
 #include "tests/support/LoopbackCluster.h"
 #include "tests/support/SphereScene.h"
 
-#include "DSMCore/MpiTransport.h"
+#include "DSMCore/transport/MpiTransport.h"
 #include "DSMRayTracing/frame/FrameGather.h"
 #include "DSMRayTracing/frame/FrameRenderer.h"
 

@@ -2,7 +2,7 @@
 // Over real MPI ranks, the picture of meshes and isosurfaces is that of one rank alone.
 #include "tests/support/MeshScene.h"
 
-#include "DSMCore/MpiTransport.h"
+#include "DSMCore/transport/MpiTransport.h"
 #include "DSMRayTracing/frame/FrameGather.h"
 #include "DSMRayTracing/frame/FrameRenderer.h"
 

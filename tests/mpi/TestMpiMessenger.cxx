@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "DSMCore/Messenger.h"
-#include "DSMCore/MpiTransport.h"
+#include "DSMCore/transport/Messenger.h"
+#include "DSMCore/transport/MpiTransport.h"
 
 #include "tests/unit/dsmcore/MessengerScenarios.h"
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "DSMCore/MpiTransport.h"
-#include "DSMCore/ObjectStore.h"
+#include "DSMCore/table/ObjectStore.h"
+#include "DSMCore/transport/MpiTransport.h"
 
 #include "tests/unit/dsmcore/StoreScenarios.h"
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "DSMCore/MpiTransport.h"
-#include "DSMCore/PagedStore.h"
+#include "DSMCore/paged/PagedStore.h"
+#include "DSMCore/transport/MpiTransport.h"
 
 #include "tests/unit/dsmcore/PagedScenarios.h"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "DSMCore/MpiTransport.h"
+#include "DSMCore/transport/MpiTransport.h"
 
-#include "DSMCore/Error.h"
+#include "DSMCore/base/Error.h"
 
 #include <gtest/gtest.h>
 

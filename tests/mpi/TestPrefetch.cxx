@@ -3,7 +3,7 @@
 // workers wait less often.
 #include "tests/support/SphereScene.h"
 
-#include "DSMCore/MpiTransport.h"
+#include "DSMCore/transport/MpiTransport.h"
 #include "DSMRayTracing/frame/FrameGather.h"
 #include "DSMRayTracing/frame/FrameRenderer.h"
 

@@ -15,7 +15,15 @@ FORBIDDEN = {
     "vtk_modules/RenderingDSM": [r"^vtkPV", r"^vtkSM", r"^vtkSI", r"^mpi\.h$"],
     "plugin": [r"^mpi\.h$", r"^DSMCore/", r"^glm/"],
 }
-MPI_FILE = "vtk_modules/DSMCore/MpiTransport.cxx"
+# Module -> its rooms, lowest first: a room uses itself and those before it.
+ROOMS = {
+    "DSMCore": ["base", "transport", "memory", "publish", "fetch", "table", "paged", "store"],
+    "DSMRayTracing": [
+        "base", "accel", "layout", "build", "sample", "ray", "surface", "volume", "mesh", "light",
+        "scene", "schedule", "frame",
+    ],
+}
+MPI_FILE = "vtk_modules/DSMCore/transport/MpiTransport.cxx"
 
 
 def find_faults(root):
@@ -42,6 +50,23 @@ def find_faults(root):
         yield f"only {files} files were found"
 
 
+def find_arrows_back(root):
+    for module, rooms in ROOMS.items():
+        folder = root / "vtk_modules" / module
+        for path in sorted(folder.rglob("*")):
+            if path.suffix not in (".h", ".cxx", ".txx"):
+                continue
+            name = path.relative_to(root).as_posix()
+            room = path.relative_to(folder).parts[0]
+            if room not in rooms:
+                yield f"{name}: {room} is no room of {module}"
+                continue
+            for include in INCLUDE.findall(path.read_text()):
+                parts = include.split("/")
+                if parts[0] == module and parts[1] not in rooms[: rooms.index(room) + 1]:
+                    yield f"{name}: includes {include}, but {room} must not use {parts[1]}"
+
+
 def find_unlisted(root):
     for listing in sorted((root / "vtk_modules").glob("*/CMakeLists.txt")):
         # Classes are listed by name, files by path.
@@ -54,7 +79,7 @@ def find_unlisted(root):
 
 def main():
     root = pathlib.Path(sys.argv[1])
-    faults = [*find_faults(root), *find_unlisted(root)]
+    faults = [*find_faults(root), *find_arrows_back(root), *find_unlisted(root)]
     print("\n".join(faults) or "every room uses the rooms below it only, and every file is listed")
     return 1 if faults else 0
 

@@ -2,10 +2,10 @@
 #ifndef FunctionVolume_h
 #define FunctionVolume_h
 
-#include "DSMCore/BlockStore.h"
-#include "DSMCore/Messenger.h"
-#include "DSMRayTracing/brick/VoxelBrickBuilder.h"
-#include "DSMRayTracing/frame/Scene.h"
+#include "DSMCore/store/BlockStore.h"
+#include "DSMCore/transport/Messenger.h"
+#include "DSMRayTracing/build/VoxelBrickBuilder.h"
+#include "DSMRayTracing/scene/Scene.h"
 
 #include <cstring>
 #include <functional>

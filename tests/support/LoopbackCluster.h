@@ -2,8 +2,8 @@
 #ifndef LoopbackCluster_h
 #define LoopbackCluster_h
 
-#include "DSMCore/LoopbackTransport.h"
-#include "DSMCore/Messenger.h"
+#include "DSMCore/transport/LoopbackTransport.h"
+#include "DSMCore/transport/Messenger.h"
 
 #include <exception>
 #include <functional>

@@ -2,8 +2,8 @@
 #ifndef MeshFile_h
 #define MeshFile_h
 
-#include "DSMCore/Error.h"
-#include "DSMRayTracing/brick/TriangleArrays.h"
+#include "DSMCore/base/Error.h"
+#include "DSMRayTracing/build/TriangleArrays.h"
 
 #include <algorithm>
 #include <cstdint>

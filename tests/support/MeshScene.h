@@ -5,7 +5,7 @@
 #include "tests/support/SphereScene.h"
 #include "tests/unit/mesh/TestMesh.h"
 
-#include "DSMRayTracing/accel/TriangleMeshBuilder.h"
+#include "DSMRayTracing/build/TriangleMeshBuilder.h"
 
 /// The noisy sphere's isosurfaces, a blob of triangles that cuts through them, and a coloured
 /// terrain of squares below, with edges, shadows and translucency across the objects.

@@ -2,12 +2,12 @@
 #ifndef SphereScene_h
 #define SphereScene_h
 
-#include "DSMCore/BlockStore.h"
-#include "DSMCore/Messenger.h"
-#include "DSMRayTracing/brick/VoxelBrickBuilder.h"
+#include "DSMCore/store/BlockStore.h"
+#include "DSMCore/transport/Messenger.h"
+#include "DSMRayTracing/build/VoxelBrickBuilder.h"
 #include "DSMRayTracing/frame/FrameRequest.h"
-#include "DSMRayTracing/frame/Scene.h"
 #include "DSMRayTracing/sample/SampleVolume.h"
+#include "DSMRayTracing/scene/Scene.h"
 
 #include <glm/gtc/matrix_transform.hpp>
 

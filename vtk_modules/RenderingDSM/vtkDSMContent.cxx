@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkDSMContent.h"
 
-#include "DSMRayTracing/brick/ParallelFor.h"
-#include "DSMRayTracing/frame/ByteHash.h"
+#include "DSMRayTracing/base/ByteHash.h"
+#include "DSMRayTracing/base/ParallelFor.h"
 
 #include "vtkCompositeDataIterator.h"
 #include "vtkCompositeDataSet.h"

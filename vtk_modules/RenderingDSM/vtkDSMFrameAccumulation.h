@@ -4,7 +4,7 @@
 
 #include "DSMRayTracing/frame/Frame.h"
 #include "DSMRayTracing/frame/FrameRequest.h"
-#include "DSMRayTracing/frame/Scene.h"
+#include "DSMRayTracing/scene/Scene.h"
 
 #include <cstdint>
 

@@ -2,7 +2,7 @@
 #ifndef vtkDSMFrameDelivery_h
 #define vtkDSMFrameDelivery_h
 
-#include "DSMCore/Messenger.h"
+#include "DSMCore/transport/Messenger.h"
 #include "DSMRayTracing/frame/Frame.h"
 #include "DSMRayTracing/frame/FrameGather.h"
 #include "DSMRayTracing/frame/FrameRequest.h"

@@ -2,8 +2,8 @@
 #ifndef vtkDSMFrameNotes_h
 #define vtkDSMFrameNotes_h
 
-#include "DSMRayTracing/frame/DebugView.h"
 #include "DSMRayTracing/frame/FrameGather.h"
+#include "DSMRayTracing/scene/DebugView.h"
 
 #include <string>
 #include <vector>

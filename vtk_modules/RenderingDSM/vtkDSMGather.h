@@ -2,7 +2,7 @@
 #ifndef vtkDSMGather_h
 #define vtkDSMGather_h
 
-#include "DSMCore/Messenger.h"
+#include "DSMCore/transport/Messenger.h"
 
 #include <cstddef>
 #include <cstring>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkDSMImagePiece.h"
 
-#include "DSMCore/Error.h"
+#include "DSMCore/base/Error.h"
 
 #include "vtkCellData.h"
 #include "vtkDataArray.h"

@@ -2,8 +2,8 @@
 #ifndef vtkDSMImagePiece_h
 #define vtkDSMImagePiece_h
 
-#include "DSMRayTracing/brick/ScalarType.h"
-#include "DSMRayTracing/brick/VoxelSource.h"
+#include "DSMRayTracing/base/ScalarType.h"
+#include "DSMRayTracing/build/VoxelSource.h"
 #include "vtkDSMLatticePlan.h"
 
 #include "vtkSmartPointer.h"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkDSMLatticePlan.h"
 
-#include "DSMCore/Error.h"
+#include "DSMCore/base/Error.h"
 
 #include <glm/gtc/matrix_inverse.hpp>
 #include <glm/vec4.hpp>

@@ -2,7 +2,7 @@
 #ifndef vtkDSMLatticePlan_h
 #define vtkDSMLatticePlan_h
 
-#include "DSMRayTracing/brick/Box.h"
+#include "DSMRayTracing/base/Box.h"
 
 #include <glm/mat4x4.hpp>
 

@@ -2,7 +2,7 @@
 #ifndef vtkDSMMemorySettings_h
 #define vtkDSMMemorySettings_h
 
-#include "DSMCore/MemoryOrganization.h"
+#include "DSMCore/store/MemoryOrganization.h"
 #include "DSMRayTracing/schedule/TileScheduler.h"
 
 #include <algorithm>

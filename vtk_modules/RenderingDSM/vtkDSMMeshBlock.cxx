@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkDSMMeshBlock.h"
 
-#include "DSMCore/Error.h"
+#include "DSMCore/base/Error.h"
 #include "vtkDSMPolyDataMapper.h"
 
 #include "vtkCompositeDataDisplayAttributes.h"

@@ -2,7 +2,7 @@
 #ifndef vtkDSMMeshColors_h
 #define vtkDSMMeshColors_h
 
-#include "DSMRayTracing/brick/MeshAttributes.h"
+#include "DSMRayTracing/layout/MeshAttributes.h"
 
 #include "vtkSmartPointer.h"
 #include "vtkType.h"

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkDSMMeshData.h"
 
-#include "DSMCore/HostMemory.h"
-#include "DSMRayTracing/accel/TriangleMeshBuilder.h"
-#include "DSMRayTracing/frame/ByteHash.h"
+#include "DSMCore/memory/HostMemory.h"
+#include "DSMRayTracing/base/ByteHash.h"
+#include "DSMRayTracing/build/TriangleMeshBuilder.h"
 #include "vtkDSMContent.h"
 #include "vtkDSMGather.h"
 #include "vtkDSMPolyDataMapper.h"

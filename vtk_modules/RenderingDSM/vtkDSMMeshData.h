@@ -2,7 +2,7 @@
 #ifndef vtkDSMMeshData_h
 #define vtkDSMMeshData_h
 
-#include "DSMRayTracing/accel/TriangleMesh.h"
+#include "DSMRayTracing/layout/TriangleMesh.h"
 #include "vtkDSMMeshBlock.h"
 #include "vtkDSMMeshColors.h"
 #include "vtkDSMMeshPiece.h"

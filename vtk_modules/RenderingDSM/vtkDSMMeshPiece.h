@@ -2,7 +2,7 @@
 #ifndef vtkDSMMeshPiece_h
 #define vtkDSMMeshPiece_h
 
-#include "DSMRayTracing/brick/TriangleSource.h"
+#include "DSMRayTracing/build/TriangleSource.h"
 #include "vtkDSMMeshColors.h"
 #include "vtkDSMTriangleList.h"
 

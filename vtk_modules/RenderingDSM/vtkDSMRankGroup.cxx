@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkDSMRankGroup.h"
 
-#include "DSMCore/LoopbackTransport.h"
-#include "DSMCore/MpiTransport.h"
+#include "DSMCore/transport/LoopbackTransport.h"
+#include "DSMCore/transport/MpiTransport.h"
 
 #include "vtkMultiProcessController.h"
 #include "vtkOutputWindow.h"

@@ -2,8 +2,8 @@
 #ifndef vtkDSMRankGroup_h
 #define vtkDSMRankGroup_h
 
-#include "DSMCore/BlockStore.h"
-#include "DSMCore/Messenger.h"
+#include "DSMCore/store/BlockStore.h"
+#include "DSMCore/transport/Messenger.h"
 #include "DSMRayTracing/frame/FrameRenderer.h"
 #include "vtkDSMMemorySettings.h"
 

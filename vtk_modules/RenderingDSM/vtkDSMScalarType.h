@@ -2,7 +2,7 @@
 #ifndef vtkDSMScalarType_h
 #define vtkDSMScalarType_h
 
-#include "DSMRayTracing/brick/ScalarType.h"
+#include "DSMRayTracing/base/ScalarType.h"
 
 class vtkDataArray;
 

@@ -4,7 +4,7 @@
 #include "vtkDSMFrameNotes.h"
 #include "vtkDSMTranslation.h"
 
-#include "DSMRayTracing/frame/Occluders.h"
+#include "DSMRayTracing/scene/Occluders.h"
 
 #include "vtkBoundingBox.h"
 #include "vtkMatrix4x4.h"

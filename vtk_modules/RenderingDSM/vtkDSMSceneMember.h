@@ -2,7 +2,7 @@
 #ifndef vtkDSMSceneMember_h
 #define vtkDSMSceneMember_h
 
-#include "DSMRayTracing/frame/Scene.h"
+#include "DSMRayTracing/scene/Scene.h"
 #include "vtkDSMRankGroup.h"
 
 #include <memory>

@@ -2,8 +2,8 @@
 #ifndef vtkDSMSceneMembers_h
 #define vtkDSMSceneMembers_h
 
-#include "DSMRayTracing/frame/DebugView.h"
-#include "DSMRayTracing/frame/Scene.h"
+#include "DSMRayTracing/scene/DebugView.h"
+#include "DSMRayTracing/scene/Scene.h"
 #include "vtkDSMMemorySettings.h"
 #include "vtkDSMSceneMember.h"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkDSMStatistics.h"
 
-#include "DSMCore/Messenger.h"
+#include "DSMCore/transport/Messenger.h"
 #include "DSMRayTracing/frame/Frame.h"
 
 #include "vtkDoubleArray.h"

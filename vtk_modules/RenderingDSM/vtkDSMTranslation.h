@@ -3,7 +3,7 @@
 #define vtkDSMTranslation_h
 
 #include "DSMRayTracing/frame/FrameRequest.h"
-#include "DSMRayTracing/frame/Scene.h"
+#include "DSMRayTracing/scene/Scene.h"
 #include "vtkDSMMemorySettings.h"
 
 #include <memory>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkDSMTriangleList.h"
 
-#include "DSMCore/Error.h"
-#include "DSMRayTracing/brick/MeshAttributes.h"
+#include "DSMCore/base/Error.h"
+#include "DSMRayTracing/layout/MeshAttributes.h"
 #include "vtkDSMCompatibility.h"
 
 #include "vtkCellArray.h"

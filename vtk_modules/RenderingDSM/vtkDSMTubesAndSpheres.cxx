@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkDSMTubesAndSpheres.h"
 
-#include "DSMCore/Error.h"
+#include "DSMCore/base/Error.h"
 
 #include "vtkCellArray.h"
 #include "vtkCellData.h"

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkDSMVolumeData.h"
 
-#include "DSMRayTracing/brick/VoxelBrickBuilder.h"
-#include "DSMRayTracing/frame/ByteHash.h"
+#include "DSMRayTracing/base/ByteHash.h"
+#include "DSMRayTracing/build/VoxelBrickBuilder.h"
 #include "vtkDSMContent.h"
 #include "vtkDSMGather.h"
 #include "vtkDSMImagePiece.h"

@@ -2,8 +2,8 @@
 #ifndef vtkDSMVolumeData_h
 #define vtkDSMVolumeData_h
 
-#include "DSMRayTracing/brick/VoxelSource.h"
-#include "DSMRayTracing/frame/Scene.h"
+#include "DSMRayTracing/build/VoxelSource.h"
+#include "DSMRayTracing/scene/Scene.h"
 #include "vtkDSMLatticePlan.h"
 #include "vtkDSMRankGroup.h"
 

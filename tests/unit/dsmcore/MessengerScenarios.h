@@ -2,7 +2,7 @@
 #ifndef dsm_test_MessengerScenarios_h
 #define dsm_test_MessengerScenarios_h
 
-#include "DSMCore/Messenger.h"
+#include "DSMCore/transport/Messenger.h"
 #include "tests/unit/dsmcore/RankGroup.h"
 
 #include <gtest/gtest.h>

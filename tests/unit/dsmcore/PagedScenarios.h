@@ -2,8 +2,8 @@
 #ifndef dsm_test_PagedScenarios_h
 #define dsm_test_PagedScenarios_h
 
-#include "DSMCore/PageFaults.h"
-#include "DSMCore/PagedStore.h"
+#include "DSMCore/paged/PageFaults.h"
+#include "DSMCore/paged/PagedStore.h"
 
 #include "tests/unit/dsmcore/StoreTestTools.h"
 

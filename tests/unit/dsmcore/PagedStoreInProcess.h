@@ -2,7 +2,7 @@
 #ifndef PagedStoreInProcess_h
 #define PagedStoreInProcess_h
 
-#include "DSMCore/PagedStore.h"
+#include "DSMCore/paged/PagedStore.h"
 
 #include "tests/unit/dsmcore/PagedScenarios.h"
 

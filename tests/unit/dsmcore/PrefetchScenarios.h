@@ -2,7 +2,7 @@
 #ifndef dsm_test_PrefetchScenarios_h
 #define dsm_test_PrefetchScenarios_h
 
-#include "DSMCore/PagedStore.h"
+#include "DSMCore/paged/PagedStore.h"
 
 #include "tests/unit/dsmcore/StoreTestTools.h"
 

@@ -2,8 +2,8 @@
 #ifndef dsm_test_RankGroup_h
 #define dsm_test_RankGroup_h
 
-#include "DSMCore/LoopbackTransport.h"
-#include "DSMCore/Messenger.h"
+#include "DSMCore/transport/LoopbackTransport.h"
+#include "DSMCore/transport/Messenger.h"
 
 #include <gtest/gtest.h>
 

@@ -2,9 +2,9 @@
 #ifndef dsm_test_SharingScenarios_h
 #define dsm_test_SharingScenarios_h
 
-#include "DSMCore/BlockStore.h"
-#include "DSMCore/ObjectStore.h"
-#include "DSMCore/ReplicatedStore.h"
+#include "DSMCore/store/BlockStore.h"
+#include "DSMCore/table/ObjectStore.h"
+#include "DSMCore/table/ReplicatedStore.h"
 #include "tests/unit/dsmcore/StoreTestTools.h"
 
 #include <cstdint>

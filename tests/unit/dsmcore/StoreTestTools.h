@@ -2,7 +2,7 @@
 #ifndef dsm_test_StoreTestTools_h
 #define dsm_test_StoreTestTools_h
 
-#include "DSMCore/ObjectStore.h"
+#include "DSMCore/table/ObjectStore.h"
 #include "tests/unit/dsmcore/RankGroup.h"
 
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "DSMCore/BackOff.h"
+#include "DSMCore/transport/BackOff.h"
 
 #include <gtest/gtest.h>
 

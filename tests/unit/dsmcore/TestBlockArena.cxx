@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "DSMCore/BlockArena.h"
+#include "DSMCore/memory/BlockArena.h"
 
-#include "DSMCore/Block.h"
+#include "DSMCore/base/Block.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "DSMCore/BlockDirectory.h"
+#include "DSMCore/publish/BlockDirectory.h"
 
 #include <gtest/gtest.h>
 

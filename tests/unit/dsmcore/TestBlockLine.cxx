@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "DSMCore/BlockLine.h"
+#include "DSMCore/table/BlockLine.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "DSMCore/BlockRequests.h"
-#include "DSMCore/LoopbackTransport.h"
+#include "DSMCore/fetch/BlockRequests.h"
+#include "DSMCore/transport/LoopbackTransport.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "DSMCore/FragmentExchange.h"
+#include "DSMCore/publish/FragmentExchange.h"
 
 #include "tests/unit/dsmcore/StoreScenarios.h"
 

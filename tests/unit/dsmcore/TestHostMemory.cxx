@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "DSMCore/HostMemory.h"
+#include "DSMCore/memory/HostMemory.h"
 
 #include <gtest/gtest.h>
 

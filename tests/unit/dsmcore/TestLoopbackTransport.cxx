@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "DSMCore/LoopbackTransport.h"
+#include "DSMCore/transport/LoopbackTransport.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "DSMCore/Message.h"
+#include "DSMCore/transport/Message.h"
 
 #include <gtest/gtest.h>
 

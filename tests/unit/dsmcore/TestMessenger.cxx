@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "DSMCore/Messenger.h"
+#include "DSMCore/transport/Messenger.h"
 
 #include "tests/unit/dsmcore/MessengerScenarios.h"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "DSMCore/MpiTransport.h"
+#include "DSMCore/transport/MpiTransport.h"
 
 #include <gtest/gtest.h>
 

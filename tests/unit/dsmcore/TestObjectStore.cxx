@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "DSMCore/ObjectStore.h"
+#include "DSMCore/table/ObjectStore.h"
 
-#include "DSMCore/HostMemory.h"
+#include "DSMCore/memory/HostMemory.h"
 #include "tests/unit/dsmcore/StoreScenarios.h"
 
 namespace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "DSMCore/PagedStore.h"
+#include "DSMCore/paged/PagedStore.h"
 
 #include "tests/unit/dsmcore/PagedScenarios.h"
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What the page store refuses.
-#include "DSMCore/PagedStore.h"
+#include "DSMCore/paged/PagedStore.h"
 
 #include "tests/unit/dsmcore/PagedScenarios.h"
 

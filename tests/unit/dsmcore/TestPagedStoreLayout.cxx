@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "DSMCore/PageLayout.h"
+#include "DSMCore/paged/PageLayout.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "DSMCore/ReplicatedStore.h"
+#include "DSMCore/table/ReplicatedStore.h"
 
 #include "tests/unit/dsmcore/PrefetchScenarios.h"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "DSMCore/HostGroups.h"
-#include "DSMCore/HostMemory.h"
-#include "DSMCore/HostSharedMemory.h"
+#include "DSMCore/memory/HostMemory.h"
+#include "DSMCore/memory/HostSharedMemory.h"
+#include "DSMCore/publish/HostGroups.h"
 #include "tests/unit/dsmcore/SharingScenarios.h"
 
 #include <fcntl.h>

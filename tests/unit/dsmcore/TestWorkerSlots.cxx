@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "DSMCore/WorkerSlots.h"
+#include "DSMCore/base/WorkerSlots.h"
 
 #include <gtest/gtest.h>
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The lines along the sides of triangles, in pixels.
-#include "DSMRayTracing/brick/MeshAttributes.h"
-#include "DSMRayTracing/frame/EdgeCover.h"
 #include "DSMRayTracing/frame/PixelRays.h"
+#include "DSMRayTracing/layout/MeshAttributes.h"
+#include "DSMRayTracing/light/EdgeCover.h"
 
 #include <gtest/gtest.h>
 

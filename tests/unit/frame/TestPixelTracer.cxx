@@ -2,7 +2,7 @@
 // Shadows, occlusion, transparency and mirrors against what analysis says of spheres and planes.
 #include "tests/support/FunctionVolume.h"
 
-#include "DSMCore/LoopbackTransport.h"
+#include "DSMCore/transport/LoopbackTransport.h"
 #include "DSMRayTracing/frame/FrameGather.h"
 #include "DSMRayTracing/frame/FrameRenderer.h"
 

@@ -3,7 +3,7 @@
 #include "tests/support/FunctionVolume.h"
 #include "tests/support/MeshScene.h"
 
-#include "DSMCore/LoopbackTransport.h"
+#include "DSMCore/transport/LoopbackTransport.h"
 #include "DSMRayTracing/frame/TileGrid.h"
 #include "DSMRayTracing/frame/TileTracer.h"
 

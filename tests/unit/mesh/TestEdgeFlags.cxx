@@ -2,7 +2,7 @@
 // Which sides of triangles are edges of polygons, from the source to the hit.
 #include "TestMesh.h"
 
-#include "DSMRayTracing/brick/TriangleBrick.h"
+#include "DSMRayTracing/layout/TriangleBrick.h"
 
 #include <gtest/gtest.h>
 

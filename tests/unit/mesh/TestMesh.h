@@ -4,11 +4,11 @@
 
 #include "tests/support/LoopbackCluster.h"
 
-#include "DSMCore/ObjectStore.h"
-#include "DSMRayTracing/accel/TriangleMeshBuilder.h"
-#include "DSMRayTracing/brick/TriangleArrays.h"
+#include "DSMCore/table/ObjectStore.h"
+#include "DSMRayTracing/build/TriangleArrays.h"
+#include "DSMRayTracing/build/TriangleMeshBuilder.h"
 #include "DSMRayTracing/frame/FrameAgreement.h"
-#include "DSMRayTracing/kernel/MeshTracer.h"
+#include "DSMRayTracing/mesh/MeshTracer.h"
 
 #include <glm/geometric.hpp>
 #include <glm/vec3.hpp>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "TestMesh.h"
 
-#include "DSMRayTracing/brick/OctahedralNormal.h"
+#include "DSMRayTracing/layout/OctahedralNormal.h"
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "TestMesh.h"
 
-#include "DSMRayTracing/kernel/TriangleIntersector.h"
+#include "DSMRayTracing/mesh/TriangleIntersector.h"
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "DSMRayTracing/accel/BrickBvh.h"
 #include "DSMRayTracing/accel/WideBvhBuilder.h"
-#include "DSMRayTracing/kernel/WideBvhTraversal.h"
+#include "DSMRayTracing/ray/WideBvhTraversal.h"
 
 #include <gtest/gtest.h>
 

@@ -2,8 +2,8 @@
 #ifndef tests_MemoryStore_h
 #define tests_MemoryStore_h
 
-#include "DSMCore/BlockSegment.h"
-#include "DSMCore/Publication.h"
+#include "DSMCore/publish/BlockSegment.h"
+#include "DSMCore/publish/Publication.h"
 
 #include <cstddef>
 #include <memory>

@@ -2,7 +2,7 @@
 #ifndef tests_Oracle_h
 #define tests_Oracle_h
 
-#include "DSMRayTracing/kernel/Ray.h"
+#include "DSMRayTracing/ray/Ray.h"
 #include "TestVolume.h"
 
 #include <algorithm>

@@ -2,8 +2,8 @@
 #ifndef tests_RandomRays_h
 #define tests_RandomRays_h
 
-#include "DSMRayTracing/brick/Box.h"
-#include "DSMRayTracing/kernel/Ray.h"
+#include "DSMRayTracing/base/Box.h"
+#include "DSMRayTracing/ray/Ray.h"
 
 #include <glm/geometric.hpp>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "DSMCore/Error.h"
-#include "DSMRayTracing/brick/BrickLattice.h"
+#include "DSMCore/base/Error.h"
+#include "DSMRayTracing/layout/BrickLattice.h"
 
 #include <gtest/gtest.h>
 

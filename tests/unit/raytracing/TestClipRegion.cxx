@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The parts of rays in a clip region against asking every point.
-#include "DSMRayTracing/kernel/ClipRegion.h"
+#include "DSMRayTracing/ray/ClipRegion.h"
 
 #include <glm/geometric.hpp>
 #include <glm/gtc/matrix_transform.hpp>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "DSMRayTracing/kernel/IsovalueLevel.h"
+#include "DSMRayTracing/volume/IsovalueLevel.h"
 
 #include <gtest/gtest.h>
 

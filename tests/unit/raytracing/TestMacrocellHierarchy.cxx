@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "DSMCore/Error.h"
-#include "DSMCore/LoopbackTransport.h"
-#include "DSMRayTracing/accel/MacrocellHierarchy.h"
-#include "DSMRayTracing/brick/VoxelBrickHeader.h"
+#include "DSMCore/base/Error.h"
+#include "DSMCore/transport/LoopbackTransport.h"
+#include "DSMRayTracing/layout/MacrocellHierarchy.h"
+#include "DSMRayTracing/layout/VoxelBrickHeader.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "DSMRayTracing/kernel/MacrocellKernel.h"
-#include "DSMRayTracing/kernel/PacketKernel.h"
+#include "DSMRayTracing/volume/MacrocellKernel.h"
+#include "DSMRayTracing/volume/PacketKernel.h"
 
 #include <gtest/gtest.h>
 

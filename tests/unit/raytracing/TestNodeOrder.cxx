@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "DSMRayTracing/kernel/NodeOrder.h"
+#include "DSMRayTracing/volume/NodeOrder.h"
 
 #include <gtest/gtest.h>
 

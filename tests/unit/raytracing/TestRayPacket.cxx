@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "DSMRayTracing/kernel/PacketTracer.h"
+#include "DSMRayTracing/volume/PacketTracer.h"
 #include "TestVolume.h"
 
 #include <gtest/gtest.h>

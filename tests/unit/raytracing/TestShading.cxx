@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "DSMRayTracing/kernel/Shading.h"
+#include "DSMRayTracing/light/Shading.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "DSMRayTracing/kernel/TrilinearIsosurface.h"
+#include "DSMRayTracing/volume/TrilinearIsosurface.h"
 
 #include <gtest/gtest.h>
 

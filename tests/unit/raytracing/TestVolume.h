@@ -2,9 +2,9 @@
 #ifndef tests_TestVolume_h
 #define tests_TestVolume_h
 
-#include "DSMRayTracing/brick/VoxelBrickBuilder.h"
-#include "DSMRayTracing/brick/VoxelBrickHeader.h"
-#include "DSMRayTracing/frame/Scene.h"
+#include "DSMRayTracing/build/VoxelBrickBuilder.h"
+#include "DSMRayTracing/layout/VoxelBrickHeader.h"
+#include "DSMRayTracing/scene/Scene.h"
 #include "MemoryStore.h"
 
 #include <cstdint>

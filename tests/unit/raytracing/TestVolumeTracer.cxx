@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "DSMRayTracing/kernel/VolumeTracer.h"
+#include "DSMRayTracing/volume/VolumeTracer.h"
 #include "Oracle.h"
 #include "RandomRays.h"
 #include "TestVolume.h"

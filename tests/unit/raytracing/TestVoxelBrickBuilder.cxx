@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "DSMCore/Error.h"
-#include "DSMRayTracing/brick/MacrocellBuilder.h"
-#include "DSMRayTracing/brick/VoxelBrick.h"
-#include "DSMRayTracing/brick/VoxelBrickBuilder.h"
+#include "DSMCore/base/Error.h"
+#include "DSMRayTracing/build/VoxelBrickBuilder.h"
+#include "DSMRayTracing/layout/MacrocellBuilder.h"
+#include "DSMRayTracing/layout/VoxelBrick.h"
 #include "TestVolume.h"
 
 #include <gtest/gtest.h>

@@ -2,7 +2,7 @@
 #ifndef tests_TracerBench_h
 #define tests_TracerBench_h
 
-#include "DSMRayTracing/kernel/VolumeTracer.h"
+#include "DSMRayTracing/volume/VolumeTracer.h"
 #include "MemoryStore.h"
 
 /// All that a trace in a test needs.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "DSMCore/Error.h"
+#include "DSMCore/base/Error.h"
 #include "vtkDSMLatticePlan.h"
 
 #include <gtest/gtest.h>

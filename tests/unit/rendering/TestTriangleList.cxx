@@ -2,7 +2,7 @@
 // The cells of vtkPolyData as triangles.
 #include "vtkDSMTriangleList.h"
 
-#include "DSMCore/Error.h"
+#include "DSMCore/base/Error.h"
 
 #include "vtkCellArray.h"
 #include "vtkCellData.h"

@@ -2,7 +2,7 @@
 #ifndef rt_BoundingBox_h
 #define rt_BoundingBox_h
 
-#include "DSMRayTracing/kernel/Float4.h"
+#include "DSMRayTracing/base/Float4.h"
 
 #include <limits>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "DSMRayTracing/accel/BrickBvh.h"
 
-#include "DSMCore/Error.h"
+#include "DSMCore/base/Error.h"
 #include "DSMRayTracing/accel/WideBvhBuilder.h"
 
 #include <string>

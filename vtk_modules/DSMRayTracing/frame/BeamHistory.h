@@ -2,8 +2,8 @@
 #ifndef rt_BeamHistory_h
 #define rt_BeamHistory_h
 
-#include "DSMCore/Block.h"
-#include "DSMRayTracing/kernel/BeamBricks.h"
+#include "DSMCore/base/Block.h"
+#include "DSMRayTracing/volume/BeamBricks.h"
 
 #include <atomic>
 #include <cstddef>

@@ -2,8 +2,8 @@
 #ifndef rt_Frame_h
 #define rt_Frame_h
 
-#include "DSMCore/Counters.h"
-#include "DSMCore/MemoryOrganization.h"
+#include "DSMCore/base/Counters.h"
+#include "DSMCore/store/MemoryOrganization.h"
 
 #include <glm/vec4.hpp>
 

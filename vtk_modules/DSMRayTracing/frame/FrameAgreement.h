@@ -2,8 +2,8 @@
 #ifndef rt_FrameAgreement_h
 #define rt_FrameAgreement_h
 
-#include "DSMCore/Error.h"
-#include "DSMCore/Messenger.h"
+#include "DSMCore/base/Error.h"
+#include "DSMCore/transport/Messenger.h"
 
 #include <functional>
 #include <string>

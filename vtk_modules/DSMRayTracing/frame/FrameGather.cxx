@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "DSMRayTracing/frame/FrameGather.h"
 
-#include "DSMRayTracing/frame/ByteHash.h"
+#include "DSMRayTracing/base/ByteHash.h"
 
 #include <algorithm>
 #include <cstddef>

@@ -2,7 +2,7 @@
 #ifndef rt_FrameGather_h
 #define rt_FrameGather_h
 
-#include "DSMCore/Messenger.h"
+#include "DSMCore/transport/Messenger.h"
 #include "DSMRayTracing/frame/Frame.h"
 
 #include <cstdint>

@@ -2,12 +2,12 @@
 #ifndef rt_FrameRenderer_h
 #define rt_FrameRenderer_h
 
-#include "DSMCore/BlockStore.h"
-#include "DSMCore/Messenger.h"
+#include "DSMCore/store/BlockStore.h"
+#include "DSMCore/transport/Messenger.h"
 #include "DSMRayTracing/frame/Frame.h"
 #include "DSMRayTracing/frame/FrameRequest.h"
-#include "DSMRayTracing/frame/Scene.h"
 #include "DSMRayTracing/frame/WorkerPool.h"
+#include "DSMRayTracing/scene/Scene.h"
 #include "DSMRayTracing/schedule/CentralQueueScheduler.h"
 #include "DSMRayTracing/schedule/WorkStealingScheduler.h"
 

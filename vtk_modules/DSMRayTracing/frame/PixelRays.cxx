@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "DSMRayTracing/frame/PixelRays.h"
 
-#include "DSMCore/Error.h"
+#include "DSMCore/base/Error.h"
 
 #include <glm/matrix.hpp>
 #include <glm/vec4.hpp>

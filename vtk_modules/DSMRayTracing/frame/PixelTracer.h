@@ -2,13 +2,13 @@
 #ifndef rt_PixelTracer_h
 #define rt_PixelTracer_h
 
-#include "DSMRayTracing/frame/EdgeCover.h"
-#include "DSMRayTracing/frame/FixedList.h"
-#include "DSMRayTracing/frame/LightTracer.h"
+#include "DSMRayTracing/base/FixedList.h"
 #include "DSMRayTracing/frame/PixelRays.h"
-#include "DSMRayTracing/frame/SampleSequence.h"
-#include "DSMRayTracing/frame/SceneTracer.h"
-#include "DSMRayTracing/kernel/Shading.h"
+#include "DSMRayTracing/light/EdgeCover.h"
+#include "DSMRayTracing/light/SampleSequence.h"
+#include "DSMRayTracing/light/Shading.h"
+#include "DSMRayTracing/scene/LightTracer.h"
+#include "DSMRayTracing/scene/SceneTracer.h"
 
 #include <glm/geometric.hpp>
 #include <glm/gtc/constants.hpp>

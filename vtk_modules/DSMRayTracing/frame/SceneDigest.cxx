@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "DSMRayTracing/frame/SceneDigest.h"
 
-#include "DSMRayTracing/frame/ByteHash.h"
-#include "DSMRayTracing/kernel/MeshInstance.h"
+#include "DSMRayTracing/base/ByteHash.h"
+#include "DSMRayTracing/mesh/MeshInstance.h"
 
 #include <type_traits>
 #include <vector>

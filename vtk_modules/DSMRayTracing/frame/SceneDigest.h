@@ -3,7 +3,7 @@
 #define rt_SceneDigest_h
 
 #include "DSMRayTracing/frame/FrameRequest.h"
-#include "DSMRayTracing/frame/Scene.h"
+#include "DSMRayTracing/scene/Scene.h"
 
 #include <cstdint>
 

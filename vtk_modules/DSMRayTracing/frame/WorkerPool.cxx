@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "DSMRayTracing/frame/WorkerPool.h"
 
-#include "DSMCore/Error.h"
+#include "DSMCore/base/Error.h"
 
 #include <string>
 #include <system_error>

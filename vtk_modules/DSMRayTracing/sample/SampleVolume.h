@@ -2,9 +2,9 @@
 #ifndef rt_SampleVolume_h
 #define rt_SampleVolume_h
 
-#include "DSMRayTracing/brick/Box.h"
-#include "DSMRayTracing/brick/ScalarType.h"
-#include "DSMRayTracing/brick/VoxelSource.h"
+#include "DSMRayTracing/base/Box.h"
+#include "DSMRayTracing/base/ScalarType.h"
+#include "DSMRayTracing/build/VoxelSource.h"
 
 #include <glm/vec3.hpp>
 

@@ -2,7 +2,7 @@
 #ifndef rt_CentralQueueScheduler_h
 #define rt_CentralQueueScheduler_h
 
-#include "DSMCore/Messenger.h"
+#include "DSMCore/transport/Messenger.h"
 #include "DSMRayTracing/schedule/TileScheduler.h"
 
 #include <atomic>

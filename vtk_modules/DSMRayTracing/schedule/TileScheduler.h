@@ -2,7 +2,7 @@
 #ifndef rt_TileScheduler_h
 #define rt_TileScheduler_h
 
-#include "DSMCore/WorkerSlots.h"
+#include "DSMCore/base/WorkerSlots.h"
 
 #include <optional>
 #include <vector>

@@ -2,7 +2,7 @@
 #ifndef rt_WorkStealingScheduler_h
 #define rt_WorkStealingScheduler_h
 
-#include "DSMCore/Messenger.h"
+#include "DSMCore/transport/Messenger.h"
 #include "DSMRayTracing/schedule/TileScheduler.h"
 
 #include <condition_variable>

@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "DSMCore/fetch/BlockRequests.h"
+
+#include "DSMCore/base/Error.h"
+
+#include <algorithm>
+#include <map>
+#include <string>
+#include <utility>
+
+namespace dsm
+{
+
+BlockRequests::BlockRequests(Messenger& messenger, Callbacks callbacks)
+  : Messages(messenger)
+  , Store(std::move(callbacks))
+{
+}
+
+void BlockRequests::BeginFrame()
+{
+  this->Pending.clear();
+  this->Unsent.clear();
+  this->Abandoned = false;
+  this->Count = 0;
+  this->BytesSent = 0;
+  this->BytesReceived = 0;
+  this->Messages.SetHandler(
+    MessageKind::BlockRequest, [this](Message&& message) { this->Serve(message); });
+  this->Messages.SetHandler(
+    MessageKind::BlockReply, [this](Message&& message) { this->Receive(message); });
+  this->FrameSession = this->Messages.BeginSession();
+}
+
+void BlockRequests::EndFrame()
+{
+  this->Messages.SetHandler(MessageKind::BlockRequest, {});
+  this->Messages.SetHandler(MessageKind::BlockReply, {});
+}
+
+void BlockRequests::Add(const BlockWant& want)
+{
+  this->Pending.push_back(want);
+  this->Unsent.push_back(want);
+}
+
+bool BlockRequests::Send()
+{
+  if (this->Unsent.empty())
+  {
+    return false;
+  }
+  std::map<int, std::vector<std::byte>> requests; // by owner
+  for (const BlockWant& want : this->Unsent)
+  {
+    AttachTail(requests[want.From->GetDirectory().GetOwner(want.Id)],
+      BlockName{ want.From->GetNumber(), this->FrameSession, want.Id });
+  }
+  this->Unsent.clear();
+  for (auto& [owner, request] : requests)
+  {
+    this->Messages.Post(owner, MessageKind::BlockRequest, std::move(request));
+    ++this->Count;
+  }
+  return true;
+}
+
+std::vector<BlockWant> BlockRequests::Abandon()
+{
+  this->Abandoned = true;
+  this->Unsent.clear();
+  return std::exchange(this->Pending, {});
+}
+
+BlockWant BlockRequests::Find(const BlockName& name, int source, const char* deed) const
+{
+  const BlockSegment* const segment = this->Store.Find(name.Segment);
+  if (!segment || name.Id >= segment->GetDirectory().GetCount() || name.Frame != this->FrameSession)
+  {
+    throw Error("Rank " + std::to_string(source) + " " + deed + " block " +
+      std::to_string(name.Id) + " of segment " + std::to_string(name.Segment) + " in frame " +
+      std::to_string(name.Frame) + ", which rank " + std::to_string(this->Messages.GetRank()) +
+      " does not know. Do all ranks run the same build?");
+  }
+  return { segment, name.Id };
+}
+
+void BlockRequests::Serve(const Message& message)
+{
+  for (const BlockName& name : DecodeSeveral<BlockName>(message, MessageKind::BlockRequest))
+  {
+    if (name.Frame < this->FrameSession)
+    {
+      continue;
+    }
+    const BlockWant block = this->Find(name, message.Source, "asked for");
+    const BlockDirectory& directory = block.From->GetDirectory();
+    if (directory.GetOwner(name.Id) != this->Messages.GetRank())
+    {
+      throw Error("Rank " + std::to_string(message.Source) + " asked rank " +
+        std::to_string(this->Messages.GetRank()) + " for block " + std::to_string(name.Id) +
+        ", which rank " + std::to_string(directory.GetOwner(name.Id)) +
+        " owns. Do all ranks run the same build?");
+    }
+    const std::byte* const bytes = this->Store.GetOwned(block);
+    const std::uint32_t count = directory.GetBytes(name.Id);
+    std::vector<std::byte> reply;
+    reply.reserve(count + 3 * sizeof(BlockName)); // the transport puts its header behind
+    reply.assign(bytes, bytes + count);
+    AttachTail(reply, name);
+    this->Messages.Post(message.Source, MessageKind::BlockReply, std::move(reply));
+    this->BytesSent += count;
+  }
+}
+
+void BlockRequests::Receive(Message& message)
+{
+  const auto name = DetachTail<BlockName>(message, MessageKind::BlockReply);
+  if (name.Frame < this->FrameSession || this->Abandoned)
+  {
+    return;
+  }
+  const BlockWant block = this->Find(name, message.Source, "sent");
+  const BlockDirectory& directory = block.From->GetDirectory();
+  const std::uint32_t bytes = directory.GetBytes(name.Id);
+  const auto asked = std::find_if(this->Pending.begin(), this->Pending.end(),
+    [&](const BlockWant& want) { return want.From == block.From && want.Id == block.Id; });
+  if (asked == this->Pending.end() || message.Payload.size() != bytes ||
+    message.Source != directory.GetOwner(name.Id))
+  {
+    throw Error("Rank " + std::to_string(message.Source) + " sent " +
+      std::to_string(message.Payload.size()) + " bytes as block " + std::to_string(name.Id) +
+      ", which rank " + std::to_string(this->Messages.GetRank()) +
+      " did not ask it for or knows with " + std::to_string(bytes) +
+      " bytes. Do all ranks run the same build?");
+  }
+  this->Pending.erase(asked);
+  this->BytesReceived += bytes;
+  this->Store.Take(block, message.Payload.data());
+}
+
+} // namespace dsm

@@ -1,0 +1,340 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "DSMCore/paged/PagedStore.h"
+
+#include "DSMCore/paged/PagedStoreInternals.h"
+#include "DSMCore/publish/SegmentPublisher.h"
+
+#include <sys/mman.h>
+
+#include <algorithm>
+#include <new>
+#include <utility>
+
+namespace dsm
+{
+
+namespace
+{
+
+/// Of the processors that we know. What a rank owns begins at a multiple of it.
+constexpr std::size_t LargePageBytes = std::size_t(2) << 20;
+
+} // namespace
+
+// -- Segment ---------------------------------------------------------------------------------------
+
+PagedStore::Segment::Segment(std::uint32_t number, BlockDirectory directory, int rank, int ranks)
+  : BlockSegment(number, std::move(directory))
+  , Layout(this->GetDirectory(), ranks, AddressRange::GetPageBytes())
+  , Entries(new std::atomic<std::uintptr_t>[this->GetDirectory().GetCount()])
+  , ClosedEntries(this->GetDirectory().GetCount() * sizeof(std::uintptr_t))
+  , Lines(new PageLine[this->GetDirectory().GetCount()])
+  , Rank(rank)
+{
+  const std::size_t page = AddressRange::GetPageBytes();
+  // A page before and behind: see below.
+  this->Range = AddressRange(this->Layout.GetBytes() + 2 * page + LargePageBytes);
+  const std::uintptr_t begin = reinterpret_cast<std::uintptr_t>(this->Range.GetData()) + page;
+  const std::uintptr_t owned = begin + this->Layout.GetShareBegin(rank);
+  this->Base = this->Range.GetData() + page +
+    ((owned + LargePageBytes - 1) / LargePageBytes * LargePageBytes - owned);
+
+  // In a frame that was cancelled blocks may read as zeros; a reader whom they mislead by a few
+  // bytes beyond its block finds zeros there too.
+  std::byte* const end = this->Base + this->Layout.GetBytes();
+  std::byte* const mine = this->Base + this->Layout.GetShareBegin(rank);
+  const std::uint64_t bytes = this->GetResidentBytes();
+  if (mprotect(this->Base - page, page, PROT_READ) != 0 || mprotect(end, page, PROT_READ) != 0 ||
+    (bytes > 0 && mprotect(mine, bytes, PROT_READ | PROT_WRITE) != 0))
+  {
+    throw std::bad_alloc();
+  }
+#ifdef MADV_HUGEPAGE
+  madvise(mine, bytes, MADV_HUGEPAGE); // a wish: without it all is slower, nothing is wrong
+#endif
+  if (mprotect(this->ClosedEntries.GetData(), this->ClosedEntries.GetBytes(), PROT_READ) != 0)
+  {
+    throw std::bad_alloc();
+  }
+  for (BlockId id = 0; id < this->GetDirectory().GetCount(); ++id)
+  {
+    if (this->IsOwned(id))
+    {
+      this->Lines[id].MoveTo(PageState::Owned);
+    }
+  }
+  this->ResetHints(false);
+  this->Open(false);
+}
+
+PagedStore::Segment::~Segment()
+{
+  this->Detach();
+}
+
+void PagedStore::Segment::ForEachResident(const Visit& visit) const
+{
+  for (BlockId id = 0; id < this->GetDirectory().GetCount(); ++id)
+  {
+    if (this->IsOwned(id))
+    {
+      visit(id, this->GetAddress(id), this->GetDirectory().GetBytes(id));
+    }
+  }
+}
+
+std::uint64_t PagedStore::Segment::GetResidentBytes() const
+{
+  return this->Layout.GetShareEnd(this->Rank) - this->Layout.GetShareBegin(this->Rank);
+}
+
+PageHint PagedStore::Segment::GetHint(BlockId id) const
+{
+  return static_cast<PageHint>(this->Entries[id].load(std::memory_order_relaxed) -
+    reinterpret_cast<std::uintptr_t>(this->GetAddress(id)));
+}
+
+void PagedStore::Segment::SetHint(BlockId id, PageHint hint) const
+{
+  this->Entries[id].store(
+    reinterpret_cast<std::uintptr_t>(this->GetAddress(id)) + static_cast<std::uintptr_t>(hint),
+    std::memory_order_relaxed);
+}
+
+bool PagedStore::Segment::TryMarkRecent(BlockId id) const
+{
+  const std::uintptr_t address = reinterpret_cast<std::uintptr_t>(this->GetAddress(id));
+  const auto mark = [&](PageHint from)
+  {
+    // By exchange, not over the mark of an eviction that happens right now.
+    std::uintptr_t expected = address + static_cast<std::uintptr_t>(from);
+    return this->Entries[id].compare_exchange_strong(
+      expected, address + static_cast<std::uintptr_t>(PageHint::Recent), std::memory_order_relaxed);
+  };
+  return mark(PageHint::Idle) || mark(PageHint::Prefetched);
+}
+
+bool PagedStore::Segment::IsAlwaysHere(BlockId id) const
+{
+  return this->IsOwned(id) || this->Layout.GetFootprint(id) == 0;
+}
+
+void PagedStore::Segment::ResetHints(bool pure)
+{
+  this->IsPure = pure;
+  for (BlockId id = 0; id < this->GetDirectory().GetCount(); ++id)
+  {
+    const bool isHere =
+      pure || this->IsAlwaysHere(id) || this->Lines[id].State == PageState::Cached;
+    this->SetHint(id, isHere ? PageHint::Recent : PageHint::Absent);
+  }
+}
+
+void PagedStore::Segment::Open(bool open)
+{
+  const auto* const closed =
+    reinterpret_cast<const std::atomic<std::uintptr_t>*>(this->ClosedEntries.GetData());
+  this->VisibleEntries.store(open ? this->Entries.get() : closed, std::memory_order_release);
+}
+
+bool PagedStore::Segment::Contains(const std::byte* address) const
+{
+  return address >= this->Base && address < this->Base + this->Layout.GetBytes();
+}
+
+bool PagedStore::Segment::FindRemote(const std::byte* address, BlockId& id) const
+{
+  return this->Contains(address) &&
+    this->Layout.Find(static_cast<std::uint64_t>(address - this->Base), id) && !this->IsOwned(id);
+}
+
+void PagedStore::Segment::Seal(std::shared_ptr<PageFaults> faults)
+{
+  const std::uint64_t begin = this->Layout.GetShareBegin(this->Rank);
+  const std::uint64_t end = this->Layout.GetShareEnd(this->Rank);
+  if (end > begin && mprotect(this->Base + begin, end - begin, PROT_READ) != 0)
+  {
+    throw std::bad_alloc();
+  }
+  if (!faults)
+  {
+    return; // one rank: all is owned
+  }
+  this->Faults = std::move(faults);
+  for (const auto& [first, last] :
+    { std::make_pair(std::uint64_t(0), begin), std::make_pair(end, this->Layout.GetBytes()) })
+  {
+    if (last > first)
+    {
+      this->Faults->Attach(this->Base + first, last - first);
+      this->Attached.push_back(this->Base + first);
+    }
+  }
+}
+
+void PagedStore::Segment::Detach()
+{
+  for (std::byte* const begin : this->Attached)
+  {
+    this->Faults->Detach(begin);
+  }
+  this->Attached.clear();
+  this->Faults.reset();
+}
+
+// -- Store -----------------------------------------------------------------------------------------
+
+PagedStore::PagedStore(Messenger& messenger, const Settings& settings)
+  : Self(std::make_unique<Internals>(messenger, settings))
+{
+}
+
+PagedStore::~PagedStore() = default;
+
+void PagedStore::SetSettings(const Settings& settings)
+{
+  this->Self->Configure(settings);
+}
+
+const PagedStore::Settings& PagedStore::GetSettings() const
+{
+  return this->Self->Current;
+}
+
+std::string PagedStore::GetFaultHandlingText() const
+{
+  if (this->Self->Faults)
+  {
+    return this->Self->Faults->GetText();
+  }
+  return this->Self->FaultsRefusal.empty() ? "no page faults, since there is one rank only"
+                                           : this->Self->FaultsRefusal;
+}
+
+FaultHandling PagedStore::GetFaultHandling() const
+{
+  return this->Self->Faults ? this->Self->Faults->GetKind() : FaultHandling::Automatic;
+}
+
+std::shared_ptr<BlockSegment> PagedStore::Publish(const std::string& what, BlockDirectory directory,
+  FragmentSource& source, FragmentSink& sink, const std::function<void(double)>& progress)
+{
+  Messenger& messages = this->Self->Messages;
+  std::shared_ptr<Segment> segment;
+  SegmentPublisher::Steps steps;
+  steps.Allocate = [&](std::uint32_t number, BlockDirectory&& blocks)
+  {
+    if (this->Self->IsInFrame())
+    {
+      throw Error("Blocks cannot be published within a frame.");
+    }
+    this->Self->CheckFaults();
+    segment =
+      std::make_shared<Segment>(number, std::move(blocks), messages.GetRank(), messages.GetSize());
+  };
+  steps.Locate = [&](BlockId id) { return segment->GetAddress(id); };
+  steps.Seal = [&] { segment->Seal(this->Self->Faults); };
+  SegmentPublisher(messages, what, std::move(steps))
+    .Run(std::move(directory), source, sink, progress);
+  this->Self->Add(segment);
+  return segment;
+}
+
+void PagedStore::Retire(const std::shared_ptr<BlockSegment>& segment)
+{
+  if (segment)
+  {
+    this->Self->Retire(*segment);
+  }
+}
+
+bool PagedStore::MayBeginFrame() const
+{
+  return this->Self->MayBeginFrame();
+}
+
+void PagedStore::BeginFrame(bool agreed)
+{
+  this->Self->BeginFrame(agreed);
+}
+
+bool PagedStore::Service()
+{
+  return this->Self->Service();
+}
+
+void PagedStore::Cancel(const std::string& cause)
+{
+  this->Self->Cancel(cause);
+}
+
+bool PagedStore::Drain()
+{
+  return this->Self->Drain();
+}
+
+void PagedStore::EndFrame()
+{
+  this->Self->EndFrame();
+}
+
+PagedStore::Worker& PagedStore::GetWorker(int index)
+{
+  return this->Self->Workers.Get(index);
+}
+
+PagedStore::Pin PagedStore::Admit(Worker& worker, const Segment& segment, BlockId id)
+{
+  if (!this->Self->IsOpen() || !segment.TryMarkRecent(id))
+  {
+    this->Self->Wait(worker, segment, id);
+  }
+  return Pin(segment.GetAddress(id), segment, id);
+}
+
+bool PagedStore::MayPrefetch() const
+{
+  return this->Self->MayPrefetch();
+}
+
+bool PagedStore::Prefetch(const BlockSegment& segment, const BlockId* ids, std::size_t count)
+{
+  const Segment& self = static_cast<const Segment&>(segment);
+  // Mostly all is here; then the lock is not taken.
+  const BlockId* const last = ids + count;
+  const BlockId* const absent = std::find_if(ids, last,
+    [&](BlockId id)
+    { return id < self.GetDirectory().GetCount() && self.GetHint(id) == PageHint::Absent; });
+  if (absent != last)
+  {
+    this->Self->Prefetch(self, absent, static_cast<std::size_t>(last - absent));
+  }
+  return absent != last;
+}
+
+void PagedStore::Enter(Worker& worker)
+{
+  this->Self->Enter(worker);
+}
+
+void PagedStore::Leave(Worker& worker)
+{
+  this->Self->Leave(worker);
+}
+
+std::uint64_t PagedStore::GetMisses(const Worker& worker) const
+{
+  return this->Self->GetMisses(worker);
+}
+
+StoreCounters PagedStore::GetCounters() const
+{
+  return this->Self->GetCounters();
+}
+
+std::vector<WorkerCounters> PagedStore::GetWorkerCounters() const
+{
+  return this->Self->GetWorkerCounters();
+}
+
+} // namespace dsm

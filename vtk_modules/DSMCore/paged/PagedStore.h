@@ -1,0 +1,276 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef dsm_PagedStore_h
+#define dsm_PagedStore_h
+
+#include "DSMCore/base/Block.h"
+#include "DSMCore/base/Counters.h"
+#include "DSMCore/base/WorkerSlots.h"
+#include "DSMCore/memory/AddressRange.h"
+#include "DSMCore/paged/FaultHandling.h"
+#include "DSMCore/paged/PageFaults.h"
+#include "DSMCore/paged/PageLayout.h"
+#include "DSMCore/paged/PageLine.h"
+#include "DSMCore/publish/BlockDirectory.h"
+#include "DSMCore/publish/BlockSegment.h"
+#include "DSMCore/publish/Publication.h"
+#include "DSMCore/transport/Messenger.h"
+
+#include <atomic>
+#include <condition_variable>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace dsm
+{
+
+template <class>
+class StoreWorkers;
+
+/// The paper's page-based DSM (section 3.2): a segment is a range of addresses, a block is the bytes
+/// at base + offset, and a page that is not here faults until it is fetched. Where we deviate: any
+/// number of threads, since a page is seen whole or not at all; 64 bits; and the entry from which
+/// Acquire takes the address (which is quicker than to compute it, blocks being grouped by owner)
+/// says in a bit whether the block is here: if not, the worker waits without a fault, which is
+/// quicker too. The bit is only a hint, and the fault always the last resort: a block may be evicted
+/// while it is read, and then faults again. With Settings::PureFaulting the bit says that all is
+/// here, and everything faults, as in the paper.
+///
+/// Threads: the communication thread publishes, seals, retires and services; workers Acquire.
+/// - Remote blocks may be read within a frame only, by any thread but the communication thread,
+///   which would wait for itself: such reads end the process by SIGSEGV, as any bad address does.
+/// - No address of a block may be handed to a system call or to MPI: only a load can wait.
+/// - A worker that waits in a fault when the frame is cancelled reads zeros from then on; its next
+///   Acquire throws.
+/// - A process made by fork must leave the store alone; reading remote blocks ends it by SIGSEGV.
+///   What this rank owns can be read there. It never disturbs the parent.
+///
+/// Several stores may share a messenger; one of them at a time has a frame open. Several stores of
+/// one process share the handler of SIGSEGV (see SegmentationSignal).
+class PagedStore
+{
+public:
+  struct Settings
+  {
+    /// Budget for remote blocks, in bytes, each rounded up to whole pages. At least the largest
+    /// block, when there are several ranks.
+    std::size_t CacheBytes = std::size_t(64) << 20;
+    /// Number of tracing threads.
+    int Workers = 1;
+    /// Cannot change while segments are published.
+    FaultHandling Handling = FaultHandling::Automatic;
+    /// Never look whether a block is here before it is read.
+    bool PureFaulting = false;
+    /// Who of them runs: a worker gives its slot to others while it waits. Null: all run.
+    std::shared_ptr<WorkerSlots> Slots = nullptr;
+    /// See Prefetch.
+    bool Prefetch = true;
+  };
+
+  class Segment;
+  class Worker;
+  class Pin;
+
+  /// The messenger must outlive the store.
+  PagedStore(Messenger& messenger, const Settings& settings);
+  ~PagedStore();
+  PagedStore(const PagedStore&) = delete;
+  PagedStore& operator=(const PagedStore&) = delete;
+
+  /// Between frames, on the communication thread; local. Drops cached blocks over a smaller budget.
+  /// Throws Error within a frame, for less than one worker, and for another handling of faults while
+  /// there are segments.
+  void SetSettings(const Settings& settings);
+  const Settings& GetSettings() const;
+
+  /// How faults are handled on this rank, and why; for the user. With one rank nothing can fault.
+  std::string GetFaultHandlingText() const;
+  /// UserFaultFd or Signal; Automatic as long as nothing can fault, or neither is possible.
+  FaultHandling GetFaultHandling() const;
+
+  /// Collective. Sets out addresses for all blocks and memory for this rank's, feeds every rank's
+  /// fragments to their owners in bounded batches, and seals. Throws the same Error on every rank
+  /// when any rank fails; too when a rank cannot handle faults as the settings say.
+  /// `progress` (may be empty) is called now and then with this rank's part done, in [0, 1].
+  std::shared_ptr<BlockSegment> Publish(const std::string& what, BlockDirectory directory,
+    FragmentSource& source, FragmentSink& sink, const std::function<void(double)>& progress = {});
+
+  /// Collective in order (no message is exchanged), between frames: forgets the segment and its
+  /// cached blocks. What this rank owns of it stays until the last shared pointer goes.
+  void Retire(const std::shared_ptr<BlockSegment>& segment);
+
+  /// See ObjectStore. Never where faults are signalled, since it is not known before whether the address
+  /// space has room.
+  bool MayBeginFrame() const;
+
+  /// Collective. Resets the counters of the frame; from now on workers may Acquire, and this rank
+  /// serves others. Throws Error, on every rank alike, when a rank's cache cannot hold its largest
+  /// block, or its address space has too many mappings (see SignalFaults). `agreed`: as ObjectStore's.
+  void BeginFrame(bool agreed = false);
+  /// Communication thread, often: sends what the workers miss. Returns whether it did anything.
+  /// (Serving others happens in Messenger::Progress, through handlers.)
+  bool Service();
+  /// Communication thread: from now on every Acquire throws Error(cause).
+  void Cancel(const std::string& cause);
+  /// Communication thread, often after this rank's workers have stopped; see ObjectStore.
+  bool Drain();
+  /// Communication thread, after all ranks' workers have stopped.
+  void EndFrame();
+
+  /// Index in [0, Settings::Workers). The reference is valid until the number of workers changes.
+  Worker& GetWorker(int index);
+
+  /// Worker, between Enter and Leave: the block's address. Waits for a block that is known to be
+  /// absent. Throws Error after Cancel, and for another rank's block when the worker has not
+  /// entered, outside of a frame, and when the segment was retired.
+  Pin Acquire(Worker& worker, const BlockSegment& segment, BlockId id);
+
+  /// See ObjectStore. With Settings::PureFaulting nothing is prefetched, as in the paper.
+  bool MayPrefetch() const;
+  bool Prefetch(const BlockSegment& segment, const BlockId* ids, std::size_t count);
+
+  /// Nothing needs it here.
+  void Quiesce(Worker&) {}
+  /// Worker: starts, stops to take part.
+  void Enter(Worker& worker);
+  void Leave(Worker& worker);
+
+  /// The worker: how often it has waited for a block in this frame.
+  std::uint64_t GetMisses(const Worker& worker) const;
+  /// Of the frame so far; after EndFrame, of the last frame. Communication thread. Misses are
+  /// accesses or faults that waited for a fetch.
+  StoreCounters GetCounters() const;
+  /// Per worker of the last frame.
+  std::vector<WorkerCounters> GetWorkerCounters() const;
+
+private:
+  friend class PageCache;
+  class Internals;
+
+  /// The long way of an access: waits for the block, or finds that it must not be read.
+  Pin Admit(Worker& worker, const Segment& segment, BlockId id);
+
+  std::unique_ptr<Internals> Self;
+};
+
+/// The addresses of all blocks, and the memory of those that this rank owns.
+class PagedStore::Segment final : public BlockSegment
+{
+public:
+  /// Sets out zeroed memory for the blocks of `rank`. Throws Error, std::bad_alloc.
+  Segment(std::uint32_t number, BlockDirectory directory, int rank, int ranks);
+  ~Segment() override;
+  void ForEachResident(const Visit& visit) const override;
+  /// In whole pages.
+  std::uint64_t GetResidentBytes() const override;
+
+private:
+  friend class PageCache;
+  friend class PagedStore;
+
+  std::byte* GetAddress(BlockId id) const { return this->Base + this->Layout.GetOffset(id); }
+  PageHint GetHint(BlockId id) const;
+  void SetHint(BlockId id, PageHint hint) const;
+  /// A worker uses a block that is idle or was prefetched; false when it is neither.
+  bool TryMarkRecent(BlockId id) const;
+  /// Whether a block has nothing to wait for: owned, or of no bytes.
+  bool IsAlwaysHere(BlockId id) const;
+  /// Sets all hints by where the blocks stand. With `pure`, they say that all is here.
+  void ResetHints(bool pure);
+  /// Lets accesses through, or makes every one take the long way.
+  void Open(bool open);
+  bool IsOwned(BlockId id) const { return this->GetDirectory().GetOwner(id) == this->Rank; }
+  /// Whether the address is in a page of a block of another rank.
+  bool FindRemote(const std::byte* address, BlockId& id) const;
+  bool Contains(const std::byte* address) const;
+  /// From now on this rank's blocks are read only, and those of others fault.
+  void Seal(std::shared_ptr<PageFaults> faults);
+  /// Those of others can no longer be read.
+  void Detach();
+
+  PageLayout Layout;
+  AddressRange Range;
+  std::byte* Base = nullptr;
+  /// Address and hint of every block.
+  std::unique_ptr<std::atomic<std::uintptr_t>[]> Entries;
+  /// As many zeros, hence without hints; they take no memory. What workers look at while closed.
+  AddressRange ClosedEntries;
+  std::atomic<const std::atomic<std::uintptr_t>*> VisibleEntries{ nullptr };
+  bool IsPure = false;
+  std::unique_ptr<PageLine[]> Lines;
+  int Rank = 0;
+  bool Retired = false; ///< under the store's lock
+  std::shared_ptr<PageFaults> Faults;
+  std::vector<std::byte*> Attached;
+};
+
+/// A tracing thread's part of the store. On a cache line of its own.
+class alignas(64) PagedStore::Worker
+{
+public:
+  Worker() = default;
+  Worker(const Worker&) = delete;
+  Worker& operator=(const Worker&) = delete;
+
+private:
+  friend class PagedStore;
+  template <class>
+  friend class StoreWorkers;
+
+  /// Only the worker writes (no read-modify-write is needed); atomic, so that the communication
+  /// thread may read it while the frame runs.
+  std::atomic<std::uint64_t> Accesses{ 0 };
+  /// The kernel's number of the thread between Enter and Leave, 0 otherwise.
+  std::atomic<int> Thread{ 0 };
+
+  // Under the store's lock.
+  WorkerCounters Slow; ///< all but Accesses and Hits
+  const PageLine* WaitsFor = nullptr;
+  const std::byte* LastFault = nullptr;
+  std::condition_variable Woken;
+};
+
+/// A block's bytes. They need not be held: what is evicted comes back when it is read.
+class PagedStore::Pin
+{
+public:
+  /// Aligned to the page size.
+  const std::byte* GetData() const { return this->Data; }
+  std::size_t GetBytes() const { return this->From->GetDirectory().GetBytes(this->Id); }
+
+private:
+  friend class PagedStore;
+
+  Pin(const std::byte* data, const Segment& from, BlockId id)
+    : Data(data)
+    , From(&from)
+    , Id(id)
+  {
+  }
+
+  const std::byte* Data;
+  const Segment* From;
+  BlockId Id;
+};
+
+inline PagedStore::Pin PagedStore::Acquire(Worker& worker, const BlockSegment& segment, BlockId id)
+{
+  const Segment& self = static_cast<const Segment&>(segment);
+  worker.Accesses.store(
+    worker.Accesses.load(std::memory_order_relaxed) + 1, std::memory_order_relaxed);
+  const std::uintptr_t entry =
+    self.VisibleEntries.load(std::memory_order_acquire)[id].load(std::memory_order_relaxed);
+  constexpr auto recent = static_cast<std::uintptr_t>(PageHint::Recent);
+  if ((entry & recent) == 0)
+  {
+    return this->Admit(worker, self, id);
+  }
+  return Pin(reinterpret_cast<const std::byte*>(entry - recent), self, id);
+}
+
+} // namespace dsm
+
+#endif

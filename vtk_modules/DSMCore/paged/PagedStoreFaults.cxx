@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The listening thread of a page store.
+#include "DSMCore/paged/PagedStoreInternals.h"
+
+#include <pthread.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <csignal>
+
+namespace dsm
+{
+
+void PagedStore::Internals::StartListening()
+{
+  // The application's signals are not for this thread.
+  sigset_t all;
+  sigset_t before;
+  sigfillset(&all);
+  pthread_sigmask(SIG_SETMASK, &all, &before);
+  try
+  {
+    this->Listener = std::thread([this] { this->Listen(); });
+  }
+  catch (...)
+  {
+    pthread_sigmask(SIG_SETMASK, &before, nullptr);
+    throw;
+  }
+  pthread_sigmask(SIG_SETMASK, &before, nullptr);
+}
+
+void PagedStore::Internals::StopListening()
+{
+  if (!this->Listener.joinable())
+  {
+    return;
+  }
+  if (getpid() != this->Process)
+  {
+    this->Listener.detach(); // a child has no such thread
+    return;
+  }
+  this->Faults->StopWaiting();
+  this->Listener.join();
+}
+
+void PagedStore::Internals::Listen()
+{
+  std::vector<PageFaults::Fault> faults;
+  while (this->Faults->WaitForFaults(faults))
+  {
+    bool any = false;
+    {
+      const std::lock_guard<std::mutex> lock(this->Guard);
+      for (const PageFaults::Fault& fault : faults)
+      {
+        any |= this->Take(fault);
+      }
+    }
+    if (any)
+    {
+      this->Messages.WakeUp();
+    }
+  }
+}
+
+bool PagedStore::Internals::Take(const PageFaults::Fault& fault)
+{
+  const Segment* segment = nullptr;
+  for (const auto& [number, candidate] : this->Segments)
+  {
+    segment = candidate->Contains(fault.Address) ? candidate.get() : segment;
+  }
+  BlockId id = 0;
+  const bool isBlock = segment && segment->FindRemote(fault.Address, id);
+  if (!segment || this->Phase == FramePhase::Closed || fault.Thread == this->CommunicationThread ||
+    (!isBlock && this->Phase == FramePhase::Open))
+  {
+    this->Faults->Answer(fault, PageFaults::Reply::Refused);
+    return false;
+  }
+  if (isBlock && segment->Lines[id].State == PageState::Cached)
+  {
+    this->Faults->Answer(fault, PageFaults::Reply::Present);
+    return false;
+  }
+  if (this->Phase == FramePhase::Cancelled)
+  {
+    this->TakeCancelled(fault, segment, isBlock, id);
+    return false;
+  }
+  Worker* const worker = this->FindWorker(fault.Thread);
+  if (worker)
+  {
+    this->AdjustHold(*worker, fault);
+  }
+  WorkerCounters& counters = worker ? worker->Slow : this->Strangers;
+  ++counters.Misses;
+  counters.Joins += this->Request(*segment, id) ? 1 : 0;
+  this->Waiting.push_back(Stopped{ fault, segment, id, worker, Clock::now() });
+  return true;
+}
+
+void PagedStore::Internals::TakeCancelled(
+  const PageFaults::Fault& fault, const Segment* segment, bool isBlock, BlockId id)
+{
+  const std::size_t page = AddressRange::GetPageBytes();
+  Zeros zeros;
+  zeros.Line = isBlock ? &segment->Lines[id] : nullptr;
+  zeros.Begin = isBlock ? segment->GetAddress(id)
+                        : fault.Address - reinterpret_cast<std::uintptr_t>(fault.Address) % page;
+  zeros.Bytes = isBlock ? segment->Layout.GetFootprint(id) : page;
+  PageFaults::Reply reply = PageFaults::Reply::Present;
+  if (std::none_of(this->Zeroed.begin(), this->Zeroed.end(),
+        [&](const Zeros& other) { return other.Begin == zeros.Begin; }))
+  {
+    try
+    {
+      this->Faults->PlaceZeros(zeros.Begin, zeros.Bytes);
+      this->Zeroed.push_back(zeros);
+      if (zeros.Line)
+      {
+        zeros.Line->MoveTo(PageState::Zeroed);
+      }
+      reply = PageFaults::Reply::Placed;
+    }
+    catch (const std::exception&)
+    {
+      reply = PageFaults::Reply::Refused;
+    }
+  }
+  this->Faults->Answer(fault, reply);
+}
+
+/// A thread that faults at the same place again did not get to read it: blocks go too soon.
+void PagedStore::Internals::AdjustHold(Worker& worker, const PageFaults::Fault& fault)
+{
+  if (worker.LastFault == fault.Address)
+  {
+    this->Hold = std::min<Clock::duration>(2 * this->Hold, LongestHold);
+  }
+  else
+  {
+    this->Hold = std::max<Clock::duration>(this->Hold - this->Hold / 8, ShortestHold);
+  }
+  worker.LastFault = fault.Address;
+}
+
+PagedStore::Worker* PagedStore::Internals::FindWorker(int thread) const
+{
+  const auto found = std::find_if(this->Workers.begin(), this->Workers.end(),
+    [&](const auto& worker) { return worker->Thread.load(std::memory_order_relaxed) == thread; });
+  return found == this->Workers.end() ? nullptr : found->get();
+}
+
+} // namespace dsm

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "DSMCore/publish/BlockDirectory.h"
+
+#include <algorithm>
+#include <numeric>
+
+namespace dsm
+{
+
+std::uint32_t BlockDirectory::GetLargest() const
+{
+  const auto largest = std::max_element(this->Bytes.begin(), this->Bytes.end());
+  return largest == this->Bytes.end() ? 0 : *largest;
+}
+
+std::uint64_t BlockDirectory::GetResidentBytes(int owner) const
+{
+  std::uint64_t sum = 0;
+  for (BlockId id = 0; id < this->GetCount(); ++id)
+  {
+    if (this->GetOwner(id) == owner)
+    {
+      sum += AlignBlock(this->Bytes[id]);
+    }
+  }
+  return sum;
+}
+
+std::uint64_t BlockDirectory::GetTotalBytes() const
+{
+  return std::accumulate(this->Bytes.begin(), this->Bytes.end(), std::uint64_t(0));
+}
+
+std::uint64_t BlockDirectory::GetFingerprint() const
+{
+  std::uint64_t hash = 0xcbf29ce484222325u; // FNV-1a
+  for (BlockId id = 0; id < this->GetCount(); ++id)
+  {
+    hash = (hash ^ this->GetBytes(id)) * 0x100000001b3u;
+    hash = (hash ^ static_cast<std::uint64_t>(this->GetOwner(id))) * 0x100000001b3u;
+  }
+  return hash;
+}
+
+} // namespace dsm

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef dsm_BlockDirectory_h
+#define dsm_BlockDirectory_h
+
+#include "DSMCore/base/Block.h"
+
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+namespace dsm
+{
+
+/// Size in bytes and owner of every block of a segment; the same on every rank.
+class BlockDirectory
+{
+public:
+  BlockDirectory(std::vector<std::uint32_t> bytes, RoundRobinAssigner assigner)
+    : Bytes(std::move(bytes))
+    , Assigner(assigner)
+  {
+  }
+
+  BlockId GetCount() const { return this->Bytes.size(); }
+  std::uint32_t GetBytes(BlockId id) const { return this->Bytes[id]; }
+  int GetOwner(BlockId id) const { return this->Assigner.GetOwner(id); }
+  /// The largest block; 0 when there is none.
+  std::uint32_t GetLargest() const;
+  /// Sum over the blocks of one owner, each rounded up to BlockAlignment.
+  std::uint64_t GetResidentBytes(int owner) const;
+  std::uint64_t GetTotalBytes() const;
+  /// Equal directories have equal ones.
+  std::uint64_t GetFingerprint() const;
+
+private:
+  std::vector<std::uint32_t> Bytes;
+  RoundRobinAssigner Assigner;
+};
+
+} // namespace dsm
+
+#endif

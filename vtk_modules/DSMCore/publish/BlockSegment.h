@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef dsm_BlockSegment_h
+#define dsm_BlockSegment_h
+
+#include "DSMCore/base/Block.h"
+#include "DSMCore/publish/BlockDirectory.h"
+
+#include <cstdint>
+#include <functional>
+#include <utility>
+
+namespace dsm
+{
+
+/// Blocks that were published together: their directory and this rank's share of them. Each store
+/// derives its own, with what it needs to find a block. Immutable after Seal.
+class BlockSegment
+{
+public:
+  BlockSegment(std::uint32_t number, BlockDirectory directory)
+    : Number(number)
+    , Directory(std::move(directory))
+  {
+  }
+  virtual ~BlockSegment() = default;
+  BlockSegment(const BlockSegment&) = delete;
+  BlockSegment& operator=(const BlockSegment&) = delete;
+
+  /// Names the segment in messages; the same on every rank.
+  std::uint32_t GetNumber() const { return this->Number; }
+  const BlockDirectory& GetDirectory() const { return this->Directory; }
+
+  /// Visits the blocks that this rank owns, in ascending order of id.
+  using Visit = std::function<void(BlockId, const std::byte*, std::size_t)>;
+  virtual void ForEachResident(const Visit& visit) const = 0;
+  virtual std::uint64_t GetResidentBytes() const = 0;
+
+private:
+  std::uint32_t Number;
+  BlockDirectory Directory;
+};
+
+} // namespace dsm
+
+#endif

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef dsm_HostGroups_h
+#define dsm_HostGroups_h
+
+#include "DSMCore/base/Block.h"
+
+#include <vector>
+
+namespace dsm
+{
+
+class Messenger;
+
+/// Which ranks read one another's memory in place: those of one host, or each alone. The same on
+/// every rank.
+class HostGroups
+{
+public:
+  HostGroups() = default;
+  /// For every rank the lowest rank of its group.
+  explicit HostGroups(const std::vector<int>& leaders);
+
+  /// Every rank on its own.
+  static HostGroups Separate(int ranks);
+
+  /// Collective: the ranks of a host that all want to share, once each has mapped a trial page of
+  /// every other; where one of them cannot, all of that host stay on their own.
+  static HostGroups Find(Messenger& messenger, bool wanted);
+
+  /// The ranks of a rank's group, itself included, ascending.
+  const std::vector<int>& GetMembers(int rank) const
+  {
+    return this->Groups[static_cast<std::size_t>(this->GroupOf[static_cast<std::size_t>(rank)])];
+  }
+  int GetGroup(int rank) const { return this->GroupOf[static_cast<std::size_t>(rank)]; }
+  int GetGroupCount() const { return static_cast<int>(this->Groups.size()); }
+  bool AreTogether(int a, int b) const { return this->GetGroup(a) == this->GetGroup(b); }
+
+  /// Who in a group holds a block when all groups have all blocks: its owner, or, where that is in
+  /// another group, the members in turn.
+  int GetHolder(BlockId id, int owner, int group) const;
+
+private:
+  std::vector<int> GroupOf;
+  std::vector<std::vector<int>> Groups;
+};
+
+} // namespace dsm
+
+#endif

@@ -1,0 +1,323 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "DSMCore/store/BlockStore.h"
+
+#include "DSMCore/base/Error.h"
+#include "DSMCore/memory/AddressRange.h"
+#include "DSMCore/memory/HostMemory.h"
+
+#include <algorithm>
+#include <iterator>
+#include <limits>
+#include <optional>
+
+namespace dsm
+{
+
+namespace
+{
+
+/// Of the memory that a host has left, for the blocks of its ranks when the user says nothing: the
+/// rest is for the application.
+constexpr std::uint64_t DefaultPart = 2;
+
+bool IsPaged(MemoryOrganization organization)
+{
+  return organization == MemoryOrganization::PageBased;
+}
+
+} // namespace
+
+BlockStore::BlockStore(Messenger& messenger, const Settings& settings)
+  : Messages(messenger)
+  , Objects(messenger, ObjectStore::Settings{})
+  , Replicated(messenger, ReplicatedStore::Settings{})
+{
+  this->SetSettings(settings);
+}
+
+BlockStore::~BlockStore() = default;
+
+void BlockStore::SetSettings(const Settings& settings)
+{
+  const Settings& old = this->Current;
+  if (!this->Segments.empty() && IsPaged(settings.Organization) != IsPaged(this->InForce))
+  {
+    throw Error("The page based memory organisation can be entered and left only while nothing is "
+                "published.");
+  }
+  if (settings.Organization != old.Organization || settings.MemoryBytes != old.MemoryBytes ||
+    settings.CacheBytes != old.CacheBytes || this->Explanation.empty())
+  {
+    this->Settled = false;
+  }
+  const Settings previous = this->Current;
+  this->Current = settings;
+  try
+  {
+    if (IsPaged(settings.Organization) && !this->Paged)
+    {
+      this->Paged = std::make_unique<PagedStore>(this->Messages, PagedStore::Settings{});
+    }
+    this->Configure();
+  }
+  catch (...)
+  {
+    this->Current = previous;
+    throw;
+  }
+  if (this->Segments.empty())
+  {
+    this->InForce = settings.Organization == MemoryOrganization::Automatic
+      ? MemoryOrganization::Replicated
+      : settings.Organization;
+  }
+}
+
+int BlockStore::CountWorkers() const
+{
+  if (this->Current.Overlap < 1)
+  {
+    throw Error("There cannot be fewer than one worker for each that traces.");
+  }
+  return this->Current.Workers * (this->Messages.GetSize() > 1 ? this->Current.Overlap : 1);
+}
+
+void BlockStore::Configure()
+{
+  ObjectStore::Settings objects;
+  objects.CacheBytes =
+    static_cast<std::size_t>(std::min<std::uint64_t>(this->CacheBytes, this->Current.CacheBytes));
+  objects.Workers = this->CountWorkers();
+  objects.Slots = this->Slots;
+  objects.Prefetch = this->Current.Prefetch;
+  objects.HostSharing = this->Current.HostSharing;
+  objects.Groups = this->Groups;
+  ReplicatedStore::Settings replicated;
+  replicated.Workers = this->Current.Workers;
+  replicated.HostSharing = this->Current.HostSharing;
+  replicated.Groups = this->Groups;
+  if (this->Paged)
+  {
+    PagedStore::Settings paged;
+    paged.CacheBytes = objects.CacheBytes;
+    paged.Workers = objects.Workers;
+    paged.Slots = this->Slots;
+    paged.Prefetch = this->Current.Prefetch;
+    paged.Handling = this->Current.Faults;
+    paged.PureFaulting = this->Current.PureFaulting;
+    this->Paged->SetSettings(paged);
+  }
+  this->Objects.SetSettings(objects);
+  this->Replicated.SetSettings(replicated);
+}
+
+// -- Plans -----------------------------------------------------------------------------------------
+
+void BlockStore::FindBudget()
+{
+  if (this->Current.MemoryBytes != 0)
+  {
+    this->Budget = { this->Current.MemoryBytes, this->Current.MemoryBytes };
+    return;
+  }
+  // Asked once: what is published would count against itself.
+  if (this->AvailableBytes == 0)
+  {
+    this->AvailableBytes = std::max<std::uint64_t>(
+      GetAvailableHostMemory() / static_cast<std::uint64_t>(this->Messages.GetRanksOnHost()), 1);
+  }
+  this->Budget = { this->AvailableBytes / DefaultPart, this->AvailableBytes };
+}
+
+MemoryPlan BlockStore::MakePlan(const BlockDirectory* next)
+{
+  this->Messages.GetRanksOnHost(); // collective the first time
+  this->FindBudget();
+  this->Groups =
+    std::make_shared<const HostGroups>(HostGroups::Find(this->Messages, this->Current.HostSharing));
+  this->Configure();
+  Stance mine{ this->Budget, static_cast<std::uint64_t>(this->Current.Organization) };
+  for (const std::uint64_t part : { std::uint64_t(this->Segments.size()),
+         next ? next->GetFingerprint() : std::uint64_t(0), std::uint64_t(next != nullptr),
+         std::uint64_t(this->Current.HostSharing), std::uint64_t(this->InForce) })
+  {
+    mine.Choice = (mine.Choice ^ part) * 0x100000001b3u; // FNV-1a
+  }
+  const auto stances = this->Messages.AllGatherValue(mine);
+  std::vector<MemoryPlan::Budget> budgets;
+  for (std::size_t rank = 0; rank < stances.size(); ++rank)
+  {
+    if (stances[rank].Choice != stances.front().Choice)
+    {
+      throw Error("Rank " + std::to_string(rank) +
+        " and rank 0 disagree about the blocks or about how they are to be kept. Do all ranks see "
+        "the same extent of the data, and the same settings?");
+    }
+    budgets.push_back(stances[rank].Budget);
+  }
+  std::vector<const BlockDirectory*> directories;
+  for (const auto& [number, segment] : this->Segments)
+  {
+    directories.push_back(&segment->GetDirectory());
+  }
+  if (next)
+  {
+    directories.push_back(next);
+  }
+  return MemoryPlan(
+    std::move(directories), *this->Groups, std::move(budgets), AddressRange::GetPageBytes());
+}
+
+void BlockStore::TakePlan(const MemoryPlan& plan, MemoryOrganization chosen)
+{
+  this->Explanation = plan.Explain(this->Current.Organization, chosen);
+  this->CacheBytes = chosen == MemoryOrganization::Replicated
+    ? 0
+    : plan.GetCacheBytes(chosen, this->Messages.GetRank());
+  this->Configure();
+}
+
+void BlockStore::Settle()
+{
+  const MemoryPlan plan = this->MakePlan(nullptr);
+  MemoryOrganization chosen = plan.Decide(this->Current.Organization);
+  try
+  {
+    this->MoveTo(chosen);
+  }
+  catch (const Error&)
+  {
+    if (this->Current.Organization != MemoryOrganization::Automatic)
+    {
+      throw;
+    }
+    chosen = MemoryOrganization::ObjectBased;
+  }
+  this->TakePlan(plan, chosen);
+  this->Settled = true;
+}
+
+void BlockStore::MoveTo(MemoryOrganization organization)
+{
+  if (IsPaged(organization) || IsPaged(this->InForce))
+  {
+    this->InForce = organization; // nothing is published: see SetSettings
+    return;
+  }
+  const auto giveUpCopies = [this]
+  {
+    for (const auto& [number, segment] : this->Segments)
+    {
+      const auto table = std::static_pointer_cast<BlockTable>(segment);
+      if (table->IsReplicated())
+      {
+        this->Replicated.Surrender(*table);
+        this->Objects.Adopt(table);
+      }
+    }
+    this->InForce = MemoryOrganization::ObjectBased;
+  };
+  if (organization != MemoryOrganization::Replicated)
+  {
+    giveUpCopies();
+    return;
+  }
+  for (const auto& [number, segment] : this->Segments)
+  {
+    const auto table = std::static_pointer_cast<BlockTable>(segment);
+    if (table->IsReplicated())
+    {
+      continue;
+    }
+    this->Objects.Surrender(*table);
+    try
+    {
+      this->Replicated.Adopt(table);
+    }
+    catch (const Error&)
+    {
+      this->Objects.Adopt(table);
+      giveUpCopies();
+      throw;
+    }
+  }
+  this->InForce = organization;
+}
+
+// -- Segments --------------------------------------------------------------------------------------
+
+std::shared_ptr<BlockSegment> BlockStore::Publish(const std::string& what, BlockDirectory directory,
+  FragmentSource& source, FragmentSink& sink, const std::function<void(double)>& progress)
+{
+  std::optional<BlockDirectory> next;
+  this->Messages.RunTogether(what, [&] { next = directory; });
+  const MemoryPlan plan = this->MakePlan(&*next);
+  MemoryOrganization chosen = MemoryOrganization::Automatic;
+  try
+  {
+    chosen = plan.Decide(this->Current.Organization);
+  }
+  catch (const Error& error) // on every rank alike
+  {
+    throw Error(what + ": " + error.what());
+  }
+  // What Automatic wants to replicate is published object based first: should there be no memory for
+  // the copies, nothing is lost.
+  const bool copyLater = this->Current.Organization == MemoryOrganization::Automatic &&
+    chosen == MemoryOrganization::Replicated;
+  const auto publish = [&](auto& store)
+  { return store.Publish(what, std::move(directory), source, sink, progress); };
+  if (!copyLater)
+  {
+    this->MoveTo(chosen);
+  }
+  const auto segment = copyLater ? publish(this->Objects) : this->Visit(publish);
+  this->Segments.emplace(segment->GetNumber(), segment);
+  if (copyLater)
+  {
+    try
+    {
+      this->MoveTo(chosen);
+    }
+    catch (const Error&)
+    {
+      chosen = MemoryOrganization::ObjectBased;
+    }
+  }
+  this->TakePlan(plan, chosen);
+  this->Settled = true;
+  ++this->Publications;
+  return segment;
+}
+
+void BlockStore::Retire(const std::shared_ptr<BlockSegment>& segment)
+{
+  if (segment && this->Segments.erase(segment->GetNumber()) > 0)
+  {
+    this->Visit([&](auto& store) { store.Retire(segment); });
+    this->Settled = false; // there is more room
+  }
+}
+
+// -- Counters --------------------------------------------------------------------------------------
+
+StoreCounters BlockStore::GetCounters()
+{
+  StoreCounters counters = this->Visit([](auto& store) { return store.GetCounters(); });
+  counters.MemoryBudget = this->Budget.Bytes;
+  counters.Publications = this->Publications;
+  return counters;
+}
+
+std::vector<WorkerCounters> BlockStore::GetWorkerCounters()
+{
+  const auto all = this->Visit([](auto& store) { return store.GetWorkerCounters(); });
+  std::vector<WorkerCounters> counters(static_cast<std::size_t>(this->Current.Workers));
+  for (std::size_t worker = 0; worker < all.size(); ++worker)
+  {
+    counters[worker % counters.size()] += all[worker];
+  }
+  return counters;
+}
+
+} // namespace dsm

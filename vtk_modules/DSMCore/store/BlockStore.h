@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef dsm_BlockStore_h
+#define dsm_BlockStore_h
+
+#include "DSMCore/base/Counters.h"
+#include "DSMCore/base/WorkerSlots.h"
+#include "DSMCore/paged/FaultHandling.h"
+#include "DSMCore/paged/PagedStore.h"
+#include "DSMCore/publish/BlockDirectory.h"
+#include "DSMCore/publish/BlockSegment.h"
+#include "DSMCore/publish/HostGroups.h"
+#include "DSMCore/publish/Publication.h"
+#include "DSMCore/store/MemoryOrganization.h"
+#include "DSMCore/store/MemoryPlan.h"
+#include "DSMCore/table/ObjectStore.h"
+#include "DSMCore/table/ReplicatedStore.h"
+#include "DSMCore/transport/Messenger.h"
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace dsm
+{
+
+/// Keeps blocks in the organisation that the user chose, within the memory that the user gave; the
+/// one interface to the three stores for all that publish. Whoever reads blocks does so through the
+/// store that has them, which Visit hands over: one switch a frame, none on an access.
+///
+/// All that is published is in one organisation at a time. It changes between frames, when settings
+/// or data do: segments pass from the object based to the replicated store and back as they are.
+/// Communication thread only.
+class BlockStore
+{
+public:
+  /// The same on every rank, but for the number of workers.
+  struct Settings
+  {
+    MemoryOrganization Organization = MemoryOrganization::Automatic;
+    /// What a rank may take for its own blocks, copies and cache; 0: half of what its host has left
+    /// when first asked, shared out between the ranks there, and more when its own blocks need it.
+    std::uint64_t MemoryBytes = 0;
+    /// The most that the cache may take of it.
+    std::size_t CacheBytes = SIZE_MAX;
+    /// Number of workers that trace at a time.
+    int Workers = 1;
+    /// As many times the threads, where blocks are fetched: while some wait, others trace. 1: a
+    /// worker that waits idles.
+    int Overlap = 4;
+    /// Bricks that a tile will probably need are asked for before it gets to them.
+    bool Prefetch = true;
+    /// Ranks of one host read one another's blocks in place. For what is published from then on.
+    bool HostSharing = true;
+    /// Page based only; see PagedStore.
+    FaultHandling Faults = FaultHandling::Automatic;
+    bool PureFaulting = false;
+  };
+
+  /// The messenger must outlive the store.
+  BlockStore(Messenger& messenger, const Settings& settings);
+  ~BlockStore();
+  BlockStore(const BlockStore&) = delete;
+  BlockStore& operator=(const BlockStore&) = delete;
+
+  /// Between frames; local: another organisation or budget has its effect with the next Settle or
+  /// Publish. Throws Error for less than one worker, and when the page based organisation is to be
+  /// entered or left while anything is published: retire it, and publish it again.
+  void SetSettings(const Settings& settings);
+  const Settings& GetSettings() const { return this->Current; }
+
+  /// Whether there is nothing for Settle to do here; when a rank has something, all must settle.
+  bool IsSettled() const { return this->Settled; }
+  /// Collective, between frames: chooses anew, where Automatic, and rearranges what is published.
+  /// Throws the same Error on every rank when the memory does not suffice; then nothing has changed,
+  /// and the next Settle tries again.
+  void Settle();
+
+  /// Collective, between frames; see ObjectStore. Throws the same Error on every rank, before any
+  /// data move, when a rank's memory does not suffice: with the number of bytes needed and the number
+  /// of ranks that would do.
+  std::shared_ptr<BlockSegment> Publish(const std::string& what, BlockDirectory directory,
+    FragmentSource& source, FragmentSink& sink, const std::function<void(double)>& progress = {});
+
+  /// Collective in order (no message is exchanged), between frames.
+  void Retire(const std::shared_ptr<BlockSegment>& segment);
+
+  /// The organisation in force: never Automatic.
+  MemoryOrganization GetOrganization() const { return this->InForce; }
+  /// A sentence for the user: what is in force, and why.
+  const std::string& GetExplanation() const { return this->Explanation; }
+  /// What this rank may take; 0 before anything was published.
+  std::uint64_t GetMemoryBytes() const { return this->Budget.Bytes; }
+
+  /// Calls `use` with the ObjectStore, PagedStore or ReplicatedStore that has all segments.
+  template <class Use>
+  decltype(auto) Visit(Use&& use)
+  {
+    switch (this->InForce)
+    {
+      case MemoryOrganization::Replicated:
+        return use(this->Replicated);
+      case MemoryOrganization::PageBased:
+        return use(*this->Paged);
+      default:
+        return use(this->Objects);
+    }
+  }
+
+  /// Of those that trace at a time. To be taken while a worker traces.
+  WorkerSlots& GetSlots() { return *this->Slots; }
+
+  /// See ObjectStore; of the store in force.
+  StoreCounters GetCounters();
+  /// Settings::Workers of them: the workers beyond are added to those that they take turns with.
+  std::vector<WorkerCounters> GetWorkerCounters();
+
+private:
+  /// What the ranks tell one another before they decide.
+  struct Stance
+  {
+    MemoryPlan::Budget Budget;
+    std::uint64_t Choice; ///< digest of what must be equal on all ranks
+  };
+
+  /// Collective. The plan for what is published and, unless null, for what is to be.
+  MemoryPlan MakePlan(const BlockDirectory* next);
+  void FindBudget();
+  /// Of the stores that fetch.
+  int CountWorkers() const;
+  /// Collective: moves segments between the stores. Throws when they cannot be replicated.
+  void MoveTo(MemoryOrganization organization);
+  /// Local: hands the settings to the stores.
+  void Configure();
+  void TakePlan(const MemoryPlan& plan, MemoryOrganization chosen);
+
+  Messenger& Messages;
+  Settings Current;
+  const std::shared_ptr<WorkerSlots> Slots = std::make_shared<WorkerSlots>();
+  bool Settled = true;
+  std::uint64_t Publications = 0;
+  MemoryOrganization InForce = MemoryOrganization::ObjectBased;
+  std::string Explanation;
+  MemoryPlan::Budget Budget;
+  std::uint64_t AvailableBytes = 0; ///< to this rank, when first asked
+  std::uint64_t CacheBytes = 0;
+  /// As of the last plan.
+  std::shared_ptr<const HostGroups> Groups;
+  std::map<std::uint32_t, std::shared_ptr<BlockSegment>> Segments; ///< by number
+
+  ObjectStore Objects;
+  ReplicatedStore Replicated;
+  std::unique_ptr<PagedStore> Paged; ///< made when it is first chosen
+};
+
+} // namespace dsm
+
+#endif

@@ -1,0 +1,213 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "DSMCore/store/MemoryPlan.h"
+
+#include "DSMCore/base/Error.h"
+#include "DSMCore/memory/HostMemory.h"
+#include "DSMCore/table/BlockTable.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace dsm
+{
+
+MemoryPlan::MemoryPlan(std::vector<const BlockDirectory*> segments, const HostGroups& groups,
+  std::vector<Budget> budgets, std::size_t page)
+  : Segments(std::move(segments))
+  , Budgets(std::move(budgets))
+  , OneGroup(groups.GetGroupCount() == 1)
+  , Blocks(BlockAlignment)
+  , Pages(page)
+  , Copies(this->Budgets.size(), 0)
+{
+  this->Count(this->Blocks);
+  this->Count(this->Pages);
+  for (int rank = 0; rank < static_cast<int>(this->Copies.size()); ++rank)
+  {
+    auto& copies = this->Copies[static_cast<std::size_t>(rank)];
+    if (groups.GetMembers(rank).size() == 1)
+    {
+      copies = this->Blocks.Total - this->Blocks.Resident[static_cast<std::size_t>(rank)];
+      continue;
+    }
+    for (const BlockDirectory* directory : this->Segments)
+    {
+      copies += BlockTable::CountReplicaBytes(*directory, groups, rank);
+    }
+  }
+}
+
+// -- Numbers ---------------------------------------------------------------------------------------
+
+void MemoryPlan::Count(Sums& sums) const
+{
+  sums.Resident.assign(this->Budgets.size(), 0);
+  for (const BlockDirectory* directory : this->Segments)
+  {
+    sums.Largest = std::max(sums.Largest, sums.GetFootprint(directory->GetLargest()));
+    for (BlockId id = 0; id < directory->GetCount(); ++id)
+    {
+      const std::uint64_t bytes = sums.GetFootprint(directory->GetBytes(id));
+      const auto owner = static_cast<std::size_t>(directory->GetOwner(id));
+      sums.Total += bytes;
+      // Owners that do not exist are refused when the blocks are published.
+      if (owner < sums.Resident.size())
+      {
+        sums.Resident[owner] += bytes;
+      }
+    }
+  }
+}
+
+std::uint64_t MemoryPlan::GetNeed(MemoryOrganization organization, int rank) const
+{
+  const Sums& sums = this->GetSums(organization);
+  const std::uint64_t resident = sums.Resident[static_cast<std::size_t>(rank)];
+  switch (organization)
+  {
+    case MemoryOrganization::Replicated:
+      return resident + this->Copies[static_cast<std::size_t>(rank)];
+    case MemoryOrganization::PageBased:
+      return resident + (this->Budgets.size() > 1 ? sums.Largest : 0);
+    default: // nothing is cached that the group has
+      return resident + (this->OneGroup ? 0 : sums.Largest);
+  }
+}
+
+std::uint64_t MemoryPlan::GetCacheBytes(MemoryOrganization organization, int rank) const
+{
+  const Budget& budget = this->Budgets[static_cast<std::size_t>(rank)];
+  const std::uint64_t need = this->GetNeed(organization, rank);
+  const std::uint64_t resident =
+    this->GetSums(organization).Resident[static_cast<std::size_t>(rank)];
+  const std::uint64_t all = std::max(budget.Bytes, std::min(need, budget.Limit));
+  return all - std::min(all, resident);
+}
+
+// -- Decisions -------------------------------------------------------------------------------------
+
+int MemoryPlan::FindPoorest(MemoryOrganization organization) const
+{
+  int poorest = -1;
+  std::uint64_t most = 0;
+  for (int rank = 0; rank < static_cast<int>(this->Budgets.size()); ++rank)
+  {
+    const std::uint64_t need = this->GetNeed(organization, rank);
+    const Budget& budget = this->Budgets[static_cast<std::size_t>(rank)];
+    const std::uint64_t limit =
+      organization == MemoryOrganization::Replicated ? budget.Bytes : budget.Limit;
+    if (need > limit && need - limit > most)
+    {
+      most = need - limit;
+      poorest = rank;
+    }
+  }
+  return poorest;
+}
+
+int MemoryPlan::FindRankCount(MemoryOrganization organization) const
+{
+  std::uint64_t least = UINT64_MAX;
+  for (const Budget& budget : this->Budgets)
+  {
+    least = std::min(least, budget.Limit);
+  }
+  const Sums& sums = this->GetSums(organization);
+  if (least < sums.Largest || sums.Total == 0)
+  {
+    return sums.Total == 0 ? 1 : 0;
+  }
+  // No fewer than these would do; from there on, the shares are counted.
+  const std::uint64_t room = least - sums.Largest;
+  std::uint64_t ranks = room > 0 ? (sums.Total + room - 1) / room : MostRanks;
+  while (ranks < MostRanks)
+  {
+    std::vector<std::uint64_t> shares(ranks, 0);
+    std::size_t most = 0;
+    for (const BlockDirectory* directory : this->Segments)
+    {
+      const RoundRobinAssigner assigner(static_cast<int>(ranks));
+      most = std::max<std::size_t>(most, directory->GetCount());
+      for (BlockId id = 0; id < directory->GetCount(); ++id)
+      {
+        shares[static_cast<std::size_t>(assigner.GetOwner(id))] +=
+          sums.GetFootprint(directory->GetBytes(id));
+      }
+    }
+    if (*std::max_element(shares.begin(), shares.end()) <= room)
+    {
+      return static_cast<int>(ranks);
+    }
+    // However many ranks there are, the first has a block of every segment.
+    if (ranks >= most)
+    {
+      break;
+    }
+    ranks += std::max<std::uint64_t>(ranks / 64, 1);
+  }
+  return 0;
+}
+
+MemoryOrganization MemoryPlan::Decide(MemoryOrganization wanted) const
+{
+  if (wanted == MemoryOrganization::Automatic)
+  {
+    if (this->FindPoorest(MemoryOrganization::Replicated) < 0)
+    {
+      return MemoryOrganization::Replicated;
+    }
+    wanted = MemoryOrganization::ObjectBased;
+  }
+  const int poorest = this->FindPoorest(wanted);
+  if (poorest >= 0)
+  {
+    this->Refuse(wanted, poorest);
+  }
+  return wanted;
+}
+
+void MemoryPlan::Refuse(MemoryOrganization organization, int rank) const
+{
+  const Budget& budget = this->Budgets[static_cast<std::size_t>(rank)];
+  const std::uint64_t need = this->GetNeed(organization, rank);
+  const bool replicated = organization == MemoryOrganization::Replicated;
+  std::string text = replicated ? "All data on every rank take " : "Its part of the data takes ";
+  text += FormatMebibytes(need) + " (" + std::to_string(need) + " bytes" +
+    (replicated ? "" : ", a cache of one brick included") + ") of rank " + std::to_string(rank) +
+    "'s memory, which may take " + FormatMebibytes(replicated ? budget.Bytes : budget.Limit) +
+    ". Raise the memory per rank (DSMMemory), ";
+  if (replicated)
+  {
+    throw Error(text + "or choose the object based memory organisation (DSMMemoryOrganization).");
+  }
+  const int ranks = this->FindRankCount(organization);
+  throw Error(text +
+    (ranks > 0 ? "or use at least " + std::to_string(ranks) + " ranks with as much memory."
+               : std::string("since no number of ranks would do.")));
+}
+
+std::string MemoryPlan::Explain(MemoryOrganization wanted, MemoryOrganization chosen) const
+{
+  std::string text = std::string("The memory organisation is ") + GetText(chosen);
+  if (wanted != MemoryOrganization::Automatic)
+  {
+    return text + ", as chosen.";
+  }
+  std::uint64_t need = 0;
+  std::uint64_t least = UINT64_MAX;
+  for (std::size_t rank = 0; rank < this->Budgets.size(); ++rank)
+  {
+    need = std::max(need, this->GetNeed(MemoryOrganization::Replicated, static_cast<int>(rank)));
+    least = std::min(least, this->Budgets[rank].Bytes);
+  }
+  const bool fits = this->FindPoorest(MemoryOrganization::Replicated) < 0;
+  text += std::string(": all data take ") + FormatMebibytes(need) + " on a rank, which " +
+    (fits ? "fit" : "do not fit") + " the " + FormatMebibytes(least) + " that it may take";
+  if (fits && chosen != MemoryOrganization::Replicated)
+  {
+    text += ", but copying them failed";
+  }
+  return text + ".";
+}
+
+} // namespace dsm

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef dsm_MemoryPlan_h
+#define dsm_MemoryPlan_h
+
+#include "DSMCore/publish/BlockDirectory.h"
+#include "DSMCore/publish/HostGroups.h"
+#include "DSMCore/store/MemoryOrganization.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace dsm
+{
+
+/// Decides, from numbers that all ranks have, how the published data are kept within the memory that
+/// each rank may take. Pure, so every rank comes to the same result.
+class MemoryPlan
+{
+public:
+  /// What one rank may take.
+  struct Budget
+  {
+    /// What is asked for, or thought fit.
+    std::uint64_t Bytes = 0;
+    /// What is taken when the resident set needs it: the same, when it was asked for.
+    std::uint64_t Limit = 0;
+  };
+
+  /// Beyond this many ranks none is recommended.
+  static constexpr int MostRanks = 1 << 20;
+
+  /// `segments`: of all that is published, what comes next included. `budgets`: by rank.
+  /// `page`: blocks take multiples of it in the page based organisation.
+  MemoryPlan(std::vector<const BlockDirectory*> segments, const HostGroups& groups,
+    std::vector<Budget> budgets, std::size_t page);
+
+  /// `wanted`, or what Automatic comes to. Throws Error when a rank's memory does not suffice, with
+  /// the number needed and, of the organisations that share the data out, the number of ranks that
+  /// would do.
+  MemoryOrganization Decide(MemoryOrganization wanted) const;
+
+  /// A sentence: what was chosen, and why.
+  std::string Explain(MemoryOrganization wanted, MemoryOrganization chosen) const;
+
+  /// What the resident set, or everything, and a cache of one block take of a rank.
+  std::uint64_t GetNeed(MemoryOrganization organization, int rank) const;
+
+  /// What is left for a rank's cache when its own blocks are in memory.
+  std::uint64_t GetCacheBytes(MemoryOrganization organization, int rank) const;
+
+  /// The least number of ranks with whose own blocks and one in the cache the smallest budget is
+  /// kept, or 0 when none is.
+  int FindRankCount(MemoryOrganization organization) const;
+
+private:
+  /// Of the blocks in memory, in units of BlockAlignment or of pages.
+  struct Sums
+  {
+    explicit Sums(std::size_t unit)
+      : Unit(unit)
+    {
+    }
+    std::uint64_t GetFootprint(std::uint64_t bytes) const
+    {
+      return (bytes + this->Unit - 1) / this->Unit * this->Unit;
+    }
+    std::size_t Unit;
+    std::uint64_t Largest = 0;
+    std::uint64_t Total = 0;
+    std::vector<std::uint64_t> Resident; ///< by rank
+  };
+
+  const Sums& GetSums(MemoryOrganization organization) const
+  {
+    return organization == MemoryOrganization::PageBased ? this->Pages : this->Blocks;
+  }
+  void Count(Sums& sums) const;
+  /// The rank that lacks most; -1 when all have enough.
+  int FindPoorest(MemoryOrganization organization) const;
+  [[noreturn]] void Refuse(MemoryOrganization organization, int rank) const;
+
+  std::vector<const BlockDirectory*> Segments;
+  std::vector<Budget> Budgets;
+  bool OneGroup;
+  Sums Blocks;
+  Sums Pages;
+  std::vector<std::uint64_t> Copies; ///< by rank: of blocks of others, when replicated
+};
+
+} // namespace dsm
+
+#endif

@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef dsm_BlockCache_h
+#define dsm_BlockCache_h
+
+#include "DSMCore/table/BlockLine.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <vector>
+
+namespace dsm
+{
+
+/// The memory for copies of remote blocks, within a budget that is never exceeded: room is set
+/// aside before a block is requested, and what was evicted counts until it is freed. Replacement is
+/// CLOCK, one sweeping hand, an approximation of the paper's least recently used order that needs
+/// no list to be kept on a hit. What was prefetched and not used yet is passed by once.
+///
+/// Communication thread only, under the store's lock. Epochs: see ObjectStore::Worker.
+class BlockCache
+{
+public:
+  BlockCache() = default;
+  ~BlockCache();
+  BlockCache(const BlockCache&) = delete;
+  BlockCache& operator=(const BlockCache&) = delete;
+
+  struct Evictions
+  {
+    std::size_t Count = 0;
+    std::size_t Unused = 0; ///< of them: prefetched, and never used
+  };
+
+  /// What a block takes of the budget.
+  static std::size_t GetFootprint(std::size_t blockBytes);
+
+  void SetCapacity(std::size_t bytes) { this->Capacity = bytes; }
+  std::size_t GetCapacity() const { return this->Capacity; }
+  /// Cached, set aside, and evicted but not yet freed.
+  std::size_t GetUsed() const { return this->Used; }
+  /// The most that was used since ResetPeak.
+  std::size_t GetPeak() const { return this->Peak; }
+  void ResetPeak() { this->Peak = this->Used; }
+
+  /// Sets room aside for a block; false when there is none now.
+  bool TryReserve(std::size_t blockBytes);
+  /// The room of a block that will not come.
+  void Release(std::size_t blockBytes);
+  /// Copies a block into the room that was set aside for it, and publishes its address; one that was
+  /// prefetched, and that nobody waits for, stays marked so. Throws
+  /// std::bad_alloc; the room then stays set aside.
+  void Insert(BlockLine& line, const std::byte* bytes);
+
+  /// Evicts until a block of this size, and `spareBytes` on top, will fit once memory in limbo is
+  /// freed; or until nothing can be evicted. A worker whose epoch is at least `epoch` no longer
+  /// sees what is evicted now.
+  Evictions Evict(std::size_t blockBytes, std::size_t spareBytes, std::uint64_t epoch);
+  /// Frees what was evicted at `oldestEpoch` or before. Returns whether it freed anything.
+  bool Reclaim(std::uint64_t oldestEpoch);
+  bool HasLimbo() const { return !this->Limbo.empty(); }
+
+  /// Between frames: drops the cached blocks among `count` lines from `first` on.
+  void Forget(const BlockLine* first, std::size_t count);
+  /// Between frames: evicts and frees until the budget is met.
+  void Shrink();
+
+private:
+  struct Frame
+  {
+    BlockLine* Line = nullptr; ///< null: the slot is empty
+    std::byte* Memory = nullptr;
+    std::size_t Footprint = 0;
+    bool IsSpared = false; ///< the hand has passed it once, prefetched and unused
+  };
+  struct Evicted
+  {
+    std::byte* Memory = nullptr;
+    std::size_t Footprint = 0;
+    std::uint64_t Epoch = 0;
+  };
+
+  void EvictFrame(std::size_t slot, std::uint64_t epoch);
+
+  std::vector<Frame> Frames; ///< the clock's face
+  std::vector<std::size_t> EmptySlots;
+  std::size_t Hand = 0;
+  std::deque<Evicted> Limbo; ///< ascending epochs
+  std::size_t LimboBytes = 0;
+  std::size_t Used = 0;
+  std::size_t Peak = 0;
+  std::size_t Capacity = 0;
+};
+
+} // namespace dsm
+
+#endif

@@ -1,0 +1,232 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "DSMCore/table/BlockTable.h"
+
+#include "DSMCore/base/Error.h"
+#include "DSMCore/publish/BlockSpread.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <utility>
+
+namespace dsm
+{
+
+namespace
+{
+
+/// Where the next block of each rank lies in the memory where that rank's blocks follow one another,
+/// in ascending order of id.
+class Offsets
+{
+public:
+  explicit Offsets(int ranks)
+    : Next(static_cast<std::size_t>(ranks), 0)
+  {
+  }
+  std::uint64_t Take(int rank, std::uint32_t bytes)
+  {
+    std::uint64_t& next = this->Next[static_cast<std::size_t>(rank)];
+    const std::uint64_t offset = next;
+    next += AlignBlock(bytes);
+    return offset;
+  }
+
+private:
+  std::vector<std::uint64_t> Next;
+};
+
+} // namespace
+
+BlockTable::BlockTable(std::uint32_t number, BlockDirectory directory, int rank, HostGroups groups)
+  : BlockSegment(number, std::move(directory))
+  , Lines(new BlockLine[this->GetDirectory().GetCount()])
+  , Groups(std::move(groups))
+  , Rank(rank)
+  , Resident(this->GetDirectory().GetResidentBytes(rank), this->Groups.GetMembers(rank).size() > 1)
+  , ResidentBytes(this->GetDirectory().GetResidentBytes(rank))
+{
+  this->Missing = this->GetDirectory().GetCount();
+  std::size_t offset = 0;
+  for (BlockId id = 0; id < this->GetDirectory().GetCount(); ++id)
+  {
+    BlockLine& line = this->Lines[id];
+    line.Bytes = this->GetDirectory().GetBytes(id);
+    if (this->GetDirectory().GetOwner(id) == rank)
+    {
+      this->Place(id, LineState::Owned, this->Resident.GetData() + offset);
+      offset += AlignBlock(line.Bytes);
+    }
+  }
+}
+
+void BlockTable::Place(BlockId id, LineState state, const std::byte* address)
+{
+  BlockLine& line = this->Lines[id];
+  line.MoveTo(state);
+  line.Use.store(BlockUse::Recent, std::memory_order_relaxed);
+  line.Address.store(address, std::memory_order_release);
+  --this->Missing;
+}
+
+std::byte* BlockTable::GetOwned(BlockId id) const
+{
+  std::byte* const first = this->Resident.GetData();
+  return first + (this->Lines[id].Address.load(std::memory_order_relaxed) - first);
+}
+
+void BlockTable::ForEachResident(const Visit& visit) const
+{
+  for (BlockId id = 0; id < this->GetDirectory().GetCount(); ++id)
+  {
+    if (this->GetDirectory().GetOwner(id) == this->Rank)
+    {
+      visit(id, this->GetOwned(id), this->Lines[id].Bytes);
+    }
+  }
+}
+
+std::vector<HostSharedMemory::View> BlockTable::OpenAll(
+  Messenger& messenger, HostSharedMemory& own) const
+{
+  const auto tickets = messenger.AllGatherValue(own.GetTicket());
+  std::vector<HostSharedMemory::View> views(tickets.size());
+  for (const int mate : this->Groups.GetMembers(this->Rank))
+  {
+    if (mate != this->Rank)
+    {
+      if (auto view = HostSharedMemory::Open(tickets[static_cast<std::size_t>(mate)]))
+      {
+        views[static_cast<std::size_t>(mate)] = std::move(*view);
+      }
+    }
+  }
+  if (std::any_of(tickets.begin(), tickets.end(), [](const auto& t) { return t.File >= 0; }))
+  {
+    messenger.Barrier(); // all have looked
+  }
+  own.CloseDoor();
+  return views;
+}
+
+void BlockTable::ShareWithGroup(Messenger& messenger)
+{
+  this->Views = this->OpenAll(messenger, this->Resident);
+  Offsets offsets(messenger.GetSize());
+  const BlockDirectory& directory = this->GetDirectory();
+  for (BlockId id = 0; id < directory.GetCount(); ++id)
+  {
+    const int owner = directory.GetOwner(id);
+    const std::uint64_t offset = offsets.Take(owner, directory.GetBytes(id));
+    const std::byte* const data = this->Views[static_cast<std::size_t>(owner)].GetData();
+    if (data && owner != this->Rank)
+    {
+      this->Place(id, LineState::Shared, data + offset);
+      this->SharedBytes += AlignBlock(directory.GetBytes(id));
+    }
+  }
+}
+
+std::uint64_t BlockTable::CountReplicaBytes(
+  const BlockDirectory& directory, const HostGroups& groups, int rank)
+{
+  std::uint64_t bytes = 0;
+  for (BlockId id = 0; id < directory.GetCount(); ++id)
+  {
+    const int owner = directory.GetOwner(id);
+    if (owner != rank && groups.GetHolder(id, owner, groups.GetGroup(rank)) == rank)
+    {
+      bytes += AlignBlock(directory.GetBytes(id));
+    }
+  }
+  return bytes;
+}
+
+void BlockTable::Replicate(Messenger& messenger, const std::string& what)
+{
+  const BlockDirectory& directory = this->GetDirectory();
+  const int group = this->Groups.GetGroup(this->Rank);
+  HostSharedMemory copies;
+  std::uint64_t bytes = 0;
+  messenger.RunTogether(what,
+    [&]
+    {
+      bytes = CountReplicaBytes(directory, this->Groups, this->Rank);
+      copies = HostSharedMemory(bytes, this->Groups.GetMembers(this->Rank).size() > 1);
+    });
+
+  // Where each block lies in its holder's copies.
+  std::vector<std::uint64_t> places(directory.GetCount(), 0);
+  Offsets offsets(messenger.GetSize());
+  for (BlockId id = 0; id < directory.GetCount(); ++id)
+  {
+    const int owner = directory.GetOwner(id);
+    const int holder = this->Groups.GetHolder(id, owner, group);
+    places[id] = holder == owner ? 0 : offsets.Take(holder, directory.GetBytes(id));
+  }
+  messenger.BeginSession();
+  std::string cause;
+  {
+    BlockSpread spread(
+      messenger, directory, this->Groups, [&](BlockId id) { return this->GetOwned(id); },
+      [&](BlockId id) { return copies.GetData() + places[id]; });
+    cause = spread.Run();
+  }
+  auto views = this->OpenAll(messenger, copies);
+  messenger.RunTogether(what,
+    [&]
+    {
+      if (!cause.empty())
+      {
+        throw Error(cause);
+      }
+      for (const int mate : this->Groups.GetMembers(this->Rank))
+      {
+        const auto index = static_cast<std::size_t>(mate);
+        if (mate != this->Rank && !(views[index].GetData() && this->Views[index].GetData()))
+        {
+          throw Error("The memory of rank " + std::to_string(mate) +
+            ", which runs on the same host, cannot be mapped. Switch off host sharing "
+            "(DSMHostSharing).");
+        }
+      }
+    });
+
+  this->Copies = std::move(copies);
+  this->CopyViews = std::move(views);
+  this->ReplicaBytes = bytes;
+  this->Replicated = true;
+  for (BlockId id = 0; id < directory.GetCount(); ++id)
+  {
+    const int holder = this->Groups.GetHolder(id, directory.GetOwner(id), group);
+    if (this->Lines[id].State == LineState::Absent)
+    {
+      const std::byte* const data = holder == this->Rank
+        ? this->Copies.GetData()
+        : this->CopyViews[static_cast<std::size_t>(holder)].GetData();
+      this->Place(id, LineState::Replica, data + places[id]);
+      this->SharedCopyBytes += holder == this->Rank ? 0 : AlignBlock(directory.GetBytes(id));
+    }
+  }
+}
+
+void BlockTable::DropReplicas()
+{
+  for (BlockId id = 0; id < this->GetDirectory().GetCount(); ++id)
+  {
+    BlockLine& line = this->Lines[id];
+    if (line.State == LineState::Replica)
+    {
+      line.MoveTo(LineState::Absent);
+      line.Use.store(BlockUse::Idle, std::memory_order_relaxed);
+      line.Address.store(nullptr, std::memory_order_relaxed);
+      ++this->Missing;
+    }
+  }
+  this->Copies = HostSharedMemory();
+  this->CopyViews.clear();
+  this->ReplicaBytes = 0;
+  this->SharedCopyBytes = 0;
+  this->Replicated = false;
+}
+
+} // namespace dsm

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef dsm_BlockTable_h
+#define dsm_BlockTable_h
+
+#include "DSMCore/base/Block.h"
+#include "DSMCore/memory/HostSharedMemory.h"
+#include "DSMCore/publish/BlockDirectory.h"
+#include "DSMCore/publish/BlockSegment.h"
+#include "DSMCore/publish/HostGroups.h"
+#include "DSMCore/table/BlockLine.h"
+#include "DSMCore/transport/Messenger.h"
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace dsm
+{
+
+/// A segment as the object based and the replicated store have it: a table of entries, the memory of
+/// the blocks that this rank owns, and views of what the ranks of its group have (HostGroups). While
+/// it is replicated, also copies of what other groups own, each once a group. It passes from one
+/// store to the other as it is (see BlockStore). Communication thread.
+class BlockTable final : public BlockSegment
+{
+public:
+  /// Sets out zeroed memory for the blocks of `rank`. Throws std::bad_alloc.
+  BlockTable(std::uint32_t number, BlockDirectory directory, int rank, HostGroups groups);
+
+  void ForEachResident(const Visit& visit) const override;
+  std::uint64_t GetResidentBytes() const override { return this->ResidentBytes; }
+
+  /// Of a block that this rank owns; for whoever fills it.
+  std::byte* GetOwned(BlockId id) const;
+  /// Where a block is on this host; null when it is not.
+  const std::byte* Find(BlockId id) const
+  {
+    return this->Lines[id].Address.load(std::memory_order_acquire);
+  }
+
+  /// Collective, when the blocks are complete: maps the group's memory. What cannot be mapped stays
+  /// absent.
+  void ShareWithGroup(Messenger& messenger);
+  /// Of other ranks of the group, mapped here; blocks that they own, and copies.
+  std::uint64_t GetSharedBytes() const { return this->SharedBytes + this->SharedCopyBytes; }
+
+  /// Whether blocks must be fetched.
+  bool IsWhole() const { return this->Missing == 0; }
+
+  /// What replicating takes of `rank`'s memory, beyond the blocks that it owns.
+  static std::uint64_t CountReplicaBytes(
+    const BlockDirectory& directory, const HostGroups& groups, int rank);
+  /// Collective, when the blocks are complete and nothing is cached: from now on every block is
+  /// here. Throws the same Error, which begins with `what`, on every rank; then nothing has changed.
+  void Replicate(Messenger& messenger, const std::string& what);
+  /// Local: lets go of the copies.
+  void DropReplicas();
+  bool IsReplicated() const { return this->Replicated; }
+  /// Copies in this rank's memory.
+  std::uint64_t GetReplicaBytes() const { return this->ReplicaBytes; }
+
+private:
+  friend class ObjectStore;
+  friend class ReplicatedStore;
+
+  void Place(BlockId id, LineState state, const std::byte* address);
+  std::vector<HostSharedMemory::View> OpenAll(Messenger& messenger, HostSharedMemory& own) const;
+
+  std::unique_ptr<BlockLine[]> Lines;
+  HostGroups Groups;
+  int Rank = 0;
+  HostSharedMemory Resident;
+  std::vector<HostSharedMemory::View> Views; ///< by rank
+  HostSharedMemory Copies;
+  std::vector<HostSharedMemory::View> CopyViews;
+  std::uint64_t ResidentBytes = 0;
+  std::uint64_t SharedBytes = 0;
+  std::uint64_t SharedCopyBytes = 0;
+  std::uint64_t ReplicaBytes = 0;
+  BlockId Missing = 0; ///< blocks that are neither owned, shared nor copied
+  bool Replicated = false;
+  bool Retired = false; ///< under the lock of the store that has it
+};
+
+} // namespace dsm
+
+#endif

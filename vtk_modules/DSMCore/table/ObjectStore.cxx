@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "DSMCore/table/ObjectStore.h"
+
+#include "DSMCore/table/ObjectStoreInternals.h"
+#include "DSMCore/table/TablePublisher.h"
+
+#include <algorithm>
+#include <string>
+#include <utility>
+
+namespace dsm
+{
+
+ObjectStore::ObjectStore(Messenger& messenger, const Settings& settings)
+  : Self(std::make_unique<Internals>(*this, messenger, settings))
+{
+}
+
+ObjectStore::~ObjectStore()
+{
+  this->Self->EndFrame();
+}
+
+void ObjectStore::SetSettings(const Settings& settings)
+{
+  this->Self->Configure(settings);
+}
+
+const ObjectStore::Settings& ObjectStore::GetSettings() const
+{
+  return this->Self->Current;
+}
+
+std::shared_ptr<BlockSegment> ObjectStore::Publish(const std::string& what,
+  BlockDirectory directory, FragmentSource& source, FragmentSink& sink,
+  const std::function<void(double)>& progress)
+{
+  TablePublisher::Plan plan;
+  plan.HostSharing = this->GetSettings().HostSharing;
+  plan.Groups = this->GetSettings().Groups;
+  plan.Check = [this]
+  {
+    if (this->Self->IsInFrame())
+    {
+      throw Error("Blocks cannot be published within a frame.");
+    }
+  };
+  auto table = TablePublisher::Run(
+    this->Self->Messages, what, plan, std::move(directory), source, sink, progress);
+  this->Self->Add(table);
+  return table;
+}
+
+void ObjectStore::Retire(const std::shared_ptr<BlockSegment>& segment)
+{
+  if (segment)
+  {
+    this->Self->Retire(*segment);
+  }
+}
+
+void ObjectStore::Adopt(std::shared_ptr<BlockTable> table)
+{
+  table->Retired = false;
+  this->Self->Add(std::move(table));
+}
+
+void ObjectStore::Surrender(const BlockTable& table)
+{
+  this->Self->Retire(table);
+}
+
+bool ObjectStore::MayBeginFrame() const
+{
+  return this->Self->MayBeginFrame();
+}
+
+void ObjectStore::BeginFrame(bool agreed)
+{
+  this->Self->BeginFrame(agreed);
+}
+
+bool ObjectStore::Service()
+{
+  return this->Self->Service();
+}
+
+void ObjectStore::Cancel(const std::string& cause)
+{
+  this->Self->Cancel(cause);
+}
+
+bool ObjectStore::Drain()
+{
+  return this->Self->Drain();
+}
+
+void ObjectStore::EndFrame()
+{
+  this->Self->EndFrame();
+}
+
+ObjectStore::Worker& ObjectStore::GetWorker(int index)
+{
+  return this->Self->Workers.Get(index);
+}
+
+const std::byte* ObjectStore::Wait(Worker& worker, const Segment& segment, BlockId id)
+{
+  return this->Self->Wait(worker, segment, id);
+}
+
+bool ObjectStore::MayPrefetch() const
+{
+  return this->Self->MayPrefetch();
+}
+
+bool ObjectStore::Prefetch(const BlockSegment& segment, const BlockId* ids, std::size_t count)
+{
+  const Segment& self = static_cast<const Segment&>(segment);
+  // Mostly all is here; then the lock is not taken.
+  const BlockId* const last = ids + count;
+  const BlockId* const absent = std::find_if(ids, last,
+    [&](BlockId id)
+    {
+      return id < self.GetDirectory().GetCount() &&
+        !self.Lines[id].Address.load(std::memory_order_relaxed);
+    });
+  if (absent != last)
+  {
+    this->Self->Prefetch(self, absent, static_cast<std::size_t>(last - absent));
+  }
+  return absent != last;
+}
+
+void ObjectStore::Announce(Worker& worker)
+{
+  if (worker.Pins != 0)
+  {
+    throw Error("A worker announced a quiescent point while it held a block. This is a defect of "
+                "the tracer.");
+  }
+  if (worker.Epoch.load(std::memory_order_relaxed) != Worker::Offline)
+  {
+    worker.Epoch.store(this->Epoch.load(std::memory_order_acquire), std::memory_order_release);
+    this->Self->Messages.WakeUp(); // memory may have come free
+  }
+}
+
+void ObjectStore::Enter(Worker& worker)
+{
+  this->Self->Enter(worker);
+}
+
+void ObjectStore::Leave(Worker& worker)
+{
+  this->Self->Leave(worker);
+}
+
+std::uint64_t ObjectStore::GetMisses(const Worker& worker) const
+{
+  return this->Self->GetMisses(worker);
+}
+
+StoreCounters ObjectStore::GetCounters() const
+{
+  return this->Self->GetCounters();
+}
+
+std::vector<WorkerCounters> ObjectStore::GetWorkerCounters() const
+{
+  return this->Self->GetWorkerCounters();
+}
+
+} // namespace dsm

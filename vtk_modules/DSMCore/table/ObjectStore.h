@@ -1,0 +1,261 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef dsm_ObjectStore_h
+#define dsm_ObjectStore_h
+
+#include "DSMCore/base/Block.h"
+#include "DSMCore/base/Counters.h"
+#include "DSMCore/base/WorkerSlots.h"
+#include "DSMCore/publish/BlockDirectory.h"
+#include "DSMCore/publish/BlockSegment.h"
+#include "DSMCore/publish/Publication.h"
+#include "DSMCore/table/BlockLine.h"
+#include "DSMCore/table/BlockTable.h"
+#include "DSMCore/transport/Messenger.h"
+
+#include <atomic>
+#include <condition_variable>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace dsm
+{
+
+template <class>
+class StoreWorkers;
+
+/// The paper's object-based DSM (section 3.1): a block is reached through a table of entries. Where
+/// we deviate: instead of a semaphore per block, a hit is one load of the entry's address and at
+/// most one store of its reference bit; a block leaves the cache by CLOCK, and its memory is
+/// reused only after every worker has passed a quiescent point.
+///
+/// Threads: the communication thread publishes, seals, retires and services; workers Acquire.
+/// A worker may hold a pin only while it does not Acquire another block: a worker that waits holds
+/// nothing, so a cache of one block is enough for any number of workers to go on.
+///
+/// Several stores may share a messenger; one of them at a time has a frame open.
+class ObjectStore
+{
+public:
+  struct Settings
+  {
+    /// Budget for remote blocks, in bytes. At least the largest block, when there are several ranks.
+    std::size_t CacheBytes = std::size_t(64) << 20;
+    /// Number of tracing threads.
+    int Workers = 1;
+    /// Ranks of one host read one another's blocks in place: such accesses are hits, and take
+    /// nothing of the cache. For what is published from then on; the same on every rank.
+    bool HostSharing = false;
+    /// Who shares; null: found out with every publication.
+    std::shared_ptr<const HostGroups> Groups = nullptr;
+    /// Who of them runs: a worker gives its slot to others while it waits. Null: all run.
+    std::shared_ptr<WorkerSlots> Slots = nullptr;
+    /// See Prefetch.
+    bool Prefetch = true;
+  };
+
+  using Segment = BlockTable;
+  class Worker;
+  class Pin;
+
+  /// The messenger must outlive the store.
+  ObjectStore(Messenger& messenger, const Settings& settings);
+  ~ObjectStore();
+  ObjectStore(const ObjectStore&) = delete;
+  ObjectStore& operator=(const ObjectStore&) = delete;
+
+  /// Between frames, on the communication thread; local. Drops cached blocks over a smaller budget.
+  /// Throws Error within a frame and for less than one worker.
+  void SetSettings(const Settings& settings);
+  const Settings& GetSettings() const;
+
+  /// Collective. Allocates this rank's blocks, feeds every rank's fragments to their owners in
+  /// bounded batches, and seals. Throws the same Error on every rank when any rank fails.
+  /// `progress` (may be empty) is called now and then with this rank's part done, in [0, 1].
+  std::shared_ptr<BlockSegment> Publish(const std::string& what, BlockDirectory directory,
+    FragmentSource& source, FragmentSink& sink, const std::function<void(double)>& progress = {});
+
+  /// Collective in order (no message is exchanged), between frames: forgets the segment and its
+  /// cached blocks. What this rank owns of it stays until the last shared pointer goes.
+  void Retire(const std::shared_ptr<BlockSegment>& segment);
+
+  /// Collective in order, between frames: takes over what another store on this messenger has
+  /// published, or hands it over, its cached blocks forgotten.
+  void Adopt(std::shared_ptr<BlockTable> table);
+  void Surrender(const BlockTable& table);
+
+  /// Local, between frames: whether BeginFrame will do without an agreement of the ranks when this
+  /// holds on all of them.
+  bool MayBeginFrame() const;
+
+  /// Collective. Resets the counters of the frame; from now on workers may Acquire, and this rank
+  /// serves others. Throws Error, on every rank alike, when a rank's cache cannot hold its largest
+  /// block. `agreed`: the ranks have told one another that MayBeginFrame; no message is sent.
+  void BeginFrame(bool agreed = false);
+  /// Communication thread, often: sends what the workers miss, hands arrived blocks to them,
+  /// reclaims memory. Returns whether it did anything. (Serving others happens in
+  /// Messenger::Progress, through handlers.)
+  bool Service();
+  /// Communication thread: from now on every Acquire that would wait throws Error(cause).
+  void Cancel(const std::string& cause);
+  /// Communication thread, often after this rank's workers have stopped: gives up what Prefetch wanted
+  /// and was not asked for yet. Whether the rest has come; only then may the rank say that it is done,
+  /// since no answer may be under way to a rank that has left the frame. True after Cancel, behind
+  /// which all ranks wait for one another anyway.
+  bool Drain();
+  /// Communication thread, after all ranks' workers have stopped.
+  void EndFrame();
+
+  /// Index in [0, Settings::Workers). The reference is valid until the number of workers changes.
+  Worker& GetWorker(int index);
+
+  /// Worker, between Enter and Leave: the block, resident or cached, else waits until it is fetched.
+  /// The pin is valid until it goes out of scope. Throws Error after Cancel, and when it would have
+  /// to wait while the worker holds another pin, has not entered, or the segment was retired.
+  Pin Acquire(Worker& worker, const BlockSegment& segment, BlockId id);
+
+  /// Communication thread: whether Prefetch does anything, with the settings and what is published.
+  bool MayPrefetch() const;
+  /// Worker: it will probably need these blocks soon. Those that are absent are asked for in one go,
+  /// unless too much of the cache is taken by blocks that were foreseen and not used yet. Never waits;
+  /// ids that there are not, blocks that are here or on their way, retired segments and frames that are
+  /// not open are passed by. Returns whether any block was not here.
+  bool Prefetch(const BlockSegment& segment, const BlockId* ids, std::size_t count);
+
+  /// Worker: holds no pin; memory of blocks evicted before may be reused. Call between tiles; it
+  /// costs two loads as long as nothing was evicted.
+  void Quiesce(Worker& worker);
+  /// Worker: starts, stops to take part; while stopped it does not delay reclamation.
+  void Enter(Worker& worker);
+  void Leave(Worker& worker);
+
+  /// The worker: how often it has waited for a block in this frame.
+  std::uint64_t GetMisses(const Worker& worker) const;
+  /// Of the frame so far; after EndFrame, of the last frame. Communication thread.
+  StoreCounters GetCounters() const;
+  /// Per worker of the last frame.
+  std::vector<WorkerCounters> GetWorkerCounters() const;
+
+private:
+  class Internals;
+
+  /// The way of a miss; waits for the block's bytes.
+  const std::byte* Wait(Worker& worker, const Segment& segment, BlockId id);
+  /// Passes a quiescent point, the epoch having moved.
+  void Announce(Worker& worker);
+
+  /// Moves on when blocks are evicted. Their addresses are cleared before the new epoch is stored
+  /// (release), so a worker that has loaded it (acquire) and announces it can no longer reach them,
+  /// and its announcement (release) follows its last read of them: once the communication thread
+  /// sees (acquire) that every worker is offline or has announced the epoch, their memory is free.
+  /// A worker comes online under the store's lock, under which blocks are evicted and freed too:
+  /// either it is seen, or it sees.
+  alignas(64) std::atomic<std::uint64_t> Epoch{ 1 };
+  std::unique_ptr<Internals> Self;
+};
+
+/// A tracing thread's part of the store. On a cache line of its own.
+class alignas(64) ObjectStore::Worker
+{
+public:
+  Worker() = default;
+  Worker(const Worker&) = delete;
+  Worker& operator=(const Worker&) = delete;
+
+private:
+  friend class ObjectStore;
+  template <class>
+  friend class StoreWorkers;
+  friend class ObjectStore::Pin;
+
+  static constexpr std::uint64_t Offline = 0;
+
+  /// The last epoch that the worker announced, or Offline. Only the worker writes.
+  std::atomic<std::uint64_t> Epoch{ Offline };
+  /// Only the worker writes (no read-modify-write is needed); atomic, so that the communication
+  /// thread may read it while the frame runs.
+  std::atomic<std::uint64_t> Accesses{ 0 };
+  std::uint32_t Pins = 0;
+
+  // Under the store's lock.
+  WorkerCounters Slow; ///< all but Accesses and Hits
+  const BlockLine* WaitsFor = nullptr;
+  std::condition_variable Woken;
+};
+
+/// Keeps a block's bytes where they are. Belongs to the worker's thread; movable, so that it can be
+/// returned.
+class ObjectStore::Pin
+{
+public:
+  Pin(Pin&& other) noexcept
+    : Data(other.Data)
+    , Bytes(other.Bytes)
+    , Holder(std::exchange(other.Holder, nullptr))
+  {
+  }
+  Pin(const Pin&) = delete;
+  Pin& operator=(const Pin&) = delete;
+  Pin& operator=(Pin&&) = delete;
+  ~Pin()
+  {
+    if (this->Holder)
+    {
+      --this->Holder->Pins;
+    }
+  }
+
+  /// Aligned to BlockAlignment.
+  const std::byte* GetData() const { return this->Data; }
+  std::size_t GetBytes() const { return this->Bytes; }
+
+private:
+  friend class ObjectStore;
+
+  Pin(const std::byte* data, std::size_t bytes, Worker& holder)
+    : Data(data)
+    , Bytes(bytes)
+    , Holder(&holder)
+  {
+    ++holder.Pins;
+  }
+
+  const std::byte* Data;
+  std::size_t Bytes;
+  Worker* Holder;
+};
+
+inline ObjectStore::Pin ObjectStore::Acquire(
+  Worker& worker, const BlockSegment& segment, BlockId id)
+{
+  const Segment& self = static_cast<const Segment&>(segment);
+  BlockLine& line = self.Lines[id];
+  worker.Accesses.store(
+    worker.Accesses.load(std::memory_order_relaxed) + 1, std::memory_order_relaxed);
+  const std::byte* address = line.Address.load(std::memory_order_acquire);
+  if (!address)
+  {
+    address = this->Wait(worker, self, id);
+  }
+  // Tested first: a store on every hit would take the line away from the other workers' caches.
+  else if (line.Use.load(std::memory_order_relaxed) != BlockUse::Recent)
+  {
+    line.Use.store(BlockUse::Recent, std::memory_order_relaxed);
+  }
+  return Pin(address, line.Bytes, worker);
+}
+
+inline void ObjectStore::Quiesce(Worker& worker)
+{
+  if (worker.Epoch.load(std::memory_order_relaxed) != this->Epoch.load(std::memory_order_relaxed))
+  {
+    this->Announce(worker);
+  }
+}
+
+} // namespace dsm
+
+#endif

@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "DSMCore/table/ReplicatedStore.h"
+
+#include "DSMCore/base/Error.h"
+#include "DSMCore/fetch/StoreWorkers.h"
+#include "DSMCore/table/TablePublisher.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace dsm
+{
+
+ReplicatedStore::ReplicatedStore(Messenger& messenger, const Settings& settings)
+  : Messages(messenger)
+{
+  this->SetSettings(settings);
+}
+
+ReplicatedStore::~ReplicatedStore() = default;
+
+void ReplicatedStore::SetSettings(const Settings& settings)
+{
+  CheckWorkerCount(settings.Workers);
+  if (this->InFrame)
+  {
+    throw Error("The settings of a store cannot change within a frame.");
+  }
+  this->Current = settings;
+  this->Workers.resize(static_cast<std::size_t>(settings.Workers));
+  for (auto& worker : this->Workers)
+  {
+    if (!worker)
+    {
+      worker = std::make_unique<Worker>();
+    }
+  }
+}
+
+// -- Segments --------------------------------------------------------------------------------------
+
+std::uint64_t ReplicatedStore::CountBytes() const
+{
+  std::uint64_t bytes = 0;
+  for (const auto& [number, segment] : this->Segments)
+  {
+    bytes += segment->GetResidentBytes() + segment->GetReplicaBytes();
+  }
+  return bytes;
+}
+
+std::shared_ptr<BlockSegment> ReplicatedStore::Publish(const std::string& what,
+  BlockDirectory directory, FragmentSource& source, FragmentSink& sink,
+  const std::function<void(double)>& progress)
+{
+  TablePublisher::Plan plan;
+  plan.HostSharing = this->Current.HostSharing;
+  plan.Groups = this->Current.Groups;
+  plan.Replicate = true;
+  plan.MemoryBytes =
+    this->Current.MemoryBytes - std::min(this->Current.MemoryBytes, this->CountBytes());
+  plan.Check = [this]
+  {
+    if (this->InFrame)
+    {
+      throw Error("Blocks cannot be published within a frame.");
+    }
+  };
+  auto table =
+    TablePublisher::Run(this->Messages, what, plan, std::move(directory), source, sink, progress);
+  this->Segments.emplace(table->GetNumber(), table);
+  return table;
+}
+
+void ReplicatedStore::Retire(const std::shared_ptr<BlockSegment>& segment)
+{
+  const auto found = segment ? this->Segments.find(segment->GetNumber()) : this->Segments.end();
+  if (found == this->Segments.end() || found->second != segment)
+  {
+    return;
+  }
+  if (this->InFrame)
+  {
+    throw Error("A segment cannot be retired within a frame.");
+  }
+  found->second->DropReplicas();
+  this->Segments.erase(found);
+}
+
+void ReplicatedStore::Adopt(std::shared_ptr<BlockTable> table)
+{
+  table->Replicate(this->Messages, "Replicating the data");
+  this->Segments.emplace(table->GetNumber(), std::move(table));
+}
+
+void ReplicatedStore::Surrender(BlockTable& table)
+{
+  table.DropReplicas();
+  this->Segments.erase(table.GetNumber());
+}
+
+// -- The frame -------------------------------------------------------------------------------------
+
+void ReplicatedStore::BeginFrame(bool)
+{
+  if (this->InFrame)
+  {
+    throw Error("The previous frame of the store was not ended.");
+  }
+  for (const auto& worker : this->Workers)
+  {
+    worker->Accesses.store(0, std::memory_order_relaxed);
+  }
+  this->InFrame = true;
+}
+
+void ReplicatedStore::EndFrame()
+{
+  this->InFrame = false;
+}
+
+ReplicatedStore::Worker& ReplicatedStore::GetWorker(int index)
+{
+  return *this->Workers.at(static_cast<std::size_t>(index));
+}
+
+std::vector<WorkerCounters> ReplicatedStore::GetWorkerCounters() const
+{
+  std::vector<WorkerCounters> counters;
+  for (const auto& worker : this->Workers)
+  {
+    WorkerCounters counter;
+    counter.Accesses = worker->Accesses.load(std::memory_order_relaxed);
+    counter.Hits = counter.Accesses;
+    counters.push_back(counter);
+  }
+  return counters;
+}
+
+StoreCounters ReplicatedStore::GetCounters() const
+{
+  StoreCounters counters;
+  for (const WorkerCounters& worker : this->GetWorkerCounters())
+  {
+    counters.Workers += worker;
+  }
+  for (const auto& [number, segment] : this->Segments)
+  {
+    counters.ResidentBytes += segment->GetResidentBytes();
+    counters.ReplicaBytes += segment->GetReplicaBytes();
+    counters.SharedBytes += segment->GetSharedBytes();
+  }
+  return counters;
+}
+
+} // namespace dsm

@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef dsm_ReplicatedStore_h
+#define dsm_ReplicatedStore_h
+
+#include "DSMCore/base/Block.h"
+#include "DSMCore/base/Counters.h"
+#include "DSMCore/publish/BlockDirectory.h"
+#include "DSMCore/publish/BlockSegment.h"
+#include "DSMCore/publish/Publication.h"
+#include "DSMCore/table/BlockLine.h"
+#include "DSMCore/table/BlockTable.h"
+#include "DSMCore/transport/Messenger.h"
+
+#include <atomic>
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace dsm
+{
+
+/// Every block on every rank: the yardstick by which the paper measures its two organisations, and
+/// the fast way when it fits. An access is one load of a table; there are no misses, and within a
+/// frame no messages. With host sharing the ranks of a host have one copy between them.
+///
+/// Has the members of ObjectStore, with the same rules of threads and collectives.
+class ReplicatedStore
+{
+public:
+  struct Settings
+  {
+    /// Number of tracing threads.
+    int Workers = 1;
+    /// See ObjectStore.
+    bool HostSharing = false;
+    /// Who shares; null: found out with every publication.
+    std::shared_ptr<const HostGroups> Groups = nullptr;
+    /// What this rank may take for all segments, its own blocks included.
+    std::uint64_t MemoryBytes = UINT64_MAX;
+  };
+
+  using Segment = BlockTable;
+  class Worker;
+  class Pin;
+
+  /// The messenger must outlive the store.
+  ReplicatedStore(Messenger& messenger, const Settings& settings);
+  ~ReplicatedStore();
+  ReplicatedStore(const ReplicatedStore&) = delete;
+  ReplicatedStore& operator=(const ReplicatedStore&) = delete;
+
+  /// Between frames, on the communication thread; local. Throws Error within a frame and for less
+  /// than one worker. What is published already keeps its memory.
+  void SetSettings(const Settings& settings);
+  const Settings& GetSettings() const { return this->Current; }
+
+  /// Collective. As ObjectStore::Publish; then the owners send their blocks to all others, in
+  /// bounded batches. Throws Error, on every rank, with the number of bytes that a rank needs, when
+  /// the memory of any does not suffice.
+  std::shared_ptr<BlockSegment> Publish(const std::string& what, BlockDirectory directory,
+    FragmentSource& source, FragmentSink& sink, const std::function<void(double)>& progress = {});
+
+  /// Collective in order, between frames.
+  void Retire(const std::shared_ptr<BlockSegment>& segment);
+
+  /// See ObjectStore. To adopt is collective: the segment is replicated, or the same Error thrown
+  /// everywhere, and not adopted. What is surrendered has its copies dropped.
+  void Adopt(std::shared_ptr<BlockTable> table);
+  void Surrender(BlockTable& table);
+
+  /// See ObjectStore; always.
+  static constexpr bool MayBeginFrame() { return true; }
+  /// Local. Resets the counters of the frame. Nothing has to be agreed on.
+  void BeginFrame(bool agreed = false);
+  /// Nothing to do.
+  bool Service() { return false; }
+  /// Nobody waits.
+  void Cancel(const std::string&) {}
+  bool Drain() { return true; }
+  void EndFrame();
+
+  Worker& GetWorker(int index);
+
+  /// Worker: the block. The pin is valid as long as the segment is published.
+  Pin Acquire(Worker& worker, const BlockSegment& segment, BlockId id);
+  bool MayPrefetch() const { return false; }
+  bool Prefetch(const BlockSegment&, const BlockId*, std::size_t) { return false; }
+  void Quiesce(Worker&) {}
+  void Enter(Worker&) {}
+  void Leave(Worker&) {}
+
+  std::uint64_t GetMisses(const Worker&) const { return 0; }
+  StoreCounters GetCounters() const;
+  std::vector<WorkerCounters> GetWorkerCounters() const;
+
+private:
+  std::uint64_t CountBytes() const;
+
+  Messenger& Messages;
+  Settings Current;
+  std::vector<std::unique_ptr<Worker>> Workers;
+  std::map<std::uint32_t, std::shared_ptr<BlockTable>> Segments; ///< by number
+  bool InFrame = false;
+};
+
+/// A tracing thread's part of the store. On a cache line of its own.
+class alignas(64) ReplicatedStore::Worker
+{
+public:
+  Worker() = default;
+  Worker(const Worker&) = delete;
+  Worker& operator=(const Worker&) = delete;
+
+private:
+  friend class ReplicatedStore;
+
+  /// Only the worker writes; atomic, so that the communication thread may read it meanwhile.
+  std::atomic<std::uint64_t> Accesses{ 0 };
+};
+
+/// A block's bytes.
+class ReplicatedStore::Pin
+{
+public:
+  /// Aligned to BlockAlignment.
+  const std::byte* GetData() const { return this->Data; }
+  std::size_t GetBytes() const { return this->Bytes; }
+
+private:
+  friend class ReplicatedStore;
+
+  Pin(const std::byte* data, std::size_t bytes)
+    : Data(data)
+    , Bytes(bytes)
+  {
+  }
+
+  const std::byte* Data;
+  std::size_t Bytes;
+};
+
+inline ReplicatedStore::Pin ReplicatedStore::Acquire(
+  Worker& worker, const BlockSegment& segment, BlockId id)
+{
+  const BlockLine& line = static_cast<const BlockTable&>(segment).Lines[id];
+  worker.Accesses.store(
+    worker.Accesses.load(std::memory_order_relaxed) + 1, std::memory_order_relaxed);
+  return Pin(line.Address.load(std::memory_order_relaxed), line.Bytes);
+}
+
+} // namespace dsm
+
+#endif

@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "DSMCore/transport/LoopbackTransport.h"
+
+#include "DSMCore/base/Error.h"
+
+#include <atomic>
+#include <deque>
+#include <mutex>
+#include <string>
+#include <utility>
+
+namespace dsm
+{
+
+struct LoopbackTransport::Group
+{
+  struct Member
+  {
+    std::mutex Guard;
+    std::deque<Message> Mailbox;
+    /// Payload that this member posted and that lies in mailboxes.
+    std::atomic<std::size_t> UnsentBytes{ 0 };
+  };
+
+  explicit Group(int size)
+    : Members(static_cast<std::size_t>(size))
+  {
+  }
+  std::vector<Member> Members;
+};
+
+std::vector<std::unique_ptr<Transport>> LoopbackTransport::CreateGroup(int size)
+{
+  if (size < 1)
+  {
+    throw Error("A loopback group of " + std::to_string(size) +
+      " ranks was asked for; it needs at least one.");
+  }
+  const auto group = std::make_shared<Group>(size);
+  std::vector<std::unique_ptr<Transport>> transports;
+  for (int rank = 0; rank < size; ++rank)
+  {
+    transports.emplace_back(new LoopbackTransport(group, rank));
+  }
+  return transports;
+}
+
+LoopbackTransport::LoopbackTransport(std::shared_ptr<Group> group, int rank)
+  : Members(std::move(group))
+  , Rank(rank)
+{
+}
+
+LoopbackTransport::~LoopbackTransport() = default;
+
+int LoopbackTransport::GetRank() const
+{
+  return this->Rank;
+}
+
+int LoopbackTransport::GetSize() const
+{
+  return static_cast<int>(this->Members->Members.size());
+}
+
+void LoopbackTransport::Post(int destination, Message message)
+{
+  if (destination < 0 || destination >= this->GetSize())
+  {
+    throw Error("A message for rank " + std::to_string(destination) +
+      " was posted, but there are " + std::to_string(this->GetSize()) + " ranks.");
+  }
+  message.Source = this->Rank;
+  this->Members->Members[this->Rank].UnsentBytes += message.Payload.size();
+  Group::Member& receiver = this->Members->Members[destination];
+  const std::lock_guard<std::mutex> lock(receiver.Guard);
+  receiver.Mailbox.push_back(std::move(message));
+}
+
+bool LoopbackTransport::Progress(const Deliver& deliver)
+{
+  Group::Member& self = this->Members->Members[this->Rank];
+  std::size_t count;
+  {
+    const std::lock_guard<std::mutex> lock(self.Guard);
+    count = self.Mailbox.size();
+  }
+  // What `deliver` posts to this rank waits for the next Progress, else two handlers could keep
+  // each other busy for ever.
+  for (std::size_t i = 0; i < count; ++i)
+  {
+    Message message;
+    {
+      const std::lock_guard<std::mutex> lock(self.Guard);
+      message = std::move(self.Mailbox.front());
+      self.Mailbox.pop_front();
+    }
+    this->Members->Members[message.Source].UnsentBytes -= message.Payload.size();
+    deliver(std::move(message));
+  }
+  return count > 0;
+}
+
+std::size_t LoopbackTransport::GetUnsentBytes() const
+{
+  return this->Members->Members[this->Rank].UnsentBytes;
+}
+
+bool LoopbackTransport::HasUnsent(MessageKind) const
+{
+  return false;
+}
+
+} // namespace dsm

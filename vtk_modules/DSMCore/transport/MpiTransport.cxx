@@ -1,0 +1,446 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "DSMCore/transport/MpiTransport.h"
+
+#include "DSMCore/base/Error.h"
+
+#ifdef DSM_HAS_MPI
+
+#define OMPI_SKIP_MPICXX // the C++ bindings are not ours to use
+#include <mpi.h>
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <deque>
+#include <limits>
+#include <new>
+#include <string>
+#include <thread>
+#include <utility>
+#include <vector>
+
+namespace dsm
+{
+
+namespace
+{
+
+constexpr int Tag = 0;
+/// Matched messages that may be under way to this rank before it looks for more.
+constexpr std::size_t MaximumArrivingBytes = std::size_t(16) << 20;
+/// Lets a rank without memory take part in what all must agree on.
+constexpr std::size_t ReserveBytes = std::size_t(1) << 20;
+/// How long a transport waits, on destruction, for the other ranks to take its last messages.
+constexpr std::chrono::seconds DrainTime(5);
+
+/// Travels behind the payload (see AttachTail).
+struct WireHeader
+{
+  std::uint32_t Kind;
+  std::uint32_t Session;
+  std::uint64_t PayloadBytes;
+};
+
+class Transmission final : public Transport
+{
+public:
+  explicit Transmission(MPI_Comm communicator)
+  {
+    // Until the duplicate has its own, the handler of the parent is in charge.
+    this->Check(MPI_Comm_dup(communicator, &this->Communicator), "MPI_Comm_dup");
+    this->Check(
+      MPI_Comm_set_errhandler(this->Communicator, MPI_ERRORS_RETURN), "MPI_Comm_set_errhandler");
+    this->Check(MPI_Comm_rank(this->Communicator, &this->Rank), "MPI_Comm_rank");
+    this->Check(MPI_Comm_size(this->Communicator, &this->Size), "MPI_Comm_size");
+    this->Arriving.resize(static_cast<std::size_t>(this->Size));
+  }
+
+  ~Transmission() override
+  {
+    int finalized = 0;
+    MPI_Finalized(&finalized);
+    if (finalized)
+    {
+      return;
+    }
+    if (this->Drain())
+    {
+      MPI_Comm_free(&this->Communicator);
+    }
+    else
+    {
+      // MPI may still read and write these buffers and use the communicator: they stay.
+      new std::vector<Sending>(std::move(this->Outgoing));
+      new std::vector<std::deque<Receiving>>(std::move(this->Arriving));
+    }
+  }
+
+  int GetRank() const override { return this->Rank; }
+  int GetSize() const override { return this->Size; }
+
+  void Post(int destination, Message message) override
+  {
+    if (destination == this->Rank)
+    {
+      message.Source = this->Rank;
+      this->ToSelf.push_back(std::move(message));
+      return;
+    }
+    if (message.Payload.size() > std::numeric_limits<int>::max() - sizeof(WireHeader))
+    {
+      throw Error("A message of " + std::to_string(message.Payload.size()) +
+        " bytes cannot be sent from rank " + std::to_string(this->Rank) + " to rank " +
+        std::to_string(destination) + ": 2 GiB is the most. Use smaller blocks.");
+    }
+    Sending sending;
+    sending.Kind = message.Kind;
+    sending.PayloadBytes = message.Payload.size();
+    AttachTail(message.Payload,
+      WireHeader{
+        static_cast<std::uint32_t>(message.Kind), message.Session, sending.PayloadBytes });
+    sending.Buffer = std::move(message.Payload);
+    MPI_Request request = MPI_REQUEST_NULL;
+    // A synchronous send is complete only when the receiver has matched it: thus the unsent bytes
+    // count what would otherwise pile up, unexpected, in the receiver's memory.
+    const bool synchronous = message.Kind == MessageKind::Fragment;
+    const int bytes = static_cast<int>(sending.Buffer.size());
+    if (synchronous)
+    {
+      this->Check(MPI_Issend(sending.Buffer.data(), bytes, MPI_BYTE, destination, Tag,
+                    this->Communicator, &request),
+        "MPI_Issend");
+    }
+    else
+    {
+      this->Check(MPI_Isend(sending.Buffer.data(), bytes, MPI_BYTE, destination, Tag,
+                    this->Communicator, &request),
+        "MPI_Isend");
+    }
+    this->UnsentBytes += sending.PayloadBytes;
+    ++this->UnsentMessages.at(static_cast<std::size_t>(sending.Kind));
+    this->Outgoing.push_back(std::move(sending));
+    this->Requests.push_back(request);
+  }
+
+  bool Progress(const Deliver& deliver) override
+  {
+    bool any = this->FinishSends();
+    any |= this->BeginReceives();
+    for (std::size_t count = this->ToSelf.size(); count > 0; --count)
+    {
+      Message message = std::move(this->ToSelf.front());
+      this->ToSelf.pop_front();
+      deliver(std::move(message));
+      any = true;
+    }
+    for (std::size_t source = 0; source < this->Arriving.size(); ++source)
+    {
+      any |= this->FinishReceives(static_cast<int>(source), deliver);
+    }
+    return any;
+  }
+
+  std::size_t GetUnsentBytes() const override { return this->UnsentBytes; }
+
+  bool HasUnsent(MessageKind kind) const override
+  {
+    return this->UnsentMessages[static_cast<std::size_t>(kind)] > 0;
+  }
+
+private:
+  struct Sending
+  {
+    MessageKind Kind = MessageKind::Collective;
+    std::size_t PayloadBytes = 0;
+    std::vector<std::byte> Buffer;
+  };
+
+  struct Receiving
+  {
+    MPI_Request Request = MPI_REQUEST_NULL;
+    std::vector<std::byte> Buffer;
+    std::size_t LostBytes = 0; ///< of a message that there is no memory for
+  };
+
+  void FillReserve() noexcept
+  {
+    if (this->Reserve.capacity() < ReserveBytes)
+    {
+      try
+      {
+        this->Reserve.reserve(ReserveBytes);
+      }
+      catch (const std::bad_alloc&)
+      {
+        // Tried again before the next message.
+      }
+    }
+  }
+
+  /// Memory for a message of `bytes`: when there is none left, the reserve. Empty when that is too
+  /// small, too.
+  std::vector<std::byte> TakeBuffer(std::size_t bytes)
+  {
+    this->FillReserve();
+    try
+    {
+      return std::vector<std::byte>(bytes);
+    }
+    catch (const std::bad_alloc&)
+    {
+      if (bytes > this->Reserve.capacity())
+      {
+        return {};
+      }
+      this->Reserve.resize(bytes);
+      return std::exchange(this->Reserve, {});
+    }
+  }
+
+  void Check(int code, const char* call) const
+  {
+    if (code == MPI_SUCCESS)
+    {
+      return;
+    }
+    std::array<char, MPI_MAX_ERROR_STRING> text{};
+    int length = 0;
+    MPI_Error_string(code, text.data(), &length);
+    throw Error(std::string(call) + " failed on rank " + std::to_string(this->Rank) + ": " +
+      std::string(text.data(), static_cast<std::size_t>(length)));
+  }
+
+  bool FinishSends()
+  {
+    const int count = static_cast<int>(this->Requests.size());
+    if (count == 0)
+    {
+      return false;
+    }
+    this->Done.resize(this->Requests.size());
+    int completed = 0;
+    this->Check(MPI_Testsome(
+                  count, this->Requests.data(), &completed, this->Done.data(), MPI_STATUSES_IGNORE),
+      "MPI_Testsome");
+    if (completed == 0 || completed == MPI_UNDEFINED)
+    {
+      return false;
+    }
+    // From the back, so that the last element can take the place of the one that goes.
+    std::sort(this->Done.begin(), this->Done.begin() + completed);
+    for (int i = completed - 1; i >= 0; --i)
+    {
+      const std::size_t index = static_cast<std::size_t>(this->Done[i]);
+      this->UnsentBytes -= this->Outgoing[index].PayloadBytes;
+      --this->UnsentMessages[static_cast<std::size_t>(this->Outgoing[index].Kind)];
+      std::swap(this->Outgoing[index], this->Outgoing.back());
+      std::swap(this->Requests[index], this->Requests.back());
+      this->Outgoing.pop_back();
+      this->Requests.pop_back();
+    }
+    return true;
+  }
+
+  bool BeginReceives()
+  {
+    bool any = false;
+    while (this->ArrivingBytes < MaximumArrivingBytes)
+    {
+      int found = 0;
+      MPI_Message matched = MPI_MESSAGE_NULL;
+      MPI_Status status;
+      this->Check(MPI_Improbe(MPI_ANY_SOURCE, Tag, this->Communicator, &found, &matched, &status),
+        "MPI_Improbe");
+      if (!found)
+      {
+        break;
+      }
+      int bytes = 0;
+      this->Check(MPI_Get_count(&status, MPI_BYTE, &bytes), "MPI_Get_count");
+      auto& queue = this->Arriving[static_cast<std::size_t>(status.MPI_SOURCE)];
+      Receiving receiving;
+      receiving.Buffer = this->TakeBuffer(static_cast<std::size_t>(bytes));
+      if (receiving.Buffer.empty())
+      {
+        // Taken all the same, cut to nothing: the sender, and what follows, must not wait for it.
+        receiving.LostBytes = static_cast<std::size_t>(bytes);
+        bytes = 0;
+      }
+      this->Check(
+        MPI_Imrecv(receiving.Buffer.data(), bytes, MPI_BYTE, &matched, &receiving.Request),
+        "MPI_Imrecv");
+      queue.push_back(std::move(receiving));
+      this->ArrivingBytes += static_cast<std::size_t>(bytes);
+      any = true;
+    }
+    return any;
+  }
+
+  /// In the order in which they were matched, which is the order in which they were posted.
+  bool FinishReceives(int source, const Deliver& deliver)
+  {
+    auto& queue = this->Arriving[static_cast<std::size_t>(source)];
+    bool any = false;
+    while (!queue.empty())
+    {
+      int arrived = 0;
+      const int code = MPI_Test(&queue.front().Request, &arrived, MPI_STATUS_IGNORE);
+      if (const std::size_t lost = queue.front().LostBytes)
+      {
+        if (!arrived && code == MPI_SUCCESS)
+        {
+          break;
+        }
+        queue.pop_front();
+        throw Error("out of memory: a message of " + std::to_string(lost) + " bytes from rank " +
+          std::to_string(source) +
+          " could not be taken in. Use more ranks or more hosts, so that "
+          "each rank holds fewer bytes.");
+      }
+      this->Check(code, "MPI_Test");
+      if (!arrived)
+      {
+        break;
+      }
+      Message message;
+      message.Source = source;
+      message.Payload = std::move(queue.front().Buffer);
+      queue.pop_front();
+      this->ArrivingBytes -= message.Payload.size();
+      this->ReadHeader(message);
+      deliver(std::move(message));
+      any = true;
+    }
+    return any;
+  }
+
+  void ReadHeader(Message& message) const
+  {
+    const auto header = DetachTail<WireHeader>(message, message.Kind);
+    if (header.PayloadBytes != message.Payload.size())
+    {
+      throw Error("Rank " + std::to_string(this->Rank) + " received a message of " +
+        std::to_string(message.Payload.size()) + " bytes from rank " +
+        std::to_string(message.Source) + " that claims to have " +
+        std::to_string(header.PayloadBytes) + ". Do all ranks run the same build?");
+    }
+    message.Kind = static_cast<MessageKind>(header.Kind);
+    message.Session = header.Session;
+  }
+
+  /// Takes and discards what is still under way until every rank's last message has been taken.
+  bool Drain()
+  {
+    try
+    {
+      const auto end = std::chrono::steady_clock::now() + DrainTime;
+      MPI_Request barrier = MPI_REQUEST_NULL;
+      bool entered = false;
+      int passed = 0;
+      while (!passed || this->ArrivingBytes > 0)
+      {
+        if (!this->Progress([](Message&&) {}))
+        {
+          std::this_thread::yield();
+        }
+        if (!entered && this->Requests.empty())
+        {
+          this->Check(MPI_Ibarrier(this->Communicator, &barrier), "MPI_Ibarrier");
+          entered = true;
+        }
+        if (entered && !passed)
+        {
+          this->Check(MPI_Test(&barrier, &passed, MPI_STATUS_IGNORE), "MPI_Test");
+        }
+        if (std::chrono::steady_clock::now() > end)
+        {
+          return false;
+        }
+      }
+      return true;
+    }
+    catch (const std::exception&)
+    {
+      return false; // a destructor has nobody to tell; the buffers stay, as after a timeout
+    }
+  }
+
+  MPI_Comm Communicator = MPI_COMM_NULL;
+  int Rank = 0;
+  int Size = 1;
+  /// Parallel arrays: MPI_Testsome wants the requests side by side.
+  std::vector<MPI_Request> Requests;
+  std::vector<Sending> Outgoing;
+  std::vector<int> Done;
+  std::size_t UnsentBytes = 0;
+  std::array<std::size_t, static_cast<std::size_t>(MessageKind::Last) + 1> UnsentMessages{};
+  std::vector<std::deque<Receiving>> Arriving; ///< per source
+  std::size_t ArrivingBytes = 0;
+  std::deque<Message> ToSelf;
+  std::vector<std::byte> Reserve; ///< for receiving when no memory is left; untouched until then
+};
+
+bool IsRunning()
+{
+  int initialized = 0;
+  int finalized = 0;
+  MPI_Initialized(&initialized);
+  MPI_Finalized(&finalized);
+  return initialized && !finalized;
+}
+
+} // namespace
+
+std::unique_ptr<Transport> MpiTransport::Create(const void* communicator)
+{
+  if (!IsRunning())
+  {
+    return nullptr;
+  }
+  return std::make_unique<Transmission>(
+    communicator ? *static_cast<const MPI_Comm*>(communicator) : MPI_COMM_WORLD);
+}
+
+MpiTransport::Environment::Environment(int& argc, char**& argv)
+{
+  int initialized = 0;
+  MPI_Initialized(&initialized);
+  if (!initialized)
+  {
+    // SINGLE, as ParaView has it: whoever tests us tests what users run.
+    int provided = MPI_THREAD_SINGLE;
+    if (MPI_Init_thread(&argc, &argv, MPI_THREAD_SINGLE, &provided) != MPI_SUCCESS)
+    {
+      throw Error("MPI_Init_thread failed. Start the program with mpirun, or alone.");
+    }
+    this->Owner = true;
+  }
+}
+
+MpiTransport::Environment::~Environment()
+{
+  if (this->Owner && IsRunning())
+  {
+    MPI_Finalize();
+  }
+}
+
+} // namespace dsm
+
+#else
+
+namespace dsm
+{
+
+std::unique_ptr<Transport> MpiTransport::Create(const void*)
+{
+  return nullptr;
+}
+
+MpiTransport::Environment::Environment(int&, char**&) {}
+
+MpiTransport::Environment::~Environment() = default;
+
+} // namespace dsm
+
+#endif

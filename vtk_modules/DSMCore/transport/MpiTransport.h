@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef dsm_MpiTransport_h
+#define dsm_MpiTransport_h
+
+#include "DSMCore/transport/Transport.h"
+
+#include <memory>
+
+namespace dsm
+{
+
+/// Messages over MPI, on a duplicate of the given communicator, from the one thread that may call
+/// MPI (MPI_THREAD_SINGLE suffices). Its source is the only file that includes mpi.h.
+class MpiTransport
+{
+public:
+  /// Collective over the communicator. `communicator` points to an MPI_Comm (kept opaque so that
+  /// no header needs MPI); null means MPI_COMM_WORLD. Returns null when MPI is not initialised or
+  /// the library was built without it. The duplicate is freed by the destructor, unless MPI was
+  /// finalised before. Throws Error with MPI's own text.
+  static std::unique_ptr<Transport> Create(const void* communicator);
+
+  /// For programs that have no other owner of MPI (tests, dsm_bench): initialise now and finalise
+  /// on destruction. Does nothing when MPI is absent or was initialised by somebody else.
+  class Environment
+  {
+  public:
+    Environment(int& argc, char**& argv);
+    ~Environment();
+    Environment(const Environment&) = delete;
+    Environment& operator=(const Environment&) = delete;
+
+  private:
+    bool Owner = false;
+  };
+};
+
+} // namespace dsm
+
+#endif

@@ -1,0 +1,178 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "DSMRayTracing/build/TriangleExchange.h"
+
+#include "DSMCore/base/Error.h"
+#include "DSMCore/publish/SegmentPublisher.h"
+
+#include <algorithm>
+#include <cstring>
+#include <limits>
+#include <string>
+
+namespace rt
+{
+
+namespace
+{
+
+/// Bytes of records in one fragment.
+constexpr std::uint64_t FragmentBytes = std::uint64_t(1) << 18;
+
+} // namespace
+
+TriangleRecordSource::TriangleRecordSource(
+  const TriangleReader& reader, const TriangleCells& cells, std::uint64_t first, std::uint64_t last)
+  : Reader(reader)
+  , Cells(cells)
+  , Cell(first)
+  , LastCell(last)
+{
+  if (first < last)
+  {
+    this->Begin = cells.GetRange(first).first;
+    this->End = cells.GetRange(last - 1).second;
+    this->Position = this->Begin;
+  }
+}
+
+bool TriangleRecordSource::Next(dsm::Fragment& fragment)
+{
+  while (this->Cell < this->LastCell && this->Position >= this->Cells.GetRange(this->Cell).second)
+  {
+    ++this->Cell;
+  }
+  if (this->Cell >= this->LastCell)
+  {
+    return false;
+  }
+  const TriangleRecord& layout = this->Reader.GetLayout();
+  const std::uint64_t count = std::min(this->Cells.GetRange(this->Cell).second - this->Position,
+    std::max<std::uint64_t>(FragmentBytes / layout.GetBytes(), 1));
+  fragment.Block = this->Cell;
+  fragment.Bytes.resize(count * layout.GetBytes());
+  std::byte* bytes = fragment.Bytes.data();
+  for (std::uint64_t index = 0; index < count; ++index)
+  {
+    std::uint32_t record[TriangleRecord::LargestWords];
+    this->Reader.ReadRecord(this->Cells.GetTriangle(this->Position++), record);
+    std::memcpy(bytes, record, layout.GetBytes());
+    bytes += layout.GetBytes();
+  }
+  return true;
+}
+
+double TriangleRecordSource::GetProgress() const
+{
+  return this->End > this->Begin ? static_cast<double>(this->Position - this->Begin) /
+      static_cast<double>(this->End - this->Begin)
+                                 : 1.0;
+}
+
+class TriangleRecordBlocks::Sink final : public dsm::FragmentSink
+{
+public:
+  void Begin(dsm::BlockId, std::byte*, std::size_t) override {}
+  void Absorb(dsm::BlockId id, std::byte* block, std::size_t bytes, const std::byte* fragment,
+    std::size_t fragmentBytes) override
+  {
+    std::uint64_t filled;
+    std::memcpy(&filled, block, sizeof(filled));
+    if (fragmentBytes > bytes - RecordOffset - filled)
+    {
+      throw dsm::Error("Cell " + std::to_string(id) +
+        " of the mesh got more triangles than were counted. Do all ranks run the same build?");
+    }
+    std::memcpy(block + RecordOffset + filled, fragment, fragmentBytes);
+    filled += fragmentBytes;
+    std::memcpy(block, &filled, sizeof(filled));
+  }
+  void Finish(dsm::BlockId id, std::byte* block, std::size_t bytes) override
+  {
+    std::uint64_t filled;
+    std::memcpy(&filled, block, sizeof(filled));
+    if (RecordOffset + filled != bytes)
+    {
+      throw dsm::Error("Cell " + std::to_string(id) +
+        " of the mesh got fewer triangles than were counted. Did the dataset change meanwhile?");
+    }
+  }
+};
+
+TriangleRecordBlocks::TriangleRecordBlocks(const std::string& what, const TriangleCells& cells,
+  const TriangleRecord& layout, dsm::FragmentSource& source, dsm::Messenger& messenger,
+  const std::function<void(double)>& progress)
+  : Rank(messenger.GetRank())
+  , Ranks(messenger.GetSize())
+{
+  std::vector<std::uint32_t> bytes;
+  bytes.reserve(cells.GetCount());
+  for (std::uint64_t cell = 0; cell < cells.GetCount(); ++cell)
+  {
+    const std::uint64_t needed = RecordOffset + cells.GetTriangleCount(cell) * layout.GetBytes();
+    if (needed > std::numeric_limits<std::uint32_t>::max() - dsm::BlockAlignment)
+    {
+      throw dsm::Error(what + ": " + std::to_string(cells.GetTriangleCount(cell)) +
+        " triangles have their centroid in one place. Remove duplicate triangles, or points that "
+        "are far from the others.");
+    }
+    bytes.push_back(static_cast<std::uint32_t>(needed));
+  }
+  dsm::SegmentPublisher::Steps steps;
+  steps.Allocate = [this](std::uint32_t, dsm::BlockDirectory&& directory)
+  { this->Allocate(directory); };
+  steps.Locate = [this](dsm::BlockId id)
+  { return this->Memory.GetData() + this->Offsets[id / static_cast<dsm::BlockId>(this->Ranks)]; };
+  steps.Seal = [] {};
+  Sink sink;
+  dsm::SegmentPublisher(messenger, what, std::move(steps))
+    .Run({ std::move(bytes), dsm::RoundRobinAssigner(this->Ranks) }, source, sink, progress);
+}
+
+void TriangleRecordBlocks::Allocate(const dsm::BlockDirectory& directory)
+{
+  this->Memory = dsm::BlockArena(directory.GetResidentBytes(this->Rank));
+  std::size_t offset = 0;
+  for (dsm::BlockId id = 0; id < directory.GetCount(); ++id)
+  {
+    if (directory.GetOwner(id) == this->Rank)
+    {
+      this->Offsets.push_back(offset);
+      offset += dsm::AlignBlock(directory.GetBytes(id));
+    }
+  }
+}
+
+bool BlockSource::Next(dsm::Fragment& fragment)
+{
+  if (this->Position == this->Blocks.size())
+  {
+    return false;
+  }
+  fragment = std::move(this->Blocks[this->Position++]);
+  return true;
+}
+
+double BlockSource::GetProgress() const
+{
+  return this->Blocks.empty()
+    ? 1.0
+    : static_cast<double>(this->Position) / static_cast<double>(this->Blocks.size());
+}
+
+void BlockSink::Begin(dsm::BlockId, std::byte*, std::size_t) {}
+
+void BlockSink::Absorb(dsm::BlockId id, std::byte* block, std::size_t bytes,
+  const std::byte* fragment, std::size_t fragmentBytes)
+{
+  if (fragmentBytes != bytes)
+  {
+    throw dsm::Error("Block " + std::to_string(id) + " has " + std::to_string(bytes) +
+      " bytes, but " + std::to_string(fragmentBytes) +
+      " came for it. Do all ranks run the same build?");
+  }
+  std::memcpy(block, fragment, fragmentBytes);
+}
+
+void BlockSink::Finish(dsm::BlockId, std::byte*, std::size_t) {}
+
+} // namespace rt

@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef rt_TriangleExchange_h
+#define rt_TriangleExchange_h
+
+#include "DSMCore/base/Block.h"
+#include "DSMCore/memory/BlockArena.h"
+#include "DSMCore/publish/BlockDirectory.h"
+#include "DSMCore/publish/Publication.h"
+#include "DSMCore/transport/Messenger.h"
+#include "DSMRayTracing/build/TriangleCells.h"
+#include "DSMRayTracing/build/TriangleReader.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace rt
+{
+
+/// Yields the records of this rank's triangles in cells [first, last), in pieces of bounded size.
+class TriangleRecordSource final : public dsm::FragmentSource
+{
+public:
+  TriangleRecordSource(const TriangleReader& reader, const TriangleCells& cells,
+    std::uint64_t first, std::uint64_t last);
+  bool Next(dsm::Fragment& fragment) override;
+  double GetProgress() const override;
+
+private:
+  const TriangleReader& Reader;
+  const TriangleCells& Cells;
+  std::uint64_t Cell;
+  std::uint64_t LastCell;
+  std::uint64_t Begin = 0; ///< this rank's triangles in the cells
+  std::uint64_t End = 0;
+  std::uint64_t Position = 0;
+};
+
+/// The records of the cells that this rank owns, in no order within a cell. In memory of their own,
+/// not in the store: they are read once, by their owner, whatever organisation the bricks will have.
+class TriangleRecordBlocks
+{
+public:
+  /// Collective: every rank's source goes to the owners, round robin by cell. Throws dsm::Error on
+  /// every rank alike. `progress` may be empty.
+  TriangleRecordBlocks(const std::string& what, const TriangleCells& cells,
+    const TriangleRecord& layout, dsm::FragmentSource& source, dsm::Messenger& messenger,
+    const std::function<void(double)>& progress);
+
+  /// Own cells, in order.
+  std::size_t GetCount() const { return this->Offsets.size(); }
+  std::uint64_t GetCell(std::size_t index) const
+  {
+    return static_cast<std::uint64_t>(this->Rank) + index * static_cast<std::uint64_t>(this->Ranks);
+  }
+  const std::uint32_t* GetRecords(std::size_t index) const
+  {
+    return reinterpret_cast<const std::uint32_t*>(
+      this->Memory.GetData() + this->Offsets[index] + RecordOffset);
+  }
+
+private:
+  class Sink;
+  /// A block begins with the number of bytes of records that it has (64 bits).
+  static constexpr std::size_t RecordOffset = dsm::BlockAlignment;
+
+  void Allocate(const dsm::BlockDirectory& directory);
+
+  int Rank;
+  int Ranks;
+  dsm::BlockArena Memory;
+  std::vector<std::size_t> Offsets;
+};
+
+/// Yields whole blocks that this rank has made.
+class BlockSource final : public dsm::FragmentSource
+{
+public:
+  explicit BlockSource(std::vector<dsm::Fragment> blocks)
+    : Blocks(std::move(blocks))
+  {
+  }
+  bool Next(dsm::Fragment& fragment) override;
+  double GetProgress() const override;
+
+private:
+  std::vector<dsm::Fragment> Blocks;
+  std::size_t Position = 0;
+};
+
+/// Takes whole blocks.
+class BlockSink final : public dsm::FragmentSink
+{
+public:
+  void Begin(dsm::BlockId id, std::byte* block, std::size_t bytes) override;
+  void Absorb(dsm::BlockId id, std::byte* block, std::size_t bytes, const std::byte* fragment,
+    std::size_t fragmentBytes) override;
+  void Finish(dsm::BlockId id, std::byte* block, std::size_t bytes) override;
+};
+
+} // namespace rt
+
+#endif

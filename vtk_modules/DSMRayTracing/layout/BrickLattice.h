@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef rt_BrickLattice_h
+#define rt_BrickLattice_h
+
+#include "DSMCore/publish/BlockDirectory.h"
+#include "DSMRayTracing/base/Box.h"
+#include "DSMRayTracing/base/ScalarType.h"
+
+#include <glm/vec3.hpp>
+
+#include <cstdint>
+
+namespace rt
+{
+
+/// How a volume is cut into bricks: cubes of `edge` cells on one lattice that starts at point 0 and
+/// does not depend on the rank count. Neighbouring bricks share the samples on their common face,
+/// so no cell spans two bricks. Index order is x fastest everywhere; ids too.
+class BrickLattice
+{
+public:
+  /// The largest edge; keeps a block's size within 32 bits.
+  static constexpr int LargestEdge = 256;
+
+  BrickLattice() = default;
+  /// `points`: samples per axis, each >= 2. `cellMask`: bricks carry a mask of cells without data.
+  /// Throws dsm::Error when the points or the edge are out of bounds.
+  BrickLattice(const Index3& points, ScalarType type, bool cellMask);
+  BrickLattice(const Index3& points, ScalarType type, bool cellMask, int edge);
+
+  /// The brick edge in cells that makes blocks of about the paper's 32 KB.
+  static int GetDefaultEdge(ScalarType type);
+
+  const Index3& GetPoints() const { return this->Points; }
+  Index3 GetCells() const { return this->Points - Index3(1); }
+  ScalarType GetScalarType() const { return this->Type; }
+  bool HasCellMask() const { return this->CellMask; }
+  int GetEdge() const { return this->Edge; }
+  const Index3& GetBricks() const { return this->Bricks; }
+  dsm::BlockId GetBrickCount() const;
+
+  dsm::BlockId GetId(const Index3& brick) const
+  {
+    return static_cast<dsm::BlockId>(
+      brick.x + this->Bricks.x * (brick.y + this->Bricks.y * brick.z));
+  }
+  Index3 GetBrick(dsm::BlockId id) const;
+  /// The cells of a brick, clipped to the volume.
+  Box GetCellsOfBrick(dsm::BlockId id) const;
+  /// The brick that a point of index space lies in; the nearest one for a point outside.
+  dsm::BlockId FindBrick(const glm::dvec3& point) const;
+  std::uint32_t GetBlockBytes(dsm::BlockId id) const;
+  dsm::BlockDirectory CreateDirectory(int ranks) const;
+
+private:
+  Index3 Points{ 2 };
+  Index3 Bricks{ 1 };
+  ScalarType Type = ScalarType::Float32;
+  bool CellMask = false;
+  int Edge = 16;
+};
+
+} // namespace rt
+
+#endif

@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef rt_MacrocellBuilder_h
+#define rt_MacrocellBuilder_h
+
+#include "DSMRayTracing/layout/VoxelBrick.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <type_traits>
+
+namespace rt
+{
+
+/// A float that is not above `value`, and hardly below it.
+template <class T>
+float RoundDown(T value)
+{
+  const auto wide = static_cast<double>(value);
+  if (!(wide >= -static_cast<double>(std::numeric_limits<float>::max())))
+  {
+    return -std::numeric_limits<float>::infinity();
+  }
+  const auto largest = std::numeric_limits<float>::max();
+  const float nearest = wide > static_cast<double>(largest) ? largest : static_cast<float>(wide);
+  // The conversion of a 64-bit integer to double may have rounded up.
+  const bool exact = std::is_floating_point_v<T> || std::abs(wide) < 9007199254740992.0;
+  return exact && static_cast<double>(nearest) <= wide
+    ? nearest
+    : std::nextafter(nearest, -std::numeric_limits<float>::infinity());
+}
+
+/// A float that is not below `value`, and hardly above it.
+template <class T>
+float RoundUp(T value)
+{
+  const auto wide = static_cast<double>(value);
+  const auto largest = std::numeric_limits<float>::max();
+  if (!(wide <= static_cast<double>(largest)))
+  {
+    return std::numeric_limits<float>::infinity();
+  }
+  const float nearest = wide < -static_cast<double>(largest) ? -largest : static_cast<float>(wide);
+  const bool exact = std::is_floating_point_v<T> || std::abs(wide) < 9007199254740992.0;
+  return exact && static_cast<double>(nearest) >= wide
+    ? nearest
+    : std::nextafter(nearest, std::numeric_limits<float>::infinity());
+}
+
+/// A range that no sample was added to.
+template <class T>
+constexpr MacrocellRange<T> EmptyRange{ std::numeric_limits<T>::max(),
+  std::numeric_limits<T>::lowest() };
+
+/// A box of cells of a brick.
+struct CellBox
+{
+  int First[3];
+  int Last[3]; ///< not of the box
+};
+
+/// The range of all the samples at the corners of a box. Returns false when one is not finite.
+template <class T>
+bool FindSampleRange(const VoxelBrick<T>& brick, const CellBox& box, MacrocellRange<T>& range)
+{
+  range = EmptyRange<T>;
+  T check{ 0 };
+  for (int z = box.First[2]; z <= box.Last[2]; ++z)
+  {
+    for (int y = box.First[1]; y <= box.Last[1]; ++y)
+    {
+      const T* row = brick.GetSamples() + brick.GetOffset(0, y, z);
+      for (int x = box.First[0]; x <= box.Last[0]; ++x)
+      {
+        range.Min = std::min(range.Min, row[x]);
+        range.Max = std::max(range.Max, row[x]);
+        if constexpr (std::is_floating_point_v<T>)
+        {
+          // Becomes, and stays, not a number.
+          check += row[x] * T{ 0 };
+        }
+      }
+    }
+  }
+  return check == T{ 0 };
+}
+
+/// The range of the corners of those cells of a box that hold data.
+template <class T>
+MacrocellRange<T> FindCellRange(const VoxelBrick<T>& brick, const CellBox& box)
+{
+  MacrocellRange<T> range = EmptyRange<T>;
+  for (int z = box.First[2]; z < box.Last[2]; ++z)
+  {
+    for (int y = box.First[1]; y < box.Last[1]; ++y)
+    {
+      for (int x = box.First[0]; x < box.Last[0]; ++x)
+      {
+        MacrocellRange<T> cell;
+        if (brick.HoldsData(x, y, z) &&
+          FindSampleRange(brick, { { x, y, z }, { x + 1, y + 1, z + 1 } }, cell))
+        {
+          range.Min = std::min(range.Min, cell.Min);
+          range.Max = std::max(range.Max, cell.Max);
+        }
+      }
+    }
+  }
+  return range;
+}
+
+template <class T>
+MacrocellRange<T> FindRange(const VoxelBrick<T>& brick, const CellBox& box)
+{
+  MacrocellRange<T> range;
+  if (brick.GetHeader().MaskOffset == 0 && FindSampleRange(brick, box, range))
+  {
+    return range;
+  }
+  return FindCellRange(brick, box);
+}
+
+/// Derives, out of the samples and the mask of a brick, its macrocells and its own range.
+template <class T>
+void BuildMacrocells(std::byte* block)
+{
+  auto& header = *reinterpret_cast<VoxelBrickHeader*>(block);
+  auto* ranges = reinterpret_cast<MacrocellRange<T>*>(block + VoxelBrickHeader::MacrocellOffset);
+  const VoxelBrick<T> brick(block);
+  header.First = std::numeric_limits<float>::infinity();
+  header.Last = -std::numeric_limits<float>::infinity();
+  CellBox box;
+  for (box.First[2] = 0; box.First[2] < brick.GetCells(2); box.First[2] += MacrocellEdge)
+  {
+    box.Last[2] = std::min(box.First[2] + MacrocellEdge, brick.GetCells(2));
+    for (box.First[1] = 0; box.First[1] < brick.GetCells(1); box.First[1] += MacrocellEdge)
+    {
+      box.Last[1] = std::min(box.First[1] + MacrocellEdge, brick.GetCells(1));
+      for (box.First[0] = 0; box.First[0] < brick.GetCells(0); box.First[0] += MacrocellEdge)
+      {
+        box.Last[0] = std::min(box.First[0] + MacrocellEdge, brick.GetCells(0));
+        const MacrocellRange<T> range = FindRange(brick, box);
+        *ranges++ = range;
+        if (range.Min <= range.Max)
+        {
+          header.First = std::min(header.First, RoundDown(range.Min));
+          header.Last = std::max(header.Last, RoundUp(range.Max));
+        }
+      }
+    }
+  }
+}
+
+} // namespace rt
+
+#endif

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef rt_LightTransport_h
+#define rt_LightTransport_h
+
+#include "DSMRayTracing/light/Environment.h"
+
+#include <glm/vec3.hpp>
+
+namespace rt
+{
+
+/// What is done beyond the first hit of each ray.
+struct LightTransport
+{
+  bool Shadows = false;
+  /// Apparent radius of every light: the tangent of half the angle that it fills as seen from a
+  /// surface; 0 gives hard shadows.
+  double LightRadius = 0.0;
+  /// Rays for each hit and sample of the pixel; 0 switches ambient occlusion off.
+  int AmbientOcclusionSamples = 0;
+  /// World units; what is farther away does not occlude.
+  double AmbientOcclusionDistance = 0.0;
+  /// Is occluded by what ambient occlusion's rays meet.
+  Environment Surroundings;
+  /// How often a ray may be mirrored.
+  int MaxBounces = 1;
+  /// What a mirrored ray sees where it meets nothing.
+  glm::vec3 Background{ 0.0f };
+};
+
+} // namespace rt
+
+#endif

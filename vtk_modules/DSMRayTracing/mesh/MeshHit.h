@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef rt_MeshHit_h
+#define rt_MeshHit_h
+
+#include "DSMCore/base/Block.h"
+#include "DSMRayTracing/mesh/MeshInstance.h"
+#include "DSMRayTracing/mesh/TriangleAttributes.h"
+#include "DSMRayTracing/mesh/TriangleHit.h"
+#include "DSMRayTracing/ray/Ray.h"
+
+#include <glm/geometric.hpp>
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
+
+#include <cstdint>
+#include <limits>
+
+namespace rt
+{
+
+/// Where a ray meets a mesh first. World space; normals are unit and not turned to the viewer.
+struct MeshHit
+{
+  double T = 0.0;
+  /// Of the triangle's plane; its corners are counter-clockwise seen from the side it points to,
+  /// in the mesh's space (a mirroring matrix does not turn the surface inside out).
+  glm::dvec3 GeometricNormal{ 0.0 };
+  /// Interpolated from the points' normals; where they have none, the geometric one.
+  glm::dvec3 Normal{ 0.0 };
+  /// Whether the ray comes from the side to which the geometric normal points.
+  bool Front = true;
+  double Value = 0.0;                  ///< interpolated, or the triangle's; NaN without values
+  glm::dvec3 CornerValues{ 0.0 };      ///< in the order of Weights; NaN without values
+  glm::vec4 Color{ 1.0f };             ///< in [0, 1], not premultiplied; white without colours
+  glm::dvec2 TextureCoordinate{ 0.0 }; ///< 0 without
+  /// Of the corners as the brick has them: the smallest position first.
+  glm::dvec3 Weights{ 0.0 };
+  glm::vec3 Corners[3]; ///< in that order, relative to the mesh's origin
+  unsigned EdgeFlags = AllEdges;
+  dsm::BlockId Brick = 0;
+  std::uint32_t Triangle = 0; ///< of the brick
+
+  /// What `ray` finds in a triangle that it meets there.
+  void Set(const MeshInstance& instance, const Ray& ray, const TriangleHit& triangle,
+    const TriangleAttributes& attributes)
+  {
+    this->T = triangle.T;
+    this->Front = triangle.Front;
+    this->Brick = triangle.Brick;
+    this->Triangle = triangle.Triangle;
+    this->Weights = { triangle.Weights[0], triangle.Weights[1], triangle.Weights[2] };
+    this->EdgeFlags = attributes.EdgeFlags;
+
+    glm::dvec3 corners[3];
+    for (int corner = 0; corner < 3; ++corner)
+    {
+      const float* position = triangle.Corners[corner];
+      this->Corners[corner] = { position[0], position[1], position[2] };
+      corners[corner] = this->Corners[corner];
+    }
+    const glm::dvec3 plane =
+      instance.TurnNormal(glm::cross(corners[1] - corners[0], corners[2] - corners[0]));
+    const double length = glm::length(plane);
+    this->GeometricNormal = length > 0.0 ? plane / length : -glm::normalize(ray.Direction);
+    this->Normal = this->GeometricNormal;
+    glm::dvec3 normal;
+    if (attributes.GetNormal(triangle.Weights, normal))
+    {
+      normal = instance.TurnNormal(normal);
+      const double size = glm::length(normal);
+      this->Normal = size > 0.0 ? normal / size : this->GeometricNormal;
+    }
+
+    const MeshAttributes& has = instance.GetMesh().Attributes;
+    const bool hasValues = has.Values != Attachment::None;
+    const double notANumber = std::numeric_limits<double>::quiet_NaN();
+    this->Value = hasValues ? attributes.GetValue(triangle.Weights) : notANumber;
+    for (int corner = 0; corner < 3; ++corner)
+    {
+      this->CornerValues[corner] = hasValues ? attributes.Values[corner] : notANumber;
+    }
+    this->Color =
+      has.Colors != Attachment::None ? attributes.GetColor(triangle.Weights) : glm::vec4(1.0f);
+    this->TextureCoordinate =
+      has.TextureCoordinates ? attributes.GetTextureCoordinate(triangle.Weights) : glm::dvec2(0.0);
+  }
+};
+
+} // namespace rt
+
+#endif

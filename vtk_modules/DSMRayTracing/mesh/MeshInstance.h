@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef rt_MeshInstance_h
+#define rt_MeshInstance_h
+
+#include "DSMRayTracing/layout/TriangleMesh.h"
+#include "DSMRayTracing/mesh/MeshRay.h"
+#include "DSMRayTracing/ray/Ray.h"
+
+#include <glm/geometric.hpp>
+#include <glm/mat3x3.hpp>
+#include <glm/mat4x4.hpp>
+#include <glm/matrix.hpp>
+#include <glm/vec3.hpp>
+
+#include <memory>
+#include <utility>
+
+namespace rt
+{
+
+/// Which sides of a surface are not shown.
+struct MeshCulling
+{
+  bool Front = false;
+  bool Back = false;
+};
+
+/// A mesh at its place in the world, with what every ray needs of it.
+class MeshInstance
+{
+public:
+  /// `meshToWorld` is affine and invertible.
+  MeshInstance(std::shared_ptr<const TriangleMesh> mesh, const glm::dmat4& meshToWorld)
+    : Shape(std::move(mesh))
+    , MeshToWorld(meshToWorld)
+    , WorldOrigin(meshToWorld * glm::dvec4(this->Shape->Origin, 1.0))
+    , WorldToMesh(glm::inverse(glm::dmat3(meshToWorld)))
+    , NormalToWorld(glm::transpose(this->WorldToMesh))
+    , Diagonal(GetLength(glm::dmat3(meshToWorld), this->Shape->Upper - this->Shape->Lower))
+  {
+  }
+
+  MeshCulling Culling;
+
+  const TriangleMesh& GetMesh() const { return *this->Shape; }
+  const glm::dmat4& GetMeshToWorld() const { return this->MeshToWorld; }
+
+  /// World length, about, of the mesh's extent.
+  double GetDiagonal() const { return this->Diagonal; }
+
+  /// The same T in both spaces. False when the ray cannot hit the mesh.
+  bool GetMeshRay(const Ray& ray, MeshRay& line) const
+  {
+    // Subtracting first keeps the digits of a small mesh far from the world's origin.
+    const glm::dvec3 origin = this->WorldToMesh * (ray.Origin - this->WorldOrigin);
+    const glm::dvec3 direction = this->WorldToMesh * ray.Direction;
+    return line.Set(
+      &origin.x, &direction.x, ray.Min, ray.Max, &this->Shape->Lower.x, &this->Shape->Upper.x);
+  }
+
+  /// The steps of GetMeshRay: world, less this point, times this matrix.
+  const glm::dvec3& GetWorldOrigin() const { return this->WorldOrigin; }
+  const glm::dmat3& GetWorldToMesh() const { return this->WorldToMesh; }
+
+  /// World place of a corner as bricks have it: relative to the mesh's origin.
+  glm::dvec3 Place(const glm::vec3& corner) const
+  {
+    return this->WorldOrigin + glm::dmat3(this->MeshToWorld) * glm::dvec3(corner);
+  }
+
+  /// Turns a normal of the mesh's space, of any length, to the world.
+  glm::dvec3 TurnNormal(const glm::dvec3& normal) const { return this->NormalToWorld * normal; }
+
+private:
+  static double GetLength(const glm::dmat3& meshToWorld, const glm::dvec3& extent)
+  {
+    return glm::length(extent.x * meshToWorld[0]) + glm::length(extent.y * meshToWorld[1]) +
+      glm::length(extent.z * meshToWorld[2]);
+  }
+
+  std::shared_ptr<const TriangleMesh> Shape;
+  glm::dmat4 MeshToWorld;
+  glm::dvec3 WorldOrigin; ///< of the positions in bricks
+  glm::dmat3 WorldToMesh;
+  glm::dmat3 NormalToWorld;
+  double Diagonal;
+};
+
+} // namespace rt
+
+#endif

@@ -1,0 +1,246 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Included once for each instruction set; see MeshKernel.cxx.
+#if defined(rt_MeshPacketSetup_inl_h) == defined(HWY_TARGET_TOGGLE)
+#ifdef rt_MeshPacketSetup_inl_h
+#undef rt_MeshPacketSetup_inl_h
+#else
+#define rt_MeshPacketSetup_inl_h
+#endif
+
+#include "DSMRayTracing/base/MaskBits-inl.h"
+#include "DSMRayTracing/mesh/MeshPacket.h"
+
+#include <hwy/highway.h>
+
+#include <cmath>
+#include <cstdint>
+
+HWY_BEFORE_NAMESPACE();
+namespace rt
+{
+namespace HWY_NAMESPACE
+{
+namespace hn = hwy::HWY_NAMESPACE;
+
+/// MeshInstance::GetMeshRay for the rays of a packet: the same operations in the same order. What
+/// makes it return false there leaves a ray out here, and so does a number that is not finite, with
+/// which a ray hits nothing. FloatTag: vectors of floats; doubles have as many lanes as fit.
+template <class FloatTag>
+class MeshPacketSetup
+{
+public:
+  using Mask = MeshPacket::Mask;
+  using Tag = hn::CappedTag<double, (hn::MaxLanes(FloatTag()) + 1) / 2>;
+  using Vector = hn::Vec<Tag>;
+  using Lanes = hn::Mask<Tag>;
+  static constexpr int Size = MeshPacket::Size;
+  static constexpr int Width = static_cast<int>(hn::MaxLanes(Tag()));
+
+  /// `wanted` is not empty.
+  MeshPacketSetup(MeshPacket& packet, const MeshInstance& instance, const Ray* rays, Mask wanted)
+    : Packet(packet)
+    , Instance(instance)
+    , Wanted(wanted)
+  {
+    // Lanes without a ray do what another does, and are never looked at.
+    const int any = GetLowest(wanted);
+    for (int index = 0; index < Size; ++index)
+    {
+      const Ray& ray = rays[(wanted >> index & 1) != 0 ? index : any];
+      for (int axis = 0; axis < 3; ++axis)
+      {
+        this->Origin[axis][index] = ray.Origin[axis];
+        this->Direction[axis][index] = ray.Direction[axis];
+      }
+      packet.Min[index] = ray.Min;
+      packet.Max[index] = ray.Max;
+    }
+  }
+
+  /// See MeshKernel::SetRays.
+  Mask Set(Mask& alone)
+  {
+    Mask meeting = 0;
+    for (int first = 0; first < Size; first += Width)
+    {
+      meeting |= this->Clip(first) << first;
+    }
+    meeting &= this->Wanted;
+    if (meeting == 0)
+    {
+      return 0;
+    }
+    this->SetCommon(GetLowest(meeting));
+    Mask alike = 0;
+    for (int first = 0; first < Size; first += Width)
+    {
+      alike |= this->Complete(first) << first;
+    }
+    alone = meeting & ~alike;
+    return meeting & alike;
+  }
+
+private:
+  static Mask GetBits(Lanes lanes) { return static_cast<Mask>(GetMaskBits(Tag(), lanes)); }
+
+  static void StoreFloats(Vector value, float* to)
+  {
+    const hn::Rebind<float, Tag> floats;
+    hn::StoreU(hn::DemoteTo(floats, value), floats, to);
+  }
+
+  /// A row of the matrix times a vector, in the order of glm's.
+  Vector Turn(int row, const Vector vector[3]) const
+  {
+    const Tag tag;
+    const glm::dmat3& matrix = this->Instance.GetWorldToMesh();
+    const Vector x = hn::Mul(hn::Set(tag, matrix[0][row]), vector[0]);
+    const Vector y = hn::Mul(hn::Set(tag, matrix[1][row]), vector[1]);
+    const Vector z = hn::Mul(hn::Set(tag, matrix[2][row]), vector[2]);
+    return hn::Add(hn::Add(x, y), z);
+  }
+
+  /// Brings rays to the mesh's space; returns those that meet its bounds, and where is stored.
+  Mask Clip(int first)
+  {
+    const Tag tag;
+    const Vector zero = hn::Zero(tag);
+    const TriangleMesh& mesh = this->Instance.GetMesh();
+    Vector worldOrigin[3];
+    Vector worldDirection[3];
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      worldOrigin[axis] = hn::Sub(hn::Load(tag, this->Origin[axis] + first),
+        hn::Set(tag, this->Instance.GetWorldOrigin()[axis]));
+      worldDirection[axis] = hn::Load(tag, this->Direction[axis] + first);
+    }
+    Vector origin[3];
+    Vector direction[3];
+    Vector longest = zero;
+    Vector distance = zero;
+    Vector sum = zero;
+    double extent = 0.0;
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      origin[axis] = this->Turn(axis, worldOrigin);
+      direction[axis] = this->Turn(axis, worldDirection);
+      hn::Store(origin[axis], tag, this->Origin[axis] + first);
+      hn::Store(direction[axis], tag, this->Direction[axis] + first);
+      const Vector far = hn::Abs(origin[axis]);
+      longest = hn::Max(longest, hn::Abs(direction[axis]));
+      distance = hn::Max(distance, hn::Add(far, hn::Set(tag, std::abs(mesh.Lower[axis]))));
+      sum = hn::Add(sum, hn::Add(far, hn::Abs(direction[axis])));
+      extent = std::fmax(extent, mesh.Upper[axis] - mesh.Lower[axis]);
+    }
+    Lanes meets = hn::And(hn::Lt(sum, hn::Set(tag, HUGE_VAL)), hn::Gt(longest, zero));
+    const Vector margin = hn::Add(hn::Add(hn::Set(tag, extent * MeshRay::ExtentPart),
+                                    hn::Mul(distance, hn::Set(tag, MeshRay::DistancePart))),
+      hn::Set(tag, MeshRay::SmallestMargin));
+    const Vector slope = hn::Mul(longest, hn::Set(tag, MeshRay::SmallestSlope));
+    Vector enter = hn::Load(tag, this->Packet.Min + first);
+    Vector leave = hn::Load(tag, this->Packet.Max + first);
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      const Vector low = hn::Sub(hn::Sub(hn::Set(tag, mesh.Lower[axis]), margin), origin[axis]);
+      const Vector high = hn::Sub(hn::Add(hn::Set(tag, mesh.Upper[axis]), margin), origin[axis]);
+      const Vector inverse = hn::Div(hn::Set(tag, 1.0), direction[axis]);
+      hn::Store(inverse, tag, this->Inverse[axis] + first);
+      const Lanes parallel = hn::Le(hn::Abs(direction[axis]), slope);
+      const Lanes outside = hn::Or(hn::Gt(low, zero), hn::Lt(high, zero));
+      meets = hn::AndNot(hn::And(parallel, outside), meets);
+      const Vector lowT = hn::Mul(low, inverse);
+      const Vector highT = hn::Mul(high, inverse);
+      enter = hn::IfThenElse(parallel, enter, hn::Max(enter, hn::Min(lowT, highT)));
+      leave = hn::IfThenElse(parallel, leave, hn::Min(leave, hn::Max(lowT, highT)));
+    }
+    hn::Store(enter, tag, this->Packet.StartT + first);
+    hn::Store(leave, tag, this->Leave + first);
+    hn::Store(longest, tag, this->Packet.BoxesPerT + first);
+    hn::Store(margin, tag, this->BoxMargin + first);
+    return GetBits(hn::And(meets, hn::Le(enter, leave)));
+  }
+
+  /// What all rays of the packet have to have in common with this one.
+  void SetCommon(int index)
+  {
+    int largest = 0;
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      this->Packet.Backward[axis] = this->Inverse[axis][index] < 0.0;
+      largest = std::abs(this->Direction[axis][index]) > std::abs(this->Direction[largest][index])
+        ? axis
+        : largest;
+    }
+    TriangleRay ray;
+    ray.SetAxes(largest, this->Packet.Backward[largest]);
+    for (int place = 0; place < 3; ++place)
+    {
+      this->Packet.Axes[place] = ray.Axes[place];
+    }
+  }
+
+  /// Returns the rays that have that in common, the rest of which is stored.
+  Mask Complete(int first)
+  {
+    const Tag tag;
+    MeshPacket& packet = this->Packet;
+    const int largest = packet.Axes[2];
+    const Vector most = hn::Abs(hn::Load(tag, this->Direction[largest] + first));
+    const Vector scale = hn::Load(tag, this->Inverse[largest] + first);
+    const Vector enter = hn::Load(tag, packet.StartT + first);
+    const Vector longest = hn::Load(tag, packet.BoxesPerT + first);
+    const Vector margin = hn::Load(tag, this->BoxMargin + first);
+    Lanes alike = hn::Eq(enter, enter);
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      const Vector origin = hn::Load(tag, this->Origin[axis] + first);
+      const Vector direction = hn::Load(tag, this->Direction[axis] + first);
+      const Vector inverse = hn::Load(tag, this->Inverse[axis] + first);
+      const Lanes backward = hn::Lt(inverse, hn::Zero(tag));
+      alike = packet.Backward[axis] ? hn::And(alike, backward) : hn::AndNot(backward, alike);
+      // Of axes along which a ray moves as much, the first one counts.
+      const Lanes less =
+        axis < largest ? hn::Lt(hn::Abs(direction), most) : hn::Le(hn::Abs(direction), most);
+      alike = hn::And(alike, less);
+
+      StoreFloats(hn::Add(origin, hn::Mul(enter, direction)), packet.Start[axis] + first);
+      const Vector unit = hn::Mul(inverse, longest);
+      const Vector size = hn::Min(hn::Abs(unit), hn::Set(tag, BoxRay::LargestInverse));
+      StoreFloats(hn::CopySign(size, unit), packet.Inverse[axis] + first);
+      StoreFloats(hn::Mul(margin, size), packet.Margin[axis] + first);
+    }
+    for (int place = 0; place < 3; ++place)
+    {
+      const int axis = packet.Axes[place];
+      const Vector direction = hn::Load(tag, this->Direction[axis] + first);
+      hn::Store(hn::Load(tag, this->Origin[axis] + first), tag, packet.Origin[place] + first);
+      hn::Store(place < 2 ? hn::Mul(direction, scale) : scale, tag, packet.Shear[place] + first);
+    }
+    for (int next = 0; next < 2; ++next)
+    {
+      const Vector direction = hn::Load(tag, this->Direction[(largest + 1 + next) % 3] + first);
+      StoreFloats(hn::Mul(direction, scale), packet.FilterShear[next] + first);
+    }
+    StoreFloats(margin, packet.Uncertainty + first);
+    const Vector place = hn::Mul(hn::Sub(hn::Load(tag, this->Leave + first), enter), longest);
+    const Vector room = hn::Mul(hn::Abs(place), hn::Set(tag, MeshRay::PlacePart));
+    StoreFloats(hn::Add(hn::Add(place, room), margin), packet.BoxesEnd + first);
+    return GetBits(alike);
+  }
+
+  MeshPacket& Packet;
+  const MeshInstance& Instance;
+  Mask Wanted;
+  // Of the world at first, then of the mesh.
+  HWY_ALIGN double Origin[3][Size];
+  HWY_ALIGN double Direction[3][Size];
+  HWY_ALIGN double Inverse[3][Size];
+  HWY_ALIGN double Leave[Size];
+  HWY_ALIGN double BoxMargin[Size];
+};
+
+} // namespace HWY_NAMESPACE
+} // namespace rt
+HWY_AFTER_NAMESPACE();
+
+#endif

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef rt_NearestTriangle_h
+#define rt_NearestTriangle_h
+
+#include "DSMRayTracing/layout/TriangleBrick.h"
+#include "DSMRayTracing/mesh/MeshInstance.h"
+#include "DSMRayTracing/mesh/TriangleHit.h"
+#include "DSMRayTracing/mesh/TriangleIntersector.h"
+#include "DSMRayTracing/mesh/TriangleRay.h"
+
+#include <cstdint>
+
+namespace rt
+{
+
+/// The nearest hit of a ray among the triangles that were tried. What is found in the end does not
+/// depend on the order in which they were; see ComesFirst.
+struct NearestTriangle
+{
+  TriangleHit Hit;
+  bool Found = false;
+
+  /// Whether a ray meets a triangle of a brick, at `hit`.
+  static bool Meets(const TriangleRay& ray, const MeshCulling& culling, const TriangleBrick& brick,
+    std::uint32_t triangle, TriangleHit& hit)
+  {
+    const TriangleBrickVertex* vertices = brick.GetVertices();
+    const std::uint16_t* corners = brick.GetTriangle(triangle);
+    return IntersectTriangle(ray, vertices[corners[0]].Position, vertices[corners[1]].Position,
+             vertices[corners[2]].Position, hit) &&
+      !(hit.Front ? culling.Front : culling.Back);
+  }
+
+  /// Whether a triangle of a brick is the nearest so far. If so the ray ends there: ray.Max is to be
+  /// lowered to Hit.T.
+  bool Try(const TriangleRay& ray, const MeshCulling& culling, const TriangleBrick& brick,
+    std::uint32_t number, std::uint32_t triangle)
+  {
+    TriangleHit hit;
+    hit.Brick = number;
+    hit.Triangle = triangle;
+    if (!Meets(ray, culling, brick, triangle, hit) ||
+      (this->Found && hit.T == this->Hit.T && !ComesFirst(hit, this->Hit)))
+    {
+      return false;
+    }
+    this->Hit = hit;
+    this->Found = true;
+    return true;
+  }
+};
+
+} // namespace rt
+
+#endif

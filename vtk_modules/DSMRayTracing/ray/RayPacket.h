@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef rt_RayPacket_h
+#define rt_RayPacket_h
+
+#include "DSMRayTracing/ray/CellHit.h"
+
+#include <cstdint>
+
+namespace rt
+{
+
+/// Rays of one volume that are traced together, in its index space: GridRay, one array for each
+/// number. All move along all three axes, in the same direction on each, so that any order of boxes
+/// that is front to back for one of them is so for all. They have nothing else in common: what one
+/// finds does not depend on the others.
+struct RayPacket
+{
+  static constexpr int Size = 64;
+  /// Bit i is ray i.
+  using Mask = std::uint64_t;
+
+  alignas(64) double Origin[3][Size];
+  alignas(64) double Direction[3][Size];
+  alignas(64) double Inverse[3][Size];
+  /// Where the ray is in the volume.
+  alignas(64) double Enter[Size];
+  alignas(64) double Leave[Size];
+  /// Where it is in the brick that it was last asked about.
+  alignas(64) double BrickEnter[Size];
+  alignas(64) double BrickLeave[Size];
+  /// Whether the rays move towards larger coordinates.
+  bool Forward[3];
+  /// Those that are there; the numbers of the others mean nothing.
+  Mask Rays = 0;
+};
+
+/// Where rays of a packet meet an isosurface within a brick, in any order; see CellHit.
+struct PacketHits
+{
+  int Count = 0;
+  int Ray[RayPacket::Size];
+  alignas(64) double T[RayPacket::Size];
+  alignas(64) double Cell[3][RayPacket::Size];  ///< of the brick; whole numbers
+  alignas(64) double Local[3][RayPacket::Size]; ///< within the cell, in [0, 1]
+  std::uint64_t FromInside = 0;                 ///< bit i is hit i
+
+  CellHit Get(int index) const
+  {
+    CellHit hit;
+    hit.T = this->T[index];
+    hit.FromInside = (this->FromInside >> index & 1u) != 0;
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      hit.Cell[axis] = static_cast<int>(this->Cell[axis][index]);
+      hit.Local.Set(axis, this->Local[axis][index]);
+    }
+    return hit;
+  }
+};
+
+/// The number of the first ray of a mask, which is not empty.
+inline int GetLowest(std::uint64_t rays)
+{
+  return __builtin_ctzll(rays);
+}
+
+/// Of the rays of a mask those from `first` on, at most 31.
+inline std::uint32_t GetPart(std::uint64_t rays, int first, int count)
+{
+  return static_cast<std::uint32_t>(rays >> first) & ((std::uint32_t{ 1 } << count) - 1);
+}
+
+} // namespace rt
+
+#endif

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef rt_ColorMap_h
+#define rt_ColorMap_h
+
+#include <glm/vec4.hpp>
+
+#include <vector>
+
+namespace rt
+{
+
+/// A sampled colour map. Colours are linear in the value between First and Last, entry 0 belonging
+/// to First; nearest entry. Not premultiplied.
+struct ColorMap
+{
+  double First = 0.0;
+  double Last = 1.0;
+  /// The table is spaced evenly in log10 of the value.
+  bool Logarithmic = false;
+  std::vector<glm::vec4> Table;
+  glm::vec4 Below{ 0.0f };
+  glm::vec4 Above{ 0.0f };
+  glm::vec4 NotANumber{ 0.0f };
+
+  glm::vec4 Map(double value) const;
+};
+
+} // namespace rt
+
+#endif

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef rt_BeamBricks_h
+#define rt_BeamBricks_h
+
+#include "DSMCore/base/Block.h"
+#include "DSMRayTracing/layout/MacrocellHierarchy.h"
+#include "DSMRayTracing/volume/RayBeam.h"
+
+#include <cstddef>
+#include <vector>
+
+namespace rt
+{
+
+/// The bricks that may hold an isosurface and that rays of a beam may meet: what the rays of a tile
+/// have in common, so that each need not walk the levels above the bricks. The order is front to
+/// back for every ray of the beam.
+struct BeamBricks
+{
+  struct Brick
+  {
+    dsm::BlockId Id;
+    double Lower[3]; ///< its first cell
+    double Upper[3]; ///< the planes at its end; the volume's end may come before
+  };
+
+  /// False: the rays cannot be treated alike; the list is empty, and means nothing.
+  bool Usable = false;
+  /// Whether all rays move towards larger coordinates.
+  bool Forward[3] = { false, false, false };
+  std::vector<Brick> Bricks;
+  /// How many of them, from the front, rays have come to so far: told by PacketTracer::Intersect. Belongs
+  /// to the worker that has the beam.
+  mutable std::size_t Reached = 0;
+
+  BeamBricks() = default;
+  /// `corners`: see RayBeam. `isovalues` as in IsosurfaceObject.
+  BeamBricks(const MacrocellHierarchy& hierarchy, const std::vector<double>& isovalues,
+    const GridRay corners[4]);
+  BeamBricks(
+    const MacrocellHierarchy& hierarchy, const std::vector<double>& isovalues, const RayBeam& beam);
+};
+
+} // namespace rt
+
+#endif

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef rt_IsosurfaceObject_h
+#define rt_IsosurfaceObject_h
+
+#include "DSMRayTracing/layout/VoxelField.h"
+#include "DSMRayTracing/ray/ClipRegion.h"
+#include "DSMRayTracing/surface/ColorMap.h"
+#include "DSMRayTracing/surface/Material.h"
+
+#include <glm/mat4x4.hpp>
+#include <glm/matrix.hpp>
+
+#include <memory>
+#include <vector>
+
+namespace rt
+{
+
+/// Isosurfaces of one volume.
+struct IsosurfaceObject
+{
+  /// Point index space (sample (i,j,k) at (i,j,k) of the lattice) to world; affine, invertible.
+  glm::dmat4 IndexToWorld{ 1.0 };
+  /// Its inverse; SetIndexToWorld keeps the two together.
+  glm::dmat4 WorldToIndex{ 1.0 };
+  void SetIndexToWorld(const glm::dmat4& matrix)
+  {
+    this->IndexToWorld = matrix;
+    this->WorldToIndex = glm::inverse(matrix);
+  }
+  std::shared_ptr<const VoxelField> Field;
+  /// Ascending, finite, no duplicates.
+  std::vector<double> Isovalues;
+  /// One for each isovalue, times the material's; empty: 1.
+  std::vector<float> Opacities;
+  /// May be null: then the material's diffuse colour is used. Same lattice points as Field.
+  std::shared_ptr<const VoxelField> ColorField;
+  ColorMap Colors;
+  Material Surface;
+  ClipRegion Clipping;
+};
+
+} // namespace rt
+
+#endif

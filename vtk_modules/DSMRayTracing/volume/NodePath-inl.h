@@ -1,0 +1,208 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Included once for each instruction set; see PacketKernel.cxx.
+#if defined(rt_NodePath_inl_h) == defined(HWY_TARGET_TOGGLE)
+#ifdef rt_NodePath_inl_h
+#undef rt_NodePath_inl_h
+#else
+#define rt_NodePath_inl_h
+#endif
+
+#include "DSMRayTracing/ray/RayPacket.h"
+
+#include <hwy/highway.h>
+
+#include <cstddef>
+#include <cstdint>
+
+#ifndef rt_NodeWords
+#define rt_NodeWords
+namespace rt
+{
+
+/// Nodes of 4 x 4 x 4 (NodeOrder) that lie before each of the three planes between them, by axis.
+constexpr std::uint64_t NodesBefore[3][3] = {
+  { 0x1111111111111111u, 0x3333333333333333u, 0x7777777777777777u },
+  { 0x000f000f000f000fu, 0x00ff00ff00ff00ffu, 0x0fff0fff0fff0fffu },
+  { 0x000000000000ffffu, 0x00000000ffffffffu, 0x0000ffffffffffffu },
+};
+
+} // namespace rt
+#endif
+
+HWY_BEFORE_NAMESPACE();
+namespace rt
+{
+namespace HWY_NAMESPACE
+{
+namespace hn = hwy::HWY_NAMESPACE;
+
+/// Lane i holds the number getLane(i). Where numbers come from memory, that is faster than gathering
+/// them is, also where there are instructions for it.
+template <class T, int Lanes, class GetLane>
+HWY_INLINE hn::Vec<hn::CappedTag<T, Lanes>> SetLanes(const GetLane& getLane, int first = 0)
+{
+  const hn::CappedTag<T, Lanes> tag;
+  if constexpr (Lanes == 1)
+  {
+    return hn::Set(tag, getLane(first));
+  }
+#if HWY_TARGET != HWY_SCALAR
+  else
+  {
+    constexpr int half = Lanes / 2;
+    return hn::Combine(
+      tag, SetLanes<T, half>(getLane, first + half), SetLanes<T, half>(getLane, first));
+  }
+#endif
+}
+
+/// Lane i from from[places[i]].
+template <class T, int Lanes>
+HWY_INLINE auto LoadLanes(const T* from, const std::size_t* places)
+{
+  return SetLanes<T, Lanes>([=](int lane) { return from[places[lane]]; });
+}
+
+/// Whole numbers from 0 to 2^52.
+template <class Vector>
+auto ToNumbers(Vector whole)
+{
+  const hn::DFromV<Vector> tag;
+  const hn::RebindToUnsigned<decltype(tag)> numbers;
+  // Added to this, they stand in the lowest bits.
+  const Vector large = hn::Set(tag, 4503599627370496.0);
+  return hn::Sub(hn::BitCast(numbers, hn::Add(large, whole)), hn::BitCast(numbers, large));
+}
+
+/// The inverse.
+template <class Numbers>
+auto ToReal(Numbers whole)
+{
+  const hn::DFromV<Numbers> numbers;
+  const hn::RebindToFloat<decltype(numbers)> tag;
+  const auto large = hn::Set(tag, 4503599627370496.0);
+  return hn::Sub(hn::BitCast(tag, hn::Or(hn::BitCast(numbers, large), whole)), large);
+}
+
+/// Numbers of the lowest bits of words that have some.
+template <class Numbers>
+Numbers GetLowestBits(Numbers words)
+{
+  const hn::DFromV<Numbers> numbers;
+  const hn::RebindToSigned<decltype(numbers)> integers;
+  const hn::RebindToFloat<decltype(numbers)> tag;
+  const Numbers lowest = hn::And(words, hn::Sub(hn::Zero(numbers), words));
+  // It is the exponent; the 64th bit is a sign as well.
+  const Numbers exponent =
+    hn::ShiftRight<52>(hn::BitCast(numbers, hn::ConvertTo(tag, hn::BitCast(integers, lowest))));
+  return hn::And(hn::Sub(exponent, hn::Set(numbers, std::uint64_t{ 1023 })),
+    hn::Set(numbers, std::uint64_t{ 63 }));
+}
+
+/// Of the node with that number (NodeOrder).
+template <class Numbers>
+HWY_INLINE Numbers GetCoordinate(Numbers nodes, int axis)
+{
+  const hn::DFromV<Numbers> numbers;
+  const Numbers shifted = axis == 0 ? nodes
+    : axis == 1                     ? hn::ShiftRight<2>(nodes)
+                                    : hn::ShiftRight<4>(nodes);
+  return hn::And(shifted, hn::Set(numbers, std::uint64_t{ 3 }));
+}
+
+/// One vector of rays.
+template <class D>
+struct RayLines
+{
+  using Vector = hn::Vec<D>;
+
+  Vector Origin[3];
+  Vector Inverse[3];
+
+  RayLines() = default;
+  /// Rays `first` and those after it.
+  HWY_INLINE RayLines(const RayPacket& packet, int first)
+  {
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      this->Origin[axis] = hn::Load(D(), packet.Origin[axis] + first);
+      this->Inverse[axis] = hn::Load(D(), packet.Inverse[axis] + first);
+    }
+  }
+
+  HWY_INLINE Vector GetPlaneT(int axis, Vector plane) const
+  {
+    return hn::Mul(hn::Sub(plane, this->Origin[axis]), this->Inverse[axis]);
+  }
+};
+
+/// The nodes (NodeOrder) that rays, from `enter` to `leave`, cross of a box of 4 x 4 x 4 that they come
+/// into through the planes `entry`; each ray has a box of its own. They are those that GridWalk steps
+/// through: where a ray meets several planes at once, it goes through all of them together. Nodes
+/// that a ray only touches may be added.
+///
+/// A ray is on all three axes between two planes at a time when it is so on each two of them: so every
+/// two planes tell, by which of them is met first, that some nodes are never come to.
+template <class D, class Vector = hn::Vec<D>>
+HWY_INLINE hn::Vec<hn::RebindToUnsigned<D>> FindCrossedNodes(const RayLines<D>& lines,
+  const bool forward[3], const Vector entry[3], double edge, Vector enter, Vector leave)
+{
+  const D tag;
+  const hn::RebindToUnsigned<D> numbers;
+  Vector between[3][3];
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    const double step = forward[axis] ? edge : -edge;
+    enter = hn::Max(enter, lines.GetPlaneT(axis, entry[axis]));
+    leave = hn::Min(leave, lines.GetPlaneT(axis, hn::Add(entry[axis], hn::Set(tag, 4.0 * step))));
+    for (int plane = 0; plane < 3; ++plane)
+    {
+      between[axis][plane] =
+        lines.GetPlaneT(axis, hn::Add(entry[axis], hn::Set(tag, (plane + 1) * step)));
+    }
+  }
+  auto nodes = hn::Set(numbers, ~std::uint64_t{ 0 });
+  const auto keepWhere = [&](auto condition, std::uint64_t kept)
+  {
+    nodes = hn::IfThenElse(
+      hn::RebindMask(numbers, condition), hn::And(nodes, hn::Set(numbers, kept)), nodes);
+  };
+#pragma GCC unroll 3
+  for (int axis = 0; axis < 3; ++axis)
+  {
+#pragma GCC unroll 3
+    for (int plane = 0; plane < 3; ++plane)
+    {
+      const std::uint64_t before = NodesBefore[axis][plane];
+      keepWhere(hn::Le(between[axis][plane], enter), ~before);
+      keepWhere(hn::Le(leave, between[axis][plane]), before);
+    }
+  }
+#pragma GCC unroll 3
+  for (int pair = 0; pair < 3; ++pair)
+  {
+    const int one = pair == 2 ? 1 : 0;
+    const int other = pair == 0 ? 1 : 2;
+#pragma GCC unroll 3
+    for (int i = 0; i < 3; ++i)
+    {
+#pragma GCC unroll 3
+      for (int j = 0; j < 3; ++j)
+      {
+        const std::uint64_t beforeOne = NodesBefore[one][i];
+        const std::uint64_t beforeOther = NodesBefore[other][j];
+        const auto oneFirst = hn::RebindMask(numbers, hn::Le(between[one][i], between[other][j]));
+        nodes = hn::And(nodes,
+          hn::IfThenElse(oneFirst, hn::Set(numbers, ~(beforeOne & ~beforeOther)),
+            hn::Set(numbers, ~(beforeOther & ~beforeOne))));
+      }
+    }
+  }
+  return hn::IfThenElseZero(hn::RebindMask(numbers, hn::Lt(enter, leave)), nodes);
+}
+
+} // namespace HWY_NAMESPACE
+} // namespace rt
+HWY_AFTER_NAMESPACE();
+
+#endif

@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef rt_PacketTracer_h
+#define rt_PacketTracer_h
+
+#include "DSMRayTracing/ray/Ray.h"
+#include "DSMRayTracing/volume/BeamBricks.h"
+#include "DSMRayTracing/volume/IsosurfaceObject.h"
+#include "DSMRayTracing/volume/PacketKernel.h"
+#include "DSMRayTracing/volume/VolumeTracer.h"
+
+#include <glm/vec3.hpp>
+
+#include <cstdint>
+#include <vector>
+
+namespace rt
+{
+
+/// Finds isosurface hits for the rays of a tile: the bricks that lie in the tile's beam are acquired
+/// one after the other, front to back, and each is searched by all packets of the tile. A ray finds,
+/// bit for bit, what VolumeTracer finds for it, whatever packets, mates and vectors it has; rays that
+/// do not fit the others are left to VolumeTracer.
+///
+/// Threads and pins as VolumeTracer.
+template <class Store>
+class PacketTracer
+{
+public:
+  PacketTracer(Store& store, typename Store::Worker& worker,
+    const PacketKernel& kernel = PacketKernel::GetBest())
+    : Blocks(store)
+    , Self(worker)
+    , Single(store, worker)
+    , Kernel(kernel)
+  {
+  }
+
+  /// The bricks that rays between those of `corners`, in order around them, may find hits in.
+  BeamBricks FindBricks(const IsosurfaceObject& object, const Ray corners[4]) const;
+
+  /// Asks for bricks ahead of Intersect; returns whether any was absent. Never waits.
+  bool Prefetch(const IsosurfaceObject& object, const std::vector<dsm::BlockId>& bricks) const
+  {
+    return this->Blocks.Prefetch(*object.Field->Segment, bricks.data(), bricks.size());
+  }
+
+  /// VolumeTracer::Intersect for those of RayPacket::Size rays that are `wanted`. All of them lie
+  /// within the beam that `bricks` was found for. Returns those that hit something.
+  RayPacket::Mask Intersect(const IsosurfaceObject& object, const BeamBricks& bricks,
+    const Ray* rays, RayPacket::Mask wanted, SurfaceHit* hits) const;
+
+  /// VolumeTracer::IsOccluded for those of RayPacket::Size rays that are `wanted`. They need not have
+  /// anything in common, but are traced together where they go the same way.
+  RayPacket::Mask FindOccluded(
+    const IsosurfaceObject& object, const Ray* rays, RayPacket::Mask wanted) const;
+
+private:
+  /// A packet on its way through the bricks.
+  struct Progress
+  {
+    RayPacket Rays;
+    RayPacket::Mask Found = 0;
+    // In the current brick:
+    RayPacket::Mask Meets = 0;
+    RayPacket::Mask Hit = 0;
+    RayPacket::Mask WithoutGradient = 0;
+    CellHit Cells[RayPacket::Size];
+    int Isovalue[RayPacket::Size];
+    glm::dvec3 Gradient[RayPacket::Size];
+  };
+
+  /// Finds out which rays that have not found anything yet cross a brick, and where; returns whether
+  /// any does.
+  bool MeetBrick(const BeamBricks::Brick& brick, Progress& progress) const;
+
+  template <class T>
+  void SearchBricks(const IsosurfaceObject& object, const BeamBricks& bricks, Progress& progress,
+    const Ray* rays, SurfaceHit* hits) const;
+
+  /// Acquires the brick and searches it for all rays that meet it.
+  template <class T>
+  void SearchBrick(
+    const IsosurfaceObject& object, const BeamBricks::Brick& brick, Progress& progress) const;
+
+  /// Fewer rays are as fast one by one.
+  static constexpr int FewestInBeam = 8;
+  /// Length of the mean of unit directions: those of less have too little in common for a beam.
+  static constexpr double BeamCoherence = 0.98;
+
+  /// FindOccluded for rays that all move to the same sides.
+  RayPacket::Mask FindOccludedInPacket(const IsosurfaceObject& object, const bool forward[3],
+    const Ray* rays, RayPacket::Mask wanted) const;
+
+  /// Adds those rays that meet a surface in a brick to what they have found.
+  template <class T>
+  void FindOccludedInBrick(
+    const IsosurfaceObject& object, const BeamBricks::Brick& brick, Progress& progress) const;
+
+  Store& Blocks;
+  typename Store::Worker& Self;
+  VolumeTracer<Store> Single;
+  const PacketKernel& Kernel;
+};
+
+} // namespace rt
+
+#include "DSMRayTracing/volume/PacketTracer.txx"
+
+#endif

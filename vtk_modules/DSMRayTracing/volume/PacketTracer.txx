@@ -1,0 +1,246 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef rt_PacketTracer_txx
+#define rt_PacketTracer_txx
+
+#include "DSMRayTracing/layout/VoxelBrick.h"
+#include "DSMRayTracing/volume/HitGradient.h"
+#include "DSMRayTracing/volume/IndexSpace.h"
+#include "DSMRayTracing/volume/IsovalueLevel.h"
+#include "DSMRayTracing/volume/TypedPacketBrick.h"
+
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <cstddef>
+
+namespace rt
+{
+
+template <class Store>
+BeamBricks PacketTracer<Store>::FindBricks(
+  const IsosurfaceObject& object, const Ray corners[4]) const
+{
+  const IndexSpace space(object.IndexToWorld, object.WorldToIndex);
+  GridRay lines[4];
+  for (int corner = 0; corner < 4; ++corner)
+  {
+    if (!space.GetGridRay(corners[corner], lines[corner]))
+    {
+      return BeamBricks();
+    }
+  }
+  return BeamBricks(object.Field->Hierarchy, object.Isovalues, lines);
+}
+
+template <class Store>
+RayPacket::Mask PacketTracer<Store>::Intersect(const IsosurfaceObject& object,
+  const BeamBricks& bricks, const Ray* rays, RayPacket::Mask wanted, SurfaceHit* hits) const
+{
+  const IndexSpace space(object.IndexToWorld, object.WorldToIndex);
+  const BrickLattice& lattice = object.Field->Lattice;
+  Progress progress;
+  std::copy_n(bricks.Forward, 3, progress.Rays.Forward);
+  RayPacket::Mask alone = wanted;
+  if (bricks.Usable)
+  {
+    alone = this->Kernel.SetRays(progress.Rays, rays, wanted, space, lattice.GetCells());
+  }
+  RayPacket::Mask found = 0;
+  for (; alone != 0; alone &= alone - 1)
+  {
+    const int index = GetLowest(alone);
+    const bool hit = this->Single.Intersect(object, rays[index], hits[index]);
+    found |= RayPacket::Mask{ hit } << index;
+  }
+  Dispatch(lattice.GetScalarType(),
+    [&](auto sample)
+    { this->SearchBricks<decltype(sample)>(object, bricks, progress, rays, hits); });
+  return found | progress.Found;
+}
+
+template <class Store>
+bool PacketTracer<Store>::MeetBrick(const BeamBricks::Brick& brick, Progress& progress) const
+{
+  const RayPacket::Mask open = progress.Rays.Rays & ~progress.Found;
+  progress.Meets =
+    open == 0 ? 0 : this->Kernel.MeetBrick(progress.Rays, open, brick.Lower, brick.Upper);
+  return progress.Meets != 0;
+}
+
+template <class Store>
+template <class T>
+void PacketTracer<Store>::SearchBricks(const IsosurfaceObject& object, const BeamBricks& bricks,
+  Progress& progress, const Ray* rays, SurfaceHit* hits) const
+{
+  const IndexSpace space(object.IndexToWorld, object.WorldToIndex);
+  for (const BeamBricks::Brick& brick : bricks.Bricks)
+  {
+    if (!this->MeetBrick(brick, progress))
+    {
+      continue;
+    }
+    const std::ptrdiff_t place = &brick - bricks.Bricks.data();
+    bricks.Reached = std::max(bricks.Reached, static_cast<std::size_t>(place) + 1);
+    this->SearchBrick<T>(object, brick, progress);
+    for (RayPacket::Mask left = progress.Hit; left != 0; left &= left - 1)
+    {
+      const int index = GetLowest(left);
+      const CellHit& cell = progress.Cells[index];
+      double* const gradient = &progress.Gradient[index].x;
+      const int isovalue = progress.Isovalue[index];
+      if ((progress.WithoutGradient >> index & 1) != 0)
+      {
+        HitGradient::Find<T>(this->Blocks, this->Self, *object.Field, brick.Id, cell,
+          object.Isovalues[isovalue], gradient);
+      }
+      SurfaceHit& hit = hits[index];
+      hit.T = cell.T;
+      hit.Normal = space.GetNormal(gradient, rays[index].Direction);
+      hit.Isovalue = isovalue;
+      hit.FromInside = cell.FromInside;
+      hit.Brick = brick.Id;
+      for (int axis = 0; axis < 3; ++axis)
+      {
+        hit.IndexPoint[axis] = brick.Lower[axis] + cell.Cell[axis] + cell.Local[axis];
+      }
+    }
+    progress.Found |= progress.Hit;
+  }
+}
+
+template <class Store>
+template <class T>
+void PacketTracer<Store>::SearchBrick(
+  const IsosurfaceObject& object, const BeamBricks::Brick& brick, Progress& progress) const
+{
+  const typename Store::Pin pin =
+    this->Blocks.Acquire(this->Self, *object.Field->Segment, brick.Id);
+  const VoxelBrick<T> voxels(pin.GetData());
+  const ValueRange range{ voxels.GetHeader().First, voxels.GetHeader().Last };
+  progress.Hit = 0;
+  progress.WithoutGradient = 0;
+  for (std::size_t isovalue = 0; isovalue < object.Isovalues.size(); ++isovalue)
+  {
+    if (!range.MayHold(object.Isovalues[isovalue]))
+    {
+      continue;
+    }
+    const IsovalueLevel<T> level(object.Isovalues[isovalue]);
+    const TypedPacketBrick<T> surface(
+      voxels, level, this->Kernel.Macrocells.Get<T>(), progress.Rays.Forward);
+    PacketHits candidates;
+    this->Kernel.SearchBrick(progress.Rays, progress.Meets, surface, brick.Lower, candidates);
+    for (int number = 0; number < candidates.Count; ++number)
+    {
+      const int index = candidates.Ray[number];
+      const RayPacket::Mask bit = RayPacket::Mask{ 1 } << index;
+      CellHit& cell = progress.Cells[index];
+      if ((progress.Hit & bit) != 0 && !(candidates.T[number] < cell.T))
+      {
+        continue;
+      }
+      cell = candidates.Get(number);
+      progress.Isovalue[index] = static_cast<int>(isovalue);
+      progress.Hit |= bit;
+      const bool within = HitGradient::FindWithin(voxels, cell, level, &progress.Gradient[index].x);
+      progress.WithoutGradient =
+        within ? progress.WithoutGradient & ~bit : progress.WithoutGradient | bit;
+    }
+  }
+}
+
+template <class Store>
+RayPacket::Mask PacketTracer<Store>::FindOccluded(
+  const IsosurfaceObject& object, const Ray* rays, RayPacket::Mask wanted) const
+{
+  const IndexSpace space(object.IndexToWorld, object.WorldToIndex);
+  RayPacket::Mask sides[8] = {};
+  glm::dvec3 sums[8] = {};
+  for (RayPacket::Mask left = wanted; left != 0; left &= left - 1)
+  {
+    const int index = GetLowest(left);
+    const glm::dvec3 direction = space.GetWorldToIndex() * rays[index].Direction;
+    const int side = (direction.x > 0.0) | (direction.y > 0.0) << 1 | (direction.z > 0.0) << 2;
+    sides[side] |= RayPacket::Mask{ 1 } << index;
+    sums[side] += direction / glm::length(direction);
+  }
+  RayPacket::Mask occluded = 0;
+  for (int side = 0; side < 8; ++side)
+  {
+    const int count = __builtin_popcountll(sides[side]);
+    if (count >= FewestInBeam && glm::length(sums[side]) > BeamCoherence * count)
+    {
+      const bool forward[3] = { (side & 1) != 0, (side & 2) != 0, (side & 4) != 0 };
+      occluded |= this->FindOccludedInPacket(object, forward, rays, sides[side]);
+      continue;
+    }
+    for (RayPacket::Mask left = sides[side]; left != 0; left &= left - 1)
+    {
+      const int index = GetLowest(left);
+      occluded |= RayPacket::Mask{ this->Single.IsOccluded(object, rays[index]) } << index;
+    }
+  }
+  return occluded;
+}
+
+template <class Store>
+RayPacket::Mask PacketTracer<Store>::FindOccludedInPacket(const IsosurfaceObject& object,
+  const bool forward[3], const Ray* rays, RayPacket::Mask wanted) const
+{
+  const IndexSpace space(object.IndexToWorld, object.WorldToIndex);
+  const BrickLattice& lattice = object.Field->Lattice;
+  Progress progress;
+  std::copy_n(forward, 3, progress.Rays.Forward);
+  RayPacket::Mask alone =
+    this->Kernel.SetRays(progress.Rays, rays, wanted, space, lattice.GetCells());
+  for (; alone != 0; alone &= alone - 1)
+  {
+    const int index = GetLowest(alone);
+    progress.Found |= RayPacket::Mask{ this->Single.IsOccluded(object, rays[index]) } << index;
+  }
+  if (progress.Rays.Rays != 0)
+  {
+    RayBeam beam;
+    beam.Set(progress.Rays);
+    const BeamBricks bricks(object.Field->Hierarchy, object.Isovalues, beam);
+    Dispatch(lattice.GetScalarType(),
+      [&](auto sample)
+      {
+        for (const BeamBricks::Brick& brick : bricks.Bricks)
+        {
+          if (this->MeetBrick(brick, progress))
+          {
+            this->FindOccludedInBrick<decltype(sample)>(object, brick, progress);
+          }
+        }
+      });
+  }
+  return progress.Found;
+}
+
+template <class Store>
+template <class T>
+void PacketTracer<Store>::FindOccludedInBrick(
+  const IsosurfaceObject& object, const BeamBricks::Brick& brick, Progress& progress) const
+{
+  const typename Store::Pin pin =
+    this->Blocks.Acquire(this->Self, *object.Field->Segment, brick.Id);
+  const VoxelBrick<T> voxels(pin.GetData());
+  const ValueRange range{ voxels.GetHeader().First, voxels.GetHeader().Last };
+  for (const double isovalue : object.Isovalues)
+  {
+    const RayPacket::Mask open = progress.Meets & ~progress.Found;
+    if (open == 0 || !range.MayHold(isovalue))
+    {
+      continue;
+    }
+    const IsovalueLevel<T> level(isovalue);
+    const TypedPacketBrick<T> surface(
+      voxels, level, this->Kernel.Macrocells.Get<T>(), progress.Rays.Forward);
+    progress.Found |= this->Kernel.FindOccluded(progress.Rays, open, surface, brick.Lower);
+  }
+}
+
+} // namespace rt
+
+#endif

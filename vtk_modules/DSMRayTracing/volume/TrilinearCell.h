@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef rt_TrilinearCell_h
+#define rt_TrilinearCell_h
+
+#include "DSMRayTracing/base/Lanes.h"
+
+namespace rt
+{
+
+/// (1 - u) a + u b: exactly a at 0 and b at 1.
+inline double Interpolate(double a, double b, double u)
+{
+  return (1.0 - u) * a + u * b;
+}
+
+/// The trilinear function of a cell. Corners are numbered with x in bit 0, y in bit 1, z in bit 2.
+/// On a face (a coordinate exactly 0 or 1) the value depends on the corners of that face only, and
+/// is bit for bit the same in both cells that share it.
+inline double EvaluateTrilinear(const double corners[8], const Lanes& point)
+{
+  const double x00 = Interpolate(corners[0], corners[1], point[0]);
+  const double x10 = Interpolate(corners[2], corners[3], point[0]);
+  const double x01 = Interpolate(corners[4], corners[5], point[0]);
+  const double x11 = Interpolate(corners[6], corners[7], point[0]);
+  return Interpolate(Interpolate(x00, x10, point[1]), Interpolate(x01, x11, point[1]), point[2]);
+}
+
+/// The cubic that the trilinear function is along a line: c[0] + c[1] s + c[2] s^2 + c[3] s^3.
+struct Cubic
+{
+  double Coefficients[4];
+
+  /// At start + s direction. The constant term is EvaluateTrilinear(corners, start), bit for bit.
+  Cubic(const double corners[8], const Lanes& start, const Lanes& direction)
+  {
+    double linear[4][2];
+    for (int edge = 0; edge < 4; ++edge)
+    {
+      const double a = corners[2 * edge];
+      const double b = corners[2 * edge + 1];
+      linear[edge][0] = Interpolate(a, b, start[0]);
+      linear[edge][1] = direction[0] * (b - a);
+    }
+    double quadratic[2][3];
+    for (int face = 0; face < 2; ++face)
+    {
+      const double* a = linear[2 * face];
+      const double* b = linear[2 * face + 1];
+      quadratic[face][0] = Interpolate(a[0], b[0], start[1]);
+      quadratic[face][1] = Interpolate(a[1], b[1], start[1]) + direction[1] * (b[0] - a[0]);
+      quadratic[face][2] = direction[1] * (b[1] - a[1]);
+    }
+    const double* a = quadratic[0];
+    const double* b = quadratic[1];
+    this->Coefficients[0] = Interpolate(a[0], b[0], start[2]);
+    this->Coefficients[1] = Interpolate(a[1], b[1], start[2]) + direction[2] * (b[0] - a[0]);
+    this->Coefficients[2] = Interpolate(a[2], b[2], start[2]) + direction[2] * (b[1] - a[1]);
+    this->Coefficients[3] = direction[2] * (b[2] - a[2]);
+  }
+
+  double Evaluate(double s) const
+  {
+    const double* c = this->Coefficients;
+    return c[0] + s * (c[1] + s * (c[2] + s * c[3]));
+  }
+  double EvaluateDerivative(double s) const
+  {
+    const double* c = this->Coefficients;
+    return c[1] + s * (2.0 * c[2] + s * 3.0 * c[3]);
+  }
+};
+
+} // namespace rt
+
+#endif

@@ -1,0 +1,230 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef rt_VolumeTracer_txx
+#define rt_VolumeTracer_txx
+
+#include "DSMRayTracing/layout/VoxelBrick.h"
+#include "DSMRayTracing/volume/BrickWalk.h"
+#include "DSMRayTracing/volume/GridTraversal.h"
+#include "DSMRayTracing/volume/IndexSpace.h"
+#include "DSMRayTracing/volume/IsovalueLevel.h"
+#include "DSMRayTracing/volume/TrilinearCell.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace rt
+{
+
+template <class Store, Consolidation Mode>
+bool VolumeTracer<Store, Mode>::Intersect(
+  const IsosurfaceObject& object, const Ray& ray, SurfaceHit& hit) const
+{
+  const IndexSpace space(object.IndexToWorld, object.WorldToIndex);
+  const BrickLattice& lattice = object.Field->Lattice;
+  GridRay line;
+  double enter = ray.Min;
+  double leave = ray.Max;
+  if (!space.GetGridRay(ray, line) || !line.Clip(lattice.GetCells(), enter, leave))
+  {
+    return false;
+  }
+  return Dispatch(lattice.GetScalarType(),
+    [&](auto sample)
+    {
+      double gradient[3];
+      if (!this->IntersectBricks<decltype(sample)>(object, line, enter, leave, hit, gradient))
+      {
+        return false;
+      }
+      hit.Normal = space.GetNormal(gradient, ray.Direction);
+      return true;
+    });
+}
+
+template <class Store, Consolidation Mode>
+template <class T>
+bool VolumeTracer<Store, Mode>::IntersectBricks(const IsosurfaceObject& object, const GridRay& line,
+  double enter, double leave, SurfaceHit& hit, double gradient[3]) const
+{
+  const VoxelField& field = *object.Field;
+  BrickWalk walk(field.Hierarchy, line, object.Isovalues, enter, leave);
+  while (walk.Next())
+  {
+    CellHit cell;
+    bool hasGradient = false;
+    if (!this->IntersectBrick<T>(object, line, walk, cell, hit.Isovalue, gradient, hasGradient))
+    {
+      continue;
+    }
+    if (!hasGradient)
+    {
+      HitGradient::Find<T>(this->Blocks, this->Self, field, walk.GetId(), cell,
+        object.Isovalues[hit.Isovalue], gradient);
+    }
+    hit.T = cell.T;
+    hit.Brick = walk.GetId();
+    hit.FromInside = cell.FromInside;
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      hit.IndexPoint[axis] = walk.GetOrigin()[axis] + cell.Cell[axis] + cell.Local[axis];
+    }
+    return true;
+  }
+  return false;
+}
+
+template <class Store, Consolidation Mode>
+template <class T>
+bool VolumeTracer<Store, Mode>::IntersectBrick(const IsosurfaceObject& object, const GridRay& line,
+  const BrickWalk& walk, CellHit& cell, int& isovalue, double gradient[3], bool& hasGradient) const
+{
+  const typename Store::Pin pin =
+    this->Blocks.Acquire(this->Self, *object.Field->Segment, walk.GetId());
+  const VoxelBrick<T> voxels(pin.GetData());
+  const ValueRange range{ voxels.GetHeader().First, voxels.GetHeader().Last };
+  const BrickAccess<Store, Mode> access(
+    this->Blocks, this->Self, *object.Field->Segment, walk.GetId());
+  const GridTraversal<T, BrickAccess<Store, Mode>> traversal(
+    line, voxels, walk.GetOrigin(), access);
+  bool found = false;
+  double limit = std::numeric_limits<double>::infinity();
+  for (std::size_t index = 0; index < object.Isovalues.size(); ++index)
+  {
+    CellHit candidate;
+    if (range.MayHold(object.Isovalues[index]) &&
+      traversal.FindFirst(IsovalueLevel<T>(object.Isovalues[index]), walk.GetEnter(),
+        walk.GetLeave(), limit, candidate) &&
+      candidate.T < limit)
+    {
+      found = true;
+      limit = candidate.T;
+      cell = candidate;
+      isovalue = static_cast<int>(index);
+    }
+  }
+  if (!found)
+  {
+    return false;
+  }
+  hasGradient =
+    HitGradient::FindWithin(voxels, cell, IsovalueLevel<T>(object.Isovalues[isovalue]), gradient);
+  return true;
+}
+
+template <class Store, Consolidation Mode>
+bool VolumeTracer<Store, Mode>::IsOccluded(const IsosurfaceObject& object, const Ray& ray) const
+{
+  const IndexSpace space(object.IndexToWorld, object.WorldToIndex);
+  const VoxelField& field = *object.Field;
+  GridRay line;
+  double enter = ray.Min;
+  double leave = ray.Max;
+  if (!space.GetGridRay(ray, line) || !line.Clip(field.Lattice.GetCells(), enter, leave))
+  {
+    return false;
+  }
+  return Dispatch(field.Lattice.GetScalarType(),
+    [&](auto sample)
+    {
+      BrickWalk walk(field.Hierarchy, line, object.Isovalues, enter, leave);
+      while (walk.Next())
+      {
+        if (this->IsOccludedInBrick<decltype(sample)>(object, line, walk))
+        {
+          return true;
+        }
+      }
+      return false;
+    });
+}
+
+template <class Store, Consolidation Mode>
+template <class T>
+bool VolumeTracer<Store, Mode>::IsOccludedInBrick(
+  const IsosurfaceObject& object, const GridRay& line, const BrickWalk& walk) const
+{
+  const dsm::BlockSegment& segment = *object.Field->Segment;
+  const typename Store::Pin pin = this->Blocks.Acquire(this->Self, segment, walk.GetId());
+  const VoxelBrick<T> voxels(pin.GetData());
+  const ValueRange range{ voxels.GetHeader().First, voxels.GetHeader().Last };
+  const BrickAccess<Store, Mode> access(this->Blocks, this->Self, segment, walk.GetId());
+  const GridTraversal<T, BrickAccess<Store, Mode>> traversal(
+    line, voxels, walk.GetOrigin(), access);
+  return std::any_of(object.Isovalues.begin(), object.Isovalues.end(),
+    [&](double isovalue)
+    {
+      return range.MayHold(isovalue) &&
+        traversal.HasHit(IsovalueLevel<T>(isovalue), walk.GetEnter(), walk.GetLeave());
+    });
+}
+
+template <class Store, Consolidation Mode>
+double VolumeTracer<Store, Mode>::Sample(
+  const VoxelField& field, const glm::dvec3& indexPoint) const
+{
+  const Index3 cells = field.Lattice.GetCells();
+  Index3 cell;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    if (!(indexPoint[axis] >= 0.0 && indexPoint[axis] <= static_cast<double>(cells[axis])))
+    {
+      return std::numeric_limits<double>::quiet_NaN();
+    }
+    cell[axis] = std::min(static_cast<std::int64_t>(indexPoint[axis]), cells[axis] - 1);
+  }
+  return Dispatch(field.Lattice.GetScalarType(),
+    [&](auto sample)
+    {
+      using T = decltype(sample);
+      // A point on a face belongs to the cells on both sides; either may hold data.
+      double value = std::numeric_limits<double>::quiet_NaN();
+      for (int side = 0; side < 8 && std::isnan(value); ++side)
+      {
+        const Index3 back(side & 1, side >> 1 & 1, side >> 2);
+        bool touches = true;
+        for (int axis = 0; axis < 3; ++axis)
+        {
+          touches = touches &&
+            (back[axis] == 0 ||
+              (cell[axis] > 0 && indexPoint[axis] == static_cast<double>(cell[axis])));
+        }
+        if (touches)
+        {
+          value = this->SampleCell<T>(field, cell - back, indexPoint);
+        }
+      }
+      return value;
+    });
+}
+
+template <class Store, Consolidation Mode>
+template <class T>
+double VolumeTracer<Store, Mode>::SampleCell(
+  const VoxelField& field, const Index3& cell, const glm::dvec3& indexPoint) const
+{
+  const Index3 brick = cell / Index3(field.Lattice.GetEdge());
+  const Index3 local = cell - brick * Index3(field.Lattice.GetEdge());
+  const int x = static_cast<int>(local.x);
+  const int y = static_cast<int>(local.y);
+  const int z = static_cast<int>(local.z);
+  const typename Store::Pin pin =
+    this->Blocks.Acquire(this->Self, *field.Segment, field.Lattice.GetId(brick));
+  const VoxelBrick<T> voxels(pin.GetData());
+  if (!voxels.HoldsData(x, y, z))
+  {
+    return std::numeric_limits<double>::quiet_NaN();
+  }
+  double corners[8];
+  for (int corner = 0; corner < 8; ++corner)
+  {
+    corners[corner] = static_cast<double>(
+      voxels.GetSample(x + (corner & 1), y + (corner >> 1 & 1), z + (corner >> 2)));
+  }
+  const glm::dvec3 inside = indexPoint - glm::dvec3(cell);
+  return EvaluateTrilinear(corners, Lanes(inside.x, inside.y, inside.z, 0.0));
+}
+
+} // namespace rt
+
+#endif
