@@ -7,7 +7,8 @@ Blocks of one document and language are run in a folder of that document's, one 
 `python` in one pvbatch of two ranks, `bash` in a shell that stops at the first error, `cpp` through
 the compiler with the flags of the tests. There, `build` is the build folder, `../examples` the
 examples. LANGUAGE `marks` checks that every block has one of these languages, and that those which
-are not run are named in not_run.txt and say so in the document."""
+are not run are named in not_run.txt and say so in the document; `links`, that what documents link to
+within the project is there, with its heading."""
 
 import glob
 import json
@@ -24,6 +25,8 @@ HERE = os.path.dirname(os.path.abspath(__file__))
 LANGUAGES = ("python", "bash", "cpp")
 # Of a block that is not run, on the line before it.
 MARK = re.compile(r"\*Not run by the tests: (.+)\.\*")
+LINK = re.compile(r"\]\(([^)\s]+)\)")
+HEADING = re.compile(r"^#+ +(.+)$", re.MULTILINE)
 
 
 class Block:
@@ -93,6 +96,32 @@ def check_marks(blocks):
     check(marked == allowed, f"blocks that are not run are in not_run.txt, and no others: {marked}")
     runnable = sum(block.mark is None for block in blocks)
     check(runnable > 0, f"{runnable} of {len(blocks)} blocks are run")
+
+
+def read_without_blocks(path):
+    with open(path, encoding="utf-8") as text:
+        return re.sub(r"^ *```.*?^ *```$", "", text.read(), flags=re.MULTILINE | re.DOTALL)
+
+
+def get_anchors(text):
+    """Of a document's headings, as GitHub makes them."""
+    return {re.sub(r"[^\w\- ]", "", heading.lower()).replace(" ", "-") for heading in HEADING.findall(text)}
+
+
+def check_links(documents):
+    count = 0
+    for document in documents:
+        path = os.path.join(PROJECT, document)
+        for link in LINK.findall(read_without_blocks(path)):
+            if re.match(r"[a-z]+:", link):
+                continue
+            name, _, anchor = link.partition("#")
+            target = os.path.normpath(os.path.join(os.path.dirname(path), name)) if name else path
+            check(os.path.exists(target), f"{document}: {link} is there")
+            if anchor:
+                check(anchor in get_anchors(read_without_blocks(target)), f"{document}: {link} is a heading")
+            count += 1
+    check(count > 0, f"{count} links lead somewhere")
 
 
 def make_folder(document):
@@ -181,6 +210,9 @@ def main():
     documents = read_all()
     if LANGUAGE == "marks":
         check_marks([block for blocks in documents.values() for block in blocks])
+        return
+    if LANGUAGE == "links":
+        check_links([*documents, "CONTRIBUTING.md", "CHANGELOG.md"])
         return
     for document, blocks in documents.items():
         chosen = [block for block in blocks if block.language == LANGUAGE and not block.mark]
