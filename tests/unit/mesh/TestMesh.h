@@ -144,6 +144,7 @@ rt::TriangleArrays<Real> TakePart(
     std::shuffle(order.begin(), order.end(), std::mt19937(seed));
   }
   rt::TriangleArrays<Real> piece;
+  piece.NormalsOf = mesh.NormalsOf;
   piece.ValuesOf = mesh.ValuesOf;
   piece.ColorsOf = mesh.ColorsOf;
   const auto copy = [](const auto& from, std::uint64_t element, int count, auto& to)
@@ -166,8 +167,11 @@ rt::TriangleArrays<Real> TakePart(
       if (isNew)
       {
         copy(mesh.Positions, point, 3, piece.Positions);
-        copy(mesh.Normals, point, 3, piece.Normals);
         copy(mesh.TextureCoordinates, point, 2, piece.TextureCoordinates);
+        if (mesh.NormalsOf == rt::Attachment::Points)
+        {
+          copy(mesh.Normals, point, 3, piece.Normals);
+        }
         if (mesh.ValuesOf == rt::Attachment::Points)
         {
           copy(mesh.Values, point, 1, piece.Values);
@@ -177,6 +181,10 @@ rt::TriangleArrays<Real> TakePart(
           copy(mesh.Colors, point, 4, piece.Colors);
         }
       }
+    }
+    if (mesh.NormalsOf == rt::Attachment::Triangles)
+    {
+      copy(mesh.Normals, triangle, 3, piece.Normals);
     }
     if (mesh.ValuesOf == rt::Attachment::Triangles)
     {

@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tests/scenes/RecordedScenes.h"
+
+std::vector<RecordedScene> CreateRecordedScenes()
+{
+  std::vector<RecordedScene> scenes;
+  AddVolumeScenes(scenes);
+  AddMeshScenes(scenes);
+  AddLightScenes(scenes);
+  AddFrameScenes(scenes);
+  return scenes;
+}
