@@ -2,6 +2,7 @@
 #include "vtkPVDSMRefinement.h"
 
 #include "vtkPVDSMDelivery.h"
+#include "vtkPVDSMProgressGuard.h"
 #include "vtkPVDSMVersionCheck.h"
 
 #include "vtkClientServerStream.h"
@@ -106,6 +107,8 @@ void ForEachReport(vtkSMProxy* view, const Visit& visit)
 
 vtkStandardNewMacro(vtkPVDSMRefinement);
 
+vtkPVDSMRefinement::vtkPVDSMRefinement() = default;
+
 vtkPVDSMRefinement::~vtkPVDSMRefinement()
 {
   this->Forget();
@@ -149,6 +152,7 @@ void vtkPVDSMRefinement::Attach(vtkSMRenderViewProxy* view)
 {
   this->View = view;
   vtkPVDSMVersionCheck::Run(view->GetSession());
+  this->ProgressGuard->Watch(view->GetSession()->GetProgressHandler(), view->GetRenderWindow());
   this->ViewObservers = { view->AddObserver(
                             vtkCommand::StartEvent, this, &vtkPVDSMRefinement::OnRenderBegins),
     view->AddObserver(vtkCommand::EndEvent, this, &vtkPVDSMRefinement::OnRenderEnds) };

@@ -4,6 +4,7 @@
 
 #include "vtkPVDSMInputWatch.h"
 
+#include "vtkNew.h"
 #include "vtkObject.h"
 #include "vtkSmartPointer.h"
 #include "vtkWeakPointer.h"
@@ -11,6 +12,7 @@
 #include <set>
 #include <vector>
 
+class vtkPVDSMProgressGuard;
 class vtkPVRenderView;
 class vtkRenderWindow;
 class vtkRenderWindowInteractor;
@@ -33,7 +35,7 @@ public:
   static vtkSmartPointer<vtkPVDSMRefinement> Follow(vtkPVRenderView* view);
 
 protected:
-  vtkPVDSMRefinement() = default;
+  vtkPVDSMRefinement();
   ~vtkPVDSMRefinement() override;
 
 private:
@@ -58,6 +60,7 @@ private:
   vtkWeakPointer<vtkSMRenderViewProxy> View;
   vtkWeakPointer<vtkRenderWindowInteractor> Interactor;
   vtkWeakPointer<vtkRenderWindow> Window;
+  vtkNew<vtkPVDSMProgressGuard> ProgressGuard;
   vtkPVDSMInputWatch Input;
   std::vector<unsigned long> ViewObservers;
   std::vector<unsigned long> InteractorObservers;
