@@ -229,9 +229,9 @@ void RunFrame(dsm::Messenger& messenger, Store& store,
       messenger.ProgressUntil([&] { return finished == messenger.GetSize(); }, serve);
       over = true;
     }
-    catch (const dsm::Error& error) // a malformed message
+    catch (...) // a malformed message, or no memory for a block
     {
-      cause = error.what();
+      cause = dsm::Messenger::DescribeException();
       store.Cancel(cause);
     }
   }

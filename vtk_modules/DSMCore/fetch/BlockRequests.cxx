@@ -40,8 +40,16 @@ void BlockRequests::EndFrame()
 
 void BlockRequests::Add(const BlockWant& want)
 {
-  this->Pending.push_back(want);
   this->Unsent.push_back(want);
+  try
+  {
+    this->Pending.push_back(want);
+  }
+  catch (...)
+  {
+    this->Unsent.pop_back();
+    throw;
+  }
 }
 
 bool BlockRequests::Send()
@@ -134,9 +142,10 @@ void BlockRequests::Receive(Message& message)
       " did not ask it for or knows with " + std::to_string(bytes) +
       " bytes. Do all ranks run the same build?");
   }
+  // When it throws, the block is still pending: who abandons the frame sets it free.
+  this->Store.Take(block, message.Payload.data());
   this->Pending.erase(asked);
   this->BytesReceived += bytes;
-  this->Store.Take(block, message.Payload.data());
 }
 
 } // namespace dsm

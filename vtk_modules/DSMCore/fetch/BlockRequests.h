@@ -38,7 +38,7 @@ public:
     std::function<const BlockSegment*(std::uint32_t number)> Find;
     /// The bytes of a block that this rank owns.
     std::function<const std::byte*(const BlockWant& block)> GetOwned;
-    /// Takes in a block that was asked for. It is no longer pending.
+    /// Takes in a block that was asked for. It is pending until this has returned.
     std::function<void(const BlockWant& block, const std::byte* bytes)> Take;
   };
 
@@ -48,7 +48,7 @@ public:
   void BeginFrame();
   void EndFrame();
 
-  /// The next Send asks for the block; it is pending from now on.
+  /// The next Send asks for the block; it is pending from now on, unless this throws.
   void Add(const BlockWant& want);
   /// Asks the owners for what was added since the last call. Returns whether there was anything.
   bool Send();

@@ -50,8 +50,8 @@ public:
     {
       return false;
     }
-    this->Bytes += footprint;
     this->Entries.push_back({ block, footprint });
+    this->Bytes += footprint;
     return true;
   }
 

@@ -61,7 +61,8 @@ public:
   virtual void Close() noexcept = 0;
 
   /// Absent pages become these `count` bytes, and zeros up to the end of the last page. Threads that
-  /// wait for them may go on, but are not told (Answer). Throws std::bad_alloc, Error.
+  /// wait for them may go on, but are not told (Answer). Throws std::bad_alloc, Error; the pages are
+  /// absent then.
   virtual void Place(std::byte* begin, const std::byte* bytes, std::size_t count) = 0;
   /// Absent pages become zeros, at the expense of no memory.
   virtual void PlaceZeros(std::byte* begin, std::size_t bytes) = 0;
@@ -73,8 +74,9 @@ public:
   /// To every fault exactly once.
   virtual void Answer(const Fault& fault, Reply reply) noexcept = 0;
 
-  /// Waits, and replaces `faults` by new ones; false after StopWaiting.
+  /// Waits, and replaces `faults` by new ones, no more than LargestReport; false after StopWaiting.
   virtual bool WaitForFaults(std::vector<Fault>& faults) = 0;
+  static constexpr std::size_t LargestReport = 256;
   virtual void StopWaiting() noexcept = 0;
 
 protected:

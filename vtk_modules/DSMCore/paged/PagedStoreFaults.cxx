@@ -13,6 +13,8 @@ namespace dsm
 
 void PagedStore::Internals::StartListening()
 {
+  std::vector<PageFaults::Fault> faults;
+  faults.reserve(PageFaults::LargestReport);
   // The application's signals are not for this thread.
   sigset_t all;
   sigset_t before;
@@ -20,7 +22,7 @@ void PagedStore::Internals::StartListening()
   pthread_sigmask(SIG_SETMASK, &all, &before);
   try
   {
-    this->Listener = std::thread([this] { this->Listen(); });
+    this->Listener = std::thread(&Internals::Listen, this, std::move(faults));
   }
   catch (...)
   {
@@ -45,17 +47,27 @@ void PagedStore::Internals::StopListening()
   this->Listener.join();
 }
 
-void PagedStore::Internals::Listen()
+void PagedStore::Internals::Listen(std::vector<PageFaults::Fault> faults)
 {
-  std::vector<PageFaults::Fault> faults;
   while (this->Faults->WaitForFaults(faults))
   {
     bool any = false;
     {
-      const std::lock_guard<std::mutex> lock(this->Guard);
+      std::unique_lock<std::mutex> lock(this->Guard);
       for (const PageFaults::Fault& fault : faults)
       {
-        any |= this->Take(fault);
+        try
+        {
+          any |= this->Take(fault);
+        }
+        catch (...)
+        {
+          this->ListenersFailure = std::current_exception();
+          this->UpdateQueuedCount();
+          this->Messages.WakeUp();
+          this->HasClosed.wait(lock, [this] { return this->Phase != FramePhase::Open; });
+          this->Take(fault);
+        }
       }
     }
     if (any)
@@ -73,21 +85,20 @@ bool PagedStore::Internals::Take(const PageFaults::Fault& fault)
     segment = candidate->Contains(fault.Address) ? candidate.get() : segment;
   }
   BlockId id = 0;
-  const bool isBlock = segment && segment->FindRemote(fault.Address, id);
-  if (!segment || this->Phase == FramePhase::Closed || fault.Thread == this->CommunicationThread ||
-    (!isBlock && this->Phase == FramePhase::Open))
+  if (!segment || !segment->FindRemote(fault.Address, id) || this->Phase == FramePhase::Closed ||
+    fault.Thread == this->CommunicationThread)
   {
     this->Faults->Answer(fault, PageFaults::Reply::Refused);
     return false;
   }
-  if (isBlock && segment->Lines[id].State == PageState::Cached)
+  if (segment->Lines[id].State == PageState::Cached)
   {
     this->Faults->Answer(fault, PageFaults::Reply::Present);
     return false;
   }
   if (this->Phase == FramePhase::Cancelled)
   {
-    this->TakeCancelled(fault, segment, isBlock, id);
+    this->TakeCancelled(fault, *segment, id);
     return false;
   }
   Worker* const worker = this->FindWorker(fault.Thread);
@@ -103,26 +114,17 @@ bool PagedStore::Internals::Take(const PageFaults::Fault& fault)
 }
 
 void PagedStore::Internals::TakeCancelled(
-  const PageFaults::Fault& fault, const Segment* segment, bool isBlock, BlockId id)
+  const PageFaults::Fault& fault, const Segment& segment, BlockId id)
 {
-  const std::size_t page = AddressRange::GetPageBytes();
-  Zeros zeros;
-  zeros.Line = isBlock ? &segment->Lines[id] : nullptr;
-  zeros.Begin = isBlock ? segment->GetAddress(id)
-                        : fault.Address - reinterpret_cast<std::uintptr_t>(fault.Address) % page;
-  zeros.Bytes = isBlock ? segment->Layout.GetFootprint(id) : page;
+  PageLine& line = segment.Lines[id];
   PageFaults::Reply reply = PageFaults::Reply::Present;
-  if (std::none_of(this->Zeroed.begin(), this->Zeroed.end(),
-        [&](const Zeros& other) { return other.Begin == zeros.Begin; }))
+  if (line.State != PageState::Zeroed)
   {
     try
     {
-      this->Faults->PlaceZeros(zeros.Begin, zeros.Bytes);
-      this->Zeroed.push_back(zeros);
-      if (zeros.Line)
-      {
-        zeros.Line->MoveTo(PageState::Zeroed);
-      }
+      this->Faults->PlaceZeros(segment.GetAddress(id), segment.Layout.GetFootprint(id));
+      line.MoveTo(PageState::Zeroed);
+      this->HasZeros = true;
       reply = PageFaults::Reply::Placed;
     }
     catch (const std::exception&)

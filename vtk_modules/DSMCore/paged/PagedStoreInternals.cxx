@@ -139,8 +139,8 @@ bool PagedStore::Internals::Request(const Segment& segment, BlockId id)
     }
     return true;
   }
-  line.MoveTo(PageState::Wanted);
   this->Wanted.push_back({ &segment, id });
+  line.MoveTo(PageState::Wanted);
   this->UpdateQueuedCount();
   return false;
 }
@@ -174,9 +174,9 @@ void PagedStore::Internals::Prefetch(const Segment& segment, const BlockId* ids,
       {
         break;
       }
+      this->Foreseen.push_back(want);
       line.MoveTo(PageState::Foreseen);
       line.IsPrefetched = true;
-      this->Foreseen.push_back(want);
       any = true;
     }
     this->UpdateQueuedCount();
@@ -381,6 +381,12 @@ bool PagedStore::Internals::Service()
   std::vector<PageCache::Frame> evicted;
   {
     const std::lock_guard<std::mutex> lock(this->Guard);
+    if (this->ListenersFailure)
+    {
+      const std::exception_ptr failure = std::exchange(this->ListenersFailure, nullptr);
+      this->UpdateQueuedCount();
+      std::rethrow_exception(failure);
+    }
     this->AskForWanted(evicted);
     if (this->Wanted.empty())
     {
@@ -397,9 +403,7 @@ void PagedStore::Internals::AskForWanted(std::vector<PageCache::Frame>& evicted)
 {
   while (!this->Wanted.empty() && this->MakeRoom(this->Wanted.front(), evicted))
   {
-    const BlockWant& want = this->Wanted.front();
-    GetLine(want).MoveTo(PageState::Pending);
-    this->Requests.Add(want);
+    this->Ask(this->Wanted.front());
     this->Wanted.pop_front();
   }
 }
@@ -415,17 +419,32 @@ void PagedStore::Internals::AskForForeseen(std::vector<PageCache::Frame>& evicte
       {
         return;
       }
-      GetLine(want).MoveTo(PageState::Pending);
-      this->Requests.Add(want);
+      this->Ask(want);
       ++this->Frame.Prefetches;
     }
     this->Foreseen.pop_front();
   }
 }
 
+void PagedStore::Internals::Ask(const BlockWant& want)
+{
+  try
+  {
+    this->Requests.Add(want);
+  }
+  catch (...)
+  {
+    this->Cache.Release(GetFootprint(want));
+    throw;
+  }
+  GetLine(want).MoveTo(PageState::Pending);
+}
+
 void PagedStore::Internals::UpdateQueuedCount()
 {
-  this->QueuedCount.store(this->Wanted.size() + this->Foreseen.size(), std::memory_order_release);
+  this->QueuedCount.store(
+    this->Wanted.size() + this->Foreseen.size() + (this->ListenersFailure ? 1 : 0),
+    std::memory_order_release);
 }
 
 bool PagedStore::Internals::MakeRoom(const BlockWant& want, std::vector<PageCache::Frame>& evicted)
@@ -543,8 +562,16 @@ void PagedStore::Internals::Take(const BlockWant& block, const std::byte* bytes)
     segment.GetAddress(block.Id), bytes, segment.GetDirectory().GetBytes(block.Id));
 
   const std::lock_guard<std::mutex> lock(this->Guard);
+  try
+  {
+    this->Cache.Insert({ &segment, block.Id, GetFootprint(block), Clock::now() });
+  }
+  catch (...)
+  {
+    this->Faults->Remove(segment.GetAddress(block.Id), GetFootprint(block));
+    throw;
+  }
   this->MarkCached(segment, block.Id);
-  this->Cache.Insert({ &segment, block.Id, GetFootprint(block), Clock::now() });
   this->Workers.WakeThoseThatWaitFor(GetLine(block));
   const auto isOther = [&](const Stopped& stopped)
   { return stopped.From != &segment || stopped.Id != block.Id; };
@@ -612,9 +639,10 @@ void PagedStore::Internals::Cancel(const std::string& cause)
   this->Workers.WakeAll();
   for (const Stopped& stopped : this->Waiting)
   {
-    this->TakeCancelled(stopped.Fault, stopped.From, true, stopped.Id);
+    this->TakeCancelled(stopped.Fault, *stopped.From, stopped.Id);
   }
   this->Waiting.clear();
+  this->HasClosed.notify_all();
 }
 
 bool PagedStore::Internals::Drain()
@@ -634,6 +662,8 @@ void PagedStore::Internals::EndFrame()
   this->Requests.EndFrame();
   this->Phase = FramePhase::Closed;
   this->CloseEntrance();
+  this->HasClosed.notify_all();
+  this->ListenersFailure = nullptr;
   this->Workers.EndFrame();
   this->AbandonRequests();
   this->Frame.PrefetchesUsed = this->Prefetches.EndFrame(
@@ -660,15 +690,25 @@ void PagedStore::Internals::EndFrame()
     this->Faults->Answer(stopped.Fault, PageFaults::Reply::Refused);
   }
   this->Waiting.clear();
-  for (const Zeros& zeros : this->Zeroed)
+  if (std::exchange(this->HasZeros, false))
   {
-    this->Faults->RemoveZeros(zeros.Begin, zeros.Bytes);
-    if (zeros.Line)
+    this->RemoveZeros();
+  }
+}
+
+void PagedStore::Internals::RemoveZeros()
+{
+  for (const auto& [number, segment] : this->Segments)
+  {
+    for (BlockId id = 0; id < segment->GetDirectory().GetCount(); ++id)
     {
-      zeros.Line->MoveTo(PageState::Absent);
+      if (segment->Lines[id].State == PageState::Zeroed)
+      {
+        this->Faults->RemoveZeros(segment->GetAddress(id), segment->Layout.GetFootprint(id));
+        segment->Lines[id].MoveTo(PageState::Absent);
+      }
     }
   }
-  this->Zeroed.clear();
 }
 
 // -- Counters --------------------------------------------------------------------------------------

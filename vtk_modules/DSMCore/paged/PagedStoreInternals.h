@@ -13,8 +13,10 @@
 
 #include <atomic>
 #include <chrono>
+#include <condition_variable>
 #include <cstdint>
 #include <deque>
+#include <exception>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -104,22 +106,15 @@ private:
     Clock::time_point Since;
   };
 
-  /// Pages that stand in for a block, or for what is between blocks (no line).
-  struct Zeros
-  {
-    std::byte* Begin;
-    std::size_t Bytes;
-    PageLine* Line;
-  };
-
   // -- Faults, on the listening thread --
   void StartListening();
   void StopListening();
-  void Listen();
-  /// Under the lock. Returns whether the communication thread has something to do.
+  /// `faults`: with room for any report, since memory may be short where it is filled.
+  void Listen(std::vector<PageFaults::Fault> faults);
+  /// Under the lock. Returns whether the communication thread has something to do. Throws
+  /// std::bad_alloc in an open frame only; the fault is to be taken again when that is cancelled.
   bool Take(const PageFaults::Fault& fault);
-  void TakeCancelled(
-    const PageFaults::Fault& fault, const Segment* segment, bool isBlock, BlockId id);
+  void TakeCancelled(const PageFaults::Fault& fault, const Segment& segment, BlockId id);
   void AdjustHold(Worker& worker, const PageFaults::Fault& fault);
   Worker* FindWorker(int thread) const;
 
@@ -142,11 +137,14 @@ private:
   /// Moves those that room can be made for to Requests.
   void AskForWanted(std::vector<PageCache::Frame>& evicted);
   void AskForForeseen(std::vector<PageCache::Frame>& evicted);
+  /// For a block that room was made for; gives the room back when it throws.
+  void Ask(const BlockWant& want);
   void UpdateQueuedCount();
   /// What is wanted or foreseen, and what was asked for, will not come.
   void AbandonRequests();
   void AbandonForeseen();
   void CloseEntrance();
+  void RemoveZeros();
   [[noreturn]] void Refuse(const Segment& segment) const;
   std::size_t GetLargestBlock() const;
 
@@ -170,7 +168,10 @@ private:
   /// Of Wanted and Foreseen; lets Service look without the lock.
   std::atomic<std::size_t> QueuedCount{ 0 };
   std::vector<Stopped> Waiting;
-  std::vector<Zeros> Zeroed;
+  /// Of the listening thread; the communication thread fails the frame for it.
+  std::exception_ptr ListenersFailure;
+  std::condition_variable HasClosed; ///< or was cancelled: Phase is Open no more
+  bool HasZeros = false;             ///< there are lines that are Zeroed
   /// Runs of neighbouring cached blocks: each takes mappings of the process.
   std::size_t Runs = 0;
   std::size_t LargestRuns = 0;

@@ -208,6 +208,14 @@ void SignalFaults::Place(std::byte* begin, const std::byte* bytes, std::size_t c
 {
   std::size_t offset = 0;
   const int file = this->GetFile(begin, offset);
+  const std::size_t pages = AddressRange::RoundUpToPages(count);
+  const auto giveUp = [&](const char* what)
+  {
+    const int cause = errno;
+    this->Remove(begin, pages);
+    errno = cause;
+    Fail(what);
+  };
   std::size_t done = 0;
   while (done < count)
   {
@@ -215,14 +223,13 @@ void SignalFaults::Place(std::byte* begin, const std::byte* bytes, std::size_t c
       pwrite(file, bytes + done, count - done, static_cast<off_t>(offset + done));
     if (written < 0 && errno != EINTR)
     {
-      Fail("Filling pages");
+      giveUp("Filling pages");
     }
     done += written > 0 ? static_cast<std::size_t>(written) : 0;
   }
-  const std::size_t pages = AddressRange::RoundUpToPages(count);
   if (mprotect(begin, pages, PROT_READ) != 0)
   {
-    Fail("Allowing pages");
+    giveUp("Allowing pages");
   }
 #ifdef MADV_POPULATE_READ
   madvise(begin, pages, MADV_POPULATE_READ); // spares the reader faults; a wish

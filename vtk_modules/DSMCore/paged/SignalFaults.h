@@ -90,7 +90,7 @@ private:
   std::atomic<std::uint32_t> Bell{ 0 };
   std::uint32_t HeardBell = 0;
   /// Threads beyond their number wait until one is free.
-  std::array<Slot, 256> Slots;
+  std::array<Slot, LargestReport> Slots;
 };
 
 } // namespace dsm

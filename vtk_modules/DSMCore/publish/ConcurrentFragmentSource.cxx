@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "DSMCore/publish/ConcurrentFragmentSource.h"
 
+#include "DSMCore/base/Error.h"
+
+#include <string>
+#include <system_error>
 #include <utility>
 
 namespace dsm
@@ -12,21 +16,41 @@ ConcurrentFragmentSource::ConcurrentFragmentSource(
   , Progress(this->Sources.size())
   , Producing(this->Sources.size())
 {
-  for (std::size_t index = 0; index < this->Sources.size(); ++index)
+  try
   {
-    this->Progress[index] = 0.0;
-    this->Threads.emplace_back(
-      [this, index] { this->Produce(*this->Sources[index], this->Progress[index]); });
+    this->Threads.reserve(this->Sources.size());
+    for (std::size_t index = 0; index < this->Sources.size(); ++index)
+    {
+      this->Threads.emplace_back(
+        [this, index] { this->Produce(*this->Sources[index], this->Progress[index]); });
+    }
+  }
+  catch (const std::system_error& error)
+  {
+    this->Stop(std::make_exception_ptr(
+      Error(std::string("A thread that prepares the data could not be started (") + error.what() +
+        "). Let the process have more threads (ulimit -u) or more memory, or use fewer ranks on "
+        "the host.")));
+  }
+  catch (...)
+  {
+    this->Stop(std::current_exception());
   }
 }
 
-ConcurrentFragmentSource::~ConcurrentFragmentSource()
+void ConcurrentFragmentSource::Stop(std::exception_ptr failure)
 {
   {
     const std::lock_guard<std::mutex> lock(this->Mutex);
     this->Stopping = true;
+    this->Failure = this->Failure ? this->Failure : failure;
   }
   this->Changed.notify_all();
+}
+
+ConcurrentFragmentSource::~ConcurrentFragmentSource()
+{
+  this->Stop(nullptr);
   for (std::thread& thread : this->Threads)
   {
     thread.join();

@@ -18,7 +18,7 @@ namespace dsm
 
 /// Runs several sources, a thread each, ahead of the one that publishes; for sources that compute
 /// or convert what they yield. At most `Ahead` fragments wait at any time. What a source throws is
-/// rethrown by Next.
+/// rethrown by Next; too when a thread cannot be started, so that the publication fails on all ranks.
 class ConcurrentFragmentSource final : public FragmentSource
 {
 public:
@@ -32,10 +32,12 @@ public:
 private:
   static constexpr std::size_t Ahead = 16;
 
+  /// Ends the threads; the first failure is the one that Next throws.
+  void Stop(std::exception_ptr failure);
   void Produce(FragmentSource& source, std::atomic<double>& progress);
 
   std::vector<std::unique_ptr<FragmentSource>> Sources;
-  std::vector<std::atomic<double>> Progress;
+  std::vector<std::atomic<double>> Progress; ///< by source, from 0 on
   std::mutex Mutex;
   std::condition_variable Changed;
   std::deque<Fragment> Waiting;

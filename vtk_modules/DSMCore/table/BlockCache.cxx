@@ -164,12 +164,20 @@ void BlockCache::Shrink()
 void BlockCache::EvictFrame(std::size_t slot, std::uint64_t epoch)
 {
   Frame& frame = this->Frames[slot];
+  this->EmptySlots.push_back(slot); // first what may throw
+  try
+  {
+    this->Limbo.push_back(Evicted{ frame.Memory, frame.Footprint, epoch });
+  }
+  catch (...)
+  {
+    this->EmptySlots.pop_back();
+    throw;
+  }
   frame.Line->MoveTo(LineState::Absent);
   frame.Line->Address.store(nullptr, std::memory_order_relaxed); // ordered by the epoch's release
-  this->Limbo.push_back(Evicted{ frame.Memory, frame.Footprint, epoch });
   this->LimboBytes += frame.Footprint;
   frame = Frame{};
-  this->EmptySlots.push_back(slot);
 }
 
 } // namespace dsm

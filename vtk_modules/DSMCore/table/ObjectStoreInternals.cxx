@@ -76,8 +76,8 @@ const std::byte* ObjectStore::Internals::Wait(Worker& worker, const Segment& seg
   const bool wasForeseen = line.Use.load(std::memory_order_relaxed) == BlockUse::Prefetched;
   if (line.State == LineState::Absent || line.State == LineState::Foreseen)
   {
-    line.MoveTo(LineState::Wanted);
     this->Wanted.push_back({ &segment, id });
+    line.MoveTo(LineState::Wanted);
     this->UpdateQueuedCount();
   }
   else
@@ -142,9 +142,9 @@ void ObjectStore::Internals::Prefetch(const Segment& segment, const BlockId* ids
       {
         break;
       }
+      this->Foreseen.push_back(want);
       line.MoveTo(LineState::Foreseen);
       line.Use.store(BlockUse::Prefetched, std::memory_order_relaxed);
-      this->Foreseen.push_back(want);
       any = true;
     }
     this->UpdateQueuedCount();
@@ -289,8 +289,7 @@ void ObjectStore::Internals::AskForWanted()
     {
       return;
     }
-    line.MoveTo(LineState::Pending);
-    this->Requests.Add(this->Wanted.front());
+    this->Ask(this->Wanted.front());
     this->Wanted.pop_front();
   }
 }
@@ -306,12 +305,26 @@ void ObjectStore::Internals::AskForForeseen()
       {
         return;
       }
-      line.MoveTo(LineState::Pending);
-      this->Requests.Add(this->Foreseen.front());
+      this->Ask(this->Foreseen.front());
       ++this->Frame.Prefetches;
     }
     this->Foreseen.pop_front();
   }
+}
+
+void ObjectStore::Internals::Ask(const BlockWant& want)
+{
+  BlockLine& line = GetLine(want);
+  try
+  {
+    this->Requests.Add(want);
+  }
+  catch (...)
+  {
+    this->Cache.Release(line.Bytes);
+    throw;
+  }
+  line.MoveTo(LineState::Pending);
 }
 
 void ObjectStore::Internals::UpdateQueuedCount()

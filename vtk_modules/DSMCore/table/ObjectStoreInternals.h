@@ -79,6 +79,8 @@ private:
   /// Moves those that room can be made for to Requests.
   void AskForWanted();
   void AskForForeseen();
+  /// For a block that room was made for; gives the room back when it throws.
+  void Ask(const BlockWant& want);
   void UpdateQueuedCount();
   std::uint64_t GetOldestEpoch() const;
   std::size_t GetLargestBlock() const;

@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tests/unit/dsmcore/FailingCalls.h"
+
+#include <linux/userfaultfd.h>
+#include <sys/ioctl.h>
+#include <sys/mman.h>
+#include <sys/syscall.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <cerrno>
+#include <cstdarg>
+#include <cstddef>
+#include <cstdlib>
+#include <new>
+
+namespace
+{
+
+constexpr int None = -1;
+
+std::atomic<int> Armed{ None };
+std::atomic<bool> Happened{ false };
+std::atomic<bool> AllThreads{ true };
+thread_local bool IsSpared = false;
+
+bool MustFail(dsm_test::Call call)
+{
+  int expected = static_cast<int>(call);
+  if (Armed.load(std::memory_order_relaxed) != expected || (!AllThreads && IsSpared) ||
+    !Armed.compare_exchange_strong(expected, None))
+  {
+    return false;
+  }
+  Happened = true;
+  return true;
+}
+
+} // namespace
+
+namespace dsm_test
+{
+
+FailingCall::FailingCall(Call call, Of threads)
+{
+  AllThreads = threads == Of::AnyThread;
+  Happened = false;
+  Armed = static_cast<int>(call);
+}
+
+FailingCall::~FailingCall()
+{
+  Armed = None;
+}
+
+bool FailingCall::HasHappened()
+{
+  return Happened;
+}
+
+void FailingCall::SpareThisThread()
+{
+  IsSpared = true;
+}
+
+} // namespace dsm_test
+
+// -- The calls -------------------------------------------------------------------------------------
+
+void* operator new(std::size_t bytes)
+{
+  void* const memory =
+    MustFail(dsm_test::Call::Allocate) ? nullptr : std::malloc(bytes > 0 ? bytes : 1);
+  if (!memory)
+  {
+    throw std::bad_alloc();
+  }
+  return memory;
+}
+
+void operator delete(void* memory) noexcept
+{
+  std::free(memory);
+}
+
+void operator delete(void* memory, std::size_t) noexcept
+{
+  std::free(memory);
+}
+
+void* operator new(std::size_t bytes, std::align_val_t alignment)
+{
+  void* memory = nullptr;
+  if (MustFail(dsm_test::Call::AllocateAligned) ||
+    posix_memalign(&memory, static_cast<std::size_t>(alignment), bytes) != 0)
+  {
+    throw std::bad_alloc();
+  }
+  return memory;
+}
+
+void operator delete(void* memory, std::align_val_t) noexcept
+{
+  std::free(memory);
+}
+
+void operator delete(void* memory, std::size_t, std::align_val_t) noexcept
+{
+  std::free(memory);
+}
+
+extern "C" int mprotect(void* address, std::size_t bytes, int protection) noexcept
+{
+  if (protection == PROT_READ && MustFail(dsm_test::Call::Protect))
+  {
+    errno = ENOMEM;
+    return -1;
+  }
+  return static_cast<int>(syscall(SYS_mprotect, address, bytes, protection));
+}
+
+extern "C" int ioctl(int file, unsigned long request, ...) noexcept
+{
+  va_list arguments;
+  va_start(arguments, request);
+  void* const argument = va_arg(arguments, void*);
+  va_end(arguments);
+  if (request == UFFDIO_COPY && MustFail(dsm_test::Call::FillPages))
+  {
+    errno = ENOMEM;
+    return -1;
+  }
+  return static_cast<int>(syscall(SYS_ioctl, file, request, argument));
+}

@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The system refuses memory, or a thread, where a block is taken in, asked for, or produced: the frame or
+// the publication fails on every rank, and the next one is as good as new.
+#include "DSMCore/publish/ConcurrentFragmentSource.h"
+
+#include "tests/unit/dsmcore/FailingCalls.h"
+#include "tests/unit/dsmcore/PagedStoreInProcess.h"
+#include "tests/unit/dsmcore/StoreScenarios.h"
+
+#include <pthread.h>
+#include <sys/resource.h>
+
+#include <fstream>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace
+{
+
+using dsm_test::Call;
+using dsm_test::FailingCall;
+using dsm_test::Way;
+
+/// A frame in which rank 0 reads a block of rank 1, and `call` fails; then one in which it does not.
+template <class Store>
+void FailOnce(dsm::Messenger& messenger, Store& store, Call call, FailingCall::Of threads)
+{
+  FailingCall::SpareThisThread();
+  const auto directory = dsm_test::MakeDirectory(2, 8, 5000);
+  const auto segment = dsm_test::PublishPattern(messenger, store, directory);
+  std::unique_ptr<FailingCall> failure;
+  std::size_t wrong = 0;
+  const auto look = [&](typename Store::Worker& worker, int)
+  {
+    FailingCall::SpareThisThread();
+    if (messenger.GetRank() == 0)
+    {
+      wrong = dsm_test::Visit(store, worker, *segment, 1);
+    }
+  };
+  const std::string text = dsm_test::GetErrorText(
+    [&]
+    {
+      dsm_test::RunFrame<Store>(messenger, store, look,
+        [&]
+        {
+          messenger.Barrier(); // nobody else is at it
+          if (messenger.GetRank() == 0)
+          {
+            failure = std::make_unique<FailingCall>(call, threads);
+          }
+        });
+    });
+  EXPECT_EQ(text.find("The frame failed: Rank 0: "), 0u) << text;
+  EXPECT_NE(text.find("memory"), std::string::npos) << text;
+  EXPECT_TRUE(FailingCall::HasHappened());
+  messenger.Barrier();
+  failure.reset();
+  EXPECT_EQ(store.GetCounters().CachedBytes, 0u) << "no room stays set aside";
+  dsm_test::RunFrame<Store>(messenger, store, look);
+  EXPECT_EQ(wrong, 0u);
+  store.Retire(segment);
+}
+
+TEST(ObjectStoreMemoryShortage, BlockThatFindsNoMemoryFailsTheFrameOnly)
+{
+  dsm_test::RunRanks(2,
+    [](dsm::Messenger& messenger)
+    {
+      dsm::ObjectStore store(messenger, dsm_test::MakeSettings(5056)); // of the cache: one block
+      FailOnce(messenger, store, Call::AllocateAligned, FailingCall::Of::AnyThread);
+    });
+}
+
+class PagedMemoryShortage : public dsm_test::PagedStoreInProcess
+{
+};
+
+INSTANTIATE_TEST_SUITE_P(Ways, PagedMemoryShortage, testing::ValuesIn(dsm_test::GetAllWays()),
+  [](const testing::TestParamInfo<Way>& way) { return way.param.GetName(); });
+
+TEST_P(PagedMemoryShortage, PagesThatCannotBeFilledFailTheFrameOnly)
+{
+  const Call call =
+    this->GetParam().Handling == dsm::FaultHandling::Signal ? Call::Protect : Call::FillPages;
+  dsm_test::RunRanks(2,
+    [&](dsm::Messenger& messenger)
+    {
+      dsm::PagedStore store(messenger, this->GetParam().GetSettings(2 * dsm_test::GetPage()));
+      FailOnce(messenger, store, call, FailingCall::Of::AnyThread);
+    });
+}
+
+/// A worker's fault is queued by the listening thread, which needs memory for it.
+TEST_P(PagedMemoryShortage, ListenerWithoutMemoryFailsTheFrameOnly)
+{
+  if (!this->GetParam().PureFaulting)
+  {
+    GTEST_SKIP() << "a worker that asks first does not fault";
+  }
+  dsm_test::RunRanks(2,
+    [&](dsm::Messenger& messenger)
+    {
+      dsm::PagedStore store(messenger, this->GetParam().GetSettings(2 * dsm_test::GetPage()));
+      FailOnce(messenger, store, Call::Allocate, FailingCall::Of::ThreadsNotSpared);
+    });
+}
+
+/// Yields `count` empty fragments.
+class CountingSource final : public dsm::FragmentSource
+{
+public:
+  bool Next(dsm::Fragment& fragment) override
+  {
+    fragment.Block = 0;
+    fragment.Bytes.clear();
+    return --this->Left >= 0;
+  }
+  double GetProgress() const override { return 0.5; }
+
+private:
+  int Left = 100;
+};
+
+TEST(ConcurrentFragmentSource, ThreadThatCannotBeStartedIsAnErrorOfNext)
+{
+  if (dsm_test::HasSanitizer)
+  {
+    GTEST_SKIP() << "a sanitizer takes more addresses than any limit leaves";
+  }
+  GTEST_FLAG_SET(death_test_style, "fast");
+  const auto check = []
+  {
+    // Room for the stack of one thread, not of two.
+    constexpr std::size_t stack = std::size_t(1) << 30;
+    pthread_attr_t attributes;
+    pthread_attr_init(&attributes);
+    pthread_attr_setstacksize(&attributes, stack);
+    pthread_setattr_default_np(&attributes);
+    pthread_attr_destroy(&attributes);
+    std::size_t pages = 0;
+    std::ifstream("/proc/self/statm") >> pages;
+    rlimit limit{};
+    limit.rlim_cur = limit.rlim_max = (pages * dsm_test::GetPage()) + stack + stack / 2;
+    setrlimit(RLIMIT_AS, &limit);
+
+    std::vector<std::unique_ptr<dsm::FragmentSource>> sources;
+    sources.push_back(std::make_unique<CountingSource>());
+    sources.push_back(std::make_unique<CountingSource>());
+    dsm::ConcurrentFragmentSource source(std::move(sources));
+    dsm::Fragment fragment;
+    const std::string text = dsm_test::GetErrorText([&] { source.Next(fragment); });
+    EXPECT_NE(text.find("could not be started"), std::string::npos) << text;
+  };
+  EXPECT_EXIT(dsm_test::RunAndExit(check), testing::ExitedWithCode(dsm_test::Good), "");
+}
+
+} // namespace
