@@ -5,6 +5,8 @@
 
 #include <array>
 #include <atomic>
+#include <chrono>
+#include <thread>
 
 TEST(WorkerPool, EveryIndexOnceAndAllFinish)
 {
@@ -44,4 +46,23 @@ TEST(WorkerPool, NeverStarted)
   rt::WorkerPool pool;
   pool.Wait();
   EXPECT_EQ(pool.GetRunning(), 0);
+}
+
+/// What `finished` uses is gone when the frame that waited has returned.
+TEST(WorkerPool, WaitsUntilTheLastHasCalledFinished)
+{
+  rt::WorkerPool pool;
+  std::atomic<int> through{ 0 };
+  std::atomic<int> sawNoneAtWork{ 0 };
+  pool.Start(
+    2, [](int) {},
+    [&]
+    {
+      sawNoneAtWork += pool.GetRunning() == 0 ? 1 : 0;
+      std::this_thread::sleep_for(std::chrono::milliseconds(50));
+      ++through;
+    });
+  pool.Wait();
+  EXPECT_EQ(through, 2);
+  EXPECT_GE(sawNoneAtWork, 1) << "who is woken by the last one must find that none is at work";
 }

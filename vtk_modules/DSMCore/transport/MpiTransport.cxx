@@ -13,6 +13,7 @@
 #include <chrono>
 #include <deque>
 #include <limits>
+#include <list>
 #include <new>
 #include <string>
 #include <thread>
@@ -71,7 +72,7 @@ public:
     {
       // MPI may still read and write these buffers and use the communicator: they stay.
       new std::vector<Sending>(std::move(this->Outgoing));
-      new std::vector<std::deque<Receiving>>(std::move(this->Arriving));
+      new std::vector<std::list<Receiving>>(std::move(this->Arriving));
     }
   }
 
@@ -92,18 +93,16 @@ public:
         " bytes cannot be sent from rank " + std::to_string(this->Rank) + " to rank " +
         std::to_string(destination) + ": 2 GiB is the most. Use smaller blocks.");
     }
-    Sending sending;
-    sending.Kind = message.Kind;
-    sending.PayloadBytes = message.Payload.size();
-    AttachTail(message.Payload,
-      WireHeader{
-        static_cast<std::uint32_t>(message.Kind), message.Session, sending.PayloadBytes });
-    sending.Buffer = std::move(message.Payload);
-    MPI_Request request = MPI_REQUEST_NULL;
+    const MessageKind kind = message.Kind;
+    Sending sending{ kind, message.Payload.size(), std::move(message.Payload) };
+    AttachTail(sending.Buffer,
+      WireHeader{ static_cast<std::uint32_t>(kind), message.Session, sending.PayloadBytes });
     // A synchronous send is complete only when the receiver has matched it: thus the unsent bytes
     // count what would otherwise pile up, unexpected, in the receiver's memory.
-    const bool synchronous = message.Kind == MessageKind::Fragment;
+    const bool synchronous = kind == MessageKind::Fragment;
     const int bytes = static_cast<int>(sending.Buffer.size());
+    this->MakeRoomToSend(); // from MPI's call on, nothing may fail here
+    MPI_Request request = MPI_REQUEST_NULL;
     if (synchronous)
     {
       this->Check(MPI_Issend(sending.Buffer.data(), bytes, MPI_BYTE, destination, Tag,
@@ -117,7 +116,7 @@ public:
         "MPI_Isend");
     }
     this->UnsentBytes += sending.PayloadBytes;
-    ++this->UnsentMessages.at(static_cast<std::size_t>(sending.Kind));
+    ++this->UnsentMessages.at(static_cast<std::size_t>(kind));
     this->Outgoing.push_back(std::move(sending));
     this->Requests.push_back(request);
   }
@@ -128,9 +127,8 @@ public:
     any |= this->BeginReceives();
     for (std::size_t count = this->ToSelf.size(); count > 0; --count)
     {
-      Message message = std::move(this->ToSelf.front());
+      deliver(std::move(this->ToSelf.front()));
       this->ToSelf.pop_front();
-      deliver(std::move(message));
       any = true;
     }
     for (std::size_t source = 0; source < this->Arriving.size(); ++source)
@@ -158,9 +156,26 @@ private:
   struct Receiving
   {
     MPI_Request Request = MPI_REQUEST_NULL;
-    std::vector<std::byte> Buffer;
-    std::size_t LostBytes = 0; ///< of a message that there is no memory for
+    std::size_t WireBytes = 0;
+    Message Arrived;
+    bool IsLost = false;  ///< there was no memory for it
+    bool IsWhole = false; ///< its header has been read
   };
+
+  /// A request and what belongs to it stand at the same place of two arrays, which grow here and
+  /// nowhere else, so that neither can fail to grow with the other.
+  void MakeRoomToSend()
+  {
+    const std::size_t needed = this->Outgoing.size() + 1;
+    if (this->Outgoing.capacity() < needed || this->Requests.capacity() < needed ||
+      this->Done.size() < needed)
+    {
+      const std::size_t room = std::max<std::size_t>(2 * needed, 16);
+      this->Outgoing.reserve(room);
+      this->Requests.reserve(room);
+      this->Done.resize(room);
+    }
+  }
 
   void FillReserve() noexcept
   {
@@ -217,7 +232,6 @@ private:
     {
       return false;
     }
-    this->Done.resize(this->Requests.size());
     int completed = 0;
     this->Check(MPI_Testsome(
                   count, this->Requests.data(), &completed, this->Done.data(), MPI_STATUSES_IGNORE),
@@ -246,6 +260,10 @@ private:
     bool any = false;
     while (this->ArrivingBytes < MaximumArrivingBytes)
     {
+      if (this->Spare.empty())
+      {
+        this->Spare.emplace_back();
+      }
       int found = 0;
       MPI_Message matched = MPI_MESSAGE_NULL;
       MPI_Status status;
@@ -257,61 +275,76 @@ private:
       }
       int bytes = 0;
       this->Check(MPI_Get_count(&status, MPI_BYTE, &bytes), "MPI_Get_count");
-      auto& queue = this->Arriving[static_cast<std::size_t>(status.MPI_SOURCE)];
-      Receiving receiving;
-      receiving.Buffer = this->TakeBuffer(static_cast<std::size_t>(bytes));
-      if (receiving.Buffer.empty())
-      {
-        // Taken all the same, cut to nothing: the sender, and what follows, must not wait for it.
-        receiving.LostBytes = static_cast<std::size_t>(bytes);
-        bytes = 0;
-      }
+      Receiving& receiving = this->Spare.front();
+      receiving.WireBytes = static_cast<std::size_t>(bytes);
+      receiving.Arrived.Source = status.MPI_SOURCE;
+      receiving.Arrived.Payload = this->TakeBuffer(receiving.WireBytes);
+      receiving.IsLost = receiving.Arrived.Payload.empty();
+      // Taken all the same, cut to nothing: the sender, and what follows, must not wait for it.
+      bytes = receiving.IsLost ? 0 : bytes;
       this->Check(
-        MPI_Imrecv(receiving.Buffer.data(), bytes, MPI_BYTE, &matched, &receiving.Request),
+        MPI_Imrecv(receiving.Arrived.Payload.data(), bytes, MPI_BYTE, &matched, &receiving.Request),
         "MPI_Imrecv");
-      queue.push_back(std::move(receiving));
+      auto& queue = this->Arriving[static_cast<std::size_t>(status.MPI_SOURCE)];
+      queue.splice(queue.end(), this->Spare); // no memory is needed any more
       this->ArrivingBytes += static_cast<std::size_t>(bytes);
       any = true;
     }
     return any;
   }
 
-  /// In the order in which they were matched, which is the order in which they were posted.
+  /// In the order in which they were matched, which is the order in which they were posted. What
+  /// `deliver` does not take stays.
   bool FinishReceives(int source, const Deliver& deliver)
   {
     auto& queue = this->Arriving[static_cast<std::size_t>(source)];
     bool any = false;
     while (!queue.empty())
     {
-      int arrived = 0;
-      const int code = MPI_Test(&queue.front().Request, &arrived, MPI_STATUS_IGNORE);
-      if (const std::size_t lost = queue.front().LostBytes)
-      {
-        if (!arrived && code == MPI_SUCCESS)
-        {
-          break;
-        }
-        queue.pop_front();
-        throw Error("out of memory: a message of " + std::to_string(lost) + " bytes from rank " +
-          std::to_string(source) +
-          " could not be taken in. Use more ranks or more hosts, so that "
-          "each rank holds fewer bytes.");
-      }
-      this->Check(code, "MPI_Test");
-      if (!arrived)
+      Receiving& receiving = queue.front();
+      if (!receiving.IsWhole && !this->Finish(receiving, queue))
       {
         break;
       }
-      Message message;
-      message.Source = source;
-      message.Payload = std::move(queue.front().Buffer);
+      deliver(std::move(receiving.Arrived));
       queue.pop_front();
-      this->ArrivingBytes -= message.Payload.size();
-      this->ReadHeader(message);
-      deliver(std::move(message));
       any = true;
     }
     return any;
+  }
+
+  /// Whether the message at the head of `queue` has arrived. Throws, and takes it out, when it is lost.
+  bool Finish(Receiving& receiving, std::list<Receiving>& queue)
+  {
+    int arrived = 0;
+    const int code = MPI_Test(&receiving.Request, &arrived, MPI_STATUS_IGNORE);
+    if (receiving.IsLost && (arrived || code != MPI_SUCCESS)) // cut short is an error to MPI
+    {
+      const std::string text = "out of memory: a message of " +
+        std::to_string(receiving.WireBytes) + " bytes from rank " +
+        std::to_string(receiving.Arrived.Source) +
+        " could not be taken in. Use more ranks or more hosts, so that each rank holds fewer "
+        "bytes.";
+      queue.pop_front();
+      throw Error(text);
+    }
+    this->Check(code, "MPI_Test");
+    if (!arrived)
+    {
+      return false;
+    }
+    this->ArrivingBytes -= receiving.WireBytes;
+    receiving.IsWhole = true;
+    try
+    {
+      this->ReadHeader(receiving.Arrived);
+    }
+    catch (...)
+    {
+      queue.pop_front();
+      throw;
+    }
+    return true;
   }
 
   void ReadHeader(Message& message) const
@@ -368,13 +401,14 @@ private:
   MPI_Comm Communicator = MPI_COMM_NULL;
   int Rank = 0;
   int Size = 1;
-  /// Parallel arrays: MPI_Testsome wants the requests side by side.
+  /// MPI_Testsome wants the requests side by side; see MakeRoomToSend.
   std::vector<MPI_Request> Requests;
   std::vector<Sending> Outgoing;
-  std::vector<int> Done;
+  std::vector<int> Done; ///< what MPI_Testsome writes; has room for all requests
   std::size_t UnsentBytes = 0;
   std::array<std::size_t, static_cast<std::size_t>(MessageKind::Last) + 1> UnsentMessages{};
-  std::vector<std::deque<Receiving>> Arriving; ///< per source
+  std::vector<std::list<Receiving>> Arriving; ///< per source
+  std::list<Receiving> Spare;                 ///< one, made before MPI is asked for a message
   std::size_t ArrivingBytes = 0;
   std::deque<Message> ToSelf;
   std::vector<std::byte> Reserve; ///< for receiving when no memory is left; untouched until then

@@ -44,6 +44,7 @@ void WorkerPool::Start(int count, std::function<void(int)> task, std::function<v
     this->Finished = std::move(finished);
     this->Count = count;
     this->Running = count;
+    this->Engaged = count;
     ++this->Run;
   }
   this->Begun.notify_all();
@@ -58,7 +59,7 @@ int WorkerPool::GetRunning() const
 void WorkerPool::Wait()
 {
   std::unique_lock<std::mutex> lock(this->Mutex);
-  this->Ended.wait(lock, [this] { return this->Running == 0; });
+  this->Ended.wait(lock, [this] { return this->Engaged == 0; });
 }
 
 void WorkerPool::Loop(int index)
@@ -83,9 +84,12 @@ void WorkerPool::Loop(int index)
     lock.lock();
     --this->Running;
     lock.unlock();
-    this->Finished();
-    this->Ended.notify_all();
+    this->Finished(); // sees that this one has stopped, and is over before Wait returns
     lock.lock();
+    if (--this->Engaged == 0)
+    {
+      this->Ended.notify_all();
+    }
   }
 }
 

@@ -22,14 +22,14 @@ public:
   WorkerPool& operator=(const WorkerPool&) = delete;
 
   /// Makes `count` threads call `task(index)` once each, index in [0, count), and returns at once;
-  /// each that is through calls `finished`. Neither may throw. The former run must be over
-  /// (Wait). Throws dsm::Error, having started none, when the system gives no more threads.
+  /// each that is through, and no longer counts as running, calls `finished`. Neither may throw.
+  /// The former run must be over (Wait). Throws dsm::Error, having started none, when the system gives no more threads.
   void Start(int count, std::function<void(int)> task, std::function<void()> finished);
 
-  /// Any thread: how many are still at work.
+  /// Any thread: how many are still at work. One that is not may be calling `finished` yet.
   int GetRunning() const;
 
-  /// Until all have finished.
+  /// Until all are through with `finished`, too: then nothing of the run is used any more.
   void Wait();
 
 private:
@@ -43,7 +43,8 @@ private:
   std::function<void()> Finished;
   std::uint64_t Run = 0;
   int Count = 0;
-  int Running = 0;
+  int Running = 0; ///< that are in Task
+  int Engaged = 0; ///< that are in Task or in Finished
   bool Stopping = false;
 };
 
