@@ -197,7 +197,31 @@ TEST(FrameRenderer, TranslucentSurfaces)
   EXPECT_EQ(rt::GetHash(Trace(setting)), rt::GetHash(alone));
 }
 
-TEST(FrameRenderer, RequestsThatDifferAreRefusedByAllAndTheNextFrameWorks)
+/// One rank means another picture than the others.
+struct Difference
+{
+  const char* Name;
+  void (*Apply)(rt::FrameRequest& request, rt::Scene& scene);
+};
+
+class FrameThatDiffers : public testing::TestWithParam<Difference>
+{
+};
+
+INSTANTIATE_TEST_SUITE_P(Differences, FrameThatDiffers,
+  testing::Values(Difference{ "Width", [](auto& request, auto&) { request.Width = 33; } },
+    Difference{ "Camera", [](auto& request, auto&) { request.WorldToClip[3][0] += 1e-9; } },
+    Difference{ "TileSize", [](auto& request, auto&) { request.TileSize = 8; } },
+    Difference{ "Samples", [](auto& request, auto&) { request.Samples = 2; } },
+    Difference{ "Layers", [](auto& request, auto&) { request.Layers = 3; } },
+    Difference{ "Objects", [](auto&, auto& scene) { scene.Isosurfaces.clear(); } },
+    Difference{ "Isovalue", [](auto&, auto& scene) { scene.Isosurfaces[0].Isovalues[1] = 0.6; } },
+    Difference{
+      "Look", [](auto&, auto& scene) { scene.Isosurfaces[0].Surface.DiffuseColor.y = 0.3f; } },
+    Difference{ "Light", [](auto&, auto& scene) { scene.Lights[0].Color.x = 0.5f; } }),
+  [](const auto& info) { return info.param.Name; });
+
+TEST_P(FrameThatDiffers, IsRefusedByAllAndTheNextFrameWorks)
 {
   std::mutex guard;
   std::vector<std::string> errors;
@@ -208,10 +232,15 @@ TEST(FrameRenderer, RequestsThatDifferAreRefusedByAllAndTheNextFrameWorks)
       const rt::Scene scene =
         SphereScene::CreateScene(SphereScene::Publish(messenger, store), 1.0f);
       rt::FrameRenderer renderer(messenger);
+      rt::FrameRequest request = SphereScene::CreateRequest(32, 32);
+      rt::Scene mine = scene;
+      if (messenger.GetRank() == 2)
+      {
+        GetParam().Apply(request, mine);
+      }
       try
       {
-        renderer.Render(
-          store, scene, SphereScene::CreateRequest(messenger.GetRank() == 2 ? 33 : 32, 32));
+        renderer.Render(store, mine, request);
       }
       catch (const dsm::Error& error)
       {

@@ -4,6 +4,7 @@
 #include "DSMRayTracing/frame/BeamHistory.h"
 #include "DSMRayTracing/frame/FrameAgreement.h"
 #include "DSMRayTracing/frame/PixelRays.h"
+#include "DSMRayTracing/frame/SceneDigest.h"
 #include "DSMRayTracing/frame/TileGrid.h"
 #include "DSMRayTracing/frame/TileSource.h"
 #include "DSMRayTracing/frame/TileTracer.h"
@@ -85,14 +86,10 @@ private:
 /// Everything that must be equal on all ranks for a frame to make sense.
 struct RequestDigest
 {
-  std::int64_t Width;
-  std::int64_t Height;
+  std::uint64_t Scene; ///< with the camera
   std::int64_t FirstSample;
   std::int64_t Samples;
-  std::int64_t Layers;
-  std::int64_t Objects;
   std::int64_t Scheduling;
-  double WorldToClip[16];
 };
 
 /// What a rank brings to the frame.
@@ -114,14 +111,8 @@ constexpr double Unbalanced = 1.02;
 
 RequestDigest GetDigest(const FrameRequest& request, const Scene& scene)
 {
-  RequestDigest digest{ request.Width, request.Height, request.FirstSample, request.Samples,
-    request.Layers, static_cast<std::int64_t>(scene.Isosurfaces.size() + scene.Meshes.size()),
-    static_cast<std::int64_t>(request.Scheduling), {} };
-  for (int element = 0; element < 16; ++element)
-  {
-    digest.WorldToClip[element] = request.WorldToClip[element / 4][element % 4];
-  }
-  return digest;
+  return { GetSceneDigest(scene, request), request.FirstSample, request.Samples,
+    static_cast<std::int64_t>(request.Scheduling) };
 }
 
 Entry CreateEntry(
@@ -148,8 +139,8 @@ void CheckRequest(const std::vector<Entry>& entries, const FrameRequest& request
     if (std::memcmp(&entries[rank].Request, &entries.front().Request, sizeof(RequestDigest)) != 0)
     {
       throw dsm::Error("Rank " + std::to_string(rank) +
-        " was asked to draw another picture than rank 0 (camera, size or objects differ); the "
-        "frame was left out.");
+        " was asked to draw another picture than rank 0 (camera, "
+        "size, objects, their look, or the lights differ); the frame was left out.");
     }
   }
   // All ranks have the same request now, so all throw or none.
