@@ -22,7 +22,7 @@ pages = build / "doc" / "html"
 assert (pages / "index.html").is_file()
 exported = re.compile(r"^class VTKRENDERINGDSM_EXPORT (\w+)", re.MULTILINE)
 names = set()
-for header in (source / "vtk_modules" / "RenderingDSM").glob("*.h"):
+for header in (source / "vtk_modules" / "RenderingDSM").rglob("*.h"):
     text = header.read_text()
     for name in exported.findall(text):
         names.add(name)

@@ -4,6 +4,7 @@
 #include "vtkDSMLightOptions.h"
 #include "vtkDSMMemoryOptions.h"
 #include "vtkDSMScene.h"
+#include "vtkDSMSceneMesh.h"
 
 #include "vtkCompositeDataDisplayAttributes.h"
 #include "vtkCompositeDataSet.h"
@@ -22,6 +23,7 @@ vtkDSMPolyDataMapper::vtkDSMPolyDataMapper()
   , MemoryOptions(vtkSmartPointer<vtkDSMMemoryOptions>::New())
 {
   vtkMath::UninitializeBounds(this->GlobalBounds);
+  vtkDSMSceneMesh::AddKind<vtkDSMSceneMesh>();
 }
 
 vtkDSMPolyDataMapper::~vtkDSMPolyDataMapper() = default;

@@ -4,6 +4,7 @@
 #include "vtkDSMLightOptions.h"
 #include "vtkDSMMemoryOptions.h"
 #include "vtkDSMScene.h"
+#include "vtkDSMSceneVolume.h"
 
 #include "vtkCompositeDataSet.h"
 #include "vtkDataSet.h"
@@ -53,6 +54,7 @@ vtkDSMVolumeMapper::vtkDSMVolumeMapper()
   , MemoryOptions(vtkSmartPointer<vtkDSMMemoryOptions>::New())
 {
   vtkMath::UninitializeBounds(this->GlobalBounds);
+  vtkDSMSceneVolume::AddKind<vtkDSMSceneVolume>();
 }
 
 vtkDSMVolumeMapper::~vtkDSMVolumeMapper() = default;

@@ -2,11 +2,11 @@
 #ifndef vtkDSMSceneVolume_h
 #define vtkDSMSceneVolume_h
 
-#include "vtkDSMSceneMember.h"
+#include "vtkDSMMapperMember.h"
 #include "vtkDSMVolumeData.h"
+#include "vtkDSMVolumeMapper.h"
 
 #include "vtkType.h"
-#include "vtkWeakPointer.h"
 
 #include <cstdint>
 #include <memory>
@@ -14,19 +14,12 @@
 #include <string>
 #include <vector>
 
-class vtkDSMVolumeMapper;
-
 /// A volume of a scene.
-class vtkDSMSceneVolume : public vtkDSMSceneMember
+class vtkDSMSceneVolume : public vtkDSMMapperMember<vtkDSMVolumeMapper>
 {
 public:
-  explicit vtkDSMSceneVolume(vtkDSMVolumeMapper* mapper);
-  ~vtkDSMSceneVolume() override;
+  using vtkDSMMapperMember::vtkDSMMapperMember;
 
-  vtkAlgorithm* GetAlgorithm() const override;
-  vtkDSMMemoryOptions* GetMemoryOptions() const override;
-  vtkDSMLightOptions* GetLightOptions() const override;
-  void UpdatePiece(int piece, int numberOfPieces) override;
   bool HasNewData() override;
   void GiveUpBlocks() override;
   void Update(const std::shared_ptr<vtkDSMRankGroup>& group, bool newData) override;
@@ -55,10 +48,8 @@ private:
   std::string GetIsoArray();
   std::vector<double> GetIsovalues();
   rt::Material GetMaterial(double isovalue);
-  const rt::ColorMap& GetColorMap();
   rt::ClipRegion GetClipRegion(const glm::dmat4& dataToWorld) const;
 
-  vtkWeakPointer<vtkDSMVolumeMapper> Mapper;
   const vtkDataObject* SeenData = nullptr;
   vtkMTimeType SeenTime = 0;
   bool Taken = false;
@@ -67,9 +58,6 @@ private:
   std::unique_ptr<vtkDSMVolumeData> Data;
   std::shared_ptr<Published> Iso;
   std::shared_ptr<Published> Color;
-  rt::ColorMap Colors;
-  vtkMTimeType ColorsTime = 0;
-  const void* ColorsSource = nullptr;
   std::string DataFailure;
 };
 

@@ -5,7 +5,7 @@
 #include "DSMRayTracing/layout/TriangleMesh.h"
 #include "vtkDSMMeshBlock.h"
 #include "vtkDSMMeshColors.h"
-#include "vtkDSMMeshPiece.h"
+#include "vtkDSMMeshInput.h"
 #include "vtkDSMRankGroup.h"
 
 #include "vtkSmartPointer.h"
@@ -19,7 +19,6 @@
 #include <vector>
 
 class vtkAbstractArray;
-class vtkDSMPolyDataMapper;
 class vtkDSMTubesAndSpheres;
 class vtkPolyData;
 
@@ -59,29 +58,28 @@ public:
       Blocks; ///< of each, in vtkDSMMeshBlock::Collect's order
   };
 
-  /// Collective; a rank without data takes part. `wish` is the same on every rank. `content`: what
-  /// HashContent says of the mapper's data now. `old`:
-  /// what was made of the mapper's data before, or null; its meshes are taken
-  /// over where they would be the same, also those of blocks that are hidden now, and else leave the
-  /// store first, since there may not be room for both. Failures are dsm::Error, the same on every
-  /// rank.
-  vtkDSMMeshData(std::shared_ptr<vtkDSMRankGroup> group, vtkDSMPolyDataMapper* mapper,
-    const vtkDSMMeshWish& wish, const Content& content, std::unique_ptr<vtkDSMMeshData> old);
+  /// Collective; a rank without data takes part. What the input asks for is the same on every rank.
+  /// `content`: what HashContent says of the input now. `old`: what was made of the mapper's data
+  /// before, or null; its meshes are taken over where they would be the same, also those of blocks
+  /// that are hidden now, and else leave the store first, since there may not be room for both.
+  /// Failures are dsm::Error, the same on every rank.
+  vtkDSMMeshData(std::shared_ptr<vtkDSMRankGroup> group, vtkDSMMeshInput input,
+    const Content& content, std::unique_ptr<vtkDSMMeshData> old);
 
   const std::vector<Part>& GetParts() const { return this->Parts; }
   /// Without edge flags, the meshes may yet have them: those that were taken over.
-  const vtkDSMMeshWish& GetWish() const { return this->Wish; }
+  const vtkDSMMeshWish& GetWish() const { return this->Input.Wish; }
   /// Of all ranks' visible blocks; uninitialised bounds (min > max) without any.
   const double* GetBounds() const { return this->Bounds; }
   /// What is wrong, but can be shown in another way; empty when nothing is. The same on every rank.
   const std::string& GetMessage() const { return this->Message; }
 
   /// Local, quick: numbers that are others when anything may be.
-  static std::vector<std::uint64_t> GetStamp(vtkDSMPolyDataMapper* mapper, bool textured);
+  static std::vector<std::uint64_t> GetStamp(const vtkDSMMeshInput& input);
 
   /// Local, reads the data: numbers that are others when, and only when, this rank's data or what is
   /// read of them are.
-  static Content HashContent(vtkDSMPolyDataMapper* mapper, bool textured, int threads);
+  static Content HashContent(const vtkDSMMeshInput& input, int threads);
 
 private:
   struct Surface
@@ -95,9 +93,9 @@ private:
   /// Numbers an array, by its identity or by what it holds.
   using Identify = std::function<std::uint64_t(vtkAbstractArray*)>;
 
-  static Content Describe(vtkDSMPolyDataMapper* mapper, bool textured, const Identify& identify);
-  static std::vector<std::uint64_t> DescribeBlock(vtkDSMPolyDataMapper* mapper,
-    const vtkDSMMeshBlock& block, bool textured, const Identify& identify);
+  static Content Describe(const vtkDSMMeshInput& input, const Identify& identify);
+  static std::vector<std::uint64_t> DescribeBlock(
+    const vtkDSMMeshInput& input, const vtkDSMMeshBlock& block, const Identify& identify);
 
   void FormGroups();
   /// The group that an old part would be of; one that does not exist if there is none.
@@ -113,8 +111,7 @@ private:
   void Publish();
 
   std::shared_ptr<vtkDSMRankGroup> Group;
-  vtkDSMPolyDataMapper* Mapper;
-  vtkDSMMeshWish Wish;
+  vtkDSMMeshInput Input;
   // Of this rank, while its data are read:
   std::vector<vtkDSMMeshBlock> Blocks;
   std::vector<std::uint32_t> Groups; ///< of each block

@@ -2,7 +2,6 @@
 #include "vtkDSMSceneMesh.h"
 
 #include "vtkDSMLightOptions.h"
-#include "vtkDSMPolyDataMapper.h"
 #include "vtkDSMTranslation.h"
 
 #include "vtkActor.h"
@@ -59,33 +58,6 @@ rt::MeshObject::Coloring GetColoring(const vtkDSMMeshBlock::Look& look,
 
 } // namespace
 
-vtkDSMSceneMesh::vtkDSMSceneMesh(vtkDSMPolyDataMapper* mapper)
-  : Mapper(mapper)
-{
-}
-
-vtkDSMSceneMesh::~vtkDSMSceneMesh() = default;
-
-vtkAlgorithm* vtkDSMSceneMesh::GetAlgorithm() const
-{
-  return this->Mapper;
-}
-
-vtkDSMLightOptions* vtkDSMSceneMesh::GetLightOptions() const
-{
-  return this->Mapper->GetLightOptions();
-}
-
-vtkDSMMemoryOptions* vtkDSMSceneMesh::GetMemoryOptions() const
-{
-  return this->Mapper->GetMemoryOptions();
-}
-
-void vtkDSMSceneMesh::UpdatePiece(int piece, int numberOfPieces)
-{
-  this->Mapper->UpdatePiece(piece, numberOfPieces);
-}
-
 bool vtkDSMSceneMesh::IsTextured() const
 {
   auto* actor = vtkActor::SafeDownCast(this->Prop);
@@ -103,11 +75,18 @@ bool vtkDSMSceneMesh::LacksEdges() const
   return this->Data && this->ShowsEdges() && !this->Data->GetWish().EdgeFlags;
 }
 
+vtkDSMMeshInput vtkDSMSceneMesh::GetInput() const
+{
+  return { this->Mapper, this->Mapper->GetCompositeDataDisplayAttributes(),
+    this->Mapper->GetLineRadius(), this->Mapper->GetPointRadius(), this->Mapper->GetRadiusArray(),
+    { this->IsTextured(), this->ShowsEdges() } };
+}
+
 std::vector<std::uint64_t> vtkDSMSceneMesh::GetStamp() const
 {
   try
   {
-    return vtkDSMMeshData::GetStamp(this->Mapper, this->IsTextured());
+    return vtkDSMMeshData::GetStamp(this->GetInput());
   }
   catch (const dsm::Error&)
   {
@@ -120,7 +99,7 @@ vtkDSMMeshData::Content vtkDSMSceneMesh::HashContent() const
 {
   try
   {
-    return vtkDSMMeshData::HashContent(this->Mapper, this->IsTextured(), this->Threads);
+    return vtkDSMMeshData::HashContent(this->GetInput(), this->Threads);
   }
   catch (const dsm::Error&)
   {
@@ -181,9 +160,8 @@ void vtkDSMSceneMesh::Update(const std::shared_ptr<vtkDSMRankGroup>& group, bool
     this->Found = {};
     try
     {
-      const vtkDSMMeshWish wish{ this->IsTextured(), this->ShowsEdges() };
       this->Data = std::make_unique<vtkDSMMeshData>(
-        group, this->Mapper, wish, this->Seen.Content, std::move(this->Data));
+        group, this->GetInput(), this->Seen.Content, std::move(this->Data));
       this->Mapper->SetGlobalBounds(this->Data->GetBounds());
     }
     catch (const dsm::Error& error)
@@ -202,20 +180,14 @@ void vtkDSMSceneMesh::Update(const std::shared_ptr<vtkDSMRankGroup>& group, bool
   }
 }
 
-const std::shared_ptr<const rt::ColorMap>& vtkDSMSceneMesh::GetColorMap()
+std::shared_ptr<const rt::ColorMap> vtkDSMSceneMesh::GetColorMap()
 {
   vtkScalarsToColors* table = this->Mapper->GetLookupTable();
   if (!this->Mapper->GetUseLookupTableScalarRange())
   {
     table->SetRange(this->Mapper->GetScalarRange());
   }
-  if (table != this->ColorsSource || table->GetMTime() != this->ColorsTime)
-  {
-    this->Colors = std::make_shared<rt::ColorMap>(vtkDSMTranslation::ToColorMap(table));
-    this->ColorsSource = table;
-    this->ColorsTime = table->GetMTime();
-  }
-  return this->Colors;
+  return this->SampleColors(table);
 }
 
 rt::MeshObject vtkDSMSceneMesh::CreateObject(const vtkDSMMeshData::Part& part, vtkActor* actor)

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkDSMMeshColors.h"
 
-#include "vtkDSMPolyDataMapper.h"
-
 #include "vtkDataArray.h"
+#include "vtkMapper.h"
 #include "vtkPolyData.h"
 #include "vtkScalarsToColors.h"
 #include "vtkUnsignedCharArray.h"
@@ -20,7 +19,7 @@ constexpr int CellField = 1;
 constexpr int WholeField = 2;
 
 /// Whether the array's numbers are colours already.
-bool HoldsColors(vtkDSMPolyDataMapper* mapper, vtkAbstractArray* array)
+bool HoldsColors(vtkMapper* mapper, vtkAbstractArray* array)
 {
   switch (mapper->GetColorMode())
   {
@@ -33,7 +32,7 @@ bool HoldsColors(vtkDSMPolyDataMapper* mapper, vtkAbstractArray* array)
   }
 }
 
-int GetComponent(vtkDSMPolyDataMapper* mapper, vtkDataArray* array)
+int GetComponent(vtkMapper* mapper, vtkDataArray* array)
 {
   vtkScalarsToColors* table = mapper->GetLookupTable();
   const int last = array->GetNumberOfComponents() - 1;
@@ -52,8 +51,7 @@ int GetComponent(vtkDSMPolyDataMapper* mapper, vtkDataArray* array)
 
 } // namespace
 
-vtkAbstractArray* vtkDSMMeshColors::FindArray(
-  vtkDSMPolyDataMapper* mapper, vtkPolyData* data, int& field)
+vtkAbstractArray* vtkDSMMeshColors::FindArray(vtkMapper* mapper, vtkPolyData* data, int& field)
 {
   field = 0;
   const bool byName = mapper->GetScalarMode() >= VTK_SCALAR_MODE_USE_POINT_FIELD_DATA &&
@@ -64,7 +62,7 @@ vtkAbstractArray* vtkDSMMeshColors::FindArray(
     : nullptr;
 }
 
-bool vtkDSMMeshColors::DependsOnTable(vtkDSMPolyDataMapper* mapper, vtkAbstractArray* array)
+bool vtkDSMMeshColors::DependsOnTable(vtkMapper* mapper, vtkAbstractArray* array)
 {
   if (HoldsColors(mapper, array))
   {
@@ -75,7 +73,7 @@ bool vtkDSMMeshColors::DependsOnTable(vtkDSMPolyDataMapper* mapper, vtkAbstractA
     (table->GetVectorMode() == vtkScalarsToColors::RGBCOLORS && array->GetNumberOfComponents() > 1);
 }
 
-vtkDSMMeshColors::vtkDSMMeshColors(vtkDSMPolyDataMapper* mapper, vtkPolyData* data)
+vtkDSMMeshColors::vtkDSMMeshColors(vtkMapper* mapper, vtkPolyData* data)
 {
   if (!mapper->GetScalarVisibility())
   {

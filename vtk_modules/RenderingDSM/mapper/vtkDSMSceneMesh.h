@@ -2,11 +2,9 @@
 #ifndef vtkDSMSceneMesh_h
 #define vtkDSMSceneMesh_h
 
+#include "vtkDSMMapperMember.h"
 #include "vtkDSMMeshData.h"
-#include "vtkDSMSceneMember.h"
-
-#include "vtkType.h"
-#include "vtkWeakPointer.h"
+#include "vtkDSMPolyDataMapper.h"
 
 #include <cstdint>
 #include <memory>
@@ -14,19 +12,13 @@
 #include <vector>
 
 class vtkActor;
-class vtkDSMPolyDataMapper;
 
 /// The surfaces of one vtkDSMPolyDataMapper in a scene.
-class vtkDSMSceneMesh : public vtkDSMSceneMember
+class vtkDSMSceneMesh : public vtkDSMMapperMember<vtkDSMPolyDataMapper>
 {
 public:
-  explicit vtkDSMSceneMesh(vtkDSMPolyDataMapper* mapper);
-  ~vtkDSMSceneMesh() override;
+  using vtkDSMMapperMember::vtkDSMMapperMember;
 
-  vtkAlgorithm* GetAlgorithm() const override;
-  vtkDSMMemoryOptions* GetMemoryOptions() const override;
-  vtkDSMLightOptions* GetLightOptions() const override;
-  void UpdatePiece(int piece, int numberOfPieces) override;
   bool HasNewData() override;
   void GiveUpBlocks() override;
   void Update(const std::shared_ptr<vtkDSMRankGroup>& group, bool newData) override;
@@ -34,6 +26,7 @@ public:
   void AddTo(rt::Scene& scene) override;
 
 private:
+  vtkDSMMeshInput GetInput() const;
   std::vector<std::uint64_t> GetStamp() const;
   vtkDSMMeshData::Content HashContent() const;
   bool IsTextured() const;
@@ -41,10 +34,9 @@ private:
   /// Edges are to be shown, but the data were taken in without their flags.
   bool LacksEdges() const;
   rt::MeshObject CreateObject(const vtkDSMMeshData::Part& part, vtkActor* actor);
-  const std::shared_ptr<const rt::ColorMap>& GetColorMap();
+  std::shared_ptr<const rt::ColorMap> GetColorMap();
   const std::shared_ptr<const rt::Texture>& GetPicture(vtkActor* actor);
 
-  vtkWeakPointer<vtkDSMPolyDataMapper> Mapper;
   struct State
   {
     std::vector<std::uint64_t> Stamp;
@@ -57,9 +49,6 @@ private:
   std::unique_ptr<vtkDSMMeshData> Data;
   std::string Failure;
   unsigned FailureVersion = 0; ///< of the group's settings
-  std::shared_ptr<const rt::ColorMap> Colors;
-  const void* ColorsSource = nullptr;
-  vtkMTimeType ColorsTime = 0;
   std::shared_ptr<const rt::Texture> Picture;
   /// Of the texture, its image and what places it.
   std::vector<std::uint64_t> PictureSource;

@@ -2,12 +2,9 @@
 #include "vtkDSMSceneMembers.h"
 
 #include "vtkDSMLightOptions.h"
-#include "vtkDSMPolyDataMapper.h"
-#include "vtkDSMSceneMesh.h"
-#include "vtkDSMSceneVolume.h"
 #include "vtkDSMTranslation.h"
-#include "vtkDSMVolumeMapper.h"
 
+#include "vtkAbstractVolumeMapper.h"
 #include "vtkActor.h"
 #include "vtkBoundingBox.h"
 #include "vtkMapper.h"
@@ -25,20 +22,6 @@ namespace
 constexpr double AmbientOcclusionPart = 0.2;
 
 } // namespace
-
-/// Null for what is not traced.
-std::unique_ptr<vtkDSMSceneMember> vtkDSMSceneMembers::CreateState(vtkAlgorithm* mapper)
-{
-  if (auto* volumeMapper = vtkDSMVolumeMapper::SafeDownCast(mapper))
-  {
-    return std::make_unique<vtkDSMSceneVolume>(volumeMapper);
-  }
-  if (auto* polyDataMapper = vtkDSMPolyDataMapper::SafeDownCast(mapper))
-  {
-    return std::make_unique<vtkDSMSceneMesh>(polyDataMapper);
-  }
-  return nullptr;
-}
 
 void vtkDSMSceneMembers::Find(vtkRenderer* renderer)
 {
@@ -62,7 +45,8 @@ void vtkDSMSceneMembers::Find(vtkRenderer* renderer)
     }
     const auto known = std::find_if(this->States.begin(), this->States.end(),
       [=](const auto& state) { return state && mapper && state->GetAlgorithm() == mapper; });
-    auto state = known == this->States.end() ? CreateState(mapper) : std::move(*known);
+    auto state =
+      known == this->States.end() ? vtkDSMSceneMember::Create(mapper) : std::move(*known);
     if (!state)
     {
       continue;

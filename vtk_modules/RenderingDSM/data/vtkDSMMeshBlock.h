@@ -5,10 +5,11 @@
 #include <cstdint>
 #include <vector>
 
-class vtkDSMPolyDataMapper;
+class vtkCompositeDataDisplayAttributes;
+class vtkDataObject;
 class vtkPolyData;
 
-/// One vtkPolyData of a mapper's input, and how it differs from the others.
+/// One vtkPolyData of a dataset, and how it differs from the others.
 struct vtkDSMMeshBlock
 {
   /// What was set for the block or for one around it; a plain value, compared as such.
@@ -28,9 +29,10 @@ struct vtkDSMMeshBlock
   std::uint32_t Number = 0;
   Look Appearance;
 
-  /// Local: this rank's, in order, those without points left out. Throws dsm::Error for data that
-  /// are not surfaces.
-  static std::vector<vtkDSMMeshBlock> Collect(vtkDSMPolyDataMapper* mapper);
+  /// Local: this rank's, in order, those without points left out. Both may be null. Throws dsm::Error
+  /// for data that are not surfaces.
+  static std::vector<vtkDSMMeshBlock> Collect(
+    vtkDataObject* data, vtkCompositeDataDisplayAttributes* attributes);
 };
 
 #endif

@@ -6,7 +6,6 @@
 #include "DSMRayTracing/build/TriangleMeshBuilder.h"
 #include "vtkDSMContent.h"
 #include "vtkDSMGather.h"
-#include "vtkDSMPolyDataMapper.h"
 #include "vtkDSMProgress.h"
 #include "vtkDSMTubesAndSpheres.h"
 
@@ -59,6 +58,11 @@ void HideEdges(vtkPolyData* data)
   data->GetPointData()->SetAttribute(flags, vtkDataSetAttributes::EDGEFLAG);
 }
 
+std::vector<vtkDSMMeshBlock> Collect(const vtkDSMMeshInput& input)
+{
+  return vtkDSMMeshBlock::Collect(input.GetData(), input.BlockAttributes);
+}
+
 double ChooseRadius(double radius, double diagonal)
 {
   return radius == 0.0 ? DefaultRadiusPart * diagonal : radius;
@@ -83,18 +87,17 @@ bool vtkDSMMeshData::Key::operator<(const Key& other) const
   return order(*this) < order(other);
 }
 
-vtkDSMMeshData::vtkDSMMeshData(std::shared_ptr<vtkDSMRankGroup> group, vtkDSMPolyDataMapper* mapper,
-  const vtkDSMMeshWish& wish, const Content& content, std::unique_ptr<vtkDSMMeshData> old)
+vtkDSMMeshData::vtkDSMMeshData(std::shared_ptr<vtkDSMRankGroup> group, vtkDSMMeshInput input,
+  const Content& content, std::unique_ptr<vtkDSMMeshData> old)
   : Group(std::move(group))
-  , Mapper(mapper)
-  , Wish(wish)
+  , Input(std::move(input))
 {
   dsm::Messenger& messenger = this->Group->GetMessenger();
   const std::string what = "Reading the surface";
   messenger.RunTogether(what,
     [&]
     {
-      this->Blocks = vtkDSMMeshBlock::Collect(mapper);
+      this->Blocks = Collect(this->Input);
       if (this->Blocks.size() != content.Blocks.size())
       {
         throw dsm::Error("The blocks of a surface changed while it was read.");
@@ -115,8 +118,8 @@ vtkDSMMeshData::vtkDSMMeshData(std::shared_ptr<vtkDSMRankGroup> group, vtkDSMPol
   {
     this->TakeOver(std::move(old->Parts));
   }
-  const vtkDSMTubesAndSpheres solids(ChooseRadius(mapper->GetLineRadius(), this->Diagonal),
-    ChooseRadius(mapper->GetPointRadius(), this->Diagonal), mapper->GetRadiusArray());
+  const vtkDSMTubesAndSpheres solids(ChooseRadius(this->Input.LineRadius, this->Diagonal),
+    ChooseRadius(this->Input.PointRadius, this->Diagonal), this->Input.RadiusArray);
   messenger.RunTogether(what, [&] { this->CheckSolids(solids); });
   std::vector<ColorReport> reports;
   messenger.RunTogether(what, [&] { this->CollectSurfaces(solids, reports); });
@@ -145,7 +148,7 @@ void vtkDSMMeshData::FormGroups()
   std::vector<Member> mine;
   for (const vtkDSMMeshBlock& block : this->Blocks)
   {
-    const bool flagged = this->Wish.EdgeFlags &&
+    const bool flagged = this->Input.Wish.EdgeFlags &&
       (block.Data->GetNumberOfVerts() > 0 || block.Data->GetNumberOfLines() > 0 ||
         vtkDSMTriangleList::NeedsEdgeFlags(block.Data));
     mine.push_back({ block.Number, block.Appearance, flagged ? 1 : 0 });
@@ -202,8 +205,8 @@ void vtkDSMMeshData::DescribeSources(const Content& content)
     std::vector<std::uint64_t> numbers = content.Blocks[index];
     if (block.Data->GetNumberOfVerts() > 0 || block.Data->GetNumberOfLines() > 0)
     {
-      AddNumber(numbers, ChooseRadius(this->Mapper->GetLineRadius(), this->Diagonal));
-      AddNumber(numbers, ChooseRadius(this->Mapper->GetPointRadius(), this->Diagonal));
+      AddNumber(numbers, ChooseRadius(this->Input.LineRadius, this->Diagonal));
+      AddNumber(numbers, ChooseRadius(this->Input.PointRadius, this->Diagonal));
     }
     std::vector<std::uint64_t>& source = this->Sources[this->Groups[index]];
     source.insert(source.end(), numbers.begin(), numbers.end());
@@ -307,7 +310,7 @@ void vtkDSMMeshData::CollectSurfaces(
     }
     if (data->GetNumberOfCells() > 0)
     {
-      const vtkDSMMeshColors colors(this->Mapper, data);
+      const vtkDSMMeshColors colors(this->Input.Mapper, data);
       reports.push_back({ colors.GetState(), 0, colors.GetLength(), colors.GetExpectedLength() });
       if (data->GetNumberOfPolys() > 0 || data->GetNumberOfStrips() > 0)
       {
@@ -318,7 +321,7 @@ void vtkDSMMeshData::CollectSurfaces(
     {
       if (solid && solid->GetNumberOfCells() > 0)
       {
-        if (this->Wish.EdgeFlags)
+        if (this->Input.Wish.EdgeFlags)
         {
           HideEdges(solid);
         }
@@ -332,9 +335,9 @@ void vtkDSMMeshData::AddSurface(std::uint32_t group, vtkPolyData* data)
 {
   Surface surface;
   surface.Data = data;
-  surface.Colors = vtkDSMMeshColors(this->Mapper, data);
+  surface.Colors = vtkDSMMeshColors(this->Input.Mapper, data);
   const rt::MeshAttributes attributes =
-    vtkDSMMeshPiece::GetAttributes(data, surface.Colors, this->Wish);
+    vtkDSMMeshPiece::GetAttributes(data, surface.Colors, this->Input.Wish);
   surface.Kind.Group = group;
   surface.Kind.Normals = static_cast<std::uint32_t>(attributes.Normals);
   surface.Kind.Values = static_cast<std::uint32_t>(attributes.Values);
@@ -348,7 +351,7 @@ void vtkDSMMeshData::CheckColors(const std::vector<ColorReport>& mine)
   using State = vtkDSMMeshColors::State;
   dsm::Messenger& messenger = this->Group->GetMessenger();
   const auto reports = vtkDSMGather::Items(messenger, mine);
-  const char* name = this->Mapper->GetArrayName();
+  const char* name = this->Input.Mapper->GetArrayName();
   const std::string array = std::string("The colour array '") + (name ? name : "") + "'";
   bool usable = false;
   bool missing = false;
@@ -377,7 +380,7 @@ void vtkDSMMeshData::CheckColors(const std::vector<ColorReport>& mine)
 
 std::string vtkDSMMeshData::ListArrays() const
 {
-  const int mode = this->Mapper->GetScalarMode();
+  const int mode = this->Input.Mapper->GetScalarMode();
   std::vector<char> mine;
   for (const vtkDSMMeshBlock& block : this->Blocks)
   {
@@ -427,11 +430,11 @@ void vtkDSMMeshData::Publish()
   rt::TriangleMeshSettings settings;
   settings.Threads = group->GetStore().GetSettings().Workers;
   double done = 0.0;
-  vtkDSMProgress::Begin(this->Mapper);
+  vtkDSMProgress::Begin(this->Input.Mapper);
   for (const Key& kind : kinds)
   {
     vtkDSMMeshPiece piece;
-    vtkDSMMeshWish wish = this->Wish;
+    vtkDSMMeshWish wish = this->Input.Wish;
     wish.EdgeFlags = this->Flagged.count(kind.Group) != 0;
     messenger.RunTogether("Reading the surface",
       [&]
@@ -446,7 +449,7 @@ void vtkDSMMeshData::Publish()
       });
     const double share = 1.0 / static_cast<double>(kinds.size());
     const auto progress = [this, done, share](double part)
-    { vtkDSMProgress::Tell(this->Mapper, done + share * part); };
+    { vtkDSMProgress::Tell(this->Input.Mapper, done + share * part); };
     const std::shared_ptr<rt::TriangleMesh> mesh =
       rt::PublishMesh("the surface", piece, settings, group->GetStore(), messenger, progress);
     done += share;
@@ -456,10 +459,10 @@ void vtkDSMMeshData::Publish()
   }
 }
 
-std::vector<std::uint64_t> vtkDSMMeshData::GetStamp(vtkDSMPolyDataMapper* mapper, bool textured)
+std::vector<std::uint64_t> vtkDSMMeshData::GetStamp(const vtkDSMMeshInput& input)
 {
   // Times of change are unique in a process: the same place and time is the same array.
-  std::vector<std::uint64_t> numbers = Describe(mapper, textured,
+  std::vector<std::uint64_t> numbers = Describe(input,
     [](vtkAbstractArray* array)
     {
       const std::uint64_t identity[] = { reinterpret_cast<std::uintptr_t>(array),
@@ -469,28 +472,27 @@ std::vector<std::uint64_t> vtkDSMMeshData::GetStamp(vtkDSMPolyDataMapper* mapper
       return hash.Get();
     }).Whole;
   // Who writes new values to an old array need not say so at the array.
-  for (const vtkDSMMeshBlock& block : vtkDSMMeshBlock::Collect(mapper))
+  for (const vtkDSMMeshBlock& block : Collect(input))
   {
     numbers.push_back(block.Data->GetMTime());
   }
-  vtkDataObject* data =
-    mapper->GetNumberOfInputConnections(0) > 0 ? mapper->GetInputDataObject(0, 0) : nullptr;
+  vtkDataObject* data = input.GetData();
   numbers.push_back(reinterpret_cast<std::uintptr_t>(data));
   numbers.push_back(data ? data->GetMTime() : 0);
   numbers.push_back(data ? data->GetUpdateTime() : 0);
   return numbers;
 }
 
-vtkDSMMeshData::Content vtkDSMMeshData::HashContent(
-  vtkDSMPolyDataMapper* mapper, bool textured, int threads)
+vtkDSMMeshData::Content vtkDSMMeshData::HashContent(const vtkDSMMeshInput& input, int threads)
 {
-  return Describe(mapper, textured,
-    [threads](vtkAbstractArray* array) { return vtkDSMContent::Hash(array, threads); });
+  return Describe(
+    input, [threads](vtkAbstractArray* array) { return vtkDSMContent::Hash(array, threads); });
 }
 
-std::vector<std::uint64_t> vtkDSMMeshData::DescribeBlock(vtkDSMPolyDataMapper* mapper,
-  const vtkDSMMeshBlock& block, bool textured, const Identify& identify)
+std::vector<std::uint64_t> vtkDSMMeshData::DescribeBlock(
+  const vtkDSMMeshInput& input, const vtkDSMMeshBlock& block, const Identify& identify)
 {
+  vtkMapper* mapper = input.Mapper;
   std::vector<std::uint64_t> numbers;
   const auto addArray = [&](vtkAbstractArray* array) { numbers.push_back(identify(array)); };
   vtkScalarsToColors* table = mapper->GetLookupTable();
@@ -504,10 +506,10 @@ std::vector<std::uint64_t> vtkDSMMeshData::DescribeBlock(vtkDSMPolyDataMapper* m
   }
   addArray(data->GetPointData()->GetNormals());
   addArray(data->GetPointData()->GetNormals() ? nullptr : data->GetCellData()->GetNormals());
-  addArray(textured ? data->GetPointData()->GetTCoords() : nullptr);
+  addArray(input.Wish.TextureCoordinates ? data->GetPointData()->GetTCoords() : nullptr);
   addArray(data->GetCellData()->GetAbstractArray(vtkDataSetAttributes::GhostArrayName()));
   addArray(data->GetPointData()->GetAttribute(vtkDataSetAttributes::EDGEFLAG));
-  addArray(data->GetPointData()->GetAbstractArray(mapper->GetRadiusArray().c_str()));
+  addArray(data->GetPointData()->GetAbstractArray(input.RadiusArray.c_str()));
   int field = 0;
   vtkAbstractArray* colors = vtkDSMMeshColors::FindArray(mapper, data, field);
   addArray(colors);
@@ -532,12 +534,13 @@ std::vector<std::uint64_t> vtkDSMMeshData::DescribeBlock(vtkDSMPolyDataMapper* m
 }
 
 vtkDSMMeshData::Content vtkDSMMeshData::Describe(
-  vtkDSMPolyDataMapper* mapper, bool textured, const Identify& identify)
+  const vtkDSMMeshInput& input, const Identify& identify)
 {
+  vtkMapper* mapper = input.Mapper;
   Content content;
   std::vector<std::uint64_t>& numbers = content.Whole;
-  AddNumber(numbers, mapper->GetLineRadius());
-  AddNumber(numbers, mapper->GetPointRadius());
+  AddNumber(numbers, input.LineRadius);
+  AddNumber(numbers, input.PointRadius);
   if (mapper->GetScalarVisibility())
   {
     // Also when there is no such array: that must be said.
@@ -545,7 +548,7 @@ vtkDSMMeshData::Content vtkDSMMeshData::Describe(
     const char* name = mapper->GetArrayName();
     numbers.push_back(std::hash<std::string>{}(name ? name : ""));
   }
-  for (const vtkDSMMeshBlock& block : vtkDSMMeshBlock::Collect(mapper))
+  for (const vtkDSMMeshBlock& block : Collect(input))
   {
     numbers.push_back(block.Number);
     AddNumber(numbers, block.Appearance.Visible);
@@ -554,7 +557,7 @@ vtkDSMMeshData::Content vtkDSMMeshData::Describe(
     {
       AddNumber(numbers, channel);
     }
-    content.Blocks.push_back(DescribeBlock(mapper, block, textured, identify));
+    content.Blocks.push_back(DescribeBlock(input, block, identify));
     numbers.insert(numbers.end(), content.Blocks.back().begin(), content.Blocks.back().end());
   }
   return content;

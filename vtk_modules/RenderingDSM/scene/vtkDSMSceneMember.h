@@ -5,6 +5,8 @@
 #include "DSMRayTracing/scene/Scene.h"
 #include "vtkDSMRankGroup.h"
 
+#include "vtkType.h"
+
 #include <memory>
 #include <string>
 #include <vector>
@@ -13,12 +15,22 @@ class vtkAlgorithm;
 class vtkDSMLightOptions;
 class vtkDSMMemoryOptions;
 class vtkProp3D;
+class vtkScalarsToColors;
 
 /// What a scene keeps of one mapper: its data in bricks, and what was wrong with it.
 class vtkDSMSceneMember
 {
 public:
   virtual ~vtkDSMSceneMember() = default;
+
+  /// Returns null for a mapper of another kind.
+  using Maker = std::unique_ptr<vtkDSMSceneMember> (*)(vtkAlgorithm* mapper);
+
+  /// A kind of mapper says what is kept of it, before one is first drawn; again does nothing.
+  static void AddKind(Maker make);
+
+  /// Of any kind of mapper; null for what is not traced.
+  static std::unique_ptr<vtkDSMSceneMember> Create(vtkAlgorithm* mapper);
 
   /// Whose data these are; null once it is gone.
   virtual vtkAlgorithm* GetAlgorithm() const = 0;
@@ -51,10 +63,18 @@ public:
   void ReportMessages();
 
 protected:
+  /// The table's colours; sampled again when it has changed.
+  std::shared_ptr<const rt::ColorMap> SampleColors(vtkScalarsToColors* table);
+
   vtkProp3D* Prop = nullptr;
   /// Of the last Update and AddTo.
   std::vector<std::string> Messages;
   std::vector<std::string> Reported;
+
+private:
+  std::shared_ptr<const rt::ColorMap> Colors;
+  const void* ColorsSource = nullptr;
+  vtkMTimeType ColorsTime = 0;
 };
 
 #endif

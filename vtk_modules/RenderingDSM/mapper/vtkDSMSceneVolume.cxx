@@ -5,7 +5,6 @@
 #include "vtkDSMLightOptions.h"
 #include "vtkDSMProgress.h"
 #include "vtkDSMTranslation.h"
-#include "vtkDSMVolumeMapper.h"
 
 #include "vtkCompositeDataIterator.h"
 #include "vtkCompositeDataSet.h"
@@ -44,33 +43,6 @@ vtkMTimeType GetDataTime(vtkDataObject* data)
 }
 
 } // namespace
-
-vtkDSMSceneVolume::vtkDSMSceneVolume(vtkDSMVolumeMapper* mapper)
-  : Mapper(mapper)
-{
-}
-
-vtkDSMSceneVolume::~vtkDSMSceneVolume() = default;
-
-vtkAlgorithm* vtkDSMSceneVolume::GetAlgorithm() const
-{
-  return this->Mapper;
-}
-
-vtkDSMLightOptions* vtkDSMSceneVolume::GetLightOptions() const
-{
-  return this->Mapper->GetLightOptions();
-}
-
-vtkDSMMemoryOptions* vtkDSMSceneVolume::GetMemoryOptions() const
-{
-  return this->Mapper->GetMemoryOptions();
-}
-
-void vtkDSMSceneVolume::UpdatePiece(int piece, int numberOfPieces)
-{
-  this->Mapper->UpdatePiece(piece, numberOfPieces);
-}
 
 bool vtkDSMSceneVolume::HasNewData()
 {
@@ -307,18 +279,6 @@ std::vector<double> vtkDSMSceneVolume::GetIsovalues()
   return values;
 }
 
-const rt::ColorMap& vtkDSMSceneVolume::GetColorMap()
-{
-  vtkScalarsToColors* table = this->Mapper->GetLookupTable();
-  if (table != this->ColorsSource || table->GetMTime() != this->ColorsTime)
-  {
-    this->Colors = vtkDSMTranslation::ToColorMap(table);
-    this->ColorsSource = table;
-    this->ColorsTime = table->GetMTime();
-  }
-  return this->Colors;
-}
-
 rt::ClipRegion vtkDSMSceneVolume::GetClipRegion(const glm::dmat4& dataToWorld) const
 {
   rt::ClipRegion region = vtkDSMTranslation::ToClipRegion(this->Mapper);
@@ -383,7 +343,7 @@ void vtkDSMSceneVolume::AddTo(rt::Scene& scene)
       if (colored && this->Color->Fields[lattice])
       {
         object.ColorField = this->Color->Fields[lattice];
-        object.Colors = this->GetColorMap();
+        object.Colors = *this->SampleColors(this->Mapper->GetLookupTable());
       }
       scene.Isosurfaces.push_back(std::move(object));
     }

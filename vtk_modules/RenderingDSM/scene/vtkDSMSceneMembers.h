@@ -10,7 +10,6 @@
 #include <memory>
 #include <vector>
 
-class vtkAlgorithm;
 class vtkProp3D;
 class vtkRenderer;
 
@@ -54,8 +53,6 @@ public:
   bool ShowLegend() const;
 
 private:
-  static std::unique_ptr<vtkDSMSceneMember> CreateState(vtkAlgorithm* mapper);
-
   std::vector<std::unique_ptr<vtkDSMSceneMember>> States;
   std::vector<Member> Shown;
 };

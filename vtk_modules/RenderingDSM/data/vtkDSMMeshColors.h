@@ -10,8 +10,8 @@
 #include <cstdint>
 
 class vtkAbstractArray;
-class vtkDSMPolyDataMapper;
 class vtkDataArray;
+class vtkMapper;
 class vtkPolyData;
 class vtkUnsignedCharArray;
 
@@ -31,7 +31,7 @@ public:
 
   vtkDSMMeshColors() = default;
   /// Local. Looks the array up; no element is read yet.
-  vtkDSMMeshColors(vtkDSMPolyDataMapper* mapper, vtkPolyData* data);
+  vtkDSMMeshColors(vtkMapper* mapper, vtkPolyData* data);
 
   State GetState() const { return this->Found; }
   /// Elements of the array, and of what it should have one for each.
@@ -47,9 +47,9 @@ public:
   void GetColor(vtkIdType element, std::uint8_t rgba[4]) const;
 
   /// The array that the mapper names, or null.
-  static vtkAbstractArray* FindArray(vtkDSMPolyDataMapper* mapper, vtkPolyData* data, int& field);
+  static vtkAbstractArray* FindArray(vtkMapper* mapper, vtkPolyData* data, int& field);
   /// Whether the colours, not only what they are made of, depend on the lookup table.
-  static bool DependsOnTable(vtkDSMPolyDataMapper* mapper, vtkAbstractArray* array);
+  static bool DependsOnTable(vtkMapper* mapper, vtkAbstractArray* array);
 
 private:
   /// Null when the colours are the array's own.

@@ -2,7 +2,6 @@
 #include "vtkDSMMeshBlock.h"
 
 #include "DSMCore/base/Error.h"
-#include "vtkDSMPolyDataMapper.h"
 
 #include "vtkCompositeDataDisplayAttributes.h"
 #include "vtkDataObjectTree.h"
@@ -110,15 +109,10 @@ bool vtkDSMMeshBlock::Look::operator<(const Look& other) const
   return order(*this) < order(other);
 }
 
-std::vector<vtkDSMMeshBlock> vtkDSMMeshBlock::Collect(vtkDSMPolyDataMapper* mapper)
+std::vector<vtkDSMMeshBlock> vtkDSMMeshBlock::Collect(
+  vtkDataObject* data, vtkCompositeDataDisplayAttributes* attributes)
 {
   std::vector<vtkDSMMeshBlock> blocks;
-  if (mapper->GetNumberOfInputConnections(0) > 0)
-  {
-    if (vtkDataObject* data = mapper->GetInputDataObject(0, 0))
-    {
-      Walk(mapper->GetCompositeDataDisplayAttributes(), blocks).Visit(data, {});
-    }
-  }
+  Walk(attributes, blocks).Visit(data, {});
   return blocks;
 }
