@@ -21,13 +21,28 @@ constexpr int None = -1;
 
 std::atomic<int> Armed{ None };
 std::atomic<bool> Happened{ false };
-std::atomic<bool> AllThreads{ true };
+std::atomic<int> Left{ 0 };
+std::atomic<dsm_test::FailingCall::Of> Threads{ dsm_test::FailingCall::Of::AnyThread };
 thread_local bool IsSpared = false;
+thread_local bool IsMeant = false;
+
+bool IsConcerned()
+{
+  switch (Threads.load())
+  {
+    case dsm_test::FailingCall::Of::ThisThread:
+      return IsMeant;
+    case dsm_test::FailingCall::Of::ThreadsNotSpared:
+      return !IsSpared;
+    default:
+      return true;
+  }
+}
 
 bool MustFail(dsm_test::Call call)
 {
   int expected = static_cast<int>(call);
-  if (Armed.load(std::memory_order_relaxed) != expected || (!AllThreads && IsSpared) ||
+  if (Armed.load(std::memory_order_relaxed) != expected || !IsConcerned() || Left-- > 0 ||
     !Armed.compare_exchange_strong(expected, None))
   {
     return false;
@@ -41,9 +56,11 @@ bool MustFail(dsm_test::Call call)
 namespace dsm_test
 {
 
-FailingCall::FailingCall(Call call, Of threads)
+FailingCall::FailingCall(Call call, Of threads, int passed)
 {
-  AllThreads = threads == Of::AnyThread;
+  Threads = threads;
+  IsMeant = threads == Of::ThisThread;
+  Left = passed;
   Happened = false;
   Armed = static_cast<int>(call);
 }
@@ -51,6 +68,7 @@ FailingCall::FailingCall(Call call, Of threads)
 FailingCall::~FailingCall()
 {
   Armed = None;
+  IsMeant = false;
 }
 
 bool FailingCall::HasHappened()
@@ -69,8 +87,9 @@ void FailingCall::SpareThisThread()
 
 void* operator new(std::size_t bytes)
 {
-  void* const memory =
-    MustFail(dsm_test::Call::Allocate) ? nullptr : std::malloc(bytes > 0 ? bytes : 1);
+  const bool fails = MustFail(dsm_test::Call::Allocate) ||
+    (bytes >= dsm_test::LargeBytes && MustFail(dsm_test::Call::AllocateMuch));
+  void* const memory = fails ? nullptr : std::malloc(bytes > 0 ? bytes : 1);
   if (!memory)
   {
     throw std::bad_alloc();

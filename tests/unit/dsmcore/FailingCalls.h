@@ -10,22 +10,27 @@ namespace dsm_test
 enum class Call
 {
   Allocate,        ///< operator new
+  AllocateMuch,    ///< operator new for LargeBytes or more: no message that ranks agree by
   AllocateAligned, ///< operator new for more than the usual alignment
   Protect,         ///< mprotect, to make pages readable
   FillPages        ///< ioctl of userfaultfd that fills pages
 };
 
-/// While it is in scope, the next call of a kind fails, once. Of any thread, or of those only that have
-/// not said that they are spared. One at a time.
+constexpr unsigned long LargeBytes = 4096;
+
+/// While it is in scope, the next call of a kind, or the one after `passed` others, fails, once. Of any
+/// thread, of the one that says so, or of those only that have not said that they are spared. One at a
+/// time.
 class FailingCall
 {
 public:
   enum class Of
   {
     AnyThread,
+    ThisThread,
     ThreadsNotSpared
   };
-  explicit FailingCall(Call call, Of threads = Of::AnyThread);
+  explicit FailingCall(Call call, Of threads = Of::AnyThread, int passed = 0);
   ~FailingCall();
   FailingCall(const FailingCall&) = delete;
   FailingCall& operator=(const FailingCall&) = delete;

@@ -175,7 +175,8 @@ inline void CopiesOnceAGroup(dsm::Messenger& messenger)
     }
   }
   messenger.Barrier();
-  table.ShareWithGroup(messenger);
+  table.Meet(messenger);
+  table.Seal();
   const auto look = [&](bool replicated)
   {
     EXPECT_EQ(table.IsReplicated(), replicated);

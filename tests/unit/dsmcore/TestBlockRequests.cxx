@@ -30,6 +30,8 @@ public:
   }
   void ForEachResident(const Visit&) const override {}
   std::uint64_t GetResidentBytes() const override { return 0; }
+  std::byte* GetOwned(dsm::BlockId) const override { return nullptr; }
+  void Seal() override {}
 
   std::vector<std::uint32_t> Numbers;
 };

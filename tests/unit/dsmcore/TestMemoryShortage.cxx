@@ -5,14 +5,18 @@
 
 #include "tests/unit/dsmcore/FailingCalls.h"
 #include "tests/unit/dsmcore/PagedStoreInProcess.h"
+#include "tests/unit/dsmcore/SharingScenarios.h"
 #include "tests/unit/dsmcore/StoreScenarios.h"
 
 #include <pthread.h>
 #include <sys/resource.h>
 
+#include <atomic>
 #include <fstream>
+#include <functional>
 #include <memory>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -106,6 +110,93 @@ TEST_P(PagedMemoryShortage, ListenerWithoutMemoryFailsTheFrameOnly)
       dsm::PagedStore store(messenger, this->GetParam().GetSettings(2 * dsm_test::GetPage()));
       FailOnce(messenger, store, Call::Allocate, FailingCall::Of::ThreadsNotSpared);
     });
+}
+
+// -- Publishing ------------------------------------------------------------------------------------
+
+/// Publishes, `before` right before it; the text of what that throws, if anything.
+std::string Publish(
+  dsm::Messenger& messenger, dsm::BlockStore& store, std::shared_ptr<dsm::BlockSegment>& segment,
+  const std::function<void()>& before = [] {})
+{
+  auto directory = dsm_test::MakeDirectory(messenger.GetSize(), 1100, 20);
+  dsm_test::PatternSource source(
+    directory, messenger.GetRank(), messenger.GetSize(), dsm_test::Spread::EveryRankASlice, 100);
+  dsm_test::PatternSink sink;
+  try
+  {
+    before();
+    segment = store.Publish("Loading", std::move(directory), source, sink);
+    return {};
+  }
+  catch (const dsm::Error& error)
+  {
+    return error.what();
+  }
+}
+
+/// Whether the last rank ran out of memory when it published for the first time, `passed` of its larger
+/// allocations having succeeded.
+bool FailsOnce(int ranks, dsm::MemoryOrganization organization, bool sharing, int passed)
+{
+  std::atomic<bool> happened{ false };
+  dsm_test::RunRanks(ranks,
+    [&](dsm::Messenger& messenger)
+    {
+      dsm::BlockStore store(
+        messenger, dsm_test::MakeStoreSettings(organization, std::size_t(1) << 24, sharing));
+      std::shared_ptr<dsm::BlockSegment> segment;
+      messenger.GetHosts(); // found out once
+      std::string text;
+      {
+        std::unique_ptr<FailingCall> failure;
+        text = Publish(messenger, store, segment,
+          [&]
+          {
+            if (messenger.GetRank() == ranks - 1)
+            {
+              failure = std::make_unique<FailingCall>(
+                Call::AllocateMuch, FailingCall::Of::ThisThread, passed);
+            }
+          });
+        happened = happened || (failure && FailingCall::HasHappened());
+      }
+      // One text on all ranks, or none.
+      const dsm::Status status = messenger.Agree(text);
+      EXPECT_TRUE(status.IsOk() || status.IsEverywhere) << passed << ": " << text;
+      if (!text.empty())
+      {
+        EXPECT_NE(text.find("out of memory"), std::string::npos) << passed << ": " << text;
+        EXPECT_EQ(store.GetCounters().ResidentBytes, 0u) << "a failed publication leaves nothing";
+        EXPECT_EQ(Publish(messenger, store, segment), "") << passed;
+      }
+      dsm_test::ReadEverything(messenger, store, *segment);
+      store.Retire(segment);
+    });
+  return happened;
+}
+
+class PublishingMemoryShortage
+  : public testing::TestWithParam<std::tuple<int, dsm::MemoryOrganization, bool>>
+{
+};
+
+INSTANTIATE_TEST_SUITE_P(Stores, PublishingMemoryShortage,
+  testing::Combine(testing::Values(1, 2, 3),
+    testing::Values(dsm::MemoryOrganization::Automatic, dsm::MemoryOrganization::Replicated,
+      dsm::MemoryOrganization::ObjectBased, dsm::MemoryOrganization::PageBased),
+    testing::Bool()));
+
+/// Every larger allocation in turn: all ranks publish, or none does, and nobody waits for ever.
+TEST_P(PublishingMemoryShortage, FailsEverywhereAndTheNextWorks)
+{
+  const auto [ranks, organization, sharing] = this->GetParam();
+  int passed = 0;
+  while (FailsOnce(ranks, organization, sharing, passed))
+  {
+    ++passed;
+  }
+  EXPECT_GT(passed, 5) << "there is something to fail";
 }
 
 /// Yields `count` empty fragments.

@@ -93,7 +93,8 @@ TEST(HostSharing, MemoryThatCannotBeMappedStaysRemote)
     {
       dsm::BlockTable table(messenger.BeginSession(), dsm_test::MakeDirectory(2, 4, 100),
         messenger.GetRank(), dsm::HostGroups({ 0, 0 }));
-      table.ShareWithGroup(messenger);
+      table.Meet(messenger);
+      table.Seal();
       EXPECT_EQ(table.GetSharedBytes(), 0u);
       EXPECT_FALSE(table.IsWhole());
       EXPECT_EQ(table.Find(static_cast<dsm::BlockId>(1 - messenger.GetRank())), nullptr);
@@ -112,11 +113,11 @@ TEST(HostSharing, RankThatDoesNotWantToShareIsLeftOut)
     [](dsm::Messenger& messenger)
     {
       const auto groups = dsm::HostGroups::Find(messenger, messenger.GetRank() != 1);
-      EXPECT_EQ(groups.GetGroupCount(), 2);
-      EXPECT_TRUE(groups.AreTogether(0, 2));
-      EXPECT_FALSE(groups.AreTogether(0, 1));
-      EXPECT_EQ(groups.GetMembers(2), (std::vector<int>{ 0, 2 }));
-      EXPECT_EQ(groups.GetMembers(1), (std::vector<int>{ 1 }));
+      EXPECT_EQ(groups->GetGroupCount(), 2);
+      EXPECT_TRUE(groups->AreTogether(0, 2));
+      EXPECT_FALSE(groups->AreTogether(0, 1));
+      EXPECT_EQ(groups->GetMembers(2), (std::vector<int>{ 0, 2 }));
+      EXPECT_EQ(groups->GetMembers(1), (std::vector<int>{ 1 }));
     });
 }
 

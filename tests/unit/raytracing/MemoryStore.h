@@ -67,6 +67,8 @@ public:
       }
     }
     std::uint64_t GetResidentBytes() const override { return this->GetDirectory().GetTotalBytes(); }
+    std::byte* GetOwned(dsm::BlockId) const override { return nullptr; }
+    void Seal() override {}
 
   private:
     struct alignas(64) Chunk

@@ -9,9 +9,9 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cstdio>
 #include <cstring>
 #include <random>
-#include <string>
 #include <utility>
 
 namespace dsm
@@ -183,16 +183,18 @@ void HostSharedMemory::CloseDoor()
 
 // -- The other ranks' side -------------------------------------------------------------------------
 
-std::optional<HostSharedMemory::View> HostSharedMemory::Open(const Ticket& ticket)
+std::optional<HostSharedMemory::View> HostSharedMemory::Open(const Ticket& ticket) noexcept
 {
   if (ticket.File < 0)
   {
     return {};
   }
-  const std::string path =
-    "/proc/" + std::to_string(ticket.Process) + "/fd/" + std::to_string(ticket.File);
+  // Without memory of its own, since ranks open one another's where they cannot tell of a failure.
+  char path[64];
+  std::snprintf(path, sizeof(path), "/proc/%llu/fd/%lld",
+    static_cast<unsigned long long>(ticket.Process), static_cast<long long>(ticket.File));
   // Another process's file may be anything, so a pipe must not keep us.
-  const int file = open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY);
+  const int file = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY);
   if (file < 0)
   {
     return {};

@@ -60,7 +60,7 @@ public:
   void CloseDoor();
 
   /// Nothing when the memory cannot be mapped here: another host, another container, a limit.
-  static std::optional<View> Open(const Ticket& ticket);
+  static std::optional<View> Open(const Ticket& ticket) noexcept;
 
 private:
   bool Create(std::size_t bytes);

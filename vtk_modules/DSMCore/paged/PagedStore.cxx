@@ -23,14 +23,17 @@ constexpr std::size_t LargePageBytes = std::size_t(2) << 20;
 
 // -- Segment ---------------------------------------------------------------------------------------
 
-PagedStore::Segment::Segment(std::uint32_t number, BlockDirectory directory, int rank, int ranks)
+PagedStore::Segment::Segment(std::uint32_t number, BlockDirectory directory, int rank, int ranks,
+  std::shared_ptr<PageFaults> faults)
   : BlockSegment(number, std::move(directory))
   , Layout(this->GetDirectory(), ranks, AddressRange::GetPageBytes())
   , Entries(new std::atomic<std::uintptr_t>[this->GetDirectory().GetCount()])
   , ClosedEntries(this->GetDirectory().GetCount() * sizeof(std::uintptr_t))
   , Lines(new PageLine[this->GetDirectory().GetCount()])
   , Rank(rank)
+  , Handler(std::move(faults))
 {
+  this->Attached.reserve(2);
   const std::size_t page = AddressRange::GetPageBytes();
   // A page before and behind: see below.
   this->Range = AddressRange(this->Layout.GetBytes() + 2 * page + LargePageBytes);
@@ -64,7 +67,7 @@ PagedStore::Segment::Segment(std::uint32_t number, BlockDirectory directory, int
     }
   }
   this->ResetHints(false);
-  this->Open(false);
+  this->Admit(false);
 }
 
 PagedStore::Segment::~Segment()
@@ -130,7 +133,7 @@ void PagedStore::Segment::ResetHints(bool pure)
   }
 }
 
-void PagedStore::Segment::Open(bool open)
+void PagedStore::Segment::Admit(bool open)
 {
   const auto* const closed =
     reinterpret_cast<const std::atomic<std::uintptr_t>*>(this->ClosedEntries.GetData());
@@ -148,7 +151,7 @@ bool PagedStore::Segment::FindRemote(const std::byte* address, BlockId& id) cons
     this->Layout.Find(static_cast<std::uint64_t>(address - this->Base), id) && !this->IsOwned(id);
 }
 
-void PagedStore::Segment::Seal(std::shared_ptr<PageFaults> faults)
+void PagedStore::Segment::Seal()
 {
   const std::uint64_t begin = this->Layout.GetShareBegin(this->Rank);
   const std::uint64_t end = this->Layout.GetShareEnd(this->Rank);
@@ -156,17 +159,16 @@ void PagedStore::Segment::Seal(std::shared_ptr<PageFaults> faults)
   {
     throw std::bad_alloc();
   }
-  if (!faults)
+  if (!this->Handler)
   {
     return; // one rank: all is owned
   }
-  this->Faults = std::move(faults);
   for (const auto& [first, last] :
     { std::make_pair(std::uint64_t(0), begin), std::make_pair(end, this->Layout.GetBytes()) })
   {
     if (last > first)
     {
-      this->Faults->Attach(this->Base + first, last - first);
+      this->Handler->Attach(this->Base + first, last - first);
       this->Attached.push_back(this->Base + first);
     }
   }
@@ -176,10 +178,10 @@ void PagedStore::Segment::Detach()
 {
   for (std::byte* const begin : this->Attached)
   {
-    this->Faults->Detach(begin);
+    this->Handler->Detach(begin);
   }
   this->Attached.clear();
-  this->Faults.reset();
+  this->Handler.reset();
 }
 
 // -- Store -----------------------------------------------------------------------------------------
@@ -220,22 +222,20 @@ std::shared_ptr<BlockSegment> PagedStore::Publish(const std::string& what, Block
   FragmentSource& source, FragmentSink& sink, const std::function<void(double)>& progress)
 {
   Messenger& messages = this->Self->Messages;
-  std::shared_ptr<Segment> segment;
   SegmentPublisher::Steps steps;
-  steps.Allocate = [&](std::uint32_t number, BlockDirectory&& blocks)
+  steps.CountBytes = [&](const BlockDirectory& blocks)
   {
-    if (this->Self->IsInFrame())
-    {
-      throw Error("Blocks cannot be published within a frame.");
-    }
-    this->Self->CheckFaults();
-    segment =
-      std::make_shared<Segment>(number, std::move(blocks), messages.GetRank(), messages.GetSize());
+    this->Self->PrepareToAdd();
+    return blocks.GetResidentBytes(messages.GetRank(), AddressRange::GetPageBytes());
   };
-  steps.Locate = [&](BlockId id) { return segment->GetAddress(id); };
-  steps.Seal = [&] { segment->Seal(this->Self->Faults); };
-  SegmentPublisher(messages, what, std::move(steps))
-    .Run(std::move(directory), source, sink, progress);
+  steps.Create = [&](std::uint32_t number, BlockDirectory&& blocks)
+  {
+    return std::make_shared<Segment>(
+      number, std::move(blocks), messages.GetRank(), messages.GetSize(), this->Self->Faults);
+  };
+  const auto segment =
+    std::static_pointer_cast<Segment>(SegmentPublisher(messages, what, std::move(steps))
+                                        .Run(std::move(directory), source, sink, progress));
   this->Self->Add(segment);
   return segment;
 }

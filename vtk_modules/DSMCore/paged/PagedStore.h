@@ -160,12 +160,17 @@ private:
 class PagedStore::Segment final : public BlockSegment
 {
 public:
-  /// Sets out zeroed memory for the blocks of `rank`. Throws Error, std::bad_alloc.
-  Segment(std::uint32_t number, BlockDirectory directory, int rank, int ranks);
+  /// Sets out zeroed memory for the blocks of `rank`. `faults` may be null where all is owned. Throws
+  /// Error, std::bad_alloc.
+  Segment(std::uint32_t number, BlockDirectory directory, int rank, int ranks,
+    std::shared_ptr<PageFaults> faults);
   ~Segment() override;
   void ForEachResident(const Visit& visit) const override;
   /// In whole pages.
   std::uint64_t GetResidentBytes() const override;
+  std::byte* GetOwned(BlockId id) const override { return this->GetAddress(id); }
+  /// From now on this rank's blocks are read only, and those of others fault.
+  void Seal() override;
 
 private:
   friend class PageCache;
@@ -181,13 +186,11 @@ private:
   /// Sets all hints by where the blocks stand. With `pure`, they say that all is here.
   void ResetHints(bool pure);
   /// Lets accesses through, or makes every one take the long way.
-  void Open(bool open);
+  void Admit(bool open);
   bool IsOwned(BlockId id) const { return this->GetDirectory().GetOwner(id) == this->Rank; }
   /// Whether the address is in a page of a block of another rank.
   bool FindRemote(const std::byte* address, BlockId& id) const;
   bool Contains(const std::byte* address) const;
-  /// From now on this rank's blocks are read only, and those of others fault.
-  void Seal(std::shared_ptr<PageFaults> faults);
   /// Those of others can no longer be read.
   void Detach();
 
@@ -203,7 +206,7 @@ private:
   std::unique_ptr<PageLine[]> Lines;
   int Rank = 0;
   bool Retired = false; ///< under the store's lock
-  std::shared_ptr<PageFaults> Faults;
+  std::shared_ptr<PageFaults> Handler;
   std::vector<std::byte*> Attached;
 };
 

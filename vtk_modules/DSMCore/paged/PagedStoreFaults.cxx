@@ -80,7 +80,7 @@ void PagedStore::Internals::Listen(std::vector<PageFaults::Fault> faults)
 bool PagedStore::Internals::Take(const PageFaults::Fault& fault)
 {
   const Segment* segment = nullptr;
-  for (const auto& [number, candidate] : this->Segments)
+  for (const auto& candidate : this->Segments)
   {
     segment = candidate->Contains(fault.Address) ? candidate.get() : segment;
   }

@@ -43,7 +43,7 @@ PagedStore::Internals::~Internals()
 {
   this->EndFrame();
   this->StopListening();
-  for (const auto& [number, segment] : this->Segments)
+  for (const auto& segment : this->Segments)
   {
     segment->Detach(); // it may live on
     segment->Retired = true;
@@ -202,7 +202,7 @@ void PagedStore::Internals::Configure(const Settings& settings)
     throw Error("The settings of a store cannot change within a frame.");
   }
   const bool changes = settings.Handling != this->Current.Handling;
-  if (changes && !this->Segments.empty())
+  if (changes && !this->Segments.IsEmpty())
   {
     throw Error("The handling of page faults cannot change while data is loaded.");
   }
@@ -250,16 +250,26 @@ void PagedStore::Internals::CheckFaults() const
   }
 }
 
+void PagedStore::Internals::PrepareToAdd()
+{
+  if (this->IsInFrame())
+  {
+    throw Error("Blocks cannot be published within a frame.");
+  }
+  this->CheckFaults();
+  const std::lock_guard<std::mutex> lock(this->Guard);
+  this->Segments.MakeRoom(1);
+}
+
 void PagedStore::Internals::Add(std::shared_ptr<Segment> segment)
 {
   const std::lock_guard<std::mutex> lock(this->Guard);
-  this->Segments.emplace(segment->GetNumber(), std::move(segment));
+  this->Segments.Add(std::move(segment));
 }
 
 void PagedStore::Internals::Retire(const BlockSegment& segment)
 {
-  const auto found = this->Segments.find(segment.GetNumber());
-  if (found == this->Segments.end() || found->second.get() != &segment)
+  if (!this->Segments.Has(segment))
   {
     return;
   }
@@ -267,15 +277,15 @@ void PagedStore::Internals::Retire(const BlockSegment& segment)
   {
     throw Error("A segment cannot be retired within a frame.");
   }
-  const std::shared_ptr<Segment> retired = found->second;
+  std::shared_ptr<Segment> retired;
   {
     const std::lock_guard<std::mutex> lock(this->Guard);
+    retired = this->Segments.Remove(segment);
     retired->Retired = true;
     for (const PageCache::Frame& frame : this->Cache.Forget(*retired))
     {
       this->MarkEvicted(frame);
     }
-    this->Segments.erase(found);
   }
   retired->Detach();
 }
@@ -285,7 +295,7 @@ void PagedStore::Internals::Retire(const BlockSegment& segment)
 std::size_t PagedStore::Internals::GetLargestBlock() const
 {
   std::size_t largest = 0;
-  for (const auto& [number, segment] : this->Segments)
+  for (const auto& segment : this->Segments)
   {
     largest = std::max(largest, std::size_t(segment->GetDirectory().GetLargest()));
   }
@@ -361,13 +371,13 @@ void PagedStore::Internals::BeginFrame(bool agreed)
     worker->LastFault = nullptr;
   }
   this->Phase = FramePhase::Open;
-  for (const auto& [number, segment] : this->Segments)
+  for (const auto& segment : this->Segments)
   {
     if (segment->IsPure != this->Current.PureFaulting)
     {
       segment->ResetHints(this->Current.PureFaulting);
     }
-    segment->Open(true);
+    segment->Admit(true);
   }
   this->IsEntranceOpen.store(true, std::memory_order_release);
 }
@@ -543,11 +553,7 @@ void PagedStore::Internals::MarkEvicted(const PageCache::Frame& frame)
 BlockRequests::Callbacks PagedStore::Internals::MakeCallbacks()
 {
   BlockRequests::Callbacks callbacks;
-  callbacks.Find = [this](std::uint32_t number) -> const BlockSegment*
-  {
-    const auto found = this->Segments.find(number);
-    return found == this->Segments.end() ? nullptr : found->second.get();
-  };
+  callbacks.Find = [this](std::uint32_t number) { return this->Segments.Find(number); };
   callbacks.GetOwned = [](const BlockWant& block) -> const std::byte*
   { return GetSegment(block).GetAddress(block.Id); };
   callbacks.Take = [this](const BlockWant& block, const std::byte* bytes)
@@ -619,9 +625,9 @@ void PagedStore::Internals::AbandonForeseen()
 void PagedStore::Internals::CloseEntrance()
 {
   this->IsEntranceOpen.store(false, std::memory_order_release);
-  for (const auto& [number, segment] : this->Segments)
+  for (const auto& segment : this->Segments)
   {
-    segment->Open(false);
+    segment->Admit(false);
   }
 }
 
@@ -698,7 +704,7 @@ void PagedStore::Internals::EndFrame()
 
 void PagedStore::Internals::RemoveZeros()
 {
-  for (const auto& [number, segment] : this->Segments)
+  for (const auto& segment : this->Segments)
   {
     for (BlockId id = 0; id < segment->GetDirectory().GetCount(); ++id)
     {
@@ -738,7 +744,7 @@ StoreCounters PagedStore::Internals::GetCounters()
   {
     counters.Workers += worker;
   }
-  for (const auto& [number, segment] : this->Segments)
+  for (const auto& segment : this->Segments)
   {
     counters.ResidentBytes += segment->GetResidentBytes();
   }

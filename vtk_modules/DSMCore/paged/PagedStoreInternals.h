@@ -8,6 +8,7 @@
 #include "DSMCore/paged/PageCache.h"
 #include "DSMCore/paged/PageFaults.h"
 #include "DSMCore/paged/PagedStore.h"
+#include "DSMCore/publish/SegmentList.h"
 
 #include <sys/types.h>
 
@@ -17,7 +18,6 @@
 #include <cstdint>
 #include <deque>
 #include <exception>
-#include <map>
 #include <memory>
 #include <mutex>
 #include <string>
@@ -52,6 +52,9 @@ public:
   /// Throws Error when faults cannot be handled as they should, or this process is a fork of the
   /// store's.
   void CheckFaults() const;
+  /// Where the ranks agree afterwards: whether a segment may be added. Throws when it may not; else
+  /// Add will not fail.
+  void PrepareToAdd();
   void Add(std::shared_ptr<Segment> segment);
   void Retire(const BlockSegment& segment);
 
@@ -154,8 +157,8 @@ private:
 
   /// Guards what follows, the segments' lines, and what workers have for the slow path.
   mutable std::mutex Guard;
-  /// By number. Changed by the communication thread alone, which needs no lock to read it.
-  std::map<std::uint32_t, std::shared_ptr<Segment>> Segments;
+  /// Changed by the communication thread alone, which needs no lock to read it.
+  SegmentList<Segment> Segments;
   FramePhase Phase = FramePhase::Closed;
   std::atomic<bool> IsEntranceOpen{ false };
   int CommunicationThread = 0;

@@ -13,14 +13,14 @@ std::uint32_t BlockDirectory::GetLargest() const
   return largest == this->Bytes.end() ? 0 : *largest;
 }
 
-std::uint64_t BlockDirectory::GetResidentBytes(int owner) const
+std::uint64_t BlockDirectory::GetResidentBytes(int owner, std::size_t unit) const
 {
   std::uint64_t sum = 0;
   for (BlockId id = 0; id < this->GetCount(); ++id)
   {
     if (this->GetOwner(id) == owner)
     {
-      sum += AlignBlock(this->Bytes[id]);
+      sum += (this->Bytes[id] + unit - 1) / unit * unit;
     }
   }
   return sum;

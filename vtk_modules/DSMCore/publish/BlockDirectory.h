@@ -26,8 +26,8 @@ public:
   int GetOwner(BlockId id) const { return this->Assigner.GetOwner(id); }
   /// The largest block; 0 when there is none.
   std::uint32_t GetLargest() const;
-  /// Sum over the blocks of one owner, each rounded up to BlockAlignment.
-  std::uint64_t GetResidentBytes(int owner) const;
+  /// Sum over the blocks of one owner, each rounded up to a multiple of `unit`.
+  std::uint64_t GetResidentBytes(int owner, std::size_t unit = BlockAlignment) const;
   std::uint64_t GetTotalBytes() const;
   /// Equal directories have equal ones.
   std::uint64_t GetFingerprint() const;

@@ -12,8 +12,10 @@
 namespace dsm
 {
 
+class Messenger;
+
 /// Blocks that were published together: their directory and this rank's share of them. Each store
-/// derives its own, with what it needs to find a block. Immutable after Seal.
+/// derives its own, with what it needs to find a block. Immutable after Seal. Communication thread.
 class BlockSegment
 {
 public:
@@ -34,6 +36,18 @@ public:
   using Visit = std::function<void(BlockId, const std::byte*, std::size_t)>;
   virtual void ForEachResident(const Visit& visit) const = 0;
   virtual std::uint64_t GetResidentBytes() const = 0;
+
+  // -- For whoever publishes it (SegmentPublisher) --
+
+  /// Where a block lies that this rank owns; zeros, until somebody fills it.
+  virtual std::byte* GetOwned(BlockId id) const = 0;
+  /// Collective, when all ranks have set out their memory: they may look at one another's. What one
+  /// of them lacks for it, Seal says.
+  virtual void Meet(Messenger&) {}
+  /// Local, when all blocks that this rank owns are complete. May throw.
+  virtual void Seal() = 0;
+  /// Local, when all ranks have sealed.
+  virtual void Open() {}
 
 private:
   std::uint32_t Number;

@@ -2,14 +2,14 @@
 #ifndef dsm_BlockSpread_h
 #define dsm_BlockSpread_h
 
+#include "DSMCore/base/FirstFailure.h"
 #include "DSMCore/publish/BlockDirectory.h"
 #include "DSMCore/publish/HostGroups.h"
+#include "DSMCore/publish/StreamEnd.h"
 #include "DSMCore/transport/Messenger.h"
 
 #include <cstddef>
-#include <cstdint>
 #include <functional>
-#include <string>
 
 namespace dsm
 {
@@ -31,26 +31,27 @@ public:
   BlockSpread& operator=(const BlockSpread&) = delete;
 
   /// Collective; the session must have been begun for it. Returns when every copy is where it
-  /// belongs, with what went wrong on this rank (empty: nothing); it is for the caller to let the
-  /// ranks agree.
-  std::string Run();
+  /// belongs, or the rank that should have sent it has failed; it is for the caller to let the ranks
+  /// agree.
+  void Run();
+  /// Throws what went wrong on this rank, if anything did.
+  void ThrowFailure() const { this->Failure.Throw(); }
 
 private:
   bool Feed();
+  /// False when there is nothing left.
+  bool SendNext();
   void Receive(Message&& message);
-  void Fail(const std::string& cause);
 
   Messenger& Messages;
   const BlockDirectory& Directory;
   const HostGroups& Groups;
   Source From;
   Destination To;
-  std::uint32_t Session = 0;
+  StreamEnd End;
   BlockId Next = 0; ///< the block, and the group, that are sent next
   int NextGroup = 0;
-  bool Told = false;
-  int Finished = 0; ///< ranks, this one included, that have sent all
-  std::string Cause;
+  FirstFailure Failure;
 };
 
 } // namespace dsm

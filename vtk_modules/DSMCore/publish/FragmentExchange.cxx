@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "DSMCore/publish/FragmentExchange.h"
 
+#include "DSMCore/base/Error.h"
+
 #include <algorithm>
+#include <functional>
+#include <string>
 #include <utility>
 
 namespace dsm
@@ -22,43 +26,27 @@ constexpr double ProgressStep = 0.01;
 } // namespace
 
 FragmentExchange::FragmentExchange(
-  Messenger& messenger, const BlockDirectory& directory, Locate locate)
+  Messenger& messenger, const BlockSegment& segment, FragmentSink& sink)
   : Messages(messenger)
-  , Directory(directory)
-  , Find(std::move(locate))
+  , Segment(segment)
+  , Sink(sink)
+  , End(messenger, MessageKind::Fragment)
 {
+  this->Messages.SetHandler(
+    MessageKind::Fragment, [this](Message&& message) { this->Receive(std::move(message)); });
 }
 
-FragmentExchange::~FragmentExchange()
-{
-  this->Messages.SetHandler(MessageKind::Fragment, {});
-  this->Messages.SetHandler(MessageKind::PublishDone, {});
-}
+FragmentExchange::~FragmentExchange() = default;
 
-std::string FragmentExchange::Run(
-  FragmentSource& source, FragmentSink& sink, const std::function<void(double)>& progress)
+void FragmentExchange::Run(FragmentSource& source, const std::function<void(double)>& progress)
 {
-  this->Session = this->Messages.GetSession();
-  this->Messages.SetHandler(MessageKind::Fragment,
-    [this, &sink](Message&& message) { this->Receive(std::move(message), sink); });
-  this->Messages.SetHandler(MessageKind::PublishDone,
-    [this](Message&& message) { this->Finished += message.Session == this->Session ? 1 : 0; });
-
   double shown = -1.0;
-  const auto done = [&]
-  {
-    // The own messages must have left: whoever waits for them gets no help from this rank while it
-    // finishes its blocks.
-    return this->Finished == this->Messages.GetSize() &&
-      !this->Messages.HasUnsent(MessageKind::Fragment) &&
-      !this->Messages.HasUnsent(MessageKind::PublishDone);
-  };
   const auto work = [&]
   {
-    const bool fed = this->Feed(source, sink);
-    if (progress && fed && this->Cause.empty())
+    const bool fed = this->Feed(source);
+    if (progress && fed && this->Failure.IsEmpty())
     {
-      this->Try(
+      this->Failure.Try(
         [&]
         {
           const double part = std::clamp(source.GetProgress(), 0.0, 1.0);
@@ -71,109 +59,84 @@ std::string FragmentExchange::Run(
     }
     return fed;
   };
-  this->Messages.ServeUntil(done, work, [this](const std::string& cause) { this->Fail(cause); });
-  return this->Cause;
+  // By reference, since to copy what it captures could fail, and others count on this rank by now.
+  this->Messages.ServeUntil([this] { return this->End.IsReached(); }, std::cref(work),
+    [this](const std::string& cause)
+    { this->Failure.Keep(std::make_exception_ptr(Error(cause))); });
 }
 
-bool FragmentExchange::Feed(FragmentSource& source, FragmentSink& sink)
+bool FragmentExchange::Feed(FragmentSource& source)
 {
-  if (this->SourceIsDry || this->Messages.GetUnsentBytes() >= MaximumUnsentBytes)
+  if (this->SourceIsDry)
+  {
+    return this->End.Tell();
+  }
+  if (this->Messages.GetUnsentBytes() >= MaximumUnsentBytes)
   {
     return false;
   }
-  Fragment fragment;
   bool more = false;
-  if (this->Cause.empty())
+  if (this->Failure.IsEmpty())
   {
-    this->Try(
+    this->Failure.Try(
       [&]
       {
-        more = source.Next(fragment);
-        if (more && fragment.Block >= this->Directory.GetCount())
+        Fragment fragment;
+        if (source.Next(fragment))
         {
-          throw Error("A fragment was produced for block " + std::to_string(fragment.Block) +
-            ", but there are only " + std::to_string(this->Directory.GetCount()) + ".");
+          this->Send(fragment);
+          more = true;
         }
       });
   }
-  if (!this->Cause.empty() || !more)
-  {
-    this->SourceIsDry = true;
-    for (int rank = 0; rank < this->Messages.GetSize(); ++rank)
-    {
-      if (rank != this->Messages.GetRank())
-      {
-        this->Messages.Post(rank, MessageKind::PublishDone, {});
-      }
-    }
-    ++this->Finished;
-    return true;
-  }
-  const int owner = this->Directory.GetOwner(fragment.Block);
-  if (owner == this->Messages.GetRank())
-  {
-    this->Absorb(sink, fragment.Block, fragment.Bytes.data(), fragment.Bytes.size());
-  }
-  else
-  {
-    this->Try(
-      [&]
-      {
-        AttachTail(fragment.Bytes, FragmentTail{ fragment.Block });
-        this->Messages.Post(owner, MessageKind::Fragment, std::move(fragment.Bytes));
-      });
-  }
-  return true;
+  this->SourceIsDry = !more;
+  return more || this->End.Tell();
 }
 
-void FragmentExchange::Receive(Message&& message, FragmentSink& sink)
+void FragmentExchange::Send(Fragment& fragment)
 {
-  if (message.Session != this->Session)
+  const BlockDirectory& directory = this->Segment.GetDirectory();
+  if (fragment.Block >= directory.GetCount())
+  {
+    throw Error("A fragment was produced for block " + std::to_string(fragment.Block) +
+      ", but there are only " + std::to_string(directory.GetCount()) + ".");
+  }
+  const int owner = directory.GetOwner(fragment.Block);
+  if (owner == this->Messages.GetRank())
+  {
+    this->Absorb(fragment.Block, fragment.Bytes.data(), fragment.Bytes.size());
+    return;
+  }
+  AttachTail(fragment.Bytes, FragmentTail{ fragment.Block });
+  this->Messages.Post(owner, MessageKind::Fragment, std::move(fragment.Bytes));
+}
+
+void FragmentExchange::Receive(Message&& message)
+{
+  if (message.Session != this->End.GetSession() || !this->Failure.IsEmpty())
   {
     return;
   }
-  this->Try(
+  this->Failure.Try(
     [&]
     {
       const auto tail = DetachTail<FragmentTail>(message, MessageKind::Fragment);
-      if (tail.Block >= this->Directory.GetCount() ||
-        this->Directory.GetOwner(tail.Block) != this->Messages.GetRank())
+      const BlockDirectory& directory = this->Segment.GetDirectory();
+      if (tail.Block >= directory.GetCount() ||
+        directory.GetOwner(tail.Block) != this->Messages.GetRank())
       {
         throw Error("Rank " + std::to_string(message.Source) + " sent a fragment of block " +
           std::to_string(tail.Block) +
-          ", which this rank does not own. Do all ranks run the same " + "build?");
+          ", which this rank does not own. Do all ranks run the same build?");
       }
-      this->Absorb(sink, tail.Block, message.Payload.data(), message.Payload.size());
+      this->Absorb(tail.Block, message.Payload.data(), message.Payload.size());
     });
 }
 
-void FragmentExchange::Absorb(
-  FragmentSink& sink, BlockId id, const std::byte* bytes, std::size_t count)
+void FragmentExchange::Absorb(BlockId id, const std::byte* bytes, std::size_t count)
 {
-  if (this->Cause.empty())
-  {
-    this->Try([&] { sink.Absorb(id, this->Find(id), this->Directory.GetBytes(id), bytes, count); });
-  }
-}
-
-void FragmentExchange::Try(const std::function<void()>& step)
-{
-  try
-  {
-    step();
-  }
-  catch (...)
-  {
-    this->Fail(Messenger::DescribeException());
-  }
-}
-
-void FragmentExchange::Fail(const std::string& cause)
-{
-  if (this->Cause.empty())
-  {
-    this->Cause = cause;
-  }
+  this->Sink.Absorb(
+    id, this->Segment.GetOwned(id), this->Segment.GetDirectory().GetBytes(id), bytes, count);
 }
 
 } // namespace dsm

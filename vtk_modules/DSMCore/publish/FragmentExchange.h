@@ -2,12 +2,13 @@
 #ifndef dsm_FragmentExchange_h
 #define dsm_FragmentExchange_h
 
-#include "DSMCore/publish/BlockDirectory.h"
+#include "DSMCore/base/FirstFailure.h"
+#include "DSMCore/publish/BlockSegment.h"
 #include "DSMCore/publish/Publication.h"
+#include "DSMCore/publish/StreamEnd.h"
 #include "DSMCore/transport/Messenger.h"
 
 #include <functional>
-#include <string>
 
 namespace dsm
 {
@@ -18,39 +19,33 @@ namespace dsm
 class FragmentExchange
 {
 public:
-  /// Where a block that this rank owns lies.
-  using Locate = std::function<std::byte*(BlockId)>;
-
   /// Bytes on their way out at which a rank stops to produce more.
   static constexpr std::size_t MaximumUnsentBytes = std::size_t(8) << 20;
 
-  FragmentExchange(Messenger& messenger, const BlockDirectory& directory, Locate locate);
+  FragmentExchange(Messenger& messenger, const BlockSegment& segment, FragmentSink& sink);
   ~FragmentExchange();
   FragmentExchange(const FragmentExchange&) = delete;
   FragmentExchange& operator=(const FragmentExchange&) = delete;
 
   /// Collective; the session must have been begun for it. Returns when every rank's fragments have
-  /// been absorbed. When source, sink or progress throw on this rank, it contributes no more,
-  /// discards what comes, and returns the cause (empty: success) when all others are done too; it
-  /// is for the caller to let the ranks agree.
-  std::string Run(
-    FragmentSource& source, FragmentSink& sink, const std::function<void(double)>& progress);
+  /// been absorbed. When source, sink or progress throw on this rank, it contributes no more and
+  /// discards what comes, until all others are done too; it is for the caller to let the ranks agree.
+  void Run(FragmentSource& source, const std::function<void(double)>& progress);
+  /// Throws what went wrong on this rank, if anything did.
+  void ThrowFailure() const { this->Failure.Throw(); }
 
 private:
-  bool Feed(FragmentSource& source, FragmentSink& sink);
-  void Receive(Message&& message, FragmentSink& sink);
-  void Absorb(FragmentSink& sink, BlockId id, const std::byte* bytes, std::size_t count);
-  /// Runs a step of the caller's code; its first failure becomes the cause.
-  void Try(const std::function<void()>& step);
-  void Fail(const std::string& cause);
+  bool Feed(FragmentSource& source);
+  void Send(Fragment& fragment);
+  void Receive(Message&& message);
+  void Absorb(BlockId id, const std::byte* bytes, std::size_t count);
 
   Messenger& Messages;
-  const BlockDirectory& Directory;
-  Locate Find;
-  std::uint32_t Session = 0;
+  const BlockSegment& Segment;
+  FragmentSink& Sink;
+  StreamEnd End;
   bool SourceIsDry = false;
-  int Finished = 0; ///< ranks, this one included, that have no more fragments
-  std::string Cause;
+  FirstFailure Failure;
 };
 
 } // namespace dsm

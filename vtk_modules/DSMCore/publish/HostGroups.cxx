@@ -38,59 +38,73 @@ HostGroups HostGroups::Separate(int ranks)
   return HostGroups(leaders);
 }
 
-HostGroups HostGroups::Find(Messenger& messenger, bool wanted)
+std::shared_ptr<const HostGroups> HostGroups::Find(Messenger& messenger, bool wanted)
 {
-  const int size = messenger.GetSize();
-  const std::vector<int> hosts = messenger.GetHosts();
+  constexpr const char* what = "Sharing memory within the hosts";
+  const auto size = static_cast<std::size_t>(messenger.GetSize());
+  const auto own = static_cast<std::size_t>(messenger.GetRank());
+  std::vector<int> hosts;
+  std::shared_ptr<const HostGroups> groups;
   if (size == 1)
   {
-    return Separate(size);
+    return std::make_shared<const HostGroups>(Separate(1));
   }
-  HostSharedMemory trial(1, wanted);
+  messenger.GetHosts(); // collective the first time
+  HostSharedMemory trial;
+  std::vector<std::byte> reached;
+  messenger.RunTogether(what,
+    [&]
+    {
+      hosts = messenger.GetHosts();
+      reached.assign(size, std::byte{ 0 });
+      trial = HostSharedMemory(1, wanted);
+    });
   const auto tickets = messenger.AllGatherValue(trial.GetTicket());
-  if (std::none_of(tickets.begin(), tickets.end(), [](const auto& t) { return t.File >= 0; }))
+  std::vector<std::vector<std::byte>> all;
+  if (std::any_of(tickets.begin(), tickets.end(), [](const auto& t) { return t.File >= 0; }))
   {
-    return Separate(size);
-  }
-  const int own = messenger.GetRank();
-  std::vector<std::byte> reached(static_cast<std::size_t>(size), std::byte{ 0 });
-  for (std::size_t rank = 0; rank < reached.size(); ++rank)
-  {
-    if (hosts[rank] == hosts[static_cast<std::size_t>(own)] &&
-      tickets[static_cast<std::size_t>(own)].File >= 0 && HostSharedMemory::Open(tickets[rank]))
+    for (std::size_t rank = 0; rank < size; ++rank)
     {
-      reached[rank] = std::byte{ 1 };
-    }
-  }
-  const auto all = messenger.AllGather(std::move(reached));
-  std::vector<int> leaders(static_cast<std::size_t>(size));
-  std::iota(leaders.begin(), leaders.end(), 0);
-  // Of a host, those who offered memory; one pair that fails undoes the host.
-  std::vector<bool> whole(static_cast<std::size_t>(size), true); // by lowest rank of the host
-  for (std::size_t a = 0; a < all.size(); ++a)
-  {
-    for (std::size_t b = 0; b < all.size(); ++b)
-    {
-      if (hosts[a] == hosts[b] && tickets[a].File >= 0 && tickets[b].File >= 0 &&
-        all[a][b] == std::byte{ 0 })
+      if (hosts[rank] == hosts[own] && tickets[own].File >= 0 &&
+        HostSharedMemory::Open(tickets[rank]))
       {
-        whole[static_cast<std::size_t>(hosts[a])] = false;
+        reached[rank] = std::byte{ 1 };
       }
     }
+    all = messenger.AllGather(std::move(reached));
   }
-  for (std::size_t a = 0; a < all.size(); ++a)
-  {
-    for (std::size_t b = 0; b < a; ++b)
+  messenger.RunTogether(what,
+    [&]
     {
-      if (hosts[a] == hosts[b] && whole[static_cast<std::size_t>(hosts[a])] &&
-        tickets[a].File >= 0 && tickets[b].File >= 0)
+      std::vector<int> leaders(size);
+      std::iota(leaders.begin(), leaders.end(), 0);
+      // Of a host, those who offered memory; one pair that fails undoes the host.
+      std::vector<bool> whole(size, true); // by lowest rank of the host
+      const auto areMates = [&](std::size_t a, std::size_t b)
+      { return hosts[a] == hosts[b] && tickets[a].File >= 0 && tickets[b].File >= 0; };
+      for (std::size_t a = 0; a < all.size(); ++a)
       {
-        leaders[a] = static_cast<int>(b);
-        break;
+        for (std::size_t b = 0; b < all.size(); ++b)
+        {
+          if (areMates(a, b) && all[a][b] == std::byte{ 0 })
+          {
+            whole[static_cast<std::size_t>(hosts[a])] = false;
+          }
+        }
       }
-    }
-  }
-  return HostGroups(leaders);
+      for (std::size_t a = 0; a < all.size(); ++a)
+      {
+        for (std::size_t b = 0; b < a && leaders[a] == static_cast<int>(a); ++b)
+        {
+          if (areMates(a, b) && whole[static_cast<std::size_t>(hosts[a])])
+          {
+            leaders[a] = static_cast<int>(b);
+          }
+        }
+      }
+      groups = std::make_shared<const HostGroups>(leaders);
+    });
+  return groups;
 }
 
 int HostGroups::GetHolder(BlockId id, int owner, int group) const

@@ -4,6 +4,7 @@
 
 #include "DSMCore/base/Block.h"
 
+#include <memory>
 #include <vector>
 
 namespace dsm
@@ -24,8 +25,9 @@ public:
   static HostGroups Separate(int ranks);
 
   /// Collective: the ranks of a host that all want to share, once each has mapped a trial page of
-  /// every other; where one of them cannot, all of that host stay on their own.
-  static HostGroups Find(Messenger& messenger, bool wanted);
+  /// every other; where one of them cannot, all of that host stay on their own. Throws the same Error
+  /// on every rank when one has no memory.
+  static std::shared_ptr<const HostGroups> Find(Messenger& messenger, bool wanted);
 
   /// The ranks of a rank's group, itself included, ascending.
   const std::vector<int>& GetMembers(int rank) const
@@ -33,6 +35,7 @@ public:
     return this->Groups[static_cast<std::size_t>(this->GroupOf[static_cast<std::size_t>(rank)])];
   }
   int GetGroup(int rank) const { return this->GroupOf[static_cast<std::size_t>(rank)]; }
+  int GetRankCount() const { return static_cast<int>(this->GroupOf.size()); }
   int GetGroupCount() const { return static_cast<int>(this->Groups.size()); }
   bool AreTogether(int a, int b) const { return this->GetGroup(a) == this->GetGroup(b); }
 

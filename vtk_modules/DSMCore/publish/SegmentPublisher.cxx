@@ -2,11 +2,11 @@
 #include "DSMCore/publish/SegmentPublisher.h"
 
 #include "DSMCore/base/Error.h"
+#include "DSMCore/base/FirstFailure.h"
 #include "DSMCore/memory/HostMemory.h"
 #include "DSMCore/publish/FragmentExchange.h"
 
 #include <algorithm>
-#include <optional>
 #include <utility>
 
 namespace dsm
@@ -15,27 +15,16 @@ namespace dsm
 namespace
 {
 
-/// Equal directories have equal ones (FNV-1a).
-std::uint64_t GetFingerprint(const BlockDirectory& directory)
+template <class Visit>
+void ForEachOwned(const BlockSegment& segment, int rank, const Visit& visit)
 {
-  std::uint64_t hash = 0xcbf29ce484222325u;
+  const BlockDirectory& directory = segment.GetDirectory();
   for (BlockId id = 0; id < directory.GetCount(); ++id)
   {
-    hash = (hash ^ directory.GetBytes(id)) * 0x100000001b3u;
-    hash = (hash ^ static_cast<std::uint64_t>(directory.GetOwner(id))) * 0x100000001b3u;
-  }
-  return hash;
-}
-
-/// Blocks are dealt evenly, so the other ranks of the host want as much as this one.
-void CheckHostMemory(std::uint64_t bytes, int ranksOnHost, std::uint64_t available)
-{
-  if (bytes > available / static_cast<std::uint64_t>(ranksOnHost))
-  {
-    throw Error("out of memory: " + std::to_string(bytes >> 20) + " MiB are needed for each of " +
-      std::to_string(ranksOnHost) + " ranks on the host, which has " +
-      std::to_string(available >> 20) +
-      " MiB left. Use more hosts, so that each holds fewer bytes, or smaller data.");
+    if (directory.GetOwner(id) == rank)
+    {
+      visit(id, segment.GetOwned(id), directory.GetBytes(id));
+    }
   }
 }
 
@@ -48,51 +37,50 @@ SegmentPublisher::SegmentPublisher(Messenger& messenger, std::string what, Steps
 {
 }
 
-void SegmentPublisher::Run(BlockDirectory directory, FragmentSource& source, FragmentSink& sink,
-  const std::function<void(double)>& progress)
+std::shared_ptr<BlockSegment> SegmentPublisher::Run(BlockDirectory directory,
+  FragmentSource& source, FragmentSink& sink, const std::function<void(double)>& progress)
 {
   // Stores that share a messenger draw from one sequence, so the number names the segment among all
   // of theirs.
   const std::uint32_t number = this->Messages.BeginSession();
+  const int rank = this->Messages.GetRank();
   const int ranksOnHost = this->Messages.GetRanksOnHost();
+  FirstFailure failure;
   // Asked before the ranks meet in the next line, hence before any of them takes memory.
-  const std::uint64_t available = GetAvailableHostMemory();
-  const auto fingerprints = this->Messages.AllGatherValue(GetFingerprint(directory));
-  std::optional<BlockDirectory> copy;
+  std::uint64_t available = 0;
+  failure.Try([&] { available = GetAvailableHostMemory(); });
+  const auto fingerprints = this->Messages.AllGatherValue(directory.GetFingerprint());
+  std::shared_ptr<BlockSegment> segment;
   this->Messages.RunTogether(this->What,
     [&]
     {
-      const BlockDirectory& blocks = copy.emplace(directory);
-      this->Check(blocks, fingerprints);
-      CheckHostMemory(blocks.GetResidentBytes(this->Messages.GetRank()), ranksOnHost, available);
-      this->Store.Allocate(number, std::move(directory));
-      this->ForEachOwned(blocks,
+      failure.Throw();
+      this->Check(directory, fingerprints);
+      this->CheckMemory(this->Store.CountBytes(directory), ranksOnHost, available);
+      segment = this->Store.Create(number, std::move(directory));
+      ForEachOwned(*segment, rank,
         [&](BlockId id, std::byte* block, std::size_t bytes) { sink.Begin(id, block, bytes); });
     });
+  segment->Meet(this->Messages);
 
-  const BlockDirectory& blocks = *copy;
   this->Messages.BeginSession();
-  std::string cause;
-  {
-    FragmentExchange exchange(this->Messages, blocks, this->Store.Locate);
-    cause = exchange.Run(source, sink, progress);
-  }
+  FragmentExchange exchange(this->Messages, *segment, sink);
+  exchange.Run(source, progress);
 
   this->Messages.RunTogether(this->What,
     [&]
     {
-      if (!cause.empty())
-      {
-        throw Error(cause);
-      }
-      this->ForEachOwned(blocks,
+      exchange.ThrowFailure();
+      ForEachOwned(*segment, rank,
         [&](BlockId id, std::byte* block, std::size_t bytes) { sink.Finish(id, block, bytes); });
-      this->Store.Seal();
+      segment->Seal();
       if (progress)
       {
         progress(1.0);
       }
     });
+  segment->Open();
+  return segment;
 }
 
 void SegmentPublisher::Check(
@@ -115,15 +103,21 @@ void SegmentPublisher::Check(
   }
 }
 
-void SegmentPublisher::ForEachOwned(const BlockDirectory& directory,
-  const std::function<void(BlockId, std::byte*, std::size_t)>& visit) const
+/// Blocks are dealt evenly, so the other ranks of the host want as much as this one.
+void SegmentPublisher::CheckMemory(
+  std::uint64_t bytes, int ranksOnHost, std::uint64_t available) const
 {
-  for (BlockId id = 0; id < directory.GetCount(); ++id)
+  if (bytes > available / static_cast<std::uint64_t>(ranksOnHost))
   {
-    if (directory.GetOwner(id) == this->Messages.GetRank())
-    {
-      visit(id, this->Store.Locate(id), directory.GetBytes(id));
-    }
+    throw Error("out of memory: " + FormatMebibytes(bytes) + " are needed for each of " +
+      std::to_string(ranksOnHost) + " ranks on the host, which has " + FormatMebibytes(available) +
+      " left. " + this->Store.Remedy);
+  }
+  if (bytes > this->Store.MemoryBytes)
+  {
+    throw Error("out of memory: " + FormatMebibytes(bytes) + " (" + std::to_string(bytes) +
+      " bytes) are needed, but of the memory that a rank may take (DSMMemory) only " +
+      FormatMebibytes(this->Store.MemoryBytes) + " are left. " + this->Store.Remedy);
   }
 }
 

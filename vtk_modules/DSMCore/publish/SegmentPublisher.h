@@ -3,11 +3,13 @@
 #define dsm_SegmentPublisher_h
 
 #include "DSMCore/publish/BlockDirectory.h"
+#include "DSMCore/publish/BlockSegment.h"
 #include "DSMCore/publish/Publication.h"
 #include "DSMCore/transport/Messenger.h"
 
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -15,34 +17,38 @@ namespace dsm
 {
 
 /// The collective steps by which the ranks' fragments become the blocks of a segment, whatever
-/// memory the store keeps them in. Communication thread, once.
+/// memory the store keeps them in: agree, set out memory, fill it (FragmentExchange), seal.
+/// Communication thread, once.
 class SegmentPublisher
 {
 public:
   /// What the store does on this rank; each may throw, then all ranks fail.
   struct Steps
   {
+    /// What the segment takes of this rank's memory.
+    std::function<std::uint64_t(const BlockDirectory& directory)> CountBytes;
     /// Sets out zeroed memory for the blocks that this rank owns. The number names the segment, on
     /// all ranks, among those of all stores that share the messenger.
-    std::function<void(std::uint32_t number, BlockDirectory&& directory)> Allocate;
-    /// Where a block that this rank owns lies, once allocated.
-    std::function<std::byte*(BlockId)> Locate;
-    /// After the last fragment, when the sink has finished every block.
-    std::function<void()> Seal;
+    std::function<std::shared_ptr<BlockSegment>(std::uint32_t number, BlockDirectory&& directory)>
+      Create;
+    /// What this rank may still take.
+    std::uint64_t MemoryBytes = UINT64_MAX;
+    /// What the user can do when memory does not suffice: a sentence.
+    const char* Remedy = "Use more hosts, so that each holds fewer bytes, or smaller data.";
   };
 
   /// `what` names the publication in errors.
   SegmentPublisher(Messenger& messenger, std::string what, Steps steps);
 
-  /// Collective. Throws the same Error on every rank when any rank fails, or when the ranks'
-  /// directories differ. `progress` may be empty.
-  void Run(BlockDirectory directory, FragmentSource& source, FragmentSink& sink,
-    const std::function<void(double)>& progress);
+  /// Collective. Throws the same Error on every rank when any rank fails, when the ranks'
+  /// directories differ, and, before any takes memory, when that does not suffice. `progress` may be
+  /// empty.
+  std::shared_ptr<BlockSegment> Run(BlockDirectory directory, FragmentSource& source,
+    FragmentSink& sink, const std::function<void(double)>& progress);
 
 private:
   void Check(const BlockDirectory& directory, const std::vector<std::uint64_t>& fingerprints) const;
-  void ForEachOwned(const BlockDirectory& directory,
-    const std::function<void(BlockId, std::byte*, std::size_t)>& visit) const;
+  void CheckMemory(std::uint64_t bytes, int ranksOnHost, std::uint64_t available) const;
 
   Messenger& Messages;
   std::string What;

@@ -8,7 +8,6 @@
 #include <algorithm>
 #include <iterator>
 #include <limits>
-#include <optional>
 
 namespace dsm
 {
@@ -40,7 +39,7 @@ BlockStore::~BlockStore() = default;
 void BlockStore::SetSettings(const Settings& settings)
 {
   const Settings& old = this->Current;
-  if (!this->Segments.empty() && IsPaged(settings.Organization) != IsPaged(this->InForce))
+  if (!this->Segments.IsEmpty() && IsPaged(settings.Organization) != IsPaged(this->InForce))
   {
     throw Error("The page based memory organisation can be entered and left only while nothing is "
                 "published.");
@@ -65,7 +64,7 @@ void BlockStore::SetSettings(const Settings& settings)
     this->Current = previous;
     throw;
   }
-  if (this->Segments.empty())
+  if (this->Segments.IsEmpty())
   {
     this->InForce = settings.Organization == MemoryOrganization::Automatic
       ? MemoryOrganization::Replicated
@@ -129,21 +128,48 @@ void BlockStore::FindBudget()
   this->Budget = { this->AvailableBytes / DefaultPart, this->AvailableBytes };
 }
 
-MemoryPlan BlockStore::MakePlan(const BlockDirectory* next)
+BlockStore::Decision BlockStore::Decide(const std::string& what, const BlockDirectory* next)
 {
   this->Messages.GetRanksOnHost(); // collective the first time
-  this->FindBudget();
-  this->Groups =
-    std::make_shared<const HostGroups>(HostGroups::Find(this->Messages, this->Current.HostSharing));
-  this->Configure();
-  Stance mine{ this->Budget, static_cast<std::uint64_t>(this->Current.Organization) };
-  for (const std::uint64_t part : { std::uint64_t(this->Segments.size()),
+  this->Groups = HostGroups::Find(this->Messages, this->Current.HostSharing);
+  Stance mine{ {}, static_cast<std::uint64_t>(this->Current.Organization) };
+  this->Messages.RunTogether(what,
+    [&]
+    {
+      this->FindBudget();
+      this->Configure();
+      this->Segments.MakeRoom(1);
+      this->Objects.MakeRoom(this->Segments.GetCount() + 1);
+      this->Replicated.MakeRoom(this->Segments.GetCount() + 1);
+    });
+  mine.Budget = this->Budget;
+  for (const std::uint64_t part : { std::uint64_t(this->Segments.GetCount()),
          next ? next->GetFingerprint() : std::uint64_t(0), std::uint64_t(next != nullptr),
          std::uint64_t(this->Current.HostSharing), std::uint64_t(this->InForce) })
   {
     mine.Choice = (mine.Choice ^ part) * 0x100000001b3u; // FNV-1a
   }
   const auto stances = this->Messages.AllGatherValue(mine);
+  Decision decision;
+  this->Messages.RunTogether(what,
+    [&]
+    {
+      const int rank = this->Messages.GetRank();
+      const MemoryOrganization wanted = this->Current.Organization;
+      const MemoryPlan plan = this->MakePlan(stances, next);
+      decision.Chosen = plan.Decide(wanted);
+      decision.Explanation = plan.Explain(wanted, decision.Chosen);
+      decision.CacheBytes = plan.GetCacheBytes(decision.Chosen, rank);
+      constexpr auto without = MemoryOrganization::ObjectBased;
+      decision.ExplanationWithoutCopies = plan.Explain(wanted, without);
+      decision.CacheBytesWithoutCopies = plan.GetCacheBytes(without, rank);
+    });
+  return decision;
+}
+
+MemoryPlan BlockStore::MakePlan(
+  const std::vector<Stance>& stances, const BlockDirectory* next) const
+{
   std::vector<MemoryPlan::Budget> budgets;
   for (std::size_t rank = 0; rank < stances.size(); ++rank)
   {
@@ -156,7 +182,7 @@ MemoryPlan BlockStore::MakePlan(const BlockDirectory* next)
     budgets.push_back(stances[rank].Budget);
   }
   std::vector<const BlockDirectory*> directories;
-  for (const auto& [number, segment] : this->Segments)
+  for (const auto& segment : this->Segments)
   {
     directories.push_back(&segment->GetDirectory());
   }
@@ -168,61 +194,53 @@ MemoryPlan BlockStore::MakePlan(const BlockDirectory* next)
     std::move(directories), *this->Groups, std::move(budgets), AddressRange::GetPageBytes());
 }
 
-void BlockStore::TakePlan(const MemoryPlan& plan, MemoryOrganization chosen)
+void BlockStore::PutInForce(Decision&& decision)
 {
-  this->Explanation = plan.Explain(this->Current.Organization, chosen);
-  this->CacheBytes = chosen == MemoryOrganization::Replicated
-    ? 0
-    : plan.GetCacheBytes(chosen, this->Messages.GetRank());
+  this->Explanation = std::move(decision.Explanation);
+  this->CacheBytes = decision.CacheBytes;
   this->Configure();
+  this->Settled = true;
 }
 
 void BlockStore::Settle()
 {
-  const MemoryPlan plan = this->MakePlan(nullptr);
-  MemoryOrganization chosen = plan.Decide(this->Current.Organization);
+  Decision decision = this->Decide("The data cannot be kept as they should", nullptr);
+  this->MoveTo(decision);
+  this->PutInForce(std::move(decision));
+}
+
+void BlockStore::MoveTo(Decision& decision)
+{
+  if (IsPaged(decision.Chosen) || IsPaged(this->InForce))
+  {
+    this->InForce = decision.Chosen; // nothing is published: see SetSettings
+    return;
+  }
+  if (decision.Chosen != MemoryOrganization::Replicated)
+  {
+    this->GiveUpCopies();
+    return;
+  }
   try
   {
-    this->MoveTo(chosen);
+    this->Replicate();
+    this->InForce = MemoryOrganization::Replicated;
   }
-  catch (const Error&)
+  catch (const Error&) // on every rank alike
   {
     if (this->Current.Organization != MemoryOrganization::Automatic)
     {
       throw;
     }
-    chosen = MemoryOrganization::ObjectBased;
+    decision.Chosen = MemoryOrganization::ObjectBased;
+    decision.Explanation = std::move(decision.ExplanationWithoutCopies);
+    decision.CacheBytes = decision.CacheBytesWithoutCopies;
   }
-  this->TakePlan(plan, chosen);
-  this->Settled = true;
 }
 
-void BlockStore::MoveTo(MemoryOrganization organization)
+void BlockStore::Replicate()
 {
-  if (IsPaged(organization) || IsPaged(this->InForce))
-  {
-    this->InForce = organization; // nothing is published: see SetSettings
-    return;
-  }
-  const auto giveUpCopies = [this]
-  {
-    for (const auto& [number, segment] : this->Segments)
-    {
-      const auto table = std::static_pointer_cast<BlockTable>(segment);
-      if (table->IsReplicated())
-      {
-        this->Replicated.Surrender(*table);
-        this->Objects.Adopt(table);
-      }
-    }
-    this->InForce = MemoryOrganization::ObjectBased;
-  };
-  if (organization != MemoryOrganization::Replicated)
-  {
-    giveUpCopies();
-    return;
-  }
-  for (const auto& [number, segment] : this->Segments)
+  for (const auto& segment : this->Segments)
   {
     const auto table = std::static_pointer_cast<BlockTable>(segment);
     if (table->IsReplicated())
@@ -234,14 +252,27 @@ void BlockStore::MoveTo(MemoryOrganization organization)
     {
       this->Replicated.Adopt(table);
     }
-    catch (const Error&)
+    catch (...)
     {
       this->Objects.Adopt(table);
-      giveUpCopies();
+      this->GiveUpCopies();
       throw;
     }
   }
-  this->InForce = organization;
+}
+
+void BlockStore::GiveUpCopies()
+{
+  for (const auto& segment : this->Segments)
+  {
+    const auto table = std::static_pointer_cast<BlockTable>(segment);
+    if (table->IsReplicated())
+    {
+      this->Replicated.Surrender(*table);
+      this->Objects.Adopt(table);
+    }
+  }
+  this->InForce = MemoryOrganization::ObjectBased;
 }
 
 // -- Segments --------------------------------------------------------------------------------------
@@ -249,50 +280,33 @@ void BlockStore::MoveTo(MemoryOrganization organization)
 std::shared_ptr<BlockSegment> BlockStore::Publish(const std::string& what, BlockDirectory directory,
   FragmentSource& source, FragmentSink& sink, const std::function<void(double)>& progress)
 {
-  std::optional<BlockDirectory> next;
-  this->Messages.RunTogether(what, [&] { next = directory; });
-  const MemoryPlan plan = this->MakePlan(&*next);
-  MemoryOrganization chosen = MemoryOrganization::Automatic;
-  try
-  {
-    chosen = plan.Decide(this->Current.Organization);
-  }
-  catch (const Error& error) // on every rank alike
-  {
-    throw Error(what + ": " + error.what());
-  }
-  // What Automatic wants to replicate is published object based first: should there be no memory for
-  // the copies, nothing is lost.
-  const bool copyLater = this->Current.Organization == MemoryOrganization::Automatic &&
-    chosen == MemoryOrganization::Replicated;
+  Decision decision = this->Decide(what, &directory);
   const auto publish = [&](auto& store)
   { return store.Publish(what, std::move(directory), source, sink, progress); };
-  if (!copyLater)
+  std::shared_ptr<BlockSegment> segment;
+  // What Automatic wants to replicate is published object based first: should there be no memory for
+  // the copies, nothing is lost.
+  if (this->Current.Organization == MemoryOrganization::Automatic &&
+    decision.Chosen == MemoryOrganization::Replicated)
   {
-    this->MoveTo(chosen);
+    segment = publish(this->Objects);
+    this->Segments.Add(segment);
+    this->MoveTo(decision);
   }
-  const auto segment = copyLater ? publish(this->Objects) : this->Visit(publish);
-  this->Segments.emplace(segment->GetNumber(), segment);
-  if (copyLater)
+  else
   {
-    try
-    {
-      this->MoveTo(chosen);
-    }
-    catch (const Error&)
-    {
-      chosen = MemoryOrganization::ObjectBased;
-    }
+    this->MoveTo(decision);
+    segment = this->Visit(publish);
+    this->Segments.Add(segment);
   }
-  this->TakePlan(plan, chosen);
-  this->Settled = true;
+  this->PutInForce(std::move(decision));
   ++this->Publications;
   return segment;
 }
 
 void BlockStore::Retire(const std::shared_ptr<BlockSegment>& segment)
 {
-  if (segment && this->Segments.erase(segment->GetNumber()) > 0)
+  if (segment && this->Segments.Remove(*segment))
   {
     this->Visit([&](auto& store) { store.Retire(segment); });
     this->Settled = false; // there is more room

@@ -10,6 +10,7 @@
 #include "DSMCore/publish/BlockSegment.h"
 #include "DSMCore/publish/HostGroups.h"
 #include "DSMCore/publish/Publication.h"
+#include "DSMCore/publish/SegmentList.h"
 #include "DSMCore/store/MemoryOrganization.h"
 #include "DSMCore/store/MemoryPlan.h"
 #include "DSMCore/table/ObjectStore.h"
@@ -18,7 +19,6 @@
 
 #include <cstdint>
 #include <functional>
-#include <map>
 #include <memory>
 #include <string>
 #include <utility>
@@ -126,16 +126,34 @@ private:
     std::uint64_t Choice; ///< digest of what must be equal on all ranks
   };
 
-  /// Collective. The plan for what is published and, unless null, for what is to be.
-  MemoryPlan MakePlan(const BlockDirectory* next);
+  /// How things are to be kept, agreed by all ranks.
+  struct Decision
+  {
+    MemoryOrganization Chosen = MemoryOrganization::ObjectBased;
+    /// Of this rank, and what the user is told; with the organisation chosen, and where copies fail
+    /// that Automatic wanted.
+    std::uint64_t CacheBytes = 0;
+    std::string Explanation;
+    std::uint64_t CacheBytesWithoutCopies = 0;
+    std::string ExplanationWithoutCopies;
+  };
+
+  /// Collective: for what is published and, unless null, for what is to be, which may then be added
+  /// without fail. Throws the same Error, which begins with `what`, on every rank.
+  Decision Decide(const std::string& what, const BlockDirectory* next);
+  MemoryPlan MakePlan(const std::vector<Stance>& stances, const BlockDirectory* next) const;
   void FindBudget();
   /// Of the stores that fetch.
   int CountWorkers() const;
-  /// Collective: moves segments between the stores. Throws when they cannot be replicated.
-  void MoveTo(MemoryOrganization organization);
+  /// Collective: moves segments between the stores, or makes up its mind otherwise where it may.
+  /// Throws when they cannot be replicated as they should.
+  void MoveTo(Decision& decision);
+  void Replicate();
+  /// Local: no segment has copies from now on.
+  void GiveUpCopies();
   /// Local: hands the settings to the stores.
   void Configure();
-  void TakePlan(const MemoryPlan& plan, MemoryOrganization chosen);
+  void PutInForce(Decision&& decision);
 
   Messenger& Messages;
   Settings Current;
@@ -149,7 +167,7 @@ private:
   std::uint64_t CacheBytes = 0;
   /// As of the last plan.
   std::shared_ptr<const HostGroups> Groups;
-  std::map<std::uint32_t, std::shared_ptr<BlockSegment>> Segments; ///< by number
+  SegmentList<BlockSegment> Segments;
 
   ObjectStore Objects;
   ReplicatedStore Replicated;

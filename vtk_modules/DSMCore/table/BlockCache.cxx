@@ -60,6 +60,11 @@ void BlockCache::Insert(BlockLine& line, const std::byte* bytes)
 {
   if (this->EmptySlots.empty())
   {
+    // With room for all slots at any time, so that to empty one cannot fail.
+    if (this->EmptySlots.capacity() <= this->Frames.size())
+    {
+      this->EmptySlots.reserve(2 * this->Frames.size() + 1);
+    }
     this->Frames.emplace_back();
     this->EmptySlots.push_back(this->Frames.size() - 1);
   }
@@ -131,19 +136,20 @@ bool BlockCache::Reclaim(std::uint64_t oldestEpoch)
 
 void BlockCache::Forget(const BlockLine* first, std::size_t count)
 {
+  this->Reclaim(std::numeric_limits<std::uint64_t>::max());
   for (std::size_t slot = 0; slot < this->Frames.size(); ++slot)
   {
     const BlockLine* const line = this->Frames[slot].Line;
     if (line && line >= first && line < first + count)
     {
-      this->EvictFrame(slot, 0);
+      this->Drop(slot);
     }
   }
-  this->Reclaim(std::numeric_limits<std::uint64_t>::max());
 }
 
 void BlockCache::Shrink()
 {
+  this->Reclaim(std::numeric_limits<std::uint64_t>::max());
   for (std::size_t step = 0; step < 2 * this->Frames.size(); ++step)
   {
     if (this->Used - this->LimboBytes <= this->Capacity)
@@ -155,29 +161,31 @@ void BlockCache::Shrink()
     BlockLine* const line = this->Frames[slot].Line;
     if (line && line->Use.exchange(BlockUse::Idle, std::memory_order_relaxed) != BlockUse::Recent)
     {
-      this->EvictFrame(slot, 0);
+      this->Drop(slot);
     }
   }
-  this->Reclaim(std::numeric_limits<std::uint64_t>::max());
+}
+
+void BlockCache::Drop(std::size_t slot)
+{
+  Frame& frame = this->Frames[slot];
+  frame.Line->MoveTo(LineState::Absent);
+  frame.Line->Address.store(nullptr, std::memory_order_relaxed);
+  Free(frame.Memory);
+  this->Used -= frame.Footprint;
+  frame = Frame{};
+  this->EmptySlots.push_back(slot);
 }
 
 void BlockCache::EvictFrame(std::size_t slot, std::uint64_t epoch)
 {
   Frame& frame = this->Frames[slot];
-  this->EmptySlots.push_back(slot); // first what may throw
-  try
-  {
-    this->Limbo.push_back(Evicted{ frame.Memory, frame.Footprint, epoch });
-  }
-  catch (...)
-  {
-    this->EmptySlots.pop_back();
-    throw;
-  }
+  this->Limbo.push_back(Evicted{ frame.Memory, frame.Footprint, epoch }); // first: it may throw
   frame.Line->MoveTo(LineState::Absent);
   frame.Line->Address.store(nullptr, std::memory_order_relaxed); // ordered by the epoch's release
   this->LimboBytes += frame.Footprint;
   frame = Frame{};
+  this->EmptySlots.push_back(slot);
 }
 
 } // namespace dsm

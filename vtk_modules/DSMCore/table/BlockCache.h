@@ -80,6 +80,8 @@ private:
     std::uint64_t Epoch = 0;
   };
 
+  /// Between frames: as EvictFrame, but nobody can be reading the block.
+  void Drop(std::size_t slot);
   void EvictFrame(std::size_t slot, std::uint64_t epoch);
 
   std::vector<Frame> Frames; ///< the clock's face

@@ -43,6 +43,8 @@ BlockTable::BlockTable(std::uint32_t number, BlockDirectory directory, int rank,
   , Groups(std::move(groups))
   , Rank(rank)
   , Resident(this->GetDirectory().GetResidentBytes(rank), this->Groups.GetMembers(rank).size() > 1)
+  , Views(static_cast<std::size_t>(this->Groups.GetRankCount()))
+  , CopyViews(static_cast<std::size_t>(this->Groups.GetRankCount()))
   , ResidentBytes(this->GetDirectory().GetResidentBytes(rank))
 {
   this->Missing = this->GetDirectory().GetCount();
@@ -85,11 +87,10 @@ void BlockTable::ForEachResident(const Visit& visit) const
   }
 }
 
-std::vector<HostSharedMemory::View> BlockTable::OpenAll(
-  Messenger& messenger, HostSharedMemory& own) const
+void BlockTable::OpenAll(Messenger& messenger, const HostSharedMemory& own,
+  std::vector<HostSharedMemory::View>& views) const
 {
   const auto tickets = messenger.AllGatherValue(own.GetTicket());
-  std::vector<HostSharedMemory::View> views(tickets.size());
   for (const int mate : this->Groups.GetMembers(this->Rank))
   {
     if (mate != this->Rank)
@@ -100,18 +101,16 @@ std::vector<HostSharedMemory::View> BlockTable::OpenAll(
       }
     }
   }
-  if (std::any_of(tickets.begin(), tickets.end(), [](const auto& t) { return t.File >= 0; }))
-  {
-    messenger.Barrier(); // all have looked
-  }
-  own.CloseDoor();
-  return views;
 }
 
-void BlockTable::ShareWithGroup(Messenger& messenger)
+void BlockTable::Meet(Messenger& messenger)
 {
-  this->Views = this->OpenAll(messenger, this->Resident);
-  Offsets offsets(messenger.GetSize());
+  this->OpenAll(messenger, this->Resident, this->Views);
+}
+
+void BlockTable::Seal()
+{
+  Offsets offsets(this->Groups.GetRankCount());
   const BlockDirectory& directory = this->GetDirectory();
   for (BlockId id = 0; id < directory.GetCount(); ++id)
   {
@@ -124,6 +123,11 @@ void BlockTable::ShareWithGroup(Messenger& messenger)
       this->SharedBytes += AlignBlock(directory.GetBytes(id));
     }
   }
+}
+
+void BlockTable::Open()
+{
+  this->Resident.CloseDoor();
 }
 
 std::uint64_t BlockTable::CountReplicaBytes(
@@ -147,52 +151,46 @@ void BlockTable::Replicate(Messenger& messenger, const std::string& what)
   const int group = this->Groups.GetGroup(this->Rank);
   HostSharedMemory copies;
   std::uint64_t bytes = 0;
+  std::vector<std::uint64_t> places; // of each block in its holder's copies
   messenger.RunTogether(what,
     [&]
     {
       bytes = CountReplicaBytes(directory, this->Groups, this->Rank);
       copies = HostSharedMemory(bytes, this->Groups.GetMembers(this->Rank).size() > 1);
+      places.assign(directory.GetCount(), 0);
+      Offsets offsets(messenger.GetSize());
+      for (BlockId id = 0; id < directory.GetCount(); ++id)
+      {
+        const int owner = directory.GetOwner(id);
+        const int holder = this->Groups.GetHolder(id, owner, group);
+        places[id] = holder == owner ? 0 : offsets.Take(holder, directory.GetBytes(id));
+      }
     });
 
-  // Where each block lies in its holder's copies.
-  std::vector<std::uint64_t> places(directory.GetCount(), 0);
-  Offsets offsets(messenger.GetSize());
-  for (BlockId id = 0; id < directory.GetCount(); ++id)
-  {
-    const int owner = directory.GetOwner(id);
-    const int holder = this->Groups.GetHolder(id, owner, group);
-    places[id] = holder == owner ? 0 : offsets.Take(holder, directory.GetBytes(id));
-  }
   messenger.BeginSession();
-  std::string cause;
   {
     BlockSpread spread(
-      messenger, directory, this->Groups, [&](BlockId id) { return this->GetOwned(id); },
+      messenger, directory, this->Groups, [this](BlockId id) { return this->GetOwned(id); },
       [&](BlockId id) { return copies.GetData() + places[id]; });
-    cause = spread.Run();
-  }
-  auto views = this->OpenAll(messenger, copies);
-  messenger.RunTogether(what,
-    [&]
+    spread.Run();
+    this->OpenAll(messenger, copies, this->CopyViews);
+    try
     {
-      if (!cause.empty())
-      {
-        throw Error(cause);
-      }
-      for (const int mate : this->Groups.GetMembers(this->Rank))
-      {
-        const auto index = static_cast<std::size_t>(mate);
-        if (mate != this->Rank && !(views[index].GetData() && this->Views[index].GetData()))
+      messenger.RunTogether(what,
+        [&]
         {
-          throw Error("The memory of rank " + std::to_string(mate) +
-            ", which runs on the same host, cannot be mapped. Switch off host sharing "
-            "(DSMHostSharing).");
-        }
-      }
-    });
-
+          spread.ThrowFailure();
+          this->CheckViews();
+        });
+    }
+    catch (...)
+    {
+      this->DropReplicas();
+      throw;
+    }
+  }
+  copies.CloseDoor();
   this->Copies = std::move(copies);
-  this->CopyViews = std::move(views);
   this->ReplicaBytes = bytes;
   this->Replicated = true;
   for (BlockId id = 0; id < directory.GetCount(); ++id)
@@ -205,6 +203,20 @@ void BlockTable::Replicate(Messenger& messenger, const std::string& what)
         : this->CopyViews[static_cast<std::size_t>(holder)].GetData();
       this->Place(id, LineState::Replica, data + places[id]);
       this->SharedCopyBytes += holder == this->Rank ? 0 : AlignBlock(directory.GetBytes(id));
+    }
+  }
+}
+
+void BlockTable::CheckViews() const
+{
+  for (const int mate : this->Groups.GetMembers(this->Rank))
+  {
+    const auto index = static_cast<std::size_t>(mate);
+    if (mate != this->Rank && !(this->CopyViews[index].GetData() && this->Views[index].GetData()))
+    {
+      throw Error("The memory of rank " + std::to_string(mate) +
+        ", which runs on the same host, cannot be mapped. Switch off host sharing "
+        "(DSMHostSharing).");
     }
   }
 }
@@ -223,7 +235,10 @@ void BlockTable::DropReplicas()
     }
   }
   this->Copies = HostSharedMemory();
-  this->CopyViews.clear();
+  for (HostSharedMemory::View& view : this->CopyViews)
+  {
+    view = HostSharedMemory::View();
+  }
   this->ReplicaBytes = 0;
   this->SharedCopyBytes = 0;
   this->Replicated = false;

@@ -31,17 +31,17 @@ public:
   void ForEachResident(const Visit& visit) const override;
   std::uint64_t GetResidentBytes() const override { return this->ResidentBytes; }
 
-  /// Of a block that this rank owns; for whoever fills it.
-  std::byte* GetOwned(BlockId id) const;
+  std::byte* GetOwned(BlockId id) const override;
+  /// Maps the group's memory. What cannot be mapped stays absent.
+  void Meet(Messenger& messenger) override;
+  void Seal() override;
+  void Open() override;
   /// Where a block is on this host; null when it is not.
   const std::byte* Find(BlockId id) const
   {
     return this->Lines[id].Address.load(std::memory_order_acquire);
   }
 
-  /// Collective, when the blocks are complete: maps the group's memory. What cannot be mapped stays
-  /// absent.
-  void ShareWithGroup(Messenger& messenger);
   /// Of other ranks of the group, mapped here; blocks that they own, and copies.
   std::uint64_t GetSharedBytes() const { return this->SharedBytes + this->SharedCopyBytes; }
 
@@ -65,7 +65,11 @@ private:
   friend class ReplicatedStore;
 
   void Place(BlockId id, LineState state, const std::byte* address);
-  std::vector<HostSharedMemory::View> OpenAll(Messenger& messenger, HostSharedMemory& own) const;
+  /// Collective: maps what the group's other ranks have as `own`. Needs no memory.
+  void OpenAll(Messenger& messenger, const HostSharedMemory& own,
+    std::vector<HostSharedMemory::View>& views) const;
+  /// Throws Error when a view is missing.
+  void CheckViews() const;
 
   std::unique_ptr<BlockLine[]> Lines;
   HostGroups Groups;
@@ -73,7 +77,7 @@ private:
   HostSharedMemory Resident;
   std::vector<HostSharedMemory::View> Views; ///< by rank
   HostSharedMemory Copies;
-  std::vector<HostSharedMemory::View> CopyViews;
+  std::vector<HostSharedMemory::View> CopyViews; ///< by rank
   std::uint64_t ResidentBytes = 0;
   std::uint64_t SharedBytes = 0;
   std::uint64_t SharedCopyBytes = 0;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "DSMCore/table/ObjectStore.h"
 
+#include "DSMCore/publish/SegmentPublisher.h"
 #include "DSMCore/table/ObjectStoreInternals.h"
-#include "DSMCore/table/TablePublisher.h"
 
 #include <algorithm>
 #include <string>
@@ -35,18 +35,21 @@ std::shared_ptr<BlockSegment> ObjectStore::Publish(const std::string& what,
   BlockDirectory directory, FragmentSource& source, FragmentSink& sink,
   const std::function<void(double)>& progress)
 {
-  TablePublisher::Plan plan;
-  plan.HostSharing = this->GetSettings().HostSharing;
-  plan.Groups = this->GetSettings().Groups;
-  plan.Check = [this]
+  Messenger& messages = this->Self->Messages;
+  const Settings& settings = this->GetSettings();
+  const auto groups =
+    settings.Groups ? settings.Groups : HostGroups::Find(messages, settings.HostSharing);
+  SegmentPublisher::Steps steps;
+  steps.CountBytes = [&](const BlockDirectory& blocks)
   {
-    if (this->Self->IsInFrame())
-    {
-      throw Error("Blocks cannot be published within a frame.");
-    }
+    this->Self->PrepareToAdd();
+    return blocks.GetResidentBytes(messages.GetRank());
   };
-  auto table = TablePublisher::Run(
-    this->Self->Messages, what, plan, std::move(directory), source, sink, progress);
+  steps.Create = [&](std::uint32_t number, BlockDirectory&& blocks)
+  { return std::make_shared<BlockTable>(number, std::move(blocks), messages.GetRank(), *groups); };
+  const auto table =
+    std::static_pointer_cast<BlockTable>(SegmentPublisher(messages, what, std::move(steps))
+                                           .Run(std::move(directory), source, sink, progress));
   this->Self->Add(table);
   return table;
 }
@@ -57,6 +60,11 @@ void ObjectStore::Retire(const std::shared_ptr<BlockSegment>& segment)
   {
     this->Self->Retire(*segment);
   }
+}
+
+void ObjectStore::MakeRoom(std::size_t count)
+{
+  this->Self->Segments.MakeRoom(count);
 }
 
 void ObjectStore::Adopt(std::shared_ptr<BlockTable> table)

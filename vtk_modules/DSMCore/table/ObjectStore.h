@@ -82,8 +82,9 @@ public:
   /// cached blocks. What this rank owns of it stays until the last shared pointer goes.
   void Retire(const std::shared_ptr<BlockSegment>& segment);
 
-  /// Collective in order, between frames: takes over what another store on this messenger has
-  /// published, or hands it over, its cached blocks forgotten.
+  /// Between frames: takes over what another store on this messenger has published, or hands it over,
+  /// its cached blocks forgotten. Neither fails when room was made, which may throw std::bad_alloc.
+  void MakeRoom(std::size_t count);
   void Adopt(std::shared_ptr<BlockTable> table);
   void Surrender(const BlockTable& table);
 

@@ -171,15 +171,23 @@ void ObjectStore::Internals::Configure(const Settings& settings)
   this->Cache.Shrink();
 }
 
+void ObjectStore::Internals::PrepareToAdd()
+{
+  if (this->IsInFrame())
+  {
+    throw Error("Blocks cannot be published within a frame.");
+  }
+  this->Segments.MakeRoom(1);
+}
+
 void ObjectStore::Internals::Add(std::shared_ptr<Segment> segment)
 {
-  this->Segments.emplace(segment->GetNumber(), std::move(segment));
+  this->Segments.Add(std::move(segment));
 }
 
 void ObjectStore::Internals::Retire(const BlockSegment& segment)
 {
-  const auto found = this->Segments.find(segment.GetNumber());
-  if (found == this->Segments.end() || found->second.get() != &segment)
+  if (!this->Segments.Has(segment))
   {
     return;
   }
@@ -188,10 +196,9 @@ void ObjectStore::Internals::Retire(const BlockSegment& segment)
   {
     throw Error("A segment cannot be retired within a frame.");
   }
-  Segment& retired = *found->second;
-  retired.Retired = true;
-  this->Cache.Forget(retired.Lines.get(), retired.GetDirectory().GetCount());
-  this->Segments.erase(found);
+  const std::shared_ptr<Segment> retired = this->Segments.Remove(segment);
+  retired->Retired = true;
+  this->Cache.Forget(retired->Lines.get(), retired->GetDirectory().GetCount());
 }
 
 // -- The frame, on the communication thread --------------------------------------------------------
@@ -199,7 +206,7 @@ void ObjectStore::Internals::Retire(const BlockSegment& segment)
 std::size_t ObjectStore::Internals::GetLargestBlock() const
 {
   std::size_t largest = 0;
-  for (const auto& [number, segment] : this->Segments)
+  for (const auto& segment : this->Segments)
   {
     // What is all here needs no cache.
     largest =
@@ -368,11 +375,7 @@ std::uint64_t ObjectStore::Internals::GetOldestEpoch() const
 BlockRequests::Callbacks ObjectStore::Internals::MakeCallbacks()
 {
   BlockRequests::Callbacks callbacks;
-  callbacks.Find = [this](std::uint32_t number) -> const BlockSegment*
-  {
-    const auto found = this->Segments.find(number);
-    return found == this->Segments.end() ? nullptr : found->second.get();
-  };
+  callbacks.Find = [this](std::uint32_t number) { return this->Segments.Find(number); };
   callbacks.GetOwned = [](const BlockWant& block)
   { return GetLine(block).Address.load(std::memory_order_relaxed); };
   callbacks.Take = [this](const BlockWant& block, const std::byte* bytes)
@@ -493,7 +496,7 @@ StoreCounters ObjectStore::Internals::GetCounters()
   {
     counters.Workers += worker;
   }
-  for (const auto& [number, segment] : this->Segments)
+  for (const auto& segment : this->Segments)
   {
     counters.ResidentBytes += segment->GetResidentBytes();
     counters.SharedBytes += segment->GetSharedBytes();

@@ -5,13 +5,13 @@
 #include "DSMCore/fetch/BlockRequests.h"
 #include "DSMCore/fetch/PrefetchLedger.h"
 #include "DSMCore/fetch/StoreWorkers.h"
+#include "DSMCore/publish/SegmentList.h"
 #include "DSMCore/table/BlockCache.h"
 #include "DSMCore/table/ObjectStore.h"
 
 #include <atomic>
 #include <cstdint>
 #include <deque>
-#include <map>
 #include <memory>
 #include <mutex>
 #include <string>
@@ -37,6 +37,9 @@ public:
   void Leave(Worker& worker);
 
   void Configure(const Settings& settings);
+  /// Where the ranks agree afterwards: whether a segment may be added. Throws when it may not; else
+  /// Add will not fail.
+  void PrepareToAdd();
   void Add(std::shared_ptr<Segment> segment);
   void Retire(const BlockSegment& segment);
 
@@ -53,6 +56,8 @@ public:
   std::vector<WorkerCounters> GetWorkerCounters();
 
   Messenger& Messages;
+  /// Communication thread only.
+  SegmentList<Segment> Segments;
   Settings Current;
   StoreWorkers<Worker> Workers;
 
@@ -86,8 +91,6 @@ private:
   std::size_t GetLargestBlock() const;
 
   ObjectStore& Store;
-  /// By number. Communication thread only.
-  std::map<std::uint32_t, std::shared_ptr<Segment>> Segments;
   BlockRequests Requests;
 
   /// Guards what follows, the lines' slow parts, and Worker::Slow and WaitsFor.

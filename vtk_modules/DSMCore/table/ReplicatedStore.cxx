@@ -3,7 +3,7 @@
 
 #include "DSMCore/base/Error.h"
 #include "DSMCore/fetch/StoreWorkers.h"
-#include "DSMCore/table/TablePublisher.h"
+#include "DSMCore/publish/SegmentPublisher.h"
 
 #include <algorithm>
 #include <utility>
@@ -42,7 +42,7 @@ void ReplicatedStore::SetSettings(const Settings& settings)
 std::uint64_t ReplicatedStore::CountBytes() const
 {
   std::uint64_t bytes = 0;
-  for (const auto& [number, segment] : this->Segments)
+  for (const auto& segment : this->Segments)
   {
     bytes += segment->GetResidentBytes() + segment->GetReplicaBytes();
   }
@@ -53,29 +53,38 @@ std::shared_ptr<BlockSegment> ReplicatedStore::Publish(const std::string& what,
   BlockDirectory directory, FragmentSource& source, FragmentSink& sink,
   const std::function<void(double)>& progress)
 {
-  TablePublisher::Plan plan;
-  plan.HostSharing = this->Current.HostSharing;
-  plan.Groups = this->Current.Groups;
-  plan.Replicate = true;
-  plan.MemoryBytes =
-    this->Current.MemoryBytes - std::min(this->Current.MemoryBytes, this->CountBytes());
-  plan.Check = [this]
+  const int rank = this->Messages.GetRank();
+  const auto groups = this->Current.Groups
+    ? this->Current.Groups
+    : HostGroups::Find(this->Messages, this->Current.HostSharing);
+  SegmentPublisher::Steps steps;
+  steps.CountBytes = [&](const BlockDirectory& blocks)
   {
     if (this->InFrame)
     {
       throw Error("Blocks cannot be published within a frame.");
     }
+    this->Segments.MakeRoom(1);
+    return blocks.GetResidentBytes(rank) + BlockTable::CountReplicaBytes(blocks, *groups, rank);
   };
+  steps.Create = [&](std::uint32_t number, BlockDirectory&& blocks)
+  { return std::make_shared<BlockTable>(number, std::move(blocks), rank, *groups); };
+  steps.MemoryBytes =
+    this->Current.MemoryBytes - std::min(this->Current.MemoryBytes, this->CountBytes());
+  steps.Remedy = "Choose the object based memory organisation (DSMMemoryOrganization), which "
+                 "shares the data out "
+                 "between the ranks, or smaller data.";
   auto table =
-    TablePublisher::Run(this->Messages, what, plan, std::move(directory), source, sink, progress);
-  this->Segments.emplace(table->GetNumber(), table);
+    std::static_pointer_cast<BlockTable>(SegmentPublisher(this->Messages, what, std::move(steps))
+                                           .Run(std::move(directory), source, sink, progress));
+  table->Replicate(this->Messages, what);
+  this->Segments.Add(table);
   return table;
 }
 
 void ReplicatedStore::Retire(const std::shared_ptr<BlockSegment>& segment)
 {
-  const auto found = segment ? this->Segments.find(segment->GetNumber()) : this->Segments.end();
-  if (found == this->Segments.end() || found->second != segment)
+  if (!segment || !this->Segments.Has(*segment))
   {
     return;
   }
@@ -83,20 +92,24 @@ void ReplicatedStore::Retire(const std::shared_ptr<BlockSegment>& segment)
   {
     throw Error("A segment cannot be retired within a frame.");
   }
-  found->second->DropReplicas();
-  this->Segments.erase(found);
+  this->Segments.Remove(*segment)->DropReplicas();
+}
+
+void ReplicatedStore::MakeRoom(std::size_t count)
+{
+  this->Segments.MakeRoom(count);
 }
 
 void ReplicatedStore::Adopt(std::shared_ptr<BlockTable> table)
 {
   table->Replicate(this->Messages, "Replicating the data");
-  this->Segments.emplace(table->GetNumber(), std::move(table));
+  this->Segments.Add(std::move(table));
 }
 
 void ReplicatedStore::Surrender(BlockTable& table)
 {
   table.DropReplicas();
-  this->Segments.erase(table.GetNumber());
+  this->Segments.Remove(table);
 }
 
 // -- The frame -------------------------------------------------------------------------------------
@@ -144,7 +157,7 @@ StoreCounters ReplicatedStore::GetCounters() const
   {
     counters.Workers += worker;
   }
-  for (const auto& [number, segment] : this->Segments)
+  for (const auto& segment : this->Segments)
   {
     counters.ResidentBytes += segment->GetResidentBytes();
     counters.ReplicaBytes += segment->GetReplicaBytes();

@@ -7,6 +7,7 @@
 #include "DSMCore/publish/BlockDirectory.h"
 #include "DSMCore/publish/BlockSegment.h"
 #include "DSMCore/publish/Publication.h"
+#include "DSMCore/publish/SegmentList.h"
 #include "DSMCore/table/BlockLine.h"
 #include "DSMCore/table/BlockTable.h"
 #include "DSMCore/transport/Messenger.h"
@@ -14,7 +15,6 @@
 #include <atomic>
 #include <cstdint>
 #include <functional>
-#include <map>
 #include <memory>
 #include <string>
 #include <vector>
@@ -68,6 +68,7 @@ public:
 
   /// See ObjectStore. To adopt is collective: the segment is replicated, or the same Error thrown
   /// everywhere, and not adopted. What is surrendered has its copies dropped.
+  void MakeRoom(std::size_t count);
   void Adopt(std::shared_ptr<BlockTable> table);
   void Surrender(BlockTable& table);
 
@@ -102,7 +103,7 @@ private:
   Messenger& Messages;
   Settings Current;
   std::vector<std::unique_ptr<Worker>> Workers;
-  std::map<std::uint32_t, std::shared_ptr<BlockTable>> Segments; ///< by number
+  SegmentList<BlockTable> Segments;
   bool InFrame = false;
 };
 
