@@ -2,6 +2,7 @@
 #include "DSMRayTracing/build/TriangleExchange.h"
 
 #include "DSMCore/base/Error.h"
+#include "DSMCore/memory/BlockArena.h"
 #include "DSMCore/publish/SegmentPublisher.h"
 
 #include <algorithm>
@@ -98,6 +99,54 @@ public:
   }
 };
 
+/// The memory of this rank's cells, one after the other.
+class TriangleRecordBlocks::Segment final : public dsm::BlockSegment
+{
+public:
+  Segment(std::uint32_t number, dsm::BlockDirectory&& directory, int rank, int ranks)
+    : BlockSegment(number, std::move(directory))
+    , Rank(rank)
+    , Ranks(ranks)
+    , Memory(this->GetDirectory().GetResidentBytes(rank))
+  {
+    std::size_t offset = 0;
+    for (dsm::BlockId id = 0; id < this->GetDirectory().GetCount(); ++id)
+    {
+      if (this->GetDirectory().GetOwner(id) == rank)
+      {
+        this->Offsets.push_back(offset);
+        offset += dsm::AlignBlock(this->GetDirectory().GetBytes(id));
+      }
+    }
+  }
+  std::byte* GetOwned(dsm::BlockId id) const override
+  {
+    return this->Memory.GetData() + this->Offsets[id / static_cast<dsm::BlockId>(this->Ranks)];
+  }
+  void ForEachResident(const Visit& visit) const override
+  {
+    for (std::size_t index = 0; index < this->Offsets.size(); ++index)
+    {
+      const auto id =
+        static_cast<dsm::BlockId>(this->Rank) + index * static_cast<dsm::BlockId>(this->Ranks);
+      visit(id, this->GetOwned(id), this->GetDirectory().GetBytes(id));
+    }
+  }
+  std::uint64_t GetResidentBytes() const override
+  {
+    return this->GetDirectory().GetResidentBytes(this->Rank);
+  }
+  void Seal() override {}
+
+private:
+  int Rank;
+  int Ranks;
+  dsm::BlockArena Memory;
+  std::vector<std::size_t> Offsets;
+};
+
+TriangleRecordBlocks::~TriangleRecordBlocks() = default;
+
 TriangleRecordBlocks::TriangleRecordBlocks(const std::string& what, const TriangleCells& cells,
   const TriangleRecord& layout, dsm::FragmentSource& source, dsm::Messenger& messenger,
   const std::function<void(double)>& progress)
@@ -118,28 +167,14 @@ TriangleRecordBlocks::TriangleRecordBlocks(const std::string& what, const Triang
     bytes.push_back(static_cast<std::uint32_t>(needed));
   }
   dsm::SegmentPublisher::Steps steps;
-  steps.Allocate = [this](std::uint32_t, dsm::BlockDirectory&& directory)
-  { this->Allocate(directory); };
-  steps.Locate = [this](dsm::BlockId id)
-  { return this->Memory.GetData() + this->Offsets[id / static_cast<dsm::BlockId>(this->Ranks)]; };
-  steps.Seal = [] {};
+  steps.CountBytes = [this](const dsm::BlockDirectory& directory)
+  { return directory.GetResidentBytes(this->Rank); };
+  steps.Create = [this](std::uint32_t number, dsm::BlockDirectory&& directory)
+  { return std::make_shared<Segment>(number, std::move(directory), this->Rank, this->Ranks); };
   Sink sink;
-  dsm::SegmentPublisher(messenger, what, std::move(steps))
-    .Run({ std::move(bytes), dsm::RoundRobinAssigner(this->Ranks) }, source, sink, progress);
-}
-
-void TriangleRecordBlocks::Allocate(const dsm::BlockDirectory& directory)
-{
-  this->Memory = dsm::BlockArena(directory.GetResidentBytes(this->Rank));
-  std::size_t offset = 0;
-  for (dsm::BlockId id = 0; id < directory.GetCount(); ++id)
-  {
-    if (directory.GetOwner(id) == this->Rank)
-    {
-      this->Offsets.push_back(offset);
-      offset += dsm::AlignBlock(directory.GetBytes(id));
-    }
-  }
+  this->Records =
+    dsm::SegmentPublisher(messenger, what, std::move(steps))
+      .Run({ std::move(bytes), dsm::RoundRobinAssigner(this->Ranks) }, source, sink, progress);
 }
 
 bool BlockSource::Next(dsm::Fragment& fragment)

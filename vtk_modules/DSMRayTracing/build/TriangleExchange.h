@@ -3,8 +3,7 @@
 #define rt_TriangleExchange_h
 
 #include "DSMCore/base/Block.h"
-#include "DSMCore/memory/BlockArena.h"
-#include "DSMCore/publish/BlockDirectory.h"
+#include "DSMCore/publish/BlockSegment.h"
 #include "DSMCore/publish/Publication.h"
 #include "DSMCore/transport/Messenger.h"
 #include "DSMRayTracing/build/TriangleCells.h"
@@ -13,6 +12,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
@@ -50,8 +50,16 @@ public:
     const TriangleRecord& layout, dsm::FragmentSource& source, dsm::Messenger& messenger,
     const std::function<void(double)>& progress);
 
+  ~TriangleRecordBlocks();
+
   /// Own cells, in order.
-  std::size_t GetCount() const { return this->Offsets.size(); }
+  std::size_t GetCount() const
+  {
+    const std::uint64_t cells = this->Records->GetDirectory().GetCount();
+    const auto rank = static_cast<std::uint64_t>(this->Rank);
+    const auto ranks = static_cast<std::uint64_t>(this->Ranks);
+    return static_cast<std::size_t>((cells + ranks - 1 - rank) / ranks);
+  }
   std::uint64_t GetCell(std::size_t index) const
   {
     return static_cast<std::uint64_t>(this->Rank) + index * static_cast<std::uint64_t>(this->Ranks);
@@ -59,20 +67,18 @@ public:
   const std::uint32_t* GetRecords(std::size_t index) const
   {
     return reinterpret_cast<const std::uint32_t*>(
-      this->Memory.GetData() + this->Offsets[index] + RecordOffset);
+      this->Records->GetOwned(this->GetCell(index)) + RecordOffset);
   }
 
 private:
+  class Segment;
   class Sink;
   /// A block begins with the number of bytes of records that it has (64 bits).
   static constexpr std::size_t RecordOffset = dsm::BlockAlignment;
 
-  void Allocate(const dsm::BlockDirectory& directory);
-
   int Rank;
   int Ranks;
-  dsm::BlockArena Memory;
-  std::vector<std::size_t> Offsets;
+  std::shared_ptr<dsm::BlockSegment> Records;
 };
 
 /// Yields whole blocks that this rank has made.
