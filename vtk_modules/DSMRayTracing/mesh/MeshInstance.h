@@ -6,6 +6,7 @@
 #include "DSMRayTracing/mesh/MeshRay.h"
 #include "DSMRayTracing/ray/Ray.h"
 
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <glm/mat3x3.hpp>
 #include <glm/mat4x4.hpp>
@@ -36,7 +37,8 @@ public:
     , WorldOrigin(meshToWorld * glm::dvec4(this->Shape->Origin, 1.0))
     , WorldToMesh(glm::inverse(glm::dmat3(meshToWorld)))
     , NormalToWorld(glm::transpose(this->WorldToMesh))
-    , Diagonal(GetLength(glm::dmat3(meshToWorld), this->Shape->Upper - this->Shape->Lower))
+    , AxisLengths(
+        glm::length(meshToWorld[0]), glm::length(meshToWorld[1]), glm::length(meshToWorld[2]))
   {
   }
 
@@ -45,8 +47,14 @@ public:
   const TriangleMesh& GetMesh() const { return *this->Shape; }
   const glm::dmat4& GetMeshToWorld() const { return this->MeshToWorld; }
 
-  /// World length, about, of the mesh's extent.
-  double GetDiagonal() const { return this->Diagonal; }
+  /// World length that two triangles can at most be apart, near these corners, for the rounding of
+  /// corners to what bricks hold alone: nearer ones cannot be told apart.
+  double GetResolution(const glm::vec3 corners[3]) const
+  {
+    const glm::vec3 farthest =
+      glm::max(glm::max(glm::abs(corners[0]), glm::abs(corners[1])), glm::abs(corners[2]));
+    return CornerStep * glm::dot(glm::dvec3(farthest), this->AxisLengths);
+  }
 
   /// The same T in both spaces. False when the ray cannot hit the mesh.
   bool GetMeshRay(const Ray& ray, MeshRay& line) const
@@ -72,18 +80,15 @@ public:
   glm::dvec3 TurnNormal(const glm::dvec3& normal) const { return this->NormalToWorld * normal; }
 
 private:
-  static double GetLength(const glm::dmat3& meshToWorld, const glm::dvec3& extent)
-  {
-    return glm::length(extent.x * meshToWorld[0]) + glm::length(extent.y * meshToWorld[1]) +
-      glm::length(extent.z * meshToWorld[2]);
-  }
+  /// Corners are floats: each of two may be off by half of this part of its coordinates.
+  static constexpr double CornerStep = 0x1p-23;
 
   std::shared_ptr<const TriangleMesh> Shape;
   glm::dmat4 MeshToWorld;
   glm::dvec3 WorldOrigin; ///< of the positions in bricks
   glm::dmat3 WorldToMesh;
   glm::dmat3 NormalToWorld;
-  double Diagonal;
+  glm::dvec3 AxisLengths; ///< in the world, of units of the mesh's axes
 };
 
 } // namespace rt

@@ -142,9 +142,8 @@ private:
   /// Of the shortest edge of a cell. Roots are found to 1e-7 of the way through a cell.
   static constexpr double ClearancePart = 1e-4;
 
-  /// Of a mesh's diagonal. Hits are found to about 1e-15 of it, and of the distance from the origin
-  /// of the world, which HitError stands for.
-  static constexpr double MeshClearancePart = 1e-6;
+  /// Of the distances of a mesh's hit and of its ray's origin from the origin of the world: what the
+  /// test in double precision can be off by, a few 1e-16 of them, and enough for rays at low angles.
   static constexpr double HitError = 1e-13;
 
   std::uint64_t GetNumber(const dsm::BlockSegment& segment, dsm::BlockId id) const
@@ -368,7 +367,7 @@ private:
     }
     point.Color.w *= point.Surface->Opacity;
     const glm::dvec3 distance = glm::abs(point.Position) + glm::abs(ray.Origin);
-    point.Clearance = MeshClearancePart * object.Instance->GetDiagonal() +
+    point.Clearance = object.Instance->GetResolution(hit.Corners) +
       HitError * (distance.x + distance.y + distance.z);
     point.Edges = object.Edges ? &*object.Edges : nullptr;
     if (point.Edges)
