@@ -250,6 +250,23 @@ TEST_F(VolumeMapper, FollowsWhatChanges)
   EXPECT_EQ(CountCovered(this->RenderDistances()), 0);
 }
 
+TEST_F(VolumeMapper, WithoutIsovaluesDrawsWhatTheDataSuggest)
+{
+  this->Renderer->AddVolume(this->Volume);
+  EXPECT_TRUE(std::isnan(this->Mapper->GetSuggestedIsoValue()));
+  this->Mapper->SetNumberOfIsoValues(0);
+  EXPECT_EQ(CountCovered(this->RenderDistances()), 0);
+  this->Mapper->AutomaticIsoValueOn();
+  const std::vector<double> automatic = this->RenderDistances();
+  EXPECT_GT(CountCovered(automatic), 1000);
+  const double suggested = this->Mapper->GetSuggestedIsoValue();
+  this->Mapper->SetIsoValue(0, suggested);
+  EXPECT_EQ(this->RenderDistances(), automatic);
+  this->Mapper->SetIsoValue(0, 0.5 * suggested);
+  EXPECT_LT(CountCovered(this->RenderDistances()), CountCovered(automatic));
+  EXPECT_EQ(this->Mapper->GetSuggestedIsoValue(), suggested);
+}
+
 TEST_F(VolumeMapper, TheSceneIsTheRenderersAndEndsWithItsLastHolder)
 {
   EXPECT_EQ(vtkDSMScene::ForRenderer(this->Renderer), this->Scene);

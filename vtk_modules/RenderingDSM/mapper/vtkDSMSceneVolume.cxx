@@ -6,11 +6,14 @@
 #include "vtkDSMProgress.h"
 #include "vtkDSMTranslation.h"
 
+#include "DSMRayTracing/layout/FirstIsovalue.h"
+
 #include "vtkCompositeDataIterator.h"
 #include "vtkCompositeDataSet.h"
 #include "vtkContourValues.h"
 #include "vtkDataObject.h"
 #include "vtkDataSet.h"
+#include "vtkMath.h"
 #include "vtkMatrix4x4.h"
 #include "vtkPointData.h"
 #include "vtkProp3D.h"
@@ -171,6 +174,10 @@ void vtkDSMSceneVolume::Update(const std::shared_ptr<vtkDSMRankGroup>& group, bo
   const unsigned version = group->GetSettingsVersion();
   this->Iso = this->Require({ this->GetIsoArray(), mapper->GetIsoComponent() }, "isosurface array",
     version, { oldIso, oldColor });
+  if (this->Iso != oldIso)
+  {
+    this->SuggestIsovalue(group->GetMessenger());
+  }
   this->Color.reset();
   if (mapper->GetScalarVisibility() && !mapper->GetColorArray().empty() && mapper->GetLookupTable())
   {
@@ -188,6 +195,16 @@ void vtkDSMSceneVolume::Update(const std::shared_ptr<vtkDSMRankGroup>& group, bo
       this->Messages.push_back(published->Failure);
     }
   }
+}
+
+void vtkDSMSceneVolume::SuggestIsovalue(dsm::Messenger& messenger)
+{
+  if (!this->Suggested || !(this->SuggestedFor == this->Iso->Choice))
+  {
+    this->SuggestedFor = this->Iso->Choice;
+    this->Suggested = rt::FindFirstIsovalue(this->Iso->Fields, messenger);
+  }
+  this->Mapper->SetSuggestedIsoValue(this->Suggested.value_or(vtkMath::Nan()));
 }
 
 bool vtkDSMSceneVolume::IsLikeRayCastMapper() const
@@ -251,6 +268,10 @@ std::vector<double> vtkDSMSceneVolume::GetIsovalues()
     for (int index = 0; index < mapper->GetNumberOfIsoValues(); ++index)
     {
       chosen.push_back(mapper->GetIsoValue(index));
+    }
+    if (chosen.empty() && mapper->GetAutomaticIsoValue() && this->Suggested)
+    {
+      chosen.push_back(*this->Suggested);
     }
     if (mapper->GetBlendMode() != vtkVolumeMapper::COMPOSITE_BLEND)
     {

@@ -43,6 +43,8 @@ private:
   void KeepUnchanged(dsm::Messenger& messenger);
   std::shared_ptr<Published> Require(const vtkDSMVolumeData::Choice& choice, const char* purpose,
     unsigned settingsVersion, const std::vector<std::shared_ptr<Published>>& known);
+  /// Collective. Finds the isovalue for a first look at the array, once for an array.
+  void SuggestIsovalue(dsm::Messenger& messenger);
   /// Whether isovalues and look come from the volume's property; else they are the mapper's.
   bool IsLikeRayCastMapper() const;
   std::string GetIsoArray();
@@ -58,6 +60,8 @@ private:
   std::unique_ptr<vtkDSMVolumeData> Data;
   std::shared_ptr<Published> Iso;
   std::shared_ptr<Published> Color;
+  std::optional<double> Suggested; ///< isovalue
+  vtkDSMVolumeData::Choice SuggestedFor;
   std::string DataFailure;
 };
 

@@ -175,6 +175,11 @@ void vtkDSMVolumeMapper::SetGlobalBounds(const double bounds[6])
   std::copy_n(bounds, 6, this->GlobalBounds);
 }
 
+void vtkDSMVolumeMapper::SetSuggestedIsoValue(double value)
+{
+  this->SuggestedIsoValue = value;
+}
+
 void vtkDSMVolumeMapper::UpdatePiece(int piece, int numberOfPieces)
 {
   if (this->GetNumberOfInputConnections(0) == 0)
@@ -226,6 +231,8 @@ void vtkDSMVolumeMapper::PrintSelf(ostream& os, vtkIndent indent)
     os << " " << value;
   }
   os << "\n";
+  os << indent << "AutomaticIsoValue: " << this->AutomaticIsoValue << "\n";
+  os << indent << "SuggestedIsoValue: " << this->SuggestedIsoValue << "\n";
   os << indent << "ColorArray: " << this->ColorArray << "\n";
   os << indent << "ScalarVisibility: " << this->ScalarVisibility << "\n";
   os << indent << "LookupTable: " << this->LookupTable.Get() << "\n";

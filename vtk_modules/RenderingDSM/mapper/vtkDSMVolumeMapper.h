@@ -24,6 +24,7 @@
 #ifndef vtkDSMVolumeMapper_h
 #define vtkDSMVolumeMapper_h
 
+#include "vtkMath.h"               // for ivars
 #include "vtkRenderingDSMModule.h" // for the export macro
 #include "vtkSmartPointer.h"       // for ivars
 #include "vtkVolumeMapper.h"
@@ -76,6 +77,23 @@ public:
 
   ///@{
   /**
+   * Whether the surface of a value that the data suggest is drawn while there are no isovalues. Off by
+   * default. The same value for any number of ranks; once chosen for an array, it stays when its data
+   * change.
+   */
+  vtkSetMacro(AutomaticIsoValue, bool);
+  vtkGetMacro(AutomaticIsoValue, bool);
+  vtkBooleanMacro(AutomaticIsoValue, bool);
+  ///@}
+
+  /**
+   * The value that the data of the last frame suggest, whether it is drawn or not. Not a number before
+   * the first frame, and where the data have no surface at any value.
+   */
+  vtkGetMacro(SuggestedIsoValue, double);
+
+  ///@{
+  /**
    * The point array that colours the surfaces through the lookup table, when ScalarVisibility is on
    * (off by default). For an array of several components, the lookup table's vector mode and vector
    * component choose what is shown.
@@ -124,6 +142,7 @@ public:
    * For the scene, which knows all ranks' bounds.
    */
   void SetGlobalBounds(const double bounds[6]);
+  void SetSuggestedIsoValue(double value);
 
   /**
    * Brings the input up to date; each rank asks its pipeline for its own piece.
@@ -191,6 +210,8 @@ private:
   std::string IsoArray;
   int IsoComponent = 0;
   std::vector<double> IsoValues;
+  bool AutomaticIsoValue = false;
+  double SuggestedIsoValue = vtkMath::Nan();
   std::string ColorArray;
   bool ScalarVisibility = false;
   vtkSmartPointer<vtkScalarsToColors> LookupTable;

@@ -1,0 +1,181 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "DSMCore/transport/LoopbackTransport.h"
+#include "DSMRayTracing/layout/FirstIsovalue.h"
+#include "TestVolume.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <thread>
+
+namespace
+{
+
+constexpr int Points = 64;
+
+/// One rank's share of the blocks of a segment.
+class ShareOfSegment final : public dsm::BlockSegment
+{
+public:
+  ShareOfSegment(std::shared_ptr<dsm::BlockSegment> all, dsm::BlockDirectory directory, int rank)
+    : BlockSegment(0, std::move(directory))
+    , All(std::move(all))
+    , Rank(rank)
+  {
+  }
+  void ForEachResident(const Visit& visit) const override
+  {
+    this->All->ForEachResident(
+      [&](dsm::BlockId id, const std::byte* block, std::size_t bytes)
+      {
+        if (this->GetDirectory().GetOwner(id) == this->Rank)
+        {
+          visit(id, block, bytes);
+        }
+      });
+  }
+  std::uint64_t GetResidentBytes() const override { return 0; }
+  std::byte* GetOwned(dsm::BlockId) const override { return nullptr; }
+  void Seal() override {}
+
+private:
+  std::shared_ptr<dsm::BlockSegment> All;
+  int Rank;
+};
+
+using Fields = std::vector<std::shared_ptr<rt::VoxelField>>;
+
+/// What each of several ranks finds.
+std::vector<std::optional<double>> FindOnRanks(const Fields& fields, int ranks)
+{
+  auto transports = dsm::LoopbackTransport::CreateGroup(ranks);
+  std::vector<std::optional<double>> found(ranks);
+  std::vector<std::thread> threads;
+  for (int rank = 0; rank < ranks; ++rank)
+  {
+    threads.emplace_back(
+      [&, rank]
+      {
+        dsm::Messenger messenger(std::move(transports[rank]));
+        std::vector<std::shared_ptr<const rt::VoxelField>> mine;
+        for (const auto& field : fields)
+        {
+          auto share = field ? std::make_shared<rt::VoxelField>(*field) : nullptr;
+          if (share)
+          {
+            share->Segment = std::make_shared<ShareOfSegment>(
+              field->Segment, field->Lattice.CreateDirectory(ranks), rank);
+          }
+          mine.push_back(share);
+        }
+        found[rank] = rt::FindFirstIsovalue(mine, messenger);
+        messenger.Barrier();
+      });
+  }
+  for (std::thread& thread : threads)
+  {
+    thread.join();
+  }
+  return found;
+}
+
+template <class T>
+std::optional<double> Find(const TestVolume<T>& volume)
+{
+  MemoryStore store;
+  return FindOnRanks({ CreateField(store, volume) }, 1).front();
+}
+
+/// From -1 to 1.
+double GetCoordinate(int index)
+{
+  return 2.0 * index / (Points - 1) - 1.0;
+}
+
+float GetSquaredDistance(int x, int y, int z)
+{
+  return static_cast<float>(
+    std::pow(GetCoordinate(x), 2) + std::pow(GetCoordinate(y), 2) + std::pow(GetCoordinate(z), 2));
+}
+
+/// As a scan: an object of about 120 in noise of 0 to 9, and a few grains of 255.
+std::uint8_t GetScanned(int x, int y, int z)
+{
+  const auto noise = (x * 131 + y * 37 + z * 61) % 10;
+  if (x % 16 == 8 && y % 16 == 8 && z % 16 == 8)
+  {
+    return 255;
+  }
+  return static_cast<std::uint8_t>(GetSquaredDistance(x, y, z) < 0.2f ? 115 + noise : noise);
+}
+
+} // namespace
+
+TEST(TestFirstIsovalue, TheBorderDoesNotCutTheSphereOpen)
+{
+  const auto found = Find(TestVolume<float>(rt::Index3(Points), GetSquaredDistance));
+  ASSERT_TRUE(found);
+  EXPECT_GT(*found, 0.5);
+  EXPECT_LT(*found, 0.95);
+}
+
+TEST(TestFirstIsovalue, LiesBetweenNoiseAndObject)
+{
+  const auto found = Find(TestVolume<std::uint8_t>(rt::Index3(Points), GetScanned));
+  ASSERT_TRUE(found);
+  EXPECT_GT(*found, 12.0);
+  EXPECT_LT(*found, 110.0);
+}
+
+TEST(TestFirstIsovalue, IsTheSameOnEveryNumberOfRanks)
+{
+  MemoryStore store;
+  const TestVolume<float> sphere(rt::Index3(Points), GetSquaredDistance);
+  const TestVolume<std::uint8_t> scan(rt::Index3(Points, 23, 41), GetScanned);
+  const Fields fields{ CreateField(store, sphere), nullptr, CreateField(store, scan) };
+  const std::optional<double> expected = FindOnRanks(fields, 1).front();
+  ASSERT_TRUE(expected);
+  for (const int ranks : { 2, 3, 4 })
+  {
+    for (const std::optional<double>& found : FindOnRanks(fields, ranks))
+    {
+      EXPECT_EQ(found, expected) << ranks << " ranks";
+    }
+  }
+}
+
+TEST(TestFirstIsovalue, BlankCellsDoNotCount)
+{
+  TestVolume<float> volume(rt::Index3(Points), GetSquaredDistance);
+  // Only a slab in the middle holds data, and values elsewhere would move everything.
+  for (int z = 0; z < Points - 1; ++z)
+  {
+    for (int y = 0; y < Points - 1; ++y)
+    {
+      for (int x = 0; x < Points - 1; ++x)
+      {
+        if (z < 24 || z >= 40)
+        {
+          volume.Blank(x, y, z);
+        }
+      }
+    }
+  }
+  for (int y = 0; y < Points; ++y)
+  {
+    for (int x = 0; x < Points; ++x)
+    {
+      volume.At(x, y, 0) = 1e6f;
+    }
+  }
+  const auto found = Find(volume);
+  ASSERT_TRUE(found);
+  EXPECT_LT(*found, 2.0);
+}
+
+TEST(TestFirstIsovalue, ThereIsNoneWhereNoSurfaceIs)
+{
+  EXPECT_FALSE(Find(TestVolume<float>(rt::Index3(Points), [](int, int, int) { return 3.0f; })));
+  EXPECT_FALSE(Find(TestVolume<float>(rt::Index3(Points), [](int, int, int) { return NAN; })));
+  EXPECT_FALSE(FindOnRanks({ nullptr }, 2).back());
+}
