@@ -3,7 +3,9 @@
 
 #include "vtkDSMScene.h"
 #include "vtkDSMStatistics.h"
+#include "vtkDSMVolumeMapper.h"
 
+#include "vtkMath.h"
 #include "vtkObjectFactory.h"
 
 vtkStandardNewMacro(vtkPVDSMFrameReport);
@@ -14,6 +16,16 @@ vtkPVDSMFrameReport::~vtkPVDSMFrameReport() = default;
 void vtkPVDSMFrameReport::SetSource(vtkDSMScene* source)
 {
   this->Source = source;
+}
+
+void vtkPVDSMFrameReport::SetVolume(vtkDSMVolumeMapper* volume)
+{
+  this->Volume = volume;
+}
+
+double vtkPVDSMFrameReport::GetSuggestedIsoValue()
+{
+  return this->Volume ? this->Volume->GetSuggestedIsoValue() : vtkMath::Nan();
 }
 
 double vtkPVDSMFrameReport::GetFrameTime()
@@ -53,6 +65,7 @@ bool vtkPVDSMFrameReport::GetProgressive()
 void vtkPVDSMFrameReport::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
+  os << indent << "SuggestedIsoValue: " << this->GetSuggestedIsoValue() << "\n";
   os << indent << "FrameTime: " << this->GetFrameTime() << "\n";
   os << indent << "Statistics: " << this->GetStatistics() << "\n";
 }

@@ -17,6 +17,7 @@
 #include <string> // for ivars
 
 class vtkDSMScene;
+class vtkDSMVolumeMapper;
 
 class VTKREPRESENTATIONSDSM_EXPORT vtkPVDSMFrameReport : public vtkObject
 {
@@ -29,6 +30,16 @@ public:
    * Where to read from; null when the representation is in no view.
    */
   void SetSource(vtkDSMScene* source);
+
+  /**
+   * Whose isovalue to tell; null for a mesh.
+   */
+  void SetVolume(vtkDSMVolumeMapper* volume);
+
+  /**
+   * The isovalue that the data suggest; not a number where they suggest none.
+   */
+  double GetSuggestedIsoValue();
 
   /**
    * Seconds the last frame took to trace; 0 without one.
@@ -69,6 +80,7 @@ private:
   void operator=(const vtkPVDSMFrameReport&) = delete;
 
   vtkWeakPointer<vtkDSMScene> Source;
+  vtkWeakPointer<vtkDSMVolumeMapper> Volume;
   bool Progressive = false;
   int Samples[2] = { 0, 0 };
   std::string Text;

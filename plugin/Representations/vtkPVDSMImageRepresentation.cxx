@@ -36,6 +36,7 @@ vtkPVDSMImageRepresentation::vtkPVDSMImageRepresentation()
 {
   this->Volume->SetMapper(this->Mapper);
   this->Mapper->MakesSceneOff(); // on ParaView's client there shall be none
+  this->Mapper->AutomaticIsoValueOn();
   this->Mapper->AddObserver(
     vtkCommand::ProgressEvent, this, &vtkPVDSMImageRepresentation::ForwardProgress);
   this->SelectionMapper->SetSource([this]() -> vtkSmartPointer<vtkDataObject>
@@ -199,12 +200,38 @@ void vtkPVDSMImageRepresentation::SetIsoComponent(int component)
 
 void vtkPVDSMImageRepresentation::SetNumberOfIsoValues(int number)
 {
-  this->Mapper->SetNumberOfIsoValues(number);
+  this->IsoValues.resize(std::max(number, 0), 0.0);
+  this->ChooseIsoValues();
 }
 
 void vtkPVDSMImageRepresentation::SetIsoValue(int index, double value)
 {
-  this->Mapper->SetIsoValue(index, value);
+  if (index >= 0 && index < static_cast<int>(this->IsoValues.size()))
+  {
+    this->IsoValues[index] = value;
+    this->ChooseIsoValues();
+  }
+}
+
+void vtkPVDSMImageRepresentation::SetSingleIsoValue(double value)
+{
+  this->SingleIsoValue = value;
+  this->ChooseIsoValues();
+}
+
+void vtkPVDSMImageRepresentation::ChooseIsoValues()
+{
+  std::vector<double> shown = this->IsoValues;
+  if (shown.empty() && this->SingleIsoValue != UnsetIsoValue)
+  {
+    shown.push_back(this->SingleIsoValue);
+  }
+  const int number = static_cast<int>(shown.size());
+  this->Mapper->SetNumberOfIsoValues(number);
+  for (int index = 0; index < number; ++index)
+  {
+    this->Mapper->SetIsoValue(index, shown[index]);
+  }
 }
 
 void vtkPVDSMImageRepresentation::SetLookupTable(vtkScalarsToColors* table)
@@ -327,6 +354,7 @@ void vtkPVDSMImageRepresentation::ConnectFrameReport()
   if (this->FrameReport)
   {
     this->FrameReport->SetSource(this->Scene);
+    this->FrameReport->SetVolume(this->Mapper);
   }
 }
 

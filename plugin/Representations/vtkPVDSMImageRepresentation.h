@@ -17,6 +17,7 @@
 #include "vtkSmartPointer.h"             // for ivars
 
 #include <memory> // for ivars
+#include <vector> // for ivars
 
 class vtkDSMScene;
 class vtkActor;
@@ -53,10 +54,23 @@ public:
    */
   void SelectIsoArray(int index, int port, int connection, int association, const char* name);
   void SetIsoComponent(int component);
-  void SetNumberOfIsoValues(int number);
-  void SetIsoValue(int index, double value);
   void SetLookupTable(vtkScalarsToColors* table);
   ///@}
+
+  ///@{
+  /**
+   * What isosurfaces are shown: those of a list of values; while it is empty, the one of the single value;
+   * until that is set, the one of a value that the data suggest.
+   */
+  void SetNumberOfIsoValues(int number);
+  void SetIsoValue(int index, double value);
+  void SetSingleIsoValue(double value);
+  ///@}
+
+  /**
+   * The single value as long as it is not set.
+   */
+  static constexpr double UnsetIsoValue = -1e299;
 
   ///@{
   /**
@@ -124,12 +138,15 @@ private:
 
   void PrepareUpdate(vtkInformation* inInfo, vtkInformation* outInfo);
   void ConnectFrameReport();
+  void ChooseIsoValues();
   /// Taking in data happens while the view renders; ParaView watches the representation, only.
   void ForwardProgress();
 
   bool Executed = false; ///< RequestData, during the current request of the view
   vtkNew<vtkVolume> Volume;
   vtkNew<vtkDSMVolumeMapper> Mapper;
+  std::vector<double> IsoValues;
+  double SingleIsoValue = UnsetIsoValue;
   vtkNew<vtkPartitionedDataSet> Placeholder;
   vtkSmartPointer<vtkDSMScene> Scene;
   std::unique_ptr<vtkPVDSMClipping> Clipping;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkPVDSMLightOptions.h"
 
+#include "vtkMath.h"
 #include "vtkObjectFactory.h"
 
 vtkStandardNewMacro(vtkPVDSMLightOptions);
@@ -43,9 +44,9 @@ void vtkPVDSMLightOptions::SetMaxBounces(int bounces)
   this->Superclass::SetMaxBounces(bounces);
 }
 
-void vtkPVDSMLightOptions::SetSamplesPerPixel(int samples)
+void vtkPVDSMLightOptions::SetSamples(double samples)
 {
-  this->Superclass::SetSamplesPerPixel(samples);
+  this->SetSamplesPerPixel(vtkMath::Round(samples));
 }
 
 void vtkPVDSMLightOptions::SetShowLegend(bool show)

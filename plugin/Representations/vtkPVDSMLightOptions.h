@@ -28,11 +28,15 @@ public:
   void SetEnvironmentLight(double strength) override;
   void SetReflectivity(double part) override;
   void SetMaxBounces(int bounces) override;
-  void SetSamplesPerPixel(int samples) override;
   void SetDebugView(int view) override;
   void SetShowLegend(bool show) override;
   void SetShowStatistics(bool show) override;
   ///@}
+
+  /**
+   * Samples of each pixel, rounded: ParaView's slider of choices is for floating point numbers only.
+   */
+  void SetSamples(double samples);
 
 protected:
   vtkPVDSMLightOptions();

@@ -70,37 +70,46 @@ vtkSMRenderViewProxy* FindProxy(vtkPVRenderView* view)
   return nullptr;
 }
 
-/// What tells of the frames that a dataset of the view is in; null where it is not traced.
-vtkSMProxy* FindReport(vtkSMProxy* representation)
+/// Whether the dataset is traced.
+bool IsTraced(vtkSMProxy* representation)
 {
   const auto helper = [=](const char* name)
   { return vtkSMPropertyHelper(representation, name, /*quiet=*/true); };
   if (!representation || helper("Visibility").GetAsInt() == 0)
   {
-    return nullptr;
+    return false;
   }
   // Not every representation has a choice of what it shows (scalar bars have none).
   const char* shown = helper("Representation").GetAsString();
-  if (!shown || std::string(shown) != "DSM Ray Traced")
-  {
-    return nullptr;
-  }
-  vtkSMProperty* samples = representation->GetProperty("DSMSamples");
-  return samples ? samples->GetParent() : nullptr;
+  return shown && std::string(shown) == "DSM Ray Traced";
 }
 
-/// Calls `visit` with the report of each dataset that is traced.
+/// Calls `visit` with each dataset that is traced.
 template <class Visit>
-void ForEachReport(vtkSMProxy* view, const Visit& visit)
+void ForEachTraced(vtkSMProxy* view, const Visit& visit)
 {
   const vtkSMPropertyHelper representations(view, "Representations", /*quiet=*/true);
   for (unsigned int index = 0; index < representations.GetNumberOfElements(); ++index)
   {
-    if (vtkSMProxy* report = FindReport(representations.GetAsProxy(index)))
+    if (IsTraced(representations.GetAsProxy(index)))
     {
-      visit(report);
+      visit(representations.GetAsProxy(index));
     }
   }
+}
+
+/// Calls `visit` with what tells of the frames that each traced dataset is in.
+template <class Visit>
+void ForEachReport(vtkSMProxy* view, const Visit& visit)
+{
+  ForEachTraced(view,
+    [&](vtkSMProxy* representation)
+    {
+      if (vtkSMProperty* samples = representation->GetProperty("DSMSamples"))
+      {
+        visit(samples->GetParent());
+      }
+    });
 }
 
 } // namespace
@@ -237,7 +246,20 @@ void vtkPVDSMRefinement::OnRenderEnds(vtkObject*, unsigned long, void* interacti
 {
   this->CanAbort = false;
   this->IsRefined = true;
-  if (*static_cast<int*>(interactive) != 0 || !this->CanGoOn())
+  const bool goesOn = this->CanGoOn();
+  if (!this->View->GetSession()->IsMultiClients())
+  {
+    ForEachTraced(this->View,
+      [&](vtkSMProxy* representation)
+      {
+        this->Isovalues.TakeSuggestion(representation);
+        if (goesOn)
+        {
+          this->Isovalues.Watch(representation);
+        }
+      });
+  }
+  if (*static_cast<int*>(interactive) != 0 || !goesOn)
   {
     return;
   }
@@ -280,6 +302,15 @@ void vtkPVDSMRefinement::OnInteractionEnds()
   this->IsInteracting = false;
   // After a movement ParaView renders, when its delay is over.
   if (!this->IsRefined)
+  {
+    this->RenderLater(ShortDelay);
+  }
+}
+
+/// The panel's slider says so many times while it is dragged; a render that waits already shows the last.
+void vtkPVDSMRefinement::OnIsovalue()
+{
+  if (this->Timer == 0 && this->View)
   {
     this->RenderLater(ShortDelay);
   }

@@ -3,6 +3,7 @@
 #define vtkPVDSMRefinement_h
 
 #include "vtkPVDSMInputWatch.h"
+#include "vtkPVDSMIsovalueWatch.h"
 
 #include "vtkNew.h"
 #include "vtkObject.h"
@@ -24,6 +25,7 @@ class vtkSMRenderViewProxy;
 /// next ones are added, until there are as many as asked for. Lives on the client, once for each view
 /// that shows anything of ours; its thread is the application's. Where no application handles events
 /// between renders (pvpython, pvbatch), and with several clients, renders take all samples as usual.
+/// An isovalue that changes is shown at once.
 /// Where the client itself traces, a render ends early when the user presses anything.
 class vtkPVDSMRefinement : public vtkObject
 {
@@ -53,6 +55,7 @@ private:
   void OnAbortCheck(vtkObject* caller, unsigned long event, void* data);
   void OnInteractionBegins();
   void OnInteractionEnds();
+  void OnIsovalue();
   void OnTimer(vtkObject* caller, unsigned long event, void* timer);
   void RenderLater(unsigned long milliseconds);
   void Forget();
@@ -62,6 +65,7 @@ private:
   vtkWeakPointer<vtkRenderWindow> Window;
   vtkNew<vtkPVDSMProgressGuard> ProgressGuard;
   vtkPVDSMInputWatch Input;
+  vtkPVDSMIsovalueWatch Isovalues{ [this] { this->OnIsovalue(); } };
   std::vector<unsigned long> ViewObservers;
   std::vector<unsigned long> InteractorObservers;
   unsigned long WindowObserver = 0;

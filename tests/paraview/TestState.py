@@ -5,7 +5,7 @@ from dsm_testing import *
 
 load_plugin()
 SETTINGS = {
-    "Representation": REPRESENTATION, "DSMIsoValues": [0.5, 0.8], "DSMIsoComponent": 0,
+    "Representation": REPRESENTATION, "DSMIsoValue": 0.7, "DSMIsoValues": [0.5, 0.8], "DSMIsoComponent": 0,
     "DSMThreads": 1, "DSMCacheSize": 33, "DSMMemoryOrganization": "Object based",
     "DSMHostSharing": 0, "DSMScheduler": "Central queue", "DSMMemory": 123, "DSMShadows": 1, "DSMLightRadius": 0.02,
     "DSMAmbientOcclusionSamples": 2, "DSMAmbientOcclusionDistance": 0.75, "DSMReflectivity": 0.25,

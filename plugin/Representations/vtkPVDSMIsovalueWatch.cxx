@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkPVDSMIsovalueWatch.h"
+
+#include "vtkPVDSMImageRepresentation.h"
+
+#include "vtkCallbackCommand.h"
+#include "vtkClientServerStream.h"
+#include "vtkNew.h"
+#include "vtkSMProperty.h"
+#include "vtkSMPropertyHelper.h"
+#include "vtkSMProxy.h"
+#include "vtkSMSession.h"
+#include "vtkSMUncheckedPropertyHelper.h"
+
+#include <cmath>
+#include <utility>
+
+namespace
+{
+constexpr const char* Single = "DSMIsoValue";
+}
+
+vtkPVDSMIsovalueWatch::vtkPVDSMIsovalueWatch(std::function<void()> changed)
+  : Changed(std::move(changed))
+{
+  vtkNew<vtkCallbackCommand> observer;
+  observer->SetClientData(this);
+  observer->SetCallback(
+    [](vtkObject* property, unsigned long, void* watch, void*)
+    {
+      if (watch)
+      {
+        static_cast<vtkPVDSMIsovalueWatch*>(watch)->OnChange(vtkSMProperty::SafeDownCast(property));
+      }
+    });
+  this->Observer = observer;
+}
+
+vtkPVDSMIsovalueWatch::~vtkPVDSMIsovalueWatch()
+{
+  // The properties may outlive this.
+  static_cast<vtkCallbackCommand*>(this->Observer.Get())->SetClientData(nullptr);
+}
+
+void vtkPVDSMIsovalueWatch::TakeSuggestion(vtkSMProxy* representation)
+{
+  vtkSMProperty* single = representation->GetProperty(Single);
+  if (!single ||
+    vtkSMPropertyHelper(single).GetAsDouble() != vtkPVDSMImageRepresentation::UnsetIsoValue ||
+    vtkSMPropertyHelper(representation, "DSMIsoValues").GetNumberOfElements() > 0)
+  {
+    return;
+  }
+  vtkSMProperty* suggestion = representation->GetProperty("DSMSuggestedIsoValue");
+  suggestion->GetParent()->UpdatePropertyInformation(suggestion);
+  const double value = vtkSMPropertyHelper(suggestion).GetAsDouble();
+  if (std::isfinite(value))
+  {
+    this->IsTaking = true;
+    vtkSMPropertyHelper(single).Set(value);
+    representation->UpdateVTKObjects();
+    this->IsTaking = false;
+  }
+}
+
+void vtkPVDSMIsovalueWatch::Watch(vtkSMProxy* representation)
+{
+  vtkSMProperty* single = representation->GetProperty(Single);
+  if (single && !single->HasObserver(vtkCommand::UncheckedPropertyModifiedEvent, this->Observer))
+  {
+    single->AddObserver(vtkCommand::UncheckedPropertyModifiedEvent, this->Observer);
+  }
+}
+
+// Past the property, whose changes the application traces, and may undo.
+void vtkPVDSMIsovalueWatch::OnChange(vtkSMProperty* single)
+{
+  vtkSMProxy* proxy = single->GetParent();
+  if (this->IsTaking || !proxy)
+  {
+    return;
+  }
+  vtkClientServerStream stream;
+  stream << vtkClientServerStream::Invoke << VTKOBJECT(proxy) << "SetSingleIsoValue"
+         << vtkSMUncheckedPropertyHelper(single).GetAsDouble() << vtkClientServerStream::End;
+  proxy->GetSession()->ExecuteStream(proxy->GetLocation(), stream);
+  this->Changed();
+}
