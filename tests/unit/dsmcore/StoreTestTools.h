@@ -166,8 +166,8 @@ inline std::size_t CountWrongBytes(dsm::BlockId id, const std::byte* block, std:
 }
 
 /// A frame as a renderer drives it: `trace` runs on a thread for each of the store's workers, this
-/// thread serves until every rank's workers are done. What a worker throws cancels the frame on its
-/// rank; then every rank throws the same Error. `first` (may be empty) runs on this thread when the
+/// thread serves until every rank's workers are done. What this thread comes upon cancels the frame on
+/// all ranks, what a worker throws ends that worker; then every rank throws the same Error. `first` (may be empty) runs on this thread when the
 /// frame has begun.
 template <class Store>
 void RunFrame(dsm::Messenger& messenger, Store& store,
@@ -207,6 +207,13 @@ void RunFrame(dsm::Messenger& messenger, Store& store,
   int finished = 0;
   bool told = false;
   messenger.SetHandler(dsm::MessageKind::FrameDone, [&](dsm::Message&&) { ++finished; });
+  bool stopped = false; // by another rank's failure, which that rank reports
+  messenger.SetHandler(dsm::MessageKind::FrameStop,
+    [&](dsm::Message&&)
+    {
+      stopped = stopped || cause.empty();
+      store.Cancel("another rank has failed");
+    });
   const auto serve = [&]
   {
     bool any = store.Service();
@@ -229,9 +236,16 @@ void RunFrame(dsm::Messenger& messenger, Store& store,
       messenger.ProgressUntil([&] { return finished == messenger.GetSize(); }, serve);
       over = true;
     }
-    catch (...) // a malformed message, or no memory for a block
+    catch (...) // a malformed message, no memory for a block, or a source that fails
     {
-      cause = dsm::Messenger::DescribeException();
+      if (cause.empty() && !stopped)
+      {
+        cause = dsm::Messenger::DescribeException();
+        for (int rank = 0; rank < messenger.GetSize(); ++rank)
+        {
+          messenger.Post(rank, dsm::MessageKind::FrameStop, {});
+        }
+      }
       store.Cancel(cause);
     }
   }
@@ -240,10 +254,11 @@ void RunFrame(dsm::Messenger& messenger, Store& store,
     thread.join();
   }
   messenger.SetHandler(dsm::MessageKind::FrameDone, {});
+  messenger.SetHandler(dsm::MessageKind::FrameStop, {});
   store.EndFrame();
   for (const std::string& text : causes)
   {
-    cause = cause.empty() ? text : cause;
+    cause = cause.empty() && !stopped ? text : cause;
   }
   messenger.RunTogether("The frame failed",
     [&]

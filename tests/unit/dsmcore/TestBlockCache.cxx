@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <vector>
 
@@ -41,7 +42,9 @@ protected:
     line.MoveTo(LineState::Wanted);
     line.MoveTo(LineState::Pending);
     this->Content.assign(Bytes, static_cast<std::byte>(index));
-    this->Cache.Insert(line, this->Content.data());
+    std::byte* const memory = this->Cache.Allocate(Bytes);
+    std::copy(this->Content.begin(), this->Content.end(), memory);
+    this->Cache.Insert(line, memory);
     return true;
   }
 

@@ -75,7 +75,7 @@ protected:
       dsm::BlockRequests::Callbacks callbacks;
       callbacks.Find = [this](std::uint32_t number)
       { return number == 1 ? &this->Segment : nullptr; };
-      callbacks.GetOwned = [this](const dsm::BlockWant& block)
+      callbacks.FindOwned = [this](const dsm::BlockWant& block)
       { return reinterpret_cast<const std::byte*>(&this->Segment.Numbers[block.Id]); };
       callbacks.Take = [this](const dsm::BlockWant& block, const std::byte* bytes)
       {
@@ -109,14 +109,14 @@ protected:
 TEST_F(BlockRequestsTest, OneMessageForEachOwner)
 {
   dsm::BlockRequests& asker = *this->Requests[0];
-  EXPECT_FALSE(asker.Send());
+  EXPECT_FALSE(asker.Submit());
   for (const dsm::BlockId id : { 1, 2, 4, 7, 10 }) // owners 1, 2, 1, 1, 1
   {
-    asker.Add({ &this->Segment, id });
+    asker.Begin({ &this->Segment, id }, nullptr);
   }
   EXPECT_EQ(asker.GetPendingCount(), 5u);
-  EXPECT_TRUE(asker.Send());
-  EXPECT_FALSE(asker.Send());
+  EXPECT_TRUE(asker.Submit());
+  EXPECT_FALSE(asker.Submit());
   EXPECT_EQ(this->Posted, 2);
   this->Progress();
   std::sort(this->Taken.begin(), this->Taken.end());
@@ -130,9 +130,10 @@ TEST_F(BlockRequestsTest, OneMessageForEachOwner)
 TEST_F(BlockRequestsTest, WhatIsAbandonedIsNotTaken)
 {
   dsm::BlockRequests& asker = *this->Requests[0];
-  asker.Add({ &this->Segment, 1 });
-  asker.Send();
-  EXPECT_EQ(asker.Abandon().size(), 1u);
+  asker.Begin({ &this->Segment, 1 }, nullptr);
+  asker.Submit();
+  EXPECT_EQ(asker.GetPendingCount(), 1u);
+  asker.Abandon();
   EXPECT_EQ(asker.GetPendingCount(), 0u);
   this->Progress();
   EXPECT_TRUE(this->Taken.empty());

@@ -1,6 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "DSMCore/base/WorkerSlots.h"
 
+#include "DSMCore/base/Error.h"
+
+#include <limits>
+#include <string>
+
 namespace dsm
 {
 
@@ -72,6 +77,16 @@ std::uint64_t WorkerSlots::GetIdleNanoseconds() const
   const std::lock_guard<std::mutex> lock(this->Guard);
   return static_cast<std::uint64_t>(
     std::chrono::duration_cast<std::chrono::nanoseconds>(this->Idle).count());
+}
+
+void CheckWorkerCount(int count)
+{
+  if (count < 1 || count > std::numeric_limits<std::uint16_t>::max())
+  {
+    throw Error("A rank cannot trace with " + std::to_string(count) +
+      " threads. Set the number of threads (DSMThreads) to 0 for an automatic choice, or to at "
+      "least 1.");
+  }
 }
 
 } // namespace dsm

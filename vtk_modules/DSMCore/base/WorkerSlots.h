@@ -66,6 +66,9 @@ private:
   Clock::duration Idle{ 0 };
 };
 
+/// Throws Error for a number of threads that a rank cannot trace with.
+void CheckWorkerCount(int count);
+
 /// A worker's wait for `ready`, which `lock` guards; without a slot meanwhile, where there are slots.
 /// `then` is called, with the lock, when it is ready; the wait for a slot comes after, and whether it is
 /// still ready when the worker is back is for the caller to see to.

@@ -21,6 +21,7 @@ void BlockRequests::BeginFrame()
 {
   this->Pending.clear();
   this->Unsent.clear();
+  this->Debts.clear();
   this->Abandoned = false;
   this->Count = 0;
   this->BytesSent = 0;
@@ -38,7 +39,7 @@ void BlockRequests::EndFrame()
   this->Messages.SetHandler(MessageKind::BlockReply, {});
 }
 
-void BlockRequests::Add(const BlockWant& want)
+void BlockRequests::Begin(const BlockWant& want, std::byte*)
 {
   this->Unsent.push_back(want);
   try
@@ -52,7 +53,7 @@ void BlockRequests::Add(const BlockWant& want)
   }
 }
 
-bool BlockRequests::Send()
+bool BlockRequests::Submit()
 {
   if (this->Unsent.empty())
   {
@@ -73,11 +74,12 @@ bool BlockRequests::Send()
   return true;
 }
 
-std::vector<BlockWant> BlockRequests::Abandon()
+void BlockRequests::Abandon() noexcept
 {
   this->Abandoned = true;
   this->Unsent.clear();
-  return std::exchange(this->Pending, {});
+  this->Pending.clear();
+  this->Debts.clear();
 }
 
 BlockWant BlockRequests::Find(const BlockName& name, int source, const char* deed) const
@@ -110,15 +112,38 @@ void BlockRequests::Serve(const Message& message)
         ", which rank " + std::to_string(directory.GetOwner(name.Id)) +
         " owns. Do all ranks run the same build?");
     }
-    const std::byte* const bytes = this->Store.GetOwned(block);
-    const std::uint32_t count = directory.GetBytes(name.Id);
-    std::vector<std::byte> reply;
-    reply.reserve(count + 3 * sizeof(BlockName)); // the transport puts its header behind
-    reply.assign(bytes, bytes + count);
-    AttachTail(reply, name);
-    this->Messages.Post(message.Source, MessageKind::BlockReply, std::move(reply));
-    this->BytesSent += count;
+    if (const std::byte* const bytes = this->Store.FindOwned(block))
+    {
+      this->Reply(message.Source, block, bytes);
+    }
+    else if (!this->Abandoned)
+    {
+      this->Debts.push_back({ block, message.Source });
+      this->Store.Bring(block);
+    }
   }
+}
+
+void BlockRequests::Answer(const BlockWant& block, const std::byte* bytes)
+{
+  const auto isOther = [&](const Debt& debt) { return !(debt.Block == block); };
+  const auto first = std::partition(this->Debts.begin(), this->Debts.end(), isOther);
+  for (auto debt = first; debt != this->Debts.end(); ++debt)
+  {
+    this->Reply(debt->Asker, block, bytes);
+  }
+  this->Debts.erase(first, this->Debts.end());
+}
+
+void BlockRequests::Reply(int asker, const BlockWant& block, const std::byte* bytes)
+{
+  const std::uint32_t count = block.From->GetDirectory().GetBytes(block.Id);
+  std::vector<std::byte> reply;
+  reply.reserve(count + 3 * sizeof(BlockName)); // the transport puts its header behind
+  reply.assign(bytes, bytes + count);
+  AttachTail(reply, BlockName{ block.From->GetNumber(), this->FrameSession, block.Id });
+  this->Messages.Post(asker, MessageKind::BlockReply, std::move(reply));
+  this->BytesSent += count;
 }
 
 void BlockRequests::Receive(Message& message)
@@ -132,7 +157,7 @@ void BlockRequests::Receive(Message& message)
   const BlockDirectory& directory = block.From->GetDirectory();
   const std::uint32_t bytes = directory.GetBytes(name.Id);
   const auto asked = std::find_if(this->Pending.begin(), this->Pending.end(),
-    [&](const BlockWant& want) { return want.From == block.From && want.Id == block.Id; });
+    [&](const BlockWant& want) { return want == block; });
   if (asked == this->Pending.end() || message.Payload.size() != bytes ||
     message.Source != directory.GetOwner(name.Id))
   {

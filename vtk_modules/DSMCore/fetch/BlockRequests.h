@@ -3,6 +3,7 @@
 #define dsm_BlockRequests_h
 
 #include "DSMCore/base/Block.h"
+#include "DSMCore/fetch/BlockSource.h"
 #include "DSMCore/publish/BlockSegment.h"
 #include "DSMCore/transport/Message.h"
 #include "DSMCore/transport/Messenger.h"
@@ -15,20 +16,13 @@
 namespace dsm
 {
 
-/// A block that a store wants from its owner.
-struct BlockWant
-{
-  const BlockSegment* From;
-  BlockId Id;
-};
-
 /// How a store asks the owners for blocks, and answers others: the messages, their checks, and what
 /// is under way. Requests to one owner that are ready at the same time travel in one message.
 /// Communication thread.
 ///
 /// Every message names the asker's frame: what belongs to a frame that was cancelled is dropped, for
 /// its segments may be gone.
-class BlockRequests
+class BlockRequests final : public BlockSource
 {
 public:
   /// What the store does for it; called within Messenger::Progress.
@@ -36,10 +30,12 @@ public:
   {
     /// A published segment by its number, or null.
     std::function<const BlockSegment*(std::uint32_t number)> Find;
-    /// The bytes of a block that this rank owns.
-    std::function<const std::byte*(const BlockWant& block)> GetOwned;
+    /// The bytes of a block that this rank owns; null when they are not in memory.
+    std::function<const std::byte*(const BlockWant& block)> FindOwned;
+    /// Begins to bring such a block to memory; then Answer is called.
+    std::function<void(const BlockWant& block)> Bring;
     /// Takes in a block that was asked for. It is pending until this has returned.
-    std::function<void(const BlockWant& block, const std::byte* bytes)> Take;
+    Deliver Take;
   };
 
   BlockRequests(Messenger& messenger, Callbacks callbacks);
@@ -48,14 +44,17 @@ public:
   void BeginFrame();
   void EndFrame();
 
-  /// The next Send asks for the block; it is pending from now on, unless this throws.
-  void Add(const BlockWant& want);
-  /// Asks the owners for what was added since the last call. Returns whether there was anything.
-  bool Send();
+  /// The next Submit asks the block's owner for it; it is pending from now on. What comes is delivered
+  /// from where it is in the message, within Messenger::Progress.
+  void Begin(const BlockWant& block, std::byte* place) override;
+  bool Submit() override;
+  bool Poll(const Deliver&) override { return false; }
+  /// Answers to what is pending, and those that this rank owes, are dropped, for the rest of the frame.
+  void Abandon() noexcept override;
   std::size_t GetPendingCount() const { return this->Pending.size(); }
 
-  /// Returns what is pending; answers to it are dropped, for the rest of the frame.
-  std::vector<BlockWant> Abandon();
+  /// A block that this rank owns has come to memory: those who asked for it get it.
+  void Answer(const BlockWant& block, const std::byte* bytes);
 
   /// Messages that asked for blocks, in this frame.
   std::uint64_t GetCount() const { return this->Count; }
@@ -72,6 +71,14 @@ private:
     BlockId Id;
   };
 
+  /// A rank that is still to be answered.
+  struct Debt
+  {
+    BlockWant Block;
+    int Asker;
+  };
+
+  void Reply(int asker, const BlockWant& block, const std::byte* bytes);
   BlockWant Find(const BlockName& name, int source, const char* deed) const;
   void Serve(const Message& message);
   void Receive(Message& message);
@@ -79,7 +86,8 @@ private:
   Messenger& Messages;
   Callbacks Store;
   std::vector<BlockWant> Pending;
-  std::vector<BlockWant> Unsent; ///< those of Pending that Send has not seen
+  std::vector<BlockWant> Unsent; ///< those of Pending that Submit has not seen
+  std::vector<Debt> Debts;
   bool Abandoned = false;
   std::uint32_t FrameSession = 0;
   std::uint64_t Count = 0;

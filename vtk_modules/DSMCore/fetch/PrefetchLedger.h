@@ -2,7 +2,7 @@
 #ifndef dsm_PrefetchLedger_h
 #define dsm_PrefetchLedger_h
 
-#include "DSMCore/fetch/BlockRequests.h"
+#include "DSMCore/fetch/BlockSource.h"
 
 #include <cstddef>
 #include <cstdint>

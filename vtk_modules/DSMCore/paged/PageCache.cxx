@@ -18,55 +18,63 @@ bool PageCache::TryReserve(std::size_t footprint)
   return true;
 }
 
-void PageCache::Insert(const Frame& frame)
+void PageCache::PrepareSlot()
 {
   if (this->EmptySlots.empty())
   {
-    this->Frames.push_back(frame);
-    return;
+    if (this->EmptySlots.capacity() <= this->Slots.size())
+    {
+      this->EmptySlots.reserve(2 * this->Slots.size() + 1); // all may become empty
+    }
+    this->Slots.emplace_back();
+    this->EmptySlots.push_back(this->Slots.size() - 1);
   }
-  this->Frames[this->EmptySlots.back()] = frame;
+}
+
+void PageCache::Insert(const Slot& slot)
+{
+  this->PrepareSlot();
+  this->Slots[this->EmptySlots.back()] = slot;
   this->EmptySlots.pop_back();
 }
 
-PageCache::Frame PageCache::TakeOut(std::size_t slot)
+PageCache::Slot PageCache::TakeOut(std::size_t index)
 {
-  const Frame frame = this->Frames[slot];
-  this->EmptySlots.push_back(slot);
-  this->Frames[slot] = Frame{};
-  this->Used -= frame.Footprint;
-  return frame;
+  const Slot slot = this->Slots[index];
+  this->EmptySlots.push_back(index);
+  this->Slots[index] = Slot{};
+  this->Used -= slot.Footprint;
+  return slot;
 }
 
-bool PageCache::TryEvict(
-  Time before, const std::function<bool(const Frame&)>& mayGo, Frame& evicted)
+bool PageCache::TryEvict(Time before, const std::function<bool(const Slot&)>& mayGo, Slot& evicted)
 {
   // In the first round the hand clears the reference bits, so the second finds all there is.
-  for (std::size_t step = 0; step < 2 * this->Frames.size(); ++step)
+  for (std::size_t step = 0; step < 2 * this->Slots.size(); ++step)
   {
-    this->Hand = this->Hand + 1 < this->Frames.size() ? this->Hand + 1 : 0;
-    Frame& frame = this->Frames[this->Hand];
-    if (!frame.From || frame.Placed > before || frame.From->Lines[frame.Id].Waiters > 0 ||
-      (mayGo && !mayGo(frame)))
+    this->Hand = this->Hand + 1 < this->Slots.size() ? this->Hand + 1 : 0;
+    Slot& slot = this->Slots[this->Hand];
+    if (!slot.From || slot.Placed > before || slot.From->Lines[slot.Id].Waiters > 0 ||
+      (mayGo && !mayGo(slot)))
     {
       continue;
     }
     bool wasUnused = false;
-    if (!frame.From->IsPure)
+    if (!slot.From->IsPure)
     {
-      const PageHint hint = frame.From->GetHint(frame.Id);
+      const PageHint hint = slot.From->GetHint(slot.Id);
       wasUnused = hint == PageHint::Prefetched;
       if (hint == PageHint::Recent)
       {
-        frame.From->SetHint(frame.Id, PageHint::Idle);
+        slot.From->SetHint(slot.Id, PageHint::Idle);
         continue;
       }
-      if (wasUnused && !std::exchange(frame.IsSpared, true))
+      if (wasUnused && !std::exchange(slot.IsSpared, true))
       {
         continue;
       }
       // A worker that finds it idle right now may be about to mark it again; it will fault.
-      frame.From->SetHint(frame.Id, PageHint::Absent);
+      slot.From->SetHint(slot.Id, PageHint::Absent);
     }
     evicted = this->TakeOut(this->Hand);
     evicted.WasUnused = wasUnused;
@@ -75,17 +83,16 @@ bool PageCache::TryEvict(
   return false;
 }
 
-std::vector<PageCache::Frame> PageCache::Forget(const PagedStore::Segment& segment)
+void PageCache::Forget(
+  const PagedStore::Segment& segment, const std::function<void(const Slot&)>& visit)
 {
-  std::vector<Frame> forgotten;
-  for (std::size_t slot = 0; slot < this->Frames.size(); ++slot)
+  for (std::size_t index = 0; index < this->Slots.size(); ++index)
   {
-    if (this->Frames[slot].From == &segment)
+    if (this->Slots[index].From == &segment)
     {
-      forgotten.push_back(this->TakeOut(slot));
+      visit(this->TakeOut(index));
     }
   }
-  return forgotten;
 }
 
 } // namespace dsm

@@ -25,7 +25,7 @@ public:
   using Time = std::chrono::steady_clock::time_point;
   using Span = std::chrono::steady_clock::duration;
 
-  struct Frame
+  struct Slot
   {
     const PagedStore::Segment* From = nullptr; ///< null: the slot is empty
     BlockId Id = 0;
@@ -47,19 +47,21 @@ public:
   bool TryReserve(std::size_t footprint);
   /// The room of a block that will not come.
   void Release(std::size_t footprint) { this->Used -= footprint; }
+  /// What a block that is under way needs, so that Insert will not fail. Throws std::bad_alloc.
+  void PrepareSlot();
   /// Puts a block into the room that was set aside for it.
-  void Insert(const Frame& frame);
+  void Insert(const Slot& slot);
 
   /// Takes a block out that nobody waits for, that was placed at `before` or earlier, and that
   /// `mayGo` (empty: any); false when there is none.
-  bool TryEvict(Time before, const std::function<bool(const Frame&)>& mayGo, Frame& evicted);
-  /// Takes out all blocks of a segment.
-  std::vector<Frame> Forget(const PagedStore::Segment& segment);
+  bool TryEvict(Time before, const std::function<bool(const Slot&)>& mayGo, Slot& evicted);
+  /// Takes out all blocks of a segment; `visit` is called for each.
+  void Forget(const PagedStore::Segment& segment, const std::function<void(const Slot&)>& visit);
 
 private:
-  Frame TakeOut(std::size_t slot);
+  Slot TakeOut(std::size_t index);
 
-  std::vector<Frame> Frames; ///< the clock's face
+  std::vector<Slot> Slots; ///< the clock's face
   std::vector<std::size_t> EmptySlots;
   std::size_t Hand = 0;
   std::size_t Used = 0;

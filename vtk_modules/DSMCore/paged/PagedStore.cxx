@@ -29,7 +29,7 @@ PagedStore::Segment::Segment(std::uint32_t number, BlockDirectory directory, int
   , Layout(this->GetDirectory(), ranks, AddressRange::GetPageBytes())
   , Entries(new std::atomic<std::uintptr_t>[this->GetDirectory().GetCount()])
   , ClosedEntries(this->GetDirectory().GetCount() * sizeof(std::uintptr_t))
-  , Lines(new PageLine[this->GetDirectory().GetCount()])
+  , Lines(new LineStatus[this->GetDirectory().GetCount()])
   , Rank(rank)
   , Handler(std::move(faults))
 {
@@ -61,9 +61,9 @@ PagedStore::Segment::Segment(std::uint32_t number, BlockDirectory directory, int
   }
   for (BlockId id = 0; id < this->GetDirectory().GetCount(); ++id)
   {
-    if (this->IsOwned(id))
+    if (this->IsAlwaysHere(id))
     {
-      this->Lines[id].MoveTo(PageState::Owned);
+      this->Lines[id].MoveTo(LineState::Owned);
     }
   }
   this->ResetHints(false);
@@ -128,7 +128,7 @@ void PagedStore::Segment::ResetHints(bool pure)
   for (BlockId id = 0; id < this->GetDirectory().GetCount(); ++id)
   {
     const bool isHere =
-      pure || this->IsAlwaysHere(id) || this->Lines[id].State == PageState::Cached;
+      pure || this->IsAlwaysHere(id) || this->Lines[id].State == LineState::Cached;
     this->SetHint(id, isHere ? PageHint::Recent : PageHint::Absent);
   }
 }
@@ -225,6 +225,7 @@ std::shared_ptr<BlockSegment> PagedStore::Publish(const std::string& what, Block
   SegmentPublisher::Steps steps;
   steps.CountBytes = [&](const BlockDirectory& blocks)
   {
+    this->Self->CheckFaults();
     this->Self->PrepareToAdd();
     return blocks.GetResidentBytes(messages.GetRank(), AddressRange::GetPageBytes());
   };
@@ -242,9 +243,9 @@ std::shared_ptr<BlockSegment> PagedStore::Publish(const std::string& what, Block
 
 void PagedStore::Retire(const std::shared_ptr<BlockSegment>& segment)
 {
-  if (segment)
+  if (const auto retired = segment ? this->Self->Retire(*segment) : nullptr)
   {
-    this->Self->Retire(*segment);
+    static_cast<Segment&>(*retired).Detach();
   }
 }
 
@@ -280,12 +281,12 @@ void PagedStore::EndFrame()
 
 PagedStore::Worker& PagedStore::GetWorker(int index)
 {
-  return this->Self->Workers.Get(index);
+  return static_cast<Worker&>(this->Self->Workers.Get(index));
 }
 
 PagedStore::Pin PagedStore::Admit(Worker& worker, const Segment& segment, BlockId id)
 {
-  if (!this->Self->IsOpen() || !segment.TryMarkRecent(id))
+  if (!this->Self->IsEntranceOpen() || !segment.TryMarkRecent(id))
   {
     this->Self->Wait(worker, segment, id);
   }

@@ -5,18 +5,19 @@
 #include "DSMCore/base/Block.h"
 #include "DSMCore/base/Counters.h"
 #include "DSMCore/base/WorkerSlots.h"
+#include "DSMCore/fetch/FetchWorkers.h"
+#include "DSMCore/fetch/LineStatus.h"
 #include "DSMCore/memory/AddressRange.h"
 #include "DSMCore/paged/FaultHandling.h"
 #include "DSMCore/paged/PageFaults.h"
+#include "DSMCore/paged/PageHint.h"
 #include "DSMCore/paged/PageLayout.h"
-#include "DSMCore/paged/PageLine.h"
 #include "DSMCore/publish/BlockDirectory.h"
 #include "DSMCore/publish/BlockSegment.h"
 #include "DSMCore/publish/Publication.h"
 #include "DSMCore/transport/Messenger.h"
 
 #include <atomic>
-#include <condition_variable>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -26,9 +27,6 @@
 
 namespace dsm
 {
-
-template <class>
-class StoreWorkers;
 
 /// The paper's page-based DSM (section 3.2): a segment is a range of addresses, a block is the bytes
 /// at base + offset, and a page that is not here faults until it is fetched. Where we deviate: any
@@ -203,37 +201,20 @@ private:
   AddressRange ClosedEntries;
   std::atomic<const std::atomic<std::uintptr_t>*> VisibleEntries{ nullptr };
   bool IsPure = false;
-  std::unique_ptr<PageLine[]> Lines;
+  std::unique_ptr<LineStatus[]> Lines; ///< under the store's lock
   int Rank = 0;
-  bool Retired = false; ///< under the store's lock
   std::shared_ptr<PageFaults> Handler;
   std::vector<std::byte*> Attached;
 };
 
 /// A tracing thread's part of the store. On a cache line of its own.
-class alignas(64) PagedStore::Worker
+class alignas(64) PagedStore::Worker final : public FetchWorker
 {
-public:
-  Worker() = default;
-  Worker(const Worker&) = delete;
-  Worker& operator=(const Worker&) = delete;
-
-private:
   friend class PagedStore;
-  template <class>
-  friend class StoreWorkers;
 
-  /// Only the worker writes (no read-modify-write is needed); atomic, so that the communication
-  /// thread may read it while the frame runs.
-  std::atomic<std::uint64_t> Accesses{ 0 };
   /// The kernel's number of the thread between Enter and Leave, 0 otherwise.
   std::atomic<int> Thread{ 0 };
-
-  // Under the store's lock.
-  WorkerCounters Slow; ///< all but Accesses and Hits
-  const PageLine* WaitsFor = nullptr;
-  const std::byte* LastFault = nullptr;
-  std::condition_variable Woken;
+  const std::byte* LastFault = nullptr; ///< under the store's lock
 };
 
 /// A block's bytes. They need not be held: what is evicted comes back when it is read.

@@ -63,7 +63,7 @@ void PagedStore::Internals::Listen(std::vector<PageFaults::Fault> faults)
         catch (...)
         {
           this->ListenersFailure = std::current_exception();
-          this->UpdateQueuedCount();
+          this->HasListenerFailed = true;
           this->Messages.WakeUp();
           this->HasClosed.wait(lock, [this] { return this->Phase != FramePhase::Open; });
           this->Take(fault);
@@ -80,9 +80,10 @@ void PagedStore::Internals::Listen(std::vector<PageFaults::Fault> faults)
 bool PagedStore::Internals::Take(const PageFaults::Fault& fault)
 {
   const Segment* segment = nullptr;
-  for (const auto& candidate : this->Segments)
+  for (const auto& each : this->Segments)
   {
-    segment = candidate->Contains(fault.Address) ? candidate.get() : segment;
+    const auto* const candidate = static_cast<const Segment*>(each.get());
+    segment = candidate->Contains(fault.Address) ? candidate : segment;
   }
   BlockId id = 0;
   if (!segment || !segment->FindRemote(fault.Address, id) || this->Phase == FramePhase::Closed ||
@@ -91,7 +92,7 @@ bool PagedStore::Internals::Take(const PageFaults::Fault& fault)
     this->Faults->Answer(fault, PageFaults::Reply::Refused);
     return false;
   }
-  if (segment->Lines[id].State == PageState::Cached)
+  if (segment->Lines[id].State == LineState::Cached)
   {
     this->Faults->Answer(fault, PageFaults::Reply::Present);
     return false;
@@ -108,7 +109,7 @@ bool PagedStore::Internals::Take(const PageFaults::Fault& fault)
   }
   WorkerCounters& counters = worker ? worker->Slow : this->Strangers;
   ++counters.Misses;
-  counters.Joins += this->Request(*segment, id) ? 1 : 0;
+  counters.Joins += this->Want({ segment, id }) ? 1 : 0;
   this->Waiting.push_back(Stopped{ fault, segment, id, worker, Clock::now() });
   return true;
 }
@@ -116,14 +117,14 @@ bool PagedStore::Internals::Take(const PageFaults::Fault& fault)
 void PagedStore::Internals::TakeCancelled(
   const PageFaults::Fault& fault, const Segment& segment, BlockId id)
 {
-  PageLine& line = segment.Lines[id];
+  LineStatus& line = segment.Lines[id];
   PageFaults::Reply reply = PageFaults::Reply::Present;
-  if (line.State != PageState::Zeroed)
+  if (line.State != LineState::Zeroed)
   {
     try
     {
       this->Faults->PlaceZeros(segment.GetAddress(id), segment.Layout.GetFootprint(id));
-      line.MoveTo(PageState::Zeroed);
+      line.MoveTo(LineState::Zeroed);
       this->HasZeros = true;
       reply = PageFaults::Reply::Placed;
     }
@@ -151,9 +152,15 @@ void PagedStore::Internals::AdjustHold(Worker& worker, const PageFaults::Fault& 
 
 PagedStore::Worker* PagedStore::Internals::FindWorker(int thread) const
 {
-  const auto found = std::find_if(this->Workers.begin(), this->Workers.end(),
-    [&](const auto& worker) { return worker->Thread.load(std::memory_order_relaxed) == thread; });
-  return found == this->Workers.end() ? nullptr : found->get();
+  for (const auto& each : this->Workers)
+  {
+    auto* const worker = static_cast<Worker*>(each.get());
+    if (worker->Thread.load(std::memory_order_relaxed) == thread)
+    {
+      return worker;
+    }
+  }
+  return nullptr;
 }
 
 } // namespace dsm

@@ -2,24 +2,19 @@
 #ifndef dsm_PagedStoreInternals_h
 #define dsm_PagedStoreInternals_h
 
-#include "DSMCore/fetch/BlockRequests.h"
-#include "DSMCore/fetch/PrefetchLedger.h"
-#include "DSMCore/fetch/StoreWorkers.h"
+#include "DSMCore/fetch/BlockFetcher.h"
 #include "DSMCore/paged/PageCache.h"
 #include "DSMCore/paged/PageFaults.h"
 #include "DSMCore/paged/PagedStore.h"
-#include "DSMCore/publish/SegmentList.h"
 
 #include <sys/types.h>
 
 #include <atomic>
 #include <chrono>
 #include <condition_variable>
-#include <cstdint>
-#include <deque>
+#include <cstddef>
 #include <exception>
 #include <memory>
-#include <mutex>
 #include <string>
 #include <thread>
 #include <vector>
@@ -27,24 +22,20 @@
 namespace dsm
 {
 
-/// The store's slow paths: misses, faults, requests, replies, eviction. A block that is missed first
-/// is queued; threads that miss it later join, whether they wait politely or in a fault. The
-/// communication thread takes the queue in order: it makes room, then sends the request, so a reply
-/// always finds room. What workers foresee waits in a queue of its own, which is looked at when nothing
-/// is wanted.
+/// The store's slow paths: a block lands in its pages at once (PageFaults::Place), is shown by its hint,
+/// and is evicted by taking hint and pages away; threads wait for it politely or in a fault.
 ///
 /// A listening thread takes the faults: it queues them, answers those that are none of ours, and
 /// after a cancellation satisfies them with zeros, so that no thread waits for a communication
 /// thread that has left the frame.
-class PagedStore::Internals
+class PagedStore::Internals final : public BlockFetcher
 {
 public:
   Internals(Messenger& messenger, const Settings& settings);
-  ~Internals();
+  ~Internals() override;
 
   void Wait(Worker& worker, const Segment& segment, BlockId id);
-  void Prefetch(const Segment& segment, const BlockId* ids, std::size_t count);
-  bool MayPrefetch() const;
+  bool MayPrefetch() const override;
   void Enter(Worker& worker);
   void Leave(Worker& worker);
 
@@ -52,29 +43,12 @@ public:
   /// Throws Error when faults cannot be handled as they should, or this process is a fork of the
   /// store's.
   void CheckFaults() const;
-  /// Where the ranks agree afterwards: whether a segment may be added. Throws when it may not; else
-  /// Add will not fail.
-  void PrepareToAdd();
-  void Add(std::shared_ptr<Segment> segment);
-  void Retire(const BlockSegment& segment);
 
-  bool MayBeginFrame() const;
-  void BeginFrame(bool agreed);
-  bool Service();
-  void Cancel(const std::string& cause);
-  bool Drain();
-  void EndFrame();
-  bool IsInFrame() const { return this->Phase != FramePhase::Closed; }
+  bool MayBeginFrame() const override;
   /// Any thread: whether a frame runs that was not cancelled.
-  bool IsOpen() const { return this->IsEntranceOpen.load(std::memory_order_acquire); }
+  bool IsEntranceOpen() const { return this->Entrance.load(std::memory_order_acquire); }
 
-  std::uint64_t GetMisses(const Worker& worker) const;
-  StoreCounters GetCounters();
-  std::vector<WorkerCounters> GetWorkerCounters();
-
-  Messenger& Messages;
   Settings Current;
-  StoreWorkers<Worker> Workers;
   /// Null with one rank, and when it cannot be had.
   std::shared_ptr<PageFaults> Faults;
   std::string FaultsRefusal;
@@ -82,21 +56,9 @@ public:
 private:
   using Clock = std::chrono::steady_clock;
 
-  enum class FramePhase
-  {
-    Closed,
-    Open,
-    Cancelled
-  };
-
   static const Segment& GetSegment(const BlockWant& block)
   {
     return *static_cast<const Segment*>(block.From);
-  }
-  static PageLine& GetLine(const BlockWant& block) { return GetSegment(block).Lines[block.Id]; }
-  static std::size_t GetFootprint(const BlockWant& block)
-  {
-    return GetSegment(block).Layout.GetFootprint(block.Id);
   }
 
   /// A thread that waits in a fault.
@@ -121,58 +83,61 @@ private:
   void AdjustHold(Worker& worker, const PageFaults::Fault& fault);
   Worker* FindWorker(int thread) const;
 
-  // -- The communication thread --
-  void CheckBudget() const;
-  BlockRequests::Callbacks MakeCallbacks();
-  void Take(const BlockWant& block, const std::byte* bytes);
-  /// Makes room for a block, evicting into `evicted`; false when it must wait.
-  bool MakeRoom(const BlockWant& want, std::vector<PageCache::Frame>& evicted);
-  bool TryEvict(bool atEndOfRun, std::vector<PageCache::Frame>& evicted);
-  void Remove(const std::vector<PageCache::Frame>& evicted);
+  // -- See BlockFetcher --
+  LineStatus& GetLine(const BlockWant& block) const override
+  {
+    return GetSegment(block).Lines[block.Id];
+  }
+  std::size_t GetFootprint(const BlockWant& block) const override
+  {
+    return GetSegment(block).Layout.GetFootprint(block.Id);
+  }
+  const std::byte* FindOwned(const BlockWant& block) const override
+  {
+    return GetSegment(block).GetAddress(block.Id);
+  }
+  BlockSource* FindSource(const BlockWant&) const override { return nullptr; }
+  void CheckBudget() const override;
+  void Prepare() override;
+  void Unprepare() override;
+  bool MakeRoom(const BlockWant& block) override;
+  void GiveRoomBack(const BlockWant& block) noexcept override;
+  std::byte* PreparePlace(const BlockWant&) override { return nullptr; }
+  void DiscardPlace(std::byte*) noexcept override {}
+  void Land(const Read& read, const std::byte* bytes) override;
+  void Show(const Read& read) override;
+  void Forget(const BlockSegment& segment) override;
+  bool IsUnused(const BlockWant& block) const override;
+  bool Settle(const BlockWant& block) override;
+  void AddCounters(StoreCounters& counters) const override;
+  void Opened() override;
+  void Closing() override;
+  void Closed() override;
+  bool BeginService() override;
+  bool NeedsService() const override { return this->HasListenerFailed.load(); }
+  void EndService() override;
 
   // -- Under the lock --
-  /// Queues a block that is absent; or joins those who wait for it. Returns whether it joined.
-  bool Request(const Segment& segment, BlockId id);
+  /// Puts what was evicted behind Evicted; false when there is nothing.
+  bool TryEvict(bool atEndOfRun);
   /// Cached blocks right before and behind a block's pages.
   std::size_t CountNeighbours(const Segment& segment, BlockId id) const;
-  void MarkCached(const Segment& segment, BlockId id);
-  void MarkEvicted(const PageCache::Frame& frame);
-  /// Moves those that room can be made for to Requests.
-  void AskForWanted(std::vector<PageCache::Frame>& evicted);
-  void AskForForeseen(std::vector<PageCache::Frame>& evicted);
-  /// For a block that room was made for; gives the room back when it throws.
-  void Ask(const BlockWant& want);
-  void UpdateQueuedCount();
-  /// What is wanted or foreseen, and what was asked for, will not come.
-  void AbandonRequests();
-  void AbandonForeseen();
-  void CloseEntrance();
+  void MarkEvicted(const PageCache::Slot& slot);
   void RemoveZeros();
-  [[noreturn]] void Refuse(const Segment& segment) const;
-  std::size_t GetLargestBlock() const;
 
   pid_t Process;
   std::thread Listener;
-  BlockRequests Requests;
+  /// Their pages are still to be removed. Communication thread only.
+  std::vector<PageCache::Slot> Evicted;
 
-  /// Guards what follows, the segments' lines, and what workers have for the slow path.
-  mutable std::mutex Guard;
-  /// Changed by the communication thread alone, which needs no lock to read it.
-  SegmentList<Segment> Segments;
-  FramePhase Phase = FramePhase::Closed;
-  std::atomic<bool> IsEntranceOpen{ false };
+  // Under the lock, but for what is atomic.
+  std::atomic<bool> Entrance{ false };
   int CommunicationThread = 0;
-  std::string Cause;
   PageCache Cache;
-  std::deque<BlockWant> Wanted;
-  /// Some may have become wanted, or come, since they were queued.
-  std::deque<BlockWant> Foreseen;
-  PrefetchLedger Prefetches;
-  /// Of Wanted and Foreseen; lets Service look without the lock.
-  std::atomic<std::size_t> QueuedCount{ 0 };
   std::vector<Stopped> Waiting;
   /// Of the listening thread; the communication thread fails the frame for it.
   std::exception_ptr ListenersFailure;
+  std::atomic<bool> HasListenerFailed{ false };
   std::condition_variable HasClosed; ///< or was cancelled: Phase is Open no more
   bool HasZeros = false;             ///< there are lines that are Zeroed
   /// Runs of neighbouring cached blocks: each takes mappings of the process.
@@ -182,7 +147,6 @@ private:
   static constexpr std::chrono::microseconds ShortestHold{ 10 };
   static constexpr std::chrono::microseconds LongestHold{ 4000 };
   Clock::duration Hold = ShortestHold;
-  StoreCounters Frame;
   WorkerCounters Strangers; ///< faults of threads that did not enter
 };
 

@@ -37,13 +37,17 @@ SegmentPublisher::SegmentPublisher(Messenger& messenger, std::string what, Steps
 {
 }
 
-std::shared_ptr<BlockSegment> SegmentPublisher::Run(BlockDirectory directory,
-  FragmentSource& source, FragmentSink& sink, const std::function<void(double)>& progress)
+std::shared_ptr<BlockSegment> SegmentPublisher::Create(BlockDirectory directory)
+{
+  return this->Create(std::move(directory), [](const BlockSegment&) {});
+}
+
+std::shared_ptr<BlockSegment> SegmentPublisher::Create(
+  BlockDirectory&& directory, const std::function<void(const BlockSegment&)>& begin)
 {
   // Stores that share a messenger draw from one sequence, so the number names the segment among all
   // of theirs.
   const std::uint32_t number = this->Messages.BeginSession();
-  const int rank = this->Messages.GetRank();
   const int ranksOnHost = this->Messages.GetRanksOnHost();
   FirstFailure failure;
   // Asked before the ranks meet in the next line, hence before any of them takes memory.
@@ -58,9 +62,21 @@ std::shared_ptr<BlockSegment> SegmentPublisher::Run(BlockDirectory directory,
       this->Check(directory, fingerprints);
       this->CheckMemory(this->Store.CountBytes(directory), ranksOnHost, available);
       segment = this->Store.Create(number, std::move(directory));
-      ForEachOwned(*segment, rank,
-        [&](BlockId id, std::byte* block, std::size_t bytes) { sink.Begin(id, block, bytes); });
+      begin(*segment);
     });
+  return segment;
+}
+
+std::shared_ptr<BlockSegment> SegmentPublisher::Run(BlockDirectory directory,
+  FragmentSource& source, FragmentSink& sink, const std::function<void(double)>& progress)
+{
+  const int rank = this->Messages.GetRank();
+  const auto begin = [&](const BlockSegment& created)
+  {
+    ForEachOwned(created, rank,
+      [&](BlockId id, std::byte* block, std::size_t bytes) { sink.Begin(id, block, bytes); });
+  };
+  const auto segment = this->Create(std::move(directory), std::cref(begin));
   segment->Meet(this->Messages);
 
   this->Messages.BeginSession();

@@ -40,6 +40,8 @@ public:
   /// `what` names the publication in errors.
   SegmentPublisher(Messenger& messenger, std::string what, Steps steps);
 
+  /// Collective: the segment, with nothing in it yet. Throws as Run.
+  std::shared_ptr<BlockSegment> Create(BlockDirectory directory);
   /// Collective. Throws the same Error on every rank when any rank fails, when the ranks'
   /// directories differ, and, before any takes memory, when that does not suffice. `progress` may be
   /// empty.
@@ -47,6 +49,9 @@ public:
     FragmentSink& sink, const std::function<void(double)>& progress);
 
 private:
+  /// `begin` takes part in the ranks' agreement.
+  std::shared_ptr<BlockSegment> Create(
+    BlockDirectory&& directory, const std::function<void(const BlockSegment&)>& begin);
   void Check(const BlockDirectory& directory, const std::vector<std::uint64_t>& fingerprints) const;
   void CheckMemory(std::uint64_t bytes, int ranksOnHost, std::uint64_t available) const;
 

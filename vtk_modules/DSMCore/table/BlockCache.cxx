@@ -24,9 +24,9 @@ void Free(std::byte* memory)
 
 BlockCache::~BlockCache()
 {
-  for (const Frame& frame : this->Frames)
+  for (const Slot& slot : this->Slots)
   {
-    Free(frame.Memory);
+    Free(slot.Memory);
   }
   for (const Evicted& evicted : this->Limbo)
   {
@@ -56,25 +56,46 @@ void BlockCache::Release(std::size_t blockBytes)
   this->Used -= GetFootprint(blockBytes);
 }
 
-void BlockCache::Insert(BlockLine& line, const std::byte* bytes)
+std::byte* BlockCache::Allocate(std::size_t blockBytes)
 {
+  // With room for all slots at any time, so that to fill and to empty one cannot fail.
+  ++this->Expected;
+  try
+  {
+    if (this->Slots.capacity() < this->Slots.size() + this->Expected)
+    {
+      this->Slots.reserve(2 * (this->Slots.size() + this->Expected));
+    }
+    this->EmptySlots.reserve(this->Slots.capacity());
+    return static_cast<std::byte*>(
+      ::operator new(GetFootprint(blockBytes), std::align_val_t(BlockAlignment)));
+  }
+  catch (...)
+  {
+    --this->Expected;
+    throw;
+  }
+}
+
+void BlockCache::Discard(std::byte* memory)
+{
+  if (memory)
+  {
+    Free(memory);
+    --this->Expected;
+  }
+}
+
+void BlockCache::Insert(BlockLine& line, std::byte* memory)
+{
+  --this->Expected;
   if (this->EmptySlots.empty())
   {
-    // With room for all slots at any time, so that to empty one cannot fail.
-    if (this->EmptySlots.capacity() <= this->Frames.size())
-    {
-      this->EmptySlots.reserve(2 * this->Frames.size() + 1);
-    }
-    this->Frames.emplace_back();
-    this->EmptySlots.push_back(this->Frames.size() - 1);
+    this->Slots.emplace_back();
+    this->EmptySlots.push_back(this->Slots.size() - 1);
   }
-  Frame& frame = this->Frames[this->EmptySlots.back()];
-  const std::size_t footprint = GetFootprint(line.Bytes);
-  auto* const memory =
-    static_cast<std::byte*>(::operator new(footprint, std::align_val_t(BlockAlignment)));
-  frame = Frame{ &line, memory, footprint };
+  this->Slots[this->EmptySlots.back()] = Slot{ &line, memory, GetFootprint(line.Bytes) };
   this->EmptySlots.pop_back();
-  std::copy_n(bytes, line.Bytes, memory);
   line.MoveTo(LineState::Cached);
   if (line.Use.load(std::memory_order_relaxed) != BlockUse::Prefetched)
   {
@@ -89,15 +110,15 @@ BlockCache::Evictions BlockCache::Evict(
   const std::size_t needed = GetFootprint(blockBytes) + spareBytes;
   Evictions evicted;
   // Twice around: the first time may do no more than clear reference bits.
-  for (std::size_t step = 0; step < 2 * this->Frames.size(); ++step)
+  for (std::size_t step = 0; step < 2 * this->Slots.size(); ++step)
   {
     if (this->Used - this->LimboBytes + needed <= this->Capacity)
     {
       break;
     }
     const std::size_t slot = this->Hand;
-    this->Hand = (this->Hand + 1) % this->Frames.size();
-    BlockLine* const line = this->Frames[slot].Line;
+    this->Hand = (this->Hand + 1) % this->Slots.size();
+    BlockLine* const line = this->Slots[slot].Line;
     if (!line || line->Waiters > 0)
     {
       continue;
@@ -108,14 +129,14 @@ BlockCache::Evictions BlockCache::Evict(
       continue;
     }
     const bool isUnused = line->Use.load(std::memory_order_relaxed) == BlockUse::Prefetched;
-    if (isUnused && !std::exchange(this->Frames[slot].IsSpared, true))
+    if (isUnused && !std::exchange(this->Slots[slot].IsSpared, true))
     {
       continue;
     }
     const BlockUse use = line->Use.exchange(BlockUse::Idle, std::memory_order_relaxed);
     evicted.Unused += use == BlockUse::Prefetched ? 1 : 0;
     ++evicted.Count;
-    this->EvictFrame(slot, epoch);
+    this->EvictSlot(slot, epoch);
   }
   return evicted;
 }
@@ -137,9 +158,9 @@ bool BlockCache::Reclaim(std::uint64_t oldestEpoch)
 void BlockCache::Forget(const BlockLine* first, std::size_t count)
 {
   this->Reclaim(std::numeric_limits<std::uint64_t>::max());
-  for (std::size_t slot = 0; slot < this->Frames.size(); ++slot)
+  for (std::size_t slot = 0; slot < this->Slots.size(); ++slot)
   {
-    const BlockLine* const line = this->Frames[slot].Line;
+    const BlockLine* const line = this->Slots[slot].Line;
     if (line && line >= first && line < first + count)
     {
       this->Drop(slot);
@@ -150,15 +171,15 @@ void BlockCache::Forget(const BlockLine* first, std::size_t count)
 void BlockCache::Shrink()
 {
   this->Reclaim(std::numeric_limits<std::uint64_t>::max());
-  for (std::size_t step = 0; step < 2 * this->Frames.size(); ++step)
+  for (std::size_t step = 0; step < 2 * this->Slots.size(); ++step)
   {
     if (this->Used - this->LimboBytes <= this->Capacity)
     {
       break;
     }
     const std::size_t slot = this->Hand;
-    this->Hand = (this->Hand + 1) % this->Frames.size();
-    BlockLine* const line = this->Frames[slot].Line;
+    this->Hand = (this->Hand + 1) % this->Slots.size();
+    BlockLine* const line = this->Slots[slot].Line;
     if (line && line->Use.exchange(BlockUse::Idle, std::memory_order_relaxed) != BlockUse::Recent)
     {
       this->Drop(slot);
@@ -168,23 +189,23 @@ void BlockCache::Shrink()
 
 void BlockCache::Drop(std::size_t slot)
 {
-  Frame& frame = this->Frames[slot];
-  frame.Line->MoveTo(LineState::Absent);
-  frame.Line->Address.store(nullptr, std::memory_order_relaxed);
-  Free(frame.Memory);
-  this->Used -= frame.Footprint;
-  frame = Frame{};
+  Slot& taken = this->Slots[slot];
+  taken.Line->MoveTo(LineState::Absent);
+  taken.Line->Address.store(nullptr, std::memory_order_relaxed);
+  Free(taken.Memory);
+  this->Used -= taken.Footprint;
+  taken = Slot{};
   this->EmptySlots.push_back(slot);
 }
 
-void BlockCache::EvictFrame(std::size_t slot, std::uint64_t epoch)
+void BlockCache::EvictSlot(std::size_t slot, std::uint64_t epoch)
 {
-  Frame& frame = this->Frames[slot];
-  this->Limbo.push_back(Evicted{ frame.Memory, frame.Footprint, epoch }); // first: it may throw
-  frame.Line->MoveTo(LineState::Absent);
-  frame.Line->Address.store(nullptr, std::memory_order_relaxed); // ordered by the epoch's release
-  this->LimboBytes += frame.Footprint;
-  frame = Frame{};
+  Slot& taken = this->Slots[slot];
+  this->Limbo.push_back(Evicted{ taken.Memory, taken.Footprint, epoch }); // first: it may throw
+  taken.Line->MoveTo(LineState::Absent);
+  taken.Line->Address.store(nullptr, std::memory_order_relaxed); // ordered by the epoch's release
+  this->LimboBytes += taken.Footprint;
+  taken = Slot{};
   this->EmptySlots.push_back(slot);
 }
 

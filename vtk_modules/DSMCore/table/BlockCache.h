@@ -12,7 +12,7 @@
 namespace dsm
 {
 
-/// The memory for copies of remote blocks, within a budget that is never exceeded: room is set
+/// The memory for blocks that come and go, within a budget that is never exceeded: room is set
 /// aside before a block is requested, and what was evicted counts until it is freed. Replacement is
 /// CLOCK, one sweeping hand, an approximation of the paper's least recently used order that needs
 /// no list to be kept on a hit. What was prefetched and not used yet is passed by once.
@@ -47,10 +47,13 @@ public:
   bool TryReserve(std::size_t blockBytes);
   /// The room of a block that will not come.
   void Release(std::size_t blockBytes);
-  /// Copies a block into the room that was set aside for it, and publishes its address; one that was
-  /// prefetched, and that nobody waits for, stays marked so. Throws
-  /// std::bad_alloc; the room then stays set aside.
-  void Insert(BlockLine& line, const std::byte* bytes);
+  /// Memory in the room that was set aside for a block, to be filled. Throws std::bad_alloc.
+  std::byte* Allocate(std::size_t blockBytes);
+  /// The block will not come; the room stays set aside.
+  void Discard(std::byte* memory);
+  /// Takes over the memory, which is filled, and publishes its address; a block that was prefetched, and
+  /// that nobody waits for, stays marked so.
+  void Insert(BlockLine& line, std::byte* memory);
 
   /// Evicts until a block of this size, and `spareBytes` on top, will fit once memory in limbo is
   /// freed; or until nothing can be evicted. A worker whose epoch is at least `epoch` no longer
@@ -66,7 +69,7 @@ public:
   void Shrink();
 
 private:
-  struct Frame
+  struct Slot
   {
     BlockLine* Line = nullptr; ///< null: the slot is empty
     std::byte* Memory = nullptr;
@@ -80,12 +83,13 @@ private:
     std::uint64_t Epoch = 0;
   };
 
-  /// Between frames: as EvictFrame, but nobody can be reading the block.
+  /// Between frames: as EvictSlot, but nobody can be reading the block.
   void Drop(std::size_t slot);
-  void EvictFrame(std::size_t slot, std::uint64_t epoch);
+  void EvictSlot(std::size_t slot, std::uint64_t epoch);
 
-  std::vector<Frame> Frames; ///< the clock's face
+  std::vector<Slot> Slots; ///< the clock's face
   std::vector<std::size_t> EmptySlots;
+  std::size_t Expected = 0; ///< allocated, and not inserted yet
   std::size_t Hand = 0;
   std::deque<Evicted> Limbo; ///< ascending epochs
   std::size_t LimboBytes = 0;

@@ -61,6 +61,23 @@ BlockTable::BlockTable(std::uint32_t number, BlockDirectory directory, int rank,
   }
 }
 
+BlockTable::BlockTable(std::uint32_t number, BlockDirectory directory, int rank, int ranks,
+  std::shared_ptr<BlockSource> source)
+  : BlockSegment(number, std::move(directory))
+  , Lines(new BlockLine[this->GetDirectory().GetCount()])
+  , Groups(HostGroups::Separate(ranks))
+  , Rank(rank)
+  , Source(std::move(source))
+  , Views(static_cast<std::size_t>(ranks))
+  , CopyViews(static_cast<std::size_t>(ranks))
+  , Missing(this->GetDirectory().GetCount())
+{
+  for (BlockId id = 0; id < this->GetDirectory().GetCount(); ++id)
+  {
+    this->Lines[id].Bytes = this->GetDirectory().GetBytes(id);
+  }
+}
+
 void BlockTable::Place(BlockId id, LineState state, const std::byte* address)
 {
   BlockLine& line = this->Lines[id];
@@ -80,7 +97,7 @@ void BlockTable::ForEachResident(const Visit& visit) const
 {
   for (BlockId id = 0; id < this->GetDirectory().GetCount(); ++id)
   {
-    if (this->GetDirectory().GetOwner(id) == this->Rank)
+    if (this->Lines[id].State == LineState::Owned)
     {
       visit(id, this->GetOwned(id), this->Lines[id].Bytes);
     }

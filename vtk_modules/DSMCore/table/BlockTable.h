@@ -3,6 +3,7 @@
 #define dsm_BlockTable_h
 
 #include "DSMCore/base/Block.h"
+#include "DSMCore/fetch/BlockSource.h"
 #include "DSMCore/memory/HostSharedMemory.h"
 #include "DSMCore/publish/BlockDirectory.h"
 #include "DSMCore/publish/BlockSegment.h"
@@ -28,6 +29,11 @@ public:
   /// Sets out zeroed memory for the blocks of `rank`. Throws std::bad_alloc.
   BlockTable(std::uint32_t number, BlockDirectory directory, int rank, HostGroups groups);
 
+  /// As above, but `source` brings the blocks of `rank` when they are needed; nobody shares memory.
+  BlockTable(std::uint32_t number, BlockDirectory directory, int rank, int ranks,
+    std::shared_ptr<BlockSource> source);
+
+  /// Of those that are in memory for good.
   void ForEachResident(const Visit& visit) const override;
   std::uint64_t GetResidentBytes() const override { return this->ResidentBytes; }
 
@@ -74,6 +80,7 @@ private:
   std::unique_ptr<BlockLine[]> Lines;
   HostGroups Groups;
   int Rank = 0;
+  std::shared_ptr<BlockSource> Source; ///< null: own blocks stay
   HostSharedMemory Resident;
   std::vector<HostSharedMemory::View> Views; ///< by rank
   HostSharedMemory Copies;
@@ -84,7 +91,6 @@ private:
   std::uint64_t ReplicaBytes = 0;
   BlockId Missing = 0; ///< blocks that are neither owned, shared nor copied
   bool Replicated = false;
-  bool Retired = false; ///< under the lock of the store that has it
 };
 
 } // namespace dsm

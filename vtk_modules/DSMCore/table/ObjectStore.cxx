@@ -16,10 +16,7 @@ ObjectStore::ObjectStore(Messenger& messenger, const Settings& settings)
 {
 }
 
-ObjectStore::~ObjectStore()
-{
-  this->Self->EndFrame();
-}
+ObjectStore::~ObjectStore() = default;
 
 void ObjectStore::SetSettings(const Settings& settings)
 {
@@ -54,6 +51,27 @@ std::shared_ptr<BlockSegment> ObjectStore::Publish(const std::string& what,
   return table;
 }
 
+std::shared_ptr<BlockSegment> ObjectStore::Publish(
+  const std::string& what, BlockDirectory directory, std::shared_ptr<BlockSource> source)
+{
+  Messenger& messages = this->Self->Messages;
+  SegmentPublisher::Steps steps;
+  steps.CountBytes = [this](const BlockDirectory&)
+  {
+    this->Self->PrepareToAdd();
+    return std::uint64_t(0);
+  };
+  steps.Create = [&](std::uint32_t number, BlockDirectory&& blocks)
+  {
+    return std::make_shared<BlockTable>(
+      number, std::move(blocks), messages.GetRank(), messages.GetSize(), std::move(source));
+  };
+  const auto table =
+    SegmentPublisher(messages, what, std::move(steps)).Create(std::move(directory));
+  this->Self->Add(table);
+  return table;
+}
+
 void ObjectStore::Retire(const std::shared_ptr<BlockSegment>& segment)
 {
   if (segment)
@@ -64,12 +82,11 @@ void ObjectStore::Retire(const std::shared_ptr<BlockSegment>& segment)
 
 void ObjectStore::MakeRoom(std::size_t count)
 {
-  this->Self->Segments.MakeRoom(count);
+  this->Self->PrepareToAdd(count);
 }
 
 void ObjectStore::Adopt(std::shared_ptr<BlockTable> table)
 {
-  table->Retired = false;
   this->Self->Add(std::move(table));
 }
 
@@ -110,7 +127,7 @@ void ObjectStore::EndFrame()
 
 ObjectStore::Worker& ObjectStore::GetWorker(int index)
 {
-  return this->Self->Workers.Get(index);
+  return static_cast<Worker&>(this->Self->Workers.Get(index));
 }
 
 const std::byte* ObjectStore::Wait(Worker& worker, const Segment& segment, BlockId id)

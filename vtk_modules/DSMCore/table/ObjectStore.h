@@ -5,6 +5,8 @@
 #include "DSMCore/base/Block.h"
 #include "DSMCore/base/Counters.h"
 #include "DSMCore/base/WorkerSlots.h"
+#include "DSMCore/fetch/BlockSource.h"
+#include "DSMCore/fetch/FetchWorkers.h"
 #include "DSMCore/publish/BlockDirectory.h"
 #include "DSMCore/publish/BlockSegment.h"
 #include "DSMCore/publish/Publication.h"
@@ -13,7 +15,6 @@
 #include "DSMCore/transport/Messenger.h"
 
 #include <atomic>
-#include <condition_variable>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -23,9 +24,6 @@
 
 namespace dsm
 {
-
-template <class>
-class StoreWorkers;
 
 /// The paper's object-based DSM (section 3.1): a block is reached through a table of entries. Where
 /// we deviate: instead of a semaphore per block, a hit is one load of the entry's address and at
@@ -77,6 +75,13 @@ public:
   /// `progress` (may be empty) is called now and then with this rank's part done, in [0, 1].
   std::shared_ptr<BlockSegment> Publish(const std::string& what, BlockDirectory directory,
     FragmentSource& source, FragmentSink& sink, const std::function<void(double)>& progress = {});
+
+  /// Collective. As above, but no data move: the blocks that this rank owns are brought by `source`
+  /// when they are needed, here or elsewhere, and leave memory like those of others; they count as
+  /// cached. Where there are several ranks, the cache must hold one own block more. Whatever a source
+  /// throws fails the frame.
+  std::shared_ptr<BlockSegment> Publish(
+    const std::string& what, BlockDirectory directory, std::shared_ptr<BlockSource> source);
 
   /// Collective in order (no message is exchanged), between frames: forgets the segment and its
   /// cached blocks. What this rank owns of it stays until the last shared pointer goes.
@@ -159,32 +164,16 @@ private:
 };
 
 /// A tracing thread's part of the store. On a cache line of its own.
-class alignas(64) ObjectStore::Worker
+class alignas(64) ObjectStore::Worker final : public FetchWorker
 {
-public:
-  Worker() = default;
-  Worker(const Worker&) = delete;
-  Worker& operator=(const Worker&) = delete;
-
-private:
   friend class ObjectStore;
-  template <class>
-  friend class StoreWorkers;
   friend class ObjectStore::Pin;
 
   static constexpr std::uint64_t Offline = 0;
 
   /// The last epoch that the worker announced, or Offline. Only the worker writes.
   std::atomic<std::uint64_t> Epoch{ Offline };
-  /// Only the worker writes (no read-modify-write is needed); atomic, so that the communication
-  /// thread may read it while the frame runs.
-  std::atomic<std::uint64_t> Accesses{ 0 };
   std::uint32_t Pins = 0;
-
-  // Under the store's lock.
-  WorkerCounters Slow; ///< all but Accesses and Hits
-  const BlockLine* WaitsFor = nullptr;
-  std::condition_variable Woken;
 };
 
 /// Keeps a block's bytes where they are. Belongs to the worker's thread; movable, so that it can be

@@ -2,9 +2,7 @@
 #include "DSMCore/table/ObjectStoreInternals.h"
 
 #include <algorithm>
-#include <chrono>
 #include <limits>
-#include <utility>
 
 namespace dsm
 {
@@ -20,11 +18,15 @@ constexpr std::size_t SparePart = 32;
 
 ObjectStore::Internals::Internals(
   ObjectStore& store, Messenger& messenger, const Settings& settings)
-  : Messages(messenger)
+  : BlockFetcher(messenger)
   , Store(store)
-  , Requests(messenger, this->MakeCallbacks())
 {
   this->Configure(settings);
+}
+
+ObjectStore::Internals::~Internals()
+{
+  this->EndFrame();
 }
 
 // -- Workers ---------------------------------------------------------------------------------------
@@ -60,99 +62,28 @@ const std::byte* ObjectStore::Internals::Wait(Worker& worker, const Segment& seg
     line.Use.store(BlockUse::Recent, std::memory_order_relaxed);
     return address; // it came in the meantime: a hit after all
   }
-  ++worker.Slow.Misses;
-  if (segment.Retired)
+  if (!this->IsOpenFor(segment))
   {
-    throw Error("A block of a retired segment was read. This is a defect of the tracer.");
+    ++worker.Slow.Misses;
+    this->Refuse(segment);
   }
-  if (this->Phase != FramePhase::Open)
-  {
-    throw Error(this->Phase == FramePhase::Cancelled
-        ? this->Cause
-        : "A block of another rank was read outside of a frame. This is a defect of the tracer.");
-  }
-
-  const auto start = std::chrono::steady_clock::now();
-  const bool wasForeseen = line.Use.load(std::memory_order_relaxed) == BlockUse::Prefetched;
-  if (line.State == LineState::Absent || line.State == LineState::Foreseen)
-  {
-    this->Wanted.push_back({ &segment, id });
-    line.MoveTo(LineState::Wanted);
-    this->UpdateQueuedCount();
-  }
-  else
-  {
-    ++worker.Slow.Joins;
-    if (wasForeseen)
-    {
-      this->Prefetches.CountJoin();
-    }
-  }
-  if (wasForeseen)
-  {
-    line.Use.store(BlockUse::Idle, std::memory_order_relaxed);
-  }
-  ++line.Waiters;
-  worker.WaitsFor = &line;
   worker.Epoch.store(Worker::Offline, std::memory_order_release);
-  this->Messages.WakeUp();
-  WaitWithoutSlot(this->Current.Slots.get(), lock, worker.Woken,
-    [&]
-    { return line.Address.load(std::memory_order_relaxed) || this->Phase != FramePhase::Open; });
-  // Online again before the waiter is taken off: from then on the block may be evicted, but its
-  // memory waits for this worker.
+  this->WaitFor(worker, { &segment, id }, lock, this->Current.Slots.get(), true);
+  // Online again under the lock: from now on the block may be evicted, but its memory waits for this
+  // worker.
   worker.Epoch.store(this->Store.Epoch.load(std::memory_order_relaxed), std::memory_order_release);
-  worker.WaitsFor = nullptr;
-  --line.Waiters;
-  worker.Slow.WaitNanoseconds += static_cast<std::uint64_t>(
-    std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::steady_clock::now() - start)
-      .count());
   // The guard was held by the thread that stored the address: its bytes are visible.
   const std::byte* const address = line.Address.load(std::memory_order_relaxed);
   if (!address)
   {
-    throw Error(this->Phase == FramePhase::Cancelled
-        ? this->Cause
-        : "The frame was closed while a worker waited for a block. This is a defect of the "
-          "renderer.");
+    this->Refuse(segment);
   }
   return address;
 }
 
-void ObjectStore::Internals::Prefetch(const Segment& segment, const BlockId* ids, std::size_t count)
+bool ObjectStore::Internals::MayPrefetch() const
 {
-  const auto isUnused = [](const BlockWant& block)
-  { return GetLine(block).Use.load(std::memory_order_relaxed) == BlockUse::Prefetched; };
-  bool any = false;
-  {
-    const std::lock_guard<std::mutex> lock(this->Guard);
-    if (this->Phase != FramePhase::Open || segment.Retired || !this->Current.Prefetch)
-    {
-      return;
-    }
-    for (const BlockId* id = ids; id != ids + count; ++id)
-    {
-      if (*id >= segment.GetDirectory().GetCount() || segment.Lines[*id].State != LineState::Absent)
-      {
-        continue;
-      }
-      BlockLine& line = segment.Lines[*id];
-      const BlockWant want{ &segment, *id };
-      if (!this->Prefetches.TryAdd(want, BlockCache::GetFootprint(line.Bytes), isUnused))
-      {
-        break;
-      }
-      this->Foreseen.push_back(want);
-      line.MoveTo(LineState::Foreseen);
-      line.Use.store(BlockUse::Prefetched, std::memory_order_relaxed);
-      any = true;
-    }
-    this->UpdateQueuedCount();
-  }
-  if (any)
-  {
-    this->Messages.WakeUp();
-  }
+  return this->Current.Prefetch && this->GetLargestBlock() > 0;
 }
 
 // -- Between frames --------------------------------------------------------------------------------
@@ -166,42 +97,16 @@ void ObjectStore::Internals::Configure(const Settings& settings)
     throw Error("The settings of a store cannot change within a frame.");
   }
   this->Current = settings;
-  this->Workers.Resize(settings.Workers);
+  this->Workers.Resize<Worker>(settings.Workers);
   this->Cache.SetCapacity(settings.CacheBytes);
   this->Cache.Shrink();
 }
 
-void ObjectStore::Internals::PrepareToAdd()
+void ObjectStore::Internals::Forget(const BlockSegment& segment)
 {
-  if (this->IsInFrame())
-  {
-    throw Error("Blocks cannot be published within a frame.");
-  }
-  this->Segments.MakeRoom(1);
+  this->Cache.Forget(
+    static_cast<const Segment&>(segment).Lines.get(), segment.GetDirectory().GetCount());
 }
-
-void ObjectStore::Internals::Add(std::shared_ptr<Segment> segment)
-{
-  this->Segments.Add(std::move(segment));
-}
-
-void ObjectStore::Internals::Retire(const BlockSegment& segment)
-{
-  if (!this->Segments.Has(segment))
-  {
-    return;
-  }
-  const std::lock_guard<std::mutex> lock(this->Guard);
-  if (this->Phase != FramePhase::Closed)
-  {
-    throw Error("A segment cannot be retired within a frame.");
-  }
-  const std::shared_ptr<Segment> retired = this->Segments.Remove(segment);
-  retired->Retired = true;
-  this->Cache.Forget(retired->Lines.get(), retired->GetDirectory().GetCount());
-}
-
-// -- The frame, on the communication thread --------------------------------------------------------
 
 std::size_t ObjectStore::Internals::GetLargestBlock() const
 {
@@ -209,138 +114,58 @@ std::size_t ObjectStore::Internals::GetLargestBlock() const
   for (const auto& segment : this->Segments)
   {
     // What is all here needs no cache.
-    largest =
-      std::max(largest, segment->IsWhole() ? 0 : std::size_t(segment->GetDirectory().GetLargest()));
+    const bool isWhole = static_cast<const Segment&>(*segment).IsWhole();
+    largest = std::max(largest, isWhole ? 0 : std::size_t(segment->GetDirectory().GetLargest()));
   }
   return largest;
 }
 
-bool ObjectStore::Internals::MayPrefetch() const
-{
-  return this->Current.Prefetch && this->GetLargestBlock() > 0;
-}
-
 void ObjectStore::Internals::CheckBudget() const
 {
-  if (this->Phase != FramePhase::Closed)
-  {
-    throw Error("The previous frame of the store was not ended.");
-  }
   const std::size_t largest = this->GetLargestBlock();
-  if (largest > 0 && this->Current.CacheBytes < BlockCache::GetFootprint(largest))
+  const std::size_t own = this->GetRoomForOwn();
+  if (largest > 0 && this->Current.CacheBytes < BlockCache::GetFootprint(largest) + own)
   {
     throw Error("The cache of " + std::to_string(this->Current.CacheBytes) +
       " bytes is smaller than one brick (" + std::to_string(BlockCache::GetFootprint(largest)) +
-      " bytes). Raise the cache size (DSMCacheSize).");
+      " bytes)" +
+      (own > 0 ? " and one of the rank's own (" + std::to_string(own) + " bytes)" : "") +
+      ". Raise the cache size (DSMCacheSize).");
   }
 }
 
-bool ObjectStore::Internals::MayBeginFrame() const
+std::size_t ObjectStore::Internals::GetRoomForOwn() const
 {
-  try
+  std::size_t room = 0;
+  for (const auto& segment : this->Segments)
   {
-    this->CheckBudget();
-    return true;
+    const bool mayLeave = static_cast<const Segment&>(*segment).Source != nullptr;
+    room =
+      std::max(room, mayLeave ? BlockCache::GetFootprint(segment->GetDirectory().GetLargest()) : 0);
   }
-  catch (const Error&)
-  {
-    return false; // BeginFrame will say why, on every rank
-  }
+  return this->Messages.GetSize() > 1 ? room : 0; // alone there is nobody to wait for
 }
 
-void ObjectStore::Internals::BeginFrame(bool agreed)
-{
-  if (!agreed)
-  {
-    this->Messages.RunTogether("The frame cannot begin", [this] { this->CheckBudget(); });
-  }
-  this->Requests.BeginFrame();
+// -- Blocks, on the communication thread -----------------------------------------------------------
 
-  const std::size_t footprint = BlockCache::GetFootprint(this->GetLargestBlock());
-  const std::lock_guard<std::mutex> lock(this->Guard);
-  this->SpareBytes = this->Cache.GetCapacity() / SparePart / footprint * footprint;
-  this->Cache.Reclaim(this->GetOldestEpoch());
-  this->Cache.ResetPeak();
-  this->Frame = StoreCounters{};
-  this->Prefetches.BeginFrame(this->Cache.GetCapacity());
-  this->Workers.BeginFrame();
-  this->Phase = FramePhase::Open;
+std::size_t ObjectStore::Internals::GetFootprint(const BlockWant& block) const
+{
+  return BlockCache::GetFootprint(GetBlockLine(block).Bytes);
 }
 
-bool ObjectStore::Internals::Service()
+const std::byte* ObjectStore::Internals::FindOwned(const BlockWant& block) const
 {
-  if (this->QueuedCount.load(std::memory_order_acquire) == 0 && !this->Cache.HasLimbo())
-  {
-    return false;
-  }
-  bool any = false;
-  {
-    const std::lock_guard<std::mutex> lock(this->Guard);
-    any = this->Cache.Reclaim(this->GetOldestEpoch());
-    this->AskForWanted();
-    if (this->Wanted.empty())
-    {
-      this->AskForForeseen();
-    }
-    this->UpdateQueuedCount();
-  }
-  return this->Requests.Send() || any;
+  return GetBlockLine(block).Address.load(std::memory_order_relaxed);
 }
 
-void ObjectStore::Internals::AskForWanted()
+BlockSource* ObjectStore::Internals::FindSource(const BlockWant& block) const
 {
-  while (!this->Wanted.empty())
-  {
-    BlockLine& line = GetLine(this->Wanted.front());
-    if (!this->MakeRoom(line.Bytes))
-    {
-      return;
-    }
-    this->Ask(this->Wanted.front());
-    this->Wanted.pop_front();
-  }
+  return GetSegment(block).Source.get();
 }
 
-void ObjectStore::Internals::AskForForeseen()
+bool ObjectStore::Internals::MakeRoom(const BlockWant& block)
 {
-  while (!this->Foreseen.empty())
-  {
-    BlockLine& line = GetLine(this->Foreseen.front());
-    if (line.State == LineState::Foreseen)
-    {
-      if (!this->MakeRoom(line.Bytes))
-      {
-        return;
-      }
-      this->Ask(this->Foreseen.front());
-      ++this->Frame.Prefetches;
-    }
-    this->Foreseen.pop_front();
-  }
-}
-
-void ObjectStore::Internals::Ask(const BlockWant& want)
-{
-  BlockLine& line = GetLine(want);
-  try
-  {
-    this->Requests.Add(want);
-  }
-  catch (...)
-  {
-    this->Cache.Release(line.Bytes);
-    throw;
-  }
-  line.MoveTo(LineState::Pending);
-}
-
-void ObjectStore::Internals::UpdateQueuedCount()
-{
-  this->QueuedCount.store(this->Wanted.size() + this->Foreseen.size(), std::memory_order_release);
-}
-
-bool ObjectStore::Internals::MakeRoom(std::size_t blockBytes)
-{
+  const std::size_t blockBytes = GetBlockLine(block).Bytes;
   if (this->Cache.TryReserve(blockBytes))
   {
     return true;
@@ -351,11 +176,38 @@ bool ObjectStore::Internals::MakeRoom(std::size_t blockBytes)
   {
     return false;
   }
-  this->Frame.Evictions += evicted.Count;
-  this->Prefetches.CountLosses(evicted.Unused);
+  this->CountEvictions(evicted.Count, evicted.Unused);
   this->Store.Epoch.store(next, std::memory_order_release);
   this->Cache.Reclaim(this->GetOldestEpoch());
   return this->Cache.TryReserve(blockBytes);
+}
+
+void ObjectStore::Internals::GiveRoomBack(const BlockWant& block) noexcept
+{
+  this->Cache.Release(GetBlockLine(block).Bytes);
+}
+
+std::byte* ObjectStore::Internals::PreparePlace(const BlockWant& block)
+{
+  return this->Cache.Allocate(GetBlockLine(block).Bytes);
+}
+
+void ObjectStore::Internals::DiscardPlace(std::byte* place) noexcept
+{
+  this->Cache.Discard(place);
+}
+
+void ObjectStore::Internals::Land(const Read& read, const std::byte* bytes)
+{
+  if (bytes != read.Place)
+  {
+    std::copy_n(bytes, GetBlockLine(read.Block).Bytes, read.Place);
+  }
+}
+
+void ObjectStore::Internals::Show(const Read& read)
+{
+  this->Cache.Insert(GetBlockLine(read.Block), read.Place);
 }
 
 std::uint64_t ObjectStore::Internals::GetOldestEpoch() const
@@ -363,7 +215,8 @@ std::uint64_t ObjectStore::Internals::GetOldestEpoch() const
   std::uint64_t oldest = std::numeric_limits<std::uint64_t>::max();
   for (const auto& worker : this->Workers)
   {
-    const std::uint64_t epoch = worker->Epoch.load(std::memory_order_acquire);
+    const std::uint64_t epoch =
+      static_cast<const Worker&>(*worker).Epoch.load(std::memory_order_acquire);
     if (epoch != Worker::Offline)
     {
       oldest = std::min(oldest, epoch);
@@ -372,139 +225,50 @@ std::uint64_t ObjectStore::Internals::GetOldestEpoch() const
   return oldest;
 }
 
-BlockRequests::Callbacks ObjectStore::Internals::MakeCallbacks()
+bool ObjectStore::Internals::IsUnused(const BlockWant& block) const
 {
-  BlockRequests::Callbacks callbacks;
-  callbacks.Find = [this](std::uint32_t number) { return this->Segments.Find(number); };
-  callbacks.GetOwned = [](const BlockWant& block)
-  { return GetLine(block).Address.load(std::memory_order_relaxed); };
-  callbacks.Take = [this](const BlockWant& block, const std::byte* bytes)
-  { this->Take(block, bytes); };
-  return callbacks;
+  return GetBlockLine(block).Use.load(std::memory_order_relaxed) == BlockUse::Prefetched;
 }
 
-void ObjectStore::Internals::Take(const BlockWant& block, const std::byte* bytes)
+bool ObjectStore::Internals::Settle(const BlockWant& block)
 {
-  BlockLine& line = GetLine(block);
-  const std::lock_guard<std::mutex> lock(this->Guard);
-  this->Cache.Insert(line, bytes);
-  if (line.Use.load(std::memory_order_relaxed) == BlockUse::Prefetched)
-  {
-    this->Prefetches.CountArrival();
-  }
-  this->Workers.WakeThoseThatWaitFor(line);
+  BlockLine& line = GetBlockLine(block);
+  auto unused = BlockUse::Prefetched;
+  return line.Use.compare_exchange_strong(unused, BlockUse::Idle) &&
+    line.State == LineState::Cached;
 }
 
-void ObjectStore::Internals::Cancel(const std::string& cause)
-{
-  const std::lock_guard<std::mutex> lock(this->Guard);
-  if (this->Phase != FramePhase::Open)
-  {
-    return; // the first cause stands
-  }
-  this->Phase = FramePhase::Cancelled;
-  this->Cause = cause;
-  this->AbandonWanted();
-  this->AbandonForeseen();
-  this->Workers.WakeAll();
-}
+// -- Moments of a frame ----------------------------------------------------------------------------
 
-bool ObjectStore::Internals::Drain()
+void ObjectStore::Internals::Opened()
 {
-  const std::lock_guard<std::mutex> lock(this->Guard);
-  this->AbandonForeseen();
-  return this->Phase != FramePhase::Open || this->Requests.GetPendingCount() == 0;
-}
-
-void ObjectStore::Internals::EndFrame()
-{
-  const std::lock_guard<std::mutex> lock(this->Guard);
-  if (this->Phase == FramePhase::Closed)
-  {
-    return;
-  }
-  this->Requests.EndFrame();
-  this->Phase = FramePhase::Closed;
-  this->Workers.WakeAll();
-  this->AbandonWanted();
-  this->AbandonForeseen();
-  for (const BlockWant& want : this->Requests.Abandon())
-  {
-    this->Cache.Release(GetLine(want).Bytes);
-    GetLine(want).MoveTo(LineState::Absent);
-  }
-  this->Frame.PrefetchesUsed = this->Prefetches.EndFrame(
-    [](const BlockWant& block)
-    {
-      BlockLine& line = GetLine(block);
-      auto unused = BlockUse::Prefetched;
-      return line.Use.compare_exchange_strong(unused, BlockUse::Idle) &&
-        line.State == LineState::Cached;
-    });
+  const std::size_t footprint = BlockCache::GetFootprint(this->GetLargestBlock());
+  this->SpareBytes = this->Cache.GetCapacity() / SparePart / footprint * footprint;
   this->Cache.Reclaim(this->GetOldestEpoch());
-  this->Workers.EndFrame();
+  this->Cache.ResetPeak();
+  this->RoomForOthers = this->Cache.GetCapacity() - this->GetRoomForOwn();
+  this->Prefetches.BeginFrame(this->Cache.GetCapacity());
 }
 
-void ObjectStore::Internals::AbandonWanted()
+bool ObjectStore::Internals::BeginService()
 {
-  for (const BlockWant& want : this->Wanted)
-  {
-    GetLine(want).MoveTo(LineState::Absent);
-  }
-  this->Wanted.clear();
-  this->UpdateQueuedCount();
+  return this->Cache.Reclaim(this->GetOldestEpoch());
 }
 
-void ObjectStore::Internals::AbandonForeseen()
+void ObjectStore::Internals::Closed()
 {
-  for (const BlockWant& want : this->Foreseen)
-  {
-    BlockLine& line = GetLine(want);
-    if (line.State == LineState::Foreseen)
-    {
-      line.MoveTo(LineState::Absent);
-      line.Use.store(BlockUse::Idle, std::memory_order_relaxed);
-    }
-  }
-  this->Foreseen.clear();
-  this->UpdateQueuedCount();
+  this->Cache.Reclaim(this->GetOldestEpoch());
 }
 
-// -- Counters --------------------------------------------------------------------------------------
-
-std::vector<WorkerCounters> ObjectStore::Internals::GetWorkerCounters()
+void ObjectStore::Internals::AddCounters(StoreCounters& counters) const
 {
-  const std::lock_guard<std::mutex> lock(this->Guard);
-  return this->Workers.GetCounters(this->IsInFrame());
-}
-
-std::uint64_t ObjectStore::Internals::GetMisses(const Worker& worker) const
-{
-  const std::lock_guard<std::mutex> lock(this->Guard);
-  return worker.Slow.Misses;
-}
-
-StoreCounters ObjectStore::Internals::GetCounters()
-{
-  const auto workers = this->GetWorkerCounters();
-  const std::lock_guard<std::mutex> lock(this->Guard);
-  StoreCounters counters = this->Frame;
-  counters.Requests = this->Requests.GetCount();
-  counters.BytesSent = this->Requests.GetBytesSent();
-  counters.BytesReceived = this->Requests.GetBytesReceived();
-  for (const WorkerCounters& worker : workers)
-  {
-    counters.Workers += worker;
-  }
   for (const auto& segment : this->Segments)
   {
-    counters.ResidentBytes += segment->GetResidentBytes();
-    counters.SharedBytes += segment->GetSharedBytes();
+    counters.SharedBytes += static_cast<const Segment&>(*segment).GetSharedBytes();
   }
   counters.CachedBytes = this->Cache.GetUsed();
   counters.PeakCachedBytes = this->Cache.GetPeak();
   counters.CacheCapacity = this->Cache.GetCapacity();
-  return counters;
 }
 
 } // namespace dsm

@@ -2,7 +2,7 @@
 #include "DSMCore/table/ReplicatedStore.h"
 
 #include "DSMCore/base/Error.h"
-#include "DSMCore/fetch/StoreWorkers.h"
+#include "DSMCore/base/WorkerSlots.h"
 #include "DSMCore/publish/SegmentPublisher.h"
 
 #include <algorithm>

@@ -1,0 +1,481 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "DSMCore/fetch/BlockFetcher.h"
+
+#include "DSMCore/base/Error.h"
+
+#include <algorithm>
+#include <chrono>
+#include <utility>
+
+namespace dsm
+{
+
+BlockFetcher::BlockFetcher(Messenger& messenger)
+  : Messages(messenger)
+  , Requests(messenger, this->MakeCallbacks())
+{
+}
+
+// -- Between frames --------------------------------------------------------------------------------
+
+void BlockFetcher::PrepareToAdd(std::size_t count)
+{
+  if (this->IsInFrame())
+  {
+    throw Error("Blocks cannot be published within a frame.");
+  }
+  const std::lock_guard<std::mutex> lock(this->Guard);
+  this->Segments.MakeRoom(count);
+}
+
+void BlockFetcher::Add(std::shared_ptr<BlockSegment> segment)
+{
+  const std::lock_guard<std::mutex> lock(this->Guard);
+  this->Segments.Add(std::move(segment));
+}
+
+std::shared_ptr<BlockSegment> BlockFetcher::Retire(const BlockSegment& segment)
+{
+  const std::lock_guard<std::mutex> lock(this->Guard);
+  if (!this->Segments.Has(segment))
+  {
+    return nullptr;
+  }
+  if (this->Phase != FramePhase::Closed)
+  {
+    throw Error("A segment cannot be retired within a frame.");
+  }
+  this->Forget(segment);
+  return this->Segments.Remove(segment);
+}
+
+// -- The frame, on the communication thread --------------------------------------------------------
+
+bool BlockFetcher::MayBeginFrame() const
+{
+  try
+  {
+    this->CheckBudget();
+    return true;
+  }
+  catch (const Error&)
+  {
+    return false; // BeginFrame will say why, on every rank
+  }
+}
+
+void BlockFetcher::BeginFrame(bool agreed)
+{
+  if (!agreed)
+  {
+    try
+    {
+      this->Messages.RunTogether("The frame cannot begin",
+        [this]
+        {
+          if (this->Phase != FramePhase::Closed)
+          {
+            throw Error("The previous frame of the store was not ended.");
+          }
+          this->CheckBudget();
+          this->Prepare();
+        });
+    }
+    catch (...)
+    {
+      if (this->Phase == FramePhase::Closed)
+      {
+        this->Unprepare();
+      }
+      throw;
+    }
+  }
+  this->Requests.BeginFrame();
+
+  const std::lock_guard<std::mutex> lock(this->Guard);
+  this->Frame = StoreCounters{};
+  this->Workers.BeginFrame();
+  this->Phase = FramePhase::Open;
+  this->Opened();
+}
+
+bool BlockFetcher::Service()
+{
+  const bool came = !this->Busy.empty() && this->PollSources();
+  if (this->QueuedCount.load(std::memory_order_acquire) == 0 && !this->NeedsService())
+  {
+    return came;
+  }
+  bool any = came;
+  {
+    const std::lock_guard<std::mutex> lock(this->Guard);
+    any = this->BeginService() || any;
+    if (this->AskForWanted(this->WantedOwn) && this->AskForWanted(this->Wanted))
+    {
+      this->AskForForeseen();
+    }
+    this->UpdateQueuedCount();
+  }
+  this->EndService();
+  return this->SubmitReads() || any;
+}
+
+bool BlockFetcher::AskForWanted(std::deque<BlockWant>& wanted)
+{
+  while (!wanted.empty() && this->TryAsk(wanted.front()))
+  {
+    wanted.pop_front();
+  }
+  return wanted.empty();
+}
+
+void BlockFetcher::AskForForeseen()
+{
+  while (!this->Foreseen.empty())
+  {
+    const BlockWant& block = this->Foreseen.front();
+    if (this->GetLine(block).State == LineState::Foreseen)
+    {
+      if (!this->TryAsk(block))
+      {
+        return;
+      }
+      ++this->Frame.Prefetches;
+    }
+    this->Foreseen.pop_front();
+  }
+}
+
+bool BlockFetcher::TryAsk(const BlockWant& block)
+{
+  const bool isOwned = this->IsOwned(block);
+  const std::size_t others = isOwned ? 0 : this->GetFootprint(block);
+  if (others > this->RoomForOthers - this->BytesOfOthers || !this->MakeRoom(block))
+  {
+    return false;
+  }
+  Read read{ block, isOwned ? this->FindSource(block) : &this->Requests, nullptr };
+  const std::size_t before = this->Reads.size();
+  try
+  {
+    read.Place = this->PreparePlace(block);
+    this->Reads.push_back(read);
+    if (isOwned && std::find(this->Busy.begin(), this->Busy.end(), read.From) == this->Busy.end())
+    {
+      this->Busy.push_back(read.From);
+    }
+    read.From->Begin(block, read.Place);
+  }
+  catch (...)
+  {
+    this->Reads.erase(this->Reads.begin() + static_cast<std::ptrdiff_t>(before), this->Reads.end());
+    this->DiscardPlace(read.Place);
+    this->GiveRoomBack(block);
+    throw;
+  }
+  this->BytesOfOthers += others;
+  this->GetLine(block).MoveTo(LineState::Pending);
+  return true;
+}
+
+bool BlockFetcher::PollSources()
+{
+  bool any = false;
+  for (BlockSource* const source : this->Busy)
+  {
+    any = source->Poll([this](const BlockWant& block, const std::byte* bytes)
+            { this->Arrive(block, bytes); }) ||
+      any;
+  }
+  const auto isIdle = [this](const BlockSource* source)
+  {
+    return std::none_of(this->Reads.begin(), this->Reads.end(),
+      [&](const Read& read) { return read.From == source; });
+  };
+  this->Busy.erase(std::remove_if(this->Busy.begin(), this->Busy.end(), isIdle), this->Busy.end());
+  return any;
+}
+
+bool BlockFetcher::SubmitReads()
+{
+  bool any = this->Requests.Submit();
+  for (BlockSource* const source : this->Busy)
+  {
+    any = source->Submit() || any;
+  }
+  return any;
+}
+
+void BlockFetcher::UpdateQueuedCount()
+{
+  this->QueuedCount.store(this->WantedOwn.size() + this->Wanted.size() + this->Foreseen.size(),
+    std::memory_order_release);
+}
+
+BlockRequests::Callbacks BlockFetcher::MakeCallbacks()
+{
+  BlockRequests::Callbacks callbacks;
+  callbacks.Find = [this](std::uint32_t number) { return this->Segments.Find(number); };
+  callbacks.FindOwned = [this](const BlockWant& block) { return this->FindOwned(block); };
+  callbacks.Bring = [this](const BlockWant& block)
+  {
+    const std::lock_guard<std::mutex> lock(this->Guard);
+    this->Want(block);
+  };
+  callbacks.Take = [this](const BlockWant& block, const std::byte* bytes)
+  { this->Arrive(block, bytes); };
+  return callbacks;
+}
+
+void BlockFetcher::Arrive(const BlockWant& block, const std::byte* bytes)
+{
+  const auto read = std::find_if(this->Reads.begin(), this->Reads.end(),
+    [&](const Read& other) { return other.Block == block; });
+  if (read == this->Reads.end())
+  {
+    throw Error("A source of blocks brought block " + std::to_string(block.Id) +
+      ", which nobody asked it for. This is a defect of the program.");
+  }
+  this->Land(*read, bytes); // when it throws, the read is given up with the frame
+  {
+    const std::lock_guard<std::mutex> lock(this->Guard);
+    const LineStatus& line = this->GetLine(block);
+    this->Show(*read);
+    if (line.Use.load(std::memory_order_relaxed) == BlockUse::Prefetched)
+    {
+      this->Prefetches.CountArrival();
+    }
+    this->Workers.WakeThoseThatWaitFor(line);
+  }
+  this->BytesOfOthers -= this->IsOwned(block) ? 0 : this->GetFootprint(block);
+  this->Reads.erase(read);
+  this->Requests.Answer(block, bytes);
+}
+
+void BlockFetcher::Cancel(const std::string& cause)
+{
+  const std::lock_guard<std::mutex> lock(this->Guard);
+  if (this->Phase != FramePhase::Open)
+  {
+    return; // the first cause stands
+  }
+  this->Phase = FramePhase::Cancelled;
+  this->Cause = cause;
+  this->Closing();
+  this->AbandonAll();
+  this->Workers.WakeAll();
+  this->Closed();
+}
+
+bool BlockFetcher::Drain()
+{
+  const std::lock_guard<std::mutex> lock(this->Guard);
+  this->AbandonForeseen();
+  return this->Phase != FramePhase::Open || this->Reads.empty();
+}
+
+void BlockFetcher::EndFrame()
+{
+  const std::lock_guard<std::mutex> lock(this->Guard);
+  if (this->Phase == FramePhase::Closed)
+  {
+    return;
+  }
+  this->Requests.EndFrame();
+  this->Phase = FramePhase::Closed;
+  this->Closing();
+  this->Workers.EndFrame();
+  this->AbandonAll();
+  this->Frame.PrefetchesUsed =
+    this->Prefetches.EndFrame([this](const BlockWant& block) { return this->Settle(block); });
+  this->Workers.WakeAll();
+  this->Closed();
+}
+
+void BlockFetcher::AbandonAll()
+{
+  for (std::deque<BlockWant>* const wanted : { &this->WantedOwn, &this->Wanted })
+  {
+    for (const BlockWant& block : *wanted)
+    {
+      this->GetLine(block).MoveTo(LineState::Absent);
+    }
+    wanted->clear();
+  }
+  this->AbandonForeseen();
+  this->Requests.Abandon();
+  for (BlockSource* const source : this->Busy)
+  {
+    source->Abandon();
+  }
+  this->Busy.clear();
+  for (const Read& read : this->Reads)
+  {
+    this->DiscardPlace(read.Place);
+    this->GiveRoomBack(read.Block);
+    this->GetLine(read.Block).MoveTo(LineState::Absent);
+  }
+  this->Reads.clear();
+  this->BytesOfOthers = 0;
+}
+
+void BlockFetcher::AbandonForeseen()
+{
+  for (const BlockWant& block : this->Foreseen)
+  {
+    LineStatus& line = this->GetLine(block);
+    if (line.State == LineState::Foreseen)
+    {
+      line.MoveTo(LineState::Absent);
+      line.Use.store(BlockUse::Idle, std::memory_order_relaxed);
+    }
+  }
+  this->Foreseen.clear();
+  this->UpdateQueuedCount();
+}
+
+// -- Workers ---------------------------------------------------------------------------------------
+
+bool BlockFetcher::Want(const BlockWant& block)
+{
+  LineStatus& line = this->GetLine(block);
+  const bool isNew = line.State == LineState::Absent || line.State == LineState::Foreseen;
+  if (isNew)
+  {
+    (this->IsOwned(block) ? this->WantedOwn : this->Wanted).push_back(block);
+    line.MoveTo(LineState::Wanted);
+    this->UpdateQueuedCount();
+  }
+  if (line.Use.load(std::memory_order_relaxed) == BlockUse::Prefetched)
+  {
+    line.Use.store(BlockUse::Idle, std::memory_order_relaxed);
+    if (!isNew)
+    {
+      this->Prefetches.CountJoin();
+    }
+  }
+  return !isNew;
+}
+
+void BlockFetcher::WaitFor(FetchWorker& worker, const BlockWant& block,
+  std::unique_lock<std::mutex>& lock, WorkerSlots* slots, bool keeps)
+{
+  const auto start = std::chrono::steady_clock::now();
+  LineStatus& line = this->GetLine(block);
+  ++worker.Slow.Misses;
+  worker.Slow.Joins += this->Want(block) ? 1 : 0;
+  ++line.Waiters;
+  worker.WaitsFor = &line;
+  const auto leave = [&]
+  {
+    worker.WaitsFor = nullptr;
+    --line.Waiters;
+  };
+  this->Messages.WakeUp();
+  WaitWithoutSlot(
+    slots, lock, worker.Woken,
+    [&] { return line.State == LineState::Cached || this->Phase != FramePhase::Open; },
+    [&]
+    {
+      if (!keeps)
+      {
+        leave();
+      }
+    });
+  if (keeps)
+  {
+    leave();
+  }
+  worker.Slow.WaitNanoseconds += static_cast<std::uint64_t>(
+    std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::steady_clock::now() - start)
+      .count());
+}
+
+void BlockFetcher::Refuse(const BlockSegment& segment) const
+{
+  if (this->Phase == FramePhase::Cancelled)
+  {
+    throw Error(this->Cause);
+  }
+  throw Error(this->Segments.Has(segment)
+      ? "A block of another rank was read outside of a frame. This is a defect of the tracer."
+      : "A block of a retired segment was read. This is a defect of the tracer.");
+}
+
+void BlockFetcher::Prefetch(const BlockSegment& segment, const BlockId* ids, std::size_t count)
+{
+  const auto isUnused = [this](const BlockWant& block) { return this->IsUnused(block); };
+  bool any = false;
+  {
+    const std::lock_guard<std::mutex> lock(this->Guard);
+    if (!this->IsOpenFor(segment) || !this->MayPrefetch())
+    {
+      return;
+    }
+    for (const BlockId* id = ids; id != ids + count; ++id)
+    {
+      const BlockWant block{ &segment, *id };
+      if (*id >= segment.GetDirectory().GetCount() ||
+        this->GetLine(block).State != LineState::Absent)
+      {
+        continue;
+      }
+      if (!this->Prefetches.TryAdd(block, this->GetFootprint(block), isUnused))
+      {
+        break;
+      }
+      LineStatus& line = this->GetLine(block);
+      this->Foreseen.push_back(block);
+      line.MoveTo(LineState::Foreseen);
+      line.Use.store(BlockUse::Prefetched, std::memory_order_relaxed);
+      any = true;
+    }
+    this->UpdateQueuedCount();
+  }
+  if (any)
+  {
+    this->Messages.WakeUp();
+  }
+}
+
+// -- Counters --------------------------------------------------------------------------------------
+
+void BlockFetcher::CountEvictions(std::size_t count, std::size_t unused)
+{
+  this->Frame.Evictions += count;
+  this->Prefetches.CountLosses(unused);
+}
+
+std::vector<WorkerCounters> BlockFetcher::GetWorkerCounters()
+{
+  const std::lock_guard<std::mutex> lock(this->Guard);
+  return this->Workers.GetCounters(this->IsInFrame());
+}
+
+std::uint64_t BlockFetcher::GetMisses(const FetchWorker& worker) const
+{
+  const std::lock_guard<std::mutex> lock(this->Guard);
+  return worker.Slow.Misses;
+}
+
+StoreCounters BlockFetcher::GetCounters()
+{
+  const auto workers = this->GetWorkerCounters();
+  const std::lock_guard<std::mutex> lock(this->Guard);
+  StoreCounters counters = this->Frame;
+  counters.Requests = this->Requests.GetCount();
+  counters.BytesSent = this->Requests.GetBytesSent();
+  counters.BytesReceived = this->Requests.GetBytesReceived();
+  for (const WorkerCounters& worker : workers)
+  {
+    counters.Workers += worker;
+  }
+  for (const auto& segment : this->Segments)
+  {
+    counters.ResidentBytes += segment->GetResidentBytes();
+  }
+  this->AddCounters(counters);
+  return counters;
+}
+
+} // namespace dsm

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef dsm_BlockSource_h
+#define dsm_BlockSource_h
+
+#include "DSMCore/base/Block.h"
+#include "DSMCore/publish/BlockSegment.h"
+
+#include <cstddef>
+#include <functional>
+
+namespace dsm
+{
+
+/// A block that a store wants from its source.
+struct BlockWant
+{
+  const BlockSegment* From;
+  BlockId Id;
+
+  friend bool operator==(const BlockWant& a, const BlockWant& b)
+  {
+    return a.From == b.From && a.Id == b.Id;
+  }
+};
+
+/// Where blocks come from that are not in this rank's memory: other ranks (BlockRequests), or whatever
+/// can bring a rank's own blocks again after they have left memory. Nothing of it waits: reads begin,
+/// and are asked after. What it throws becomes the frame's error on all ranks.
+///
+/// Within frames, on the communication thread. A source may have threads of its own, which call
+/// Messenger::WakeUp when there is something to Poll; they touch nothing of the store but the memory
+/// that they were given.
+class BlockSource
+{
+public:
+  /// Called for a block when its bytes are complete: where they were to land, or, where no place was
+  /// given or the source has them anyway, in memory of the source's, which then may go when this
+  /// returns.
+  using Deliver = std::function<void(const BlockWant& block, const std::byte* bytes)>;
+
+  virtual ~BlockSource() = default;
+
+  /// A block is to be read, to `place`, which has room for it, at a multiple of BlockAlignment (null:
+  /// to memory of the source's own). Not one that is under way. When it throws, the read has not begun.
+  virtual void Begin(const BlockWant& block, std::byte* place) = 0;
+  /// No more reads are to begin right now: the source may put those begun so far on their way together.
+  /// Returns whether there were any.
+  virtual bool Submit() = 0;
+  /// Delivers what has come, in any order; does not wait. Returns whether anything has. Throws what
+  /// makes a read fail.
+  virtual bool Poll(const Deliver& deliver) = 0;
+  /// Gives up all that is under way: when it returns, nothing of it will be delivered, and no memory
+  /// that was given for it is touched any more.
+  virtual void Abandon() noexcept = 0;
+};
+
+} // namespace dsm
+
+#endif
