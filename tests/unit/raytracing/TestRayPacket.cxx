@@ -277,6 +277,23 @@ TEST(TestRayPacketCases, BricksOfManyMacrocells)
   EXPECT_GT(ComparePackets(CreateWaves<float>({ 70, 40, 67 }), { 3.0 }, 65).Hits, 1000);
 }
 
+TEST(TestRayPacketCases, TheUnitOfTheValuesDoesNotMatter)
+{
+  const TestVolume<double> volume = CreateNoise<double>({ 14, 15, 13 });
+  const int hits = ComparePackets(volume, { 80.0 }, 4).Hits;
+  EXPECT_GT(hits, 1000);
+  for (const double unit : { 0x1p-600, 0x1p600 })
+  {
+    TestVolume<double> other = volume;
+    for (double& sample : other.Samples)
+    {
+      sample *= unit;
+    }
+    EXPECT_EQ(ComparePackets(other, { 80.0 * unit }, 4).Hits, hits) << unit;
+    CompareOcclusion(other, { 80.0 * unit }, 4);
+  }
+}
+
 TEST(TestRayPacketCases, EveryWidthIsThere)
 {
   const std::vector<rt::PacketKernel> kernels = rt::PacketKernel::GetAll();

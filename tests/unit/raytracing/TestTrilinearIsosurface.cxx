@@ -119,6 +119,32 @@ TEST(TestTrilinearIsosurface, TouchingZeroAtTheStartIsNotTheCrossing)
   EXPECT_NEAR(s, 8.0 / 9.0, 1e-12);
 }
 
+TEST(TestTrilinearIsosurface, TheUnitOfTheValuesDoesNotMatter)
+{
+  std::mt19937 random(5);
+  int pairs = 0;
+  for (int i = 0; i < 20000; ++i)
+  {
+    const Way way = CreateWay(random, i % 2 == 0);
+    double expected = -1.0;
+    const bool hit = rt::FindFirstCrossing(way.Corners, way.Start, way.End, expected);
+    pairs += hit && (way.Evaluate(0.0) >= 0.0) == (way.Evaluate(1.0) >= 0.0);
+    for (const double unit : { 0x1p-900, 0x1p-600, 0x1p600, 0x1p1010 })
+    {
+      Way other = way;
+      for (double& corner : other.Corners)
+      {
+        corner *= unit;
+      }
+      double s = -1.0;
+      ASSERT_EQ(rt::FindFirstCrossing(other.Corners, other.Start, other.End, s), hit) << unit;
+      ASSERT_EQ(rt::HasCrossing(other.Corners, other.Start, other.End), hit) << unit;
+      ASSERT_EQ(s, expected) << unit;
+    }
+  }
+  EXPECT_GT(pairs, 200);
+}
+
 TEST(TestTrilinearCell, FaceValuesAreTheSameFromBothCells)
 {
   std::mt19937 random(3);

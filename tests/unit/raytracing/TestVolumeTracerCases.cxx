@@ -189,6 +189,43 @@ TEST(TestVolumeTracerCases, SeveralIsovaluesGiveTheNearestHit)
   }
 }
 
+TEST(TestVolumeTracerCases, TheUnitOfTheValuesDoesNotMatter)
+{
+  std::mt19937 random(23);
+  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+  const TestVolume<double> volume({ 9, 8, 10 }, [&](int, int, int) { return uniform(random); });
+  TracerBench bench;
+  const auto reference = CreateObject(bench.Store, volume, { 0.8 }, 4);
+  for (const double unit : { 0x1p-600, 0x1p600 })
+  {
+    TestVolume<double> scaled = volume;
+    for (double& sample : scaled.Samples)
+    {
+      sample *= unit;
+    }
+    const auto object = CreateObject(bench.Store, scaled, { 0.8 * unit }, 4);
+    RandomRays generator(volume.GetCells(), 24);
+    int hits = 0;
+    for (int i = 0; i < 4000; ++i)
+    {
+      const rt::Ray ray = generator.Create(
+        static_cast<RandomRays::Kind>(i % static_cast<int>(RandomRays::Kind::Count)));
+      rt::SurfaceHit expected;
+      rt::SurfaceHit hit;
+      const bool found = bench.Tracer.Intersect(reference, ray, expected);
+      ASSERT_EQ(bench.Tracer.Intersect(object, ray, hit), found);
+      if (found)
+      {
+        ++hits;
+        ASSERT_EQ(hit.T, expected.T);
+        ASSERT_EQ(hit.IndexPoint, expected.IndexPoint);
+        ASSERT_LT(glm::length(hit.Normal - expected.Normal), 1e-14);
+      }
+    }
+    EXPECT_GT(hits, 500);
+  }
+}
+
 TEST(TestVolumeTracerCases, NoIsovalueNoHit)
 {
   TracerBench bench;

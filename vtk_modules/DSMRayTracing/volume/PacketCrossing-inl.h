@@ -9,6 +9,8 @@
 
 #include <hwy/highway.h>
 
+#include <cstdint>
+
 HWY_BEFORE_NAMESPACE();
 namespace rt
 {
@@ -211,12 +213,25 @@ private:
     return hn::Add(this->C1, hn::Mul(s, inner));
   }
 
+  /// The power of two that brings `largest` (>= 0) to about one.
+  Vector GetScale(Vector largest) const
+  {
+    const hn::RebindToUnsigned<D> bits;
+    constexpr int fraction = 52;
+    const auto exponent = hn::Set(bits, std::uint64_t{ 0x7ff } << fraction);
+    const auto bounded = hn::BitCast(bits, hn::Min(largest, hn::Set(this->Tag, 0x1p1022)));
+    return hn::BitCast(this->Tag,
+      hn::Sub(hn::Set(bits, std::uint64_t{ 2 * 1023 } << fraction), hn::And(bounded, exponent)));
+  }
+
   /// Ascending; where there are none, not in (0, 1).
   void FindExtrema(Vector extrema[2]) const
   {
-    const Vector a = hn::Mul(hn::Set(this->Tag, 3.0), this->C3);
-    const Vector b = this->C2;
-    const Vector c = this->C1;
+    const Vector scale =
+      this->GetScale(hn::Max(hn::Abs(this->C3), hn::Max(hn::Abs(this->C2), hn::Abs(this->C1))));
+    const Vector a = hn::Mul(hn::Set(this->Tag, 3.0), hn::Mul(scale, this->C3));
+    const Vector b = hn::Mul(scale, this->C2);
+    const Vector c = hn::Mul(scale, this->C1);
     const Vector discriminant = hn::Sub(hn::Mul(b, b), hn::Mul(a, c));
     const Mask exist = hn::Gt(discriminant, this->Zero);
     const Vector q = hn::Neg(hn::Add(b, hn::CopySign(hn::Sqrt(discriminant), b)));

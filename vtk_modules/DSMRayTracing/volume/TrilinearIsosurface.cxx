@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <cstring>
 #include <utility>
 
 namespace rt
@@ -67,12 +69,31 @@ int CountSignChanges(const Cubic& cubic, double last)
     static_cast<int>(inside[2] != inside[3]);
 }
 
+/// The power of two that brings `largest` (>= 0) to about one.
+double GetScale(double largest)
+{
+  const double bounded = std::min(largest, 0x1p1022);
+  std::uint64_t bits;
+  std::memcpy(&bits, &bounded, sizeof(bits));
+  constexpr int fraction = 52;
+  constexpr std::uint64_t exponent = std::uint64_t{ 0x7ff } << fraction;
+  bits = (std::uint64_t{ 2 * 1023 } << fraction) - (bits & exponent);
+  double scale;
+  std::memcpy(&scale, &bits, sizeof(scale));
+  return scale;
+}
+
 /// The places in (0, 1) where the derivative vanishes, ascending; returns how many.
 int FindExtrema(const Cubic& cubic, double extrema[2])
 {
-  const double a = 3.0 * cubic.Coefficients[3];
-  const double b = cubic.Coefficients[2];
-  const double c = cubic.Coefficients[1];
+  // Squares of the coefficients may be too small or too large for numbers; of exact multiples of
+  // them they are not, and the places are the same.
+  const double* coefficients = cubic.Coefficients;
+  const double scale = GetScale(std::max(
+    std::abs(coefficients[3]), std::max(std::abs(coefficients[2]), std::abs(coefficients[1]))));
+  const double a = 3.0 * (scale * coefficients[3]);
+  const double b = scale * coefficients[2];
+  const double c = scale * coefficients[1];
   const double discriminant = b * b - a * c;
   if (!(discriminant > 0.0))
   {
