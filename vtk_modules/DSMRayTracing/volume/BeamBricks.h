@@ -3,8 +3,6 @@
 #define rt_BeamBricks_h
 
 #include "DSMCore/base/Block.h"
-#include "DSMRayTracing/layout/MacrocellHierarchy.h"
-#include "DSMRayTracing/volume/RayBeam.h"
 
 #include <cstddef>
 #include <vector>
@@ -12,9 +10,9 @@
 namespace rt
 {
 
-/// The bricks that may hold an isosurface and that rays of a beam may meet: what the rays of a tile
+/// The bricks that may hold what rays look for, and that rays of a beam may meet: what the rays of a tile
 /// have in common, so that each need not walk the levels above the bricks. The order is front to
-/// back for every ray of the beam.
+/// back for every ray of the beam. Made by BeamDescent.
 struct BeamBricks
 {
   struct Brick
@@ -32,13 +30,6 @@ struct BeamBricks
   /// How many of them, from the front, rays have come to so far: told by PacketTracer::Intersect. Belongs
   /// to the worker that has the beam.
   mutable std::size_t Reached = 0;
-
-  BeamBricks() = default;
-  /// `corners`: see RayBeam. `isovalues` as in IsosurfaceObject.
-  BeamBricks(const MacrocellHierarchy& hierarchy, const std::vector<double>& isovalues,
-    const GridRay corners[4]);
-  BeamBricks(
-    const MacrocellHierarchy& hierarchy, const std::vector<double>& isovalues, const RayBeam& beam);
 };
 
 } // namespace rt

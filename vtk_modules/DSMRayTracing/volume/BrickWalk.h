@@ -9,26 +9,24 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <limits>
 #include <vector>
 
 namespace rt
 {
 
 /// Space leaping over the levels above the bricks: yields, front to back, the bricks on a ray that
-/// may hold one of the isovalues. Walks each level within the macrocell of the one above, and enters
-/// only those macrocells that may hold a surface.
+/// may hold what it looks for. Walks each level within the macrocell of the one above, and enters only
+/// those macrocells that may. `Predicate` tells that of a ValueRange; see IsovaluePredicate.
+template <class Predicate>
 class BrickWalk
 {
 public:
   /// The ray is followed from `enter` to `leave`, within the volume. All is kept by reference.
-  BrickWalk(const MacrocellHierarchy& hierarchy, const GridRay& ray,
-    const std::vector<double>& isovalues, double enter, double leave)
+  BrickWalk(const MacrocellHierarchy& hierarchy, const GridRay& ray, const Predicate& mayHold,
+    double enter, double leave)
     : Levels(hierarchy.GetLevels())
     , Line(ray)
-    , Isovalues(isovalues)
-    , Lowest(isovalues.empty() ? std::numeric_limits<double>::infinity() : isovalues.front())
-    , Highest(isovalues.empty() ? -std::numeric_limits<double>::infinity() : isovalues.back())
+    , MayHold(mayHold)
     , Top(GetTop(this->Levels))
     , Level(this->Top)
   {
@@ -117,26 +115,6 @@ private:
     return top;
   }
 
-  bool MayHold(const ValueRange& range) const
-  {
-    if (!(range.First < this->Highest && this->Lowest <= range.Last))
-    {
-      return false;
-    }
-    return this->Isovalues.size() == 1 || this->MayHoldAny(range);
-  }
-  bool MayHoldAny(const ValueRange& range) const
-  {
-    for (const double isovalue : this->Isovalues)
-    {
-      if (range.MayHold(isovalue))
-      {
-        return true;
-      }
-    }
-    return false;
-  }
-
   /// Starts in a box whose first cell is given, of up to `counts` macrocells of the level.
   void StartLevel(const Lanes& first, const Lanes& counts, double enter, double leave)
   {
@@ -154,9 +132,7 @@ private:
 
   const std::vector<MacrocellHierarchy::Level>& Levels;
   const GridRay& Line;
-  const std::vector<double>& Isovalues;
-  double Lowest;
-  double Highest;
+  const Predicate& MayHold;
   int Top;
   int Level;
   Place Places[MaximalLevels];

@@ -8,6 +8,7 @@
 #include "DSMRayTracing/volume/GridRay.h"
 #include "DSMRayTracing/volume/GridWalk.h"
 #include "DSMRayTracing/volume/IsovalueLevel.h"
+#include "DSMRayTracing/volume/MacrocellWalk.h"
 #include "DSMRayTracing/volume/TrilinearIsosurface.h"
 
 namespace rt
@@ -61,32 +62,15 @@ private:
   bool Walk(const IsovalueLevel<T>& level, double enter, double leave, double limit,
     const Intersect& intersect) const
   {
-    const int rows = this->Brick.GetMacrocells(0);
-    const int slices = this->Brick.GetMacrocells(1);
-    const NodeStrides strides(rows, rows * slices);
-    const NodeGrid macrocells{ this->Origin, MacrocellEdge, 1.0 / MacrocellEdge,
-      Lanes(rows, slices, this->Brick.GetMacrocells(2), 1.0), strides };
-    GridWalk walk;
-    const MacrocellRange<T>* range =
-      this->Brick.GetMacrocellRanges() + walk.Start(this->Line, enter, macrocells);
-    double t = enter;
-    while (t < limit)
-    {
-      const double exit = std::min(walk.GetExit(), leave);
-      this->Reads.ReadRange();
-      if (level.Separates(range->Min, range->Max) &&
-        this->WalkCells(level, walk, t, exit, intersect))
+    return VisitMacrocells(
+      this->Line, this->Brick, this->Origin, enter, leave, limit,
+      [&](const MacrocellRange<T>& range)
       {
-        return true;
-      }
-      if (exit >= leave)
-      {
-        return false;
-      }
-      range += walk.Advance(this->Line, exit);
-      t = exit;
-    }
-    return false;
+        this->Reads.ReadRange();
+        return level.Separates(range.Min, range.Max);
+      },
+      [&](const GridWalk& walk, double in, double out)
+      { return this->WalkCells(level, walk, in, out, intersect); });
   }
 
   /// The same in the macrocell of `macrocells`, which the ray crosses from enter to leave.

@@ -6,6 +6,7 @@
 #include "DSMRayTracing/volume/BeamBricks.h"
 #include "DSMRayTracing/volume/IsosurfaceObject.h"
 #include "DSMRayTracing/volume/PacketKernel.h"
+#include "DSMRayTracing/volume/RayBeam.h"
 #include "DSMRayTracing/volume/VolumeTracer.h"
 
 #include <glm/vec3.hpp>
@@ -16,8 +17,8 @@
 namespace rt
 {
 
-/// Finds isosurface hits for the rays of a tile: the bricks that lie in the tile's beam are acquired
-/// one after the other, front to back, and each is searched by all packets of the tile. A ray finds,
+/// Finds isosurface hits for rays of a beam: the bricks that lie in it are acquired one after the
+/// other, front to back, and each is searched for all of the packet's rays that meet it. A ray finds,
 /// bit for bit, what VolumeTracer finds for it, whatever packets, mates and vectors it has; rays that
 /// do not fit the others are left to VolumeTracer.
 ///
@@ -68,6 +69,8 @@ private:
     int Isovalue[RayPacket::Size];
     glm::dvec3 Gradient[RayPacket::Size];
   };
+
+  static BeamBricks FindBricks(const IsosurfaceObject& object, const RayBeam& beam);
 
   /// Finds out which rays that have not found anything yet cross a brick, and where; returns whether
   /// any does.

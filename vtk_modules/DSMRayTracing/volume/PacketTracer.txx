@@ -3,9 +3,11 @@
 #define rt_PacketTracer_txx
 
 #include "DSMRayTracing/layout/VoxelBrick.h"
+#include "DSMRayTracing/volume/BeamDescent.h"
 #include "DSMRayTracing/volume/HitGradient.h"
 #include "DSMRayTracing/volume/IndexSpace.h"
 #include "DSMRayTracing/volume/IsovalueLevel.h"
+#include "DSMRayTracing/volume/IsovaluePredicate.h"
 #include "DSMRayTracing/volume/TypedPacketBrick.h"
 
 #include <glm/geometric.hpp>
@@ -29,7 +31,15 @@ BeamBricks PacketTracer<Store>::FindBricks(
       return BeamBricks();
     }
   }
-  return BeamBricks(object.Field->Hierarchy, object.Isovalues, lines);
+  RayBeam beam;
+  return beam.Set(lines) ? FindBricks(object, beam) : BeamBricks();
+}
+
+template <class Store>
+BeamBricks PacketTracer<Store>::FindBricks(const IsosurfaceObject& object, const RayBeam& beam)
+{
+  const IsovaluePredicate mayHold(object.Isovalues);
+  return BeamDescent<IsovaluePredicate>(object.Field->Hierarchy, mayHold, beam).Find();
 }
 
 template <class Store>
@@ -202,7 +212,7 @@ RayPacket::Mask PacketTracer<Store>::FindOccludedInPacket(const IsosurfaceObject
   {
     RayBeam beam;
     beam.Set(progress.Rays);
-    const BeamBricks bricks(object.Field->Hierarchy, object.Isovalues, beam);
+    const BeamBricks bricks = FindBricks(object, beam);
     Dispatch(lattice.GetScalarType(),
       [&](auto sample)
       {

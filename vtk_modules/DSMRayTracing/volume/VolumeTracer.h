@@ -9,6 +9,7 @@
 #include "DSMRayTracing/volume/GridRay.h"
 #include "DSMRayTracing/volume/HitGradient.h"
 #include "DSMRayTracing/volume/IsosurfaceObject.h"
+#include "DSMRayTracing/volume/IsovaluePredicate.h"
 
 #include <glm/vec3.hpp>
 
@@ -54,6 +55,8 @@ public:
   double Sample(const VoxelField& field, const glm::dvec3& indexPoint) const;
 
 private:
+  using Walk = BrickWalk<IsovaluePredicate>;
+
   template <class T>
   bool IntersectBricks(const IsosurfaceObject& object, const GridRay& line, double enter,
     double leave, SurfaceHit& hit, double gradient[3]) const;
@@ -61,12 +64,12 @@ private:
   /// Searches the brick of the walk for all isovalues of its range; `hasGradient` tells that the
   /// gradient was found too, as it is when its samples are all in the brick.
   template <class T>
-  bool IntersectBrick(const IsosurfaceObject& object, const GridRay& line, const BrickWalk& walk,
+  bool IntersectBrick(const IsosurfaceObject& object, const GridRay& line, const Walk& walk,
     CellHit& cell, int& isovalue, double gradient[3], bool& hasGradient) const;
 
   template <class T>
   bool IsOccludedInBrick(
-    const IsosurfaceObject& object, const GridRay& line, const BrickWalk& walk) const;
+    const IsosurfaceObject& object, const GridRay& line, const Walk& walk) const;
 
   template <class T>
   double SampleCell(

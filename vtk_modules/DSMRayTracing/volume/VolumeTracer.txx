@@ -3,7 +3,6 @@
 #define rt_VolumeTracer_txx
 
 #include "DSMRayTracing/layout/VoxelBrick.h"
-#include "DSMRayTracing/volume/BrickWalk.h"
 #include "DSMRayTracing/volume/GridTraversal.h"
 #include "DSMRayTracing/volume/IndexSpace.h"
 #include "DSMRayTracing/volume/IsovalueLevel.h"
@@ -48,7 +47,8 @@ bool VolumeTracer<Store, Mode>::IntersectBricks(const IsosurfaceObject& object, 
   double enter, double leave, SurfaceHit& hit, double gradient[3]) const
 {
   const VoxelField& field = *object.Field;
-  BrickWalk walk(field.Hierarchy, line, object.Isovalues, enter, leave);
+  const IsovaluePredicate mayHold(object.Isovalues);
+  Walk walk(field.Hierarchy, line, mayHold, enter, leave);
   while (walk.Next())
   {
     CellHit cell;
@@ -77,7 +77,7 @@ bool VolumeTracer<Store, Mode>::IntersectBricks(const IsosurfaceObject& object, 
 template <class Store, Consolidation Mode>
 template <class T>
 bool VolumeTracer<Store, Mode>::IntersectBrick(const IsosurfaceObject& object, const GridRay& line,
-  const BrickWalk& walk, CellHit& cell, int& isovalue, double gradient[3], bool& hasGradient) const
+  const Walk& walk, CellHit& cell, int& isovalue, double gradient[3], bool& hasGradient) const
 {
   const typename Store::Pin pin =
     this->Blocks.Acquire(this->Self, *object.Field->Segment, walk.GetId());
@@ -127,7 +127,8 @@ bool VolumeTracer<Store, Mode>::IsOccluded(const IsosurfaceObject& object, const
   return Dispatch(field.Lattice.GetScalarType(),
     [&](auto sample)
     {
-      BrickWalk walk(field.Hierarchy, line, object.Isovalues, enter, leave);
+      const IsovaluePredicate mayHold(object.Isovalues);
+      Walk walk(field.Hierarchy, line, mayHold, enter, leave);
       while (walk.Next())
       {
         if (this->IsOccludedInBrick<decltype(sample)>(object, line, walk))
@@ -142,7 +143,7 @@ bool VolumeTracer<Store, Mode>::IsOccluded(const IsosurfaceObject& object, const
 template <class Store, Consolidation Mode>
 template <class T>
 bool VolumeTracer<Store, Mode>::IsOccludedInBrick(
-  const IsosurfaceObject& object, const GridRay& line, const BrickWalk& walk) const
+  const IsosurfaceObject& object, const GridRay& line, const Walk& walk) const
 {
   const dsm::BlockSegment& segment = *object.Field->Segment;
   const typename Store::Pin pin = this->Blocks.Acquire(this->Self, segment, walk.GetId());

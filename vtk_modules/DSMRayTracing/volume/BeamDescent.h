@@ -1,47 +1,53 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "DSMRayTracing/volume/BeamBricks.h"
+#ifndef rt_BeamDescent_h
+#define rt_BeamDescent_h
 
-#include "DSMRayTracing/layout/MacrocellBuilder.h"
+#include "DSMRayTracing/layout/MacrocellHierarchy.h"
+#include "DSMRayTracing/volume/BeamBricks.h"
+#include "DSMRayTracing/volume/RayBeam.h"
 
 #include <algorithm>
+#include <cstddef>
 #include <cstdint>
+#include <vector>
 
 namespace rt
 {
 
-namespace
-{
-
-/// Descends through the levels, nearer macrocells first.
-class Descent
+/// Takes a beam down through the levels above the bricks, nearer macrocells first. `Predicate` tells of a
+/// ValueRange whether what the rays look for may be there; see IsovaluePredicate.
+template <class Predicate>
+class BeamDescent
 {
 public:
-  Descent(const MacrocellHierarchy& hierarchy, const std::vector<double>& isovalues,
-    const RayBeam& beam, std::vector<BeamBricks::Brick>& bricks)
+  /// All is kept by reference.
+  BeamDescent(const MacrocellHierarchy& hierarchy, const Predicate& mayHold, const RayBeam& beam)
     : Levels(hierarchy.GetLevels())
+    , MayHold(mayHold)
     , Beam(beam)
-    , Bricks(bricks)
   {
-    for (const double isovalue : isovalues)
-    {
-      this->Thresholds.push_back(RoundUp(isovalue));
-    }
     for (const MacrocellHierarchy::Level& level : this->Levels)
     {
       this->Cubes.push_back(beam.GetCubes(level.Edge));
     }
   }
 
-  void Start()
+  BeamBricks Find()
   {
+    BeamBricks found;
+    found.Usable = true;
+    std::copy_n(this->Beam.GetForward(), 3, found.Forward);
     const int top = static_cast<int>(this->Levels.size()) - 1;
     const int first[3] = { 0, 0, 0 };
-    this->VisitBox(top, first, this->Levels[top].Size);
+    this->VisitBox(top, first, this->Levels[top].Size, found.Bricks);
+    return found;
   }
 
 private:
+  using Bricks = std::vector<BeamBricks::Brick>;
+
   /// Macrocells [begin, end) of a level.
-  void VisitBox(int number, const int begin[3], const int end[3])
+  void VisitBox(int number, const int begin[3], const int end[3], Bricks& bricks)
   {
     const MacrocellHierarchy::Level& level = this->Levels[number];
     const RayBeam::Cubes& cubes = this->Cubes[number];
@@ -72,7 +78,7 @@ private:
           const int x = forward[0] ? i : low + high - i;
           if (this->MayHold(level.Ranges[static_cast<std::size_t>(row + x)]))
           {
-            this->Visit(number, row + x, { x, y, z });
+            this->Visit(number, row + x, { x, y, z }, bricks);
           }
         }
       }
@@ -86,12 +92,12 @@ private:
     int z;
   };
 
-  void Visit(int number, std::int64_t index, const Place& place)
+  void Visit(int number, std::int64_t index, const Place& place, Bricks& bricks)
   {
     if (number == 0)
     {
       const double edge = this->Levels[0].Edge;
-      this->Bricks.push_back(
+      bricks.push_back(
         { static_cast<dsm::BlockId>(index), { place.x * edge, place.y * edge, place.z * edge },
           { (place.x + 1) * edge, (place.y + 1) * edge, (place.z + 1) * edge } });
       return;
@@ -101,41 +107,15 @@ private:
     const int* size = this->Levels[number - 1].Size;
     const int last[3] = { std::min(first[0] + ratio, size[0]), std::min(first[1] + ratio, size[1]),
       std::min(first[2] + ratio, size[2]) };
-    this->VisitBox(number - 1, first, last);
-  }
-
-  bool MayHold(const ValueRange& range) const
-  {
-    // ValueRange::MayHold: a float is below a value exactly when it is below the next float.
-    return std::any_of(this->Thresholds.begin(), this->Thresholds.end(),
-      [&](float threshold) { return range.First < threshold && threshold <= range.Last; });
+    this->VisitBox(number - 1, first, last, bricks);
   }
 
   const std::vector<MacrocellHierarchy::Level>& Levels;
-  std::vector<float> Thresholds;     ///< the isovalues, rounded up
-  std::vector<RayBeam::Cubes> Cubes; ///< of each level
+  const Predicate& MayHold;
   const RayBeam& Beam;
-  std::vector<BeamBricks::Brick>& Bricks;
+  std::vector<RayBeam::Cubes> Cubes; ///< of each level
 };
 
-} // namespace
-
-BeamBricks::BeamBricks(const MacrocellHierarchy& hierarchy, const std::vector<double>& isovalues,
-  const GridRay corners[4])
-{
-  RayBeam beam;
-  if (beam.Set(corners))
-  {
-    *this = BeamBricks(hierarchy, isovalues, beam);
-  }
-}
-
-BeamBricks::BeamBricks(
-  const MacrocellHierarchy& hierarchy, const std::vector<double>& isovalues, const RayBeam& beam)
-  : Usable(true)
-{
-  std::copy_n(beam.GetForward(), 3, this->Forward);
-  Descent(hierarchy, isovalues, beam, this->Bricks).Start();
-}
-
 } // namespace rt
+
+#endif
