@@ -27,7 +27,7 @@ void vtkPVDSMClipping::ApplyTo(vtkAbstractMapper* mapper, vtkMatrix4x4* dataToWo
   mapper->RemoveAllClippingPlanes();
   if (this->Clips)
   {
-    AddPlane(mapper, this->Origin, this->Normal);
+    AddPlane(mapper, this->Origin.data(), this->Normal.data());
   }
   vtkNew<vtkTransform> transform;
   transform->SetMatrix(dataToWorld);
@@ -35,7 +35,7 @@ void vtkPVDSMClipping::ApplyTo(vtkAbstractMapper* mapper, vtkMatrix4x4* dataToWo
   {
     const int axis = side / 2;
     const bool isLower = side % 2 == 0;
-    const double* limits = this->Box + 2 * axis;
+    const double* limits = this->Box.data() + 2 * axis;
     double origin[3] = { 0.0, 0.0, 0.0 };
     double normal[3] = { 0.0, 0.0, 0.0 };
     origin[axis] = isLower ? std::min(limits[0], limits[1]) : std::max(limits[0], limits[1]);

@@ -2,6 +2,8 @@
 #ifndef vtkPVDSMClipping_h
 #define vtkPVDSMClipping_h
 
+#include <array>
+
 class vtkAbstractMapper;
 class vtkMatrix4x4;
 
@@ -10,11 +12,11 @@ class vtkPVDSMClipping
 {
 public:
   bool Clips = false;
-  double Origin[3] = { 0.0, 0.0, 0.0 }; ///< of the plane, world
-  double Normal[3] = { 1.0, 0.0, 0.0 }; ///< to the side that is shown
+  std::array<double, 3> Origin{ 0.0, 0.0, 0.0 }; ///< of the plane, world
+  std::array<double, 3> Normal{ 1.0, 0.0, 0.0 }; ///< to the side that is shown
   bool Crops = false;
   /// x, y and z from, to; in the dataset's coordinates.
-  double Box[6] = { 0.0, 1.0, 0.0, 1.0, 0.0, 1.0 };
+  std::array<double, 6> Box{ 0.0, 1.0, 0.0, 1.0, 0.0, 1.0 };
 
   /// Gives the mapper its clipping planes, `dataToWorld` being where the dataset is.
   void ApplyTo(vtkAbstractMapper* mapper, vtkMatrix4x4* dataToWorld) const;

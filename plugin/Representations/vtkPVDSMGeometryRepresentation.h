@@ -13,22 +13,15 @@
 #define vtkPVDSMGeometryRepresentation_h
 
 #include "vtkGeometryRepresentationWithFaces.h"
-#include "vtkNew.h"                      // for ivars
+#include "vtkPVDSMTracedDisplay.h"       // for ivars
 #include "vtkRepresentationsDSMModule.h" // for the export macro
-#include "vtkSmartPointer.h"             // for ivars
 
 #include <memory> // for ivars
 
-class vtkActor;
 class vtkDSMPolyDataMapper;
-class vtkDSMScene;
-class vtkPVDSMClipping;
-class vtkPartitionedDataSet;
 class vtkPVDSMFrameReport;
 class vtkPVDSMLightOptions;
 class vtkPVDSMMemoryOptions;
-class vtkPVDSMRefinement;
-class vtkPVDSMSelectionMapper;
 
 class VTKREPRESENTATIONSDSM_EXPORT vtkPVDSMGeometryRepresentation
   : public vtkGeometryRepresentationWithFaces
@@ -62,11 +55,14 @@ public:
    * What is shown of the dataset: the side of a plane (world coordinates) that its normal points to,
    * the inside of a box (x, y and z from, to; in the dataset's coordinates).
    */
-  void SetClip(bool clip);
-  void SetClipOrigin(double x, double y, double z);
-  void SetClipNormal(double x, double y, double z);
-  void SetCropping(bool crop);
-  void SetCroppingBox(const double box[6]);
+  void SetClip(bool clip) { this->Display->Clipping.Clips = clip; }
+  void SetClipOrigin(double x, double y, double z) { this->Display->Clipping.Origin = { x, y, z }; }
+  void SetClipNormal(double x, double y, double z) { this->Display->Clipping.Normal = { x, y, z }; }
+  void SetCropping(bool crop) { this->Display->Clipping.Crops = crop; }
+  void SetCroppingBox(const double box[6])
+  {
+    this->Display->Clipping.Box = { box[0], box[1], box[2], box[3], box[4], box[5] };
+  }
   ///@}
 
   ///@{
@@ -102,19 +98,9 @@ private:
   void PrepareUpdate(vtkInformation* inInfo, vtkInformation* outInfo);
   void PrepareRender(vtkInformation* inInfo);
   bool IsTranslucent();
-  void ConnectFrameReport();
-  void ForwardProgress();
 
   bool ShowEdges = false;
-  bool Executed = false; ///< RequestData, during the current request of the view
-  vtkNew<vtkPartitionedDataSet> Placeholder;
-  vtkSmartPointer<vtkDSMScene> Scene;
-  std::unique_ptr<vtkPVDSMClipping> Clipping;
-  /// What selections see.
-  vtkNew<vtkActor> SelectionActor;
-  vtkNew<vtkPVDSMSelectionMapper> SelectionMapper;
-  vtkSmartPointer<vtkPVDSMFrameReport> FrameReport;
-  vtkSmartPointer<vtkPVDSMRefinement> Refinement; ///< on the client
+  std::unique_ptr<vtkPVDSMTracedDisplay> Display;
 };
 
 #endif

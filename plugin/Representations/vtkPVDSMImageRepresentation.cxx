@@ -1,19 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkPVDSMImageRepresentation.h"
 
-#include "vtkDSMScene.h"
 #include "vtkDSMVolumeMapper.h"
-#include "vtkPVDSMClipping.h"
-#include "vtkPVDSMDelivery.h"
 #include "vtkPVDSMFrameReport.h"
 #include "vtkPVDSMIsosurfaceGeometry.h"
 #include "vtkPVDSMLightOptions.h"
 #include "vtkPVDSMMemoryOptions.h"
-#include "vtkPVDSMRefinement.h"
-#include "vtkPVDSMSelectionMapper.h"
 
-#include "vtkActor.h"
-#include "vtkCommand.h"
 #include "vtkDataObject.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
@@ -21,9 +14,7 @@
 #include "vtkMultiBlockDataSet.h"
 #include "vtkObjectFactory.h"
 #include "vtkPVRenderView.h"
-#include "vtkPartitionedDataSet.h"
 #include "vtkProperty.h"
-#include "vtkRenderer.h"
 #include "vtkScalarsToColors.h"
 #include "vtkVolume.h"
 
@@ -32,17 +23,14 @@
 vtkStandardNewMacro(vtkPVDSMImageRepresentation);
 
 vtkPVDSMImageRepresentation::vtkPVDSMImageRepresentation()
-  : Clipping(std::make_unique<vtkPVDSMClipping>())
+  : Display(std::make_unique<vtkPVDSMTracedDisplay>(
+      this, this->Volume, this->Mapper, "Cutting the volume into bricks"))
 {
   this->Volume->SetMapper(this->Mapper);
   this->Mapper->MakesSceneOff(); // on ParaView's client there shall be none
   this->Mapper->AutomaticIsoValueOn();
-  this->Mapper->AddObserver(
-    vtkCommand::ProgressEvent, this, &vtkPVDSMImageRepresentation::ForwardProgress);
-  this->SelectionMapper->SetSource([this]() -> vtkSmartPointer<vtkDataObject>
+  this->Display->SelectionMapper->SetSource([this]() -> vtkSmartPointer<vtkDataObject>
     { return vtkPVDSMIsosurfaceGeometry::Make(this->Mapper); });
-  this->SelectionActor->SetMapper(this->SelectionMapper);
-  this->SelectionActor->UseBoundsOff();
 }
 
 vtkPVDSMImageRepresentation::~vtkPVDSMImageRepresentation() = default;
@@ -69,112 +57,46 @@ int vtkPVDSMImageRepresentation::RequestData(
     }
   }
   this->Mapper->SetInputData(data);
-  this->Executed = true;
+  this->Display->NoteUpdate();
   return this->Superclass::RequestData(request, input, output);
 }
 
 int vtkPVDSMImageRepresentation::ProcessViewRequest(
   vtkInformationRequestKey* request, vtkInformation* inInfo, vtkInformation* outInfo)
 {
-  const bool needsUpdate = request == vtkPVView::REQUEST_UPDATE() && this->GetNeedsUpdate();
-  this->Executed = false;
-  if (!this->Superclass::ProcessViewRequest(request, inInfo, outInfo))
+  if (!this->Display->Process(request, inInfo, outInfo))
   {
     return 0;
   }
-  if (needsUpdate && !this->Executed)
-  {
-    vtkPVDSMDelivery::UpdateInSpiteOfCache(this);
-  }
   if (request == vtkPVView::REQUEST_UPDATE())
   {
-    this->PrepareUpdate(inInfo, outInfo);
+    vtkScalarsToColors* colors = this->Mapper->GetLookupTable();
+    const bool isTranslucent = this->Mapper->GetSurfaceProperty()->GetOpacity() < 1.0 ||
+      (colors && !this->Mapper->GetColorArray().empty() && colors->IsOpaque() == 0);
+    this->Display->KeepData(this->Volume->GetBounds(), isTranslucent,
+      this->Mapper->GetInputDataObject(0, 0), inInfo, outInfo);
   }
-  else if (request == vtkPVView::REQUEST_UPDATE_LOD())
+  else if (request == vtkPVView::REQUEST_RENDER())
   {
-    vtkPVRenderView::SetRequiresDistributedRenderingLOD(inInfo, this, true);
-  }
-  else if (request == vtkPVView::REQUEST_RENDER() && this->Scene)
-  {
-    this->Volume->ComputeMatrix();
-    this->Clipping->ApplyTo(this->Mapper, this->Volume->GetMatrix());
-    this->SelectionMapper->SetClippingPlanes(this->Mapper->GetClippingPlanes());
-    const bool selecting = vtkPVDSMDelivery::IsSelecting(this->GetView());
-    this->SelectionMapper->SetSelecting(selecting);
-    this->SelectionActor->SetUseBounds(selecting); // ranks draw where there is something
-    this->SelectionMapper->SetShownBounds(this->Mapper->GetBounds());
-    this->SelectionActor->SetUserMatrix(this->Volume->GetMatrix());
-    vtkPVDSMDelivery::Choose(this->Scene, this->GetView(), inInfo,
-      this->FrameReport && this->FrameReport->GetProgressive());
+    this->Display->PrepareRender(this->Mapper->GetBounds(), inInfo);
   }
   return 1;
 }
 
-void vtkPVDSMImageRepresentation::PrepareUpdate(vtkInformation* inInfo, vtkInformation* outInfo)
-{
-  vtkScalarsToColors* colors = this->Mapper->GetLookupTable();
-  const bool isTranslucent = this->Mapper->GetSurfaceProperty()->GetOpacity() < 1.0 ||
-    (colors && !this->Mapper->GetColorArray().empty() && colors->IsOpaque() == 0);
-  vtkPVDSMDelivery::KeepData(this, this->Placeholder,
-    { this->Volume->GetBounds(), isTranslucent, this->Mapper->GetInputDataObject(0, 0) }, inInfo,
-    outInfo);
-  // In world space: with a matrix, the view would transform two corners of the box only.
-  if (const double* bounds = this->Volume->GetBounds())
-  {
-    vtkPVRenderView::SetGeometryBounds(inInfo, this, bounds);
-  }
-}
-
-void vtkPVDSMImageRepresentation::ForwardProgress()
-{
-  // Not what the mapper says when VTK executes it while the frame is drawn.
-  if (this->Scene && this->Scene->IsTracing())
-  {
-    this->SetProgressText("Cutting the volume into bricks");
-    this->UpdateProgress(this->Mapper->GetProgress());
-  }
-}
-
 bool vtkPVDSMImageRepresentation::AddToView(vtkView* view)
 {
-  auto* renderView = vtkPVRenderView::SafeDownCast(view);
-  if (!renderView)
-  {
-    return false;
-  }
-  this->Scene = vtkPVDSMDelivery::FindScene(this, renderView);
-  if (this->Scene)
-  {
-    renderView->GetRenderer()->AddViewProp(this->Volume);
-    renderView->GetRenderer()->AddViewProp(this->SelectionActor);
-    this->ConnectFrameReport();
-  }
-  this->Refinement = vtkPVDSMRefinement::Follow(renderView);
-  renderView->RegisterPropForHardwareSelection(this, this->SelectionActor);
-  return this->Superclass::AddToView(view);
+  return this->Display->AddToView(view) && this->Superclass::AddToView(view);
 }
 
 bool vtkPVDSMImageRepresentation::RemoveFromView(vtkView* view)
 {
-  auto* renderView = vtkPVRenderView::SafeDownCast(view);
-  if (!renderView)
-  {
-    return false;
-  }
-  renderView->GetRenderer()->RemoveViewProp(this->Volume);
-  renderView->GetRenderer()->RemoveViewProp(this->SelectionActor);
-  renderView->UnRegisterPropForHardwareSelection(this, this->SelectionActor);
-  this->Scene = nullptr;
-  this->Refinement = nullptr;
-  this->ConnectFrameReport();
-  return this->Superclass::RemoveFromView(view);
+  return this->Display->RemoveFromView(view) && this->Superclass::RemoveFromView(view);
 }
 
 void vtkPVDSMImageRepresentation::SetVisibility(bool visible)
 {
-  this->Volume->SetVisibility(visible);
-  this->SelectionActor->SetVisibility(visible);
   this->Superclass::SetVisibility(visible);
+  this->Display->SetVisibility(visible);
 }
 
 void vtkPVDSMImageRepresentation::SetInputArrayToProcess(
@@ -306,33 +228,6 @@ void vtkPVDSMImageRepresentation::SetUserTransform(const double matrix[16])
   this->Volume->SetUserMatrix(transform);
 }
 
-void vtkPVDSMImageRepresentation::SetClip(bool clip)
-{
-  this->Clipping->Clips = clip;
-}
-
-void vtkPVDSMImageRepresentation::SetClipOrigin(double x, double y, double z)
-{
-  const double origin[3] = { x, y, z };
-  std::copy_n(origin, 3, this->Clipping->Origin);
-}
-
-void vtkPVDSMImageRepresentation::SetClipNormal(double x, double y, double z)
-{
-  const double normal[3] = { x, y, z };
-  std::copy_n(normal, 3, this->Clipping->Normal);
-}
-
-void vtkPVDSMImageRepresentation::SetCropping(bool crop)
-{
-  this->Clipping->Crops = crop;
-}
-
-void vtkPVDSMImageRepresentation::SetCroppingBox(const double box[6])
-{
-  std::copy_n(box, 6, this->Clipping->Box);
-}
-
 void vtkPVDSMImageRepresentation::SetLightOptions(vtkPVDSMLightOptions* options)
 {
   this->Mapper->SetLightOptions(options);
@@ -345,16 +240,10 @@ void vtkPVDSMImageRepresentation::SetMemoryOptions(vtkPVDSMMemoryOptions* option
 
 void vtkPVDSMImageRepresentation::SetFrameReport(vtkPVDSMFrameReport* report)
 {
-  this->FrameReport = report;
-  this->ConnectFrameReport();
-}
-
-void vtkPVDSMImageRepresentation::ConnectFrameReport()
-{
-  if (this->FrameReport)
+  this->Display->SetFrameReport(report);
+  if (report)
   {
-    this->FrameReport->SetSource(this->Scene);
-    this->FrameReport->SetVolume(this->Mapper);
+    report->SetVolume(this->Mapper);
   }
 }
 

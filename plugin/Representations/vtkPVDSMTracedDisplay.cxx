@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkPVDSMTracedDisplay.h"
+
+#include "vtkDSMScene.h"
+#include "vtkPVDSMDelivery.h"
+#include "vtkPVDSMFrameReport.h"
+#include "vtkPVDSMRefinement.h"
+
+#include "vtkAbstractMapper.h"
+#include "vtkActor.h"
+#include "vtkBoundingBox.h"
+#include "vtkCommand.h"
+#include "vtkMatrix4x4.h"
+#include "vtkPVDataRepresentation.h"
+#include "vtkPVRenderView.h"
+#include "vtkPartitionedDataSet.h"
+#include "vtkProp3D.h"
+#include "vtkRenderer.h"
+
+vtkPVDSMTracedDisplay::vtkPVDSMTracedDisplay(vtkPVDataRepresentation* representation,
+  vtkProp3D* prop, vtkAbstractMapper* mapper, const char* work)
+  : Representation(representation)
+  , Prop(prop)
+  , Mapper(mapper)
+  , Work(work)
+  , ProgressObserver(
+      mapper->AddObserver(vtkCommand::ProgressEvent, this, &vtkPVDSMTracedDisplay::ForwardProgress))
+{
+  this->SelectionActor->SetMapper(this->SelectionMapper);
+  this->SelectionActor->UseBoundsOff();
+}
+
+vtkPVDSMTracedDisplay::~vtkPVDSMTracedDisplay()
+{
+  this->Mapper->RemoveObserver(this->ProgressObserver);
+}
+
+bool vtkPVDSMTracedDisplay::AddToView(vtkView* anyView)
+{
+  auto* view = vtkPVRenderView::SafeDownCast(anyView);
+  if (!view)
+  {
+    return false;
+  }
+  this->Scene = vtkPVDSMDelivery::FindScene(this->Representation, view);
+  if (this->Scene)
+  {
+    view->GetRenderer()->AddViewProp(this->Prop);
+    view->GetRenderer()->AddViewProp(this->SelectionActor);
+    this->ConnectFrameReport();
+  }
+  this->Refinement = vtkPVDSMRefinement::Follow(view);
+  view->RegisterPropForHardwareSelection(this->Representation, this->SelectionActor);
+  return true;
+}
+
+bool vtkPVDSMTracedDisplay::RemoveFromView(vtkView* anyView)
+{
+  auto* view = vtkPVRenderView::SafeDownCast(anyView);
+  if (!view)
+  {
+    return false;
+  }
+  view->GetRenderer()->RemoveViewProp(this->Prop);
+  view->GetRenderer()->RemoveViewProp(this->SelectionActor);
+  view->UnRegisterPropForHardwareSelection(this->Representation, this->SelectionActor);
+  this->Scene = nullptr;
+  this->Refinement = nullptr;
+  this->ConnectFrameReport();
+  return true;
+}
+
+void vtkPVDSMTracedDisplay::SetVisibility(bool visible)
+{
+  this->Prop->SetVisibility(visible);
+  this->SelectionActor->SetVisibility(visible);
+}
+
+void vtkPVDSMTracedDisplay::SetFrameReport(vtkPVDSMFrameReport* report)
+{
+  this->FrameReport = report;
+  this->ConnectFrameReport();
+}
+
+void vtkPVDSMTracedDisplay::ConnectFrameReport()
+{
+  if (this->FrameReport)
+  {
+    this->FrameReport->SetSource(this->Scene);
+  }
+}
+
+bool vtkPVDSMTracedDisplay::Process(
+  vtkInformationRequestKey* request, vtkInformation* inInfo, vtkInformation* outInfo)
+{
+  const bool needsUpdate =
+    request == vtkPVView::REQUEST_UPDATE() && this->Representation->GetNeedsUpdate();
+  this->IsUpdated = false;
+  // Not what a Surface does: it delivers its geometry, or a coarser one.
+  if (!this->Representation->vtkPVDataRepresentation::ProcessViewRequest(request, inInfo, outInfo))
+  {
+    return false;
+  }
+  if (needsUpdate && !this->IsUpdated)
+  {
+    vtkPVDSMDelivery::UpdateInSpiteOfCache(this->Representation);
+  }
+  if (request == vtkPVView::REQUEST_UPDATE_LOD())
+  {
+    vtkPVRenderView::SetRequiresDistributedRenderingLOD(inInfo, this->Representation, true);
+  }
+  return true;
+}
+
+void vtkPVDSMTracedDisplay::KeepData(const double* bounds, bool isTranslucent, vtkDataObject* data,
+  vtkInformation* inInfo, vtkInformation* outInfo)
+{
+  const double* known = bounds && vtkBoundingBox::IsValid(bounds) ? bounds : nullptr;
+  vtkPVDSMDelivery::KeepData(
+    this->Representation, this->Placeholder, { known, isTranslucent, data }, inInfo, outInfo);
+  // In world space: with a matrix, the view would transform two corners of the box only.
+  if (known)
+  {
+    vtkPVRenderView::SetGeometryBounds(inInfo, this->Representation, known);
+  }
+}
+
+void vtkPVDSMTracedDisplay::PrepareRender(const double* dataBounds, vtkInformation* inInfo)
+{
+  if (!this->Scene)
+  {
+    return;
+  }
+  vtkNew<vtkMatrix4x4> matrix;
+  this->Prop->GetMatrix(matrix);
+  this->Clipping.ApplyTo(this->Mapper, matrix);
+  const bool selecting = vtkPVDSMDelivery::IsSelecting(this->Representation->GetView());
+  this->SelectionMapper->SetClippingPlanes(this->Mapper->GetClippingPlanes());
+  this->SelectionMapper->SetSelecting(selecting);
+  this->SelectionMapper->SetShownBounds(dataBounds);
+  this->SelectionActor->SetUseBounds(selecting); // ranks draw where there is something
+  this->SelectionActor->SetUserMatrix(matrix);
+  vtkPVDSMDelivery::Choose(this->Scene, this->Representation->GetView(), inInfo,
+    this->FrameReport && this->FrameReport->GetProgressive());
+}
+
+void vtkPVDSMTracedDisplay::ForwardProgress()
+{
+  // Not what the mapper says when VTK executes it while the frame is drawn.
+  if (this->Scene && this->Scene->IsTracing())
+  {
+    this->Representation->SetProgressText(this->Work);
+    this->Representation->UpdateProgress(this->Mapper->GetProgress());
+  }
+}

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef vtkPVDSMTracedDisplay_h
+#define vtkPVDSMTracedDisplay_h
+
+#include "vtkPVDSMClipping.h"
+#include "vtkPVDSMSelectionMapper.h"
+
+#include "vtkNew.h"
+#include "vtkSmartPointer.h"
+
+class vtkAbstractMapper;
+class vtkActor;
+class vtkDSMScene;
+class vtkDataObject;
+class vtkInformation;
+class vtkInformationRequestKey;
+class vtkPVDSMFrameReport;
+class vtkPVDSMRefinement;
+class vtkPVDataRepresentation;
+class vtkPartitionedDataSet;
+class vtkProp3D;
+class vtkView;
+
+/// What our representations have in common: the prop that is traced gets into a view, with its scene
+/// where the process renders; its data stay on their rank; it is clipped, can be selected, and tells of
+/// the view's frames.
+class vtkPVDSMTracedDisplay
+{
+public:
+  /// A part of `representation`, which gives `prop` with `mapper` its data and look. `work` is what the
+  /// user reads while the mapper takes in data.
+  vtkPVDSMTracedDisplay(vtkPVDataRepresentation* representation, vtkProp3D* prop,
+    vtkAbstractMapper* mapper, const char* work);
+  ~vtkPVDSMTracedDisplay();
+  vtkPVDSMTracedDisplay(const vtkPVDSMTracedDisplay&) = delete;
+  vtkPVDSMTracedDisplay& operator=(const vtkPVDSMTracedDisplay&) = delete;
+
+  vtkPVDSMClipping Clipping;
+  vtkNew<vtkPVDSMSelectionMapper> SelectionMapper; ///< gets its source from the representation
+
+  ///@{
+  /// Of the representation's methods of these names, what is the same for all.
+  bool AddToView(vtkView* view);
+  bool RemoveFromView(vtkView* view);
+  void SetVisibility(bool visible);
+  void SetFrameReport(vtkPVDSMFrameReport* report);
+  ///@}
+
+  /// Begins the representation's ProcessViewRequest: false where it ends at once. An update that the
+  /// view's cache of time steps would skip takes place.
+  bool Process(vtkInformationRequestKey* request, vtkInformation* inInfo, vtkInformation* outInfo);
+
+  /// For RequestData, which says so.
+  void NoteUpdate() { this->IsUpdated = true; }
+
+  /// For REQUEST_UPDATE: `bounds` are in the world, null or not initialised where nothing is known;
+  /// `isTranslucent` is the same on every rank; `data` this rank's.
+  void KeepData(const double* bounds, bool isTranslucent, vtkDataObject* data,
+    vtkInformation* inInfo, vtkInformation* outInfo);
+
+  /// For REQUEST_RENDER: `dataBounds` are those of this rank's data, without the prop's transform.
+  void PrepareRender(const double* dataBounds, vtkInformation* inInfo);
+
+private:
+  void ConnectFrameReport();
+  /// Taking in data happens while the view renders; ParaView watches the representation, only.
+  void ForwardProgress();
+
+  vtkPVDataRepresentation* Representation;
+  vtkSmartPointer<vtkProp3D> Prop;
+  vtkSmartPointer<vtkAbstractMapper> Mapper;
+  const char* Work;
+  unsigned long ProgressObserver;
+  bool IsUpdated = false; ///< during the view's current request
+  vtkNew<vtkPartitionedDataSet> Placeholder;
+  vtkNew<vtkActor> SelectionActor;                  ///< what selections see
+  vtkSmartPointer<vtkDSMScene> Scene;               ///< where the process renders
+  vtkSmartPointer<vtkPVDSMRefinement> Refinement;   ///< on the client
+  vtkSmartPointer<vtkPVDSMFrameReport> FrameReport; ///< on the servers
+};
+
+#endif
