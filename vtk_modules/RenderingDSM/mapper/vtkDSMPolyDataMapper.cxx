@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkDSMPolyDataMapper.h"
 
+#include "vtkDSMKnownBounds.h"
 #include "vtkDSMLightOptions.h"
 #include "vtkDSMMemoryOptions.h"
 #include "vtkDSMScene.h"
@@ -21,8 +22,8 @@ vtkStandardNewMacro(vtkDSMPolyDataMapper);
 vtkDSMPolyDataMapper::vtkDSMPolyDataMapper()
   : LightOptions(vtkSmartPointer<vtkDSMLightOptions>::New())
   , MemoryOptions(vtkSmartPointer<vtkDSMMemoryOptions>::New())
+  , GlobalBounds(std::make_unique<vtkDSMKnownBounds>())
 {
-  vtkMath::UninitializeBounds(this->GlobalBounds);
   vtkDSMSceneMesh::AddKind<vtkDSMSceneMesh>();
 }
 
@@ -67,9 +68,9 @@ vtkDSMLightOptions* vtkDSMPolyDataMapper::GetLightOptions() const
 
 double* vtkDSMPolyDataMapper::GetBounds()
 {
-  if (vtkMath::AreBoundsInitialized(this->GlobalBounds))
+  if (const double* known = this->GlobalBounds->Get(this, this->NumberOfPieces))
   {
-    std::copy_n(this->GlobalBounds, 6, this->Bounds);
+    std::copy_n(known, 6, this->Bounds);
     return this->Bounds;
   }
   vtkMath::UninitializeBounds(this->Bounds);
@@ -89,7 +90,7 @@ double* vtkDSMPolyDataMapper::GetBounds()
 
 void vtkDSMPolyDataMapper::SetGlobalBounds(const double bounds[6])
 {
-  std::copy_n(bounds, 6, this->GlobalBounds);
+  this->GlobalBounds->Set(this, bounds);
 }
 
 void vtkDSMPolyDataMapper::UpdatePiece(int piece, int numberOfPieces)

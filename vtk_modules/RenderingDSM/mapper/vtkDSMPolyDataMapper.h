@@ -30,9 +30,11 @@
 #include "vtkRenderingDSMModule.h" // for the export macro
 #include "vtkSmartPointer.h"       // for ivars
 
+#include <memory> // for ivars
 #include <string> // for ivars
 
 class vtkCompositeDataDisplayAttributes;
+class vtkDSMKnownBounds;
 class vtkDSMLightOptions;
 class vtkDSMMemoryOptions;
 
@@ -91,8 +93,8 @@ public:
 
   ///@{
   /**
-   * Bounds of all ranks' data, without the actor's transform. Until the scene has taken in the data,
-   * those of this rank's.
+   * Bounds of all ranks' data, without the actor's transform. Until the scene has taken in the data, and
+   * when they have changed since, those of this rank's.
    */
   using vtkPolyDataMapper::GetBounds;
   double* GetBounds() VTK_SIZEHINT(6) override;
@@ -149,7 +151,7 @@ private:
   bool MakesScene = true;
   vtkSmartPointer<vtkDSMLightOptions> LightOptions;
   vtkSmartPointer<vtkDSMMemoryOptions> MemoryOptions;
-  double GlobalBounds[6];
+  std::unique_ptr<vtkDSMKnownBounds> GlobalBounds;
 };
 
 #endif

@@ -262,6 +262,12 @@ std::vector<double> vtkDSMSceneVolume::GetIsovalues()
     {
       chosen.push_back(contours->GetValue(index));
     }
+    if (chosen.empty())
+    {
+      this->Messages.push_back(
+        "The volume's property has no isosurface value, so nothing is drawn. Call "
+        "GetIsoSurfaceValues()->SetValue(0, VALUE) on it.");
+    }
   }
   else
   {
@@ -272,6 +278,12 @@ std::vector<double> vtkDSMSceneVolume::GetIsovalues()
     if (chosen.empty() && mapper->GetAutomaticIsoValue() && this->Suggested)
     {
       chosen.push_back(*this->Suggested);
+    }
+    else if (chosen.empty() && !mapper->GetAutomaticIsoValue())
+    {
+      this->Messages.push_back(
+        "The mapper has no isovalue, so nothing is drawn. Call SetIsoValue(0, VALUE), "
+        "or AutomaticIsoValueOn() for one that the data suggest.");
     }
     if (mapper->GetBlendMode() != vtkVolumeMapper::COMPOSITE_BLEND)
     {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkDSMVolumeMapper.h"
 
+#include "vtkDSMKnownBounds.h"
 #include "vtkDSMLightOptions.h"
 #include "vtkDSMMemoryOptions.h"
 #include "vtkDSMScene.h"
@@ -52,8 +53,8 @@ vtkDSMVolumeMapper::vtkDSMVolumeMapper()
   : SurfaceProperty(vtkSmartPointer<vtkProperty>::New())
   , LightOptions(vtkSmartPointer<vtkDSMLightOptions>::New())
   , MemoryOptions(vtkSmartPointer<vtkDSMMemoryOptions>::New())
+  , GlobalBounds(std::make_unique<vtkDSMKnownBounds>())
 {
-  vtkMath::UninitializeBounds(this->GlobalBounds);
   vtkDSMSceneVolume::AddKind<vtkDSMSceneVolume>();
 }
 
@@ -61,7 +62,7 @@ vtkDSMVolumeMapper::~vtkDSMVolumeMapper() = default;
 
 void vtkDSMVolumeMapper::SetInputData(vtkDataObject* data)
 {
-  vtkMath::UninitializeBounds(this->GlobalBounds);
+  this->GlobalBounds->Clear();
   this->SetInputDataObject(0, data);
 }
 
@@ -145,13 +146,13 @@ vtkDSMLightOptions* vtkDSMVolumeMapper::GetLightOptions() const
 
 double* vtkDSMVolumeMapper::GetBounds()
 {
-  if (vtkMath::AreBoundsInitialized(this->GlobalBounds))
+  if (const double* known = this->GlobalBounds->Get(this, this->Pieces))
   {
-    std::copy_n(this->GlobalBounds, 6, this->Bounds);
+    std::copy_n(known, 6, this->Bounds);
     return this->Bounds;
   }
   vtkMath::UninitializeBounds(this->Bounds);
-  vtkDataObject* data = this->GetDataObjectInput();
+  vtkDataObject* data = vtkDSMKnownBounds::IsOutOfDate(this) ? nullptr : this->GetDataObjectInput();
   if (auto* dataSet = vtkDataSet::SafeDownCast(data))
   {
     dataSet->GetBounds(this->Bounds);
@@ -172,7 +173,7 @@ double* vtkDSMVolumeMapper::GetBounds()
 
 void vtkDSMVolumeMapper::SetGlobalBounds(const double bounds[6])
 {
-  std::copy_n(bounds, 6, this->GlobalBounds);
+  this->GlobalBounds->Set(this, bounds);
 }
 
 void vtkDSMVolumeMapper::SetSuggestedIsoValue(double value)
@@ -186,6 +187,7 @@ void vtkDSMVolumeMapper::UpdatePiece(int piece, int numberOfPieces)
   {
     return;
   }
+  this->Pieces = numberOfPieces;
   int port = 0;
   vtkAlgorithm* producer = this->GetInputAlgorithm(0, 0, port);
   if (!vtkTrivialProducer::SafeDownCast(producer))

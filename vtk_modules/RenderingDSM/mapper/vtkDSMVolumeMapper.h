@@ -29,9 +29,11 @@
 #include "vtkSmartPointer.h"       // for ivars
 #include "vtkVolumeMapper.h"
 
+#include <memory> // for ivars
 #include <string> // for ivars
 #include <vector> // for ivars
 
+class vtkDSMKnownBounds;
 class vtkDSMLightOptions;
 class vtkDSMMemoryOptions;
 class vtkProperty;
@@ -130,9 +132,9 @@ public:
 
   ///@{
   /**
-   * Bounds of all ranks' data, without the volume's transform. Until the scene has taken in the data,
-   * those of this rank's, or of the whole image that the pipeline tells of before it makes it; null
-   * where there are none.
+   * Bounds of all ranks' data, without the volume's transform. Until the scene has taken in the data, and
+   * when they have changed since, those of this rank's, or of the whole image that the pipeline tells of
+   * before it makes it; null where there are none.
    */
   using vtkVolumeMapper::GetBounds;
   double* GetBounds() VTK_SIZEHINT(6) override;
@@ -229,7 +231,8 @@ private:
   vtkIdType MaxMemoryInBytes = 0;
   float MaxMemoryFraction = 0.75f;
   bool ReportProgress = true;
-  double GlobalBounds[6];
+  int Pieces = 1; ///< as many as the input was last asked for
+  std::unique_ptr<vtkDSMKnownBounds> GlobalBounds;
 };
 
 #endif

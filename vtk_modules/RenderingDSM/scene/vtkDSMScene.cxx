@@ -111,10 +111,11 @@ void vtkDSMScene::EndWithRenderer()
   const vtkSmartPointer<vtkDSMScene> last = std::move(this->Self->Keeper);
 }
 
-/// What was added to the bounds for the frame's delivery must not be seen by who looks for all there is.
+/// Who looks between frames for all there is finds the objects themselves: the last picture's bounds may be
+/// out of date, and have what was added for its delivery.
 void vtkDSMScene::EndFrame()
 {
-  this->Self->Prop->SetBounds(this->Self->Bounds);
+  this->Self->Prop->UseBoundsOff();
 }
 
 void vtkDSMScene::Attach(vtkRenderer* renderer)
@@ -255,6 +256,7 @@ void vtkDSMScene::Trace()
     return;
   }
   self.Tracing = true;
+  self.Prop->UseBoundsOn();
   self.Members.Find(self.Renderer);
   if (self.Members.GetShown().empty())
   {

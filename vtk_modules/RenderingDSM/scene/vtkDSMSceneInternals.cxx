@@ -137,11 +137,8 @@ void vtkDSMScene::Internals::Draw()
   messenger.RunTogether("Preparing the frame",
     [&]
     {
-      for (const auto& member : this->Members.GetShown())
-      {
-        member.State->AddTo(scene);
-      }
-      this->DrawLast(scene);
+      this->Members.AddTo(scene);
+      this->KeepProp(scene);
       scene.Lights = vtkDSMTranslation::ToLights(this->Renderer);
       scene.Transport = this->Members.GetTransport();
       scene.View = this->Members.GetDebugView();
@@ -195,9 +192,8 @@ void vtkDSMScene::Internals::Draw()
 void vtkDSMScene::Internals::DrawPicture(rt::Picture picture, const rt::FrameRequest& request,
   vtkMatrix4x4* projection, rt::DebugView view, bool hasNotes)
 {
-  this->Members.GetBounds(this->Bounds);
   double bounds[6];
-  std::copy_n(this->Bounds, 6, bounds);
+  this->Members.GetBounds(bounds);
   this->Delivery.Prepare(request, picture);
   // Where the ranks' pictures are blended, each has the notes; where the nearest counts, one does.
   const bool writesNotes =
@@ -323,10 +319,13 @@ vtkDSMFrameAccumulation::Pace vtkDSMScene::Internals::GetPace() const
   return this->IsInteractive() ? vtkDSMFrameAccumulation::Pace{ 1, 0.0 } : this->Pace;
 }
 
-/// What shows through a translucent surface must have been drawn before it.
-void vtkDSMScene::Internals::DrawLast(const rt::Scene& scene)
+/// The application may have taken the prop away with its own. And what shows through a translucent surface
+/// must have been drawn before it.
+void vtkDSMScene::Internals::KeepProp(const rt::Scene& scene)
 {
-  if (IsTranslucent(scene) && this->Renderer->GetViewProps()->GetLastProp() != this->Prop)
+  const bool mustBeLast =
+    IsTranslucent(scene) && this->Renderer->GetViewProps()->GetLastProp() != this->Prop;
+  if (mustBeLast || !this->Renderer->HasViewProp(this->Prop))
   {
     this->Renderer->RemoveViewProp(this->Prop);
     this->Renderer->AddViewProp(this->Prop);

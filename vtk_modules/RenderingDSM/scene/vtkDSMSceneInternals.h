@@ -42,7 +42,6 @@ public:
   rt::Environment Background;          ///< of this rank's renderer, as the application set it
   vtkSmartPointer<vtkMultiProcessController> Controller;
   vtkNew<vtkDSMFrameProp> Prop;
-  double Bounds[6] = { 0.0, 0.0, 0.0, 0.0, 0.0, 0.0 }; ///< of what the prop shows
   vtkNew<vtkDSMStatistics> Statistics;
   std::shared_ptr<vtkDSMRankGroup> Group;
   vtkDSMSceneMembers Members;
@@ -56,7 +55,7 @@ public:
 
 private:
   void AgreeOnView(rt::Scene& scene, rt::FrameRequest& request) const;
-  void DrawLast(const rt::Scene& scene);
+  void KeepProp(const rt::Scene& scene);
   bool IsInteractive() const;
   vtkDSMFrameAccumulation::Pace GetPace() const;
   int GetReduction(const rt::FrameRequest& request) const;

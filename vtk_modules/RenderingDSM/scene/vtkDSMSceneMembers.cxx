@@ -6,9 +6,14 @@
 
 #include "vtkAbstractVolumeMapper.h"
 #include "vtkActor.h"
+#include "vtkAssembly.h"
+#include "vtkAssemblyNode.h"
+#include "vtkAssemblyPath.h"
 #include "vtkBoundingBox.h"
 #include "vtkMapper.h"
 #include "vtkMath.h"
+#include "vtkMatrix4x4.h"
+#include "vtkPropAssembly.h"
 #include "vtkPropCollection.h"
 #include "vtkRenderer.h"
 #include "vtkVolume.h"
@@ -21,43 +26,102 @@ namespace
 /// Of the diagonal of what is shown: as far as ambient occlusion looks when nothing is said.
 constexpr double AmbientOcclusionPart = 0.2;
 
+/// One of the renderer's props, or a part of one that is an assembly.
+struct Part
+{
+  vtkProp* Prop;
+  vtkProp* Whole;      ///< that the renderer has
+  vtkMatrix4x4* Place; ///< of a part; null: the prop says itself
+
+  bool IsVisible() const { return this->Prop->GetVisibility() && this->Whole->GetVisibility(); }
+  bool IsPickable() const { return this->Prop->GetPickable() && this->Whole->GetPickable(); }
+};
+
+/// Calls `use` for each Part of what a renderer has.
+template <class Use>
+void ForEachPart(vtkRenderer* renderer, const Use& use)
+{
+  vtkCollectionSimpleIterator position;
+  vtkPropCollection* props = renderer->GetViewProps();
+  props->InitTraversal(position);
+  while (vtkProp* prop = props->GetNextProp(position))
+  {
+    if (!vtkAssembly::SafeDownCast(prop) && !vtkPropAssembly::SafeDownCast(prop))
+    {
+      use(Part{ prop, prop, nullptr });
+      continue;
+    }
+    prop->InitPathTraversal();
+    while (vtkAssemblyPath* path = prop->GetNextPath())
+    {
+      vtkAssemblyNode* last = path->GetLastNode();
+      use(Part{ last->GetViewProp(), prop, last->GetMatrix() });
+    }
+  }
+}
+
+vtkAlgorithm* GetMapper(vtkProp* prop)
+{
+  if (auto* volume = vtkVolume::SafeDownCast(prop))
+  {
+    return volume->GetMapper();
+  }
+  auto* actor = vtkActor::SafeDownCast(prop);
+  return actor ? actor->GetMapper() : nullptr;
+}
+
+/// Brings a part of an assembly to its place for as long as it lives, as assemblies do to draw theirs.
+class Placing
+{
+public:
+  explicit Placing(const vtkDSMSceneMembers::Member& member)
+    : Prop(member.Place ? member.Prop : nullptr)
+  {
+    if (this->Prop)
+    {
+      this->Prop->PokeMatrix(member.Place);
+    }
+  }
+  ~Placing()
+  {
+    if (this->Prop)
+    {
+      this->Prop->PokeMatrix(nullptr);
+    }
+  }
+  Placing(const Placing&) = delete;
+  Placing& operator=(const Placing&) = delete;
+
+private:
+  vtkProp3D* Prop;
+};
+
 } // namespace
 
 void vtkDSMSceneMembers::Find(vtkRenderer* renderer)
 {
   this->Shown.clear();
   std::vector<std::unique_ptr<vtkDSMSceneMember>> kept;
-  vtkCollectionSimpleIterator position;
-  vtkPropCollection* props = renderer->GetViewProps();
-  props->InitTraversal(position);
-  while (vtkProp* prop = props->GetNextProp(position))
-  {
-    auto* volume = vtkVolume::SafeDownCast(prop);
-    auto* actor = vtkActor::SafeDownCast(prop);
-    vtkAlgorithm* mapper = nullptr;
-    if (volume)
+  ForEachPart(renderer,
+    [&](const Part& part)
     {
-      mapper = volume->GetMapper();
-    }
-    else if (actor)
-    {
-      mapper = actor->GetMapper();
-    }
-    const auto known = std::find_if(this->States.begin(), this->States.end(),
-      [=](const auto& state) { return state && mapper && state->GetAlgorithm() == mapper; });
-    auto state =
-      known == this->States.end() ? vtkDSMSceneMember::Create(mapper) : std::move(*known);
-    if (!state)
-    {
-      continue;
-    }
-    kept.push_back(std::move(state));
-    if (prop->GetVisibility())
-    {
-      kept.back()->SetProp(vtkProp3D::SafeDownCast(prop));
-      this->Shown.push_back({ vtkProp3D::SafeDownCast(prop), kept.back().get() });
-    }
-  }
+      vtkAlgorithm* mapper = GetMapper(part.Prop);
+      const auto known = std::find_if(this->States.begin(), this->States.end(),
+        [=](const auto& state) { return state && mapper && state->GetAlgorithm() == mapper; });
+      auto state =
+        known == this->States.end() ? vtkDSMSceneMember::Create(mapper) : std::move(*known);
+      if (!state)
+      {
+        return;
+      }
+      kept.push_back(std::move(state));
+      if (part.IsVisible())
+      {
+        auto* prop = vtkProp3D::SafeDownCast(part.Prop);
+        kept.back()->SetProp(prop);
+        this->Shown.push_back({ prop, kept.back().get(), part.Place });
+      }
+    });
   // What is left belonged to props that were removed; their bricks leave the store.
   this->States = std::move(kept);
 }
@@ -70,11 +134,21 @@ void vtkDSMSceneMembers::GiveUpBlocks()
   }
 }
 
+void vtkDSMSceneMembers::AddTo(rt::Scene& scene) const
+{
+  for (const Member& member : this->Shown)
+  {
+    const Placing placing(member);
+    member.State->AddTo(scene);
+  }
+}
+
 void vtkDSMSceneMembers::GetBounds(double bounds[6]) const
 {
   vtkBoundingBox box;
   for (const Member& member : this->Shown)
   {
+    const Placing placing(member);
     const double* part = member.Prop->GetBounds();
     if (part && vtkMath::AreBoundsInitialized(part))
     {
@@ -86,20 +160,18 @@ void vtkDSMSceneMembers::GetBounds(double bounds[6]) const
 
 bool vtkDSMSceneMembers::AreBesideOthers(vtkRenderer* renderer) const
 {
-  vtkCollectionSimpleIterator position;
-  vtkPropCollection* props = renderer->GetViewProps();
-  props->InitTraversal(position);
-  while (vtkProp* prop = props->GetNextProp(position))
-  {
-    const auto isProp = [=](const Member& member) { return member.Prop == prop; };
-    // What cannot be picked, such as axes, is decoration; what has no bounds of its own is no object.
-    if (vtkProp3D::SafeDownCast(prop) && prop->GetVisibility() && prop->GetPickable() &&
-      prop->GetUseBounds() && std::none_of(this->Shown.begin(), this->Shown.end(), isProp))
+  bool found = false;
+  ForEachPart(renderer,
+    [&](const Part& part)
     {
-      return true;
-    }
-  }
-  return false;
+      const auto isProp = [&](const Member& member) { return member.Prop == part.Prop; };
+      // What cannot be picked, such as axes, is decoration; what has no bounds of its own is no object.
+      found = found ||
+        (vtkProp3D::SafeDownCast(part.Prop) && part.IsVisible() && part.IsPickable() &&
+          part.Prop->GetUseBounds() &&
+          std::none_of(this->Shown.begin(), this->Shown.end(), isProp));
+    });
+  return found;
 }
 
 rt::LightTransport vtkDSMSceneMembers::GetTransport() const

@@ -7,9 +7,12 @@
 #include "vtkDSMMemorySettings.h"
 #include "vtkDSMSceneMember.h"
 
+#include "vtkSmartPointer.h"
+
 #include <memory>
 #include <vector>
 
+class vtkMatrix4x4;
 class vtkProp3D;
 class vtkRenderer;
 
@@ -22,10 +25,12 @@ public:
   {
     vtkProp3D* Prop;
     vtkDSMSceneMember* State;
+    /// Of a part of an assembly: where it is in the world; null: where the prop itself says.
+    vtkSmartPointer<vtkMatrix4x4> Place;
   };
 
-  /// Looks through the renderer's props. What belongs to props that were removed is let go; what is
-  /// hidden is kept, but not shown.
+  /// Looks through the renderer's props, and through their assemblies. What belongs to props that were
+  /// removed is let go; what is hidden is kept, but not shown.
   void Find(vtkRenderer* renderer);
 
   /// Those that are visible, in the renderer's order.
@@ -34,6 +39,9 @@ public:
   std::size_t GetCount() const { return this->States.size(); }
 
   void GiveUpBlocks();
+
+  /// What is shown becomes objects of the scene.
+  void AddTo(rt::Scene& scene) const;
 
   /// Of what is shown, in world space; not initialised where nothing is.
   void GetBounds(double bounds[6]) const;

@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What VTK applications do with their renderers, assemblies, pipelines and cameras.
+#include "VolumeMapperTest.h"
+
+#include "vtkAssembly.h"
+#include "vtkCommand.h"
+#include "vtkContourValues.h"
+#include "vtkPropAssembly.h"
+#include "vtkRTAnalyticSource.h"
+#include "vtkTestErrorObserver.h"
+#include "vtkVolumeProperty.h"
+
+#include <array>
+#include <string>
+
+namespace
+{
+
+std::array<double, 6> GetBounds(vtkVolume* volume)
+{
+  std::array<double, 6> bounds{};
+  volume->GetBounds(bounds.data());
+  return bounds;
+}
+
+TEST_F(VolumeMapper, IsDrawnAgainAfterAllPropsWereRemoved)
+{
+  const std::vector<double> first = this->RenderTraced();
+  this->Renderer->RemoveAllViewProps();
+  EXPECT_EQ(CountCovered(this->RenderDistances()), 0);
+  EXPECT_GT(CountCovered(first), 1000);
+  EXPECT_EQ(this->RenderTraced(), first);
+}
+
+TEST_F(VolumeMapper, PartsOfAssembliesAreDrawnWhereTheyAre)
+{
+  vtkNew<vtkVolume> placed;
+  placed->SetMapper(this->Mapper);
+  placed->SetPosition(4.0, 1.0, 2.0);
+  this->Renderer->AddVolume(placed);
+  const std::vector<double> alone = this->RenderDistances();
+  this->Renderer->RemoveVolume(placed);
+
+  vtkNew<vtkAssembly> inner;
+  this->Volume->SetPosition(3.0, 0.0, 0.0);
+  inner->AddPart(this->Volume);
+  vtkNew<vtkAssembly> outer;
+  outer->SetPosition(1.0, 1.0, 2.0);
+  outer->AddPart(inner);
+  this->Renderer->AddViewProp(outer);
+  EXPECT_EQ(this->RenderDistances(), alone);
+  outer->VisibilityOff();
+  EXPECT_EQ(CountCovered(this->RenderDistances()), 0);
+  outer->VisibilityOn();
+  this->Volume->VisibilityOff();
+  EXPECT_EQ(CountCovered(this->RenderDistances()), 0);
+  this->Volume->VisibilityOn();
+  outer->SetPosition(1.0, 1.0, -2.0);
+  EXPECT_NE(this->RenderDistances(), alone);
+  this->Renderer->RemoveViewProp(outer);
+
+  vtkNew<vtkPropAssembly> group;
+  group->AddPart(placed);
+  this->Renderer->AddViewProp(group);
+  EXPECT_EQ(this->RenderDistances(), alone);
+}
+
+TEST_F(VolumeMapper, BoundsAreThoseOfNewDataBeforeTheyAreDrawn)
+{
+  vtkNew<vtkRTAnalyticSource> source;
+  source->SetWholeExtent(-8, 8, -8, 8, -8, 8);
+  this->Mapper->SetIsoArray("");
+  this->Mapper->SetInputConnection(source->GetOutputPort());
+  this->Renderer->AddVolume(this->Volume);
+  this->Window->Render();
+  EXPECT_EQ(GetBounds(this->Volume), (std::array<double, 6>{ -8, 8, -8, 8, -8, 8 }));
+  source->SetWholeExtent(0, 32, 0, 30, 0, 28);
+  EXPECT_EQ(GetBounds(this->Volume), (std::array<double, 6>{ 0, 32, 0, 30, 0, 28 }));
+  this->Renderer->ResetCamera();
+  const double* focus = this->Renderer->GetActiveCamera()->GetFocalPoint();
+  EXPECT_EQ(
+    (std::array<double, 3>{ focus[0], focus[1], focus[2] }), (std::array<double, 3>{ 16, 15, 14 }));
+  this->Window->Render();
+  EXPECT_EQ(GetBounds(this->Volume), (std::array<double, 6>{ 0, 32, 0, 30, 0, 28 }));
+
+  vtkNew<vtkRTAnalyticSource> other;
+  other->SetWholeExtent(0, 4, 0, 4, 0, 4);
+  this->Mapper->SetInputConnection(other->GetOutputPort());
+  EXPECT_EQ(GetBounds(this->Volume), (std::array<double, 6>{ 0, 4, 0, 4, 0, 4 }));
+  const auto ball = MakeBall();
+  this->Mapper->SetInputData(ball);
+  EXPECT_EQ(GetBounds(this->Volume), (std::array<double, 6>{ -16, 16, -16, 16, -8, 8 }));
+}
+
+TEST_F(VolumeMapper, SaysThatItHasNoIsovalue)
+{
+  vtkNew<vtkTest::ErrorObserver> observer;
+  this->Mapper->AddObserver(vtkCommand::ErrorEvent, observer);
+  this->Mapper->SetNumberOfIsoValues(0);
+  this->Renderer->AddVolume(this->Volume);
+  EXPECT_EQ(CountCovered(this->RenderDistances()), 0);
+  ASSERT_TRUE(observer->GetError());
+  const std::string message = observer->GetErrorMessage();
+  EXPECT_NE(message.find("SetIsoValue"), std::string::npos) << message;
+  observer->Clear();
+  this->Window->Render();
+  EXPECT_FALSE(observer->GetError()) << "once is enough";
+
+  this->Mapper->SetBlendMode(vtkVolumeMapper::ISOSURFACE_BLEND);
+  this->Volume->GetProperty()->GetIsoSurfaceValues()->SetNumberOfContours(0);
+  this->Window->Render();
+  ASSERT_TRUE(observer->GetError());
+  EXPECT_NE(observer->GetErrorMessage().find("GetIsoSurfaceValues"), std::string::npos)
+    << observer->GetErrorMessage();
+}
+
+} // namespace
