@@ -35,45 +35,53 @@ vtkPVDSMTracedDisplay::~vtkPVDSMTracedDisplay()
   this->Mapper->RemoveObserver(this->ProgressObserver);
 }
 
-bool vtkPVDSMTracedDisplay::AddToView(vtkView* anyView)
+bool vtkPVDSMTracedDisplay::AddToView(vtkView* view)
 {
-  auto* view = vtkPVRenderView::SafeDownCast(anyView);
-  if (!view)
-  {
-    return false;
-  }
-  this->Scene = vtkPVDSMDelivery::FindScene(this->Representation, view);
-  if (this->Scene)
-  {
-    view->GetRenderer()->AddViewProp(this->Prop);
-    view->GetRenderer()->AddViewProp(this->SelectionActor);
-    this->ConnectFrameReport();
-  }
-  this->Refinement = vtkPVDSMRefinement::Follow(view);
-  view->RegisterPropForHardwareSelection(this->Representation, this->SelectionActor);
-  return true;
+  this->View = vtkPVRenderView::SafeDownCast(view);
+  this->SetVisibility(this->Representation->GetVisibility());
+  return this->View != nullptr;
 }
 
-bool vtkPVDSMTracedDisplay::RemoveFromView(vtkView* anyView)
+bool vtkPVDSMTracedDisplay::RemoveFromView(vtkView* view)
 {
-  auto* view = vtkPVRenderView::SafeDownCast(anyView);
-  if (!view)
-  {
-    return false;
-  }
-  view->GetRenderer()->RemoveViewProp(this->Prop);
-  view->GetRenderer()->RemoveViewProp(this->SelectionActor);
-  view->UnRegisterPropForHardwareSelection(this->Representation, this->SelectionActor);
-  this->Scene = nullptr;
-  this->Refinement = nullptr;
-  this->ConnectFrameReport();
-  return true;
+  this->Leave();
+  this->View = nullptr;
+  return vtkPVRenderView::SafeDownCast(view) != nullptr;
 }
 
+// ParaView adds all ways to show a dataset to its view; those that nobody has chosen must cost nothing.
 void vtkPVDSMTracedDisplay::SetVisibility(bool visible)
 {
   this->Prop->SetVisibility(visible);
   this->SelectionActor->SetVisibility(visible);
+  if (!visible || !this->View || this->IsInView)
+  {
+    return;
+  }
+  this->IsInView = true;
+  this->Scene = vtkPVDSMDelivery::FindScene(this->Representation, this->View);
+  if (this->Scene)
+  {
+    this->View->GetRenderer()->AddViewProp(this->Prop);
+    this->View->GetRenderer()->AddViewProp(this->SelectionActor);
+    this->ConnectFrameReport();
+  }
+  this->Refinement = vtkPVDSMRefinement::Follow(this->View);
+  this->View->RegisterPropForHardwareSelection(this->Representation, this->SelectionActor);
+}
+
+void vtkPVDSMTracedDisplay::Leave()
+{
+  if (this->IsInView && this->View)
+  {
+    this->View->GetRenderer()->RemoveViewProp(this->Prop);
+    this->View->GetRenderer()->RemoveViewProp(this->SelectionActor);
+    this->View->UnRegisterPropForHardwareSelection(this->Representation, this->SelectionActor);
+  }
+  this->IsInView = false;
+  this->Scene = nullptr;
+  this->Refinement = nullptr;
+  this->ConnectFrameReport();
 }
 
 void vtkPVDSMTracedDisplay::SetFrameReport(vtkPVDSMFrameReport* report)

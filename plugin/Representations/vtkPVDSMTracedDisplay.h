@@ -6,7 +6,9 @@
 #include "vtkPVDSMSelectionMapper.h"
 
 #include "vtkNew.h"
+#include "vtkPVRenderView.h"
 #include "vtkSmartPointer.h"
+#include "vtkWeakPointer.h"
 
 class vtkAbstractMapper;
 class vtkActor;
@@ -22,8 +24,8 @@ class vtkProp3D;
 class vtkView;
 
 /// What our representations have in common: the prop that is traced gets into a view, with its scene
-/// where the process renders; its data stay on their rank; it is clipped, can be selected, and tells of
-/// the view's frames.
+/// where the process renders, when it is first visible there; its data stay on their rank; it is clipped,
+/// can be selected, and tells of the view's frames.
 class vtkPVDSMTracedDisplay
 {
 public:
@@ -62,6 +64,7 @@ public:
   void PrepareRender(const double* dataBounds, vtkInformation* inInfo);
 
 private:
+  void Leave();
   void ConnectFrameReport();
   /// Taking in data happens while the view renders; ParaView watches the representation, only.
   void ForwardProgress();
@@ -71,7 +74,9 @@ private:
   vtkSmartPointer<vtkAbstractMapper> Mapper;
   const char* Work;
   unsigned long ProgressObserver;
-  bool IsUpdated = false; ///< during the view's current request
+  bool IsUpdated = false;               ///< during the view's current request
+  vtkWeakPointer<vtkPVRenderView> View; ///< from AddToView to RemoveFromView
+  bool IsInView = false;
   vtkNew<vtkPartitionedDataSet> Placeholder;
   vtkNew<vtkActor> SelectionActor;                  ///< what selections see
   vtkSmartPointer<vtkDSMScene> Scene;               ///< where the process renders
