@@ -17,10 +17,8 @@
 #include "vtkSMProperty.h"
 #include "vtkSMPropertyHelper.h"
 #include "vtkSMProxy.h"
-#include "vtkSMProxyManager.h"
 #include "vtkSMRenderViewProxy.h"
 #include "vtkSMSession.h"
-#include "vtkSMSessionProxyManager.h"
 #include "vtkSMTrace.h"
 
 #include <iterator>
@@ -45,23 +43,22 @@ std::map<vtkPVRenderView*, vtkWeakPointer<vtkPVDSMRefinement>>& GetRegistry()
   return registry;
 }
 
+/// The view's proxy, whether or not it is registered yet: a state file's representations are in their
+/// view before it is.
 vtkSMRenderViewProxy* FindProxy(vtkPVRenderView* view)
 {
   auto* module = vtkProcessModule::GetProcessModule();
-  if (!module || module->GetProcessType() != vtkProcessModule::PROCESS_CLIENT ||
-    !vtkSMProxyManager::IsInitialized())
+  auto* session = module && module->GetProcessType() == vtkProcessModule::PROCESS_CLIENT
+    ? vtkSMSession::SafeDownCast(module->GetActiveSession())
+    : nullptr;
+  vtkNew<vtkCollection> objects;
+  if (session)
   {
-    return nullptr;
+    session->GetAllRemoteObjects(objects);
   }
-  auto* manager = vtkSMProxyManager::GetProxyManager()->GetActiveSessionProxyManager();
-  vtkNew<vtkCollection> views;
-  if (manager)
+  for (int index = 0; index < objects->GetNumberOfItems(); ++index)
   {
-    manager->GetProxies("views", views);
-  }
-  for (int index = 0; index < views->GetNumberOfItems(); ++index)
-  {
-    auto* proxy = vtkSMRenderViewProxy::SafeDownCast(views->GetItemAsObject(index));
+    auto* proxy = vtkSMRenderViewProxy::SafeDownCast(objects->GetItemAsObject(index));
     if (proxy && proxy->GetClientSideObject() == view)
     {
       return proxy;

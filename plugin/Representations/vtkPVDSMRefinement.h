@@ -33,7 +33,7 @@ public:
   vtkTypeMacro(vtkPVDSMRefinement, vtkObject);
 
   /// The view's; made when there is none, for as long as somebody holds it. Null where this process is
-  /// no client, or nobody has registered a proxy for the view.
+  /// no client, or the view has no proxy.
   static vtkSmartPointer<vtkPVDSMRefinement> Follow(vtkPVRenderView* view);
 
 protected:

@@ -1,0 +1,104 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Run by ParaView's application, which has loaded the plugin, alone or connected to a server: what a state file
+or a Python state brings back is refined while the view is still, as what was shown before was.
+DSM_TEST_STATE names the files."""
+
+import os
+import time
+import traceback
+
+from paraview import simple
+
+SAMPLES = 64
+STATE = os.environ["DSM_TEST_STATE"]
+PATIENCE = 90.0  # seconds
+
+
+def say(text):
+    os.write(1, (text + "\n").encode())  # the application keeps what is printed
+
+
+def check(condition, what):
+    if not condition:
+        raise AssertionError(what)
+    say("ok: " + what)
+
+
+def get_samples(display):
+    samples = display.SMProxy.GetProperty("DSMSamples")
+    samples.GetParent().UpdatePropertyInformation(samples)
+    return samples.GetElement(0)
+
+
+def show(view):
+    display = simple.Show(simple.Wavelet(), view)
+    display.Representation = "DSM Ray Traced"
+    display.DSMIsoValue = 157.0
+    display.DSMAmbientOcclusionSamples = 1
+    display.DSMSamplesPerPixel = SAMPLES
+    simple.ResetCamera(view)
+
+
+def load(name):
+    for source in simple.GetSources().values():
+        simple.Delete(source)
+    before = simple.GetRenderViews()
+    simple.LoadState(name)
+    (view,) = [view for view in simple.GetRenderViews() if view not in before]
+    return view
+
+
+def go(view):
+    """The view of each step, and how it came about."""
+    show(view)
+    yield view, "a dataset"
+    simple.SaveState(STATE + ".pvsm")
+    simple.SaveState(STATE + ".py")
+    for suffix in (".pvsm", ".py"):
+        yield load(STATE + suffix), "a state (" + suffix + ")"
+
+
+class Steps:
+    """Goes on between the application's other events."""
+
+    def __init__(self, view):
+        self.deadline = time.monotonic() + PATIENCE
+        self.steps = go(view)
+        self.begin()
+        interactor = view.GetInteractor()
+        interactor.AddObserver("TimerEvent", self.look)
+        interactor.CreateRepeatingTimer(50)
+
+    def begin(self):
+        view, self.what = next(self.steps)
+        simple.Render(view)
+        (source,) = simple.GetSources().values()
+        self.display = simple.GetRepresentation(source, view)
+        first = get_samples(self.display)
+        check(0 < first < SAMPLES, f"{self.what} is shown with {first} samples at first")
+
+    def look(self, *_):
+        code = None
+        try:
+            if time.monotonic() > self.deadline:
+                raise AssertionError(self.what + " is not refined")
+            if get_samples(self.display) < SAMPLES:
+                return
+            say(f"ok: {self.what} is refined")
+            self.begin()
+        except StopIteration:
+            code = 0
+        except BaseException:
+            say(traceback.format_exc())
+            code = 1
+        if code is not None:
+            simple.Disconnect()
+            os._exit(code)
+
+
+simple.GetLayout().SetSize(400, 300)
+try:
+    steps = Steps(simple.GetActiveViewOrCreate("RenderView"))
+except BaseException:
+    say(traceback.format_exc())
+    os._exit(1)
