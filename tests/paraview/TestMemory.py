@@ -32,7 +32,9 @@ def check_report(display, organization):
         for key in ("Accesses", "Hits", "Misses", "Joins"):
             check(sum(worker[key] for worker in row["Workers"]) == row[key], f"the threads' {key}")
         check(row["BytesCached"] <= row["CacheCapacity"], "the cache keeps within its capacity")
-        held = row["BytesResident"] + row["BytesCopied"] + row["CacheCapacity"]
+        check(row["BytesOfTables"] > 0, "there are tables")
+        held = (row["BytesResident"] + row["BytesCopied"] + row["BytesOfTables"]
+                + row["CacheCapacity"])
         check(held <= row["MemoryBudget"], "and all of it within the memory")
     check(sum(row["Accesses"] for row in rows) > 0, "there were some")
     check(sum(row["BytesSent"] for row in rows) == sum(row["BytesReceived"] for row in rows),

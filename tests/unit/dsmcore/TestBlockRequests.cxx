@@ -127,6 +127,54 @@ TEST_F(BlockRequestsTest, OneMessageForEachOwner)
   EXPECT_EQ(this->Requests[2]->GetBytesSent(), 4u);
 }
 
+TEST_F(BlockRequestsTest, RepliesWaitForOthersToLeave)
+{
+  dsm::BlockRequests& owner = *this->Requests[1];
+  owner.SetReplyBytes(2 * 20); // two, with what is behind their bytes
+  for (const int asker : { 0, 2 })
+  {
+    for (const dsm::BlockId id : { 1, 4, 7 })
+    {
+      this->Requests[asker]->Begin({ &this->Segment, id }, nullptr);
+    }
+    this->Requests[asker]->Submit();
+  }
+  this->Messengers[1]->Progress();
+  std::size_t replies = 0;
+  while (this->Taken.size() < 6 && replies < 10)
+  {
+    EXPECT_LE(this->Messengers[1]->GetUnsentBytes(), 2 * 20u);
+    EXPECT_GT(this->Messengers[1]->GetUnsentBytes(), 0u);
+    EXPECT_FALSE(owner.AnswerLater());
+    this->Progress();
+    ++replies;
+    EXPECT_EQ(this->Taken.size(), 2 * replies);
+    EXPECT_EQ(owner.AnswerLater(), this->Taken.size() < 6);
+  }
+  EXPECT_EQ(owner.GetBytesSent(), 24u);
+}
+
+/// One at a time is sent whatever its size; what has been abandoned is not.
+TEST_F(BlockRequestsTest, RepliesThatWaitAreAbandoned)
+{
+  dsm::BlockRequests& owner = *this->Requests[1];
+  owner.SetReplyBytes(0);
+  for (const dsm::BlockId id : { 1, 4, 7 })
+  {
+    this->Requests[0]->Begin({ &this->Segment, id }, nullptr);
+  }
+  this->Requests[0]->Submit();
+  this->Progress();
+  EXPECT_EQ(this->Taken, (std::vector<dsm::BlockId>{ 1 }));
+  EXPECT_TRUE(owner.AnswerLater());
+  this->Progress();
+  EXPECT_EQ(this->Taken, (std::vector<dsm::BlockId>{ 1, 4 }));
+  owner.Abandon();
+  EXPECT_FALSE(owner.AnswerLater());
+  this->Progress();
+  EXPECT_EQ(this->Taken.size(), 2u);
+}
+
 TEST_F(BlockRequestsTest, WhatIsAbandonedIsNotTaken)
 {
   dsm::BlockRequests& asker = *this->Requests[0];

@@ -223,6 +223,23 @@ TEST_P(BlockSourceOnRanks, CacheHoldsOneBlockOfOwnAndOneOfOthers)
     });
 }
 
+/// Replies that must wait for others to leave find their blocks gone again.
+TEST_P(BlockSourceOnRanks, RepliesOneAtATime)
+{
+  dsm_test::RunRanks(this->GetParam(),
+    [](dsm::Messenger& messenger)
+    {
+      FileStore files(messenger, 2, 4, std::chrono::microseconds(0));
+      auto settings = dsm_test::MakeSettings(2 * Footprint, 4);
+      settings.ReplyBytes = 0;
+      files.Store.SetSettings(settings);
+      for (int frame = 0; frame < 5; ++frame)
+      {
+        files.ReadAll();
+      }
+    });
+}
+
 TEST_P(BlockSourceOnRanks, EachBlockIsReadOnceWhereThereIsRoom)
 {
   dsm_test::RunRanks(this->GetParam(),

@@ -301,8 +301,9 @@ TEST(BlockStore, AutomaticHeedsEveryRanksMemory)
       const auto segment = dsm_test::PublishPattern(messenger, store, directory);
       EXPECT_EQ(store.GetOrganization(), dsm::MemoryOrganization::ObjectBased);
       dsm_test::ReadEverything(messenger, store, *segment);
-      EXPECT_LE(store.GetCounters().ResidentBytes + store.GetCounters().PeakCachedBytes,
-        store.GetCounters().MemoryBudget);
+      const auto counters = store.GetCounters();
+      EXPECT_LE(counters.ResidentBytes + counters.TableBytes + counters.PeakCachedBytes,
+        counters.MemoryBudget);
     });
 }
 
@@ -322,7 +323,8 @@ TEST(BlockStore, CacheSizeIsAnUpperLimit)
       store.SetSettings(settings);
       EXPECT_FALSE(store.IsSettled());
       store.Settle();
-      EXPECT_EQ(store.GetCounters().CacheCapacity, (1u << 20) - 20 * 1024u);
+      EXPECT_EQ(store.GetCounters().CacheCapacity,
+        dsm_test::GetCacheRoom(1u << 20, 20 * 1024u + store.GetCounters().TableBytes));
       dsm_test::ReadEverything(messenger, store, *segment);
     });
 }
@@ -358,25 +360,81 @@ TEST(MemoryPlan, RankCountThatWouldDo)
       std::vector<Budget>(2, Budget{ bytes, bytes }), 4096);
     return plan.FindRankCount(dsm::MemoryOrganization::ObjectBased);
   };
-  // A rank of 10 has ten blocks, the first three a small one, and all a cache of one.
-  EXPECT_EQ(find(11 * 1024 + 64), 10);
-  EXPECT_EQ(find(11 * 1024 + 63), 12);
+  // A rank of 10 has ten blocks, the first three a small one, and all the tables, a cache of one and
+  // two in messages.
+  constexpr std::uint64_t besides = 103 * (16 + 4) + 3 * 1024;
+  EXPECT_EQ(find(besides + 10 * 1024 + 64), 10);
+  EXPECT_EQ(find(besides + 10 * 1024 + 63), 12);
   EXPECT_EQ(find(200 * 1024), 1);
-  EXPECT_EQ(find(2 * 1024 + 64), 100);
-  EXPECT_EQ(find(2 * 1024 + 63), 0);
+  EXPECT_EQ(find(besides + 1024 + 64), 100);
+  EXPECT_EQ(find(besides + 1024 + 63), 0);
   EXPECT_EQ(find(100), 0);
 }
 
 TEST(MemoryPlan, PagesAreWhole)
 {
   const auto directory = dsm_test::MakeDirectory(2, 10, 1000);
+  constexpr std::uint64_t need = 8 * 4096 + 10 * 32;
   const dsm::MemoryPlan plan({ &directory }, dsm::HostGroups::Separate(2),
-    std::vector<Budget>(2, Budget{ 24 * 1024, 24 * 1024 }), 4096);
-  EXPECT_EQ(plan.GetNeed(dsm::MemoryOrganization::PageBased, 0), 6 * 4096u);
-  EXPECT_EQ(plan.GetCacheBytes(dsm::MemoryOrganization::PageBased, 0), 4096u);
-  EXPECT_EQ(plan.GetNeed(dsm::MemoryOrganization::ObjectBased, 0), 6 * 1024u);
-  EXPECT_EQ(plan.GetNeed(dsm::MemoryOrganization::Replicated, 0), 10 * 1024u);
+    std::vector<Budget>(2, Budget{ need, need }), 4096);
+  EXPECT_EQ(plan.GetNeed(dsm::MemoryOrganization::PageBased, 0), need);
+  EXPECT_EQ(plan.GetRoom(dsm::MemoryOrganization::PageBased, 0).CacheBytes, 4096u);
+  EXPECT_EQ(plan.GetRoom(dsm::MemoryOrganization::PageBased, 0).ReplyBytes, 4096u);
+  EXPECT_EQ(plan.GetNeed(dsm::MemoryOrganization::ObjectBased, 0), 8 * 1024u + 10 * 20);
+  EXPECT_EQ(plan.GetNeed(dsm::MemoryOrganization::Replicated, 0), 10 * 1024u + 10 * 20);
   EXPECT_EQ(plan.Decide(dsm::MemoryOrganization::Automatic), dsm::MemoryOrganization::Replicated);
+}
+
+/// Many tiny blocks: what finds them takes more than they do.
+TEST(MemoryPlan, TablesAndTheirIndexCount)
+{
+  constexpr std::size_t count = 1 << 14;
+  const dsm::BlockDirectory directory(
+    std::vector<std::uint32_t>(count, 64), dsm::RoundRobinAssigner(64), 9 * count);
+  const auto fits = [&](dsm::MemoryOrganization organization, std::uint64_t bytes)
+  {
+    const dsm::MemoryPlan plan({ &directory, &directory }, dsm::HostGroups::Separate(64),
+      std::vector<Budget>(64, Budget{ bytes, bytes }), 64);
+    try
+    {
+      return plan.Decide(organization) == organization;
+    }
+    catch (const dsm::Error&)
+    {
+      return false;
+    }
+  };
+  constexpr std::uint64_t own = 2 * count / 64 * 64 + 3 * 64;
+  constexpr std::uint64_t table = 16 + 4 + 9;
+  EXPECT_TRUE(fits(dsm::MemoryOrganization::ObjectBased, own + 2 * count * table));
+  EXPECT_FALSE(fits(dsm::MemoryOrganization::ObjectBased, own + 2 * count * table - 1));
+  constexpr std::uint64_t pageTable = 16 + 8 + 4 + 4 + 9;
+  EXPECT_TRUE(fits(dsm::MemoryOrganization::PageBased, own + 2 * count * pageTable));
+  EXPECT_FALSE(fits(dsm::MemoryOrganization::PageBased, own + 2 * count * pageTable - 1));
+  constexpr std::uint64_t all = 2 * count * (64 + table);
+  EXPECT_TRUE(fits(dsm::MemoryOrganization::Replicated, all));
+  EXPECT_FALSE(fits(dsm::MemoryOrganization::Replicated, all - 1));
+}
+
+/// Replies have a part of what the cache would have, but no more than a network needs.
+TEST(MemoryPlan, RepliesHaveRoom)
+{
+  const auto directory = dsm_test::MakeDirectory(2, 10, 1024);
+  const auto find = [&](std::uint64_t room)
+  {
+    const std::uint64_t bytes = 5 * 1024 + 10 * 20 + room;
+    const dsm::MemoryPlan plan({ &directory }, dsm::HostGroups::Separate(2),
+      std::vector<Budget>(2, Budget{ bytes, bytes }), 4096);
+    const auto found = plan.GetRoom(dsm::MemoryOrganization::ObjectBased, 0);
+    EXPECT_EQ(found.CacheBytes + found.ReplyBytes + 1024, room);
+    return found.ReplyBytes;
+  };
+  EXPECT_EQ(find(3 * 1024), 1024u);
+  EXPECT_EQ(find(64 * 1024), 4 * 1024u);
+  EXPECT_EQ(find(std::uint64_t(1) << 30), 8u << 20);
+  const dsm::MemoryPlan together({ &directory }, dsm::HostGroups({ 0, 0 }),
+    std::vector<Budget>(2, Budget{ 1 << 20, 1 << 20 }), 4096);
+  EXPECT_EQ(together.GetRoom(dsm::MemoryOrganization::ObjectBased, 0).ReplyBytes, 0u);
 }
 
 /// Where the user said nothing, the resident set may take more than the part thought fit.
@@ -384,9 +442,9 @@ TEST(MemoryPlan, OwnBlocksMayExceedWhatIsThoughtFit)
 {
   const auto directory = dsm_test::MakeDirectory(2, 10, 1024);
   const dsm::MemoryPlan plan({ &directory }, dsm::HostGroups::Separate(2),
-    std::vector<Budget>(2, Budget{ 3 * 1024, 8 * 1024 }), 4096);
+    std::vector<Budget>(2, Budget{ 3 * 1024, 9 * 1024 }), 4096);
   EXPECT_EQ(plan.Decide(dsm::MemoryOrganization::Automatic), dsm::MemoryOrganization::ObjectBased);
-  EXPECT_EQ(plan.GetCacheBytes(dsm::MemoryOrganization::ObjectBased, 1), 1024u);
+  EXPECT_EQ(plan.GetRoom(dsm::MemoryOrganization::ObjectBased, 1).CacheBytes, 1024u);
   EXPECT_THROW(plan.Decide(dsm::MemoryOrganization::Replicated), dsm::Error);
   EXPECT_THROW(plan.Decide(dsm::MemoryOrganization::PageBased), dsm::Error);
 }

@@ -98,6 +98,13 @@ TEST(TestMacrocellHierarchy, EachLevelSpansTheOneBelow)
     }
   }
   EXPECT_EQ(hierarchy.GetRange().First, 0.0f);
+  std::uint64_t bytes = 0;
+  for (const auto& level : levels)
+  {
+    bytes += level.Ranges.size() * sizeof(rt::ValueRange);
+  }
+  EXPECT_EQ(rt::MacrocellHierarchy::CountBytes(lattice), bytes);
+  EXPECT_EQ(lattice.CreateDirectory(2).GetOwnBytes(), lattice.GetBrickCount() * 4 + bytes);
 }
 
 TEST(TestMacrocellHierarchy, EveryRankGathersAllRanges)

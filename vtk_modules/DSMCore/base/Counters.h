@@ -45,6 +45,9 @@ struct StoreCounters
   std::uint64_t SharedBytes = 0;
   /// Copies for good of other ranks' blocks, in this rank's memory (ReplicatedStore).
   std::uint64_t ReplicaBytes = 0;
+  /// What it takes on this rank to find blocks: tables, directories, and the index of those who
+  /// published.
+  std::uint64_t TableBytes = 0;
   /// Memory that remote blocks take now: those held, those evicted whose memory is not free yet, and
   /// the room set aside for those requested. Never more than CacheCapacity.
   std::uint64_t CachedBytes = 0;

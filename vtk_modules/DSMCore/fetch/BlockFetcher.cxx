@@ -101,7 +101,8 @@ void BlockFetcher::BeginFrame(bool agreed)
 
 bool BlockFetcher::Service()
 {
-  const bool came = !this->Busy.empty() && this->PollSources();
+  bool came = this->Requests.AnswerLater();
+  came = (!this->Busy.empty() && this->PollSources()) || came;
   if (this->QueuedCount.load(std::memory_order_acquire) == 0 && !this->NeedsService())
   {
     return came;
@@ -158,7 +159,7 @@ bool BlockFetcher::TryAsk(const BlockWant& block)
   const std::size_t before = this->Reads.size();
   try
   {
-    read.Place = this->PreparePlace(block);
+    read.Place = isOwned ? this->PreparePlace(block) : nullptr;
     this->Reads.push_back(read);
     if (isOwned && std::find(this->Busy.begin(), this->Busy.end(), read.From) == this->Busy.end())
     {
@@ -236,7 +237,7 @@ void BlockFetcher::Arrive(const BlockWant& block, const std::byte* bytes)
     throw Error("A source of blocks brought block " + std::to_string(block.Id) +
       ", which nobody asked it for. This is a defect of the program.");
   }
-  this->Land(*read, bytes); // when it throws, the read is given up with the frame
+  read->Place = this->Land(*read, bytes); // when it throws, the read is given up with the frame
   {
     const std::lock_guard<std::mutex> lock(this->Guard);
     const LineStatus& line = this->GetLine(block);

@@ -84,7 +84,7 @@ protected:
   {
     BlockWant Block;
     BlockSource* From;
-    std::byte* Place; ///< null: the store has none for it
+    std::byte* Place; ///< null: not known before the block comes
   };
 
   explicit BlockFetcher(Messenger& messenger);
@@ -109,12 +109,13 @@ protected:
   virtual bool MakeRoom(const BlockWant& block) = 0;
   /// The block will not come.
   virtual void GiveRoomBack(const BlockWant& block) noexcept = 0;
-  /// Memory in the room set aside where the bytes shall land; null where that is not possible.
+  /// Memory in the room set aside where a block of this rank's own shall land; null where that is not
+  /// possible. Blocks of others come in messages: until then, the message has the room.
   virtual std::byte* PreparePlace(const BlockWant& block) = 0;
   virtual void DiscardPlace(std::byte* place) noexcept = 0;
-  /// Brings the bytes where they belong, if they are not there. No lock. When it throws, nothing has
-  /// changed.
-  virtual void Land(const Read& read, const std::byte* bytes) = 0;
+  /// Brings the bytes where they belong, if they are not there, and returns where that is. No lock.
+  /// When it throws, nothing has changed.
+  virtual std::byte* Land(const Read& read, const std::byte* bytes) = 0;
   /// Lets workers have the block that has landed. Does not fail.
   virtual void Show(const Read& read) = 0;
   /// Takes the segment's cached blocks out. Does not fail.

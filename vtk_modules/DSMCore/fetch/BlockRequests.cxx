@@ -22,6 +22,7 @@ void BlockRequests::BeginFrame()
   this->Pending.clear();
   this->Unsent.clear();
   this->Debts.clear();
+  this->Deferred.clear();
   this->Abandoned = false;
   this->Count = 0;
   this->BytesSent = 0;
@@ -80,6 +81,7 @@ void BlockRequests::Abandon() noexcept
   this->Unsent.clear();
   this->Pending.clear();
   this->Debts.clear();
+  this->Deferred.clear();
 }
 
 BlockWant BlockRequests::Find(const BlockName& name, int source, const char* deed) const
@@ -112,37 +114,80 @@ void BlockRequests::Serve(const Message& message)
         ", which rank " + std::to_string(directory.GetOwner(name.Id)) +
         " owns. Do all ranks run the same build?");
     }
-    if (const std::byte* const bytes = this->Store.FindOwned(block))
-    {
-      this->Reply(message.Source, block, bytes);
-    }
-    else if (!this->Abandoned)
-    {
-      this->Debts.push_back({ block, message.Source });
-      this->Store.Bring(block);
-    }
+    this->ReplyWhenPossible({ block, message.Source }, this->Store.FindOwned(block));
   }
+}
+
+void BlockRequests::ReplyWhenPossible(const Debt& debt, const std::byte* bytes)
+{
+  if (bytes && this->Deferred.empty() && this->HasRoomFor(debt.Block))
+  {
+    this->Reply(debt, bytes);
+  }
+  else if (this->Abandoned)
+  {
+    return;
+  }
+  else if (bytes)
+  {
+    this->Deferred.push_back(debt);
+  }
+  else
+  {
+    this->Debts.push_back(debt);
+    this->Store.Bring(debt.Block);
+  }
+}
+
+bool BlockRequests::HasRoomFor(const BlockWant& block) const
+{
+  const std::size_t unsent = this->Messages.GetUnsentBytes();
+  const std::size_t bytes = block.From->GetDirectory().GetBytes(block.Id) + sizeof(BlockName);
+  return unsent == 0 || unsent + bytes <= this->ReplyBytes;
+}
+
+bool BlockRequests::AnswerLater()
+{
+  bool any = false;
+  while (!this->Deferred.empty() && this->HasRoomFor(this->Deferred.front().Block))
+  {
+    const Debt debt = this->Deferred.front();
+    if (const std::byte* const bytes = this->Store.FindOwned(debt.Block))
+    {
+      this->Reply(debt, bytes);
+    }
+    else // it has left memory in the meantime
+    {
+      this->Debts.push_back(debt);
+      this->Store.Bring(debt.Block);
+    }
+    this->Deferred.pop_front();
+    any = true;
+  }
+  return any;
 }
 
 void BlockRequests::Answer(const BlockWant& block, const std::byte* bytes)
 {
   const auto isOther = [&](const Debt& debt) { return !(debt.Block == block); };
   const auto first = std::partition(this->Debts.begin(), this->Debts.end(), isOther);
-  for (auto debt = first; debt != this->Debts.end(); ++debt)
-  {
-    this->Reply(debt->Asker, block, bytes);
-  }
+  const std::vector<Debt> due(first, this->Debts.end());
   this->Debts.erase(first, this->Debts.end());
+  for (const Debt& debt : due)
+  {
+    this->ReplyWhenPossible(debt, bytes);
+  }
 }
 
-void BlockRequests::Reply(int asker, const BlockWant& block, const std::byte* bytes)
+void BlockRequests::Reply(const Debt& debt, const std::byte* bytes)
 {
+  const BlockWant& block = debt.Block;
   const std::uint32_t count = block.From->GetDirectory().GetBytes(block.Id);
   std::vector<std::byte> reply;
   reply.reserve(count + 3 * sizeof(BlockName)); // the transport puts its header behind
   reply.assign(bytes, bytes + count);
   AttachTail(reply, BlockName{ block.From->GetNumber(), this->FrameSession, block.Id });
-  this->Messages.Post(asker, MessageKind::BlockReply, std::move(reply));
+  this->Messages.Post(debt.Asker, MessageKind::BlockReply, std::move(reply));
   this->BytesSent += count;
 }
 

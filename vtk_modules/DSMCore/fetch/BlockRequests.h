@@ -10,6 +10,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <deque>
 #include <functional>
 #include <vector>
 
@@ -38,7 +39,14 @@ public:
     Deliver Take;
   };
 
+  /// Of replies that have not left, unless SetReplyBytes says otherwise.
+  static constexpr std::size_t MostReplyBytes = std::size_t(8) << 20;
+
   BlockRequests(Messenger& messenger, Callbacks callbacks);
+
+  /// What the bytes of replies that have not left may come to; others wait until some have. One at a
+  /// time is always sent. Between frames.
+  void SetReplyBytes(std::size_t bytes) { this->ReplyBytes = bytes; }
 
   /// Collective in order: from now on this rank serves others, and may ask.
   void BeginFrame();
@@ -55,6 +63,8 @@ public:
 
   /// A block that this rank owns has come to memory: those who asked for it get it.
   void Answer(const BlockWant& block, const std::byte* bytes);
+  /// Often: answers those who wait for other replies to leave. Returns whether it did anything.
+  bool AnswerLater();
 
   /// Messages that asked for blocks, in this frame.
   std::uint64_t GetCount() const { return this->Count; }
@@ -78,7 +88,11 @@ private:
     int Asker;
   };
 
-  void Reply(int asker, const BlockWant& block, const std::byte* bytes);
+  /// With the bytes, or, where these are null, when the block is in memory again. May wait for other
+  /// replies to leave.
+  void ReplyWhenPossible(const Debt& debt, const std::byte* bytes);
+  bool HasRoomFor(const BlockWant& block) const;
+  void Reply(const Debt& debt, const std::byte* bytes);
   BlockWant Find(const BlockName& name, int source, const char* deed) const;
   void Serve(const Message& message);
   void Receive(Message& message);
@@ -87,7 +101,9 @@ private:
   Callbacks Store;
   std::vector<BlockWant> Pending;
   std::vector<BlockWant> Unsent; ///< those of Pending that Submit has not seen
-  std::vector<Debt> Debts;
+  std::vector<Debt> Debts;       ///< their blocks are not in memory
+  std::deque<Debt> Deferred;     ///< wait for other replies to leave
+  std::size_t ReplyBytes = MostReplyBytes;
   bool Abandoned = false;
   std::uint32_t FrameSession = 0;
   std::uint64_t Count = 0;

@@ -30,6 +30,7 @@ PageLayout::PageLayout(const BlockDirectory& directory, int owners, std::size_t 
   }
   std::partial_sum(this->ShareBegins.begin(), this->ShareBegins.end(), this->ShareBegins.begin());
   std::vector<std::uint64_t> next(this->ShareBegins);
+  this->Order.reserve(count);
   for (BlockId id = 0; id < count; ++id)
   {
     std::uint64_t& offset = next[directory.GetOwner(id)];

@@ -24,6 +24,9 @@ public:
   /// exceeds 64 bits.
   PageLayout(const BlockDirectory& directory, int owners, std::size_t pageBytes);
 
+  /// Of the layout's own memory, for each block.
+  static constexpr std::size_t BytesPerBlock = sizeof(std::uint64_t) + sizeof(BlockId);
+
   std::uint64_t GetOffset(BlockId id) const { return this->Offsets[id]; }
 
   /// Whole pages, 0 for a block of no bytes.

@@ -5,6 +5,7 @@
 #include "DSMCore/base/Block.h"
 #include "DSMCore/base/Counters.h"
 #include "DSMCore/base/WorkerSlots.h"
+#include "DSMCore/fetch/BlockRequests.h"
 #include "DSMCore/fetch/FetchWorkers.h"
 #include "DSMCore/fetch/LineStatus.h"
 #include "DSMCore/memory/AddressRange.h"
@@ -66,6 +67,8 @@ public:
     std::shared_ptr<WorkerSlots> Slots = nullptr;
     /// See Prefetch.
     bool Prefetch = true;
+    /// For replies to other ranks that have not left yet, in bytes; one is always sent.
+    std::size_t ReplyBytes = BlockRequests::MostReplyBytes;
   };
 
   class Segment;
@@ -169,6 +172,13 @@ public:
   std::byte* GetOwned(BlockId id) const override { return this->GetAddress(id); }
   /// From now on this rank's blocks are read only, and those of others fault.
   void Seal() override;
+
+  /// What finding the blocks takes of every rank's memory.
+  static std::uint64_t CountTableBytes(const BlockDirectory& directory)
+  {
+    constexpr std::size_t entry = sizeof(std::atomic<std::uintptr_t>) + sizeof(LineStatus);
+    return directory.GetCount() * (PageLayout::BytesPerBlock + entry) + directory.GetOwnBytes();
+  }
 
 private:
   friend class PageCache;

@@ -291,15 +291,16 @@ std::size_t PagedStore::Internals::CountNeighbours(const Segment& segment, Block
   return count;
 }
 
-void PagedStore::Internals::Land(const Read& read, const std::byte* bytes)
+std::byte* PagedStore::Internals::Land(const Read& read, const std::byte* bytes)
 {
   {
     const std::lock_guard<std::mutex> lock(this->Guard);
     this->Cache.PrepareSlot();
   }
   const Segment& segment = GetSegment(read.Block);
-  this->Faults->Place(
-    segment.GetAddress(read.Block.Id), bytes, segment.GetDirectory().GetBytes(read.Block.Id));
+  std::byte* const place = segment.GetAddress(read.Block.Id);
+  this->Faults->Place(place, bytes, segment.GetDirectory().GetBytes(read.Block.Id));
+  return place;
 }
 
 void PagedStore::Internals::Show(const Read& read)
@@ -440,6 +441,10 @@ void PagedStore::Internals::RemoveZeros()
 
 void PagedStore::Internals::AddCounters(StoreCounters& counters) const
 {
+  for (const auto& segment : this->Segments)
+  {
+    counters.TableBytes += Segment::CountTableBytes(segment->GetDirectory());
+  }
   counters.Workers += this->Strangers;
   counters.CachedBytes = this->Cache.GetUsed();
   counters.PeakCachedBytes = this->Cache.GetPeak();

@@ -104,7 +104,7 @@ private:
   void GiveRoomBack(const BlockWant& block) noexcept override;
   std::byte* PreparePlace(const BlockWant&) override { return nullptr; }
   void DiscardPlace(std::byte*) noexcept override {}
-  void Land(const Read& read, const std::byte* bytes) override;
+  std::byte* Land(const Read& read, const std::byte* bytes) override;
   void Show(const Read& read) override;
   void Forget(const BlockSegment& segment) override;
   bool IsUnused(const BlockWant& block) const override;

@@ -15,9 +15,12 @@ namespace dsm
 class BlockDirectory
 {
 public:
-  BlockDirectory(std::vector<std::uint32_t> bytes, RoundRobinAssigner assigner)
+  /// `indexBytes`: what whoever publishes keeps on every rank besides, to find its way to the blocks.
+  BlockDirectory(
+    std::vector<std::uint32_t> bytes, RoundRobinAssigner assigner, std::uint64_t indexBytes = 0)
     : Bytes(std::move(bytes))
     , Assigner(assigner)
+    , IndexBytes(indexBytes)
   {
   }
 
@@ -29,12 +32,18 @@ public:
   /// Sum over the blocks of one owner, each rounded up to a multiple of `unit`.
   std::uint64_t GetResidentBytes(int owner, std::size_t unit = BlockAlignment) const;
   std::uint64_t GetTotalBytes() const;
+  /// What the directory, and the index of those who published, take on every rank.
+  std::uint64_t GetOwnBytes() const
+  {
+    return this->GetCount() * sizeof(std::uint32_t) + this->IndexBytes;
+  }
   /// Equal directories have equal ones.
   std::uint64_t GetFingerprint() const;
 
 private:
   std::vector<std::uint32_t> Bytes;
   RoundRobinAssigner Assigner;
+  std::uint64_t IndexBytes = 0;
 };
 
 } // namespace dsm

@@ -84,8 +84,9 @@ int BlockStore::CountWorkers() const
 void BlockStore::Configure()
 {
   ObjectStore::Settings objects;
-  objects.CacheBytes =
-    static_cast<std::size_t>(std::min<std::uint64_t>(this->CacheBytes, this->Current.CacheBytes));
+  objects.CacheBytes = static_cast<std::size_t>(
+    std::min<std::uint64_t>(this->Room.CacheBytes, this->Current.CacheBytes));
+  objects.ReplyBytes = static_cast<std::size_t>(this->Room.ReplyBytes);
   objects.Workers = this->CountWorkers();
   objects.Slots = this->Slots;
   objects.Prefetch = this->Current.Prefetch;
@@ -99,6 +100,7 @@ void BlockStore::Configure()
   {
     PagedStore::Settings paged;
     paged.CacheBytes = objects.CacheBytes;
+    paged.ReplyBytes = objects.ReplyBytes;
     paged.Workers = objects.Workers;
     paged.Slots = this->Slots;
     paged.Prefetch = this->Current.Prefetch;
@@ -128,7 +130,8 @@ void BlockStore::FindBudget()
   this->Budget = { this->AvailableBytes / DefaultPart, this->AvailableBytes };
 }
 
-BlockStore::Decision BlockStore::Decide(const std::string& what, const BlockDirectory* next)
+BlockStore::Decision BlockStore::Decide(
+  const std::string& what, const BlockDirectory* next, Decision& fallback)
 {
   this->Messages.GetRanksOnHost(); // collective the first time
   this->Groups = HostGroups::Find(this->Messages, this->Current.HostSharing);
@@ -154,15 +157,15 @@ BlockStore::Decision BlockStore::Decide(const std::string& what, const BlockDire
   this->Messages.RunTogether(what,
     [&]
     {
-      const int rank = this->Messages.GetRank();
       const MemoryOrganization wanted = this->Current.Organization;
       const MemoryPlan plan = this->MakePlan(stances, next);
-      decision.Chosen = plan.Decide(wanted);
-      decision.Explanation = plan.Explain(wanted, decision.Chosen);
-      decision.CacheBytes = plan.GetCacheBytes(decision.Chosen, rank);
-      constexpr auto without = MemoryOrganization::ObjectBased;
-      decision.ExplanationWithoutCopies = plan.Explain(wanted, without);
-      decision.CacheBytesWithoutCopies = plan.GetCacheBytes(without, rank);
+      const auto decide = [&](MemoryOrganization chosen)
+      {
+        return Decision{ chosen, plan.GetRoom(chosen, this->Messages.GetRank()),
+          plan.Explain(wanted, chosen) };
+      };
+      decision = decide(plan.Decide(wanted));
+      fallback = decide(MemoryOrganization::ObjectBased);
     });
   return decision;
 }
@@ -197,19 +200,20 @@ MemoryPlan BlockStore::MakePlan(
 void BlockStore::PutInForce(Decision&& decision)
 {
   this->Explanation = std::move(decision.Explanation);
-  this->CacheBytes = decision.CacheBytes;
+  this->Room = decision.Room;
   this->Configure();
   this->Settled = true;
 }
 
 void BlockStore::Settle()
 {
-  Decision decision = this->Decide("The data cannot be kept as they should", nullptr);
-  this->MoveTo(decision);
+  Decision fallback;
+  Decision decision = this->Decide("The data cannot be kept as they should", nullptr, fallback);
+  this->MoveTo(decision, std::move(fallback));
   this->PutInForce(std::move(decision));
 }
 
-void BlockStore::MoveTo(Decision& decision)
+void BlockStore::MoveTo(Decision& decision, Decision&& fallback)
 {
   if (IsPaged(decision.Chosen) || IsPaged(this->InForce))
   {
@@ -232,9 +236,7 @@ void BlockStore::MoveTo(Decision& decision)
     {
       throw;
     }
-    decision.Chosen = MemoryOrganization::ObjectBased;
-    decision.Explanation = std::move(decision.ExplanationWithoutCopies);
-    decision.CacheBytes = decision.CacheBytesWithoutCopies;
+    decision = std::move(fallback);
   }
 }
 
@@ -280,7 +282,8 @@ void BlockStore::GiveUpCopies()
 std::shared_ptr<BlockSegment> BlockStore::Publish(const std::string& what, BlockDirectory directory,
   FragmentSource& source, FragmentSink& sink, const std::function<void(double)>& progress)
 {
-  Decision decision = this->Decide(what, &directory);
+  Decision fallback;
+  Decision decision = this->Decide(what, &directory, fallback);
   const auto publish = [&](auto& store)
   { return store.Publish(what, std::move(directory), source, sink, progress); };
   std::shared_ptr<BlockSegment> segment;
@@ -291,11 +294,11 @@ std::shared_ptr<BlockSegment> BlockStore::Publish(const std::string& what, Block
   {
     segment = publish(this->Objects);
     this->Segments.Add(segment);
-    this->MoveTo(decision);
+    this->MoveTo(decision, std::move(fallback));
   }
   else
   {
-    this->MoveTo(decision);
+    this->MoveTo(decision, std::move(fallback));
     segment = this->Visit(publish);
     this->Segments.Add(segment);
   }

@@ -126,28 +126,25 @@ private:
     std::uint64_t Choice; ///< digest of what must be equal on all ranks
   };
 
-  /// How things are to be kept, agreed by all ranks.
+  /// How things are to be kept, agreed by all ranks, and what the user is told.
   struct Decision
   {
     MemoryOrganization Chosen = MemoryOrganization::ObjectBased;
-    /// Of this rank, and what the user is told; with the organisation chosen, and where copies fail
-    /// that Automatic wanted.
-    std::uint64_t CacheBytes = 0;
+    MemoryPlan::Room Room; ///< of this rank
     std::string Explanation;
-    std::uint64_t CacheBytesWithoutCopies = 0;
-    std::string ExplanationWithoutCopies;
   };
 
   /// Collective: for what is published and, unless null, for what is to be, which may then be added
-  /// without fail. Throws the same Error, which begins with `what`, on every rank.
-  Decision Decide(const std::string& what, const BlockDirectory* next);
+  /// without fail. `fallback`: should copies fail that Automatic wants. Throws the same Error, which
+  /// begins with `what`, on every rank.
+  Decision Decide(const std::string& what, const BlockDirectory* next, Decision& fallback);
   MemoryPlan MakePlan(const std::vector<Stance>& stances, const BlockDirectory* next) const;
   void FindBudget();
   /// Of the stores that fetch.
   int CountWorkers() const;
   /// Collective: moves segments between the stores, or makes up its mind otherwise where it may.
   /// Throws when they cannot be replicated as they should.
-  void MoveTo(Decision& decision);
+  void MoveTo(Decision& decision, Decision&& fallback);
   void Replicate();
   /// Local: no segment has copies from now on.
   void GiveUpCopies();
@@ -164,7 +161,7 @@ private:
   std::string Explanation;
   MemoryPlan::Budget Budget;
   std::uint64_t AvailableBytes = 0; ///< to this rank, when first asked
-  std::uint64_t CacheBytes = 0;
+  MemoryPlan::Room Room;
   /// As of the last plan.
   std::shared_ptr<const HostGroups> Groups;
   SegmentList<BlockSegment> Segments;

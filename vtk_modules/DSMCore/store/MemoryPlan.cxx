@@ -2,7 +2,9 @@
 #include "DSMCore/store/MemoryPlan.h"
 
 #include "DSMCore/base/Error.h"
+#include "DSMCore/fetch/BlockRequests.h"
 #include "DSMCore/memory/HostMemory.h"
+#include "DSMCore/paged/PagedStore.h"
 #include "DSMCore/table/BlockTable.h"
 
 #include <algorithm>
@@ -10,6 +12,14 @@
 
 namespace dsm
 {
+
+namespace
+{
+
+/// Of the memory that cache and messages share, for messages.
+constexpr std::uint64_t MessagePart = 16;
+
+} // namespace
 
 MemoryPlan::MemoryPlan(std::vector<const BlockDirectory*> segments, const HostGroups& groups,
   std::vector<Budget> budgets, std::size_t page)
@@ -22,6 +32,11 @@ MemoryPlan::MemoryPlan(std::vector<const BlockDirectory*> segments, const HostGr
 {
   this->Count(this->Blocks);
   this->Count(this->Pages);
+  for (const BlockDirectory* directory : this->Segments)
+  {
+    this->Blocks.Tables += BlockTable::CountTableBytes(*directory);
+    this->Pages.Tables += PagedStore::Segment::CountTableBytes(*directory);
+  }
   for (int rank = 0; rank < static_cast<int>(this->Copies.size()); ++rank)
   {
     auto& copies = this->Copies[static_cast<std::size_t>(rank)];
@@ -62,26 +77,42 @@ void MemoryPlan::Count(Sums& sums) const
 std::uint64_t MemoryPlan::GetNeed(MemoryOrganization organization, int rank) const
 {
   const Sums& sums = this->GetSums(organization);
-  const std::uint64_t resident = sums.Resident[static_cast<std::size_t>(rank)];
+  const auto index = static_cast<std::size_t>(rank);
+  const bool replicated = organization == MemoryOrganization::Replicated;
+  return sums.Resident[index] + sums.Tables +
+    (replicated                       ? this->Copies[index]
+        : this->Fetches(organization) ? LeastRoom * sums.Largest
+                                      : 0);
+}
+
+bool MemoryPlan::Fetches(MemoryOrganization organization) const
+{
   switch (organization)
   {
     case MemoryOrganization::Replicated:
-      return resident + this->Copies[static_cast<std::size_t>(rank)];
+      return false;
     case MemoryOrganization::PageBased:
-      return resident + (this->Budgets.size() > 1 ? sums.Largest : 0);
+      return this->Budgets.size() > 1;
     default: // nothing is cached that the group has
-      return resident + (this->OneGroup ? 0 : sums.Largest);
+      return !this->OneGroup;
   }
 }
 
-std::uint64_t MemoryPlan::GetCacheBytes(MemoryOrganization organization, int rank) const
+MemoryPlan::Room MemoryPlan::GetRoom(MemoryOrganization organization, int rank) const
 {
   const Budget& budget = this->Budgets[static_cast<std::size_t>(rank)];
+  const Sums& sums = this->GetSums(organization);
   const std::uint64_t need = this->GetNeed(organization, rank);
-  const std::uint64_t resident =
-    this->GetSums(organization).Resident[static_cast<std::size_t>(rank)];
   const std::uint64_t all = std::max(budget.Bytes, std::min(need, budget.Limit));
-  return all - std::min(all, resident);
+  const std::uint64_t taken = sums.Resident[static_cast<std::size_t>(rank)] + sums.Tables;
+  Room room{ all - std::min(all, taken), 0 };
+  if (this->Fetches(organization))
+  {
+    room.ReplyBytes = std::max(sums.Largest,
+      std::min<std::uint64_t>(room.CacheBytes / MessagePart, BlockRequests::MostReplyBytes));
+    room.CacheBytes -= std::min(room.CacheBytes, room.ReplyBytes + sums.Largest);
+  }
+  return room;
 }
 
 // -- Decisions -------------------------------------------------------------------------------------
@@ -113,12 +144,13 @@ int MemoryPlan::FindRankCount(MemoryOrganization organization) const
     least = std::min(least, budget.Limit);
   }
   const Sums& sums = this->GetSums(organization);
-  if (least < sums.Largest || sums.Total == 0)
+  const std::uint64_t besides = sums.Tables + LeastRoom * sums.Largest;
+  if (least < besides || sums.Total == 0)
   {
     return sums.Total == 0 ? 1 : 0;
   }
   // No fewer than these would do; from there on, the shares are counted.
-  const std::uint64_t room = least - sums.Largest;
+  const std::uint64_t room = least - besides;
   std::uint64_t ranks = room > 0 ? (sums.Total + room - 1) / room : MostRanks;
   while (ranks < MostRanks)
   {
@@ -173,8 +205,9 @@ void MemoryPlan::Refuse(MemoryOrganization organization, int rank) const
   const bool replicated = organization == MemoryOrganization::Replicated;
   std::string text = replicated ? "All data on every rank take " : "Its part of the data takes ";
   text += FormatMebibytes(need) + " (" + std::to_string(need) + " bytes" +
-    (replicated ? "" : ", a cache of one brick included") + ") of rank " + std::to_string(rank) +
-    "'s memory, which may take " + FormatMebibytes(replicated ? budget.Bytes : budget.Limit) +
+    (replicated ? "" : ", a cache of one brick and messages included") + ") of rank " +
+    std::to_string(rank) + "'s memory, which may take " +
+    FormatMebibytes(replicated ? budget.Bytes : budget.Limit) +
     ". Raise the memory per rank (DSMMemory), ";
   if (replicated)
   {

@@ -44,17 +44,27 @@ public:
   /// A sentence: what was chosen, and why.
   std::string Explain(MemoryOrganization wanted, MemoryOrganization chosen) const;
 
-  /// What the resident set, or everything, and a cache of one block take of a rank.
+  /// What the resident set, or everything, and the tables take of a rank; where blocks are fetched,
+  /// also a cache of one block, a reply with one, and one that has just come.
   std::uint64_t GetNeed(MemoryOrganization organization, int rank) const;
 
-  /// What is left for a rank's cache when its own blocks are in memory.
-  std::uint64_t GetCacheBytes(MemoryOrganization organization, int rank) const;
+  /// What is left of a rank's memory when its own blocks and the tables are there.
+  struct Room
+  {
+    std::uint64_t CacheBytes = 0;
+    /// For replies that have not left yet.
+    std::uint64_t ReplyBytes = 0;
+  };
+  Room GetRoom(MemoryOrganization organization, int rank) const;
 
-  /// The least number of ranks with whose own blocks and one in the cache the smallest budget is
-  /// kept, or 0 when none is.
+  /// The least number of ranks whose need the smallest budget meets, or 0 when there is none.
   int FindRankCount(MemoryOrganization organization) const;
 
 private:
+  /// Blocks that there must be room for where they are fetched: in the cache, in a reply to another
+  /// rank, and in a message that has come and is being put into the cache.
+  static constexpr std::uint64_t LeastRoom = 3;
+
   /// Of the blocks in memory, in units of BlockAlignment or of pages.
   struct Sums
   {
@@ -69,6 +79,7 @@ private:
     std::size_t Unit;
     std::uint64_t Largest = 0;
     std::uint64_t Total = 0;
+    std::uint64_t Tables = 0;            ///< on every rank, to find them
     std::vector<std::uint64_t> Resident; ///< by rank
   };
 
@@ -77,6 +88,8 @@ private:
     return organization == MemoryOrganization::PageBased ? this->Pages : this->Blocks;
   }
   void Count(Sums& sums) const;
+  /// Whether any block may have to come from another rank.
+  bool Fetches(MemoryOrganization organization) const;
   /// The rank that lacks most; -1 when all have enough.
   int FindPoorest(MemoryOrganization organization) const;
   [[noreturn]] void Refuse(MemoryOrganization organization, int rank) const;

@@ -54,6 +54,11 @@ public:
   /// Whether blocks must be fetched.
   bool IsWhole() const { return this->Missing == 0; }
 
+  /// What finding the blocks takes of every rank's memory.
+  static std::uint64_t CountTableBytes(const BlockDirectory& directory)
+  {
+    return directory.GetCount() * sizeof(BlockLine) + directory.GetOwnBytes();
+  }
   /// What replicating takes of `rank`'s memory, beyond the blocks that it owns.
   static std::uint64_t CountReplicaBytes(
     const BlockDirectory& directory, const HostGroups& groups, int rank);

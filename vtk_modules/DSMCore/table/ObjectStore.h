@@ -5,6 +5,7 @@
 #include "DSMCore/base/Block.h"
 #include "DSMCore/base/Counters.h"
 #include "DSMCore/base/WorkerSlots.h"
+#include "DSMCore/fetch/BlockRequests.h"
 #include "DSMCore/fetch/BlockSource.h"
 #include "DSMCore/fetch/FetchWorkers.h"
 #include "DSMCore/publish/BlockDirectory.h"
@@ -53,6 +54,8 @@ public:
     std::shared_ptr<WorkerSlots> Slots = nullptr;
     /// See Prefetch.
     bool Prefetch = true;
+    /// For replies to other ranks that have not left yet, in bytes; one is always sent.
+    std::size_t ReplyBytes = BlockRequests::MostReplyBytes;
   };
 
   using Segment = BlockTable;

@@ -98,6 +98,7 @@ void ObjectStore::Internals::Configure(const Settings& settings)
   }
   this->Current = settings;
   this->Workers.Resize<Worker>(settings.Workers);
+  this->Requests.SetReplyBytes(settings.ReplyBytes);
   this->Cache.SetCapacity(settings.CacheBytes);
   this->Cache.Shrink();
 }
@@ -197,12 +198,19 @@ void ObjectStore::Internals::DiscardPlace(std::byte* place) noexcept
   this->Cache.Discard(place);
 }
 
-void ObjectStore::Internals::Land(const Read& read, const std::byte* bytes)
+std::byte* ObjectStore::Internals::Land(const Read& read, const std::byte* bytes)
 {
-  if (bytes != read.Place)
+  std::byte* place = read.Place;
+  if (!place)
   {
-    std::copy_n(bytes, GetBlockLine(read.Block).Bytes, read.Place);
+    const std::lock_guard<std::mutex> lock(this->Guard);
+    place = this->PreparePlace(read.Block);
   }
+  if (bytes != place)
+  {
+    std::copy_n(bytes, GetBlockLine(read.Block).Bytes, place);
+  }
+  return place;
 }
 
 void ObjectStore::Internals::Show(const Read& read)
@@ -265,6 +273,7 @@ void ObjectStore::Internals::AddCounters(StoreCounters& counters) const
   for (const auto& segment : this->Segments)
   {
     counters.SharedBytes += static_cast<const Segment&>(*segment).GetSharedBytes();
+    counters.TableBytes += BlockTable::CountTableBytes(segment->GetDirectory());
   }
   counters.CachedBytes = this->Cache.GetUsed();
   counters.PeakCachedBytes = this->Cache.GetPeak();

@@ -162,6 +162,7 @@ StoreCounters ReplicatedStore::GetCounters() const
     counters.ResidentBytes += segment->GetResidentBytes();
     counters.ReplicaBytes += segment->GetReplicaBytes();
     counters.SharedBytes += segment->GetSharedBytes();
+    counters.TableBytes += BlockTable::CountTableBytes(segment->GetDirectory());
   }
   return counters;
 }

@@ -334,7 +334,8 @@ void TriangleMeshBuilder::GatherBricks(BricksOfCells bricksOfCells)
 
 dsm::BlockDirectory TriangleMeshBuilder::CreateBrickDirectory() const
 {
-  return { this->BrickBytes, dsm::RoundRobinAssigner(this->Messages.GetSize()) };
+  return { this->BrickBytes, dsm::RoundRobinAssigner(this->Messages.GetSize()),
+    this->Mesh->Bricks.GetBytes() };
 }
 
 std::unique_ptr<dsm::FragmentSource> TriangleMeshBuilder::TakeBrickSource()

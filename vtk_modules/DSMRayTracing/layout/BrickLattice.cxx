@@ -2,6 +2,7 @@
 #include "DSMRayTracing/layout/BrickLattice.h"
 
 #include "DSMCore/base/Error.h"
+#include "DSMRayTracing/layout/MacrocellHierarchy.h"
 #include "DSMRayTracing/layout/VoxelBrickHeader.h"
 
 #include <glm/common.hpp>
@@ -95,7 +96,8 @@ dsm::BlockDirectory BrickLattice::CreateDirectory(int ranks) const
   {
     bytes[id] = this->GetBlockBytes(id);
   }
-  return dsm::BlockDirectory(std::move(bytes), dsm::RoundRobinAssigner(ranks));
+  return dsm::BlockDirectory(
+    std::move(bytes), dsm::RoundRobinAssigner(ranks), MacrocellHierarchy::CountBytes(*this));
 }
 
 } // namespace rt

@@ -98,6 +98,19 @@ MacrocellHierarchy::MacrocellHierarchy(
     what, [&] { *this = MacrocellHierarchy(lattice, Unpack(all, segment.GetDirectory())); });
 }
 
+std::uint64_t MacrocellHierarchy::CountBytes(const BrickLattice& lattice)
+{
+  constexpr std::int64_t ratio = 1 << Shift;
+  Index3 size = lattice.GetBricks();
+  std::int64_t count = size.x * size.y * size.z;
+  for (std::int64_t level = count; level > 1; count += level)
+  {
+    size = (size + Index3(ratio - 1)) / Index3(ratio);
+    level = size.x * size.y * size.z;
+  }
+  return static_cast<std::uint64_t>(count) * sizeof(ValueRange);
+}
+
 MacrocellHierarchy::MacrocellHierarchy(const BrickLattice& lattice, std::vector<ValueRange> bricks)
 {
   Level finest;

@@ -6,6 +6,7 @@
 #include "DSMCore/transport/Messenger.h"
 #include "DSMRayTracing/layout/BrickLattice.h"
 
+#include <cstdint>
 #include <vector>
 
 namespace rt
@@ -51,6 +52,9 @@ public:
     const BrickLattice& lattice, const dsm::BlockSegment& segment, dsm::Messenger& messenger);
   /// Local: builds the levels over the ranges of all bricks, in order of their ids.
   MacrocellHierarchy(const BrickLattice& lattice, std::vector<ValueRange> bricks);
+
+  /// What the levels take.
+  static std::uint64_t CountBytes(const BrickLattice& lattice);
 
   /// Level 0 is the finest.
   const std::vector<Level>& GetLevels() const { return this->Levels; }

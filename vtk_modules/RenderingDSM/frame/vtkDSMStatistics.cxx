@@ -63,6 +63,7 @@ struct vtkDSMStatistics::RankRow
   std::int64_t BytesResident;
   std::int64_t BytesShared;
   std::int64_t BytesCopied;
+  std::int64_t BytesOfTables;
   std::int64_t BytesCached;
   std::int64_t PeakBytesCached;
   std::int64_t CacheCapacity;
@@ -95,6 +96,7 @@ struct vtkDSMStatistics::RankRow
     visit(Count("BytesResident", &RankRow::BytesResident));
     visit(Count("BytesShared", &RankRow::BytesShared));
     visit(Count("BytesCopied", &RankRow::BytesCopied));
+    visit(Count("BytesOfTables", &RankRow::BytesOfTables));
     visit(Count("BytesCached", &RankRow::BytesCached));
     visit(Count("PeakBytesCached", &RankRow::PeakBytesCached));
     visit(Count("CacheCapacity", &RankRow::CacheCapacity));
@@ -159,6 +161,7 @@ void vtkDSMStatistics::Gather(dsm::Messenger& messenger, const rt::Frame& frame)
   mine.BytesResident = static_cast<std::int64_t>(counters.ResidentBytes);
   mine.BytesShared = static_cast<std::int64_t>(counters.SharedBytes);
   mine.BytesCopied = static_cast<std::int64_t>(counters.ReplicaBytes);
+  mine.BytesOfTables = static_cast<std::int64_t>(counters.TableBytes);
   mine.BytesCached = static_cast<std::int64_t>(counters.CachedBytes);
   mine.PeakBytesCached = static_cast<std::int64_t>(counters.PeakCachedBytes);
   mine.CacheCapacity = static_cast<std::int64_t>(counters.CacheCapacity);
