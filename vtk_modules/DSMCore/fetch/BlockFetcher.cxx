@@ -93,7 +93,7 @@ void BlockFetcher::BeginFrame(bool agreed)
   this->Requests.BeginFrame();
 
   const std::lock_guard<std::mutex> lock(this->Guard);
-  this->Frame = StoreCounters{};
+  this->FrameCounters = StoreCounters{};
   this->Workers.BeginFrame();
   this->Phase = FramePhase::Open;
   this->Opened();
@@ -141,7 +141,7 @@ void BlockFetcher::AskForForeseen()
       {
         return;
       }
-      ++this->Frame.Prefetches;
+      ++this->FrameCounters.Prefetches;
     }
     this->Foreseen.pop_front();
   }
@@ -287,7 +287,7 @@ void BlockFetcher::EndFrame()
   this->Closing();
   this->Workers.EndFrame();
   this->AbandonAll();
-  this->Frame.PrefetchesUsed =
+  this->FrameCounters.PrefetchesUsed =
     this->Prefetches.EndFrame([this](const BlockWant& block) { return this->Settle(block); });
   this->Workers.WakeAll();
   this->Closed();
@@ -443,7 +443,7 @@ void BlockFetcher::Prefetch(const BlockSegment& segment, const BlockId* ids, std
 
 void BlockFetcher::CountEvictions(std::size_t count, std::size_t unused)
 {
-  this->Frame.Evictions += count;
+  this->FrameCounters.Evictions += count;
   this->Prefetches.CountLosses(unused);
 }
 
@@ -463,7 +463,7 @@ StoreCounters BlockFetcher::GetCounters()
 {
   const auto workers = this->GetWorkerCounters();
   const std::lock_guard<std::mutex> lock(this->Guard);
-  StoreCounters counters = this->Frame;
+  StoreCounters counters = this->FrameCounters;
   counters.Requests = this->Requests.GetCount();
   counters.BytesSent = this->Requests.GetBytesSent();
   counters.BytesReceived = this->Requests.GetBytesReceived();

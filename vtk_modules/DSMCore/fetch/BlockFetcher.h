@@ -161,7 +161,7 @@ protected:
   SegmentList<BlockSegment> Segments;
   FramePhase Phase = FramePhase::Closed;
   std::string Cause;
-  StoreCounters Frame;
+  StoreCounters FrameCounters;
   PrefetchLedger Prefetches;
   std::vector<Read> Reads; ///< communication thread only
   /// What reads from other ranks may take of the cache. Where ranks have blocks in memory for a time
@@ -182,8 +182,6 @@ private:
   void AskForForeseen();
   /// Begins a read; false when it must wait for room.
   bool TryAsk(const BlockWant& block);
-  /// For a block that room was made for; gives it back when it throws.
-  void Ask(const BlockWant& block);
   bool PollSources();
   bool SubmitReads();
   void AbandonAll();

@@ -87,11 +87,13 @@ void BlockRequests::Abandon() noexcept
 BlockWant BlockRequests::Find(const BlockName& name, int source, const char* deed) const
 {
   const BlockSegment* const segment = this->Store.Find(name.Segment);
-  if (!segment || name.Id >= segment->GetDirectory().GetCount() || name.Frame != this->FrameSession)
+  if (!segment || name.Id >= segment->GetDirectory().GetCount() ||
+    name.FrameSession != this->FrameSession)
   {
     throw Error("Rank " + std::to_string(source) + " " + deed + " block " +
-      std::to_string(name.Id) + " of segment " + std::to_string(name.Segment) + " in frame " +
-      std::to_string(name.Frame) + ", which rank " + std::to_string(this->Messages.GetRank()) +
+      std::to_string(name.Id) + " of segment " + std::to_string(name.Segment) + " in session " +
+      std::to_string(name.FrameSession) + ", which rank " +
+      std::to_string(this->Messages.GetRank()) +
       " does not know. Do all ranks run the same build?");
   }
   return { segment, name.Id };
@@ -101,7 +103,7 @@ void BlockRequests::Serve(const Message& message)
 {
   for (const BlockName& name : DecodeSeveral<BlockName>(message, MessageKind::BlockRequest))
   {
-    if (name.Frame < this->FrameSession)
+    if (name.FrameSession < this->FrameSession)
     {
       continue;
     }
@@ -194,7 +196,7 @@ void BlockRequests::Reply(const Debt& debt, const std::byte* bytes)
 void BlockRequests::Receive(Message& message)
 {
   const auto name = DetachTail<BlockName>(message, MessageKind::BlockReply);
-  if (name.Frame < this->FrameSession || this->Abandoned)
+  if (name.FrameSession < this->FrameSession || this->Abandoned)
   {
     return;
   }

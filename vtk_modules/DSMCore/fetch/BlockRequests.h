@@ -21,8 +21,8 @@ namespace dsm
 /// is under way. Requests to one owner that are ready at the same time travel in one message.
 /// Communication thread.
 ///
-/// Every message names the asker's frame: what belongs to a frame that was cancelled is dropped, for
-/// its segments may be gone.
+/// Every message names the session of the asker's frame: what belongs to a frame that was cancelled is
+/// dropped, for its segments may be gone.
 class BlockRequests final : public BlockSource
 {
 public:
@@ -77,7 +77,7 @@ private:
   struct BlockName
   {
     std::uint32_t Segment;
-    std::uint32_t Frame;
+    std::uint32_t FrameSession;
     BlockId Id;
   };
 

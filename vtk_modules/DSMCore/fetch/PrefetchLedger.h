@@ -22,7 +22,7 @@ public:
   /// With a cache of so many bytes.
   void BeginFrame(std::size_t cacheBytes)
   {
-    this->Limit = cacheBytes / CachePart;
+    this->Limit = cacheBytes / CacheDivisor;
     this->Arrived = 0;
     this->Lost = 0;
     this->Joined = 0;
@@ -83,8 +83,8 @@ private:
     std::size_t Footprint;
   };
 
-  /// Of the cache, for blocks that nobody has used.
-  static constexpr std::size_t CachePart = 4;
+  /// The cache is divided by it for blocks that nobody has used.
+  static constexpr std::size_t CacheDivisor = 4;
   /// Blocks that are looked at for each one that is added: two, so that room is found again.
   static constexpr int Steps = 2;
 

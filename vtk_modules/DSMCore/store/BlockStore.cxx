@@ -4,6 +4,7 @@
 #include "DSMCore/base/Error.h"
 #include "DSMCore/memory/AddressRange.h"
 #include "DSMCore/memory/HostMemory.h"
+#include "DSMCore/store/StoreInterface.h"
 
 #include <algorithm>
 #include <iterator>
@@ -12,12 +13,16 @@
 namespace dsm
 {
 
+template class StoreInterface<ObjectStore>;
+template class StoreInterface<PagedStore>;
+template class StoreInterface<ReplicatedStore>;
+
 namespace
 {
 
-/// Of the memory that a host has left, for the blocks of its ranks when the user says nothing: the
-/// rest is for the application.
-constexpr std::uint64_t DefaultPart = 2;
+/// The memory that a host has left is divided by it for the blocks of its ranks when the user says
+/// nothing: the rest is for the application.
+constexpr std::uint64_t DefaultDivisor = 2;
 
 bool IsPaged(MemoryOrganization organization)
 {
@@ -127,7 +132,7 @@ void BlockStore::FindBudget()
     this->AvailableBytes = std::max<std::uint64_t>(
       GetAvailableHostMemory() / static_cast<std::uint64_t>(this->Messages.GetRanksOnHost()), 1);
   }
-  this->Budget = { this->AvailableBytes / DefaultPart, this->AvailableBytes };
+  this->Budget = { this->AvailableBytes / DefaultDivisor, this->AvailableBytes };
 }
 
 BlockStore::Decision BlockStore::Decide(

@@ -16,8 +16,8 @@ namespace dsm
 namespace
 {
 
-/// Of the memory that cache and messages share, for messages.
-constexpr std::uint64_t MessagePart = 16;
+/// The memory that cache and messages share is divided by it for messages.
+constexpr std::uint64_t MessageDivisor = 16;
 
 } // namespace
 
@@ -109,7 +109,7 @@ MemoryPlan::Room MemoryPlan::GetRoom(MemoryOrganization organization, int rank) 
   if (this->Fetches(organization))
   {
     room.ReplyBytes = std::max(sums.Largest,
-      std::min<std::uint64_t>(room.CacheBytes / MessagePart, BlockRequests::MostReplyBytes));
+      std::min<std::uint64_t>(room.CacheBytes / MessageDivisor, BlockRequests::MostReplyBytes));
     room.CacheBytes -= std::min(room.CacheBytes, room.ReplyBytes + sums.Largest);
   }
   return room;

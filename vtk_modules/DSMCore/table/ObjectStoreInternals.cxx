@@ -10,9 +10,10 @@ namespace dsm
 namespace
 {
 
-/// Part of the cache that is evicted ahead of need when room must be made: freeing waits for every
-/// worker's quiescent point, and waiting once for several blocks is cheaper than once for each.
-constexpr std::size_t SparePart = 32;
+/// The cache is divided by it for what is evicted ahead of need when room must be made: freeing waits
+/// for every worker's quiescent point, and waiting once for several blocks is cheaper than once for
+/// each.
+constexpr std::size_t SpareDivisor = 32;
 
 } // namespace
 
@@ -251,7 +252,7 @@ bool ObjectStore::Internals::Settle(const BlockWant& block)
 void ObjectStore::Internals::Opened()
 {
   const std::size_t footprint = BlockCache::GetFootprint(this->GetLargestBlock());
-  this->SpareBytes = this->Cache.GetCapacity() / SparePart / footprint * footprint;
+  this->SpareBytes = this->Cache.GetCapacity() / SpareDivisor / footprint * footprint;
   this->Cache.Reclaim(this->GetOldestEpoch());
   this->Cache.ResetPeak();
   this->RoomForOthers = this->Cache.GetCapacity() - this->GetRoomForOwn();
