@@ -195,6 +195,17 @@ void vtkPVDSMDelivery::UpdateInSpiteOfCache(vtkPVDataRepresentation* representat
     ->SetNeedsUpdate(false);
 }
 
+bool vtkPVDSMDelivery::IsChosen(vtkPVDataRepresentation* representation, vtkView* view)
+{
+  bool isChosen = representation->GetVisibility();
+  for (int number = 0; !isChosen && number < view->GetNumberOfRepresentations(); ++number)
+  {
+    auto* composite = vtkCompositeRepresentation::SafeDownCast(view->GetRepresentation(number));
+    isChosen = composite && composite->GetActiveRepresentation() == representation;
+  }
+  return isChosen;
+}
+
 void vtkPVDSMDelivery::KeepData(vtkPVDataRepresentation* representation,
   vtkPartitionedDataSet* placeholder, const Shown& shown, vtkInformation* inInfo,
   vtkInformation* outInfo)

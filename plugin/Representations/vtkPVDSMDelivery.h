@@ -26,6 +26,9 @@ public:
   /// the view relies on its cache of time steps, but that holds our placeholder, not the data.
   static void UpdateInSpiteOfCache(vtkPVDataRepresentation* representation);
 
+  /// Whether it is the way that its dataset is shown in a view, or will be once it is no longer hidden.
+  static bool IsChosen(vtkPVDataRepresentation* representation, vtkView* view);
+
   /// What a representation shows.
   struct Shown
   {

@@ -54,6 +54,10 @@ void vtkPVDSMTracedDisplay::SetVisibility(bool visible)
 {
   this->Prop->SetVisibility(visible);
   this->SelectionActor->SetVisibility(visible);
+  if (!visible && this->View && !vtkPVDSMDelivery::IsChosen(this->Representation, this->View))
+  {
+    this->Leave(); // with its bricks, which a dataset that is only hidden keeps
+  }
   if (!visible || !this->View || this->IsInView)
   {
     return;

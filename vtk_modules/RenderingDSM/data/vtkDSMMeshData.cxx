@@ -450,8 +450,12 @@ void vtkDSMMeshData::Publish()
     const double share = 1.0 / static_cast<double>(kinds.size());
     const auto progress = [this, done, share](double part)
     { vtkDSMProgress::Tell(this->Input.Mapper, done + share * part); };
-    const std::shared_ptr<rt::TriangleMesh> mesh =
-      rt::PublishMesh("the surface", piece, settings, group->GetStore(), messenger, progress);
+    const std::shared_ptr<rt::TriangleMesh> mesh = group->WithRoom(
+      [&]
+      {
+        return rt::PublishMesh(
+          "the surface", piece, settings, group->GetStore(), messenger, progress);
+      });
     done += share;
     const std::shared_ptr<const rt::TriangleMesh> shared(mesh.get(),
       [group, mesh](const rt::TriangleMesh*) { group->GetStore().Retire(mesh->Segment); });

@@ -313,10 +313,14 @@ std::shared_ptr<const rt::VoxelField> vtkDSMVolumeData::PublishLattice(std::size
   {
     return nullptr;
   }
-  rt::VoxelFragmentSource source(field->Lattice, std::move(sources));
-  rt::VoxelBrickSink sink(field->Lattice);
-  field->Segment = this->Group->GetStore().Publish(
-    "the " + purpose + " '" + choice.Name + "'", std::move(*directory), source, sink, progress);
+  field->Segment = this->Group->WithRoom(
+    [&]
+    {
+      rt::VoxelFragmentSource source(field->Lattice, sources);
+      rt::VoxelBrickSink sink(field->Lattice);
+      return this->Group->GetStore().Publish(
+        "the " + purpose + " '" + choice.Name + "'", *directory, source, sink, progress);
+    });
   field->Hierarchy = rt::MacrocellHierarchy(field->Lattice, *field->Segment, messenger);
   return field;
 }

@@ -21,6 +21,7 @@ public:
 
   bool HasNewData() override;
   void GiveUpBlocks() override;
+  bool HasBlocks() const override { return this->Data != nullptr; }
   void Update(const std::shared_ptr<vtkDSMRankGroup>& group, bool newData) override;
   /// One object for each of the meshes.
   void AddTo(rt::Scene& scene) override;

@@ -22,6 +22,7 @@ public:
 
   bool HasNewData() override;
   void GiveUpBlocks() override;
+  bool HasBlocks() const override { return this->Iso || this->Color; }
   void Update(const std::shared_ptr<vtkDSMRankGroup>& group, bool newData) override;
   /// One object for each of the volume's lattices.
   void AddTo(rt::Scene& scene) override;

@@ -12,6 +12,10 @@
 #include "vtkMPICommunicator.h"
 #endif
 
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
+
 #include <algorithm>
 #include <cstdint>
 #include <cstring>
@@ -85,7 +89,12 @@ std::shared_ptr<vtkDSMRankGroup> vtkDSMRankGroup::Get(vtkMultiProcessController*
   auto group = known.lock();
   if (!group)
   {
-    group = std::make_shared<vtkDSMRankGroup>(CreateTransport(communicator));
+    group = std::shared_ptr<vtkDSMRankGroup>(new vtkDSMRankGroup(CreateTransport(communicator)),
+      [](vtkDSMRankGroup* old)
+      {
+        delete old;
+        ReturnMemory();
+      });
     known = group;
   }
   return group;
@@ -152,6 +161,32 @@ void vtkDSMRankGroup::Configure(Publisher* publisher, const vtkDSMMemorySettings
     ++this->SettingsVersion;
   }
   this->Store.SetSettings(next);
+}
+
+/// Returns whether there was anything to free.
+bool vtkDSMRankGroup::MakeRoom()
+{
+  Publisher* oldest = nullptr;
+  for (const auto& [publisher, settings] : this->Publishers)
+  {
+    if (publisher->GetOldestHidden() != 0 &&
+      (!oldest || publisher->GetOldestHidden() < oldest->GetOldestHidden()))
+    {
+      oldest = publisher;
+    }
+  }
+  if (oldest)
+  {
+    oldest->GiveUpOldestHidden();
+  }
+  return oldest != nullptr;
+}
+
+void vtkDSMRankGroup::ReturnMemory()
+{
+#ifdef __GLIBC__
+  malloc_trim(0); // free keeps what many small blocks took
+#endif
 }
 
 void vtkDSMRankGroup::TellOrganization()

@@ -7,6 +7,7 @@
 #include "DSMRayTracing/frame/FrameRenderer.h"
 #include "vtkDSMMemorySettings.h"
 
+#include <cstdint>
 #include <memory>
 #include <utility>
 #include <vector>
@@ -27,6 +28,11 @@ public:
     /// The blocks are to be kept in another way: retires what this one has published. It
     /// publishes again when it draws the next time.
     virtual void GiveUpBlocks() = 0;
+    /// A time: of the last frame that showed the oldest of what it has blocks of but does not show;
+    /// 0 without any. In the same order on every rank.
+    virtual std::uint64_t GetOldestHidden() const = 0;
+    /// Retires the blocks of that, likewise.
+    virtual void GiveUpOldestHidden() = 0;
   };
 
   /// The group of a controller, made at the first call and kept until its last user lets go. Without
@@ -52,6 +58,30 @@ public:
   /// dsm::Error.
   void Configure(Publisher* publisher, const vtkDSMMemorySettings& settings);
 
+  /// Collective. Calls `work`, which throws dsm::Error on all ranks where memory is short, and again for
+  /// as long as anything hidden can make room: what was shown the longest ago goes first.
+  template <class Work>
+  auto WithRoom(const Work& work)
+  {
+    for (;;)
+    {
+      try
+      {
+        return work();
+      }
+      catch (const dsm::Error&)
+      {
+        if (!this->MakeRoom())
+        {
+          throw;
+        }
+      }
+    }
+  }
+
+  /// Local: gives the memory of what was freed back to the system.
+  static void ReturnMemory();
+
   /// Grows when memory is to be kept otherwise: what was refused may succeed now.
   unsigned GetSettingsVersion() const { return this->SettingsVersion; }
 
@@ -60,6 +90,7 @@ public:
 
 private:
   vtkDSMMemorySettings MergeSettings() const;
+  bool MakeRoom();
 
   std::vector<std::pair<Publisher*, vtkDSMMemorySettings>>
     Publishers; ///< in the order in which they joined

@@ -68,6 +68,17 @@ void vtkDSMScene::Internals::GiveUpBlocks()
   this->Accumulation.Restart();
 }
 
+std::uint64_t vtkDSMScene::Internals::GetOldestHidden() const
+{
+  const vtkDSMSceneMember* oldest = this->Members.FindOldestHidden();
+  return oldest ? oldest->GetTimeShown() : 0;
+}
+
+void vtkDSMScene::Internals::GiveUpOldestHidden()
+{
+  this->Members.FindOldestHidden()->GiveUpBlocks();
+}
+
 void vtkDSMScene::Internals::FindGroup(vtkMultiProcessController* controller)
 {
   const auto group = vtkDSMRankGroup::Get(controller);
@@ -166,8 +177,12 @@ void vtkDSMScene::Internals::Draw()
   this->Group->GetFrameRenderer().SetAbortCheck(
     [=] { return window && window->CheckAbortStatus() != 0; });
   using Result = vtkDSMFrameAccumulation::Result;
-  const Result result = this->Accumulation.Trace(
-    *this->Group, scene, request, wanted, this->GetPace(), this->Statistics->GetFrameSeconds());
+  const Result result = this->Group->WithRoom(
+    [&]
+    {
+      return this->Accumulation.Trace(
+        *this->Group, scene, request, wanted, this->GetPace(), this->Statistics->GetFrameSeconds());
+    });
   if (result == Result::Aborted)
   {
     // The renderer goes on, with the last picture: other ranks may wait for what this one draws.

@@ -16,6 +16,7 @@
 #include "vtkSmartPointer.h"
 #include "vtkWeakPointer.h"
 
+#include <cstdint>
 #include <memory>
 #include <string>
 
@@ -26,6 +27,8 @@ class vtkDSMScene::Internals : public vtkDSMRankGroup::Publisher
 public:
   ~Internals() override;
   void GiveUpBlocks() override;
+  std::uint64_t GetOldestHidden() const override;
+  void GiveUpOldestHidden() override;
 
   /// The ranks that trace together; joins them. Throws dsm::Error, as all that follows, on all ranks.
   void FindGroup(vtkMultiProcessController* controller);

@@ -5,6 +5,7 @@
 #include "DSMRayTracing/scene/Scene.h"
 #include "vtkDSMRankGroup.h"
 
+#include "vtkTimeStamp.h"
 #include "vtkType.h"
 
 #include <memory>
@@ -48,6 +49,7 @@ public:
 
   /// Local, in the same order on every rank: retires the bricks; the next Update publishes them again.
   virtual void GiveUpBlocks() = 0;
+  virtual bool HasBlocks() const = 0;
 
   /// Collective. Takes in what is missing: everything when any rank has new data, else what the
   /// mapper names and is not there yet. What goes wrong is kept as a message.
@@ -57,7 +59,13 @@ public:
   virtual void AddTo(rt::Scene& scene) = 0;
 
   /// The prop of the frame that uses the mapper.
-  void SetProp(vtkProp3D* prop) { this->Prop = prop; }
+  void SetProp(vtkProp3D* prop)
+  {
+    this->Prop = prop;
+    this->Shown.Modified();
+  }
+  /// When a frame last showed it; on every rank in the same order.
+  vtkMTimeType GetTimeShown() const { return this->Shown.GetMTime(); }
 
   /// Reports the messages that are new since the last call.
   void ReportMessages();
@@ -75,6 +83,7 @@ private:
   std::shared_ptr<const rt::ColorMap> Colors;
   const void* ColorsSource = nullptr;
   vtkMTimeType ColorsTime = 0;
+  vtkTimeStamp Shown;
 };
 
 #endif

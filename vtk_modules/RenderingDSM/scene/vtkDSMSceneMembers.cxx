@@ -123,7 +123,12 @@ void vtkDSMSceneMembers::Find(vtkRenderer* renderer)
       }
     });
   // What is left belonged to props that were removed; their bricks leave the store.
-  this->States = std::move(kept);
+  std::swap(this->States, kept);
+  if (std::any_of(kept.begin(), kept.end(), [](const auto& left) { return left != nullptr; }))
+  {
+    kept.clear();
+    vtkDSMRankGroup::ReturnMemory();
+  }
 }
 
 void vtkDSMSceneMembers::GiveUpBlocks()
@@ -141,6 +146,22 @@ void vtkDSMSceneMembers::AddTo(rt::Scene& scene) const
     const Placing placing(member);
     member.State->AddTo(scene);
   }
+}
+
+vtkDSMSceneMember* vtkDSMSceneMembers::FindOldestHidden() const
+{
+  vtkDSMSceneMember* oldest = nullptr;
+  for (const auto& state : this->States)
+  {
+    const bool isShown = std::any_of(this->Shown.begin(), this->Shown.end(),
+      [&](const Member& member) { return member.State == state.get(); });
+    if (!isShown && state->HasBlocks() &&
+      (!oldest || state->GetTimeShown() < oldest->GetTimeShown()))
+    {
+      oldest = state.get();
+    }
+  }
+  return oldest;
 }
 
 void vtkDSMSceneMembers::GetBounds(double bounds[6]) const

@@ -39,6 +39,8 @@ public:
   std::size_t GetCount() const { return this->States.size(); }
 
   void GiveUpBlocks();
+  /// Of the hidden ones that have bricks, the one that was shown the longest ago; null without any.
+  vtkDSMSceneMember* FindOldestHidden() const;
 
   /// What is shown becomes objects of the scene.
   void AddTo(rt::Scene& scene) const;

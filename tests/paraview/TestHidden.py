@@ -1,0 +1,68 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What is hidden keeps its bricks, until something else needs their memory: then what was shown the longest ago
+goes first. What is shown in another way has none."""
+
+import json
+
+from dsm_testing import *
+
+load_plugin()
+EXTENT = (0, 89, 0, 89, 0, 89)
+SCRIPT = "image.SetExtent(piece)\nadd(image, distance(piece) + {amplitude} * np.sin(points(piece)[0]))\n"
+view = create_view()
+view.UseFXAA = 0
+sources = [image_source(SCRIPT.format(amplitude=amplitude), EXTENT) for amplitude in (0.05, 0.1, 0.0)]
+displays = []
+
+
+def get_rows(display):
+    display.SMProxy.UpdatePropertyInformation()
+    return json.loads(str(display.GetProperty("DSMStatistics")).strip("'"))
+
+
+def show_only(number):
+    for source in sources:
+        simple.Hide(source, view)
+    simple.Show(sources[number], view)
+    with Messages() as messages:
+        picture = render(view)
+    check(messages.text.strip() == "", "nothing is reported: " + messages.text)
+    check(get_covered(picture).any(), f"dataset {number} is drawn")
+    return picture, get_rows(displays[number])
+
+
+for source in sources:
+    displays.append(show(source, view, [0.7], "f", DSMMemoryOrganization="Replicated", DSMMemory=64))
+    simple.Hide(source, view)
+simple.Show(sources[0], view)
+place_camera(view)
+pictures = [show_only(number)[0] for number in range(3)]
+held = show_only(0)[1]
+for number in (1, 2, 0):
+    picture, rows = show_only(number)
+    check_equal(picture, pictures[number], f"dataset {number} is as it was", tolerance=0)
+    check(rows[0]["Publications"] == held[0]["Publications"], "and nothing is built again")
+
+# Room for two.
+one = max(row["BytesResident"] + row["BytesCopied"] for row in held) / 3
+limit = int(2.5 * one / 2**20)
+for display in displays:
+    display.DSMMemory = limit
+for number in (1, 2, 0, 1):
+    check_equal(show_only(number)[0], pictures[number], f"dataset {number} finds room", tolerance=0)
+published = show_only(1)[1][0]["Publications"]
+check(show_only(0)[1][0]["Publications"] == published, "what was shown last before is still there")
+check(show_only(2)[1][0]["Publications"] > published, "but not what was shown the longest ago")
+
+# Another representation.
+for display in displays:
+    display.DSMMemory = 64
+for number in range(3):
+    show_only(number)
+for source, display in list(zip(sources, displays))[:2]:
+    simple.Show(source, view)
+    display.Representation = "Outline"
+place_camera(view, (1.0, 0.2, 0.3))  # what a rank holds is told of frames that are traced
+render(view)
+left = max(row["BytesResident"] + row["BytesCopied"] for row in get_rows(displays[2]))
+check(left < 1.1 * one, f"two that are shown as outlines have no bricks: {left} bytes are left of {3 * one:.0f}")
