@@ -25,5 +25,6 @@ doxygen_add_docs(api_documentation
   "${PROJECT_SOURCE_DIR}/docs/architecture.md"
   "${PROJECT_SOURCE_DIR}/vtk_modules/DSMCore"
   "${PROJECT_SOURCE_DIR}/vtk_modules/DSMRayTracing"
+  "${PROJECT_SOURCE_DIR}/vtk_modules/DSMVolumeFiles"
   "${PROJECT_SOURCE_DIR}/vtk_modules/RenderingDSM"
   COMMENT "The reference, from the headers")

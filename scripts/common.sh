@@ -13,11 +13,13 @@ packages=(
   paraview paraview-dev python3-paraview
   libopenmpi-dev openmpi-bin
   libglm-dev libhwy-dev nlohmann-json3-dev
+  pkg-config libhdf5-dev zlib1g-dev libblosc-dev libzstd-dev
   libx11-dev libgl-dev libopengl-dev libglew-dev libpng-dev libpython3-dev
   xvfb xauth libgl1-mesa-dri
 )
 # And those that the tests need besides.
-test_packages=(libgtest-dev clang-format doxygen iproute2 python3-numpy python3-mpi4py)
+test_packages=(libgtest-dev clang-format doxygen iproute2 python3-numpy python3-mpi4py
+  python3-h5py python3-zarr teem-apps hdf5-filter-plugin hdf5-filter-plugin-blosc-serial)
 
 # Prints the packages among the arguments that are not installed.
 missing_packages() {

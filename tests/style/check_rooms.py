@@ -10,8 +10,12 @@ INCLUDE = re.compile(r'^\s*#\s*include\s*[<"]([^>"]+)[>"]', re.MULTILINE)
 
 # Folder -> patterns of includes that it must not have.
 FORBIDDEN = {
-    "vtk_modules/DSMCore": [r"^vtk", r"^glm/", r"^DSMRayTracing/", r"^RenderingDSM/"],
-    "vtk_modules/DSMRayTracing": [r"^vtk", r"^mpi\.h$", r"^RenderingDSM/"],
+    "vtk_modules/DSMCore": [r"^vtk", r"^glm/", r"^DSMRayTracing/", r"^DSMVolumeFiles/", r"^RenderingDSM/"],
+    "vtk_modules/DSMRayTracing": [r"^vtk", r"^mpi\.h$", r"^DSMVolumeFiles/", r"^RenderingDSM/"],
+    # Of the modules below, what a box of samples is, and what an error.
+    "vtk_modules/DSMVolumeFiles": [
+        r"^vtk", r"^mpi\.h$", r"^RenderingDSM/", r"^DSMCore/(?!base/)", r"^DSMRayTracing/(?!base/)",
+    ],
     "vtk_modules/RenderingDSM": [r"^vtkPV", r"^vtkSM", r"^vtkSI", r"^mpi\.h$"],
     "plugin": [r"^mpi\.h$", r"^DSMCore/", r"^glm/"],
 }
@@ -22,7 +26,8 @@ ROOMS = {
         "base", "accel", "layout", "build", "sample", "ray", "surface", "volume", "mesh", "light",
         "scene", "schedule", "frame",
     ],
-    "RenderingDSM": ["base", "options", "ranks", "data", "frame", "scene", "mapper"],
+    "DSMVolumeFiles": ["base", "codec", "format", "cache", "range"],
+    "RenderingDSM": ["base", "options", "ranks", "file", "data", "frame", "scene", "mapper"],
 }
 MPI_FILE = "vtk_modules/DSMCore/transport/MpiTransport.cxx"
 

@@ -3,6 +3,7 @@
 
 #include "DSMRayTracing/base/ByteHash.h"
 #include "DSMRayTracing/base/ParallelFor.h"
+#include "vtkDSMFileArray.h"
 
 #include "vtkCompositeDataIterator.h"
 #include "vtkCompositeDataSet.h"
@@ -109,6 +110,10 @@ std::uint64_t vtkDSMContent::Hash(vtkAbstractArray* array, int threads)
   if (!array)
   {
     return 0;
+  }
+  if (const vtkDSMFileValues* values = vtkDSMGetFileValues(array))
+  {
+    return values->GetStamp();
   }
   std::vector<Bytes> parts;
   auto* numbers = vtkDataArray::SafeDownCast(array);

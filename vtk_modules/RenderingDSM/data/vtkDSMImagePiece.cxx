@@ -2,6 +2,7 @@
 #include "vtkDSMImagePiece.h"
 
 #include "DSMCore/base/Error.h"
+#include "vtkDSMFileArray.h"
 
 #include "vtkCellData.h"
 #include "vtkDataArray.h"
@@ -15,6 +16,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <vector>
 
 namespace
 {
@@ -144,13 +146,38 @@ void Gather(const Box& points, const Box& image, std::byte* out, Read&& read)
   }
 }
 
+/// The same where the values are in a file.
+template <class Native>
+void GatherFromFile(const vtkDSMFileValues& values, int component, const Box& points,
+  const Box& image, std::byte* out)
+{
+  const Box part{ points.Min - image.Min, points.Max - image.Min };
+  const int components = values.GetArray().Components;
+  if (components == 1)
+  {
+    values.ReadBox(part, out);
+    return;
+  }
+  std::vector<Native> samples(static_cast<std::size_t>(part.GetCount() * components));
+  values.ReadBox(part, reinterpret_cast<std::byte*>(samples.data()));
+  auto* target = reinterpret_cast<Native*>(out);
+  for (std::int64_t sample = 0; sample < part.GetCount(); ++sample)
+  {
+    target[sample] = samples[static_cast<std::size_t>(sample * components + component)];
+  }
+}
+
 /// One component as it is; Native is the array's C++ type, which the brick's type represents.
 template <class Native>
 void GatherComponent(
   vtkDataArray* array, int component, const Box& points, const Box& image, std::byte* out)
 {
   const int components = array->GetNumberOfComponents();
-  if (auto* soa = dynamic_cast<vtkSOADataArrayTemplate<Native>*>(array))
+  if (const vtkDSMFileValues* values = vtkDSMGetFileValues(array))
+  {
+    GatherFromFile<Native>(*values, component, points, image, out);
+  }
+  else if (auto* soa = dynamic_cast<vtkSOADataArrayTemplate<Native>*>(array))
   {
     Gather<Native>(points, image, out,
       [=](vtkIdType tuple) { return soa->GetTypedComponent(tuple, component); });

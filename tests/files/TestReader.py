@@ -1,0 +1,155 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""DSM Volume Reader in ParaView: its arrays look and filter like ordinary ones, and are read in parts. Called as
+run.py does, with the folder of make_files.py behind the other arguments."""
+
+import os
+import sys
+
+from dsm_testing import *
+
+FILES = sys.argv[3]
+os.environ["XDG_CACHE_HOME"] = os.path.join(OUTPUT, "caches")
+
+load_plugin()
+view = create_view()
+
+COPY = """
+from vtkmodules.vtkCommonDataModel import vtkImageData
+data = self.GetInputDataObject(0, 0)
+output = self.GetOutputDataObject(0)
+output.CopyStructure(data)
+for index in range(data.GetPointData().GetNumberOfArrays()):
+    array = data.GetPointData().GetArray(index)
+    copy = array.NewInstance()
+    copy.DeepCopy(array)
+    output.GetPointData().AddArray(copy)
+output.GetPointData().SetActiveScalars(data.GetPointData().GetScalars().GetName())
+"""
+EXTENT = """
+from vtkmodules.vtkCommonExecutionModel import vtkStreamingDemandDrivenPipeline as Pipeline
+source = self.GetInputInformation(0, 0)
+target = self.GetOutputInformation(0)
+for key in (Pipeline.WHOLE_EXTENT(),):
+    target.CopyEntry(source, key)
+"""
+
+
+def ordinary(source):
+    """The same in arrays of memory."""
+    copy = simple.ProgrammableFilter(Input=source)
+    copy.Script = COPY
+    copy.RequestInformationScript = EXTENT
+    copy.CopyArrays = 0
+    return copy
+
+
+def picture(source, array, **properties):
+    display = show(source, view, [0.7], array, **properties)
+    place_camera(view)
+    pixels = render(view)
+    simple.Hide(source, view)
+    return pixels, display
+
+
+pictures = []
+for name, array in (("ball.h5", "f"), ("ball.zarr", "ball"), ("ball.mha", "values")):
+    source = simple.DSMVolumeReader(FileName=os.path.join(FILES, name))
+    plain = ordinary(source)
+    for organization in ("Replicated", "Object based", "Page based"):
+        traced, _ = picture(source, array, DSMMemoryOrganization=organization)
+        check(get_covered(traced).mean() > 0.05, f"{name}, {organization}: something is shown")
+        expected, _ = picture(plain, array, DSMMemoryOrganization=organization)
+        check((traced == expected).all(), f"{name}, {organization}: as from memory, bit for bit")
+        pictures.append(traced)
+    source.UpdatePipeline()
+    low, high = source.PointData[array].GetRange(0)
+    check(0 < low < 0.1 and abs(high - 3**0.5) < 1e-6, f"{name}: the range of its values")
+    simple.Delete(plain)
+    simple.Delete(source)
+check(all((one == pictures[0]).all() for one in pictures), "all formats and organisations look alike")
+reference = os.path.join(OUTPUT, "Reader.npy")
+if get_ranks() == 1:
+    numpy.save(reference, pictures[0])
+else:
+    check_equal(pictures[0], numpy.load(reference), "the picture is what one rank draws")
+
+# What filters of ParaView make of it is what they make of an array in memory.
+source = simple.DSMVolumeReader(FileName=os.path.join(FILES, "ball.h5"))
+plain = ordinary(source)
+
+
+def outcome(filter_, array):
+    filter_.UpdatePipeline()
+    information = filter_.GetDataInformation()
+    arrays = filter_.PointData if array in filter_.PointData.keys() else filter_.CellData
+    found = (
+        information.GetNumberOfPoints(),
+        information.GetNumberOfCells(),
+        arrays[array].GetRange(0) if array else None,
+    )
+    simple.Delete(filter_)
+    return found
+
+
+def calculate(source):
+    filter_ = simple.Calculator(Input=source)
+    filter_.Function = "f * 2 + coordsX"
+    return outcome(filter_, "Result")
+
+
+def extract(source):
+    filter_ = simple.ExtractSubset(Input=source)
+    filter_.VOI = [5, 15, 6, 16, 7, 17]
+    return outcome(filter_, "f")
+
+
+def contour(source):
+    filter_ = simple.Contour(Input=source, ContourBy=["POINTS", "f"], Isosurfaces=[0.7])
+    return outcome(filter_, "f")
+
+
+def cut(source):
+    filter_ = simple.Slice(Input=source)
+    filter_.SliceType.Origin = [20.0, 20.0, 17.5]
+    return outcome(filter_, "f")
+
+
+def gradient(source):
+    filter_ = simple.Gradient(Input=source)
+    filter_.ScalarArray = ["POINTS", "f"]
+    return outcome(filter_, "Gradient")
+
+
+def threshold(source):
+    filter_ = simple.Threshold(Input=source)
+    filter_.Scalars = ["POINTS", "f"]
+    filter_.LowerThreshold, filter_.UpperThreshold = 0.2, 0.6
+    return outcome(filter_, "f")
+
+
+def line(source):
+    filter_ = simple.PlotOverLine(Input=source)
+    filter_.Point1, filter_.Point2 = [1.0, 2.0, 3.0], [40.0, 30.0, 30.0]
+    return outcome(filter_, "f")
+
+
+for apply in (calculate, extract, contour, cut, gradient, threshold, line):
+    check(apply(source) == apply(plain), f"{apply.__name__}: as of an array in memory")
+
+with Messages() as messages:
+    missing = simple.DSMVolumeReader(FileName=os.path.join(FILES, "manifest.json"))
+    missing.UpdatePipeline()
+if get_ranks() == 1:
+    check("manifest.json" in messages.text and "not known" in messages.text, "an error names the file")
+with Messages() as messages:
+    bare = simple.DSMVolumeReader(FileName=os.path.join(FILES, "bare.raw"))
+    bare.UpdatePipelineInformation()
+    check(messages.text == "", "a bare file may be opened before its sizes are entered")
+    bare.UpdatePipeline()
+if get_ranks() == 1:
+    check("Dimensions" in messages.text, "and then an error asks for them")
+bare.RawDimensions, bare.RawScalarType, bare.RawBigEndian = [21, 13, 10], "int", 1
+bare.RawHeaderBytes = 21
+bare.UpdatePipeline()
+check(bare.PointData["values"].GetRange(0) == (0, 100), "bare values, once they are described")
+check(simple.OpenDataFile(os.path.join(FILES, "ome.zarr/.zattrs")).TimestepValues[-1] == 2, "OME's times")

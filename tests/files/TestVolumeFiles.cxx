@@ -1,0 +1,385 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Files that other programs wrote (make_files.py): every value, in every format; and what is damaged.
+#include "DSMCore/base/Error.h"
+#include "DSMVolumeFiles/cache/ChunkCache.h"
+#include "DSMVolumeFiles/format/VolumeFile.h"
+#include "DSMVolumeFiles/range/ValueRanges.h"
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <thread>
+#include <vector>
+
+namespace
+{
+
+using Json = nlohmann::json;
+namespace fs = std::filesystem;
+
+fs::path GetFolder()
+{
+  return DSM_TEST_FILES;
+}
+
+Json ReadManifest()
+{
+  std::ifstream file(GetFolder() / "manifest.json");
+  return file ? Json::parse(file) : Json::array();
+}
+
+rt::ScalarType ToType(const std::string& name)
+{
+  using Type = rt::ScalarType;
+  const std::vector<std::pair<std::string, Type>> types = { { "int8", Type::Int8 },
+    { "uint8", Type::UInt8 }, { "int16", Type::Int16 }, { "uint16", Type::UInt16 },
+    { "int32", Type::Int32 }, { "int64", Type::Int64 }, { "float32", Type::Float32 },
+    { "float64", Type::Float64 } };
+  const auto known =
+    std::find_if(types.begin(), types.end(), [&](const auto& type) { return type.first == name; });
+  if (known == types.end())
+  {
+    throw std::logic_error("make_files.py has no type " + name);
+  }
+  return known->second;
+}
+
+vol::OpenOptions GetOptions(const Json& entry)
+{
+  vol::OpenOptions options;
+  options.Level = entry.at("level");
+  options.Dataset = entry.at("dataset");
+  if (entry.contains("raw"))
+  {
+    const Json& raw = entry["raw"];
+    options.Bare.Samples = { entry["size"][0], entry["size"][1], entry["size"][2] };
+    options.Bare.Type = ToType(raw["type"]);
+    options.Bare.BigEndian = raw["big"];
+    options.Bare.HeaderBytes = raw["header"];
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      options.Bare.Spacing[axis] = raw["spacing"][axis];
+    }
+  }
+  return options;
+}
+
+std::shared_ptr<const vol::VolumeFile> Open(const Json& entry)
+{
+  return vol::OpenVolumeFile(
+    (GetFolder() / entry.at("file").get<std::string>()).string(), GetOptions(entry));
+}
+
+/// What make_files.py says.
+double GetExpected(
+  const Json& entry, const Json& array, int step, const rt::Index3& sample, int component)
+{
+  if (entry.contains("zeros"))
+  {
+    return 0.0;
+  }
+  for (int axis = 0; entry.contains("fill") && axis < 3; ++axis)
+  {
+    if (sample[axis] >= entry["filled"][axis].get<std::int64_t>())
+    {
+      return entry["fill"];
+    }
+  }
+  const rt::Index3 at = sample * entry.value("stride", std::int64_t(1));
+  const std::int64_t channel = array["channel"];
+  return static_cast<double>(
+    (3 * at.x + 5 * at.y + 7 * at.z + component + 11 * channel + 13 * step) % 101);
+}
+
+int CountWrong(const std::shared_ptr<const vol::VolumeFile>& file, const Json& entry,
+  std::size_t number, int step, const rt::Box& box, vol::ChunkCache& cache)
+{
+  const vol::FileArray& array = file->GetArrays()[number];
+  std::vector<std::byte> bytes(static_cast<std::size_t>(box.GetCount()) * array.GetSampleBytes());
+  cache.ReadBox(file, number, step, box, bytes.data());
+  return rt::Dispatch(array.Type,
+    [&](auto zero)
+    {
+      using T = decltype(zero);
+      int wrong = 0;
+      std::size_t at = 0;
+      for (std::int64_t z = box.Min.z; z < box.Max.z; ++z)
+      {
+        for (std::int64_t y = box.Min.y; y < box.Max.y; ++y)
+        {
+          for (std::int64_t x = box.Min.x; x < box.Max.x; ++x)
+          {
+            for (int component = 0; component < array.Components; ++component)
+            {
+              T value;
+              std::memcpy(&value, bytes.data() + at, sizeof(T));
+              at += sizeof(T);
+              wrong += static_cast<double>(value) !=
+                GetExpected(entry, entry["arrays"][number], step, { x, y, z }, component);
+            }
+          }
+        }
+      }
+      return wrong;
+    });
+}
+
+void ExpectGeometry(const vol::FileGeometry& geometry, const Json& entry)
+{
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    EXPECT_EQ(geometry.Points[axis], entry["size"][axis].get<std::int64_t>());
+    EXPECT_EQ(geometry.First[axis], entry.value("first", Json({ 0, 0, 0 }))[axis]);
+    EXPECT_EQ(geometry.Origin[axis], entry.value("origin", Json({ 0.0, 0.0, 0.0 }))[axis]);
+    EXPECT_EQ(geometry.Spacing[axis], entry.value("spacing", Json({ 1.0, 1.0, 1.0 }))[axis]);
+  }
+  for (int element = 0; element < 9; ++element)
+  {
+    const double none = element % 4 == 0 ? 1.0 : 0.0;
+    EXPECT_EQ(geometry.Direction[element],
+      entry.contains("direction") ? entry["direction"][element].get<double>() : none);
+  }
+}
+
+TEST(VolumeFiles, HaveTheValuesThatOtherProgramsWrote)
+{
+  const Json manifest = ReadManifest();
+  ASSERT_GT(manifest.size(), 35u);
+  for (const Json& entry : manifest)
+  {
+    SCOPED_TRACE(entry.at("file").get<std::string>());
+    try
+    {
+      const auto file = Open(entry);
+      ExpectGeometry(file->GetGeometry(), entry);
+      EXPECT_EQ(file->GetSteps(), entry["steps"]);
+      EXPECT_EQ(file->GetLevels(), entry.value("levels", 1));
+      ASSERT_EQ(file->GetArrays().size(), entry["arrays"].size());
+      // One chunk at a time, so that all are evicted, and one that has everything.
+      for (const std::size_t cacheBytes : { std::size_t(1), std::size_t(1) << 20 })
+      {
+        vol::ChunkCache cache(cacheBytes);
+        for (std::size_t number = 0; number < file->GetArrays().size(); ++number)
+        {
+          const vol::FileArray& array = file->GetArrays()[number];
+          const Json& expected = entry["arrays"][number];
+          EXPECT_EQ(array.Name, expected["name"]);
+          EXPECT_EQ(array.Type, ToType(expected["type"]));
+          EXPECT_EQ(array.Components, expected["components"]);
+          EXPECT_EQ(array.OnCells, expected["cells"]);
+          for (int step = 0; step < file->GetSteps(); ++step)
+          {
+            const rt::Box whole{ rt::Index3(0), array.Grid.Samples };
+            EXPECT_EQ(CountWrong(file, entry, number, step, whole, cache), 0) << array.Name;
+            const rt::Box part{ whole.Max / rt::Index3(3), whole.Max - rt::Index3(1) };
+            EXPECT_EQ(CountWrong(file, entry, number, step, part, cache), 0) << array.Name;
+          }
+        }
+        EXPECT_LE(cache.GetBytes(), cacheBytes);
+      }
+    }
+    catch (const dsm::Error& error)
+    {
+      ADD_FAILURE() << error.what();
+    }
+  }
+}
+
+Json FindEntry(const std::string& name)
+{
+  const Json manifest = ReadManifest();
+  const auto found = std::find_if(
+    manifest.begin(), manifest.end(), [&](const Json& entry) { return entry["file"] == name; });
+  return found == manifest.end() ? Json() : *found;
+}
+
+TEST(VolumeFiles, AChunkThatManyThreadsWantIsReadOnce)
+{
+  const Json entry = FindEntry("deflate.h5");
+  ASSERT_FALSE(entry.is_null());
+  const auto file = Open(entry);
+  vol::ChunkCache cache(1 << 20);
+  const rt::Box whole{ rt::Index3(0), file->GetArrays()[0].Grid.Samples };
+  std::vector<std::thread> threads;
+  std::vector<int> wrong(8, -1);
+  for (int& mine : wrong)
+  {
+    threads.emplace_back([&] { mine = CountWrong(file, entry, 0, 0, whole, cache); });
+  }
+  for (std::thread& thread : threads)
+  {
+    thread.join();
+  }
+  EXPECT_EQ(wrong, std::vector<int>(8, 0));
+  EXPECT_EQ(cache.GetBytesRead(),
+    static_cast<std::uint64_t>(whole.GetCount()) * file->GetArrays()[0].GetSampleBytes());
+}
+
+TEST(VolumeFiles, RangesAreFoundAndKept)
+{
+  const fs::path caches = GetFolder() / "caches";
+  fs::remove_all(caches);
+  setenv("XDG_CACHE_HOME", caches.c_str(), 1);
+  const Json entry = FindEntry("vectors.h5");
+  const auto file = Open(entry);
+  const rt::Box whole{ rt::Index3(0), file->GetArrays()[1].Grid.Samples };
+  const rt::Box corner{ rt::Index3(0), rt::Index3(2, 1, 1) };
+  EXPECT_FALSE(vol::LoadRanges(*file, 1, 0, whole));
+  const auto found = vol::FindRanges(file, 1, 0, whole, 3, [](double) { return true; });
+  ASSERT_TRUE(found);
+  ASSERT_EQ(found->All.size(), 4u);
+  EXPECT_EQ(found->All[2].Least, 0.0);
+  EXPECT_EQ(found->All[2].Greatest, 100.0);
+  EXPECT_GT(found->All[3].Greatest, 170.0);
+  const auto part = vol::FindRanges(file, 1, 0, corner, 2, [](double) { return true; });
+  EXPECT_EQ(part->All[1].Least, 1.0);
+  EXPECT_EQ(part->All[1].Greatest, 4.0);
+  EXPECT_EQ(part->All[3].Least, std::sqrt(0.0 + 1.0 + 4.0));
+  vol::KeepRanges(*file, 1, 0, whole, *found);
+  const auto kept = vol::LoadRanges(*file, 1, 0, whole);
+  ASSERT_TRUE(kept);
+  EXPECT_EQ(kept->All[3].Greatest, found->All[3].Greatest);
+  EXPECT_FALSE(vol::LoadRanges(*file, 1, 0, corner));
+  EXPECT_FALSE(vol::FindRanges(file, 1, 0, whole, 1, [](double) { return false; }));
+}
+
+/// A copy that may be damaged.
+class DamagedFile : public testing::Test
+{
+protected:
+  Json Copy(const std::string& name)
+  {
+    Json entry = FindEntry(name);
+    this->Path = GetFolder() / ("damaged_" + name);
+    fs::remove_all(this->Path);
+    fs::copy(GetFolder() / name, this->Path, fs::copy_options::recursive);
+    entry["file"] = "damaged_" + name;
+    return entry;
+  }
+
+  static void FlipByte(const fs::path& path, std::int64_t fromEnd)
+  {
+    std::fstream file(path, std::ios::in | std::ios::out | std::ios::binary);
+    file.seekg(-fromEnd, std::ios::end);
+    const char byte = static_cast<char>(file.get());
+    file.seekp(-fromEnd, std::ios::end);
+    file.put(static_cast<char>(~byte));
+  }
+
+  /// Reads all; returns what goes wrong.
+  static std::string Read(const Json& entry)
+  {
+    try
+    {
+      return Read(Open(entry));
+    }
+    catch (const dsm::Error& error)
+    {
+      return error.what();
+    }
+  }
+  static std::string Read(const std::shared_ptr<const vol::VolumeFile>& file)
+  {
+    try
+    {
+      vol::ChunkCache cache(1);
+      const vol::FileArray& array = file->GetArrays()[0];
+      const rt::Box whole{ rt::Index3(0), array.Grid.Samples };
+      std::vector<std::byte> bytes(
+        static_cast<std::size_t>(whole.GetCount()) * array.GetSampleBytes());
+      cache.ReadBox(file, 0, 0, whole, bytes.data());
+      return {};
+    }
+    catch (const dsm::Error& error)
+    {
+      return error.what();
+    }
+  }
+
+  fs::path Path;
+};
+
+void ExpectWords(const std::string& text, std::initializer_list<const char*> words)
+{
+  for (const char* word : words)
+  {
+    EXPECT_NE(text.find(word), std::string::npos) << "'" << word << "' is not in: " << text;
+  }
+}
+
+TEST_F(DamagedFile, ThatIsTruncatedSaysSo)
+{
+  for (const char* name : { "attached.nrrd", "attached.mha", "bare.raw" })
+  {
+    const Json entry = this->Copy(name);
+    fs::resize_file(this->Path, fs::file_size(this->Path) - 1);
+    ExpectWords(Read(entry), { name, "bytes", "expected" });
+  }
+  const Json chunks = this->Copy("raw_float32.zarr");
+  fs::resize_file(this->Path / "1.1.1", 17);
+  ExpectWords(Read(chunks), { "Chunk (1, 1, 1)", "17 bytes instead of 640" });
+  const Json shards = this->Copy("three_sharded.zarr");
+  fs::resize_file(this->Path / "c/0/0/0", 10);
+  ExpectWords(Read(shards), { "truncated", "c/0/0/0" });
+}
+
+TEST_F(DamagedFile, WithAWrongByteSaysSo)
+{
+  const Json sums = this->Copy("fletcher.h5");
+  // Somewhere in the values, which are behind the header.
+  FlipByte(this->Path, static_cast<std::int64_t>(fs::file_size(this->Path)) / 2);
+  ExpectWords(Read(sums), { "fletcher.h5", "Chunk (", "checksum" });
+  const Json stream = this->Copy("zlib_float32.zarr");
+  FlipByte(this->Path / "0.1.2", 3);
+  ExpectWords(Read(stream), { "Chunk (2, 1, 0)", "deflate stream is damaged" });
+  const Json frame = this->Copy("zstd_float32.zarr");
+  FlipByte(this->Path / "0.0.0", static_cast<std::int64_t>(fs::file_size(this->Path / "0.0.0")));
+  ExpectWords(Read(frame), { "Chunk (0, 0, 0)", "Zstandard" });
+  const Json index = this->Copy("three_sharded.zarr");
+  FlipByte(this->Path / "c/0/0/0", 20);
+  ExpectWords(Read(index), { "index", "checksum" });
+}
+
+TEST_F(DamagedFile, ThatChangesOrGoesAwaySaysSo)
+{
+  const Json entry = this->Copy("chunked.h5");
+  const auto file = Open(entry);
+  EXPECT_EQ(Read(file), "");
+  std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  FlipByte(this->Path, 100);
+  ExpectWords(Read(file), { "was written to", "Reload" });
+  fs::remove(this->Path);
+  ExpectWords(Read(entry), { "There is no file", "damaged_chunked.h5" });
+  EXPECT_NE(Open(FindEntry("chunked.h5"))->GetStamp(), file->GetStamp());
+}
+
+TEST_F(DamagedFile, WithAWrongHeaderSaysWhatIsWrong)
+{
+  const auto write = [&](const std::string& name, const std::string& text)
+  {
+    std::ofstream(GetFolder() / name) << text;
+    return Json{ { "file", name }, { "level", 0 }, { "dataset", "" } };
+  };
+  const std::string axes = "dimension: 3\nsizes: 2 2 2\n";
+  ExpectWords(Read(write("a.nrrd", "NRRD0004\ntype: float\n" + axes + "encoding: gzip\n\n")),
+    { "a.nrrd", "gzip", "raw" });
+  ExpectWords(Read(write("b.nrrd", "NRRD0004\ntype: block\n" + axes + "encoding: raw\n\n")),
+    { "type 'block'" });
+  ExpectWords(Read(write("c.nrrd", "NRRD0004\ntype: float\nsizes: 2 x 2\nencoding: raw\n\n")),
+    { "'x'", "'sizes'", "no number" });
+  ExpectWords(Read(write("d.mhd",
+                "NDims = 3\nDimSize = 2 2 2\nCompressedData = True\nElementDataFile = e\n")),
+    { "compressed" });
+  ExpectWords(Read(write("e.txt", "no volume")), { "e.txt", "not known", "Zarr" });
+  ExpectWords(Read(write("f.raw", "12345678")), { "f.raw", "bare values" });
+  ExpectWords(Read(write("g.h5", "\x89HDF\r\n\x1a\n and then nothing")), { "g.h5", "no HDF5" });
+}
+
+} // namespace

@@ -1,0 +1,321 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Makes volumes of every format, by programs other than this project's: h5py, zarr, VTK's writers and Teem.
+Called as make_files.py FOLDER. FOLDER/manifest.json says what is in each. The sample at (x, y, z), component c,
+channel k and step t is (3 x + 5 y + 7 z + c + 11 k + 13 t) modulo 101."""
+
+import json
+import os
+import shutil
+import struct
+import subprocess
+import sys
+
+import h5py
+import numpy as np
+import zarr
+from numcodecs import Blosc, GZip, Shuffle, Zlib, Zstd
+from vtkmodules.util.numpy_support import numpy_to_vtk
+from vtkmodules.vtkCommonDataModel import vtkImageData
+from vtkmodules.vtkIOImage import vtkMetaImageWriter
+
+SIZE = (21, 13, 10)  # x, y, z
+BZIP2, BLOSC = 307, 32001
+folder = sys.argv[1]
+shutil.rmtree(folder, ignore_errors=True)
+os.makedirs(folder)
+entries = []
+
+
+def values(dtype, components=1, channel=0, step=0, size=SIZE):
+    """z, y, x, and c when there are several."""
+    z, y, x = np.meshgrid(*(np.arange(n) for n in reversed(size)), indexing="ij")
+    base = 3 * x + 5 * y + 7 * z + 11 * channel + 13 * step
+    if components > 1:
+        base = base[..., np.newaxis] + np.arange(components)
+    return (base % 101).astype(dtype)
+
+
+def path(name):
+    return os.path.join(folder, name)
+
+
+def note(name, arrays, **more):
+    """arrays: name, type, components, channel, on cells."""
+    keys = ("name", "type", "components", "channel", "cells")
+    defaults = (None, None, 1, 0, False)
+    listed = [dict(zip(keys, (*array, *defaults[len(array) :]))) for array in arrays]
+    entry = {"file": name, "arrays": listed, "steps": 1, "level": 0, "dataset": "", "size": SIZE}
+    entries.append({**entry, **more})
+
+
+# HDF5: layouts, filters and types.
+plain = {
+    "contiguous": ({}, "<f4"),
+    "chunked": ({"chunks": (4, 5, 8)}, "<f4"),
+    "big_endian": ({"chunks": (4, 5, 8)}, ">i2"),
+    "big_endian_deflate": ({"chunks": (4, 5, 8), "compression": "gzip"}, ">f8"),
+    "deflate": ({"chunks": (3, 13, 21), "compression": "gzip"}, "<f8"),
+    "shuffle_deflate": ({"chunks": (10, 4, 7), "compression": "gzip", "shuffle": True}, "<u2"),
+    "fletcher": ({"chunks": (4, 5, 8), "fletcher32": True}, "<i4"),
+    "all_filters": (
+        {"chunks": (4, 5, 7), "compression": "gzip", "shuffle": True, "fletcher32": True},
+        "<i8",
+    ),
+    # No filter of ours: the library reads it, with a plugin of Debian's.
+    "bzip2": ({"chunks": (4, 5, 8), "compression": BZIP2}, "<f4"),
+    "signed_char": ({}, "|i1"),
+    "blosc": ({"chunks": (4, 5, 8), "compression": BLOSC}, "<f4"),
+}
+for name, (options, dtype) in plain.items():
+    with h5py.File(path(name + ".h5"), "w") as file:
+        file.create_dataset("deep/er/f", data=values(dtype), **options)
+        file["other"] = np.arange(5)
+    note(name + ".h5", [("deep/er/f", np.dtype(dtype).name)])
+
+with h5py.File(path("vectors.h5"), "w") as file:
+    file.create_dataset("v", data=values("<f4", 3), chunks=(4, 5, 8, 3))
+    file.create_dataset("split", data=values("<f4", 3), chunks=(4, 5, 8, 1))
+    file.create_dataset("small", data=np.zeros((2, 2, 2)))
+note("vectors.h5", [("split", "float32", 3), ("v", "float32", 3)])
+note("vectors.h5", [("small", "float64")], dataset="small", size=(2, 2, 2), zeros=True)
+
+with h5py.File(path("holes.h5"), "w") as file:
+    hole = file.create_dataset("f", SIZE[::-1], "<f4", chunks=(4, 5, 8), fillvalue=42.0)
+    hole[0:4, 0:5, 0:8] = values("<f4")[0:4, 0:5, 0:8]
+note("holes.h5", [("f", "float32")], fill=42.0, filled=[8, 5, 4])
+
+with h5py.File(path("image.vtkhdf"), "w") as file:
+    group = file.create_group("VTKHDF")
+    group.attrs["Version"] = [1, 0]
+    group.attrs["Type"] = np.bytes_("ImageData")
+    group.attrs["WholeExtent"] = [5, 25, -3, 9, 0, 9]
+    group.attrs["Origin"] = [1.0, 2.0, 3.0]
+    group.attrs["Spacing"] = [0.5, 0.25, 2.0]
+    group.attrs["Direction"] = [0.0, -1.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0]
+    points = group.create_group("PointData")
+    points.create_dataset("f", data=values("<f4"), chunks=(4, 5, 8), compression="gzip")
+    points.create_dataset("v", data=values("|u1", 3))
+    cells = group.create_group("CellData")
+    cells.create_dataset("c", data=values("<i2", size=(20, 12, 9)))
+note(
+    "image.vtkhdf",
+    [("f", "float32"), ("v", "uint8", 3), ("c", "int16", 1, 0, True)],
+    first=[5, -3, 0],
+    origin=[1.0, 2.0, 3.0],
+    spacing=[0.5, 0.25, 2.0],
+    direction=[0.0, -1.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0],
+)
+
+# Zarr, version 2.
+compressors = {
+    "raw": None,
+    "blosc_lz4": Blosc("lz4", shuffle=Blosc.SHUFFLE),
+    "blosc_zstd": Blosc("zstd", shuffle=Blosc.BITSHUFFLE),
+    "zlib": Zlib(),
+    "gzip": GZip(),
+    "zstd": Zstd(),
+}
+for name, compressor in compressors.items():
+    for dtype, separator in (("<f4", "."), (">u2", "/")):
+        file = f"{name}_{np.dtype(dtype).name}.zarr"
+        zarr.save_array(
+            zarr.DirectoryStore(path(file), dimension_separator=separator),
+            values(dtype),
+            chunks=(4, 5, 8),
+            compressor=compressor,
+            dimension_separator=separator,
+        )
+        note(file, [(file[: -len(".zarr")], np.dtype(dtype).name)])
+zarr.save_array(
+    path("shuffled.zarr"), values("<f8"), chunks=(4, 5, 8), filters=[Shuffle(8)], compressor=Zlib()
+)
+note("shuffled.zarr", [("shuffled", "float64")])
+group = zarr.open_group(path("group.zarr"), "w")
+group.create_dataset("a", data=values("|u1"), chunks=(10, 13, 21))
+group.create_dataset("b", data=values("<f4", channel=2), chunks=(4, 5, 8))
+group.create_dataset("line", data=np.arange(4))
+note("group.zarr", [("a", "uint8"), ("b", "float32", 1, 2)])
+hole = zarr.open_array(
+    path("holes.zarr"), "w", shape=SIZE[::-1], chunks=(4, 5, 8), dtype="<f4", fill_value=42.0
+)
+hole[0:4, 0:5, 0:8] = values("<f4")[0:4, 0:5, 0:8]
+note("holes.zarr", [("holes", "float32")], fill=42.0, filled=[8, 5, 4])
+
+# OME-Zarr: two channels, three times, two scales.
+group = zarr.open_group(path("ome.zarr"), "w")
+full = np.stack(
+    [np.stack([values("<u2", channel=k, step=t) for k in range(2)]) for t in range(3)]
+)
+group.create_dataset("0", data=full, chunks=(1, 2, 4, 5, 8), dimension_separator="/")
+coarse = full[..., ::2, ::2, ::2]
+group.create_dataset("1", data=coarse, chunks=(3, 1, 5, 7, 11), dimension_separator="/")
+axes = [{"name": "t", "type": "time"}, {"name": "c", "type": "channel"}]
+axes += [{"name": name, "type": "space"} for name in "zyx"]
+scales = [[1, 1, 4, 2, 1], [1, 1, 8, 4, 2]]
+group.attrs["multiscales"] = [
+    {
+        "version": "0.4",
+        "axes": axes,
+        "datasets": [
+            {
+                "path": str(level),
+                "coordinateTransformations": [{"type": "scale", "scale": scale}],
+            }
+            for level, scale in enumerate(scales)
+        ],
+    }
+]
+group.attrs["omero"] = {"channels": [{"label": "red"}, {"label": "green"}]}
+channels = [("red", "uint16", 1, 0), ("green", "uint16", 1, 1)]
+note("ome.zarr", channels, steps=3, spacing=[1.0, 2.0, 4.0], levels=2)
+note(
+    "ome.zarr", channels, steps=3, spacing=[2.0, 4.0, 8.0], levels=2, level=1, size=(11, 7, 5), stride=2
+)
+
+
+# Zarr, version 3, which Debian's zarr cannot write: by hand, after the specification.
+def write_version3(name, codecs, chunk, shard=None):
+    data = values("<f4")
+    os.makedirs(path(name))
+    encode = {
+        "gzip": lambda raw: GZip().encode(raw),
+        "zstd": lambda raw: bytes(Zstd().encode(raw)),
+        "blosc": lambda raw: bytes(Blosc("lz4").encode(raw)),
+    }
+    inner = [{"name": "bytes", "configuration": {"endian": "little"}}]
+    inner += [{"name": codec, "configuration": {}} for codec in codecs]
+    outer = inner
+    if shard:
+        index_codecs = [{"name": "bytes", "configuration": {"endian": "little"}}, {"name": "crc32c"}]
+        outer = [
+            {
+                "name": "sharding_indexed",
+                "configuration": {
+                    "chunk_shape": chunk,
+                    "codecs": inner,
+                    "index_codecs": index_codecs,
+                    "index_location": "end",
+                },
+            }
+        ]
+    metadata = {
+        "zarr_format": 3,
+        "node_type": "array",
+        "shape": SIZE[::-1],
+        "data_type": "float32",
+        "chunk_grid": {"name": "regular", "configuration": {"chunk_shape": shard or chunk}},
+        "chunk_key_encoding": {"name": "default", "configuration": {"separator": "/"}},
+        "fill_value": "NaN",
+        "codecs": outer,
+        "attributes": {},
+    }
+    with open(path(name + "/zarr.json"), "w", encoding="utf-8") as file:
+        json.dump(metadata, file)
+
+    def cut(first, shape):
+        whole = np.zeros(shape, "<f4")
+        part = data[tuple(slice(f, f + n) for f, n in zip(first, shape))]
+        whole[tuple(slice(0, n) for n in part.shape)] = part
+        raw = whole.tobytes()
+        for codec in codecs:
+            raw = encode[codec](raw)
+        return raw
+
+    outer_shape = shard or chunk
+    for place in np.ndindex(*(-(-n // s) for n, s in zip(SIZE[::-1], outer_shape))):
+        first = [p * s for p, s in zip(place, outer_shape)]
+        if shard:
+            blob, index = b"", b""
+            for within in np.ndindex(*(s // c for s, c in zip(shard, chunk))):
+                start = [f + w * c for f, w, c in zip(first, within, chunk)]
+                if any(at >= n for at, n in zip(start, SIZE[::-1])):
+                    index += struct.pack("<QQ", 2**64 - 1, 2**64 - 1)
+                    continue
+                raw = cut(start, chunk)
+                index += struct.pack("<QQ", len(blob), len(raw))
+                blob += raw
+            blob += index + struct.pack("<I", crc32c(index))
+        else:
+            blob = cut(first, chunk)
+        file = path(name + "/c/" + "/".join(map(str, place)))
+        os.makedirs(os.path.dirname(file), exist_ok=True)
+        with open(file, "wb") as out:
+            out.write(blob)
+    note(name, [(name[: -len(".zarr")], "float32")])
+
+
+def crc32c(raw):
+    value = 0xFFFFFFFF
+    for byte in raw:
+        value ^= byte
+        for _ in range(8):
+            value = (value >> 1) ^ (0x82F63B78 if value & 1 else 0)
+    return value ^ 0xFFFFFFFF
+
+
+write_version3("three_raw.zarr", [], [4, 5, 8])
+write_version3("three_zstd.zarr", ["zstd"], [4, 5, 8])
+write_version3("three_sharded.zarr", ["blosc"], [2, 5, 4], [4, 10, 8])
+write_version3("three_sharded_gzip.zarr", ["gzip"], [4, 5, 8], [4, 5, 8])
+
+# VTK's MetaImage.
+image = vtkImageData()
+image.SetDimensions(*SIZE)
+image.SetSpacing(0.5, 0.25, 2.0)
+image.SetOrigin(1.0, 2.0, 3.0)
+image.GetPointData().SetScalars(numpy_to_vtk(values("<i2").ravel(), deep=True))
+for name in ("attached.mha", "detached.mhd"):
+    writer = vtkMetaImageWriter()
+    writer.SetInputData(image)
+    writer.SetCompression(False)
+    writer.SetFileName(path(name))
+    if name.endswith("mhd"):
+        writer.SetRAWFileName(path("detached.bin"))
+    writer.Write()
+    note(name, [("values", "int16")], spacing=[0.5, 0.25, 2.0], origin=[1.0, 2.0, 3.0])
+
+# Teem's NRRD.
+unu = shutil.which("teem-unu") or shutil.which("unu")
+for name, dtype, teem, endian in (
+    ("attached.nrrd", "<f4", "float", "little"),
+    ("detached.nhdr", ">u2", "ushort", "big"),
+):
+    raw = path(name + ".bin")
+    values(dtype.replace(">", "<")).tofile(raw)
+    make = [unu, "make", "-i", raw, "-t", teem, "-s", *map(str, SIZE), "-e", "raw", "-en", "little"]
+    save = [unu, "save", "-f", "nrrd", "-e", "raw", "-en", endian, "-o", path(name)]
+    made = subprocess.run(make, stdout=subprocess.PIPE, check=True).stdout
+    subprocess.run(save, input=made, check=True)
+    os.remove(raw)
+    note(name, [("values", np.dtype(dtype).name)])
+
+# Bare values.
+with open(path("bare.raw"), "wb") as file:
+    file.write(b"a header of 21 bytes.")
+    file.write(values(">i4").tobytes())
+note(
+    "bare.raw",
+    [("values", "int32")],
+    raw={"type": "int32", "big": True, "header": 21, "spacing": [1.0, 1.0, 3.0]},
+    spacing=[1.0, 1.0, 3.0],
+)
+
+# A ball, to be looked at: distance from the middle, 1 at the nearest face.
+edges = (48, 40, 36)
+z, y, x = np.meshgrid(*(np.linspace(-1, 1, n) for n in reversed(edges)), indexing="ij")
+ball = np.sqrt(x * x + y * y + z * z).astype("<f4")
+with h5py.File(path("ball.h5"), "w") as file:
+    file.create_dataset("f", data=ball, chunks=(16, 10, 13), compression="gzip", shuffle=True)
+zarr.save_array(path("ball.zarr"), ball, chunks=(9, 40, 20), compressor=Blosc("zstd"))
+image = vtkImageData()
+image.SetDimensions(*edges)
+image.GetPointData().SetScalars(numpy_to_vtk(ball.ravel(), deep=True))
+writer = vtkMetaImageWriter()
+writer.SetInputData(image)
+writer.SetCompression(False)
+writer.SetFileName(path("ball.mha"))
+writer.Write()
+
+with open(path("manifest.json"), "w", encoding="utf-8") as file:
+    json.dump(entries, file, indent=1)
+print(len(entries), "volumes")

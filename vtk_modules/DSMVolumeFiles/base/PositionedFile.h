@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef vol_PositionedFile_h
+#define vol_PositionedFile_h
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+
+namespace vol
+{
+
+/// An open file that is read at given places. Any thread.
+class PositionedFile
+{
+public:
+  /// Throws dsm::Error when it cannot be opened.
+  explicit PositionedFile(std::string path);
+  ~PositionedFile();
+  PositionedFile(const PositionedFile&) = delete;
+  PositionedFile& operator=(const PositionedFile&) = delete;
+
+  const std::string& GetPath() const { return this->Path; }
+  /// When it was opened.
+  std::uint64_t GetBytes() const { return this->Bytes; }
+  /// Differs, for all practical purposes, when another file is there, or this one was written to: of device,
+  /// inode, size and time of change, when it was opened.
+  std::uint64_t GetStamp() const { return this->Stamp; }
+
+  /// Reads so many bytes from `offset` on; throws dsm::Error, which names file and place, when there are
+  /// fewer, when reading fails, or when the file was written to since it was opened.
+  void Read(std::uint64_t offset, std::byte* out, std::size_t bytes) const;
+
+private:
+  void CheckUnchanged() const;
+
+  std::string Path;
+  int Descriptor = -1;
+  std::uint64_t Bytes = 0;
+  std::uint64_t Stamp = 0;
+};
+
+} // namespace vol
+
+#endif

@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "DSMVolumeFiles/cache/ChunkCache.h"
+
+#include "DSMRayTracing/base/ByteHash.h"
+#include "DSMVolumeFiles/base/CopyBox.h"
+
+#include <utility>
+
+namespace vol
+{
+
+namespace
+{
+
+constexpr std::size_t SharedBytes = std::size_t(128) << 20;
+
+} // namespace
+
+ChunkCache& ChunkCache::GetShared()
+{
+  static ChunkCache cache(SharedBytes);
+  return cache;
+}
+
+std::size_t ChunkCache::KeyHash::operator()(const Key& key) const
+{
+  std::uint64_t hash = reinterpret_cast<std::uintptr_t>(key.File.get());
+  hash = rt::ByteHash::AddWord(hash, key.Array);
+  hash = rt::ByteHash::AddWord(hash, static_cast<std::uint64_t>(key.Step));
+  return rt::ByteHash::AddWord(hash, static_cast<std::uint64_t>(key.Number));
+}
+
+void ChunkCache::SetLimit(std::size_t bytes)
+{
+  const std::lock_guard<std::mutex> lock(this->Guard);
+  this->Limit = bytes;
+  this->Evict();
+}
+
+std::size_t ChunkCache::GetLimit() const
+{
+  const std::lock_guard<std::mutex> lock(this->Guard);
+  return this->Limit;
+}
+
+std::size_t ChunkCache::GetBytes() const
+{
+  const std::lock_guard<std::mutex> lock(this->Guard);
+  return this->Bytes;
+}
+
+std::uint64_t ChunkCache::GetBytesRead() const
+{
+  const std::lock_guard<std::mutex> lock(this->Guard);
+  return this->BytesRead;
+}
+
+ChunkCache::Chunk ChunkCache::Get(const std::shared_ptr<const VolumeFile>& file, std::size_t array,
+  int step, const rt::Index3& chunk)
+{
+  const FileArray& what = file->GetArrays()[array];
+  const Key key{ file, array, step, what.Grid.GetNumber(chunk) };
+  std::promise<Chunk> promise;
+  {
+    std::unique_lock<std::mutex> lock(this->Guard);
+    const auto known = this->Entries.find(key);
+    if (known != this->Entries.end())
+    {
+      if (known->second.Bytes != 0)
+      {
+        this->Order.splice(this->Order.begin(), this->Order, known->second.Place);
+      }
+      const std::shared_future<Chunk> data = known->second.Data;
+      lock.unlock();
+      return data.get();
+    }
+    this->Entries[key].Data = promise.get_future().share();
+  }
+  try
+  {
+    const rt::Box box = what.Grid.GetBox(chunk);
+    auto bytes = std::make_shared<std::vector<std::byte>>(
+      static_cast<std::size_t>(box.GetCount()) * what.GetSampleBytes());
+    file->ReadChunk(array, step, chunk, bytes->data());
+    const std::lock_guard<std::mutex> lock(this->Guard);
+    Entry& entry = this->Entries.at(key);
+    this->Order.push_front(key);
+    entry.Place = this->Order.begin();
+    entry.Bytes = bytes->size();
+    this->Bytes += entry.Bytes;
+    this->BytesRead += entry.Bytes;
+    promise.set_value(bytes);
+    this->Evict();
+    return bytes;
+  }
+  catch (...)
+  {
+    const std::lock_guard<std::mutex> lock(this->Guard);
+    promise.set_exception(std::current_exception());
+    this->Entries.erase(key);
+    throw;
+  }
+}
+
+void ChunkCache::ReadBox(const std::shared_ptr<const VolumeFile>& file, std::size_t array, int step,
+  const rt::Box& box, std::byte* out)
+{
+  const FileArray& what = file->GetArrays()[array];
+  const rt::Index3 first = box.Min / what.Grid.ChunkSamples;
+  const rt::Index3 last = (box.Max - rt::Index3(1)) / what.Grid.ChunkSamples;
+  rt::Index3 chunk;
+  for (chunk.z = first.z; chunk.z <= last.z; ++chunk.z)
+  {
+    for (chunk.y = first.y; chunk.y <= last.y; ++chunk.y)
+    {
+      for (chunk.x = first.x; chunk.x <= last.x; ++chunk.x)
+      {
+        const rt::Box part = what.Grid.GetBox(chunk);
+        const Chunk samples = this->Get(file, array, step, chunk);
+        CopyBox(rt::Intersect(part, box), samples->data(), part, out, box, what.GetSampleBytes());
+      }
+    }
+  }
+}
+
+void ChunkCache::Evict()
+{
+  while (this->Bytes > this->Limit && !this->Order.empty())
+  {
+    const auto last = this->Entries.find(this->Order.back());
+    this->Bytes -= last->second.Bytes;
+    this->Entries.erase(last);
+    this->Order.pop_back();
+  }
+}
+
+} // namespace vol

@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef vol_ChunkCache_h
+#define vol_ChunkCache_h
+
+#include "DSMVolumeFiles/format/VolumeFile.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <future>
+#include <list>
+#include <memory>
+#include <mutex>
+#include <unordered_map>
+#include <vector>
+
+namespace vol
+{
+
+/// The chunks of files that were read last, up to a number of bytes. Any thread; a chunk that two threads want at
+/// the same time is read once.
+class ChunkCache
+{
+public:
+  using Chunk = std::shared_ptr<const std::vector<std::byte>>;
+
+  explicit ChunkCache(std::size_t bytes)
+    : Limit(bytes)
+  {
+  }
+
+  /// What all files of the process share.
+  static ChunkCache& GetShared();
+
+  /// From now on. What is in use stays in memory until it is not.
+  void SetLimit(std::size_t bytes);
+  std::size_t GetLimit() const;
+  /// In memory now.
+  std::size_t GetBytes() const;
+  /// Read so far, of chunks as they are in memory.
+  std::uint64_t GetBytesRead() const;
+
+  /// The samples of a chunk, as VolumeFile::ReadChunk gives them. Throws what that throws, to all who wait; the
+  /// next one who asks tries again.
+  Chunk Get(const std::shared_ptr<const VolumeFile>& file, std::size_t array, int step,
+    const rt::Index3& chunk);
+
+  /// The samples of a box of an array, dense, x fastest, through the cache.
+  void ReadBox(const std::shared_ptr<const VolumeFile>& file, std::size_t array, int step,
+    const rt::Box& box, std::byte* out);
+
+private:
+  struct Key
+  {
+    /// Kept, so that another file does not get the same address.
+    std::shared_ptr<const VolumeFile> File;
+    std::size_t Array;
+    int Step;
+    std::int64_t Number;
+
+    bool operator==(const Key& other) const
+    {
+      return this->File == other.File && this->Array == other.Array && this->Step == other.Step &&
+        this->Number == other.Number;
+    }
+  };
+  struct KeyHash
+  {
+    std::size_t operator()(const Key& key) const;
+  };
+  struct Entry
+  {
+    std::shared_future<Chunk> Data;
+    std::size_t Bytes = 0; ///< 0: being read
+    std::list<Key>::iterator Place;
+  };
+
+  void Evict();
+
+  mutable std::mutex Guard;
+  std::size_t Limit;
+  std::size_t Bytes = 0;
+  std::uint64_t BytesRead = 0;
+  std::list<Key> Order; ///< of those that are here, the last used first
+  std::unordered_map<Key, Entry, KeyHash> Entries;
+};
+
+} // namespace vol
+
+#endif

@@ -1,0 +1,226 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "DSMVolumeFiles/codec/ChunkCodec.h"
+
+#include "DSMCore/base/Error.h"
+#include "DSMVolumeFiles/codec/Checksums.h"
+
+#include <algorithm>
+#include <cstdint>
+#include <cstring>
+#include <utility>
+
+#ifdef DSM_HAS_ZLIB
+#include <zlib.h>
+#endif
+#ifdef DSM_HAS_BLOSC
+#include <blosc.h>
+#endif
+#ifdef DSM_HAS_ZSTD
+#include <zstd.h>
+#endif
+
+namespace vol
+{
+
+namespace
+{
+
+using Bytes = std::vector<std::byte>;
+using Kind = CodecStep::Kind;
+
+[[noreturn]] void Refuse(const std::string& what)
+{
+  throw dsm::Error(what);
+}
+
+[[noreturn, maybe_unused]] void RefuseLack(const std::string& what, const std::string& package)
+{
+  Refuse("Its values are compressed with " + what +
+    ", which this build cannot read. Install the package " + package + " and build again.");
+}
+
+#ifdef DSM_HAS_ZLIB
+Bytes Inflate(Bytes& stored, std::size_t most)
+{
+  constexpr int zlibOrGzip = 15 + 32;
+  z_stream stream{};
+  Bytes bytes(most);
+  stream.next_in = reinterpret_cast<Bytef*>(stored.data());
+  stream.avail_in = static_cast<uInt>(stored.size());
+  stream.next_out = reinterpret_cast<Bytef*>(bytes.data());
+  stream.avail_out = static_cast<uInt>(bytes.size());
+  if (inflateInit2(&stream, zlibOrGzip) != Z_OK)
+  {
+    throw std::bad_alloc();
+  }
+  const int state = inflate(&stream, Z_FINISH);
+  bytes.resize(stream.total_out);
+  inflateEnd(&stream);
+  if (state != Z_STREAM_END)
+  {
+    Refuse("its deflate stream is damaged");
+  }
+  return bytes;
+}
+#endif
+
+#ifdef DSM_HAS_BLOSC
+Bytes DecodeBlosc(const Bytes& stored, std::size_t most)
+{
+  std::size_t count = 0;
+  if (blosc_cbuffer_validate(stored.data(), stored.size(), &count) != 0 || count > most)
+  {
+    Refuse("its Blosc header is damaged");
+  }
+  Bytes bytes(count);
+  if (blosc_decompress_ctx(stored.data(), bytes.data(), count, 1) != static_cast<int>(count))
+  {
+    Refuse("its Blosc data are damaged");
+  }
+  return bytes;
+}
+#endif
+
+#ifdef DSM_HAS_ZSTD
+Bytes DecodeZstd(const Bytes& stored, std::size_t most)
+{
+  Bytes bytes(most);
+  const std::size_t count =
+    ZSTD_decompress(bytes.data(), bytes.size(), stored.data(), stored.size());
+  if (ZSTD_isError(count))
+  {
+    Refuse(std::string("its Zstandard frame is damaged (") + ZSTD_getErrorName(count) + ")");
+  }
+  bytes.resize(count);
+  return bytes;
+}
+#endif
+
+std::uint32_t TakeLast(Bytes& bytes)
+{
+  std::uint32_t value = 0;
+  if (bytes.size() < sizeof(value))
+  {
+    Refuse("it is too short for its checksum");
+  }
+  for (int byte = 3; byte >= 0; --byte)
+  {
+    value = value << 8 |
+      std::to_integer<std::uint32_t>(bytes[bytes.size() - 4 + static_cast<std::size_t>(byte)]);
+  }
+  bytes.resize(bytes.size() - sizeof(value));
+  return value;
+}
+
+void Check(Bytes& bytes, std::uint32_t (*sum)(const std::byte*, std::size_t))
+{
+  const std::uint32_t expected = TakeLast(bytes);
+  if (sum(bytes.data(), bytes.size()) != expected)
+  {
+    Refuse("its checksum is wrong");
+  }
+}
+
+Bytes Unshuffle(const Bytes& stored, std::size_t width)
+{
+  const std::size_t count = stored.size() / width;
+  Bytes bytes = stored; // what is left over behind the last element stays where it is
+  for (std::size_t byte = 0; byte < width; ++byte)
+  {
+    for (std::size_t element = 0; element < count; ++element)
+    {
+      bytes[element * width + byte] = stored[byte * count + element];
+    }
+  }
+  return bytes;
+}
+
+void SwapBytes(Bytes& bytes, std::size_t width)
+{
+  for (std::size_t at = 0; at + width <= bytes.size(); at += width)
+  {
+    std::reverse(bytes.data() + at, bytes.data() + at + width);
+  }
+}
+
+Bytes Undo(const CodecStep& step, Bytes bytes, std::size_t most)
+{
+  switch (step.What)
+  {
+    case Kind::SwapBytes:
+      SwapBytes(bytes, step.Width);
+      return bytes;
+    case Kind::Shuffle:
+      return Unshuffle(bytes, step.Width);
+    case Kind::Fletcher32:
+      Check(bytes, &GetFletcher32);
+      return bytes;
+    case Kind::Crc32c:
+      Check(bytes, &GetCrc32c);
+      return bytes;
+#ifdef DSM_HAS_ZLIB
+    case Kind::Deflate:
+      return Inflate(bytes, most);
+#endif
+#ifdef DSM_HAS_BLOSC
+    case Kind::Blosc:
+      return DecodeBlosc(bytes, most);
+#endif
+#ifdef DSM_HAS_ZSTD
+    case Kind::Zstd:
+      return DecodeZstd(bytes, most);
+#endif
+    default:
+      throw std::logic_error("the constructor lets no step pass that is not there");
+  }
+}
+
+} // namespace
+
+ChunkCodec::ChunkCodec(std::vector<CodecStep> steps)
+  : Steps(std::move(steps))
+{
+  for ([[maybe_unused]] const CodecStep& step : this->Steps)
+  {
+#ifndef DSM_HAS_ZLIB
+    if (step.What == Kind::Deflate)
+    {
+      RefuseLack("deflate", "zlib1g-dev");
+    }
+#endif
+#ifndef DSM_HAS_BLOSC
+    if (step.What == Kind::Blosc)
+    {
+      RefuseLack("Blosc", "libblosc-dev");
+    }
+#endif
+#ifndef DSM_HAS_ZSTD
+    if (step.What == Kind::Zstd)
+    {
+      RefuseLack("Zstandard", "libzstd-dev");
+    }
+#endif
+  }
+}
+
+void ChunkCodec::Decode(
+  std::vector<std::byte> stored, unsigned skipped, std::byte* out, std::size_t bytes) const
+{
+  // Checksums below a compression add to what it makes.
+  const std::size_t most = bytes + sizeof(std::uint32_t) * this->Steps.size();
+  for (std::size_t step = this->Steps.size(); step-- > 0;)
+  {
+    if ((skipped >> step & 1) == 0)
+    {
+      stored = Undo(this->Steps[step], std::move(stored), most);
+    }
+  }
+  if (stored.size() != bytes)
+  {
+    Refuse(
+      "it has " + std::to_string(stored.size()) + " bytes instead of " + std::to_string(bytes));
+  }
+  std::memcpy(out, stored.data(), bytes);
+}
+
+} // namespace vol

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef vol_ChunkCodec_h
+#define vol_ChunkCodec_h
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+namespace vol
+{
+
+/// One step of how the bytes of a chunk were made out of its samples.
+struct CodecStep
+{
+  enum class Kind
+  {
+    SwapBytes,  ///< Width bytes each
+    Shuffle,    ///< the first bytes of all elements of Width bytes, then the second ones, and so on
+    Deflate,    ///< a zlib or gzip stream
+    Blosc,      ///< version 1
+    Zstd,       ///< one frame
+    Fletcher32, ///< HDF5's checksum behind the bytes
+    Crc32c      ///< Zarr's
+  };
+  Kind What;
+  std::size_t Width = 1;
+};
+
+/// Turns the bytes of a chunk as a file has them into samples. Any thread.
+class ChunkCodec
+{
+public:
+  /// Throws dsm::Error when this build lacks a library that a step needs.
+  explicit ChunkCodec(std::vector<CodecStep> steps = {});
+
+  /// Undoes the steps, the last one first, and writes so many bytes; `skipped` has a bit for each step that was
+  /// left out for this chunk. Throws dsm::Error, without the chunk's name, when the bytes are not what the steps
+  /// make, or not so many.
+  void Decode(
+    std::vector<std::byte> stored, unsigned skipped, std::byte* out, std::size_t bytes) const;
+
+  bool IsPlain() const { return this->Steps.empty(); }
+
+private:
+  std::vector<CodecStep> Steps;
+};
+
+} // namespace vol
+
+#endif

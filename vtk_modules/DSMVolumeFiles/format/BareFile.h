@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef vol_BareFile_h
+#define vol_BareFile_h
+
+#include "DSMVolumeFiles/format/VolumeFile.h"
+
+#include <cstdint>
+#include <memory>
+#include <string>
+
+namespace vol
+{
+
+/// Where the values of one array are, x fastest, uncompressed, in one piece.
+struct BareValues
+{
+  std::string Path;
+  std::string Name; ///< of the array
+  rt::Index3 Samples{ 0 };
+  rt::ScalarType Type = rt::ScalarType::UInt8;
+  int Components = 1;
+  bool BigEndian = false;
+  /// Before the first value; negative: the values are at the end of the file.
+  std::int64_t Offset = 0;
+};
+
+/// A volume of bare values, as a header elsewhere describes it. Its chunks are runs of whole rows or planes of
+/// about 1 MiB. Throws dsm::Error when the file cannot be opened or is too short.
+std::shared_ptr<const VolumeFile> OpenBareFile(
+  const std::string& path, const BareValues& values, const FileGeometry& geometry);
+
+/// So many samples, of so many bytes, as rows, or planes when a plane is small.
+ChunkGrid CutIntoRows(const rt::Index3& samples, std::size_t sampleBytes);
+
+} // namespace vol
+
+#endif

@@ -1,0 +1,556 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "DSMVolumeFiles/format/HdfFile.h"
+
+#include "DSMCore/base/Error.h"
+#include "DSMVolumeFiles/format/BareFile.h"
+#include "DSMVolumeFiles/format/StoredFile.h"
+
+#include <hdf5.h>
+
+#include <algorithm>
+#include <cstring>
+#include <map>
+#include <mutex>
+#include <utility>
+
+namespace vol
+{
+
+namespace
+{
+
+/// The library may have been built without its own.
+std::mutex LibraryLock;
+
+/// Registered filters (https://github.com/HDFGroup/hdf5_plugins).
+constexpr H5Z_filter_t BloscFilter = 32001;
+constexpr H5Z_filter_t ZstdFilter = 32015;
+
+/// Components that a last axis may stand for.
+constexpr hsize_t MostComponents = 9;
+
+/// An identifier of the library's, closed with it.
+class Handle
+{
+public:
+  using Closer = herr_t (*)(hid_t);
+  Handle(hid_t id, Closer closer)
+    : Id(id)
+    , Close(closer)
+  {
+  }
+  Handle(Handle&& other) noexcept
+    : Id(std::exchange(other.Id, H5I_INVALID_HID))
+    , Close(other.Close)
+  {
+  }
+  ~Handle()
+  {
+    if (this->Id >= 0)
+    {
+      this->Close(this->Id);
+    }
+  }
+  Handle(const Handle&) = delete;
+  Handle& operator=(const Handle&) = delete;
+
+  bool IsOpen() const { return this->Id >= 0; }
+  hid_t Get() const { return this->Id; }
+
+private:
+  hid_t Id;
+  Closer Close;
+};
+
+/// The library prints its errors, unless it is told not to; what went wrong is said by us.
+class Silence
+{
+public:
+  Silence()
+  {
+    H5Eget_auto2(H5E_DEFAULT, &this->Function, &this->Data);
+    H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+  }
+  ~Silence() { H5Eset_auto2(H5E_DEFAULT, this->Function, this->Data); }
+  Silence(const Silence&) = delete;
+  Silence& operator=(const Silence&) = delete;
+
+private:
+  H5E_auto2_t Function = nullptr;
+  void* Data = nullptr;
+};
+
+std::vector<hsize_t> GetShape(hid_t dataset)
+{
+  const Handle space(H5Dget_space(dataset), &H5Sclose);
+  const int rank = H5Sget_simple_extent_ndims(space.Get());
+  std::vector<hsize_t> shape(static_cast<std::size_t>(std::max(0, rank)));
+  if (rank > 0)
+  {
+    H5Sget_simple_extent_dims(space.Get(), shape.data(), nullptr);
+  }
+  return shape;
+}
+
+/// False for what is no number of the machine's kinds.
+bool FindType(hid_t dataset, rt::ScalarType& type, bool& swapped)
+{
+  const Handle stored(H5Dget_type(dataset), &H5Tclose);
+  const std::size_t bytes = H5Tget_size(stored.Get());
+  const H5T_order_t order = H5Tget_order(stored.Get());
+  swapped = bytes > 1 && order != H5Tget_order(H5T_NATIVE_INT);
+  using Type = rt::ScalarType;
+  if (H5Tget_class(stored.Get()) == H5T_FLOAT)
+  {
+    type = bytes == 4 ? Type::Float32 : Type::Float64;
+    return bytes == 4 || bytes == 8;
+  }
+  if (H5Tget_class(stored.Get()) != H5T_INTEGER)
+  {
+    return false;
+  }
+  const bool isSigned = H5Tget_sign(stored.Get()) == H5T_SGN_2;
+  switch (bytes)
+  {
+    case 1:
+      type = isSigned ? Type::Int8 : Type::UInt8;
+      return true;
+    case 2:
+      type = isSigned ? Type::Int16 : Type::UInt16;
+      return true;
+    case 4:
+      type = isSigned ? Type::Int32 : Type::UInt32;
+      return true;
+    case 8:
+      type = isSigned ? Type::Int64 : Type::UInt64;
+      return true;
+    default:
+      return false;
+  }
+}
+
+hid_t GetNativeType(rt::ScalarType type)
+{
+  using Type = rt::ScalarType;
+  switch (type)
+  {
+    case Type::Int8:
+      return H5T_NATIVE_INT8;
+    case Type::UInt8:
+      return H5T_NATIVE_UINT8;
+    case Type::Int16:
+      return H5T_NATIVE_INT16;
+    case Type::UInt16:
+      return H5T_NATIVE_UINT16;
+    case Type::Int32:
+      return H5T_NATIVE_INT32;
+    case Type::UInt32:
+      return H5T_NATIVE_UINT32;
+    case Type::Int64:
+      return H5T_NATIVE_INT64;
+    case Type::UInt64:
+      return H5T_NATIVE_UINT64;
+    case Type::Float32:
+      return H5T_NATIVE_FLOAT;
+    case Type::Float64:
+      return H5T_NATIVE_DOUBLE;
+  }
+  return H5I_INVALID_HID;
+}
+
+class HdfFile final : public StoredFile
+{
+public:
+  HdfFile(const std::string& path, const std::string& dataset)
+    : StoredFile(path)
+    , Bytes(std::make_shared<PositionedFile>(path))
+    , File(Open(path))
+  {
+    this->Stamp = this->Bytes->GetStamp();
+    if (H5Lexists(this->File.Get(), "VTKHDF", H5P_DEFAULT) > 0)
+    {
+      this->FindImage();
+    }
+    else
+    {
+      this->FindDatasets(dataset);
+    }
+    if (this->Arrays.empty())
+    {
+      throw dsm::Error("The file '" + path + "' has no " +
+        (dataset.empty() ? "dataset of numbers with three axes."
+                         : "such dataset as '" + dataset + "'."));
+    }
+  }
+  ~HdfFile() override
+  {
+    const std::lock_guard<std::mutex> lock(LibraryLock);
+    this->Kept.clear();
+    const Handle last(std::move(this->File));
+  }
+
+  static std::shared_ptr<const VolumeFile> Create(
+    const std::string& path, const std::string& dataset)
+  {
+    const std::lock_guard<std::mutex> lock(LibraryLock);
+    const Silence silence;
+    return std::make_shared<HdfFile>(path, dataset);
+  }
+
+  void ReadChunk(
+    std::size_t array, int step, const rt::Index3& chunk, std::byte* out) const override
+  {
+    if (this->Kept[array].ReadByLibrary)
+    {
+      this->ReadByLibrary(array, chunk, out);
+    }
+    else
+    {
+      this->StoredFile::ReadChunk(array, step, chunk, out);
+    }
+  }
+
+protected:
+  std::optional<Place> FindChunk(std::size_t array, int, const rt::Index3& chunk) const override
+  {
+    const Dataset& dataset = this->Kept[array];
+    const ChunkGrid& grid = this->Arrays[array].Grid;
+    if (dataset.Chunks.empty())
+    {
+      if (dataset.First == HADDR_UNDEF)
+      {
+        return std::nullopt;
+      }
+      const rt::Box box = grid.GetBox(chunk);
+      const auto before =
+        static_cast<std::uint64_t>((box.Min.z * grid.Samples.y + box.Min.y) * grid.Samples.x);
+      const std::size_t bytes = this->Arrays[array].GetSampleBytes();
+      return Place{ this->Bytes, dataset.First + before * bytes,
+        static_cast<std::size_t>(box.GetCount()) * bytes, 0 };
+    }
+    const Piece& piece = dataset.Chunks[static_cast<std::size_t>(grid.GetNumber(chunk))];
+    if (piece.First == HADDR_UNDEF)
+    {
+      return std::nullopt;
+    }
+    return Place{ this->Bytes, piece.First, static_cast<std::size_t>(piece.Bytes), piece.Skipped };
+  }
+
+private:
+  struct Piece
+  {
+    haddr_t First = HADDR_UNDEF;
+    hsize_t Bytes = 0;
+    unsigned Skipped = 0;
+  };
+  struct Dataset
+  {
+    Handle Id;
+    bool ReadByLibrary = false;
+    haddr_t First = HADDR_UNDEF; ///< of contiguous values
+    std::vector<Piece> Chunks;
+  };
+
+  static Handle Open(const std::string& path)
+  {
+    Handle file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), &H5Fclose);
+    if (!file.IsOpen())
+    {
+      throw dsm::Error(
+        "The file '" + path + "' is no HDF5 file, or is damaged, or is open for writing.");
+    }
+    return file;
+  }
+
+  template <class T>
+  bool ReadAttribute(hid_t object, const char* name, hid_t type, T* out, hssize_t count) const
+  {
+    if (H5Aexists(object, name) <= 0)
+    {
+      return false;
+    }
+    const Handle attribute(H5Aopen(object, name, H5P_DEFAULT), &H5Aclose);
+    const Handle space(H5Aget_space(attribute.Get()), &H5Sclose);
+    return H5Sget_simple_extent_npoints(space.Get()) == count &&
+      H5Aread(attribute.Get(), type, out) >= 0;
+  }
+
+  /// VTK's own: see "VTKHDF File Format", ImageData.
+  void FindImage()
+  {
+    const Handle group(H5Gopen2(this->File.Get(), "VTKHDF", H5P_DEFAULT), &H5Gclose);
+    long long extent[6];
+    if (!this->ReadAttribute(group.Get(), "WholeExtent", H5T_NATIVE_LLONG, extent, 6))
+    {
+      throw dsm::Error("The file '" + this->Path +
+        "' is VTKHDF, but has no image data (no WholeExtent); open it with ParaView's own reader.");
+    }
+    this->ReadAttribute(group.Get(), "Origin", H5T_NATIVE_DOUBLE, this->Geometry.Origin, 3);
+    this->ReadAttribute(group.Get(), "Spacing", H5T_NATIVE_DOUBLE, this->Geometry.Spacing, 3);
+    this->ReadAttribute(group.Get(), "Direction", H5T_NATIVE_DOUBLE, this->Geometry.Direction, 9);
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      this->Geometry.First[axis] = extent[2 * axis];
+      this->Geometry.Points[axis] = extent[2 * axis + 1] - extent[2 * axis] + 1;
+    }
+    const rt::Index3 cells = glm::max(this->Geometry.Points - rt::Index3(1), rt::Index3(1));
+    this->FindArrays(group.Get(), "PointData", false, this->Geometry.Points);
+    this->FindArrays(group.Get(), "CellData", true, cells);
+  }
+
+  void FindArrays(hid_t parent, const char* name, bool onCells, const rt::Index3& samples)
+  {
+    if (H5Lexists(parent, name, H5P_DEFAULT) <= 0)
+    {
+      return;
+    }
+    const Handle group(H5Gopen2(parent, name, H5P_DEFAULT), &H5Gclose);
+    H5G_info_t info;
+    H5Gget_info(group.Get(), &info);
+    for (hsize_t index = 0; index < info.nlinks; ++index)
+    {
+      char link[256] = {};
+      H5Lget_name_by_idx(
+        group.Get(), ".", H5_INDEX_NAME, H5_ITER_INC, index, link, sizeof(link), H5P_DEFAULT);
+      Handle dataset(H5Dopen2(group.Get(), link, H5P_DEFAULT), &H5Dclose);
+      rt::Index3 found(0);
+      if (dataset.IsOpen() && FindSamples(dataset.Get(), found) && found == samples)
+      {
+        this->Add(std::move(dataset), link, onCells, samples);
+      }
+    }
+  }
+
+  /// Samples along x, y and z of a dataset of three axes, or four with the components last.
+  static bool FindSamples(hid_t dataset, rt::Index3& samples)
+  {
+    const std::vector<hsize_t> shape = GetShape(dataset);
+    if (shape.size() != 3 && !(shape.size() == 4 && shape[3] <= MostComponents))
+    {
+      return false;
+    }
+    samples = { static_cast<std::int64_t>(shape[2]), static_cast<std::int64_t>(shape[1]),
+      static_cast<std::int64_t>(shape[0]) };
+    return samples.x > 0 && samples.y > 0 && samples.z > 0;
+  }
+
+  static herr_t Note(hid_t, const char* name, const H5O_info_t* info, void* names)
+  {
+    if (info->type == H5O_TYPE_DATASET)
+    {
+      static_cast<std::vector<std::string>*>(names)->push_back(name);
+    }
+    return 0;
+  }
+
+  void FindDatasets(const std::string& wanted)
+  {
+    std::vector<std::string> names;
+    if (wanted.empty())
+    {
+      H5Ovisit2(this->File.Get(), H5_INDEX_NAME, H5_ITER_INC, &Note, &names, H5O_INFO_BASIC);
+    }
+    else
+    {
+      names.push_back(wanted);
+    }
+    std::map<std::string, rt::Index3> volumes;
+    for (const std::string& name : names)
+    {
+      const Handle dataset(H5Dopen2(this->File.Get(), name.c_str(), H5P_DEFAULT), &H5Dclose);
+      rt::Index3 samples(0);
+      rt::ScalarType type;
+      bool swapped = false;
+      if (dataset.IsOpen() && FindSamples(dataset.Get(), samples) &&
+        FindType(dataset.Get(), type, swapped))
+      {
+        volumes[name] = samples;
+      }
+    }
+    // Of several shapes the largest.
+    const auto getCount = [](const rt::Index3& samples) {
+      return rt::Box{ rt::Index3(0), samples }.GetCount();
+    };
+    for (const auto& [name, samples] : volumes)
+    {
+      if (getCount(samples) > getCount(this->Geometry.Points))
+      {
+        this->Geometry.Points = samples;
+      }
+    }
+    for (const auto& [name, samples] : volumes)
+    {
+      if (samples == this->Geometry.Points)
+      {
+        this->Add(Handle(H5Dopen2(this->File.Get(), name.c_str(), H5P_DEFAULT), &H5Dclose), name,
+          false, samples);
+      }
+    }
+  }
+
+  void Add(Handle id, const std::string& name, bool onCells, const rt::Index3& samples)
+  {
+    const std::vector<hsize_t> shape = GetShape(id.Get());
+    FileArray array;
+    array.Name = name;
+    array.OnCells = onCells;
+    array.Components = shape.size() == 4 ? static_cast<int>(shape[3]) : 1;
+    bool swapped = false;
+    if (!FindType(id.Get(), array.Type, swapped))
+    {
+      return;
+    }
+    const std::size_t sampleBytes = array.GetSampleBytes();
+    array.Grid = CutIntoRows(samples, sampleBytes);
+    Dataset dataset{ std::move(id), false, HADDR_UNDEF, {} };
+    Storage storage;
+    storage.Fill = this->GetFill(dataset.Id.Get(), array);
+    const Handle properties(H5Dget_create_plist(dataset.Id.Get()), &H5Pclose);
+    std::vector<CodecStep> steps;
+    if (swapped)
+    {
+      steps.push_back({ CodecStep::Kind::SwapBytes, rt::GetBytes(array.Type) });
+    }
+    switch (H5Pget_layout(properties.Get()))
+    {
+      case H5D_CONTIGUOUS:
+        dataset.First = H5Dget_offset(dataset.Id.Get());
+        dataset.ReadByLibrary = H5Pget_external_count(properties.Get()) > 0;
+        storage.HasWholeChunks = false;
+        break;
+      case H5D_CHUNKED:
+        dataset.ReadByLibrary = !FindSteps(properties.Get(), steps) ||
+          !this->FindChunks(properties.Get(), shape, array, dataset, swapped);
+        break;
+      default:
+        dataset.ReadByLibrary = true;
+    }
+    storage.Codec = ChunkCodec(dataset.ReadByLibrary ? std::vector<CodecStep>() : std::move(steps));
+    this->Arrays.push_back(std::move(array));
+    this->Storages.push_back(std::move(storage));
+    this->Kept.push_back(std::move(dataset));
+  }
+
+  static std::vector<std::byte> GetFill(hid_t dataset, const FileArray& array)
+  {
+    const std::size_t bytes = rt::GetBytes(array.Type);
+    std::vector<std::byte> one(bytes, std::byte(0));
+    const Handle properties(H5Dget_create_plist(dataset), &H5Pclose);
+    H5D_fill_value_t state = H5D_FILL_VALUE_UNDEFINED;
+    if (H5Pfill_value_defined(properties.Get(), &state) >= 0 &&
+      state == H5D_FILL_VALUE_USER_DEFINED)
+    {
+      H5Pget_fill_value(properties.Get(), GetNativeType(array.Type), one.data());
+    }
+    std::vector<std::byte> all;
+    for (int component = 0; component < array.Components; ++component)
+    {
+      all.insert(all.end(), one.begin(), one.end());
+    }
+    return all;
+  }
+
+  /// False when a filter is not known here.
+  static bool FindSteps(hid_t properties, std::vector<CodecStep>& steps)
+  {
+    const int count = H5Pget_nfilters(properties);
+    for (int index = 0; index < count; ++index)
+    {
+      unsigned flags = 0;
+      std::size_t parameterCount = 8;
+      unsigned parameters[8] = {};
+      unsigned config = 0;
+      const H5Z_filter_t filter = H5Pget_filter2(properties, static_cast<unsigned>(index), &flags,
+        &parameterCount, parameters, 0, nullptr, &config);
+      switch (filter)
+      {
+        case H5Z_FILTER_DEFLATE:
+          steps.push_back({ CodecStep::Kind::Deflate });
+          break;
+        case H5Z_FILTER_SHUFFLE:
+          steps.push_back({ CodecStep::Kind::Shuffle, std::max(1u, parameters[0]) });
+          break;
+        case H5Z_FILTER_FLETCHER32:
+          steps.push_back({ CodecStep::Kind::Fletcher32 });
+          break;
+        case BloscFilter:
+          steps.push_back({ CodecStep::Kind::Blosc });
+          break;
+        case ZstdFilter:
+          steps.push_back({ CodecStep::Kind::Zstd });
+          break;
+        default:
+          return false;
+      }
+    }
+    return true;
+  }
+
+  /// False when the chunks do not have all components.
+  bool FindChunks(hid_t properties, const std::vector<hsize_t>& shape, FileArray& array,
+    Dataset& dataset, bool swapped) const
+  {
+    hsize_t edges[4] = { 1, 1, 1, 1 };
+    H5Pget_chunk(properties, 4, edges);
+    if (shape.size() == 4 && edges[3] != shape[3])
+    {
+      return false;
+    }
+    array.Grid.ChunkSamples = { static_cast<std::int64_t>(edges[2]),
+      static_cast<std::int64_t>(edges[1]), static_cast<std::int64_t>(edges[0]) };
+    const std::int64_t count = array.Grid.GetCount();
+    dataset.Chunks.resize(static_cast<std::size_t>(count));
+    for (std::int64_t number = 0; number < count; ++number)
+    {
+      const rt::Index3 first = array.Grid.GetChunk(number) * array.Grid.ChunkSamples;
+      const hsize_t offset[4] = { static_cast<hsize_t>(first.z), static_cast<hsize_t>(first.y),
+        static_cast<hsize_t>(first.x), 0 };
+      Piece& piece = dataset.Chunks[static_cast<std::size_t>(number)];
+      if (H5Dget_chunk_info_by_coord(
+            dataset.Id.Get(), offset, &piece.Skipped, &piece.First, &piece.Bytes) < 0)
+      {
+        throw dsm::Error("The file '" + this->Path + "' does not tell where a chunk of '" +
+          array.Name + "' is; it is damaged.");
+      }
+      piece.Skipped <<= swapped ? 1 : 0; // the filters' bits
+    }
+    return true;
+  }
+
+  void ReadByLibrary(std::size_t number, const rt::Index3& chunk, std::byte* out) const
+  {
+    const std::lock_guard<std::mutex> lock(LibraryLock);
+    const Silence silence;
+    const FileArray& array = this->Arrays[number];
+    const hid_t dataset = this->Kept[number].Id.Get();
+    const rt::Box box = array.Grid.GetBox(chunk);
+    const rt::Index3 size = box.GetSize();
+    const Handle all(H5Dget_space(dataset), &H5Sclose);
+    const int rank = H5Sget_simple_extent_ndims(all.Get());
+    const auto components = static_cast<hsize_t>(array.Components);
+    const hsize_t first[4] = { static_cast<hsize_t>(box.Min.z), static_cast<hsize_t>(box.Min.y),
+      static_cast<hsize_t>(box.Min.x), 0 };
+    const hsize_t count[4] = { static_cast<hsize_t>(size.z), static_cast<hsize_t>(size.y),
+      static_cast<hsize_t>(size.x), components };
+    const Handle part(H5Screate_simple(rank, count, nullptr), &H5Sclose);
+    if (H5Sselect_hyperslab(all.Get(), H5S_SELECT_SET, first, nullptr, count, nullptr) < 0 ||
+      H5Dread(dataset, GetNativeType(array.Type), part.Get(), all.Get(), H5P_DEFAULT, out) < 0)
+    {
+      throw dsm::Error("A part of the array '" + array.Name + "' in '" + this->Path +
+        "' cannot be read by the HDF5 library: it is damaged, or a filter is not installed.");
+    }
+  }
+
+  std::shared_ptr<const PositionedFile> Bytes;
+  Handle File;
+  std::vector<Dataset> Kept; ///< of the arrays
+};
+
+} // namespace
+
+std::shared_ptr<const VolumeFile> OpenHdf(const std::string& path, const std::string& dataset)
+{
+  return HdfFile::Create(path, dataset);
+}
+
+} // namespace vol

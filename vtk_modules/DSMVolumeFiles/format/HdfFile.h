@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef vol_HdfFile_h
+#define vol_HdfFile_h
+
+#include "DSMVolumeFiles/format/VolumeFile.h"
+
+#include <memory>
+#include <string>
+
+namespace vol
+{
+
+/// HDF5: VTK's ImageData (VTKHDF), or datasets of three axes (z, y, x), or four with the components last. Where
+/// the chunks are is asked of the library once, under its lock; then they are read without it. Datasets whose
+/// values are neither contiguous nor in chunks with filters that are known here are read by the library.
+std::shared_ptr<const VolumeFile> OpenHdf(const std::string& path, const std::string& dataset);
+
+} // namespace vol
+
+#endif

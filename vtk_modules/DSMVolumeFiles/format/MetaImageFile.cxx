@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "DSMVolumeFiles/format/BareFile.h"
+#include "DSMVolumeFiles/format/HeaderFiles.h"
+#include "DSMVolumeFiles/format/HeaderText.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <vector>
+
+namespace vol
+{
+
+namespace
+{
+
+rt::ScalarType ParseType(const HeaderText& header)
+{
+  using Type = rt::ScalarType;
+  static const std::map<std::string, Type> types = { { "met_char", Type::Int8 },
+    { "met_uchar", Type::UInt8 }, { "met_short", Type::Int16 }, { "met_ushort", Type::UInt16 },
+    { "met_int", Type::Int32 }, { "met_uint", Type::UInt32 }, { "met_long_long", Type::Int64 },
+    { "met_ulong_long", Type::UInt64 }, { "met_float", Type::Float32 },
+    { "met_double", Type::Float64 } };
+  std::string name = HeaderText::ToLower(header.Get("elementtype"));
+  const std::string ofArray = "_array";
+  if (name.size() > ofArray.size() &&
+    name.compare(name.size() - ofArray.size(), ofArray.size(), ofArray) == 0)
+  {
+    name.resize(name.size() - ofArray.size());
+  }
+  const auto known = types.find(name);
+  if (known == types.end())
+  {
+    header.Refuse(
+      "its values are of the type '" + header.Get("elementtype") + "', which is not known.");
+  }
+  return known->second;
+}
+
+bool IsTrue(const HeaderText& header, const std::string& name)
+{
+  return HeaderText::ToLower(header.Get(name)) == "true" || header.Get(name) == "1";
+}
+
+} // namespace
+
+std::shared_ptr<const VolumeFile> OpenMetaImage(const std::string& path)
+{
+  HeaderText header(path);
+  std::ifstream file(path, std::ios::binary);
+  std::string line;
+  // The name of the values' file is the last line; they may follow it.
+  while (!header.Has("elementdatafile") && std::getline(file, line))
+  {
+    header.AddLine(line, "=");
+  }
+  if (!header.Has("elementdatafile") || header.Get("ndims") != "3")
+  {
+    header.Refuse("it is no MetaImage of three dimensions.");
+  }
+  if (IsTrue(header, "compresseddata"))
+  {
+    header.Refuse("its values are compressed as a whole, and cannot be read in parts. Save it "
+                  "without compression.");
+  }
+  BareValues values;
+  values.Name = "values";
+  const std::vector<double> size = header.GetNumbers("dimsize", 3);
+  for (std::size_t axis = 0; axis < size.size(); ++axis)
+  {
+    values.Samples[static_cast<int>(axis)] = static_cast<std::int64_t>(size[axis]);
+  }
+  values.Type = ParseType(header);
+  const std::vector<double> channels = header.GetNumbers("elementnumberofchannels", 1);
+  values.Components = channels.empty() ? 1 : static_cast<int>(channels.front());
+  values.BigEndian =
+    IsTrue(header, "binarydatabyteordermsb") || IsTrue(header, "elementbyteordermsb");
+  const std::vector<double> skip = header.GetNumbers("headersize", 1);
+  values.Offset = skip.empty() ? 0 : static_cast<std::int64_t>(skip.front());
+  const std::string place = header.Get("elementdatafile");
+  if (place == "LOCAL")
+  {
+    values.Path = path;
+    values.Offset = static_cast<std::int64_t>(file.tellg());
+  }
+  else if (place == "LIST" || place.find('%') != std::string::npos)
+  {
+    header.Refuse("its values are in several files, which is not supported.");
+  }
+  else
+  {
+    values.Path = (std::filesystem::path(path).parent_path() / place).string();
+  }
+  FileGeometry geometry;
+  const auto take = [&](std::initializer_list<const char*> names, double* out, std::size_t count)
+  {
+    for (const char* name : names)
+    {
+      if (header.Has(name))
+      {
+        const std::vector<double> numbers = header.GetNumbers(name, count);
+        std::copy(numbers.begin(), numbers.end(), out);
+        return;
+      }
+    }
+  };
+  take({ "offset", "origin", "position" }, geometry.Origin, 3);
+  take({ "elementspacing", "elementsize" }, geometry.Spacing, 3);
+  double rows[9] = { 1, 0, 0, 0, 1, 0, 0, 0, 1 };
+  take({ "transformmatrix", "rotation", "orientation" }, rows, 9);
+  // One axis of the image after the other.
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    for (int row = 0; row < 3; ++row)
+    {
+      geometry.Direction[3 * row + axis] = rows[3 * axis + row];
+    }
+  }
+  return OpenBareFile(path, values, geometry);
+}
+
+} // namespace vol

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef vol_StoredFile_h
+#define vol_StoredFile_h
+
+#include "DSMVolumeFiles/base/PositionedFile.h"
+#include "DSMVolumeFiles/codec/ChunkCodec.h"
+#include "DSMVolumeFiles/format/VolumeFile.h"
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+namespace vol
+{
+
+/// A volume whose chunks are, each by itself, somewhere in files. The formats say where.
+class StoredFile : public VolumeFile
+{
+public:
+  void ReadChunk(
+    std::size_t array, int step, const rt::Index3& chunk, std::byte* out) const override;
+
+protected:
+  using VolumeFile::VolumeFile;
+
+  /// Where the bytes of a chunk are.
+  struct Place
+  {
+    std::shared_ptr<const PositionedFile> File;
+    std::uint64_t Offset = 0;
+    std::size_t Bytes = 0;
+    unsigned SkippedSteps = 0; ///< of the codec
+    std::size_t Slice = 0;     ///< which of Storage::Slices
+  };
+
+  /// How the chunks of an array are kept.
+  struct Storage
+  {
+    ChunkCodec Codec;
+    /// Of a chunk that is nowhere: one sample.
+    std::vector<std::byte> Fill;
+    /// Chunks at the volume's ends are as large as all others; else they end with it.
+    bool HasWholeChunks = true;
+    /// As many boxes of samples are in one piece of stored bytes, one behind the other: a chunk of an array with
+    /// more axes than three.
+    std::size_t Slices = 1;
+  };
+
+  /// None: all samples of the chunk have the fill value.
+  virtual std::optional<Place> FindChunk(
+    std::size_t array, int step, const rt::Index3& chunk) const = 0;
+
+  std::vector<Storage> Storages; ///< of the arrays
+};
+
+} // namespace vol
+
+#endif

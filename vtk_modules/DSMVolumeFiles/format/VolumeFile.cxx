@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "DSMVolumeFiles/format/VolumeFile.h"
+
+#include "DSMCore/base/Error.h"
+#include "DSMVolumeFiles/format/BareFile.h"
+#include "DSMVolumeFiles/format/HeaderFiles.h"
+#include "DSMVolumeFiles/format/HeaderText.h"
+#ifdef DSM_HAS_HDF5
+#include "DSMVolumeFiles/format/HdfFile.h"
+#endif
+#include "DSMVolumeFiles/format/ZarrFile.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+
+namespace vol
+{
+
+namespace
+{
+
+enum class Format
+{
+  Unknown,
+  Raw,
+  Nrrd,
+  MetaImage,
+  Hdf,
+  Zarr
+};
+
+std::string ReadFirst(const std::string& path, std::size_t bytes)
+{
+  std::ifstream file(path, std::ios::binary);
+  std::string text(bytes, '\0');
+  file.read(text.data(), static_cast<std::streamsize>(bytes));
+  text.resize(static_cast<std::size_t>(std::max<std::streamsize>(0, file.gcount())));
+  return text;
+}
+
+/// ParaView's file dialog has files, no folders: one of a Zarr folder's own may stand for it.
+std::string FindZarrFolder(const std::string& path)
+{
+  const std::filesystem::path file(path);
+  const std::string name = file.filename().string();
+  const bool isPart =
+    name == ".zattrs" || name == ".zgroup" || name == ".zarray" || name == "zarr.json";
+  const std::string folder = isPart ? file.parent_path().string() : path;
+  return MayBeZarr(folder) ? folder : std::string();
+}
+
+Format FindFormat(const std::string& path)
+{
+  if (!FindZarrFolder(path).empty())
+  {
+    return Format::Zarr;
+  }
+  const std::string first = ReadFirst(path, 8);
+  if (first.rfind("NRRD000", 0) == 0)
+  {
+    return Format::Nrrd;
+  }
+  if (first == "\x89HDF\r\n\x1a\n")
+  {
+    return Format::Hdf;
+  }
+  const std::string extension =
+    HeaderText::ToLower(std::filesystem::path(path).extension().string());
+  return extension == ".mhd" || extension == ".mha" ? Format::MetaImage
+    : extension == ".raw"                           ? Format::Raw
+                                                    : Format::Unknown;
+}
+
+Format TryFindFormat(const std::string& path)
+{
+  try
+  {
+    return FindFormat(path);
+  }
+  catch (const std::exception&)
+  {
+    return Format::Unknown;
+  }
+}
+
+std::shared_ptr<const VolumeFile> OpenRaw(const std::string& path, const OpenOptions::Raw& options)
+{
+  if (rt::Box{ rt::Index3(0), options.Samples }.GetCount() == 0)
+  {
+    throw dsm::Error("The file '" + path +
+      "' has bare values and no header: enter how many samples there are (Raw Dimensions) along "
+      "each axis, and "
+      "their type.");
+  }
+  BareValues values;
+  values.Path = path;
+  values.Name = "values";
+  values.Samples = options.Samples;
+  values.Type = options.Type;
+  values.Components = std::max(1, options.Components);
+  values.BigEndian = options.BigEndian;
+  values.Offset = static_cast<std::int64_t>(options.HeaderBytes);
+  FileGeometry geometry;
+  std::copy_n(options.Spacing, 3, geometry.Spacing);
+  return OpenBareFile(path, values, geometry);
+}
+
+} // namespace
+
+std::shared_ptr<const VolumeFile> OpenVolumeFile(
+  const std::string& path, const OpenOptions& options)
+{
+  if (!std::filesystem::exists(path))
+  {
+    throw dsm::Error("There is no file '" + path + "'.");
+  }
+  switch (FindFormat(path))
+  {
+    case Format::Raw:
+      return OpenRaw(path, options.Bare);
+    case Format::Nrrd:
+      return OpenNrrd(path);
+    case Format::MetaImage:
+      return OpenMetaImage(path);
+    case Format::Zarr:
+      return OpenZarr(FindZarrFolder(path), options.Level);
+    case Format::Hdf:
+#ifdef DSM_HAS_HDF5
+      return OpenHdf(path, options.Dataset);
+#else
+      throw dsm::Error("'" + path +
+        "' is an HDF5 file, which this build cannot read. Install the package libhdf5-dev and "
+        "build again.");
+#endif
+    case Format::Unknown:
+      break;
+  }
+  throw dsm::Error("The format of '" + path +
+    "' is not known. HDF5, Zarr (a folder), NRRD, MetaImage (.mhd, .mha) and .raw are.");
+}
+
+bool IsBareFile(const std::string& path)
+{
+  return TryFindFormat(path) == Format::Raw;
+}
+
+bool MayBeVolumeFile(const std::string& path)
+{
+  return TryFindFormat(path) != Format::Unknown;
+}
+
+} // namespace vol

@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef vol_VolumeFile_h
+#define vol_VolumeFile_h
+
+#include "DSMRayTracing/base/ScalarType.h"
+#include "DSMVolumeFiles/base/ChunkGrid.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace vol
+{
+
+/// One array of a volume file.
+struct FileArray
+{
+  std::string Name;
+  rt::ScalarType Type = rt::ScalarType::UInt8;
+  int Components = 1;
+  bool OnCells = false; ///< else on the points
+  ChunkGrid Grid;
+
+  std::size_t GetSampleBytes() const
+  {
+    return rt::GetBytes(this->Type) * static_cast<std::size_t>(this->Components);
+  }
+};
+
+/// Where the samples are in the world, as vtkImageData has it.
+struct FileGeometry
+{
+  double Origin[3] = { 0.0, 0.0, 0.0 };
+  double Spacing[3] = { 1.0, 1.0, 1.0 };
+  double Direction[9] = { 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0 };
+  rt::Index3 First{ 0 };  ///< index of the first point
+  rt::Index3 Points{ 0 }; ///< points along each axis
+};
+
+/// A volume in a file, or in a folder of files, of which no values are read when it is opened. Its members may
+/// be called by any thread, at the same time.
+class VolumeFile
+{
+public:
+  virtual ~VolumeFile() = default;
+  VolumeFile(const VolumeFile&) = delete;
+  VolumeFile& operator=(const VolumeFile&) = delete;
+
+  const std::string& GetPath() const { return this->Path; }
+  const FileGeometry& GetGeometry() const { return this->Geometry; }
+  /// At least one; the points' arrays have as many samples as there are points, the cells' one less along an
+  /// axis of more than one point.
+  const std::vector<FileArray>& GetArrays() const { return this->Arrays; }
+  /// At least 1. All steps have the same arrays.
+  int GetSteps() const { return this->Steps; }
+  /// Number of levels of detail, of which one was opened.
+  int GetLevels() const { return this->Levels; }
+  /// Differs, for all practical purposes, when the file's contents do.
+  std::uint64_t GetStamp() const { return this->Stamp; }
+
+  /// The samples of a chunk that belong to the volume (ChunkGrid::GetBox), dense, x fastest, the components of a
+  /// sample together, in the machine's byte order. Throws dsm::Error, which names file and chunk, when they
+  /// cannot be read, or are not what the file's checksums and lengths tell.
+  virtual void ReadChunk(
+    std::size_t array, int step, const rt::Index3& chunk, std::byte* out) const = 0;
+
+protected:
+  explicit VolumeFile(std::string path)
+    : Path(std::move(path))
+  {
+  }
+
+  std::string Path;
+  FileGeometry Geometry;
+  std::vector<FileArray> Arrays;
+  int Steps = 1;
+  int Levels = 1;
+  std::uint64_t Stamp = 0;
+};
+
+/// What a file's own header does not tell, or leaves open.
+struct OpenOptions
+{
+  /// Of a Zarr group with several scales: 0 is the finest.
+  int Level = 0;
+  /// Of an HDF5 file without VTKHDF: the dataset to take; empty: those of the most common shape of three axes.
+  std::string Dataset;
+
+  /// Of a file of bare values (.raw).
+  struct Raw
+  {
+    rt::Index3 Samples{ 0 };
+    rt::ScalarType Type = rt::ScalarType::UInt8;
+    int Components = 1;
+    bool BigEndian = false;
+    std::uint64_t HeaderBytes = 0;
+    double Spacing[3] = { 1.0, 1.0, 1.0 };
+  };
+  Raw Bare;
+};
+
+/// Opens a file (or a folder: Zarr) of any format that this build knows. Throws dsm::Error, which says what is
+/// wrong, or lists the formats there are.
+std::shared_ptr<const VolumeFile> OpenVolumeFile(
+  const std::string& path, const OpenOptions& options = {});
+
+/// Whether it has bare values, so that OpenOptions::Raw has to tell of them. Throws nothing.
+bool IsBareFile(const std::string& path);
+
+/// Whether its name and first bytes look like one of the formats; cheap, and throws nothing.
+bool MayBeVolumeFile(const std::string& path);
+
+} // namespace vol
+
+#endif

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef vol_ZarrFile_h
+#define vol_ZarrFile_h
+
+#include "DSMVolumeFiles/format/VolumeFile.h"
+
+#include <memory>
+#include <string>
+
+namespace vol
+{
+
+/// Zarr, versions 2 and 3 (with sharding): one array, a group of arrays of one shape, or an OME-Zarr image
+/// (https://ngff.openmicroscopy.org), of whose scales `level` is taken, with its channels as arrays and its times
+/// as steps. `path` is a folder. The last three axes are z, y and x, in C order.
+std::shared_ptr<const VolumeFile> OpenZarr(const std::string& path, int level);
+
+bool MayBeZarr(const std::string& path);
+
+} // namespace vol
+
+#endif

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef vol_ZarrMetadata_h
+#define vol_ZarrMetadata_h
+
+#include "DSMRayTracing/base/ScalarType.h"
+#include "DSMVolumeFiles/codec/ChunkCodec.h"
+
+#include <nlohmann/json.hpp>
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace vol
+{
+
+/// What the metadata of one Zarr array say, whichever version.
+struct ZarrMetadata
+{
+  /// Chunks of a chunk, which share a file, behind or before an index of where they are.
+  struct Sharding
+  {
+    std::vector<std::int64_t> ShardShape;
+    ChunkCodec IndexCodec;
+    std::size_t IndexBytes = 0; ///< as stored
+    bool IndexIsFirst = false;
+  };
+
+  std::vector<std::int64_t> Shape; ///< the slowest axis first
+  std::vector<std::int64_t> ChunkShape;
+  rt::ScalarType Type = rt::ScalarType::UInt8;
+  std::vector<std::byte> Fill; ///< one value
+  ChunkCodec Codec;
+  std::optional<Sharding> Shards;
+  /// Between the indices of a chunk, and before them.
+  std::string Separator = ".";
+  std::string Prefix;
+
+  /// Whether it has samples, and three to five axes.
+  bool IsVolume() const;
+};
+
+/// The file with an array's, or a group's, metadata in a folder; null where there is none.
+nlohmann::json ReadZarrJson(const std::string& folder, const std::string& name);
+
+/// Of the array in a folder; none where there is no array. Throws dsm::Error for what this build cannot read.
+std::optional<ZarrMetadata> ReadZarrMetadata(const std::string& folder);
+
+/// The attributes of an array or a group, which may be empty.
+nlohmann::json ReadZarrAttributes(const std::string& folder);
+
+} // namespace vol
+
+#endif

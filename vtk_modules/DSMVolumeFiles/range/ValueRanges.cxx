@@ -1,0 +1,200 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "DSMVolumeFiles/range/ValueRanges.h"
+
+#include "DSMRayTracing/base/ByteHash.h"
+#include "DSMRayTracing/base/ParallelFor.h"
+
+#include <atomic>
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+#include <unistd.h>
+
+namespace vol
+{
+
+namespace
+{
+
+/// Its layout of the kept file.
+constexpr int KeptVersion = 1;
+
+void Add(ValueRanges& ranges, std::size_t number, double value)
+{
+  if (std::isnan(value))
+  {
+    return;
+  }
+  ranges.All[number].Add(value);
+  if (std::isfinite(value))
+  {
+    ranges.Finite[number].Add(value);
+  }
+}
+
+ValueRanges CreateRanges(int components)
+{
+  const auto count = static_cast<std::size_t>(components > 1 ? components + 1 : 1);
+  return { std::vector<ValueRange>(count), std::vector<ValueRange>(count) };
+}
+
+template <class T>
+void AddRow(ValueRanges& ranges, const T* row, std::int64_t samples, int components)
+{
+  for (std::int64_t sample = 0; sample < samples; ++sample)
+  {
+    double sum = 0.0;
+    for (int component = 0; component < components; ++component)
+    {
+      const auto value = static_cast<double>(row[sample * components + component]);
+      Add(ranges, static_cast<std::size_t>(component), value);
+      sum += value * value;
+    }
+    if (components > 1)
+    {
+      Add(ranges, static_cast<std::size_t>(components), std::sqrt(sum));
+    }
+  }
+}
+
+void AddPart(ValueRanges& ranges, const FileArray& array, const std::byte* samples,
+  const rt::Box& have, const rt::Box& want)
+{
+  rt::Dispatch(array.Type,
+    [&](auto zero)
+    {
+      const auto* values = reinterpret_cast<const decltype(zero)*>(samples);
+      const rt::Index3 size = have.GetSize();
+      for (std::int64_t z = want.Min.z; z < want.Max.z; ++z)
+      {
+        for (std::int64_t y = want.Min.y; y < want.Max.y; ++y)
+        {
+          const std::int64_t first =
+            ((z - have.Min.z) * size.y + y - have.Min.y) * size.x + want.Min.x - have.Min.x;
+          AddRow(ranges, values + first * array.Components, want.GetSize().x, array.Components);
+        }
+      }
+    });
+}
+
+std::filesystem::path GetKeptPath(
+  const VolumeFile& file, std::size_t array, int step, const rt::Box& box)
+{
+  const char* const caches = std::getenv("XDG_CACHE_HOME");
+  const char* const home = std::getenv("HOME");
+  if (!(caches && *caches) && !(home && *home))
+  {
+    return {};
+  }
+  const std::filesystem::path folder =
+    caches && *caches ? std::filesystem::path(caches) : std::filesystem::path(home) / ".cache";
+  std::error_code failure;
+  const std::string path = std::filesystem::absolute(file.GetPath(), failure).string();
+  const std::string& name = file.GetArrays()[array].Name;
+  const std::int64_t numbers[] = { static_cast<std::int64_t>(file.GetStamp()),
+    static_cast<std::int64_t>(array), step, box.Min.x, box.Min.y, box.Min.z, box.Max.x, box.Max.y,
+    box.Max.z, KeptVersion };
+  rt::ByteHash hash;
+  hash.Add(path.data(), path.size());
+  hash.Add(name.data(), name.size());
+  hash.Add(numbers, sizeof(numbers));
+  return folder / "dsm-ray-tracer" / ("ranges-" + std::to_string(hash.Get()));
+}
+
+} // namespace
+
+std::optional<ValueRanges> FindRanges(const std::shared_ptr<const VolumeFile>& file,
+  std::size_t number, int step, const rt::Box& box, int threads,
+  const std::function<bool(double)>& goesOn)
+{
+  const FileArray& array = file->GetArrays()[number];
+  const rt::Index3 firstChunk = box.Min / array.Grid.ChunkSamples;
+  const rt::Index3 lastChunk =
+    (box.Max + array.Grid.ChunkSamples - rt::Index3(1)) / array.Grid.ChunkSamples;
+  const rt::Box chunks{ firstChunk, lastChunk };
+  const rt::Index3 counts = chunks.GetSize();
+  std::vector<ValueRanges> parts(
+    static_cast<std::size_t>(std::max(1, threads)), CreateRanges(array.Components));
+  std::atomic<std::int64_t> done{ 0 };
+  std::atomic<bool> stopped{ false };
+  rt::ParallelFor(threads, static_cast<std::size_t>(chunks.GetCount()),
+    [&](std::size_t index, int thread)
+    {
+      if (stopped)
+      {
+        return;
+      }
+      const auto at = static_cast<std::int64_t>(index);
+      const rt::Index3 chunk = firstChunk +
+        rt::Index3(at % counts.x, at / counts.x % counts.y, at / (counts.x * counts.y));
+      const rt::Box have = array.Grid.GetBox(chunk);
+      std::vector<std::byte> samples(
+        static_cast<std::size_t>(have.GetCount()) * array.GetSampleBytes());
+      file->ReadChunk(number, step, chunk, samples.data());
+      AddPart(parts[static_cast<std::size_t>(thread)], array, samples.data(), have,
+        rt::Intersect(have, box));
+      ++done;
+      if (thread == 0 &&
+        !goesOn(static_cast<double>(done) / static_cast<double>(chunks.GetCount())))
+      {
+        stopped = true;
+      }
+    });
+  if (stopped)
+  {
+    return std::nullopt;
+  }
+  ValueRanges ranges = parts.front();
+  for (const ValueRanges& part : parts)
+  {
+    for (std::size_t index = 0; index < ranges.All.size(); ++index)
+    {
+      ranges.All[index].Add(part.All[index]);
+      ranges.Finite[index].Add(part.Finite[index]);
+    }
+  }
+  return ranges;
+}
+
+std::optional<ValueRanges> LoadRanges(
+  const VolumeFile& file, std::size_t array, int step, const rt::Box& box)
+{
+  ValueRanges ranges = CreateRanges(file.GetArrays()[array].Components);
+  std::ifstream kept(GetKeptPath(file, array, step, box), std::ios::binary);
+  for (std::vector<ValueRange>* list : { &ranges.All, &ranges.Finite })
+  {
+    kept.read(reinterpret_cast<char*>(list->data()),
+      static_cast<std::streamsize>(list->size() * sizeof(ValueRange)));
+  }
+  return kept ? std::optional<ValueRanges>(std::move(ranges)) : std::nullopt;
+}
+
+void KeepRanges(const VolumeFile& file, std::size_t array, int step, const rt::Box& box,
+  const ValueRanges& ranges)
+{
+  const std::filesystem::path path = GetKeptPath(file, array, step, box);
+  std::error_code failure;
+  std::filesystem::create_directories(path.parent_path(), failure);
+  // Other processes may read it meanwhile.
+  std::filesystem::path written = path;
+  written += "." + std::to_string(getpid());
+  {
+    std::ofstream kept(written, std::ios::binary);
+    for (const std::vector<ValueRange>* list : { &ranges.All, &ranges.Finite })
+    {
+      kept.write(reinterpret_cast<const char*>(list->data()),
+        static_cast<std::streamsize>(list->size() * sizeof(ValueRange)));
+    }
+    if (!kept)
+    {
+      std::filesystem::remove(written, failure);
+      return;
+    }
+  }
+  std::filesystem::rename(written, path, failure);
+}
+
+} // namespace vol

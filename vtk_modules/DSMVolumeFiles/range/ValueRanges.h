@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef vol_ValueRanges_h
+#define vol_ValueRanges_h
+
+#include "DSMVolumeFiles/format/VolumeFile.h"
+
+#include <functional>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <vector>
+
+namespace vol
+{
+
+/// Least and greatest of some values; Least is above Greatest where there are none.
+struct ValueRange
+{
+  double Least = std::numeric_limits<double>::max();
+  double Greatest = std::numeric_limits<double>::lowest();
+
+  void Add(double value)
+  {
+    this->Least = value < this->Least ? value : this->Least;
+    this->Greatest = value > this->Greatest ? value : this->Greatest;
+  }
+  void Add(const ValueRange& other)
+  {
+    this->Least = other.Least < this->Least ? other.Least : this->Least;
+    this->Greatest = other.Greatest > this->Greatest ? other.Greatest : this->Greatest;
+  }
+  bool IsEmpty() const { return this->Least > this->Greatest; }
+};
+
+/// Of an array's samples: of each component, and behind these, where there are several, of the magnitude. What is
+/// not a number does not count.
+struct ValueRanges
+{
+  std::vector<ValueRange> All;
+  std::vector<ValueRange> Finite; ///< without infinite values
+};
+
+/// Reads all of a box of an array, with so many threads. `goesOn(part)`, on the calling thread, is told how much is
+/// done; when it says no, nothing is returned. Throws dsm::Error when the file cannot be read.
+std::optional<ValueRanges> FindRanges(const std::shared_ptr<const VolumeFile>& file,
+  std::size_t array, int step, const rt::Box& box, int threads,
+  const std::function<bool(double)>& goesOn);
+
+/// Ranges that were found before, in the user's cache directory ($XDG_CACHE_HOME or ~/.cache): they are known as
+/// long as the file is what it was. Neither throws; what cannot be kept is found again.
+std::optional<ValueRanges> LoadRanges(
+  const VolumeFile& file, std::size_t array, int step, const rt::Box& box);
+void KeepRanges(const VolumeFile& file, std::size_t array, int step, const rt::Box& box,
+  const ValueRanges& ranges);
+
+} // namespace vol
+
+#endif

@@ -1,0 +1,340 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkDSMFileArray.h"
+
+#include "DSMCore/base/Error.h"
+#include "DSMCore/memory/HostMemory.h"
+
+#include "vtkObjectFactory.h"
+#include "vtkSmartPointer.h"
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <limits>
+#include <utility>
+
+#include <sys/mman.h>
+
+namespace
+{
+
+/// Chunks that a thread has used last: the planes around one, say.
+constexpr std::size_t RecentChunks = 4;
+
+struct Recent
+{
+  std::uint64_t Owner = 0; ///< of the array with that number; 0: of none
+  vtkDSMFileValues::Place Place;
+};
+
+thread_local std::array<Recent, RecentChunks> RecentPlaces;
+thread_local std::size_t NextPlace = 0;
+
+bool Contains(const rt::Box& box, const rt::Index3& sample)
+{
+  return sample.x >= box.Min.x && sample.x < box.Max.x && sample.y >= box.Min.y &&
+    sample.y < box.Max.y && sample.z >= box.Min.z && sample.z < box.Max.z;
+}
+
+} // namespace
+
+/// As many bytes of zeros as one likes, which take no memory as long as nobody writes.
+template <class ValueTypeT>
+class vtkDSMFileArray<ValueTypeT>::Zeros
+{
+public:
+  explicit Zeros(std::size_t bytes)
+    : Bytes(bytes)
+    , First(mmap(
+        nullptr, bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0))
+  {
+    if (this->First == MAP_FAILED)
+    {
+      throw std::bad_alloc();
+    }
+  }
+  ~Zeros() { munmap(this->First, this->Bytes); }
+  Zeros(const Zeros&) = delete;
+  Zeros& operator=(const Zeros&) = delete;
+
+  std::size_t Bytes;
+  void* First;
+};
+
+template <class ValueTypeT>
+vtkDSMFileArray<ValueTypeT>* vtkDSMFileArray<ValueTypeT>::New()
+{
+  VTK_STANDARD_NEW_BODY(vtkDSMFileArray<ValueTypeT>);
+}
+
+template <class ValueTypeT>
+vtkDSMFileArray<ValueTypeT>::vtkDSMFileArray()
+{
+  static std::atomic<std::uint64_t> last{ 0 };
+  this->Number = ++last;
+}
+
+template <class ValueTypeT>
+vtkDSMFileArray<ValueTypeT>::~vtkDSMFileArray() = default;
+
+template <class ValueTypeT>
+void vtkDSMFileArray<ValueTypeT>::SetValues(std::shared_ptr<const vtkDSMFileValues> values)
+{
+  this->Values = std::move(values);
+  this->NumberOfComponents = this->Values->GetArray().Components;
+  this->Size = this->Values->GetCount() * this->NumberOfComponents;
+  this->MaxId = this->Size - 1;
+  this->SetName(this->Values->GetArray().Name.c_str());
+}
+
+template <class ValueTypeT>
+bool vtkDSMFileArray<ValueTypeT>::RefuseToWrite()
+{
+  this->Report("cannot be changed: its values are in a file. Copy it first.");
+  return false;
+}
+
+template <class ValueTypeT>
+void vtkDSMFileArray<ValueTypeT>::Report(const std::string& what) const
+{
+  if (!this->Reported.exchange(true))
+  {
+    vtkErrorMacro(<< "The array '" << this->Values->GetArray().Name << "' " << what);
+  }
+}
+
+template <class ValueTypeT>
+const ValueTypeT* vtkDSMFileArray<ValueTypeT>::Find(vtkIdType tuple) const
+{
+  const rt::Index3 sample = this->Values->GetSample(tuple);
+  const auto getValues = [&](const vtkDSMFileValues::Place& place)
+  {
+    const rt::Index3 size = place.Has.GetSize();
+    const rt::Index3 at = sample - place.Has.Min;
+    const std::int64_t number = (at.z * size.y + at.y) * size.x + at.x;
+    return reinterpret_cast<const ValueTypeT*>(place.Samples->data()) +
+      number * this->NumberOfComponents;
+  };
+  for (const Recent& recent : RecentPlaces)
+  {
+    if (recent.Owner == this->Number && Contains(recent.Place.Has, sample))
+    {
+      return getValues(recent.Place);
+    }
+  }
+  try
+  {
+    Recent& recent = RecentPlaces[NextPlace++ % RecentChunks];
+    recent.Owner = 0;
+    recent.Place = this->Values->Find(sample);
+    recent.Owner = this->Number;
+    return getValues(recent.Place);
+  }
+  catch (const std::exception& error)
+  {
+    this->Report(std::string("could not be read: ") + error.what());
+    return nullptr;
+  }
+}
+
+template <class ValueTypeT>
+void vtkDSMFileArray<ValueTypeT>::GetTypedTuple(vtkIdType tuple, ValueType* out) const
+{
+  const ValueType* const values = this->Find(tuple);
+  for (int component = 0; component < this->NumberOfComponents; ++component)
+  {
+    out[component] = values ? values[component] : std::numeric_limits<ValueType>::quiet_NaN();
+  }
+}
+
+template <class ValueTypeT>
+ValueTypeT vtkDSMFileArray<ValueTypeT>::GetTypedComponent(vtkIdType tuple, int component) const
+{
+  const ValueType* const values = this->Find(tuple);
+  return values ? values[component] : std::numeric_limits<ValueType>::quiet_NaN();
+}
+
+template <class ValueTypeT>
+void* vtkDSMFileArray<ValueTypeT>::GetVoidPointer(vtkIdType index)
+{
+  const auto count = static_cast<std::size_t>(this->Size);
+  if (this->Copy.empty() && !this->NoValues && count > 0)
+  {
+    const std::size_t bytes = count * sizeof(ValueType);
+    try
+    {
+      if (bytes > dsm::GetAvailableHostMemory() / 2)
+      {
+        throw dsm::Error("is wanted as a whole, and its " + dsm::FormatMebibytes(bytes) +
+          " do not fit half of the memory that is left. Extract a subset first.");
+      }
+      std::vector<ValueType> copy(count);
+      const rt::Index3 size = this->Values->GetSample(this->Values->GetCount() - 1) + rt::Index3(1);
+      this->Values->ReadBox({ rt::Index3(0), size }, reinterpret_cast<std::byte*>(copy.data()));
+      this->Copy = std::move(copy);
+    }
+    catch (const std::exception& error)
+    {
+      this->Reported = false; // weightier than what may have been said
+      this->Report(error.what());
+      this->NoValues = std::make_unique<Zeros>(bytes);
+    }
+  }
+  auto* const first =
+    this->NoValues ? static_cast<ValueType*>(this->NoValues->First) : this->Copy.data();
+  return first + index;
+}
+
+template <class ValueTypeT>
+void vtkDSMFileArray<ValueTypeT>::ExportToVoidPointer(void* out)
+{
+  if (out && this->Size > 0)
+  {
+    std::memcpy(
+      out, this->GetVoidPointer(0), static_cast<std::size_t>(this->Size) * sizeof(ValueType));
+  }
+}
+
+template <class ValueTypeT>
+unsigned long vtkDSMFileArray<ValueTypeT>::GetActualMemorySize() const
+{
+  return static_cast<unsigned long>((this->Copy.size() * sizeof(ValueType) + 1023) / 1024);
+}
+
+template <class ValueTypeT>
+const vol::ValueRanges* vtkDSMFileArray<ValueTypeT>::FindRanges() const
+{
+  try
+  {
+    return this->Values->FindRanges([](double) { return true; });
+  }
+  catch (const std::exception& error)
+  {
+    this->Report(std::string("could not be read: ") + error.what());
+    return nullptr;
+  }
+}
+
+namespace
+{
+
+void Take(const vol::ValueRange& range, double out[2])
+{
+  out[0] = range.Least;
+  out[1] = range.Greatest;
+}
+
+} // namespace
+
+template <class ValueTypeT>
+bool vtkDSMFileArray<ValueTypeT>::ComputeScalarRange(double* ranges)
+{
+  const vol::ValueRanges* known = this->FindRanges();
+  for (int component = 0; known && component < this->NumberOfComponents; ++component)
+  {
+    Take(known->All[static_cast<std::size_t>(component)], ranges + 2 * component);
+  }
+  return known != nullptr;
+}
+
+template <class ValueTypeT>
+bool vtkDSMFileArray<ValueTypeT>::ComputeFiniteScalarRange(double* ranges)
+{
+  const vol::ValueRanges* known = this->FindRanges();
+  for (int component = 0; known && component < this->NumberOfComponents; ++component)
+  {
+    Take(known->Finite[static_cast<std::size_t>(component)], ranges + 2 * component);
+  }
+  return known != nullptr;
+}
+
+template <class ValueTypeT>
+bool vtkDSMFileArray<ValueTypeT>::ComputeVectorRange(double range[2])
+{
+  const vol::ValueRanges* known = this->FindRanges();
+  if (known)
+  {
+    Take(known->All.back(), range);
+  }
+  return known != nullptr;
+}
+
+template <class ValueTypeT>
+bool vtkDSMFileArray<ValueTypeT>::ComputeFiniteVectorRange(double range[2])
+{
+  const vol::ValueRanges* known = this->FindRanges();
+  if (known)
+  {
+    Take(known->Finite.back(), range);
+  }
+  return known != nullptr;
+}
+
+namespace
+{
+
+/// Calls `use` with a null pointer to VTK's type for one of ours.
+template <class Use>
+auto DispatchType(rt::ScalarType type, const Use& use)
+{
+  using Type = rt::ScalarType;
+  switch (type)
+  {
+    case Type::Int8:
+      return use(static_cast<signed char*>(nullptr));
+    case Type::UInt8:
+      return use(static_cast<unsigned char*>(nullptr));
+    case Type::Int16:
+      return use(static_cast<short*>(nullptr));
+    case Type::UInt16:
+      return use(static_cast<unsigned short*>(nullptr));
+    case Type::Int32:
+      return use(static_cast<int*>(nullptr));
+    case Type::UInt32:
+      return use(static_cast<unsigned int*>(nullptr));
+    case Type::Int64:
+      return use(static_cast<long long*>(nullptr));
+    case Type::UInt64:
+      return use(static_cast<unsigned long long*>(nullptr));
+    case Type::Float32:
+      return use(static_cast<float*>(nullptr));
+    default:
+      return use(static_cast<double*>(nullptr));
+  }
+}
+
+template <class T>
+const vtkDSMFileValues* GetValuesAs(vtkAbstractArray* array)
+{
+  auto* found = dynamic_cast<vtkDSMFileArray<T>*>(array);
+  return found ? &found->GetFileValues() : nullptr;
+}
+
+template <class... T>
+const vtkDSMFileValues* GetValuesAsAny(vtkAbstractArray* array)
+{
+  const vtkDSMFileValues* found = nullptr;
+  static_cast<void>(((found = GetValuesAs<T>(array)) || ...));
+  return found;
+}
+
+} // namespace
+
+const vtkDSMFileValues* vtkDSMGetFileValues(vtkAbstractArray* array)
+{
+  return GetValuesAsAny<signed char, unsigned char, short, unsigned short, int, unsigned int,
+    long long, unsigned long long, float, double>(array);
+}
+
+vtkSmartPointer<vtkDataArray> vtkDSMCreateFileArray(
+  const std::shared_ptr<const vtkDSMFileValues>& values)
+{
+  return DispatchType(values->GetType(),
+    [&](auto* null)
+    {
+      using T = std::remove_pointer_t<decltype(null)>;
+      auto array = vtkSmartPointer<vtkDSMFileArray<T>>::New();
+      array->SetValues(values);
+      return vtkSmartPointer<vtkDataArray>(array);
+    });
+}

@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @class   vtkDSMFileArray
+ * @brief   an array whose values are in a file, and are read when somebody asks for them
+ *
+ * Every filter that asks for values one by one, or tuple by tuple, works, and reads only the chunks that it
+ * needs; they stay in a cache that all such arrays share. A filter that asks for the memory of the values
+ * (GetVoidPointer) gets a copy of all of them when that takes at most half of what the host has left; else an
+ * error says so, and the filter sees zeros. Values cannot be set. Reading is safe from any thread. What cannot be
+ * read is reported once, and is not a number, or zero.
+ */
+
+#ifndef vtkDSMFileArray_h
+#define vtkDSMFileArray_h
+
+#include "vtkDSMFileValues.h"
+
+#include "vtkAOSDataArrayTemplate.h"
+#include "vtkGenericDataArray.h"
+
+#include <atomic>
+#include <memory>
+#include <vector>
+
+template <class ValueTypeT>
+class vtkDSMFileArray : public vtkGenericDataArray<vtkDSMFileArray<ValueTypeT>, ValueTypeT>
+{
+  using GenericDataArrayType = vtkGenericDataArray<vtkDSMFileArray<ValueTypeT>, ValueTypeT>;
+
+public:
+  using SelfType = vtkDSMFileArray<ValueTypeT>;
+  vtkAbstractTemplateTypeMacro(SelfType, GenericDataArrayType);
+  using ValueType = ValueTypeT;
+
+  static vtkDSMFileArray* New();
+
+  /// Before anything else; the values are of ValueTypeT.
+  void SetValues(std::shared_ptr<const vtkDSMFileValues> values);
+  const vtkDSMFileValues& GetFileValues() const { return *this->Values; }
+
+  ///@{
+  /// Of vtkGenericDataArray.
+  ValueType GetValue(vtkIdType index) const
+  {
+    return this->GetTypedComponent(
+      index / this->NumberOfComponents, static_cast<int>(index % this->NumberOfComponents));
+  }
+  void SetValue(vtkIdType, ValueType) { this->RefuseToWrite(); }
+  void GetTypedTuple(vtkIdType tuple, ValueType* out) const;
+  void SetTypedTuple(vtkIdType, const ValueType*) { this->RefuseToWrite(); }
+  ValueType GetTypedComponent(vtkIdType tuple, int component) const;
+  void SetTypedComponent(vtkIdType, int, ValueType) { this->RefuseToWrite(); }
+  ///@}
+
+  void* GetVoidPointer(vtkIdType index) override;
+  void ExportToVoidPointer(void* out) override;
+  /// Of what is in memory for this array alone.
+  unsigned long GetActualMemorySize() const override;
+
+protected:
+  vtkDSMFileArray();
+  ~vtkDSMFileArray() override;
+
+  /// Others that are made like this one are ordinary arrays.
+  vtkObjectBase* NewInstanceInternal() const override
+  {
+    return vtkAOSDataArrayTemplate<ValueType>::New();
+  }
+
+  bool AllocateTuples(vtkIdType) { return this->RefuseToWrite(); }
+  bool ReallocateTuples(vtkIdType) { return this->RefuseToWrite(); }
+
+  bool ComputeScalarRange(double* ranges) override;
+  bool ComputeScalarRange(double* ranges, const unsigned char*, unsigned char) override
+  {
+    return this->ComputeScalarRange(ranges);
+  }
+  bool ComputeVectorRange(double range[2]) override;
+  bool ComputeVectorRange(double range[2], const unsigned char*, unsigned char) override
+  {
+    return this->ComputeVectorRange(range);
+  }
+  bool ComputeFiniteScalarRange(double* ranges) override;
+  bool ComputeFiniteScalarRange(double* ranges, const unsigned char*, unsigned char) override
+  {
+    return this->ComputeFiniteScalarRange(ranges);
+  }
+  bool ComputeFiniteVectorRange(double range[2]) override;
+  bool ComputeFiniteVectorRange(double range[2], const unsigned char*, unsigned char) override
+  {
+    return this->ComputeFiniteVectorRange(range);
+  }
+
+private:
+  vtkDSMFileArray(const vtkDSMFileArray&) = delete;
+  void operator=(const vtkDSMFileArray&) = delete;
+
+  class Zeros;
+
+  bool RefuseToWrite();
+  void Report(const std::string& what) const;
+  /// Where the components of a tuple are, for as long as the thread asks for no other array's; null when they
+  /// cannot be read.
+  const ValueType* Find(vtkIdType tuple) const;
+  /// Null where they are not known.
+  const vol::ValueRanges* FindRanges() const;
+
+  std::shared_ptr<const vtkDSMFileValues> Values;
+  std::uint64_t Number; ///< no other array has had it
+  std::vector<ValueType> Copy;
+  std::unique_ptr<Zeros> NoValues; ///< in place of Copy
+  mutable std::atomic<bool> Reported{ false };
+
+  friend class vtkGenericDataArray<vtkDSMFileArray<ValueTypeT>, ValueTypeT>;
+};
+
+/// The values of an array that is a vtkDSMFileArray; else null.
+const vtkDSMFileValues* vtkDSMGetFileValues(vtkAbstractArray* array);
+
+/// An array that shows them, of their type, with the file's name for it.
+vtkSmartPointer<vtkDataArray> vtkDSMCreateFileArray(
+  const std::shared_ptr<const vtkDSMFileValues>& values);
+
+#endif

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkDSMFileValues.h"
+
+#include "DSMRayTracing/base/ByteHash.h"
+
+#include <algorithm>
+#include <thread>
+#include <utility>
+
+vtkDSMFileValues::vtkDSMFileValues(
+  std::shared_ptr<const vol::VolumeFile> file, std::size_t array, int step, const rt::Box& box)
+  : File(std::move(file))
+  , Array(array)
+  , Step(step)
+  , Box(box)
+{
+}
+
+void vtkDSMFileValues::ReadBox(const rt::Box& box, std::byte* out) const
+{
+  vol::ChunkCache::GetShared().ReadBox(
+    this->File, this->Array, this->Step, { box.Min + this->Box.Min, box.Max + this->Box.Min }, out);
+}
+
+std::uint64_t vtkDSMFileValues::GetStamp() const
+{
+  const std::string& path = this->File->GetPath();
+  const std::int64_t numbers[] = { static_cast<std::int64_t>(this->File->GetStamp()),
+    static_cast<std::int64_t>(this->Array), this->Step, this->Box.Min.x, this->Box.Min.y,
+    this->Box.Min.z, this->Box.Max.x, this->Box.Max.y, this->Box.Max.z };
+  rt::ByteHash hash;
+  hash.Add(path.data(), path.size());
+  hash.Add(numbers, sizeof(numbers));
+  return hash.Get();
+}
+
+vtkDSMFileValues::Place vtkDSMFileValues::Find(const rt::Index3& sample) const
+{
+  const vol::ChunkGrid& grid = this->GetArray().Grid;
+  const rt::Index3 chunk = (sample + this->Box.Min) / grid.ChunkSamples;
+  const rt::Box has = grid.GetBox(chunk);
+  return { vol::ChunkCache::GetShared().Get(this->File, this->Array, this->Step, chunk),
+    { has.Min - this->Box.Min, has.Max - this->Box.Min } };
+}
+
+const vol::ValueRanges* vtkDSMFileValues::FindRanges(
+  const std::function<bool(double)>& goesOn) const
+{
+  const std::lock_guard<std::mutex> lock(this->RangesLock);
+  if (!this->Ranges)
+  {
+    this->Ranges = vol::LoadRanges(*this->File, this->Array, this->Step, this->Box);
+  }
+  if (!this->Ranges)
+  {
+    const int threads = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+    this->Ranges = vol::FindRanges(this->File, this->Array, this->Step, this->Box, threads, goesOn);
+    if (this->Ranges)
+    {
+      vol::KeepRanges(*this->File, this->Array, this->Step, this->Box, *this->Ranges);
+    }
+  }
+  return this->Ranges ? &*this->Ranges : nullptr;
+}

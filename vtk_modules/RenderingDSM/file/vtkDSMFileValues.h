@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef vtkDSMFileValues_h
+#define vtkDSMFileValues_h
+
+#include "DSMVolumeFiles/cache/ChunkCache.h"
+#include "DSMVolumeFiles/range/ValueRanges.h"
+
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+
+class vtkObject;
+
+/// Part of an array in a file: what vtkDSMFileArray shows to VTK, and what who knows of it reads in boxes. Any
+/// thread.
+class vtkDSMFileValues
+{
+public:
+  /// `box`: the samples that the part has, in the file's indices.
+  vtkDSMFileValues(
+    std::shared_ptr<const vol::VolumeFile> file, std::size_t array, int step, const rt::Box& box);
+
+  const vol::FileArray& GetArray() const { return this->File->GetArrays()[this->Array]; }
+  /// As the file has them.
+  rt::ScalarType GetType() const { return this->GetArray().Type; }
+  std::int64_t GetCount() const { return this->Box.GetCount(); }
+
+  /// The samples of a box that counts from the part's first sample, dense, x fastest, all components of a sample
+  /// together. Throws dsm::Error.
+  void ReadBox(const rt::Box& box, std::byte* out) const;
+
+  /// Equal only, for all practical purposes, for equal values.
+  std::uint64_t GetStamp() const;
+
+  /// The chunk that has a sample, and the sample's place in it. Throws dsm::Error.
+  struct Place
+  {
+    vol::ChunkCache::Chunk Samples;
+    rt::Box Has; ///< that Samples has, in the part's indices
+  };
+  Place Find(const rt::Index3& sample) const;
+  rt::Index3 GetSample(std::int64_t number) const
+  {
+    const rt::Index3 size = this->Box.GetSize();
+    return { number % size.x, number / size.x % size.y, number / (size.x * size.y) };
+  }
+
+  /// Of all values; found when first asked for, unless they were kept. Nothing when `goesOn` says no. Throws
+  /// dsm::Error.
+  const vol::ValueRanges* FindRanges(const std::function<bool(double)>& goesOn) const;
+
+private:
+  std::shared_ptr<const vol::VolumeFile> File;
+  std::size_t Array;
+  int Step;
+  rt::Box Box;
+  mutable std::mutex RangesLock;
+  mutable std::optional<vol::ValueRanges> Ranges;
+};
+
+#endif

@@ -1,0 +1,283 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkDSMVolumeReader.h"
+
+#include "DSMCore/base/Error.h"
+#include "vtkDSMFileArray.h"
+#include "vtkDSMScalarType.h"
+
+#include "vtkCellData.h"
+#include "vtkCommand.h"
+#include "vtkDataArray.h"
+#include "vtkDataArraySelection.h"
+#include "vtkImageData.h"
+#include "vtkInformation.h"
+#include "vtkInformationVector.h"
+#include "vtkObjectFactory.h"
+#include "vtkPointData.h"
+#include "vtkSmartPointer.h"
+#include "vtkStreamingDemandDrivenPipeline.h"
+
+#include <algorithm>
+#include <climits>
+#include <cmath>
+#include <vector>
+
+vtkStandardNewMacro(vtkDSMVolumeReader);
+
+class vtkDSMVolumeReader::Internals
+{
+public:
+  std::shared_ptr<const vol::VolumeFile> File;
+  vtkMTimeType OpenedAt = 0; ///< the reader's time then
+};
+
+vtkDSMVolumeReader::vtkDSMVolumeReader()
+  : RawScalarType(VTK_UNSIGNED_CHAR)
+  , Self(std::make_unique<Internals>())
+{
+  this->SetNumberOfInputPorts(0);
+  for (vtkDataArraySelection* arrays : { this->PointArrays.Get(), this->CellArrays.Get() })
+  {
+    arrays->AddObserver(vtkCommand::ModifiedEvent, this, &vtkDSMVolumeReader::Modified);
+  }
+}
+
+vtkDSMVolumeReader::~vtkDSMVolumeReader() = default;
+
+void vtkDSMVolumeReader::SetFileName(const char* name)
+{
+  const std::string wanted = name ? name : "";
+  if (wanted != this->FileName)
+  {
+    this->FileName = wanted;
+    this->PointArrays->RemoveAllArrays();
+    this->CellArrays->RemoveAllArrays();
+    this->Modified();
+  }
+}
+
+const char* vtkDSMVolumeReader::GetFileName() const
+{
+  return this->FileName.c_str();
+}
+
+int vtkDSMVolumeReader::CanReadFile(const char* name)
+{
+  return name && vol::MayBeVolumeFile(name) ? 1 : 0;
+}
+
+vtkDataArraySelection* vtkDSMVolumeReader::GetPointDataArraySelection()
+{
+  return this->PointArrays;
+}
+
+vtkDataArraySelection* vtkDSMVolumeReader::GetCellDataArraySelection()
+{
+  return this->CellArrays;
+}
+
+void vtkDSMVolumeReader::SetCacheMebibytes(int size)
+{
+  vol::ChunkCache::GetShared().SetLimit(static_cast<std::size_t>(std::max(0, size)) << 20);
+}
+
+int vtkDSMVolumeReader::GetCacheMebibytes()
+{
+  return static_cast<int>(vol::ChunkCache::GetShared().GetLimit() >> 20);
+}
+
+vtkTypeUInt64 vtkDSMVolumeReader::GetBytesRead()
+{
+  return vol::ChunkCache::GetShared().GetBytesRead();
+}
+
+void vtkDSMVolumeReader::Open()
+{
+  if (this->Self->File && this->Self->OpenedAt == this->GetMTime())
+  {
+    return;
+  }
+  this->Self->File.reset();
+  vol::OpenOptions options;
+  options.Level = this->Level;
+  options.Dataset = this->DatasetName;
+  const auto sample =
+    vtkSmartPointer<vtkDataArray>::Take(vtkDataArray::CreateDataArray(this->RawScalarType));
+  options.Bare.Samples = { this->RawDimensions[0], this->RawDimensions[1], this->RawDimensions[2] };
+  options.Bare.Type = vtkDSMScalarType::FromArray(sample);
+  options.Bare.Components = this->RawComponents;
+  options.Bare.BigEndian = this->RawBigEndian;
+  options.Bare.HeaderBytes =
+    static_cast<std::uint64_t>(std::max<vtkIdType>(0, this->RawHeaderBytes));
+  std::copy_n(this->RawSpacing, 3, options.Bare.Spacing);
+  const auto file = vol::OpenVolumeFile(this->FileName, options);
+  const rt::Index3 last = file->GetGeometry().First + file->GetGeometry().Points;
+  if (std::max({ last.x, last.y, last.z }) > INT_MAX)
+  {
+    throw dsm::Error(
+      "The file '" + this->FileName + "' has more samples along an axis than VTK can count.");
+  }
+  for (const vol::FileArray& array : file->GetArrays())
+  {
+    (array.OnCells ? this->CellArrays : this->PointArrays)->AddArray(array.Name.c_str());
+  }
+  this->Self->File = file;
+  this->Self->OpenedAt = this->GetMTime();
+}
+
+int vtkDSMVolumeReader::RequestInformation(
+  vtkInformation*, vtkInformationVector**, vtkInformationVector* output)
+{
+  vtkInformation* information = output->GetInformationObject(0);
+  using Pipeline = vtkStreamingDemandDrivenPipeline;
+  // ParaView asks before the user can enter anything.
+  if (*std::min_element(this->RawDimensions, this->RawDimensions + 3) < 1 &&
+    vol::IsBareFile(this->FileName))
+  {
+    const int none[6] = { 0, -1, 0, -1, 0, -1 };
+    information->Set(Pipeline::WHOLE_EXTENT(), none, 6);
+    this->Self->File.reset();
+    return 1;
+  }
+  try
+  {
+    this->Open();
+  }
+  catch (const std::exception& error)
+  {
+    vtkErrorMacro(<< error.what());
+    return 0;
+  }
+  const vol::VolumeFile& file = *this->Self->File;
+  const vol::FileGeometry& geometry = file.GetGeometry();
+  int extent[6];
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    extent[2 * axis] = static_cast<int>(geometry.First[axis]);
+    extent[2 * axis + 1] = static_cast<int>(geometry.First[axis] + geometry.Points[axis] - 1);
+  }
+  information->Set(Pipeline::WHOLE_EXTENT(), extent, 6);
+  information->Set(vtkDataObject::ORIGIN(), geometry.Origin, 3);
+  information->Set(vtkDataObject::SPACING(), geometry.Spacing, 3);
+  information->Set(vtkDataObject::DIRECTION(), geometry.Direction, 9);
+  information->Set(vtkAlgorithm::CAN_PRODUCE_SUB_EXTENT(), 1);
+  information->Remove(Pipeline::TIME_STEPS());
+  information->Remove(Pipeline::TIME_RANGE());
+  if (file.GetSteps() > 1)
+  {
+    std::vector<double> steps;
+    for (int step = 0; step < file.GetSteps(); ++step)
+    {
+      steps.push_back(step);
+    }
+    const double range[2] = { steps.front(), steps.back() };
+    information->Set(Pipeline::TIME_STEPS(), steps.data(), file.GetSteps());
+    information->Set(Pipeline::TIME_RANGE(), range, 2);
+  }
+  return 1;
+}
+
+void vtkDSMVolumeReader::AddArrays(vtkImageData* image, int step)
+{
+  const auto& file = this->Self->File;
+  int extent[6];
+  image->GetExtent(extent);
+  const rt::Index3 first = file->GetGeometry().First;
+  const auto& arrays = file->GetArrays();
+  for (std::size_t index = 0; index < arrays.size(); ++index)
+  {
+    const vol::FileArray& array = arrays[index];
+    vtkDataArraySelection* selection = array.OnCells ? this->CellArrays : this->PointArrays;
+    if (!selection->ArrayIsEnabled(array.Name.c_str()))
+    {
+      continue;
+    }
+    rt::Box box;
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      // Along an axis of one point there is one cell.
+      const int end = array.OnCells ? std::max(extent[2 * axis] + 1, extent[2 * axis + 1])
+                                    : extent[2 * axis + 1] + 1;
+      box.Min[axis] = extent[2 * axis] - first[axis];
+      box.Max[axis] = end - first[axis];
+    }
+    const auto values = std::make_shared<vtkDSMFileValues>(file, index, step, box);
+    values->FindRanges(
+      [&](double part)
+      {
+        this->UpdateProgress(
+          (static_cast<double>(index) + part) / static_cast<double>(arrays.size()));
+        return this->AbortExecute == 0;
+      });
+    vtkDataSetAttributes* attributes = array.OnCells
+      ? static_cast<vtkDataSetAttributes*>(image->GetCellData())
+      : image->GetPointData();
+    const vtkSmartPointer<vtkDataArray> shown = vtkDSMCreateFileArray(values);
+    attributes->AddArray(shown);
+    if (!attributes->GetScalars() && array.Components == 1)
+    {
+      attributes->SetScalars(shown);
+    }
+  }
+}
+
+int vtkDSMVolumeReader::RequestData(
+  vtkInformation*, vtkInformationVector**, vtkInformationVector* output)
+{
+  try
+  {
+    this->Open();
+  }
+  catch (const std::exception& error)
+  {
+    vtkErrorMacro(<< error.what());
+    return 0;
+  }
+  vtkInformation* information = output->GetInformationObject(0);
+  vtkImageData* image = vtkImageData::GetData(output);
+  using Pipeline = vtkStreamingDemandDrivenPipeline;
+  int extent[6];
+  information->Get(Pipeline::UPDATE_EXTENT(), extent);
+  image->SetExtent(extent);
+  const vol::FileGeometry& geometry = this->Self->File->GetGeometry();
+  image->SetOrigin(geometry.Origin);
+  image->SetSpacing(geometry.Spacing);
+  image->SetDirectionMatrix(geometry.Direction);
+  if (image->GetNumberOfPoints() == 0)
+  {
+    return 1;
+  }
+  int step = 0;
+  if (this->Self->File->GetSteps() > 1)
+  {
+    const double time = information->Has(Pipeline::UPDATE_TIME_STEP())
+      ? information->Get(Pipeline::UPDATE_TIME_STEP())
+      : 0.0;
+    step = std::clamp(static_cast<int>(std::lround(time)), 0, this->Self->File->GetSteps() - 1);
+    image->GetInformation()->Set(vtkDataObject::DATA_TIME_STEP(), static_cast<double>(step));
+  }
+  try
+  {
+    this->AddArrays(image, step);
+  }
+  catch (const std::exception& error)
+  {
+    vtkErrorMacro(<< error.what());
+    return 0;
+  }
+  return 1;
+}
+
+void vtkDSMVolumeReader::PrintSelf(ostream& os, vtkIndent indent)
+{
+  this->Superclass::PrintSelf(os, indent);
+  os << indent << "FileName: " << this->FileName << "\n";
+  os << indent << "Level: " << this->Level << "\n";
+  os << indent << "DatasetName: " << this->DatasetName << "\n";
+  os << indent << "RawDimensions: " << this->RawDimensions[0] << " " << this->RawDimensions[1]
+     << " " << this->RawDimensions[2] << "\n";
+  os << indent << "RawScalarType: " << this->RawScalarType << "\n";
+  os << indent << "RawComponents: " << this->RawComponents << "\n";
+  os << indent << "RawBigEndian: " << this->RawBigEndian << "\n";
+  os << indent << "RawHeaderBytes: " << this->RawHeaderBytes << "\n";
+}

@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @class   vtkDSMVolumeReader
+ * @brief   image data whose values stay in their file until somebody asks for them
+ *
+ * Reads HDF5 (VTK's own ImageData, or any dataset of three axes), Zarr and OME-Zarr, NRRD, MetaImage and bare
+ * values. When it has executed, no value has been read, but for the arrays' ranges, which are found once for a file
+ * and kept in the user's cache directory: the arrays of its output (vtkDSMFileArray) read what filters and mappers
+ * ask them for, and what was read last stays in a cache that all readers of the process share. Ranks that ask
+ * for different pieces get those.
+ */
+
+#ifndef vtkDSMVolumeReader_h
+#define vtkDSMVolumeReader_h
+
+#include "vtkImageAlgorithm.h"
+#include "vtkNew.h"                // for ivars
+#include "vtkRenderingDSMModule.h" // for the export macro
+
+#include <memory> // for ivars
+#include <string> // for ivars
+
+class vtkDataArraySelection;
+
+class VTKRENDERINGDSM_EXPORT vtkDSMVolumeReader : public vtkImageAlgorithm
+{
+public:
+  static vtkDSMVolumeReader* New();
+  vtkTypeMacro(vtkDSMVolumeReader, vtkImageAlgorithm);
+  void PrintSelf(ostream& os, vtkIndent indent) override;
+
+  ///@{
+  /**
+   * The file; of Zarr, its folder, or a file of metadata in it.
+   */
+  virtual void SetFileName(const char* name);
+  const char* GetFileName() const;
+  ///@}
+
+  /**
+   * Whether a file looks like one of a format that is read.
+   */
+  virtual int CanReadFile(const char* name);
+
+  ///@{
+  /**
+   * The arrays to have; all by default.
+   */
+  virtual vtkDataArraySelection* GetPointDataArraySelection();
+  virtual vtkDataArraySelection* GetCellDataArraySelection();
+  ///@}
+
+  ///@{
+  /**
+   * Of a file with several levels of detail: 0 (the default) is the finest.
+   */
+  vtkSetMacro(Level, int);
+  vtkGetMacro(Level, int);
+  ///@}
+
+  ///@{
+  /**
+   * Of an HDF5 file that is not VTK's: the dataset to have. Empty (the default): all those that have the largest
+   * shape of three axes in the file.
+   */
+  vtkSetMacro(DatasetName, std::string);
+  vtkGetMacro(DatasetName, std::string);
+  ///@}
+
+  ///@{
+  /**
+   * Of a file of bare values (.raw): samples along each axis, their type (VTK_FLOAT and so on) and number of
+   * components, whether the high byte comes first, bytes before the first value, and the distance of samples.
+   */
+  vtkSetVector3Macro(RawDimensions, int);
+  vtkGetVector3Macro(RawDimensions, int);
+  vtkSetMacro(RawScalarType, int);
+  vtkGetMacro(RawScalarType, int);
+  vtkSetMacro(RawComponents, int);
+  vtkGetMacro(RawComponents, int);
+  vtkSetMacro(RawBigEndian, bool);
+  vtkGetMacro(RawBigEndian, bool);
+  vtkSetMacro(RawHeaderBytes, vtkIdType);
+  vtkGetMacro(RawHeaderBytes, vtkIdType);
+  vtkSetVector3Macro(RawSpacing, double);
+  vtkGetVector3Macro(RawSpacing, double);
+  ///@}
+
+  ///@{
+  /**
+   * MiB of values of files that stay in memory, in the whole process; 128 by default.
+   */
+  static void SetCacheMebibytes(int size);
+  static int GetCacheMebibytes();
+  ///@}
+
+  /**
+   * Bytes of values that were read from files so far, in the whole process, but for those of ranges.
+   */
+  static vtkTypeUInt64 GetBytesRead();
+
+protected:
+  vtkDSMVolumeReader();
+  ~vtkDSMVolumeReader() override;
+
+  int RequestInformation(
+    vtkInformation*, vtkInformationVector**, vtkInformationVector* output) override;
+  int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector* output) override;
+
+private:
+  vtkDSMVolumeReader(const vtkDSMVolumeReader&) = delete;
+  void operator=(const vtkDSMVolumeReader&) = delete;
+
+  class Internals;
+  void Open();
+  void AddArrays(vtkImageData* image, int step);
+
+  std::string FileName;
+  int Level = 0;
+  std::string DatasetName;
+  int RawDimensions[3] = { 0, 0, 0 };
+  int RawScalarType;
+  int RawComponents = 1;
+  bool RawBigEndian = false;
+  vtkIdType RawHeaderBytes = 0;
+  double RawSpacing[3] = { 1.0, 1.0, 1.0 };
+  vtkNew<vtkDataArraySelection> PointArrays;
+  vtkNew<vtkDataArraySelection> CellArrays;
+  std::unique_ptr<Internals> Self;
+};
+
+#endif
