@@ -5,8 +5,8 @@
 #include <atomic>
 
 /// Lets the n-th thing that a rank asks of the system fail: memory (`new`, aligned or not), a mapping
-/// (mmap), a page's protection (mprotect) or a thread. FaultInjection.cxx stands in for those calls in
-/// the executable that it is linked into.
+/// (mmap), a page's protection (mprotect), a thread, or a message (FailingTransport). FaultInjection.cxx
+/// stands in for those calls in the executable that it is linked into.
 class FaultInjection
 {
 public:
@@ -15,7 +15,8 @@ public:
     Memory,
     Mapping,
     Protection,
-    Thread
+    Thread,
+    Message
   };
 
   /// What a rank asks for of this kind from now on is counted, by the calling thread and those that it

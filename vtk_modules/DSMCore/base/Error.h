@@ -28,6 +28,23 @@ struct Status
   bool IsOk() const { return this->FailedRank < 0; }
 };
 
+/// Another rank has failed where this one was not asked how it fares: all ranks give up what they do
+/// together (Messenger::RunStep). Not an Error, which may be the failure of a part: this is to be let
+/// through.
+class StepAborted : public std::runtime_error
+{
+public:
+  explicit StepAborted(const Status& outcome)
+    : std::runtime_error(outcome.Cause)
+    , Rank(outcome.FailedRank)
+  {
+  }
+  int GetFailedRank() const { return this->Rank; }
+
+private:
+  int Rank;
+};
+
 } // namespace dsm
 
 #endif

@@ -253,7 +253,7 @@ void BlockFetcher::Arrive(const BlockWant& block, const std::byte* bytes)
   this->Requests.Answer(block, bytes);
 }
 
-void BlockFetcher::Cancel(const std::string& cause)
+void BlockFetcher::Cancel(std::string cause)
 {
   const std::lock_guard<std::mutex> lock(this->Guard);
   if (this->Phase != FramePhase::Open)
@@ -261,7 +261,7 @@ void BlockFetcher::Cancel(const std::string& cause)
     return; // the first cause stands
   }
   this->Phase = FramePhase::Cancelled;
-  this->Cause = cause;
+  this->Cause = std::move(cause);
   this->Closing();
   this->AbandonAll();
   this->Workers.WakeAll();

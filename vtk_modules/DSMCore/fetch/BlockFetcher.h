@@ -55,7 +55,7 @@ public:
   virtual bool MayBeginFrame() const;
   void BeginFrame(bool agreed);
   bool Service();
-  void Cancel(const std::string& cause);
+  void Cancel(std::string cause);
   bool Drain();
   void EndFrame();
   bool IsInFrame() const { return this->Phase != FramePhase::Closed; }

@@ -218,24 +218,23 @@ FaultHandling PagedStore::GetFaultHandling() const
   return this->Self->Faults ? this->Self->Faults->GetKind() : FaultHandling::Automatic;
 }
 
-std::shared_ptr<BlockSegment> PagedStore::Publish(const std::string& what, BlockDirectory directory,
-  FragmentSource& source, FragmentSink& sink, const std::function<void(double)>& progress)
+std::shared_ptr<BlockSegment> PagedStore::Publish(std::string_view what, BlockDirectory directory,
+  FragmentSource& source, FragmentSink& sink, FunctionRef<void(double)> progress)
 {
   Messenger& messages = this->Self->Messages;
-  SegmentPublisher::Steps steps;
-  steps.CountBytes = [&](const BlockDirectory& blocks)
+  const auto count = [&](const BlockDirectory& blocks)
   {
     this->Self->CheckFaults();
     this->Self->PrepareToAdd();
     return blocks.GetResidentBytes(messages.GetRank(), AddressRange::GetPageBytes());
   };
-  steps.Create = [&](std::uint32_t number, BlockDirectory&& blocks)
+  const auto create = [&](std::uint32_t number, BlockDirectory&& blocks)
   {
     return std::make_shared<Segment>(
       number, std::move(blocks), messages.GetRank(), messages.GetSize(), this->Self->Faults);
   };
   const auto segment =
-    std::static_pointer_cast<Segment>(SegmentPublisher(messages, what, std::move(steps))
+    std::static_pointer_cast<Segment>(SegmentPublisher(messages, what, { count, create })
                                         .Run(std::move(directory), source, sink, progress));
   this->Self->Add(segment);
   return segment;

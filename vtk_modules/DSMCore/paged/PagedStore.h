@@ -23,6 +23,7 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -96,8 +97,8 @@ public:
   /// fragments to their owners in bounded batches, and seals. Throws the same Error on every rank
   /// when any rank fails; too when a rank cannot handle faults as the settings say.
   /// `progress` (may be empty) is called now and then with this rank's part done, in [0, 1].
-  std::shared_ptr<BlockSegment> Publish(const std::string& what, BlockDirectory directory,
-    FragmentSource& source, FragmentSink& sink, const std::function<void(double)>& progress = {});
+  std::shared_ptr<BlockSegment> Publish(std::string_view what, BlockDirectory directory,
+    FragmentSource& source, FragmentSink& sink, FunctionRef<void(double)> progress = {});
 
   /// Collective in order (no message is exchanged), between frames: forgets the segment and its
   /// cached blocks. What this rank owns of it stays until the last shared pointer goes.

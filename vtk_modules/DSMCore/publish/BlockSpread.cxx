@@ -5,6 +5,7 @@
 #include "DSMCore/publish/FragmentExchange.h"
 
 #include <algorithm>
+#include <exception>
 #include <utility>
 #include <vector>
 
@@ -41,8 +42,7 @@ void BlockSpread::Run()
 {
   this->Messages.ServeUntil([this] { return this->End.IsReached(); },
     [this] { return this->Feed(); },
-    [this](const std::string& cause)
-    { this->Failure.Keep(std::make_exception_ptr(Error(cause))); });
+    [this](std::exception_ptr failure) { this->Failure.Keep(failure); });
 }
 
 bool BlockSpread::Feed()

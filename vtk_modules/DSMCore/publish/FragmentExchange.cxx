@@ -4,7 +4,7 @@
 #include "DSMCore/base/Error.h"
 
 #include <algorithm>
-#include <functional>
+#include <exception>
 #include <string>
 #include <utility>
 
@@ -38,7 +38,7 @@ FragmentExchange::FragmentExchange(
 
 FragmentExchange::~FragmentExchange() = default;
 
-void FragmentExchange::Run(FragmentSource& source, const std::function<void(double)>& progress)
+void FragmentExchange::Run(FragmentSource& source, FunctionRef<void(double)> progress)
 {
   double shown = -1.0;
   const auto work = [&]
@@ -59,10 +59,8 @@ void FragmentExchange::Run(FragmentSource& source, const std::function<void(doub
     }
     return fed;
   };
-  // By reference, since to copy what it captures could fail, and others count on this rank by now.
-  this->Messages.ServeUntil([this] { return this->End.IsReached(); }, std::cref(work),
-    [this](const std::string& cause)
-    { this->Failure.Keep(std::make_exception_ptr(Error(cause))); });
+  this->Messages.ServeUntil([this] { return this->End.IsReached(); }, work,
+    [this](std::exception_ptr failure) { this->Failure.Keep(failure); });
 }
 
 bool FragmentExchange::Feed(FragmentSource& source)

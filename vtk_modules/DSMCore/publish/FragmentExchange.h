@@ -3,12 +3,11 @@
 #define dsm_FragmentExchange_h
 
 #include "DSMCore/base/FirstFailure.h"
+#include "DSMCore/base/FunctionRef.h"
 #include "DSMCore/publish/BlockSegment.h"
 #include "DSMCore/publish/Publication.h"
 #include "DSMCore/publish/StreamEnd.h"
 #include "DSMCore/transport/Messenger.h"
-
-#include <functional>
 
 namespace dsm
 {
@@ -30,7 +29,7 @@ public:
   /// Collective; the session must have been begun for it. Returns when every rank's fragments have
   /// been absorbed. When source, sink or progress throw on this rank, it contributes no more and
   /// discards what comes, until all others are done too; it is for the caller to let the ranks agree.
-  void Run(FragmentSource& source, const std::function<void(double)>& progress);
+  void Run(FragmentSource& source, FunctionRef<void(double)> progress);
   /// Throws what went wrong on this rank, if anything did.
   void ThrowFailure() const { this->Failure.Throw(); }
 

@@ -30,10 +30,10 @@ void ForEachOwned(const BlockSegment& segment, int rank, const Visit& visit)
 
 } // namespace
 
-SegmentPublisher::SegmentPublisher(Messenger& messenger, std::string what, Steps steps)
+SegmentPublisher::SegmentPublisher(Messenger& messenger, std::string_view what, const Steps& steps)
   : Messages(messenger)
-  , What(std::move(what))
-  , Store(std::move(steps))
+  , What(what)
+  , Store(steps)
 {
 }
 
@@ -43,17 +43,17 @@ std::shared_ptr<BlockSegment> SegmentPublisher::Create(BlockDirectory directory)
 }
 
 std::shared_ptr<BlockSegment> SegmentPublisher::Create(
-  BlockDirectory&& directory, const std::function<void(const BlockSegment&)>& begin)
+  BlockDirectory&& directory, FunctionRef<void(const BlockSegment&)> begin)
 {
-  // Stores that share a messenger draw from one sequence, so the number names the segment among all
-  // of theirs.
-  const std::uint32_t number = this->Messages.BeginSession();
   const int ranksOnHost = this->Messages.GetRanksOnHost();
   FirstFailure failure;
   // Asked before the ranks meet in the next line, hence before any of them takes memory.
   std::uint64_t available = 0;
   failure.Try([&] { available = GetAvailableHostMemory(); });
   const auto fingerprints = this->Messages.AllGatherValue(directory.GetFingerprint());
+  // Stores that share a messenger draw from one sequence, so the number names the segment among all
+  // of theirs.
+  const std::uint32_t number = this->Messages.BeginSession();
   std::shared_ptr<BlockSegment> segment;
   this->Messages.RunTogether(this->What,
     [&]
@@ -68,7 +68,7 @@ std::shared_ptr<BlockSegment> SegmentPublisher::Create(
 }
 
 std::shared_ptr<BlockSegment> SegmentPublisher::Run(BlockDirectory directory,
-  FragmentSource& source, FragmentSink& sink, const std::function<void(double)>& progress)
+  FragmentSource& source, FragmentSink& sink, FunctionRef<void(double)> progress)
 {
   const int rank = this->Messages.GetRank();
   const auto begin = [&](const BlockSegment& created)
@@ -76,7 +76,7 @@ std::shared_ptr<BlockSegment> SegmentPublisher::Run(BlockDirectory directory,
     ForEachOwned(created, rank,
       [&](BlockId id, std::byte* block, std::size_t bytes) { sink.Begin(id, block, bytes); });
   };
-  const auto segment = this->Create(std::move(directory), std::cref(begin));
+  const auto segment = this->Create(std::move(directory), begin);
   segment->Meet(this->Messages);
 
   this->Messages.BeginSession();

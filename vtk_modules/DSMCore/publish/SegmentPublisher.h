@@ -2,15 +2,15 @@
 #ifndef dsm_SegmentPublisher_h
 #define dsm_SegmentPublisher_h
 
+#include "DSMCore/base/FunctionRef.h"
 #include "DSMCore/publish/BlockDirectory.h"
 #include "DSMCore/publish/BlockSegment.h"
 #include "DSMCore/publish/Publication.h"
 #include "DSMCore/transport/Messenger.h"
 
 #include <cstdint>
-#include <functional>
 #include <memory>
-#include <string>
+#include <string_view>
 #include <vector>
 
 namespace dsm
@@ -22,14 +22,15 @@ namespace dsm
 class SegmentPublisher
 {
 public:
-  /// What the store does on this rank; each may throw, then all ranks fail.
+  /// What the store does on this rank; each may throw, then all ranks fail. What it refers to outlives
+  /// the publisher.
   struct Steps
   {
     /// What the segment takes of this rank's memory.
-    std::function<std::uint64_t(const BlockDirectory& directory)> CountBytes;
+    FunctionRef<std::uint64_t(const BlockDirectory& directory)> CountBytes;
     /// Sets out zeroed memory for the blocks that this rank owns. The number names the segment, on
     /// all ranks, among those of all stores that share the messenger.
-    std::function<std::shared_ptr<BlockSegment>(std::uint32_t number, BlockDirectory&& directory)>
+    FunctionRef<std::shared_ptr<BlockSegment>(std::uint32_t number, BlockDirectory&& directory)>
       Create;
     /// What this rank may still take.
     std::uint64_t MemoryBytes = UINT64_MAX;
@@ -38,7 +39,7 @@ public:
   };
 
   /// `what` names the publication in errors.
-  SegmentPublisher(Messenger& messenger, std::string what, Steps steps);
+  SegmentPublisher(Messenger& messenger, std::string_view what, const Steps& steps);
 
   /// Collective: the segment, with nothing in it yet. Throws as Run.
   std::shared_ptr<BlockSegment> Create(BlockDirectory directory);
@@ -46,17 +47,17 @@ public:
   /// directories differ, and, before any takes memory, when that does not suffice. `progress` may be
   /// empty.
   std::shared_ptr<BlockSegment> Run(BlockDirectory directory, FragmentSource& source,
-    FragmentSink& sink, const std::function<void(double)>& progress);
+    FragmentSink& sink, FunctionRef<void(double)> progress);
 
 private:
   /// `begin` takes part in the ranks' agreement.
   std::shared_ptr<BlockSegment> Create(
-    BlockDirectory&& directory, const std::function<void(const BlockSegment&)>& begin);
+    BlockDirectory&& directory, FunctionRef<void(const BlockSegment&)> begin);
   void Check(const BlockDirectory& directory, const std::vector<std::uint64_t>& fingerprints) const;
   void CheckMemory(std::uint64_t bytes, int ranksOnHost, std::uint64_t available) const;
 
   Messenger& Messages;
-  std::string What;
+  std::string_view What;
   Steps Store;
 };
 

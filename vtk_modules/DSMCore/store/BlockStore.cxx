@@ -136,7 +136,7 @@ void BlockStore::FindBudget()
 }
 
 BlockStore::Decision BlockStore::Decide(
-  const std::string& what, const BlockDirectory* next, Decision& fallback)
+  std::string_view what, const BlockDirectory* next, Decision& fallback)
 {
   this->Messages.GetRanksOnHost(); // collective the first time
   this->Groups = HostGroups::Find(this->Messages, this->Current.HostSharing);
@@ -206,7 +206,7 @@ void BlockStore::PutInForce(Decision&& decision)
 {
   this->Explanation = std::move(decision.Explanation);
   this->Room = decision.Room;
-  this->Configure();
+  this->Messages.Insist([this] { this->Configure(); });
   this->Settled = true;
 }
 
@@ -284,8 +284,8 @@ void BlockStore::GiveUpCopies()
 
 // -- Segments --------------------------------------------------------------------------------------
 
-std::shared_ptr<BlockSegment> BlockStore::Publish(const std::string& what, BlockDirectory directory,
-  FragmentSource& source, FragmentSink& sink, const std::function<void(double)>& progress)
+std::shared_ptr<BlockSegment> BlockStore::Publish(std::string_view what, BlockDirectory directory,
+  FragmentSource& source, FragmentSink& sink, FunctionRef<void(double)> progress)
 {
   Decision fallback;
   Decision decision = this->Decide(what, &directory, fallback);

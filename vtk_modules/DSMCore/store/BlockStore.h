@@ -21,6 +21,7 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -82,8 +83,8 @@ public:
   /// Collective, between frames; see ObjectStore. Throws the same Error on every rank, before any
   /// data move, when a rank's memory does not suffice: with the number of bytes needed and the number
   /// of ranks that would do.
-  std::shared_ptr<BlockSegment> Publish(const std::string& what, BlockDirectory directory,
-    FragmentSource& source, FragmentSink& sink, const std::function<void(double)>& progress = {});
+  std::shared_ptr<BlockSegment> Publish(std::string_view what, BlockDirectory directory,
+    FragmentSource& source, FragmentSink& sink, FunctionRef<void(double)> progress = {});
 
   /// Collective in order (no message is exchanged), between frames.
   void Retire(const std::shared_ptr<BlockSegment>& segment);
@@ -137,7 +138,7 @@ private:
   /// Collective: for what is published and, unless null, for what is to be, which may then be added
   /// without fail. `fallback`: should copies fail that Automatic wants. Throws the same Error, which
   /// begins with `what`, on every rank.
-  Decision Decide(const std::string& what, const BlockDirectory* next, Decision& fallback);
+  Decision Decide(std::string_view what, const BlockDirectory* next, Decision& fallback);
   MemoryPlan MakePlan(const std::vector<Stance>& stances, const BlockDirectory* next) const;
   void FindBudget();
   /// Of the stores that fetch.

@@ -162,7 +162,7 @@ std::uint64_t BlockTable::CountReplicaBytes(
   return bytes;
 }
 
-void BlockTable::Replicate(Messenger& messenger, const std::string& what)
+void BlockTable::Replicate(Messenger& messenger, std::string_view what)
 {
   const BlockDirectory& directory = this->GetDirectory();
   const int group = this->Groups.GetGroup(this->Rank);

@@ -13,7 +13,7 @@
 
 #include <cstdint>
 #include <memory>
-#include <string>
+#include <string_view>
 #include <vector>
 
 namespace dsm
@@ -64,7 +64,7 @@ public:
     const BlockDirectory& directory, const HostGroups& groups, int rank);
   /// Collective, when the blocks are complete and nothing is cached: from now on every block is
   /// here. Throws the same Error, which begins with `what`, on every rank; then nothing has changed.
-  void Replicate(Messenger& messenger, const std::string& what);
+  void Replicate(Messenger& messenger, std::string_view what);
   /// Local: lets go of the copies.
   void DropReplicas();
   bool IsReplicated() const { return this->Replicated; }

@@ -28,46 +28,43 @@ const ObjectStore::Settings& ObjectStore::GetSettings() const
   return this->Self->Current;
 }
 
-std::shared_ptr<BlockSegment> ObjectStore::Publish(const std::string& what,
-  BlockDirectory directory, FragmentSource& source, FragmentSink& sink,
-  const std::function<void(double)>& progress)
+std::shared_ptr<BlockSegment> ObjectStore::Publish(std::string_view what, BlockDirectory directory,
+  FragmentSource& source, FragmentSink& sink, FunctionRef<void(double)> progress)
 {
   Messenger& messages = this->Self->Messages;
   const Settings& settings = this->GetSettings();
   const auto groups =
     settings.Groups ? settings.Groups : HostGroups::Find(messages, settings.HostSharing);
-  SegmentPublisher::Steps steps;
-  steps.CountBytes = [&](const BlockDirectory& blocks)
+  const auto count = [&](const BlockDirectory& blocks)
   {
     this->Self->PrepareToAdd();
     return blocks.GetResidentBytes(messages.GetRank());
   };
-  steps.Create = [&](std::uint32_t number, BlockDirectory&& blocks)
+  const auto create = [&](std::uint32_t number, BlockDirectory&& blocks)
   { return std::make_shared<BlockTable>(number, std::move(blocks), messages.GetRank(), *groups); };
   const auto table =
-    std::static_pointer_cast<BlockTable>(SegmentPublisher(messages, what, std::move(steps))
+    std::static_pointer_cast<BlockTable>(SegmentPublisher(messages, what, { count, create })
                                            .Run(std::move(directory), source, sink, progress));
   this->Self->Add(table);
   return table;
 }
 
 std::shared_ptr<BlockSegment> ObjectStore::Publish(
-  const std::string& what, BlockDirectory directory, std::shared_ptr<BlockSource> source)
+  std::string_view what, BlockDirectory directory, std::shared_ptr<BlockSource> source)
 {
   Messenger& messages = this->Self->Messages;
-  SegmentPublisher::Steps steps;
-  steps.CountBytes = [this](const BlockDirectory&)
+  const auto count = [this](const BlockDirectory&)
   {
     this->Self->PrepareToAdd();
     return std::uint64_t(0);
   };
-  steps.Create = [&](std::uint32_t number, BlockDirectory&& blocks)
+  const auto create = [&](std::uint32_t number, BlockDirectory&& blocks)
   {
     return std::make_shared<BlockTable>(
       number, std::move(blocks), messages.GetRank(), messages.GetSize(), std::move(source));
   };
   const auto table =
-    SegmentPublisher(messages, what, std::move(steps)).Create(std::move(directory));
+    SegmentPublisher(messages, what, { count, create }).Create(std::move(directory));
   this->Self->Add(table);
   return table;
 }

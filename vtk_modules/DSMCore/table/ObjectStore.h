@@ -20,6 +20,7 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -76,15 +77,15 @@ public:
   /// Collective. Allocates this rank's blocks, feeds every rank's fragments to their owners in
   /// bounded batches, and seals. Throws the same Error on every rank when any rank fails.
   /// `progress` (may be empty) is called now and then with this rank's part done, in [0, 1].
-  std::shared_ptr<BlockSegment> Publish(const std::string& what, BlockDirectory directory,
-    FragmentSource& source, FragmentSink& sink, const std::function<void(double)>& progress = {});
+  std::shared_ptr<BlockSegment> Publish(std::string_view what, BlockDirectory directory,
+    FragmentSource& source, FragmentSink& sink, FunctionRef<void(double)> progress = {});
 
   /// Collective. As above, but no data move: the blocks that this rank owns are brought by `source`
   /// when they are needed, here or elsewhere, and leave memory like those of others; they count as
   /// cached. Where there are several ranks, the cache must hold one own block more. Whatever a source
   /// throws fails the frame.
   std::shared_ptr<BlockSegment> Publish(
-    const std::string& what, BlockDirectory directory, std::shared_ptr<BlockSource> source);
+    std::string_view what, BlockDirectory directory, std::shared_ptr<BlockSource> source);
 
   /// Collective in order (no message is exchanged), between frames: forgets the segment and its
   /// cached blocks. What this rank owns of it stays until the last shared pointer goes.

@@ -49,16 +49,15 @@ std::uint64_t ReplicatedStore::CountBytes() const
   return bytes;
 }
 
-std::shared_ptr<BlockSegment> ReplicatedStore::Publish(const std::string& what,
+std::shared_ptr<BlockSegment> ReplicatedStore::Publish(std::string_view what,
   BlockDirectory directory, FragmentSource& source, FragmentSink& sink,
-  const std::function<void(double)>& progress)
+  FunctionRef<void(double)> progress)
 {
   const int rank = this->Messages.GetRank();
   const auto groups = this->Current.Groups
     ? this->Current.Groups
     : HostGroups::Find(this->Messages, this->Current.HostSharing);
-  SegmentPublisher::Steps steps;
-  steps.CountBytes = [&](const BlockDirectory& blocks)
+  const auto count = [&](const BlockDirectory& blocks)
   {
     if (this->InFrame)
     {
@@ -67,15 +66,16 @@ std::shared_ptr<BlockSegment> ReplicatedStore::Publish(const std::string& what,
     this->Segments.MakeRoom(1);
     return blocks.GetResidentBytes(rank) + BlockTable::CountReplicaBytes(blocks, *groups, rank);
   };
-  steps.Create = [&](std::uint32_t number, BlockDirectory&& blocks)
+  const auto create = [&](std::uint32_t number, BlockDirectory&& blocks)
   { return std::make_shared<BlockTable>(number, std::move(blocks), rank, *groups); };
+  SegmentPublisher::Steps steps{ count, create };
   steps.MemoryBytes =
     this->Current.MemoryBytes - std::min(this->Current.MemoryBytes, this->CountBytes());
   steps.Remedy = "Choose the object based memory organisation (DSMMemoryOrganization), which "
                  "shares the data out "
                  "between the ranks, or smaller data.";
   auto table =
-    std::static_pointer_cast<BlockTable>(SegmentPublisher(this->Messages, what, std::move(steps))
+    std::static_pointer_cast<BlockTable>(SegmentPublisher(this->Messages, what, steps)
                                            .Run(std::move(directory), source, sink, progress));
   table->Replicate(this->Messages, what);
   this->Segments.Add(table);

@@ -17,6 +17,7 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace dsm
@@ -60,8 +61,8 @@ public:
   /// Collective. As ObjectStore::Publish; then the owners send their blocks to all others, in
   /// bounded batches. Throws Error, on every rank, with the number of bytes that a rank needs, when
   /// the memory of any does not suffice.
-  std::shared_ptr<BlockSegment> Publish(const std::string& what, BlockDirectory directory,
-    FragmentSource& source, FragmentSink& sink, const std::function<void(double)>& progress = {});
+  std::shared_ptr<BlockSegment> Publish(std::string_view what, BlockDirectory directory,
+    FragmentSource& source, FragmentSink& sink, FunctionRef<void(double)> progress = {});
 
   /// Collective in order, between frames.
   void Retire(const std::shared_ptr<BlockSegment>& segment);

@@ -71,10 +71,11 @@ void LoopbackTransport::Post(int destination, Message message)
       " was posted, but there are " + std::to_string(this->GetSize()) + " ranks.");
   }
   message.Source = this->Rank;
-  this->Members->Members[this->Rank].UnsentBytes += message.Payload.size();
+  const std::size_t bytes = message.Payload.size();
   Group::Member& receiver = this->Members->Members[destination];
   const std::lock_guard<std::mutex> lock(receiver.Guard);
   receiver.Mailbox.push_back(std::move(message));
+  this->Members->Members[this->Rank].UnsentBytes += bytes; // the receiver cannot take it yet
 }
 
 bool LoopbackTransport::Progress(const Deliver& deliver)
@@ -89,14 +90,17 @@ bool LoopbackTransport::Progress(const Deliver& deliver)
   // each other busy for ever.
   for (std::size_t i = 0; i < count; ++i)
   {
-    Message message;
+    Message* message = nullptr; // stays where it is, whatever is put behind it
     {
       const std::lock_guard<std::mutex> lock(self.Guard);
-      message = std::move(self.Mailbox.front());
-      self.Mailbox.pop_front();
+      message = &self.Mailbox.front();
     }
-    this->Members->Members[message.Source].UnsentBytes -= message.Payload.size();
-    deliver(std::move(message));
+    std::atomic<std::size_t>& unsent = this->Members->Members[message->Source].UnsentBytes;
+    const std::size_t bytes = message->Payload.size();
+    deliver(std::move(*message)); // when it throws, the message is still there
+    unsent -= bytes;
+    const std::lock_guard<std::mutex> lock(self.Guard);
+    self.Mailbox.pop_front();
   }
   return count > 0;
 }

@@ -1,16 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "DSMCore/transport/Messenger.h"
-
-#include "DSMCore/transport/BackOff.h"
+#include "DSMCore/transport/MessengerInternals.h"
 
 #include <unistd.h>
 
 #include <algorithm>
 #include <array>
-#include <deque>
-#include <exception>
+#include <chrono>
 #include <fstream>
-#include <iterator>
 #include <new>
 #include <thread>
 #include <utility>
@@ -21,18 +17,13 @@ namespace dsm
 namespace
 {
 
-constexpr std::size_t Kinds = static_cast<std::size_t>(MessageKind::Last) + 1;
+/// For what needs little memory when there is none; see Insist.
+constexpr std::size_t ReserveBytes = std::size_t(1) << 20;
+constexpr int MostAttempts = 1000;
+constexpr std::chrono::milliseconds AttemptPause(10);
 
-std::size_t IndexOf(MessageKind kind)
-{
-  const std::size_t index = static_cast<std::size_t>(kind);
-  if (index == 0 || index >= Kinds)
-  {
-    throw Error(
-      "There is no message kind " + std::to_string(index) + ". Do all ranks run the same build?");
-  }
-  return index;
-}
+/// Of a collective, on their way out before a rank makes more.
+constexpr std::size_t MaximumUnsentBytes = std::size_t(8) << 20;
 
 /// Sessions are compared by distance, so that their number may wrap around.
 std::int32_t Distance(std::uint32_t from, std::uint32_t to)
@@ -53,199 +44,258 @@ std::string GetHostIdentity()
 
 } // namespace
 
-class Messenger::Internals
+// -- Internals -------------------------------------------------------------------------------------
+
+Messenger::Internals::Internals(std::unique_ptr<Transport> transport, std::size_t pieceBytes)
+  : Carrier(std::move(transport))
+  , PieceBytes(pieceBytes)
 {
-public:
-  explicit Internals(std::unique_ptr<Transport> transport)
-    : Carrier(std::move(transport))
+}
+
+std::size_t Messenger::Internals::IndexOf(MessageKind kind)
+{
+  const std::size_t index = static_cast<std::size_t>(kind);
+  if (index == 0 || index > static_cast<std::size_t>(MessageKind::Last))
   {
-    this->Handlers[IndexOf(MessageKind::Collective)] = [this](Message&& message)
+    throw Error(
+      "There is no message kind " + std::to_string(index) + ". Do all ranks run the same build?");
+  }
+  return index;
+}
+
+void Messenger::Internals::Post(int destination, MessageKind kind, std::vector<std::byte> payload)
+{
+  IndexOf(kind);
+  Message message;
+  message.Kind = kind;
+  message.Session = this->Session;
+  message.Source = this->Carrier->GetRank();
+  message.Payload = std::move(payload);
+  this->Carrier->Post(destination, std::move(message));
+}
+
+bool Messenger::Internals::Progress()
+{
+  if (this->Dispatching)
+  {
+    throw Error("A message handler waited for messages; only the code around it may.");
+  }
+  if (this->Deferred)
+  {
+    std::rethrow_exception(std::exchange(this->Deferred, nullptr));
+  }
+  return this->Move();
+}
+
+bool Messenger::Internals::Move()
+{
+  const bool moved = this->Carrier->Progress(
+    [this](Message&& message)
     {
-      // Older ones were left behind by a collective that failed here.
-      if (message.Session == this->Session)
+      this->Inbox.push_back(std::move(message));
+      this->Changed = true;
+    });
+  return this->Dispatch() || moved;
+}
+
+/// Hands over what is due, oldest first, and drops what has become useless.
+bool Messenger::Internals::Dispatch()
+{
+  bool any = false;
+  while (this->Changed)
+  {
+    this->Changed = false;
+    std::list<Message> arrived;
+    arrived.swap(this->Inbox);
+    while (!arrived.empty())
+    {
+      std::list<Message> message;
+      message.splice(message.begin(), arrived, arrived.begin());
+      try
       {
-        this->Received.push_back(std::move(message));
+        any |= this->Treat(message);
       }
-    };
-  }
-
-  void Post(int destination, MessageKind kind, std::vector<std::byte> payload)
-  {
-    IndexOf(kind);
-    Message message;
-    message.Kind = kind;
-    message.Session = this->Session;
-    message.Source = this->Carrier->GetRank();
-    message.Payload = std::move(payload);
-    this->Carrier->Post(destination, std::move(message));
-  }
-
-  bool Progress()
-  {
-    if (this->Dispatching)
-    {
-      throw Error("A message handler waited for messages; only the code around it may.");
+      catch (...)
+      {
+        if (!this->Deferring)
+        {
+          // Keep the order: what waits already, then what was not looked at yet.
+          this->Inbox.splice(this->Inbox.end(), arrived);
+          this->Changed = true;
+          throw;
+        }
+        this->Keep(std::current_exception());
+      }
     }
-    const bool moved = this->Carrier->Progress(
-      [this](Message&& message)
-      {
-        this->Inbox.push_back(std::move(message));
-        this->Changed = true;
-      });
-    return this->Dispatch() || moved;
   }
+  return any;
+}
 
-  void ProgressUntil(const std::function<bool()>& done, const std::function<bool()>& work)
+bool Messenger::Internals::Treat(std::list<Message>& list)
+{
+  Message& message = list.front();
+  const bool isCollective = message.Kind == MessageKind::Collective;
+  const Handler& handler = this->Handlers[IndexOf(message.Kind)];
+  const std::int32_t ahead = Distance(this->Session, message.Session);
+  if (ahead > 0 || (ahead == 0 && !handler && !isCollective))
   {
-    this->Idle.Reset();
-    while (!done())
+    this->Inbox.splice(this->Inbox.end(), list);
+    return false;
+  }
+  if (isCollective && ahead == 0)
+  {
+    this->Received.splice(this->Received.end(), list);
+    return true;
+  }
+  if (!handler)
+  {
+    return false;
+  }
+  const Handler keep = handler; // it may replace itself
+  this->Dispatching = true;
+  try
+  {
+    keep(std::move(message));
+  }
+  catch (...)
+  {
+    this->Dispatching = false;
+    throw;
+  }
+  this->Dispatching = false;
+  return true;
+}
+
+void Messenger::Internals::Keep(std::exception_ptr failure)
+{
+  this->Deferred = this->Deferred ? this->Deferred : failure;
+}
+
+void Messenger::Internals::ProgressUntil(FunctionRef<bool()> done, FunctionRef<bool()> work)
+{
+  this->Idle.Reset();
+  while (!done())
+  {
+    bool any = this->Progress();
+    if (work)
     {
-      bool any = this->Progress();
-      if (work)
-      {
-        any |= work();
-      }
-      if (any)
-      {
-        this->Idle.Reset();
-      }
-      else
-      {
-        this->Idle.Wait();
-      }
+      any |= work();
+    }
+    if (any)
+    {
+      this->Idle.Reset();
+    }
+    else
+    {
+      this->Idle.Wait();
     }
   }
+}
 
-  /// Collective: begins a session, runs `exchange` in it, and leaves when the own messages have
-  /// left too. An exception of a handler waits until then.
-  void RunCollective(const std::function<void()>& exchange)
+void Messenger::Internals::Insist(FunctionRef<void()> step)
+{
+  if (!this->Reserve)
   {
-    ++this->Session;
-    this->Changed = true;
-    this->Received.clear();
+    this->Reserve.reset(new (std::nothrow) std::byte[ReserveBytes]);
+  }
+  for (int attempt = 1;; ++attempt)
+  {
+    try
+    {
+      step();
+      return;
+    }
+    catch (...)
+    {
+      if (attempt == MostAttempts)
+      {
+        throw;
+      }
+    }
+    if (!this->Reserve)
+    {
+      std::this_thread::sleep_for(AttemptPause);
+    }
+    this->Reserve.reset();
+  }
+}
+
+void Messenger::Internals::RunCollective(FunctionRef<void()> exchange)
+{
+  ++this->Session;
+  this->Changed = true;
+  this->Received.clear();
+  exchange();
+  this->Await([this] { return !this->Carrier->HasUnsent(MessageKind::Collective); });
+}
+
+void Messenger::Internals::Await(FunctionRef<bool()> done, FunctionRef<bool()> work)
+{
+  const auto move = [&]
+  {
+    bool any = false;
     this->Deferring = true;
     try
     {
-      exchange();
-      this->ProgressUntil(
-        [this] { return !this->Carrier->HasUnsent(MessageKind::Collective); }, {});
+      any = this->Move();
+    }
+    catch (const std::bad_alloc&)
+    {
+      // Of the transport; it has lost nothing, and takes it in the next time.
     }
     catch (...)
     {
-      this->Deferring = false;
-      throw;
+      this->Keep(std::current_exception());
     }
     this->Deferring = false;
-    if (this->Deferred)
-    {
-      std::rethrow_exception(std::exchange(this->Deferred, nullptr));
-    }
-  }
-
-  /// Rank 0's bytes to all along a binomial tree: rank r hears from r without its lowest bit.
-  void SpreadFromRankZero(std::vector<std::byte>& bytes)
-  {
-    const int rank = this->Carrier->GetRank();
-    const int size = this->Carrier->GetSize();
-    const int lowest = rank == 0 ? size : (rank & -rank);
-    if (rank != 0)
-    {
-      this->ProgressUntil([this] { return !this->Received.empty(); }, {});
-      bytes = std::move(this->Received.front().Payload);
-      this->Received.clear();
-    }
-    for (int step = 1; step < lowest && rank + step < size; step *= 2)
-    {
-      this->Post(rank + step, MessageKind::Collective, bytes);
-    }
-  }
-
-  std::unique_ptr<Transport> Carrier;
-  std::array<Handler, Kinds> Handlers;
-  std::uint32_t Session = 0;
-  std::vector<Message> Received; ///< of the collective under way
-  bool Changed = false;          ///< whether a message in the inbox may have become due
-  std::vector<int> Hosts;        ///< empty: not compared yet
-  BackOff Idle;
-
-private:
-  /// Hands over what is due, oldest first, and drops what has become useless.
-  bool Dispatch()
-  {
-    bool any = false;
-    while (this->Changed)
-    {
-      this->Changed = false;
-      std::deque<Message> arrived;
-      arrived.swap(this->Inbox);
-      while (!arrived.empty())
-      {
-        Message message = std::move(arrived.front());
-        arrived.pop_front();
-        try
-        {
-          any |= this->Treat(std::move(message));
-        }
-        catch (...)
-        {
-          if (!this->Deferring)
-          {
-            // Keep the order: what waits already, then what was not looked at yet.
-            std::move(arrived.begin(), arrived.end(), std::back_inserter(this->Inbox));
-            this->Changed = true;
-            throw;
-          }
-          if (!this->Deferred)
-          {
-            this->Deferred = std::current_exception();
-          }
-        }
-      }
-    }
     return any;
-  }
-
-  bool Treat(Message&& message)
+  };
+  this->Idle.Reset();
+  while (!done())
   {
-    Handler& handler = this->Handlers[IndexOf(message.Kind)];
-    const std::int32_t ahead = Distance(this->Session, message.Session);
-    if (ahead > 0 || (ahead == 0 && !handler))
+    bool any = move();
+    if (work)
     {
-      this->Inbox.push_back(std::move(message));
-      return false;
+      any |= work();
     }
-    if (!handler)
+    if (any)
     {
-      return false;
+      this->Idle.Reset();
     }
-    const Handler keep = handler; // it may replace itself
-    this->Dispatching = true;
-    try
+    else
     {
-      keep(std::move(message));
+      this->Idle.Wait();
     }
-    catch (...)
-    {
-      this->Dispatching = false;
-      throw;
-    }
-    this->Dispatching = false;
-    return true;
   }
+}
 
-  std::deque<Message> Inbox;
-  bool Dispatching = false;
-  bool Deferring = false;
-  std::exception_ptr Deferred;
-};
+void Messenger::Internals::PostCopy(int destination, const std::byte* bytes, std::size_t count)
+{
+  constexpr std::size_t headerRoom = 64; // the transport's
+  this->Insist(
+    [&]
+    {
+      std::vector<std::byte> copy;
+      copy.reserve(count + headerRoom);
+      copy.assign(bytes, bytes + count);
+      this->Post(destination, MessageKind::Collective, std::move(copy));
+    });
+}
 
-Messenger::Messenger(std::unique_ptr<Transport> transport)
+bool Messenger::Internals::MaySend() const
+{
+  return this->Carrier->GetUnsentBytes() < MaximumUnsentBytes;
+}
+
+// -- Messenger -------------------------------------------------------------------------------------
+
+Messenger::Messenger(std::unique_ptr<Transport> transport, std::size_t pieceBytes)
 {
   if (!transport)
   {
     throw Error("A messenger needs a transport. Without MPI, use a loopback group of one.");
   }
-  this->Self = std::make_unique<Internals>(std::move(transport));
+  this->Self = std::make_unique<Internals>(std::move(transport), pieceBytes);
 }
 
 Messenger::~Messenger() = default;
@@ -277,9 +327,16 @@ const std::vector<int>& Messenger::GetHosts()
 {
   if (this->Self->Hosts.empty())
   {
-    const std::string mine = GetHostIdentity();
-    const auto* bytes = reinterpret_cast<const std::byte*>(mine.data());
-    const auto all = this->AllGather(std::vector<std::byte>(bytes, bytes + mine.size()));
+    std::vector<std::byte> mine;
+    this->Insist(
+      [&]
+      {
+        const std::string name = GetHostIdentity();
+        const auto* const bytes = reinterpret_cast<const std::byte*>(name.data());
+        mine.assign(bytes, bytes + name.size());
+      });
+    const auto all = this->AllGather(std::move(mine));
+    this->Insist([&] { this->Self->Hosts.reserve(all.size()); });
     for (const auto& identity : all)
     {
       this->Self->Hosts.push_back(
@@ -306,7 +363,7 @@ void Messenger::SetHandler(MessageKind kind, Handler handler)
   {
     throw Error("Collective messages are the messenger's own.");
   }
-  this->Self->Handlers[IndexOf(kind)] = std::move(handler);
+  this->Self->Handlers[Internals::IndexOf(kind)] = std::move(handler);
   this->Self->Changed = true;
 }
 
@@ -320,13 +377,13 @@ bool Messenger::Progress()
   return this->Self->Progress();
 }
 
-void Messenger::ProgressUntil(const std::function<bool()>& done, const std::function<bool()>& work)
+void Messenger::ProgressUntil(FunctionRef<bool()> done, FunctionRef<bool()> work)
 {
   this->Self->ProgressUntil(done, work);
 }
 
-void Messenger::ServeUntil(const std::function<bool()>& done, const std::function<bool()>& work,
-  const std::function<void(const std::string&)>& fail)
+void Messenger::ServeUntil(
+  FunctionRef<bool()> done, FunctionRef<bool()> work, FunctionRef<void(std::exception_ptr)> fail)
 {
   while (!done())
   {
@@ -336,9 +393,19 @@ void Messenger::ServeUntil(const std::function<bool()>& done, const std::functio
     }
     catch (...)
     {
-      fail(DescribeException());
+      fail(std::current_exception());
     }
   }
+}
+
+void Messenger::Flush()
+{
+  this->Self->Await([this] { return this->Self->Carrier->GetUnsentBytes() == 0; });
+}
+
+void Messenger::Insist(FunctionRef<void()> step)
+{
+  this->Self->Insist(step);
 }
 
 void Messenger::WakeUp()
@@ -354,108 +421,6 @@ std::size_t Messenger::GetUnsentBytes() const
 bool Messenger::HasUnsent(MessageKind kind) const
 {
   return this->Self->Carrier->HasUnsent(kind);
-}
-
-std::vector<std::vector<std::byte>> Messenger::AllGather(std::vector<std::byte> mine)
-{
-  const std::size_t size = static_cast<std::size_t>(this->GetSize());
-  std::vector<std::vector<std::byte>> parts(size);
-  if (size == 1)
-  {
-    this->BeginSession();
-    parts[0] = std::move(mine);
-    return parts;
-  }
-  // Packed: the size of every part as 64 bits, then the parts.
-  std::vector<std::byte> packed;
-  this->Self->RunCollective(
-    [&]
-    {
-      if (this->GetRank() == 0)
-      {
-        this->Self->ProgressUntil([&] { return this->Self->Received.size() == size - 1; }, {});
-        parts[0] = std::move(mine);
-        for (Message& message : this->Self->Received)
-        {
-          parts[message.Source] = std::move(message.Payload);
-        }
-        for (const auto& part : parts)
-        {
-          AttachTail(packed, static_cast<std::uint64_t>(part.size()));
-        }
-        for (const auto& part : parts)
-        {
-          packed.insert(packed.end(), part.begin(), part.end());
-        }
-      }
-      else
-      {
-        this->Post(0, MessageKind::Collective, std::move(mine));
-      }
-      this->Self->SpreadFromRankZero(packed);
-    });
-  if (this->GetRank() != 0)
-  {
-    std::vector<std::uint64_t> sizes(size);
-    std::memcpy(sizes.data(), packed.data(), size * sizeof(std::uint64_t));
-    auto next = packed.begin() + static_cast<std::ptrdiff_t>(size * sizeof(std::uint64_t));
-    for (std::size_t rank = 0; rank < size; ++rank)
-    {
-      parts[rank].assign(next, next + static_cast<std::ptrdiff_t>(sizes[rank]));
-      next += static_cast<std::ptrdiff_t>(sizes[rank]);
-    }
-  }
-  return parts;
-}
-
-std::vector<std::byte> Messenger::Broadcast(std::vector<std::byte> fromRankZero)
-{
-  this->Self->RunCollective([&] { this->Self->SpreadFromRankZero(fromRankZero); });
-  return fromRankZero;
-}
-
-void Messenger::Barrier()
-{
-  this->AllGather({});
-}
-
-Status Messenger::Agree(const std::string& cause)
-{
-  const auto* bytes = reinterpret_cast<const std::byte*>(cause.data());
-  const auto causes = this->AllGather(std::vector<std::byte>(bytes, bytes + cause.size()));
-  Status status;
-  for (std::size_t rank = 0; rank < causes.size(); ++rank)
-  {
-    if (!causes[rank].empty())
-    {
-      status.FailedRank = static_cast<int>(rank);
-      status.Cause.assign(reinterpret_cast<const char*>(causes[rank].data()), causes[rank].size());
-      status.IsEverywhere = std::all_of(
-        causes.begin(), causes.end(), [&](const auto& other) { return other == causes[rank]; });
-      break;
-    }
-  }
-  return status;
-}
-
-void Messenger::RunTogether(const std::string& what, const std::function<void()>& step)
-{
-  std::string cause;
-  try
-  {
-    step();
-  }
-  catch (...)
-  {
-    cause = DescribeException();
-  }
-  const Status status = this->Agree(cause);
-  if (!status.IsOk())
-  {
-    throw Error(what + ": " +
-      (status.IsEverywhere ? std::string() : "Rank " + std::to_string(status.FailedRank) + ": ") +
-      status.Cause);
-  }
 }
 
 std::string Messenger::DescribeException()

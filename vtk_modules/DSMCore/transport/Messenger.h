@@ -3,13 +3,18 @@
 #define dsm_Messenger_h
 
 #include "DSMCore/base/Error.h"
+#include "DSMCore/base/FirstFailure.h"
+#include "DSMCore/base/FunctionRef.h"
 #include "DSMCore/transport/Message.h"
 #include "DSMCore/transport/Transport.h"
 
+#include <cstddef>
 #include <cstdint>
+#include <exception>
 #include <functional>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace dsm
@@ -32,7 +37,13 @@ class Messenger
 public:
   using Handler = std::function<void(Message&&)>;
 
-  explicit Messenger(std::unique_ptr<Transport> transport);
+  /// Of a collective, the most that one message carries; larger ones go in pieces. Smaller than what a
+  /// transport keeps for a rank without memory.
+  static constexpr std::size_t DefaultPieceBytes = std::size_t(1) << 19;
+
+  /// `pieceBytes`: the same on every rank.
+  explicit Messenger(
+    std::unique_ptr<Transport> transport, std::size_t pieceBytes = DefaultPieceBytes);
   ~Messenger();
   Messenger(const Messenger&) = delete;
   Messenger& operator=(const Messenger&) = delete;
@@ -72,12 +83,20 @@ public:
   /// Progress, and `work` (which returns whether it did anything), until `done` holds; backs off to
   /// short sleeps while nothing happens, so that a rank that waits does not starve the tracing
   /// threads of a host that it shares. WakeUp ends a sleep early.
-  void ProgressUntil(const std::function<bool()>& done, const std::function<bool()>& work = {});
+  void ProgressUntil(FunctionRef<bool()> done, FunctionRef<bool()> work = {});
 
   /// ProgressUntil for what other ranks rely on: an exception, such as of a message that is lost or
-  /// rejected, is this rank's failure, told to `fail` by its text, and this rank goes on serving.
-  void ServeUntil(const std::function<bool()>& done, const std::function<bool()>& work,
-    const std::function<void(const std::string&)>& fail);
+  /// rejected, is this rank's failure, told to `fail`, and this rank goes on serving.
+  void ServeUntil(
+    FunctionRef<bool()> done, FunctionRef<bool()> work, FunctionRef<void(std::exception_ptr)> fail);
+
+  /// Until all that was posted has left this rank. Does not fail, but as collectives do.
+  void Flush();
+
+  /// Runs a step between two agreements, which other ranks count on and which needs but little memory:
+  /// when it throws, it is tried again with the memory of a reserve, and then until there is some. What
+  /// it threw for ten seconds is thrown at last.
+  void Insist(FunctionRef<void()> step);
 
   /// Any thread: there is something to do for the communication thread.
   void WakeUp();
@@ -87,15 +106,20 @@ public:
   /// See Transport::HasUnsent.
   bool HasUnsent(MessageKind kind) const;
 
-  // -- Collectives; each begins a session of its own -----------------------------------------------
-  // What another handler throws while a collective waits is rethrown when the collective is
-  // complete, so that no other rank is left waiting for this one.
+  // -- Collectives; each begins sessions of its own -----------------------------------------------
+  // They throw the same on every rank, or on none: a rank without memory takes part with a reserve
+  // (Insist), and what a larger result takes is set aside by all, or by none. StepAborted, too: see
+  // RunStep. Of any size. What a handler throws while a collective waits is thrown by the next Progress.
 
   /// Every rank's bytes, in rank order, on every rank.
   std::vector<std::vector<std::byte>> AllGather(std::vector<std::byte> mine);
 
   /// Rank 0's bytes on every rank.
   std::vector<std::byte> Broadcast(std::vector<std::byte> fromRankZero);
+
+  /// Makes each number the sum of those of all ranks, which must have as many. Takes no more memory than
+  /// a few pieces.
+  void Sum(std::vector<std::uint64_t>& numbers);
 
   void Barrier();
 
@@ -105,7 +129,17 @@ public:
   /// Runs `step` on this rank, turns whatever it throws (bad_alloc too) into a cause, agrees, and
   /// throws the same Error on every rank when any failed: collectives fail collectively. Its text
   /// is "`what`: Rank 2: cause", without the rank when every rank failed for the same reason.
-  void RunTogether(const std::string& what, const std::function<void()>& step);
+  void RunTogether(std::string_view what, FunctionRef<void()> step);
+
+  /// Runs what the ranks do together, all of it, and returns how it went, the same on every rank. What
+  /// `step` throws ends it for all, on one rank alone, too: those that wait for that rank in another
+  /// collective leave it by a StepAborted, which `step` must let through. Between the collectives of a
+  /// step anything may be thrown, except where the next thing is BeginSession.
+  Status RunStep(FunctionRef<void()> step);
+
+  /// AllGather of what `make` returns; what it throws is treated as by RunTogether.
+  std::vector<std::vector<std::byte>> GatherTogether(
+    std::string_view what, FunctionRef<std::vector<std::byte>()> make);
 
   /// The text for the exception that is being handled; for use in a catch block.
   static std::string DescribeException();
@@ -114,22 +148,50 @@ public:
   template <class T>
   std::vector<T> AllGatherValue(const T& mine)
   {
+    std::vector<std::byte> bytes;
+    this->Insist([&] { bytes = Encode(mine); });
+    return this->DecodeParts<T>(this->AllGather(std::move(bytes)));
+  }
+
+  /// The values that `make` returns, likewise; what it throws is treated as by RunTogether.
+  template <class Make>
+  auto GatherValueTogether(std::string_view what, const Make& make)
+  {
+    return this->DecodeParts<decltype(make())>(
+      this->GatherTogether(what, [&] { return Encode(make()); }));
+  }
+
+private:
+  template <class T>
+  std::vector<T> DecodeParts(const std::vector<std::vector<std::byte>>& parts)
+  {
     std::vector<T> values;
-    for (const auto& bytes : this->AllGather(Encode(mine)))
+    this->Insist([&] { values.resize(parts.size()); });
+    for (std::size_t rank = 0; rank < parts.size(); ++rank)
     {
-      if (bytes.size() != sizeof(T))
+      if (parts[rank].size() != sizeof(T))
       {
-        throw Error("A rank gave " + std::to_string(bytes.size()) + " bytes where " +
+        throw Error("A rank gave " + std::to_string(parts[rank].size()) + " bytes where " +
           std::to_string(sizeof(T)) + " were expected. Do all ranks run the same build?");
       }
-      T value;
-      std::memcpy(&value, bytes.data(), sizeof(T));
-      values.push_back(value);
+      std::memcpy(&values[rank], parts[rank].data(), sizeof(T));
     }
     return values;
   }
 
-private:
+  enum class Faring : std::uint64_t
+  {
+    Well,
+    Failed, ///< so do all in this collective
+    Left    ///< this rank is somewhere else: all end the step
+  };
+  struct Gathered;
+  std::vector<std::byte> ToCause(const FirstFailure& failure);
+  Gathered Exchange(std::vector<std::byte>&& mine, Faring faring);
+  Gathered Gather(std::vector<std::byte>&& mine, Faring faring);
+  std::vector<std::vector<std::byte>> GatherPieces(
+    std::vector<std::byte>&& mine, const std::vector<std::uint64_t>& sizes);
+
   class Internals;
   std::unique_ptr<Internals> Self;
 };

@@ -192,8 +192,8 @@ private:
     }
   }
 
-  /// Memory for a message of `bytes`: when there is none left, the reserve. Empty when that is too
-  /// small, too.
+  /// Memory for a message of `bytes`: when there is none left, the reserve. Empty when the message is
+  /// larger than that. Throws std::bad_alloc when the reserve is in use.
   std::vector<std::byte> TakeBuffer(std::size_t bytes)
   {
     this->FillReserve();
@@ -203,9 +203,13 @@ private:
     }
     catch (const std::bad_alloc&)
     {
-      if (bytes > this->Reserve.capacity())
+      if (bytes > ReserveBytes)
       {
         return {};
+      }
+      if (bytes > this->Reserve.capacity())
+      {
+        throw;
       }
       this->Reserve.resize(bytes);
       return std::exchange(this->Reserve, {});
@@ -264,33 +268,43 @@ private:
       {
         this->Spare.emplace_back();
       }
-      int found = 0;
-      MPI_Message matched = MPI_MESSAGE_NULL;
-      MPI_Status status;
-      this->Check(MPI_Improbe(MPI_ANY_SOURCE, Tag, this->Communicator, &found, &matched, &status),
-        "MPI_Improbe");
-      if (!found)
+      Receiving& receiving = this->Spare.front();
+      if (this->Matched == MPI_MESSAGE_NULL && !this->Match(receiving))
       {
         break;
       }
-      int bytes = 0;
-      this->Check(MPI_Get_count(&status, MPI_BYTE, &bytes), "MPI_Get_count");
-      Receiving& receiving = this->Spare.front();
-      receiving.WireBytes = static_cast<std::size_t>(bytes);
-      receiving.Arrived.Source = status.MPI_SOURCE;
       receiving.Arrived.Payload = this->TakeBuffer(receiving.WireBytes);
       receiving.IsLost = receiving.Arrived.Payload.empty();
       // Taken all the same, cut to nothing: the sender, and what follows, must not wait for it.
-      bytes = receiving.IsLost ? 0 : bytes;
-      this->Check(
-        MPI_Imrecv(receiving.Arrived.Payload.data(), bytes, MPI_BYTE, &matched, &receiving.Request),
+      const int bytes = receiving.IsLost ? 0 : static_cast<int>(receiving.WireBytes);
+      this->Check(MPI_Imrecv(receiving.Arrived.Payload.data(), bytes, MPI_BYTE, &this->Matched,
+                    &receiving.Request),
         "MPI_Imrecv");
-      auto& queue = this->Arriving[static_cast<std::size_t>(status.MPI_SOURCE)];
+      auto& queue = this->Arriving[static_cast<std::size_t>(receiving.Arrived.Source)];
       queue.splice(queue.end(), this->Spare); // no memory is needed any more
       this->ArrivingBytes += static_cast<std::size_t>(bytes);
       any = true;
     }
     return any;
+  }
+
+  /// Finds the next message, if there is one, and what memory it wants.
+  bool Match(Receiving& receiving)
+  {
+    int found = 0;
+    MPI_Message matched = MPI_MESSAGE_NULL;
+    MPI_Status status;
+    this->Check(MPI_Improbe(MPI_ANY_SOURCE, Tag, this->Communicator, &found, &matched, &status),
+      "MPI_Improbe");
+    if (found)
+    {
+      int bytes = 0;
+      this->Check(MPI_Get_count(&status, MPI_BYTE, &bytes), "MPI_Get_count");
+      receiving.WireBytes = static_cast<std::size_t>(bytes);
+      receiving.Arrived.Source = status.MPI_SOURCE;
+      this->Matched = matched;
+    }
+    return found != 0;
   }
 
   /// In the order in which they were matched, which is the order in which they were posted. What
@@ -409,6 +423,7 @@ private:
   std::array<std::size_t, static_cast<std::size_t>(MessageKind::Last) + 1> UnsentMessages{};
   std::vector<std::list<Receiving>> Arriving; ///< per source
   std::list<Receiving> Spare;                 ///< one, made before MPI is asked for a message
+  MPI_Message Matched = MPI_MESSAGE_NULL;     ///< of Spare, as long as there is no memory for it
   std::size_t ArrivingBytes = 0;
   std::deque<Message> ToSelf;
   std::vector<std::byte> Reserve; ///< for receiving when no memory is left; untouched until then

@@ -27,7 +27,8 @@ public:
   virtual void Post(int destination, Message message) = 0;
 
   /// Moves what can be moved without waiting, and hands every message that has arrived to
-  /// `deliver`, which may Post. Returns whether anything was sent or received.
+  /// `deliver`, which may Post; what it does not take, because it throws, comes again. Returns whether
+  /// anything was sent or received.
   virtual bool Progress(const Deliver& deliver) = 0;
 
   /// Bytes posted that the receivers have not begun to take; what flow control watches.

@@ -6,7 +6,6 @@
 #include <cstddef>
 #include <exception>
 #include <mutex>
-#include <system_error>
 #include <thread>
 #include <vector>
 
@@ -45,7 +44,7 @@ void ParallelFor(int threads, std::size_t count, const Function& function)
     {
       helpers.emplace_back(work, thread);
     }
-    catch (const std::system_error&)
+    catch (const std::exception&)
     {
       break; // fewer threads do the same
     }

@@ -147,33 +147,37 @@ private:
 
 TriangleRecordBlocks::~TriangleRecordBlocks() = default;
 
-TriangleRecordBlocks::TriangleRecordBlocks(const std::string& what, const TriangleCells& cells,
+TriangleRecordBlocks::TriangleRecordBlocks(std::string_view what, const TriangleCells& cells,
   const TriangleRecord& layout, dsm::FragmentSource& source, dsm::Messenger& messenger,
-  const std::function<void(double)>& progress)
+  dsm::FunctionRef<void(double)> progress)
   : Rank(messenger.GetRank())
   , Ranks(messenger.GetSize())
 {
   std::vector<std::uint32_t> bytes;
-  bytes.reserve(cells.GetCount());
-  for (std::uint64_t cell = 0; cell < cells.GetCount(); ++cell)
-  {
-    const std::uint64_t needed = RecordOffset + cells.GetTriangleCount(cell) * layout.GetBytes();
-    if (needed > std::numeric_limits<std::uint32_t>::max() - dsm::BlockAlignment)
+  messenger.RunTogether(what,
+    [&]
     {
-      throw dsm::Error(what + ": " + std::to_string(cells.GetTriangleCount(cell)) +
-        " triangles have their centroid in one place. Remove duplicate triangles, or points that "
-        "are far from the others.");
-    }
-    bytes.push_back(static_cast<std::uint32_t>(needed));
-  }
-  dsm::SegmentPublisher::Steps steps;
-  steps.CountBytes = [this](const dsm::BlockDirectory& directory)
+      bytes.reserve(cells.GetCount());
+      for (std::uint64_t cell = 0; cell < cells.GetCount(); ++cell)
+      {
+        const std::uint64_t needed =
+          RecordOffset + cells.GetTriangleCount(cell) * layout.GetBytes();
+        if (needed > std::numeric_limits<std::uint32_t>::max() - dsm::BlockAlignment)
+        {
+          throw dsm::Error(std::to_string(cells.GetTriangleCount(cell)) +
+            " triangles have their centroid in one place. Remove duplicate triangles, or points "
+            "that are far from the others.");
+        }
+        bytes.push_back(static_cast<std::uint32_t>(needed));
+      }
+    });
+  const auto count = [this](const dsm::BlockDirectory& directory)
   { return directory.GetResidentBytes(this->Rank); };
-  steps.Create = [this](std::uint32_t number, dsm::BlockDirectory&& directory)
+  const auto create = [this](std::uint32_t number, dsm::BlockDirectory&& directory)
   { return std::make_shared<Segment>(number, std::move(directory), this->Rank, this->Ranks); };
   Sink sink;
   this->Records =
-    dsm::SegmentPublisher(messenger, what, std::move(steps))
+    dsm::SegmentPublisher(messenger, what, { count, create })
       .Run({ std::move(bytes), dsm::RoundRobinAssigner(this->Ranks) }, source, sink, progress);
 }
 

@@ -3,6 +3,7 @@
 #define rt_TriangleExchange_h
 
 #include "DSMCore/base/Block.h"
+#include "DSMCore/base/FunctionRef.h"
 #include "DSMCore/publish/BlockSegment.h"
 #include "DSMCore/publish/Publication.h"
 #include "DSMCore/transport/Messenger.h"
@@ -11,9 +12,8 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <memory>
-#include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -46,9 +46,9 @@ class TriangleRecordBlocks
 public:
   /// Collective: every rank's source goes to the owners, round robin by cell. Throws dsm::Error on
   /// every rank alike. `progress` may be empty.
-  TriangleRecordBlocks(const std::string& what, const TriangleCells& cells,
+  TriangleRecordBlocks(std::string_view what, const TriangleCells& cells,
     const TriangleRecord& layout, dsm::FragmentSource& source, dsm::Messenger& messenger,
-    const std::function<void(double)>& progress);
+    dsm::FunctionRef<void(double)> progress);
 
   ~TriangleRecordBlocks();
 

@@ -48,13 +48,12 @@ struct Bounds
 
 } // namespace
 
-TriangleMeshBuilder::TriangleMeshBuilder(const std::string& what, const TriangleSource& source,
+TriangleMeshBuilder::TriangleMeshBuilder(std::string_view what, const TriangleSource& source,
   const TriangleMeshSettings& settings, dsm::Messenger& messenger)
   : What(what)
   , Source(source)
   , Settings(settings)
   , Messages(messenger)
-  , Mesh(std::make_shared<TriangleMesh>())
 {
   this->Settings.Threads = std::max(settings.Threads, 1);
   this->AgreeOnPieces();
@@ -78,8 +77,12 @@ TriangleMeshBuilder::TriangleMeshBuilder(const std::string& what, const Triangle
 
 void TriangleMeshBuilder::AgreeOnPieces()
 {
-  const auto pieces = this->Messages.AllGatherValue(
-    PieceSummary{ this->Source.GetTriangleCount(), this->Source.GetAttributes() });
+  const auto pieces = this->Messages.GatherValueTogether(this->What,
+    [&]
+    {
+      this->Mesh = std::make_shared<TriangleMesh>();
+      return PieceSummary{ this->Source.GetTriangleCount(), this->Source.GetAttributes() };
+    });
   int first = -1;
   for (std::size_t rank = 0; rank < pieces.size(); ++rank)
   {
@@ -95,8 +98,8 @@ void TriangleMeshBuilder::AgreeOnPieces()
     }
     if (pieces[rank].Attributes != this->Mesh->Attributes)
     {
-      throw dsm::Error(this->What + ": The pieces of the mesh on ranks " + std::to_string(first) +
-        " and " + std::to_string(rank) +
+      throw dsm::Error(std::string(this->What) + ": The pieces of the mesh on ranks " +
+        std::to_string(first) + " and " + std::to_string(rank) +
         " differ in having normals, values, colours, texture coordinates or edge flags. Give all "
         "pieces the same arrays.");
     }
@@ -201,7 +204,7 @@ void TriangleMeshBuilder::SetOrigin(const glm::dvec3& lower, const glm::dvec3& u
   }
   if (farthest > LargestCoordinate)
   {
-    throw dsm::Error(this->What + ": The mesh has a coordinate of size " +
+    throw dsm::Error(std::string(this->What) + ": The mesh has a coordinate of size " +
       std::to_string(farthest) +
       "; at most 1e18 can be traced. Scale the dataset, or remove the "
       "point.");
@@ -238,7 +241,7 @@ std::unique_ptr<dsm::FragmentSource> TriangleMeshBuilder::CreateRecordSource() c
   return std::make_unique<dsm::ConcurrentFragmentSource>(std::move(sources));
 }
 
-void TriangleMeshBuilder::BuildBricks(const std::function<void(double)>& progress)
+void TriangleMeshBuilder::BuildBricks(dsm::FunctionRef<void(double)> progress)
 {
   BricksOfCells bricks;
   {
@@ -269,10 +272,10 @@ TriangleMeshBuilder::BricksOfCells TriangleMeshBuilder::BuildOwnBricks(
 
 void TriangleMeshBuilder::GatherBricks(BricksOfCells bricksOfCells)
 {
-  std::vector<std::byte> mine;
-  this->Messages.RunTogether(this->What,
+  const auto all = this->Messages.GatherTogether(this->What,
     [&]
     {
+      std::vector<std::byte> mine;
       for (const auto& bricks : bricksOfCells)
       {
         for (std::size_t index = 0; index < bricks.size(); ++index)
@@ -290,8 +293,8 @@ void TriangleMeshBuilder::GatherBricks(BricksOfCells bricksOfCells)
           mine.insert(mine.end(), bytes, bytes + sizeof(summary));
         }
       }
+      return mine;
     });
-  const auto all = this->Messages.AllGather(std::move(mine));
 
   // Cells in order, and of each the bricks in order: the same numbers on every rank.
   this->Messages.RunTogether(this->What,
@@ -300,6 +303,7 @@ void TriangleMeshBuilder::GatherBricks(BricksOfCells bricksOfCells)
       const dsm::RoundRobinAssigner assigner(this->Messages.GetSize());
       std::vector<std::size_t> next(all.size(), 0);
       std::vector<BoundingBox> boxes;
+      std::vector<dsm::Fragment> ownBricks;
       std::size_t own = 0;
       for (std::uint64_t cell = 0; cell < this->Cells->GetCount(); ++cell)
       {
@@ -318,7 +322,7 @@ void TriangleMeshBuilder::GatherBricks(BricksOfCells bricksOfCells)
           next[owner] += sizeof(summary);
           if (isOwn)
           {
-            this->Bricks.push_back(
+            ownBricks.push_back(
               { this->BrickBytes.size(), std::move(bricksOfCells[own][index++].Bytes) });
           }
           const float lower[4] = { summary.Lower[0], summary.Lower[1], summary.Lower[2], 0.0f };
@@ -329,18 +333,14 @@ void TriangleMeshBuilder::GatherBricks(BricksOfCells bricksOfCells)
         own += isOwn ? 1 : 0;
       }
       this->Mesh->Bricks = BrickBvh(boxes);
+      this->Bricks = std::make_unique<BlockSource>(std::move(ownBricks));
     });
 }
 
-dsm::BlockDirectory TriangleMeshBuilder::CreateBrickDirectory() const
+dsm::BlockDirectory TriangleMeshBuilder::TakeBrickDirectory()
 {
-  return { this->BrickBytes, dsm::RoundRobinAssigner(this->Messages.GetSize()),
+  return { std::move(this->BrickBytes), dsm::RoundRobinAssigner(this->Messages.GetSize()),
     this->Mesh->Bricks.GetBytes() };
-}
-
-std::unique_ptr<dsm::FragmentSource> TriangleMeshBuilder::TakeBrickSource()
-{
-  return std::make_unique<BlockSource>(std::move(this->Bricks));
 }
 
 } // namespace rt

@@ -2,6 +2,7 @@
 #ifndef rt_TriangleMeshBuilder_h
 #define rt_TriangleMeshBuilder_h
 
+#include "DSMCore/base/FunctionRef.h"
 #include "DSMCore/publish/BlockDirectory.h"
 #include "DSMCore/publish/Publication.h"
 #include "DSMCore/transport/Messenger.h"
@@ -12,10 +13,9 @@
 #include "DSMRayTracing/layout/TriangleMesh.h"
 
 #include <cstdint>
-#include <functional>
 #include <memory>
 #include <optional>
-#include <string>
+#include <string_view>
 #include <vector>
 
 namespace rt
@@ -38,17 +38,18 @@ struct TriangleMeshSettings
 class TriangleMeshBuilder
 {
 public:
-  /// Finds the mesh's bounds, origin and cells. `source` must live as long as the builder.
-  TriangleMeshBuilder(const std::string& what, const TriangleSource& source,
+  /// Finds the mesh's bounds, origin and cells. `what` and `source` must live as long as the builder.
+  TriangleMeshBuilder(std::string_view what, const TriangleSource& source,
     const TriangleMeshSettings& settings, dsm::Messenger& messenger);
 
   /// Sends every triangle to the owner of its cell, which builds the cell's bricks, and builds the
   /// hierarchy over the bricks of all. `progress` may be empty.
-  void BuildBricks(const std::function<void(double)>& progress);
+  void BuildBricks(dsm::FunctionRef<void(double)> progress);
 
-  dsm::BlockDirectory CreateBrickDirectory() const;
-  /// This rank's bricks; can be taken once.
-  std::unique_ptr<dsm::FragmentSource> TakeBrickSource();
+  /// Of the bricks of all ranks; can be taken once, as can what follows.
+  dsm::BlockDirectory TakeBrickDirectory();
+  /// This rank's bricks.
+  std::unique_ptr<dsm::FragmentSource> TakeBrickSource() { return std::move(this->Bricks); }
 
   /// All but the segment.
   std::shared_ptr<TriangleMesh> TakeMesh() { return std::move(this->Mesh); }
@@ -75,7 +76,7 @@ private:
   BricksOfCells BuildOwnBricks(const TriangleRecordBlocks& records);
   void GatherBricks(BricksOfCells bricksOfCells);
 
-  std::string What;
+  std::string_view What;
   const TriangleSource& Source;
   TriangleMeshSettings Settings;
   dsm::Messenger& Messages;
@@ -85,30 +86,27 @@ private:
   std::optional<TriangleReader> Reader;
   std::optional<TriangleCells> Cells;
   std::vector<std::uint32_t> BrickBytes; ///< of all ranks
-  std::vector<dsm::Fragment> Bricks;     ///< this rank's
+  std::unique_ptr<BlockSource> Bricks;   ///< this rank's
 };
 
 /// Collective, between frames: publishes the mesh in bricks. Every rank gives its own triangles;
 /// nothing is kept of the source. Throws the same dsm::Error on every rank. At its peak a rank holds, beside its piece, 32 bytes for each of its own triangles and
 /// about 85 for each that it will own, of a mesh with normals and a value.
 template <class Store>
-std::shared_ptr<TriangleMesh> PublishMesh(const std::string& what, const TriangleSource& source,
+std::shared_ptr<TriangleMesh> PublishMesh(std::string_view what, const TriangleSource& source,
   const TriangleMeshSettings& settings, Store& store, dsm::Messenger& messenger,
-  const std::function<void(double)>& progress = {})
+  dsm::FunctionRef<void(double)> progress = {})
 {
+  using Progress = dsm::FunctionRef<void(double)>;
   // Where the time goes, about: reading, building, copying.
-  const auto part = [&progress](double first, double last)
-  {
-    return progress ? [&progress, first, last](double done)
-    { progress(first + (last - first) * done); }
-                    : std::function<void(double)>();
-  };
+  const auto ofBuilding = [&](double done) { progress(0.2 + 0.3 * done); };
+  const auto ofCopying = [&](double done) { progress(0.9 + 0.1 * done); };
   TriangleMeshBuilder builder(what, source, settings, messenger);
-  builder.BuildBricks(part(0.2, 0.5));
+  builder.BuildBricks(progress ? Progress(ofBuilding) : Progress());
   const auto brickSource = builder.TakeBrickSource();
   BlockSink sink;
-  const auto segment =
-    store.Publish(what, builder.CreateBrickDirectory(), *brickSource, sink, part(0.9, 1.0));
+  const auto segment = store.Publish(what, builder.TakeBrickDirectory(), *brickSource, sink,
+    progress ? Progress(ofCopying) : Progress());
   std::shared_ptr<TriangleMesh> mesh = builder.TakeMesh();
   mesh->Segment = segment;
   return mesh;

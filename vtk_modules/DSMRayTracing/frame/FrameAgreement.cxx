@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "DSMRayTracing/frame/FrameAgreement.h"
 
-#include <cstddef>
 #include <cstdint>
-#include <vector>
+#include <utility>
 
 namespace rt
 {
@@ -42,7 +41,7 @@ FrameAgreement::FrameAgreement(
   {
     messenger.SetHandler(dsm::MessageKind::FrameDone,
       [this](dsm::Message&& message)
-      { this->Collect(message.Source, ToText(message.Payload, 0)); });
+      { this->Collect(message.Source, std::move(message.Payload)); });
   }
   else
   {
@@ -65,8 +64,8 @@ void FrameAgreement::ReportFailure(const std::string& cause)
 {
   if (!this->Failed)
   {
-    this->Failed = true;
     this->Tell(cause);
+    this->Failed = true;
   }
 }
 
@@ -74,43 +73,50 @@ void FrameAgreement::Abort()
 {
   for (int rank = 1; !this->Aborted && rank < this->Messenger.GetSize(); ++rank)
   {
-    this->Messenger.Post(rank, dsm::MessageKind::FrameAbort, {});
+    this->Post(rank, dsm::MessageKind::FrameAbort, {});
   }
   this->Cease();
 }
 
 void FrameAgreement::ReportDone()
 {
-  this->Done = true;
   this->Tell({});
+  this->Done = true;
+}
+
+void FrameAgreement::Post(int rank, dsm::MessageKind kind, const std::vector<std::byte>& payload)
+{
+  this->Messenger.Insist([&] { this->Messenger.Post(rank, kind, payload); });
 }
 
 /// An empty cause says that this rank is done.
 void FrameAgreement::Tell(const std::string& cause)
 {
+  std::vector<std::byte> bytes;
+  this->Messenger.Insist([&] { bytes = ToBytes(cause); });
   if (this->Messenger.GetRank() == 0)
   {
-    this->Collect(0, cause);
+    this->Collect(0, std::move(bytes));
   }
   else
   {
-    this->Messenger.Post(0, dsm::MessageKind::FrameDone, ToBytes(cause));
+    this->Post(0, dsm::MessageKind::FrameDone, bytes);
   }
 }
 
-void FrameAgreement::Collect(int source, const std::string& cause)
+void FrameAgreement::Collect(int source, std::vector<std::byte>&& cause)
 {
   if (!cause.empty())
   {
     // The lowest failing rank speaks for all, whichever was heard first.
-    if (this->Outcome.IsOk() || source < this->Outcome.FailedRank)
+    if (this->Missing > 0 && (this->Cause.empty() || source < this->Outcome.FailedRank))
     {
       this->Outcome.FailedRank = source;
-      this->Outcome.Cause = cause;
+      this->Cause = std::move(cause);
     }
     for (int rank = 1; !this->Stopped && rank < this->Messenger.GetSize(); ++rank)
     {
-      this->Messenger.Post(rank, dsm::MessageKind::FrameStop, {});
+      this->Post(rank, dsm::MessageKind::FrameStop, {});
     }
     this->Stop();
     return;
@@ -119,12 +125,17 @@ void FrameAgreement::Collect(int source, const std::string& cause)
   {
     return;
   }
-  auto payload = dsm::Encode(Ending{ this->Outcome.FailedRank, this->Aborted ? 1 : 0 });
-  const auto text = ToBytes(this->Outcome.Cause);
-  payload.insert(payload.end(), text.begin(), text.end());
+  std::vector<std::byte> payload;
+  this->Messenger.Insist(
+    [&]
+    {
+      this->Outcome.Cause = ToText(this->Cause, 0);
+      payload = dsm::Encode(Ending{ this->Outcome.FailedRank, this->Aborted ? 1 : 0 });
+      payload.insert(payload.end(), this->Cause.begin(), this->Cause.end());
+    });
   for (int rank = 1; rank < this->Messenger.GetSize(); ++rank)
   {
-    this->Messenger.Post(rank, dsm::MessageKind::FrameEnd, payload);
+    this->Post(rank, dsm::MessageKind::FrameEnd, payload);
   }
   this->Over = true;
 }
@@ -154,7 +165,7 @@ void FrameAgreement::End(dsm::Message&& message)
 {
   const auto ending = dsm::Decode<Ending>(message, dsm::MessageKind::FrameEnd, /*exact=*/false);
   this->Outcome.FailedRank = ending.FailedRank;
-  this->Outcome.Cause = ToText(message.Payload, sizeof(Ending));
+  this->Messenger.Insist([&] { this->Outcome.Cause = ToText(message.Payload, sizeof(Ending)); });
   this->Aborted = ending.IsAborted != 0;
   this->Over = true;
 }

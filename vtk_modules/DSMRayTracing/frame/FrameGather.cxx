@@ -113,6 +113,19 @@ std::size_t Unpack(const std::vector<std::byte>& bytes, Picture& picture)
   return pixels;
 }
 
+/// Whether any of a rank's packed tiles has several layers.
+bool HasLayers(const std::vector<std::byte>& bytes)
+{
+  std::size_t at = 0;
+  TileHeader header{};
+  while (at < bytes.size() && header.Layers <= 1)
+  {
+    std::memcpy(&header, bytes.data() + at, sizeof(header));
+    at += sizeof(header) + header.Layers * header.GetPixels() * (4 + sizeof(float));
+  }
+  return header.Layers > 1;
+}
+
 Picture CreatePicture(const Frame& frame)
 {
   Picture picture;
@@ -140,17 +153,27 @@ Picture GatherFrame(dsm::Messenger& messenger, const Frame& frame)
 {
   const char* const what = "Gathering the frame";
   Picture picture;
-  std::vector<std::byte> mine;
-  messenger.RunTogether(what,
+  const auto parts = messenger.GatherTogether(what,
     [&]
     {
       picture = CreatePicture(frame);
-      mine = Pack(frame);
+      return Pack(frame);
     });
   std::size_t filled = 0;
-  for (const auto& bytes : messenger.AllGather(std::move(mine)))
+  const auto unpack = [&]
   {
-    filled += Unpack(bytes, picture);
+    for (const auto& bytes : parts)
+    {
+      filled += Unpack(bytes, picture);
+    }
+  };
+  if (std::any_of(parts.begin(), parts.end(), [](const auto& part) { return HasLayers(part); }))
+  {
+    messenger.RunTogether(what, unpack); // takes memory
+  }
+  else
+  {
+    unpack();
   }
   const std::size_t pixels = static_cast<std::size_t>(frame.Width) * frame.Height;
   if (filled != pixels)

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "DSMRayTracing/frame/FrameRenderer.h"
 
+#include "DSMCore/base/FirstFailure.h"
 #include "DSMRayTracing/frame/BeamHistory.h"
 #include "DSMRayTracing/frame/FrameAgreement.h"
 #include "DSMRayTracing/frame/PixelRays.h"
@@ -15,9 +16,11 @@
 #include <atomic>
 #include <chrono>
 #include <cstring>
+#include <exception>
 #include <iterator>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -61,26 +64,36 @@ glm::vec3 GetTint(DebugView view, int rank, const Tile& tile)
 }
 
 /// The first failure among a rank's workers and its communication thread.
-class FirstFailure
+class SharedFailure
 {
 public:
-  void Set(const std::string& cause)
+  void Keep(std::exception_ptr failure)
   {
     const std::lock_guard<std::mutex> lock(this->Mutex);
-    if (this->Cause.empty())
-    {
-      this->Cause = cause.empty() ? "unknown failure" : cause;
-    }
+    this->First.Keep(failure);
   }
-  std::string Get() const
+  bool IsEmpty() const
   {
     const std::lock_guard<std::mutex> lock(this->Mutex);
-    return this->Cause;
+    return this->First.IsEmpty();
+  }
+  std::string GetText() const
+  {
+    try
+    {
+      const std::lock_guard<std::mutex> lock(this->Mutex);
+      this->First.Throw();
+      return {};
+    }
+    catch (...)
+    {
+      return dsm::Messenger::DescribeException();
+    }
   }
 
 private:
   mutable std::mutex Mutex;
-  std::string Cause;
+  dsm::FirstFailure First;
 };
 
 /// Everything that must be equal on all ranks for a frame to make sense.
@@ -216,14 +229,14 @@ void FrameRenderer::Refine(
   frame.Tiles.clear();
   frame.Number = 0; // as long as it has no tiles
   this->RenderTiles(store, scene, request, nullptr, tiles, frame);
-  tiles.TakeRest(frame.Tiles);
 }
 
 void FrameRenderer::RenderTiles(dsm::BlockStore& store, const Scene& scene,
   const FrameRequest& request, const Frame* last, TileSource& tiles, Frame& frame)
 {
   const auto start = Clock::now();
-  const auto entries = this->Messenger.AllGatherValue(CreateEntry(request, scene, last, store));
+  const auto entries = this->Messenger.GatherValueTogether(
+    "The frame cannot begin", [&] { return CreateEntry(request, scene, last, store); });
   CheckRequest(entries, request);
   const bool settled =
     std::all_of(entries.begin(), entries.end(), [](const Entry& each) { return each.Settled; });
@@ -233,46 +246,45 @@ void FrameRenderer::RenderTiles(dsm::BlockStore& store, const Scene& scene,
   }
   const bool agreed = settled &&
     std::all_of(entries.begin(), entries.end(), [](const Entry& each) { return each.MayBegin; });
-  const TilePlan plan = CreatePlan(entries, request, last);
+  const auto makePlan = [&] { return CreatePlan(entries, request, last); };
   const std::shared_ptr<const BeamHistory> history = last ? last->Beams : frame.Beams;
   dsm::WorkerSlots& slots = store.GetSlots();
   slots.BeginFrame(store.GetSettings().Workers);
   store.Visit(
-    [&](auto& blocks) {
-      this->TraceTiles(blocks, agreed, slots, scene, request, plan, history.get(), tiles, frame);
+    [&](auto& blocks)
+    {
+      this->TraceTiles(
+        blocks, agreed, slots, scene, request, makePlan, history.get(), tiles, frame);
     });
   frame.Width = request.Width;
   frame.Height = request.Height;
   frame.TileSize = request.TileSize;
-  frame.Counters = store.GetCounters();
+  this->Messenger.Insist(
+    [&]
+    {
+      frame.Counters = store.GetCounters();
+      frame.WorkerCounters = store.GetWorkerCounters();
+      frame.Explanation = store.GetExplanation();
+    });
   frame.IdleNanoseconds = slots.GetIdleNanoseconds();
-  frame.WorkerCounters = store.GetWorkerCounters();
   frame.Organization = store.GetOrganization();
-  frame.Explanation = store.GetExplanation();
   frame.Seconds = SecondsSince(start);
 }
 
 template <class Store>
 void FrameRenderer::TraceTiles(Store& store, bool agreed, dsm::WorkerSlots& slots,
-  const Scene& scene, const FrameRequest& request, const TilePlan& plan, const BeamHistory* last,
-  TileSource& tiles, Frame& frame)
+  const Scene& scene, const FrameRequest& request, dsm::FunctionRef<TilePlan()> makePlan,
+  const BeamHistory* last, TileSource& tiles, Frame& frame)
 {
-  const PixelRays rays(request);
-  const auto beams = store.MayPrefetch()
-    ? std::make_shared<BeamHistory>(request.Width, request.Height, scene.Isosurfaces.size(), last)
-    : nullptr;
-  const int workers = store.GetSettings().Workers;
-  std::vector<std::vector<Tile>> tilesOfWorker(workers);
-  FirstFailure failure;
-  std::vector<int> mine = plan.Mine;
-  std::sort(mine.begin(), mine.end());
-
   store.BeginFrame(agreed);
-  tiles.Begin(plan, workers);
+  // From here to the agreement's end a rank leaves the frame with all others only: whatever fails is
+  // kept, and reported.
+  const int workers = store.GetSettings().Workers;
+  SharedFailure failure;
   std::atomic<bool> stopped{ false }; // by another rank's failure, which that rank reports
   FrameAgreement agreement(
     this->Messenger,
-    [&]
+    [&] // no more than fits in a std::function without memory
     {
       stopped = true;
       tiles.Cancel();
@@ -281,13 +293,33 @@ void FrameRenderer::TraceTiles(Store& store, bool agreed, dsm::WorkerSlots& slot
   const std::uint32_t number = this->Messenger.BeginSession();
   const auto start = Clock::now();
 
-  const auto fail = [&](const std::string& cause)
+  const auto fail = [&](std::exception_ptr cause)
   {
     if (!stopped)
     {
-      failure.Set(cause);
+      failure.Keep(cause);
     }
     tiles.Cancel();
+  };
+
+  std::optional<PixelRays> rays;
+  std::shared_ptr<BeamHistory> beams;
+  TilePlan plan;
+  std::vector<int> mine;
+  std::vector<std::vector<Tile>> tilesOfWorker;
+  const auto prepare = [&]
+  {
+    rays.emplace(request);
+    if (store.MayPrefetch())
+    {
+      beams = std::make_shared<BeamHistory>(
+        request.Width, request.Height, scene.Isosurfaces.size(), last);
+    }
+    plan = makePlan();
+    mine = plan.Mine;
+    std::sort(mine.begin(), mine.end());
+    tilesOfWorker.resize(static_cast<std::size_t>(workers));
+    tiles.Begin(plan, workers);
   };
   const auto work = [&](int index)
   {
@@ -297,7 +329,7 @@ void FrameRenderer::TraceTiles(Store& store, bool agreed, dsm::WorkerSlots& slot
     {
       std::uint64_t misses = 0; // of the tiles before
       bool looksAhead = true;   // as long as bricks are absent
-      const TileTracer<Store> tracer(store, worker, scene, rays, request, beams.get());
+      const TileTracer<Store> tracer(store, worker, scene, *rays, request, beams.get());
       while (std::optional<Tile> tile = tiles.Pop(slots))
       {
         const double tileStart = GetThreadSeconds();
@@ -323,12 +355,28 @@ void FrameRenderer::TraceTiles(Store& store, bool agreed, dsm::WorkerSlots& slot
     catch (...)
     {
       store.Leave(worker);
-      fail(dsm::Messenger::DescribeException());
+      fail(std::current_exception());
     }
   };
 
   std::atomic<double> busySeconds{ 0.0 };
   bool cancelled = false;
+  std::vector<Tile> traced;
+  const auto collect = [&]
+  {
+    std::size_t count = tiles.CountRest();
+    for (const auto& some : tilesOfWorker)
+    {
+      count += some.size();
+    }
+    traced.reserve(count);
+    for (auto& some : tilesOfWorker)
+    {
+      std::move(some.begin(), some.end(), std::back_inserter(traced));
+      some.clear();
+    }
+    tiles.TakeRest(traced);
+  };
   const auto service = [&]
   {
     bool didSomething = false;
@@ -344,29 +392,43 @@ void FrameRenderer::TraceTiles(Store& store, bool agreed, dsm::WorkerSlots& slot
     }
     catch (...)
     {
-      fail(dsm::Messenger::DescribeException());
+      fail(std::current_exception());
     }
     const bool idle = this->Pool.GetRunning() == 0; // asked first: a worker fails before it stops
-    const std::string cause = failure.Get();
-    if ((stopped || !cause.empty()) && !cancelled)
+    if ((stopped || !failure.IsEmpty()) && !cancelled)
     {
+      this->Messenger.Insist(
+        [&] { store.Cancel(failure.IsEmpty() ? "another rank has failed" : failure.GetText()); });
       cancelled = true;
-      store.Cancel(cause.empty() ? "another rank has failed" : cause);
     }
-    if (!cause.empty())
+    const bool isThrough = !agreement.IsDone() && idle && store.Drain();
+    if (isThrough)
     {
+      try
+      {
+        collect();
+      }
+      catch (...)
+      {
+        fail(std::current_exception());
+      }
+    }
+    if (!failure.IsEmpty() && !agreement.HasFailed())
+    {
+      std::string cause;
+      this->Messenger.Insist([&] { cause = failure.GetText(); });
       agreement.ReportFailure(cause);
     }
-    if (!agreement.IsDone() && idle && store.Drain())
+    if (isThrough)
     {
       agreement.ReportDone();
-      didSomething = true;
     }
-    return didSomething;
+    return didSomething || isThrough;
   };
 
   try
   {
+    prepare();
     this->Pool.Start(workers, work,
       [&]
       {
@@ -376,14 +438,14 @@ void FrameRenderer::TraceTiles(Store& store, bool agreed, dsm::WorkerSlots& slot
   }
   catch (...)
   {
-    fail(dsm::Messenger::DescribeException());
+    fail(std::current_exception());
   }
   this->Messenger.ServeUntil([&] { return agreement.IsOver(); }, service, fail);
   this->Pool.Wait();
   tiles.End();
   store.EndFrame();
   // What was posted last must leave before the application goes about something else.
-  this->Messenger.ProgressUntil([this] { return this->Messenger.GetUnsentBytes() == 0; });
+  this->Messenger.Flush();
 
   const dsm::Status& outcome = agreement.GetOutcome();
   if (!outcome.IsOk() || agreement.IsAborted())
@@ -396,10 +458,7 @@ void FrameRenderer::TraceTiles(Store& store, bool agreed, dsm::WorkerSlots& slot
     throw dsm::Error("The frame could not be traced. Rank " + std::to_string(outcome.FailedRank) +
       ": " + outcome.Cause);
   }
-  for (auto& some : tilesOfWorker)
-  {
-    std::move(some.begin(), some.end(), std::back_inserter(frame.Tiles));
-  }
+  frame.Tiles = std::move(traced);
   frame.IsAborted = agreement.IsAborted();
   frame.Number = number;
   frame.Beams = beams;

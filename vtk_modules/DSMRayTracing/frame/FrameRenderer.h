@@ -2,6 +2,7 @@
 #ifndef rt_FrameRenderer_h
 #define rt_FrameRenderer_h
 
+#include "DSMCore/base/FunctionRef.h"
 #include "DSMCore/store/BlockStore.h"
 #include "DSMCore/transport/Messenger.h"
 #include "DSMRayTracing/frame/Frame.h"
@@ -58,8 +59,8 @@ private:
   /// `agreed`: see the stores' BeginFrame.
   template <class Store>
   void TraceTiles(Store& store, bool agreed, dsm::WorkerSlots& slots, const Scene& scene,
-    const FrameRequest& request, const TilePlan& plan, const BeamHistory* last, TileSource& tiles,
-    Frame& frame);
+    const FrameRequest& request, dsm::FunctionRef<TilePlan()> makePlan, const BeamHistory* last,
+    TileSource& tiles, Frame& frame);
 
   dsm::Messenger& Messenger;
   CentralQueueScheduler Queue;

@@ -6,7 +6,10 @@
 #include "DSMRayTracing/frame/TileGrid.h"
 #include "DSMRayTracing/schedule/TileScheduler.h"
 
+#include <algorithm>
 #include <atomic>
+#include <cstddef>
+#include <iterator>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -27,6 +30,10 @@ public:
   virtual std::optional<Tile> Pop(dsm::WorkerSlots& slots) = 0;
   /// As TileScheduler; without pixels.
   virtual std::optional<Tile> Peek(int ahead) = 0;
+  /// After the workers have stopped: how many tiles with pixels were not given out; adds them to `tiles`,
+  /// which has room for them.
+  virtual std::size_t CountRest() const { return 0; }
+  virtual void TakeRest(std::vector<Tile>&) {}
 };
 
 /// New tiles, dealt out between the ranks.
@@ -102,21 +109,21 @@ public:
   /// Nothing: the bricks of a still picture are where they were.
   std::optional<Tile> Peek(int) override { return std::nullopt; }
 
-  /// After the workers have stopped: adds those that were not given out to `tiles`.
-  void TakeRest(std::vector<Tile>& tiles)
+  std::size_t CountRest() const override
   {
-    for (Tile& tile : this->Tiles)
-    {
-      if (tile.Index != Given)
-      {
-        tiles.push_back(std::move(tile));
-      }
-    }
+    return static_cast<std::size_t>(
+      std::count_if(this->Tiles.begin(), this->Tiles.end(), &KeptTiles::IsLeft));
+  }
+  void TakeRest(std::vector<Tile>& tiles) override
+  {
+    std::copy_if(std::make_move_iterator(this->Tiles.begin()),
+      std::make_move_iterator(this->Tiles.end()), std::back_inserter(tiles), &KeptTiles::IsLeft);
     this->Tiles.clear();
   }
 
 private:
   static constexpr int Given = -1;
+  static bool IsLeft(const Tile& tile) { return tile.Index != Given; }
 
   std::vector<Tile> Tiles;
   int Samples;

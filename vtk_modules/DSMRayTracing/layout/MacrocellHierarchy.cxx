@@ -91,9 +91,7 @@ MacrocellHierarchy::MacrocellHierarchy(
   const BrickLattice& lattice, const dsm::BlockSegment& segment, dsm::Messenger& messenger)
 {
   const char* const what = "Building the macrocells";
-  std::vector<std::byte> mine;
-  messenger.RunTogether(what, [&] { mine = PackOwnRanges(segment); });
-  const auto all = messenger.AllGather(std::move(mine));
+  const auto all = messenger.GatherTogether(what, [&] { return PackOwnRanges(segment); });
   messenger.RunTogether(
     what, [&] { *this = MacrocellHierarchy(lattice, Unpack(all, segment.GetDirectory())); });
 }

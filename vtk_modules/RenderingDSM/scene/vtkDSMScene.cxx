@@ -257,8 +257,9 @@ void vtkDSMScene::Trace()
   }
   self.Tracing = true;
   self.Prop->UseBoundsOn();
-  self.Members.Find(self.Renderer);
-  if (self.Members.GetShown().empty())
+  dsm::FirstFailure found;
+  found.Try([&] { self.Members.Find(self.Renderer); });
+  if (found.IsEmpty() && self.Members.GetShown().empty())
   {
     self.Clear();
     self.Tracing = false;
@@ -269,13 +270,14 @@ void vtkDSMScene::Trace()
   try
   {
     self.FindGroup(this->GetController());
-    self.Update();
-    self.Draw();
-    self.Group->TellOrganization();
+    failure = self.MakeFrame(found);
   }
   catch (const std::exception& error)
   {
     failure = error.what();
+  }
+  if (!failure.empty())
+  {
     self.Clear();
   }
   for (const auto& member : self.Members.GetShown())

@@ -95,6 +95,26 @@ void vtkDSMScene::Internals::FindGroup(vtkMultiProcessController* controller)
   this->Group->Join(this);
 }
 
+/// Collective: what fails on one rank, wherever, is everybody's failure, and the next frame begins
+/// anew.
+std::string vtkDSMScene::Internals::MakeFrame(const dsm::FirstFailure& earlier)
+{
+  const dsm::Status outcome = this->Group->GetMessenger().RunStep(
+    [&]
+    {
+      earlier.Throw();
+      this->Update();
+      this->Draw();
+      this->Group->TellOrganization();
+    });
+  if (outcome.IsOk() || outcome.IsEverywhere)
+  {
+    return outcome.Cause;
+  }
+  this->GiveUpBlocks(); // what the ranks have of them may differ now
+  return "Rank " + std::to_string(outcome.FailedRank) + ": " + outcome.Cause;
+}
+
 void vtkDSMScene::Internals::Update()
 {
   dsm::Messenger& messenger = this->Group->GetMessenger();
@@ -195,13 +215,8 @@ void vtkDSMScene::Internals::Draw()
   }
   std::optional<rt::Picture> whole =
     this->Delivery.Gather(messenger, this->Accumulation.GetFrame());
-  messenger.RunTogether("Showing the frame",
-    [&]
-    {
-      this->DrawPicture(
-        whole ? std::move(*whole) : rt::AssembleTiles(this->Accumulation.GetFrame()), request,
-        projection, scene.View, reduction == 1);
-    });
+  this->DrawPicture(whole ? std::move(*whole) : rt::AssembleTiles(this->Accumulation.GetFrame()),
+    request, projection, scene.View, reduction == 1);
 }
 
 void vtkDSMScene::Internals::DrawPicture(rt::Picture picture, const rt::FrameRequest& request,

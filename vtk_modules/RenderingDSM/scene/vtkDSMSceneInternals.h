@@ -2,6 +2,7 @@
 #ifndef vtkDSMSceneInternals_h
 #define vtkDSMSceneInternals_h
 
+#include "DSMCore/base/FirstFailure.h"
 #include "vtkDSMFrameAccumulation.h"
 #include "vtkDSMFrameDelivery.h"
 #include "vtkDSMFrameProp.h"
@@ -21,7 +22,7 @@
 #include <string>
 
 /// What a scene is made of. What takes part in a frame is collective: on every rank, in this order,
-/// Members.Find, FindGroup, Update and Draw.
+/// Members.Find, FindGroup and MakeFrame.
 class vtkDSMScene::Internals : public vtkDSMRankGroup::Publisher
 {
 public:
@@ -30,12 +31,11 @@ public:
   std::uint64_t GetOldestHidden() const override;
   void GiveUpOldestHidden() override;
 
-  /// The ranks that trace together; joins them. Throws dsm::Error, as all that follows, on all ranks.
+  /// The ranks that trace together; joins them. Throws dsm::Error on all ranks.
   void FindGroup(vtkMultiProcessController* controller);
-  /// Takes in data that changed.
-  void Update();
-  /// Traces the frame, and gives it to the prop.
-  void Draw();
+  /// Takes in data that changed, traces the frame, and gives it to the prop; or does nothing, because of
+  /// what has failed earlier. Returns why there is no frame, the same on every rank, if there is none.
+  std::string MakeFrame(const dsm::FirstFailure& earlier);
   /// Nothing is shown.
   void Clear();
 
@@ -57,6 +57,8 @@ public:
   vtkDSMMemorySettings Settings; ///< that the objects ask for
 
 private:
+  void Update();
+  void Draw();
   void AgreeOnView(rt::Scene& scene, rt::FrameRequest& request) const;
   void KeepProp(const rt::Scene& scene);
   bool IsInteractive() const;

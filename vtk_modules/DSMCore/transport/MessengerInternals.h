@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef dsm_MessengerInternals_h
+#define dsm_MessengerInternals_h
+
+#include "DSMCore/transport/BackOff.h"
+#include "DSMCore/transport/Messenger.h"
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <exception>
+#include <list>
+#include <memory>
+#include <vector>
+
+namespace dsm
+{
+
+/// What came and is not dealt with yet, and whom it goes to. Messages lie in lists, so that none needs
+/// memory, and none can be lost for the lack of it, once it is here.
+class Messenger::Internals
+{
+public:
+  Internals(std::unique_ptr<Transport> transport, std::size_t pieceBytes);
+
+  static std::size_t IndexOf(MessageKind kind);
+
+  void Post(int destination, MessageKind kind, std::vector<std::byte> payload);
+  bool Progress();
+  void ProgressUntil(FunctionRef<bool()> done, FunctionRef<bool()> work);
+  void Insist(FunctionRef<void()> step);
+
+  // -- For collectives --
+
+  /// Begins a session, runs `exchange` in it, and leaves when the own messages have left too.
+  void RunCollective(FunctionRef<void()> exchange);
+  /// ProgressUntil that throws only what `work` throws: what handlers throw waits for Progress, and
+  /// what does not get through for the lack of memory is tried again.
+  void Await(FunctionRef<bool()> done, FunctionRef<bool()> work = {});
+  /// Posts a copy.
+  void PostCopy(int destination, const std::byte* bytes, std::size_t count);
+  /// Rank 0's bytes to all, along a binomial tree.
+  void SpreadFromRankZero(std::vector<std::byte>& bytes);
+  /// Whether there is room for one more piece on its way out.
+  bool MaySend() const;
+
+  std::unique_ptr<Transport> Carrier;
+  std::array<Handler, static_cast<std::size_t>(MessageKind::Last) + 1> Handlers;
+  std::size_t PieceBytes;
+  std::uint32_t Session = 0;
+  std::list<Message> Received; ///< of the collective under way
+  bool Changed = false;        ///< whether a message in the inbox may have become due
+  std::vector<int> Hosts;      ///< empty: not compared yet
+  BackOff Idle;
+
+private:
+  bool Move();
+  bool Dispatch();
+  bool Treat(std::list<Message>& message);
+  void Keep(std::exception_ptr failure);
+
+  std::list<Message> Inbox;
+  bool Dispatching = false;
+  bool Deferring = false;
+  std::exception_ptr Deferred;
+  std::unique_ptr<std::byte[]> Reserve; ///< untouched
+};
+
+} // namespace dsm
+
+#endif
