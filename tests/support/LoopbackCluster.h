@@ -7,12 +7,21 @@
 
 #include <exception>
 #include <functional>
+#include <memory>
 #include <thread>
+#include <utility>
 #include <vector>
 
-/// Runs `program` on `ranks` ranks, each a thread of this process with a messenger of its own, and
-/// rethrows what the lowest failing rank threw.
-inline void RunOnCluster(int ranks, const std::function<void(dsm::Messenger&)>& program)
+inline std::unique_ptr<dsm::Messenger> CreateMessenger(std::unique_ptr<dsm::Transport> transport)
+{
+  return std::make_unique<dsm::Messenger>(std::move(transport));
+}
+
+/// Runs `program` on `ranks` ranks, each a thread of this process with a messenger of its own, which
+/// `create` makes, and rethrows what the lowest failing rank threw.
+template <class Create = decltype(&CreateMessenger)>
+void RunOnCluster(int ranks, const std::function<void(dsm::Messenger&)>& program,
+  const Create& create = &CreateMessenger)
 {
   auto transports = dsm::LoopbackTransport::CreateGroup(ranks);
   std::vector<std::exception_ptr> failures(ranks);
@@ -24,8 +33,8 @@ inline void RunOnCluster(int ranks, const std::function<void(dsm::Messenger&)>& 
       {
         try
         {
-          dsm::Messenger messenger(std::move(transports[rank]));
-          program(messenger);
+          const auto messenger = create(std::move(transports[rank]));
+          program(*messenger);
         }
         catch (...)
         {

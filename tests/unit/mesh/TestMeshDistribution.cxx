@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "TestMesh.h"
+#include "tests/support/LimitedCluster.h"
 
 #include <gtest/gtest.h>
 
@@ -21,6 +22,8 @@ struct Setting
   int Threads = 1;
   bool OneRankHasAll = false;
   std::size_t Cache = CacheBytes;
+  /// Of collectives; messages cannot carry much more.
+  std::size_t PieceBytes = dsm::Messenger::DefaultPieceBytes;
 };
 
 /// Everything that a ray can see of a published mesh.
@@ -37,7 +40,7 @@ Outcome Publish(const Mesh& mesh, const Setting& setting)
   Outcome outcome;
   std::mutex guard;
   const std::vector<rt::Ray> rays = CreateRays(400, 31);
-  RunOnCluster(setting.Ranks,
+  RunOnLimitedCluster(setting.Ranks, setting.PieceBytes,
     [&](dsm::Messenger& messenger)
     {
       const auto rank = static_cast<std::uint64_t>(messenger.GetRank());
@@ -119,6 +122,20 @@ Mesh CreateRichMesh()
 }
 
 } // namespace
+
+/// Histograms and boxes of bricks are more than a message carries, for a mesh that is large enough.
+TEST(MeshDistribution, SameBitsWhenMessagesCarryLittle)
+{
+  const Mesh mesh = CreateRichMesh();
+  const Outcome expected = Publish(mesh, {});
+  for (const int ranks : { 1, 2, 3, 4 })
+  {
+    Setting setting;
+    setting.Ranks = ranks;
+    setting.PieceBytes = 256;
+    ExpectSame(expected, Publish(mesh, setting), std::to_string(ranks) + " ranks");
+  }
+}
 
 TEST(MeshDistribution, SameBitsForAnyRanksOrderAndThreads)
 {

@@ -3,6 +3,7 @@
 #include "DSMCore/transport/LoopbackTransport.h"
 #include "DSMRayTracing/layout/MacrocellHierarchy.h"
 #include "DSMRayTracing/layout/VoxelBrickHeader.h"
+#include "tests/support/LimitedCluster.h"
 
 #include <gtest/gtest.h>
 
@@ -140,6 +141,30 @@ TEST(TestMacrocellHierarchy, EveryRankGathersAllRanges)
         ASSERT_EQ(finest[id].Last, CreateRange(id).Last);
       }
     }
+  }
+}
+
+/// 8 bytes a brick are more than a message carries, for a lattice that is large enough.
+TEST(TestMacrocellHierarchy, GathersMoreThanAMessageCarries)
+{
+  const rt::BrickLattice lattice = CreateLattice();
+  constexpr std::size_t pieceBytes = 200;
+  ASSERT_GT(sizeof(rt::ValueRange) * lattice.GetBrickCount(), 4 * pieceBytes);
+  for (const int ranks : { 1, 2, 3, 4 })
+  {
+    RunOnLimitedCluster(ranks, pieceBytes,
+      [&](dsm::Messenger& messenger)
+      {
+        const rt::MacrocellHierarchy hierarchy(
+          lattice, HeaderSegment(lattice, messenger.GetRank(), ranks), messenger);
+        const auto& finest = hierarchy.GetLevels().front().Ranges;
+        ASSERT_EQ(finest.size(), lattice.GetBrickCount());
+        for (dsm::BlockId id = 0; id < finest.size(); ++id)
+        {
+          ASSERT_EQ(finest[id].First, CreateRange(id).First);
+          ASSERT_EQ(finest[id].Last, CreateRange(id).Last);
+        }
+      });
   }
 }
 

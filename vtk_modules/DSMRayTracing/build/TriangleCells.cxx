@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cstring>
 #include <functional>
 
 namespace rt
@@ -13,6 +12,8 @@ namespace rt
 
 namespace
 {
+
+constexpr const char* What = "Sorting a mesh";
 
 /// Behind all codes.
 constexpr std::uint64_t NoCode = ~std::uint64_t(0);
@@ -23,39 +24,15 @@ constexpr std::size_t ChunkSize = std::size_t(1) << 16;
 constexpr int FirstBits = 12;
 constexpr int FurtherBits = 6;
 
-/// The sum over the ranks, number by number.
-std::vector<std::uint64_t> Sum(const std::vector<std::uint64_t>& mine, dsm::Messenger& messenger)
-{
-  std::vector<std::byte> bytes(mine.size() * sizeof(std::uint64_t));
-  if (!mine.empty())
-  {
-    std::memcpy(bytes.data(), mine.data(), bytes.size());
-  }
-  const auto all = messenger.AllGather(std::move(bytes));
-  std::vector<std::uint64_t> sum(mine.size(), 0);
-  for (const auto& part : all)
-  {
-    if (part.size() != mine.size() * sizeof(std::uint64_t))
-    {
-      throw dsm::Error(
-        "The ranks count different cells of a mesh. Do all ranks run the same build?");
-    }
-    for (std::size_t index = 0; index < sum.size(); ++index)
-    {
-      std::uint64_t count;
-      std::memcpy(&count, part.data() + index * sizeof(count), sizeof(count));
-      sum[index] += count;
-    }
-  }
-  return sum;
-}
+/// Cells that are divided at a time; bounds what counting their parts takes.
+constexpr std::size_t MostCells = std::size_t(1) << 14;
 
 } // namespace
 
 TriangleCells::TriangleCells(const TriangleReader& reader, std::uint64_t triangles,
   const MortonCode& order, std::uint64_t largestCount, int threads, dsm::Messenger& messenger)
 {
-  messenger.RunTogether("Sorting a mesh",
+  messenger.RunTogether(What,
     [&]
     {
       this->ReadKeys(reader, triangles, order, threads);
@@ -149,65 +126,77 @@ std::vector<std::uint64_t> TriangleCells::Divide(const Cell& cell, int bits) con
 
 void TriangleCells::FindCells(std::uint64_t largestCount, dsm::Messenger& messenger)
 {
-  const std::uint64_t total = Sum({ this->Keys.size() }, messenger).front();
+  // Of one generation, all have as many bits.
   std::vector<Cell> open;
+  std::vector<Cell> next;
+  std::vector<std::uint64_t> counts;
+  std::vector<std::vector<std::uint64_t>> bounds;
   const auto add = [&](const Cell& cell)
   {
     if (cell.Count > largestCount && cell.Bits < MortonCode::Bits)
     {
-      open.push_back(cell);
+      next.push_back(cell);
     }
     else if (cell.Count > 0)
     {
       this->Cells.push_back(cell);
     }
   };
-  add({ 0, 0, 0, this->Keys.size(), total });
-  for (int step = FirstBits; !open.empty(); step = FurtherBits)
+  messenger.RunTogether(What, [&] { counts.assign(1, this->Keys.size()); });
+  messenger.Sum(counts);
+  messenger.RunTogether(What, [&] { add({ 0, 0, 0, this->Keys.size(), counts.front() }); });
+  for (int step = FirstBits; !next.empty(); step = FurtherBits)
   {
+    open = std::exchange(next, {});
     const int bits = std::min(step, MortonCode::Bits - open.front().Bits);
     const std::size_t parts = std::size_t(1) << bits;
-    std::vector<std::vector<std::uint64_t>> bounds;
-    std::vector<std::uint64_t> counts;
-    messenger.RunTogether("Sorting a mesh",
-      [&]
-      {
-        for (const Cell& cell : open)
-        {
-          bounds.push_back(this->Divide(cell, bits));
-          for (std::size_t part = 0; part < parts; ++part)
-          {
-            counts.push_back(bounds.back()[part + 1] - bounds.back()[part]);
-          }
-        }
-      });
-    counts = Sum(counts, messenger);
-
-    const std::vector<Cell> divided = std::exchange(open, {});
-    for (std::size_t index = 0; index < divided.size(); ++index)
+    for (std::size_t first = 0; first < open.size(); first += MostCells)
     {
-      const std::uint64_t* partCounts = counts.data() + index * parts;
-      const auto& partBounds = bounds[index];
-      const Cell& whole = divided[index];
-      // Halves until it fits, or the parts that were counted are reached.
-      const std::function<void(std::size_t, int)> halve = [&](std::size_t first, int depth)
-      {
-        const std::size_t size = parts >> depth;
-        std::uint64_t count = 0;
-        for (std::size_t part = first; part < first + size; ++part)
+      const std::size_t last = std::min(first + MostCells, open.size());
+      messenger.RunTogether(What,
+        [&]
         {
-          count += partCounts[part];
-        }
-        if (count > largestCount && size > 1)
+          bounds.clear();
+          counts.clear();
+          for (std::size_t cell = first; cell < last; ++cell)
+          {
+            bounds.push_back(this->Divide(open[cell], bits));
+            for (std::size_t part = 0; part < parts; ++part)
+            {
+              counts.push_back(bounds.back()[part + 1] - bounds.back()[part]);
+            }
+          }
+        });
+      messenger.Sum(counts);
+      messenger.RunTogether(What,
+        [&]
         {
-          halve(first, depth + 1);
-          halve(first + size / 2, depth + 1);
-          return;
-        }
-        add({ whole.Code + (first << (MortonCode::Bits - whole.Bits - bits)), whole.Bits + depth,
-          partBounds[first], partBounds[first + size], count });
-      };
-      halve(0, 0);
+          for (std::size_t cell = first; cell < last; ++cell)
+          {
+            const std::uint64_t* partCounts = counts.data() + (cell - first) * parts;
+            const auto& partBounds = bounds[cell - first];
+            const Cell& whole = open[cell];
+            // Halves until it fits, or the parts that were counted are reached.
+            const std::function<void(std::size_t, int)> halve = [&](std::size_t begin, int depth)
+            {
+              const std::size_t size = parts >> depth;
+              std::uint64_t count = 0;
+              for (std::size_t part = begin; part < begin + size; ++part)
+              {
+                count += partCounts[part];
+              }
+              if (count > largestCount && size > 1)
+              {
+                halve(begin, depth + 1);
+                halve(begin + size / 2, depth + 1);
+                return;
+              }
+              add({ whole.Code + (begin << (MortonCode::Bits - whole.Bits - bits)),
+                whole.Bits + depth, partBounds[begin], partBounds[begin + size], count });
+            };
+            halve(0, 0);
+          }
+        });
     }
   }
   std::sort(this->Cells.begin(), this->Cells.end(),
