@@ -66,3 +66,37 @@ place_camera(view, (1.0, 0.2, 0.3))  # what a rank holds is told of frames that 
 render(view)
 left = max(row["BytesResident"] + row["BytesCopied"] for row in get_rows(displays[2]))
 check(left < 1.1 * one, f"two that are shown as outlines have no bricks: {left} bytes are left of {3 * one:.0f}")
+
+# The settings of what is hidden, or shown in another way, do not count.
+for display in displays:
+    display.Representation = REPRESENTATION
+    display.DSMMemory = 0
+    display.DSMMemoryOrganization = "Automatic"
+    display.DSMThreads = 1
+displays[0].DSMThreads = 3
+for source in sources:
+    simple.Show(source, view)
+
+
+def get_threads(turn):
+    """Of a frame that is traced, from another direction."""
+    place_camera(view, (1.0, turn, 0.3))
+    render(view)
+    return get_rows(displays[2])[0]["Threads"]
+
+
+check(get_threads(0.3) == 3, "the strongest demand counts")
+simple.Hide(sources[0], view)
+check(get_threads(0.4) == 1, "of what is shown")
+simple.Show(sources[0], view)
+check(get_threads(0.5) == 3, "it counts again")
+displays[0].Representation = "Outline"
+check(get_threads(0.6) == 1, "not of what is shown in another way")
+second = create_view()
+second.UseFXAA = 0
+other = show(sources[0], second, [0.7], "f", DSMThreads=3)
+render(second)
+check(get_threads(0.7) == 3, "views share what they ask for")
+simple.Hide(sources[0], second)
+render(second)
+check(get_threads(0.8) == 1, "but not one that shows nothing")

@@ -3,9 +3,9 @@
  * @class   vtkDSMMemoryOptions
  * @brief   how the ranks keep the bricks of a dataset, and with how many threads they trace
  *
- * Held by each mapper of a vtkDSMScene. All that is shown shares one memory, so what the datasets ask
- * for is merged as said below; the picture is the same whatever is chosen. Same values on every rank,
- * but that the number of threads may differ.
+ * Held by each mapper of a vtkDSMScene. All that is shown shares one memory, so what the visible
+ * datasets ask for is merged as said below; the picture is the same whatever is chosen. Same values on
+ * every rank, but that the number of threads may differ.
  */
 
 #ifndef vtkDSMMemoryOptions_h

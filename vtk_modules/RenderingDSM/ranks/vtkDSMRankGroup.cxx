@@ -110,7 +110,7 @@ vtkDSMRankGroup::vtkDSMRankGroup(std::unique_ptr<dsm::Transport> transport)
 
 void vtkDSMRankGroup::Join(Publisher* publisher)
 {
-  this->Publishers.emplace_back(publisher, vtkDSMMemorySettings{});
+  this->Publishers.emplace_back(publisher, std::nullopt);
 }
 
 void vtkDSMRankGroup::Leave(Publisher* publisher)
@@ -120,12 +120,26 @@ void vtkDSMRankGroup::Leave(Publisher* publisher)
     this->Publishers.end());
 }
 
+void vtkDSMRankGroup::Withdraw(Publisher* publisher)
+{
+  for (auto& [candidate, settings] : this->Publishers)
+  {
+    if (candidate == publisher)
+    {
+      settings.reset();
+    }
+  }
+}
+
 vtkDSMMemorySettings vtkDSMRankGroup::MergeSettings() const
 {
   vtkDSMMemorySettings merged;
   for (const auto& [publisher, settings] : this->Publishers)
   {
-    merged.Merge(settings);
+    if (settings)
+    {
+      merged.Merge(*settings);
+    }
   }
   return merged;
 }
@@ -135,7 +149,10 @@ void vtkDSMRankGroup::Configure(Publisher* publisher, const vtkDSMMemorySettings
   const int coresPerRank = this->Messenger.GetCoresPerRank();
   for (auto& [candidate, known] : this->Publishers)
   {
-    known = candidate == publisher ? settings : known;
+    if (candidate == publisher)
+    {
+      known = settings;
+    }
   }
   const vtkDSMMemorySettings merged = this->MergeSettings();
   const dsm::BlockStore::Settings old = this->Store.GetSettings();

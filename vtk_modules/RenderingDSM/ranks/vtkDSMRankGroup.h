@@ -9,6 +9,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -57,6 +58,8 @@ public:
   /// the new organisation as they are. Between frames; local, in the same order on every rank. Throws
   /// dsm::Error.
   void Configure(Publisher* publisher, const vtkDSMMemorySettings& settings);
+  /// The publisher shows nothing, and asks for nothing from now on. Local; changes nothing by itself.
+  void Withdraw(Publisher* publisher);
 
   /// Collective. Calls `work`, which throws dsm::Error on all ranks where memory is short, and again for
   /// as long as anything hidden can make room: what was shown the longest ago goes first.
@@ -92,8 +95,8 @@ private:
   vtkDSMMemorySettings MergeSettings() const;
   bool MakeRoom();
 
-  std::vector<std::pair<Publisher*, vtkDSMMemorySettings>>
-    Publishers; ///< in the order in which they joined
+  /// In the order in which they joined, with what they ask for.
+  std::vector<std::pair<Publisher*, std::optional<vtkDSMMemorySettings>>> Publishers;
   unsigned SettingsVersion = 0;
   dsm::Messenger Messenger;
   dsm::BlockStore Store;

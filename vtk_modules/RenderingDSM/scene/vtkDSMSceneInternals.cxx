@@ -367,4 +367,8 @@ void vtkDSMScene::Internals::Clear()
   this->Prop->Clear();
   this->Statistics->Clear();
   this->Accumulation.Clear();
+  if (this->Group && this->Members.GetShown().empty())
+  {
+    this->Group->Withdraw(this);
+  }
 }

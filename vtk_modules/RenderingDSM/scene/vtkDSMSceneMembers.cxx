@@ -235,9 +235,9 @@ double vtkDSMSceneMembers::GetEnvironmentLight() const
 vtkDSMMemorySettings vtkDSMSceneMembers::GetMemorySettings() const
 {
   vtkDSMMemorySettings settings;
-  for (const auto& state : this->States)
+  for (const Member& member : this->Shown)
   {
-    settings.Merge(vtkDSMTranslation::ToMemorySettings(state->GetMemoryOptions()));
+    settings.Merge(vtkDSMTranslation::ToMemorySettings(member.State->GetMemoryOptions()));
   }
   return settings;
 }

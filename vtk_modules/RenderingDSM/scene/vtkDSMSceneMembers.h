@@ -51,7 +51,7 @@ public:
   /// Whether the renderer has anything else to show, that may be behind, or between, translucent surfaces.
   bool AreBesideOthers(vtkRenderer* renderer) const;
 
-  /// Of each property, what the most demanding object wants.
+  /// Of each property, what the most demanding object that is shown wants.
   rt::LightTransport GetTransport() const;
   double GetEnvironmentLight() const;
   vtkDSMMemorySettings GetMemorySettings() const;
