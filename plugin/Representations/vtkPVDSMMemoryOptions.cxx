@@ -25,6 +25,11 @@ void vtkPVDSMMemoryOptions::SetMemory(int mebibytes)
 
 void vtkPVDSMMemoryOptions::SetCacheSize(int mebibytes)
 {
+  if (mebibytes < 1)
+  {
+    vtkWarningMacro(
+      "A cache of " << mebibytes << " MiB (DSMCacheSize) is too small: it has 1 MiB, the least.");
+  }
   this->Superclass::SetCacheSize(mebibytes);
 }
 

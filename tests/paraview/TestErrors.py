@@ -70,6 +70,8 @@ expect_then_delete(image_source(GOOD), ["Isovalue 0 is infinite"], isovalues=[fl
 expect_then_delete(image_source(GOOD), [], isovalues=[1000.0])
 # Without any, the data suggest one.
 expect_then_delete(image_source(GOOD), [], isovalues=[], empty=False)
+CONSTANT = "image.SetExtent(piece)\nadd(image, 0.0 * points(piece)[0] + 3.0)\n"
+expect_then_delete(image_source(CONSTANT), ["'f' has the same value everywhere"], isovalues=[])
 
 expect_then_delete(image_source("image.SetExtent(piece)\nadd(image, points(piece)[0])\n",
                                 (0, 20, 0, 20, 3, 3)), ["no cells in z", "volume"])
@@ -120,3 +122,9 @@ with Messages() as messages:
     display.DSMIsoArray = ["POINTS", "gone"]
     render(view)
     check(messages.text.count("'gone'") > before.count("'gone'"), "the same mistake is told anew")
+
+# A cache is at least as large as one block.
+with Messages() as messages:
+    display.DSMCacheSize = 0
+    check("it has 1 MiB, the least" in messages.text, "a cache of 0 is not taken without a word")
+    display.DSMCacheSize = 256

@@ -46,7 +46,7 @@ small.DSMMemory = display.DSMMemory = 1
 simple.Show(large, view)
 large.PhiResolution = 301
 pixels, text = render_and_listen()
-check("the surface: Its part of the data takes" in text, "it is said what is too large: " + text)
+check("the surface: The part of the data that rank " in text, "it is said what is too large: " + text)
 check("DSMMemory" in text and " bytes" in text, "how much is needed, and what to change")
 check("use at least" in text and "ranks with as much memory" in text, "how many ranks would do")
 check_alone(pixels, "A surface that does not fit the memory")

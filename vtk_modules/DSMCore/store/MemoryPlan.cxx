@@ -203,7 +203,9 @@ void MemoryPlan::Refuse(MemoryOrganization organization, int rank) const
   const Budget& budget = this->Budgets[static_cast<std::size_t>(rank)];
   const std::uint64_t need = this->GetNeed(organization, rank);
   const bool replicated = organization == MemoryOrganization::Replicated;
-  std::string text = replicated ? "All data on every rank take " : "Its part of the data takes ";
+  std::string text = replicated
+    ? "All data on every rank take "
+    : "The part of the data that rank " + std::to_string(rank) + " owns takes ";
   text += FormatMebibytes(need) + " (" + std::to_string(need) + " bytes" +
     (replicated ? "" : ", a cache of one brick and messages included") + ") of rank " +
     std::to_string(rank) + "'s memory, which may take " +

@@ -292,12 +292,15 @@ std::string vtkDSMStatistics::GetSummary() const
   { return whole > 0.0 ? 100.0 * part / whole : 0.0; };
   std::ostringstream text;
   text << std::fixed << std::setprecision(1);
-  text << 1e3 * this->FrameSeconds << " ms, " << this->Rows.size() << " ranks, " << sum.Threads
-       << " threads\n";
+  const auto count = [](std::int64_t number, const char* what)
+  { return std::to_string(number) + " " + what + (number == 1 ? "" : "s"); };
+  text << 1e3 * this->FrameSeconds << " ms, "
+       << count(static_cast<std::int64_t>(this->Rows.size()), "rank") << ", "
+       << count(sum.Threads, "thread") << "\n";
   text << this->Organization << ", MiB: " << toMebibytes(sum.BytesResident) << " owned,\n"
        << toMebibytes(sum.BytesCopied) << " copied, " << toMebibytes(sum.BytesShared) << " shared, "
        << toMebibytes(sum.BytesCached) << " cached\n";
-  text << sum.Accesses << " bricks asked for,\n"
+  text << sum.Accesses << " look-ups of bricks,\n"
        << toPercent(static_cast<double>(sum.Misses), static_cast<double>(sum.Accesses))
        << " % missed, " << toMebibytes(sum.BytesReceived) << " MiB fetched\n";
   text << "waited " << toPercent(sum.WaitSeconds, sum.Seconds) << " %, busiest rank "

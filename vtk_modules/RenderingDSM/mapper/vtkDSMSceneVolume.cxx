@@ -285,6 +285,12 @@ std::vector<double> vtkDSMSceneVolume::GetIsovalues()
         "The mapper has no isovalue, so nothing is drawn. Call SetIsoValue(0, VALUE), "
         "or AutomaticIsoValueOn() for one that the data suggest.");
     }
+    if (chosen.empty() && mapper->GetAutomaticIsoValue() && !this->Iso->Fields.empty())
+    {
+      this->Messages.push_back("The isosurface array '" + this->Iso->Choice.Name +
+        "' has the same value everywhere, or none, so there is no surface to show. Choose another "
+        "array.");
+    }
     if (mapper->GetBlendMode() != vtkVolumeMapper::COMPOSITE_BLEND)
     {
       this->Messages.push_back(
