@@ -165,6 +165,12 @@ void vtkPVDSMGeometryRepresentation::SetVisibility(bool visible)
   this->Display->SetVisibility(visible);
 }
 
+void vtkPVDSMGeometryRepresentation::SetPickable(int pickable)
+{
+  this->Superclass::SetPickable(pickable);
+  this->Display->SetPickable(pickable != 0);
+}
+
 void vtkPVDSMGeometryRepresentation::SetShowEdges(bool show)
 {
   this->ShowEdges = show;

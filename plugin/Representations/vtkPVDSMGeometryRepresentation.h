@@ -35,6 +35,7 @@ public:
     vtkInformationRequestKey* request, vtkInformation* inInfo, vtkInformation* outInfo) override;
   void SetArrayIdNames(const char* pointArray, const char* cellArray) override;
   void SetVisibility(bool visible) override;
+  void SetPickable(int pickable) override;
 
   /**
    * Whether the edges of polygons are drawn on the surface; off by default.

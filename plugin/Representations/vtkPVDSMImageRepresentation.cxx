@@ -7,13 +7,18 @@
 #include "vtkPVDSMLightOptions.h"
 #include "vtkPVDSMMemoryOptions.h"
 
+#include "vtkCompositeDataIterator.h"
+#include "vtkDataAssembly.h"
+#include "vtkDataAssemblyUtilities.h"
 #include "vtkDataObject.h"
+#include "vtkDataObjectTree.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
 #include "vtkMatrix4x4.h"
 #include "vtkMultiBlockDataSet.h"
 #include "vtkObjectFactory.h"
 #include "vtkPVRenderView.h"
+#include "vtkPartitionedDataSetCollection.h"
 #include "vtkProperty.h"
 #include "vtkScalarsToColors.h"
 #include "vtkVolume.h"
@@ -54,11 +59,46 @@ int vtkPVDSMImageRepresentation::RequestData(
     {
       data.TakeReference(source->NewInstance());
       data->ShallowCopy(source);
+      this->RemoveHiddenBlocks(data);
     }
   }
   this->Mapper->SetInputData(data);
   this->Display->NoteUpdate();
   return this->Superclass::RequestData(request, input, output);
+}
+
+void vtkPVDSMImageRepresentation::RemoveHiddenBlocks(vtkDataObject* data) const
+{
+  auto* tree = vtkDataObjectTree::SafeDownCast(data);
+  vtkNew<vtkDataAssembly> assembly;
+  if (this->BlockSelectors.empty() || !tree ||
+    !vtkDataAssemblyUtilities::GenerateHierarchy(tree, assembly))
+  {
+    return;
+  }
+  const std::vector<unsigned int> shown = vtkDataAssemblyUtilities::GetSelectedCompositeIds(
+    this->BlockSelectors, assembly, vtkPartitionedDataSetCollection::SafeDownCast(tree), true);
+  vtkSmartPointer<vtkCompositeDataIterator> leaf;
+  leaf.TakeReference(tree->NewIterator());
+  for (leaf->InitTraversal(); !leaf->IsDoneWithTraversal(); leaf->GoToNextItem())
+  {
+    if (std::find(shown.begin(), shown.end(), leaf->GetCurrentFlatIndex()) == shown.end())
+    {
+      tree->SetDataSet(leaf, nullptr);
+    }
+  }
+}
+
+void vtkPVDSMImageRepresentation::AddBlockSelector(const char* selector)
+{
+  this->BlockSelectors.emplace_back(selector);
+  this->MarkModified();
+}
+
+void vtkPVDSMImageRepresentation::RemoveAllBlockSelectors()
+{
+  this->BlockSelectors.clear();
+  this->MarkModified();
 }
 
 int vtkPVDSMImageRepresentation::ProcessViewRequest(
@@ -105,8 +145,11 @@ void vtkPVDSMImageRepresentation::SetInputArrayToProcess(
   this->Superclass::SetInputArrayToProcess(index, port, connection, association, name);
   if (index == 0)
   {
+    // An array of the whole dataset, which ParaView chooses for several blocks, says nothing of places.
+    const bool isOfPlaces = association != vtkDataObject::FIELD_ASSOCIATION_NONE;
     this->Mapper->SetColorArray(name ? name : "");
-    this->Mapper->SetScalarVisibility(name && name[0]);
+    this->Mapper->SetColorArrayOnCells(association == vtkDataObject::FIELD_ASSOCIATION_CELLS);
+    this->Mapper->SetScalarVisibility(isOfPlaces && name && name[0]);
   }
 }
 

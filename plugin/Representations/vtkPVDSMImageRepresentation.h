@@ -17,9 +17,11 @@
 #include "vtkRepresentationsDSMModule.h" // for the export macro
 
 #include <memory> // for ivars
+#include <string> // for ivars
 #include <vector> // for ivars
 
 class vtkDSMVolumeMapper;
+class vtkDataObject;
 class vtkPVDSMFrameReport;
 class vtkPVDSMLightOptions;
 class vtkPVDSMMemoryOptions;
@@ -36,6 +38,16 @@ public:
   int ProcessViewRequest(
     vtkInformationRequestKey* request, vtkInformation* inInfo, vtkInformation* outInfo) override;
   void SetVisibility(bool visible) override;
+  void SetPickable(bool pickable) { this->Display->SetPickable(pickable); }
+
+  ///@{
+  /**
+   * What is shown of a dataset of several blocks: those that one of these paths leads to, as ParaView's
+   * Multiblock Inspector chooses them; without any, all.
+   */
+  void AddBlockSelector(const char* selector);
+  void RemoveAllBlockSelectors();
+  ///@}
   void SetInputArrayToProcess(
     int index, int port, int connection, int association, const char* name) override;
   using Superclass::SetInputArrayToProcess;
@@ -132,9 +144,11 @@ private:
   void operator=(const vtkPVDSMImageRepresentation&) = delete;
 
   void ChooseIsoValues();
+  void RemoveHiddenBlocks(vtkDataObject* data) const;
 
   vtkNew<vtkVolume> Volume;
   vtkNew<vtkDSMVolumeMapper> Mapper;
+  std::vector<std::string> BlockSelectors;
   std::vector<double> IsoValues;
   double SingleIsoValue = UnsetIsoValue;
   std::unique_ptr<vtkPVDSMTracedDisplay> Display;

@@ -74,6 +74,12 @@ void vtkPVDSMTracedDisplay::SetVisibility(bool visible)
   this->View->RegisterPropForHardwareSelection(this->Representation, this->SelectionActor);
 }
 
+void vtkPVDSMTracedDisplay::SetPickable(bool pickable)
+{
+  this->Prop->SetPickable(pickable);
+  this->SelectionActor->SetPickable(pickable);
+}
+
 void vtkPVDSMTracedDisplay::Leave()
 {
   if (this->IsInView && this->View)

@@ -45,6 +45,7 @@ public:
   bool AddToView(vtkView* view);
   bool RemoveFromView(vtkView* view);
   void SetVisibility(bool visible);
+  void SetPickable(bool pickable);
   void SetFrameReport(vtkPVDSMFrameReport* report);
   ///@}
 

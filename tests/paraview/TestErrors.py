@@ -98,6 +98,8 @@ expect_then_delete(grid, ["vtkRectilinearGrid", "Resample To Image"], [60.0])
 both = image_source(GOOD + """
 array = numpy_to_vtk(np.zeros(image.GetNumberOfCells()), deep=True); array.SetName('onCells')
 image.GetCellData().AddArray(array)
+array = numpy_to_vtk(np.zeros(image.GetNumberOfCells()), deep=True); array.SetName('other')
+image.GetCellData().AddArray(array)
 """)
 with Messages() as messages:
     display = show(both, view, [0.7], "f")
@@ -107,6 +109,11 @@ with Messages() as messages:
     text = messages.text
 check("colour array 'onCells'" in text and "Cell Data to Point Data" in text, "colour by cells: " + text)
 check(get_covered(pixels).any(), "the surface is still drawn")
+with Messages() as messages:
+    simple.ColorBy(display, ("CELLS", "other"))
+    check_equal(render(view), pixels, "an array that the points have, too, does not colour it either")
+    text = messages.text
+check("colour array 'other' belongs to the cells" in text, "the cells' array is meant: " + text)
 simple.Delete(both)
 
 # After all that, the same view still draws.

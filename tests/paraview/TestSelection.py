@@ -43,6 +43,10 @@ for kind in ("cells", "points"):
         check(results[0] == results[1], f"and the same ones are selected when traced: {results[0]}")
 mesh.Representation = REPRESENTATION
 check(get_selected(ball, "cells", [0, 0, 5, 5])[0] == 0, "beside it there is nothing")
+mesh.Pickable = 0
+simple.Render(view)
+check(get_selected(ball, "cells", everything)[0] == 0, "what cannot be picked is not selected")
+mesh.Pickable = 1
 
 # Translucent, with something else in the view, so that several ranks divide the space between them.
 cone = simple.Cone(Height=30.0, Radius=4.0, Resolution=40)
@@ -86,6 +90,9 @@ check(abs(distance - 0.8) < 0.2, "and they are at the surface")
 points = get_selected(source, "points", [140, 110, 160, 130])
 check(points[1] > 0, f"points are, too: {points}")
 check(get_selected(source, "cells", [0, 0, 5, 5])[0] == 0, "beside it there is nothing")
+traced.Pickable = 0
+simple.Render(view)
+check(get_selected(source, "cells", everything)[0] == 0, "what cannot be picked is not selected")
 
 # All ranks select what one does.
 reference = os.path.join(OUTPUT, "selected.npy")

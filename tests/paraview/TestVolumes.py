@@ -156,3 +156,23 @@ for kind, set_ in (
     asks = "request.Get(vtkStreamingDemandDrivenPipeline.UPDATE_EXTENT(), piece)"
     source.Script = script.replace(asks, "")
     compare(kind, source)
+
+# Blocks that are hidden, and the array of the whole dataset that ParaView chooses to colour blocks by.
+source = simple.ProgrammableSource(OutputDataSetType="vtkMultiblockDataSet")
+source.Script = IMAGE_SOURCE.format(
+    extent=text, script=BLOCKS.format(set="output.SetBlock(block, child)")).replace(asks, "")
+display = show(source, view, [0.7])
+place_camera(view)
+whole = render(view, "Blocks")
+with Messages() as messages:
+    display.ColorArrayName = ["FIELD", "vtkBlockColors"]
+    check_equal(render(view), whole, "an array of the whole dataset does not colour it", tolerance=0)
+    check("ERROR" not in messages.text, "and is no error: " + messages.text)
+display.BlockSelectors = ["/Root/Block0", "/Root/Block1"]
+part = get_covered(render(view, "BlocksShown"))
+expected = get_covered(whole)
+check(part.sum() > 0.2 * expected.sum() and not part[~expected].any() and expected[~part].any(),
+      f"with a block hidden, {part.sum()} pixels of {expected.sum()} are covered")
+display.BlockSelectors = ["/"]
+check_equal(render(view), whole, "all are shown again", tolerance=0)
+simple.Delete(source)

@@ -126,7 +126,7 @@ vtkDataArray* vtkDSMVolumeData::FindArray(
   vtkAbstractArray* found = choice.Name.empty()
     ? static_cast<vtkAbstractArray*>(image->GetPointData()->GetScalars())
     : image->GetPointData()->GetAbstractArray(choice.Name.c_str());
-  if (!found)
+  if (choice.OnCells || !found)
   {
     const bool onCells = choice.Name.empty() ? image->GetPointData()->GetNumberOfArrays() == 0 &&
         image->GetCellData()->GetNumberOfArrays() > 0
@@ -188,7 +188,7 @@ void vtkDSMVolumeData::GatherArrays()
 vtkDSMVolumeData::Choice vtkDSMVolumeData::Normalize(const Choice& choice) const
 {
   const auto known = this->PointArrays.find(choice.Name);
-  if (known == this->PointArrays.end())
+  if (known == this->PointArrays.end() || choice.OnCells)
   {
     return choice;
   }

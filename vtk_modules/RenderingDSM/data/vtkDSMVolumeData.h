@@ -29,12 +29,14 @@ public:
   /// One array, as the user chose it.
   struct Choice
   {
-    std::string Name;  ///< empty: the active scalars
-    int Component = 0; ///< vtkDSMImagePiece::Magnitude for the magnitude
+    std::string Name;     ///< empty: the active scalars
+    int Component = 0;    ///< vtkDSMImagePiece::Magnitude for the magnitude
+    bool OnCells = false; ///< of the arrays of this name, the cells' is meant
 
     bool operator==(const Choice& other) const
     {
-      return this->Name == other.Name && this->Component == other.Component;
+      return this->Name == other.Name && this->Component == other.Component &&
+        this->OnCells == other.OnCells;
     }
   };
   /// One field a lattice; null where no piece of the lattice has the array.

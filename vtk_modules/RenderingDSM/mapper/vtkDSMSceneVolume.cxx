@@ -185,8 +185,9 @@ void vtkDSMSceneVolume::Update(const std::shared_ptr<vtkDSMRankGroup>& group, bo
     const int component = table->GetVectorMode() == vtkScalarsToColors::COMPONENT
       ? table->GetVectorComponent()
       : vtkDSMImagePiece::Magnitude;
-    this->Color = this->Require({ mapper->GetColorArray(), component }, "colour array", version,
-      { this->Iso, oldIso, oldColor });
+    this->Color =
+      this->Require({ mapper->GetColorArray(), component, mapper->GetColorArrayOnCells() },
+        "colour array", version, { this->Iso, oldIso, oldColor });
   }
   for (const auto& published : { this->Iso, this->Color })
   {

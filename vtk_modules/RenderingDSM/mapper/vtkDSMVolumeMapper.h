@@ -109,6 +109,15 @@ public:
   vtkScalarsToColors* GetLookupTable() const;
   ///@}
 
+  ///@{
+  /**
+   * Whether the cells' array of the name ColorArray is meant, also where the points have one, too. Off by
+   * default. Surfaces are not coloured by it: an error says what to do.
+   */
+  vtkSetMacro(ColorArrayOnCells, bool);
+  vtkGetMacro(ColorArrayOnCells, bool);
+  ///@}
+
   /**
    * Colours and coefficients of the surfaces; never null.
    */
@@ -215,6 +224,7 @@ private:
   bool AutomaticIsoValue = false;
   double SuggestedIsoValue = vtkMath::Nan();
   std::string ColorArray;
+  bool ColorArrayOnCells = false;
   bool ScalarVisibility = false;
   vtkSmartPointer<vtkScalarsToColors> LookupTable;
   vtkSmartPointer<vtkProperty> SurfaceProperty;
