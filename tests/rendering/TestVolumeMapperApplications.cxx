@@ -5,8 +5,10 @@
 #include "vtkAssembly.h"
 #include "vtkCommand.h"
 #include "vtkContourValues.h"
+#include "vtkObjectFactory.h"
 #include "vtkPropAssembly.h"
 #include "vtkRTAnalyticSource.h"
+#include "vtkRenderPass.h"
 #include "vtkTestErrorObserver.h"
 #include "vtkVolumeProperty.h"
 
@@ -112,6 +114,35 @@ TEST_F(VolumeMapper, SaysThatItHasNoIsovalue)
   ASSERT_TRUE(observer->GetError());
   EXPECT_NE(observer->GetErrorMessage().find("GetIsoSurfaceValues"), std::string::npos)
     << observer->GetErrorMessage();
+}
+
+/// In place of OSPRay's, which few builds of VTK have: draws nothing.
+class vtkOSPRayPass : public vtkRenderPass
+{
+public:
+  static vtkOSPRayPass* New();
+  vtkTypeMacro(vtkOSPRayPass, vtkRenderPass);
+  void Render(const vtkRenderState*) override {}
+};
+vtkStandardNewMacro(vtkOSPRayPass);
+
+TEST_F(VolumeMapper, SaysThatOSPRayLeavesItOut)
+{
+  vtkNew<vtkTest::ErrorObserver> observer;
+  this->Scene->AddObserver(vtkCommand::ErrorEvent, observer);
+  this->Renderer->AddVolume(this->Volume);
+  vtkNew<vtkOSPRayPass> pass;
+  this->Renderer->SetPass(pass);
+  this->Window->Render();
+  ASSERT_TRUE(observer->GetError());
+  EXPECT_NE(observer->GetErrorMessage().find("Enable Ray Tracing"), std::string::npos)
+    << observer->GetErrorMessage();
+  observer->Clear();
+  this->Window->Render();
+  EXPECT_FALSE(observer->GetError()) << "once is enough";
+  this->Renderer->SetPass(nullptr);
+  EXPECT_GT(CountCovered(this->RenderDistances()), 1000);
+  EXPECT_FALSE(observer->GetError());
 }
 
 } // namespace

@@ -7,6 +7,7 @@
 #include "vtkCamera.h"
 #include "vtkCommand.h"
 #include "vtkObjectFactory.h"
+#include "vtkRenderPass.h"
 #include "vtkRenderWindow.h"
 
 #include <algorithm>
@@ -27,6 +28,13 @@ std::map<vtkRenderer*, vtkDSMScene*>& GetRegistry()
 {
   static std::map<vtkRenderer*, vtkDSMScene*> registry;
   return registry;
+}
+
+/// Whether VTK's own ray tracer draws the renderer: then its mappers count, and props of others are left out.
+bool IsDrawnByOSPRay(vtkRenderer* renderer)
+{
+  vtkRenderPass* const pass = renderer->GetPass();
+  return pass && pass->IsA("vtkOSPRayPass");
 }
 
 } // namespace
@@ -269,6 +277,12 @@ void vtkDSMScene::Trace()
   std::string failure;
   try
   {
+    if (IsDrawnByOSPRay(self.Renderer))
+    {
+      throw dsm::Error(
+        "VTK's own ray tracing (OSPRay) draws this view, and leaves out what is DSM Ray "
+        "Traced. Switch off Enable Ray Tracing in the view's properties.");
+    }
     self.FindGroup(this->GetController());
     failure = self.MakeFrame(found);
   }
