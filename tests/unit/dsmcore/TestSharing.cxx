@@ -212,26 +212,26 @@ TEST(HostSharedMemory, WithoutSharingItIsOrdinaryMemory)
 
 // -- Stores ----------------------------------------------------------------------------------------
 
-TEST(ReplicatedStore, MoreThanItsMemoryIsRefusedWithTheNumberOfBytes)
+TEST(BlockStore, MoreCopiesThanTheMemoryHoldsAreRefusedWithTheNumberOfBytes)
 {
   dsm_test::RunRanks(2,
     [](dsm::Messenger& messenger)
     {
       const auto directory = dsm_test::MakeDirectory(2, 10, 1000);
-      dsm::ReplicatedStore::Settings settings;
+      constexpr std::uint64_t need = 10 * 1024 + 10 * 20;
+      constexpr auto replicated = dsm::MemoryOrganization::Replicated;
       // Only rank 1 is short; both hear of it.
-      settings.MemoryBytes = messenger.GetRank() == 1 ? 10 * 1024 - 1 : 1 << 20;
-      dsm::ReplicatedStore store(messenger, settings);
+      dsm::BlockStore store(messenger,
+        dsm_test::MakeStoreSettings(replicated, messenger.GetRank() == 1 ? need - 1 : 1 << 20));
       dsm_test::PatternSource source(
         directory, messenger.GetRank(), 2, dsm_test::Spread::EveryRankASlice, 100);
       dsm_test::PatternSink sink;
       const std::string text =
         dsm_test::GetErrorText([&] { store.Publish("Loading", directory, source, sink); });
-      EXPECT_EQ(text.find("Loading: Rank 1: out of memory: "), 0u) << text;
-      EXPECT_NE(text.find("10240 bytes"), std::string::npos) << text;
-      EXPECT_EQ(sink.Begun.empty(), messenger.GetRank() == 1);
-      settings.MemoryBytes = 10 * 1024;
-      store.SetSettings(settings);
+      EXPECT_EQ(text.find("Loading: All data on every rank take "), 0u) << text;
+      EXPECT_NE(text.find(std::to_string(need) + " bytes) of rank 1's"), std::string::npos) << text;
+      EXPECT_TRUE(sink.Begun.empty());
+      store.SetSettings(dsm_test::MakeStoreSettings(replicated, need));
       const auto segment = dsm_test::PublishPattern(messenger, store, directory);
       dsm_test::ReadEverything(messenger, store, *segment);
       // What is there counts.

@@ -2,6 +2,7 @@
 #ifndef dsm_SegmentPublisher_h
 #define dsm_SegmentPublisher_h
 
+#include "DSMCore/base/FirstFailure.h"
 #include "DSMCore/base/FunctionRef.h"
 #include "DSMCore/publish/BlockDirectory.h"
 #include "DSMCore/publish/BlockSegment.h"
@@ -17,7 +18,7 @@ namespace dsm
 {
 
 /// The collective steps by which the ranks' fragments become the blocks of a segment, whatever
-/// memory the store keeps them in: agree, set out memory, fill it (FragmentExchange), seal.
+/// memory the store keeps them in: agree, set out memory, fill it, seal.
 /// Communication thread, once.
 class SegmentPublisher
 {
@@ -32,8 +33,6 @@ public:
     /// all ranks, among those of all stores that share the messenger.
     FunctionRef<std::shared_ptr<BlockSegment>(std::uint32_t number, BlockDirectory&& directory)>
       Create;
-    /// What this rank may still take.
-    std::uint64_t MemoryBytes = UINT64_MAX;
     /// What the user can do when memory does not suffice: a sentence.
     const char* Remedy = "Use more hosts, so that each holds fewer bytes, or smaller data.";
   };
@@ -53,6 +52,10 @@ private:
   /// `begin` takes part in the ranks' agreement.
   std::shared_ptr<BlockSegment> Create(
     BlockDirectory&& directory, FunctionRef<void(const BlockSegment&)> begin);
+  /// Collective: moves the fragments of every rank to the owners of their blocks. Returns what has gone
+  /// wrong on this rank.
+  FirstFailure Fill(const BlockSegment& segment, FragmentSource& source, FragmentSink& sink,
+    FunctionRef<void(double)> progress);
   void Check(const BlockDirectory& directory, const std::vector<std::uint64_t>& fingerprints) const;
   void CheckMemory(std::uint64_t bytes, int ranksOnHost, std::uint64_t available) const;
 

@@ -184,27 +184,23 @@ void BlockTable::Replicate(Messenger& messenger, std::string_view what)
       }
     });
 
-  messenger.BeginSession();
+  const auto find = [this](BlockId id) { return this->GetOwned(id); };
+  const auto place = [&](BlockId id) { return copies.GetData() + places[id]; };
+  const FirstFailure failure = BlockSpread::Run(messenger, directory, this->Groups, find, place);
+  this->OpenAll(messenger, copies, this->CopyViews);
+  try
   {
-    BlockSpread spread(
-      messenger, directory, this->Groups, [this](BlockId id) { return this->GetOwned(id); },
-      [&](BlockId id) { return copies.GetData() + places[id]; });
-    spread.Run();
-    this->OpenAll(messenger, copies, this->CopyViews);
-    try
-    {
-      messenger.RunTogether(what,
-        [&]
-        {
-          spread.ThrowFailure();
-          this->CheckViews();
-        });
-    }
-    catch (...)
-    {
-      this->DropReplicas();
-      throw;
-    }
+    messenger.RunTogether(what,
+      [&]
+      {
+        failure.Throw();
+        this->CheckViews();
+      });
+  }
+  catch (...)
+  {
+    this->DropReplicas();
+    throw;
   }
   copies.CloseDoor();
   this->Copies = std::move(copies);

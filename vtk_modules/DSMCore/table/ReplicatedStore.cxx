@@ -5,7 +5,6 @@
 #include "DSMCore/base/WorkerSlots.h"
 #include "DSMCore/publish/SegmentPublisher.h"
 
-#include <algorithm>
 #include <utility>
 
 namespace dsm
@@ -39,16 +38,6 @@ void ReplicatedStore::SetSettings(const Settings& settings)
 
 // -- Segments --------------------------------------------------------------------------------------
 
-std::uint64_t ReplicatedStore::CountBytes() const
-{
-  std::uint64_t bytes = 0;
-  for (const auto& segment : this->Segments)
-  {
-    bytes += segment->GetResidentBytes() + segment->GetReplicaBytes();
-  }
-  return bytes;
-}
-
 std::shared_ptr<BlockSegment> ReplicatedStore::Publish(std::string_view what,
   BlockDirectory directory, FragmentSource& source, FragmentSink& sink,
   FunctionRef<void(double)> progress)
@@ -68,12 +57,10 @@ std::shared_ptr<BlockSegment> ReplicatedStore::Publish(std::string_view what,
   };
   const auto create = [&](std::uint32_t number, BlockDirectory&& blocks)
   { return std::make_shared<BlockTable>(number, std::move(blocks), rank, *groups); };
-  SegmentPublisher::Steps steps{ count, create };
-  steps.MemoryBytes =
-    this->Current.MemoryBytes - std::min(this->Current.MemoryBytes, this->CountBytes());
-  steps.Remedy = "Choose the object based memory organisation (DSMMemoryOrganization), which "
-                 "shares the data out "
-                 "between the ranks, or smaller data.";
+  const SegmentPublisher::Steps steps{ count, create,
+    "Choose the object based memory organisation (DSMMemoryOrganization), which shares the data "
+    "out "
+    "between the ranks, or smaller data." };
   auto table =
     std::static_pointer_cast<BlockTable>(SegmentPublisher(this->Messages, what, steps)
                                            .Run(std::move(directory), source, sink, progress));

@@ -39,8 +39,6 @@ public:
     bool HostSharing = false;
     /// Who shares; null: found out with every publication.
     std::shared_ptr<const HostGroups> Groups = nullptr;
-    /// What this rank may take for all segments, its own blocks included.
-    std::uint64_t MemoryBytes = UINT64_MAX;
   };
 
   using Segment = BlockTable;
@@ -59,8 +57,7 @@ public:
   const Settings& GetSettings() const { return this->Current; }
 
   /// Collective. As ObjectStore::Publish; then the owners send their blocks to all others, in
-  /// bounded batches. Throws Error, on every rank, with the number of bytes that a rank needs, when
-  /// the memory of any does not suffice.
+  /// bounded batches. Throws Error, on every rank, when the host of any has no memory for it.
   std::shared_ptr<BlockSegment> Publish(std::string_view what, BlockDirectory directory,
     FragmentSource& source, FragmentSink& sink, FunctionRef<void(double)> progress = {});
 
@@ -99,8 +96,6 @@ public:
   std::vector<WorkerCounters> GetWorkerCounters() const;
 
 private:
-  std::uint64_t CountBytes() const;
-
   Messenger& Messages;
   Settings Current;
   std::vector<std::unique_ptr<Worker>> Workers;

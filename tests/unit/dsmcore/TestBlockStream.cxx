@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "DSMCore/publish/FragmentExchange.h"
+#include "DSMCore/publish/BlockStream.h"
 
 #include "tests/unit/dsmcore/StoreScenarios.h"
 
@@ -10,7 +10,7 @@
 namespace
 {
 
-TEST(FragmentExchange, FragmentForABlockOutOfRangeIsAnError)
+TEST(BlockStream, FragmentForABlockOutOfRangeIsAnError)
 {
   dsm_test::RunRanks(2,
     [](dsm::Messenger& messenger)
@@ -59,7 +59,7 @@ public:
   }
 };
 
-TEST(FragmentExchange, SourceWaitsForSlowReceivers)
+TEST(BlockStream, SourceWaitsForSlowReceivers)
 {
   dsm_test::RunRanks(2,
     [](dsm::Messenger& messenger)
@@ -72,14 +72,14 @@ TEST(FragmentExchange, SourceWaitsForSlowReceivers)
       dsm::FragmentSink& sink =
         messenger.GetRank() == 1 ? static_cast<dsm::FragmentSink&>(slow) : quick;
       store.Publish("Loading", directory, source, sink);
-      EXPECT_LT(source.MostUnsent, dsm::FragmentExchange::MaximumUnsentBytes);
+      EXPECT_LT(source.MostUnsent, dsm::BlockStream::MaximumUnsentBytes);
       EXPECT_EQ(source.MostUnsent > 0, messenger.GetRank() == 0);
       EXPECT_EQ(slow.Absorbed, slow.Expected);
     });
 }
 
 /// Aborts, as a user does in a progress dialog.
-TEST(FragmentExchange, ProgressThatThrowsEndsThePublicationForAll)
+TEST(BlockStream, ProgressThatThrowsEndsThePublicationForAll)
 {
   dsm_test::RunRanks(3,
     [](dsm::Messenger& messenger)
