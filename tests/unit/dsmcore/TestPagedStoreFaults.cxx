@@ -311,14 +311,28 @@ TEST_P(PagedStoreFaults, CommunicationThreadThatFaultsIsACrashNotAHang)
 
 TEST_P(PagedStoreFaults, ThreadThatDidNotEnterIsServedToo)
 {
-  InFrame(this->GetParam(),
-    [](dsm::PagedStore& store, const dsm::BlockSegment& segment, auto)
+  dsm_test::RunRanks(2,
+    [&](dsm::Messenger& messenger)
     {
-      std::size_t wrong = 1;
-      std::thread([&] { wrong = dsm_test::CountWrongBytes(5, FindRemote(segment, 0, 5), 5000); })
-        .join();
+      dsm::PagedStore store(messenger, this->GetParam().GetSettings(1 << 20, 1));
+      const auto segment =
+        dsm_test::PublishPattern(messenger, store, dsm_test::MakeDirectory(2, 8, 5000));
+      const bool reads = messenger.GetRank() == 0;
+      std::size_t wrong = 0;
+      dsm_test::RunFrame(messenger, store,
+        [&](dsm::PagedStore::Worker& worker, int)
+        {
+          wrong = dsm_test::Visit(store, worker, *segment, 0);
+          if (reads)
+          {
+            wrong += dsm_test::Visit(store, worker, *segment, 1);
+            std::thread(
+              [&] { wrong += dsm_test::CountWrongBytes(5, FindRemote(*segment, 0, 5), 5000); })
+              .join();
+          }
+        });
       EXPECT_EQ(wrong, 0u);
-      EXPECT_EQ(store.GetCounters().Workers.Misses, 2u);
+      EXPECT_EQ(store.GetCounters().Workers.Misses, reads ? 2u : 1u);
     });
 }
 
