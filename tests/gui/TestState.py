@@ -11,7 +11,7 @@ from paraview import simple
 
 SAMPLES = 64
 STATE = os.environ["DSM_TEST_STATE"]
-PATIENCE = 90.0  # seconds
+PATIENCE = 200.0  # seconds
 
 
 def say(text):

@@ -86,4 +86,10 @@ rows, columns = numpy.nonzero(changed)
 check(changed.mean() > 0.05 and rows.min() > 120, "the figures stand at the upper border")
 ranks = "1 rank," if get_ranks() == 1 else f"{get_ranks()} ranks,"
 check(ranks in summary and " ms, " in summary, f"and say: {summary!r}")
+check("samples" not in summary, "of one sample there is nothing to say")
+display.DSMSamplesPerPixel = 4
+render(view)
+display.SMProxy.UpdatePropertyInformation()
+summary = display.GetPropertyValue("DSMStatisticsSummary")
+check(" ms, 4 of 4 samples, " in summary, f"how many samples the picture has: {summary!r}")
 check("object based" in summary.lower(), "how the bricks are kept")

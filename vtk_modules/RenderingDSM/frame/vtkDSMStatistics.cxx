@@ -149,8 +149,11 @@ vtkStandardNewMacro(vtkDSMStatistics);
 vtkDSMStatistics::vtkDSMStatistics() = default;
 vtkDSMStatistics::~vtkDSMStatistics() = default;
 
-void vtkDSMStatistics::Gather(dsm::Messenger& messenger, const rt::Frame& frame)
+void vtkDSMStatistics::Gather(
+  dsm::Messenger& messenger, const rt::Frame& frame, int samples, int wanted)
 {
+  this->Samples = samples;
+  this->Wanted = wanted;
   RankRow mine{};
   mine.Rank = messenger.GetRank();
   vtksys::SystemInformation system;
@@ -294,8 +297,12 @@ std::string vtkDSMStatistics::GetSummary() const
   text << std::fixed << std::setprecision(1);
   const auto count = [](std::int64_t number, const char* what)
   { return std::to_string(number) + " " + what + (number == 1 ? "" : "s"); };
-  text << 1e3 * this->FrameSeconds << " ms, "
-       << count(static_cast<std::int64_t>(this->Rows.size()), "rank") << ", "
+  text << 1e3 * this->FrameSeconds << " ms, ";
+  if (this->Wanted > 1)
+  {
+    text << this->Samples << " of " << this->Wanted << " samples, ";
+  }
+  text << count(static_cast<std::int64_t>(this->Rows.size()), "rank") << ", "
        << count(sum.Threads, "thread") << "\n";
   text << this->Organization << ", MiB: " << toMebibytes(sum.BytesResident) << " owned,\n"
        << toMebibytes(sum.BytesCopied) << " copied, " << toMebibytes(sum.BytesShared) << " shared, "

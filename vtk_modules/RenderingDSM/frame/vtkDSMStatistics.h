@@ -31,9 +31,10 @@ public:
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
   /**
-   * Collective: every rank learns of every rank's counters.
+   * Collective: every rank learns of every rank's counters. `samples` of each pixel are there of those
+   * that are `wanted`.
    */
-  void Gather(dsm::Messenger& messenger, const rt::Frame& frame);
+  void Gather(dsm::Messenger& messenger, const rt::Frame& frame, int samples, int wanted);
 
   /**
    * No frame.
@@ -104,6 +105,8 @@ private:
   struct RankRow;
   struct WorkerRow;
   double FrameSeconds = 0.0;
+  int Samples = 0;
+  int Wanted = 0;
   std::string Explanation;
   std::string Organization;
   std::vector<RankRow> Rows;

@@ -211,7 +211,8 @@ void vtkDSMScene::Internals::Draw()
   }
   if (result == Result::Traced)
   {
-    this->Statistics->Gather(messenger, this->Accumulation.GetFrame());
+    this->Statistics->Gather(messenger, this->Accumulation.GetFrame(),
+      this->Accumulation.GetSamples(), this->Accumulation.GetWanted());
   }
   std::optional<rt::Picture> whole =
     this->Delivery.Gather(messenger, this->Accumulation.GetFrame());
