@@ -7,7 +7,7 @@
 
 #include "DSMRayTracing/frame/PixelRays.h"
 #include "DSMRayTracing/frame/TileGrid.h"
-#include "DSMRayTracing/volume/VolumeTracer.h"
+#include "DSMRayTracing/volume/IsosurfaceSearch.h"
 
 #include <nlohmann/json.hpp>
 
@@ -43,7 +43,7 @@ void TraceFrame(dsm::Messenger& messenger, Store& store, rt::WorkerPool& pool,
   AccessTiming::RunFrame<Store>(messenger, store, pool, store.GetSettings().Workers,
     [&](typename Store::Worker& worker, int)
     {
-      const rt::VolumeTracer<Store, Mode> tracer(store, worker);
+      const rt::IsosurfaceSearch<Store, Mode> tracer(store, worker);
       std::uint64_t hits = 0;
       for (int index; (index = next.fetch_add(messenger.GetSize())) < grid.GetCount();)
       {
@@ -52,7 +52,7 @@ void TraceFrame(dsm::Messenger& messenger, Store& store, rt::WorkerPool& pool,
         {
           for (int x = tile.X; x < tile.X + tile.Width; ++x)
           {
-            rt::SurfaceHit hit;
+            rt::IsosurfaceHit hit;
             hits += tracer.Intersect(object, rays.GetRay(x, y), hit) ? 1 : 0;
           }
         }

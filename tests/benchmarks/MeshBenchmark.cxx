@@ -7,7 +7,7 @@
 #include "DSMRayTracing/frame/FrameGather.h"
 #include "DSMRayTracing/frame/FrameRenderer.h"
 #include "DSMRayTracing/frame/PixelRays.h"
-#include "DSMRayTracing/mesh/MeshTracer.h"
+#include "DSMRayTracing/mesh/MeshSearch.h"
 #ifdef DSM_HAS_EMBREE
 #include "EmbreeMesh.h"
 #endif
@@ -96,7 +96,7 @@ FrameResult TraceFrames(const MeshBenchmark::Options& options,
   scene.Lights.emplace_back();
   rt::MeshObject object;
   object.Instance = std::make_shared<rt::MeshInstance>(mesh, glm::dmat4(1.0));
-  scene.Meshes.push_back(object);
+  scene.Objects.push_back(object);
   const Orbit orbit(*mesh);
   rt::FrameRenderer renderer(messenger);
   rt::Frame frame;
@@ -282,26 +282,22 @@ RayResult TraceOwnRays(const MeshBenchmark::Options& options, const Orbit& orbit
     [&](int worker)
     {
       auto session = std::make_shared<Session>(store, worker);
-      return [session, tracer = rt::MeshTracer<Store>(store, session->Self), &instance, together](
+      return [session, tracer = rt::MeshSearch<Store>(store, session->Self), &instance, together](
                const rt::Ray* rays, Mask wanted, double* t)
       {
-        rt::MeshHit hits[rt::MeshPacket::Size];
         if (!together)
         {
           return TraceOneByOne(rays, wanted, t,
             [&](const rt::Ray& ray, double& at)
             {
-              const bool found = tracer.Intersect(instance, ray, hits[0]);
-              at = hits[0].T;
+              rt::MeshHit hit;
+              const bool found = tracer.Intersect(instance, ray, hit);
+              at = hit.T;
               return found;
             });
         }
-        const Mask found = tracer.Intersect(instance, rays, wanted, hits);
-        for (Mask left = found; left != 0; left &= left - 1)
-        {
-          t[rt::GetLowest(left)] = hits[rt::GetLowest(left)].T;
-        }
-        return found;
+        return static_cast<Mask>(tracer.Intersect(
+          instance, rays, wanted, [=](int index, const rt::MeshHit& hit) { t[index] = hit.T; }));
       };
     });
   store.EndFrame();

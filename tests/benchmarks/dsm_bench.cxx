@@ -28,6 +28,7 @@
 #include <limits>
 #include <numeric>
 #include <sstream>
+#include <variant>
 
 namespace
 {
@@ -237,9 +238,9 @@ void RunIsosurface(const BenchmarkOptions& options, dsm::Messenger& messenger)
   dsm::BlockStore store(messenger, settings);
 
   rt::Scene scene;
-  scene.Isosurfaces.push_back(
+  scene.Objects.push_back(
     PublishBenchmarkVolume(options.Volume, options.BrickEdge, settings.Workers, store, messenger));
-  rt::IsosurfaceObject& object = scene.Isosurfaces.front();
+  auto& object = std::get<rt::IsosurfaceObject>(scene.Objects.front());
   object.Isovalues = options.Isovalues;
   std::sort(object.Isovalues.begin(), object.Isovalues.end());
   settings.CacheBytes = static_cast<std::size_t>(

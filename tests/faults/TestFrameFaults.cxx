@@ -28,6 +28,7 @@
 #include <thread>
 #include <tuple>
 #include <utility>
+#include <variant>
 #include <vector>
 
 namespace
@@ -181,7 +182,7 @@ private:
       this->Field->Lattice = this->Lattice;
       this->Scene = SphereScene::CreateScene(this->Field, 0.7f);
       this->Scene.Transport.Shadows = true;
-      this->Scene.Meshes.resize(1);
+      this->Scene.Objects.emplace_back(rt::MeshObject());
     }
     static constexpr int Points = 20;
     const rt::BrickLattice Lattice{ rt::Index3(Points), rt::ScalarType::Float32, false, 4 };
@@ -219,9 +220,10 @@ private:
       [&]
       {
         constexpr double middle = 0.5 * (Input::Points - 1);
-        input->Scene.Meshes[0].Instance = std::make_shared<rt::MeshInstance>(mesh,
-          glm::scale(glm::translate(glm::dmat4(1.0), glm::dvec3(middle, middle, 2.0 * middle)),
-            glm::dvec3(middle)));
+        std::get<rt::MeshObject>(input->Scene.Objects.back()).Instance =
+          std::make_shared<rt::MeshInstance>(mesh,
+            glm::scale(glm::translate(glm::dmat4(1.0), glm::dvec3(middle, middle, 2.0 * middle)),
+              glm::dvec3(middle)));
       });
     const rt::Frame frame =
       this->Renderer->Render(this->Store, input->Scene, SphereScene::CreateRequest(60, 40));

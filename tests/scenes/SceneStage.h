@@ -57,8 +57,7 @@ public:
   /// In how many parts the samples of a pixel are traced.
   std::vector<int> SampleParts{ 1 };
 
-  void Add(rt::IsosurfaceObject object) { this->World.Isosurfaces.push_back(std::move(object)); }
-  void Add(rt::MeshObject object) { this->World.Meshes.push_back(std::move(object)); }
+  void Add(rt::SceneObject object) { this->World.Objects.push_back(std::move(object)); }
 
   rt::Light& AddLight(const glm::dvec3& direction)
   {

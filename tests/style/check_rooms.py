@@ -23,8 +23,8 @@ FORBIDDEN = {
 ROOMS = {
     "DSMCore": ["base", "transport", "memory", "publish", "fetch", "table", "paged", "store"],
     "DSMRayTracing": [
-        "base", "accel", "layout", "build", "sample", "ray", "surface", "volume", "mesh", "light",
-        "scene", "schedule", "frame",
+        "base", "accel", "layout", "build", "sample", "ray", "surface", "object", "volume", "mesh",
+        "light", "scene", "schedule", "frame",
     ],
     "DSMVolumeFiles": ["base", "codec", "format", "cache", "range"],
     "RenderingDSM": ["base", "options", "ranks", "file", "data", "frame", "scene", "mapper"],

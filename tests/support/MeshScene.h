@@ -45,7 +45,7 @@ inline rt::Scene Create(dsm::Messenger& messenger, dsm::BlockStore& store)
   blob.BackSurface = blob.Surface;
   blob.BackSurface->DiffuseColor = { 0.1f, 0.2f, 1.0f };
   blob.Edges = rt::EdgeLines{ { 0.2f, 0.0f, 0.0f }, 1.1f };
-  scene.Meshes.push_back(blob);
+  scene.Objects.push_back(blob);
 
   const glm::dmat4 terrainToWorld = glm::scale(
     glm::rotate(glm::translate(glm::dmat4(1.0), glm::dvec3(0.0, 4.0, SphereScene::Points)),
@@ -67,7 +67,7 @@ inline rt::Scene Create(dsm::Messenger& messenger, dsm::BlockStore& store)
   colors->Table = { { 0.0f, 0.0f, 1.0f, 1.0f }, { 0.0f, 1.0f, 0.0f, 1.0f },
     { 1.0f, 0.0f, 0.0f, 1.0f } };
   terrain.Colors = colors;
-  scene.Meshes.push_back(terrain);
+  scene.Objects.push_back(terrain);
   return scene;
 }
 

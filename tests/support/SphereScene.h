@@ -79,7 +79,7 @@ inline rt::Scene CreateScene(const std::shared_ptr<rt::VoxelField>& field, float
   object.Field = field;
   object.Isovalues = { 0.3, 0.5 };
   object.Surface.Opacity = opacity;
-  scene.Isosurfaces.push_back(object);
+  scene.Objects.push_back(object);
   return scene;
 }
 

@@ -14,6 +14,7 @@
 
 #include <cmath>
 #include <mutex>
+#include <variant>
 
 namespace
 {
@@ -63,7 +64,7 @@ protected:
     rt::MeshObject object;
     object.Instance = std::make_shared<rt::MeshInstance>(
       MeshScene::Publish(mesh, this->Messenger, this->Store), glm::dmat4(1.0));
-    this->World.Meshes.push_back(object);
+    this->World.Objects.push_back(object);
   }
 
   static glm::dvec2 GetPlace(int x, int y)
@@ -92,7 +93,7 @@ protected:
 TEST_F(EnvironmentLight, OfAWhiteSphereIsThatOfItsNormals)
 {
   constexpr double radius = 0.7;
-  this->World.Isosurfaces = { FunctionVolume::Publish(
+  this->World.Objects = { FunctionVolume::Publish(
     65, [](const glm::dvec3& p) { return glm::length(p) - radius; }, this->Messenger,
     this->Store) };
   const glm::dvec3 up = glm::normalize(glm::dvec3(0.3, 1.0, 0.2));
@@ -119,7 +120,7 @@ TEST_F(EnvironmentLight, OfAWhiteSphereIsThatOfItsNormals)
 TEST_F(EnvironmentLight, IsAddedToThatOfLampsAndUntouchedWhereSurfacesAreNotLit)
 {
   this->AddFloorAndWall();
-  rt::Material& surface = this->World.Meshes.front().Surface;
+  rt::Material& surface = std::get<rt::MeshObject>(this->World.Objects.front()).Surface;
   surface.Diffuse = 0.4f;
   this->World.Transport.Surroundings = CreateEnvironment({ 0.0, 0.0, 1.0 });
   const glm::dvec3 alone = 0.4 * Mix(0.5 + 1.0 / 3.0);

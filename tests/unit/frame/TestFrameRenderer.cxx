@@ -14,6 +14,7 @@
 #include <random>
 #include <string>
 #include <tuple>
+#include <variant>
 
 namespace
 {
@@ -214,10 +215,13 @@ INSTANTIATE_TEST_SUITE_P(Differences, FrameThatDiffers,
     Difference{ "TileSize", [](auto& request, auto&) { request.TileSize = 8; } },
     Difference{ "Samples", [](auto& request, auto&) { request.Samples = 2; } },
     Difference{ "Layers", [](auto& request, auto&) { request.Layers = 3; } },
-    Difference{ "Objects", [](auto&, auto& scene) { scene.Isosurfaces.clear(); } },
-    Difference{ "Isovalue", [](auto&, auto& scene) { scene.Isosurfaces[0].Isovalues[1] = 0.6; } },
-    Difference{
-      "Look", [](auto&, auto& scene) { scene.Isosurfaces[0].Surface.DiffuseColor.y = 0.3f; } },
+    Difference{ "Objects", [](auto&, auto& scene) { scene.Objects.clear(); } },
+    Difference{ "Isovalue",
+      [](auto&, auto& scene)
+      { std::get<rt::IsosurfaceObject>(scene.Objects[0]).Isovalues[1] = 0.6; } },
+    Difference{ "Look",
+      [](auto&, auto& scene)
+      { std::get<rt::IsosurfaceObject>(scene.Objects[0]).Surface.DiffuseColor.y = 0.3f; } },
     Difference{ "Light", [](auto&, auto& scene) { scene.Lights[0].Color.x = 0.5f; } }),
   [](const auto& info) { return info.param.Name; });
 

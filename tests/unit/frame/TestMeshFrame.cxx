@@ -9,6 +9,7 @@
 
 #include <cmath>
 #include <mutex>
+#include <variant>
 
 namespace
 {
@@ -25,16 +26,15 @@ void Clip(rt::Scene& scene)
 {
   rt::ClipRegion region;
   region.HalfSpaces = { { { -1.0, -0.2, -0.6 }, glm::dvec3(0.5 * SphereScene::Points) } };
-  for (rt::MeshObject& object : scene.Meshes)
-  {
-    object.Clipping = region;
-  }
+  const auto clip = [&](auto& object) { object.Clipping = region; };
+  std::for_each(scene.Objects.begin() + 1, scene.Objects.end(),
+    [&](rt::SceneObject& mesh) { std::visit(clip, mesh); });
   rt::ClipRegion::Grid boxes;
   boxes.Lower = glm::dvec3(0.3 * SphereScene::Points);
   boxes.Upper = glm::dvec3(0.7 * SphereScene::Points);
   boxes.Kept = 0x7ffffff & ~(1u << 26 | 1u << 13 | 1u);
   region.Boxes = boxes;
-  scene.Isosurfaces.front().Clipping = region;
+  std::visit(clip, scene.Objects.front());
 }
 
 rt::Picture Trace(const Keeping& keeping, int ranks, int workers, bool clipped = false)
@@ -94,9 +94,14 @@ protected:
     return object;
   }
 
-  rt::Picture Trace(std::vector<rt::MeshObject> meshes)
+  rt::Picture Trace(const std::vector<rt::MeshObject>& meshes)
   {
-    this->World.Meshes = std::move(meshes);
+    std::vector<rt::SceneObject>& objects = this->World.Objects;
+    objects.erase(std::remove_if(objects.begin(), objects.end(),
+                    [](const rt::SceneObject& object)
+                    { return std::holds_alternative<rt::MeshObject>(object); }),
+      objects.end());
+    objects.insert(objects.end(), meshes.begin(), meshes.end());
     rt::FrameRequest request;
     request.Width = Size;
     request.Height = Size;
@@ -232,7 +237,7 @@ TEST_F(MeshPicture, IsosurfacesAndMeshesHideOneAnother)
 {
   const auto field = SphereScene::Publish(this->Messenger, this->Store);
   this->World = SphereScene::CreateScene(field, 1.0f);
-  rt::IsosurfaceObject& ball = this->World.Isosurfaces.front();
+  rt::IsosurfaceObject& ball = std::get<rt::IsosurfaceObject>(this->World.Objects.front());
   const double scale = 2.0 / (SphereScene::Points - 1);
   ball.SetIndexToWorld(glm::translate(glm::dmat4(1.0), glm::dvec3(-1.0)) *
     glm::scale(glm::dmat4(1.0), glm::dvec3(scale)));
@@ -475,7 +480,7 @@ TEST_F(MeshPicture, NoSurfaceShadowsItself)
     this->World.Lights[0].Direction = glm::normalize(glm::dvec3(1.0, 0.3, -0.02));
     this->World.Lights[0].Color = glm::vec3(40.0f);
     this->World.Transport.Shadows = true;
-    this->World.Meshes = { object };
+    this->World.Objects = { object };
     rt::FrameRequest request;
     request.Width = Size;
     request.Height = Size;

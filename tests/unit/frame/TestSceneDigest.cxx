@@ -10,7 +10,18 @@
 #include <memory>
 #include <optional>
 #include <set>
+#include <variant>
 #include <vector>
+
+namespace
+{
+
+rt::IsosurfaceObject& GetIsosurface(rt::Scene& scene)
+{
+  return std::get<rt::IsosurfaceObject>(scene.Objects.front());
+}
+
+} // namespace
 
 TEST(TestSceneDigest, ChangesWithAllThatThePictureShows)
 {
@@ -28,15 +39,15 @@ TEST(TestSceneDigest, ChangesWithAllThatThePictureShows)
         [](rt::Scene&, rt::FrameRequest& r) { r.Width = 41; },
         [](rt::Scene&, rt::FrameRequest& r) { r.Layers = 4; },
         [](rt::Scene&, rt::FrameRequest& r) { r.WorldToClip[3][0] += 1e-12; },
-        [](rt::Scene& s, rt::FrameRequest&) { s.Isosurfaces[0].Isovalues[0] += 1e-12; },
-        [](rt::Scene& s, rt::FrameRequest&) { s.Isosurfaces[0].Isovalues.push_back(1e3); },
-        [](rt::Scene& s, rt::FrameRequest&) { s.Isosurfaces[0].Surface.DiffuseColor.y = 0.1f; },
-        [](rt::Scene& s, rt::FrameRequest&) { s.Isosurfaces[0].Surface.Reflectivity = 0.5f; },
-        [](rt::Scene& s, rt::FrameRequest&) { s.Isosurfaces[0].IndexToWorld[3][1] += 1.0; },
-        [](rt::Scene& s, rt::FrameRequest&) { s.Isosurfaces.push_back(s.Isosurfaces[0]); },
+        [](rt::Scene& s, rt::FrameRequest&) { GetIsosurface(s).Isovalues[0] += 1e-12; },
+        [](rt::Scene& s, rt::FrameRequest&) { GetIsosurface(s).Isovalues.push_back(1e3); },
+        [](rt::Scene& s, rt::FrameRequest&) { GetIsosurface(s).Surface.DiffuseColor.y = 0.1f; },
+        [](rt::Scene& s, rt::FrameRequest&) { GetIsosurface(s).Surface.Reflectivity = 0.5f; },
+        [](rt::Scene& s, rt::FrameRequest&) { GetIsosurface(s).IndexToWorld[3][1] += 1.0; },
+        [](rt::Scene& s, rt::FrameRequest&) { s.Objects.push_back(s.Objects[0]); },
         [](rt::Scene& s, rt::FrameRequest&)
-        { s.Isosurfaces[0].Clipping.HalfSpaces.emplace_back(); },
-        [](rt::Scene& s, rt::FrameRequest&) { s.Isosurfaces[0].Clipping.Boxes.emplace(); },
+        { GetIsosurface(s).Clipping.HalfSpaces.emplace_back(); },
+        [](rt::Scene& s, rt::FrameRequest&) { GetIsosurface(s).Clipping.Boxes.emplace(); },
         [](rt::Scene& s, rt::FrameRequest&) { s.Lights.emplace_back(); },
         [](rt::Scene& s, rt::FrameRequest&) { s.Transport.Shadows = true; },
         [](rt::Scene& s, rt::FrameRequest&) { s.Transport.Background.z = 0.3f; },
@@ -44,7 +55,7 @@ TEST(TestSceneDigest, ChangesWithAllThatThePictureShows)
         [](rt::Scene& s, rt::FrameRequest&) { s.Transport.Surroundings.Upper.z = 0.3f; },
         [](rt::Scene& s, rt::FrameRequest&) { s.Transport.Surroundings.Up.x = 0.3; },
         [&](rt::Scene& s, rt::FrameRequest&)
-        { s.Isosurfaces[0].Field = SphereScene::Publish(messenger, store); },
+        { GetIsosurface(s).Field = SphereScene::Publish(messenger, store); },
       };
       for (const auto& change : changes)
       {
@@ -87,7 +98,8 @@ TEST(TestSceneDigest, ChangesWithWhatIsLaidOnAMesh)
         rt::Texture other = texture;
         change(other);
         rt::Scene textured = scene;
-        textured.Meshes.front().Picture = std::make_shared<rt::Texture>(other);
+        std::get<rt::MeshObject>(textured.Objects[1]).Picture =
+          std::make_shared<rt::Texture>(other);
         digests.insert(rt::GetSceneDigest(textured, request));
       }
       EXPECT_EQ(digests.size(), changes.size() + 1);
@@ -102,7 +114,7 @@ TEST(TestSceneDigest, ChangesWithWhatIsLaidOnAMesh)
       for (const auto& change : lines)
       {
         rt::Scene other = scene;
-        change(other.Meshes.front().Edges);
+        change(std::get<rt::MeshObject>(other.Objects[1]).Edges);
         digests.insert(rt::GetSceneDigest(other, request));
       }
       EXPECT_EQ(digests.size(), before + lines.size());

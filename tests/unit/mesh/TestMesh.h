@@ -8,7 +8,7 @@
 #include "DSMRayTracing/build/TriangleArrays.h"
 #include "DSMRayTracing/build/TriangleMeshBuilder.h"
 #include "DSMRayTracing/frame/FrameAgreement.h"
-#include "DSMRayTracing/mesh/MeshTracer.h"
+#include "DSMRayTracing/mesh/MeshSearch.h"
 
 #include <glm/geometric.hpp>
 #include <glm/vec3.hpp>
@@ -30,7 +30,13 @@ namespace TestMesh
 {
 
 using Mesh = rt::TriangleArrays<double>;
-using Tracer = rt::MeshTracer<dsm::ObjectStore>;
+using Tracer = rt::MeshSearch<dsm::ObjectStore>;
+
+/// What Tracer::Intersect gives the hits of a packet to.
+inline auto KeepIn(rt::MeshHit* hits)
+{
+  return [hits](int index, const rt::MeshHit& hit) { hits[index] = hit; };
+}
 
 /// A closed surface around the origin with radii between 0.7 and 1.3; 20 * 4^level triangles.
 inline Mesh CreateBlob(int level)

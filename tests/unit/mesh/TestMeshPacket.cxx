@@ -92,7 +92,7 @@ Tally ComparePackets(const rt::TriangleSource& mesh, const std::vector<Packet>& 
           const Packet& rays = packets[number];
           const rt::MeshPacket::Mask wanted = number % 3 == 0 ? 0xffffu : random() & 0xffffu;
           rt::MeshHit hits[rt::MeshPacket::Size];
-          const rt::MeshPacket::Mask found = tracer.Intersect(instance, rays.data(), wanted, hits);
+          const rt::RayMask found = tracer.Intersect(instance, rays.data(), wanted, KeepIn(hits));
           EXPECT_EQ(found & ~wanted, 0u);
           EXPECT_EQ(tracer.FindOccluded(instance, rays.data(), wanted), found);
           for (int lane = 0; lane < rt::MeshPacket::Size; ++lane)

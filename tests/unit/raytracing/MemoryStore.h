@@ -100,6 +100,15 @@ public:
     return segment;
   }
 
+  /// Says that none was absent.
+  bool Prefetch(const dsm::BlockSegment&, const dsm::BlockId* ids, std::size_t count)
+  {
+    this->Prefetched.insert(this->Prefetched.end(), ids, ids + count);
+    return false;
+  }
+
+  std::vector<dsm::BlockId> Prefetched; ///< what was asked for so far
+
   Pin Acquire(Worker& worker, const dsm::BlockSegment& segment, dsm::BlockId id)
   {
     if (worker.Pins != 0)

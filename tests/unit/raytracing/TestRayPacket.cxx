@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "DSMRayTracing/volume/PacketTracer.h"
+#include "DSMRayTracing/volume/IsosurfacePacketSearch.h"
 #include "TestVolume.h"
 
 #include <gtest/gtest.h>
@@ -75,26 +75,27 @@ Tally ComparePackets(const TestVolume<T>& volume, const std::vector<double>& iso
   MemoryStore store;
   MemoryStore::Worker worker;
   const rt::IsosurfaceObject object = CreateObject(store, volume, isovalues, edge);
-  const rt::VolumeTracer<MemoryStore> alone(store, worker);
+  const rt::IsosurfaceSearch<MemoryStore> alone(store, worker);
   Tally tally;
   for (const rt::PacketKernel& kernel : rt::PacketKernel::GetAll())
   {
     SCOPED_TRACE(kernel.Name);
-    const rt::PacketTracer<MemoryStore> tracer(store, worker, kernel);
+    const rt::IsosurfacePacketSearch<MemoryStore> tracer(store, worker, kernel);
     for (unsigned seed = 0; seed < 60; ++seed)
     {
       const Beam beam(volume.GetCells(), seed, seed % 2 == 0 ? 0.05 : 0.6);
-      const rt::BeamBricks bricks = tracer.FindBricks(object, beam.Corners);
+      rt::BeamBricks bricks = tracer.FindBricks(object, beam.Corners);
       tally.Shared += bricks.Usable;
-      rt::SurfaceHit hits[Beam::RayCount];
-      const rt::RayPacket::Mask wanted = seed % 5 == 0 ? 0x00009137ffffu
-        : seed % 5 == 1                                ? ~std::uint64_t{ 0 }
-                                                       : 0x80019137ffffu;
-      const rt::RayPacket::Mask found = tracer.Intersect(object, bricks, beam.Rays, wanted, hits);
+      rt::IsosurfaceHit hits[Beam::RayCount];
+      const rt::RayMask wanted = seed % 5 == 0 ? 0x00009137ffffu
+        : seed % 5 == 1                        ? ~std::uint64_t{ 0 }
+                                               : 0x80019137ffffu;
+      const rt::RayMask found = tracer.Intersect(object, bricks, beam.Rays, wanted,
+        [&](int index, const rt::IsosurfaceHit& hit) { hits[index] = hit; });
       for (int index = 0; index < Beam::RayCount; ++index)
       {
-        const rt::RayPacket::Mask bit = rt::RayPacket::Mask{ 1 } << index;
-        rt::SurfaceHit expected;
+        const rt::RayMask bit = rt::RayMask{ 1 } << index;
+        rt::IsosurfaceHit expected;
         const bool hit = (wanted & bit) != 0 && alone.Intersect(object, beam.Rays[index], expected);
         EXPECT_EQ((found & bit) != 0, hit) << "beam " << seed << ", ray " << index;
         if (hit && (found & bit) != 0)
@@ -147,12 +148,12 @@ void CompareOcclusion(const TestVolume<T>& volume, const std::vector<double>& is
   MemoryStore store;
   MemoryStore::Worker worker;
   const rt::IsosurfaceObject object = CreateObject(store, volume, isovalues, edge);
-  const rt::VolumeTracer<MemoryStore> alone(store, worker);
+  const rt::IsosurfaceSearch<MemoryStore> alone(store, worker);
   int counts[2] = { 0, 0 };
   for (const rt::PacketKernel& kernel : rt::PacketKernel::GetAll())
   {
     SCOPED_TRACE(kernel.Name);
-    const rt::PacketTracer<MemoryStore> tracer(store, worker, kernel);
+    const rt::IsosurfacePacketSearch<MemoryStore> tracer(store, worker, kernel);
     for (unsigned seed = 0; seed < 60; ++seed)
     {
       const auto rays = CreateLightRays(volume.GetCells(), seed, seed % 4 < 2);
@@ -162,7 +163,7 @@ void CompareOcclusion(const TestVolume<T>& volume, const std::vector<double>& is
       {
         SCOPED_TRACE(testing::Message() << "rays " << seed << ", ray " << index);
         const bool isWanted = (wanted >> index & 1) != 0;
-        rt::SurfaceHit hit;
+        rt::IsosurfaceHit hit;
         const bool isOccluded = alone.IsOccluded(object, rays[index]);
         EXPECT_EQ(isOccluded, alone.Intersect(object, rays[index], hit));
         EXPECT_EQ((occluded >> index & 1) != 0, isWanted && isOccluded);

@@ -2,7 +2,6 @@
 #include "DSMRayTracing/frame/BeamHistory.h"
 
 #include <algorithm>
-#include <iterator>
 #include <limits>
 
 namespace rt
@@ -33,8 +32,7 @@ std::size_t BeamHistory::GetPlace(int column, int row, std::size_t object) const
   return (static_cast<std::size_t>(row) * this->Columns + column) * this->Objects + object;
 }
 
-std::vector<dsm::BlockId> BeamHistory::Predict(
-  int x, int y, std::size_t object, const BeamBricks& bricks) const
+std::size_t BeamHistory::Predict(int x, int y, std::size_t object) const
 {
   const int column = x / Edge;
   const int row = y / Edge;
@@ -54,18 +52,13 @@ std::vector<dsm::BlockId> BeamHistory::Predict(
       }
     }
   }
-  const std::size_t mean = known > 0 ? (sum + known / 2) / known : 0;
-  const auto first = bricks.Bricks.begin();
-  std::vector<dsm::BlockId> ids;
-  std::transform(first, first + static_cast<std::ptrdiff_t>(std::min(mean, bricks.Bricks.size())),
-    std::back_inserter(ids), [](const BeamBricks::Brick& brick) { return brick.Id; });
-  return ids;
+  return known > 0 ? (sum + known / 2) / known : 0;
 }
 
-void BeamHistory::Record(int x, int y, std::size_t object, const BeamBricks& bricks)
+void BeamHistory::Record(int x, int y, std::size_t object, std::size_t reached)
 {
   constexpr std::size_t most = std::numeric_limits<Depth>::max();
-  const auto depth = static_cast<Depth>(std::min(bricks.Reached + 1, most));
+  const auto depth = static_cast<Depth>(std::min(reached + 1, most));
   std::atomic<Depth>& now = this->Now[this->GetPlace(x / Edge, y / Edge, object)];
   // Two workers that meet here, with parts of one tile, lose nothing but a guess.
   now.store(std::max(now.load(std::memory_order_relaxed), depth), std::memory_order_relaxed);

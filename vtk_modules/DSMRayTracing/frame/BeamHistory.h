@@ -2,9 +2,6 @@
 #ifndef rt_BeamHistory_h
 #define rt_BeamHistory_h
 
-#include "DSMCore/base/Block.h"
-#include "DSMRayTracing/volume/BeamBricks.h"
-
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
@@ -13,7 +10,7 @@
 namespace rt
 {
 
-/// How many bricks each beam of a view's last frames went through, from the front of its BeamBricks, as
+/// How many bricks each beam of a view's last frames went through, from its front, as
 /// far as this rank traced it: what the beams around it foretell of a beam, whatever bricks it crosses
 /// now. A byte for each beam and object. No pixel depends on it, only what is fetched ahead.
 ///
@@ -25,14 +22,13 @@ public:
   /// counts when its picture was as large and had as many objects.
   BeamHistory(int width, int height, std::size_t objects, const BeamHistory* last = nullptr);
 
-  /// The bricks that an object's beam at a pixel will probably need: as many, from the front, as the
+  /// How many bricks, from the front, an object's beam at a pixel will probably need: as many as the
   /// beams there and around it went through on the mean, those of this frame where they are traced. None
   /// where nothing is known.
-  std::vector<dsm::BlockId> Predict(
-    int x, int y, std::size_t object, const BeamBricks& bricks) const;
+  std::size_t Predict(int x, int y, std::size_t object) const;
 
-  /// What an object's beam at a pixel has come to (BeamBricks::Reached).
-  void Record(int x, int y, std::size_t object, const BeamBricks& bricks);
+  /// What an object's beam at a pixel has come to (ObjectBeam::Reached).
+  void Record(int x, int y, std::size_t object, std::size_t reached);
 
   /// Pixels along the edge of a square whose beams share a record.
   static constexpr int Edge = 16;

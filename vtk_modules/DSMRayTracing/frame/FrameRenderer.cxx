@@ -7,8 +7,8 @@
 #include "DSMRayTracing/frame/PixelRays.h"
 #include "DSMRayTracing/frame/SceneDigest.h"
 #include "DSMRayTracing/frame/TileGrid.h"
+#include "DSMRayTracing/frame/TileSampler.h"
 #include "DSMRayTracing/frame/TileSource.h"
-#include "DSMRayTracing/frame/TileTracer.h"
 
 #include <time.h>
 
@@ -312,8 +312,8 @@ void FrameRenderer::TraceTiles(Store& store, bool agreed, dsm::WorkerSlots& slot
     rays.emplace(request);
     if (store.MayPrefetch())
     {
-      beams = std::make_shared<BeamHistory>(
-        request.Width, request.Height, scene.Isosurfaces.size(), last);
+      beams =
+        std::make_shared<BeamHistory>(request.Width, request.Height, scene.Objects.size(), last);
     }
     plan = makePlan();
     mine = plan.Mine;
@@ -329,7 +329,8 @@ void FrameRenderer::TraceTiles(Store& store, bool agreed, dsm::WorkerSlots& slot
     {
       std::uint64_t misses = 0; // of the tiles before
       bool looksAhead = true;   // as long as bricks are absent
-      const TileTracer<Store> tracer(store, worker, scene, *rays, request, beams.get());
+      const ObjectTracers objects = CreateObjectTracers(store, worker, scene);
+      const TileSampler sampler(objects, scene, *rays, request, beams.get());
       while (std::optional<Tile> tile = tiles.Pop(slots))
       {
         const double tileStart = GetThreadSeconds();
@@ -337,9 +338,9 @@ void FrameRenderer::TraceTiles(Store& store, bool agreed, dsm::WorkerSlots& slot
         if (beams && looksAhead)
         {
           const std::optional<Tile> later = tiles.Peek(LeadOfWorker * workers);
-          looksAhead = later && tracer.Prefetch(*later);
+          looksAhead = later && sampler.Prefetch(*later);
         }
-        tracer.Trace(*tile);
+        sampler.Trace(*tile);
         store.Leave(worker);
         tile->Seconds = GetThreadSeconds() - tileStart;
         const std::uint64_t before = std::exchange(misses, store.GetMisses(worker));
@@ -347,7 +348,7 @@ void FrameRenderer::TraceTiles(Store& store, bool agreed, dsm::WorkerSlots& slot
         looksAhead = looksAhead || misses > before;
         tile->IsNew = tile->IsNew ||
           (plan.HasHistory && !std::binary_search(mine.begin(), mine.end(), tile->Index));
-        tracer.Finish(*tile, GetTint(scene.View, this->Messenger.GetRank(), *tile));
+        sampler.Finish(*tile, GetTint(scene.View, this->Messenger.GetRank(), *tile));
         tilesOfWorker[index].push_back(std::move(*tile));
         slots.LetOthersResume();
       }

@@ -3,7 +3,7 @@
 #define rt_PixelRays_h
 
 #include "DSMRayTracing/frame/FrameRequest.h"
-#include "DSMRayTracing/volume/VolumeTracer.h"
+#include "DSMRayTracing/ray/Ray.h"
 
 #include <glm/mat4x3.hpp>
 #include <glm/mat4x4.hpp>

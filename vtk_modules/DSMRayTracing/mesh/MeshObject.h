@@ -15,9 +15,16 @@
 namespace rt
 {
 
+class ObjectDigest;
+template <class Store>
+class MeshTracer;
+
 /// The triangles of one mesh at one place.
 struct MeshObject
 {
+  template <class Store>
+  using Tracer = MeshTracer<Store>;
+
   /// Where a point of the surface has its colour from.
   enum class Coloring
   {
@@ -39,6 +46,12 @@ struct MeshObject
   std::optional<Material> BackSurface;
   std::optional<EdgeLines> Edges;
   ClipRegion Clipping;
+
+  /// Whether it lets no light through anywhere. Colours of its own and a texture are not looked through:
+  /// with such it may.
+  bool IsOpaque() const;
+  /// All that a picture of it depends on.
+  void AddTo(ObjectDigest& digest) const;
 };
 
 } // namespace rt

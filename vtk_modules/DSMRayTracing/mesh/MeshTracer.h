@@ -2,59 +2,120 @@
 #ifndef rt_MeshTracer_h
 #define rt_MeshTracer_h
 
-#include "DSMCore/base/Block.h"
-#include "DSMRayTracing/mesh/MeshHit.h"
-#include "DSMRayTracing/mesh/MeshInstance.h"
-#include "DSMRayTracing/mesh/MeshKernel.h"
-#include "DSMRayTracing/mesh/MeshPacket.h"
-#include "DSMRayTracing/ray/Ray.h"
+#include "DSMRayTracing/mesh/MeshObject.h"
+#include "DSMRayTracing/mesh/MeshSearch.h"
+#include "DSMRayTracing/object/ObjectTracer.h"
+
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
+
+#include <cstddef>
+#include <memory>
 
 namespace rt
 {
 
-/// Finds the hits of meshes through a store: walks the hierarchy over the bricks front to back,
-/// acquires each brick whose box a ray meets before its nearest hit so far, and searches it. Pure:
-/// the result depends on the ray and the mesh only; see ComesFirst for hits at the same T. One for
-/// each worker: it holds at most one pin, and none while it acquires or when a call returns.
+/// A mesh as an object that rays meet. Rays need have nothing in common to be searched as packets, so it
+/// has no use for beams; its bricks are not foreseen.
 template <class Store>
-class MeshTracer
+class MeshTracer final : public ObjectTracer
 {
 public:
-  MeshTracer(
-    Store& store, typename Store::Worker& worker, const MeshKernel& kernel = MeshKernel::GetBest())
-    : Blocks(store)
-    , Self(worker)
-    , Kernel(kernel)
+  /// Keeps references.
+  MeshTracer(Store& store, typename Store::Worker& worker, const MeshObject& object)
+    : Object(object)
+    , Search(store, worker)
   {
   }
 
-  /// The first hit in [ray.Min, ray.Max]. May wait for bricks.
-  bool Intersect(const MeshInstance& instance, const Ray& ray, MeshHit& hit) const;
+  bool IsOpaque() const override { return this->Object.IsOpaque(); }
 
-  /// Intersect for those of MeshPacket::Size rays that are `wanted`, with the same results. Returns
-  /// those that hit something. A brick is acquired once for all that meet it.
-  MeshPacket::Mask Intersect(
-    const MeshInstance& instance, const Ray* rays, MeshPacket::Mask wanted, MeshHit* hits) const;
+  std::unique_ptr<ObjectBeam> FindBeam(const Ray*) const override { return nullptr; }
+  bool Prefetch(const ObjectBeam&, std::size_t) const override { return false; }
 
-  /// Whether there is any hit in [ray.Min, ray.Max]: whether Intersect finds one. May wait for
-  /// bricks.
-  bool IsOccluded(const MeshInstance& instance, const Ray& ray) const;
+  void FindNext(Ray* rays, RayMask wanted, ObjectBeam*, ObjectHit* nearest) const override
+  {
+    const auto take = [&](int index, const MeshHit& hit)
+    { nearest[index].Take(*this, hit, rays[index]); };
+    this->Object.Clipping.SearchParts(rays, wanted,
+      [&](const Ray* parts, RayMask some)
+      { return this->Search.Intersect(*this->Object.Instance, parts, some, take); });
+  }
 
-  /// The same for those of MeshPacket::Size rays that are `wanted`.
-  MeshPacket::Mask FindOccluded(
-    const MeshInstance& instance, const Ray* rays, MeshPacket::Mask wanted) const;
+  RayMask FindOccluded(const Ray* rays, RayMask wanted) const override
+  {
+    return this->Object.Clipping.SearchParts(rays, wanted,
+      [&](const Ray* parts, RayMask some)
+      { return this->Search.FindOccluded(*this->Object.Instance, parts, some); });
+  }
+
+  void Describe(const ObjectHit& nearest, const Ray& ray, SurfacePoint& point) const override
+  {
+    const auto& hit = nearest.Get<MeshHit>();
+    const MeshObject& object = this->Object;
+    point.T = hit.T;
+    point.Position = ray.Origin + hit.T * ray.Direction;
+    point.Normal = object.Flat ? hit.GeometricNormal : hit.Normal;
+    // The triangle tells the side; the points' normals may point to either.
+    const bool agrees = glm::dot(point.Normal, hit.GeometricNormal) >= 0.0;
+    point.Facing = agrees == hit.Front ? point.Normal : -point.Normal;
+    point.Surface = !hit.Front && object.BackSurface ? &*object.BackSurface : &object.Surface;
+    point.ColorIsFromArray = object.ColoredBy != MeshObject::Coloring::Material;
+    point.Color = this->GetColor(hit, *point.Surface);
+    if (object.Picture)
+    {
+      point.Color *= object.Picture->Sample(hit.TextureCoordinate);
+      point.ColorIsFromArray = true;
+    }
+    point.Color.w *= point.Surface->Opacity;
+    const glm::dvec3 distance = glm::abs(point.Position) + glm::abs(ray.Origin);
+    point.Clearance = object.Instance->GetResolution(hit.Corners) +
+      HitError * (distance.x + distance.y + distance.z);
+    point.Edges = object.Edges ? &*object.Edges : nullptr;
+    if (point.Edges)
+    {
+      point.EdgeFlags = hit.EdgeFlags;
+      for (int corner = 0; corner < 3; ++corner)
+      {
+        point.Corners[corner] = object.Instance->Place(hit.Corners[corner]);
+      }
+    }
+  }
+
+  Brick FindBrick(const ObjectHit& hit) const override
+  {
+    return { this->Object.Instance->GetMesh().Segment.get(), hit.Get<MeshHit>().Brick };
+  }
 
 private:
-  class PacketVisitor;
-  class OcclusionVisitor;
+  /// Of the distances of a mesh's hit and of its ray's origin from the origin of the world: what the
+  /// test in double precision can be off by, a few 1e-16 of them, and enough for rays at low angles.
+  static constexpr double HitError = 1e-13;
 
-  Store& Blocks;
-  typename Store::Worker& Self;
-  const MeshKernel& Kernel;
+  glm::vec4 GetColor(const MeshHit& hit, const Material& surface) const
+  {
+    switch (this->Object.ColoredBy)
+    {
+      case MeshObject::Coloring::Values:
+        return this->Object.Colors->Map(hit.Value);
+      case MeshObject::Coloring::CornerValues:
+        return static_cast<float>(hit.Weights[0]) * this->Object.Colors->Map(hit.CornerValues[0]) +
+          static_cast<float>(hit.Weights[1]) * this->Object.Colors->Map(hit.CornerValues[1]) +
+          static_cast<float>(hit.Weights[2]) * this->Object.Colors->Map(hit.CornerValues[2]);
+      case MeshObject::Coloring::Colors:
+        return hit.Color;
+      case MeshObject::Coloring::Material:
+        break;
+    }
+    return glm::vec4(surface.DiffuseColor, 1.0f);
+  }
+
+  const MeshObject& Object;
+  MeshSearch<Store> Search;
 };
 
 } // namespace rt
-
-#include "DSMRayTracing/mesh/MeshTracer.txx"
 
 #endif

@@ -3,6 +3,7 @@
 #define rt_ClipRegion_h
 
 #include "DSMRayTracing/ray/Ray.h"
+#include "DSMRayTracing/ray/RayMask.h"
 
 #include <glm/mat4x4.hpp>
 #include <glm/vec3.hpp>
@@ -58,28 +59,39 @@ public:
   /// borders by a few roundings, so that a surface that lies in a border is seen whole.
   int FindParts(const Ray& ray, Interval parts[MaxParts]) const;
 
-  /// Calls `find(ray)` for each part, in order, until one says that it has found something; returns
-  /// whether one has.
-  template <class Find>
-  bool FindFirst(const Ray& ray, Find&& find) const
+  /// Searches what is kept of the `wanted` ones of a batch of rays: calls `search(rays, some)` for the
+  /// first parts of the rays, then for the second ones of those that have not found anything, and so on;
+  /// it returns those that have found something, as this does.
+  template <class Search>
+  RayMask SearchParts(const Ray* rays, RayMask wanted, const Search& search) const
   {
     if (this->KeepsAll())
     {
-      return find(ray);
+      return search(rays, wanted);
     }
-    Interval parts[MaxParts];
-    const int count = this->FindParts(ray, parts);
-    for (int number = 0; number < count; ++number)
-    {
-      Ray part = ray;
-      part.Min = parts[number].First;
-      part.Max = parts[number].Last;
-      if (find(part))
+    Interval intervals[MaxRays][MaxParts];
+    int counts[MaxRays];
+    Ray parts[MaxRays];
+    ForEachRay(wanted,
+      [&](int index)
       {
-        return true;
-      }
+        counts[index] = this->FindParts(rays[index], intervals[index]);
+        parts[index] = rays[index];
+      });
+    RayMask found = 0;
+    RayMask left = wanted;
+    for (int number = 0; number < MaxParts && left != 0; ++number)
+    {
+      left = FindRays(left & ~found, [&](int index) { return number < counts[index]; });
+      ForEachRay(left,
+        [&](int index)
+        {
+          parts[index].Min = intervals[index][number].First;
+          parts[index].Max = intervals[index][number].Last;
+        });
+      found |= left != 0 ? search(parts, left) : 0;
     }
-    return false;
+    return found;
   }
 };
 

@@ -3,6 +3,7 @@
 #define rt_RayPacket_h
 
 #include "DSMRayTracing/ray/CellHit.h"
+#include "DSMRayTracing/ray/RayMask.h"
 
 #include <cstdint>
 
@@ -15,9 +16,8 @@ namespace rt
 /// finds does not depend on the others.
 struct RayPacket
 {
-  static constexpr int Size = 64;
-  /// Bit i is ray i.
-  using Mask = std::uint64_t;
+  static constexpr int Size = MaxRays;
+  using Mask = RayMask;
 
   alignas(64) double Origin[3][Size];
   alignas(64) double Direction[3][Size];
@@ -57,18 +57,6 @@ struct PacketHits
     return hit;
   }
 };
-
-/// The number of the first ray of a mask, which is not empty.
-inline int GetLowest(std::uint64_t rays)
-{
-  return __builtin_ctzll(rays);
-}
-
-/// Of the rays of a mask those from `first` on, at most 31.
-inline std::uint32_t GetPart(std::uint64_t rays, int first, int count)
-{
-  return static_cast<std::uint32_t>(rays >> first) & ((std::uint32_t{ 1 } << count) - 1);
-}
 
 } // namespace rt
 

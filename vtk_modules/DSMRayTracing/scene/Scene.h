@@ -4,10 +4,11 @@
 
 #include "DSMRayTracing/light/Light.h"
 #include "DSMRayTracing/light/LightTransport.h"
-#include "DSMRayTracing/mesh/MeshObject.h"
 #include "DSMRayTracing/scene/DebugView.h"
-#include "DSMRayTracing/volume/IsosurfaceObject.h"
+#include "DSMRayTracing/scene/SceneObject.h"
 
+#include <algorithm>
+#include <variant>
 #include <vector>
 
 namespace rt
@@ -16,11 +17,18 @@ namespace rt
 /// All that one frame shows.
 struct Scene
 {
-  std::vector<IsosurfaceObject> Isosurfaces;
-  std::vector<MeshObject> Meshes;
+  std::vector<SceneObject> Objects;
   std::vector<Light> Lights;
   LightTransport Transport;
   DebugView View = DebugView::Off;
+
+  /// Whether no object lets light through.
+  bool IsOpaque() const
+  {
+    return std::all_of(this->Objects.begin(), this->Objects.end(),
+      [](const SceneObject& object)
+      { return std::visit([](const auto& known) { return known.IsOpaque(); }, object); });
+  }
 };
 
 } // namespace rt

@@ -33,4 +33,11 @@ glm::vec4 ColorMap::Map(double value) const
   return this->Table[entry];
 }
 
+bool ColorMap::IsOpaque() const
+{
+  const auto isOpaque = [](const glm::vec4& color) { return color.w >= 1.0f; };
+  return isOpaque(this->Below) && isOpaque(this->Above) && isOpaque(this->NotANumber) &&
+    std::all_of(this->Table.begin(), this->Table.end(), isOpaque);
+}
+
 } // namespace rt

@@ -23,6 +23,8 @@ struct ColorMap
   glm::vec4 NotANumber{ 0.0f };
 
   glm::vec4 Map(double value) const;
+  /// Whether it has no colour that light gets through.
+  bool IsOpaque() const;
 };
 
 } // namespace rt

@@ -3,8 +3,8 @@
 #define rt_BeamBricks_h
 
 #include "DSMCore/base/Block.h"
+#include "DSMRayTracing/object/ObjectBeam.h"
 
-#include <cstddef>
 #include <vector>
 
 namespace rt
@@ -13,7 +13,7 @@ namespace rt
 /// The bricks that may hold what rays look for, and that rays of a beam may meet: what the rays of a tile
 /// have in common, so that each need not walk the levels above the bricks. The order is front to
 /// back for every ray of the beam. Made by BeamDescent.
-struct BeamBricks
+struct BeamBricks final : ObjectBeam
 {
   struct Brick
   {
@@ -22,14 +22,11 @@ struct BeamBricks
     double Upper[3]; ///< the planes at its end; the volume's end may come before
   };
 
-  /// False: the rays cannot be treated alike; the list is empty, and means nothing.
-  bool Usable = false;
   /// Whether all rays move towards larger coordinates.
   bool Forward[3] = { false, false, false };
-  std::vector<Brick> Bricks;
-  /// How many of them, from the front, rays have come to so far: told by PacketTracer::Intersect. Belongs
-  /// to the worker that has the beam.
-  mutable std::size_t Reached = 0;
+  std::vector<Brick> Bricks; ///< where the beam is not usable, it is empty, and means nothing
+
+  bool MayMeet() const override { return !this->Usable || !this->Bricks.empty(); }
 };
 
 } // namespace rt

@@ -16,9 +16,16 @@
 namespace rt
 {
 
+class ObjectDigest;
+template <class Store>
+class IsosurfaceTracer;
+
 /// Isosurfaces of one volume.
 struct IsosurfaceObject
 {
+  template <class Store>
+  using Tracer = IsosurfaceTracer<Store>;
+
   /// Point index space (sample (i,j,k) at (i,j,k) of the lattice) to world; affine, invertible.
   glm::dmat4 IndexToWorld{ 1.0 };
   /// Its inverse; SetIndexToWorld keeps the two together.
@@ -38,6 +45,11 @@ struct IsosurfaceObject
   ColorMap Colors;
   Material Surface;
   ClipRegion Clipping;
+
+  /// Whether they let no light through anywhere.
+  bool IsOpaque() const;
+  /// All that a picture of them depends on.
+  void AddTo(ObjectDigest& digest) const;
 };
 
 } // namespace rt

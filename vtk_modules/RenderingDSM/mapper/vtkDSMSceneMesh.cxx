@@ -274,7 +274,7 @@ void vtkDSMSceneMesh::AddTo(rt::Scene& scene)
     rt::MeshObject object = this->CreateObject(part, actor);
     if (object.Surface.Opacity > 0.0f || (object.BackSurface && object.BackSurface->Opacity > 0.0f))
     {
-      scene.Meshes.push_back(std::move(object));
+      scene.Objects.push_back(std::move(object));
     }
   }
 }

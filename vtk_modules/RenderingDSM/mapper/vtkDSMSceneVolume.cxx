@@ -385,7 +385,7 @@ void vtkDSMSceneVolume::AddTo(rt::Scene& scene)
         object.ColorField = this->Color->Fields[lattice];
         object.Colors = *this->SampleColors(this->Mapper->GetLookupTable());
       }
-      scene.Isosurfaces.push_back(std::move(object));
+      scene.Objects.push_back(std::move(object));
     }
   }
 }

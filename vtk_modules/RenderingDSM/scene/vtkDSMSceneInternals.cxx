@@ -4,8 +4,6 @@
 #include "vtkDSMFrameNotes.h"
 #include "vtkDSMTranslation.h"
 
-#include "DSMRayTracing/scene/Occluders.h"
-
 #include "vtkBoundingBox.h"
 #include "vtkMatrix4x4.h"
 #include "vtkPropCollection.h"
@@ -18,6 +16,7 @@
 #include <cstring>
 #include <optional>
 #include <utility>
+#include <variant>
 #include <vector>
 
 namespace
@@ -44,12 +43,6 @@ bool IsNearly(const glm::dmat4& a, const glm::dmat4& b)
     largest = std::max(largest, std::abs(one));
   }
   return difference <= tolerance * largest;
-}
-
-/// Whether anything may be seen through what the tracer draws.
-bool IsTranslucent(const rt::Scene& scene)
-{
-  return !rt::Occluders(scene).AreAll();
 }
 
 } // namespace
@@ -176,7 +169,7 @@ void vtkDSMScene::Internals::Draw()
       request = vtkDSMTranslation::ToRequest(this->Renderer, projection);
       request.Scheduling = this->Settings.Scheduling;
     });
-  if (scene.Isosurfaces.empty() && scene.Meshes.empty())
+  if (scene.Objects.empty())
   {
     this->Clear();
     return;
@@ -185,11 +178,12 @@ void vtkDSMScene::Internals::Draw()
   const int reduction = this->GetReduction(request);
   request.Width = (request.Width + reduction - 1) / reduction;
   request.Height = (request.Height + reduction - 1) / reduction;
-  for (rt::MeshObject& mesh : scene.Meshes)
+  for (rt::SceneObject& object : scene.Objects)
   {
-    if (mesh.Edges)
+    auto* const mesh = std::get_if<rt::MeshObject>(&object);
+    if (mesh && mesh->Edges)
     {
-      mesh.Edges->Width /= static_cast<float>(reduction); // as wide on the screen
+      mesh->Edges->Width /= static_cast<float>(reduction); // as wide on the screen
     }
   }
   const int wanted = this->Members.GetSamplesPerPixel();
@@ -289,7 +283,7 @@ void vtkDSMScene::Internals::AgreeOnView(rt::Scene& scene, rt::FrameRequest& req
   };
   const bool canBeApart = this->Delivery.CanSeparate(this->Group->GetMessenger().GetSize());
   const bool isApart =
-    canBeApart && IsTranslucent(scene) && this->Members.AreBesideOthers(this->Renderer);
+    canBeApart && !scene.IsOpaque() && this->Members.AreBesideOthers(this->Renderer);
   std::vector<std::byte> mine =
     dsm::Encode(View{ request.WorldToClip, this->Background, isApart ? 1u : 0u });
   for (const rt::Light& light : scene.Lights)
@@ -355,7 +349,7 @@ vtkDSMFrameAccumulation::Pace vtkDSMScene::Internals::GetPace() const
 void vtkDSMScene::Internals::KeepProp(const rt::Scene& scene)
 {
   const bool mustBeLast =
-    IsTranslucent(scene) && this->Renderer->GetViewProps()->GetLastProp() != this->Prop;
+    !scene.IsOpaque() && this->Renderer->GetViewProps()->GetLastProp() != this->Prop;
   if (mustBeLast || !this->Renderer->HasViewProp(this->Prop))
   {
     this->Renderer->RemoveViewProp(this->Prop);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Oracle.h"
 #include "RandomRays.h"
+#include "SearchBench.h"
 #include "TestVolume.h"
-#include "TracerBench.h"
 
 #include <gtest/gtest.h>
 
@@ -44,7 +44,7 @@ template <class T>
 void ExpectNoHoles(double isovalue, int edge, unsigned seed)
 {
   const auto volume = CreateClosedNoise<T>(9, seed);
-  TracerBench bench;
+  SearchBench bench;
   const auto object = CreateObject(bench.Store, volume, { isovalue }, edge);
   RandomRays generator(volume.GetCells(), seed);
   int rays = 0;
@@ -55,7 +55,7 @@ void ExpectNoHoles(double isovalue, int edge, unsigned seed)
     {
       target = glm::round(target);
     }
-    if (!(bench.Tracer.Sample(*object.Field, target) >= isovalue))
+    if (!(bench.Search.Sample(*object.Field, target) >= isovalue))
     {
       continue;
     }
@@ -69,22 +69,22 @@ void ExpectNoHoles(double isovalue, int edge, unsigned seed)
     {
       outside += 40.0 * glm::round(glm::dvec3(generator.Get(-2, 2), generator.Get(-2, 2), 3.0));
     }
-    rt::SurfaceHit hit;
-    ASSERT_TRUE(bench.Tracer.Intersect(object, CreateRay(outside, target), hit)) << i;
-    ASSERT_TRUE(bench.Tracer.Intersect(object, CreateRay(target, outside), hit)) << i;
+    rt::IsosurfaceHit hit;
+    ASSERT_TRUE(bench.Search.Intersect(object, CreateRay(outside, target), hit)) << i;
+    ASSERT_TRUE(bench.Search.Intersect(object, CreateRay(target, outside), hit)) << i;
   }
   EXPECT_GT(rays, 2000);
 }
 
 } // namespace
 
-TEST(TestVolumeTracerCases, ClosedSurfacesHaveNoHoles)
+TEST(TestIsosurfaceSearchCases, ClosedSurfacesHaveNoHoles)
 {
   ExpectNoHoles<float>(0.5, 4, 1);
   ExpectNoHoles<double>(0.1, 3, 2);
 }
 
-TEST(TestVolumeTracerCases, ClosedSurfacesThroughEqualSamplesHaveNoHoles)
+TEST(TestIsosurfaceSearchCases, ClosedSurfacesThroughEqualSamplesHaveNoHoles)
 {
   ExpectNoHoles<float>(0.0, 4, 3);
   ExpectNoHoles<std::int8_t>(0.0, 5, 4);
@@ -92,20 +92,20 @@ TEST(TestVolumeTracerCases, ClosedSurfacesThroughEqualSamplesHaveNoHoles)
   ExpectNoHoles<std::int64_t>(2.0, 8, 6);
 }
 
-TEST(TestVolumeTracerCases, SidesAlternateAlongARay)
+TEST(TestIsosurfaceSearchCases, SidesAlternateAlongARay)
 {
   // Every hit of a ray, one after the other: into the inside, out of it, and so on.
   const auto volume = CreateClosedNoise<float>(9, 7);
-  TracerBench bench;
+  SearchBench bench;
   const auto object = CreateObject(bench.Store, volume, { 0.25 }, 4);
   RandomRays generator(volume.GetCells(), 8);
   for (int i = 0; i < 2000; ++i)
   {
     rt::Ray ray = generator.Create(RandomRays::Kind::Through);
-    rt::SurfaceHit hit;
+    rt::IsosurfaceHit hit;
     int hits = 0;
     double last = -1.0;
-    while (bench.Tracer.Intersect(object, ray, hit))
+    while (bench.Search.Intersect(object, ray, hit))
     {
       ASSERT_GT(hit.T, last);
       last = hit.T;
@@ -116,10 +116,10 @@ TEST(TestVolumeTracerCases, SidesAlternateAlongARay)
   }
 }
 
-TEST(TestVolumeTracerCases, HitsDoNotDependOnTheBricks)
+TEST(TestIsosurfaceSearchCases, HitsDoNotDependOnTheBricks)
 {
   const auto volume = CreateNoise({ 20, 17, 15 }, 9);
-  TracerBench bench;
+  SearchBench bench;
   const auto reference = CreateObject(bench.Store, volume, { 0.8, 0.9 }, 64);
   std::vector<rt::IsosurfaceObject> others;
   for (const int edge : { 1, 2, 3, 4, 5, 7, 8, 16 })
@@ -132,13 +132,13 @@ TEST(TestVolumeTracerCases, HitsDoNotDependOnTheBricks)
   {
     const rt::Ray ray = generator.Create(
       static_cast<RandomRays::Kind>(i % static_cast<int>(RandomRays::Kind::Count)));
-    rt::SurfaceHit expected;
-    const bool found = bench.Tracer.Intersect(reference, ray, expected);
+    rt::IsosurfaceHit expected;
+    const bool found = bench.Search.Intersect(reference, ray, expected);
     hits += found;
     for (const rt::IsosurfaceObject& object : others)
     {
-      rt::SurfaceHit hit;
-      ASSERT_EQ(bench.Tracer.Intersect(object, ray, hit), found);
+      rt::IsosurfaceHit hit;
+      ASSERT_EQ(bench.Search.Intersect(object, ray, hit), found);
       if (found)
       {
         ASSERT_EQ(hit.T, expected.T);
@@ -154,33 +154,33 @@ TEST(TestVolumeTracerCases, HitsDoNotDependOnTheBricks)
   EXPECT_GT(hits, 1000);
 }
 
-TEST(TestVolumeTracerCases, SeveralIsovaluesGiveTheNearestHit)
+TEST(TestIsosurfaceSearchCases, SeveralIsovaluesGiveTheNearestHit)
 {
   const auto volume = CreateNoise({ 9, 8, 10 }, 11);
   const std::vector<double> isovalues{ -0.9, -0.4, 0.0, 0.3, 0.95, 7.0 };
-  TracerBench bench;
+  SearchBench bench;
   const auto all = CreateObject(bench.Store, volume, isovalues, 4);
   RandomRays generator(volume.GetCells(), 12);
   for (int i = 0; i < 3000; ++i)
   {
     const rt::Ray ray = generator.Create(
       static_cast<RandomRays::Kind>(i % static_cast<int>(RandomRays::Kind::Count)));
-    rt::SurfaceHit expected;
+    rt::IsosurfaceHit expected;
     bool found = false;
     for (std::size_t index = 0; index < isovalues.size(); ++index)
     {
       rt::IsosurfaceObject one = all;
       one.Isovalues = { isovalues[index] };
-      rt::SurfaceHit hit;
-      if (bench.Tracer.Intersect(one, ray, hit) && (!found || hit.T < expected.T))
+      rt::IsosurfaceHit hit;
+      if (bench.Search.Intersect(one, ray, hit) && (!found || hit.T < expected.T))
       {
         found = true;
         expected = hit;
         expected.Isovalue = static_cast<int>(index);
       }
     }
-    rt::SurfaceHit hit;
-    ASSERT_EQ(bench.Tracer.Intersect(all, ray, hit), found);
+    rt::IsosurfaceHit hit;
+    ASSERT_EQ(bench.Search.Intersect(all, ray, hit), found);
     if (found)
     {
       ASSERT_EQ(hit.T, expected.T);
@@ -189,12 +189,12 @@ TEST(TestVolumeTracerCases, SeveralIsovaluesGiveTheNearestHit)
   }
 }
 
-TEST(TestVolumeTracerCases, TheUnitOfTheValuesDoesNotMatter)
+TEST(TestIsosurfaceSearchCases, TheUnitOfTheValuesDoesNotMatter)
 {
   std::mt19937 random(23);
   std::uniform_real_distribution<double> uniform(-1.0, 1.0);
   const TestVolume<double> volume({ 9, 8, 10 }, [&](int, int, int) { return uniform(random); });
-  TracerBench bench;
+  SearchBench bench;
   const auto reference = CreateObject(bench.Store, volume, { 0.8 }, 4);
   for (const double unit : { 0x1p-600, 0x1p600 })
   {
@@ -210,10 +210,10 @@ TEST(TestVolumeTracerCases, TheUnitOfTheValuesDoesNotMatter)
     {
       const rt::Ray ray = generator.Create(
         static_cast<RandomRays::Kind>(i % static_cast<int>(RandomRays::Kind::Count)));
-      rt::SurfaceHit expected;
-      rt::SurfaceHit hit;
-      const bool found = bench.Tracer.Intersect(reference, ray, expected);
-      ASSERT_EQ(bench.Tracer.Intersect(object, ray, hit), found);
+      rt::IsosurfaceHit expected;
+      rt::IsosurfaceHit hit;
+      const bool found = bench.Search.Intersect(reference, ray, expected);
+      ASSERT_EQ(bench.Search.Intersect(object, ray, hit), found);
       if (found)
       {
         ++hits;
@@ -226,18 +226,18 @@ TEST(TestVolumeTracerCases, TheUnitOfTheValuesDoesNotMatter)
   }
 }
 
-TEST(TestVolumeTracerCases, NoIsovalueNoHit)
+TEST(TestIsosurfaceSearchCases, NoIsovalueNoHit)
 {
-  TracerBench bench;
+  SearchBench bench;
   const auto volume = CreateNoise({ 5, 5, 5 }, 13);
-  rt::SurfaceHit hit;
+  rt::IsosurfaceHit hit;
   const rt::Ray ray = CreateRay({ -1, 2, 2 }, { 6, 2, 2 });
-  EXPECT_FALSE(bench.Tracer.Intersect(CreateObject(bench.Store, volume, {}), ray, hit));
-  EXPECT_FALSE(bench.Tracer.Intersect(CreateObject(bench.Store, volume, { 5.0 }), ray, hit));
+  EXPECT_FALSE(bench.Search.Intersect(CreateObject(bench.Store, volume, {}), ray, hit));
+  EXPECT_FALSE(bench.Search.Intersect(CreateObject(bench.Store, volume, { 5.0 }), ray, hit));
   EXPECT_EQ(bench.Worker.Accesses, 0);
 }
 
-TEST(TestVolumeTracerCases, CellsWithNaNHoldNoSurface)
+TEST(TestIsosurfaceSearchCases, CellsWithNaNHoldNoSurface)
 {
   auto volume = CreateNoise({ 9, 8, 7 }, 14);
   std::mt19937 random(15);
@@ -246,7 +246,7 @@ TEST(TestVolumeTracerCases, CellsWithNaNHoldNoSurface)
     volume.At(random() % 9, random() % 8, random() % 7) =
       i % 5 == 0 ? std::numeric_limits<float>::infinity() : NotANumber;
   }
-  TracerBench bench;
+  SearchBench bench;
   const auto object = CreateObject(bench.Store, volume, { 0.1 }, 4);
   const Oracle<float> oracle(volume, 0.1);
   RandomRays generator(volume.GetCells(), 16);
@@ -256,8 +256,8 @@ TEST(TestVolumeTracerCases, CellsWithNaNHoldNoSurface)
     const rt::Ray ray =
       generator.Create(i % 2 == 0 ? RandomRays::Kind::Through : RandomRays::Kind::FromInside);
     const auto expected = oracle.FindFirst(ray);
-    rt::SurfaceHit hit;
-    ASSERT_EQ(bench.Tracer.Intersect(object, ray, hit), expected.has_value());
+    rt::IsosurfaceHit hit;
+    ASSERT_EQ(bench.Search.Intersect(object, ray, hit), expected.has_value());
     if (expected)
     {
       ++hits;
@@ -268,7 +268,7 @@ TEST(TestVolumeTracerCases, CellsWithNaNHoldNoSurface)
   EXPECT_GT(hits, 500);
 }
 
-TEST(TestVolumeTracerCases, BlankedCellsHoldNoSurface)
+TEST(TestIsosurfaceSearchCases, BlankedCellsHoldNoSurface)
 {
   auto volume = CreateNoise({ 9, 8, 7 }, 17);
   std::mt19937 random(18);
@@ -276,7 +276,7 @@ TEST(TestVolumeTracerCases, BlankedCellsHoldNoSurface)
   {
     volume.Blank(random() % 8, random() % 7, random() % 6);
   }
-  TracerBench bench;
+  SearchBench bench;
   const auto object = CreateObject(bench.Store, volume, { 0.1 }, 4);
   const Oracle<float> oracle(volume, 0.1);
   RandomRays generator(volume.GetCells(), 19);
@@ -286,8 +286,8 @@ TEST(TestVolumeTracerCases, BlankedCellsHoldNoSurface)
     const rt::Ray ray =
       generator.Create(i % 2 == 0 ? RandomRays::Kind::Through : RandomRays::Kind::FromInside);
     const auto expected = oracle.FindFirst(ray);
-    rt::SurfaceHit hit;
-    ASSERT_EQ(bench.Tracer.Intersect(object, ray, hit), expected.has_value());
+    rt::IsosurfaceHit hit;
+    ASSERT_EQ(bench.Search.Intersect(object, ray, hit), expected.has_value());
     if (expected)
     {
       ++hits;
@@ -298,63 +298,63 @@ TEST(TestVolumeTracerCases, BlankedCellsHoldNoSurface)
   EXPECT_GT(hits, 500);
 }
 
-TEST(TestVolumeTracerCases, VolumeOfOneCell)
+TEST(TestIsosurfaceSearchCases, VolumeOfOneCell)
 {
   const TestVolume<std::uint8_t> volume({ 2, 2, 2 }, [](int x, int, int) { return 10 * x; });
-  TracerBench bench;
+  SearchBench bench;
   const auto object = CreateObject(bench.Store, volume, { 4.0 });
-  rt::SurfaceHit hit;
-  ASSERT_TRUE(bench.Tracer.Intersect(object, CreateRay({ -1, 0.3, 0.6 }, { 2, 0.3, 0.6 }), hit));
+  rt::IsosurfaceHit hit;
+  ASSERT_TRUE(bench.Search.Intersect(object, CreateRay({ -1, 0.3, 0.6 }, { 2, 0.3, 0.6 }), hit));
   EXPECT_NEAR(hit.IndexPoint.x, 0.4, 1e-14);
   EXPECT_EQ(hit.Normal, glm::dvec3(-1.0, 0.0, 0.0));
   EXPECT_EQ(hit.Brick, 0u);
   // Along the volume's own faces and edges.
   for (const glm::dvec2 place : { glm::dvec2(0, 0), { 1, 0 }, { 0, 1 }, { 1, 1 }, { 0.5, 1 } })
   {
-    ASSERT_TRUE(bench.Tracer.Intersect(
+    ASSERT_TRUE(bench.Search.Intersect(
       object, CreateRay({ 3, place.x, place.y }, { -3, place.x, place.y }), hit));
     EXPECT_NEAR(hit.IndexPoint.x, 0.4, 1e-14);
   }
   EXPECT_FALSE(
-    bench.Tracer.Intersect(object, CreateRay({ -1, 1.001, 0.5 }, { 2, 1.001, 0.5 }), hit));
+    bench.Search.Intersect(object, CreateRay({ -1, 1.001, 0.5 }, { 2, 1.001, 0.5 }), hit));
 }
 
-TEST(TestVolumeTracerCases, MinAndMaxAreRespected)
+TEST(TestIsosurfaceSearchCases, MinAndMaxAreRespected)
 {
   const TestVolume<float> volume({ 9, 3, 3 }, [](int x, int, int) { return 1.0f * (x % 2); });
-  TracerBench bench;
+  SearchBench bench;
   const auto object = CreateObject(bench.Store, volume, { 0.5 }, 4);
   rt::Ray ray;
   ray.Origin = { -2.0, 1.2, 0.7 };
   ray.Direction = { 2.0, 0.0, 0.0 };
   ray.Max = 100.0;
-  rt::SurfaceHit hit;
+  rt::IsosurfaceHit hit;
   for (int crossing = 0; crossing < 8; ++crossing)
   {
-    ASSERT_TRUE(bench.Tracer.Intersect(object, ray, hit));
+    ASSERT_TRUE(bench.Search.Intersect(object, ray, hit));
     EXPECT_NEAR(hit.T, (crossing + 2.5) / 2.0, 1e-12);
     ray.Max = hit.T - 1e-9;
-    EXPECT_FALSE(bench.Tracer.Intersect(object, ray, hit));
+    EXPECT_FALSE(bench.Search.Intersect(object, ray, hit));
     ray.Max = 100.0;
     ray.Min = hit.T + 1e-9;
   }
-  EXPECT_FALSE(bench.Tracer.Intersect(object, ray, hit));
+  EXPECT_FALSE(bench.Search.Intersect(object, ray, hit));
   ray.Min = 1.0;
   ray.Max = 1.0;
-  EXPECT_FALSE(bench.Tracer.Intersect(object, ray, hit));
+  EXPECT_FALSE(bench.Search.Intersect(object, ray, hit));
 }
 
-TEST(TestVolumeTracerCases, RaysThatAreNoneMiss)
+TEST(TestIsosurfaceSearchCases, RaysThatAreNoneMiss)
 {
-  TracerBench bench;
+  SearchBench bench;
   const auto object = CreateObject(bench.Store, CreateNoise({ 5, 5, 5 }, 20), { 0.0 });
-  rt::SurfaceHit hit;
-  EXPECT_FALSE(bench.Tracer.Intersect(object, CreateRay({ 2, 2, 2 }, { 2, 2, 2 }), hit));
-  EXPECT_FALSE(bench.Tracer.Intersect(object, CreateRay({ NotANumber, 2, 2 }, { 2, 2, 2 }), hit));
-  EXPECT_FALSE(bench.Tracer.Intersect(object, CreateRay({ -1, 2, 2 }, { INFINITY, 2, 2 }), hit));
+  rt::IsosurfaceHit hit;
+  EXPECT_FALSE(bench.Search.Intersect(object, CreateRay({ 2, 2, 2 }, { 2, 2, 2 }), hit));
+  EXPECT_FALSE(bench.Search.Intersect(object, CreateRay({ NotANumber, 2, 2 }, { 2, 2, 2 }), hit));
+  EXPECT_FALSE(bench.Search.Intersect(object, CreateRay({ -1, 2, 2 }, { INFINITY, 2, 2 }), hit));
 }
 
-TEST(TestVolumeTracerCases, PreciseAnywhereInALargeVolume)
+TEST(TestIsosurfaceSearchCases, PreciseAnywhereInALargeVolume)
 {
   // One long row of cells along each axis; the samples are a linear function.
   for (int axis = 0; axis < 3; ++axis)
@@ -366,7 +366,7 @@ TEST(TestVolumeTracerCases, PreciseAnywhereInALargeVolume)
     const TestVolume<std::uint16_t> volume(points,
       [&](int x, int y, int z)
       { return static_cast<std::uint16_t>(glm::dot(gradient, glm::dvec3(x, y, z))); });
-    TracerBench bench;
+    SearchBench bench;
     for (const int cell : { 0, 1, 1000, 2046, 2047 })
     {
       glm::dvec3 target(0.31, 0.74, 1.22);
@@ -379,8 +379,8 @@ TEST(TestVolumeTracerCases, PreciseAnywhereInALargeVolume)
           glm::normalize(glm::dvec3(0.3, -0.2, 0.1) + glm::dvec3(axis == 0, axis == 1, axis == 2));
         ray.Origin = target - distance * ray.Direction;
         ray.Max = 2.0 * distance;
-        rt::SurfaceHit hit;
-        ASSERT_TRUE(bench.Tracer.Intersect(object, ray, hit));
+        rt::IsosurfaceHit hit;
+        ASSERT_TRUE(bench.Search.Intersect(object, ray, hit));
         EXPECT_NEAR(hit.T, distance, 1e-6);
         EXPECT_LT(glm::length(hit.IndexPoint - target), 1e-6);
         EXPECT_LT(glm::length(hit.Normal + glm::normalize(gradient)), 1e-12);
@@ -389,10 +389,10 @@ TEST(TestVolumeTracerCases, PreciseAnywhereInALargeVolume)
   }
 }
 
-TEST(TestVolumeTracerCases, AnyPlacementInTheWorld)
+TEST(TestIsosurfaceSearchCases, AnyPlacementInTheWorld)
 {
   const auto volume = CreateNoise({ 10, 9, 8 }, 21);
-  TracerBench bench;
+  SearchBench bench;
   const auto plain = CreateObject(bench.Store, volume, { 0.2 }, 4);
   auto placed = plain;
   glm::dmat4 matrix = glm::translate(glm::dmat4(1.0), { 1000.0, -2000.0, 500.0 });
@@ -408,10 +408,10 @@ TEST(TestVolumeTracerCases, AnyPlacementInTheWorld)
     rt::Ray world = ray;
     world.Origin = glm::dvec3(matrix * glm::dvec4(ray.Origin, 1.0));
     world.Direction = glm::dvec3(matrix * glm::dvec4(ray.Direction, 0.0));
-    rt::SurfaceHit expected;
-    rt::SurfaceHit hit;
+    rt::IsosurfaceHit expected;
+    rt::IsosurfaceHit hit;
     ASSERT_EQ(
-      bench.Tracer.Intersect(placed, world, hit), bench.Tracer.Intersect(plain, ray, expected));
+      bench.Search.Intersect(placed, world, hit), bench.Search.Intersect(plain, ray, expected));
     if (expected.T == 0.0)
     {
       continue;
@@ -425,14 +425,14 @@ TEST(TestVolumeTracerCases, AnyPlacementInTheWorld)
   EXPECT_GT(hits, 500);
 }
 
-TEST(TestVolumeTracerCases, EachBrickIsAcquiredOnceAVisit)
+TEST(TestIsosurfaceSearchCases, EachBrickIsAcquiredOnceAVisit)
 {
   const TestVolume<float> volume(
     { 65, 17, 17 }, [](int x, int, int) { return x < 63 ? 0.0f : 1.0f; });
-  TracerBench bench;
+  SearchBench bench;
   const auto object = CreateObject(bench.Store, volume, { 0.5 }, 16);
-  rt::SurfaceHit hit;
-  ASSERT_TRUE(bench.Tracer.Intersect(object, CreateRay({ -5, 8.5, 8.5 }, { 70, 8.5, 8.5 }), hit));
+  rt::IsosurfaceHit hit;
+  ASSERT_TRUE(bench.Search.Intersect(object, CreateRay({ -5, 8.5, 8.5 }, { 70, 8.5, 8.5 }), hit));
   EXPECT_NEAR(hit.IndexPoint.x, 62.5, 1e-12);
   // Empty bricks are leapt over; the hit's neighbourhood lies in its brick.
   EXPECT_EQ(bench.Worker.Accesses, 1);

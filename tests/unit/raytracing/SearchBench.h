@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#ifndef tests_TracerBench_h
-#define tests_TracerBench_h
+#ifndef tests_SearchBench_h
+#define tests_SearchBench_h
 
-#include "DSMRayTracing/volume/VolumeTracer.h"
+#include "DSMRayTracing/volume/IsosurfaceSearch.h"
 #include "MemoryStore.h"
 
 /// All that a trace in a test needs.
-struct TracerBench
+struct SearchBench
 {
   MemoryStore Store;
   MemoryStore::Worker Worker;
-  rt::VolumeTracer<MemoryStore> Tracer{ Store, Worker };
+  rt::IsosurfaceSearch<MemoryStore> Search{ Store, Worker };
 };
 
 /// From one point (T = 0) to another (T = 1).

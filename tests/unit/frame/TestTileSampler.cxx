@@ -5,7 +5,7 @@
 
 #include "DSMCore/transport/LoopbackTransport.h"
 #include "DSMRayTracing/frame/TileGrid.h"
-#include "DSMRayTracing/frame/TileTracer.h"
+#include "DSMRayTracing/frame/TileSampler.h"
 
 #include <glm/gtc/constants.hpp>
 #include <glm/gtc/matrix_transform.hpp>
@@ -13,6 +13,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <variant>
 
 namespace
 {
@@ -28,19 +29,19 @@ struct Difference
   int Pixels = 0; ///< that differ
 };
 
-class TestTileTracer : public testing::Test
+class TestTileSampler : public testing::Test
 {
 protected:
   Difference Compare(const glm::dmat4& worldToClip, int width, int height, int tileSize,
     const rt::ClipRegion& clipping = rt::ClipRegion())
   {
     rt::Scene scene;
-    scene.Isosurfaces = { FunctionVolume::Publish(65, GetWaves, this->Messenger, this->Store),
+    scene.Objects = { FunctionVolume::Publish(65, GetWaves, this->Messenger, this->Store),
       FunctionVolume::Publish(
         50, [](const glm::dvec3& p) { return glm::length(p) - 0.8; }, this->Messenger,
         this->Store) };
-    scene.Isosurfaces[0].Clipping = clipping;
-    scene.Isosurfaces[1].Surface.Opacity = 0.4f;
+    std::get<rt::IsosurfaceObject>(scene.Objects[0]).Clipping = clipping;
+    std::get<rt::IsosurfaceObject>(scene.Objects[1]).Surface.Opacity = 0.4f;
     return this->Compare(scene, worldToClip, width, height, tileSize);
   }
 
@@ -70,14 +71,23 @@ protected:
   dsm::BlockStore Store{ Messenger, dsm::BlockStore::Settings{} };
 
 private:
+  /// A pixel by itself: a batch of one, without a beam.
+  static rt::PixelSample SampleAlone(const rt::PixelSampler& sampler, int x, int y, int sample)
+  {
+    rt::PixelSampler::Samples samples;
+    sampler.Sample(nullptr, x, y, 1, 1, sample, samples);
+    return samples.GetCount() > 0 ? samples[0] : rt::PixelSample();
+  }
+
   template <class Store>
   static Difference CompareTiles(
     Store& store, const rt::Scene& scene, const rt::FrameRequest& request)
   {
     auto& worker = store.GetWorker(0);
     const rt::PixelRays rays(request);
-    const rt::TileTracer<Store> together(store, worker, scene, rays, request);
-    const rt::PixelTracer<Store> alone(store, worker, scene, rays);
+    const rt::ObjectTracers objects = rt::CreateObjectTracers(store, worker, scene);
+    const rt::TileSampler together(objects, scene, rays, request);
+    const rt::PixelSampler alone(objects, scene, rays);
     const rt::TileGrid grid(request.Width, request.Height, request.TileSize);
     Difference difference;
     store.BeginFrame();
@@ -90,8 +100,8 @@ private:
       {
         const int x = tile.X + pixel % tile.Width;
         const int y = tile.Y + pixel / tile.Width;
-        const rt::PixelSample first = alone.Trace(x, y, 0);
-        const rt::PixelSample second = alone.Trace(x, y, 1);
+        const rt::PixelSample first = SampleAlone(alone, x, y, 0);
+        const rt::PixelSample second = SampleAlone(alone, x, y, 1);
         difference.Covered += first.Depth < 1.0f;
         difference.Pixels += tile.Sum[pixel] != first.Color + second.Color ||
           tile.Depth[pixel] != std::min(first.Depth, second.Depth);
@@ -111,7 +121,7 @@ glm::dmat4 LookAt(const glm::dvec3& eye)
 
 } // namespace
 
-TEST_F(TestTileTracer, SlantedViewEqualsSinglePixels)
+TEST_F(TestTileSampler, SlantedViewEqualsSinglePixels)
 {
   const Difference difference = this->Compare(LookAt({ 2.5, 1.8, 2.1 }), 64, 64, 16);
   EXPECT_GT(difference.Covered, 1000);
@@ -119,14 +129,14 @@ TEST_F(TestTileTracer, SlantedViewEqualsSinglePixels)
 }
 
 /// Rays to both sides of two axes; tiles that are no multiple of a packet.
-TEST_F(TestTileTracer, ViewAlongAnAxisEqualsSinglePixels)
+TEST_F(TestTileSampler, ViewAlongAnAxisEqualsSinglePixels)
 {
   const Difference difference = this->Compare(LookAt({ 0.01, 0.02, 3.6 }), 61, 47, 19);
   EXPECT_GT(difference.Covered, 500);
   EXPECT_EQ(difference.Pixels, 0);
 }
 
-TEST_F(TestTileTracer, ViewFromInsideEqualsSinglePixels)
+TEST_F(TestTileSampler, ViewFromInsideEqualsSinglePixels)
 {
   const Difference difference = this->Compare(LookAt({ 0.11, 0.2, 0.31 }), 33, 35, 16);
   EXPECT_GT(difference.Covered, 300);
@@ -134,7 +144,7 @@ TEST_F(TestTileTracer, ViewFromInsideEqualsSinglePixels)
 }
 
 /// All rays are parallel to an axis.
-TEST_F(TestTileTracer, ParallelViewAlongAnAxisEqualsSinglePixels)
+TEST_F(TestTileSampler, ParallelViewAlongAnAxisEqualsSinglePixels)
 {
   const glm::dmat4 parallel = glm::ortho(-1.0, 1.0, -1.0, 1.0, 0.0, 10.0) *
     glm::lookAt(glm::dvec3(0.0, 0.0, 5.0), glm::dvec3(0.0), glm::dvec3(0.0, 1.0, 0.0));
@@ -145,10 +155,10 @@ TEST_F(TestTileTracer, ParallelViewAlongAnAxisEqualsSinglePixels)
 
 /// Meshes that cut through one another, one of them translucent; then with an isosurface, and one of
 /// them clipped.
-TEST_F(TestTileTracer, MeshesEqualSinglePixels)
+TEST_F(TestTileSampler, MeshesEqualSinglePixels)
 {
   rt::Scene scene;
-  scene.Meshes = { this->Publish(TestMesh::CreateSoup(500, 5), 0.6f),
+  scene.Objects = { this->Publish(TestMesh::CreateSoup(500, 5), 0.6f),
     this->Publish(TestMesh::CreateBlob(4), 1.0f) };
   const glm::dmat4 parallel = glm::ortho(-1.5, 1.5, -1.5, 1.5, 0.0, 10.0) *
     glm::lookAt(glm::dvec3(0.0, 0.0, 5.0), glm::dvec3(0.0), glm::dvec3(0.0, 1.0, 0.0));
@@ -156,8 +166,10 @@ TEST_F(TestTileTracer, MeshesEqualSinglePixels)
   {
     if (withVolume)
     {
-      scene.Isosurfaces = { FunctionVolume::Publish(65, GetWaves, this->Messenger, this->Store) };
-      scene.Meshes[1].Clipping.HalfSpaces = { { { 0.3, -1.0, 0.2 }, { 0.0, 0.2, 0.0 } } };
+      scene.Objects.emplace_back(
+        FunctionVolume::Publish(65, GetWaves, this->Messenger, this->Store));
+      std::get<rt::MeshObject>(scene.Objects[1]).Clipping.HalfSpaces = { { { 0.3, -1.0, 0.2 },
+        { 0.0, 0.2, 0.0 } } };
     }
     for (const glm::dmat4& view : { LookAt({ 2.5, 1.8, 2.1 }), LookAt({ 0.01, 0.02, 3.6 }),
            LookAt({ 0.11, 0.2, 0.31 }), parallel })
@@ -171,31 +183,33 @@ TEST_F(TestTileTracer, MeshesEqualSinglePixels)
 
 /// Hard and soft shadows, occlusion and mirrors, of opaque surfaces, of translucent ones that tint
 /// the light, of clipped ones.
-TEST_F(TestTileTracer, LightRaysEqualSinglePixels)
+TEST_F(TestTileSampler, LightRaysEqualSinglePixels)
 {
   rt::Scene scene;
-  scene.Isosurfaces = { FunctionVolume::Publish(65, GetWaves, this->Messenger, this->Store) };
-  scene.Meshes = { this->Publish(TestMesh::CreateBlob(4), 1.0f) };
+  scene.Objects = { FunctionVolume::Publish(65, GetWaves, this->Messenger, this->Store),
+    this->Publish(TestMesh::CreateBlob(4), 1.0f) };
+  auto& isosurface = std::get<rt::IsosurfaceObject>(scene.Objects[0]);
+  auto& mesh = std::get<rt::MeshObject>(scene.Objects[1]);
   scene.Lights.emplace_back();
   scene.Lights.back().Direction = glm::normalize(glm::dvec3(-0.4, -1.0, -0.3));
   scene.Lights.emplace_back();
   scene.Lights.back().Type = rt::Light::Kind::Positional;
   scene.Lights.back().Position = { 1.5, 1.0, 0.2 };
   scene.Transport.Shadows = true;
-  scene.Isosurfaces[0].Surface.Reflectivity = 0.3f;
+  isosurface.Surface.Reflectivity = 0.3f;
   for (int variant = 0; variant < 5; ++variant)
   {
     SCOPED_TRACE(variant);
     scene.Transport.AmbientOcclusionSamples = variant == 0 ? 0 : 2;
     scene.Transport.AmbientOcclusionDistance = 0.7;
     scene.Transport.LightRadius = variant == 2 ? 0.1 : 0.0;
-    scene.Isosurfaces[0].Surface.Opacity = variant == 3 ? 0.5f : 1.0f;
-    scene.Meshes[0].Surface.Opacity = variant == 1 ? 0.6f : 1.0f;
-    scene.Meshes[0].Surface.DiffuseColor = { 0.9f, 0.4f, 0.2f };
+    isosurface.Surface.Opacity = variant == 3 ? 0.5f : 1.0f;
+    mesh.Surface.Opacity = variant == 1 ? 0.6f : 1.0f;
+    mesh.Surface.DiffuseColor = { 0.9f, 0.4f, 0.2f };
     if (variant == 4)
     {
-      scene.Isosurfaces[0].Clipping.HalfSpaces = { { { 0.3, -1.0, 0.2 }, { 0.0, 0.2, 0.0 } } };
-      scene.Meshes[0].Clipping.HalfSpaces = { { { -1.0, 0.2, 0.2 }, { 0.3, 0.0, 0.0 } } };
+      isosurface.Clipping.HalfSpaces = { { { 0.3, -1.0, 0.2 }, { 0.0, 0.2, 0.0 } } };
+      mesh.Clipping.HalfSpaces = { { { -1.0, 0.2, 0.2 }, { 0.3, 0.0, 0.0 } } };
     }
     for (const glm::dmat4& view : { LookAt({ 2.5, 1.8, 2.1 }), LookAt({ 0.01, 0.02, 3.6 }) })
     {
@@ -207,7 +221,7 @@ TEST_F(TestTileTracer, LightRaysEqualSinglePixels)
 }
 
 /// Cut by planes, and by boxes of which rays meet several: each part of a ray is searched.
-TEST_F(TestTileTracer, ClippedViewEqualsSinglePixels)
+TEST_F(TestTileSampler, ClippedViewEqualsSinglePixels)
 {
   const Difference whole = this->Compare(LookAt({ 2.5, 1.8, 2.1 }), 64, 64, 16);
   rt::ClipRegion clipping;

@@ -11,6 +11,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <variant>
 
 namespace
 {
@@ -79,7 +80,7 @@ rt::Light GetSlantedLight()
 TEST_F(LightTransportTest, HardShadowOfABallOnAFloor)
 {
   rt::Scene scene;
-  scene.Isosurfaces = { this->Publish(GetBallAboveFloor) };
+  scene.Objects = { this->Publish(GetBallAboveFloor) };
   scene.Lights = { GetSlantedLight() };
   scene.Transport.Shadows = true;
   const rt::Picture picture = this->Trace(scene);
@@ -109,7 +110,7 @@ TEST_F(LightTransportTest, HardShadowOfABallOnAFloor)
 TEST_F(LightTransportTest, WithoutShadowsTheFloorIsLitAllOver)
 {
   rt::Scene scene;
-  scene.Isosurfaces = { this->Publish(GetBallAboveFloor) };
+  scene.Objects = { this->Publish(GetBallAboveFloor) };
   scene.Lights = { GetSlantedLight() };
   const rt::Picture picture = this->Trace(scene);
   const int expected = static_cast<int>(std::lround(255.0 * -scene.Lights.front().Direction.z));
@@ -120,7 +121,7 @@ TEST_F(LightTransportTest, WithoutShadowsTheFloorIsLitAllOver)
 TEST_F(LightTransportTest, SoftShadowHasAPenumbraAroundTheHardOne)
 {
   rt::Scene scene;
-  scene.Isosurfaces = { this->Publish(GetBallAboveFloor) };
+  scene.Objects = { this->Publish(GetBallAboveFloor) };
   rt::Light above;
   scene.Lights = { above }; // straight down, so the camera sees only the rim of the shadow
   scene.Transport.Shadows = true;
@@ -148,10 +149,10 @@ TEST_F(LightTransportTest, SoftShadowHasAPenumbraAroundTheHardOne)
 TEST_F(LightTransportTest, ShadowOfATranslucentBallIsDimmedAndTinted)
 {
   rt::Scene scene;
-  scene.Isosurfaces = { this->Publish(GetBall),
+  scene.Objects = { this->Publish(GetBall),
     this->Publish([](const glm::dvec3& p) { return p.z - FloorHeight; }) };
-  scene.Isosurfaces[0].Surface.Opacity = 0.5f;
-  scene.Isosurfaces[0].Surface.DiffuseColor = { 1.0f, 0.0f, 0.0f };
+  std::get<rt::IsosurfaceObject>(scene.Objects[0]).Surface.Opacity = 0.5f;
+  std::get<rt::IsosurfaceObject>(scene.Objects[0]).Surface.DiffuseColor = { 1.0f, 0.0f, 0.0f };
   scene.Lights = { GetSlantedLight() };
   scene.Transport.Shadows = true;
   const rt::Picture picture = this->Trace(scene);
@@ -170,7 +171,7 @@ TEST_F(LightTransportTest, OcclusionOfACornerIsThatOfBruteForce)
 {
   // A floor, and a wall on it that ends where the volume ends.
   rt::Scene scene;
-  scene.Isosurfaces = { this->Publish(
+  scene.Objects = { this->Publish(
     [](const glm::dvec3& p) { return std::min(p.z - FloorHeight, p.x + 0.5); }) };
   scene.Lights = { rt::Light() };
   scene.Transport.AmbientOcclusionSamples = 4;
@@ -208,7 +209,7 @@ TEST_F(LightTransportTest, OcclusionOfACornerIsThatOfBruteForce)
 TEST_F(LightTransportTest, OcclusionEndsAtItsDistance)
 {
   rt::Scene scene;
-  scene.Isosurfaces = { this->Publish(
+  scene.Objects = { this->Publish(
     [](const glm::dvec3& p) { return std::min(p.z - FloorHeight, p.x + 0.5); }) };
   scene.Lights = { rt::Light() };
   scene.Transport.AmbientOcclusionSamples = 8;
@@ -222,8 +223,8 @@ TEST_F(LightTransportTest, NestOfTranslucentSpheres)
 {
   const auto distance = [](const glm::dvec3& p) { return glm::length(p); };
   rt::Scene scene;
-  scene.Isosurfaces = { this->Publish(distance) };
-  rt::IsosurfaceObject& nest = scene.Isosurfaces.front();
+  scene.Objects = { this->Publish(distance) };
+  auto& nest = std::get<rt::IsosurfaceObject>(scene.Objects.front());
   nest.Isovalues = { 0.2, 0.5, 0.8 };
   nest.Opacities = { 1.0f, 0.5f, 0.25f };
   nest.Surface.Lighting = false;
@@ -242,10 +243,10 @@ TEST_F(LightTransportTest, NestOfTranslucentSpheres)
 TEST_F(LightTransportTest, MirrorShowsTheBackground)
 {
   rt::Scene scene;
-  scene.Isosurfaces = { this->Publish([](const glm::dvec3& p) { return p.z; }) };
-  scene.Isosurfaces.front().Surface.Reflectivity = 0.75f;
-  scene.Isosurfaces.front().Surface.Lighting = false;
-  scene.Isosurfaces.front().Surface.DiffuseColor = glm::vec3(0.0f);
+  scene.Objects = { this->Publish([](const glm::dvec3& p) { return p.z; }) };
+  std::get<rt::IsosurfaceObject>(scene.Objects.front()).Surface.Reflectivity = 0.75f;
+  std::get<rt::IsosurfaceObject>(scene.Objects.front()).Surface.Lighting = false;
+  std::get<rt::IsosurfaceObject>(scene.Objects.front()).Surface.DiffuseColor = glm::vec3(0.0f);
   scene.Transport.Background = { 0.2f, 0.4f, 0.8f };
   const rt::Picture picture = this->Trace(scene);
   EXPECT_NEAR(GetRed(picture, 40, 50), 255.0 * 0.75 * 0.2, 1.0);
@@ -256,9 +257,9 @@ TEST_F(LightTransportTest, MirrorShowsTheBackground)
 TEST_F(LightTransportTest, MirrorsNeverBrightenAWhiteScene)
 {
   rt::Scene scene;
-  scene.Isosurfaces = { this->Publish(GetBallAboveFloor) };
-  scene.Isosurfaces.front().Surface.Reflectivity = 0.5f;
-  scene.Isosurfaces.front().Surface.Lighting = false;
+  scene.Objects = { this->Publish(GetBallAboveFloor) };
+  std::get<rt::IsosurfaceObject>(scene.Objects.front()).Surface.Reflectivity = 0.5f;
+  std::get<rt::IsosurfaceObject>(scene.Objects.front()).Surface.Lighting = false;
   scene.Transport.Background = glm::vec3(1.0f);
   scene.Transport.MaxBounces = 8;
   for (const std::uint8_t channel : this->Trace(scene).Color)

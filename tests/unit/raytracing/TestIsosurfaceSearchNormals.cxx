@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "SearchBench.h"
 #include "TestVolume.h"
-#include "TracerBench.h"
 
 #include <gtest/gtest.h>
 
@@ -17,10 +17,10 @@ namespace
 template <class T>
 glm::dvec3 GetNormal(const TestVolume<T>& volume, const rt::Ray& ray, double isovalue, int edge = 4)
 {
-  TracerBench bench;
+  SearchBench bench;
   const auto object = CreateObject(bench.Store, volume, { isovalue }, edge);
-  rt::SurfaceHit hit;
-  EXPECT_TRUE(bench.Tracer.Intersect(object, ray, hit));
+  rt::IsosurfaceHit hit;
+  EXPECT_TRUE(bench.Search.Intersect(object, ray, hit));
   return hit.Normal;
 }
 
@@ -45,14 +45,14 @@ glm::dvec3 GetDifference(const TestVolume<T>& volume, const rt::Index3& at)
 
 } // namespace
 
-TEST(TestVolumeTracerNormals, EqualTheAnalyticGradientOfAParaboloid)
+TEST(TestIsosurfaceSearchNormals, EqualTheAnalyticGradientOfAParaboloid)
 {
   // Central differences of a quadratic are exact; trilinear in between, as the gradient is linear.
   const TestVolume<double> volume({ 40, 40, 40 },
     [](int x, int y, int z) {
       return 300.0 - (x - 19.5) * (x - 19.5) - (y - 18.2) * (y - 18.2) - 0.5 * (z - 20) * (z - 20);
     });
-  TracerBench bench;
+  SearchBench bench;
   const auto object = CreateObject(bench.Store, volume, { 150.0 }, 8);
   std::mt19937 random(1);
   std::uniform_real_distribution<double> uniform(-1.0, 1.0);
@@ -60,21 +60,21 @@ TEST(TestVolumeTracerNormals, EqualTheAnalyticGradientOfAParaboloid)
   {
     const glm::dvec3 direction =
       glm::normalize(glm::dvec3(uniform(random), uniform(random), uniform(random)));
-    rt::SurfaceHit hit;
+    rt::IsosurfaceHit hit;
     const glm::dvec3 center(19.5, 18.2, 20.0);
-    ASSERT_TRUE(bench.Tracer.Intersect(object, CreateRay(center, center + 50.0 * direction), hit));
+    ASSERT_TRUE(bench.Search.Intersect(object, CreateRay(center, center + 50.0 * direction), hit));
     const glm::dvec3 expected = glm::normalize(glm::dvec3(2, 2, 1) * (hit.IndexPoint - center));
     ASSERT_LT(glm::length(hit.Normal - expected), 1e-9);
   }
 }
 
-TEST(TestVolumeTracerNormals, EqualContoursOnGridEdges)
+TEST(TestIsosurfaceSearchNormals, EqualContoursOnGridEdges)
 {
   std::mt19937 random(2);
   const TestVolume<std::int16_t> volume({ 9, 10, 11 },
     [&](int, int, int)
     { return static_cast<std::int16_t>(static_cast<int>(random() % 200) - 100); });
-  TracerBench bench;
+  SearchBench bench;
   const auto object = CreateObject(bench.Store, volume, { 10.0 }, 4);
   int edges = 0;
   for (int z = 0; z < 11; ++z)
@@ -90,8 +90,8 @@ TEST(TestVolumeTracerNormals, EqualContoursOnGridEdges)
           continue;
         }
         ++edges;
-        rt::SurfaceHit hit;
-        ASSERT_TRUE(bench.Tracer.Intersect(object, CreateRay({ x, y, z }, { x + 1, y, z }), hit));
+        rt::IsosurfaceHit hit;
+        ASSERT_TRUE(bench.Search.Intersect(object, CreateRay({ x, y, z }, { x + 1, y, z }), hit));
         const double place = a / (a - b);
         ASSERT_NEAR(hit.T, place, 1e-12);
         const glm::dvec3 expected = glm::mix(
@@ -103,14 +103,14 @@ TEST(TestVolumeTracerNormals, EqualContoursOnGridEdges)
   EXPECT_GT(edges, 200);
 }
 
-TEST(TestVolumeTracerNormals, ContinuousAcrossCellsAndBricks)
+TEST(TestIsosurfaceSearchNormals, ContinuousAcrossCellsAndBricks)
 {
   std::mt19937 random(3);
   std::uniform_real_distribution<float> noise(-0.2f, 0.2f);
   const TestVolume<float> volume({ 18, 18, 18 },
     [&](int x, int y, int z)
     { return static_cast<float>(z) + 0.1f * x - 0.2f * y + noise(random); });
-  TracerBench bench;
+  SearchBench bench;
   const auto object = CreateObject(bench.Store, volume, { 8.3 }, 4);
   for (int plane = 1; plane < 17; ++plane)
   {
@@ -118,12 +118,12 @@ TEST(TestVolumeTracerNormals, ContinuousAcrossCellsAndBricks)
     {
       for (const bool first : { false, true })
       {
-        rt::SurfaceHit hits[2];
+        rt::IsosurfaceHit hits[2];
         for (int side = 0; side < 2; ++side)
         {
           const double place = plane + (side == 0 ? -1e-9 : 1e-9);
           const glm::dvec3 from(first ? place : along, first ? along : place, 0.0);
-          ASSERT_TRUE(bench.Tracer.Intersect(
+          ASSERT_TRUE(bench.Search.Intersect(
             object, CreateRay(from, from + glm::dvec3(0.0, 0.0, 17.0)), hits[side]));
         }
         ASSERT_NEAR(hits[0].T, hits[1].T, 1e-8);
@@ -133,7 +133,7 @@ TEST(TestVolumeTracerNormals, ContinuousAcrossCellsAndBricks)
   }
 }
 
-TEST(TestVolumeTracerNormals, OneSidedNextToMissingSamples)
+TEST(TestIsosurfaceSearchNormals, OneSidedNextToMissingSamples)
 {
   // The slope on x is 1 up to the hit's cell, and would be torn by what lies beyond it.
   const auto slope = [](int x, int, int) { return static_cast<float>(x < 4 ? x : 100 * x); };
@@ -165,7 +165,7 @@ TEST(TestVolumeTracerNormals, OneSidedNextToMissingSamples)
   }
 }
 
-TEST(TestVolumeTracerNormals, LargeIntegersKeepTheirSlope)
+TEST(TestIsosurfaceSearchNormals, LargeIntegersKeepTheirSlope)
 {
   // Of which a double would keep no more than multiples of 256.
   constexpr std::int64_t base = std::int64_t(1) << 60;
@@ -176,7 +176,7 @@ TEST(TestVolumeTracerNormals, LargeIntegersKeepTheirSlope)
   EXPECT_LT(glm::length(normal - glm::dvec3(-0.6, -0.8, 0.0)), 1e-12);
 }
 
-TEST(TestVolumeTracerNormals, WithoutASlopeTheyLookBackAlongTheRay)
+TEST(TestIsosurfaceSearchNormals, WithoutASlopeTheyLookBackAlongTheRay)
 {
   // Of a chequerboard all central differences vanish.
   const TestVolume<float> volume(

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#ifndef rt_PacketTracer_h
-#define rt_PacketTracer_h
+#ifndef rt_IsosurfacePacketSearch_h
+#define rt_IsosurfacePacketSearch_h
 
 #include "DSMRayTracing/ray/Ray.h"
 #include "DSMRayTracing/volume/BeamBricks.h"
 #include "DSMRayTracing/volume/IsosurfaceObject.h"
+#include "DSMRayTracing/volume/IsosurfaceSearch.h"
 #include "DSMRayTracing/volume/PacketKernel.h"
 #include "DSMRayTracing/volume/RayBeam.h"
-#include "DSMRayTracing/volume/VolumeTracer.h"
 
 #include <glm/vec3.hpp>
 
@@ -19,15 +19,15 @@ namespace rt
 
 /// Finds isosurface hits for rays of a beam: the bricks that lie in it are acquired one after the
 /// other, front to back, and each is searched for all of the packet's rays that meet it. A ray finds,
-/// bit for bit, what VolumeTracer finds for it, whatever packets, mates and vectors it has; rays that
-/// do not fit the others are left to VolumeTracer.
+/// bit for bit, what IsosurfaceSearch finds for it, whatever packets, mates and vectors it has; rays that
+/// do not fit the others are left to IsosurfaceSearch.
 ///
-/// Threads and pins as VolumeTracer.
+/// Threads and pins as IsosurfaceSearch.
 template <class Store>
-class PacketTracer
+class IsosurfacePacketSearch
 {
 public:
-  PacketTracer(Store& store, typename Store::Worker& worker,
+  IsosurfacePacketSearch(Store& store, typename Store::Worker& worker,
     const PacketKernel& kernel = PacketKernel::GetBest())
     : Blocks(store)
     , Self(worker)
@@ -37,34 +37,29 @@ public:
   }
 
   /// The bricks that rays between those of `corners`, in order around them, may find hits in.
-  BeamBricks FindBricks(const IsosurfaceObject& object, const Ray corners[4]) const;
+  static BeamBricks FindBricks(const IsosurfaceObject& object, const Ray corners[4]);
 
-  /// Asks for bricks ahead of Intersect; returns whether any was absent. Never waits.
-  bool Prefetch(const IsosurfaceObject& object, const std::vector<dsm::BlockId>& bricks) const
-  {
-    return this->Blocks.Prefetch(*object.Field->Segment, bricks.data(), bricks.size());
-  }
+  /// IsosurfaceSearch::Intersect for those of RayPacket::Size rays that are `wanted`. All of them lie
+  /// within the beam that `bricks` was found for. Returns those that hit something, and calls
+  /// `take(index, hit)` for each of them.
+  template <class Take>
+  RayMask Intersect(const IsosurfaceObject& object, BeamBricks& bricks, const Ray* rays,
+    RayMask wanted, const Take& take) const;
 
-  /// VolumeTracer::Intersect for those of RayPacket::Size rays that are `wanted`. All of them lie
-  /// within the beam that `bricks` was found for. Returns those that hit something.
-  RayPacket::Mask Intersect(const IsosurfaceObject& object, const BeamBricks& bricks,
-    const Ray* rays, RayPacket::Mask wanted, SurfaceHit* hits) const;
-
-  /// VolumeTracer::IsOccluded for those of RayPacket::Size rays that are `wanted`. They need not have
+  /// IsosurfaceSearch::IsOccluded for those of RayPacket::Size rays that are `wanted`. They need not have
   /// anything in common, but are traced together where they go the same way.
-  RayPacket::Mask FindOccluded(
-    const IsosurfaceObject& object, const Ray* rays, RayPacket::Mask wanted) const;
+  RayMask FindOccluded(const IsosurfaceObject& object, const Ray* rays, RayMask wanted) const;
 
 private:
   /// A packet on its way through the bricks.
   struct Progress
   {
     RayPacket Rays;
-    RayPacket::Mask Found = 0;
+    RayMask Found = 0;
     // In the current brick:
-    RayPacket::Mask Meets = 0;
-    RayPacket::Mask Hit = 0;
-    RayPacket::Mask WithoutGradient = 0;
+    RayMask Meets = 0;
+    RayMask Hit = 0;
+    RayMask WithoutGradient = 0;
     CellHit Cells[RayPacket::Size];
     int Isovalue[RayPacket::Size];
     glm::dvec3 Gradient[RayPacket::Size];
@@ -76,9 +71,9 @@ private:
   /// any does.
   bool MeetBrick(const BeamBricks::Brick& brick, Progress& progress) const;
 
-  template <class T>
-  void SearchBricks(const IsosurfaceObject& object, const BeamBricks& bricks, Progress& progress,
-    const Ray* rays, SurfaceHit* hits) const;
+  template <class T, class Take>
+  void SearchBricks(const IsosurfaceObject& object, BeamBricks& bricks, Progress& progress,
+    const Ray* rays, const Take& take) const;
 
   /// Acquires the brick and searches it for all rays that meet it.
   template <class T>
@@ -91,8 +86,8 @@ private:
   static constexpr double BeamCoherence = 0.98;
 
   /// FindOccluded for rays that all move to the same sides.
-  RayPacket::Mask FindOccludedInPacket(const IsosurfaceObject& object, const bool forward[3],
-    const Ray* rays, RayPacket::Mask wanted) const;
+  RayMask FindOccludedInPacket(
+    const IsosurfaceObject& object, const bool forward[3], const Ray* rays, RayMask wanted) const;
 
   /// Adds those rays that meet a surface in a brick to what they have found.
   template <class T>
@@ -101,12 +96,12 @@ private:
 
   Store& Blocks;
   typename Store::Worker& Self;
-  VolumeTracer<Store> Single;
+  IsosurfaceSearch<Store> Single;
   const PacketKernel& Kernel;
 };
 
 } // namespace rt
 
-#include "DSMRayTracing/volume/PacketTracer.txx"
+#include "DSMRayTracing/volume/IsosurfacePacketSearch.txx"
 
 #endif

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#ifndef rt_PacketTracer_txx
-#define rt_PacketTracer_txx
+#ifndef rt_IsosurfacePacketSearch_txx
+#define rt_IsosurfacePacketSearch_txx
 
 #include "DSMRayTracing/layout/VoxelBrick.h"
 #include "DSMRayTracing/volume/BeamDescent.h"
@@ -19,8 +19,8 @@ namespace rt
 {
 
 template <class Store>
-BeamBricks PacketTracer<Store>::FindBricks(
-  const IsosurfaceObject& object, const Ray corners[4]) const
+BeamBricks IsosurfacePacketSearch<Store>::FindBricks(
+  const IsosurfaceObject& object, const Ray corners[4])
 {
   const IndexSpace space(object.IndexToWorld, object.WorldToIndex);
   GridRay lines[4];
@@ -36,51 +36,48 @@ BeamBricks PacketTracer<Store>::FindBricks(
 }
 
 template <class Store>
-BeamBricks PacketTracer<Store>::FindBricks(const IsosurfaceObject& object, const RayBeam& beam)
+BeamBricks IsosurfacePacketSearch<Store>::FindBricks(
+  const IsosurfaceObject& object, const RayBeam& beam)
 {
   const IsovaluePredicate mayHold(object.Isovalues);
   return BeamDescent<IsovaluePredicate>(object.Field->Hierarchy, mayHold, beam).Find();
 }
 
 template <class Store>
-RayPacket::Mask PacketTracer<Store>::Intersect(const IsosurfaceObject& object,
-  const BeamBricks& bricks, const Ray* rays, RayPacket::Mask wanted, SurfaceHit* hits) const
+template <class Take>
+RayMask IsosurfacePacketSearch<Store>::Intersect(const IsosurfaceObject& object, BeamBricks& bricks,
+  const Ray* rays, RayMask wanted, const Take& take) const
 {
   const IndexSpace space(object.IndexToWorld, object.WorldToIndex);
   const BrickLattice& lattice = object.Field->Lattice;
   Progress progress;
   std::copy_n(bricks.Forward, 3, progress.Rays.Forward);
-  RayPacket::Mask alone = wanted;
+  RayMask alone = wanted;
   if (bricks.Usable)
   {
     alone = this->Kernel.SetRays(progress.Rays, rays, wanted, space, lattice.GetCells());
   }
-  RayPacket::Mask found = 0;
-  for (; alone != 0; alone &= alone - 1)
-  {
-    const int index = GetLowest(alone);
-    const bool hit = this->Single.Intersect(object, rays[index], hits[index]);
-    found |= RayPacket::Mask{ hit } << index;
-  }
+  const RayMask found = this->Single.IntersectEach(object, rays, alone, take);
   Dispatch(lattice.GetScalarType(),
     [&](auto sample)
-    { this->SearchBricks<decltype(sample)>(object, bricks, progress, rays, hits); });
+    { this->SearchBricks<decltype(sample)>(object, bricks, progress, rays, take); });
   return found | progress.Found;
 }
 
 template <class Store>
-bool PacketTracer<Store>::MeetBrick(const BeamBricks::Brick& brick, Progress& progress) const
+bool IsosurfacePacketSearch<Store>::MeetBrick(
+  const BeamBricks::Brick& brick, Progress& progress) const
 {
-  const RayPacket::Mask open = progress.Rays.Rays & ~progress.Found;
+  const RayMask open = progress.Rays.Rays & ~progress.Found;
   progress.Meets =
     open == 0 ? 0 : this->Kernel.MeetBrick(progress.Rays, open, brick.Lower, brick.Upper);
   return progress.Meets != 0;
 }
 
 template <class Store>
-template <class T>
-void PacketTracer<Store>::SearchBricks(const IsosurfaceObject& object, const BeamBricks& bricks,
-  Progress& progress, const Ray* rays, SurfaceHit* hits) const
+template <class T, class Take>
+void IsosurfacePacketSearch<Store>::SearchBricks(const IsosurfaceObject& object, BeamBricks& bricks,
+  Progress& progress, const Ray* rays, const Take& take) const
 {
   const IndexSpace space(object.IndexToWorld, object.WorldToIndex);
   for (const BeamBricks::Brick& brick : bricks.Bricks)
@@ -92,35 +89,35 @@ void PacketTracer<Store>::SearchBricks(const IsosurfaceObject& object, const Bea
     const std::ptrdiff_t place = &brick - bricks.Bricks.data();
     bricks.Reached = std::max(bricks.Reached, static_cast<std::size_t>(place) + 1);
     this->SearchBrick<T>(object, brick, progress);
-    for (RayPacket::Mask left = progress.Hit; left != 0; left &= left - 1)
-    {
-      const int index = GetLowest(left);
-      const CellHit& cell = progress.Cells[index];
-      double* const gradient = &progress.Gradient[index].x;
-      const int isovalue = progress.Isovalue[index];
-      if ((progress.WithoutGradient >> index & 1) != 0)
+    ForEachRay(progress.Hit,
+      [&](int index)
       {
-        HitGradient::Find<T>(this->Blocks, this->Self, *object.Field, brick.Id, cell,
-          object.Isovalues[isovalue], gradient);
-      }
-      SurfaceHit& hit = hits[index];
-      hit.T = cell.T;
-      hit.Normal = space.GetNormal(gradient, rays[index].Direction);
-      hit.Isovalue = isovalue;
-      hit.FromInside = cell.FromInside;
-      hit.Brick = brick.Id;
-      for (int axis = 0; axis < 3; ++axis)
-      {
-        hit.IndexPoint[axis] = brick.Lower[axis] + cell.Cell[axis] + cell.Local[axis];
-      }
-    }
+        const CellHit& cell = progress.Cells[index];
+        double* const gradient = &progress.Gradient[index].x;
+        IsosurfaceHit hit;
+        hit.Isovalue = progress.Isovalue[index];
+        if ((progress.WithoutGradient >> index & 1) != 0)
+        {
+          HitGradient::Find<T>(this->Blocks, this->Self, *object.Field, brick.Id, cell,
+            object.Isovalues[hit.Isovalue], gradient);
+        }
+        hit.T = cell.T;
+        hit.Normal = space.GetNormal(gradient, rays[index].Direction);
+        hit.FromInside = cell.FromInside;
+        hit.Brick = brick.Id;
+        for (int axis = 0; axis < 3; ++axis)
+        {
+          hit.IndexPoint[axis] = brick.Lower[axis] + cell.Cell[axis] + cell.Local[axis];
+        }
+        take(index, hit);
+      });
     progress.Found |= progress.Hit;
   }
 }
 
 template <class Store>
 template <class T>
-void PacketTracer<Store>::SearchBrick(
+void IsosurfacePacketSearch<Store>::SearchBrick(
   const IsosurfaceObject& object, const BeamBricks::Brick& brick, Progress& progress) const
 {
   const typename Store::Pin pin =
@@ -143,7 +140,7 @@ void PacketTracer<Store>::SearchBrick(
     for (int number = 0; number < candidates.Count; ++number)
     {
       const int index = candidates.Ray[number];
-      const RayPacket::Mask bit = RayPacket::Mask{ 1 } << index;
+      const RayMask bit = GetBit(index);
       CellHit& cell = progress.Cells[index];
       if ((progress.Hit & bit) != 0 && !(candidates.T[number] < cell.T))
       {
@@ -160,54 +157,51 @@ void PacketTracer<Store>::SearchBrick(
 }
 
 template <class Store>
-RayPacket::Mask PacketTracer<Store>::FindOccluded(
-  const IsosurfaceObject& object, const Ray* rays, RayPacket::Mask wanted) const
+RayMask IsosurfacePacketSearch<Store>::FindOccluded(
+  const IsosurfaceObject& object, const Ray* rays, RayMask wanted) const
 {
-  const IndexSpace space(object.IndexToWorld, object.WorldToIndex);
-  RayPacket::Mask sides[8] = {};
-  glm::dvec3 sums[8] = {};
-  for (RayPacket::Mask left = wanted; left != 0; left &= left - 1)
+  const auto findEach = [&](RayMask some) {
+    return FindRays(some, [&](int index) { return this->Single.IsOccluded(object, rays[index]); });
+  };
+  if (GetCount(wanted) < FewestInBeam)
   {
-    const int index = GetLowest(left);
-    const glm::dvec3 direction = space.GetWorldToIndex() * rays[index].Direction;
-    const int side = (direction.x > 0.0) | (direction.y > 0.0) << 1 | (direction.z > 0.0) << 2;
-    sides[side] |= RayPacket::Mask{ 1 } << index;
-    sums[side] += direction / glm::length(direction);
+    return findEach(wanted);
   }
-  RayPacket::Mask occluded = 0;
+  const IndexSpace space(object.IndexToWorld, object.WorldToIndex);
+  RayMask sides[8] = {};
+  glm::dvec3 sums[8] = {};
+  ForEachRay(wanted,
+    [&](int index)
+    {
+      const glm::dvec3 direction = space.GetWorldToIndex() * rays[index].Direction;
+      const int side = (direction.x > 0.0) | (direction.y > 0.0) << 1 | (direction.z > 0.0) << 2;
+      sides[side] |= GetBit(index);
+      sums[side] += direction / glm::length(direction);
+    });
+  RayMask occluded = 0;
   for (int side = 0; side < 8; ++side)
   {
-    const int count = __builtin_popcountll(sides[side]);
-    if (count >= FewestInBeam && glm::length(sums[side]) > BeamCoherence * count)
-    {
-      const bool forward[3] = { (side & 1) != 0, (side & 2) != 0, (side & 4) != 0 };
-      occluded |= this->FindOccludedInPacket(object, forward, rays, sides[side]);
-      continue;
-    }
-    for (RayPacket::Mask left = sides[side]; left != 0; left &= left - 1)
-    {
-      const int index = GetLowest(left);
-      occluded |= RayPacket::Mask{ this->Single.IsOccluded(object, rays[index]) } << index;
-    }
+    const int count = GetCount(sides[side]);
+    const bool forward[3] = { (side & 1) != 0, (side & 2) != 0, (side & 4) != 0 };
+    occluded |= count >= FewestInBeam && glm::length(sums[side]) > BeamCoherence * count
+      ? this->FindOccludedInPacket(object, forward, rays, sides[side])
+      : findEach(sides[side]);
   }
   return occluded;
 }
 
 template <class Store>
-RayPacket::Mask PacketTracer<Store>::FindOccludedInPacket(const IsosurfaceObject& object,
-  const bool forward[3], const Ray* rays, RayPacket::Mask wanted) const
+RayMask IsosurfacePacketSearch<Store>::FindOccludedInPacket(
+  const IsosurfaceObject& object, const bool forward[3], const Ray* rays, RayMask wanted) const
 {
   const IndexSpace space(object.IndexToWorld, object.WorldToIndex);
   const BrickLattice& lattice = object.Field->Lattice;
   Progress progress;
   std::copy_n(forward, 3, progress.Rays.Forward);
-  RayPacket::Mask alone =
+  const RayMask alone =
     this->Kernel.SetRays(progress.Rays, rays, wanted, space, lattice.GetCells());
-  for (; alone != 0; alone &= alone - 1)
-  {
-    const int index = GetLowest(alone);
-    progress.Found |= RayPacket::Mask{ this->Single.IsOccluded(object, rays[index]) } << index;
-  }
+  progress.Found =
+    FindRays(alone, [&](int index) { return this->Single.IsOccluded(object, rays[index]); });
   if (progress.Rays.Rays != 0)
   {
     RayBeam beam;
@@ -230,7 +224,7 @@ RayPacket::Mask PacketTracer<Store>::FindOccludedInPacket(const IsosurfaceObject
 
 template <class Store>
 template <class T>
-void PacketTracer<Store>::FindOccludedInBrick(
+void IsosurfacePacketSearch<Store>::FindOccludedInBrick(
   const IsosurfaceObject& object, const BeamBricks::Brick& brick, Progress& progress) const
 {
   const typename Store::Pin pin =
@@ -239,7 +233,7 @@ void PacketTracer<Store>::FindOccludedInBrick(
   const ValueRange range{ voxels.GetHeader().First, voxels.GetHeader().Last };
   for (const double isovalue : object.Isovalues)
   {
-    const RayPacket::Mask open = progress.Meets & ~progress.Found;
+    const RayMask open = progress.Meets & ~progress.Found;
     if (open == 0 || !range.MayHold(isovalue))
     {
       continue;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "DSMRayTracing/volume/VolumeTracer.h"
+#include "DSMRayTracing/volume/IsosurfaceSearch.h"
 #include "Oracle.h"
 #include "RandomRays.h"
 #include "TestVolume.h"
@@ -99,7 +99,7 @@ void CompareWithOracle(const TestVolume<T>& volume, double isovalue, int edge, u
   MemoryStore store;
   MemoryStore::Worker worker;
   const rt::IsosurfaceObject object = CreateObject(store, volume, { isovalue }, edge);
-  const rt::VolumeTracer<MemoryStore> tracer(store, worker);
+  const rt::IsosurfaceSearch<MemoryStore> tracer(store, worker);
   const Oracle<T> oracle(volume, isovalue);
   RandomRays generator(volume.GetCells(), seed);
   for (int i = 0; i < rays; ++i)
@@ -107,7 +107,7 @@ void CompareWithOracle(const TestVolume<T>& volume, double isovalue, int edge, u
     const rt::Ray ray = generator.Create(kind);
     const double cells = glm::length(ray.Direction);
     const std::optional<double> expected = oracle.FindFirst(ray);
-    rt::SurfaceHit hit;
+    rt::IsosurfaceHit hit;
     const bool found = tracer.Intersect(object, ray, hit);
     ++comparison.Rays;
     comparison.Hits += found;
@@ -154,28 +154,28 @@ void CompareAllKinds(const TestVolume<T>& volume, double isovalue, int edge, int
 } // namespace
 
 template <class T>
-class TestVolumeTracer : public testing::Test
+class TestIsosurfaceSearch : public testing::Test
 {
 };
 
 using ScalarTypes = testing::Types<std::int8_t, std::uint8_t, std::int16_t, std::uint16_t,
   std::int32_t, std::uint32_t, std::int64_t, std::uint64_t, float, double>;
-TYPED_TEST_SUITE(TestVolumeTracer, ScalarTypes);
+TYPED_TEST_SUITE(TestIsosurfaceSearch, ScalarTypes);
 
-TYPED_TEST(TestVolumeTracer, NoisyVolumeEqualsBruteForce)
+TYPED_TEST(TestIsosurfaceSearch, NoisyVolumeEqualsBruteForce)
 {
   using T = TypeParam;
   CompareAllKinds(CreateNoise<T>({ 8, 7, 9 }, 1), Values<T>::GetIsovalue(0.12), 4, 150);
   CompareAllKinds(CreateNoise<T>({ 8, 7, 9 }, 2), Values<T>::GetIsovalue(-0.3), 0, 50);
 }
 
-TYPED_TEST(TestVolumeTracer, SmoothVolumeEqualsBruteForce)
+TYPED_TEST(TestIsosurfaceSearch, SmoothVolumeEqualsBruteForce)
 {
   using T = TypeParam;
   CompareAllKinds(CreateSmooth<T>({ 12, 11, 10 }, 3), Values<T>::GetIsovalue(0.05), 8, 80);
 }
 
-TYPED_TEST(TestVolumeTracer, PlateausEqualBruteForce)
+TYPED_TEST(TestIsosurfaceSearch, PlateausEqualBruteForce)
 {
   using T = TypeParam;
   CompareAllKinds(CreatePlateaus<T>({ 7, 8, 9 }, 4), Values<T>::GetIsovalue(0.0), 4, 100);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#ifndef rt_VolumeTracer_txx
-#define rt_VolumeTracer_txx
+#ifndef rt_IsosurfaceSearch_txx
+#define rt_IsosurfaceSearch_txx
 
 #include "DSMRayTracing/layout/VoxelBrick.h"
 #include "DSMRayTracing/volume/GridTraversal.h"
@@ -16,8 +16,8 @@ namespace rt
 {
 
 template <class Store, Consolidation Mode>
-bool VolumeTracer<Store, Mode>::Intersect(
-  const IsosurfaceObject& object, const Ray& ray, SurfaceHit& hit) const
+bool IsosurfaceSearch<Store, Mode>::Intersect(
+  const IsosurfaceObject& object, const Ray& ray, IsosurfaceHit& hit) const
 {
   const IndexSpace space(object.IndexToWorld, object.WorldToIndex);
   const BrickLattice& lattice = object.Field->Lattice;
@@ -43,8 +43,8 @@ bool VolumeTracer<Store, Mode>::Intersect(
 
 template <class Store, Consolidation Mode>
 template <class T>
-bool VolumeTracer<Store, Mode>::IntersectBricks(const IsosurfaceObject& object, const GridRay& line,
-  double enter, double leave, SurfaceHit& hit, double gradient[3]) const
+bool IsosurfaceSearch<Store, Mode>::IntersectBricks(const IsosurfaceObject& object,
+  const GridRay& line, double enter, double leave, IsosurfaceHit& hit, double gradient[3]) const
 {
   const VoxelField& field = *object.Field;
   const IsovaluePredicate mayHold(object.Isovalues);
@@ -76,8 +76,9 @@ bool VolumeTracer<Store, Mode>::IntersectBricks(const IsosurfaceObject& object, 
 
 template <class Store, Consolidation Mode>
 template <class T>
-bool VolumeTracer<Store, Mode>::IntersectBrick(const IsosurfaceObject& object, const GridRay& line,
-  const Walk& walk, CellHit& cell, int& isovalue, double gradient[3], bool& hasGradient) const
+bool IsosurfaceSearch<Store, Mode>::IntersectBrick(const IsosurfaceObject& object,
+  const GridRay& line, const Walk& walk, CellHit& cell, int& isovalue, double gradient[3],
+  bool& hasGradient) const
 {
   const typename Store::Pin pin =
     this->Blocks.Acquire(this->Self, *object.Field->Segment, walk.GetId());
@@ -113,7 +114,7 @@ bool VolumeTracer<Store, Mode>::IntersectBrick(const IsosurfaceObject& object, c
 }
 
 template <class Store, Consolidation Mode>
-bool VolumeTracer<Store, Mode>::IsOccluded(const IsosurfaceObject& object, const Ray& ray) const
+bool IsosurfaceSearch<Store, Mode>::IsOccluded(const IsosurfaceObject& object, const Ray& ray) const
 {
   const IndexSpace space(object.IndexToWorld, object.WorldToIndex);
   const VoxelField& field = *object.Field;
@@ -142,7 +143,7 @@ bool VolumeTracer<Store, Mode>::IsOccluded(const IsosurfaceObject& object, const
 
 template <class Store, Consolidation Mode>
 template <class T>
-bool VolumeTracer<Store, Mode>::IsOccludedInBrick(
+bool IsosurfaceSearch<Store, Mode>::IsOccludedInBrick(
   const IsosurfaceObject& object, const GridRay& line, const Walk& walk) const
 {
   const dsm::BlockSegment& segment = *object.Field->Segment;
@@ -161,7 +162,7 @@ bool VolumeTracer<Store, Mode>::IsOccludedInBrick(
 }
 
 template <class Store, Consolidation Mode>
-double VolumeTracer<Store, Mode>::Sample(
+double IsosurfaceSearch<Store, Mode>::Sample(
   const VoxelField& field, const glm::dvec3& indexPoint) const
 {
   const Index3 cells = field.Lattice.GetCells();
@@ -201,7 +202,7 @@ double VolumeTracer<Store, Mode>::Sample(
 
 template <class Store, Consolidation Mode>
 template <class T>
-double VolumeTracer<Store, Mode>::SampleCell(
+double IsosurfaceSearch<Store, Mode>::SampleCell(
   const VoxelField& field, const Index3& cell, const glm::dvec3& indexPoint) const
 {
   const Index3 brick = cell / Index3(field.Lattice.GetEdge());

@@ -1,0 +1,177 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What the rooms above know of an object: batches against the same rays one by one.
+#include "DSMRayTracing/scene/SurfaceFinder.h"
+#include "DSMRayTracing/volume/IsosurfaceTracer.h"
+#include "TestVolume.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+namespace
+{
+
+using Tracer = rt::IsosurfaceTracer<MemoryStore>;
+
+const rt::Index3 Points(37, 41, 34);
+
+TestVolume<float> CreateWaves()
+{
+  return TestVolume<float>(Points,
+    [](int x, int y, int z)
+    { return static_cast<float>(std::sin(0.4 * x) + std::sin(0.5 * y) + std::sin(0.3 * z)); });
+}
+
+rt::Ray CreateRay(double u, double v)
+{
+  rt::Ray ray;
+  ray.Origin = { -90.0, -70.0, -80.0 };
+  ray.Direction = glm::dvec3(30.0 * u, 40.0 - 10.0 * u, 30.0 * v) - ray.Origin;
+  ray.Max = 2.0;
+  return ray;
+}
+
+struct Batch
+{
+  Batch()
+  {
+    for (int index = 0; index < rt::MaxRays; ++index)
+    {
+      this->Rays[index] = CreateRay((index % 8 + 0.5) / 8.0, (index / 8 + 0.5) / 8.0);
+      this->Hits[index].Clear();
+    }
+  }
+
+  rt::Ray Corners[4] = { CreateRay(0.0, 0.0), CreateRay(1.0, 0.0), CreateRay(1.0, 1.0),
+    CreateRay(0.0, 1.0) };
+  rt::Ray Rays[rt::MaxRays];
+  rt::ObjectHit Hits[rt::MaxRays];
+};
+
+class TestIsosurfaceTracer : public testing::Test
+{
+protected:
+  TestIsosurfaceTracer() { this->Object.Surface.Opacity = 0.5f; }
+
+  MemoryStore Store;
+  MemoryStore::Worker Worker;
+  rt::IsosurfaceObject Object = CreateObject(this->Store, CreateWaves(), { 0.3, 1.1 }, 4);
+};
+
+} // namespace
+
+TEST_F(TestIsosurfaceTracer, BatchesFindWhatRaysFindAlone)
+{
+  for (const bool clipped : { false, true })
+  {
+    if (clipped)
+    {
+      rt::ClipRegion::Grid boxes;
+      boxes.Lower = { 10.0, 12.0, 9.0 };
+      boxes.Upper = { 25.0, 30.0, 22.0 };
+      boxes.Kept = 0x5aa555a; // every other box
+      this->Object.Clipping.Boxes = boxes;
+    }
+    const Tracer tracer(this->Store, this->Worker, this->Object);
+    Batch together;
+    Batch apart;
+    Batch alone;
+    const auto beam = tracer.FindBeam(together.Corners);
+    ASSERT_TRUE(beam && beam->Usable && beam->MayMeet());
+    constexpr rt::RayMask wanted = 0xfff0f0ff0137ffffu;
+    const rt::RayMask occluded = tracer.FindOccluded(alone.Rays, wanted);
+    tracer.FindNext(together.Rays, wanted, beam.get(), together.Hits);
+    tracer.FindNext(apart.Rays, wanted, nullptr, apart.Hits);
+    EXPECT_GT(beam->Reached, 0u);
+    int hits = 0;
+    for (int index = 0; index < rt::MaxRays; ++index)
+    {
+      SCOPED_TRACE(index);
+      const rt::RayMask bit = rt::GetBit(index);
+      const bool isOccluded = tracer.FindOccluded(alone.Rays, bit) != 0;
+      tracer.FindNext(alone.Rays, wanted & bit, nullptr, alone.Hits);
+      const bool found = alone.Hits[index].GetObject() == &tracer;
+      EXPECT_EQ((occluded & bit) != 0, found);
+      EXPECT_EQ(isOccluded && (wanted & bit) != 0, found);
+      for (Batch* other : { &together, &apart })
+      {
+        ASSERT_EQ(other->Hits[index].GetObject(), alone.Hits[index].GetObject());
+        EXPECT_EQ(other->Rays[index].Max, alone.Rays[index].Max);
+        if (found)
+        {
+          rt::SurfacePoint point;
+          rt::SurfacePoint expected;
+          tracer.Describe(other->Hits[index], other->Rays[index], point);
+          tracer.Describe(alone.Hits[index], alone.Rays[index], expected);
+          EXPECT_EQ(point.T, alone.Rays[index].Max);
+          EXPECT_EQ(point.Position, expected.Position);
+          EXPECT_EQ(point.Normal, expected.Normal);
+          EXPECT_EQ(
+            tracer.FindBrick(other->Hits[index]).Id, tracer.FindBrick(alone.Hits[index]).Id);
+        }
+      }
+      hits += found;
+    }
+    EXPECT_GT(hits, 20);
+  }
+}
+
+TEST_F(TestIsosurfaceTracer, OfEquallyNearHitsThatOfTheFirstObjectCounts)
+{
+  const Tracer first(this->Store, this->Worker, this->Object);
+  const Tracer second(this->Store, this->Worker, this->Object);
+  rt::Ray ray;
+  ray.Max = 3.0;
+  rt::ObjectHit nearest;
+  nearest.Clear();
+  rt::IsosurfaceHit hit;
+  hit.T = 3.0;
+  nearest.Take(first, hit, ray);
+  EXPECT_EQ(nearest.GetObject(), &first) << "a hit at the end of the ray";
+  nearest.Take(second, hit, ray);
+  EXPECT_EQ(nearest.GetObject(), &first);
+  hit.T = 2.0;
+  hit.Isovalue = 5;
+  nearest.Take(second, hit, ray);
+  EXPECT_EQ(nearest.GetObject(), &second);
+  EXPECT_EQ(nearest.Get<rt::IsosurfaceHit>().Isovalue, 5);
+  EXPECT_EQ(ray.Max, 2.0);
+}
+
+TEST_F(TestIsosurfaceTracer, WhatIsInvisibleIsNotMet)
+{
+  const Tracer seen(this->Store, this->Worker, this->Object);
+  rt::IsosurfaceObject invisible = this->Object;
+  invisible.Surface.Opacity = 0.0f;
+  const Tracer none(this->Store, this->Worker, invisible);
+  const rt::SurfaceFinder finder({ &none, &seen });
+  Batch batch;
+  rt::SceneBeam beam = finder.FindBeam(batch.Corners);
+  ASSERT_TRUE(beam.IsUsable() && beam.MayMeet());
+  const rt::RayMask found = finder.Find(batch.Rays, ~rt::RayMask{ 0 }, &beam, batch.Hits);
+  EXPECT_GT(rt::GetCount(found), 20);
+  rt::ForEachRay(
+    found, [&](int index) { EXPECT_EQ(batch.Hits[index].GetObject(), &seen) << index; });
+}
+
+TEST_F(TestIsosurfaceTracer, AsksForTheFirstBricksOfABeam)
+{
+  const Tracer tracer(this->Store, this->Worker, this->Object);
+  const auto beam = tracer.FindBeam(Batch().Corners);
+  std::vector<dsm::BlockId> all;
+  for (const auto& brick : dynamic_cast<const rt::BeamBricks&>(*beam).Bricks)
+  {
+    all.push_back(brick.Id);
+  }
+  ASSERT_GT(all.size(), 3u);
+  tracer.Prefetch(*beam, 3);
+  EXPECT_EQ(this->Store.Prefetched, std::vector<dsm::BlockId>(all.begin(), all.begin() + 3));
+  this->Store.Prefetched.clear();
+  tracer.Prefetch(*beam, all.size() + 5);
+  EXPECT_EQ(this->Store.Prefetched, all);
+  this->Store.Prefetched.clear();
+  this->Object.Surface.Opacity = 0.0f;
+  tracer.Prefetch(*beam, 3);
+  EXPECT_TRUE(this->Store.Prefetched.empty());
+}

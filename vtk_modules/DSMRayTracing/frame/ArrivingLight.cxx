@@ -1,0 +1,195 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "DSMRayTracing/frame/ArrivingLight.h"
+
+#include "DSMRayTracing/light/EdgeCover.h"
+
+#include <glm/geometric.hpp>
+#include <glm/gtc/constants.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+
+namespace rt
+{
+
+namespace
+{
+
+/// Two directions at right angles to a unit one, and to each other (Duff et al., Building an
+/// Orthonormal Basis, Revisited, JCGT 2017).
+struct Frame3
+{
+  explicit Frame3(const glm::dvec3& unit)
+  {
+    const double sign = std::copysign(1.0, unit.z);
+    const double a = -1.0 / (sign + unit.z);
+    const double b = unit.x * unit.y * a;
+    this->Tangent = { 1.0 + sign * unit.x * unit.x * a, sign * b, -sign * unit.x };
+    this->Bitangent = { b, sign + unit.y * unit.y * a, -unit.y };
+  }
+  glm::dvec3 Tangent;
+  glm::dvec3 Bitangent;
+};
+
+} // namespace
+
+ArrivingLight::ArrivingLight(const ObjectTracers& objects, const Scene& scene)
+  : Transmittances(objects)
+  , World(scene)
+  , HasSurroundings(!scene.Transport.Surroundings.IsBlack())
+{
+}
+
+std::vector<ShadingPoint> ArrivingLight::FindPoints(LightPath* const* paths, int count) const
+{
+  std::vector<ShadingPoint> points;
+  points.reserve(static_cast<std::size_t>(count));
+  for (int number = 0; number < count; ++number)
+  {
+    points.push_back(this->GetPoint(*paths[number]));
+  }
+  if (this->World.Transport.AmbientOcclusionSamples > 0)
+  {
+    this->LookAround(paths, count, points.data());
+  }
+  return points;
+}
+
+std::vector<glm::dvec3> ArrivingLight::FindVisibility(
+  LightPath* const* paths, int count, const ShadingPoint* points) const
+{
+  std::vector<glm::dvec3> visibility;
+  if (this->World.Transport.Shadows)
+  {
+    const std::vector<Light>& lights = this->World.Lights;
+    visibility.resize(MaxRays * lights.size());
+    for (std::size_t light = 0; light < lights.size(); ++light)
+    {
+      this->FindVisibility(
+        lights[light], paths, count, points, visibility.data() + MaxRays * light);
+    }
+  }
+  return visibility;
+}
+
+/// The point when nothing is near it.
+ShadingPoint ArrivingLight::GetPoint(const LightPath& path) const
+{
+  const SurfacePoint& point = path.Point;
+  ShadingPoint shading;
+  shading.Position = point.Position;
+  shading.Normal = point.Facing;
+  shading.ToViewer = path.ToViewer;
+  shading.Color = glm::vec3(point.Color);
+  shading.ColorIsFromArray = point.ColorIsFromArray;
+  if (point.Edges)
+  {
+    shading.LineColor = point.Edges->Color;
+    shading.LineCover = point.Edges->Opacity *
+      GetEdgeCover(point.Position, point.Corners, point.EdgeFlags, point.Edges->Width, *path.View);
+  }
+  shading.HasSurroundings = this->HasSurroundings;
+  if (this->HasSurroundings)
+  {
+    shading.Surroundings = this->World.Transport.Surroundings.GetLightOnto(shading.Normal);
+  }
+  return shading;
+}
+
+void ArrivingLight::FindVisibility(const Light& light, LightPath* const* paths, int count,
+  const ShadingPoint* points, glm::dvec3* visibility) const
+{
+  Ray rays[MaxRays];
+  int numbers[MaxRays];
+  int rayCount = 0;
+  for (int number = 0; number < count; ++number)
+  {
+    const Incidence incidence = GetIncidence(light, points[number].Position);
+    if (paths[number]->Point.Surface->Lighting && Arrives(incidence, points[number]))
+    {
+      rays[rayCount] = this->GetLightRay(incidence, *paths[number]);
+      numbers[rayCount++] = number;
+    }
+  }
+  glm::dvec3 transmittances[MaxRays];
+  this->Transmittances.Find(rays, rayCount, transmittances);
+  for (int ray = 0; ray < rayCount; ++ray)
+  {
+    visibility[numbers[ray]] = transmittances[ray];
+  }
+}
+
+/// From a surface to a light, or to a random place on it.
+Ray ArrivingLight::GetLightRay(const Incidence& incidence, LightPath& path) const
+{
+  Ray ray;
+  ray.Origin = path.Point.Position;
+  ray.Direction = -incidence.Direction;
+  if (this->World.Transport.LightRadius > 0.0)
+  {
+    const Frame3 frame(ray.Direction);
+    const double radius = this->World.Transport.LightRadius * std::sqrt(path.Random.Next());
+    const double angle = glm::two_pi<double>() * path.Random.Next();
+    ray.Direction = glm::normalize(ray.Direction + radius * std::cos(angle) * frame.Tangent +
+      radius * std::sin(angle) * frame.Bitangent);
+  }
+  ray.Min = path.Point.Clearance;
+  ray.Max = incidence.Distance;
+  ++path.LightRays;
+  return ray;
+}
+
+/// Finds the parts of the hemispheres, weighted by the cosine, in which nothing is near, and the
+/// light that comes from there.
+void ArrivingLight::LookAround(LightPath* const* paths, int count, ShadingPoint* points) const
+{
+  const LightTransport& transport = this->World.Transport;
+  const int samples = transport.AmbientOcclusionSamples;
+  double visible[MaxRays] = {};
+  glm::dvec3 arriving[MaxRays];
+  std::fill_n(arriving, count, glm::dvec3(0.0));
+  for (int sample = 0; sample < samples; ++sample)
+  {
+    Ray rays[MaxRays];
+    for (int number = 0; number < count; ++number)
+    {
+      rays[number] = this->GetOcclusionRay(points[number].Normal, *paths[number]);
+    }
+    glm::dvec3 transmittances[MaxRays];
+    this->Transmittances.Find(rays, count, transmittances);
+    for (int number = 0; number < count; ++number)
+    {
+      const glm::dvec3& transmittance = transmittances[number];
+      visible[number] += (transmittance.x + transmittance.y + transmittance.z) / 3.0;
+      if (this->HasSurroundings)
+      {
+        arriving[number] += transmittance * transport.Surroundings.GetLight(rays[number].Direction);
+      }
+    }
+  }
+  for (int number = 0; number < count; ++number)
+  {
+    points[number].AmbientVisibility = visible[number] / samples;
+    points[number].Surroundings = arriving[number] / static_cast<double>(samples);
+  }
+}
+
+Ray ArrivingLight::GetOcclusionRay(const glm::dvec3& normal, LightPath& path) const
+{
+  const Frame3 frame(normal);
+  // Uniform on the disc, then up to the sphere: the density is the cosine over pi.
+  const double square = path.Random.Next();
+  const double radius = std::sqrt(square);
+  const double angle = glm::two_pi<double>() * path.Random.Next();
+  Ray ray;
+  ray.Origin = path.Point.Position;
+  ray.Direction = radius * std::cos(angle) * frame.Tangent +
+    radius * std::sin(angle) * frame.Bitangent + std::sqrt(1.0 - square) * normal;
+  ray.Min = path.Point.Clearance;
+  ray.Max = this->World.Transport.AmbientOcclusionDistance;
+  ++path.LightRays;
+  return ray;
+}
+
+} // namespace rt

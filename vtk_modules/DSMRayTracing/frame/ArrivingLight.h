@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef rt_ArrivingLight_h
+#define rt_ArrivingLight_h
+
+#include "DSMRayTracing/frame/LightPath.h"
+#include "DSMRayTracing/light/Shading.h"
+#include "DSMRayTracing/scene/Scene.h"
+#include "DSMRayTracing/scene/TransmittanceFinder.h"
+
+#include <glm/vec3.hpp>
+
+#include <vector>
+
+namespace rt
+{
+
+/// How much light of lamps, and from all around, arrives at the surfaces that paths have come to. One for
+/// each worker.
+class ArrivingLight
+{
+public:
+  /// Keeps references to the scene and the tracers of its objects.
+  ArrivingLight(const ObjectTracers& objects, const Scene& scene);
+
+  /// The points that paths are at, at most MaxRays, with the light from all around.
+  std::vector<ShadingPoint> FindPoints(LightPath* const* paths, int count) const;
+
+  /// For lamp after lamp, MaxRays apart, how much of it arrives at each of the points that face it. Empty:
+  /// all of it.
+  std::vector<glm::dvec3> FindVisibility(
+    LightPath* const* paths, int count, const ShadingPoint* points) const;
+
+private:
+  ShadingPoint GetPoint(const LightPath& path) const;
+  void LookAround(LightPath* const* paths, int count, ShadingPoint* points) const;
+  void FindVisibility(const Light& light, LightPath* const* paths, int count,
+    const ShadingPoint* points, glm::dvec3* visibility) const;
+  Ray GetLightRay(const Incidence& incidence, LightPath& path) const;
+  Ray GetOcclusionRay(const glm::dvec3& normal, LightPath& path) const;
+
+  TransmittanceFinder Transmittances;
+  const Scene& World;
+  bool HasSurroundings; ///< light comes from everywhere
+};
+
+} // namespace rt
+
+#endif

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef rt_LightPath_h
+#define rt_LightPath_h
+
+#include "DSMRayTracing/frame/PixelSample.h"
+#include "DSMRayTracing/light/SampleSequence.h"
+#include "DSMRayTracing/object/SurfacePoint.h"
+#include "DSMRayTracing/ray/Ray.h"
+
+#include <glm/geometric.hpp>
+#include <glm/mat4x3.hpp>
+#include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
+
+#include <cstdint>
+
+namespace rt
+{
+
+/// A sample of a pixel on its way through the scene, or of what a mirror shows, and the surface that it has
+/// come to.
+struct LightPath
+{
+  int Index = 0; ///< of its ray in the batch
+  SurfacePoint Point;
+  glm::dvec3 ToViewer{ 0.0 };
+  SampleSequence Random;
+  glm::vec4 Color{ 0.0f };
+  int LightRays = 0;
+  PixelSample* Layers = nullptr; ///< gets the surfaces one by one, if not null
+  /// Where in the picture the ray sees a point of the world; see PixelRays::GetWorldToPixels.
+  const glm::dmat4x3* View = nullptr;
+  std::uint64_t Number = 0; ///< what a debug view of owners or bricks shows of the surface
+
+  /// What the surface contributes to the colour.
+  float GetWeight() const { return (1.0f - this->Color.w) * this->Point.Color.w; }
+  bool GoesOn() const { return this->Color.w < OpaqueEnough; }
+  /// Moves the start of the ray, which goes on behind the surface until `last`.
+  void Pass(Ray& ray, double last) const
+  {
+    ray.Min = this->Point.T + this->Point.Clearance / glm::length(ray.Direction);
+    ray.Max = last;
+  }
+
+private:
+  /// What lies behind contributes less than half a step of an 8-bit channel.
+  static constexpr float OpaqueEnough = 1.0f - 0.5f / 255.0f;
+};
+
+} // namespace rt
+
+#endif

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef rt_PixelSample_h
+#define rt_PixelSample_h
+
+#include "DSMRayTracing/frame/FrameRequest.h"
+
+#include <glm/vec2.hpp>
+#include <glm/vec4.hpp>
+
+namespace rt
+{
+
+/// Colour, premultiplied, and window depth of what a sample of a pixel shows.
+struct PixelSample
+{
+  static constexpr int MaxLayers = FrameRequest::MaxLayers;
+
+  glm::ivec2 Pixel{ 0 };
+  glm::vec4 Color{ 0.0f };
+  float Depth = 1.0f; ///< of the nearest surface
+  int LightRays = 0;  ///< shadow and occlusion rays that were traced for it
+
+  /// The same surface by surface, front to back: what each contributes to the colour, and its depth.
+  /// The last one stands for all behind it.
+  int Layers = 0;
+  glm::vec4 LayerColors[MaxLayers];
+  float LayerDepths[MaxLayers];
+
+  void AddLayer(const glm::vec4& color, float depth)
+  {
+    if (this->Layers == MaxLayers)
+    {
+      this->LayerColors[MaxLayers - 1] += color;
+      return;
+    }
+    this->Depth = this->Layers == 0 ? depth : this->Depth;
+    this->LayerColors[this->Layers] = color;
+    this->LayerDepths[this->Layers++] = depth;
+  }
+};
+
+} // namespace rt
+
+#endif

@@ -1,0 +1,309 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "DSMRayTracing/frame/PixelSampler.h"
+
+#include "DSMRayTracing/light/EdgeCover.h"
+#include "DSMRayTracing/light/Shading.h"
+
+#include <glm/geometric.hpp>
+#include <glm/vec2.hpp>
+#include <glm/vec4.hpp>
+
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <vector>
+
+namespace rt
+{
+
+namespace
+{
+
+std::vector<const ObjectTracer*> GetAll(const ObjectTracers& objects)
+{
+  std::vector<const ObjectTracer*> all;
+  for (const auto& object : objects)
+  {
+    all.push_back(object.get());
+  }
+  return all;
+}
+
+/// The place in its box of the pixel whose ray has that number in the batch.
+glm::ivec2 GetPlace(int ray)
+{
+  constexpr int edge = PixelSampler::BlockEdge;
+  constexpr int columns = PixelSampler::BoxEdge / edge;
+  const int block = ray / (edge * edge);
+  const int pixel = ray % (edge * edge);
+  return { edge * (block % columns) + pixel % edge, edge * (block / columns) + pixel / edge };
+}
+
+/// What a debug view of owners or bricks numbers.
+std::uint64_t GetNumber(DebugView view, const ObjectTracer::Brick& brick)
+{
+  return view == DebugView::Owner
+    ? static_cast<std::uint64_t>(brick.Segment->GetDirectory().GetOwner(brick.Id))
+    : brick.Id;
+}
+
+} // namespace
+
+/// What mirrors show, on its way. Not on the stack: mirrors may show mirrors many times over.
+struct PixelSampler::Mirrored
+{
+  // Does not write to what is not used.
+  Mirrored() {}
+
+  Ray Rays[MaxRays];
+  glm::dmat4x3 Views[MaxRays];
+  PixelSampler::Paths Paths;
+};
+
+PixelSampler::PixelSampler(const ObjectTracers& objects, const Scene& scene, const PixelRays& rays)
+  : Surfaces(GetAll(objects))
+  , Lighting(objects, scene)
+  , World(scene)
+  , Rays(rays)
+{
+}
+
+SceneBeam PixelSampler::FindBeam(int x, int y, int width, int height) const
+{
+  const auto getCorner = [&](int right, int top)
+  { return this->Rays.GetRay(x + right * width, y + top * height, glm::dvec2(0.0)); };
+  const Ray corners[4] = { getCorner(0, 0), getCorner(1, 0), getCorner(1, 1), getCorner(0, 1) };
+  return this->Surfaces.FindBeam(corners);
+}
+
+void PixelSampler::Sample(
+  SceneBeam* beam, int x, int y, int width, int height, int sample, Samples& samples) const
+{
+  const glm::dvec2 position = SampleSequence::GetPositionInPixel(sample);
+  Ray rays[MaxRays];
+  RayMask wanted = 0;
+  for (int index = 0; index < MaxRays; ++index)
+  {
+    const glm::ivec2 place = GetPlace(index);
+    if (place.x < width && place.y < height)
+    {
+      rays[index] = this->Rays.GetRay(x + place.x, y + place.y, position);
+      wanted |= GetBit(index);
+    }
+  }
+  Paths paths;
+  this->FindSurfaces(rays, wanted, beam,
+    [&](int index) -> LightPath&
+    {
+      LightPath& path = paths.Add();
+      path.Index = index;
+      path.Layers = &samples.Add();
+      path.Layers->Pixel = glm::ivec2(x, y) + GetPlace(index);
+      path.Random = SampleSequence(path.Layers->Pixel.x, path.Layers->Pixel.y, sample);
+      path.ToViewer = -glm::normalize(rays[index].Direction);
+      path.View = &this->Rays.GetWorldToPixels();
+      return path;
+    });
+  this->Follow(beam, rays, PixelRays::Last, this->World.Transport.MaxBounces, paths);
+  for (int number = 0; number < paths.GetCount(); ++number)
+  {
+    const LightPath& path = paths[number];
+    path.Layers->Color = path.Color;
+    path.Layers->LightRays = path.LightRays;
+  }
+}
+
+template <class GetPath>
+void PixelSampler::FindSurfaces(
+  Ray* rays, RayMask wanted, SceneBeam* beam, const GetPath& getPath) const
+{
+  ObjectHit hits[MaxRays];
+  ForEachRay(this->Surfaces.Find(rays, wanted, beam, hits),
+    [&](int index)
+    {
+      const ObjectTracer& object = *hits[index].GetObject();
+      LightPath& path = getPath(index);
+      object.Describe(hits[index], rays[index], path.Point);
+      if (this->World.View == DebugView::Owner || this->World.View == DebugView::Brick)
+      {
+        path.Number = GetNumber(this->World.View, object.FindBrick(hits[index]));
+      }
+    });
+}
+
+void PixelSampler::Follow(SceneBeam* beam, Ray* rays, double last, int bounces, Paths& paths) const
+{
+  LightPath* list[MaxRays];
+  LightPath* byRay[MaxRays];
+  int count = 0;
+  for (; count < paths.GetCount(); ++count)
+  {
+    list[count] = &paths[count];
+    byRay[paths[count].Index] = &paths[count];
+  }
+  while (count > 0)
+  {
+    this->AddSurfaces(list, count, bounces);
+    RayMask wanted = 0;
+    for (int number = 0; number < count; ++number)
+    {
+      const LightPath& path = *list[number];
+      if (path.GoesOn())
+      {
+        path.Pass(rays[path.Index], last);
+        wanted |= GetBit(path.Index);
+      }
+    }
+    count = 0;
+    if (wanted != 0)
+    {
+      this->FindSurfaces(rays, wanted, beam,
+        [&](int index) -> LightPath&
+        {
+          list[count++] = byRay[index];
+          return *byRay[index];
+        });
+    }
+  }
+}
+
+void PixelSampler::AddSurfaces(LightPath* const* paths, int count, int bounces) const
+{
+  LightPath* seen[MaxRays] = {};
+  int seenCount = 0;
+  for (int number = 0; number < count; ++number)
+  {
+    if (paths[number]->GetWeight() > 0.0f)
+    {
+      seen[seenCount++] = paths[number];
+    }
+  }
+  glm::vec3 colors[MaxRays];
+  this->Shade(seen, seenCount, bounces, colors);
+  for (int number = 0; number < seenCount; ++number)
+  {
+    LightPath& path = *seen[number];
+    const float weight = path.GetWeight();
+    const glm::vec4 layer(weight * colors[number], weight);
+    path.Color += layer;
+    if (path.Layers)
+    {
+      path.Layers->AddLayer(layer, this->Rays.GetDepth(path.Point.Position));
+    }
+  }
+}
+
+void PixelSampler::Shade(LightPath* const* paths, int count, int bounces, glm::vec3* colors) const
+{
+  if (this->World.View != DebugView::Off)
+  {
+    for (int number = 0; number < count; ++number)
+    {
+      colors[number] = this->ShowForDebugging(*paths[number]);
+    }
+    return;
+  }
+  const std::vector<ShadingPoint> points = this->Lighting.FindPoints(paths, count);
+  const std::vector<glm::dvec3> visibility =
+    this->Lighting.FindVisibility(paths, count, points.data());
+  const std::vector<Light>& lights = this->World.Lights;
+  for (int number = 0; number < count; ++number)
+  {
+    colors[number] = rt::Shade(lights, *paths[number]->Point.Surface, points[number],
+      [&](const Light& light, const Incidence&)
+      {
+        return visibility.empty() ? glm::dvec3(1.0)
+                                  : visibility[MaxRays * (&light - lights.data()) + number];
+      });
+  }
+  if (bounces > 0)
+  {
+    this->AddReflections(paths, count, points.data(), bounces, colors);
+  }
+}
+
+void PixelSampler::AddReflections(LightPath* const* paths, int count, const ShadingPoint* points,
+  int bounces, glm::vec3* colors) const
+{
+  // A line is painted on the mirror.
+  const auto getReflectivity = [&](int number)
+  {
+    return static_cast<float>(1.0 - points[number].LineCover) *
+      paths[number]->Point.Surface->Reflectivity;
+  };
+  RayMask mirrors = 0;
+  for (int number = 0; number < count; ++number)
+  {
+    mirrors |= GetBit(number, getReflectivity(number) > 0.0f);
+  }
+  if (mirrors == 0)
+  {
+    return;
+  }
+  const auto mirrored = std::make_unique<Mirrored>();
+  ForEachRay(mirrors,
+    [&](int number)
+    {
+      const LightPath& path = *paths[number];
+      const glm::dvec3& normal = points[number].Normal;
+      Ray& ray = mirrored->Rays[number];
+      ray.Origin = path.Point.Position;
+      ray.Direction = glm::reflect(-path.ToViewer, normal);
+      ray.Min = path.Point.Clearance;
+      ray.Max = std::numeric_limits<double>::infinity();
+      mirrored->Views[number] = GetMirroredView(*path.View, path.Point.Position, normal);
+    });
+  this->FindSurfaces(mirrored->Rays, mirrors, nullptr,
+    [&](int number) -> LightPath&
+    {
+      LightPath& behind = mirrored->Paths.Add();
+      behind.Index = number;
+      behind.Random = paths[number]->Random;
+      behind.ToViewer = -glm::normalize(mirrored->Rays[number].Direction);
+      behind.View = &mirrored->Views[number];
+      return behind;
+    });
+  this->Follow(
+    nullptr, mirrored->Rays, std::numeric_limits<double>::infinity(), bounces - 1, mirrored->Paths);
+  glm::vec4 seen[MaxRays];
+  ForEachRay(mirrors, [&](int number) { seen[number] = glm::vec4(0.0f); });
+  for (int index = 0; index < mirrored->Paths.GetCount(); ++index)
+  {
+    const LightPath& behind = mirrored->Paths[index];
+    seen[behind.Index] = behind.Color;
+    paths[behind.Index]->Random = behind.Random;
+    paths[behind.Index]->LightRays += behind.LightRays;
+  }
+  ForEachRay(mirrors,
+    [&](int number)
+    {
+      const float reflectivity = getReflectivity(number);
+      const glm::vec3 reflection =
+        glm::vec3(seen[number]) + (1.0f - seen[number].w) * this->World.Transport.Background;
+      colors[number] = (1.0f - reflectivity) * colors[number] + reflectivity * reflection;
+    });
+}
+
+glm::vec3 PixelSampler::ShowForDebugging(const LightPath& path) const
+{
+  // What faces the viewer is brighter, so that the shape can be seen.
+  const SurfacePoint& point = path.Point;
+  const float facing =
+    static_cast<float>(0.4 + 0.6 * std::abs(glm::dot(point.Normal, path.ToViewer)));
+  switch (this->World.View)
+  {
+    case DebugView::Normal:
+      return glm::vec3(0.5 + 0.5 * point.Normal);
+    case DebugView::Depth:
+      return glm::vec3(1.0f - this->Rays.GetDepth(point.Position));
+    case DebugView::Owner:
+    case DebugView::Brick:
+      return facing * GetNumberColor(path.Number);
+    default:
+      return glm::vec3(facing); // tinted when the tile is done
+  }
+}
+
+} // namespace rt

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef rt_PixelSampler_h
+#define rt_PixelSampler_h
+
+#include "DSMRayTracing/base/FixedList.h"
+#include "DSMRayTracing/frame/ArrivingLight.h"
+#include "DSMRayTracing/frame/LightPath.h"
+#include "DSMRayTracing/frame/PixelRays.h"
+#include "DSMRayTracing/frame/PixelSample.h"
+#include "DSMRayTracing/scene/ObjectTracers.h"
+#include "DSMRayTracing/scene/SceneBeam.h"
+#include "DSMRayTracing/scene/SurfaceFinder.h"
+
+#include <glm/vec3.hpp>
+
+namespace rt
+{
+
+/// Follows the light of samples of pixels: what lies behind translucent surfaces, shadows, ambient
+/// occlusion, mirrors. A sample depends on the scene, the camera, the pixel and the sample's number only.
+class PixelSampler
+{
+public:
+  /// Keeps references.
+  PixelSampler(const ObjectTracers& objects, const Scene& scene, const PixelRays& rays);
+
+  /// What the pixels of a box have in common: for Sample. Usable or not, it can be used; but where it is
+  /// not, a smaller box may be.
+  SceneBeam FindBeam(int x, int y, int width, int height) const;
+
+  /// What pixels show, those that show nothing left out.
+  using Samples = FixedList<PixelSample, MaxRays>;
+
+  /// Adds samples of that number of the pixels of a box, at most BoxEdge wide and high. `beam`: of pixels
+  /// around; null: each by itself, which is slower.
+  void Sample(
+    SceneBeam* beam, int x, int y, int width, int height, int sample, Samples& samples) const;
+
+  static constexpr int BoxEdge = 8;
+  /// The rays of a block of pixels follow one another, so that those that mesh packets take have as much in
+  /// common as can be.
+  static constexpr int BlockEdge = 4;
+
+private:
+  static_assert(BoxEdge * BoxEdge == MaxRays, "a box is a batch");
+
+  using Paths = FixedList<LightPath, MaxRays>;
+  struct Mirrored;
+
+  /// Finds what rays meet, and tells it the path that `getPath(index)` gives for each that meets
+  /// something; it is called once for each.
+  template <class GetPath>
+  void FindSurfaces(Ray* rays, RayMask wanted, SceneBeam* beam, const GetPath& getPath) const;
+
+  /// Follows paths that are at their first surfaces front to back until `last`.
+  void Follow(SceneBeam* beam, Ray* rays, double last, int bounces, Paths& paths) const;
+
+  /// Adds what the surfaces at which paths are contribute.
+  void AddSurfaces(LightPath* const* paths, int count, int bounces) const;
+
+  void Shade(LightPath* const* paths, int count, int bounces, glm::vec3* colors) const;
+  void AddReflections(LightPath* const* paths, int count, const ShadingPoint* points, int bounces,
+    glm::vec3* colors) const;
+  glm::vec3 ShowForDebugging(const LightPath& path) const;
+
+  SurfaceFinder Surfaces;
+  ArrivingLight Lighting;
+  const Scene& World;
+  const PixelRays& Rays;
+};
+
+} // namespace rt
+
+#endif

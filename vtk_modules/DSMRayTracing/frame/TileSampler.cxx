@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "DSMRayTracing/frame/TileSampler.h"
+
+#include <glm/vec4.hpp>
+
+#include <algorithm>
+#include <cstdint>
+
+namespace rt
+{
+
+namespace
+{
+
+/// Of the pixels that share the walk through the levels above the bricks. Fewer rays than that are
+/// traced at once, so that what is known of them stays in the nearest cache.
+constexpr int BeamEdge = BeamHistory::Edge;
+constexpr int SmallestBeamEdge = PixelSampler::BlockEdge;
+
+} // namespace
+
+TileSampler::TileSampler(const ObjectTracers& objects, const Scene& scene, const PixelRays& rays,
+  const FrameRequest& request, BeamHistory* beams)
+  : Objects(objects)
+  , Pixels(objects, scene, rays)
+  , Request(request)
+  , Beams(beams)
+{
+}
+
+template <class Visit>
+void TileSampler::Split(const Box& whole, int edge, const Visit& visit)
+{
+  for (int top = 0; top < whole.Height; top += edge)
+  {
+    for (int left = 0; left < whole.Width; left += edge)
+    {
+      visit(Box{ whole.Left + left, whole.Top + top, std::min(edge, whole.Width - left),
+        std::min(edge, whole.Height - top) });
+    }
+  }
+}
+
+void TileSampler::Trace(Tile& tile) const
+{
+  const std::size_t pixels = static_cast<std::size_t>(tile.Width) * tile.Height;
+  if (this->Request.FirstSample == 0)
+  {
+    tile.Layers = this->Request.Layers;
+    tile.Sum.assign(tile.Layers * pixels, glm::vec4(0.0f));
+    tile.Depth.assign(tile.Layers * pixels, 1.0f);
+  }
+  tile.Color.resize(4 * tile.Layers * pixels);
+  tile.Samples = this->Request.FirstSample + this->Request.Samples;
+  Split({ 0, 0, tile.Width, tile.Height }, BeamEdge,
+    [&](const Box& box) { this->TraceBeam(tile, box); });
+}
+
+bool TileSampler::Prefetch(const Tile& tile) const
+{
+  bool anyAbsent = false;
+  Split({ 0, 0, tile.Width, tile.Height }, BeamEdge,
+    [&](const Box& box) { anyAbsent |= this->Prefetch(this->FindBeam(tile, box), tile, box); });
+  return anyAbsent;
+}
+
+void TileSampler::Finish(Tile& tile, const glm::vec3& tint) const
+{
+  const std::size_t pixels = tile.Sum.size();
+  const glm::vec4 scale =
+    glm::vec4(tint, 1.0f) / float(this->Request.FirstSample + this->Request.Samples);
+  for (std::size_t pixel = 0; pixel < pixels; ++pixel)
+  {
+    const glm::vec4 sum = tile.Sum[pixel];
+    std::uint8_t* const color = &tile.Color[4 * pixel];
+    if (sum == glm::vec4(0.0f))
+    {
+      std::fill_n(color, 4, std::uint8_t{ 0 });
+      continue;
+    }
+    for (int channel = 0; channel < 4; ++channel)
+    {
+      const float value = std::clamp(scale[channel] * sum[channel], 0.0f, 1.0f);
+      color[channel] = static_cast<std::uint8_t>(255.0f * value + 0.5f);
+    }
+  }
+}
+
+SceneBeam TileSampler::FindBeam(const Tile& tile, const Box& box) const
+{
+  return this->Pixels.FindBeam(tile.X + box.Left, tile.Y + box.Top, box.Width, box.Height);
+}
+
+/// Returns whether any brick was absent.
+bool TileSampler::Prefetch(const SceneBeam& beam, const Tile& tile, const Box& box) const
+{
+  bool anyAbsent = false;
+  for (std::size_t object = 0; this->Beams && object < beam.Objects.size(); ++object)
+  {
+    if (beam.Objects[object])
+    {
+      const std::size_t count = this->Beams->Predict(tile.X + box.Left, tile.Y + box.Top, object);
+      anyAbsent |= this->Objects[object]->Prefetch(*beam.Objects[object], count);
+    }
+  }
+  return anyAbsent;
+}
+
+void TileSampler::Record(const SceneBeam& beam, const Tile& tile, const Box& box) const
+{
+  for (std::size_t object = 0; this->Beams && object < beam.Objects.size(); ++object)
+  {
+    if (beam.Objects[object] && beam.Objects[object]->Usable)
+    {
+      this->Beams->Record(
+        tile.X + box.Left, tile.Y + box.Top, object, beam.Objects[object]->Reached);
+    }
+  }
+}
+
+void TileSampler::TraceBeam(Tile& tile, const Box& box) const
+{
+  SceneBeam beam = this->FindBeam(tile, box);
+  if (beam.MayMeet())
+  {
+    this->Prefetch(beam, tile, box);
+    // Rays on both sides of where they run along an axis: fewer have more in common.
+    const bool splits =
+      !beam.IsUsable() && (box.Width > SmallestBeamEdge || box.Height > SmallestBeamEdge);
+    Split(box, splits ? SmallestBeamEdge : PixelSampler::BoxEdge,
+      [&](const Box& part)
+      {
+        if (splits)
+        {
+          this->TraceBeam(tile, part);
+        }
+        else
+        {
+          this->TraceBatch(tile, beam, part);
+        }
+      });
+  }
+  this->Record(beam, tile, box);
+}
+
+void TileSampler::TraceBatch(Tile& tile, SceneBeam& beam, const Box& box) const
+{
+  for (int sample = 0; sample < this->Request.Samples; ++sample)
+  {
+    PixelSampler::Samples samples;
+    this->Pixels.Sample(&beam, tile.X + box.Left, tile.Y + box.Top, box.Width, box.Height,
+      this->Request.FirstSample + sample, samples);
+    for (int number = 0; number < samples.GetCount(); ++number)
+    {
+      AddSample(samples[number], tile);
+    }
+  }
+}
+
+void TileSampler::AddSample(const PixelSample& traced, Tile& tile)
+{
+  tile.LightRays += static_cast<std::uint64_t>(traced.LightRays);
+  const std::size_t pixels = static_cast<std::size_t>(tile.Width) * tile.Height;
+  const std::size_t pixel = static_cast<std::size_t>(traced.Pixel.y - tile.Y) * tile.Width +
+    static_cast<std::size_t>(traced.Pixel.x - tile.X);
+  if (tile.Layers == 1)
+  {
+    tile.Sum[pixel] += traced.Color;
+    // A pixel is as near as the nearest of its samples, so that a surface's antialiased
+    // border still covers what is behind.
+    tile.Depth[pixel] = std::min(tile.Depth[pixel], traced.Depth);
+    return;
+  }
+  for (int layer = 0; layer < traced.Layers; ++layer)
+  {
+    const std::size_t place = pixels * std::min(layer, tile.Layers - 1) + pixel;
+    tile.Sum[place] += traced.LayerColors[layer];
+    tile.Depth[place] = std::min(tile.Depth[place], traced.LayerDepths[layer]);
+  }
+}
+
+} // namespace rt

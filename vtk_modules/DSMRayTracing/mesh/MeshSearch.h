@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef rt_MeshSearch_h
+#define rt_MeshSearch_h
+
+#include "DSMCore/base/Block.h"
+#include "DSMRayTracing/mesh/MeshHit.h"
+#include "DSMRayTracing/mesh/MeshInstance.h"
+#include "DSMRayTracing/mesh/MeshKernel.h"
+#include "DSMRayTracing/mesh/MeshPacket.h"
+#include "DSMRayTracing/ray/Ray.h"
+#include "DSMRayTracing/ray/RayMask.h"
+
+namespace rt
+{
+
+/// Finds the hits of meshes through a store: walks the hierarchy over the bricks front to back,
+/// acquires each brick whose box a ray meets before its nearest hit so far, and searches it. Pure:
+/// the result depends on the ray and the mesh only; see ComesFirst for hits at the same T. One for
+/// each worker: it holds at most one pin, and none while it acquires or when a call returns.
+template <class Store>
+class MeshSearch
+{
+public:
+  MeshSearch(
+    Store& store, typename Store::Worker& worker, const MeshKernel& kernel = MeshKernel::GetBest())
+    : Blocks(store)
+    , Self(worker)
+    , Kernel(kernel)
+  {
+  }
+
+  /// The first hit in [ray.Min, ray.Max]. May wait for bricks.
+  bool Intersect(const MeshInstance& instance, const Ray& ray, MeshHit& hit) const;
+
+  /// Intersect for those of a batch of rays that are `wanted`, with the same results. Returns those that
+  /// hit something, and calls `take(index, hit)` for each of them. A brick is acquired once for all of a
+  /// packet that meet it.
+  template <class Take>
+  RayMask Intersect(
+    const MeshInstance& instance, const Ray* rays, RayMask wanted, const Take& take) const;
+
+  /// Whether there is any hit in [ray.Min, ray.Max]: whether Intersect finds one. May wait for
+  /// bricks.
+  bool IsOccluded(const MeshInstance& instance, const Ray& ray) const;
+
+  /// The same for those of a batch of rays that are `wanted`.
+  RayMask FindOccluded(const MeshInstance& instance, const Ray* rays, RayMask wanted) const;
+
+private:
+  class PacketVisitor;
+  class OcclusionVisitor;
+
+  /// Searches the rays of a batch packet by packet: calls `search(rays, some, first)` for the `wanted` ones of
+  /// MeshPacket::Size rays at a time, from `first` on; it returns those that have found something, as this does.
+  template <class Search>
+  static RayMask SearchPackets(const Ray* rays, RayMask wanted, const Search& search);
+
+  /// Takes those of the `wanted` rays that fit into a packet through the mesh; returns the others.
+  template <class Visitor>
+  MeshPacket::Mask VisitBricks(
+    const MeshInstance& instance, const Ray* rays, MeshPacket::Mask wanted, Visitor& visitor) const;
+
+  template <class Take>
+  MeshPacket::Mask IntersectPacket(
+    const MeshInstance& instance, const Ray* rays, MeshPacket::Mask wanted, const Take& take) const;
+  MeshPacket::Mask FindOccludedInPacket(
+    const MeshInstance& instance, const Ray* rays, MeshPacket::Mask wanted) const;
+
+  Store& Blocks;
+  typename Store::Worker& Self;
+  const MeshKernel& Kernel;
+};
+
+} // namespace rt
+
+#include "DSMRayTracing/mesh/MeshSearch.txx"
+
+#endif

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef rt_ObjectDigest_h
+#define rt_ObjectDigest_h
+
+#include "DSMRayTracing/base/ByteHash.h"
+#include "DSMRayTracing/ray/ClipRegion.h"
+#include "DSMRayTracing/surface/ColorMap.h"
+#include "DSMRayTracing/surface/EdgeLines.h"
+#include "DSMRayTracing/surface/Material.h"
+#include "DSMRayTracing/surface/Texture.h"
+
+#include <cstdint>
+#include <optional>
+#include <type_traits>
+#include <vector>
+
+namespace rt
+{
+
+/// A number that descriptions of objects, and what else is added, share if, for all practical purposes,
+/// they are the same. Valid within one process.
+class ObjectDigest
+{
+public:
+  std::uint64_t Get() const { return this->Bytes.Get(); }
+
+  /// Only types without padding.
+  template <class T>
+  void Add(const T& value)
+  {
+    static_assert(std::is_trivially_copyable_v<T>, "only plain values have bytes of their own");
+    this->Bytes.Add(&value, sizeof(T));
+  }
+  template <class T>
+  void Add(const std::vector<T>& values)
+  {
+    this->Add(values.size());
+    for (const T& value : values)
+    {
+      this->Add(value);
+    }
+  }
+  template <class T>
+  void Add(const std::optional<T>& value)
+  {
+    this->AddIf(value ? &*value : nullptr);
+  }
+  /// What is there, or that there is nothing.
+  template <class T>
+  void AddIf(const T* value)
+  {
+    this->Add(value != nullptr);
+    if (value)
+    {
+      this->Add(*value);
+    }
+  }
+
+  void Add(const Material& material);
+  void Add(const ColorMap& map);
+  void Add(const ClipRegion& region);
+  void Add(const ClipRegion::HalfSpace& half);
+  void Add(const ClipRegion::Grid& boxes);
+  void Add(const EdgeLines& lines);
+  void Add(const Texture& picture);
+
+private:
+  ByteHash Bytes;
+};
+
+} // namespace rt
+
+#endif

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef rt_ObjectTracer_h
+#define rt_ObjectTracer_h
+
+#include "DSMCore/base/Block.h"
+#include "DSMCore/publish/BlockSegment.h"
+#include "DSMRayTracing/object/ObjectBeam.h"
+#include "DSMRayTracing/object/ObjectHit.h"
+#include "DSMRayTracing/object/SurfacePoint.h"
+#include "DSMRayTracing/ray/Ray.h"
+#include "DSMRayTracing/ray/RayMask.h"
+
+#include <cstddef>
+#include <memory>
+
+namespace rt
+{
+
+/// An object that rays meet, as one worker traces it: all that the rooms above know of it. Rays come in
+/// batches of up to MaxRays, and one ray is a batch of one; what a ray finds does not depend on the
+/// others. A kind of object derives from this for a store (so that access to a brick that is there stays
+/// a load), and chooses for each batch what is fastest.
+///
+/// Calls may wait for bricks, and throw what the store throws.
+class ObjectTracer
+{
+public:
+  virtual ~ObjectTracer() = default;
+
+  /// Whether the object lets no light through anywhere, so that any hit decides on a ray of light.
+  virtual bool IsOpaque() const = 0;
+
+  /// What rays between those of `corners`, in order around them, have in common. Null: the object has
+  /// nothing to tell.
+  virtual std::unique_ptr<ObjectBeam> FindBeam(const Ray corners[4]) const = 0;
+
+  /// Asks for the first `count` bricks that a beam of this object meets, ahead of FindNext; returns
+  /// whether any was absent. Never waits.
+  virtual bool Prefetch(const ObjectBeam& beam, std::size_t count) const = 0;
+
+  /// Finds the first hits of those rays that are `wanted` in [ray.Min, ray.Max], and gives them to
+  /// ObjectHit::Take, which has the hits of other objects so far. `beam`: of this object, with all of
+  /// the rays within; null: rays go where they like.
+  virtual void FindNext(Ray* rays, RayMask wanted, ObjectBeam* beam, ObjectHit* nearest) const = 0;
+
+  /// Those of the rays that are `wanted` which have any hit in [ray.Min, ray.Max]: for which FindNext
+  /// finds one.
+  virtual RayMask FindOccluded(const Ray* rays, RayMask wanted) const = 0;
+
+  /// Tells what the ray meets there.
+  virtual void Describe(const ObjectHit& hit, const Ray& ray, SurfacePoint& point) const = 0;
+
+  /// A brick of a segment.
+  struct Brick
+  {
+    const dsm::BlockSegment* Segment;
+    dsm::BlockId Id;
+  };
+  /// The one that holds the place of the hit.
+  virtual Brick FindBrick(const ObjectHit& hit) const = 0;
+};
+
+} // namespace rt
+
+#endif

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef rt_SceneObject_h
+#define rt_SceneObject_h
+
+#include "DSMRayTracing/mesh/MeshObject.h"
+#include "DSMRayTracing/volume/IsosurfaceObject.h"
+
+#include <variant>
+
+namespace rt
+{
+
+/// The table of the kinds of objects. A kind has
+/// - a description, named here, with IsOpaque, AddTo and the name of
+/// - its Tracer, an ObjectTracer for a store, whose header CreateObjectTracers includes.
+/// Of surfaces that are equally near, that of the kind that comes first here is seen.
+using SceneObject = std::variant<IsosurfaceObject, MeshObject>;
+
+} // namespace rt
+
+#endif

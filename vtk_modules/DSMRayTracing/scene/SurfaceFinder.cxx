@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "DSMRayTracing/scene/SurfaceFinder.h"
+
+#include <cstddef>
+#include <utility>
+
+namespace rt
+{
+
+SurfaceFinder::SurfaceFinder(std::vector<const ObjectTracer*> objects)
+  : Objects(std::move(objects))
+{
+}
+
+SceneBeam SurfaceFinder::FindBeam(const Ray corners[4]) const
+{
+  SceneBeam beam;
+  for (const ObjectTracer* object : this->Objects)
+  {
+    beam.Objects.push_back(object->FindBeam(corners));
+  }
+  return beam;
+}
+
+RayMask SurfaceFinder::Find(Ray* rays, RayMask wanted, SceneBeam* beam, ObjectHit* hits) const
+{
+  ForEachRay(wanted, [&](int index) { hits[index].Clear(); });
+  for (std::size_t number = 0; number < this->Objects.size(); ++number)
+  {
+    ObjectBeam* const ofObject = beam ? beam->Objects[number].get() : nullptr;
+    this->Objects[number]->FindNext(rays, wanted, ofObject, hits);
+  }
+  return FindRays(wanted, [&](int index) { return hits[index].GetObject() != nullptr; });
+}
+
+} // namespace rt

@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef rt_IsosurfaceTracer_h
+#define rt_IsosurfaceTracer_h
+
+#include "DSMRayTracing/object/ObjectTracer.h"
+#include "DSMRayTracing/volume/IsosurfaceObject.h"
+#include "DSMRayTracing/volume/IsosurfacePacketSearch.h"
+#include "DSMRayTracing/volume/IsosurfaceSearch.h"
+
+#include <glm/geometric.hpp>
+#include <glm/mat3x3.hpp>
+#include <glm/vec4.hpp>
+
+#include <algorithm>
+#include <cstddef>
+#include <memory>
+#include <vector>
+
+namespace rt
+{
+
+/// Isosurfaces of a volume as an object that rays meet. Rays within a beam, and those to a lamp, are
+/// searched as packets, others one by one.
+template <class Store>
+class IsosurfaceTracer final : public ObjectTracer
+{
+public:
+  /// Keeps references.
+  IsosurfaceTracer(Store& store, typename Store::Worker& worker, const IsosurfaceObject& object)
+    : Blocks(store)
+    , Object(object)
+    , Search(store, worker)
+    , Packets(store, worker)
+  {
+    const glm::dmat3 edges(object.IndexToWorld);
+    this->Clearance = ClearancePart *
+      std::min({ glm::length(edges[0]), glm::length(edges[1]), glm::length(edges[2]) });
+  }
+
+  bool IsOpaque() const override { return this->Object.IsOpaque(); }
+
+  std::unique_ptr<ObjectBeam> FindBeam(const Ray corners[4]) const override
+  {
+    return std::make_unique<BeamBricks>(this->Packets.FindBricks(this->Object, corners));
+  }
+
+  bool Prefetch(const ObjectBeam& beam, std::size_t count) const override
+  {
+    const auto& bricks = static_cast<const BeamBricks&>(beam).Bricks;
+    std::vector<dsm::BlockId> ids(this->IsSeen() ? std::min(count, bricks.size()) : 0);
+    std::transform(bricks.begin(), bricks.begin() + static_cast<std::ptrdiff_t>(ids.size()),
+      ids.begin(), [](const BeamBricks::Brick& brick) { return brick.Id; });
+    return this->Blocks.Prefetch(*this->Object.Field->Segment, ids.data(), ids.size());
+  }
+
+  void FindNext(Ray* rays, RayMask wanted, ObjectBeam* beam, ObjectHit* nearest) const override
+  {
+    if (!this->IsSeen())
+    {
+      return;
+    }
+    const auto take = [&](int index, const IsosurfaceHit& hit)
+    { nearest[index].Take(*this, hit, rays[index]); };
+    auto* const bricks = static_cast<BeamBricks*>(beam);
+    this->Object.Clipping.SearchParts(rays, wanted,
+      [&](const Ray* parts, RayMask some)
+      {
+        return bricks ? this->Packets.Intersect(this->Object, *bricks, parts, some, take)
+                      : this->Search.IntersectEach(this->Object, parts, some, take);
+      });
+  }
+
+  RayMask FindOccluded(const Ray* rays, RayMask wanted) const override
+  {
+    return this->Object.Clipping.SearchParts(rays, wanted,
+      [&](const Ray* parts, RayMask some)
+      { return this->Packets.FindOccluded(this->Object, parts, some); });
+  }
+
+  void Describe(const ObjectHit& nearest, const Ray& ray, SurfacePoint& point) const override
+  {
+    const auto& hit = nearest.Get<IsosurfaceHit>();
+    const IsosurfaceObject& object = this->Object;
+    point.T = hit.T;
+    point.Position = ray.Origin + hit.T * ray.Direction;
+    point.Normal = hit.Normal;
+    point.Facing = hit.FromInside ? -hit.Normal : hit.Normal;
+    point.Surface = &object.Surface;
+    point.ColorIsFromArray = object.ColorField != nullptr;
+    point.Color = point.ColorIsFromArray
+      ? object.Colors.Map(this->Search.Sample(*object.ColorField, hit.IndexPoint))
+      : glm::vec4(object.Surface.DiffuseColor, 1.0f);
+    point.Color.w *= object.Surface.Opacity;
+    if (!object.Opacities.empty())
+    {
+      point.Color.w *= object.Opacities[hit.Isovalue];
+    }
+    point.Clearance = this->Clearance;
+    point.Edges = nullptr;
+  }
+
+  Brick FindBrick(const ObjectHit& hit) const override
+  {
+    const VoxelField& field = *this->Object.Field;
+    return { field.Segment.get(), field.Lattice.FindBrick(hit.Get<IsosurfaceHit>().IndexPoint) };
+  }
+
+private:
+  /// Of the shortest edge of a cell. Roots are found to 1e-7 of the way through a cell.
+  static constexpr double ClearancePart = 1e-4;
+
+  bool IsSeen() const { return this->Object.Surface.Opacity > 0.0f; }
+
+  Store& Blocks;
+  const IsosurfaceObject& Object;
+  IsosurfaceSearch<Store> Search;
+  IsosurfacePacketSearch<Store> Packets;
+  double Clearance;
+};
+
+} // namespace rt
+
+#endif
