@@ -42,3 +42,8 @@ void vtkPVDSMMemoryOptions::SetScheduler(int scheduler)
 {
   this->Superclass::SetScheduler(scheduler);
 }
+
+void vtkPVDSMMemoryOptions::SetSilenceLimit(int seconds)
+{
+  this->Superclass::SetSilenceLimit(seconds);
+}

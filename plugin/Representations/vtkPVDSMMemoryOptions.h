@@ -27,6 +27,7 @@ public:
   void SetCacheSize(int mebibytes) override;
   void SetNumberOfThreads(int threads) override;
   void SetScheduler(int scheduler) override;
+  void SetSilenceLimit(int seconds) override;
   ///@}
 
 protected:

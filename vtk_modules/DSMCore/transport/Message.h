@@ -30,7 +30,8 @@ enum class MessageKind : std::uint32_t
   FrameStop,
   FrameAbort,
   FrameEnd,
-  Last = FrameEnd
+  SignOfLife,
+  Last = SignOfLife
 };
 
 /// A run of bytes from one rank to another. Every rank runs the same binary, so the payload is in

@@ -62,6 +62,24 @@ public:
   /// For every rank the lowest rank of its host. Collective like GetRanksOnHost.
   const std::vector<int>& GetHosts();
 
+  // -- Ranks that are stopped, hang, or are gone --------------------------------------------------
+  // A rank that does nothing but wait tells rank 0, and rank 0 all, now and then, and when it waits no
+  // more; in ProgressUntil with work, only while all serve. Who is counted on (Attendance) and silent
+  // for too long is given up by all: what waits, and whatever is collective from then on, throws a
+  // StepAborted that names the rank and says how to go on.
+
+  static constexpr double DefaultSilenceLimit = 60.0;
+  /// Seconds that a rank may be silent; 0: for ever. Between steps; the same on every rank.
+  void SetSilenceLimit(double seconds);
+  double GetSilenceLimit() const;
+  /// This rank cannot go on: all, itself included, give it up.
+  void GiveUpThisRank();
+
+  /// From here on every rank serves the others, and computes nothing for long, until EndServing. Each
+  /// rank by itself, when it knows that all are there, or will be at once.
+  void BeginServing();
+  void EndServing();
+
   /// Enters the next collective step; the next Progress delivers what arrived early for it.
   /// Collective in order; does not wait. Returns the session's number.
   std::uint32_t BeginSession();
@@ -86,7 +104,8 @@ public:
   void ProgressUntil(FunctionRef<bool()> done, FunctionRef<bool()> work = {});
 
   /// ProgressUntil for what other ranks rely on: an exception, such as of a message that is lost or
-  /// rejected, is this rank's failure, told to `fail`, and this rank goes on serving.
+  /// rejected, is this rank's failure, told to `fail`, and this rank goes on serving. A StepAborted is told
+  /// and thrown.
   void ServeUntil(
     FunctionRef<bool()> done, FunctionRef<bool()> work, FunctionRef<void(std::exception_ptr)> fail);
 

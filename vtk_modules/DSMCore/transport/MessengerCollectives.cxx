@@ -503,7 +503,20 @@ Status Messenger::RunStep(FunctionRef<void()> step)
   FirstFailure failure;
   try
   {
-    step();
+    try
+    {
+      step();
+    }
+    catch (const StepAborted&)
+    {
+      throw;
+    }
+    catch (...)
+    {
+      failure.Keep(std::current_exception());
+    }
+    return failure.IsEmpty() ? this->Exchange({}, Faring::Well).Outcome
+                             : this->Exchange(this->ToCause(failure), Faring::Left).Outcome;
   }
   catch (const StepAborted& aborted)
   {
@@ -511,12 +524,6 @@ Status Messenger::RunStep(FunctionRef<void()> step)
     this->Insist([&] { status = Status{ aborted.GetFailedRank(), aborted.what(), false }; });
     return status;
   }
-  catch (...)
-  {
-    failure.Keep(std::current_exception());
-  }
-  return failure.IsEmpty() ? this->Exchange({}, Faring::Well).Outcome
-                           : this->Exchange(this->ToCause(failure), Faring::Left).Outcome;
 }
 
 void Messenger::RunTogether(std::string_view what, FunctionRef<void()> step)

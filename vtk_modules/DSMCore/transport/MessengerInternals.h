@@ -2,10 +2,12 @@
 #ifndef dsm_MessengerInternals_h
 #define dsm_MessengerInternals_h
 
+#include "DSMCore/transport/Attendance.h"
 #include "DSMCore/transport/BackOff.h"
 #include "DSMCore/transport/Messenger.h"
 
 #include <array>
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <exception>
@@ -30,6 +32,9 @@ public:
   void ProgressUntil(FunctionRef<bool()> done, FunctionRef<bool()> work);
   void Insist(FunctionRef<void()> step);
 
+  void ServeAll(bool doServe);
+  void GiveUpThisRank();
+
   // -- For collectives --
 
   /// Begins a session, runs `exchange` in it, and leaves when the own messages have left too.
@@ -47,6 +52,7 @@ public:
   std::unique_ptr<Transport> Carrier;
   std::array<Handler, static_cast<std::size_t>(MessageKind::Last) + 1> Handlers;
   std::size_t PieceBytes;
+  double SilenceLimit = DefaultSilenceLimit; ///< seconds
   std::uint32_t Session = 0;
   std::list<Message> Received; ///< of the collective under way
   bool Changed = false;        ///< whether a message in the inbox may have become due
@@ -54,6 +60,44 @@ public:
   BackOff Idle;
 
 private:
+  using Clock = std::chrono::steady_clock;
+
+  /// What a rank says by a sign of life.
+  enum class Life : std::int32_t
+  {
+    Waiting,
+    Leaving, ///< waits no more
+    Lost     ///< a rank is given up
+  };
+  struct Sign
+  {
+    Life Says = Life::Waiting;
+    std::int32_t LostRank = -1;
+    std::int32_t IsStuck = 0; ///< it says so itself
+  };
+
+  /// In scope while this rank waits. `tells`: and does nothing else for long.
+  class Wait
+  {
+  public:
+    Wait(Internals& self, bool tells);
+    ~Wait();
+    Wait(const Wait&) = delete;
+    Wait& operator=(const Wait&) = delete;
+
+  private:
+    Internals& Self;
+  };
+
+  /// Seconds between signs of life.
+  double GetInterval() const;
+  void Watch();
+  void TakeSign(const Message& message);
+  void GiveUp(Sign loss);
+  /// To those that count on this rank. Returns whether it was possible.
+  bool Tell(Sign sign, bool all) noexcept;
+  void ThrowIfLost();
+
   bool Move();
   bool Dispatch();
   bool Treat(std::list<Message>& message);
@@ -62,6 +106,14 @@ private:
   std::list<Message> Inbox;
   bool Dispatching = false;
   bool Deferring = false;
+  Attendance Others;
+  bool IsServing = false;
+  std::uint32_t ServingSince = 0; ///< session
+  Sign Loss;                      ///< once a rank is lost
+  bool Tells = false;             ///< while it waits
+  bool HasTold = false;           ///< that it does
+  Clock::time_point LastLook;
+  Clock::time_point LastSign;
   std::exception_ptr Deferred;
   std::unique_ptr<std::byte[]> Reserve; ///< untouched
 };

@@ -96,6 +96,44 @@ private:
   dsm::FirstFailure First;
 };
 
+/// Tells when a rank's workers have neither computed nor got a brick for too long.
+class Standstill
+{
+public:
+  explicit Standstill(double limit)
+    : Limit(limit)
+  {
+  }
+  /// `getWork`: processor time and bytes so far, of which any growth is a sign of life. To be called often.
+  template <class GetWork>
+  bool IsOver(const GetWork& getWork)
+  {
+    const double interval = this->Limit / Looks;
+    const double passed = SecondsSince(this->LastLook);
+    if (this->Limit == 0.0 || passed < interval)
+    {
+      return false;
+    }
+    this->LastLook = Clock::now();
+    const std::pair<double, std::uint64_t> work = getWork();
+    const bool hasWorked =
+      work.first > this->Work.first + LeastSeconds || work.second != this->Work.second;
+    // Not more than that: this process may have been stopped.
+    this->Silence = hasWorked ? 0.0 : this->Silence + std::min(passed, 2.0 * interval);
+    this->Work = work;
+    return this->Silence > this->Limit;
+  }
+
+private:
+  static constexpr double Looks = 8.0;
+  static constexpr double LeastSeconds = 1e-5;
+
+  double Limit;
+  double Silence = 0.0;
+  Clock::time_point LastLook = Clock::now();
+  std::pair<double, std::uint64_t> Work{ 0.0, 0 };
+};
+
 /// Everything that must be equal on all ranks for a frame to make sense.
 struct RequestDigest
 {
@@ -291,6 +329,7 @@ void FrameRenderer::TraceTiles(Store& store, bool agreed, dsm::WorkerSlots& slot
     },
     [&] { tiles.Cancel(); });
   const std::uint32_t number = this->Messenger.BeginSession();
+  this->Messenger.BeginServing();
   const auto start = Clock::now();
 
   const auto fail = [&](std::exception_ptr cause)
@@ -362,6 +401,7 @@ void FrameRenderer::TraceTiles(Store& store, bool agreed, dsm::WorkerSlots& slot
 
   std::atomic<double> busySeconds{ 0.0 };
   bool cancelled = false;
+  Standstill standstill(this->Messenger.GetSilenceLimit());
   std::vector<Tile> traced;
   const auto collect = [&]
   {
@@ -395,7 +435,13 @@ void FrameRenderer::TraceTiles(Store& store, bool agreed, dsm::WorkerSlots& slot
     {
       fail(std::current_exception());
     }
+    const auto getWork = [&]
+    { return std::make_pair(this->Pool.GetProcessorSeconds(), store.GetCounters().BytesReceived); };
     const bool idle = this->Pool.GetRunning() == 0; // asked first: a worker fails before it stops
+    if (!idle && standstill.IsOver(getWork))
+    {
+      this->Messenger.GiveUpThisRank();
+    }
     if ((stopped || !failure.IsEmpty()) && !cancelled)
     {
       this->Messenger.Insist(
@@ -441,10 +487,21 @@ void FrameRenderer::TraceTiles(Store& store, bool agreed, dsm::WorkerSlots& slot
   {
     fail(std::current_exception());
   }
-  this->Messenger.ServeUntil([&] { return agreement.IsOver(); }, service, fail);
+  dsm::FirstFailure lost; // a rank, and with it all that is collective
+  try
+  {
+    this->Messenger.ServeUntil([&] { return agreement.IsOver(); }, service, fail);
+  }
+  catch (...)
+  {
+    lost.Keep(std::current_exception());
+    this->Messenger.Insist([&] { store.Cancel(failure.GetText()); });
+  }
+  this->Messenger.EndServing();
   this->Pool.Wait();
   tiles.End();
   store.EndFrame();
+  lost.Throw();
   // What was posted last must leave before the application goes about something else.
   this->Messenger.Flush();
 

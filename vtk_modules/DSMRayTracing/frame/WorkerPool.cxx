@@ -3,6 +3,9 @@
 
 #include "DSMCore/base/Error.h"
 
+#include <pthread.h>
+#include <time.h>
+
 #include <string>
 #include <system_error>
 
@@ -54,6 +57,22 @@ int WorkerPool::GetRunning() const
 {
   const std::lock_guard<std::mutex> lock(this->Mutex);
   return this->Running;
+}
+
+double WorkerPool::GetProcessorSeconds()
+{
+  double seconds = 0.0;
+  for (std::thread& thread : this->Threads)
+  {
+    clockid_t clock{};
+    timespec time{};
+    if (pthread_getcpuclockid(thread.native_handle(), &clock) == 0 &&
+      clock_gettime(clock, &time) == 0)
+    {
+      seconds += static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
+    }
+  }
+  return seconds;
 }
 
 void WorkerPool::Wait()

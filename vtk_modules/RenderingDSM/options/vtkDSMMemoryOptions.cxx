@@ -17,4 +17,5 @@ void vtkDSMMemoryOptions::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "CacheSize: " << this->CacheSize << " MiB\n";
   os << indent << "NumberOfThreads: " << this->NumberOfThreads << "\n";
   os << indent << "Scheduler: " << this->Scheduler << "\n";
+  os << indent << "SilenceLimit: " << this->SilenceLimit << "\n";
 }

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class   vtkDSMMemoryOptions
- * @brief   how the ranks keep the bricks of a dataset, and with how many threads they trace
+ * @brief   how the ranks keep the bricks of a dataset, with how many threads they trace, and how long
+ *          they wait for one another
  *
  * Held by each mapper of a vtkDSMScene. All that is shown shares one memory, so what the visible
  * datasets ask for is merged as said below; the picture is the same whatever is chosen. Same values on
@@ -88,6 +89,16 @@ public:
   vtkGetMacro(Scheduler, int);
   ///@}
 
+  ///@{
+  /**
+   * Seconds without any sign of life after which a rank that takes part in a frame is given up: frames
+   * then end on the others with an error that names it. 0: never. Default 60. The largest among all
+   * datasets counts, 0 as the largest of all.
+   */
+  vtkSetClampMacro(SilenceLimit, int, 0, VTK_INT_MAX);
+  vtkGetMacro(SilenceLimit, int);
+  ///@}
+
 protected:
   vtkDSMMemoryOptions();
   ~vtkDSMMemoryOptions() override;
@@ -102,6 +113,7 @@ private:
   int CacheSize = 256;
   int NumberOfThreads = 0;
   int Scheduler = WorkStealing;
+  int SilenceLimit = 60;
 };
 
 #endif

@@ -25,6 +25,8 @@ struct vtkDSMMemorySettings
   int Threads = 0;
   /// The central queue when anyone wants it.
   rt::TileScheduling Scheduling = rt::TileScheduling::WorkStealing;
+  /// Seconds that a rank may be silent; infinity: no limit. The largest counts.
+  double SilenceLimit = 0.0;
 
   void Merge(const vtkDSMMemorySettings& other)
   {
@@ -40,6 +42,7 @@ struct vtkDSMMemorySettings
     {
       this->Scheduling = other.Scheduling;
     }
+    this->SilenceLimit = std::max(this->SilenceLimit, other.SilenceLimit);
   }
 };
 

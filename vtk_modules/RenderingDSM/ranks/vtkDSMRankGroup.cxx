@@ -17,6 +17,7 @@
 #endif
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <cstring>
 #include <map>
@@ -177,6 +178,7 @@ void vtkDSMRankGroup::Configure(Publisher* publisher, const vtkDSMMemorySettings
   {
     ++this->SettingsVersion;
   }
+  this->Messenger.SetSilenceLimit(std::isinf(merged.SilenceLimit) ? 0.0 : merged.SilenceLimit);
   this->Store.SetSettings(next);
 }
 

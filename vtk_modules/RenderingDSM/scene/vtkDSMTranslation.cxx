@@ -200,6 +200,8 @@ vtkDSMMemorySettings vtkDSMTranslation::ToMemorySettings(vtkDSMMemoryOptions* op
   settings.MemoryBytes = static_cast<std::uint64_t>(options->GetMemory()) << 20;
   settings.CacheBytes = static_cast<std::uint64_t>(options->GetCacheSize()) << 20;
   settings.Threads = options->GetNumberOfThreads();
+  settings.SilenceLimit = options->GetSilenceLimit() > 0 ? options->GetSilenceLimit()
+                                                         : std::numeric_limits<double>::infinity();
   settings.Scheduling = options->GetScheduler() == Options::CentralQueue
     ? rt::TileScheduling::CentralQueue
     : rt::TileScheduling::WorkStealing;
