@@ -62,7 +62,8 @@ public:
   void Withdraw(Publisher* publisher);
 
   /// Collective. Calls `work`, which throws dsm::Error on all ranks where memory is short, and again for
-  /// as long as anything hidden can make room: what was shown the longest ago goes first.
+  /// as long as anything hidden can make room: what was shown the longest ago goes first. Not for
+  /// frames, which fail for other reasons, and may have waited long for a rank that is gone.
   template <class Work>
   auto WithRoom(const Work& work)
   {

@@ -144,6 +144,11 @@ void vtkDSMScene::Internals::Update()
                        "alike.");
     }
   }
+  if (this->SettledVersion != this->Group->GetSettingsVersion())
+  {
+    this->SettledVersion = this->Group->GetSettingsVersion();
+    this->Group->WithRoom([this] { this->Group->GetStore().Settle(); });
+  }
   for (std::size_t index = 0; index < members.size(); ++index)
   {
     const bool newData = std::any_of(all.begin(), all.end(),
@@ -191,12 +196,8 @@ void vtkDSMScene::Internals::Draw()
   this->Group->GetFrameRenderer().SetAbortCheck(
     [=] { return window && window->CheckAbortStatus() != 0; });
   using Result = vtkDSMFrameAccumulation::Result;
-  const Result result = this->Group->WithRoom(
-    [&]
-    {
-      return this->Accumulation.Trace(
-        *this->Group, scene, request, wanted, this->GetPace(), this->Statistics->GetFrameSeconds());
-    });
+  const Result result = this->Accumulation.Trace(
+    *this->Group, scene, request, wanted, this->GetPace(), this->Statistics->GetFrameSeconds());
   if (result == Result::Aborted)
   {
     // The renderer goes on, with the last picture: other ranks may wait for what this one draws.

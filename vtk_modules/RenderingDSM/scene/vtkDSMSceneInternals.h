@@ -55,6 +55,7 @@ public:
   vtkDSMFrameAccumulation::Pace Pace; ///< of still pictures
   int InteractiveReduction = 0;
   vtkDSMMemorySettings Settings; ///< that the objects ask for
+  unsigned SettledVersion = 0;   ///< of the group's settings
 
 private:
   void Update();
