@@ -4,6 +4,7 @@
 #include "AccessFrame.h"
 #include "BenchmarkCamera.h"
 #include "BenchmarkVolume.h"
+#include "RepeatedAccess.h"
 
 #include "DSMRayTracing/frame/PixelRays.h"
 #include "DSMRayTracing/frame/TileGrid.h"
@@ -32,7 +33,7 @@ struct Counts
 };
 
 /// Traces this rank's tiles of a frame; collective.
-template <rt::Consolidation Mode, class Store>
+template <template <class> class Access, class Store>
 void TraceFrame(dsm::Messenger& messenger, Store& store, rt::WorkerPool& pool,
   const rt::IsosurfaceObject& object, const rt::FrameRequest& request, Counts& counts)
 {
@@ -43,7 +44,7 @@ void TraceFrame(dsm::Messenger& messenger, Store& store, rt::WorkerPool& pool,
   AccessTiming::RunFrame<Store>(messenger, store, pool, store.GetSettings().Workers,
     [&](typename Store::Worker& worker, int)
     {
-      const rt::IsosurfaceSearch<Store, Mode> tracer(store, worker);
+      const rt::IsosurfaceSearch<Store, Access> tracer(store, worker);
       std::uint64_t hits = 0;
       for (int index; (index = next.fetch_add(messenger.GetSize())) < grid.GetCount();)
       {
@@ -73,15 +74,15 @@ void TraceFrame(const std::string& pattern, dsm::Messenger& messenger, Store& st
 {
   if (pattern == "one")
   {
-    TraceFrame<rt::Consolidation::PerSample>(messenger, store, pool, object, request, counts);
+    TraceFrame<AccessPerSample>(messenger, store, pool, object, request, counts);
   }
   else if (pattern == "eight")
   {
-    TraceFrame<rt::Consolidation::PerCell>(messenger, store, pool, object, request, counts);
+    TraceFrame<AccessPerCell>(messenger, store, pool, object, request, counts);
   }
   else
   {
-    TraceFrame<rt::Consolidation::PerBrick>(messenger, store, pool, object, request, counts);
+    TraceFrame<rt::BrickAccess>(messenger, store, pool, object, request, counts);
   }
 }
 

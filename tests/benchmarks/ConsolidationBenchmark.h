@@ -5,7 +5,6 @@
 #include "BenchmarkOptions.h"
 
 #include "DSMCore/transport/Messenger.h"
-#include "DSMRayTracing/volume/BrickAccess.h"
 
 #include <string>
 #include <vector>

@@ -21,8 +21,9 @@ namespace rt
 /// Finds isosurface hits through a store (ObjectStore now; others have the same members): walks the
 /// coarse macrocells front to back, acquires each brick that may hold a surface once a visit, and
 /// searches it (GridTraversal). Pure: the result depends on the ray and the data only. One for each
-/// worker: it holds at most one pin, and none while it acquires or when a call returns.
-template <class Store, Consolidation Mode = Consolidation::PerBrick>
+/// worker: it holds at most one pin, and none while it acquires or when a call returns. `Access`: see
+/// BrickAccess.
+template <class Store, template <class> class Access = BrickAccess>
 class IsosurfaceSearch
 {
 public:

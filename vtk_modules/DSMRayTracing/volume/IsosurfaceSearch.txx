@@ -15,8 +15,8 @@
 namespace rt
 {
 
-template <class Store, Consolidation Mode>
-bool IsosurfaceSearch<Store, Mode>::Intersect(
+template <class Store, template <class> class Access>
+bool IsosurfaceSearch<Store, Access>::Intersect(
   const IsosurfaceObject& object, const Ray& ray, IsosurfaceHit& hit) const
 {
   const IndexSpace space(object.IndexToWorld, object.WorldToIndex);
@@ -41,9 +41,9 @@ bool IsosurfaceSearch<Store, Mode>::Intersect(
     });
 }
 
-template <class Store, Consolidation Mode>
+template <class Store, template <class> class Access>
 template <class T>
-bool IsosurfaceSearch<Store, Mode>::IntersectBricks(const IsosurfaceObject& object,
+bool IsosurfaceSearch<Store, Access>::IntersectBricks(const IsosurfaceObject& object,
   const GridRay& line, double enter, double leave, IsosurfaceHit& hit, double gradient[3]) const
 {
   const VoxelField& field = *object.Field;
@@ -74,9 +74,9 @@ bool IsosurfaceSearch<Store, Mode>::IntersectBricks(const IsosurfaceObject& obje
   return false;
 }
 
-template <class Store, Consolidation Mode>
+template <class Store, template <class> class Access>
 template <class T>
-bool IsosurfaceSearch<Store, Mode>::IntersectBrick(const IsosurfaceObject& object,
+bool IsosurfaceSearch<Store, Access>::IntersectBrick(const IsosurfaceObject& object,
   const GridRay& line, const Walk& walk, CellHit& cell, int& isovalue, double gradient[3],
   bool& hasGradient) const
 {
@@ -84,10 +84,8 @@ bool IsosurfaceSearch<Store, Mode>::IntersectBrick(const IsosurfaceObject& objec
     this->Blocks.Acquire(this->Self, *object.Field->Segment, walk.GetId());
   const VoxelBrick<T> voxels(pin.GetData());
   const ValueRange range{ voxels.GetHeader().First, voxels.GetHeader().Last };
-  const BrickAccess<Store, Mode> access(
-    this->Blocks, this->Self, *object.Field->Segment, walk.GetId());
-  const GridTraversal<T, BrickAccess<Store, Mode>> traversal(
-    line, voxels, walk.GetOrigin(), access);
+  const Access<Store> access(this->Blocks, this->Self, *object.Field->Segment, walk.GetId());
+  const GridTraversal<T, Access<Store>> traversal(line, voxels, walk.GetOrigin(), access);
   bool found = false;
   double limit = std::numeric_limits<double>::infinity();
   for (std::size_t index = 0; index < object.Isovalues.size(); ++index)
@@ -113,8 +111,9 @@ bool IsosurfaceSearch<Store, Mode>::IntersectBrick(const IsosurfaceObject& objec
   return true;
 }
 
-template <class Store, Consolidation Mode>
-bool IsosurfaceSearch<Store, Mode>::IsOccluded(const IsosurfaceObject& object, const Ray& ray) const
+template <class Store, template <class> class Access>
+bool IsosurfaceSearch<Store, Access>::IsOccluded(
+  const IsosurfaceObject& object, const Ray& ray) const
 {
   const IndexSpace space(object.IndexToWorld, object.WorldToIndex);
   const VoxelField& field = *object.Field;
@@ -141,18 +140,17 @@ bool IsosurfaceSearch<Store, Mode>::IsOccluded(const IsosurfaceObject& object, c
     });
 }
 
-template <class Store, Consolidation Mode>
+template <class Store, template <class> class Access>
 template <class T>
-bool IsosurfaceSearch<Store, Mode>::IsOccludedInBrick(
+bool IsosurfaceSearch<Store, Access>::IsOccludedInBrick(
   const IsosurfaceObject& object, const GridRay& line, const Walk& walk) const
 {
   const dsm::BlockSegment& segment = *object.Field->Segment;
   const typename Store::Pin pin = this->Blocks.Acquire(this->Self, segment, walk.GetId());
   const VoxelBrick<T> voxels(pin.GetData());
   const ValueRange range{ voxels.GetHeader().First, voxels.GetHeader().Last };
-  const BrickAccess<Store, Mode> access(this->Blocks, this->Self, segment, walk.GetId());
-  const GridTraversal<T, BrickAccess<Store, Mode>> traversal(
-    line, voxels, walk.GetOrigin(), access);
+  const Access<Store> access(this->Blocks, this->Self, segment, walk.GetId());
+  const GridTraversal<T, Access<Store>> traversal(line, voxels, walk.GetOrigin(), access);
   return std::any_of(object.Isovalues.begin(), object.Isovalues.end(),
     [&](double isovalue)
     {
@@ -161,8 +159,8 @@ bool IsosurfaceSearch<Store, Mode>::IsOccludedInBrick(
     });
 }
 
-template <class Store, Consolidation Mode>
-double IsosurfaceSearch<Store, Mode>::Sample(
+template <class Store, template <class> class Access>
+double IsosurfaceSearch<Store, Access>::Sample(
   const VoxelField& field, const glm::dvec3& indexPoint) const
 {
   const Index3 cells = field.Lattice.GetCells();
@@ -200,9 +198,9 @@ double IsosurfaceSearch<Store, Mode>::Sample(
     });
 }
 
-template <class Store, Consolidation Mode>
+template <class Store, template <class> class Access>
 template <class T>
-double IsosurfaceSearch<Store, Mode>::SampleCell(
+double IsosurfaceSearch<Store, Access>::SampleCell(
   const VoxelField& field, const Index3& cell, const glm::dvec3& indexPoint) const
 {
   const Index3 brick = cell / Index3(field.Lattice.GetEdge());
