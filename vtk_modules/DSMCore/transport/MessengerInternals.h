@@ -18,6 +18,12 @@
 namespace dsm
 {
 
+/// Sessions are compared by distance, so that their number may wrap around.
+inline std::int32_t Distance(std::uint32_t from, std::uint32_t to)
+{
+  return static_cast<std::int32_t>(to - from);
+}
+
 /// What came and is not dealt with yet, and whom it goes to. Messages lie in lists, so that none needs
 /// memory, and none can be lost for the lack of it, once it is here.
 class Messenger::Internals
