@@ -141,6 +141,13 @@ with Messages() as messages:
     missing.UpdatePipeline()
 if get_ranks() == 1:
     check("manifest.json" in messages.text and "not known" in messages.text, "an error names the file")
+image = simple.DSMVolumeReader(FileName=os.path.join(FILES, "image.vtkhdf"))
+check(list(image.GetProperty("PointArrays").GetAvailable()) == ["f", "v"], "the panel lists the point arrays")
+check(list(image.GetProperty("CellArrays").GetAvailable()) == ["c"], "and the cell arrays")
+image.PointArrays = ["v"]
+image.UpdatePipeline()
+check(image.PointData.keys() == ["v"] and image.CellData.keys() == ["c"], "what is not chosen is not there")
+
 with Messages() as messages:
     bare = simple.DSMVolumeReader(FileName=os.path.join(FILES, "bare.raw"))
     bare.UpdatePipelineInformation()
