@@ -172,6 +172,14 @@ void vtkDSMFrameProp::Clear()
   }
 }
 
+void vtkDSMFrameProp::SetBounds(const double bounds[6])
+{
+  if (vtkMath::AreBoundsInitialized(this->Self->Bounds))
+  {
+    std::copy_n(bounds, 6, this->Self->Bounds);
+  }
+}
+
 double* vtkDSMFrameProp::GetBounds()
 {
   return vtkMath::AreBoundsInitialized(this->Self->Bounds) ? this->Self->Bounds : nullptr;

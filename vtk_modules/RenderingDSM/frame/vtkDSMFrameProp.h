@@ -45,6 +45,11 @@ public:
   void SetLayers(const rt::Picture& frame, vtkMatrix4x4* projection, const double bounds[6]);
 
   /**
+   * Other bounds for the same frame. Nothing happens without a frame.
+   */
+  void SetBounds(const double bounds[6]);
+
+  /**
    * Draw nothing from now on.
    */
   void Clear();

@@ -119,11 +119,15 @@ void vtkDSMScene::EndWithRenderer()
   const vtkSmartPointer<vtkDSMScene> last = std::move(this->Self->Keeper);
 }
 
-/// Who looks between frames for all there is finds the objects themselves: the last picture's bounds may be
-/// out of date, and have what was added for its delivery.
+/// Who looks between frames for all there is must not see what was added to the bounds for the frame's delivery.
+/// One process finds the objects themselves, whose data may be newer than the last picture. Of several, none knows
+/// where the others' objects are that are not traced: there ParaView takes a camera's clipping range from less
+/// than there is, were it not for the last picture.
 void vtkDSMScene::EndFrame()
 {
-  this->Self->Prop->UseBoundsOff();
+  Internals& self = *this->Self;
+  self.Prop->SetBounds(self.Bounds);
+  self.Prop->SetUseBounds(self.Group && self.Group->GetMessenger().GetSize() > 1);
 }
 
 void vtkDSMScene::Attach(vtkRenderer* renderer)

@@ -218,8 +218,9 @@ void vtkDSMScene::Internals::Draw()
 void vtkDSMScene::Internals::DrawPicture(rt::Picture picture, const rt::FrameRequest& request,
   vtkMatrix4x4* projection, rt::DebugView view, bool hasNotes)
 {
+  this->Members.GetBounds(this->Bounds);
   double bounds[6];
-  this->Members.GetBounds(bounds);
+  std::copy_n(this->Bounds, 6, bounds);
   this->Delivery.Prepare(request, picture);
   // Where the ranks' pictures are blended, each has the notes; where the nearest counts, one does.
   const bool writesNotes =

@@ -45,6 +45,7 @@ public:
   rt::Environment Background;          ///< of this rank's renderer, as the application set it
   vtkSmartPointer<vtkMultiProcessController> Controller;
   vtkNew<vtkDSMFrameProp> Prop;
+  double Bounds[6] = { 0.0, 0.0, 0.0, 0.0, 0.0, 0.0 }; ///< of what the prop shows
   vtkNew<vtkDSMStatistics> Statistics;
   std::shared_ptr<vtkDSMRankGroup> Group;
   vtkDSMSceneMembers Members;
