@@ -90,8 +90,8 @@ Tally ComparePackets(const TestVolume<T>& volume, const std::vector<double>& iso
       const rt::RayMask wanted = seed % 5 == 0 ? 0x00009137ffffu
         : seed % 5 == 1                        ? ~std::uint64_t{ 0 }
                                                : 0x80019137ffffu;
-      const rt::RayMask found = tracer.Intersect(object, bricks, beam.Rays, wanted,
-        [&](int index, const rt::IsosurfaceHit& hit) { hits[index] = hit; });
+      const rt::RayMask found = tracer.Intersect(
+        object, bricks, beam.Rays, wanted, [&](int index, double) { return &hits[index]; });
       for (int index = 0; index < Beam::RayCount; ++index)
       {
         const rt::RayMask bit = rt::RayMask{ 1 } << index;

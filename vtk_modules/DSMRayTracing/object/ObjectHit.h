@@ -23,21 +23,33 @@ public:
   /// Null where nothing was hit.
   const ObjectTracer* GetObject() const { return this->Tracer; }
 
-  /// Takes a hit of an object, which has a T, if it is nearer than the one so far; the ray ends there
-  /// then. So of hits that are equally near that of the object that was asked first counts.
+  /// Takes a hit of an object at `t` if it is nearer than the one so far; the ray ends there then. So of hits
+  /// that are equally near that of the object that was asked first counts. Returns where the object has to
+  /// say all of it; null: it is no nearer. (Filled in place: a copy would wait for what was just written.)
+  template <class Hit>
+  Hit* Open(const ObjectTracer& object, double t, Ray& ray)
+  {
+    static_assert(sizeof(Hit) <= Size && std::is_trivially_destructible_v<Hit>, "fits the slot");
+    if (this->Tracer && !(t < ray.Max))
+    {
+      return nullptr;
+    }
+    this->Tracer = &object;
+    ray.Max = t;
+    return new (this->Slot) Hit;
+  }
+
+  /// The same for a hit, which has a T, that stands elsewhere.
   template <class Hit>
   void Take(const ObjectTracer& object, const Hit& hit, Ray& ray)
   {
-    static_assert(sizeof(Hit) <= Size && std::is_trivially_destructible_v<Hit>, "fits the slot");
-    if (!this->Tracer || hit.T < ray.Max)
+    if (Hit* const place = this->Open<Hit>(object, hit.T, ray))
     {
-      this->Tracer = &object;
-      new (this->Slot) Hit(hit);
-      ray.Max = hit.T;
+      *place = hit;
     }
   }
 
-  /// What the object has given to Take.
+  /// What the object has said.
   template <class Hit>
   const Hit& Get() const
   {

@@ -41,10 +41,10 @@ public:
 
   /// IsosurfaceSearch::Intersect for those of RayPacket::Size rays that are `wanted`. All of them lie
   /// within the beam that `bricks` was found for. Returns those that hit something, and calls
-  /// `take(index, hit)` for each of them.
-  template <class Take>
+  /// `open(index, t)` for each of them, which says where the hit is to be stored, or null: nowhere.
+  template <class Open>
   RayMask Intersect(const IsosurfaceObject& object, BeamBricks& bricks, const Ray* rays,
-    RayMask wanted, const Take& take) const;
+    RayMask wanted, const Open& open) const;
 
   /// IsosurfaceSearch::IsOccluded for those of RayPacket::Size rays that are `wanted`. They need not have
   /// anything in common, but are traced together where they go the same way.
@@ -71,9 +71,9 @@ private:
   /// any does.
   bool MeetBrick(const BeamBricks::Brick& brick, Progress& progress) const;
 
-  template <class T, class Take>
+  template <class T, class Open>
   void SearchBricks(const IsosurfaceObject& object, BeamBricks& bricks, Progress& progress,
-    const Ray* rays, const Take& take) const;
+    const Ray* rays, const Open& open) const;
 
   /// Acquires the brick and searches it for all rays that meet it.
   template <class T>

@@ -44,9 +44,9 @@ BeamBricks IsosurfacePacketSearch<Store>::FindBricks(
 }
 
 template <class Store>
-template <class Take>
+template <class Open>
 RayMask IsosurfacePacketSearch<Store>::Intersect(const IsosurfaceObject& object, BeamBricks& bricks,
-  const Ray* rays, RayMask wanted, const Take& take) const
+  const Ray* rays, RayMask wanted, const Open& open) const
 {
   const IndexSpace space(object.IndexToWorld, object.WorldToIndex);
   const BrickLattice& lattice = object.Field->Lattice;
@@ -57,10 +57,10 @@ RayMask IsosurfacePacketSearch<Store>::Intersect(const IsosurfaceObject& object,
   {
     alone = this->Kernel.SetRays(progress.Rays, rays, wanted, space, lattice.GetCells());
   }
-  const RayMask found = this->Single.IntersectEach(object, rays, alone, take);
+  const RayMask found = this->Single.IntersectEach(object, rays, alone, open);
   Dispatch(lattice.GetScalarType(),
     [&](auto sample)
-    { this->SearchBricks<decltype(sample)>(object, bricks, progress, rays, take); });
+    { this->SearchBricks<decltype(sample)>(object, bricks, progress, rays, open); });
   return found | progress.Found;
 }
 
@@ -75,9 +75,9 @@ bool IsosurfacePacketSearch<Store>::MeetBrick(
 }
 
 template <class Store>
-template <class T, class Take>
+template <class T, class Open>
 void IsosurfacePacketSearch<Store>::SearchBricks(const IsosurfaceObject& object, BeamBricks& bricks,
-  Progress& progress, const Ray* rays, const Take& take) const
+  Progress& progress, const Ray* rays, const Open& open) const
 {
   const IndexSpace space(object.IndexToWorld, object.WorldToIndex);
   for (const BeamBricks::Brick& brick : bricks.Bricks)
@@ -94,22 +94,26 @@ void IsosurfacePacketSearch<Store>::SearchBricks(const IsosurfaceObject& object,
       {
         const CellHit& cell = progress.Cells[index];
         double* const gradient = &progress.Gradient[index].x;
-        IsosurfaceHit hit;
-        hit.Isovalue = progress.Isovalue[index];
+        const int isovalue = progress.Isovalue[index];
         if ((progress.WithoutGradient >> index & 1) != 0)
         {
           HitGradient::Find<T>(this->Blocks, this->Self, *object.Field, brick.Id, cell,
-            object.Isovalues[hit.Isovalue], gradient);
+            object.Isovalues[isovalue], gradient);
         }
-        hit.T = cell.T;
-        hit.Normal = space.GetNormal(gradient, rays[index].Direction);
-        hit.FromInside = cell.FromInside;
-        hit.Brick = brick.Id;
+        IsosurfaceHit* const hit = open(index, cell.T);
+        if (!hit)
+        {
+          return;
+        }
+        hit->T = cell.T;
+        hit->Normal = space.GetNormal(gradient, rays[index].Direction);
+        hit->Isovalue = isovalue;
+        hit->FromInside = cell.FromInside;
+        hit->Brick = brick.Id;
         for (int axis = 0; axis < 3; ++axis)
         {
-          hit.IndexPoint[axis] = brick.Lower[axis] + cell.Cell[axis] + cell.Local[axis];
+          hit->IndexPoint[axis] = brick.Lower[axis] + cell.Cell[axis] + cell.Local[axis];
         }
-        take(index, hit);
       });
     progress.Found |= progress.Hit;
   }

@@ -38,10 +38,10 @@ public:
   bool Intersect(const IsosurfaceObject& object, const Ray& ray, IsosurfaceHit& hit) const;
 
   /// The same for each ray of a batch that is `wanted`. Returns those that hit something, and calls
-  /// `take(index, hit)` for each of them.
-  template <class Take>
+  /// `open(index, t)` for each of them, which says where the hit is to be stored, or null: nowhere.
+  template <class Open>
   RayMask IntersectEach(
-    const IsosurfaceObject& object, const Ray* rays, RayMask wanted, const Take& take) const
+    const IsosurfaceObject& object, const Ray* rays, RayMask wanted, const Open& open) const
   {
     return FindRays(wanted,
       [&](int index)
@@ -50,7 +50,10 @@ public:
         const bool found = this->Intersect(object, rays[index], hit);
         if (found)
         {
-          take(index, hit);
+          if (IsosurfaceHit* const place = open(index, hit.T))
+          {
+            *place = hit;
+          }
         }
         return found;
       });

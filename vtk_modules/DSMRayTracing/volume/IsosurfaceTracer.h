@@ -59,14 +59,14 @@ public:
     {
       return;
     }
-    const auto take = [&](int index, const IsosurfaceHit& hit)
-    { nearest[index].Take(*this, hit, rays[index]); };
+    const auto open = [&](int index, double place)
+    { return nearest[index].Open<IsosurfaceHit>(*this, place, rays[index]); };
     auto* const bricks = static_cast<BeamBricks*>(beam);
     this->Object.Clipping.SearchParts(rays, wanted,
       [&](const Ray* parts, RayMask some)
       {
-        return bricks ? this->Packets.Intersect(this->Object, *bricks, parts, some, take)
-                      : this->Search.IntersectEach(this->Object, parts, some, take);
+        return bricks ? this->Packets.Intersect(this->Object, *bricks, parts, some, open)
+                      : this->Search.IntersectEach(this->Object, parts, some, open);
       });
   }
 
