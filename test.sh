@@ -9,5 +9,5 @@ install_packages "${packages[@]}" "${test_packages[@]}"
 build_project --with-tests
 results=$build/tests.xml
 rm -f "$results"
-ctest --test-dir "$build" --output-on-failure --output-junit "$results" "$@"
+ctest --test-dir "$build" --parallel 2 --output-on-failure --output-junit "$results" "$@"
 count_tests "$results"
