@@ -52,7 +52,9 @@ def picture(source, array, **properties):
 
 
 pictures = []
-for name, array in (("ball.h5", "f"), ("ball.zarr", "ball"), ("ball.mha", "values")):
+BALLS = (
+    ("ball.h5", "f"), ("ball.zarr", "ball"), ("ball.mha", "values"), ("ball.vtkhdf", "f"), ("ball_zstd.vtkhdf", "f"))
+for name, array in BALLS:
     source = simple.DSMVolumeReader(FileName=os.path.join(FILES, name))
     plain = ordinary(source)
     for organization in ("Replicated", "Object based", "Page based"):
@@ -72,6 +74,13 @@ if get_ranks() == 1:
     numpy.save(reference, pictures[0])
 else:
     check_equal(pictures[0], numpy.load(reference), "the picture is what one rank draws")
+
+# What dsm_convert writes is ParaView's own, too.
+theirs = simple.VTKHDFReader(FileName=os.path.join(FILES, "ball.vtkhdf"))
+ours = simple.DSMVolumeReader(FileName=os.path.join(FILES, "ball.vtkhdf"))
+check((picture(theirs, "f")[0] == picture(ours, "f")[0]).all(), "ParaView's own reader gives the same picture")
+simple.Delete(theirs)
+simple.Delete(ours)
 
 # What filters of ParaView make of it is what they make of an array in memory.
 source = simple.DSMVolumeReader(FileName=os.path.join(FILES, "ball.h5"))

@@ -96,6 +96,39 @@ Bytes DecodeZstd(const Bytes& stored, std::size_t most)
 }
 #endif
 
+#ifdef DSM_HAS_ZLIB
+Bytes Deflate(const Bytes& samples)
+{
+  // Fast, and hardly larger than what higher levels make of scientific data.
+  constexpr int level = 3;
+  uLongf count = compressBound(samples.size());
+  Bytes bytes(count);
+  if (compress2(reinterpret_cast<Bytef*>(bytes.data()), &count,
+        reinterpret_cast<const Bytef*>(samples.data()), samples.size(), level) != Z_OK)
+  {
+    throw std::bad_alloc();
+  }
+  bytes.resize(count);
+  return bytes;
+}
+#endif
+
+#ifdef DSM_HAS_ZSTD
+Bytes EncodeZstd(const Bytes& samples)
+{
+  constexpr int level = 3;
+  Bytes bytes(ZSTD_compressBound(samples.size()));
+  const std::size_t count =
+    ZSTD_compress(bytes.data(), bytes.size(), samples.data(), samples.size(), level);
+  if (ZSTD_isError(count))
+  {
+    throw std::bad_alloc();
+  }
+  bytes.resize(count);
+  return bytes;
+}
+#endif
+
 std::uint32_t TakeLast(Bytes& bytes)
 {
   std::uint32_t value = 0;
@@ -119,6 +152,28 @@ void Check(Bytes& bytes, std::uint32_t (*sum)(const std::byte*, std::size_t))
   {
     Refuse("its checksum is wrong");
   }
+}
+
+void AddLast(Bytes& bytes, std::uint32_t value)
+{
+  for (int byte = 0; byte < 4; ++byte)
+  {
+    bytes.push_back(static_cast<std::byte>(value >> (8 * byte) & 0xff));
+  }
+}
+
+Bytes Shuffle(const Bytes& samples, std::size_t width)
+{
+  const std::size_t count = samples.size() / width;
+  Bytes bytes = samples; // what is left over behind the last element stays where it is
+  for (std::size_t byte = 0; byte < width; ++byte)
+  {
+    for (std::size_t element = 0; element < count; ++element)
+    {
+      bytes[byte * count + element] = samples[element * width + byte];
+    }
+  }
+  return bytes;
 }
 
 Bytes Unshuffle(const Bytes& stored, std::size_t width)
@@ -175,6 +230,31 @@ Bytes Undo(const CodecStep& step, Bytes bytes, std::size_t most)
   }
 }
 
+Bytes Do(const CodecStep& step, Bytes bytes)
+{
+  switch (step.What)
+  {
+    case Kind::SwapBytes:
+      SwapBytes(bytes, step.Width);
+      return bytes;
+    case Kind::Shuffle:
+      return Shuffle(bytes, step.Width);
+    case Kind::Fletcher32:
+      AddLast(bytes, GetFletcher32(bytes.data(), bytes.size()));
+      return bytes;
+#ifdef DSM_HAS_ZLIB
+    case Kind::Deflate:
+      return Deflate(bytes);
+#endif
+#ifdef DSM_HAS_ZSTD
+    case Kind::Zstd:
+      return EncodeZstd(bytes);
+#endif
+    default:
+      Refuse("This compression or checksum is read, but not written.");
+  }
+}
+
 } // namespace
 
 ChunkCodec::ChunkCodec(std::vector<CodecStep> steps)
@@ -221,6 +301,15 @@ void ChunkCodec::Decode(
       "it has " + std::to_string(stored.size()) + " bytes instead of " + std::to_string(bytes));
   }
   std::memcpy(out, stored.data(), bytes);
+}
+
+std::vector<std::byte> ChunkCodec::Encode(std::vector<std::byte> samples) const
+{
+  for (const CodecStep& step : this->Steps)
+  {
+    samples = Do(step, std::move(samples));
+  }
+  return samples;
 }
 
 } // namespace vol

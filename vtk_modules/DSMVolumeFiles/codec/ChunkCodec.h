@@ -26,7 +26,7 @@ struct CodecStep
   std::size_t Width = 1;
 };
 
-/// Turns the bytes of a chunk as a file has them into samples. Any thread.
+/// Turns the bytes of a chunk as a file has them into samples, and back. Any thread.
 class ChunkCodec
 {
 public:
@@ -38,6 +38,10 @@ public:
   /// make, or not so many.
   void Decode(
     std::vector<std::byte> stored, unsigned skipped, std::byte* out, std::size_t bytes) const;
+
+  /// What a file has for these samples: all steps, the first one first. Throws dsm::Error for Blosc and Crc32c,
+  /// which are only read.
+  std::vector<std::byte> Encode(std::vector<std::byte> samples) const;
 
   bool IsPlain() const { return this->Steps.empty(); }
 

@@ -3,9 +3,8 @@
 
 #include "DSMCore/base/Error.h"
 #include "DSMVolumeFiles/format/BareFile.h"
+#include "DSMVolumeFiles/format/HdfLibrary.h"
 #include "DSMVolumeFiles/format/StoredFile.h"
-
-#include <hdf5.h>
 
 #include <algorithm>
 #include <cstring>
@@ -19,70 +18,12 @@ namespace vol
 namespace
 {
 
-/// The library may have been built without its own.
-std::mutex LibraryLock;
-
-/// Registered filters (https://github.com/HDFGroup/hdf5_plugins).
-constexpr H5Z_filter_t BloscFilter = 32001;
-constexpr H5Z_filter_t ZstdFilter = 32015;
-
 /// Components that a last axis may stand for.
 constexpr hsize_t MostComponents = 9;
 
-/// An identifier of the library's, closed with it.
-class Handle
-{
-public:
-  using Closer = herr_t (*)(hid_t);
-  Handle(hid_t id, Closer closer)
-    : Id(id)
-    , Close(closer)
-  {
-  }
-  Handle(Handle&& other) noexcept
-    : Id(std::exchange(other.Id, H5I_INVALID_HID))
-    , Close(other.Close)
-  {
-  }
-  ~Handle()
-  {
-    if (this->Id >= 0)
-    {
-      this->Close(this->Id);
-    }
-  }
-  Handle(const Handle&) = delete;
-  Handle& operator=(const Handle&) = delete;
-
-  bool IsOpen() const { return this->Id >= 0; }
-  hid_t Get() const { return this->Id; }
-
-private:
-  hid_t Id;
-  Closer Close;
-};
-
-/// The library prints its errors, unless it is told not to; what went wrong is said by us.
-class Silence
-{
-public:
-  Silence()
-  {
-    H5Eget_auto2(H5E_DEFAULT, &this->Function, &this->Data);
-    H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
-  }
-  ~Silence() { H5Eset_auto2(H5E_DEFAULT, this->Function, this->Data); }
-  Silence(const Silence&) = delete;
-  Silence& operator=(const Silence&) = delete;
-
-private:
-  H5E_auto2_t Function = nullptr;
-  void* Data = nullptr;
-};
-
 std::vector<hsize_t> GetShape(hid_t dataset)
 {
-  const Handle space(H5Dget_space(dataset), &H5Sclose);
+  const HdfHandle space(H5Dget_space(dataset), &H5Sclose);
   const int rank = H5Sget_simple_extent_ndims(space.Get());
   std::vector<hsize_t> shape(static_cast<std::size_t>(std::max(0, rank)));
   if (rank > 0)
@@ -95,7 +36,7 @@ std::vector<hsize_t> GetShape(hid_t dataset)
 /// False for what is no number of the machine's kinds.
 bool FindType(hid_t dataset, rt::ScalarType& type, bool& swapped)
 {
-  const Handle stored(H5Dget_type(dataset), &H5Tclose);
+  const HdfHandle stored(H5Dget_type(dataset), &H5Tclose);
   const std::size_t bytes = H5Tget_size(stored.Get());
   const H5T_order_t order = H5Tget_order(stored.Get());
   swapped = bytes > 1 && order != H5Tget_order(H5T_NATIVE_INT);
@@ -129,35 +70,6 @@ bool FindType(hid_t dataset, rt::ScalarType& type, bool& swapped)
   }
 }
 
-hid_t GetNativeType(rt::ScalarType type)
-{
-  using Type = rt::ScalarType;
-  switch (type)
-  {
-    case Type::Int8:
-      return H5T_NATIVE_INT8;
-    case Type::UInt8:
-      return H5T_NATIVE_UINT8;
-    case Type::Int16:
-      return H5T_NATIVE_INT16;
-    case Type::UInt16:
-      return H5T_NATIVE_UINT16;
-    case Type::Int32:
-      return H5T_NATIVE_INT32;
-    case Type::UInt32:
-      return H5T_NATIVE_UINT32;
-    case Type::Int64:
-      return H5T_NATIVE_INT64;
-    case Type::UInt64:
-      return H5T_NATIVE_UINT64;
-    case Type::Float32:
-      return H5T_NATIVE_FLOAT;
-    case Type::Float64:
-      return H5T_NATIVE_DOUBLE;
-  }
-  return H5I_INVALID_HID;
-}
-
 class HdfFile final : public StoredFile
 {
 public:
@@ -184,16 +96,16 @@ public:
   }
   ~HdfFile() override
   {
-    const std::lock_guard<std::mutex> lock(LibraryLock);
+    const std::lock_guard<std::mutex> lock(GetHdfLock());
     this->Kept.clear();
-    const Handle last(std::move(this->File));
+    const HdfHandle last(std::move(this->File));
   }
 
   static std::shared_ptr<const VolumeFile> Create(
     const std::string& path, const std::string& dataset)
   {
-    const std::lock_guard<std::mutex> lock(LibraryLock);
-    const Silence silence;
+    const std::lock_guard<std::mutex> lock(GetHdfLock());
+    const HdfSilence silence;
     return std::make_shared<HdfFile>(path, dataset);
   }
 
@@ -245,15 +157,15 @@ private:
   };
   struct Dataset
   {
-    Handle Id;
+    HdfHandle Id;
     bool ReadByLibrary = false;
     haddr_t First = HADDR_UNDEF; ///< of contiguous values
     std::vector<Piece> Chunks;
   };
 
-  static Handle Open(const std::string& path)
+  static HdfHandle Open(const std::string& path)
   {
-    Handle file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), &H5Fclose);
+    HdfHandle file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), &H5Fclose);
     if (!file.IsOpen())
     {
       throw dsm::Error(
@@ -269,8 +181,8 @@ private:
     {
       return false;
     }
-    const Handle attribute(H5Aopen(object, name, H5P_DEFAULT), &H5Aclose);
-    const Handle space(H5Aget_space(attribute.Get()), &H5Sclose);
+    const HdfHandle attribute(H5Aopen(object, name, H5P_DEFAULT), &H5Aclose);
+    const HdfHandle space(H5Aget_space(attribute.Get()), &H5Sclose);
     return H5Sget_simple_extent_npoints(space.Get()) == count &&
       H5Aread(attribute.Get(), type, out) >= 0;
   }
@@ -278,7 +190,7 @@ private:
   /// VTK's own: see "VTKHDF File Format", ImageData.
   void FindImage()
   {
-    const Handle group(H5Gopen2(this->File.Get(), "VTKHDF", H5P_DEFAULT), &H5Gclose);
+    const HdfHandle group(H5Gopen2(this->File.Get(), "VTKHDF", H5P_DEFAULT), &H5Gclose);
     long long extent[6];
     if (!this->ReadAttribute(group.Get(), "WholeExtent", H5T_NATIVE_LLONG, extent, 6))
     {
@@ -304,7 +216,7 @@ private:
     {
       return;
     }
-    const Handle group(H5Gopen2(parent, name, H5P_DEFAULT), &H5Gclose);
+    const HdfHandle group(H5Gopen2(parent, name, H5P_DEFAULT), &H5Gclose);
     H5G_info_t info;
     H5Gget_info(group.Get(), &info);
     for (hsize_t index = 0; index < info.nlinks; ++index)
@@ -312,7 +224,7 @@ private:
       char link[256] = {};
       H5Lget_name_by_idx(
         group.Get(), ".", H5_INDEX_NAME, H5_ITER_INC, index, link, sizeof(link), H5P_DEFAULT);
-      Handle dataset(H5Dopen2(group.Get(), link, H5P_DEFAULT), &H5Dclose);
+      HdfHandle dataset(H5Dopen2(group.Get(), link, H5P_DEFAULT), &H5Dclose);
       rt::Index3 found(0);
       if (dataset.IsOpen() && FindSamples(dataset.Get(), found) && found == samples)
       {
@@ -357,7 +269,7 @@ private:
     std::map<std::string, rt::Index3> volumes;
     for (const std::string& name : names)
     {
-      const Handle dataset(H5Dopen2(this->File.Get(), name.c_str(), H5P_DEFAULT), &H5Dclose);
+      const HdfHandle dataset(H5Dopen2(this->File.Get(), name.c_str(), H5P_DEFAULT), &H5Dclose);
       rt::Index3 samples(0);
       rt::ScalarType type;
       bool swapped = false;
@@ -382,13 +294,13 @@ private:
     {
       if (samples == this->Geometry.Points)
       {
-        this->Add(Handle(H5Dopen2(this->File.Get(), name.c_str(), H5P_DEFAULT), &H5Dclose), name,
+        this->Add(HdfHandle(H5Dopen2(this->File.Get(), name.c_str(), H5P_DEFAULT), &H5Dclose), name,
           false, samples);
       }
     }
   }
 
-  void Add(Handle id, const std::string& name, bool onCells, const rt::Index3& samples)
+  void Add(HdfHandle id, const std::string& name, bool onCells, const rt::Index3& samples)
   {
     const std::vector<hsize_t> shape = GetShape(id.Get());
     FileArray array;
@@ -405,7 +317,7 @@ private:
     Dataset dataset{ std::move(id), false, HADDR_UNDEF, {} };
     Storage storage;
     storage.Fill = this->GetFill(dataset.Id.Get(), array);
-    const Handle properties(H5Dget_create_plist(dataset.Id.Get()), &H5Pclose);
+    const HdfHandle properties(H5Dget_create_plist(dataset.Id.Get()), &H5Pclose);
     std::vector<CodecStep> steps;
     if (swapped)
     {
@@ -435,12 +347,12 @@ private:
   {
     const std::size_t bytes = rt::GetBytes(array.Type);
     std::vector<std::byte> one(bytes, std::byte(0));
-    const Handle properties(H5Dget_create_plist(dataset), &H5Pclose);
+    const HdfHandle properties(H5Dget_create_plist(dataset), &H5Pclose);
     H5D_fill_value_t state = H5D_FILL_VALUE_UNDEFINED;
     if (H5Pfill_value_defined(properties.Get(), &state) >= 0 &&
       state == H5D_FILL_VALUE_USER_DEFINED)
     {
-      H5Pget_fill_value(properties.Get(), GetNativeType(array.Type), one.data());
+      H5Pget_fill_value(properties.Get(), GetHdfType(array.Type), one.data());
     }
     std::vector<std::byte> all;
     for (int component = 0; component < array.Components; ++component)
@@ -473,10 +385,10 @@ private:
         case H5Z_FILTER_FLETCHER32:
           steps.push_back({ CodecStep::Kind::Fletcher32 });
           break;
-        case BloscFilter:
+        case HdfBloscFilter:
           steps.push_back({ CodecStep::Kind::Blosc });
           break;
-        case ZstdFilter:
+        case HdfZstdFilter:
           steps.push_back({ CodecStep::Kind::Zstd });
           break;
         default:
@@ -519,22 +431,22 @@ private:
 
   void ReadByLibrary(std::size_t number, const rt::Index3& chunk, std::byte* out) const
   {
-    const std::lock_guard<std::mutex> lock(LibraryLock);
-    const Silence silence;
+    const std::lock_guard<std::mutex> lock(GetHdfLock());
+    const HdfSilence silence;
     const FileArray& array = this->Arrays[number];
     const hid_t dataset = this->Kept[number].Id.Get();
     const rt::Box box = array.Grid.GetBox(chunk);
     const rt::Index3 size = box.GetSize();
-    const Handle all(H5Dget_space(dataset), &H5Sclose);
+    const HdfHandle all(H5Dget_space(dataset), &H5Sclose);
     const int rank = H5Sget_simple_extent_ndims(all.Get());
     const auto components = static_cast<hsize_t>(array.Components);
     const hsize_t first[4] = { static_cast<hsize_t>(box.Min.z), static_cast<hsize_t>(box.Min.y),
       static_cast<hsize_t>(box.Min.x), 0 };
     const hsize_t count[4] = { static_cast<hsize_t>(size.z), static_cast<hsize_t>(size.y),
       static_cast<hsize_t>(size.x), components };
-    const Handle part(H5Screate_simple(rank, count, nullptr), &H5Sclose);
+    const HdfHandle part(H5Screate_simple(rank, count, nullptr), &H5Sclose);
     if (H5Sselect_hyperslab(all.Get(), H5S_SELECT_SET, first, nullptr, count, nullptr) < 0 ||
-      H5Dread(dataset, GetNativeType(array.Type), part.Get(), all.Get(), H5P_DEFAULT, out) < 0)
+      H5Dread(dataset, GetHdfType(array.Type), part.Get(), all.Get(), H5P_DEFAULT, out) < 0)
     {
       throw dsm::Error("A part of the array '" + array.Name + "' in '" + this->Path +
         "' cannot be read by the HDF5 library: it is damaged, or a filter is not installed.");
@@ -542,7 +454,7 @@ private:
   }
 
   std::shared_ptr<const PositionedFile> Bytes;
-  Handle File;
+  HdfHandle File;
   std::vector<Dataset> Kept; ///< of the arrays
 };
 

@@ -35,12 +35,6 @@ void Add(ValueRanges& ranges, std::size_t number, double value)
   }
 }
 
-ValueRanges CreateRanges(int components)
-{
-  const auto count = static_cast<std::size_t>(components > 1 ? components + 1 : 1);
-  return { std::vector<ValueRange>(count), std::vector<ValueRange>(count) };
-}
-
 template <class T>
 void AddRow(ValueRanges& ranges, const T* row, std::int64_t samples, int components)
 {
@@ -58,26 +52,6 @@ void AddRow(ValueRanges& ranges, const T* row, std::int64_t samples, int compone
       Add(ranges, static_cast<std::size_t>(components), std::sqrt(sum));
     }
   }
-}
-
-void AddPart(ValueRanges& ranges, const FileArray& array, const std::byte* samples,
-  const rt::Box& have, const rt::Box& want)
-{
-  rt::Dispatch(array.Type,
-    [&](auto zero)
-    {
-      const auto* values = reinterpret_cast<const decltype(zero)*>(samples);
-      const rt::Index3 size = have.GetSize();
-      for (std::int64_t z = want.Min.z; z < want.Max.z; ++z)
-      {
-        for (std::int64_t y = want.Min.y; y < want.Max.y; ++y)
-        {
-          const std::int64_t first =
-            ((z - have.Min.z) * size.y + y - have.Min.y) * size.x + want.Min.x - have.Min.x;
-          AddRow(ranges, values + first * array.Components, want.GetSize().x, array.Components);
-        }
-      }
-    });
 }
 
 std::filesystem::path GetKeptPath(
@@ -106,6 +80,41 @@ std::filesystem::path GetKeptPath(
 
 } // namespace
 
+ValueRanges::ValueRanges(int components)
+  : All(static_cast<std::size_t>(components > 1 ? components + 1 : 1))
+  , Finite(this->All.size())
+{
+}
+
+void ValueRanges::Add(const ValueRanges& other)
+{
+  for (std::size_t index = 0; index < this->All.size(); ++index)
+  {
+    this->All[index].Add(other.All[index]);
+    this->Finite[index].Add(other.Finite[index]);
+  }
+}
+
+void ValueRanges::Add(
+  const FileArray& array, const std::byte* samples, const rt::Box& have, const rt::Box& want)
+{
+  rt::Dispatch(array.Type,
+    [&](auto zero)
+    {
+      const auto* values = reinterpret_cast<const decltype(zero)*>(samples);
+      const rt::Index3 size = have.GetSize();
+      for (std::int64_t z = want.Min.z; z < want.Max.z; ++z)
+      {
+        for (std::int64_t y = want.Min.y; y < want.Max.y; ++y)
+        {
+          const std::int64_t first =
+            ((z - have.Min.z) * size.y + y - have.Min.y) * size.x + want.Min.x - have.Min.x;
+          AddRow(*this, values + first * array.Components, want.GetSize().x, array.Components);
+        }
+      }
+    });
+}
+
 std::optional<ValueRanges> FindRanges(const std::shared_ptr<const VolumeFile>& file,
   std::size_t number, int step, const rt::Box& box, int threads,
   const std::function<bool(double)>& goesOn)
@@ -117,7 +126,7 @@ std::optional<ValueRanges> FindRanges(const std::shared_ptr<const VolumeFile>& f
   const rt::Box chunks{ firstChunk, lastChunk };
   const rt::Index3 counts = chunks.GetSize();
   std::vector<ValueRanges> parts(
-    static_cast<std::size_t>(std::max(1, threads)), CreateRanges(array.Components));
+    static_cast<std::size_t>(std::max(1, threads)), ValueRanges(array.Components));
   std::atomic<std::int64_t> done{ 0 };
   std::atomic<bool> stopped{ false };
   rt::ParallelFor(threads, static_cast<std::size_t>(chunks.GetCount()),
@@ -134,8 +143,8 @@ std::optional<ValueRanges> FindRanges(const std::shared_ptr<const VolumeFile>& f
       std::vector<std::byte> samples(
         static_cast<std::size_t>(have.GetCount()) * array.GetSampleBytes());
       file->ReadChunk(number, step, chunk, samples.data());
-      AddPart(parts[static_cast<std::size_t>(thread)], array, samples.data(), have,
-        rt::Intersect(have, box));
+      parts[static_cast<std::size_t>(thread)].Add(
+        array, samples.data(), have, rt::Intersect(have, box));
       ++done;
       if (thread == 0 &&
         !goesOn(static_cast<double>(done) / static_cast<double>(chunks.GetCount())))
@@ -150,11 +159,7 @@ std::optional<ValueRanges> FindRanges(const std::shared_ptr<const VolumeFile>& f
   ValueRanges ranges = parts.front();
   for (const ValueRanges& part : parts)
   {
-    for (std::size_t index = 0; index < ranges.All.size(); ++index)
-    {
-      ranges.All[index].Add(part.All[index]);
-      ranges.Finite[index].Add(part.Finite[index]);
-    }
+    ranges.Add(part);
   }
   return ranges;
 }
@@ -162,7 +167,7 @@ std::optional<ValueRanges> FindRanges(const std::shared_ptr<const VolumeFile>& f
 std::optional<ValueRanges> LoadRanges(
   const VolumeFile& file, std::size_t array, int step, const rt::Box& box)
 {
-  ValueRanges ranges = CreateRanges(file.GetArrays()[array].Components);
+  ValueRanges ranges(file.GetArrays()[array].Components);
   std::ifstream kept(GetKeptPath(file, array, step, box), std::ios::binary);
   for (std::vector<ValueRange>* list : { &ranges.All, &ranges.Finite })
   {

@@ -38,6 +38,13 @@ struct ValueRanges
 {
   std::vector<ValueRange> All;
   std::vector<ValueRange> Finite; ///< without infinite values
+
+  /// Of no samples.
+  explicit ValueRanges(int components);
+  void Add(const ValueRanges& other);
+  /// Of a dense array of the samples of `have`, those of `want`.
+  void Add(
+    const FileArray& array, const std::byte* samples, const rt::Box& have, const rt::Box& want);
 };
 
 /// Reads all of a box of an array, with so many threads. `goesOn(part)`, on the calling thread, is told how much is

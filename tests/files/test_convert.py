@@ -1,0 +1,190 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Brick files that dsm_convert writes, as h5py reads them. Called as test_convert.py DSM_CONVERT FOLDER MPIRUN...; leaves
+FOLDER/ball.vtkhdf and FOLDER/ball_zstd.vtkhdf, of FOLDER/ball.h5, for tests of the reader."""
+
+import glob
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+
+import h5py
+import numpy as np
+
+CONVERT, FOLDER, MPIRUN = sys.argv[1], sys.argv[2], sys.argv[3:]
+SIZE = (101, 70, 90)  # x, y, z
+EDGE = 16
+failed = False
+
+
+def check(condition, what):
+    global failed
+    failed = failed or not condition
+    print(("passed: " if condition else "FAILED: ") + what, flush=True)
+
+
+def path(name):
+    return os.path.join(FOLDER, name)
+
+
+def command(ranks, *options):
+    start = [*MPIRUN, "-np", str(ranks)] if MPIRUN and ranks > 1 else []
+    return [*start, CONVERT, *(str(option) for option in options)]
+
+
+def convert(*options, ranks=1):
+    return subprocess.run(command(ranks, *options), capture_output=True, text=True, timeout=100)
+
+
+def find_brick_ranges(values):
+    """Of the cells whose corners all are numbers, brick after brick; of a chunk that begins no brick, none."""
+    counts = [-(-size // EDGE) for size in values.shape]
+    ranges = []
+    for z, y, x in np.ndindex(*counts):
+        brick = values[tuple(slice(EDGE * i, EDGE * i + EDGE + 1) for i in (z, y, x))].astype("f8")
+        if min(brick.shape) < 2:
+            ranges.append(None)
+            continue
+        corners = np.stack([
+            brick[k : brick.shape[0] - 1 + k, j : brick.shape[1] - 1 + j, i : brick.shape[2] - 1 + i]
+            for k in (0, 1) for j in (0, 1) for i in (0, 1)])
+        whole = np.isfinite(corners).all(axis=0)
+        ranges.append((corners[:, whole].min(), corners[:, whole].max()) if whole.any() else None)
+    return ranges
+
+
+z, y, x = np.mgrid[: SIZE[2], : SIZE[1], : SIZE[0]]
+values = (np.sin(0.1 * x) * np.cos(0.07 * y) + 0.01 * z).astype("float32")
+values[10:20, 5:9, 3:7] = np.nan
+values.tofile(path("convert.raw"))
+BARE = ["--quiet", "--raw-size", ",".join(map(str, SIZE)), "--raw-type", "float32", "--spacing", "1,2,3"]
+
+
+def compare(name, what):
+    with h5py.File(path(name), "r") as file:
+        array = file["VTKHDF/PointData/values"]
+        check(np.array_equal(array[...], values, equal_nan=True), f"{what}: every value")
+        check(array.chunks == (EDGE,) * 3 and array.fletcher32, f"{what}: chunks fit bricks and have checksums")
+        attributes = file["VTKHDF"].attrs
+        check(list(attributes["WholeExtent"]) == [0, SIZE[0] - 1, 0, SIZE[1] - 1, 0, SIZE[2] - 1] and
+              list(attributes["Spacing"]) == [1, 2, 3], f"{what}: the place in the world")
+        index = file["DSM/PointData/values"]
+        expected = find_brick_ranges(values)
+        found = [None if first > last else (first, last) for first, last in index["BrickRanges"][...]]
+        check(file["DSM"].attrs["BrickEdge"] == EDGE and found == expected, f"{what}: the ranges of bricks")
+        whole = index["ValueRanges"][0]
+        check((whole == [np.nanmin(values), np.nanmax(values)] * 2).all(), f"{what}: the range of all")
+
+
+for ranks in (1, 3) if MPIRUN else (1,):
+    for compression in ("none", "deflate"):
+        name = f"{compression}_{ranks}.vtkhdf"
+        done = convert(*BARE, "--compression", compression, "--memory", 8, path("convert.raw"), path(name), ranks=ranks)
+        check(done.returncode == 0, f"{name} is written {done.stderr}")
+        compare(name, name)
+        check(not os.path.exists(path(name) + ".part"), f"{name}: nothing else is left")
+
+# What h5py lacks the filter for is read back by our own reader.
+done = convert(*BARE, "--compression", "zstd", path("convert.raw"), path("zstd.vtkhdf"))
+check(done.returncode == 0, f"Zstandard is written {done.stderr}")
+back = convert("--quiet", path("zstd.vtkhdf"), path("back.vtkhdf"))
+check(back.returncode == 0, f"and read {back.stderr}")
+compare("back.vtkhdf", "Zstandard")
+check(os.path.getsize(path("zstd.vtkhdf")) < 0.8 * os.path.getsize(path("back.vtkhdf")), "it is smaller")
+
+# Components, cells, several arrays, other names.
+done = convert("--quiet", path("image.vtkhdf"), path("arrays.vtkhdf"))
+with h5py.File(path("image.vtkhdf"), "r") as one, h5py.File(path("arrays.vtkhdf"), "r") as other:
+    for name in ("PointData/f", "PointData/v", "CellData/c"):
+        check(np.array_equal(one["VTKHDF"][name], other["VTKHDF"][name]), f"{name} of several arrays")
+    check((one["VTKHDF"].attrs["Direction"] == other["VTKHDF"].attrs["Direction"]).all(), "the direction")
+    check(other["DSM/PointData/v/ValueRanges"].shape == (4, 4), "ranges of three components and the magnitude")
+done = convert("--quiet", "--arrays", "nothing", path("image.vtkhdf"), path("none.vtkhdf"))
+check(done.returncode != 0 and "has no array 'nothing'" in done.stderr, "an array that is not there is named")
+
+# It is killed, and goes on, with another number of ranks.
+big = np.arange(160 * 160 * 160, dtype="float32").reshape(160, 160, 160)
+big.tofile(path("big.raw"))
+BIG = ["--quiet", "--raw-size", "160,160,160", "--raw-type", "float32", path("big.raw"),
+       path("big.vtkhdf")]
+
+
+def get_chunks():
+    try:
+        with open(path("big.vtkhdf.part.json")) as file:
+            return json.load(file)["chunks"][0]
+    except (OSError, ValueError):
+        return 0
+
+
+def kill_after(chunks):
+    process = subprocess.Popen(command(1, "--memory", 2, *BIG))
+    deadline = time.monotonic() + 60
+    while get_chunks() < chunks and process.poll() is None and time.monotonic() < deadline:
+        time.sleep(0.002)
+    process.send_signal(signal.SIGKILL)
+    return process.wait() == -signal.SIGKILL
+
+
+def compare_big(what):
+    with h5py.File(path("big.vtkhdf"), "r") as file:
+        check(np.array_equal(file["VTKHDF/PointData/values"], big), f"{what}: every value")
+        ranges = file["DSM/PointData/values/BrickRanges"][...]
+        check((ranges[:, 0] == big[::16, ::16, ::16].ravel()).all(), f"{what}: every brick's least value")
+
+
+for name in glob.glob(path("big.vtkhdf*")):
+    os.remove(name)
+check(kill_after(200) and kill_after(400), "it is killed twice")
+before = get_chunks()
+check(400 <= before < 1000, f"{before} chunks of 1000 are kept")
+with open(path("big.vtkhdf.part"), "rb") as file:
+    kept = file.read(1 << 20)
+done = convert(*BIG, ranks=2)
+check(done.returncode == 0, f"a later call goes on {done.stderr}")
+compare_big("going on")
+os.remove(path("big.vtkhdf"))
+
+# What is not whole, or of other values, is begun anew.
+check(kill_after(100), "it is killed again")
+with open(path("big.vtkhdf.part.json")) as file:
+    state = json.load(file)
+state["whole"] = False
+with open(path("big.vtkhdf.part.json"), "w") as file:
+    json.dump(state, file)
+with open(path("big.vtkhdf.part"), "r+b") as file:
+    file.write(bytes(1 << 16))
+done = convert(*BIG)
+check(done.returncode == 0, f"what is damaged is begun anew {done.stderr}")
+compare_big("begun anew")
+os.remove(path("big.vtkhdf"))
+check(kill_after(100), "it is killed once more")
+big += 1
+big.tofile(path("big.raw"))
+done = convert(*BIG)
+check(done.returncode == 0, f"other values are begun anew {done.stderr}")
+compare_big("other values")
+os.remove(path("big.vtkhdf"))
+
+# A disk that is full: one of 12 MiB that only this call sees, where the system lets us make one.
+small = path("small")
+os.makedirs(small, exist_ok=True)
+IN_SMALL = ["unshare", "--user", "--map-root-user", "--mount", "sh", "-c",
+            f'mount -t tmpfs -o size=12m none "{small}" && "$@"; code=$?; ls "{small}"; exit $code', "sh"]
+if subprocess.run([*IN_SMALL, "true"], capture_output=True).returncode == 0:
+    done = subprocess.run([*IN_SMALL, *command(1, *BIG[:-1], os.path.join(small, "big.vtkhdf"))],
+                          capture_output=True, text=True, timeout=100)
+    check(done.returncode == 1 and "big.vtkhdf.part' failed: No space left on device" in done.stderr,
+          f"no room: {done.stderr.strip()}")
+    check(done.stdout.split() == ["big.vtkhdf.part"], f"half a file has no name of a whole one: {done.stdout.split()}")
+else:
+    print("not tried, since no file system can be mounted here: a full disk")
+sys.stdout.flush()
+os.remove(path("big.raw"))
+
+for compression, name in (("none", "ball.vtkhdf"), ("zstd", "ball_zstd.vtkhdf")):
+    done = convert("--quiet", "--arrays", "f", "--compression", compression, path("ball.h5"), path(name))
+    check(done.returncode == 0, f"{name} is written {done.stderr}")
+sys.exit(failed)

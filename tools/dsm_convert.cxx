@@ -1,0 +1,281 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Writes a volume as a brick file, alone or with several MPI ranks.
+#include "DSMCore/base/Error.h"
+#include "DSMCore/transport/LoopbackTransport.h"
+#include "DSMCore/transport/Messenger.h"
+#include "DSMCore/transport/MpiTransport.h"
+#include "DSMVolumeFiles/write/ConvertVolume.h"
+
+#include <getopt.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <functional>
+#include <iostream>
+#include <limits>
+#include <map>
+#include <sstream>
+
+namespace
+{
+
+constexpr char Usage[] =
+  R"(Writes a volume in bricks, so that its first picture reads only what it shows.
+usage: dsm_convert [options] IN OUT
+   or: mpirun -np 4 dsm_convert [options] IN OUT
+  IN   any volume that DSM Volume Reader reads: HDF5, Zarr (its folder), NRRD, MetaImage, raw
+  OUT  the file to write, such as volume.vtkhdf: VTK's ImageData in HDF5
+When it is ended early, the same call goes on where it was.
+  --arrays A,B        only these arrays (default: all)
+  --step N            of a file with several time steps (default 0)
+  --level N           of a file with several levels of detail (default 0, the finest)
+  --dataset NAME      of an HDF5 file that is not VTK's
+  --compression KIND  none (default), zstd, or deflate, which programs without HDF5's plugin for zstd read
+  --brick N           cells along an axis of a brick (default: the renderer's own, 16 to 32)
+  --memory MIB        of values in memory, on each rank (default 512)
+  --threads N         of each rank (default: the cores of its host, shared out)
+  --raw-size X,Y,Z    of a file of bare values: its samples along each axis
+  --raw-type TYPE     int8, uint8, int16, uint16, int32, uint32, int64, uint64, float32 or float64
+  --raw-header BYTES  before the first value (default 0)
+  --raw-big-endian    the high byte comes first
+  --spacing X,Y,Z     of the samples of such a file (default 1,1,1)
+  --quiet             tell nothing of how far it is
+  --help
+)";
+
+struct Options
+{
+  std::string In;
+  std::string Out;
+  vol::OpenOptions Open;
+  vol::ConvertOptions Convert;
+  bool IsQuiet = false;
+  bool WantsHelp = false;
+};
+
+template <class T>
+T ToNumber(const std::string& name, const std::string& text, T least)
+{
+  std::istringstream stream(text);
+  T number{};
+  if (!(stream >> number) || !stream.eof() || number < least)
+  {
+    std::ostringstream message;
+    message << "--" << name << " takes a number of at least " << least << ", not '" << text << "'.";
+    throw dsm::Error(message.str());
+  }
+  return number;
+}
+
+std::vector<std::string> Split(const std::string& text)
+{
+  std::vector<std::string> parts;
+  std::istringstream stream(text);
+  for (std::string part; std::getline(stream, part, ',');)
+  {
+    parts.push_back(part);
+  }
+  return parts;
+}
+
+std::vector<std::string> SplitInThree(const std::string& name, const std::string& text)
+{
+  std::vector<std::string> parts = Split(text);
+  if (parts.size() != 3)
+  {
+    throw dsm::Error("--" + name + " takes three numbers with commas, such as 512,512,400.");
+  }
+  return parts;
+}
+
+template <class T>
+T ToChoice(const std::string& name, const std::string& text, const std::map<std::string, T>& known)
+{
+  const auto found = known.find(text);
+  if (found == known.end())
+  {
+    std::string all;
+    for (const auto& [word, value] : known)
+    {
+      all += (all.empty() ? "" : ", ") + word;
+    }
+    throw dsm::Error("--" + name + " knows " + all + ", and not '" + text + "'.");
+  }
+  return found->second;
+}
+
+Options Parse(int argc, char** argv)
+{
+  Options options;
+  options.Convert.Threads = 0;
+  using Type = rt::ScalarType;
+  using Setter = std::function<void(const std::string& name, const std::string& text)>;
+  struct Option
+  {
+    bool TakesText;
+    Setter Set;
+  };
+  const std::map<std::string, Option> known = {
+    { "arrays", { true, [&](auto&, auto& text) { options.Convert.Arrays = Split(text); } } },
+    { "step",
+      { true, [&](auto& name, auto& text) { options.Convert.Step = ToNumber(name, text, 0); } } },
+    { "level",
+      { true, [&](auto& name, auto& text) { options.Open.Level = ToNumber(name, text, 0); } } },
+    { "dataset", { true, [&](auto&, auto& text) { options.Open.Dataset = text; } } },
+    { "compression",
+      { true,
+        [&](auto& name, auto& text)
+        {
+          options.Convert.Pressed = ToChoice<vol::Compression>(name, text,
+            { { "none", vol::Compression::None }, { "zstd", vol::Compression::Zstd },
+              { "deflate", vol::Compression::Deflate } });
+        } } },
+    { "brick",
+      { true,
+        [&](auto& name, auto& text) { options.Convert.BrickEdge = ToNumber(name, text, 1); } } },
+    { "memory",
+      { true,
+        [&](auto& name, auto& text)
+        { options.Convert.MemoryBytes = ToNumber<std::size_t>(name, text, 1) << 20; } } },
+    { "threads",
+      { true,
+        [&](auto& name, auto& text) { options.Convert.Threads = ToNumber(name, text, 1); } } },
+    { "raw-size",
+      { true,
+        [&](auto& name, auto& text)
+        {
+          const std::vector<std::string> parts = SplitInThree(name, text);
+          for (int axis = 0; axis < 3; ++axis)
+          {
+            options.Open.Bare.Samples[axis] =
+              ToNumber<std::int64_t>(name, parts[static_cast<std::size_t>(axis)], 1);
+          }
+        } } },
+    { "raw-type",
+      { true,
+        [&](auto& name, auto& text)
+        {
+          options.Open.Bare.Type = ToChoice<Type>(name, text,
+            { { "int8", Type::Int8 }, { "uint8", Type::UInt8 }, { "int16", Type::Int16 },
+              { "uint16", Type::UInt16 }, { "int32", Type::Int32 }, { "uint32", Type::UInt32 },
+              { "int64", Type::Int64 }, { "uint64", Type::UInt64 }, { "float32", Type::Float32 },
+              { "float64", Type::Float64 } });
+        } } },
+    { "raw-header",
+      { true,
+        [&](auto& name, auto& text)
+        { options.Open.Bare.HeaderBytes = ToNumber<std::uint64_t>(name, text, 0); } } },
+    { "raw-big-endian", { false, [&](auto&, auto&) { options.Open.Bare.BigEndian = true; } } },
+    { "spacing",
+      { true,
+        [&](auto& name, auto& text)
+        {
+          const std::vector<std::string> parts = SplitInThree(name, text);
+          for (int axis = 0; axis < 3; ++axis)
+          {
+            options.Open.Bare.Spacing[axis] = ToNumber(
+              name, parts[static_cast<std::size_t>(axis)], std::numeric_limits<double>::min());
+          }
+        } } },
+    { "quiet", { false, [&](auto&, auto&) { options.IsQuiet = true; } } },
+    { "help", { false, [&](auto&, auto&) { options.WantsHelp = true; } } },
+  };
+  std::vector<option> list;
+  for (const auto& [name, entry] : known)
+  {
+    list.push_back({ name.c_str(), entry.TakesText ? required_argument : no_argument, nullptr, 0 });
+  }
+  list.push_back({});
+  opterr = 0;
+  int index = 0;
+  for (int found = 0; (found = getopt_long(argc, argv, "h", list.data(), &index)) != -1;)
+  {
+    if (found == 'h')
+    {
+      options.WantsHelp = true;
+      continue;
+    }
+    if (found == '?')
+    {
+      throw dsm::Error("'" + std::string(argv[optind - 1]) +
+        "' is no option, or lacks its value; --help lists them.");
+    }
+    const std::string name = list[static_cast<std::size_t>(index)].name;
+    known.at(name).Set(name, optarg ? optarg : "");
+  }
+  if (!options.WantsHelp && argc - optind != 2)
+  {
+    throw dsm::Error("Name the file to read and the file to write; --help tells more.");
+  }
+  if (!options.WantsHelp)
+  {
+    options.In = argv[optind];
+    options.Out = argv[optind + 1];
+  }
+  return options;
+}
+
+/// A line that is written over, where somebody looks; else nothing but the end.
+void Tell(double part)
+{
+  std::cerr << '\r' << static_cast<int>(100.0 * part) << " %" << std::flush;
+}
+
+void Convert(Options& options, dsm::Messenger& messenger)
+{
+  std::shared_ptr<const vol::VolumeFile> file;
+  messenger.RunTogether("Opening the volume",
+    [&]
+    {
+      file = vol::OpenVolumeFile(options.In, options.Open);
+      std::error_code none;
+      if (std::filesystem::equivalent(options.In, options.Out, none))
+      {
+        throw dsm::Error("The file to write is the file to read. Choose another name.");
+      }
+    });
+  if (options.Convert.Threads == 0)
+  {
+    options.Convert.Threads = messenger.GetCoresPerRank();
+  }
+  vol::ConvertVolume(
+    file, options.Out, options.Convert, messenger, options.IsQuiet ? [](double) {} : &Tell);
+  if (messenger.GetRank() == 0 && !options.IsQuiet)
+  {
+    std::cerr << '\r';
+    std::cout << options.Out << ": "
+              << std::filesystem::file_size(options.Out) / (std::uintmax_t(1) << 20) << " MiB"
+              << std::endl;
+  }
+}
+
+} // namespace
+
+int main(int argc, char** argv)
+{
+  const dsm::MpiTransport::Environment environment(argc, argv);
+  auto transport = dsm::MpiTransport::Create(nullptr);
+  dsm::Messenger messenger(
+    transport ? std::move(transport) : std::move(dsm::LoopbackTransport::CreateGroup(1).front()));
+  try
+  {
+    Options options = Parse(argc, argv);
+    if (!options.WantsHelp)
+    {
+      Convert(options, messenger);
+    }
+    else if (messenger.GetRank() == 0)
+    {
+      std::cout << Usage;
+    }
+    return EXIT_SUCCESS;
+  }
+  catch (const std::exception& error)
+  {
+    if (messenger.GetRank() == 0)
+    {
+      std::cerr << "dsm_convert: " << error.what() << std::endl;
+    }
+    return EXIT_FAILURE;
+  }
+}

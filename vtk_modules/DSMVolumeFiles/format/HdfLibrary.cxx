@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "DSMVolumeFiles/format/HdfLibrary.h"
+
+namespace vol
+{
+
+std::mutex& GetHdfLock()
+{
+  static std::mutex lock;
+  return lock;
+}
+
+hid_t GetHdfType(rt::ScalarType type)
+{
+  using Type = rt::ScalarType;
+  switch (type)
+  {
+    case Type::Int8:
+      return H5T_NATIVE_INT8;
+    case Type::UInt8:
+      return H5T_NATIVE_UINT8;
+    case Type::Int16:
+      return H5T_NATIVE_INT16;
+    case Type::UInt16:
+      return H5T_NATIVE_UINT16;
+    case Type::Int32:
+      return H5T_NATIVE_INT32;
+    case Type::UInt32:
+      return H5T_NATIVE_UINT32;
+    case Type::Int64:
+      return H5T_NATIVE_INT64;
+    case Type::UInt64:
+      return H5T_NATIVE_UINT64;
+    case Type::Float32:
+      return H5T_NATIVE_FLOAT;
+    case Type::Float64:
+      return H5T_NATIVE_DOUBLE;
+  }
+  return H5I_INVALID_HID;
+}
+
+HdfSilence::HdfSilence()
+{
+  H5Eget_auto2(H5E_DEFAULT, &this->Function, &this->Data);
+  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+}
+
+HdfSilence::~HdfSilence()
+{
+  H5Eset_auto2(H5E_DEFAULT, this->Function, this->Data);
+}
+
+} // namespace vol

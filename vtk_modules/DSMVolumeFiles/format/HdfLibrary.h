@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef vol_HdfLibrary_h
+#define vol_HdfLibrary_h
+
+#include "DSMRayTracing/base/ScalarType.h"
+
+#include <hdf5.h>
+
+#include <mutex>
+#include <utility>
+
+namespace vol
+{
+
+/// Registered filters (https://github.com/HDFGroup/hdf5_plugins).
+constexpr H5Z_filter_t HdfBloscFilter = 32001;
+constexpr H5Z_filter_t HdfZstdFilter = 32015;
+
+/// To be held by who calls the library, which may have been built without a lock of its own.
+std::mutex& GetHdfLock();
+
+/// The library's name of the machine's own form of a type.
+hid_t GetHdfType(rt::ScalarType type);
+
+/// An identifier of the library's, closed with it. Under the lock.
+class HdfHandle
+{
+public:
+  using Closer = herr_t (*)(hid_t);
+  HdfHandle(hid_t id, Closer closer)
+    : Id(id)
+    , Close(closer)
+  {
+  }
+  HdfHandle(HdfHandle&& other) noexcept
+    : Id(std::exchange(other.Id, H5I_INVALID_HID))
+    , Close(other.Close)
+  {
+  }
+  ~HdfHandle()
+  {
+    if (this->Id >= 0)
+    {
+      this->Close(this->Id);
+    }
+  }
+  HdfHandle(const HdfHandle&) = delete;
+  HdfHandle& operator=(const HdfHandle&) = delete;
+
+  bool IsOpen() const { return this->Id >= 0; }
+  hid_t Get() const { return this->Id; }
+
+private:
+  hid_t Id;
+  Closer Close;
+};
+
+/// The library prints its errors, unless it is told not to; what went wrong is said by us.
+class HdfSilence
+{
+public:
+  HdfSilence();
+  ~HdfSilence();
+  HdfSilence(const HdfSilence&) = delete;
+  HdfSilence& operator=(const HdfSilence&) = delete;
+
+private:
+  H5E_auto2_t Function = nullptr;
+  void* Data = nullptr;
+};
+
+} // namespace vol
+
+#endif

@@ -1,0 +1,489 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "DSMVolumeFiles/write/BrickFileWriter.h"
+
+#include "DSMCore/base/Error.h"
+#include "DSMVolumeFiles/codec/ChunkCodec.h"
+#include "DSMVolumeFiles/format/HdfLibrary.h"
+
+#include <nlohmann/json.hpp>
+
+#include <fcntl.h>
+#include <sys/mman.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <optional>
+#include <utility>
+
+namespace vol
+{
+
+namespace
+{
+
+using Json = nlohmann::ordered_json;
+
+/// Entries of a node of the index of chunks: large nodes are found and read with few steps.
+constexpr unsigned IndexNodeEntries = 1024;
+
+/// Waits until what the system holds of a file is on its disk.
+void Synchronize(const std::string& path)
+{
+  const int file = open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  const bool failed = file < 0 || fsync(file) != 0;
+  const int cause = errno;
+  if (file >= 0)
+  {
+    close(file);
+  }
+  if (failed)
+  {
+    throw dsm::Error("Writing '" + path + "' failed: " + std::strerror(cause) + ".");
+  }
+}
+
+std::vector<hsize_t> GetShape(const rt::Index3& samples, int components)
+{
+  std::vector<hsize_t> shape{ static_cast<hsize_t>(samples.z), static_cast<hsize_t>(samples.y),
+    static_cast<hsize_t>(samples.x) };
+  if (components > 1)
+  {
+    shape.push_back(static_cast<hsize_t>(components));
+  }
+  return shape;
+}
+
+Json Describe(const BrickFileLayout& layout)
+{
+  const auto list = [](const auto& numbers)
+  { return Json(std::vector<double>(std::begin(numbers), std::end(numbers))); };
+  const auto index = [](const rt::Index3& numbers) {
+    return Json{ numbers.x, numbers.y, numbers.z };
+  };
+  Json text{ { "origin", list(layout.Geometry.Origin) },
+    { "spacing", list(layout.Geometry.Spacing) }, { "direction", list(layout.Geometry.Direction) },
+    { "first", index(layout.Geometry.First) }, { "points", index(layout.Geometry.Points) },
+    { "edge", layout.BrickEdge }, { "compression", static_cast<int>(layout.Pressed) } };
+  for (const FileArray& array : layout.Arrays)
+  {
+    text["arrays"].push_back({ array.Name, static_cast<int>(array.Type), array.Components,
+      array.OnCells, index(array.Grid.Samples), index(array.Grid.ChunkSamples) });
+  }
+  return text;
+}
+
+} // namespace
+
+ChunkCodec BrickFileLayout::CreateCodec(std::size_t array) const
+{
+  std::vector<CodecStep> steps;
+  if (this->Pressed != Compression::None)
+  {
+    steps.push_back({ CodecStep::Kind::Shuffle, rt::GetBytes(this->Arrays[array].Type) });
+    steps.push_back(
+      { this->Pressed == Compression::Zstd ? CodecStep::Kind::Zstd : CodecStep::Kind::Deflate });
+  }
+  steps.push_back({ CodecStep::Kind::Fletcher32 });
+  return ChunkCodec(std::move(steps));
+}
+
+class BrickFileWriter::Internals
+{
+public:
+  Internals(std::string path, const BrickFileLayout& layout, const std::string& source)
+    : Path(std::move(path))
+    , PartPath(this->Path + ".part")
+    , StatePath(this->PartPath + ".json")
+    , Layout(layout)
+    , Description({ { "source", source }, { "layout", Describe(layout) } })
+  {
+    const HdfSilence silence;
+    if (!this->GoOn())
+    {
+      this->Begin();
+    }
+  }
+
+  ~Internals()
+  {
+    const std::lock_guard<std::mutex> lock(GetHdfLock());
+    const HdfSilence silence;
+    this->Close();
+  }
+
+  void Add(std::size_t number, const std::vector<EncodedChunk>& chunks, const ValueRanges& ranges)
+  {
+    const std::lock_guard<std::mutex> lock(GetHdfLock());
+    const HdfSilence silence;
+    Target& target = this->Targets[number];
+    const ChunkGrid& grid = this->Layout.Arrays[number].Grid;
+    std::vector<float> table;
+    errno = 0;
+    for (const EncodedChunk& chunk : chunks)
+    {
+      const rt::Index3 first =
+        grid.GetChunk(target.Chunks + static_cast<std::int64_t>(table.size() / 2)) *
+        grid.ChunkSamples;
+      const hsize_t offset[4] = { static_cast<hsize_t>(first.z), static_cast<hsize_t>(first.y),
+        static_cast<hsize_t>(first.x), 0 };
+      this->Check(H5Dwrite_chunk(
+        target.Values.Get(), H5P_DEFAULT, 0, offset, chunk.Bytes.size(), chunk.Bytes.data()));
+      table.push_back(chunk.First);
+      table.push_back(chunk.Last);
+    }
+    this->WriteTable(target, table);
+    target.Chunks += static_cast<std::int64_t>(chunks.size());
+    target.Ranges.Add(ranges);
+    this->WriteRanges(target);
+    this->Settle();
+  }
+
+  void Finish()
+  {
+    const std::lock_guard<std::mutex> lock(GetHdfLock());
+    const HdfSilence silence;
+    this->RemoveState();
+    this->Targets.clear();
+    errno = 0;
+    this->Check(H5Fclose(std::exchange(this->File, H5I_INVALID_HID)));
+    Synchronize(this->PartPath);
+    std::error_code failure;
+    std::filesystem::rename(this->PartPath, this->Path, failure);
+    if (failure)
+    {
+      throw dsm::Error("'" + this->PartPath + "' is whole, but could not be renamed to '" +
+        this->Path + "': " + failure.message() + ".");
+    }
+  }
+
+  struct Target
+  {
+    HdfHandle Values;
+    HdfHandle Table;  ///< First and Last of the chunks
+    HdfHandle Limits; ///< ValueRanges
+    std::int64_t Chunks;
+    ValueRanges Ranges;
+  };
+  std::vector<Target> Targets;
+
+private:
+  /// Without the state, nobody goes on with what is not whole.
+  void RemoveState() const
+  {
+    std::error_code failure;
+    std::filesystem::remove(this->StatePath, failure);
+  }
+
+  /// A file that cannot be written cannot be closed either, and the library ends the process with it: what it still
+  /// has to write goes to memory, and then nowhere.
+  void Divert() const
+  {
+    void* handle = nullptr;
+    if (this->File >= 0 && H5Fget_vfd_handle(this->File, H5P_DEFAULT, &handle) >= 0)
+    {
+      const int memory = memfd_create("dsm-nowhere", MFD_CLOEXEC);
+      if (memory >= 0)
+      {
+        dup2(memory, *static_cast<int*>(handle));
+        close(memory);
+      }
+    }
+  }
+
+  void Check(herr_t result)
+  {
+    if (result < 0)
+    {
+      const int cause = errno;
+      this->RemoveState();
+      this->Divert();
+      throw dsm::Error("Writing '" + this->PartPath + "' failed" +
+        (cause != 0 ? std::string(": ") + std::strerror(cause) : std::string()) + ".");
+    }
+  }
+  HdfHandle Own(hid_t id, HdfHandle::Closer closer)
+  {
+    this->Check(id < 0 ? -1 : 0);
+    return { id, closer };
+  }
+
+  void Close()
+  {
+    this->Targets.clear();
+    if (this->File >= 0)
+    {
+      H5Fclose(std::exchange(this->File, H5I_INVALID_HID));
+    }
+  }
+
+  /// What the library knows of the file goes to it only when it is told to, so that in between the file is as it
+  /// was then, with what has been added behind its end.
+  void HoldMetadata() const
+  {
+    H5AC_cache_config_t config;
+    config.version = H5AC__CURR_CACHE_CONFIG_VERSION;
+    H5Fget_mdc_config(this->File, &config);
+    config.evictions_enabled = false;
+    config.incr_mode = H5C_incr__off;
+    config.decr_mode = H5C_decr__off;
+    config.flash_incr_mode = H5C_flash_incr__off;
+    H5Fset_mdc_config(this->File, &config);
+  }
+
+  bool GoOn()
+  {
+    Json state;
+    try
+    {
+      std::ifstream file(this->StatePath);
+      state = Json::parse(file);
+    }
+    catch (const Json::exception&)
+    {
+      return false;
+    }
+    if (!state.is_object() || state.value("whole", Json()) != true ||
+      state.value("of", Json()) != this->Description)
+    {
+      return false;
+    }
+    this->File = H5Fopen(this->PartPath.c_str(), H5F_ACC_RDWR, H5P_DEFAULT);
+    if (this->File < 0)
+    {
+      return false;
+    }
+    this->HoldMetadata();
+    const std::vector<std::int64_t> chunks = state["chunks"];
+    for (std::size_t number = 0; number < this->Layout.Arrays.size(); ++number)
+    {
+      const FileArray& array = this->Layout.Arrays[number];
+      const auto find = [&](const std::string& name)
+      { return this->Own(H5Dopen2(this->File, name.c_str(), H5P_DEFAULT), &H5Dclose); };
+      const std::string index = "DSM/" + this->GetName(array);
+      Target target{ find("VTKHDF/" + this->GetName(array)), find(index + "/BrickRanges"),
+        find(index + "/ValueRanges"), chunks[number], ValueRanges(array.Components) };
+      std::vector<double> limits(4 * target.Ranges.All.size());
+      this->Check(H5Dread(
+        target.Limits.Get(), H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, limits.data()));
+      for (std::size_t range = 0; range < target.Ranges.All.size(); ++range)
+      {
+        target.Ranges.All[range] = { limits[4 * range], limits[4 * range + 1] };
+        target.Ranges.Finite[range] = { limits[4 * range + 2], limits[4 * range + 3] };
+      }
+      this->Targets.push_back(std::move(target));
+    }
+    return true;
+  }
+
+  static std::string GetName(const FileArray& array)
+  {
+    return (array.OnCells ? "CellData/" : "PointData/") + array.Name;
+  }
+
+  void Begin()
+  {
+    this->RemoveState();
+    const HdfHandle creation(H5Pcreate(H5P_FILE_CREATE), &H5Pclose);
+    H5Pset_istore_k(creation.Get(), IndexNodeEntries);
+    errno = 0;
+    this->File = H5Fcreate(this->PartPath.c_str(), H5F_ACC_TRUNC, creation.Get(), H5P_DEFAULT);
+    this->Check(this->File < 0 ? -1 : 0);
+    this->HoldMetadata();
+    this->WriteImage();
+    for (const char* folder :
+      { "VTKHDF/PointData", "VTKHDF/CellData", "DSM", "DSM/PointData", "DSM/CellData" })
+    {
+      this->Own(H5Gcreate2(this->File, folder, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), &H5Gclose);
+    }
+    const HdfHandle index = this->Own(H5Gopen2(this->File, "DSM", H5P_DEFAULT), &H5Gclose);
+    const long long edge = this->Layout.BrickEdge;
+    this->WriteAttribute(index.Get(), "BrickEdge", H5T_NATIVE_LLONG, &edge, 1);
+    for (std::size_t number = 0; number < this->Layout.Arrays.size(); ++number)
+    {
+      this->Targets.push_back(this->CreateTarget(number));
+      this->WriteRanges(this->Targets.back());
+    }
+    this->Settle();
+  }
+
+  void WriteAttribute(hid_t object, const char* name, hid_t type, const void* numbers, int count)
+  {
+    const hsize_t shape = static_cast<hsize_t>(count);
+    const HdfHandle space = this->Own(H5Screate_simple(1, &shape, nullptr), &H5Sclose);
+    const HdfHandle attribute =
+      this->Own(H5Acreate2(object, name, type, space.Get(), H5P_DEFAULT, H5P_DEFAULT), &H5Aclose);
+    this->Check(H5Awrite(attribute.Get(), type, numbers));
+  }
+
+  /// VTK's own: see "VTKHDF File Format", ImageData.
+  void WriteImage()
+  {
+    const HdfHandle group =
+      this->Own(H5Gcreate2(this->File, "VTKHDF", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), &H5Gclose);
+    const FileGeometry& geometry = this->Layout.Geometry;
+    const long long version[2] = { 1, 0 };
+    long long extent[6];
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      extent[2 * axis] = geometry.First[axis];
+      extent[2 * axis + 1] = geometry.First[axis] + geometry.Points[axis] - 1;
+    }
+    this->WriteAttribute(group.Get(), "Version", H5T_NATIVE_LLONG, version, 2);
+    this->WriteAttribute(group.Get(), "WholeExtent", H5T_NATIVE_LLONG, extent, 6);
+    this->WriteAttribute(group.Get(), "Origin", H5T_NATIVE_DOUBLE, geometry.Origin, 3);
+    this->WriteAttribute(group.Get(), "Spacing", H5T_NATIVE_DOUBLE, geometry.Spacing, 3);
+    this->WriteAttribute(group.Get(), "Direction", H5T_NATIVE_DOUBLE, geometry.Direction, 9);
+    constexpr char kind[] = "ImageData";
+    const HdfHandle text = this->Own(H5Tcopy(H5T_C_S1), &H5Tclose);
+    H5Tset_size(text.Get(), sizeof(kind) - 1);
+    H5Tset_strpad(text.Get(), H5T_STR_NULLPAD);
+    const HdfHandle one = this->Own(H5Screate(H5S_SCALAR), &H5Sclose);
+    const HdfHandle attribute = this->Own(
+      H5Acreate2(group.Get(), "Type", text.Get(), one.Get(), H5P_DEFAULT, H5P_DEFAULT), &H5Aclose);
+    this->Check(H5Awrite(attribute.Get(), text.Get(), kind));
+  }
+
+  Target CreateTarget(std::size_t number)
+  {
+    const FileArray& array = this->Layout.Arrays[number];
+    const std::string index = "DSM/" + this->GetName(array);
+    this->Own(
+      H5Gcreate2(this->File, index.c_str(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), &H5Gclose);
+    const HdfHandle creation = this->Own(H5Pcreate(H5P_DATASET_CREATE), &H5Pclose);
+    const std::vector<hsize_t> edges = GetShape(array.Grid.ChunkSamples, array.Components);
+    H5Pset_chunk(creation.Get(), static_cast<int>(edges.size()), edges.data());
+    H5Pset_fill_time(creation.Get(), H5D_FILL_TIME_NEVER);
+    switch (this->Layout.Pressed)
+    {
+      case Compression::None:
+        break;
+      case Compression::Deflate:
+        H5Pset_shuffle(creation.Get());
+        H5Pset_deflate(creation.Get(), 3);
+        break;
+      case Compression::Zstd:
+        H5Pset_shuffle(creation.Get());
+        // The library itself need not have it; chunks are written as they are.
+        H5Pset_filter(creation.Get(), HdfZstdFilter, H5Z_FLAG_OPTIONAL, 0, nullptr);
+    }
+    H5Pset_fletcher32(creation.Get());
+    const hsize_t tableShape[2] = { static_cast<hsize_t>(array.Grid.GetCount()), 2 };
+    ValueRanges ranges(array.Components);
+    const hsize_t limitShape[2] = { ranges.All.size(), 4 };
+    return { this->CreateDataset("VTKHDF/" + this->GetName(array), GetHdfType(array.Type),
+               GetShape(array.Grid.Samples, array.Components), creation.Get()),
+      this->CreateDataset(index + "/BrickRanges", H5T_NATIVE_FLOAT,
+        { std::begin(tableShape), std::end(tableShape) }, H5P_DEFAULT),
+      this->CreateDataset(index + "/ValueRanges", H5T_NATIVE_DOUBLE,
+        { std::begin(limitShape), std::end(limitShape) }, H5P_DEFAULT),
+      0, std::move(ranges) };
+  }
+
+  HdfHandle CreateDataset(
+    const std::string& name, hid_t type, const std::vector<hsize_t>& shape, hid_t creation)
+  {
+    const HdfHandle space =
+      this->Own(H5Screate_simple(static_cast<int>(shape.size()), shape.data(), nullptr), &H5Sclose);
+    return this->Own(
+      H5Dcreate2(this->File, name.c_str(), type, space.Get(), H5P_DEFAULT, creation, H5P_DEFAULT),
+      &H5Dclose);
+  }
+
+  void WriteTable(const Target& target, const std::vector<float>& table)
+  {
+    const hsize_t first[2] = { static_cast<hsize_t>(target.Chunks), 0 };
+    const hsize_t count[2] = { table.size() / 2, 2 };
+    const HdfHandle all = this->Own(H5Dget_space(target.Table.Get()), &H5Sclose);
+    const HdfHandle part = this->Own(H5Screate_simple(2, count, nullptr), &H5Sclose);
+    this->Check(H5Sselect_hyperslab(all.Get(), H5S_SELECT_SET, first, nullptr, count, nullptr));
+    this->Check(H5Dwrite(
+      target.Table.Get(), H5T_NATIVE_FLOAT, part.Get(), all.Get(), H5P_DEFAULT, table.data()));
+  }
+
+  void WriteRanges(const Target& target)
+  {
+    std::vector<double> limits;
+    for (std::size_t range = 0; range < target.Ranges.All.size(); ++range)
+    {
+      for (const ValueRange* one : { &target.Ranges.All[range], &target.Ranges.Finite[range] })
+      {
+        limits.insert(limits.end(), { one->Least, one->Greatest });
+      }
+    }
+    this->Check(H5Dwrite(
+      target.Limits.Get(), H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, limits.data()));
+  }
+
+  void WriteState(bool isWhole) const
+  {
+    Json state{ { "whole", isWhole }, { "of", this->Description }, { "chunks", Json::array() } };
+    for (const Target& target : this->Targets)
+    {
+      state["chunks"].push_back(target.Chunks);
+    }
+    const std::string written = this->StatePath + ".new";
+    {
+      std::ofstream file(written, std::ios::trunc);
+      file << state.dump(1) << std::endl;
+      if (!file)
+      {
+        this->RemoveState();
+        throw dsm::Error("Writing '" + written + "' failed: " + std::strerror(errno) + ".");
+      }
+    }
+    Synchronize(written);
+    std::filesystem::rename(written, this->StatePath);
+  }
+
+  /// All that was added is in the file; while it is not quite, the state says so.
+  void Settle()
+  {
+    this->WriteState(false);
+    errno = 0;
+    this->Check(H5Fflush(this->File, H5F_SCOPE_GLOBAL));
+    Synchronize(this->PartPath);
+    this->WriteState(true);
+  }
+
+  std::string Path;
+  std::string PartPath;
+  std::string StatePath;
+  BrickFileLayout Layout;
+  Json Description;
+  hid_t File = H5I_INVALID_HID;
+};
+
+BrickFileWriter::BrickFileWriter(
+  std::string path, const BrickFileLayout& layout, const std::string& source)
+{
+  const std::lock_guard<std::mutex> lock(GetHdfLock());
+  this->Self = std::make_unique<Internals>(std::move(path), layout, source);
+}
+
+BrickFileWriter::~BrickFileWriter() = default;
+
+std::int64_t BrickFileWriter::GetChunks(std::size_t array) const
+{
+  return this->Self->Targets[array].Chunks;
+}
+
+const ValueRanges& BrickFileWriter::GetRanges(std::size_t array) const
+{
+  return this->Self->Targets[array].Ranges;
+}
+
+void BrickFileWriter::Add(
+  std::size_t array, const std::vector<EncodedChunk>& chunks, const ValueRanges& ranges)
+{
+  this->Self->Add(array, chunks, ranges);
+}
+
+void BrickFileWriter::Finish()
+{
+  this->Self->Finish();
+}
+
+} // namespace vol

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef vol_BrickFileWriter_h
+#define vol_BrickFileWriter_h
+
+#include "DSMVolumeFiles/codec/ChunkCodec.h"
+#include "DSMVolumeFiles/format/VolumeFile.h"
+#include "DSMVolumeFiles/range/ValueRanges.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace vol
+{
+
+enum class Compression
+{
+  None,
+  Deflate, ///< that every HDF5 library reads
+  Zstd     ///< smaller and faster; others need HDF5's plugin for it
+};
+
+/// What a brick file is to hold.
+struct BrickFileLayout
+{
+  FileGeometry Geometry;
+  /// Their grids' chunks are of BrickEdge samples along each axis, or of as many as there are.
+  std::vector<FileArray> Arrays;
+  int BrickEdge = 16;
+  Compression Pressed = Compression::None;
+
+  /// What the chunks of an array go through. Throws dsm::Error when this build lacks the compression.
+  ChunkCodec CreateCodec(std::size_t array) const;
+};
+
+/// A chunk as the file has it.
+struct EncodedChunk
+{
+  std::vector<std::byte> Bytes;
+  /// Of the cells of the brick that begins with the chunk's first sample, rounded outward; First above Last where
+  /// there is none.
+  float First = 0.0f;
+  float Last = 0.0f;
+};
+
+/// Writes a volume that any HDF5 reader opens, as VTK's ImageData (VTKHDF), with an index of ranges beside it (the
+/// group DSM; docs/files.md). Until it is whole, the file is called PATH.part, and PATH.part.json tells how far it
+/// has come, for a later process that goes on. One rank's; one thread at a time.
+class BrickFileWriter
+{
+public:
+  /// Goes on with PATH.part when that was begun for the same layout and `source` (a text that tells of which
+  /// values) and is whole up to where it has come; else begins anew. Throws dsm::Error.
+  BrickFileWriter(std::string path, const BrickFileLayout& layout, const std::string& source);
+  ~BrickFileWriter();
+  BrickFileWriter(const BrickFileWriter&) = delete;
+  BrickFileWriter& operator=(const BrickFileWriter&) = delete;
+
+  /// Chunks of an array that the file has, which are its first ones, in the order of their numbers.
+  std::int64_t GetChunks(std::size_t array) const;
+  /// Of their values.
+  const ValueRanges& GetRanges(std::size_t array) const;
+
+  /// Adds the next chunks of an array, whose values have these ranges; they stay if the process ends. Throws
+  /// dsm::Error when the disk is full, or fails; the writer is of no use then.
+  void Add(std::size_t array, const std::vector<EncodedChunk>& chunks, const ValueRanges& ranges);
+
+  /// When all chunks are there: gives the file its name. Throws dsm::Error.
+  void Finish();
+
+private:
+  class Internals;
+  std::unique_ptr<Internals> Self;
+};
+
+} // namespace vol
+
+#endif

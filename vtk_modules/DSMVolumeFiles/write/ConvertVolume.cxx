@@ -1,0 +1,306 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "DSMVolumeFiles/write/ConvertVolume.h"
+
+#include "DSMCore/base/Error.h"
+#include "DSMRayTracing/base/ParallelFor.h"
+#include "DSMRayTracing/layout/BrickLattice.h"
+#include "DSMRayTracing/layout/MacrocellBuilder.h"
+#include "DSMRayTracing/layout/VoxelBrickHeader.h"
+#include "DSMVolumeFiles/base/CopyBox.h"
+#include "DSMVolumeFiles/codec/ChunkCodec.h"
+
+#include <algorithm>
+#include <cstring>
+#include <optional>
+
+namespace vol
+{
+
+namespace
+{
+
+/// The range that the renderer finds for a brick of these samples.
+template <class T>
+std::pair<float, float> FindBrickRange(
+  const rt::Index3& cells, rt::ScalarType type, const std::byte* samples)
+{
+  const rt::VoxelBrickHeader header = rt::CreateVoxelBrickHeader(cells, type, false);
+  std::vector<std::uint64_t> block(header.BlockBytes / sizeof(std::uint64_t) + 1);
+  auto* const bytes = reinterpret_cast<std::byte*>(block.data());
+  const rt::Index3 points = cells + rt::Index3(1);
+  std::memcpy(bytes, &header, sizeof(header));
+  std::memcpy(bytes + header.SampleOffset, samples,
+    static_cast<std::size_t>(points.x * points.y * points.z) * sizeof(T));
+  rt::BuildMacrocells<T>(bytes);
+  rt::VoxelBrickHeader built;
+  std::memcpy(&built, bytes, sizeof(built));
+  return { built.First, built.Last };
+}
+
+/// Makes the chunks of an array of a brick file out of those of another file.
+class ChunkMaker
+{
+public:
+  ChunkMaker(std::shared_ptr<const VolumeFile> from, std::size_t fromArray, int step,
+    const BrickFileLayout& layout, std::size_t array, ChunkCache& cache)
+    : From(std::move(from))
+    , FromArray(fromArray)
+    , Step(step)
+    , Array(layout.Arrays[array])
+    , Codec(layout.CreateCodec(array))
+    , Edge(layout.BrickEdge)
+    , Cache(cache)
+  {
+  }
+
+  EncodedChunk Make(std::int64_t number, ValueRanges& ranges) const
+  {
+    const ChunkGrid& grid = this->Array.Grid;
+    const rt::Index3 chunk = grid.GetChunk(number);
+    const rt::Box own = grid.GetBox(chunk);
+    // The brick that begins here has the first samples of its neighbours, too.
+    const rt::Box have{ own.Min, glm::min(own.Min + rt::Index3(this->Edge + 1), grid.Samples) };
+    const std::size_t sampleBytes = this->Array.GetSampleBytes();
+    std::vector<std::byte> samples(static_cast<std::size_t>(have.GetCount()) * sampleBytes);
+    this->Cache.ReadBox(this->From, this->FromArray, this->Step, have, samples.data());
+    ranges.Add(this->Array, samples.data(), have, own);
+    EncodedChunk encoded;
+    const rt::Index3 cells = have.GetSize() - rt::Index3(1);
+    encoded.First = 1.0f; // of no cells
+    if (this->Array.Components == 1 && cells.x > 0 && cells.y > 0 && cells.z > 0)
+    {
+      std::tie(encoded.First, encoded.Last) = rt::Dispatch(this->Array.Type,
+        [&](auto zero)
+        { return FindBrickRange<decltype(zero)>(cells, this->Array.Type, samples.data()); });
+    }
+    // Chunks at the volume's ends are as large as all others.
+    const rt::Box whole{ own.Min, own.Min + grid.ChunkSamples };
+    std::vector<std::byte> bytes(static_cast<std::size_t>(whole.GetCount()) * sampleBytes);
+    CopyBox(own, samples.data(), have, bytes.data(), whole, sampleBytes);
+    encoded.Bytes = this->Codec.Encode(std::move(bytes));
+    return encoded;
+  }
+
+private:
+  std::shared_ptr<const VolumeFile> From;
+  std::size_t FromArray;
+  int Step;
+  FileArray Array;
+  ChunkCodec Codec;
+  int Edge;
+  ChunkCache& Cache;
+};
+
+/// What a rank has made, as it goes to rank 0.
+template <class T>
+void Put(std::vector<std::byte>& bytes, const T* values, std::size_t count)
+{
+  const auto* const first = reinterpret_cast<const std::byte*>(values);
+  bytes.insert(bytes.end(), first, first + count * sizeof(T));
+}
+
+class Taker
+{
+public:
+  explicit Taker(const std::vector<std::byte>& bytes)
+    : Bytes(bytes)
+  {
+  }
+  bool IsAtEnd() const { return this->At == this->Bytes.size(); }
+  template <class T>
+  void Take(T* values, std::size_t count)
+  {
+    std::memcpy(values, this->Bytes.data() + this->At, count * sizeof(T));
+    this->At += count * sizeof(T);
+  }
+
+private:
+  const std::vector<std::byte>& Bytes;
+  std::size_t At = 0;
+};
+
+std::vector<std::byte> ToBytes(const std::vector<EncodedChunk>& chunks, const ValueRanges& ranges)
+{
+  std::vector<std::byte> bytes;
+  for (const std::vector<ValueRange>* list : { &ranges.All, &ranges.Finite })
+  {
+    Put(bytes, list->data(), list->size());
+  }
+  for (const EncodedChunk& chunk : chunks)
+  {
+    const std::uint64_t count = chunk.Bytes.size();
+    Put(bytes, &chunk.First, 1);
+    Put(bytes, &chunk.Last, 1);
+    Put(bytes, &count, 1);
+    Put(bytes, chunk.Bytes.data(), chunk.Bytes.size());
+  }
+  return bytes;
+}
+
+void FromBytes(
+  const std::vector<std::byte>& bytes, std::vector<EncodedChunk>& chunks, ValueRanges& ranges)
+{
+  Taker from(bytes);
+  ValueRanges part = ranges;
+  for (std::vector<ValueRange>* list : { &part.All, &part.Finite })
+  {
+    from.Take(list->data(), list->size());
+  }
+  ranges.Add(part);
+  while (!from.IsAtEnd())
+  {
+    EncodedChunk chunk;
+    std::uint64_t count = 0;
+    from.Take(&chunk.First, 1);
+    from.Take(&chunk.Last, 1);
+    from.Take(&count, 1);
+    chunk.Bytes.resize(count);
+    from.Take(chunk.Bytes.data(), count);
+    chunks.push_back(std::move(chunk));
+  }
+}
+
+std::vector<std::size_t> FindArrays(const VolumeFile& from, const std::vector<std::string>& names)
+{
+  std::vector<std::size_t> found;
+  for (std::size_t number = 0; number < from.GetArrays().size(); ++number)
+  {
+    const std::string& name = from.GetArrays()[number].Name;
+    if (names.empty() || std::find(names.begin(), names.end(), name) != names.end())
+    {
+      found.push_back(number);
+    }
+  }
+  for (const std::string& name : names)
+  {
+    if (std::none_of(found.begin(), found.end(),
+          [&](std::size_t number) { return from.GetArrays()[number].Name == name; }))
+    {
+      throw dsm::Error("The file '" + from.GetPath() + "' has no array '" + name + "'.");
+    }
+  }
+  return found;
+}
+
+BrickFileLayout CreateLayout(
+  const VolumeFile& from, const std::vector<std::size_t>& arrays, const ConvertOptions& options)
+{
+  if (options.Step < 0 || options.Step >= from.GetSteps())
+  {
+    throw dsm::Error("The file '" + from.GetPath() + "' has the steps 0 to " +
+      std::to_string(from.GetSteps() - 1) + ", and not " + std::to_string(options.Step) + ".");
+  }
+  BrickFileLayout layout;
+  layout.Geometry = from.GetGeometry();
+  layout.Pressed = options.Pressed;
+  layout.BrickEdge = options.BrickEdge != 0
+    ? options.BrickEdge
+    : rt::BrickLattice::GetDefaultEdge(from.GetArrays()[arrays.front()].Type);
+  if (layout.BrickEdge < 1 || layout.BrickEdge > rt::BrickLattice::LargestEdge)
+  {
+    throw dsm::Error("A brick has from 1 to " + std::to_string(rt::BrickLattice::LargestEdge) +
+      " cells along an axis, and not " + std::to_string(layout.BrickEdge) + ".");
+  }
+  for (const std::size_t number : arrays)
+  {
+    FileArray array = from.GetArrays()[number];
+    // HDF5's names of what lies in folders.
+    std::replace(array.Name.begin(), array.Name.end(), '/', '_');
+    array.Grid.ChunkSamples = glm::min(rt::Index3(layout.BrickEdge), array.Grid.Samples);
+    layout.Arrays.push_back(std::move(array));
+  }
+  return layout;
+}
+
+} // namespace
+
+void ConvertVolume(const std::shared_ptr<const VolumeFile>& from, const std::string& path,
+  const ConvertOptions& options, dsm::Messenger& messenger, const std::function<void(double)>& tell)
+{
+  std::vector<std::size_t> arrays;
+  BrickFileLayout layout;
+  std::optional<BrickFileWriter> writer;
+  std::vector<std::int64_t> begin;
+  messenger.RunTogether("Converting a volume",
+    [&]
+    {
+      arrays = FindArrays(*from, options.Arrays);
+      layout = CreateLayout(*from, arrays, options);
+      begin.assign(arrays.size(), 0);
+      if (messenger.GetRank() == 0)
+      {
+        writer.emplace(path, layout,
+          from->GetPath() + " " + std::to_string(from->GetStamp()) + " step " +
+            std::to_string(options.Step));
+        for (std::size_t array = 0; array < arrays.size(); ++array)
+        {
+          begin[array] = writer->GetChunks(array);
+        }
+      }
+    });
+  // Half for what is read, the rest for what was made, here and on its way.
+  ChunkCache cache(options.MemoryBytes / 2);
+  const auto ranks = static_cast<std::int64_t>(messenger.GetSize());
+  for (std::size_t array = 0; array < arrays.size(); ++array)
+  {
+    const FileArray& made = layout.Arrays[array];
+    const ChunkMaker maker(from, arrays[array], options.Step, layout, array, cache);
+    const std::int64_t count = made.Grid.GetCount();
+    const auto chunkBytes = static_cast<std::size_t>(
+      rt::Box{ rt::Index3(0), made.Grid.ChunkSamples }.GetCount() * made.GetSampleBytes());
+    const std::int64_t share = std::max<std::int64_t>(
+      1, static_cast<std::int64_t>(options.MemoryBytes / 8 / chunkBytes) / ranks);
+    std::int64_t done = messenger.AllGatherValue(begin[array]).front();
+    while (done < count)
+    {
+      const std::int64_t first = std::min(count, done + share * messenger.GetRank());
+      const std::int64_t last = std::min(count, first + share);
+      const auto parts = messenger.GatherTogether("Converting a volume",
+        [&]
+        {
+          std::vector<EncodedChunk> chunks(static_cast<std::size_t>(last - first));
+          std::vector<ValueRanges> ranges(
+            static_cast<std::size_t>(options.Threads), ValueRanges(made.Components));
+          rt::ParallelFor(options.Threads, chunks.size(),
+            [&](std::size_t chunk, int thread)
+            {
+              chunks[chunk] = maker.Make(
+                first + static_cast<std::int64_t>(chunk), ranges[static_cast<std::size_t>(thread)]);
+            });
+          for (const ValueRanges& part : ranges)
+          {
+            ranges.front().Add(part);
+          }
+          return ToBytes(chunks, ranges.front());
+        });
+      done = std::min(count, done + share * ranks);
+      messenger.RunTogether("Converting a volume",
+        [&]
+        {
+          if (writer)
+          {
+            std::vector<EncodedChunk> chunks;
+            ValueRanges ranges(made.Components);
+            for (const std::vector<std::byte>& part : parts)
+            {
+              FromBytes(part, chunks, ranges);
+            }
+            writer->Add(array, chunks, ranges);
+            tell((static_cast<double>(array) +
+                   static_cast<double>(done) / static_cast<double>(count)) /
+              static_cast<double>(arrays.size()));
+          }
+        });
+    }
+  }
+  messenger.RunTogether("Converting a volume",
+    [&]
+    {
+      if (writer)
+      {
+        writer->Finish();
+      }
+    });
+}
+
+} // namespace vol
