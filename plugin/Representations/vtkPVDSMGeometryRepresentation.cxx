@@ -196,11 +196,13 @@ void vtkPVDSMGeometryRepresentation::SelectRadiusArray(int, int, int, int, const
 void vtkPVDSMGeometryRepresentation::SetLightOptions(vtkPVDSMLightOptions* options)
 {
   this->GetMapper()->SetLightOptions(options);
+  this->Display->SetLightOptions(options);
 }
 
 void vtkPVDSMGeometryRepresentation::SetMemoryOptions(vtkPVDSMMemoryOptions* options)
 {
   this->GetMapper()->SetMemoryOptions(options);
+  this->Display->SetMemoryOptions(options);
 }
 
 void vtkPVDSMGeometryRepresentation::SetFrameReport(vtkPVDSMFrameReport* report)

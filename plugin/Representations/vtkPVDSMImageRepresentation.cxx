@@ -274,11 +274,13 @@ void vtkPVDSMImageRepresentation::SetUserTransform(const double matrix[16])
 void vtkPVDSMImageRepresentation::SetLightOptions(vtkPVDSMLightOptions* options)
 {
   this->Mapper->SetLightOptions(options);
+  this->Display->SetLightOptions(options);
 }
 
 void vtkPVDSMImageRepresentation::SetMemoryOptions(vtkPVDSMMemoryOptions* options)
 {
   this->Mapper->SetMemoryOptions(options);
+  this->Display->SetMemoryOptions(options);
 }
 
 void vtkPVDSMImageRepresentation::SetFrameReport(vtkPVDSMFrameReport* report)

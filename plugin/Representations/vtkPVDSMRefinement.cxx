@@ -3,10 +3,10 @@
 
 #include "vtkPVDSMDelivery.h"
 #include "vtkPVDSMProgressGuard.h"
+#include "vtkPVDSMProxyFinder.h"
 #include "vtkPVDSMVersionCheck.h"
 
 #include "vtkClientServerStream.h"
-#include "vtkCollection.h"
 #include "vtkCommand.h"
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
@@ -43,28 +43,12 @@ std::map<vtkPVRenderView*, vtkWeakPointer<vtkPVDSMRefinement>>& GetRegistry()
   return registry;
 }
 
-/// The view's proxy, whether or not it is registered yet: a state file's representations are in their
-/// view before it is.
 vtkSMRenderViewProxy* FindProxy(vtkPVRenderView* view)
 {
   auto* module = vtkProcessModule::GetProcessModule();
-  auto* session = module && module->GetProcessType() == vtkProcessModule::PROCESS_CLIENT
-    ? vtkSMSession::SafeDownCast(module->GetActiveSession())
+  return module && module->GetProcessType() == vtkProcessModule::PROCESS_CLIENT
+    ? vtkSMRenderViewProxy::SafeDownCast(vtkPVDSMProxyFinder::Find(view))
     : nullptr;
-  vtkNew<vtkCollection> objects;
-  if (session)
-  {
-    session->GetAllRemoteObjects(objects);
-  }
-  for (int index = 0; index < objects->GetNumberOfItems(); ++index)
-  {
-    auto* proxy = vtkSMRenderViewProxy::SafeDownCast(objects->GetItemAsObject(index));
-    if (proxy && proxy->GetClientSideObject() == view)
-    {
-      return proxy;
-    }
-  }
-  return nullptr;
 }
 
 /// Whether the dataset is traced.

@@ -5,6 +5,7 @@
 #include "vtkPVDSMDelivery.h"
 #include "vtkPVDSMFrameReport.h"
 #include "vtkPVDSMRefinement.h"
+#include "vtkPVDSMSharedOptions.h"
 
 #include "vtkAbstractMapper.h"
 #include "vtkActor.h"
@@ -45,6 +46,7 @@ bool vtkPVDSMTracedDisplay::AddToView(vtkView* view)
 bool vtkPVDSMTracedDisplay::RemoveFromView(vtkView* view)
 {
   this->Leave();
+  vtkPVDSMSharedOptions::Leave(this->View, this->LightOptions, this->MemoryOptions);
   this->View = nullptr;
   return vtkPVRenderView::SafeDownCast(view) != nullptr;
 }
@@ -63,6 +65,7 @@ void vtkPVDSMTracedDisplay::SetVisibility(bool visible)
     return;
   }
   this->IsInView = true;
+  this->ShareOptions();
   this->Scene = vtkPVDSMDelivery::FindScene(this->Representation, this->View);
   if (this->Scene)
   {
@@ -92,6 +95,26 @@ void vtkPVDSMTracedDisplay::Leave()
   this->Scene = nullptr;
   this->Refinement = nullptr;
   this->ConnectFrameReport();
+}
+
+void vtkPVDSMTracedDisplay::SetLightOptions(vtkObject* options)
+{
+  this->LightOptions = options;
+  this->ShareOptions();
+}
+
+void vtkPVDSMTracedDisplay::SetMemoryOptions(vtkObject* options)
+{
+  this->MemoryOptions = options;
+  this->ShareOptions();
+}
+
+void vtkPVDSMTracedDisplay::ShareOptions()
+{
+  if (this->IsInView && this->LightOptions && this->MemoryOptions)
+  {
+    vtkPVDSMSharedOptions::Join(this->View, this->LightOptions, this->MemoryOptions);
+  }
 }
 
 void vtkPVDSMTracedDisplay::SetFrameReport(vtkPVDSMFrameReport* report)

@@ -16,6 +16,7 @@ class vtkDSMScene;
 class vtkDataObject;
 class vtkInformation;
 class vtkInformationRequestKey;
+class vtkObject;
 class vtkPVDSMFrameReport;
 class vtkPVDSMRefinement;
 class vtkPVDataRepresentation;
@@ -47,6 +48,8 @@ public:
   void SetVisibility(bool visible);
   void SetPickable(bool pickable);
   void SetFrameReport(vtkPVDSMFrameReport* report);
+  void SetLightOptions(vtkObject* options);
+  void SetMemoryOptions(vtkObject* options);
   ///@}
 
   /// Begins the representation's ProcessViewRequest: false where it ends at once. An update that the
@@ -66,6 +69,7 @@ public:
 
 private:
   void Leave();
+  void ShareOptions();
   void ConnectFrameReport();
   /// Taking in data happens while the view renders; ParaView watches the representation, only.
   void ForwardProgress();
@@ -83,6 +87,8 @@ private:
   vtkSmartPointer<vtkDSMScene> Scene;               ///< where the process renders
   vtkSmartPointer<vtkPVDSMRefinement> Refinement;   ///< on the client
   vtkSmartPointer<vtkPVDSMFrameReport> FrameReport; ///< on the servers
+  vtkSmartPointer<vtkObject> LightOptions;
+  vtkSmartPointer<vtkObject> MemoryOptions;
 };
 
 #endif

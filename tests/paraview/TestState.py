@@ -60,7 +60,7 @@ check(find("ConeSource").GetPropertyValue("DSMClip") == 0, "and is not clipped")
 view.UseFXAA = 0  # a setting, which ParaView's states leave alone
 check_equal(render(view), reference, "the picture is the same", 0)
 
-# The settings page gives the defaults, for as long as a display has none of its own.
+# The settings page and the displays have the same memory and threads: the last word counts.
 simple.ResetSession()
 load_plugin()
 # As the application does when it loads a plugin.
@@ -80,10 +80,13 @@ set_defaults(3, 77)
 view = create_view()
 first = simple.Show(simple.DSMSampleVolume(Dimensions=[20, 20, 20]), view)
 check(first.DSMThreads == 3 and first.DSMCacheSize == 77, "a new display begins with the settings")
+first.Representation = REPRESENTATION
 first.DSMThreads = 1
-set_defaults(4, 78)
-check(first.DSMThreads == 1, "what was set for a display stays")
-check(first.DSMCacheSize == 78, "and what was not follows the settings")
+check(settings.GetProperty("DSMThreads").GetElement(0) == 1, "the page shows what is set for a display")
 second = simple.Show(simple.Sphere(), view)
-check(second.DSMThreads == 4, "also of a mesh")
+second.Representation = REPRESENTATION
+check(second.DSMThreads == 1, "as does the next display")
+set_defaults(4, 78)
+for display in (first, second):
+    check(display.DSMThreads == 4 and display.DSMCacheSize == 78, "what is set on the page is every display's")
 set_defaults(0, 256)

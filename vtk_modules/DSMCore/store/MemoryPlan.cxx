@@ -40,6 +40,7 @@ MemoryPlan::MemoryPlan(std::vector<const BlockDirectory*> segments, const HostGr
   for (int rank = 0; rank < static_cast<int>(this->Copies.size()); ++rank)
   {
     auto& copies = this->Copies[static_cast<std::size_t>(rank)];
+    this->LargestGroup = std::max(this->LargestGroup, groups.GetMembers(rank).size());
     if (groups.GetMembers(rank).size() == 1)
     {
       copies = this->Blocks.Total - this->Blocks.Resident[static_cast<std::size_t>(rank)];
@@ -236,7 +237,12 @@ std::string MemoryPlan::Explain(MemoryOrganization wanted, MemoryOrganization ch
     least = std::min(least, this->Budgets[rank].Bytes);
   }
   const bool fits = this->FindPoorest(MemoryOrganization::Replicated) < 0;
-  text += std::string(": all data take ") + FormatMebibytes(need) + " on a rank, which " +
+  const std::string each = FormatMebibytes(need) + " on a rank, which ";
+  text += ": all data take " +
+    (this->LargestGroup == 1
+        ? each
+        : FormatMebibytes(this->Blocks.Total) + " on a host, once for the up to " +
+          std::to_string(this->LargestGroup) + " ranks that run there, so " + each) +
     (fits ? "fit" : "do not fit") + " the " + FormatMebibytes(least) + " that it may take";
   if (fits && chosen != MemoryOrganization::Replicated)
   {

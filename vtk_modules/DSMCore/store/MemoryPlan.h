@@ -97,6 +97,7 @@ private:
   std::vector<const BlockDirectory*> Segments;
   std::vector<Budget> Budgets;
   bool OneGroup;
+  std::size_t LargestGroup = 0; ///< the most ranks that share a host's memory
   Sums Blocks;
   Sums Pages;
   std::vector<std::uint64_t> Copies; ///< by rank: of blocks of others, when replicated

@@ -304,9 +304,10 @@ std::string vtkDSMStatistics::GetSummary() const
   }
   text << count(static_cast<std::int64_t>(this->Rows.size()), "rank") << ", "
        << count(sum.Threads, "thread") << "\n";
-  text << this->Organization << ", MiB: " << toMebibytes(sum.BytesResident) << " owned,\n"
-       << toMebibytes(sum.BytesCopied) << " copied, " << toMebibytes(sum.BytesShared) << " shared, "
-       << toMebibytes(sum.BytesCached) << " cached\n";
+  // Held by all ranks together. What a rank reads in place is another's, and held once.
+  text << this->Organization << ", MiB: " << toMebibytes(sum.BytesResident) << " owned"
+       << (sum.BytesShared > 0 ? ", shared on hosts,\n" : ",\n") << toMebibytes(sum.BytesCopied)
+       << " copied, " << toMebibytes(sum.BytesCached) << " cached\n";
   text << sum.Accesses << " look-ups of bricks,\n"
        << toPercent(static_cast<double>(sum.Misses), static_cast<double>(sum.Accesses))
        << " % missed, " << toMebibytes(sum.BytesReceived) << " MiB fetched\n";

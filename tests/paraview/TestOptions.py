@@ -1,0 +1,100 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""A view has one light, and a session one memory: what is set for one display is set for all, the last word
+counts, and every display tells what holds."""
+
+from dsm_testing import *
+
+load_plugin()
+LIGHT = {
+    "DSMShadows": 1, "DSMLightRadius": 0.02, "DSMAmbientOcclusionSamples": 2, "DSMAmbientOcclusionDistance": 0.75,
+    "DSMEnvironmentLight": 0.5, "DSMMaxBounces": 3, "DSMSamplesPerPixel": 2, "DSMDebugView": "Normal",
+    "DSMShowLegend": 0, "DSMShowStatistics": 0,
+}
+view = create_view()
+view.UseFXAA = 0
+cone = simple.Cone(Resolution=40, Height=4.0)
+volume = simple.DSMSampleVolume(Dimensions=[24, 24, 24])
+
+
+def read(display, names=LIGHT):
+    return {name: display.GetPropertyValue(name) for name in names}
+
+
+# Shadows that one switched on are switched off at another.
+first = show_traced(cone, view)
+second = show(volume, view, [0.7], "f")
+plain = place_camera(view) or render(view)
+first.DSMShadows = 1
+check(second.DSMShadows == 1, "what is set for one is set for all")
+shaded = render(view)
+check((shaded != plain).any(), "there are shadows")
+second.DSMShadows = 0
+check(first.DSMShadows == 0, "the last word counts")
+check_equal(render(view), plain, "and the shadows are gone", 0)
+
+# Each of the options but the reflectivity, whoever is asked.
+first.DSMReflectivity = 0.5
+for name, value in LIGHT.items():
+    setattr(second, name, value)
+check(read(first) == LIGHT and read(second) == LIGHT, "all of the light is shared")
+check(second.DSMReflectivity == 0.0, "what part of it a surface mirrors is its own")
+simple.Hide(volume, view)
+second.DSMMaxBounces = 4
+check(first.DSMMaxBounces == 4, "a hidden display may be asked, too")
+second.DSMMaxBounces = 3
+
+# Who comes later; who is shown in another way, or in another view, has no say.
+sphere = simple.Sphere()
+third = simple.Show(sphere, view)
+third.Representation = "Surface"
+check(third.DSMShadows == 0 and first.DSMShadows == 1, "a Surface leaves the light alone")
+third.Representation = REPRESENTATION
+check(read(third) == LIGHT, "who is traced from now on takes the light as it is")
+other = create_view()
+elsewhere = show_traced(sphere, other)
+check(elsewhere.DSMShadows == 0, "another view has a light of its own")
+elsewhere.DSMShadows = 1
+elsewhere.DSMShadows = 0
+check(first.DSMShadows == 1, "that leaves the first alone")
+fourth = simple.Show(simple.Cylinder(), other)
+fourth.DSMLightRadius = 0.25
+fourth.Representation = REPRESENTATION
+check(elsewhere.DSMLightRadius == 0.25, "what a script sets before it chooses how to show is a word, too")
+for source in (cone, volume, sphere):
+    simple.Hide(source, view)
+    simple.Delete(source)
+again = show_traced(simple.Cone(), view)
+check(read(again) == LIGHT, "a view keeps its light when all datasets are gone")
+
+# A state brings its light, whatever the defaults, also where two displays differ, as they could before.
+simple.ResetSession()
+load_plugin()
+view = create_view()
+display = show_traced(simple.Cone(), view, DSMShadows=1, DSMSamplesPerPixel=4)
+path = os.path.join(OUTPUT, f"options.{get_ranks()}")
+simple.SaveState(path + ".pvsm")
+simple.SaveState(path + ".py")
+expected = read(display)
+for suffix in (".pvsm", ".py"):
+    simple.ResetSession()
+    load_plugin()
+    simple.LoadState(path + suffix)
+    (source,) = simple.GetSources().values()
+    check(read(simple.GetRepresentation(source, simple.GetActiveView())) == expected, suffix + " brings it back")
+
+# The memory of a session, in all its views; a cache can be lowered.
+MEMORY = {
+    "DSMMemoryOrganization": "Object based", "DSMHostSharing": 0, "DSMMemory": 123, "DSMCacheSize": 33,
+    "DSMThreads": 2, "DSMScheduler": "Central queue", "DSMSilenceLimit": 90,
+}
+simple.ResetSession()
+load_plugin()
+view = create_view()
+other = create_view()
+first = show_traced(simple.Cone(), view)
+second = show(simple.DSMSampleVolume(Dimensions=[24, 24, 24]), other, [0.7], "f")
+for name, value in MEMORY.items():
+    setattr(first, name, value)
+check(read(second, MEMORY) == MEMORY, "a session has one memory")
+second.DSMCacheSize = 9
+check(first.DSMCacheSize == 9, "which can be made smaller")
