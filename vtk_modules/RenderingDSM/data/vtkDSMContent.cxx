@@ -5,13 +5,8 @@
 #include "DSMRayTracing/base/ParallelFor.h"
 #include "vtkDSMFileArray.h"
 
-#include "vtkCompositeDataIterator.h"
-#include "vtkCompositeDataSet.h"
 #include "vtkDataArray.h"
-#include "vtkInformation.h"
-#include "vtkInformationDoubleKey.h"
 #include "vtkSOADataArrayTemplate.h"
-#include "vtkSmartPointer.h"
 
 #include <array>
 #include <cstddef>
@@ -132,23 +127,4 @@ std::uint64_t vtkDSMContent::Hash(vtkAbstractArray* array, int threads)
     hash.Add(&value, sizeof(value));
   }
   return hash.Get();
-}
-
-bool vtkDSMContent::IsOfTimeStep(vtkDataObject* data)
-{
-  const auto has = [](vtkDataObject* object)
-  { return object->GetInformation()->Has(vtkDataObject::DATA_TIME_STEP()) != 0; };
-  if (auto* composite = vtkCompositeDataSet::SafeDownCast(data))
-  {
-    vtkSmartPointer<vtkCompositeDataIterator> leaf;
-    leaf.TakeReference(composite->NewIterator());
-    for (leaf->InitTraversal(); !leaf->IsDoneWithTraversal(); leaf->GoToNextItem())
-    {
-      if (has(leaf->GetCurrentDataObject()))
-      {
-        return true;
-      }
-    }
-  }
-  return data && has(data);
 }

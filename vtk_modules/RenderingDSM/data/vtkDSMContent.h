@@ -5,7 +5,6 @@
 #include <cstdint>
 
 class vtkAbstractArray;
-class vtkDataObject;
 
 /// Tells whether arrays hold what they held, whatever object they are in and whether or not anybody
 /// called Modified: a simulation may write to the same memory, a reader may read the same again.
@@ -15,9 +14,6 @@ namespace vtkDSMContent
 /// ones. An array whose values cannot be read as bytes is unlike any other and unlike itself. Null
 /// is an array, too. Reads with as many threads.
 std::uint64_t Hash(vtkAbstractArray* array, int threads);
-
-/// Local. Whether a dataset, or a block of it, belongs to a time step: then others may follow.
-bool IsOfTimeStep(vtkDataObject* data);
 }
 
 #endif

@@ -427,40 +427,70 @@ void vtkDSMMeshData::Publish()
   {
     kinds.erase(part.Kind);
   }
-  rt::TriangleMeshSettings settings;
-  settings.Threads = group->GetStore().GetSettings().Workers;
   double done = 0.0;
   vtkDSMProgress::Begin(this->Input.Mapper);
   for (const Key& kind : kinds)
   {
-    vtkDSMMeshPiece piece;
-    vtkDSMMeshWish wish = this->Input.Wish;
-    wish.EdgeFlags = this->Flagged.count(kind.Group) != 0;
-    messenger.RunTogether("Reading the surface",
-      [&]
-      {
-        for (const Surface& surface : this->Surfaces)
-        {
-          if (!(surface.Kind < kind) && !(kind < surface.Kind))
-          {
-            piece.Add(surface.Data, surface.Colors, wish);
-          }
-        }
-      });
     const double share = 1.0 / static_cast<double>(kinds.size());
-    const auto progress = [this, done, share](double part)
-    { vtkDSMProgress::Tell(this->Input.Mapper, done + share * part); };
-    const std::shared_ptr<rt::TriangleMesh> mesh = group->WithRoom(
-      [&]
-      {
-        return rt::PublishMesh(
-          "the surface", piece, settings, group->GetStore(), messenger, progress);
-      });
+    const auto mesh = this->PublishMesh(kind,
+      [this, done, share](double part)
+      { vtkDSMProgress::Tell(this->Input.Mapper, done + share * part); });
     done += share;
-    const std::shared_ptr<const rt::TriangleMesh> shared(mesh.get(),
-      [group, mesh](const rt::TriangleMesh*) { group->GetStore().Retire(mesh->Segment); });
-    this->Parts.push_back({ this->Looks.at(kind.Group), shared, kind, this->Sources[kind.Group] });
+    this->Parts.push_back({ this->Looks.at(kind.Group), mesh, kind, this->Sources[kind.Group] });
   }
+}
+
+std::shared_ptr<const rt::TriangleMesh> vtkDSMMeshData::PublishMesh(
+  const Key& kind, const std::function<void(double)>& progress)
+{
+  const std::shared_ptr<vtkDSMRankGroup> group = this->Group;
+  dsm::Messenger& messenger = group->GetMessenger();
+  vtkDSMMeshWish wish = this->Input.Wish;
+  wish.EdgeFlags = this->Flagged.count(kind.Group) != 0;
+  const std::uint64_t content = this->HashSource(kind, wish);
+  if (auto known = group->GetPublications().Find<rt::TriangleMesh>(messenger, content))
+  {
+    return known;
+  }
+  vtkDSMMeshPiece piece;
+  messenger.RunTogether("Reading the surface",
+    [&]
+    {
+      for (const Surface& surface : this->Surfaces)
+      {
+        if (!(surface.Kind < kind) && !(kind < surface.Kind))
+        {
+          piece.Add(surface.Data, surface.Colors, wish);
+        }
+      }
+    });
+  rt::TriangleMeshSettings settings;
+  settings.Threads = group->GetStore().GetSettings().Workers;
+  const std::shared_ptr<rt::TriangleMesh> mesh = group->WithRoom(
+    [&]
+    {
+      return rt::PublishMesh(
+        "the surface", piece, settings, group->GetStore(), messenger, progress);
+    });
+  const std::shared_ptr<const rt::TriangleMesh> shared(mesh.get(),
+    [group, mesh](const rt::TriangleMesh*) { group->GetStore().Retire(mesh->Segment); });
+  group->GetPublications().Add(content, shared);
+  return shared;
+}
+
+/// Of all that this rank's part of a mesh depends on; the number of its group says nothing.
+std::uint64_t vtkDSMMeshData::HashSource(const Key& kind, const vtkDSMMeshWish& wish) const
+{
+  rt::ByteHash hash;
+  const std::uint32_t form[] = { kind.Normals, kind.Values, kind.Colors, kind.TextureCoordinates,
+    wish.TextureCoordinates ? 1u : 0u, wish.EdgeFlags ? 1u : 0u };
+  hash.Add(form, sizeof(form));
+  const auto source = this->Sources.find(kind.Group);
+  if (source != this->Sources.end())
+  {
+    hash.Add(source->second.data(), source->second.size() * sizeof(source->second[0]));
+  }
+  return hash.Get();
 }
 
 std::vector<std::uint64_t> vtkDSMMeshData::GetStamp(const vtkDSMMeshInput& input)

@@ -61,7 +61,8 @@ public:
   /// Collective; a rank without data takes part. What the input asks for is the same on every rank.
   /// `content`: what HashContent says of the input now. `old`: what was made of the mapper's data
   /// before, or null; its meshes are taken over where they would be the same, also those of blocks
-  /// that are hidden now, and else leave the store first, since there may not be room for both.
+  /// that are hidden now, and else leave the store first, since there may not be room for both. Meshes
+  /// that others made of the same data are shared.
   /// Failures are dsm::Error, the same on every rank.
   vtkDSMMeshData(std::shared_ptr<vtkDSMRankGroup> group, vtkDSMMeshInput input,
     const Content& content, std::unique_ptr<vtkDSMMeshData> old);
@@ -109,6 +110,9 @@ private:
   void CheckColors(const std::vector<ColorReport>& mine);
   std::string ListArrays() const;
   void Publish();
+  std::shared_ptr<const rt::TriangleMesh> PublishMesh(
+    const Key& kind, const std::function<void(double)>& progress);
+  std::uint64_t HashSource(const Key& kind, const vtkDSMMeshWish& wish) const;
 
   std::shared_ptr<vtkDSMRankGroup> Group;
   vtkDSMMeshInput Input;

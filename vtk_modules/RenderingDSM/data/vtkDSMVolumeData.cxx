@@ -52,7 +52,6 @@ vtkDSMVolumeData::vtkDSMVolumeData(std::shared_ptr<vtkDSMRankGroup> group, vtkDa
     [&]
     {
       this->CollectImages(data);
-      this->OfTimeStep = vtkDSMContent::IsOfTimeStep(data);
       for (std::size_t index = 0; index < this->Images.size(); ++index)
       {
         mine.push_back(vtkDSMImagePiece::Describe(this->Images[index], this->Leaves[index]));
@@ -245,6 +244,7 @@ std::uint64_t vtkDSMVolumeData::HashContent(const Choice& choice) const
 {
   const int threads = this->Group->GetStore().GetSettings().Workers;
   rt::ByteHash hash;
+  hash.Add(&choice.Component, sizeof(choice.Component));
   hash.Add(this->Pieces.data(), this->Pieces.size() * sizeof(vtkDSMPieceInfo));
   const auto add = [&](vtkAbstractArray* array)
   {
@@ -262,11 +262,12 @@ std::uint64_t vtkDSMVolumeData::HashContent(const Choice& choice) const
   return hash.Get();
 }
 
-vtkDSMVolumeData::Fields vtkDSMVolumeData::Publish(const Choice& choice, const std::string& purpose,
-  const std::function<void(double)>& progress) const
+std::shared_ptr<const vtkDSMVolumeData::Publication> vtkDSMVolumeData::Publish(const Choice& choice,
+  const std::string& purpose, const std::function<void(double)>& progress) const
 {
   dsm::Messenger& messenger = this->Group->GetMessenger();
   std::vector<ArrayInfo> mine(this->Images.size());
+  const auto published = std::make_shared<Publication>();
   messenger.RunTogether("Reading the " + purpose,
     [&]
     {
@@ -274,6 +275,7 @@ vtkDSMVolumeData::Fields vtkDSMVolumeData::Publish(const Choice& choice, const s
       {
         this->FindArray(this->Images[index], choice, mine[index]);
       }
+      published->Content = this->HashContent(choice);
     });
   int first = 0;
   const std::vector<ArrayInfo> infos = vtkDSMGather::Items(messenger, mine, first);
@@ -283,12 +285,17 @@ vtkDSMVolumeData::Fields vtkDSMVolumeData::Publish(const Choice& choice, const s
     this->RefuseArray(choice, purpose, infos);
   }
 
-  Fields fields;
+  vtkDSMPublications& publications = this->Group->GetPublications();
+  if (const auto known = publications.Find<Publication>(messenger, published->Content))
+  {
+    return known;
+  }
   for (std::size_t lattice = 0; lattice < this->GetNumberOfLattices(); ++lattice)
   {
-    fields.push_back(this->PublishLattice(lattice, choice, purpose, infos, progress));
+    published->Bricks.push_back(this->PublishLattice(lattice, choice, purpose, infos, progress));
   }
-  return fields;
+  publications.Add<Publication>(published->Content, published);
+  return published;
 }
 
 std::shared_ptr<const rt::VoxelField> vtkDSMVolumeData::PublishLattice(std::size_t number,

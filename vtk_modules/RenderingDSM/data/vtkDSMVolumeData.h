@@ -41,6 +41,12 @@ public:
   };
   /// One field a lattice; null where no piece of the lattice has the array.
   using Fields = std::vector<std::shared_ptr<const rt::VoxelField>>;
+  /// What an array became.
+  struct Publication
+  {
+    Fields Bricks;
+    std::uint64_t Content = 0; ///< see HashContent
+  };
 
   /// Collective. `data` is this rank's part: vtkImageData, a composite dataset of images, or null.
   vtkDSMVolumeData(std::shared_ptr<vtkDSMRankGroup> group, vtkDataObject* data);
@@ -54,18 +60,16 @@ public:
   /// The choice with its component made definite: an array of one component has but one. The same on
   /// every rank, also where there is no data.
   Choice Normalize(const Choice& choice) const;
-  /// Local: whether this rank's data belong to a time step.
-  bool IsOfTimeStep() const { return this->OfTimeStep; }
-  /// Local. Of all that this rank's part of a field depends on: equal only where Publish would make
+  /// Local, reads the data. Of all that this rank's part of a field depends on: equal only where Publish would make
   /// the same again.
   std::uint64_t HashContent(const Choice& choice) const;
   /// Of all ranks' pieces; uninitialised bounds (min > max) without any.
   void GetBounds(double bounds[6]) const;
 
-  /// Collective. Cuts an array into bricks and hands them to their owners. `purpose` names the array
-  /// in messages ("isosurface array"). The fields leave the store when their last user lets go,
-  /// which must happen in the same order on every rank.
-  Fields Publish(const Choice& choice, const std::string& purpose,
+  /// Collective. Cuts an array into bricks and hands them to their owners, or finds what others made of
+  /// the same values. `purpose` names the array in messages ("isosurface array"). The fields leave the
+  /// store when their last user lets go, which must happen in the same order on every rank.
+  std::shared_ptr<const Publication> Publish(const Choice& choice, const std::string& purpose,
     const std::function<void(double)>& progress) const;
 
 private:
@@ -90,7 +94,6 @@ private:
   vtkDSMLatticePlan Plan;
   std::vector<vtkDSMPieceInfo> Pieces; ///< of all ranks, in rank order
   int FirstOwnPiece = 0;
-  bool OfTimeStep = false;
   std::vector<vtkSmartPointer<vtkImageData>> Images; ///< of this rank
   std::vector<int> Leaves;                           ///< of this rank's images
   std::map<std::string, int> PointArrays; ///< all ranks' numeric ones: number of components

@@ -53,6 +53,12 @@ bool vtkDSMSceneVolume::HasNewData()
   return !this->Taken || data != this->SeenData || GetDataTime(data) != this->SeenTime;
 }
 
+const vtkDSMVolumeData::Fields& vtkDSMSceneVolume::Published::GetFields() const
+{
+  static const vtkDSMVolumeData::Fields none;
+  return this->Publication ? this->Publication->Bricks : none;
+}
+
 void vtkDSMSceneVolume::GiveUpBlocks()
 {
   this->Color.reset();
@@ -80,12 +86,8 @@ std::shared_ptr<vtkDSMSceneVolume::Published> vtkDSMSceneVolume::Require(
   {
     vtkDSMVolumeMapper* mapper = this->Mapper;
     vtkDSMProgress::Begin(mapper);
-    published->Fields = this->Data->Publish(
+    published->Publication = this->Data->Publish(
       choice, purpose, [mapper](double part) { vtkDSMProgress::Tell(mapper, part); });
-    if (this->Hashes)
-    {
-      published->Content = this->Data->HashContent(choice);
-    }
   }
   catch (const dsm::Error& error)
   {
@@ -102,7 +104,6 @@ void vtkDSMSceneVolume::TakeData(const std::shared_ptr<vtkDSMRankGroup>& group)
   this->SeenData = mapper->GetDataObjectInput();
   this->SeenTime = GetDataTime(mapper->GetDataObjectInput());
   this->Taken = true;
-  ++this->TimesTaken;
   this->Reported.clear();
   try
   {
@@ -126,7 +127,6 @@ void vtkDSMSceneVolume::KeepUnchanged(dsm::Messenger& messenger)
 {
   struct Flags
   {
-    std::uint8_t OfTimeStep = 0;
     std::uint8_t SameColor = 0;
     std::uint8_t SameIso = 0;
   };
@@ -134,10 +134,11 @@ void vtkDSMSceneVolume::KeepUnchanged(dsm::Messenger& messenger)
   messenger.RunTogether("Looking for changes",
     [&]
     {
-      const auto isSame = [this](const std::shared_ptr<Published>& known) {
-        return known && known->Content && *known->Content == this->Data->HashContent(known->Choice);
+      const auto isSame = [this](const std::shared_ptr<Published>& known)
+      {
+        return known && known->Publication &&
+          known->Publication->Content == this->Data->HashContent(known->Choice);
       };
-      mine.OfTimeStep = this->Data->IsOfTimeStep();
       mine.SameIso = isSame(this->Iso);
       mine.SameColor = this->Color == this->Iso ? mine.SameIso : isSame(this->Color);
     });
@@ -152,8 +153,6 @@ void vtkDSMSceneVolume::KeepUnchanged(dsm::Messenger& messenger)
   {
     this->Iso.reset();
   }
-  this->Hashes = this->TimesTaken > 1 ||
-    std::any_of(all.begin(), all.end(), [](const Flags& one) { return one.OfTimeStep != 0; });
 }
 
 void vtkDSMSceneVolume::Update(const std::shared_ptr<vtkDSMRankGroup>& group, bool newData)
@@ -203,7 +202,7 @@ void vtkDSMSceneVolume::SuggestIsovalue(dsm::Messenger& messenger)
   if (!this->Suggested || !(this->SuggestedFor == this->Iso->Choice))
   {
     this->SuggestedFor = this->Iso->Choice;
-    this->Suggested = rt::FindFirstIsovalue(this->Iso->Fields, messenger);
+    this->Suggested = rt::FindFirstIsovalue(this->Iso->GetFields(), messenger);
   }
   this->Mapper->SetSuggestedIsoValue(this->Suggested.value_or(vtkMath::Nan()));
 }
@@ -286,7 +285,7 @@ std::vector<double> vtkDSMSceneVolume::GetIsovalues()
         "The mapper has no isovalue, so nothing is drawn. Call SetIsoValue(0, VALUE), "
         "or AutomaticIsoValueOn() for one that the data suggest.");
     }
-    if (chosen.empty() && mapper->GetAutomaticIsoValue() && !this->Iso->Fields.empty())
+    if (chosen.empty() && mapper->GetAutomaticIsoValue() && !this->Iso->GetFields().empty())
     {
       this->Messages.push_back("The isosurface array '" + this->Iso->Choice.Name +
         "' has the same value everywhere, or none, so there is no surface to show. Choose another "
@@ -345,7 +344,7 @@ void vtkDSMSceneVolume::AddTo(rt::Scene& scene)
     return;
   }
   const std::vector<double> isovalues = this->GetIsovalues();
-  if (isovalues.empty() || this->Iso->Fields.empty())
+  if (isovalues.empty() || this->Iso->GetFields().empty())
   {
     return;
   }
@@ -365,10 +364,10 @@ void vtkDSMSceneVolume::AddTo(rt::Scene& scene)
   {
     groups.push_back(isovalues);
   }
-  const bool colored = this->Color && !this->Color->Fields.empty();
+  const bool colored = this->Color && !this->Color->GetFields().empty();
   for (std::size_t lattice = 0; lattice < this->Data->GetNumberOfLattices(); ++lattice)
   {
-    if (!this->Iso->Fields[lattice])
+    if (!this->Iso->GetFields()[lattice])
     {
       continue;
     }
@@ -376,13 +375,13 @@ void vtkDSMSceneVolume::AddTo(rt::Scene& scene)
     {
       rt::IsosurfaceObject object;
       object.SetIndexToWorld(dataToWorld * this->Data->GetIndexToWorld(lattice));
-      object.Field = this->Iso->Fields[lattice];
+      object.Field = this->Iso->GetFields()[lattice];
       object.Isovalues = group;
       object.Surface = this->GetMaterial(group.front());
       object.Clipping = clipping;
-      if (colored && this->Color->Fields[lattice])
+      if (colored && this->Color->GetFields()[lattice])
       {
-        object.ColorField = this->Color->Fields[lattice];
+        object.ColorField = this->Color->GetFields()[lattice];
         object.Colors = *this->SampleColors(this->Mapper->GetLookupTable());
       }
       scene.Objects.push_back(std::move(object));

@@ -31,12 +31,11 @@ private:
   struct Published
   {
     vtkDSMVolumeData::Choice Choice;
-    vtkDSMVolumeData::Fields Fields; ///< empty when it failed
+    std::shared_ptr<const vtkDSMVolumeData::Publication> Publication; ///< null when it failed
     std::string Failure;
     unsigned SettingsVersion = 0; ///< of the memory's settings when it was tried
-    /// Of this rank's data; not set for the first data that belong to no time step, since others may
-    /// never follow. Set on all ranks or on none.
-    std::optional<std::uint64_t> Content;
+    /// Empty when it failed.
+    const vtkDSMVolumeData::Fields& GetFields() const;
   };
 
   /// Collective. Takes in the mapper's dataset; bricks of arrays that hold what they held are kept.
@@ -56,8 +55,6 @@ private:
   const vtkDataObject* SeenData = nullptr;
   vtkMTimeType SeenTime = 0;
   bool Taken = false;
-  int TimesTaken = 0;
-  bool Hashes = false; ///< further data are expected; the same on every rank
   std::unique_ptr<vtkDSMVolumeData> Data;
   std::shared_ptr<Published> Iso;
   std::shared_ptr<Published> Color;

@@ -6,6 +6,7 @@
 #include "DSMCore/transport/Messenger.h"
 #include "DSMRayTracing/frame/FrameRenderer.h"
 #include "vtkDSMMemorySettings.h"
+#include "vtkDSMPublications.h"
 
 #include <cstdint>
 #include <memory>
@@ -21,18 +22,18 @@ class vtkMultiProcessController;
 class vtkDSMRankGroup
 {
 public:
-  /// Who publishes blocks: a scene. On every rank the same ones, which joined in the same order.
+  /// Who publishes blocks, or uses what others published: a scene. On every rank the same ones, which joined in the same order.
   class Publisher
   {
   public:
     virtual ~Publisher() = default;
-    /// The blocks are to be kept in another way: retires what this one has published. It
-    /// publishes again when it draws the next time.
+    /// The blocks are to be kept in another way: lets go of all it uses, which is retired with its last
+    /// user. It publishes again when it draws the next time.
     virtual void GiveUpBlocks() = 0;
     /// A time: of the last frame that showed the oldest of what it has blocks of but does not show;
     /// 0 without any. In the same order on every rank.
     virtual std::uint64_t GetOldestHidden() const = 0;
-    /// Retires the blocks of that, likewise.
+    /// Lets go of the blocks of that, likewise.
     virtual void GiveUpOldestHidden() = 0;
   };
 
@@ -48,6 +49,8 @@ public:
   dsm::Messenger& GetMessenger() { return this->Messenger; }
   dsm::BlockStore& GetStore() { return this->Store; }
   rt::FrameRenderer& GetFrameRenderer() { return this->FrameRenderer; }
+  /// What is in the store, for all who would publish the same.
+  vtkDSMPublications& GetPublications() { return this->Publications; }
 
   /// Local, in the same order on every rank.
   void Join(Publisher* publisher);
@@ -102,6 +105,7 @@ private:
   dsm::Messenger Messenger;
   dsm::BlockStore Store;
   rt::FrameRenderer FrameRenderer;
+  vtkDSMPublications Publications;
 };
 
 #endif

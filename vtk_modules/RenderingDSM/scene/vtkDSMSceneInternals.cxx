@@ -105,6 +105,7 @@ std::string vtkDSMScene::Internals::MakeFrame(const dsm::FirstFailure& earlier)
     return outcome.Cause;
   }
   this->GiveUpBlocks(); // what the ranks have of them may differ now
+  this->Group->GetPublications().Forget();
   return "Rank " + std::to_string(outcome.FailedRank) + ": " + outcome.Cause;
 }
 

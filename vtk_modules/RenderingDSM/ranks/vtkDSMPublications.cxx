@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkDSMPublications.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <cstring>
+
+std::shared_ptr<const void> vtkDSMPublications::FindAny(
+  dsm::Messenger& messenger, std::type_index type, std::uint64_t content)
+{
+  const auto all = messenger.GatherTogether("Looking for what is published",
+    [&]
+    {
+      this->Entries.erase(std::remove_if(this->Entries.begin(), this->Entries.end(),
+                            [](const Entry& entry) { return entry.Published.expired(); }),
+        this->Entries.end());
+      std::vector<std::byte> mine;
+      for (const Entry& entry : this->Entries)
+      {
+        if (entry.Type == type && entry.Content == content)
+        {
+          dsm::AttachTail(mine, entry.Number);
+        }
+      }
+      return mine;
+    });
+  const auto isEverywhere = [&](std::uint64_t number)
+  {
+    return std::all_of(all.begin(), all.end(),
+      [=](const std::vector<std::byte>& numbers)
+      {
+        bool found = false;
+        for (std::size_t at = 0; at + sizeof(number) <= numbers.size(); at += sizeof(number))
+        {
+          found = found || std::memcmp(&numbers[at], &number, sizeof(number)) == 0;
+        }
+        return found;
+      });
+  };
+  for (const Entry& entry : this->Entries)
+  {
+    if (entry.Type == type && entry.Content == content && isEverywhere(entry.Number))
+    {
+      return entry.Published.lock();
+    }
+  }
+  return nullptr;
+}
+
+void vtkDSMPublications::Forget()
+{
+  this->Entries.clear();
+  this->Next = 0;
+}

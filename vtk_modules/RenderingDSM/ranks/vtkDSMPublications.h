@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef vtkDSMPublications_h
+#define vtkDSMPublications_h
+
+#include "DSMCore/transport/Messenger.h"
+
+#include <cstdint>
+#include <memory>
+#include <typeindex>
+#include <vector>
+
+/// What the ranks of a group have published, by what it was made of: who would publish the same takes
+/// what is there, so that two views of a dataset share its bricks. Keeps nothing alive. Communication
+/// thread only.
+class vtkDSMPublications
+{
+public:
+  /// Collective. What was added for `content` on every rank and is still used; null where there is
+  /// nothing. `content` says what this rank's part is made of, and is another on each rank.
+  template <class T>
+  std::shared_ptr<const T> Find(dsm::Messenger& messenger, std::uint64_t content)
+  {
+    return std::static_pointer_cast<const T>(this->FindAny(messenger, typeid(T), content));
+  }
+
+  /// Local, in the same order on every rank.
+  template <class T>
+  void Add(std::uint64_t content, const std::shared_ptr<const T>& published)
+  {
+    this->Entries.push_back({ this->Next++, typeid(T), content, published });
+  }
+
+  /// Local: nothing is found any more. For when the ranks may have added different things.
+  void Forget();
+
+private:
+  std::shared_ptr<const void> FindAny(
+    dsm::Messenger& messenger, std::type_index type, std::uint64_t content);
+
+  struct Entry
+  {
+    std::uint64_t Number; ///< the same on every rank
+    std::type_index Type;
+    std::uint64_t Content;
+    std::weak_ptr<const void> Published;
+  };
+  std::vector<Entry> Entries;
+  std::uint64_t Next = 0;
+};
+
+#endif
