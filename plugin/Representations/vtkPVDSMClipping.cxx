@@ -31,11 +31,18 @@ void vtkPVDSMClipping::ApplyTo(vtkAbstractMapper* mapper, vtkMatrix4x4* dataToWo
   }
   vtkNew<vtkTransform> transform;
   transform->SetMatrix(dataToWorld);
+  transform->Translate(this->BoxPosition.data());
+  transform->RotateZ(this->BoxRotation[2]);
+  transform->RotateX(this->BoxRotation[0]);
+  transform->RotateY(this->BoxRotation[1]);
+  transform->Scale(this->BoxScale.data());
+  const std::array<double, 6> box =
+    this->UsesBox ? this->Box : std::array<double, 6>{ 0.0, 1.0, 0.0, 1.0, 0.0, 1.0 };
   for (int side = 0; side < 6 && this->Crops; ++side)
   {
     const int axis = side / 2;
     const bool isLower = side % 2 == 0;
-    const double* limits = this->Box.data() + 2 * axis;
+    const double* limits = box.data() + 2 * axis;
     double origin[3] = { 0.0, 0.0, 0.0 };
     double normal[3] = { 0.0, 0.0, 0.0 };
     origin[axis] = isLower ? std::min(limits[0], limits[1]) : std::max(limits[0], limits[1]);

@@ -15,8 +15,13 @@ public:
   std::array<double, 3> Origin{ 0.0, 0.0, 0.0 }; ///< of the plane, world
   std::array<double, 3> Normal{ 1.0, 0.0, 0.0 }; ///< to the side that is shown
   bool Crops = false;
-  /// x, y and z from, to; in the dataset's coordinates.
+  /// x, y and z from, to; in the dataset's coordinates. ParaView's interactive box moves, turns (degrees
+  /// about z, x, y) and scales it; or the unit box, when UsesBox is off.
   std::array<double, 6> Box{ 0.0, 1.0, 0.0, 1.0, 0.0, 1.0 };
+  bool UsesBox = true;
+  std::array<double, 3> BoxPosition{ 0.0, 0.0, 0.0 };
+  std::array<double, 3> BoxRotation{ 0.0, 0.0, 0.0 };
+  std::array<double, 3> BoxScale{ 1.0, 1.0, 1.0 };
 
   /// Gives the mapper its clipping planes, `dataToWorld` being where the dataset is.
   void ApplyTo(vtkAbstractMapper* mapper, vtkMatrix4x4* dataToWorld) const;

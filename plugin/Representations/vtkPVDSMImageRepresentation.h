@@ -104,7 +104,8 @@ public:
   ///@{
   /**
    * What is shown of the dataset: the side of a plane (world coordinates) that its normal points to,
-   * the inside of a box (x, y and z from, to; in the dataset's coordinates).
+   * the inside of a box (x, y and z from, to; in the dataset's coordinates), which may be moved, turned
+   * and scaled.
    */
   void SetClip(bool clip) { this->Display->Clipping.Clips = clip; }
   void SetClipOrigin(double x, double y, double z) { this->Display->Clipping.Origin = { x, y, z }; }
@@ -113,6 +114,19 @@ public:
   void SetCroppingBox(const double box[6])
   {
     this->Display->Clipping.Box = { box[0], box[1], box[2], box[3], box[4], box[5] };
+  }
+  void SetCroppingUsesBox(bool uses) { this->Display->Clipping.UsesBox = uses; }
+  void SetCroppingPosition(double x, double y, double z)
+  {
+    this->Display->Clipping.BoxPosition = { x, y, z };
+  }
+  void SetCroppingRotation(double x, double y, double z)
+  {
+    this->Display->Clipping.BoxRotation = { x, y, z };
+  }
+  void SetCroppingScale(double x, double y, double z)
+  {
+    this->Display->Clipping.BoxScale = { x, y, z };
   }
   ///@}
 

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Clipping planes and cropping boxes: what is left is what clipping the triangles leaves."""
 
+import math
+
 from dsm_testing import *
 
 load_plugin()
@@ -54,6 +56,25 @@ traced.Position = [2.0, -3.0, 1.0]
 traced.Orientation = [0.0, 20.0, 0.0]
 compare("cropped and moved", [([3.0, 0, 0], [1, 0, 0]), ([0, 14.5, 0], [0, -1, 0])])
 traced.Position = traced.Orientation = [0.0, 0.0, 0.0]
+
+# What ParaView's box in the view does with it: it grows, turns and moves from the origin.
+traced.DSMCroppingScale = [0.5, 1.0, 1.0]
+traced.DSMCroppingRotation = [0.0, 0.0, 30.0]
+traced.DSMCroppingPosition = [6.0, -3.0, 0.0]
+cosine, sine = math.cos(math.radians(30.0)), math.sin(math.radians(30.0))
+
+
+def turn(x, y):
+    return [6.0 + cosine * x - sine * y, -3.0 + sine * x + cosine * y, 0.0]
+
+
+compare("cropped to a box that was moved", [
+    (turn(1.5, 0.0), [cosine, sine, 0.0]), (turn(12.0, 0.0), [-cosine, -sine, 0.0]),
+    (turn(0.0, 0.0), [-sine, cosine, 0.0]), (turn(0.0, 14.5), [sine, -cosine, 0.0])])
+traced.DSMCroppingUsesBox = 0
+traced.DSMCroppingPosition, traced.DSMCroppingRotation = [3.0, 0.0, 0.0], [0.0, 0.0, 0.0]
+traced.DSMCroppingScale = [21.0, 14.5, 24.0]
+compare("cropped to a scaled unit box", [([3.0, 0, 0], [1, 0, 0]), ([0, 14.5, 0], [0, -1, 0])])
 traced.DSMCropping = 0
 check_equal(render(view), whole, "and whole again", 0)
 simple.Hide(source, view)

@@ -36,3 +36,22 @@ for source, own in (
     first = names.index("Representation")
     expected = own + LIGHT
     check(names[first + 1 : first + 1 + len(expected)] == expected, f"{source.GetXMLName()}: {names[: first + 9]}")
+    proxy = simple.GetRepresentation(source, view).SMProxy
+    widgets = {}
+    for number in range(proxy.GetNumberOfPropertyGroups()):
+        group = proxy.GetPropertyGroup(number)
+        if group.GetPanelWidget():
+            widgets[group.GetPanelWidget()] = group
+    for widget, functions in (
+        ("InteractivePlane", ("Origin", "Normal")),
+        ("InteractiveBox", ("Position", "Rotation", "Scale", "ReferenceBounds", "UseReferenceBounds")),
+    ):
+        check(widget in widgets, f"{source.GetXMLName()}: there is a widget in the view, {widget}")
+        for function in functions + ("Input",):
+            check(widgets[widget].GetProperty(function) is not None, f"which knows its {function}")
+    hidden = [name for name in names if "DSM" in name and "DSM" in (proxy.GetProperty(name).GetXMLLabel() or "")]
+    check(hidden == [], f"nobody has to know what DSM means: {hidden}")
+    labels = [proxy.GetPropertyGroup(number).GetXMLLabel() or "" for number in range(proxy.GetNumberOfPropertyGroups())]
+    check(not any("DSM" in label for label in labels), f"groups have names in ParaView's words: {labels}")
+    for name in ("DSMMemory", "DSMThreads", "DSMScheduler", "DSMCacheSize"):
+        check(proxy.GetProperty(name).GetPanelVisibility() == "never", name + " is on the settings page only")

@@ -13,6 +13,7 @@ SETTINGS = {
     "DSMMaxBounces": 3, "DSMSamplesPerPixel": 2, "Opacity": 0.5,
     "DSMClip": 1, "DSMClipOrigin": [0.25, 0.0, 0.0], "DSMClipNormal": [-1.0, 0.5, 0.0],
     "DSMCropping": 1, "DSMCroppingBox": [-2.0, 2.0, -1.0, 0.5, -2.0, 2.0],
+    "DSMCroppingPosition": [0.1, 0.0, 0.0], "DSMCroppingRotation": [0.0, 0.0, 5.0], "DSMCroppingScale": [1.0, 0.9, 1.0],
     "DSMShowLegend": 0, "DSMShowStatistics": 0,
 }
 

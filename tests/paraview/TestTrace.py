@@ -14,6 +14,7 @@ CHANGES = {
     "DSMSamplesPerPixel": 2, "DSMDebugView": "Brick", "DSMShowLegend": 0, "DSMShowStatistics": 1,
     "DSMClip": 1, "DSMClipOrigin": [0.25, 0.0, 0.0], "DSMClipNormal": [-1.0, 0.5, 0.0],
     "DSMCropping": 1, "DSMCroppingBox": [-2.0, 2.0, -1.0, 0.5, -2.0, 2.0],
+    "DSMCroppingPosition": [0.1, 0.0, 0.0], "DSMCroppingRotation": [0.0, 0.0, 5.0], "DSMCroppingScale": [1.0, 0.9, 1.0],
 }
 MESH_CHANGES = {"DSMLineRadius": 0.1, "DSMPointRadius": 0.2, "DSMReflectivity": 0.5}
 
