@@ -20,6 +20,7 @@
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
 #include "vtkProcessModule.h"
+#include "vtkRemotingCoreConfiguration.h"
 #include "vtkRenderWindow.h"
 #include "vtkSmartPointer.h"
 
@@ -45,6 +46,12 @@ std::string FindObstacle()
   {
     return "DSM Ray Traced traces where the data are, but here data and pictures have different "
            "servers. Start pvserver in the place of pvdataserver and pvrenderserver.";
+  }
+  if (vtkRemotingCoreConfiguration::GetInstance()->GetIsInCave())
+  {
+    return "In a CAVE, nothing is shown as DSM Ray Traced: each screen has a camera of its own, "
+           "and the ranks "
+           "trace one picture together. Show it as Surface, or as Contour.";
   }
   using Capabilities = vtkPVRenderingCapabilitiesInformation;
   if (!Capabilities::Supports(Capabilities::GetLocalCapabilities(), Capabilities::RENDERING))
@@ -80,6 +87,18 @@ constexpr double SecondsPerFrame = 0.15;
 bool CanRefine(vtkPVRenderView* view)
 {
   return view && !AskedView::IsCapturing(view) && !view->GetRenderWindow()->GetStereoRender();
+}
+
+/// Tells the scene which windows are one display (pvserver's --tdx and --tdy).
+void SetTileDisplay(vtkDSMScene* scene)
+{
+  auto* configuration = vtkRemotingCoreConfiguration::GetInstance();
+  if (configuration->GetIsInTileDisplay())
+  {
+    const int* tiles = configuration->GetTileDimensions();
+    const int* gaps = configuration->GetTileMullions();
+    scene->SetTileDisplay(tiles[0], tiles[1], gaps[0], gaps[1]);
+  }
 }
 
 /// The edge of the squares of pixels of which one is traced: from 1, at the finest level of detail, to 4.
@@ -184,6 +203,10 @@ vtkSmartPointer<vtkDSMScene> vtkPVDSMDelivery::FindScene(
   {
     vtkErrorWithObjectMacro(representation, << obstacle);
   }
+  if (vtkRemotingCoreConfiguration::GetInstance()->GetIsInCave())
+  {
+    return nullptr; // each frame would be refused
+  }
   return vtkDSMScene::ForRenderer(view->GetRenderer());
 }
 
@@ -262,6 +285,7 @@ void vtkPVDSMDelivery::Choose(
 {
   auto* view = vtkPVRenderView::SafeDownCast(anyView);
   auto* controller = scene->GetController();
+  SetTileDisplay(scene);
   scene->SetHidden(IsSelecting(anyView));
   if (IsSelecting(anyView))
   {

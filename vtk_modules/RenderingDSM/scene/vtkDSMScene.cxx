@@ -220,6 +220,11 @@ int vtkDSMScene::GetInteractiveReduction() const
   return this->Self->InteractiveReduction;
 }
 
+void vtkDSMScene::SetTileDisplay(int columns, int rows, int gapX, int gapY)
+{
+  this->Self->Display = { { std::max(1, columns), std::max(1, rows) }, { gapX, gapY } };
+}
+
 bool vtkDSMScene::IsRefined() const
 {
   return this->Self->Accumulation.IsComplete();

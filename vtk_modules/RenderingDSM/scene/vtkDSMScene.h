@@ -137,6 +137,13 @@ public:
   ///@}
 
   /**
+   * Each rank's window is one of columns x rows tiles of a display, of the same size, with gaps of so many
+   * pixels between them. The frame is traced for the whole display; the application draws each tile with
+   * its part of the projection. 1 x 1 (the default): each window shows all. Same values on every rank.
+   */
+  void SetTileDisplay(int columns, int rows, int gapX = 0, int gapY = 0);
+
+  /**
    * Whether the last picture has all the samples that were asked for; the same on every rank. Not so
    * either when the last render was aborted: while it traces, the window of rank 0 is asked for its
    * abort status (vtkRenderWindow::CheckAbortStatus, AbortCheckEvent), and then all ranks keep the last

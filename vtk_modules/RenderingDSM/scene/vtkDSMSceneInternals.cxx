@@ -2,7 +2,6 @@
 #include "vtkDSMSceneInternals.h"
 
 #include "vtkDSMFrameNotes.h"
-#include "vtkDSMTranslation.h"
 
 #include "vtkBoundingBox.h"
 #include "vtkMatrix4x4.h"
@@ -172,7 +171,7 @@ void vtkDSMScene::Internals::Draw()
       scene.Lights = vtkDSMTranslation::ToLights(this->Renderer);
       scene.Transport = this->Members.GetTransport();
       scene.View = this->Members.GetDebugView();
-      request = vtkDSMTranslation::ToRequest(this->Renderer, projection);
+      request = vtkDSMTranslation::ToRequest(this->Renderer, this->Display, projection);
       request.Scheduling = this->Settings.Scheduling;
     });
   if (scene.Objects.empty())

@@ -10,6 +10,7 @@
 #include "vtkDSMScene.h"
 #include "vtkDSMSceneMembers.h"
 #include "vtkDSMStatistics.h"
+#include "vtkDSMTranslation.h"
 
 #include "vtkMultiProcessController.h"
 #include "vtkNew.h"
@@ -55,6 +56,7 @@ public:
   bool Tracing = false;
   vtkDSMFrameAccumulation::Pace Pace; ///< of still pictures
   int InteractiveReduction = 0;
+  vtkDSMTranslation::TileDisplay Display;
   vtkDSMMemorySettings Settings; ///< that the objects ask for
   unsigned SettledVersion = 0;   ///< of the group's settings
 

@@ -23,6 +23,7 @@
 #include "vtkTexture.h"
 #include "vtkUnsignedCharArray.h"
 #include "vtkVolumeProperty.h"
+#include "vtkWindow.h"
 
 #include <glm/geometric.hpp>
 
@@ -257,14 +258,30 @@ std::vector<rt::Light> vtkDSMTranslation::ToLights(vtkRenderer* renderer)
   return lights;
 }
 
-rt::FrameRequest vtkDSMTranslation::ToRequest(vtkRenderer* renderer, vtkMatrix4x4* projection)
+rt::FrameRequest vtkDSMTranslation::ToRequest(
+  vtkRenderer* renderer, const TileDisplay& display, vtkMatrix4x4* projection)
 {
   vtkCamera* camera = renderer->GetActiveCamera();
   rt::FrameRequest request;
+  int* const size[2] = { &request.Width, &request.Height };
   int origin[2];
-  renderer->GetTiledSizeAndOrigin(&request.Width, &request.Height, &origin[0], &origin[1]);
-  projection->DeepCopy(
-    camera->GetProjectionTransformMatrix(renderer->GetTiledAspectRatio(), -1.0, 1.0));
+  renderer->GetTiledSizeAndOrigin(size[0], size[1], &origin[0], &origin[1]);
+  double aspect = renderer->GetTiledAspectRatio();
+  if (display.Tiles[0] * display.Tiles[1] > 1)
+  {
+    // IceT's places of the renderer in the display, and its aspect.
+    const int* window = renderer->GetVTKWindow()->GetActualSize();
+    const double* viewport = renderer->GetViewport();
+    for (int axis = 0; axis < 2; ++axis)
+    {
+      const int whole =
+        display.Tiles[axis] * (window[axis] + display.Gap[axis]) - display.Gap[axis];
+      *size[axis] = static_cast<int>(viewport[axis + 2] * whole + 0.5) -
+        static_cast<int>(viewport[axis] * whole + 0.5);
+    }
+    aspect = static_cast<double>(request.Width) / std::max(request.Height, 1);
+  }
+  projection->DeepCopy(camera->GetProjectionTransformMatrix(aspect, -1.0, 1.0));
   request.WorldToClip = ToMatrix(projection) * ToMatrix(camera->GetModelViewTransformMatrix());
   return request;
 }

@@ -48,8 +48,17 @@ public:
   /// renderer will have them, and makes the renderer's automatic light if there is none.
   static std::vector<rt::Light> ToLights(vtkRenderer* renderer);
 
-  /// The picture that the renderer is about to draw; `projection` is filled with its projection.
-  static rt::FrameRequest ToRequest(vtkRenderer* renderer, vtkMatrix4x4* projection);
+  /// Windows that show one picture together: how many there are along x and y, and the pixels between two.
+  struct TileDisplay
+  {
+    int Tiles[2] = { 1, 1 };
+    int Gap[2] = { 0, 0 };
+  };
+
+  /// The picture that the renderer is about to draw, with that of the other windows if it is one of several;
+  /// `projection` is filled with its projection.
+  static rt::FrameRequest ToRequest(
+    vtkRenderer* renderer, const TileDisplay& display, vtkMatrix4x4* projection);
 };
 
 #endif
