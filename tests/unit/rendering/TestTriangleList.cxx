@@ -3,6 +3,7 @@
 #include "vtkDSMTriangleList.h"
 
 #include "DSMCore/base/Error.h"
+#include "tests/support/FixedSizeCells.h"
 
 #include "vtkCellArray.h"
 #include "vtkCellData.h"
@@ -86,6 +87,41 @@ TEST(TriangleList, TrianglesAreReadInPlaceFromBothStorages)
     EXPECT_EQ(list.GetCell(0), 1);
     EXPECT_EQ(list.GetCell(1), 2);
     EXPECT_EQ(vtkDSMTriangleList::GetLargestCount(data), 2u);
+  }
+}
+
+TEST(TriangleList, TrianglesAreReadFromStorageWithoutOffsets)
+{
+  for (const bool wide : { false, true })
+  {
+    const auto data = MakePoints({ { 0, 0 }, { 1, 0 }, { 1, 1 }, { 0, 1 } });
+    vtkNew<vtkCellArray> polygons;
+    if (!FixedSizeCells::Use(polygons, 3, wide))
+    {
+      GTEST_SKIP() << "this VTK has no such storage";
+    }
+    polygons->InsertNextCell({ 0, 1, 2 });
+    polygons->InsertNextCell({ 0, 2, 3 });
+    data->SetPolys(polygons);
+    const vtkDSMTriangleList list(data);
+    EXPECT_EQ(GetAll(list), (std::vector<Corners>{ { 0, 1, 2 }, { 0, 2, 3 } })) << wide;
+    EXPECT_EQ(list.GetCell(1), 1);
+  }
+}
+
+TEST(TriangleList, QuadranglesAreReadFromStorageWithoutOffsets)
+{
+  for (const bool wide : { false, true })
+  {
+    const auto data = MakePoints({ { 0, 0 }, { 1, 0 }, { 1, 1 }, { 0, 1 } });
+    vtkNew<vtkCellArray> polygons;
+    if (!FixedSizeCells::Use(polygons, 4, wide))
+    {
+      GTEST_SKIP() << "this VTK has no such storage";
+    }
+    polygons->InsertNextCell({ 0, 1, 2, 3 });
+    data->SetPolys(polygons);
+    EXPECT_EQ(GetAll(vtkDSMTriangleList(data)), (std::vector<Corners>{ { 0, 1, 2 }, { 0, 2, 3 } }));
   }
 }
 

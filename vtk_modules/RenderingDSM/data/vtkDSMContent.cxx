@@ -8,9 +8,11 @@
 #include "vtkDataArray.h"
 #include "vtkSOADataArrayTemplate.h"
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstring>
+#include <functional>
 #include <vector>
 
 namespace
@@ -25,43 +27,84 @@ struct Bytes
   std::size_t Size;
 };
 
-template <class T>
-bool FindComponents(vtkDataArray* array, std::vector<Bytes>& parts)
-{
-  auto* components = dynamic_cast<vtkSOADataArrayTemplate<T>*>(array);
-  for (int index = 0; components && index < array->GetNumberOfComponents(); ++index)
-  {
-    parts.push_back({ components->GetComponentArrayPointer(index),
-      static_cast<std::size_t>(array->GetNumberOfTuples()) * sizeof(T) });
-  }
-  return components != nullptr;
-}
-
-/// Where the values are; false where they are nowhere as bytes.
-bool FindBytes(vtkDataArray* array, std::vector<Bytes>& parts)
+/// Where the values are; false where they do not lie one after the other.
+bool FindBytes(vtkDataArray* array, Bytes& bytes)
 {
   const auto values = static_cast<std::size_t>(array->GetNumberOfValues());
   if (values == 0)
   {
+    bytes = { nullptr, 0 };
     return true;
   }
   if (array->GetDataType() == VTK_BIT)
   {
-    parts.push_back({ array->GetVoidPointer(0), (values + 7) / 8 });
+    bytes = { array->GetVoidPointer(0), (values + 7) / 8 };
     return true;
   }
   if (array->HasStandardMemoryLayout())
   {
-    parts.push_back(
-      { array->GetVoidPointer(0), values * static_cast<std::size_t>(array->GetDataTypeSize()) });
+    bytes = { array->GetVoidPointer(0),
+      values * static_cast<std::size_t>(array->GetDataTypeSize()) };
     return true;
   }
-  bool found = false;
+  return false;
+}
+
+/// Copies tuples, and may be called by as many threads as it says.
+struct TupleCopier
+{
+  int Threads;
+  std::function<void(vtkIdType first, vtkIdType count, std::byte* out)> Copy;
+};
+
+/// Empty for an array of another class or type.
+template <class T>
+TupleCopier FindComponents(vtkDataArray* array, int threads)
+{
+  // Such arrays may hold their values together as well, and VTK did not always tell which.
+  auto* components = dynamic_cast<vtkSOADataArrayTemplate<T>*>(array);
+  if (!components)
+  {
+    return { 1, nullptr };
+  }
+  return { threads,
+    [components](vtkIdType first, vtkIdType count, std::byte* out)
+    {
+      auto* values = reinterpret_cast<T*>(out);
+      for (int component = 0; component < components->GetNumberOfComponents(); ++component)
+      {
+        for (vtkIdType tuple = first; tuple < first + count; ++tuple)
+        {
+          *values++ = components->GetTypedComponent(tuple, component);
+        }
+      }
+    } };
+}
+
+/// Of any array, as of those whose values are computed when they are asked for: VTK's implicit arrays,
+/// among them the offsets of cells that are all of one size.
+TupleCopier FindCopier(vtkDataArray* array, int threads)
+{
+  TupleCopier copier{ 1, nullptr };
   switch (array->GetDataType())
   {
-    vtkTemplateMacro(found = FindComponents<VTK_TT>(array, parts));
+    vtkTemplateMacro(copier = FindComponents<VTK_TT>(array, threads));
   }
-  return found;
+  if (!copier.Copy)
+  {
+    // One thread: such an array may remember what it did last.
+    copier.Copy = [array](vtkIdType first, vtkIdType count, std::byte* out)
+    {
+      vtkSmartPointer<vtkDataArray> copy;
+      copy.TakeReference(vtkDataArray::CreateDataArray(array->GetDataType()));
+      copy->SetNumberOfComponents(array->GetNumberOfComponents());
+      copy->SetNumberOfTuples(count);
+      array->GetTuples(first, first + count - 1, copy);
+      std::memcpy(out, copy->GetVoidPointer(0),
+        static_cast<std::size_t>(copy->GetNumberOfValues()) * copy->GetDataTypeSize());
+    };
+  }
+  return copier;
 }
 
 /// Four interleaved hashes, as a processor does four multiplications at once that do not wait for one
@@ -98,6 +141,26 @@ std::uint64_t HashBytes(const Bytes& bytes, int threads)
   return hash.Get();
 }
 
+std::uint64_t HashCopies(vtkDataArray* array, int threads)
+{
+  const TupleCopier copier = FindCopier(array, threads);
+  const std::size_t tupleBytes =
+    static_cast<std::size_t>(array->GetNumberOfComponents()) * array->GetDataTypeSize();
+  const auto tuples = static_cast<std::size_t>(array->GetNumberOfTuples());
+  const std::size_t step = std::max<std::size_t>(ChunkBytes / tupleBytes, 1);
+  std::vector<std::uint64_t> chunks((tuples + step - 1) / step);
+  rt::ParallelForChunks(copier.Threads, tuples, step,
+    [&](std::size_t begin, std::size_t end, std::size_t chunk, int)
+    {
+      std::vector<std::byte> copy((end - begin) * tupleBytes);
+      copier.Copy(static_cast<vtkIdType>(begin), static_cast<vtkIdType>(end - begin), copy.data());
+      chunks[chunk] = HashChunk(copy.data(), copy.size());
+    });
+  rt::ByteHash hash;
+  hash.Add(chunks.data(), chunks.size() * sizeof(chunks[0]));
+  return hash.Get();
+}
+
 } // namespace
 
 std::uint64_t vtkDSMContent::Hash(vtkAbstractArray* array, int threads)
@@ -110,9 +173,8 @@ std::uint64_t vtkDSMContent::Hash(vtkAbstractArray* array, int threads)
   {
     return values->GetStamp();
   }
-  std::vector<Bytes> parts;
   auto* numbers = vtkDataArray::SafeDownCast(array);
-  if (!numbers || !FindBytes(numbers, parts))
+  if (!numbers)
   {
     static std::uint64_t unknown = 0;
     return ++unknown;
@@ -121,10 +183,9 @@ std::uint64_t vtkDSMContent::Hash(vtkAbstractArray* array, int threads)
     array->GetNumberOfTuples() };
   rt::ByteHash hash;
   hash.Add(shape.data(), sizeof(shape));
-  for (const Bytes& part : parts)
-  {
-    const std::uint64_t value = HashBytes(part, threads);
-    hash.Add(&value, sizeof(value));
-  }
+  Bytes bytes;
+  const std::uint64_t values =
+    FindBytes(numbers, bytes) ? HashBytes(bytes, threads) : HashCopies(numbers, threads);
+  hash.Add(&values, sizeof(values));
   return hash.Get();
 }

@@ -11,8 +11,8 @@ class vtkAbstractArray;
 namespace vtkDSMContent
 {
 /// Local. Of the array's type, shape and values: equal, for all practical purposes, only for equal
-/// ones. An array whose values cannot be read as bytes is unlike any other and unlike itself. Null
-/// is an array, too. Reads with as many threads.
+/// ones. An array of what is no number is unlike any other and unlike itself. Null is an array, too. Reads
+/// with as many threads, but values that are computed by one.
 std::uint64_t Hash(vtkAbstractArray* array, int threads);
 }
 

@@ -5,6 +5,7 @@
 #include "DSMRayTracing/layout/MeshAttributes.h"
 #include "vtkDSMCompatibility.h"
 
+#include "vtkAOSDataArrayTemplate.h"
 #include "vtkCellArray.h"
 #include "vtkCellData.h"
 #include "vtkDataSetAttributes.h"
@@ -79,13 +80,20 @@ bool vtkDSMTriangleList::UseInPlace()
   {
     return false;
   }
-  if (polygons->IsStorage64Bit())
+  // What array it is counts, not what kind of storage: cells of a fixed size, as VTK has them since 9.6,
+  // have the same numbers, and any other array is possible there, too.
+  vtkDataArray* corners = polygons->GetConnectivityArray();
+  if (auto* wide = vtkAOSDataArrayTemplate<vtkTypeInt64>::FastDownCast(corners))
   {
-    this->InPlace64 = polygons->GetConnectivityArray64()->GetPointer(0);
+    this->InPlace64 = wide->GetPointer(0);
+  }
+  else if (auto* narrow = vtkAOSDataArrayTemplate<vtkTypeInt32>::FastDownCast(corners))
+  {
+    this->InPlace32 = narrow->GetPointer(0);
   }
   else
   {
-    this->InPlace32 = polygons->GetConnectivityArray32()->GetPointer(0);
+    return false;
   }
   this->Count = static_cast<std::uint64_t>(polygons->GetNumberOfCells());
   return true;
