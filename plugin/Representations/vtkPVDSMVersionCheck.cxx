@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkPVDSMVersionCheck.h"
 
-#include "vtkPVPluginsInformation.h"
-#include "vtkSMPluginManager.h"
-#include "vtkSMProxyManager.h"
+#include "vtkPVDSMVersionInformation.h"
+
+#include "vtkNew.h"
+#include "vtkPVSession.h"
 #include "vtkSMSession.h"
 #include "vtkSMSessionClient.h"
 
@@ -11,34 +12,17 @@
 #include <string>
 #include <utility>
 
-namespace
-{
-
-/// Empty where it is not loaded.
-std::string FindVersion(vtkPVPluginsInformation* plugins)
-{
-  for (unsigned int index = 0; plugins && index < plugins->GetNumberOfPlugins(); ++index)
-  {
-    if (plugins->GetPluginLoaded(index) &&
-      std::string(plugins->GetPluginName(index)) == "DSMRayTracer")
-    {
-      return plugins->GetPluginVersion(index);
-    }
-  }
-  return {};
-}
-
-} // namespace
-
 void vtkPVDSMVersionCheck::Run(vtkSMSession* session)
 {
   if (!vtkSMSessionClient::SafeDownCast(session))
   {
     return;
   }
-  vtkSMPluginManager* plugins = vtkSMProxyManager::GetProxyManager()->GetPluginManager();
-  const std::string client = FindVersion(plugins->GetLocalInformation());
-  const std::string server = FindVersion(plugins->GetRemoteInformation(session));
+  vtkNew<vtkPVDSMVersionInformation> information;
+  information->CopyFromObject(nullptr);
+  const std::string client = information->GetVersion();
+  session->GatherInformation(vtkPVSession::DATA_SERVER_ROOT, information, 0);
+  const std::string& server = information->GetVersion();
   static std::set<std::pair<std::string, std::string>> told;
   if (client.empty() || server.empty() || client == server ||
     !told.insert({ client, server }).second)
