@@ -74,7 +74,7 @@ public:
   /**
    * The single value as long as it is not set.
    */
-  static constexpr double UnsetIsoValue = -1e299;
+  static constexpr double UnsetIsoValue = -1e-299;
 
   ///@{
   /**
