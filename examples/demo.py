@@ -5,6 +5,7 @@ See demo.sh, which starts it. Without --file a noisy sphere is generated, each r
 """
 import argparse
 import json
+import os
 import sys
 import time
 
@@ -66,7 +67,7 @@ def print_statistics(representation):
 
 def parse_arguments():
     parser = argparse.ArgumentParser()
-    parser.add_argument("--plugin", required=True)
+    parser.add_argument("--plugin", required=True, type=os.path.abspath)
     parser.add_argument("--output", default="demo.png")
     parser.add_argument("--size", type=int, default=256)
     parser.add_argument("--file", default="")

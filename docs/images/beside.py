@@ -13,7 +13,7 @@ from pictures import draw, write
 
 PLUGIN, FOLDER = sys.argv[1:]
 
-simple.LoadPlugin(PLUGIN, remote=False, ns=vars(simple))
+simple.LoadPlugin(os.path.abspath(PLUGIN), remote=False, ns=vars(simple))
 view = simple.CreateRenderView(ViewSize=[560, 480])
 view.OrientationAxesVisibility = 0
 view.UseLight = 0

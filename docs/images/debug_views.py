@@ -15,7 +15,7 @@ PLUGIN, FOLDER = sys.argv[1:]
 VIEWS = ("Owner of the data", "Rank that traced", "Brick", "Tile time",
          "Misses", "Tiles that changed hands", "Normal", "Depth")
 
-simple.LoadPlugin(PLUGIN, remote=False, ns=vars(simple))
+simple.LoadPlugin(os.path.abspath(PLUGIN), remote=False, ns=vars(simple))
 view = simple.CreateRenderView(ViewSize=[420, 360])
 view.OrientationAxesVisibility = 0
 volume = simple.DSMSampleVolume(Dimensions=[128] * 3)

@@ -12,7 +12,7 @@ import os
 from paraview import catalyst
 from paraview.simple import *
 
-LoadPlugin(os.environ["DSM_PLUGIN"], ns=globals())
+LoadPlugin(os.path.abspath(os.environ["DSM_PLUGIN"]), ns=globals())
 
 data = TrivialProducer(registrationName="input")
 view = CreateRenderView(ViewSize=[400, 400])

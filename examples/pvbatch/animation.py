@@ -7,6 +7,7 @@
 Pictures are numbered: frame.0000.png, frame.0001.png, ...
 """
 import argparse
+import os
 
 from paraview import simple
 
@@ -18,7 +19,7 @@ def parse_numbers(text):
 
 def parse_arguments():
     parser = argparse.ArgumentParser()
-    parser.add_argument("--plugin", required=True)
+    parser.add_argument("--plugin", required=True, type=os.path.abspath)
     parser.add_argument("--files", nargs="+", required=True, help="image data, one file a step")
     parser.add_argument("--array", required=True)
     parser.add_argument("--isovalues", type=parse_numbers, required=True)

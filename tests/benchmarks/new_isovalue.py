@@ -8,6 +8,7 @@ Prints seconds for both (the median over the isovalues) and their ratio.
 """
 import argparse
 import json
+import os
 import statistics
 import time
 
@@ -29,7 +30,7 @@ def time_isovalues(view, set_isovalue, isovalues):
 
 def main():
     parser = argparse.ArgumentParser()
-    parser.add_argument("--plugin", required=True)
+    parser.add_argument("--plugin", required=True, type=os.path.abspath)
     parser.add_argument("--size", type=int, default=512)
     parser.add_argument("--kind", choices=sorted(KINDS), default="sphere")
     parser.add_argument("--repeat", type=int, default=5)

@@ -46,7 +46,7 @@ def grab(view, picture):
 
 def main():
     parser = argparse.ArgumentParser()
-    parser.add_argument("--plugin", required=True)
+    parser.add_argument("--plugin", required=True, type=os.path.abspath)
     parser.add_argument("--case", required=True)
     parser.add_argument("--data", default=os.environ.get("DSM_TEST_DATA", ""))
     parser.add_argument("--output", default="")
