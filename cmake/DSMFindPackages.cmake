@@ -43,12 +43,18 @@ else ()
 endif ()
 dsm_add_targets_of_distribution()
 
+# By the target: VTK 9.6 looks for parts of Python's development files, after which the whole is said to
+# be missing.
 set(DSM_HAS_PYTHON OFF)
-if (DSM_WRAP_PYTHON AND VTK_WRAP_PYTHON AND Python3_Development_FOUND)
+if (DSM_WRAP_PYTHON AND VTK_WRAP_PYTHON AND TARGET Python3::Module)
   find_package(VTK COMPONENTS CommonCore OPTIONAL_COMPONENTS Python WrappingPythonCore WrapPython)
   if (TARGET VTK::Python AND TARGET VTK::WrappingPythonCore AND TARGET VTK::WrapPython)
     set(DSM_HAS_PYTHON ON)
   endif ()
+endif ()
+if (DSM_WRAP_PYTHON AND NOT DSM_HAS_PYTHON)
+  message(STATUS "The classes will not be importable from Python: that needs a VTK with its Python "
+    "wrapping, and Python's development files")
 endif ()
 
 set(DSM_HAS_MPI OFF)

@@ -21,6 +21,12 @@ packages=(
 test_packages=(libgtest-dev clang-format doxygen iproute2 python3-numpy python3-mpi4py
   python3-h5py python3-zarr teem-apps hdf5-filter-plugin hdf5-filter-plugin-blosc-serial)
 
+# Prints what ParaView's development files need besides and do not demand: from Debian 14 on, ParaView uses
+# the VTK that is packaged for itself. Nothing where the package lists are not there yet. (sh runs it, too.)
+packages_of_paraview() {
+  if apt-cache depends paraview 2>/dev/null | grep -q 'libvtk9\.'; then echo libvtk9-dev; fi
+}
+
 # Prints the packages among the arguments that are not installed.
 missing_packages() {
   local package
@@ -35,7 +41,7 @@ install_packages() {
   command -v dpkg-query >/dev/null ||
     fail "this script installs Debian packages, and this is not Debian. Install the equivalents of: $*"
   local missing as_root=()
-  missing=$(missing_packages "$@")
+  missing=$(missing_packages "$@" $(packages_of_paraview))
   [ -n "$missing" ] || return 0
   if [ "$(id -u)" -ne 0 ]; then
     command -v sudo >/dev/null ||
@@ -47,7 +53,8 @@ install_packages() {
   mkdir -p "$build"
   if ! { "${as_root[@]}" apt-get update &&
     "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive \
-      apt-get install --yes --no-install-recommends $missing; } >"$build/packages.log" 2>&1; then
+      apt-get install --yes --no-install-recommends $missing $(packages_of_paraview); } \
+    >"$build/packages.log" 2>&1; then
     tail -n 20 "$build/packages.log" >&2
     fail "the packages could not be installed; the whole log is $build/packages.log. They are: $missing"
   fi

@@ -12,18 +12,26 @@
 #ifndef vtkPVDSMSelectionMapper_h
 #define vtkPVDSMSelectionMapper_h
 
-#include "vtkCompositePolyDataMapper2.h"
 #include "vtkSmartPointer.h" // for ivars
 
 #include <functional> // for ivars
 
+// Since 9.3, VTK's mapper of blocks does what this other one did, which 9.6 no longer has.
+#if __has_include("vtkCompositePolyDataMapperDelegator.h")
+#include "vtkCompositePolyDataMapper.h"
+using vtkPVDSMBlockMapper = vtkCompositePolyDataMapper;
+#else
+#include "vtkCompositePolyDataMapper2.h"
+using vtkPVDSMBlockMapper = vtkCompositePolyDataMapper2;
+#endif
+
 class vtkDataObject;
 
-class vtkPVDSMSelectionMapper : public vtkCompositePolyDataMapper2
+class vtkPVDSMSelectionMapper : public vtkPVDSMBlockMapper
 {
 public:
   static vtkPVDSMSelectionMapper* New();
-  vtkTypeMacro(vtkPVDSMSelectionMapper, vtkCompositePolyDataMapper2);
+  vtkTypeMacro(vtkPVDSMSelectionMapper, vtkPVDSMBlockMapper);
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
   /**
@@ -45,7 +53,7 @@ public:
    * Null where there is none.
    */
   void SetShownBounds(const double* bounds);
-  using vtkCompositePolyDataMapper2::GetBounds;
+  using vtkPVDSMBlockMapper::GetBounds;
   double* GetBounds() VTK_SIZEHINT(6) override;
   ///@}
 

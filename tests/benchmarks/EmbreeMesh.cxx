@@ -3,7 +3,11 @@
 
 #include "DSMCore/base/Error.h"
 
+#if __has_include(<embree4/rtcore.h>)
+#include <embree4/rtcore.h>
+#else
 #include <embree3/rtcore.h>
+#endif
 
 #include <algorithm>
 #include <chrono>
@@ -59,9 +63,6 @@ EmbreeMesh::~EmbreeMesh() = default;
 
 bool EmbreeMesh::Intersect(const rt::Ray& ray, double& t) const
 {
-  RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
-  context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
   RTCRayHit query{};
   query.ray.org_x = static_cast<float>(ray.Origin.x);
   query.ray.org_y = static_cast<float>(ray.Origin.y);
@@ -73,7 +74,17 @@ bool EmbreeMesh::Intersect(const rt::Ray& ray, double& t) const
   query.ray.tfar = static_cast<float>(ray.Max);
   query.ray.mask = ~0u;
   query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+#if RTC_VERSION_MAJOR >= 4
+  RTCIntersectArguments arguments;
+  rtcInitIntersectArguments(&arguments);
+  arguments.flags = RTC_RAY_QUERY_FLAG_COHERENT;
+  rtcIntersect1(this->Scene->Scene, &query, &arguments);
+#else
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
   rtcIntersect1(this->Scene->Scene, &context, &query);
+#endif
   t = static_cast<double>(query.ray.tfar);
   return query.hit.geomID != RTC_INVALID_GEOMETRY_ID;
 }

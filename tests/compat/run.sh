@@ -3,7 +3,8 @@
 # Builds the project in a folder that holds another Debian release, and runs the tests there. What is
 # installed on this machine does not matter, and nothing is changed on it outside that folder.
 # usage (as root): tests/compat/run.sh RELEASE FLAVOUR [ctest arguments]
-#   RELEASE  bookworm (ParaView 5.11, VTK 9.1), trixie (ParaView 5.13, VTK 9.3), or any later one
+#   RELEASE  bookworm (ParaView 5.11, VTK 9.1), trixie (ParaView 5.13, VTK 9.3), forky (ParaView 6.1,
+#            VTK 9.6), or any later one
 #   FLAVOUR  paraview         the plugin, against Debian's ParaView
 #            vtk              the VTK modules alone, against Debian's VTK, which excludes its ParaView
 #            vtk-without-mpi  the same, with DSM_USE_MPI=OFF
@@ -48,7 +49,11 @@ mkdir -p "$directory"
 if [ ! -e "$tree/.complete" ]; then
   say "Fetching Debian $release to $tree ..."
   rm -rf --one-file-system "$tree"
-  debootstrap --variant=minbase "$release" "$tree" "$mirror" >>"$log" 2>&1 || {
+  # A debootstrap that is older than the release has no script of its name; all newer ones are as sid's.
+  scripts=${DEBOOTSTRAP_DIR:-/usr/share/debootstrap}/scripts
+  script=()
+  [ -e "$scripts/$release" ] || script=("$scripts/sid")
+  debootstrap --variant=minbase "$release" "$tree" "$mirror" "${script[@]}" >>"$log" 2>&1 || {
     tail -n 20 "$log" >&2
     fail "debootstrap could not make $tree; the whole log is $log"
   }
@@ -60,12 +65,16 @@ mkdir -p "$tree/project" "$tree/build-$flavour" "$tree/data" "$tree/ccache"
 cat >"$tree/run-$flavour" <<INSIDE
 set -eu
 say() { printf '%s\\n' "\$*"; }
+$(declare -f packages_of_paraview)
 export DEBIAN_FRONTEND=noninteractive LC_ALL=C.UTF-8 CCACHE_DIR=/ccache
 packages="${with[*]} ${test_packages[*]} ccache"
+[ $flavour != paraview ] || packages="\$packages \$(packages_of_paraview)"
 for package in \$packages; do
   if [ "\$(dpkg-query -W -f '\${db:Status-Status}' \$package 2>/dev/null)" != installed ]; then
     say "Installing packages ..."
-    { apt-get update && apt-get install --yes --no-install-recommends \$packages; } >>/log 2>&1
+    apt-get update >>/log 2>&1
+    [ $flavour != paraview ] || packages="\$packages \$(packages_of_paraview)"
+    apt-get install --yes --no-install-recommends \$packages >>/log 2>&1
     break
   fi
 done

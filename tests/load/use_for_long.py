@@ -157,7 +157,7 @@ class Dataset:
             if self.is_volume:
                 display.DSMIsoArray = ["POINTS", array]
                 display.DSMIsoValues = isovalues
-            display.Position = [random_numbers.uniform(-2, 2) for _ in range(3)]
+            transform(display, [random_numbers.uniform(-2, 2) for _ in range(3)])
             self.displays.append((view, display))
 
     def change(self, random_numbers):

@@ -14,8 +14,9 @@ surface = flying_edges(source, [0.5, 0.8])
 place_camera(view)
 
 
-def compare(what, clips):
-    """With the triangles on this number of ranks, clipped by filters."""
+def compare(what, clips, **place):
+    """With the triangles on this number of ranks, clipped by filters, in a place."""
+    transform(traced, **place)
     picture = render(view, what.replace(" ", "_"))
     simple.Hide(source, view)
     clipped = surface
@@ -23,7 +24,7 @@ def compare(what, clips):
         clipped = simple.Clip(clipped, ClipType="Plane", Crinkleclip=0, Invert=0)
         clipped.ClipType.Origin, clipped.ClipType.Normal = parameters
     display = show_surface(clipped, view)
-    display.Position, display.Orientation = traced.Position, traced.Orientation
+    transform(display, **place)
     reference = render(view)
     simple.SaveScreenshot(os.path.join(OUTPUT, f"{what}.triangles.{get_ranks()}.png"), view)
     simple.Hide(clipped, view)
@@ -52,10 +53,9 @@ compare("clipped and cropped", [plane, ([3.0, 0, 0], [1, 0, 0]), ([0, 14.5, 0], 
 
 # The box moves with the dataset, the plane does not.
 traced.DSMClip = 0
-traced.Position = [2.0, -3.0, 1.0]
-traced.Orientation = [0.0, 20.0, 0.0]
-compare("cropped and moved", [([3.0, 0, 0], [1, 0, 0]), ([0, 14.5, 0], [0, -1, 0])])
-traced.Position = traced.Orientation = [0.0, 0.0, 0.0]
+compare("cropped and moved", [([3.0, 0, 0], [1, 0, 0]), ([0, 14.5, 0], [0, -1, 0])],
+        translation=(2.0, -3.0, 1.0), orientation=(0.0, 20.0, 0.0))
+transform(traced)
 
 # What ParaView's box in the view does with it: it grows, turns and moves from the origin.
 traced.DSMCroppingScale = [0.5, 1.0, 1.0]

@@ -71,11 +71,16 @@ public:
         const double t = (plane - this->Origin[axis]) / this->Direction[axis];
         if (t > part.First && t < part.Last)
         {
-          borders[count++] = t;
+          // At most six: the next one goes where it belongs.
+          int place = count++;
+          for (; place > 0 && borders[place - 1] > t; --place)
+          {
+            borders[place] = borders[place - 1];
+          }
+          borders[place] = t;
         }
       }
     }
-    std::sort(borders, borders + count);
     return count;
   }
 

@@ -246,7 +246,9 @@ private:
     return samples.x > 0 && samples.y > 0 && samples.z > 0;
   }
 
-  static herr_t Note(hid_t, const char* name, const H5O_info_t* info, void* names)
+  /// What the library tells of an object has another type in each of its releases.
+  template <class Info>
+  static herr_t Note(hid_t, const char* name, const Info* info, void* names)
   {
     if (info->type == H5O_TYPE_DATASET)
     {

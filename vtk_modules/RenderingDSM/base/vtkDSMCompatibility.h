@@ -4,7 +4,9 @@
 #define vtkDSMCompatibility_h
 
 #include "vtkIdList.h"
+#include "vtkInformationDoubleVectorKey.h"
 #include "vtkPolygon.h"
+#include "vtkProp.h"
 #include "vtkProperty.h"
 
 #include <type_traits>
@@ -55,6 +57,24 @@ struct EdgeOpacity<Property, std::void_t<decltype(std::declval<Property>().GetEd
 inline double GetEdgeOpacity(vtkProperty* property)
 {
   return EdgeOpacity<vtkProperty>::Get(property);
+}
+
+/// Where an actor keeps what turns its texture coordinates; since 9.6 under another name.
+template <class Prop, class = void>
+struct TextureTransform
+{
+  static auto* GetKey() { return Prop::GeneralTextureTransform(); }
+};
+
+template <class Prop>
+struct TextureTransform<Prop, std::void_t<decltype(Prop::GENERAL_TEXTURE_TRANSFORM())>>
+{
+  static auto* GetKey() { return Prop::GENERAL_TEXTURE_TRANSFORM(); }
+};
+
+inline vtkInformationDoubleVectorKey* GetTextureTransformKey()
+{
+  return TextureTransform<vtkProp>::GetKey();
 }
 
 } // namespace vtkDSMCompatibility

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkDSMSceneMesh.h"
 
+#include "vtkDSMCompatibility.h"
 #include "vtkDSMLightOptions.h"
 #include "vtkDSMTranslation.h"
 
 #include "vtkActor.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
-#include "vtkInformationDoubleVectorKey.h"
 #include "vtkMath.h"
 #include "vtkMatrix4x4.h"
 #include "vtkNew.h"
@@ -232,9 +232,8 @@ const std::shared_ptr<const rt::Texture>& vtkDSMSceneMesh::GetPicture(vtkActor* 
 {
   vtkTexture* texture = actor->GetTexture();
   vtkInformation* keys = actor->GetPropertyKeys();
-  const double* place = keys && keys->Has(vtkProp::GeneralTextureTransform())
-    ? keys->Get(vtkProp::GeneralTextureTransform())
-    : nullptr;
+  auto* placeKey = vtkDSMCompatibility::GetTextureTransformKey();
+  const double* place = keys && keys->Has(placeKey) ? keys->Get(placeKey) : nullptr;
   const std::vector<std::uint64_t> source{ reinterpret_cast<std::uintptr_t>(texture),
     texture->GetMTime(), texture->GetInput() ? texture->GetInput()->GetMTime() : 0,
     texture->GetTransform() ? texture->GetTransform()->GetMTime() : 0, keys ? keys->GetMTime() : 0,
