@@ -96,7 +96,12 @@ protected:
   virtual std::size_t GetFootprint(const BlockWant& block) const = 0;
   /// Null when the block is not in memory. Communication thread, no lock.
   virtual const std::byte* FindOwned(const BlockWant& block) const = 0;
-  /// What brings a block of this rank's own; null when it never leaves memory.
+  /// Whether this rank's own source brings a block that is not in memory, not another rank.
+  virtual bool IsOwned(const BlockWant& block) const
+  {
+    return block.From->GetDirectory().GetOwner(block.Id) == this->Messages.GetRank();
+  }
+  /// That source; null when the block never leaves memory.
   virtual BlockSource* FindSource(const BlockWant& block) const = 0;
   /// Throws Error when a frame cannot begin. No lock.
   virtual void CheckBudget() const = 0;
@@ -173,10 +178,6 @@ protected:
 private:
   BlockRequests::Callbacks MakeCallbacks();
   void Arrive(const BlockWant& block, const std::byte* bytes);
-  bool IsOwned(const BlockWant& block) const
-  {
-    return block.From->GetDirectory().GetOwner(block.Id) == this->Messages.GetRank();
-  }
   /// Begin reads for those that room can be made for; whether for all.
   bool AskForWanted(std::deque<BlockWant>& wanted);
   void AskForForeseen();

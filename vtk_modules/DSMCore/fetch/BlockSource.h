@@ -3,10 +3,12 @@
 #define dsm_BlockSource_h
 
 #include "DSMCore/base/Block.h"
+#include "DSMCore/base/Error.h"
 #include "DSMCore/publish/BlockSegment.h"
 
 #include <cstddef>
 #include <functional>
+#include <vector>
 
 namespace dsm
 {
@@ -52,6 +54,29 @@ public:
   /// Gives up all that is under way: when it returns, nothing of it will be delivered, and no memory
   /// that was given for it is touched any more.
   virtual void Abandon() noexcept = 0;
+
+  /// Reads one block right now; between frames, any thread. Throws Error; always, where the blocks come
+  /// from other ranks.
+  virtual void Read(BlockId, std::byte*, std::size_t) const
+  {
+    throw Error(
+      "Blocks that come within frames only were read outside of one. This is a defect of the "
+      "program.");
+  }
+  /// The blocks of one owner, in ascending order of id, one at a time.
+  void ForEach(const BlockDirectory& directory, int owner, const BlockSegment::Visit& visit) const
+  {
+    std::vector<std::byte> block;
+    for (BlockId id = 0; id < directory.GetCount(); ++id)
+    {
+      if (directory.GetOwner(id) == owner)
+      {
+        block.resize(directory.GetBytes(id));
+        this->Read(id, block.data(), block.size());
+        visit(id, block.data(), block.size());
+      }
+    }
+  }
 };
 
 } // namespace dsm

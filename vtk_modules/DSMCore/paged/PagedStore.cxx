@@ -24,13 +24,14 @@ constexpr std::size_t LargePageBytes = std::size_t(2) << 20;
 // -- Segment ---------------------------------------------------------------------------------------
 
 PagedStore::Segment::Segment(std::uint32_t number, BlockDirectory directory, int rank, int ranks,
-  std::shared_ptr<PageFaults> faults)
+  std::shared_ptr<PageFaults> faults, std::shared_ptr<BlockSource> source)
   : BlockSegment(number, std::move(directory))
   , Layout(this->GetDirectory(), ranks, AddressRange::GetPageBytes())
   , Entries(new std::atomic<std::uintptr_t>[this->GetDirectory().GetCount()])
   , ClosedEntries(this->GetDirectory().GetCount() * sizeof(std::uintptr_t))
   , Lines(new LineStatus[this->GetDirectory().GetCount()])
   , Rank(rank)
+  , Source(std::move(source))
   , Handler(std::move(faults))
 {
   this->Attached.reserve(2);
@@ -38,14 +39,14 @@ PagedStore::Segment::Segment(std::uint32_t number, BlockDirectory directory, int
   // A page before and behind: see below.
   this->Range = AddressRange(this->Layout.GetBytes() + 2 * page + LargePageBytes);
   const std::uintptr_t begin = reinterpret_cast<std::uintptr_t>(this->Range.GetData()) + page;
-  const std::uintptr_t owned = begin + this->Layout.GetShareBegin(rank);
+  const std::uintptr_t owned = begin + this->GetOwnedBegin();
   this->Base = this->Range.GetData() + page +
     ((owned + LargePageBytes - 1) / LargePageBytes * LargePageBytes - owned);
 
   // In a frame that was cancelled blocks may read as zeros; a reader whom they mislead by a few
   // bytes beyond its block finds zeros there too.
   std::byte* const end = this->Base + this->Layout.GetBytes();
-  std::byte* const mine = this->Base + this->Layout.GetShareBegin(rank);
+  std::byte* const mine = this->Base + this->GetOwnedBegin();
   const std::uint64_t bytes = this->GetResidentBytes();
   if (mprotect(this->Base - page, page, PROT_READ) != 0 || mprotect(end, page, PROT_READ) != 0 ||
     (bytes > 0 && mprotect(mine, bytes, PROT_READ | PROT_WRITE) != 0))
@@ -77,6 +78,11 @@ PagedStore::Segment::~Segment()
 
 void PagedStore::Segment::ForEachResident(const Visit& visit) const
 {
+  if (this->Source)
+  {
+    this->Source->ForEach(this->GetDirectory(), this->Rank, visit);
+    return;
+  }
   for (BlockId id = 0; id < this->GetDirectory().GetCount(); ++id)
   {
     if (this->IsOwned(id))
@@ -88,7 +94,7 @@ void PagedStore::Segment::ForEachResident(const Visit& visit) const
 
 std::uint64_t PagedStore::Segment::GetResidentBytes() const
 {
-  return this->Layout.GetShareEnd(this->Rank) - this->Layout.GetShareBegin(this->Rank);
+  return this->GetOwnedEnd() - this->GetOwnedBegin();
 }
 
 PageHint PagedStore::Segment::GetHint(BlockId id) const
@@ -153,8 +159,8 @@ bool PagedStore::Segment::FindRemote(const std::byte* address, BlockId& id) cons
 
 void PagedStore::Segment::Seal()
 {
-  const std::uint64_t begin = this->Layout.GetShareBegin(this->Rank);
-  const std::uint64_t end = this->Layout.GetShareEnd(this->Rank);
+  const std::uint64_t begin = this->GetOwnedBegin();
+  const std::uint64_t end = this->GetOwnedEnd();
   if (end > begin && mprotect(this->Base + begin, end - begin, PROT_READ) != 0)
   {
     throw std::bad_alloc();
@@ -236,6 +242,30 @@ std::shared_ptr<BlockSegment> PagedStore::Publish(std::string_view what, BlockDi
   const auto segment =
     std::static_pointer_cast<Segment>(SegmentPublisher(messages, what, { count, create })
                                         .Run(std::move(directory), source, sink, progress));
+  this->Self->Add(segment);
+  return segment;
+}
+
+std::shared_ptr<BlockSegment> PagedStore::Publish(
+  std::string_view what, BlockDirectory directory, std::shared_ptr<BlockSource> source)
+{
+  Messenger& messages = this->Self->Messages;
+  directory.SetFromSource();
+  const auto count = [&](const BlockDirectory&)
+  {
+    this->Self->RequireFaults();
+    this->Self->PrepareToAdd();
+    return std::uint64_t(0);
+  };
+  const auto create = [&](std::uint32_t number, BlockDirectory&& blocks)
+  {
+    const auto created = std::make_shared<Segment>(number, std::move(blocks), messages.GetRank(),
+      messages.GetSize(), this->Self->Faults, std::move(source));
+    created->Seal();
+    return created;
+  };
+  const auto segment =
+    SegmentPublisher(messages, what, { count, create }).Create(std::move(directory));
   this->Self->Add(segment);
   return segment;
 }

@@ -6,6 +6,7 @@
 #include "DSMCore/base/Counters.h"
 #include "DSMCore/base/WorkerSlots.h"
 #include "DSMCore/fetch/BlockRequests.h"
+#include "DSMCore/fetch/BlockSource.h"
 #include "DSMCore/fetch/FetchWorkers.h"
 #include "DSMCore/fetch/LineStatus.h"
 #include "DSMCore/memory/AddressRange.h"
@@ -100,6 +101,11 @@ public:
   std::shared_ptr<BlockSegment> Publish(std::string_view what, BlockDirectory directory,
     FragmentSource& source, FragmentSink& sink, FunctionRef<void(double)> progress = {});
 
+  /// Collective. As above, but no data move: the blocks that this rank owns are brought by `source`, as in
+  /// ObjectStore. Then blocks fault with one rank, too.
+  std::shared_ptr<BlockSegment> Publish(
+    std::string_view what, BlockDirectory directory, std::shared_ptr<BlockSource> source);
+
   /// Collective in order (no message is exchanged), between frames: forgets the segment and its
   /// cached blocks. What this rank owns of it stays until the last shared pointer goes.
   void Retire(const std::shared_ptr<BlockSegment>& segment);
@@ -162,10 +168,10 @@ private:
 class PagedStore::Segment final : public BlockSegment
 {
 public:
-  /// Sets out zeroed memory for the blocks of `rank`. `faults` may be null where all is owned. Throws
-  /// Error, std::bad_alloc.
+  /// Sets out zeroed memory for the blocks of `rank`, unless there is a source that brings them. `faults`
+  /// may be null where all is owned. Throws Error, std::bad_alloc.
   Segment(std::uint32_t number, BlockDirectory directory, int rank, int ranks,
-    std::shared_ptr<PageFaults> faults);
+    std::shared_ptr<PageFaults> faults, std::shared_ptr<BlockSource> source = nullptr);
   ~Segment() override;
   void ForEachResident(const Visit& visit) const override;
   /// In whole pages.
@@ -196,8 +202,21 @@ private:
   void ResetHints(bool pure);
   /// Lets accesses through, or makes every one take the long way.
   void Admit(bool open);
-  bool IsOwned(BlockId id) const { return this->GetDirectory().GetOwner(id) == this->Rank; }
-  /// Whether the address is in a page of a block of another rank.
+  /// For good.
+  bool IsOwned(BlockId id) const
+  {
+    return !this->Source && this->GetDirectory().GetOwner(id) == this->Rank;
+  }
+  /// Where the memory of the blocks that it has for good begins and ends.
+  std::uint64_t GetOwnedBegin() const
+  {
+    return this->Source ? 0 : this->Layout.GetShareBegin(this->Rank);
+  }
+  std::uint64_t GetOwnedEnd() const
+  {
+    return this->Source ? 0 : this->Layout.GetShareEnd(this->Rank);
+  }
+  /// Whether the address is in a page of a block that comes and goes.
   bool FindRemote(const std::byte* address, BlockId& id) const;
   bool Contains(const std::byte* address) const;
   /// Those of others can no longer be read.
@@ -214,6 +233,7 @@ private:
   bool IsPure = false;
   std::unique_ptr<LineStatus[]> Lines; ///< under the store's lock
   int Rank = 0;
+  std::shared_ptr<BlockSource> Source; ///< null: own blocks stay
   std::shared_ptr<PageFaults> Handler;
   std::vector<std::byte*> Attached;
 };

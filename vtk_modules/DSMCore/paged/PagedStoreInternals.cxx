@@ -100,7 +100,14 @@ void PagedStore::Internals::Wait(Worker& worker, const Segment& segment, BlockId
 
 bool PagedStore::Internals::MayPrefetch() const
 {
-  return this->Current.Prefetch && !this->Current.PureFaulting && this->Messages.GetSize() > 1;
+  return this->Current.Prefetch && !this->Current.PureFaulting &&
+    (this->Messages.GetSize() > 1 || this->IsAnyFromSource());
+}
+
+bool PagedStore::Internals::IsAnyFromSource() const
+{
+  return std::any_of(this->Segments.begin(), this->Segments.end(),
+    [](const auto& segment) { return segment->GetDirectory().IsFromSource(); });
 }
 
 // -- Between frames --------------------------------------------------------------------------------
@@ -117,20 +124,21 @@ void PagedStore::Internals::Configure(const Settings& settings)
   {
     throw Error("The handling of page faults cannot change while data is loaded.");
   }
-  if (this->Messages.GetSize() > 1 && (changes || !this->Faults))
+  if (changes && this->Faults)
   {
     this->StopListening();
     this->Faults.reset();
+  }
+  if (this->Messages.GetSize() > 1 && (changes || !this->Faults))
+  {
     this->FaultsRefusal.clear();
     try
     {
-      this->Faults = PageFaults::Create(settings.Handling);
-      this->StartListening();
+      this->CreateFaults(settings.Handling);
     }
     catch (const std::exception& exception)
     {
       // Told by Publish, on all ranks: another one may have had more luck.
-      this->Faults.reset();
       this->FaultsRefusal = exception.what();
     }
   }
@@ -138,6 +146,7 @@ void PagedStore::Internals::Configure(const Settings& settings)
     const std::lock_guard<std::mutex> lock(this->Guard);
     this->Current = settings;
     this->Workers.Resize<Worker>(settings.Workers);
+    this->Requests.SetReplyBytes(settings.ReplyBytes);
     this->Cache.SetCapacity(settings.CacheBytes);
     while (this->Cache.GetUsed() > settings.CacheBytes && this->TryEvict(false))
     {
@@ -160,6 +169,29 @@ void PagedStore::Internals::CheckFaults() const
   }
 }
 
+void PagedStore::Internals::CreateFaults(FaultHandling handling)
+{
+  this->Faults = PageFaults::Create(handling);
+  try
+  {
+    this->StartListening();
+  }
+  catch (...)
+  {
+    this->Faults.reset();
+    throw;
+  }
+}
+
+void PagedStore::Internals::RequireFaults()
+{
+  this->CheckFaults();
+  if (!this->Faults)
+  {
+    this->CreateFaults(this->Current.Handling);
+  }
+}
+
 void PagedStore::Internals::Forget(const BlockSegment& segment)
 {
   this->Cache.Forget(static_cast<const Segment&>(segment),
@@ -169,18 +201,47 @@ void PagedStore::Internals::Forget(const BlockSegment& segment)
 void PagedStore::Internals::CheckBudget() const
 {
   this->CheckFaults();
+  const std::size_t largest = this->GetLargestBlock();
+  const std::size_t own = this->GetRoomForOwn();
+  if (largest > 0 && this->Current.CacheBytes < largest + own)
+  {
+    throw Error("The cache of " + std::to_string(this->Current.CacheBytes) +
+      " bytes is smaller than one brick (" + std::to_string(largest) + " bytes in whole pages)" +
+      (own > 0 ? " and one of the rank's own (" + std::to_string(own) + " bytes)" : "") +
+      ". Raise the cache size (DSMCacheSize).");
+  }
+}
+
+std::size_t PagedStore::Internals::GetLargestBlock() const
+{
   std::size_t largest = 0;
   for (const auto& segment : this->Segments)
   {
-    largest = std::max(largest, std::size_t(segment->GetDirectory().GetLargest()));
+    const BlockDirectory& directory = segment->GetDirectory();
+    const bool stays = this->Messages.GetSize() == 1 && !directory.IsFromSource();
+    largest = std::max(largest, stays ? 0 : std::size_t(directory.GetLargest()));
   }
-  largest = AddressRange::RoundUpToPages(largest);
-  if (this->Messages.GetSize() > 1 && largest > 0 && this->Current.CacheBytes < largest)
+  return AddressRange::RoundUpToPages(largest);
+}
+
+std::size_t PagedStore::Internals::GetRoomForOwn() const
+{
+  std::size_t room = 0;
+  for (const auto& segment : this->Segments)
   {
-    throw Error("The cache of " + std::to_string(this->Current.CacheBytes) +
-      " bytes is smaller than one brick (" + std::to_string(largest) +
-      " bytes in whole pages). Raise the cache size (DSMCacheSize).");
+    const BlockDirectory& directory = segment->GetDirectory();
+    room = std::max(room, directory.IsFromSource() ? std::size_t(directory.GetLargest()) : 0);
   }
+  return this->Messages.GetSize() > 1 ? AddressRange::RoundUpToPages(room) : 0;
+}
+
+const std::byte* PagedStore::Internals::FindOwned(const BlockWant& block) const
+{
+  const Segment& segment = GetSegment(block);
+  const std::lock_guard<std::mutex> lock(this->Guard);
+  const bool isHere =
+    segment.IsAlwaysHere(block.Id) || segment.Lines[block.Id].State == LineState::Cached;
+  return isHere ? segment.GetAddress(block.Id) : nullptr;
 }
 
 bool PagedStore::Internals::MayBeginFrame() const
@@ -356,6 +417,7 @@ void PagedStore::Internals::Opened()
   this->CommunicationThread = GetThread();
   this->Hold = ShortestHold;
   this->Cache.ResetPeak();
+  this->RoomForOthers = this->Cache.GetCapacity() - this->GetRoomForOwn();
   this->Prefetches.BeginFrame(this->Cache.GetCapacity());
   this->Strangers = WorkerCounters{};
   for (const auto& worker : this->Workers)

@@ -43,13 +43,15 @@ public:
   /// Throws Error when faults cannot be handled as they should, or this process is a fork of the
   /// store's.
   void CheckFaults() const;
+  /// The same where blocks fault though there is one rank.
+  void RequireFaults();
 
   bool MayBeginFrame() const override;
   /// Any thread: whether a frame runs that was not cancelled.
   bool IsEntranceOpen() const { return this->Entrance.load(std::memory_order_acquire); }
 
   Settings Current;
-  /// Null with one rank, and when it cannot be had.
+  /// Null with one rank, unless sources bring blocks, and when it cannot be had.
   std::shared_ptr<PageFaults> Faults;
   std::string FaultsRefusal;
 
@@ -92,11 +94,11 @@ private:
   {
     return GetSegment(block).Layout.GetFootprint(block.Id);
   }
-  const std::byte* FindOwned(const BlockWant& block) const override
+  const std::byte* FindOwned(const BlockWant& block) const override;
+  BlockSource* FindSource(const BlockWant& block) const override
   {
-    return GetSegment(block).GetAddress(block.Id);
+    return GetSegment(block).Source.get();
   }
-  BlockSource* FindSource(const BlockWant&) const override { return nullptr; }
   void CheckBudget() const override;
   void Prepare() override;
   void Unprepare() override;
@@ -124,6 +126,13 @@ private:
   std::size_t CountNeighbours(const Segment& segment, BlockId id) const;
   void MarkEvicted(const PageCache::Slot& slot);
   void RemoveZeros();
+
+  void CreateFaults(FaultHandling handling);
+  bool IsAnyFromSource() const;
+  /// The largest block that comes and goes, in whole pages.
+  std::size_t GetLargestBlock() const;
+  /// Room for this rank's own blocks while others are on their way.
+  std::size_t GetRoomForOwn() const;
 
   pid_t Process;
   std::thread Listener;

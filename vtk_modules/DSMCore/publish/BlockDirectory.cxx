@@ -18,7 +18,7 @@ std::uint64_t BlockDirectory::GetResidentBytes(int owner, std::size_t unit) cons
   std::uint64_t sum = 0;
   for (BlockId id = 0; id < this->GetCount(); ++id)
   {
-    if (this->GetOwner(id) == owner)
+    if (this->GetOwner(id) == owner && !this->FromSource)
     {
       sum += (this->Bytes[id] + unit - 1) / unit * unit;
     }

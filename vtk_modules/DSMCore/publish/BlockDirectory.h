@@ -11,7 +11,8 @@
 namespace dsm
 {
 
-/// Size in bytes and owner of every block of a segment; the same on every rank.
+/// Size in bytes and owner of every block of a segment, and whether the owner has them in memory for
+/// good; the same on every rank.
 class BlockDirectory
 {
 public:
@@ -27,11 +28,18 @@ public:
   BlockId GetCount() const { return this->Bytes.size(); }
   std::uint32_t GetBytes(BlockId id) const { return this->Bytes[id]; }
   int GetOwner(BlockId id) const { return this->Assigner.GetOwner(id); }
+
+  /// The blocks leave memory, since a source can bring them again (BlockSource).
+  void SetFromSource() { this->FromSource = true; }
+  bool IsFromSource() const { return this->FromSource; }
   /// The largest block; 0 when there is none.
   std::uint32_t GetLargest() const;
-  /// Sum over the blocks of one owner, each rounded up to a multiple of `unit`.
+  /// What is in the owner's memory for good: the sum over its blocks, each rounded up to a multiple of
+  /// `unit`.
   std::uint64_t GetResidentBytes(int owner, std::size_t unit = BlockAlignment) const;
   std::uint64_t GetTotalBytes() const;
+  /// Whoever publishes keeps so much more on every rank.
+  void AddIndexBytes(std::uint64_t bytes) { this->IndexBytes += bytes; }
   /// What the directory, and the index of those who published, take on every rank.
   std::uint64_t GetOwnBytes() const
   {
@@ -44,6 +52,7 @@ private:
   std::vector<std::uint32_t> Bytes;
   RoundRobinAssigner Assigner;
   std::uint64_t IndexBytes = 0;
+  bool FromSource = false;
 };
 
 } // namespace dsm

@@ -32,7 +32,8 @@ public:
   std::uint32_t GetNumber() const { return this->Number; }
   const BlockDirectory& GetDirectory() const { return this->Directory; }
 
-  /// Visits the blocks that this rank owns, in ascending order of id.
+  /// Visits the blocks that this rank owns, in ascending order of id. Those that are not in memory for good
+  /// are read for it one by one, which may take long, and may throw.
   using Visit = std::function<void(BlockId, const std::byte*, std::size_t)>;
   virtual void ForEachResident(const Visit& visit) const = 0;
   virtual std::uint64_t GetResidentBytes() const = 0;

@@ -83,14 +83,21 @@ int BlockStore::CountWorkers() const
   {
     throw Error("There cannot be fewer than one worker for each that traces.");
   }
-  return this->Current.Workers * (this->Messages.GetSize() > 1 ? this->Current.Overlap : 1);
+  const bool waits = this->Messages.GetSize() > 1 || this->IsAnyFromSource();
+  return this->Current.Workers * (waits ? this->Current.Overlap : 1);
+}
+
+bool BlockStore::IsAnyFromSource() const
+{
+  return std::any_of(this->Segments.begin(), this->Segments.end(),
+    [](const auto& segment) { return segment->GetDirectory().IsFromSource(); });
 }
 
 void BlockStore::Configure()
 {
   ObjectStore::Settings objects;
-  objects.CacheBytes = static_cast<std::size_t>(
-    std::min<std::uint64_t>(this->Room.CacheBytes, this->Current.CacheBytes));
+  objects.CacheBytes = static_cast<std::size_t>(std::min<std::uint64_t>(
+    this->Room.CacheBytes, this->IsAnyFromSource() ? SIZE_MAX : this->Current.CacheBytes));
   objects.ReplyBytes = static_cast<std::size_t>(this->Room.ReplyBytes);
   objects.Workers = this->CountWorkers();
   objects.Slots = this->Slots;
@@ -206,6 +213,15 @@ void BlockStore::PutInForce(Decision&& decision)
 {
   this->Explanation = std::move(decision.Explanation);
   this->Room = decision.Room;
+  this->ReadByAll =
+    this->IsAnyFromSource() && this->Current.Organization == MemoryOrganization::Replicated;
+  for (const auto& segment : this->Segments)
+  {
+    if (segment->GetDirectory().IsFromSource() && !IsPaged(this->InForce))
+    {
+      static_cast<BlockTable&>(*segment).SetReadByAll(this->ReadByAll);
+    }
+  }
   this->Messages.Insist([this] { this->Configure(); });
   this->Settled = true;
 }
@@ -307,6 +323,22 @@ std::shared_ptr<BlockSegment> BlockStore::Publish(std::string_view what, BlockDi
     segment = this->Visit(publish);
     this->Segments.Add(segment);
   }
+  this->PutInForce(std::move(decision));
+  ++this->Publications;
+  return segment;
+}
+
+std::shared_ptr<BlockSegment> BlockStore::Publish(
+  std::string_view what, BlockDirectory directory, std::shared_ptr<BlockSource> source)
+{
+  directory.SetFromSource();
+  Decision fallback;
+  Decision decision = this->Decide(what, &directory, fallback);
+  this->MoveTo(decision, std::move(fallback));
+  const auto segment = IsPaged(this->InForce)
+    ? this->Paged->Publish(what, std::move(directory), std::move(source))
+    : this->Objects.Publish(what, std::move(directory), std::move(source));
+  this->Segments.Add(segment);
   this->PutInForce(std::move(decision));
   ++this->Publications;
   return segment;

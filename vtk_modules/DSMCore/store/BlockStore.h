@@ -45,7 +45,7 @@ public:
     /// What a rank may take for its own blocks, copies and cache; 0: half of what its host has left
     /// when first asked, shared out between the ranks there, and more when its own blocks need it.
     std::uint64_t MemoryBytes = 0;
-    /// The most that the cache may take of it.
+    /// The most that the cache may take of it, unless sources bring blocks: then it is the resident set, too.
     std::size_t CacheBytes = SIZE_MAX;
     /// Number of workers that trace at a time.
     int Workers = 1;
@@ -86,11 +86,21 @@ public:
   std::shared_ptr<BlockSegment> Publish(std::string_view what, BlockDirectory directory,
     FragmentSource& source, FragmentSink& sink, FunctionRef<void(double)> progress = {});
 
+  /// Collective. As above, but the blocks are brought by `source` when they are needed, and leave memory
+  /// again; see ObjectStore. By the owner, once for all, or, where Replicated was chosen, by each rank
+  /// that needs them: every rank's source must be able to bring any.
+  std::shared_ptr<BlockSegment> Publish(
+    std::string_view what, BlockDirectory directory, std::shared_ptr<BlockSource> source);
+
   /// Collective in order (no message is exchanged), between frames.
   void Retire(const std::shared_ptr<BlockSegment>& segment);
 
-  /// The organisation in force: never Automatic.
-  MemoryOrganization GetOrganization() const { return this->InForce; }
+  /// The organisation in force: never Automatic. Replicated, too, where each rank has the bricks that it
+  /// needs read for itself.
+  MemoryOrganization GetOrganization() const
+  {
+    return this->ReadByAll ? MemoryOrganization::Replicated : this->InForce;
+  }
   /// A sentence for the user: what is in force, and why.
   const std::string& GetExplanation() const { return this->Explanation; }
   /// What this rank may take; 0 before anything was published.
@@ -143,6 +153,7 @@ private:
   void FindBudget();
   /// Of the stores that fetch.
   int CountWorkers() const;
+  bool IsAnyFromSource() const;
   /// Collective: moves segments between the stores, or makes up its mind otherwise where it may.
   /// Throws when they cannot be replicated as they should.
   void MoveTo(Decision& decision, Decision&& fallback);
@@ -159,6 +170,7 @@ private:
   bool Settled = true;
   std::uint64_t Publications = 0;
   MemoryOrganization InForce = MemoryOrganization::ObjectBased;
+  bool ReadByAll = false;
   std::string Explanation;
   MemoryPlan::Budget Budget;
   std::uint64_t AvailableBytes = 0; ///< to this rank, when first asked

@@ -26,6 +26,8 @@ MemoryPlan::MemoryPlan(std::vector<const BlockDirectory*> segments, const HostGr
   : Segments(std::move(segments))
   , Budgets(std::move(budgets))
   , OneGroup(groups.GetGroupCount() == 1)
+  , AnyFromSource(std::any_of(this->Segments.begin(), this->Segments.end(),
+      [](const BlockDirectory* directory) { return directory->IsFromSource(); }))
   , Blocks(BlockAlignment)
   , Pages(page)
   , Copies(this->Budgets.size(), 0)
@@ -41,6 +43,10 @@ MemoryPlan::MemoryPlan(std::vector<const BlockDirectory*> segments, const HostGr
   {
     auto& copies = this->Copies[static_cast<std::size_t>(rank)];
     this->LargestGroup = std::max(this->LargestGroup, groups.GetMembers(rank).size());
+    if (this->AnyFromSource)
+    {
+      continue; // then nothing is copied
+    }
     if (groups.GetMembers(rank).size() == 1)
     {
       copies = this->Blocks.Total - this->Blocks.Resident[static_cast<std::size_t>(rank)];
@@ -61,6 +67,10 @@ void MemoryPlan::Count(Sums& sums) const
   for (const BlockDirectory* directory : this->Segments)
   {
     sums.Largest = std::max(sums.Largest, sums.GetFootprint(directory->GetLargest()));
+    if (directory->IsFromSource())
+    {
+      continue; // all of them may be somewhere else
+    }
     for (BlockId id = 0; id < directory->GetCount(); ++id)
     {
       const std::uint64_t bytes = sums.GetFootprint(directory->GetBytes(id));
@@ -82,12 +92,22 @@ std::uint64_t MemoryPlan::GetNeed(MemoryOrganization organization, int rank) con
   const bool replicated = organization == MemoryOrganization::Replicated;
   return sums.Resident[index] + sums.Tables +
     (replicated                       ? this->Copies[index]
-        : this->Fetches(organization) ? LeastRoom * sums.Largest
+        : this->Fetches(organization) ? this->GetLeastRoom(sums)
                                       : 0);
+}
+
+std::uint64_t MemoryPlan::GetLeastRoom(const Sums& sums) const
+{
+  const bool alone = this->Budgets.size() == 1; // nobody is to be answered
+  return sums.Largest * (alone ? 1 : LeastRoom + (this->AnyFromSource ? 1 : 0));
 }
 
 bool MemoryPlan::Fetches(MemoryOrganization organization) const
 {
+  if (this->AnyFromSource)
+  {
+    return organization != MemoryOrganization::Replicated;
+  }
   switch (organization)
   {
     case MemoryOrganization::Replicated:
@@ -107,7 +127,7 @@ MemoryPlan::Room MemoryPlan::GetRoom(MemoryOrganization organization, int rank) 
   const std::uint64_t all = std::max(budget.Bytes, std::min(need, budget.Limit));
   const std::uint64_t taken = sums.Resident[static_cast<std::size_t>(rank)] + sums.Tables;
   Room room{ all - std::min(all, taken), 0 };
-  if (this->Fetches(organization))
+  if (this->Fetches(organization) && this->Budgets.size() > 1)
   {
     room.ReplyBytes = std::max(sums.Largest,
       std::min<std::uint64_t>(room.CacheBytes / MessageDivisor, BlockRequests::MostReplyBytes));
@@ -145,10 +165,15 @@ int MemoryPlan::FindRankCount(MemoryOrganization organization) const
     least = std::min(least, budget.Limit);
   }
   const Sums& sums = this->GetSums(organization);
-  const std::uint64_t besides = sums.Tables + LeastRoom * sums.Largest;
-  if (least < besides || sums.Total == 0)
+  const std::uint64_t besides =
+    sums.Tables + (LeastRoom + (this->AnyFromSource ? 1 : 0)) * sums.Largest;
+  if (least < besides)
   {
-    return sums.Total == 0 ? 1 : 0;
+    return 0;
+  }
+  if (sums.Total == 0)
+  {
+    return 1;
   }
   // No fewer than these would do; from there on, the shares are counted.
   const std::uint64_t room = least - besides;
@@ -159,6 +184,10 @@ int MemoryPlan::FindRankCount(MemoryOrganization organization) const
     std::size_t most = 0;
     for (const BlockDirectory* directory : this->Segments)
     {
+      if (directory->IsFromSource())
+      {
+        continue;
+      }
       const RoundRobinAssigner assigner(static_cast<int>(ranks));
       most = std::max<std::size_t>(most, directory->GetCount());
       for (BlockId id = 0; id < directory->GetCount(); ++id)
@@ -183,6 +212,10 @@ int MemoryPlan::FindRankCount(MemoryOrganization organization) const
 
 MemoryOrganization MemoryPlan::Decide(MemoryOrganization wanted) const
 {
+  if (this->AnyFromSource && wanted != MemoryOrganization::PageBased)
+  {
+    wanted = MemoryOrganization::ObjectBased;
+  }
   if (wanted == MemoryOrganization::Automatic)
   {
     if (this->FindPoorest(MemoryOrganization::Replicated) < 0)
@@ -224,6 +257,14 @@ void MemoryPlan::Refuse(MemoryOrganization organization, int rank) const
 
 std::string MemoryPlan::Explain(MemoryOrganization wanted, MemoryOrganization chosen) const
 {
+  if (this->AnyFromSource)
+  {
+    const bool byAll = wanted == MemoryOrganization::Replicated;
+    return std::string("The memory organisation is ") + GetText(byAll ? wanted : chosen) +
+      (wanted == MemoryOrganization::Automatic ? "" : ", as chosen") +
+      ": bricks that are on a disk come to memory when they are needed, read " +
+      (byAll ? "by each rank that needs them." : "once for all ranks.");
+  }
   std::string text = std::string("The memory organisation is ") + GetText(chosen);
   if (wanted != MemoryOrganization::Automatic)
   {

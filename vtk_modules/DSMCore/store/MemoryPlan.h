@@ -36,7 +36,8 @@ public:
   MemoryPlan(std::vector<const BlockDirectory*> segments, const HostGroups& groups,
     std::vector<Budget> budgets, std::size_t page);
 
-  /// `wanted`, or what Automatic comes to. Throws Error when a rank's memory does not suffice, with
+  /// `wanted`, or what Automatic comes to. Where sources bring blocks, what would be replicated is object
+  /// based, too. Throws Error when a rank's memory does not suffice, with
   /// the number needed and, of the organisations that share the data out, the number of ranks that
   /// would do.
   MemoryOrganization Decide(MemoryOrganization wanted) const;
@@ -45,7 +46,8 @@ public:
   std::string Explain(MemoryOrganization wanted, MemoryOrganization chosen) const;
 
   /// What the resident set, or everything, and the tables take of a rank; where blocks are fetched,
-  /// also a cache of one block, a reply with one, and one that has just come.
+  /// also a cache of one block, a reply with one, and one that has just come; where sources bring blocks,
+  /// one more of the rank's own.
   std::uint64_t GetNeed(MemoryOrganization organization, int rank) const;
 
   /// What is left of a rank's memory when its own blocks and the tables are there.
@@ -88,6 +90,8 @@ private:
     return organization == MemoryOrganization::PageBased ? this->Pages : this->Blocks;
   }
   void Count(Sums& sums) const;
+  /// In bytes.
+  std::uint64_t GetLeastRoom(const Sums& sums) const;
   /// Whether any block may have to come from another rank.
   bool Fetches(MemoryOrganization organization) const;
   /// The rank that lacks most; -1 when all have enough.
@@ -97,6 +101,7 @@ private:
   std::vector<const BlockDirectory*> Segments;
   std::vector<Budget> Budgets;
   bool OneGroup;
+  bool AnyFromSource;
   std::size_t LargestGroup = 0; ///< the most ranks that share a host's memory
   Sums Blocks;
   Sums Pages;

@@ -95,6 +95,11 @@ std::byte* BlockTable::GetOwned(BlockId id) const
 
 void BlockTable::ForEachResident(const Visit& visit) const
 {
+  if (this->Source)
+  {
+    this->Source->ForEach(this->GetDirectory(), this->Rank, visit);
+    return;
+  }
   for (BlockId id = 0; id < this->GetDirectory().GetCount(); ++id)
   {
     if (this->Lines[id].State == LineState::Owned)

@@ -33,7 +33,6 @@ public:
   BlockTable(std::uint32_t number, BlockDirectory directory, int rank, int ranks,
     std::shared_ptr<BlockSource> source);
 
-  /// Of those that are in memory for good.
   void ForEachResident(const Visit& visit) const override;
   std::uint64_t GetResidentBytes() const override { return this->ResidentBytes; }
 
@@ -42,6 +41,9 @@ public:
   void Meet(Messenger& messenger) override;
   void Seal() override;
   void Open() override;
+  /// Between frames, of blocks that a source brings; the same on every rank: whether each rank has its own
+  /// source read what it needs. Else the owner reads a block, once for all.
+  void SetReadByAll(bool all) { this->ReadByAll = all; }
   /// Where a block is on this host; null when it is not.
   const std::byte* Find(BlockId id) const
   {
@@ -86,6 +88,7 @@ private:
   HostGroups Groups;
   int Rank = 0;
   std::shared_ptr<BlockSource> Source; ///< null: own blocks stay
+  bool ReadByAll = false;
   HostSharedMemory Resident;
   std::vector<HostSharedMemory::View> Views; ///< by rank
   HostSharedMemory Copies;

@@ -53,6 +53,7 @@ std::shared_ptr<BlockSegment> ObjectStore::Publish(
   std::string_view what, BlockDirectory directory, std::shared_ptr<BlockSource> source)
 {
   Messenger& messages = this->Self->Messages;
+  directory.SetFromSource();
   const auto count = [this](const BlockDirectory&)
   {
     this->Self->PrepareToAdd();

@@ -160,6 +160,11 @@ const std::byte* ObjectStore::Internals::FindOwned(const BlockWant& block) const
   return GetBlockLine(block).Address.load(std::memory_order_relaxed);
 }
 
+bool ObjectStore::Internals::IsOwned(const BlockWant& block) const
+{
+  return GetSegment(block).ReadByAll || this->BlockFetcher::IsOwned(block);
+}
+
 BlockSource* ObjectStore::Internals::FindSource(const BlockWant& block) const
 {
   return GetSegment(block).Source.get();

@@ -42,6 +42,7 @@ private:
   LineStatus& GetLine(const BlockWant& block) const override { return GetBlockLine(block); }
   std::size_t GetFootprint(const BlockWant& block) const override;
   const std::byte* FindOwned(const BlockWant& block) const override;
+  bool IsOwned(const BlockWant& block) const override;
   BlockSource* FindSource(const BlockWant& block) const override;
   void CheckBudget() const override;
   bool MakeRoom(const BlockWant& block) override;

@@ -4,9 +4,11 @@
 
 #include "DSMCore/publish/BlockSegment.h"
 #include "DSMRayTracing/layout/BrickLattice.h"
+#include "DSMRayTracing/layout/IsovalueSurvey.h"
 #include "DSMRayTracing/layout/MacrocellHierarchy.h"
 
 #include <memory>
+#include <optional>
 
 namespace rt
 {
@@ -17,6 +19,8 @@ struct VoxelField
   BrickLattice Lattice;
   std::shared_ptr<dsm::BlockSegment> Segment;
   MacrocellHierarchy Hierarchy;
+  /// Of all bricks, the same on every rank, where they need not be looked through for it.
+  std::optional<IsovalueSurvey> Survey;
 };
 
 } // namespace rt

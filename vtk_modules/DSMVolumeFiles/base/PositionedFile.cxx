@@ -20,8 +20,9 @@ namespace
 
 std::uint64_t GetStampOf(const struct stat& state)
 {
-  const std::uint64_t parts[] = { state.st_dev, state.st_ino,
-    static_cast<std::uint64_t>(state.st_size), static_cast<std::uint64_t>(state.st_mtim.tv_sec),
+  // Not of the device: its number differs between the hosts that share a file system.
+  const std::uint64_t parts[] = { state.st_ino, static_cast<std::uint64_t>(state.st_size),
+    static_cast<std::uint64_t>(state.st_mtim.tv_sec),
     static_cast<std::uint64_t>(state.st_mtim.tv_nsec) };
   rt::ByteHash hash;
   hash.Add(parts, sizeof(parts));

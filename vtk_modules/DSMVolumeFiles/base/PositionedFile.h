@@ -22,8 +22,8 @@ public:
   const std::string& GetPath() const { return this->Path; }
   /// When it was opened.
   std::uint64_t GetBytes() const { return this->Bytes; }
-  /// Differs, for all practical purposes, when another file is there, or this one was written to: of device,
-  /// inode, size and time of change, when it was opened.
+  /// Differs, for all practical purposes, when another file is there, or this one was written to: of
+  /// inode, size and time of change, when it was opened. The same on all hosts that share a file system.
   std::uint64_t GetStamp() const { return this->Stamp; }
 
   /// Reads so many bytes from `offset` on; throws dsm::Error, which names file and place, when there are

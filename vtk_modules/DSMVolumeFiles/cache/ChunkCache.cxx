@@ -4,6 +4,7 @@
 #include "DSMRayTracing/base/ByteHash.h"
 #include "DSMVolumeFiles/base/CopyBox.h"
 
+#include <algorithm>
 #include <utility>
 
 namespace vol
@@ -41,6 +42,14 @@ std::size_t ChunkCache::GetLimit() const
 {
   const std::lock_guard<std::mutex> lock(this->Guard);
   return this->Limit;
+}
+
+std::size_t ChunkCache::Restrict(std::size_t bytes)
+{
+  const std::lock_guard<std::mutex> lock(this->Guard);
+  this->Restriction = bytes;
+  this->Evict();
+  return std::min(this->Limit, this->Restriction);
 }
 
 std::size_t ChunkCache::GetBytes() const
@@ -125,7 +134,7 @@ void ChunkCache::ReadBox(const std::shared_ptr<const VolumeFile>& file, std::siz
 
 void ChunkCache::Evict()
 {
-  while (this->Bytes > this->Limit && !this->Order.empty())
+  while (this->Bytes > std::min(this->Limit, this->Restriction) && !this->Order.empty())
   {
     const auto last = this->Entries.find(this->Order.back());
     this->Bytes -= last->second.Bytes;

@@ -34,6 +34,9 @@ public:
   /// From now on. What is in use stays in memory until it is not.
   void SetLimit(std::size_t bytes);
   std::size_t GetLimit() const;
+  /// Less than the limit, from now on, for whoever must keep to an amount of memory; the limit itself stays.
+  /// Returns what holds then.
+  std::size_t Restrict(std::size_t bytes);
   /// In memory now.
   std::size_t GetBytes() const;
   /// Read so far, of chunks as they are in memory.
@@ -78,6 +81,7 @@ private:
 
   mutable std::mutex Guard;
   std::size_t Limit;
+  std::size_t Restriction = SIZE_MAX;
   std::size_t Bytes = 0;
   std::uint64_t BytesRead = 0;
   std::list<Key> Order; ///< of those that are here, the last used first

@@ -1,17 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "DSMVolumeFiles/range/ValueRanges.h"
 
-#include "DSMRayTracing/base/ByteHash.h"
 #include "DSMRayTracing/base/ParallelFor.h"
+#include "DSMVolumeFiles/range/KeptFile.h"
 
 #include <atomic>
 #include <cmath>
-#include <cstdlib>
-#include <filesystem>
-#include <fstream>
-#include <string>
-
-#include <unistd.h>
+#include <cstring>
 
 namespace vol
 {
@@ -19,8 +14,8 @@ namespace vol
 namespace
 {
 
-/// Its layout of the kept file.
-constexpr int KeptVersion = 1;
+/// What is kept, and in which layout.
+constexpr const char* Kind = "ranges2";
 
 void Add(ValueRanges& ranges, std::size_t number, double value)
 {
@@ -52,30 +47,6 @@ void AddRow(ValueRanges& ranges, const T* row, std::int64_t samples, int compone
       Add(ranges, static_cast<std::size_t>(components), std::sqrt(sum));
     }
   }
-}
-
-std::filesystem::path GetKeptPath(
-  const VolumeFile& file, std::size_t array, int step, const rt::Box& box)
-{
-  const char* const caches = std::getenv("XDG_CACHE_HOME");
-  const char* const home = std::getenv("HOME");
-  if (!(caches && *caches) && !(home && *home))
-  {
-    return {};
-  }
-  const std::filesystem::path folder =
-    caches && *caches ? std::filesystem::path(caches) : std::filesystem::path(home) / ".cache";
-  std::error_code failure;
-  const std::string path = std::filesystem::absolute(file.GetPath(), failure).string();
-  const std::string& name = file.GetArrays()[array].Name;
-  const std::int64_t numbers[] = { static_cast<std::int64_t>(file.GetStamp()),
-    static_cast<std::int64_t>(array), step, box.Min.x, box.Min.y, box.Min.z, box.Max.x, box.Max.y,
-    box.Max.z, KeptVersion };
-  rt::ByteHash hash;
-  hash.Add(path.data(), path.size());
-  hash.Add(name.data(), name.size());
-  hash.Add(numbers, sizeof(numbers));
-  return folder / "dsm-ray-tracer" / ("ranges-" + std::to_string(hash.Get()));
 }
 
 } // namespace
@@ -168,38 +139,25 @@ std::optional<ValueRanges> LoadRanges(
   const VolumeFile& file, std::size_t array, int step, const rt::Box& box)
 {
   ValueRanges ranges(file.GetArrays()[array].Components);
-  std::ifstream kept(GetKeptPath(file, array, step, box), std::ios::binary);
-  for (std::vector<ValueRange>* list : { &ranges.All, &ranges.Finite })
+  const std::vector<std::byte> kept = KeptFile(file, array, step, box, Kind).Load();
+  const std::size_t list = ranges.All.size() * sizeof(ValueRange);
+  if (kept.size() != 2 * list)
   {
-    kept.read(reinterpret_cast<char*>(list->data()),
-      static_cast<std::streamsize>(list->size() * sizeof(ValueRange)));
+    return std::nullopt;
   }
-  return kept ? std::optional<ValueRanges>(std::move(ranges)) : std::nullopt;
+  std::memcpy(ranges.All.data(), kept.data(), list);
+  std::memcpy(ranges.Finite.data(), kept.data() + list, list);
+  return ranges;
 }
 
 void KeepRanges(const VolumeFile& file, std::size_t array, int step, const rt::Box& box,
   const ValueRanges& ranges)
 {
-  const std::filesystem::path path = GetKeptPath(file, array, step, box);
-  std::error_code failure;
-  std::filesystem::create_directories(path.parent_path(), failure);
-  // Other processes may read it meanwhile.
-  std::filesystem::path written = path;
-  written += "." + std::to_string(getpid());
-  {
-    std::ofstream kept(written, std::ios::binary);
-    for (const std::vector<ValueRange>* list : { &ranges.All, &ranges.Finite })
-    {
-      kept.write(reinterpret_cast<const char*>(list->data()),
-        static_cast<std::streamsize>(list->size() * sizeof(ValueRange)));
-    }
-    if (!kept)
-    {
-      std::filesystem::remove(written, failure);
-      return;
-    }
-  }
-  std::filesystem::rename(written, path, failure);
+  const std::size_t list = ranges.All.size() * sizeof(ValueRange);
+  std::vector<std::byte> bytes(2 * list);
+  std::memcpy(bytes.data(), ranges.All.data(), list);
+  std::memcpy(bytes.data() + list, ranges.Finite.data(), list);
+  KeptFile(file, array, step, box, Kind).Keep(bytes.data(), bytes.size());
 }
 
 } // namespace vol

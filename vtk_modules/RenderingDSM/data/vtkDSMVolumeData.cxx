@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkDSMVolumeData.h"
 
+#include "DSMCore/fetch/ReadingSource.h"
 #include "DSMRayTracing/base/ByteHash.h"
 #include "DSMRayTracing/build/VoxelBrickBuilder.h"
 #include "vtkDSMContent.h"
+#include "vtkDSMFileArray.h"
 #include "vtkDSMGather.h"
 #include "vtkDSMImagePiece.h"
 
@@ -23,6 +25,9 @@
 
 namespace
 {
+
+/// The memory that a rank may take is divided by it for chunks of files.
+constexpr std::uint64_t ChunksDivisor = 8;
 
 enum class ArrayState : std::int32_t
 {
@@ -268,17 +273,20 @@ std::shared_ptr<const vtkDSMVolumeData::Publication> vtkDSMVolumeData::Publish(c
   dsm::Messenger& messenger = this->Group->GetMessenger();
   std::vector<ArrayInfo> mine(this->Images.size());
   const auto published = std::make_shared<Publication>();
+  std::vector<vtkDSMFileVolume::Seat> mySeats(this->Images.size());
   messenger.RunTogether("Reading the " + purpose,
     [&]
     {
       for (std::size_t index = 0; index < this->Images.size(); ++index)
       {
-        this->FindArray(this->Images[index], choice, mine[index]);
+        vtkDataArray* array = this->FindArray(this->Images[index], choice, mine[index]);
+        mySeats[index] = vtkDSMFileVolume::Describe(this->Images[index], array);
       }
       published->Content = this->HashContent(choice);
     });
   int first = 0;
   const std::vector<ArrayInfo> infos = vtkDSMGather::Items(messenger, mine, first);
+  const auto seats = vtkDSMGather::Items(messenger, mySeats);
   const auto isUsable = [](const ArrayInfo& info) { return info.State == ArrayState::Usable; };
   if (!infos.empty() && std::none_of(infos.begin(), infos.end(), isUsable))
   {
@@ -292,7 +300,8 @@ std::shared_ptr<const vtkDSMVolumeData::Publication> vtkDSMVolumeData::Publish(c
   }
   for (std::size_t lattice = 0; lattice < this->GetNumberOfLattices(); ++lattice)
   {
-    published->Bricks.push_back(this->PublishLattice(lattice, choice, purpose, infos, progress));
+    published->Bricks.push_back(
+      this->PublishLattice(lattice, choice, purpose, infos, seats, progress));
   }
   publications.Add<Publication>(published->Content, published);
   return published;
@@ -300,6 +309,7 @@ std::shared_ptr<const vtkDSMVolumeData::Publication> vtkDSMVolumeData::Publish(c
 
 std::shared_ptr<const rt::VoxelField> vtkDSMVolumeData::PublishLattice(std::size_t number,
   const Choice& choice, const std::string& purpose, const std::vector<ArrayInfo>& infos,
+  const std::vector<vtkDSMFileVolume::Seat>& seats,
   const std::function<void(double)>& progress) const
 {
   dsm::Messenger& messenger = this->Group->GetMessenger();
@@ -320,16 +330,76 @@ std::shared_ptr<const rt::VoxelField> vtkDSMVolumeData::PublishLattice(std::size
   {
     return nullptr;
   }
+  const std::string what = "the " + purpose + " '" + choice.Name + "'";
+  if (!field->Lattice.HasCellMask())
+  {
+    const vtkDSMLatticePlan::Lattice& lattice = this->Plan.GetLattices()[number];
+    const vtkDSMFileValues* const own = this->FindFileValues(number, choice);
+    const int first = lattice.Members.front().Piece - this->FirstOwnPiece;
+    const bool isFirst = first >= 0 && first < static_cast<int>(this->Images.size());
+    if (const auto file =
+          vtkDSMFileVolume::Find(messenger, lattice, seats, own, isFirst && own, choice.Component))
+    {
+      this->PublishFile(*file, own, what, progress, *field);
+      return field;
+    }
+  }
   field->Segment = this->Group->WithRoom(
     [&]
     {
       rt::VoxelFragmentSource source(field->Lattice, sources);
       rt::VoxelBrickSink sink(field->Lattice);
-      return this->Group->GetStore().Publish(
-        "the " + purpose + " '" + choice.Name + "'", *directory, source, sink, progress);
+      return this->Group->GetStore().Publish(what, *directory, source, sink, progress);
     });
   field->Hierarchy = rt::MacrocellHierarchy(field->Lattice, *field->Segment, messenger);
   return field;
+}
+
+const vtkDSMFileValues* vtkDSMVolumeData::FindFileValues(
+  std::size_t lattice, const Choice& choice) const
+{
+  for (const auto& member : this->Plan.GetLattices()[lattice].Members)
+  {
+    const int own = member.Piece - this->FirstOwnPiece;
+    if (own >= 0 && own < static_cast<int>(this->Images.size()))
+    {
+      ArrayInfo info;
+      vtkDataArray* const array = this->FindArray(this->Images[own], choice, info);
+      return array ? vtkDSMGetFileValues(array) : nullptr;
+    }
+  }
+  return nullptr;
+}
+
+void vtkDSMVolumeData::PublishFile(const vtkDSMFileVolume& file, const vtkDSMFileValues* own,
+  const std::string& what, const std::function<void(double)>& progress, rt::VoxelField& field) const
+{
+  dsm::Messenger& messenger = this->Group->GetMessenger();
+  dsm::BlockStore& store = this->Group->GetStore();
+  std::shared_ptr<const dsm::BlockReader> reader;
+  std::optional<dsm::BlockDirectory> directory;
+  std::shared_ptr<dsm::ReadingSource> source;
+  messenger.RunTogether("Opening the volume's file",
+    [&]
+    {
+      reader = file.CreateReader(field.Lattice);
+      directory = field.Lattice.CreateDirectory(messenger.GetSize());
+      source = std::make_shared<dsm::ReadingSource>(messenger, reader);
+      // Chunks of the file that are in memory have their part of what a rank may take.
+      const std::uint64_t memory = store.GetSettings().MemoryBytes;
+      const std::size_t chunks = vol::ChunkCache::GetShared().Restrict(
+        memory == 0 ? SIZE_MAX : static_cast<std::size_t>(memory / ChunksDivisor));
+      directory->AddIndexBytes(chunks + dsm::ReadingSource::MostReads * directory->GetLargest());
+    });
+  field.Segment = this->Group->WithRoom([&] { return store.Publish(what, *directory, source); });
+  rt::VoxelIndex index =
+    file.FindIndex(messenger, field.Lattice, *reader, own, store.GetSettings().Workers, progress);
+  messenger.RunTogether("Building the macrocells",
+    [&]
+    {
+      field.Survey = index.Survey;
+      field.Hierarchy = rt::MacrocellHierarchy(field.Lattice, std::move(index.Bricks));
+    });
 }
 
 std::shared_ptr<rt::VoxelField> vtkDSMVolumeData::CreateField(std::size_t number,

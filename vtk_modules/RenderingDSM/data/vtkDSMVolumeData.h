@@ -4,6 +4,7 @@
 
 #include "DSMRayTracing/build/VoxelSource.h"
 #include "DSMRayTracing/scene/Scene.h"
+#include "vtkDSMFileVolume.h"
 #include "vtkDSMLatticePlan.h"
 #include "vtkDSMRankGroup.h"
 
@@ -80,8 +81,15 @@ private:
   void GatherArrays();
   [[noreturn]] void RefuseArray(
     const Choice& choice, const std::string& purpose, const std::vector<ArrayInfo>& infos) const;
+  /// Of this rank's first piece of a lattice that has the array in a file; null when none has.
+  const vtkDSMFileValues* FindFileValues(std::size_t lattice, const Choice& choice) const;
+  /// Collective: a lattice that is in a file. Its bricks come to memory when rays meet them.
+  void PublishFile(const vtkDSMFileVolume& file, const vtkDSMFileValues* own,
+    const std::string& what, const std::function<void(double)>& progress,
+    rt::VoxelField& field) const;
   std::shared_ptr<const rt::VoxelField> PublishLattice(std::size_t lattice, const Choice& choice,
     const std::string& purpose, const std::vector<ArrayInfo>& infos,
+    const std::vector<vtkDSMFileVolume::Seat>& seats,
     const std::function<void(double)>& progress) const;
   /// Local. A lattice's field without its bricks; null where no piece has the array.
   std::shared_ptr<rt::VoxelField> CreateField(std::size_t lattice, const Choice& choice,

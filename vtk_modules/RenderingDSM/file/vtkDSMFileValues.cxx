@@ -7,12 +7,13 @@
 #include <thread>
 #include <utility>
 
-vtkDSMFileValues::vtkDSMFileValues(
-  std::shared_ptr<const vol::VolumeFile> file, std::size_t array, int step, const rt::Box& box)
+vtkDSMFileValues::vtkDSMFileValues(std::shared_ptr<const vol::VolumeFile> file, std::size_t array,
+  int step, const rt::Box& box, vol::OpenOptions options)
   : File(std::move(file))
   , Array(array)
   , Step(step)
   , Box(box)
+  , Options(std::move(options))
 {
 }
 

@@ -17,9 +17,15 @@ class vtkObject;
 class vtkDSMFileValues
 {
 public:
-  /// `box`: the samples that the part has, in the file's indices.
-  vtkDSMFileValues(
-    std::shared_ptr<const vol::VolumeFile> file, std::size_t array, int step, const rt::Box& box);
+  /// `box`: the samples that the part has, in the file's indices. `options`: with which the file was opened.
+  vtkDSMFileValues(std::shared_ptr<const vol::VolumeFile> file, std::size_t array, int step,
+    const rt::Box& box, vol::OpenOptions options = {});
+
+  const std::shared_ptr<const vol::VolumeFile>& GetFile() const { return this->File; }
+  const vol::OpenOptions& GetOptions() const { return this->Options; }
+  std::size_t GetArrayNumber() const { return this->Array; }
+  int GetStep() const { return this->Step; }
+  const rt::Box& GetBox() const { return this->Box; }
 
   const vol::FileArray& GetArray() const { return this->File->GetArrays()[this->Array]; }
   /// As the file has them.
@@ -55,6 +61,7 @@ private:
   std::size_t Array;
   int Step;
   rt::Box Box;
+  vol::OpenOptions Options;
   mutable std::mutex RangesLock;
   mutable std::optional<vol::ValueRanges> Ranges;
 };

@@ -28,6 +28,7 @@ class vtkDSMVolumeReader::Internals
 {
 public:
   std::shared_ptr<const vol::VolumeFile> File;
+  vol::OpenOptions Options;  ///< with which it was opened
   vtkMTimeType OpenedAt = 0; ///< the reader's time then
 };
 
@@ -122,6 +123,7 @@ void vtkDSMVolumeReader::Open()
     (array.OnCells ? this->CellArrays : this->PointArrays)->AddArray(array.Name.c_str());
   }
   this->Self->File = file;
+  this->Self->Options = options;
   this->Self->OpenedAt = this->GetMTime();
 }
 
@@ -201,7 +203,8 @@ void vtkDSMVolumeReader::AddArrays(vtkImageData* image, int step)
       box.Min[axis] = extent[2 * axis] - first[axis];
       box.Max[axis] = end - first[axis];
     }
-    const auto values = std::make_shared<vtkDSMFileValues>(file, index, step, box);
+    const auto values =
+      std::make_shared<vtkDSMFileValues>(file, index, step, box, this->Self->Options);
     values->FindRanges(
       [&](double part)
       {

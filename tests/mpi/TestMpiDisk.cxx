@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Blocks on a disk, over MPI; see TestReadingSource for what they do within a process.
+#include "DSMCore/transport/MpiTransport.h"
+
+#include "tests/unit/dsmcore/DiskScenarios.h"
+
+namespace
+{
+
+class DiskOverMpi : public testing::TestWithParam<dsm::MemoryOrganization>
+{
+};
+
+INSTANTIATE_TEST_SUITE_P(Organizations, DiskOverMpi,
+  testing::Values(dsm::MemoryOrganization::ObjectBased, dsm::MemoryOrganization::PageBased,
+    dsm::MemoryOrganization::Replicated));
+
+TEST_P(DiskOverMpi, RandomAccess)
+{
+  dsm::Messenger messenger(dsm::MpiTransport::Create(nullptr));
+  for (const std::size_t blocks : { 2, 5, 100 })
+  {
+    dsm_test::RandomAccessToADisk(messenger, this->GetParam(), blocks, 8);
+  }
+}
+
+TEST_P(DiskOverMpi, FailureIsTheFramesErrorAndTheNextFrameWorks)
+{
+  dsm::Messenger messenger(dsm::MpiTransport::Create(nullptr));
+  dsm_test::DiskStore disks(messenger, this->GetParam(), 6);
+  const int last = messenger.GetSize() - 1;
+  disks.Disk->Bad = static_cast<dsm::BlockId>(5 * messenger.GetSize() + last);
+  const std::string text = dsm_test::GetErrorText([&] { disks.ReadAll(); });
+  EXPECT_NE(text.find("of the file is damaged"), std::string::npos) << text;
+  disks.Disk->Bad = dsm_test::NoBlock;
+  disks.ReadAll();
+}
+
+} // namespace

@@ -1,0 +1,206 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Blocks that are read from a disk when they are needed, in every memory organisation: within a memory that
+// does not hold them all, with disks that are slow, fail, or hang.
+#include "tests/unit/dsmcore/DiskScenarios.h"
+
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <thread>
+#include <tuple>
+
+namespace
+{
+
+using dsm_test::DiskStore;
+using dsm_test::NoBlock;
+constexpr std::uint32_t Bytes = dsm_test::DiskBlockBytes;
+
+using Parameters = std::tuple<dsm::MemoryOrganization, int>;
+
+class BlocksOnDisk : public testing::TestWithParam<Parameters>
+{
+protected:
+  void Run(const std::function<void(dsm::Messenger&, dsm::MemoryOrganization)>& rank)
+  {
+    dsm_test::RunRanks(std::get<1>(this->GetParam()),
+      [&](dsm::Messenger& messenger) { rank(messenger, std::get<0>(this->GetParam())); });
+  }
+};
+
+INSTANTIATE_TEST_SUITE_P(OrganizationsAndRanks, BlocksOnDisk,
+  testing::Combine(
+    testing::Values(dsm::MemoryOrganization::Automatic, dsm::MemoryOrganization::ObjectBased,
+      dsm::MemoryOrganization::PageBased, dsm::MemoryOrganization::Replicated),
+    testing::Values(1, 2, 3)));
+
+TEST_P(BlocksOnDisk, LeaveMemoryAndComeBack)
+{
+  this->Run(
+    [](dsm::Messenger& messenger, dsm::MemoryOrganization organization)
+    {
+      DiskStore disks(messenger, organization, 4);
+      for (int frame = 0; frame < 3; ++frame)
+      {
+        disks.ReadAll();
+        const auto counters = disks.Store.GetCounters();
+        EXPECT_EQ(counters.ResidentBytes, 0u);
+        EXPECT_EQ(counters.CacheCapacity, 4 * Bytes);
+        EXPECT_LE(counters.PeakCachedBytes, counters.CacheCapacity);
+        EXPECT_GT(counters.Evictions, 0u);
+      }
+      EXPECT_GT(disks.Disk->Reads, 2 * DiskStore::BlocksOfRank) << "they have come back";
+    });
+}
+
+/// There is room for one block of the rank's own, and for one of others.
+TEST_P(BlocksOnDisk, LeastMemory)
+{
+  this->Run(
+    [](dsm::Messenger& messenger, dsm::MemoryOrganization organization)
+    {
+      const std::size_t least = messenger.GetSize() > 1 ? 2 : 1;
+      DiskStore disks(messenger, organization, least);
+      disks.ReadAll();
+      disks.ReadAll();
+      auto settings = disks.Store.GetSettings();
+      settings.MemoryBytes -= 1;
+      disks.Store.SetSettings(settings);
+      const std::string text = dsm_test::GetErrorText([&] { disks.Store.Settle(); });
+      EXPECT_NE(text.find("Raise the memory per rank (DSMMemory)"), std::string::npos) << text;
+    });
+}
+
+TEST_P(BlocksOnDisk, AreReadOnceWhereThereIsRoom)
+{
+  this->Run(
+    [](dsm::Messenger& messenger, dsm::MemoryOrganization organization)
+    {
+      const auto ranks = static_cast<std::size_t>(messenger.GetSize());
+      DiskStore disks(messenger, organization, (DiskStore::BlocksOfRank + 2) * ranks + 2);
+      const bool byAll = organization == dsm::MemoryOrganization::Replicated;
+      for (int frame = 0; frame < 2; ++frame)
+      {
+        disks.ReadAll();
+        EXPECT_EQ(disks.Disk->Reads, DiskStore::BlocksOfRank * (byAll ? ranks : 1));
+      }
+      EXPECT_EQ(disks.Store.GetCounters().Workers.Misses, 0u);
+      const std::string& text = disks.Store.GetExplanation();
+      EXPECT_NE(text.find(byAll ? "by each rank" : "once for all ranks"), std::string::npos)
+        << text;
+    });
+}
+
+TEST_P(BlocksOnDisk, FailureIsTheFramesErrorAndTheNextFrameWorks)
+{
+  this->Run(
+    [](dsm::Messenger& messenger, dsm::MemoryOrganization organization)
+    {
+      const int last = messenger.GetSize() - 1;
+      DiskStore disks(messenger, organization, 6);
+      const dsm::BlockId bad = static_cast<dsm::BlockId>(5 * messenger.GetSize() + last);
+      disks.Disk->Bad = bad;
+      for (int frame = 0; frame < 2; ++frame)
+      {
+        const std::string text = dsm_test::GetErrorText([&] { disks.ReadAll(); });
+        EXPECT_NE(
+          text.find("chunk " + std::to_string(bad) + " of the file is damaged"), std::string::npos)
+          << text;
+      }
+      disks.Disk->Bad = NoBlock;
+      disks.ReadAll();
+    });
+}
+
+/// A read that does not come back keeps nobody from giving up the frame, nor the blocks, nor from going on
+/// with others.
+TEST_P(BlocksOnDisk, HangingReadIsGivenUp)
+{
+  this->Run(
+    [](dsm::Messenger& messenger, dsm::MemoryOrganization organization)
+    {
+      DiskStore disks(messenger, organization, 6);
+      const auto own = static_cast<dsm::BlockId>(messenger.GetRank());
+      const auto size = static_cast<dsm::BlockId>(messenger.GetSize());
+      disks.Disk->SetStuck(own);
+      disks.Store.Visit(
+        [&](auto& blocks)
+        {
+          blocks.BeginFrame();
+          std::string cause;
+          std::thread tracer(
+            [&]
+            {
+              auto& worker = blocks.GetWorker(0);
+              blocks.Enter(worker);
+              EXPECT_EQ(dsm_test::Visit(blocks, worker, *disks.Segment, own + size), 0u);
+              cause = dsm_test::GetErrorText(
+                [&] { dsm_test::Visit(blocks, worker, *disks.Segment, own); });
+              blocks.Leave(worker);
+            });
+          while (disks.Disk->Reads < 2)
+          {
+            blocks.Service();
+          }
+          blocks.Cancel("the user gave up");
+          tracer.join();
+          blocks.EndFrame();
+          EXPECT_EQ(cause, "the user gave up");
+        });
+      const auto disk = disks.Disk;
+      const auto segment = disks.Segment;
+      messenger.Barrier();
+      disks.Store.Retire(segment);
+      disks.Segment.reset();
+      disk->SetStuck(NoBlock);
+    });
+}
+
+/// What is in memory for good is shared out while something is on a disk, and copied again afterwards.
+TEST(BlocksOnDiskBesideOthers, OrganizationFollows)
+{
+  dsm_test::RunRanks(2,
+    [](dsm::Messenger& messenger)
+    {
+      DiskStore disks(messenger, dsm::MemoryOrganization::Automatic, 40);
+      const auto stays =
+        dsm_test::PublishPattern(messenger, disks.Store, dsm_test::MakeDirectory(2, 8, Bytes));
+      EXPECT_EQ(disks.Store.GetOrganization(), dsm::MemoryOrganization::ObjectBased);
+      disks.ReadAll();
+      EXPECT_GT(disks.Store.GetCounters().ResidentBytes, 0u);
+      disks.Store.Retire(disks.Segment);
+      disks.Store.Settle();
+      EXPECT_EQ(disks.Store.GetOrganization(), dsm::MemoryOrganization::Replicated);
+      disks.Segment = stays;
+      disks.ReadAll();
+    });
+}
+
+TEST_P(BlocksOnDisk, RandomAccess)
+{
+  this->Run([](dsm::Messenger& messenger, dsm::MemoryOrganization organization)
+    { dsm_test::RandomAccessToADisk(messenger, organization, 5, 3); });
+}
+
+/// All that a rank owns can be looked through, wherever it is.
+TEST_P(BlocksOnDisk, CanBeLookedThrough)
+{
+  this->Run(
+    [](dsm::Messenger& messenger, dsm::MemoryOrganization organization)
+    {
+      DiskStore disks(messenger, organization, 4);
+      std::size_t count = 0;
+      disks.Segment->ForEachResident(
+        [&](dsm::BlockId id, const std::byte* block, std::size_t bytes)
+        {
+          ++count;
+          EXPECT_EQ(disks.Segment->GetDirectory().GetOwner(id), messenger.GetRank());
+          EXPECT_EQ(dsm_test::CountWrongBytes(id, block, bytes), 0u);
+        });
+      EXPECT_EQ(count, DiskStore::BlocksOfRank);
+    });
+}
+
+} // namespace

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef dsm_BlockReader_h
+#define dsm_BlockReader_h
+
+#include "DSMCore/base/Block.h"
+
+#include <cstddef>
+
+namespace dsm
+{
+
+/// Makes blocks out of what is on a disk. Any thread, several at a time.
+class BlockReader
+{
+public:
+  virtual ~BlockReader() = default;
+
+  /// Fills `block` (its `bytes` are those of the directory; aligned for any number) with what the block
+  /// is, always the same. May take long. Throws Error, which names the file and the place in it.
+  virtual void Read(BlockId id, std::byte* block, std::size_t bytes) const = 0;
+};
+
+} // namespace dsm
+
+#endif

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "DSMCore/fetch/ReaderThreads.h"
+
+#include "DSMCore/base/Error.h"
+
+#include <algorithm>
+#include <string>
+#include <system_error>
+#include <utility>
+
+namespace dsm
+{
+
+namespace
+{
+
+/// They wait for disks more than they compute.
+constexpr int FewestThreads = 4;
+constexpr int MostThreads = 8;
+
+} // namespace
+
+ReaderThreads& ReaderThreads::GetShared()
+{
+  static ReaderThreads threads(
+    std::clamp(static_cast<int>(std::thread::hardware_concurrency()), FewestThreads, MostThreads));
+  return threads;
+}
+
+ReaderThreads::ReaderThreads(int count)
+  : Count(count)
+{
+}
+
+ReaderThreads::~ReaderThreads()
+{
+  {
+    const std::lock_guard<std::mutex> lock(this->Guard);
+    this->IsOver = true;
+    this->Jobs.clear();
+  }
+  this->Changed.notify_all();
+  for (std::thread& thread : this->Threads)
+  {
+    thread.join();
+  }
+}
+
+void ReaderThreads::Add(std::function<void()> job)
+{
+  {
+    const std::lock_guard<std::mutex> lock(this->Guard);
+    try
+    {
+      while (static_cast<int>(this->Threads.size()) < this->Count)
+      {
+        this->Threads.emplace_back([this] { this->Run(); });
+      }
+    }
+    catch (const std::system_error& error)
+    {
+      if (this->Threads.empty())
+      {
+        throw Error(std::string("A thread that reads files could not be started (") + error.what() +
+          "). Let the process have more threads (ulimit -u) or more memory.");
+      }
+    }
+    this->Jobs.push_back(std::move(job));
+  }
+  this->Changed.notify_one();
+}
+
+void ReaderThreads::Run()
+{
+  std::unique_lock<std::mutex> lock(this->Guard);
+  for (;;)
+  {
+    this->Changed.wait(lock, [this] { return this->IsOver || !this->Jobs.empty(); });
+    if (this->IsOver)
+    {
+      return;
+    }
+    {
+      const std::function<void()> job = std::move(this->Jobs.front());
+      this->Jobs.pop_front();
+      lock.unlock();
+      job();
+    }
+    lock.lock();
+  }
+}
+
+} // namespace dsm

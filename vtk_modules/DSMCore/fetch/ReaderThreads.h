@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef dsm_ReaderThreads_h
+#define dsm_ReaderThreads_h
+
+#include <condition_variable>
+#include <deque>
+#include <functional>
+#include <mutex>
+#include <thread>
+#include <vector>
+
+namespace dsm
+{
+
+/// Threads that read what a process takes from files, so that no other has to wait for a disk. They are
+/// shared by all sources: a file system that hangs keeps some of them, and nobody else. Any thread.
+class ReaderThreads
+{
+public:
+  /// Those of the process. They start when there is something to do first, and end with the process, when
+  /// the reads that they are at have come back.
+  static ReaderThreads& GetShared();
+
+  explicit ReaderThreads(int count);
+  ~ReaderThreads();
+  ReaderThreads(const ReaderThreads&) = delete;
+  ReaderThreads& operator=(const ReaderThreads&) = delete;
+
+  /// The job, which throws nothing, is done as soon as a thread is free; jobs begin in order. Those that
+  /// have not begun when the threads end are dropped. Throws Error when no thread can be started.
+  void Add(std::function<void()> job);
+
+private:
+  void Run();
+
+  int Count;
+  std::mutex Guard;
+  std::condition_variable Changed;
+  std::deque<std::function<void()>> Jobs;
+  std::vector<std::thread> Threads;
+  bool IsOver = false;
+};
+
+} // namespace dsm
+
+#endif

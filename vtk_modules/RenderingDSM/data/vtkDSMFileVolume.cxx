@@ -1,0 +1,349 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkDSMFileVolume.h"
+
+#include "DSMCore/base/Error.h"
+#include "DSMRayTracing/layout/MacrocellBuilder.h"
+#include "DSMVolumeFiles/range/KeptFile.h"
+#include "vtkDSMFileArray.h"
+#include "vtkDSMGather.h"
+#include "vtkDSMImagePiece.h"
+
+#include "vtkImageData.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <filesystem>
+#include <numeric>
+#include <tuple>
+#include <utility>
+
+namespace
+{
+
+using rt::Box;
+using rt::Index3;
+
+/// One component of what a file has, or the magnitude of all.
+class FileVoxels final : public rt::VoxelSource
+{
+public:
+  FileVoxels(std::shared_ptr<const vtkDSMFileValues> values, int component, rt::ScalarType type)
+    : Values(std::move(values))
+    , Component(component)
+    , Type(type)
+  {
+  }
+
+  Box GetCells() const override
+  {
+    return { Index3(0), this->Values->GetBox().GetSize() - Index3(1) };
+  }
+
+  void ReadSamples(const Box& points, std::byte* out) const override
+  {
+    const vol::FileArray& array = this->Values->GetArray();
+    if (array.Components == 1)
+    {
+      this->Values->ReadBox(points, out);
+      return;
+    }
+    std::vector<std::byte> samples(
+      static_cast<std::size_t>(points.GetCount()) * array.GetSampleBytes());
+    this->Values->ReadBox(points, samples.data());
+    rt::Dispatch(array.Type,
+      [&](auto zero)
+      {
+        using Native = decltype(zero);
+        const auto* from = reinterpret_cast<const Native*>(samples.data());
+        if (this->Component != vtkDSMImagePiece::Magnitude)
+        {
+          this->Pick(from, points.GetCount(), reinterpret_cast<Native*>(out));
+        }
+        else if (this->Type == rt::ScalarType::Float32)
+        {
+          this->FindMagnitudes(from, points.GetCount(), reinterpret_cast<float*>(out));
+        }
+        else
+        {
+          this->FindMagnitudes(from, points.GetCount(), reinterpret_cast<double*>(out));
+        }
+      });
+  }
+
+private:
+  template <class Native>
+  void Pick(const Native* from, std::int64_t count, Native* out) const
+  {
+    const int components = this->Values->GetArray().Components;
+    for (std::int64_t sample = 0; sample < count; ++sample)
+    {
+      out[sample] = from[sample * components + this->Component];
+    }
+  }
+
+  /// As vtkDSMImagePiece finds them.
+  template <class Native, class Result>
+  void FindMagnitudes(const Native* from, std::int64_t count, Result* out) const
+  {
+    const int components = this->Values->GetArray().Components;
+    for (std::int64_t sample = 0; sample < count; ++sample)
+    {
+      double sum = 0.0;
+      for (int component = 0; component < components; ++component)
+      {
+        const auto value = static_cast<double>(from[sample * components + component]);
+        sum += value * value;
+      }
+      out[sample] = static_cast<Result>(std::sqrt(sum));
+    }
+  }
+
+  std::shared_ptr<const vtkDSMFileValues> Values;
+  int Component;
+  rt::ScalarType Type;
+};
+
+/// How a rank that has no part of the file's values opens it.
+struct Opening
+{
+  std::int32_t Level;
+  std::int32_t RawType;
+  std::int64_t RawSamples[3];
+  std::int32_t RawComponents;
+  std::int32_t RawBigEndian;
+  std::uint64_t RawHeaderBytes;
+  double RawSpacing[3];
+};
+
+std::vector<char> EncodeOpening(const vtkDSMFileValues& values)
+{
+  const vol::OpenOptions& options = values.GetOptions();
+  Opening opening{};
+  opening.Level = options.Level;
+  opening.RawType = static_cast<std::int32_t>(options.Bare.Type);
+  opening.RawComponents = options.Bare.Components;
+  opening.RawBigEndian = options.Bare.BigEndian ? 1 : 0;
+  opening.RawHeaderBytes = options.Bare.HeaderBytes;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    opening.RawSamples[axis] = options.Bare.Samples[axis];
+    opening.RawSpacing[axis] = options.Bare.Spacing[axis];
+  }
+  std::vector<char> bytes(sizeof(opening));
+  std::memcpy(bytes.data(), &opening, sizeof(opening));
+  const std::string path = std::filesystem::absolute(values.GetFile()->GetPath()).string();
+  bytes.insert(bytes.end(), path.c_str(), path.c_str() + path.size() + 1);
+  bytes.insert(bytes.end(), options.Dataset.begin(), options.Dataset.end());
+  return bytes;
+}
+
+std::shared_ptr<const vol::VolumeFile> OpenAs(
+  const std::vector<char>& bytes, vol::OpenOptions& options)
+{
+  Opening opening{};
+  std::memcpy(&opening, bytes.data(), sizeof(opening));
+  options.Level = opening.Level;
+  options.Bare.Type = static_cast<rt::ScalarType>(opening.RawType);
+  options.Bare.Components = opening.RawComponents;
+  options.Bare.BigEndian = opening.RawBigEndian != 0;
+  options.Bare.HeaderBytes = opening.RawHeaderBytes;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    options.Bare.Samples[axis] = opening.RawSamples[axis];
+    options.Bare.Spacing[axis] = opening.RawSpacing[axis];
+  }
+  const auto path = bytes.begin() + sizeof(opening);
+  const auto end = std::find(path, bytes.end(), '\0');
+  options.Dataset.assign(end + 1, bytes.end());
+  return vol::OpenVolumeFile(std::string(path, end), options);
+}
+
+/// Of one component of a file's values, or of the magnitude.
+vol::ValueRange GetFinite(const vtkDSMFileValues& values, int component)
+{
+  const vol::ValueRanges* const known = values.FindRanges([](double) { return true; });
+  if (!known)
+  {
+    return {};
+  }
+  const bool magnitude = component == vtkDSMImagePiece::Magnitude;
+  return magnitude ? known->Finite.back() : known->Finite[static_cast<std::size_t>(component)];
+}
+
+} // namespace
+
+vtkDSMFileVolume::Seat vtkDSMFileVolume::Describe(vtkImageData* image, vtkAbstractArray* array)
+{
+  Seat seat{};
+  if (const vtkDSMFileValues* values = array ? vtkDSMGetFileValues(array) : nullptr)
+  {
+    int extent[6];
+    image->GetExtent(extent);
+    seat.InFile = 1;
+    seat.Step = values->GetStep();
+    seat.Array = static_cast<std::int64_t>(values->GetArrayNumber());
+    seat.Stamp = values->GetFile()->GetStamp();
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      seat.ToFile[axis] = values->GetBox().Min[axis] - extent[2 * axis];
+    }
+  }
+  return seat;
+}
+
+vtkDSMFileVolume::vtkDSMFileVolume(std::shared_ptr<const vtkDSMFileValues> values, int component)
+  : Values(std::move(values))
+  , Component(this->Values->GetArray().Components == 1 ? 0 : component)
+{
+}
+
+std::unique_ptr<vtkDSMFileVolume> vtkDSMFileVolume::Find(dsm::Messenger& messenger,
+  const vtkDSMLatticePlan::Lattice& lattice, const std::vector<Seat>& seats,
+  const vtkDSMFileValues* own, bool isFirst, int component)
+{
+  const auto getPlace = [&](const vtkDSMLatticePlan::Member& member)
+  {
+    const Seat& seat = seats[member.Piece];
+    return std::make_tuple(seat.InFile, seat.Step, seat.Array, seat.Stamp,
+      seat.ToFile[0] - member.IndexToLattice.x, seat.ToFile[1] - member.IndexToLattice.y,
+      seat.ToFile[2] - member.IndexToLattice.z);
+  };
+  const auto& members = lattice.Members;
+  const auto place = getPlace(members.front());
+  if (std::get<0>(place) == 0 ||
+    std::any_of(members.begin(), members.end(),
+      [&](const auto& member) { return getPlace(member) != place; }))
+  {
+    return nullptr;
+  }
+  std::vector<char> mine;
+  messenger.RunTogether("Opening the volume's file",
+    [&]
+    {
+      if (isFirst)
+      {
+        mine = EncodeOpening(*own);
+      }
+    });
+  const std::vector<char> opening = vtkDSMGather::Items(messenger, mine);
+  std::unique_ptr<vtkDSMFileVolume> volume;
+  try
+  {
+    vol::OpenOptions options;
+    const auto file = own ? own->GetFile() : OpenAs(opening, options);
+    const Index3 first(std::get<4>(place), std::get<5>(place), std::get<6>(place));
+    const auto array = static_cast<std::size_t>(std::get<2>(place));
+    const Box box{ first, first + lattice.Points };
+    if (file->GetStamp() == std::get<3>(place) && array < file->GetArrays().size() &&
+      rt::Intersect(box, { Index3(0), file->GetArrays()[array].Grid.Samples }).GetCount() ==
+        box.GetCount())
+    {
+      volume.reset(new vtkDSMFileVolume(
+        std::make_shared<vtkDSMFileValues>(file, array, std::get<1>(place), box), component));
+    }
+  }
+  catch (const std::exception&) // the pieces' own ranks read them then
+  {
+    volume.reset();
+  }
+  const auto all = messenger.AllGatherValue(std::int32_t(volume ? 1 : 0));
+  if (std::find(all.begin(), all.end(), 0) != all.end())
+  {
+    volume.reset();
+  }
+  return volume;
+}
+
+std::shared_ptr<const dsm::BlockReader> vtkDSMFileVolume::CreateReader(
+  const rt::BrickLattice& lattice) const
+{
+  return std::make_shared<rt::VoxelBrickReader>(
+    lattice, std::make_shared<FileVoxels>(this->Values, this->Component, lattice.GetScalarType()));
+}
+
+std::vector<dsm::BlockId> vtkDSMFileVolume::CreateOrder(const rt::BrickLattice& lattice) const
+{
+  // Columns of chunks, as wide as the cache holds two layers of: of a brick that ends at a chunk's first samples
+  // the chunk behind is there, or will be read next.
+  const vol::FileArray& array = this->Values->GetArray();
+  const Index3 chunk = array.Grid.ChunkSamples;
+  const double chunkBytes =
+    static_cast<double>(chunk.x * chunk.y * chunk.z) * static_cast<double>(array.GetSampleBytes());
+  const double held =
+    static_cast<double>(vol::ChunkCache::GetShared().GetLimit()) / std::max(chunkBytes, 1.0);
+  const auto width = static_cast<std::int64_t>(std::max(1.0, std::sqrt(0.5 * held) - 1.0));
+  const Index3 first = this->Values->GetBox().Min;
+  const auto getKey = [&](dsm::BlockId id)
+  {
+    const Index3 at = (lattice.GetCellsOfBrick(id).Min + first) / chunk;
+    return std::make_tuple(at.y / width, at.x / width, at.z, at.y, at.x, id);
+  };
+  std::vector<dsm::BlockId> order(lattice.GetBrickCount());
+  std::iota(order.begin(), order.end(), dsm::BlockId(0));
+  std::sort(order.begin(), order.end(),
+    [&](dsm::BlockId a, dsm::BlockId b) { return getKey(a) < getKey(b); });
+  return order;
+}
+
+rt::ValueRange vtkDSMFileVolume::GuessRange(
+  dsm::Messenger& messenger, rt::ScalarType type, const vtkDSMFileValues* own) const
+{
+  const auto parts = messenger.GatherValueTogether("Reading the volume's range",
+    [&] { return own ? GetFinite(*own, this->Component) : vol::ValueRange{}; });
+  vol::ValueRange all;
+  for (const vol::ValueRange& part : parts)
+  {
+    all.Add(part);
+  }
+  return all.IsEmpty() ? rt::ValueRange{ 1.0f, -1.0f }
+                       : rt::Dispatch(type,
+                           [&](auto zero)
+                           {
+                             using T = decltype(zero);
+                             return rt::ValueRange{ rt::RoundDown(static_cast<T>(all.Least)),
+                               rt::RoundUp(static_cast<T>(all.Greatest)) };
+                           });
+}
+
+rt::VoxelIndex vtkDSMFileVolume::FindIndex(dsm::Messenger& messenger,
+  const rt::BrickLattice& lattice, const dsm::BlockReader& reader, const vtkDSMFileValues* own,
+  int threads, const std::function<void(double)>& progress) const
+{
+  const char* const what = "Looking through the volume";
+  const vol::KeptFile kept(*this->Values->GetFile(), this->Values->GetArrayNumber(),
+    this->Values->GetStep(), this->Values->GetBox(),
+    "bricks1-" + std::to_string(lattice.GetEdge()) + "-" + std::to_string(this->Component));
+  std::vector<std::byte> bytes;
+  messenger.RunTogether(what,
+    [&]
+    {
+      if (messenger.GetRank() == 0)
+      {
+        bytes = kept.Load();
+      }
+    });
+  bytes = messenger.Broadcast(std::move(bytes));
+  std::optional<rt::VoxelIndex> known;
+  messenger.RunTogether(
+    what, [&] { known = rt::VoxelIndex::Decode(bytes, lattice.GetBrickCount()); });
+  if (known)
+  {
+    return std::move(*known);
+  }
+  rt::VoxelIndex::Pass pass;
+  pass.Guess = this->GuessRange(messenger, lattice.GetScalarType(), own);
+  pass.Threads = threads;
+  messenger.RunTogether(what, [&] { pass.Order = this->CreateOrder(lattice); });
+  rt::VoxelIndex found = rt::VoxelIndex::Find(messenger, lattice, reader, pass, progress);
+  messenger.RunTogether(what,
+    [&]
+    {
+      if (messenger.GetRank() == 0)
+      {
+        const std::vector<std::byte> encoded = found.Encode();
+        kept.Keep(encoded.data(), encoded.size());
+      }
+    });
+  return found;
+}

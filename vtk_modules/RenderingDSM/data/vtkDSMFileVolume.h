@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef vtkDSMFileVolume_h
+#define vtkDSMFileVolume_h
+
+#include "DSMRayTracing/build/VoxelBrickReader.h"
+#include "DSMRayTracing/build/VoxelIndex.h"
+#include "DSMRayTracing/build/VoxelSource.h"
+#include "DSMRayTracing/layout/BrickLattice.h"
+#include "vtkDSMFileValues.h"
+#include "vtkDSMLatticePlan.h"
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <vector>
+
+class vtkAbstractArray;
+class vtkImageData;
+
+/// A lattice whose samples are all in one file, so that any rank can cut any of its bricks at any time. What
+/// says that it is collective is for all ranks; failures are dsm::Error, the same on every rank.
+class vtkDSMFileVolume
+{
+public:
+  /// What the other ranks need to know of an image's values; plain, so that it travels.
+  struct Seat
+  {
+    std::int32_t InFile; ///< else nothing else counts
+    std::int32_t Step;
+    std::int64_t Array;
+    std::uint64_t Stamp;
+    std::int64_t ToFile[3]; ///< add to the image's own index
+  };
+
+  /// Local. `array` may be null.
+  static Seat Describe(vtkImageData* image, vtkAbstractArray* array);
+
+  /// Collective. Null, on all ranks, where the members' values are not all of one array of one file, or a rank
+  /// cannot open it. `seats`: of all pieces of all ranks; `own`: the values of this rank's first member, or null;
+  /// `isFirst`: it is the lattice's first member, and the others open the file by its name.
+  static std::unique_ptr<vtkDSMFileVolume> Find(dsm::Messenger& messenger,
+    const vtkDSMLatticePlan::Lattice& lattice, const std::vector<Seat>& seats,
+    const vtkDSMFileValues* own, bool isFirst, int component);
+
+  /// Bricks of the lattice; it has no cell mask.
+  std::shared_ptr<const dsm::BlockReader> CreateReader(const rt::BrickLattice& lattice) const;
+
+  /// Collective: kept since an earlier time, or found by reading everything once, and kept. `threads` of this rank
+  /// read; `progress` as of vtkDSMVolumeData::Publish.
+  rt::VoxelIndex FindIndex(dsm::Messenger& messenger, const rt::BrickLattice& lattice,
+    const dsm::BlockReader& reader, const vtkDSMFileValues* own, int threads,
+    const std::function<void(double)>& progress) const;
+
+private:
+  vtkDSMFileVolume(std::shared_ptr<const vtkDSMFileValues> values, int component);
+
+  /// In the order in which chunks are best read.
+  std::vector<dsm::BlockId> CreateOrder(const rt::BrickLattice& lattice) const;
+  /// Collective: of the values, by what the ranks' pieces know of theirs.
+  rt::ValueRange GuessRange(
+    dsm::Messenger& messenger, rt::ScalarType type, const vtkDSMFileValues* own) const;
+
+  std::shared_ptr<const vtkDSMFileValues> Values; ///< of all of the lattice
+  int Component;                                  ///< vtkDSMImagePiece::Magnitude for the magnitude
+};
+
+#endif
