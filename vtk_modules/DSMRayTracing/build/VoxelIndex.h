@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef rt_VoxelIndex_h
+#define rt_VoxelIndex_h
+
+#include "DSMCore/base/FunctionRef.h"
+#include "DSMCore/fetch/BlockReader.h"
+#include "DSMCore/transport/Messenger.h"
+#include "DSMRayTracing/layout/BrickLattice.h"
+#include "DSMRayTracing/layout/IsovalueSurvey.h"
+#include "DSMRayTracing/layout/MacrocellHierarchy.h"
+
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+namespace rt
+{
+
+/// What must be known of a volume's bricks before any is read: found once by looking through all of them,
+/// and then kept.
+struct VoxelIndex
+{
+  std::vector<ValueRange> Bricks; ///< by id
+  IsovalueSurvey Survey;          ///< of the range of all
+
+  /// As it is kept, with a checksum. Decode gives nothing where the bytes are not an index of as many
+  /// bricks.
+  std::vector<std::byte> Encode() const;
+  static std::optional<VoxelIndex> Decode(const std::vector<std::byte>& bytes, std::size_t bricks);
+
+  /// How to look through the bricks.
+  struct Pass
+  {
+    /// Bricks in the order in which they are best read: all of them, the same on every rank.
+    std::vector<dsm::BlockId> Order;
+    /// What the range of all is thought to be; when that is wrong, bricks are read twice.
+    ValueRange Guess{ 1.0f, -1.0f };
+    int Threads = 1;
+  };
+
+  /// Collective: each rank reads its part of the bricks, a few at a time. `progress` (may be empty) is told
+  /// the part done, in [0, 1]; what it or the reader throws becomes an Error on every rank.
+  static VoxelIndex Find(dsm::Messenger& messenger, const BrickLattice& lattice,
+    const dsm::BlockReader& reader, const Pass& pass, dsm::FunctionRef<void(double)> progress);
+};
+
+} // namespace rt
+
+#endif
