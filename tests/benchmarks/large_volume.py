@@ -58,7 +58,7 @@ def show(plugin, path, edge, memory):
 
     with open(f"/proc/{os.getppid()}/task/{os.getppid()}/children") as children:
         pids = [int(pid) for pid in children.read().split()]
-    simple.LoadPlugin(plugin, ns=globals())
+    simple.LoadPlugin(plugin, ns=vars(simple))
     view = simple.CreateRenderView(ViewSize=[800, 600])
     view.UseFXAA = 0
     simple.Render(view)
@@ -128,7 +128,7 @@ def main():
         for opening in ("first", "second"):
             print(f"-- {opening} opening", flush=True)
             subprocess.run(
-                ["xvfb-run", "-a", *options.mpirun.split(), "-np", str(options.ranks), "pvbatch", __file__,
+                ["xvfb-run", "-a", "-s", "-noreset -screen 0 1280x1024x24", *options.mpirun.split(), "-np", str(options.ranks), "pvbatch", __file__,
                  "--show", os.path.abspath(options.plugin), path, str(edge), str(options.memory)],
                 env=environment, check=True,
             )

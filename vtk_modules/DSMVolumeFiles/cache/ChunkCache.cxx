@@ -44,6 +44,12 @@ std::size_t ChunkCache::GetLimit() const
   return this->Limit;
 }
 
+std::size_t ChunkCache::GetRoom() const
+{
+  const std::lock_guard<std::mutex> lock(this->Guard);
+  return std::min(this->Limit, this->Restriction);
+}
+
 std::size_t ChunkCache::Restrict(std::size_t bytes)
 {
   const std::lock_guard<std::mutex> lock(this->Guard);
@@ -114,6 +120,27 @@ ChunkCache::Chunk ChunkCache::Get(const std::shared_ptr<const VolumeFile>& file,
 void ChunkCache::ReadBox(const std::shared_ptr<const VolumeFile>& file, std::size_t array, int step,
   const rt::Box& box, std::byte* out)
 {
+  this->Read(file, array, step, box, false, out);
+}
+
+void ChunkCache::ReadScattered(const std::shared_ptr<const VolumeFile>& file, std::size_t array,
+  int step, const rt::Box& box, std::byte* out)
+{
+  this->Read(file, array, step, box, true, out);
+}
+
+bool ChunkCache::HasChunk(const std::shared_ptr<const VolumeFile>& file, std::size_t array,
+  int step, const rt::Index3& chunk) const
+{
+  const std::lock_guard<std::mutex> lock(this->Guard);
+  return this->Entries.count(
+           { file, array, step, file->GetArrays()[array].Grid.GetNumber(chunk) }) != 0;
+}
+
+void ChunkCache::Read(const std::shared_ptr<const VolumeFile>& file, std::size_t array, int step,
+  const rt::Box& box, bool scattered, std::byte* out)
+{
+  std::vector<std::byte> dense;
   const FileArray& what = file->GetArrays()[array];
   const rt::Index3 first = box.Min / what.Grid.ChunkSamples;
   const rt::Index3 last = (box.Max - rt::Index3(1)) / what.Grid.ChunkSamples;
@@ -125,8 +152,20 @@ void ChunkCache::ReadBox(const std::shared_ptr<const VolumeFile>& file, std::siz
       for (chunk.x = first.x; chunk.x <= last.x; ++chunk.x)
       {
         const rt::Box part = what.Grid.GetBox(chunk);
+        const rt::Box common = rt::Intersect(part, box);
+        if (scattered && !this->HasChunk(file, array, step, chunk))
+        {
+          dense.resize(static_cast<std::size_t>(common.GetCount()) * what.GetSampleBytes());
+          if (file->ReadPart(array, step, chunk, common, dense.data()))
+          {
+            CopyBox(common, dense.data(), common, out, box, what.GetSampleBytes());
+            const std::lock_guard<std::mutex> lock(this->Guard);
+            this->BytesRead += dense.size();
+            continue;
+          }
+        }
         const Chunk samples = this->Get(file, array, step, chunk);
-        CopyBox(rt::Intersect(part, box), samples->data(), part, out, box, what.GetSampleBytes());
+        CopyBox(common, samples->data(), part, out, box, what.GetSampleBytes());
       }
     }
   }

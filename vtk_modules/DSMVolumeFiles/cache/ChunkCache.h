@@ -37,6 +37,8 @@ public:
   /// Less than the limit, from now on, for whoever must keep to an amount of memory; the limit itself stays.
   /// Returns what holds then.
   std::size_t Restrict(std::size_t bytes);
+  /// That, or less where it is restricted.
+  std::size_t GetRoom() const;
   /// In memory now.
   std::size_t GetBytes() const;
   /// Read so far, of chunks as they are in memory.
@@ -49,6 +51,9 @@ public:
 
   /// The samples of a box of an array, dense, x fastest, through the cache.
   void ReadBox(const std::shared_ptr<const VolumeFile>& file, std::size_t array, int step,
+    const rt::Box& box, std::byte* out);
+  /// The same for boxes far from one another: of chunks that are not here, no more is read than must be.
+  void ReadScattered(const std::shared_ptr<const VolumeFile>& file, std::size_t array, int step,
     const rt::Box& box, std::byte* out);
 
 private:
@@ -77,6 +82,10 @@ private:
     std::list<Key>::iterator Place;
   };
 
+  void Read(const std::shared_ptr<const VolumeFile>& file, std::size_t array, int step,
+    const rt::Box& box, bool scattered, std::byte* out);
+  bool HasChunk(const std::shared_ptr<const VolumeFile>& file, std::size_t array, int step,
+    const rt::Index3& chunk) const;
   void Evict();
 
   mutable std::mutex Guard;

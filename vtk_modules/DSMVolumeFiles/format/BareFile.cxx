@@ -5,6 +5,8 @@
 #include "DSMVolumeFiles/format/StoredFile.h"
 
 #include <algorithm>
+#include <utility>
+#include <vector>
 
 namespace vol
 {
@@ -14,11 +16,23 @@ namespace
 
 constexpr std::int64_t ChunkBytes = 1 << 20;
 
-class BareFile final : public StoredFile
+/// Of a chunk of bare values: rows of so many bytes, and so many of them each way.
+constexpr std::int64_t RowBytes = 1024;
+constexpr std::int64_t Rows = 32;
+
+/// Boxes rather than rows: what is near in space is in few of them.
+ChunkGrid CutIntoBoxes(const rt::Index3& samples, std::size_t sampleBytes)
+{
+  const std::int64_t width =
+    std::max<std::int64_t>(1, RowBytes / static_cast<std::int64_t>(sampleBytes));
+  return { samples, glm::min(samples, rt::Index3(width, Rows, Rows)) };
+}
+
+class BareFile final : public VolumeFile
 {
 public:
   BareFile(const std::string& path, const BareValues& values, const FileGeometry& geometry)
-    : StoredFile(path)
+    : VolumeFile(path)
     , File(std::make_shared<PositionedFile>(values.Path))
   {
     this->Geometry = geometry;
@@ -28,7 +42,7 @@ public:
     array.Name = values.Name;
     array.Type = values.Type;
     array.Components = values.Components;
-    array.Grid = CutIntoRows(values.Samples, array.GetSampleBytes());
+    array.Grid = CutIntoBoxes(values.Samples, array.GetSampleBytes());
     const auto need =
       static_cast<std::uint64_t>(rt::Box{ rt::Index3(0), values.Samples }.GetCount()) *
       array.GetSampleBytes();
@@ -41,32 +55,76 @@ public:
         " bytes, but " + std::to_string(need) + " of values behind " + std::to_string(this->First) +
         " of header are expected. Check the sizes and the type of the values.");
     }
-    Storage storage;
     const std::size_t width = rt::GetBytes(values.Type);
     if (values.BigEndian && width > 1)
     {
-      storage.Codec = ChunkCodec({ { CodecStep::Kind::SwapBytes, width } });
+      this->Codec = ChunkCodec({ { CodecStep::Kind::SwapBytes, width } });
     }
-    storage.HasWholeChunks = false;
-    this->Storages.push_back(std::move(storage));
     this->Arrays.push_back(std::move(array));
   }
 
-protected:
-  std::optional<Place> FindChunk(std::size_t, int, const rt::Index3& chunk) const override
+  void ReadChunk(std::size_t, int, const rt::Index3& chunk, std::byte* out) const override
   {
     const FileArray& array = this->Arrays.front();
     const rt::Box box = array.Grid.GetBox(chunk);
-    const rt::Index3 samples = array.Grid.Samples;
-    const auto before = static_cast<std::uint64_t>((box.Min.z * samples.y + box.Min.y) * samples.x);
-    const std::size_t bytes = array.GetSampleBytes();
-    return Place{ this->File, this->First + before * bytes,
-      static_cast<std::size_t>(box.GetCount()) * bytes, 0 };
+    try
+    {
+      if (this->Codec.IsPlain())
+      {
+        this->ReadRows(array, box, out);
+        return;
+      }
+      const auto bytes = static_cast<std::size_t>(box.GetCount()) * array.GetSampleBytes();
+      std::vector<std::byte> stored(bytes);
+      this->ReadRows(array, box, stored.data());
+      this->Codec.Decode(std::move(stored), 0, out, bytes);
+    }
+    catch (const dsm::Error& error)
+    {
+      StoredFile::RefuseChunk(array, chunk, this->File->GetPath(), error);
+    }
+  }
+
+  bool ReadPart(
+    std::size_t, int, const rt::Index3& chunk, const rt::Box& part, std::byte* out) const override
+  {
+    if (!this->Codec.IsPlain())
+    {
+      return false;
+    }
+    try
+    {
+      this->ReadRows(this->Arrays.front(), part, out);
+    }
+    catch (const dsm::Error& error)
+    {
+      StoredFile::RefuseChunk(this->Arrays.front(), chunk, this->File->GetPath(), error);
+    }
+    return true;
   }
 
 private:
+  void ReadRows(const FileArray& array, const rt::Box& box, std::byte* out) const
+  {
+    const rt::Index3 samples = array.Grid.Samples;
+    const rt::Index3 size = box.GetSize();
+    // Whole rows follow one another.
+    const std::int64_t rows = size.x == samples.x ? size.y : 1;
+    const std::size_t bytes = static_cast<std::size_t>(size.x * rows) * array.GetSampleBytes();
+    for (std::int64_t z = box.Min.z; z < box.Max.z; ++z)
+    {
+      for (std::int64_t y = box.Min.y; y < box.Max.y; y += rows)
+      {
+        const auto before = static_cast<std::uint64_t>((z * samples.y + y) * samples.x + box.Min.x);
+        this->File->Read(this->First + before * array.GetSampleBytes(), out, bytes);
+        out += bytes;
+      }
+    }
+  }
+
   std::shared_ptr<const PositionedFile> File;
   std::uint64_t First = 0;
+  ChunkCodec Codec;
 };
 
 } // namespace

@@ -24,8 +24,8 @@ struct BareValues
   std::int64_t Offset = 0;
 };
 
-/// A volume of bare values, as a header elsewhere describes it. Its chunks are runs of whole rows or planes of
-/// about 1 MiB. Throws dsm::Error when the file cannot be opened or is too short.
+/// A volume of bare values, as a header elsewhere describes it. Its chunks are boxes of at
+/// most 1 MiB. Throws dsm::Error when the file cannot be opened or is too short.
 std::shared_ptr<const VolumeFile> OpenBareFile(
   const std::string& path, const BareValues& values, const FileGeometry& geometry);
 

@@ -52,10 +52,53 @@ void StoredFile::ReadChunk(
   }
   catch (const dsm::Error& error)
   {
-    throw dsm::Error("Chunk (" + std::to_string(chunk.x) + ", " + std::to_string(chunk.y) + ", " +
-      std::to_string(chunk.z) + ") of the array '" + what.Name + "' in '" + place->File->GetPath() +
-      "' cannot be read: " + error.what());
+    RefuseChunk(what, chunk, place->File->GetPath(), error);
   }
+}
+
+bool StoredFile::ReadPart(
+  std::size_t array, int step, const rt::Index3& chunk, const rt::Box& part, std::byte* out) const
+{
+  const FileArray& what = this->Arrays[array];
+  const Storage& storage = this->Storages[array];
+  const std::size_t sampleBytes = what.GetSampleBytes();
+  const rt::Box box = what.Grid.GetBox(chunk);
+  const rt::Box stored =
+    storage.HasWholeChunks ? rt::Box{ box.Min, box.Min + what.Grid.ChunkSamples } : box;
+  const rt::Index3 size = stored.GetSize();
+  const std::optional<Place> place = this->FindChunk(array, step, chunk);
+  if (!place || !storage.Codec.IsPlain() || storage.Slices != 1 ||
+    place->Bytes != static_cast<std::size_t>(stored.GetCount()) * sampleBytes)
+  {
+    return false;
+  }
+  const std::size_t row = static_cast<std::size_t>(part.GetSize().x) * sampleBytes;
+  try
+  {
+    for (std::int64_t z = part.Min.z - stored.Min.z; z < part.Max.z - stored.Min.z; ++z)
+    {
+      for (std::int64_t y = part.Min.y - stored.Min.y; y < part.Max.y - stored.Min.y; ++y)
+      {
+        const auto before =
+          static_cast<std::uint64_t>((z * size.y + y) * size.x + part.Min.x - stored.Min.x);
+        place->File->Read(place->Offset + before * sampleBytes, out, row);
+        out += row;
+      }
+    }
+  }
+  catch (const dsm::Error& error)
+  {
+    RefuseChunk(what, chunk, place->File->GetPath(), error);
+  }
+  return true;
+}
+
+void StoredFile::RefuseChunk(
+  const FileArray& array, const rt::Index3& chunk, const std::string& path, const dsm::Error& error)
+{
+  throw dsm::Error("Chunk (" + std::to_string(chunk.x) + ", " + std::to_string(chunk.y) + ", " +
+    std::to_string(chunk.z) + ") of the array '" + array.Name + "' in '" + path +
+    "' cannot be read: " + error.what());
 }
 
 } // namespace vol

@@ -2,6 +2,7 @@
 #ifndef vol_StoredFile_h
 #define vol_StoredFile_h
 
+#include "DSMCore/base/Error.h"
 #include "DSMVolumeFiles/base/PositionedFile.h"
 #include "DSMVolumeFiles/codec/ChunkCodec.h"
 #include "DSMVolumeFiles/format/VolumeFile.h"
@@ -19,6 +20,12 @@ class StoredFile : public VolumeFile
 public:
   void ReadChunk(
     std::size_t array, int step, const rt::Index3& chunk, std::byte* out) const override;
+  bool ReadPart(std::size_t array, int step, const rt::Index3& chunk, const rt::Box& part,
+    std::byte* out) const override;
+
+  /// Throws what reading a chunk threw, with the chunk's and the file's names.
+  [[noreturn]] static void RefuseChunk(const FileArray& array, const rt::Index3& chunk,
+    const std::string& path, const dsm::Error& error);
 
 protected:
   using VolumeFile::VolumeFile;

@@ -28,10 +28,12 @@ using rt::Index3;
 class FileVoxels final : public rt::VoxelSource
 {
 public:
-  FileVoxels(std::shared_ptr<const vtkDSMFileValues> values, int component, rt::ScalarType type)
+  FileVoxels(std::shared_ptr<const vtkDSMFileValues> values, int component, rt::ScalarType type,
+    bool scattered)
     : Values(std::move(values))
     , Component(component)
     , Type(type)
+    , Scattered(scattered)
   {
   }
 
@@ -45,12 +47,12 @@ public:
     const vol::FileArray& array = this->Values->GetArray();
     if (array.Components == 1)
     {
-      this->Values->ReadBox(points, out);
+      this->ReadBox(points, out);
       return;
     }
     std::vector<std::byte> samples(
       static_cast<std::size_t>(points.GetCount()) * array.GetSampleBytes());
-    this->Values->ReadBox(points, samples.data());
+    this->ReadBox(points, samples.data());
     rt::Dispatch(array.Type,
       [&](auto zero)
       {
@@ -72,6 +74,11 @@ public:
   }
 
 private:
+  void ReadBox(const Box& points, std::byte* out) const
+  {
+    this->Scattered ? this->Values->ReadScattered(points, out) : this->Values->ReadBox(points, out);
+  }
+
   template <class Native>
   void Pick(const Native* from, std::int64_t count, Native* out) const
   {
@@ -102,6 +109,7 @@ private:
   std::shared_ptr<const vtkDSMFileValues> Values;
   int Component;
   rt::ScalarType Type;
+  bool Scattered;
 };
 
 /// How a rank that has no part of the file's values opens it.
@@ -256,10 +264,11 @@ std::unique_ptr<vtkDSMFileVolume> vtkDSMFileVolume::Find(dsm::Messenger& messeng
 }
 
 std::shared_ptr<const dsm::BlockReader> vtkDSMFileVolume::CreateReader(
-  const rt::BrickLattice& lattice) const
+  const rt::BrickLattice& lattice, bool scattered) const
 {
-  return std::make_shared<rt::VoxelBrickReader>(
-    lattice, std::make_shared<FileVoxels>(this->Values, this->Component, lattice.GetScalarType()));
+  return std::make_shared<rt::VoxelBrickReader>(lattice,
+    std::make_shared<FileVoxels>(
+      this->Values, this->Component, lattice.GetScalarType(), scattered));
 }
 
 std::vector<dsm::BlockId> vtkDSMFileVolume::CreateOrder(const rt::BrickLattice& lattice) const
@@ -271,7 +280,7 @@ std::vector<dsm::BlockId> vtkDSMFileVolume::CreateOrder(const rt::BrickLattice& 
   const double chunkBytes =
     static_cast<double>(chunk.x * chunk.y * chunk.z) * static_cast<double>(array.GetSampleBytes());
   const double held =
-    static_cast<double>(vol::ChunkCache::GetShared().GetLimit()) / std::max(chunkBytes, 1.0);
+    static_cast<double>(vol::ChunkCache::GetShared().GetRoom()) / std::max(chunkBytes, 1.0);
   const auto width = static_cast<std::int64_t>(std::max(1.0, std::sqrt(0.5 * held) - 1.0));
   const Index3 first = this->Values->GetBox().Min;
   const auto getKey = [&](dsm::BlockId id)
@@ -307,8 +316,8 @@ rt::ValueRange vtkDSMFileVolume::GuessRange(
 }
 
 rt::VoxelIndex vtkDSMFileVolume::FindIndex(dsm::Messenger& messenger,
-  const rt::BrickLattice& lattice, const dsm::BlockReader& reader, const vtkDSMFileValues* own,
-  int threads, const std::function<void(double)>& progress) const
+  const rt::BrickLattice& lattice, const vtkDSMFileValues* own, int threads,
+  const std::function<void(double)>& progress) const
 {
   const char* const what = "Looking through the volume";
   const vol::KeptFile kept(*this->Values->GetFile(), this->Values->GetArrayNumber(),
@@ -334,8 +343,14 @@ rt::VoxelIndex vtkDSMFileVolume::FindIndex(dsm::Messenger& messenger,
   rt::VoxelIndex::Pass pass;
   pass.Guess = this->GuessRange(messenger, lattice.GetScalarType(), own);
   pass.Threads = threads;
-  messenger.RunTogether(what, [&] { pass.Order = this->CreateOrder(lattice); });
-  rt::VoxelIndex found = rt::VoxelIndex::Find(messenger, lattice, reader, pass, progress);
+  std::shared_ptr<const dsm::BlockReader> reader;
+  messenger.RunTogether(what,
+    [&]
+    {
+      reader = this->CreateReader(lattice, false);
+      pass.Order = this->CreateOrder(lattice);
+    });
+  rt::VoxelIndex found = rt::VoxelIndex::Find(messenger, lattice, *reader, pass, progress);
   messenger.RunTogether(what,
     [&]
     {

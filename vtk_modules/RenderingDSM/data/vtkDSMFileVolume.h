@@ -42,14 +42,14 @@ public:
     const vtkDSMLatticePlan::Lattice& lattice, const std::vector<Seat>& seats,
     const vtkDSMFileValues* own, bool isFirst, int component);
 
-  /// Bricks of the lattice; it has no cell mask.
-  std::shared_ptr<const dsm::BlockReader> CreateReader(const rt::BrickLattice& lattice) const;
+  /// Bricks of the lattice; it has no cell mask. `scattered`: they are read as rays meet them, not all in turn.
+  std::shared_ptr<const dsm::BlockReader> CreateReader(
+    const rt::BrickLattice& lattice, bool scattered) const;
 
   /// Collective: kept since an earlier time, or found by reading everything once, and kept. `threads` of this rank
   /// read; `progress` as of vtkDSMVolumeData::Publish.
   rt::VoxelIndex FindIndex(dsm::Messenger& messenger, const rt::BrickLattice& lattice,
-    const dsm::BlockReader& reader, const vtkDSMFileValues* own, int threads,
-    const std::function<void(double)>& progress) const;
+    const vtkDSMFileValues* own, int threads, const std::function<void(double)>& progress) const;
 
 private:
   vtkDSMFileVolume(std::shared_ptr<const vtkDSMFileValues> values, int component);

@@ -376,15 +376,14 @@ void vtkDSMVolumeData::PublishFile(const vtkDSMFileVolume& file, const vtkDSMFil
 {
   dsm::Messenger& messenger = this->Group->GetMessenger();
   dsm::BlockStore& store = this->Group->GetStore();
-  std::shared_ptr<const dsm::BlockReader> reader;
   std::optional<dsm::BlockDirectory> directory;
   std::shared_ptr<dsm::ReadingSource> source;
   messenger.RunTogether("Opening the volume's file",
     [&]
     {
-      reader = file.CreateReader(field.Lattice);
       directory = field.Lattice.CreateDirectory(messenger.GetSize());
-      source = std::make_shared<dsm::ReadingSource>(messenger, reader);
+      source =
+        std::make_shared<dsm::ReadingSource>(messenger, file.CreateReader(field.Lattice, true));
       // Chunks of the file that are in memory have their part of what a rank may take.
       const std::uint64_t memory = store.GetSettings().MemoryBytes;
       const std::size_t chunks = vol::ChunkCache::GetShared().Restrict(
@@ -393,7 +392,7 @@ void vtkDSMVolumeData::PublishFile(const vtkDSMFileVolume& file, const vtkDSMFil
     });
   field.Segment = this->Group->WithRoom([&] { return store.Publish(what, *directory, source); });
   rt::VoxelIndex index =
-    file.FindIndex(messenger, field.Lattice, *reader, own, store.GetSettings().Workers, progress);
+    file.FindIndex(messenger, field.Lattice, own, store.GetSettings().Workers, progress);
   messenger.RunTogether("Building the macrocells",
     [&]
     {

@@ -23,6 +23,12 @@ void vtkDSMFileValues::ReadBox(const rt::Box& box, std::byte* out) const
     this->File, this->Array, this->Step, { box.Min + this->Box.Min, box.Max + this->Box.Min }, out);
 }
 
+void vtkDSMFileValues::ReadScattered(const rt::Box& box, std::byte* out) const
+{
+  vol::ChunkCache::GetShared().ReadScattered(
+    this->File, this->Array, this->Step, { box.Min + this->Box.Min, box.Max + this->Box.Min }, out);
+}
+
 std::uint64_t vtkDSMFileValues::GetStamp() const
 {
   const std::string& path = this->File->GetPath();

@@ -35,6 +35,8 @@ public:
   /// The samples of a box that counts from the part's first sample, dense, x fastest, all components of a sample
   /// together. Throws dsm::Error.
   void ReadBox(const rt::Box& box, std::byte* out) const;
+  /// The same where boxes are read here and there, rather than one beside the other.
+  void ReadScattered(const rt::Box& box, std::byte* out) const;
 
   /// Equal only, for all practical purposes, for equal values.
   std::uint64_t GetStamp() const;
