@@ -110,7 +110,7 @@ bool vtkPVDSMGeometryRepresentation::IsTranslucent()
       [](const auto& block) { return block.second < 1.0; }) ||
     (isColored &&
       (this->Mapper->GetColorMode() == VTK_COLOR_MODE_DIRECT_SCALARS ||
-        (map && map->IsOpaque() == 0))) ||
+        vtkPVDSMTracedDisplay::HasOpacity(map))) ||
     (texture && texture->IsTranslucent());
 }
 

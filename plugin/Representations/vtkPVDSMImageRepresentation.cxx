@@ -110,9 +110,11 @@ int vtkPVDSMImageRepresentation::ProcessViewRequest(
   }
   if (request == vtkPVView::REQUEST_UPDATE())
   {
-    vtkScalarsToColors* colors = this->Mapper->GetLookupTable();
+    const bool isColored = this->Mapper->GetScalarVisibility();
+    // Colours that are taken as they are may have an opacity on another rank.
     const bool isTranslucent = this->Mapper->GetSurfaceProperty()->GetOpacity() < 1.0 ||
-      (colors && !this->Mapper->GetColorArray().empty() && colors->IsOpaque() == 0);
+      (isColored && !this->Mapper->GetMapScalars()) ||
+      (isColored && vtkPVDSMTracedDisplay::HasOpacity(this->Mapper->GetLookupTable()));
     this->Display->KeepData(this->Volume->GetBounds(), isTranslucent,
       this->Mapper->GetInputDataObject(0, 0), inInfo, outInfo);
   }
@@ -204,6 +206,11 @@ void vtkPVDSMImageRepresentation::SetLookupTable(vtkScalarsToColors* table)
   this->Mapper->SetLookupTable(table);
 }
 
+void vtkPVDSMImageRepresentation::SetMapScalars(bool map)
+{
+  this->Mapper->SetMapScalars(map);
+}
+
 void vtkPVDSMImageRepresentation::SetAmbientColor(double r, double g, double b)
 {
   this->Mapper->GetSurfaceProperty()->SetAmbientColor(r, g, b);
@@ -242,6 +249,11 @@ void vtkPVDSMImageRepresentation::SetSpecularPower(double value)
 void vtkPVDSMImageRepresentation::SetOpacity(double value)
 {
   this->Mapper->GetSurfaceProperty()->SetOpacity(value);
+}
+
+void vtkPVDSMImageRepresentation::SetInterpolation(int value)
+{
+  this->Mapper->GetSurfaceProperty()->SetInterpolation(value);
 }
 
 void vtkPVDSMImageRepresentation::SetPosition(double x, double y, double z)

@@ -59,6 +59,7 @@ public:
   void SelectIsoArray(int index, int port, int connection, int association, const char* name);
   void SetIsoComponent(int component);
   void SetLookupTable(vtkScalarsToColors* table);
+  void SetMapScalars(bool map);
   ///@}
 
   ///@{
@@ -88,6 +89,7 @@ public:
   void SetSpecular(double value);
   void SetSpecularPower(double value);
   void SetOpacity(double value);
+  void SetInterpolation(int value);
   ///@}
 
   ///@{

@@ -10,6 +10,7 @@
 #include "vtkAbstractMapper.h"
 #include "vtkActor.h"
 #include "vtkBoundingBox.h"
+#include "vtkColorTransferFunction.h"
 #include "vtkCommand.h"
 #include "vtkMatrix4x4.h"
 #include "vtkPVDataRepresentation.h"
@@ -81,6 +82,12 @@ void vtkPVDSMTracedDisplay::SetPickable(bool pickable)
 {
   this->Prop->SetPickable(pickable);
   this->SelectionActor->SetPickable(pickable);
+}
+
+bool vtkPVDSMTracedDisplay::HasOpacity(vtkScalarsToColors* map)
+{
+  auto* function = vtkColorTransferFunction::SafeDownCast(map);
+  return map && (map->IsOpaque() == 0 || (function && function->GetNanOpacity() < 1.0));
 }
 
 void vtkPVDSMTracedDisplay::Leave()

@@ -22,6 +22,7 @@ class vtkPVDSMRefinement;
 class vtkPVDataRepresentation;
 class vtkPartitionedDataSet;
 class vtkProp3D;
+class vtkScalarsToColors;
 class vtkView;
 
 /// What our representations have in common: the prop that is traced gets into a view, with its scene
@@ -47,6 +48,9 @@ public:
   bool RemoveFromView(vtkView* view);
   void SetVisibility(bool visible);
   void SetPickable(bool pickable);
+
+  /// Whether a colour map, which may be null, lets light through anywhere.
+  static bool HasOpacity(vtkScalarsToColors* map);
   void SetFrameReport(vtkPVDSMFrameReport* report);
   void SetLightOptions(vtkObject* options);
   void SetMemoryOptions(vtkObject* options);

@@ -102,3 +102,133 @@ check((abs(colors - colors[0]).max(axis=0) <= 3).all(), "its own array has one v
 
 display.ColorArrayName = [None, ""]
 check_equal(render(view), flat, "solid again")
+
+# Arrays of the cells: the colour of the cell, exactly, as Contour passes it on; in one image, with ghost layers, and
+# in blocks.
+simple.Delete(source)
+CELLS = """
+image.SetExtent(piece)
+add(image, distance(piece))
+size = [int(piece[2 * axis + 1] - piece[2 * axis]) for axis in range(3)]
+k, j, i = np.meshgrid(*(np.arange(size[axis]) + piece[2 * axis] for axis in (2, 1, 0)), indexing='ij')
+of_cells = ((7 * i + 3 * j + 5 * k) % 11).ravel().astype(float)
+for name, values in (('n', of_cells), ('f', 10 - of_cells),
+                     ('colours', np.stack([20 * of_cells, 255 - 20 * of_cells, 0 * of_cells], axis=1).astype(np.uint8)),
+                     ('glass', np.stack([20 * of_cells] * 3 + [128 + 0 * of_cells], axis=1).astype(np.uint8))):
+    array = numpy_to_vtk(values, deep=True); array.SetName(name)
+    image.GetCellData().AddArray(array)
+i, j, k = points(piece)
+colours = numpy_to_vtk(np.stack([10 * i, 10 * j, 10 * k], axis=1).astype(np.uint8), deep=True)
+colours.SetName('smooth'); image.GetPointData().AddArray(colours)
+shades = numpy_to_vtk((i + k) / 48, deep=True); shades.SetName('shades')
+image.GetPointData().AddArray(shades)
+"""
+cells = image_source(CELLS)
+blocks = simple.GroupDatasets(Input=[image_source(CELLS, (0, 12, 0, 24, 0, 24)),
+                                     image_source(CELLS, (12, 24, 0, 24, 0, 24))])
+ghosts = simple.GhostCellsGenerator(Input=cells)
+
+
+def color_plainly(display, array, place, mapped):
+    """Its colours as they are, without shading."""
+    simple.ColorBy(display, (place, array))
+    display.MapScalars = 1 if mapped else 0
+    display.Ambient, display.Diffuse = 1.0, 0.0
+    if mapped:
+        table = simple.GetColorTransferFunction(array)
+        table.ApplyPreset("Jet", True)
+        table.RescaleTransferFunction(0.0, 10.0)
+
+
+def check_colors(dataset, name, array, place, mapped=True, share=0.02):
+    display = show(dataset, view, [0.7], "f")
+    color_plainly(display, array, place, mapped)
+    place_camera(view, (0.3, 0.2, 1.0))
+    view.CameraViewAngle = 15
+    traced = render(view, name)
+    simple.Hide(dataset, view)
+    contour = simple.Contour(Input=dataset, ContourBy=["POINTS", "f"], Isosurfaces=[0.7])
+    triangles = simple.Show(contour, view)
+    triangles.Representation = "Surface"
+    color_plainly(triangles, array, place, mapped)
+    reference = render(view)
+    both = get_covered(traced) & get_covered(reference)
+    check(both.sum() > 0.05 * both.size, f"{name}: Contour draws it")
+    others = (abs(traced - reference).max(axis=2)[both] > 3).mean()
+    check(others < share, f"{name}: the colours are Contour's but for {100 * others:.2f} % along the cells' edges")
+    simple.Delete(contour)
+    display.MapScalars = 1
+    return traced
+
+
+by_cell = check_colors(cells, "ByCell", "n", "CELLS")
+shown = numpy.unique(by_cell[get_covered(by_cell)], axis=0)
+check(len(shown) == 11, f"nothing is interpolated: {len(shown)} colours for 11 values")
+check_colors(cells, "ByCellOfTheSameName", "f", "CELLS")
+check_colors(ghosts, "ByCellWithGhosts", "n", "CELLS")
+check_colors(blocks, "ByCellInBlocks", "n", "CELLS")
+
+# Map Scalars off: the array's values are colours.
+check_colors(cells, "ColoursOfCells", "colours", "CELLS", False)
+check_colors(cells, "ColoursOfPoints", "smooth", "POINTS", False)
+check_colors(cells, "ShadesOfPoints", "shades", "POINTS", False)
+check_colors(blocks, "ColoursInBlocks", "colours", "CELLS", False)
+display = simple.Show(cells, view)
+color_plainly(display, "glass", "CELLS", False)
+glass = render(view, "Glass")
+front = glass[get_covered(glass)]
+check((abs(front - [0, 0, 51]).max(axis=1) > 2).any() and (front[:, 2] >= front[:, 0]).all(),
+      "an opacity among the colours lets the background through")
+display.MapScalars = 1
+
+# Values that are no numbers have their colour and opacity.
+holes = image_source(CELLS + """
+of_cells[::3] = np.nan
+array = numpy_to_vtk(of_cells, deep=True); array.SetName('holes')
+image.GetCellData().AddArray(array)
+""")
+simple.Hide(cells, view)
+table = simple.GetColorTransferFunction("holes")
+table.NanColor = [0.0, 1.0, 0.0]
+for opacity in (1.0, 0.0):
+    table.NanOpacity = opacity
+    check_colors(holes, f"NotANumber{opacity:.0f}", "holes", "CELLS")
+
+# Flat: the cells can be told from one another, as Contour's triangles, in its mean as bright.
+simple.ColorBy(display, None)
+simple.Hide(holes, view)
+contour = simple.Contour(Input=cells, ContourBy=["POINTS", "f"], Isosurfaces=[0.7])
+edges = []
+for interpolation in ("Gouraud", "Flat"):
+    pictures = []
+    for dataset, properties in ((cells, {"DSMIsoArray": ["POINTS", "f"], "DSMIsoValues": [0.7]}), (contour, {})):
+        shown = simple.Show(dataset, view)
+        shown.Representation = REPRESENTATION if properties else "Surface"
+        shown.ColorArrayName = [None, ""]
+        shown.Ambient, shown.Diffuse, shown.Interpolation = 0.0, 1.0, interpolation
+        for name, value in properties.items():
+            setattr(shown, name, value)
+        pictures.append(render(view, ("Traced" if properties else "Contour") + interpolation))
+        simple.Hide(dataset, view)
+    check_same_surface(pictures[0], pictures[1], interpolation, 0.01)
+    edges.append(abs(numpy.diff(pictures[0][:, :, 0], n=2, axis=1))[get_covered(pictures[0])[:, 2:]].mean())
+check(edges[1] > 1.5 * edges[0], f"edges between cells: {edges[0]:.2f} Gouraud, {edges[1]:.2f} Flat")
+
+# The same controls of meshes do what they do on a Surface.
+mesh = simple.Contour(Input=holes, ContourBy=["POINTS", "f"], Isosurfaces=[0.7])
+for name, array, place, mapped, opacity, interpolation in (
+        ("MeshOfNumbers", "holes", "CELLS", True, 1.0, "Gouraud"), ("MeshWithHoles", "holes", "CELLS", True, 0.0, "Gouraud"),
+        ("MeshOfColours", "colours", "CELLS", False, 0.0, "Gouraud"), ("FlatMesh", "smooth", "POINTS", False, 0.0, "Flat")):
+    pictures = []
+    for representation in (REPRESENTATION, "Surface"):
+        shown = simple.Show(mesh, view)
+        shown.Representation = representation
+        color_plainly(shown, array, place, mapped)
+        table.NanOpacity = opacity
+        shown.Interpolation = interpolation
+        if interpolation == "Flat":
+            shown.Ambient, shown.Diffuse = 0.0, 1.0
+        pictures.append(render(view))
+    check(get_covered(pictures[1]).mean() > 0.05, f"{name}: Surface draws it")
+    different = (abs(pictures[0] - pictures[1]).max(axis=2) > 8).mean()
+    check(different < 0.005, f"{name}: {100 * different:.2f} % of the pixels differ from Surface")

@@ -60,6 +60,9 @@ traced.DSMIsoValues = [0.5, 0.8]
 simple.Delete(surface)
 surface = flying_edges(source, [0.5, 0.8])
 compare("TranslucentOverSlice", 0.001, 0.3)
+plane.Pickable = 0
+compare("TranslucentOverSliceThatCannotBePicked", 0.001, 0.3)
+plane.Pickable = 1
 plane.Opacity = 0.5
 compare("TranslucentOverTranslucentSlice", 0.001, 0.3)
 view.CameraParallelProjection = 1

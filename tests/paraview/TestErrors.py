@@ -94,26 +94,33 @@ grid.GetPointData().SetScalars(array)
 """
 expect_then_delete(grid, ["vtkRectilinearGrid", "Resample To Image"], [60.0])
 
-# A colour array that is on the cells: the surface appears, in its solid colour.
+# A colour array that cannot be one: the surface appears, in its solid colour.
 both = image_source(GOOD + """
 array = numpy_to_vtk(np.zeros(image.GetNumberOfCells()), deep=True); array.SetName('onCells')
 image.GetCellData().AddArray(array)
-array = numpy_to_vtk(np.zeros(image.GetNumberOfCells()), deep=True); array.SetName('other')
+array = numpy_to_vtk(np.zeros((image.GetNumberOfCells(), 5)), deep=True); array.SetName('five')
 image.GetCellData().AddArray(array)
 """)
 with Messages() as messages:
     display = show(both, view, [0.7], "f")
-    simple.ColorBy(display, ("CELLS", "onCells"))
+    display.ColorArrayName = ["POINTS", "onCells"]
+    display.LookupTable = simple.GetColorTransferFunction("onCells")
     place_camera(view)
     pixels = render(view)
     text = messages.text
-check("colour array 'onCells'" in text and "Cell Data to Point Data" in text, "colour by cells: " + text)
+check("colour array 'onCells'" in text and "Cell Data to Point Data" in text, "points have no such array: " + text)
 check(get_covered(pixels).any(), "the surface is still drawn")
 with Messages() as messages:
-    simple.ColorBy(display, ("CELLS", "other"))
-    check_equal(render(view), pixels, "an array that the points have, too, does not colour it either")
+    display.ColorArrayName = ["CELLS", "f"]
+    check_equal(render(view), pixels, "the points' array of the name does not colour it either")
     text = messages.text
-check("colour array 'other' belongs to the cells" in text, "the cells' array is meant: " + text)
+check("colour array 'f' does not exist" in text and "'five', 'onCells'" in text, "the cells' array is meant: " + text)
+with Messages() as messages:
+    display.ColorArrayName = ["CELLS", "five"]
+    display.MapScalars = 0
+    check_equal(render(view), pixels, "five numbers are no colour")
+    text = messages.text
+check("'five' holds no colours" in text and "Map Scalars" in text, "that is said: " + text)
 simple.Delete(both)
 
 # After all that, the same view still draws.

@@ -2,6 +2,7 @@
 #ifndef tests_SearchBench_h
 #define tests_SearchBench_h
 
+#include "DSMRayTracing/volume/FieldSampler.h"
 #include "DSMRayTracing/volume/IsosurfaceSearch.h"
 #include "MemoryStore.h"
 
@@ -11,6 +12,7 @@ struct SearchBench
   MemoryStore Store;
   MemoryStore::Worker Worker;
   rt::IsosurfaceSearch<MemoryStore> Search{ Store, Worker };
+  rt::FieldSampler<MemoryStore> Fields{ Store, Worker };
 };
 
 /// From one point (T = 0) to another (T = 1).

@@ -118,6 +118,9 @@ void CompareWithOracle(const TestVolume<T>& volume, double isovalue, int edge, u
       ASSERT_NEAR(glm::length(hit.Normal), 1.0, 1e-12);
       const glm::dvec3 point = ray.Origin + hit.T * ray.Direction;
       ASSERT_LT(glm::length(point - hit.IndexPoint), 1e-9);
+      const glm::dvec3 inCell = hit.IndexPoint - glm::dvec3(hit.Cell);
+      ASSERT_TRUE(glm::all(glm::greaterThanEqual(inCell, glm::dvec3(-1e-9))));
+      ASSERT_TRUE(glm::all(glm::lessThanEqual(inCell, glm::dvec3(1.0 + 1e-9))));
     }
     if (found == expected.has_value() && (!found || std::abs(hit.T - *expected) * cells < 1e-4))
     {

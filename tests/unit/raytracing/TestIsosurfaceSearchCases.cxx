@@ -55,7 +55,7 @@ void ExpectNoHoles(double isovalue, int edge, unsigned seed)
     {
       target = glm::round(target);
     }
-    if (!(bench.Search.Sample(*object.Field, target) >= isovalue))
+    if (!(bench.Fields.Sample(*object.Field, target) >= isovalue))
     {
       continue;
     }

@@ -104,6 +104,7 @@ Tally ComparePackets(const TestVolume<T>& volume, const std::vector<double>& iso
           EXPECT_EQ(hits[index].T, expected.T) << "beam " << seed << ", ray " << index;
           EXPECT_EQ(hits[index].Normal, expected.Normal);
           EXPECT_EQ(hits[index].IndexPoint, expected.IndexPoint);
+          EXPECT_EQ(hits[index].Cell, expected.Cell);
           EXPECT_EQ(hits[index].Isovalue, expected.Isovalue);
           EXPECT_EQ(hits[index].FromInside, expected.FromInside);
         }

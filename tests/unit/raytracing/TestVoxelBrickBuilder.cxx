@@ -46,7 +46,7 @@ TestVolume<T> CreateRandomVolume(const rt::Index3& points, std::mt19937& random)
 }
 
 template <class T>
-void ExpectSameBricksForAllCuts(bool masked)
+void ExpectSameBricksForAllCuts(bool masked, bool ofCells = false)
 {
   std::mt19937 random(5);
   TestVolume<T> volume = CreateRandomVolume<T>({ 14, 10, 12 }, random);
@@ -54,7 +54,8 @@ void ExpectSameBricksForAllCuts(bool masked)
   {
     volume.Blank(random() % 13, random() % 9, random() % 11);
   }
-  const rt::BrickLattice lattice(volume.Points, GetScalarType<T>(), masked, 5);
+  const rt::BrickLattice ofPoints(volume.Points, GetScalarType<T>(), masked, 5);
+  const rt::BrickLattice lattice = ofCells ? ofPoints.OfCells() : ofPoints;
   MemoryStore store;
   const auto expected = PublishPieces(store, lattice, GetWhole(volume));
   for (const int cuts : { 1, 3, 10, 60 })
@@ -89,6 +90,7 @@ TYPED_TEST(TestVoxelBrickBuilder, AnySplitGivesTheSameBytes)
 {
   ExpectSameBricksForAllCuts<TypeParam>(false);
   ExpectSameBricksForAllCuts<TypeParam>(true);
+  ExpectSameBricksForAllCuts<TypeParam>(true, true);
 }
 
 TYPED_TEST(TestVoxelBrickBuilder, SamplesAreKeptAsTheyAre)

@@ -28,7 +28,7 @@ void ForEachRow(const Box& box, Function&& function)
   }
 }
 
-VoxelFragmentHeader CreateFragmentHeader(const Box& cells, bool hasMask)
+VoxelFragmentHeader CreateFragmentHeader(const Box& cells, bool hasMask, bool ofCells)
 {
   VoxelFragmentHeader header{};
   for (int axis = 0; axis < 3; ++axis)
@@ -37,6 +37,7 @@ VoxelFragmentHeader CreateFragmentHeader(const Box& cells, bool hasMask)
     header.Max[axis] = static_cast<std::int32_t>(cells.Max[axis]);
   }
   header.HasMask = hasMask ? 1 : 0;
+  header.OfCells = ofCells ? 1 : 0;
   return header;
 }
 
@@ -70,8 +71,7 @@ void CopySamples(const VoxelBrickHeader& brick, const VoxelFragmentHeader& fragm
   const std::byte* samples, std::byte* block)
 {
   const std::size_t sampleBytes = rt::GetBytes(brick.Type);
-  const Box cells = fragment.GetCells();
-  const Box points{ cells.Min, cells.Max + Index3(1) };
+  const Box points = fragment.GetSamples();
   const std::size_t rowBytes = static_cast<std::size_t>(points.GetSize().x) * sampleBytes;
   const std::int64_t row = brick.Cells[0] + 1;
   const std::int64_t slice = row * (brick.Cells[1] + 1);
@@ -180,12 +180,15 @@ void VoxelFragmentSource::Fill(
 {
   const VoxelSource& piece = *this->Pieces[this->Piece];
   const VoxelFragmentHeader header =
-    CreateFragmentHeader({ cells.Min - brickOrigin, cells.Max - brickOrigin }, piece.HasCellMask());
+    CreateFragmentHeader({ cells.Min - brickOrigin, cells.Max - brickOrigin }, piece.HasCellMask(),
+      this->Lattice.IsOfCells());
   const std::size_t sampleBytes = header.GetSampleBytes(this->Lattice.GetScalarType());
   fragment.Bytes.resize(sizeof(header) + sampleBytes + header.GetMaskBytes());
   std::byte* bytes = fragment.Bytes.data();
   std::memcpy(bytes, &header, sizeof(header));
-  piece.ReadSamples({ cells.Min, cells.Max + Index3(1) }, bytes + sizeof(header));
+  const Box samples = header.GetSamples();
+  piece.ReadSamples(
+    { samples.Min + brickOrigin, samples.Max + brickOrigin }, bytes + sizeof(header));
   if (header.HasMask != 0)
   {
     piece.ReadCellMask(
@@ -236,8 +239,12 @@ void VoxelBrickSink::Absorb(dsm::BlockId id, std::byte* block, std::size_t,
 
 void VoxelBrickSink::Finish(dsm::BlockId, std::byte* block, std::size_t)
 {
-  Dispatch(
-    this->Lattice.GetScalarType(), [&](auto sample) { BuildMacrocells<decltype(sample)>(block); });
+  // Cells have no values between one another that anything could be skipped by.
+  if (!this->Lattice.IsOfCells())
+  {
+    Dispatch(this->Lattice.GetScalarType(),
+      [&](auto sample) { BuildMacrocells<decltype(sample)>(block); });
+  }
 }
 
 } // namespace rt

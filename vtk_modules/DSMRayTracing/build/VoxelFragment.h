@@ -12,24 +12,29 @@ namespace rt
 {
 
 /// What a fragment of a voxel brick begins with: the cells that it covers, in the brick. The samples
-/// at their corners follow, x fastest; then, if `HasMask`, one byte a cell, 1 where it holds data.
+/// at their corners follow, or those of the cells themselves if `OfCells`, x fastest; then, if `HasMask`,
+/// one byte a cell, 1 where it holds data.
 struct VoxelFragmentHeader
 {
   std::int32_t Min[3];
   std::int32_t Max[3];
   std::int32_t HasMask;
-  std::int32_t Unused;
+  std::int32_t OfCells;
 
   Box GetCells() const
   {
     return { Index3(this->Min[0], this->Min[1], this->Min[2]),
       Index3(this->Max[0], this->Max[1], this->Max[2]) };
   }
-  std::size_t GetSampleBytes(ScalarType type) const
+  /// Where the samples are, as points of the brick.
+  Box GetSamples() const
   {
     const Box cells = this->GetCells();
-    return static_cast<std::size_t>(Box{ cells.Min, cells.Max + Index3(1) }.GetCount()) *
-      rt::GetBytes(type);
+    return { cells.Min, cells.Max + Index3(this->OfCells != 0 ? 0 : 1) };
+  }
+  std::size_t GetSampleBytes(ScalarType type) const
+  {
+    return static_cast<std::size_t>(this->GetSamples().GetCount()) * rt::GetBytes(type);
   }
   std::size_t GetMaskBytes() const
   {

@@ -21,8 +21,8 @@ public:
   /// The cells this piece has, in global lattice indices.
   virtual Box GetCells() const = 0;
 
-  /// The samples at `points` (within the piece's points), x fastest, in the lattice's scalar type,
-  /// native byte order. `out` has room for all of them.
+  /// The samples at `points` (within the piece's points; its cells, where the lattice is of cells), x
+  /// fastest, in the lattice's scalar type, native byte order. `out` has room for all of them.
   virtual void ReadSamples(const Box& points, std::byte* out) const = 0;
 
   /// Whether some cells of the box do not hold data (blanked).

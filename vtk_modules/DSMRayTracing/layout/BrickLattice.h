@@ -35,6 +35,16 @@ public:
   Index3 GetCells() const { return this->Points - Index3(1); }
   ScalarType GetScalarType() const { return this->Type; }
   bool HasCellMask() const { return this->CellMask; }
+
+  /// The same for values of cells instead of points: the sample at point (i, j, k) is the value of cell
+  /// (i, j, k), and the last ones on each axis have no meaning.
+  BrickLattice OfCells() const
+  {
+    BrickLattice lattice = *this;
+    lattice.CellValues = true;
+    return lattice;
+  }
+  bool IsOfCells() const { return this->CellValues; }
   int GetEdge() const { return this->Edge; }
   const Index3& GetBricks() const { return this->Bricks; }
   dsm::BlockId GetBrickCount() const;
@@ -57,6 +67,7 @@ private:
   Index3 Bricks{ 1 };
   ScalarType Type = ScalarType::Float32;
   bool CellMask = false;
+  bool CellValues = false;
   int Edge = 16;
 };
 

@@ -22,7 +22,8 @@ constexpr int MacrocellEdge = 4;
 ///                                              the cell holds data
 ///   samples in the sample type                 x fastest, (cells + 1) per axis, no padding
 ///
-/// Every part starts at a multiple of BlockAlignment.
+/// Every part starts at a multiple of BlockAlignment. Where the samples are of cells
+/// (BrickLattice::IsOfCells), macrocells and range are left empty.
 struct VoxelBrickHeader
 {
   std::uint32_t BlockBytes;

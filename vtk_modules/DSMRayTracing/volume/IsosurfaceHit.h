@@ -20,6 +20,8 @@ struct IsosurfaceHit
   dsm::BlockId Brick = 0;  ///< the brick that holds the hit
   bool FromInside = false; ///< the ray comes from values that are not below the isovalue
   glm::dvec3 IndexPoint{ 0.0 };
+  /// Of the lattice. IndexPoint may be on a face that it shares with another.
+  glm::ivec3 Cell{ 0 };
 };
 
 } // namespace rt

@@ -8,9 +8,22 @@
 namespace rt
 {
 
+bool IsosurfaceObject::HasOpaqueColors() const
+{
+  switch (this->ColoredBy)
+  {
+    case Coloring::Values:
+      return this->Colors.IsOpaque();
+    case Coloring::OpaqueColors:
+      return !this->ColorField->Lattice.HasCellMask() || this->Colors.NotANumber.w >= 1.0f;
+    default:
+      return false;
+  }
+}
+
 bool IsosurfaceObject::IsOpaque() const
 {
-  return this->Surface.Opacity >= 1.0f && (!this->ColorField || this->Colors.IsOpaque()) &&
+  return this->Surface.Opacity >= 1.0f && (!this->ColorField || this->HasOpaqueColors()) &&
     std::all_of(this->Opacities.begin(), this->Opacities.end(),
       [](float opacity) { return opacity >= 1.0f; });
 }
@@ -26,8 +39,10 @@ void IsosurfaceObject::AddTo(ObjectDigest& digest) const
   {
     digest.Add(this->ColorField->Segment->GetNumber());
     digest.Add(this->Colors);
+    digest.Add(this->ColoredBy);
   }
   digest.Add(this->Surface);
+  digest.Add(this->Flat);
   digest.Add(this->Clipping);
 }
 

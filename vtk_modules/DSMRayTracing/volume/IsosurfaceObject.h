@@ -40,16 +40,30 @@ struct IsosurfaceObject
   std::vector<double> Isovalues;
   /// One for each isovalue, times the material's; empty: 1.
   std::vector<float> Opacities;
-  /// May be null: then the material's diffuse colour is used. Same lattice points as Field.
+  /// May be null: then the material's diffuse colour is used. Same lattice points as Field; of points, whose
+  /// values are interpolated, or of cells.
   std::shared_ptr<const VoxelField> ColorField;
   ColorMap Colors;
+  /// What ColorField holds.
+  enum class Coloring
+  {
+    Values,       ///< for Colors
+    OpaqueColors, ///< PackedColor; Colors says what is shown where there are none
+    Colors        ///< the same, with opacities
+  };
+  Coloring ColoredBy = Coloring::Values;
   Material Surface;
+  /// Lit by the normals of the surface that is in each cell, not by smooth ones.
+  bool Flat = false;
   ClipRegion Clipping;
 
   /// Whether they let no light through anywhere.
   bool IsOpaque() const;
   /// All that a picture of them depends on.
   void AddTo(ObjectDigest& digest) const;
+
+private:
+  bool HasOpaqueColors() const;
 };
 
 } // namespace rt

@@ -113,6 +113,7 @@ void IsosurfacePacketSearch<Store>::SearchBricks(const IsosurfaceObject& object,
         for (int axis = 0; axis < 3; ++axis)
         {
           hit->IndexPoint[axis] = brick.Lower[axis] + cell.Cell[axis] + cell.Local[axis];
+          hit->Cell[axis] = static_cast<int>(brick.Lower[axis]) + cell.Cell[axis];
         }
       });
     progress.Found |= progress.Hit;

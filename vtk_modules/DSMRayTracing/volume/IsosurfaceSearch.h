@@ -13,8 +13,6 @@
 #include "DSMRayTracing/volume/IsosurfaceObject.h"
 #include "DSMRayTracing/volume/IsovaluePredicate.h"
 
-#include <glm/vec3.hpp>
-
 namespace rt
 {
 
@@ -63,9 +61,6 @@ public:
   /// bricks.
   bool IsOccluded(const IsosurfaceObject& object, const Ray& ray) const;
 
-  /// The trilinear value of a field at a point in index space; NaN where it holds no data.
-  double Sample(const VoxelField& field, const glm::dvec3& indexPoint) const;
-
 private:
   using Walk = BrickWalk<IsovaluePredicate>;
 
@@ -82,10 +77,6 @@ private:
   template <class T>
   bool IsOccludedInBrick(
     const IsosurfaceObject& object, const GridRay& line, const Walk& walk) const;
-
-  template <class T>
-  double SampleCell(
-    const VoxelField& field, const Index3& cell, const glm::dvec3& indexPoint) const;
 
   Store& Blocks;
   typename Store::Worker& Self;

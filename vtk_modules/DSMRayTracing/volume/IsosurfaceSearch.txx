@@ -6,10 +6,8 @@
 #include "DSMRayTracing/volume/GridTraversal.h"
 #include "DSMRayTracing/volume/IndexSpace.h"
 #include "DSMRayTracing/volume/IsovalueLevel.h"
-#include "DSMRayTracing/volume/TrilinearCell.h"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 
 namespace rt
@@ -68,6 +66,7 @@ bool IsosurfaceSearch<Store, Access>::IntersectBricks(const IsosurfaceObject& ob
     for (int axis = 0; axis < 3; ++axis)
     {
       hit.IndexPoint[axis] = walk.GetOrigin()[axis] + cell.Cell[axis] + cell.Local[axis];
+      hit.Cell[axis] = static_cast<int>(walk.GetOrigin()[axis]) + cell.Cell[axis];
     }
     return true;
   }
@@ -157,72 +156,6 @@ bool IsosurfaceSearch<Store, Access>::IsOccludedInBrick(
       return range.MayHold(isovalue) &&
         traversal.HasHit(IsovalueLevel<T>(isovalue), walk.GetEnter(), walk.GetLeave());
     });
-}
-
-template <class Store, template <class> class Access>
-double IsosurfaceSearch<Store, Access>::Sample(
-  const VoxelField& field, const glm::dvec3& indexPoint) const
-{
-  const Index3 cells = field.Lattice.GetCells();
-  Index3 cell;
-  for (int axis = 0; axis < 3; ++axis)
-  {
-    if (!(indexPoint[axis] >= 0.0 && indexPoint[axis] <= static_cast<double>(cells[axis])))
-    {
-      return std::numeric_limits<double>::quiet_NaN();
-    }
-    cell[axis] = std::min(static_cast<std::int64_t>(indexPoint[axis]), cells[axis] - 1);
-  }
-  return Dispatch(field.Lattice.GetScalarType(),
-    [&](auto sample)
-    {
-      using T = decltype(sample);
-      // A point on a face belongs to the cells on both sides; either may hold data.
-      double value = std::numeric_limits<double>::quiet_NaN();
-      for (int side = 0; side < 8 && std::isnan(value); ++side)
-      {
-        const Index3 back(side & 1, side >> 1 & 1, side >> 2);
-        bool touches = true;
-        for (int axis = 0; axis < 3; ++axis)
-        {
-          touches = touches &&
-            (back[axis] == 0 ||
-              (cell[axis] > 0 && indexPoint[axis] == static_cast<double>(cell[axis])));
-        }
-        if (touches)
-        {
-          value = this->SampleCell<T>(field, cell - back, indexPoint);
-        }
-      }
-      return value;
-    });
-}
-
-template <class Store, template <class> class Access>
-template <class T>
-double IsosurfaceSearch<Store, Access>::SampleCell(
-  const VoxelField& field, const Index3& cell, const glm::dvec3& indexPoint) const
-{
-  const Index3 brick = cell / Index3(field.Lattice.GetEdge());
-  const Index3 local = cell - brick * Index3(field.Lattice.GetEdge());
-  const int x = static_cast<int>(local.x);
-  const int y = static_cast<int>(local.y);
-  const int z = static_cast<int>(local.z);
-  const typename Store::Pin pin =
-    this->Blocks.Acquire(this->Self, *field.Segment, field.Lattice.GetId(brick));
-  const VoxelBrick<T> voxels(pin.GetData());
-  if (!voxels.HoldsData(x, y, z))
-  {
-    return std::numeric_limits<double>::quiet_NaN();
-  }
-  double corners[8];
-  for (int corner = 0; corner < 8; ++corner)
-  {
-    corners[corner] = static_cast<double>(
-      voxels.GetSample(x + (corner & 1), y + (corner >> 1 & 1), z + (corner >> 2)));
-  }
-  const glm::dvec3 inside = indexPoint - glm::dvec3(cell);
-  return EvaluateTrilinear(corners, Lanes(inside.x, inside.y, inside.z, 0.0));
 }
 
 } // namespace rt

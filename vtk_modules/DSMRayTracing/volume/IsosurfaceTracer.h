@@ -3,6 +3,8 @@
 #define rt_IsosurfaceTracer_h
 
 #include "DSMRayTracing/object/ObjectTracer.h"
+#include "DSMRayTracing/volume/FieldSampler.h"
+#include "DSMRayTracing/volume/IndexSpace.h"
 #include "DSMRayTracing/volume/IsosurfaceObject.h"
 #include "DSMRayTracing/volume/IsosurfacePacketSearch.h"
 #include "DSMRayTracing/volume/IsosurfaceSearch.h"
@@ -31,6 +33,7 @@ public:
     , Object(object)
     , Search(store, worker)
     , Packets(store, worker)
+    , Fields(store, worker)
   {
     const glm::dmat3 edges(object.IndexToWorld);
     this->Clearance = ClearancePart *
@@ -83,13 +86,12 @@ public:
     const IsosurfaceObject& object = this->Object;
     point.T = hit.T;
     point.Position = ray.Origin + hit.T * ray.Direction;
-    point.Normal = hit.Normal;
-    point.Facing = hit.FromInside ? -hit.Normal : hit.Normal;
+    point.Normal = object.Flat ? this->GetFlatNormal(hit, ray) : hit.Normal;
+    point.Facing = hit.FromInside ? -point.Normal : point.Normal;
     point.Surface = &object.Surface;
     point.ColorIsFromArray = object.ColorField != nullptr;
-    point.Color = point.ColorIsFromArray
-      ? object.Colors.Map(this->Search.Sample(*object.ColorField, hit.IndexPoint))
-      : glm::vec4(object.Surface.DiffuseColor, 1.0f);
+    point.Color =
+      point.ColorIsFromArray ? this->GetColor(hit) : glm::vec4(object.Surface.DiffuseColor, 1.0f);
     point.Color.w *= object.Surface.Opacity;
     if (!object.Opacities.empty())
     {
@@ -111,10 +113,36 @@ private:
 
   bool IsSeen() const { return this->Object.Surface.Opacity > 0.0f; }
 
+  glm::dvec3 GetFlatNormal(const IsosurfaceHit& hit, const Ray& ray) const
+  {
+    const glm::dvec3 gradient =
+      this->Fields.GetGradient(*this->Object.Field, hit.Cell, hit.IndexPoint);
+    return IndexSpace(this->Object.IndexToWorld, this->Object.WorldToIndex)
+      .GetNormal(&gradient.x, ray.Direction);
+  }
+
+  /// Where the field has no data, the colour of what is not a number.
+  glm::vec4 GetColor(const IsosurfaceHit& hit) const
+  {
+    const VoxelField& field = *this->Object.ColorField;
+    const ColorMap& map = this->Object.Colors;
+    const bool ofCells = field.Lattice.IsOfCells();
+    if (this->Object.ColoredBy == IsosurfaceObject::Coloring::Values)
+    {
+      return map.Map(ofCells ? this->Fields.GetOfCell(field, hit.Cell)
+                             : this->Fields.Sample(field, hit.IndexPoint));
+    }
+    glm::vec4 color;
+    const bool found = ofCells ? this->Fields.GetColorOfCell(field, hit.Cell, color)
+                               : this->Fields.SampleColor(field, hit.IndexPoint, color);
+    return found ? color : map.NotANumber;
+  }
+
   Store& Blocks;
   const IsosurfaceObject& Object;
   IsosurfaceSearch<Store> Search;
   IsosurfacePacketSearch<Store> Packets;
+  FieldSampler<Store> Fields;
   double Clearance;
 };
 

@@ -25,6 +25,24 @@ inline double EvaluateTrilinear(const double corners[8], const Lanes& point)
   return Interpolate(Interpolate(x00, x10, point[1]), Interpolate(x01, x11, point[1]), point[2]);
 }
 
+/// How fast it grows on each axis.
+inline void DifferentiateTrilinear(const double corners[8], const Lanes& point, double gradient[3])
+{
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    const int first = axis == 0 ? 1 : 0;
+    const int second = axis == 2 ? 1 : 2;
+    double edges[4];
+    for (int edge = 0; edge < 4; ++edge)
+    {
+      const int corner = (edge & 1) << first | (edge >> 1) << second;
+      edges[edge] = corners[corner | 1 << axis] - corners[corner];
+    }
+    gradient[axis] = Interpolate(Interpolate(edges[0], edges[1], point[first]),
+      Interpolate(edges[2], edges[3], point[first]), point[second]);
+  }
+}
+
 /// The cubic that the trilinear function is along a line: c[0] + c[1] s + c[2] s^2 + c[3] s^3.
 struct Cubic
 {

@@ -2,6 +2,7 @@
 #include "vtkDSMImagePiece.h"
 
 #include "DSMCore/base/Error.h"
+#include "DSMRayTracing/surface/PackedColor.h"
 #include "vtkDSMFileArray.h"
 
 #include "vtkCellData.h"
@@ -9,12 +10,15 @@
 #include "vtkDataSetAttributes.h"
 #include "vtkImageData.h"
 #include "vtkMatrix3x3.h"
+#include "vtkNew.h"
 #include "vtkPointData.h"
 #include "vtkSOADataArrayTemplate.h"
+#include "vtkScalarsToColors.h"
 #include "vtkUnsignedCharArray.h"
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <limits>
 #include <vector>
 
@@ -127,7 +131,7 @@ Box TrimDuplicates(const Box& cells, const CellFlags& flags)
   return own.IsEmpty() ? Box{ cells.Min, cells.Min } : own;
 }
 
-/// Calls `read(tuple)` for every point of `points` and stores what it returns as T.
+/// Calls `read(tuple)` for every sample of `points` and stores what it returns as T.
 template <class T, class Read>
 void Gather(const Box& points, const Box& image, std::byte* out, Read&& read)
 {
@@ -236,6 +240,10 @@ rt::ScalarType vtkDSMImagePiece::GetScalarType(vtkDataArray* array, int componen
   const int type = array->GetDataType();
   const std::size_t bytes = type == VTK_BIT ? 1 : array->GetDataTypeSize();
   const bool real = type == VTK_FLOAT || type == VTK_DOUBLE;
+  if (component == Color)
+  {
+    return rt::ScalarType::UInt32;
+  }
   if (component == Magnitude && array->GetNumberOfComponents() > 1)
   {
     const bool fits = type == VTK_FLOAT || (!real && bytes <= 2);
@@ -263,17 +271,17 @@ rt::ScalarType vtkDSMImagePiece::GetScalarType(vtkDataArray* array, int componen
 }
 
 vtkDSMImagePiece::vtkDSMImagePiece(vtkImageData* image, vtkDataArray* array, int component,
-  const vtkDSMLatticePlan::Member& place, bool hasMask)
+  const vtkDSMLatticePlan::Member& place, bool hasMask, bool ofCells)
   : Image(image)
   , Array(array)
-  , Component(array->GetNumberOfComponents() == 1 ? 0 : component)
+  , Component(array->GetNumberOfComponents() == 1 && component != Color ? 0 : component)
   , Place(place)
   , Masked(hasMask)
   , Type(GetScalarType(array, component))
-  , Points(GetCellBox(image))
+  , Samples(GetCellBox(image))
 {
-  this->Points.Min += place.IndexToLattice;
-  this->Points.Max += place.IndexToLattice + Index3(1);
+  this->Samples.Min += place.IndexToLattice;
+  this->Samples.Max += place.IndexToLattice + Index3(ofCells ? 0 : 1);
 }
 
 vtkDSMImagePiece::~vtkDSMImagePiece() = default;
@@ -281,28 +289,61 @@ vtkDSMImagePiece::~vtkDSMImagePiece() = default;
 void vtkDSMImagePiece::ReadSamples(const Box& points, std::byte* out) const
 {
   vtkDataArray* array = this->Array;
+  if (this->Component == Color)
+  {
+    this->ReadColors(points, out);
+    return;
+  }
   if (this->Component == Magnitude)
   {
     const auto read = [array](vtkIdType tuple) { return GetMagnitude(array, tuple); };
     if (this->Type == rt::ScalarType::Float32)
     {
-      Gather<float>(points, this->Points, out, read);
+      Gather<float>(points, this->Samples, out, read);
     }
     else
     {
-      Gather<double>(points, this->Points, out, read);
+      Gather<double>(points, this->Samples, out, read);
     }
     return;
   }
   if (array->GetDataType() == VTK_BIT)
   {
-    Gather<std::uint8_t>(points, this->Points, out,
+    Gather<std::uint8_t>(points, this->Samples, out,
       [&](vtkIdType tuple) { return array->GetComponent(tuple, this->Component); });
     return;
   }
   switch (array->GetDataType())
   {
-    vtkTemplateMacro((GatherComponent<VTK_TT>(array, this->Component, points, this->Points, out)));
+    vtkTemplateMacro((GatherComponent<VTK_TT>(array, this->Component, points, this->Samples, out)));
+  }
+}
+
+void vtkDSMImagePiece::ReadColors(const Box& samples, std::byte* out) const
+{
+  vtkSmartPointer<vtkDataArray> values;
+  values.TakeReference(this->Array->NewInstance());
+  values->SetNumberOfComponents(this->Array->GetNumberOfComponents());
+  values->SetNumberOfTuples(samples.GetCount());
+  const Index3 size = this->Samples.GetSize();
+  const std::int64_t row = samples.GetSize().x;
+  vtkIdType target = 0;
+  for (std::int64_t k = samples.Min.z; k < samples.Max.z; ++k)
+  {
+    for (std::int64_t j = samples.Min.y; j < samples.Max.y; ++j, target += row)
+    {
+      const Index3 first = Index3(samples.Min.x, j, k) - this->Samples.Min;
+      values->InsertTuples(
+        target, row, first.x + size.x * (first.y + size.y * first.z), this->Array);
+    }
+  }
+  vtkNew<vtkScalarsToColors> conversion;
+  vtkSmartPointer<vtkUnsignedCharArray> colors;
+  colors.TakeReference(conversion->MapScalars(values, VTK_COLOR_MODE_DIRECT_SCALARS, 0));
+  for (std::int64_t sample = 0; sample < samples.GetCount(); ++sample)
+  {
+    const std::uint32_t packed = rt::PackedColor::Make(colors->GetPointer(4 * sample));
+    std::memcpy(out + sample * sizeof(packed), &packed, sizeof(packed));
   }
 }
 

@@ -12,24 +12,27 @@ class vtkDataArray;
 class vtkImageData;
 class vtkUnsignedCharArray;
 
-/// One vtkImageData of this rank as a piece of a lattice: one component of a point array, or the
-/// magnitude of all. Copies nothing; reading is safe from any thread while the image is not
-/// modified.
+/// One vtkImageData of this rank as a piece of a lattice: one component of an array of its points or cells, the
+/// magnitude of all, or the colours that they are (rt::PackedColor). Copies nothing; reading is safe from any
+/// thread while the image is not modified.
 class vtkDSMImagePiece final : public rt::VoxelSource
 {
 public:
   /// Component that stands for the magnitude of all components.
   static constexpr int Magnitude = -1;
+  /// Component that stands for the colour that all components make, as VTK takes colours from arrays: gray, gray
+  /// and opacity, colour, colour and opacity.
+  static constexpr int Color = -2;
 
   /// What the other ranks need to know of an image: ghost cells are trimmed off; ghost and blanked
   /// cells that remain make a mask.
   static vtkDSMPieceInfo Describe(vtkImageData* image, int leaf);
 
-  /// Arrays keep their type; the magnitude is float where that holds it, else double.
+  /// Arrays keep their type; the magnitude is float where that holds it, else double; colours are packed.
   static rt::ScalarType GetScalarType(vtkDataArray* array, int component);
 
   vtkDSMImagePiece(vtkImageData* image, vtkDataArray* array, int component,
-    const vtkDSMLatticePlan::Member& place, bool hasMask);
+    const vtkDSMLatticePlan::Member& place, bool hasMask, bool ofCells = false);
   ~vtkDSMImagePiece() override;
 
   rt::Box GetCells() const override { return this->Place.Cells; }
@@ -38,13 +41,15 @@ public:
   void ReadCellMask(const rt::Box& cells, std::uint8_t* out) const override;
 
 private:
+  void ReadColors(const rt::Box& samples, std::byte* out) const;
+
   vtkSmartPointer<vtkImageData> Image;
   vtkSmartPointer<vtkDataArray> Array;
   int Component;
   vtkDSMLatticePlan::Member Place;
   bool Masked;
   rt::ScalarType Type;
-  rt::Box Points; ///< of the image, in lattice indices
+  rt::Box Samples; ///< that the array has, in lattice indices
 };
 
 #endif

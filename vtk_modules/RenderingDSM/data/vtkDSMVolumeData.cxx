@@ -36,6 +36,7 @@ enum class ArrayState : std::int32_t
   NotNumeric,
   OnCells,
   NoSuchComponent,
+  NoColors,
   WrongLength
 };
 
@@ -127,15 +128,20 @@ void vtkDSMVolumeData::GetBounds(double bounds[6]) const
 vtkDataArray* vtkDSMVolumeData::FindArray(
   vtkImageData* image, const Choice& choice, ArrayInfo& info) const
 {
+  vtkDataSetAttributes* attributes = image->GetPointData();
+  if (choice.OnCells)
+  {
+    attributes = image->GetCellData();
+  }
   vtkAbstractArray* found = choice.Name.empty()
-    ? static_cast<vtkAbstractArray*>(image->GetPointData()->GetScalars())
-    : image->GetPointData()->GetAbstractArray(choice.Name.c_str());
-  if (choice.OnCells || !found)
+    ? static_cast<vtkAbstractArray*>(attributes->GetScalars())
+    : attributes->GetAbstractArray(choice.Name.c_str());
+  if (!found)
   {
     const bool onCells = choice.Name.empty() ? image->GetPointData()->GetNumberOfArrays() == 0 &&
         image->GetCellData()->GetNumberOfArrays() > 0
                                              : image->GetCellData()->HasArray(choice.Name.c_str());
-    info.State = onCells ? ArrayState::OnCells : ArrayState::Missing;
+    info.State = onCells && !choice.OnCells ? ArrayState::OnCells : ArrayState::Missing;
     return nullptr;
   }
   auto* array = vtkDataArray::SafeDownCast(found);
@@ -145,12 +151,19 @@ vtkDataArray* vtkDSMVolumeData::FindArray(
     return nullptr;
   }
   info.Components = array->GetNumberOfComponents();
-  if (choice.Component >= info.Components || choice.Component < vtkDSMImagePiece::Magnitude)
+  const bool areColors = choice.Component == vtkDSMImagePiece::Color;
+  if (areColors && (info.Components > 4 || array->GetDataType() == VTK_CHAR))
+  {
+    info.State = ArrayState::NoColors;
+    return nullptr;
+  }
+  if (choice.Component >= info.Components || choice.Component < vtkDSMImagePiece::Color)
   {
     info.State = ArrayState::NoSuchComponent;
     return nullptr;
   }
-  if (array->GetNumberOfTuples() != image->GetNumberOfPoints())
+  if (array->GetNumberOfTuples() !=
+    (choice.OnCells ? image->GetNumberOfCells() : image->GetNumberOfPoints()))
   {
     info.State = ArrayState::WrongLength;
     return nullptr;
@@ -165,58 +178,74 @@ void vtkDSMVolumeData::GatherArrays()
   std::vector<char> mine;
   const auto append = [&mine](const std::string& text)
   { mine.insert(mine.end(), text.c_str(), text.c_str() + text.size() + 1); };
-  for (vtkImageData* image : this->Images)
+  const auto appendAll = [&append](vtkDataSetAttributes* attributes, const char* place)
   {
-    for (int index = 0; index < image->GetPointData()->GetNumberOfArrays(); ++index)
+    for (int index = 0; index < attributes->GetNumberOfArrays(); ++index)
     {
-      vtkDataArray* array = image->GetPointData()->GetArray(index);
+      vtkDataArray* array = attributes->GetArray(index);
       if (array && array->GetName() &&
         std::strcmp(array->GetName(), vtkDataSetAttributes::GhostArrayName()) != 0)
       {
+        append(place);
         append(array->GetName());
         append(std::to_string(array->GetNumberOfComponents()));
       }
     }
+  };
+  for (vtkImageData* image : this->Images)
+  {
+    appendAll(image->GetPointData(), "0");
+    appendAll(image->GetCellData(), "1");
   }
   int first = 0;
   const std::vector<char> all = vtkDSMGather::Items(this->Group->GetMessenger(), mine, first);
-  for (auto name = all.begin(); name != all.end();)
+  for (auto place = all.begin(); place != all.end();)
   {
+    const auto name = std::find(place, all.end(), '\0') + 1;
     const auto components = std::find(name, all.end(), '\0') + 1;
-    const auto next = std::find(components, all.end(), '\0') + 1;
-    this->PointArrays[&*name] = std::stoi(&*components);
-    name = next;
+    this->Arrays[*place == '1' ? 1 : 0][&*name] = std::stoi(&*components);
+    place = std::find(components, all.end(), '\0') + 1;
   }
 }
 
 vtkDSMVolumeData::Choice vtkDSMVolumeData::Normalize(const Choice& choice) const
 {
-  const auto known = this->PointArrays.find(choice.Name);
-  if (known == this->PointArrays.end() || choice.OnCells)
+  const auto& arrays = this->Arrays[choice.OnCells ? 1 : 0];
+  const auto known = arrays.find(choice.Name);
+  if (known == arrays.end() || choice.Component == vtkDSMImagePiece::Color)
   {
     return choice;
   }
   const int components = known->second;
   if (components == 1)
   {
-    return { choice.Name, 0 };
+    return { choice.Name, 0, choice.OnCells };
   }
   // ParaView's panels number the magnitude after the last component.
   return { choice.Name,
-    choice.Component == components ? vtkDSMImagePiece::Magnitude : choice.Component };
+    choice.Component == components ? vtkDSMImagePiece::Magnitude : choice.Component,
+    choice.OnCells };
+}
+
+bool vtkDSMVolumeData::HasOpacity(const Choice& choice) const
+{
+  const auto& arrays = this->Arrays[choice.OnCells ? 1 : 0];
+  const auto known = arrays.find(choice.Name);
+  return known != arrays.end() && known->second % 2 == 0;
 }
 
 void vtkDSMVolumeData::RefuseArray(
   const Choice& choice, const std::string& purpose, const std::vector<ArrayInfo>& infos) const
 {
   std::string list;
-  for (const auto& [name, components] : this->PointArrays)
+  for (const auto& [name, components] : this->Arrays[choice.OnCells ? 1 : 0])
   {
     list += (list.empty() ? "'" : ", '") + name + "'";
   }
   const std::string array = "The " + purpose + " '" + choice.Name + "'";
-  const std::string remedy =
-    list.empty() ? " The dataset has no point array of numbers." : " Choose one of " + list + ".";
+  const std::string remedy = !list.empty() ? " Choose one of " + list + "."
+    : choice.OnCells                       ? " The dataset has no cell array of numbers."
+                                           : " The dataset has no point array of numbers.";
   const auto is = [&](ArrayState state)
   {
     return std::any_of(
@@ -232,13 +261,20 @@ void vtkDSMVolumeData::RefuseArray(
   }
   if (is(ArrayState::WrongLength))
   {
-    throw dsm::Error(array + " does not have one value for every point of the image." + remedy);
+    throw dsm::Error(array + " does not have one value for every " +
+      (choice.OnCells ? "cell" : "point") + " of the image." + remedy);
+  }
+  if (is(ArrayState::NoColors))
+  {
+    throw dsm::Error(array +
+      " holds no colours: those have up to four components, of another type than char. Switch on "
+      "Map Scalars.");
   }
   if (is(ArrayState::OnCells))
   {
     throw dsm::Error(
       (choice.Name.empty() ? "The dataset has cell data only" : array + " belongs to the cells") +
-      ", but isosurfaces need values at the points. Apply Cell Data to Point Data first.");
+      ", but values at the points are needed. Apply Cell Data to Point Data first.");
   }
   throw dsm::Error((choice.Name.empty() ? "No " + purpose + " is chosen."
                                         : array + " does not exist in the dataset.") +
@@ -250,6 +286,7 @@ std::uint64_t vtkDSMVolumeData::HashContent(const Choice& choice) const
   const int threads = this->Group->GetStore().GetSettings().Workers;
   rt::ByteHash hash;
   hash.Add(&choice.Component, sizeof(choice.Component));
+  hash.Add(&choice.OnCells, sizeof(choice.OnCells));
   hash.Add(this->Pieces.data(), this->Pieces.size() * sizeof(vtkDSMPieceInfo));
   const auto add = [&](vtkAbstractArray* array)
   {
@@ -331,7 +368,10 @@ std::shared_ptr<const rt::VoxelField> vtkDSMVolumeData::PublishLattice(std::size
     return nullptr;
   }
   const std::string what = "the " + purpose + " '" + choice.Name + "'";
-  if (!field->Lattice.HasCellMask())
+  // Values of points; what colours by cells or by colours themselves is cut by the ranks that have it.
+  const bool canBeRead =
+    !field->Lattice.HasCellMask() && !choice.OnCells && choice.Component != vtkDSMImagePiece::Color;
+  if (canBeRead)
   {
     const vtkDSMLatticePlan::Lattice& lattice = this->Plan.GetLattices()[number];
     const vtkDSMFileValues* const own = this->FindFileValues(number, choice);
@@ -440,6 +480,10 @@ std::shared_ptr<rt::VoxelField> vtkDSMVolumeData::CreateField(std::size_t number
       delete old;
     });
   field->Lattice = rt::BrickLattice(lattice.Points, *types.begin(), masked);
+  if (choice.OnCells)
+  {
+    field->Lattice = field->Lattice.OfCells();
+  }
   return field;
 }
 
@@ -456,7 +500,7 @@ std::vector<std::shared_ptr<const rt::VoxelSource>> vtkDSMVolumeData::CreateSour
       if (vtkDataArray* array = this->FindArray(this->Images[own], choice, info))
       {
         sources.push_back(std::make_shared<vtkDSMImagePiece>(this->Images[own], array,
-          choice.Component, member, this->Pieces[member.Piece].HasMask != 0));
+          choice.Component, member, this->Pieces[member.Piece].HasMask != 0, choice.OnCells));
       }
     }
   }

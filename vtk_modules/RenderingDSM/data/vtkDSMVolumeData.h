@@ -31,8 +31,8 @@ public:
   struct Choice
   {
     std::string Name;     ///< empty: the active scalars
-    int Component = 0;    ///< vtkDSMImagePiece::Magnitude for the magnitude
-    bool OnCells = false; ///< of the arrays of this name, the cells' is meant
+    int Component = 0;    ///< also vtkDSMImagePiece::Magnitude and Color
+    bool OnCells = false; ///< the cells' array of this name, not the points', is meant
 
     bool operator==(const Choice& other) const
     {
@@ -61,6 +61,8 @@ public:
   /// The choice with its component made definite: an array of one component has but one. The same on
   /// every rank, also where there is no data.
   Choice Normalize(const Choice& choice) const;
+  /// Whether what is chosen as colours may have opacities. The same on every rank.
+  bool HasOpacity(const Choice& choice) const;
   /// Local, reads the data. Of all that this rank's part of a field depends on: equal only where Publish would make
   /// the same again.
   std::uint64_t HashContent(const Choice& choice) const;
@@ -104,7 +106,8 @@ private:
   int FirstOwnPiece = 0;
   std::vector<vtkSmartPointer<vtkImageData>> Images; ///< of this rank
   std::vector<int> Leaves;                           ///< of this rank's images
-  std::map<std::string, int> PointArrays; ///< all ranks' numeric ones: number of components
+  /// All ranks' numeric ones, of points and of cells: number of components.
+  std::map<std::string, int> Arrays[2];
 };
 
 #endif

@@ -178,15 +178,12 @@ void vtkDSMSceneVolume::Update(const std::shared_ptr<vtkDSMRankGroup>& group, bo
     this->SuggestIsovalue(group->GetMessenger());
   }
   this->Color.reset();
-  if (mapper->GetScalarVisibility() && !mapper->GetColorArray().empty() && mapper->GetLookupTable())
+  if (mapper->GetScalarVisibility() && !mapper->GetColorArray().empty() &&
+    (mapper->GetLookupTable() || !mapper->GetMapScalars()))
   {
-    vtkScalarsToColors* table = mapper->GetLookupTable();
-    const int component = table->GetVectorMode() == vtkScalarsToColors::COMPONENT
-      ? table->GetVectorComponent()
-      : vtkDSMImagePiece::Magnitude;
-    this->Color =
-      this->Require({ mapper->GetColorArray(), component, mapper->GetColorArrayOnCells() },
-        "colour array", version, { this->Iso, oldIso, oldColor });
+    this->Color = this->Require(
+      { mapper->GetColorArray(), this->GetColorComponent(), mapper->GetColorArrayOnCells() },
+      "colour array", version, { this->Iso, oldIso, oldColor });
   }
   for (const auto& published : { this->Iso, this->Color })
   {
@@ -195,6 +192,17 @@ void vtkDSMSceneVolume::Update(const std::shared_ptr<vtkDSMRankGroup>& group, bo
       this->Messages.push_back(published->Failure);
     }
   }
+}
+
+int vtkDSMSceneVolume::GetColorComponent() const
+{
+  vtkScalarsToColors* table = this->Mapper->GetLookupTable();
+  if (!this->Mapper->GetMapScalars())
+  {
+    return vtkDSMImagePiece::Color;
+  }
+  return table->GetVectorMode() == vtkScalarsToColors::COMPONENT ? table->GetVectorComponent()
+                                                                 : vtkDSMImagePiece::Magnitude;
 }
 
 void vtkDSMSceneVolume::SuggestIsovalue(dsm::Messenger& messenger)
@@ -337,6 +345,21 @@ rt::ClipRegion vtkDSMSceneVolume::GetClipRegion(const glm::dmat4& dataToWorld) c
   return region;
 }
 
+void vtkDSMSceneVolume::SetColors(std::size_t lattice, rt::IsosurfaceObject& object)
+{
+  using Coloring = rt::IsosurfaceObject::Coloring;
+  object.ColorField = this->Color->GetFields()[lattice];
+  if (this->Mapper->GetLookupTable())
+  {
+    object.Colors = *this->SampleColors(this->Mapper->GetLookupTable());
+  }
+  if (this->Color->Choice.Component == vtkDSMImagePiece::Color)
+  {
+    object.ColoredBy =
+      this->Data->HasOpacity(this->Color->Choice) ? Coloring::Colors : Coloring::OpaqueColors;
+  }
+}
+
 void vtkDSMSceneVolume::AddTo(rt::Scene& scene)
 {
   if (!this->Data || !this->Iso)
@@ -378,11 +401,12 @@ void vtkDSMSceneVolume::AddTo(rt::Scene& scene)
       object.Field = this->Iso->GetFields()[lattice];
       object.Isovalues = group;
       object.Surface = this->GetMaterial(group.front());
+      object.Flat = !this->IsLikeRayCastMapper() &&
+        this->Mapper->GetSurfaceProperty()->GetInterpolation() == VTK_FLAT;
       object.Clipping = clipping;
       if (colored && this->Color->GetFields()[lattice])
       {
-        object.ColorField = this->Color->GetFields()[lattice];
-        object.Colors = *this->SampleColors(this->Mapper->GetLookupTable());
+        this->SetColors(lattice, object);
       }
       scene.Objects.push_back(std::move(object));
     }

@@ -48,6 +48,8 @@ private:
   /// Whether isovalues and look come from the volume's property; else they are the mapper's.
   bool IsLikeRayCastMapper() const;
   std::string GetIsoArray();
+  int GetColorComponent() const;
+  void SetColors(std::size_t lattice, rt::IsosurfaceObject& object);
   std::vector<double> GetIsovalues();
   rt::Material GetMaterial(double isovalue);
   rt::ClipRegion GetClipRegion(const glm::dmat4& dataToWorld) const;

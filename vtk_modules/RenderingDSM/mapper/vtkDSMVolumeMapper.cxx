@@ -236,6 +236,8 @@ void vtkDSMVolumeMapper::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "AutomaticIsoValue: " << this->AutomaticIsoValue << "\n";
   os << indent << "SuggestedIsoValue: " << this->SuggestedIsoValue << "\n";
   os << indent << "ColorArray: " << this->ColorArray << "\n";
+  os << indent << "ColorArrayOnCells: " << this->ColorArrayOnCells << "\n";
+  os << indent << "MapScalars: " << this->MapScalars << "\n";
   os << indent << "ScalarVisibility: " << this->ScalarVisibility << "\n";
   os << indent << "LookupTable: " << this->LookupTable.Get() << "\n";
   os << indent << "SurfaceProperty: " << this->SurfaceProperty.Get() << "\n";

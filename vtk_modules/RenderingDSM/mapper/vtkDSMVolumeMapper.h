@@ -96,9 +96,9 @@ public:
 
   ///@{
   /**
-   * The point array that colours the surfaces through the lookup table, when ScalarVisibility is on
+   * The array that colours the surfaces through the lookup table, when ScalarVisibility is on
    * (off by default). For an array of several components, the lookup table's vector mode and vector
-   * component choose what is shown.
+   * component choose what is shown. Values of points are interpolated.
    */
   vtkSetMacro(ColorArray, std::string);
   vtkGetMacro(ColorArray, std::string);
@@ -111,15 +111,26 @@ public:
 
   ///@{
   /**
-   * Whether the cells' array of the name ColorArray is meant, also where the points have one, too. Off by
-   * default. Surfaces are not coloured by it: an error says what to do.
+   * Whether the cells' array of the name ColorArray is meant, not the points'. Off by default. A surface has
+   * in each cell that it goes through the colour of the cell's value.
    */
   vtkSetMacro(ColorArrayOnCells, bool);
   vtkGetMacro(ColorArrayOnCells, bool);
   ///@}
 
+  ///@{
   /**
-   * Colours and coefficients of the surfaces; never null.
+   * Whether the colour array's values become colours by the lookup table (the default), or are colours: gray,
+   * gray and opacity, red, green and blue, or those and opacity, as vtkMapper takes them directly.
+   */
+  vtkSetMacro(MapScalars, bool);
+  vtkGetMacro(MapScalars, bool);
+  vtkBooleanMacro(MapScalars, bool);
+  ///@}
+
+  /**
+   * Colours and coefficients of the surfaces; never null. With flat interpolation, they are lit by the normals of
+   * the surface that is in each cell; else by smooth ones.
    */
   vtkProperty* GetSurfaceProperty() const;
 
@@ -225,6 +236,7 @@ private:
   double SuggestedIsoValue = vtkMath::Nan();
   std::string ColorArray;
   bool ColorArrayOnCells = false;
+  bool MapScalars = true;
   bool ScalarVisibility = false;
   vtkSmartPointer<vtkScalarsToColors> LookupTable;
   vtkSmartPointer<vtkProperty> SurfaceProperty;

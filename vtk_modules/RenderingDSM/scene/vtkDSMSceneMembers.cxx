@@ -34,7 +34,6 @@ struct Part
   vtkMatrix4x4* Place; ///< of a part; null: the prop says itself
 
   bool IsVisible() const { return this->Prop->GetVisibility() && this->Whole->GetVisibility(); }
-  bool IsPickable() const { return this->Prop->GetPickable() && this->Whole->GetPickable(); }
 };
 
 /// Calls `use` for each Part of what a renderer has.
@@ -68,6 +67,12 @@ vtkAlgorithm* GetMapper(vtkProp* prop)
   }
   auto* actor = vtkActor::SafeDownCast(prop);
   return actor ? actor->GetMapper() : nullptr;
+}
+
+bool HasBounds(vtkProp* prop)
+{
+  const double* bounds = prop->GetBounds();
+  return bounds && vtkMath::AreBoundsInitialized(bounds);
 }
 
 /// Brings a part of an assembly to its place for as long as it lives, as assemblies do to draw theirs.
@@ -170,10 +175,9 @@ void vtkDSMSceneMembers::GetBounds(double bounds[6]) const
   for (const Member& member : this->Shown)
   {
     const Placing placing(member);
-    const double* part = member.Prop->GetBounds();
-    if (part && vtkMath::AreBoundsInitialized(part))
+    if (HasBounds(member.Prop))
     {
-      box.AddBounds(part);
+      box.AddBounds(member.Prop->GetBounds());
     }
   }
   box.GetBounds(bounds);
@@ -186,11 +190,10 @@ bool vtkDSMSceneMembers::AreBesideOthers(vtkRenderer* renderer) const
     [&](const Part& part)
     {
       const auto isProp = [&](const Member& member) { return member.Prop == part.Prop; };
-      // What cannot be picked, such as axes, is decoration; what has no bounds of its own is no object.
+      // What has no bounds of its own is no object.
       found = found ||
-        (vtkProp3D::SafeDownCast(part.Prop) && part.IsVisible() && part.IsPickable() &&
-          part.Prop->GetUseBounds() &&
-          std::none_of(this->Shown.begin(), this->Shown.end(), isProp));
+        (vtkProp3D::SafeDownCast(part.Prop) && part.IsVisible() && part.Prop->GetUseBounds() &&
+          HasBounds(part.Prop) && std::none_of(this->Shown.begin(), this->Shown.end(), isProp));
     });
   return found;
 }

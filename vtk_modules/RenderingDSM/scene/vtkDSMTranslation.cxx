@@ -169,6 +169,11 @@ rt::ColorMap vtkDSMTranslation::ToColorMap(vtkScalarsToColors* table)
   map.Below = MapValue(table, std::nextafter(map.First, -infinity));
   map.Above = MapValue(table, std::nextafter(map.Last, infinity));
   map.NotANumber = MapValue(table, vtkMath::Nan());
+  // Only this way of mapping knows the opacity.
+  double nan = vtkMath::Nan();
+  unsigned char mapped[4];
+  table->MapScalarsThroughTable2(&nan, mapped, VTK_DOUBLE, 1, 1, VTK_RGBA);
+  map.NotANumber.w = static_cast<float>(mapped[3]) / 255.0f;
   return map;
 }
 

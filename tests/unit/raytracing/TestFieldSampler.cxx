@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "DSMRayTracing/surface/PackedColor.h"
+#include "RandomRays.h"
+#include "SearchBench.h"
+#include "TestVolume.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+template <class T>
+class TestFieldSampler : public testing::Test
+{
+};
+
+using ScalarTypes = testing::Types<std::int8_t, std::uint8_t, std::int16_t, std::uint16_t,
+  std::int32_t, std::uint32_t, std::int64_t, std::uint64_t, float, double>;
+TYPED_TEST_SUITE(TestFieldSampler, ScalarTypes);
+
+TYPED_TEST(TestFieldSampler, IsTrilinearAcrossBricks)
+{
+  const TestVolume<TypeParam> volume(
+    { 7, 8, 9 }, [](int x, int y, int z) { return static_cast<TypeParam>(x + 2 * y + x * y + z); });
+  SearchBench bench;
+  const auto field = CreateField(bench.Store, volume, 4);
+  RandomRays generator(volume.GetCells(), 1);
+  for (int i = 0; i < 500; ++i)
+  {
+    const glm::dvec3 p = i % 4 == 0 ? glm::round(generator.GetPoint()) : generator.GetPoint();
+    ASSERT_NEAR(bench.Fields.Sample(*field, p), p.x + 2 * p.y + p.x * p.y + p.z, 1e-12);
+  }
+}
+
+TEST(TestFieldSamplerCases, NotANumberWithoutData)
+{
+  TestVolume<float> volume({ 5, 5, 5 }, [](int x, int, int) { return static_cast<float>(x); });
+  volume.At(4, 4, 4) = std::numeric_limits<float>::quiet_NaN();
+  volume.Blank(1, 1, 1);
+  SearchBench bench;
+  const auto field = CreateField(bench.Store, volume, 2);
+  const auto sample = [&](double x, double y, double z) {
+    return bench.Fields.Sample(*field, { x, y, z });
+  };
+  EXPECT_TRUE(std::isnan(sample(1.5, 1.5, 1.5)));
+  EXPECT_TRUE(std::isnan(sample(3.5, 3.5, 3.5)));
+  EXPECT_TRUE(std::isnan(sample(-0.1, 2.0, 2.0)));
+  EXPECT_TRUE(std::isnan(sample(2.0, 4.1, 2.0)));
+  EXPECT_TRUE(std::isnan(sample(2.0, std::nan(""), 2.0)));
+  EXPECT_EQ(sample(2.5, 1.5, 1.5), 2.5);
+}
+
+TEST(TestFieldSamplerCases, FacesOfCellsWithoutDataBelongToTheirNeighbours)
+{
+  TestVolume<float> volume({ 5, 5, 5 }, [](int x, int, int) { return static_cast<float>(x); });
+  volume.Blank(1, 1, 1);
+  volume.At(3, 3, 3) = std::numeric_limits<float>::quiet_NaN();
+  SearchBench bench;
+  const auto field = CreateField(bench.Store, volume, 2);
+  EXPECT_EQ(bench.Fields.Sample(*field, { 1.0, 1.5, 1.5 }), 1.0);
+  EXPECT_EQ(bench.Fields.Sample(*field, { 1.25, 1.0, 1.5 }), 1.25);
+  EXPECT_EQ(bench.Fields.Sample(*field, { 2.0, 1.5, 2.5 }), 2.0);
+}
+
+TEST(TestFieldSamplerCases, CellsHaveTheirOwnValuesAndNoneIsOfAnother)
+{
+  TestVolume<float> volume(
+    { 6, 5, 4 }, [](int x, int y, int z) { return static_cast<float>(x + 10 * y + 100 * z); });
+  volume.Blank(1, 2, 1);
+  SearchBench bench;
+  const auto field = CreateField(bench.Store, volume, 2);
+  field->Lattice = field->Lattice.OfCells();
+  field->Segment = PublishPieces(bench.Store, field->Lattice, GetWhole(volume));
+  for (int z = 0; z < 3; ++z)
+  {
+    for (int y = 0; y < 4; ++y)
+    {
+      for (int x = 0; x < 5; ++x)
+      {
+        const double value = bench.Fields.GetOfCell(*field, { x, y, z });
+        const bool blank = x == 1 && y == 2 && z == 1;
+        EXPECT_TRUE(blank ? std::isnan(value) : value == x + 10 * y + 100 * z);
+      }
+    }
+  }
+}
+
+TEST(TestFieldSamplerCases, ColorsAreInterpolatedChannelByChannel)
+{
+  const std::uint8_t red[4] = { 255, 0, 51, 255 };
+  const std::uint8_t green[4] = { 0, 255, 51, 0 };
+  const TestVolume<std::uint32_t> volume(
+    { 3, 2, 2 }, [&](int x, int, int) { return rt::PackedColor::Make(x == 0 ? red : green); });
+  SearchBench bench;
+  const auto field = CreateField(bench.Store, volume, 2);
+  glm::vec4 color;
+  ASSERT_TRUE(bench.Fields.SampleColor(*field, { 0.25, 0.5, 0.5 }, color));
+  EXPECT_NEAR(color.x, 0.75, 1e-6);
+  EXPECT_NEAR(color.y, 0.25, 1e-6);
+  EXPECT_NEAR(color.z, 0.2, 1e-6);
+  EXPECT_NEAR(color.w, 0.75, 1e-6);
+  field->Lattice = field->Lattice.OfCells();
+  ASSERT_TRUE(bench.Fields.GetColorOfCell(*field, { 1, 0, 0 }, color));
+  EXPECT_EQ(color, glm::vec4(0.0f, 1.0f, 0.2f, 0.0f));
+}

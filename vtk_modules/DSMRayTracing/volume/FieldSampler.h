@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef rt_FieldSampler_h
+#define rt_FieldSampler_h
+
+#include "DSMRayTracing/base/Lanes.h"
+#include "DSMRayTracing/layout/VoxelField.h"
+
+#include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
+
+namespace rt
+{
+
+/// Reads a field through a store, at places in index space or in cells. Pure. One for each worker: it holds at
+/// most one pin, and none while it acquires or when a call returns. May wait for bricks.
+template <class Store>
+class FieldSampler
+{
+public:
+  FieldSampler(Store& store, typename Store::Worker& worker)
+    : Blocks(store)
+    , Self(worker)
+  {
+  }
+
+  /// The trilinear value of a field of points; NaN where it holds no data.
+  double Sample(const VoxelField& field, const glm::dvec3& indexPoint) const;
+
+  /// How fast the trilinear value grows on each axis, in a cell that holds data, at a place in it.
+  glm::dvec3 GetGradient(
+    const VoxelField& field, const Index3& cell, const glm::dvec3& indexPoint) const;
+
+  /// The value of a cell of a field of cells (BrickLattice::IsOfCells); NaN where it holds no data.
+  double GetOfCell(const VoxelField& field, const Index3& cell) const;
+
+  /// The same for fields whose samples are colours (PackedColor), each channel by itself. Returns false
+  /// where there are no data.
+  bool SampleColor(const VoxelField& field, const glm::dvec3& indexPoint, glm::vec4& color) const;
+  bool GetColorOfCell(const VoxelField& field, const Index3& cell, glm::vec4& color) const;
+
+private:
+  /// Samples at the corners of a cell that holds data and that the point is in, and where in the cell it
+  /// is; false where there is none.
+  template <class T>
+  bool FindCorners(
+    const VoxelField& field, const glm::dvec3& indexPoint, T corners[8], Lanes& local) const;
+  template <class T>
+  bool GetCorners(const VoxelField& field, const Index3& cell, T corners[8]) const;
+  template <class T>
+  bool GetCell(const VoxelField& field, const Index3& cell, T& value) const;
+
+  Store& Blocks;
+  typename Store::Worker& Self;
+};
+
+} // namespace rt
+
+#include "DSMRayTracing/volume/FieldSampler.txx"
+
+#endif
