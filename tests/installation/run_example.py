@@ -91,9 +91,22 @@ def python():
     os.environ["PYTHONPATH"] = os.path.dirname(folder.stdout.split()[0])
     alone = draw_with_floor([sys.executable, script])
     check((read("isosurface.png") == alone).all(), "the target of CMake draws something else")
+    draw_without_display(os.path.join(PROJECT, "examples", "python", "without_display.py"))
     if MPIRUN:
         ranks = draw_with_floor(MPIRUN + ["-np", "2", sys.executable, script])
         check((ranks == alone).all(), "two ranks draw another picture than one process")
+
+
+def draw_without_display(script):
+    """One process and two ranks draw the same, and need neither a display nor OpenGL."""
+    environment = {name: value for name, value in os.environ.items() if "DISPLAY" not in name}
+    pictures = []
+    for start in [[]] + ([MPIRUN + ["-np", "2"]] if MPIRUN else []):
+        subprocess.run(start + [sys.executable, script, os.path.join(BUILD, "picture.png")],
+                       env=environment, check=True)
+        pictures.append(read("picture.png"))
+    check_isosurface(pictures[0][..., :3], (0.05, 0.3))
+    check((pictures[0] == pictures[-1]).all(), "two ranks draw another picture without a display")
 
 
 def draw_with_ranks(program):

@@ -272,6 +272,29 @@ void vtkDSMScene::Trace()
   {
     return;
   }
+  this->TraceFrame();
+}
+
+bool vtkDSMScene::TraceImage(int width, int height, vtkImageData* image, bool transparent)
+{
+  Internals& self = *this->Self;
+  if (!self.Renderer || self.Tracing || width < 1 || height < 1)
+  {
+    vtkErrorMacro(<< "A picture of " << width << " x " << height
+                  << " pixels cannot be traced now.");
+    return false;
+  }
+  this->NoteBackground();
+  self.Image = Internals::Target{ width, height, image, transparent };
+  const bool traced = this->TraceFrame();
+  self.Image.reset();
+  return traced;
+}
+
+/// Collective; returns whether all went well, the same on every rank.
+bool vtkDSMScene::TraceFrame()
+{
+  Internals& self = *this->Self;
   self.Tracing = true;
   self.Prop->UseBoundsOn();
   dsm::FirstFailure found;
@@ -279,14 +302,15 @@ void vtkDSMScene::Trace()
   if (found.IsEmpty() && self.Members.GetShown().empty())
   {
     self.Clear();
+    self.FillImage({});
     self.Tracing = false;
-    return;
+    return true;
   }
   const vtkDSMOpenGLGuard guard(self.Renderer->GetRenderWindow());
   std::string failure;
   try
   {
-    if (IsDrawnByOSPRay(self.Renderer))
+    if (!self.Image && IsDrawnByOSPRay(self.Renderer))
     {
       throw dsm::Error(
         "VTK's own ray tracing (OSPRay) draws this view, and leaves out what is DSM Ray "
@@ -313,6 +337,7 @@ void vtkDSMScene::Trace()
   }
   self.Failure = failure;
   self.Tracing = false;
+  return failure.empty();
 }
 
 void vtkDSMScene::PrintSelf(ostream& os, vtkIndent indent)

@@ -35,6 +35,7 @@
 class vtkCamera;
 class vtkDSMFrameProp;
 class vtkDSMStatistics;
+class vtkImageData;
 class vtkMultiProcessController;
 class vtkRenderer;
 
@@ -98,6 +99,21 @@ public:
    */
   void DeliverByPlace(std::function<bool(vtkCamera*)> drawsColor,
     std::function<bool(const double place[3])> drawsPlace);
+
+  /**
+   * Makes a picture without a window, and so without OpenGL, a display, a graphics card or EGL: what our mappers
+   * show in the renderer, from its active camera (clipping range included), with its lights, of which there is a
+   * headlight where there are none, and with all samples. `image` gets `width` x `height` points, row 0 the lowest,
+   * with the scalars "color", 4 bytes, and the array "depth", a float as in a window's depth buffer, 1 where nothing
+   * is. Colours lie over the renderer's background, or, if `transparent`, have the opacity of what is shown, and are
+   * not multiplied by it. What others draw in the renderer is left out. The pixels are those that a window of this
+   * size shows; how the frame reaches windows makes no difference. A renderer without a window needs no more than
+   * VTK's libraries.
+   *
+   * Collective: every rank calls it with the same size, also one that has no data. Each gets the whole picture, unless
+   * its `image` is null. False, with an error as for a frame, where there is none; the same on every rank.
+   */
+  bool TraceImage(int width, int height, vtkImageData* image, bool transparent = false);
 
   /**
    * While it is hidden the scene neither traces nor draws, and keeps what it has: for renders that are
@@ -185,6 +201,7 @@ private:
   void EndWithRenderer();
   void NoteBackground();
   void Trace();
+  bool TraceFrame();
   void EndFrame();
 
   class Internals;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkDSMSceneInternals.h"
 
+#include "vtkDSMFrameImage.h"
 #include "vtkDSMFrameNotes.h"
 
 #include "vtkBoundingBox.h"
@@ -171,11 +172,15 @@ void vtkDSMScene::Internals::Draw()
       scene.Lights = vtkDSMTranslation::ToLights(this->Renderer);
       scene.Transport = this->Members.GetTransport();
       scene.View = this->Members.GetDebugView();
-      request = vtkDSMTranslation::ToRequest(this->Renderer, this->Display, projection);
+      request = this->Image
+        ? vtkDSMTranslation::ToRequest(
+            this->Renderer, this->Image->Width, this->Image->Height, projection)
+        : vtkDSMTranslation::ToRequest(this->Renderer, this->Display, projection);
       request.Scheduling = this->Settings.Scheduling;
     });
   if (scene.Objects.empty())
   {
+    this->FillImage({});
     this->Clear();
     return;
   }
@@ -192,7 +197,7 @@ void vtkDSMScene::Internals::Draw()
     }
   }
   const int wanted = this->Members.GetSamplesPerPixel();
-  vtkRenderWindow* window = this->Renderer->GetRenderWindow();
+  vtkRenderWindow* window = this->Image ? nullptr : this->Renderer->GetRenderWindow();
   this->Group->GetFrameRenderer().SetAbortCheck(
     [=] { return window && window->CheckAbortStatus() != 0; });
   using Result = vtkDSMFrameAccumulation::Result;
@@ -209,10 +214,24 @@ void vtkDSMScene::Internals::Draw()
     this->Statistics->Gather(messenger, this->Accumulation.GetFrame(),
       this->Accumulation.GetSamples(), this->Accumulation.GetWanted());
   }
+  if (this->Image)
+  {
+    this->FillImage(rt::GatherFrame(messenger, this->Accumulation.GetFrame()));
+    return;
+  }
   std::optional<rt::Picture> whole =
     this->Delivery.Gather(messenger, this->Accumulation.GetFrame());
   this->DrawPicture(whole ? std::move(*whole) : rt::AssembleTiles(this->Accumulation.GetFrame()),
     request, projection, scene.View, reduction == 1);
+}
+
+void vtkDSMScene::Internals::FillImage(const rt::Picture& picture) const
+{
+  if (this->Image && this->Image->Image)
+  {
+    vtkDSMFrameImage::Fill(this->Image->Image, this->Image->Width, this->Image->Height, picture,
+      this->Background, this->Image->IsTransparent);
+  }
 }
 
 void vtkDSMScene::Internals::DrawPicture(rt::Picture picture, const rt::FrameRequest& request,
@@ -284,8 +303,8 @@ void vtkDSMScene::Internals::AgreeOnView(rt::Scene& scene, rt::FrameRequest& req
     std::uint64_t IsApart;
   };
   const bool canBeApart = this->Delivery.CanSeparate(this->Group->GetMessenger().GetSize());
-  const bool isApart =
-    canBeApart && !scene.IsOpaque() && this->Members.AreBesideOthers(this->Renderer);
+  const bool isApart = canBeApart && !this->Image && !scene.IsOpaque() &&
+    this->Members.AreBesideOthers(this->Renderer);
   std::vector<std::byte> mine =
     dsm::Encode(View{ request.WorldToClip, this->Background, isApart ? 1u : 0u });
   for (const rt::Light& light : scene.Lights)
@@ -322,7 +341,7 @@ void vtkDSMScene::Internals::AgreeOnView(rt::Scene& scene, rt::FrameRequest& req
 
 bool vtkDSMScene::Internals::IsInteractive() const
 {
-  vtkRenderWindow* window = this->Renderer->GetRenderWindow();
+  vtkRenderWindow* window = this->Image ? nullptr : this->Renderer->GetRenderWindow();
   return window && window->GetDesiredUpdateRate() >= InteractiveRate;
 }
 
@@ -343,6 +362,10 @@ int vtkDSMScene::Internals::GetReduction(const rt::FrameRequest& request) const
 
 vtkDSMFrameAccumulation::Pace vtkDSMScene::Internals::GetPace() const
 {
+  if (this->Image)
+  {
+    return {};
+  }
   return this->IsInteractive() ? vtkDSMFrameAccumulation::Pace{ 1, 0.0 } : this->Pace;
 }
 

@@ -20,6 +20,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 
 /// What a scene is made of. What takes part in a frame is collective: on every rank, in this order,
@@ -39,8 +40,20 @@ public:
   std::string MakeFrame(const dsm::FirstFailure& earlier);
   /// Nothing is shown.
   void Clear();
+  /// Into the target's image, where there is one; without pixels, nothing but background.
+  void FillImage(const rt::Picture& picture) const;
+
+  /// A picture for nobody's window.
+  struct Target
+  {
+    int Width;
+    int Height;
+    vtkImageData* Image; ///< may be null
+    bool IsTransparent;
+  };
 
   vtkWeakPointer<vtkRenderer> Renderer;
+  std::optional<Target> Image; ///< while one is traced
   unsigned long Observers[4] = { 0, 0, 0, 0 };
   vtkSmartPointer<vtkDSMScene> Keeper; ///< the scene itself, when nobody but the renderer has it
   rt::Environment Background;          ///< of this rank's renderer, as the application set it

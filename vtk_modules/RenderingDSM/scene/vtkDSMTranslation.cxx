@@ -49,6 +49,15 @@ glm::vec4 MapValue(vtkScalarsToColors* table, double value)
   return { color[0], color[1], color[2], table->GetOpacity(value) };
 }
 
+void SetCamera(
+  vtkRenderer* renderer, double aspect, vtkMatrix4x4* projection, rt::FrameRequest& request)
+{
+  vtkCamera* camera = renderer->GetActiveCamera();
+  projection->DeepCopy(camera->GetProjectionTransformMatrix(aspect, -1.0, 1.0));
+  request.WorldToClip = vtkDSMTranslation::ToMatrix(projection) *
+    vtkDSMTranslation::ToMatrix(camera->GetModelViewTransformMatrix());
+}
+
 } // namespace
 
 glm::dmat4 vtkDSMTranslation::ToMatrix(vtkMatrix4x4* matrix)
@@ -266,7 +275,6 @@ std::vector<rt::Light> vtkDSMTranslation::ToLights(vtkRenderer* renderer)
 rt::FrameRequest vtkDSMTranslation::ToRequest(
   vtkRenderer* renderer, const TileDisplay& display, vtkMatrix4x4* projection)
 {
-  vtkCamera* camera = renderer->GetActiveCamera();
   rt::FrameRequest request;
   int* const size[2] = { &request.Width, &request.Height };
   int origin[2];
@@ -286,7 +294,16 @@ rt::FrameRequest vtkDSMTranslation::ToRequest(
     }
     aspect = static_cast<double>(request.Width) / std::max(request.Height, 1);
   }
-  projection->DeepCopy(camera->GetProjectionTransformMatrix(aspect, -1.0, 1.0));
-  request.WorldToClip = ToMatrix(projection) * ToMatrix(camera->GetModelViewTransformMatrix());
+  SetCamera(renderer, aspect, projection, request);
+  return request;
+}
+
+rt::FrameRequest vtkDSMTranslation::ToRequest(
+  vtkRenderer* renderer, int width, int height, vtkMatrix4x4* projection)
+{
+  rt::FrameRequest request;
+  request.Width = width;
+  request.Height = height;
+  SetCamera(renderer, static_cast<double>(width) / height, projection, request);
   return request;
 }

@@ -59,6 +59,9 @@ public:
   /// `projection` is filled with its projection.
   static rt::FrameRequest ToRequest(
     vtkRenderer* renderer, const TileDisplay& display, vtkMatrix4x4* projection);
+  /// One of another size, for which the renderer needs no window.
+  static rt::FrameRequest ToRequest(
+    vtkRenderer* renderer, int width, int height, vtkMatrix4x4* projection);
 };
 
 #endif
