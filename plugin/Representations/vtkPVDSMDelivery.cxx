@@ -2,6 +2,7 @@
 #include "vtkPVDSMDelivery.h"
 
 #include "vtkDSMScene.h"
+#include "vtkPVDSMFrameReport.h"
 
 #include "vtkBoundingBox.h"
 #include "vtkCompositeRepresentation.h"
@@ -302,7 +303,7 @@ void vtkPVDSMDelivery::SelectTheNearest(vtkView* view)
 }
 
 void vtkPVDSMDelivery::Choose(
-  vtkDSMScene* scene, vtkView* anyView, vtkInformation* inInfo, bool progressive)
+  vtkDSMScene* scene, vtkView* anyView, vtkInformation* inInfo, vtkPVDSMFrameReport* report)
 {
   auto* view = vtkPVRenderView::SafeDownCast(anyView);
   auto* controller = scene->GetController();
@@ -312,8 +313,10 @@ void vtkPVDSMDelivery::Choose(
   {
     SelectTheNearest(anyView);
   }
-  scene->SetSamplesPerFrame(progressive && CanRefine(view) ? 1 : 0);
-  scene->SetSecondsPerFrame(SecondsPerFrame);
+  const bool takesFew =
+    report && (report->GetInteracting() || (report->GetProgressive() && CanRefine(view)));
+  scene->SetSamplesPerFrame(takesFew ? 1 : 0);
+  scene->SetSecondsPerFrame(report && report->GetInteracting() ? 0.0 : SecondsPerFrame);
   scene->SetInteractiveReduction(
     view && inInfo->Has(vtkPVRenderView::USE_LOD()) && !AskedView::IsCapturing(view)
       ? GetReduction(view->GetLODResolution())

@@ -8,6 +8,7 @@ class vtkDataObject;
 class vtkDSMScene;
 class vtkInformation;
 class vtkPartitionedDataSet;
+class vtkPVDSMFrameReport;
 class vtkPVDataRepresentation;
 class vtkPVRenderView;
 class vtkView;
@@ -50,8 +51,9 @@ public:
   static bool IsCapturing(vtkView* view);
 
   /// For REQUEST_RENDER: the way that suits what else the view shows, and what it renders for.
-  /// `progressive`: the client goes on rendering a still view while there are samples missing.
-  static void Choose(vtkDSMScene* scene, vtkView* view, vtkInformation* inInfo, bool progressive);
+  /// `report` tells what the client is doing; may be null.
+  static void Choose(
+    vtkDSMScene* scene, vtkView* view, vtkInformation* inInfo, vtkPVDSMFrameReport* report);
 
 private:
   static void SelectTheNearest(vtkView* view);

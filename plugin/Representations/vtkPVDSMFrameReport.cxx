@@ -62,6 +62,16 @@ bool vtkPVDSMFrameReport::GetProgressive()
   return this->Progressive;
 }
 
+void vtkPVDSMFrameReport::SetInteracting(bool interacting)
+{
+  this->Interacting = interacting;
+}
+
+bool vtkPVDSMFrameReport::GetInteracting()
+{
+  return this->Interacting;
+}
+
 void vtkPVDSMFrameReport::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);

@@ -71,6 +71,15 @@ public:
   bool GetProgressive();
   ///@}
 
+  ///@{
+  /**
+   * Whether the user moves the camera, so that no render need take all samples, also one whose picture is kept: web
+   * applications send such pictures to the browser, one after the other. Off by default.
+   */
+  void SetInteracting(bool interacting);
+  bool GetInteracting();
+  ///@}
+
 protected:
   vtkPVDSMFrameReport();
   ~vtkPVDSMFrameReport() override;
@@ -82,6 +91,7 @@ private:
   vtkWeakPointer<vtkDSMScene> Source;
   vtkWeakPointer<vtkDSMVolumeMapper> Volume;
   bool Progressive = false;
+  bool Interacting = false;
   int Samples[2] = { 0, 0 };
   std::string Text;
 };

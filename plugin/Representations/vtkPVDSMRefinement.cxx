@@ -93,6 +93,16 @@ void ForEachReport(vtkSMProxy* view, const Visit& visit)
     });
 }
 
+/// Calls a method of a frame report where the view is traced.
+void Tell(vtkSMProxy* report, const char* method, int value)
+{
+  report->UpdateVTKObjects();
+  vtkClientServerStream stream;
+  stream << vtkClientServerStream::Invoke << VTKOBJECT(report) << method << value
+         << vtkClientServerStream::End;
+  report->GetSession()->ExecuteStream(report->GetLocation(), stream);
+}
+
 } // namespace
 
 vtkStandardNewMacro(vtkPVDSMRefinement);
@@ -163,8 +173,9 @@ void vtkPVDSMRefinement::FollowInteractor()
   {
     this->InteractorObservers = { interactor->AddObserver(vtkCommand::StartInteractionEvent, this,
                                     &vtkPVDSMRefinement::OnInteractionBegins),
+      // Before the view renders.
       interactor->AddObserver(
-        vtkCommand::EndInteractionEvent, this, &vtkPVDSMRefinement::OnInteractionEnds),
+        vtkCommand::EndInteractionEvent, this, &vtkPVDSMRefinement::OnInteractionEnds, 1.0f),
       interactor->AddObserver(vtkCommand::TimerEvent, this, &vtkPVDSMRefinement::OnTimer) };
   }
   if (this->Window)
@@ -214,11 +225,7 @@ void vtkPVDSMRefinement::OnRenderBegins(vtkObject*, unsigned long, void* interac
     {
       if (this->Told.insert(report->GetGlobalID()).second)
       {
-        report->UpdateVTKObjects();
-        vtkClientServerStream stream;
-        stream << vtkClientServerStream::Invoke << VTKOBJECT(report) << "SetProgressive" << 1
-               << vtkClientServerStream::End;
-        this->View->GetSession()->ExecuteStream(report->GetLocation(), stream);
+        Tell(report, "SetProgressive", 1);
       }
     });
 }
@@ -276,15 +283,27 @@ void vtkPVDSMRefinement::OnInteractionBegins()
 {
   this->IsInteracting = true;
   this->Forget();
+  this->TellInteracting();
 }
 
 void vtkPVDSMRefinement::OnInteractionEnds()
 {
   this->IsInteracting = false;
+  this->TellInteracting();
   // After a movement ParaView renders, when its delay is over.
   if (!this->IsRefined)
   {
     this->RenderLater(ShortDelay);
+  }
+}
+
+/// Web applications take still pictures while the user moves the camera.
+void vtkPVDSMRefinement::TellInteracting()
+{
+  if (this->View && !this->View->GetSession()->IsMultiClients())
+  {
+    ForEachReport(this->View,
+      [this](vtkSMProxy* report) { Tell(report, "SetInteracting", this->IsInteracting ? 1 : 0); });
   }
 }
 

@@ -24,7 +24,8 @@ class vtkSMRenderViewProxy;
 /// render takes few samples of each pixel, and whenever the application has nothing else to do, the
 /// next ones are added, until there are as many as asked for. Lives on the client, once for each view
 /// that shows anything of ours; its thread is the application's. Where no application handles events
-/// between renders (pvpython, pvbatch), and with several clients, renders take all samples as usual.
+/// between renders (pvpython, pvbatch), and with several clients, renders take all samples as usual; but while the
+/// user moves the camera, as in a browser, each takes one.
 /// An isovalue that changes is shown at once.
 /// Where the client itself traces, a render ends early when the user presses anything.
 class vtkPVDSMRefinement : public vtkObject
@@ -55,6 +56,7 @@ private:
   void OnAbortCheck(vtkObject* caller, unsigned long event, void* data);
   void OnInteractionBegins();
   void OnInteractionEnds();
+  void TellInteracting();
   void OnIsovalue();
   void OnTimer(vtkObject* caller, unsigned long event, void* timer);
   void RenderLater(unsigned long milliseconds);

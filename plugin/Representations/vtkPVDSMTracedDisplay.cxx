@@ -188,8 +188,8 @@ void vtkPVDSMTracedDisplay::PrepareRender(const double* dataBounds, vtkInformati
   this->SelectionMapper->SetShownBounds(dataBounds);
   this->SelectionActor->SetUseBounds(selecting); // ranks draw where there is something
   this->SelectionActor->SetUserMatrix(matrix);
-  vtkPVDSMDelivery::Choose(this->Scene, this->Representation->GetView(), inInfo,
-    this->FrameReport && this->FrameReport->GetProgressive());
+  vtkPVDSMDelivery::Choose(
+    this->Scene, this->Representation->GetView(), inInfo, this->FrameReport);
 }
 
 void vtkPVDSMTracedDisplay::ForwardProgress()
