@@ -2,9 +2,13 @@
 #include "vtkPVDSMClipping.h"
 
 #include "vtkAbstractMapper.h"
+#include "vtkClipPolyData.h"
 #include "vtkMatrix4x4.h"
 #include "vtkNew.h"
 #include "vtkPlane.h"
+#include "vtkPlaneCollection.h"
+#include "vtkPolyData.h"
+#include "vtkPolyDataMapper.h"
 #include "vtkTransform.h"
 
 #include <algorithm>
@@ -51,4 +55,25 @@ void vtkPVDSMClipping::ApplyTo(vtkAbstractMapper* mapper, vtkMatrix4x4* dataToWo
     transform->TransformNormal(normal, normal);
     AddPlane(mapper, origin, normal);
   }
+}
+
+vtkSmartPointer<vtkPolyData> vtkPVDSMClipping::Clip(
+  vtkPolyData* polygons, vtkMatrix4x4* dataToWorld) const
+{
+  vtkNew<vtkPolyDataMapper> mapper;
+  this->ApplyTo(mapper, dataToWorld);
+  vtkSmartPointer<vtkPolyData> shown = polygons;
+  vtkPlaneCollection* planes = mapper->GetClippingPlanes();
+  for (int number = 0; planes && number < planes->GetNumberOfItems(); ++number)
+  {
+    vtkNew<vtkTransform> transform;
+    transform->SetMatrix(dataToWorld);
+    planes->GetItem(number)->SetTransform(transform);
+    vtkNew<vtkClipPolyData> clip;
+    clip->SetInputData(shown);
+    clip->SetClipFunction(planes->GetItem(number));
+    clip->Update();
+    shown = clip->GetOutput();
+  }
+  return shown;
 }

@@ -2,10 +2,13 @@
 #ifndef vtkPVDSMClipping_h
 #define vtkPVDSMClipping_h
 
+#include "vtkSmartPointer.h"
+
 #include <array>
 
 class vtkAbstractMapper;
 class vtkMatrix4x4;
+class vtkPolyData;
 
 /// What a representation shows of its dataset: the side of a plane, the inside of a box.
 class vtkPVDSMClipping
@@ -25,6 +28,9 @@ public:
 
   /// Gives the mapper its clipping planes, `dataToWorld` being where the dataset is.
   void ApplyTo(vtkAbstractMapper* mapper, vtkMatrix4x4* dataToWorld) const;
+
+  /// What is shown of polygons in the dataset's coordinates.
+  vtkSmartPointer<vtkPolyData> Clip(vtkPolyData* polygons, vtkMatrix4x4* dataToWorld) const;
 };
 
 #endif

@@ -6,14 +6,19 @@
 #include "vtkPVDSMLightOptions.h"
 #include "vtkPVDSMMemoryOptions.h"
 
+#include "vtkActor.h"
+#include "vtkAppendPolyData.h"
 #include "vtkBoundingBox.h"
 #include "vtkCompositeDataDisplayAttributes.h"
+#include "vtkCompositeDataIterator.h"
+#include "vtkCompositeDataSet.h"
 #include "vtkDataObject.h"
 #include "vtkInformation.h"
 #include "vtkMatrix4x4.h"
 #include "vtkObjectFactory.h"
 #include "vtkPVLODActor.h"
 #include "vtkPVRenderView.h"
+#include "vtkPolyData.h"
 #include "vtkProperty.h"
 #include "vtkScalarsToColors.h"
 #include "vtkTexture.h"
@@ -40,6 +45,17 @@ vtkPVDSMGeometryRepresentation::vtkPVDSMGeometryRepresentation()
   this->Display->SelectionMapper->SetCompositeDataDisplayAttributes(attributes);
   this->Display->SelectionMapper->SetSource(
     [this]() -> vtkSmartPointer<vtkDataObject> { return this->GetRenderedDataObject(0); });
+  this->Display->SetLook = [this](vtkActor* actor, vtkMapper* look)
+  {
+    this->UpdateColoringParameters();
+    actor->SetProperty(this->Property);
+    look->SetLookupTable(this->Mapper->GetLookupTable());
+    look->UseLookupTableScalarRangeOn();
+    look->SetScalarVisibility(this->Mapper->GetScalarVisibility());
+    look->SetScalarMode(this->Mapper->GetScalarMode());
+    look->SelectColorArray(this->Mapper->GetArrayName());
+    look->SetColorMode(this->Mapper->GetColorMode());
+  };
 }
 
 vtkPVDSMGeometryRepresentation::~vtkPVDSMGeometryRepresentation() = default;
@@ -191,6 +207,41 @@ void vtkPVDSMGeometryRepresentation::SelectRadiusArray(int, int, int, int, const
   const std::string array = name ? name : "";
   // The word that the panel offers beside the arrays.
   this->GetMapper()->SetRadiusArray(array == "None" ? "" : array);
+}
+
+vtkSmartPointer<vtkPolyData> vtkPVDSMGeometryRepresentation::GetTriangles()
+{
+  vtkCompositeDataDisplayAttributes* attributes =
+    this->GetMapper()->GetCompositeDataDisplayAttributes();
+  vtkNew<vtkAppendPolyData> append;
+  const auto add = [&](vtkDataObject* block)
+  {
+    auto* polygons = vtkPolyData::SafeDownCast(block);
+    if (polygons &&
+      !(attributes->HasBlockVisibility(block) && !attributes->GetBlockVisibility(block)))
+    {
+      append->AddInputData(polygons);
+    }
+  };
+  vtkDataObject* data = this->GetRenderedDataObject(0);
+  if (auto* composite = vtkCompositeDataSet::SafeDownCast(data))
+  {
+    vtkSmartPointer<vtkCompositeDataIterator> leaf;
+    leaf.TakeReference(composite->NewIterator());
+    for (leaf->InitTraversal(); !leaf->IsDoneWithTraversal(); leaf->GoToNextItem())
+    {
+      add(leaf->GetCurrentDataObject());
+    }
+  }
+  else
+  {
+    add(data);
+  }
+  if (append->GetNumberOfInputConnections(0) > 0)
+  {
+    append->Update();
+  }
+  return append->GetOutput();
 }
 
 void vtkPVDSMGeometryRepresentation::SetLightOptions(vtkPVDSMLightOptions* options)

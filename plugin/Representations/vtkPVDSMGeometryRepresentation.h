@@ -89,6 +89,11 @@ public:
   ///@}
 
   /**
+   * This rank's part of the surface; polygons of blocks that are hidden are left out.
+   */
+  vtkSmartPointer<vtkPolyData> GetTriangles();
+
+  /**
    * What shall tell of the view's frames; null on the client.
    */
   void SetFrameReport(vtkPVDSMFrameReport* report);

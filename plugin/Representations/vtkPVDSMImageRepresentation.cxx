@@ -7,6 +7,7 @@
 #include "vtkPVDSMLightOptions.h"
 #include "vtkPVDSMMemoryOptions.h"
 
+#include "vtkActor.h"
 #include "vtkCompositeDataIterator.h"
 #include "vtkDataAssembly.h"
 #include "vtkDataAssemblyUtilities.h"
@@ -19,6 +20,8 @@
 #include "vtkObjectFactory.h"
 #include "vtkPVRenderView.h"
 #include "vtkPartitionedDataSetCollection.h"
+#include "vtkPolyData.h"
+#include "vtkPolyDataMapper.h"
 #include "vtkProperty.h"
 #include "vtkScalarsToColors.h"
 #include "vtkVolume.h"
@@ -36,6 +39,19 @@ vtkPVDSMImageRepresentation::vtkPVDSMImageRepresentation()
   this->Mapper->AutomaticIsoValueOn();
   this->Display->SelectionMapper->SetSource([this]() -> vtkSmartPointer<vtkDataObject>
     { return vtkPVDSMIsosurfaceGeometry::Make(this->Mapper); });
+  this->Display->SetLook = [this](vtkActor* actor, vtkMapper* mapper)
+  {
+    actor->SetProperty(this->Mapper->GetSurfaceProperty());
+    mapper->SetLookupTable(this->Mapper->GetLookupTable());
+    mapper->UseLookupTableScalarRangeOn();
+    mapper->SetScalarVisibility(this->Mapper->GetScalarVisibility());
+    mapper->SetScalarMode(this->Mapper->GetColorArrayOnCells()
+        ? VTK_SCALAR_MODE_USE_CELL_FIELD_DATA
+        : VTK_SCALAR_MODE_USE_POINT_FIELD_DATA);
+    mapper->SelectColorArray(this->Mapper->GetColorArray().c_str());
+    mapper->SetColorMode(
+      this->Mapper->GetMapScalars() ? VTK_COLOR_MODE_MAP_SCALARS : VTK_COLOR_MODE_DIRECT_SCALARS);
+  };
 }
 
 vtkPVDSMImageRepresentation::~vtkPVDSMImageRepresentation() = default;
@@ -281,6 +297,11 @@ void vtkPVDSMImageRepresentation::SetUserTransform(const double matrix[16])
   vtkNew<vtkMatrix4x4> transform;
   transform->DeepCopy(matrix);
   this->Volume->SetUserMatrix(transform);
+}
+
+vtkSmartPointer<vtkPolyData> vtkPVDSMImageRepresentation::GetTriangles()
+{
+  return vtkPVDSMIsosurfaceGeometry::MakeColored(this->Mapper);
 }
 
 void vtkPVDSMImageRepresentation::SetLightOptions(vtkPVDSMLightOptions* options)

@@ -25,6 +25,7 @@ class vtkDataObject;
 class vtkPVDSMFrameReport;
 class vtkPVDSMLightOptions;
 class vtkPVDSMMemoryOptions;
+class vtkPolyData;
 class vtkScalarsToColors;
 class vtkVolume;
 
@@ -139,6 +140,11 @@ public:
   void SetLightOptions(vtkPVDSMLightOptions* options);
   void SetMemoryOptions(vtkPVDSMMemoryOptions* options);
   ///@}
+
+  /**
+   * The isosurfaces of this rank's data as triangles, with the array that colours them.
+   */
+  vtkSmartPointer<vtkPolyData> GetTriangles();
 
   /**
    * What shall tell of the view's frames; null on the client.

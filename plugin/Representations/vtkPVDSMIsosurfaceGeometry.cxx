@@ -3,6 +3,7 @@
 
 #include "vtkDSMVolumeMapper.h"
 
+#include "vtkAppendPolyData.h"
 #include "vtkCellArray.h"
 #include "vtkCellData.h"
 #include "vtkCompositeDataIterator.h"
@@ -52,19 +53,40 @@ vtkSmartPointer<vtkDoubleArray> GetValues(vtkDataArray* array, int component)
   return values;
 }
 
+/// The array of points or cells that colours the surface; null without any.
+vtkDataArray* FindColors(vtkDSMVolumeMapper* mapper, vtkImageData* image, bool onCells)
+{
+  if (!mapper->GetScalarVisibility() || mapper->GetColorArrayOnCells() != onCells)
+  {
+    return nullptr;
+  }
+  vtkDataSetAttributes* attributes = image->GetAttributes(
+    onCells ? vtkDataObject::FIELD_ASSOCIATION_CELLS : vtkDataObject::FIELD_ASSOCIATION_POINTS);
+  return attributes->GetArray(mapper->GetColorArray().c_str());
+}
+
 vtkSmartPointer<vtkPolyData> Extract(
-  vtkDSMVolumeMapper* mapper, vtkImageData* image, vtkDataArray* array)
+  vtkDSMVolumeMapper* mapper, vtkImageData* image, vtkDataArray* array, bool colored)
 {
   vtkNew<vtkImageData> plain;
   plain->CopyStructure(image);
   plain->GetPointData()->SetScalars(GetValues(array, mapper->GetIsoComponent()));
   vtkNew<vtkFlyingEdges3D> edges;
   edges->SetInputData(plain);
-  edges->ComputeNormalsOff();
+  edges->SetComputeNormals(colored);
   edges->ComputeScalarsOff();
+  if (vtkDataArray* colors = colored ? FindColors(mapper, image, false) : nullptr)
+  {
+    plain->GetPointData()->AddArray(colors);
+    edges->InterpolateAttributesOn();
+  }
   for (int index = 0; index < mapper->GetNumberOfIsoValues(); ++index)
   {
     edges->SetValue(index, mapper->GetIsoValue(index));
+  }
+  if (mapper->GetNumberOfIsoValues() == 0)
+  {
+    edges->SetValue(0, mapper->GetSuggestedIsoValue());
   }
   edges->Update();
   return edges->GetOutput();
@@ -111,6 +133,7 @@ vtkSmartPointer<vtkPolyData> AttachIds(vtkImageData* image, vtkPolyData* triangl
 {
   auto result = vtkSmartPointer<vtkPolyData>::New();
   result->SetPoints(triangles->GetPoints());
+  result->GetPointData()->ShallowCopy(triangles->GetPointData());
   vtkNew<vtkIdTypeArray> cells;
   vtkNew<vtkUnsignedIntArray> blocks;
   cells->SetName("vtkOriginalCellIds");
@@ -161,8 +184,25 @@ vtkSmartPointer<vtkPolyData> AttachIds(vtkImageData* image, vtkPolyData* triangl
   return result;
 }
 
-void AddImage(
-  vtkDSMVolumeMapper* mapper, vtkImageData* image, unsigned block, vtkMultiBlockDataSet* geometry)
+/// Gives each triangle the value of its cell.
+void AttachColors(vtkDataArray* colors, vtkPolyData* triangles)
+{
+  auto* cells =
+    vtkIdTypeArray::SafeDownCast(triangles->GetCellData()->GetArray("vtkOriginalCellIds"));
+  vtkSmartPointer<vtkDataArray> values;
+  values.TakeReference(colors->NewInstance());
+  values->SetName(colors->GetName());
+  values->SetNumberOfComponents(colors->GetNumberOfComponents());
+  values->SetNumberOfTuples(cells->GetNumberOfTuples());
+  for (vtkIdType number = 0; number < cells->GetNumberOfTuples(); ++number)
+  {
+    values->SetTuple(number, cells->GetValue(number), colors);
+  }
+  triangles->GetCellData()->AddArray(values);
+}
+
+void AddImage(vtkDSMVolumeMapper* mapper, vtkImageData* image, unsigned block, bool colored,
+  vtkMultiBlockDataSet* geometry)
 {
   if (!image || image->GetNumberOfCells() == 0)
   {
@@ -178,18 +218,21 @@ void AddImage(
   if (image->GetNumberOfCells() > vtkPVDSMIsosurfaceGeometry::MostCells)
   {
     vtkErrorWithObjectMacro(mapper,
-      "Nothing can be selected in a block of "
+      "Nothing can be selected in or exported of a block of "
         << image->GetNumberOfCells() << " cells on one rank; at most "
         << vtkPVDSMIsosurfaceGeometry::MostCells << " can. Take more ranks, or extract a part.");
     return;
   }
-  geometry->SetBlock(
-    geometry->GetNumberOfBlocks(), AttachIds(image, Extract(mapper, image, array), block));
+  const vtkSmartPointer<vtkPolyData> triangles =
+    AttachIds(image, Extract(mapper, image, array, colored), block);
+  if (vtkDataArray* colors = colored ? FindColors(mapper, image, true) : nullptr)
+  {
+    AttachColors(colors, triangles);
+  }
+  geometry->SetBlock(geometry->GetNumberOfBlocks(), triangles);
 }
 
-} // namespace
-
-vtkSmartPointer<vtkMultiBlockDataSet> vtkPVDSMIsosurfaceGeometry::Make(vtkDSMVolumeMapper* mapper)
+vtkSmartPointer<vtkMultiBlockDataSet> MakeBlocks(vtkDSMVolumeMapper* mapper, bool colored)
 {
   auto geometry = vtkSmartPointer<vtkMultiBlockDataSet>::New();
   vtkDataObject* data = mapper->GetDataObjectInput();
@@ -200,12 +243,34 @@ vtkSmartPointer<vtkMultiBlockDataSet> vtkPVDSMIsosurfaceGeometry::Make(vtkDSMVol
     for (leaf->InitTraversal(); !leaf->IsDoneWithTraversal(); leaf->GoToNextItem())
     {
       AddImage(mapper, vtkImageData::SafeDownCast(leaf->GetCurrentDataObject()),
-        leaf->GetCurrentFlatIndex(), geometry);
+        leaf->GetCurrentFlatIndex(), colored, geometry);
     }
   }
   else
   {
-    AddImage(mapper, vtkImageData::SafeDownCast(data), 0, geometry);
+    AddImage(mapper, vtkImageData::SafeDownCast(data), 0, colored, geometry);
   }
   return geometry;
+}
+
+} // namespace
+
+vtkSmartPointer<vtkMultiBlockDataSet> vtkPVDSMIsosurfaceGeometry::Make(vtkDSMVolumeMapper* mapper)
+{
+  return MakeBlocks(mapper, false);
+}
+
+vtkSmartPointer<vtkPolyData> vtkPVDSMIsosurfaceGeometry::MakeColored(vtkDSMVolumeMapper* mapper)
+{
+  const vtkSmartPointer<vtkMultiBlockDataSet> blocks = MakeBlocks(mapper, true);
+  vtkNew<vtkAppendPolyData> append;
+  for (unsigned block = 0; block < blocks->GetNumberOfBlocks(); ++block)
+  {
+    append->AddInputData(vtkPolyData::SafeDownCast(blocks->GetBlock(block)));
+  }
+  if (blocks->GetNumberOfBlocks() > 0)
+  {
+    append->Update();
+  }
+  return append->GetOutput();
 }

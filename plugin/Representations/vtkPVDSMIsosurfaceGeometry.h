@@ -6,9 +6,10 @@
 
 class vtkDSMVolumeMapper;
 class vtkMultiBlockDataSet;
+class vtkPolyData;
 
-/// The triangles of the isosurfaces of this rank's data, for selections: they know the cells that they
-/// are in, and the nearest points.
+/// The triangles of the isosurfaces of this rank's data. For selections, they know the cells that they are in, and the
+/// nearest points; for exports, they have normals and what colours them.
 class vtkPVDSMIsosurfaceGeometry
 {
 public:
@@ -18,6 +19,9 @@ public:
   /// Null where there is nothing, or too much, which is reported as the mapper's error. Triangles of
   /// ghost and hidden cells are left out.
   static vtkSmartPointer<vtkMultiBlockDataSet> Make(vtkDSMVolumeMapper* mapper);
+
+  /// The same with the values of the colour array, and normals; of all blocks together.
+  static vtkSmartPointer<vtkPolyData> MakeColored(vtkDSMVolumeMapper* mapper);
 };
 
 #endif

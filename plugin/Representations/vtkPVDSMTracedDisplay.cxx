@@ -16,6 +16,8 @@
 #include "vtkPVDataRepresentation.h"
 #include "vtkPVRenderView.h"
 #include "vtkPartitionedDataSet.h"
+#include "vtkPolyData.h"
+#include "vtkPolyDataMapper.h"
 #include "vtkProp3D.h"
 #include "vtkRenderer.h"
 
@@ -30,6 +32,8 @@ vtkPVDSMTracedDisplay::vtkPVDSMTracedDisplay(vtkPVDataRepresentation* representa
 {
   this->SelectionActor->SetMapper(this->SelectionMapper);
   this->SelectionActor->UseBoundsOff();
+  this->ExportProp->SetRepresentation(
+    representation, [this](vtkPolyData* polygons) { return this->MakeExportActor(polygons); });
 }
 
 vtkPVDSMTracedDisplay::~vtkPVDSMTracedDisplay()
@@ -74,6 +78,11 @@ void vtkPVDSMTracedDisplay::SetVisibility(bool visible)
     this->View->GetRenderer()->AddViewProp(this->SelectionActor);
     this->ConnectFrameReport();
   }
+  // A mesh that is drawn here is an actor for exporters, too.
+  if (!this->Scene || !vtkActor::SafeDownCast(this->Prop))
+  {
+    this->View->GetRenderer()->AddViewProp(this->ExportProp);
+  }
   this->Refinement = vtkPVDSMRefinement::Follow(this->View);
   this->View->RegisterPropForHardwareSelection(this->Representation, this->SelectionActor);
 }
@@ -96,6 +105,7 @@ void vtkPVDSMTracedDisplay::Leave()
   {
     this->View->GetRenderer()->RemoveViewProp(this->Prop);
     this->View->GetRenderer()->RemoveViewProp(this->SelectionActor);
+    this->View->GetRenderer()->RemoveViewProp(this->ExportProp);
     this->View->UnRegisterPropForHardwareSelection(this->Representation, this->SelectionActor);
   }
   this->IsInView = false;
@@ -124,6 +134,19 @@ void vtkPVDSMTracedDisplay::ShareOptions()
   }
 }
 
+vtkSmartPointer<vtkActor> vtkPVDSMTracedDisplay::MakeExportActor(vtkPolyData* polygons) const
+{
+  vtkNew<vtkMatrix4x4> matrix;
+  this->Prop->GetMatrix(matrix);
+  vtkNew<vtkPolyDataMapper> mapper;
+  mapper->SetInputData(this->Clipping.Clip(polygons, matrix));
+  auto actor = vtkSmartPointer<vtkActor>::New();
+  actor->SetMapper(mapper);
+  actor->SetUserMatrix(matrix);
+  this->SetLook(actor, mapper);
+  return actor;
+}
+
 void vtkPVDSMTracedDisplay::SetFrameReport(vtkPVDSMFrameReport* report)
 {
   this->FrameReport = report;
@@ -144,6 +167,7 @@ bool vtkPVDSMTracedDisplay::Process(
   const bool needsUpdate =
     request == vtkPVView::REQUEST_UPDATE() && this->Representation->GetNeedsUpdate();
   this->IsUpdated = false;
+  this->ExportProp->Forget();
   // Not what a Surface does: it delivers its geometry, or a coarser one.
   if (!this->Representation->vtkPVDataRepresentation::ProcessViewRequest(request, inInfo, outInfo))
   {
@@ -188,8 +212,7 @@ void vtkPVDSMTracedDisplay::PrepareRender(const double* dataBounds, vtkInformati
   this->SelectionMapper->SetShownBounds(dataBounds);
   this->SelectionActor->SetUseBounds(selecting); // ranks draw where there is something
   this->SelectionActor->SetUserMatrix(matrix);
-  vtkPVDSMDelivery::Choose(
-    this->Scene, this->Representation->GetView(), inInfo, this->FrameReport);
+  vtkPVDSMDelivery::Choose(this->Scene, this->Representation->GetView(), inInfo, this->FrameReport);
 }
 
 void vtkPVDSMTracedDisplay::ForwardProgress()

@@ -3,6 +3,8 @@
 #define vtkPVDSMTracedDisplay_h
 
 #include "vtkPVDSMClipping.h"
+#include "vtkPVDSMExportProp.h"
+#include "vtkPVDSMSelectionActor.h"
 #include "vtkPVDSMSelectionMapper.h"
 
 #include "vtkNew.h"
@@ -10,17 +12,21 @@
 #include "vtkSmartPointer.h"
 #include "vtkWeakPointer.h"
 
+#include <functional>
+
 class vtkAbstractMapper;
 class vtkActor;
 class vtkDSMScene;
 class vtkDataObject;
 class vtkInformation;
 class vtkInformationRequestKey;
+class vtkMapper;
 class vtkObject;
 class vtkPVDSMFrameReport;
 class vtkPVDSMRefinement;
 class vtkPVDataRepresentation;
 class vtkPartitionedDataSet;
+class vtkPolyData;
 class vtkProp3D;
 class vtkScalarsToColors;
 class vtkView;
@@ -40,6 +46,8 @@ public:
   vtkPVDSMTracedDisplay& operator=(const vtkPVDSMTracedDisplay&) = delete;
 
   vtkPVDSMClipping Clipping;
+  /// Gives an actor, which exporters are to have, the look of what is traced.
+  std::function<void(vtkActor* actor, vtkMapper* mapper)> SetLook;
   vtkNew<vtkPVDSMSelectionMapper> SelectionMapper; ///< gets its source from the representation
 
   ///@{
@@ -74,6 +82,7 @@ public:
 private:
   void Leave();
   void ShareOptions();
+  vtkSmartPointer<vtkActor> MakeExportActor(vtkPolyData* polygons) const;
   void ConnectFrameReport();
   /// Taking in data happens while the view renders; ParaView watches the representation, only.
   void ForwardProgress();
@@ -87,7 +96,8 @@ private:
   vtkWeakPointer<vtkPVRenderView> View; ///< from AddToView to RemoveFromView
   bool IsInView = false;
   vtkNew<vtkPartitionedDataSet> Placeholder;
-  vtkNew<vtkActor> SelectionActor;                  ///< what selections see
+  vtkNew<vtkPVDSMExportProp> ExportProp;            ///< what exporters see
+  vtkNew<vtkPVDSMSelectionActor> SelectionActor;    ///< what selections see
   vtkSmartPointer<vtkDSMScene> Scene;               ///< where the process renders
   vtkSmartPointer<vtkPVDSMRefinement> Refinement;   ///< on the client
   vtkSmartPointer<vtkPVDSMFrameReport> FrameReport; ///< on the servers

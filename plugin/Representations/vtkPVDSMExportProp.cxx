@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkPVDSMExportProp.h"
+
+#include "vtkPVDSMExportInformation.h"
+
+#include "vtkActor.h"
+#include "vtkCollection.h"
+#include "vtkNew.h"
+#include "vtkObjectFactory.h"
+#include "vtkPVDataRepresentation.h"
+#include "vtkPVSession.h"
+#include "vtkPolyData.h"
+#include "vtkProcessModule.h"
+#include "vtkPropCollection.h"
+#include "vtkSMProperty.h"
+#include "vtkSMProxy.h"
+#include "vtkSMSession.h"
+#include "vtkSessionIterator.h"
+
+#include <utility>
+
+namespace
+{
+
+vtkSMProxy* FindProxy(vtkSMSession* session, vtkObject* representation)
+{
+  vtkNew<vtkCollection> objects;
+  session->GetAllRemoteObjects(objects);
+  for (int index = 0; index < objects->GetNumberOfItems(); ++index)
+  {
+    auto* proxy = vtkSMProxy::SafeDownCast(objects->GetItemAsObject(index));
+    // A part of what the view shows, which has its properties.
+    for (const char* name : { "DSMIsoArray", "DSMLineRadius" })
+    {
+      vtkSMProperty* property = proxy ? proxy->GetProperty(name) : nullptr;
+      if (property && property->GetParent()->GetClientSideObject() == representation)
+      {
+        return property->GetParent();
+      }
+    }
+  }
+  return nullptr;
+}
+
+/// Null where this process has no proxies: then another one exports.
+vtkSMProxy* FindProxy(vtkObject* representation)
+{
+  vtkSMProxy* found = nullptr;
+  vtkSmartPointer<vtkSessionIterator> iterator;
+  iterator.TakeReference(vtkProcessModule::GetProcessModule()->NewSessionIterator());
+  for (iterator->InitTraversal(); !iterator->IsDoneWithTraversal(); iterator->GoToNextItem())
+  {
+    if (auto* session = vtkSMSession::SafeDownCast(iterator->GetCurrentSession()))
+    {
+      found = found ? found : FindProxy(session, representation);
+    }
+  }
+  return found;
+}
+
+} // namespace
+
+vtkStandardNewMacro(vtkPVDSMExportProp);
+
+vtkPVDSMExportProp::vtkPVDSMExportProp()
+{
+  this->PickableOff();
+  this->UseBoundsOff();
+}
+
+vtkPVDSMExportProp::~vtkPVDSMExportProp() = default;
+
+void vtkPVDSMExportProp::SetRepresentation(vtkPVDataRepresentation* representation, ActorMaker make)
+{
+  this->Representation = representation;
+  this->Make = std::move(make);
+}
+
+void vtkPVDSMExportProp::GetActors(vtkPropCollection* actors)
+{
+  if (!this->Representation || !this->Representation->GetVisibility())
+  {
+    return;
+  }
+  // An exporter asks several times.
+  if (!this->Actor)
+  {
+    this->Actor = this->MakeActor();
+  }
+  if (this->Actor)
+  {
+    actors->AddItem(this->Actor);
+  }
+}
+
+vtkSmartPointer<vtkActor> vtkPVDSMExportProp::MakeActor()
+{
+  vtkSMProxy* proxy = FindProxy(this->Representation);
+  if (!proxy)
+  {
+    return nullptr;
+  }
+  vtkNew<vtkPVDSMExportInformation> information;
+  const auto gather = [&]
+  {
+    proxy->GetSession()->GatherInformation(
+      vtkPVSession::DATA_SERVER, information, proxy->GetGlobalID());
+  };
+  gather();
+  const vtkTypeInt64 count = information->GetNumberOfPolygons();
+  if (count > MostPolygons)
+  {
+    vtkErrorMacro("A surface that is DSM Ray Traced has "
+      << count << " polygons, and is left out of what is exported, which may have " << MostPolygons
+      << " of it. Use Contour, Decimate and Save Data instead, or Extract Subset before.");
+  }
+  if (count == 0 || count > MostPolygons)
+  {
+    return nullptr;
+  }
+  if (count > ManyPolygons)
+  {
+    vtkWarningMacro("A surface that is DSM Ray Traced is exported as " << count << " polygons.");
+  }
+  information->SetWithTriangles(true);
+  gather();
+  const vtkSmartPointer<vtkPolyData> polygons = information->GetTriangles();
+  return polygons ? this->Make(polygons) : nullptr;
+}

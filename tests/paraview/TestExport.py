@@ -1,0 +1,86 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Exported scenes hold what is traced, as triangles, whether the data are here or on a server. Called as
+TestExport.py PLUGIN OUTPUT [PORT]."""
+
+import json
+import re
+
+from dsm_testing import *
+from vtkmodules.vtkFiltersCore import vtkFlyingEdges3D
+from vtkmodules.vtkImagingCore import vtkRTAnalyticSource
+
+if len(sys.argv) > 3:
+    simple.Connect("127.0.0.1", int(sys.argv[3]))
+load_plugin()
+view = create_view()
+wavelet = simple.Wavelet()
+display = show(wavelet, view, [150.0], "RTData")
+place_camera(view)
+render(view)
+
+
+def read_gltf(name):
+    """Sums of points and triangles of a file, and the bounds of the points."""
+    with open(name) as file:
+        scene = json.load(file)
+    points, triangles, low, high = 0, 0, [], []
+    for mesh in scene["meshes"] or []:
+        for primitive in mesh["primitives"]:
+            place = scene["accessors"][primitive["attributes"]["POSITION"]]
+            points += place["count"]
+            low.append(place["min"])
+            high.append(place["max"])
+            triangles += scene["accessors"][primitive["indices"]]["count"] // 3
+    return points, triangles, numpy.min(low, axis=0) if low else None, numpy.max(high, axis=0) if high else None
+
+
+def export(name):
+    path = os.path.join(OUTPUT, f"{'server' if len(sys.argv) > 3 else 'alone'}.{get_ranks()}.{name}")
+    if os.path.exists(path):
+        os.remove(path)
+    with Messages() as messages:
+        simple.ExportView(path, view=view)
+    check("err" not in messages.text.lower(), f"{name} is exported without an error: {messages.text.strip()}")
+    return path
+
+
+# On several ranks, Contour's number counts ghost cells.
+contour = simple.Contour(Input=wavelet, ContourBy=["POINTS", "RTData"], Isosurfaces=[150.0])
+contour.UpdatePipeline()
+volume = vtkRTAnalyticSource()
+edges = vtkFlyingEdges3D()
+edges.SetInputConnection(volume.GetOutputPort())
+edges.SetValue(0, 150.0)
+edges.Update()
+expected = edges.GetOutput().GetNumberOfCells()
+points, triangles, low, high = read_gltf(export("isosurface.gltf"))
+check(triangles == expected, f"{triangles} triangles in glTF, of {expected}")
+bounds = contour.GetDataInformation().GetBounds()
+check(abs(low - bounds[0::2]).max() < 0.01 and abs(high - bounds[1::2]).max() < 0.01, "where Contour has them")
+
+simple.ColorBy(display, ("POINTS", "RTData"))
+with open(export("isosurface.x3d")) as file:
+    text = file.read()
+indices = re.search(r'coordIndex="([^"]*)"', text)
+check(indices is not None and indices.group(1).count("-1") == triangles, "as many in X3D")
+with open(export("isosurface.vrml")) as file:
+    check("IndexedFaceSet" in file.read(), "there are faces in VRML")
+
+# What is clipped, placed, hidden or without a surface.
+display.DSMClip = 1
+display.DSMClipOrigin, display.DSMClipNormal = [0.0, 0.0, 0.0], [1.0, 0.0, 0.0]
+clipped = read_gltf(export("clipped.gltf"))
+check(0.3 * triangles < clipped[1] < 0.7 * triangles and clipped[2][0] > -1e-5, "what a clip leaves")
+display.DSMClip = 0
+simple.Hide(wavelet, view)
+check(read_gltf(export("hidden.gltf"))[1] == 0, "nothing of what is hidden")
+simple.Show(wavelet, view)
+display.DSMIsoValues = [1e6]
+check(read_gltf(export("empty.gltf"))[1] == 0, "nothing where there is no surface")
+simple.Hide(wavelet, view)
+
+# A mesh.
+ball = simple.Sphere(ThetaResolution=32, PhiResolution=24)
+mesh = show_traced(ball, view)
+found = read_gltf(export("mesh.gltf"))[1]
+check(found == 2 * 32 * 22, f"a mesh has {found} triangles")
