@@ -14,14 +14,20 @@ slices.SliceType.Origin = [12.0, 12.0, 12.0]
 slices.SliceType.Normal = [1.0, 0.0, 0.3]
 
 
-def compare(name, share=0.01, shading=8):
-    """The picture with our surface in place of triangles; both on this number of ranks."""
+def compare(name, share=0.01, shading=8, with_one_rank=False):
+    """The picture with our surface in place of triangles; both on this number of ranks, or the triangles
+    on one rank."""
     simple.Hide(surface, view)
     simple.Show(source, view)
     with_ours = render(view)
     simple.Hide(source, view)
     show_surface(surface, view).Opacity = traced.Opacity
     with_triangles = render(view)
+    kept = os.path.join(OUTPUT, f"{name}.triangles.npy")
+    if with_one_rank and get_ranks() == 1:
+        numpy.save(kept, with_triangles)
+    elif with_one_rank:
+        with_triangles = numpy.load(kept)
     different = (abs(with_ours - with_triangles) > 60).any(axis=2).mean()
     check(different <= share, f"{name}: {100 * different:.2f} % of the pixels differ")
     mean = abs(with_ours - with_triangles).mean()
@@ -70,7 +76,8 @@ compare("TranslucentInParallelProjection", 0.001, 0.3)
 view.CameraParallelProjection = 0
 plane.Opacity = 1.0
 simple.Hide(slices, view)
-compare("TranslucentWithOutline", 0.002, 0.3)
+# On several ranks ParaView 6.1, without any of ours, loses parts of an outline beside a translucent Surface.
+compare("TranslucentWithOutline", 0.002, 0.3, with_one_rank=True)
 
 simple.Hide(outline, view)
 traced.Opacity = 1.0
