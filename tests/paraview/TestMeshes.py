@@ -98,7 +98,10 @@ texture = simple.CreateTexture(CHECKS)
 plane = simple.TextureMaptoPlane(Input=simple.Clip(Input=grid, ClipType="Sphere"))
 plane.Automatic = 0  # it would be another one on each rank
 plane.Origin, plane.Point1, plane.Point2 = [-8, -8, 0], [8, -8, 0], [-8, 8, 0]
-compare("Textured", plane, lambda d: setattr(d, "Texture", texture), shading=5.0)
+# ParaView 5.13 finds no values in the picture that it has read, without any of ours, too.
+version = simple.GetParaViewVersion()
+if version < (5, 13) or version >= (6, 0):
+    compare("Textured", plane, lambda d: setattr(d, "Texture", texture), shading=5.0)
 
 # Colour: mapped per pixel, or at the corners; vectors; colours of the data themselves.
 normals = simple.Elevation(Input=simple.Sphere(ThetaResolution=12, PhiResolution=9),
