@@ -1,0 +1,194 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""Has ParaView's test player take the steps of steps.py in the real application, and looks at each: whether the
+application said anything, whether the picture is what ParaView draws with representations of its own, or that of an
+earlier step, and whether the ranks of a server give their memory back. Called as
+    play_workday.py --plugin FILE --output FOLDER --paraview PROGRAM --pvbatch PROGRAM
+        [--references FOLDER] [--server COMMAND...]
+With a server, the application is connected to it. ParaView's own pictures may be those of an earlier run."""
+
+import argparse
+import json
+import os
+import shutil
+import subprocess
+import sys
+from xml.sax.saxutils import quoteattr
+
+from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.vtkIOImage import vtkPNGReader
+
+import server_of_ranks
+from steps import STEPS, menu
+
+HERE = os.path.dirname(os.path.abspath(__file__))
+PATIENCE = 900.0  # seconds
+
+# A pixel is another where a channel differs by more; so may a share of all be, along edges, and where rays
+# and triangles see a part that is thinner than a pixel. The mean is that of the difference over what is shown.
+LARGE_DIFFERENCE = 40
+LARGEST_SHARE = 0.006
+LARGEST_MEAN = 7.0
+# Of the memory that the ranks of a server hold when all is deleted for the first time, what they may hold more when
+# all is deleted again.
+MEMORY_KEPT = 0.05
+DELETED = ("Delete All", "Delete All once more", "Delete All at last")
+# What the application says of itself.
+HARMLESS = ("QStandardPaths: ", "Process started", "Playing: ", "debug: ", "Success",
+            "DSM Ray Tracer: The memory organisation is ")
+
+
+def check(condition, what):
+    if not condition:
+        raise AssertionError(what)
+    print("ok:", what, flush=True)
+
+
+def get_arguments():
+    parser = argparse.ArgumentParser()
+    for name in ("plugin", "output", "paraview", "pvbatch"):
+        parser.add_argument("--" + name, required=True)
+    parser.add_argument("--references")
+    parser.add_argument("--server", nargs=argparse.REMAINDER)
+    return parser.parse_args()
+
+
+def check_memory(notes):
+    """All is deleted three times, of which the first time is ParaView's own start, too."""
+    first, *later = (max(notes[name]["memory"]) for name in DELETED)
+    for name, kibibytes in zip(DELETED[1:], later):
+        check(kibibytes < (1.0 + MEMORY_KEPT) * first, f"{name}: {kibibytes} KiB of {first} are left")
+
+
+class Workday:
+    def __init__(self, arguments):
+        self.arguments = arguments
+        self.output = os.path.abspath(arguments.output)
+        self.references = os.path.abspath(arguments.references or arguments.output)
+        self.kind = "server" if arguments.server else "alone"
+        self.steps = [step for step in STEPS if step.only in ("", self.kind)]
+
+    def write_events(self, path):
+        replaced = {"@PLUGIN@": self.arguments.plugin, "@OUTPUT@": self.output}
+        with open(path, "w", encoding="utf-8") as text:
+            text.write('<?xml version="1.0" ?>\n<pqevents>\n')
+            for step in self.steps:
+                events = list(step.events)
+                if step.do:
+                    events += menu("menu_Macros", "Do")
+                for event in events + menu("menu_Macros", "Look") * step.looks:
+                    values = []
+                    for value in event:
+                        for name, other in replaced.items():
+                            value = value.replace(name, other)
+                        values.append(quoteattr(value))
+                    text.write("  <pqevent object=%s command=%s arguments=%s />\n" % tuple(values))
+            text.write("</pqevents>\n")
+
+    def write_macros(self, folder):
+        os.makedirs(folder)
+        for name in ("Do", "Look"):
+            with open(os.path.join(folder, name + ".py"), "w", encoding="utf-8") as text:
+                text.write(f"import sys\nsys.path.insert(0, {HERE!r})\nimport take_step\n"
+                           f"take_step.{name.lower()}()\n")
+
+    def play(self, options, environment):
+        shutil.rmtree(self.output, ignore_errors=True)
+        os.makedirs(self.output)
+        events = os.path.join(self.output, "events.xml")
+        self.write_events(events)
+        settings = os.path.join(self.output, "settings")
+        self.write_macros(os.path.join(settings, "ParaView", "Macros"))
+        environment = dict(os.environ, XDG_CONFIG_HOME=settings, DSM_WORKDAY=self.output,
+                           DSM_WORKDAY_KIND=self.kind, DSM_WORKDAY_PLUGIN=self.arguments.plugin,
+                           DASHBOARD_TEST_FROM_CTEST="1", PYTHONDONTWRITEBYTECODE="1", **environment)
+        command = [self.arguments.paraview, "--dr", *options, f"--test-directory={self.output}",
+                   f"--test-script={events}", "--exit"]
+        with open(os.path.join(self.output, "said"), "w", encoding="utf-8") as said:
+            return subprocess.call(command, stdout=said, stderr=said, env=environment, timeout=PATIENCE)
+
+    def read_notes(self):
+        with open(os.path.join(self.output, "notes.jsonl"), encoding="utf-8") as text:
+            return [json.loads(line) for line in text]
+
+    def read_picture(self, name):
+        reader = vtkPNGReader()
+        reader.SetFileName(os.path.join(self.output, name))
+        reader.Update()
+        width, height, _ = reader.GetOutput().GetDimensions()
+        values = vtk_to_numpy(reader.GetOutput().GetPointData().GetScalars())
+        return values.reshape(height, width, -1)[:, :, :3].astype(int)
+
+    def get_reference(self, picture):
+        return os.path.join(self.references, picture.replace(".png", ".reference.png"))
+
+    def get_difference(self, name, other):
+        """The share of pixels that are others, and the mean difference of those that show something."""
+        first, second = self.read_picture(name), self.read_picture(other)
+        if first.shape != second.shape:
+            return 1.0, 255.0
+        difference = abs(first - second).max(axis=2)
+        shown = (abs(first - first[0, 0]).max(axis=2) > 2) | (abs(second - second[0, 0]).max(axis=2) > 2)
+        return (difference > LARGE_DIFFERENCE).mean(), difference[shown].mean() if shown.any() else 0.0
+
+    def check_same(self, name, other, what):
+        share, mean = self.get_difference(name, other)
+        check(share <= LARGEST_SHARE and mean <= LARGEST_MEAN,
+              f"{what}: {100 * share:.2f} % of the pixels are others, the mean difference is {mean:.2f}")
+
+    def check_comparison(self, notes):
+        """That a wrong picture is found to be wrong: another isovalue, that of the step before, is not like it."""
+        names = [entry["step"] for entry in notes]
+        for name in ("an isovalue, typed", "an isovalue, by the slider", "a cropping box", "Choose Preset"):
+            number = names.index(name)
+            share, mean = self.get_difference(
+                notes[number]["pictures"][0], self.get_reference(notes[number - 1]["pictures"][0])
+            )
+            check(share > LARGEST_SHARE and mean > LARGEST_MEAN,
+                  f"without '{name}', {100 * share:.2f} % of the pixels were others, the mean difference {mean:.2f}")
+
+    def check_step(self, step, entry, earlier):
+        said = [line for line in entry["said"].splitlines() if line.strip() and not line.startswith(HARMLESS)]
+        check(not said, f"{entry['number']:02} {step.name}: nothing is said {said}")
+        for picture in entry["pictures"]:
+            pixels = self.read_picture(picture)
+            check((pixels != pixels[0, 0]).any(), f"{picture} shows something")
+        if step.look == "compare":
+            for picture in entry["pictures"]:
+                self.check_same(picture, self.get_reference(picture), f"{picture}, {step.name}")
+        elif step.look.startswith("like "):
+            like = earlier[step.look[len("like "):]]
+            for picture, other in zip(entry["pictures"], like["pictures"]):
+                self.check_same(picture, other, f"{picture} is like {other}")
+                check(len(entry["pictures"]) == len(like["pictures"]), "and there are as many views")
+
+
+def main():
+    arguments = get_arguments()
+    day = Workday(arguments)
+    if arguments.server:
+        with server_of_ranks.ServerOfRanks(arguments.server) as server:
+            code = day.play([f"--server-url=cs://127.0.0.1:{server.port}"],
+                            {"DSM_WORKDAY_PORT": str(server.port), "DSM_WORKDAY_PARENT": str(os.getpid())})
+    else:
+        code = day.play([], {})
+    notes = day.read_notes()
+    for entry in notes:
+        if "failure" in entry:
+            raise AssertionError(f"{entry['step']}: {entry['failure']}")
+    with open(os.path.join(day.output, "said"), encoding="utf-8") as said:
+        left = said.read()[-3000:] if code else ""
+        check(code == 0 and len(notes) == len(day.steps), "all steps are taken " + left)
+    if not arguments.references:
+        script = os.path.join(HERE, "draw_references.py")
+        subprocess.check_call([arguments.pvbatch, script, arguments.plugin, day.output])
+    earlier = {}
+    for step, entry in zip(day.steps, notes):
+        day.check_step(step, entry, earlier)
+        earlier[step.name] = entry
+    day.check_comparison(notes)
+    if arguments.server:
+        check_memory(earlier)
+
+
+main()

@@ -1,0 +1,94 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""A server that is there again after its client has left, and what its ranks hold."""
+
+import os
+import signal
+import socket
+import subprocess
+import tempfile
+import threading
+import time
+
+
+def find_free_port():
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        return probe.getsockname()[1]
+
+
+def find_ranks(parent):
+    """The processes named pvserver below a process."""
+    children = {}
+    names = {}
+    for entry in filter(str.isdigit, os.listdir("/proc")):
+        try:
+            with open(f"/proc/{entry}/stat", encoding="utf-8", errors="replace") as text:
+                stat = text.read()
+        except OSError:
+            continue
+        name = stat[stat.index("(") + 1 : stat.rindex(")")]
+        names[int(entry)] = name
+        children.setdefault(int(stat[stat.rindex(")") + 1 :].split()[1]), []).append(int(entry))
+    found, left = [], [parent]
+    while left:
+        process = left.pop()
+        left += children.get(process, [])
+        if names.get(process, "").startswith("pvserver"):
+            found.append(process)
+    return sorted(found)
+
+
+def get_memory(process):
+    """What a process holds besides files that are mapped, and its part of what it shares with others, in KiB."""
+    with open(f"/proc/{process}/smaps_rollup", encoding="utf-8") as text:
+        return sum(int(line.split()[1]) for line in text if line.startswith(("Pss_Anon:", "Pss_Shmem:")))
+
+
+def is_listening(port):
+    """Without connecting, which a server would take for its client."""
+    with open("/proc/net/tcp", encoding="utf-8") as text:
+        rows = [line.split() for line in text][1:]
+    listening = "0A"
+    return any(row[1].endswith(f":{port:04X}") and row[3] == listening for row in rows)
+
+
+def wait_until_listening(port):
+    deadline = time.monotonic() + 60
+    while not is_listening(port):
+        if time.monotonic() > deadline:
+            raise AssertionError("the server did not come up")
+        time.sleep(0.1)
+
+
+class ServerOfRanks:
+    """Runs a command again and again, on one port, while it is entered."""
+
+    def __init__(self, command):
+        self.port = find_free_port()
+        self.command = command + [f"--server-port={self.port}"]
+        self.log = tempfile.TemporaryFile("w+")
+        self.ends = False
+        self.process = None
+        self.thread = threading.Thread(target=self.keep)
+
+    def __enter__(self):
+        self.thread.start()
+        wait_until_listening(self.port)
+        return self
+
+    def __exit__(self, *_):
+        self.ends = True
+        if self.process.poll() is None:
+            os.killpg(self.process.pid, signal.SIGTERM)
+        self.thread.join()
+
+    def keep(self):
+        while not self.ends:
+            self.process = subprocess.Popen(
+                self.command, stdout=self.log, stderr=subprocess.STDOUT, start_new_session=True
+            )
+            self.process.wait()
+
+    def read(self):
+        self.log.seek(0)
+        return self.log.read()
