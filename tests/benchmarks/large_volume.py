@@ -16,7 +16,6 @@ import subprocess
 import sys
 import time
 
-PLACES = 20
 ISOVALUES = [-1.0, -0.5, 0.0, 0.5, 1.0]
 CHUNK = 64
 
@@ -50,7 +49,7 @@ def look(pids):
     return found
 
 
-def show(plugin, path, edge, memory):
+def show(plugin, path, edge, memory, places):
     """In pvbatch."""
     import math
 
@@ -83,7 +82,7 @@ def show(plugin, path, edge, memory):
         view.CameraViewUp = camera.GetViewUp()
         view.StillRender()
 
-    place(0, PLACES)
+    place(0, places)
     first = time.time() - start
     opened = look(pids)
     display.SMProxy.UpdatePropertyInformation()
@@ -93,9 +92,9 @@ def show(plugin, path, edge, memory):
     seconds = []
     for value in ISOVALUES:
         display.DSMIsoValues = [value]
-        for step in range(PLACES):
+        for step in range(places):
             start = time.time()
-            place(step, PLACES)
+            place(step, places)
             seconds.append(time.time() - start)
     after = look(pids)
     seconds.sort()
@@ -114,6 +113,7 @@ def main():
     parser.add_argument("--compressed", action="store_true")
     parser.add_argument("--ranks", type=int, default=2)
     parser.add_argument("--memory", type=int, default=512, help="MiB of each rank")
+    parser.add_argument("--places", type=int, default=20, help="of the camera, for each of five isovalues")
     parser.add_argument("--folder", default="/var/tmp")
     parser.add_argument("--mpirun", default="mpirun --oversubscribe --allow-run-as-root")
     options = parser.parse_args()
@@ -123,13 +123,14 @@ def main():
         path = os.path.join(folder, "volume.h5")
         start = time.time()
         edge = write_volume(path, options.gib, options.compressed)
-        print(f"{edge}^3 samples, {os.path.getsize(path) >> 20} MiB in the file, written in {time.time() - start:.0f} s", flush=True)
+        print(f"{edge}^3 samples, {os.path.getsize(path) >> 20} MiB in the file, "
+              f"written in {time.time() - start:.0f} s", flush=True)
         environment = dict(os.environ, XDG_CACHE_HOME=os.path.join(folder, "caches"))
         for opening in ("first", "second"):
             print(f"-- {opening} opening", flush=True)
             subprocess.run(
                 ["xvfb-run", "-a", "-s", "-noreset -screen 0 1280x1024x24", *options.mpirun.split(), "-np", str(options.ranks), "pvbatch", __file__,
-                 "--show", os.path.abspath(options.plugin), path, str(edge), str(options.memory)],
+                 "--show", os.path.abspath(options.plugin), path, str(edge), str(options.memory), str(options.places)],
                 env=environment, check=True,
             )
     finally:
@@ -137,6 +138,6 @@ def main():
 
 
 if len(sys.argv) > 1 and sys.argv[1] == "--show":
-    show(sys.argv[2], sys.argv[3], int(sys.argv[4]), int(sys.argv[5]))
+    show(sys.argv[2], sys.argv[3], *map(int, sys.argv[4:7]))
 elif __name__ == "__main__":
     main()
