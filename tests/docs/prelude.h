@@ -7,6 +7,7 @@
 
 #include "vtkActor.h"
 #include "vtkAlgorithm.h"
+#include "vtkImageData.h"
 #include "vtkMPIController.h"
 #include "vtkNew.h"
 #include "vtkProperty.h"
