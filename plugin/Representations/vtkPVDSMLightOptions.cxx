@@ -29,6 +29,11 @@ void vtkPVDSMLightOptions::SetAmbientOcclusionDistance(double distance)
   this->Superclass::SetAmbientOcclusionDistance(distance);
 }
 
+void vtkPVDSMLightOptions::SetLook(int look)
+{
+  this->Superclass::SetLook(look);
+}
+
 void vtkPVDSMLightOptions::SetEnvironmentLight(double strength)
 {
   this->Superclass::SetEnvironmentLight(strength);

@@ -25,6 +25,7 @@ public:
   void SetLightRadius(double radius) override;
   void SetAmbientOcclusionSamples(int samples) override;
   void SetAmbientOcclusionDistance(double distance) override;
+  void SetLook(int look) override;
   void SetEnvironmentLight(double strength) override;
   void SetReflectivity(double part) override;
   void SetMaxBounces(int bounces) override;

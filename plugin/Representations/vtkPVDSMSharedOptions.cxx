@@ -8,6 +8,7 @@
 #include "vtkNew.h"
 #include "vtkPVRenderView.h"
 #include "vtkSMProperty.h"
+#include "vtkSMPropertyHelper.h"
 #include "vtkSMPropertyIterator.h"
 #include "vtkSMProxy.h"
 #include "vtkSMSession.h"
@@ -36,13 +37,13 @@ struct vtkPVDSMSharedOptions::Registry
   }
 
   static vtkPVDSMSharedOptions* Make(
-    vtkObject* owner, vtkSMProxy* values, std::vector<std::string> exceptions)
+    vtkObject* owner, vtkSMProxy* values, vtkSMProxy* like, std::vector<std::string> exceptions)
   {
     vtkNew<vtkCallbackCommand> forget;
     forget->SetCallback([](vtkObject* gone, unsigned long, void*, void*) { Get().erase(gone); });
     owner->AddObserver(vtkCommand::DeleteEvent, forget);
     auto& made = Get()[owner];
-    made.reset(new vtkPVDSMSharedOptions(values, std::move(exceptions)));
+    made.reset(new vtkPVDSMSharedOptions(values, like, std::move(exceptions)));
     return made.get();
   }
 };
@@ -50,14 +51,29 @@ struct vtkPVDSMSharedOptions::Registry
 namespace
 {
 
-/// A proxy that has properties, and never an object.
+vtkSMProxy* FindPage(vtkSMProxy* proxy)
+{
+  return proxy->GetSessionProxyManager()->GetProxy("settings", "DSMRayTracerSettings");
+}
+
+/// A proxy that begins with the other's values, and never has an object.
 vtkSmartPointer<vtkSMProxy> CreateValues(vtkSMProxy* like)
 {
   vtkSmartPointer<vtkSMProxy> values;
   values.TakeReference(
     like->GetSessionProxyManager()->NewProxy(like->GetXMLGroup(), like->GetXMLName()));
   values->SetLocation(0);
+  values->Copy(like);
   return values;
+}
+
+/// Whether a proxy has been given the value: it is neither its default nor the settings page's.
+bool IsGiven(vtkSMProxy* proxy, const char* name)
+{
+  vtkSMProxy* page = FindPage(proxy);
+  return !proxy->GetProperty(name)->IsValueDefault() &&
+    !(page && page->GetProperty(name) &&
+      vtkSMPropertyHelper(page, name).GetAsInt() == vtkSMPropertyHelper(proxy, name).GetAsInt());
 }
 
 } // namespace
@@ -74,18 +90,18 @@ void vtkPVDSMSharedOptions::Join(vtkPVRenderView* view, vtkObjectBase* light, vt
   if (!shared)
   {
     // What part of the light a surface mirrors is a matter of that surface.
-    shared = Registry::Make(view, CreateValues(lightProxy), { "DSMReflectivity" });
+    shared = Registry::Make(view, CreateValues(lightProxy), lightProxy, { "DSMReflectivity" });
   }
   vtkSMSessionProxyManager* manager = lightProxy->GetSessionProxyManager();
   shared->Add(lightProxy, manager->GetInLoadXMLState());
 
   vtkSMSession* session = memoryProxy->GetSession();
   shared = Registry::Find(session);
-  vtkSMProxy* page = manager->GetProxy("settings", "DSMRayTracerSettings");
+  vtkSMProxy* page = FindPage(memoryProxy);
   if (!shared)
   {
-    shared = Registry::Make(
-      session, page ? vtkSmartPointer<vtkSMProxy>(page) : CreateValues(memoryProxy), {});
+    shared = Registry::Make(session,
+      page ? vtkSmartPointer<vtkSMProxy>(page) : CreateValues(memoryProxy), memoryProxy, {});
   }
   if (page)
   {
@@ -104,11 +120,11 @@ void vtkPVDSMSharedOptions::Leave(
 }
 
 vtkPVDSMSharedOptions::vtkPVDSMSharedOptions(
-  vtkSMProxy* values, std::vector<std::string> exceptions)
+  vtkSMProxy* values, vtkSMProxy* like, std::vector<std::string> exceptions)
   : Proxies{ values }
 {
   vtkSmartPointer<vtkSMPropertyIterator> property;
-  property.TakeReference(values->NewPropertyIterator());
+  property.TakeReference(like->NewPropertyIterator());
   for (property->Begin(); !property->IsAtEnd(); property->Next())
   {
     if (!property->GetProperty()->GetInformationOnly() &&
@@ -148,7 +164,7 @@ void vtkPVDSMSharedOptions::Add(vtkSMProxy* proxy, bool speaks)
   for (const std::string& name : this->Names)
   {
     vtkSMProperty* theirs = proxy->GetProperty(name.c_str());
-    if (speaks || !theirs->IsValueDefault())
+    if (speaks || IsGiven(proxy, name.c_str()))
     {
       this->Spread(proxy, name);
     }

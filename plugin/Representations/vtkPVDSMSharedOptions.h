@@ -36,8 +36,8 @@ public:
 private:
   struct Registry;
 
-  /// `values` holds what holds while nobody has joined; its properties but the exceptions are shared.
-  vtkPVDSMSharedOptions(vtkSMProxy* values, std::vector<std::string> exceptions);
+  /// `values` holds what holds while nobody has joined; all properties of `like` but the exceptions are shared.
+  vtkPVDSMSharedOptions(vtkSMProxy* values, vtkSMProxy* like, std::vector<std::string> exceptions);
 
   void Add(vtkSMProxy* proxy, bool speaks);
   void Remove(vtkObjectBase* object);

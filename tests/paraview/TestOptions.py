@@ -32,6 +32,18 @@ second.DSMShadows = 0
 check(first.DSMShadows == 0, "the last word counts")
 check_equal(render(view), plain, "and the shadows are gone", 0)
 
+# A first look, which ends when light is set.
+first.DSMLook = "With depth"
+check(second.DSMLook == "With depth", "a view has one look")
+deep = render(view, "depth")
+check((deep.sum(axis=2) < plain.sum(axis=2) - 20).any() and (deep <= plain + 1).all(), "some of it is in a faint shadow")
+first.DSMShadows = 1
+check_equal(render(view), shaded, "shadows take the place of the first look", 0)
+check((shaded.sum(axis=2) < deep.sum(axis=2) - 20).any(), "and are darker")
+first.DSMShadows = 0
+first.DSMLook = "Plain"
+check_equal(render(view), plain, "the plain look is back", 0)
+
 # Each of the options but the reflectivity, whoever is asked.
 first.DSMReflectivity = 0.5
 for name, value in LIGHT.items():
@@ -81,6 +93,24 @@ for suffix in (".pvsm", ".py"):
     simple.LoadState(path + suffix)
     (source,) = simple.GetSources().values()
     check(read(simple.GetRepresentation(source, simple.GetActiveView())) == expected, suffix + " brings it back")
+
+# The settings page has the look that new displays begin with; what is set for a view is the view's.
+simple.ResetSession()
+load_plugin()
+controller = servermanager.vtkSMParaViewPipelineController()
+controller.UpdateSettingsProxies(servermanager.ActiveConnection.Session)
+settings = servermanager.ProxyManager().SMProxyManager.GetProxy("settings", "DSMRayTracerSettings")
+servermanager.vtkSMPropertyHelper(settings, "DSMLook").Set(1)
+settings.UpdateVTKObjects()
+view = create_view()
+first = show_traced(simple.Cone(), view)
+check(first.DSMLook == "With depth", "the page's look")
+first.DSMLook = "Plain"
+second = show_traced(simple.Sphere(), view)
+check((first.DSMLook, second.DSMLook) == ("Plain", "Plain"), "who comes later takes the view's")
+check(show_traced(simple.Sphere(), create_view()).DSMLook == "With depth", "another view begins with the page's")
+servermanager.vtkSMPropertyHelper(settings, "DSMLook").Set(0)
+settings.UpdateVTKObjects()
 
 # The memory of a session, in all its views; a cache can be lowered.
 MEMORY = {

@@ -32,6 +32,17 @@ struct Frame3
   glm::dvec3 Bitangent;
 };
 
+/// Of the brightest light, what a faint shadow leaves.
+constexpr double LeftInFaintShadow = 0.4;
+/// Of the angle to a surface's normal: a faint shadow begins at the first, and is whole at the second.
+constexpr double GrazingCosine = 0.15;
+constexpr double FullCosine = 0.6;
+
+float GetBrightness(const Light& light)
+{
+  return light.Color.x + light.Color.y + light.Color.z;
+}
+
 } // namespace
 
 ArrivingLight::ArrivingLight(const ObjectTracers& objects, const Scene& scene)
@@ -60,14 +71,31 @@ std::vector<glm::dvec3> ArrivingLight::FindVisibility(
   LightPath* const* paths, int count, const ShadingPoint* points) const
 {
   std::vector<glm::dvec3> visibility;
+  const std::vector<Light>& lights = this->World.Lights;
   if (this->World.Transport.Shadows)
   {
-    const std::vector<Light>& lights = this->World.Lights;
     visibility.resize(MaxRays * lights.size());
     for (std::size_t light = 0; light < lights.size(); ++light)
     {
       this->FindVisibility(
         lights[light], paths, count, points, visibility.data() + MaxRays * light);
+    }
+  }
+  else if (this->World.Transport.FaintShadows && !lights.empty())
+  {
+    const auto brightest = std::max_element(lights.begin(), lights.end(),
+      [](const Light& a, const Light& b) { return GetBrightness(a) < GetBrightness(b); });
+    visibility.assign(MaxRays * lights.size(), glm::dvec3(1.0));
+    glm::dvec3* const first = visibility.data() + MaxRays * (brightest - lights.begin());
+    this->FindVisibility(*brightest, paths, count, points, first);
+    for (int number = 0; number < count; ++number)
+    {
+      // Where light grazes a surface, its coarse shape would cast shadows onto its smooth shading.
+      const Incidence incidence = GetIncidence(*brightest, points[number].Position);
+      const double cosine = -glm::dot(incidence.Direction, points[number].Normal);
+      const double taken = (1.0 - LeftInFaintShadow) *
+        std::clamp((cosine - GrazingCosine) / (FullCosine - GrazingCosine), 0.0, 1.0);
+      first[number] = 1.0 - taken * (1.0 - first[number]);
     }
   }
   return visibility;

@@ -26,6 +26,7 @@ void Add(ObjectDigest& digest, const Light& light)
 void Add(ObjectDigest& digest, const LightTransport& transport)
 {
   digest.Add(transport.Shadows);
+  digest.Add(transport.FaintShadows);
   digest.Add(transport.LightRadius);
   digest.Add(transport.AmbientOcclusionSamples);
   digest.Add(transport.AmbientOcclusionDistance);

@@ -13,6 +13,9 @@ namespace rt
 struct LightTransport
 {
   bool Shadows = false;
+  /// Without them: the brightest light casts some that take away only a part of its light. One ray for each
+  /// hit shows depth, and nothing becomes black.
+  bool FaintShadows = false;
   /// Apparent radius of every light: the tangent of half the angle that it fills as seen from a
   /// surface; 0 gives hard shadows.
   double LightRadius = 0.0;

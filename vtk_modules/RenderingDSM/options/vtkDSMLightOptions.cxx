@@ -15,6 +15,7 @@ void vtkDSMLightOptions::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "LightRadius: " << this->LightRadius << "\n";
   os << indent << "AmbientOcclusionSamples: " << this->AmbientOcclusionSamples << "\n";
   os << indent << "AmbientOcclusionDistance: " << this->AmbientOcclusionDistance << "\n";
+  os << indent << "Look: " << this->Look << "\n";
   os << indent << "EnvironmentLight: " << this->EnvironmentLight << "\n";
   os << indent << "Reflectivity: " << this->Reflectivity << "\n";
   os << indent << "MaxBounces: " << this->MaxBounces << "\n";

@@ -59,6 +59,21 @@ public:
 
   ///@{
   /**
+   * How a scene looks for which no shadows, ambient occlusion or environment light is set. PlainLook (the
+   * default): as VTK draws it. DepthLook: the brightest light casts faint shadows in still pictures, by one more
+   * ray for each sample.
+   */
+  enum LookType
+  {
+    PlainLook = 0,
+    DepthLook = 1
+  };
+  vtkSetClampMacro(Look, int, PlainLook, DepthLook);
+  vtkGetMacro(Look, int);
+  ///@}
+
+  ///@{
+  /**
    * Light from all around, in the colours of the renderer's background: of a gradient, Background from
    * below and Background2 from above, as the renderer's EnvironmentUp has it; times this number. 0 (the
    * default): none. With ambient occlusion, what its rays meet keeps that light away.
@@ -138,6 +153,7 @@ private:
   double LightRadius = 0.0;
   int AmbientOcclusionSamples = 0;
   double AmbientOcclusionDistance = 0.0;
+  int Look = PlainLook;
   double EnvironmentLight = 0.0;
   double Reflectivity = 0.0;
   int MaxBounces = 2;

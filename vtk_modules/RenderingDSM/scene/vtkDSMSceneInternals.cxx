@@ -170,7 +170,7 @@ void vtkDSMScene::Internals::Draw()
       this->Members.AddTo(scene);
       this->KeepProp(scene);
       scene.Lights = vtkDSMTranslation::ToLights(this->Renderer);
-      scene.Transport = this->Members.GetTransport();
+      scene.Transport = this->Members.GetTransport(this->IsInteractive());
       scene.View = this->Members.GetDebugView();
       request = this->Image
         ? vtkDSMTranslation::ToRequest(

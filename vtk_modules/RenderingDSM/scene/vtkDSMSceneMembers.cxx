@@ -198,9 +198,10 @@ bool vtkDSMSceneMembers::AreBesideOthers(vtkRenderer* renderer) const
   return found;
 }
 
-rt::LightTransport vtkDSMSceneMembers::GetTransport() const
+rt::LightTransport vtkDSMSceneMembers::GetTransport(bool isPassing) const
 {
   rt::LightTransport transport;
+  bool hasDepth = false;
   transport.MaxBounces = 0;
   for (const Member& member : this->Shown)
   {
@@ -212,7 +213,10 @@ rt::LightTransport vtkDSMSceneMembers::GetTransport() const
     transport.AmbientOcclusionDistance =
       std::max(transport.AmbientOcclusionDistance, options->GetAmbientOcclusionDistance());
     transport.MaxBounces = std::max(transport.MaxBounces, options->GetMaxBounces());
+    hasDepth = hasDepth || options->GetLook() == vtkDSMLightOptions::DepthLook;
   }
+  transport.FaintShadows = hasDepth && !isPassing && !transport.Shadows &&
+    transport.AmbientOcclusionSamples == 0 && this->GetEnvironmentLight() == 0.0;
   if (transport.AmbientOcclusionSamples > 0 && transport.AmbientOcclusionDistance == 0.0)
   {
     double bounds[6];

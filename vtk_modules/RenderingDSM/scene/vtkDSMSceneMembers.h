@@ -52,7 +52,8 @@ public:
   bool AreBesideOthers(vtkRenderer* renderer) const;
 
   /// Of each property, what the most demanding object that is shown wants.
-  rt::LightTransport GetTransport() const;
+  /// A first look costs rays that a picture in passing does without.
+  rt::LightTransport GetTransport(bool isPassing) const;
   double GetEnvironmentLight() const;
   vtkDSMMemorySettings GetMemorySettings() const;
   int GetSamplesPerPixel() const;
