@@ -15,7 +15,7 @@ FORBIDDEN = {
     # Of the modules below, what a box of samples is, an error, and a message, and how bricks are laid out.
     "vtk_modules/DSMVolumeFiles": [
         r"^vtk", r"^mpi\.h$", r"^RenderingDSM/", r"^DSMCore/(?!base/|transport/)",
-        r"^DSMRayTracing/(?!base/|layout/)",
+        r"^DSMRayTracing/(?!base/|layout/|build/)",
     ],
     "vtk_modules/RenderingDSM": [r"^vtkPV", r"^vtkSM", r"^vtkSI", r"^mpi\.h$"],
     "plugin": [r"^mpi\.h$", r"^DSMCore/", r"^glm/"],

@@ -4,6 +4,7 @@
 #include "DSMCore/base/Error.h"
 #include "DSMRayTracing/base/ByteHash.h"
 #include "DSMRayTracing/base/ParallelFor.h"
+#include "DSMRayTracing/layout/MacrocellBuilder.h"
 #include "DSMRayTracing/layout/VoxelBrickHeader.h"
 
 #include <algorithm>
@@ -90,13 +91,18 @@ private:
 
 std::vector<std::byte> VoxelIndex::Encode() const
 {
-  const std::size_t bricks = this->Bricks.size() * sizeof(ValueRange);
-  std::vector<std::byte> bytes(bricks + sizeof(IsovalueSurvey) + sizeof(std::uint64_t));
-  std::memcpy(bytes.data(), this->Bricks.data(), bricks);
-  std::memcpy(bytes.data() + bricks, &this->Survey, sizeof(IsovalueSurvey));
-  const std::size_t end = bricks + sizeof(IsovalueSurvey);
-  const std::uint64_t hash = Hash(bytes.data(), end);
-  std::memcpy(bytes.data() + end, &hash, sizeof(hash));
+  std::vector<std::byte> bytes;
+  const auto add = [&](const void* from, std::size_t count)
+  {
+    const auto* first = static_cast<const std::byte*>(from);
+    bytes.insert(bytes.end(), first, first + count);
+  };
+  bytes.reserve(
+    this->Bricks.size() * sizeof(ValueRange) + sizeof(IsovalueSurvey) + sizeof(std::uint64_t));
+  add(this->Bricks.data(), this->Bricks.size() * sizeof(ValueRange));
+  add(&this->Survey, sizeof(IsovalueSurvey));
+  const std::uint64_t hash = Hash(bytes.data(), bytes.size());
+  add(&hash, sizeof(hash));
   return bytes;
 }
 
@@ -119,6 +125,18 @@ std::optional<VoxelIndex> VoxelIndex::Decode(
   std::memcpy(index.Bricks.data(), bytes.data(), bricks * sizeof(ValueRange));
   std::memcpy(&index.Survey, bytes.data() + bricks * sizeof(ValueRange), sizeof(IsovalueSurvey));
   return index;
+}
+
+ValueRange VoxelIndex::Round(ScalarType type, double least, double greatest)
+{
+  return least > greatest
+    ? ValueRange{ 1.0f, -1.0f }
+    : Dispatch(type,
+        [&](auto zero)
+        {
+          using T = decltype(zero);
+          return ValueRange{ RoundDown(static_cast<T>(least)), RoundUp(static_cast<T>(greatest)) };
+        });
 }
 
 VoxelIndex VoxelIndex::Find(dsm::Messenger& messenger, const BrickLattice& lattice,

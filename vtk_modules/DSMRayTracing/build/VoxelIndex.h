@@ -28,6 +28,9 @@ struct VoxelIndex
   std::vector<std::byte> Encode() const;
   static std::optional<VoxelIndex> Decode(const std::vector<std::byte>& bytes, std::size_t bricks);
 
+  /// The range that bricks of these finite values have at most; empty where Least is above Greatest.
+  static ValueRange Round(ScalarType type, double least, double greatest);
+
   /// How to look through the bricks.
   struct Pass
   {

@@ -122,6 +122,23 @@ public:
     }
   }
 
+  Index ReadIndex(std::size_t array) const override
+  {
+    const std::lock_guard<std::mutex> lock(GetHdfLock());
+    const HdfSilence silence;
+    Index index;
+    const std::string name = "DSM/" + this->GetIndexName(array);
+    const HdfHandle group(H5Gopen2(this->File.Get(), name.c_str(), H5P_DEFAULT), &H5Gclose);
+    const HdfHandle all(H5Gopen2(this->File.Get(), "DSM", H5P_DEFAULT), &H5Gclose);
+    if (group.IsOpen() && all.IsOpen() &&
+      this->ReadAttribute(all.Get(), "BrickEdge", H5T_NATIVE_INT, &index.BrickEdge, 1))
+    {
+      ReadWhole(group.Get(), "ValueRanges", H5T_NATIVE_DOUBLE, index.Ranges);
+      ReadWhole(group.Get(), "BrickIndex", H5T_NATIVE_UCHAR, index.Bricks);
+    }
+    return index;
+  }
+
 protected:
   std::optional<Place> FindChunk(std::size_t array, int, const rt::Index3& chunk) const override
   {
@@ -172,6 +189,29 @@ private:
         "The file '" + path + "' is no HDF5 file, or is damaged, or is open for writing.");
     }
     return file;
+  }
+
+  std::string GetIndexName(std::size_t array) const
+  {
+    return (this->Arrays[array].OnCells ? "CellData/" : "PointData/") + this->Arrays[array].Name;
+  }
+
+  /// Empty where there is no such dataset, or it cannot be read.
+  template <class T>
+  static void ReadWhole(hid_t group, const char* name, hid_t type, std::vector<T>& out)
+  {
+    const HdfHandle dataset(H5Dopen2(group, name, H5P_DEFAULT), &H5Dclose);
+    if (!dataset.IsOpen())
+    {
+      return;
+    }
+    const HdfHandle space(H5Dget_space(dataset.Get()), &H5Sclose);
+    out.resize(
+      static_cast<std::size_t>(std::max<hssize_t>(0, H5Sget_simple_extent_npoints(space.Get()))));
+    if (H5Dread(dataset.Get(), type, H5S_ALL, H5S_ALL, H5P_DEFAULT, out.data()) < 0)
+    {
+      out.clear();
+    }
   }
 
   template <class T>

@@ -73,6 +73,19 @@ public:
     return false;
   }
 
+  /// What a file that dsm_convert wrote tells of an array beside its values (docs/files.md); empty where it does
+  /// not. Throws std::bad_alloc.
+  struct Index
+  {
+    /// For each component, and, where there are several, for the magnitude: least and greatest value, and the
+    /// same of finite ones.
+    std::vector<double> Ranges;
+    /// rt::VoxelIndex as it is kept, of a lattice with this edge.
+    std::vector<std::byte> Bricks;
+    int BrickEdge = 0;
+  };
+  virtual Index ReadIndex(std::size_t /*array*/) const { return {}; }
+
 protected:
   explicit VolumeFile(std::string path)
     : Path(std::move(path))

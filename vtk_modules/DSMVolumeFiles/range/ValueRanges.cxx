@@ -139,6 +139,16 @@ std::optional<ValueRanges> LoadRanges(
   const VolumeFile& file, std::size_t array, int step, const rt::Box& box)
 {
   ValueRanges ranges(file.GetArrays()[array].Components);
+  const std::vector<double> own = file.ReadIndex(array).Ranges;
+  if (own.size() == 4 * ranges.All.size())
+  {
+    for (std::size_t index = 0; index < ranges.All.size(); ++index)
+    {
+      ranges.All[index] = { own[4 * index], own[4 * index + 1] };
+      ranges.Finite[index] = { own[4 * index + 2], own[4 * index + 3] };
+    }
+    return ranges;
+  }
   const std::vector<std::byte> kept = KeptFile(file, array, step, box, Kind).Load();
   const std::size_t list = ranges.All.size() * sizeof(ValueRange);
   if (kept.size() != 2 * list)

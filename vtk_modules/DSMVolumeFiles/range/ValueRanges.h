@@ -53,7 +53,7 @@ std::optional<ValueRanges> FindRanges(const std::shared_ptr<const VolumeFile>& f
   std::size_t array, int step, const rt::Box& box, int threads,
   const std::function<bool(double)>& goesOn);
 
-/// Ranges that were found before, in the user's cache directory ($XDG_CACHE_HOME or ~/.cache): they are known as
+/// Ranges that the file itself tells, which are those of all of the array, or that were found before, in the user's cache directory ($XDG_CACHE_HOME or ~/.cache): they are known as
 /// long as the file is what it was. Neither throws; what cannot be kept is found again.
 std::optional<ValueRanges> LoadRanges(
   const VolumeFile& file, std::size_t array, int step, const rt::Box& box);

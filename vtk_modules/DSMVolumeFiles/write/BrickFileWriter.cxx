@@ -95,7 +95,7 @@ class BrickFileWriter::Internals
 public:
   Internals(std::string path, const BrickFileLayout& layout, const std::string& source)
     : Path(std::move(path))
-    , PartPath(this->Path + ".part")
+    , PartPath(GetPartPath(this->Path))
     , StatePath(this->PartPath + ".json")
     , Layout(layout)
     , Description({ { "source", source }, { "layout", Describe(layout) } })
@@ -141,13 +141,34 @@ public:
     this->Settle();
   }
 
-  void Finish()
+  void CloseFile()
+  {
+    const std::lock_guard<std::mutex> lock(GetHdfLock());
+    const HdfSilence silence;
+    this->Targets.clear();
+    errno = 0;
+    this->Check(H5Fclose(std::exchange(this->File, H5I_INVALID_HID)));
+  }
+
+  void Finish(const std::vector<std::vector<std::byte>>& indices)
   {
     const std::lock_guard<std::mutex> lock(GetHdfLock());
     const HdfSilence silence;
     this->RemoveState();
-    this->Targets.clear();
     errno = 0;
+    this->File = H5Fopen(this->PartPath.c_str(), H5F_ACC_RDWR, H5P_DEFAULT);
+    this->Check(this->File < 0 ? -1 : 0);
+    for (std::size_t number = 0; number < indices.size(); ++number)
+    {
+      const std::string name = "DSM/" + this->GetName(this->Layout.Arrays[number]) + "/BrickIndex";
+      if (!indices[number].empty())
+      {
+        const HdfHandle dataset =
+          this->CreateDataset(name, H5T_NATIVE_UCHAR, { indices[number].size() }, H5P_DEFAULT);
+        this->Check(H5Dwrite(
+          dataset.Get(), H5T_NATIVE_UCHAR, H5S_ALL, H5S_ALL, H5P_DEFAULT, indices[number].data()));
+      }
+    }
     this->Check(H5Fclose(std::exchange(this->File, H5I_INVALID_HID)));
     Synchronize(this->PartPath);
     std::error_code failure;
@@ -481,9 +502,14 @@ void BrickFileWriter::Add(
   this->Self->Add(array, chunks, ranges);
 }
 
-void BrickFileWriter::Finish()
+void BrickFileWriter::Close()
 {
-  this->Self->Finish();
+  this->Self->CloseFile();
+}
+
+void BrickFileWriter::Finish(const std::vector<std::vector<std::byte>>& indices)
+{
+  this->Self->Finish(indices);
 }
 
 } // namespace vol

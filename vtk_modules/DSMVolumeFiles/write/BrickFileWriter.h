@@ -67,8 +67,14 @@ public:
   /// dsm::Error when the disk is full, or fails; the writer is of no use then.
   void Add(std::size_t array, const std::vector<EncodedChunk>& chunks, const ValueRanges& ranges);
 
-  /// When all chunks are there: gives the file its name. Throws dsm::Error.
-  void Finish();
+  /// What a file is called while it is not whole.
+  static std::string GetPartPath(const std::string& path) { return path + ".part"; }
+
+  /// When all chunks are there: PATH.part may be opened until Finish. Throws dsm::Error.
+  void Close();
+  /// After Close: adds what is known of the bricks of each array (rt::VoxelIndex as it is kept; empty: nothing), and
+  /// gives the file its name. Throws dsm::Error.
+  void Finish(const std::vector<std::vector<std::byte>>& indices);
 
 private:
   class Internals;

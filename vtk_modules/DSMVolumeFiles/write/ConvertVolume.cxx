@@ -3,14 +3,19 @@
 
 #include "DSMCore/base/Error.h"
 #include "DSMRayTracing/base/ParallelFor.h"
+#include "DSMRayTracing/build/VoxelBrickReader.h"
+#include "DSMRayTracing/build/VoxelIndex.h"
 #include "DSMRayTracing/layout/BrickLattice.h"
 #include "DSMRayTracing/layout/MacrocellBuilder.h"
 #include "DSMRayTracing/layout/VoxelBrickHeader.h"
 #include "DSMVolumeFiles/base/CopyBox.h"
 #include "DSMVolumeFiles/codec/ChunkCodec.h"
+#include "DSMVolumeFiles/format/HdfFile.h"
 
 #include <algorithm>
 #include <cstring>
+#include <memory>
+#include <numeric>
 #include <optional>
 
 namespace vol
@@ -212,6 +217,84 @@ BrickFileLayout CreateLayout(
   return layout;
 }
 
+/// The points' samples of an array in a file.
+class FileSamples final : public rt::VoxelSource
+{
+public:
+  FileSamples(std::shared_ptr<const VolumeFile> file, std::size_t array, ChunkCache& cache)
+    : File(std::move(file))
+    , Array(array)
+    , Cache(cache)
+  {
+  }
+  rt::Box GetCells() const override
+  {
+    return { rt::Index3(0), this->File->GetGeometry().Points - rt::Index3(1) };
+  }
+  void ReadSamples(const rt::Box& points, std::byte* out) const override
+  {
+    this->Cache.ReadBox(this->File, this->Array, 0, points, out);
+  }
+
+private:
+  std::shared_ptr<const VolumeFile> File;
+  std::size_t Array;
+  ChunkCache& Cache;
+};
+
+/// Collective. What is to be known of the bricks of the arrays of a brick file, which is read once more for it; `ranges`
+/// of the arrays' values. Nothing of what the renderer makes no bricks of.
+std::vector<std::vector<std::byte>> FindIndices(const std::string& path,
+  const BrickFileLayout& layout, const std::vector<ValueRange>& ranges,
+  const ConvertOptions& options, dsm::Messenger& messenger, const std::function<void(double)>& tell)
+{
+  const char* const what = "Looking through the bricks";
+  // It holds the file open, which cannot be written until no rank does.
+  ChunkCache cache(options.MemoryBytes / 2);
+  std::shared_ptr<const VolumeFile> file;
+  messenger.RunTogether(what, [&] { file = OpenHdf(path, ""); });
+  std::vector<std::vector<std::byte>> indices(layout.Arrays.size());
+  const rt::Index3& points = layout.Geometry.Points;
+  const bool hasCells = points.x > 1 && points.y > 1 && points.z > 1;
+  for (std::size_t number = 0; number < indices.size(); ++number)
+  {
+    const FileArray& array = layout.Arrays[number];
+    if (!hasCells || array.OnCells || array.Components != 1)
+    {
+      continue;
+    }
+    std::optional<rt::BrickLattice> lattice;
+    std::shared_ptr<const dsm::BlockReader> reader;
+    rt::VoxelIndex::Pass pass;
+    messenger.RunTogether(what,
+      [&]
+      {
+        const auto& arrays = file->GetArrays();
+        const auto found = std::find_if(arrays.begin(), arrays.end(),
+          [&](const FileArray& one) { return one.Name == array.Name && !one.OnCells; });
+        lattice.emplace(points, array.Type, false, layout.BrickEdge);
+        reader = std::make_shared<rt::VoxelBrickReader>(*lattice,
+          std::make_shared<FileSamples>(
+            file, static_cast<std::size_t>(found - arrays.begin()), cache));
+        pass.Order.resize(lattice->GetBrickCount());
+        std::iota(pass.Order.begin(), pass.Order.end(), dsm::BlockId(0));
+        pass.Guess =
+          rt::VoxelIndex::Round(array.Type, ranges[number].Least, ranges[number].Greatest);
+        pass.Threads = options.Threads;
+      });
+    const rt::VoxelIndex index = rt::VoxelIndex::Find(messenger, *lattice, *reader, pass,
+      [&](double part)
+      {
+        if (messenger.GetRank() == 0)
+        {
+          tell((static_cast<double>(number) + part) / static_cast<double>(indices.size()));
+        }
+      });
+    messenger.RunTogether(what, [&] { indices[number] = index.Encode(); });
+  }
+  return indices;
+}
+
 } // namespace
 
 void ConvertVolume(const std::shared_ptr<const VolumeFile>& from, const std::string& path,
@@ -238,13 +321,15 @@ void ConvertVolume(const std::shared_ptr<const VolumeFile>& from, const std::str
         }
       }
     });
+  // Writing first, then looking through the bricks.
+  const auto tellHalf = [&](double begin, double part) { tell(0.5 * (begin + part)); };
   // Half for what is read, the rest for what was made, here and on its way.
-  ChunkCache cache(options.MemoryBytes / 2);
+  auto cache = std::make_unique<ChunkCache>(options.MemoryBytes / 2);
   const auto ranks = static_cast<std::int64_t>(messenger.GetSize());
   for (std::size_t array = 0; array < arrays.size(); ++array)
   {
     const FileArray& made = layout.Arrays[array];
-    const ChunkMaker maker(from, arrays[array], options.Step, layout, array, cache);
+    const ChunkMaker maker(from, arrays[array], options.Step, layout, array, *cache);
     const std::int64_t count = made.Grid.GetCount();
     const auto chunkBytes = static_cast<std::size_t>(
       rt::Box{ rt::Index3(0), made.Grid.ChunkSamples }.GetCount() * made.GetSampleBytes());
@@ -286,19 +371,42 @@ void ConvertVolume(const std::shared_ptr<const VolumeFile>& from, const std::str
               FromBytes(part, chunks, ranges);
             }
             writer->Add(array, chunks, ranges);
-            tell((static_cast<double>(array) +
-                   static_cast<double>(done) / static_cast<double>(count)) /
-              static_cast<double>(arrays.size()));
+            tellHalf(0.0,
+              (static_cast<double>(array) +
+                static_cast<double>(done) / static_cast<double>(count)) /
+                static_cast<double>(arrays.size()));
           }
         });
     }
   }
+  cache.reset();
+  std::vector<ValueRange> ranges(arrays.size());
   messenger.RunTogether("Converting a volume",
     [&]
     {
       if (writer)
       {
-        writer->Finish();
+        for (std::size_t array = 0; array < arrays.size(); ++array)
+        {
+          ranges[array] = writer->GetRanges(array).Finite.front();
+        }
+        writer->Close();
+      }
+    });
+  for (ValueRange& range : ranges)
+  {
+    range = messenger.AllGatherValue(range).front();
+  }
+  const std::vector<std::vector<std::byte>> indices =
+    FindIndices(BrickFileWriter::GetPartPath(path), layout, ranges, options, messenger,
+      [&](double part) { tellHalf(1.0, part); });
+  messenger.Barrier();
+  messenger.RunTogether("Converting a volume",
+    [&]
+    {
+      if (writer)
+      {
+        writer->Finish(indices);
       }
     });
 }

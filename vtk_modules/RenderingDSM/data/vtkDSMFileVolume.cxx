@@ -2,7 +2,6 @@
 #include "vtkDSMFileVolume.h"
 
 #include "DSMCore/base/Error.h"
-#include "DSMRayTracing/layout/MacrocellBuilder.h"
 #include "DSMVolumeFiles/range/KeptFile.h"
 #include "vtkDSMFileArray.h"
 #include "vtkDSMGather.h"
@@ -305,14 +304,19 @@ rt::ValueRange vtkDSMFileVolume::GuessRange(
   {
     all.Add(part);
   }
-  return all.IsEmpty() ? rt::ValueRange{ 1.0f, -1.0f }
-                       : rt::Dispatch(type,
-                           [&](auto zero)
-                           {
-                             using T = decltype(zero);
-                             return rt::ValueRange{ rt::RoundDown(static_cast<T>(all.Least)),
-                               rt::RoundUp(static_cast<T>(all.Greatest)) };
-                           });
+  return rt::VoxelIndex::Round(type, all.Least, all.Greatest);
+}
+
+std::vector<std::byte> vtkDSMFileVolume::ReadIndex(const rt::BrickLattice& lattice) const
+{
+  const vol::FileArray& array = this->Values->GetArray();
+  const Box& box = this->Values->GetBox();
+  if (array.Components != 1 || box.Min != Index3(0) || box.Max != array.Grid.Samples)
+  {
+    return {};
+  }
+  vol::VolumeFile::Index index = this->Values->GetFile()->ReadIndex(this->Values->GetArrayNumber());
+  return index.BrickEdge == lattice.GetEdge() ? std::move(index.Bricks) : std::vector<std::byte>();
 }
 
 rt::VoxelIndex vtkDSMFileVolume::FindIndex(dsm::Messenger& messenger,
@@ -329,7 +333,8 @@ rt::VoxelIndex vtkDSMFileVolume::FindIndex(dsm::Messenger& messenger,
     {
       if (messenger.GetRank() == 0)
       {
-        bytes = kept.Load();
+        bytes = this->ReadIndex(lattice);
+        bytes = bytes.empty() ? kept.Load() : std::move(bytes);
       }
     });
   bytes = messenger.Broadcast(std::move(bytes));

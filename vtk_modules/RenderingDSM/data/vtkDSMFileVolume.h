@@ -54,6 +54,8 @@ public:
 private:
   vtkDSMFileVolume(std::shared_ptr<const vtkDSMFileValues> values, int component);
 
+  /// Of the lattice's bricks, as the file itself has it (vol::VolumeFile::Index); else empty.
+  std::vector<std::byte> ReadIndex(const rt::BrickLattice& lattice) const;
   /// In the order in which chunks are best read.
   std::vector<dsm::BlockId> CreateOrder(const rt::BrickLattice& lattice) const;
   /// Collective: of the values, by what the ranks' pieces know of theirs.
