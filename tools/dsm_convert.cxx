@@ -5,9 +5,11 @@
 #include "DSMCore/transport/Messenger.h"
 #include "DSMCore/transport/MpiTransport.h"
 #include "DSMVolumeFiles/write/ConvertVolume.h"
+#include "tools/OptionValues.h"
 
 #include <getopt.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <filesystem>
 #include <functional>
@@ -54,17 +56,14 @@ struct Options
 };
 
 template <class T>
-T ToNumber(const std::string& name, const std::string& text, T least)
+std::vector<T> ToThree(const std::string& name, const std::string& text, T least)
 {
-  std::istringstream stream(text);
-  T number{};
-  if (!(stream >> number) || !stream.eof() || number < least)
+  const std::vector<T> numbers = OptionValues::ToNumbers<T>(name, text, least);
+  if (numbers.size() != 3)
   {
-    std::ostringstream message;
-    message << "--" << name << " takes a number of at least " << least << ", not '" << text << "'.";
-    throw dsm::Error(message.str());
+    throw dsm::Error(name + " takes three numbers with commas, such as 512,512,400.");
   }
-  return number;
+  return numbers;
 }
 
 std::vector<std::string> Split(const std::string& text)
@@ -76,32 +75,6 @@ std::vector<std::string> Split(const std::string& text)
     parts.push_back(part);
   }
   return parts;
-}
-
-std::vector<std::string> SplitInThree(const std::string& name, const std::string& text)
-{
-  std::vector<std::string> parts = Split(text);
-  if (parts.size() != 3)
-  {
-    throw dsm::Error("--" + name + " takes three numbers with commas, such as 512,512,400.");
-  }
-  return parts;
-}
-
-template <class T>
-T ToChoice(const std::string& name, const std::string& text, const std::map<std::string, T>& known)
-{
-  const auto found = known.find(text);
-  if (found == known.end())
-  {
-    std::string all;
-    for (const auto& [word, value] : known)
-    {
-      all += (all.empty() ? "" : ", ") + word;
-    }
-    throw dsm::Error("--" + name + " knows " + all + ", and not '" + text + "'.");
-  }
-  return found->second;
 }
 
 Options Parse(int argc, char** argv)
@@ -118,44 +91,47 @@ Options Parse(int argc, char** argv)
   const std::map<std::string, Option> known = {
     { "arrays", { true, [&](auto&, auto& text) { options.Convert.Arrays = Split(text); } } },
     { "step",
-      { true, [&](auto& name, auto& text) { options.Convert.Step = ToNumber(name, text, 0); } } },
+      { true,
+        [&](auto& name, auto& text)
+        { options.Convert.Step = OptionValues::ToNumber(name, text, 0); } } },
     { "level",
-      { true, [&](auto& name, auto& text) { options.Open.Level = ToNumber(name, text, 0); } } },
+      { true,
+        [&](auto& name, auto& text)
+        { options.Open.Level = OptionValues::ToNumber(name, text, 0); } } },
     { "dataset", { true, [&](auto&, auto& text) { options.Open.Dataset = text; } } },
     { "compression",
       { true,
         [&](auto& name, auto& text)
         {
-          options.Convert.Pressed = ToChoice<vol::Compression>(name, text,
+          options.Convert.Pressed = OptionValues::ToChoice<vol::Compression>(name, text,
             { { "none", vol::Compression::None }, { "zstd", vol::Compression::Zstd },
               { "deflate", vol::Compression::Deflate } });
         } } },
     { "brick",
       { true,
-        [&](auto& name, auto& text) { options.Convert.BrickEdge = ToNumber(name, text, 1); } } },
+        [&](auto& name, auto& text)
+        { options.Convert.BrickEdge = OptionValues::ToNumber(name, text, 1); } } },
     { "memory",
       { true,
-        [&](auto& name, auto& text)
-        { options.Convert.MemoryBytes = ToNumber<std::size_t>(name, text, 1) << 20; } } },
+        [&](auto& name, auto& text) {
+          options.Convert.MemoryBytes = OptionValues::ToNumber<std::size_t>(name, text, 1) << 20;
+        } } },
     { "threads",
       { true,
-        [&](auto& name, auto& text) { options.Convert.Threads = ToNumber(name, text, 1); } } },
+        [&](auto& name, auto& text)
+        { options.Convert.Threads = OptionValues::ToNumber(name, text, 1); } } },
     { "raw-size",
       { true,
         [&](auto& name, auto& text)
         {
-          const std::vector<std::string> parts = SplitInThree(name, text);
-          for (int axis = 0; axis < 3; ++axis)
-          {
-            options.Open.Bare.Samples[axis] =
-              ToNumber<std::int64_t>(name, parts[static_cast<std::size_t>(axis)], 1);
-          }
+          const auto samples = ToThree<std::int64_t>(name, text, 1);
+          options.Open.Bare.Samples = { samples[0], samples[1], samples[2] };
         } } },
     { "raw-type",
       { true,
         [&](auto& name, auto& text)
         {
-          options.Open.Bare.Type = ToChoice<Type>(name, text,
+          options.Open.Bare.Type = OptionValues::ToChoice<Type>(name, text,
             { { "int8", Type::Int8 }, { "uint8", Type::UInt8 }, { "int16", Type::Int16 },
               { "uint16", Type::UInt16 }, { "int32", Type::Int32 }, { "uint32", Type::UInt32 },
               { "int64", Type::Int64 }, { "uint64", Type::UInt64 }, { "float32", Type::Float32 },
@@ -163,19 +139,16 @@ Options Parse(int argc, char** argv)
         } } },
     { "raw-header",
       { true,
-        [&](auto& name, auto& text)
-        { options.Open.Bare.HeaderBytes = ToNumber<std::uint64_t>(name, text, 0); } } },
+        [&](auto& name, auto& text) {
+          options.Open.Bare.HeaderBytes = OptionValues::ToNumber<std::uint64_t>(name, text, 0);
+        } } },
     { "raw-big-endian", { false, [&](auto&, auto&) { options.Open.Bare.BigEndian = true; } } },
     { "spacing",
       { true,
         [&](auto& name, auto& text)
         {
-          const std::vector<std::string> parts = SplitInThree(name, text);
-          for (int axis = 0; axis < 3; ++axis)
-          {
-            options.Open.Bare.Spacing[axis] = ToNumber(
-              name, parts[static_cast<std::size_t>(axis)], std::numeric_limits<double>::min());
-          }
+          const auto spacing = ToThree(name, text, std::numeric_limits<double>::min());
+          std::copy(spacing.begin(), spacing.end(), options.Open.Bare.Spacing);
         } } },
     { "quiet", { false, [&](auto&, auto&) { options.IsQuiet = true; } } },
     { "help", { false, [&](auto&, auto&) { options.WantsHelp = true; } } },
@@ -201,7 +174,7 @@ Options Parse(int argc, char** argv)
         "' is no option, or lacks its value; --help lists them.");
     }
     const std::string name = list[static_cast<std::size_t>(index)].name;
-    known.at(name).Set(name, optarg ? optarg : "");
+    known.at(name).Set("--" + name, optarg ? optarg : "");
   }
   if (!options.WantsHelp && argc - optind != 2)
   {

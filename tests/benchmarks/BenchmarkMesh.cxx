@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "BenchmarkMesh.h"
 
-#include "OptionValues.h"
+#include "tools/OptionValues.h"
 
 #include "DSMRayTracing/build/TriangleMeshBuilder.h"
 #include "DSMRayTracing/build/TriangleReader.h"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "MeshBenchmark.h"
 
-#include "OptionValues.h"
+#include "tools/OptionValues.h"
 
 #include "DSMCore/store/BlockStore.h"
 #include "DSMRayTracing/frame/FrameGather.h"

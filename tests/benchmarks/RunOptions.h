@@ -2,7 +2,7 @@
 #ifndef RunOptions_h
 #define RunOptions_h
 
-#include "OptionValues.h"
+#include "tools/OptionValues.h"
 
 #include "DSMCore/store/BlockStore.h"
 #include "DSMCore/transport/Messenger.h"
