@@ -22,27 +22,44 @@
 /// The options of each view and session, for as long as it lives.
 struct vtkPVDSMSharedOptions::Registry
 {
-  using Owners = std::map<vtkObject*, std::unique_ptr<vtkPVDSMSharedOptions>>;
+  std::map<vtkObject*, std::unique_ptr<vtkPVDSMSharedOptions>> Owners;
 
-  static Owners& Get()
+  /// When a process ends by exit, as a script may, its sessions go after what is static here.
+  static bool& IsOver()
   {
-    static Owners owners;
-    return owners;
+    static bool over = false;
+    return over;
+  }
+  ~Registry() { IsOver() = true; }
+
+  static Registry& Get()
+  {
+    static Registry registry;
+    return registry;
+  }
+
+  /// What goes with the options may be an owner, too.
+  static void Forget(vtkObject* owner)
+  {
+    if (!IsOver())
+    {
+      const auto entry = Get().Owners.extract(owner);
+    }
   }
 
   static vtkPVDSMSharedOptions* Find(vtkObject* owner)
   {
-    const auto found = Get().find(owner);
-    return found == Get().end() ? nullptr : found->second.get();
+    const auto found = Get().Owners.find(owner);
+    return found == Get().Owners.end() ? nullptr : found->second.get();
   }
 
   static vtkPVDSMSharedOptions* Make(
     vtkObject* owner, vtkSMProxy* values, vtkSMProxy* like, std::vector<std::string> exceptions)
   {
     vtkNew<vtkCallbackCommand> forget;
-    forget->SetCallback([](vtkObject* gone, unsigned long, void*, void*) { Get().erase(gone); });
+    forget->SetCallback([](vtkObject* gone, unsigned long, void*, void*) { Forget(gone); });
     owner->AddObserver(vtkCommand::DeleteEvent, forget);
-    auto& made = Get()[owner];
+    auto& made = Get().Owners[owner];
     made.reset(new vtkPVDSMSharedOptions(values, like, std::move(exceptions)));
     return made.get();
   }
@@ -113,7 +130,7 @@ void vtkPVDSMSharedOptions::Join(vtkPVRenderView* view, vtkObjectBase* light, vt
 void vtkPVDSMSharedOptions::Leave(
   vtkPVRenderView* view, vtkObjectBase* light, vtkObjectBase* memory)
 {
-  for (const auto& entry : Registry::Get())
+  for (const auto& entry : Registry::Get().Owners)
   {
     entry.second->Remove(entry.first == view ? light : memory);
   }
