@@ -2,168 +2,16 @@
 #include "DSMVolumeFiles/write/ConvertVolume.h"
 
 #include "DSMCore/base/Error.h"
-#include "DSMRayTracing/base/ParallelFor.h"
-#include "DSMRayTracing/build/VoxelBrickReader.h"
-#include "DSMRayTracing/build/VoxelIndex.h"
-#include "DSMRayTracing/layout/BrickLattice.h"
-#include "DSMRayTracing/layout/MacrocellBuilder.h"
-#include "DSMRayTracing/layout/VoxelBrickHeader.h"
-#include "DSMVolumeFiles/base/CopyBox.h"
-#include "DSMVolumeFiles/codec/ChunkCodec.h"
-#include "DSMVolumeFiles/format/HdfFile.h"
+#include "DSMVolumeFiles/cache/ChunkCache.h"
 
 #include <algorithm>
-#include <cstring>
-#include <memory>
-#include <numeric>
-#include <optional>
+#include <utility>
 
 namespace vol
 {
 
 namespace
 {
-
-/// The range that the renderer finds for a brick of these samples.
-template <class T>
-std::pair<float, float> FindBrickRange(
-  const rt::Index3& cells, rt::ScalarType type, const std::byte* samples)
-{
-  const rt::VoxelBrickHeader header = rt::CreateVoxelBrickHeader(cells, type, false);
-  std::vector<std::uint64_t> block(header.BlockBytes / sizeof(std::uint64_t) + 1);
-  auto* const bytes = reinterpret_cast<std::byte*>(block.data());
-  const rt::Index3 points = cells + rt::Index3(1);
-  std::memcpy(bytes, &header, sizeof(header));
-  std::memcpy(bytes + header.SampleOffset, samples,
-    static_cast<std::size_t>(points.x * points.y * points.z) * sizeof(T));
-  rt::BuildMacrocells<T>(bytes);
-  rt::VoxelBrickHeader built;
-  std::memcpy(&built, bytes, sizeof(built));
-  return { built.First, built.Last };
-}
-
-/// Makes the chunks of an array of a brick file out of those of another file.
-class ChunkMaker
-{
-public:
-  ChunkMaker(std::shared_ptr<const VolumeFile> from, std::size_t fromArray, int step,
-    const BrickFileLayout& layout, std::size_t array, ChunkCache& cache)
-    : From(std::move(from))
-    , FromArray(fromArray)
-    , Step(step)
-    , Array(layout.Arrays[array])
-    , Codec(layout.CreateCodec(array))
-    , Edge(layout.BrickEdge)
-    , Cache(cache)
-  {
-  }
-
-  EncodedChunk Make(std::int64_t number, ValueRanges& ranges) const
-  {
-    const ChunkGrid& grid = this->Array.Grid;
-    const rt::Index3 chunk = grid.GetChunk(number);
-    const rt::Box own = grid.GetBox(chunk);
-    // The brick that begins here has the first samples of its neighbours, too.
-    const rt::Box have{ own.Min, glm::min(own.Min + rt::Index3(this->Edge + 1), grid.Samples) };
-    const std::size_t sampleBytes = this->Array.GetSampleBytes();
-    std::vector<std::byte> samples(static_cast<std::size_t>(have.GetCount()) * sampleBytes);
-    this->Cache.ReadBox(this->From, this->FromArray, this->Step, have, samples.data());
-    ranges.Add(this->Array, samples.data(), have, own);
-    EncodedChunk encoded;
-    const rt::Index3 cells = have.GetSize() - rt::Index3(1);
-    encoded.First = 1.0f; // of no cells
-    if (this->Array.Components == 1 && cells.x > 0 && cells.y > 0 && cells.z > 0)
-    {
-      std::tie(encoded.First, encoded.Last) = rt::Dispatch(this->Array.Type,
-        [&](auto zero)
-        { return FindBrickRange<decltype(zero)>(cells, this->Array.Type, samples.data()); });
-    }
-    // Chunks at the volume's ends are as large as all others.
-    const rt::Box whole{ own.Min, own.Min + grid.ChunkSamples };
-    std::vector<std::byte> bytes(static_cast<std::size_t>(whole.GetCount()) * sampleBytes);
-    CopyBox(own, samples.data(), have, bytes.data(), whole, sampleBytes);
-    encoded.Bytes = this->Codec.Encode(std::move(bytes));
-    return encoded;
-  }
-
-private:
-  std::shared_ptr<const VolumeFile> From;
-  std::size_t FromArray;
-  int Step;
-  FileArray Array;
-  ChunkCodec Codec;
-  int Edge;
-  ChunkCache& Cache;
-};
-
-/// What a rank has made, as it goes to rank 0.
-template <class T>
-void Put(std::vector<std::byte>& bytes, const T* values, std::size_t count)
-{
-  const auto* const first = reinterpret_cast<const std::byte*>(values);
-  bytes.insert(bytes.end(), first, first + count * sizeof(T));
-}
-
-class Taker
-{
-public:
-  explicit Taker(const std::vector<std::byte>& bytes)
-    : Bytes(bytes)
-  {
-  }
-  bool IsAtEnd() const { return this->At == this->Bytes.size(); }
-  template <class T>
-  void Take(T* values, std::size_t count)
-  {
-    std::memcpy(values, this->Bytes.data() + this->At, count * sizeof(T));
-    this->At += count * sizeof(T);
-  }
-
-private:
-  const std::vector<std::byte>& Bytes;
-  std::size_t At = 0;
-};
-
-std::vector<std::byte> ToBytes(const std::vector<EncodedChunk>& chunks, const ValueRanges& ranges)
-{
-  std::vector<std::byte> bytes;
-  for (const std::vector<ValueRange>* list : { &ranges.All, &ranges.Finite })
-  {
-    Put(bytes, list->data(), list->size());
-  }
-  for (const EncodedChunk& chunk : chunks)
-  {
-    const std::uint64_t count = chunk.Bytes.size();
-    Put(bytes, &chunk.First, 1);
-    Put(bytes, &chunk.Last, 1);
-    Put(bytes, &count, 1);
-    Put(bytes, chunk.Bytes.data(), chunk.Bytes.size());
-  }
-  return bytes;
-}
-
-void FromBytes(
-  const std::vector<std::byte>& bytes, std::vector<EncodedChunk>& chunks, ValueRanges& ranges)
-{
-  Taker from(bytes);
-  ValueRanges part = ranges;
-  for (std::vector<ValueRange>* list : { &part.All, &part.Finite })
-  {
-    from.Take(list->data(), list->size());
-  }
-  ranges.Add(part);
-  while (!from.IsAtEnd())
-  {
-    EncodedChunk chunk;
-    std::uint64_t count = 0;
-    from.Take(&chunk.First, 1);
-    from.Take(&chunk.Last, 1);
-    from.Take(&count, 1);
-    chunk.Bytes.resize(count);
-    from.Take(chunk.Bytes.data(), count);
-    chunks.push_back(std::move(chunk));
-  }
-}
 
 std::vector<std::size_t> FindArrays(const VolumeFile& from, const std::vector<std::string>& names)
 {
@@ -187,228 +35,71 @@ std::vector<std::size_t> FindArrays(const VolumeFile& from, const std::vector<st
   return found;
 }
 
-BrickFileLayout CreateLayout(
-  const VolumeFile& from, const std::vector<std::size_t>& arrays, const ConvertOptions& options)
-{
-  if (options.Step < 0 || options.Step >= from.GetSteps())
-  {
-    throw dsm::Error("The file '" + from.GetPath() + "' has the steps 0 to " +
-      std::to_string(from.GetSteps() - 1) + ", and not " + std::to_string(options.Step) + ".");
-  }
-  BrickFileLayout layout;
-  layout.Geometry = from.GetGeometry();
-  layout.Pressed = options.Pressed;
-  layout.BrickEdge = options.BrickEdge != 0
-    ? options.BrickEdge
-    : rt::BrickLattice::GetDefaultEdge(from.GetArrays()[arrays.front()].Type);
-  if (layout.BrickEdge < 1 || layout.BrickEdge > rt::BrickLattice::LargestEdge)
-  {
-    throw dsm::Error("A brick has from 1 to " + std::to_string(rt::BrickLattice::LargestEdge) +
-      " cells along an axis, and not " + std::to_string(layout.BrickEdge) + ".");
-  }
-  for (const std::size_t number : arrays)
-  {
-    FileArray array = from.GetArrays()[number];
-    // HDF5's names of what lies in folders.
-    std::replace(array.Name.begin(), array.Name.end(), '/', '_');
-    array.Grid.ChunkSamples = glm::min(rt::Index3(layout.BrickEdge), array.Grid.Samples);
-    layout.Arrays.push_back(std::move(array));
-  }
-  return layout;
-}
-
-/// The points' samples of an array in a file.
-class FileSamples final : public rt::VoxelSource
+/// One step of a file, which every rank reads by itself.
+class FileOrigin final : public ValueOrigin
 {
 public:
-  FileSamples(std::shared_ptr<const VolumeFile> file, std::size_t array, ChunkCache& cache)
+  FileOrigin(std::shared_ptr<const VolumeFile> file, const ConvertOptions& options,
+    dsm::Messenger& messenger)
     : File(std::move(file))
-    , Array(array)
-    , Cache(cache)
+    , Numbers(FindArrays(*this->File, options.Arrays))
+    , Step(options.Step)
+    , Ranks(messenger.GetSize())
+    , Cache(options.MemoryBytes / 2)
   {
+    if (this->Step < 0 || this->Step >= this->File->GetSteps())
+    {
+      throw dsm::Error("The file '" + this->File->GetPath() + "' has the steps 0 to " +
+        std::to_string(this->File->GetSteps() - 1) + ", and not " + std::to_string(this->Step) +
+        ".");
+    }
+    for (const std::size_t number : this->Numbers)
+    {
+      this->Arrays.push_back(this->File->GetArrays()[number]);
+    }
   }
-  rt::Box GetCells() const override
+
+  const FileGeometry& GetGeometry() const override { return this->File->GetGeometry(); }
+  const std::vector<FileArray>& GetArrays() const override { return this->Arrays; }
+  std::string Describe() const override
   {
-    return { rt::Index3(0), this->File->GetGeometry().Points - rt::Index3(1) };
+    return this->File->GetPath() + " " + std::to_string(this->File->GetStamp()) + " step " +
+      std::to_string(this->Step);
   }
-  void ReadSamples(const rt::Box& points, std::byte* out) const override
+
+  /// Each rank gets such as lie beside one another.
+  std::vector<int> Deal(std::size_t, const std::vector<rt::Box>& boxes) override
   {
-    this->Cache.ReadBox(this->File, this->Array, 0, points, out);
+    std::vector<int> ranks(boxes.size());
+    for (std::size_t box = 0; box < boxes.size(); ++box)
+    {
+      ranks[box] = static_cast<int>(box * static_cast<std::size_t>(this->Ranks) / boxes.size());
+    }
+    return ranks;
+  }
+  void Read(std::size_t array, const rt::Box& box, std::byte* out) const override
+  {
+    this->Cache.ReadBox(this->File, this->Numbers[array], this->Step, box, out);
   }
 
 private:
   std::shared_ptr<const VolumeFile> File;
-  std::size_t Array;
-  ChunkCache& Cache;
+  std::vector<std::size_t> Numbers; ///< in the file
+  std::vector<FileArray> Arrays;
+  int Step;
+  int Ranks;
+  mutable ChunkCache Cache;
 };
-
-/// Collective. What is to be known of the bricks of the arrays of a brick file, which is read once more for it; `ranges`
-/// of the arrays' values. Nothing of what the renderer makes no bricks of.
-std::vector<std::vector<std::byte>> FindIndices(const std::string& path,
-  const BrickFileLayout& layout, const std::vector<ValueRange>& ranges,
-  const ConvertOptions& options, dsm::Messenger& messenger, const std::function<void(double)>& tell)
-{
-  const char* const what = "Looking through the bricks";
-  // It holds the file open, which cannot be written until no rank does.
-  ChunkCache cache(options.MemoryBytes / 2);
-  std::shared_ptr<const VolumeFile> file;
-  messenger.RunTogether(what, [&] { file = OpenHdf(path, ""); });
-  std::vector<std::vector<std::byte>> indices(layout.Arrays.size());
-  const rt::Index3& points = layout.Geometry.Points;
-  const bool hasCells = points.x > 1 && points.y > 1 && points.z > 1;
-  for (std::size_t number = 0; number < indices.size(); ++number)
-  {
-    const FileArray& array = layout.Arrays[number];
-    if (!hasCells || array.OnCells || array.Components != 1)
-    {
-      continue;
-    }
-    std::optional<rt::BrickLattice> lattice;
-    std::shared_ptr<const dsm::BlockReader> reader;
-    rt::VoxelIndex::Pass pass;
-    messenger.RunTogether(what,
-      [&]
-      {
-        const auto& arrays = file->GetArrays();
-        const auto found = std::find_if(arrays.begin(), arrays.end(),
-          [&](const FileArray& one) { return one.Name == array.Name && !one.OnCells; });
-        lattice.emplace(points, array.Type, false, layout.BrickEdge);
-        reader = std::make_shared<rt::VoxelBrickReader>(*lattice,
-          std::make_shared<FileSamples>(
-            file, static_cast<std::size_t>(found - arrays.begin()), cache));
-        pass.Order.resize(lattice->GetBrickCount());
-        std::iota(pass.Order.begin(), pass.Order.end(), dsm::BlockId(0));
-        pass.Guess =
-          rt::VoxelIndex::Round(array.Type, ranges[number].Least, ranges[number].Greatest);
-        pass.Threads = options.Threads;
-      });
-    const rt::VoxelIndex index = rt::VoxelIndex::Find(messenger, *lattice, *reader, pass,
-      [&](double part)
-      {
-        if (messenger.GetRank() == 0)
-        {
-          tell((static_cast<double>(number) + part) / static_cast<double>(indices.size()));
-        }
-      });
-    messenger.RunTogether(what, [&] { indices[number] = index.Encode(); });
-  }
-  return indices;
-}
 
 } // namespace
 
 void ConvertVolume(const std::shared_ptr<const VolumeFile>& from, const std::string& path,
   const ConvertOptions& options, dsm::Messenger& messenger, const std::function<void(double)>& tell)
 {
-  std::vector<std::size_t> arrays;
-  BrickFileLayout layout;
-  std::optional<BrickFileWriter> writer;
-  std::vector<std::int64_t> begin;
+  std::unique_ptr<ValueOrigin> origin;
   messenger.RunTogether("Converting a volume",
-    [&]
-    {
-      arrays = FindArrays(*from, options.Arrays);
-      layout = CreateLayout(*from, arrays, options);
-      begin.assign(arrays.size(), 0);
-      if (messenger.GetRank() == 0)
-      {
-        writer.emplace(path, layout,
-          from->GetPath() + " " + std::to_string(from->GetStamp()) + " step " +
-            std::to_string(options.Step));
-        for (std::size_t array = 0; array < arrays.size(); ++array)
-        {
-          begin[array] = writer->GetChunks(array);
-        }
-      }
-    });
-  // Writing first, then looking through the bricks.
-  const auto tellHalf = [&](double begin, double part) { tell(0.5 * (begin + part)); };
-  // Half for what is read, the rest for what was made, here and on its way.
-  auto cache = std::make_unique<ChunkCache>(options.MemoryBytes / 2);
-  const auto ranks = static_cast<std::int64_t>(messenger.GetSize());
-  for (std::size_t array = 0; array < arrays.size(); ++array)
-  {
-    const FileArray& made = layout.Arrays[array];
-    const ChunkMaker maker(from, arrays[array], options.Step, layout, array, *cache);
-    const std::int64_t count = made.Grid.GetCount();
-    const auto chunkBytes = static_cast<std::size_t>(
-      rt::Box{ rt::Index3(0), made.Grid.ChunkSamples }.GetCount() * made.GetSampleBytes());
-    const std::int64_t share = std::max<std::int64_t>(
-      1, static_cast<std::int64_t>(options.MemoryBytes / 8 / chunkBytes) / ranks);
-    std::int64_t done = messenger.AllGatherValue(begin[array]).front();
-    while (done < count)
-    {
-      const std::int64_t first = std::min(count, done + share * messenger.GetRank());
-      const std::int64_t last = std::min(count, first + share);
-      const auto parts = messenger.GatherTogether("Converting a volume",
-        [&]
-        {
-          std::vector<EncodedChunk> chunks(static_cast<std::size_t>(last - first));
-          std::vector<ValueRanges> ranges(
-            static_cast<std::size_t>(options.Threads), ValueRanges(made.Components));
-          rt::ParallelFor(options.Threads, chunks.size(),
-            [&](std::size_t chunk, int thread)
-            {
-              chunks[chunk] = maker.Make(
-                first + static_cast<std::int64_t>(chunk), ranges[static_cast<std::size_t>(thread)]);
-            });
-          for (const ValueRanges& part : ranges)
-          {
-            ranges.front().Add(part);
-          }
-          return ToBytes(chunks, ranges.front());
-        });
-      done = std::min(count, done + share * ranks);
-      messenger.RunTogether("Converting a volume",
-        [&]
-        {
-          if (writer)
-          {
-            std::vector<EncodedChunk> chunks;
-            ValueRanges ranges(made.Components);
-            for (const std::vector<std::byte>& part : parts)
-            {
-              FromBytes(part, chunks, ranges);
-            }
-            writer->Add(array, chunks, ranges);
-            tellHalf(0.0,
-              (static_cast<double>(array) +
-                static_cast<double>(done) / static_cast<double>(count)) /
-                static_cast<double>(arrays.size()));
-          }
-        });
-    }
-  }
-  cache.reset();
-  std::vector<ValueRange> ranges(arrays.size());
-  messenger.RunTogether("Converting a volume",
-    [&]
-    {
-      if (writer)
-      {
-        for (std::size_t array = 0; array < arrays.size(); ++array)
-        {
-          ranges[array] = writer->GetRanges(array).Finite.front();
-        }
-        writer->Close();
-      }
-    });
-  for (ValueRange& range : ranges)
-  {
-    range = messenger.AllGatherValue(range).front();
-  }
-  const std::vector<std::vector<std::byte>> indices =
-    FindIndices(BrickFileWriter::GetPartPath(path), layout, ranges, options, messenger,
-      [&](double part) { tellHalf(1.0, part); });
-  messenger.Barrier();
-  messenger.RunTogether("Converting a volume",
-    [&]
-    {
-      if (writer)
-      {
-        writer->Finish(indices);
-      }
-    });
+    [&] { origin = std::make_unique<FileOrigin>(from, options, messenger); });
+  WriteBrickFile(std::move(origin), path, options, messenger, tell);
 }
 
 } // namespace vol

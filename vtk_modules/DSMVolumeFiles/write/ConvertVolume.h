@@ -3,10 +3,9 @@
 #define vol_ConvertVolume_h
 
 #include "DSMCore/transport/Messenger.h"
-#include "DSMVolumeFiles/cache/ChunkCache.h"
-#include "DSMVolumeFiles/write/BrickFileWriter.h"
+#include "DSMVolumeFiles/format/VolumeFile.h"
+#include "DSMVolumeFiles/write/WriteBrickFile.h"
 
-#include <cstddef>
 #include <functional>
 #include <memory>
 #include <string>
@@ -15,17 +14,11 @@
 namespace vol
 {
 
-struct ConvertOptions
+struct ConvertOptions : WriteOptions
 {
   /// Names; none: all arrays.
   std::vector<std::string> Arrays;
   int Step = 0;
-  /// Cells along an axis of a brick; 0: what the renderer takes for the arrays' type (of several, the first).
-  int BrickEdge = 0;
-  Compression Pressed = Compression::None;
-  /// Of values and chunks in memory, on each rank; what the HDF5 library keeps of the index comes on top.
-  std::size_t MemoryBytes = std::size_t(512) << 20;
-  int Threads = 1; ///< of each rank
 };
 
 /// Writes a brick file (BrickFileWriter) of a volume at `path`, or goes on where an earlier call was ended. Collective;

@@ -1,0 +1,426 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "DSMVolumeFiles/write/WriteBrickFile.h"
+
+#include "DSMCore/base/Error.h"
+#include "DSMRayTracing/base/ParallelFor.h"
+#include "DSMRayTracing/build/VoxelBrickReader.h"
+#include "DSMRayTracing/build/VoxelIndex.h"
+#include "DSMRayTracing/layout/BrickLattice.h"
+#include "DSMRayTracing/layout/MacrocellBuilder.h"
+#include "DSMRayTracing/layout/VoxelBrickHeader.h"
+#include "DSMVolumeFiles/base/CopyBox.h"
+#include "DSMVolumeFiles/cache/ChunkCache.h"
+#include "DSMVolumeFiles/codec/ChunkCodec.h"
+#include "DSMVolumeFiles/format/HdfFile.h"
+
+#include <algorithm>
+#include <cstring>
+#include <numeric>
+#include <optional>
+#include <utility>
+
+namespace vol
+{
+
+namespace
+{
+
+/// The range that the renderer finds for a brick of these samples.
+template <class T>
+std::pair<float, float> FindBrickRange(
+  const rt::Index3& cells, rt::ScalarType type, const std::byte* samples)
+{
+  const rt::VoxelBrickHeader header = rt::CreateVoxelBrickHeader(cells, type, false);
+  std::vector<std::uint64_t> block(header.BlockBytes / sizeof(std::uint64_t) + 1);
+  auto* const bytes = reinterpret_cast<std::byte*>(block.data());
+  const rt::Index3 points = cells + rt::Index3(1);
+  std::memcpy(bytes, &header, sizeof(header));
+  std::memcpy(bytes + header.SampleOffset, samples,
+    static_cast<std::size_t>(points.x * points.y * points.z) * sizeof(T));
+  rt::BuildMacrocells<T>(bytes);
+  rt::VoxelBrickHeader built;
+  std::memcpy(&built, bytes, sizeof(built));
+  return { built.First, built.Last };
+}
+
+/// A chunk, and which one it is.
+using NumberedChunk = std::pair<std::int64_t, EncodedChunk>;
+
+/// Makes the chunks of an array of a brick file.
+class ChunkMaker
+{
+public:
+  ChunkMaker(const ValueOrigin& from, const BrickFileLayout& layout, std::size_t array)
+    : From(from)
+    , Number(array)
+    , Array(layout.Arrays[array])
+    , Codec(layout.CreateCodec(array))
+    , Edge(layout.BrickEdge)
+  {
+  }
+
+  /// The samples that a chunk is made of: those that the brick that begins here has, so the first ones of its
+  /// neighbours, too.
+  rt::Box GetSource(std::int64_t chunk) const
+  {
+    const rt::Box own = this->GetBox(chunk);
+    return { own.Min, glm::min(own.Min + rt::Index3(this->Edge + 1), this->Array.Grid.Samples) };
+  }
+
+  NumberedChunk Make(std::int64_t chunk, ValueRanges& ranges) const
+  {
+    const rt::Box own = this->GetBox(chunk);
+    const rt::Box have = this->GetSource(chunk);
+    const std::size_t sampleBytes = this->Array.GetSampleBytes();
+    std::vector<std::byte> samples(static_cast<std::size_t>(have.GetCount()) * sampleBytes);
+    this->From.Read(this->Number, have, samples.data());
+    ranges.Add(this->Array, samples.data(), have, own);
+    EncodedChunk encoded;
+    const rt::Index3 cells = have.GetSize() - rt::Index3(1);
+    encoded.First = 1.0f; // of no cells
+    if (this->Array.Components == 1 && cells.x > 0 && cells.y > 0 && cells.z > 0)
+    {
+      std::tie(encoded.First, encoded.Last) = rt::Dispatch(this->Array.Type,
+        [&](auto zero)
+        { return FindBrickRange<decltype(zero)>(cells, this->Array.Type, samples.data()); });
+    }
+    // Chunks at the volume's ends are as large as all others.
+    const rt::Box whole{ own.Min, own.Min + this->Array.Grid.ChunkSamples };
+    std::vector<std::byte> bytes(static_cast<std::size_t>(whole.GetCount()) * sampleBytes);
+    CopyBox(own, samples.data(), have, bytes.data(), whole, sampleBytes);
+    encoded.Bytes = this->Codec.Encode(std::move(bytes));
+    return { chunk, std::move(encoded) };
+  }
+
+private:
+  rt::Box GetBox(std::int64_t chunk) const
+  {
+    return this->Array.Grid.GetBox(this->Array.Grid.GetChunk(chunk));
+  }
+
+  const ValueOrigin& From;
+  std::size_t Number;
+  FileArray Array;
+  ChunkCodec Codec;
+  int Edge;
+};
+
+/// What a rank has made, as it goes to rank 0.
+template <class T>
+void Put(std::vector<std::byte>& bytes, const T* values, std::size_t count)
+{
+  const auto* const first = reinterpret_cast<const std::byte*>(values);
+  bytes.insert(bytes.end(), first, first + count * sizeof(T));
+}
+
+class Taker
+{
+public:
+  explicit Taker(const std::vector<std::byte>& bytes)
+    : Bytes(bytes)
+  {
+  }
+  bool IsAtEnd() const { return this->At == this->Bytes.size(); }
+  template <class T>
+  void Take(T* values, std::size_t count)
+  {
+    std::memcpy(values, this->Bytes.data() + this->At, count * sizeof(T));
+    this->At += count * sizeof(T);
+  }
+
+private:
+  const std::vector<std::byte>& Bytes;
+  std::size_t At = 0;
+};
+
+std::vector<std::byte> ToBytes(const std::vector<NumberedChunk>& chunks, const ValueRanges& ranges)
+{
+  std::vector<std::byte> bytes;
+  for (const std::vector<ValueRange>* list : { &ranges.All, &ranges.Finite })
+  {
+    Put(bytes, list->data(), list->size());
+  }
+  for (const auto& [number, chunk] : chunks)
+  {
+    const std::uint64_t count = chunk.Bytes.size();
+    Put(bytes, &number, 1);
+    Put(bytes, &chunk.First, 1);
+    Put(bytes, &chunk.Last, 1);
+    Put(bytes, &count, 1);
+    Put(bytes, chunk.Bytes.data(), chunk.Bytes.size());
+  }
+  return bytes;
+}
+
+void FromBytes(
+  const std::vector<std::byte>& bytes, std::vector<NumberedChunk>& chunks, ValueRanges& ranges)
+{
+  Taker from(bytes);
+  ValueRanges part = ranges;
+  for (std::vector<ValueRange>* list : { &part.All, &part.Finite })
+  {
+    from.Take(list->data(), list->size());
+  }
+  ranges.Add(part);
+  while (!from.IsAtEnd())
+  {
+    auto& [number, chunk] = chunks.emplace_back();
+    std::uint64_t count = 0;
+    from.Take(&number, 1);
+    from.Take(&chunk.First, 1);
+    from.Take(&chunk.Last, 1);
+    from.Take(&count, 1);
+    chunk.Bytes.resize(count);
+    from.Take(chunk.Bytes.data(), count);
+  }
+}
+
+/// What all ranks have made, in the file's order.
+std::vector<EncodedChunk> Merge(
+  const std::vector<std::vector<std::byte>>& parts, ValueRanges& ranges)
+{
+  std::vector<NumberedChunk> all;
+  for (const std::vector<std::byte>& part : parts)
+  {
+    FromBytes(part, all, ranges);
+  }
+  std::sort(all.begin(), all.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+  std::vector<EncodedChunk> chunks;
+  for (auto& [number, chunk] : all)
+  {
+    chunks.push_back(std::move(chunk));
+  }
+  return chunks;
+}
+
+BrickFileLayout CreateLayout(const ValueOrigin& from, const WriteOptions& options)
+{
+  BrickFileLayout layout;
+  layout.Geometry = from.GetGeometry();
+  layout.Pressed = options.Pressed;
+  layout.BrickEdge = options.BrickEdge != 0
+    ? options.BrickEdge
+    : rt::BrickLattice::GetDefaultEdge(from.GetArrays().front().Type);
+  if (layout.BrickEdge < 1 || layout.BrickEdge > rt::BrickLattice::LargestEdge)
+  {
+    throw dsm::Error("A brick has from 1 to " + std::to_string(rt::BrickLattice::LargestEdge) +
+      " cells along an axis, and not " + std::to_string(layout.BrickEdge) + ".");
+  }
+  for (FileArray array : from.GetArrays())
+  {
+    // HDF5's names of what lies in folders.
+    std::replace(array.Name.begin(), array.Name.end(), '/', '_');
+    array.Grid.ChunkSamples = glm::min(rt::Index3(layout.BrickEdge), array.Grid.Samples);
+    layout.Arrays.push_back(std::move(array));
+  }
+  return layout;
+}
+
+/// The points' samples of an array in a file.
+class FileSamples final : public rt::VoxelSource
+{
+public:
+  FileSamples(std::shared_ptr<const VolumeFile> file, std::size_t array, ChunkCache& cache)
+    : File(std::move(file))
+    , Array(array)
+    , Cache(cache)
+  {
+  }
+  rt::Box GetCells() const override
+  {
+    return { rt::Index3(0), this->File->GetGeometry().Points - rt::Index3(1) };
+  }
+  void ReadSamples(const rt::Box& points, std::byte* out) const override
+  {
+    this->Cache.ReadBox(this->File, this->Array, 0, points, out);
+  }
+
+private:
+  std::shared_ptr<const VolumeFile> File;
+  std::size_t Array;
+  ChunkCache& Cache;
+};
+
+/// Collective. What is to be known of the bricks of the arrays of a brick file, which is read once more for it; `ranges`
+/// of the arrays' values. Nothing of what the renderer makes no bricks of.
+std::vector<std::vector<std::byte>> FindIndices(const std::string& path,
+  const BrickFileLayout& layout, const std::vector<ValueRange>& ranges, const WriteOptions& options,
+  dsm::Messenger& messenger, const std::function<void(double)>& tell)
+{
+  const char* const what = "Looking through the bricks";
+  // It holds the file open, which cannot be written until no rank does.
+  ChunkCache cache(options.MemoryBytes / 2);
+  std::shared_ptr<const VolumeFile> file;
+  messenger.RunTogether(what, [&] { file = OpenHdf(path, ""); });
+  std::vector<std::vector<std::byte>> indices(layout.Arrays.size());
+  const rt::Index3& points = layout.Geometry.Points;
+  const bool hasCells = points.x > 1 && points.y > 1 && points.z > 1;
+  for (std::size_t number = 0; number < indices.size(); ++number)
+  {
+    const FileArray& array = layout.Arrays[number];
+    if (!hasCells || array.OnCells || array.Components != 1)
+    {
+      continue;
+    }
+    std::optional<rt::BrickLattice> lattice;
+    std::shared_ptr<const dsm::BlockReader> reader;
+    rt::VoxelIndex::Pass pass;
+    messenger.RunTogether(what,
+      [&]
+      {
+        const auto& arrays = file->GetArrays();
+        const auto found = std::find_if(arrays.begin(), arrays.end(),
+          [&](const FileArray& one) { return one.Name == array.Name && !one.OnCells; });
+        lattice.emplace(points, array.Type, false, layout.BrickEdge);
+        reader = std::make_shared<rt::VoxelBrickReader>(*lattice,
+          std::make_shared<FileSamples>(
+            file, static_cast<std::size_t>(found - arrays.begin()), cache));
+        pass.Order.resize(lattice->GetBrickCount());
+        std::iota(pass.Order.begin(), pass.Order.end(), dsm::BlockId(0));
+        pass.Guess =
+          rt::VoxelIndex::Round(array.Type, ranges[number].Least, ranges[number].Greatest);
+        pass.Threads = options.Threads;
+      });
+    const rt::VoxelIndex index = rt::VoxelIndex::Find(messenger, *lattice, *reader, pass,
+      [&](double part)
+      {
+        if (messenger.GetRank() == 0)
+        {
+          tell((static_cast<double>(number) + part) / static_cast<double>(indices.size()));
+        }
+      });
+    messenger.RunTogether(what, [&] { indices[number] = index.Encode(); });
+  }
+  return indices;
+}
+
+/// Collective. Adds the chunks of an array from `done` on; `writer` on rank 0.
+void WriteArray(ValueOrigin& from, const BrickFileLayout& layout, std::size_t array,
+  std::int64_t done, BrickFileWriter* writer, const WriteOptions& options,
+  dsm::Messenger& messenger, const std::function<void(double)>& tell)
+{
+  const char* const what = "Writing a brick file";
+  const FileArray& made = layout.Arrays[array];
+  std::optional<ChunkMaker> maker;
+  messenger.RunTogether(what, [&] { maker.emplace(from, layout, array); });
+  const std::int64_t count = made.Grid.GetCount();
+  const auto chunkBytes = static_cast<std::size_t>(
+    rt::Box{ rt::Index3(0), made.Grid.ChunkSamples }.GetCount() * made.GetSampleBytes());
+  const std::int64_t share =
+    std::max<std::int64_t>(1, static_cast<std::int64_t>(options.MemoryBytes / 8 / chunkBytes));
+  while (done < count)
+  {
+    const std::int64_t last = std::min(count, done + share);
+    std::vector<rt::Box> boxes;
+    messenger.RunTogether(what,
+      [&]
+      {
+        for (std::int64_t chunk = done; chunk < last; ++chunk)
+        {
+          boxes.push_back(maker->GetSource(chunk));
+        }
+      });
+    const std::vector<int> ranks = from.Deal(array, boxes);
+    const auto parts = messenger.GatherTogether(what,
+      [&]
+      {
+        std::vector<std::int64_t> mine;
+        for (std::int64_t chunk = done; chunk < last; ++chunk)
+        {
+          if (ranks[static_cast<std::size_t>(chunk - done)] == messenger.GetRank())
+          {
+            mine.push_back(chunk);
+          }
+        }
+        std::vector<NumberedChunk> chunks(mine.size());
+        std::vector<ValueRanges> ranges(
+          static_cast<std::size_t>(options.Threads), ValueRanges(made.Components));
+        rt::ParallelFor(options.Threads, mine.size(),
+          [&](std::size_t index, int thread)
+          { chunks[index] = maker->Make(mine[index], ranges[static_cast<std::size_t>(thread)]); });
+        for (const ValueRanges& part : ranges)
+        {
+          ranges.front().Add(part);
+        }
+        return ToBytes(chunks, ranges.front());
+      });
+    done = last;
+    messenger.RunTogether(what,
+      [&]
+      {
+        if (writer)
+        {
+          ValueRanges ranges(made.Components);
+          const std::vector<EncodedChunk> chunks = Merge(parts, ranges);
+          writer->Add(array, chunks, ranges);
+          tell(static_cast<double>(done) / static_cast<double>(count));
+        }
+      });
+  }
+}
+
+} // namespace
+
+void WriteBrickFile(std::unique_ptr<ValueOrigin> from, const std::string& path,
+  const WriteOptions& options, dsm::Messenger& messenger, const std::function<void(double)>& tell)
+{
+  const char* const what = "Writing a brick file";
+  BrickFileLayout layout;
+  std::optional<BrickFileWriter> writer;
+  std::vector<std::int64_t> begin;
+  messenger.RunTogether(what,
+    [&]
+    {
+      layout = CreateLayout(*from, options);
+      begin.assign(layout.Arrays.size(), 0);
+      if (messenger.GetRank() == 0)
+      {
+        writer.emplace(path, layout, from->Describe());
+        for (std::size_t array = 0; array < begin.size(); ++array)
+        {
+          begin[array] = writer->GetChunks(array);
+        }
+      }
+    });
+  // Writing first, then looking through the bricks.
+  const auto tellHalf = [&](double half, double part) { tell(0.5 * (half + part)); };
+  const auto arrays = static_cast<double>(begin.size());
+  for (std::size_t array = 0; array < begin.size(); ++array)
+  {
+    const std::int64_t done = messenger.AllGatherValue(begin[array]).front();
+    WriteArray(*from, layout, array, done, writer ? &*writer : nullptr, options, messenger,
+      [&](double part) { tellHalf(0.0, (static_cast<double>(array) + part) / arrays); });
+  }
+  from.reset(); // and its memory
+  std::vector<ValueRange> ranges(begin.size());
+  messenger.RunTogether(what,
+    [&]
+    {
+      if (writer)
+      {
+        for (std::size_t array = 0; array < ranges.size(); ++array)
+        {
+          ranges[array] = writer->GetRanges(array).Finite.front();
+        }
+        writer->Close();
+      }
+    });
+  for (ValueRange& range : ranges)
+  {
+    range = messenger.AllGatherValue(range).front();
+  }
+  const std::vector<std::vector<std::byte>> indices =
+    FindIndices(BrickFileWriter::GetPartPath(path), layout, ranges, options, messenger,
+      [&](double part) { tellHalf(1.0, part); });
+  messenger.Barrier();
+  messenger.RunTogether(what,
+    [&]
+    {
+      if (writer)
+      {
+        writer->Finish(indices);
+      }
+    });
+}
+
+} // namespace vol

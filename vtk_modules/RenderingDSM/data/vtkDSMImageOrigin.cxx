@@ -1,0 +1,337 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkDSMImageOrigin.h"
+
+#include "DSMCore/base/Error.h"
+#include "DSMVolumeFiles/base/CopyBox.h"
+#include "vtkDSMFileArray.h"
+#include "vtkDSMGather.h"
+#include "vtkDSMLatticePlan.h"
+#include "vtkDSMScalarType.h"
+
+#include "vtkCellData.h"
+#include "vtkImageData.h"
+#include "vtkMatrix3x3.h"
+#include "vtkPointData.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstring>
+
+namespace
+{
+
+bool IsInside(const rt::Box& box, const rt::Box& whole)
+{
+  return rt::Intersect(box, whole).GetCount() == box.GetCount();
+}
+
+std::vector<std::int64_t> GetKey(const rt::Box& box)
+{
+  return { box.Min.x, box.Min.y, box.Min.z };
+}
+
+/// An array of a piece, as ranks tell one another.
+struct ArrayNote
+{
+  std::int32_t Type;
+  std::int32_t Components;
+  std::int32_t OnCells;
+  char Name[116]; ///< longer names differ in their beginning, or are left out
+
+  bool operator==(const ArrayNote& other) const
+  {
+    return std::memcmp(this, &other, sizeof(ArrayNote)) == 0;
+  }
+};
+
+} // namespace
+
+struct vtkDSMImageOrigin::Piece
+{
+  vol::FileGeometry Geometry; ///< First and Points are the piece's
+};
+
+vtkDSMImageOrigin::vtkDSMImageOrigin(dsm::Messenger& messenger, vtkImageData* image)
+  : Messenger(messenger)
+{
+  const std::vector<Piece> pieces = this->GatherPieces(image);
+  this->GatherArrays(image, pieces);
+  messenger.RunTogether("Writing a volume", [&] { this->CheckCover(); });
+}
+
+std::vector<vtkDSMImageOrigin::Piece> vtkDSMImageOrigin::GatherPieces(vtkImageData* image)
+{
+  Piece mine;
+  if (image && image->GetNumberOfPoints() > 0)
+  {
+    int extent[6];
+    image->GetExtent(extent);
+    image->GetOrigin(mine.Geometry.Origin);
+    image->GetSpacing(mine.Geometry.Spacing);
+    std::copy_n(image->GetDirectionMatrix()->GetData(), 9, mine.Geometry.Direction);
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      mine.Geometry.First[axis] = extent[2 * axis];
+      mine.Geometry.Points[axis] = extent[2 * axis + 1] - extent[2 * axis] + 1;
+    }
+  }
+  const auto pieces = this->Messenger.GatherValueTogether("Writing a volume", [&] { return mine; });
+  const auto isThere = [](const Piece& piece) { return piece.Geometry.Points.x > 0; };
+  const auto first = std::find_if(pieces.begin(), pieces.end(), isThere);
+  if (first == pieces.end())
+  {
+    throw dsm::Error("There is nothing to write: the image has no points.");
+  }
+  this->Geometry = first->Geometry;
+  rt::Index3 end = this->Geometry.First + this->Geometry.Points;
+  for (const Piece& piece : pieces)
+  {
+    if (isThere(piece))
+    {
+      this->Geometry.First = glm::min(this->Geometry.First, piece.Geometry.First);
+      end = glm::max(end, piece.Geometry.First + piece.Geometry.Points);
+    }
+  }
+  this->Geometry.Points = end - this->Geometry.First;
+  for (const Piece& piece : pieces)
+  {
+    const rt::Index3 begin = piece.Geometry.First - this->Geometry.First;
+    const rt::Index3& points = piece.Geometry.Points;
+    this->PointsOfRanks.push_back(
+      isThere(piece) ? rt::Box{ begin, begin + points } : rt::Box{ rt::Index3(0), rt::Index3(0) });
+    // Flat images have one cell across, as VTK counts them.
+    const rt::Index3 cells = glm::max(points - rt::Index3(1), glm::min(points, rt::Index3(1)));
+    this->CellsOfRanks.push_back(
+      isThere(piece) ? rt::Box{ begin, begin + cells } : rt::Box{ rt::Index3(0), rt::Index3(0) });
+  }
+  return pieces;
+}
+
+void vtkDSMImageOrigin::GatherArrays(vtkImageData* image, const std::vector<Piece>& pieces)
+{
+  std::vector<ArrayNote> mine;
+  const auto note = [&](vtkDataSetAttributes* attributes, int onCells, vtkIdType tuples)
+  {
+    for (int index = 0; index < attributes->GetNumberOfArrays(); ++index)
+    {
+      const char* const name = attributes->GetArrayName(index);
+      vtkDataArray* const array = attributes->GetArray(index);
+      if (!name || std::strcmp(name, vtkDataSetAttributes::GhostArrayName()) == 0)
+      {
+        continue;
+      }
+      const bool isUsable = array && array->GetDataType() != VTK_BIT &&
+        array->GetNumberOfTuples() == tuples && std::strlen(name) < sizeof(ArrayNote::Name);
+      ArrayNote entry{};
+      entry.Type = isUsable ? static_cast<std::int32_t>(vtkDSMScalarType::FromArray(array)) : -1;
+      entry.Components = isUsable ? array->GetNumberOfComponents() : 0;
+      entry.OnCells = onCells;
+      std::strncpy(entry.Name, name, sizeof(entry.Name) - 1);
+      mine.push_back(entry);
+    }
+  };
+  const bool isThere = image && image->GetNumberOfPoints() > 0;
+  if (isThere)
+  {
+    note(image->GetPointData(), 0, image->GetNumberOfPoints());
+    note(image->GetCellData(), 1, image->GetNumberOfCells());
+  }
+  std::vector<std::vector<ArrayNote>> ofRanks;
+  for (const auto& bytes : this->Messenger.GatherTogether("Writing a volume",
+         [&]
+         {
+           std::vector<std::byte> bytes(mine.size() * sizeof(ArrayNote));
+           std::copy_n(reinterpret_cast<const std::byte*>(mine.data()), bytes.size(), bytes.data());
+           return bytes;
+         }))
+  {
+    std::vector<ArrayNote> notes(bytes.size() / sizeof(ArrayNote));
+    std::copy(bytes.begin(), bytes.end(), reinterpret_cast<std::byte*>(notes.data()));
+    ofRanks.push_back(std::move(notes));
+  }
+  std::size_t first = 0;
+  while (pieces[first].Geometry.Points.x == 0)
+  {
+    ++first;
+  }
+  rt::Index3 cells(1);
+  cells = glm::max(this->Geometry.Points - cells, cells);
+  for (const ArrayNote& wanted : ofRanks[first])
+  {
+    bool isEverywhere = wanted.Type >= 0;
+    for (std::size_t rank = 0; rank < pieces.size(); ++rank)
+    {
+      const std::vector<ArrayNote>& notes = ofRanks[rank];
+      isEverywhere = isEverywhere &&
+        (pieces[rank].Geometry.Points.x == 0 ||
+          std::find(notes.begin(), notes.end(), wanted) != notes.end());
+    }
+    if (!isEverywhere)
+    {
+      this->LeftOut.emplace_back(wanted.Name);
+      continue;
+    }
+    vol::FileArray array;
+    array.Name = wanted.Name;
+    array.Type = static_cast<rt::ScalarType>(wanted.Type);
+    array.Components = wanted.Components;
+    array.OnCells = wanted.OnCells != 0;
+    array.Grid.Samples = array.OnCells ? cells : this->Geometry.Points;
+    this->Arrays.push_back(array);
+    vtkDataSetAttributes* attributes = nullptr;
+    if (isThere)
+    {
+      attributes = image->GetPointData();
+      attributes = array.OnCells ? image->GetCellData() : attributes;
+    }
+    this->Values.emplace_back(attributes ? attributes->GetArray(wanted.Name) : nullptr);
+  }
+  if (this->Arrays.empty())
+  {
+    throw dsm::Error(
+      "There is nothing to write: no array of numbers is in every piece of the image.");
+  }
+}
+
+void vtkDSMImageOrigin::CheckCover() const
+{
+  for (std::size_t array = 0; array < this->Arrays.size(); ++array)
+  {
+    const rt::Box whole{ rt::Index3(0), this->Arrays[array].Grid.Samples };
+    if (!vtkDSMLatticePlan::IsCovered(whole, this->GetPieces(array)))
+    {
+      throw dsm::Error("The array '" + this->Arrays[array].Name +
+        "' cannot be written: the pieces of the image leave out a part of the box around them. "
+        "Apply Resample To Image first.");
+    }
+  }
+}
+
+std::string vtkDSMImageOrigin::Describe() const
+{
+  const auto now = std::chrono::system_clock::now().time_since_epoch();
+  return "values of process " + std::to_string(getpid()) + " at " + std::to_string(now.count());
+}
+
+std::vector<int> vtkDSMImageOrigin::Deal(std::size_t array, const std::vector<rt::Box>& boxes)
+{
+  const char* const what = "Writing a volume";
+  const std::vector<rt::Box>& pieces = this->GetPieces(array);
+  const std::size_t sampleBytes = this->Arrays[array].GetSampleBytes();
+  const int rank = this->Messenger.GetRank();
+  std::vector<int> dealt;
+  std::vector<std::size_t> shared;
+  // Of a box that lies in no piece, every rank tells what it has.
+  const auto parts = this->Messenger.GatherTogether(what,
+    [&]
+    {
+      this->Gathered.clear();
+      std::vector<std::byte> mine;
+      for (std::size_t box = 0; box < boxes.size(); ++box)
+      {
+        std::vector<int> owners;
+        for (std::size_t one = 0; one < pieces.size(); ++one)
+        {
+          if (IsInside(boxes[box], pieces[one]))
+          {
+            owners.push_back(static_cast<int>(one));
+          }
+        }
+        if (!owners.empty())
+        {
+          dealt.push_back(owners[box % owners.size()]);
+          continue;
+        }
+        dealt.push_back(static_cast<int>(box % pieces.size()));
+        shared.push_back(box);
+        const rt::Box own = rt::Intersect(boxes[box], pieces[static_cast<std::size_t>(rank)]);
+        if (!own.IsEmpty())
+        {
+          const std::size_t first = mine.size();
+          mine.resize(first + static_cast<std::size_t>(own.GetCount()) * sampleBytes);
+          this->Copy(array, own, &mine[first]);
+        }
+      }
+      return mine;
+    });
+  this->Messenger.RunTogether(what,
+    [&]
+    {
+      std::vector<std::size_t> at(parts.size(), 0);
+      for (const std::size_t box : shared)
+      {
+        std::vector<std::byte>* const whole =
+          dealt[box] == rank ? &this->Gathered[GetKey(boxes[box])] : nullptr;
+        if (whole)
+        {
+          whole->resize(static_cast<std::size_t>(boxes[box].GetCount()) * sampleBytes);
+        }
+        for (std::size_t one = 0; one < parts.size(); ++one)
+        {
+          const rt::Box part = rt::Intersect(boxes[box], pieces[one]);
+          if (part.IsEmpty())
+          {
+            continue;
+          }
+          if (whole)
+          {
+            vol::CopyBox(
+              part, parts[one].data() + at[one], part, whole->data(), boxes[box], sampleBytes);
+          }
+          at[one] += static_cast<std::size_t>(part.GetCount()) * sampleBytes;
+        }
+      }
+    });
+  return dealt;
+}
+
+void vtkDSMImageOrigin::Read(std::size_t array, const rt::Box& box, std::byte* out) const
+{
+  const auto gathered = this->Gathered.find(GetKey(box));
+  if (gathered == this->Gathered.end())
+  {
+    this->Copy(array, box, out);
+    return;
+  }
+  std::copy(gathered->second.begin(), gathered->second.end(), out);
+}
+
+void vtkDSMImageOrigin::Copy(std::size_t array, const rt::Box& box, std::byte* out) const
+{
+  vtkDataArray* const values = this->Values[array];
+  const rt::Box& piece =
+    this->GetPieces(array)[static_cast<std::size_t>(this->Messenger.GetRank())];
+  const std::size_t sampleBytes = this->Arrays[array].GetSampleBytes();
+  if (const vtkDSMFileValues* const file = vtkDSMGetFileValues(values))
+  {
+    file->ReadBox({ box.Min - piece.Min, box.Max - piece.Min }, out);
+    return;
+  }
+  if (values->HasStandardMemoryLayout())
+  {
+    vol::CopyBox(
+      box, static_cast<const std::byte*>(values->GetVoidPointer(0)), piece, out, box, sampleBytes);
+    return;
+  }
+  const std::lock_guard<std::mutex> lock(this->Lock);
+  vtkSmartPointer<vtkDataArray> row;
+  row.TakeReference(vtkDataArray::CreateDataArray(values->GetDataType()));
+  row->SetNumberOfComponents(values->GetNumberOfComponents());
+  const rt::Index3 size = piece.GetSize();
+  const rt::Index3 count = box.GetSize();
+  row->SetNumberOfTuples(count.x);
+  const std::size_t rowBytes = static_cast<std::size_t>(count.x) * sampleBytes;
+  for (std::int64_t z = box.Min.z; z < box.Max.z; ++z)
+  {
+    for (std::int64_t y = box.Min.y; y < box.Max.y; ++y)
+    {
+      const std::int64_t first =
+        ((z - piece.Min.z) * size.y + (y - piece.Min.y)) * size.x + (box.Min.x - piece.Min.x);
+      values->GetTuples(first, first + count.x - 1, row);
+      std::memcpy(out, row->GetVoidPointer(0), rowBytes);
+      out += rowBytes;
+    }
+  }
+}

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef vtkDSMImageOrigin_h
+#define vtkDSMImageOrigin_h
+
+#include "DSMCore/transport/Messenger.h"
+#include "DSMVolumeFiles/write/ValueOrigin.h"
+
+#include "vtkDataArray.h"
+#include "vtkSmartPointer.h"
+
+#include <map>
+#include <mutex>
+#include <string>
+#include <vector>
+
+class vtkImageData;
+
+/// The arrays of an image of which each rank has a piece. Pieces may overlap: what is in several is taken from any of
+/// them. What is read lies in one piece, or is gathered from all that have something of it.
+class vtkDSMImageOrigin final : public vol::ValueOrigin
+{
+public:
+  /// Collective. `image`: this rank's piece, which must not change as long as this lives; null or empty: none. Throws
+  /// dsm::Error, on every rank, when no rank has anything, when pieces leave something out, or when no array is in all.
+  vtkDSMImageOrigin(dsm::Messenger& messenger, vtkImageData* image);
+
+  const vol::FileGeometry& GetGeometry() const override { return this->Geometry; }
+  const std::vector<vol::FileArray>& GetArrays() const override { return this->Arrays; }
+  /// Of no other process's: values in memory are gone with it.
+  std::string Describe() const override;
+  std::vector<int> Deal(std::size_t array, const std::vector<rt::Box>& boxes) override;
+  void Read(std::size_t array, const rt::Box& box, std::byte* out) const override;
+
+  /// Names of arrays that are left out: not numbers, or not the same in all pieces.
+  const std::vector<std::string>& GetLeftOut() const { return this->LeftOut; }
+
+private:
+  struct Piece;
+  /// Collective.
+  std::vector<Piece> GatherPieces(vtkImageData* image);
+  /// Collective.
+  void GatherArrays(vtkImageData* image, const std::vector<Piece>& pieces);
+  void CheckCover() const;
+  /// Of this rank's piece.
+  void Copy(std::size_t array, const rt::Box& box, std::byte* out) const;
+
+  /// Which of an array's samples each rank has; counted from the whole image's first.
+  const std::vector<rt::Box>& GetPieces(std::size_t array) const
+  {
+    return this->Arrays[array].OnCells ? this->CellsOfRanks : this->PointsOfRanks;
+  }
+
+  dsm::Messenger& Messenger;
+  vol::FileGeometry Geometry;
+  std::vector<vol::FileArray> Arrays;
+  std::vector<std::string> LeftOut;
+  std::vector<vtkSmartPointer<vtkDataArray>> Values; ///< of this rank's piece; null without one
+  std::vector<rt::Box> PointsOfRanks;
+  std::vector<rt::Box> CellsOfRanks;
+  /// Boxes of which no piece has all, that were dealt to this rank, by their first sample.
+  std::map<std::vector<std::int64_t>, std::vector<std::byte>> Gathered;
+  mutable std::mutex Lock; ///< of arrays that compute what they are asked for
+};
+
+#endif

@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkDSMVolumeWriter.h"
+
+#include "DSMCore/base/Error.h"
+#include "DSMVolumeFiles/write/WriteBrickFile.h"
+#include "vtkDSMImageOrigin.h"
+#include "vtkDSMRankGroup.h"
+
+#include "vtkErrorCode.h"
+#include "vtkImageData.h"
+#include "vtkInformation.h"
+#include "vtkInformationVector.h"
+#include "vtkMultiProcessController.h"
+#include "vtkObjectFactory.h"
+#include "vtkStreamingDemandDrivenPipeline.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <memory>
+
+vtkStandardNewMacro(vtkDSMVolumeWriter);
+
+namespace
+{
+
+vol::Compression ToCompression(int value)
+{
+  switch (value)
+  {
+    case vtkDSMVolumeWriter::DEFLATE:
+      return vol::Compression::Deflate;
+    case vtkDSMVolumeWriter::ZSTANDARD:
+      return vol::Compression::Zstd;
+    default:
+      return vol::Compression::None;
+  }
+}
+
+} // namespace
+
+vtkDSMVolumeWriter::vtkDSMVolumeWriter()
+  : Controller(vtkMultiProcessController::GetGlobalController())
+{
+}
+
+vtkDSMVolumeWriter::~vtkDSMVolumeWriter() = default;
+
+void vtkDSMVolumeWriter::SetFileName(const char* name)
+{
+  const std::string wanted = name ? name : "";
+  if (wanted != this->FileName)
+  {
+    this->FileName = wanted;
+    this->Modified();
+  }
+}
+
+const char* vtkDSMVolumeWriter::GetFileName() const
+{
+  return this->FileName.c_str();
+}
+
+void vtkDSMVolumeWriter::SetCompression(int compression)
+{
+  const int wanted = std::clamp<int>(compression, NONE, ZSTANDARD);
+  if (wanted != this->Compression)
+  {
+    this->Compression = wanted;
+    this->Modified();
+  }
+}
+
+void vtkDSMVolumeWriter::SetController(vtkMultiProcessController* controller)
+{
+  if (controller != this->Controller)
+  {
+    this->Controller = controller;
+    this->Modified();
+  }
+}
+
+vtkMultiProcessController* vtkDSMVolumeWriter::GetController() const
+{
+  return this->Controller;
+}
+
+int vtkDSMVolumeWriter::Write()
+{
+  this->SetErrorCode(vtkErrorCode::NoError);
+  this->Superclass::Write();
+  return this->GetErrorCode() == vtkErrorCode::NoError ? 1 : 0;
+}
+
+int vtkDSMVolumeWriter::FillInputPortInformation(int, vtkInformation* info)
+{
+  info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkImageData");
+  return 1;
+}
+
+vtkTypeBool vtkDSMVolumeWriter::ProcessRequest(
+  vtkInformation* request, vtkInformationVector** input, vtkInformationVector* output)
+{
+  if (request->Has(vtkStreamingDemandDrivenPipeline::REQUEST_UPDATE_EXTENT()) && this->Controller)
+  {
+    vtkInformation* const info = input[0]->GetInformationObject(0);
+    using Pipeline = vtkStreamingDemandDrivenPipeline;
+    info->Set(Pipeline::UPDATE_PIECE_NUMBER(), this->Controller->GetLocalProcessId());
+    info->Set(Pipeline::UPDATE_NUMBER_OF_PIECES(), this->Controller->GetNumberOfProcesses());
+    info->Set(Pipeline::UPDATE_NUMBER_OF_GHOST_LEVELS(), 0);
+    return 1;
+  }
+  return this->Superclass::ProcessRequest(request, input, output);
+}
+
+void vtkDSMVolumeWriter::WriteData()
+{
+  try
+  {
+    if (this->FileName.empty())
+    {
+      throw dsm::Error("The file to write has no name. Set FileName.");
+    }
+    const auto group = vtkDSMRankGroup::Get(this->Controller);
+    dsm::Messenger& messenger = group->GetMessenger();
+    auto origin =
+      std::make_unique<vtkDSMImageOrigin>(messenger, vtkImageData::SafeDownCast(this->GetInput()));
+    if (!origin->GetLeftOut().empty() && messenger.GetRank() == 0)
+    {
+      std::string names;
+      for (const std::string& name : origin->GetLeftOut())
+      {
+        names += (names.empty() ? "'" : ", '") + name + "'";
+      }
+      vtkWarningMacro("Left out of '" << this->FileName << "': " << names
+                                      << ", which are not arrays of numbers that are the same in "
+                                         "every piece of the image.");
+    }
+    vol::WriteOptions options;
+    options.Pressed = ToCompression(this->Compression);
+    options.Threads = messenger.GetCoresPerRank();
+    const std::uint64_t limit = group->GetStore().GetSettings().MemoryBytes;
+    options.MemoryBytes = limit == 0
+      ? options.MemoryBytes
+      : static_cast<std::size_t>(std::min<std::uint64_t>(limit, options.MemoryBytes));
+    vol::WriteBrickFile(std::move(origin), this->FileName, options, messenger,
+      [this](double part) { this->UpdateProgress(part); });
+  }
+  catch (const std::exception& error)
+  {
+    // Nobody can go on with it.
+    const std::string part = vol::BrickFileWriter::GetPartPath(this->FileName);
+    std::remove(part.c_str());
+    std::remove((part + ".json").c_str());
+    vtkErrorMacro(<< error.what());
+    this->SetErrorCode(vtkErrorCode::UserError);
+  }
+}
+
+void vtkDSMVolumeWriter::PrintSelf(ostream& os, vtkIndent indent)
+{
+  this->Superclass::PrintSelf(os, indent);
+  os << indent << "FileName: " << this->FileName << endl;
+  os << indent << "Compression: " << this->Compression << endl;
+  os << indent << "Controller: " << this->Controller << endl;
+}
