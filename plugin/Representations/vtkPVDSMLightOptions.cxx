@@ -31,7 +31,7 @@ void vtkPVDSMLightOptions::SetAmbientOcclusionDistance(double distance)
 
 void vtkPVDSMLightOptions::SetLook(int look)
 {
-  this->Superclass::SetLook(look);
+  this->Superclass::SetLook(look == AutomaticLook ? PlainLook : look);
 }
 
 void vtkPVDSMLightOptions::SetEnvironmentLight(double strength)

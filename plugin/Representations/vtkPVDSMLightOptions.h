@@ -25,7 +25,6 @@ public:
   void SetLightRadius(double radius) override;
   void SetAmbientOcclusionSamples(int samples) override;
   void SetAmbientOcclusionDistance(double distance) override;
-  void SetLook(int look) override;
   void SetEnvironmentLight(double strength) override;
   void SetReflectivity(double part) override;
   void SetMaxBounces(int bounces) override;
@@ -33,6 +32,12 @@ public:
   void SetShowLegend(bool show) override;
   void SetShowStatistics(bool show) override;
   ///@}
+
+  /**
+   * Of what nobody has chosen a look for: the settings page gives it one where there is a page; else it is plain.
+   */
+  static constexpr int AutomaticLook = 2;
+  void SetLook(int look) override;
 
   /**
    * Samples of each pixel, rounded: ParaView's slider of choices is for floating point numbers only.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkPVDSMSharedOptions.h"
 
+#include "vtkPVDSMOldStates.h"
 #include "vtkPVDSMProxyFinder.h"
 
 #include "vtkCallbackCommand.h"
@@ -110,6 +111,10 @@ void vtkPVDSMSharedOptions::Join(vtkPVRenderView* view, vtkObjectBase* light, vt
     shared = Registry::Make(view, CreateValues(lightProxy), lightProxy, { "DSMReflectivity" });
   }
   vtkSMSessionProxyManager* manager = lightProxy->GetSessionProxyManager();
+  if (manager->GetInLoadXMLState())
+  {
+    vtkPVDSMOldStates::Watch(manager);
+  }
   shared->Add(lightProxy, manager->GetInLoadXMLState());
 
   vtkSMSession* session = memoryProxy->GetSession();
