@@ -106,7 +106,20 @@ note(
     direction=[0.0, -1.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0],
 )
 
-# Zarr, version 2.
+# Zarr, version 2, by either version of its library.
+LATER = {} if hasattr(zarr, "DirectoryStore") else {"zarr_format": 2}
+
+
+def save_zarr(name, data, separator=".", compressor="default", **options):
+    if LATER:
+        encoding = {"name": "v2", "separator": separator}
+        compressor = "auto" if compressor == "default" else compressor
+        zarr.create_array(path(name), data=data, compressors=compressor, chunk_key_encoding=encoding, **LATER, **options)
+        return
+    store = zarr.DirectoryStore(path(name), dimension_separator=separator)
+    zarr.save_array(store, data, compressor=compressor, dimension_separator=separator, **options)
+
+
 compressors = {
     "raw": None,
     "blosc_lz4": Blosc("lz4", shuffle=Blosc.SHUFFLE),
@@ -118,37 +131,29 @@ compressors = {
 for name, compressor in compressors.items():
     for dtype, separator in (("<f4", "."), (">u2", "/")):
         file = f"{name}_{np.dtype(dtype).name}.zarr"
-        zarr.save_array(
-            zarr.DirectoryStore(path(file), dimension_separator=separator),
-            values(dtype),
-            chunks=(4, 5, 8),
-            compressor=compressor,
-            dimension_separator=separator,
-        )
+        save_zarr(file, values(dtype), separator, compressor, chunks=(4, 5, 8))
         note(file, [(file[: -len(".zarr")], np.dtype(dtype).name)])
-zarr.save_array(
-    path("shuffled.zarr"), values("<f8"), chunks=(4, 5, 8), filters=[Shuffle(8)], compressor=Zlib()
-)
+save_zarr("shuffled.zarr", values("<f8"), compressor=Zlib(), chunks=(4, 5, 8), filters=[Shuffle(8)])
 note("shuffled.zarr", [("shuffled", "float64")])
-group = zarr.open_group(path("group.zarr"), "w")
-group.create_dataset("a", data=values("|u1"), chunks=(10, 13, 21))
-group.create_dataset("b", data=values("<f4", channel=2), chunks=(4, 5, 8))
-group.create_dataset("line", data=np.arange(4))
+zarr.open_group(path("group.zarr"), mode="w", **LATER)
+save_zarr("group.zarr/a", values("|u1"), chunks=(10, 13, 21))
+save_zarr("group.zarr/b", values("<f4", channel=2), chunks=(4, 5, 8))
+save_zarr("group.zarr/line", np.arange(4), chunks=(4,))
 note("group.zarr", [("a", "uint8"), ("b", "float32", 1, 2)])
 hole = zarr.open_array(
-    path("holes.zarr"), "w", shape=SIZE[::-1], chunks=(4, 5, 8), dtype="<f4", fill_value=42.0
+    path("holes.zarr"), mode="w", shape=SIZE[::-1], chunks=(4, 5, 8), dtype="<f4", fill_value=42.0, **LATER
 )
 hole[0:4, 0:5, 0:8] = values("<f4")[0:4, 0:5, 0:8]
 note("holes.zarr", [("holes", "float32")], fill=42.0, filled=[8, 5, 4])
 
 # OME-Zarr: two channels, three times, two scales.
-group = zarr.open_group(path("ome.zarr"), "w")
+group = zarr.open_group(path("ome.zarr"), mode="w", **LATER)
 full = np.stack(
     [np.stack([values("<u2", channel=k, step=t) for k in range(2)]) for t in range(3)]
 )
-group.create_dataset("0", data=full, chunks=(1, 2, 4, 5, 8), dimension_separator="/")
+save_zarr("ome.zarr/0", full, "/", chunks=(1, 2, 4, 5, 8))
 coarse = full[..., ::2, ::2, ::2]
-group.create_dataset("1", data=coarse, chunks=(3, 1, 5, 7, 11), dimension_separator="/")
+save_zarr("ome.zarr/1", coarse, "/", chunks=(3, 1, 5, 7, 11))
 axes = [{"name": "t", "type": "time"}, {"name": "c", "type": "channel"}]
 axes += [{"name": name, "type": "space"} for name in "zyx"]
 scales = [[1, 1, 4, 2, 1], [1, 1, 8, 4, 2]]
@@ -173,7 +178,7 @@ note(
 )
 
 
-# Zarr, version 3, which Debian's zarr cannot write: by hand, after the specification.
+# Zarr, version 3, which zarr 2 cannot write: by hand, after the specification.
 def write_version3(name, codecs, chunk, shard=None):
     data = values("<f4")
     os.makedirs(path(name))
@@ -306,7 +311,7 @@ z, y, x = np.meshgrid(*(np.linspace(-1, 1, n) for n in reversed(edges)), indexin
 ball = np.sqrt(x * x + y * y + z * z).astype("<f4")
 with h5py.File(path("ball.h5"), "w") as file:
     file.create_dataset("f", data=ball, chunks=(16, 10, 13), compression="gzip", shuffle=True)
-zarr.save_array(path("ball.zarr"), ball, chunks=(9, 40, 20), compressor=Blosc("zstd"))
+save_zarr("ball.zarr", ball, compressor=Blosc("zstd"), chunks=(9, 40, 20))
 image = vtkImageData()
 image.SetDimensions(*edges)
 image.GetPointData().SetScalars(numpy_to_vtk(ball.ravel(), deep=True))

@@ -126,7 +126,7 @@ image.GetPointData().AddArray(shades)
 cells = image_source(CELLS)
 blocks = simple.GroupDatasets(Input=[image_source(CELLS, (0, 12, 0, 24, 0, 24)),
                                      image_source(CELLS, (12, 24, 0, 24, 0, 24))])
-ghosts = simple.GhostCellsGenerator(Input=cells)
+ghosts = (getattr(simple, "GhostCells", None) or simple.GhostCellsGenerator)(Input=cells)
 
 
 def color_plainly(display, array, place, mapped):

@@ -49,7 +49,8 @@ for source, own in (
         check(widget in widgets, f"{source.GetXMLName()}: there is a widget in the view, {widget}")
         for function in functions + ("Input",):
             check(widgets[widget].GetProperty(function) is not None, f"which knows its {function}")
-    hidden = [name for name in names if "DSM" in name and "DSM" in (proxy.GetProperty(name).GetXMLLabel() or "")]
+    shown = [name for name in names if proxy.GetProperty(name).GetPanelVisibility() != "never"]
+    hidden = [name for name in shown if "DSM" in name and "DSM" in (proxy.GetProperty(name).GetXMLLabel() or "")]
     check(hidden == [], f"nobody has to know what DSM means: {hidden}")
     labels = [proxy.GetPropertyGroup(number).GetXMLLabel() or "" for number in range(proxy.GetNumberOfPropertyGroups())]
     check(not any("DSM" in label for label in labels), f"groups have names in ParaView's words: {labels}")
