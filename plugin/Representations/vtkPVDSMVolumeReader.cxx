@@ -13,6 +13,16 @@ void vtkPVDSMVolumeReader::SetFileName(const char* name)
   this->Superclass::SetFileName(name);
 }
 
+void vtkPVDSMVolumeReader::AddFileName(const char* name)
+{
+  this->Superclass::AddFileName(name);
+}
+
+void vtkPVDSMVolumeReader::RemoveAllFileNames()
+{
+  this->Superclass::RemoveAllFileNames();
+}
+
 int vtkPVDSMVolumeReader::CanReadFile(const char* name)
 {
   return this->Superclass::CanReadFile(name);

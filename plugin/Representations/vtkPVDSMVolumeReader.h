@@ -22,6 +22,8 @@ public:
    * the plugin's own classes.
    */
   void SetFileName(const char* name) override;
+  void AddFileName(const char* name) override;
+  void RemoveAllFileNames() override;
   int CanReadFile(const char* name) override;
   vtkDataArraySelection* GetPointDataArraySelection() override;
   vtkDataArraySelection* GetCellDataArraySelection() override;

@@ -17,6 +17,7 @@ from numcodecs import Blosc, GZip, Shuffle, Zlib, Zstd
 from vtkmodules.util.numpy_support import numpy_to_vtk
 from vtkmodules.vtkCommonDataModel import vtkImageData
 from vtkmodules.vtkIOImage import vtkMetaImageWriter
+from vtkmodules.vtkIOXML import vtkXMLImageDataWriter
 
 SIZE = (21, 13, 10)  # x, y, z
 BZIP2, BLOSC = 307, 32001
@@ -105,6 +106,42 @@ note(
     spacing=[0.5, 0.25, 2.0],
     direction=[0.0, -1.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0],
 )
+
+# Time steps in one file.
+stacked = np.stack([values("<f4", step=t) for t in range(3)])
+with h5py.File(path("steps.h5"), "w") as file:
+    file.create_dataset("f", data=stacked, chunks=(2, 4, 5, 8), compression="gzip")
+    file.create_dataset("whole", data=stacked)
+note("steps.h5", [("f", "float32"), ("whole", "float32")], steps=3)
+with h5py.File(path("steps_vectors.h5"), "w") as file:
+    vectors = np.stack([values("<i2", 3, step=t) for t in range(4)])
+    file.create_dataset("v", data=vectors, chunks=(1, 4, 5, 8, 3))
+    file.create_dataset("by_library", data=vectors, chunks=(2, 4, 5, 8, 1))
+note("steps_vectors.h5", [("by_library", "int16", 3), ("v", "int16", 3)], steps=4)
+
+
+def write_steps(name, times, arrays, size):
+    """VTKHDF; arrays: name, values of the frames, and of each step its frame, or None."""
+    with h5py.File(path(name), "w") as file:
+        group = file.create_group("VTKHDF")
+        group.attrs["Version"] = [2, 0]
+        group.attrs["Type"] = np.bytes_("ImageData")
+        group.attrs["WholeExtent"] = [limit for n in size for limit in (0, n - 1)]
+        group.attrs["Origin"] = [0.0, 0.0, 0.0]
+        group.attrs["Spacing"] = [1.0, 1.0, 1.0]
+        group.attrs["Direction"] = [1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0]
+        steps = group.create_group("Steps")
+        steps.attrs["NSteps"] = len(times)
+        steps["Values"] = np.array(times, "<f8")
+        for array, frames, offsets in arrays:
+            group.create_dataset(f"PointData/{array}", data=frames, chunks=(1, 4, 5, 8))
+            if offsets:
+                steps[f"PointDataOffsets/{array}"] = offsets
+
+
+swapped = stacked[[1, 0, 2]]
+write_steps("steps.vtkhdf", [0.5, 1.0, 4.0], [("f", swapped, [1, 0, 2]), ("g", stacked, None)], SIZE)
+note("steps.vtkhdf", [("f", "float32"), ("g", "float32")], steps=3)
 
 # Zarr, version 2, by either version of its library.
 LATER = {} if hasattr(zarr, "DirectoryStore") else {"zarr_format": 2}
@@ -320,6 +357,21 @@ writer.SetInputData(image)
 writer.SetCompression(False)
 writer.SetFileName(path("ball.mha"))
 writer.Write()
+
+# A ball that changes with time: files of four steps, and one of all.
+steps = [(ball * (1 + 0.2 * t) + 0.05 * t * x).astype("<f4") for t in range(4)]
+for number, step in enumerate(steps):
+    step.tofile(path(f"play_{number:03}.bin"))
+    with open(path(f"play_{number:03}.nhdr"), "w", encoding="utf-8") as header:
+        header.write("NRRD0004\ntype: float\ndimension: 3\nsizes: {} {} {}\n".format(*edges))
+        header.write(f"endian: little\nencoding: raw\ndata file: play_{number:03}.bin\n")
+    image.GetPointData().SetScalars(numpy_to_vtk(step.ravel(), deep=True))
+    image.GetPointData().GetScalars().SetName("values")
+    writer = vtkXMLImageDataWriter()
+    writer.SetInputData(image)
+    writer.SetFileName(path(f"play_{number:03}.vti"))
+    writer.Write()
+write_steps("play.vtkhdf", [0.0, 1.0, 2.0, 3.0], [("values", np.stack(steps), None)], edges)
 
 with open(path("manifest.json"), "w", encoding="utf-8") as file:
     json.dump(entries, file, indent=1)

@@ -22,11 +22,33 @@
 #include <string>
 #include <vector>
 
+#include <fcntl.h>
 #include <stdlib.h>
+#include <sys/mman.h>
 #include <unistd.h>
 
 namespace
 {
+
+/// Pages of a file in the system's cache, which drops them first where it is asked to.
+std::ptrdiff_t CountPages(const std::string& path, bool drop)
+{
+  const int file = open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  const auto bytes = static_cast<std::size_t>(std::filesystem::file_size(path));
+  if (drop)
+  {
+    fsync(file);
+    posix_fadvise(file, 0, 0, POSIX_FADV_DONTNEED);
+  }
+  void* const memory = mmap(nullptr, bytes, PROT_READ, MAP_SHARED, file, 0);
+  const auto page = static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
+  std::vector<unsigned char> states((bytes + page - 1) / page);
+  mincore(memory, bytes, states.data());
+  munmap(memory, bytes);
+  close(file);
+  return std::count_if(
+    states.begin(), states.end(), [](unsigned char state) { return (state & 1) != 0; });
+}
 
 constexpr int Edge = 96;
 constexpr int Size = 200;
@@ -132,6 +154,68 @@ TEST_F(VolumeFile, DamagedIndexIsMadeAgain)
   const vtkTypeUInt64 before = vtkDSMVolumeReader::GetBytesRead();
   EXPECT_EQ(this->Render(), first);
   EXPECT_GE(vtkDSMVolumeReader::GetBytesRead() - before, FileBytes);
+}
+
+/// While a step is shown, what it needs is fetched of the next one, in the direction that time has.
+TEST_F(VolumeFile, PlayingFetchesTheNextStep)
+{
+  std::vector<std::string> paths;
+  for (int step = 0; step < 4; ++step)
+  {
+    paths.push_back((this->Folder / ("ball" + std::to_string(step) + ".raw")).string());
+    std::filesystem::copy_file(this->Folder / "ball.raw", paths.back());
+  }
+  if (CountPages(paths[2], true) > 0)
+  {
+    GTEST_SKIP() << "the system keeps all files of this folder in memory";
+  }
+  vtkNew<vtkRenderer> renderer;
+  vtkNew<vtkRenderWindow> window;
+  window->SetOffScreenRendering(1);
+  window->SetSize(Size, Size);
+  window->AddRenderer(renderer);
+  const auto scene = vtkDSMScene::ForRenderer(renderer);
+  vtkNew<vtkDSMVolumeReader> reader;
+  for (const std::string& path : paths)
+  {
+    reader->AddFileName(path.c_str());
+  }
+  reader->SetRawDimensions(Edge, Edge, Edge);
+  reader->SetRawScalarType(VTK_FLOAT);
+  vtkNew<vtkDSMVolumeMapper> mapper;
+  mapper->SetInputConnection(reader->GetOutputPort());
+  mapper->SetIsoArray("values");
+  mapper->SetIsoValue(0, 0.15);
+  vtkNew<vtkVolume> volume;
+  volume->SetMapper(mapper);
+  renderer->AddVolume(volume);
+  const auto play = [&](int step)
+  {
+    reader->UpdateTimeStep(step);
+    renderer->ResetCamera();
+    window->Render();
+  };
+  const auto isFetched = [&](int step)
+  {
+    std::ptrdiff_t pages = 0;
+    for (int wait = 0; pages == 0 && wait < 50; ++wait)
+    {
+      pages = CountPages(paths[static_cast<std::size_t>(step)], false);
+      usleep(pages == 0 ? 100000 : 0);
+    }
+    return pages > 0;
+  };
+  CountPages(paths[1], true);
+  play(0);
+  EXPECT_EQ(CountPages(paths[1], false), 0) << "nothing for who looks at one step";
+  CountPages(paths[2], true);
+  play(1);
+  EXPECT_TRUE(isFetched(2));
+  play(3);
+  CountPages(paths[0], true);
+  play(2);
+  play(1);
+  EXPECT_TRUE(isFetched(0)) << "backwards";
 }
 
 } // namespace

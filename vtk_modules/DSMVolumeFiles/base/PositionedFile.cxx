@@ -101,4 +101,11 @@ void PositionedFile::Read(std::uint64_t offset, std::byte* out, std::size_t byte
   this->CheckUnchanged();
 }
 
+void PositionedFile::Foresee(std::uint64_t offset, std::size_t bytes) const
+{
+  // A hint: where the system does not take it, nothing is lost.
+  posix_fadvise(
+    this->Descriptor, static_cast<off_t>(offset), static_cast<off_t>(bytes), POSIX_FADV_WILLNEED);
+}
+
 } // namespace vol

@@ -30,6 +30,9 @@ public:
   /// fewer, when reading fails, or when the file was written to since it was opened.
   void Read(std::uint64_t offset, std::byte* out, std::size_t bytes) const;
 
+  /// The system may read them to its own cache already; does not wait for it.
+  void Foresee(std::uint64_t offset, std::size_t bytes) const;
+
 private:
   void CheckUnchanged() const;
 

@@ -103,8 +103,28 @@ public:
     return true;
   }
 
+  void Foresee(std::size_t, int, const rt::Index3& chunk) const override
+  {
+    const FileArray& array = this->Arrays.front();
+    ForEachRun(array, array.Grid.GetBox(chunk),
+      [&](std::uint64_t before, std::size_t bytes)
+      { this->File->Foresee(this->First + before, bytes); });
+  }
+
 private:
   void ReadRows(const FileArray& array, const rt::Box& box, std::byte* out) const
+  {
+    ForEachRun(array, box,
+      [&](std::uint64_t before, std::size_t bytes)
+      {
+        this->File->Read(this->First + before, out, bytes);
+        out += bytes;
+      });
+  }
+
+  /// Calls `use` with first byte and number of bytes, counted from the first value, of all that is in one piece.
+  template <class Use>
+  static void ForEachRun(const FileArray& array, const rt::Box& box, const Use& use)
   {
     const rt::Index3 samples = array.Grid.Samples;
     const rt::Index3 size = box.GetSize();
@@ -116,8 +136,7 @@ private:
       for (std::int64_t y = box.Min.y; y < box.Max.y; y += rows)
       {
         const auto before = static_cast<std::uint64_t>((z * samples.y + y) * samples.x + box.Min.x);
-        this->File->Read(this->First + before * array.GetSampleBytes(), out, bytes);
-        out += bytes;
+        use(before * array.GetSampleBytes(), bytes);
       }
     }
   }

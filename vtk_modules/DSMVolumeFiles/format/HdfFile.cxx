@@ -33,6 +33,41 @@ std::vector<hsize_t> GetShape(hid_t dataset)
   return shape;
 }
 
+/// The axes of a dataset that holds a volume.
+struct Axes
+{
+  hsize_t Frames = 0; ///< along a first axis of time; 0: it has none
+  rt::Index3 Samples{ 0 };
+  hsize_t Components = 0; ///< along a last axis; 0: it has none
+
+  std::size_t GetBeforeSpace() const { return this->Frames > 0 ? 1 : 0; }
+  bool operator==(const Axes& other) const
+  {
+    return this->Frames == other.Frames && this->Samples == other.Samples;
+  }
+
+  /// Three are z, y and x. Of four, the last has components where it is short, and `inSteps` does not say that the
+  /// first is time. Of five, both. False for what is no volume.
+  bool Find(hid_t dataset, bool inSteps)
+  {
+    const std::vector<hsize_t> shape = GetShape(dataset);
+    const bool isShort = !shape.empty() && shape.back() <= MostComponents;
+    const std::size_t axes = shape.size();
+    if (axes < 3 || axes > 5 || (axes == 5 && !isShort) ||
+      std::find(shape.begin(), shape.end(), hsize_t(0)) != shape.end())
+    {
+      return false;
+    }
+    const bool hasTime = axes == 5 || (axes == 4 && (inSteps || !isShort));
+    const std::size_t first = hasTime ? 1 : 0;
+    this->Frames = hasTime ? shape.front() : 0;
+    this->Components = axes - first == 4 ? shape.back() : 0;
+    this->Samples = { static_cast<std::int64_t>(shape[first + 2]),
+      static_cast<std::int64_t>(shape[first + 1]), static_cast<std::int64_t>(shape[first]) };
+    return true;
+  }
+};
+
 /// False for what is no number of the machine's kinds.
 bool FindType(hid_t dataset, rt::ScalarType& type, bool& swapped)
 {
@@ -114,7 +149,7 @@ public:
   {
     if (this->Kept[array].ReadByLibrary)
     {
-      this->ReadByLibrary(array, chunk, out);
+      this->ReadByLibrary(array, step, chunk, out);
     }
     else
     {
@@ -122,7 +157,7 @@ public:
     }
   }
 
-  Index ReadIndex(std::size_t array) const override
+  Index ReadIndex(std::size_t array, int) const override
   {
     const std::lock_guard<std::mutex> lock(GetHdfLock());
     const HdfSilence silence;
@@ -140,10 +175,12 @@ public:
   }
 
 protected:
-  std::optional<Place> FindChunk(std::size_t array, int, const rt::Index3& chunk) const override
+  std::optional<Place> FindChunk(
+    std::size_t array, int step, const rt::Index3& chunk) const override
   {
     const Dataset& dataset = this->Kept[array];
     const ChunkGrid& grid = this->Arrays[array].Grid;
+    const std::size_t frame = dataset.GetFrame(step);
     if (dataset.Chunks.empty())
     {
       if (dataset.First == HADDR_UNDEF)
@@ -154,15 +191,21 @@ protected:
       const auto before =
         static_cast<std::uint64_t>((box.Min.z * grid.Samples.y + box.Min.y) * grid.Samples.x);
       const std::size_t bytes = this->Arrays[array].GetSampleBytes();
-      return Place{ this->Bytes, dataset.First + before * bytes,
+      const auto frameSamples =
+        static_cast<std::uint64_t>(grid.Samples.x * grid.Samples.y * grid.Samples.z);
+      return Place{ this->Bytes, dataset.First + (frame * frameSamples + before) * bytes,
         static_cast<std::size_t>(box.GetCount()) * bytes, 0 };
     }
-    const Piece& piece = dataset.Chunks[static_cast<std::size_t>(grid.GetNumber(chunk))];
+    const std::size_t slices = this->Storages[array].Slices;
+    const Piece& piece =
+      dataset.Chunks[static_cast<std::size_t>(grid.GetCount()) * (frame / slices) +
+        static_cast<std::size_t>(grid.GetNumber(chunk))];
     if (piece.First == HADDR_UNDEF)
     {
       return std::nullopt;
     }
-    return Place{ this->Bytes, piece.First, static_cast<std::size_t>(piece.Bytes), piece.Skipped };
+    return Place{ this->Bytes, piece.First, static_cast<std::size_t>(piece.Bytes), piece.Skipped,
+      frame % slices };
   }
 
 private:
@@ -177,7 +220,17 @@ private:
     HdfHandle Id;
     bool ReadByLibrary = false;
     haddr_t First = HADDR_UNDEF; ///< of contiguous values
-    std::vector<Piece> Chunks;
+    std::vector<Piece> Chunks;   ///< of all times
+    Axes Shape;
+    std::vector<int> Frames; ///< of the steps, along the axis of time; empty: each has its own
+
+    std::size_t GetFrame(int step) const
+    {
+      return this->Shape.Frames == 0
+        ? 0
+        : static_cast<std::size_t>(
+            this->Frames.empty() ? step : this->Frames[static_cast<std::size_t>(step)]);
+    }
   };
 
   static HdfHandle Open(const std::string& path)
@@ -246,6 +299,12 @@ private:
       this->Geometry.Points[axis] = extent[2 * axis + 1] - extent[2 * axis] + 1;
     }
     const rt::Index3 cells = glm::max(this->Geometry.Points - rt::Index3(1), rt::Index3(1));
+    if (H5Lexists(group.Get(), "Steps", H5P_DEFAULT) > 0)
+    {
+      const HdfHandle steps(H5Gopen2(group.Get(), "Steps", H5P_DEFAULT), &H5Gclose);
+      ReadWhole(steps.Get(), "Values", H5T_NATIVE_DOUBLE, this->Times);
+      this->Steps = std::max(1, static_cast<int>(this->Times.size()));
+    }
     this->FindArrays(group.Get(), "PointData", false, this->Geometry.Points);
     this->FindArrays(group.Get(), "CellData", true, cells);
   }
@@ -265,25 +324,37 @@ private:
       H5Lget_name_by_idx(
         group.Get(), ".", H5_INDEX_NAME, H5_ITER_INC, index, link, sizeof(link), H5P_DEFAULT);
       HdfHandle dataset(H5Dopen2(group.Get(), link, H5P_DEFAULT), &H5Dclose);
-      rt::Index3 found(0);
-      if (dataset.IsOpen() && FindSamples(dataset.Get(), found) && found == samples)
+      Axes found;
+      if (dataset.IsOpen() && found.Find(dataset.Get(), !this->Times.empty()) &&
+        found.Samples == samples)
       {
-        this->Add(std::move(dataset), link, onCells, samples);
+        const std::string offsets = std::string("Steps/") + name + "Offsets/" + link;
+        std::vector<int> frames = this->FindFrames(parent, offsets, found);
+        this->Add(std::move(dataset), link, onCells, found, std::move(frames));
       }
     }
   }
 
-  /// Samples along x, y and z of a dataset of three axes, or four with the components last.
-  static bool FindSamples(hid_t dataset, rt::Index3& samples)
+  /// Where each step is along an array's axis of time; empty: the steps are there in turn.
+  std::vector<int> FindFrames(hid_t image, const std::string& offsets, const Axes& axes) const
   {
-    const std::vector<hsize_t> shape = GetShape(dataset);
-    if (shape.size() != 3 && !(shape.size() == 4 && shape[3] <= MostComponents))
+    std::vector<int> frames;
+    if (axes.Frames == 0)
     {
-      return false;
+      return frames;
     }
-    samples = { static_cast<std::int64_t>(shape[2]), static_cast<std::int64_t>(shape[1]),
-      static_cast<std::int64_t>(shape[0]) };
-    return samples.x > 0 && samples.y > 0 && samples.z > 0;
+    ReadWhole(image, offsets.c_str(), H5T_NATIVE_INT, frames);
+    const int last = static_cast<int>(axes.Frames) - 1;
+    const auto isOutside = [=](int frame) { return frame < 0 || frame > last; };
+    const bool fits = frames.empty() ? this->Steps - 1 <= last
+                                     : frames.size() == static_cast<std::size_t>(this->Steps) &&
+        std::none_of(frames.begin(), frames.end(), isOutside);
+    if (!fits)
+    {
+      throw dsm::Error("The file '" + this->Path + "' has " + std::to_string(this->Steps) +
+        " time steps, but its array of '" + offsets + "' does not have values for all of them.");
+    }
+    return frames;
   }
 
   /// What the library tells of an object has another type in each of its releases.
@@ -308,55 +379,58 @@ private:
     {
       names.push_back(wanted);
     }
-    std::map<std::string, rt::Index3> volumes;
+    std::map<std::string, Axes> volumes;
     for (const std::string& name : names)
     {
       const HdfHandle dataset(H5Dopen2(this->File.Get(), name.c_str(), H5P_DEFAULT), &H5Dclose);
-      rt::Index3 samples(0);
+      Axes axes;
       rt::ScalarType type;
       bool swapped = false;
-      if (dataset.IsOpen() && FindSamples(dataset.Get(), samples) &&
+      if (dataset.IsOpen() && axes.Find(dataset.Get(), false) &&
         FindType(dataset.Get(), type, swapped))
       {
-        volumes[name] = samples;
+        volumes[name] = axes;
       }
     }
     // Of several shapes the largest.
-    const auto getCount = [](const rt::Index3& samples) {
-      return rt::Box{ rt::Index3(0), samples }.GetCount();
+    const auto getCount = [](const Axes& axes) {
+      return rt::Box{ rt::Index3(0), axes.Samples }.GetCount();
     };
-    for (const auto& [name, samples] : volumes)
+    Axes largest;
+    for (const auto& [name, axes] : volumes)
     {
-      if (getCount(samples) > getCount(this->Geometry.Points))
+      if (getCount(axes) > getCount(largest))
       {
-        this->Geometry.Points = samples;
+        largest = axes;
       }
     }
-    for (const auto& [name, samples] : volumes)
+    this->Geometry.Points = largest.Samples;
+    this->Steps = static_cast<int>(std::max<hsize_t>(1, largest.Frames));
+    for (const auto& [name, axes] : volumes)
     {
-      if (samples == this->Geometry.Points)
+      if (axes == largest)
       {
         this->Add(HdfHandle(H5Dopen2(this->File.Get(), name.c_str(), H5P_DEFAULT), &H5Dclose), name,
-          false, samples);
+          false, axes, {});
       }
     }
   }
 
-  void Add(HdfHandle id, const std::string& name, bool onCells, const rt::Index3& samples)
+  void Add(
+    HdfHandle id, const std::string& name, bool onCells, const Axes& axes, std::vector<int> frames)
   {
-    const std::vector<hsize_t> shape = GetShape(id.Get());
     FileArray array;
     array.Name = name;
     array.OnCells = onCells;
-    array.Components = shape.size() == 4 ? static_cast<int>(shape[3]) : 1;
+    array.Components = static_cast<int>(std::max<hsize_t>(1, axes.Components));
     bool swapped = false;
     if (!FindType(id.Get(), array.Type, swapped))
     {
       return;
     }
     const std::size_t sampleBytes = array.GetSampleBytes();
-    array.Grid = CutIntoRows(samples, sampleBytes);
-    Dataset dataset{ std::move(id), false, HADDR_UNDEF, {} };
+    array.Grid = CutIntoRows(axes.Samples, sampleBytes);
+    Dataset dataset{ std::move(id), false, HADDR_UNDEF, {}, axes, std::move(frames) };
     Storage storage;
     storage.Fill = this->GetFill(dataset.Id.Get(), array);
     const HdfHandle properties(H5Dget_create_plist(dataset.Id.Get()), &H5Pclose);
@@ -374,7 +448,7 @@ private:
         break;
       case H5D_CHUNKED:
         dataset.ReadByLibrary = !FindSteps(properties.Get(), steps) ||
-          !this->FindChunks(properties.Get(), shape, array, dataset, swapped);
+          !this->FindChunks(properties.Get(), array, storage, dataset, swapped);
         break;
       default:
         dataset.ReadByLibrary = true;
@@ -441,24 +515,32 @@ private:
   }
 
   /// False when the chunks do not have all components.
-  bool FindChunks(hid_t properties, const std::vector<hsize_t>& shape, FileArray& array,
-    Dataset& dataset, bool swapped) const
+  bool FindChunks(
+    hid_t properties, FileArray& array, Storage& storage, Dataset& dataset, bool swapped) const
   {
-    hsize_t edges[4] = { 1, 1, 1, 1 };
-    H5Pget_chunk(properties, 4, edges);
-    if (shape.size() == 4 && edges[3] != shape[3])
+    hsize_t edges[5] = { 1, 1, 1, 1, 1 };
+    H5Pget_chunk(properties, 5, edges);
+    const std::size_t z = dataset.Shape.GetBeforeSpace();
+    if (dataset.Shape.Components > 0 && edges[z + 3] != dataset.Shape.Components)
     {
       return false;
     }
-    array.Grid.ChunkSamples = { static_cast<std::int64_t>(edges[2]),
-      static_cast<std::int64_t>(edges[1]), static_cast<std::int64_t>(edges[0]) };
+    array.Grid.ChunkSamples = { static_cast<std::int64_t>(edges[z + 2]),
+      static_cast<std::int64_t>(edges[z + 1]), static_cast<std::int64_t>(edges[z]) };
+    // A chunk may have several times.
+    const hsize_t times = z > 0 ? edges[0] : 1;
+    storage.Slices = static_cast<std::size_t>(times);
     const std::int64_t count = array.Grid.GetCount();
-    dataset.Chunks.resize(static_cast<std::size_t>(count));
-    for (std::int64_t number = 0; number < count; ++number)
+    const auto layers =
+      static_cast<std::int64_t>((std::max<hsize_t>(1, dataset.Shape.Frames) + times - 1) / times);
+    dataset.Chunks.resize(static_cast<std::size_t>(count * layers));
+    for (std::int64_t number = 0; number < count * layers; ++number)
     {
-      const rt::Index3 first = array.Grid.GetChunk(number) * array.Grid.ChunkSamples;
-      const hsize_t offset[4] = { static_cast<hsize_t>(first.z), static_cast<hsize_t>(first.y),
-        static_cast<hsize_t>(first.x), 0 };
+      const rt::Index3 first = array.Grid.GetChunk(number % count) * array.Grid.ChunkSamples;
+      hsize_t offset[5] = { static_cast<hsize_t>(number / count) * times, 0, 0, 0, 0 };
+      offset[z] = static_cast<hsize_t>(first.z);
+      offset[z + 1] = static_cast<hsize_t>(first.y);
+      offset[z + 2] = static_cast<hsize_t>(first.x);
       Piece& piece = dataset.Chunks[static_cast<std::size_t>(number)];
       if (H5Dget_chunk_info_by_coord(
             dataset.Id.Get(), offset, &piece.Skipped, &piece.First, &piece.Bytes) < 0)
@@ -471,7 +553,7 @@ private:
     return true;
   }
 
-  void ReadByLibrary(std::size_t number, const rt::Index3& chunk, std::byte* out) const
+  void ReadByLibrary(std::size_t number, int step, const rt::Index3& chunk, std::byte* out) const
   {
     const std::lock_guard<std::mutex> lock(GetHdfLock());
     const HdfSilence silence;
@@ -482,12 +564,14 @@ private:
     const HdfHandle all(H5Dget_space(dataset), &H5Sclose);
     const int rank = H5Sget_simple_extent_ndims(all.Get());
     const auto components = static_cast<hsize_t>(array.Components);
-    const hsize_t first[4] = { static_cast<hsize_t>(box.Min.z), static_cast<hsize_t>(box.Min.y),
-      static_cast<hsize_t>(box.Min.x), 0 };
-    const hsize_t count[4] = { static_cast<hsize_t>(size.z), static_cast<hsize_t>(size.y),
+    const hsize_t first[5] = { this->Kept[number].GetFrame(step), static_cast<hsize_t>(box.Min.z),
+      static_cast<hsize_t>(box.Min.y), static_cast<hsize_t>(box.Min.x), 0 };
+    const hsize_t count[5] = { 1, static_cast<hsize_t>(size.z), static_cast<hsize_t>(size.y),
       static_cast<hsize_t>(size.x), components };
-    const HdfHandle part(H5Screate_simple(rank, count, nullptr), &H5Sclose);
-    if (H5Sselect_hyperslab(all.Get(), H5S_SELECT_SET, first, nullptr, count, nullptr) < 0 ||
+    const std::size_t skipped = 1 - this->Kept[number].Shape.GetBeforeSpace();
+    const HdfHandle part(H5Screate_simple(rank, count + skipped, nullptr), &H5Sclose);
+    if (H5Sselect_hyperslab(
+          all.Get(), H5S_SELECT_SET, first + skipped, nullptr, count + skipped, nullptr) < 0 ||
       H5Dread(dataset, GetHdfType(array.Type), part.Get(), all.Get(), H5P_DEFAULT, out) < 0)
     {
       throw dsm::Error("A part of the array '" + array.Name + "' in '" + this->Path +

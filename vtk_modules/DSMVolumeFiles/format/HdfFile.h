@@ -10,7 +10,7 @@
 namespace vol
 {
 
-/// HDF5: VTK's ImageData (VTKHDF), or datasets of three axes (z, y, x), or four with the components last. Where
+/// HDF5: VTK's ImageData (VTKHDF), or datasets of three axes (z, y, x), more with time first or components last. Where
 /// the chunks are is asked of the library once, under its lock; then they are read without it. Datasets whose
 /// values are neither contiguous nor in chunks with filters that are known here are read by the library.
 std::shared_ptr<const VolumeFile> OpenHdf(const std::string& path, const std::string& dataset);

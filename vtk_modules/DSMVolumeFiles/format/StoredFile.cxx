@@ -93,6 +93,14 @@ bool StoredFile::ReadPart(
   return true;
 }
 
+void StoredFile::Foresee(std::size_t array, int step, const rt::Index3& chunk) const
+{
+  if (const std::optional<Place> place = this->FindChunk(array, step, chunk))
+  {
+    place->File->Foresee(place->Offset, place->Bytes);
+  }
+}
+
 void StoredFile::RefuseChunk(
   const FileArray& array, const rt::Index3& chunk, const std::string& path, const dsm::Error& error)
 {

@@ -23,6 +23,8 @@ public:
   bool ReadPart(std::size_t array, int step, const rt::Index3& chunk, const rt::Box& part,
     std::byte* out) const override;
 
+  void Foresee(std::size_t array, int step, const rt::Index3& chunk) const override;
+
   /// Throws what reading a chunk threw, with the chunk's and the file's names.
   [[noreturn]] static void RefuseChunk(const FileArray& array, const rt::Index3& chunk,
     const std::string& path, const dsm::Error& error);

@@ -55,6 +55,21 @@ public:
   const std::vector<FileArray>& GetArrays() const { return this->Arrays; }
   /// At least 1. All steps have the same arrays.
   int GetSteps() const { return this->Steps; }
+  /// The steps' times, ascending: the file's own, or their numbers.
+  double GetTime(int step) const
+  {
+    return this->Times.empty() ? step : this->Times[static_cast<std::size_t>(step)];
+  }
+  /// All that were opened for it, in the order of steps: GetPath, unless it is a series of files.
+  virtual std::vector<std::string> GetPaths() const { return { this->Path }; }
+  /// The file that has a step's values, with its stamp, and which of its own steps it is. Throws dsm::Error.
+  struct StepOrigin
+  {
+    std::string Path;
+    std::uint64_t Stamp;
+    int Step;
+  };
+  virtual StepOrigin GetOrigin(int step) const { return { this->Path, this->Stamp, step }; }
   /// Number of levels of detail, of which one was opened.
   int GetLevels() const { return this->Levels; }
   /// Differs, for all practical purposes, when the file's contents do.
@@ -73,6 +88,9 @@ public:
     return false;
   }
 
+  /// A chunk will probably be read soon: the system may fetch it to its own cache meanwhile. Throws dsm::Error.
+  virtual void Foresee(std::size_t, int, const rt::Index3&) const {}
+
   /// What a file that dsm_convert wrote tells of an array beside its values (docs/files.md); empty where it does
   /// not. Throws std::bad_alloc.
   struct Index
@@ -84,7 +102,7 @@ public:
     std::vector<std::byte> Bricks;
     int BrickEdge = 0;
   };
-  virtual Index ReadIndex(std::size_t /*array*/) const { return {}; }
+  virtual Index ReadIndex(std::size_t /*array*/, int /*step*/) const { return {}; }
 
 protected:
   explicit VolumeFile(std::string path)
@@ -96,6 +114,7 @@ protected:
   FileGeometry Geometry;
   std::vector<FileArray> Arrays;
   int Steps = 1;
+  std::vector<double> Times; ///< of the steps, or empty
   int Levels = 1;
   std::uint64_t Stamp = 0;
 };
@@ -105,7 +124,7 @@ struct OpenOptions
 {
   /// Of a Zarr group with several scales: 0 is the finest.
   int Level = 0;
-  /// Of an HDF5 file without VTKHDF: the dataset to take; empty: those of the most common shape of three axes.
+  /// Of an HDF5 file without VTKHDF: the dataset to take; empty: those of the largest shape of three axes in space.
   std::string Dataset;
 
   /// Of a file of bare values (.raw).

@@ -26,11 +26,12 @@ KeptFile::KeptFile(
   const std::filesystem::path folder =
     caches && *caches ? std::filesystem::path(caches) : std::filesystem::path(home) / ".cache";
   std::error_code failure;
-  const std::string path = std::filesystem::absolute(file.GetPath(), failure).string();
+  const VolumeFile::StepOrigin origin = file.GetOrigin(step);
+  const std::string path = std::filesystem::absolute(origin.Path, failure).string();
   const std::string& name = file.GetArrays()[array].Name;
-  const std::int64_t numbers[] = { static_cast<std::int64_t>(file.GetStamp()),
-    static_cast<std::int64_t>(array), step, box.Min.x, box.Min.y, box.Min.z, box.Max.x, box.Max.y,
-    box.Max.z };
+  const std::int64_t numbers[] = { static_cast<std::int64_t>(origin.Stamp),
+    static_cast<std::int64_t>(array), origin.Step, box.Min.x, box.Min.y, box.Min.z, box.Max.x,
+    box.Max.y, box.Max.z };
   rt::ByteHash hash;
   hash.Add(path.data(), path.size());
   hash.Add(name.data(), name.size());

@@ -139,7 +139,7 @@ std::optional<ValueRanges> LoadRanges(
   const VolumeFile& file, std::size_t array, int step, const rt::Box& box)
 {
   ValueRanges ranges(file.GetArrays()[array].Components);
-  const std::vector<double> own = file.ReadIndex(array).Ranges;
+  const std::vector<double> own = file.ReadIndex(array, step).Ranges;
   if (own.size() == 4 * ranges.All.size())
   {
     for (std::size_t index = 0; index < ranges.All.size(); ++index)

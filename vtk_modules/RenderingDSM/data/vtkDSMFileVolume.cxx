@@ -2,6 +2,7 @@
 #include "vtkDSMFileVolume.h"
 
 #include "DSMCore/base/Error.h"
+#include "DSMVolumeFiles/format/SeriesFile.h"
 #include "DSMVolumeFiles/range/KeptFile.h"
 #include "vtkDSMFileArray.h"
 #include "vtkDSMGather.h"
@@ -75,7 +76,13 @@ public:
 private:
   void ReadBox(const Box& points, std::byte* out) const
   {
-    this->Scattered ? this->Values->ReadScattered(points, out) : this->Values->ReadBox(points, out);
+    if (!this->Scattered)
+    {
+      this->Values->ReadBox(points, out);
+      return;
+    }
+    this->Values->ReadScattered(points, out);
+    this->Values->ForeseeNext(points);
   }
 
   template <class Native>
@@ -139,9 +146,13 @@ std::vector<char> EncodeOpening(const vtkDSMFileValues& values)
   }
   std::vector<char> bytes(sizeof(opening));
   std::memcpy(bytes.data(), &opening, sizeof(opening));
-  const std::string path = std::filesystem::absolute(values.GetFile()->GetPath()).string();
-  bytes.insert(bytes.end(), path.c_str(), path.c_str() + path.size() + 1);
-  bytes.insert(bytes.end(), options.Dataset.begin(), options.Dataset.end());
+  bytes.insert(
+    bytes.end(), options.Dataset.c_str(), options.Dataset.c_str() + options.Dataset.size() + 1);
+  for (const std::string& path : values.GetFile()->GetPaths())
+  {
+    const std::string whole = std::filesystem::absolute(path).string();
+    bytes.insert(bytes.end(), whole.c_str(), whole.c_str() + whole.size() + 1);
+  }
   return bytes;
 }
 
@@ -160,10 +171,15 @@ std::shared_ptr<const vol::VolumeFile> OpenAs(
     options.Bare.Samples[axis] = opening.RawSamples[axis];
     options.Bare.Spacing[axis] = opening.RawSpacing[axis];
   }
-  const auto path = bytes.begin() + sizeof(opening);
-  const auto end = std::find(path, bytes.end(), '\0');
-  options.Dataset.assign(end + 1, bytes.end());
-  return vol::OpenVolumeFile(std::string(path, end), options);
+  std::vector<std::string> words; // the dataset, and then the files
+  for (auto word = bytes.begin() + sizeof(opening); word != bytes.end();)
+  {
+    const auto end = std::find(word, bytes.end(), '\0');
+    words.emplace_back(word, end);
+    word = end + 1;
+  }
+  options.Dataset = words.front();
+  return vol::OpenVolumeSeries({ words.begin() + 1, words.end() }, options);
 }
 
 /// Of one component of a file's values, or of the magnitude.
@@ -189,6 +205,7 @@ vtkDSMFileVolume::Seat vtkDSMFileVolume::Describe(vtkImageData* image, vtkAbstra
     image->GetExtent(extent);
     seat.InFile = 1;
     seat.Step = values->GetStep();
+    seat.NextStep = values->GetNextStep();
     seat.Array = static_cast<std::int64_t>(values->GetArrayNumber());
     seat.Stamp = values->GetFile()->GetStamp();
     for (int axis = 0; axis < 3; ++axis)
@@ -246,8 +263,10 @@ std::unique_ptr<vtkDSMFileVolume> vtkDSMFileVolume::Find(dsm::Messenger& messeng
       rt::Intersect(box, { Index3(0), file->GetArrays()[array].Grid.Samples }).GetCount() ==
         box.GetCount())
     {
+      const int nextStep = seats[members.front().Piece].NextStep;
       volume.reset(new vtkDSMFileVolume(
-        std::make_shared<vtkDSMFileValues>(file, array, std::get<1>(place), box), component));
+        std::make_shared<vtkDSMFileValues>(file, array, std::get<1>(place), box, nextStep),
+        component));
     }
   }
   catch (const std::exception&) // the pieces' own ranks read them then
@@ -315,7 +334,8 @@ std::vector<std::byte> vtkDSMFileVolume::ReadIndex(const rt::BrickLattice& latti
   {
     return {};
   }
-  vol::VolumeFile::Index index = this->Values->GetFile()->ReadIndex(this->Values->GetArrayNumber());
+  vol::VolumeFile::Index index =
+    this->Values->GetFile()->ReadIndex(this->Values->GetArrayNumber(), this->Values->GetStep());
   return index.BrickEdge == lattice.GetEdge() ? std::move(index.Bricks) : std::vector<std::byte>();
 }
 
@@ -324,17 +344,18 @@ rt::VoxelIndex vtkDSMFileVolume::FindIndex(dsm::Messenger& messenger,
   const std::function<void(double)>& progress) const
 {
   const char* const what = "Looking through the volume";
-  const vol::KeptFile kept(*this->Values->GetFile(), this->Values->GetArrayNumber(),
-    this->Values->GetStep(), this->Values->GetBox(),
-    "bricks1-" + std::to_string(lattice.GetEdge()) + "-" + std::to_string(this->Component));
+  std::optional<vol::KeptFile> kept;
   std::vector<std::byte> bytes;
   messenger.RunTogether(what,
     [&]
     {
       if (messenger.GetRank() == 0)
       {
+        kept.emplace(*this->Values->GetFile(), this->Values->GetArrayNumber(),
+          this->Values->GetStep(), this->Values->GetBox(),
+          "bricks1-" + std::to_string(lattice.GetEdge()) + "-" + std::to_string(this->Component));
         bytes = this->ReadIndex(lattice);
-        bytes = bytes.empty() ? kept.Load() : std::move(bytes);
+        bytes = bytes.empty() ? kept->Load() : std::move(bytes);
       }
     });
   bytes = messenger.Broadcast(std::move(bytes));
@@ -362,7 +383,7 @@ rt::VoxelIndex vtkDSMFileVolume::FindIndex(dsm::Messenger& messenger,
       if (messenger.GetRank() == 0)
       {
         const std::vector<std::byte> encoded = found.Encode();
-        kept.Keep(encoded.data(), encoded.size());
+        kept->Keep(encoded.data(), encoded.size());
       }
     });
   return found;

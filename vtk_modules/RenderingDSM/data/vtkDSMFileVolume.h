@@ -27,6 +27,7 @@ public:
   {
     std::int32_t InFile; ///< else nothing else counts
     std::int32_t Step;
+    std::int32_t NextStep; ///< see vtkDSMFileValues
     std::int64_t Array;
     std::uint64_t Stamp;
     std::int64_t ToFile[3]; ///< add to the image's own index

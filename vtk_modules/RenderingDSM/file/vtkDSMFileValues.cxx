@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkDSMFileValues.h"
 
+#include "DSMCore/base/Error.h"
 #include "DSMRayTracing/base/ByteHash.h"
 
 #include <algorithm>
@@ -8,10 +9,11 @@
 #include <utility>
 
 vtkDSMFileValues::vtkDSMFileValues(std::shared_ptr<const vol::VolumeFile> file, std::size_t array,
-  int step, const rt::Box& box, vol::OpenOptions options)
+  int step, const rt::Box& box, int nextStep, vol::OpenOptions options)
   : File(std::move(file))
   , Array(array)
   , Step(step)
+  , NextStep(nextStep)
   , Box(box)
   , Options(std::move(options))
 {
@@ -27,6 +29,36 @@ void vtkDSMFileValues::ReadScattered(const rt::Box& box, std::byte* out) const
 {
   vol::ChunkCache::GetShared().ReadScattered(
     this->File, this->Array, this->Step, { box.Min + this->Box.Min, box.Max + this->Box.Min }, out);
+}
+
+void vtkDSMFileValues::ForeseeNext(const rt::Box& box) const
+{
+  if (this->NextStep == None)
+  {
+    return;
+  }
+  // A chunk belongs to the box that has its first sample, so that boxes side by side ask for each once.
+  const rt::Index3 size = this->GetArray().Grid.ChunkSamples;
+  const rt::Index3 first = (box.Min + this->Box.Min) / size;
+  const rt::Index3 last = (box.Max - rt::Index3(2) + this->Box.Min) / size;
+  try
+  {
+    rt::Index3 chunk;
+    for (chunk.z = first.z; chunk.z <= last.z; ++chunk.z)
+    {
+      for (chunk.y = first.y; chunk.y <= last.y; ++chunk.y)
+      {
+        for (chunk.x = first.x; chunk.x <= last.x; ++chunk.x)
+        {
+          this->File->Foresee(this->Array, this->NextStep, chunk);
+        }
+      }
+    }
+  }
+  catch (const dsm::Error&) // it is said when the step is shown
+  {
+    return;
+  }
 }
 
 std::uint64_t vtkDSMFileValues::GetStamp() const

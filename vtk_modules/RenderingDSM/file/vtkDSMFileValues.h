@@ -18,13 +18,17 @@ class vtkDSMFileValues
 {
 public:
   /// `box`: the samples that the part has, in the file's indices. `options`: with which the file was opened.
+  /// `nextStep`: that will probably be wanted next, or None.
   vtkDSMFileValues(std::shared_ptr<const vol::VolumeFile> file, std::size_t array, int step,
-    const rt::Box& box, vol::OpenOptions options = {});
+    const rt::Box& box, int nextStep, vol::OpenOptions options = {});
+
+  static constexpr int None = -1;
 
   const std::shared_ptr<const vol::VolumeFile>& GetFile() const { return this->File; }
   const vol::OpenOptions& GetOptions() const { return this->Options; }
   std::size_t GetArrayNumber() const { return this->Array; }
   int GetStep() const { return this->Step; }
+  int GetNextStep() const { return this->NextStep; }
   const rt::Box& GetBox() const { return this->Box; }
 
   const vol::FileArray& GetArray() const { return this->File->GetArrays()[this->Array]; }
@@ -37,6 +41,9 @@ public:
   void ReadBox(const rt::Box& box, std::byte* out) const;
   /// The same where boxes are read here and there, rather than one beside the other.
   void ReadScattered(const rt::Box& box, std::byte* out) const;
+
+  /// The samples of a box were needed: where there is a next step, the system may fetch the same of it.
+  void ForeseeNext(const rt::Box& box) const;
 
   /// Equal only, for all practical purposes, for equal values.
   std::uint64_t GetStamp() const;
@@ -62,6 +69,7 @@ private:
   std::shared_ptr<const vol::VolumeFile> File;
   std::size_t Array;
   int Step;
+  int NextStep;
   rt::Box Box;
   vol::OpenOptions Options;
   mutable std::mutex RangesLock;

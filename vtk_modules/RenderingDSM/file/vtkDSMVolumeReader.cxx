@@ -2,6 +2,7 @@
 #include "vtkDSMVolumeReader.h"
 
 #include "DSMCore/base/Error.h"
+#include "DSMVolumeFiles/format/SeriesFile.h"
 #include "vtkDSMFileArray.h"
 #include "vtkDSMScalarType.h"
 
@@ -19,7 +20,6 @@
 
 #include <algorithm>
 #include <climits>
-#include <cmath>
 #include <vector>
 
 vtkStandardNewMacro(vtkDSMVolumeReader);
@@ -30,6 +30,36 @@ public:
   std::shared_ptr<const vol::VolumeFile> File;
   vol::OpenOptions Options;  ///< with which it was opened
   vtkMTimeType OpenedAt = 0; ///< the reader's time then
+
+  int LastStep = vtkDSMFileValues::None; ///< that was asked for
+  int Stride = 0;                        ///< from the one before
+
+  /// A step is asked for. Returns the one that will be next when time goes on as it did; none before it has.
+  int Advance(int step)
+  {
+    const bool isKnown = this->LastStep != vtkDSMFileValues::None;
+    this->Stride = isKnown && step != this->LastStep ? step - this->LastStep : this->Stride;
+    this->LastStep = step;
+    const int next = step + this->Stride;
+    return this->Stride != 0 && next >= 0 && next < this->File->GetSteps() ? next
+                                                                           : vtkDSMFileValues::None;
+  }
+
+  /// The last one that has begun, but for rounding.
+  int FindStep(double time) const
+  {
+    int step = 0;
+    while (step + 1 < this->File->GetSteps())
+    {
+      const double next = this->File->GetTime(step + 1);
+      if (next - time > 1e-6 * (next - this->File->GetTime(step)))
+      {
+        break;
+      }
+      ++step;
+    }
+    return step;
+  }
 };
 
 vtkDSMVolumeReader::vtkDSMVolumeReader()
@@ -48,18 +78,44 @@ vtkDSMVolumeReader::~vtkDSMVolumeReader() = default;
 void vtkDSMVolumeReader::SetFileName(const char* name)
 {
   const std::string wanted = name ? name : "";
-  if (wanted != this->FileName)
+  if (this->FileNames.size() != 1 || wanted != this->FileNames.front())
   {
-    this->FileName = wanted;
+    this->RemoveAllFileNames();
+    this->AddFileName(name);
+  }
+}
+
+void vtkDSMVolumeReader::AddFileName(const char* name)
+{
+  if (!name || !*name)
+  {
+    return;
+  }
+  this->FileNames.emplace_back(name);
+  // Files of a series that are added anew, or with others, keep the arrays that were chosen.
+  if (this->FileNames.front() != this->SelectedFor)
+  {
+    this->SelectedFor = this->FileNames.front();
     this->PointArrays->RemoveAllArrays();
     this->CellArrays->RemoveAllArrays();
-    this->Modified();
   }
+  this->Modified();
+}
+
+void vtkDSMVolumeReader::RemoveAllFileNames()
+{
+  this->FileNames.clear();
+  this->Modified();
+}
+
+int vtkDSMVolumeReader::GetNumberOfFileNames() const
+{
+  return static_cast<int>(this->FileNames.size());
 }
 
 const char* vtkDSMVolumeReader::GetFileName() const
 {
-  return this->FileName.c_str();
+  return this->FileNames.empty() ? "" : this->FileNames.front().c_str();
 }
 
 int vtkDSMVolumeReader::CanReadFile(const char* name)
@@ -111,12 +167,12 @@ void vtkDSMVolumeReader::Open()
   options.Bare.HeaderBytes =
     static_cast<std::uint64_t>(std::max<vtkIdType>(0, this->RawHeaderBytes));
   std::copy_n(this->RawSpacing, 3, options.Bare.Spacing);
-  const auto file = vol::OpenVolumeFile(this->FileName, options);
+  const auto file = vol::OpenVolumeSeries(this->FileNames, options);
   const rt::Index3 last = file->GetGeometry().First + file->GetGeometry().Points;
   if (std::max({ last.x, last.y, last.z }) > INT_MAX)
   {
     throw dsm::Error(
-      "The file '" + this->FileName + "' has more samples along an axis than VTK can count.");
+      "The file '" + file->GetPath() + "' has more samples along an axis than VTK can count.");
   }
   for (const vol::FileArray& array : file->GetArrays())
   {
@@ -134,7 +190,7 @@ int vtkDSMVolumeReader::RequestInformation(
   using Pipeline = vtkStreamingDemandDrivenPipeline;
   // ParaView asks before the user can enter anything.
   if (*std::min_element(this->RawDimensions, this->RawDimensions + 3) < 1 &&
-    vol::IsBareFile(this->FileName))
+    vol::IsBareFile(this->GetFileName()))
   {
     const int none[6] = { 0, -1, 0, -1, 0, -1 };
     information->Set(Pipeline::WHOLE_EXTENT(), none, 6);
@@ -170,7 +226,7 @@ int vtkDSMVolumeReader::RequestInformation(
     std::vector<double> steps;
     for (int step = 0; step < file.GetSteps(); ++step)
     {
-      steps.push_back(step);
+      steps.push_back(file.GetTime(step));
     }
     const double range[2] = { steps.front(), steps.back() };
     information->Set(Pipeline::TIME_STEPS(), steps.data(), file.GetSteps());
@@ -181,6 +237,7 @@ int vtkDSMVolumeReader::RequestInformation(
 
 void vtkDSMVolumeReader::AddArrays(vtkImageData* image, int step)
 {
+  const int nextStep = this->Self->Advance(step);
   const auto& file = this->Self->File;
   int extent[6];
   image->GetExtent(extent);
@@ -204,7 +261,7 @@ void vtkDSMVolumeReader::AddArrays(vtkImageData* image, int step)
       box.Max[axis] = end - first[axis];
     }
     const auto values =
-      std::make_shared<vtkDSMFileValues>(file, index, step, box, this->Self->Options);
+      std::make_shared<vtkDSMFileValues>(file, index, step, box, nextStep, this->Self->Options);
     values->FindRanges(
       [&](double part)
       {
@@ -256,8 +313,8 @@ int vtkDSMVolumeReader::RequestData(
     const double time = information->Has(Pipeline::UPDATE_TIME_STEP())
       ? information->Get(Pipeline::UPDATE_TIME_STEP())
       : 0.0;
-    step = std::clamp(static_cast<int>(std::lround(time)), 0, this->Self->File->GetSteps() - 1);
-    image->GetInformation()->Set(vtkDataObject::DATA_TIME_STEP(), static_cast<double>(step));
+    step = this->Self->FindStep(time);
+    image->GetInformation()->Set(vtkDataObject::DATA_TIME_STEP(), this->Self->File->GetTime(step));
   }
   try
   {
@@ -274,7 +331,10 @@ int vtkDSMVolumeReader::RequestData(
 void vtkDSMVolumeReader::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
-  os << indent << "FileName: " << this->FileName << "\n";
+  for (const std::string& name : this->FileNames)
+  {
+    os << indent << "FileName: " << name << "\n";
+  }
   os << indent << "Level: " << this->Level << "\n";
   os << indent << "DatasetName: " << this->DatasetName << "\n";
   os << indent << "RawDimensions: " << this->RawDimensions[0] << " " << this->RawDimensions[1]

@@ -19,6 +19,7 @@
 
 #include <memory> // for ivars
 #include <string> // for ivars
+#include <vector> // for ivars
 
 class vtkDataArraySelection;
 
@@ -31,10 +32,14 @@ public:
 
   ///@{
   /**
-   * The file; of Zarr, its folder, or a file of metadata in it.
+   * The file; of Zarr, its folder, or a file of metadata in it. With several files, each is a time step, in the
+   * order in which they are added: all have the same arrays, samples and chunks. GetFileName is the first.
    */
   virtual void SetFileName(const char* name);
+  virtual void AddFileName(const char* name);
+  virtual void RemoveAllFileNames();
   const char* GetFileName() const;
+  int GetNumberOfFileNames() const;
   ///@}
 
   /**
@@ -115,7 +120,8 @@ private:
   void Open();
   void AddArrays(vtkImageData* image, int step);
 
-  std::string FileName;
+  std::vector<std::string> FileNames;
+  std::string SelectedFor; ///< the first file when the arrays were chosen
   int Level = 0;
   std::string DatasetName;
   int RawDimensions[3] = { 0, 0, 0 };

@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "DSMVolumeFiles/format/SeriesFile.h"
+
+#include "DSMCore/base/Error.h"
+#include "DSMRayTracing/base/ByteHash.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <list>
+#include <mutex>
+#include <utility>
+
+namespace vol
+{
+
+namespace
+{
+
+/// Files that stay open: those of a step, its neighbours, and of who still reads another.
+constexpr std::size_t MostOpen = 6;
+
+/// Of a file that is not opened for it.
+std::uint64_t GetCheapStamp(const std::string& path)
+{
+  std::error_code failure; // what is not there is refused when it is opened
+  const auto changed = std::filesystem::last_write_time(path, failure).time_since_epoch().count();
+  const std::uint64_t numbers[] = { static_cast<std::uint64_t>(changed),
+    std::filesystem::is_regular_file(path, failure) ? std::filesystem::file_size(path, failure)
+                                                    : 0 };
+  rt::ByteHash hash;
+  hash.Add(path.data(), path.size());
+  hash.Add(numbers, sizeof(numbers));
+  return hash.Get();
+}
+
+class SeriesFile final : public VolumeFile
+{
+public:
+  SeriesFile(const std::vector<std::string>& paths, OpenOptions options)
+    : VolumeFile(paths.front())
+    , Paths(paths)
+    , Options(std::move(options))
+  {
+    const auto first = OpenVolumeFile(this->Path, this->Options);
+    this->Geometry = first->GetGeometry();
+    this->Arrays = first->GetArrays();
+    this->Levels = first->GetLevels();
+    this->Steps = static_cast<int>(paths.size());
+    this->Open.emplace_back(0, first);
+    rt::ByteHash hash;
+    for (const std::string& path : paths)
+    {
+      const std::uint64_t stamp = GetCheapStamp(path);
+      hash.Add(&stamp, sizeof(stamp));
+    }
+    this->Stamp = hash.Get();
+  }
+
+  std::vector<std::string> GetPaths() const override { return this->Paths; }
+
+  void ReadChunk(
+    std::size_t array, int step, const rt::Index3& chunk, std::byte* out) const override
+  {
+    this->Get(step)->ReadChunk(array, 0, chunk, out);
+  }
+
+  bool ReadPart(std::size_t array, int step, const rt::Index3& chunk, const rt::Box& part,
+    std::byte* out) const override
+  {
+    return this->Get(step)->ReadPart(array, 0, chunk, part, out);
+  }
+
+  void Foresee(std::size_t array, int step, const rt::Index3& chunk) const override
+  {
+    this->Get(step)->Foresee(array, 0, chunk);
+  }
+
+  Index ReadIndex(std::size_t array, int step) const override
+  {
+    return this->Get(step)->ReadIndex(array, 0);
+  }
+
+  StepOrigin GetOrigin(int step) const override { return this->Get(step)->GetOrigin(0); }
+
+private:
+  std::shared_ptr<const VolumeFile> Get(int step) const
+  {
+    const std::lock_guard<std::mutex> lock(this->Guard);
+    const auto known = std::find_if(
+      this->Open.begin(), this->Open.end(), [=](const auto& one) { return one.first == step; });
+    if (known != this->Open.end())
+    {
+      this->Open.splice(this->Open.begin(), this->Open, known);
+      return known->second;
+    }
+    const std::string& path = this->Paths[static_cast<std::size_t>(step)];
+    const auto file = OpenVolumeFile(path, this->Options);
+    this->CheckSame(*file);
+    this->Open.emplace_front(step, file);
+    if (this->Open.size() > MostOpen)
+    {
+      this->Open.pop_back();
+    }
+    return file;
+  }
+
+  void CheckSame(const VolumeFile& file) const
+  {
+    const bool same = std::equal(this->Arrays.begin(), this->Arrays.end(), file.GetArrays().begin(),
+      file.GetArrays().end(),
+      [](const FileArray& a, const FileArray& b)
+      {
+        return a.Name == b.Name && a.Type == b.Type && a.Components == b.Components &&
+          a.OnCells == b.OnCells && a.Grid.Samples == b.Grid.Samples &&
+          a.Grid.ChunkSamples == b.Grid.ChunkSamples;
+      });
+    if (!same)
+    {
+      throw dsm::Error("The file '" + file.GetPath() +
+        "' is no time step of the series that begins with '" + this->Path +
+        "': it does not have the same arrays, in chunks of the same size. Open it alone.");
+    }
+  }
+
+  std::vector<std::string> Paths;
+  OpenOptions Options;
+  mutable std::mutex Guard;
+  /// Steps and their files, the last used first.
+  mutable std::list<std::pair<int, std::shared_ptr<const VolumeFile>>> Open;
+};
+
+} // namespace
+
+std::shared_ptr<const VolumeFile> OpenVolumeSeries(
+  const std::vector<std::string>& paths, const OpenOptions& options)
+{
+  if (paths.empty())
+  {
+    throw dsm::Error("No file is chosen.");
+  }
+  return paths.size() == 1 ? OpenVolumeFile(paths.front(), options)
+                           : std::make_shared<SeriesFile>(paths, options);
+}
+
+} // namespace vol
