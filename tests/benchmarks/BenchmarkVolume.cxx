@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "BenchmarkVolume.h"
 
+#include "BenchmarkFile.h"
+
 #include "DSMCore/publish/ConcurrentFragmentSource.h"
 #include "DSMRayTracing/build/VoxelBrickBuilder.h"
 #include "DSMRayTracing/sample/SampleVolume.h"
+#include "DSMVolumeFiles/format/VolumeFile.h"
 
 #include <vtkDataArray.h>
 #include <vtkImageData.h>
@@ -110,7 +113,8 @@ Input GenerateVolume(const std::string& description)
   if ((kind != "sphere" && kind != "rm") || points < 2)
   {
     throw dsm::Error("\"" + description +
-      "\" is neither a .vti file nor a sample volume such as sphere:256:float or rm:256:uchar.");
+      "\" is neither a file that can be read nor a sample volume such as sphere:256:float or "
+      "rm:256:uchar.");
   }
   const rt::SampleVolume volume(
     kind == "sphere" ? rt::SampleVolume::Kind::Sphere : rt::SampleVolume::Kind::MixingLayer,
@@ -189,6 +193,10 @@ rt::Box CutAlong(int axis, const rt::Box& box, std::int64_t part, std::int64_t p
 rt::IsosurfaceObject PublishBenchmarkVolume(const std::string& description, int brickEdge,
   int threads, dsm::BlockStore& store, dsm::Messenger& messenger)
 {
+  if (vol::MayBeVolumeFile(description))
+  {
+    return PublishBenchmarkFile(description, brickEdge, store, messenger);
+  }
   Input input;
   messenger.RunTogether("Reading the volume",
     [&]

@@ -15,6 +15,7 @@
 #include "DSMRayTracing/frame/FrameGather.h"
 #include "DSMRayTracing/frame/FrameRenderer.h"
 #include "DSMRayTracing/frame/TileGrid.h"
+#include "DSMVolumeFiles/cache/ChunkCache.h"
 
 #include <nlohmann/json.hpp>
 
@@ -66,6 +67,7 @@ struct RankResult
   std::uint64_t ResidentBytes = 0;
   std::uint64_t CacheBytes = 0;
   std::uint64_t PeakRssBytes = 0;
+  std::uint64_t BytesRead = 0; ///< from the volume's file
   double WaitSeconds = 0.0;
   double IdleSeconds = 0.0;
   double BusySeconds = 0.0;
@@ -101,7 +103,7 @@ Json ToJson(const RankResult& rank)
     { "new_tiles", rank.NewTiles }, { "busy_seconds", rank.BusySeconds },
     { "wait_seconds", rank.WaitSeconds }, { "idle_seconds", rank.IdleSeconds },
     { "resident_bytes", rank.ResidentBytes }, { "cache_bytes", rank.CacheBytes },
-    { "peak_rss_bytes", rank.PeakRssBytes } };
+    { "peak_rss_bytes", rank.PeakRssBytes }, { "bytes_read", rank.BytesRead } };
 }
 
 std::uint64_t GetPeakRssBytes()
@@ -163,6 +165,7 @@ struct Timing
   double BestSeconds = 0.0; ///< of a session as a whole; of an orbit, position by position
   double FirstSeconds = 0.0;
   double LastSeconds = 0.0;
+  double OpeningSeconds = 0.0; ///< of an orbit's first picture, when no brick is there
   std::uint64_t Hash = 0;
 };
 
@@ -182,6 +185,7 @@ Json Summarise(const BenchmarkOptions& options, const dsm::BlockStore& store, co
     total.Prefetches += rank.Prefetches;
     total.PrefetchesUsed += rank.PrefetchesUsed;
     total.Requests += rank.Requests;
+    total.BytesRead += rank.BytesRead;
     total.WaitSeconds += rank.WaitSeconds;
     total.BytesReceived += rank.BytesReceived;
     total.NewTiles += rank.NewTiles;
@@ -213,7 +217,8 @@ Json Summarise(const BenchmarkOptions& options, const dsm::BlockStore& store, co
     { "new_tiles", total.NewTiles },
     { "idle_part", total.IdleSeconds / (timing.LastSeconds * threads * ranks.size()) },
     { "resident_bytes", total.ResidentBytes }, { "cache_bytes", total.CacheBytes },
-    { "peak_rss_bytes", total.PeakRssBytes }, { "image_hash", hexadecimal }, { "ranks", each } };
+    { "peak_rss_bytes", total.PeakRssBytes }, { "bytes_read", total.BytesRead },
+    { "image_hash", hexadecimal }, { "ranks", each } };
 }
 
 /// Sums of what each rank adds up for each tile; collective.
@@ -277,9 +282,15 @@ void RunIsosurface(const BenchmarkOptions& options, dsm::Messenger& messenger)
   Timing timing;
   timing.Frames = positions.size();
   timing.BestSeconds = std::numeric_limits<double>::infinity();
+  RankResult opening;
+  const auto getBytesRead = [] { return vol::ChunkCache::GetShared().GetBytesRead(); };
   if (options.Session.empty())
   {
+    const std::uint64_t before = getBytesRead();
     trace(positions.front());
+    opening.Add(frame);
+    opening.BytesRead = getBytesRead() - before;
+    timing.OpeningSeconds = frame.Seconds;
   }
   std::vector<double> fastest(positions.size(), std::numeric_limits<double>::infinity());
   std::vector<double> tiles(static_cast<std::size_t>(
@@ -298,6 +309,7 @@ void RunIsosurface(const BenchmarkOptions& options, dsm::Messenger& messenger)
   for (int repetition = 0; repetition < options.Repeat; ++repetition)
   {
     mine = {};
+    const std::uint64_t before = getBytesRead();
     tiles.assign(tiles.size(), 0.0);
     timing.LastSeconds = 0.0;
     for (std::size_t number = 0; number < positions.size(); ++number)
@@ -330,6 +342,7 @@ void RunIsosurface(const BenchmarkOptions& options, dsm::Messenger& messenger)
         }
       }
     }
+    mine.BytesRead = getBytesRead() - before;
     timing.FirstSeconds = repetition == 0 ? timing.LastSeconds : timing.FirstSeconds;
     timing.BestSeconds = std::min(timing.BestSeconds, timing.LastSeconds);
   }
@@ -339,6 +352,7 @@ void RunIsosurface(const BenchmarkOptions& options, dsm::Messenger& messenger)
   }
   mine.PeakRssBytes = GetPeakRssBytes();
   const auto ranks = messenger.AllGatherValue(mine);
+  const auto openings = messenger.AllGatherValue(opening);
   const std::vector<double> tileSeconds = SumTileSeconds(messenger, tiles);
   TracingCost sums[2];
   for (std::size_t number = 0; number < positions.size(); ++number)
@@ -350,6 +364,12 @@ void RunIsosurface(const BenchmarkOptions& options, dsm::Messenger& messenger)
   if (messenger.GetRank() == 0)
   {
     Json result = Summarise(options, store, timing, ranks);
+    result["brick_bytes"] = object.Field->Segment->GetDirectory().GetLargest();
+    result["opening"] = { { "seconds", timing.OpeningSeconds }, { "ranks", Json::array() } };
+    for (const RankResult& rank : openings)
+    {
+      result["opening"]["ranks"].push_back(ToJson(rank));
+    }
     if (options.TileSeconds)
     {
       result["tile_seconds"] = tileSeconds;

@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "BenchmarkFile.h"
+
+#include "DSMCore/base/Error.h"
+#include "DSMCore/fetch/ReadingSource.h"
+#include "DSMRayTracing/build/VoxelBrickReader.h"
+#include "DSMRayTracing/build/VoxelIndex.h"
+#include "DSMVolumeFiles/cache/ChunkCache.h"
+
+#include <numeric>
+#include <optional>
+
+namespace
+{
+
+class FileVoxels final : public rt::VoxelSource
+{
+public:
+  FileVoxels(std::shared_ptr<const vol::VolumeFile> file, bool scattered)
+    : File(std::move(file))
+    , Scattered(scattered)
+  {
+  }
+  rt::Box GetCells() const override
+  {
+    return { rt::Index3(0), this->File->GetGeometry().Points - rt::Index3(1) };
+  }
+  void ReadSamples(const rt::Box& points, std::byte* out) const override
+  {
+    vol::ChunkCache& cache = vol::ChunkCache::GetShared();
+    this->Scattered ? cache.ReadScattered(this->File, 0, 0, points, out)
+                    : cache.ReadBox(this->File, 0, 0, points, out);
+  }
+
+private:
+  std::shared_ptr<const vol::VolumeFile> File;
+  bool Scattered;
+};
+
+rt::VoxelIndex FindIndex(const std::shared_ptr<const vol::VolumeFile>& file,
+  const rt::BrickLattice& lattice, int threads, dsm::Messenger& messenger)
+{
+  std::optional<rt::VoxelIndex> known;
+  std::optional<rt::VoxelBrickReader> reader;
+  rt::VoxelIndex::Pass pass;
+  pass.Threads = threads;
+  messenger.RunTogether("Reading the file's index",
+    [&]
+    {
+      const vol::VolumeFile::Index index = file->ReadIndex(0, 0);
+      if (index.BrickEdge == lattice.GetEdge())
+      {
+        known = rt::VoxelIndex::Decode(index.Bricks, lattice.GetBrickCount());
+      }
+      reader.emplace(lattice, std::make_shared<FileVoxels>(file, false));
+      pass.Order.resize(lattice.GetBrickCount());
+      std::iota(pass.Order.begin(), pass.Order.end(), dsm::BlockId(0));
+    });
+  return known ? std::move(*known) : rt::VoxelIndex::Find(messenger, lattice, *reader, pass, {});
+}
+
+} // namespace
+
+rt::IsosurfaceObject PublishBenchmarkFile(
+  const std::string& path, int brickEdge, dsm::BlockStore& store, dsm::Messenger& messenger)
+{
+  auto field = std::make_shared<rt::VoxelField>();
+  std::shared_ptr<const vol::VolumeFile> file;
+  std::shared_ptr<dsm::ReadingSource> source;
+  std::optional<dsm::BlockDirectory> directory;
+  rt::IsosurfaceObject object;
+  messenger.RunTogether("Opening the volume's file",
+    [&]
+    {
+      file = vol::OpenVolumeFile(path);
+      const vol::FileArray& array = file->GetArrays().front();
+      if (array.Components != 1 || array.OnCells)
+      {
+        throw dsm::Error("The first array of '" + path + "' is not one of numbers on points.");
+      }
+      const vol::FileGeometry& geometry = file->GetGeometry();
+      field->Lattice = rt::BrickLattice(geometry.Points, array.Type, /*cellMask=*/false,
+        brickEdge > 0 ? brickEdge : rt::BrickLattice::GetDefaultEdge(array.Type));
+      glm::dmat4 indexToWorld(1.0);
+      for (int axis = 0; axis < 3; ++axis)
+      {
+        indexToWorld[axis][axis] = geometry.Spacing[axis];
+      }
+      object.SetIndexToWorld(indexToWorld);
+      directory = field->Lattice.CreateDirectory(messenger.GetSize());
+      source = std::make_shared<dsm::ReadingSource>(messenger,
+        std::make_shared<rt::VoxelBrickReader>(
+          field->Lattice, std::make_shared<FileVoxels>(file, true)));
+    });
+  field->Segment = store.Publish(path, *directory, source);
+  rt::VoxelIndex index = FindIndex(file, field->Lattice, store.GetSettings().Workers, messenger);
+  field->Survey = index.Survey;
+  field->Hierarchy = rt::MacrocellHierarchy(field->Lattice, std::move(index.Bricks));
+  object.Field = field;
+  return object;
+}
