@@ -14,6 +14,17 @@ function (dsm_add_targets_of_distribution)
   endforeach ()
 endfunction ()
 
+# ParaView's Qt libraries name more of Qt, and of others, than the panel uses.
+function (dsm_add_targets_of_qt qt)
+  foreach (target IN ITEMS
+      Boost::boost LibXml2::LibXml2 "${qt}::Concurrent" "${qt}::Help" "${qt}::Network" "${qt}::OpenGL"
+      "${qt}::OpenGLWidgets" "${qt}::Sql" "${qt}::Svg" "${qt}::Xml")
+    if (NOT TARGET "${target}")
+      add_library("${target}" INTERFACE IMPORTED)
+    endif ()
+  endforeach ()
+endfunction ()
+
 # From Debian 13 on, its ParaView's CMake files name Python modules as they were before they were
 # packaged (vtkCommonCore.so, which is vtkCommonCore.cpython-313-x86_64-linux-gnu.so), and refuse to be
 # read since these files are missing. Where their targets exist already, they are not looked for.

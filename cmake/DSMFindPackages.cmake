@@ -43,6 +43,22 @@ else ()
 endif ()
 dsm_add_targets_of_distribution()
 
+# The panel in ParaView's application needs Qt, of the version that ParaView was built with.
+set(DSM_HAS_QT OFF)
+if (DSM_BUILD_PARAVIEW_PLUGIN AND PARAVIEW_USE_QT)
+  if (NOT DEFINED PARAVIEW_QT_MAJOR_VERSION)
+    set(PARAVIEW_QT_MAJOR_VERSION 5) # the only one up to 5.11
+  endif ()
+  find_package("Qt${PARAVIEW_QT_MAJOR_VERSION}" QUIET COMPONENTS Widgets)
+  if (TARGET "Qt${PARAVIEW_QT_MAJOR_VERSION}::Widgets")
+    set(DSM_HAS_QT ON)
+    dsm_add_targets_of_qt("Qt${PARAVIEW_QT_MAJOR_VERSION}")
+  else ()
+    message(STATUS "The panel Ray Tracing Memory will not be built: it needs the development files of "
+      "Qt ${PARAVIEW_QT_MAJOR_VERSION}")
+  endif ()
+endif ()
+
 # By the target: VTK 9.6 looks for parts of Python's development files, after which the whole is said to
 # be missing.
 set(DSM_HAS_PYTHON OFF)

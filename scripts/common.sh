@@ -22,9 +22,12 @@ test_packages=(libgtest-dev clang-format doxygen iproute2 python3-numpy python3-
   python3-h5py python3-zarr teem-apps hdf5-filter-plugin hdf5-filter-plugin-blosc-serial)
 
 # Prints what ParaView's development files need besides and do not demand: from Debian 14 on, ParaView uses
-# the VTK that is packaged for itself. Nothing where the package lists are not there yet. (sh runs it, too.)
+# the VTK that is packaged for itself; and the panel needs the Qt that ParaView has. Nothing where the package
+# lists are not there yet. (sh runs it, too.)
 packages_of_paraview() {
   if apt-cache depends paraview 2>/dev/null | grep -q 'libvtk9\.'; then echo libvtk9-dev; fi
+  if apt-cache depends paraview 2>/dev/null | grep -q 'libqt5'; then echo qtbase5-dev; fi
+  if apt-cache depends paraview 2>/dev/null | grep -q 'libqt6'; then echo qt6-base-dev; fi
 }
 
 # Prints the packages among the arguments that are not installed.

@@ -2,7 +2,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Has ParaView's test player go through session.xml in the real application, and compares the ray traced
 pictures with Contour's. Called as
-    play_session.py PLUGIN OUTPUT [--server-url=URL] PARAVIEW"""
+    play_session.py PLUGIN OUTPUT [RANKS --server-url=URL] PARAVIEW
+RANKS is how many the server has."""
 
 import os
 import shutil
@@ -13,6 +14,7 @@ from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkIOImage import vtkPNGReader
 
 PLUGIN, OUTPUT, *OPTIONS, PARAVIEW = sys.argv[1:]
+RANKS = OPTIONS.pop(0) if OPTIONS else 1
 HERE = os.path.dirname(os.path.abspath(__file__))
 
 
@@ -24,14 +26,20 @@ def check(condition, what):
 
 def write_session(path):
     with open(os.path.join(HERE, "session.xml"), encoding="utf-8") as text:
-        lines = text.read().replace("@PLUGIN@", PLUGIN).replace("@OUTPUT@", OUTPUT).splitlines()
+        content = text.read()
+    for name, value in (("@PLUGIN@", PLUGIN), ("@OUTPUT@", OUTPUT), ("@RANKS@", str(RANKS))):
+        content = content.replace(name, value)
+    has_panel = os.path.exists(os.path.join(os.path.dirname(PLUGIN), "DSMRayTracerPanel.so"))
+    wanted = {"@REMOTE@": bool(OPTIONS), "@PANEL@": has_panel}
+    lines = content.splitlines()
     head, events = lines[:6], lines[6:]
     with open(path, "w", encoding="utf-8") as text:
         for line in [head[0], head[1]] + events:
-            if "@REMOTE@" not in line:
+            marks = [mark for mark in wanted if mark in line]
+            if all(wanted[mark] for mark in marks):
+                for mark in marks:
+                    line = line.replace(mark, "")
                 text.write(line + "\n")
-            elif OPTIONS:
-                text.write(line.replace("@REMOTE@", "") + "\n")
 
 
 def read_picture(name):
