@@ -23,6 +23,11 @@ void vtkPVDSMMemoryOptions::SetMemory(int mebibytes)
   this->Superclass::SetMemory(mebibytes);
 }
 
+void vtkPVDSMMemoryOptions::SetScratchDirectory(const char* directory)
+{
+  this->Superclass::SetScratchDirectory(directory);
+}
+
 void vtkPVDSMMemoryOptions::SetCacheSize(int mebibytes)
 {
   if (mebibytes < 1)

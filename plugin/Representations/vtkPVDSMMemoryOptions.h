@@ -24,6 +24,7 @@ public:
   void SetMemoryOrganization(int organization) override;
   void SetHostSharing(bool shared) override;
   void SetMemory(int mebibytes) override;
+  void SetScratchDirectory(const char* directory) override;
   void SetCacheSize(int mebibytes) override;
   void SetNumberOfThreads(int threads) override;
   void SetScheduler(int scheduler) override;

@@ -14,6 +14,7 @@
 #include "vtkSMProxy.h"
 #include "vtkSMSession.h"
 #include "vtkSMSessionProxyManager.h"
+#include "vtkVariant.h"
 
 #include <algorithm>
 #include <map>
@@ -91,7 +92,8 @@ bool IsGiven(vtkSMProxy* proxy, const char* name)
   vtkSMProxy* page = FindPage(proxy);
   return !proxy->GetProperty(name)->IsValueDefault() &&
     !(page && page->GetProperty(name) &&
-      vtkSMPropertyHelper(page, name).GetAsInt() == vtkSMPropertyHelper(proxy, name).GetAsInt());
+      vtkSMPropertyHelper(page, name).GetAsVariant(0).ToString() ==
+        vtkSMPropertyHelper(proxy, name).GetAsVariant(0).ToString());
 }
 
 } // namespace

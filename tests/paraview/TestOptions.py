@@ -115,7 +115,7 @@ settings.UpdateVTKObjects()
 # The memory of a session, in all its views; a cache can be lowered.
 MEMORY = {
     "DSMMemoryOrganization": "Object based", "DSMHostSharing": 0, "DSMMemory": 123, "DSMCacheSize": 33,
-    "DSMThreads": 2, "DSMScheduler": "Central queue", "DSMSilenceLimit": 90,
+    "DSMThreads": 2, "DSMScheduler": "Central queue", "DSMSilenceLimit": 90, "DSMScratchDirectory": "/nowhere",
 }
 simple.ResetSession()
 load_plugin()

@@ -11,7 +11,7 @@ load_plugin()
 CHANGES = {
     "DSMIsoValue": 0.7, "DSMIsoValues": [0.5, 0.8], "DSMIsoComponent": 1, "DSMThreads": 1, "DSMCacheSize": 33,
     "DSMMemoryOrganization": "Object based", "DSMHostSharing": 0, "DSMScheduler": "Central queue", "DSMSilenceLimit": 90,
-    "DSMMemory": 123, "DSMShadows": 1, "DSMLightRadius": 0.02, "DSMAmbientOcclusionSamples": 2,
+    "DSMMemory": 123, "DSMScratchDirectory": "/nowhere", "DSMShadows": 1, "DSMLightRadius": 0.02, "DSMAmbientOcclusionSamples": 2,
     "DSMAmbientOcclusionDistance": 0.75, "DSMReflectivity": 0.25, "DSMMaxBounces": 3,
     "DSMSamplesPerPixel": 2, "DSMDebugView": "Brick", "DSMShowLegend": 0, "DSMShowStatistics": 1,
     "DSMClip": 1, "DSMClipOrigin": [0.25, 0.0, 0.0], "DSMClipNormal": [-1.0, 0.5, 0.0],

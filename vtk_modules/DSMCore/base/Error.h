@@ -15,6 +15,14 @@ public:
   using std::runtime_error::runtime_error;
 };
 
+/// The memory that may be taken does not suffice for what is to be kept; the same on every rank. Nothing has
+/// changed yet.
+class MemoryShortage : public Error
+{
+public:
+  using Error::Error;
+};
+
 /// How one rank, or all of them, fared in a collective step.
 struct Status
 {

@@ -32,6 +32,9 @@ public:
   /// The blocks leave memory, since a source can bring them again (BlockSource).
   void SetFromSource() { this->FromSource = true; }
   bool IsFromSource() const { return this->FromSource; }
+  /// That source is a disk of the owner's, which no other rank can read.
+  void SetOnOwnersDisk() { this->FromSource = this->OnOwnersDisk = true; }
+  bool IsOnOwnersDisk() const { return this->OnOwnersDisk; }
   /// The largest block; 0 when there is none.
   std::uint32_t GetLargest() const;
   /// What is in the owner's memory for good: the sum over its blocks, each rounded up to a multiple of
@@ -53,6 +56,7 @@ private:
   RoundRobinAssigner Assigner;
   std::uint64_t IndexBytes = 0;
   bool FromSource = false;
+  bool OnOwnersDisk = false;
 };
 
 } // namespace dsm

@@ -3,7 +3,7 @@
 
 #include "DSMCore/base/Error.h"
 #include "DSMCore/memory/HostMemory.h"
-#include "DSMCore/publish/BlockStream.h"
+#include "DSMCore/publish/FragmentStream.h"
 
 #include <algorithm>
 #include <utility>
@@ -13,9 +13,6 @@ namespace dsm
 
 namespace
 {
-
-/// Smallest advance that is worth to be shown.
-constexpr double ProgressStep = 0.01;
 
 template <class Visit>
 void ForEachOwned(const BlockSegment& segment, int rank, const Visit& visit)
@@ -81,7 +78,10 @@ std::shared_ptr<BlockSegment> SegmentPublisher::Run(BlockDirectory directory,
   const auto segment = this->Create(std::move(directory), begin);
   segment->Meet(this->Messages);
 
-  const FirstFailure failure = this->Fill(*segment, source, sink, progress);
+  const auto absorb = [&](BlockId id, const std::byte* bytes, std::size_t count)
+  { sink.Absorb(id, segment->GetOwned(id), segment->GetDirectory().GetBytes(id), bytes, count); };
+  const FirstFailure failure =
+    FragmentStream::Run(this->Messages, segment->GetDirectory(), source, absorb, progress);
   this->Messages.RunTogether(this->What,
     [&]
     {
@@ -96,57 +96,6 @@ std::shared_ptr<BlockSegment> SegmentPublisher::Run(BlockDirectory directory,
     });
   segment->Open();
   return segment;
-}
-
-FirstFailure SegmentPublisher::Fill(const BlockSegment& segment, FragmentSource& source,
-  FragmentSink& sink, FunctionRef<void(double)> progress)
-{
-  const BlockDirectory& directory = segment.GetDirectory();
-  const int rank = this->Messages.GetRank();
-  const auto absorb = [&](BlockId id, const std::byte* bytes, std::size_t count)
-  { sink.Absorb(id, segment.GetOwned(id), directory.GetBytes(id), bytes, count); };
-  const auto take = [&](int from, BlockId id, const std::byte* bytes, std::size_t count)
-  {
-    if (id >= directory.GetCount() || directory.GetOwner(id) != rank)
-    {
-      throw Error("Rank " + std::to_string(from) + " sent a fragment of block " +
-        std::to_string(id) + ", which this rank does not own. Do all ranks run the same build?");
-    }
-    absorb(id, bytes, count);
-  };
-  this->Messages.BeginSession();
-  BlockStream stream(this->Messages, take);
-  double shown = -1.0;
-  const auto feed = [&]
-  {
-    Fragment fragment;
-    if (!source.Next(fragment))
-    {
-      return false;
-    }
-    if (fragment.Block >= directory.GetCount())
-    {
-      throw Error("A fragment was produced for block " + std::to_string(fragment.Block) +
-        ", but there are only " + std::to_string(directory.GetCount()) + ".");
-    }
-    const int owner = directory.GetOwner(fragment.Block);
-    if (owner == rank)
-    {
-      absorb(fragment.Block, fragment.Bytes.data(), fragment.Bytes.size());
-    }
-    else
-    {
-      stream.Post(owner, fragment.Block, std::move(fragment.Bytes));
-    }
-    const double part = std::clamp(source.GetProgress(), 0.0, 1.0);
-    if (progress && part >= shown + ProgressStep && part < 1.0) // all is not done yet
-    {
-      shown = part;
-      progress(part);
-    }
-    return true;
-  };
-  return stream.Run(feed);
 }
 
 void SegmentPublisher::Check(

@@ -2,7 +2,6 @@
 #ifndef dsm_SegmentPublisher_h
 #define dsm_SegmentPublisher_h
 
-#include "DSMCore/base/FirstFailure.h"
 #include "DSMCore/base/FunctionRef.h"
 #include "DSMCore/publish/BlockDirectory.h"
 #include "DSMCore/publish/BlockSegment.h"
@@ -52,10 +51,6 @@ private:
   /// `begin` takes part in the ranks' agreement.
   std::shared_ptr<BlockSegment> Create(
     BlockDirectory&& directory, FunctionRef<void(const BlockSegment&)> begin);
-  /// Collective: moves the fragments of every rank to the owners of their blocks. Returns what has gone
-  /// wrong on this rank.
-  FirstFailure Fill(const BlockSegment& segment, FragmentSource& source, FragmentSink& sink,
-    FunctionRef<void(double)> progress);
   void Check(const BlockDirectory& directory, const std::vector<std::uint64_t>& fingerprints) const;
   void CheckMemory(std::uint64_t bytes, int ranksOnHost, std::uint64_t available) const;
 

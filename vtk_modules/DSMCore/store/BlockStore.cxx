@@ -2,8 +2,11 @@
 #include "DSMCore/store/BlockStore.h"
 
 #include "DSMCore/base/Error.h"
+#include "DSMCore/fetch/ReadingSource.h"
 #include "DSMCore/memory/AddressRange.h"
 #include "DSMCore/memory/HostMemory.h"
+#include "DSMCore/publish/FragmentStream.h"
+#include "DSMCore/store/ScratchBlocks.h"
 #include "DSMCore/store/StoreInterface.h"
 
 #include <algorithm>
@@ -23,6 +26,9 @@ namespace
 /// The memory that a host has left is divided by it for the blocks of its ranks when the user says
 /// nothing: the rest is for the application.
 constexpr std::uint64_t DefaultDivisor = 2;
+
+/// The time that it takes to put blocks together in a scratch file, as a part of all.
+constexpr double ShareOfFilling = 0.6;
 
 bool IsPaged(MemoryOrganization organization)
 {
@@ -147,7 +153,7 @@ BlockStore::Decision BlockStore::Decide(
 {
   this->Messages.GetRanksOnHost(); // collective the first time
   this->Groups = HostGroups::Find(this->Messages, this->Current.HostSharing);
-  Stance mine{ {}, static_cast<std::uint64_t>(this->Current.Organization) };
+  Stance mine{ {}, static_cast<std::uint64_t>(this->Current.Organization), 0 };
   this->Messages.RunTogether(what,
     [&]
     {
@@ -156,16 +162,19 @@ BlockStore::Decision BlockStore::Decide(
       this->Segments.MakeRoom(1);
       this->Objects.MakeRoom(this->Segments.GetCount() + 1);
       this->Replicated.MakeRoom(this->Segments.GetCount() + 1);
+      mine.LacksHostMemory = this->LacksHostMemory(next) ? 1 : 0;
     });
   mine.Budget = this->Budget;
-  for (const std::uint64_t part : { std::uint64_t(this->Segments.GetCount()),
-         next ? next->GetFingerprint() : std::uint64_t(0), std::uint64_t(next != nullptr),
-         std::uint64_t(this->Current.HostSharing), std::uint64_t(this->InForce) })
+  for (const std::uint64_t part :
+    { std::uint64_t(this->Segments.GetCount()), next ? next->GetFingerprint() : std::uint64_t(0),
+      std::uint64_t(next != nullptr), std::uint64_t(this->Current.HostSharing),
+      std::uint64_t(this->InForce), std::uint64_t(this->Current.ScratchDirectory.empty()) })
   {
     mine.Choice = (mine.Choice ^ part) * 0x100000001b3u; // FNV-1a
   }
   const auto stances = this->Messages.AllGatherValue(mine);
   Decision decision;
+  std::string shortage;
   this->Messages.RunTogether(what,
     [&]
     {
@@ -176,10 +185,42 @@ BlockStore::Decision BlockStore::Decide(
         return Decision{ chosen, plan.GetRoom(chosen, this->Messages.GetRank()),
           plan.Explain(wanted, chosen) };
       };
-      decision = decide(plan.Decide(wanted));
-      fallback = decide(MemoryOrganization::ObjectBased);
+      try
+      {
+        decision = decide(plan.Decide(wanted));
+        fallback = decide(MemoryOrganization::ObjectBased);
+      }
+      catch (const MemoryShortage& lack) // on every rank alike
+      {
+        shortage = lack.what();
+      }
+      for (std::size_t rank = 0; rank < stances.size() && shortage.empty(); ++rank)
+      {
+        shortage = stances[rank].LacksHostMemory != 0
+          ? "The host of rank " + std::to_string(rank) + " is out of memory."
+          : "";
+      }
     });
+  if (!shortage.empty())
+  {
+    throw MemoryShortage(std::string(what) + ": " + shortage);
+  }
   return decision;
+}
+
+bool BlockStore::LacksHostMemory(const BlockDirectory* next) const
+{
+  if (!next || next->IsFromSource() || this->Current.ScratchDirectory.empty())
+  {
+    return false;
+  }
+  const int rank = this->Messages.GetRank();
+  const std::uint64_t bytes = next->GetResidentBytes(rank) +
+    (this->Current.Organization == MemoryOrganization::Replicated
+        ? BlockTable::CountReplicaBytes(*next, *this->Groups, rank)
+        : 0);
+  return bytes >
+    GetAvailableHostMemory() / static_cast<std::uint64_t>(this->Messages.GetRanksOnHost());
 }
 
 MemoryPlan BlockStore::MakePlan(
@@ -219,7 +260,8 @@ void BlockStore::PutInForce(Decision&& decision)
   {
     if (segment->GetDirectory().IsFromSource() && !IsPaged(this->InForce))
     {
-      static_cast<BlockTable&>(*segment).SetReadByAll(this->ReadByAll);
+      static_cast<BlockTable&>(*segment).SetReadByAll(
+        this->ReadByAll && !segment->GetDirectory().IsOnOwnersDisk());
     }
   }
   this->Messages.Insist([this] { this->Configure(); });
@@ -301,8 +343,12 @@ void BlockStore::GiveUpCopies()
 // -- Segments --------------------------------------------------------------------------------------
 
 std::shared_ptr<BlockSegment> BlockStore::Publish(std::string_view what, BlockDirectory directory,
-  FragmentSource& source, FragmentSink& sink, FunctionRef<void(double)> progress)
+  FragmentSource& source, FragmentSink& sink, FunctionRef<void(double)> progress, Place place)
 {
+  if (place == Place::Scratch)
+  {
+    return this->PublishToScratch(what, std::move(directory), source, sink, progress);
+  }
   Decision fallback;
   Decision decision = this->Decide(what, &directory, fallback);
   const auto publish = [&](auto& store)
@@ -341,6 +387,56 @@ std::shared_ptr<BlockSegment> BlockStore::Publish(
   this->Segments.Add(segment);
   this->PutInForce(std::move(decision));
   ++this->Publications;
+  return segment;
+}
+
+std::shared_ptr<BlockSegment> BlockStore::PublishToScratch(std::string_view what,
+  BlockDirectory&& directory, FragmentSource& source, FragmentSink& sink,
+  FunctionRef<void(double)> progress)
+{
+  const int ranks = this->Messages.GetSize();
+  std::shared_ptr<ScratchBlocks> blocks;
+  std::shared_ptr<ReadingSource> reading;
+  this->Messages.RunTogether(what,
+    [&]
+    {
+      directory.SetOnOwnersDisk();
+      static_assert(ScratchBlocks::MostInMemory <= ReadingSource::MostReads,
+        "what is set aside for blocks that are read suffices before, too");
+      directory.AddIndexBytes(ReadingSource::MostReads * directory.GetLargest() +
+        ScratchBlocks::CountTableBytes(directory, ranks));
+      blocks = std::make_shared<ScratchBlocks>(directory, this->Messages.GetRank(), ranks);
+      reading = std::make_shared<ReadingSource>(this->Messages, blocks);
+    });
+  // First of all, so that caches have left what it takes.
+  const auto segment = this->Publish(what, std::move(directory), std::move(reading));
+  try
+  {
+    this->Messages.RunTogether(what, [&] { blocks->Open(this->Current.ScratchDirectory); });
+    const auto absorb = [&](BlockId id, const std::byte* bytes, std::size_t count)
+    { blocks->Absorb(id, bytes, count, sink); };
+    using Progress = FunctionRef<void(double)>;
+    const auto ofFilling = [&](double done) { progress(ShareOfFilling * done); };
+    const auto ofFinishing = [&](double done)
+    { progress(ShareOfFilling + (1.0 - ShareOfFilling) * done); };
+    const FirstFailure failure = FragmentStream::Run(this->Messages, segment->GetDirectory(),
+      source, absorb, progress ? Progress(ofFilling) : Progress());
+    this->Messages.RunTogether(what,
+      [&]
+      {
+        failure.Throw();
+        blocks->Finish(sink, progress ? Progress(ofFinishing) : Progress());
+        if (progress)
+        {
+          progress(1.0);
+        }
+      });
+  }
+  catch (...)
+  {
+    this->Retire(segment);
+    throw;
+  }
   return segment;
 }
 

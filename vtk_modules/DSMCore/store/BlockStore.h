@@ -56,6 +56,9 @@ public:
     bool Prefetch = true;
     /// Ranks of one host read one another's blocks in place. For what is published from then on.
     bool HostSharing = true;
+    /// A directory on the node's own disk for bricks that do not fit the memory; empty: none. For what is
+    /// published from then on; on every rank, or on none.
+    std::string ScratchDirectory;
     /// Page based only; see PagedStore.
     FaultHandling Faults = FaultHandling::Automatic;
     bool PureFaulting = false;
@@ -80,11 +83,20 @@ public:
   /// and the next Settle tries again.
   void Settle();
 
-  /// Collective, between frames; see ObjectStore. Throws the same Error on every rank, before any
-  /// data move, when a rank's memory does not suffice: with the number of bytes needed and the number
-  /// of ranks that would do.
+  /// Where the blocks of a publication are kept.
+  enum class Place
+  {
+    Memory,
+    Scratch ///< in a file in the scratch directory of the rank that owns them
+  };
+
+  /// Collective, between frames; see ObjectStore. Throws the same MemoryShortage on every rank, before
+  /// any data move, when a rank's memory does not suffice: with the number of bytes needed and the number
+  /// of ranks that would do. In Scratch, they leave memory, and are read again when they are needed;
+  /// `sink` and `source` have the same to do.
   std::shared_ptr<BlockSegment> Publish(std::string_view what, BlockDirectory directory,
-    FragmentSource& source, FragmentSink& sink, FunctionRef<void(double)> progress = {});
+    FragmentSource& source, FragmentSink& sink, FunctionRef<void(double)> progress = {},
+    Place place = Place::Memory);
 
   /// Collective. As above, but the blocks are brought by `source` when they are needed, and leave memory
   /// again; see ObjectStore. By the owner, once for all, or, where Replicated was chosen, by each rank
@@ -134,7 +146,8 @@ private:
   struct Stance
   {
     MemoryPlan::Budget Budget;
-    std::uint64_t Choice; ///< digest of what must be equal on all ranks
+    std::uint64_t Choice;          ///< digest of what must be equal on all ranks
+    std::uint64_t LacksHostMemory; ///< 1: what comes next is more than the host has left
   };
 
   /// How things are to be kept, agreed by all ranks, and what the user is told.
@@ -147,8 +160,12 @@ private:
 
   /// Collective: for what is published and, unless null, for what is to be, which may then be added
   /// without fail. `fallback`: should copies fail that Automatic wants. Throws the same Error, which
-  /// begins with `what`, on every rank.
+  /// begins with `what`, on every rank: MemoryShortage, when it is that.
   Decision Decide(std::string_view what, const BlockDirectory* next, Decision& fallback);
+  /// Asked before any rank takes memory. Only where there is another place than memory.
+  bool LacksHostMemory(const BlockDirectory* next) const;
+  std::shared_ptr<BlockSegment> PublishToScratch(std::string_view what, BlockDirectory&& directory,
+    FragmentSource& source, FragmentSink& sink, FunctionRef<void(double)> progress);
   MemoryPlan MakePlan(const std::vector<Stance>& stances, const BlockDirectory* next) const;
   void FindBudget();
   /// Of the stores that fetch.

@@ -28,6 +28,8 @@ MemoryPlan::MemoryPlan(std::vector<const BlockDirectory*> segments, const HostGr
   , OneGroup(groups.GetGroupCount() == 1)
   , AnyFromSource(std::any_of(this->Segments.begin(), this->Segments.end(),
       [](const BlockDirectory* directory) { return directory->IsFromSource(); }))
+  , AnyOnOwnersDisk(std::any_of(this->Segments.begin(), this->Segments.end(),
+      [](const BlockDirectory* directory) { return directory->IsOnOwnersDisk(); }))
   , Blocks(BlockAlignment)
   , Pages(page)
   , Copies(this->Budgets.size(), 0)
@@ -244,13 +246,15 @@ void MemoryPlan::Refuse(MemoryOrganization organization, int rank) const
     (replicated ? "" : ", a cache of one brick and messages included") + ") of rank " +
     std::to_string(rank) + "'s memory, which may take " +
     FormatMebibytes(replicated ? budget.Bytes : budget.Limit) +
-    ". Raise the memory per rank (DSMMemory), ";
+    ". Raise the memory per rank (DSMMemory), " +
+    (this->AnyOnOwnersDisk ? "" : "let bricks go to a disk (DSMScratchDirectory), ");
   if (replicated)
   {
-    throw Error(text + "or choose the object based memory organisation (DSMMemoryOrganization).");
+    throw MemoryShortage(
+      text + "or choose the object based memory organisation (DSMMemoryOrganization).");
   }
   const int ranks = this->FindRankCount(organization);
-  throw Error(text +
+  throw MemoryShortage(text +
     (ranks > 0 ? "or use at least " + std::to_string(ranks) + " ranks with as much memory."
                : std::string("since no number of ranks would do.")));
 }
@@ -260,10 +264,14 @@ std::string MemoryPlan::Explain(MemoryOrganization wanted, MemoryOrganization ch
   if (this->AnyFromSource)
   {
     const bool byAll = wanted == MemoryOrganization::Replicated;
+    const std::string scratch = this->AnyOnOwnersDisk
+      ? "what does not fit the memory is in scratch files (DSMScratchDirectory), and "
+      : "";
     return std::string("The memory organisation is ") + GetText(byAll ? wanted : chosen) +
-      (wanted == MemoryOrganization::Automatic ? "" : ", as chosen") +
-      ": bricks that are on a disk come to memory when they are needed, read " +
-      (byAll ? "by each rank that needs them." : "once for all ranks.");
+      (wanted == MemoryOrganization::Automatic ? "" : ", as chosen") + ": " + scratch +
+      "bricks that are on a disk come to memory when they are needed, read " +
+      (byAll ? "by each rank that needs them" : "once for all ranks") +
+      (byAll && this->AnyOnOwnersDisk ? ", those in scratch files once for all." : ".");
   }
   std::string text = std::string("The memory organisation is ") + GetText(chosen);
   if (wanted != MemoryOrganization::Automatic)

@@ -37,7 +37,7 @@ public:
     std::vector<Budget> budgets, std::size_t page);
 
   /// `wanted`, or what Automatic comes to. Where sources bring blocks, what would be replicated is object
-  /// based, too. Throws Error when a rank's memory does not suffice, with
+  /// based, too. Throws MemoryShortage when a rank's memory does not suffice, with
   /// the number needed and, of the organisations that share the data out, the number of ranks that
   /// would do.
   MemoryOrganization Decide(MemoryOrganization wanted) const;
@@ -102,6 +102,7 @@ private:
   std::vector<Budget> Budgets;
   bool OneGroup;
   bool AnyFromSource;
+  bool AnyOnOwnersDisk;
   std::size_t LargestGroup = 0; ///< the most ranks that share a host's memory
   Sums Blocks;
   Sums Pages;

@@ -25,6 +25,7 @@
 #include <cstring>
 #include <functional>
 #include <set>
+#include <string_view>
 #include <tuple>
 
 namespace
@@ -57,6 +58,19 @@ void HideEdges(vtkPolyData* data)
   flags->FillValue(0);
   data->GetPointData()->SetAttribute(flags, vtkDataSetAttributes::EDGEFLAG);
 }
+
+/// Where a mesh is published.
+struct PlacedStore
+{
+  dsm::BlockStore& Store;
+  dsm::BlockStore::Place Place;
+
+  auto Publish(std::string_view what, dsm::BlockDirectory&& directory, dsm::FragmentSource& source,
+    dsm::FragmentSink& sink, dsm::FunctionRef<void(double)> progress) const
+  {
+    return this->Store.Publish(what, std::move(directory), source, sink, progress, this->Place);
+  }
+};
 
 std::vector<vtkDSMMeshBlock> Collect(const vtkDSMMeshInput& input)
 {
@@ -466,11 +480,11 @@ std::shared_ptr<const rt::TriangleMesh> vtkDSMMeshData::PublishMesh(
     });
   rt::TriangleMeshSettings settings;
   settings.Threads = group->GetStore().GetSettings().Workers;
-  const std::shared_ptr<rt::TriangleMesh> mesh = group->WithRoom(
-    [&]
+  const std::shared_ptr<rt::TriangleMesh> mesh = group->PublishWithRoom(
+    [&](dsm::BlockStore::Place place)
     {
-      return rt::PublishMesh(
-        "the surface", piece, settings, group->GetStore(), messenger, progress);
+      PlacedStore store{ group->GetStore(), place };
+      return rt::PublishMesh("the surface", piece, settings, store, messenger, progress);
     });
   const std::shared_ptr<const rt::TriangleMesh> shared(mesh.get(),
     [group, mesh](const rt::TriangleMesh*) { group->GetStore().Retire(mesh->Segment); });

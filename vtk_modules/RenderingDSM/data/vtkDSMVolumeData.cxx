@@ -384,12 +384,12 @@ std::shared_ptr<const rt::VoxelField> vtkDSMVolumeData::PublishLattice(std::size
       return field;
     }
   }
-  field->Segment = this->Group->WithRoom(
-    [&]
+  field->Segment = this->Group->PublishWithRoom(
+    [&](dsm::BlockStore::Place place)
     {
       rt::VoxelFragmentSource source(field->Lattice, sources);
       rt::VoxelBrickSink sink(field->Lattice);
-      return this->Group->GetStore().Publish(what, *directory, source, sink, progress);
+      return this->Group->GetStore().Publish(what, *directory, source, sink, progress, place);
     });
   field->Hierarchy = rt::MacrocellHierarchy(field->Lattice, *field->Segment, messenger);
   return field;

@@ -141,11 +141,15 @@ void vtkDSMSceneMesh::Update(const std::shared_ptr<vtkDSMRankGroup>& group, bool
 {
   this->Messages.clear();
   // What was refused may succeed with other settings of the memory.
-  const unsigned version = group->GetSettingsVersion();
+  const unsigned version = group->GetRetryVersion();
   if (newData || (!this->Failure.empty() && this->FailureVersion != version))
   {
     this->Failure.clear();
-    this->Reported.clear();
+    if (newData || this->ReportedVersion != group->GetSettingsVersion())
+    {
+      this->ReportedVersion = group->GetSettingsVersion();
+      this->Reported.clear();
+    }
     this->Taken = true;
     this->Threads = group->GetStore().GetSettings().Workers;
     std::vector<std::uint64_t> stamp = this->GetStamp();

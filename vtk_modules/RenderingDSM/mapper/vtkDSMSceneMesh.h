@@ -49,7 +49,8 @@ private:
   bool Taken = false;
   std::unique_ptr<vtkDSMMeshData> Data;
   std::string Failure;
-  unsigned FailureVersion = 0; ///< of the group's settings
+  unsigned FailureVersion = 0;  ///< the group's when it was tried
+  unsigned ReportedVersion = 0; ///< of its settings
   std::shared_ptr<const rt::Texture> Picture;
   /// Of the texture, its image and what places it.
   std::vector<std::uint64_t> PictureSource;

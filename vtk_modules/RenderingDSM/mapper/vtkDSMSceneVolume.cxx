@@ -67,21 +67,21 @@ void vtkDSMSceneVolume::GiveUpBlocks()
 }
 
 std::shared_ptr<vtkDSMSceneVolume::Published> vtkDSMSceneVolume::Require(
-  const vtkDSMVolumeData::Choice& wanted, const char* purpose, unsigned settingsVersion,
+  const vtkDSMVolumeData::Choice& wanted, const char* purpose, unsigned retryVersion,
   const std::vector<std::shared_ptr<Published>>& known)
 {
   const vtkDSMVolumeData::Choice choice = this->Data->Normalize(wanted);
   for (const auto& candidate : known)
   {
     if (candidate && candidate->Choice == choice &&
-      (candidate->Failure.empty() || candidate->SettingsVersion == settingsVersion))
+      (candidate->Failure.empty() || candidate->RetryVersion == retryVersion))
     {
       return candidate;
     }
   }
   auto published = std::make_shared<Published>();
   published->Choice = choice;
-  published->SettingsVersion = settingsVersion;
+  published->RetryVersion = retryVersion;
   try
   {
     vtkDSMVolumeMapper* mapper = this->Mapper;
@@ -170,7 +170,7 @@ void vtkDSMSceneVolume::Update(const std::shared_ptr<vtkDSMRankGroup>& group, bo
   }
   const std::shared_ptr<Published> oldIso = this->Iso;
   const std::shared_ptr<Published> oldColor = this->Color;
-  const unsigned version = group->GetSettingsVersion();
+  const unsigned version = group->GetRetryVersion();
   this->Iso = this->Require({ this->GetIsoArray(), mapper->GetIsoComponent() }, "isosurface array",
     version, { oldIso, oldColor });
   if (this->Iso != oldIso)

@@ -33,7 +33,7 @@ private:
     vtkDSMVolumeData::Choice Choice;
     std::shared_ptr<const vtkDSMVolumeData::Publication> Publication; ///< null when it failed
     std::string Failure;
-    unsigned SettingsVersion = 0; ///< of the memory's settings when it was tried
+    unsigned RetryVersion = 0; ///< the group's when it was tried
     /// Empty when it failed.
     const vtkDSMVolumeData::Fields& GetFields() const;
   };
@@ -42,7 +42,7 @@ private:
   void TakeData(const std::shared_ptr<vtkDSMRankGroup>& group);
   void KeepUnchanged(dsm::Messenger& messenger);
   std::shared_ptr<Published> Require(const vtkDSMVolumeData::Choice& choice, const char* purpose,
-    unsigned settingsVersion, const std::vector<std::shared_ptr<Published>>& known);
+    unsigned retryVersion, const std::vector<std::shared_ptr<Published>>& known);
   /// Collective. Finds the isovalue for a first look at the array, once for an array.
   void SuggestIsovalue(dsm::Messenger& messenger);
   /// Whether isovalues and look come from the volume's property; else they are the mapper's.

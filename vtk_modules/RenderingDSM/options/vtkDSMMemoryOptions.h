@@ -15,6 +15,8 @@
 #include "vtkObject.h"
 #include "vtkRenderingDSMModule.h" // for the export macro
 
+#include <string>
+
 class VTKRENDERINGDSM_EXPORT vtkDSMMemoryOptions : public vtkObject
 {
 public:
@@ -54,6 +56,16 @@ public:
    */
   vtkSetClampMacro(Memory, int, 0, VTK_INT_MAX);
   vtkGetMacro(Memory, int);
+  ///@}
+
+  ///@{
+  /**
+   * A directory on the own disk of each rank's node, for bricks that do not fit the memory: they go to a
+   * file without a name there, which ends with the process, instead of being refused. Empty (the
+   * default): none. The first among all datasets that is given counts.
+   */
+  virtual void SetScratchDirectory(const char* directory);
+  const char* GetScratchDirectory() const { return this->ScratchDirectory.c_str(); }
   ///@}
 
   ///@{
@@ -110,6 +122,7 @@ private:
   int MemoryOrganization = Automatic;
   bool HostSharing = true;
   int Memory = 0;
+  std::string ScratchDirectory;
   int CacheSize = 256;
   int NumberOfThreads = 0;
   int Scheduler = WorkStealing;

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <string>
 
 /// How the ranks keep their bricks, as one object of a scene, a scene, or all scenes together ask for
 /// it. All that is shown shares one memory, so what differs is merged, by the present values alone:
@@ -21,6 +22,8 @@ struct vtkDSMMemorySettings
   std::uint64_t MemoryBytes = 0;
   /// The most that the cache may take of it. The largest counts.
   std::uint64_t CacheBytes = std::uint64_t(1) << 20;
+  /// For bricks that do not fit the memory; empty: none. The first that is given counts.
+  std::string ScratchDirectory;
   /// Tracing threads of each rank; 0: the cores of the host divided by its ranks. The largest counts.
   int Threads = 0;
   /// The central queue when anyone wants it.
@@ -37,6 +40,10 @@ struct vtkDSMMemorySettings
     this->HostSharing = this->HostSharing && other.HostSharing;
     this->MemoryBytes = std::max(this->MemoryBytes, other.MemoryBytes);
     this->CacheBytes = std::max(this->CacheBytes, other.CacheBytes);
+    if (this->ScratchDirectory.empty())
+    {
+      this->ScratchDirectory = other.ScratchDirectory;
+    }
     this->Threads = std::max(this->Threads, other.Threads);
     if (other.Scheduling == rt::TileScheduling::CentralQueue)
     {

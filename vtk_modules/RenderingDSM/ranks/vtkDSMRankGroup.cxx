@@ -161,6 +161,7 @@ void vtkDSMRankGroup::Configure(Publisher* publisher, const vtkDSMMemorySettings
   next.Organization = merged.Organization;
   next.HostSharing = merged.HostSharing;
   next.MemoryBytes = merged.MemoryBytes;
+  next.ScratchDirectory = merged.ScratchDirectory;
   next.CacheBytes = static_cast<std::size_t>(merged.CacheBytes);
   next.Workers = merged.Threads > 0 ? merged.Threads : coresPerRank;
   const auto isPaged = [](dsm::MemoryOrganization organization)
@@ -174,12 +175,33 @@ void vtkDSMRankGroup::Configure(Publisher* publisher, const vtkDSMMemorySettings
     }
   }
   if (next.Organization != old.Organization || next.HostSharing != old.HostSharing ||
-    next.MemoryBytes != old.MemoryBytes)
+    next.MemoryBytes != old.MemoryBytes || next.ScratchDirectory != old.ScratchDirectory)
   {
     ++this->SettingsVersion;
   }
   this->Messenger.SetSilenceLimit(std::isinf(merged.SilenceLimit) ? 0.0 : merged.SilenceLimit);
   this->Store.SetSettings(next);
+}
+
+bool vtkDSMRankGroup::Settle()
+{
+  try
+  {
+    this->WithRoom([this] { this->Store.Settle(); });
+    return true;
+  }
+  catch (const dsm::MemoryShortage&)
+  {
+    if (this->Store.GetSettings().ScratchDirectory.empty())
+    {
+      throw;
+    }
+  }
+  for (const auto& [publisher, settings] : this->Publishers)
+  {
+    publisher->GiveUpBlocks();
+  }
+  return false;
 }
 
 /// Returns whether there was anything to free.

@@ -86,11 +86,45 @@ public:
     }
   }
 
+  /// Collective, likewise, for `publish`, which is told where the blocks are to be: in a scratch directory,
+  /// where the user has given one and nothing else makes room in memory.
+  template <class Publish>
+  auto PublishWithRoom(const Publish& publish)
+  {
+    using Place = dsm::BlockStore::Place;
+    try
+    {
+      return this->WithRoom([&] { return publish(Place::Memory); });
+    }
+    catch (const dsm::MemoryShortage&)
+    {
+      if (this->Store.GetSettings().ScratchDirectory.empty())
+      {
+        throw;
+      }
+    }
+    try
+    {
+      return publish(Place::Scratch);
+    }
+    catch (const dsm::Error&)
+    {
+      ++this->ScratchFailures;
+      throw;
+    }
+  }
+
+  /// Collective: the store keeps what is published as it is asked to. False when all publishers had to give
+  /// up their blocks, since a part of them has to go to the scratch directory. Throws dsm::Error.
+  bool Settle();
+
   /// Local: gives the memory of what was freed back to the system.
   static void ReturnMemory();
 
   /// Grows when memory is to be kept otherwise: what was refused may succeed now.
   unsigned GetSettingsVersion() const { return this->SettingsVersion; }
+  /// Grows then, too, and whenever a scratch directory was of no use: there may be room in it the next time.
+  unsigned GetRetryVersion() const { return this->SettingsVersion + this->ScratchFailures; }
 
   /// Says on rank 0, in the output window, what Automatic has chosen; again when that changes.
   void TellOrganization();
@@ -102,6 +136,7 @@ private:
   /// In the order in which they joined, with what they ask for.
   std::vector<std::pair<Publisher*, std::optional<vtkDSMMemorySettings>>> Publishers;
   unsigned SettingsVersion = 0;
+  unsigned ScratchFailures = 0;
   dsm::Messenger Messenger;
   dsm::BlockStore Store;
   rt::FrameRenderer FrameRenderer;

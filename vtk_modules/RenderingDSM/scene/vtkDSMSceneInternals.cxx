@@ -114,7 +114,7 @@ void vtkDSMScene::Internals::Update()
   dsm::Messenger& messenger = this->Group->GetMessenger();
   const auto& members = this->Members.GetShown();
   // To publish in step, the ranks must agree on the settings of the memory; threads may differ.
-  using Digest = std::array<std::uint64_t, 4>;
+  using Digest = std::array<std::uint64_t, 5>;
   std::vector<std::byte> mine;
   messenger.RunTogether("Updating the data",
     [&]
@@ -122,8 +122,9 @@ void vtkDSMScene::Internals::Update()
       this->Settings = this->Members.GetMemorySettings();
       this->Group->Configure(this, this->Settings);
       const vtkDSMMemorySettings& settings = this->Settings;
-      mine = dsm::Encode(Digest{ static_cast<std::uint64_t>(settings.Organization),
-        settings.HostSharing ? 1u : 0u, settings.MemoryBytes, settings.CacheBytes });
+      mine = dsm::Encode(
+        Digest{ static_cast<std::uint64_t>(settings.Organization), settings.HostSharing ? 1u : 0u,
+          settings.MemoryBytes, settings.CacheBytes, settings.ScratchDirectory.empty() ? 0u : 1u });
       for (const auto& member : members)
       {
         member.State->UpdatePiece(messenger.GetRank(), messenger.GetSize());
@@ -141,19 +142,21 @@ void vtkDSMScene::Internals::Update()
     if (!std::equal(flags.begin(), flags.begin() + sizeof(Digest), all.front().begin()))
     {
       throw dsm::Error("The ranks have different settings of the memory (DSMMemoryOrganization, "
-                       "DSMHostSharing, DSMMemory, DSMCacheSize); the frame was left out. Set them "
-                       "alike.");
+                       "DSMHostSharing, DSMMemory, DSMCacheSize, DSMScratchDirectory); the "
+                       "frame was left out. Set them alike.");
     }
   }
+  bool isEmpty = false;
   if (this->SettledVersion != this->Group->GetSettingsVersion())
   {
     this->SettledVersion = this->Group->GetSettingsVersion();
-    this->Group->WithRoom([this] { this->Group->GetStore().Settle(); });
+    isEmpty = !this->Group->Settle();
   }
   for (std::size_t index = 0; index < members.size(); ++index)
   {
-    const bool newData = std::any_of(all.begin(), all.end(),
-      [=](const auto& flags) { return flags[sizeof(Digest) + index] != std::byte(0); });
+    const bool newData = isEmpty ||
+      std::any_of(all.begin(), all.end(),
+        [=](const auto& flags) { return flags[sizeof(Digest) + index] != std::byte(0); });
     members[index].State->Update(this->Group, newData);
   }
 }

@@ -214,6 +214,7 @@ vtkDSMMemorySettings vtkDSMTranslation::ToMemorySettings(vtkDSMMemoryOptions* op
   settings.HostSharing = options->GetHostSharing();
   settings.MemoryBytes = static_cast<std::uint64_t>(options->GetMemory()) << 20;
   settings.CacheBytes = static_cast<std::uint64_t>(options->GetCacheSize()) << 20;
+  settings.ScratchDirectory = options->GetScratchDirectory();
   settings.Threads = options->GetNumberOfThreads();
   settings.SilenceLimit = options->GetSilenceLimit() > 0 ? options->GetSilenceLimit()
                                                          : std::numeric_limits<double>::infinity();

@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "DSMCore/memory/ScratchFile.h"
+
+#include "DSMCore/base/Error.h"
+#include "DSMCore/memory/HostMemory.h"
+
+#include <cerrno>
+#include <cstdlib>
+#include <cstring>
+#include <utility>
+
+#include <fcntl.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+namespace dsm
+{
+
+ScratchFile::ScratchFile(std::string directory, std::uint64_t bytes)
+  : Directory(std::move(directory))
+  , Bytes(bytes)
+{
+  this->Open();
+  try
+  {
+    this->SetAside();
+  }
+  catch (...)
+  {
+    close(this->Descriptor);
+    throw;
+  }
+}
+
+ScratchFile::~ScratchFile()
+{
+  close(this->Descriptor);
+}
+
+void ScratchFile::RefuseRoom(int error) const
+{
+  throw Error("The scratch directory '" + this->Directory +
+    "' (DSMScratchDirectory) cannot take the " + FormatMebibytes(this->Bytes) + " (" +
+    std::to_string(this->Bytes) + " bytes) that this rank needs there: " + std::strerror(error) +
+    ". Free room on its disk, choose another directory, or raise the memory per rank (DSMMemory).");
+}
+
+void ScratchFile::Open()
+{
+#ifdef O_TMPFILE
+  this->Descriptor = open(this->Directory.c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, 0600);
+#endif
+  if (this->Descriptor < 0)
+  {
+    // Not every file system has files that never had a name.
+    std::string name = this->Directory + "/dsm-scratch-XXXXXX";
+    this->Descriptor = mkostemp(name.data(), O_CLOEXEC);
+    if (this->Descriptor >= 0)
+    {
+      unlink(name.c_str());
+    }
+  }
+  if (this->Descriptor < 0)
+  {
+    const int error = errno;
+    if (error == ENOSPC || error == EDQUOT)
+    {
+      this->RefuseRoom(error);
+    }
+    throw Error("No file can be made in the scratch directory '" + this->Directory +
+      "' (DSMScratchDirectory), where this rank needs " + FormatMebibytes(this->Bytes) + " (" +
+      std::to_string(this->Bytes) + " bytes): " + std::strerror(error) +
+      ". It must exist on the node of every rank, and be writable.");
+  }
+}
+
+void ScratchFile::SetAside()
+{
+  // To grow beyond this limit would end the process by a signal.
+  rlimit limit{};
+  if (getrlimit(RLIMIT_FSIZE, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY &&
+    this->Bytes > limit.rlim_cur)
+  {
+    this->RefuseRoom(EFBIG);
+  }
+  int error = 0;
+#ifdef __linux__
+  do
+  {
+    // Unlike posix_fallocate, it does not write all of the file where the file system cannot do it.
+    error =
+      this->Bytes > 0 && fallocate(this->Descriptor, 0, 0, static_cast<off_t>(this->Bytes)) != 0
+      ? errno
+      : 0;
+  } while (error == EINTR);
+  if (error == EOPNOTSUPP || error == ENOSYS)
+#endif
+  {
+    error = ftruncate(this->Descriptor, static_cast<off_t>(this->Bytes)) != 0 ? errno : 0;
+  }
+  if (error != 0)
+  {
+    this->RefuseRoom(error);
+  }
+}
+
+void ScratchFile::Write(std::uint64_t offset, const std::byte* bytes, std::size_t count)
+{
+  while (count > 0)
+  {
+    const ssize_t done = pwrite(this->Descriptor, bytes, count, static_cast<off_t>(offset));
+    if (done < 0 && errno == EINTR)
+    {
+      continue;
+    }
+    if (done <= 0)
+    {
+      this->RefuseRoom(done < 0 ? errno : ENOSPC);
+    }
+    offset += static_cast<std::uint64_t>(done);
+    bytes += done;
+    count -= static_cast<std::size_t>(done);
+  }
+}
+
+void ScratchFile::Read(std::uint64_t offset, std::byte* bytes, std::size_t count) const
+{
+  while (count > 0)
+  {
+    const ssize_t done = pread(this->Descriptor, bytes, count, static_cast<off_t>(offset));
+    if (done < 0 && errno == EINTR)
+    {
+      continue;
+    }
+    if (done <= 0)
+    {
+      throw Error("The scratch file in '" + this->Directory +
+        "' (DSMScratchDirectory) cannot be read at byte " + std::to_string(offset) + ": " +
+        (done < 0 ? std::strerror(errno) : "it ends there") +
+        ". Is its disk in order? Choose another directory.");
+    }
+    offset += static_cast<std::uint64_t>(done);
+    bytes += done;
+    count -= static_cast<std::size_t>(done);
+  }
+}
+
+} // namespace dsm

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef dsm_FragmentStream_h
+#define dsm_FragmentStream_h
+
+#include "DSMCore/base/FirstFailure.h"
+#include "DSMCore/base/FunctionRef.h"
+#include "DSMCore/publish/BlockDirectory.h"
+#include "DSMCore/publish/Publication.h"
+#include "DSMCore/transport/Messenger.h"
+
+#include <cstddef>
+
+namespace dsm
+{
+
+/// Moves every rank's fragments to the owners of their blocks, in a bounded stream (BlockStream).
+/// Communication thread.
+class FragmentStream
+{
+public:
+  /// A fragment of a block that this rank owns; may throw.
+  using Absorb = FunctionRef<void(BlockId id, const std::byte* bytes, std::size_t count)>;
+
+  /// Collective; begins a session. `progress` (may be empty) is told this rank's part done, below 1.
+  /// Returns what has gone wrong on this rank; it is for the caller to let the ranks agree.
+  static FirstFailure Run(Messenger& messenger, const BlockDirectory& directory,
+    FragmentSource& source, Absorb absorb, FunctionRef<void(double)> progress);
+};
+
+} // namespace dsm
+
+#endif
