@@ -79,10 +79,8 @@ def show(plugin, path, memory, places):
     before = look(pids)
     start = time.time()
     volume = simple.DSMVolumeReader(FileName=path)
-    volume.UpdatePipelineInformation()
-    extent = volume.GetDataInformation().GetExtent()
-    edge = max(extent[1::2]) + 1
     display = simple.Show(volume, view)
+    edge = volume.GetDataInformation().GetExtent()[1] + 1
     simple.ColorBy(display, None)
     display.Representation = "DSM Ray Traced"
     display.DSMMemory = memory
