@@ -7,7 +7,7 @@ import os
 import time
 import traceback
 
-from paraview import simple
+from paraview import simple, smstate
 
 SAMPLES = 64
 STATE = os.environ["DSM_TEST_STATE"]
@@ -43,7 +43,11 @@ def load(name):
     for source in simple.GetSources().values():
         simple.Delete(source)
     before = simple.GetRenderViews()
-    simple.LoadState(name)
+    if name.endswith(".py"):
+        with open(name, encoding="utf-8") as text:
+            exec(compile(text.read(), name, "exec"), {"__name__": "state"})
+    else:
+        simple.LoadState(name)
     (view,) = [view for view in simple.GetRenderViews() if view not in before]
     return view
 
@@ -53,7 +57,8 @@ def go(view):
     show(view)
     yield view, "a dataset"
     simple.SaveState(STATE + ".pvsm")
-    simple.SaveState(STATE + ".py")
+    with open(STATE + ".py", "w", encoding="utf-8") as text:
+        text.write(smstate.get_state())  # SaveState writes XML, whatever the name
     for suffix in (".pvsm", ".py"):
         yield load(STATE + suffix), "a state (" + suffix + ")"
 

@@ -44,6 +44,12 @@ def get_memory(process):
         return sum(int(line.split()[1]) for line in text if line.startswith(("Pss_Anon:", "Pss_Shmem:")))
 
 
+def holds_blocks(process):
+    """Whether a process maps any of the ray tracer's blocks."""
+    with open(f"/proc/{process}/maps", encoding="utf-8") as text:
+        return "memfd:dsm blocks" in text.read()
+
+
 def is_listening(port):
     """Without connecting, which a server would take for its client."""
     with open("/proc/net/tcp", encoding="utf-8") as text:

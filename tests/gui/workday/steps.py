@@ -92,6 +92,8 @@ def prepare(simple):
     simple.GetLayout().SetSize(480, 400)
     view = simple.GetActiveView()
     view.OrientationAxesVisibility = 0
+    if TRACED != "DSM Ray Traced":  # then the server is to draw, too
+        simple.GetSettingsProxy("RenderViewSettings").RemoteRenderThreshold = 0.0
     simple.Render()
 
 
@@ -108,12 +110,13 @@ events_only("Load Plugin on the server", menu("menuTools", "actionManage_Plugins
     (PLUGINS + "/buttonBox/1QPushButton0", "activate", ""),
 ], look="none")
 def choose_plain_look(simple):
-    """Contour's."""
-    settings = simple.GetSettingsProxy("DSMRayTracerSettings")
-    look = settings.SMProxy.GetProperty("DSMLook") if settings else None
-    if look:
-        look.SetElement(0, 0)
-        settings.SMProxy.UpdateVTKObjects()
+    """Contour's; kept as the settings dialog keeps it, for Delete All reads all settings anew."""
+    from paraview.modules.vtkRemotingServerManager import vtkSMSettings
+
+    settings = simple.GetSettingsProxy("DSMRayTracerSettings").SMProxy
+    settings.GetProperty("DSMLook").SetElement(0, 0)
+    settings.UpdateVTKObjects()
+    vtkSMSettings.GetInstance().SetProxySettings(settings)
 
 
 events_only("Wavelet", choose("menuSources", "RTAnalyticSource"), look="none")
@@ -209,16 +212,27 @@ def remove_light(simple):
 # -- Parts and places -----------------------------------------------------------------------------------
 
 
-@step("a clipping plane")
+@step("a clipping plane", look="shown")
 def clip(simple):
     set_display(simple, DSMClip=1, DSMClipOrigin=[0.0, 0.0, 0.0], DSMClipNormal=[-1.0, -0.5, -0.3])
+
+
+# The panel shows its widgets a moment after the property has changed; ParaView's own pictures have none.
+@step("without the plane's widget")
+def hide_plane(simple):
     simple.HideInteractiveWidgets(proxy=get_display(simple))
+    simple.Render()
 
 
-@step("a cropping box")
+@step("a cropping box", look="shown")
 def crop(simple):
     set_display(simple, DSMClip=0, DSMCropping=1, DSMCroppingBox=[-10.0, 4.0, -10.0, 10.0, -10.0, 6.0])
+
+
+@step("without the box's widget")
+def hide_box(simple):
     simple.HideInteractiveWidgets(proxy=get_display(simple))
+    simple.Render()
 
 
 @step("all of it", look="like a colour, shiny")

@@ -12,7 +12,7 @@ from paraview import simple
 from vtkmodules.vtkIOImage import vtkPNGWriter
 from vtkmodules.vtkRenderingCore import vtkWindowToImageFilter
 
-from server_of_ranks import find_ranks, get_memory
+from server_of_ranks import find_ranks, get_memory, holds_blocks
 from steps import STEPS
 
 FOLDER = os.environ["DSM_WORKDAY"]
@@ -85,7 +85,9 @@ def describe(step, number):
     if step.look == "compare":
         simple.SaveState(os.path.join(FOLDER, f"{number:02}.pvsm"))
     entry["said"] = hear()
-    entry["memory"] = [get_memory(rank) for rank in find_ranks(PARENT)] if PARENT else []
+    ranks = find_ranks(PARENT) if PARENT else []
+    entry["memory"] = [get_memory(rank) for rank in ranks]
+    entry["blocks"] = [holds_blocks(rank) for rank in ranks]
     return entry
 
 

@@ -457,7 +457,7 @@ void vtkDSMMeshData::Publish()
 std::shared_ptr<const rt::TriangleMesh> vtkDSMMeshData::PublishMesh(
   const Key& kind, const std::function<void(double)>& progress)
 {
-  const std::shared_ptr<vtkDSMRankGroup> group = this->Group;
+  std::shared_ptr<vtkDSMRankGroup> group = this->Group;
   dsm::Messenger& messenger = group->GetMessenger();
   vtkDSMMeshWish wish = this->Input.Wish;
   wish.EdgeFlags = this->Flagged.count(kind.Group) != 0;
@@ -480,14 +480,20 @@ std::shared_ptr<const rt::TriangleMesh> vtkDSMMeshData::PublishMesh(
     });
   rt::TriangleMeshSettings settings;
   settings.Threads = group->GetStore().GetSettings().Workers;
-  const std::shared_ptr<rt::TriangleMesh> mesh = group->PublishWithRoom(
+  std::shared_ptr<rt::TriangleMesh> mesh = group->PublishWithRoom(
     [&](dsm::BlockStore::Place place)
     {
       PlacedStore store{ group->GetStore(), place };
       return rt::PublishMesh("the surface", piece, settings, store, messenger, progress);
     });
+  // The group's publications hold what this captures after the last user has left, and so the group itself.
   const std::shared_ptr<const rt::TriangleMesh> shared(mesh.get(),
-    [group, mesh](const rt::TriangleMesh*) { group->GetStore().Retire(mesh->Segment); });
+    [group, mesh](const rt::TriangleMesh*) mutable
+    {
+      const auto last = std::move(group);
+      last->GetStore().Retire(mesh->Segment);
+      mesh.reset();
+    });
   group->GetPublications().Add(content, shared);
   return shared;
 }

@@ -469,13 +469,15 @@ std::shared_ptr<rt::VoxelField> vtkDSMVolumeData::CreateField(std::size_t number
   const rt::Box whole{ rt::Index3(0), lattice.Points - rt::Index3(1) };
   masked = masked || !vtkDSMLatticePlan::IsCovered(whole, parts);
 
-  const std::shared_ptr<vtkDSMRankGroup> group = this->Group;
+  std::shared_ptr<vtkDSMRankGroup> group = this->Group;
+  // The group's publications hold what this captures after the last user has left, and so the group itself.
   std::shared_ptr<rt::VoxelField> field(new rt::VoxelField,
-    [group](rt::VoxelField* old)
+    [group](rt::VoxelField* old) mutable
     {
+      const auto last = std::move(group);
       if (old->Segment)
       {
-        group->GetStore().Retire(old->Segment);
+        last->GetStore().Retire(old->Segment);
       }
       delete old;
     });
