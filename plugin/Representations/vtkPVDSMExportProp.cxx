@@ -12,6 +12,7 @@
 #include "vtkPolyData.h"
 #include "vtkProcessModule.h"
 #include "vtkPropCollection.h"
+#include "vtkRenderer.h"
 #include "vtkSMProperty.h"
 #include "vtkSMProxy.h"
 #include "vtkSMSession.h"
@@ -58,6 +59,20 @@ vtkSMProxy* FindProxy(vtkObject* representation)
   return found;
 }
 
+/// A selection asks for actors too, since VTK 9.6, and on all ranks while they render together.
+bool IsSelecting(vtkProp* prop)
+{
+  for (int index = 0; index < prop->GetNumberOfConsumers(); ++index)
+  {
+    auto* renderer = vtkRenderer::SafeDownCast(prop->GetConsumer(index));
+    if (renderer && renderer->GetSelector())
+    {
+      return true;
+    }
+  }
+  return false;
+}
+
 } // namespace
 
 vtkStandardNewMacro(vtkPVDSMExportProp);
@@ -78,7 +93,7 @@ void vtkPVDSMExportProp::SetRepresentation(vtkPVDataRepresentation* representati
 
 void vtkPVDSMExportProp::GetActors(vtkPropCollection* actors)
 {
-  if (!this->Representation || !this->Representation->GetVisibility())
+  if (!this->Representation || !this->Representation->GetVisibility() || IsSelecting(this))
   {
     return;
   }

@@ -87,6 +87,15 @@ pixels = render(view, "Translucent")
 covered = get_covered(opaque)
 check((pixels[covered] < opaque[covered]).any(axis=1).mean() > 0.99, "the background shows through")
 
+
+def of_one_rank(name, pixels):
+    """ParaView's own picture: on several ranks, 6.1 loses parts of what is behind translucent surfaces."""
+    saved = os.path.join(OUTPUT, name + ".npy")
+    if get_ranks() == 1:
+        numpy.save(saved, pixels)
+    return numpy.load(saved)
+
+
 # A mesh of ours that is translucent, with an opaque surface in it.
 simple.Hide(source, view)
 ball = simple.Sphere(Radius=9.0, Center=[12.0, 12.0, 12.0], ThetaResolution=60, PhiResolution=60)
@@ -101,7 +110,7 @@ for name in (REPRESENTATION, "Surface"):
     mesh.Opacity = 0.5
     pictures.append(render(view))
     simple.SaveScreenshot(os.path.join(OUTPUT, f"Mesh{len(pictures)}.{get_ranks()}.png"), view)
-difference = abs(pictures[0] - pictures[1])
+difference = abs(pictures[0] - of_one_rank("TranslucentSurface", pictures[1]))
 check(get_covered(pictures[1]).mean() > 0.1, "the mesh shows")
 check((difference > 30).any(axis=2).mean() < 0.002, "a translucent mesh over a surface")
 check(difference.mean() < 0.3, f"which differs by {difference.mean():.2f} from Surface")
@@ -117,7 +126,7 @@ for name in (REPRESENTATION, "Surface"):
     simple.GetColorTransferFunction("Elevation").EnableOpacityMapping = 1
     simple.GetOpacityTransferFunction("Elevation").Points = [0, 0.1, 0.5, 0, 1, 0.7, 0.5, 0]
     pictures.append(render(view))
-difference = abs(pictures[0] - pictures[1])
+difference = abs(pictures[0] - of_one_rank("MappedSurface", pictures[1]))
 check((difference > 30).any(axis=2).mean() < 0.002, "a mesh with mapped opacity over a surface")
 check(difference.mean() < 0.3, f"which differs by {difference.mean():.2f} from Surface")
 simple.Hide(waves, view)
@@ -160,10 +169,7 @@ for opacity in (1.0, 0.5):
             os.path.join(OUTPUT, f"Annotations{opacity}.{len(pictures)}.{get_ranks()}.png"), view)
         simple.ClearSelection(ball)
     # On several ranks ParaView draws the axes over a translucent Surface more than once.
-    reference = os.path.join(OUTPUT, f"annotations{opacity}.npy")
-    if get_ranks() == 1:
-        numpy.save(reference, pictures[1])
-    difference = abs(pictures[0] - numpy.load(reference))
+    difference = abs(pictures[0] - of_one_rank(f"annotations{opacity}", pictures[1]))
     different = (difference > 60).any(axis=2).mean()
     check(different < 0.01, f"axes, legend, text and selection at opacity {opacity}: "
           f"{100 * different:.2f} % of the pixels differ, by {difference.mean():.2f} in the mean")
