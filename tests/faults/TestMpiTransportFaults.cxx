@@ -115,10 +115,10 @@ TEST(MpiTransportFaults, ARankThatGetsNoMemoryLosesNoMessage)
   std::vector<int> expected;
   const auto deliver = [&](dsm::Message&& message)
   {
-    const int number = dsm::DetachTail<int>(message, dsm::MessageKind::BlockReply);
     // Who takes it may not get memory either; what is written keeps compilers from doing without it.
     std::vector<int> room(1);
-    *const_cast<volatile int*>(room.data()) = number;
+    *const_cast<volatile int*>(room.data()) = 1;
+    const int number = dsm::DetachTail<int>(message, dsm::MessageKind::BlockReply);
     EXPECT_TRUE(HoldsOnly(message.Payload, number)) << number;
     received.push_back(number);
   };
