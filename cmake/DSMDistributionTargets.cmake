@@ -17,7 +17,7 @@ endfunction ()
 # ParaView's Qt libraries name more of Qt, and of others, than the panel uses.
 function (dsm_add_targets_of_qt qt)
   foreach (target IN ITEMS
-      Boost::boost LibXml2::LibXml2 "${qt}::Concurrent" "${qt}::Help" "${qt}::Network" "${qt}::OpenGL"
+      Boost::boost LibPROJ::LibPROJ LibXml2::LibXml2 "${qt}::Concurrent" "${qt}::Help" "${qt}::Network" "${qt}::OpenGL"
       "${qt}::OpenGLWidgets" "${qt}::Sql" "${qt}::Svg" "${qt}::Xml")
     if (NOT TARGET "${target}")
       add_library("${target}" INTERFACE IMPORTED)
