@@ -53,13 +53,13 @@ first = show_traced(source, view, DSMIsoArray=["POINTS", "f"], DSMIsoValues=[0.8
 place_camera(view, (1.0, 0.3, 0.3))
 expected = render(view)
 check(get_covered(expected).any(), "the image is drawn")
-for name, properties in (("plain.vtkhdf", {}), ("pressed.h5", {"Compression": "Deflate"}),
-                         ("zstd.vtkhdf", {"Compression": "Zstandard"})):
+for name, properties in (("plain.h5", {}), ("pressed.h5", {"Compression": "Deflate"}),
+                         ("zstd.h5", {"Compression": "Zstandard"})):
     said = save(name, **properties)
     check(said == "", f"{name}: nothing is reported: {said}")
     path = os.path.join(FOLDER, name)
     check(os.path.exists(path) and not os.path.exists(path + ".part"), f"{name}: there is a file")
-    if name != "zstd.vtkhdf":
+    if name != "zstd.h5":
         subprocess.run([PYTHON, "-c", READ_BACK, path], check=True, timeout=60)
         check(True, f"{name}: h5py reads every value")
     reader = simple.DSMVolumeReader(FileName=path)
@@ -70,26 +70,26 @@ for name, properties in (("plain.vtkhdf", {}), ("pressed.h5", {"Compression": "D
     check_equal(render(view), expected, f"{name}: the same picture", tolerance=0)
     simple.Hide(reader, view)
     simple.Show(source, view)
-check(os.path.getsize(os.path.join(FOLDER, "pressed.h5")) < os.path.getsize(os.path.join(FOLDER, "plain.vtkhdf")),
+check(os.path.getsize(os.path.join(FOLDER, "pressed.h5")) < os.path.getsize(os.path.join(FOLDER, "plain.h5")),
       "compressed files are smaller")
 
 # One array only.
-said = save("one.vtkhdf", ChooseArraysToWrite=1, PointDataArrays=["f"], CellDataArrays=[])
+said = save("one.h5", ChooseArraysToWrite=1, PointDataArrays=["f"], CellDataArrays=[])
 check(said == "", f"one array is chosen: {said}")
-reader = simple.DSMVolumeReader(FileName=os.path.join(FOLDER, "one.vtkhdf"))
+reader = simple.DSMVolumeReader(FileName=os.path.join(FOLDER, "one.h5"))
 reader.UpdatePipeline()
 check(reader.PointData.keys() == ["f"] and not reader.CellData.keys(), "and written")
 
 # A file that stays in its file while it is written anew.
-said = save("plain.vtkhdf")
+said = save("plain.h5")
 with Messages() as messages:
-    simple.SaveData(os.path.join(FOLDER, "again.vtkhdf"), proxy=reader)
+    simple.SaveData(os.path.join(FOLDER, "again.h5"), proxy=reader)
 check(messages.text.strip() == "", "values that are in a file are written: " + messages.text)
-again = simple.DSMVolumeReader(FileName=os.path.join(FOLDER, "again.vtkhdf"))
+again = simple.DSMVolumeReader(FileName=os.path.join(FOLDER, "again.h5"))
 again.UpdatePipeline()
 check(again.PointData["f"].GetRange() == reader.PointData["f"].GetRange(), "with their range")
 
 # What cannot be written says why, and leaves nothing.
-said = save("nowhere/x.vtkhdf")
-check("nowhere/x.vtkhdf" in said, "a folder that is not there: " + said)
+said = save("nowhere/x.h5")
+check("nowhere/x.h5" in said, "a folder that is not there: " + said)
 check_equal(render(view), expected, "and the session goes on", tolerance=0)

@@ -196,7 +196,7 @@ TEST_P(PublishingMemoryShortage, FailsEverywhereAndTheNextWorks)
   {
     ++passed;
   }
-  EXPECT_GT(passed, 3) << "there is something to fail"; // standard libraries allocate differently
+  EXPECT_GT(passed, 2) << "there is something to fail"; // standard libraries allocate differently
 }
 
 /// Yields `count` empty fragments.
