@@ -9,10 +9,6 @@ from dsm_testing import *
 load_plugin()
 FOLDER, PYTHON = sys.argv[3:5]
 EXTENT = (-3, 60, 2, 40, 5, 52)
-PARTS = """
-from vtkmodules.vtkCommonExecutionModel import vtkAlgorithm
-self.GetOutputInformation(0).Set(vtkAlgorithm.CAN_PRODUCE_SUB_EXTENT(), 1)
-"""
 source = image_source("""image.SetExtent(piece)
 image.SetOrigin(1, 2, 3)
 image.SetSpacing(1, 1, 2)
@@ -24,8 +20,7 @@ k, j, i = (axis.ravel() for axis in np.meshgrid(*cells, indexing='ij'))
 array = numpy_to_vtk((i + 100 * j + 10000 * k).astype('i4'), deep=True)
 array.SetName('cell')
 image.GetCellData().AddArray(array)
-""", EXTENT)
-source.ScriptRequestInformation = source.ScriptRequestInformation + PARTS
+""", EXTENT, in_parts=True)
 source.UpdatePipeline()
 
 READ_BACK = """

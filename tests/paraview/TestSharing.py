@@ -12,18 +12,9 @@ SCRIPT = """image.SetExtent(piece)
 add(image, points(piece)[0].astype('f4'), 'g')
 add(image, distance(piece).astype('f4'))
 """
-PARTS = """
-from vtkmodules.vtkCommonExecutionModel import vtkAlgorithm
-self.GetOutputInformation(0).Set(vtkAlgorithm.CAN_PRODUCE_SUB_EXTENT(), 1)
-"""
+# Ranks may differ, without contradicting one another, where each has a part of its own.
+volume = image_source(SCRIPT, EXTENT, in_parts=True)
 mesh = simple.Sphere(ThetaResolution=200, PhiResolution=200, Radius=30.0)
-
-
-def volume_of_parts(script):
-    """An image of which each rank makes a part of its own, so that ranks may differ without contradiction."""
-    source = image_source(script, EXTENT)
-    source.ScriptRequestInformation = source.ScriptRequestInformation + PARTS
-    return source
 
 
 class Picture:
@@ -40,7 +31,6 @@ class Picture:
         self.publications = rows[0]["Publications"]
 
 
-volume = volume_of_parts(SCRIPT)
 views = [create_view(), create_view()]
 for view in views:
     view.UseFXAA = 0
@@ -111,7 +101,7 @@ for source, name in ((volume, "volume"), (mesh, "mesh")):
     check(Picture(views[1], second, 0.5).held < 1.05 * alone.held, "and those of the old ones are gone")
     if is_volume:
         # Another dataset, of the same size and for all ranks but one the same.
-        like = volume_of_parts("")
+        like = image_source("", EXTENT, in_parts=True)
         like.Script = source.Script.replace("0.9 * distance(piece)", "(0.9 if rank + 1 < ranks else 0.6) * distance(piece)")
         simple.Hide(source, views[1])
         unlike = Picture(views[1], show_traced(like, views[1], **own), 0.3)

@@ -139,6 +139,11 @@ from paraview import util
 util.SetOutputWholeExtent(self, [%s])
 """
 
+IMAGE_SOURCE_IN_PARTS = """
+from vtkmodules.vtkCommonExecutionModel import vtkAlgorithm
+self.GetOutputInformation(0).Set(vtkAlgorithm.CAN_PRODUCE_SUB_EXTENT(), 1)
+"""
+
 IMAGE_SOURCE = """
 from builtins import max, min
 import numpy as np
@@ -174,11 +179,12 @@ def add(image, values, name='f'):
 """
 
 
-def image_source(script, extent=(0, 24, 0, 24, 0, 24)):
-    """An image data source: `script` fills `image` with its `piece` of the whole extent."""
+def image_source(script, extent=(0, 24, 0, 24, 0, 24), in_parts=False):
+    """An image data source: `script` fills `image` with its `piece` of the whole extent. In parts: each rank is asked
+    for one of its own; else all are asked for the whole."""
     text = ", ".join(str(value) for value in extent)
     source = simple.ProgrammableSource(OutputDataSetType="vtkImageData")
-    source.ScriptRequestInformation = IMAGE_SOURCE_INFORMATION % text
+    source.ScriptRequestInformation = IMAGE_SOURCE_INFORMATION % text + (IMAGE_SOURCE_IN_PARTS if in_parts else "")
     source.Script = IMAGE_SOURCE.format(extent=text, script=script)
     return source
 

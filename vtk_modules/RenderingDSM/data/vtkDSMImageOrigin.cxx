@@ -48,57 +48,52 @@ struct ArrayNote
 
 } // namespace
 
-struct vtkDSMImageOrigin::Piece
-{
-  vol::FileGeometry Geometry; ///< First and Points are the piece's
-};
-
 vtkDSMImageOrigin::vtkDSMImageOrigin(dsm::Messenger& messenger, vtkImageData* image)
   : Messenger(messenger)
 {
-  const std::vector<Piece> pieces = this->GatherPieces(image);
+  const std::vector<vol::FileGeometry> pieces = this->GatherPieces(image);
   this->GatherArrays(image, pieces);
   messenger.RunTogether("Writing a volume", [&] { this->CheckCover(); });
 }
 
-std::vector<vtkDSMImageOrigin::Piece> vtkDSMImageOrigin::GatherPieces(vtkImageData* image)
+std::vector<vol::FileGeometry> vtkDSMImageOrigin::GatherPieces(vtkImageData* image)
 {
-  Piece mine;
+  vol::FileGeometry mine;
   if (image && image->GetNumberOfPoints() > 0)
   {
     int extent[6];
     image->GetExtent(extent);
-    image->GetOrigin(mine.Geometry.Origin);
-    image->GetSpacing(mine.Geometry.Spacing);
-    std::copy_n(image->GetDirectionMatrix()->GetData(), 9, mine.Geometry.Direction);
+    image->GetOrigin(mine.Origin);
+    image->GetSpacing(mine.Spacing);
+    std::copy_n(image->GetDirectionMatrix()->GetData(), 9, mine.Direction);
     for (int axis = 0; axis < 3; ++axis)
     {
-      mine.Geometry.First[axis] = extent[2 * axis];
-      mine.Geometry.Points[axis] = extent[2 * axis + 1] - extent[2 * axis] + 1;
+      mine.First[axis] = extent[2 * axis];
+      mine.Points[axis] = extent[2 * axis + 1] - extent[2 * axis] + 1;
     }
   }
   const auto pieces = this->Messenger.GatherValueTogether("Writing a volume", [&] { return mine; });
-  const auto isThere = [](const Piece& piece) { return piece.Geometry.Points.x > 0; };
+  const auto isThere = [](const vol::FileGeometry& piece) { return piece.Points.x > 0; };
   const auto first = std::find_if(pieces.begin(), pieces.end(), isThere);
   if (first == pieces.end())
   {
     throw dsm::Error("There is nothing to write: the image has no points.");
   }
-  this->Geometry = first->Geometry;
+  this->Geometry = *first;
   rt::Index3 end = this->Geometry.First + this->Geometry.Points;
-  for (const Piece& piece : pieces)
+  for (const vol::FileGeometry& piece : pieces)
   {
     if (isThere(piece))
     {
-      this->Geometry.First = glm::min(this->Geometry.First, piece.Geometry.First);
-      end = glm::max(end, piece.Geometry.First + piece.Geometry.Points);
+      this->Geometry.First = glm::min(this->Geometry.First, piece.First);
+      end = glm::max(end, piece.First + piece.Points);
     }
   }
   this->Geometry.Points = end - this->Geometry.First;
-  for (const Piece& piece : pieces)
+  for (const vol::FileGeometry& piece : pieces)
   {
-    const rt::Index3 begin = piece.Geometry.First - this->Geometry.First;
-    const rt::Index3& points = piece.Geometry.Points;
+    const rt::Index3 begin = piece.First - this->Geometry.First;
+    const rt::Index3& points = piece.Points;
     this->PointsOfRanks.push_back(
       isThere(piece) ? rt::Box{ begin, begin + points } : rt::Box{ rt::Index3(0), rt::Index3(0) });
     // Flat images have one cell across, as VTK counts them.
@@ -109,7 +104,8 @@ std::vector<vtkDSMImageOrigin::Piece> vtkDSMImageOrigin::GatherPieces(vtkImageDa
   return pieces;
 }
 
-void vtkDSMImageOrigin::GatherArrays(vtkImageData* image, const std::vector<Piece>& pieces)
+void vtkDSMImageOrigin::GatherArrays(
+  vtkImageData* image, const std::vector<vol::FileGeometry>& pieces)
 {
   std::vector<ArrayNote> mine;
   const auto note = [&](vtkDataSetAttributes* attributes, int onCells, vtkIdType tuples)
@@ -152,7 +148,7 @@ void vtkDSMImageOrigin::GatherArrays(vtkImageData* image, const std::vector<Piec
     ofRanks.push_back(std::move(notes));
   }
   std::size_t first = 0;
-  while (pieces[first].Geometry.Points.x == 0)
+  while (pieces[first].Points.x == 0)
   {
     ++first;
   }
@@ -165,7 +161,7 @@ void vtkDSMImageOrigin::GatherArrays(vtkImageData* image, const std::vector<Piec
     {
       const std::vector<ArrayNote>& notes = ofRanks[rank];
       isEverywhere = isEverywhere &&
-        (pieces[rank].Geometry.Points.x == 0 ||
+        (pieces[rank].Points.x == 0 ||
           std::find(notes.begin(), notes.end(), wanted) != notes.end());
     }
     if (!isEverywhere)

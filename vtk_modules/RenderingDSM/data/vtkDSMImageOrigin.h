@@ -35,11 +35,10 @@ public:
   const std::vector<std::string>& GetLeftOut() const { return this->LeftOut; }
 
 private:
-  struct Piece;
+  /// Collective: where the pieces are, of which First and Points are their own.
+  std::vector<vol::FileGeometry> GatherPieces(vtkImageData* image);
   /// Collective.
-  std::vector<Piece> GatherPieces(vtkImageData* image);
-  /// Collective.
-  void GatherArrays(vtkImageData* image, const std::vector<Piece>& pieces);
+  void GatherArrays(vtkImageData* image, const std::vector<vol::FileGeometry>& pieces);
   void CheckCover() const;
   /// Of this rank's piece.
   void Copy(std::size_t array, const rt::Box& box, std::byte* out) const;
