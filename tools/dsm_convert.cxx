@@ -32,6 +32,8 @@ When it is ended early, the same call goes on where it was.
   --step N            of a file with several time steps (default 0)
   --level N           of a file with several levels of detail (default 0, the finest)
   --dataset NAME      of an HDF5 file that is not VTK's
+  --levels N          coarser ones to write beside the values, each with half the samples along each axis, for while
+                      the camera moves; all: until one is a single brick (default 0)
   --compression KIND  none (default), zstd, or deflate, which programs without HDF5's plugin for zstd read
   --brick N           cells along an axis of a brick (default: the renderer's own, 16 to 32)
   --memory MIB        of values in memory, on each rank (default 512)
@@ -98,6 +100,13 @@ Options Parse(int argc, char** argv)
       { true,
         [&](auto& name, auto& text)
         { options.Open.Level = OptionValues::ToNumber(name, text, 0); } } },
+    { "levels",
+      { true,
+        [&](auto& name, auto& text)
+        {
+          options.Convert.Levels =
+            text == "all" ? vol::WriteOptions::AllLevels : OptionValues::ToNumber(name, text, 0);
+        } } },
     { "dataset", { true, [&](auto&, auto& text) { options.Open.Dataset = text; } } },
     { "compression",
       { true,

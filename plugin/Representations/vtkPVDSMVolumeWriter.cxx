@@ -18,6 +18,11 @@ void vtkPVDSMVolumeWriter::SetCompression(int compression)
   this->Superclass::SetCompression(compression);
 }
 
+void vtkPVDSMVolumeWriter::SetCoarserLevels(bool coarser)
+{
+  this->Superclass::SetCoarserLevels(coarser);
+}
+
 int vtkPVDSMVolumeWriter::Write()
 {
   return this->Superclass::Write();

@@ -23,6 +23,7 @@ public:
    */
   void SetFileName(const char* name) override;
   void SetCompression(int compression) override;
+  void SetCoarserLevels(bool coarser) override;
   int Write() override;
   void SetInputConnection(vtkAlgorithmOutput* input) override;
   void SetInputConnection(int port, vtkAlgorithmOutput* input) override;

@@ -68,6 +68,18 @@ for name, properties in (("plain.h5", {}), ("pressed.h5", {"Compression": "Defla
 check(os.path.getsize(os.path.join(FOLDER, "pressed.h5")) < os.path.getsize(os.path.join(FOLDER, "plain.h5")),
       "compressed files are smaller")
 
+# With coarser levels.
+said = save("levels.h5", CoarserLevels=1)
+check(said == "", f"coarser levels: nothing is reported: {said}")
+path = os.path.join(FOLDER, "levels.h5")
+subprocess.run([PYTHON, "-c", READ_BACK, path], check=True, timeout=60)
+reader = simple.DSMVolumeReader(FileName=path, LevelofDetail=1)
+reader.UpdatePipeline()
+level = reader.GetDataInformation()
+check(level.GetExtent() == (0, 31, 0, 19, 0, 23), f"a level of half the samples: {level.GetExtent()}")
+# 64 x 39 x 48 samples from (-2, 4, 13) on, 1, 1 and 2 apart; the means of two lie between them.
+check(level.GetBounds() == (-1.5, 60.5, 4.5, 42.5, 14, 106), f"where they are: {level.GetBounds()}")
+
 # One array only.
 said = save("one.h5", ChooseArraysToWrite=1, PointDataArrays=["f"], CellDataArrays=[])
 check(said == "", f"one array is chosen: {said}")

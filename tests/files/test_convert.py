@@ -9,6 +9,7 @@ import signal
 import subprocess
 import sys
 import time
+import warnings
 
 import h5py
 import numpy as np
@@ -104,6 +105,70 @@ with h5py.File(path("image.vtkhdf"), "r") as one, h5py.File(path("arrays.vtkhdf"
 done = convert("--quiet", "--arrays", "nothing", path("image.vtkhdf"), path("none.vtkhdf"))
 check(done.returncode != 0 and "has no array 'nothing'" in done.stderr, "an array that is not there is named")
 
+# Coarser levels: each the mean of 2 x 2 x 2 points of the one before that are numbers, half a sample further.
+def reduce(fine):
+    """Of a point array (z, y, x, and components), as dsm_convert does."""
+    for axis in range(3):
+        if fine.shape[axis] % 2 and fine.shape[axis] >= 3:
+            rest = np.full_like(np.take(fine, [0], axis), np.nan)
+            fine = np.concatenate([fine, rest], axis)
+    parts = [fine[k::2, j::2, i::2] for k in (0, 1) for j in (0, 1) for i in (0, 1)]
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", RuntimeWarning)  # of none
+        return np.nanmean(np.stack(parts), axis=0)
+
+
+for ranks in (1, 2, 3, 4) if MPIRUN else (1,):
+    name = f"levels_{ranks}.vtkhdf"
+    done = convert(*BARE, "--levels", "all" if ranks < 4 else 2, "--memory", 8, "--compression",
+                   "deflate" if ranks == 2 else "none", path("convert.raw"), path(name), ranks=ranks)
+    check(done.returncode == 0, f"{name} is written {done.stderr}")
+    check(glob.glob(path(name) + ".*") == [], f"{name}: nothing else is left")
+    compare(name, name)
+    with h5py.File(path(name), "r") as file:
+        levels = file["DSM/Levels"]
+        # 101 x 70 x 90, 51 x 35 x 45, 26 x 18 x 23, 13 x 9 x 12
+        check(sorted(levels) == ["1", "2", "3"][: 2 if ranks == 4 else 3], f"{name}: until it is one brick: {sorted(levels)}")
+        fine, spacing, origin = values, np.array([1.0, 2.0, 3.0]), np.zeros(3)
+        for level in sorted(levels):
+            image = levels[level]["VTKHDF"]
+            origin, spacing = origin + 0.5 * spacing, 2 * spacing
+            fine = reduce(fine.astype("f8")).astype("f4")
+            array = image["PointData/values"]
+            check(array.shape == fine.shape and np.array_equal(array[...], fine, equal_nan=True),
+                  f"{name}, level {level}: every value")
+            check((image.attrs["Spacing"] == spacing).all() and np.allclose(image.attrs["Origin"], origin, 1e-15, 0),
+                  f"{name}, level {level}: the place in the world")
+            index = levels[level]["DSM/PointData/values"]
+            found = [None if first > last else (first, last) for first, last in index["BrickRanges"][...]]
+            check(array.fletcher32 and found == find_brick_ranges(fine) and len(index["BrickIndex"]) > 0,
+                  f"{name}, level {level}: checksums, and the ranges of bricks")
+            check((index["ValueRanges"][0] == [np.nanmin(fine), np.nanmax(fine)] * 2).all(),
+                  f"{name}, level {level}: the range of all")
+
+# One of them is a volume of its own for dsm_convert.
+done = convert("--quiet", "--level", 2, path("levels_1.vtkhdf"), path("level_2.vtkhdf"))
+with h5py.File(path("level_2.vtkhdf"), "r") as one, h5py.File(path("levels_1.vtkhdf"), "r") as all_levels:
+    level = all_levels["DSM/Levels/2/VTKHDF/PointData/values"]
+    check(np.array_equal(one["VTKHDF/PointData/values"], level, equal_nan=True), "a level is read")
+done = convert("--quiet", "--level", 4, path("levels_1.vtkhdf"), path("none.vtkhdf"))
+check(done.returncode != 0 and "has 4 levels of detail; level 4 is none" in done.stderr, "one that is not there is named")
+
+# Integers are rounded, vectors go by component, cells have that at their centre; the direction counts.
+done = convert("--quiet", "--levels", 1, "--brick", 4, path("image.vtkhdf"), path("arrays_levels.vtkhdf"))
+check(done.returncode == 0, f"levels of several arrays {done.stderr}")
+with h5py.File(path("arrays_levels.vtkhdf"), "r") as file:
+    fine, coarse = file["VTKHDF"], file["DSM/Levels/1/VTKHDF"]
+    for name in ("PointData/f", "PointData/v"):
+        mean = reduce(fine[name][...].astype("f8"))
+        kind = fine[name].dtype
+        mean = np.rint(mean).astype(kind) if kind.kind in "iu" else mean.astype(kind)
+        check(np.array_equal(coarse[name][...], mean), f"{name} ({kind}) of a level")
+    check(np.array_equal(coarse["CellData/c"][...], fine["CellData/c"][1::2, 1::2, 1::2]), "cells of a level")
+    first = fine.attrs["WholeExtent"][::2] + 0.5
+    place = fine.attrs["Origin"] + fine.attrs["Direction"].reshape(3, 3) @ (fine.attrs["Spacing"] * first)
+    check(np.allclose(coarse.attrs["Origin"], place, 1e-14, 1e-14), "where a turned level is")
+
 # It is killed, and goes on, with another number of ranks.
 big = np.arange(160 * 160 * 160, dtype="float32").reshape(160, 160, 160)
 big.tofile(path("big.raw"))
@@ -124,6 +189,15 @@ def kill_after(chunks):
     deadline = time.monotonic() + 60
     while get_chunks() < chunks and process.poll() is None and time.monotonic() < deadline:
         time.sleep(0.002)
+    process.send_signal(signal.SIGKILL)
+    return process.wait() == -signal.SIGKILL
+
+
+def kill_in_levels():
+    process = subprocess.Popen(command(1, "--memory", 2, "--levels", "all", *BIG))
+    deadline = time.monotonic() + 60
+    while not os.path.exists(path("big.vtkhdf.part.level1")) and process.poll() is None and time.monotonic() < deadline:
+        time.sleep(0.001)
     process.send_signal(signal.SIGKILL)
     return process.wait() == -signal.SIGKILL
 
@@ -166,6 +240,26 @@ big.tofile(path("big.raw"))
 done = convert(*BIG)
 check(done.returncode == 0, f"other values are begun anew {done.stderr}")
 compare_big("other values")
+os.remove(path("big.vtkhdf"))
+
+# Levels go on, too, or are made anew with what they are of.
+check(kill_in_levels(), "it is killed with one level there")
+kept = os.stat(path("big.vtkhdf.part.level1"))
+done = convert("--levels", "all", *BIG, ranks=2)
+check(done.returncode == 0 and glob.glob(path("big.vtkhdf.*")) == [], f"it goes on {done.stderr}")
+with h5py.File(path("big.vtkhdf"), "r") as file:
+    level = file["DSM/Levels/1/VTKHDF/PointData/values"][...]
+    check(np.array_equal(level, reduce(big.astype("f8")).astype("f4")), "a level that was there")
+    check(len(file["DSM/Levels"]) == 4, "and the others")
+compare_big("with levels")
+os.remove(path("big.vtkhdf"))
+check(kill_in_levels(), "it is killed with one level there")
+big += 1
+big.tofile(path("big.raw"))
+done = convert("--levels", "all", *BIG)
+with h5py.File(path("big.vtkhdf"), "r") as file:
+    level = file["DSM/Levels/1/VTKHDF/PointData/values"][...]
+    check(np.array_equal(level, reduce(big.astype("f8")).astype("f4")), "a level of other values")
 os.remove(path("big.vtkhdf"))
 
 # A disk that is full: one of 12 MiB that only this call sees, where the system lets us make one.

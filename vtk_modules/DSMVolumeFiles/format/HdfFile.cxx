@@ -3,6 +3,7 @@
 
 #include "DSMCore/base/Error.h"
 #include "DSMVolumeFiles/format/BareFile.h"
+#include "DSMVolumeFiles/format/HdfAxes.h"
 #include "DSMVolumeFiles/format/HdfLibrary.h"
 #include "DSMVolumeFiles/format/StoredFile.h"
 
@@ -10,6 +11,7 @@
 #include <cstring>
 #include <map>
 #include <mutex>
+#include <optional>
 #include <utility>
 
 namespace vol
@@ -17,56 +19,6 @@ namespace vol
 
 namespace
 {
-
-/// Components that a last axis may stand for.
-constexpr hsize_t MostComponents = 9;
-
-std::vector<hsize_t> GetShape(hid_t dataset)
-{
-  const HdfHandle space(H5Dget_space(dataset), &H5Sclose);
-  const int rank = H5Sget_simple_extent_ndims(space.Get());
-  std::vector<hsize_t> shape(static_cast<std::size_t>(std::max(0, rank)));
-  if (rank > 0)
-  {
-    H5Sget_simple_extent_dims(space.Get(), shape.data(), nullptr);
-  }
-  return shape;
-}
-
-/// The axes of a dataset that holds a volume.
-struct Axes
-{
-  hsize_t Frames = 0; ///< along a first axis of time; 0: it has none
-  rt::Index3 Samples{ 0 };
-  hsize_t Components = 0; ///< along a last axis; 0: it has none
-
-  std::size_t GetBeforeSpace() const { return this->Frames > 0 ? 1 : 0; }
-  bool operator==(const Axes& other) const
-  {
-    return this->Frames == other.Frames && this->Samples == other.Samples;
-  }
-
-  /// Three are z, y and x. Of four, the last has components where it is short, and `inSteps` does not say that the
-  /// first is time. Of five, both. False for what is no volume.
-  bool Find(hid_t dataset, bool inSteps)
-  {
-    const std::vector<hsize_t> shape = GetShape(dataset);
-    const bool isShort = !shape.empty() && shape.back() <= MostComponents;
-    const std::size_t axes = shape.size();
-    if (axes < 3 || axes > 5 || (axes == 5 && !isShort) ||
-      std::find(shape.begin(), shape.end(), hsize_t(0)) != shape.end())
-    {
-      return false;
-    }
-    const bool hasTime = axes == 5 || (axes == 4 && (inSteps || !isShort));
-    const std::size_t first = hasTime ? 1 : 0;
-    this->Frames = hasTime ? shape.front() : 0;
-    this->Components = axes - first == 4 ? shape.back() : 0;
-    this->Samples = { static_cast<std::int64_t>(shape[first + 2]),
-      static_cast<std::int64_t>(shape[first + 1]), static_cast<std::int64_t>(shape[first]) };
-    return true;
-  }
-};
 
 /// False for what is no number of the machine's kinds.
 bool FindType(hid_t dataset, rt::ScalarType& type, bool& swapped)
@@ -108,13 +60,15 @@ bool FindType(hid_t dataset, rt::ScalarType& type, bool& swapped)
 class HdfFile final : public StoredFile
 {
 public:
-  HdfFile(const std::string& path, const std::string& dataset)
+  HdfFile(const std::string& path, const std::string& dataset, int level)
     : StoredFile(path)
     , Bytes(std::make_shared<PositionedFile>(path))
     , File(Open(path))
   {
-    this->Stamp = this->Bytes->GetStamp();
-    if (H5Lexists(this->File.Get(), "VTKHDF", H5P_DEFAULT) > 0)
+    this->OpenLevel(level);
+    // What is kept of a level is not another's.
+    this->Stamp = this->Bytes->GetStamp() + static_cast<std::uint64_t>(level);
+    if (H5Lexists(this->Root, "VTKHDF", H5P_DEFAULT) > 0)
     {
       this->FindImage();
     }
@@ -133,15 +87,16 @@ public:
   {
     const std::lock_guard<std::mutex> lock(GetHdfLock());
     this->Kept.clear();
+    this->Coarser.reset();
     const HdfHandle last(std::move(this->File));
   }
 
   static std::shared_ptr<const VolumeFile> Create(
-    const std::string& path, const std::string& dataset)
+    const std::string& path, const std::string& dataset, int level)
   {
     const std::lock_guard<std::mutex> lock(GetHdfLock());
     const HdfSilence silence;
-    return std::make_shared<HdfFile>(path, dataset);
+    return std::make_shared<HdfFile>(path, dataset, level);
   }
 
   void ReadChunk(
@@ -163,8 +118,8 @@ public:
     const HdfSilence silence;
     Index index;
     const std::string name = "DSM/" + this->GetIndexName(array);
-    const HdfHandle group(H5Gopen2(this->File.Get(), name.c_str(), H5P_DEFAULT), &H5Gclose);
-    const HdfHandle all(H5Gopen2(this->File.Get(), "DSM", H5P_DEFAULT), &H5Gclose);
+    const HdfHandle group(H5Gopen2(this->Root, name.c_str(), H5P_DEFAULT), &H5Gclose);
+    const HdfHandle all(H5Gopen2(this->Root, "DSM", H5P_DEFAULT), &H5Gclose);
     if (group.IsOpen() && all.IsOpen() &&
       this->ReadAttribute(all.Get(), "BrickEdge", H5T_NATIVE_INT, &index.BrickEdge, 1))
     {
@@ -221,7 +176,7 @@ private:
     bool ReadByLibrary = false;
     haddr_t First = HADDR_UNDEF; ///< of contiguous values
     std::vector<Piece> Chunks;   ///< of all times
-    Axes Shape;
+    HdfAxes Shape;
     std::vector<int> Frames; ///< of the steps, along the axis of time; empty: each has its own
 
     std::size_t GetFrame(int step) const
@@ -242,6 +197,31 @@ private:
         "The file '" + path + "' is no HDF5 file, or is damaged, or is open for writing.");
     }
     return file;
+  }
+
+  /// See BrickFileWriter.
+  void OpenLevel(int level)
+  {
+    this->Root = this->File.Get();
+    if (H5Lexists(this->Root, "DSM", H5P_DEFAULT) > 0 &&
+      H5Lexists(this->Root, HdfLevels, H5P_DEFAULT) > 0)
+    {
+      const HdfHandle levels(H5Gopen2(this->Root, HdfLevels, H5P_DEFAULT), &H5Gclose);
+      H5G_info_t info{};
+      H5Gget_info(levels.Get(), &info);
+      this->Levels = 1 + static_cast<int>(info.nlinks);
+    }
+    if (level < 0 || level >= this->Levels)
+    {
+      throw dsm::Error("'" + this->Path + "' has " + std::to_string(this->Levels) +
+        " levels of detail; level " + std::to_string(level) + " is none of them.");
+    }
+    if (level > 0)
+    {
+      const std::string name = std::string(HdfLevels) + "/" + std::to_string(level);
+      this->Coarser.emplace(H5Gopen2(this->Root, name.c_str(), H5P_DEFAULT), &H5Gclose);
+      this->Root = this->Coarser->Get();
+    }
   }
 
   std::string GetIndexName(std::size_t array) const
@@ -283,7 +263,7 @@ private:
   /// VTK's own: see "VTKHDF File Format", ImageData.
   void FindImage()
   {
-    const HdfHandle group(H5Gopen2(this->File.Get(), "VTKHDF", H5P_DEFAULT), &H5Gclose);
+    const HdfHandle group(H5Gopen2(this->Root, "VTKHDF", H5P_DEFAULT), &H5Gclose);
     long long extent[6];
     if (!this->ReadAttribute(group.Get(), "WholeExtent", H5T_NATIVE_LLONG, extent, 6))
     {
@@ -324,7 +304,7 @@ private:
       H5Lget_name_by_idx(
         group.Get(), ".", H5_INDEX_NAME, H5_ITER_INC, index, link, sizeof(link), H5P_DEFAULT);
       HdfHandle dataset(H5Dopen2(group.Get(), link, H5P_DEFAULT), &H5Dclose);
-      Axes found;
+      HdfAxes found;
       if (dataset.IsOpen() && found.Find(dataset.Get(), !this->Times.empty()) &&
         found.Samples == samples)
       {
@@ -336,7 +316,7 @@ private:
   }
 
   /// Where each step is along an array's axis of time; empty: the steps are there in turn.
-  std::vector<int> FindFrames(hid_t image, const std::string& offsets, const Axes& axes) const
+  std::vector<int> FindFrames(hid_t image, const std::string& offsets, const HdfAxes& axes) const
   {
     std::vector<int> frames;
     if (axes.Frames == 0)
@@ -379,11 +359,11 @@ private:
     {
       names.push_back(wanted);
     }
-    std::map<std::string, Axes> volumes;
+    std::map<std::string, HdfAxes> volumes;
     for (const std::string& name : names)
     {
       const HdfHandle dataset(H5Dopen2(this->File.Get(), name.c_str(), H5P_DEFAULT), &H5Dclose);
-      Axes axes;
+      HdfAxes axes;
       rt::ScalarType type;
       bool swapped = false;
       if (dataset.IsOpen() && axes.Find(dataset.Get(), false) &&
@@ -393,10 +373,10 @@ private:
       }
     }
     // Of several shapes the largest.
-    const auto getCount = [](const Axes& axes) {
+    const auto getCount = [](const HdfAxes& axes) {
       return rt::Box{ rt::Index3(0), axes.Samples }.GetCount();
     };
-    Axes largest;
+    HdfAxes largest;
     for (const auto& [name, axes] : volumes)
     {
       if (getCount(axes) > getCount(largest))
@@ -416,8 +396,8 @@ private:
     }
   }
 
-  void Add(
-    HdfHandle id, const std::string& name, bool onCells, const Axes& axes, std::vector<int> frames)
+  void Add(HdfHandle id, const std::string& name, bool onCells, const HdfAxes& axes,
+    std::vector<int> frames)
   {
     FileArray array;
     array.Name = name;
@@ -581,14 +561,17 @@ private:
 
   std::shared_ptr<const PositionedFile> Bytes;
   HdfHandle File;
-  std::vector<Dataset> Kept; ///< of the arrays
+  std::optional<HdfHandle> Coarser; ///< the group of a coarser level
+  hid_t Root = H5I_INVALID_HID;     ///< of the level: that group, or the file
+  std::vector<Dataset> Kept;        ///< of the arrays
 };
 
 } // namespace
 
-std::shared_ptr<const VolumeFile> OpenHdf(const std::string& path, const std::string& dataset)
+std::shared_ptr<const VolumeFile> OpenHdf(
+  const std::string& path, const std::string& dataset, int level)
 {
-  return HdfFile::Create(path, dataset);
+  return HdfFile::Create(path, dataset, level);
 }
 
 } // namespace vol

@@ -12,8 +12,10 @@ namespace vol
 
 /// HDF5: VTK's ImageData (VTKHDF), or datasets of three axes (z, y, x), more with time first or components last. Where
 /// the chunks are is asked of the library once, under its lock; then they are read without it. Datasets whose
-/// values are neither contiguous nor in chunks with filters that are known here are read by the library.
-std::shared_ptr<const VolumeFile> OpenHdf(const std::string& path, const std::string& dataset);
+/// values are neither contiguous nor in chunks with filters that are known here are read by the library. A brick file
+/// (BrickFileWriter) may have coarser levels, from 1 on. Throws dsm::Error.
+std::shared_ptr<const VolumeFile> OpenHdf(
+  const std::string& path, const std::string& dataset, int level = 0);
 
 } // namespace vol
 

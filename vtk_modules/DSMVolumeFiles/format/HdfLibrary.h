@@ -12,6 +12,9 @@
 namespace vol
 {
 
+/// Of a brick file: the group of coarser levels, numbered from 1 on, of which each is as a brick file.
+constexpr char HdfLevels[] = "DSM/Levels";
+
 /// Registered filters (https://github.com/HDFGroup/hdf5_plugins).
 constexpr H5Z_filter_t HdfBloscFilter = 32001;
 constexpr H5Z_filter_t HdfZstdFilter = 32015;

@@ -127,7 +127,7 @@ std::shared_ptr<const VolumeFile> OpenVolumeFile(
       return OpenZarr(FindZarrFolder(path), options.Level);
     case Format::Hdf:
 #ifdef DSM_HAS_HDF5
-      return OpenHdf(path, options.Dataset);
+      return OpenHdf(path, options.Dataset, options.Level);
 #else
       throw dsm::Error("'" + path +
         "' is an HDF5 file, which this build cannot read. Install the package libhdf5-dev and "

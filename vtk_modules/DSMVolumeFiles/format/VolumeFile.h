@@ -122,7 +122,7 @@ protected:
 /// What a file's own header does not tell, or leaves open.
 struct OpenOptions
 {
-  /// Of a Zarr group with several scales: 0 is the finest.
+  /// Of a Zarr group with several scales, or a brick file with several levels: 0 is the finest.
   int Level = 0;
   /// Of an HDF5 file without VTKHDF: the dataset to take; empty: those of the largest shape of three axes in space.
   std::string Dataset;

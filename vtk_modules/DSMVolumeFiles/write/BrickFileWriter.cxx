@@ -150,14 +150,20 @@ public:
     this->Check(H5Fclose(std::exchange(this->File, H5I_INVALID_HID)));
   }
 
-  void Finish(const std::vector<std::vector<std::byte>>& indices)
+  void Finish(const std::vector<std::vector<std::byte>>& indices, int levels)
   {
     const std::lock_guard<std::mutex> lock(GetHdfLock());
     const HdfSilence silence;
-    this->RemoveState();
     errno = 0;
     this->File = H5Fopen(this->PartPath.c_str(), H5F_ACC_RDWR, H5P_DEFAULT);
     this->Check(this->File < 0 ? -1 : 0);
+    // What a level has is long to copy, and behind the end of what a later call goes on with.
+    this->HoldMetadata();
+    for (int level = 1; level <= levels; ++level)
+    {
+      this->AddLevel(level);
+    }
+    this->RemoveState();
     for (std::size_t number = 0; number < indices.size(); ++number)
     {
       const std::string name = "DSM/" + this->GetName(this->Layout.Arrays[number]) + "/BrickIndex";
@@ -189,8 +195,32 @@ public:
     ValueRanges Ranges;
   };
   std::vector<Target> Targets;
+  std::string Path;
 
 private:
+  /// As it is: the library copies chunks without looking into them.
+  void AddLevel(int level)
+  {
+    if (level == 1)
+    {
+      this->CreateGroup(HdfLevels);
+    }
+    const std::string group = std::string(HdfLevels) + "/" + std::to_string(level);
+    this->CreateGroup(group.c_str());
+    const std::string path = GetLevelPath(this->Path, level);
+    const HdfHandle from = this->Own(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), &H5Fclose);
+    for (const std::string part : { "VTKHDF", "DSM" })
+    {
+      this->Check(H5Ocopy(from.Get(), part.c_str(), this->File, (group + "/" + part).c_str(),
+        H5P_DEFAULT, H5P_DEFAULT));
+    }
+  }
+
+  void CreateGroup(const char* name)
+  {
+    this->Own(H5Gcreate2(this->File, name, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), &H5Gclose);
+  }
+
   /// Without the state, nobody goes on with what is not whole.
   void RemoveState() const
   {
@@ -306,7 +336,7 @@ private:
 
   void Begin()
   {
-    this->RemoveState();
+    RemoveParts(this->Path);
     const HdfHandle creation(H5Pcreate(H5P_FILE_CREATE), &H5Pclose);
     H5Pset_istore_k(creation.Get(), IndexNodeEntries);
     errno = 0;
@@ -317,7 +347,7 @@ private:
     for (const char* folder :
       { "VTKHDF/PointData", "VTKHDF/CellData", "DSM", "DSM/PointData", "DSM/CellData" })
     {
-      this->Own(H5Gcreate2(this->File, folder, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), &H5Gclose);
+      this->CreateGroup(folder);
     }
     const HdfHandle index = this->Own(H5Gopen2(this->File, "DSM", H5P_DEFAULT), &H5Gclose);
     const long long edge = this->Layout.BrickEdge;
@@ -371,8 +401,7 @@ private:
   {
     const FileArray& array = this->Layout.Arrays[number];
     const std::string index = "DSM/" + this->GetName(array);
-    this->Own(
-      H5Gcreate2(this->File, index.c_str(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), &H5Gclose);
+    this->CreateGroup(index.c_str());
     const HdfHandle creation = this->Own(H5Pcreate(H5P_DATASET_CREATE), &H5Pclose);
     const std::vector<hsize_t> edges = GetShape(array.Grid.ChunkSamples, array.Components);
     H5Pset_chunk(creation.Get(), static_cast<int>(edges.size()), edges.data());
@@ -469,7 +498,6 @@ private:
     this->WriteState(true);
   }
 
-  std::string Path;
   std::string PartPath;
   std::string StatePath;
   BrickFileLayout Layout;
@@ -507,9 +535,31 @@ void BrickFileWriter::Close()
   this->Self->CloseFile();
 }
 
-void BrickFileWriter::Finish(const std::vector<std::vector<std::byte>>& indices)
+void BrickFileWriter::Finish(const std::vector<std::vector<std::byte>>& indices, int levels)
 {
-  this->Self->Finish(indices);
+  this->Self->Finish(indices, levels);
+  RemoveParts(this->Self->Path);
+}
+
+void BrickFileWriter::RemoveParts(const std::string& path)
+{
+  std::error_code failure;
+  const auto remove = [&](const std::string& part)
+  {
+    const bool hadState = std::filesystem::remove(part + ".json", failure);
+    return std::filesystem::remove(part, failure) || hadState;
+  };
+  remove(GetPartPath(path));
+  // They are made in turn; the last one may be half a file.
+  for (int level = 1; true; ++level)
+  {
+    const std::string one = GetLevelPath(path, level);
+    const bool wasHalf = remove(GetPartPath(one));
+    if (!remove(one) && !wasHalf)
+    {
+      break;
+    }
+  }
 }
 
 } // namespace vol

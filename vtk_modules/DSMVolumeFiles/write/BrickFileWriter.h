@@ -69,12 +69,19 @@ public:
 
   /// What a file is called while it is not whole.
   static std::string GetPartPath(const std::string& path) { return path + ".part"; }
+  /// And the file of its own that a coarser level (from 1 on) has until then.
+  static std::string GetLevelPath(const std::string& path, int level)
+  {
+    return GetPartPath(path) + ".level" + std::to_string(level);
+  }
+  /// Removes all of these files. Throws nothing.
+  static void RemoveParts(const std::string& path);
 
   /// When all chunks are there: PATH.part may be opened until Finish. Throws dsm::Error.
   void Close();
-  /// After Close: adds what is known of the bricks of each array (rt::VoxelIndex as it is kept; empty: nothing), and
-  /// gives the file its name. Throws dsm::Error.
-  void Finish(const std::vector<std::vector<std::byte>>& indices);
+  /// After Close: adds what is known of the bricks of each array (rt::VoxelIndex as it is kept; empty: nothing) and
+  /// the first coarser levels, which are brick files at GetLevelPath, and gives the file its name. Throws dsm::Error.
+  void Finish(const std::vector<std::vector<std::byte>>& indices, int levels);
 
 private:
   class Internals;

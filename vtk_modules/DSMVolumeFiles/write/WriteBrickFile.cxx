@@ -12,9 +12,12 @@
 #include "DSMVolumeFiles/cache/ChunkCache.h"
 #include "DSMVolumeFiles/codec/ChunkCodec.h"
 #include "DSMVolumeFiles/format/HdfFile.h"
+#include "DSMVolumeFiles/write/ReducedOrigin.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
+#include <filesystem>
 #include <numeric>
 #include <optional>
 #include <utility>
@@ -359,6 +362,50 @@ void WriteArray(ValueOrigin& from, const BrickFileLayout& layout, std::size_t ar
   }
 }
 
+/// Collective. Writes the coarser levels of the brick file that a writer has closed, each of the one before, to files of
+/// their own. Those that an earlier call has written are kept. Returns how many there are.
+int WriteLevels(const std::string& path, const BrickFileLayout& layout, const std::string& source,
+  const WriteOptions& options, dsm::Messenger& messenger, const std::function<void(double)>& tell)
+{
+  const char* const what = "Writing coarser levels";
+  WriteOptions one = options;
+  one.BrickEdge = layout.BrickEdge;
+  one.Levels = 0;
+  std::string last = BrickFileWriter::GetPartPath(path);
+  for (int level = 1; level <= options.Levels; ++level)
+  {
+    // Each takes an eighth of the one before.
+    const double begin = 1.0 - std::pow(8.0, 1 - level);
+    const double share = 1.0 - begin - std::pow(8.0, -level);
+    const std::string next = BrickFileWriter::GetLevelPath(path, level);
+    std::unique_ptr<ReducedOrigin> origin;
+    bool isThere = false;
+    bool isLast = false;
+    messenger.RunTogether(what,
+      [&]
+      {
+        const auto file = OpenHdf(last, "");
+        const rt::Index3& points = file->GetGeometry().Points;
+        isLast = std::max({ points.x, points.y, points.z }) <= layout.BrickEdge + 1 ||
+          !ReducedOrigin::CanReduce(file->GetGeometry());
+        isThere = messenger.GetRank() == 0 && std::filesystem::exists(next);
+        origin = std::make_unique<ReducedOrigin>(file, source + " level " + std::to_string(level),
+          messenger.GetSize(), options.MemoryBytes / 2);
+      });
+    if (isLast)
+    {
+      return level - 1;
+    }
+    if (messenger.AllGatherValue(std::uint8_t(isThere ? 1 : 0)).front() == 0)
+    {
+      WriteBrickFile(
+        std::move(origin), next, one, messenger, [&](double part) { tell(begin + share * part); });
+    }
+    last = next;
+  }
+  return options.Levels;
+}
+
 } // namespace
 
 void WriteBrickFile(std::unique_ptr<ValueOrigin> from, const std::string& path,
@@ -366,24 +413,27 @@ void WriteBrickFile(std::unique_ptr<ValueOrigin> from, const std::string& path,
 {
   const char* const what = "Writing a brick file";
   BrickFileLayout layout;
+  std::string source;
   std::optional<BrickFileWriter> writer;
   std::vector<std::int64_t> begin;
   messenger.RunTogether(what,
     [&]
     {
       layout = CreateLayout(*from, options);
+      source = from->Describe();
       begin.assign(layout.Arrays.size(), 0);
       if (messenger.GetRank() == 0)
       {
-        writer.emplace(path, layout, from->Describe());
+        writer.emplace(path, layout, source);
         for (std::size_t array = 0; array < begin.size(); ++array)
         {
           begin[array] = writer->GetChunks(array);
         }
       }
     });
-  // Writing first, then looking through the bricks.
-  const auto tellHalf = [&](double half, double part) { tell(0.5 * (half + part)); };
+  // Writing first, then looking through the bricks, and then, an eighth as long, the coarser levels.
+  const double finest = options.Levels > 0 ? 0.875 : 1.0;
+  const auto tellHalf = [&](double half, double part) { tell(0.5 * finest * (half + part)); };
   const auto arrays = static_cast<double>(begin.size());
   for (std::size_t array = 0; array < begin.size(); ++array)
   {
@@ -412,13 +462,15 @@ void WriteBrickFile(std::unique_ptr<ValueOrigin> from, const std::string& path,
   const std::vector<std::vector<std::byte>> indices =
     FindIndices(BrickFileWriter::GetPartPath(path), layout, ranges, options, messenger,
       [&](double part) { tellHalf(1.0, part); });
+  const int levels = WriteLevels(path, layout, source, options, messenger,
+    [&](double part) { tell(finest + (1.0 - finest) * part); });
   messenger.Barrier();
   messenger.RunTogether(what,
     [&]
     {
       if (writer)
       {
-        writer->Finish(indices);
+        writer->Finish(indices, levels);
       }
     });
 }

@@ -8,6 +8,7 @@
 
 #include <cstddef>
 #include <functional>
+#include <limits>
 #include <memory>
 #include <string>
 
@@ -19,6 +20,10 @@ struct WriteOptions
   /// Cells along an axis of a brick; 0: what the renderer takes for the arrays' type (of several, the first).
   int BrickEdge = 0;
   Compression Pressed = Compression::None;
+  /// Coarser levels beside the values, each with half the samples along each axis (ReducedOrigin), or as many as there
+  /// are until one is a single brick.
+  int Levels = 0;
+  static constexpr int AllLevels = std::numeric_limits<int>::max();
   /// Of values and chunks in memory, on each rank; what the HDF5 library keeps of the index comes on top.
   std::size_t MemoryBytes = std::size_t(512) << 20;
   int Threads = 1; ///< of each rank

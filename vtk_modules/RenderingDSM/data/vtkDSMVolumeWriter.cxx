@@ -15,7 +15,6 @@
 #include "vtkStreamingDemandDrivenPipeline.h"
 
 #include <algorithm>
-#include <cstdio>
 #include <memory>
 
 vtkStandardNewMacro(vtkDSMVolumeWriter);
@@ -66,6 +65,15 @@ void vtkDSMVolumeWriter::SetCompression(int compression)
   if (wanted != this->Compression)
   {
     this->Compression = wanted;
+    this->Modified();
+  }
+}
+
+void vtkDSMVolumeWriter::SetCoarserLevels(bool coarser)
+{
+  if (coarser != this->CoarserLevels)
+  {
+    this->CoarserLevels = coarser;
     this->Modified();
   }
 }
@@ -137,6 +145,7 @@ void vtkDSMVolumeWriter::WriteData()
     }
     vol::WriteOptions options;
     options.Pressed = ToCompression(this->Compression);
+    options.Levels = this->CoarserLevels ? vol::WriteOptions::AllLevels : 0;
     options.Threads = messenger.GetCoresPerRank();
     const std::uint64_t limit = group->GetStore().GetSettings().MemoryBytes;
     options.MemoryBytes = limit == 0
@@ -148,9 +157,7 @@ void vtkDSMVolumeWriter::WriteData()
   catch (const std::exception& error)
   {
     // Nobody can go on with it.
-    const std::string part = vol::BrickFileWriter::GetPartPath(this->FileName);
-    std::remove(part.c_str());
-    std::remove((part + ".json").c_str());
+    vol::BrickFileWriter::RemoveParts(this->FileName);
     vtkErrorMacro(<< error.what());
     this->SetErrorCode(vtkErrorCode::UserError);
   }
@@ -161,5 +168,6 @@ void vtkDSMVolumeWriter::PrintSelf(ostream& os, vtkIndent indent)
   this->Superclass::PrintSelf(os, indent);
   os << indent << "FileName: " << this->FileName << endl;
   os << indent << "Compression: " << this->Compression << endl;
+  os << indent << "CoarserLevels: " << this->CoarserLevels << endl;
   os << indent << "Controller: " << this->Controller << endl;
 }

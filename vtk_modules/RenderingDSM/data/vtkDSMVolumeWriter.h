@@ -55,6 +55,15 @@ public:
 
   ///@{
   /**
+   * Whether coarser levels are written beside the values, each with half the samples along each axis, until one is a
+   * single brick. Off by default. vtkDSMVolumeReader has them as levels.
+   */
+  virtual void SetCoarserLevels(bool coarser);
+  bool GetCoarserLevels() const { return this->CoarserLevels; }
+  ///@}
+
+  ///@{
+  /**
    * The ranks that have pieces; the global controller by default. Null: this process alone.
    */
   virtual void SetController(vtkMultiProcessController* controller);
@@ -81,6 +90,7 @@ private:
 
   std::string FileName;
   int Compression = NONE;
+  bool CoarserLevels = false;
   vtkSmartPointer<vtkMultiProcessController> Controller;
 };
 

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "DSMVolumeFiles/format/HdfAxes.h"
+
+#include <algorithm>
+#include <vector>
+
+namespace vol
+{
+
+namespace
+{
+
+/// Components that a last axis may stand for.
+constexpr hsize_t MostComponents = 9;
+
+std::vector<hsize_t> GetShape(hid_t dataset)
+{
+  const HdfHandle space(H5Dget_space(dataset), &H5Sclose);
+  const int rank = H5Sget_simple_extent_ndims(space.Get());
+  std::vector<hsize_t> shape(static_cast<std::size_t>(std::max(0, rank)));
+  if (rank > 0)
+  {
+    H5Sget_simple_extent_dims(space.Get(), shape.data(), nullptr);
+  }
+  return shape;
+}
+
+} // namespace
+
+bool HdfAxes::Find(hid_t dataset, bool inSteps)
+{
+  const std::vector<hsize_t> shape = GetShape(dataset);
+  const bool isShort = !shape.empty() && shape.back() <= MostComponents;
+  const std::size_t axes = shape.size();
+  if (axes < 3 || axes > 5 || (axes == 5 && !isShort) ||
+    std::find(shape.begin(), shape.end(), hsize_t(0)) != shape.end())
+  {
+    return false;
+  }
+  const bool hasTime = axes == 5 || (axes == 4 && (inSteps || !isShort));
+  const std::size_t first = hasTime ? 1 : 0;
+  this->Frames = hasTime ? shape.front() : 0;
+  this->Components = axes - first == 4 ? shape.back() : 0;
+  this->Samples = { static_cast<std::int64_t>(shape[first + 2]),
+    static_cast<std::int64_t>(shape[first + 1]), static_cast<std::int64_t>(shape[first]) };
+  return true;
+}
+
+} // namespace vol

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef vol_HdfAxes_h
+#define vol_HdfAxes_h
+
+#include "DSMRayTracing/base/Box.h"
+#include "DSMVolumeFiles/format/HdfLibrary.h"
+
+#include <cstddef>
+
+namespace vol
+{
+
+/// The axes of an HDF5 dataset that holds a volume.
+struct HdfAxes
+{
+  hsize_t Frames = 0; ///< along a first axis of time; 0: it has none
+  rt::Index3 Samples{ 0 };
+  hsize_t Components = 0; ///< along a last axis; 0: it has none
+
+  std::size_t GetBeforeSpace() const { return this->Frames > 0 ? 1 : 0; }
+  bool operator==(const HdfAxes& other) const
+  {
+    return this->Frames == other.Frames && this->Samples == other.Samples;
+  }
+
+  /// Three are z, y and x. Of four, the last has components where it is short, and `inSteps` does not say that the
+  /// first is time. Of five, both. False for what is no volume. The caller has GetHdfLock.
+  bool Find(hid_t dataset, bool inSteps);
+};
+
+} // namespace vol
+
+#endif

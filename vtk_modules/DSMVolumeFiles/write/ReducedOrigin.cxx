@@ -1,0 +1,204 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "DSMVolumeFiles/write/ReducedOrigin.h"
+
+#include <algorithm>
+#include <cmath>
+#include <type_traits>
+#include <utility>
+
+namespace vol
+{
+
+namespace
+{
+
+constexpr std::int64_t LeastPoints = 3;
+
+rt::Index3 FindFactors(const rt::Index3& points)
+{
+  rt::Index3 factors(1);
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    factors[axis] = points[axis] >= LeastPoints ? 2 : 1;
+  }
+  return factors;
+}
+
+/// Wide enough for the sum of eight.
+template <class T>
+using Sum = std::conditional_t<std::is_integral_v<T> && sizeof(T) == 8, long double, double>;
+
+template <class T>
+T ToValue(Sum<T> sum, int count)
+{
+  const Sum<T> mean = sum / static_cast<Sum<T>>(count);
+  if constexpr (std::is_integral_v<T>)
+  {
+    return static_cast<T>(std::nearbyint(mean));
+  }
+  return static_cast<T>(mean);
+}
+
+template <class T>
+bool IsNumber(T value)
+{
+  if constexpr (std::is_floating_point_v<T>)
+  {
+    return !std::isnan(value);
+  }
+  return true;
+}
+
+/// The samples of `fineBox` and `box` are dense; both begin where the factors say.
+template <class T>
+void Average(const T* fine, const rt::Box& fineBox, const rt::Index3& factors, int components,
+  const rt::Box& box, T* out)
+{
+  const rt::Index3 has = fineBox.GetSize();
+  const rt::Index3 size = box.GetSize();
+  rt::Index3 at;
+  for (at.z = 0; at.z < size.z; ++at.z)
+  {
+    for (at.y = 0; at.y < size.y; ++at.y)
+    {
+      for (at.x = 0; at.x < size.x; ++at.x)
+      {
+        const rt::Index3 first = at * factors;
+        const rt::Index3 last = glm::min(first + factors, has);
+        for (int component = 0; component < components; ++component)
+        {
+          Sum<T> sum = 0;
+          int count = 0;
+          rt::Index3 from;
+          for (from.z = first.z; from.z < last.z; ++from.z)
+          {
+            for (from.y = first.y; from.y < last.y; ++from.y)
+            {
+              for (from.x = first.x; from.x < last.x; ++from.x)
+              {
+                const T value =
+                  fine[((from.z * has.y + from.y) * has.x + from.x) * components + component];
+                if (IsNumber(value))
+                {
+                  sum += static_cast<Sum<T>>(value);
+                  ++count;
+                }
+              }
+            }
+          }
+          // Of none, NaN again.
+          *out++ = count > 0
+            ? ToValue<T>(sum, count)
+            : fine[((first.z * has.y + first.y) * has.x + first.x) * components + component];
+        }
+      }
+    }
+  }
+}
+
+/// Every sample that the factors say; `fineBox` begins with the first.
+void Pick(const std::byte* fine, const rt::Box& fineBox, const rt::Index3& factors,
+  std::size_t sampleBytes, const rt::Box& box, std::byte* out)
+{
+  const rt::Index3 has = fineBox.GetSize();
+  const rt::Index3 size = box.GetSize();
+  for (std::int64_t z = 0; z < size.z; ++z)
+  {
+    for (std::int64_t y = 0; y < size.y; ++y)
+    {
+      for (std::int64_t x = 0; x < size.x; ++x)
+      {
+        const std::int64_t from = (z * factors.z * has.y + y * factors.y) * has.x + x * factors.x;
+        const std::byte* const sample = fine + static_cast<std::size_t>(from) * sampleBytes;
+        out = std::copy(sample, sample + sampleBytes, out);
+      }
+    }
+  }
+}
+
+} // namespace
+
+ReducedOrigin::ReducedOrigin(
+  std::shared_ptr<const VolumeFile> file, std::string source, int ranks, std::size_t cacheBytes)
+  : File(std::move(file))
+  , Source(std::move(source))
+  , Ranks(ranks)
+  , Factors(FindFactors(this->File->GetGeometry().Points))
+  , Geometry(this->File->GetGeometry())
+  , Arrays(this->File->GetArrays())
+  , Cache(cacheBytes)
+{
+  const FileGeometry& fine = this->File->GetGeometry();
+  double shift[3];
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    const double between = this->Factors[axis] == 2 ? 0.5 : 0.0;
+    shift[axis] = fine.Spacing[axis] * (static_cast<double>(fine.First[axis]) + between);
+    this->Geometry.Spacing[axis] *= static_cast<double>(this->Factors[axis]);
+  }
+  for (int row = 0; row < 3; ++row)
+  {
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      this->Geometry.Origin[row] += fine.Direction[3 * row + axis] * shift[axis];
+    }
+  }
+  this->Geometry.First = rt::Index3(0);
+  this->Geometry.Points = (fine.Points + this->Factors - rt::Index3(1)) / this->Factors;
+  const rt::Index3 cells = glm::max(this->Geometry.Points - rt::Index3(1), rt::Index3(1));
+  for (FileArray& array : this->Arrays)
+  {
+    array.Grid.Samples = array.OnCells ? cells : this->Geometry.Points;
+  }
+}
+
+bool ReducedOrigin::CanReduce(const FileGeometry& geometry)
+{
+  return FindFactors(geometry.Points) != rt::Index3(1);
+}
+
+std::vector<int> ReducedOrigin::Deal(std::size_t, const std::vector<rt::Box>& boxes)
+{
+  std::vector<int> ranks(boxes.size());
+  for (std::size_t box = 0; box < boxes.size(); ++box)
+  {
+    ranks[box] = static_cast<int>(box * static_cast<std::size_t>(this->Ranks) / boxes.size());
+  }
+  return ranks;
+}
+
+rt::Box ReducedOrigin::GetFineBox(std::size_t array, const rt::Box& box) const
+{
+  if (!this->Arrays[array].OnCells)
+  {
+    const rt::Index3 end = this->File->GetArrays()[array].Grid.Samples;
+    return { box.Min * this->Factors, glm::min(box.Max * this->Factors, end) };
+  }
+  // Of the file's cells, cell 2 i + 1 has its centre where cell i of this has it.
+  const rt::Index3 centre = this->Factors - rt::Index3(1);
+  return { box.Min * this->Factors + centre,
+    (box.Max - rt::Index3(1)) * this->Factors + centre + rt::Index3(1) };
+}
+
+void ReducedOrigin::Read(std::size_t number, const rt::Box& box, std::byte* out) const
+{
+  const FileArray& array = this->Arrays[number];
+  const rt::Box fineBox = this->GetFineBox(number, box);
+  std::vector<std::byte> fine(
+    static_cast<std::size_t>(fineBox.GetCount()) * array.GetSampleBytes());
+  this->Cache.ReadBox(this->File, number, 0, fineBox, fine.data());
+  if (array.OnCells)
+  {
+    Pick(fine.data(), fineBox, this->Factors, array.GetSampleBytes(), box, out);
+    return;
+  }
+  rt::Dispatch(array.Type,
+    [&](auto zero)
+    {
+      using T = decltype(zero);
+      Average(reinterpret_cast<const T*>(fine.data()), fineBox, this->Factors, array.Components,
+        box, reinterpret_cast<T*>(out));
+    });
+}
+
+} // namespace vol
