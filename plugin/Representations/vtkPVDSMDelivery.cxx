@@ -321,6 +321,7 @@ void vtkPVDSMDelivery::Choose(
     view && inInfo->Has(vtkPVRenderView::USE_LOD()) && !AskedView::IsCapturing(view)
       ? GetReduction(view->GetLODResolution())
       : 0);
+  scene->SetAlwaysFinest(view && AskedView::IsCapturing(view));
   if (!view || !controller || controller->GetNumberOfProcesses() < 2)
   {
     scene->DeliverTiles();

@@ -28,6 +28,11 @@ void vtkPVDSMMemoryOptions::SetScratchDirectory(const char* directory)
   this->Superclass::SetScratchDirectory(directory);
 }
 
+void vtkPVDSMMemoryOptions::SetCoarserDataWhileMoving(bool coarser)
+{
+  this->Superclass::SetCoarserDataWhileMoving(coarser);
+}
+
 void vtkPVDSMMemoryOptions::SetCacheSize(int mebibytes)
 {
   if (mebibytes < 1)

@@ -25,6 +25,7 @@ public:
   void SetHostSharing(bool shared) override;
   void SetMemory(int mebibytes) override;
   void SetScratchDirectory(const char* directory) override;
+  void SetCoarserDataWhileMoving(bool coarser) override;
   void SetCacheSize(int mebibytes) override;
   void SetNumberOfThreads(int threads) override;
   void SetScheduler(int scheduler) override;

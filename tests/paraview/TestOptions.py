@@ -116,6 +116,7 @@ settings.UpdateVTKObjects()
 MEMORY = {
     "DSMMemoryOrganization": "Object based", "DSMHostSharing": 0, "DSMMemory": 123, "DSMCacheSize": 33,
     "DSMThreads": 2, "DSMScheduler": "Central queue", "DSMSilenceLimit": 90, "DSMScratchDirectory": "/nowhere",
+    "DSMCoarserDataWhileMoving": 1,
 }
 simple.ResetSession()
 load_plugin()

@@ -254,7 +254,7 @@ std::unique_ptr<vtkDSMFileVolume> vtkDSMFileVolume::Find(dsm::Messenger& messeng
   std::unique_ptr<vtkDSMFileVolume> volume;
   try
   {
-    vol::OpenOptions options;
+    vol::OpenOptions options = own ? own->GetOptions() : vol::OpenOptions{};
     const auto file = own ? own->GetFile() : OpenAs(opening, options);
     const Index3 first(std::get<4>(place), std::get<5>(place), std::get<6>(place));
     const auto array = static_cast<std::size_t>(std::get<2>(place));
@@ -265,7 +265,7 @@ std::unique_ptr<vtkDSMFileVolume> vtkDSMFileVolume::Find(dsm::Messenger& messeng
     {
       const int nextStep = seats[members.front().Piece].NextStep;
       volume.reset(new vtkDSMFileVolume(
-        std::make_shared<vtkDSMFileValues>(file, array, std::get<1>(place), box, nextStep),
+        std::make_shared<vtkDSMFileValues>(file, array, std::get<1>(place), box, nextStep, options),
         component));
     }
   }
@@ -273,12 +273,100 @@ std::unique_ptr<vtkDSMFileVolume> vtkDSMFileVolume::Find(dsm::Messenger& messeng
   {
     volume.reset();
   }
+  return KeepIfEverywhere(messenger, std::move(volume));
+}
+
+std::unique_ptr<vtkDSMFileVolume> vtkDSMFileVolume::KeepIfEverywhere(
+  dsm::Messenger& messenger, std::unique_ptr<vtkDSMFileVolume> volume)
+{
   const auto all = messenger.AllGatherValue(std::int32_t(volume ? 1 : 0));
   if (std::find(all.begin(), all.end(), 0) != all.end())
   {
     volume.reset();
   }
   return volume;
+}
+
+int vtkDSMFileVolume::CountCoarser() const
+{
+  const Box& box = this->Values->GetBox();
+  const bool isWhole = box.Min == Index3(0) && box.Max == this->Values->GetArray().Grid.Samples;
+  return isWhole ? this->Values->GetFile()->GetLevels() - 1 - this->Values->GetOptions().Level : 0;
+}
+
+std::unique_ptr<vtkDSMFileVolume> vtkDSMFileVolume::FindCoarser(
+  dsm::Messenger& messenger, int level) const
+{
+  std::unique_ptr<vtkDSMFileVolume> volume;
+  try
+  {
+    volume = this->OpenCoarser(level);
+  }
+  catch (const std::exception&) // the finest is there
+  {
+    volume.reset();
+  }
+  return KeepIfEverywhere(messenger, std::move(volume));
+}
+
+std::unique_ptr<vtkDSMFileVolume> vtkDSMFileVolume::OpenCoarser(int level) const
+{
+  const vol::FileArray& array = this->Values->GetArray();
+  vol::OpenOptions options = this->Values->GetOptions();
+  options.Level += level;
+  const auto file = vol::OpenVolumeSeries(this->Values->GetFile()->GetPaths(), options);
+  const auto& arrays = file->GetArrays();
+  const auto found = std::find_if(arrays.begin(), arrays.end(),
+    [&](const vol::FileArray& one)
+    {
+      return one.Name == array.Name && one.OnCells == array.OnCells && one.Type == array.Type &&
+        one.Components == array.Components;
+    });
+  if (found == arrays.end() || this->Values->GetStep() >= file->GetSteps())
+  {
+    return nullptr;
+  }
+  std::unique_ptr<vtkDSMFileVolume> volume(new vtkDSMFileVolume(
+    std::make_shared<vtkDSMFileValues>(file, static_cast<std::size_t>(found - arrays.begin()),
+      this->Values->GetStep(), Box{ Index3(0), found->Grid.Samples }, vtkDSMFileValues::None,
+      options),
+    this->Component));
+  // Not every file says how large a level's samples are.
+  const glm::dmat4 toThis = this->GetIndexOf(*volume);
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    const double scale = toThis[axis][axis];
+    const auto points = static_cast<double>(volume->GetPoints()[axis]);
+    const auto thesePoints = static_cast<double>(this->GetPoints()[axis]);
+    if (points < 2.0 || !(std::abs(scale * points - thesePoints) <= 2.0 * scale) ||
+      !(std::abs(toThis[3][axis]) <= 2.0 * scale))
+    {
+      return nullptr;
+    }
+  }
+  return volume;
+}
+
+glm::dmat4 vtkDSMFileVolume::GetIndexToWorld() const
+{
+  const vol::FileGeometry& geometry = this->Values->GetFile()->GetGeometry();
+  const Index3 first = geometry.First + this->Values->GetBox().Min;
+  glm::dmat4 matrix(1.0);
+  for (int row = 0; row < 3; ++row)
+  {
+    matrix[3][row] = geometry.Origin[row];
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      matrix[axis][row] = geometry.Direction[3 * row + axis] * geometry.Spacing[axis];
+      matrix[3][row] += matrix[axis][row] * static_cast<double>(first[axis]);
+    }
+  }
+  return matrix;
+}
+
+glm::dmat4 vtkDSMFileVolume::GetIndexOf(const vtkDSMFileVolume& other) const
+{
+  return glm::inverse(this->GetIndexToWorld()) * other.GetIndexToWorld();
 }
 
 std::shared_ptr<const dsm::BlockReader> vtkDSMFileVolume::CreateReader(

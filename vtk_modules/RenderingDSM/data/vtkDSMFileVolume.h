@@ -9,6 +9,8 @@
 #include "vtkDSMFileValues.h"
 #include "vtkDSMLatticePlan.h"
 
+#include <glm/mat4x4.hpp>
+
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -43,6 +45,17 @@ public:
     const vtkDSMLatticePlan::Lattice& lattice, const std::vector<Seat>& seats,
     const vtkDSMFileValues* own, bool isFirst, int component);
 
+  /// Levels of detail that the file has below the one that was opened; 0 where the lattice is but a part of the
+  /// file's samples.
+  int CountCoarser() const;
+  /// Collective. The first coarser level is 1. Null, on all ranks, where a rank cannot open it, or it has no such array,
+  /// or does not fill the same place.
+  std::unique_ptr<vtkDSMFileVolume> FindCoarser(dsm::Messenger& messenger, int level) const;
+  /// Samples along each axis.
+  rt::Index3 GetPoints() const { return this->Values->GetBox().GetSize(); }
+  /// From indices of another level's samples to those of this one's.
+  glm::dmat4 GetIndexOf(const vtkDSMFileVolume& other) const;
+
   /// Bricks of the lattice; it has no cell mask. `scattered`: they are read as rays meet them, not all in turn.
   std::shared_ptr<const dsm::BlockReader> CreateReader(
     const rt::BrickLattice& lattice, bool scattered) const;
@@ -54,6 +67,14 @@ public:
 
 private:
   vtkDSMFileVolume(std::shared_ptr<const vtkDSMFileValues> values, int component);
+
+  /// Collective. Null, on all ranks, where any has null.
+  static std::unique_ptr<vtkDSMFileVolume> KeepIfEverywhere(
+    dsm::Messenger& messenger, std::unique_ptr<vtkDSMFileVolume> volume);
+  /// Local; null where there is no such level.
+  std::unique_ptr<vtkDSMFileVolume> OpenCoarser(int level) const;
+  /// From indices of samples to the world, by the file.
+  glm::dmat4 GetIndexToWorld() const;
 
   /// Of the lattice's bricks, as the file itself has it (vol::VolumeFile::Index); else empty.
   std::vector<std::byte> ReadIndex(const rt::BrickLattice& lattice) const;

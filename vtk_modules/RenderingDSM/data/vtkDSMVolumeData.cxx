@@ -20,6 +20,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <limits>
 #include <optional>
 #include <set>
 
@@ -337,19 +338,77 @@ std::shared_ptr<const vtkDSMVolumeData::Publication> vtkDSMVolumeData::Publish(c
   }
   for (std::size_t lattice = 0; lattice < this->GetNumberOfLattices(); ++lattice)
   {
-    published->Bricks.push_back(
-      this->PublishLattice(lattice, choice, purpose, infos, seats, progress));
+    this->PublishLattice(*published, lattice, choice, purpose, infos, seats, progress);
   }
   publications.Add<Publication>(published->Content, published);
   return published;
 }
 
-std::shared_ptr<const rt::VoxelField> vtkDSMVolumeData::PublishLattice(std::size_t number,
+std::shared_ptr<const vtkDSMVolumeData::Coarser> vtkDSMVolumeData::PublishCoarser(
+  const Publication& finest, const Choice& choice, const std::string& purpose,
+  const std::function<void(double)>& progress) const
+{
+  dsm::Messenger& messenger = this->Group->GetMessenger();
+  vtkDSMPublications& publications = this->Group->GetPublications();
+  if (const auto known = publications.Find<Coarser>(messenger, finest.Content))
+  {
+    return known;
+  }
+  int mine = std::numeric_limits<int>::max();
+  for (std::size_t lattice = 0; lattice < finest.Bricks.size(); ++lattice)
+  {
+    const auto& file = finest.Files[lattice];
+    if (finest.Bricks[lattice])
+    {
+      mine = std::min(mine, file ? file->CountCoarser() : 0);
+    }
+  }
+  const std::vector<int> all = messenger.AllGatherValue(finest.Bricks.empty() ? 0 : mine);
+  const int levels = *std::min_element(all.begin(), all.end());
+  const auto coarser = std::make_shared<Coarser>();
+  for (int level = 1; level <= levels; ++level)
+  {
+    std::vector<CoarserLattice> lattices(finest.Bricks.size());
+    for (std::size_t lattice = 0; lattice < finest.Bricks.size(); ++lattice)
+    {
+      const std::shared_ptr<const rt::VoxelField>& fine = finest.Bricks[lattice];
+      const auto file = fine ? finest.Files[lattice]->FindCoarser(messenger, level) : nullptr;
+      if (fine && !file)
+      {
+        publications.Add<Coarser>(finest.Content, coarser);
+        return coarser;
+      }
+      if (!fine)
+      {
+        continue;
+      }
+      std::shared_ptr<rt::VoxelField> field;
+      messenger.RunTogether("Preparing the " + purpose,
+        [&]
+        {
+          field = this->MakeField();
+          field->Lattice =
+            rt::BrickLattice(file->GetPoints(), fine->Lattice.GetScalarType(), false);
+          lattices[lattice] = { field, finest.Files[lattice]->GetIndexOf(*file) };
+        });
+      this->PublishFile(*file, true, this->FindFileValues(lattice, choice),
+        "level " + std::to_string(level) + " of the " + purpose + " '" + choice.Name + "'",
+        progress, *field);
+    }
+    coarser->Levels.push_back(std::move(lattices));
+  }
+  publications.Add<Coarser>(finest.Content, coarser);
+  return coarser;
+}
+
+void vtkDSMVolumeData::PublishLattice(Publication& published, std::size_t number,
   const Choice& choice, const std::string& purpose, const std::vector<ArrayInfo>& infos,
   const std::vector<vtkDSMFileVolume::Seat>& seats,
   const std::function<void(double)>& progress) const
 {
   dsm::Messenger& messenger = this->Group->GetMessenger();
+  published.Bricks.emplace_back();
+  published.Files.emplace_back();
   std::shared_ptr<rt::VoxelField> field;
   std::vector<std::shared_ptr<const rt::VoxelSource>> sources;
   std::optional<dsm::BlockDirectory> directory;
@@ -365,8 +424,9 @@ std::shared_ptr<const rt::VoxelField> vtkDSMVolumeData::PublishLattice(std::size
     });
   if (!field)
   {
-    return nullptr;
+    return;
   }
+  published.Bricks.back() = field;
   const std::string what = "the " + purpose + " '" + choice.Name + "'";
   // Values of points; what colours by cells or by colours themselves is cut by the ranks that have it.
   const bool canBeRead =
@@ -377,11 +437,12 @@ std::shared_ptr<const rt::VoxelField> vtkDSMVolumeData::PublishLattice(std::size
     const vtkDSMFileValues* const own = this->FindFileValues(number, choice);
     const int first = lattice.Members.front().Piece - this->FirstOwnPiece;
     const bool isFirst = first >= 0 && first < static_cast<int>(this->Images.size());
-    if (const auto file =
+    if (std::shared_ptr<const vtkDSMFileVolume> file =
           vtkDSMFileVolume::Find(messenger, lattice, seats, own, isFirst && own, choice.Component))
     {
-      this->PublishFile(*file, own, what, progress, *field);
-      return field;
+      this->PublishFile(*file, false, own, what, progress, *field);
+      published.Files.back() = std::move(file);
+      return;
     }
   }
   field->Segment = this->Group->PublishWithRoom(
@@ -392,7 +453,6 @@ std::shared_ptr<const rt::VoxelField> vtkDSMVolumeData::PublishLattice(std::size
       return this->Group->GetStore().Publish(what, *directory, source, sink, progress, place);
     });
   field->Hierarchy = rt::MacrocellHierarchy(field->Lattice, *field->Segment, messenger);
-  return field;
 }
 
 const vtkDSMFileValues* vtkDSMVolumeData::FindFileValues(
@@ -411,8 +471,9 @@ const vtkDSMFileValues* vtkDSMVolumeData::FindFileValues(
   return nullptr;
 }
 
-void vtkDSMVolumeData::PublishFile(const vtkDSMFileVolume& file, const vtkDSMFileValues* own,
-  const std::string& what, const std::function<void(double)>& progress, rt::VoxelField& field) const
+void vtkDSMVolumeData::PublishFile(const vtkDSMFileVolume& file, bool isCoarser,
+  const vtkDSMFileValues* own, const std::string& what, const std::function<void(double)>& progress,
+  rt::VoxelField& field) const
 {
   dsm::Messenger& messenger = this->Group->GetMessenger();
   dsm::BlockStore& store = this->Group->GetStore();
@@ -428,9 +489,12 @@ void vtkDSMVolumeData::PublishFile(const vtkDSMFileVolume& file, const vtkDSMFil
       const std::uint64_t memory = store.GetSettings().MemoryBytes;
       const std::size_t chunks = vol::ChunkCache::GetShared().Restrict(
         memory == 0 ? SIZE_MAX : static_cast<std::size_t>(memory / ChunksDivisor));
-      directory->AddIndexBytes(chunks + dsm::ReadingSource::MostReads * directory->GetLargest());
+      // Levels share them.
+      directory->AddIndexBytes(
+        (isCoarser ? 0 : chunks) + dsm::ReadingSource::MostReads * directory->GetLargest());
     });
-  field.Segment = this->Group->WithRoom([&] { return store.Publish(what, *directory, source); });
+  const auto publish = [&] { return store.Publish(what, *directory, source); };
+  field.Segment = isCoarser ? publish() : this->Group->WithRoom(publish);
   rt::VoxelIndex index =
     file.FindIndex(messenger, field.Lattice, own, store.GetSettings().Workers, progress);
   messenger.RunTogether("Building the macrocells",
@@ -439,6 +503,22 @@ void vtkDSMVolumeData::PublishFile(const vtkDSMFileVolume& file, const vtkDSMFil
       field.Survey = index.Survey;
       field.Hierarchy = rt::MacrocellHierarchy(field.Lattice, std::move(index.Bricks));
     });
+}
+
+std::shared_ptr<rt::VoxelField> vtkDSMVolumeData::MakeField() const
+{
+  std::shared_ptr<vtkDSMRankGroup> group = this->Group;
+  // The group's publications hold what this captures after the last user has left, and so the group itself.
+  return { new rt::VoxelField,
+    [group](rt::VoxelField* old) mutable
+    {
+      const auto last = std::move(group);
+      if (old->Segment)
+      {
+        last->GetStore().Retire(old->Segment);
+      }
+      delete old;
+    } };
 }
 
 std::shared_ptr<rt::VoxelField> vtkDSMVolumeData::CreateField(std::size_t number,
@@ -469,18 +549,7 @@ std::shared_ptr<rt::VoxelField> vtkDSMVolumeData::CreateField(std::size_t number
   const rt::Box whole{ rt::Index3(0), lattice.Points - rt::Index3(1) };
   masked = masked || !vtkDSMLatticePlan::IsCovered(whole, parts);
 
-  std::shared_ptr<vtkDSMRankGroup> group = this->Group;
-  // The group's publications hold what this captures after the last user has left, and so the group itself.
-  std::shared_ptr<rt::VoxelField> field(new rt::VoxelField,
-    [group](rt::VoxelField* old) mutable
-    {
-      const auto last = std::move(group);
-      if (old->Segment)
-      {
-        last->GetStore().Retire(old->Segment);
-      }
-      delete old;
-    });
+  std::shared_ptr<rt::VoxelField> field = this->MakeField();
   field->Lattice = rt::BrickLattice(lattice.Points, *types.begin(), masked);
   if (choice.OnCells)
   {

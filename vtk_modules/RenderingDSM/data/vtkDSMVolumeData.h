@@ -46,7 +46,22 @@ public:
   struct Publication
   {
     Fields Bricks;
+    /// Of each lattice: the file that it is in, or null.
+    std::vector<std::shared_ptr<const vtkDSMFileVolume>> Files;
     std::uint64_t Content = 0; ///< see HashContent
+  };
+
+  /// An array's lattices at a coarser level of their files.
+  struct CoarserLattice
+  {
+    std::shared_ptr<const rt::VoxelField>
+      Field;              ///< null where no piece of the lattice has the array
+    glm::dmat4 ToLattice; ///< from its indices to the lattice's
+  };
+  struct Coarser
+  {
+    /// From the first coarser one on; each has all lattices.
+    std::vector<std::vector<CoarserLattice>> Levels;
   };
 
   /// Collective. `data` is this rank's part: vtkImageData, a composite dataset of images, or null.
@@ -75,6 +90,11 @@ public:
   std::shared_ptr<const Publication> Publish(const Choice& choice, const std::string& purpose,
     const std::function<void(double)>& progress) const;
 
+  /// Collective. The coarser levels of what was published for the same choice; none where a lattice is in no file, or in
+  /// one without. Room for their tables is what they take: they give way to nothing, and nothing gives way to them.
+  std::shared_ptr<const Coarser> PublishCoarser(const Publication& finest, const Choice& choice,
+    const std::string& purpose, const std::function<void(double)>& progress) const;
+
 private:
   struct ArrayInfo;
 
@@ -86,13 +106,16 @@ private:
   /// Of this rank's first piece of a lattice that has the array in a file; null when none has.
   const vtkDSMFileValues* FindFileValues(std::size_t lattice, const Choice& choice) const;
   /// Collective: a lattice that is in a file. Its bricks come to memory when rays meet them.
-  void PublishFile(const vtkDSMFileVolume& file, const vtkDSMFileValues* own,
+  void PublishFile(const vtkDSMFileVolume& file, bool isCoarser, const vtkDSMFileValues* own,
     const std::string& what, const std::function<void(double)>& progress,
     rt::VoxelField& field) const;
-  std::shared_ptr<const rt::VoxelField> PublishLattice(std::size_t lattice, const Choice& choice,
+  /// Adds it to the publication.
+  void PublishLattice(Publication& published, std::size_t lattice, const Choice& choice,
     const std::string& purpose, const std::vector<ArrayInfo>& infos,
     const std::vector<vtkDSMFileVolume::Seat>& seats,
     const std::function<void(double)>& progress) const;
+  /// Local. A field that leaves the store with its last user.
+  std::shared_ptr<rt::VoxelField> MakeField() const;
   /// Local. A lattice's field without its bricks; null where no piece has the array.
   std::shared_ptr<rt::VoxelField> CreateField(std::size_t lattice, const Choice& choice,
     const std::string& purpose, const std::vector<ArrayInfo>& infos) const;

@@ -16,6 +16,7 @@
 #include <algorithm>
 #include <cstring>
 #include <iomanip>
+#include <numeric>
 #include <sstream>
 #include <type_traits>
 #include <utility>
@@ -150,10 +151,11 @@ vtkDSMStatistics::vtkDSMStatistics() = default;
 vtkDSMStatistics::~vtkDSMStatistics() = default;
 
 void vtkDSMStatistics::Gather(
-  dsm::Messenger& messenger, const rt::Frame& frame, int samples, int wanted)
+  dsm::Messenger& messenger, const rt::Frame& frame, int samples, int wanted, int coarser)
 {
   this->Samples = samples;
   this->Wanted = wanted;
+  this->CoarserLevel = coarser;
   RankRow mine{};
   mine.Rank = messenger.GetRank();
   vtksys::SystemInformation system;
@@ -222,6 +224,7 @@ void vtkDSMStatistics::Gather(
 
 void vtkDSMStatistics::Clear()
 {
+  this->CoarserLevel = 0;
   this->Rows.clear();
   this->Workers.clear();
   this->FrameSeconds = 0.0;
@@ -265,6 +268,12 @@ std::string vtkDSMStatistics::GetHost(int rank) const
   return rank >= 0 && rank < this->GetNumberOfRanks() ? this->Rows[rank].Host : "";
 }
 
+vtkTypeInt64 vtkDSMStatistics::GetNumberOfMisses() const
+{
+  return std::accumulate(this->Rows.begin(), this->Rows.end(), vtkTypeInt64(0),
+    [](vtkTypeInt64 sum, const RankRow& row) { return sum + row.Misses; });
+}
+
 std::string vtkDSMStatistics::GetSummary() const
 {
   if (this->Rows.empty())
@@ -302,6 +311,10 @@ std::string vtkDSMStatistics::GetSummary() const
   {
     text << this->Samples << " of " << this->Wanted << " samples, ";
   }
+  if (this->CoarserLevel > 0)
+  {
+    text << count(this->CoarserLevel, "level") << " coarser, ";
+  }
   text << count(static_cast<std::int64_t>(this->Rows.size()), "rank") << ", "
        << count(sum.Threads, "thread") << "\n";
   // Held by all ranks together. What a rank reads in place is another's, and held once.
@@ -325,7 +338,7 @@ std::string vtkDSMStatistics::GetJson() const
   {
     json << (row.Rank > 0 ? ", " : "") << "{\"Rank\": " << row.Rank << ", \"Host\": \"" << row.Host
          << "\", \"Organization\": \"" << this->Organization << "\", \"Explanation\": \""
-         << this->Explanation << "\"";
+         << this->Explanation << "\", \"CoarserLevel\": " << this->CoarserLevel;
     RankRow::ForEachColumn([&](const auto& column) { AddMember(json, row, column); });
     json << ", \"Workers\": [";
     bool first = true;

@@ -32,9 +32,10 @@ public:
 
   /**
    * Collective: every rank learns of every rank's counters. `samples` of each pixel are there of those
-   * that are `wanted`.
+   * that are `wanted`; the data were shown `coarser` levels below the finest.
    */
-  void Gather(dsm::Messenger& messenger, const rt::Frame& frame, int samples, int wanted);
+  void Gather(
+    dsm::Messenger& messenger, const rt::Frame& frame, int samples, int wanted, int coarser);
 
   /**
    * No frame.
@@ -46,6 +47,17 @@ public:
    * frame.
    */
   vtkGetMacro(FrameSeconds, double);
+
+  /**
+   * How many levels below the finest the data of the frame were, where there are as many; see
+   * vtkDSMMemoryOptions::SetCoarserDataWhileMoving. 0 for the finest, and without a frame.
+   */
+  vtkGetMacro(CoarserLevel, int);
+
+  /**
+   * How often the frame had to wait for a brick, on all ranks.
+   */
+  vtkTypeInt64 GetNumberOfMisses() const;
 
   /**
    * A sentence for the user: how the ranks keep their bricks, and why. Empty without a frame.
@@ -107,6 +119,7 @@ private:
   double FrameSeconds = 0.0;
   int Samples = 0;
   int Wanted = 0;
+  int CoarserLevel = 0;
   std::string Explanation;
   std::string Organization;
   std::vector<RankRow> Rows;

@@ -194,6 +194,53 @@ void vtkDSMSceneVolume::Update(const std::shared_ptr<vtkDSMRankGroup>& group, bo
   }
 }
 
+void vtkDSMSceneVolume::TakeCoarser(const std::shared_ptr<vtkDSMRankGroup>&, bool wanted)
+{
+  for (const auto& published : { this->Iso, this->Color })
+  {
+    if (!this->Data || !published || !published->Publication)
+    {
+      continue;
+    }
+    if (!wanted)
+    {
+      published->Coarser.reset();
+      published->CoarserFailure.clear();
+    }
+    else if (!published->Coarser)
+    {
+      try
+      {
+        vtkDSMVolumeMapper* mapper = this->Mapper;
+        vtkDSMProgress::Begin(mapper);
+        published->Coarser = this->Data->PublishCoarser(*published->Publication, published->Choice,
+          published == this->Iso ? "isosurface array" : "colour array",
+          [mapper](double part) { vtkDSMProgress::Tell(mapper, part); });
+      }
+      catch (const dsm::Error& error)
+      {
+        published->Coarser = std::make_shared<vtkDSMVolumeData::Coarser>();
+        published->CoarserFailure =
+          std::string("No coarser data stand in while the camera moves: ") + error.what();
+      }
+    }
+    if (!published->CoarserFailure.empty())
+    {
+      this->Messages.push_back(published->CoarserFailure);
+    }
+  }
+}
+
+int vtkDSMSceneVolume::CountCoarser() const
+{
+  std::size_t levels = this->Iso && this->Iso->Coarser ? this->Iso->Coarser->Levels.size() : 0;
+  if (this->Color && !this->Color->GetFields().empty())
+  {
+    levels = std::min(levels, this->Color->Coarser ? this->Color->Coarser->Levels.size() : 0);
+  }
+  return static_cast<int>(levels);
+}
+
 int vtkDSMSceneVolume::GetColorComponent() const
 {
   vtkScalarsToColors* table = this->Mapper->GetLookupTable();
@@ -387,6 +434,7 @@ void vtkDSMSceneVolume::AddTo(rt::Scene& scene)
   {
     groups.push_back(isovalues);
   }
+  const auto level = static_cast<std::size_t>(std::min(this->GetCoarser(), this->CountCoarser()));
   const bool colored = this->Color && !this->Color->GetFields().empty();
   for (std::size_t lattice = 0; lattice < this->Data->GetNumberOfLattices(); ++lattice)
   {
@@ -399,6 +447,13 @@ void vtkDSMSceneVolume::AddTo(rt::Scene& scene)
       rt::IsosurfaceObject object;
       object.SetIndexToWorld(dataToWorld * this->Data->GetIndexToWorld(lattice));
       object.Field = this->Iso->GetFields()[lattice];
+      if (level > 0)
+      {
+        const auto& coarser = this->Iso->Coarser->Levels[level - 1][lattice];
+        object.Field = coarser.Field;
+        object.SetIndexToWorld(
+          dataToWorld * this->Data->GetIndexToWorld(lattice) * coarser.ToLattice);
+      }
       object.Isovalues = group;
       object.Surface = this->GetMaterial(group.front());
       object.Flat = !this->IsLikeRayCastMapper() &&
@@ -407,6 +462,10 @@ void vtkDSMSceneVolume::AddTo(rt::Scene& scene)
       if (colored && this->Color->GetFields()[lattice])
       {
         this->SetColors(lattice, object);
+        if (level > 0)
+        {
+          object.ColorField = this->Color->Coarser->Levels[level - 1][lattice].Field;
+        }
       }
       scene.Objects.push_back(std::move(object));
     }

@@ -24,6 +24,8 @@ public:
   void GiveUpBlocks() override;
   bool HasBlocks() const override { return this->Iso || this->Color; }
   void Update(const std::shared_ptr<vtkDSMRankGroup>& group, bool newData) override;
+  void TakeCoarser(const std::shared_ptr<vtkDSMRankGroup>& group, bool wanted) override;
+  int CountCoarser() const override;
   /// One object for each of the volume's lattices.
   void AddTo(rt::Scene& scene) override;
 
@@ -33,7 +35,9 @@ private:
     vtkDSMVolumeData::Choice Choice;
     std::shared_ptr<const vtkDSMVolumeData::Publication> Publication; ///< null when it failed
     std::string Failure;
-    unsigned RetryVersion = 0; ///< the group's when it was tried
+    unsigned RetryVersion = 0;                                ///< the group's when it was tried
+    std::shared_ptr<const vtkDSMVolumeData::Coarser> Coarser; ///< null until they are wanted
+    std::string CoarserFailure;
     /// Empty when it failed.
     const vtkDSMVolumeData::Fields& GetFields() const;
   };

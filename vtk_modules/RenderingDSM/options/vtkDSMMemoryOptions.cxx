@@ -25,6 +25,7 @@ void vtkDSMMemoryOptions::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "HostSharing: " << this->HostSharing << "\n";
   os << indent << "Memory: " << this->Memory << " MiB\n";
   os << indent << "ScratchDirectory: " << this->ScratchDirectory << "\n";
+  os << indent << "CoarserDataWhileMoving: " << this->CoarserDataWhileMoving << "\n";
   os << indent << "CacheSize: " << this->CacheSize << " MiB\n";
   os << indent << "NumberOfThreads: " << this->NumberOfThreads << "\n";
   os << indent << "Scheduler: " << this->Scheduler << "\n";

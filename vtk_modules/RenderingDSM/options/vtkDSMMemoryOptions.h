@@ -70,6 +70,18 @@ public:
 
   ///@{
   /**
+   * Whether volumes in files that have coarser levels are drawn from one of those while the camera moves (the window's
+   * DesiredUpdateRate is 1 or more) and bricks of the finest that the picture needs are not in memory. They are
+   * asked for meanwhile, and take their place as they come. All other pictures are of the finest. Off by default; on
+   * when any dataset wants it on.
+   */
+  vtkSetMacro(CoarserDataWhileMoving, bool);
+  vtkGetMacro(CoarserDataWhileMoving, bool);
+  vtkBooleanMacro(CoarserDataWhileMoving, bool);
+  ///@}
+
+  ///@{
+  /**
    * Memory of each rank for bricks of other ranks, in MiB. Default 256. The largest among all datasets
    * counts.
    */
@@ -123,6 +135,7 @@ private:
   bool HostSharing = true;
   int Memory = 0;
   std::string ScratchDirectory;
+  bool CoarserDataWhileMoving = false;
   int CacheSize = 256;
   int NumberOfThreads = 0;
   int Scheduler = WorkStealing;

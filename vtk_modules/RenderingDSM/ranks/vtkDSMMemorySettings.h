@@ -24,6 +24,8 @@ struct vtkDSMMemorySettings
   std::uint64_t CacheBytes = std::uint64_t(1) << 20;
   /// For bricks that do not fit the memory; empty: none. The first that is given counts.
   std::string ScratchDirectory;
+  /// Whether coarser data stand in while the camera moves. On when anyone wants it.
+  bool CoarserWhileMoving = false;
   /// Tracing threads of each rank; 0: the cores of the host divided by its ranks. The largest counts.
   int Threads = 0;
   /// The central queue when anyone wants it.
@@ -44,6 +46,7 @@ struct vtkDSMMemorySettings
     {
       this->ScratchDirectory = other.ScratchDirectory;
     }
+    this->CoarserWhileMoving = this->CoarserWhileMoving || other.CoarserWhileMoving;
     this->Threads = std::max(this->Threads, other.Threads);
     if (other.Scheduling == rt::TileScheduling::CentralQueue)
     {

@@ -220,6 +220,16 @@ int vtkDSMScene::GetInteractiveReduction() const
   return this->Self->InteractiveReduction;
 }
 
+void vtkDSMScene::SetAlwaysFinest(bool finest)
+{
+  this->Self->AlwaysFinest = finest;
+}
+
+bool vtkDSMScene::GetAlwaysFinest() const
+{
+  return this->Self->AlwaysFinest;
+}
+
 void vtkDSMScene::SetTileDisplay(int columns, int rows, int gapX, int gapY)
 {
   this->Self->Display = { { std::max(1, columns), std::max(1, rows) }, { gapX, gapY } };

@@ -152,6 +152,16 @@ public:
   int GetInteractiveReduction() const;
   ///@}
 
+  ///@{
+  /**
+   * Whether every frame is of the finest data, also while the window wants interactive rates and the objects'
+   * vtkDSMMemoryOptions let coarser ones stand in: for pictures that are kept. Off by default. Same value on every
+   * rank.
+   */
+  void SetAlwaysFinest(bool finest);
+  bool GetAlwaysFinest() const;
+  ///@}
+
   /**
    * Each rank's window is one of columns x rows tiles of a display, of the same size, with gaps of so many
    * pixels between them. The frame is traced for the whole display; the application draws each tile with

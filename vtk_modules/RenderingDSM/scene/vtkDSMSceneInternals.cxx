@@ -45,6 +45,19 @@ bool IsNearly(const glm::dmat4& a, const glm::dmat4& b)
   return difference <= tolerance * largest;
 }
 
+/// Pixels are squares of so many: lines are as wide on the screen.
+void ScaleEdges(rt::Scene& scene, int reduction)
+{
+  for (rt::SceneObject& object : scene.Objects)
+  {
+    auto* const mesh = std::get_if<rt::MeshObject>(&object);
+    if (mesh && mesh->Edges)
+    {
+      mesh->Edges->Width /= static_cast<float>(reduction);
+    }
+  }
+}
+
 } // namespace
 
 vtkDSMScene::Internals::~Internals()
@@ -122,9 +135,9 @@ void vtkDSMScene::Internals::Update()
       this->Settings = this->Members.GetMemorySettings();
       this->Group->Configure(this, this->Settings);
       const vtkDSMMemorySettings& settings = this->Settings;
-      mine = dsm::Encode(
-        Digest{ static_cast<std::uint64_t>(settings.Organization), settings.HostSharing ? 1u : 0u,
-          settings.MemoryBytes, settings.CacheBytes, settings.ScratchDirectory.empty() ? 0u : 1u });
+      mine = dsm::Encode(Digest{ static_cast<std::uint64_t>(settings.Organization),
+        (settings.HostSharing ? 1u : 0u) + (settings.CoarserWhileMoving ? 2u : 0u),
+        settings.MemoryBytes, settings.CacheBytes, settings.ScratchDirectory.empty() ? 0u : 1u });
       for (const auto& member : members)
       {
         member.State->UpdatePiece(messenger.GetRank(), messenger.GetSize());
@@ -142,8 +155,8 @@ void vtkDSMScene::Internals::Update()
     if (!std::equal(flags.begin(), flags.begin() + sizeof(Digest), all.front().begin()))
     {
       throw dsm::Error("The ranks have different settings of the memory (DSMMemoryOrganization, "
-                       "DSMHostSharing, DSMMemory, DSMCacheSize, DSMScratchDirectory); the "
-                       "frame was left out. Set them alike.");
+                       "DSMHostSharing, DSMMemory, DSMCacheSize, DSMScratchDirectory, "
+                       "DSMCoarserDataWhileMoving); the frame was left out. Set them alike.");
     }
   }
   bool isEmpty = false;
@@ -158,6 +171,7 @@ void vtkDSMScene::Internals::Update()
       std::any_of(all.begin(), all.end(),
         [=](const auto& flags) { return flags[sizeof(Digest) + index] != std::byte(0); });
     members[index].State->Update(this->Group, newData);
+    members[index].State->TakeCoarser(this->Group, this->Settings.CoarserWhileMoving);
   }
 }
 
@@ -170,7 +184,7 @@ void vtkDSMScene::Internals::Draw()
   messenger.RunTogether("Preparing the frame",
     [&]
     {
-      this->Members.AddTo(scene);
+      this->Members.AddTo(scene, 0);
       this->KeepProp(scene);
       scene.Lights = vtkDSMTranslation::ToLights(this->Renderer);
       scene.Transport = this->Members.GetTransport(this->IsInteractive());
@@ -191,31 +205,11 @@ void vtkDSMScene::Internals::Draw()
   const int reduction = this->GetReduction(request);
   request.Width = (request.Width + reduction - 1) / reduction;
   request.Height = (request.Height + reduction - 1) / reduction;
-  for (rt::SceneObject& object : scene.Objects)
-  {
-    auto* const mesh = std::get_if<rt::MeshObject>(&object);
-    if (mesh && mesh->Edges)
-    {
-      mesh->Edges->Width /= static_cast<float>(reduction); // as wide on the screen
-    }
-  }
-  const int wanted = this->Members.GetSamplesPerPixel();
-  vtkRenderWindow* window = this->Image ? nullptr : this->Renderer->GetRenderWindow();
-  this->Group->GetFrameRenderer().SetAbortCheck(
-    [=] { return window && window->CheckAbortStatus() != 0; });
-  using Result = vtkDSMFrameAccumulation::Result;
-  const Result result = this->Accumulation.Trace(
-    *this->Group, scene, request, wanted, this->GetPace(), this->Statistics->GetFrameSeconds());
-  if (result == Result::Aborted)
+  if (this->TraceScene(scene, request, reduction) == vtkDSMFrameAccumulation::Result::Aborted)
   {
     // The renderer goes on, with the last picture: other ranks may wait for what this one draws.
-    window->SetAbortRender(0);
+    this->Renderer->GetRenderWindow()->SetAbortRender(0);
     return;
-  }
-  if (result == Result::Traced)
-  {
-    this->Statistics->Gather(messenger, this->Accumulation.GetFrame(),
-      this->Accumulation.GetSamples(), this->Accumulation.GetWanted());
   }
   if (this->Image)
   {
@@ -226,6 +220,60 @@ void vtkDSMScene::Internals::Draw()
     this->Delivery.Gather(messenger, this->Accumulation.GetFrame());
   this->DrawPicture(whole ? std::move(*whole) : rt::AssembleTiles(this->Accumulation.GetFrame()),
     request, projection, scene.View, reduction == 1);
+}
+
+/// Collective: the scene's objects come in again where they are shown at another level of detail.
+vtkDSMFrameAccumulation::Result vtkDSMScene::Internals::TraceScene(
+  rt::Scene& scene, const rt::FrameRequest& request, int reduction)
+{
+  dsm::Messenger& messenger = this->Group->GetMessenger();
+  vtkRenderWindow* window = this->Image ? nullptr : this->Renderer->GetRenderWindow();
+  const std::vector<int> tries = this->Detail.GetTries(this->CountCoarser());
+  using Result = vtkDSMFrameAccumulation::Result;
+  Result result = Result::Aborted;
+  for (auto level = tries.begin(); level != tries.end() && result == Result::Aborted; ++level)
+  {
+    if (*level > 0)
+    {
+      messenger.RunTogether("Preparing the frame", [&] { this->Members.AddTo(scene, *level); });
+    }
+    ScaleEdges(scene, reduction);
+    const bool isLast = level + 1 == tries.end();
+    this->Detail.Begin();
+    this->Group->GetFrameRenderer().SetAbortCheck(
+      [this, window, isLast]
+      {
+        return (window && window->CheckAbortStatus() != 0) ||
+          (!isLast && this->Detail.IsTooLong(this->Group->GetStore()));
+      });
+    result = this->Accumulation.Trace(*this->Group, scene, request,
+      this->Members.GetSamplesPerPixel(), this->GetPace(), this->Statistics->GetFrameSeconds());
+    if (result == Result::Traced)
+    {
+      this->Statistics->Gather(messenger, this->Accumulation.GetFrame(),
+        this->Accumulation.GetSamples(), this->Accumulation.GetWanted(), *level);
+      if (tries.size() > 1)
+      {
+        this->Detail.Note(
+          *level, this->Statistics->GetNumberOfMisses(), this->Statistics->GetFrameSeconds());
+      }
+    }
+  }
+  this->Group->GetFrameRenderer().SetAbortCheck({});
+  return result;
+}
+
+/// Collective: levels below the finest that may stand in.
+int vtkDSMScene::Internals::CountCoarser() const
+{
+  if (!this->Settings.CoarserWhileMoving)
+  {
+    return 0;
+  }
+  const bool mayBeCoarser = this->IsInteractive() && !this->AlwaysFinest;
+  const int mine = mayBeCoarser ? this->Members.CountCoarser() : 0;
+  const std::vector<int> all = this->Group->GetMessenger().AllGatherValue(mine);
+  return *std::min_element(all.begin(), all.end());
 }
 
 void vtkDSMScene::Internals::FillImage(const rt::Picture& picture) const

@@ -6,6 +6,7 @@
 #include "vtkDSMFrameAccumulation.h"
 #include "vtkDSMFrameDelivery.h"
 #include "vtkDSMFrameProp.h"
+#include "vtkDSMMovingDetail.h"
 #include "vtkDSMRankGroup.h"
 #include "vtkDSMScene.h"
 #include "vtkDSMSceneMembers.h"
@@ -64,11 +65,13 @@ public:
   std::shared_ptr<vtkDSMRankGroup> Group;
   vtkDSMSceneMembers Members;
   vtkDSMFrameAccumulation Accumulation;
+  vtkDSMMovingDetail Detail;
   vtkDSMFrameDelivery Delivery;
   std::string Failure; ///< that was reported last
   bool Tracing = false;
   vtkDSMFrameAccumulation::Pace Pace; ///< of still pictures
   int InteractiveReduction = 0;
+  bool AlwaysFinest = false;
   vtkDSMTranslation::TileDisplay Display;
   vtkDSMMemorySettings Settings; ///< that the objects ask for
   unsigned SettledVersion = 0;   ///< of the group's settings
@@ -81,6 +84,9 @@ private:
   bool IsInteractive() const;
   vtkDSMFrameAccumulation::Pace GetPace() const;
   int GetReduction(const rt::FrameRequest& request) const;
+  int CountCoarser() const;
+  vtkDSMFrameAccumulation::Result TraceScene(
+    rt::Scene& scene, const rt::FrameRequest& request, int reduction);
   void DrawPicture(rt::Picture picture, const rt::FrameRequest& request, vtkMatrix4x4* projection,
     rt::DebugView view, bool hasNotes);
   bool WriteNotes(rt::DebugView view, rt::Picture& picture) const;

@@ -52,11 +52,13 @@ std::shared_ptr<const rt::ColorMap> vtkDSMSceneMember::SampleColors(vtkScalarsTo
 
 void vtkDSMSceneMember::ReportMessages()
 {
+  std::vector<std::string> known = this->Reported;
   for (const std::string& message : this->Messages)
   {
-    if (std::find(this->Reported.begin(), this->Reported.end(), message) == this->Reported.end())
+    if (std::find(known.begin(), known.end(), message) == known.end())
     {
       vtkErrorWithObjectMacro(this->GetAlgorithm(), << message);
+      known.push_back(message); // AddTo may have said it more than once
     }
   }
   this->Reported = this->Messages;

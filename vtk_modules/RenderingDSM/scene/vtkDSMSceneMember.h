@@ -55,6 +55,14 @@ public:
   /// mapper names and is not there yet. What goes wrong is kept as a message.
   virtual void Update(const std::shared_ptr<vtkDSMRankGroup>& group, bool newData) = 0;
 
+  /// Collective, after Update. While they are wanted, the mapper's data are there at coarser levels, too, where
+  /// their files have some.
+  virtual void TakeCoarser(const std::shared_ptr<vtkDSMRankGroup>&, bool /*wanted*/) {}
+  /// Local, the same on every rank: how many of them there are.
+  virtual int CountCoarser() const { return 0; }
+  /// At which level AddTo shows the data: the finest (0), or so many below it, or the coarsest there is.
+  void SetCoarser(int level) { this->Coarser = level; }
+
   /// Local: what the prop shows.
   virtual void AddTo(rt::Scene& scene) = 0;
 
@@ -74,12 +82,15 @@ protected:
   /// The table's colours; sampled again when it has changed.
   std::shared_ptr<const rt::ColorMap> SampleColors(vtkScalarsToColors* table);
 
+  int GetCoarser() const { return this->Coarser; }
+
   vtkProp3D* Prop = nullptr;
   /// Of the last Update and AddTo.
   std::vector<std::string> Messages;
   std::vector<std::string> Reported;
 
 private:
+  int Coarser = 0;
   std::shared_ptr<const rt::ColorMap> Colors;
   const void* ColorsSource = nullptr;
   vtkMTimeType ColorsTime = 0;

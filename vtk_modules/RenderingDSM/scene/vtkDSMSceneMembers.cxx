@@ -144,11 +144,23 @@ void vtkDSMSceneMembers::GiveUpBlocks()
   }
 }
 
-void vtkDSMSceneMembers::AddTo(rt::Scene& scene) const
+int vtkDSMSceneMembers::CountCoarser() const
 {
+  int levels = 0;
+  for (const Member& member : this->Shown)
+  {
+    levels = std::max(levels, member.State->CountCoarser());
+  }
+  return levels;
+}
+
+void vtkDSMSceneMembers::AddTo(rt::Scene& scene, int coarser) const
+{
+  scene.Objects.clear();
   for (const Member& member : this->Shown)
   {
     const Placing placing(member);
+    member.State->SetCoarser(coarser);
     member.State->AddTo(scene);
   }
 }

@@ -42,8 +42,10 @@ public:
   /// Of the hidden ones that have bricks, the one that was shown the longest ago; null without any.
   vtkDSMSceneMember* FindOldestHidden() const;
 
-  /// What is shown becomes objects of the scene.
-  void AddTo(rt::Scene& scene) const;
+  /// What is shown becomes the objects of the scene, at the finest level of detail (0), or so many below it.
+  void AddTo(rt::Scene& scene, int coarser) const;
+  /// The most levels below the finest that anything has.
+  int CountCoarser() const;
 
   /// Of what is shown, in world space; not initialised where nothing is.
   void GetBounds(double bounds[6]) const;

@@ -215,6 +215,7 @@ vtkDSMMemorySettings vtkDSMTranslation::ToMemorySettings(vtkDSMMemoryOptions* op
   settings.MemoryBytes = static_cast<std::uint64_t>(options->GetMemory()) << 20;
   settings.CacheBytes = static_cast<std::uint64_t>(options->GetCacheSize()) << 20;
   settings.ScratchDirectory = options->GetScratchDirectory();
+  settings.CoarserWhileMoving = options->GetCoarserDataWhileMoving();
   settings.Threads = options->GetNumberOfThreads();
   settings.SilenceLimit = options->GetSilenceLimit() > 0 ? options->GetSilenceLimit()
                                                          : std::numeric_limits<double>::infinity();

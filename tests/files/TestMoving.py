@@ -1,0 +1,133 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""While the camera moves over a volume whose bricks are not in memory, a coarser level of its file stands in, where
+the user wants that; every other picture is of the finest, bit for bit. Called as run.py does, with dsm_convert, a folder
+for files and a Python behind the other arguments."""
+
+import json
+import subprocess
+
+from dsm_testing import *
+from vtkmodules.vtkRenderingCore import vtkWindowToImageFilter
+
+CONVERT, FOLDER = sys.argv[3:5]
+os.environ["XDG_CACHE_HOME"] = os.path.join(OUTPUT, "caches", str(get_ranks()))
+os.makedirs(FOLDER, exist_ok=True)
+EDGE = 160  # 16 MiB of floats, 20 of bricks
+MEMORY = 3  # MiB of each rank
+PLACES = ((0.6, 0.5, 1.0), (-1.0, 0.2, 0.3), (0.2, -0.9, -0.6))
+
+load_plugin()
+rank = vtkMultiProcessController.GetGlobalController().GetLocalProcessId()
+path = os.path.join(FOLDER, f"waves{get_ranks()}")
+# A surface that is nearly everywhere.
+z, y, x = numpy.ogrid[0 : 1 : EDGE * 1j, 0 : 1 : EDGE * 1j, 0 : 1 : EDGE * 1j]
+values = numpy.sin(21 * x) * numpy.cos(19 * y) + numpy.sin(20 * z + 3 * x)
+values.astype(numpy.float32).tofile(path + ".raw")
+environment = {name: value for name, value in os.environ.items() if not name.startswith(("OMPI", "PMIX"))}
+subprocess.run([CONVERT, "--quiet", "--levels", "all", "--raw-size", f"{EDGE},{EDGE},{EDGE}", "--raw-type", "float32",
+                "--spacing", f"{1 / EDGE},{1 / EDGE},{1 / EDGE}", path + ".raw", path + ".vtkhdf"],
+               check=True, timeout=100, env=environment)
+os.remove(path + ".raw")
+
+view = create_view()
+view.UseFXAA = 0
+view.ImageReductionFactor = 1
+source = simple.DSMVolumeReader(FileName=path + ".vtkhdf")
+
+
+def get_coarser():
+    """How many levels below the finest the last picture is."""
+    display.SMProxy.UpdatePropertyInformation()
+    rows = json.loads(str(display.GetProperty("DSMStatistics")).strip("'"))
+    levels = {row["CoarserLevel"] for row in rows}
+    check(len(levels) == 1, "the ranks agree")
+    return levels.pop()
+
+
+def grab():
+    image = vtkWindowToImageFilter()
+    image.SetInput(view.GetRenderWindow())
+    image.ShouldRerenderOff()
+    image.ReadFrontBufferOff()
+    image.Update()
+    width, height, _ = image.GetOutput().GetDimensions()
+    pixels = vtk_to_numpy(image.GetOutput().GetPointData().GetScalars())
+    return pixels.reshape(height, width, -1)[:, :, :3].astype(int)
+
+
+def move(place):
+    place_camera(view, place)
+    view.SMProxy.InteractiveRender()
+    return get_coarser()
+
+
+display = show(source, view, [0.8], "values", DSMMemory=MEMORY, DSMThreads=1)
+expected = [None] * len(PLACES)
+for number, place in enumerate(PLACES):
+    place_camera(view, place)
+    expected[number] = render(view)
+check(all(get_covered(picture).mean() > 0.2 for picture in expected), "something is shown")
+levels = [move(place) for place in PLACES]
+check(levels == [0] * len(PLACES), f"while the option is off, moving pictures are of the finest: {levels}")
+check_equal(grab(), expected[-1], "pixel for pixel")
+
+display.DSMCoarserDataWhileMoving = 1
+seen = []
+with Messages() as messages:
+    for number, place in enumerate(PLACES):
+        seen.append(move(place))
+        shown = grab()
+        if seen[-1] == 0:
+            check_equal(shown, expected[number], "a moving picture of the finest is the still one")
+        else:
+            check(abs(shown - expected[number]).max() > 8, f"one {seen[-1]} levels coarser is not")
+            covered = get_covered(shown) != get_covered(expected[number])
+            difference = abs(shown - expected[number]).mean()
+            check(seen[-1] > 2 or (covered.mean() < 0.1 and difference < 25),
+                  f"but shows much the same: {100 * covered.mean():.1f} % of the pixels, {difference:.1f} of 255")
+        picture = render(view)
+        check(get_coarser() == 0 and (picture == expected[number]).all(), "the still picture is of the finest")
+check(max(seen) > 0, f"coarser levels stood in: {seen}")
+check("ERROR" not in messages.text, f"nothing is reported: {messages.text}")
+
+# Pictures that are kept, also of interactive renders.
+name = os.path.join(OUTPUT, f"kept.{get_ranks()}.png")
+for interactive in (0, 1):
+    view.UseInteractiveRenderingForScreenshots = interactive
+    for number, place in enumerate(PLACES[:2]):
+        place_camera(view, place)
+        simple.SaveScreenshot(name, view, ImageResolution=[300, 240])
+        check(get_coarser() == 0, f"a screenshot (interactive: {interactive}) is of the finest")
+view.UseInteractiveRenderingForScreenshots = 0
+
+# What fits the memory is soon shown as it is: each try brings bricks.
+display.DSMMemory = 512
+levels = [move((0.6 + 0.02 * step, 0.5, 1.0)) for step in range(30)]
+check(levels[-1] == 0, f"bricks that have come take the place of coarser ones: {levels}")
+rows = json.loads(str(display.GetProperty("DSMStatistics")).strip("'"))
+check(all(row["BytesOfTables"] + row["CacheCapacity"] <= row["MemoryBudget"] for row in rows), "within the memory")
+
+# Coloured by itself, clipped, twice in the view: the same holds.
+display.DSMMemory = MEMORY
+simple.ColorBy(display, ("POINTS", "values"))
+display.DSMIsoValues = [0.8, -0.4]
+display.DSMClip = 1
+for number, place in enumerate(PLACES):
+    level = move(place)
+    moving = grab()
+    display.DSMCoarserDataWhileMoving = 0
+    plain = render(view)
+    display.DSMCoarserDataWhileMoving = 1
+    check(level > 0 or abs(moving - plain).max() <= 1, f"coloured and clipped: level {level}")
+    check((render(view) == plain).all(), "coloured and clipped, the still picture is of the finest")
+    if level > 0:
+        wrong = (get_covered(moving) != get_covered(plain)).mean()
+        check(wrong < 0.1, f"and clipped alike while moving: {100 * wrong:.1f} %")
+
+# A coarser level that was opened has its own below it; where there is none, the option does nothing.
+simple.Delete(source)
+source = simple.DSMVolumeReader(FileName=path + ".vtkhdf", LevelofDetail=4)
+display = show(source, view, [0.8], "values", DSMMemory=MEMORY, DSMCoarserDataWhileMoving=1)
+check([move(place) for place in PLACES] == [0] * len(PLACES), "the coarsest has nothing below it")
+simple.Delete(source)
+os.remove(path + ".vtkhdf")

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef vtkDSMMovingDetail_h
+#define vtkDSMMovingDetail_h
+
+#include "DSMCore/store/BlockStore.h"
+
+#include <chrono>
+#include <vector>
+
+/// Which level of detail a picture in passing is traced at, where data in files have coarser ones. The finest is tried
+/// first, and given up when it waits for bricks for longer than a moving camera allows; what it has read until then
+/// stays in memory, so that by and by it gets through. In its place stands the level that got through the last time; or,
+/// every other time, when that one had all of its bricks, the next finer one is tried instead. Local; but the ranks come
+/// to the same by what they agree on.
+class vtkDSMMovingDetail
+{
+public:
+  /// Levels to try, one after the other, of so many below the finest (0). Only the last is traced whatever it takes.
+  std::vector<int> GetTries(int coarser) const;
+
+  /// A try begins.
+  void Begin();
+  /// Rank 0, while it is traced: whether to give it up. Cheap to ask again and again.
+  bool IsTooLong(dsm::BlockStore& store);
+
+  /// What came of it: the level that was shown, how often it waited for a brick, and what it took; the same on every
+  /// rank.
+  void Note(int level, std::int64_t misses, double seconds);
+
+private:
+  using Clock = std::chrono::steady_clock;
+
+  int Level = 1;        ///< below the finest, that got through
+  bool MayRise = false; ///< it waited for nothing
+  bool IsOdd = false;   ///< every other picture that is not of the finest
+  double Seconds = 0.0; ///< that a picture takes that waits for nothing
+  Clock::time_point Start;
+  Clock::time_point NextLook;
+};
+
+#endif
