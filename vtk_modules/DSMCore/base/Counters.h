@@ -57,6 +57,9 @@ struct StoreCounters
   std::uint64_t MemoryBudget = 0;
   /// How often something was cut into bricks, since the ranks came together.
   std::uint64_t Publications = 0;
+  /// Bytes that this rank has put into blocks that it owns while they were published, since the ranks came
+  /// together.
+  std::uint64_t BytesPublished = 0;
 };
 
 } // namespace dsm

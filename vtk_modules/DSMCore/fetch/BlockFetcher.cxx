@@ -49,6 +49,19 @@ std::shared_ptr<BlockSegment> BlockFetcher::Retire(const BlockSegment& segment)
   return this->Segments.Remove(segment);
 }
 
+void BlockFetcher::Refresh(const BlockSegment& segment, const std::vector<bool>& which)
+{
+  if (this->IsInFrame())
+  {
+    throw Error("Blocks cannot change within a frame.");
+  }
+  {
+    const std::lock_guard<std::mutex> lock(this->Guard);
+    this->Forget(segment, which);
+  }
+  this->EndService(); // their memory goes
+}
+
 // -- The frame, on the communication thread --------------------------------------------------------
 
 bool BlockFetcher::MayBeginFrame() const

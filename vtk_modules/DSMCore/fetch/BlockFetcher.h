@@ -49,6 +49,9 @@ public:
   void Add(std::shared_ptr<BlockSegment> segment);
   /// Returns what was retired; null when there is no such segment. Throws Error within a frame.
   std::shared_ptr<BlockSegment> Retire(const BlockSegment& segment);
+  /// Blocks of which `which` says so have other contents now: what is cached of them goes. Throws within a
+  /// frame.
+  void Refresh(const BlockSegment& segment, const std::vector<bool>& which);
 
   // -- The frame, on the communication thread; see ObjectStore --
 
@@ -125,6 +128,8 @@ protected:
   virtual void Show(const Read& read) = 0;
   /// Takes the segment's cached blocks out. Does not fail.
   virtual void Forget(const BlockSegment& segment) = 0;
+  /// The same for some of its blocks; may throw.
+  virtual void Forget(const BlockSegment& segment, const std::vector<bool>& which) = 0;
   /// Whether a block that was foreseen is under way or here, and nobody has used it.
   virtual bool IsUnused(const BlockWant& block) const = 0;
   /// The frame is over: it becomes an ordinary block. Whether it was here and unused.

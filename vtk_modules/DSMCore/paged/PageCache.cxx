@@ -83,12 +83,13 @@ bool PageCache::TryEvict(Time before, const std::function<bool(const Slot&)>& ma
   return false;
 }
 
-void PageCache::Forget(
-  const PagedStore::Segment& segment, const std::function<void(const Slot&)>& visit)
+void PageCache::Forget(const PagedStore::Segment& segment,
+  const std::function<void(const Slot&)>& visit, const std::vector<bool>* which)
 {
   for (std::size_t index = 0; index < this->Slots.size(); ++index)
   {
-    if (this->Slots[index].From == &segment)
+    const Slot& slot = this->Slots[index];
+    if (slot.From == &segment && (!which || (*which)[slot.Id]))
     {
       visit(this->TakeOut(index));
     }

@@ -56,7 +56,9 @@ public:
   /// `mayGo` (empty: any); false when there is none.
   bool TryEvict(Time before, const std::function<bool(const Slot&)>& mayGo, Slot& evicted);
   /// Takes out all blocks of a segment; `visit` is called for each.
-  void Forget(const PagedStore::Segment& segment, const std::function<void(const Slot&)>& visit);
+  /// `which` (null: all): only blocks of which it says so.
+  void Forget(const PagedStore::Segment& segment, const std::function<void(const Slot&)>& visit,
+    const std::vector<bool>* which = nullptr);
 
 private:
   Slot TakeOut(std::size_t index);

@@ -157,14 +157,22 @@ bool PagedStore::Segment::FindRemote(const std::byte* address, BlockId& id) cons
     this->Layout.Find(static_cast<std::uint64_t>(address - this->Base), id) && !this->IsOwned(id);
 }
 
+void PagedStore::Segment::Protect(bool writable)
+{
+  const std::uint64_t begin = this->GetOwnedBegin();
+  const std::uint64_t end = this->GetOwnedEnd();
+  const int access = writable ? PROT_READ | PROT_WRITE : PROT_READ;
+  if (end > begin && mprotect(this->Base + begin, end - begin, access) != 0)
+  {
+    throw std::bad_alloc();
+  }
+}
+
 void PagedStore::Segment::Seal()
 {
   const std::uint64_t begin = this->GetOwnedBegin();
   const std::uint64_t end = this->GetOwnedEnd();
-  if (end > begin && mprotect(this->Base + begin, end - begin, PROT_READ) != 0)
-  {
-    throw std::bad_alloc();
-  }
+  this->Protect(false);
   if (!this->Handler)
   {
     return; // one rank: all is owned
@@ -268,6 +276,12 @@ std::shared_ptr<BlockSegment> PagedStore::Publish(
     SegmentPublisher(messages, what, { count, create }).Create(std::move(directory));
   this->Self->Add(segment);
   return segment;
+}
+
+void PagedStore::Refresh(
+  std::string_view what, const BlockSegment& segment, const std::vector<bool>& changed)
+{
+  this->Self->Messages.RunTogether(what, [&] { this->Self->Refresh(segment, changed); });
 }
 
 void PagedStore::Retire(const std::shared_ptr<BlockSegment>& segment)

@@ -110,6 +110,10 @@ public:
   /// cached blocks. What this rank owns of it stays until the last shared pointer goes.
   void Retire(const std::shared_ptr<BlockSegment>& segment);
 
+  /// See ObjectStore.
+  void Refresh(
+    std::string_view what, const BlockSegment& segment, const std::vector<bool>& changed);
+
   /// See ObjectStore. Never where faults are signalled, since it is not known before whether the address
   /// space has room.
   bool MayBeginFrame() const;
@@ -179,6 +183,8 @@ public:
   std::byte* GetOwned(BlockId id) const override { return this->GetAddress(id); }
   /// From now on this rank's blocks are read only, and those of others fault.
   void Seal() override;
+  void Unseal() override { this->Protect(true); }
+  void Reseal() override { this->Protect(false); }
 
   /// What finding the blocks takes of every rank's memory.
   static std::uint64_t CountTableBytes(const BlockDirectory& directory)
@@ -191,6 +197,8 @@ private:
   friend class PageCache;
   friend class PagedStore;
 
+  /// Whether the blocks that this rank owns may be written from now on. Throws std::bad_alloc.
+  void Protect(bool writable);
   std::byte* GetAddress(BlockId id) const { return this->Base + this->Layout.GetOffset(id); }
   PageHint GetHint(BlockId id) const;
   void SetHint(BlockId id, PageHint hint) const;

@@ -198,6 +198,22 @@ void PagedStore::Internals::Forget(const BlockSegment& segment)
     [this](const PageCache::Slot& slot) { this->MarkEvicted(slot); });
 }
 
+void PagedStore::Internals::Forget(const BlockSegment& segment, const std::vector<bool>& which)
+{
+  const Segment& self = static_cast<const Segment&>(segment);
+  this->Evicted.reserve(this->Evicted.size() + which.size());
+  const auto visit = [&](const PageCache::Slot& slot)
+  {
+    if (!self.IsPure)
+    {
+      self.SetHint(slot.Id, PageHint::Absent);
+    }
+    this->MarkEvicted(slot);
+    this->Evicted.push_back(slot);
+  };
+  this->Cache.Forget(self, visit, &which);
+}
+
 void PagedStore::Internals::CheckBudget() const
 {
   this->CheckFaults();

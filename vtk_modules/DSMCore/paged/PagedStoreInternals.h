@@ -109,6 +109,7 @@ private:
   std::byte* Land(const Read& read, const std::byte* bytes) override;
   void Show(const Read& read) override;
   void Forget(const BlockSegment& segment) override;
+  void Forget(const BlockSegment& segment, const std::vector<bool>& which) override;
   bool IsUnused(const BlockWant& block) const override;
   bool Settle(const BlockWant& block) override;
   void AddCounters(StoreCounters& counters) const override;

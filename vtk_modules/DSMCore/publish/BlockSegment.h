@@ -15,7 +15,8 @@ namespace dsm
 class Messenger;
 
 /// Blocks that were published together: their directory and this rank's share of them. Each store
-/// derives its own, with what it needs to find a block. Immutable after Seal. Communication thread.
+/// derives its own, with what it needs to find a block. Immutable after Seal, but for SegmentUpdate.
+/// Communication thread.
 class BlockSegment
 {
 public:
@@ -30,6 +31,9 @@ public:
 
   /// Names the segment in messages; the same on every rank.
   std::uint32_t GetNumber() const { return this->Number; }
+  /// Grows when blocks get other contents; the same on every rank.
+  std::uint32_t GetVersion() const { return this->Version; }
+  void CountUpdate() { ++this->Version; }
   const BlockDirectory& GetDirectory() const { return this->Directory; }
 
   /// Visits the blocks that this rank owns, in ascending order of id. Those that are not in memory for good
@@ -49,9 +53,13 @@ public:
   virtual void Seal() = 0;
   /// Local, when all ranks have sealed.
   virtual void Open() {}
+  /// Local: until Reseal, the blocks that this rank owns may be written. May throw.
+  virtual void Unseal() {}
+  virtual void Reseal() {}
 
 private:
   std::uint32_t Number;
+  std::uint32_t Version = 0;
   BlockDirectory Directory;
 };
 

@@ -13,7 +13,7 @@ namespace dsm
 {
 
 FirstFailure BlockSpread::Run(Messenger& messenger, const BlockDirectory& directory,
-  const HostGroups& groups, Source source, Destination destination)
+  const HostGroups& groups, Source source, Destination destination, const std::vector<bool>* only)
 {
   const int rank = messenger.GetRank();
   const int ownGroup = groups.GetGroup(rank);
@@ -21,7 +21,7 @@ FirstFailure BlockSpread::Run(Messenger& messenger, const BlockDirectory& direct
   {
     if (id >= directory.GetCount() || directory.GetOwner(id) != from ||
       groups.AreTogether(rank, from) || groups.GetHolder(id, from, ownGroup) != rank ||
-      directory.GetBytes(id) != count)
+      directory.GetBytes(id) != count || (only && !(*only)[id]))
     {
       throw Error("Rank " + std::to_string(from) + " sent " + std::to_string(count) +
         " bytes as a copy of block " + std::to_string(id) +
@@ -37,7 +37,7 @@ FirstFailure BlockSpread::Run(Messenger& messenger, const BlockDirectory& direct
   {
     for (; next < directory.GetCount(); ++next, group = 0)
     {
-      if (directory.GetOwner(next) != rank)
+      if (directory.GetOwner(next) != rank || (only && !(*only)[next]))
       {
         continue;
       }

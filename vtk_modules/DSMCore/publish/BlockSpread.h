@@ -9,6 +9,7 @@
 #include "DSMCore/transport/Messenger.h"
 
 #include <cstddef>
+#include <vector>
 
 namespace dsm
 {
@@ -25,8 +26,10 @@ public:
   /// Collective; begins a session. Returns when every copy is where it belongs, or the rank that should
   /// have sent it has failed: what has gone wrong on this rank. It is for the caller to let the ranks
   /// agree.
+  /// `only` (null: all): which blocks, the same on every rank.
   static FirstFailure Run(Messenger& messenger, const BlockDirectory& directory,
-    const HostGroups& groups, Source source, Destination destination);
+    const HostGroups& groups, Source source, Destination destination,
+    const std::vector<bool>* only = nullptr);
 };
 
 } // namespace dsm

@@ -6,6 +6,7 @@
 #include "DSMCore/memory/AddressRange.h"
 #include "DSMCore/memory/HostMemory.h"
 #include "DSMCore/publish/FragmentStream.h"
+#include "DSMCore/publish/SegmentUpdate.h"
 #include "DSMCore/store/ScratchBlocks.h"
 #include "DSMCore/store/StoreInterface.h"
 
@@ -29,6 +30,35 @@ constexpr std::uint64_t DefaultDivisor = 2;
 
 /// The time that it takes to put blocks together in a scratch file, as a part of all.
 constexpr double ShareOfFilling = 0.6;
+
+/// Puts fragments into blocks as another sink does, and counts their bytes.
+class CountingSink final : public FragmentSink
+{
+public:
+  CountingSink(FragmentSink& sink, std::uint64_t& bytes)
+    : Sink(sink)
+    , Bytes(bytes)
+  {
+  }
+  void Begin(BlockId id, std::byte* block, std::size_t bytes) override
+  {
+    this->Sink.Begin(id, block, bytes);
+  }
+  void Absorb(BlockId id, std::byte* block, std::size_t bytes, const std::byte* fragment,
+    std::size_t fragmentBytes) override
+  {
+    this->Sink.Absorb(id, block, bytes, fragment, fragmentBytes);
+    this->Bytes += fragmentBytes;
+  }
+  void Finish(BlockId id, std::byte* block, std::size_t bytes) override
+  {
+    this->Sink.Finish(id, block, bytes);
+  }
+
+private:
+  FragmentSink& Sink;
+  std::uint64_t& Bytes;
+};
 
 bool IsPaged(MemoryOrganization organization)
 {
@@ -343,8 +373,9 @@ void BlockStore::GiveUpCopies()
 // -- Segments --------------------------------------------------------------------------------------
 
 std::shared_ptr<BlockSegment> BlockStore::Publish(std::string_view what, BlockDirectory directory,
-  FragmentSource& source, FragmentSink& sink, FunctionRef<void(double)> progress, Place place)
+  FragmentSource& source, FragmentSink& toFill, FunctionRef<void(double)> progress, Place place)
 {
+  CountingSink sink(toFill, this->BytesPublished);
   if (place == Place::Scratch)
   {
     return this->PublishToScratch(what, std::move(directory), source, sink, progress);
@@ -440,6 +471,24 @@ std::shared_ptr<BlockSegment> BlockStore::PublishToScratch(std::string_view what
   return segment;
 }
 
+bool BlockStore::MayUpdate(const std::shared_ptr<BlockSegment>& segment) const
+{
+  return segment && this->Settled && this->Segments.Has(*segment) &&
+    !segment->GetDirectory().IsFromSource();
+}
+
+void BlockStore::Update(std::string_view what, const std::shared_ptr<BlockSegment>& segment,
+  const std::vector<bool>& chosen, FragmentSource& source, FragmentSink& toFill,
+  FunctionRef<void(double)> progress)
+{
+  CountingSink sink(toFill, this->BytesPublished);
+  segment->CountUpdate(); // first: what fails is not what it was, either
+  const std::vector<bool> changed =
+    SegmentUpdate::Run(this->Messages, what, *segment, chosen, source, sink, progress);
+  this->Visit([&](auto& store) { store.Refresh(what, *segment, changed); });
+  ++this->Publications;
+}
+
 void BlockStore::Retire(const std::shared_ptr<BlockSegment>& segment)
 {
   if (segment && this->Segments.Remove(*segment))
@@ -456,6 +505,7 @@ StoreCounters BlockStore::GetCounters()
   StoreCounters counters = this->Visit([](auto& store) { return store.GetCounters(); });
   counters.MemoryBudget = this->Budget.Bytes;
   counters.Publications = this->Publications;
+  counters.BytesPublished = this->BytesPublished;
   return counters;
 }
 

@@ -104,6 +104,17 @@ public:
   std::shared_ptr<BlockSegment> Publish(
     std::string_view what, BlockDirectory directory, std::shared_ptr<BlockSource> source);
 
+  /// Local, between frames: whether Update may be called. Not of blocks that leave memory, and not while there
+  /// is something for Settle to do. All ranks must say so.
+  bool MayUpdate(const std::shared_ptr<BlockSegment>& segment) const;
+  /// Collective, between frames. Other contents for the blocks of which `chosen` says so (the same on every rank),
+  /// out of the fragments of `source`, which has none of others. What other ranks have of blocks that turn out to be
+  /// as they were stays.
+  /// Throws the same Error on every rank; then the segment is of no use any more, and must be retired.
+  void Update(std::string_view what, const std::shared_ptr<BlockSegment>& segment,
+    const std::vector<bool>& chosen, FragmentSource& source, FragmentSink& sink,
+    FunctionRef<void(double)> progress = {});
+
   /// Collective in order (no message is exchanged), between frames.
   void Retire(const std::shared_ptr<BlockSegment>& segment);
 
@@ -186,6 +197,7 @@ private:
   const std::shared_ptr<WorkerSlots> Slots = std::make_shared<WorkerSlots>();
   bool Settled = true;
   std::uint64_t Publications = 0;
+  std::uint64_t BytesPublished = 0;
   MemoryOrganization InForce = MemoryOrganization::ObjectBased;
   bool ReadByAll = false;
   std::string Explanation;

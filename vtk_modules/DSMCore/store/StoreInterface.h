@@ -68,6 +68,9 @@ class StoreInterface
       std::declval<FragmentSource&>(), std::declval<FragmentSink&>()))>);
   static_assert(
     Is<void, decltype(Get().Retire(std::declval<const std::shared_ptr<BlockSegment>&>()))>);
+  static_assert(Is<void,
+    decltype(Get().Refresh(
+      std::string(), GetSegment(), std::declval<const std::vector<bool>&>()))>);
   static_assert(Is<StoreCounters, decltype(GetConst().GetCounters())>);
   static_assert(Is<std::vector<WorkerCounters>, decltype(GetConst().GetWorkerCounters())>);
   static_assert(!std::is_copy_constructible_v<Store>, "it has the memory");

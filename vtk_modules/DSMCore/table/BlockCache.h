@@ -65,6 +65,8 @@ public:
 
   /// Between frames: drops the cached blocks among `count` lines from `first` on.
   void Forget(const BlockLine* first, std::size_t count);
+  /// The same for those of which `which` says so, by their place behind `first`.
+  void Forget(const BlockLine* first, const std::vector<bool>& which);
   /// Between frames: evicts and frees until the budget is met.
   void Shrink();
 

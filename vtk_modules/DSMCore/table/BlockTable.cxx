@@ -225,6 +225,20 @@ void BlockTable::Replicate(Messenger& messenger, std::string_view what)
   }
 }
 
+void BlockTable::UpdateReplicas(
+  Messenger& messenger, std::string_view what, const std::vector<bool>& changed) const
+{
+  const auto find = [this](BlockId id) { return this->GetOwned(id); };
+  const auto place = [this](BlockId id)
+  {
+    std::byte* const first = this->Copies.GetData();
+    return first + (this->Lines[id].Address.load(std::memory_order_relaxed) - first);
+  };
+  const FirstFailure failure =
+    BlockSpread::Run(messenger, this->GetDirectory(), this->Groups, find, place, &changed);
+  messenger.RunTogether(what, [&] { failure.Throw(); });
+}
+
 void BlockTable::CheckViews() const
 {
   for (const int mate : this->Groups.GetMembers(this->Rank))

@@ -67,6 +67,10 @@ public:
   /// Collective, when the blocks are complete and nothing is cached: from now on every block is
   /// here. Throws the same Error, which begins with `what`, on every rank; then nothing has changed.
   void Replicate(Messenger& messenger, std::string_view what);
+  /// Collective, while it is replicated: the copies of these blocks are made anew. Throws the same Error on
+  /// every rank; then some are, and some are not.
+  void UpdateReplicas(
+    Messenger& messenger, std::string_view what, const std::vector<bool>& changed) const;
   /// Local: lets go of the copies.
   void DropReplicas();
   bool IsReplicated() const { return this->Replicated; }

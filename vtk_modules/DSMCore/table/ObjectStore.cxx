@@ -70,6 +70,12 @@ std::shared_ptr<BlockSegment> ObjectStore::Publish(
   return table;
 }
 
+void ObjectStore::Refresh(
+  std::string_view what, const BlockSegment& segment, const std::vector<bool>& changed)
+{
+  this->Self->Messages.RunTogether(what, [&] { this->Self->Refresh(segment, changed); });
+}
+
 void ObjectStore::Retire(const std::shared_ptr<BlockSegment>& segment)
 {
   if (segment)

@@ -91,6 +91,12 @@ public:
   /// cached blocks. What this rank owns of it stays until the last shared pointer goes.
   void Retire(const std::shared_ptr<BlockSegment>& segment);
 
+  /// Collective, between frames, when SegmentUpdate has changed those blocks of a segment of which
+  /// `changed` says so: what this rank has cached of them is forgotten, and fetched again when it is
+  /// needed. Throws the same Error on every rank.
+  void Refresh(
+    std::string_view what, const BlockSegment& segment, const std::vector<bool>& changed);
+
   /// Between frames: takes over what another store on this messenger has published, or hands it over,
   /// its cached blocks forgotten. Neither fails when room was made, which may throw std::bad_alloc.
   void MakeRoom(std::size_t count);

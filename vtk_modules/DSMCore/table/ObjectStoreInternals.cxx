@@ -110,6 +110,11 @@ void ObjectStore::Internals::Forget(const BlockSegment& segment)
     static_cast<const Segment&>(segment).Lines.get(), segment.GetDirectory().GetCount());
 }
 
+void ObjectStore::Internals::Forget(const BlockSegment& segment, const std::vector<bool>& which)
+{
+  this->Cache.Forget(static_cast<const Segment&>(segment).Lines.get(), which);
+}
+
 std::size_t ObjectStore::Internals::GetLargestBlock() const
 {
   std::size_t largest = 0;

@@ -82,6 +82,12 @@ void ReplicatedStore::Retire(const std::shared_ptr<BlockSegment>& segment)
   this->Segments.Remove(*segment)->DropReplicas();
 }
 
+void ReplicatedStore::Refresh(
+  std::string_view what, const BlockSegment& segment, const std::vector<bool>& changed)
+{
+  static_cast<const BlockTable&>(segment).UpdateReplicas(this->Messages, what, changed);
+}
+
 void ReplicatedStore::MakeRoom(std::size_t count)
 {
   this->Segments.MakeRoom(count);

@@ -64,6 +64,10 @@ public:
   /// Collective in order, between frames.
   void Retire(const std::shared_ptr<BlockSegment>& segment);
 
+  /// See ObjectStore; the copies are made anew.
+  void Refresh(
+    std::string_view what, const BlockSegment& segment, const std::vector<bool>& changed);
+
   /// See ObjectStore. To adopt is collective: the segment is replicated, or the same Error thrown
   /// everywhere, and not adopted. What is surrendered has its copies dropped.
   void MakeRoom(std::size_t count);

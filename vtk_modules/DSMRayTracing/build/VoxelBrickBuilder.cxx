@@ -162,6 +162,11 @@ void VoxelFragmentSource::AdvanceBrick()
 
 bool VoxelFragmentSource::Next(dsm::Fragment& fragment)
 {
+  while (this->Only && this->Piece < this->Pieces.size() &&
+    !(*this->Only)[this->Lattice.GetId(this->Brick)])
+  {
+    this->AdvanceBrick();
+  }
   if (this->Piece >= this->Pieces.size())
   {
     return false;

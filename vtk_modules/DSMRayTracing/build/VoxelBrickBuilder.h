@@ -20,6 +20,9 @@ public:
   /// Throws dsm::Error when a piece has a cell mask and the lattice has none.
   VoxelFragmentSource(
     const BrickLattice& lattice, std::vector<std::shared_ptr<const VoxelSource>> pieces);
+  /// From now on only fragments of the bricks of which `bricks` says so, which must outlive it. Before the
+  /// first.
+  void Restrict(const std::vector<bool>& bricks) { this->Only = &bricks; }
   bool Next(dsm::Fragment& fragment) override;
   double GetProgress() const override;
 
@@ -33,6 +36,7 @@ private:
 
   BrickLattice Lattice;
   std::vector<std::shared_ptr<const VoxelSource>> Pieces;
+  const std::vector<bool>* Only = nullptr; ///< null: all
   std::size_t Piece = 0;
   /// The bricks that the piece touches, and the next one of them.
   Box Bricks;

@@ -31,6 +31,14 @@ public:
   /// The brick edge in cells that makes blocks of about the paper's 32 KB.
   static int GetDefaultEdge(ScalarType type);
 
+  /// Whether both cut volumes into the same bricks.
+  bool operator==(const BrickLattice& other) const
+  {
+    return this->Points == other.Points && this->Type == other.Type &&
+      this->CellMask == other.CellMask && this->CellValues == other.CellValues &&
+      this->Edge == other.Edge;
+  }
+
   const Index3& GetPoints() const { return this->Points; }
   Index3 GetCells() const { return this->Points - Index3(1); }
   ScalarType GetScalarType() const { return this->Type; }

@@ -32,12 +32,14 @@ void IsosurfaceObject::AddTo(ObjectDigest& digest) const
 {
   digest.Add(this->IndexToWorld);
   digest.Add(this->Field->Segment->GetNumber());
+  digest.Add(this->Field->Segment->GetVersion());
   digest.Add(this->Isovalues);
   digest.Add(this->Opacities);
   digest.Add(this->ColorField != nullptr);
   if (this->ColorField)
   {
     digest.Add(this->ColorField->Segment->GetNumber());
+    digest.Add(this->ColorField->Segment->GetVersion());
     digest.Add(this->Colors);
     digest.Add(this->ColoredBy);
   }

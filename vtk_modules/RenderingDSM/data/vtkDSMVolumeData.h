@@ -2,6 +2,7 @@
 #ifndef vtkDSMVolumeData_h
 #define vtkDSMVolumeData_h
 
+#include "DSMCore/publish/FragmentDigests.h"
 #include "DSMRayTracing/build/VoxelSource.h"
 #include "DSMRayTracing/scene/Scene.h"
 #include "vtkDSMFileVolume.h"
@@ -45,10 +46,20 @@ public:
   /// What an array became.
   struct Publication
   {
-    Fields Bricks;
+    /// Its last user may take these apart.
+    mutable Fields Bricks;
     /// Of each lattice: the file that it is in, or null.
     std::vector<std::shared_ptr<const vtkDSMFileVolume>> Files;
     std::uint64_t Content = 0; ///< see HashContent
+
+    /// What it takes to put other values into a lattice's bricks.
+    struct Part
+    {
+      std::shared_ptr<rt::VoxelField> Field;
+      dsm::FragmentDigests Digests; ///< of what this rank has contributed
+    };
+    /// One a lattice, likewise; empty where it is in a file.
+    mutable std::vector<Part> Parts;
   };
 
   /// An array's lattices at a coarser level of their files.
@@ -86,9 +97,14 @@ public:
 
   /// Collective. Cuts an array into bricks and hands them to their owners, or finds what others made of
   /// the same values. `purpose` names the array in messages ("isosurface array"). The fields leave the
-  /// store when their last user lets go, which must happen in the same order on every rank.
+  /// store when their last user lets go, which must happen in the same order on every rank. `old` may be null:
+  /// what it has is to be taken over (MayTakeOver); only bricks that differ are made again then, and move.
   std::shared_ptr<const Publication> Publish(const Choice& choice, const std::string& purpose,
-    const std::function<void(double)>& progress) const;
+    const std::function<void(double)>& progress,
+    std::shared_ptr<const Publication> old = nullptr) const;
+  /// Local: whether the publication's memory may be used for other values of the same array. All ranks must say
+  /// so.
+  bool MayTakeOver(const std::shared_ptr<const Publication>& old) const;
 
   /// Collective. The coarser levels of what was published for the same choice; none where a lattice is in no file, or in
   /// one without. Room for their tables is what they take: they give way to nothing, and nothing gives way to them.
@@ -109,10 +125,14 @@ private:
   void PublishFile(const vtkDSMFileVolume& file, bool isCoarser, const vtkDSMFileValues* own,
     const std::string& what, const std::function<void(double)>& progress,
     rt::VoxelField& field) const;
-  /// Adds it to the publication.
+  /// Adds it to the publication. `old`: what is there of an earlier time, or empty.
   void PublishLattice(Publication& published, std::size_t lattice, const Choice& choice,
     const std::string& purpose, const std::vector<ArrayInfo>& infos,
-    const std::vector<vtkDSMFileVolume::Seat>& seats,
+    const std::vector<vtkDSMFileVolume::Seat>& seats, const std::function<void(double)>& progress,
+    Publication::Part&& old) const;
+  /// Collective: the old bricks, with what the pieces hold now.
+  void Renew(Publication::Part& part, Publication::Part&& old,
+    const std::vector<std::shared_ptr<const rt::VoxelSource>>& pieces, const std::string& what,
     const std::function<void(double)>& progress) const;
   /// Local. A field that leaves the store with its last user.
   std::shared_ptr<rt::VoxelField> MakeField() const;

@@ -70,6 +70,7 @@ struct vtkDSMStatistics::RankRow
   std::int64_t CacheCapacity;
   std::int64_t MemoryBudget;
   std::int64_t Publications;
+  std::int64_t BytesPublished;
   std::int64_t Accesses;
   std::int64_t Hits;
   std::int64_t Misses;
@@ -103,6 +104,7 @@ struct vtkDSMStatistics::RankRow
     visit(Count("CacheCapacity", &RankRow::CacheCapacity));
     visit(Count("MemoryBudget", &RankRow::MemoryBudget));
     visit(Count("Publications", &RankRow::Publications));
+    visit(Count("BytesPublished", &RankRow::BytesPublished));
     visit(Count("Accesses", &RankRow::Accesses));
     visit(Count("Hits", &RankRow::Hits));
     visit(Count("Misses", &RankRow::Misses));
@@ -172,6 +174,7 @@ void vtkDSMStatistics::Gather(
   mine.CacheCapacity = static_cast<std::int64_t>(counters.CacheCapacity);
   mine.MemoryBudget = static_cast<std::int64_t>(counters.MemoryBudget);
   mine.Publications = static_cast<std::int64_t>(counters.Publications);
+  mine.BytesPublished = static_cast<std::int64_t>(counters.BytesPublished);
   mine.Accesses = static_cast<std::int64_t>(counters.Workers.Accesses);
   mine.Hits = static_cast<std::int64_t>(counters.Workers.Hits);
   mine.Misses = static_cast<std::int64_t>(counters.Workers.Misses);

@@ -69,7 +69,7 @@ public:
    * BytesResident (bricks that it owns), BytesShared (read in place, on its host), BytesCopied
    * (replicated), BytesOfTables (which find bricks), BytesCached, PeakBytesCached, CacheCapacity,
    * MemoryBudget, Publications (how often an array or a surface was cut into bricks since the ranks
-   * came together), Accesses, Hits, Misses, Joins (misses that found the brick requested already),
+   * came together), BytesPublished (that it put into bricks for it, since then), Accesses, Hits, Misses, Joins (misses that found the brick requested already),
    * Evictions, Prefetches (bricks asked for before a tile came to them), PrefetchesUsed (those of
    * them that were needed in the frame), Requests (messages that asked for bricks), BytesReceived,
    * BytesSent, WaitSeconds (of tiles, for bricks), IdleSeconds (of threads that found no other tile

@@ -63,6 +63,7 @@ void vtkDSMSceneVolume::GiveUpBlocks()
 {
   this->Color.reset();
   this->Iso.reset();
+  this->Stale.clear();
   this->Taken = false;
 }
 
@@ -87,7 +88,8 @@ std::shared_ptr<vtkDSMSceneVolume::Published> vtkDSMSceneVolume::Require(
     vtkDSMVolumeMapper* mapper = this->Mapper;
     vtkDSMProgress::Begin(mapper);
     published->Publication = this->Data->Publish(
-      choice, purpose, [mapper](double part) { vtkDSMProgress::Tell(mapper, part); });
+      choice, purpose, [mapper](double part) { vtkDSMProgress::Tell(mapper, part); },
+      this->TakeStale(choice));
   }
   catch (const dsm::Error& error)
   {
@@ -119,16 +121,38 @@ void vtkDSMSceneVolume::TakeData(const std::shared_ptr<vtkDSMRankGroup>& group)
     this->DataFailure = error.what();
     this->Color.reset();
     this->Iso.reset();
+    this->Stale.clear();
   }
 }
 
-// What has changed goes before its successor comes: there may not be room for both.
+std::shared_ptr<const vtkDSMVolumeData::Publication> vtkDSMSceneVolume::TakeStale(
+  const vtkDSMVolumeData::Choice& choice)
+{
+  std::shared_ptr<const vtkDSMVolumeData::Publication> found;
+  for (const auto& stale : this->Stale)
+  {
+    if (stale->Choice == choice && stale->Publication)
+    {
+      found = std::move(stale->Publication);
+      stale->Publication.reset();
+    }
+  }
+  if (!found)
+  {
+    this->Stale.clear();
+  }
+  return found;
+}
+
+// What has changed goes before its successor comes, or is taken over: there may not be room for both.
 void vtkDSMSceneVolume::KeepUnchanged(dsm::Messenger& messenger)
 {
   struct Flags
   {
     std::uint8_t SameColor = 0;
     std::uint8_t SameIso = 0;
+    std::uint8_t FreeColor = 0; ///< may be taken over
+    std::uint8_t FreeIso = 0;
   };
   Flags mine;
   messenger.RunTogether("Looking for changes",
@@ -141,17 +165,29 @@ void vtkDSMSceneVolume::KeepUnchanged(dsm::Messenger& messenger)
       };
       mine.SameIso = isSame(this->Iso);
       mine.SameColor = this->Color == this->Iso ? mine.SameIso : isSame(this->Color);
+      const auto isFree = [this](const std::shared_ptr<Published>& known)
+      { return known && this->Data->MayTakeOver(known->Publication); };
+      mine.FreeIso = isFree(this->Iso);
+      mine.FreeColor = isFree(this->Color);
     });
   const auto all = messenger.AllGatherValue(mine);
   const auto everywhere = [&](std::uint8_t Flags::*flag)
   { return std::all_of(all.begin(), all.end(), [=](const Flags& one) { return one.*flag != 0; }); };
+  const auto leave = [&](std::shared_ptr<Published>& known, std::uint8_t Flags::*free)
+  {
+    if (everywhere(free))
+    {
+      this->Stale.push_back(known);
+    }
+    known.reset();
+  };
   if (!everywhere(&Flags::SameColor))
   {
-    this->Color.reset();
+    leave(this->Color, &Flags::FreeColor);
   }
   if (!everywhere(&Flags::SameIso))
   {
-    this->Iso.reset();
+    leave(this->Iso, &Flags::FreeIso);
   }
 }
 
@@ -185,6 +221,7 @@ void vtkDSMSceneVolume::Update(const std::shared_ptr<vtkDSMRankGroup>& group, bo
       { mapper->GetColorArray(), this->GetColorComponent(), mapper->GetColorArrayOnCells() },
       "colour array", version, { this->Iso, oldIso, oldColor });
   }
+  this->Stale.clear();
   for (const auto& published : { this->Iso, this->Color })
   {
     if (published && !published->Failure.empty())

@@ -44,7 +44,11 @@ private:
 
   /// Collective. Takes in the mapper's dataset; bricks of arrays that hold what they held are kept.
   void TakeData(const std::shared_ptr<vtkDSMRankGroup>& group);
+  /// Sets aside what may be taken over by values that differ, and lets go of the rest.
   void KeepUnchanged(dsm::Messenger& messenger);
+  /// What Publish may take over. Lets go of all that is stale when there is nothing: there may not be room.
+  std::shared_ptr<const vtkDSMVolumeData::Publication> TakeStale(
+    const vtkDSMVolumeData::Choice& choice);
   std::shared_ptr<Published> Require(const vtkDSMVolumeData::Choice& choice, const char* purpose,
     unsigned retryVersion, const std::vector<std::shared_ptr<Published>>& known);
   /// Collective. Finds the isovalue for a first look at the array, once for an array.
@@ -64,6 +68,8 @@ private:
   std::unique_ptr<vtkDSMVolumeData> Data;
   std::shared_ptr<Published> Iso;
   std::shared_ptr<Published> Color;
+  /// Of values that were there before, during Update.
+  std::vector<std::shared_ptr<Published>> Stale;
   std::optional<double> Suggested; ///< isovalue
   vtkDSMVolumeData::Choice SuggestedFor;
   std::string DataFailure;
