@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A volume in a file: what a picture reads of it, the first time and later.
 #include "vtkDSMMemoryOptions.h"
+#include "vtkDSMReadAhead.h"
 #include "vtkDSMScene.h"
 #include "vtkDSMVolumeMapper.h"
 #include "vtkDSMVolumeReader.h"
@@ -15,10 +16,12 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -216,6 +219,80 @@ TEST_F(VolumeFile, PlayingFetchesTheNextStep)
   play(2);
   play(1);
   EXPECT_TRUE(isFetched(0)) << "backwards";
+}
+
+/// Chunks that are found in no part: each byte is the chunk's number, and the step's.
+class CompressedFile final : public vol::VolumeFile
+{
+public:
+  CompressedFile()
+    : VolumeFile("compressed")
+  {
+    vol::FileArray array;
+    array.Grid.Samples = rt::Index3(64);
+    array.Grid.ChunkSamples = rt::Index3(16);
+    this->Arrays.push_back(array);
+    this->Steps = 3;
+  }
+  void ReadChunk(
+    std::size_t array, int step, const rt::Index3& chunk, std::byte* out) const override
+  {
+    const vol::ChunkGrid& grid = this->Arrays[array].Grid;
+    std::fill_n(out, static_cast<std::size_t>(grid.GetBox(chunk).GetCount()),
+      static_cast<std::byte>(grid.GetNumber(chunk) + step));
+    ++this->Reads;
+  }
+
+  mutable std::atomic<int> Reads{ 0 };
+};
+
+/// Waits until no more is read.
+int WaitForReads(const CompressedFile& file)
+{
+  int before = -1;
+  while (before != file.Reads)
+  {
+    before = file.Reads;
+    usleep(100000);
+  }
+  return before;
+}
+
+TEST(ReadAhead, TakesHalfOfTheCacheAndWaitsForFrames)
+{
+  constexpr std::size_t chunkBytes = 16 * 16 * 16;
+  vol::ChunkCache cache(20 * chunkBytes);
+  vtkDSMReadAhead ahead(cache);
+  const auto file = std::make_shared<CompressedFile>();
+  const auto addRow = [&](int step, int row)
+  {
+    for (int x = 0; x < 4; ++x)
+    {
+      ahead.Add(file, 0, step, rt::Index3(x, row, 0));
+    }
+  };
+  {
+    const vtkDSMReadAhead::Pause pause(ahead);
+    addRow(1, 0);
+    addRow(1, 0); // known
+    EXPECT_EQ(WaitForReads(*file), 0) << "a frame is being made";
+  }
+  EXPECT_EQ(WaitForReads(*file), 4);
+  EXPECT_EQ((*cache.Get(file, 0, 1, rt::Index3(1, 0, 0)))[5], std::byte(2));
+  EXPECT_EQ(file->Reads, 4) << "it was there";
+  for (int row = 1; row < 4; ++row)
+  {
+    addRow(1, row);
+  }
+  EXPECT_EQ(WaitForReads(*file), 10) << "half of the room";
+  {
+    const vtkDSMReadAhead::Pause pause(ahead);
+    addRow(2, 0);
+    addRow(0, 0); // the user turns round
+  }
+  EXPECT_EQ(WaitForReads(*file), 14);
+  EXPECT_EQ((*cache.Get(file, 0, 0, rt::Index3(3, 0, 0)))[0], std::byte(3));
+  EXPECT_EQ(file->Reads, 14);
 }
 
 } // namespace

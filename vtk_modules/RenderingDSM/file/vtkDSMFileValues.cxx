@@ -3,8 +3,10 @@
 
 #include "DSMCore/base/Error.h"
 #include "DSMRayTracing/base/ByteHash.h"
+#include "vtkDSMReadAhead.h"
 
 #include <algorithm>
+#include <exception>
 #include <thread>
 #include <utility>
 
@@ -37,10 +39,11 @@ void vtkDSMFileValues::ForeseeNext(const rt::Box& box) const
   {
     return;
   }
-  // A chunk belongs to the box that has its first sample, so that boxes side by side ask for each once.
   const rt::Index3 size = this->GetArray().Grid.ChunkSamples;
   const rt::Index3 first = (box.Min + this->Box.Min) / size;
-  const rt::Index3 last = (box.Max - rt::Index3(2) + this->Box.Min) / size;
+  const rt::Index3 last = (box.Max - rt::Index3(1) + this->Box.Min) / size;
+  // A chunk belongs to the box that has its first sample, so that boxes side by side ask the system for each once.
+  const rt::Index3 lastOwn = (box.Max - rt::Index3(2) + this->Box.Min) / size;
   try
   {
     rt::Index3 chunk;
@@ -50,12 +53,16 @@ void vtkDSMFileValues::ForeseeNext(const rt::Box& box) const
       {
         for (chunk.x = first.x; chunk.x <= last.x; ++chunk.x)
         {
-          this->File->Foresee(this->Array, this->NextStep, chunk);
+          if (chunk.x <= lastOwn.x && chunk.y <= lastOwn.y && chunk.z <= lastOwn.z)
+          {
+            this->File->Foresee(this->Array, this->NextStep, chunk);
+          }
+          vtkDSMReadAhead::GetShared().Add(this->File, this->Array, this->NextStep, chunk);
         }
       }
     }
   }
-  catch (const dsm::Error&) // it is said when the step is shown
+  catch (const std::exception&) // it is said when the step is shown
   {
     return;
   }

@@ -42,7 +42,7 @@ public:
   /// The same where boxes are read here and there, rather than one beside the other.
   void ReadScattered(const rt::Box& box, std::byte* out) const;
 
-  /// The samples of a box were needed: where there is a next step, the system may fetch the same of it.
+  /// The samples of a box were needed: where there is a next step, the same of it is read ahead.
   void ForeseeNext(const rt::Box& box) const;
 
   /// Equal only, for all practical purposes, for equal values.
