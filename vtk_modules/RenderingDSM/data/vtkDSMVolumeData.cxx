@@ -2,7 +2,6 @@
 #include "vtkDSMVolumeData.h"
 
 #include "DSMCore/fetch/ReadingSource.h"
-#include "DSMCore/publish/SegmentUpdate.h"
 #include "DSMRayTracing/base/ByteHash.h"
 #include "DSMRayTracing/build/VoxelBrickBuilder.h"
 #include "vtkDSMContent.h"
@@ -340,11 +339,10 @@ std::shared_ptr<const vtkDSMVolumeData::Publication> vtkDSMVolumeData::Publish(c
   }
   for (std::size_t lattice = 0; lattice < this->GetNumberOfLattices(); ++lattice)
   {
-    Publication::Part known;
+    Publication::Part known = old ? std::move(old->Parts[lattice]) : Publication::Part();
     if (old)
     {
       old->Bricks[lattice].reset();
-      known = std::move(old->Parts[lattice]);
     }
     this->PublishLattice(
       *published, lattice, choice, purpose, infos, seats, progress, std::move(known));
@@ -410,54 +408,6 @@ std::shared_ptr<const vtkDSMVolumeData::Coarser> vtkDSMVolumeData::PublishCoarse
   return coarser;
 }
 
-bool vtkDSMVolumeData::MayTakeOver(const std::shared_ptr<const Publication>& old) const
-{
-  if (!old || old.use_count() != 1 || old->Parts.size() != this->GetNumberOfLattices())
-  {
-    return false;
-  }
-  for (std::size_t lattice = 0; lattice < old->Parts.size(); ++lattice)
-  {
-    const std::shared_ptr<rt::VoxelField>& field = old->Parts[lattice].Field;
-    // Bricks has it, too; nobody else may.
-    if (old->Bricks[lattice] &&
-      (field.use_count() != 2 || !this->Group->GetStore().MayUpdate(field->Segment) ||
-        field->Lattice.GetPoints() != this->Plan.GetLattices()[lattice].Points))
-    {
-      return false;
-    }
-  }
-  return true;
-}
-
-void vtkDSMVolumeData::Renew(Publication::Part& part, Publication::Part&& old,
-  const std::vector<std::shared_ptr<const rt::VoxelSource>>& pieces, const std::string& what,
-  const std::function<void(double)>& progress) const
-{
-  rt::VoxelField& field = *part.Field;
-  field.Segment = std::move(old.Field->Segment); // retired with the field, should anything fail
-  const std::vector<bool> chosen =
-    dsm::SegmentUpdate::GatherAny(this->Group->GetMessenger(), "Looking for changes",
-      [&]
-      {
-        rt::VoxelFragmentSource source(field.Lattice, pieces);
-        dsm::NotingFragmentSource noting(source, part.Digests);
-        for (dsm::Fragment fragment; noting.Next(fragment);)
-        {
-        }
-        std::vector<bool> differ(part.Digests.GetCount());
-        for (dsm::BlockId id = 0; id < differ.size(); ++id)
-        {
-          differ[id] = !part.Digests.IsSame(old.Digests, id);
-        }
-        return differ;
-      });
-  rt::VoxelFragmentSource source(field.Lattice, pieces);
-  source.Restrict(chosen);
-  rt::VoxelBrickSink sink(field.Lattice);
-  this->Group->GetStore().Update(what, field.Segment, chosen, source, sink, progress);
-}
-
 void vtkDSMVolumeData::PublishLattice(Publication& published, std::size_t number,
   const Choice& choice, const std::string& purpose, const std::vector<ArrayInfo>& infos,
   const std::vector<vtkDSMFileVolume::Seat>& seats, const std::function<void(double)>& progress,
@@ -466,8 +416,7 @@ void vtkDSMVolumeData::PublishLattice(Publication& published, std::size_t number
   dsm::Messenger& messenger = this->Group->GetMessenger();
   published.Bricks.emplace_back();
   published.Files.emplace_back();
-  published.Parts.emplace_back();
-  Publication::Part part;
+  Publication::Part& part = published.Parts.emplace_back();
   std::shared_ptr<rt::VoxelField>& field = part.Field;
   std::vector<std::shared_ptr<const rt::VoxelSource>> sources;
   std::optional<dsm::BlockDirectory> directory;
@@ -503,6 +452,7 @@ void vtkDSMVolumeData::PublishLattice(Publication& published, std::size_t number
       old = {};
       this->PublishFile(*file, false, own, what, progress, *field);
       published.Files.back() = std::move(file);
+      part = {};
       return;
     }
   }
@@ -510,7 +460,6 @@ void vtkDSMVolumeData::PublishLattice(Publication& published, std::size_t number
   {
     this->Renew(part, std::move(old), sources, what, progress);
     field->Hierarchy = rt::MacrocellHierarchy(field->Lattice, *field->Segment, messenger);
-    published.Parts.back() = std::move(part);
     return;
   }
   old = {};
@@ -525,7 +474,6 @@ void vtkDSMVolumeData::PublishLattice(Publication& published, std::size_t number
       return this->Group->GetStore().Publish(what, *directory, source, sink, progress, place);
     });
   field->Hierarchy = rt::MacrocellHierarchy(field->Lattice, *field->Segment, messenger);
-  published.Parts.back() = std::move(part);
 }
 
 const vtkDSMFileValues* vtkDSMVolumeData::FindFileValues(
