@@ -510,9 +510,9 @@ void vtkDSMVolumeData::PublishFile(const vtkDSMFileVolume& file, bool isCoarser,
       const std::uint64_t memory = store.GetSettings().MemoryBytes;
       const std::size_t chunks = vol::ChunkCache::GetShared().Restrict(
         memory == 0 ? SIZE_MAX : static_cast<std::size_t>(memory / ChunksDivisor));
-      // Levels share them.
+      // A frame is of one level, which reads in the finest's place.
       directory->AddIndexBytes(
-        (isCoarser ? 0 : chunks) + dsm::ReadingSource::MostReads * directory->GetLargest());
+        isCoarser ? 0 : chunks + dsm::ReadingSource::MostReads * directory->GetLargest());
     });
   const auto publish = [&] { return store.Publish(what, *directory, source); };
   field.Segment = isCoarser ? publish() : this->Group->WithRoom(publish);
