@@ -101,6 +101,7 @@ class Workday:
         self.write_events(events)
         settings = os.path.join(self.output, "settings")
         self.write_macros(os.path.join(settings, "ParaView", "Macros"))
+        self.write_macros(os.path.join(self.output, "Macros"))  # where 6.1 looks in a test
         environment = dict(os.environ, XDG_CONFIG_HOME=settings, DSM_WORKDAY=self.output,
                            DSM_WORKDAY_KIND=self.kind, DSM_WORKDAY_PLUGIN=self.arguments.plugin,
                            DASHBOARD_TEST_FROM_CTEST="1", PYTHONDONTWRITEBYTECODE="1", **environment)
