@@ -13,11 +13,14 @@ from vtkmodules.vtkParallelCore import vtkMultiProcessController
 
 PLUGIN, OUTPUT = sys.argv[1], sys.argv[2]
 REPRESENTATION = "DSM Ray Traced"
+is_on_ranks = False  # the plugin, which outlives a session, and which ParaView 6.1 will not load there anew
 
 
 def load_plugin():
-    if servermanager.ActiveConnection.IsRemote():
+    global is_on_ranks
+    if servermanager.ActiveConnection.IsRemote() and not is_on_ranks:
         simple.LoadPlugin(PLUGIN, remote=True, ns=vars(simple))
+        is_on_ranks = True
     simple.LoadPlugin(PLUGIN, remote=False, ns=vars(simple))
     os.makedirs(OUTPUT, exist_ok=True)
 
