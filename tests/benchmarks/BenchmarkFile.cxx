@@ -90,7 +90,8 @@ rt::IsosurfaceObject PublishBenchmarkFile(
       directory = field->Lattice.CreateDirectory(messenger.GetSize());
       source = std::make_shared<dsm::ReadingSource>(messenger,
         std::make_shared<rt::VoxelBrickReader>(
-          field->Lattice, std::make_shared<FileVoxels>(file, true)));
+          field->Lattice, std::make_shared<FileVoxels>(file, true)),
+        path);
     });
   field->Segment = store.Publish(path, *directory, source);
   rt::VoxelIndex index = FindIndex(file, field->Lattice, store.GetSettings().Workers, messenger);

@@ -3,6 +3,7 @@
 again, and the picture is that of the same data in memory, bit for bit. What happens to the file meanwhile is said,
 and is over when the file is well again. Called as run.py does, with a folder for files behind the other arguments."""
 
+import itertools
 import json
 import os
 import sys
@@ -87,20 +88,83 @@ for organization in ("Automatic", "Object based", "Page based", "Replicated"):
         check(row["BytesCached"] <= row["CacheCapacity"] < 6 << 18, f"{organization}: the cache is small")
     check(any(row["BytesCached"] > 0 for row in rows), f"{organization}: bricks came from the file")
 
-# A file that is cut off while it is shown.
+
+def expect_failure(what, last, *words):
+    """Of the first picture that needs what is not in memory: it is said, and the last picture stays."""
+    for place, value in itertools.product(PLACES, (0.3, 1.2)):
+        with Messages() as messages:
+            display.DSMIsoValues = [value]
+            place_camera(view, place)
+            picture = render(view)
+        if messages.text:
+            check(all(word in messages.text for word in words), f"{what}: file and cause are named: {messages.text}")
+            check((picture == last).all(), f"{what}: the last picture stays")
+            return
+        last = picture
+    check(False, f"{what} is noticed")
+
+
+def expect_pictures(what, pictures):
+    with Messages() as messages:
+        again = go_round(display)
+    check("ERROR" not in messages.text, f"{what}: nothing is said: {messages.text}")
+    check(all((a == b).all() for a, b in zip(again, pictures)), f"{what}: the pictures are right")
+
+
+name = os.path.basename(path)
 state = os.stat(path)
 display.DSMMemoryOrganization = "Object based"
-render(view)
+
+
+def stay_unchanged():
+    os.utime(path, ns=(state.st_atime_ns, state.st_mtime_ns))
+
+
+# A file that is cut off while it is shown, and then is there again as it was.
+last = render(view)
 os.truncate(path, state.st_size // 3)
-os.utime(path, ns=(state.st_atime_ns, state.st_mtime_ns))
-with Messages() as messages:
-    go_round(display)
-    text = messages.text
-check("Chunk (" in text and os.path.basename(path) in text, f"file and chunk are named: {text}")
-# ... and is there again as it was.
+stay_unchanged()
+expect_failure("a file that is cut off", last, "Chunk (", name)
 values.tofile(path)
-os.utime(path, ns=(state.st_atime_ns, state.st_mtime_ns))
+stay_unchanged()
+expect_pictures("a file that is whole again", expected)
+
+# One that goes away, and one of that name that another program puts in its place: what was opened is still there.
+os.rename(path, path + ".away")
+expect_pictures("a file that goes away", expected)
+(2.0 - values).astype(numpy.float32).tofile(path)
+expect_pictures("a file that another takes the place of", expected)
+os.replace(path + ".away", path)
+
+# One that is written to: not a mixture of old and new, but an error until it is reloaded.
+last = render(view)
+(0.9 * values).astype(numpy.float32).tofile(path)
+expect_failure("a file that is written to", last, name, "was written to since it was opened. Reload it.")
+simple.ReloadFiles(source)
 with Messages() as messages:
-    again = go_round(display)
-check("ERROR" not in messages.text, f"the next frame works: {messages.text}")
-check(all((a == b).all() for a, b in zip(again, expected)), "and the pictures are right")
+    pictures = go_round(display)
+check("ERROR" not in messages.text, f"a file that is reloaded: nothing is said: {messages.text}")
+check(all((a != b).any() for a, b in zip(pictures, expected)), "a file that is reloaded: it shows the new values")
+
+# A brick file whose chunks are not what was written: their checksums tell.
+path = os.path.join(FOLDER, f"waves{get_ranks()}.h5")
+simple.SaveData(path, proxy=source)
+simple.Delete(source)
+name = os.path.basename(path)
+with open(path, "rb") as file:
+    written = file.read()
+source = simple.DSMVolumeReader(FileName=path)
+display = show(source, view, [0.3], "values", DSMMemory=MEMORY)
+expected = go_round(display)
+last = expected[-1]
+state = os.stat(path)
+middle = slice(len(written) // 4, -len(written) // 4)
+spoilt = numpy.frombuffer(written, numpy.uint8).copy()
+spoilt[middle] = numpy.random.default_rng(1).integers(0, 256, spoilt[middle].size)
+spoilt.tofile(path)
+stay_unchanged()
+expect_failure("a file with other bytes", last, "Chunk (", name, "checksum")
+with open(path, "wb") as file:
+    file.write(written)
+stay_unchanged()
+expect_pictures("a file with its own bytes again", expected)

@@ -36,4 +36,20 @@ TEST_P(DiskOverMpi, FailureIsTheFramesErrorAndTheNextFrameWorks)
   disks.ReadAll();
 }
 
+/// A network file system that does not answer: the frame's error, before anybody is given up; and when it answers
+/// again, the next frame works.
+TEST_P(DiskOverMpi, DiskThatDoesNotAnswerFailsTheFrameOnly)
+{
+  dsm::Messenger messenger(dsm::MpiTransport::Create(nullptr));
+  messenger.SetSilenceLimit(2.0);
+  dsm_test::DiskStore disks(messenger, this->GetParam(), 6);
+  const auto stuck = static_cast<dsm::BlockId>(messenger.GetSize() - 1);
+  disks.Disk->SetStuck(stuck);
+  const std::string text = dsm_test::GetErrorText([&] { disks.ReadAll(); });
+  const std::string brick = "Brick " + std::to_string(stuck) + " of the test's disk ";
+  EXPECT_NE(text.find(brick + "has not come for 1.5 s"), std::string::npos) << text;
+  disks.Disk->SetStuck(dsm_test::NoBlock);
+  disks.ReadAll();
+}
+
 } // namespace

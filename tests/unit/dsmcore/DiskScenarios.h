@@ -79,7 +79,7 @@ public:
     , Store(messenger, Make(messenger, organization, blocksInMemory))
     , Disk(std::make_shared<PatternDisk>())
     , Segment(this->Store.Publish("Opening the file", CreateDirectory(messenger),
-        std::make_shared<dsm::ReadingSource>(messenger, this->Disk)))
+        std::make_shared<dsm::ReadingSource>(messenger, this->Disk, "the test's disk")))
   {
   }
 

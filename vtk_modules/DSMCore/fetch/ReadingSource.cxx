@@ -4,7 +4,9 @@
 #include "DSMCore/base/Error.h"
 #include "DSMCore/fetch/ReaderThreads.h"
 
+#include <algorithm>
 #include <cstdint>
+#include <cstdio>
 #include <exception>
 #include <mutex>
 #include <utility>
@@ -12,6 +14,14 @@
 
 namespace dsm
 {
+
+namespace
+{
+
+/// Seconds between two polls that count, at most: this process may have been stopped.
+constexpr double LongestPause = 1.0;
+
+} // namespace
 
 /// What the source and the threads share; it lives for as long as a read that was given up.
 struct ReadingSource::Shared
@@ -45,12 +55,15 @@ struct ReadingSource::Shared
   }
 };
 
-ReadingSource::ReadingSource(Messenger& messenger, std::shared_ptr<const BlockReader> reader)
+ReadingSource::ReadingSource(
+  Messenger& messenger, std::shared_ptr<const BlockReader> reader, std::string name)
   : Reader(std::move(reader))
+  , Name(std::move(name))
   , State(std::make_shared<Shared>())
 {
   this->State->Messages = &messenger;
   this->State->Come.reserve(MostReads);
+  this->Reading.reserve(MostReads);
 }
 
 ReadingSource::~ReadingSource()
@@ -60,21 +73,22 @@ ReadingSource::~ReadingSource()
 
 void ReadingSource::Begin(const BlockWant& block, std::byte*)
 {
-  this->Waiting.push_back(block);
+  this->Waiting.push_back({ block, this->Seconds });
 }
 
 bool ReadingSource::Submit()
 {
-  const bool any = !this->Waiting.empty() && this->Reads < MostReads;
+  const bool any = !this->Waiting.empty() && this->Reading.size() < MostReads;
   this->HandOver();
   return any;
 }
 
 void ReadingSource::HandOver()
 {
-  while (!this->Waiting.empty() && this->Reads < MostReads)
+  while (!this->Waiting.empty() && this->Reading.size() < MostReads)
   {
-    const BlockWant block = this->Waiting.front();
+    const Wanted wanted = this->Waiting.front();
+    const BlockWant block = wanted.Block;
     std::uint64_t round = 0;
     {
       const std::lock_guard<std::mutex> lock(this->State->Guard);
@@ -101,7 +115,29 @@ void ReadingSource::HandOver()
         state->Finish(std::move(done), round);
       });
     this->Waiting.pop_front();
-    ++this->Reads;
+    this->Reading.push_back(wanted);
+  }
+}
+
+void ReadingSource::CheckDisk()
+{
+  const auto now = std::chrono::steady_clock::now();
+  this->Seconds +=
+    std::min(std::chrono::duration<double>(now - this->LastPoll).count(), LongestPause);
+  this->LastPoll = now;
+  const double limit = PartOfSilence * this->State->Messages->GetSilenceLimit();
+  const Wanted* const oldest = !this->Reading.empty() ? &this->Reading.front()
+    : !this->Waiting.empty()                          ? &this->Waiting.front()
+                                                      : nullptr;
+  if (limit > 0.0 && oldest && this->Seconds - oldest->Since > limit)
+  {
+    char seconds[32];
+    std::snprintf(seconds, sizeof(seconds), "%g", limit);
+    throw Error("Brick " + std::to_string(oldest->Block.Id) + " of " + this->Name +
+      " has not come for " + seconds +
+      " s: the disk or the network behind it does not answer, or is too slow. The next picture "
+      "asks for it again; where it may take longer, raise the limit, of which this is three "
+      "quarters (DSMSilenceLimit; 0: none).");
   }
 }
 
@@ -115,7 +151,8 @@ bool ReadingSource::Poll(const Deliver& deliver)
   }
   for (const Shared::Done& done : come)
   {
-    --this->Reads;
+    this->Reading.erase(std::find_if(this->Reading.begin(), this->Reading.end(),
+      [&](const Wanted& wanted) { return wanted.Block == done.Block; }));
     if (done.Failure)
     {
       std::rethrow_exception(done.Failure); // the frame is over, and the rest with it
@@ -123,13 +160,14 @@ bool ReadingSource::Poll(const Deliver& deliver)
     deliver(done.Block, done.Bytes.data());
   }
   this->HandOver();
+  this->CheckDisk();
   return !come.empty();
 }
 
 void ReadingSource::Abandon() noexcept
 {
   this->Waiting.clear();
-  this->Reads = 0;
+  this->Reading.clear();
   const std::lock_guard<std::mutex> lock(this->State->Guard);
   ++this->State->Round;
   this->State->Come.clear();

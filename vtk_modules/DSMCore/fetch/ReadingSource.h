@@ -6,21 +6,27 @@
 #include "DSMCore/fetch/BlockSource.h"
 #include "DSMCore/transport/Messenger.h"
 
+#include <chrono>
 #include <cstddef>
 #include <deque>
 #include <memory>
+#include <string>
+#include <vector>
 
 namespace dsm
 {
 
 /// Brings a rank's own blocks by a BlockReader, on the process's ReaderThreads. A block is read to memory
 /// of the source's own, and copied where it belongs when it is complete: so nobody ever waits for a read
-/// that is given up, however long the disk takes.
+/// that is given up, however long the disk takes. One that was not read for PartOfSilence of the time that
+/// ranks may be silent (Messenger::SetSilenceLimit) fails the frame, before whoever waits for it takes its
+/// owner for stuck.
 class ReadingSource final : public BlockSource
 {
 public:
-  /// The messenger must outlive the source, or the last frame that reads from it.
-  ReadingSource(Messenger& messenger, std::shared_ptr<const BlockReader> reader);
+  /// The messenger must outlive the source, or the last frame that reads from it. `name`: what is read, for
+  /// errors ("the file '...'").
+  ReadingSource(Messenger& messenger, std::shared_ptr<const BlockReader> reader, std::string name);
   ~ReadingSource() override;
 
   void Begin(const BlockWant& block, std::byte* place) override;
@@ -33,15 +39,28 @@ public:
   /// memory is bounded.
   static constexpr std::size_t MostReads = 16;
 
+  static constexpr double PartOfSilence = 0.75;
+
 private:
   struct Shared;
+  struct Wanted
+  {
+    BlockWant Block;
+    double Since; ///< as of Seconds
+  };
 
   void HandOver();
+  /// Throws when the one that is wanted for the longest time is so for too long.
+  void CheckDisk();
 
   std::shared_ptr<const BlockReader> Reader;
+  std::string Name;
   std::shared_ptr<Shared> State;
-  std::deque<BlockWant> Waiting; ///< not with the threads yet
-  std::size_t Reads = 0;         ///< with the threads, or done and not delivered
+  std::deque<Wanted> Waiting;  ///< not with the threads yet
+  std::vector<Wanted> Reading; ///< with the threads, or done and not delivered; in order
+  double Seconds =
+    0.0; ///< in which this process polled, or might have: not those when it was stopped
+  std::chrono::steady_clock::time_point LastPoll;
 };
 
 } // namespace dsm

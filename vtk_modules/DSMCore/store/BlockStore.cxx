@@ -437,7 +437,8 @@ std::shared_ptr<BlockSegment> BlockStore::PublishToScratch(std::string_view what
       directory.AddIndexBytes(ReadingSource::MostReads * directory.GetLargest() +
         ScratchBlocks::CountTableBytes(directory, ranks));
       blocks = std::make_shared<ScratchBlocks>(directory, this->Messages.GetRank(), ranks);
-      reading = std::make_shared<ReadingSource>(this->Messages, blocks);
+      reading = std::make_shared<ReadingSource>(
+        this->Messages, blocks, "the scratch file in '" + this->Current.ScratchDirectory + "'");
     });
   // First of all, so that caches have left what it takes.
   const auto segment = this->Publish(what, std::move(directory), std::move(reading));

@@ -369,6 +369,11 @@ glm::dmat4 vtkDSMFileVolume::GetIndexOf(const vtkDSMFileVolume& other) const
   return glm::inverse(this->GetIndexToWorld()) * other.GetIndexToWorld();
 }
 
+const std::string& vtkDSMFileVolume::GetPath() const
+{
+  return this->Values->GetFile()->GetPath();
+}
+
 std::shared_ptr<const dsm::BlockReader> vtkDSMFileVolume::CreateReader(
   const rt::BrickLattice& lattice, bool scattered) const
 {

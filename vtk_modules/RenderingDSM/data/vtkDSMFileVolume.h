@@ -56,6 +56,8 @@ public:
   /// From indices of another level's samples to those of this one's.
   glm::dmat4 GetIndexOf(const vtkDSMFileVolume& other) const;
 
+  const std::string& GetPath() const;
+
   /// Bricks of the lattice; it has no cell mask. `scattered`: they are read as rays meet them, not all in turn.
   std::shared_ptr<const dsm::BlockReader> CreateReader(
     const rt::BrickLattice& lattice, bool scattered) const;

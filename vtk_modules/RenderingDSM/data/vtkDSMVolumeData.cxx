@@ -504,8 +504,8 @@ void vtkDSMVolumeData::PublishFile(const vtkDSMFileVolume& file, bool isCoarser,
     [&]
     {
       directory = field.Lattice.CreateDirectory(messenger.GetSize());
-      source =
-        std::make_shared<dsm::ReadingSource>(messenger, file.CreateReader(field.Lattice, true));
+      source = std::make_shared<dsm::ReadingSource>(
+        messenger, file.CreateReader(field.Lattice, true), "the file '" + file.GetPath() + "'");
       // Chunks of the file that are in memory have their part of what a rank may take.
       const std::uint64_t memory = store.GetSettings().MemoryBytes;
       const std::size_t chunks = vol::ChunkCache::GetShared().Restrict(

@@ -306,6 +306,7 @@ bool vtkDSMScene::TraceFrame()
 {
   Internals& self = *this->Self;
   self.Tracing = true;
+  self.IsTraced = false;
   self.Prop->UseBoundsOn();
   dsm::FirstFailure found;
   found.Try([&] { self.Members.Find(self.Renderer); });
@@ -333,7 +334,12 @@ bool vtkDSMScene::TraceFrame()
   {
     failure = error.what();
   }
-  if (!failure.empty())
+  if (!failure.empty() && self.IsTraced)
+  {
+    self.Statistics->Clear();
+    self.Accumulation.Clear();
+  }
+  else if (!failure.empty())
   {
     self.Clear();
   }

@@ -119,6 +119,7 @@ std::string vtkDSMScene::Internals::MakeFrame(const dsm::FirstFailure& earlier)
   {
     return outcome.Cause;
   }
+  this->IsTraced = false;
   this->GiveUpBlocks(); // what the ranks have of them may differ now
   this->Group->GetPublications().Forget();
   return "Rank " + std::to_string(outcome.FailedRank) + ": " + outcome.Cause;
@@ -207,6 +208,7 @@ void vtkDSMScene::Internals::Draw()
   const int reduction = this->GetReduction(request);
   request.Width = (request.Width + reduction - 1) / reduction;
   request.Height = (request.Height + reduction - 1) / reduction;
+  this->IsTraced = true;
   if (this->TraceScene(scene, request, reduction) == vtkDSMFrameAccumulation::Result::Aborted)
   {
     // The renderer goes on, with the last picture: other ranks may wait for what this one draws.

@@ -69,6 +69,8 @@ public:
   vtkDSMFrameDelivery Delivery;
   std::string Failure; ///< that was reported last
   bool Tracing = false;
+  bool IsTraced =
+    false; ///< the frame, of data that were taken in: should it fail, the last picture stays
   vtkDSMFrameAccumulation::Pace Pace; ///< of still pictures
   int InteractiveReduction = 0;
   bool AlwaysFinest = false;
