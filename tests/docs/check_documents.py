@@ -194,7 +194,7 @@ def run_cpp(document, blocks):
     folder = make_folder(document)
     with open(os.path.join(BUILD, "compile_commands.json"), encoding="utf-8") as text:
         entry = next(entry for entry in json.load(text)
-                     if entry["file"].endswith("tests/rendering/TestVolumeMapper.cxx"))
+                     if entry["file"].endswith("tests/rendering/TraceImage.cxx"))
     words = shlex.split(entry["command"])
     words = words[: words.index("-o")] + words[words.index("-o") + 2 :]
     words = [word for word in words if word not in ("-c", entry["file"])]
