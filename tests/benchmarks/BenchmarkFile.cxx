@@ -5,6 +5,7 @@
 #include "DSMCore/fetch/ReadingSource.h"
 #include "DSMRayTracing/build/VoxelBrickReader.h"
 #include "DSMRayTracing/build/VoxelIndex.h"
+#include "DSMRayTracing/layout/DealBricks.h"
 #include "DSMVolumeFiles/cache/ChunkCache.h"
 
 #include <numeric>
@@ -87,7 +88,8 @@ rt::IsosurfaceObject PublishBenchmarkFile(
         indexToWorld[axis][axis] = geometry.Spacing[axis];
       }
       object.SetIndexToWorld(indexToWorld);
-      directory = field->Lattice.CreateDirectory(messenger.GetSize());
+      directory = field->Lattice.CreateDirectory(rt::DealBricks(
+        field->Lattice, array.Grid.ChunkSamples, rt::Index3(0), messenger.GetSize()));
       source = std::make_shared<dsm::ReadingSource>(messenger,
         std::make_shared<rt::VoxelBrickReader>(
           field->Lattice, std::make_shared<FileVoxels>(file, true)),
@@ -98,5 +100,10 @@ rt::IsosurfaceObject PublishBenchmarkFile(
   field->Survey = index.Survey;
   field->Hierarchy = rt::MacrocellHierarchy(field->Lattice, std::move(index.Bricks));
   object.Field = field;
+  // The first picture finds no chunks in memory, as if the index had been kept.
+  vol::ChunkCache& chunks = vol::ChunkCache::GetShared();
+  const std::size_t limit = chunks.GetLimit();
+  chunks.SetLimit(0);
+  chunks.SetLimit(limit);
   return object;
 }

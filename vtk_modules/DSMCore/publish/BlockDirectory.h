@@ -2,7 +2,7 @@
 #ifndef dsm_BlockDirectory_h
 #define dsm_BlockDirectory_h
 
-#include "DSMCore/base/Block.h"
+#include "DSMCore/base/BlockAssigner.h"
 
 #include <cstdint>
 #include <utility>
@@ -18,9 +18,9 @@ class BlockDirectory
 public:
   /// `indexBytes`: what whoever publishes keeps on every rank besides, to find its way to the blocks.
   BlockDirectory(
-    std::vector<std::uint32_t> bytes, RoundRobinAssigner assigner, std::uint64_t indexBytes = 0)
+    std::vector<std::uint32_t> bytes, BlockAssigner assigner, std::uint64_t indexBytes = 0)
     : Bytes(std::move(bytes))
-    , Assigner(assigner)
+    , Assigner(std::move(assigner))
     , IndexBytes(indexBytes)
   {
   }
@@ -53,7 +53,7 @@ public:
 
 private:
   std::vector<std::uint32_t> Bytes;
-  RoundRobinAssigner Assigner;
+  BlockAssigner Assigner;
   std::uint64_t IndexBytes = 0;
   bool FromSource = false;
   bool OnOwnersDisk = false;

@@ -91,13 +91,18 @@ std::uint32_t BrickLattice::GetBlockBytes(dsm::BlockId id) const
 
 dsm::BlockDirectory BrickLattice::CreateDirectory(int ranks) const
 {
+  return this->CreateDirectory(dsm::RoundRobinAssigner(ranks));
+}
+
+dsm::BlockDirectory BrickLattice::CreateDirectory(const dsm::BlockAssigner& assigner) const
+{
   std::vector<std::uint32_t> bytes(this->GetBrickCount());
   for (dsm::BlockId id = 0; id < bytes.size(); ++id)
   {
     bytes[id] = this->GetBlockBytes(id);
   }
   return dsm::BlockDirectory(
-    std::move(bytes), dsm::RoundRobinAssigner(ranks), MacrocellHierarchy::CountBytes(*this));
+    std::move(bytes), assigner, MacrocellHierarchy::CountBytes(*this));
 }
 
 } // namespace rt

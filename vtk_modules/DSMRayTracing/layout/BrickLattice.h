@@ -68,7 +68,9 @@ public:
   /// The brick that a point of index space lies in; the nearest one for a point outside.
   dsm::BlockId FindBrick(const glm::dvec3& point) const;
   std::uint32_t GetBlockBytes(dsm::BlockId id) const;
+  /// Bricks dealt one by one, or as `assigner` deals them.
   dsm::BlockDirectory CreateDirectory(int ranks) const;
+  dsm::BlockDirectory CreateDirectory(const dsm::BlockAssigner& assigner) const;
 
 private:
   Index3 Points{ 2 };

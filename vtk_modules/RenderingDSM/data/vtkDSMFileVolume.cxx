@@ -2,6 +2,7 @@
 #include "vtkDSMFileVolume.h"
 
 #include "DSMCore/base/Error.h"
+#include "DSMRayTracing/layout/DealBricks.h"
 #include "DSMVolumeFiles/format/SeriesFile.h"
 #include "DSMVolumeFiles/range/KeptFile.h"
 #include "vtkDSMFileArray.h"
@@ -380,6 +381,13 @@ std::shared_ptr<const dsm::BlockReader> vtkDSMFileVolume::CreateReader(
   return std::make_shared<rt::VoxelBrickReader>(lattice,
     std::make_shared<FileVoxels>(
       this->Values, this->Component, lattice.GetScalarType(), scattered));
+}
+
+dsm::BlockDirectory vtkDSMFileVolume::CreateDirectory(
+  const rt::BrickLattice& lattice, int ranks) const
+{
+  return lattice.CreateDirectory(rt::DealBricks(
+    lattice, this->Values->GetArray().Grid.ChunkSamples, this->Values->GetBox().Min, ranks));
 }
 
 std::vector<dsm::BlockId> vtkDSMFileVolume::CreateOrder(const rt::BrickLattice& lattice) const

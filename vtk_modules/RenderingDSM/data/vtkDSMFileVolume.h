@@ -62,6 +62,9 @@ public:
   std::shared_ptr<const dsm::BlockReader> CreateReader(
     const rt::BrickLattice& lattice, bool scattered) const;
 
+  /// Of these bricks, of which each rank gets such as are cut out of the same chunks.
+  dsm::BlockDirectory CreateDirectory(const rt::BrickLattice& lattice, int ranks) const;
+
   /// Collective: kept since an earlier time, or found by reading everything once, and kept. `threads` of this rank
   /// read; `progress` as of vtkDSMVolumeData::Publish.
   rt::VoxelIndex FindIndex(dsm::Messenger& messenger, const rt::BrickLattice& lattice,

@@ -503,7 +503,7 @@ void vtkDSMVolumeData::PublishFile(const vtkDSMFileVolume& file, bool isCoarser,
   messenger.RunTogether("Opening the volume's file",
     [&]
     {
-      directory = field.Lattice.CreateDirectory(messenger.GetSize());
+      directory = file.CreateDirectory(field.Lattice, messenger.GetSize());
       source = std::make_shared<dsm::ReadingSource>(
         messenger, file.CreateReader(field.Lattice, true), "the file '" + file.GetPath() + "'");
       // Chunks of the file that are in memory have their part of what a rank may take.
