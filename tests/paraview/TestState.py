@@ -48,19 +48,20 @@ reference = render(set_up(), "state")
 check(get_covered(reference).mean() > 0.05, "there is something to compare")
 path = os.path.join(OUTPUT, f"state.{get_ranks()}.pvsm")
 simple.SaveState(path)
-simple.ResetSession()
-load_plugin()
-simple.LoadState(path)
-display = find("DSMSampleVolume")
-for name, value in SETTINGS.items():
-    restored = display.GetPropertyValue(name)
-    check(restored == value or list(restored) == list(value), f"{name} is {restored}")
-check(find("ConeSource").GetPropertyValue("DSMReflectivity") == 0.5, "the mesh has its own")
-check(find("ConeSource").GetPropertyValue("DSMShowEdges") == 1, "and its edges")
-view = simple.GetActiveView()
-check(find("ConeSource").GetPropertyValue("DSMClip") == 0, "and is not clipped")
-view.UseFXAA = 0  # a setting, which ParaView's states leave alone
-check_equal(render(view), reference, "the picture is the same", 0)
+if can_load_states():
+    simple.ResetSession()
+    load_plugin()
+    simple.LoadState(path)
+    display = find("DSMSampleVolume")
+    for name, value in SETTINGS.items():
+        restored = display.GetPropertyValue(name)
+        check(restored == value or list(restored) == list(value), f"{name} is {restored}")
+    check(find("ConeSource").GetPropertyValue("DSMReflectivity") == 0.5, "the mesh has its own")
+    check(find("ConeSource").GetPropertyValue("DSMShowEdges") == 1, "and its edges")
+    view = simple.GetActiveView()
+    check(find("ConeSource").GetPropertyValue("DSMClip") == 0, "and is not clipped")
+    view.UseFXAA = 0  # a setting, which ParaView's states leave alone
+    check_equal(render(view), reference, "the picture is the same", 0)
 
 # The settings page and the displays have the same memory and threads: the last word counts.
 simple.ResetSession()

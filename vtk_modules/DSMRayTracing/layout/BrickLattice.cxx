@@ -101,8 +101,7 @@ dsm::BlockDirectory BrickLattice::CreateDirectory(const dsm::BlockAssigner& assi
   {
     bytes[id] = this->GetBlockBytes(id);
   }
-  return dsm::BlockDirectory(
-    std::move(bytes), assigner, MacrocellHierarchy::CountBytes(*this));
+  return dsm::BlockDirectory(std::move(bytes), assigner, MacrocellHierarchy::CountBytes(*this));
 }
 
 } // namespace rt

@@ -4,6 +4,7 @@
 #include "DSMCore/base/Error.h"
 #include "DSMVolumeFiles/format/BareFile.h"
 #include "DSMVolumeFiles/format/HdfAxes.h"
+#include "DSMVolumeFiles/format/HdfChunks.h"
 #include "DSMVolumeFiles/format/HdfLibrary.h"
 #include "DSMVolumeFiles/format/StoredFile.h"
 
@@ -152,30 +153,23 @@ protected:
         static_cast<std::size_t>(box.GetCount()) * bytes, 0 };
     }
     const std::size_t slices = this->Storages[array].Slices;
-    const Piece& piece =
+    const HdfChunk& stored =
       dataset.Chunks[static_cast<std::size_t>(grid.GetCount()) * (frame / slices) +
         static_cast<std::size_t>(grid.GetNumber(chunk))];
-    if (piece.First == HADDR_UNDEF)
+    if (stored.First == HdfChunk::Nowhere)
     {
       return std::nullopt;
     }
-    return Place{ this->Bytes, piece.First, static_cast<std::size_t>(piece.Bytes), piece.Skipped,
-      frame % slices };
+    return Place{ this->Bytes, stored.First, stored.Bytes, stored.SkippedFilters, frame % slices };
   }
 
 private:
-  struct Piece
-  {
-    haddr_t First = HADDR_UNDEF;
-    hsize_t Bytes = 0;
-    unsigned Skipped = 0;
-  };
   struct Dataset
   {
     HdfHandle Id;
     bool ReadByLibrary = false;
-    haddr_t First = HADDR_UNDEF; ///< of contiguous values
-    std::vector<Piece> Chunks;   ///< of all times
+    haddr_t First = HADDR_UNDEF;  ///< of contiguous values
+    std::vector<HdfChunk> Chunks; ///< of all times
     HdfAxes Shape;
     std::vector<int> Frames; ///< of the steps, along the axis of time; empty: each has its own
 
@@ -513,22 +507,16 @@ private:
     const std::int64_t count = array.Grid.GetCount();
     const auto layers =
       static_cast<std::int64_t>((std::max<hsize_t>(1, dataset.Shape.Frames) + times - 1) / times);
-    dataset.Chunks.resize(static_cast<std::size_t>(count * layers));
-    for (std::int64_t number = 0; number < count * layers; ++number)
+    dataset.Chunks = FindHdfChunks(dataset.Id.Get(), *this->Bytes,
+      { edges, edges + z + 3 + (dataset.Shape.Components > 0 ? 1 : 0) });
+    if (dataset.Chunks.size() != static_cast<std::size_t>(count * layers))
     {
-      const rt::Index3 first = array.Grid.GetChunk(number % count) * array.Grid.ChunkSamples;
-      hsize_t offset[5] = { static_cast<hsize_t>(number / count) * times, 0, 0, 0, 0 };
-      offset[z] = static_cast<hsize_t>(first.z);
-      offset[z + 1] = static_cast<hsize_t>(first.y);
-      offset[z + 2] = static_cast<hsize_t>(first.x);
-      Piece& piece = dataset.Chunks[static_cast<std::size_t>(number)];
-      if (H5Dget_chunk_info_by_coord(
-            dataset.Id.Get(), offset, &piece.Skipped, &piece.First, &piece.Bytes) < 0)
-      {
-        throw dsm::Error("The file '" + this->Path + "' does not tell where a chunk of '" +
-          array.Name + "' is; it is damaged.");
-      }
-      piece.Skipped <<= swapped ? 1 : 0; // the filters' bits
+      dataset.Chunks.clear();
+      return false;
+    }
+    for (HdfChunk& chunk : dataset.Chunks)
+    {
+      chunk.SkippedFilters <<= swapped ? 1 : 0; // the filters' bits
     }
     return true;
   }
