@@ -130,6 +130,16 @@ public:
     return index;
   }
 
+  std::uint64_t GetTableBytes() const override
+  {
+    std::uint64_t bytes = 0;
+    for (const Dataset& dataset : this->Kept)
+    {
+      bytes += dataset.Chunks.size() * sizeof(HdfChunk);
+    }
+    return bytes;
+  }
+
 protected:
   std::optional<Place> FindChunk(
     std::size_t array, int step, const rt::Index3& chunk) const override

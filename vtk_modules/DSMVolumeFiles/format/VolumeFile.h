@@ -81,6 +81,9 @@ public:
   virtual void ReadChunk(
     std::size_t array, int step, const rt::Index3& chunk, std::byte* out) const = 0;
 
+  /// What it has in memory, as long as it is open, of where chunks are.
+  virtual std::uint64_t GetTableBytes() const { return 0; }
+
   /// The samples of a part of a chunk, likewise, where no more than these need be read for them; else false, and
   /// nothing is read.
   virtual bool ReadPart(std::size_t, int, const rt::Index3&, const rt::Box&, std::byte*) const

@@ -375,6 +375,11 @@ const std::string& vtkDSMFileVolume::GetPath() const
   return this->Values->GetFile()->GetPath();
 }
 
+std::uint64_t vtkDSMFileVolume::GetTableBytes() const
+{
+  return this->Values->GetFile()->GetTableBytes();
+}
+
 std::shared_ptr<const dsm::BlockReader> vtkDSMFileVolume::CreateReader(
   const rt::BrickLattice& lattice, bool scattered) const
 {

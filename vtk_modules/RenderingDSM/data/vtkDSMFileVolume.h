@@ -57,6 +57,8 @@ public:
   glm::dmat4 GetIndexOf(const vtkDSMFileVolume& other) const;
 
   const std::string& GetPath() const;
+  /// What the file itself takes of each rank's memory, but for chunks.
+  std::uint64_t GetTableBytes() const;
 
   /// Bricks of the lattice; it has no cell mask. `scattered`: they are read as rays meet them, not all in turn.
   std::shared_ptr<const dsm::BlockReader> CreateReader(

@@ -511,8 +511,8 @@ void vtkDSMVolumeData::PublishFile(const vtkDSMFileVolume& file, bool isCoarser,
       const std::size_t chunks = vol::ChunkCache::GetShared().Restrict(
         memory == 0 ? SIZE_MAX : static_cast<std::size_t>(memory / ChunksDivisor));
       // A frame is of one level, which reads in the finest's place.
-      directory->AddIndexBytes(
-        isCoarser ? 0 : chunks + dsm::ReadingSource::MostReads * directory->GetLargest());
+      directory->AddIndexBytes(file.GetTableBytes() +
+        (isCoarser ? 0 : chunks + dsm::ReadingSource::MostReads * directory->GetLargest()));
     });
   const auto publish = [&] { return store.Publish(what, *directory, source); };
   field.Segment = isCoarser ? publish() : this->Group->WithRoom(publish);

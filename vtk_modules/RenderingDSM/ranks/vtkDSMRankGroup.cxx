@@ -3,6 +3,7 @@
 
 #include "DSMCore/transport/LoopbackTransport.h"
 #include "DSMCore/transport/MpiTransport.h"
+#include "DSMVolumeFiles/cache/ChunkCache.h"
 
 #include "vtkMultiProcessController.h"
 #include "vtkOutputWindow.h"
@@ -25,6 +26,9 @@
 
 namespace
 {
+
+/// So much of files is read before freed memory goes back to the system anew: it takes milliseconds.
+constexpr std::uint64_t LeastBytesOfFiles = std::uint64_t(64) << 20;
 
 /// The MPI_Comm of a controller that spans several processes, else null.
 const void* GetCommunicator(vtkMultiProcessController* controller)
@@ -228,6 +232,16 @@ void vtkDSMRankGroup::ReturnMemory()
 #ifdef __GLIBC__
   malloc_trim(0); // free keeps what many small blocks took
 #endif
+}
+
+void vtkDSMRankGroup::ReturnMemoryOfFiles()
+{
+  const std::uint64_t read = vol::ChunkCache::GetShared().GetBytesRead();
+  if (read - this->BytesOfFiles >= LeastBytesOfFiles)
+  {
+    this->BytesOfFiles = read;
+    ReturnMemory();
+  }
 }
 
 void vtkDSMRankGroup::TellOrganization()

@@ -120,6 +120,8 @@ public:
 
   /// Local: gives the memory of what was freed back to the system.
   static void ReturnMemory();
+  /// Local, after a frame: the same when much was read from files since, whose chunks and bricks come and go.
+  void ReturnMemoryOfFiles();
 
   /// Grows when memory is to be kept otherwise: what was refused may succeed now.
   unsigned GetSettingsVersion() const { return this->SettingsVersion; }
@@ -137,6 +139,7 @@ private:
   std::vector<std::pair<Publisher*, std::optional<vtkDSMMemorySettings>>> Publishers;
   unsigned SettingsVersion = 0;
   unsigned ScratchFailures = 0;
+  std::uint64_t BytesOfFiles = 0; ///< read by this process when memory was returned last
   dsm::Messenger Messenger;
   dsm::BlockStore Store;
   rt::FrameRenderer FrameRenderer;

@@ -115,6 +115,7 @@ std::string vtkDSMScene::Internals::MakeFrame(const dsm::FirstFailure& earlier)
       this->Draw();
       this->Group->TellOrganization();
     });
+  this->Group->ReturnMemoryOfFiles();
   if (outcome.IsOk() || outcome.IsEverywhere)
   {
     return outcome.Cause;
