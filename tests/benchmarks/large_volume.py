@@ -149,7 +149,7 @@ def load(plugin, path, picture):
         with open("/proc/self/clear_refs", "w") as peak:
             peak.write("5")  # the peak begins anew
         display = simple.Show(reader, view)
-        simple.ColorBy(display, None)
+        display.ColorArrayName = [None, ""]
         display.Representation = "DSM Ray Traced"
         display.DSMIsoValues = [ISOVALUES[-1]]
         simple.ResetCamera(view)
