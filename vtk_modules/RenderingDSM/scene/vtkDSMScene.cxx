@@ -314,14 +314,9 @@ bool vtkDSMScene::TraceFrame()
   {
     self.Clear();
     self.FillImage({});
-    if (std::exchange(self.HasShown, false))
-    {
-      vtkDSMRankGroup::ReturnMemory(); // by now others have freed theirs, too
-    }
     self.Tracing = false;
     return true;
   }
-  self.HasShown = true;
   const vtkDSMOpenGLGuard guard(self.Renderer->GetRenderWindow());
   std::string failure;
   try

@@ -69,7 +69,6 @@ public:
   vtkDSMFrameDelivery Delivery;
   std::string Failure; ///< that was reported last
   bool Tracing = false;
-  bool HasShown = false; ///< a dataset, since memory was returned
   bool IsTraced =
     false; ///< the frame, of data that were taken in: should it fail, the last picture stays
   vtkDSMFrameAccumulation::Pace Pace; ///< of still pictures
