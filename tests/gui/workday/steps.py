@@ -35,7 +35,7 @@ class Step:
 
 
 def step(name, events=(), look="compare", only="", looks=1):
-    """looks: how often to look at most until all samples have come."""
+    """looks: how often to look at most until all samples have come; where there is nothing to see, how often at all."""
 
     def add(do):
         STEPS.append(Step(name, list(events), look, only, looks, do))
@@ -44,13 +44,18 @@ def step(name, events=(), look="compare", only="", looks=1):
     return add
 
 
-def events_only(name, events, look="compare", only=""):
-    step(name, events, look, only)(None)
+def events_only(name, events, look="compare", only="", looks=1):
+    step(name, events, look, only, looks)(None)
 
 
 def menu(name, action, *submenus):
     path = "/".join((MENUBAR, name) + submenus)
     return [(MENUBAR, "activate", name), (path, "activate", action)]
+
+
+def delete_all(name, only=""):
+    """What the ranks then hold is noted two seconds later, when memory has gone back to the system."""
+    events_only(name, menu("menu_Edit", "actionDelete_All"), look="none", only=only, looks=20)
 
 
 def choose(name, action):
@@ -454,11 +459,12 @@ def save_state(simple):
         text.write(smstate.get_state())
 
 
-events_only("Delete All", menu("menu_Edit", "actionDelete_All"), look="none")
-events_only("Load State", menu("menu_File", "actionFileLoadServerState") + [
+delete_all("Delete All")
+LOAD_STATE = menu("menu_File", "actionFileLoadServerState") + [
     ("pqClientMainWindow/FileLoadServerStateDialog", "filesSelected", "@OUTPUT@/saved.pvsm"),
-])
-events_only("Delete All once more", menu("menu_Edit", "actionDelete_All"), look="none")
+]
+events_only("Load State", LOAD_STATE)
+delete_all("Delete All once more")
 
 
 @step("Load State from Python")
@@ -469,7 +475,9 @@ def load_state(simple):
     simple.RenderAllViews()
 
 
-events_only("Delete All at last", menu("menu_Edit", "actionDelete_All"), look="none")
+delete_all("Delete All a third time")
+events_only("Load State again", LOAD_STATE, look="like Load State")
+delete_all("Delete All at last")
 
 
 # -- The server goes, and comes back -------------------------------------------------------------------
@@ -489,4 +497,4 @@ def reconnect(simple):
     simple.Render(view)
 
 
-events_only("Delete All on it", menu("menu_Edit", "actionDelete_All"), look="none", only="server")
+delete_all("Delete All on it", only="server")

@@ -92,11 +92,12 @@ def describe(step, number):
 
 
 def look():
-    """The player looks as often as the step says; what is noted is the first look at all samples, or the last."""
+    """The player looks as often as the step says; what is noted is the first look at all samples, where there is
+    anything to see, or the last."""
     step = TODAY[Progress.taken]
     try:
         Progress.looks += 1
-        if not Progress.noted and (Progress.looks == step.looks or has_all_samples()):
+        if not Progress.noted and (Progress.looks == step.looks or (step.look != "none" and has_all_samples())):
             note(describe(step, step.number))
             Progress.noted = True
         elif not Progress.noted:

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkDSMRankGroup.h"
 
+#include "DSMCore/memory/FreedMemory.h"
 #include "DSMCore/transport/LoopbackTransport.h"
 #include "DSMCore/transport/MpiTransport.h"
 #include "DSMVolumeFiles/cache/ChunkCache.h"
@@ -11,10 +12,6 @@
 #if VTK_MODULE_ENABLE_VTK_ParallelMPI
 #include "vtkMPI.h"
 #include "vtkMPICommunicator.h"
-#endif
-
-#ifdef __GLIBC__
-#include <malloc.h>
 #endif
 
 #include <algorithm>
@@ -98,7 +95,7 @@ std::shared_ptr<vtkDSMRankGroup> vtkDSMRankGroup::Get(vtkMultiProcessController*
       [](vtkDSMRankGroup* old)
       {
         delete old;
-        ReturnMemory();
+        dsm::FreedMemory::ReturnNowAndSoon();
       });
     known = group;
   }
@@ -227,20 +224,13 @@ bool vtkDSMRankGroup::MakeRoom()
   return oldest != nullptr;
 }
 
-void vtkDSMRankGroup::ReturnMemory()
-{
-#ifdef __GLIBC__
-  malloc_trim(0); // free keeps what many small blocks took
-#endif
-}
-
 void vtkDSMRankGroup::ReturnMemoryOfFiles()
 {
   const std::uint64_t read = vol::ChunkCache::GetShared().GetBytesRead();
   if (read - this->BytesOfFiles >= LeastBytesOfFiles)
   {
     this->BytesOfFiles = read;
-    ReturnMemory();
+    dsm::FreedMemory::Return();
   }
 }
 

@@ -118,9 +118,8 @@ public:
   /// up their blocks, since a part of them has to go to the scratch directory. Throws dsm::Error.
   bool Settle();
 
-  /// Local: gives the memory of what was freed back to the system.
-  static void ReturnMemory();
-  /// Local, after a frame: the same when much was read from files since, whose chunks and bricks come and go.
+  /// Local, after a frame: freed memory goes back to the system when much was read from files since, whose chunks and
+  /// bricks come and go.
   void ReturnMemoryOfFiles();
 
   /// Grows when memory is to be kept otherwise: what was refused may succeed now.

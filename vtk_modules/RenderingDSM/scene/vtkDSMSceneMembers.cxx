@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkDSMSceneMembers.h"
 
+#include "DSMCore/memory/FreedMemory.h"
 #include "vtkDSMLightOptions.h"
 #include "vtkDSMTranslation.h"
 
@@ -132,7 +133,7 @@ void vtkDSMSceneMembers::Find(vtkRenderer* renderer)
   if (std::any_of(kept.begin(), kept.end(), [](const auto& left) { return left != nullptr; }))
   {
     kept.clear();
-    vtkDSMRankGroup::ReturnMemory();
+    dsm::FreedMemory::ReturnNowAndSoon();
   }
 }
 
