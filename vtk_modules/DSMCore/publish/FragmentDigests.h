@@ -21,13 +21,11 @@ class ByteDigest
 public:
   void Add(const std::byte* bytes, std::size_t count);
 
-  bool operator==(const ByteDigest& other) const { return this->Halves == other.Halves; }
+  bool operator==(const ByteDigest& other) const { return this->State == other.State; }
   bool operator!=(const ByteDigest& other) const { return !(*this == other); }
 
 private:
-  void AddWord(std::uint64_t word);
-
-  std::array<std::uint64_t, 2> Halves{ 0x9e3779b97f4a7c15u, 0xc2b2ae3d27d4eb4fu };
+  std::array<std::uint64_t, 2> State{ 0x9e3779b97f4a7c15u, 0xc2b2ae3d27d4eb4fu };
 };
 
 /// What a rank contributes to each block of a segment, in a few bytes a block: whoever publishes such

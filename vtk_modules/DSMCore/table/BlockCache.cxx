@@ -155,27 +155,14 @@ bool BlockCache::Reclaim(std::uint64_t oldestEpoch)
   return any;
 }
 
-void BlockCache::Forget(const BlockLine* first, std::size_t count)
+void BlockCache::Forget(const BlockLine* first, std::size_t count, const std::vector<bool>* which)
 {
   this->Reclaim(std::numeric_limits<std::uint64_t>::max());
   for (std::size_t slot = 0; slot < this->Slots.size(); ++slot)
   {
     const BlockLine* const line = this->Slots[slot].Line;
-    if (line && line >= first && line < first + count)
-    {
-      this->Drop(slot);
-    }
-  }
-}
-
-void BlockCache::Forget(const BlockLine* first, const std::vector<bool>& which)
-{
-  this->Reclaim(std::numeric_limits<std::uint64_t>::max());
-  for (std::size_t slot = 0; slot < this->Slots.size(); ++slot)
-  {
-    const BlockLine* const line = this->Slots[slot].Line;
-    if (line && line >= first && line < first + which.size() &&
-      which[static_cast<std::size_t>(line - first)])
+    if (line && line >= first && line < first + count &&
+      (!which || (*which)[static_cast<std::size_t>(line - first)]))
     {
       this->Drop(slot);
     }

@@ -63,10 +63,9 @@ public:
   bool Reclaim(std::uint64_t oldestEpoch);
   bool HasLimbo() const { return !this->Limbo.empty(); }
 
-  /// Between frames: drops the cached blocks among `count` lines from `first` on.
-  void Forget(const BlockLine* first, std::size_t count);
-  /// The same for those of which `which` says so, by their place behind `first`.
-  void Forget(const BlockLine* first, const std::vector<bool>& which);
+  /// Between frames: drops the cached blocks among `count` lines from `first` on; `which` (null: all): only those
+  /// of which it says so, by their place behind `first`.
+  void Forget(const BlockLine* first, std::size_t count, const std::vector<bool>* which = nullptr);
   /// Between frames: evicts and frees until the budget is met.
   void Shrink();
 

@@ -229,11 +229,9 @@ void BlockTable::UpdateReplicas(
   Messenger& messenger, std::string_view what, const std::vector<bool>& changed) const
 {
   const auto find = [this](BlockId id) { return this->GetOwned(id); };
+  // A rank is sent what it holds for its host itself, which is in memory that it may write.
   const auto place = [this](BlockId id)
-  {
-    std::byte* const first = this->Copies.GetData();
-    return first + (this->Lines[id].Address.load(std::memory_order_relaxed) - first);
-  };
+  { return const_cast<std::byte*>(this->Lines[id].Address.load(std::memory_order_relaxed)); };
   const FirstFailure failure =
     BlockSpread::Run(messenger, this->GetDirectory(), this->Groups, find, place, &changed);
   messenger.RunTogether(what, [&] { failure.Throw(); });

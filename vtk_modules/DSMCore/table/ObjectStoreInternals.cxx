@@ -112,7 +112,7 @@ void ObjectStore::Internals::Forget(const BlockSegment& segment)
 
 void ObjectStore::Internals::Forget(const BlockSegment& segment, const std::vector<bool>& which)
 {
-  this->Cache.Forget(static_cast<const Segment&>(segment).Lines.get(), which);
+  this->Cache.Forget(static_cast<const Segment&>(segment).Lines.get(), which.size(), &which);
 }
 
 std::size_t ObjectStore::Internals::GetLargestBlock() const

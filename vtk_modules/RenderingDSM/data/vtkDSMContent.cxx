@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkDSMContent.h"
 
+#include "DSMCore/base/InterleavedHash.h"
 #include "DSMRayTracing/base/ByteHash.h"
 #include "DSMRayTracing/base/ParallelFor.h"
 #include "vtkDSMFileArray.h"
@@ -107,23 +108,11 @@ TupleCopier FindCopier(vtkDataArray* array, int threads)
   return copier;
 }
 
-/// Four interleaved hashes, as a processor does four multiplications at once that do not wait for one
-/// another.
 std::uint64_t HashChunk(const std::byte* data, std::size_t bytes)
 {
-  constexpr std::size_t lanes = 4;
-  constexpr std::size_t step = lanes * sizeof(std::uint64_t);
-  std::array<std::uint64_t, lanes> state{ 1, 2, 3, 4 };
-  std::size_t at = 0;
-  for (; at + step <= bytes; at += step)
-  {
-    std::array<std::uint64_t, lanes> words;
-    std::memcpy(words.data(), data + at, step);
-    for (std::size_t lane = 0; lane < lanes; ++lane)
-    {
-      state[lane] = rt::ByteHash::AddWord(state[lane], words[lane]);
-    }
-  }
+  std::array<std::uint64_t, 4> state{ 1, 2, 3, 4 };
+  const std::size_t at = dsm::HashInterleaved(data, bytes, state,
+    [](std::uint64_t& lane, std::uint64_t word) { lane = rt::ByteHash::AddWord(lane, word); });
   rt::ByteHash hash;
   hash.Add(state.data(), sizeof(state));
   hash.Add(data + at, bytes - at);
