@@ -3,62 +3,18 @@
 is the one that the data suggest; while the panel's slider is dragged, which sets the unchecked value of the
 property only, the view shows it; and an animation track can change the isovalue."""
 
-import os
-import time
-import traceback
-
+from gui_testing import Steps, check, grab
 from paraview import simple
-from vtkmodules.util.numpy_support import vtk_to_numpy
-from vtkmodules.vtkRenderingCore import vtkWindowToImageFilter
 
 PATIENCE = 60.0  # seconds
 
 
-def say(text):
-    os.write(1, (text + "\n").encode())  # the application keeps what is printed
-
-
-def check(condition, what):
-    if not condition:
-        raise AssertionError(what)
-    say("ok: " + what)
-
-
-class Steps:
-    """Goes on with a generator between the application's other events."""
-
+class Session:
     def __init__(self, view):
         self.view = view
-        self.steps = self.go()
-        self.deadline = time.monotonic() + PATIENCE
-        interactor = view.GetInteractor()
-        interactor.AddObserver("TimerEvent", self.look)
-        interactor.CreateRepeatingTimer(50)
-
-    def look(self, *_):
-        if self.steps.gi_running:
-            return  # an animation handles events, too
-        code = None
-        try:
-            if time.monotonic() > self.deadline:
-                raise AssertionError("the view does not show the value")
-            next(self.steps)
-        except StopIteration:
-            code = 0
-        except BaseException:
-            say(traceback.format_exc())
-            code = 1
-        if code is not None:
-            simple.Disconnect()
-            os._exit(code)
 
     def get_covered(self):
-        image = vtkWindowToImageFilter()
-        image.SetInput(self.view.GetRenderWindow())
-        image.ShouldRerenderOff()
-        image.ReadFrontBufferOff()
-        image.Update()
-        pixels = vtk_to_numpy(image.GetOutput().GetPointData().GetScalars()).astype(int)
+        pixels = grab(self.view)
         return (abs(pixels - pixels[0]) > 8).any(axis=1).sum()
 
     def go(self):
@@ -110,4 +66,4 @@ simple.GetLayout().SetSize(400, 300)
 active = simple.GetActiveViewOrCreate("RenderView")
 active.OrientationAxesVisibility = 0
 simple.Render(active)
-kept = Steps(active)
+steps = Steps(active, Session(active).go(), PATIENCE, "the view does not show the value")

@@ -7,44 +7,22 @@ files."""
 import os
 import re
 import runpy
-import traceback
 
 import numpy
+from gui_testing import check, grab, run
 from paraview import simple, smstate
-from vtkmodules.util.numpy_support import vtk_to_numpy
-from vtkmodules.vtkRenderingCore import vtkWindowToImageFilter
 
 STATE = os.environ["DSM_TEST_STATE"]
 
 
-def say(text):
-    os.write(1, (text + "\n").encode())  # the application keeps what is printed
-
-
-def check(condition, what):
-    if not condition:
-        raise AssertionError(what)
-    say("ok: " + what)
-
-
-def capture(view):
-    """What was drawn last."""
-    image = vtkWindowToImageFilter()
-    image.SetInput(view.GetRenderWindow())
-    image.ShouldRerenderOff()
-    image.ReadFrontBufferOff()
-    image.Update()
-    return vtk_to_numpy(image.GetOutput().GetPointData().GetScalars())[:, :3].astype(int)
-
-
 def render(view):
     view.SMProxy.StillRender()
-    return capture(view)
+    return grab(view)
 
 
 def render_in_passing(view):
     view.SMProxy.InteractiveRender()
-    return capture(view)
+    return grab(view)
 
 
 def save(name):
@@ -109,11 +87,4 @@ def look_at_all():
         check(display.DSMLook == expected, f"{name}: {expected}")
 
 
-try:
-    look_at_all()
-    code = 0
-except BaseException:
-    say(traceback.format_exc())
-    code = 1
-simple.Disconnect()
-os._exit(code)
+run(look_at_all)

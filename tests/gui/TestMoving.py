@@ -6,28 +6,15 @@ released the view shows the finest, as it did before. DSM_TEST_CONVERT is dsm_co
 import json
 import os
 import subprocess
-import time
-import traceback
 
 import numpy
+from gui_testing import Steps, check, grab
 from paraview import simple
-from vtkmodules.util.numpy_support import vtk_to_numpy
-from vtkmodules.vtkRenderingCore import vtkWindowToImageFilter
 
 FOLDER = os.environ["DSM_TEST_FOLDER"]
 EDGE = 192
 MEMORY = 4  # MiB of each rank, of 27 and more
 PATIENCE = 100.0  # seconds
-
-
-def say(text):
-    os.write(1, (text + "\n").encode())  # the application keeps what is printed
-
-
-def check(condition, what):
-    if not condition:
-        raise AssertionError(what)
-    say("ok: " + what)
 
 
 def write_file():
@@ -42,46 +29,14 @@ def write_file():
     return path + ".vtkhdf"
 
 
-class Steps:
-    """Goes on with a generator between the application's other events."""
-
+class Session:
     def __init__(self, view):
         self.view = view
-        self.steps = self.go()
-        self.deadline = time.monotonic() + PATIENCE
-        interactor = view.GetInteractor()
-        interactor.AddObserver("TimerEvent", self.look)
-        interactor.CreateRepeatingTimer(50)
-
-    def look(self, *_):
-        if self.steps.gi_running:
-            return
-        code = None
-        try:
-            if time.monotonic() > self.deadline:
-                raise AssertionError("the view does not come to rest")
-            next(self.steps)
-        except StopIteration:
-            code = 0
-        except BaseException:
-            say(traceback.format_exc())
-            code = 1
-        if code is not None:
-            simple.Disconnect()
-            os._exit(code)
 
     def get_level(self):
         self.display.SMProxy.UpdatePropertyInformation()
         rows = json.loads(str(self.display.GetProperty("DSMStatistics")).strip("'"))
         return rows[0]["CoarserLevel"]
-
-    def grab(self):
-        image = vtkWindowToImageFilter()
-        image.SetInput(self.view.GetRenderWindow())
-        image.ShouldRerenderOff()
-        image.ReadFrontBufferOff()
-        image.Update()
-        return vtk_to_numpy(image.GetOutput().GetPointData().GetScalars()).astype(int)
 
     def drag(self):
         """There and back; returns the levels that were seen on the way."""
@@ -101,8 +56,8 @@ class Steps:
     def rest(self):
         """Until the still picture is there."""
         last = None
-        while last is None or self.get_level() != 0 or (self.grab() != last).any():
-            last = self.grab()
+        while last is None or self.get_level() != 0 or (grab(self.view) != last).any():
+            last = grab(self.view)
             for _ in range(10):
                 yield
         return last
@@ -143,4 +98,4 @@ class Steps:
 
 simple.GetLayout().SetSize(400, 300)
 active = simple.GetActiveViewOrCreate("RenderView")
-steps = Steps(active)
+steps = Steps(active, Session(active).go(), PATIENCE, "the view does not come to rest")

@@ -3,28 +3,9 @@
 the application shows in the middle of a render, as a server's does while it builds the bricks of a large
 volume, leaves the picture alone."""
 
-import os
-import traceback
-
+from gui_testing import check, grab, run
 from paraview import servermanager, simple
-from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonExecutionModel import vtkAlgorithm
-from vtkmodules.vtkRenderingCore import vtkWindowToImageFilter
-
-
-def check(condition, what):
-    if not condition:
-        raise AssertionError(what)
-    os.write(1, f"ok: {what}\n".encode())  # the application keeps what is printed
-
-
-def get_picture(view):
-    image = vtkWindowToImageFilter()
-    image.SetInput(view.GetRenderWindow())
-    image.ShouldRerenderOff()
-    image.ReadFrontBufferOff()
-    image.Update()
-    return vtk_to_numpy(image.GetOutput().GetPointData().GetScalars()).copy()
 
 
 class Progress:
@@ -56,27 +37,16 @@ def test(view):
     display.DSMIsoValues = [157.0]
     simple.ResetCamera(view)
     simple.Render(view)
-    undisturbed = get_picture(view)
+    undisturbed = grab(view)
     check(len(set(map(bytes, undisturbed))) > 50, "there is a picture")
     progress = Progress(view)
     display.DSMIsoValues = [140.0]
     simple.Render(view)
     check(any(progress.taken), "the application takes OpenGL to show progress")
-    check((get_picture(view) != undisturbed).any(), "another isovalue has another picture")
+    check((grab(view) != undisturbed).any(), "another isovalue has another picture")
     display.DSMIsoValues = [157.0]
     simple.Render(view)
-    check((get_picture(view) == undisturbed).all(), "progress within a render leaves the picture alone")
-
-
-def run(*_):
-    code = 0
-    try:
-        test(view)
-    except BaseException:
-        os.write(1, traceback.format_exc().encode())
-        code = 1
-    simple.Disconnect()
-    os._exit(code)
+    check((grab(view) == undisturbed).all(), "progress within a render leaves the picture alone")
 
 
 simple.GetLayout().SetSize(600, 400)
@@ -85,5 +55,5 @@ view.OrientationAxesVisibility = 0
 simple.Render(view)
 # Once the application's window is there.
 interactor = view.GetInteractor()
-interactor.AddObserver("TimerEvent", run)
+interactor.AddObserver("TimerEvent", lambda *_: run(lambda: test(view)))
 interactor.CreateOneShotTimer(1000)

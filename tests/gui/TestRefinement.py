@@ -6,16 +6,15 @@ changes begins anew; what is saved has all samples at once. DSM_TEST_PICTURE nam
 import ctypes
 import os
 import subprocess
-import sys
 import time
 import traceback
 
+from gui_testing import check, finish, grab, say
 from paraview import servermanager, simple
 from vtkmodules.util.misc import calldata_type
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonCore import VTK_INT
 from vtkmodules.vtkIOImage import vtkPNGReader
-from vtkmodules.vtkRenderingCore import vtkWindowToImageFilter
 
 SAMPLES = 16
 PICTURE = os.environ["DSM_TEST_PICTURE"]
@@ -34,12 +33,6 @@ for pressed, seconds in ((1, float(sys.argv[1])), (0, float(sys.argv[2]))):
     xtst.XTestFakeButtonEvent(display, 1, pressed, 0)
     x11.XFlush(display)
 """
-
-
-def check(condition, what):
-    if not condition:
-        raise AssertionError(what)
-    print("ok:", what, flush=True)
 
 
 def read_picture(name):
@@ -91,10 +84,10 @@ class Watch:
                 raise AssertionError(f"still waiting after {PATIENCE} s; samples seen: {self.seen}")
             next(self.steps)
         except StopIteration:
-            print("the application refined its pictures", flush=True)
+            say("the application refined its pictures")
             finish(0)
         except BaseException:
-            traceback.print_exc()
+            say(traceback.format_exc())
             finish(1)
         self.last = time.monotonic()
 
@@ -165,7 +158,7 @@ class Watch:
         try:
             ctypes.CDLL("libXtst.so.6")
         except OSError:
-            print("skipped: without libXtst, nothing can press the mouse", flush=True)
+            say("skipped: without libXtst, nothing can press the mouse")
             return
 
         def time_render():
@@ -177,11 +170,11 @@ class Watch:
         while (whole := time_render()) < 4.0:
             check(self.display.DSMAmbientOcclusionSamples < MOST_RAYS, f"a frame takes time: {whole:.2f} s")
             self.display.DSMAmbientOcclusionSamples *= 2
-        shown = self.get_picture()
+        shown = grab(self.view)
         press = subprocess.Popen(["python3", "-c", PRESS, str(0.1 * whole), str(whole)])
         seconds = time_render()
         check(self.get_samples() == 0, f"a press of the mouse ends a frame of {whole:.2f} s after {seconds:.2f} s")
-        check((self.get_picture() == shown).all(), "which leaves the last picture")
+        check((grab(self.view) == shown).all(), "which leaves the last picture")
         check(press.wait(timeout=60) == 0, "the mouse could be pressed")
         self.display.DSMAmbientOcclusionSamples = 1
         self.display.DSMIsoValues = [140.0]
@@ -189,20 +182,7 @@ class Watch:
         self.begin()
         while self.get_samples() < 3:
             yield
-        check((self.get_picture() != shown).any(), "the next pictures are drawn and refined")
-
-    def get_picture(self):
-        image = vtkWindowToImageFilter()
-        image.SetInput(self.view.GetRenderWindow())
-        image.ShouldRerenderOff()
-        image.ReadFrontBufferOff()
-        image.Update()
-        return vtk_to_numpy(image.GetOutput().GetPointData().GetScalars()).copy()
-
-
-def finish(code):
-    simple.Disconnect()
-    os._exit(code)
+        check((grab(self.view) != shown).any(), "the next pictures are drawn and refined")
 
 
 def test():
@@ -224,6 +204,5 @@ def test():
 try:
     watch = test()
 except BaseException:
-    traceback.print_exc()
-    sys.stdout.flush()
+    say(traceback.format_exc())
     os._exit(1)

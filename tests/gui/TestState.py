@@ -7,21 +7,12 @@ import os
 import time
 import traceback
 
+from gui_testing import check, finish, say
 from paraview import simple, smstate
 
 SAMPLES = 64
 STATE = os.environ["DSM_TEST_STATE"]
 PATIENCE = 200.0  # seconds
-
-
-def say(text):
-    os.write(1, (text + "\n").encode())  # the application keeps what is printed
-
-
-def check(condition, what):
-    if not condition:
-        raise AssertionError(what)
-    say("ok: " + what)
 
 
 def get_samples(display):
@@ -83,7 +74,6 @@ class Steps:
         check(0 < first < SAMPLES, f"{self.what} is shown with {first} samples at first")
 
     def look(self, *_):
-        code = None
         try:
             if time.monotonic() > self.deadline:
                 raise AssertionError(self.what + " is not refined")
@@ -92,13 +82,10 @@ class Steps:
             say(f"ok: {self.what} is refined")
             self.begin()
         except StopIteration:
-            code = 0
+            finish(0)
         except BaseException:
             say(traceback.format_exc())
-            code = 1
-        if code is not None:
-            simple.Disconnect()
-            os._exit(code)
+            finish(1)
 
 
 simple.GetLayout().SetSize(400, 300)

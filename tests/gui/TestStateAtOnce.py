@@ -7,13 +7,8 @@ import sys
 import tempfile
 import traceback
 
+from gui_testing import check
 from paraview import simple, smstate
-
-
-def check(condition, what):
-    if not condition:
-        raise AssertionError(what)
-    print("ok:", what, flush=True)
 
 
 def get_looks():
