@@ -4,7 +4,6 @@ again, and the picture is that of the same data in memory, bit for bit. What hap
 and is over when the file is well again. Called as run.py does, with a folder for files behind the other arguments."""
 
 import itertools
-import json
 import os
 import sys
 
@@ -46,11 +45,6 @@ def open_file():
     return simple.DSMVolumeReader(
         FileName=path, RawDimensions=[EDGE] * 3, RawScalarType="float", RawSpacing=[1.0 / EDGE] * 3
     )
-
-
-def get_rows(display):
-    display.SMProxy.UpdatePropertyInformation()
-    return json.loads(str(display.GetProperty("DSMStatistics")).strip("'"))
 
 
 def go_round(display, isovalues=(0.3, 1.2)):

@@ -3,11 +3,9 @@
 the user wants that; every other picture is of the finest, bit for bit. Called as run.py does, with dsm_convert, a folder
 for files and a Python behind the other arguments."""
 
-import json
 import subprocess
 
 from dsm_testing import *
-from vtkmodules.vtkRenderingCore import vtkWindowToImageFilter
 
 CONVERT, FOLDER = sys.argv[3:5]
 os.environ["XDG_CACHE_HOME"] = os.path.join(OUTPUT, "caches", str(get_ranks()))
@@ -37,22 +35,10 @@ source = simple.DSMVolumeReader(FileName=path + ".vtkhdf")
 
 def get_coarser():
     """How many levels below the finest the last picture is."""
-    display.SMProxy.UpdatePropertyInformation()
-    rows = json.loads(str(display.GetProperty("DSMStatistics")).strip("'"))
+    rows = get_rows(display)
     levels = {row["CoarserLevel"] for row in rows}
     check(len(levels) == 1, "the ranks agree")
     return levels.pop()
-
-
-def grab():
-    image = vtkWindowToImageFilter()
-    image.SetInput(view.GetRenderWindow())
-    image.ShouldRerenderOff()
-    image.ReadFrontBufferOff()
-    image.Update()
-    width, height, _ = image.GetOutput().GetDimensions()
-    pixels = vtk_to_numpy(image.GetOutput().GetPointData().GetScalars())
-    return pixels.reshape(height, width, -1)[:, :, :3].astype(int)
 
 
 def move(place):
@@ -69,14 +55,14 @@ for number, place in enumerate(PLACES):
 check(all(get_covered(picture).mean() > 0.2 for picture in expected), "something is shown")
 levels = [move(place) for place in PLACES]
 check(levels == [0] * len(PLACES), f"while the option is off, moving pictures are of the finest: {levels}")
-check_equal(grab(), expected[-1], "pixel for pixel")
+check_equal(grab(view), expected[-1], "pixel for pixel")
 
 display.DSMCoarserDataWhileMoving = 1
 seen = []
 with Messages() as messages:
     for number, place in enumerate(PLACES):
         seen.append(move(place))
-        shown = grab()
+        shown = grab(view)
         if seen[-1] == 0:
             check_equal(shown, expected[number], "a moving picture of the finest is the still one")
         else:
@@ -104,7 +90,7 @@ view.UseInteractiveRenderingForScreenshots = 0
 display.DSMMemory = 512
 levels = [move((0.6 + 0.02 * step, 0.5, 1.0)) for step in range(30)]
 check(levels[-1] == 0, f"bricks that have come take the place of coarser ones: {levels}")
-rows = json.loads(str(display.GetProperty("DSMStatistics")).strip("'"))
+rows = get_rows(display)
 check(all(row["BytesOfTables"] + row["CacheCapacity"] <= row["MemoryBudget"] for row in rows), "within the memory")
 
 # Coloured by itself, clipped, twice in the view: the same holds.
@@ -114,7 +100,7 @@ display.DSMIsoValues = [0.8, -0.4]
 display.DSMClip = 1
 for number, place in enumerate(PLACES):
     level = move(place)
-    moving = grab()
+    moving = grab(view)
     display.DSMCoarserDataWhileMoving = 0
     plain = render(view)
     display.DSMCoarserDataWhileMoving = 1

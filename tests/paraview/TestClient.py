@@ -2,8 +2,6 @@
 """A client that draws on a server. Called as TestClient.py PLUGIN OUTPUT PORT RANKS, where OUTPUT
 holds the pictures of TestViews.py."""
 
-import json
-
 import dsm_testing
 from dsm_testing import *
 
@@ -18,8 +16,7 @@ picture = render(view)
 reference = numpy.load(os.path.join(OUTPUT, "FirstView.npy"))
 check_equal(picture, reference, "the server's picture is that of one rank")
 
-display.SMProxy.UpdatePropertyInformation()
-rows = json.loads(str(display.GetProperty("DSMStatistics")).strip("'"))
+rows = get_rows(display)
 check(len(rows) == RANKS, "every rank of the server reports to the client")
 check(sum(row["Tiles"] for row in rows) > 0, "and traced")
 display.DSMSamplesPerPixel = 3
@@ -61,8 +58,7 @@ mesh.Representation = REPRESENTATION
 simple.ColorBy(mesh, ("POINTS", "Normals", "X"))
 place_camera(view)
 traced = render(view)
-mesh.SMProxy.UpdatePropertyInformation()
-rows = json.loads(str(mesh.GetProperty("DSMStatistics")).strip("'"))
+rows = get_rows(mesh)
 check(len(rows) == RANKS, "every rank reports on the mesh")
 mesh.Representation = "Surface"
 check_same_surface(traced, render(view), "a mesh on the server")

@@ -2,8 +2,6 @@
 """What is hidden keeps its bricks, until something else needs their memory: then what was shown the longest ago
 goes first. What is shown in another way has none."""
 
-import json
-
 from dsm_testing import *
 
 load_plugin()
@@ -13,11 +11,6 @@ view = create_view()
 view.UseFXAA = 0
 sources = [image_source(SCRIPT.format(amplitude=amplitude), EXTENT) for amplitude in (0.05, 0.1, 0.0)]
 displays = []
-
-
-def get_rows(display):
-    display.SMProxy.UpdatePropertyInformation()
-    return json.loads(str(display.GetProperty("DSMStatistics")).strip("'"))
 
 
 def show_only(number):

@@ -2,11 +2,7 @@
 """While the camera moves, the picture is traced at the resolution that ParaView's level of detail asks for,
 and at the full one when the view is still; the samples of a still picture then begin anew."""
 
-import json
-
 from dsm_testing import *
-from vtkmodules.vtkIOImage import vtkPNGWriter
-from vtkmodules.vtkRenderingCore import vtkWindowToImageFilter
 
 load_plugin()
 view = create_view(480, 400)
@@ -26,25 +22,7 @@ def move(threshold, resolution):
     view.LODThreshold = threshold
     view.LODResolution = resolution
     view.SMProxy.InteractiveRender()
-    display.SMProxy.UpdatePropertyInformation()
-    rows = json.loads(str(display.GetProperty("DSMStatistics")).strip("'"))
-    return sum(row["Tiles"] for row in rows)
-
-
-def grab():
-    """What the window shows."""
-    image = vtkWindowToImageFilter()
-    image.SetInput(view.GetRenderWindow())
-    image.ShouldRerenderOff()
-    image.ReadFrontBufferOff()
-    image.Update()
-    width, height, _ = image.GetOutput().GetDimensions()
-    pixels = vtk_to_numpy(image.GetOutput().GetPointData().GetScalars())
-    writer = vtkPNGWriter()
-    writer.SetFileName(os.path.join(OUTPUT, f"moving.{get_ranks()}.png"))
-    writer.SetInputData(image.GetOutput())
-    writer.Write()
-    return pixels.reshape(height, width, -1)[:, :, :3].astype(int)
+    return sum(row["Tiles"] for row in get_rows(display))
 
 
 check(move(1000.0, 0.0) == TILES, "below the threshold, every pixel is traced")
@@ -56,7 +34,7 @@ check(coarse <= finer <= 15 * 13, f"at a middle one, {finer}")
 
 
 # What such a picture looks like: the same, with coarser edges, and the plane in its place.
-moving = grab()
+moving = grab(view, "moving")
 covered, expected = get_covered(moving), get_covered(still)
 wrong = (covered != expected).mean()
 check(wrong < 0.03, f"a middle level of detail covers the same pixels but {100 * wrong:.2f} %")

@@ -2,8 +2,6 @@
 """How the ranks keep their bricks: the picture is the same whatever the user chooses, what Automatic
 chooses is said once, and what does not fit the memory is refused with what would."""
 
-import json
-
 from dsm_testing import *
 
 load_plugin()
@@ -13,11 +11,6 @@ ORGANIZATIONS = ["Replicated", "Object based", "Page based"]
 several = get_ranks() > 1
 view = create_view()
 view.UseFXAA = 0
-
-
-def get_rows(display):
-    display.SMProxy.UpdatePropertyInformation()
-    return json.loads(str(display.GetProperty("DSMStatistics")).strip("'"))
 
 
 def check_report(display, organization):

@@ -2,7 +2,6 @@
 """What does not fit the memory goes to a scratch directory, where the user has given one: the same pictures, within
 the memory. What is wrong with the directory is said, and over when the directory is well again."""
 
-import json
 import shutil
 
 from dsm_testing import *
@@ -16,11 +15,6 @@ shutil.rmtree(DISK, ignore_errors=True)
 os.makedirs(DISK)
 view = create_view()
 view.UseFXAA = 0
-
-
-def get_rows(display):
-    display.SMProxy.UpdatePropertyInformation()
-    return json.loads(str(display.GetProperty("DSMStatistics")).strip("'"))
 
 
 def go_round():

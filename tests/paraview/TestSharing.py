@@ -2,8 +2,6 @@
 """Two views of a dataset share its bricks, whatever else they show differently; the bricks leave with their last
 user."""
 
-import json
-
 from dsm_testing import *
 
 load_plugin()
@@ -25,8 +23,7 @@ class Picture:
         with Messages() as messages:
             self.pixels = render(view)
         check(messages.text.strip() == "", "nothing is reported: " + messages.text)
-        display.SMProxy.UpdatePropertyInformation()
-        rows = json.loads(str(display.GetProperty("DSMStatistics")).strip("'"))
+        rows = get_rows(display)
         self.held = sum(row["BytesResident"] + row["BytesCopied"] for row in rows)
         self.publications = rows[0]["Publications"]
 

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Data that change: time steps, edited sources, reloaded files."""
 
-import json
-
 from dsm_testing import *
 from vtkmodules.vtkIOXML import vtkXMLImageDataWriter
 from vtkmodules.vtkImagingCore import vtkRTAnalyticSource
@@ -56,8 +54,7 @@ simple.Delete(steps)
 
 
 def count_publications(display):
-    display.SMProxy.UpdatePropertyInformation()
-    return json.loads(str(display.GetProperty("DSMStatistics")).strip("'"))[0]["Publications"]
+    return get_rows(display)[0]["Publications"]
 
 
 def check_publications(display, expected, what):

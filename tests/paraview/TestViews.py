@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Views: several at once, resized, larger screenshots; hiding, showing, deleting; the frame report."""
 
-import json
-
 from dsm_testing import *
 from vtkmodules.vtkIOImage import vtkPNGReader
 
@@ -16,16 +14,11 @@ picture = render(first, "FirstView")
 check(get_covered(picture).any(), "the first view shows the surface")
 
 # The report has a row for every rank, and adds up.
-def get_report():
-    display.SMProxy.UpdatePropertyInformation()
-    return json.loads(str(display.GetProperty("DSMStatistics")).strip("'"))
-
-
 def get_resident():
-    return sum(row["BytesResident"] for row in get_report())
+    return sum(row["BytesResident"] for row in get_rows(display))
 
 
-rows = get_report()
+rows = get_rows(display)
 resident = get_resident()
 check([row["Rank"] for row in rows] == list(range(get_ranks())), "every rank reports")
 check(sum(row["Tiles"] for row in rows) == (300 + 15) // 16 * ((240 + 15) // 16), "all tiles traced")
@@ -37,7 +30,7 @@ check(float(str(display.GetProperty("DSMFrameTime"))) > 0.0, "the frame took som
 display.DSMCacheSize = 1
 display.DSMThreads = 3
 check_equal(render(first), picture, "with a small cache and three threads")
-check(all(row["Threads"] == 3 and row["CacheCapacity"] <= 1 << 20 for row in get_report()),
+check(all(row["Threads"] == 3 and row["CacheCapacity"] <= 1 << 20 for row in get_rows(display)),
       "as was asked for")
 display.DSMCacheSize = 256
 display.DSMThreads = 0

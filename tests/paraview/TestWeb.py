@@ -2,8 +2,6 @@
 """What a browser sees that ParaViewWeb or trame serve: one sample of each pixel while it drags, and all when
 it lets go; and a picture that an application refines step by step is what one step gives."""
 
-import json
-
 from dsm_testing import *
 
 try:
@@ -63,8 +61,7 @@ def count_accesses(isovalue, *steps):
     for samples in steps:
         display.DSMSamplesPerPixel = samples
         simple.Render(view)
-        display.SMProxy.UpdatePropertyInformation()
-        rows = json.loads(str(display.GetProperty("DSMStatistics")).strip("'"))
+        rows = get_rows(display)
         accesses.append(sum(row["Accesses"] for row in rows))
     return accesses
 

@@ -2,6 +2,7 @@
 """What the pvbatch tests share. They are run by run.py, as `TestX.py PLUGIN OUTPUT`: PLUGIN is
 DSMRayTracer.so, OUTPUT a folder for pictures, one for each number of ranks."""
 
+import json
 import os
 import sys
 
@@ -9,7 +10,9 @@ import numpy
 from paraview import servermanager, simple
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkOutputWindow, vtkStringOutputWindow
+from vtkmodules.vtkIOImage import vtkPNGWriter
 from vtkmodules.vtkParallelCore import vtkMultiProcessController
+from vtkmodules.vtkRenderingCore import vtkWindowToImageFilter
 
 PLUGIN, OUTPUT = sys.argv[1], sys.argv[2]
 REPRESENTATION = "DSM Ray Traced"
@@ -100,6 +103,29 @@ def render(view, name=None):
     return pixels
 
 
+def grab(view, name=None):
+    """What the window shows, without rendering, as rows of pixels like render's. With a name, it is also saved."""
+    image = vtkWindowToImageFilter()
+    image.SetInput(view.GetRenderWindow())
+    image.ShouldRerenderOff()
+    image.ReadFrontBufferOff()
+    image.Update()
+    if name:
+        writer = vtkPNGWriter()
+        writer.SetFileName(os.path.join(OUTPUT, f"{name}.{get_ranks()}.png"))
+        writer.SetInputData(image.GetOutput())
+        writer.Write()
+    width, height, _ = image.GetOutput().GetDimensions()
+    pixels = vtk_to_numpy(image.GetOutput().GetPointData().GetScalars())
+    return pixels.reshape(height, width, -1)[:, :, :3].astype(int)
+
+
+def get_rows(display):
+    """The statistics of each rank (vtkDSMStatistics::GetJson)."""
+    display.SMProxy.UpdatePropertyInformation()
+    return json.loads(str(display.GetProperty("DSMStatistics")).strip("'"))
+
+
 def get_covered(pixels):
     """Which pixels are not background, the lower left one being background."""
     return (abs(pixels - pixels[0, 0]) > 2).any(axis=2)
@@ -157,7 +183,9 @@ IMAGE_SOURCE = """
 from builtins import max, min
 import numpy as np
 from vtkmodules.util.numpy_support import numpy_to_vtk
+from vtkmodules.vtkIOImage import vtkPNGWriter
 from vtkmodules.vtkParallelCore import vtkMultiProcessController
+from vtkmodules.vtkRenderingCore import vtkWindowToImageFilter
 from vtkmodules.vtkCommonExecutionModel import vtkStreamingDemandDrivenPipeline
 controller = vtkMultiProcessController.GetGlobalController()
 rank, ranks = controller.GetLocalProcessId(), controller.GetNumberOfProcesses()
