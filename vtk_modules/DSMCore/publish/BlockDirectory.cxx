@@ -3,14 +3,18 @@
 
 #include <algorithm>
 #include <numeric>
+#include <utility>
 
 namespace dsm
 {
 
-std::uint32_t BlockDirectory::GetLargest() const
+BlockDirectory::BlockDirectory(
+  std::vector<std::uint32_t> bytes, BlockAssigner assigner, std::uint64_t indexBytes)
+  : Bytes(std::move(bytes))
+  , Largest(this->Bytes.empty() ? 0 : *std::max_element(this->Bytes.begin(), this->Bytes.end()))
+  , Assigner(std::move(assigner))
+  , IndexBytes(indexBytes)
 {
-  const auto largest = std::max_element(this->Bytes.begin(), this->Bytes.end());
-  return largest == this->Bytes.end() ? 0 : *largest;
 }
 
 std::uint64_t BlockDirectory::GetResidentBytes(int owner, std::size_t unit) const

@@ -5,7 +5,6 @@
 #include "DSMCore/base/BlockAssigner.h"
 
 #include <cstdint>
-#include <utility>
 #include <vector>
 
 namespace dsm
@@ -18,12 +17,7 @@ class BlockDirectory
 public:
   /// `indexBytes`: what whoever publishes keeps on every rank besides, to find its way to the blocks.
   BlockDirectory(
-    std::vector<std::uint32_t> bytes, BlockAssigner assigner, std::uint64_t indexBytes = 0)
-    : Bytes(std::move(bytes))
-    , Assigner(std::move(assigner))
-    , IndexBytes(indexBytes)
-  {
-  }
+    std::vector<std::uint32_t> bytes, BlockAssigner assigner, std::uint64_t indexBytes = 0);
 
   BlockId GetCount() const { return this->Bytes.size(); }
   std::uint32_t GetBytes(BlockId id) const { return this->Bytes[id]; }
@@ -36,7 +30,7 @@ public:
   void SetOnOwnersDisk() { this->FromSource = this->OnOwnersDisk = true; }
   bool IsOnOwnersDisk() const { return this->OnOwnersDisk; }
   /// The largest block; 0 when there is none.
-  std::uint32_t GetLargest() const;
+  std::uint32_t GetLargest() const { return this->Largest; }
   /// What is in the owner's memory for good: the sum over its blocks, each rounded up to a multiple of
   /// `unit`.
   std::uint64_t GetResidentBytes(int owner, std::size_t unit = BlockAlignment) const;
@@ -53,6 +47,7 @@ public:
 
 private:
   std::vector<std::uint32_t> Bytes;
+  std::uint32_t Largest; ///< of these: it is asked for with every brick that is foreseen
   BlockAssigner Assigner;
   std::uint64_t IndexBytes = 0;
   bool FromSource = false;
