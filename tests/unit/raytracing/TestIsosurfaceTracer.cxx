@@ -165,13 +165,22 @@ TEST_F(TestIsosurfaceTracer, AsksForTheFirstBricksOfABeam)
     all.push_back(brick.Id);
   }
   ASSERT_GT(all.size(), 3u);
-  tracer.Prefetch(*beam, 3);
+  tracer.Prefetch(*beam, { 3, 1 });
   EXPECT_EQ(this->Store.Prefetched, std::vector<dsm::BlockId>(all.begin(), all.begin() + 3));
   this->Store.Prefetched.clear();
-  tracer.Prefetch(*beam, all.size() + 5);
+  tracer.Prefetch(*beam, { all.size() + 5, 0 });
   EXPECT_EQ(this->Store.Prefetched, all);
+  // What is cut out of a file, in vain, takes a thread's time.
+  this->Store.Prefetched.clear();
+  dsm::BlockDirectory directory = this->Object.Field->Segment->GetDirectory();
+  directory.SetFromSource();
+  auto field = std::make_shared<rt::VoxelField>(*this->Object.Field);
+  field->Segment = std::make_shared<MemoryStore::Segment>(directory);
+  this->Object.Field = field;
+  tracer.Prefetch(*beam, { all.size(), 3 });
+  EXPECT_EQ(this->Store.Prefetched, std::vector<dsm::BlockId>(all.begin(), all.begin() + 2));
   this->Store.Prefetched.clear();
   this->Object.Surface.Opacity = 0.0f;
-  tracer.Prefetch(*beam, 3);
+  tracer.Prefetch(*beam, { 3, 3 });
   EXPECT_TRUE(this->Store.Prefetched.empty());
 }

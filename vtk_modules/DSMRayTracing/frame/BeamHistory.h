@@ -2,6 +2,8 @@
 #ifndef rt_BeamHistory_h
 #define rt_BeamHistory_h
 
+#include "DSMRayTracing/object/BrickForecast.h"
+
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
@@ -22,10 +24,9 @@ public:
   /// counts when its picture was as large and had as many objects.
   BeamHistory(int width, int height, std::size_t objects, const BeamHistory* last = nullptr);
 
-  /// How many bricks, from the front, an object's beam at a pixel will probably need: as many as the
-  /// beams there and around it went through on the mean, those of this frame where they are traced. None
-  /// where nothing is known.
-  std::size_t Predict(int x, int y, std::size_t object) const;
+  /// How many bricks an object's beam at a pixel will probably need: as many as the beams there and around it went
+  /// through, those of this frame where they are traced. None where nothing is known.
+  BrickForecast Predict(int x, int y, std::size_t object) const;
 
   /// What an object's beam at a pixel has come to (ObjectBeam::Reached).
   void Record(int x, int y, std::size_t object, std::size_t reached);

@@ -99,8 +99,8 @@ bool TileSampler::Prefetch(const SceneBeam& beam, const Tile& tile, const Box& b
   {
     if (beam.Objects[object])
     {
-      const std::size_t count = this->Beams->Predict(tile.X + box.Left, tile.Y + box.Top, object);
-      anyAbsent |= this->Objects[object]->Prefetch(*beam.Objects[object], count);
+      anyAbsent |= this->Objects[object]->Prefetch(
+        *beam.Objects[object], this->Beams->Predict(tile.X + box.Left, tile.Y + box.Top, object));
     }
   }
   return anyAbsent;

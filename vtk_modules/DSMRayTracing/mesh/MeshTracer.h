@@ -33,7 +33,7 @@ public:
   bool IsOpaque() const override { return this->Object.IsOpaque(); }
 
   std::unique_ptr<ObjectBeam> FindBeam(const Ray*) const override { return nullptr; }
-  bool Prefetch(const ObjectBeam&, std::size_t) const override { return false; }
+  bool Prefetch(const ObjectBeam&, const BrickForecast&) const override { return false; }
 
   void FindNext(Ray* rays, RayMask wanted, ObjectBeam*, ObjectHit* nearest) const override
   {

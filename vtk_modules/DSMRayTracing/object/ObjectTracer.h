@@ -4,6 +4,7 @@
 
 #include "DSMCore/base/Block.h"
 #include "DSMCore/publish/BlockSegment.h"
+#include "DSMRayTracing/object/BrickForecast.h"
 #include "DSMRayTracing/object/ObjectBeam.h"
 #include "DSMRayTracing/object/ObjectHit.h"
 #include "DSMRayTracing/object/SurfacePoint.h"
@@ -34,9 +35,9 @@ public:
   /// nothing to tell.
   virtual std::unique_ptr<ObjectBeam> FindBeam(const Ray corners[4]) const = 0;
 
-  /// Asks for the first `count` bricks that a beam of this object meets, ahead of FindNext; returns
-  /// whether any was absent. Never waits.
-  virtual bool Prefetch(const ObjectBeam& beam, std::size_t count) const = 0;
+  /// Asks for the first bricks that a beam of this object meets, as many as are foreseen, ahead of FindNext;
+  /// returns whether any was absent. Never waits.
+  virtual bool Prefetch(const ObjectBeam& beam, const BrickForecast& forecast) const = 0;
 
   /// Finds the first hits of those rays that are `wanted` in [ray.Min, ray.Max], and gives them to
   /// ObjectHit::Take, which has the hits of other objects so far. `beam`: of this object, with all of

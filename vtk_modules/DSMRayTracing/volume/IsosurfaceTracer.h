@@ -47,9 +47,14 @@ public:
     return std::make_unique<BeamBricks>(this->Packets.FindBricks(this->Object, corners));
   }
 
-  bool Prefetch(const ObjectBeam& beam, std::size_t count) const override
+  bool Prefetch(const ObjectBeam& beam, const BrickForecast& forecast) const override
   {
     const auto& bricks = static_cast<const BeamBricks&>(beam).Bricks;
+    // One that was sent in vain costs little; one that was cut out of a file in vain costs a thread's time, so of
+    // these only the first ones are foreseen of those that no beam around did without.
+    const dsm::BlockDirectory& directory = this->Object.Field->Segment->GetDirectory();
+    const bool isCut = directory.IsFromSource() && !directory.IsOnOwnersDisk();
+    const std::size_t count = isCut ? (forecast.Least + 1) / 2 : forecast.Mean;
     std::vector<dsm::BlockId> ids(this->IsSeen() ? std::min(count, bricks.size()) : 0);
     std::transform(bricks.begin(), bricks.begin() + static_cast<std::ptrdiff_t>(ids.size()),
       ids.begin(), [](const BeamBricks::Brick& brick) { return brick.Id; });
