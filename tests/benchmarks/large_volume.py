@@ -182,7 +182,8 @@ def run_bench(options, ranks, path, **more):
 def compare_reading(options, path):
     """Of one picture from nothing: bytes read over bytes of the distinct bricks that rays entered."""
     whole = run_bench(options, 1, path, frames=1, memory=4096, prefetch="off")
-    bricks = whole["opening"]["ranks"][0]["misses"] * whole["brick_bytes"]
+    rank = whole["opening"]["ranks"][0]
+    bricks = (rank["misses"] - rank["joins"]) * whole["brick_bytes"]
     for prefetch in ("on", "off"):
         found = run_bench(options, options.ranks, path, frames=1, memory=options.memory, prefetch=prefetch)
         read = sum(rank["bytes_read"] for rank in found["opening"]["ranks"])

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Files that other programs wrote (make_files.py): every value, in every format; and what is damaged.
 #include "DSMCore/base/Error.h"
+#include "DSMVolumeFiles/base/CopyBox.h"
 #include "DSMVolumeFiles/cache/ChunkCache.h"
+#include "DSMVolumeFiles/codec/ChunkCodec.h"
 #include "DSMVolumeFiles/format/VolumeFile.h"
 #include "DSMVolumeFiles/range/ValueRanges.h"
 
@@ -220,6 +222,75 @@ TEST(VolumeFiles, AChunkThatManyThreadsWantIsReadOnce)
   EXPECT_EQ(wrong, std::vector<int>(8, 0));
   EXPECT_EQ(cache.GetBytesRead(),
     static_cast<std::uint64_t>(whole.GetCount()) * file->GetArrays()[0].GetSampleBytes());
+}
+
+TEST(ChunkGrid, AChunkAndItsHaloAreTheBoxOfABrick)
+{
+  const vol::ChunkGrid grid{ { 9, 5, 4 }, { 4, 4, 4 } };
+  for (std::int64_t number = 0; number < grid.GetCount(); ++number)
+  {
+    const rt::Index3 chunk = grid.GetChunk(number);
+    const rt::Box all = grid.GetBoxWithHalo(chunk);
+    std::vector<std::byte> seen(static_cast<std::size_t>(all.GetCount()), std::byte(0));
+    std::int64_t count = 0;
+    const auto add = [&](const rt::Box& box)
+    {
+      const std::vector<std::byte> ones(static_cast<std::size_t>(box.GetCount()), std::byte(1));
+      vol::CopyBox(box, ones.data(), box, seen.data(), all, 1);
+      count += box.GetCount();
+    };
+    add(grid.GetBox(chunk));
+    for (const rt::Box& part : grid.GetHalo(chunk))
+    {
+      add(part);
+    }
+    EXPECT_EQ(count, all.GetCount());
+    EXPECT_EQ(std::count(seen.begin(), seen.end(), std::byte(1)), all.GetCount());
+  }
+}
+
+TEST(ChunkCodec, AHaloComesBackWhereThereIsOne)
+{
+  using Kind = vol::CodecStep::Kind;
+  vol::ChunkCodec codec;
+  try
+  {
+    codec = vol::ChunkCodec({ { Kind::Shuffle, 4 }, { Kind::Zstd }, { Kind::Fletcher32 } });
+  }
+  catch (const dsm::Error& error)
+  {
+    GTEST_SKIP() << error.what();
+  }
+  EXPECT_TRUE(codec.KeepsHalo());
+  EXPECT_FALSE(vol::ChunkCodec({ { Kind::Fletcher32 } }).KeepsHalo());
+  std::vector<std::byte> samples(64 * 4);
+  std::vector<std::byte> halo(61 * 4);
+  const auto number = [](std::size_t place) { return std::byte(place * place % 251); };
+  for (std::size_t place = 0; place < samples.size(); ++place)
+  {
+    samples[place] = number(place);
+  }
+  for (std::size_t place = 0; place < halo.size(); ++place)
+  {
+    halo[place] = number(place + 1000);
+  }
+  const std::vector<std::byte> stored = codec.Encode(samples, halo);
+  std::vector<std::byte> found(samples.size());
+  EXPECT_TRUE(codec.Decode(stored, 0, found.data(), found.size()));
+  EXPECT_EQ(found, samples) << "without asking for it";
+  std::vector<std::byte> back(halo.size());
+  EXPECT_TRUE(codec.Decode(stored, 0, found.data(), found.size(), &back));
+  EXPECT_EQ(found, samples);
+  EXPECT_EQ(back, halo);
+  std::vector<std::byte> shorter(halo.size() + 4);
+  EXPECT_FALSE(codec.Decode(stored, 0, found.data(), found.size(), &shorter));
+  EXPECT_FALSE(codec.Decode(codec.Encode(samples), 0, found.data(), found.size(), &back));
+  for (std::size_t place = 0; place < stored.size(); place += 7)
+  {
+    std::vector<std::byte> damaged = stored;
+    damaged[place] ^= std::byte(0x20);
+    EXPECT_THROW(codec.Decode(damaged, 0, found.data(), found.size(), &back), dsm::Error);
+  }
 }
 
 TEST(VolumeFiles, RangesAreFoundAndKept)

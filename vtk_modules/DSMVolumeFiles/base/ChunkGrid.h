@@ -4,6 +4,8 @@
 
 #include "DSMRayTracing/base/Box.h"
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 
 namespace vol
@@ -41,6 +43,30 @@ struct ChunkGrid
   {
     const rt::Index3 first = chunk * this->ChunkSamples;
     return { first, glm::min(first + this->ChunkSamples, this->Samples) };
+  }
+  /// And the first samples of its upper neighbours along each axis: what a brick that begins with it has.
+  rt::Box GetBoxWithHalo(const rt::Index3& chunk) const
+  {
+    const rt::Index3 first = chunk * this->ChunkSamples;
+    return { first, glm::min(first + this->ChunkSamples + rt::Index3(1), this->Samples) };
+  }
+  /// The latter alone, in three boxes that do not overlap: beyond the chunk on x, then on y, then on z. At the
+  /// volume's ends some are empty.
+  std::array<rt::Box, 3> GetHalo(const rt::Index3& chunk) const
+  {
+    const rt::Box own = this->GetBox(chunk);
+    std::array<rt::Box, 3> halo;
+    halo.fill(this->GetBoxWithHalo(chunk));
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      const auto place = static_cast<std::size_t>(axis);
+      halo[place].Min[axis] = own.Max[axis];
+      for (std::size_t later = place + 1; later < halo.size(); ++later)
+      {
+        halo[later].Max[axis] = own.Max[axis];
+      }
+    }
+    return halo;
   }
 };
 

@@ -140,6 +140,10 @@ bool ChunkCache::HasChunk(const std::shared_ptr<const VolumeFile>& file, std::si
 void ChunkCache::Read(const std::shared_ptr<const VolumeFile>& file, std::size_t array, int step,
   const rt::Box& box, bool scattered, std::byte* out)
 {
+  if (this->ReadWithHalo(file, array, step, box, out))
+  {
+    return;
+  }
   std::vector<std::byte> dense;
   const FileArray& what = file->GetArrays()[array];
   const rt::Index3 first = box.Min / what.Grid.ChunkSamples;
@@ -169,6 +173,22 @@ void ChunkCache::Read(const std::shared_ptr<const VolumeFile>& file, std::size_t
       }
     }
   }
+}
+
+bool ChunkCache::ReadWithHalo(const std::shared_ptr<const VolumeFile>& file, std::size_t array,
+  int step, const rt::Box& box, std::byte* out)
+{
+  const FileArray& what = file->GetArrays()[array];
+  const rt::Index3 chunk = box.Min / what.Grid.ChunkSamples;
+  const rt::Box all = what.Grid.GetBoxWithHalo(chunk);
+  if (all.Min != box.Min || all.Max != box.Max || this->HasChunk(file, array, step, chunk) ||
+    !file->ReadWithHalo(array, step, chunk, out))
+  {
+    return false;
+  }
+  const std::lock_guard<std::mutex> lock(this->Guard);
+  this->BytesRead += static_cast<std::size_t>(box.GetCount()) * what.GetSampleBytes();
+  return true;
 }
 
 void ChunkCache::Evict()

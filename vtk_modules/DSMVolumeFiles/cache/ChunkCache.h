@@ -86,6 +86,9 @@ private:
     const rt::Box& box, bool scattered, std::byte* out);
   bool HasChunk(const std::shared_ptr<const VolumeFile>& file, std::size_t array, int step,
     const rt::Index3& chunk) const;
+  /// A box that a chunk and its halo fill, where the file has these together and the chunk is not here.
+  bool ReadWithHalo(const std::shared_ptr<const VolumeFile>& file, std::size_t array, int step,
+    const rt::Box& box, std::byte* out);
   void Evict();
 
   mutable std::mutex Guard;

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <cstring>
+#include <optional>
 #include <utility>
 
 #ifdef DSM_HAS_ZLIB
@@ -37,6 +38,24 @@ using Kind = CodecStep::Kind;
 {
   Refuse("Its values are compressed with " + what +
     ", which this build cannot read. Install the package " + package + " and build again.");
+}
+
+std::uint32_t GetNumber(const Bytes& bytes, std::size_t place)
+{
+  std::uint32_t value = 0;
+  for (std::size_t byte = sizeof(value); byte-- > 0;)
+  {
+    value = value << 8 | std::to_integer<std::uint32_t>(bytes[place + byte]);
+  }
+  return value;
+}
+
+void AddLast(Bytes& bytes, std::uint32_t value)
+{
+  for (int byte = 0; byte < 4; ++byte)
+  {
+    bytes.push_back(static_cast<std::byte>(value >> (8 * byte) & 0xff));
+  }
 }
 
 #ifdef DSM_HAS_ZLIB
@@ -127,6 +146,33 @@ Bytes EncodeZstd(const Bytes& samples)
   bytes.resize(count);
   return bytes;
 }
+
+/// "D" of those that are free for any use.
+constexpr std::uint32_t HaloMagic = 0x184D2A50 + 0xD;
+
+/// Behind a Zstandard frame.
+void AddHalo(Bytes& bytes, const Bytes& halo)
+{
+  const Bytes packed = EncodeZstd(halo);
+  AddLast(bytes, HaloMagic);
+  AddLast(bytes, static_cast<std::uint32_t>(packed.size()));
+  bytes.insert(bytes.end(), packed.begin(), packed.end());
+}
+
+/// Of a chunk as it is stored; nothing where there is none.
+std::optional<Bytes> FindHalo(const Bytes& stored, std::size_t most)
+{
+  const std::size_t frame = ZSTD_findFrameCompressedSize(stored.data(), stored.size());
+  constexpr std::size_t header = 2 * sizeof(std::uint32_t);
+  if (ZSTD_isError(frame) || stored.size() < frame + header ||
+    GetNumber(stored, frame) != HaloMagic ||
+    GetNumber(stored, frame + sizeof(std::uint32_t)) != stored.size() - frame - header)
+  {
+    return std::nullopt;
+  }
+  return DecodeZstd(
+    { stored.begin() + static_cast<std::ptrdiff_t>(frame + header), stored.end() }, most);
+}
 #endif
 
 std::uint32_t TakeLast(Bytes& bytes)
@@ -136,11 +182,7 @@ std::uint32_t TakeLast(Bytes& bytes)
   {
     Refuse("it is too short for its checksum");
   }
-  for (int byte = 3; byte >= 0; --byte)
-  {
-    value = value << 8 |
-      std::to_integer<std::uint32_t>(bytes[bytes.size() - 4 + static_cast<std::size_t>(byte)]);
-  }
+  value = GetNumber(bytes, bytes.size() - sizeof(value));
   bytes.resize(bytes.size() - sizeof(value));
   return value;
 }
@@ -151,14 +193,6 @@ void Check(Bytes& bytes, std::uint32_t (*sum)(const std::byte*, std::size_t))
   if (sum(bytes.data(), bytes.size()) != expected)
   {
     Refuse("its checksum is wrong");
-  }
-}
-
-void AddLast(Bytes& bytes, std::uint32_t value)
-{
-  for (int byte = 0; byte < 4; ++byte)
-  {
-    bytes.push_back(static_cast<std::byte>(value >> (8 * byte) & 0xff));
   }
 }
 
@@ -283,15 +317,26 @@ ChunkCodec::ChunkCodec(std::vector<CodecStep> steps)
   }
 }
 
-void ChunkCodec::Decode(
-  std::vector<std::byte> stored, unsigned skipped, std::byte* out, std::size_t bytes) const
+bool ChunkCodec::Decode(std::vector<std::byte> stored, unsigned skipped, std::byte* out,
+  std::size_t bytes, std::vector<std::byte>* halo) const
 {
+  std::optional<Bytes> beside;
   // Checksums below a compression add to what it makes.
   const std::size_t most = bytes + sizeof(std::uint32_t) * this->Steps.size();
   for (std::size_t step = this->Steps.size(); step-- > 0;)
   {
     if ((skipped >> step & 1) == 0)
     {
+      if (beside)
+      {
+        beside = Undo(this->Steps[step], std::move(*beside), halo->size());
+      }
+#ifdef DSM_HAS_ZSTD
+      if (halo && this->Steps[step].What == Kind::Zstd)
+      {
+        beside = FindHalo(stored, halo->size());
+      }
+#endif
       stored = Undo(this->Steps[step], std::move(stored), most);
     }
   }
@@ -300,16 +345,42 @@ void ChunkCodec::Decode(
     Refuse(
       "it has " + std::to_string(stored.size()) + " bytes instead of " + std::to_string(bytes));
   }
+  if (halo)
+  {
+    if (!beside || beside->size() != halo->size())
+    {
+      return false;
+    }
+    halo->swap(*beside);
+  }
   std::memcpy(out, stored.data(), bytes);
+  return true;
 }
 
-std::vector<std::byte> ChunkCodec::Encode(std::vector<std::byte> samples) const
+std::vector<std::byte> ChunkCodec::Encode(
+  std::vector<std::byte> samples, std::vector<std::byte> halo) const
 {
   for (const CodecStep& step : this->Steps)
   {
     samples = Do(step, std::move(samples));
+#ifdef DSM_HAS_ZSTD
+    if (step.What == Kind::Zstd && !halo.empty())
+    {
+      AddHalo(samples, std::exchange(halo, {}));
+    }
+#endif
+    if (!halo.empty())
+    {
+      halo = Do(step, std::move(halo));
+    }
   }
   return samples;
+}
+
+bool ChunkCodec::KeepsHalo() const
+{
+  return std::any_of(this->Steps.begin(), this->Steps.end(),
+    [](const CodecStep& step) { return step.What == Kind::Zstd; });
 }
 
 } // namespace vol

@@ -35,13 +35,19 @@ public:
 
   /// Undoes the steps, the last one first, and writes so many bytes; `skipped` has a bit for each step that was
   /// left out for this chunk. Throws dsm::Error, without the chunk's name, when the bytes are not what the steps
-  /// make, or not so many.
-  void Decode(
-    std::vector<std::byte> stored, unsigned skipped, std::byte* out, std::size_t bytes) const;
+  /// make, or not so many. `halo`: so many bytes as were given to Encode; null where they are not wanted. False
+  /// when the chunk has no halo, or not so many bytes; then nothing is written.
+  bool Decode(std::vector<std::byte> stored, unsigned skipped, std::byte* out, std::size_t bytes,
+    std::vector<std::byte>* halo = nullptr) const;
 
   /// What a file has for these samples: all steps, the first one first. Throws dsm::Error for Blosc and Crc32c,
-  /// which are only read.
-  std::vector<std::byte> Encode(std::vector<std::byte> samples) const;
+  /// which are only read. `halo`: further samples, for Decode; other programs pass over them, since they are in a
+  /// skippable frame (RFC 8878, section 3.1.2) behind that of the chunk. Only where KeepsHalo().
+  std::vector<std::byte> Encode(
+    std::vector<std::byte> samples, std::vector<std::byte> halo = {}) const;
+
+  /// Whether there is a place for a halo: behind a Zstandard frame.
+  bool KeepsHalo() const;
 
   bool IsPlain() const { return this->Steps.empty(); }
 

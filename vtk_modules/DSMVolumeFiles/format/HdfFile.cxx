@@ -118,8 +118,7 @@ public:
     const std::lock_guard<std::mutex> lock(GetHdfLock());
     const HdfSilence silence;
     Index index;
-    const std::string name = "DSM/" + this->GetIndexName(array);
-    const HdfHandle group(H5Gopen2(this->Root, name.c_str(), H5P_DEFAULT), &H5Gclose);
+    const HdfHandle group = this->OpenIndex(this->Arrays[array]);
     const HdfHandle all(H5Gopen2(this->Root, "DSM", H5P_DEFAULT), &H5Gclose);
     if (group.IsOpen() && all.IsOpen() &&
       this->ReadAttribute(all.Get(), "BrickEdge", H5T_NATIVE_INT, &index.BrickEdge, 1))
@@ -228,9 +227,12 @@ private:
     }
   }
 
-  std::string GetIndexName(std::size_t array) const
+  /// What a brick file has beside an array's values; not open where there is nothing.
+  HdfHandle OpenIndex(const FileArray& array) const
   {
-    return (this->Arrays[array].OnCells ? "CellData/" : "PointData/") + this->Arrays[array].Name;
+    const std::string name =
+      std::string("DSM/") + (array.OnCells ? "CellData/" : "PointData/") + array.Name;
+    return { H5Gopen2(this->Root, name.c_str(), H5P_DEFAULT), &H5Gclose };
   }
 
   /// Empty where there is no such dataset, or it cannot be read.
@@ -438,6 +440,10 @@ private:
         dataset.ReadByLibrary = true;
     }
     storage.Codec = ChunkCodec(dataset.ReadByLibrary ? std::vector<CodecStep>() : std::move(steps));
+    int halo = 0;
+    const HdfHandle index = this->OpenIndex(array);
+    storage.HasHalo = storage.Codec.KeepsHalo() && storage.Slices == 1 && index.IsOpen() &&
+      this->ReadAttribute(index.Get(), HdfHalo, H5T_NATIVE_INT, &halo, 1) && halo == 1;
     this->Arrays.push_back(std::move(array));
     this->Storages.push_back(std::move(storage));
     this->Kept.push_back(std::move(dataset));

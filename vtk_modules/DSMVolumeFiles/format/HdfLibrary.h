@@ -14,6 +14,8 @@ namespace vol
 
 /// Of a brick file: the group of coarser levels, numbered from 1 on, of which each is as a brick file.
 constexpr char HdfLevels[] = "DSM/Levels";
+/// Attribute of what it has beside an array's values: samples by which a chunk's halo reaches beyond it.
+constexpr char HdfHalo[] = "HaloSamples";
 
 /// Registered filters (https://github.com/HDFGroup/hdf5_plugins).
 constexpr H5Z_filter_t HdfBloscFilter = 32001;

@@ -69,6 +69,11 @@ public:
   {
     return this->Get(step)->ReadPart(array, 0, chunk, part, out);
   }
+  bool ReadWithHalo(
+    std::size_t array, int step, const rt::Index3& chunk, std::byte* out) const override
+  {
+    return this->Get(step)->ReadWithHalo(array, 0, chunk, out);
+  }
 
   void Foresee(std::size_t array, int step, const rt::Index3& chunk) const override
   {

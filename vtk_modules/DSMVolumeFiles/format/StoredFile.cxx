@@ -93,6 +93,48 @@ bool StoredFile::ReadPart(
   return true;
 }
 
+bool StoredFile::ReadWithHalo(
+  std::size_t array, int step, const rt::Index3& chunk, std::byte* out) const
+{
+  const FileArray& what = this->Arrays[array];
+  const Storage& storage = this->Storages[array];
+  const std::optional<Place> place =
+    storage.HasHalo ? this->FindChunk(array, step, chunk) : std::nullopt;
+  if (!place)
+  {
+    return false;
+  }
+  const std::size_t sampleBytes = what.GetSampleBytes();
+  const rt::Box box = what.Grid.GetBox(chunk);
+  const rt::Box all = what.Grid.GetBoxWithHalo(chunk);
+  const rt::Box stored{ box.Min, box.Min + what.Grid.ChunkSamples };
+  std::vector<std::byte> halo(
+    static_cast<std::size_t>(all.GetCount() - box.GetCount()) * sampleBytes);
+  std::vector<std::byte> samples(static_cast<std::size_t>(stored.GetCount()) * sampleBytes);
+  try
+  {
+    std::vector<std::byte> bytes(place->Bytes);
+    place->File->Read(place->Offset, bytes.data(), bytes.size());
+    if (!storage.Codec.Decode(
+          std::move(bytes), place->SkippedSteps, samples.data(), samples.size(), &halo))
+    {
+      return false; // another program has written it anew
+    }
+  }
+  catch (const dsm::Error& error)
+  {
+    RefuseChunk(what, chunk, place->File->GetPath(), error);
+  }
+  CopyBox(box, samples.data(), stored, out, all, sampleBytes);
+  const std::byte* from = halo.data();
+  for (const rt::Box& part : what.Grid.GetHalo(chunk))
+  {
+    CopyBox(part, from, part, out, all, sampleBytes);
+    from += static_cast<std::size_t>(part.GetCount()) * sampleBytes;
+  }
+  return true;
+}
+
 void StoredFile::Foresee(std::size_t array, int step, const rt::Index3& chunk) const
 {
   if (const std::optional<Place> place = this->FindChunk(array, step, chunk))

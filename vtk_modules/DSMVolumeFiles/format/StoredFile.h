@@ -22,6 +22,8 @@ public:
     std::size_t array, int step, const rt::Index3& chunk, std::byte* out) const override;
   bool ReadPart(std::size_t array, int step, const rt::Index3& chunk, const rt::Box& part,
     std::byte* out) const override;
+  bool ReadWithHalo(
+    std::size_t array, int step, const rt::Index3& chunk, std::byte* out) const override;
 
   void Foresee(std::size_t array, int step, const rt::Index3& chunk) const override;
 
@@ -53,6 +55,8 @@ protected:
     /// As many boxes of samples are in one piece of stored bytes, one behind the other: a chunk of an array with
     /// more axes than three.
     std::size_t Slices = 1;
+    /// Chunks, which are whole ones then, and of one slice, probably have a halo.
+    bool HasHalo = false;
   };
 
   /// None: all samples of the chunk have the fill value.

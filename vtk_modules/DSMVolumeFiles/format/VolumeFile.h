@@ -91,6 +91,10 @@ public:
     return false;
   }
 
+  /// The samples of ChunkGrid::GetBoxWithHalo, likewise, where the file has them together, as that of a brick file
+  /// with Zstandard; else false.
+  virtual bool ReadWithHalo(std::size_t, int, const rt::Index3&, std::byte*) const { return false; }
+
   /// A chunk will probably be read soon: the system may fetch it to its own cache meanwhile. Throws dsm::Error.
   virtual void Foresee(std::size_t, int, const rt::Index3&) const {}
 

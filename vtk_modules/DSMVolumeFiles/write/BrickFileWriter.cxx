@@ -70,7 +70,8 @@ Json Describe(const BrickFileLayout& layout)
   for (const FileArray& array : layout.Arrays)
   {
     text["arrays"].push_back({ array.Name, static_cast<int>(array.Type), array.Components,
-      array.OnCells, index(array.Grid.Samples), index(array.Grid.ChunkSamples) });
+      array.OnCells, index(array.Grid.Samples), index(array.Grid.ChunkSamples),
+      layout.HasHalo(static_cast<std::size_t>(&array - layout.Arrays.data())) });
   }
   return text;
 }
@@ -88,6 +89,11 @@ ChunkCodec BrickFileLayout::CreateCodec(std::size_t array) const
   }
   steps.push_back({ CodecStep::Kind::Fletcher32 });
   return ChunkCodec(std::move(steps));
+}
+
+bool BrickFileLayout::HasHalo(std::size_t array) const
+{
+  return !this->Arrays[array].OnCells && this->CreateCodec(array).KeepsHalo();
 }
 
 class BrickFileWriter::Internals
@@ -402,6 +408,13 @@ private:
     const FileArray& array = this->Layout.Arrays[number];
     const std::string index = "DSM/" + this->GetName(array);
     this->CreateGroup(index.c_str());
+    if (this->Layout.HasHalo(number))
+    {
+      const HdfHandle group =
+        this->Own(H5Gopen2(this->File, index.c_str(), H5P_DEFAULT), &H5Gclose);
+      const long long samples = 1;
+      this->WriteAttribute(group.Get(), HdfHalo, H5T_NATIVE_LLONG, &samples, 1);
+    }
     const HdfHandle creation = this->Own(H5Pcreate(H5P_DATASET_CREATE), &H5Pclose);
     const std::vector<hsize_t> edges = GetShape(array.Grid.ChunkSamples, array.Components);
     H5Pset_chunk(creation.Get(), static_cast<int>(edges.size()), edges.data());

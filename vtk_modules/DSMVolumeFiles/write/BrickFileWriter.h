@@ -33,6 +33,9 @@ struct BrickFileLayout
 
   /// What the chunks of an array go through. Throws dsm::Error when this build lacks the compression.
   ChunkCodec CreateCodec(std::size_t array) const;
+  /// Whether the chunks of an array, which begin bricks, have a halo (ChunkGrid::GetHalo): so a brick is read in
+  /// one piece.
+  bool HasHalo(std::size_t array) const;
 };
 
 /// A chunk as the file has it.

@@ -58,7 +58,7 @@ public:
     , Number(array)
     , Array(layout.Arrays[array])
     , Codec(layout.CreateCodec(array))
-    , Edge(layout.BrickEdge)
+    , HasHalo(layout.HasHalo(array))
   {
   }
 
@@ -66,13 +66,13 @@ public:
   /// neighbours, too.
   rt::Box GetSource(std::int64_t chunk) const
   {
-    const rt::Box own = this->GetBox(chunk);
-    return { own.Min, glm::min(own.Min + rt::Index3(this->Edge + 1), this->Array.Grid.Samples) };
+    return this->Array.Grid.GetBoxWithHalo(this->Array.Grid.GetChunk(chunk));
   }
 
   NumberedChunk Make(std::int64_t chunk, ValueRanges& ranges) const
   {
-    const rt::Box own = this->GetBox(chunk);
+    const rt::Index3 place = this->Array.Grid.GetChunk(chunk);
+    const rt::Box own = this->Array.Grid.GetBox(place);
     const rt::Box have = this->GetSource(chunk);
     const std::size_t sampleBytes = this->Array.GetSampleBytes();
     std::vector<std::byte> samples(static_cast<std::size_t>(have.GetCount()) * sampleBytes);
@@ -91,21 +91,27 @@ public:
     const rt::Box whole{ own.Min, own.Min + this->Array.Grid.ChunkSamples };
     std::vector<std::byte> bytes(static_cast<std::size_t>(whole.GetCount()) * sampleBytes);
     CopyBox(own, samples.data(), have, bytes.data(), whole, sampleBytes);
-    encoded.Bytes = this->Codec.Encode(std::move(bytes));
+    std::vector<std::byte> halo;
+    if (this->HasHalo)
+    {
+      halo.resize(static_cast<std::size_t>(have.GetCount() - own.GetCount()) * sampleBytes);
+      std::byte* to = halo.data();
+      for (const rt::Box& part : this->Array.Grid.GetHalo(place))
+      {
+        CopyBox(part, samples.data(), have, to, part, sampleBytes);
+        to += static_cast<std::size_t>(part.GetCount()) * sampleBytes;
+      }
+    }
+    encoded.Bytes = this->Codec.Encode(std::move(bytes), std::move(halo));
     return { chunk, std::move(encoded) };
   }
 
 private:
-  rt::Box GetBox(std::int64_t chunk) const
-  {
-    return this->Array.Grid.GetBox(this->Array.Grid.GetChunk(chunk));
-  }
-
   const ValueOrigin& From;
   std::size_t Number;
   FileArray Array;
   ChunkCodec Codec;
-  int Edge;
+  bool HasHalo;
 };
 
 /// What a rank has made, as it goes to rank 0.
