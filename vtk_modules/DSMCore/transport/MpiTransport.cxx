@@ -27,6 +27,12 @@ namespace
 {
 
 constexpr int Tag = 0;
+/// Of messages that the receiver confirms when it begins to take them. MPI_Issend would do the same, but
+/// in Open MPI 5.0.7 it loses messages between ranks of a host, for which the sender then waits for ever.
+constexpr int ConfirmedTag = 1;
+/// What a rank tells another about those; it is not delivered.
+constexpr auto ReceiptKind =
+  static_cast<MessageKind>(static_cast<std::uint32_t>(MessageKind::Last) + 1);
 /// Matched messages that may be under way to this rank before it looks for more.
 constexpr std::size_t MaximumArrivingBytes = std::size_t(16) << 20;
 /// Lets a rank without memory take part in what all must agree on.
@@ -42,6 +48,13 @@ struct WireHeader
   std::uint64_t PayloadBytes;
 };
 
+/// What a rank has begun to take of another's messages since it last told.
+struct Receipt
+{
+  std::uint64_t Messages = 0;
+  std::uint64_t PayloadBytes = 0;
+};
+
 class Transmission final : public Transport
 {
 public:
@@ -54,6 +67,7 @@ public:
     this->Check(MPI_Comm_rank(this->Communicator, &this->Rank), "MPI_Comm_rank");
     this->Check(MPI_Comm_size(this->Communicator, &this->Size), "MPI_Comm_size");
     this->Arriving.resize(static_cast<std::size_t>(this->Size));
+    this->Receipts.resize(static_cast<std::size_t>(this->Size));
   }
 
   ~Transmission() override
@@ -73,6 +87,7 @@ public:
       // MPI may still read and write these buffers and use the communicator: they stay.
       new std::vector<Sending>(std::move(this->Outgoing));
       new std::vector<std::list<Receiving>>(std::move(this->Arriving));
+      new std::vector<Confirming>(std::move(this->Receipts));
     }
   }
 
@@ -97,23 +112,19 @@ public:
     Sending sending{ kind, message.Payload.size(), std::move(message.Payload) };
     AttachTail(sending.Buffer,
       WireHeader{ static_cast<std::uint32_t>(kind), message.Session, sending.PayloadBytes });
-    // A synchronous send is complete only when the receiver has matched it: thus the unsent bytes
-    // count what would otherwise pile up, unexpected, in the receiver's memory.
-    const bool synchronous = kind == MessageKind::Fragment;
+    // MPI may call a small message sent that has yet to be taken. So that the unsent bytes count what
+    // would otherwise pile up, unexpected, in the receiver's memory, it tells when it takes them.
+    const bool isConfirmed = kind == MessageKind::Fragment;
     const int bytes = static_cast<int>(sending.Buffer.size());
     this->MakeRoomToSend(); // from MPI's call on, nothing may fail here
     MPI_Request request = MPI_REQUEST_NULL;
-    if (synchronous)
+    this->Check(MPI_Isend(sending.Buffer.data(), bytes, MPI_BYTE, destination,
+                  isConfirmed ? ConfirmedTag : Tag, this->Communicator, &request),
+      "MPI_Isend");
+    if (isConfirmed)
     {
-      this->Check(MPI_Issend(sending.Buffer.data(), bytes, MPI_BYTE, destination, Tag,
-                    this->Communicator, &request),
-        "MPI_Issend");
-    }
-    else
-    {
-      this->Check(MPI_Isend(sending.Buffer.data(), bytes, MPI_BYTE, destination, Tag,
-                    this->Communicator, &request),
-        "MPI_Isend");
+      ++this->Unconfirmed.Messages;
+      this->Unconfirmed.PayloadBytes += sending.PayloadBytes;
     }
     this->UnsentBytes += sending.PayloadBytes;
     ++this->UnsentMessages.at(static_cast<std::size_t>(kind));
@@ -125,6 +136,7 @@ public:
   {
     bool any = this->FinishSends();
     any |= this->BeginReceives();
+    any |= this->SendReceipts();
     for (std::size_t count = this->ToSelf.size(); count > 0; --count)
     {
       deliver(std::move(this->ToSelf.front()));
@@ -138,11 +150,15 @@ public:
     return any;
   }
 
-  std::size_t GetUnsentBytes() const override { return this->UnsentBytes; }
+  std::size_t GetUnsentBytes() const override
+  {
+    return std::max<std::size_t>(this->UnsentBytes, this->Unconfirmed.PayloadBytes);
+  }
 
   bool HasUnsent(MessageKind kind) const override
   {
-    return this->UnsentMessages[static_cast<std::size_t>(kind)] > 0;
+    return this->UnsentMessages[static_cast<std::size_t>(kind)] > 0 ||
+      (kind == MessageKind::Fragment && (this->Unconfirmed.Messages > 0 || this->OpenReceipts > 0));
   }
 
 private:
@@ -153,9 +169,22 @@ private:
     std::vector<std::byte> Buffer;
   };
 
+  /// Receipts for one rank. What MPI reads stays as it is until it has been sent.
+  struct Confirming
+  {
+    struct
+    {
+      Receipt Taken;
+      WireHeader Header;
+    } Wire{};
+    MPI_Request Request = MPI_REQUEST_NULL;
+    Receipt Owed;
+  };
+
   struct Receiving
   {
     MPI_Request Request = MPI_REQUEST_NULL;
+    bool IsConfirmed = false;
     std::size_t WireBytes = 0;
     Message Arrived;
     bool IsLost = false;  ///< there was no memory for it
@@ -280,6 +309,10 @@ private:
       this->Check(MPI_Imrecv(receiving.Arrived.Payload.data(), bytes, MPI_BYTE, &this->Matched,
                     &receiving.Request),
         "MPI_Imrecv");
+      if (receiving.IsConfirmed)
+      {
+        this->Owe(receiving);
+      }
       auto& queue = this->Arriving[static_cast<std::size_t>(receiving.Arrived.Source)];
       queue.splice(queue.end(), this->Spare); // no memory is needed any more
       this->ArrivingBytes += static_cast<std::size_t>(bytes);
@@ -294,7 +327,8 @@ private:
     int found = 0;
     MPI_Message matched = MPI_MESSAGE_NULL;
     MPI_Status status;
-    this->Check(MPI_Improbe(MPI_ANY_SOURCE, Tag, this->Communicator, &found, &matched, &status),
+    this->Check(
+      MPI_Improbe(MPI_ANY_SOURCE, MPI_ANY_TAG, this->Communicator, &found, &matched, &status),
       "MPI_Improbe");
     if (found)
     {
@@ -302,9 +336,51 @@ private:
       this->Check(MPI_Get_count(&status, MPI_BYTE, &bytes), "MPI_Get_count");
       receiving.WireBytes = static_cast<std::size_t>(bytes);
       receiving.Arrived.Source = status.MPI_SOURCE;
+      receiving.IsConfirmed = status.MPI_TAG == ConfirmedTag;
       this->Matched = matched;
     }
     return found != 0;
+  }
+
+  void Owe(const Receiving& receiving)
+  {
+    Confirming& confirming = this->Receipts[static_cast<std::size_t>(receiving.Arrived.Source)];
+    if (confirming.Owed.Messages == 0 && confirming.Request == MPI_REQUEST_NULL)
+    {
+      ++this->OpenReceipts;
+    }
+    ++confirming.Owed.Messages;
+    confirming.Owed.PayloadBytes +=
+      receiving.WireBytes - std::min(receiving.WireBytes, sizeof(WireHeader));
+  }
+
+  /// One to each rank that is owed some, unless the last is still on its way. Needs no memory.
+  bool SendReceipts()
+  {
+    bool any = false;
+    for (int rank = 0; rank<this->Size&& this->OpenReceipts> 0; ++rank)
+    {
+      Confirming& confirming = this->Receipts[static_cast<std::size_t>(rank)];
+      if (confirming.Request == MPI_REQUEST_NULL && confirming.Owed.Messages > 0)
+      {
+        confirming.Wire.Taken = std::exchange(confirming.Owed, {});
+        confirming.Wire.Header = { static_cast<std::uint32_t>(ReceiptKind), 0, sizeof(Receipt) };
+        this->Check(MPI_Isend(&confirming.Wire, sizeof(confirming.Wire), MPI_BYTE, rank, Tag,
+                      this->Communicator, &confirming.Request),
+          "MPI_Isend");
+        any = true;
+      }
+      if (confirming.Request != MPI_REQUEST_NULL)
+      {
+        int sent = 0;
+        this->Check(MPI_Test(&confirming.Request, &sent, MPI_STATUS_IGNORE), "MPI_Test");
+        if (sent && confirming.Owed.Messages == 0)
+        {
+          --this->OpenReceipts;
+        }
+      }
+    }
+    return any;
   }
 
   /// In the order in which they were matched, which is the order in which they were posted. What
@@ -320,7 +396,16 @@ private:
       {
         break;
       }
-      deliver(std::move(receiving.Arrived));
+      if (receiving.Arrived.Kind == ReceiptKind)
+      {
+        const auto taken = Decode<Receipt>(receiving.Arrived, ReceiptKind);
+        this->Unconfirmed.Messages -= taken.Messages;
+        this->Unconfirmed.PayloadBytes -= taken.PayloadBytes;
+      }
+      else
+      {
+        deliver(std::move(receiving.Arrived));
+      }
       queue.pop_front();
       any = true;
     }
@@ -390,7 +475,7 @@ private:
         {
           std::this_thread::yield();
         }
-        if (!entered && this->Requests.empty())
+        if (!entered && this->Requests.empty() && !this->HasUnsent(MessageKind::Fragment))
         {
           this->Check(MPI_Ibarrier(this->Communicator, &barrier), "MPI_Ibarrier");
           entered = true;
@@ -421,9 +506,12 @@ private:
   std::vector<int> Done; ///< what MPI_Testsome writes; has room for all requests
   std::size_t UnsentBytes = 0;
   std::array<std::size_t, static_cast<std::size_t>(MessageKind::Last) + 1> UnsentMessages{};
+  Receipt Unconfirmed; ///< of what was posted, what its receivers have not begun to take
   std::vector<std::list<Receiving>> Arriving; ///< per source
-  std::list<Receiving> Spare;                 ///< one, made before MPI is asked for a message
-  MPI_Message Matched = MPI_MESSAGE_NULL;     ///< of Spare, as long as there is no memory for it
+  std::vector<Confirming> Receipts;           ///< per source
+  int OpenReceipts = 0;       ///< ranks that are owed some, or to which some are on their way
+  std::list<Receiving> Spare; ///< one, made before MPI is asked for a message
+  MPI_Message Matched = MPI_MESSAGE_NULL; ///< of Spare, as long as there is no memory for it
   std::size_t ArrivingBytes = 0;
   std::deque<Message> ToSelf;
   std::vector<std::byte> Reserve; ///< for receiving when no memory is left; untouched until then
