@@ -18,11 +18,13 @@ from vtkmodules.vtkCommonDataModel import vtkImageData
 data = self.GetInputDataObject(0, 0)
 output = self.GetOutputDataObject(0)
 output.CopyStructure(data)
-for index in range(data.GetPointData().GetNumberOfArrays()):
-    array = data.GetPointData().GetArray(index)
-    copy = array.NewInstance()
-    copy.DeepCopy(array)
-    output.GetPointData().AddArray(copy)
+# Of cells, too: those that other ranks have are marked.
+for arrays, copies in ((data.GetPointData(), output.GetPointData()), (data.GetCellData(), output.GetCellData())):
+    for index in range(arrays.GetNumberOfArrays()):
+        array = arrays.GetArray(index)
+        copy = array.NewInstance()
+        copy.DeepCopy(array)
+        copies.AddArray(copy)
 output.GetPointData().SetActiveScalars(data.GetPointData().GetScalars().GetName())
 """
 EXTENT = """
