@@ -10,6 +10,7 @@ import shutil
 import subprocess
 import sys
 
+import file_dialog
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkIOImage import vtkPNGReader
 
@@ -27,7 +28,8 @@ def check(condition, what):
 def write_session(path):
     with open(os.path.join(HERE, "session.xml"), encoding="utf-8") as text:
         content = text.read()
-    for name, value in (("@PLUGIN@", PLUGIN), ("@OUTPUT@", OUTPUT), ("@RANKS@", str(RANKS))):
+    for name, value in (("@PLUGIN@", PLUGIN), ("@OUTPUT@", OUTPUT), ("@RANKS@", str(RANKS)),
+                        ("@FILE_DIALOG@", file_dialog.get_name(PARAVIEW))):
         content = content.replace(name, value)
     has_panel = os.path.exists(os.path.join(os.path.dirname(PLUGIN), "DSMRayTracerPanel.so"))
     wanted = {"@REMOTE@": bool(OPTIONS), "@PANEL@": has_panel}

@@ -18,10 +18,12 @@ from xml.sax.saxutils import quoteattr
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkIOImage import vtkPNGReader
 
+HERE = os.path.dirname(os.path.abspath(__file__))
+sys.path.insert(1, os.path.dirname(HERE))
+import file_dialog
 import server_of_ranks
 from steps import STEPS, menu
 
-HERE = os.path.dirname(os.path.abspath(__file__))
 PATIENCE = 480.0  # seconds, less than that of the tests, which end no server
 
 # A pixel is another where a channel differs by more; so may a share of all be, along edges, and where rays
@@ -76,7 +78,8 @@ class Workday:
         self.steps = [step for step in STEPS if step.only in ("", self.kind)]
 
     def write_events(self, path):
-        replaced = {"@PLUGIN@": self.arguments.plugin, "@OUTPUT@": self.output}
+        replaced = {"@PLUGIN@": self.arguments.plugin, "@OUTPUT@": self.output,
+                    "@FILE_DIALOG@": file_dialog.get_name(self.arguments.paraview)}
         with open(path, "w", encoding="utf-8") as text:
             text.write('<?xml version="1.0" ?>\n<pqevents>\n')
             for step in self.steps:
@@ -106,11 +109,11 @@ class Workday:
         self.write_events(events)
         settings = os.path.join(self.output, "settings")
         self.write_macros(os.path.join(settings, "ParaView", "Macros"))
-        self.write_macros(os.path.join(self.output, "Macros"))  # where 6.1 looks in a test
+        self.write_macros(os.path.join(self.output, "Macros"))  # where 5.13 and 6.1 look in a test
         environment = dict(os.environ, XDG_CONFIG_HOME=settings, DSM_WORKDAY=self.output,
                            DSM_WORKDAY_KIND=self.kind, DSM_WORKDAY_PLUGIN=self.arguments.plugin,
                            DASHBOARD_TEST_FROM_CTEST="1", PYTHONDONTWRITEBYTECODE="1", **environment)
-        command = [self.arguments.paraview, "--dr", *options, f"--test-directory={self.output}",
+        command = [self.arguments.paraview, "--dr", *options, f"--test-directory={self.output}/",
                    f"--test-script={events}", "--exit"]
         with open(os.path.join(self.output, "said"), "w", encoding="utf-8") as said:
             return subprocess.call(command, stdout=said, stderr=said, env=environment, timeout=PATIENCE)

@@ -104,14 +104,14 @@ def prepare(simple):
 
 events_only("Load Plugin on the server", menu("menuTools", "actionManage_Plugins") + [
     (PLUGINS + "/splitter/remoteGroup/loadRemote", "activate", ""),
-    (PLUGINS + "/pqFileDialog", "filesSelected", "@PLUGIN@"),
+    (PLUGINS + "/@FILE_DIALOG@", "filesSelected", "@PLUGIN@"),
     (PLUGINS + "/buttonBox/1QPushButton0", "activate", ""),
 ], look="none", only="server")
 
 
 @step("Load Plugin", menu("menuTools", "actionManage_Plugins") + [
     (PLUGINS + "/splitter/localGroup/loadLocal", "activate", ""),
-    (PLUGINS + "/pqFileDialog", "filesSelected", "@PLUGIN@"),
+    (PLUGINS + "/@FILE_DIALOG@", "filesSelected", "@PLUGIN@"),
     (PLUGINS + "/buttonBox/1QPushButton0", "activate", ""),
 ], look="none")
 def choose_plain_look(simple):
