@@ -109,11 +109,12 @@ class Workday:
         self.write_events(events)
         settings = os.path.join(self.output, "settings")
         self.write_macros(os.path.join(settings, "ParaView", "Macros"))
-        self.write_macros(os.path.join(self.output, "Macros"))  # where 5.13 and 6.1 look in a test
+        macros = os.path.join(self.output, "macros")
+        self.write_macros(macros)  # 5.13 and later have no settings in a test
         environment = dict(os.environ, XDG_CONFIG_HOME=settings, DSM_WORKDAY=self.output,
-                           DSM_WORKDAY_KIND=self.kind, DSM_WORKDAY_PLUGIN=self.arguments.plugin,
+                           DSM_WORKDAY_KIND=self.kind, DSM_WORKDAY_PLUGIN=self.arguments.plugin, PV_MACRO_PATH=macros,
                            DASHBOARD_TEST_FROM_CTEST="1", PYTHONDONTWRITEBYTECODE="1", **environment)
-        command = [self.arguments.paraview, "--dr", *options, f"--test-directory={self.output}/",
+        command = [self.arguments.paraview, "--dr", *options, f"--test-directory={self.output}",
                    f"--test-script={events}", "--exit"]
         with open(os.path.join(self.output, "said"), "w", encoding="utf-8") as said:
             return subprocess.call(command, stdout=said, stderr=said, env=environment, timeout=PATIENCE)
