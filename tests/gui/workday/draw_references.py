@@ -10,8 +10,10 @@ from paraview import simple
 
 PLUGIN, FOLDER = sys.argv[1:]
 TRACED = "DSM Ray Traced"
+# ParaView 5.13 calls Translation what was Position.
 LOOK = ("ColorArrayName", "LookupTable", "AmbientColor", "DiffuseColor", "Specular", "SpecularColor", "SpecularPower",
-        "Opacity", "Position", "Orientation", "Scale", "Origin", "Interpolation", "InterpolateScalarsBeforeMapping")
+        "Opacity", "Orientation", "Scale", "Position", "Translation", "Origin", "Interpolation",
+        "InterpolateScalarsBeforeMapping")
 
 
 def clip_like(display, source):
@@ -34,7 +36,7 @@ def show_contour(display, view):
     contour = simple.Contour(Input=display.Input, ContourBy=["POINTS", array], Isosurfaces=values)
     other = simple.Show(clip_like(display, contour), view)
     other.Representation = "Surface"
-    for name in LOOK:
+    for name in filter(display.SMProxy.GetProperty, LOOK):
         other.SMProxy.GetProperty(name).Copy(display.SMProxy.GetProperty(name))
     other.SMProxy.UpdateVTKObjects()
     display.Visibility = 0

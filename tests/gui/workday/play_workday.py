@@ -108,9 +108,8 @@ class Workday:
         events = os.path.join(self.output, "events.xml")
         self.write_events(events)
         settings = os.path.join(self.output, "settings")
-        self.write_macros(os.path.join(settings, "ParaView", "Macros"))
         macros = os.path.join(self.output, "macros")
-        self.write_macros(macros)  # 5.13 and later have no settings in a test
+        self.write_macros(macros)
         environment = dict(os.environ, XDG_CONFIG_HOME=settings, DSM_WORKDAY=self.output,
                            DSM_WORKDAY_KIND=self.kind, DSM_WORKDAY_PLUGIN=self.arguments.plugin, PV_MACRO_PATH=macros,
                            DASHBOARD_TEST_FROM_CTEST="1", PYTHONDONTWRITEBYTECODE="1", **environment)

@@ -89,6 +89,11 @@ def set_display(simple, **properties):
     simple.Render()
 
 
+def set_transform(simple, position, **properties):
+    is_renamed = get_display(simple).SMProxy.GetProperty("Translation")  # since ParaView 5.13
+    set_display(simple, **{"Translation" if is_renamed else "Position": position}, **properties)
+
+
 # -- The plugin, a volume, its isosurface ---------------------------------------------------------------
 
 
@@ -247,12 +252,12 @@ def uncrop(simple):
 
 @step("moved, turned and stretched")
 def place(simple):
-    set_display(simple, Position=[3.0, 2.0, 0.0], Orientation=[0.0, 30.0, 20.0], Scale=[1.0, 1.3, 0.8])
+    set_transform(simple, position=[3.0, 2.0, 0.0], Orientation=[0.0, 30.0, 20.0], Scale=[1.0, 1.3, 0.8])
 
 
 @step("where it was", look="like a colour, shiny")
 def replace(simple):
-    set_display(simple, Position=[0.0, 0.0, 0.0], Orientation=[0.0, 0.0, 0.0], Scale=[1.0, 1.0, 1.0])
+    set_transform(simple, position=[0.0, 0.0, 0.0], Orientation=[0.0, 0.0, 0.0], Scale=[1.0, 1.0, 1.0])
 
 
 # -- Undo, and other representations --------------------------------------------------------------------
