@@ -422,6 +422,8 @@ def animate(simple):
         frame = simple.CompositeKeyFrame()
         frame.KeyTime = time
         frame.KeyValues = [value]
+        # As the Animation View does; since ParaView 5.13 a state as Python has only such key frames.
+        simple.servermanager.ProxyManager().RegisterProxy("animation", f"KeyFrame{len(frames)}", frame)
         frames.append(frame)
     track.KeyFrames = frames
     simple.GetAnimationScene().NumberOfFrames = 3
