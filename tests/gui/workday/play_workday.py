@@ -39,7 +39,7 @@ MEMORY_AFTER = 0.65
 BEFORE, FIRST = "Save State as Python", "Delete All"
 DELETED = ("Delete All once more", "Delete All a third time", "Delete All at last")
 # What the application says of itself.
-HARMLESS = ("QStandardPaths: ", "Process started", "Playing: ", "debug: ", "Success",
+HARMLESS = ("QStandardPaths: ", "QPixmap::scaled: ", "Process started", "Playing: ", "debug: ", "Success",
             "DSM Ray Tracer: The memory organisation is ")
 
 
