@@ -261,9 +261,10 @@ def replace(simple):
 
 
 # -- Undo, and other representations --------------------------------------------------------------------
-events_only("Outline", show_as("Outline"))
-events_only("Undo", menu("menu_Edit", "actionEditUndo"), look="like a colour, shiny")
-events_only("Redo", menu("menu_Edit", "actionEditRedo"), look="like Outline")
+# Nothing is looked at between: since ParaView 5.13, what was done before a macro ran cannot be undone.
+UNDO = show_as("Outline") + menu("menu_Edit", "actionEditUndo")
+events_only("Outline and Undo", UNDO, look="like a colour, shiny")
+events_only("Outline, Undo and Redo", UNDO + menu("menu_Edit", "actionEditRedo"))
 events_only("Surface", show_as("Surface"))
 events_only("DSM Ray Traced again", show_as(TRACED), look="like a colour, shiny")
 
