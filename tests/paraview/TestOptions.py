@@ -2,6 +2,10 @@
 """A view has one light, and a session one memory: what is set for one display is set for all, the last word
 counts, and every display tells what holds."""
 
+import runpy
+
+from paraview import smstate
+
 from dsm_testing import *
 
 load_plugin()
@@ -85,12 +89,16 @@ view = create_view()
 display = show_traced(simple.Cone(), view, DSMShadows=1, DSMSamplesPerPixel=4)
 path = os.path.join(OUTPUT, f"options.{get_ranks()}")
 simple.SaveState(path + ".pvsm")
-simple.SaveState(path + ".py")
+with open(path + ".py", "w", encoding="utf-8") as text:
+    text.write(smstate.get_state())
 expected = read(display)
 for suffix in (".pvsm", ".py") if can_load_states() else (".py",):
     simple.ResetSession()
     load_plugin()
-    simple.LoadState(path + suffix)
+    if suffix == ".py":
+        runpy.run_path(path + suffix)
+    else:
+        simple.LoadState(path + suffix)
     (source,) = simple.GetSources().values()
     check(read(simple.GetRepresentation(source, simple.GetActiveView())) == expected, suffix + " brings it back")
 
