@@ -34,8 +34,9 @@ public:
   /// Bytes posted that the receivers have not begun to take; what flow control watches.
   virtual std::size_t GetUnsentBytes() const = 0;
 
-  /// Whether a message of this kind still needs this rank's Progress to leave it. A rank that ends
-  /// a collective step and then computes for long would keep the receivers waiting.
+  /// Whether a message of this kind, or what tells its sender that it is being taken, still needs this
+  /// rank's Progress to leave it. A rank that ends a collective step and then computes for long would
+  /// keep the others waiting.
   virtual bool HasUnsent(MessageKind kind) const = 0;
 };
 
