@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <chrono>
 #include <thread>
 
@@ -25,6 +26,45 @@ TEST(BackOff, FirstWaitsAreShortLaterOnesSleep)
   }
   // 20 + 40 + 80 + 160 + 6 x 200 microseconds.
   EXPECT_GE(Clock::now() - start, std::chrono::microseconds(1500));
+}
+
+TEST(BackOff, LongPatienceDoesNotSleepBeforeOthersHaveWokenUp)
+{
+  const auto measure = [](dsm::BackOff::Patience patience)
+  {
+    int most = 0; // of several tries: the host may take its core away
+    for (int attempt = 0; attempt < 20; ++attempt)
+    {
+      dsm::BackOff backOff;
+      backOff.Reset(patience);
+      int waits = 0;
+      const auto start = Clock::now();
+      while (Clock::now() - start < std::chrono::microseconds(400))
+      {
+        backOff.Wait();
+        ++waits;
+      }
+      most = std::max(most, waits);
+    }
+    return most;
+  };
+  EXPECT_LT(measure(dsm::BackOff::Patience::Short), 50) << "it polls 40 times, and sleeps";
+  EXPECT_GT(measure(dsm::BackOff::Patience::Long), 100);
+  dsm::BackOff backOff;
+  backOff.Reset(dsm::BackOff::Patience::Long);
+  const auto start = Clock::now();
+  int waits = 0;
+  while (Clock::now() - start < std::chrono::milliseconds(50))
+  {
+    backOff.Wait();
+    ++waits;
+  }
+  const auto late = Clock::now();
+  for (int i = 0; i < 10; ++i)
+  {
+    backOff.Wait();
+  }
+  EXPECT_GE(Clock::now() - late, std::chrono::microseconds(1500)) << "in the end it sleeps";
 }
 
 TEST(BackOff, WakeUpBeforeASleepEndsIt)

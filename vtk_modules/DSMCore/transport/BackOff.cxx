@@ -7,21 +7,35 @@
 namespace dsm
 {
 
-void BackOff::Reset()
+void BackOff::Reset(Patience patience)
 {
+  this->Holds = patience;
   this->Idle = 0;
   this->Sleep = ShortestSleep;
 }
 
+bool BackOff::MayYield()
+{
+  if (this->Holds == Patience::Short)
+  {
+    return this->Idle < Polls + Yields;
+  }
+  const auto now = std::chrono::steady_clock::now();
+  this->Since = this->Idle == Polls ? now : this->Since;
+  return now - this->Since < LongYields;
+}
+
 void BackOff::Wait()
 {
-  if (this->Idle < Polls + Yields)
+  if (this->Idle < Polls)
   {
     ++this->Idle;
-    if (this->Idle > Polls)
-    {
-      std::this_thread::yield();
-    }
+    return;
+  }
+  if (this->MayYield())
+  {
+    ++this->Idle;
+    std::this_thread::yield();
     return;
   }
   std::unique_lock<std::mutex> lock(this->Guard);
@@ -30,7 +44,7 @@ void BackOff::Wait()
   this->Sleeping = false;
   if (this->Woken.exchange(false))
   {
-    this->Reset();
+    this->Reset(this->Holds);
   }
   else
   {

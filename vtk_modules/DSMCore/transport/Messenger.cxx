@@ -255,7 +255,8 @@ void Messenger::Internals::Await(FunctionRef<bool()> done, FunctionRef<bool()> w
     return any;
   };
   const Wait wait(*this, true);
-  this->Idle.Reset();
+  const auto patience = work ? BackOff::Patience::Short : BackOff::Patience::Long;
+  this->Idle.Reset(patience);
   while (!done())
   {
     bool any = move();
@@ -266,7 +267,7 @@ void Messenger::Internals::Await(FunctionRef<bool()> done, FunctionRef<bool()> w
     }
     if (any)
     {
-      this->Idle.Reset();
+      this->Idle.Reset(patience);
     }
     else
     {
