@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A volume in a file: what a picture reads of it, the first time and later.
+#include "DSMCore/base/Error.h"
 #include "vtkDSMMemoryOptions.h"
 #include "vtkDSMReadAhead.h"
 #include "vtkDSMScene.h"
@@ -215,84 +216,98 @@ TEST_F(VolumeFile, PlayingFetchesTheNextStep)
   play(1);
   EXPECT_TRUE(isFetched(2));
   play(3);
+  vtkDSMVolumeReader::SetCacheMebibytes(0); // has step 0, since its index was made
+  vtkDSMVolumeReader::SetCacheMebibytes(128);
   CountPages(paths[0], true);
   play(2);
   play(1);
   EXPECT_TRUE(isFetched(0)) << "backwards";
 }
 
-/// Chunks that are found in no part: each byte is the chunk's number, and the step's.
-class CompressedFile final : public vol::VolumeFile
+/// Bricks of which each byte is the brick's number, and the step's.
+class StepOnDisk final : public dsm::BlockReader
 {
 public:
-  CompressedFile()
-    : VolumeFile("compressed")
+  explicit StepOnDisk(int step)
+    : Step(step)
   {
-    vol::FileArray array;
-    array.Grid.Samples = rt::Index3(64);
-    array.Grid.ChunkSamples = rt::Index3(16);
-    this->Arrays.push_back(array);
-    this->Steps = 3;
   }
-  void ReadChunk(
-    std::size_t array, int step, const rt::Index3& chunk, std::byte* out) const override
+  void Read(dsm::BlockId id, std::byte* block, std::size_t bytes) const override
   {
-    const vol::ChunkGrid& grid = this->Arrays[array].Grid;
-    std::fill_n(out, static_cast<std::size_t>(grid.GetBox(chunk).GetCount()),
-      static_cast<std::byte>(grid.GetNumber(chunk) + step));
+    if (id == Bad)
+    {
+      throw dsm::Error("damaged");
+    }
+    std::fill_n(block, bytes, static_cast<std::byte>(static_cast<int>(id) + this->Step));
     ++this->Reads;
   }
 
+  static constexpr dsm::BlockId Bad = 99;
+  int Step;
   mutable std::atomic<int> Reads{ 0 };
 };
 
-/// Waits until no more is read.
-int WaitForReads(const CompressedFile& file)
-{
-  int before = -1;
-  while (before != file.Reads)
-  {
-    before = file.Reads;
-    usleep(100000);
-  }
-  return before;
-}
-
 TEST(ReadAhead, TakesHalfOfTheCacheAndWaitsForFrames)
 {
-  constexpr std::size_t chunkBytes = 16 * 16 * 16;
-  vol::ChunkCache cache(20 * chunkBytes);
+  constexpr std::size_t bytes = 1000;
+  vol::ChunkCache cache(20 * bytes);
   vtkDSMReadAhead ahead(cache);
-  const auto file = std::make_shared<CompressedFile>();
-  const auto addRow = [&](int step, int row)
+  std::atomic<int> told{ 0 };
+  const auto open = [&](std::uint64_t key, const std::shared_ptr<StepOnDisk>& disk)
+  { return ahead.Open(key, disk, [&told](dsm::BlockId) { ++told; }); };
+  const auto first = std::make_shared<StepOnDisk>(1);
+  const auto wait = [&](const StepOnDisk& disk)
   {
-    for (int x = 0; x < 4; ++x)
+    int before = -1;
+    while (before != disk.Reads + told)
     {
-      ahead.Add(file, 0, step, rt::Index3(x, row, 0));
+      before = disk.Reads + told;
+      usleep(100000);
     }
+    return int(disk.Reads);
   };
+  auto step = open(1, first);
   {
     const vtkDSMReadAhead::Pause pause(ahead);
-    addRow(1, 0);
-    addRow(1, 0); // known
-    EXPECT_EQ(WaitForReads(*file), 0) << "a frame is being made";
+    for (const dsm::BlockId id : { 0, 1, 2, 3, 1 }) // one is known
+    {
+      ahead.Add(step, id, bytes);
+    }
+    EXPECT_EQ(wait(*first), 0) << "a frame is being made";
   }
-  EXPECT_EQ(WaitForReads(*file), 4);
-  EXPECT_EQ((*cache.Get(file, 0, 1, rt::Index3(1, 0, 0)))[5], std::byte(2));
-  EXPECT_EQ(file->Reads, 4) << "it was there";
-  for (int row = 1; row < 4; ++row)
+  EXPECT_EQ(wait(*first), 4);
+  EXPECT_EQ(cache.GetBytes(), 4 * bytes);
+  ahead.Add(step, StepOnDisk::Bad, bytes);
+  for (dsm::BlockId id = 4; id < 16; ++id)
   {
-    addRow(1, row);
+    ahead.Add(step, id, bytes);
   }
-  EXPECT_EQ(WaitForReads(*file), 10) << "half of the room";
-  {
-    const vtkDSMReadAhead::Pause pause(ahead);
-    addRow(2, 0);
-    addRow(0, 0); // the user turns round
-  }
-  EXPECT_EQ(WaitForReads(*file), 14);
-  EXPECT_EQ((*cache.Get(file, 0, 0, rt::Index3(3, 0, 0)))[0], std::byte(3));
-  EXPECT_EQ(file->Reads, 14);
+  EXPECT_EQ(wait(*first), 10) << "half of the room";
+  EXPECT_EQ(told, 6) << "the system can do the rest";
+
+  std::vector<std::byte> block(bytes);
+  EXPECT_EQ(ahead.Find(1), step);
+  EXPECT_TRUE(step->Take(3, block.data(), bytes));
+  EXPECT_EQ(block[5], std::byte(4));
+  EXPECT_FALSE(step->Take(3, block.data(), bytes)) << "it was given away";
+  EXPECT_FALSE(step->Take(4, block.data(), bytes - 1)) << "of another size";
+  EXPECT_FALSE(step->Take(StepOnDisk::Bad, block.data(), bytes));
+  EXPECT_FALSE(step->Take(15, block.data(), bytes)) << "there was no room";
+  EXPECT_EQ(cache.GetBytes(), 9 * bytes);
+
+  // The user turns round: what nobody has goes, and leaves room.
+  const auto second = std::make_shared<StepOnDisk>(2);
+  step = open(2, second);
+  EXPECT_NE(ahead.Find(1), nullptr) << "somebody may be about to take it over";
+  ahead.Tidy();
+  EXPECT_EQ(ahead.Find(1), nullptr);
+  EXPECT_EQ(ahead.Find(2), step);
+  EXPECT_EQ(cache.GetBytes(), 0u);
+  ahead.Add(step, 7, bytes);
+  EXPECT_EQ(wait(*second), 1);
+  EXPECT_TRUE(step->Take(7, block.data(), bytes));
+  EXPECT_EQ(block[0], std::byte(9));
+  EXPECT_EQ(cache.GetBytes(), 0u);
 }
 
 } // namespace

@@ -49,6 +49,15 @@ public:
     }
   }
 
+  bool TryRead(dsm::BlockId id, std::byte* block, std::size_t bytes) const override
+  {
+    for (std::size_t place = 0; this->AtHand && place < bytes; ++place)
+    {
+      block[place] = GetPattern(id, place);
+    }
+    return this->AtHand;
+  }
+
   void SetStuck(dsm::BlockId id)
   {
     {
@@ -60,6 +69,7 @@ public:
 
   std::atomic<std::chrono::microseconds> Delay{ std::chrono::microseconds(30) };
   std::atomic<dsm::BlockId> Bad{ NoBlock };
+  std::atomic<bool> AtHand{ false }; ///< all was read ahead
   mutable std::atomic<std::uint64_t> Reads{ 0 };
 
 private:

@@ -265,6 +265,44 @@ public:
     }
   }
 
+  /// One segment takes another's place, and then gets other contents: what was used comes in one message,
+  /// before anybody waits for it, and what was here in vain does not come again.
+  static void WhatWasUsedComesAgain(dsm::Messenger& messenger)
+  {
+    Blocks blocks(messenger, 64);
+    const auto ids = blocks.GetOwnedBy(blocks.Next, 8);
+    const std::vector<dsm::BlockId> used(ids.begin(), ids.begin() + 6);
+    const auto run = [&](const std::vector<dsm::BlockId>& wanted)
+    {
+      RunFrame<Store>(messenger, *blocks.Memory,
+        [&](Worker& worker, int)
+        {
+          blocks.Await(worker, wanted);
+          EXPECT_EQ(blocks.CountWrong(worker, used), 0u);
+        });
+    };
+    run(ids);
+    blocks.Memory->Retire(blocks.Segment);
+    blocks.Segment = PublishPattern(
+      messenger, *blocks.Memory, MakeDirectory(blocks.Ranks, blocks.Count, blocks.Bytes));
+    for (int round = 0; round < 2; ++round)
+    {
+      run({ used[3] });
+      const auto counters = blocks.Memory->GetCounters();
+      EXPECT_EQ(counters.Prefetches, used.size());
+      EXPECT_EQ(counters.PrefetchesUsed, used.size());
+      EXPECT_EQ(counters.Workers.Misses, counters.Workers.Joins);
+      EXPECT_EQ(counters.BytesReceived, used.size() * blocks.Bytes);
+      EXPECT_EQ(counters.Requests, 1u);
+      blocks.Memory->Refresh("Changing", *blocks.Segment, std::vector<bool>(blocks.Count, true));
+    }
+    blocks.Memory->Retire(blocks.Segment);
+    blocks.Segment = PublishPattern(
+      messenger, *blocks.Memory, MakeDirectory(blocks.Ranks, blocks.Count - 1, blocks.Bytes));
+    RunFrame<Store>(messenger, *blocks.Memory, [](Worker&, int) {});
+    EXPECT_EQ(blocks.Memory->GetCounters().Prefetches, 0u) << "another volume";
+  }
+
   static void SwitchedOff(dsm::Messenger& messenger)
   {
     const Blocks blocks(messenger, 64);

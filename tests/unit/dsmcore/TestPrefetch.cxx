@@ -33,6 +33,7 @@ RUN_SCENARIO(WasteIsSeen)
 RUN_SCENARIO(CancelledWhileUnderWay)
 RUN_SCENARIO(FramesEndWhileBlocksAreUnderWay)
 RUN_SCENARIO(SeveralWorkersAtOnce)
+RUN_SCENARIO(WhatWasUsedComesAgain)
 RUN_SCENARIO(SwitchedOff)
 
 } // namespace

@@ -178,6 +178,22 @@ TEST(BlocksOnDiskBesideOthers, OrganizationFollows)
     });
 }
 
+/// No thread reads; more blocks than are delivered at once.
+TEST_P(BlocksOnDisk, WhatWasReadAheadNeedsNoRead)
+{
+  this->Run(
+    [](dsm::Messenger& messenger, dsm::MemoryOrganization organization)
+    {
+      DiskStore disks(messenger, organization, 6);
+      disks.Disk->AtHand = true;
+      disks.ReadAll();
+      EXPECT_EQ(disks.Disk->Reads, 0u);
+      disks.Disk->AtHand = false;
+      disks.ReadAll();
+      EXPECT_GT(disks.Disk->Reads, 0u);
+    });
+}
+
 TEST_P(BlocksOnDisk, RandomAccess)
 {
   this->Run([](dsm::Messenger& messenger, dsm::MemoryOrganization organization)

@@ -5,10 +5,19 @@
 
 #include <algorithm>
 #include <chrono>
+#include <new>
 #include <utility>
 
 namespace dsm
 {
+
+namespace
+{
+
+/// Reads for blocks that nobody waits for begin as long as there are not so many under way.
+constexpr std::size_t MostReadsAhead = 256;
+
+} // namespace
 
 BlockFetcher::BlockFetcher(Messenger& messenger)
   : Messages(messenger)
@@ -31,6 +40,7 @@ void BlockFetcher::PrepareToAdd(std::size_t count)
 void BlockFetcher::Add(std::shared_ptr<BlockSegment> segment)
 {
   const std::lock_guard<std::mutex> lock(this->Guard);
+  this->Expected.NoteAdded(*segment);
   this->Segments.Add(std::move(segment));
 }
 
@@ -45,6 +55,7 @@ std::shared_ptr<BlockSegment> BlockFetcher::Retire(const BlockSegment& segment)
   {
     throw Error("A segment cannot be retired within a frame.");
   }
+  this->Expected.NoteRetired(segment, [&] { return this->ListCached(segment); });
   this->Forget(segment);
   return this->Segments.Remove(segment);
 }
@@ -57,6 +68,7 @@ void BlockFetcher::Refresh(const BlockSegment& segment, const std::vector<bool>&
   }
   {
     const std::lock_guard<std::mutex> lock(this->Guard);
+    this->Expected.NoteChanged(segment, which, [&] { return this->ListCached(segment); });
     this->Forget(segment, which);
   }
   this->EndService(); // their memory goes
@@ -110,6 +122,21 @@ void BlockFetcher::BeginFrame(bool agreed)
   this->Workers.BeginFrame();
   this->Phase = FramePhase::Open;
   this->Opened();
+  // The ranks have agreed already that the frame begins: nothing may fail any more.
+  this->Expected.BeginFrame(
+    [this](const BlockSegment& segment, const std::vector<BlockId>& ids)
+    {
+      try
+      {
+        if (this->MayPrefetch())
+        {
+          this->Foresee(segment, ids.data(), ids.size());
+        }
+      }
+      catch (const std::bad_alloc&) // what is wanted will be asked for one by one
+      {
+      }
+    });
 }
 
 bool BlockFetcher::Service()
@@ -145,7 +172,7 @@ bool BlockFetcher::AskForWanted(std::deque<BlockWant>& wanted)
 
 void BlockFetcher::AskForForeseen()
 {
-  while (!this->Foreseen.empty())
+  while (!this->Foreseen.empty() && this->Reads.size() < MostReadsAhead)
   {
     const BlockWant& block = this->Foreseen.front();
     if (this->GetLine(block).State == LineState::Foreseen)
@@ -300,8 +327,16 @@ void BlockFetcher::EndFrame()
   this->Closing();
   this->Workers.EndFrame();
   this->AbandonAll();
-  this->FrameCounters.PrefetchesUsed =
-    this->Prefetches.EndFrame([this](const BlockWant& block) { return this->Settle(block); });
+  this->FrameCounters.PrefetchesUsed = this->Prefetches.EndFrame(
+    [this](const BlockWant& block)
+    {
+      const bool isUnused = this->Settle(block);
+      if (isUnused)
+      {
+        this->Expected.NoteUnused(block);
+      }
+      return isUnused;
+    });
   this->Workers.WakeAll();
   this->Closed();
 }
@@ -416,35 +451,37 @@ void BlockFetcher::Refuse(const BlockSegment& segment) const
       : "A block of a retired segment was read. This is a defect of the tracer.");
 }
 
-void BlockFetcher::Prefetch(const BlockSegment& segment, const BlockId* ids, std::size_t count)
+bool BlockFetcher::Foresee(const BlockSegment& segment, const BlockId* ids, std::size_t count)
 {
   const auto isUnused = [this](const BlockWant& block) { return this->IsUnused(block); };
   bool any = false;
+  for (const BlockId* id = ids; id != ids + count; ++id)
+  {
+    const BlockWant block{ &segment, *id };
+    if (*id >= segment.GetDirectory().GetCount() || this->GetLine(block).State != LineState::Absent)
+    {
+      continue;
+    }
+    if (!this->Prefetches.TryAdd(block, this->GetFootprint(block), isUnused))
+    {
+      break;
+    }
+    LineStatus& line = this->GetLine(block);
+    this->Foreseen.push_back(block);
+    line.MoveTo(LineState::Foreseen);
+    line.Use.store(BlockUse::Prefetched, std::memory_order_relaxed);
+    any = true;
+  }
+  this->UpdateQueuedCount();
+  return any;
+}
+
+void BlockFetcher::Prefetch(const BlockSegment& segment, const BlockId* ids, std::size_t count)
+{
+  bool any = false;
   {
     const std::lock_guard<std::mutex> lock(this->Guard);
-    if (!this->IsOpenFor(segment) || !this->MayPrefetch())
-    {
-      return;
-    }
-    for (const BlockId* id = ids; id != ids + count; ++id)
-    {
-      const BlockWant block{ &segment, *id };
-      if (*id >= segment.GetDirectory().GetCount() ||
-        this->GetLine(block).State != LineState::Absent)
-      {
-        continue;
-      }
-      if (!this->Prefetches.TryAdd(block, this->GetFootprint(block), isUnused))
-      {
-        break;
-      }
-      LineStatus& line = this->GetLine(block);
-      this->Foreseen.push_back(block);
-      line.MoveTo(LineState::Foreseen);
-      line.Use.store(BlockUse::Prefetched, std::memory_order_relaxed);
-      any = true;
-    }
-    this->UpdateQueuedCount();
+    any = this->IsOpenFor(segment) && this->MayPrefetch() && this->Foresee(segment, ids, count);
   }
   if (any)
   {

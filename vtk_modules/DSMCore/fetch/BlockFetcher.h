@@ -6,6 +6,7 @@
 #include "DSMCore/base/WorkerSlots.h"
 #include "DSMCore/fetch/BlockRequests.h"
 #include "DSMCore/fetch/BlockSource.h"
+#include "DSMCore/fetch/ExpectedBlocks.h"
 #include "DSMCore/fetch/FetchWorkers.h"
 #include "DSMCore/fetch/LineStatus.h"
 #include "DSMCore/fetch/PrefetchLedger.h"
@@ -29,7 +30,8 @@ namespace dsm
 /// sources, and the frame around them. A block that is missed first is queued; workers that miss it
 /// later join. The communication thread takes the queue in order: it sets memory aside (evicting if it
 /// must, and waiting if it cannot), then lets the block's source read it, so what comes always finds
-/// room. What workers foresee waits in a queue of its own, which is looked at when nothing is wanted.
+/// room. What workers foresee, or a frame begins by foreseeing since the last ones needed it
+/// (ExpectedBlocks), waits in a queue of its own, which is looked at when nothing is wanted.
 /// What other ranks ask for and is not in memory is wanted like what a worker waits for.
 ///
 /// A store derives from it, and says where bytes land, and how a block is shown to workers and taken
@@ -126,6 +128,8 @@ protected:
   virtual std::byte* Land(const Read& read, const std::byte* bytes) = 0;
   /// Lets workers have the block that has landed. Does not fail.
   virtual void Show(const Read& read) = 0;
+  /// Its cached blocks, in any order. May throw std::bad_alloc.
+  virtual std::vector<BlockId> ListCached(const BlockSegment& segment) const = 0;
   /// Takes the segment's cached blocks out. Does not fail.
   virtual void Forget(const BlockSegment& segment) = 0;
   /// The same for some of its blocks; may throw.
@@ -193,12 +197,15 @@ private:
   void AbandonAll();
   void AbandonForeseen();
   void UpdateQueuedCount();
+  /// Queues the blocks that are absent, as far as there may be so many. Returns whether there are any.
+  bool Foresee(const BlockSegment& segment, const BlockId* ids, std::size_t count);
 
   /// Of other ranks, and own ones, which come first: others may wait for them.
   std::deque<BlockWant> Wanted;
   std::deque<BlockWant> WantedOwn;
   /// Room set aside for reads from other ranks.
   std::size_t BytesOfOthers = 0;
+  ExpectedBlocks Expected;
   /// Some may have become wanted, or come, since they were queued.
   std::deque<BlockWant> Foreseen;
   /// Of all three; lets Service look without the lock.

@@ -18,6 +18,9 @@ public:
   /// Fills `block` (its `bytes` are those of the directory; aligned for any number) with what the block
   /// is, always the same. May take long. Throws Error, which names the file and the place in it.
   virtual void Read(BlockId id, std::byte* block, std::size_t bytes) const = 0;
+  /// The same where it takes no longer than a copy, since the block was read ahead. Else returns false, and
+  /// has done nothing.
+  virtual bool TryRead(BlockId, std::byte*, std::size_t) const { return false; }
 };
 
 } // namespace dsm

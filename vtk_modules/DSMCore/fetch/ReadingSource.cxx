@@ -71,23 +71,42 @@ ReadingSource::~ReadingSource()
   this->Abandon();
 }
 
-void ReadingSource::Begin(const BlockWant& block, std::byte*)
+void ReadingSource::Begin(const BlockWant& block, std::byte* place)
 {
-  this->Waiting.push_back({ block, this->Seconds });
+  this->Waiting.push_back({ block, place, this->Seconds });
 }
 
 bool ReadingSource::Submit()
 {
-  const bool any = !this->Waiting.empty() && this->Reading.size() < MostReads;
+  const std::size_t before = this->Waiting.size();
   this->HandOver();
-  return any;
+  return this->Waiting.size() != before;
+}
+
+bool ReadingSource::TryRead(const Wanted& wanted)
+{
+  const BlockWant& block = wanted.Block;
+  const std::size_t bytes = block.From->GetDirectory().GetBytes(block.Id);
+  Ready ready{ block, wanted.Place, {} };
+  ready.Bytes.resize(wanted.Place ? 0 : bytes);
+  if (!this->Reader->TryRead(block.Id, wanted.Place ? wanted.Place : ready.Bytes.data(), bytes))
+  {
+    return false;
+  }
+  this->AtHand.push_back(std::move(ready));
+  return true;
 }
 
 void ReadingSource::HandOver()
 {
-  while (!this->Waiting.empty() && this->Reading.size() < MostReads)
+  while (!this->Waiting.empty() && this->Reading.size() + this->AtHand.size() < MostReads)
   {
     const Wanted wanted = this->Waiting.front();
+    if (this->TryRead(wanted))
+    {
+      this->Waiting.pop_front();
+      continue;
+    }
     const BlockWant block = wanted.Block;
     std::uint64_t round = 0;
     {
@@ -159,15 +178,21 @@ bool ReadingSource::Poll(const Deliver& deliver)
     }
     deliver(done.Block, done.Bytes.data());
   }
+  const std::vector<Ready> atHand = std::exchange(this->AtHand, {});
+  for (const Ready& ready : atHand)
+  {
+    deliver(ready.Block, ready.Place ? ready.Place : ready.Bytes.data());
+  }
   this->HandOver();
   this->CheckDisk();
-  return !come.empty();
+  return !come.empty() || !atHand.empty();
 }
 
 void ReadingSource::Abandon() noexcept
 {
   this->Waiting.clear();
   this->Reading.clear();
+  this->AtHand.clear();
   const std::lock_guard<std::mutex> lock(this->State->Guard);
   ++this->State->Round;
   this->State->Come.clear();

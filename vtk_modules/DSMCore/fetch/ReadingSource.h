@@ -18,7 +18,7 @@ namespace dsm
 
 /// Brings a rank's own blocks by a BlockReader, on the process's ReaderThreads. A block is read to memory
 /// of the source's own, and copied where it belongs when it is complete: so nobody ever waits for a read
-/// that is given up, however long the disk takes. One that was not read for PartOfSilence of the time that
+/// that is given up, however long the disk takes. What the reader has at hand needs no thread. One that was not read for PartOfSilence of the time that
 /// ranks may be silent (Messenger::SetSilenceLimit) fails the frame, before whoever waits for it takes its
 /// owner for stuck.
 class ReadingSource final : public BlockSource
@@ -36,7 +36,7 @@ public:
   void Read(BlockId id, std::byte* block, std::size_t bytes) const override;
 
   /// Reads that are with the threads, or have come back and were not delivered: what they take of the
-  /// memory is bounded.
+  /// memory, and of the communication thread's time at once, is bounded.
   static constexpr std::size_t MostReads = 16;
 
   static constexpr double PartOfSilence = 0.75;
@@ -46,10 +46,18 @@ private:
   struct Wanted
   {
     BlockWant Block;
+    std::byte* Place;
     double Since; ///< as of Seconds
+  };
+  struct Ready
+  {
+    BlockWant Block;
+    std::byte* Place;             ///< null: its bytes are
+    std::vector<std::byte> Bytes; ///< these
   };
 
   void HandOver();
+  bool TryRead(const Wanted& wanted);
   /// Throws when the one that is wanted for the longest time is so for too long.
   void CheckDisk();
 
@@ -58,6 +66,7 @@ private:
   std::shared_ptr<Shared> State;
   std::deque<Wanted> Waiting;  ///< not with the threads yet
   std::vector<Wanted> Reading; ///< with the threads, or done and not delivered; in order
+  std::vector<Ready> AtHand;   ///< that needed no thread, and are not delivered
   double Seconds =
     0.0; ///< in which this process polled, or might have: not those when it was stopped
   std::chrono::steady_clock::time_point LastPoll;

@@ -83,6 +83,19 @@ bool PageCache::TryEvict(Time before, const std::function<bool(const Slot&)>& ma
   return false;
 }
 
+std::vector<BlockId> PageCache::List(const PagedStore::Segment& segment) const
+{
+  std::vector<BlockId> blocks;
+  for (const Slot& slot : this->Slots)
+  {
+    if (slot.From == &segment)
+    {
+      blocks.push_back(slot.Id);
+    }
+  }
+  return blocks;
+}
+
 void PageCache::Forget(const PagedStore::Segment& segment,
   const std::function<void(const Slot&)>& visit, const std::vector<bool>* which)
 {

@@ -55,6 +55,7 @@ public:
   /// Takes a block out that nobody waits for, that was placed at `before` or earlier, and that
   /// `mayGo` (empty: any); false when there is none.
   bool TryEvict(Time before, const std::function<bool(const Slot&)>& mayGo, Slot& evicted);
+  std::vector<BlockId> List(const PagedStore::Segment& segment) const;
   /// Takes out all blocks of a segment; `visit` is called for each.
   /// `which` (null: all): only blocks of which it says so.
   void Forget(const PagedStore::Segment& segment, const std::function<void(const Slot&)>& visit,

@@ -192,6 +192,11 @@ void PagedStore::Internals::RequireFaults()
   }
 }
 
+std::vector<BlockId> PagedStore::Internals::ListCached(const BlockSegment& segment) const
+{
+  return this->Cache.List(static_cast<const Segment&>(segment));
+}
+
 void PagedStore::Internals::Forget(const BlockSegment& segment)
 {
   this->Cache.Forget(static_cast<const Segment&>(segment),

@@ -155,6 +155,19 @@ bool BlockCache::Reclaim(std::uint64_t oldestEpoch)
   return any;
 }
 
+std::vector<BlockId> BlockCache::List(const BlockLine* first, std::size_t count) const
+{
+  std::vector<BlockId> places;
+  for (const Slot& slot : this->Slots)
+  {
+    if (slot.Line && slot.Line >= first && slot.Line < first + count)
+    {
+      places.push_back(static_cast<BlockId>(slot.Line - first));
+    }
+  }
+  return places;
+}
+
 void BlockCache::Forget(const BlockLine* first, std::size_t count, const std::vector<bool>* which)
 {
   this->Reclaim(std::numeric_limits<std::uint64_t>::max());

@@ -2,6 +2,7 @@
 #ifndef dsm_BlockCache_h
 #define dsm_BlockCache_h
 
+#include "DSMCore/base/Block.h"
 #include "DSMCore/table/BlockLine.h"
 
 #include <cstddef>
@@ -63,6 +64,8 @@ public:
   bool Reclaim(std::uint64_t oldestEpoch);
   bool HasLimbo() const { return !this->Limbo.empty(); }
 
+  /// Of `count` lines from `first` on, those whose blocks are cached: their places behind `first`.
+  std::vector<BlockId> List(const BlockLine* first, std::size_t count) const;
   /// Between frames: drops the cached blocks among `count` lines from `first` on; `which` (null: all): only those
   /// of which it says so, by their place behind `first`.
   void Forget(const BlockLine* first, std::size_t count, const std::vector<bool>* which = nullptr);

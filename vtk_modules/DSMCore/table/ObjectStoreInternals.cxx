@@ -104,6 +104,12 @@ void ObjectStore::Internals::Configure(const Settings& settings)
   this->Cache.Shrink();
 }
 
+std::vector<BlockId> ObjectStore::Internals::ListCached(const BlockSegment& segment) const
+{
+  return this->Cache.List(
+    static_cast<const Segment&>(segment).Lines.get(), segment.GetDirectory().GetCount());
+}
+
 void ObjectStore::Internals::Forget(const BlockSegment& segment)
 {
   this->Cache.Forget(

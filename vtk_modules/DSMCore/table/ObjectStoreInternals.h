@@ -52,6 +52,7 @@ private:
   void DiscardPlace(std::byte* place) noexcept override;
   std::byte* Land(const Read& read, const std::byte* bytes) override;
   void Show(const Read& read) override;
+  std::vector<BlockId> ListCached(const BlockSegment& segment) const override;
   void Forget(const BlockSegment& segment) override;
   void Forget(const BlockSegment& segment, const std::vector<bool>& which) override;
   bool IsUnused(const BlockWant& block) const override;

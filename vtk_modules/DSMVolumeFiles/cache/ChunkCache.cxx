@@ -58,6 +58,26 @@ std::size_t ChunkCache::Restrict(std::size_t bytes)
   return std::min(this->Limit, this->Restriction);
 }
 
+bool ChunkCache::Lend(std::size_t bytes, std::size_t divisor)
+{
+  const std::lock_guard<std::mutex> lock(this->Guard);
+  if (this->Lent + bytes > std::min(this->Limit, this->Restriction) / divisor)
+  {
+    return false;
+  }
+  this->Lent += bytes;
+  this->Bytes += bytes;
+  this->Evict();
+  return true;
+}
+
+void ChunkCache::Return(std::size_t bytes)
+{
+  const std::lock_guard<std::mutex> lock(this->Guard);
+  this->Lent -= bytes;
+  this->Bytes -= bytes;
+}
+
 std::size_t ChunkCache::GetBytes() const
 {
   const std::lock_guard<std::mutex> lock(this->Guard);

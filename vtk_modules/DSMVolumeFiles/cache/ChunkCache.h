@@ -39,7 +39,12 @@ public:
   std::size_t Restrict(std::size_t bytes);
   /// That, or less where it is restricted.
   std::size_t GetRoom() const;
-  /// In memory now.
+  /// Lets others have a part of the room, where chunks have to leave: false, and nothing is lent, if all that is
+  /// would be more than the room divided by `divisor`.
+  bool Lend(std::size_t bytes, std::size_t divisor);
+  /// So much of it is free again.
+  void Return(std::size_t bytes);
+  /// In memory now, with what is lent.
   std::size_t GetBytes() const;
   /// Read so far, of chunks as they are in memory.
   std::uint64_t GetBytesRead() const;
@@ -95,6 +100,7 @@ private:
   std::size_t Limit;
   std::size_t Restriction = SIZE_MAX;
   std::size_t Bytes = 0;
+  std::size_t Lent = 0; ///< of them
   std::uint64_t BytesRead = 0;
   std::list<Key> Order; ///< of those that are here, the last used first
   std::unordered_map<Key, Entry, KeyHash> Entries;

@@ -2,12 +2,14 @@
 #include "vtkDSMFileVolume.h"
 
 #include "DSMCore/base/Error.h"
+#include "DSMRayTracing/base/ByteHash.h"
 #include "DSMRayTracing/layout/DealBricks.h"
 #include "DSMVolumeFiles/format/SeriesFile.h"
 #include "DSMVolumeFiles/range/KeptFile.h"
 #include "vtkDSMFileArray.h"
 #include "vtkDSMGather.h"
 #include "vtkDSMImagePiece.h"
+#include "vtkDSMReadAhead.h"
 
 #include "vtkImageData.h"
 
@@ -83,7 +85,6 @@ private:
       return;
     }
     this->Values->ReadScattered(points, out);
-    this->Values->ForeseeNext(points);
   }
 
   template <class Native>
@@ -117,6 +118,60 @@ private:
   int Component;
   rt::ScalarType Type;
   bool Scattered;
+};
+
+/// Bricks of a time step; the same ones of the next step are read ahead.
+class SteppingReader final : public dsm::BlockReader
+{
+public:
+  using Step = std::shared_ptr<vtkDSMReadAhead::Step>;
+
+  /// `ahead`: what has been read of this step already. It and `next` may be null.
+  SteppingReader(std::shared_ptr<const dsm::BlockReader> here, Step ahead, Step next)
+    : Here(std::move(here))
+    , Ahead(std::move(ahead))
+    , Next(std::move(next))
+  {
+  }
+
+  void Read(dsm::BlockId id, std::byte* block, std::size_t bytes) const override
+  {
+    if (!this->TryRead(id, block, bytes))
+    {
+      this->Here->Read(id, block, bytes);
+      this->Foresee(id, bytes);
+    }
+  }
+
+  bool TryRead(dsm::BlockId id, std::byte* block, std::size_t bytes) const override
+  {
+    const bool isHere = this->Ahead && this->Ahead->Take(id, block, bytes);
+    if (isHere)
+    {
+      this->Foresee(id, bytes);
+    }
+    return isHere;
+  }
+
+private:
+  void Foresee(dsm::BlockId id, std::size_t bytes) const
+  {
+    if (!this->Next)
+    {
+      return;
+    }
+    try
+    {
+      vtkDSMReadAhead::GetShared().Add(this->Next, id, bytes);
+    }
+    catch (const std::bad_alloc&) // it is read when it is wanted
+    {
+    }
+  }
+
+  std::shared_ptr<const dsm::BlockReader> Here;
+  Step Ahead;
+  Step Next;
 };
 
 /// How a rank that has no part of the file's values opens it.
@@ -383,9 +438,40 @@ std::uint64_t vtkDSMFileVolume::GetTableBytes() const
 std::shared_ptr<const dsm::BlockReader> vtkDSMFileVolume::CreateReader(
   const rt::BrickLattice& lattice, bool scattered) const
 {
-  return std::make_shared<rt::VoxelBrickReader>(lattice,
-    std::make_shared<FileVoxels>(
-      this->Values, this->Component, lattice.GetScalarType(), scattered));
+  const auto create = [&](const std::shared_ptr<const vtkDSMFileValues>& values)
+  {
+    return std::make_shared<rt::VoxelBrickReader>(lattice,
+      std::make_shared<FileVoxels>(values, this->Component, lattice.GetScalarType(), scattered));
+  };
+  const auto reader = create(this->Values);
+  if (!scattered)
+  {
+    return reader;
+  }
+  const auto getKey = [&](const vtkDSMFileValues& values)
+  {
+    const std::uint64_t numbers[] = { values.GetStamp(),
+      static_cast<std::uint64_t>(this->Component), static_cast<std::uint64_t>(lattice.GetEdge()),
+      static_cast<std::uint64_t>(lattice.GetScalarType()) };
+    rt::ByteHash hash;
+    hash.Add(numbers, sizeof(numbers));
+    return hash.Get();
+  };
+  vtkDSMReadAhead& ahead = vtkDSMReadAhead::GetShared();
+  SteppingReader::Step next;
+  if (this->Values->GetNextStep() != vtkDSMFileValues::None)
+  {
+    const auto values = std::make_shared<vtkDSMFileValues>(this->Values->GetFile(),
+      this->Values->GetArrayNumber(), this->Values->GetNextStep(), this->Values->GetBox(),
+      vtkDSMFileValues::None, this->Values->GetOptions());
+    const auto tellSystem = [values, lattice](dsm::BlockId id)
+    {
+      const Box cells = lattice.GetCellsOfBrick(id);
+      values->Foresee({ cells.Min, cells.Max + Index3(1) });
+    };
+    next = ahead.Open(getKey(*values), create(values), tellSystem);
+  }
+  return std::make_shared<SteppingReader>(reader, ahead.Find(getKey(*this->Values)), next);
 }
 
 dsm::BlockDirectory vtkDSMFileVolume::CreateDirectory(

@@ -3,7 +3,6 @@
 
 #include "DSMCore/base/Error.h"
 #include "DSMRayTracing/base/ByteHash.h"
-#include "vtkDSMReadAhead.h"
 
 #include <algorithm>
 #include <exception>
@@ -33,17 +32,12 @@ void vtkDSMFileValues::ReadScattered(const rt::Box& box, std::byte* out) const
     this->File, this->Array, this->Step, { box.Min + this->Box.Min, box.Max + this->Box.Min }, out);
 }
 
-void vtkDSMFileValues::ForeseeNext(const rt::Box& box) const
+void vtkDSMFileValues::Foresee(const rt::Box& box) const
 {
-  if (this->NextStep == None)
-  {
-    return;
-  }
   const rt::Index3 size = this->GetArray().Grid.ChunkSamples;
   const rt::Index3 first = (box.Min + this->Box.Min) / size;
-  const rt::Index3 last = (box.Max - rt::Index3(1) + this->Box.Min) / size;
-  // A chunk belongs to the box that has its first sample, so that boxes side by side ask the system for each once.
-  const rt::Index3 lastOwn = (box.Max - rt::Index3(2) + this->Box.Min) / size;
+  // A chunk belongs to the box that has its first sample, so that boxes side by side ask for each once.
+  const rt::Index3 last = (box.Max - rt::Index3(2) + this->Box.Min) / size;
   try
   {
     rt::Index3 chunk;
@@ -53,11 +47,7 @@ void vtkDSMFileValues::ForeseeNext(const rt::Box& box) const
       {
         for (chunk.x = first.x; chunk.x <= last.x; ++chunk.x)
         {
-          if (chunk.x <= lastOwn.x && chunk.y <= lastOwn.y && chunk.z <= lastOwn.z)
-          {
-            this->File->Foresee(this->Array, this->NextStep, chunk);
-          }
-          vtkDSMReadAhead::GetShared().Add(this->File, this->Array, this->NextStep, chunk);
+          this->File->Foresee(this->Array, this->Step, chunk);
         }
       }
     }

@@ -42,8 +42,8 @@ public:
   /// The same where boxes are read here and there, rather than one beside the other.
   void ReadScattered(const rt::Box& box, std::byte* out) const;
 
-  /// The samples of a box were needed: where there is a next step, the same of it is read ahead.
-  void ForeseeNext(const rt::Box& box) const;
+  /// The samples of a box will probably be needed soon: the system is told. Nothing fails.
+  void Foresee(const rt::Box& box) const;
 
   /// Equal only, for all practical purposes, for equal values.
   std::uint64_t GetStamp() const;

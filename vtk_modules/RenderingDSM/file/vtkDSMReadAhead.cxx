@@ -3,10 +3,14 @@
 
 #include "DSMCore/fetch/ReaderThreads.h"
 
+#include <algorithm>
 #include <deque>
 #include <exception>
+#include <map>
 #include <mutex>
-#include <set>
+#include <unordered_map>
+#include <unordered_set>
+#include <utility>
 #include <vector>
 
 namespace
@@ -17,14 +21,64 @@ constexpr std::size_t RoomDivisor = 2;
 
 } // namespace
 
+struct vtkDSMReadAhead::Step::Contents
+{
+  vol::ChunkCache& Cache;
+  const std::shared_ptr<const dsm::BlockReader> Reader;
+  const std::function<void(dsm::BlockId)> TellSystem;
+
+  std::mutex Guard;
+  std::unordered_map<dsm::BlockId, std::vector<std::byte>> Bricks;
+  std::unordered_set<dsm::BlockId> Known; ///< that were added
+};
+
+vtkDSMReadAhead::Step::Step(vol::ChunkCache& cache, std::shared_ptr<const dsm::BlockReader> reader,
+  std::function<void(dsm::BlockId)> tellSystem)
+  : Self(new Contents{ cache, std::move(reader), std::move(tellSystem), {}, {}, {} })
+{
+}
+
+vtkDSMReadAhead::Step::~Step()
+{
+  for (const auto& [id, brick] : this->Self->Bricks)
+  {
+    this->Self->Cache.Return(brick.size());
+  }
+}
+
+bool vtkDSMReadAhead::Step::Take(dsm::BlockId id, std::byte* block, std::size_t bytes)
+{
+  std::vector<std::byte> brick;
+  {
+    const std::lock_guard<std::mutex> lock(this->Self->Guard);
+    const auto found = this->Self->Bricks.find(id);
+    if (found == this->Self->Bricks.end() || found->second.size() != bytes)
+    {
+      return false;
+    }
+    brick = std::move(found->second);
+    this->Self->Bricks.erase(found);
+  }
+  std::copy(brick.begin(), brick.end(), block);
+  this->Self->Cache.Return(bytes);
+  return true;
+}
+
 struct vtkDSMReadAhead::Shared : std::enable_shared_from_this<Shared>
 {
+  struct Job
+  {
+    std::weak_ptr<Step> For;
+    dsm::BlockId Id;
+    std::size_t Bytes;
+  };
+
   explicit Shared(vol::ChunkCache& cache)
     : Cache(cache)
   {
   }
 
-  /// Under the lock: has the next chunk read, if there is any and nothing stands against it.
+  /// Under the lock: has the next brick read, if there is any and nothing stands against it.
   void Begin()
   {
     if (this->IsReading || this->Pauses > 0 || this->Waiting.empty())
@@ -47,42 +101,55 @@ struct vtkDSMReadAhead::Shared : std::enable_shared_from_this<Shared>
     std::unique_lock<std::mutex> lock(this->Guard);
     if (this->Pauses == 0 && !this->Waiting.empty())
     {
-      const rt::Index3 chunk = this->Waiting.front();
+      const Job job = std::move(this->Waiting.front());
       this->Waiting.pop_front();
-      const std::shared_ptr<const vol::VolumeFile> file = this->File;
-      const std::size_t array = this->Array;
-      const int step = this->Step;
       lock.unlock();
-      try
-      {
-        // Else the system has been asked for it (vol::VolumeFile::Foresee), and no more need be read than a brick is.
-        const vol::FileArray& what = file->GetArrays()[array];
-        const rt::Index3 first = what.Grid.GetBox(chunk).Min;
-        std::vector<std::byte> sample(what.GetSampleBytes());
-        if (!file->ReadPart(array, step, chunk, { first, first + rt::Index3(1) }, sample.data()))
-        {
-          this->Cache.Get(file, array, step, chunk);
-        }
-      }
-      catch (const std::exception&)
-      {
-      }
+      Read(job);
       lock.lock();
     }
     this->IsReading = false;
     this->Begin();
   }
 
+  static void Read(const Job& job)
+  {
+    const std::shared_ptr<Step> step = job.For.lock();
+    if (!step)
+    {
+      return;
+    }
+    Step::Contents& contents = *step->Self;
+    const bool hasRoom = contents.Cache.Lend(job.Bytes, RoomDivisor);
+    try
+    {
+      if (!hasRoom)
+      {
+        contents.TellSystem(job.Id);
+        return;
+      }
+      std::vector<std::byte> brick(job.Bytes);
+      contents.Reader->Read(job.Id, brick.data(), brick.size());
+      const std::lock_guard<std::mutex> lock(contents.Guard);
+      contents.Bricks.emplace(job.Id, std::move(brick));
+    }
+    catch (const std::exception&)
+    {
+      contents.Cache.Return(hasRoom ? job.Bytes : 0);
+    }
+  }
+
   vol::ChunkCache& Cache;
   std::mutex Guard;
   int Pauses = 0;
   bool IsReading = false;
-  std::shared_ptr<const vol::VolumeFile> File;
-  std::size_t Array = 0;
-  int Step = 0;
-  std::deque<rt::Index3> Waiting;
-  std::set<std::int64_t> Known; ///< numbers of the chunks that were added
-  std::size_t Bytes = 0;        ///< of them
+  std::deque<Job> Waiting;
+  std::map<std::uint64_t, std::shared_ptr<Step>> Steps;
+
+  static bool Note(Step& step, dsm::BlockId id)
+  {
+    const std::lock_guard<std::mutex> lock(step.Self->Guard);
+    return step.Self->Known.insert(id).second;
+  }
 };
 
 vtkDSMReadAhead& vtkDSMReadAhead::GetShared()
@@ -96,29 +163,48 @@ vtkDSMReadAhead::vtkDSMReadAhead(vol::ChunkCache& cache)
 {
 }
 
-void vtkDSMReadAhead::Add(const std::shared_ptr<const vol::VolumeFile>& file, std::size_t array,
-  int step, const rt::Index3& chunk)
+std::shared_ptr<vtkDSMReadAhead::Step> vtkDSMReadAhead::Find(std::uint64_t key) const
 {
-  Shared& state = *this->State;
-  const vol::FileArray& what = file->GetArrays()[array];
-  const std::lock_guard<std::mutex> lock(state.Guard);
-  if (state.File != file || state.Array != array || state.Step != step)
+  const std::lock_guard<std::mutex> lock(this->State->Guard);
+  const auto known = this->State->Steps.find(key);
+  return known == this->State->Steps.end() ? nullptr : known->second;
+}
+
+std::shared_ptr<vtkDSMReadAhead::Step> vtkDSMReadAhead::Open(std::uint64_t key,
+  std::shared_ptr<const dsm::BlockReader> reader, std::function<void(dsm::BlockId)> tellSystem)
+{
+  const std::lock_guard<std::mutex> lock(this->State->Guard);
+  std::shared_ptr<Step>& step = this->State->Steps[key];
+  if (!step)
   {
-    state.Waiting.clear();
-    state.Known.clear();
-    state.Bytes = 0;
-    state.File = file;
-    state.Array = array;
-    state.Step = step;
+    step = std::make_shared<Step>(this->State->Cache, std::move(reader), std::move(tellSystem));
   }
-  const std::size_t bytes =
-    static_cast<std::size_t>(what.Grid.GetBox(chunk).GetCount()) * what.GetSampleBytes();
-  if (state.Bytes + bytes <= state.Cache.GetRoom() / RoomDivisor &&
-    state.Known.insert(what.Grid.GetNumber(chunk)).second)
+  return step;
+}
+
+void vtkDSMReadAhead::Add(const std::shared_ptr<Step>& step, dsm::BlockId id, std::size_t bytes)
+{
+  if (Shared::Note(*step, id))
   {
-    state.Bytes += bytes;
-    state.Waiting.push_back(chunk);
-    state.Begin();
+    const std::lock_guard<std::mutex> lock(this->State->Guard);
+    this->State->Waiting.push_back({ step, id, bytes });
+    this->State->Begin();
+  }
+}
+
+void vtkDSMReadAhead::Tidy()
+{
+  std::vector<std::shared_ptr<Step>> unused; // goes without the lock
+  const std::lock_guard<std::mutex> lock(this->State->Guard);
+  auto& steps = this->State->Steps;
+  for (auto entry = steps.begin(); entry != steps.end();)
+  {
+    const bool isUsed = entry->second.use_count() > 1;
+    if (!isUsed)
+    {
+      unused.push_back(std::move(entry->second));
+    }
+    entry = isUsed ? std::next(entry) : steps.erase(entry);
   }
 }
 

@@ -2,27 +2,60 @@
 #ifndef vtkDSMReadAhead_h
 #define vtkDSMReadAhead_h
 
+#include "DSMCore/base/Block.h"
+#include "DSMCore/fetch/BlockReader.h"
 #include "DSMVolumeFiles/cache/ChunkCache.h"
 
 #include <cstddef>
+#include <cstdint>
+#include <functional>
 #include <memory>
 
-/// Reads chunks of one step of a file that will probably be wanted soon into a cache, one after the other, on one
-/// of the process's ReaderThreads, while nobody else is busy. Chunks of which parts can be read by
-/// themselves are left to the system. Takes at most half of the cache's room; what cannot
-/// be read is passed by, as whoever needs it will be told. Any thread.
+/// Reads bricks of a time step that will probably be shown next, one after the other, on one of the process's
+/// ReaderThreads, while nobody else is busy, and keeps them until they are taken. They count as part of a chunk
+/// cache, and take at most half of its room; of what would take more, the system is told. What cannot be read is
+/// passed by, as whoever needs it will be told. Any thread.
 class vtkDSMReadAhead
 {
+  struct Shared;
+
 public:
-  /// To the cache that all files of the process share.
+  /// Bricks of one step of one array, cut by one lattice.
+  class Step
+  {
+  public:
+    Step(vol::ChunkCache& cache, std::shared_ptr<const dsm::BlockReader> reader,
+      std::function<void(dsm::BlockId)> tellSystem);
+    ~Step();
+    Step(const Step&) = delete;
+    Step& operator=(const Step&) = delete;
+
+    /// Gives the bytes of a brick away, if they are here.
+    bool Take(dsm::BlockId id, std::byte* block, std::size_t bytes);
+
+  private:
+    friend struct vtkDSMReadAhead::Shared;
+    struct Contents;
+
+    std::unique_ptr<Contents> Self;
+  };
+
+  /// With the cache that all files of the process share.
   static vtkDSMReadAhead& GetShared();
 
-  /// The cache must outlive the read that is under way.
+  /// The cache must outlive the read that is under way, and the steps.
   explicit vtkDSMReadAhead(vol::ChunkCache& cache);
 
-  /// What is still to be read of another file, array or step is given up. Throws std::bad_alloc.
-  void Add(const std::shared_ptr<const vol::VolumeFile>& file, std::size_t array, int step,
-    const rt::Index3& chunk);
+  /// What has been read ahead of the step that `key` stands for; null: nothing.
+  std::shared_ptr<Step> Find(std::uint64_t key) const;
+  /// The same, ready to take in more, by `reader`; `tellSystem` is called for bricks that there is no room for.
+  /// Throws std::bad_alloc, as Add does.
+  std::shared_ptr<Step> Open(std::uint64_t key, std::shared_ptr<const dsm::BlockReader> reader,
+    std::function<void(dsm::BlockId)> tellSystem);
+  /// A brick of a step will probably be wanted; not one that was added before.
+  void Add(const std::shared_ptr<Step>& step, dsm::BlockId id, std::size_t bytes);
+  /// Forgets steps that nobody has any more: call it when those who may take over have had time to.
+  void Tidy();
 
   /// As long as there is one, no read begins: a frame is being made.
   class Pause
@@ -38,8 +71,6 @@ public:
   };
 
 private:
-  struct Shared;
-
   /// What the reads under way have, too.
   std::shared_ptr<Shared> State;
 };

@@ -213,6 +213,8 @@ private:
   void Trace();
   bool TraceFrame();
   void EndFrame();
+  void ObserveWindow();
+  void EndWindow();
 
   class Internals;
   std::unique_ptr<Internals> Self;

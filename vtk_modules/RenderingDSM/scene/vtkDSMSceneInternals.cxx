@@ -3,7 +3,6 @@
 
 #include "vtkDSMFrameImage.h"
 #include "vtkDSMFrameNotes.h"
-#include "vtkDSMReadAhead.h"
 
 #include "vtkBoundingBox.h"
 #include "vtkMatrix4x4.h"
@@ -106,7 +105,6 @@ void vtkDSMScene::Internals::FindGroup(vtkMultiProcessController* controller)
 /// anew.
 std::string vtkDSMScene::Internals::MakeFrame(const dsm::FirstFailure& earlier)
 {
-  const vtkDSMReadAhead::Pause pause(vtkDSMReadAhead::GetShared());
   const dsm::Status outcome = this->Group->GetMessenger().RunStep(
     [&]
     {

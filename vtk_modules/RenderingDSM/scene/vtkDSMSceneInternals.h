@@ -8,6 +8,7 @@
 #include "vtkDSMFrameProp.h"
 #include "vtkDSMMovingDetail.h"
 #include "vtkDSMRankGroup.h"
+#include "vtkDSMReadAhead.h"
 #include "vtkDSMScene.h"
 #include "vtkDSMSceneMembers.h"
 #include "vtkDSMStatistics.h"
@@ -15,6 +16,7 @@
 
 #include "vtkMultiProcessController.h"
 #include "vtkNew.h"
+#include "vtkRenderWindow.h"
 #include "vtkRenderer.h"
 #include "vtkSmartPointer.h"
 #include "vtkWeakPointer.h"
@@ -75,6 +77,10 @@ public:
   int InteractiveReduction = 0;
   bool AlwaysFinest = false;
   vtkDSMTranslation::TileDisplay Display;
+  /// Nothing is read ahead until the window has been drawn.
+  std::optional<vtkDSMReadAhead::Pause> Busy;
+  vtkWeakPointer<vtkRenderWindow> Window; ///< that says so
+  unsigned long WindowObserver = 0;
   vtkDSMMemorySettings Settings; ///< that the objects ask for
   unsigned SettledVersion = 0;   ///< of the group's settings
 
