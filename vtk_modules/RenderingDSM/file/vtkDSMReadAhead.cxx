@@ -4,10 +4,12 @@
 #include "DSMCore/fetch/ReaderThreads.h"
 
 #include <algorithm>
+#include <chrono>
 #include <deque>
 #include <exception>
 #include <map>
 #include <mutex>
+#include <thread>
 #include <unordered_map>
 #include <unordered_set>
 #include <utility>
@@ -18,6 +20,10 @@ namespace
 
 /// What is read ahead takes this part of the cache's room at most.
 constexpr std::size_t RoomDivisor = 2;
+
+/// After a picture, ParaView's processes still talk to one another: on a host without spare cores, reading would keep
+/// them from it for longer than this.
+constexpr std::chrono::milliseconds Rest{ 10 };
 
 } // namespace
 
@@ -99,6 +105,13 @@ struct vtkDSMReadAhead::Shared : std::enable_shared_from_this<Shared>
   void ReadNext()
   {
     std::unique_lock<std::mutex> lock(this->Guard);
+    while (this->Pauses == 0 && std::chrono::steady_clock::now() < this->RestsUntil)
+    {
+      const auto until = this->RestsUntil;
+      lock.unlock();
+      std::this_thread::sleep_until(until);
+      lock.lock();
+    }
     if (this->Pauses == 0 && !this->Waiting.empty())
     {
       const Job job = std::move(this->Waiting.front());
@@ -141,6 +154,7 @@ struct vtkDSMReadAhead::Shared : std::enable_shared_from_this<Shared>
   vol::ChunkCache& Cache;
   std::mutex Guard;
   int Pauses = 0;
+  std::chrono::steady_clock::time_point RestsUntil;
   bool IsReading = false;
   std::deque<Job> Waiting;
   std::map<std::uint64_t, std::shared_ptr<Step>> Steps;
@@ -219,5 +233,6 @@ vtkDSMReadAhead::Pause::~Pause()
 {
   const std::lock_guard<std::mutex> lock(this->Ahead.State->Guard);
   --this->Ahead.State->Pauses;
+  this->Ahead.State->RestsUntil = std::chrono::steady_clock::now() + Rest;
   this->Ahead.State->Begin();
 }

@@ -57,7 +57,7 @@ public:
   /// Forgets steps that nobody has any more: call it when those who may take over have had time to.
   void Tidy();
 
-  /// As long as there is one, no read begins: a frame is being made.
+  /// As long as there is one, and for a moment afterwards, no read begins: a frame is being made.
   class Pause
   {
   public:
