@@ -32,8 +32,8 @@ TEST(BackOff, LongPatienceDoesNotSleepBeforeOthersHaveWokenUp)
 {
   const auto measure = [](dsm::BackOff::Patience patience)
   {
-    int most = 0; // of several tries: the host may take its core away
-    for (int attempt = 0; attempt < 20; ++attempt)
+    int most = 0; // of many tries: the host may take its core away
+    for (int attempt = 0; attempt < 200; ++attempt)
     {
       dsm::BackOff backOff;
       backOff.Reset(patience);
@@ -49,7 +49,7 @@ TEST(BackOff, LongPatienceDoesNotSleepBeforeOthersHaveWokenUp)
     return most;
   };
   EXPECT_LT(measure(dsm::BackOff::Patience::Short), 50) << "it polls 40 times, and sleeps";
-  EXPECT_GT(measure(dsm::BackOff::Patience::Long), 100);
+  EXPECT_GT(measure(dsm::BackOff::Patience::Long), 60);
   dsm::BackOff backOff;
   backOff.Reset(dsm::BackOff::Patience::Long);
   const auto start = Clock::now();

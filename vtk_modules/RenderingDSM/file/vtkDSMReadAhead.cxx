@@ -21,9 +21,9 @@ namespace
 /// What is read ahead takes this part of the cache's room at most.
 constexpr std::size_t RoomDivisor = 2;
 
-/// After a picture, ParaView's processes still talk to one another: on a host without spare cores, reading would keep
-/// them from it for longer than this.
-constexpr std::chrono::milliseconds Rest{ 10 };
+/// After a frame its picture is still drawn and delivered, and ParaView's processes talk to one another: on a host without
+/// spare cores, reading would keep them from it for longer than this.
+constexpr std::chrono::milliseconds Rest{ 30 };
 
 } // namespace
 

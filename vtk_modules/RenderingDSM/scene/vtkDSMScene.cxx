@@ -61,10 +61,6 @@ vtkDSMScene::~vtkDSMScene()
     }
     renderer->RemoveViewProp(this->Self->Prop);
   }
-  if (vtkRenderWindow* window = this->Self->Window)
-  {
-    window->RemoveObserver(this->Self->WindowObserver);
-  }
 }
 
 vtkSmartPointer<vtkDSMScene> vtkDSMScene::ForRenderer(vtkRenderer* renderer)
@@ -132,26 +128,11 @@ void vtkDSMScene::EndFrame()
   Internals& self = *this->Self;
   self.Prop->SetBounds(self.Bounds);
   self.Prop->SetUseBounds(self.Group && self.Group->GetMessenger().GetSize() > 1);
-}
-
-void vtkDSMScene::ObserveWindow()
-{
-  vtkRenderWindow* const window = this->Self->Renderer->GetRenderWindow();
-  if (window == this->Self->Window)
-  {
-    return;
-  }
-  if (this->Self->Window)
-  {
-    this->Self->Window->RemoveObserver(this->Self->WindowObserver);
-  }
-  this->Self->Window = window;
-  this->Self->WindowObserver =
-    window ? window->AddObserver(vtkCommand::EndEvent, this, &vtkDSMScene::EndWindow) : 0;
+  this->EndReading();
 }
 
 /// What was published for the frame has found what was read ahead for it; the rest is of no use.
-void vtkDSMScene::EndWindow()
+void vtkDSMScene::EndReading()
 {
   vtkDSMReadAhead::GetShared().Tidy();
   this->Self->Busy.reset();
@@ -324,7 +305,7 @@ bool vtkDSMScene::TraceImage(int width, int height, vtkImageData* image, bool tr
   this->NoteBackground();
   self.Image = Internals::Target{ width, height, image, transparent };
   const bool traced = this->TraceFrame();
-  this->EndWindow();
+  this->EndReading();
   self.Image.reset();
   return traced;
 }
@@ -338,7 +319,6 @@ bool vtkDSMScene::TraceFrame()
   self.Prop->UseBoundsOn();
   self.Busy.reset();
   self.Busy.emplace(vtkDSMReadAhead::GetShared());
-  this->ObserveWindow();
   dsm::FirstFailure found;
   found.Try([&] { self.Members.Find(self.Renderer); });
   if (found.IsEmpty() && self.Members.GetShown().empty())

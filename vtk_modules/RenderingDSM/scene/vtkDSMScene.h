@@ -213,8 +213,7 @@ private:
   void Trace();
   bool TraceFrame();
   void EndFrame();
-  void ObserveWindow();
-  void EndWindow();
+  void EndReading();
 
   class Internals;
   std::unique_ptr<Internals> Self;

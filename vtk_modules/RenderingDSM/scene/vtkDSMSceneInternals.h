@@ -16,7 +16,6 @@
 
 #include "vtkMultiProcessController.h"
 #include "vtkNew.h"
-#include "vtkRenderWindow.h"
 #include "vtkRenderer.h"
 #include "vtkSmartPointer.h"
 #include "vtkWeakPointer.h"
@@ -77,10 +76,8 @@ public:
   int InteractiveReduction = 0;
   bool AlwaysFinest = false;
   vtkDSMTranslation::TileDisplay Display;
-  /// Nothing is read ahead until the window has been drawn.
+  /// Nothing is read ahead until the renderer has drawn the frame.
   std::optional<vtkDSMReadAhead::Pause> Busy;
-  vtkWeakPointer<vtkRenderWindow> Window; ///< that says so
-  unsigned long WindowObserver = 0;
   vtkDSMMemorySettings Settings; ///< that the objects ask for
   unsigned SettledVersion = 0;   ///< of the group's settings
 
