@@ -87,13 +87,19 @@ bool ReadingSource::TryRead(const Wanted& wanted)
 {
   const BlockWant& block = wanted.Block;
   const std::size_t bytes = block.From->GetDirectory().GetBytes(block.Id);
-  Ready ready{ block, wanted.Place, {} };
-  ready.Bytes.resize(wanted.Place ? 0 : bytes);
-  if (!this->Reader->TryRead(block.Id, wanted.Place ? wanted.Place : ready.Bytes.data(), bytes))
+  if (!wanted.Place)
+  {
+    this->Spare.resize(bytes);
+  }
+  if (!this->Reader->TryRead(block.Id, wanted.Place ? wanted.Place : this->Spare.data(), bytes))
   {
     return false;
   }
-  this->AtHand.push_back(std::move(ready));
+  this->AtHand.push_back({ block, wanted.Place, {} });
+  if (!wanted.Place)
+  {
+    this->AtHand.back().Bytes.swap(this->Spare);
+  }
   return true;
 }
 

@@ -64,9 +64,10 @@ private:
   std::shared_ptr<const BlockReader> Reader;
   std::string Name;
   std::shared_ptr<Shared> State;
-  std::deque<Wanted> Waiting;  ///< not with the threads yet
-  std::vector<Wanted> Reading; ///< with the threads, or done and not delivered; in order
-  std::vector<Ready> AtHand;   ///< that needed no thread, and are not delivered
+  std::deque<Wanted> Waiting;   ///< not with the threads yet
+  std::vector<Wanted> Reading;  ///< with the threads, or done and not delivered; in order
+  std::vector<Ready> AtHand;    ///< that needed no thread, and are not delivered
+  std::vector<std::byte> Spare; ///< for the next one of these without a place
   double Seconds =
     0.0; ///< in which this process polled, or might have: not those when it was stopped
   std::chrono::steady_clock::time_point LastPoll;

@@ -175,10 +175,17 @@ void Messenger::Internals::Keep(std::exception_ptr failure)
 void Messenger::Internals::ProgressUntil(FunctionRef<bool()> done, FunctionRef<bool()> work)
 {
   const Wait wait(*this, !work || this->IsServing); // other work may take its time
-  this->Idle.Reset();
+  this->MoveUntil(
+    done, [this] { return this->Progress(); }, work, BackOff::Patience::Short);
+}
+
+void Messenger::Internals::MoveUntil(FunctionRef<bool()> done, FunctionRef<bool()> move,
+  FunctionRef<bool()> work, BackOff::Patience patience)
+{
+  this->Idle.Reset(patience);
   while (!done())
   {
-    bool any = this->Progress();
+    bool any = move();
     this->Watch();
     if (work)
     {
@@ -186,7 +193,7 @@ void Messenger::Internals::ProgressUntil(FunctionRef<bool()> done, FunctionRef<b
     }
     if (any)
     {
-      this->Idle.Reset();
+      this->Idle.Reset(patience);
     }
     else
     {
@@ -255,25 +262,7 @@ void Messenger::Internals::Await(FunctionRef<bool()> done, FunctionRef<bool()> w
     return any;
   };
   const Wait wait(*this, true);
-  const auto patience = work ? BackOff::Patience::Short : BackOff::Patience::Long;
-  this->Idle.Reset(patience);
-  while (!done())
-  {
-    bool any = move();
-    this->Watch();
-    if (work)
-    {
-      any |= work();
-    }
-    if (any)
-    {
-      this->Idle.Reset(patience);
-    }
-    else
-    {
-      this->Idle.Wait();
-    }
-  }
+  this->MoveUntil(done, move, work, work ? BackOff::Patience::Short : BackOff::Patience::Long);
 }
 
 void Messenger::Internals::PostCopy(int destination, const std::byte* bytes, std::size_t count)

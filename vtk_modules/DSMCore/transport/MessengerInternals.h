@@ -48,6 +48,9 @@ public:
   /// ProgressUntil that throws only what `work` throws: what handlers throw waits for Progress, and
   /// what does not get through for the lack of memory is tried again.
   void Await(FunctionRef<bool()> done, FunctionRef<bool()> work = {});
+  /// The loop of both: `move` moves messages, and returns whether any moved.
+  void MoveUntil(FunctionRef<bool()> done, FunctionRef<bool()> move, FunctionRef<bool()> work,
+    BackOff::Patience patience);
   /// Posts a copy.
   void PostCopy(int destination, const std::byte* bytes, std::size_t count);
   /// Rank 0's bytes to all, along a binomial tree.

@@ -4,7 +4,6 @@
 #include "DSMRayTracing/base/ByteHash.h"
 #include "DSMVolumeFiles/base/CopyBox.h"
 
-#include <algorithm>
 #include <utility>
 
 namespace vol
@@ -47,7 +46,7 @@ std::size_t ChunkCache::GetLimit() const
 std::size_t ChunkCache::GetRoom() const
 {
   const std::lock_guard<std::mutex> lock(this->Guard);
-  return std::min(this->Limit, this->Restriction);
+  return this->ComputeRoom();
 }
 
 std::size_t ChunkCache::Restrict(std::size_t bytes)
@@ -55,13 +54,13 @@ std::size_t ChunkCache::Restrict(std::size_t bytes)
   const std::lock_guard<std::mutex> lock(this->Guard);
   this->Restriction = bytes;
   this->Evict();
-  return std::min(this->Limit, this->Restriction);
+  return this->ComputeRoom();
 }
 
 bool ChunkCache::Lend(std::size_t bytes, std::size_t divisor)
 {
   const std::lock_guard<std::mutex> lock(this->Guard);
-  if (this->Lent + bytes > std::min(this->Limit, this->Restriction) / divisor)
+  if (this->Lent + bytes > this->ComputeRoom() / divisor)
   {
     return false;
   }
@@ -213,7 +212,7 @@ bool ChunkCache::ReadWithHalo(const std::shared_ptr<const VolumeFile>& file, std
 
 void ChunkCache::Evict()
 {
-  while (this->Bytes > std::min(this->Limit, this->Restriction) && !this->Order.empty())
+  while (this->Bytes > this->ComputeRoom() && !this->Order.empty())
   {
     const auto last = this->Entries.find(this->Order.back());
     this->Bytes -= last->second.Bytes;

@@ -4,6 +4,7 @@
 
 #include "DSMVolumeFiles/format/VolumeFile.h"
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <future>
@@ -94,6 +95,8 @@ private:
   /// A box that a chunk and its halo fill, where the file has these together and the chunk is not here.
   bool ReadWithHalo(const std::shared_ptr<const VolumeFile>& file, std::size_t array, int step,
     const rt::Box& box, std::byte* out);
+  /// Under the lock, as GetRoom without it.
+  std::size_t ComputeRoom() const { return std::min(this->Limit, this->Restriction); }
   void Evict();
 
   mutable std::mutex Guard;

@@ -84,6 +84,13 @@ struct vtkDSMReadAhead::Shared : std::enable_shared_from_this<Shared>
   {
   }
 
+  /// Whether the brick was not added before.
+  static bool Note(Step& step, dsm::BlockId id)
+  {
+    const std::lock_guard<std::mutex> lock(step.Self->Guard);
+    return step.Self->Known.insert(id).second;
+  }
+
   /// Under the lock: has the next brick read, if there is any and nothing stands against it.
   void Begin()
   {
@@ -158,12 +165,6 @@ struct vtkDSMReadAhead::Shared : std::enable_shared_from_this<Shared>
   bool IsReading = false;
   std::deque<Job> Waiting;
   std::map<std::uint64_t, std::shared_ptr<Step>> Steps;
-
-  static bool Note(Step& step, dsm::BlockId id)
-  {
-    const std::lock_guard<std::mutex> lock(step.Self->Guard);
-    return step.Self->Known.insert(id).second;
-  }
 };
 
 vtkDSMReadAhead& vtkDSMReadAhead::GetShared()

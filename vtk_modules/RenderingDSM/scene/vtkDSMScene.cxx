@@ -317,7 +317,6 @@ bool vtkDSMScene::TraceFrame()
   self.Tracing = true;
   self.IsTraced = false;
   self.Prop->UseBoundsOn();
-  self.Busy.reset();
   self.Busy.emplace(vtkDSMReadAhead::GetShared());
   dsm::FirstFailure found;
   found.Try([&] { self.Members.Find(self.Renderer); });
