@@ -44,7 +44,8 @@ public:
   }
   ~HdfHandle()
   {
-    if (this->Id >= 0)
+    // A process that ends may have closed the library, with all that was open, before its last files.
+    if (this->Id >= 0 && H5Iis_valid(this->Id) > 0)
     {
       this->Close(this->Id);
     }
