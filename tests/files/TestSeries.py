@@ -4,17 +4,19 @@ those of the same steps through ParaView's own reader, bit for bit. Called as ru
 make_files.py behind the other arguments."""
 
 import os
+import shutil
 import sys
 
 from dsm_testing import *
 
 FILES = sys.argv[3]
+TILE_BRICKS = 6  # that rays of a tile meet, at most
 TIMES = (0.0, 1.0, 3.0, 2.0, 0.0)
 os.environ["XDG_CACHE_HOME"] = os.path.join(OUTPUT, "caches", str(get_ranks()))
 
 
-def get_series(kind):
-    return [os.path.join(FILES, f"play_{number:03}.{kind}") for number in range(4)]
+def get_series(kind, name="play", folder=FILES):
+    return [os.path.join(folder, f"{name}_{number:03}.{kind}") for number in range(4)]
 
 
 load_plugin()
@@ -50,6 +52,83 @@ for what, files, organization in plays:
     check("ERROR" not in messages.text, f"{what}, {organization}: no error: {messages.text}")
     for time, picture, other in zip(TIMES, pictures, expected):
         check((picture == other).all(), f"{what}, {organization}: step {time}, bit for bit")
+
+# Of a step, only bricks that are not as they were are fetched: 81 points are 5 bricks of 16 cells along each axis, and
+# what changes lies within the fourth of them.
+folder = os.path.join(OUTPUT, "calm", str(get_ranks()))
+os.makedirs(folder, exist_ok=True)
+calm = get_series("h5", "calm", folder)
+for source, target in zip(get_series("vti", "calm"), calm):
+    reader = simple.XMLImageDataReader(FileName=[source])
+    simple.SaveData(target, proxy=reader, PointDataArrays=["values"])
+    simple.Delete(reader)
+
+
+def play_calm(source, times, **properties):
+    display = show(source, view, [0.7], "values", **properties)
+    place_camera(view)
+    pictures, fetched, allowed = [], [], []
+    for time in times:
+        view.ViewTime = time
+        simple.Render(view)
+        rows = get_rows(display) if properties else []
+        pictures.append(render(view))
+        # Each rank one, and those before the tiles that it took over from another.
+        allowed.append(get_ranks() + TILE_BRICKS * sum(row["NewTiles"] for row in rows))
+        fetched.append(sum(row["Misses"] - row["Joins"] + row["Prefetches"] for row in rows))
+    simple.Delete(source)
+    return pictures, fetched, allowed
+
+
+TO_AND_FRO = (0.0, 1.0, 2.0, 3.0, 2.0, 0.0, 3.0)
+expected, _, _ = play_calm(simple.XMLImageDataReader(FileName=get_series("vti", "calm")), TO_AND_FRO)
+check((expected[0] != expected[1]).any() and (expected[1] != expected[3]).any(), "steps differ")
+check((expected[1] == expected[2]).all(), "the third is as the second")
+for organization in ("Object based", "Page based", "Replicated"):
+    for what, series in (("bricks", calm), ("values", get_series("nhdr", "calm"))):
+        source = simple.DSMVolumeReader(FileName=series)
+        with Messages() as messages:
+            pictures, fetched, allowed = play_calm(source, TO_AND_FRO, DSMMemoryOrganization=organization)
+        check("ERROR" not in messages.text, f"{what}, {organization}: no error: {messages.text}")
+        for time, picture, other in zip(TO_AND_FRO, pictures, expected):
+            check((picture == other).all(), f"{what}, {organization}: calm step {time}, bit for bit")
+        told = f"{fetched} fetched of {allowed}"
+        check(fetched[2] <= allowed[2] - get_ranks(), f"nothing for what is equal: {told}")
+        check(all(count > 0 for count in fetched[1:2] + fetched[3:]), f"what changed: {told}")
+        check(all(count <= most for count, most in zip(fetched[1:], allowed[1:])), f"one brick, no more: {told}")
+
+# A file that is replaced when a series has it no longer open: what was read of it must not meet the new values.
+many = [os.path.join(folder, f"many_{number}.h5") for number in range(9)]
+for number, file in enumerate(many):
+    shutil.copyfile(calm[number % 4], file)
+source = simple.DSMVolumeReader(FileName=many)
+scene.UpdateAnimationUsingDataTimeSteps()
+display = show(source, view, [0.7], "values")
+place_camera(view)
+
+
+def go_to(time):
+    with Messages() as messages:
+        scene.AnimationTime = view.ViewTime = time
+        picture = render(view)
+    return picture, messages.text
+
+
+for number in range(9):
+    last, text = go_to(float(number))
+    check("ERROR" not in text, f"step {number} of many: {text}")
+shutil.copyfile(calm[3], many[0] + ".new")
+os.replace(many[0] + ".new", many[0])
+picture, text = go_to(0.0)
+check("many_0.h5" in text and "Reload it." in text, f"a step that was replaced is named: {text}")
+check((picture == last).all(), "the last picture stays")
+picture, text = go_to(1.0)
+check("ERROR" not in text and (picture == expected[1]).all(), f"the other steps go on: {text}")
+with Messages() as messages:
+    simple.ReloadFiles(source)
+picture, text = go_to(0.0)
+check("ERROR" not in text and (picture == expected[3]).all(), f"it is there when it is reloaded: {text}")
+simple.Delete(source)
 
 opened = simple.OpenDataFile(get_series("nhdr"))
 check(len(opened.TimestepValues) == 4, "files that are chosen together are a series")

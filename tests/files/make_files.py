@@ -358,20 +358,38 @@ writer.SetCompression(False)
 writer.SetFileName(path("ball.mha"))
 writer.Write()
 
+
+
+def write_series(name, frames):
+    """Of each frame a file with a header, and one for ParaView's own reader."""
+    for number, frame in enumerate(frames):
+        file = f"{name}_{number:03}"
+        frame.tofile(path(file + ".bin"))
+        with open(path(file + ".nhdr"), "w", encoding="utf-8") as header:
+            header.write("NRRD0004\ntype: float\ndimension: 3\nsizes: {2} {1} {0}\n".format(*frame.shape))
+            header.write(f"endian: little\nencoding: raw\ndata file: {file}.bin\n")
+        image.SetDimensions(*reversed(frame.shape))
+        image.GetPointData().SetScalars(numpy_to_vtk(frame.ravel(), deep=True))
+        image.GetPointData().GetScalars().SetName("values")
+        writer = vtkXMLImageDataWriter()
+        writer.SetInputData(image)
+        writer.SetFileName(path(file + ".vti"))
+        writer.Write()
+
+
 # A ball that changes with time: files of four steps, and one of all.
 steps = [(ball * (1 + 0.2 * t) + 0.05 * t * x).astype("<f4") for t in range(4)]
-for number, step in enumerate(steps):
-    step.tofile(path(f"play_{number:03}.bin"))
-    with open(path(f"play_{number:03}.nhdr"), "w", encoding="utf-8") as header:
-        header.write("NRRD0004\ntype: float\ndimension: 3\nsizes: {} {} {}\n".format(*edges))
-        header.write(f"endian: little\nencoding: raw\ndata file: play_{number:03}.bin\n")
-    image.GetPointData().SetScalars(numpy_to_vtk(step.ravel(), deep=True))
-    image.GetPointData().GetScalars().SetName("values")
-    writer = vtkXMLImageDataWriter()
-    writer.SetInputData(image)
-    writer.SetFileName(path(f"play_{number:03}.vti"))
-    writer.Write()
+write_series("play", steps)
 write_steps("play.vtkhdf", [0.0, 1.0, 2.0, 3.0], [("values", np.stack(steps), None)], edges)
+
+# A ball of which little changes from step to step: bricks at one corner; the third step is as the second.
+edges = (81, 81, 81)
+z, y, x = np.meshgrid(*(np.linspace(-1, 1, n) for n in reversed(edges)), indexing="ij")
+ball = np.sqrt(x * x + y * y + z * z).astype("<f4")
+steps = [ball.copy() for _ in range(4)]
+for step, more in zip(steps, (0.0, 0.05, 0.05, 0.1)):
+    step[50:63, 50:63, 50:63] += np.float32(more)
+write_series("calm", steps)
 
 with open(path("manifest.json"), "w", encoding="utf-8") as file:
     json.dump(entries, file, indent=1)

@@ -68,6 +68,17 @@ protected:
   {
     std::filesystem::create_directories(this->Folder);
     setenv("XDG_CACHE_HOME", (this->Folder / "caches").c_str(), 1);
+    this->Write("ball.raw", 0.0);
+  }
+  ~VolumeFile() override
+  {
+    vtkDSMVolumeReader::SetCacheMebibytes(128);
+    std::filesystem::remove_all(this->Folder);
+  }
+
+  /// The distance from the middle, and so much more.
+  void Write(const std::string& name, double more) const
+  {
     std::vector<float> values;
     for (int place = 0; place < Edge * Edge * Edge; ++place)
     {
@@ -78,15 +89,10 @@ protected:
       {
         sum += std::pow(coordinate / (Edge - 1) - 0.5, 2.0);
       }
-      values.push_back(static_cast<float>(std::sqrt(sum)));
+      values.push_back(static_cast<float>(std::sqrt(sum) + more));
     }
-    std::ofstream file(this->Folder / "ball.raw", std::ios::binary);
+    std::ofstream file(this->Folder / name, std::ios::binary);
     file.write(reinterpret_cast<const char*>(values.data()), FileBytes);
-  }
-  ~VolumeFile() override
-  {
-    vtkDSMVolumeReader::SetCacheMebibytes(128);
-    std::filesystem::remove_all(this->Folder);
   }
 
   /// The colours of a picture of all that is new but the file.
@@ -166,8 +172,9 @@ TEST_F(VolumeFile, PlayingFetchesTheNextStep)
   std::vector<std::string> paths;
   for (int step = 0; step < 4; ++step)
   {
-    paths.push_back((this->Folder / ("ball" + std::to_string(step) + ".raw")).string());
-    std::filesystem::copy_file(this->Folder / "ball.raw", paths.back());
+    const std::string name = "ball" + std::to_string(step) + ".raw";
+    paths.push_back((this->Folder / name).string());
+    this->Write(name, 0.001 * step); // what is equal in two steps is not fetched again
   }
   if (CountPages(paths[2], true) > 0)
   {
@@ -243,6 +250,7 @@ public:
   }
 
   static constexpr dsm::BlockId Bad = 99;
+  static constexpr dsm::BlockId Same = 98; ///< as in the step before
   int Step;
   mutable std::atomic<int> Reads{ 0 };
 };
@@ -254,7 +262,11 @@ TEST(ReadAhead, TakesHalfOfTheCacheAndWaitsForFrames)
   vtkDSMReadAhead ahead(cache);
   std::atomic<int> told{ 0 };
   const auto open = [&](std::uint64_t key, const std::shared_ptr<StepOnDisk>& disk)
-  { return ahead.Open(key, disk, [&told](dsm::BlockId) { ++told; }); };
+  {
+    return ahead.Open(key,
+      { disk, [&told](dsm::BlockId) { ++told; },
+        [](dsm::BlockId id) { return id == StepOnDisk::Same; } });
+  };
   const auto first = std::make_shared<StepOnDisk>(1);
   const auto wait = [&](const StepOnDisk& disk)
   {
@@ -278,6 +290,7 @@ TEST(ReadAhead, TakesHalfOfTheCacheAndWaitsForFrames)
   EXPECT_EQ(wait(*first), 4);
   EXPECT_EQ(cache.GetBytes(), 4 * bytes);
   ahead.Add(step, StepOnDisk::Bad, bytes);
+  ahead.Add(step, StepOnDisk::Same, bytes);
   for (dsm::BlockId id = 4; id < 16; ++id)
   {
     ahead.Add(step, id, bytes);
@@ -292,6 +305,7 @@ TEST(ReadAhead, TakesHalfOfTheCacheAndWaitsForFrames)
   EXPECT_FALSE(step->Take(3, block.data(), bytes)) << "it was given away";
   EXPECT_FALSE(step->Take(4, block.data(), bytes - 1)) << "of another size";
   EXPECT_FALSE(step->Take(StepOnDisk::Bad, block.data(), bytes));
+  EXPECT_FALSE(step->Take(StepOnDisk::Same, block.data(), bytes)) << "nobody will ask for it";
   EXPECT_FALSE(step->Take(15, block.data(), bytes)) << "there was no room";
   EXPECT_EQ(cache.GetBytes(), 9 * bytes);
 

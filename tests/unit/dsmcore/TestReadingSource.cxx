@@ -194,6 +194,45 @@ TEST_P(BlocksOnDisk, WhatWasReadAheadNeedsNoRead)
     });
 }
 
+/// As from one time step to the next: what has not changed is not read again.
+TEST_P(BlocksOnDisk, GetOtherContents)
+{
+  this->Run(
+    [](dsm::Messenger& messenger, dsm::MemoryOrganization organization)
+    {
+      const auto ranks = static_cast<std::size_t>(messenger.GetSize());
+      DiskStore disks(messenger, organization, (DiskStore::BlocksOfRank + 2) * ranks + 2);
+      disks.Disk->OfEveryThird = std::byte(0);
+      const dsm::BlockId count = disks.Segment->GetDirectory().GetCount();
+      const std::size_t wrong = disks.CountWrong();
+      EXPECT_GT(wrong, 0u);
+      EXPECT_EQ(wrong % ((count + 2) / 3 * Bytes), 0u) << "the same to each worker";
+
+      EXPECT_TRUE(disks.Store.MayRefresh(disks.Segment));
+      EXPECT_FALSE(disks.Store.MayUpdate(disks.Segment));
+      const auto next = std::make_shared<dsm_test::PatternDisk>();
+      disks.Source->SetReader(next);
+      const bool byAll = organization == dsm::MemoryOrganization::Replicated;
+      std::vector<bool> changed(count);
+      std::size_t mine = 0;
+      std::size_t mineChanged = 0;
+      for (dsm::BlockId id = 0; id < count; ++id)
+      {
+        changed[id] = id % 3 == 0;
+        const bool isMine =
+          byAll || disks.Segment->GetDirectory().GetOwner(id) == messenger.GetRank();
+        mine += isMine ? 1 : 0;
+        mineChanged += isMine && changed[id] ? 1 : 0;
+      }
+      disks.Store.Refresh("The next step", disks.Segment, changed);
+      EXPECT_EQ(next->Kept, mine - mineChanged);
+      disks.ReadAll();
+      EXPECT_EQ(next->Reads, mineChanged);
+      disks.ReadAll();
+      EXPECT_EQ(next->Reads, mineChanged);
+    });
+}
+
 TEST_P(BlocksOnDisk, RandomAccess)
 {
   this->Run([](dsm::Messenger& messenger, dsm::MemoryOrganization organization)

@@ -68,7 +68,17 @@ void BlockFetcher::Refresh(const BlockSegment& segment, const std::vector<bool>&
   }
   {
     const std::lock_guard<std::mutex> lock(this->Guard);
-    this->Expected.NoteChanged(segment, which, [&] { return this->ListCached(segment); });
+    const auto kept =
+      this->Expected.NoteChanged(segment, which, [&] { return this->ListCached(segment); });
+    for (const BlockId id : kept)
+    {
+      const BlockWant block{ &segment, id };
+      BlockSource* const source = this->IsOwned(block) ? this->FindSource(block) : nullptr;
+      if (source)
+      {
+        source->NoteKept(block);
+      }
+    }
     this->Forget(segment, which);
   }
   this->EndService(); // their memory goes

@@ -21,6 +21,9 @@ public:
   /// The same where it takes no longer than a copy, since the block was read ahead. Else returns false, and
   /// has done nothing.
   virtual bool TryRead(BlockId, std::byte*, std::size_t) const { return false; }
+  /// A block that was read by the reader before this one is still in use, and need not be read again: it is
+  /// what this one would read, too.
+  virtual void NoteKept(BlockId, std::size_t /*bytes*/) const {}
 };
 
 } // namespace dsm

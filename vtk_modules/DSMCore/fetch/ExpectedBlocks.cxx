@@ -65,20 +65,22 @@ void ExpectedBlocks::NoteAdded(const BlockSegment& segment) noexcept
   this->Gone.erase(std::next(like).base());
 }
 
-void ExpectedBlocks::NoteChanged(const BlockSegment& segment, const std::vector<bool>& which,
-  FunctionRef<Ids()> listCached) noexcept
+ExpectedBlocks::Ids ExpectedBlocks::NoteChanged(const BlockSegment& segment,
+  const std::vector<bool>& which, FunctionRef<Ids()> listCached) noexcept
 {
   try
   {
-    Ids blocks = this->ListUsed(segment, listCached);
-    blocks.erase(
-      std::remove_if(blocks.begin(), blocks.end(), [&](BlockId id) { return !which[id]; }),
-      blocks.end());
+    Ids kept = this->ListUsed(segment, listCached);
+    const auto changed =
+      std::stable_partition(kept.begin(), kept.end(), [&](BlockId id) { return !which[id]; });
     Ids& wanted = this->Wanted[&segment];
-    wanted.insert(wanted.end(), blocks.begin(), blocks.end());
+    wanted.insert(wanted.end(), changed, kept.end());
+    kept.erase(changed, kept.end());
+    return kept;
   }
   catch (const std::bad_alloc&)
   {
+    return {};
   }
 }
 

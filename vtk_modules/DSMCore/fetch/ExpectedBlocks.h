@@ -25,7 +25,8 @@ public:
   /// Between frames. `listCached`: the segment's blocks that are here; may throw.
   void NoteRetired(const BlockSegment& segment, FunctionRef<Ids()> listCached) noexcept;
   void NoteAdded(const BlockSegment& segment) noexcept;
-  void NoteChanged(const BlockSegment& segment, const std::vector<bool>& which,
+  /// Returns those that were used and have not changed.
+  Ids NoteChanged(const BlockSegment& segment, const std::vector<bool>& which,
     FunctionRef<Ids()> listCached) noexcept;
 
   /// `visit` is called for each segment of which blocks are expected.

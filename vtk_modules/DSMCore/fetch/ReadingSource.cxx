@@ -204,6 +204,11 @@ void ReadingSource::Abandon() noexcept
   this->State->Come.clear();
 }
 
+void ReadingSource::NoteKept(const BlockWant& block)
+{
+  this->Reader->NoteKept(block.Id, block.From->GetDirectory().GetBytes(block.Id));
+}
+
 void ReadingSource::Read(BlockId id, std::byte* block, std::size_t bytes) const
 {
   this->Reader->Read(id, block, bytes);

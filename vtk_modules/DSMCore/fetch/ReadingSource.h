@@ -11,6 +11,7 @@
 #include <deque>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace dsm
@@ -33,7 +34,12 @@ public:
   bool Submit() override;
   bool Poll(const Deliver& deliver) override;
   void Abandon() noexcept override;
+  void NoteKept(const BlockWant& block) override;
   void Read(BlockId id, std::byte* block, std::size_t bytes) const override;
+
+  /// Between frames: other contents, of blocks of the same sizes. Whoever has blocks of the old ones has to be
+  /// told (BlockStore::Refresh).
+  void SetReader(std::shared_ptr<const BlockReader> reader) { this->Reader = std::move(reader); }
 
   /// Reads that are with the threads, or have come back and were not delivered: what they take of the
   /// memory, and of the communication thread's time at once, is bounded.

@@ -3,30 +3,15 @@
 #define dsm_FragmentDigests_h
 
 #include "DSMCore/base/Block.h"
+#include "DSMCore/base/ByteDigest.h"
 #include "DSMCore/publish/Publication.h"
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
 
 namespace dsm
 {
-
-/// A hash of 128 bits, of bytes that nobody made up to deceive it: two halves that mix the same words in
-/// unlike ways. Each step can be undone when the word is known, so bytes that differ in one word never
-/// have the same.
-class ByteDigest
-{
-public:
-  void Add(const std::byte* bytes, std::size_t count);
-
-  bool operator==(const ByteDigest& other) const { return this->State == other.State; }
-  bool operator!=(const ByteDigest& other) const { return !(*this == other); }
-
-private:
-  std::array<std::uint64_t, 2> State{ 0x9e3779b97f4a7c15u, 0xc2b2ae3d27d4eb4fu };
-};
 
 /// What a rank contributes to each block of a segment, in a few bytes a block: whoever publishes such
 /// blocks again learns from it which of them its part has changed of.

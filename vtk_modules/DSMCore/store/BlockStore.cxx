@@ -490,6 +490,20 @@ void BlockStore::Update(std::string_view what, const std::shared_ptr<BlockSegmen
   ++this->Publications;
 }
 
+bool BlockStore::MayRefresh(const std::shared_ptr<BlockSegment>& segment) const
+{
+  return segment && this->Settled && this->Segments.Has(*segment) &&
+    segment->GetDirectory().IsFromSource() && !segment->GetDirectory().IsOnOwnersDisk();
+}
+
+void BlockStore::Refresh(std::string_view what, const std::shared_ptr<BlockSegment>& segment,
+  const std::vector<bool>& changed)
+{
+  segment->CountUpdate(); // first, as with Update
+  this->Visit([&](auto& store) { store.Refresh(what, *segment, changed); });
+  ++this->Publications;
+}
+
 void BlockStore::Retire(const std::shared_ptr<BlockSegment>& segment)
 {
   if (segment && this->Segments.Remove(*segment))

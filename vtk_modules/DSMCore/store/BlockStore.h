@@ -115,6 +115,13 @@ public:
     const std::vector<bool>& chosen, FragmentSource& source, FragmentSink& sink,
     FunctionRef<void(double)> progress = {});
 
+  /// Local, between frames: the same of Refresh.
+  bool MayRefresh(const std::shared_ptr<BlockSegment>& segment) const;
+  /// Collective, between frames. The source of these blocks brings other contents from now on, for those of which
+  /// `changed` says so (the same on every rank): what ranks have of them leaves memory. Throws as Update does.
+  void Refresh(std::string_view what, const std::shared_ptr<BlockSegment>& segment,
+    const std::vector<bool>& changed);
+
   /// Collective in order (no message is exchanged), between frames.
   void Retire(const std::shared_ptr<BlockSegment>& segment);
 

@@ -33,6 +33,13 @@ bool IsSurveyable(const ValueRange& range)
   return range.First < range.Last && std::isfinite(range.First) && std::isfinite(range.Last);
 }
 
+/// What is found of a brick.
+struct Seen
+{
+  ValueRange Range;
+  dsm::ByteDigest Digest;
+};
+
 /// Looks through a rank's bricks, with several threads.
 class Looker
 {
@@ -48,7 +55,7 @@ public:
   {
   }
 
-  void Look(const dsm::BlockId* ids, std::size_t count, ValueRange* ranges)
+  void Look(const dsm::BlockId* ids, std::size_t count, Seen* seen)
   {
     ParallelFor(this->Threads, count,
       [&](std::size_t index, int thread)
@@ -58,7 +65,8 @@ public:
         this->Reader.Read(ids[index], block.data(), block.size());
         VoxelBrickHeader header;
         std::memcpy(&header, block.data(), sizeof(header));
-        ranges[index] = { header.First, header.Last };
+        seen[index] = { { header.First, header.Last }, {} };
+        seen[index].Digest.Add(block.data(), block.size());
         if (IsSurveyable(this->Guess))
         {
           this->Surveys[static_cast<std::size_t>(thread)].CountBrick(
@@ -97,10 +105,11 @@ std::vector<std::byte> VoxelIndex::Encode() const
     const auto* first = static_cast<const std::byte*>(from);
     bytes.insert(bytes.end(), first, first + count);
   };
-  bytes.reserve(
-    this->Bricks.size() * sizeof(ValueRange) + sizeof(IsovalueSurvey) + sizeof(std::uint64_t));
+  bytes.reserve(this->Bricks.size() * (sizeof(ValueRange) + sizeof(dsm::ByteDigest)) +
+    sizeof(IsovalueSurvey) + sizeof(std::uint64_t));
   add(this->Bricks.data(), this->Bricks.size() * sizeof(ValueRange));
   add(&this->Survey, sizeof(IsovalueSurvey));
+  add(this->Digests.data(), this->Digests.size() * sizeof(dsm::ByteDigest));
   const std::uint64_t hash = Hash(bytes.data(), bytes.size());
   add(&hash, sizeof(hash));
   return bytes;
@@ -109,12 +118,15 @@ std::vector<std::byte> VoxelIndex::Encode() const
 std::optional<VoxelIndex> VoxelIndex::Decode(
   const std::vector<std::byte>& bytes, std::size_t bricks)
 {
-  const std::size_t end = bricks * sizeof(ValueRange) + sizeof(IsovalueSurvey);
+  const std::size_t endOfSurvey = bricks * sizeof(ValueRange) + sizeof(IsovalueSurvey);
+  const std::size_t digestBytes = bricks * sizeof(dsm::ByteDigest);
   std::uint64_t hash = 0;
-  if (bytes.size() != end + sizeof(hash))
+  const bool hasDigests = bytes.size() == endOfSurvey + digestBytes + sizeof(hash);
+  if (!hasDigests && bytes.size() != endOfSurvey + sizeof(hash))
   {
     return std::nullopt;
   }
+  const std::size_t end = bytes.size() - sizeof(hash);
   std::memcpy(&hash, bytes.data() + end, sizeof(hash));
   if (hash != Hash(bytes.data(), end))
   {
@@ -124,7 +136,26 @@ std::optional<VoxelIndex> VoxelIndex::Decode(
   index.Bricks.resize(bricks);
   std::memcpy(index.Bricks.data(), bytes.data(), bricks * sizeof(ValueRange));
   std::memcpy(&index.Survey, bytes.data() + bricks * sizeof(ValueRange), sizeof(IsovalueSurvey));
+  if (hasDigests)
+  {
+    index.Digests.resize(bricks);
+    std::memcpy(index.Digests.data(), bytes.data() + endOfSurvey, digestBytes);
+  }
   return index;
+}
+
+std::vector<bool> VoxelIndex::Compare(const std::vector<dsm::ByteDigest>& digests,
+  const std::vector<dsm::ByteDigest>& others, std::size_t bricks)
+{
+  std::vector<bool> differ(bricks, true);
+  if (digests.size() == bricks && others.size() == bricks)
+  {
+    for (std::size_t brick = 0; brick < bricks; ++brick)
+    {
+      differ[brick] = digests[brick] != others[brick];
+    }
+  }
+  return differ;
 }
 
 ValueRange VoxelIndex::Round(ScalarType type, double least, double greatest)
@@ -148,12 +179,12 @@ VoxelIndex VoxelIndex::Find(dsm::Messenger& messenger, const BrickLattice& latti
   const auto getBegin = [=](std::size_t rank) { return count * rank / ranks; };
   const std::size_t begin = getBegin(static_cast<std::size_t>(messenger.GetRank()));
   const std::size_t mine = getBegin(static_cast<std::size_t>(messenger.GetRank()) + 1) - begin;
-  std::vector<ValueRange> ranges;
+  std::vector<Seen> seen;
   std::optional<Looker> looker;
   messenger.RunTogether(what,
     [&]
     {
-      ranges.resize(mine);
+      seen.resize(mine);
       looker.emplace(lattice, reader, pass.Guess, pass.Threads);
     });
   for (std::size_t round = 0; round < Rounds; ++round)
@@ -163,7 +194,7 @@ VoxelIndex VoxelIndex::Find(dsm::Messenger& messenger, const BrickLattice& latti
       {
         const std::size_t first = mine * round / Rounds;
         looker->Look(pass.Order.data() + begin + first, mine * (round + 1) / Rounds - first,
-          ranges.data() + first);
+          seen.data() + first);
         if (progress)
         {
           progress(static_cast<double>(round + 1) / Rounds);
@@ -173,8 +204,8 @@ VoxelIndex VoxelIndex::Find(dsm::Messenger& messenger, const BrickLattice& latti
   const auto parts = messenger.GatherTogether(what,
     [&]
     {
-      std::vector<std::byte> bytes(mine * sizeof(ValueRange));
-      std::memcpy(bytes.data(), ranges.data(), bytes.size());
+      std::vector<std::byte> bytes(mine * sizeof(Seen));
+      std::memcpy(bytes.data(), seen.data(), bytes.size());
       return bytes;
     });
   VoxelIndex index;
@@ -182,12 +213,16 @@ VoxelIndex VoxelIndex::Find(dsm::Messenger& messenger, const BrickLattice& latti
     [&]
     {
       index.Bricks.resize(count);
+      index.Digests.resize(count);
       for (std::size_t rank = 0; rank < ranks; ++rank)
       {
         for (std::size_t place = getBegin(rank); place < getBegin(rank + 1); ++place)
         {
-          std::memcpy(&index.Bricks[pass.Order[place]],
-            parts[rank].data() + (place - getBegin(rank)) * sizeof(ValueRange), sizeof(ValueRange));
+          Seen one;
+          std::memcpy(
+            &one, parts[rank].data() + (place - getBegin(rank)) * sizeof(Seen), sizeof(Seen));
+          index.Bricks[pass.Order[place]] = one.Range;
+          index.Digests[pass.Order[place]] = one.Digest;
         }
       }
     });

@@ -2,6 +2,7 @@
 #ifndef rt_VoxelIndex_h
 #define rt_VoxelIndex_h
 
+#include "DSMCore/base/ByteDigest.h"
 #include "DSMCore/base/FunctionRef.h"
 #include "DSMCore/fetch/BlockReader.h"
 #include "DSMCore/transport/Messenger.h"
@@ -22,6 +23,12 @@ struct VoxelIndex
 {
   std::vector<ValueRange> Bricks; ///< by id
   IsovalueSurvey Survey;          ///< of the range of all
+  /// Of the bricks' bytes, by id. Empty where it was kept by a version that had none.
+  std::vector<dsm::ByteDigest> Digests;
+
+  /// Which bricks are not known to have the same bytes in both, of as many.
+  static std::vector<bool> Compare(const std::vector<dsm::ByteDigest>& digests,
+    const std::vector<dsm::ByteDigest>& others, std::size_t bricks);
 
   /// As it is kept, with a checksum. Decode gives nothing where the bytes are not an index of as many
   /// bricks.

@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <list>
 #include <mutex>
+#include <optional>
 #include <utility>
 
 namespace vol
@@ -46,6 +47,8 @@ public:
     this->Arrays = first->GetArrays();
     this->Levels = first->GetLevels();
     this->Steps = static_cast<int>(paths.size());
+    this->Stamps.resize(paths.size());
+    this->Stamps.front() = first->GetStamp();
     this->Open.emplace_back(0, first);
     rt::ByteHash hash;
     for (const std::string& path : paths)
@@ -87,6 +90,17 @@ public:
 
   StepOrigin GetOrigin(int step) const override { return this->Get(step)->GetOrigin(0); }
 
+  std::uint64_t GetTableBytes() const override
+  {
+    const std::lock_guard<std::mutex> lock(this->Guard);
+    std::uint64_t most = 0;
+    for (const auto& [step, file] : this->Open)
+    {
+      most = std::max(most, file->GetTableBytes());
+    }
+    return most * std::min(MostOpen, this->Paths.size());
+  }
+
 private:
   std::shared_ptr<const VolumeFile> Get(int step) const
   {
@@ -101,6 +115,7 @@ private:
     const std::string& path = this->Paths[static_cast<std::size_t>(step)];
     const auto file = OpenVolumeFile(path, this->Options);
     this->CheckSame(*file);
+    this->CheckUnchanged(*file, this->Stamps[static_cast<std::size_t>(step)]);
     this->Open.emplace_front(step, file);
     if (this->Open.size() > MostOpen)
     {
@@ -127,9 +142,22 @@ private:
     }
   }
 
+  /// Values that were read of it are still about: they must not meet others. `known`: the stamp when it was opened
+  /// first, or none yet.
+  static void CheckUnchanged(const VolumeFile& file, std::optional<std::uint64_t>& known)
+  {
+    if (known.value_or(file.GetStamp()) != file.GetStamp())
+    {
+      throw dsm::Error("The file '" + file.GetPath() +
+        "' was written to, or another took its place, since it was opened first. Reload it.");
+    }
+    known = file.GetStamp();
+  }
+
   std::vector<std::string> Paths;
   OpenOptions Options;
   mutable std::mutex Guard;
+  mutable std::vector<std::optional<std::uint64_t>> Stamps; ///< of the steps
   /// Steps and their files, the last used first.
   mutable std::list<std::pair<int, std::shared_ptr<const VolumeFile>>> Open;
 };

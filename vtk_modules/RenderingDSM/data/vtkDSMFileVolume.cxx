@@ -5,8 +5,8 @@
 #include "DSMRayTracing/base/ByteHash.h"
 #include "DSMRayTracing/layout/DealBricks.h"
 #include "DSMVolumeFiles/format/SeriesFile.h"
-#include "DSMVolumeFiles/range/KeptFile.h"
 #include "vtkDSMFileArray.h"
+#include "vtkDSMFileVoxels.h"
 #include "vtkDSMGather.h"
 #include "vtkDSMImagePiece.h"
 #include "vtkDSMReadAhead.h"
@@ -18,6 +18,7 @@
 #include <cstring>
 #include <filesystem>
 #include <numeric>
+#include <optional>
 #include <tuple>
 #include <utility>
 
@@ -26,99 +27,6 @@ namespace
 
 using rt::Box;
 using rt::Index3;
-
-/// One component of what a file has, or the magnitude of all.
-class FileVoxels final : public rt::VoxelSource
-{
-public:
-  FileVoxels(std::shared_ptr<const vtkDSMFileValues> values, int component, rt::ScalarType type,
-    bool scattered)
-    : Values(std::move(values))
-    , Component(component)
-    , Type(type)
-    , Scattered(scattered)
-  {
-  }
-
-  Box GetCells() const override
-  {
-    return { Index3(0), this->Values->GetBox().GetSize() - Index3(1) };
-  }
-
-  void ReadSamples(const Box& points, std::byte* out) const override
-  {
-    const vol::FileArray& array = this->Values->GetArray();
-    if (array.Components == 1)
-    {
-      this->ReadBox(points, out);
-      return;
-    }
-    std::vector<std::byte> samples(
-      static_cast<std::size_t>(points.GetCount()) * array.GetSampleBytes());
-    this->ReadBox(points, samples.data());
-    rt::Dispatch(array.Type,
-      [&](auto zero)
-      {
-        using Native = decltype(zero);
-        const auto* from = reinterpret_cast<const Native*>(samples.data());
-        if (this->Component != vtkDSMImagePiece::Magnitude)
-        {
-          this->Pick(from, points.GetCount(), reinterpret_cast<Native*>(out));
-        }
-        else if (this->Type == rt::ScalarType::Float32)
-        {
-          this->FindMagnitudes(from, points.GetCount(), reinterpret_cast<float*>(out));
-        }
-        else
-        {
-          this->FindMagnitudes(from, points.GetCount(), reinterpret_cast<double*>(out));
-        }
-      });
-  }
-
-private:
-  void ReadBox(const Box& points, std::byte* out) const
-  {
-    if (!this->Scattered)
-    {
-      this->Values->ReadBox(points, out);
-      return;
-    }
-    this->Values->ReadScattered(points, out);
-  }
-
-  template <class Native>
-  void Pick(const Native* from, std::int64_t count, Native* out) const
-  {
-    const int components = this->Values->GetArray().Components;
-    for (std::int64_t sample = 0; sample < count; ++sample)
-    {
-      out[sample] = from[sample * components + this->Component];
-    }
-  }
-
-  /// As vtkDSMImagePiece finds them.
-  template <class Native, class Result>
-  void FindMagnitudes(const Native* from, std::int64_t count, Result* out) const
-  {
-    const int components = this->Values->GetArray().Components;
-    for (std::int64_t sample = 0; sample < count; ++sample)
-    {
-      double sum = 0.0;
-      for (int component = 0; component < components; ++component)
-      {
-        const auto value = static_cast<double>(from[sample * components + component]);
-        sum += value * value;
-      }
-      out[sample] = static_cast<Result>(std::sqrt(sum));
-    }
-  }
-
-  std::shared_ptr<const vtkDSMFileValues> Values;
-  int Component;
-  rt::ScalarType Type;
-  bool Scattered;
-};
 
 /// Bricks of a time step; the same ones of the next step are read ahead.
 class SteppingReader final : public dsm::BlockReader
@@ -152,6 +60,8 @@ public:
     }
     return isHere;
   }
+
+  void NoteKept(dsm::BlockId id, std::size_t bytes) const override { this->Foresee(id, bytes); }
 
 private:
   void Foresee(dsm::BlockId id, std::size_t bytes) const
@@ -329,7 +239,32 @@ std::unique_ptr<vtkDSMFileVolume> vtkDSMFileVolume::Find(dsm::Messenger& messeng
   {
     volume.reset();
   }
-  return KeepIfEverywhere(messenger, std::move(volume));
+  volume = KeepIfEverywhere(messenger, std::move(volume));
+  if (volume)
+  {
+    volume->CheckSameEverywhere(messenger);
+  }
+  return volume;
+}
+
+void vtkDSMFileVolume::CheckSameEverywhere(dsm::Messenger& messenger) const
+{
+  // A series opens a step's file when it is wanted, so one rank may have had it open for long.
+  vol::VolumeFile::StepOrigin origin;
+  const auto stamps = messenger.GatherValueTogether("Opening the volume's file",
+    [&]
+    {
+      origin = this->Values->GetFile()->GetOrigin(this->Values->GetStep());
+      return origin.Stamp;
+    });
+  if (std::any_of(
+        stamps.begin(), stamps.end(), [&](std::uint64_t stamp) { return stamp != stamps.front(); }))
+  {
+    throw dsm::Error("The file '" + origin.Path +
+      "' was written to, or another took its place, since some of the ranks opened it: they would "
+      "not show the same. "
+      "Reload it.");
+  }
 }
 
 std::unique_ptr<vtkDSMFileVolume> vtkDSMFileVolume::KeepIfEverywhere(
@@ -435,28 +370,32 @@ std::uint64_t vtkDSMFileVolume::GetTableBytes() const
   return this->Values->GetFile()->GetTableBytes();
 }
 
+bool vtkDSMFileVolume::HasSteps() const
+{
+  return this->Values->GetFile()->GetSteps() > 1;
+}
+
 std::shared_ptr<const dsm::BlockReader> vtkDSMFileVolume::CreateReader(
   const rt::BrickLattice& lattice, bool scattered) const
 {
-  const auto create = [&](const std::shared_ptr<const vtkDSMFileValues>& values)
-  {
-    return std::make_shared<rt::VoxelBrickReader>(lattice,
-      std::make_shared<FileVoxels>(values, this->Component, lattice.GetScalarType(), scattered));
-  };
-  const auto reader = create(this->Values);
-  if (!scattered)
-  {
-    return reader;
-  }
-  const auto getKey = [&](const vtkDSMFileValues& values)
-  {
-    const std::uint64_t numbers[] = { values.GetStamp(),
-      static_cast<std::uint64_t>(this->Component), static_cast<std::uint64_t>(lattice.GetEdge()),
-      static_cast<std::uint64_t>(lattice.GetScalarType()) };
-    rt::ByteHash hash;
-    hash.Add(numbers, sizeof(numbers));
-    return hash.Get();
-  };
+  return std::make_shared<rt::VoxelBrickReader>(lattice,
+    std::make_shared<vtkDSMFileVoxels>(
+      this->Values, this->Component, lattice.GetScalarType(), scattered));
+}
+
+std::uint64_t vtkDSMFileVolume::GetKey(const rt::BrickLattice& lattice) const
+{
+  const std::uint64_t numbers[] = { this->Values->GetStamp(),
+    static_cast<std::uint64_t>(this->Component), static_cast<std::uint64_t>(lattice.GetEdge()),
+    static_cast<std::uint64_t>(lattice.GetScalarType()) };
+  rt::ByteHash hash;
+  hash.Add(numbers, sizeof(numbers));
+  return hash.Get();
+}
+
+std::shared_ptr<const dsm::BlockReader> vtkDSMFileVolume::CreateSteppingReader(
+  const rt::BrickLattice& lattice, std::shared_ptr<const Digests> digests) const
+{
   vtkDSMReadAhead& ahead = vtkDSMReadAhead::GetShared();
   SteppingReader::Step next;
   if (this->Values->GetNextStep() != vtkDSMFileValues::None)
@@ -464,14 +403,45 @@ std::shared_ptr<const dsm::BlockReader> vtkDSMFileVolume::CreateReader(
     const auto values = std::make_shared<vtkDSMFileValues>(this->Values->GetFile(),
       this->Values->GetArrayNumber(), this->Values->GetNextStep(), this->Values->GetBox(),
       vtkDSMFileValues::None, this->Values->GetOptions());
-    const auto tellSystem = [values, lattice](dsm::BlockId id)
+    const vtkDSMFileVolume volume(values, this->Component);
+    vtkDSMReadAhead::Way way;
+    way.Reader = volume.CreateReader(lattice, true);
+    way.TellSystem = [values, lattice](dsm::BlockId id)
     {
       const Box cells = lattice.GetCellsOfBrick(id);
       values->Foresee({ cells.Min, cells.Max + Index3(1) });
     };
-    next = ahead.Open(getKey(*values), create(values), tellSystem);
+    if (digests && !digests->empty())
+    {
+      way.IsSame = [volume, lattice, digests, differ = std::vector<bool>()](dsm::BlockId id) mutable
+      {
+        if (differ.empty())
+        {
+          differ = volume.FindChanges(lattice, *digests);
+        }
+        return !differ[id];
+      };
+    }
+    next = ahead.Open(volume.GetKey(lattice), std::move(way));
   }
-  return std::make_shared<SteppingReader>(reader, ahead.Find(getKey(*this->Values)), next);
+  return std::make_shared<SteppingReader>(
+    this->CreateReader(lattice, true), ahead.Find(this->GetKey(lattice)), next);
+}
+
+std::vector<bool> vtkDSMFileVolume::FindChanges(
+  const rt::BrickLattice& lattice, const Digests& digests) const
+{
+  const auto bricks = static_cast<std::size_t>(lattice.GetBrickCount());
+  std::optional<rt::VoxelIndex> index;
+  try
+  {
+    index = rt::VoxelIndex::Decode(this->LoadIndex(lattice), bricks);
+  }
+  catch (const dsm::Error&) // it is said when the step is shown
+  {
+    index.reset();
+  }
+  return rt::VoxelIndex::Compare(index ? index->Digests : Digests(), digests, bricks);
 }
 
 dsm::BlockDirectory vtkDSMFileVolume::CreateDirectory(
@@ -531,23 +501,31 @@ std::vector<std::byte> vtkDSMFileVolume::ReadIndex(const rt::BrickLattice& latti
   return index.BrickEdge == lattice.GetEdge() ? std::move(index.Bricks) : std::vector<std::byte>();
 }
 
+vol::KeptFile vtkDSMFileVolume::GetKept(const rt::BrickLattice& lattice) const
+{
+  return { *this->Values->GetFile(), this->Values->GetArrayNumber(), this->Values->GetStep(),
+    this->Values->GetBox(),
+    "bricks1-" + std::to_string(lattice.GetEdge()) + "-" + std::to_string(this->Component) };
+}
+
+std::vector<std::byte> vtkDSMFileVolume::LoadIndex(const rt::BrickLattice& lattice) const
+{
+  std::vector<std::byte> bytes = this->ReadIndex(lattice);
+  return bytes.empty() ? this->GetKept(lattice).Load() : std::move(bytes);
+}
+
 rt::VoxelIndex vtkDSMFileVolume::FindIndex(dsm::Messenger& messenger,
   const rt::BrickLattice& lattice, const vtkDSMFileValues* own, int threads,
   const std::function<void(double)>& progress) const
 {
   const char* const what = "Looking through the volume";
-  std::optional<vol::KeptFile> kept;
   std::vector<std::byte> bytes;
   messenger.RunTogether(what,
     [&]
     {
       if (messenger.GetRank() == 0)
       {
-        kept.emplace(*this->Values->GetFile(), this->Values->GetArrayNumber(),
-          this->Values->GetStep(), this->Values->GetBox(),
-          "bricks1-" + std::to_string(lattice.GetEdge()) + "-" + std::to_string(this->Component));
-        bytes = this->ReadIndex(lattice);
-        bytes = bytes.empty() ? kept->Load() : std::move(bytes);
+        bytes = this->LoadIndex(lattice);
       }
     });
   bytes = messenger.Broadcast(std::move(bytes));
@@ -575,7 +553,7 @@ rt::VoxelIndex vtkDSMFileVolume::FindIndex(dsm::Messenger& messenger,
       if (messenger.GetRank() == 0)
       {
         const std::vector<std::byte> encoded = found.Encode();
-        kept->Keep(encoded.data(), encoded.size());
+        this->GetKept(lattice).Keep(encoded.data(), encoded.size());
       }
     });
   return found;

@@ -6,6 +6,7 @@
 #include "DSMRayTracing/build/VoxelIndex.h"
 #include "DSMRayTracing/build/VoxelSource.h"
 #include "DSMRayTracing/layout/BrickLattice.h"
+#include "DSMVolumeFiles/range/KeptFile.h"
 #include "vtkDSMFileValues.h"
 #include "vtkDSMLatticePlan.h"
 
@@ -24,6 +25,9 @@ class vtkImageData;
 class vtkDSMFileVolume
 {
 public:
+  /// Of all bricks, by id.
+  using Digests = std::vector<dsm::ByteDigest>;
+
   /// What the other ranks need to know of an image's values; plain, so that it travels.
   struct Seat
   {
@@ -60,9 +64,22 @@ public:
   /// What the file itself takes of each rank's memory, but for chunks.
   std::uint64_t GetTableBytes() const;
 
+  /// Whether there are other time steps, so that it is worth while to know its bricks from theirs.
+  bool HasSteps() const;
+
+  /// What these take of a rank's memory: those of a step, and of the next.
+  static std::uint64_t CountDigestBytes(const rt::BrickLattice& lattice)
+  {
+    return 2 * lattice.GetBrickCount() * sizeof(dsm::ByteDigest);
+  }
+
   /// Bricks of the lattice; it has no cell mask. `scattered`: they are read as rays meet them, not all in turn.
   std::shared_ptr<const dsm::BlockReader> CreateReader(
     const rt::BrickLattice& lattice, bool scattered) const;
+  /// The same as rays meet them. What is read or kept is read ahead of the next time step, too, but for bricks that
+  /// have the same digests there; `digests` may be null.
+  std::shared_ptr<const dsm::BlockReader> CreateSteppingReader(
+    const rt::BrickLattice& lattice, std::shared_ptr<const Digests> digests) const;
 
   /// Of these bricks, of which each rank gets such as are cut out of the same chunks.
   dsm::BlockDirectory CreateDirectory(const rt::BrickLattice& lattice, int ranks) const;
@@ -78,6 +95,8 @@ private:
   /// Collective. Null, on all ranks, where any has null.
   static std::unique_ptr<vtkDSMFileVolume> KeepIfEverywhere(
     dsm::Messenger& messenger, std::unique_ptr<vtkDSMFileVolume> volume);
+  /// Collective: that the ranks opened the same file for the step.
+  void CheckSameEverywhere(dsm::Messenger& messenger) const;
   /// Local; null where there is no such level.
   std::unique_ptr<vtkDSMFileVolume> OpenCoarser(int level) const;
   /// From indices of samples to the world, by the file.
@@ -85,6 +104,13 @@ private:
 
   /// Of the lattice's bricks, as the file itself has it (vol::VolumeFile::Index); else empty.
   std::vector<std::byte> ReadIndex(const rt::BrickLattice& lattice) const;
+  vol::KeptFile GetKept(const rt::BrickLattice& lattice) const;
+  /// That, or what was kept since an earlier time, or empty.
+  std::vector<std::byte> LoadIndex(const rt::BrickLattice& lattice) const;
+  /// Local: which bricks are not known to have these digests. One of a step that cannot be read is no failure.
+  std::vector<bool> FindChanges(const rt::BrickLattice& lattice, const Digests& digests) const;
+  /// What is read ahead of this step has it.
+  std::uint64_t GetKey(const rt::BrickLattice& lattice) const;
   /// In the order in which chunks are best read.
   std::vector<dsm::BlockId> CreateOrder(const rt::BrickLattice& lattice) const;
   /// Collective: of the values, by what the ranks' pieces know of theirs.

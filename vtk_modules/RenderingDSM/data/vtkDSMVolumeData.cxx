@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkDSMVolumeData.h"
 
-#include "DSMCore/fetch/ReadingSource.h"
 #include "DSMRayTracing/base/ByteHash.h"
 #include "DSMRayTracing/build/VoxelBrickBuilder.h"
 #include "vtkDSMContent.h"
@@ -26,9 +25,6 @@
 
 namespace
 {
-
-/// The memory that a rank may take is divided by it for chunks of files.
-constexpr std::uint64_t ChunksDivisor = 8;
 
 enum class ArrayState : std::int32_t
 {
@@ -389,18 +385,18 @@ std::shared_ptr<const vtkDSMVolumeData::Coarser> vtkDSMVolumeData::PublishCoarse
       {
         continue;
       }
-      std::shared_ptr<rt::VoxelField> field;
+      Publication::Part part;
       messenger.RunTogether("Preparing the " + purpose,
         [&]
         {
-          field = this->MakeField();
-          field->Lattice =
+          part.Field = this->MakeField();
+          part.Field->Lattice =
             rt::BrickLattice(file->GetPoints(), fine->Lattice.GetScalarType(), false);
-          lattices[lattice] = { field, finest.Files[lattice]->GetIndexOf(*file) };
+          lattices[lattice] = { part.Field, finest.Files[lattice]->GetIndexOf(*file) };
         });
       this->PublishFile(*file, true, this->FindFileValues(lattice, choice),
         "level " + std::to_string(level) + " of the " + purpose + " '" + choice.Name + "'",
-        progress, *field);
+        progress, part, {});
     }
     coarser->Levels.push_back(std::move(lattices));
   }
@@ -449,14 +445,13 @@ void vtkDSMVolumeData::PublishLattice(Publication& published, std::size_t number
     if (std::shared_ptr<const vtkDSMFileVolume> file =
           vtkDSMFileVolume::Find(messenger, lattice, seats, own, isFirst && own, choice.Component))
     {
-      old = {};
-      this->PublishFile(*file, false, own, what, progress, *field);
+      part.Digests = {};
+      this->PublishFile(*file, false, own, what, progress, part, std::move(old));
       published.Files.back() = std::move(file);
-      part = {};
       return;
     }
   }
-  if (old.Field && old.Field->Lattice == field->Lattice)
+  if (old.Field && !old.Source && old.Field->Lattice == field->Lattice)
   {
     this->Renew(part, std::move(old), sources, what, progress);
     field->Hierarchy = rt::MacrocellHierarchy(field->Lattice, *field->Segment, messenger);
@@ -490,40 +485,6 @@ const vtkDSMFileValues* vtkDSMVolumeData::FindFileValues(
     }
   }
   return nullptr;
-}
-
-void vtkDSMVolumeData::PublishFile(const vtkDSMFileVolume& file, bool isCoarser,
-  const vtkDSMFileValues* own, const std::string& what, const std::function<void(double)>& progress,
-  rt::VoxelField& field) const
-{
-  dsm::Messenger& messenger = this->Group->GetMessenger();
-  dsm::BlockStore& store = this->Group->GetStore();
-  std::optional<dsm::BlockDirectory> directory;
-  std::shared_ptr<dsm::ReadingSource> source;
-  messenger.RunTogether("Opening the volume's file",
-    [&]
-    {
-      directory = file.CreateDirectory(field.Lattice, messenger.GetSize());
-      source = std::make_shared<dsm::ReadingSource>(
-        messenger, file.CreateReader(field.Lattice, true), "the file '" + file.GetPath() + "'");
-      // Chunks of the file that are in memory have their part of what a rank may take.
-      const std::uint64_t memory = store.GetSettings().MemoryBytes;
-      const std::size_t chunks = vol::ChunkCache::GetShared().Restrict(
-        memory == 0 ? SIZE_MAX : static_cast<std::size_t>(memory / ChunksDivisor));
-      // A frame is of one level, which reads in the finest's place.
-      directory->AddIndexBytes(file.GetTableBytes() +
-        (isCoarser ? 0 : chunks + dsm::ReadingSource::MostReads * directory->GetLargest()));
-    });
-  const auto publish = [&] { return store.Publish(what, *directory, source); };
-  field.Segment = isCoarser ? publish() : this->Group->WithRoom(publish);
-  rt::VoxelIndex index =
-    file.FindIndex(messenger, field.Lattice, own, store.GetSettings().Workers, progress);
-  messenger.RunTogether("Building the macrocells",
-    [&]
-    {
-      field.Survey = index.Survey;
-      field.Hierarchy = rt::MacrocellHierarchy(field.Lattice, std::move(index.Bricks));
-    });
 }
 
 std::shared_ptr<rt::VoxelField> vtkDSMVolumeData::MakeField() const

@@ -2,6 +2,7 @@
 #ifndef vtkDSMVolumeData_h
 #define vtkDSMVolumeData_h
 
+#include "DSMCore/fetch/ReadingSource.h"
 #include "DSMCore/publish/FragmentDigests.h"
 #include "DSMRayTracing/build/VoxelSource.h"
 #include "DSMRayTracing/scene/Scene.h"
@@ -57,8 +58,12 @@ public:
     {
       std::shared_ptr<rt::VoxelField> Field;
       dsm::FragmentDigests Digests; ///< of what this rank has contributed
+      /// Of a lattice in a file, instead: what brings its bricks, and, where there are other time steps, what is
+      /// known of these.
+      std::shared_ptr<dsm::ReadingSource> Source;
+      std::shared_ptr<const vtkDSMFileVolume::Digests> Bricks;
     };
-    /// One a lattice, likewise; empty where it is in a file.
+    /// One a lattice, likewise.
     mutable std::vector<Part> Parts;
   };
 
@@ -121,10 +126,11 @@ private:
     const Choice& choice, const std::string& purpose, const std::vector<ArrayInfo>& infos) const;
   /// Of this rank's first piece of a lattice that has the array in a file; null when none has.
   const vtkDSMFileValues* FindFileValues(std::size_t lattice, const Choice& choice) const;
-  /// Collective: a lattice that is in a file. Its bricks come to memory when rays meet them.
+  /// Collective: a lattice that is in a file, for which `part` has a field. Its bricks come to memory when rays meet
+  /// them. `old`: what is there of another step, or empty; bricks that are equal stay in memory.
   void PublishFile(const vtkDSMFileVolume& file, bool isCoarser, const vtkDSMFileValues* own,
-    const std::string& what, const std::function<void(double)>& progress,
-    rt::VoxelField& field) const;
+    const std::string& what, const std::function<void(double)>& progress, Publication::Part& part,
+    Publication::Part&& old) const;
   /// Adds it to the publication. `old`: what is there of an earlier time, or empty.
   void PublishLattice(Publication& published, std::size_t lattice, const Choice& choice,
     const std::string& purpose, const std::vector<ArrayInfo>& infos,

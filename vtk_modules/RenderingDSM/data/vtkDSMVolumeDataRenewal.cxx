@@ -16,9 +16,15 @@ bool vtkDSMVolumeData::MayTakeOver(const std::shared_ptr<const Publication>& old
   for (std::size_t lattice = 0; lattice < old->Parts.size(); ++lattice)
   {
     const std::shared_ptr<rt::VoxelField>& field = old->Parts[lattice].Field;
+    const dsm::BlockStore& store = this->Group->GetStore();
+    const auto mayChange = [&]
+    {
+      return old->Parts[lattice].Source ? store.MayRefresh(field->Segment)
+                                        : store.MayUpdate(field->Segment);
+    };
     // Bricks has it, too; nobody else may.
     if (old->Bricks[lattice] &&
-      (field.use_count() != 2 || !this->Group->GetStore().MayUpdate(field->Segment) ||
+      (field.use_count() != 2 || !mayChange() ||
         field->Lattice.GetPoints() != this->Plan.GetLattices()[lattice].Points))
     {
       return false;

@@ -30,17 +30,15 @@ constexpr std::chrono::milliseconds Rest{ 30 };
 struct vtkDSMReadAhead::Step::Contents
 {
   vol::ChunkCache& Cache;
-  const std::shared_ptr<const dsm::BlockReader> Reader;
-  const std::function<void(dsm::BlockId)> TellSystem;
+  const Way To;
 
   std::mutex Guard;
   std::unordered_map<dsm::BlockId, std::vector<std::byte>> Bricks;
   std::unordered_set<dsm::BlockId> Known; ///< that were added
 };
 
-vtkDSMReadAhead::Step::Step(vol::ChunkCache& cache, std::shared_ptr<const dsm::BlockReader> reader,
-  std::function<void(dsm::BlockId)> tellSystem)
-  : Self(new Contents{ cache, std::move(reader), std::move(tellSystem), {}, {}, {} })
+vtkDSMReadAhead::Step::Step(vol::ChunkCache& cache, Way way)
+  : Self(new Contents{ cache, std::move(way), {}, {}, {} })
 {
 }
 
@@ -139,16 +137,21 @@ struct vtkDSMReadAhead::Shared : std::enable_shared_from_this<Shared>
       return;
     }
     Step::Contents& contents = *step->Self;
-    const bool hasRoom = contents.Cache.Lend(job.Bytes, RoomDivisor);
+    bool hasRoom = false;
     try
     {
+      if (contents.To.IsSame && contents.To.IsSame(job.Id))
+      {
+        return;
+      }
+      hasRoom = contents.Cache.Lend(job.Bytes, RoomDivisor);
       if (!hasRoom)
       {
-        contents.TellSystem(job.Id);
+        contents.To.TellSystem(job.Id);
         return;
       }
       std::vector<std::byte> brick(job.Bytes);
-      contents.Reader->Read(job.Id, brick.data(), brick.size());
+      contents.To.Reader->Read(job.Id, brick.data(), brick.size());
       const std::lock_guard<std::mutex> lock(contents.Guard);
       contents.Bricks.emplace(job.Id, std::move(brick));
     }
@@ -185,14 +188,13 @@ std::shared_ptr<vtkDSMReadAhead::Step> vtkDSMReadAhead::Find(std::uint64_t key) 
   return known == this->State->Steps.end() ? nullptr : known->second;
 }
 
-std::shared_ptr<vtkDSMReadAhead::Step> vtkDSMReadAhead::Open(std::uint64_t key,
-  std::shared_ptr<const dsm::BlockReader> reader, std::function<void(dsm::BlockId)> tellSystem)
+std::shared_ptr<vtkDSMReadAhead::Step> vtkDSMReadAhead::Open(std::uint64_t key, Way way)
 {
   const std::lock_guard<std::mutex> lock(this->State->Guard);
   std::shared_ptr<Step>& step = this->State->Steps[key];
   if (!step)
   {
-    step = std::make_shared<Step>(this->State->Cache, std::move(reader), std::move(tellSystem));
+    step = std::make_shared<Step>(this->State->Cache, std::move(way));
   }
   return step;
 }

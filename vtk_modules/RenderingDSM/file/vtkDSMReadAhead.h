@@ -20,12 +20,22 @@ class vtkDSMReadAhead
   struct Shared;
 
 public:
+  /// How to come by the bricks of a step.
+  struct Way
+  {
+    std::shared_ptr<const dsm::BlockReader> Reader;
+    /// Called for bricks that there is no room for.
+    std::function<void(dsm::BlockId)> TellSystem;
+    /// Whether a brick is as that of the step before, so that it will not be taken; by one thread at a time. May
+    /// be empty: none is known to be.
+    std::function<bool(dsm::BlockId)> IsSame;
+  };
+
   /// Bricks of one step of one array, cut by one lattice.
   class Step
   {
   public:
-    Step(vol::ChunkCache& cache, std::shared_ptr<const dsm::BlockReader> reader,
-      std::function<void(dsm::BlockId)> tellSystem);
+    Step(vol::ChunkCache& cache, Way way);
     ~Step();
     Step(const Step&) = delete;
     Step& operator=(const Step&) = delete;
@@ -48,10 +58,8 @@ public:
 
   /// What has been read ahead of the step that `key` stands for; null: nothing.
   std::shared_ptr<Step> Find(std::uint64_t key) const;
-  /// The same, ready to take in more, by `reader`; `tellSystem` is called for bricks that there is no room for.
-  /// Throws std::bad_alloc, as Add does.
-  std::shared_ptr<Step> Open(std::uint64_t key, std::shared_ptr<const dsm::BlockReader> reader,
-    std::function<void(dsm::BlockId)> tellSystem);
+  /// The same, ready to take in more. Throws std::bad_alloc, as Add does.
+  std::shared_ptr<Step> Open(std::uint64_t key, Way way);
   /// A brick of a step will probably be wanted; not one that was added before.
   void Add(const std::shared_ptr<Step>& step, dsm::BlockId id, std::size_t bytes);
   /// Forgets steps that nobody has any more: call it when those who may take over have had time to.

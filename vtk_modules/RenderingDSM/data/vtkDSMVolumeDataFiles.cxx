@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Lattices that are in a file.
+#include "vtkDSMVolumeData.h"
+
+#include "DSMRayTracing/build/VoxelIndex.h"
+
+#include <cstdint>
+#include <optional>
+#include <utility>
+
+namespace
+{
+
+/// The memory that a rank may take is divided by it for chunks of files.
+constexpr std::uint64_t ChunksDivisor = 8;
+
+} // namespace
+
+void vtkDSMVolumeData::PublishFile(const vtkDSMFileVolume& file, bool isCoarser,
+  const vtkDSMFileValues* own, const std::string& what, const std::function<void(double)>& progress,
+  Publication::Part& part, Publication::Part&& old) const
+{
+  dsm::Messenger& messenger = this->Group->GetMessenger();
+  dsm::BlockStore& store = this->Group->GetStore();
+  rt::VoxelField& field = *part.Field;
+  const bool hasSteps = !isCoarser && file.HasSteps();
+  std::optional<dsm::BlockDirectory> directory;
+  messenger.RunTogether("Opening the volume's file",
+    [&]
+    {
+      directory = file.CreateDirectory(field.Lattice, messenger.GetSize());
+      part.Source = std::make_shared<dsm::ReadingSource>(
+        messenger, file.CreateReader(field.Lattice, true), "the file '" + file.GetPath() + "'");
+      // Chunks of the file that are in memory have their part of what a rank may take.
+      const std::uint64_t memory = store.GetSettings().MemoryBytes;
+      const std::size_t chunks = vol::ChunkCache::GetShared().Restrict(
+        memory == 0 ? SIZE_MAX : static_cast<std::size_t>(memory / ChunksDivisor));
+      // A frame is of one level, which reads in the finest's place.
+      directory->AddIndexBytes(file.GetTableBytes() +
+        (isCoarser ? 0 : chunks + dsm::ReadingSource::MostReads * directory->GetLargest()) +
+        (hasSteps ? vtkDSMFileVolume::CountDigestBytes(field.Lattice) : 0));
+    });
+  const bool staysInMemory = old.Source && old.Field && old.Field->Lattice == field.Lattice &&
+    old.Field->Segment->GetDirectory().GetFingerprint() == directory->GetFingerprint();
+  if (!staysInMemory)
+  {
+    old = {};
+    const auto publish = [&] { return store.Publish(what, *directory, part.Source); };
+    field.Segment = isCoarser ? publish() : this->Group->WithRoom(publish);
+  }
+  rt::VoxelIndex index =
+    file.FindIndex(messenger, field.Lattice, own, store.GetSettings().Workers, progress);
+  std::vector<bool> differ;
+  messenger.RunTogether("Building the macrocells",
+    [&]
+    {
+      if (hasSteps)
+      {
+        part.Bricks = std::make_shared<const vtkDSMFileVolume::Digests>(std::move(index.Digests));
+      }
+      if (staysInMemory)
+      {
+        const vtkDSMFileVolume::Digests none;
+        differ = rt::VoxelIndex::Compare(
+          old.Bricks ? *old.Bricks : none, part.Bricks ? *part.Bricks : none, index.Bricks.size());
+        part.Source = std::move(old.Source);
+        field.Segment =
+          std::move(old.Field->Segment); // retired with the field, should anything fail
+      }
+      part.Source->SetReader(file.CreateSteppingReader(field.Lattice, part.Bricks));
+      field.Survey = index.Survey;
+      field.Hierarchy = rt::MacrocellHierarchy(field.Lattice, std::move(index.Bricks));
+    });
+  if (staysInMemory)
+  {
+    store.Refresh(what, field.Segment, differ);
+  }
+}
