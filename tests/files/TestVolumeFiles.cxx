@@ -11,6 +11,8 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <atomic>
+#include <chrono>
 #include <cmath>
 #include <cstdlib>
 #include <cstring>
@@ -200,6 +202,77 @@ Json FindEntry(const std::string& name)
   const auto found = std::find_if(
     manifest.begin(), manifest.end(), [&](const Json& entry) { return entry["file"] == name; });
   return found == manifest.end() ? Json() : *found;
+}
+
+/// Chunks of a thousand bytes, of which one cannot be read.
+class SlowFile final : public vol::VolumeFile
+{
+public:
+  SlowFile()
+    : VolumeFile("slow")
+  {
+    vol::FileArray array;
+    array.Grid = { rt::Index3(10 * Chunks, 10, 10), rt::Index3(10) };
+    this->Arrays.push_back(array);
+  }
+  void ReadChunk(std::size_t, int, const rt::Index3& chunk, std::byte* out) const override
+  {
+    const int now = ++this->Reading;
+    for (int most = this->Most; now > most && !this->Most.compare_exchange_weak(most, now);)
+    {
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    --this->Reading;
+    if (chunk.x == Bad)
+    {
+      throw dsm::Error("damaged");
+    }
+    std::fill_n(out, 1000, static_cast<std::byte>(chunk.x));
+  }
+
+  static constexpr int Chunks = 24;
+  static constexpr int Bad = 11;
+  mutable std::atomic<int> Reading{ 0 };
+  mutable std::atomic<int> Most{ 0 };
+};
+
+TEST(ChunkCache, WhatIsBeingReadCountsToo)
+{
+  for (const int most : { 1, 3 })
+  {
+    const auto file = std::make_shared<SlowFile>();
+    vol::ChunkCache cache(most == 1 ? 0 : 6500); // each takes twice its bytes while it is read
+    std::atomic<int> wrong{ 0 };
+    std::atomic<int> failed{ 0 };
+    std::vector<std::thread> threads;
+    for (int thread = 0; thread < 8; ++thread)
+    {
+      threads.emplace_back(
+        [&, thread]
+        {
+          for (int chunk = thread; chunk < SlowFile::Chunks; chunk += 8)
+          {
+            try
+            {
+              const auto bytes = cache.Get(file, 0, 0, rt::Index3(chunk, 0, 0));
+              wrong += bytes->size() == 1000 && bytes->back() == std::byte(chunk) ? 0 : 1;
+            }
+            catch (const dsm::Error&)
+            {
+              ++failed;
+            }
+          }
+        });
+    }
+    for (std::thread& thread : threads)
+    {
+      thread.join();
+    }
+    EXPECT_EQ(wrong, 0);
+    EXPECT_EQ(failed, 1);
+    EXPECT_EQ(file->Most, most);
+    EXPECT_LE(cache.GetBytes(), cache.GetLimit()) << "nothing is in hand any more";
+  }
 }
 
 TEST(VolumeFiles, AChunkThatManyThreadsWantIsReadOnce)

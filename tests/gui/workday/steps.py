@@ -337,7 +337,7 @@ def color_by_other(simple):
 
 @step("Choose Preset")
 def choose_preset(simple):
-    simple.GetColorTransferFunction("Result").ApplyPreset("Viridis (matplotlib)", True)
+    simple.GetColorTransferFunction("Result").ApplyPreset("Black-Body Radiation", True)
     simple.Render()
 
 

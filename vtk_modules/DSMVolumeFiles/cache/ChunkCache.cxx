@@ -4,6 +4,7 @@
 #include "DSMRayTracing/base/ByteHash.h"
 #include "DSMVolumeFiles/base/CopyBox.h"
 
+#include <exception>
 #include <utility>
 
 namespace vol
@@ -13,6 +14,9 @@ namespace
 {
 
 constexpr std::size_t SharedBytes = std::size_t(128) << 20;
+
+/// While a chunk is read, its bytes as the file has them are in memory, too, which hardly are more than it.
+constexpr std::size_t InHandOfEach = 2;
 
 } // namespace
 
@@ -94,6 +98,9 @@ ChunkCache::Chunk ChunkCache::Get(const std::shared_ptr<const VolumeFile>& file,
 {
   const FileArray& what = file->GetArrays()[array];
   const Key key{ file, array, step, what.Grid.GetNumber(chunk) };
+  const std::size_t chunkBytes =
+    static_cast<std::size_t>(what.Grid.GetBox(chunk).GetCount()) * what.GetSampleBytes();
+  const std::size_t inHand = chunkBytes * InHandOfEach;
   std::promise<Chunk> promise;
   {
     std::unique_lock<std::mutex> lock(this->Guard);
@@ -109,14 +116,34 @@ ChunkCache::Chunk ChunkCache::Get(const std::shared_ptr<const VolumeFile>& file,
       return data.get();
     }
     this->Entries[key].Data = promise.get_future().share();
+    this->HandsFree.wait(lock,
+      [&]
+      { return this->InHand == 0 || this->InHand + this->Lent + inHand <= this->ComputeRoom(); });
+    this->InHand += inHand;
+    this->Bytes += inHand;
+    this->Evict();
   }
+  std::shared_ptr<std::vector<std::byte>> bytes;
+  std::exception_ptr failure;
   try
   {
-    const rt::Box box = what.Grid.GetBox(chunk);
-    auto bytes = std::make_shared<std::vector<std::byte>>(
-      static_cast<std::size_t>(box.GetCount()) * what.GetSampleBytes());
+    bytes = std::make_shared<std::vector<std::byte>>(chunkBytes);
     file->ReadChunk(array, step, chunk, bytes->data());
-    const std::lock_guard<std::mutex> lock(this->Guard);
+  }
+  catch (...)
+  {
+    failure = std::current_exception();
+  }
+  const std::lock_guard<std::mutex> lock(this->Guard);
+  this->InHand -= inHand;
+  this->Bytes -= inHand;
+  this->HandsFree.notify_all();
+  try
+  {
+    if (failure)
+    {
+      std::rethrow_exception(failure);
+    }
     Entry& entry = this->Entries.at(key);
     this->Order.push_front(key);
     entry.Place = this->Order.begin();
@@ -129,7 +156,6 @@ ChunkCache::Chunk ChunkCache::Get(const std::shared_ptr<const VolumeFile>& file,
   }
   catch (...)
   {
-    const std::lock_guard<std::mutex> lock(this->Guard);
     promise.set_exception(std::current_exception());
     this->Entries.erase(key);
     throw;

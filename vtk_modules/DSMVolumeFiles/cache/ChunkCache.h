@@ -5,6 +5,7 @@
 #include "DSMVolumeFiles/format/VolumeFile.h"
 
 #include <algorithm>
+#include <condition_variable>
 #include <cstddef>
 #include <cstdint>
 #include <future>
@@ -18,7 +19,8 @@ namespace vol
 {
 
 /// The chunks of files that were read last, up to a number of bytes. Any thread; a chunk that two threads want at
-/// the same time is read once.
+/// the same time is read once. Those that are being read and unpacked are among these bytes: where several would be
+/// more, one waits for the other.
 class ChunkCache
 {
 public:
@@ -45,7 +47,7 @@ public:
   bool Lend(std::size_t bytes, std::size_t divisor);
   /// So much of it is free again.
   void Return(std::size_t bytes);
-  /// In memory now, with what is lent.
+  /// In memory now, with what is lent, and what is being read.
   std::size_t GetBytes() const;
   /// Read so far, of chunks as they are in memory.
   std::uint64_t GetBytesRead() const;
@@ -103,7 +105,9 @@ private:
   std::size_t Limit;
   std::size_t Restriction = SIZE_MAX;
   std::size_t Bytes = 0;
-  std::size_t Lent = 0; ///< of them
+  std::size_t Lent = 0;   ///< of them
+  std::size_t InHand = 0; ///< of them: being read
+  std::condition_variable HandsFree;
   std::uint64_t BytesRead = 0;
   std::list<Key> Order; ///< of those that are here, the last used first
   std::unordered_map<Key, Entry, KeyHash> Entries;
