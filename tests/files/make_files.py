@@ -360,8 +360,8 @@ writer.Write()
 
 
 
-def write_series(name, frames):
-    """Of each frame a file with a header, and one for ParaView's own reader."""
+def write_series(name, frames, **others):
+    """Of each frame a file with a header, and one for ParaView's own reader, which has further arrays, too."""
     for number, frame in enumerate(frames):
         file = f"{name}_{number:03}"
         frame.tofile(path(file + ".bin"))
@@ -371,6 +371,10 @@ def write_series(name, frames):
         image.SetDimensions(*reversed(frame.shape))
         image.GetPointData().SetScalars(numpy_to_vtk(frame.ravel(), deep=True))
         image.GetPointData().GetScalars().SetName("values")
+        for other, values_of_frames in others.items():
+            array = numpy_to_vtk(values_of_frames[number].ravel(), deep=True)
+            array.SetName(other)
+            image.GetPointData().AddArray(array)
         writer = vtkXMLImageDataWriter()
         writer.SetInputData(image)
         writer.SetFileName(path(file + ".vti"))
@@ -390,6 +394,10 @@ steps = [ball.copy() for _ in range(4)]
 for step, more in zip(steps, (0.0, 0.05, 0.05, 0.1)):
     step[50:63, 50:63, 50:63] += np.float32(more)
 write_series("calm", steps)
+tints = [(x + 0.3 * t).astype("<f4") for t in range(4)]
+write_series("tinted", steps, tint=tints)
+stacks = [("values", np.stack(steps), None), ("tint", np.stack(tints), None)]
+write_steps("tinted.vtkhdf", [0.0, 1.0, 2.0, 3.0], stacks, edges)
 
 with open(path("manifest.json"), "w", encoding="utf-8") as file:
     json.dump(entries, file, indent=1)

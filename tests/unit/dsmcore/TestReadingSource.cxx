@@ -70,6 +70,8 @@ TEST_P(BlocksOnDisk, LeastMemory)
       disks.Store.SetSettings(settings);
       const std::string text = dsm_test::GetErrorText([&] { disks.Store.Settle(); });
       EXPECT_NE(text.find("Raise the memory per rank (DSMMemory)"), std::string::npos) << text;
+      EXPECT_EQ(text.find("DSMScratchDirectory"), std::string::npos)
+        << "they are on a disk: " << text;
     });
 }
 

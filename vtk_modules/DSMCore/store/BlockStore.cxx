@@ -518,6 +518,12 @@ void BlockStore::Retire(const std::shared_ptr<BlockSegment>& segment)
 StoreCounters BlockStore::GetCounters()
 {
   StoreCounters counters = this->Visit([](auto& store) { return store.GetCounters(); });
+  std::uint64_t shared = 0;
+  for (const auto& segment : this->Segments)
+  {
+    shared = std::max(shared, segment->GetDirectory().GetSharedBytes());
+  }
+  counters.TableBytes += shared;
   counters.MemoryBudget = this->Budget.Bytes;
   counters.Publications = this->Publications;
   counters.BytesPublished = this->BytesPublished;

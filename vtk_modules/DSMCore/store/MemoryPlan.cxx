@@ -36,11 +36,15 @@ MemoryPlan::MemoryPlan(std::vector<const BlockDirectory*> segments, const HostGr
 {
   this->Count(this->Blocks);
   this->Count(this->Pages);
+  std::uint64_t shared = 0;
   for (const BlockDirectory* directory : this->Segments)
   {
     this->Blocks.Tables += BlockTable::CountTableBytes(*directory);
     this->Pages.Tables += PagedStore::Segment::CountTableBytes(*directory);
+    shared = std::max(shared, directory->GetSharedBytes());
   }
+  this->Blocks.Tables += shared;
+  this->Pages.Tables += shared;
   for (int rank = 0; rank < static_cast<int>(this->Copies.size()); ++rank)
   {
     auto& copies = this->Copies[static_cast<std::size_t>(rank)];
@@ -239,15 +243,18 @@ void MemoryPlan::Refuse(MemoryOrganization organization, int rank) const
   const Budget& budget = this->Budgets[static_cast<std::size_t>(rank)];
   const std::uint64_t need = this->GetNeed(organization, rank);
   const bool replicated = organization == MemoryOrganization::Replicated;
-  std::string text = replicated
-    ? "All data on every rank take "
+  const bool allOnDisk = std::all_of(this->Segments.begin(), this->Segments.end(),
+    [](const BlockDirectory* segment) { return segment->IsFromSource(); });
+  std::string text = replicated ? "All data on every rank take "
+    : allOnDisk
+    ? "What must be in memory of data on a disk, for tables, messages and a few bricks, takes "
     : "The part of the data that rank " + std::to_string(rank) + " owns takes ";
   text += FormatMebibytes(need) + " (" + std::to_string(need) + " bytes" +
-    (replicated ? "" : ", a cache of one brick and messages included") + ") of rank " +
+    (replicated || allOnDisk ? "" : ", a cache of one brick and messages included") + ") of rank " +
     std::to_string(rank) + "'s memory, which may take " +
     FormatMebibytes(replicated ? budget.Bytes : budget.Limit) +
     ". Raise the memory per rank (DSMMemory), " +
-    (this->AnyOnOwnersDisk ? "" : "let bricks go to a disk (DSMScratchDirectory), ");
+    (this->AnyOnOwnersDisk || allOnDisk ? "" : "let bricks go to a disk (DSMScratchDirectory), ");
   if (replicated)
   {
     throw MemoryShortage(

@@ -1,8 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "DSMVolumeFiles/format/HdfLibrary.h"
 
+#include <atomic>
+#include <cstdlib>
+
 namespace vol
 {
+
+bool IsHdfEnding()
+{
+  static std::atomic<bool> ending{ false };
+  // Called before what the library has asked to be called, which it did earlier.
+  [[maybe_unused]] static const int noted = std::atexit([] { ending = true; });
+  return ending;
+}
 
 std::mutex& GetHdfLock()
 {

@@ -27,6 +27,10 @@ std::mutex& GetHdfLock();
 /// The library's name of the machine's own form of a type.
 hid_t GetHdfType(rt::ScalarType type);
 
+/// Whether the process ends, and the library closes all that is open by itself, perhaps has done so. To be asked
+/// once while it does not, but after the library's first use.
+bool IsHdfEnding();
+
 /// An identifier of the library's, closed with it. Under the lock.
 class HdfHandle
 {
@@ -36,6 +40,7 @@ public:
     : Id(id)
     , Close(closer)
   {
+    IsHdfEnding();
   }
   HdfHandle(HdfHandle&& other) noexcept
     : Id(std::exchange(other.Id, H5I_INVALID_HID))
@@ -44,8 +49,7 @@ public:
   }
   ~HdfHandle()
   {
-    // A process that ends may have closed the library, with all that was open, before its last files.
-    if (this->Id >= 0 && H5Iis_valid(this->Id) > 0)
+    if (this->Id >= 0 && !IsHdfEnding())
     {
       this->Close(this->Id);
     }

@@ -35,9 +35,10 @@ void vtkDSMVolumeData::PublishFile(const vtkDSMFileVolume& file, bool isCoarser,
       const std::uint64_t memory = store.GetSettings().MemoryBytes;
       const std::size_t chunks = vol::ChunkCache::GetShared().Restrict(
         memory == 0 ? SIZE_MAX : static_cast<std::size_t>(memory / ChunksDivisor));
+      directory->SetSharedBytes(chunks);
       // A frame is of one level, which reads in the finest's place.
       directory->AddIndexBytes(file.GetTableBytes() +
-        (isCoarser ? 0 : chunks + dsm::ReadingSource::MostReads * directory->GetLargest()) +
+        (isCoarser ? 0 : dsm::ReadingSource::MostReads * directory->GetLargest()) +
         (hasSteps ? vtkDSMFileVolume::CountDigestBytes(field.Lattice) : 0));
     });
   const bool staysInMemory = old.Source && old.Field && old.Field->Lattice == field.Lattice &&
