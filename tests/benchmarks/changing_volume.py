@@ -119,32 +119,48 @@ def play_pipeline(simple, edge, steps):
             simple.Render(view)
 
 
-def play_files(simple, paths):
+def count_fetched(display):
+    """Bricks that ranks asked for in the last frame, of files or of one another."""
+    display.SMProxy.UpdatePropertyInformation()
+    rows = json.loads(str(display.GetProperty("DSMStatistics")).strip("'"))
+    return builtins.sum(row["Misses"] - row["Joins"] + row["Prefetches"] for row in rows)
+
+
+def play_files(simple, share, paths):
     view = create_view(simple)
     source = simple.DSMVolumeReader(FileName=paths)
     display = show(simple, source, view, "Object based")
-    times = []
+    times, fetched = [], []
     for step in range(1, len(paths)):
         view.ViewTime = step
         times.append(time_picture(simple, view))
+        fetched.append(count_fetched(display))
         time.sleep(2 * times[-1])  # the disk keeps up
     still = time_still(simple, view)
-    print(json.dumps({"what": "files", "step s": round(statistics.median(times[2:]), 4), "still s": round(still, 4),
+    print(json.dumps({"what": "files", "changed": share, "bricks fetched a step": statistics.median(fetched[2:]),
+                      "step s": round(statistics.median(times[2:]), 4), "still s": round(still, 4),
                       "ratio": round(statistics.median(times[2:]) / still, 2)}), flush=True)
 
 
-def write_files(build, folder, edge, steps):
+def write_files(build, folder, edge, steps, share):
     import h5py
     import numpy
 
     os.makedirs(folder)
     along = (numpy.arange(edge + 1) / (0.5 * edge) - 1) ** 2
     values = numpy.sqrt(along[:, None, None] + along[None, :, None] + along[None, None, :]).astype("f4")
+    # As for a pipeline.
+    at = numpy.arange(edge + 1)
+    k, j, i = at[:, None, None], at[None, :, None], at[None, None, :]
+    bricks = edge // BRICK
+    number = i // BRICK + bricks * (j // BRICK + bricks * (k // BRICK))
+    inner = (i % BRICK > 0) & (j % BRICK > 0) & (k % BRICK > 0)
+    chosen = (number * 7919 % 1000 < share * 1000) & inner
     paths = []
     for step in range(steps):
         plain = os.path.join(folder, "plain.h5")
         with h5py.File(plain, "w") as file:
-            file["f"] = values + numpy.float32(0.0005 * step)
+            file["f"] = (values + chosen * numpy.float32(0.0005 * step)).astype("f4")
         paths.append(os.path.join(folder, f"step_{step:03}.h5"))
         subprocess.run([os.path.join(build, "bin", "dsm_convert"), plain, paths[-1], "--compression", "zstd", "--quiet"],
                        check=True)
@@ -167,18 +183,24 @@ def main():
 
         simple.LoadPlugin(plugin, ns=vars(simple))
         if options.inside:
-            play_files(simple, options.inside)
+            play_files(simple, float(options.inside[0]), options.inside[1:])
         else:
             play_pipeline(simple, options.edge, options.steps)
         return
     folder = options.files and os.path.join(options.files, "changing_volume")
-    try:
-        paths = write_files(options.build, folder, options.edge, min(options.steps, 20)) if folder else []
+
+    def run(*files):
         subprocess.run(["mpirun", "--allow-run-as-root", "--oversubscribe", "-np", str(options.ranks), "pvbatch",
                         os.path.abspath(__file__), options.build, "--steps", str(options.steps), "--edge",
-                        str(options.edge), "--inside", *paths], check=True)
-    finally:
-        if folder:
+                        str(options.edge), "--inside", *files], check=True)
+
+    if not folder:
+        run()
+        return
+    for share in SHARES:
+        try:
+            run(str(share), *write_files(options.build, folder, options.edge, min(options.steps, 20), share))
+        finally:
             shutil.rmtree(folder, ignore_errors=True)
 
 
