@@ -3,6 +3,7 @@
 #include "VolumeMapperTest.h"
 
 #include "vtkAssembly.h"
+#include "vtkCameraPass.h"
 #include "vtkCommand.h"
 #include "vtkContourValues.h"
 #include "vtkObjectFactory.h"
@@ -10,6 +11,7 @@
 #include "vtkRTAnalyticSource.h"
 #include "vtkRenderPass.h"
 #include "vtkTestErrorObserver.h"
+#include "vtkValuePass.h"
 #include "vtkVolumeProperty.h"
 
 #include <array>
@@ -140,6 +142,26 @@ TEST_F(VolumeMapper, SaysThatOSPRayLeavesItOut)
   observer->Clear();
   this->Window->Render();
   EXPECT_FALSE(observer->GetError()) << "once is enough";
+  this->Renderer->SetPass(nullptr);
+  EXPECT_GT(CountCovered(this->RenderDistances()), 1000);
+  EXPECT_FALSE(observer->GetError());
+}
+
+/// As ParaView's extractor Recolorable Image asks for them.
+TEST_F(VolumeMapper, SaysThatImagesOfValuesLeaveItOut)
+{
+  vtkNew<vtkTest::ErrorObserver> observer;
+  this->Scene->AddObserver(vtkCommand::ErrorEvent, observer);
+  this->Renderer->AddVolume(this->Volume);
+  vtkNew<vtkValuePass> values;
+  vtkNew<vtkCameraPass> pass;
+  pass->SetDelegatePass(values);
+  this->Renderer->SetPass(pass);
+  this->Window->Render();
+  ASSERT_TRUE(observer->GetError());
+  EXPECT_NE(observer->GetErrorMessage().find("Recolorable Image"), std::string::npos)
+    << observer->GetErrorMessage();
+  observer->Clear();
   this->Renderer->SetPass(nullptr);
   EXPECT_GT(CountCovered(this->RenderDistances()), 1000);
   EXPECT_FALSE(observer->GetError());

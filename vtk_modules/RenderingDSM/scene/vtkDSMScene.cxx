@@ -5,6 +5,7 @@
 #include "vtkDSMSceneInternals.h"
 
 #include "vtkCamera.h"
+#include "vtkCameraPass.h"
 #include "vtkCommand.h"
 #include "vtkObjectFactory.h"
 #include "vtkRenderPass.h"
@@ -30,11 +31,26 @@ std::map<vtkRenderer*, vtkDSMScene*>& GetRegistry()
   return registry;
 }
 
-/// Whether VTK's own ray tracer draws the renderer: then its mappers count, and props of others are left out.
-bool IsDrawnByOSPRay(vtkRenderer* renderer)
+/// Refuses passes that draw what VTK's own mappers have, and leave other props out.
+void CheckPass(vtkRenderer* renderer)
 {
-  vtkRenderPass* const pass = renderer->GetPass();
-  return pass && pass->IsA("vtkOSPRayPass");
+  vtkRenderPass* pass = renderer->GetPass();
+  while (auto* camera = vtkCameraPass::SafeDownCast(pass))
+  {
+    pass = camera->GetDelegatePass(); // ParaView's are behind one
+  }
+  if (pass && pass->IsA("vtkOSPRayPass"))
+  {
+    throw dsm::Error(
+      "VTK's own ray tracing (OSPRay) draws this view, and leaves out what is DSM Ray "
+      "Traced. Switch off Enable Ray Tracing in the view's properties.");
+  }
+  if (pass && pass->IsA("vtkValuePass"))
+  {
+    throw dsm::Error("Images of values (the extractor Recolorable Image) are made of geometry, and "
+                     "leave out what is DSM Ray "
+                     "Traced. Show it as Surface, or with the filter Contour, for these.");
+  }
 }
 
 } // namespace
@@ -331,11 +347,9 @@ bool vtkDSMScene::TraceFrame()
   std::string failure;
   try
   {
-    if (!self.Image && IsDrawnByOSPRay(self.Renderer))
+    if (!self.Image)
     {
-      throw dsm::Error(
-        "VTK's own ray tracing (OSPRay) draws this view, and leaves out what is DSM Ray "
-        "Traced. Switch off Enable Ray Tracing in the view's properties.");
+      CheckPass(self.Renderer);
     }
     self.FindGroup(this->GetController());
     failure = self.MakeFrame(found);
