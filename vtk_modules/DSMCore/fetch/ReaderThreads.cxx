@@ -34,6 +34,11 @@ ReaderThreads::ReaderThreads(int count)
 
 ReaderThreads::~ReaderThreads()
 {
+  this->Stop();
+}
+
+void ReaderThreads::Stop()
+{
   {
     const std::lock_guard<std::mutex> lock(this->Guard);
     this->IsOver = true;
@@ -44,12 +49,17 @@ ReaderThreads::~ReaderThreads()
   {
     thread.join();
   }
+  this->Threads.clear();
 }
 
 void ReaderThreads::Add(std::function<void()> job)
 {
   {
     const std::lock_guard<std::mutex> lock(this->Guard);
+    if (this->IsOver)
+    {
+      return;
+    }
     try
     {
       while (static_cast<int>(this->Threads.size()) < this->Count)

@@ -27,8 +27,11 @@ public:
   ReaderThreads& operator=(const ReaderThreads&) = delete;
 
   /// The job, which throws nothing, is done as soon as a thread is free; jobs begin in order. Those that
-  /// have not begun when the threads end are dropped. Throws Error when no thread can be started.
+  /// have not begun when the threads end, or come later, are dropped. Throws Error when no thread can be started.
   void Add(std::function<void()> job);
+
+  /// Ends the threads, when the reads that they are at have come back.
+  void Stop();
 
 private:
   void Run();

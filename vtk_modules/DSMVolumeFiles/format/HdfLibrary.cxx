@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "DSMVolumeFiles/format/HdfLibrary.h"
 
+#include "DSMCore/fetch/ReaderThreads.h"
+
 #include <atomic>
 #include <cstdlib>
 
@@ -10,8 +12,15 @@ namespace vol
 bool IsHdfEnding()
 {
   static std::atomic<bool> ending{ false };
-  // Called before what the library has asked to be called, which it did earlier.
-  [[maybe_unused]] static const int noted = std::atexit([] { ending = true; });
+  // Called before what the library has asked to be called, which it did earlier. A thread that has used HDF5 2.0 must end
+  // before that, or waits for ever.
+  static dsm::ReaderThreads& threads = dsm::ReaderThreads::GetShared(); // lives longer
+  [[maybe_unused]] static const int noted = std::atexit(
+    []
+    {
+      ending = true;
+      threads.Stop();
+    });
   return ending;
 }
 
