@@ -5,7 +5,10 @@ import re
 import subprocess
 
 
-def get_name(paraview):
+def get_version(paraview):
     said = subprocess.run([paraview, "--version"], stdout=subprocess.PIPE, text=True, check=True, timeout=60).stdout
-    version = tuple(map(int, re.search(r"(\d+)\.(\d+)", said).groups()))
-    return "1pqFileDialog0" if (5, 12) <= version < (6, 0) else "pqFileDialog"
+    return tuple(map(int, re.search(r"(\d+)\.(\d+)", said).groups()))
+
+
+def get_name(paraview):
+    return "1pqFileDialog0" if (5, 12) <= get_version(paraview) < (6, 0) else "pqFileDialog"

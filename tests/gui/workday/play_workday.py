@@ -22,7 +22,7 @@ HERE = os.path.dirname(os.path.abspath(__file__))
 sys.path.insert(1, os.path.dirname(HERE))
 import file_dialog
 import server_of_ranks
-from steps import STEPS, menu
+from steps import get_steps, menu
 
 PATIENCE = 480.0  # seconds, less than that of the tests, which end no server
 
@@ -75,7 +75,8 @@ class Workday:
         self.output = os.path.abspath(arguments.output)
         self.references = os.path.abspath(arguments.references or arguments.output)
         self.kind = "server" if arguments.server else "alone"
-        self.steps = [step for step in STEPS if step.only in ("", self.kind)]
+        self.version = file_dialog.get_version(arguments.paraview)
+        self.steps = get_steps(self.kind, self.version)
 
     def write_events(self, path):
         replaced = {"@PLUGIN@": self.arguments.plugin, "@OUTPUT@": self.output,
@@ -111,7 +112,8 @@ class Workday:
         macros = os.path.join(self.output, "macros")
         self.write_macros(macros)
         environment = dict(os.environ, XDG_CONFIG_HOME=settings, DSM_WORKDAY=self.output,
-                           DSM_WORKDAY_KIND=self.kind, DSM_WORKDAY_PLUGIN=self.arguments.plugin, PV_MACRO_PATH=macros,
+                           DSM_WORKDAY_KIND=self.kind, DSM_WORKDAY_PLUGIN=self.arguments.plugin,
+                           DSM_WORKDAY_VERSION=".".join(map(str, self.version)), PV_MACRO_PATH=macros,
                            DASHBOARD_TEST_FROM_CTEST="1", PYTHONDONTWRITEBYTECODE="1", **environment)
         command = [self.arguments.paraview, "--dr", *options, f"--test-directory={self.output}",
                    f"--test-script={events}", "--exit"]

@@ -13,12 +13,12 @@ from vtkmodules.vtkIOImage import vtkPNGWriter
 from vtkmodules.vtkRenderingCore import vtkWindowToImageFilter
 
 from server_of_ranks import find_ranks, get_memory, holds_blocks
-from steps import STEPS
+from steps import get_steps
 
 FOLDER = os.environ["DSM_WORKDAY"]
 KIND = os.environ["DSM_WORKDAY_KIND"]
 PARENT = int(os.environ.get("DSM_WORKDAY_PARENT", "0"))
-TODAY = [step for step in STEPS if step.only in ("", KIND)]
+TODAY = get_steps(KIND, tuple(map(int, os.environ["DSM_WORKDAY_VERSION"].split("."))))
 
 
 class Progress:
