@@ -8,9 +8,17 @@
 #include "vtkPolygon.h"
 #include "vtkProp.h"
 #include "vtkProperty.h"
+#include "vtkVersionMacros.h"
 
 #include <type_traits>
 #include <utility>
+
+/// Of virtual methods that there are since 9.2: ranges of arrays without ghosts.
+#if VTK_MAJOR_VERSION > 9 || VTK_MINOR_VERSION >= 2
+#define vtkDSMOverrideSince92 override
+#else
+#define vtkDSMOverrideSince92
+#endif
 
 namespace vtkDSMCompatibility
 {

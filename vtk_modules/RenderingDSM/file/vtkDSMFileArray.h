@@ -13,6 +13,7 @@
 #ifndef vtkDSMFileArray_h
 #define vtkDSMFileArray_h
 
+#include "vtkDSMCompatibility.h"
 #include "vtkDSMFileValues.h"
 
 #include "vtkAOSDataArrayTemplate.h"
@@ -71,22 +72,25 @@ protected:
   bool ReallocateTuples(vtkIdType) { return this->RefuseToWrite(); }
 
   bool ComputeScalarRange(double* ranges) override;
-  bool ComputeScalarRange(double* ranges, const unsigned char*, unsigned char) override
+  bool ComputeScalarRange(double* ranges, const unsigned char*, unsigned char) vtkDSMOverrideSince92
   {
     return this->ComputeScalarRange(ranges);
   }
   bool ComputeVectorRange(double range[2]) override;
-  bool ComputeVectorRange(double range[2], const unsigned char*, unsigned char) override
+  bool ComputeVectorRange(
+    double range[2], const unsigned char*, unsigned char) vtkDSMOverrideSince92
   {
     return this->ComputeVectorRange(range);
   }
   bool ComputeFiniteScalarRange(double* ranges) override;
-  bool ComputeFiniteScalarRange(double* ranges, const unsigned char*, unsigned char) override
+  bool ComputeFiniteScalarRange(
+    double* ranges, const unsigned char*, unsigned char) vtkDSMOverrideSince92
   {
     return this->ComputeFiniteScalarRange(ranges);
   }
   bool ComputeFiniteVectorRange(double range[2]) override;
-  bool ComputeFiniteVectorRange(double range[2], const unsigned char*, unsigned char) override
+  bool ComputeFiniteVectorRange(
+    double range[2], const unsigned char*, unsigned char) vtkDSMOverrideSince92
   {
     return this->ComputeFiniteVectorRange(range);
   }
