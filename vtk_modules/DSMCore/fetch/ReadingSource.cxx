@@ -2,7 +2,7 @@
 #include "DSMCore/fetch/ReadingSource.h"
 
 #include "DSMCore/base/Error.h"
-#include "DSMCore/fetch/ReaderThreads.h"
+#include "DSMCore/base/ReaderThreads.h"
 
 #include <algorithm>
 #include <cstdint>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "DSMVolumeFiles/format/HdfLibrary.h"
 
-#include "DSMCore/fetch/ReaderThreads.h"
+#include "DSMCore/base/ReaderThreads.h"
 
 #include <atomic>
 #include <cstdlib>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkDSMReadAhead.h"
 
-#include "DSMCore/fetch/ReaderThreads.h"
+#include "DSMCore/base/ReaderThreads.h"
 
 #include <algorithm>
 #include <chrono>

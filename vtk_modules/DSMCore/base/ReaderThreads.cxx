@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "DSMCore/fetch/ReaderThreads.h"
+#include "DSMCore/base/ReaderThreads.h"
 
 #include "DSMCore/base/Error.h"
 
