@@ -49,9 +49,13 @@ self.GetOutputInformation(0).Set(vtkAlgorithm.CAN_PRODUCE_SUB_EXTENT(), 1)
 """
 
 
-def get_moved(display):
+def get_rows(display):
     display.SMProxy.UpdatePropertyInformation()
-    rows = json.loads(str(display.GetProperty("DSMStatistics")).strip("'"))
+    return json.loads(str(display.GetProperty("DSMStatistics")).strip("'"))
+
+
+def get_moved(display):
+    rows = get_rows(display)
     # A programmable source brings a sum of its own.
     return [builtins.sum(row[name] for row in rows) for name in ("BytesPublished", "BytesReceived")]
 
@@ -121,9 +125,7 @@ def play_pipeline(simple, edge, steps):
 
 def count_fetched(display):
     """Bricks that ranks asked for in the last frame, of files or of one another."""
-    display.SMProxy.UpdatePropertyInformation()
-    rows = json.loads(str(display.GetProperty("DSMStatistics")).strip("'"))
-    return builtins.sum(row["Misses"] - row["Joins"] + row["Prefetches"] for row in rows)
+    return builtins.sum(row["Misses"] - row["Joins"] + row["Prefetches"] for row in get_rows(display))
 
 
 def play_files(simple, share, paths):

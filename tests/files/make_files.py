@@ -359,7 +359,6 @@ writer.SetFileName(path("ball.mha"))
 writer.Write()
 
 
-
 def write_series(name, frames, **others):
     """Of each frame a file with a header, and one for ParaView's own reader, which has further arrays, too."""
     for number, frame in enumerate(frames):

@@ -128,43 +128,42 @@ public:
 };
 vtkStandardNewMacro(vtkOSPRayPass);
 
-TEST_F(VolumeMapper, SaysThatOSPRayLeavesItOut)
+class VolumeMapperAndPass : public VolumeMapper
 {
-  vtkNew<vtkTest::ErrorObserver> observer;
-  this->Scene->AddObserver(vtkCommand::ErrorEvent, observer);
-  this->Renderer->AddVolume(this->Volume);
+protected:
+  /// That the pass leaves the volume out is said, once; without it, the volume is there.
+  void ExpectToldOnce(vtkRenderPass* pass, const std::string& words)
+  {
+    vtkNew<vtkTest::ErrorObserver> observer;
+    this->Scene->AddObserver(vtkCommand::ErrorEvent, observer);
+    this->Renderer->AddVolume(this->Volume);
+    this->Renderer->SetPass(pass);
+    this->Window->Render();
+    ASSERT_TRUE(observer->GetError());
+    EXPECT_NE(observer->GetErrorMessage().find(words), std::string::npos)
+      << observer->GetErrorMessage();
+    observer->Clear();
+    this->Window->Render();
+    EXPECT_FALSE(observer->GetError()) << "once is enough";
+    this->Renderer->SetPass(nullptr);
+    EXPECT_GT(CountCovered(this->RenderDistances()), 1000);
+    EXPECT_FALSE(observer->GetError());
+  }
+};
+
+TEST_F(VolumeMapperAndPass, OSPRaysIsTold)
+{
   vtkNew<vtkOSPRayPass> pass;
-  this->Renderer->SetPass(pass);
-  this->Window->Render();
-  ASSERT_TRUE(observer->GetError());
-  EXPECT_NE(observer->GetErrorMessage().find("Enable Ray Tracing"), std::string::npos)
-    << observer->GetErrorMessage();
-  observer->Clear();
-  this->Window->Render();
-  EXPECT_FALSE(observer->GetError()) << "once is enough";
-  this->Renderer->SetPass(nullptr);
-  EXPECT_GT(CountCovered(this->RenderDistances()), 1000);
-  EXPECT_FALSE(observer->GetError());
+  this->ExpectToldOnce(pass, "Enable Ray Tracing");
 }
 
 /// As ParaView's extractor Recolorable Image asks for them.
-TEST_F(VolumeMapper, SaysThatImagesOfValuesLeaveItOut)
+TEST_F(VolumeMapperAndPass, ThatOfValuesIsTold)
 {
-  vtkNew<vtkTest::ErrorObserver> observer;
-  this->Scene->AddObserver(vtkCommand::ErrorEvent, observer);
-  this->Renderer->AddVolume(this->Volume);
   vtkNew<vtkValuePass> values;
   vtkNew<vtkCameraPass> pass;
   pass->SetDelegatePass(values);
-  this->Renderer->SetPass(pass);
-  this->Window->Render();
-  ASSERT_TRUE(observer->GetError());
-  EXPECT_NE(observer->GetErrorMessage().find("Recolorable Image"), std::string::npos)
-    << observer->GetErrorMessage();
-  observer->Clear();
-  this->Renderer->SetPass(nullptr);
-  EXPECT_GT(CountCovered(this->RenderDistances()), 1000);
-  EXPECT_FALSE(observer->GetError());
+  this->ExpectToldOnce(pass, "Recolorable Image");
 }
 
 } // namespace

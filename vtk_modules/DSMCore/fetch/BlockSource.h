@@ -58,6 +58,7 @@ public:
   /// Between frames: other contents are to be brought from now on, but this block, which is in use, has not
   /// changed, and will not be asked for.
   virtual void NoteKept(const BlockWant&) {}
+
   /// Reads one block right now; between frames, any thread. Throws Error; always, where the blocks come
   /// from other ranks.
   virtual void Read(BlockId, std::byte*, std::size_t) const

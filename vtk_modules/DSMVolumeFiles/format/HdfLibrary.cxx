@@ -9,19 +9,29 @@
 namespace vol
 {
 
-bool IsHdfEnding()
+namespace
 {
-  static std::atomic<bool> ending{ false };
-  // Called before what the library has asked to be called, which it did earlier. A thread that has used HDF5 2.0 must end
-  // before that, or waits for ever.
+
+std::atomic<bool> Ending{ false };
+
+} // namespace
+
+void WatchHdfEnd()
+{
+  // Called before what the library has asked to be called, which it did earlier. A thread that has
+  // used HDF5 2.0 must end before that, or waits for ever.
   static dsm::ReaderThreads& threads = dsm::ReaderThreads::GetShared(); // lives longer
   [[maybe_unused]] static const int noted = std::atexit(
     []
     {
-      ending = true;
+      Ending = true;
       threads.Stop();
     });
-  return ending;
+}
+
+bool IsHdfEnding()
+{
+  return Ending;
 }
 
 std::mutex& GetHdfLock()

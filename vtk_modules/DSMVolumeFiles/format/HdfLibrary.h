@@ -27,8 +27,9 @@ std::mutex& GetHdfLock();
 /// The library's name of the machine's own form of a type.
 hid_t GetHdfType(rt::ScalarType type);
 
-/// Whether the process ends, and the library closes all that is open by itself, perhaps has done so. To be asked
-/// once while it does not, but after the library's first use.
+/// After the library's first use: from then on the end of the process is noticed.
+void WatchHdfEnd();
+/// Whether the process ends, and the library closes all that is open by itself, perhaps has done so.
 bool IsHdfEnding();
 
 /// An identifier of the library's, closed with it. Under the lock.
@@ -40,7 +41,7 @@ public:
     : Id(id)
     , Close(closer)
   {
-    IsHdfEnding();
+    WatchHdfEnd();
   }
   HdfHandle(HdfHandle&& other) noexcept
     : Id(std::exchange(other.Id, H5I_INVALID_HID))

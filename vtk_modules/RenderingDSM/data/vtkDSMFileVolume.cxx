@@ -262,8 +262,7 @@ void vtkDSMFileVolume::CheckSameEverywhere(dsm::Messenger& messenger) const
   {
     throw dsm::Error("The file '" + origin.Path +
       "' was written to, or another took its place, since some of the ranks opened it: they would "
-      "not show the same. "
-      "Reload it.");
+      "not show the same. Reload it.");
   }
 }
 
@@ -411,7 +410,7 @@ std::shared_ptr<const dsm::BlockReader> vtkDSMFileVolume::CreateSteppingReader(
       const Box cells = lattice.GetCellsOfBrick(id);
       values->Foresee({ cells.Min, cells.Max + Index3(1) });
     };
-    if (digests && !digests->empty())
+    if (!digests->empty())
     {
       way.IsSame = [volume, lattice, digests, differ = std::vector<bool>()](dsm::BlockId id) mutable
       {

@@ -77,7 +77,7 @@ public:
   std::shared_ptr<const dsm::BlockReader> CreateReader(
     const rt::BrickLattice& lattice, bool scattered) const;
   /// The same as rays meet them. What is read or kept is read ahead of the next time step, too, but for bricks that
-  /// have the same digests there; `digests` may be null.
+  /// have the same digests there; `digests` may be empty.
   std::shared_ptr<const dsm::BlockReader> CreateSteppingReader(
     const rt::BrickLattice& lattice, std::shared_ptr<const Digests> digests) const;
 

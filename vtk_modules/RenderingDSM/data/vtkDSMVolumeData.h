@@ -59,7 +59,7 @@ public:
       std::shared_ptr<rt::VoxelField> Field;
       dsm::FragmentDigests Digests; ///< of what this rank has contributed
       /// Of a lattice in a file, instead: what brings its bricks, and, where there are other time steps, what is
-      /// known of these.
+      /// known of these (else none).
       std::shared_ptr<dsm::ReadingSource> Source;
       std::shared_ptr<const vtkDSMFileVolume::Digests> Bricks;
     };

@@ -25,12 +25,17 @@ void vtkDSMVolumeData::PublishFile(const vtkDSMFileVolume& file, bool isCoarser,
   rt::VoxelField& field = *part.Field;
   const bool hasSteps = !isCoarser && file.HasSteps();
   std::optional<dsm::BlockDirectory> directory;
+  bool staysInMemory = false;
   messenger.RunTogether("Opening the volume's file",
     [&]
     {
       directory = file.CreateDirectory(field.Lattice, messenger.GetSize());
-      part.Source = std::make_shared<dsm::ReadingSource>(
-        messenger, file.CreateReader(field.Lattice, true), "the file '" + file.GetPath() + "'");
+      staysInMemory = old.Source && old.Field->Lattice == field.Lattice &&
+        old.Field->Segment->GetDirectory().GetFingerprint() == directory->GetFingerprint();
+      part.Source = staysInMemory
+        ? std::move(old.Source)
+        : std::make_shared<dsm::ReadingSource>(
+            messenger, file.CreateReader(field.Lattice, true), "the file '" + file.GetPath() + "'");
       // Chunks of the file that are in memory have their part of what a rank may take.
       const std::uint64_t memory = store.GetSettings().MemoryBytes;
       const std::size_t chunks = vol::ChunkCache::GetShared().Restrict(
@@ -41,8 +46,6 @@ void vtkDSMVolumeData::PublishFile(const vtkDSMFileVolume& file, bool isCoarser,
         (isCoarser ? 0 : dsm::ReadingSource::MostReads * directory->GetLargest()) +
         (hasSteps ? vtkDSMFileVolume::CountDigestBytes(field.Lattice) : 0));
     });
-  const bool staysInMemory = old.Source && old.Field && old.Field->Lattice == field.Lattice &&
-    old.Field->Segment->GetDirectory().GetFingerprint() == directory->GetFingerprint();
   if (!staysInMemory)
   {
     old = {};
@@ -55,16 +58,11 @@ void vtkDSMVolumeData::PublishFile(const vtkDSMFileVolume& file, bool isCoarser,
   messenger.RunTogether("Building the macrocells",
     [&]
     {
-      if (hasSteps)
-      {
-        part.Bricks = std::make_shared<const vtkDSMFileVolume::Digests>(std::move(index.Digests));
-      }
+      part.Bricks = std::make_shared<const vtkDSMFileVolume::Digests>(
+        hasSteps ? std::move(index.Digests) : vtkDSMFileVolume::Digests());
       if (staysInMemory)
       {
-        const vtkDSMFileVolume::Digests none;
-        differ = rt::VoxelIndex::Compare(
-          old.Bricks ? *old.Bricks : none, part.Bricks ? *part.Bricks : none, index.Bricks.size());
-        part.Source = std::move(old.Source);
+        differ = rt::VoxelIndex::Compare(*old.Bricks, *part.Bricks, index.Bricks.size());
         field.Segment =
           std::move(old.Field->Segment); // retired with the field, should anything fail
       }

@@ -48,8 +48,8 @@ void CheckPass(vtkRenderer* renderer)
   if (pass && pass->IsA("vtkValuePass"))
   {
     throw dsm::Error("Images of values (the extractor Recolorable Image) are made of geometry, and "
-                     "leave out what is DSM Ray "
-                     "Traced. Show it as Surface, or with the filter Contour, for these.");
+                     "leave out what is DSM Ray Traced. Show it as Surface, or with the filter "
+                     "Contour, for these.");
   }
 }
 
