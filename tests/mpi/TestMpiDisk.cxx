@@ -4,6 +4,9 @@
 
 #include "tests/unit/dsmcore/DiskScenarios.h"
 
+#include <memory>
+#include <vector>
+
 namespace
 {
 
@@ -49,6 +52,24 @@ TEST_P(DiskOverMpi, DiskThatDoesNotAnswerFailsTheFrameOnly)
   const std::string brick = "Brick " + std::to_string(stuck) + " of the test's disk ";
   EXPECT_NE(text.find(brick + "has not come for 1.5 s"), std::string::npos) << text;
   disks.Disk->SetStuck(dsm_test::NoBlock);
+  disks.ReadAll();
+}
+
+/// As from one time step to the next: it is the next one's that is named.
+TEST_P(DiskOverMpi, DiskThatDoesNotAnswerIsNamedAsItIsNow)
+{
+  dsm::Messenger messenger(dsm::MpiTransport::Create(nullptr));
+  messenger.SetSilenceLimit(2.0);
+  dsm_test::DiskStore disks(messenger, this->GetParam(), 6);
+  const auto next = std::make_shared<dsm_test::PatternDisk>();
+  disks.Source->SetReader(next, "the next disk");
+  disks.Store.Refresh("The next step", disks.Segment,
+    std::vector<bool>(disks.Segment->GetDirectory().GetCount(), true));
+  next->SetStuck(0);
+  const std::string text = dsm_test::GetErrorText([&] { disks.ReadAll(); });
+  EXPECT_NE(text.find("Brick 0 of the next disk has not come for 1.5 s"), std::string::npos)
+    << text;
+  next->SetStuck(dsm_test::NoBlock);
   disks.ReadAll();
 }
 

@@ -213,7 +213,7 @@ TEST_P(BlocksOnDisk, GetOtherContents)
       EXPECT_TRUE(disks.Store.MayRefresh(disks.Segment));
       EXPECT_FALSE(disks.Store.MayUpdate(disks.Segment));
       const auto next = std::make_shared<dsm_test::PatternDisk>();
-      disks.Source->SetReader(next);
+      disks.Source->SetReader(next, "the next step's disk");
       const bool byAll = organization == dsm::MemoryOrganization::Replicated;
       std::vector<bool> changed(count);
       std::size_t mine = 0;

@@ -37,9 +37,13 @@ public:
   void NoteKept(const BlockWant& block) override;
   void Read(BlockId id, std::byte* block, std::size_t bytes) const override;
 
-  /// Between frames: other contents, of blocks of the same sizes. Whoever has blocks of the old ones has to be
-  /// told (BlockStore::Refresh).
-  void SetReader(std::shared_ptr<const BlockReader> reader) { this->Reader = std::move(reader); }
+  /// Between frames: other contents, of blocks of the same sizes, and what errors call them from now on. Whoever
+  /// has blocks of the old ones has to be told (BlockStore::Refresh).
+  void SetReader(std::shared_ptr<const BlockReader> reader, std::string name)
+  {
+    this->Reader = std::move(reader);
+    this->Name = std::move(name);
+  }
 
   /// Reads that are with the threads, or have come back and were not delivered: what they take of the
   /// memory, and of the communication thread's time at once, is bounded.

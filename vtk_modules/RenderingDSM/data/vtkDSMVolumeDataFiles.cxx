@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <utility>
 
 namespace
@@ -24,6 +25,7 @@ void vtkDSMVolumeData::PublishFile(const vtkDSMFileVolume& file, bool isCoarser,
   dsm::BlockStore& store = this->Group->GetStore();
   rt::VoxelField& field = *part.Field;
   const bool hasSteps = !isCoarser && file.HasSteps();
+  const std::string name = "the file '" + file.GetPath() + "'";
   std::optional<dsm::BlockDirectory> directory;
   bool staysInMemory = false;
   messenger.RunTogether("Opening the volume's file",
@@ -32,10 +34,9 @@ void vtkDSMVolumeData::PublishFile(const vtkDSMFileVolume& file, bool isCoarser,
       directory = file.CreateDirectory(field.Lattice, messenger.GetSize());
       staysInMemory = old.Source && old.Field->Lattice == field.Lattice &&
         old.Field->Segment->GetDirectory().GetFingerprint() == directory->GetFingerprint();
-      part.Source = staysInMemory
-        ? std::move(old.Source)
-        : std::make_shared<dsm::ReadingSource>(
-            messenger, file.CreateReader(field.Lattice, true), "the file '" + file.GetPath() + "'");
+      part.Source = staysInMemory ? std::move(old.Source)
+                                  : std::make_shared<dsm::ReadingSource>(
+                                      messenger, file.CreateReader(field.Lattice, true), name);
       // Chunks of the file that are in memory have their part of what a rank may take.
       const std::uint64_t memory = store.GetSettings().MemoryBytes;
       const std::size_t chunks = vol::ChunkCache::GetShared().Restrict(
@@ -66,7 +67,7 @@ void vtkDSMVolumeData::PublishFile(const vtkDSMFileVolume& file, bool isCoarser,
         field.Segment =
           std::move(old.Field->Segment); // retired with the field, should anything fail
       }
-      part.Source->SetReader(file.CreateSteppingReader(field.Lattice, part.Bricks));
+      part.Source->SetReader(file.CreateSteppingReader(field.Lattice, part.Bricks), name);
       field.Survey = index.Survey;
       field.Hierarchy = rt::MacrocellHierarchy(field.Lattice, std::move(index.Bricks));
     });
