@@ -18,6 +18,8 @@ import subprocess
 import sys
 import time
 
+from measuring import get_rows
+
 SHARES = (0.01, 0.1, 1.0)
 BRICK = 16  # cells along an axis of a brick of floats
 SOURCE = """
@@ -47,11 +49,6 @@ from vtkmodules.vtkCommonExecutionModel import vtkAlgorithm
 util.SetOutputWholeExtent(self, [0, {edge}, 0, {edge}, 0, {edge}])
 self.GetOutputInformation(0).Set(vtkAlgorithm.CAN_PRODUCE_SUB_EXTENT(), 1)
 """
-
-
-def get_rows(display):
-    display.SMProxy.UpdatePropertyInformation()
-    return json.loads(str(display.GetProperty("DSMStatistics")).strip("'"))
 
 
 def get_moved(display):

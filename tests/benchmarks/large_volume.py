@@ -17,6 +17,8 @@ import subprocess
 import sys
 import time
 
+from measuring import get_rows
+
 ISOVALUES = [-1.0, -0.5, 0.0, 0.5, 1.0]
 CHUNK = 64
 BEYOND = 150  # MiB that a rank may take beyond its limit and what it had before
@@ -103,8 +105,7 @@ def show(plugin, path, memory, places):
     place(0, places)
     first = time.time() - start
     opened = look(pids)
-    display.SMProxy.UpdatePropertyInformation()
-    rows = json.loads(str(display.GetProperty("DSMStatistics")).strip("'"))
+    rows = get_rows(display)
     seconds = []
     for value in ISOVALUES:
         display.DSMIsoValues = [value]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""How the scripts here start dsm_bench."""
+"""What the scripts here share."""
 import json
 import os
 import subprocess
@@ -18,3 +18,9 @@ def run_bench(bench, ranks, benchmark, **options):
     for name, value in options.items():
         command += ["--" + name.replace("_", "-"), str(value)]
     return json.loads(subprocess.run(command, check=True, stdout=subprocess.PIPE).stdout)
+
+
+def get_rows(display):
+    """The statistics of each rank (vtkDSMStatistics::GetJson). In pvbatch."""
+    display.SMProxy.UpdatePropertyInformation()
+    return json.loads(str(display.GetProperty("DSMStatistics")).strip("'"))

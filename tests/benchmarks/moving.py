@@ -4,11 +4,11 @@ moving. Called as
     pvbatch moving.py PLUGIN FILE ISOVALUE [MEMORY...]
 FILE has levels (dsm_convert --levels); MEMORY in MiB of each rank. The system's own copy of the file is dropped first."""
 
-import json
 import os
 import sys
 import time
 
+from measuring import get_rows
 from paraview import simple
 
 PLUGIN, FILE, ISOVALUE = sys.argv[1:4]
@@ -24,7 +24,7 @@ def drop_cached_file():
 
 def drag(memory, coarser):
     simple.ResetSession()
-    simple.LoadPlugin(PLUGIN, ns=globals())
+    simple.LoadPlugin(PLUGIN, ns=vars(simple))
     view = simple.CreateRenderView(ViewSize=[800, 600], OrientationAxesVisibility=0)
     view.LODThreshold = 0.0
     source = simple.DSMVolumeReader(FileName=FILE)
@@ -45,9 +45,7 @@ def drag(memory, coarser):
         start = time.monotonic()
         view.SMProxy.InteractiveRender()
         seconds.append(time.monotonic() - start)
-        display.SMProxy.UpdatePropertyInformation()
-        rows = json.loads(str(display.GetProperty("DSMStatistics")).strip("'"))
-        levels.append(rows[0]["CoarserLevel"])
+        levels.append(get_rows(display)[0]["CoarserLevel"])
     start = time.monotonic()
     simple.Render(view)
     return seconds, levels, time.monotonic() - start
