@@ -59,6 +59,8 @@ if [ ! -e "$tree/.complete" ]; then
   }
   touch "$tree/.complete"
 fi
+# MPI looks the machine's name up whenever it starts, and waits seconds for a server that knows nothing of it.
+cp /etc/hosts "$tree/etc/hosts"
 
 # Mounts of a namespace of its own end with it, however this script ends.
 mkdir -p "$tree/project" "$tree/build-$flavour" "$tree/data" "$tree/ccache"

@@ -88,7 +88,9 @@ TEST_P(PrefetchOverMpi, MovingCameraWaitsLessAndSeesTheSame)
   const auto settings = SphereScene::CreateSettings(16 * oneBrick, 1, this->GetParam());
   Session without;
   Session with;
-  for (int round = 0; round < 2; ++round)
+  // Which rank traces which tile is never the same twice, and misses of a session vary by a tenth.
+  constexpr int Rounds = 6;
+  for (int round = 0; round < Rounds; ++round)
   {
     for (const bool prefetch : { false, true })
     {
