@@ -22,6 +22,12 @@ if (PkgConfig_FOUND)
   dsm_find_format_library(ZLIB zlib)
   dsm_find_format_library(BLOSC blosc)
   dsm_find_format_library(ZSTD libzstd)
+  # Reads what zlib reads, in half the time.
+  pkg_check_modules(DSM_DEFLATE QUIET IMPORTED_TARGET libdeflate)
+  if (TARGET DSM::ZLIB AND TARGET PkgConfig::DSM_DEFLATE)
+    add_library(DSM::DEFLATE INTERFACE IMPORTED GLOBAL)
+    target_link_libraries(DSM::DEFLATE INTERFACE PkgConfig::DSM_DEFLATE)
+  endif ()
 endif ()
 find_package(nlohmann_json REQUIRED)
 

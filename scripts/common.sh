@@ -13,7 +13,7 @@ packages=(
   paraview paraview-dev python3-paraview
   libopenmpi-dev openmpi-bin
   libglm-dev libhwy-dev nlohmann-json3-dev
-  pkg-config libhdf5-dev zlib1g-dev libblosc-dev libzstd-dev
+  pkg-config libhdf5-dev zlib1g-dev libdeflate-dev libblosc-dev libzstd-dev
   libx11-dev libgl-dev libopengl-dev libglew-dev libpng-dev libpython3-dev
   xvfb xauth libgl1-mesa-dri
 )

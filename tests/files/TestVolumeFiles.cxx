@@ -322,13 +322,38 @@ TEST(ChunkGrid, AChunkAndItsHaloAreTheBoxOfABrick)
   }
 }
 
-TEST(ChunkCodec, AHaloComesBackWhereThereIsOne)
+TEST(ChunkCodec, ShuffledElementsOfEveryWidthComeBack)
+{
+  for (const std::size_t width : { 1, 2, 3, 4, 7, 8, 16 })
+  {
+    const vol::ChunkCodec codec({ { vol::CodecStep::Kind::Shuffle, width } });
+    std::vector<std::byte> samples(100 * width + width / 2); // and some bytes of one more
+    for (std::size_t place = 0; place < samples.size(); ++place)
+    {
+      samples[place] = std::byte(place * place % 251);
+    }
+    const std::vector<std::byte> stored = codec.Encode(samples);
+    EXPECT_EQ(stored[1], samples[width]) << width;
+    std::vector<std::byte> found(samples.size());
+    EXPECT_TRUE(codec.Decode(stored, 0, found.data(), found.size()));
+    EXPECT_EQ(found, samples) << width;
+  }
+}
+
+class ChunkCodecHalo : public testing::TestWithParam<vol::CodecStep::Kind>
+{
+};
+
+INSTANTIATE_TEST_SUITE_P(Compressions, ChunkCodecHalo,
+  testing::Values(vol::CodecStep::Kind::Zstd, vol::CodecStep::Kind::Deflate));
+
+TEST_P(ChunkCodecHalo, ComesBackWhereThereIsOne)
 {
   using Kind = vol::CodecStep::Kind;
   vol::ChunkCodec codec;
   try
   {
-    codec = vol::ChunkCodec({ { Kind::Shuffle, 4 }, { Kind::Zstd }, { Kind::Fletcher32 } });
+    codec = vol::ChunkCodec({ { Kind::Shuffle, 4 }, { this->GetParam() }, { Kind::Fletcher32 } });
   }
   catch (const dsm::Error& error)
   {

@@ -13,7 +13,7 @@ import warnings
 
 import h5py
 import numpy as np
-from numcodecs import Zstd
+from numcodecs import Zlib, Zstd
 
 CONVERT, FOLDER, MPIRUN = sys.argv[1], sys.argv[2], sys.argv[3:]
 SIZE = (101, 70, 90)  # x, y, z
@@ -94,15 +94,16 @@ check(done.returncode == 0, f"Zstandard is written {done.stderr}")
 back = convert("--quiet", path("zstd.vtkhdf"), path("back.vtkhdf"))
 check(back.returncode == 0, f"and read {back.stderr}")
 compare("back.vtkhdf", "Zstandard")
-# Another reader of Zstandard passes over what is behind a chunk.
-with h5py.File(path("zstd.vtkhdf"), "r") as zstd, h5py.File(path("back.vtkhdf"), "r") as whole:
-    array, other = zstd["VTKHDF/PointData/values"], whole["VTKHDF/PointData/values"]
-    halos = zstd["DSM/PointData/values"].attrs["HaloSamples"]
-    filters, stored = array.id.read_direct_chunk((0, 0, 0))
-    unpacked = np.frombuffer(Zstd().decode(stored[:-4]), "u1").reshape(array.dtype.itemsize, -1)
-    chunk = np.ascontiguousarray(unpacked.T).view(array.dtype).reshape(array.chunks)
-    same = np.array_equal(chunk, other[tuple(slice(edge) for edge in array.chunks)], equal_nan=True)
-    check(halos == 1 and filters == 0 and same, "numcodecs reads a chunk that has a halo")
+# Other readers pass over what is behind a chunk.
+for packed, name, codec in (("zstd.vtkhdf", "Zstandard", Zstd()), ("deflate_1.vtkhdf", "zlib", Zlib())):
+    with h5py.File(path(packed), "r") as file, h5py.File(path("back.vtkhdf"), "r") as whole:
+        array, other = file["VTKHDF/PointData/values"], whole["VTKHDF/PointData/values"]
+        halos = file["DSM/PointData/values"].attrs["HaloSamples"]
+        filters, stored = array.id.read_direct_chunk((0, 0, 0))
+        unpacked = np.frombuffer(codec.decode(stored[:-4]), "u1").reshape(array.dtype.itemsize, -1)
+        chunk = np.ascontiguousarray(unpacked.T).view(array.dtype).reshape(array.chunks)
+        same = np.array_equal(chunk, other[tuple(slice(edge) for edge in array.chunks)], equal_nan=True)
+        check(halos == 1 and filters == 0 and same, f"numcodecs reads a chunk that has a halo ({name})")
 check(os.path.getsize(path("zstd.vtkhdf")) < 0.8 * os.path.getsize(path("back.vtkhdf")), "it is smaller")
 
 # Components, cells, several arrays, other names.

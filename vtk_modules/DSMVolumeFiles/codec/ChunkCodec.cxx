@@ -7,9 +7,13 @@
 #include <algorithm>
 #include <cstdint>
 #include <cstring>
+#include <memory>
 #include <optional>
 #include <utility>
 
+#ifdef DSM_HAS_DEFLATE
+#include <libdeflate.h>
+#endif
 #ifdef DSM_HAS_ZLIB
 #include <zlib.h>
 #endif
@@ -58,7 +62,31 @@ void AddLast(Bytes& bytes, std::uint32_t value)
   }
 }
 
-#ifdef DSM_HAS_ZLIB
+#ifdef DSM_HAS_DEFLATE
+Bytes Inflate(const Bytes& stored, std::size_t most)
+{
+  const std::unique_ptr<libdeflate_decompressor, void (*)(libdeflate_decompressor*)> machine(
+    libdeflate_alloc_decompressor(), &libdeflate_free_decompressor);
+  if (!machine)
+  {
+    throw std::bad_alloc();
+  }
+  const bool gzip =
+    stored.size() > 1 && stored[0] == std::byte(0x1f) && stored[1] == std::byte(0x8b);
+  Bytes bytes(most);
+  std::size_t used = 0;
+  std::size_t count = 0;
+  const libdeflate_result result =
+    (gzip ? libdeflate_gzip_decompress_ex : libdeflate_zlib_decompress_ex)(
+      machine.get(), stored.data(), stored.size(), bytes.data(), bytes.size(), &used, &count);
+  if (result != LIBDEFLATE_SUCCESS)
+  {
+    Refuse("its deflate stream is damaged");
+  }
+  bytes.resize(count);
+  return bytes;
+}
+#elif defined(DSM_HAS_ZLIB)
 Bytes Inflate(Bytes& stored, std::size_t most)
 {
   constexpr int zlibOrGzip = 15 + 32;
@@ -146,33 +174,6 @@ Bytes EncodeZstd(const Bytes& samples)
   bytes.resize(count);
   return bytes;
 }
-
-/// "D" of those that are free for any use.
-constexpr std::uint32_t HaloMagic = 0x184D2A50 + 0xD;
-
-/// Behind a Zstandard frame.
-void AddHalo(Bytes& bytes, const Bytes& halo)
-{
-  const Bytes packed = EncodeZstd(halo);
-  AddLast(bytes, HaloMagic);
-  AddLast(bytes, static_cast<std::uint32_t>(packed.size()));
-  bytes.insert(bytes.end(), packed.begin(), packed.end());
-}
-
-/// Of a chunk as it is stored; nothing where there is none.
-std::optional<Bytes> FindHalo(const Bytes& stored, std::size_t most)
-{
-  const std::size_t frame = ZSTD_findFrameCompressedSize(stored.data(), stored.size());
-  constexpr std::size_t header = 2 * sizeof(std::uint32_t);
-  if (ZSTD_isError(frame) || stored.size() < frame + header ||
-    GetNumber(stored, frame) != HaloMagic ||
-    GetNumber(stored, frame + sizeof(std::uint32_t)) != stored.size() - frame - header)
-  {
-    return std::nullopt;
-  }
-  return DecodeZstd(
-    { stored.begin() + static_cast<std::ptrdiff_t>(frame + header), stored.end() }, most);
-}
 #endif
 
 std::uint32_t TakeLast(Bytes& bytes)
@@ -210,10 +211,40 @@ Bytes Shuffle(const Bytes& samples, std::size_t width)
   return bytes;
 }
 
+/// Compilers make vectors of a width that they know.
+template <std::size_t Width>
+void UnshuffleElements(const Bytes& stored, Bytes& bytes)
+{
+  const std::size_t count = stored.size() / Width;
+  const std::byte* from = stored.data();
+  std::byte* to = bytes.data();
+  for (std::size_t element = 0; element < count; ++element)
+  {
+    for (std::size_t byte = 0; byte < Width; ++byte)
+    {
+      to[element * Width + byte] = from[byte * count + element];
+    }
+  }
+}
+
 Bytes Unshuffle(const Bytes& stored, std::size_t width)
 {
   const std::size_t count = stored.size() / width;
   Bytes bytes = stored; // what is left over behind the last element stays where it is
+  switch (width)
+  {
+    case sizeof(short):
+      UnshuffleElements<sizeof(short)>(stored, bytes);
+      return bytes;
+    case sizeof(float):
+      UnshuffleElements<sizeof(float)>(stored, bytes);
+      return bytes;
+    case sizeof(double):
+      UnshuffleElements<sizeof(double)>(stored, bytes);
+      return bytes;
+    default:
+      break;
+  }
   for (std::size_t byte = 0; byte < width; ++byte)
   {
     for (std::size_t element = 0; element < count; ++element)
@@ -289,6 +320,71 @@ Bytes Do(const CodecStep& step, Bytes bytes)
   }
 }
 
+/// A chunk's halo is compressed as the chunk is, and lies behind it, where other programs do not look: behind a
+/// Zstandard frame in a skippable one, that is with its size and a magic number before it ("D" of those that are
+/// free for any use), and behind a deflate stream, whose end only unpacking finds, with both after it.
+constexpr std::uint32_t HaloMagic = 0x184D2A50 + 0xD;
+constexpr std::size_t HaloHeader = 2 * sizeof(std::uint32_t);
+
+bool MayHaveHalo(const CodecStep& step)
+{
+  return step.What == Kind::Zstd || step.What == Kind::Deflate;
+}
+
+void AddHalo(const CodecStep& step, Bytes& bytes, Bytes halo)
+{
+  const Bytes packed = Do(step, std::move(halo));
+  const auto size = static_cast<std::uint32_t>(packed.size());
+  if (step.What == Kind::Zstd)
+  {
+    AddLast(bytes, HaloMagic);
+    AddLast(bytes, size);
+    bytes.insert(bytes.end(), packed.begin(), packed.end());
+  }
+  else
+  {
+    bytes.insert(bytes.end(), packed.begin(), packed.end());
+    AddLast(bytes, size);
+    AddLast(bytes, HaloMagic);
+  }
+}
+
+/// Of a chunk as it is stored, still compressed; nothing where there is none.
+std::optional<Bytes> FindHalo(const CodecStep& step, const Bytes& stored)
+{
+  std::size_t first = 0;
+  std::size_t last = stored.size();
+  if (stored.size() <= HaloHeader)
+  {
+    return std::nullopt;
+  }
+#ifdef DSM_HAS_ZSTD
+  if (step.What == Kind::Zstd)
+  {
+    const std::size_t frame = ZSTD_findFrameCompressedSize(stored.data(), stored.size());
+    if (ZSTD_isError(frame) || stored.size() < frame + HaloHeader ||
+      GetNumber(stored, frame) != HaloMagic ||
+      GetNumber(stored, frame + sizeof(std::uint32_t)) != stored.size() - frame - HaloHeader)
+    {
+      return std::nullopt;
+    }
+    first = frame + HaloHeader;
+  }
+#endif
+  if (step.What == Kind::Deflate)
+  {
+    last -= HaloHeader;
+    const std::uint32_t size = GetNumber(stored, last);
+    if (GetNumber(stored, last + sizeof(std::uint32_t)) != HaloMagic || size > last)
+    {
+      return std::nullopt;
+    }
+    first = last - size;
+  }
+  return Bytes(stored.begin() + static_cast<std::ptrdiff_t>(first),
+    stored.begin() + static_cast<std::ptrdiff_t>(last));
+}
+
 } // namespace
 
 ChunkCodec::ChunkCodec(std::vector<CodecStep> steps)
@@ -331,12 +427,14 @@ bool ChunkCodec::Decode(std::vector<std::byte> stored, unsigned skipped, std::by
       {
         beside = Undo(this->Steps[step], std::move(*beside), halo->size());
       }
-#ifdef DSM_HAS_ZSTD
-      if (halo && this->Steps[step].What == Kind::Zstd)
+      else if (halo && MayHaveHalo(this->Steps[step]))
       {
-        beside = FindHalo(stored, halo->size());
+        beside = FindHalo(this->Steps[step], stored);
+        if (beside)
+        {
+          beside = Undo(this->Steps[step], std::move(*beside), halo->size());
+        }
       }
-#endif
       stored = Undo(this->Steps[step], std::move(stored), most);
     }
   }
@@ -363,13 +461,11 @@ std::vector<std::byte> ChunkCodec::Encode(
   for (const CodecStep& step : this->Steps)
   {
     samples = Do(step, std::move(samples));
-#ifdef DSM_HAS_ZSTD
-    if (step.What == Kind::Zstd && !halo.empty())
+    if (!halo.empty() && MayHaveHalo(step))
     {
-      AddHalo(samples, std::exchange(halo, {}));
+      AddHalo(step, samples, std::exchange(halo, {}));
     }
-#endif
-    if (!halo.empty())
+    else if (!halo.empty())
     {
       halo = Do(step, std::move(halo));
     }
@@ -379,8 +475,7 @@ std::vector<std::byte> ChunkCodec::Encode(
 
 bool ChunkCodec::KeepsHalo() const
 {
-  return std::any_of(this->Steps.begin(), this->Steps.end(),
-    [](const CodecStep& step) { return step.What == Kind::Zstd; });
+  return std::any_of(this->Steps.begin(), this->Steps.end(), &MayHaveHalo);
 }
 
 } // namespace vol

@@ -41,12 +41,13 @@ public:
     std::vector<std::byte>* halo = nullptr) const;
 
   /// What a file has for these samples: all steps, the first one first. Throws dsm::Error for Blosc and Crc32c,
-  /// which are only read. `halo`: further samples, for Decode; other programs pass over them, since they are in a
-  /// skippable frame (RFC 8878, section 3.1.2) behind that of the chunk. Only where KeepsHalo().
+  /// which are only read. `halo`: further samples, for Decode; other programs pass over them, since they lie behind
+  /// the end of what is compressed: of Zstandard in a skippable frame (RFC 8878, section 3.1.2), of deflate behind
+  /// the stream (RFC 1950), which tells its end. Only where KeepsHalo().
   std::vector<std::byte> Encode(
     std::vector<std::byte> samples, std::vector<std::byte> halo = {}) const;
 
-  /// Whether there is a place for a halo: behind a Zstandard frame.
+  /// Whether there is a place for a halo: behind a Zstandard frame or a deflate stream.
   bool KeepsHalo() const;
 
   bool IsPlain() const { return this->Steps.empty(); }
