@@ -55,7 +55,8 @@ def picture(source, array, **properties):
 
 pictures = []
 BALLS = (
-    ("ball.h5", "f"), ("ball.zarr", "ball"), ("ball.mha", "values"), ("ball.vtkhdf", "f"), ("ball_zstd.vtkhdf", "f"))
+    ("ball.h5", "f"), ("ball.zarr", "ball"), ("ball.mha", "values"), ("ball.vtkhdf", "f"), ("ball_zstd.vtkhdf", "f"),
+    ("ball_deflate.vtkhdf", "f"))
 for name, array in BALLS:
     source = simple.DSMVolumeReader(FileName=os.path.join(FILES, name))
     plain = ordinary(source)
@@ -78,8 +79,8 @@ else:
     check_equal(pictures[0], numpy.load(reference), "the picture is what one rank draws")
 
 # What dsm_convert writes is ParaView's own, too.
-theirs = simple.VTKHDFReader(FileName=os.path.join(FILES, "ball.vtkhdf"))
-ours = simple.DSMVolumeReader(FileName=os.path.join(FILES, "ball.vtkhdf"))
+theirs = simple.VTKHDFReader(FileName=os.path.join(FILES, "ball_deflate.vtkhdf"))
+ours = simple.DSMVolumeReader(FileName=os.path.join(FILES, "ball_deflate.vtkhdf"))
 check((picture(theirs, "f")[0] == picture(ours, "f")[0]).all(), "ParaView's own reader gives the same picture")
 simple.Delete(theirs)
 simple.Delete(ours)

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Brick files that dsm_convert writes, as h5py reads them. Called as test_convert.py DSM_CONVERT FOLDER MPIRUN...; leaves
-FOLDER/ball.vtkhdf and FOLDER/ball_zstd.vtkhdf, of FOLDER/ball.h5, for tests of the reader."""
+FOLDER/ball.vtkhdf, FOLDER/ball_zstd.vtkhdf and FOLDER/ball_deflate.vtkhdf, of FOLDER/ball.h5, for tests of the
+reader."""
 
 import glob
 import json
@@ -289,7 +290,7 @@ else:
 sys.stdout.flush()
 os.remove(path("big.raw"))
 
-for compression, name in (("none", "ball.vtkhdf"), ("zstd", "ball_zstd.vtkhdf")):
+for compression, name in (("none", "ball.vtkhdf"), ("zstd", "ball_zstd.vtkhdf"), ("deflate", "ball_deflate.vtkhdf")):
     done = convert("--quiet", "--arrays", "f", "--compression", compression, path("ball.h5"), path(name))
     check(done.returncode == 0, f"{name} is written {done.stderr}")
 sys.exit(failed)
