@@ -263,7 +263,7 @@ void SwapBytes(Bytes& bytes, std::size_t width)
   }
 }
 
-Bytes Undo(const CodecStep& step, Bytes bytes, std::size_t most)
+Bytes Undo(const CodecStep& step, Bytes bytes, [[maybe_unused]] std::size_t most)
 {
   switch (step.What)
   {
