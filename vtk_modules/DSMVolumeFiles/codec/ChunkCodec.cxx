@@ -9,9 +9,10 @@
 #include <cstring>
 #include <memory>
 #include <optional>
+#include <type_traits>
 #include <utility>
 
-#ifdef DSM_HAS_DEFLATE
+#ifdef DSM_HAS_LIBDEFLATE
 #include <libdeflate.h>
 #endif
 #ifdef DSM_HAS_ZLIB
@@ -62,7 +63,7 @@ void AddLast(Bytes& bytes, std::uint32_t value)
   }
 }
 
-#ifdef DSM_HAS_DEFLATE
+#ifdef DSM_HAS_LIBDEFLATE
 Bytes Inflate(const Bytes& stored, std::size_t most)
 {
   const std::unique_ptr<libdeflate_decompressor, void (*)(libdeflate_decompressor*)> machine(
@@ -211,46 +212,34 @@ Bytes Shuffle(const Bytes& samples, std::size_t width)
   return bytes;
 }
 
-/// Compilers make vectors of a width that they know.
-template <std::size_t Width>
-void UnshuffleElements(const Bytes& stored, Bytes& bytes)
-{
-  const std::size_t count = stored.size() / Width;
-  const std::byte* from = stored.data();
-  std::byte* to = bytes.data();
-  for (std::size_t element = 0; element < count; ++element)
-  {
-    for (std::size_t byte = 0; byte < Width; ++byte)
-    {
-      to[element * Width + byte] = from[byte * count + element];
-    }
-  }
-}
-
 Bytes Unshuffle(const Bytes& stored, std::size_t width)
 {
-  const std::size_t count = stored.size() / width;
   Bytes bytes = stored; // what is left over behind the last element stays where it is
-  switch (width)
+  const auto put = [from = stored.data(), to = bytes.data(), all = stored.size()](auto elementBytes)
   {
-    case sizeof(short):
-      UnshuffleElements<sizeof(short)>(stored, bytes);
-      return bytes;
-    case sizeof(float):
-      UnshuffleElements<sizeof(float)>(stored, bytes);
-      return bytes;
-    case sizeof(double):
-      UnshuffleElements<sizeof(double)>(stored, bytes);
-      return bytes;
-    default:
-      break;
-  }
-  for (std::size_t byte = 0; byte < width; ++byte)
-  {
+    const std::size_t count = all / elementBytes;
     for (std::size_t element = 0; element < count; ++element)
     {
-      bytes[element * width + byte] = stored[byte * count + element];
+      for (std::size_t byte = 0; byte < elementBytes; ++byte)
+      {
+        to[element * elementBytes + byte] = from[byte * count + element];
+      }
     }
+  };
+  // Compilers make vectors of a width that they know.
+  switch (width)
+  {
+    case 2:
+      put(std::integral_constant<std::size_t, 2>());
+      break;
+    case 4:
+      put(std::integral_constant<std::size_t, 4>());
+      break;
+    case 8:
+      put(std::integral_constant<std::size_t, 8>());
+      break;
+    default:
+      put(width);
   }
   return bytes;
 }
@@ -423,17 +412,13 @@ bool ChunkCodec::Decode(std::vector<std::byte> stored, unsigned skipped, std::by
   {
     if ((skipped >> step & 1) == 0)
     {
+      if (halo && !beside && MayHaveHalo(this->Steps[step]))
+      {
+        beside = FindHalo(this->Steps[step], stored);
+      }
       if (beside)
       {
         beside = Undo(this->Steps[step], std::move(*beside), halo->size());
-      }
-      else if (halo && MayHaveHalo(this->Steps[step]))
-      {
-        beside = FindHalo(this->Steps[step], stored);
-        if (beside)
-        {
-          beside = Undo(this->Steps[step], std::move(*beside), halo->size());
-        }
       }
       stored = Undo(this->Steps[step], std::move(stored), most);
     }
