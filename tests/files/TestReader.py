@@ -8,7 +8,7 @@ import sys
 from dsm_testing import *
 
 FILES = sys.argv[3]
-os.environ["XDG_CACHE_HOME"] = os.path.join(OUTPUT, "caches")
+os.environ["XDG_CACHE_HOME"] = os.path.join(OUTPUT, "caches", str(get_ranks()))
 
 load_plugin()
 view = create_view()
@@ -79,11 +79,13 @@ else:
     check_equal(pictures[0], numpy.load(reference), "the picture is what one rank draws")
 
 # What dsm_convert writes is ParaView's own, too.
-theirs = simple.VTKHDFReader(FileName=os.path.join(FILES, "ball_deflate.vtkhdf"))
-ours = simple.DSMVolumeReader(FileName=os.path.join(FILES, "ball_deflate.vtkhdf"))
-check((picture(theirs, "f")[0] == picture(ours, "f")[0]).all(), "ParaView's own reader gives the same picture")
-simple.Delete(theirs)
-simple.Delete(ours)
+for name in ("ball.vtkhdf", "ball_deflate.vtkhdf"):
+    theirs = simple.VTKHDFReader(FileName=os.path.join(FILES, name))
+    ours = simple.DSMVolumeReader(FileName=os.path.join(FILES, name))
+    same = (picture(theirs, "f")[0] == picture(ours, "f")[0]).all()
+    check(same, f"{name}: ParaView's own reader gives the same picture")
+    simple.Delete(theirs)
+    simple.Delete(ours)
 
 # What filters of ParaView make of it is what they make of an array in memory.
 source = simple.DSMVolumeReader(FileName=os.path.join(FILES, "ball.h5"))

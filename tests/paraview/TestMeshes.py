@@ -82,7 +82,7 @@ compare("HyperTreeGrid" if fixed else None, simple.HyperTreeGridRandom(),
         lambda d: color_by(d, "CELLS", "Depth"), share=0.01, shading=5.0)
 
 # Textures, also where each rank has a part of the surface.
-CHECKS = os.path.join(OUTPUT, "checks.png")
+CHECKS = os.path.join(OUTPUT, f"checks.{get_ranks()}.png")
 if vtkMultiProcessController.GetGlobalController().GetLocalProcessId() == 0:
     row = [255, 60, 20, 40, 90, 255]
     rows = numpy.array(2 * (2 * row + 2 * (row[3:] + row[:3])), numpy.uint8).reshape(-1, 3)
