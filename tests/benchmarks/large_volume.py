@@ -195,28 +195,31 @@ def compare_reading(options, path):
         )
 
 
-def compare_first(options, volume, plugin):
-    """The first picture of brick files beside what ParaView's own reader takes to load them, twice in turn."""
+def convert(options, compression, volume, path):
+    converter = os.path.join(options.build, "bin", "dsm_convert")
+    command = [*options.mpirun.split(), "-np", str(options.ranks), converter, "--quiet"]
+    subprocess.run([*command, "--compression", compression, volume, path], check=True)
+
+
+def compare_first(options, volume, packed, plugin):
+    """The first picture of brick files beside what ParaView's own reader takes to load them, twice in turn.
+    `packed`: with Zstandard, for which ParaView 5.11's HDF5 has no filter."""
     print("compression | MiB | first picture, s | ParaView's reader, s | MiB read by a rank")
     for compression in ("none", "deflate", "zstd"):
-        path = os.path.join(options.folder, f"first_{compression}.vtkhdf")
-        convert(options, "--compression", compression, volume, path)
+        path = packed
+        if compression != "zstd":
+            path = os.path.join(options.folder, f"first_{compression}.vtkhdf")
+            convert(options, compression, volume, path)
         for _ in range(2):
             ours = run_paraview(options, options.ranks, "--show", plugin, path, str(options.memory), "1")
-            # ParaView 5.11's HDF5 has no filter for Zstandard.
-            theirs = run_paraview(options, 1, "--load", plugin, path, "none")["seconds"] if compression != "zstd" else None
+            theirs = {} if path == packed else run_paraview(options, 1, "--load", plugin, path, "none")
             print(
-                f"{compression} | {os.path.getsize(path) >> 20} | {ours['first_picture_seconds']} | {theirs} | "
-                f"{ours['first_picture_mib_read']}",
+                f"{compression} | {os.path.getsize(path) >> 20} | {ours['first_picture_seconds']} | "
+                f"{theirs.get('seconds', 'cannot')} | {ours['first_picture_mib_read']}",
                 flush=True,
             )
-        os.remove(path)
-
-
-def convert(options, *arguments):
-    converter = os.path.join(options.build, "bin", "dsm_convert")
-    command = [*options.mpirun.split(), "-np", str(options.ranks), converter, "--quiet", *arguments]
-    subprocess.run(command, check=True)
+        if path != packed:
+            os.remove(path)
 
 
 def compare_caches(options, path):
@@ -269,7 +272,7 @@ def main():
         if not os.path.exists(small):
             write_volume(small, 0.5)
         if not os.path.exists(packed):
-            convert(options, "--compression", "zstd", volume, packed)
+            convert(options, "zstd", volume, packed)
         for path in (volume, packed, small):
             print(f"{os.path.basename(path)}: {os.path.getsize(path) >> 20} MiB", flush=True)
         for path in (packed, volume, volume) if "open" in parts else ():
@@ -283,7 +286,7 @@ def main():
                 report = run_paraview(options, 1, "--load", plugin, path, picture)
                 print(f"ParaView's own reader, {os.path.basename(path)}: {json.dumps(report)}", flush=True)
         if "first" in parts:
-            compare_first(options, volume, plugin)
+            compare_first(options, volume, packed, plugin)
         if "bytes" in parts:
             compare_reading(options, packed)
         if "caches" in parts:
