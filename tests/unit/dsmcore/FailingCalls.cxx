@@ -107,25 +107,16 @@ void operator delete(void* memory, std::size_t) noexcept
   std::free(memory);
 }
 
-void* operator new(std::size_t bytes, std::align_val_t alignment)
+extern "C" void* mmap(
+  void* address, std::size_t bytes, int protection, int flags, int file, off_t offset) noexcept
 {
-  void* memory = nullptr;
-  if (MustFail(dsm_test::Call::AllocateAligned) ||
-    posix_memalign(&memory, static_cast<std::size_t>(alignment), bytes) != 0)
+  if ((flags & MAP_ANONYMOUS) != 0 && MustFail(dsm_test::Call::Map))
   {
-    throw std::bad_alloc();
+    errno = ENOMEM;
+    return MAP_FAILED;
   }
-  return memory;
-}
-
-void operator delete(void* memory, std::align_val_t) noexcept
-{
-  std::free(memory);
-}
-
-void operator delete(void* memory, std::size_t, std::align_val_t) noexcept
-{
-  std::free(memory);
+  return reinterpret_cast<void*>(
+    syscall(SYS_mmap, address, bytes, protection, flags, file, offset));
 }
 
 extern "C" int mprotect(void* address, std::size_t bytes, int protection) noexcept

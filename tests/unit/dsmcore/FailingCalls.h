@@ -9,11 +9,11 @@ namespace dsm_test
 
 enum class Call
 {
-  Allocate,        ///< operator new
-  AllocateMuch,    ///< operator new for LargeBytes or more: no message that ranks agree by
-  AllocateAligned, ///< operator new for more than the usual alignment
-  Protect,         ///< mprotect, to make pages readable
-  FillPages        ///< ioctl of userfaultfd that fills pages
+  Allocate,     ///< operator new
+  AllocateMuch, ///< operator new for LargeBytes or more: no message that ranks agree by
+  Map,          ///< mmap, of memory that is no file's
+  Protect,      ///< mprotect, to make pages readable
+  FillPages     ///< ioctl of userfaultfd that fills pages
 };
 
 constexpr unsigned long LargeBytes = 4096;

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 namespace
@@ -42,9 +43,10 @@ protected:
     line.MoveTo(LineState::Wanted);
     line.MoveTo(LineState::Pending);
     this->Content.assign(Bytes, static_cast<std::byte>(index));
-    std::byte* const memory = this->Cache.Allocate(Bytes);
-    std::copy(this->Content.begin(), this->Content.end(), memory);
-    this->Cache.Insert(line, memory);
+    dsm::BlockMemory memory = dsm::AllocateBlock(Bytes);
+    std::copy(this->Content.begin(), this->Content.end(), memory.get());
+    this->Cache.PrepareSlot();
+    this->Cache.Insert(line, std::move(memory));
     return true;
   }
 
@@ -55,7 +57,7 @@ protected:
   dsm::BlockCache Cache;
 };
 
-TEST_F(BlockCacheOfThree, InsertedBlockIsAnAlignedCopy)
+TEST_F(BlockCacheOfThree, InsertedBlockIsAlignedAndKeepsItsBytes)
 {
   EXPECT_TRUE(this->Fetch(1));
   const std::byte* const address = this->Lines[1].Address;
@@ -131,8 +133,8 @@ TEST_F(BlockCacheOfThree, ReleasedRoomIsFree)
 
 TEST_F(BlockCacheOfThree, EmptyBlockTakesRoomToo)
 {
-  EXPECT_EQ(dsm::BlockCache::GetFootprint(0), dsm::BlockAlignment);
-  EXPECT_EQ(dsm::BlockCache::GetFootprint(65), 2 * dsm::BlockAlignment);
+  EXPECT_EQ(dsm::GetBlockFootprint(0), dsm::BlockAlignment);
+  EXPECT_EQ(dsm::GetBlockFootprint(65), 2 * dsm::BlockAlignment);
 }
 
 TEST_F(BlockCacheOfThree, ForgetDropsOnlyTheGivenLines)

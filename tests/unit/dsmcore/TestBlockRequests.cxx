@@ -112,7 +112,7 @@ TEST_F(BlockRequestsTest, OneMessageForEachOwner)
   EXPECT_FALSE(asker.Submit());
   for (const dsm::BlockId id : { 1, 2, 4, 7, 10 }) // owners 1, 2, 1, 1, 1
   {
-    asker.Begin({ &this->Segment, id }, nullptr);
+    asker.Begin({ &this->Segment, id });
   }
   EXPECT_EQ(asker.GetPendingCount(), 5u);
   EXPECT_TRUE(asker.Submit());
@@ -135,7 +135,7 @@ TEST_F(BlockRequestsTest, RepliesWaitForOthersToLeave)
   {
     for (const dsm::BlockId id : { 1, 4, 7 })
     {
-      this->Requests[asker]->Begin({ &this->Segment, id }, nullptr);
+      this->Requests[asker]->Begin({ &this->Segment, id });
     }
     this->Requests[asker]->Submit();
   }
@@ -161,7 +161,7 @@ TEST_F(BlockRequestsTest, RepliesThatWaitAreAbandoned)
   owner.SetReplyBytes(0);
   for (const dsm::BlockId id : { 1, 4, 7 })
   {
-    this->Requests[0]->Begin({ &this->Segment, id }, nullptr);
+    this->Requests[0]->Begin({ &this->Segment, id });
   }
   this->Requests[0]->Submit();
   this->Progress();
@@ -178,7 +178,7 @@ TEST_F(BlockRequestsTest, RepliesThatWaitAreAbandoned)
 TEST_F(BlockRequestsTest, WhatIsAbandonedIsNotTaken)
 {
   dsm::BlockRequests& asker = *this->Requests[0];
-  asker.Begin({ &this->Segment, 1 }, nullptr);
+  asker.Begin({ &this->Segment, 1 });
   asker.Submit();
   EXPECT_EQ(asker.GetPendingCount(), 1u);
   asker.Abandon();

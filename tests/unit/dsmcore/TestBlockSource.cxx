@@ -22,8 +22,7 @@
 namespace
 {
 
-/// Stands for a file of blocks: a thread of its own reads one after the other, slowly, each right to
-/// where it shall land.
+/// Stands for a file of blocks: a thread of its own reads one after the other, slowly.
 class PatternFile final : public dsm::BlockSource
 {
 public:
@@ -43,10 +42,9 @@ public:
     this->Reader.join();
   }
 
-  void Begin(const dsm::BlockWant& block, std::byte* place) override
+  void Begin(const dsm::BlockWant& block) override
   {
-    EXPECT_NE(place, nullptr);
-    this->Begun.push_back({ block, place });
+    this->Begun.push_back(block);
     ++this->Reads;
   }
   bool Submit() override
@@ -67,13 +65,13 @@ public:
       const std::lock_guard<std::mutex> lock(this->Guard);
       come.swap(this->Done);
     }
-    for (const Read& read : come)
+    for (Read& read : come)
     {
       if (read.Block.Id == this->Bad)
       {
         throw dsm::Error("chunk " + std::to_string(read.Block.Id) + " of the file is damaged");
       }
-      deliver(read.Block, read.Place);
+      deliver(read.Block, std::move(read.Memory));
     }
     return !come.empty();
   }
@@ -94,7 +92,7 @@ private:
   struct Read
   {
     dsm::BlockWant Block;
-    std::byte* Place;
+    dsm::BlockMemory Memory;
   };
 
   void Run()
@@ -107,18 +105,20 @@ private:
       {
         return;
       }
-      const Read read = this->Queue.front();
+      const dsm::BlockWant block = this->Queue.front();
       this->Queue.pop_front();
       this->IsReading = true;
       lock.unlock();
       std::this_thread::sleep_for(this->Delay);
-      for (std::size_t i = 0; i < read.Block.From->GetDirectory().GetBytes(read.Block.Id); ++i)
+      const std::size_t bytes = block.From->GetDirectory().GetBytes(block.Id);
+      Read read{ block, dsm::AllocateBlock(bytes) };
+      for (std::size_t i = 0; i < bytes; ++i)
       {
-        read.Place[i] = dsm_test::GetPattern(read.Block.Id, i);
+        read.Memory.get()[i] = dsm_test::GetPattern(block.Id, i);
       }
       lock.lock();
       this->IsReading = false;
-      this->Done.push_back(read);
+      this->Done.push_back(std::move(read));
       this->Changed.notify_all();
       this->Messages.WakeUp();
     }
@@ -126,10 +126,10 @@ private:
 
   dsm::Messenger& Messages;
   std::chrono::microseconds Delay;
-  std::vector<Read> Begun; ///< communication thread only
+  std::vector<dsm::BlockWant> Begun; ///< communication thread only
   std::mutex Guard;
   std::condition_variable Changed;
-  std::deque<Read> Queue;
+  std::deque<dsm::BlockWant> Queue;
   std::vector<Read> Done;
   bool IsReading = false;
   bool IsOver = false;

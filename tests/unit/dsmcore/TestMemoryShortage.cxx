@@ -74,7 +74,7 @@ TEST(ObjectStoreMemoryShortage, BlockThatFindsNoMemoryFailsTheFrameOnly)
     [](dsm::Messenger& messenger)
     {
       dsm::ObjectStore store(messenger, dsm_test::MakeSettings(5056)); // of the cache: one block
-      FailOnce(messenger, store, Call::AllocateAligned, FailingCall::Of::AnyThread);
+      FailOnce(messenger, store, Call::Map, FailingCall::Of::AnyThread);
     });
 }
 

@@ -20,6 +20,12 @@ constexpr std::size_t AlignBlock(std::size_t bytes)
   return (bytes + BlockAlignment - 1) / BlockAlignment * BlockAlignment;
 }
 
+/// What a block takes of memory, at least one unit of BlockAlignment.
+constexpr std::size_t GetBlockFootprint(std::size_t bytes)
+{
+  return AlignBlock(bytes > 0 ? bytes : 1);
+}
+
 /// Block *n* belongs to rank *n mod N* (the paper, section 3).
 class RoundRobinAssigner
 {

@@ -205,22 +205,20 @@ bool BlockFetcher::TryAsk(const BlockWant& block)
   {
     return false;
   }
-  Read read{ block, isOwned ? this->FindSource(block) : &this->Requests, nullptr };
+  const Read read{ block, isOwned ? this->FindSource(block) : &this->Requests };
   const std::size_t before = this->Reads.size();
   try
   {
-    read.Place = isOwned ? this->PreparePlace(block) : nullptr;
     this->Reads.push_back(read);
     if (isOwned && std::find(this->Busy.begin(), this->Busy.end(), read.From) == this->Busy.end())
     {
       this->Busy.push_back(read.From);
     }
-    read.From->Begin(block, read.Place);
+    read.From->Begin(block);
   }
   catch (...)
   {
     this->Reads.erase(this->Reads.begin() + static_cast<std::ptrdiff_t>(before), this->Reads.end());
-    this->DiscardPlace(read.Place);
     this->GiveRoomBack(block);
     throw;
   }
@@ -234,8 +232,12 @@ bool BlockFetcher::PollSources()
   bool any = false;
   for (BlockSource* const source : this->Busy)
   {
-    any = source->Poll([this](const BlockWant& block, const std::byte* bytes)
-            { this->Arrive(block, bytes); }) ||
+    any = source->Poll(
+            [this](const BlockWant& block, BlockMemory memory)
+            {
+              const std::byte* const bytes = memory.get();
+              this->Arrive(block, bytes, std::move(memory));
+            }) ||
       any;
   }
   const auto isIdle = [this](const BlockSource* source)
@@ -274,11 +276,11 @@ BlockRequests::Callbacks BlockFetcher::MakeCallbacks()
     this->Want(block);
   };
   callbacks.Take = [this](const BlockWant& block, const std::byte* bytes)
-  { this->Arrive(block, bytes); };
+  { this->Arrive(block, bytes, {}); };
   return callbacks;
 }
 
-void BlockFetcher::Arrive(const BlockWant& block, const std::byte* bytes)
+void BlockFetcher::Arrive(const BlockWant& block, const std::byte* bytes, BlockMemory memory)
 {
   const auto read = std::find_if(this->Reads.begin(), this->Reads.end(),
     [&](const Read& other) { return other.Block == block; });
@@ -287,11 +289,11 @@ void BlockFetcher::Arrive(const BlockWant& block, const std::byte* bytes)
     throw Error("A source of blocks brought block " + std::to_string(block.Id) +
       ", which nobody asked it for. This is a defect of the program.");
   }
-  read->Place = this->Land(*read, bytes); // when it throws, the read is given up with the frame
+  this->Land(block, bytes, memory); // when it throws, the read is given up with the frame
   {
     const std::lock_guard<std::mutex> lock(this->Guard);
     const LineStatus& line = this->GetLine(block);
-    this->Show(*read);
+    this->Show(block, memory);
     if (line.Use.load(std::memory_order_relaxed) == BlockUse::Prefetched)
     {
       this->Prefetches.CountArrival();
@@ -370,7 +372,6 @@ void BlockFetcher::AbandonAll()
   this->Busy.clear();
   for (const Read& read : this->Reads)
   {
-    this->DiscardPlace(read.Place);
     this->GiveRoomBack(read.Block);
     this->GetLine(read.Block).MoveTo(LineState::Absent);
   }

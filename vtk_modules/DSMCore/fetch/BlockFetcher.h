@@ -89,7 +89,6 @@ protected:
   {
     BlockWant Block;
     BlockSource* From;
-    std::byte* Place; ///< null: not known before the block comes
   };
 
   explicit BlockFetcher(Messenger& messenger);
@@ -119,15 +118,12 @@ protected:
   virtual bool MakeRoom(const BlockWant& block) = 0;
   /// The block will not come.
   virtual void GiveRoomBack(const BlockWant& block) noexcept = 0;
-  /// Memory in the room set aside where a block of this rank's own shall land; null where that is not
-  /// possible. Blocks of others come in messages: until then, the message has the room.
-  virtual std::byte* PreparePlace(const BlockWant& block) = 0;
-  virtual void DiscardPlace(std::byte* place) noexcept = 0;
-  /// Brings the bytes where they belong, if they are not there, and returns where that is. No lock.
-  /// When it throws, nothing has changed.
-  virtual std::byte* Land(const Read& read, const std::byte* bytes) = 0;
-  /// Lets workers have the block that has landed. Does not fail.
-  virtual void Show(const Read& read) = 0;
+  /// Brings a block that has come where it belongs, within the room set aside. `memory` has its bytes, or is
+  /// null where these are a message's. No lock. When it throws, nothing has changed.
+  virtual void Land(const BlockWant& block, const std::byte* bytes, BlockMemory& memory) = 0;
+  /// Lets workers have the block that has landed, with what Land made of its memory, which may be kept. Does
+  /// not fail.
+  virtual void Show(const BlockWant& block, BlockMemory& memory) = 0;
   /// Its cached blocks, in any order. May throw std::bad_alloc.
   virtual std::vector<BlockId> ListCached(const BlockSegment& segment) const = 0;
   /// Takes the segment's cached blocks out. Does not fail.
@@ -186,7 +182,8 @@ protected:
 
 private:
   BlockRequests::Callbacks MakeCallbacks();
-  void Arrive(const BlockWant& block, const std::byte* bytes);
+  /// Its bytes are copied where `memory` does not have them.
+  void Arrive(const BlockWant& block, const std::byte* bytes, BlockMemory memory);
   /// Begin reads for those that room can be made for; whether for all.
   bool AskForWanted(std::deque<BlockWant>& wanted);
   void AskForForeseen();

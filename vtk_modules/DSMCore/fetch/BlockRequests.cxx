@@ -40,7 +40,7 @@ void BlockRequests::EndFrame()
   this->Messages.SetHandler(MessageKind::BlockReply, {});
 }
 
-void BlockRequests::Begin(const BlockWant& want, std::byte*)
+void BlockRequests::Begin(const BlockWant& want)
 {
   this->Unsent.push_back(want);
   try

@@ -35,8 +35,8 @@ public:
     std::function<const std::byte*(const BlockWant& block)> FindOwned;
     /// Begins to bring such a block to memory; then Answer is called.
     std::function<void(const BlockWant& block)> Bring;
-    /// Takes in a block that was asked for. It is pending until this has returned.
-    Deliver Take;
+    /// Takes in a block that was asked for: copies its bytes. It is pending until this has returned.
+    std::function<void(const BlockWant& block, const std::byte* bytes)> Take;
   };
 
   /// Of replies that have not left, unless SetReplyBytes says otherwise.
@@ -52,9 +52,9 @@ public:
   void BeginFrame();
   void EndFrame();
 
-  /// The next Submit asks the block's owner for it; it is pending from now on. What comes is delivered
+  /// The next Submit asks the block's owner for it; it is pending from now on. What comes is taken in
   /// from where it is in the message, within Messenger::Progress.
-  void Begin(const BlockWant& block, std::byte* place) override;
+  void Begin(const BlockWant& block) override;
   bool Submit() override;
   bool Poll(const Deliver&) override { return false; }
   /// Answers to what is pending, and those that this rank owes, are dropped, for the rest of the frame.

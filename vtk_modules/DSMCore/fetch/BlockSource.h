@@ -4,6 +4,7 @@
 
 #include "DSMCore/base/Block.h"
 #include "DSMCore/base/Error.h"
+#include "DSMCore/memory/BlockMemory.h"
 #include "DSMCore/publish/BlockSegment.h"
 
 #include <cstddef>
@@ -30,29 +31,26 @@ struct BlockWant
 /// and are asked after. What it throws becomes the frame's error on all ranks.
 ///
 /// Within frames, on the communication thread. A source may have threads of its own, which call
-/// Messenger::WakeUp when there is something to Poll; they touch nothing of the store but the memory
-/// that they were given.
+/// Messenger::WakeUp when there is something to Poll; they touch nothing of the store.
 class BlockSource
 {
 public:
-  /// Called for a block when its bytes are complete: where they were to land, or, where no place was
-  /// given or the source has them anyway, in memory of the source's, which then may go when this
-  /// returns.
-  using Deliver = std::function<void(const BlockWant& block, const std::byte* bytes)>;
+  /// Called for a block when its bytes are complete, with the memory that they are in: the store's from
+  /// then on.
+  using Deliver = std::function<void(const BlockWant& block, BlockMemory memory)>;
 
   virtual ~BlockSource() = default;
 
-  /// A block is to be read, to `place`, which has room for it, at a multiple of BlockAlignment (null:
-  /// to memory of the source's own). Not one that is under way. When it throws, the read has not begun.
-  virtual void Begin(const BlockWant& block, std::byte* place) = 0;
+  /// A block is to be read, to memory of the source's own. Not one that is under way. When it throws, the
+  /// read has not begun.
+  virtual void Begin(const BlockWant& block) = 0;
   /// No more reads are to begin right now: the source may put those begun so far on their way together.
   /// Returns whether there were any.
   virtual bool Submit() = 0;
   /// Delivers what has come, in any order; does not wait. Returns whether anything has. Throws what
   /// makes a read fail.
   virtual bool Poll(const Deliver& deliver) = 0;
-  /// Gives up all that is under way: when it returns, nothing of it will be delivered, and no memory
-  /// that was given for it is touched any more.
+  /// Gives up all that is under way: when it returns, nothing of it will be delivered.
   virtual void Abandon() noexcept = 0;
 
   /// Between frames: other contents are to be brought from now on, but this block, which is in use, has not

@@ -29,7 +29,7 @@ struct ReadingSource::Shared
   struct Done
   {
     BlockWant Block;
-    std::vector<std::byte> Bytes;
+    BlockMemory Memory;
     std::exception_ptr Failure;
   };
 
@@ -71,9 +71,9 @@ ReadingSource::~ReadingSource()
   this->Abandon();
 }
 
-void ReadingSource::Begin(const BlockWant& block, std::byte* place)
+void ReadingSource::Begin(const BlockWant& block)
 {
-  this->Waiting.push_back({ block, place, this->Seconds });
+  this->Waiting.push_back({ block, this->Seconds });
 }
 
 bool ReadingSource::Submit()
@@ -83,23 +83,20 @@ bool ReadingSource::Submit()
   return this->Waiting.size() != before;
 }
 
-bool ReadingSource::TryRead(const Wanted& wanted)
+bool ReadingSource::TryRead(const BlockWant& block)
 {
-  const BlockWant& block = wanted.Block;
   const std::size_t bytes = block.From->GetDirectory().GetBytes(block.Id);
-  if (!wanted.Place)
+  if (!this->Spare || this->SpareBytes != bytes)
   {
-    this->Spare.resize(bytes);
+    this->Spare = AllocateBlock(bytes);
+    this->SpareBytes = bytes;
   }
-  if (!this->Reader->TryRead(block.Id, wanted.Place ? wanted.Place : this->Spare.data(), bytes))
+  if (!this->Reader->TryRead(block.Id, this->Spare.get(), bytes))
   {
     return false;
   }
-  this->AtHand.push_back({ block, wanted.Place, {} });
-  if (!wanted.Place)
-  {
-    this->AtHand.back().Bytes.swap(this->Spare);
-  }
+  this->AtHand.push_back({ block, {} });
+  this->AtHand.back().Memory = std::move(this->Spare);
   return true;
 }
 
@@ -108,12 +105,12 @@ void ReadingSource::HandOver()
   while (!this->Waiting.empty() && this->Reading.size() + this->AtHand.size() < MostReads)
   {
     const Wanted wanted = this->Waiting.front();
-    if (this->TryRead(wanted))
+    const BlockWant block = wanted.Block;
+    if (this->TryRead(block))
     {
       this->Waiting.pop_front();
       continue;
     }
-    const BlockWant block = wanted.Block;
     std::uint64_t round = 0;
     {
       const std::lock_guard<std::mutex> lock(this->State->Guard);
@@ -130,8 +127,8 @@ void ReadingSource::HandOver()
         Shared::Done done{ block, {}, nullptr };
         try
         {
-          done.Bytes.resize(bytes);
-          reader->Read(block.Id, done.Bytes.data(), bytes);
+          done.Memory = AllocateBlock(bytes);
+          reader->Read(block.Id, done.Memory.get(), bytes);
         }
         catch (...)
         {
@@ -174,7 +171,7 @@ bool ReadingSource::Poll(const Deliver& deliver)
     const std::lock_guard<std::mutex> lock(this->State->Guard);
     come.swap(this->State->Come);
   }
-  for (const Shared::Done& done : come)
+  for (Shared::Done& done : come)
   {
     this->Reading.erase(std::find_if(this->Reading.begin(), this->Reading.end(),
       [&](const Wanted& wanted) { return wanted.Block == done.Block; }));
@@ -182,12 +179,12 @@ bool ReadingSource::Poll(const Deliver& deliver)
     {
       std::rethrow_exception(done.Failure); // the frame is over, and the rest with it
     }
-    deliver(done.Block, done.Bytes.data());
+    deliver(done.Block, std::move(done.Memory));
   }
-  const std::vector<Ready> atHand = std::exchange(this->AtHand, {});
-  for (const Ready& ready : atHand)
+  std::vector<Ready> atHand = std::exchange(this->AtHand, {});
+  for (Ready& ready : atHand)
   {
-    deliver(ready.Block, ready.Place ? ready.Place : ready.Bytes.data());
+    deliver(ready.Block, std::move(ready.Memory));
   }
   this->HandOver();
   this->CheckDisk();

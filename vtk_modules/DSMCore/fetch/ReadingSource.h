@@ -17,11 +17,11 @@
 namespace dsm
 {
 
-/// Brings a rank's own blocks by a BlockReader, on the process's ReaderThreads. A block is read to memory
-/// of the source's own, and copied where it belongs when it is complete: so nobody ever waits for a read
-/// that is given up, however long the disk takes. What the reader has at hand needs no thread. One that was not read for PartOfSilence of the time that
-/// ranks may be silent (Messenger::SetSilenceLimit) fails the frame, before whoever waits for it takes its
-/// owner for stuck.
+/// Brings a rank's own blocks by a BlockReader, on the process's ReaderThreads. The thread that reads a block
+/// allocates its memory, which is handed on when it is complete: so nobody ever waits for a read that is
+/// given up, however long the disk takes. What the reader has at hand needs no thread. One that was not
+/// read for PartOfSilence of the time that ranks may be silent (Messenger::SetSilenceLimit) fails the frame,
+/// before whoever waits for it takes its owner for stuck.
 class ReadingSource final : public BlockSource
 {
 public:
@@ -30,7 +30,7 @@ public:
   ReadingSource(Messenger& messenger, std::shared_ptr<const BlockReader> reader, std::string name);
   ~ReadingSource() override;
 
-  void Begin(const BlockWant& block, std::byte* place) override;
+  void Begin(const BlockWant& block) override;
   bool Submit() override;
   bool Poll(const Deliver& deliver) override;
   void Abandon() noexcept override;
@@ -56,28 +56,27 @@ private:
   struct Wanted
   {
     BlockWant Block;
-    std::byte* Place;
     double Since; ///< as of Seconds
   };
   struct Ready
   {
     BlockWant Block;
-    std::byte* Place;             ///< null: its bytes are
-    std::vector<std::byte> Bytes; ///< these
+    BlockMemory Memory;
   };
 
   void HandOver();
-  bool TryRead(const Wanted& wanted);
+  bool TryRead(const BlockWant& block);
   /// Throws when the one that is wanted for the longest time is so for too long.
   void CheckDisk();
 
   std::shared_ptr<const BlockReader> Reader;
   std::string Name;
   std::shared_ptr<Shared> State;
-  std::deque<Wanted> Waiting;   ///< not with the threads yet
-  std::vector<Wanted> Reading;  ///< with the threads, or done and not delivered; in order
-  std::vector<Ready> AtHand;    ///< that needed no thread, and are not delivered
-  std::vector<std::byte> Spare; ///< for the next one of these without a place
+  std::deque<Wanted> Waiting;  ///< not with the threads yet
+  std::vector<Wanted> Reading; ///< with the threads, or done and not delivered; in order
+  std::vector<Ready> AtHand;   ///< that needed no thread, and are not delivered
+  BlockMemory Spare;           ///< for the next one of these, of so many bytes
+  std::size_t SpareBytes = 0;
   double Seconds =
     0.0; ///< in which this process polled, or might have: not those when it was stopped
   std::chrono::steady_clock::time_point LastPoll;

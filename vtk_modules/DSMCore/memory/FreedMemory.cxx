@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "DSMCore/memory/FreedMemory.h"
 
+#include "DSMCore/memory/BlockHeap.h"
+
 #include <chrono>
 #include <condition_variable>
 #include <mutex>
@@ -87,6 +89,7 @@ private:
 
 void FreedMemory::Return()
 {
+  BlockHeap::GetShared().ReturnFreePages();
 #ifdef __GLIBC__
   malloc_trim(0);
 #endif

@@ -373,21 +373,19 @@ std::size_t PagedStore::Internals::CountNeighbours(const Segment& segment, Block
   return count;
 }
 
-std::byte* PagedStore::Internals::Land(const Read& read, const std::byte* bytes)
+void PagedStore::Internals::Land(const BlockWant& block, const std::byte* bytes, BlockMemory&)
 {
   {
     const std::lock_guard<std::mutex> lock(this->Guard);
     this->Cache.PrepareSlot();
   }
-  const Segment& segment = GetSegment(read.Block);
-  std::byte* const place = segment.GetAddress(read.Block.Id);
-  this->Faults->Place(place, bytes, segment.GetDirectory().GetBytes(read.Block.Id));
-  return place;
+  const Segment& segment = GetSegment(block);
+  this->Faults->Place(
+    segment.GetAddress(block.Id), bytes, segment.GetDirectory().GetBytes(block.Id));
 }
 
-void PagedStore::Internals::Show(const Read& read)
+void PagedStore::Internals::Show(const BlockWant& block, BlockMemory&)
 {
-  const BlockWant& block = read.Block;
   const Segment& segment = GetSegment(block);
   this->Cache.Insert({ &segment, block.Id, this->GetFootprint(block), Clock::now() });
   this->Runs = this->Runs + 1 - this->CountNeighbours(segment, block.Id);

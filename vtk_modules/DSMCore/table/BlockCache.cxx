@@ -1,47 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "DSMCore/table/BlockCache.h"
 
-#include "DSMCore/base/Block.h"
-
 #include <algorithm>
-#include <cstring>
 #include <limits>
-#include <new>
 #include <utility>
 
 namespace dsm
 {
 
-namespace
-{
-
-void Free(std::byte* memory)
-{
-  ::operator delete(memory, std::align_val_t(BlockAlignment));
-}
-
-} // namespace
-
-BlockCache::~BlockCache()
-{
-  for (const Slot& slot : this->Slots)
-  {
-    Free(slot.Memory);
-  }
-  for (const Evicted& evicted : this->Limbo)
-  {
-    Free(evicted.Memory);
-  }
-}
-
-std::size_t BlockCache::GetFootprint(std::size_t blockBytes)
-{
-  return AlignBlock(std::max(blockBytes, std::size_t(1)));
-}
-
 bool BlockCache::TryReserve(std::size_t blockBytes)
 {
-  const std::size_t footprint = GetFootprint(blockBytes);
+  const std::size_t footprint = GetBlockFootprint(blockBytes);
   if (this->Used + footprint > this->Capacity)
   {
     return false;
@@ -53,61 +22,44 @@ bool BlockCache::TryReserve(std::size_t blockBytes)
 
 void BlockCache::Release(std::size_t blockBytes)
 {
-  this->Used -= GetFootprint(blockBytes);
+  this->Used -= GetBlockFootprint(blockBytes);
 }
 
-std::byte* BlockCache::Allocate(std::size_t blockBytes)
+void BlockCache::PrepareSlot()
 {
   // With room for all slots at any time, so that to fill and to empty one cannot fail.
-  ++this->Expected;
-  try
+  if (this->Slots.capacity() == this->Slots.size())
   {
-    if (this->Slots.capacity() < this->Slots.size() + this->Expected)
-    {
-      this->Slots.reserve(2 * (this->Slots.size() + this->Expected));
-    }
-    this->EmptySlots.reserve(this->Slots.capacity());
-    return static_cast<std::byte*>(
-      ::operator new(GetFootprint(blockBytes), std::align_val_t(BlockAlignment)));
+    this->Slots.reserve(2 * (this->Slots.size() + 1));
   }
-  catch (...)
-  {
-    --this->Expected;
-    throw;
-  }
+  this->EmptySlots.reserve(this->Slots.capacity());
 }
 
-void BlockCache::Discard(std::byte* memory)
+void BlockCache::Insert(BlockLine& line, BlockMemory memory)
 {
-  if (memory)
-  {
-    Free(memory);
-    --this->Expected;
-  }
-}
-
-void BlockCache::Insert(BlockLine& line, std::byte* memory)
-{
-  --this->Expected;
   if (this->EmptySlots.empty())
   {
     this->Slots.emplace_back();
     this->EmptySlots.push_back(this->Slots.size() - 1);
   }
-  this->Slots[this->EmptySlots.back()] = Slot{ &line, memory, GetFootprint(line.Bytes) };
+  const std::byte* const address = memory.get();
+  Slot& slot = this->Slots[this->EmptySlots.back()];
+  slot.Line = &line;
+  slot.Memory = std::move(memory);
+  slot.Footprint = GetBlockFootprint(line.Bytes);
   this->EmptySlots.pop_back();
   line.MoveTo(LineState::Cached);
   if (line.Use.load(std::memory_order_relaxed) != BlockUse::Prefetched)
   {
     line.Use.store(BlockUse::Idle, std::memory_order_relaxed);
   }
-  line.Address.store(memory, std::memory_order_release);
+  line.Address.store(address, std::memory_order_release);
 }
 
 BlockCache::Evictions BlockCache::Evict(
   std::size_t blockBytes, std::size_t spareBytes, std::uint64_t epoch)
 {
-  const std::size_t needed = GetFootprint(blockBytes) + spareBytes;
+  const std::size_t needed = GetBlockFootprint(blockBytes) + spareBytes;
   Evictions evicted;
   // Twice around: the first time may do no more than clear reference bits.
   for (std::size_t step = 0; step < 2 * this->Slots.size(); ++step)
@@ -146,7 +98,6 @@ bool BlockCache::Reclaim(std::uint64_t oldestEpoch)
   bool any = false;
   while (!this->Limbo.empty() && this->Limbo.front().Epoch <= oldestEpoch)
   {
-    Free(this->Limbo.front().Memory);
     this->Used -= this->Limbo.front().Footprint;
     this->LimboBytes -= this->Limbo.front().Footprint;
     this->Limbo.pop_front();
@@ -206,7 +157,6 @@ void BlockCache::Drop(std::size_t slot)
   Slot& taken = this->Slots[slot];
   taken.Line->MoveTo(LineState::Absent);
   taken.Line->Address.store(nullptr, std::memory_order_relaxed);
-  Free(taken.Memory);
   this->Used -= taken.Footprint;
   taken = Slot{};
   this->EmptySlots.push_back(slot);
@@ -215,7 +165,11 @@ void BlockCache::Drop(std::size_t slot)
 void BlockCache::EvictSlot(std::size_t slot, std::uint64_t epoch)
 {
   Slot& taken = this->Slots[slot];
-  this->Limbo.push_back(Evicted{ taken.Memory, taken.Footprint, epoch }); // first: it may throw
+  this->Limbo.emplace_back(); // first: it may throw
+  Evicted& evicted = this->Limbo.back();
+  evicted.Memory = std::move(taken.Memory);
+  evicted.Footprint = taken.Footprint;
+  evicted.Epoch = epoch;
   taken.Line->MoveTo(LineState::Absent);
   taken.Line->Address.store(nullptr, std::memory_order_relaxed); // ordered by the epoch's release
   this->LimboBytes += taken.Footprint;

@@ -3,6 +3,7 @@
 #define dsm_BlockCache_h
 
 #include "DSMCore/base/Block.h"
+#include "DSMCore/memory/BlockMemory.h"
 #include "DSMCore/table/BlockLine.h"
 
 #include <cstddef>
@@ -23,7 +24,6 @@ class BlockCache
 {
 public:
   BlockCache() = default;
-  ~BlockCache();
   BlockCache(const BlockCache&) = delete;
   BlockCache& operator=(const BlockCache&) = delete;
 
@@ -33,9 +33,6 @@ public:
     std::size_t Unused = 0; ///< of them: prefetched, and never used
   };
 
-  /// What a block takes of the budget.
-  static std::size_t GetFootprint(std::size_t blockBytes);
-
   void SetCapacity(std::size_t bytes) { this->Capacity = bytes; }
   std::size_t GetCapacity() const { return this->Capacity; }
   /// Cached, set aside, and evicted but not yet freed.
@@ -44,17 +41,15 @@ public:
   std::size_t GetPeak() const { return this->Peak; }
   void ResetPeak() { this->Peak = this->Used; }
 
-  /// Sets room aside for a block; false when there is none now.
+  /// Sets room aside for a block, as much as its footprint (GetBlockFootprint); false when there is none now.
   bool TryReserve(std::size_t blockBytes);
   /// The room of a block that will not come.
   void Release(std::size_t blockBytes);
-  /// Memory in the room that was set aside for a block, to be filled. Throws std::bad_alloc.
-  std::byte* Allocate(std::size_t blockBytes);
-  /// The block will not come; the room stays set aside.
-  void Discard(std::byte* memory);
-  /// Takes over the memory, which is filled, and publishes its address; a block that was prefetched, and
-  /// that nobody waits for, stays marked so.
-  void Insert(BlockLine& line, std::byte* memory);
+  /// What the block that is inserted next needs, so that this will not fail. Throws std::bad_alloc.
+  void PrepareSlot();
+  /// Takes over the memory, for which room was set aside, and publishes its address; a block that was
+  /// prefetched, and that nobody waits for, stays marked so.
+  void Insert(BlockLine& line, BlockMemory memory);
 
   /// Evicts until a block of this size, and `spareBytes` on top, will fit once memory in limbo is
   /// freed; or until nothing can be evicted. A worker whose epoch is at least `epoch` no longer
@@ -76,13 +71,13 @@ private:
   struct Slot
   {
     BlockLine* Line = nullptr; ///< null: the slot is empty
-    std::byte* Memory = nullptr;
+    BlockMemory Memory;
     std::size_t Footprint = 0;
     bool IsSpared = false; ///< the hand has passed it once, prefetched and unused
   };
   struct Evicted
   {
-    std::byte* Memory = nullptr;
+    BlockMemory Memory;
     std::size_t Footprint = 0;
     std::uint64_t Epoch = 0;
   };
@@ -93,7 +88,6 @@ private:
 
   std::vector<Slot> Slots; ///< the clock's face
   std::vector<std::size_t> EmptySlots;
-  std::size_t Expected = 0; ///< allocated, and not inserted yet
   std::size_t Hand = 0;
   std::deque<Evicted> Limbo; ///< ascending epochs
   std::size_t LimboBytes = 0;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <utility>
 
 namespace dsm
 {
@@ -137,10 +138,10 @@ void ObjectStore::Internals::CheckBudget() const
 {
   const std::size_t largest = this->GetLargestBlock();
   const std::size_t own = this->GetRoomForOwn();
-  if (largest > 0 && this->Current.CacheBytes < BlockCache::GetFootprint(largest) + own)
+  if (largest > 0 && this->Current.CacheBytes < GetBlockFootprint(largest) + own)
   {
     throw Error("The cache of " + std::to_string(this->Current.CacheBytes) +
-      " bytes is smaller than one brick (" + std::to_string(BlockCache::GetFootprint(largest)) +
+      " bytes is smaller than one brick (" + std::to_string(GetBlockFootprint(largest)) +
       " bytes)" +
       (own > 0 ? " and one of the rank's own (" + std::to_string(own) + " bytes)" : "") +
       ". Raise the cache size (DSMCacheSize).");
@@ -153,8 +154,7 @@ std::size_t ObjectStore::Internals::GetRoomForOwn() const
   for (const auto& segment : this->Segments)
   {
     const bool mayLeave = static_cast<const Segment&>(*segment).Source != nullptr;
-    room =
-      std::max(room, mayLeave ? BlockCache::GetFootprint(segment->GetDirectory().GetLargest()) : 0);
+    room = std::max(room, mayLeave ? GetBlockFootprint(segment->GetDirectory().GetLargest()) : 0);
   }
   return this->Messages.GetSize() > 1 ? room : 0; // alone there is nobody to wait for
 }
@@ -163,7 +163,7 @@ std::size_t ObjectStore::Internals::GetRoomForOwn() const
 
 std::size_t ObjectStore::Internals::GetFootprint(const BlockWant& block) const
 {
-  return BlockCache::GetFootprint(GetBlockLine(block).Bytes);
+  return GetBlockFootprint(GetBlockLine(block).Bytes);
 }
 
 const std::byte* ObjectStore::Internals::FindOwned(const BlockWant& block) const
@@ -205,34 +205,24 @@ void ObjectStore::Internals::GiveRoomBack(const BlockWant& block) noexcept
   this->Cache.Release(GetBlockLine(block).Bytes);
 }
 
-std::byte* ObjectStore::Internals::PreparePlace(const BlockWant& block)
+void ObjectStore::Internals::Land(
+  const BlockWant& block, const std::byte* bytes, BlockMemory& memory)
 {
-  return this->Cache.Allocate(GetBlockLine(block).Bytes);
-}
-
-void ObjectStore::Internals::DiscardPlace(std::byte* place) noexcept
-{
-  this->Cache.Discard(place);
-}
-
-std::byte* ObjectStore::Internals::Land(const Read& read, const std::byte* bytes)
-{
-  std::byte* place = read.Place;
-  if (!place)
   {
     const std::lock_guard<std::mutex> lock(this->Guard);
-    place = this->PreparePlace(read.Block);
+    this->Cache.PrepareSlot();
   }
-  if (bytes != place)
+  if (!memory)
   {
-    std::copy_n(bytes, GetBlockLine(read.Block).Bytes, place);
+    const std::size_t blockBytes = GetBlockLine(block).Bytes;
+    memory = AllocateBlock(blockBytes);
+    std::copy_n(bytes, blockBytes, memory.get());
   }
-  return place;
 }
 
-void ObjectStore::Internals::Show(const Read& read)
+void ObjectStore::Internals::Show(const BlockWant& block, BlockMemory& memory)
 {
-  this->Cache.Insert(GetBlockLine(read.Block), read.Place);
+  this->Cache.Insert(GetBlockLine(block), std::move(memory));
 }
 
 std::uint64_t ObjectStore::Internals::GetOldestEpoch() const
@@ -267,7 +257,7 @@ bool ObjectStore::Internals::Settle(const BlockWant& block)
 
 void ObjectStore::Internals::Opened()
 {
-  const std::size_t footprint = BlockCache::GetFootprint(this->GetLargestBlock());
+  const std::size_t footprint = GetBlockFootprint(this->GetLargestBlock());
   this->SpareBytes = this->Cache.GetCapacity() / SpareDivisor / footprint * footprint;
   this->Cache.Reclaim(this->GetOldestEpoch());
   this->Cache.ResetPeak();

@@ -48,10 +48,8 @@ private:
   void CheckBudget() const override;
   bool MakeRoom(const BlockWant& block) override;
   void GiveRoomBack(const BlockWant& block) noexcept override;
-  std::byte* PreparePlace(const BlockWant& block) override;
-  void DiscardPlace(std::byte* place) noexcept override;
-  std::byte* Land(const Read& read, const std::byte* bytes) override;
-  void Show(const Read& read) override;
+  void Land(const BlockWant& block, const std::byte* bytes, BlockMemory& memory) override;
+  void Show(const BlockWant& block, BlockMemory& memory) override;
   std::vector<BlockId> ListCached(const BlockSegment& segment) const override;
   void Forget(const BlockSegment& segment) override;
   void Forget(const BlockSegment& segment, const std::vector<bool>& which) override;

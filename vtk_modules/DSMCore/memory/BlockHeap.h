@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef dsm_BlockHeap_h
+#define dsm_BlockHeap_h
+
+#include "DSMCore/base/Block.h"
+#include "DSMCore/memory/BlockArena.h"
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <mutex>
+#include <vector>
+
+namespace dsm
+{
+
+/// Memory for blocks that come and go one by one: cut from a few large arenas, so that a block costs no call
+/// of the system, and lies in large pages where there are any. Neighbours that are free become one
+/// extent again, so blocks of all sizes share the memory. An arena without a block goes back to the system.
+///
+/// Any thread.
+class BlockHeap
+{
+public:
+  /// That of the process.
+  static BlockHeap& GetShared();
+
+  BlockHeap() = default;
+  BlockHeap(const BlockHeap&) = delete;
+  BlockHeap& operator=(const BlockHeap&) = delete;
+
+  /// Memory for `bytes` of a block, aligned to BlockAlignment, not set. Throws std::bad_alloc.
+  std::byte* Allocate(std::size_t bytes);
+  /// `bytes`: as it was allocated.
+  void Free(std::byte* memory, std::size_t bytes) noexcept;
+  /// Gives the pages of all that is free back to the system.
+  void ReturnFreePages() noexcept;
+
+  /// Of the blocks that are allocated, and of the arenas that they are in.
+  std::size_t GetBlockBytes() const;
+  std::size_t GetArenaBytes() const;
+
+private:
+  /// A part of an arena that is free. It stands at the beginning of that part, and its size at the end, too.
+  struct Extent
+  {
+    std::size_t Bytes;
+    Extent* Next; ///< in its list
+    Extent* Previous;
+  };
+  struct Arena
+  {
+    BlockArena Memory;
+    /// A bit for each unit of BlockAlignment: whether an extent begins, or ends, there.
+    std::vector<std::uint64_t> Begins;
+    std::vector<std::uint64_t> Ends;
+  };
+  /// Extents of 2^n to 2^(n+1) - 1 units are in four lists.
+  static constexpr std::size_t Lists = 160;
+
+  static std::size_t GetList(std::size_t bytes);
+  Arena& FindArena(const std::byte* memory);
+  Extent* FindExtent(std::size_t bytes);
+  void AddArena(std::size_t bytes);
+  void Insert(Arena& arena, std::byte* memory, std::size_t bytes) noexcept;
+  void Remove(Arena& arena, Extent* extent) noexcept;
+
+  mutable std::mutex Guard;
+  std::vector<Arena> Arenas; ///< by address
+  std::array<Extent*, Lists> Extents{};
+  std::size_t BlockBytes = 0;
+  std::size_t ArenaBytes = 0;
+};
+
+} // namespace dsm
+
+#endif
