@@ -4,6 +4,7 @@
 #include "DSMCore/base/Error.h"
 #include "DSMRayTracing/base/ByteHash.h"
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <utility>
@@ -17,6 +18,10 @@ namespace vol
 
 namespace
 {
+
+/// The disk brings whole pages anyway, and a call of the system costs more than to copy one.
+constexpr std::uint64_t LargestGap = 8192;
+constexpr std::uint64_t MostTogether = std::uint64_t(1) << 20;
 
 std::uint64_t GetStampOf(const struct stat& state)
 {
@@ -74,6 +79,44 @@ void PositionedFile::CheckUnchanged() const
 
 void PositionedFile::Read(std::uint64_t offset, std::byte* out, std::size_t bytes) const
 {
+  this->ReadUnchecked(offset, out, bytes);
+  this->CheckUnchanged();
+}
+
+void PositionedFile::Read(const std::vector<Piece>& pieces, std::byte* out) const
+{
+  std::vector<std::byte> together;
+  for (auto piece = pieces.begin(); piece != pieces.end();)
+  {
+    const std::uint64_t begin = piece->Offset;
+    std::uint64_t end = begin + piece->Bytes;
+    auto next = piece + 1;
+    for (; next != pieces.end() && next->Offset < end + LargestGap &&
+         next->Offset + next->Bytes <= begin + MostTogether;
+         ++next)
+    {
+      end = next->Offset + next->Bytes;
+    }
+    if (next == piece + 1)
+    {
+      this->ReadUnchecked(begin, out, piece->Bytes);
+      out += piece->Bytes;
+      piece = next;
+      continue;
+    }
+    together.resize(static_cast<std::size_t>(end - begin));
+    this->ReadUnchecked(begin, together.data(), together.size());
+    for (; piece != next; ++piece)
+    {
+      out = std::copy_n(
+        together.data() + static_cast<std::size_t>(piece->Offset - begin), piece->Bytes, out);
+    }
+  }
+  this->CheckUnchanged();
+}
+
+void PositionedFile::ReadUnchecked(std::uint64_t offset, std::byte* out, std::size_t bytes) const
+{
   const auto place = [&](std::uint64_t at) { return " at byte " + std::to_string(at); };
   std::size_t done = 0;
   while (done < bytes)
@@ -98,7 +141,6 @@ void PositionedFile::Read(std::uint64_t offset, std::byte* out, std::size_t byte
     }
     done += static_cast<std::size_t>(got);
   }
-  this->CheckUnchanged();
 }
 
 void PositionedFile::Foresee(std::uint64_t offset, std::size_t bytes) const

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <string>
+#include <vector>
 
 namespace vol
 {
@@ -30,10 +31,21 @@ public:
   /// fewer, when reading fails, or when the file was written to since it was opened.
   void Read(std::uint64_t offset, std::byte* out, std::size_t bytes) const;
 
+  struct Piece
+  {
+    std::uint64_t Offset;
+    std::size_t Bytes;
+  };
+  /// Likewise, of many pieces, whose offsets ascend: their bytes come one piece behind the other. Pieces
+  /// with less than two pages between them are read together, with what is between: rows of a box are many,
+  /// and small.
+  void Read(const std::vector<Piece>& pieces, std::byte* out) const;
+
   /// The system may read them to its own cache already; does not wait for it.
   void Foresee(std::uint64_t offset, std::size_t bytes) const;
 
 private:
+  void ReadUnchecked(std::uint64_t offset, std::byte* out, std::size_t bytes) const;
   void CheckUnchanged() const;
 
   std::string Path;

@@ -114,12 +114,12 @@ public:
 private:
   void ReadRows(const FileArray& array, const rt::Box& box, std::byte* out) const
   {
+    std::vector<PositionedFile::Piece> pieces;
     ForEachRun(array, box,
-      [&](std::uint64_t before, std::size_t bytes)
-      {
-        this->File->Read(this->First + before, out, bytes);
-        out += bytes;
+      [&](std::uint64_t before, std::size_t bytes) {
+        pieces.push_back({ this->First + before, bytes });
       });
+    this->File->Read(pieces, out);
   }
 
   /// Calls `use` with first byte and number of bytes, counted from the first value, of all that is in one piece.

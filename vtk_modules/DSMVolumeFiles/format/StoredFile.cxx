@@ -72,19 +72,22 @@ bool StoredFile::ReadPart(
   {
     return false;
   }
-  const std::size_t row = static_cast<std::size_t>(part.GetSize().x) * sampleBytes;
+  const rt::Index3 rows = part.GetSize();
+  std::vector<PositionedFile::Piece> pieces;
+  pieces.reserve(static_cast<std::size_t>(rows.y * rows.z));
+  for (std::int64_t z = part.Min.z - stored.Min.z; z < part.Max.z - stored.Min.z; ++z)
+  {
+    for (std::int64_t y = part.Min.y - stored.Min.y; y < part.Max.y - stored.Min.y; ++y)
+    {
+      const auto before =
+        static_cast<std::uint64_t>((z * size.y + y) * size.x + part.Min.x - stored.Min.x);
+      pieces.push_back(
+        { place->Offset + before * sampleBytes, static_cast<std::size_t>(rows.x) * sampleBytes });
+    }
+  }
   try
   {
-    for (std::int64_t z = part.Min.z - stored.Min.z; z < part.Max.z - stored.Min.z; ++z)
-    {
-      for (std::int64_t y = part.Min.y - stored.Min.y; y < part.Max.y - stored.Min.y; ++y)
-      {
-        const auto before =
-          static_cast<std::uint64_t>((z * size.y + y) * size.x + part.Min.x - stored.Min.x);
-        place->File->Read(place->Offset + before * sampleBytes, out, row);
-        out += row;
-      }
-    }
+    place->File->Read(pieces, out);
   }
   catch (const dsm::Error& error)
   {

@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Many pieces of a file, read in one go.
+#include "DSMCore/base/Error.h"
+#include "DSMVolumeFiles/base/PositionedFile.h"
+
+#include <gtest/gtest.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <vector>
+
+namespace
+{
+
+namespace fs = std::filesystem;
+using Piece = vol::PositionedFile::Piece;
+
+std::byte GetPattern(std::uint64_t place)
+{
+  return static_cast<std::byte>(place * 2654435761u >> 13);
+}
+
+/// A file of pattern bytes, for as long as it is in scope.
+class PatternFile
+{
+public:
+  explicit PatternFile(std::size_t bytes)
+    : Path(fs::path(DSM_TEST_FILES) / "pieces.bin")
+  {
+    fs::create_directories(this->Path.parent_path());
+    std::ofstream file(this->Path, std::ios::binary);
+    for (std::uint64_t place = 0; place < bytes; ++place)
+    {
+      file.put(static_cast<char>(GetPattern(place)));
+    }
+  }
+  ~PatternFile() { fs::remove(this->Path); }
+
+  const fs::path Path;
+};
+
+/// Rows of `bytes`, `stride` apart.
+std::vector<Piece> MakeRows(std::uint64_t first, std::size_t bytes, std::size_t stride, int count)
+{
+  std::vector<Piece> rows;
+  for (int row = 0; row < count; ++row)
+  {
+    rows.push_back({ first + static_cast<std::uint64_t>(row) * stride, bytes });
+  }
+  return rows;
+}
+
+void ExpectPieces(const vol::PositionedFile& file, const std::vector<Piece>& pieces)
+{
+  std::vector<std::byte> expected;
+  for (const Piece& piece : pieces)
+  {
+    for (std::size_t byte = 0; byte < piece.Bytes; ++byte)
+    {
+      expected.push_back(GetPattern(piece.Offset + byte));
+    }
+  }
+  std::vector<std::byte> found(expected.size());
+  file.Read(pieces, found.data());
+  EXPECT_EQ(found, expected);
+}
+
+TEST(PositionedFile, PiecesComeOneBehindTheOther)
+{
+  const PatternFile pattern(4000000);
+  const vol::PositionedFile file(pattern.Path.string());
+  ExpectPieces(file, {});
+  ExpectPieces(file, { { 17, 1 } });
+  ExpectPieces(file, MakeRows(5, 68, 68, 17));      // without gaps
+  ExpectPieces(file, MakeRows(5, 68, 256, 17));     // near one another
+  ExpectPieces(file, MakeRows(5, 68, 200000, 17));  // far
+  ExpectPieces(file, MakeRows(5, 4000, 9000, 400)); // near, and more than are read together
+  ExpectPieces(file, { { 0, 3 }, { 3, 0 }, { 8000, 5 }, { 100000, 2000000 }, { 2100001, 1 } });
+}
+
+TEST(PositionedFile, PiecesBehindTheEndAreRefusedWithTheirPlace)
+{
+  const PatternFile pattern(10000);
+  const vol::PositionedFile file(pattern.Path.string());
+  std::vector<std::byte> out(1000);
+  try
+  {
+    file.Read(MakeRows(9000, 100, 300, 5), out.data());
+    FAIL() << "the last piece ends behind the file";
+  }
+  catch (const dsm::Error& error)
+  {
+    const std::string text = error.what();
+    EXPECT_NE(text.find("ends at byte 10000"), std::string::npos) << text;
+    EXPECT_NE(text.find("truncated"), std::string::npos) << text;
+  }
+}
+
+TEST(PositionedFile, PiecesOfAFileThatWasWrittenToAreRefused)
+{
+  const PatternFile pattern(10000);
+  const vol::PositionedFile file(pattern.Path.string());
+  std::ofstream(pattern.Path, std::ios::binary | std::ios::app) << "more";
+  std::vector<std::byte> out(1000);
+  EXPECT_THROW(file.Read(MakeRows(0, 100, 300, 10), out.data()), dsm::Error);
+}
+
+} // namespace
