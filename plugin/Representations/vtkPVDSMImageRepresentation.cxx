@@ -37,8 +37,13 @@ vtkPVDSMImageRepresentation::vtkPVDSMImageRepresentation()
   this->Volume->SetMapper(this->Mapper);
   this->Mapper->MakesSceneOff(); // on ParaView's client there shall be none
   this->Mapper->AutomaticIsoValueOn();
-  this->Display->SelectionMapper->SetSource([this]() -> vtkSmartPointer<vtkDataObject>
-    { return vtkPVDSMIsosurfaceGeometry::Make(this->Mapper); });
+  this->Display->SelectionMapper->SetSource(
+    [this]() -> vtkSmartPointer<vtkDataObject>
+    {
+      const bool hasInput = this->GetNumberOfInputConnections(0) > 0;
+      return vtkPVDSMIsosurfaceGeometry::Make(
+        this->Mapper, hasInput ? this->GetInputDataObject(0, 0) : nullptr);
+    });
   this->Display->SetLook = [this](vtkActor* actor, vtkMapper* mapper)
   {
     actor->SetProperty(this->Mapper->GetSurfaceProperty());

@@ -13,6 +13,7 @@
 #include "vtkFlyingEdges3D.h"
 #include "vtkIdTypeArray.h"
 #include "vtkImageData.h"
+#include "vtkMatrix3x3.h"
 #include "vtkMultiBlockDataSet.h"
 #include "vtkNew.h"
 #include "vtkPointData.h"
@@ -128,8 +129,19 @@ vtkIdType FindPoint(vtkImageData* image, const double point[3])
   return vtkStructuredData::ComputePointId(image->GetDimensions(), sample);
 }
 
-/// Says of each triangle which cell it is in, and of each point which sample is nearest.
-vtkSmartPointer<vtkPolyData> AttachIds(vtkImageData* image, vtkPolyData* triangles, unsigned block)
+/// Whether both are parts of one lattice.
+bool HaveOneLattice(vtkImageData* a, vtkImageData* b)
+{
+  const double* const directions[2] = { a->GetDirectionMatrix()->GetData(),
+    b->GetDirectionMatrix()->GetData() };
+  return std::equal(a->GetOrigin(), a->GetOrigin() + 3, b->GetOrigin()) &&
+    std::equal(a->GetSpacing(), a->GetSpacing() + 3, b->GetSpacing()) &&
+    std::equal(directions[0], directions[0] + 9, directions[1]);
+}
+
+/// Says of each triangle which cell of `counted` it is in, and of each point which sample is nearest.
+vtkSmartPointer<vtkPolyData> AttachIds(
+  vtkImageData* image, vtkImageData* counted, vtkPolyData* triangles, unsigned block)
 {
   auto result = vtkSmartPointer<vtkPolyData>::New();
   result->SetPoints(triangles->GetPoints());
@@ -160,7 +172,7 @@ vtkSmartPointer<vtkPolyData> AttachIds(vtkImageData* image, vtkPolyData* triangl
     if (!ghosts || (ghosts->GetValue(cell) & hidden) == 0)
     {
       kept->InsertNextCell(size, corners);
-      cells->InsertNextValue(cell);
+      cells->InsertNextValue(FindCell(counted, center));
       blocks->InsertNextValue(block);
     }
   }
@@ -172,7 +184,7 @@ vtkSmartPointer<vtkPolyData> AttachIds(vtkImageData* image, vtkPolyData* triangl
   pointBlocks->SetName("vtkCompositeIndex");
   for (vtkIdType number = 0; number < triangles->GetNumberOfPoints(); ++number)
   {
-    points->InsertNextValue(FindPoint(image, triangles->GetPoint(number)));
+    points->InsertNextValue(FindPoint(counted, triangles->GetPoint(number)));
     pointBlocks->InsertNextValue(block);
   }
   result->GetPointData()->AddArray(points);
@@ -201,8 +213,8 @@ void AttachColors(vtkDataArray* colors, vtkPolyData* triangles)
   triangles->GetCellData()->AddArray(values);
 }
 
-void AddImage(vtkDSMVolumeMapper* mapper, vtkImageData* image, unsigned block, bool colored,
-  vtkMultiBlockDataSet* geometry)
+void AddImage(vtkDSMVolumeMapper* mapper, vtkImageData* image, vtkDataObject* source,
+  unsigned block, bool colored, vtkMultiBlockDataSet* geometry)
 {
   if (!image || image->GetNumberOfCells() == 0)
   {
@@ -223,8 +235,13 @@ void AddImage(vtkDSMVolumeMapper* mapper, vtkImageData* image, unsigned block, b
         << vtkPVDSMIsosurfaceGeometry::MostCells << " can. Take more ranks, or extract a part.");
     return;
   }
+  auto* counted = vtkImageData::SafeDownCast(source);
+  if (!counted || counted->GetNumberOfCells() == 0 || !HaveOneLattice(image, counted))
+  {
+    counted = image;
+  }
   const vtkSmartPointer<vtkPolyData> triangles =
-    AttachIds(image, Extract(mapper, image, array, colored), block);
+    AttachIds(image, counted, Extract(mapper, image, array, colored), block);
   if (vtkDataArray* colors = colored ? FindColors(mapper, image, true) : nullptr)
   {
     AttachColors(colors, triangles);
@@ -232,7 +249,8 @@ void AddImage(vtkDSMVolumeMapper* mapper, vtkImageData* image, unsigned block, b
   geometry->SetBlock(geometry->GetNumberOfBlocks(), triangles);
 }
 
-vtkSmartPointer<vtkMultiBlockDataSet> MakeBlocks(vtkDSMVolumeMapper* mapper, bool colored)
+vtkSmartPointer<vtkMultiBlockDataSet> MakeBlocks(
+  vtkDSMVolumeMapper* mapper, vtkDataObject* source, bool colored)
 {
   auto geometry = vtkSmartPointer<vtkMultiBlockDataSet>::New();
   vtkDataObject* data = mapper->GetDataObjectInput();
@@ -240,29 +258,32 @@ vtkSmartPointer<vtkMultiBlockDataSet> MakeBlocks(vtkDSMVolumeMapper* mapper, boo
   {
     vtkSmartPointer<vtkCompositeDataIterator> leaf;
     leaf.TakeReference(composite->NewIterator());
+    auto* sources = vtkCompositeDataSet::SafeDownCast(source);
     for (leaf->InitTraversal(); !leaf->IsDoneWithTraversal(); leaf->GoToNextItem())
     {
       AddImage(mapper, vtkImageData::SafeDownCast(leaf->GetCurrentDataObject()),
-        leaf->GetCurrentFlatIndex(), colored, geometry);
+        sources ? sources->GetDataSet(leaf) : nullptr, leaf->GetCurrentFlatIndex(), colored,
+        geometry);
     }
   }
   else
   {
-    AddImage(mapper, vtkImageData::SafeDownCast(data), 0, colored, geometry);
+    AddImage(mapper, vtkImageData::SafeDownCast(data), source, 0, colored, geometry);
   }
   return geometry;
 }
 
 } // namespace
 
-vtkSmartPointer<vtkMultiBlockDataSet> vtkPVDSMIsosurfaceGeometry::Make(vtkDSMVolumeMapper* mapper)
+vtkSmartPointer<vtkMultiBlockDataSet> vtkPVDSMIsosurfaceGeometry::Make(
+  vtkDSMVolumeMapper* mapper, vtkDataObject* source)
 {
-  return MakeBlocks(mapper, false);
+  return MakeBlocks(mapper, source, false);
 }
 
 vtkSmartPointer<vtkPolyData> vtkPVDSMIsosurfaceGeometry::MakeColored(vtkDSMVolumeMapper* mapper)
 {
-  const vtkSmartPointer<vtkMultiBlockDataSet> blocks = MakeBlocks(mapper, true);
+  const vtkSmartPointer<vtkMultiBlockDataSet> blocks = MakeBlocks(mapper, nullptr, true);
   vtkNew<vtkAppendPolyData> append;
   for (unsigned block = 0; block < blocks->GetNumberOfBlocks(); ++block)
   {

@@ -5,6 +5,7 @@
 #include "vtkSmartPointer.h"
 
 class vtkDSMVolumeMapper;
+class vtkDataObject;
 class vtkMultiBlockDataSet;
 class vtkPolyData;
 
@@ -17,8 +18,10 @@ public:
   static constexpr long long MostCells = 1LL << 27;
 
   /// Null where there is nothing, or too much, which is reported as the mapper's error. Triangles of
-  /// ghost and hidden cells are left out.
-  static vtkSmartPointer<vtkMultiBlockDataSet> Make(vtkDSMVolumeMapper* mapper);
+  /// ghost and hidden cells are left out. Cells and points are counted in `source`, from which the mapper's
+  /// data came: since then, another filter may have asked it for more ghost cells. May be null.
+  static vtkSmartPointer<vtkMultiBlockDataSet> Make(
+    vtkDSMVolumeMapper* mapper, vtkDataObject* source);
 
   /// The same with the values of the colour array, and normals; of all blocks together.
   static vtkSmartPointer<vtkPolyData> MakeColored(vtkDSMVolumeMapper* mapper);

@@ -175,4 +175,18 @@ bare.RawDimensions, bare.RawScalarType, bare.RawBigEndian = [21, 13, 10], "int",
 bare.RawHeaderBytes = 21
 bare.UpdatePipeline()
 check(bare.PointData["values"].GetRange(0) == (0, 100), "bare values, once they are described")
+bare.RawDimensions, bare.RawScalarType = [21, 13, 40], "unsigned char"
+bare.UpdatePipeline()
+with Messages() as messages:
+    bare.RawScalarType = "int"
+    bare.UpdatePipeline()
+if get_ranks() == 1:
+    check("bytes" in messages.text, "more values than there are: an error says so")
+with Messages() as messages:
+    bare.RawDimensions = [21, 13, 10]
+    bare.UpdatePipeline()
+check("ERR" not in messages.text, f"once they are right again, there is none: {messages.text}")
+check(bare.GetDataInformation().GetExtent() == (0, 20, 0, 12, 0, 9), "and all is as large as it should be")
+check(bare.PointData["values"].GetRange(0) == (0, 100), "with the values that are there")
+check(bare.GetProperty("RawHeaderBytes").SMProperty.IsA("vtkSMIntVectorProperty"), "the panel has a field for a header")
 check(simple.OpenDataFile(os.path.join(FILES, "ome.zarr/.zattrs")).TimestepValues[-1] == 2, "OME's times")

@@ -164,6 +164,26 @@ picture, text = go_to(0.0)
 check("ERROR" not in text and (picture == expected[3]).all(), f"it is there when it is reloaded: {text}")
 simple.Delete(source)
 
+# A header that stays as it is, beside values that are written anew.
+apart = []
+for number, path in enumerate(get_series("nhdr")):
+    text = open(path).read()
+    values = next(line.split(":")[1].strip() for line in text.splitlines() if line.startswith("data file"))
+    apart.append(os.path.join(folder, f"apart_{number}.nhdr"))
+    with open(apart[-1], "w") as header:
+        header.write(text.replace(values, f"apart_{number}.values"))
+    shutil.copyfile(os.path.join(FILES, values), os.path.join(folder, f"apart_{number}.values"))
+source = simple.DSMVolumeReader(FileName=apart)
+scene.UpdateAnimationUsingDataTimeSteps()
+display = show(source, view, [0.7], "values")
+pictures = [go_to(float(number))[0] for number in (3, 1)]
+check((pictures[0] != pictures[1]).any(), "two steps differ")
+shutil.copyfile(os.path.join(folder, "apart_3.values"), os.path.join(folder, "apart_1.values"))
+simple.ReloadFiles(source)
+picture, text = go_to(1.0)
+check("ERROR" not in text and (picture == pictures[0]).all(), f"values that were written anew are shown: {text}")
+simple.Delete(source)
+
 opened = simple.OpenDataFile(get_series("nhdr"))
 check(len(opened.TimestepValues) == 4, "files that are chosen together are a series")
 simple.Delete(opened)

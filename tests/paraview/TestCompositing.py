@@ -59,6 +59,12 @@ view.Background2 = [0.6, 0.6, 0.9]
 compare("GradientBackground")
 view.BackgroundColorMode = "Single Color"
 
+# ParaView's own ambient occlusion works on depths, places and normals in the picture.
+view.UseFXAA = 0
+view.UseAmbientOcclusion = 1
+compare("AmbientOcclusionOfTheScreen", 0.001, 1.0)
+view.UseAmbientOcclusion = 0
+
 # Translucent itself: whatever lies behind its surfaces, and between them, shows through, in order.
 view.UseFXAA = 0
 traced.Opacity = 0.4

@@ -93,6 +93,26 @@ check(get_selected(source, "cells", [0, 0, 5, 5])[0] == 0, "beside it there is n
 traced.Pickable = 0
 simple.Render(view)
 check(get_selected(source, "cells", everything)[0] == 0, "what cannot be picked is not selected")
+traced.Pickable = 1
+
+# Another filter may have the source made again, with more ghost cells, in which cells have other numbers.
+simple.Hide(source, view)
+parts = simple.Wavelet()
+show(parts, view, [157.0], "RTData")
+simple.ResetCamera(view)
+simple.Render(view)
+before = get_selected(parts, "cells", region), get_selected(parts, "points", region)
+check(before[0][0] > 10 and before[1][1] > 10, f"cells and points of a volume in parts are selected: {before}")
+contour = simple.Contour(Input=parts, ContourBy=["POINTS", "RTData"], Isosurfaces=[157.0])
+simple.Show(contour, view)
+simple.Render(view)
+simple.Hide(contour, view)
+simple.Render(view)
+after = get_selected(parts, "cells", region), get_selected(parts, "points", region)
+check(after[0][2] == before[0][2] and after[1][2] == before[1][2],
+      f"and the same after a Contour asked for ghost cells: {after}")
+simple.Delete(contour)
+simple.Delete(parts)
 
 # All ranks select what one does.
 reference = os.path.join(OUTPUT, "selected.npy")

@@ -5,7 +5,6 @@
 #include "DSMRayTracing/base/ByteHash.h"
 
 #include <algorithm>
-#include <filesystem>
 #include <list>
 #include <mutex>
 #include <optional>
@@ -20,17 +19,20 @@ namespace
 /// Files that stay open: those of a step, its neighbours, and of who still reads another.
 constexpr std::size_t MostOpen = 6;
 
-/// Of a file that is not opened for it.
-std::uint64_t GetCheapStamp(const std::string& path)
+/// Of what is where a step was expected.
+std::uint64_t FindStampOfStep(const std::string& path, const OpenOptions& options)
 {
-  std::error_code failure; // what is not there is refused when it is opened
-  const auto changed = std::filesystem::last_write_time(path, failure).time_since_epoch().count();
-  const std::uint64_t numbers[] = { static_cast<std::uint64_t>(changed),
-    std::filesystem::is_regular_file(path, failure) ? std::filesystem::file_size(path, failure)
-                                                    : 0 };
   rt::ByteHash hash;
   hash.Add(path.data(), path.size());
-  hash.Add(numbers, sizeof(numbers));
+  try
+  {
+    const std::uint64_t stamp = FindStamp(path, options);
+    hash.Add(&stamp, sizeof(stamp));
+  }
+  catch (const dsm::Error&) // what is not there is refused when it is shown
+  {
+    return hash.Get();
+  }
   return hash.Get();
 }
 
@@ -53,7 +55,7 @@ public:
     rt::ByteHash hash;
     for (const std::string& path : paths)
     {
-      const std::uint64_t stamp = GetCheapStamp(path);
+      const std::uint64_t stamp = FindStampOfStep(path, this->Options);
       hash.Add(&stamp, sizeof(stamp));
     }
     this->Stamp = hash.Get();

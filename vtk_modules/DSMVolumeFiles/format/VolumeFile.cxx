@@ -2,6 +2,7 @@
 #include "DSMVolumeFiles/format/VolumeFile.h"
 
 #include "DSMCore/base/Error.h"
+#include "DSMVolumeFiles/base/PositionedFile.h"
 #include "DSMVolumeFiles/format/BareFile.h"
 #include "DSMVolumeFiles/format/HeaderFiles.h"
 #include "DSMVolumeFiles/format/HeaderText.h"
@@ -138,6 +139,13 @@ std::shared_ptr<const VolumeFile> OpenVolumeFile(
   }
   throw dsm::Error("The format of '" + path +
     "' is not known. HDF5, Zarr (a folder), NRRD, MetaImage (.mhd, .mha) and .raw are.");
+}
+
+std::uint64_t FindStamp(const std::string& path, const OpenOptions& options)
+{
+  // Where the chunks of an HDF5 file are takes long to find; headers of other formats are short.
+  return TryFindFormat(path) == Format::Hdf ? PositionedFile(path).GetStamp()
+                                            : OpenVolumeFile(path, options)->GetStamp();
 }
 
 bool IsBareFile(const std::string& path)

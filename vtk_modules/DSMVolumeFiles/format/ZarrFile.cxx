@@ -83,8 +83,10 @@ public:
       {
         if (std::filesystem::exists(source.Folder + name))
         {
-          const std::uint64_t stamp = PositionedFile(source.Folder + name).GetStamp();
-          hash.Add(&stamp, sizeof(stamp));
+          // The folder's, too: most programs replace chunks by others of the same name.
+          const std::uint64_t stamps[] = { PositionedFile(source.Folder + name).GetStamp(),
+            PositionedFile(source.Folder).GetStamp() };
+          hash.Add(stamps, sizeof(stamps));
         }
       }
     }

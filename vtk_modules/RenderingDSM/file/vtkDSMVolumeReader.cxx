@@ -10,8 +10,10 @@
 #include "vtkCommand.h"
 #include "vtkDataArray.h"
 #include "vtkDataArraySelection.h"
+#include "vtkExecutive.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
+#include "vtkInformationExecutivePortVectorKey.h"
 #include "vtkInformationVector.h"
 #include "vtkObjectFactory.h"
 #include "vtkPointData.h"
@@ -21,6 +23,27 @@
 #include <algorithm>
 #include <climits>
 #include <vector>
+
+namespace
+{
+
+/// A pipeline adds up the extents that are asked of it until they have come. What was refused must not be asked
+/// for again with what comes next, which may be smaller: neither here nor by whoever is behind.
+void ForgetAskedExtents(vtkInformation* information)
+{
+  information->Remove(vtkStreamingDemandDrivenPipeline::COMBINED_UPDATE_EXTENT());
+  vtkExecutive** const consumers = vtkExecutive::CONSUMERS()->GetExecutives(information);
+  for (int number = 0; number < vtkExecutive::CONSUMERS()->Length(information); ++number)
+  {
+    vtkInformationVector* const outputs = consumers[number]->GetOutputInformation();
+    for (int port = 0; port < outputs->GetNumberOfInformationObjects(); ++port)
+    {
+      ForgetAskedExtents(outputs->GetInformationObject(port));
+    }
+  }
+}
+
+} // namespace
 
 vtkStandardNewMacro(vtkDSMVolumeReader);
 
@@ -183,6 +206,13 @@ void vtkDSMVolumeReader::Open()
   this->Self->OpenedAt = this->GetMTime();
 }
 
+int vtkDSMVolumeReader::Refuse(vtkInformation* information, const std::exception& error)
+{
+  ForgetAskedExtents(information);
+  vtkErrorMacro(<< error.what());
+  return 0;
+}
+
 int vtkDSMVolumeReader::RequestInformation(
   vtkInformation*, vtkInformationVector**, vtkInformationVector* output)
 {
@@ -203,8 +233,7 @@ int vtkDSMVolumeReader::RequestInformation(
   }
   catch (const std::exception& error)
   {
-    vtkErrorMacro(<< error.what());
-    return 0;
+    return this->Refuse(information, error);
   }
   const vol::VolumeFile& file = *this->Self->File;
   const vol::FileGeometry& geometry = file.GetGeometry();
@@ -284,16 +313,15 @@ void vtkDSMVolumeReader::AddArrays(vtkImageData* image, int step)
 int vtkDSMVolumeReader::RequestData(
   vtkInformation*, vtkInformationVector**, vtkInformationVector* output)
 {
+  vtkInformation* information = output->GetInformationObject(0);
   try
   {
     this->Open();
   }
   catch (const std::exception& error)
   {
-    vtkErrorMacro(<< error.what());
-    return 0;
+    return this->Refuse(information, error);
   }
-  vtkInformation* information = output->GetInformationObject(0);
   vtkImageData* image = vtkImageData::GetData(output);
   using Pipeline = vtkStreamingDemandDrivenPipeline;
   int extent[6];
@@ -322,8 +350,7 @@ int vtkDSMVolumeReader::RequestData(
   }
   catch (const std::exception& error)
   {
-    vtkErrorMacro(<< error.what());
-    return 0;
+    return this->Refuse(information, error);
   }
   return 1;
 }

@@ -17,6 +17,7 @@
 #include "vtkNew.h"                // for ivars
 #include "vtkRenderingDSMModule.h" // for the export macro
 
+#include <exception>
 #include <memory> // for ivars
 #include <string> // for ivars
 #include <vector> // for ivars
@@ -118,6 +119,8 @@ private:
 
   class Internals;
   void Open();
+  /// Says what is wrong; what RequestInformation and RequestData return then.
+  int Refuse(vtkInformation* information, const std::exception& error);
   void AddArrays(vtkImageData* image, int step);
 
   std::vector<std::string> FileNames;

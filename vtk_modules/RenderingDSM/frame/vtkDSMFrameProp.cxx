@@ -32,15 +32,23 @@ const char* const FragmentShader = R"(//VTK::System::Dec
 in vec2 texCoord;
 uniform sampler2D frameColor;
 uniform sampler2D frameDepth;
+uniform mat4 clipToView;
 void main()
 {
   vec4 color = texture(frameColor, texCoord);
+  float depth = texture(frameDepth, texCoord).r;
+  vec4 place = clipToView * vec4(2.0 * vec3(texCoord, depth) - 1.0, 1.0);
+  place /= place.w;
+  vec3 normal = cross(dFdx(place.xyz), dFdy(place.xyz));
   if (color.a == 0.0)
   {
     discard;
   }
   gl_FragData[0] = color;
-  gl_FragDepth = texture(frameDepth, texCoord).r;
+  // What the passes that work on the picture, such as screen space ambient occlusion, know of a surface.
+  gl_FragData[1] = vec4(place.xyz, 1.0);
+  gl_FragData[2] = vec4(normalize(normal), 1.0);
+  gl_FragDepth = depth;
 }
 )";
 
@@ -116,6 +124,10 @@ public:
     this->Textures.Activate(window);
     this->Quad->Program->SetUniformi("frameColor", this->Textures.GetColorUnit());
     this->Quad->Program->SetUniformi("frameDepth", this->Textures.GetDepthUnit());
+    vtkNew<vtkMatrix4x4> clipToView;
+    vtkMatrix4x4::Invert(this->Projection, clipToView);
+    clipToView->Transpose(); // OpenGL's order
+    this->Quad->Program->SetUniformMatrix("clipToView", clipToView);
     this->Quad->Render();
     this->Textures.Deactivate();
   }
