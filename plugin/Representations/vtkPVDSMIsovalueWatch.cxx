@@ -18,7 +18,22 @@
 namespace
 {
 constexpr const char* Single = "DSMIsoValue";
+
+/// A display that was made before its data came had nothing to choose its array or its box from, and has none.
+void ChooseWhatIsMissing(vtkSMProxy* representation)
+{
+  vtkSMProperty* const array = representation->GetProperty("DSMIsoArray");
+  const char* const name = vtkSMPropertyHelper(array).GetInputArrayNameToProcess();
+  bool any = (!name || !*name) && array->ResetToDomainDefaults();
+  vtkSMProperty* const box = representation->GetProperty("DSMCroppingBox");
+  const vtkSMPropertyHelper bounds(box);
+  any = (bounds.GetAsDouble(0) > bounds.GetAsDouble(1) && box->ResetToDomainDefaults()) || any;
+  if (any)
+  {
+    representation->UpdateVTKObjects();
+  }
 }
+} // namespace
 
 vtkPVDSMIsovalueWatch::vtkPVDSMIsovalueWatch(std::function<void()> changed)
   : Changed(std::move(changed))
@@ -45,8 +60,12 @@ vtkPVDSMIsovalueWatch::~vtkPVDSMIsovalueWatch()
 void vtkPVDSMIsovalueWatch::TakeSuggestion(vtkSMProxy* representation)
 {
   vtkSMProperty* single = representation->GetProperty(Single);
-  if (!single ||
-    vtkSMPropertyHelper(single).GetAsDouble() != vtkPVDSMImageRepresentation::UnsetIsoValue ||
+  if (!single)
+  {
+    return;
+  }
+  ChooseWhatIsMissing(representation);
+  if (vtkSMPropertyHelper(single).GetAsDouble() != vtkPVDSMImageRepresentation::UnsetIsoValue ||
     vtkSMPropertyHelper(representation, "DSMIsoValues").GetNumberOfElements() > 0)
   {
     return;

@@ -22,7 +22,8 @@ public:
   vtkPVDSMIsovalueWatch(const vtkPVDSMIsovalueWatch&) = delete;
   vtkPVDSMIsovalueWatch& operator=(const vtkPVDSMIsovalueWatch&) = delete;
 
-  /// After a render of a traced dataset; meshes have no isovalue.
+  /// After a render of a traced dataset; meshes have no isovalue. Where the dataset came after its display, the
+  /// array and the box to crop to, which are empty then, become what they would have been, too.
   void TakeSuggestion(vtkSMProxy* representation);
   /// From now on. Doing so again changes nothing.
   void Watch(vtkSMProxy* representation);

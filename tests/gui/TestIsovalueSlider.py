@@ -1,8 +1,13 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Run by ParaView's application, which has loaded the plugin, alone or connected to a server: the first isovalue
 is the one that the data suggest; while the panel's slider is dragged, which sets the unchecked value of the
-property only, the view shows it; and an animation track can change the isovalue."""
+property only, the view shows it; an animation track can change the isovalue; and a display that was made before
+there were data has their array and their box once they are there."""
 
+import os
+import tempfile
+
+import numpy
 from gui_testing import Steps, check, grab
 from paraview import simple
 
@@ -60,6 +65,25 @@ class Session:
             pixels.append(self.get_covered())
         check(seen == [150.0, 200.0, 250.0], f"an animation has isovalues {seen}")
         check(pixels[0] > pixels[1] > pixels[2], f"and shows them: {pixels}")
+        simple.Hide(source, self.view)
+        self.show_before_there_are_data()
+
+    def show_before_there_are_data(self):
+        """As when a file of bare values is opened, and only then its size is entered."""
+        with tempfile.TemporaryDirectory() as folder:
+            path = os.path.join(folder, "late.raw")
+            numpy.arange(512, dtype="float32").tofile(path)
+            source = simple.DSMVolumeReader(FileName=path)
+            display = simple.Show(source, self.view)
+            simple.Render(self.view)
+            check(not display.DSMIsoArray[1], "there is no array yet")
+            source.RawDimensions, source.RawScalarType = [8, 8, 8], "float"
+            display.Representation = "DSM Ray Traced"
+            simple.Render(self.view)
+            check(display.DSMIsoArray[1] == "values", f"there is one now: {display.DSMIsoArray}")
+            check(list(display.DSMCroppingBox) == [0, 7] * 3, f"and a box to crop to: {display.DSMCroppingBox}")
+            check(0.0 < display.DSMIsoValue < 511.0, f"and an isovalue: {display.DSMIsoValue}")
+            simple.Delete(source)
 
 
 simple.GetLayout().SetSize(400, 300)
