@@ -32,6 +32,25 @@ const char* const FragmentShader = R"(//VTK::System::Dec
 in vec2 texCoord;
 uniform sampler2D frameColor;
 uniform sampler2D frameDepth;
+void main()
+{
+  vec4 color = texture(frameColor, texCoord);
+  if (color.a == 0.0)
+  {
+    discard;
+  }
+  gl_FragData[0] = color;
+  gl_FragDepth = texture(frameDepth, texCoord).r;
+}
+)";
+
+/// With what passes that work on the picture, such as screen space ambient occlusion, know of a surface: its place
+/// and normal in the camera's coordinates.
+const char* const FragmentShaderWithPlaces = R"(//VTK::System::Dec
+//VTK::Output::Dec
+in vec2 texCoord;
+uniform sampler2D frameColor;
+uniform sampler2D frameDepth;
 uniform mat4 clipToView;
 void main()
 {
@@ -45,12 +64,19 @@ void main()
     discard;
   }
   gl_FragData[0] = color;
-  // What the passes that work on the picture, such as screen space ambient occlusion, know of a surface.
   gl_FragData[1] = vec4(place.xyz, 1.0);
   gl_FragData[2] = vec4(normalize(normal), 1.0);
   gl_FragDepth = depth;
 }
 )";
+
+/// Whether what is drawn to has more than colours.
+bool TakesPlaces(vtkOpenGLState* state)
+{
+  int second = GL_NONE;
+  state->vtkglGetIntegerv(GL_DRAW_BUFFER1, &second);
+  return second != GL_NONE;
+}
 
 /// Where the rectangle that was traced lies in the viewport that is drawn to now, in pixels. The two
 /// differ while IceT renders a reduced image, which it puts into the lower left corner by way of the
@@ -109,26 +135,32 @@ public:
     state->vtkglColorMask(color, color, color, color);
     state->vtkglViewport(target[0], target[1], target[2], target[3]);
 
-    if (!this->Quad)
+    const bool withPlaces = TakesPlaces(state);
+    auto& quad = withPlaces ? this->QuadWithPlaces : this->Quad;
+    if (!quad)
     {
-      this->Quad = std::make_unique<vtkOpenGLQuadHelper>(window, nullptr, FragmentShader, nullptr);
+      quad = std::make_unique<vtkOpenGLQuadHelper>(
+        window, nullptr, withPlaces ? FragmentShaderWithPlaces : FragmentShader, nullptr);
     }
     else
     {
-      window->GetShaderCache()->ReadyShaderProgram(this->Quad->Program);
+      window->GetShaderCache()->ReadyShaderProgram(quad->Program);
     }
-    if (!this->Quad->Program || !this->Quad->Program->GetCompiled())
+    if (!quad->Program || !quad->Program->GetCompiled())
     {
       return;
     }
     this->Textures.Activate(window);
-    this->Quad->Program->SetUniformi("frameColor", this->Textures.GetColorUnit());
-    this->Quad->Program->SetUniformi("frameDepth", this->Textures.GetDepthUnit());
-    vtkNew<vtkMatrix4x4> clipToView;
-    vtkMatrix4x4::Invert(this->Projection, clipToView);
-    clipToView->Transpose(); // OpenGL's order
-    this->Quad->Program->SetUniformMatrix("clipToView", clipToView);
-    this->Quad->Render();
+    quad->Program->SetUniformi("frameColor", this->Textures.GetColorUnit());
+    quad->Program->SetUniformi("frameDepth", this->Textures.GetDepthUnit());
+    if (withPlaces)
+    {
+      vtkNew<vtkMatrix4x4> clipToView;
+      vtkMatrix4x4::Invert(this->Projection, clipToView);
+      clipToView->Transpose(); // OpenGL's order
+      quad->Program->SetUniformMatrix("clipToView", clipToView);
+    }
+    quad->Render();
     this->Textures.Deactivate();
   }
 
@@ -138,6 +170,7 @@ public:
   double Bounds[6];
   vtkNew<vtkMatrix4x4> Projection;
   std::unique_ptr<vtkOpenGLQuadHelper> Quad;
+  std::unique_ptr<vtkOpenGLQuadHelper> QuadWithPlaces;
 };
 
 vtkStandardNewMacro(vtkDSMFrameProp);
@@ -245,6 +278,7 @@ void vtkDSMFrameProp::ReleaseGraphicsResources(vtkWindow* window)
 {
   this->Self->Layers.ReleaseGraphicsResources(window);
   this->Self->Quad.reset();
+  this->Self->QuadWithPlaces.reset();
   this->Self->Textures.ReleaseGraphicsResources(window);
   this->Superclass::ReleaseGraphicsResources(window);
 }
