@@ -5,6 +5,7 @@
 #include "DSMRayTracing/base/ByteHash.h"
 
 #include <algorithm>
+#include <exception>
 #include <list>
 #include <mutex>
 #include <optional>
@@ -29,7 +30,7 @@ std::uint64_t FindStampOfStep(const std::string& path, const OpenOptions& option
     const std::uint64_t stamp = FindStamp(path, options);
     hash.Add(&stamp, sizeof(stamp));
   }
-  catch (const dsm::Error&) // what is not there is refused when it is shown
+  catch (const std::exception&) // what is not there is refused when it is shown
   {
     return hash.Get();
   }

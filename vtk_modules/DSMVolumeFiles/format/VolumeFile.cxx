@@ -143,9 +143,10 @@ std::shared_ptr<const VolumeFile> OpenVolumeFile(
 
 std::uint64_t FindStamp(const std::string& path, const OpenOptions& options)
 {
-  // Where the chunks of an HDF5 file are takes long to find; headers of other formats are short.
-  return TryFindFormat(path) == Format::Hdf ? PositionedFile(path).GetStamp()
-                                            : OpenVolumeFile(path, options)->GetStamp();
+  const std::string extension =
+    HeaderText::ToLower(std::filesystem::path(path).extension().string());
+  const bool isApart = extension == ".nhdr" || extension == ".mhd" || !FindZarrFolder(path).empty();
+  return isApart ? OpenVolumeFile(path, options)->GetStamp() : PositionedFile(path).GetStamp();
 }
 
 bool IsBareFile(const std::string& path)

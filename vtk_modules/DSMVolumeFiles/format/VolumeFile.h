@@ -152,8 +152,8 @@ struct OpenOptions
 std::shared_ptr<const VolumeFile> OpenVolumeFile(
   const std::string& path, const OpenOptions& options = {});
 
-/// What OpenVolumeFile's GetStamp is made of, where that is found quickly: differs when the contents do, also
-/// where a header stays as it is and its values change. Throws dsm::Error.
+/// Differs when the contents do, also where a header stays as it is and the values beside it change; of files that
+/// have values in them, nothing is read for it. Throws dsm::Error.
 std::uint64_t FindStamp(const std::string& path, const OpenOptions& options = {});
 
 /// Whether it has bare values, so that OpenOptions::Raw has to tell of them. Throws nothing.
