@@ -36,6 +36,24 @@ bool IsWhole(const Block& block)
     block.Memory, block.Memory + block.Bytes, [&](std::byte byte) { return byte == block.Mark; });
 }
 
+std::vector<Block> MakeSeveral(dsm::BlockHeap& heap, std::size_t count, std::size_t bytes)
+{
+  std::vector<Block> blocks;
+  for (std::size_t block = 0; block < count; ++block)
+  {
+    blocks.push_back(Make(heap, bytes, block));
+  }
+  return blocks;
+}
+
+void FreeAll(dsm::BlockHeap& heap, const std::vector<Block>& blocks)
+{
+  for (const Block& block : blocks)
+  {
+    heap.Free(block.Memory, block.Bytes);
+  }
+}
+
 TEST(BlockHeap, BlocksAreAlignedAndApart)
 {
   dsm::BlockHeap heap;
@@ -55,20 +73,13 @@ TEST(BlockHeap, BlocksAreAlignedAndApart)
 TEST(BlockHeap, AllGoesBackWithTheLastBlock)
 {
   dsm::BlockHeap heap;
-  std::vector<Block> blocks;
-  for (std::size_t block = 0; block < 1000; ++block)
-  {
-    blocks.push_back(Make(heap, 20000, block));
-  }
+  std::vector<Block> blocks = MakeSeveral(heap, 1000, 20000);
   EXPECT_EQ(heap.GetBlockBytes(), 1000 * dsm::AlignBlock(20000));
   EXPECT_GE(heap.GetArenaBytes(), heap.GetBlockBytes());
   EXPECT_LE(heap.GetArenaBytes(), 2 * heap.GetBlockBytes() + MiB)
     << "arenas grow with what is in them";
   std::shuffle(blocks.begin(), blocks.end(), std::mt19937(1));
-  for (const Block& block : blocks)
-  {
-    heap.Free(block.Memory, block.Bytes);
-  }
+  FreeAll(heap, blocks);
   EXPECT_EQ(heap.GetBlockBytes(), 0u);
   EXPECT_EQ(heap.GetArenaBytes(), 0u);
 }
@@ -76,11 +87,7 @@ TEST(BlockHeap, AllGoesBackWithTheLastBlock)
 TEST(BlockHeap, FreeNeighboursMakeRoomForLargerBlocks)
 {
   dsm::BlockHeap heap;
-  std::vector<Block> blocks;
-  for (std::size_t block = 0; block < 4000; ++block)
-  {
-    blocks.push_back(Make(heap, 10000, block));
-  }
+  std::vector<Block> blocks = MakeSeveral(heap, 4000, 10000);
   const std::size_t before = heap.GetArenaBytes();
   // Every fifth stays: between two of them there is room for two of twice the size.
   std::vector<Block> left;
@@ -101,20 +108,13 @@ TEST(BlockHeap, FreeNeighboursMakeRoomForLargerBlocks)
   }
   EXPECT_LE(heap.GetArenaBytes(), before);
   EXPECT_TRUE(std::all_of(left.begin(), left.end(), IsWhole));
-  for (const Block& block : left)
-  {
-    heap.Free(block.Memory, block.Bytes);
-  }
+  FreeAll(heap, left);
 }
 
 TEST(BlockHeap, FreePagesGoBackAndBlocksStay)
 {
   dsm::BlockHeap heap;
-  std::vector<Block> blocks;
-  for (std::size_t block = 0; block < 500; ++block)
-  {
-    blocks.push_back(Make(heap, 50000, block));
-  }
+  std::vector<Block> blocks = MakeSeveral(heap, 500, 50000);
   for (std::size_t block = 0; block < blocks.size(); block += 2)
   {
     heap.Free(blocks[block].Memory, blocks[block].Bytes);
@@ -125,10 +125,7 @@ TEST(BlockHeap, FreePagesGoBackAndBlocksStay)
     blocks[block] = Make(heap, 50000, block);
   }
   EXPECT_TRUE(std::all_of(blocks.begin(), blocks.end(), IsWhole));
-  for (const Block& block : blocks)
-  {
-    heap.Free(block.Memory, block.Bytes);
-  }
+  FreeAll(heap, blocks);
   EXPECT_EQ(heap.GetArenaBytes(), 0u);
 }
 

@@ -5,7 +5,7 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <cstring>
+#include <new>
 #include <utility>
 
 namespace dsm
@@ -57,11 +57,10 @@ std::size_t BlockHeap::GetList(std::size_t bytes)
   return std::min(4 * power + units, Lists - 1);
 }
 
-BlockHeap::Arena& BlockHeap::FindArena(const std::byte* memory)
+std::vector<BlockHeap::Arena>::iterator BlockHeap::FindArenaBehind(const std::byte* memory)
 {
-  const auto next = std::upper_bound(this->Arenas.begin(), this->Arenas.end(), memory,
+  return std::upper_bound(this->Arenas.begin(), this->Arenas.end(), memory,
     [](const std::byte* place, const Arena& arena) { return place < arena.Memory.GetData(); });
-  return *(next - 1);
 }
 
 BlockHeap::Extent* BlockHeap::FindExtent(std::size_t bytes)
@@ -148,11 +147,16 @@ void BlockHeap::AddArena(std::size_t bytes)
   arena.Begins.resize(words);
   arena.Ends.resize(words);
   std::byte* const memory = arena.Memory.GetData();
-  const auto place = std::upper_bound(this->Arenas.begin(), this->Arenas.end(), memory,
-    [](const std::byte* at, const Arena& other) { return at < other.Memory.GetData(); });
-  Arena& added = *this->Arenas.insert(place, std::move(arena));
+  Arena& added = *this->Arenas.insert(this->FindArenaBehind(memory), std::move(arena));
   this->ArenaBytes += added.Memory.GetBytes();
   this->Insert(added, memory, added.Memory.GetBytes());
+}
+
+void BlockHeap::FlipEnds(Arena& arena, const std::byte* memory, std::size_t bytes) noexcept
+{
+  const auto unit = static_cast<std::size_t>(memory - arena.Memory.GetData()) / BlockAlignment;
+  FlipBit(arena.Begins, unit);
+  FlipBit(arena.Ends, unit + bytes / BlockAlignment - 1);
 }
 
 void BlockHeap::Insert(Arena& arena, std::byte* memory, std::size_t bytes) noexcept
@@ -166,9 +170,7 @@ void BlockHeap::Insert(Arena& arena, std::byte* memory, std::size_t bytes) noexc
     head->Previous = extent;
   }
   head = extent;
-  const auto unit = static_cast<std::size_t>(memory - arena.Memory.GetData()) / BlockAlignment;
-  FlipBit(arena.Begins, unit);
-  FlipBit(arena.Ends, unit + bytes / BlockAlignment - 1);
+  FlipEnds(arena, memory, bytes);
 }
 
 void BlockHeap::Remove(Arena& arena, Extent* extent) noexcept
@@ -179,11 +181,7 @@ void BlockHeap::Remove(Arena& arena, Extent* extent) noexcept
   {
     extent->Next->Previous = extent->Previous;
   }
-  const auto unit =
-    static_cast<std::size_t>(reinterpret_cast<std::byte*>(extent) - arena.Memory.GetData()) /
-    BlockAlignment;
-  FlipBit(arena.Begins, unit);
-  FlipBit(arena.Ends, unit + extent->Bytes / BlockAlignment - 1);
+  FlipEnds(arena, reinterpret_cast<std::byte*>(extent), extent->Bytes);
 }
 
 void BlockHeap::ReturnFreePages() noexcept

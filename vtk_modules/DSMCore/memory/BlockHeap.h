@@ -59,9 +59,12 @@ private:
   static constexpr std::size_t Lists = 160;
 
   static std::size_t GetList(std::size_t bytes);
-  Arena& FindArena(const std::byte* memory);
+  /// The first arena that begins behind a place.
+  std::vector<Arena>::iterator FindArenaBehind(const std::byte* memory);
+  Arena& FindArena(const std::byte* memory) { return *(this->FindArenaBehind(memory) - 1); }
   Extent* FindExtent(std::size_t bytes);
   void AddArena(std::size_t bytes);
+  static void FlipEnds(Arena& arena, const std::byte* memory, std::size_t bytes) noexcept;
   void Insert(Arena& arena, std::byte* memory, std::size_t bytes) noexcept;
   void Remove(Arena& arena, Extent* extent) noexcept;
 
