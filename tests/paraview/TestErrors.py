@@ -137,8 +137,18 @@ with Messages() as messages:
     render(view)
     check(messages.text.count("'gone'") > before.count("'gone'"), "the same mistake is told anew")
 
-# A cache is at least as large as one block.
-with Messages() as messages:
-    display.DSMCacheSize = 0
-    check("it has 1 MiB, the least" in messages.text, "a cache of 0 is not taken without a word")
-    display.DSMCacheSize = 256
+# Numbers that make no sense are said, once for all displays, and again when they are set again later.
+for name, bad, kept, good in (
+    ("DSMCacheSize", 0, "it is 1, the least", 256),
+    ("DSMMemory", -5, "it is 0, the least", 0),
+    ("DSMThreads", 99999, "it is 1024, the most", 0),
+    ("DSMSilenceLimit", -1, "it is 0, the least", 60),
+):
+    for _ in range(2):
+        with Messages() as messages:
+            setattr(display, name, bad)
+            display.UpdateVTKObjects()
+            said = [line for line in messages.text.splitlines() if "cannot be" in line]
+            check(len(said) == 1 and name in said[0] and f"be {bad}: {kept}" in said[0], f"{name} is {bad}: {said}")
+            setattr(display, name, good)
+            display.UpdateVTKObjects()

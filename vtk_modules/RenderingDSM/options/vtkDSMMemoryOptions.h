@@ -94,7 +94,8 @@ public:
    * Tracing threads of each rank; 0 (the default) divides the host's cores by its ranks. The largest
    * among all datasets counts.
    */
-  vtkSetClampMacro(NumberOfThreads, int, 0, 1024);
+  static constexpr int MostThreads = 1024;
+  vtkSetClampMacro(NumberOfThreads, int, 0, MostThreads);
   vtkGetMacro(NumberOfThreads, int);
   ///@}
 
