@@ -188,5 +188,10 @@ with Messages() as messages:
 check("ERR" not in messages.text, f"once they are right again, there is none: {messages.text}")
 check(bare.GetDataInformation().GetExtent() == (0, 20, 0, 12, 0, 9), "and all is as large as it should be")
 check(bare.PointData["values"].GetRange(0) == (0, 100), "with the values that are there")
+with Messages() as messages:
+    bare.RawDimensions = [21, 13, 9]
+    bare.UpdatePipeline()
+check(f"{21 * 13 * 4} of them are not read" in messages.text, f"what is left of the file is told: {messages.text}")
+check(bare.GetDataInformation().GetExtent() == (0, 20, 0, 12, 0, 8), "and all else is shown")
 check(bare.GetProperty("RawHeaderBytes").SMProperty.IsA("vtkSMIntVectorProperty"), "the panel has a field for a header")
 check(simple.OpenDataFile(os.path.join(FILES, "ome.zarr/.zattrs")).TimestepValues[-1] == 2, "OME's times")

@@ -15,6 +15,7 @@
 #include "vtkInformation.h"
 #include "vtkInformationExecutivePortVectorKey.h"
 #include "vtkInformationVector.h"
+#include "vtkMultiProcessController.h"
 #include "vtkObjectFactory.h"
 #include "vtkPointData.h"
 #include "vtkSmartPointer.h"
@@ -22,6 +23,9 @@
 
 #include <algorithm>
 #include <climits>
+#include <cstdint>
+#include <filesystem>
+#include <system_error>
 #include <vector>
 
 namespace
@@ -204,6 +208,32 @@ void vtkDSMVolumeReader::Open()
   this->Self->File = file;
   this->Self->Options = options;
   this->Self->OpenedAt = this->GetMTime();
+  this->TellOfRest();
+}
+
+void vtkDSMVolumeReader::TellOfRest() const
+{
+  const vol::VolumeFile& file = *this->Self->File;
+  const vol::FileArray& array = file.GetArrays().front();
+  auto* const controller = vtkMultiProcessController::GetGlobalController();
+  if (!vol::IsBareFile(file.GetPath()) || (controller && controller->GetLocalProcessId() != 0))
+  {
+    return;
+  }
+  const std::uint64_t header = this->Self->Options.Bare.HeaderBytes;
+  const std::uint64_t values =
+    static_cast<std::uint64_t>(rt::Box{ rt::Index3(0), array.Grid.Samples }.GetCount()) *
+    array.GetSampleBytes();
+  std::error_code failure;
+  const std::uint64_t has = std::filesystem::file_size(file.GetPath(), failure);
+  if (!failure && has > header + values)
+  {
+    vtkWarningMacro(
+      "The file '" << file.GetPath() << "' has " << has << " bytes, and " << has - header - values
+                   << " of them are not read, behind " << header << " of header and " << values
+                   << " of values. If the picture is not what it should be, check Raw "
+                      "Dimensions, Scalar Type, Components and Header Bytes.");
+  }
 }
 
 int vtkDSMVolumeReader::Refuse(vtkInformation* information, const std::exception& error)

@@ -119,6 +119,8 @@ private:
 
   class Internals;
   void Open();
+  /// Warns of bytes behind the values of a bare file: what was entered may be wrong. On the first rank.
+  void TellOfRest() const;
   /// Says what is wrong; what RequestInformation and RequestData return then.
   int Refuse(vtkInformation* information, const std::exception& error);
   void AddArrays(vtkImageData* image, int step);
