@@ -7,6 +7,7 @@
 #include "DSMRayTracing/build/VoxelIndex.h"
 #include "DSMRayTracing/layout/DealBricks.h"
 #include "DSMVolumeFiles/cache/ChunkCache.h"
+#include "DSMVolumeFiles/cache/FileBrickReader.h"
 
 #include <numeric>
 #include <optional>
@@ -91,8 +92,10 @@ rt::IsosurfaceObject PublishBenchmarkFile(
       directory = field->Lattice.CreateDirectory(rt::DealBricks(
         field->Lattice, array.Grid.ChunkSamples, rt::Index3(0), messenger.GetSize()));
       source = std::make_shared<dsm::ReadingSource>(messenger,
-        std::make_shared<rt::VoxelBrickReader>(
-          field->Lattice, std::make_shared<FileVoxels>(file, true)),
+        std::make_shared<vol::FileBrickReader>(field->Lattice,
+          std::make_shared<FileVoxels>(file, true),
+          [file](const rt::Box& points)
+          { vol::ChunkCache::GetShared().Foresee(file, 0, 0, points); }),
         path);
     });
   field->Segment = store.Publish(path, *directory, source);

@@ -2,15 +2,21 @@
 // Many pieces of a file, read in one go.
 #include "DSMCore/base/Error.h"
 #include "DSMVolumeFiles/base/PositionedFile.h"
+#include "DSMVolumeFiles/base/ReadingManner.h"
 
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <fstream>
 #include <string>
+#include <thread>
 #include <vector>
+
+#include <fcntl.h>
+#include <unistd.h>
 
 namespace
 {
@@ -106,6 +112,69 @@ TEST(PositionedFile, PiecesOfAFileThatWasWrittenToAreRefused)
   std::ofstream(pattern.Path, std::ios::binary | std::ios::app) << "more";
   std::vector<std::byte> out(1000);
   EXPECT_THROW(file.Read(MakeRows(0, 100, 300, 10), out.data()), dsm::Error);
+}
+
+void LeaveMemory(const fs::path& path)
+{
+  const int file = open(path.c_str(), O_RDONLY);
+  fsync(file);
+  posix_fadvise(file, 0, 0, POSIX_FADV_DONTNEED);
+  close(file);
+}
+
+TEST(PositionedFile, WhatIsNotInMemoryIsNotWaitedFor)
+{
+  const PatternFile pattern(1000000);
+  const vol::PositionedFile file(pattern.Path.string());
+  LeaveMemory(pattern.Path);
+  std::vector<std::byte> out(100);
+  const auto read = [&](std::uint64_t offset)
+  {
+    const vol::WithoutWaiting scope;
+    file.Read(offset, out.data(), out.size());
+  };
+  try
+  {
+    read(500000);
+    GTEST_SKIP() << "the file cannot be made to leave the system's memory";
+  }
+  catch (const vol::WouldWait& wait)
+  {
+    if (wait.Always)
+    {
+      GTEST_SKIP() << "the file system does not tell what is in memory";
+    }
+  }
+  EXPECT_FALSE(vol::WithoutWaiting::IsInForce());
+  file.Read(500000, out.data(), out.size()); // waits
+  out.assign(out.size(), std::byte(0));
+  read(500000);
+  EXPECT_EQ(out.back(), GetPattern(500099));
+
+  LeaveMemory(pattern.Path);
+  file.Foresee(MakeRows(500000, 100, 3000, 10));
+  for (int attempt = 0; attempt < 1000; ++attempt) // the disk may take a while
+  {
+    try
+    {
+      read(500000);
+      break;
+    }
+    catch (const vol::WouldWait&)
+    {
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    }
+  }
+  read(527000);
+  EXPECT_EQ(out.front(), GetPattern(527000));
+  EXPECT_THROW(read(1000000), dsm::Error) << "behind the end";
+}
+
+TEST(PositionedFile, OpeningOneMayWait)
+{
+  const PatternFile pattern(10);
+  const vol::WithoutWaiting scope;
+  EXPECT_THROW(vol::PositionedFile(pattern.Path.string()), vol::WouldWait);
 }
 
 } // namespace

@@ -2,6 +2,7 @@
 // Files that other programs wrote (make_files.py): every value, in every format; and what is damaged.
 #include "DSMCore/base/Error.h"
 #include "DSMVolumeFiles/base/CopyBox.h"
+#include "DSMVolumeFiles/base/ReadingManner.h"
 #include "DSMVolumeFiles/cache/ChunkCache.h"
 #include "DSMVolumeFiles/codec/ChunkCodec.h"
 #include "DSMVolumeFiles/format/VolumeFile.h"
@@ -236,6 +237,28 @@ public:
   mutable std::atomic<int> Most{ 0 };
 };
 
+/// A chunk that has to be waited for.
+class ColdFile final : public vol::VolumeFile
+{
+public:
+  ColdFile()
+    : VolumeFile("cold")
+  {
+    vol::FileArray array;
+    array.Grid = { rt::Index3(10), rt::Index3(10) };
+    this->Arrays.push_back(array);
+  }
+  void ReadChunk(std::size_t, int, const rt::Index3&, std::byte* out) const override
+  {
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    if (vol::WithoutWaiting::IsInForce())
+    {
+      throw vol::WouldWait{};
+    }
+    std::fill_n(out, 1000, std::byte(7));
+  }
+};
+
 TEST(ChunkCache, WhatIsBeingReadCountsToo)
 {
   for (const int most : { 1, 3 })
@@ -273,6 +296,44 @@ TEST(ChunkCache, WhatIsBeingReadCountsToo)
     EXPECT_EQ(file->Most, most);
     EXPECT_LE(cache.GetBytes(), cache.GetLimit()) << "nothing is in hand any more";
   }
+}
+
+/// Who does not wait fails alone: not those who wait for the same chunk.
+TEST(ChunkCache, OthersAreNotToldThatAThreadWouldWait)
+{
+  const auto file = std::make_shared<ColdFile>();
+  vol::ChunkCache cache(1 << 20);
+  std::vector<std::thread> threads;
+  std::atomic<int> wouldWait{ 0 };
+  std::atomic<int> read{ 0 };
+  for (int thread = 0; thread < 8; ++thread)
+  {
+    threads.emplace_back(
+      [&, thread]
+      {
+        std::optional<vol::WithoutWaiting> scope;
+        if (thread % 2 == 0)
+        {
+          scope.emplace();
+        }
+        try
+        {
+          read += cache.Get(file, 0, 0, rt::Index3(0))->back() == std::byte(7) ? 1 : 0;
+        }
+        catch (const vol::WouldWait&)
+        {
+          wouldWait += scope ? 1 : 100;
+        }
+      });
+  }
+  for (std::thread& thread : threads)
+  {
+    thread.join();
+  }
+  EXPECT_EQ(read + wouldWait, 8);
+  EXPECT_GE(read, 4);
+  const vol::WithoutWaiting scope;
+  EXPECT_EQ(cache.Get(file, 0, 0, rt::Index3(0))->back(), std::byte(7)) << "it is here now";
 }
 
 TEST(VolumeFiles, AChunkThatManyThreadsWantIsReadOnce)

@@ -23,7 +23,10 @@ TEST_P(DiskOverMpi, RandomAccess)
   dsm::Messenger messenger(dsm::MpiTransport::Create(nullptr));
   for (const std::size_t blocks : { 2, 5, 100 })
   {
-    dsm_test::RandomAccessToADisk(messenger, this->GetParam(), blocks, 8);
+    for (const bool shares : { false, true })
+    {
+      dsm_test::RandomAccessToADisk(messenger, this->GetParam(), blocks, 4, shares);
+    }
   }
 }
 

@@ -8,6 +8,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <condition_variable>
@@ -43,12 +44,25 @@ public:
       this->Changed.wait(lock, [&] { return id != this->Stuck; });
       --this->Hanging;
     }
-    for (std::size_t place = 0; place < bytes; ++place)
-    {
-      block[place] =
-        id % 3 == 0 ? ~GetPattern(id, place) ^ this->OfEveryThird : GetPattern(id, place);
-    }
+    this->Fill(id, block, bytes);
   }
+
+  bool ReadWithoutWaiting(dsm::BlockId id, std::byte* block, std::size_t bytes) const override
+  {
+    if (this->OneInMemory == 0 || this->Looks++ % this->OneInMemory != 0)
+    {
+      std::fill_n(block, bytes / 2, std::byte(0xaa)); // it was begun
+      return false;
+    }
+    std::unique_lock<std::mutex> lock(this->Guard);
+    ++this->AtOnce;
+    this->Changed.wait(lock, [&] { return id != this->Stuck; });
+    this->Fill(id, block, bytes);
+    return true;
+  }
+
+  bool MayTellSystem() const override { return this->OneInMemory != 0; }
+  void TellSystem(dsm::BlockId) const override { ++this->Told; }
 
   void NoteKept(dsm::BlockId, std::size_t bytes) const override
   {
@@ -77,12 +91,26 @@ public:
   std::atomic<std::chrono::microseconds> Delay{ std::chrono::microseconds(30) };
   std::atomic<dsm::BlockId> Bad{ NoBlock };
   std::atomic<bool> AtHand{ false }; ///< all was read ahead
+  /// Of so many blocks one is in the system's memory whenever it is looked for; 0: none ever is.
+  std::atomic<unsigned> OneInMemory{ 0 };
   /// The pattern, unless something else is set: then each byte of every third block is wrong.
   std::atomic<std::byte> OfEveryThird{ std::byte(0xff) };
   mutable std::atomic<std::uint64_t> Reads{ 0 };
   mutable std::atomic<std::uint64_t> Kept{ 0 };
+  mutable std::atomic<std::uint64_t> AtOnce{ 0 }; ///< read without waiting
+  mutable std::atomic<std::uint64_t> Told{ 0 };
 
 private:
+  void Fill(dsm::BlockId id, std::byte* block, std::size_t bytes) const
+  {
+    for (std::size_t place = 0; place < bytes; ++place)
+    {
+      block[place] =
+        id % 3 == 0 ? ~GetPattern(id, place) ^ this->OfEveryThird : GetPattern(id, place);
+    }
+  }
+
+  mutable std::atomic<unsigned> Looks{ 0 };
   dsm::BlockId Stuck = NoBlock;
   mutable int Hanging = 0;
   mutable std::mutex Guard;
@@ -93,10 +121,11 @@ private:
 class DiskStore
 {
 public:
-  DiskStore(
-    dsm::Messenger& messenger, dsm::MemoryOrganization organization, std::size_t blocksInMemory)
+  /// `shares`: ranks of one host know one another.
+  DiskStore(dsm::Messenger& messenger, dsm::MemoryOrganization organization,
+    std::size_t blocksInMemory, bool shares = false)
     : Messages(messenger)
-    , Store(messenger, Make(messenger, organization, blocksInMemory))
+    , Store(messenger, Make(messenger, organization, blocksInMemory, shares))
     , Disk(std::make_shared<PatternDisk>())
     , Source(std::make_shared<dsm::ReadingSource>(messenger, this->Disk, "the test's disk"))
     , Segment(this->Store.Publish("Opening the file", CreateDirectory(messenger), this->Source))
@@ -110,8 +139,8 @@ public:
   }
 
   /// Besides the blocks, what a rank needs for tables and messages.
-  static dsm::BlockStore::Settings Make(
-    dsm::Messenger& messenger, dsm::MemoryOrganization organization, std::size_t blocks)
+  static dsm::BlockStore::Settings Make(dsm::Messenger& messenger,
+    dsm::MemoryOrganization organization, std::size_t blocks, bool shares)
   {
     const auto directory = CreateDirectory(messenger);
     const bool alone = messenger.GetSize() == 1;
@@ -122,7 +151,7 @@ public:
           ? dsm::PagedStore::Segment::CountTableBytes(directory)
           : dsm::BlockTable::CountTableBytes(directory));
     settings.Workers = 2;
-    settings.HostSharing = false;
+    settings.HostSharing = shares;
     return settings;
   }
 
@@ -166,13 +195,15 @@ public:
 
 /// Frames in which workers that take turns read at random, look ahead, and now and then read what others
 /// have just read, through a memory of a few blocks.
-inline void RandomAccessToADisk(
-  dsm::Messenger& messenger, dsm::MemoryOrganization organization, std::size_t blocks, int frames)
+inline void RandomAccessToADisk(dsm::Messenger& messenger, dsm::MemoryOrganization organization,
+  std::size_t blocks, int frames, bool shares)
 {
-  DiskStore disks(messenger, organization, blocks);
+  DiskStore disks(messenger, organization, blocks, shares);
   disks.Disk->Delay = std::chrono::microseconds(0);
   for (int frame = 0; frame < frames; ++frame)
   {
+    disks.Disk->OneInMemory =
+      static_cast<unsigned>(frame % 4); // none, all, every second, every third
     std::atomic<std::size_t> wrong{ 0 };
     disks.Store.GetSlots().BeginFrame(disks.Store.GetSettings().Workers);
     disks.Store.Visit(

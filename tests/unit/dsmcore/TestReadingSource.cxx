@@ -10,6 +10,8 @@
 #include <string>
 #include <thread>
 #include <tuple>
+#include <type_traits>
+#include <vector>
 
 namespace
 {
@@ -196,6 +198,148 @@ TEST_P(BlocksOnDisk, WhatWasReadAheadNeedsNoRead)
     });
 }
 
+/// Nobody is asked, and no thread but the worker's reads, where all is in the memory of the system that the ranks
+/// have in common; of ranks elsewhere, each reads what it owns.
+TEST_P(BlocksOnDisk, WorkersReadWhatIsInMemory)
+{
+  this->Run(
+    [](dsm::Messenger& messenger, dsm::MemoryOrganization organization)
+    {
+      const auto ranks = static_cast<std::size_t>(messenger.GetSize());
+      const bool isPaged = organization == dsm::MemoryOrganization::PageBased;
+      const bool byAll = organization == dsm::MemoryOrganization::Replicated;
+      for (const bool shares : { true, false })
+      {
+        DiskStore disks(messenger, organization, (DiskStore::BlocksOfRank + 2) * ranks + 2, shares);
+        disks.Disk->OneInMemory = 1;
+        disks.ReadAll();
+        const auto counters = disks.Store.GetCounters();
+        if (isPaged)
+        {
+          EXPECT_EQ(disks.Disk->AtOnce, 0u) << "a page lands on the communication thread";
+          continue;
+        }
+        const bool isAll = shares || byAll || ranks == 1;
+        EXPECT_EQ(counters.Requests == 0, isAll);
+        EXPECT_EQ(counters.BytesReceived == 0, isAll);
+        if (isAll)
+        {
+          EXPECT_EQ(disks.Disk->Reads, 0u);
+          EXPECT_EQ(disks.Disk->AtOnce, DiskStore::BlocksOfRank * ranks);
+          EXPECT_EQ(counters.Workers.Misses - counters.Workers.Joins, disks.Disk->AtOnce);
+        }
+        else
+        {
+          // What another rank asks for is read by a thread, unless a worker has been there before.
+          EXPECT_EQ(disks.Disk->Reads + disks.Disk->AtOnce, DiskStore::BlocksOfRank);
+          EXPECT_GT(disks.Disk->AtOnce, 0u);
+        }
+        disks.ReadAll();
+        EXPECT_EQ(disks.Store.GetCounters().Workers.Misses, 0u);
+      }
+    });
+}
+
+/// What workers foresee of it is not read ahead by others: the system is told.
+TEST_P(BlocksOnDisk, SystemIsToldOfWhatWorkersForesee)
+{
+  this->Run(
+    [](dsm::Messenger& messenger, dsm::MemoryOrganization organization)
+    {
+      if (organization == dsm::MemoryOrganization::PageBased)
+      {
+        return;
+      }
+      DiskStore disks(messenger, organization, 40);
+      disks.Disk->OneInMemory = 1;
+      const dsm::BlockId ids[] = { static_cast<dsm::BlockId>(messenger.GetRank()),
+        static_cast<dsm::BlockId>(messenger.GetRank() + messenger.GetSize()) };
+      const auto look = [&](std::uint64_t used)
+      {
+        disks.Store.Visit(
+          [&](auto& blocks)
+          {
+            using Blocks = std::decay_t<decltype(blocks)>;
+            dsm_test::RunFrame<Blocks>(messenger, blocks,
+              [&](typename Blocks::Worker& worker, int index)
+              {
+                if (index == 0)
+                {
+                  blocks.Prefetch(*disks.Segment, ids, 2);
+                  blocks.Prefetch(*disks.Segment, ids, 2);
+                  for (std::uint64_t block = 0; block < used; ++block)
+                  {
+                    EXPECT_EQ(dsm_test::Visit(blocks, worker, *disks.Segment, ids[block]), 0u);
+                  }
+                }
+              });
+          });
+        EXPECT_EQ(disks.Store.GetCounters().Prefetches, 2u);
+        EXPECT_EQ(disks.Store.GetCounters().PrefetchesUsed, used);
+        EXPECT_EQ(disks.Disk->Reads, 0u);
+      };
+      look(0); // forgotten with the frame
+      look(2);
+      while (disks.Disk->Told < 4) // the threads do it when they come to it
+      {
+        std::this_thread::yield();
+      }
+      EXPECT_EQ(disks.Disk->Told, 4u) << "once in each frame";
+    });
+}
+
+/// A frame that is given up while a worker reads leaves nothing behind.
+TEST_P(BlocksOnDisk, WorkerReadsWhileTheFrameIsGivenUp)
+{
+  this->Run(
+    [](dsm::Messenger& messenger, dsm::MemoryOrganization organization)
+    {
+      if (organization == dsm::MemoryOrganization::PageBased)
+      {
+        return;
+      }
+      DiskStore disks(messenger, organization, 6);
+      const auto own = static_cast<dsm::BlockId>(messenger.GetRank());
+      disks.Disk->OneInMemory = 1;
+      disks.Disk->SetStuck(own);
+      disks.Store.Visit(
+        [&](auto& blocks)
+        {
+          blocks.BeginFrame();
+          std::string causes[2];
+          std::vector<std::thread> tracers;
+          for (int index = 0; index < 2; ++index) // one reads, the other waits for it
+          {
+            tracers.emplace_back(
+              [&, index]
+              {
+                auto& worker = blocks.GetWorker(index);
+                blocks.Enter(worker);
+                causes[index] = dsm_test::GetErrorText(
+                  [&] { dsm_test::Visit(blocks, worker, *disks.Segment, own); });
+                blocks.Leave(worker);
+              });
+          }
+          while (disks.Disk->AtOnce == 0)
+          {
+            blocks.Service();
+          }
+          blocks.Cancel("the user gave up");
+          disks.Disk->SetStuck(NoBlock);
+          for (std::thread& tracer : tracers)
+          {
+            tracer.join();
+          }
+          blocks.EndFrame();
+          EXPECT_EQ(causes[0], "the user gave up");
+          EXPECT_EQ(causes[1], "the user gave up");
+          EXPECT_EQ(blocks.GetCounters().CachedBytes, 0u);
+        });
+      messenger.Barrier();
+      disks.ReadAll();
+    });
+}
+
 /// As from one time step to the next: what has not changed is not read again.
 TEST_P(BlocksOnDisk, GetOtherContents)
 {
@@ -237,8 +381,11 @@ TEST_P(BlocksOnDisk, GetOtherContents)
 
 TEST_P(BlocksOnDisk, RandomAccess)
 {
-  this->Run([](dsm::Messenger& messenger, dsm::MemoryOrganization organization)
-    { dsm_test::RandomAccessToADisk(messenger, organization, 5, 3); });
+  for (const bool shares : { false, true })
+  {
+    this->Run([&](dsm::Messenger& messenger, dsm::MemoryOrganization organization)
+      { dsm_test::RandomAccessToADisk(messenger, organization, 5, 4, shares); });
+  }
 }
 
 /// All that a rank owns can be looked through, wherever it is.

@@ -17,6 +17,13 @@ namespace
 /// Reads for blocks that nobody waits for begin as long as there are not so many under way.
 constexpr std::size_t MostReadsAhead = 256;
 
+std::uint64_t CountNanoseconds(std::chrono::steady_clock::time_point since)
+{
+  return static_cast<std::uint64_t>(
+    std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::steady_clock::now() - since)
+      .count());
+}
+
 } // namespace
 
 BlockFetcher::BlockFetcher(Messenger& messenger)
@@ -129,6 +136,7 @@ void BlockFetcher::BeginFrame(bool agreed)
 
   const std::lock_guard<std::mutex> lock(this->Guard);
   this->FrameCounters = StoreCounters{};
+  this->SystemUsed = 0;
   this->Workers.BeginFrame();
   this->Phase = FramePhase::Open;
   this->Opened();
@@ -140,7 +148,9 @@ void BlockFetcher::BeginFrame(bool agreed)
       {
         if (this->MayPrefetch())
         {
-          this->Foresee(segment, ids.data(), ids.size());
+          std::vector<BlockId> forSystem;
+          this->Foresee(segment, ids.data(), ids.size(), forSystem);
+          this->TellSystem(segment, std::move(forSystem));
         }
       }
       catch (const std::bad_alloc&) // what is wanted will be asked for one by one
@@ -152,6 +162,11 @@ void BlockFetcher::BeginFrame(bool agreed)
 bool BlockFetcher::Service()
 {
   bool came = this->Requests.AnswerLater();
+  if (this->MayHaveDebtsHere.exchange(false))
+  {
+    this->Requests.AnswerDebts();
+    came = true;
+  }
   came = (!this->Busy.empty() && this->PollSources()) || came;
   if (this->QueuedCount.load(std::memory_order_acquire) == 0 && !this->NeedsService())
   {
@@ -274,6 +289,11 @@ BlockRequests::Callbacks BlockFetcher::MakeCallbacks()
   {
     const std::lock_guard<std::mutex> lock(this->Guard);
     this->Want(block);
+    // A worker may have read it since it was looked for.
+    if (this->GetLine(block).State == LineState::Cached)
+    {
+      this->MayHaveDebtsHere = true;
+    }
   };
   callbacks.Take = [this](const BlockWant& block, const std::byte* bytes)
   { this->Arrive(block, bytes, {}); };
@@ -289,10 +309,12 @@ void BlockFetcher::Arrive(const BlockWant& block, const std::byte* bytes, BlockM
     throw Error("A source of blocks brought block " + std::to_string(block.Id) +
       ", which nobody asked it for. This is a defect of the program.");
   }
-  this->Land(block, bytes, memory); // when it throws, the read is given up with the frame
+  // When this throws, the read is given up with the frame.
+  this->Land(block, bytes, memory);
   {
     const std::lock_guard<std::mutex> lock(this->Guard);
     const LineStatus& line = this->GetLine(block);
+    this->PrepareToShow();
     this->Show(block, memory);
     if (line.Use.load(std::memory_order_relaxed) == BlockUse::Prefetched)
     {
@@ -349,6 +371,7 @@ void BlockFetcher::EndFrame()
       }
       return isUnused;
     });
+  this->FrameCounters.PrefetchesUsed += this->SystemUsed;
   this->Workers.WakeAll();
   this->Closed();
 }
@@ -381,7 +404,7 @@ void BlockFetcher::AbandonAll()
 
 void BlockFetcher::AbandonForeseen()
 {
-  for (const BlockWant& block : this->Foreseen)
+  const auto abandon = [this](const BlockWant& block)
   {
     LineStatus& line = this->GetLine(block);
     if (line.State == LineState::Foreseen)
@@ -389,12 +412,22 @@ void BlockFetcher::AbandonForeseen()
       line.MoveTo(LineState::Absent);
       line.Use.store(BlockUse::Idle, std::memory_order_relaxed);
     }
-  }
+  };
+  std::for_each(this->Foreseen.begin(), this->Foreseen.end(), abandon);
   this->Foreseen.clear();
+  std::for_each(this->ForeseenBySystem.begin(), this->ForeseenBySystem.end(), abandon);
+  this->ForeseenBySystem.clear();
   this->UpdateQueuedCount();
 }
 
 // -- Workers ---------------------------------------------------------------------------------------
+
+void BlockFetcher::CountForeseen(const LineStatus& line)
+{
+  const bool isBySystem = line.State == LineState::Foreseen &&
+    line.Use.load(std::memory_order_relaxed) != BlockUse::Prefetched;
+  this->SystemUsed += isBySystem ? 1 : 0;
+}
 
 bool BlockFetcher::Want(const BlockWant& block)
 {
@@ -402,6 +435,7 @@ bool BlockFetcher::Want(const BlockWant& block)
   const bool isNew = line.State == LineState::Absent || line.State == LineState::Foreseen;
   if (isNew)
   {
+    this->CountForeseen(line);
     (this->IsOwned(block) ? this->WantedOwn : this->Wanted).push_back(block);
     line.MoveTo(LineState::Wanted);
     this->UpdateQueuedCount();
@@ -415,6 +449,64 @@ bool BlockFetcher::Want(const BlockWant& block)
     }
   }
   return !isNew;
+}
+
+bool BlockFetcher::ReadAtOnce(
+  FetchWorker& worker, const BlockWant& block, std::unique_lock<std::mutex>& lock)
+{
+  LineStatus& line = this->GetLine(block);
+  const BlockSource* const source = this->FindSourceForWorkers(block);
+  const bool isFree = line.State == LineState::Absent || line.State == LineState::Foreseen;
+  if (!source || !isFree || !this->TakeRoom(block))
+  {
+    return false;
+  }
+  const auto start = std::chrono::steady_clock::now();
+  this->CountForeseen(line);
+  line.MoveTo(LineState::Pending);
+  if (line.Use.load(std::memory_order_relaxed) == BlockUse::Prefetched)
+  {
+    line.Use.store(BlockUse::Idle, std::memory_order_relaxed);
+  }
+  lock.unlock();
+  BlockMemory memory;
+  bool isRead = false;
+  try
+  {
+    const std::size_t bytes = block.From->GetDirectory().GetBytes(block.Id);
+    memory = AllocateBlock(bytes);
+    isRead = source->ReadWithoutWaiting(block.Id, memory.get(), bytes);
+  }
+  catch (const std::bad_alloc&) // told by who reads it next, unless there is memory then
+  {
+  }
+  lock.lock();
+  try
+  {
+    this->PrepareToShow();
+  }
+  catch (const std::bad_alloc&)
+  {
+    isRead = false;
+  }
+  if (!isRead || this->Phase != FramePhase::Open)
+  {
+    this->GiveRoomBack(block);
+    line.MoveTo(LineState::Absent);
+    return false;
+  }
+  this->Show(block, memory);
+  ++worker.Slow.Misses;
+  worker.Slow.WaitNanoseconds += CountNanoseconds(start);
+  if (line.Waiters > 0)
+  {
+    this->Workers.WakeThoseThatWaitFor(line);
+  }
+  if (this->Requests.HasDebts() && !this->MayHaveDebtsHere.exchange(true))
+  {
+    this->Messages.WakeUp();
+  }
+  return true;
 }
 
 void BlockFetcher::WaitFor(FetchWorker& worker, const BlockWant& block,
@@ -446,9 +538,7 @@ void BlockFetcher::WaitFor(FetchWorker& worker, const BlockWant& block,
   {
     leave();
   }
-  worker.Slow.WaitNanoseconds += static_cast<std::uint64_t>(
-    std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::steady_clock::now() - start)
-      .count());
+  worker.Slow.WaitNanoseconds += CountNanoseconds(start);
 }
 
 void BlockFetcher::Refuse(const BlockSegment& segment) const
@@ -462,7 +552,8 @@ void BlockFetcher::Refuse(const BlockSegment& segment) const
       : "A block of a retired segment was read. This is a defect of the tracer.");
 }
 
-bool BlockFetcher::Foresee(const BlockSegment& segment, const BlockId* ids, std::size_t count)
+bool BlockFetcher::Foresee(const BlockSegment& segment, const BlockId* ids, std::size_t count,
+  std::vector<BlockId>& forSystem)
 {
   const auto isUnused = [this](const BlockWant& block) { return this->IsUnused(block); };
   bool any = false;
@@ -473,11 +564,20 @@ bool BlockFetcher::Foresee(const BlockSegment& segment, const BlockId* ids, std:
     {
       continue;
     }
+    LineStatus& line = this->GetLine(block);
+    const BlockSource* const source = this->FindSourceForWorkers(block);
+    if (source && source->MayForesee())
+    {
+      forSystem.push_back(*id);
+      this->ForeseenBySystem.push_back(block);
+      line.MoveTo(LineState::Foreseen);
+      ++this->FrameCounters.Prefetches;
+      continue;
+    }
     if (!this->Prefetches.TryAdd(block, this->GetFootprint(block), isUnused))
     {
       break;
     }
-    LineStatus& line = this->GetLine(block);
     this->Foreseen.push_back(block);
     line.MoveTo(LineState::Foreseen);
     line.Use.store(BlockUse::Prefetched, std::memory_order_relaxed);
@@ -490,13 +590,31 @@ bool BlockFetcher::Foresee(const BlockSegment& segment, const BlockId* ids, std:
 void BlockFetcher::Prefetch(const BlockSegment& segment, const BlockId* ids, std::size_t count)
 {
   bool any = false;
+  std::vector<BlockId> forSystem;
   {
     const std::lock_guard<std::mutex> lock(this->Guard);
-    any = this->IsOpenFor(segment) && this->MayPrefetch() && this->Foresee(segment, ids, count);
+    any = this->IsOpenFor(segment) && this->MayPrefetch() &&
+      this->Foresee(segment, ids, count, forSystem);
   }
   if (any)
   {
     this->Messages.WakeUp();
+  }
+  this->TellSystem(segment, std::move(forSystem));
+}
+
+void BlockFetcher::TellSystem(const BlockSegment& segment, std::vector<BlockId> ids) const
+{
+  if (ids.empty())
+  {
+    return;
+  }
+  try
+  {
+    this->FindSourceForWorkers({ &segment, ids.front() })->Foresee(std::move(ids));
+  }
+  catch (const std::exception&) // they are read when they are wanted
+  {
   }
 }
 

@@ -114,13 +114,21 @@ protected:
   virtual void Prepare() {}
   virtual void Unprepare() {}
   virtual bool MayPrefetch() const = 0;
+  /// The source that a worker may read a block from by itself, of whichever rank it is; null: it has to wait for
+  /// the communication thread.
+  /// The same for all blocks of a segment, or null.
+  virtual BlockSource* FindSourceForWorkers(const BlockWant&) const { return nullptr; }
   /// Sets room for a block aside; false when that must wait.
   virtual bool MakeRoom(const BlockWant& block) = 0;
+  /// The same where nothing has to leave for it.
+  virtual bool TakeRoom(const BlockWant&) { return false; }
   /// The block will not come.
   virtual void GiveRoomBack(const BlockWant& block) noexcept = 0;
   /// Brings a block that has come where it belongs, within the room set aside. `memory` has its bytes, or is
   /// null where these are a message's. No lock. When it throws, nothing has changed.
   virtual void Land(const BlockWant& block, const std::byte* bytes, BlockMemory& memory) = 0;
+  /// So that the next Show does not fail. May throw std::bad_alloc.
+  virtual void PrepareToShow() {}
   /// Lets workers have the block that has landed, with what Land made of its memory, which may be kept. Does
   /// not fail.
   virtual void Show(const BlockWant& block, BlockMemory& memory) = 0;
@@ -153,6 +161,10 @@ protected:
 
   /// Queues a block that is absent, or joins those who wait for it. Returns whether it joined.
   bool Want(const BlockWant& block);
+  /// A worker misses a block, and reads it by itself, without the lock, where nobody brings it yet, there is
+  /// room, and nothing has to be waited for: it spares threads that wake one another. Returns whether the block is
+  /// here now; else the worker must have it wanted, if the frame is still open, for others may wait by now.
+  bool ReadAtOnce(FetchWorker& worker, const BlockWant& block, std::unique_lock<std::mutex>& lock);
   /// A worker misses a block, and waits until it is here or the frame is open no more. `keeps`: the
   /// block stays until the worker has its slot back.
   void WaitFor(FetchWorker& worker, const BlockWant& block, std::unique_lock<std::mutex>& lock,
@@ -194,8 +206,14 @@ private:
   void AbandonAll();
   void AbandonForeseen();
   void UpdateQueuedCount();
+  /// A block is wanted, and in this state until now: whether the system was told of it.
+  void CountForeseen(const LineStatus& line);
   /// Queues the blocks that are absent, as far as there may be so many. Returns whether there are any.
-  bool Foresee(const BlockSegment& segment, const BlockId* ids, std::size_t count);
+  /// Those that workers can read by themselves, when the system has fetched them, are not: they go to `forSystem`.
+  bool Foresee(const BlockSegment& segment, const BlockId* ids, std::size_t count,
+    std::vector<BlockId>& forSystem);
+  /// With or without the lock.
+  void TellSystem(const BlockSegment& segment, std::vector<BlockId> ids) const;
 
   /// Of other ranks, and own ones, which come first: others may wait for them.
   std::deque<BlockWant> Wanted;
@@ -205,8 +223,13 @@ private:
   ExpectedBlocks Expected;
   /// Some may have become wanted, or come, since they were queued.
   std::deque<BlockWant> Foreseen;
+  /// Likewise, of which the system was told.
+  std::vector<BlockWant> ForeseenBySystem;
+  std::uint64_t SystemUsed = 0; ///< of them, in this frame: wanted later
   /// Of all three; lets Service look without the lock.
   std::atomic<std::size_t> QueuedCount{ 0 };
+  /// Workers may have read blocks that other ranks asked for.
+  std::atomic<bool> MayHaveDebtsHere{ false };
   /// Other than Requests; those with reads under way. Communication thread only.
   std::vector<BlockSource*> Busy;
 };

@@ -21,6 +21,17 @@ public:
   /// The same where it takes no longer than a copy, since the block was read ahead. Else returns false, and
   /// has done nothing.
   virtual bool TryRead(BlockId, std::byte*, std::size_t) const { return false; }
+  /// The same where all that it takes is in memory, the system's included: it may have to be unpacked, but nothing
+  /// is waited for. Else, and where reading fails, returns false; what `block` holds then means nothing.
+  virtual bool ReadWithoutWaiting(BlockId id, std::byte* block, std::size_t bytes) const
+  {
+    return this->TryRead(id, block, bytes);
+  }
+  /// Whether ReadWithoutWaiting can be expected to succeed where TellSystem was called some time before.
+  virtual bool MayTellSystem() const { return false; }
+  /// A block will probably be read soon: the system may bring what it takes to its own cache. Does not wait for it.
+  /// Throws nothing.
+  virtual void TellSystem(BlockId) const {}
   /// A block that was read by the reader before this one is still in use, and need not be read again: it is
   /// what this one would read, too.
   virtual void NoteKept(BlockId, std::size_t /*bytes*/) const {}

@@ -22,6 +22,7 @@ void BlockRequests::BeginFrame()
   this->Pending.clear();
   this->Unsent.clear();
   this->Debts.clear();
+  this->DebtCount = 0;
   this->Deferred.clear();
   this->Abandoned = false;
   this->Count = 0;
@@ -81,6 +82,7 @@ void BlockRequests::Abandon() noexcept
   this->Unsent.clear();
   this->Pending.clear();
   this->Debts.clear();
+  this->DebtCount = 0;
   this->Deferred.clear();
 }
 
@@ -136,9 +138,15 @@ void BlockRequests::ReplyWhenPossible(const Debt& debt, const std::byte* bytes)
   }
   else
   {
-    this->Debts.push_back(debt);
-    this->Store.Bring(debt.Block);
+    this->AddDebt(debt);
   }
+}
+
+void BlockRequests::AddDebt(const Debt& debt)
+{
+  this->Debts.push_back(debt);
+  this->DebtCount = this->Debts.size();
+  this->Store.Bring(debt.Block);
 }
 
 bool BlockRequests::HasRoomFor(const BlockWant& block) const
@@ -160,8 +168,7 @@ bool BlockRequests::AnswerLater()
     }
     else // it has left memory in the meantime
     {
-      this->Debts.push_back(debt);
-      this->Store.Bring(debt.Block);
+      this->AddDebt(debt);
     }
     this->Deferred.pop_front();
     any = true;
@@ -175,9 +182,20 @@ void BlockRequests::Answer(const BlockWant& block, const std::byte* bytes)
   const auto first = std::partition(this->Debts.begin(), this->Debts.end(), isOther);
   const std::vector<Debt> due(first, this->Debts.end());
   this->Debts.erase(first, this->Debts.end());
+  this->DebtCount = this->Debts.size();
   for (const Debt& debt : due)
   {
     this->ReplyWhenPossible(debt, bytes);
+  }
+}
+
+void BlockRequests::AnswerDebts()
+{
+  const std::vector<Debt> debts = std::exchange(this->Debts, {});
+  this->DebtCount = 0;
+  for (const Debt& debt : debts)
+  {
+    this->ReplyWhenPossible(debt, this->Store.FindOwned(debt.Block));
   }
 }
 

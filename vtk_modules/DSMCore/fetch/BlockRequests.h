@@ -8,6 +8,7 @@
 #include "DSMCore/transport/Message.h"
 #include "DSMCore/transport/Messenger.h"
 
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <deque>
@@ -65,6 +66,11 @@ public:
   void Answer(const BlockWant& block, const std::byte* bytes);
   /// Often: answers those who wait for other replies to leave. Returns whether it did anything.
   bool AnswerLater();
+  /// Whether anybody asked for blocks that were not in memory. Any thread.
+  bool HasDebts() const { return this->DebtCount.load() != 0; }
+  /// Blocks may have come to memory without Answer: those who asked for them get them. What is still to come is
+  /// brought.
+  void AnswerDebts();
 
   /// Messages that asked for blocks, in this frame.
   std::uint64_t GetCount() const { return this->Count; }
@@ -88,6 +94,7 @@ private:
     int Asker;
   };
 
+  void AddDebt(const Debt& debt);
   /// With the bytes, or, where these are null, when the block is in memory again. May wait for other
   /// replies to leave.
   void ReplyWhenPossible(const Debt& debt, const std::byte* bytes);
@@ -102,7 +109,8 @@ private:
   std::vector<BlockWant> Pending;
   std::vector<BlockWant> Unsent; ///< those of Pending that Submit has not seen
   std::vector<Debt> Debts;       ///< their blocks are not in memory
-  std::deque<Debt> Deferred;     ///< wait for other replies to leave
+  std::atomic<std::size_t> DebtCount{ 0 };
+  std::deque<Debt> Deferred; ///< wait for other replies to leave
   std::size_t ReplyBytes = MostReplyBytes;
   bool Abandoned = false;
   std::uint32_t FrameSession = 0;

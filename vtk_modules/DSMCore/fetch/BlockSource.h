@@ -53,6 +53,19 @@ public:
   /// Gives up all that is under way: when it returns, nothing of it will be delivered.
   virtual void Abandon() noexcept = 0;
 
+  /// Any thread, for itself: reads a block, of whichever rank, where nothing has to be waited for. Else, and
+  /// where it fails, returns false: what is wrong is told by the read that begins then.
+  virtual bool ReadWithoutWaiting(BlockId, std::byte* /*block*/, std::size_t /*bytes*/) const
+  {
+    return false;
+  }
+
+  /// Whether that can be expected to succeed where Foresee was called some time before. Any thread.
+  virtual bool MayForesee() const { return false; }
+  /// Any thread: these blocks will probably be read; the system may bring what they take to its own cache
+  /// meanwhile. Does not wait for it. May throw.
+  virtual void Foresee(std::vector<BlockId>) {}
+
   /// Between frames: other contents are to be brought from now on, but this block, which is in use, has not
   /// changed, and will not be asked for.
   virtual void NoteKept(const BlockWant&) {}

@@ -20,7 +20,7 @@ enum class LineState : std::uint8_t
   Absent,   ///< not here, and nobody asked for it
   Foreseen, ///< likely to be needed; nobody waits for it, and no read has begun
   Wanted,   ///< somebody waits for it; no read has begun, for want of memory
-  Pending,  ///< its source reads it; memory is set aside for it
+  Pending,  ///< its source, or a worker from it, reads it; memory is set aside for it
   Cached,   ///< here, and may be evicted
   Zeroed,   ///< pages of zeros stand in for it until the end of a frame that was cancelled
   Owned,    ///< here for good
@@ -65,7 +65,7 @@ private:
     switch (this->State)
     {
       case LineState::Absent:
-        return next != LineState::Absent && next != LineState::Pending && next != LineState::Cached;
+        return next != LineState::Absent && next != LineState::Cached;
       case LineState::Foreseen:
         return next == LineState::Wanted || next == LineState::Pending || next == LineState::Absent;
       case LineState::Wanted:

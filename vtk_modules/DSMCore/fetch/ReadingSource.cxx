@@ -201,6 +201,30 @@ void ReadingSource::Abandon() noexcept
   this->State->Come.clear();
 }
 
+bool ReadingSource::ReadWithoutWaiting(BlockId id, std::byte* block, std::size_t bytes) const
+{
+  try
+  {
+    return this->Reader->ReadWithoutWaiting(id, block, bytes);
+  }
+  catch (const std::exception&)
+  {
+    return false;
+  }
+}
+
+void ReadingSource::Foresee(std::vector<BlockId> ids)
+{
+  ReaderThreads::GetShared().Add(
+    [reader = this->Reader, ids = std::move(ids)]
+    {
+      for (const BlockId id : ids)
+      {
+        reader->TellSystem(id);
+      }
+    });
+}
+
 void ReadingSource::NoteKept(const BlockWant& block)
 {
   this->Reader->NoteKept(block.Id, block.From->GetDirectory().GetBytes(block.Id));

@@ -276,7 +276,7 @@ std::string MemoryPlan::Explain(MemoryOrganization wanted, MemoryOrganization ch
       : "";
     return std::string("The memory organisation is ") + GetText(byAll ? wanted : chosen) +
       (wanted == MemoryOrganization::Automatic ? "" : ", as chosen") + ": " + scratch +
-      "bricks that are on a disk come to memory when they are needed, read " +
+      "bricks that are on a disk come to memory when they are needed, read from it " +
       (byAll ? "by each rank that needs them" : "once for all ranks") +
       (byAll && this->AnyOnOwnersDisk ? ", those in scratch files once for all." : ".");
   }

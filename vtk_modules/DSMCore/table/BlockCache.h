@@ -19,7 +19,8 @@ namespace dsm
 /// CLOCK, one sweeping hand, an approximation of the paper's least recently used order that needs
 /// no list to be kept on a hit. What was prefetched and not used yet is passed by once.
 ///
-/// Communication thread only, under the store's lock. Epochs: see ObjectStore::Worker.
+/// Under the store's lock; on the communication thread alone where something leaves: it answers other ranks
+/// from the blocks, without the lock. Epochs: see ObjectStore::Worker.
 class BlockCache
 {
 public:

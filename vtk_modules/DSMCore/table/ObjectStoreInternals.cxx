@@ -64,13 +64,22 @@ const std::byte* ObjectStore::Internals::Wait(Worker& worker, const Segment& seg
     line.Use.store(BlockUse::Recent, std::memory_order_relaxed);
     return address; // it came in the meantime: a hit after all
   }
-  if (!this->IsOpenFor(segment))
+  const auto check = [&]
   {
-    ++worker.Slow.Misses;
-    this->Refuse(segment);
-  }
+    if (!this->IsOpenFor(segment))
+    {
+      ++worker.Slow.Misses;
+      this->Refuse(segment);
+    }
+  };
+  check();
   worker.Epoch.store(Worker::Offline, std::memory_order_release);
-  this->WaitFor(worker, { &segment, id }, lock, this->Current.Slots.get(), true);
+  const BlockWant block{ &segment, id };
+  if (!this->ReadAtOnce(worker, block, lock))
+  {
+    check();
+    this->WaitFor(worker, block, lock, this->Current.Slots.get(), true);
+  }
   // Online again under the lock: from now on the block may be evicted, but its memory waits for this
   // worker.
   worker.Epoch.store(this->Store.Epoch.load(std::memory_order_relaxed), std::memory_order_release);
@@ -168,7 +177,7 @@ std::size_t ObjectStore::Internals::GetFootprint(const BlockWant& block) const
 
 const std::byte* ObjectStore::Internals::FindOwned(const BlockWant& block) const
 {
-  return GetBlockLine(block).Address.load(std::memory_order_relaxed);
+  return GetBlockLine(block).Address.load(std::memory_order_acquire); // a worker may have read it
 }
 
 bool ObjectStore::Internals::IsOwned(const BlockWant& block) const
@@ -179,6 +188,22 @@ bool ObjectStore::Internals::IsOwned(const BlockWant& block) const
 BlockSource* ObjectStore::Internals::FindSource(const BlockWant& block) const
 {
   return GetSegment(block).Source.get();
+}
+
+BlockSource* ObjectStore::Internals::FindSourceForWorkers(const BlockWant& block) const
+{
+  const BlockDirectory& directory = block.From->GetDirectory();
+  // The ranks of a host have the system's cache in common, so each may read what another one owns: nothing is read
+  // from the disk twice.
+  const HostGroups* const groups = this->Current.Groups.get();
+  const bool isShared = !directory.IsOnOwnersDisk() && groups &&
+    groups->AreTogether(this->Messages.GetRank(), directory.GetOwner(block.Id));
+  return isShared || this->IsOwned(block) ? GetSegment(block).Source.get() : nullptr;
+}
+
+bool ObjectStore::Internals::TakeRoom(const BlockWant& block)
+{
+  return this->Cache.TryReserve(GetBlockLine(block).Bytes);
 }
 
 bool ObjectStore::Internals::MakeRoom(const BlockWant& block)
@@ -208,10 +233,6 @@ void ObjectStore::Internals::GiveRoomBack(const BlockWant& block) noexcept
 void ObjectStore::Internals::Land(
   const BlockWant& block, const std::byte* bytes, BlockMemory& memory)
 {
-  {
-    const std::lock_guard<std::mutex> lock(this->Guard);
-    this->Cache.PrepareSlot();
-  }
   if (!memory)
   {
     const std::size_t blockBytes = GetBlockLine(block).Bytes;

@@ -45,10 +45,13 @@ private:
   const std::byte* FindOwned(const BlockWant& block) const override;
   bool IsOwned(const BlockWant& block) const override;
   BlockSource* FindSource(const BlockWant& block) const override;
+  BlockSource* FindSourceForWorkers(const BlockWant& block) const override;
   void CheckBudget() const override;
   bool MakeRoom(const BlockWant& block) override;
+  bool TakeRoom(const BlockWant& block) override;
   void GiveRoomBack(const BlockWant& block) noexcept override;
   void Land(const BlockWant& block, const std::byte* bytes, BlockMemory& memory) override;
+  void PrepareToShow() override { this->Cache.PrepareSlot(); }
   void Show(const BlockWant& block, BlockMemory& memory) override;
   std::vector<BlockId> ListCached(const BlockSegment& segment) const override;
   void Forget(const BlockSegment& segment) override;

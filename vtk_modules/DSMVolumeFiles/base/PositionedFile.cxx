@@ -3,6 +3,7 @@
 
 #include "DSMCore/base/Error.h"
 #include "DSMRayTracing/base/ByteHash.h"
+#include "DSMVolumeFiles/base/ReadingManner.h"
 
 #include <algorithm>
 #include <cerrno>
@@ -11,6 +12,7 @@
 
 #include <fcntl.h>
 #include <sys/stat.h>
+#include <sys/uio.h>
 #include <unistd.h>
 
 namespace vol
@@ -22,6 +24,12 @@ namespace
 /// The disk brings whole pages anyway, and a call of the system costs more than to copy one.
 constexpr std::uint64_t LargestGap = 8192;
 constexpr std::uint64_t MostTogether = std::uint64_t(1) << 20;
+
+/// A smaller file is soon in memory as a whole.
+constexpr std::uint64_t SmallestWithReadAhead = std::uint64_t(64) << 20;
+
+/// What disks are asked for in one piece, where it is scattered: less costs hardly less.
+constexpr std::uint64_t Window = std::uint64_t(32) << 10;
 
 std::uint64_t GetStampOf(const struct stat& state)
 {
@@ -43,8 +51,12 @@ std::uint64_t GetStampOf(const struct stat& state)
 
 PositionedFile::PositionedFile(std::string path)
   : Path(std::move(path))
-  , Descriptor(open(this->Path.c_str(), O_RDONLY | O_CLOEXEC))
 {
+  if (WithoutWaiting::IsInForce())
+  {
+    throw WouldWait{ true };
+  }
+  this->Descriptor = open(this->Path.c_str(), O_RDONLY | O_CLOEXEC);
   struct stat state
   {
   };
@@ -59,10 +71,24 @@ PositionedFile::PositionedFile(std::string path)
   }
   this->Bytes = static_cast<std::uint64_t>(state.st_size);
   this->Stamp = GetStampOf(state);
+  if (this->Bytes >= SmallestWithReadAhead)
+  {
+    this->Scattered = open(this->Path.c_str(), O_RDONLY | O_CLOEXEC);
+    if (this->Scattered >= 0 &&
+      (fstat(this->Scattered, &state) != 0 || GetStampOf(state) != this->Stamp ||
+        posix_fadvise(this->Scattered, 0, 0, POSIX_FADV_RANDOM) != 0))
+    {
+      close(std::exchange(this->Scattered, -1));
+    }
+  }
 }
 
 PositionedFile::~PositionedFile()
 {
+  if (this->Scattered >= 0)
+  {
+    close(this->Scattered);
+  }
   close(this->Descriptor);
 }
 
@@ -83,33 +109,38 @@ void PositionedFile::Read(std::uint64_t offset, std::byte* out, std::size_t byte
   this->CheckUnchanged();
 }
 
+PositionedFile::Run PositionedFile::FindRun(
+  const std::vector<Piece>& pieces, std::vector<Piece>::const_iterator first)
+{
+  Run run{ first, first + 1, first->Offset, first->Offset + first->Bytes };
+  for (; run.Last != pieces.end() && run.Last->Offset < run.End + LargestGap &&
+       run.Last->Offset + run.Last->Bytes <= run.Begin + MostTogether;
+       ++run.Last)
+  {
+    run.End = run.Last->Offset + run.Last->Bytes;
+  }
+  return run;
+}
+
 void PositionedFile::Read(const std::vector<Piece>& pieces, std::byte* out) const
 {
   std::vector<std::byte> together;
   for (auto piece = pieces.begin(); piece != pieces.end();)
   {
-    const std::uint64_t begin = piece->Offset;
-    std::uint64_t end = begin + piece->Bytes;
-    auto next = piece + 1;
-    for (; next != pieces.end() && next->Offset < end + LargestGap &&
-         next->Offset + next->Bytes <= begin + MostTogether;
-         ++next)
+    const Run run = FindRun(pieces, piece);
+    if (run.Last == piece + 1)
     {
-      end = next->Offset + next->Bytes;
-    }
-    if (next == piece + 1)
-    {
-      this->ReadUnchecked(begin, out, piece->Bytes);
+      this->ReadUnchecked(run.Begin, out, piece->Bytes);
       out += piece->Bytes;
-      piece = next;
+      piece = run.Last;
       continue;
     }
-    together.resize(static_cast<std::size_t>(end - begin));
-    this->ReadUnchecked(begin, together.data(), together.size());
-    for (; piece != next; ++piece)
+    together.resize(static_cast<std::size_t>(run.End - run.Begin));
+    this->ReadUnchecked(run.Begin, together.data(), together.size());
+    for (; piece != run.Last; ++piece)
     {
       out = std::copy_n(
-        together.data() + static_cast<std::size_t>(piece->Offset - begin), piece->Bytes, out);
+        together.data() + static_cast<std::size_t>(piece->Offset - run.Begin), piece->Bytes, out);
     }
   }
   this->CheckUnchanged();
@@ -118,14 +149,26 @@ void PositionedFile::Read(const std::vector<Piece>& pieces, std::byte* out) cons
 void PositionedFile::ReadUnchecked(std::uint64_t offset, std::byte* out, std::size_t bytes) const
 {
   const auto place = [&](std::uint64_t at) { return " at byte " + std::to_string(at); };
+  const bool waits = !WithoutWaiting::IsInForce();
+  const bool isScattered = this->Scattered >= 0 && ScatteredReads::AreInForce();
+  const int descriptor = isScattered ? this->Scattered : this->Descriptor;
+  if (isScattered && waits)
+  {
+    this->Foresee(offset, bytes);
+  }
   std::size_t done = 0;
   while (done < bytes)
   {
+    const iovec rest{ out + done, bytes - done };
     const ssize_t got =
-      pread(this->Descriptor, out + done, bytes - done, static_cast<off_t>(offset + done));
+      preadv2(descriptor, &rest, 1, static_cast<off_t>(offset + done), waits ? 0 : RWF_NOWAIT);
     if (got < 0 && errno == EINTR)
     {
       continue;
+    }
+    if (got < 0 && !waits)
+    {
+      throw WouldWait{ errno != EAGAIN };
     }
     if (got < 0)
     {
@@ -145,9 +188,25 @@ void PositionedFile::ReadUnchecked(std::uint64_t offset, std::byte* out, std::si
 
 void PositionedFile::Foresee(std::uint64_t offset, std::size_t bytes) const
 {
+  std::uint64_t end = offset + bytes;
+  if (this->Scattered >= 0)
+  {
+    offset = offset / Window * Window;
+    end = (end + Window - 1) / Window * Window;
+  }
   // A hint: where the system does not take it, nothing is lost.
-  posix_fadvise(
-    this->Descriptor, static_cast<off_t>(offset), static_cast<off_t>(bytes), POSIX_FADV_WILLNEED);
+  posix_fadvise(this->Descriptor, static_cast<off_t>(offset), static_cast<off_t>(end - offset),
+    POSIX_FADV_WILLNEED);
+}
+
+void PositionedFile::Foresee(const std::vector<Piece>& pieces) const
+{
+  for (auto piece = pieces.begin(); piece != pieces.end();)
+  {
+    const Run run = FindRun(pieces, piece);
+    this->Foresee(run.Begin, static_cast<std::size_t>(run.End - run.Begin));
+    piece = run.Last;
+  }
 }
 
 } // namespace vol

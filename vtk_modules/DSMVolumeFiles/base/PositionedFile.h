@@ -14,7 +14,7 @@ namespace vol
 class PositionedFile
 {
 public:
-  /// Throws dsm::Error when it cannot be opened.
+  /// Throws dsm::Error when it cannot be opened; WouldWait (WithoutWaiting), as a disk has to be asked.
   explicit PositionedFile(std::string path);
   ~PositionedFile();
   PositionedFile(const PositionedFile&) = delete;
@@ -28,7 +28,7 @@ public:
   std::uint64_t GetStamp() const { return this->Stamp; }
 
   /// Reads so many bytes from `offset` on; throws dsm::Error, which names file and place, when there are
-  /// fewer, when reading fails, or when the file was written to since it was opened.
+  /// fewer, when reading fails, or when the file was written to since it was opened; WouldWait (WithoutWaiting).
   void Read(std::uint64_t offset, std::byte* out, std::size_t bytes) const;
 
   struct Piece
@@ -41,15 +41,29 @@ public:
   /// and small.
   void Read(const std::vector<Piece>& pieces, std::byte* out) const;
 
-  /// The system may read them to its own cache already; does not wait for it.
+  /// The system may read them to its own cache already, of a large file with what is in the same 32 KiB; does not
+  /// wait for it.
   void Foresee(std::uint64_t offset, std::size_t bytes) const;
+  /// Likewise, as Read takes them together.
+  void Foresee(const std::vector<Piece>& pieces) const;
 
 private:
+  /// Several pieces that are read together: those from First up to Last, and bytes from Begin up to End.
+  struct Run
+  {
+    std::vector<Piece>::const_iterator First;
+    std::vector<Piece>::const_iterator Last;
+    std::uint64_t Begin;
+    std::uint64_t End;
+  };
+  static Run FindRun(const std::vector<Piece>& pieces, std::vector<Piece>::const_iterator first);
+
   void ReadUnchecked(std::uint64_t offset, std::byte* out, std::size_t bytes) const;
   void CheckUnchanged() const;
 
   std::string Path;
   int Descriptor = -1;
+  int Scattered = -1; ///< the same file, in which the system does not read ahead; none: it is small
   std::uint64_t Bytes = 0;
   std::uint64_t Stamp = 0;
 };

@@ -3,6 +3,7 @@
 
 #include "DSMRayTracing/base/ByteHash.h"
 #include "DSMVolumeFiles/base/CopyBox.h"
+#include "DSMVolumeFiles/base/ReadingManner.h"
 
 #include <exception>
 #include <utility>
@@ -17,6 +18,9 @@ constexpr std::size_t SharedBytes = std::size_t(128) << 20;
 
 /// While a chunk is read, its bytes as the file has them are in memory, too, which hardly are more than it.
 constexpr std::size_t InHandOfEach = 2;
+
+/// Samples along an axis that a brick has in common with the next.
+constexpr int Overlap = 2;
 
 } // namespace
 
@@ -111,14 +115,29 @@ ChunkCache::Chunk ChunkCache::Get(const std::shared_ptr<const VolumeFile>& file,
       {
         this->Order.splice(this->Order.begin(), this->Order, known->second.Place);
       }
+      else if (WithoutWaiting::IsInForce())
+      {
+        throw WouldWait{};
+      }
       const std::shared_future<Chunk> data = known->second.Data;
       lock.unlock();
-      return data.get();
+      try
+      {
+        return data.get();
+      }
+      catch (const WouldWait&) // told to who began to read it, not to this thread
+      {
+        return this->Get(file, array, step, chunk);
+      }
+    }
+    const auto hasRoom = [&]
+    { return this->InHand == 0 || this->InHand + this->Lent + inHand <= this->ComputeRoom(); };
+    if (WithoutWaiting::IsInForce() && !hasRoom())
+    {
+      throw WouldWait{};
     }
     this->Entries[key].Data = promise.get_future().share();
-    this->HandsFree.wait(lock,
-      [&]
-      { return this->InHand == 0 || this->InHand + this->Lent + inHand <= this->ComputeRoom(); });
+    this->HandsFree.wait(lock, hasRoom);
     this->InHand += inHand;
     this->Bytes += inHand;
     this->Evict();
@@ -171,6 +190,7 @@ void ChunkCache::ReadBox(const std::shared_ptr<const VolumeFile>& file, std::siz
 void ChunkCache::ReadScattered(const std::shared_ptr<const VolumeFile>& file, std::size_t array,
   int step, const rt::Box& box, std::byte* out)
 {
+  const ScatteredReads scope;
   this->Read(file, array, step, box, true, out);
 }
 
@@ -234,6 +254,37 @@ bool ChunkCache::ReadWithHalo(const std::shared_ptr<const VolumeFile>& file, std
   const std::lock_guard<std::mutex> lock(this->Guard);
   this->BytesRead += static_cast<std::size_t>(box.GetCount()) * what.GetSampleBytes();
   return true;
+}
+
+void ChunkCache::Foresee(const std::shared_ptr<const VolumeFile>& file, std::size_t array, int step,
+  const rt::Box& box) const
+{
+  const FileArray& what = file->GetArrays()[array];
+  // What bricks need beyond their own cells is another one's, too.
+  const rt::Box own{ box.Min, glm::max(box.Min + rt::Index3(1), box.Max - rt::Index3(Overlap)) };
+  const rt::Index3 first = own.Min / what.Grid.ChunkSamples;
+  const rt::Index3 last = (own.Max - rt::Index3(1)) / what.Grid.ChunkSamples;
+  try
+  {
+    rt::Index3 chunk;
+    for (chunk.z = first.z; chunk.z <= last.z; ++chunk.z)
+    {
+      for (chunk.y = first.y; chunk.y <= last.y; ++chunk.y)
+      {
+        for (chunk.x = first.x; chunk.x <= last.x; ++chunk.x)
+        {
+          if (!this->HasChunk(file, array, step, chunk))
+          {
+            file->Foresee(array, step, chunk, rt::Intersect(what.Grid.GetBox(chunk), box));
+          }
+        }
+      }
+    }
+  }
+  catch (const std::exception&)
+  {
+    return;
+  }
 }
 
 void ChunkCache::Evict()

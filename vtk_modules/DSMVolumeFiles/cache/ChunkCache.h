@@ -53,7 +53,7 @@ public:
   std::uint64_t GetBytesRead() const;
 
   /// The samples of a chunk, as VolumeFile::ReadChunk gives them. Throws what that throws, to all who wait; the
-  /// next one who asks tries again.
+  /// next one who asks tries again. Where a thread is not to wait (WithoutWaiting), not for another one either.
   Chunk Get(const std::shared_ptr<const VolumeFile>& file, std::size_t array, int step,
     const rt::Index3& chunk);
 
@@ -63,6 +63,11 @@ public:
   /// The same for boxes far from one another: of chunks that are not here, no more is read than must be.
   void ReadScattered(const std::shared_ptr<const VolumeFile>& file, std::size_t array, int step,
     const rt::Box& box, std::byte* out);
+
+  /// A box will probably be read soon: the system is told of what is not here, without what boxes side by side
+  /// have in common. What goes wrong is said when it is read.
+  void Foresee(const std::shared_ptr<const VolumeFile>& file, std::size_t array, int step,
+    const rt::Box& box) const;
 
 private:
   struct Key

@@ -103,29 +103,22 @@ public:
     return true;
   }
 
-  void Foresee(std::size_t, int, const rt::Index3& chunk) const override
+  void Foresee(std::size_t, int, const rt::Index3& chunk, const rt::Box& part) const override
   {
     const FileArray& array = this->Arrays.front();
-    ForEachRun(array, array.Grid.GetBox(chunk),
-      [&](std::uint64_t before, std::size_t bytes)
-      { this->File->Foresee(this->First + before, bytes); });
+    this->File->Foresee(
+      this->FindPieces(array, this->Codec.IsPlain() ? part : array.Grid.GetBox(chunk)));
   }
 
 private:
   void ReadRows(const FileArray& array, const rt::Box& box, std::byte* out) const
   {
-    std::vector<PositionedFile::Piece> pieces;
-    ForEachRun(array, box,
-      [&](std::uint64_t before, std::size_t bytes) {
-        pieces.push_back({ this->First + before, bytes });
-      });
-    this->File->Read(pieces, out);
+    this->File->Read(this->FindPieces(array, box), out);
   }
 
-  /// Calls `use` with first byte and number of bytes, counted from the first value, of all that is in one piece.
-  template <class Use>
-  static void ForEachRun(const FileArray& array, const rt::Box& box, const Use& use)
+  std::vector<PositionedFile::Piece> FindPieces(const FileArray& array, const rt::Box& box) const
   {
+    std::vector<PositionedFile::Piece> pieces;
     const rt::Index3 samples = array.Grid.Samples;
     const rt::Index3 size = box.GetSize();
     // Whole rows follow one another.
@@ -136,9 +129,10 @@ private:
       for (std::int64_t y = box.Min.y; y < box.Max.y; y += rows)
       {
         const auto before = static_cast<std::uint64_t>((z * samples.y + y) * samples.x + box.Min.x);
-        use(before * array.GetSampleBytes(), bytes);
+        pieces.push_back({ this->First + before * array.GetSampleBytes(), bytes });
       }
     }
+    return pieces;
   }
 
   std::shared_ptr<const PositionedFile> File;

@@ -81,9 +81,10 @@ public:
     return this->Get(step)->ReadWithHalo(array, 0, chunk, out);
   }
 
-  void Foresee(std::size_t array, int step, const rt::Index3& chunk) const override
+  void Foresee(
+    std::size_t array, int step, const rt::Index3& chunk, const rt::Box& part) const override
   {
-    this->Get(step)->Foresee(array, 0, chunk);
+    this->Get(step)->Foresee(array, 0, chunk, part);
   }
 
   Index ReadIndex(std::size_t array, int step) const override

@@ -56,8 +56,8 @@ void StoredFile::ReadChunk(
   }
 }
 
-bool StoredFile::ReadPart(
-  std::size_t array, int step, const rt::Index3& chunk, const rt::Box& part, std::byte* out) const
+std::vector<PositionedFile::Piece> StoredFile::FindPieces(
+  std::size_t array, const Place& place, const rt::Index3& chunk, const rt::Box& part) const
 {
   const FileArray& what = this->Arrays[array];
   const Storage& storage = this->Storages[array];
@@ -66,14 +66,13 @@ bool StoredFile::ReadPart(
   const rt::Box stored =
     storage.HasWholeChunks ? rt::Box{ box.Min, box.Min + what.Grid.ChunkSamples } : box;
   const rt::Index3 size = stored.GetSize();
-  const std::optional<Place> place = this->FindChunk(array, step, chunk);
-  if (!place || !storage.Codec.IsPlain() || storage.Slices != 1 ||
-    place->Bytes != static_cast<std::size_t>(stored.GetCount()) * sampleBytes)
+  std::vector<PositionedFile::Piece> pieces;
+  if (!storage.Codec.IsPlain() || storage.Slices != 1 ||
+    place.Bytes != static_cast<std::size_t>(stored.GetCount()) * sampleBytes)
   {
-    return false;
+    return pieces;
   }
   const rt::Index3 rows = part.GetSize();
-  std::vector<PositionedFile::Piece> pieces;
   pieces.reserve(static_cast<std::size_t>(rows.y * rows.z));
   for (std::int64_t z = part.Min.z - stored.Min.z; z < part.Max.z - stored.Min.z; ++z)
   {
@@ -82,8 +81,21 @@ bool StoredFile::ReadPart(
       const auto before =
         static_cast<std::uint64_t>((z * size.y + y) * size.x + part.Min.x - stored.Min.x);
       pieces.push_back(
-        { place->Offset + before * sampleBytes, static_cast<std::size_t>(rows.x) * sampleBytes });
+        { place.Offset + before * sampleBytes, static_cast<std::size_t>(rows.x) * sampleBytes });
     }
+  }
+  return pieces;
+}
+
+bool StoredFile::ReadPart(
+  std::size_t array, int step, const rt::Index3& chunk, const rt::Box& part, std::byte* out) const
+{
+  const std::optional<Place> place = this->FindChunk(array, step, chunk);
+  const auto pieces =
+    place ? this->FindPieces(array, *place, chunk, part) : std::vector<PositionedFile::Piece>{};
+  if (pieces.empty())
+  {
+    return false;
   }
   try
   {
@@ -91,7 +103,7 @@ bool StoredFile::ReadPart(
   }
   catch (const dsm::Error& error)
   {
-    RefuseChunk(what, chunk, place->File->GetPath(), error);
+    RefuseChunk(this->Arrays[array], chunk, place->File->GetPath(), error);
   }
   return true;
 }
@@ -138,12 +150,21 @@ bool StoredFile::ReadWithHalo(
   return true;
 }
 
-void StoredFile::Foresee(std::size_t array, int step, const rt::Index3& chunk) const
+void StoredFile::Foresee(
+  std::size_t array, int step, const rt::Index3& chunk, const rt::Box& part) const
 {
-  if (const std::optional<Place> place = this->FindChunk(array, step, chunk))
+  const std::optional<Place> place = this->FindChunk(array, step, chunk);
+  if (!place)
+  {
+    return;
+  }
+  const auto pieces = this->FindPieces(array, *place, chunk, part);
+  if (pieces.empty())
   {
     place->File->Foresee(place->Offset, place->Bytes);
+    return;
   }
+  place->File->Foresee(pieces);
 }
 
 void StoredFile::RefuseChunk(

@@ -25,7 +25,8 @@ public:
   bool ReadWithHalo(
     std::size_t array, int step, const rt::Index3& chunk, std::byte* out) const override;
 
-  void Foresee(std::size_t array, int step, const rt::Index3& chunk) const override;
+  void Foresee(
+    std::size_t array, int step, const rt::Index3& chunk, const rt::Box& part) const override;
 
   /// Throws what reading a chunk threw, with the chunk's and the file's names.
   [[noreturn]] static void RefuseChunk(const FileArray& array, const rt::Index3& chunk,
@@ -64,6 +65,11 @@ protected:
     std::size_t array, int step, const rt::Index3& chunk) const = 0;
 
   std::vector<Storage> Storages; ///< of the arrays
+
+private:
+  /// The rows of a part of a chunk; none where the chunk can only be read as a whole.
+  std::vector<PositionedFile::Piece> FindPieces(
+    std::size_t array, const Place& place, const rt::Index3& chunk, const rt::Box& part) const;
 };
 
 } // namespace vol

@@ -95,8 +95,9 @@ public:
   /// with Zstandard; else false.
   virtual bool ReadWithHalo(std::size_t, int, const rt::Index3&, std::byte*) const { return false; }
 
-  /// A chunk will probably be read soon: the system may fetch it to its own cache meanwhile. Throws dsm::Error.
-  virtual void Foresee(std::size_t, int, const rt::Index3&) const {}
+  /// A part of a chunk will probably be read soon: the system may fetch it to its own cache meanwhile, or all of
+  /// the chunk where a part cannot be read alone. Throws dsm::Error.
+  virtual void Foresee(std::size_t, int, const rt::Index3&, const rt::Box&) const {}
 
   /// What a file that dsm_convert wrote tells of an array beside its values (docs/files.md); empty where it does
   /// not. Throws std::bad_alloc.

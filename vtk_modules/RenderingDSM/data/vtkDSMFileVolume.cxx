@@ -4,6 +4,7 @@
 #include "DSMCore/base/Error.h"
 #include "DSMRayTracing/base/ByteHash.h"
 #include "DSMRayTracing/layout/DealBricks.h"
+#include "DSMVolumeFiles/cache/FileBrickReader.h"
 #include "DSMVolumeFiles/format/SeriesFile.h"
 #include "vtkDSMFileArray.h"
 #include "vtkDSMFileVoxels.h"
@@ -61,6 +62,22 @@ public:
     return isHere;
   }
 
+  bool ReadWithoutWaiting(dsm::BlockId id, std::byte* block, std::size_t bytes) const override
+  {
+    if (this->TryRead(id, block, bytes))
+    {
+      return true;
+    }
+    const bool isRead = this->Here->ReadWithoutWaiting(id, block, bytes);
+    if (isRead)
+    {
+      this->Foresee(id, bytes);
+    }
+    return isRead;
+  }
+
+  bool MayTellSystem() const override { return this->Here->MayTellSystem(); }
+  void TellSystem(dsm::BlockId id) const override { this->Here->TellSystem(id); }
   void NoteKept(dsm::BlockId id, std::size_t bytes) const override { this->Foresee(id, bytes); }
 
 private:
@@ -377,9 +394,10 @@ bool vtkDSMFileVolume::HasSteps() const
 std::shared_ptr<const dsm::BlockReader> vtkDSMFileVolume::CreateReader(
   const rt::BrickLattice& lattice, bool scattered) const
 {
-  return std::make_shared<rt::VoxelBrickReader>(lattice,
+  return std::make_shared<vol::FileBrickReader>(lattice,
     std::make_shared<vtkDSMFileVoxels>(
-      this->Values, this->Component, lattice.GetScalarType(), scattered));
+      this->Values, this->Component, lattice.GetScalarType(), scattered),
+    [values = this->Values](const Box& points) { values->Foresee(points); });
 }
 
 std::uint64_t vtkDSMFileVolume::GetKey(const rt::BrickLattice& lattice) const
@@ -405,11 +423,6 @@ std::shared_ptr<const dsm::BlockReader> vtkDSMFileVolume::CreateSteppingReader(
     const vtkDSMFileVolume volume(values, this->Component);
     vtkDSMReadAhead::Way way;
     way.Reader = volume.CreateReader(lattice, true);
-    way.TellSystem = [values, lattice](dsm::BlockId id)
-    {
-      const Box cells = lattice.GetCellsOfBrick(id);
-      values->Foresee({ cells.Min, cells.Max + Index3(1) });
-    };
     if (!digests->empty())
     {
       way.IsSame = [volume, lattice, digests, differ = std::vector<bool>()](dsm::BlockId id) mutable

@@ -34,28 +34,8 @@ void vtkDSMFileValues::ReadScattered(const rt::Box& box, std::byte* out) const
 
 void vtkDSMFileValues::Foresee(const rt::Box& box) const
 {
-  const rt::Index3 size = this->GetArray().Grid.ChunkSamples;
-  const rt::Index3 first = (box.Min + this->Box.Min) / size;
-  // A chunk belongs to the box that has its first sample, so that boxes side by side ask for each once.
-  const rt::Index3 last = (box.Max - rt::Index3(2) + this->Box.Min) / size;
-  try
-  {
-    rt::Index3 chunk;
-    for (chunk.z = first.z; chunk.z <= last.z; ++chunk.z)
-    {
-      for (chunk.y = first.y; chunk.y <= last.y; ++chunk.y)
-      {
-        for (chunk.x = first.x; chunk.x <= last.x; ++chunk.x)
-        {
-          this->File->Foresee(this->Array, this->Step, chunk);
-        }
-      }
-    }
-  }
-  catch (const std::exception&) // it is said when the step is shown
-  {
-    return;
-  }
+  vol::ChunkCache::GetShared().Foresee(
+    this->File, this->Array, this->Step, { box.Min + this->Box.Min, box.Max + this->Box.Min });
 }
 
 std::uint64_t vtkDSMFileValues::GetStamp() const

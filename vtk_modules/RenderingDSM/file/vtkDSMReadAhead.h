@@ -24,8 +24,6 @@ public:
   struct Way
   {
     std::shared_ptr<const dsm::BlockReader> Reader;
-    /// Called for bricks that there is no room for.
-    std::function<void(dsm::BlockId)> TellSystem;
     /// Whether a brick is as that of the step before, so that it will not be taken; by one thread at a time. May
     /// be empty: none is known to be.
     std::function<bool(dsm::BlockId)> IsSame;

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef vol_FileBrickReader_h
+#define vol_FileBrickReader_h
+
+#include "DSMCore/fetch/BlockReader.h"
+#include "DSMRayTracing/build/VoxelBrickReader.h"
+
+#include <atomic>
+#include <functional>
+#include <memory>
+
+namespace vol
+{
+
+/// Cuts bricks out of a volume file. Any thread.
+class FileBrickReader final : public dsm::BlockReader
+{
+public:
+  /// Tells the system that samples will be read. Any thread; throws nothing.
+  using Foresight = std::function<void(const rt::Box& points)>;
+
+  /// `source` reads through vol::PositionedFile. Throws as rt::VoxelBrickReader does.
+  FileBrickReader(const rt::BrickLattice& lattice, std::shared_ptr<const rt::VoxelSource> source,
+    Foresight foresee);
+
+  void Read(dsm::BlockId id, std::byte* block, std::size_t bytes) const override;
+  bool ReadWithoutWaiting(dsm::BlockId id, std::byte* block, std::size_t bytes) const override;
+
+  bool MayTellSystem() const override { return this->CanTell; }
+  void TellSystem(dsm::BlockId id) const override;
+
+private:
+  rt::BrickLattice Lattice;
+  rt::VoxelBrickReader Bricks;
+  Foresight Foresee;
+  mutable std::atomic<bool> CanTell{ true }; ///< the file system, what is in memory
+};
+
+} // namespace vol
+
+#endif
