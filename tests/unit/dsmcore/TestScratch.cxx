@@ -281,6 +281,18 @@ TEST(ScratchBlocks, FragmentsComeInAnyOrder)
     blocks.Read(id, block.data(), block.size());
     EXPECT_EQ(dsm_test::CountWrongBytes(id, block.data(), block.size()), 0u);
   }
+  // It is in the system's memory now.
+  for (dsm::BlockId id = 0; id < BlocksOfRank; ++id)
+  {
+    blocks.TellSystem(id);
+    std::fill(block.begin(), block.end(), std::byte(0));
+    const bool isRead = blocks.ReadWithoutWaiting(id, block.data(), block.size());
+    EXPECT_EQ(isRead, blocks.MayTellSystem()) << "unless the file system cannot tell";
+    EXPECT_EQ(!isRead, dsm_test::CountWrongBytes(id, block.data(), block.size()) != 0u);
+  }
+  disk.Damage();
+  EXPECT_FALSE(blocks.ReadWithoutWaiting(5, block.data(), block.size())) << "its checksum is wrong";
+  EXPECT_THROW(blocks.Read(5, block.data(), block.size()), dsm::Error);
 }
 
 } // namespace

@@ -12,6 +12,7 @@
 #include <fcntl.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
+#include <sys/uio.h>
 #include <unistd.h>
 
 namespace dsm
@@ -144,6 +145,25 @@ void ScratchFile::Read(std::uint64_t offset, std::byte* bytes, std::size_t count
     bytes += done;
     count -= static_cast<std::size_t>(done);
   }
+}
+
+ScratchFile::Attempt ScratchFile::TryRead(
+  std::uint64_t offset, std::byte* bytes, std::size_t count) const
+{
+  const iovec all{ bytes, count };
+  const ssize_t done = preadv2(this->Descriptor, &all, 1, static_cast<off_t>(offset), RWF_NOWAIT);
+  if (done < 0 && errno != EAGAIN && errno != EINTR)
+  {
+    return Attempt::CannotTell;
+  }
+  return done >= 0 && static_cast<std::size_t>(done) == count ? Attempt::Done : Attempt::WouldWait;
+}
+
+void ScratchFile::Foresee(std::uint64_t offset, std::size_t count) const
+{
+  // A hint: where the system does not take it, nothing is lost.
+  posix_fadvise(
+    this->Descriptor, static_cast<off_t>(offset), static_cast<off_t>(count), POSIX_FADV_WILLNEED);
 }
 
 } // namespace dsm

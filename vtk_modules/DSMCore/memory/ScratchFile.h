@@ -27,6 +27,17 @@ public:
   void Write(std::uint64_t offset, const std::byte* bytes, std::size_t count);
   void Read(std::uint64_t offset, std::byte* bytes, std::size_t count) const;
 
+  enum class Attempt
+  {
+    Done,
+    WouldWait, ///< not all of it is in the system's memory, or reading fails
+    CannotTell ///< nor will the file system ever say that it is
+  };
+  /// Any thread: reads where no disk has to be waited for.
+  Attempt TryRead(std::uint64_t offset, std::byte* bytes, std::size_t count) const;
+  /// Any thread: the system may read them to its memory; does not wait for it.
+  void Foresee(std::uint64_t offset, std::size_t count) const;
+
 private:
   void Open();
   void SetAside();

@@ -135,4 +135,23 @@ void ScratchBlocks::Read(BlockId id, std::byte* block, std::size_t bytes) const
   }
 }
 
+bool ScratchBlocks::ReadWithoutWaiting(BlockId id, std::byte* block, std::size_t bytes) const
+{
+  const Entry& entry = this->Entries[id / this->Ranks];
+  const ScratchFile::Attempt attempt = this->CanTell
+    ? this->File->TryRead(entry.Offset, block, bytes)
+    : ScratchFile::Attempt::CannotTell;
+  if (attempt == ScratchFile::Attempt::CannotTell)
+  {
+    this->CanTell = false;
+  }
+  return attempt == ScratchFile::Attempt::Done && GetChecksum(id, block, bytes) == entry.Checksum;
+}
+
+void ScratchBlocks::TellSystem(BlockId id) const
+{
+  const Entry& entry = this->Entries[id / this->Ranks];
+  this->File->Foresee(entry.Offset, entry.Bytes);
+}
+
 } // namespace dsm

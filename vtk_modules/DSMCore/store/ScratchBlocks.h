@@ -8,6 +8,7 @@
 #include "DSMCore/publish/BlockDirectory.h"
 #include "DSMCore/publish/Publication.h"
 
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -43,6 +44,9 @@ public:
   // -- Later --
 
   void Read(BlockId id, std::byte* block, std::size_t bytes) const override;
+  bool ReadWithoutWaiting(BlockId id, std::byte* block, std::size_t bytes) const override;
+  bool MayTellSystem() const override { return this->CanTell; }
+  void TellSystem(BlockId id) const override;
 
 private:
   struct Entry
@@ -71,6 +75,7 @@ private:
   std::unique_ptr<ScratchFile> File;
   std::vector<Slot> Slots;
   std::uint64_t Uses = 0;
+  mutable std::atomic<bool> CanTell{ true }; ///< the file system, what is in memory
 };
 
 } // namespace dsm
