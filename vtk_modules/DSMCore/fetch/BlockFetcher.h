@@ -114,9 +114,8 @@ protected:
   virtual void Prepare() {}
   virtual void Unprepare() {}
   virtual bool MayPrefetch() const = 0;
-  /// The source that a worker may read a block from by itself, of whichever rank it is; null: it has to wait for
-  /// the communication thread.
-  /// The same for all blocks of a segment, or null.
+  /// The source that a worker may read a block from by itself, of whichever rank it is: one for all such blocks of
+  /// a segment. Null: the worker has to wait for the communication thread.
   virtual BlockSource* FindSourceForWorkers(const BlockWant&) const { return nullptr; }
   /// Sets room for a block aside; false when that must wait.
   virtual bool MakeRoom(const BlockWant& block) = 0;
@@ -223,11 +222,11 @@ private:
   ExpectedBlocks Expected;
   /// Some may have become wanted, or come, since they were queued.
   std::deque<BlockWant> Foreseen;
-  /// Likewise, of which the system was told.
+  /// Of these queues; lets Service look without the lock.
+  std::atomic<std::size_t> QueuedCount{ 0 };
+  /// Foreseen, and not queued: the system was told of them.
   std::vector<BlockWant> ForeseenBySystem;
   std::uint64_t SystemUsed = 0; ///< of them, in this frame: wanted later
-  /// Of all three; lets Service look without the lock.
-  std::atomic<std::size_t> QueuedCount{ 0 };
   /// Workers may have read blocks that other ranks asked for.
   std::atomic<bool> MayHaveDebtsHere{ false };
   /// Other than Requests; those with reads under way. Communication thread only.
