@@ -274,8 +274,11 @@ TEST_P(BlocksOnDisk, SystemIsToldOfWhatWorkersForesee)
                 }
               });
           });
-        EXPECT_EQ(disks.Store.GetCounters().Prefetches, 2u);
-        EXPECT_EQ(disks.Store.GetCounters().PrefetchesUsed, used);
+        const auto counters = disks.Store.GetCounters();
+        EXPECT_EQ(counters.Prefetches, used) << "what was read of it";
+        EXPECT_EQ(counters.PrefetchesUsed, used);
+        EXPECT_EQ(counters.Workers.Misses, used);
+        EXPECT_EQ(counters.Workers.Joins, used);
         EXPECT_EQ(disks.Disk->Reads, 0u);
       };
       look(0); // forgotten with the frame

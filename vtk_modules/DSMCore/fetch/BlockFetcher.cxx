@@ -17,6 +17,13 @@ namespace
 /// Reads for blocks that nobody waits for begin as long as there are not so many under way.
 constexpr std::size_t MostReadsAhead = 256;
 
+/// Whether the system was told of a block that nobody has wanted yet.
+bool IsForeseenBySystem(const LineStatus& line)
+{
+  return line.State == LineState::Foreseen &&
+    line.Use.load(std::memory_order_relaxed) != BlockUse::Prefetched;
+}
+
 std::uint64_t CountNanoseconds(std::chrono::steady_clock::time_point since)
 {
   return static_cast<std::uint64_t>(
@@ -371,6 +378,7 @@ void BlockFetcher::EndFrame()
       }
       return isUnused;
     });
+  this->FrameCounters.Prefetches += this->SystemUsed;
   this->FrameCounters.PrefetchesUsed += this->SystemUsed;
   this->Workers.WakeAll();
   this->Closed();
@@ -422,20 +430,15 @@ void BlockFetcher::AbandonForeseen()
 
 // -- Workers ---------------------------------------------------------------------------------------
 
-void BlockFetcher::CountForeseen(const LineStatus& line)
-{
-  const bool isBySystem = line.State == LineState::Foreseen &&
-    line.Use.load(std::memory_order_relaxed) != BlockUse::Prefetched;
-  this->SystemUsed += isBySystem ? 1 : 0;
-}
-
 bool BlockFetcher::Want(const BlockWant& block)
 {
   LineStatus& line = this->GetLine(block);
   const bool isNew = line.State == LineState::Absent || line.State == LineState::Foreseen;
+  bool joins = !isNew;
   if (isNew)
   {
-    this->CountForeseen(line);
+    joins = IsForeseenBySystem(line);
+    this->SystemUsed += joins ? 1 : 0;
     (this->IsOwned(block) ? this->WantedOwn : this->Wanted).push_back(block);
     line.MoveTo(LineState::Wanted);
     this->UpdateQueuedCount();
@@ -448,7 +451,7 @@ bool BlockFetcher::Want(const BlockWant& block)
       this->Prefetches.CountJoin();
     }
   }
-  return !isNew;
+  return joins;
 }
 
 bool BlockFetcher::ReadAtOnce(
@@ -462,7 +465,7 @@ bool BlockFetcher::ReadAtOnce(
     return false;
   }
   const auto start = std::chrono::steady_clock::now();
-  this->CountForeseen(line);
+  const bool joins = IsForeseenBySystem(line);
   line.MoveTo(LineState::Pending);
   if (line.Use.load(std::memory_order_relaxed) == BlockUse::Prefetched)
   {
@@ -493,10 +496,16 @@ bool BlockFetcher::ReadAtOnce(
   {
     this->GiveRoomBack(block);
     line.MoveTo(LineState::Absent);
+    if (joins && this->Phase == FramePhase::Open)
+    {
+      line.MoveTo(LineState::Foreseen); // as before, for who counts it
+    }
     return false;
   }
   this->Show(block, memory);
   ++worker.Slow.Misses;
+  worker.Slow.Joins += joins ? 1 : 0;
+  this->SystemUsed += joins ? 1 : 0;
   worker.Slow.WaitNanoseconds += CountNanoseconds(start);
   if (line.Waiters > 0)
   {
@@ -571,7 +580,6 @@ bool BlockFetcher::Foresee(const BlockSegment& segment, const BlockId* ids, std:
       forSystem.push_back(*id);
       this->ForeseenBySystem.push_back(block);
       line.MoveTo(LineState::Foreseen);
-      ++this->FrameCounters.Prefetches;
       continue;
     }
     if (!this->Prefetches.TryAdd(block, this->GetFootprint(block), isUnused))

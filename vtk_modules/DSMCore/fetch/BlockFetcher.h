@@ -158,7 +158,8 @@ protected:
 
   // -- For the stores, under the lock --
 
-  /// Queues a block that is absent, or joins those who wait for it. Returns whether it joined.
+  /// Queues a block that is absent, or joins those who wait for it. Returns whether it joined, or the system was
+  /// told of the block before.
   bool Want(const BlockWant& block);
   /// A worker misses a block, and reads it by itself, without the lock, where nobody brings it yet, there is
   /// room, and nothing has to be waited for: it spares threads that wake one another. Returns whether the block is
@@ -205,8 +206,6 @@ private:
   void AbandonAll();
   void AbandonForeseen();
   void UpdateQueuedCount();
-  /// A block is wanted, and in this state until now: whether the system was told of it.
-  void CountForeseen(const LineStatus& line);
   /// Queues the blocks that are absent, as far as there may be so many. Returns whether there are any.
   /// Those that workers can read by themselves, when the system has fetched them, are not: they go to `forSystem`.
   bool Foresee(const BlockSegment& segment, const BlockId* ids, std::size_t count,
@@ -226,7 +225,8 @@ private:
   std::atomic<std::size_t> QueuedCount{ 0 };
   /// Foreseen, and not queued: the system was told of them.
   std::vector<BlockWant> ForeseenBySystem;
-  std::uint64_t SystemUsed = 0; ///< of them, in this frame: wanted later
+  /// Of them, in this frame: wanted later. Each counts as prefetched, and whoever wants it as joining.
+  std::uint64_t SystemUsed = 0;
   /// Workers may have read blocks that other ranks asked for.
   std::atomic<bool> MayHaveDebtsHere{ false };
   /// Other than Requests; those with reads under way. Communication thread only.
