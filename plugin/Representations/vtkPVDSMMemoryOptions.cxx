@@ -10,10 +10,10 @@
 namespace
 {
 
-/// What a setting gets that takes numbers from `least` to `most`. Where that is not `value`, `tell` is called with
-/// what to say; once, however many displays pass the same number on, until another one is set.
-template <class Tell>
-int KeepWithin(const std::string& setting, int value, int least, int most, const Tell& tell)
+/// What a setting gets that takes numbers from `least` to `most`. Where that is not `value`, it is told; once, however
+/// many displays pass the same number on, until another one is set.
+int KeepWithin(
+  vtkPVDSMMemoryOptions* options, const std::string& setting, int value, int least, int most)
 {
   static std::map<std::string, int> told;
   const int kept = std::clamp(value, least, most);
@@ -26,8 +26,8 @@ int KeepWithin(const std::string& setting, int value, int least, int most, const
   if (isNew || entry->second != value)
   {
     entry->second = value;
-    tell(setting + " cannot be " + std::to_string(value) + ": it is " + std::to_string(kept) +
-      ", the " + (value < least ? "least." : "most."));
+    vtkWarningWithObjectMacro(options, << setting << " cannot be " << value << ": it is " << kept
+                                       << ", the " << (value < least ? "least." : "most."));
   }
   return kept;
 }
@@ -51,8 +51,8 @@ void vtkPVDSMMemoryOptions::SetHostSharing(bool shared)
 
 void vtkPVDSMMemoryOptions::SetMemory(int mebibytes)
 {
-  this->Superclass::SetMemory(KeepWithin("Memory per rank in MiB (DSMMemory; 0: automatic)",
-    mebibytes, 0, VTK_INT_MAX, [this](const std::string& text) { vtkWarningMacro(<< text); }));
+  this->Superclass::SetMemory(KeepWithin(
+    this, "Memory per rank in MiB (DSMMemory; 0: automatic)", mebibytes, 0, VTK_INT_MAX));
 }
 
 void vtkPVDSMMemoryOptions::SetScratchDirectory(const char* directory)
@@ -67,15 +67,14 @@ void vtkPVDSMMemoryOptions::SetCoarserDataWhileMoving(bool coarser)
 
 void vtkPVDSMMemoryOptions::SetCacheSize(int mebibytes)
 {
-  this->Superclass::SetCacheSize(KeepWithin("The cache in MiB (DSMCacheSize)", mebibytes, 1,
-    VTK_INT_MAX, [this](const std::string& text) { vtkWarningMacro(<< text); }));
+  this->Superclass::SetCacheSize(
+    KeepWithin(this, "The cache in MiB (DSMCacheSize)", mebibytes, 1, VTK_INT_MAX));
 }
 
 void vtkPVDSMMemoryOptions::SetNumberOfThreads(int threads)
 {
   this->Superclass::SetNumberOfThreads(
-    KeepWithin("The number of threads (DSMThreads; 0: automatic)", threads, 0, MostThreads,
-      [this](const std::string& text) { vtkWarningMacro(<< text); }));
+    KeepWithin(this, "The number of threads (DSMThreads; 0: automatic)", threads, 0, MostThreads));
 }
 
 void vtkPVDSMMemoryOptions::SetScheduler(int scheduler)
@@ -85,7 +84,6 @@ void vtkPVDSMMemoryOptions::SetScheduler(int scheduler)
 
 void vtkPVDSMMemoryOptions::SetSilenceLimit(int seconds)
 {
-  this->Superclass::SetSilenceLimit(
-    KeepWithin("The silence limit in seconds (DSMSilenceLimit; 0: none)", seconds, 0, VTK_INT_MAX,
-      [this](const std::string& text) { vtkWarningMacro(<< text); }));
+  this->Superclass::SetSilenceLimit(KeepWithin(
+    this, "The silence limit in seconds (DSMSilenceLimit; 0: none)", seconds, 0, VTK_INT_MAX));
 }

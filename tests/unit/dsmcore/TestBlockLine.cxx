@@ -10,39 +10,38 @@ namespace
 
 using dsm::LineState;
 
-TEST(BlockLine, LifeOfARemoteBlock)
+void ExpectLife(dsm::BlockLine& line, const std::vector<LineState>& states)
 {
-  dsm::BlockLine line;
-  for (const LineState next : { LineState::Wanted, LineState::Pending, LineState::Cached,
-         LineState::Absent, LineState::Wanted, LineState::Absent })
+  for (const LineState next : states)
   {
     line.MoveTo(next);
     EXPECT_EQ(line.State, next);
   }
 }
 
+TEST(BlockLine, LifeOfARemoteBlock)
+{
+  dsm::BlockLine line;
+  ExpectLife(line,
+    { LineState::Wanted, LineState::Pending, LineState::Cached, LineState::Absent,
+      LineState::Wanted, LineState::Absent });
+}
+
 TEST(BlockLine, LifeOfAForeseenBlock)
 {
   dsm::BlockLine line;
-  for (const LineState next :
+  ExpectLife(line,
     { LineState::Foreseen, LineState::Absent, LineState::Foreseen, LineState::Wanted,
-      LineState::Absent, LineState::Foreseen, LineState::Pending, LineState::Cached })
-  {
-    line.MoveTo(next);
-    EXPECT_EQ(line.State, next);
-  }
+      LineState::Absent, LineState::Foreseen, LineState::Pending, LineState::Cached });
   EXPECT_THROW(line.MoveTo(LineState::Foreseen), dsm::Error);
 }
 
 TEST(BlockLine, LifeOfABlockThatAWorkerReads)
 {
   dsm::BlockLine line;
-  for (const LineState next : { LineState::Pending, LineState::Absent, LineState::Foreseen,
-         LineState::Pending, LineState::Cached, LineState::Absent })
-  {
-    line.MoveTo(next);
-    EXPECT_EQ(line.State, next);
-  }
+  ExpectLife(line,
+    { LineState::Pending, LineState::Absent, LineState::Foreseen, LineState::Pending,
+      LineState::Cached, LineState::Absent });
 }
 
 TEST(BlockLine, IllegalTransitionsFailLoudly)

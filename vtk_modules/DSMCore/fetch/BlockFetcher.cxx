@@ -2,6 +2,7 @@
 #include "DSMCore/fetch/BlockFetcher.h"
 
 #include "DSMCore/base/Error.h"
+#include "DSMCore/base/NanosecondsSince.h"
 
 #include <algorithm>
 #include <chrono>
@@ -22,13 +23,6 @@ bool IsForeseenBySystem(const LineStatus& line)
 {
   return line.State == LineState::Foreseen &&
     line.Use.load(std::memory_order_relaxed) != BlockUse::Prefetched;
-}
-
-std::uint64_t CountNanoseconds(std::chrono::steady_clock::time_point since)
-{
-  return static_cast<std::uint64_t>(
-    std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::steady_clock::now() - since)
-      .count());
 }
 
 } // namespace
@@ -506,7 +500,7 @@ bool BlockFetcher::ReadAtOnce(
   ++worker.Slow.Misses;
   worker.Slow.Joins += joins ? 1 : 0;
   this->SystemUsed += joins ? 1 : 0;
-  worker.Slow.WaitNanoseconds += CountNanoseconds(start);
+  worker.Slow.WaitNanoseconds += NanosecondsSince(start);
   if (line.Waiters > 0)
   {
     this->Workers.WakeThoseThatWaitFor(line);
@@ -547,7 +541,7 @@ void BlockFetcher::WaitFor(FetchWorker& worker, const BlockWant& block,
   {
     leave();
   }
-  worker.Slow.WaitNanoseconds += CountNanoseconds(start);
+  worker.Slow.WaitNanoseconds += NanosecondsSince(start);
 }
 
 void BlockFetcher::Refuse(const BlockSegment& segment) const

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "DSMCore/paged/PagedStoreInternals.h"
 
+#include "DSMCore/base/NanosecondsSince.h"
 #include "DSMCore/paged/SegmentationSignal.h"
 
 #include <sys/syscall.h>
@@ -20,13 +21,6 @@ int GetThread()
 {
   static thread_local const int number = static_cast<int>(syscall(SYS_gettid));
   return number;
-}
-
-std::uint64_t NanosecondsSince(std::chrono::steady_clock::time_point start)
-{
-  return static_cast<std::uint64_t>(
-    std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::steady_clock::now() - start)
-      .count());
 }
 
 } // namespace
