@@ -3,8 +3,10 @@
 """Starts a server on a free port and runs a client against it:
     with_server.py --server COMMAND... --client COMMAND...
 @PORT@ in the client's command stands for the port. Returns what the client returns; fails when the
-server does not come up, or does not end by itself after the client has left."""
+server does not come up, or does not end by itself after the client has left. Nothing that either has
+started is left when this ends."""
 
+import contextlib
 import os
 import signal
 import socket
@@ -12,6 +14,9 @@ import subprocess
 import sys
 import tempfile
 import time
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "support"))
+from started import ended_with_this
 
 
 def find_free_port():
@@ -52,10 +57,13 @@ def main():
         finally:
             if server.poll() is None:
                 os.killpg(server.pid, signal.SIGTERM)
-                server.wait(timeout=20)
+                # `timeout` gives a test that it ends ten seconds.
+                with contextlib.suppress(subprocess.TimeoutExpired):
+                    server.wait(timeout=4)
             log.seek(0)
             print("--- server ---", log.read(), sep="\n")
     return result
 
 
-sys.exit(main())
+with ended_with_this():
+    sys.exit(main())

@@ -20,8 +20,10 @@ from vtkmodules.vtkIOImage import vtkPNGReader
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 sys.path.insert(1, os.path.dirname(HERE))
+sys.path.insert(2, os.path.join(os.path.dirname(os.path.dirname(HERE)), "support"))
 import file_dialog
 import server_of_ranks
+from started import ended_with_this
 from steps import get_steps, menu
 
 PATIENCE = 480.0  # seconds, less than that of the tests, which end no server
@@ -205,4 +207,5 @@ def main():
         check_memory(earlier)
 
 
-main()
+with ended_with_this():
+    main()
