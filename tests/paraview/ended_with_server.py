@@ -11,6 +11,9 @@ import sys
 import tempfile
 import time
 
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "support"))
+from started import is_running
+
 RANK = "import signal, time; signal.signal(signal.SIGTERM, signal.SIG_IGN); time.sleep(100)"
 SERVER = f"""
 import subprocess, sys, time
@@ -41,14 +44,6 @@ def start(folder, client):
         time.sleep(0.05)
     with open(ranks, encoding="utf-8") as text:
         return process, [int(line) for line in text]
-
-
-def is_running(process):
-    try:
-        with open(f"/proc/{process}/stat", encoding="utf-8") as text:
-            return text.read().rpartition(")")[2].split()[0] != "Z"
-    except OSError:
-        return False
 
 
 def check(name, client, end, result):

@@ -9,20 +9,13 @@ started is left when this ends."""
 import contextlib
 import os
 import signal
-import socket
 import subprocess
 import sys
 import tempfile
 import time
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "support"))
-from started import ended_with_this
-
-
-def find_free_port():
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        return probe.getsockname()[1]
+from started import ended_with_this, find_free_port
 
 
 def wait_until_listening(server, log, seconds):

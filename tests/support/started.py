@@ -1,40 +1,62 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What a test has started ends with it: also ranks in sessions of their own, whose launcher is gone, and
-when the test is ended because its time is over. Ranks that were left would slow every test after it."""
+"""What a test starts: where its server may listen, which processes are below it. What it has started ends
+with it: also ranks in sessions of their own, whose launcher is gone, and when the test is ended because its
+time is over. Ranks that were left would slow every test after it."""
 
 import contextlib
 import ctypes
 import os
 import signal
+import socket
 import sys
 import time
 
 PR_SET_CHILD_SUBREAPER = 36  # <linux/prctl.h>
 
 
-def find_descendants():
-    """The processes below this one that have not ended."""
+def find_free_port():
+    """A port of this host that nothing listens to."""
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        return probe.getsockname()[1]
+
+
+def find_descendants(ancestor, name=""):
+    """The processes below one that have not ended, and whose names begin so (proc(5): 15 characters of it are
+    known), in the order of their numbers."""
     children = {}
+    names = {}
     for entry in filter(str.isdigit, os.listdir("/proc")):
         try:
             with open(f"/proc/{entry}/stat", encoding="utf-8", errors="replace") as text:
-                state, parent = text.read().rpartition(")")[2].split()[:2]
+                before, _, after = text.read().rpartition(")")
         except OSError:
             continue
-        if state != "Z":
+        state, parent = after.split()[:2]
+        if state not in "ZX":
             children.setdefault(int(parent), []).append(int(entry))
-    found, left = [], [os.getpid()]
+            names[int(entry)] = before.partition("(")[2]
+    found, left = [], [ancestor]
     while left:
         below = children.get(left.pop(), [])
         found += below
         left += below
-    return found
+    return sorted(process for process in found if names[process].startswith(name))
+
+
+def is_running(process):
+    """Whether there is such a process, and it has not ended."""
+    try:
+        with open(f"/proc/{process}/stat", encoding="utf-8", errors="replace") as text:
+            return text.read().rpartition(")")[2].split()[0] not in "ZX"
+    except OSError:
+        return False
 
 
 def end_descendants(seconds):
     """Kills them, until none is left; raises when some remain after so many seconds."""
     deadline = time.monotonic() + seconds
-    while processes := find_descendants():
+    while processes := find_descendants(os.getpid()):
         if time.monotonic() > deadline:
             raise RuntimeError(f"processes {processes} do not end")
         for process in processes:

@@ -19,8 +19,9 @@ from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkIOImage import vtkPNGReader
 
 HERE = os.path.dirname(os.path.abspath(__file__))
+SUPPORT = os.path.join(os.path.dirname(os.path.dirname(HERE)), "support")
 sys.path.insert(1, os.path.dirname(HERE))
-sys.path.insert(2, os.path.join(os.path.dirname(os.path.dirname(HERE)), "support"))
+sys.path.insert(2, SUPPORT)
 import file_dialog
 import server_of_ranks
 from started import ended_with_this
@@ -102,7 +103,7 @@ class Workday:
         os.makedirs(folder)
         for name in ("Do", "Look"):
             with open(os.path.join(folder, name + ".py"), "w", encoding="utf-8") as text:
-                text.write(f"import sys\nsys.path.insert(0, {HERE!r})\nimport take_step\n"
+                text.write(f"import sys\nsys.path[:0] = {[HERE, SUPPORT]!r}\nimport take_step\n"
                            f"take_step.{name.lower()}()\n")
 
     def play(self, options, environment):

@@ -3,39 +3,12 @@
 
 import os
 import signal
-import socket
 import subprocess
 import tempfile
 import threading
 import time
 
-
-def find_free_port():
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        return probe.getsockname()[1]
-
-
-def find_ranks(parent):
-    """The processes named pvserver below a process."""
-    children = {}
-    names = {}
-    for entry in filter(str.isdigit, os.listdir("/proc")):
-        try:
-            with open(f"/proc/{entry}/stat", encoding="utf-8", errors="replace") as text:
-                stat = text.read()
-        except OSError:
-            continue
-        name = stat[stat.index("(") + 1 : stat.rindex(")")]
-        names[int(entry)] = name
-        children.setdefault(int(stat[stat.rindex(")") + 1 :].split()[1]), []).append(int(entry))
-    found, left = [], [parent]
-    while left:
-        process = left.pop()
-        left += children.get(process, [])
-        if names.get(process, "").startswith("pvserver"):
-            found.append(process)
-    return sorted(found)
+from started import find_free_port
 
 
 def get_memory(process):

@@ -12,7 +12,8 @@ from paraview import simple
 from vtkmodules.vtkIOImage import vtkPNGWriter
 from vtkmodules.vtkRenderingCore import vtkWindowToImageFilter
 
-from server_of_ranks import find_ranks, get_memory, holds_blocks
+from server_of_ranks import get_memory, holds_blocks
+from started import find_descendants
 from steps import get_steps
 
 FOLDER = os.environ["DSM_WORKDAY"]
@@ -85,7 +86,7 @@ def describe(step, number):
     if step.look == "compare":
         simple.SaveState(os.path.join(FOLDER, f"{number:02}.pvsm"))
     entry["said"] = hear()
-    ranks = find_ranks(PARENT) if PARENT else []
+    ranks = find_descendants(PARENT, "pvserver") if PARENT else []
     entry["memory"] = [get_memory(rank) for rank in ranks]
     entry["blocks"] = [holds_blocks(rank) for rank in ranks]
     return entry
