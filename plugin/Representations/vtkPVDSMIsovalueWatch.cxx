@@ -19,6 +19,14 @@ namespace
 {
 constexpr const char* Single = "DSMIsoValue";
 
+/// Whether a box is as large as data that are not there: upside down, or, since ParaView 6, of no extent.
+bool IsOfNothing(const vtkSMPropertyHelper& bounds)
+{
+  const auto isFlat = [&](unsigned int axis)
+  { return !(bounds.GetAsDouble(2 * axis) < bounds.GetAsDouble(2 * axis + 1)); };
+  return isFlat(0) && isFlat(1) && isFlat(2);
+}
+
 /// A display that was made before its data came had nothing to choose its array or its box from, and has none.
 void ChooseWhatIsMissing(vtkSMProxy* representation)
 {
@@ -26,8 +34,7 @@ void ChooseWhatIsMissing(vtkSMProxy* representation)
   const char* const name = vtkSMPropertyHelper(array).GetInputArrayNameToProcess();
   bool any = (!name || !*name) && array->ResetToDomainDefaults();
   vtkSMProperty* const box = representation->GetProperty("DSMCroppingBox");
-  const vtkSMPropertyHelper bounds(box);
-  any = (bounds.GetAsDouble(0) > bounds.GetAsDouble(1) && box->ResetToDomainDefaults()) || any;
+  any = (IsOfNothing(vtkSMPropertyHelper(box)) && box->ResetToDomainDefaults()) || any;
   if (any)
   {
     representation->UpdateVTKObjects();
