@@ -10,17 +10,19 @@ import argparse
 import glob
 import json
 import os
-import socket
 import statistics
 import subprocess
 import sys
 import time
 
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "support"))
+import started
+
 VARIANTS = ("none", "another", "ours")
 
 
 def list_ranks(program):
-    """Folders of the processes of that name that were started from where this one was."""
+    """The processes of that name that were started from where this one was."""
     for entry in glob.glob("/proc/[0-9]*/stat"):
         try:
             with open(entry, encoding="utf-8", errors="replace") as text:
@@ -30,24 +32,19 @@ def list_ranks(program):
         name = stat[stat.index("(") + 1 : stat.rindex(")")]
         session = stat[stat.rindex(")") + 1 :].split()[3]
         if name.startswith(program) and session == str(os.getsid(0)):
-            yield entry[: -len("stat")]
+            yield int(entry.split("/")[2])
 
 
 def get_memory(program):
     """KiB of each rank."""
-    held = []
-    for folder in list_ranks(program):
-        with open(folder + "smaps_rollup", encoding="utf-8") as text:
-            rows = [line.split() for line in text if line.startswith(("Pss_Anon:", "Pss_Shmem:"))]
-        held.append(sum(int(row[1]) for row in rows))
-    return held
+    return [started.get_memory(rank) for rank in list_ranks(program)]
 
 
 def get_processor_time(program):
     """Seconds of all ranks; a busy machine has less influence on them than on the time of a clock."""
     ticks = 0
-    for folder in list_ranks(program):
-        with open(folder + "stat", encoding="utf-8", errors="replace") as text:
+    for rank in list_ranks(program):
+        with open(f"/proc/{rank}/stat", encoding="utf-8", errors="replace") as text:
             fields = text.read().rsplit(")", 1)[1].split()
         ticks += int(fields[11]) + int(fields[12])
     return ticks / os.sysconf("SC_CLK_TCK")
@@ -100,9 +97,7 @@ def run(arguments, plugin):
         command = [*mpi, "pvbatch", *own, "--draw", "pvbatch"]
         server = None
     else:
-        with socket.socket() as probe:
-            probe.bind(("127.0.0.1", 0))
-            port = probe.getsockname()[1]
+        port = started.find_free_port()
         server = subprocess.Popen([*mpi, "pvserver", f"--server-port={port}"], stdout=subprocess.PIPE, text=True)
         while "Accepting" not in server.stdout.readline():
             pass

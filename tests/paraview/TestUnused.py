@@ -9,6 +9,9 @@ import time
 
 from dsm_testing import *
 
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "support"))
+import started
+
 ROUNDS = 10
 LARGEST_RATIO = 1.15  # of times to draw; of the same thing twice, they differ as much on a busy machine
 LARGEST_GROWTH = 5 * 1024  # KiB
@@ -43,20 +46,8 @@ def get_memory(view):
 
 
 def get_memory_now():
-    """What each rank holds besides files that are mapped, and its part of what it shares with others, in KiB."""
-    held = []
-    for entry in glob.glob("/proc/[0-9]*/stat"):
-        try:
-            with open(entry, encoding="utf-8", errors="replace") as text:
-                stat = text.read()
-            is_rank = "pvbatch" in stat and int(stat[stat.rindex(")") + 1 :].split()[1]) == os.getppid()
-            if is_rank or entry == f"/proc/{os.getpid()}/stat":
-                with open(entry[: -len("stat")] + "smaps_rollup", encoding="utf-8") as text:
-                    rows = [line.split() for line in text if line.startswith(("Pss_Anon:", "Pss_Shmem:"))]
-                    held.append((entry, sum(int(row[1]) for row in rows)))
-        except OSError:
-            continue  # a process that has just ended
-    return numpy.array([kibibytes for _, kibibytes in sorted(held)])
+    """What each rank holds, in KiB."""
+    return numpy.array([started.get_memory(rank) for rank in started.find_descendants(os.getppid(), "pvbatch")])
 
 
 def load_another_plugin():

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What a test starts: where its server may listen, which processes are below it. What it has started ends
-with it: also ranks in sessions of their own, whose launcher is gone, and when the test is ended because its
-time is over. Ranks that were left would slow every test after it."""
+"""What a test starts: where its server may listen, which processes are below it, and what they hold. What it
+has started ends with it: also ranks in sessions of their own, whose launcher is gone, and when the test is
+ended because its time is over. Ranks that were left would slow every test after it."""
 
 import contextlib
 import ctypes
@@ -21,36 +21,44 @@ def find_free_port():
         return probe.getsockname()[1]
 
 
+def read_stat(process):
+    """The name of a process and its parent (proc(5)); None where it is gone, or has ended."""
+    try:
+        with open(f"/proc/{process}/stat", encoding="utf-8", errors="replace") as text:
+            before, _, after = text.read().rpartition(")")
+    except OSError:
+        return None
+    state, parent = after.split()[:2]
+    return None if state in "ZX" else (before.partition("(")[2], int(parent))
+
+
+def is_running(process):
+    """Whether there is such a process, and it has not ended."""
+    return read_stat(process) is not None
+
+
+def get_memory(process):
+    """What a process holds besides files that are mapped, and its part of what it shares with others, in KiB. Raises
+    OSError where it has ended."""
+    with open(f"/proc/{process}/smaps_rollup", encoding="utf-8") as text:
+        return sum(int(line.split()[1]) for line in text if line.startswith(("Pss_Anon:", "Pss_Shmem:")))
+
+
 def find_descendants(ancestor, name=""):
     """The processes below one that have not ended, and whose names begin so (proc(5): 15 characters of it are
     known), in the order of their numbers."""
     children = {}
     names = {}
-    for entry in filter(str.isdigit, os.listdir("/proc")):
-        try:
-            with open(f"/proc/{entry}/stat", encoding="utf-8", errors="replace") as text:
-                before, _, after = text.read().rpartition(")")
-        except OSError:
-            continue
-        state, parent = after.split()[:2]
-        if state not in "ZX":
-            children.setdefault(int(parent), []).append(int(entry))
-            names[int(entry)] = before.partition("(")[2]
+    for process in map(int, filter(str.isdigit, os.listdir("/proc"))):
+        if found := read_stat(process):
+            names[process], parent = found
+            children.setdefault(parent, []).append(process)
     found, left = [], [ancestor]
     while left:
         below = children.get(left.pop(), [])
         found += below
         left += below
     return sorted(process for process in found if names[process].startswith(name))
-
-
-def is_running(process):
-    """Whether there is such a process, and it has not ended."""
-    try:
-        with open(f"/proc/{process}/stat", encoding="utf-8", errors="replace") as text:
-            return text.read().rpartition(")")[2].split()[0] not in "ZX"
-    except OSError:
-        return False
 
 
 def end_descendants(seconds):

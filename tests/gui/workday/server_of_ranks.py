@@ -11,12 +11,6 @@ import time
 from started import find_free_port
 
 
-def get_memory(process):
-    """What a process holds besides files that are mapped, and its part of what it shares with others, in KiB."""
-    with open(f"/proc/{process}/smaps_rollup", encoding="utf-8") as text:
-        return sum(int(line.split()[1]) for line in text if line.startswith(("Pss_Anon:", "Pss_Shmem:")))
-
-
 def holds_blocks(process):
     """Whether a process maps any of the ray tracer's blocks."""
     with open(f"/proc/{process}/maps", encoding="utf-8") as text:

@@ -12,8 +12,8 @@ from paraview import simple
 from vtkmodules.vtkIOImage import vtkPNGWriter
 from vtkmodules.vtkRenderingCore import vtkWindowToImageFilter
 
-from server_of_ranks import get_memory, holds_blocks
-from started import find_descendants
+from server_of_ranks import holds_blocks
+from started import find_descendants, get_memory
 from steps import get_steps
 
 FOLDER = os.environ["DSM_WORKDAY"]
