@@ -1,10 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Files that other programs wrote (make_files.py): every value, in every format; and what is damaged.
 #include "DSMCore/base/Error.h"
-#include "DSMVolumeFiles/base/CopyBox.h"
-#include "DSMVolumeFiles/base/ReadingManner.h"
 #include "DSMVolumeFiles/cache/ChunkCache.h"
-#include "DSMVolumeFiles/codec/ChunkCodec.h"
 #include "DSMVolumeFiles/format/VolumeFile.h"
 #include "DSMVolumeFiles/range/ValueRanges.h"
 
@@ -12,7 +9,6 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
-#include <atomic>
 #include <chrono>
 #include <cmath>
 #include <cstdlib>
@@ -205,137 +201,6 @@ Json FindEntry(const std::string& name)
   return found == manifest.end() ? Json() : *found;
 }
 
-/// Chunks of a thousand bytes, of which one cannot be read.
-class SlowFile final : public vol::VolumeFile
-{
-public:
-  SlowFile()
-    : VolumeFile("slow")
-  {
-    vol::FileArray array;
-    array.Grid = { rt::Index3(10 * Chunks, 10, 10), rt::Index3(10) };
-    this->Arrays.push_back(array);
-  }
-  void ReadChunk(std::size_t, int, const rt::Index3& chunk, std::byte* out) const override
-  {
-    const int now = ++this->Reading;
-    for (int most = this->Most; now > most && !this->Most.compare_exchange_weak(most, now);)
-    {
-    }
-    std::this_thread::sleep_for(std::chrono::milliseconds(5));
-    --this->Reading;
-    if (chunk.x == Bad)
-    {
-      throw dsm::Error("damaged");
-    }
-    std::fill_n(out, 1000, static_cast<std::byte>(chunk.x));
-  }
-
-  static constexpr int Chunks = 24;
-  static constexpr int Bad = 11;
-  mutable std::atomic<int> Reading{ 0 };
-  mutable std::atomic<int> Most{ 0 };
-};
-
-/// A chunk that has to be waited for.
-class ColdFile final : public vol::VolumeFile
-{
-public:
-  ColdFile()
-    : VolumeFile("cold")
-  {
-    vol::FileArray array;
-    array.Grid = { rt::Index3(10), rt::Index3(10) };
-    this->Arrays.push_back(array);
-  }
-  void ReadChunk(std::size_t, int, const rt::Index3&, std::byte* out) const override
-  {
-    std::this_thread::sleep_for(std::chrono::milliseconds(20));
-    if (vol::WithoutWaiting::IsInForce())
-    {
-      throw vol::WouldWait{};
-    }
-    std::fill_n(out, 1000, std::byte(7));
-  }
-};
-
-TEST(ChunkCache, WhatIsBeingReadCountsToo)
-{
-  for (const int most : { 1, 3 })
-  {
-    const auto file = std::make_shared<SlowFile>();
-    vol::ChunkCache cache(most == 1 ? 0 : 6500); // each takes twice its bytes while it is read
-    std::atomic<int> wrong{ 0 };
-    std::atomic<int> failed{ 0 };
-    std::vector<std::thread> threads;
-    for (int thread = 0; thread < 8; ++thread)
-    {
-      threads.emplace_back(
-        [&, thread]
-        {
-          for (int chunk = thread; chunk < SlowFile::Chunks; chunk += 8)
-          {
-            try
-            {
-              const auto bytes = cache.Get(file, 0, 0, rt::Index3(chunk, 0, 0));
-              wrong += bytes->size() == 1000 && bytes->back() == std::byte(chunk) ? 0 : 1;
-            }
-            catch (const dsm::Error&)
-            {
-              ++failed;
-            }
-          }
-        });
-    }
-    for (std::thread& thread : threads)
-    {
-      thread.join();
-    }
-    EXPECT_EQ(wrong, 0);
-    EXPECT_EQ(failed, 1);
-    EXPECT_EQ(file->Most, most);
-    EXPECT_LE(cache.GetBytes(), cache.GetLimit()) << "nothing is in hand any more";
-  }
-}
-
-/// Who does not wait fails alone: not those who wait for the same chunk.
-TEST(ChunkCache, OthersAreNotToldThatAThreadWouldWait)
-{
-  const auto file = std::make_shared<ColdFile>();
-  vol::ChunkCache cache(1 << 20);
-  std::vector<std::thread> threads;
-  std::atomic<int> wouldWait{ 0 };
-  std::atomic<int> read{ 0 };
-  for (int thread = 0; thread < 8; ++thread)
-  {
-    threads.emplace_back(
-      [&, thread]
-      {
-        std::optional<vol::WithoutWaiting> scope;
-        if (thread % 2 == 0)
-        {
-          scope.emplace();
-        }
-        try
-        {
-          read += cache.Get(file, 0, 0, rt::Index3(0))->back() == std::byte(7) ? 1 : 0;
-        }
-        catch (const vol::WouldWait&)
-        {
-          wouldWait += scope ? 1 : 100;
-        }
-      });
-  }
-  for (std::thread& thread : threads)
-  {
-    thread.join();
-  }
-  EXPECT_EQ(read + wouldWait, 8);
-  EXPECT_GE(read, 4);
-  const vol::WithoutWaiting scope;
-  EXPECT_EQ(cache.Get(file, 0, 0, rt::Index3(0))->back(), std::byte(7)) << "it is here now";
-}
-
 TEST(VolumeFiles, AChunkThatManyThreadsWantIsReadOnce)
 {
   const Json entry = FindEntry("deflate.h5");
@@ -356,100 +221,6 @@ TEST(VolumeFiles, AChunkThatManyThreadsWantIsReadOnce)
   EXPECT_EQ(wrong, std::vector<int>(8, 0));
   EXPECT_EQ(cache.GetBytesRead(),
     static_cast<std::uint64_t>(whole.GetCount()) * file->GetArrays()[0].GetSampleBytes());
-}
-
-TEST(ChunkGrid, AChunkAndItsHaloAreTheBoxOfABrick)
-{
-  const vol::ChunkGrid grid{ { 9, 5, 4 }, { 4, 4, 4 } };
-  for (std::int64_t number = 0; number < grid.GetCount(); ++number)
-  {
-    const rt::Index3 chunk = grid.GetChunk(number);
-    const rt::Box all = grid.GetBoxWithHalo(chunk);
-    std::vector<std::byte> seen(static_cast<std::size_t>(all.GetCount()), std::byte(0));
-    std::int64_t count = 0;
-    const auto add = [&](const rt::Box& box)
-    {
-      const std::vector<std::byte> ones(static_cast<std::size_t>(box.GetCount()), std::byte(1));
-      vol::CopyBox(box, ones.data(), box, seen.data(), all, 1);
-      count += box.GetCount();
-    };
-    add(grid.GetBox(chunk));
-    for (const rt::Box& part : grid.GetHalo(chunk))
-    {
-      add(part);
-    }
-    EXPECT_EQ(count, all.GetCount());
-    EXPECT_EQ(std::count(seen.begin(), seen.end(), std::byte(1)), all.GetCount());
-  }
-}
-
-TEST(ChunkCodec, ShuffledElementsOfEveryWidthComeBack)
-{
-  for (const std::size_t width : { 1, 2, 3, 4, 7, 8, 16 })
-  {
-    const vol::ChunkCodec codec({ { vol::CodecStep::Kind::Shuffle, width } });
-    std::vector<std::byte> samples(100 * width + width / 2); // and some bytes of one more
-    for (std::size_t place = 0; place < samples.size(); ++place)
-    {
-      samples[place] = std::byte(place * place % 251);
-    }
-    const std::vector<std::byte> stored = codec.Encode(samples);
-    EXPECT_EQ(stored[1], samples[width]) << width;
-    std::vector<std::byte> found(samples.size());
-    EXPECT_TRUE(codec.Decode(stored, 0, found.data(), found.size()));
-    EXPECT_EQ(found, samples) << width;
-  }
-}
-
-class ChunkCodecHalo : public testing::TestWithParam<vol::CodecStep::Kind>
-{
-};
-
-INSTANTIATE_TEST_SUITE_P(Compressions, ChunkCodecHalo,
-  testing::Values(vol::CodecStep::Kind::Zstd, vol::CodecStep::Kind::Deflate));
-
-TEST_P(ChunkCodecHalo, ComesBackWhereThereIsOne)
-{
-  using Kind = vol::CodecStep::Kind;
-  vol::ChunkCodec codec;
-  try
-  {
-    codec = vol::ChunkCodec({ { Kind::Shuffle, 4 }, { this->GetParam() }, { Kind::Fletcher32 } });
-  }
-  catch (const dsm::Error& error)
-  {
-    GTEST_SKIP() << error.what();
-  }
-  EXPECT_TRUE(codec.KeepsHalo());
-  EXPECT_FALSE(vol::ChunkCodec({ { Kind::Fletcher32 } }).KeepsHalo());
-  std::vector<std::byte> samples(64 * 4);
-  std::vector<std::byte> halo(61 * 4);
-  const auto number = [](std::size_t place) { return std::byte(place * place % 251); };
-  for (std::size_t place = 0; place < samples.size(); ++place)
-  {
-    samples[place] = number(place);
-  }
-  for (std::size_t place = 0; place < halo.size(); ++place)
-  {
-    halo[place] = number(place + 1000);
-  }
-  const std::vector<std::byte> stored = codec.Encode(samples, halo);
-  std::vector<std::byte> found(samples.size());
-  EXPECT_TRUE(codec.Decode(stored, 0, found.data(), found.size()));
-  EXPECT_EQ(found, samples) << "without asking for it";
-  std::vector<std::byte> back(halo.size());
-  EXPECT_TRUE(codec.Decode(stored, 0, found.data(), found.size(), &back));
-  EXPECT_EQ(found, samples);
-  EXPECT_EQ(back, halo);
-  std::vector<std::byte> shorter(halo.size() + 4);
-  EXPECT_FALSE(codec.Decode(stored, 0, found.data(), found.size(), &shorter));
-  EXPECT_FALSE(codec.Decode(codec.Encode(samples), 0, found.data(), found.size(), &back));
-  for (std::size_t place = 0; place < stored.size(); place += 7)
-  {
-    std::vector<std::byte> damaged = stored;
-    damaged[place] ^= std::byte(0x20);
-    EXPECT_THROW(codec.Decode(damaged, 0, found.data(), found.size(), &back), dsm::Error);
-  }
 }
 
 TEST(VolumeFiles, RangesAreFoundAndKept)

@@ -2,9 +2,11 @@
 #ifndef rt_MacrocellBuilder_h
 #define rt_MacrocellBuilder_h
 
+#include "DSMRayTracing/layout/BrickLattice.h"
 #include "DSMRayTracing/layout/VoxelBrick.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <type_traits>
@@ -109,16 +111,66 @@ MacrocellRange<T> FindCellRange(const VoxelBrick<T>& brick, const CellBox& box)
   return range;
 }
 
+/// What the samples of a row of macrocells have over y and z, at each x: found for many x at a time.
 template <class T>
-MacrocellRange<T> FindRange(const VoxelBrick<T>& brick, const CellBox& box)
+class RowOfRanges
 {
-  MacrocellRange<T> range;
-  if (brick.GetHeader().MaskOffset == 0 && FindSampleRange(brick, box, range))
+public:
+  /// `row`: as wide as the brick.
+  void Find(const VoxelBrick<T>& brick, const CellBox& row)
   {
-    return range;
+    const int points = row.Last[0] + 1;
+    std::fill_n(this->Min.begin(), points, EmptyRange<T>.Min);
+    std::fill_n(this->Max.begin(), points, EmptyRange<T>.Max);
+    std::fill_n(this->Check.begin(), points, T{ 0 });
+    for (int z = row.First[2]; z <= row.Last[2]; ++z)
+    {
+      for (int y = row.First[1]; y <= row.Last[1]; ++y)
+      {
+        this->Add(brick.GetSamples() + brick.GetOffset(0, y, z), points);
+      }
+    }
   }
-  return FindCellRange(brick, box);
-}
+
+  /// From one x to another. Returns false when a sample is not finite.
+  bool Get(int first, int last, MacrocellRange<T>& range) const
+  {
+    range = EmptyRange<T>;
+    T check{ 0 };
+    for (int x = first; x <= last; ++x)
+    {
+      range.Min = std::min(range.Min, this->Min[x]);
+      range.Max = std::max(range.Max, this->Max[x]);
+      check += this->Check[x];
+    }
+    return check == T{ 0 };
+  }
+
+private:
+  void Add(const T* samples, int points)
+  {
+    for (int x = 0; x < points; ++x)
+    {
+      // Of values, not of references to them, GCC makes vectors.
+      const T sample = samples[x];
+      const T least = this->Min[x];
+      const T greatest = this->Max[x];
+      this->Min[x] = std::min(least, sample);
+      this->Max[x] = std::max(greatest, sample);
+      if constexpr (std::is_floating_point_v<T>)
+      {
+        // Becomes, and stays, not a number.
+        this->Check[x] += sample * T{ 0 };
+      }
+    }
+  }
+
+  static constexpr int Points = BrickLattice::LargestEdge + 1;
+
+  std::array<T, Points> Min;
+  std::array<T, Points> Max;
+  std::array<T, Points> Check;
+};
 
 /// Derives, out of the samples and the mask of a brick, its macrocells and its own range.
 template <class T>
@@ -127,8 +179,10 @@ void BuildMacrocells(std::byte* block)
   auto& header = *reinterpret_cast<VoxelBrickHeader*>(block);
   auto* ranges = reinterpret_cast<MacrocellRange<T>*>(block + VoxelBrickHeader::MacrocellOffset);
   const VoxelBrick<T> brick(block);
+  const bool isWhole = header.MaskOffset == 0;
   header.First = std::numeric_limits<float>::infinity();
   header.Last = -std::numeric_limits<float>::infinity();
+  RowOfRanges<T> row;
   CellBox box;
   for (box.First[2] = 0; box.First[2] < brick.GetCells(2); box.First[2] += MacrocellEdge)
   {
@@ -136,10 +190,20 @@ void BuildMacrocells(std::byte* block)
     for (box.First[1] = 0; box.First[1] < brick.GetCells(1); box.First[1] += MacrocellEdge)
     {
       box.Last[1] = std::min(box.First[1] + MacrocellEdge, brick.GetCells(1));
+      if (isWhole)
+      {
+        box.First[0] = 0;
+        box.Last[0] = brick.GetCells(0);
+        row.Find(brick, box);
+      }
       for (box.First[0] = 0; box.First[0] < brick.GetCells(0); box.First[0] += MacrocellEdge)
       {
         box.Last[0] = std::min(box.First[0] + MacrocellEdge, brick.GetCells(0));
-        const MacrocellRange<T> range = FindRange(brick, box);
+        MacrocellRange<T> range;
+        if (!isWhole || !row.Get(box.First[0], box.Last[0], range))
+        {
+          range = FindCellRange(brick, box);
+        }
         *ranges++ = range;
         if (range.Min <= range.Max)
         {

@@ -3,6 +3,7 @@
 
 #include "DSMCore/base/Error.h"
 #include "DSMRayTracing/base/ByteHash.h"
+#include "DSMVolumeFiles/base/ByteBuffer.h"
 #include "DSMVolumeFiles/base/ReadingManner.h"
 
 #include <algorithm>
@@ -124,7 +125,7 @@ PositionedFile::Run PositionedFile::FindRun(
 
 void PositionedFile::Read(const std::vector<Piece>& pieces, std::byte* out) const
 {
-  std::vector<std::byte> together;
+  ByteBuffer together;
   for (auto piece = pieces.begin(); piece != pieces.end();)
   {
     const Run run = FindRun(pieces, piece);

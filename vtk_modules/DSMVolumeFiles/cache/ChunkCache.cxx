@@ -5,6 +5,7 @@
 #include "DSMVolumeFiles/base/CopyBox.h"
 #include "DSMVolumeFiles/base/ReadingManner.h"
 
+#include <atomic>
 #include <exception>
 #include <utility>
 
@@ -106,6 +107,7 @@ ChunkCache::Chunk ChunkCache::Get(const std::shared_ptr<const VolumeFile>& file,
     static_cast<std::size_t>(what.Grid.GetBox(chunk).GetCount()) * what.GetSampleBytes();
   const std::size_t inHand = chunkBytes * InHandOfEach;
   std::promise<Chunk> promise;
+  std::shared_ptr<ByteBuffer> bytes;
   {
     std::unique_lock<std::mutex> lock(this->Guard);
     const auto known = this->Entries.find(key);
@@ -140,13 +142,15 @@ ChunkCache::Chunk ChunkCache::Get(const std::shared_ptr<const VolumeFile>& file,
     this->HandsFree.wait(lock, hasRoom);
     this->InHand += inHand;
     this->Bytes += inHand;
-    this->Evict();
+    bytes = this->Evict(chunkBytes);
   }
-  std::shared_ptr<std::vector<std::byte>> bytes;
   std::exception_ptr failure;
   try
   {
-    bytes = std::make_shared<std::vector<std::byte>>(chunkBytes);
+    if (!bytes)
+    {
+      bytes = std::make_shared<ByteBuffer>(chunkBytes);
+    }
     file->ReadChunk(array, step, chunk, bytes->data());
   }
   catch (...)
@@ -209,7 +213,7 @@ void ChunkCache::Read(const std::shared_ptr<const VolumeFile>& file, std::size_t
   {
     return;
   }
-  std::vector<std::byte> dense;
+  ByteBuffer dense;
   const FileArray& what = file->GetArrays()[array];
   const rt::Index3 first = box.Min / what.Grid.ChunkSamples;
   const rt::Index3 last = (box.Max - rt::Index3(1)) / what.Grid.ChunkSamples;
@@ -287,15 +291,24 @@ void ChunkCache::Foresee(const std::shared_ptr<const VolumeFile>& file, std::siz
   }
 }
 
-void ChunkCache::Evict()
+std::shared_ptr<ByteBuffer> ChunkCache::Evict(std::size_t bytes)
 {
+  std::shared_ptr<ByteBuffer> left;
   while (this->Bytes > this->ComputeRoom() && !this->Order.empty())
   {
     const auto last = this->Entries.find(this->Order.back());
     this->Bytes -= last->second.Bytes;
+    Chunk chunk = last->second.Data.get();
     this->Entries.erase(last);
     this->Order.pop_back();
+    if (!left && chunk->size() == bytes && chunk.use_count() == 1)
+    {
+      // Who used it last has read all that it wanted.
+      std::atomic_thread_fence(std::memory_order_acquire);
+      left = std::const_pointer_cast<ByteBuffer>(chunk);
+    }
   }
+  return left;
 }
 
 } // namespace vol

@@ -2,6 +2,7 @@
 #ifndef vol_ChunkCache_h
 #define vol_ChunkCache_h
 
+#include "DSMVolumeFiles/base/ByteBuffer.h"
 #include "DSMVolumeFiles/format/VolumeFile.h"
 
 #include <algorithm>
@@ -24,7 +25,7 @@ namespace vol
 class ChunkCache
 {
 public:
-  using Chunk = std::shared_ptr<const std::vector<std::byte>>;
+  using Chunk = std::shared_ptr<const ByteBuffer>;
 
   explicit ChunkCache(std::size_t bytes)
     : Limit(bytes)
@@ -104,7 +105,9 @@ private:
     const rt::Box& box, std::byte* out);
   /// Under the lock, as GetRoom without it.
   std::size_t ComputeRoom() const { return std::min(this->Limit, this->Restriction); }
-  void Evict();
+  /// Under the lock. Returns the memory of one that has left and that nobody uses, if it has so many bytes: memory
+  /// that the system gives anew has to be filled with zeros first.
+  std::shared_ptr<ByteBuffer> Evict(std::size_t bytes = 0);
 
   mutable std::mutex Guard;
   std::size_t Limit;

@@ -31,7 +31,7 @@ namespace vol
 namespace
 {
 
-using Bytes = std::vector<std::byte>;
+using Bytes = ByteBuffer;
 using Kind = CodecStep::Kind;
 
 [[noreturn]] void Refuse(const std::string& what)
@@ -214,7 +214,7 @@ Bytes Shuffle(const Bytes& samples, std::size_t width)
 
 Bytes Unshuffle(const Bytes& stored, std::size_t width)
 {
-  Bytes bytes = stored; // what is left over behind the last element stays where it is
+  Bytes bytes(stored.size());
   const auto put = [from = stored.data(), to = bytes.data(), all = stored.size()](auto elementBytes)
   {
     const std::size_t count = all / elementBytes;
@@ -225,6 +225,8 @@ Bytes Unshuffle(const Bytes& stored, std::size_t width)
         to[element * elementBytes + byte] = from[byte * count + element];
       }
     }
+    // What is left over behind the last element stays where it is.
+    std::copy(from + count * elementBytes, from + all, to + count * elementBytes);
   };
   // Compilers make vectors of a width that they know.
   switch (width)
@@ -402,8 +404,8 @@ ChunkCodec::ChunkCodec(std::vector<CodecStep> steps)
   }
 }
 
-bool ChunkCodec::Decode(std::vector<std::byte> stored, unsigned skipped, std::byte* out,
-  std::size_t bytes, std::vector<std::byte>* halo) const
+bool ChunkCodec::Decode(
+  ByteBuffer stored, unsigned skipped, std::byte* out, std::size_t bytes, ByteBuffer* halo) const
 {
   std::optional<Bytes> beside;
   // Checksums below a compression add to what it makes.
@@ -440,8 +442,7 @@ bool ChunkCodec::Decode(std::vector<std::byte> stored, unsigned skipped, std::by
   return true;
 }
 
-std::vector<std::byte> ChunkCodec::Encode(
-  std::vector<std::byte> samples, std::vector<std::byte> halo) const
+ByteBuffer ChunkCodec::Encode(ByteBuffer samples, ByteBuffer halo) const
 {
   for (const CodecStep& step : this->Steps)
   {

@@ -2,6 +2,8 @@
 #ifndef vol_ChunkCodec_h
 #define vol_ChunkCodec_h
 
+#include "DSMVolumeFiles/base/ByteBuffer.h"
+
 #include <cstddef>
 #include <string>
 #include <vector>
@@ -37,15 +39,14 @@ public:
   /// left out for this chunk. Throws dsm::Error, without the chunk's name, when the bytes are not what the steps
   /// make, or not so many. `halo`: so many bytes as were given to Encode; null where they are not wanted. False
   /// when the chunk has no halo, or not so many bytes; then nothing is written.
-  bool Decode(std::vector<std::byte> stored, unsigned skipped, std::byte* out, std::size_t bytes,
-    std::vector<std::byte>* halo = nullptr) const;
+  bool Decode(ByteBuffer stored, unsigned skipped, std::byte* out, std::size_t bytes,
+    ByteBuffer* halo = nullptr) const;
 
   /// What a file has for these samples: all steps, the first one first. Throws dsm::Error for Blosc and Crc32c,
   /// which are only read. `halo`: further samples, for Decode; other programs pass over them, since they lie behind
   /// the end of what is compressed: of Zstandard in a skippable frame (RFC 8878, section 3.1.2), of deflate behind
   /// the stream (RFC 1950), which tells its end. Only where KeepsHalo().
-  std::vector<std::byte> Encode(
-    std::vector<std::byte> samples, std::vector<std::byte> halo = {}) const;
+  ByteBuffer Encode(ByteBuffer samples, ByteBuffer halo = {}) const;
 
   /// Whether there is a place for a halo: behind a Zstandard frame or a deflate stream.
   bool KeepsHalo() const;

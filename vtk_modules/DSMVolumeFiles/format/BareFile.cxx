@@ -75,7 +75,7 @@ public:
         return;
       }
       const auto bytes = static_cast<std::size_t>(box.GetCount()) * array.GetSampleBytes();
-      std::vector<std::byte> stored(bytes);
+      ByteBuffer stored(bytes);
       this->ReadRows(array, box, stored.data());
       this->Codec.Decode(std::move(stored), 0, out, bytes);
     }

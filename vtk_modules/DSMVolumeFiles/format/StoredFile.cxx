@@ -39,14 +39,14 @@ void StoredFile::ReadChunk(
       place->File->Read(place->Offset, out, allBytes);
       return;
     }
-    std::vector<std::byte> bytes(place->Bytes);
+    ByteBuffer bytes(place->Bytes);
     place->File->Read(place->Offset, bytes.data(), bytes.size());
     if (isAll)
     {
       storage.Codec.Decode(std::move(bytes), place->SkippedSteps, out, allBytes);
       return;
     }
-    std::vector<std::byte> samples(allBytes);
+    ByteBuffer samples(allBytes);
     storage.Codec.Decode(std::move(bytes), place->SkippedSteps, samples.data(), samples.size());
     CopyBox(box, samples.data() + place->Slice * storedBytes, stored, out, box, sampleBytes);
   }
@@ -123,12 +123,11 @@ bool StoredFile::ReadWithHalo(
   const rt::Box box = what.Grid.GetBox(chunk);
   const rt::Box all = what.Grid.GetBoxWithHalo(chunk);
   const rt::Box stored{ box.Min, box.Min + what.Grid.ChunkSamples };
-  std::vector<std::byte> halo(
-    static_cast<std::size_t>(all.GetCount() - box.GetCount()) * sampleBytes);
-  std::vector<std::byte> samples(static_cast<std::size_t>(stored.GetCount()) * sampleBytes);
+  ByteBuffer halo(static_cast<std::size_t>(all.GetCount() - box.GetCount()) * sampleBytes);
+  ByteBuffer samples(static_cast<std::size_t>(stored.GetCount()) * sampleBytes);
   try
   {
-    std::vector<std::byte> bytes(place->Bytes);
+    ByteBuffer bytes(place->Bytes);
     place->File->Read(place->Offset, bytes.data(), bytes.size());
     if (!storage.Codec.Decode(
           std::move(bytes), place->SkippedSteps, samples.data(), samples.size(), &halo))

@@ -343,7 +343,7 @@ private:
       {
         throw dsm::Error("The shard '" + file.GetPath() + "' is truncated.");
       }
-      std::vector<std::byte> stored(shards.IndexBytes);
+      ByteBuffer stored(shards.IndexBytes);
       file.Read(
         shards.IndexIsFirst ? 0 : file.GetBytes() - stored.size(), stored.data(), stored.size());
       const std::size_t count = shards.IndexBytes / sizeof(std::uint64_t); // a checksum is less

@@ -2,11 +2,14 @@
 #include "DSMVolumeFiles/range/ValueRanges.h"
 
 #include "DSMRayTracing/base/ParallelFor.h"
+#include "DSMVolumeFiles/base/ByteBuffer.h"
 #include "DSMVolumeFiles/range/KeptFile.h"
 
+#include <algorithm>
 #include <atomic>
 #include <cmath>
 #include <cstring>
+#include <type_traits>
 
 namespace vol
 {
@@ -30,9 +33,57 @@ void Add(ValueRanges& ranges, std::size_t number, double value)
   }
 }
 
+/// The range of numbers that all are finite, found for many at a time. False when one is not.
+template <class T>
+bool FindFinite(const T* values, std::int64_t count, T& least, T& greatest)
+{
+  constexpr int lanes = 64 / sizeof(T);
+  T low[lanes];
+  T high[lanes];
+  T check[lanes] = {}; // becomes, and stays, not a number
+  std::fill_n(low, lanes, values[0]);
+  std::fill_n(high, lanes, values[0]);
+  const auto add = [&](const T* part, int width)
+  {
+    for (int lane = 0; lane < width; ++lane)
+    {
+      // Of values, not of references to them, GCC makes vectors.
+      const T value = part[lane];
+      const T least = low[lane];
+      const T greatest = high[lane];
+      low[lane] = std::min(least, value);
+      high[lane] = std::max(greatest, value);
+      if constexpr (std::is_floating_point_v<T>)
+      {
+        check[lane] += value * T{ 0 };
+      }
+    }
+  };
+  std::int64_t at = 0;
+  for (; at + lanes <= count; at += lanes)
+  {
+    add(values + at, lanes);
+  }
+  add(values + at, static_cast<int>(count - at));
+  least = *std::min_element(low, low + lanes);
+  greatest = *std::max_element(high, high + lanes);
+  return std::all_of(check, check + lanes, [](T one) { return one == T{ 0 }; });
+}
+
 template <class T>
 void AddRow(ValueRanges& ranges, const T* row, std::int64_t samples, int components)
 {
+  T least;
+  T greatest;
+  if (components == 1 && samples > 0 && FindFinite(row, samples, least, greatest))
+  {
+    for (ValueRange* range : { &ranges.All.front(), &ranges.Finite.front() })
+    {
+      range->Add(static_cast<double>(least));
+      range->Add(static_cast<double>(greatest));
+    }
+    return;
+  }
   for (std::int64_t sample = 0; sample < samples; ++sample)
   {
     double sum = 0.0;
@@ -98,6 +149,7 @@ std::optional<ValueRanges> FindRanges(const std::shared_ptr<const VolumeFile>& f
   const rt::Index3 counts = chunks.GetSize();
   std::vector<ValueRanges> parts(
     static_cast<std::size_t>(std::max(1, threads)), ValueRanges(array.Components));
+  std::vector<ByteBuffer> buffers(parts.size());
   std::atomic<std::int64_t> done{ 0 };
   std::atomic<bool> stopped{ false };
   rt::ParallelFor(threads, static_cast<std::size_t>(chunks.GetCount()),
@@ -111,8 +163,8 @@ std::optional<ValueRanges> FindRanges(const std::shared_ptr<const VolumeFile>& f
       const rt::Index3 chunk = firstChunk +
         rt::Index3(at % counts.x, at / counts.x % counts.y, at / (counts.x * counts.y));
       const rt::Box have = array.Grid.GetBox(chunk);
-      std::vector<std::byte> samples(
-        static_cast<std::size_t>(have.GetCount()) * array.GetSampleBytes());
+      ByteBuffer& samples = buffers[static_cast<std::size_t>(thread)];
+      samples.resize(static_cast<std::size_t>(have.GetCount()) * array.GetSampleBytes());
       file->ReadChunk(number, step, chunk, samples.data());
       parts[static_cast<std::size_t>(thread)].Add(
         array, samples.data(), have, rt::Intersect(have, box));

@@ -41,7 +41,7 @@ struct BrickFileLayout
 /// A chunk as the file has it.
 struct EncodedChunk
 {
-  std::vector<std::byte> Bytes;
+  ByteBuffer Bytes;
   /// Of the cells of the brick that begins with the chunk's first sample, rounded outward; First above Last where
   /// there is none.
   float First = 0.0f;

@@ -184,8 +184,7 @@ void ReducedOrigin::Read(std::size_t number, const rt::Box& box, std::byte* out)
 {
   const FileArray& array = this->Arrays[number];
   const rt::Box fineBox = this->GetFineBox(number, box);
-  std::vector<std::byte> fine(
-    static_cast<std::size_t>(fineBox.GetCount()) * array.GetSampleBytes());
+  ByteBuffer fine(static_cast<std::size_t>(fineBox.GetCount()) * array.GetSampleBytes());
   this->Cache.ReadBox(this->File, number, 0, fineBox, fine.data());
   if (array.OnCells)
   {

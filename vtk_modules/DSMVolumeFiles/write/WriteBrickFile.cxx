@@ -75,7 +75,7 @@ public:
     const rt::Box own = this->Array.Grid.GetBox(place);
     const rt::Box have = this->GetSource(chunk);
     const std::size_t sampleBytes = this->Array.GetSampleBytes();
-    std::vector<std::byte> samples(static_cast<std::size_t>(have.GetCount()) * sampleBytes);
+    ByteBuffer samples(static_cast<std::size_t>(have.GetCount()) * sampleBytes);
     this->From.Read(this->Number, have, samples.data());
     ranges.Add(this->Array, samples.data(), have, own);
     EncodedChunk encoded;
@@ -89,9 +89,9 @@ public:
     }
     // Chunks at the volume's ends are as large as all others.
     const rt::Box whole{ own.Min, own.Min + this->Array.Grid.ChunkSamples };
-    std::vector<std::byte> bytes(static_cast<std::size_t>(whole.GetCount()) * sampleBytes);
+    ByteBuffer bytes(static_cast<std::size_t>(whole.GetCount()) * sampleBytes, std::byte{ 0 });
     CopyBox(own, samples.data(), have, bytes.data(), whole, sampleBytes);
-    std::vector<std::byte> halo;
+    ByteBuffer halo;
     if (this->HasHalo)
     {
       halo.resize(static_cast<std::size_t>(have.GetCount() - own.GetCount()) * sampleBytes);
