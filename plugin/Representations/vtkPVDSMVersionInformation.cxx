@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkPVDSMVersionInformation.h"
 
+#include "vtkPVDSMDefinitions.h"
+
 #include "vtkClientServerStream.h"
 #include "vtkObjectFactory.h"
 #include "vtkPVPlugin.h"
@@ -10,13 +12,14 @@ vtkStandardNewMacro(vtkPVDSMVersionInformation);
 
 vtkPVDSMVersionInformation::vtkPVDSMVersionInformation()
 {
-  this->RootOnly = 1;
+  this->RootOnly = 0; // each rank is told that its client has the plugin
 }
 
 vtkPVDSMVersionInformation::~vtkPVDSMVersionInformation() = default;
 
 void vtkPVDSMVersionInformation::CopyFromObject(vtkObject*)
 {
+  vtkPVDSMDefinitions::Allow();
   this->Version.clear();
   vtkPVPluginTracker* plugins = vtkPVPluginTracker::GetInstance();
   for (unsigned int index = 0; index < plugins->GetNumberOfPlugins(); ++index)

@@ -23,7 +23,7 @@ public:
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
   /**
-   * Empty where the plugin is not loaded. All ranks of a server have the same, so the first answers.
+   * Empty where the plugin is not loaded. All ranks of a server have the same.
    */
   const std::string& GetVersion() const { return this->Version; }
 

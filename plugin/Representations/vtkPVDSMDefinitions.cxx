@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkPVDSMDefinitions.h"
+
+#include "vtkPVDSMDefinitionsText.h"
+#include "vtkPVDSMVersionInformation.h"
+
+#include "vtkCallbackCommand.h"
+#include "vtkCommand.h"
+#include "vtkNew.h"
+#include "vtkPVPluginsInformation.h"
+#include "vtkPVSessionBase.h"
+#include "vtkProcessModule.h"
+#include "vtkSIProxyDefinitionManager.h"
+#include "vtkSMPluginManager.h"
+#include "vtkSMProxyDefinitionManager.h"
+#include "vtkSMProxyManager.h"
+#include "vtkSMSessionClient.h"
+#include "vtkSMSessionProxyManager.h"
+#include "vtkSessionIterator.h"
+#include "vtkSmartPointer.h"
+
+#include <cstring>
+
+namespace
+{
+
+/// After ParaView's own observers of a new session have done what makes it one.
+constexpr float Late = -100.0f;
+
+bool IsServer()
+{
+  const auto type = vtkProcessModule::GetProcessType();
+  return type == vtkProcessModule::PROCESS_SERVER ||
+    type == vtkProcessModule::PROCESS_DATA_SERVER ||
+    type == vtkProcessModule::PROCESS_RENDER_SERVER;
+}
+
+bool HaveDefinitions(vtkPVSessionBase* session)
+{
+  return session->GetProxyDefinitionManager()->HasDefinition("settings", "DSMRayTracerSettings");
+}
+
+/// ParaView keeps definitions with what they derive from, and does not make these anew for what is added but by a
+/// plugin's own list.
+struct Kept final : vtkSIProxyDefinitionManager
+{
+  static void Forget(vtkSIProxyDefinitionManager& definitions)
+  {
+    (definitions.*(&Kept::InvalidateCollapsedDefinition))();
+  }
+};
+
+/// To a session whose definitions are this process's own.
+void Add(vtkPVSessionBase* session)
+{
+  if (!HaveDefinitions(session))
+  {
+    vtkSIProxyDefinitionManager* const definitions = session->GetProxyDefinitionManager();
+    Kept::Forget(*definitions);
+    definitions->LoadConfigurationXMLFromString(vtkPVDSMDefinitionsText);
+  }
+}
+
+bool HasPlugin(vtkSMSession* server)
+{
+  vtkPVPluginsInformation* const plugins =
+    vtkSMProxyManager::GetProxyManager()->GetPluginManager()->GetRemoteInformation(server);
+  for (unsigned int index = 0; plugins && index < plugins->GetNumberOfPlugins(); ++index)
+  {
+    if (std::strcmp(plugins->GetPluginName(index), "DSMRayTracer") == 0 &&
+      plugins->GetPluginLoaded(index))
+    {
+      return true;
+    }
+  }
+  return false;
+}
+
+/// To a session with a server, and to the server.
+void AskFor(vtkSMSessionClient* session)
+{
+  if (HaveDefinitions(session) || !HasPlugin(session))
+  {
+    return;
+  }
+  vtkNew<vtkPVDSMVersionInformation> information;
+  for (const vtkTypeUInt32 processes : { vtkPVSession::DATA_SERVER, vtkPVSession::RENDER_SERVER })
+  {
+    session->GatherInformation(processes, information, 0);
+  }
+  if (vtkSMSessionProxyManager* const proxies =
+        vtkSMProxyManager::GetProxyManager()->GetSessionProxyManager(session))
+  {
+    proxies->GetProxyDefinitionManager()->SynchronizeDefinitions();
+  }
+}
+
+void Update()
+{
+  const auto iterator = vtkSmartPointer<vtkSessionIterator>::Take(
+    vtkProcessModule::GetProcessModule()->NewSessionIterator());
+  for (iterator->InitTraversal(); !iterator->IsDoneWithTraversal(); iterator->GoToNextItem())
+  {
+    vtkSession* const session = iterator->GetCurrentSession();
+    if (auto* client = vtkSMSessionClient::SafeDownCast(session))
+    {
+      AskFor(client);
+    }
+    else if (auto* own = vtkPVSessionBase::SafeDownCast(session))
+    {
+      Add(own);
+    }
+  }
+}
+
+} // namespace
+
+void vtkPVDSMDefinitions::Load()
+{
+  static bool isLoaded = false;
+  if (IsServer() || isLoaded)
+  {
+    return;
+  }
+  isLoaded = true;
+  vtkNew<vtkCallbackCommand> update;
+  update->SetCallback([](vtkObject*, unsigned long, void*, void*) { Update(); });
+  vtkProcessModule::GetProcessModule()->AddObserver(
+    vtkCommand::ConnectionCreatedEvent, update, Late);
+  vtkSMProxyManager::GetProxyManager()->GetPluginManager()->AddObserver(
+    vtkSMPluginManager::RemotePluginLoadedEvent, update, Late);
+  Update();
+}
+
+void vtkPVDSMDefinitions::Allow()
+{
+  if (IsServer())
+  {
+    Update();
+  }
+}
