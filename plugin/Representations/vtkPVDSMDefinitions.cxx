@@ -7,19 +7,15 @@
 #include "vtkCallbackCommand.h"
 #include "vtkCommand.h"
 #include "vtkNew.h"
-#include "vtkPVPluginsInformation.h"
 #include "vtkPVSessionBase.h"
 #include "vtkProcessModule.h"
 #include "vtkSIProxyDefinitionManager.h"
-#include "vtkSMPluginManager.h"
 #include "vtkSMProxyDefinitionManager.h"
 #include "vtkSMProxyManager.h"
 #include "vtkSMSessionClient.h"
 #include "vtkSMSessionProxyManager.h"
 #include "vtkSessionIterator.h"
 #include "vtkSmartPointer.h"
-
-#include <cstring>
 
 namespace
 {
@@ -38,6 +34,13 @@ bool IsServer()
 bool HaveDefinitions(vtkPVSessionBase* session)
 {
   return session->GetProxyDefinitionManager()->HasDefinition("settings", "DSMRayTracerSettings");
+}
+
+/// Its other definitions come with the plugin.
+bool HasPlugin(vtkPVSessionBase* session)
+{
+  return session->GetProxyDefinitionManager()->HasDefinition(
+    "representations", "DSMImageRepresentation");
 }
 
 /// ParaView keeps definitions with what they derive from, and does not make these anew for what is added but by a
@@ -61,21 +64,6 @@ void Add(vtkPVSessionBase* session)
   }
 }
 
-bool HasPlugin(vtkSMSession* server)
-{
-  vtkPVPluginsInformation* const plugins =
-    vtkSMProxyManager::GetProxyManager()->GetPluginManager()->GetRemoteInformation(server);
-  for (unsigned int index = 0; plugins && index < plugins->GetNumberOfPlugins(); ++index)
-  {
-    if (std::strcmp(plugins->GetPluginName(index), "DSMRayTracer") == 0 &&
-      plugins->GetPluginLoaded(index))
-    {
-      return true;
-    }
-  }
-  return false;
-}
-
 /// To a session with a server, and to the server.
 void AskFor(vtkSMSessionClient* session)
 {
@@ -95,6 +83,26 @@ void AskFor(vtkSMSessionClient* session)
   }
 }
 
+void Update();
+
+/// A server's definitions come to its client when a session begins, and when the server has loaded a plugin, which in
+/// some versions is later than the client's.
+void Watch(vtkSMSessionClient* session)
+{
+  static const auto update = []
+  {
+    auto command = vtkSmartPointer<vtkCallbackCommand>::New();
+    command->SetCallback([](vtkObject*, unsigned long, void*, void*) { Update(); });
+    return command;
+  }();
+  vtkSIProxyDefinitionManager* const definitions = session->GetProxyDefinitionManager();
+  const unsigned long event = vtkSIProxyDefinitionManager::ProxyDefinitionsUpdated;
+  if (!definitions->HasObserver(event, update))
+  {
+    definitions->AddObserver(event, update);
+  }
+}
+
 void Update()
 {
   const auto iterator = vtkSmartPointer<vtkSessionIterator>::Take(
@@ -104,6 +112,7 @@ void Update()
     vtkSession* const session = iterator->GetCurrentSession();
     if (auto* client = vtkSMSessionClient::SafeDownCast(session))
     {
+      Watch(client);
       AskFor(client);
     }
     else if (auto* own = vtkPVSessionBase::SafeDownCast(session))
@@ -127,8 +136,6 @@ void vtkPVDSMDefinitions::Load()
   update->SetCallback([](vtkObject*, unsigned long, void*, void*) { Update(); });
   vtkProcessModule::GetProcessModule()->AddObserver(
     vtkCommand::ConnectionCreatedEvent, update, Late);
-  vtkSMProxyManager::GetProxyManager()->GetPluginManager()->AddObserver(
-    vtkSMPluginManager::RemotePluginLoadedEvent, update, Late);
   Update();
 }
 
