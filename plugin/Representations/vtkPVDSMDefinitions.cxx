@@ -85,21 +85,27 @@ void AskFor(vtkSMSessionClient* session)
 
 void Update();
 
+/// Calls Update.
+vtkCommand* GetUpdate()
+{
+  static const auto command = []
+  {
+    auto made = vtkSmartPointer<vtkCallbackCommand>::New();
+    made->SetCallback([](vtkObject*, unsigned long, void*, void*) { Update(); });
+    return made;
+  }();
+  return command;
+}
+
 /// A server's definitions come to its client when a session begins, and when the server has loaded a plugin, which in
 /// some versions is later than the client's.
 void Watch(vtkSMSessionClient* session)
 {
-  static const auto update = []
-  {
-    auto command = vtkSmartPointer<vtkCallbackCommand>::New();
-    command->SetCallback([](vtkObject*, unsigned long, void*, void*) { Update(); });
-    return command;
-  }();
   vtkSIProxyDefinitionManager* const definitions = session->GetProxyDefinitionManager();
   const unsigned long event = vtkSIProxyDefinitionManager::ProxyDefinitionsUpdated;
-  if (!definitions->HasObserver(event, update))
+  if (!definitions->HasObserver(event, GetUpdate()))
   {
-    definitions->AddObserver(event, update);
+    definitions->AddObserver(event, GetUpdate());
   }
 }
 
@@ -132,10 +138,8 @@ void vtkPVDSMDefinitions::Load()
     return;
   }
   isLoaded = true;
-  vtkNew<vtkCallbackCommand> update;
-  update->SetCallback([](vtkObject*, unsigned long, void*, void*) { Update(); });
   vtkProcessModule::GetProcessModule()->AddObserver(
-    vtkCommand::ConnectionCreatedEvent, update, Late);
+    vtkCommand::ConnectionCreatedEvent, GetUpdate(), Late);
   Update();
 }
 

@@ -3,6 +3,7 @@
 #define rt_MacrocellBuilder_h
 
 #include "DSMRayTracing/layout/BrickLattice.h"
+#include "DSMRayTracing/layout/LaneRanges.h"
 #include "DSMRayTracing/layout/VoxelBrick.h"
 
 #include <algorithm>
@@ -61,32 +62,6 @@ struct CellBox
   int Last[3]; ///< not of the box
 };
 
-/// The range of all the samples at the corners of a box. Returns false when one is not finite.
-template <class T>
-bool FindSampleRange(const VoxelBrick<T>& brick, const CellBox& box, MacrocellRange<T>& range)
-{
-  range = EmptyRange<T>;
-  T check{ 0 };
-  for (int z = box.First[2]; z <= box.Last[2]; ++z)
-  {
-    for (int y = box.First[1]; y <= box.Last[1]; ++y)
-    {
-      const T* row = brick.GetSamples() + brick.GetOffset(0, y, z);
-      for (int x = box.First[0]; x <= box.Last[0]; ++x)
-      {
-        range.Min = std::min(range.Min, row[x]);
-        range.Max = std::max(range.Max, row[x]);
-        if constexpr (std::is_floating_point_v<T>)
-        {
-          // Becomes, and stays, not a number.
-          check += row[x] * T{ 0 };
-        }
-      }
-    }
-  }
-  return check == T{ 0 };
-}
-
 /// The range of the corners of those cells of a box that hold data.
 template <class T>
 MacrocellRange<T> FindCellRange(const VoxelBrick<T>& brick, const CellBox& box)
@@ -98,12 +73,16 @@ MacrocellRange<T> FindCellRange(const VoxelBrick<T>& brick, const CellBox& box)
     {
       for (int x = box.First[0]; x < box.Last[0]; ++x)
       {
-        MacrocellRange<T> cell;
-        if (brick.HoldsData(x, y, z) &&
-          FindSampleRange(brick, { { x, y, z }, { x + 1, y + 1, z + 1 } }, cell))
+        if (!brick.HoldsData(x, y, z))
         {
-          range.Min = std::min(range.Min, cell.Min);
-          range.Max = std::max(range.Max, cell.Max);
+          continue;
+        }
+        const T* corner = brick.GetSamples() + brick.GetOffset(x, y, z);
+        for (const int offset :
+          { 0, brick.GetRow(), brick.GetSlice(), brick.GetRow() + brick.GetSlice() })
+        {
+          range.Min = std::min({ range.Min, corner[offset], corner[offset + 1] });
+          range.Max = std::max({ range.Max, corner[offset], corner[offset + 1] });
         }
       }
     }
@@ -127,7 +106,8 @@ public:
     {
       for (int y = row.First[1]; y <= row.Last[1]; ++y)
       {
-        this->Add(brick.GetSamples() + brick.GetOffset(0, y, z), points);
+        AddToLanes(brick.GetSamples() + brick.GetOffset(0, y, z), points, this->Min.data(),
+          this->Max.data(), this->Check.data());
       }
     }
   }
@@ -147,24 +127,6 @@ public:
   }
 
 private:
-  void Add(const T* samples, int points)
-  {
-    for (int x = 0; x < points; ++x)
-    {
-      // Of values, not of references to them, GCC makes vectors.
-      const T sample = samples[x];
-      const T least = this->Min[x];
-      const T greatest = this->Max[x];
-      this->Min[x] = std::min(least, sample);
-      this->Max[x] = std::max(greatest, sample);
-      if constexpr (std::is_floating_point_v<T>)
-      {
-        // Becomes, and stays, not a number.
-        this->Check[x] += sample * T{ 0 };
-      }
-    }
-  }
-
   static constexpr int Points = BrickLattice::LargestEdge + 1;
 
   std::array<T, Points> Min;

@@ -201,7 +201,7 @@ void Check(Bytes& bytes, std::uint32_t (*sum)(const std::byte*, std::size_t))
 Bytes Shuffle(const Bytes& samples, std::size_t width)
 {
   const std::size_t count = samples.size() / width;
-  Bytes bytes = samples; // what is left over behind the last element stays where it is
+  Bytes bytes(samples.size());
   for (std::size_t byte = 0; byte < width; ++byte)
   {
     for (std::size_t element = 0; element < count; ++element)
@@ -209,6 +209,9 @@ Bytes Shuffle(const Bytes& samples, std::size_t width)
       bytes[byte * count + element] = samples[element * width + byte];
     }
   }
+  // What is left over behind the last element stays where it is.
+  std::copy_n(
+    samples.data() + count * width, samples.size() - count * width, bytes.data() + count * width);
   return bytes;
 }
 

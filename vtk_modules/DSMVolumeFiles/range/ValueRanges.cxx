@@ -2,6 +2,7 @@
 #include "DSMVolumeFiles/range/ValueRanges.h"
 
 #include "DSMRayTracing/base/ParallelFor.h"
+#include "DSMRayTracing/layout/LaneRanges.h"
 #include "DSMVolumeFiles/base/ByteBuffer.h"
 #include "DSMVolumeFiles/range/KeptFile.h"
 
@@ -9,7 +10,6 @@
 #include <atomic>
 #include <cmath>
 #include <cstring>
-#include <type_traits>
 
 namespace vol
 {
@@ -40,31 +40,15 @@ bool FindFinite(const T* values, std::int64_t count, T& least, T& greatest)
   constexpr int lanes = 64 / sizeof(T);
   T low[lanes];
   T high[lanes];
-  T check[lanes] = {}; // becomes, and stays, not a number
+  T check[lanes] = {};
   std::fill_n(low, lanes, values[0]);
   std::fill_n(high, lanes, values[0]);
-  const auto add = [&](const T* part, int width)
-  {
-    for (int lane = 0; lane < width; ++lane)
-    {
-      // Of values, not of references to them, GCC makes vectors.
-      const T value = part[lane];
-      const T least = low[lane];
-      const T greatest = high[lane];
-      low[lane] = std::min(least, value);
-      high[lane] = std::max(greatest, value);
-      if constexpr (std::is_floating_point_v<T>)
-      {
-        check[lane] += value * T{ 0 };
-      }
-    }
-  };
   std::int64_t at = 0;
   for (; at + lanes <= count; at += lanes)
   {
-    add(values + at, lanes);
+    rt::AddToLanes(values + at, lanes, low, high, check);
   }
-  add(values + at, static_cast<int>(count - at));
+  rt::AddToLanes(values + at, static_cast<int>(count - at), low, high, check);
   least = *std::min_element(low, low + lanes);
   greatest = *std::max_element(high, high + lanes);
   return std::all_of(check, check + lanes, [](T one) { return one == T{ 0 }; });
