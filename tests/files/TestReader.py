@@ -160,9 +160,11 @@ if get_ranks() == 1:
 image = simple.DSMVolumeReader(FileName=os.path.join(FILES, "image.vtkhdf"))
 check(list(image.GetProperty("PointArrays").GetAvailable()) == ["f", "v"], "the panel lists the point arrays")
 check(list(image.GetProperty("CellArrays").GetAvailable()) == ["c"], "and the cell arrays")
+image.UpdatePipeline()
+check(image.PointData.keys() == ["f", "v"] and image.CellData.keys() == ["c"], "all of them are chosen at first")
 image.PointArrays = ["v"]
 image.UpdatePipeline()
-check(image.PointData.keys() == ["v"] and image.CellData.keys() == ["c"], "what is not chosen is not there")
+check(image.PointData.keys() == ["v"] and image.CellData.keys() == ["c"], "what is no more chosen is not there")
 
 with Messages() as messages:
     bare = simple.DSMVolumeReader(FileName=os.path.join(FILES, "bare.raw"))

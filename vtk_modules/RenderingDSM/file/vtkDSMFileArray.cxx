@@ -30,6 +30,13 @@ struct Recent
 thread_local std::array<Recent, RecentChunks> RecentPlaces;
 thread_local std::size_t NextPlace = 0;
 
+/// Another one for each array, of whatever type: threads know their recent places by it.
+std::uint64_t TakeNumber()
+{
+  static std::atomic<std::uint64_t> last{ 0 };
+  return ++last;
+}
+
 bool Contains(const rt::Box& box, const rt::Index3& sample)
 {
   return sample.x >= box.Min.x && sample.x < box.Max.x && sample.y >= box.Min.y &&
@@ -69,9 +76,8 @@ vtkDSMFileArray<ValueTypeT>* vtkDSMFileArray<ValueTypeT>::New()
 
 template <class ValueTypeT>
 vtkDSMFileArray<ValueTypeT>::vtkDSMFileArray()
+  : Number(TakeNumber())
 {
-  static std::atomic<std::uint64_t> last{ 0 };
-  this->Number = ++last;
 }
 
 template <class ValueTypeT>

@@ -357,6 +357,8 @@ int vtkDSMVolumeReader::RequestData(
   int extent[6];
   information->Get(Pipeline::UPDATE_EXTENT(), extent);
   image->SetExtent(extent);
+  // An image keeps its scalars from one execution to the next, for who would write over them.
+  image->GetPointData()->Initialize();
   const vol::FileGeometry& geometry = this->Self->File->GetGeometry();
   image->SetOrigin(geometry.Origin);
   image->SetSpacing(geometry.Spacing);

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Arrays whose values are in files.
+#include "vtkDSMVolumeReader.h"
+
+#include "vtkDataArray.h"
+#include "vtkImageData.h"
+#include "vtkNew.h"
+#include "vtkPointData.h"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+#include <unistd.h>
+
+namespace
+{
+
+namespace fs = std::filesystem;
+
+constexpr int Edge = 4;
+
+/// A file of bare values, for as long as it is in scope: each is its number, and `more`.
+template <class T>
+class BareFile
+{
+public:
+  explicit BareFile(T more)
+    : Path(fs::temp_directory_path() /
+        ("TestFileArray" + std::to_string(getpid()) + "-" + std::to_string(sizeof(T)) + ".raw"))
+  {
+    std::ofstream file(this->Path, std::ios::binary);
+    for (int number = 0; number < Edge * Edge * Edge; ++number)
+    {
+      const T value = static_cast<T>(number + more);
+      file.write(reinterpret_cast<const char*>(&value), sizeof(value));
+    }
+  }
+  ~BareFile() { fs::remove(this->Path); }
+
+  const fs::path Path;
+};
+
+vtkDataArray* Open(vtkDSMVolumeReader* reader, const fs::path& path, int type)
+{
+  reader->SetFileName(path.c_str());
+  reader->SetRawDimensions(Edge, Edge, Edge);
+  reader->SetRawScalarType(type);
+  reader->Update();
+  return reader->GetOutput()->GetPointData()->GetScalars();
+}
+
+} // namespace
+
+TEST(FileArray, OfSeveralTypesReadInTurn)
+{
+  const BareFile<float> floats(0.5f);
+  const BareFile<unsigned short> shorts(1000);
+  vtkNew<vtkDSMVolumeReader> readers[2];
+  vtkDataArray* const first = Open(readers[0], floats.Path, VTK_FLOAT);
+  vtkDataArray* const second = Open(readers[1], shorts.Path, VTK_UNSIGNED_SHORT);
+  ASSERT_TRUE(first && second);
+  ASSERT_EQ(first->GetNumberOfTuples(), Edge * Edge * Edge);
+  ASSERT_EQ(second->GetNumberOfTuples(), Edge * Edge * Edge);
+  for (int tuple = 0; tuple < Edge * Edge * Edge; ++tuple)
+  {
+    ASSERT_EQ(first->GetComponent(tuple, 0), tuple + 0.5) << tuple;
+    ASSERT_EQ(second->GetComponent(tuple, 0), tuple + 1000) << tuple;
+  }
+}
