@@ -4,8 +4,10 @@
 #include "DSMCore/base/Error.h"
 #include "DSMCore/memory/HostMemory.h"
 
+#include "vtkArrayIteratorTemplate.h"
 #include "vtkObjectFactory.h"
 #include "vtkSmartPointer.h"
+#include "vtkTypeTraits.h"
 
 #include <algorithm>
 #include <array>
@@ -192,6 +194,14 @@ void* vtkDSMFileArray<ValueTypeT>::GetVoidPointer(vtkIdType index)
 }
 
 template <class ValueTypeT>
+vtkArrayIterator* vtkDSMFileArray<ValueTypeT>::NewIterator()
+{
+  vtkArrayIterator* const iterator = vtkArrayIteratorTemplate<ValueType>::New();
+  iterator->Initialize(this);
+  return iterator;
+}
+
+template <class ValueTypeT>
 void vtkDSMFileArray<ValueTypeT>::ExportToVoidPointer(void* out)
 {
   if (out && this->Size > 0)
@@ -343,4 +353,10 @@ vtkSmartPointer<vtkDataArray> vtkDSMCreateFileArray(
       array->SetValues(values);
       return vtkSmartPointer<vtkDataArray>(array);
     });
+}
+
+int vtkDSMGetFileArrayType(rt::ScalarType type)
+{
+  return DispatchType(type,
+    [](auto* null) { return vtkTypeTraits<std::remove_pointer_t<decltype(null)>>::VTKTypeID(); });
 }

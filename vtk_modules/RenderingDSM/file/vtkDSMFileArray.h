@@ -53,6 +53,8 @@ public:
   void SetTypedComponent(vtkIdType, int, ValueType) { this->RefuseToWrite(); }
   ///@}
 
+  /// Of a copy of all, as of GetVoidPointer.
+  vtkArrayIterator* NewIterator() override;
   void* GetVoidPointer(vtkIdType index) override;
   void ExportToVoidPointer(void* out) override;
   /// Of what is in memory for this array alone.
@@ -124,5 +126,7 @@ const vtkDSMFileValues* vtkDSMGetFileValues(vtkAbstractArray* array);
 /// An array that shows them, of their type, with the file's name for it.
 vtkSmartPointer<vtkDataArray> vtkDSMCreateFileArray(
   const std::shared_ptr<const vtkDSMFileValues>& values);
+/// VTK's number (VTK_FLOAT and so on) for its type.
+int vtkDSMGetFileArrayType(rt::ScalarType type);
 
 #endif

@@ -278,6 +278,7 @@ int vtkDSMVolumeReader::RequestInformation(
   information->Set(vtkDataObject::SPACING(), geometry.Spacing, 3);
   information->Set(vtkDataObject::DIRECTION(), geometry.Direction, 9);
   information->Set(vtkAlgorithm::CAN_PRODUCE_SUB_EXTENT(), 1);
+  this->TellOfScalars(information);
   information->Remove(Pipeline::TIME_STEPS());
   information->Remove(Pipeline::TIME_RANGE());
   if (file.GetSteps() > 1)
@@ -294,6 +295,39 @@ int vtkDSMVolumeReader::RequestInformation(
   return 1;
 }
 
+bool vtkDSMVolumeReader::IsChosen(const vol::FileArray& array) const
+{
+  vtkDataArraySelection* const selection = array.OnCells ? this->CellArrays : this->PointArrays;
+  return selection->ArrayIsEnabled(array.Name.c_str()) != 0;
+}
+
+const vol::FileArray* vtkDSMVolumeReader::FindScalars() const
+{
+  const vol::FileArray* first = nullptr;
+  for (const vol::FileArray& array : this->Self->File->GetArrays())
+  {
+    if (!array.OnCells && this->IsChosen(array))
+    {
+      if (array.Components == 1)
+      {
+        return &array;
+      }
+      first = first ? first : &array;
+    }
+  }
+  return first;
+}
+
+void vtkDSMVolumeReader::TellOfScalars(vtkInformation* information) const
+{
+  information->Remove(vtkDataObject::POINT_DATA_VECTOR());
+  if (const vol::FileArray* const scalars = this->FindScalars())
+  {
+    vtkDataObject::SetPointDataActiveScalarInfo(
+      information, vtkDSMGetFileArrayType(scalars->Type), scalars->Components);
+  }
+}
+
 void vtkDSMVolumeReader::AddArrays(vtkImageData* image, int step)
 {
   const int nextStep = this->Self->Advance(step);
@@ -302,11 +336,11 @@ void vtkDSMVolumeReader::AddArrays(vtkImageData* image, int step)
   image->GetExtent(extent);
   const rt::Index3 first = file->GetGeometry().First;
   const auto& arrays = file->GetArrays();
+  const vol::FileArray* const scalars = this->FindScalars();
   for (std::size_t index = 0; index < arrays.size(); ++index)
   {
     const vol::FileArray& array = arrays[index];
-    vtkDataArraySelection* selection = array.OnCells ? this->CellArrays : this->PointArrays;
-    if (!selection->ArrayIsEnabled(array.Name.c_str()))
+    if (!this->IsChosen(array))
     {
       continue;
     }
@@ -333,7 +367,7 @@ void vtkDSMVolumeReader::AddArrays(vtkImageData* image, int step)
       : image->GetPointData();
     const vtkSmartPointer<vtkDataArray> shown = vtkDSMCreateFileArray(values);
     attributes->AddArray(shown);
-    if (!attributes->GetScalars() && array.Components == 1)
+    if (array.OnCells ? !attributes->GetScalars() && array.Components == 1 : &array == scalars)
     {
       attributes->SetScalars(shown);
     }

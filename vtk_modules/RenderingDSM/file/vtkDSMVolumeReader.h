@@ -23,6 +23,10 @@
 #include <vector> // for ivars
 
 class vtkDataArraySelection;
+namespace vol
+{
+struct FileArray;
+}
 
 class VTKRENDERINGDSM_EXPORT vtkDSMVolumeReader : public vtkImageAlgorithm
 {
@@ -123,6 +127,11 @@ private:
   void TellOfRest() const;
   /// Says what is wrong; what RequestInformation and RequestData return then.
   int Refuse(vtkInformation* information, const std::exception& error);
+  bool IsChosen(const vol::FileArray& array) const;
+  /// The image's: the first chosen array of points that has one component, or else the first one. Null: there is none.
+  const vol::FileArray* FindScalars() const;
+  /// The type of the scalars: filters of images make room by it before the values are there.
+  void TellOfScalars(vtkInformation* information) const;
   void AddArrays(vtkImageData* image, int step);
 
   std::vector<std::string> FileNames;
