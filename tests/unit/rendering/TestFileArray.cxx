@@ -6,6 +6,7 @@
 #include "vtkImageData.h"
 #include "vtkNew.h"
 #include "vtkPointData.h"
+#include "vtkSmartPointer.h"
 
 #include <gtest/gtest.h>
 
@@ -69,4 +70,14 @@ TEST(FileArray, OfSeveralTypesReadInTurn)
     ASSERT_EQ(first->GetComponent(tuple, 0), tuple + 0.5) << tuple;
     ASSERT_EQ(second->GetComponent(tuple, 0), tuple + 1000) << tuple;
   }
+}
+
+TEST(FileArray, OthersThatAreMadeLikeItAreVtksOwn)
+{
+  const BareFile<float> floats(0.5f);
+  vtkNew<vtkDSMVolumeReader> reader;
+  vtkDataArray* const array = Open(reader, floats.Path, VTK_FLOAT);
+  ASSERT_TRUE(array);
+  const auto other = vtkSmartPointer<vtkDataArray>::Take(array->NewInstance());
+  EXPECT_TRUE(other->IsA("vtkFloatArray")) << other->GetClassName();
 }

@@ -16,7 +16,6 @@
 #include "vtkDSMCompatibility.h"
 #include "vtkDSMFileValues.h"
 
-#include "vtkAOSDataArrayTemplate.h"
 #include "vtkGenericDataArray.h"
 
 #include <atomic>
@@ -64,10 +63,10 @@ protected:
   vtkDSMFileArray();
   ~vtkDSMFileArray() override;
 
-  /// Others that are made like this one are ordinary arrays.
+  /// Others that are made like this one are ordinary arrays, of the class that VTK itself makes.
   vtkObjectBase* NewInstanceInternal() const override
   {
-    return vtkAOSDataArrayTemplate<ValueType>::New();
+    return vtkDataArray::CreateDataArray(this->GetDataType());
   }
 
   bool AllocateTuples(vtkIdType) { return this->RefuseToWrite(); }
