@@ -26,6 +26,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <system_error>
+#include <utility>
 #include <vector>
 
 namespace
@@ -336,7 +337,7 @@ void vtkDSMVolumeReader::AddArrays(vtkImageData* image, int step)
   image->GetExtent(extent);
   const rt::Index3 first = file->GetGeometry().First;
   const auto& arrays = file->GetArrays();
-  const vol::FileArray* const scalars = this->FindScalars();
+  std::vector<std::pair<const vol::FileArray*, vtkSmartPointer<vtkDataArray>>> found;
   for (std::size_t index = 0; index < arrays.size(); ++index)
   {
     const vol::FileArray& array = arrays[index];
@@ -362,12 +363,19 @@ void vtkDSMVolumeReader::AddArrays(vtkImageData* image, int step)
           (static_cast<double>(index) + part) / static_cast<double>(arrays.size()));
         return this->AbortExecute == 0;
       });
-    vtkDataSetAttributes* attributes = array.OnCells
+    found.emplace_back(&array, vtkDSMCreateFileArray(values));
+  }
+  // An image keeps its scalars from one execution to the next: when a file cannot be read, they stay for the last
+  // picture, and else they go.
+  image->GetPointData()->Initialize();
+  const vol::FileArray* const scalars = this->FindScalars();
+  for (const auto& [array, shown] : found)
+  {
+    vtkDataSetAttributes* attributes = array->OnCells
       ? static_cast<vtkDataSetAttributes*>(image->GetCellData())
       : image->GetPointData();
-    const vtkSmartPointer<vtkDataArray> shown = vtkDSMCreateFileArray(values);
     attributes->AddArray(shown);
-    if (array.OnCells ? !attributes->GetScalars() && array.Components == 1 : &array == scalars)
+    if (array->OnCells ? !attributes->GetScalars() && array->Components == 1 : array == scalars)
     {
       attributes->SetScalars(shown);
     }
@@ -391,8 +399,6 @@ int vtkDSMVolumeReader::RequestData(
   int extent[6];
   information->Get(Pipeline::UPDATE_EXTENT(), extent);
   image->SetExtent(extent);
-  // An image keeps its scalars from one execution to the next, for who would write over them.
-  image->GetPointData()->Initialize();
   const vol::FileGeometry& geometry = this->Self->File->GetGeometry();
   image->SetOrigin(geometry.Origin);
   image->SetSpacing(geometry.Spacing);
