@@ -48,6 +48,28 @@ void ForgetAskedExtents(vtkInformation* information)
   }
 }
 
+/// Whether what comes out here goes to a filter of a class, also through others.
+bool Feeds(vtkInformation* information, const char* name)
+{
+  vtkExecutive** const consumers = vtkExecutive::CONSUMERS()->GetExecutives(information);
+  for (int number = 0; number < vtkExecutive::CONSUMERS()->Length(information); ++number)
+  {
+    if (consumers[number]->GetAlgorithm()->IsA(name))
+    {
+      return true;
+    }
+    vtkInformationVector* const outputs = consumers[number]->GetOutputInformation();
+    for (int port = 0; port < outputs->GetNumberOfInformationObjects(); ++port)
+    {
+      if (Feeds(outputs->GetInformationObject(port), name))
+      {
+        return true;
+      }
+    }
+  }
+  return false;
+}
+
 } // namespace
 
 vtkStandardNewMacro(vtkDSMVolumeReader);
@@ -329,8 +351,10 @@ void vtkDSMVolumeReader::TellOfScalars(vtkInformation* information) const
   }
 }
 
-void vtkDSMVolumeReader::AddArrays(vtkImageData* image, int step)
+void vtkDSMVolumeReader::AddArrays(vtkImageData* image, vtkInformation* information, int step)
 {
+  // Of arrays that are not of its own classes, VTK's filter adds up steps where it should not, and says nothing.
+  const bool inMemory = Feeds(information, "vtkTemporalStatistics");
   const int nextStep = this->Self->Advance(step);
   const auto& file = this->Self->File;
   int extent[6];
@@ -363,7 +387,14 @@ void vtkDSMVolumeReader::AddArrays(vtkImageData* image, int step)
           (static_cast<double>(index) + part) / static_cast<double>(arrays.size()));
         return this->AbortExecute == 0;
       });
-    found.emplace_back(&array, vtkDSMCreateFileArray(values));
+    vtkSmartPointer<vtkDataArray> shown = vtkDSMCreateFileArray(values);
+    if (inMemory)
+    {
+      const auto copy = vtkSmartPointer<vtkDataArray>::Take(shown->NewInstance());
+      copy->DeepCopy(shown);
+      shown = copy;
+    }
+    found.emplace_back(&array, std::move(shown));
   }
   // An image keeps its scalars from one execution to the next: when a file cannot be read, they stay for the last
   // picture, and else they go.
@@ -418,7 +449,7 @@ int vtkDSMVolumeReader::RequestData(
   }
   try
   {
-    this->AddArrays(image, step);
+    this->AddArrays(image, information, step);
   }
   catch (const std::exception& error)
   {
