@@ -25,6 +25,7 @@
 #include <climits>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <system_error>
 #include <utility>
 #include <vector>
@@ -32,42 +33,45 @@
 namespace
 {
 
+/// Those behind an output, also behind others.
+void VisitConsumers(vtkInformation* information, const std::function<void(vtkExecutive*)>& visit)
+{
+  vtkExecutive** const consumers = vtkExecutive::CONSUMERS()->GetExecutives(information);
+  for (int number = 0; number < vtkExecutive::CONSUMERS()->Length(information); ++number)
+  {
+    visit(consumers[number]);
+    vtkInformationVector* const outputs = consumers[number]->GetOutputInformation();
+    for (int port = 0; port < outputs->GetNumberOfInformationObjects(); ++port)
+    {
+      VisitConsumers(outputs->GetInformationObject(port), visit);
+    }
+  }
+}
+
 /// A pipeline adds up the extents that are asked of it until they have come. What was refused must not be asked
 /// for again with what comes next, which may be smaller: neither here nor by whoever is behind.
 void ForgetAskedExtents(vtkInformation* information)
 {
   information->Remove(vtkStreamingDemandDrivenPipeline::COMBINED_UPDATE_EXTENT());
-  vtkExecutive** const consumers = vtkExecutive::CONSUMERS()->GetExecutives(information);
-  for (int number = 0; number < vtkExecutive::CONSUMERS()->Length(information); ++number)
-  {
-    vtkInformationVector* const outputs = consumers[number]->GetOutputInformation();
-    for (int port = 0; port < outputs->GetNumberOfInformationObjects(); ++port)
+  VisitConsumers(information,
+    [](vtkExecutive* consumer)
     {
-      ForgetAskedExtents(outputs->GetInformationObject(port));
-    }
-  }
+      vtkInformationVector* const outputs = consumer->GetOutputInformation();
+      for (int port = 0; port < outputs->GetNumberOfInformationObjects(); ++port)
+      {
+        outputs->GetInformationObject(port)->Remove(
+          vtkStreamingDemandDrivenPipeline::COMBINED_UPDATE_EXTENT());
+      }
+    });
 }
 
 /// Whether what comes out here goes to a filter of a class, also through others.
 bool Feeds(vtkInformation* information, const char* name)
 {
-  vtkExecutive** const consumers = vtkExecutive::CONSUMERS()->GetExecutives(information);
-  for (int number = 0; number < vtkExecutive::CONSUMERS()->Length(information); ++number)
-  {
-    if (consumers[number]->GetAlgorithm()->IsA(name))
-    {
-      return true;
-    }
-    vtkInformationVector* const outputs = consumers[number]->GetOutputInformation();
-    for (int port = 0; port < outputs->GetNumberOfInformationObjects(); ++port)
-    {
-      if (Feeds(outputs->GetInformationObject(port), name))
-      {
-        return true;
-      }
-    }
-  }
-  return false;
+  bool any = false;
+  VisitConsumers(
+    information, [&](vtkExecutive* consumer) { any = any || consumer->GetAlgorithm()->IsA(name); });
+  return any;
 }
 
 } // namespace
