@@ -23,6 +23,7 @@
 
 #include <algorithm>
 #include <climits>
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
@@ -395,7 +396,11 @@ void vtkDSMVolumeReader::AddArrays(vtkImageData* image, vtkInformation* informat
     if (inMemory)
     {
       const auto copy = vtkSmartPointer<vtkDataArray>::Take(shown->NewInstance());
-      copy->DeepCopy(shown);
+      copy->SetName(shown->GetName());
+      copy->SetNumberOfComponents(shown->GetNumberOfComponents());
+      copy->SetNumberOfTuples(shown->GetNumberOfTuples());
+      values->ReadBox(
+        { rt::Index3(0), box.GetSize() }, static_cast<std::byte*>(copy->GetVoidPointer(0)));
       shown = copy;
     }
     found.emplace_back(&array, std::move(shown));
