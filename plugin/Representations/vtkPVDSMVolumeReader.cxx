@@ -87,3 +87,8 @@ void vtkPVDSMVolumeReader::SetRawSpacing(const double spacing[3])
 {
   this->Superclass::SetRawSpacing(spacing);
 }
+
+void vtkPVDSMVolumeReader::SetValuesInMemory(bool areInMemory)
+{
+  this->Superclass::SetValuesInMemory(areInMemory);
+}

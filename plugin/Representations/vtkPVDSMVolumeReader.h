@@ -37,6 +37,7 @@ public:
   void SetRawHeaderBytes(vtkIdType bytes) override;
   void SetRawSpacing(double x, double y, double z) override;
   void SetRawSpacing(const double spacing[3]) override;
+  void SetValuesInMemory(bool areInMemory) override;
   ///@}
 
 protected:

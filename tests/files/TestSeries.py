@@ -10,7 +10,7 @@ import sys
 from dsm_testing import *
 
 FILES = sys.argv[3]
-TILE_BRICKS = 6  # that rays of a tile meet, at most
+TILE_BRICKS = 8  # that rays of a tile meet, at most: it is narrower than a brick, so those around a corner
 TIMES = (0.0, 1.0, 3.0, 2.0, 0.0)
 os.environ["XDG_CACHE_HOME"] = os.path.join(OUTPUT, "caches", str(get_ranks()))
 

@@ -45,6 +45,21 @@ bool Contains(const rt::Box& box, const rt::Index3& sample)
     sample.y < box.Max.y && sample.z >= box.Min.z && sample.z < box.Max.z;
 }
 
+/// For a copy of all. Throws dsm::Error, which goes on from the array's name.
+void RequireRoom(std::size_t bytes)
+{
+  if (bytes > dsm::GetAvailableHostMemory() / 2)
+  {
+    throw dsm::Error("is wanted as a whole, and its " + dsm::FormatMebibytes(bytes) +
+      " do not fit half of the memory that is left. Extract a subset first.");
+  }
+}
+
+void ReadAll(const vtkDSMFileValues& values, void* out)
+{
+  values.ReadBox({ rt::Index3(0), values.GetBox().GetSize() }, static_cast<std::byte*>(out));
+}
+
 } // namespace
 
 /// As many bytes of zeros as one likes, which take no memory as long as nobody writes.
@@ -171,14 +186,9 @@ void* vtkDSMFileArray<ValueTypeT>::GetVoidPointer(vtkIdType index)
     const std::size_t bytes = count * sizeof(ValueType);
     try
     {
-      if (bytes > dsm::GetAvailableHostMemory() / 2)
-      {
-        throw dsm::Error("is wanted as a whole, and its " + dsm::FormatMebibytes(bytes) +
-          " do not fit half of the memory that is left. Extract a subset first.");
-      }
+      RequireRoom(bytes);
       std::vector<ValueType> copy(count);
-      const rt::Index3 size = this->Values->GetSample(this->Values->GetCount() - 1) + rt::Index3(1);
-      this->Values->ReadBox({ rt::Index3(0), size }, reinterpret_cast<std::byte*>(copy.data()));
+      ReadAll(*this->Values, copy.data());
       this->Copy = std::move(copy);
     }
     catch (const std::exception& error)
@@ -353,6 +363,26 @@ vtkSmartPointer<vtkDataArray> vtkDSMCreateFileArray(
       array->SetValues(values);
       return vtkSmartPointer<vtkDataArray>(array);
     });
+}
+
+vtkSmartPointer<vtkDataArray> vtkDSMReadFileArray(const vtkDSMFileValues& values)
+{
+  const vol::FileArray& array = values.GetArray();
+  const auto made = vtkSmartPointer<vtkDataArray>::Take(
+    vtkDataArray::CreateDataArray(vtkDSMGetFileArrayType(array.Type)));
+  try
+  {
+    RequireRoom(static_cast<std::size_t>(values.GetCount()) * array.GetSampleBytes());
+  }
+  catch (const dsm::Error& error)
+  {
+    throw dsm::Error("The array '" + array.Name + "' " + error.what());
+  }
+  made->SetName(array.Name.c_str());
+  made->SetNumberOfComponents(array.Components);
+  made->SetNumberOfTuples(values.GetCount());
+  ReadAll(values, made->GetVoidPointer(0));
+  return made;
 }
 
 int vtkDSMGetFileArrayType(rt::ScalarType type)

@@ -125,6 +125,8 @@ const vtkDSMFileValues* vtkDSMGetFileValues(vtkAbstractArray* array);
 /// An array that shows them, of their type, with the file's name for it.
 vtkSmartPointer<vtkDataArray> vtkDSMCreateFileArray(
   const std::shared_ptr<const vtkDSMFileValues>& values);
+/// An ordinary array with all of them, which takes no more than half of what the host has left. Throws dsm::Error.
+vtkSmartPointer<vtkDataArray> vtkDSMReadFileArray(const vtkDSMFileValues& values);
 /// VTK's number (VTK_FLOAT and so on) for its type.
 int vtkDSMGetFileArrayType(rt::ScalarType type);
 

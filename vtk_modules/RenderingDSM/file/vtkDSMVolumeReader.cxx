@@ -10,10 +10,8 @@
 #include "vtkCommand.h"
 #include "vtkDataArray.h"
 #include "vtkDataArraySelection.h"
-#include "vtkExecutive.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
-#include "vtkInformationExecutivePortVectorKey.h"
 #include "vtkInformationVector.h"
 #include "vtkMultiProcessController.h"
 #include "vtkObjectFactory.h"
@@ -26,7 +24,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
-#include <functional>
 #include <system_error>
 #include <utility>
 #include <vector>
@@ -34,45 +31,12 @@
 namespace
 {
 
-/// Those behind an output, also behind others.
-void VisitConsumers(vtkInformation* information, const std::function<void(vtkExecutive*)>& visit)
+/// Nothing can be asked for. A pipeline adds up the extents that are asked of it until they have come, here and behind
+/// all filters: what is refused must not be asked for again with what comes next, which may be smaller.
+void OfferNothing(vtkInformation* information)
 {
-  vtkExecutive** const consumers = vtkExecutive::CONSUMERS()->GetExecutives(information);
-  for (int number = 0; number < vtkExecutive::CONSUMERS()->Length(information); ++number)
-  {
-    visit(consumers[number]);
-    vtkInformationVector* const outputs = consumers[number]->GetOutputInformation();
-    for (int port = 0; port < outputs->GetNumberOfInformationObjects(); ++port)
-    {
-      VisitConsumers(outputs->GetInformationObject(port), visit);
-    }
-  }
-}
-
-/// A pipeline adds up the extents that are asked of it until they have come. What was refused must not be asked
-/// for again with what comes next, which may be smaller: neither here nor by whoever is behind.
-void ForgetAskedExtents(vtkInformation* information)
-{
-  information->Remove(vtkStreamingDemandDrivenPipeline::COMBINED_UPDATE_EXTENT());
-  VisitConsumers(information,
-    [](vtkExecutive* consumer)
-    {
-      vtkInformationVector* const outputs = consumer->GetOutputInformation();
-      for (int port = 0; port < outputs->GetNumberOfInformationObjects(); ++port)
-      {
-        outputs->GetInformationObject(port)->Remove(
-          vtkStreamingDemandDrivenPipeline::COMBINED_UPDATE_EXTENT());
-      }
-    });
-}
-
-/// Whether what comes out here goes to a filter of a class, also through others.
-bool Feeds(vtkInformation* information, const char* name)
-{
-  bool any = false;
-  VisitConsumers(
-    information, [&](vtkExecutive* consumer) { any = any || consumer->GetAlgorithm()->IsA(name); });
-  return any;
+  const int none[6] = { 0, -1, 0, -1, 0, -1 };
+  information->Set(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), none, 6);
 }
 
 } // namespace
@@ -264,9 +228,8 @@ void vtkDSMVolumeReader::TellOfRest() const
   }
 }
 
-int vtkDSMVolumeReader::Refuse(vtkInformation* information, const std::exception& error)
+int vtkDSMVolumeReader::Refuse(const std::exception& error)
 {
-  ForgetAskedExtents(information);
   vtkErrorMacro(<< error.what());
   return 0;
 }
@@ -280,8 +243,7 @@ int vtkDSMVolumeReader::RequestInformation(
   if (*std::min_element(this->RawDimensions, this->RawDimensions + 3) < 1 &&
     vol::IsBareFile(this->GetFileName()))
   {
-    const int none[6] = { 0, -1, 0, -1, 0, -1 };
-    information->Set(Pipeline::WHOLE_EXTENT(), none, 6);
+    OfferNothing(information);
     this->Self->File.reset();
     return 1;
   }
@@ -291,7 +253,8 @@ int vtkDSMVolumeReader::RequestInformation(
   }
   catch (const std::exception& error)
   {
-    return this->Refuse(information, error);
+    OfferNothing(information);
+    return this->Refuse(error);
   }
   const vol::VolumeFile& file = *this->Self->File;
   const vol::FileGeometry& geometry = file.GetGeometry();
@@ -356,10 +319,8 @@ void vtkDSMVolumeReader::TellOfScalars(vtkInformation* information) const
   }
 }
 
-void vtkDSMVolumeReader::AddArrays(vtkImageData* image, vtkInformation* information, int step)
+void vtkDSMVolumeReader::AddArrays(vtkImageData* image, int step)
 {
-  // Of arrays that are not of its own classes, VTK's filter adds up steps where it should not, and says nothing.
-  const bool inMemory = Feeds(information, "vtkTemporalStatistics");
   const int nextStep = this->Self->Advance(step);
   const auto& file = this->Self->File;
   int extent[6];
@@ -392,18 +353,8 @@ void vtkDSMVolumeReader::AddArrays(vtkImageData* image, vtkInformation* informat
           (static_cast<double>(index) + part) / static_cast<double>(arrays.size()));
         return this->AbortExecute == 0;
       });
-    vtkSmartPointer<vtkDataArray> shown = vtkDSMCreateFileArray(values);
-    if (inMemory)
-    {
-      const auto copy = vtkSmartPointer<vtkDataArray>::Take(shown->NewInstance());
-      copy->SetName(shown->GetName());
-      copy->SetNumberOfComponents(shown->GetNumberOfComponents());
-      copy->SetNumberOfTuples(shown->GetNumberOfTuples());
-      values->ReadBox(
-        { rt::Index3(0), box.GetSize() }, static_cast<std::byte*>(copy->GetVoidPointer(0)));
-      shown = copy;
-    }
-    found.emplace_back(&array, std::move(shown));
+    found.emplace_back(
+      &array, this->ValuesInMemory ? vtkDSMReadFileArray(*values) : vtkDSMCreateFileArray(values));
   }
   // An image keeps its scalars from one execution to the next: when a file cannot be read, they stay for the last
   // picture, and else they go.
@@ -432,7 +383,7 @@ int vtkDSMVolumeReader::RequestData(
   }
   catch (const std::exception& error)
   {
-    return this->Refuse(information, error);
+    return this->Refuse(error);
   }
   vtkImageData* image = vtkImageData::GetData(output);
   using Pipeline = vtkStreamingDemandDrivenPipeline;
@@ -458,11 +409,11 @@ int vtkDSMVolumeReader::RequestData(
   }
   try
   {
-    this->AddArrays(image, information, step);
+    this->AddArrays(image, step);
   }
   catch (const std::exception& error)
   {
-    return this->Refuse(information, error);
+    return this->Refuse(error);
   }
   return 1;
 }

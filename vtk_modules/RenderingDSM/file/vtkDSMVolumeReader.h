@@ -98,6 +98,17 @@ public:
 
   ///@{
   /**
+   * Whether the output has ordinary arrays, each read as a whole; false by default. Before VTK 9.4,
+   * vtkTemporalStatistics needs it: of others it adds up steps wrongly, without a word. It is an error when an array
+   * takes more than half of what the host has left.
+   */
+  vtkSetMacro(ValuesInMemory, bool);
+  vtkGetMacro(ValuesInMemory, bool);
+  vtkBooleanMacro(ValuesInMemory, bool);
+  ///@}
+
+  ///@{
+  /**
    * MiB of values of files that stay in memory, in the whole process; 128 by default.
    */
   static void SetCacheMebibytes(int size);
@@ -126,13 +137,13 @@ private:
   /// Warns of bytes behind the values of a bare file: what was entered may be wrong. On the first rank.
   void TellOfRest() const;
   /// Says what is wrong; what RequestInformation and RequestData return then.
-  int Refuse(vtkInformation* information, const std::exception& error);
+  int Refuse(const std::exception& error);
   bool IsChosen(const vol::FileArray& array) const;
   /// The image's: the first chosen array of points that has one component, or else the first one. Null: there is none.
   const vol::FileArray* FindScalars() const;
   /// The type of the scalars: filters of images make room by it before the values are there.
   void TellOfScalars(vtkInformation* information) const;
-  void AddArrays(vtkImageData* image, vtkInformation* information, int step);
+  void AddArrays(vtkImageData* image, int step);
 
   std::vector<std::string> FileNames;
   std::string SelectedFor; ///< the first file when the arrays were chosen
@@ -144,6 +155,7 @@ private:
   bool RawBigEndian = false;
   vtkIdType RawHeaderBytes = 0;
   double RawSpacing[3] = { 1.0, 1.0, 1.0 };
+  bool ValuesInMemory = false;
   vtkNew<vtkDataArraySelection> PointArrays;
   vtkNew<vtkDataArraySelection> CellArrays;
   std::unique_ptr<Internals> Self;
