@@ -19,6 +19,10 @@
 #include <thread>
 #include <vector>
 
+#include <linux/capability.h>
+#include <sys/syscall.h>
+#include <unistd.h>
+
 namespace
 {
 
@@ -346,6 +350,51 @@ TEST_F(DamagedFile, WithAWrongByteSaysSo)
   const Json index = this->Copy("three_sharded.zarr");
   FlipByte(this->Path / "c/0/0/0", 20);
   ExpectWords(Read(index), { "index", "checksum" });
+}
+
+/// Meanwhile, root reads no more than others do. Of this thread.
+class WithoutPrivileges
+{
+public:
+  WithoutPrivileges()
+  {
+    __user_cap_data_struct none[_LINUX_CAPABILITY_U32S_3];
+    this->Call(SYS_capget, this->Before);
+    std::copy(std::begin(this->Before), std::end(this->Before), none);
+    none[0].effective = none[1].effective = 0;
+    this->Call(SYS_capset, none);
+  }
+  ~WithoutPrivileges() { this->Call(SYS_capset, this->Before); }
+  WithoutPrivileges(const WithoutPrivileges&) = delete;
+  void operator=(const WithoutPrivileges&) = delete;
+
+private:
+  static void Call(long what, __user_cap_data_struct* data)
+  {
+    __user_cap_header_struct header{ _LINUX_CAPABILITY_VERSION_3, 0 };
+    ASSERT_EQ(syscall(what, &header, data), 0);
+  }
+
+  __user_cap_data_struct Before[_LINUX_CAPABILITY_U32S_3] = {};
+};
+
+TEST_F(DamagedFile, ThatMayNotBeReadSaysSo)
+{
+  const auto forbid = [](const fs::path& path) { fs::permissions(path, fs::perms::none); };
+  for (const char* name : { "chunked.h5", "attached.nrrd", "attached.mha", "bare.raw" })
+  {
+    const Json entry = this->Copy(name);
+    forbid(this->Path);
+    const WithoutPrivileges meanwhile;
+    ExpectWords(Read(entry), { name, "cannot be opened", "Permission denied" });
+  }
+  const Json chunks = this->Copy("raw_float32.zarr");
+  forbid(this->Path / "1.1.1");
+  const Json described = this->Copy("ome.zarr");
+  forbid(this->Path / ".zattrs");
+  const WithoutPrivileges meanwhile;
+  ExpectWords(Read(chunks), { "1.1.1", "Permission denied" });
+  ExpectWords(Read(described), { ".zattrs", "Permission denied" });
 }
 
 TEST_F(DamagedFile, ThatChangesOrGoesAwaySaysSo)

@@ -116,6 +116,11 @@ std::shared_ptr<const VolumeFile> OpenVolumeFile(
   {
     throw dsm::Error("There is no file '" + path + "'.");
   }
+  if (!std::filesystem::is_directory(path))
+  {
+    // What cannot be read would look like nothing that is known.
+    const PositionedFile readable(path);
+  }
   switch (FindFormat(path))
   {
     case Format::Raw:

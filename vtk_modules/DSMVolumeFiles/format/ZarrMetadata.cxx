@@ -3,7 +3,9 @@
 
 #include "DSMCore/base/Error.h"
 
+#include <cerrno>
 #include <cstring>
+#include <filesystem>
 #include <fstream>
 #include <limits>
 #include <map>
@@ -226,10 +228,15 @@ bool ZarrMetadata::IsVolume() const
 
 nlohmann::json ReadZarrJson(const std::string& folder, const std::string& name)
 {
-  std::ifstream file(folder + "/" + name);
-  if (!file)
+  const std::string path = folder + "/" + name;
+  if (!std::filesystem::exists(path))
   {
     return {};
+  }
+  std::ifstream file(path);
+  if (!file)
+  {
+    Refuse(folder, "its file " + name + " cannot be read: " + std::strerror(errno) + ".");
   }
   try
   {

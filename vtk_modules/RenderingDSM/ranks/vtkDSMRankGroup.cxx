@@ -240,7 +240,9 @@ void vtkDSMRankGroup::TellOrganization()
     this->Store.GetSettings().Organization == dsm::MemoryOrganization::Automatic;
   // Groups come and go with what is shown; the user need not hear the same again.
   static dsm::MemoryOrganization told = dsm::MemoryOrganization::Automatic;
-  if (!automatic || this->Store.GetOrganization() == told)
+  const std::string& explanation =
+    this->Store.GetExplanation(); // none before there is anything to keep
+  if (!automatic || explanation.empty() || this->Store.GetOrganization() == told)
   {
     return;
   }
@@ -248,7 +250,7 @@ void vtkDSMRankGroup::TellOrganization()
   // One rank has no choice to make.
   if (this->Messenger.GetRank() == 0 && this->Messenger.GetSize() > 1)
   {
-    const std::string text = "DSM Ray Tracer: " + this->Store.GetExplanation() + "\n";
+    const std::string text = "DSM Ray Tracer: " + explanation + "\n";
     vtkOutputWindow::GetInstance()->DisplayText(text.c_str());
   }
 }
