@@ -155,8 +155,10 @@ def describe(source):
     filter_.VariablesofInterest = ["f"]
     filter_.UpdatePipeline()
     model = servermanager.Fetch(filter_, idx=0)
-    while not model.IsA("vtkTable"):
-        model = model.GetBlock(0)
+    if not model.IsA("vtkTable"):
+        tables = model.NewIterator()
+        tables.InitTraversal()
+        model = tables.GetCurrentDataObject()
     found = [model.GetValueByName(0, name).ToDouble() for name in ("Minimum", "Maximum", "Mean")]
     simple.Delete(filter_)
     return found
