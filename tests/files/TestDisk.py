@@ -66,7 +66,12 @@ check(all(get_covered(picture).mean() > 0.05 for picture in expected), "somethin
 simple.Delete(plain)
 render(view)
 
-display = show(source, view, [0.3], "values", DSMMemory=MEMORY)
+display = show(source, view, [0.3], "values")
+render(view)
+with Messages() as messages:
+    display.DSMMemory = MEMORY
+    render(view)
+check("ERROR" not in messages.text, f"a limit that comes later is kept, too: {messages.text}")
 for organization in ("Automatic", "Object based", "Page based", "Replicated"):
     display.DSMMemoryOrganization = organization
     with Messages() as messages:

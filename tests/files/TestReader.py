@@ -154,12 +154,8 @@ def describe(source):
     filter_ = simple.DescriptiveStatistics(Input=source, ModelInput=None)
     filter_.VariablesofInterest = ["f"]
     filter_.UpdatePipeline()
-    model = servermanager.Fetch(filter_, idx=0)
-    if not model.IsA("vtkTable"):
-        tables = model.NewIterator()
-        tables.InitTraversal()
-        model = tables.GetCurrentDataObject()
-    found = [model.GetValueByName(0, name).ToDouble() for name in ("Minimum", "Maximum", "Mean")]
+    of_model = filter_.SMProxy.GetOutputPort(0).GetDataInformation().GetRowDataInformation()
+    found = [of_model.GetArrayInformation(name).GetComponentRange(0) for name in ("Minimum", "Maximum", "Mean")]
     simple.Delete(filter_)
     return found
 

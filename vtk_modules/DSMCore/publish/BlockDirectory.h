@@ -37,9 +37,9 @@ public:
   std::uint64_t GetTotalBytes() const;
   /// Whoever publishes keeps so much more on every rank.
   void AddIndexBytes(std::uint64_t bytes) { this->IndexBytes += bytes; }
-  /// And so much that all who publish share: what is most of any counts, once.
-  void SetSharedBytes(std::uint64_t bytes) { this->SharedBytes = bytes; }
-  std::uint64_t GetSharedBytes() const { return this->SharedBytes; }
+  /// Its blocks are read through a cache that all such sources share: BlockStore::Settings::SourceCacheBytes.
+  void SetReadThroughCache() { this->ReadThroughCache = true; }
+  bool IsReadThroughCache() const { return this->ReadThroughCache; }
   /// What the directory, and the index of those who published, take on every rank.
   std::uint64_t GetOwnBytes() const
   {
@@ -53,8 +53,8 @@ private:
   std::uint32_t Largest; ///< of these: it is asked for with every brick that is foreseen
   BlockAssigner Assigner;
   std::uint64_t IndexBytes = 0;
-  std::uint64_t SharedBytes = 0;
   bool FromSource = false;
+  bool ReadThroughCache = false;
   bool OnOwnersDisk = false;
 };
 

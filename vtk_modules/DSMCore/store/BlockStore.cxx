@@ -86,7 +86,8 @@ void BlockStore::SetSettings(const Settings& settings)
                 "published.");
   }
   if (settings.Organization != old.Organization || settings.MemoryBytes != old.MemoryBytes ||
-    settings.CacheBytes != old.CacheBytes || this->Explanation.empty())
+    settings.CacheBytes != old.CacheBytes || settings.SourceCacheBytes != old.SourceCacheBytes ||
+    this->Explanation.empty())
   {
     this->Settled = false;
   }
@@ -276,8 +277,8 @@ MemoryPlan BlockStore::MakePlan(
   {
     directories.push_back(next);
   }
-  return MemoryPlan(
-    std::move(directories), *this->Groups, std::move(budgets), AddressRange::GetPageBytes());
+  return MemoryPlan(std::move(directories), *this->Groups, std::move(budgets),
+    AddressRange::GetPageBytes(), this->Current.SourceCacheBytes);
 }
 
 void BlockStore::PutInForce(Decision&& decision)
@@ -518,12 +519,9 @@ void BlockStore::Retire(const std::shared_ptr<BlockSegment>& segment)
 StoreCounters BlockStore::GetCounters()
 {
   StoreCounters counters = this->Visit([](auto& store) { return store.GetCounters(); });
-  std::uint64_t shared = 0;
-  for (const auto& segment : this->Segments)
-  {
-    shared = std::max(shared, segment->GetDirectory().GetSharedBytes());
-  }
-  counters.TableBytes += shared;
+  const bool anyReadThrough = std::any_of(this->Segments.begin(), this->Segments.end(),
+    [](const auto& segment) { return segment->GetDirectory().IsReadThroughCache(); });
+  counters.TableBytes += anyReadThrough ? this->Current.SourceCacheBytes : 0;
   counters.MemoryBudget = this->Budget.Bytes;
   counters.Publications = this->Publications;
   counters.BytesPublished = this->BytesPublished;

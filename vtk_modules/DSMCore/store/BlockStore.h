@@ -47,6 +47,9 @@ public:
     std::uint64_t MemoryBytes = 0;
     /// The most that the cache may take of it, unless sources bring blocks: then it is the resident set, too.
     std::size_t CacheBytes = SIZE_MAX;
+    /// What of it sources of blocks keep in a cache of their own, all together, while there are any such
+    /// (BlockDirectory::SetReadThroughCache).
+    std::uint64_t SourceCacheBytes = 0;
     /// Number of workers that trace at a time.
     int Workers = 1;
     /// As many times the threads, where blocks are fetched: while some wait, others trace. 1: a

@@ -22,7 +22,7 @@ constexpr std::uint64_t MessageDivisor = 16;
 } // namespace
 
 MemoryPlan::MemoryPlan(std::vector<const BlockDirectory*> segments, const HostGroups& groups,
-  std::vector<Budget> budgets, std::size_t page)
+  std::vector<Budget> budgets, std::size_t page, std::uint64_t sourceCache)
   : Segments(std::move(segments))
   , Budgets(std::move(budgets))
   , OneGroup(groups.GetGroupCount() == 1)
@@ -36,15 +36,15 @@ MemoryPlan::MemoryPlan(std::vector<const BlockDirectory*> segments, const HostGr
 {
   this->Count(this->Blocks);
   this->Count(this->Pages);
-  std::uint64_t shared = 0;
+  bool anyReadThrough = false;
   for (const BlockDirectory* directory : this->Segments)
   {
     this->Blocks.Tables += BlockTable::CountTableBytes(*directory);
     this->Pages.Tables += PagedStore::Segment::CountTableBytes(*directory);
-    shared = std::max(shared, directory->GetSharedBytes());
+    anyReadThrough = anyReadThrough || directory->IsReadThroughCache();
   }
-  this->Blocks.Tables += shared;
-  this->Pages.Tables += shared;
+  this->Blocks.Tables += anyReadThrough ? sourceCache : 0;
+  this->Pages.Tables += anyReadThrough ? sourceCache : 0;
   for (int rank = 0; rank < static_cast<int>(this->Copies.size()); ++rank)
   {
     auto& copies = this->Copies[static_cast<std::size_t>(rank)];

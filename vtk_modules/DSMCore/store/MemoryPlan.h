@@ -32,9 +32,10 @@ public:
   static constexpr int MostRanks = 1 << 20;
 
   /// `segments`: of all that is published, what comes next included. `budgets`: by rank.
-  /// `page`: blocks take multiples of it in the page based organisation.
+  /// `page`: blocks take multiples of it in the page based organisation. `sourceCache`: bytes, counted once where
+  /// any segment is read through it.
   MemoryPlan(std::vector<const BlockDirectory*> segments, const HostGroups& groups,
-    std::vector<Budget> budgets, std::size_t page);
+    std::vector<Budget> budgets, std::size_t page, std::uint64_t sourceCache = 0);
 
   /// `wanted`, or what Automatic comes to. Where sources bring blocks, what would be replicated is object
   /// based, too. Throws MemoryShortage when a rank's memory does not suffice, with

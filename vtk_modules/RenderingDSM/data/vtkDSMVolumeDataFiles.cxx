@@ -4,18 +4,9 @@
 
 #include "DSMRayTracing/build/VoxelIndex.h"
 
-#include <cstdint>
 #include <optional>
 #include <string>
 #include <utility>
-
-namespace
-{
-
-/// The memory that a rank may take is divided by it for chunks of files.
-constexpr std::uint64_t ChunksDivisor = 8;
-
-} // namespace
 
 void vtkDSMVolumeData::PublishFile(const vtkDSMFileVolume& file, bool isCoarser,
   const vtkDSMFileValues* own, const std::string& what, const std::function<void(double)>& progress,
@@ -37,11 +28,7 @@ void vtkDSMVolumeData::PublishFile(const vtkDSMFileVolume& file, bool isCoarser,
       part.Source = staysInMemory ? std::move(old.Source)
                                   : std::make_shared<dsm::ReadingSource>(
                                       messenger, file.CreateReader(field.Lattice, true), name);
-      // Chunks of the file that are in memory have their part of what a rank may take.
-      const std::uint64_t memory = store.GetSettings().MemoryBytes;
-      const std::size_t chunks = vol::ChunkCache::GetShared().Restrict(
-        memory == 0 ? SIZE_MAX : static_cast<std::size_t>(memory / ChunksDivisor));
-      directory->SetSharedBytes(chunks);
+      directory->SetReadThroughCache();
       // A frame is of one level, which reads in the finest's place.
       directory->AddIndexBytes(file.GetTableBytes() +
         (isCoarser ? 0 : dsm::ReadingSource::MostReads * directory->GetLargest()) +

@@ -27,6 +27,9 @@ namespace
 /// So much of files is read before freed memory goes back to the system anew: it takes milliseconds.
 constexpr std::uint64_t LeastBytesOfFiles = std::uint64_t(64) << 20;
 
+/// The memory that a rank may take is divided by it for chunks of files.
+constexpr std::uint64_t ChunksDivisor = 8;
+
 /// The MPI_Comm of a controller that spans several processes, else null.
 const void* GetCommunicator(vtkMultiProcessController* controller)
 {
@@ -162,6 +165,9 @@ void vtkDSMRankGroup::Configure(Publisher* publisher, const vtkDSMMemorySettings
   next.Organization = merged.Organization;
   next.HostSharing = merged.HostSharing;
   next.MemoryBytes = merged.MemoryBytes;
+  next.SourceCacheBytes = vol::ChunkCache::GetShared().Restrict(merged.MemoryBytes == 0
+      ? SIZE_MAX
+      : static_cast<std::size_t>(merged.MemoryBytes / ChunksDivisor));
   next.ScratchDirectory = merged.ScratchDirectory;
   next.CacheBytes = static_cast<std::size_t>(merged.CacheBytes);
   next.Workers = merged.Threads > 0 ? merged.Threads : coresPerRank;
