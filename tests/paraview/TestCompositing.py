@@ -179,3 +179,21 @@ for opacity in (1.0, 0.5):
     different = (difference > 60).any(axis=2).mean()
     check(different < 0.01, f"axes, legend, text and selection at opacity {opacity}: "
           f"{100 * different:.2f} % of the pixels differ, by {difference.mean():.2f} in the mean")
+
+# What covers a pixel in part is blended with what is behind it, which may be another rank's.
+view = create_view()
+traced = show(source, view, [0.8], "f")
+place_camera(view)
+wall = simple.Plane(Origin=[-900, -900, -30], Point1=[900, -900, -30], Point2=[-900, 900, -30])
+traced.DSMSamplesPerPixel = 16
+view.UseFXAA = 0
+pictures = []
+for name in ("Surface", REPRESENTATION):
+    wall_shown = simple.Show(wall, view)
+    wall_shown.Representation = name
+    wall_shown.Ambient, wall_shown.Diffuse = 1.0, 0.0
+    wall_shown.AmbientColor = wall_shown.DiffuseColor = [1.0, 1.0, 0.2]
+    pictures.append(render(view, f"Wall{name.replace(' ', '')}"))
+different = abs(pictures[0] - pictures[1]).max(axis=2)
+check((different > 0).mean() < 0.01, f"{100 * (different > 0).mean():.2f} % of the pixels differ from a traced wall's")
+check(different.max() <= 3, f"by at most {different.max()}")

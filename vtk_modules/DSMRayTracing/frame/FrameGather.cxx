@@ -126,6 +126,46 @@ bool HasLayers(const std::vector<std::byte>& bytes)
   return header.Layers > 1;
 }
 
+/// A pixel of the picture.
+struct Edge
+{
+  std::uint32_t Place;
+  std::uint8_t Color[4];
+  float Depth;
+};
+
+std::vector<std::byte> PackEdges(const Frame& frame)
+{
+  std::vector<std::byte> bytes;
+  for (const Tile& tile : frame.Tiles)
+  {
+    for (int pixel = 0; pixel < tile.Width * tile.Height; ++pixel)
+    {
+      const std::uint8_t* color = &tile.Color[4 * static_cast<std::size_t>(pixel)];
+      if (color[3] > 0 && color[3] < 255)
+      {
+        const int row = tile.Y + pixel / tile.Width;
+        Edge edge{ static_cast<std::uint32_t>(row * frame.Width + tile.X + pixel % tile.Width), {},
+          tile.Depth[static_cast<std::size_t>(pixel)] };
+        std::copy_n(color, 4, edge.Color);
+        Append(bytes, &edge, 1);
+      }
+    }
+  }
+  return bytes;
+}
+
+void UnpackEdges(const std::vector<std::byte>& bytes, Picture& picture)
+{
+  for (std::size_t at = 0; at < bytes.size(); at += sizeof(Edge))
+  {
+    Edge edge;
+    std::memcpy(&edge, bytes.data() + at, sizeof(edge));
+    std::copy_n(edge.Color, 4, &picture.Color[4 * static_cast<std::size_t>(edge.Place)]);
+    picture.Depth[edge.Place] = edge.Depth;
+  }
+}
+
 Picture CreatePicture(const Frame& frame)
 {
   Picture picture;
@@ -180,6 +220,25 @@ Picture GatherFrame(dsm::Messenger& messenger, const Frame& frame)
   {
     throw dsm::Error("The ranks traced " + std::to_string(filled) + " of " +
       std::to_string(pixels) + " pixels: a tile was lost or traced twice.");
+  }
+  return picture;
+}
+
+Picture AssembleTilesWithEdges(dsm::Messenger& messenger, const Frame& frame)
+{
+  Picture picture;
+  const auto parts = messenger.GatherTogether("Gathering the frame's edges",
+    [&]
+    {
+      picture = AssembleTiles(frame);
+      return PackEdges(frame);
+    });
+  for (std::size_t rank = 0; rank < parts.size(); ++rank)
+  {
+    if (static_cast<int>(rank) != messenger.GetRank())
+    {
+      UnpackEdges(parts[rank], picture);
+    }
   }
   return picture;
 }

@@ -29,6 +29,10 @@ Picture AssembleTiles(const Frame& frame);
 /// every rank, when tiles are missing or stand twice.
 Picture GatherFrame(dsm::Messenger& messenger, const Frame& frame);
 
+/// Collective: AssembleTiles, and the pixels of the other ranks' tiles that their first layer covers in part. Throws
+/// dsm::Error on every rank.
+Picture AssembleTilesWithEdges(dsm::Messenger& messenger, const Frame& frame);
+
 /// A number that two pictures share if, for all practical purposes, they are equal bit for bit:
 /// 64-bit FNV-1a over size, colours and depths.
 std::uint64_t GetHash(const Picture& picture);

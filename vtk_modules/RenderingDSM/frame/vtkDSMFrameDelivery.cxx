@@ -20,14 +20,14 @@ void vtkDSMFrameDelivery::UseWholeFrames(ColorChoice drawsColor, PlaceChoice dra
   this->DrawsPlace = std::move(drawsPlace);
 }
 
-std::optional<rt::Picture> vtkDSMFrameDelivery::Gather(
-  dsm::Messenger& messenger, const rt::Frame& frame) const
+rt::Picture vtkDSMFrameDelivery::Gather(
+  dsm::Messenger& messenger, const rt::Frame& frame, bool hasEdges) const
 {
-  if (!this->DrawsColor)
+  if (this->DrawsColor)
   {
-    return std::nullopt;
+    return rt::GatherFrame(messenger, frame);
   }
-  return rt::GatherFrame(messenger, frame);
+  return hasEdges ? rt::AssembleTilesWithEdges(messenger, frame) : rt::AssembleTiles(frame);
 }
 
 void vtkDSMFrameDelivery::Prepare(const rt::FrameRequest& request, rt::Picture& picture) const
@@ -43,15 +43,21 @@ void vtkDSMFrameDelivery::Prepare(const rt::FrameRequest& request, rt::Picture& 
 }
 
 void vtkDSMFrameDelivery::Show(const rt::FrameRequest& request, rt::Picture picture,
-  vtkCamera* camera, vtkMatrix4x4* projection, const double bounds[6], vtkDSMFrameProp* prop) const
+  vtkCamera* camera, vtkMatrix4x4* projection, const double bounds[6], bool hasEdges,
+  vtkDSMFrameProp* prop) const
 {
   if (request.Layers > 1)
   {
     prop->SetLayers(picture, projection, bounds);
     return;
   }
+  using Drawing = vtkDSMFrameProp::Drawing;
   const bool drawsColor = !this->DrawsColor || this->DrawsColor(camera);
-  prop->SetFrame(std::move(picture), projection, bounds, drawsColor);
+  const bool sharesEdges = hasEdges && !this->DrawsColor;
+  prop->SetFrame(std::move(picture), projection, bounds,
+    !drawsColor     ? Drawing::DepthOnly
+      : sharesEdges ? Drawing::SharedEdges
+                    : Drawing::All);
 }
 
 /// Takes out what other ranks draw.

@@ -8,7 +8,6 @@
 #include "DSMRayTracing/frame/FrameRequest.h"
 
 #include <functional>
-#include <optional>
 
 class vtkCamera;
 class vtkDSMFrameProp;
@@ -33,15 +32,17 @@ public:
   /// Whether the application blends the ranks' pictures; otherwise the nearest of them counts.
   bool AreBlended() const { return static_cast<bool>(this->DrawsColor); }
 
-  /// Collective: the whole frame, where the ranks do not draw their own tiles.
-  std::optional<rt::Picture> Gather(dsm::Messenger& messenger, const rt::Frame& frame) const;
+  /// Collective: what this rank draws; the whole frame, or its own tiles. `hasEdges`: an opaque surface may cover pixels
+  /// in part. What is behind it may be another rank's, so all ranks draw such pixels.
+  rt::Picture Gather(dsm::Messenger& messenger, const rt::Frame& frame, bool hasEdges) const;
 
   /// Local: leaves, of surfaces that are kept apart, what this rank has to draw.
   void Prepare(const rt::FrameRequest& request, rt::Picture& picture) const;
 
-  /// Local: the prop draws a prepared picture from now on. `bounds`: of what it shows, on all ranks.
+  /// Local: the prop draws a prepared picture from now on. `bounds`: of what it shows, on all ranks. `hasEdges`: as
+  /// in Gather, where there are several ranks.
   void Show(const rt::FrameRequest& request, rt::Picture picture, vtkCamera* camera,
-    vtkMatrix4x4* projection, const double bounds[6], vtkDSMFrameProp* prop) const;
+    vtkMatrix4x4* projection, const double bounds[6], bool hasEdges, vtkDSMFrameProp* prop) const;
 
 private:
   void LeaveToOthers(const rt::FrameRequest& request, rt::Picture& picture) const;

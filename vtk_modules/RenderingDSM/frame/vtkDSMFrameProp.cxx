@@ -22,51 +22,72 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <string>
 #include <utility>
 
 namespace
 {
 
-const char* const FragmentShader = R"(//VTK::System::Dec
+/// What of the frame is drawn.
+enum Part
+{
+  Everything,
+  Inner,   ///< pixels that are covered, and what is before all else: notes
+  Edges,   ///< the others
+  FarEdges ///< those again, at a depth that all but the background is before
+};
+
+const std::string ShaderHead = R"(//VTK::System::Dec
 //VTK::Output::Dec
 in vec2 texCoord;
 uniform sampler2D frameColor;
 uniform sampler2D frameDepth;
+uniform int part;
+vec4 color;
+float depth;
+bool isLeftOut()
+{
+  bool isInner = color.a == 1.0 || depth == 0.0;
+  return color.a == 0.0 || (part == 1 && !isInner) || (part > 1 && isInner);
+}
+void setPixel()
+{
+  gl_FragData[0] = color;
+  gl_FragDepth = part == 3 ? 1.0 - 1.0 / 4194304.0 : depth;
+}
+)";
+
+const std::string FragmentShader = ShaderHead + R"(
 void main()
 {
-  vec4 color = texture(frameColor, texCoord);
-  if (color.a == 0.0)
+  color = texture(frameColor, texCoord);
+  depth = texture(frameDepth, texCoord).r;
+  if (isLeftOut())
   {
     discard;
   }
-  gl_FragData[0] = color;
-  gl_FragDepth = texture(frameDepth, texCoord).r;
+  setPixel();
 }
 )";
 
 /// With what passes that work on the picture, such as screen space ambient occlusion, know of a surface: its place
 /// and normal in the camera's coordinates.
-const char* const FragmentShaderWithPlaces = R"(//VTK::System::Dec
-//VTK::Output::Dec
-in vec2 texCoord;
-uniform sampler2D frameColor;
-uniform sampler2D frameDepth;
+const std::string FragmentShaderWithPlaces = ShaderHead + R"(
 uniform mat4 clipToView;
 void main()
 {
-  vec4 color = texture(frameColor, texCoord);
-  float depth = texture(frameDepth, texCoord).r;
+  color = texture(frameColor, texCoord);
+  depth = texture(frameDepth, texCoord).r;
   vec4 place = clipToView * vec4(2.0 * vec3(texCoord, depth) - 1.0, 1.0);
   place /= place.w;
   vec3 normal = cross(dFdx(place.xyz), dFdy(place.xyz));
-  if (color.a == 0.0)
+  if (isLeftOut())
   {
     discard;
   }
-  gl_FragData[0] = color;
+  setPixel();
   gl_FragData[1] = vec4(place.xyz, 1.0);
   gl_FragData[2] = vec4(normalize(normal), 1.0);
-  gl_FragDepth = depth;
 }
 )";
 
@@ -126,13 +147,17 @@ public:
     vtkOpenGLState::ScopedglBlendFuncSeparate blendFunction(state);
     vtkOpenGLState::ScopedglColorMask colorMask(state);
     vtkOpenGLState::ScopedglViewport viewport(state);
+    const auto setColorMask = [state](bool isDrawn)
+    {
+      const unsigned char color = isDrawn ? GL_TRUE : GL_FALSE;
+      state->vtkglColorMask(color, color, color, color);
+    };
     state->vtkglEnable(GL_DEPTH_TEST);
     state->vtkglDepthMask(GL_TRUE);
     state->vtkglDepthFunc(GL_LEQUAL);
     state->vtkglEnable(GL_BLEND);
     state->vtkglBlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
-    const unsigned char color = this->DrawsColor ? GL_TRUE : GL_FALSE;
-    state->vtkglColorMask(color, color, color, color);
+    setColorMask(this->How != Drawing::DepthOnly);
     state->vtkglViewport(target[0], target[1], target[2], target[3]);
 
     const bool withPlaces = TakesPlaces(state);
@@ -140,7 +165,7 @@ public:
     if (!quad)
     {
       quad = std::make_unique<vtkOpenGLQuadHelper>(
-        window, nullptr, withPlaces ? FragmentShaderWithPlaces : FragmentShader, nullptr);
+        window, nullptr, (withPlaces ? FragmentShaderWithPlaces : FragmentShader).c_str(), nullptr);
     }
     else
     {
@@ -160,13 +185,30 @@ public:
       clipToView->Transpose(); // OpenGL's order
       quad->Program->SetUniformMatrix("clipToView", clipToView);
     }
-    quad->Render();
+    const auto draw = [&quad](Part part)
+    {
+      quad->Program->SetUniformi("part", part);
+      quad->Render();
+    };
+    if (this->How == Drawing::SharedEdges)
+    {
+      draw(Inner);
+      state->vtkglDepthMask(GL_FALSE);
+      draw(Edges);
+      state->vtkglDepthMask(GL_TRUE);
+      setColorMask(false);
+      draw(FarEdges);
+    }
+    else
+    {
+      draw(Everything);
+    }
     this->Textures.Deactivate();
   }
 
   vtkDSMFrameTextures Textures;
   vtkDSMFrameLayers Layers;
-  bool DrawsColor = true;
+  Drawing How = Drawing::All;
   double Bounds[6];
   vtkNew<vtkMatrix4x4> Projection;
   std::unique_ptr<vtkOpenGLQuadHelper> Quad;
@@ -185,9 +227,9 @@ vtkDSMFrameProp::vtkDSMFrameProp()
 vtkDSMFrameProp::~vtkDSMFrameProp() = default;
 
 void vtkDSMFrameProp::SetFrame(
-  rt::Picture frame, vtkMatrix4x4* projection, const double bounds[6], bool drawsColor)
+  rt::Picture frame, vtkMatrix4x4* projection, const double bounds[6], Drawing drawing)
 {
-  this->Self->DrawsColor = drawsColor;
+  this->Self->How = drawing;
   this->Self->Store(std::move(frame));
   this->Self->Layers.SetPicture({});
   this->Self->Projection->DeepCopy(projection);

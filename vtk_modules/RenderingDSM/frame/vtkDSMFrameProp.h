@@ -30,13 +30,20 @@ public:
   vtkTypeMacro(vtkDSMFrameProp, vtkProp);
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
+  enum class Drawing
+  {
+    All,
+    DepthOnly, ///< which hides what lies behind
+    SharedEdges ///< the nearest of several ranks' pictures counts, and all of them have the pixels that are covered
+    ///< in part: each blends these with what it has behind them, and leaves that one's depth
+  };
+
   /**
    * The frame to draw from now on, the projection it was traced with (without the model-view), and
-   * the bounds of what it shows, on all ranks. An empty frame draws nothing. Without `drawsColor`,
-   * only the depth is drawn, which hides what lies behind.
+   * the bounds of what it shows, on all ranks. An empty frame draws nothing.
    */
-  void SetFrame(
-    rt::Picture frame, vtkMatrix4x4* projection, const double bounds[6], bool drawsColor = true);
+  void SetFrame(rt::Picture frame, vtkMatrix4x4* projection, const double bounds[6],
+    Drawing drawing = Drawing::All);
 
   /**
    * The same for a frame whose surfaces have been kept apart: they are drawn one by one among the

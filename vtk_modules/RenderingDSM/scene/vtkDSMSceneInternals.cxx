@@ -219,10 +219,10 @@ void vtkDSMScene::Internals::Draw()
     this->FillImage(rt::GatherFrame(messenger, this->Accumulation.GetFrame()));
     return;
   }
-  std::optional<rt::Picture> whole =
-    this->Delivery.Gather(messenger, this->Accumulation.GetFrame());
-  this->DrawPicture(whole ? std::move(*whole) : rt::AssembleTiles(this->Accumulation.GetFrame()),
-    request, projection, scene.View, reduction == 1);
+  const bool hasEdges =
+    messenger.GetSize() > 1 && scene.IsOpaque() && this->Accumulation.GetSamples() > 1;
+  this->DrawPicture(this->Delivery.Gather(messenger, this->Accumulation.GetFrame(), hasEdges),
+    request, projection, scene.View, reduction == 1, hasEdges);
 }
 
 /// Collective: the scene's objects come in again where they are shown at another level of detail.
@@ -289,7 +289,7 @@ void vtkDSMScene::Internals::FillImage(const rt::Picture& picture) const
 }
 
 void vtkDSMScene::Internals::DrawPicture(rt::Picture picture, const rt::FrameRequest& request,
-  vtkMatrix4x4* projection, rt::DebugView view, bool hasNotes)
+  vtkMatrix4x4* projection, rt::DebugView view, bool hasNotes, bool hasEdges)
 {
   this->Members.GetBounds(this->Bounds);
   double bounds[6];
@@ -303,8 +303,8 @@ void vtkDSMScene::Internals::DrawPicture(rt::Picture picture, const rt::FrameReq
   {
     this->AddWholeView(request, bounds);
   }
-  this->Delivery.Show(
-    request, std::move(picture), this->Renderer->GetActiveCamera(), projection, bounds, this->Prop);
+  this->Delivery.Show(request, std::move(picture), this->Renderer->GetActiveCamera(), projection,
+    bounds, hasEdges, this->Prop);
 }
 
 /// Returns whether there is anything to write, on any rank.
@@ -423,12 +423,13 @@ vtkDSMFrameAccumulation::Pace vtkDSMScene::Internals::GetPace() const
   return this->IsInteractive() ? vtkDSMFrameAccumulation::Pace{ 1, 0.0 } : this->Pace;
 }
 
-/// The application may have taken the prop away with its own. And what shows through a translucent surface
-/// must have been drawn before it.
+/// The application may have taken the prop away with its own. And what shows through a translucent surface, or beside
+/// one that covers a pixel in part, must have been drawn before it.
 void vtkDSMScene::Internals::KeepProp(const rt::Scene& scene)
 {
+  const bool showsOthers = !scene.IsOpaque() || this->Members.GetSamplesPerPixel() > 1;
   const bool mustBeLast =
-    !scene.IsOpaque() && this->Renderer->GetViewProps()->GetLastProp() != this->Prop;
+    showsOthers && this->Renderer->GetViewProps()->GetLastProp() != this->Prop;
   if (mustBeLast || !this->Renderer->HasViewProp(this->Prop))
   {
     this->Renderer->RemoveViewProp(this->Prop);

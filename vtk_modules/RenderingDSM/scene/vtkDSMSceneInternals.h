@@ -93,7 +93,7 @@ private:
   vtkDSMFrameAccumulation::Result TraceScene(
     rt::Scene& scene, const rt::FrameRequest& request, int reduction);
   void DrawPicture(rt::Picture picture, const rt::FrameRequest& request, vtkMatrix4x4* projection,
-    rt::DebugView view, bool hasNotes);
+    rt::DebugView view, bool hasNotes, bool hasEdges);
   bool WriteNotes(rt::DebugView view, rt::Picture& picture) const;
   void AddWholeView(const rt::FrameRequest& request, double bounds[6]) const;
 };
