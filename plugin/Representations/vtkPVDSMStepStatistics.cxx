@@ -4,6 +4,7 @@
 #include "vtkCallbackCommand.h"
 #include "vtkCommand.h"
 #include "vtkNew.h"
+#include "vtkProcessModule.h"
 #include "vtkSMInputProperty.h"
 #include "vtkSMPropertyHelper.h"
 #include "vtkSMPropertyIterator.h"
@@ -61,7 +62,10 @@ void vtkPVDSMStepStatistics::Load()
 {
   constexpr bool isNeeded = VTK_MAJOR_VERSION == 9 && VTK_MINOR_VERSION < 4;
   static bool isLoaded = !isNeeded;
-  if (!isLoaded)
+  const auto type = vtkProcessModule::GetProcessType();
+  const bool hasProxies =
+    type == vtkProcessModule::PROCESS_CLIENT || type == vtkProcessModule::PROCESS_BATCH;
+  if (hasProxies && !isLoaded)
   {
     isLoaded = true;
     vtkNew<vtkCallbackCommand> command;

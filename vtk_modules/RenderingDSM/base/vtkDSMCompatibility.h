@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Where the versions of VTK differ: 9.1, as in Debian 12, to 9.6. Nothing else asks for the version.
+/// Where the versions of VTK differ: 9.1, as in Debian 12, to 9.6. Nothing else in these modules asks for the version.
 #ifndef vtkDSMCompatibility_h
 #define vtkDSMCompatibility_h
 
