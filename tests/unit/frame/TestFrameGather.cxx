@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tests/support/LoopbackCluster.h"
+
+#include "DSMRayTracing/frame/FrameGather.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <random>
+
+namespace
+{
+
+constexpr int Edge = 8;
+
+/// A tile beside those of the other ranks: pixels that nothing covers, that are covered, and that are in part.
+rt::Frame CreateFrame(int rank, int ranks)
+{
+  rt::Frame frame;
+  frame.Width = Edge * ranks;
+  frame.Height = frame.TileSize = Edge;
+  rt::Tile& tile = frame.Tiles.emplace_back();
+  tile.X = Edge * rank;
+  tile.Width = tile.Height = Edge;
+  std::mt19937 random(static_cast<unsigned>(rank));
+  for (int pixel = 0; pixel < Edge * Edge; ++pixel)
+  {
+    const int kind = static_cast<int>(random() % 3);
+    const auto alpha = static_cast<std::uint8_t>(kind == 2 ? 1 + random() % 254 : 255 * kind);
+    for (int channel = 0; channel < 3; ++channel)
+    {
+      tile.Color.push_back(static_cast<std::uint8_t>(random() % (alpha + 1u)));
+    }
+    tile.Color.push_back(alpha);
+    tile.Depth.push_back(kind == 0 ? 1.0f : static_cast<float>(random() % 1000) / 1000.0f);
+  }
+  return frame;
+}
+
+TEST(FrameGather, EdgesComeToAllRanks)
+{
+  constexpr int ranks = 3;
+  RunOnCluster(ranks,
+    [](dsm::Messenger& messenger)
+    {
+      const rt::Frame frame = CreateFrame(messenger.GetRank(), ranks);
+      const rt::Picture whole = rt::GatherFrame(messenger, frame);
+      const rt::Picture mine = rt::AssembleTilesWithEdges(messenger, frame);
+      ASSERT_EQ(mine.Color.size(), whole.Color.size());
+      int edges = 0;
+      for (std::size_t pixel = 0; pixel < whole.Depth.size(); ++pixel)
+      {
+        const std::uint8_t* const color = &whole.Color[4 * pixel];
+        const bool isMine = static_cast<int>(pixel) % frame.Width / Edge == messenger.GetRank();
+        const bool isEdge = color[3] > 0 && color[3] < 255;
+        edges += isEdge ? 1 : 0;
+        const std::uint8_t nothing[4] = {};
+        const std::uint8_t* const expected = isMine || isEdge ? color : nothing;
+        EXPECT_TRUE(std::equal(expected, expected + 4, &mine.Color[4 * pixel])) << pixel;
+        EXPECT_EQ(mine.Depth[pixel], isMine || isEdge ? whole.Depth[pixel] : 1.0f) << pixel;
+      }
+      EXPECT_GT(edges, Edge);
+    });
+}
+
+} // namespace
