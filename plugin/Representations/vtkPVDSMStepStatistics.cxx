@@ -9,11 +9,14 @@
 #include "vtkSMPropertyHelper.h"
 #include "vtkSMPropertyIterator.h"
 #include "vtkSMProxy.h"
+#include "vtkSMProxyIterator.h"
 #include "vtkSMProxyManager.h"
+#include "vtkSMSessionProxyManager.h"
 #include "vtkSmartPointer.h"
 #include "vtkVersionMacros.h"
 
 #include <cstring>
+#include <set>
 
 namespace
 {
@@ -23,8 +26,8 @@ bool Is(vtkSMProxy* proxy, const char* name)
   return proxy->GetXMLName() != nullptr && std::strcmp(proxy->GetXMLName(), name) == 0;
 }
 
-/// Of all readers of volumes that a filter's input comes from.
-void KeepInMemory(vtkSMProxy* filter)
+/// Adds all readers of volumes that a filter's input comes from.
+void FindReaders(vtkSMProxy* filter, std::set<vtkSMProxy*>& found)
 {
   const auto properties =
     vtkSmartPointer<vtkSMPropertyIterator>::Take(filter->NewPropertyIterator());
@@ -36,23 +39,53 @@ void KeepInMemory(vtkSMProxy* filter)
       vtkSMProxy* const source = input->GetProxy(number);
       if (source && Is(source, "DSMVolumeReader"))
       {
-        vtkSMPropertyHelper(source, "ValuesInMemory").Set(1);
-        source->UpdateProperty("ValuesInMemory");
+        found.insert(source);
       }
       else if (source)
       {
-        KeepInMemory(source);
+        FindReaders(source, found);
       }
     }
   }
 }
 
-void OnRegister(vtkObject*, unsigned long, void*, void* registered)
+bool IsStatistics(vtkSMProxy* proxy)
 {
-  const auto* what = static_cast<vtkSMProxyManager::RegisteredProxyInformation*>(registered);
-  if (what->Proxy && Is(what->Proxy, "TemporalStatistics"))
+  return proxy && Is(proxy, "TemporalStatistics");
+}
+
+/// Those that come before any of the session's filters.
+std::set<vtkSMProxy*> FindReadersOfAll(vtkSMProxy* filter)
+{
+  std::set<vtkSMProxy*> found;
+  vtkNew<vtkSMProxyIterator> proxies;
+  proxies->SetSessionProxyManager(filter->GetSessionProxyManager());
+  for (proxies->Begin("sources"); !proxies->IsAtEnd(); proxies->Next())
   {
-    KeepInMemory(what->Proxy);
+    if (IsStatistics(proxies->GetProxy()))
+    {
+      FindReaders(proxies->GetProxy(), found);
+    }
+  }
+  return found;
+}
+
+/// A filter has come or gone.
+void OnChange(vtkObject*, unsigned long, void*, void* registered)
+{
+  vtkSMProxy* const filter =
+    static_cast<vtkSMProxyManager::RegisteredProxyInformation*>(registered)->Proxy;
+  if (!IsStatistics(filter))
+  {
+    return;
+  }
+  const std::set<vtkSMProxy*> wanted = FindReadersOfAll(filter);
+  std::set<vtkSMProxy*> readers;
+  FindReaders(filter, readers);
+  for (vtkSMProxy* reader : readers)
+  {
+    vtkSMPropertyHelper(reader, "ValuesInMemory").Set(static_cast<int>(wanted.count(reader)));
+    reader->UpdateProperty("ValuesInMemory");
   }
 }
 
@@ -69,7 +102,10 @@ void vtkPVDSMStepStatistics::Load()
   {
     isLoaded = true;
     vtkNew<vtkCallbackCommand> command;
-    command->SetCallback(OnRegister);
-    vtkSMProxyManager::GetProxyManager()->AddObserver(vtkCommand::RegisterEvent, command);
+    command->SetCallback(OnChange);
+    for (const auto event : { vtkCommand::RegisterEvent, vtkCommand::UnRegisterEvent })
+    {
+      vtkSMProxyManager::GetProxyManager()->AddObserver(event, command);
+    }
   }
 }

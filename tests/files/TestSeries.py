@@ -62,6 +62,8 @@ for source in (simple.DSMVolumeReader(FileName=get_series("nhdr")), simple.XMLIm
     names = [f"values_{of}" for of in ("average", "minimum", "maximum", "stddev")]
     statistics.append([of_source.PointData[name].GetRange(0) for name in names])
     simple.Delete(of_source)
+    in_memory = source.GetProperty("ValuesInMemory")
+    check(not in_memory or in_memory.GetData() == 0, "without the filter, values stay in the file")
     simple.Delete(source)
 check(numpy.allclose(*statistics, rtol=1e-6, atol=0), f"statistics of all steps: {statistics}")
 
