@@ -10,9 +10,12 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <filesystem>
 #include <fstream>
 #include <string>
+#include <thread>
+#include <vector>
 
 #include <unistd.h>
 
@@ -80,4 +83,39 @@ TEST(FileArray, OthersThatAreMadeLikeItAreVtksOwn)
   ASSERT_TRUE(array);
   const auto other = vtkSmartPointer<vtkDataArray>::Take(array->NewInstance());
   EXPECT_TRUE(other->IsA("vtkFloatArray")) << other->GetClassName();
+}
+
+TEST(FileArray, ThreadsThatWantItsMemoryGetTheSame)
+{
+  const BareFile<float> floats(0.5f);
+  for (int attempt = 0; attempt < 50; ++attempt)
+  {
+    vtkNew<vtkDSMVolumeReader> reader;
+    vtkDataArray* const array = Open(reader, floats.Path, VTK_FLOAT);
+    ASSERT_TRUE(array);
+    std::vector<void*> found(4, nullptr);
+    std::atomic<int> waiting{ 4 };
+    std::vector<std::thread> threads;
+    for (void*& pointer : found)
+    {
+      threads.emplace_back(
+        [&]
+        {
+          --waiting;
+          while (waiting > 0)
+          {
+          }
+          pointer = array->GetVoidPointer(0);
+        });
+    }
+    for (std::thread& thread : threads)
+    {
+      thread.join();
+    }
+    for (void* const pointer : found)
+    {
+      ASSERT_EQ(pointer, found.front()) << attempt;
+    }
+    ASSERT_EQ(static_cast<const float*>(found.front())[Edge], Edge + 0.5f);
+  }
 }

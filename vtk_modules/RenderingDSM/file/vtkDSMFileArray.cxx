@@ -180,6 +180,7 @@ ValueTypeT vtkDSMFileArray<ValueTypeT>::GetTypedComponent(vtkIdType tuple, int c
 template <class ValueTypeT>
 void* vtkDSMFileArray<ValueTypeT>::GetVoidPointer(vtkIdType index)
 {
+  const std::lock_guard<std::mutex> lock(this->CopyLock); // filters ask in several threads
   const auto count = static_cast<std::size_t>(this->Size);
   if (this->Copy.empty() && !this->NoValues && count > 0)
   {

@@ -20,6 +20,7 @@
 
 #include <atomic>
 #include <memory>
+#include <mutex>
 #include <vector>
 
 template <class ValueTypeT>
@@ -112,6 +113,7 @@ private:
 
   std::shared_ptr<const vtkDSMFileValues> Values;
   std::uint64_t Number; ///< no other array has had it
+  std::mutex CopyLock;  ///< of Copy and NoValues
   std::vector<ValueType> Copy;
   std::unique_ptr<Zeros> NoValues; ///< in place of Copy
   mutable std::atomic<bool> Reported{ false };
