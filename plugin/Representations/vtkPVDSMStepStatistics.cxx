@@ -23,7 +23,7 @@ namespace
 
 bool Is(vtkSMProxy* proxy, const char* name)
 {
-  return proxy->GetXMLName() != nullptr && std::strcmp(proxy->GetXMLName(), name) == 0;
+  return proxy && proxy->GetXMLName() && std::strcmp(proxy->GetXMLName(), name) == 0;
 }
 
 /// Adds all readers of volumes that a filter's input comes from.
@@ -37,7 +37,7 @@ void FindReaders(vtkSMProxy* filter, std::set<vtkSMProxy*>& found)
     for (unsigned int number = 0; input && number < input->GetNumberOfProxies(); ++number)
     {
       vtkSMProxy* const source = input->GetProxy(number);
-      if (source && Is(source, "DSMVolumeReader"))
+      if (Is(source, "DSMVolumeReader"))
       {
         found.insert(source);
       }
@@ -51,7 +51,7 @@ void FindReaders(vtkSMProxy* filter, std::set<vtkSMProxy*>& found)
 
 bool IsStatistics(vtkSMProxy* proxy)
 {
-  return proxy && Is(proxy, "TemporalStatistics");
+  return Is(proxy, "TemporalStatistics");
 }
 
 /// Those that come before any of the session's filters.

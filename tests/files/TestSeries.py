@@ -62,10 +62,11 @@ for source in (simple.DSMVolumeReader(FileName=get_series("nhdr")), simple.XMLIm
     names = [f"values_{of}" for of in ("average", "minimum", "maximum", "stddev")]
     statistics.append([of_source.PointData[name].GetRange(0) for name in names])
     simple.Delete(of_source)
-    in_memory = source.GetProperty("ValuesInMemory")
-    check(not in_memory or in_memory.GetData() == 0, "without the filter, values stay in the file")
+    if source.SMProxy.GetXMLName() == "DSMVolumeReader":
+        check(source.ValuesInMemory == 0, "without the filter, values stay in the file")
     simple.Delete(source)
-check(numpy.allclose(*statistics, rtol=1e-6, atol=0), f"statistics of all steps: {statistics}")
+rounding = 0.0 if simple.GetParaViewVersion() < (6, 0) else 1e-6
+check(numpy.allclose(*statistics, rtol=rounding, atol=0), f"statistics of all steps: {statistics}")
 
 # Of a step, only bricks that are not as they were are fetched: 81 points are 5 bricks of 16 cells along each axis, and
 # what changes lies within the fourth of them.

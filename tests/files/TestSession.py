@@ -34,6 +34,7 @@ SOURCES = {
     "image": lambda: simple.XMLImageDataReader(FileName=get_series("vti")),
     "mesh": lambda: simple.Superquadric(Scale=[0.4, 0.4, 0.4], ThetaResolution=40, PhiResolution=30),
 }
+sources = {}  # that there are, by name
 shown = {}  # displays by source and view
 
 
@@ -41,7 +42,7 @@ def make(name, view):
     """Each has a place of its own, partly before the others."""
     number = list(SOURCES).index(name)
     place = (0.35 * number - 0.5, 0.1 * number, 0.2 - 0.25 * number)
-    if name not in {known for known, _ in shown}:
+    if name not in sources:
         sources[name] = SOURCES[name]()
     display = show_traced(sources[name], views[view])
     if name == "mesh":
@@ -52,7 +53,6 @@ def make(name, view):
         display.DSMIsoArray = ["POINTS", "values"]
         display.DSMIsoValue = 0.7
     shown[name, view] = display
-    return display
 
 
 def take_step():
@@ -100,7 +100,6 @@ def take_step():
 
 load_plugin()
 views = [create_view(200, 160), create_view(200, 160)]
-sources = {}
 for view in range(len(views)):
     make("series", view)
     place_camera(views[view])
