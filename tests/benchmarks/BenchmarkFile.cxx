@@ -94,8 +94,8 @@ rt::IsosurfaceObject PublishBenchmarkFile(
       source = std::make_shared<dsm::ReadingSource>(messenger,
         std::make_shared<vol::FileBrickReader>(field->Lattice,
           std::make_shared<FileVoxels>(file, true),
-          [file](const rt::Box& points)
-          { vol::ChunkCache::GetShared().Foresee(file, 0, 0, points); }),
+          [file](const std::vector<rt::Box>& boxes)
+          { vol::ChunkCache::GetShared().Foresee(file, 0, 0, boxes); }),
         path);
     });
   field->Segment = store.Publish(path, *directory, source);

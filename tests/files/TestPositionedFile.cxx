@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
@@ -13,6 +14,7 @@
 #include <fstream>
 #include <string>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include <fcntl.h>
@@ -152,7 +154,10 @@ TEST(PositionedFile, WhatIsNotInMemoryIsNotWaitedFor)
   EXPECT_EQ(out.back(), GetPattern(500099));
 
   LeaveMemory(pattern.Path);
-  file.Foresee(MakeRows(500000, 100, 3000, 10));
+  auto rows = MakeRows(500000, 100, 3000, 10);
+  std::reverse(rows.begin(), rows.end());
+  rows.push_back(rows[3]); // once more
+  file.Foresee(std::move(rows));
   for (int attempt = 0; attempt < 1000; ++attempt) // the disk may take a while
   {
     try

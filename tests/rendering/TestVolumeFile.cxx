@@ -249,7 +249,10 @@ public:
     ++this->Reads;
   }
 
-  void TellSystem(dsm::BlockId) const override { ++this->Told; }
+  void TellSystem(const std::vector<dsm::BlockId>& ids) const override
+  {
+    this->Told += static_cast<int>(ids.size());
+  }
 
   static constexpr dsm::BlockId Bad = 99;
   static constexpr dsm::BlockId Same = 98; ///< as in the step before

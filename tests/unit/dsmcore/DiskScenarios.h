@@ -62,7 +62,7 @@ public:
   }
 
   bool MayTellSystem() const override { return this->OneInMemory != 0; }
-  void TellSystem(dsm::BlockId) const override { ++this->Told; }
+  void TellSystem(const std::vector<dsm::BlockId>& ids) const override { this->Told += ids.size(); }
 
   void NoteKept(dsm::BlockId, std::size_t bytes) const override
   {

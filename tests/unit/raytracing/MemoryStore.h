@@ -2,9 +2,11 @@
 #ifndef tests_MemoryStore_h
 #define tests_MemoryStore_h
 
+#include "DSMCore/base/FunctionRef.h"
 #include "DSMCore/publish/BlockSegment.h"
 #include "DSMCore/publish/Publication.h"
 
+#include <algorithm>
 #include <cstddef>
 #include <memory>
 #include <stdexcept>
@@ -107,7 +109,18 @@ public:
     return false;
   }
 
+  /// Likewise; of all, also what is around.
+  void TellSystem(const dsm::BlockSegment&, const dsm::BlockId* ids, std::size_t count,
+    dsm::FunctionRef<void(dsm::BlockId, std::vector<dsm::BlockId>&)> around)
+  {
+    this->Told.assign(ids, ids + count);
+    this->Around.clear();
+    std::for_each(ids, ids + count, [&](dsm::BlockId id) { around(id, this->Around); });
+  }
+
   std::vector<dsm::BlockId> Prefetched; ///< what was asked for so far
+  std::vector<dsm::BlockId> Told;       ///< last
+  std::vector<dsm::BlockId> Around;     ///< of these
 
   Pin Acquire(Worker& worker, const dsm::BlockSegment& segment, dsm::BlockId id)
   {

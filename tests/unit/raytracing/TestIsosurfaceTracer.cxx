@@ -7,6 +7,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <memory>
+#include <set>
 #include <vector>
 
 namespace
@@ -177,10 +179,40 @@ TEST_F(TestIsosurfaceTracer, AsksForTheFirstBricksOfABeam)
   auto field = std::make_shared<rt::VoxelField>(*this->Object.Field);
   field->Segment = std::make_shared<MemoryStore::Segment>(directory);
   this->Object.Field = field;
+  EXPECT_TRUE(this->Store.Told.empty()) << "of what is in memory";
   tracer.Prefetch(*beam, { all.size(), 3 });
   EXPECT_EQ(this->Store.Prefetched, std::vector<dsm::BlockId>(all.begin(), all.begin() + 2));
+  EXPECT_EQ(this->Store.Told, all) << "the system can read them in vain";
   this->Store.Prefetched.clear();
   this->Object.Surface.Opacity = 0.0f;
   tracer.Prefetch(*beam, { 3, 3 });
   EXPECT_TRUE(this->Store.Prefetched.empty());
+}
+
+TEST_F(TestIsosurfaceTracer, TellsTheSystemOfWhatLiesInTheRow)
+{
+  constexpr int edge = 4;
+  const std::set<int> onSurface{ 1, 2, 3, 6, 7, 8, 9 }; // of ten bricks in a row
+  const TestVolume<float> row({ 10 * edge + 1, edge + 1, edge + 1 },
+    [&](int x, int y, int)
+    { return x % edge != 0 && onSurface.count(x / edge) > 0 ? static_cast<float>(y) : 0.0f; });
+  this->Object = CreateObject(this->Store, row, { 1.5 }, edge);
+  dsm::BlockDirectory directory = this->Object.Field->Segment->GetDirectory();
+  directory.SetFromSource();
+  auto field = std::make_shared<rt::VoxelField>(*this->Object.Field);
+  field->Segment = std::make_shared<MemoryStore::Segment>(directory);
+  this->Object.Field = field;
+  const Tracer tracer(this->Store, this->Worker, this->Object);
+  const auto findAround = [&](dsm::BlockId id)
+  {
+    rt::BeamBricks beam;
+    beam.Bricks.push_back({ id, {}, {} });
+    tracer.Prefetch(beam, { 1, 1 });
+    EXPECT_EQ(this->Store.Told, std::vector<dsm::BlockId>{ id });
+    return std::set<dsm::BlockId>(this->Store.Around.begin(), this->Store.Around.end());
+  };
+  using Ids = std::set<dsm::BlockId>;
+  EXPECT_EQ(findAround(2), Ids({ 1, 3 })) << "not what lies behind a brick without surface";
+  EXPECT_EQ(findAround(6), Ids({ 7 })) << "not what lies in the next part of the row";
+  EXPECT_EQ(findAround(9), Ids({ 8 }));
 }

@@ -18,6 +18,9 @@ namespace
 /// Reads for blocks that nobody waits for begin as long as there are not so many under way.
 constexpr std::size_t MostReadsAhead = 256;
 
+/// When the system has had so many blocks without having been told of them, it has read the others, too.
+constexpr std::size_t ManyFoundUntold = 16;
+
 /// Whether the system was told of a block that nobody has wanted yet.
 bool IsForeseenBySystem(const LineStatus& line)
 {
@@ -151,7 +154,7 @@ void BlockFetcher::BeginFrame(bool agreed)
         {
           std::vector<BlockId> forSystem;
           this->Foresee(segment, ids.data(), ids.size(), forSystem);
-          this->TellSystem(segment, std::move(forSystem));
+          this->Tell(segment, std::move(forSystem));
         }
       }
       catch (const std::bad_alloc&) // what is wanted will be asked for one by one
@@ -486,6 +489,10 @@ bool BlockFetcher::ReadAtOnce(
   {
     isRead = false;
   }
+  if (!joins)
+  {
+    this->FoundUntold = isRead ? this->FoundUntold + 1 : 0;
+  }
   if (!isRead || this->Phase != FramePhase::Open)
   {
     this->GiveRoomBack(block);
@@ -555,6 +562,32 @@ void BlockFetcher::Refuse(const BlockSegment& segment) const
       : "A block of a retired segment was read. This is a defect of the tracer.");
 }
 
+void BlockFetcher::ForeseeBySystem(const BlockSegment& segment, const BlockId* ids,
+  std::size_t count, std::vector<BlockId>& forSystem)
+{
+  for (const BlockId* id = ids; id != ids + count; ++id)
+  {
+    const BlockWant block{ &segment, *id };
+    if (*id < segment.GetDirectory().GetCount() && this->GetLine(block).State == LineState::Absent)
+    {
+      this->TryForeseeBySystem(block, forSystem);
+    }
+  }
+}
+
+bool BlockFetcher::TryForeseeBySystem(const BlockWant& block, std::vector<BlockId>& forSystem)
+{
+  const BlockSource* const source = this->FindSourceForWorkers(block);
+  if (!source || !source->MayForesee())
+  {
+    return false;
+  }
+  forSystem.push_back(block.Id);
+  this->ForeseenBySystem.push_back(block);
+  this->GetLine(block).MoveTo(LineState::Foreseen);
+  return true;
+}
+
 bool BlockFetcher::Foresee(const BlockSegment& segment, const BlockId* ids, std::size_t count,
   std::vector<BlockId>& forSystem)
 {
@@ -567,15 +600,11 @@ bool BlockFetcher::Foresee(const BlockSegment& segment, const BlockId* ids, std:
     {
       continue;
     }
-    LineStatus& line = this->GetLine(block);
-    const BlockSource* const source = this->FindSourceForWorkers(block);
-    if (source && source->MayForesee())
+    if (this->TryForeseeBySystem(block, forSystem))
     {
-      forSystem.push_back(*id);
-      this->ForeseenBySystem.push_back(block);
-      line.MoveTo(LineState::Foreseen);
       continue;
     }
+    LineStatus& line = this->GetLine(block);
     if (!this->Prefetches.TryAdd(block, this->GetFootprint(block), isUnused))
     {
       break;
@@ -602,10 +631,35 @@ void BlockFetcher::Prefetch(const BlockSegment& segment, const BlockId* ids, std
   {
     this->Messages.WakeUp();
   }
-  this->TellSystem(segment, std::move(forSystem));
+  this->Tell(segment, std::move(forSystem));
 }
 
-void BlockFetcher::TellSystem(const BlockSegment& segment, std::vector<BlockId> ids) const
+void BlockFetcher::TellSystem(const BlockSegment& segment, const BlockId* ids, std::size_t count,
+  FunctionRef<void(BlockId, std::vector<BlockId>&)> around)
+{
+  std::vector<BlockId> forSystem;
+  const auto foresee = [&](const BlockId* some, std::size_t number)
+  {
+    const std::lock_guard<std::mutex> lock(this->Guard);
+    if (this->FoundUntold < ManyFoundUntold && this->IsOpenFor(segment) && this->MayPrefetch())
+    {
+      this->ForeseeBySystem(segment, some, number, forSystem);
+    }
+  };
+  foresee(ids, count);
+  std::vector<BlockId> neighbours;
+  for (const BlockId id : forSystem)
+  {
+    around(id, neighbours);
+  }
+  if (!neighbours.empty())
+  {
+    foresee(neighbours.data(), neighbours.size());
+  }
+  this->Tell(segment, std::move(forSystem));
+}
+
+void BlockFetcher::Tell(const BlockSegment& segment, std::vector<BlockId> ids) const
 {
   if (ids.empty())
   {

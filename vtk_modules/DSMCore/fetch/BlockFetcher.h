@@ -3,6 +3,7 @@
 #define dsm_BlockFetcher_h
 
 #include "DSMCore/base/Counters.h"
+#include "DSMCore/base/FunctionRef.h"
 #include "DSMCore/base/WorkerSlots.h"
 #include "DSMCore/fetch/BlockRequests.h"
 #include "DSMCore/fetch/BlockSource.h"
@@ -72,6 +73,9 @@ public:
   // -- Workers --
 
   void Prefetch(const BlockSegment& segment, const BlockId* ids, std::size_t count);
+  /// See ObjectStore.
+  void TellSystem(const BlockSegment& segment, const BlockId* ids, std::size_t count,
+    FunctionRef<void(BlockId, std::vector<BlockId>&)> around);
 
   Messenger& Messages;
   FetchWorkers Workers;
@@ -210,8 +214,13 @@ private:
   /// Those that workers can read by themselves, when the system has fetched them, are not: they go to `forSystem`.
   bool Foresee(const BlockSegment& segment, const BlockId* ids, std::size_t count,
     std::vector<BlockId>& forSystem);
+  /// Queues for the system what is absent, and what workers can read by themselves then.
+  void ForeseeBySystem(const BlockSegment& segment, const BlockId* ids, std::size_t count,
+    std::vector<BlockId>& forSystem);
+  /// Whether it queued the block, of which a worker may as well do without.
+  bool TryForeseeBySystem(const BlockWant& block, std::vector<BlockId>& forSystem);
   /// With or without the lock.
-  void TellSystem(const BlockSegment& segment, std::vector<BlockId> ids) const;
+  void Tell(const BlockSegment& segment, std::vector<BlockId> ids) const;
 
   /// Of other ranks, and own ones, which come first: others may wait for them.
   std::deque<BlockWant> Wanted;
@@ -225,6 +234,9 @@ private:
   std::atomic<std::size_t> QueuedCount{ 0 };
   /// Foreseen, and not queued: the system was told of them.
   std::vector<BlockWant> ForeseenBySystem;
+  /// Blocks that it was not told of, and had in its memory when they were wanted, one behind the other: when there
+  /// are many, it need not be told.
+  std::size_t FoundUntold = 0;
   /// Of them, in this frame: wanted later. Each counts as prefetched, and whoever wants it as joining.
   std::uint64_t SystemUsed = 0;
   /// Workers may have read blocks that other ranks asked for.

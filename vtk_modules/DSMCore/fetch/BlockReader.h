@@ -5,6 +5,7 @@
 #include "DSMCore/base/Block.h"
 
 #include <cstddef>
+#include <vector>
 
 namespace dsm
 {
@@ -29,9 +30,9 @@ public:
   }
   /// Whether ReadWithoutWaiting can be expected to succeed where TellSystem was called some time before.
   virtual bool MayTellSystem() const { return false; }
-  /// A block will probably be read soon: the system may bring what it takes to its own cache. Does not wait for it.
-  /// Throws nothing.
-  virtual void TellSystem(BlockId) const {}
+  /// These blocks will probably be read soon: the system may bring what they take to its own cache, in one piece
+  /// where they lie near one another. Does not wait for it. Throws nothing.
+  virtual void TellSystem(const std::vector<BlockId>&) const {}
   /// A block that was read by the reader before this one is still in use, and need not be read again: it is
   /// what this one would read, too.
   virtual void NoteKept(BlockId, std::size_t /*bytes*/) const {}

@@ -216,13 +216,7 @@ bool ReadingSource::ReadWithoutWaiting(BlockId id, std::byte* block, std::size_t
 void ReadingSource::Foresee(std::vector<BlockId> ids)
 {
   ReaderThreads::GetShared().Add(
-    [reader = this->Reader, ids = std::move(ids)]
-    {
-      for (const BlockId id : ids)
-      {
-        reader->TellSystem(id);
-      }
-    });
+    [reader = this->Reader, ids = std::move(ids)] { reader->TellSystem(ids); });
 }
 
 void ReadingSource::NoteKept(const BlockWant& block)

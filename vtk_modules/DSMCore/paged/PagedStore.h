@@ -4,6 +4,7 @@
 
 #include "DSMCore/base/Block.h"
 #include "DSMCore/base/Counters.h"
+#include "DSMCore/base/FunctionRef.h"
 #include "DSMCore/base/WorkerSlots.h"
 #include "DSMCore/fetch/BlockRequests.h"
 #include "DSMCore/fetch/BlockSource.h"
@@ -143,6 +144,11 @@ public:
   /// See ObjectStore. With Settings::PureFaulting nothing is prefetched, as in the paper.
   bool MayPrefetch() const;
   bool Prefetch(const BlockSegment& segment, const BlockId* ids, std::size_t count);
+  /// Its workers read nothing by themselves.
+  void TellSystem(const BlockSegment&, const BlockId*, std::size_t,
+    FunctionRef<void(BlockId, std::vector<BlockId>&)>)
+  {
+  }
 
   /// Nothing needs it here.
   void Quiesce(Worker&) {}

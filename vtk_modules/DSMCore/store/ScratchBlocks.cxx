@@ -148,10 +148,13 @@ bool ScratchBlocks::ReadWithoutWaiting(BlockId id, std::byte* block, std::size_t
   return attempt == ScratchFile::Attempt::Done && GetChecksum(id, block, bytes) == entry.Checksum;
 }
 
-void ScratchBlocks::TellSystem(BlockId id) const
+void ScratchBlocks::TellSystem(const std::vector<BlockId>& ids) const
 {
-  const Entry& entry = this->Entries[id / this->Ranks];
-  this->File->Foresee(entry.Offset, entry.Bytes);
+  for (const BlockId id : ids)
+  {
+    const Entry& entry = this->Entries[id / this->Ranks];
+    this->File->Foresee(entry.Offset, entry.Bytes);
+  }
 }
 
 } // namespace dsm

@@ -46,7 +46,7 @@ public:
   void Read(BlockId id, std::byte* block, std::size_t bytes) const override;
   bool ReadWithoutWaiting(BlockId id, std::byte* block, std::size_t bytes) const override;
   bool MayTellSystem() const override { return this->CanTell; }
-  void TellSystem(BlockId id) const override;
+  void TellSystem(const std::vector<BlockId>& ids) const override;
 
 private:
   struct Entry

@@ -11,6 +11,7 @@
 #include "DSMCore/table/BlockLine.h"
 #include "DSMCore/transport/Messenger.h"
 
+#include <algorithm>
 #include <cstdint>
 #include <memory>
 #include <string_view>
@@ -48,6 +49,17 @@ public:
   const std::byte* Find(BlockId id) const
   {
     return this->Lines[id].Address.load(std::memory_order_acquire);
+  }
+  /// The first of these ids whose block is not here; ids that there are not are passed by. Any thread: mostly all is
+  /// here, and then no lock is taken.
+  const BlockId* FindAbsent(const BlockId* first, const BlockId* last) const
+  {
+    return std::find_if(first, last,
+      [this](BlockId id)
+      {
+        return id < this->GetDirectory().GetCount() &&
+          !this->Lines[id].Address.load(std::memory_order_relaxed);
+      });
   }
 
   /// Of other ranks of the group, mapped here; blocks that they own, and copies.

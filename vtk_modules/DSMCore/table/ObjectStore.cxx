@@ -147,19 +147,25 @@ bool ObjectStore::MayPrefetch() const
 bool ObjectStore::Prefetch(const BlockSegment& segment, const BlockId* ids, std::size_t count)
 {
   const Segment& self = static_cast<const Segment&>(segment);
-  // Mostly all is here; then the lock is not taken.
   const BlockId* const last = ids + count;
-  const BlockId* const absent = std::find_if(ids, last,
-    [&](BlockId id)
-    {
-      return id < self.GetDirectory().GetCount() &&
-        !self.Lines[id].Address.load(std::memory_order_relaxed);
-    });
+  const BlockId* const absent = self.FindAbsent(ids, last);
   if (absent != last)
   {
     this->Self->Prefetch(self, absent, static_cast<std::size_t>(last - absent));
   }
   return absent != last;
+}
+
+void ObjectStore::TellSystem(const BlockSegment& segment, const BlockId* ids, std::size_t count,
+  FunctionRef<void(BlockId, std::vector<BlockId>&)> around)
+{
+  const Segment& self = static_cast<const Segment&>(segment);
+  const BlockId* const last = ids + count;
+  const BlockId* const absent = self.FindAbsent(ids, last);
+  if (absent != last)
+  {
+    this->Self->TellSystem(self, absent, static_cast<std::size_t>(last - absent), around);
+  }
 }
 
 void ObjectStore::Announce(Worker& worker)

@@ -4,6 +4,7 @@
 
 #include "DSMCore/base/Block.h"
 #include "DSMCore/base/Counters.h"
+#include "DSMCore/base/FunctionRef.h"
 #include "DSMCore/base/WorkerSlots.h"
 #include "DSMCore/fetch/BlockRequests.h"
 #include "DSMCore/fetch/BlockSource.h"
@@ -140,6 +141,12 @@ public:
   /// ids that there are not, blocks that are here or on their way, retired segments and frames that are
   /// not open are passed by. Returns whether any block was not here.
   bool Prefetch(const BlockSegment& segment, const BlockId* ids, std::size_t count);
+  /// Worker: it will perhaps need these blocks soon, which is not worth memory, nor a thread's time. Of those that are
+  /// absent and that the worker may read from the host's disk by itself, the system is told, and of those that
+  /// `around` adds for each of them, which lie beside it in the file; unless it seems to have all in its memory. Takes
+  /// nothing of the cache. Never waits; passes by what Prefetch does.
+  void TellSystem(const BlockSegment& segment, const BlockId* ids, std::size_t count,
+    FunctionRef<void(BlockId, std::vector<BlockId>&)> around);
 
   /// Worker: holds no pin; memory of blocks evicted before may be reused. Call between tiles; it
   /// costs two loads as long as nothing was evicted.

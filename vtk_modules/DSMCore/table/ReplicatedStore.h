@@ -4,6 +4,7 @@
 
 #include "DSMCore/base/Block.h"
 #include "DSMCore/base/Counters.h"
+#include "DSMCore/base/FunctionRef.h"
 #include "DSMCore/publish/BlockDirectory.h"
 #include "DSMCore/publish/BlockSegment.h"
 #include "DSMCore/publish/Publication.h"
@@ -91,6 +92,10 @@ public:
   Pin Acquire(Worker& worker, const BlockSegment& segment, BlockId id);
   bool MayPrefetch() const { return false; }
   bool Prefetch(const BlockSegment&, const BlockId*, std::size_t) { return false; }
+  void TellSystem(const BlockSegment&, const BlockId*, std::size_t,
+    FunctionRef<void(BlockId, std::vector<BlockId>&)>)
+  {
+  }
   void Quiesce(Worker&) {}
   void Enter(Worker&) {}
   void Leave(Worker&) {}

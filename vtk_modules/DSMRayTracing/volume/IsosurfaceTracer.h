@@ -8,6 +8,7 @@
 #include "DSMRayTracing/volume/IsosurfaceObject.h"
 #include "DSMRayTracing/volume/IsosurfacePacketSearch.h"
 #include "DSMRayTracing/volume/IsosurfaceSearch.h"
+#include "DSMRayTracing/volume/IsovaluePredicate.h"
 
 #include <glm/geometric.hpp>
 #include <glm/mat3x3.hpp>
@@ -15,6 +16,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <vector>
 
@@ -50,15 +52,22 @@ public:
   bool Prefetch(const ObjectBeam& beam, const BrickForecast& forecast) const override
   {
     const auto& bricks = static_cast<const BeamBricks&>(beam).Bricks;
-    // One that was sent in vain costs little; one that was cut out of a file in vain costs a thread's time, so of
-    // these only the first ones are foreseen of those that no beam around did without.
+    // One that was sent in vain, or that the system has read in vain, costs little; one that was cut out of a file in
+    // vain costs a thread's time, so of these only the first ones are foreseen of those that no beam around did
+    // without.
     const dsm::BlockDirectory& directory = this->Object.Field->Segment->GetDirectory();
     const bool isCut = directory.IsFromSource() && !directory.IsOnOwnersDisk();
-    const std::size_t count = isCut ? (forecast.Least + 1) / 2 : forecast.Mean;
-    std::vector<dsm::BlockId> ids(this->IsSeen() ? std::min(count, bricks.size()) : 0);
+    std::vector<dsm::BlockId> ids(this->IsSeen() ? std::min(forecast.Mean, bricks.size()) : 0);
     std::transform(bricks.begin(), bricks.begin() + static_cast<std::ptrdiff_t>(ids.size()),
       ids.begin(), [](const BeamBricks::Brick& brick) { return brick.Id; });
-    return this->Blocks.Prefetch(*this->Object.Field->Segment, ids.data(), ids.size());
+    std::size_t count = ids.size();
+    if (isCut)
+    {
+      this->Blocks.TellSystem(*this->Object.Field->Segment, ids.data(), ids.size(),
+        [this](dsm::BlockId id, std::vector<dsm::BlockId>& around) { this->AddRow(id, around); });
+      count = std::min(count, (forecast.Least + 1) / 2);
+    }
+    return this->Blocks.Prefetch(*this->Object.Field->Segment, ids.data(), count);
   }
 
   void FindNext(Ray* rays, RayMask wanted, ObjectBeam* beam, ObjectHit* nearest) const override
@@ -115,6 +124,30 @@ public:
 private:
   /// Of the shortest edge of a cell. Roots are found to 1e-7 of the way through a cell.
   static constexpr double ClearancePart = 1e-4;
+
+  /// Bricks in a row are told of together when they are in the same part of it, of so many.
+  static constexpr std::int64_t PartOfRow = 8;
+
+  /// What lies beside a brick in its row, and so in most files, as far as it may have to do with the surface: a disk
+  /// brings it along for little.
+  void AddRow(dsm::BlockId id, std::vector<dsm::BlockId>& around) const
+  {
+    const VoxelField& field = *this->Object.Field;
+    const std::vector<ValueRange>& ranges = field.Hierarchy.GetLevels().front().Ranges;
+    const IsovaluePredicate mayHold(this->Object.Isovalues);
+    const Index3 place = field.Lattice.GetBrick(id);
+    const std::int64_t first = place.x / PartOfRow * PartOfRow;
+    const std::int64_t last = std::min(first + PartOfRow, field.Lattice.GetBricks().x) - 1;
+    const auto find = [&](std::int64_t x) { return field.Lattice.GetId({ x, place.y, place.z }); };
+    for (const std::int64_t step : { -1, 1 })
+    {
+      for (std::int64_t x = place.x + step; x >= first && x <= last && mayHold(ranges[find(x)]);
+           x += step)
+      {
+        around.push_back(find(x));
+      }
+    }
+  }
 
   bool IsSeen() const { return this->Object.Surface.Opacity > 0.0f; }
 

@@ -118,7 +118,7 @@ PositionedFile::Run PositionedFile::FindRun(
        run.Last->Offset + run.Last->Bytes <= run.Begin + MostTogether;
        ++run.Last)
   {
-    run.End = run.Last->Offset + run.Last->Bytes;
+    run.End = std::max<std::uint64_t>(run.End, run.Last->Offset + run.Last->Bytes);
   }
   return run;
 }
@@ -200,9 +200,11 @@ void PositionedFile::Foresee(std::uint64_t offset, std::size_t bytes) const
     POSIX_FADV_WILLNEED);
 }
 
-void PositionedFile::Foresee(const std::vector<Piece>& pieces) const
+void PositionedFile::Foresee(std::vector<Piece> pieces) const
 {
-  for (auto piece = pieces.begin(); piece != pieces.end();)
+  std::sort(pieces.begin(), pieces.end(),
+    [](const Piece& one, const Piece& other) { return one.Offset < other.Offset; });
+  for (auto piece = pieces.cbegin(); piece != pieces.cend();)
   {
     const Run run = FindRun(pieces, piece);
     this->Foresee(run.Begin, static_cast<std::size_t>(run.End - run.Begin));

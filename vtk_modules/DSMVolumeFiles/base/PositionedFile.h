@@ -44,8 +44,8 @@ public:
   /// The system may read them to its own cache already, of a large file with what is in the same 32 KiB; does not
   /// wait for it.
   void Foresee(std::uint64_t offset, std::size_t bytes) const;
-  /// Likewise, as Read takes them together.
-  void Foresee(const std::vector<Piece>& pieces) const;
+  /// Likewise, in any order, as Read takes them together.
+  void Foresee(std::vector<Piece> pieces) const;
 
 private:
   /// Several pieces that are read together: those from First up to Last, and bytes from Begin up to End.
@@ -56,6 +56,7 @@ private:
     std::uint64_t Begin;
     std::uint64_t End;
   };
+  /// Offsets ascend; pieces may overlap.
   static Run FindRun(const std::vector<Piece>& pieces, std::vector<Piece>::const_iterator first);
 
   void ReadUnchecked(std::uint64_t offset, std::byte* out, std::size_t bytes) const;

@@ -261,29 +261,35 @@ bool ChunkCache::ReadWithHalo(const std::shared_ptr<const VolumeFile>& file, std
 }
 
 void ChunkCache::Foresee(const std::shared_ptr<const VolumeFile>& file, std::size_t array, int step,
-  const rt::Box& box) const
+  const std::vector<rt::Box>& boxes) const
 {
   const FileArray& what = file->GetArrays()[array];
-  // What bricks need beyond their own cells is another one's, too.
-  const rt::Box own{ box.Min, glm::max(box.Min + rt::Index3(1), box.Max - rt::Index3(Overlap)) };
-  const rt::Index3 first = own.Min / what.Grid.ChunkSamples;
-  const rt::Index3 last = (own.Max - rt::Index3(1)) / what.Grid.ChunkSamples;
   try
   {
-    rt::Index3 chunk;
-    for (chunk.z = first.z; chunk.z <= last.z; ++chunk.z)
+    std::vector<VolumeFile::ChunkPart> parts;
+    for (const rt::Box& box : boxes)
     {
-      for (chunk.y = first.y; chunk.y <= last.y; ++chunk.y)
+      // What bricks need beyond their own cells is another one's, too.
+      const rt::Box own{ box.Min,
+        glm::max(box.Min + rt::Index3(1), box.Max - rt::Index3(Overlap)) };
+      const rt::Index3 first = own.Min / what.Grid.ChunkSamples;
+      const rt::Index3 last = (own.Max - rt::Index3(1)) / what.Grid.ChunkSamples;
+      rt::Index3 chunk;
+      for (chunk.z = first.z; chunk.z <= last.z; ++chunk.z)
       {
-        for (chunk.x = first.x; chunk.x <= last.x; ++chunk.x)
+        for (chunk.y = first.y; chunk.y <= last.y; ++chunk.y)
         {
-          if (!this->HasChunk(file, array, step, chunk))
+          for (chunk.x = first.x; chunk.x <= last.x; ++chunk.x)
           {
-            file->Foresee(array, step, chunk, rt::Intersect(what.Grid.GetBox(chunk), box));
+            if (!this->HasChunk(file, array, step, chunk))
+            {
+              parts.push_back({ chunk, rt::Intersect(what.Grid.GetBox(chunk), box) });
+            }
           }
         }
       }
     }
+    file->Foresee(array, step, parts);
   }
   catch (const std::exception&)
   {

@@ -68,7 +68,7 @@ public:
   /// A box will probably be read soon: the system is told of what is not here, without what boxes side by side
   /// have in common. What goes wrong is said when it is read.
   void Foresee(const std::shared_ptr<const VolumeFile>& file, std::size_t array, int step,
-    const rt::Box& box) const;
+    const std::vector<rt::Box>& boxes) const;
 
 private:
   struct Key

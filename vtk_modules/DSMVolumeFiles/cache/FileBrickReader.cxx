@@ -3,6 +3,8 @@
 
 #include "DSMVolumeFiles/base/ReadingManner.h"
 
+#include <algorithm>
+#include <new>
 #include <utility>
 
 namespace vol
@@ -43,10 +45,22 @@ bool FileBrickReader::ReadWithoutWaiting(dsm::BlockId id, std::byte* block, std:
   }
 }
 
-void FileBrickReader::TellSystem(dsm::BlockId id) const
+void FileBrickReader::TellSystem(const std::vector<dsm::BlockId>& ids) const
 {
-  const rt::Box cells = this->Lattice.GetCellsOfBrick(id);
-  this->Foresee({ cells.Min, cells.Max + rt::Index3(1) });
+  try
+  {
+    std::vector<rt::Box> boxes(ids.size());
+    std::transform(ids.begin(), ids.end(), boxes.begin(),
+      [&](dsm::BlockId id)
+      {
+        const rt::Box cells = this->Lattice.GetCellsOfBrick(id);
+        return rt::Box{ cells.Min, cells.Max + rt::Index3(1) };
+      });
+    this->Foresee(std::move(boxes));
+  }
+  catch (const std::bad_alloc&) // they are read when they are wanted
+  {
+  }
 }
 
 } // namespace vol

@@ -8,6 +8,7 @@
 #include <atomic>
 #include <functional>
 #include <memory>
+#include <vector>
 
 namespace vol
 {
@@ -16,8 +17,8 @@ namespace vol
 class FileBrickReader final : public dsm::BlockReader
 {
 public:
-  /// Tells the system that samples will be read. Any thread; throws nothing.
-  using Foresight = std::function<void(const rt::Box& points)>;
+  /// Tells the system that samples in boxes will be read. Any thread; throws nothing.
+  using Foresight = std::function<void(std::vector<rt::Box> boxes)>;
 
   /// `source` reads through vol::PositionedFile. Throws as rt::VoxelBrickReader does.
   FileBrickReader(const rt::BrickLattice& lattice, std::shared_ptr<const rt::VoxelSource> source,
@@ -27,7 +28,7 @@ public:
   bool ReadWithoutWaiting(dsm::BlockId id, std::byte* block, std::size_t bytes) const override;
 
   bool MayTellSystem() const override { return this->CanTell; }
-  void TellSystem(dsm::BlockId id) const override;
+  void TellSystem(const std::vector<dsm::BlockId>& ids) const override;
 
 private:
   rt::BrickLattice Lattice;

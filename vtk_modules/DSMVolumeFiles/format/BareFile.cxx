@@ -103,11 +103,17 @@ public:
     return true;
   }
 
-  void Foresee(std::size_t, int, const rt::Index3& chunk, const rt::Box& part) const override
+  void Foresee(std::size_t, int, const std::vector<ChunkPart>& parts) const override
   {
     const FileArray& array = this->Arrays.front();
-    this->File->Foresee(
-      this->FindPieces(array, this->Codec.IsPlain() ? part : array.Grid.GetBox(chunk)));
+    std::vector<PositionedFile::Piece> pieces;
+    for (const auto& [chunk, part] : parts)
+    {
+      const auto more =
+        this->FindPieces(array, this->Codec.IsPlain() ? part : array.Grid.GetBox(chunk));
+      pieces.insert(pieces.end(), more.begin(), more.end());
+    }
+    this->File->Foresee(std::move(pieces));
   }
 
 private:

@@ -81,10 +81,9 @@ public:
     return this->Get(step)->ReadWithHalo(array, 0, chunk, out);
   }
 
-  void Foresee(
-    std::size_t array, int step, const rt::Index3& chunk, const rt::Box& part) const override
+  void Foresee(std::size_t array, int step, const std::vector<ChunkPart>& parts) const override
   {
-    this->Get(step)->Foresee(array, 0, chunk, part);
+    this->Get(step)->Foresee(array, 0, parts);
   }
 
   Index ReadIndex(std::size_t array, int step) const override

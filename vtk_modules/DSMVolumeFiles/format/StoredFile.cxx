@@ -5,6 +5,7 @@
 #include "DSMVolumeFiles/base/CopyBox.h"
 
 #include <cstring>
+#include <map>
 #include <utility>
 
 namespace vol
@@ -149,21 +150,28 @@ bool StoredFile::ReadWithHalo(
   return true;
 }
 
-void StoredFile::Foresee(
-  std::size_t array, int step, const rt::Index3& chunk, const rt::Box& part) const
+void StoredFile::Foresee(std::size_t array, int step, const std::vector<ChunkPart>& parts) const
 {
-  const std::optional<Place> place = this->FindChunk(array, step, chunk);
-  if (!place)
+  std::map<std::shared_ptr<const PositionedFile>, std::vector<PositionedFile::Piece>> found;
+  for (const auto& [chunk, part] : parts)
   {
-    return;
+    const std::optional<Place> place = this->FindChunk(array, step, chunk);
+    if (!place)
+    {
+      continue;
+    }
+    auto rows = this->FindPieces(array, *place, chunk, part);
+    if (rows.empty())
+    {
+      rows.push_back({ place->Offset, place->Bytes });
+    }
+    auto& pieces = found[place->File];
+    pieces.insert(pieces.end(), rows.begin(), rows.end());
   }
-  const auto pieces = this->FindPieces(array, *place, chunk, part);
-  if (pieces.empty())
+  for (auto& [file, pieces] : found)
   {
-    place->File->Foresee(place->Offset, place->Bytes);
-    return;
+    file->Foresee(std::move(pieces));
   }
-  place->File->Foresee(pieces);
 }
 
 void StoredFile::RefuseChunk(

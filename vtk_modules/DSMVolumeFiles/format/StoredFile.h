@@ -25,8 +25,7 @@ public:
   bool ReadWithHalo(
     std::size_t array, int step, const rt::Index3& chunk, std::byte* out) const override;
 
-  void Foresee(
-    std::size_t array, int step, const rt::Index3& chunk, const rt::Box& part) const override;
+  void Foresee(std::size_t array, int step, const std::vector<ChunkPart>& parts) const override;
 
   /// Throws what reading a chunk threw, with the chunk's and the file's names.
   [[noreturn]] static void RefuseChunk(const FileArray& array, const rt::Index3& chunk,

@@ -95,9 +95,14 @@ public:
   /// with Zstandard; else false.
   virtual bool ReadWithHalo(std::size_t, int, const rt::Index3&, std::byte*) const { return false; }
 
-  /// A part of a chunk will probably be read soon: the system may fetch it to its own cache meanwhile, or all of
-  /// the chunk where a part cannot be read alone. Throws dsm::Error.
-  virtual void Foresee(std::size_t, int, const rt::Index3&, const rt::Box&) const {}
+  struct ChunkPart
+  {
+    rt::Index3 Chunk;
+    rt::Box Samples;
+  };
+  /// Parts of chunks will probably be read soon: the system may fetch them to its own cache meanwhile, or all of a
+  /// chunk where a part cannot be read alone. Throws dsm::Error.
+  virtual void Foresee(std::size_t, int, const std::vector<ChunkPart>&) const {}
 
   /// What a file that dsm_convert wrote tells of an array beside its values (docs/files.md); empty where it does
   /// not. Throws std::bad_alloc.

@@ -77,7 +77,10 @@ public:
   }
 
   bool MayTellSystem() const override { return this->Here->MayTellSystem(); }
-  void TellSystem(dsm::BlockId id) const override { this->Here->TellSystem(id); }
+  void TellSystem(const std::vector<dsm::BlockId>& ids) const override
+  {
+    this->Here->TellSystem(ids);
+  }
   void NoteKept(dsm::BlockId id, std::size_t bytes) const override { this->Foresee(id, bytes); }
 
 private:
@@ -397,7 +400,7 @@ std::shared_ptr<const dsm::BlockReader> vtkDSMFileVolume::CreateReader(
   return std::make_shared<vol::FileBrickReader>(lattice,
     std::make_shared<vtkDSMFileVoxels>(
       this->Values, this->Component, lattice.GetScalarType(), scattered),
-    [values = this->Values](const Box& points) { values->Foresee(points); });
+    [values = this->Values](std::vector<Box> boxes) { values->Foresee(std::move(boxes)); });
 }
 
 std::uint64_t vtkDSMFileVolume::GetKey(const rt::BrickLattice& lattice) const

@@ -32,10 +32,13 @@ void vtkDSMFileValues::ReadScattered(const rt::Box& box, std::byte* out) const
     this->File, this->Array, this->Step, { box.Min + this->Box.Min, box.Max + this->Box.Min }, out);
 }
 
-void vtkDSMFileValues::Foresee(const rt::Box& box) const
+void vtkDSMFileValues::Foresee(std::vector<rt::Box> boxes) const
 {
-  vol::ChunkCache::GetShared().Foresee(
-    this->File, this->Array, this->Step, { box.Min + this->Box.Min, box.Max + this->Box.Min });
+  for (rt::Box& box : boxes)
+  {
+    box = { box.Min + this->Box.Min, box.Max + this->Box.Min };
+  }
+  vol::ChunkCache::GetShared().Foresee(this->File, this->Array, this->Step, boxes);
 }
 
 std::uint64_t vtkDSMFileValues::GetStamp() const

@@ -43,7 +43,7 @@ public:
   void ReadScattered(const rt::Box& box, std::byte* out) const;
 
   /// The samples of a box will probably be needed soon: the system is told. Nothing fails.
-  void Foresee(const rt::Box& box) const;
+  void Foresee(std::vector<rt::Box> boxes) const;
 
   /// Equal only, for all practical purposes, for equal values.
   std::uint64_t GetStamp() const;

@@ -147,7 +147,7 @@ struct vtkDSMReadAhead::Shared : std::enable_shared_from_this<Shared>
       hasRoom = contents.Cache.Lend(job.Bytes, RoomDivisor);
       if (!hasRoom)
       {
-        contents.To.Reader->TellSystem(job.Id);
+        contents.To.Reader->TellSystem({ job.Id });
         return;
       }
       std::vector<std::byte> brick(job.Bytes);
