@@ -5,6 +5,7 @@
 #include "DSMVolumeFiles/base/ReadingManner.h"
 #include "DSMVolumeFiles/cache/ChunkCache.h"
 #include "DSMVolumeFiles/codec/ChunkCodec.h"
+#include "DSMVolumeFiles/codec/HaloRecord.h"
 #include "DSMVolumeFiles/format/VolumeFile.h"
 #include "DSMVolumeFiles/range/ValueRanges.h"
 
@@ -270,6 +271,36 @@ TEST_P(ChunkCodecHalo, ComesBackWhereThereIsOne)
     vol::ByteBuffer damaged = stored;
     damaged[place] ^= std::byte(0x20);
     EXPECT_THROW(codec.Decode(damaged, 0, found.data(), found.size(), &back), dsm::Error);
+  }
+}
+
+TEST(HaloRecord, IsToldFromAnythingElse)
+{
+  const std::size_t bytes = vol::HaloRecord::GetBytes(61 * 4);
+  for (const std::size_t size : { 0, 3, 61 * 4 })
+  {
+    SCOPED_TRACE(size);
+    vol::ByteBuffer halo(size);
+    for (std::size_t place = 0; place < size; ++place)
+    {
+      halo[place] = std::byte(place * place % 251);
+    }
+    const vol::ByteBuffer record = vol::HaloRecord::Make(77, halo, bytes);
+    ASSERT_EQ(record.size(), bytes);
+    vol::ByteBuffer found(size);
+    EXPECT_TRUE(vol::HaloRecord::Take(record.data(), bytes, 77, found));
+    EXPECT_EQ(found, halo);
+    EXPECT_FALSE(vol::HaloRecord::Take(record.data(), bytes, 78, found)) << "of another chunk";
+    EXPECT_FALSE(vol::HaloRecord::Take(record.data(), bytes - 4, 77, found));
+    for (std::size_t place = 0; place < bytes; ++place)
+    {
+      vol::ByteBuffer damaged = record;
+      damaged[place] ^= std::byte(0x20);
+      EXPECT_FALSE(vol::HaloRecord::Take(damaged.data(), bytes, 77, found)) << place;
+    }
+    EXPECT_EQ(found, halo) << "it is as it was";
+    found.resize(size + 1);
+    EXPECT_FALSE(vol::HaloRecord::Take(record.data(), bytes, 77, found));
   }
 }
 

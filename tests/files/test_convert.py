@@ -105,6 +105,24 @@ for packed, name, codec in (("zstd.vtkhdf", "Zstandard", Zstd()), ("deflate_1.vt
         chunk = np.ascontiguousarray(unpacked.T).view(array.dtype).reshape(array.chunks)
         same = np.array_equal(chunk, other[tuple(slice(edge) for edge in array.chunks)], equal_nan=True)
         check(halos == 1 and filters == 0 and same, f"numcodecs reads a chunk that has a halo ({name})")
+# What is not compressed has its halo behind the chunk.
+with h5py.File(path("none_1.vtkhdf"), "r") as file:
+    array, group = file["VTKHDF/PointData/values"], file["DSM/PointData/values"]
+    halos, behind, right = group["Halos"], 0, group.attrs["HaloSamples"] == 1
+    for number in range(halos.shape[0]):
+        counts = [-(-size // EDGE) for size in SIZE]
+        at = np.unravel_index(number, counts[::-1])
+        place = array.id.get_chunk_info_by_coord(tuple(int(k) * EDGE for k in at))
+        record = halos.id.get_chunk_info_by_coord((number, 0))
+        behind += record.byte_offset == place.byte_offset + place.size
+        brick = values[tuple(slice(k * EDGE, k * EDGE + EDGE + 1) for k in at)]
+        parts = (brick[..., EDGE:], brick[:, EDGE:, :EDGE], brick[EDGE:, :EDGE, :EDGE])
+        samples = np.concatenate([part.ravel() for part in parts]).tobytes()
+        words = np.frombuffer(halos[number, :24].tobytes(), "<u8")
+        right = right and bytes(halos[number, :8]) == b"DSM halo" and list(words[1:]) == [number, len(samples)]
+        right = right and halos[number, 24 : 24 + len(samples)].tobytes() == samples
+    check(right, "the halos of chunks that are not compressed")
+    check(behind >= 0.95 * halos.shape[0], f"they lie behind their chunks: {behind} of {halos.shape[0]}")
 check(os.path.getsize(path("zstd.vtkhdf")) < 0.8 * os.path.getsize(path("back.vtkhdf")), "it is smaller")
 
 # Components, cells, several arrays, other names.
@@ -153,6 +171,7 @@ for ranks in (1, 2, 3, 4) if MPIRUN else (1,):
                   f"{name}, level {level}: the place in the world")
             index = levels[level]["DSM/PointData/values"]
             found = [None if first > last else (first, last) for first, last in index["BrickRanges"][...]]
+            check("Halos" not in index, f"{name}, level {level}: no samples that would not lie behind their chunks")
             check(array.fletcher32 and found == find_brick_ranges(fine) and len(index["BrickIndex"]) > 0,
                   f"{name}, level {level}: checksums, and the ranges of bricks")
             check((index["ValueRanges"][0] == [np.nanmin(fine), np.nanmax(fine)] * 2).all(),

@@ -68,6 +68,13 @@ struct ChunkGrid
     }
     return halo;
   }
+  /// Samples of it, at most.
+  std::size_t CountMostOfHalo() const
+  {
+    const rt::Index3 all = this->ChunkSamples + rt::Index3(1);
+    const rt::Index3 own = this->ChunkSamples;
+    return static_cast<std::size_t>(all.x * all.y * all.z - own.x * own.y * own.z);
+  }
 };
 
 } // namespace vol

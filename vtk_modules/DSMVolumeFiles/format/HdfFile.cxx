@@ -2,6 +2,7 @@
 #include "DSMVolumeFiles/format/HdfFile.h"
 
 #include "DSMCore/base/Error.h"
+#include "DSMVolumeFiles/codec/HaloRecord.h"
 #include "DSMVolumeFiles/format/BareFile.h"
 #include "DSMVolumeFiles/format/HdfAxes.h"
 #include "DSMVolumeFiles/format/HdfChunks.h"
@@ -440,13 +441,32 @@ private:
         dataset.ReadByLibrary = true;
     }
     storage.Codec = ChunkCodec(dataset.ReadByLibrary ? std::vector<CodecStep>() : std::move(steps));
-    int halo = 0;
-    const HdfHandle index = this->OpenIndex(array);
-    storage.HasHalo = storage.Codec.KeepsHalo() && storage.Slices == 1 && index.IsOpen() &&
-      this->ReadAttribute(index.Get(), HdfHalo, H5T_NATIVE_INT, &halo, 1) && halo == 1;
+    if (!dataset.ReadByLibrary && storage.Slices == 1)
+    {
+      this->FindHalo(array, storage);
+    }
     this->Arrays.push_back(std::move(array));
     this->Storages.push_back(std::move(storage));
     this->Kept.push_back(std::move(dataset));
+  }
+
+  /// What a brick file has of its chunks' halos.
+  void FindHalo(const FileArray& array, Storage& storage) const
+  {
+    int halo = 0;
+    const HdfHandle index = this->OpenIndex(array);
+    if (!index.IsOpen() || !this->ReadAttribute(index.Get(), HdfHalo, H5T_NATIVE_INT, &halo, 1) ||
+      halo != 1)
+    {
+      return;
+    }
+    storage.HasHalo = storage.Codec.KeepsHalo();
+    if (!storage.HasHalo && H5Lexists(index.Get(), HdfHaloRecords, H5P_DEFAULT) > 0)
+    {
+      storage.HasHalo = true;
+      storage.HaloRecordBytes =
+        HaloRecord::GetBytes(array.Grid.CountMostOfHalo() * array.GetSampleBytes());
+    }
   }
 
   static std::vector<std::byte> GetFill(hid_t dataset, const FileArray& array)

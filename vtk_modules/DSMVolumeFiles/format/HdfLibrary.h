@@ -16,6 +16,8 @@ namespace vol
 constexpr char HdfLevels[] = "DSM/Levels";
 /// Attribute of what it has beside an array's values: samples by which a chunk's halo reaches beyond it.
 constexpr char HdfHalo[] = "HaloSamples";
+/// And of chunks that are not compressed: HaloRecord of each.
+constexpr char HdfHaloRecords[] = "Halos";
 
 /// Registered filters (https://github.com/HDFGroup/hdf5_plugins).
 constexpr H5Z_filter_t HdfBloscFilter = 32001;
@@ -37,6 +39,8 @@ class HdfHandle
 {
 public:
   using Closer = herr_t (*)(hid_t);
+  /// Of nothing: not open.
+  HdfHandle() = default;
   HdfHandle(hid_t id, Closer closer)
     : Id(id)
     , Close(closer)
@@ -62,8 +66,8 @@ public:
   hid_t Get() const { return this->Id; }
 
 private:
-  hid_t Id;
-  Closer Close;
+  hid_t Id = H5I_INVALID_HID;
+  Closer Close = nullptr;
 };
 
 /// The library prints its errors, unless it is told not to; what went wrong is said by us.

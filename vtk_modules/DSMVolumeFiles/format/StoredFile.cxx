@@ -3,6 +3,7 @@
 
 #include "DSMCore/base/Error.h"
 #include "DSMVolumeFiles/base/CopyBox.h"
+#include "DSMVolumeFiles/codec/HaloRecord.h"
 
 #include <cstring>
 #include <map>
@@ -128,10 +129,20 @@ bool StoredFile::ReadWithHalo(
   ByteBuffer samples(static_cast<std::size_t>(stored.GetCount()) * sampleBytes);
   try
   {
-    ByteBuffer bytes(place->Bytes);
+    const std::size_t behind = storage.HaloRecordBytes;
+    if (place->Offset + place->Bytes + behind > place->File->GetBytes())
+    {
+      return false; // as below
+    }
+    ByteBuffer bytes(place->Bytes + behind);
     place->File->Read(place->Offset, bytes.data(), bytes.size());
-    if (!storage.Codec.Decode(
-          std::move(bytes), place->SkippedSteps, samples.data(), samples.size(), &halo))
+    bool isThere = behind == 0 ||
+      HaloRecord::Take(bytes.data() + place->Bytes, behind, what.Grid.GetNumber(chunk), halo);
+    bytes.resize(place->Bytes);
+    isThere = isThere &&
+      storage.Codec.Decode(std::move(bytes), place->SkippedSteps, samples.data(), samples.size(),
+        behind == 0 ? &halo : nullptr);
+    if (!isThere)
     {
       return false; // another program has written it anew
     }
@@ -163,7 +174,7 @@ void StoredFile::Foresee(std::size_t array, int step, const std::vector<ChunkPar
     auto rows = this->FindPieces(array, *place, chunk, part);
     if (rows.empty())
     {
-      rows.push_back({ place->Offset, place->Bytes });
+      rows.push_back({ place->Offset, place->Bytes + this->Storages[array].HaloRecordBytes });
     }
     auto& pieces = found[place->File];
     pieces.insert(pieces.end(), rows.begin(), rows.end());

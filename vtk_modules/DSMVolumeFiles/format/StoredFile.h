@@ -57,6 +57,8 @@ protected:
     std::size_t Slices = 1;
     /// Chunks, which are whole ones then, and of one slice, probably have a halo.
     bool HasHalo = false;
+    /// Of HaloRecord, behind each chunk; 0: the halo is in the chunk.
+    std::size_t HaloRecordBytes = 0;
   };
 
   /// None: all samples of the chunk have the fill value.

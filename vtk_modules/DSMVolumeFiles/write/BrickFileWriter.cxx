@@ -3,6 +3,7 @@
 
 #include "DSMCore/base/Error.h"
 #include "DSMVolumeFiles/codec/ChunkCodec.h"
+#include "DSMVolumeFiles/codec/HaloRecord.h"
 #include "DSMVolumeFiles/format/HdfLibrary.h"
 
 #include <nlohmann/json.hpp>
@@ -93,7 +94,16 @@ ChunkCodec BrickFileLayout::CreateCodec(std::size_t array) const
 
 bool BrickFileLayout::HasHalo(std::size_t array) const
 {
-  return !this->Arrays[array].OnCells && this->CreateCodec(array).KeepsHalo();
+  return !this->Arrays[array].OnCells &&
+    (this->HasHaloRecords || this->CreateCodec(array).KeepsHalo());
+}
+
+std::size_t BrickFileLayout::GetHaloRecordBytes(std::size_t array) const
+{
+  const FileArray& what = this->Arrays[array];
+  return this->HasHalo(array) && !this->CreateCodec(array).KeepsHalo()
+    ? HaloRecord::GetBytes(what.Grid.CountMostOfHalo() * what.GetSampleBytes())
+    : 0;
 }
 
 class BrickFileWriter::Internals
@@ -137,6 +147,13 @@ public:
         static_cast<hsize_t>(first.x), 0 };
       this->Check(H5Dwrite_chunk(
         target.Values.Get(), H5P_DEFAULT, 0, offset, chunk.Bytes.size(), chunk.Bytes.data()));
+      if (target.Halos.IsOpen())
+      {
+        // Behind the chunk, for the library takes space from the end of the file.
+        const hsize_t record[2] = { static_cast<hsize_t>(target.Chunks) + table.size() / 2, 0 };
+        this->Check(H5Dwrite_chunk(target.Halos.Get(), H5P_DEFAULT, 0, record,
+          chunk.HaloRecord.size(), chunk.HaloRecord.data()));
+      }
       table.push_back(chunk.First);
       table.push_back(chunk.Last);
     }
@@ -197,6 +214,7 @@ public:
     HdfHandle Values;
     HdfHandle Table;  ///< First and Last of the chunks
     HdfHandle Limits; ///< ValueRanges
+    HdfHandle Halos;  ///< HaloRecord of the chunks; not open: none
     std::int64_t Chunks;
     ValueRanges Ranges;
   };
@@ -321,7 +339,10 @@ private:
       { return this->Own(H5Dopen2(this->File, name.c_str(), H5P_DEFAULT), &H5Dclose); };
       const std::string index = "DSM/" + this->GetName(array);
       Target target{ find("VTKHDF/" + this->GetName(array)), find(index + "/BrickRanges"),
-        find(index + "/ValueRanges"), chunks[number], ValueRanges(array.Components) };
+        find(index + "/ValueRanges"),
+        this->Layout.GetHaloRecordBytes(number) > 0 ? find(index + "/" + HdfHaloRecords)
+                                                    : HdfHandle(),
+        chunks[number], ValueRanges(array.Components) };
       std::vector<double> limits(4 * target.Ranges.All.size());
       this->Check(H5Dread(
         target.Limits.Get(), H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, limits.data()));
@@ -442,7 +463,23 @@ private:
         { std::begin(tableShape), std::end(tableShape) }, H5P_DEFAULT),
       this->CreateDataset(index + "/ValueRanges", H5T_NATIVE_DOUBLE,
         { std::begin(limitShape), std::end(limitShape) }, H5P_DEFAULT),
-      0, std::move(ranges) };
+      this->CreateHalos(number), 0, std::move(ranges) };
+  }
+
+  /// Not open where the layout has none.
+  HdfHandle CreateHalos(std::size_t number)
+  {
+    const FileArray& array = this->Layout.Arrays[number];
+    const hsize_t record[2] = { 1, this->Layout.GetHaloRecordBytes(number) };
+    if (record[1] == 0)
+    {
+      return {};
+    }
+    const HdfHandle creation = this->Own(H5Pcreate(H5P_DATASET_CREATE), &H5Pclose);
+    H5Pset_chunk(creation.Get(), 2, record);
+    H5Pset_fill_time(creation.Get(), H5D_FILL_TIME_NEVER);
+    return this->CreateDataset("DSM/" + this->GetName(array) + "/" + HdfHaloRecords,
+      H5T_NATIVE_UCHAR, { static_cast<hsize_t>(array.Grid.GetCount()), record[1] }, creation.Get());
   }
 
   HdfHandle CreateDataset(

@@ -33,15 +33,21 @@ struct BrickFileLayout
 
   /// What the chunks of an array go through. Throws dsm::Error when this build lacks the compression.
   ChunkCodec CreateCodec(std::size_t array) const;
+  /// Of chunks that are not compressed: whether they have a halo, too. One that lies behind its chunk does not when the
+  /// array is copied to another file.
+  bool HasHaloRecords = true;
   /// Whether the chunks of an array, which begin bricks, have a halo (ChunkGrid::GetHalo): so a brick is read in
   /// one piece.
   bool HasHalo(std::size_t array) const;
+  /// Of HaloRecord, behind each chunk; 0: none, as where the halo is in the chunk.
+  std::size_t GetHaloRecordBytes(std::size_t array) const;
 };
 
 /// A chunk as the file has it.
 struct EncodedChunk
 {
   ByteBuffer Bytes;
+  ByteBuffer HaloRecord; ///< where the layout has them
   /// Of the cells of the brick that begins with the chunk's first sample, rounded outward; First above Last where
   /// there is none.
   float First = 0.0f;

@@ -11,6 +11,7 @@
 #include "DSMVolumeFiles/base/CopyBox.h"
 #include "DSMVolumeFiles/cache/ChunkCache.h"
 #include "DSMVolumeFiles/codec/ChunkCodec.h"
+#include "DSMVolumeFiles/codec/HaloRecord.h"
 #include "DSMVolumeFiles/format/HdfFile.h"
 #include "DSMVolumeFiles/write/ReducedOrigin.h"
 
@@ -59,6 +60,7 @@ public:
     , Array(layout.Arrays[array])
     , Codec(layout.CreateCodec(array))
     , HasHalo(layout.HasHalo(array))
+    , HaloRecordBytes(layout.GetHaloRecordBytes(array))
   {
   }
 
@@ -102,6 +104,10 @@ public:
         to += static_cast<std::size_t>(part.GetCount()) * sampleBytes;
       }
     }
+    if (this->HaloRecordBytes > 0)
+    {
+      encoded.HaloRecord = HaloRecord::Make(chunk, std::exchange(halo, {}), this->HaloRecordBytes);
+    }
     encoded.Bytes = this->Codec.Encode(std::move(bytes), std::move(halo));
     return { chunk, std::move(encoded) };
   }
@@ -112,6 +118,7 @@ private:
   FileArray Array;
   ChunkCodec Codec;
   bool HasHalo;
+  std::size_t HaloRecordBytes;
 };
 
 /// What a rank has made, as it goes to rank 0.
@@ -151,12 +158,15 @@ std::vector<std::byte> ToBytes(const std::vector<NumberedChunk>& chunks, const V
   }
   for (const auto& [number, chunk] : chunks)
   {
-    const std::uint64_t count = chunk.Bytes.size();
     Put(bytes, &number, 1);
     Put(bytes, &chunk.First, 1);
     Put(bytes, &chunk.Last, 1);
-    Put(bytes, &count, 1);
-    Put(bytes, chunk.Bytes.data(), chunk.Bytes.size());
+    for (const ByteBuffer* const part : { &chunk.Bytes, &chunk.HaloRecord })
+    {
+      const std::uint64_t count = part->size();
+      Put(bytes, &count, 1);
+      Put(bytes, part->data(), part->size());
+    }
   }
   return bytes;
 }
@@ -174,13 +184,16 @@ void FromBytes(
   while (!from.IsAtEnd())
   {
     auto& [number, chunk] = chunks.emplace_back();
-    std::uint64_t count = 0;
     from.Take(&number, 1);
     from.Take(&chunk.First, 1);
     from.Take(&chunk.Last, 1);
-    from.Take(&count, 1);
-    chunk.Bytes.resize(count);
-    from.Take(chunk.Bytes.data(), count);
+    for (ByteBuffer* const part : { &chunk.Bytes, &chunk.HaloRecord })
+    {
+      std::uint64_t count = 0;
+      from.Take(&count, 1);
+      part->resize(count);
+      from.Take(part->data(), count);
+    }
   }
 }
 
@@ -207,6 +220,7 @@ BrickFileLayout CreateLayout(const ValueOrigin& from, const WriteOptions& option
   BrickFileLayout layout;
   layout.Geometry = from.GetGeometry();
   layout.Pressed = options.Pressed;
+  layout.HasHaloRecords = options.HasHaloRecords;
   layout.BrickEdge = options.BrickEdge != 0
     ? options.BrickEdge
     : rt::BrickLattice::GetDefaultEdge(from.GetArrays().front().Type);
@@ -377,6 +391,7 @@ int WriteLevels(const std::string& path, const BrickFileLayout& layout, const st
   WriteOptions one = options;
   one.BrickEdge = layout.BrickEdge;
   one.Levels = 0;
+  one.HasHaloRecords = false;
   std::string last = BrickFileWriter::GetPartPath(path);
   for (int level = 1; level <= options.Levels; ++level)
   {

@@ -27,6 +27,8 @@ struct WriteOptions
   /// Of values and chunks in memory, on each rank; what the HDF5 library keeps of the index comes on top.
   std::size_t MemoryBytes = std::size_t(512) << 20;
   int Threads = 1; ///< of each rank
+  /// See BrickFileLayout.
+  bool HasHaloRecords = true;
 };
 
 /// Writes a brick file (BrickFileWriter) at `path`, or goes on where an earlier call with the same values was ended.
