@@ -17,6 +17,7 @@
 #include "vtkMultiBlockDataSet.h"
 #include "vtkNew.h"
 #include "vtkPointData.h"
+#include "vtkPoints.h"
 #include "vtkPolyData.h"
 #include "vtkStructuredData.h"
 #include "vtkUnsignedCharArray.h"
@@ -24,33 +25,93 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <limits>
+#include <vector>
 
 namespace
 {
 
+/// Cells of an image, as a box of their places from its first one on.
+struct CellBox
+{
+  int First[3];
+  int Last[3]; ///< one behind
+
+  bool Has(const int cell[3]) const
+  {
+    bool has = true;
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      has = has && this->First[axis] <= cell[axis] && cell[axis] < this->Last[axis];
+    }
+    return has;
+  }
+};
+
+/// Cells along an edge of a box whose samples are copied at once.
+constexpr int BoxEdge = 64;
+
+/// The samples of the points of some cells.
+vtkSmartPointer<vtkImageData> CutOut(vtkImageData* image, const CellBox& cells)
+{
+  auto box = vtkSmartPointer<vtkImageData>::New();
+  box->CopyStructure(image);
+  int extent[6];
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    extent[2 * axis] = image->GetExtent()[2 * axis] + cells.First[axis];
+    extent[2 * axis + 1] = image->GetExtent()[2 * axis] + cells.Last[axis];
+  }
+  box->SetExtent(extent);
+  return box;
+}
+
+/// `use(number, place)`: of each sample of a box, in its order, where it is in an array of the image.
+template <class Use>
+void ForEachSample(vtkImageData* image, vtkImageData* box, const Use& use)
+{
+  const int* const extent = box->GetExtent();
+  vtkIdType number = 0;
+  for (int z = extent[4]; z <= extent[5]; ++z)
+  {
+    for (int y = extent[2]; y <= extent[3]; ++y)
+    {
+      int sample[3] = { extent[0], y, z };
+      const vtkIdType row = image->ComputePointId(sample);
+      for (int x = extent[0]; x <= extent[1]; ++x)
+      {
+        use(number++, row + x - extent[0]);
+      }
+    }
+  }
+}
+
 /// One component, or the magnitude, as double: differences of unsigned integers would wrap around.
-vtkSmartPointer<vtkDoubleArray> GetValues(vtkDataArray* array, int component)
+vtkSmartPointer<vtkDoubleArray> GetValues(
+  vtkImageData* image, vtkImageData* box, vtkDataArray* array, int component)
 {
   auto values = vtkSmartPointer<vtkDoubleArray>::New();
   values->SetName("values");
-  values->SetNumberOfTuples(array->GetNumberOfTuples());
+  values->SetNumberOfTuples(box->GetNumberOfPoints());
   const int components = array->GetNumberOfComponents();
-  for (vtkIdType tuple = 0; tuple < array->GetNumberOfTuples(); ++tuple)
-  {
-    double value = 0.0;
-    if (component >= 0 && component < components)
+  ForEachSample(image, box,
+    [&](vtkIdType number, vtkIdType place)
     {
-      value = array->GetComponent(tuple, component);
-    }
-    else
-    {
-      for (int part = 0; part < components; ++part)
+      double value = 0.0;
+      if (component >= 0 && component < components)
       {
-        value = std::hypot(value, array->GetComponent(tuple, part));
+        value = array->GetComponent(place, component);
       }
-    }
-    values->SetValue(tuple, value);
-  }
+      else
+      {
+        for (int part = 0; part < components; ++part)
+        {
+          value = std::hypot(value, array->GetComponent(place, part));
+        }
+      }
+      values->SetValue(number, value);
+    });
   return values;
 }
 
@@ -66,28 +127,69 @@ vtkDataArray* FindColors(vtkDSMVolumeMapper* mapper, vtkImageData* image, bool o
   return attributes->GetArray(mapper->GetColorArray().c_str());
 }
 
-vtkSmartPointer<vtkPolyData> Extract(
-  vtkDSMVolumeMapper* mapper, vtkImageData* image, vtkDataArray* array, bool colored)
+std::vector<double> GetIsovalues(vtkDSMVolumeMapper* mapper)
 {
-  vtkNew<vtkImageData> plain;
-  plain->CopyStructure(image);
-  plain->GetPointData()->SetScalars(GetValues(array, mapper->GetIsoComponent()));
+  std::vector<double> isovalues;
+  for (int index = 0; index < mapper->GetNumberOfIsoValues(); ++index)
+  {
+    isovalues.push_back(mapper->GetIsoValue(index));
+  }
+  if (isovalues.empty())
+  {
+    isovalues.push_back(mapper->GetSuggestedIsoValue());
+  }
+  return isovalues;
+}
+
+bool MayHoldAny(vtkDoubleArray* values, const std::vector<double>& isovalues)
+{
+  double least = std::numeric_limits<double>::infinity();
+  double greatest = -least;
+  for (vtkIdType number = 0; number < values->GetNumberOfTuples(); ++number)
+  {
+    const double value = values->GetValue(number);
+    least = value < least ? value : least;
+    greatest = value > greatest ? value : greatest;
+  }
+  return std::any_of(isovalues.begin(), isovalues.end(),
+    [&](double isovalue) { return least <= isovalue && isovalue <= greatest; });
+}
+
+/// The triangles in the cells of a box; null where there are none.
+vtkSmartPointer<vtkPolyData> Extract(vtkDSMVolumeMapper* mapper, vtkImageData* image,
+  vtkDataArray* array, const CellBox& cells, bool colored)
+{
+  const std::vector<double> isovalues = GetIsovalues(mapper);
+  const vtkSmartPointer<vtkImageData> box = CutOut(image, cells);
+  if (!mapper->MayHaveSurface(box->GetBounds(), isovalues))
+  {
+    return nullptr;
+  }
+  const auto values = GetValues(image, box, array, mapper->GetIsoComponent());
+  if (!MayHoldAny(values, isovalues))
+  {
+    return nullptr;
+  }
+  box->GetPointData()->SetScalars(values);
   vtkNew<vtkFlyingEdges3D> edges;
-  edges->SetInputData(plain);
+  edges->SetInputData(box);
   edges->SetComputeNormals(colored);
   edges->ComputeScalarsOff();
   if (vtkDataArray* colors = colored ? FindColors(mapper, image, false) : nullptr)
   {
-    plain->GetPointData()->AddArray(colors);
+    vtkSmartPointer<vtkDataArray> some;
+    some.TakeReference(colors->NewInstance());
+    some->SetName(colors->GetName());
+    some->SetNumberOfComponents(colors->GetNumberOfComponents());
+    some->SetNumberOfTuples(box->GetNumberOfPoints());
+    ForEachSample(image, box,
+      [&](vtkIdType number, vtkIdType place) { some->SetTuple(number, place, colors); });
+    box->GetPointData()->AddArray(some);
     edges->InterpolateAttributesOn();
   }
-  for (int index = 0; index < mapper->GetNumberOfIsoValues(); ++index)
+  for (std::size_t index = 0; index < isovalues.size(); ++index)
   {
-    edges->SetValue(index, mapper->GetIsoValue(index));
-  }
-  if (mapper->GetNumberOfIsoValues() == 0)
-  {
-    edges->SetValue(0, mapper->GetSuggestedIsoValue());
+    edges->SetValue(static_cast<int>(index), isovalues[index]);
   }
   edges->Update();
   return edges->GetOutput();
@@ -103,16 +205,21 @@ void GetPlace(vtkImageData* image, const double point[3], double place[3])
   }
 }
 
-vtkIdType FindCell(vtkImageData* image, const double point[3])
+void FindCell(vtkImageData* image, const double point[3], int cell[3])
 {
   double place[3];
   GetPlace(image, point, place);
-  int cell[3];
   for (int axis = 0; axis < 3; ++axis)
   {
     const int last = std::max(image->GetDimensions()[axis] - 2, 0);
     cell[axis] = std::clamp(static_cast<int>(std::floor(place[axis])), 0, last);
   }
+}
+
+vtkIdType FindCell(vtkImageData* image, const double point[3])
+{
+  int cell[3];
+  FindCell(image, point, cell);
   return vtkStructuredData::ComputeCellId(image->GetDimensions(), cell);
 }
 
@@ -139,62 +246,110 @@ bool HaveOneLattice(vtkImageData* a, vtkImageData* b)
     std::equal(directions[0], directions[0] + 9, directions[1]);
 }
 
-/// Says of each triangle which cell of `counted` it is in, and of each point which sample is nearest.
-vtkSmartPointer<vtkPolyData> AttachIds(
-  vtkImageData* image, vtkImageData* counted, vtkPolyData* triangles, unsigned block)
+/// The triangles of an image, box by box. Each knows which cell of `counted` it is in, and each point which sample is
+/// nearest.
+class Collector
 {
-  auto result = vtkSmartPointer<vtkPolyData>::New();
-  result->SetPoints(triangles->GetPoints());
-  result->GetPointData()->ShallowCopy(triangles->GetPointData());
-  vtkNew<vtkIdTypeArray> cells;
-  vtkNew<vtkUnsignedIntArray> blocks;
-  cells->SetName("vtkOriginalCellIds");
-  blocks->SetName("vtkCompositeIndex");
-  vtkUnsignedCharArray* ghosts = image->GetCellGhostArray();
-  vtkNew<vtkCellArray> kept;
-  vtkCellArray* all = triangles->GetPolys();
-  vtkIdType size;
-  const vtkIdType* corners;
-  for (all->InitTraversal(); all->GetNextCell(size, corners) != 0;)
+public:
+  Collector(vtkImageData* image, vtkImageData* counted, unsigned block)
+    : Image(image)
+    , Counted(counted)
+    , Block(block)
   {
-    double center[3] = { 0.0, 0.0, 0.0 };
-    for (vtkIdType corner = 0; corner < size; ++corner)
+    this->Cells->SetName("vtkOriginalCellIds");
+    this->Nearest->SetName("vtkOriginalPointIds");
+  }
+
+  vtkIdType GetCount() const { return this->Triangles->GetNumberOfCells(); }
+
+  /// Of those in the cells of a box: triangles may be of a box that is larger. Not in ghost and hidden cells.
+  void Add(vtkPolyData* triangles, const CellBox& box)
+  {
+    if (this->Points->GetNumberOfPoints() == 0)
     {
-      double point[3];
-      triangles->GetPoint(corners[corner], point);
-      for (int axis = 0; axis < 3; ++axis)
+      this->Result->GetPointData()->CopyAllOn();
+      this->Result->GetPointData()->CopyAllocate(triangles->GetPointData());
+      this->Points->SetDataType(triangles->GetPoints()->GetDataType());
+    }
+    std::vector<vtkIdType> numbers(
+      static_cast<std::size_t>(triangles->GetNumberOfPoints()), vtkIdType(-1));
+    vtkUnsignedCharArray* ghosts = this->Image->GetCellGhostArray();
+    vtkCellArray* all = triangles->GetPolys();
+    vtkIdType size;
+    const vtkIdType* corners;
+    for (all->InitTraversal(); all->GetNextCell(size, corners) != 0;)
+    {
+      double center[3] = { 0.0, 0.0, 0.0 };
+      for (vtkIdType corner = 0; corner < size; ++corner)
       {
-        center[axis] += point[axis] / static_cast<double>(size);
+        double point[3];
+        triangles->GetPoint(corners[corner], point);
+        for (int axis = 0; axis < 3; ++axis)
+        {
+          center[axis] += point[axis] / static_cast<double>(size);
+        }
+      }
+      int cell[3];
+      FindCell(this->Image, center, cell);
+      constexpr int hidden = vtkDataSetAttributes::DUPLICATECELL | vtkDataSetAttributes::HIDDENCELL;
+      if (!box.Has(cell) ||
+        (ghosts &&
+          (ghosts->GetValue(vtkStructuredData::ComputeCellId(this->Image->GetDimensions(), cell)) &
+            hidden) != 0))
+      {
+        continue;
+      }
+      this->Triangles->InsertNextCell(static_cast<int>(size));
+      for (vtkIdType corner = 0; corner < size; ++corner)
+      {
+        vtkIdType& number = numbers[static_cast<std::size_t>(corners[corner])];
+        number = number >= 0 ? number : this->AddPoint(triangles, corners[corner]);
+        this->Triangles->InsertCellPoint(number);
+      }
+      this->Cells->InsertNextValue(FindCell(this->Counted, center));
+    }
+  }
+
+  vtkSmartPointer<vtkPolyData> Finish()
+  {
+    this->Result->SetPoints(this->Points);
+    this->Result->SetPolys(this->Triangles);
+    this->Result->GetCellData()->AddArray(this->Cells);
+    this->Result->GetPointData()->AddArray(this->Nearest);
+    if (this->Block > 0)
+    {
+      for (vtkDataSetAttributes* const data :
+        { static_cast<vtkDataSetAttributes*>(this->Result->GetCellData()),
+          static_cast<vtkDataSetAttributes*>(this->Result->GetPointData()) })
+      {
+        vtkNew<vtkUnsignedIntArray> blocks;
+        blocks->SetName("vtkCompositeIndex");
+        blocks->SetNumberOfTuples(data->GetNumberOfTuples());
+        blocks->FillValue(this->Block);
+        data->AddArray(blocks);
       }
     }
-    const vtkIdType cell = FindCell(image, center);
-    constexpr int hidden = vtkDataSetAttributes::DUPLICATECELL | vtkDataSetAttributes::HIDDENCELL;
-    if (!ghosts || (ghosts->GetValue(cell) & hidden) == 0)
-    {
-      kept->InsertNextCell(size, corners);
-      cells->InsertNextValue(FindCell(counted, center));
-      blocks->InsertNextValue(block);
-    }
+    return this->Result.GetPointer();
   }
-  result->SetPolys(kept);
-  result->GetCellData()->AddArray(cells);
-  vtkNew<vtkIdTypeArray> points;
-  points->SetName("vtkOriginalPointIds");
-  vtkNew<vtkUnsignedIntArray> pointBlocks;
-  pointBlocks->SetName("vtkCompositeIndex");
-  for (vtkIdType number = 0; number < triangles->GetNumberOfPoints(); ++number)
+
+private:
+  vtkIdType AddPoint(vtkPolyData* triangles, vtkIdType from)
   {
-    points->InsertNextValue(FindPoint(counted, triangles->GetPoint(number)));
-    pointBlocks->InsertNextValue(block);
+    const vtkIdType number = this->Points->InsertNextPoint(triangles->GetPoint(from));
+    this->Result->GetPointData()->CopyData(triangles->GetPointData(), from, number);
+    this->Nearest->InsertNextValue(FindPoint(this->Counted, triangles->GetPoint(from)));
+    return number;
   }
-  result->GetPointData()->AddArray(points);
-  if (block > 0)
-  {
-    result->GetCellData()->AddArray(blocks);
-    result->GetPointData()->AddArray(pointBlocks);
-  }
-  return result;
-}
+
+  vtkImageData* Image;
+  vtkImageData* Counted;
+  unsigned Block;
+  vtkNew<vtkPolyData> Result;
+  vtkNew<vtkPoints> Points;
+  vtkNew<vtkCellArray> Triangles;
+  vtkNew<vtkIdTypeArray> Cells;
+  vtkNew<vtkIdTypeArray> Nearest;
+};
 
 /// Gives each triangle the value of its cell.
 void AttachColors(vtkDataArray* colors, vtkPolyData* triangles)
@@ -227,12 +382,13 @@ void AddImage(vtkDSMVolumeMapper* mapper, vtkImageData* image, vtkDataObject* so
   {
     return;
   }
-  if (image->GetNumberOfCells() > vtkPVDSMIsosurfaceGeometry::MostCells)
+  if (!colored && image->GetNumberOfCells() > vtkPVDSMIsosurfaceGeometry::MostCellsOfSelection)
   {
     vtkErrorWithObjectMacro(mapper,
-      "Nothing can be selected in or exported of a block of "
-        << image->GetNumberOfCells() << " cells on one rank; at most "
-        << vtkPVDSMIsosurfaceGeometry::MostCells << " can. Take more ranks, or extract a part.");
+      "Nothing can be selected in a block of " << image->GetNumberOfCells()
+                                               << " cells on one rank; at most "
+                                               << vtkPVDSMIsosurfaceGeometry::MostCellsOfSelection
+                                               << " can. Take more ranks, or extract a part.");
     return;
   }
   auto* counted = vtkImageData::SafeDownCast(source);
@@ -240,8 +396,40 @@ void AddImage(vtkDSMVolumeMapper* mapper, vtkImageData* image, vtkDataObject* so
   {
     counted = image;
   }
-  const vtkSmartPointer<vtkPolyData> triangles =
-    AttachIds(image, counted, Extract(mapper, image, array, colored), block);
+  Collector collector(image, counted, block);
+  const int* const dimensions = image->GetDimensions();
+  CellBox box;
+  for (box.First[2] = 0; box.First[2] < dimensions[2] - 1; box.First[2] += BoxEdge)
+  {
+    for (box.First[1] = 0; box.First[1] < dimensions[1] - 1; box.First[1] += BoxEdge)
+    {
+      for (box.First[0] = 0; box.First[0] < dimensions[0] - 1; box.First[0] += BoxEdge)
+      {
+        // Normals at a box's sides depend on what is beyond, and so may in which cell a triangle is taken to be.
+        CellBox more;
+        for (int axis = 0; axis < 3; ++axis)
+        {
+          box.Last[axis] = std::min(box.First[axis] + BoxEdge, dimensions[axis] - 1);
+          more.First[axis] = std::max(box.First[axis] - 1, 0);
+          more.Last[axis] = std::min(box.Last[axis] + 1, dimensions[axis] - 1);
+        }
+        if (const auto triangles = Extract(mapper, image, array, more, colored))
+        {
+          collector.Add(triangles, box);
+        }
+        if (collector.GetCount() > vtkPVDSMIsosurfaceGeometry::MostTriangles)
+        {
+          vtkErrorWithObjectMacro(mapper,
+            "Nothing can be " << (colored ? "exported of" : "selected in")
+                              << " surfaces that have more than "
+                              << vtkPVDSMIsosurfaceGeometry::MostTriangles
+                              << " triangles on one rank. Take more ranks, or extract a part.");
+          return;
+        }
+      }
+    }
+  }
+  const vtkSmartPointer<vtkPolyData> triangles = collector.Finish();
   if (vtkDataArray* colors = colored ? FindColors(mapper, image, true) : nullptr)
   {
     AttachColors(colors, triangles);

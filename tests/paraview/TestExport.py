@@ -34,6 +34,14 @@ def read_gltf(name):
     return points, triangles, numpy.min(low, axis=0) if low else None, numpy.max(high, axis=0) if high else None
 
 
+def read_points(name):
+    """Places and normals of the points of an X3D file."""
+    with open(name) as file:
+        text = file.read()
+    return [numpy.array(" ".join(re.findall(f'{kind}="([^"]*)"', text)).replace(",", " ").split(), "f8").reshape(-1, 3)
+            for kind in ("point", "vector")]
+
+
 def export(name):
     path = os.path.join(OUTPUT, f"{'server' if len(sys.argv) > 3 else 'alone'}.{get_ranks()}.{name}")
     if os.path.exists(path):
@@ -78,6 +86,27 @@ simple.Show(wavelet, view)
 display.DSMIsoValues = [1e6]
 check(read_gltf(export("empty.gltf"))[1] == 0, "nothing where there is no surface")
 simple.Hide(wavelet, view)
+
+# A volume that is looked through in several parts has no seams.
+large = simple.Wavelet(WholeExtent=[-70, 75, -10, 10, -66, 70])
+show(large, view, [150.0], "RTData")
+render(view)
+volume.SetWholeExtent(-70, 75, -10, 10, -66, 70)
+edges.Update()
+whole = edges.GetOutput()
+count, triangles, low, high = read_gltf(export("parts.gltf"))
+check(triangles == whole.GetNumberOfCells(), f"{triangles} triangles of {whole.GetNumberOfCells()}")
+check(whole.GetNumberOfPoints() <= count <= 1.1 * whole.GetNumberOfPoints(), f"{count} points")
+points, normals = read_points(export("parts.x3d"))
+place = {tuple(point): normal for point, normal in zip(points.round(2) + 0.0, normals)}
+expected = whole.GetPointData().GetNormals()
+wrong = 0
+for number in range(whole.GetNumberOfPoints()):
+    normal = place.get(tuple(numpy.array(whole.GetPoint(number)).round(2) + 0.0))
+    wrong += normal is None or abs(normal - expected.GetTuple(number)).max() > 0.01
+check(wrong <= 0.01 * whole.GetNumberOfPoints(),
+      f"{wrong} of {whole.GetNumberOfPoints()} points or normals are not those of all at once")
+simple.Hide(large, view)
 
 # A mesh.
 ball = simple.Sphere(ThetaResolution=32, PhiResolution=24)

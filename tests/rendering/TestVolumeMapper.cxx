@@ -145,6 +145,46 @@ TEST_F(VolumeMapper, WithoutIsovaluesDrawsWhatTheDataSuggest)
   EXPECT_EQ(this->Mapper->GetSuggestedIsoValue(), suggested);
 }
 
+TEST_F(VolumeMapper, KnowsWhereThereIsNoSurface)
+{
+  const vtkSmartPointer<vtkImageData> image = MakeBall();
+  vtkNew<vtkDoubleArray> along; // x, and so the bricks of one half hold no value of the other's
+  along->SetName("along");
+  for (vtkIdType point = 0; point < image->GetNumberOfPoints(); ++point)
+  {
+    along->InsertNextValue(image->GetPoint(point)[0]);
+  }
+  image->GetPointData()->AddArray(along);
+  this->Mapper->SetInputData(image);
+  this->Mapper->SetIsoArray("along");
+  this->Mapper->SetIsoValue(0, 10.0);
+  this->Place(); // the boxes are those of the data
+  const double left[6] = { -15.0, -2.0, -9.0, 9.0, -4.0, 4.0 };
+  const double right[6] = { 2.0, 5.0, -9.0, 9.0, -4.0, 4.0 };
+  const double both[6] = { -5.0, 5.0, -9.0, 9.0, -4.0, 4.0 };
+  const double outside[6] = { 20.0, 30.0, -9.0, 9.0, -4.0, 4.0 };
+  EXPECT_TRUE(this->Mapper->MayHaveSurface(left, { 10.0 })) << "before there is a picture";
+  this->RenderTraced();
+  EXPECT_FALSE(this->Mapper->MayHaveSurface(left, { 10.0 }));
+  EXPECT_TRUE(this->Mapper->MayHaveSurface(left, { 10.0, -7.0 })) << "in any order";
+  EXPECT_TRUE(this->Mapper->MayHaveSurface(right, { 10.0 }));
+  EXPECT_FALSE(this->Mapper->MayHaveSurface(right, { -10.0 }));
+  EXPECT_TRUE(this->Mapper->MayHaveSurface(both, { 10.0 }));
+  EXPECT_FALSE(this->Mapper->MayHaveSurface(both, { 100.0 }));
+  EXPECT_FALSE(this->Mapper->MayHaveSurface(outside, { 10.0 }));
+
+  this->Mapper->SetIsoArray("distance");
+  EXPECT_TRUE(this->Mapper->MayHaveSurface(left, { 10.0 })) << "another array";
+  this->Mapper->SetIsoArray("along");
+  EXPECT_FALSE(this->Mapper->MayHaveSurface(left, { 10.0 }));
+  along->SetValue(0, 50.0);
+  along->Modified();
+  image->Modified();
+  EXPECT_TRUE(this->Mapper->MayHaveSurface(left, { 10.0 })) << "other values";
+  this->Mapper->SetInputData(MakeBall());
+  EXPECT_TRUE(this->Mapper->MayHaveSurface(left, { 10.0 })) << "other data";
+}
+
 TEST_F(VolumeMapper, TheSceneIsTheRenderersAndEndsWithItsLastHolder)
 {
   EXPECT_EQ(vtkDSMScene::ForRenderer(this->Renderer), this->Scene);

@@ -7,6 +7,7 @@
 #include "vtkDSMTranslation.h"
 
 #include "DSMRayTracing/layout/FirstIsovalue.h"
+#include "DSMRayTracing/volume/IsovaluePredicate.h"
 
 #include "vtkCompositeDataIterator.h"
 #include "vtkCompositeDataSet.h"
@@ -25,6 +26,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <utility>
 
 namespace
 {
@@ -43,6 +46,47 @@ vtkMTimeType GetDataTime(vtkDataObject* data)
     }
   }
   return time;
+}
+
+/// The bricks that a box of world space meets.
+rt::Box FindBricks(const rt::VoxelField& field, const glm::dmat4& toIndex, const double bounds[6])
+{
+  glm::dvec3 low(std::numeric_limits<double>::max());
+  glm::dvec3 high(std::numeric_limits<double>::lowest());
+  for (int corner = 0; corner < 8; ++corner)
+  {
+    const glm::dvec3 place(toIndex *
+      glm::dvec4(
+        bounds[corner & 1], bounds[2 + (corner >> 1 & 1)], bounds[4 + (corner >> 2 & 1)], 1.0));
+    low = glm::min(low, place);
+    high = glm::max(high, place);
+  }
+  // A cell more on each side, for what rounding does.
+  const double edge = field.Lattice.GetEdge();
+  return rt::Intersect({ rt::Index3(glm::floor((low - 1.0) / edge)),
+                         rt::Index3(glm::floor((high + 1.0) / edge)) + rt::Index3(1) },
+    { rt::Index3(0), field.Lattice.GetBricks() });
+}
+
+bool MayHoldAny(
+  const rt::VoxelField& field, const rt::Box& bricks, const rt::IsovaluePredicate& mayHold)
+{
+  const std::vector<rt::ValueRange>& ranges = field.Hierarchy.GetLevels().front().Ranges;
+  rt::Index3 brick;
+  for (brick.z = bricks.Min.z; brick.z < bricks.Max.z; ++brick.z)
+  {
+    for (brick.y = bricks.Min.y; brick.y < bricks.Max.y; ++brick.y)
+    {
+      for (brick.x = bricks.Min.x; brick.x < bricks.Max.x; ++brick.x)
+      {
+        if (mayHold(ranges[field.Lattice.GetId(brick)]))
+        {
+          return true;
+        }
+      }
+    }
+  }
+  return false;
 }
 
 } // namespace
@@ -222,6 +266,7 @@ void vtkDSMSceneVolume::Update(const std::shared_ptr<vtkDSMRankGroup>& group, bo
       "colour array", version, { this->Iso, oldIso, oldColor });
   }
   this->Stale.clear();
+  mapper->SetSurfaceTest(this->MakeSurfaceTest());
   for (const auto& published : { this->Iso, this->Color })
   {
     if (published && !published->Failure.empty())
@@ -229,6 +274,43 @@ void vtkDSMSceneVolume::Update(const std::shared_ptr<vtkDSMRankGroup>& group, bo
       this->Messages.push_back(published->Failure);
     }
   }
+}
+
+vtkDSMVolumeMapper::SurfaceTest vtkDSMSceneVolume::MakeSurfaceTest() const
+{
+  std::vector<glm::dmat4> toIndex;
+  for (std::size_t lattice = 0; lattice < this->Data->GetNumberOfLattices(); ++lattice)
+  {
+    toIndex.push_back(glm::inverse(this->Data->GetIndexToWorld(lattice)));
+  }
+  // Who lets go of the bricks shall not have to think of it.
+  return [toIndex = std::move(toIndex), mapper = this->Mapper.GetPointer(), data = this->SeenData,
+           time = this->SeenTime, array = this->Mapper->GetIsoArray(),
+           component = this->Mapper->GetIsoComponent(),
+           weak = std::weak_ptr<const Published>(this->Iso)](
+           const double bounds[6], std::vector<double> isovalues)
+  {
+    vtkDataObject* now = mapper->GetDataObjectInput();
+    const auto iso = weak.lock();
+    if (!iso || iso->GetFields().empty() || now != data || GetDataTime(now) != time ||
+      mapper->GetIsoArray() != array || mapper->GetIsoComponent() != component)
+    {
+      return true;
+    }
+    std::sort(isovalues.begin(), isovalues.end());
+    const rt::IsovaluePredicate mayHold(isovalues);
+    const auto& fields = iso->GetFields();
+    for (std::size_t lattice = 0; lattice < fields.size(); ++lattice)
+    {
+      if (fields[lattice] &&
+        MayHoldAny(
+          *fields[lattice], FindBricks(*fields[lattice], toIndex[lattice], bounds), mayHold))
+      {
+        return true;
+      }
+    }
+    return false;
+  };
 }
 
 void vtkDSMSceneVolume::TakeCoarser(const std::shared_ptr<vtkDSMRankGroup>&, bool wanted)

@@ -51,6 +51,8 @@ private:
     const vtkDSMVolumeData::Choice& choice);
   std::shared_ptr<Published> Require(const vtkDSMVolumeData::Choice& choice, const char* purpose,
     unsigned retryVersion, const std::vector<std::shared_ptr<Published>>& known);
+  /// As it is now.
+  vtkDSMVolumeMapper::SurfaceTest MakeSurfaceTest() const;
   /// Collective. Finds the isovalue for a first look at the array, once for an array.
   void SuggestIsovalue(dsm::Messenger& messenger);
   /// Whether isovalues and look come from the volume's property; else they are the mapper's.
