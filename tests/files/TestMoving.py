@@ -22,9 +22,10 @@ z, y, x = numpy.ogrid[0 : 1 : EDGE * 1j, 0 : 1 : EDGE * 1j, 0 : 1 : EDGE * 1j]
 values = numpy.sin(21 * x) * numpy.cos(19 * y) + numpy.sin(20 * z + 3 * x)
 values.astype(numpy.float32).tofile(path + ".raw")
 environment = {name: value for name, value in os.environ.items() if not name.startswith(("OMPI", "PMIX"))}
-subprocess.run([CONVERT, "--quiet", "--levels", "all", "--raw-size", f"{EDGE},{EDGE},{EDGE}", "--raw-type", "float32",
-                "--spacing", f"{1 / EDGE},{1 / EDGE},{1 / EDGE}", path + ".raw", path + ".vtkhdf"],
-               check=True, timeout=100, env=environment)
+# Compressed: what is not comes too soon.
+subprocess.run([CONVERT, "--quiet", "--compression", "deflate", "--levels", "all", "--raw-size", f"{EDGE},{EDGE},{EDGE}",
+                "--raw-type", "float32", "--spacing", f"{1 / EDGE},{1 / EDGE},{1 / EDGE}", path + ".raw",
+                path + ".vtkhdf"], check=True, timeout=100, env=environment)
 os.remove(path + ".raw")
 
 view = create_view()

@@ -23,8 +23,10 @@ def write_file():
     z, y, x = numpy.ogrid[0 : 1 : EDGE * 1j, 0 : 1 : EDGE * 1j, 0 : 1 : EDGE * 1j]
     values = numpy.sin(21 * x) * numpy.cos(19 * y) + numpy.sin(20 * z + 3 * x)
     values.astype(numpy.float32).tofile(path + ".raw")
-    subprocess.run([os.environ["DSM_TEST_CONVERT"], "--quiet", "--levels", "all", "--raw-size", f"{EDGE},{EDGE},{EDGE}",
-                    "--raw-type", "float32", path + ".raw", path + ".vtkhdf"], check=True, timeout=60)
+    # Compressed: what is not comes too soon.
+    subprocess.run([os.environ["DSM_TEST_CONVERT"], "--quiet", "--compression", "deflate", "--levels", "all",
+                    "--raw-size", f"{EDGE},{EDGE},{EDGE}", "--raw-type", "float32", path + ".raw", path + ".vtkhdf"],
+                   check=True, timeout=60)
     os.remove(path + ".raw")
     return path + ".vtkhdf"
 
