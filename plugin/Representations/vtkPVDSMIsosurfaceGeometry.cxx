@@ -52,6 +52,36 @@ struct CellBox
 /// Cells along an edge of a box whose samples are copied at once.
 constexpr int BoxEdge = 64;
 
+/// The cells of an image of so many points.
+std::vector<CellBox> CutIntoBoxes(const int points[3])
+{
+  std::vector<CellBox> boxes;
+  for (int z = 0; z < points[2] - 1; z += BoxEdge)
+  {
+    for (int y = 0; y < points[1] - 1; y += BoxEdge)
+    {
+      for (int x = 0; x < points[0] - 1; x += BoxEdge)
+      {
+        boxes.push_back({ { x, y, z },
+          { std::min(x + BoxEdge, points[0] - 1), std::min(y + BoxEdge, points[1] - 1),
+            std::min(z + BoxEdge, points[2] - 1) } });
+      }
+    }
+  }
+  return boxes;
+}
+
+/// With the cells around it, as far as there are.
+CellBox Grow(CellBox box, const int points[3])
+{
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    box.First[axis] = std::max(box.First[axis] - 1, 0);
+    box.Last[axis] = std::min(box.Last[axis] + 1, points[axis] - 1);
+  }
+  return box;
+}
+
 /// The samples of the points of some cells.
 vtkSmartPointer<vtkImageData> CutOut(vtkImageData* image, const CellBox& cells)
 {
@@ -157,9 +187,8 @@ bool MayHoldAny(vtkDoubleArray* values, const std::vector<double>& isovalues)
 
 /// The triangles in the cells of a box; null where there are none.
 vtkSmartPointer<vtkPolyData> Extract(vtkDSMVolumeMapper* mapper, vtkImageData* image,
-  vtkDataArray* array, const CellBox& cells, bool colored)
+  vtkDataArray* array, const std::vector<double>& isovalues, const CellBox& cells, bool colored)
 {
-  const std::vector<double> isovalues = GetIsovalues(mapper);
   const vtkSmartPointer<vtkImageData> box = CutOut(image, cells);
   if (!mapper->MayHaveSurface(box->GetBounds(), isovalues))
   {
@@ -397,36 +426,23 @@ void AddImage(vtkDSMVolumeMapper* mapper, vtkImageData* image, vtkDataObject* so
     counted = image;
   }
   Collector collector(image, counted, block);
-  const int* const dimensions = image->GetDimensions();
-  CellBox box;
-  for (box.First[2] = 0; box.First[2] < dimensions[2] - 1; box.First[2] += BoxEdge)
+  const std::vector<double> isovalues = GetIsovalues(mapper);
+  for (const CellBox& box : CutIntoBoxes(image->GetDimensions()))
   {
-    for (box.First[1] = 0; box.First[1] < dimensions[1] - 1; box.First[1] += BoxEdge)
+    // Normals at a box's sides depend on what is beyond, and so may in which cell a triangle is taken to be.
+    const CellBox more = Grow(box, image->GetDimensions());
+    if (const auto triangles = Extract(mapper, image, array, isovalues, more, colored))
     {
-      for (box.First[0] = 0; box.First[0] < dimensions[0] - 1; box.First[0] += BoxEdge)
-      {
-        // Normals at a box's sides depend on what is beyond, and so may in which cell a triangle is taken to be.
-        CellBox more;
-        for (int axis = 0; axis < 3; ++axis)
-        {
-          box.Last[axis] = std::min(box.First[axis] + BoxEdge, dimensions[axis] - 1);
-          more.First[axis] = std::max(box.First[axis] - 1, 0);
-          more.Last[axis] = std::min(box.Last[axis] + 1, dimensions[axis] - 1);
-        }
-        if (const auto triangles = Extract(mapper, image, array, more, colored))
-        {
-          collector.Add(triangles, box);
-        }
-        if (collector.GetCount() > vtkPVDSMIsosurfaceGeometry::MostTriangles)
-        {
-          vtkErrorWithObjectMacro(mapper,
-            "Nothing can be " << (colored ? "exported of" : "selected in")
-                              << " surfaces that have more than "
-                              << vtkPVDSMIsosurfaceGeometry::MostTriangles
-                              << " triangles on one rank. Take more ranks, or extract a part.");
-          return;
-        }
-      }
+      collector.Add(triangles, box);
+    }
+    if (collector.GetCount() > vtkPVDSMIsosurfaceGeometry::MostTriangles)
+    {
+      vtkErrorWithObjectMacro(mapper,
+        "Nothing can be " << (colored ? "exported of" : "selected in")
+                          << " surfaces that have more than "
+                          << vtkPVDSMIsosurfaceGeometry::MostTriangles
+                          << " triangles on one rank. Take more ranks, or extract a part.");
+      return;
     }
   }
   const vtkSmartPointer<vtkPolyData> triangles = collector.Finish();

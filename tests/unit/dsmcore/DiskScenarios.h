@@ -184,6 +184,25 @@ public:
     return wrong;
   }
 
+  /// A frame in which `work(blocks, worker)` is what each rank's first worker does; the others do nothing.
+  template <class Work>
+  void RunFirstWorker(const Work& work)
+  {
+    this->Store.Visit(
+      [&](auto& blocks)
+      {
+        using Blocks = std::decay_t<decltype(blocks)>;
+        RunFrame<Blocks>(this->Messages, blocks,
+          [&](typename Blocks::Worker& worker, int index)
+          {
+            if (index == 0)
+            {
+              work(blocks, worker);
+            }
+          });
+      });
+  }
+
   static constexpr std::size_t BlocksOfRank = 12;
 
   dsm::Messenger& Messages;

@@ -216,17 +216,11 @@ TEST_P(BlocksOnDisk, WorkersReadWhatIsInMemory)
         DiskStore disks(messenger, organization, (DiskStore::BlocksOfRank + 2) * ranks + 2, shares);
         disks.Disk->OneInMemory = 1;
         // One before another rank may ask for it.
-        disks.Store.Visit(
-          [&](auto& blocks)
+        disks.RunFirstWorker(
+          [&](auto& blocks, auto& worker)
           {
-            using Blocks = std::decay_t<decltype(blocks)>;
-            dsm_test::RunFrame<Blocks>(messenger, blocks,
-              [&](typename Blocks::Worker& worker, int index)
-              {
-                const auto mine = static_cast<dsm::BlockId>(messenger.GetRank());
-                EXPECT_EQ(
-                  index == 0 ? dsm_test::Visit(blocks, worker, *disks.Segment, mine) : 0, 0u);
-              });
+            const auto mine = static_cast<dsm::BlockId>(messenger.GetRank());
+            EXPECT_EQ(dsm_test::Visit(blocks, worker, *disks.Segment, mine), 0u);
           });
         const std::uint64_t first = disks.Disk->AtOnce;
         disks.ReadAll();
@@ -273,23 +267,15 @@ TEST_P(BlocksOnDisk, SystemIsToldOfWhatWorkersForesee)
         static_cast<dsm::BlockId>(messenger.GetRank() + messenger.GetSize()) };
       const auto look = [&](std::uint64_t used)
       {
-        disks.Store.Visit(
-          [&](auto& blocks)
+        disks.RunFirstWorker(
+          [&](auto& blocks, auto& worker)
           {
-            using Blocks = std::decay_t<decltype(blocks)>;
-            dsm_test::RunFrame<Blocks>(messenger, blocks,
-              [&](typename Blocks::Worker& worker, int index)
-              {
-                if (index == 0)
-                {
-                  blocks.Prefetch(*disks.Segment, ids, 2);
-                  blocks.Prefetch(*disks.Segment, ids, 2);
-                  for (std::uint64_t block = 0; block < used; ++block)
-                  {
-                    EXPECT_EQ(dsm_test::Visit(blocks, worker, *disks.Segment, ids[block]), 0u);
-                  }
-                }
-              });
+            blocks.Prefetch(*disks.Segment, ids, 2);
+            blocks.Prefetch(*disks.Segment, ids, 2);
+            for (std::uint64_t block = 0; block < used; ++block)
+            {
+              EXPECT_EQ(dsm_test::Visit(blocks, worker, *disks.Segment, ids[block]), 0u);
+            }
           });
         const auto counters = disks.Store.GetCounters();
         EXPECT_EQ(counters.Prefetches, used) << "what was read of it";
@@ -341,23 +327,15 @@ TEST_P(BlocksOnDisk, SystemIsToldOfWhatLiesAround)
       {
         SCOPED_TRACE(what);
         told += organization == dsm::MemoryOrganization::PageBased ? 0 : more;
-        disks.Store.Visit(
-          [&](auto& blocks)
+        disks.RunFirstWorker(
+          [&](auto& blocks, auto& worker)
           {
-            using Blocks = std::decay_t<decltype(blocks)>;
-            dsm_test::RunFrame<Blocks>(messenger, blocks,
-              [&](typename Blocks::Worker& worker, int index)
-              {
-                if (index == 0)
-                {
-                  tell(blocks);
-                  tell(blocks);
-                  for (std::size_t number = first; number < first + count; ++number)
-                  {
-                    EXPECT_EQ(dsm_test::Visit(blocks, worker, segment, find(number)), 0u);
-                  }
-                }
-              });
+            tell(blocks);
+            tell(blocks);
+            for (std::size_t number = first; number < first + count; ++number)
+            {
+              EXPECT_EQ(dsm_test::Visit(blocks, worker, segment, find(number)), 0u);
+            }
           });
         for (int attempt = 0; attempt < 2000 && disks.Disk->Told < told; ++attempt)
         {

@@ -56,6 +56,16 @@ class TestIsosurfaceTracer : public testing::Test
 protected:
   TestIsosurfaceTracer() { this->Object.Surface.Opacity = 0.5f; }
 
+  /// As far as its directory tells.
+  void PutInFile()
+  {
+    dsm::BlockDirectory directory = this->Object.Field->Segment->GetDirectory();
+    directory.SetFromSource();
+    auto field = std::make_shared<rt::VoxelField>(*this->Object.Field);
+    field->Segment = std::make_shared<MemoryStore::Segment>(directory);
+    this->Object.Field = field;
+  }
+
   MemoryStore Store;
   MemoryStore::Worker Worker;
   rt::IsosurfaceObject Object = CreateObject(this->Store, CreateWaves(), { 0.3, 1.1 }, 4);
@@ -174,11 +184,7 @@ TEST_F(TestIsosurfaceTracer, AsksForTheFirstBricksOfABeam)
   EXPECT_EQ(this->Store.Prefetched, all);
   // What is cut out of a file, in vain, takes a thread's time.
   this->Store.Prefetched.clear();
-  dsm::BlockDirectory directory = this->Object.Field->Segment->GetDirectory();
-  directory.SetFromSource();
-  auto field = std::make_shared<rt::VoxelField>(*this->Object.Field);
-  field->Segment = std::make_shared<MemoryStore::Segment>(directory);
-  this->Object.Field = field;
+  this->PutInFile();
   EXPECT_TRUE(this->Store.Told.empty()) << "of what is in memory";
   tracer.Prefetch(*beam, { all.size(), 3 });
   EXPECT_EQ(this->Store.Prefetched, std::vector<dsm::BlockId>(all.begin(), all.begin() + 2));
@@ -197,11 +203,7 @@ TEST_F(TestIsosurfaceTracer, TellsTheSystemOfWhatLiesInTheRow)
     [&](int x, int y, int)
     { return x % edge != 0 && onSurface.count(x / edge) > 0 ? static_cast<float>(y) : 0.0f; });
   this->Object = CreateObject(this->Store, row, { 1.5 }, edge);
-  dsm::BlockDirectory directory = this->Object.Field->Segment->GetDirectory();
-  directory.SetFromSource();
-  auto field = std::make_shared<rt::VoxelField>(*this->Object.Field);
-  field->Segment = std::make_shared<MemoryStore::Segment>(directory);
-  this->Object.Field = field;
+  this->PutInFile();
   const Tracer tracer(this->Store, this->Worker, this->Object);
   const auto findAround = [&](dsm::BlockId id)
   {

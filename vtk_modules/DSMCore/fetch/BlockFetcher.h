@@ -234,11 +234,11 @@ private:
   std::atomic<std::size_t> QueuedCount{ 0 };
   /// Foreseen, and not queued: the system was told of them.
   std::vector<BlockWant> ForeseenBySystem;
-  /// Blocks that it was not told of, and had in its memory when they were wanted, one behind the other: when there
-  /// are many, it need not be told.
-  std::size_t FoundUntold = 0;
   /// Of them, in this frame: wanted later. Each counts as prefetched, and whoever wants it as joining.
   std::uint64_t SystemUsed = 0;
+  /// Blocks that the system was not told of, and had in its memory when they were wanted, one behind the other: when there
+  /// are many, it need not be told.
+  std::size_t FoundUntold = 0;
   /// Workers may have read blocks that other ranks asked for.
   std::atomic<bool> MayHaveDebtsHere{ false };
   /// Other than Requests; those with reads under way. Communication thread only.

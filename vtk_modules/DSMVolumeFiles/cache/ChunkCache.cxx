@@ -23,6 +23,25 @@ constexpr std::size_t InHandOfEach = 2;
 /// Samples along an axis that a brick has in common with the next.
 constexpr int Overlap = 2;
 
+/// Those that have samples of a box; x fastest.
+template <class Visit>
+void ForEachChunk(const ChunkGrid& grid, const rt::Box& box, const Visit& visit)
+{
+  const rt::Index3 first = box.Min / grid.ChunkSamples;
+  const rt::Index3 last = (box.Max - rt::Index3(1)) / grid.ChunkSamples;
+  rt::Index3 chunk;
+  for (chunk.z = first.z; chunk.z <= last.z; ++chunk.z)
+  {
+    for (chunk.y = first.y; chunk.y <= last.y; ++chunk.y)
+    {
+      for (chunk.x = first.x; chunk.x <= last.x; ++chunk.x)
+      {
+        visit(chunk);
+      }
+    }
+  }
+}
+
 } // namespace
 
 ChunkCache& ChunkCache::GetShared()
@@ -215,33 +234,25 @@ void ChunkCache::Read(const std::shared_ptr<const VolumeFile>& file, std::size_t
   }
   ByteBuffer dense;
   const FileArray& what = file->GetArrays()[array];
-  const rt::Index3 first = box.Min / what.Grid.ChunkSamples;
-  const rt::Index3 last = (box.Max - rt::Index3(1)) / what.Grid.ChunkSamples;
-  rt::Index3 chunk;
-  for (chunk.z = first.z; chunk.z <= last.z; ++chunk.z)
-  {
-    for (chunk.y = first.y; chunk.y <= last.y; ++chunk.y)
+  ForEachChunk(what.Grid, box,
+    [&](const rt::Index3& chunk)
     {
-      for (chunk.x = first.x; chunk.x <= last.x; ++chunk.x)
+      const rt::Box part = what.Grid.GetBox(chunk);
+      const rt::Box common = rt::Intersect(part, box);
+      if (scattered && !this->HasChunk(file, array, step, chunk))
       {
-        const rt::Box part = what.Grid.GetBox(chunk);
-        const rt::Box common = rt::Intersect(part, box);
-        if (scattered && !this->HasChunk(file, array, step, chunk))
+        dense.resize(static_cast<std::size_t>(common.GetCount()) * what.GetSampleBytes());
+        if (file->ReadPart(array, step, chunk, common, dense.data()))
         {
-          dense.resize(static_cast<std::size_t>(common.GetCount()) * what.GetSampleBytes());
-          if (file->ReadPart(array, step, chunk, common, dense.data()))
-          {
-            CopyBox(common, dense.data(), common, out, box, what.GetSampleBytes());
-            const std::lock_guard<std::mutex> lock(this->Guard);
-            this->BytesRead += dense.size();
-            continue;
-          }
+          CopyBox(common, dense.data(), common, out, box, what.GetSampleBytes());
+          const std::lock_guard<std::mutex> lock(this->Guard);
+          this->BytesRead += dense.size();
+          return;
         }
-        const Chunk samples = this->Get(file, array, step, chunk);
-        CopyBox(common, samples->data(), part, out, box, what.GetSampleBytes());
       }
-    }
-  }
+      const Chunk samples = this->Get(file, array, step, chunk);
+      CopyBox(common, samples->data(), part, out, box, what.GetSampleBytes());
+    });
 }
 
 bool ChunkCache::ReadWithHalo(const std::shared_ptr<const VolumeFile>& file, std::size_t array,
@@ -272,22 +283,14 @@ void ChunkCache::Foresee(const std::shared_ptr<const VolumeFile>& file, std::siz
       // What bricks need beyond their own cells is another one's, too.
       const rt::Box own{ box.Min,
         glm::max(box.Min + rt::Index3(1), box.Max - rt::Index3(Overlap)) };
-      const rt::Index3 first = own.Min / what.Grid.ChunkSamples;
-      const rt::Index3 last = (own.Max - rt::Index3(1)) / what.Grid.ChunkSamples;
-      rt::Index3 chunk;
-      for (chunk.z = first.z; chunk.z <= last.z; ++chunk.z)
-      {
-        for (chunk.y = first.y; chunk.y <= last.y; ++chunk.y)
+      ForEachChunk(what.Grid, own,
+        [&](const rt::Index3& chunk)
         {
-          for (chunk.x = first.x; chunk.x <= last.x; ++chunk.x)
+          if (!this->HasChunk(file, array, step, chunk))
           {
-            if (!this->HasChunk(file, array, step, chunk))
-            {
-              parts.push_back({ chunk, rt::Intersect(what.Grid.GetBox(chunk), box) });
-            }
+            parts.push_back({ chunk, rt::Intersect(what.Grid.GetBox(chunk), box) });
           }
-        }
-      }
+        });
     }
     file->Foresee(array, step, parts);
   }

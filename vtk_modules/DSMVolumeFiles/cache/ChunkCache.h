@@ -65,7 +65,7 @@ public:
   void ReadScattered(const std::shared_ptr<const VolumeFile>& file, std::size_t array, int step,
     const rt::Box& box, std::byte* out);
 
-  /// A box will probably be read soon: the system is told of what is not here, without what boxes side by side
+  /// Boxes will probably be read soon: the system is told of what is not here, without what boxes side by side
   /// have in common. What goes wrong is said when it is read.
   void Foresee(const std::shared_ptr<const VolumeFile>& file, std::size_t array, int step,
     const std::vector<rt::Box>& boxes) const;

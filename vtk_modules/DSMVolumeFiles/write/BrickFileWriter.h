@@ -30,12 +30,12 @@ struct BrickFileLayout
   std::vector<FileArray> Arrays;
   int BrickEdge = 16;
   Compression Pressed = Compression::None;
-
-  /// What the chunks of an array go through. Throws dsm::Error when this build lacks the compression.
-  ChunkCodec CreateCodec(std::size_t array) const;
   /// Of chunks that are not compressed: whether they have a halo, too. One that lies behind its chunk does not when the
   /// array is copied to another file.
   bool HasHaloRecords = true;
+
+  /// What the chunks of an array go through. Throws dsm::Error when this build lacks the compression.
+  ChunkCodec CreateCodec(std::size_t array) const;
   /// Whether the chunks of an array, which begin bricks, have a halo (ChunkGrid::GetHalo): so a brick is read in
   /// one piece.
   bool HasHalo(std::size_t array) const;

@@ -42,7 +42,7 @@ public:
   /// The same where boxes are read here and there, rather than one beside the other.
   void ReadScattered(const rt::Box& box, std::byte* out) const;
 
-  /// The samples of a box will probably be needed soon: the system is told. Nothing fails.
+  /// The samples of boxes will probably be needed soon: the system is told. Nothing fails.
   void Foresee(std::vector<rt::Box> boxes) const;
 
   /// Equal only, for all practical purposes, for equal values.
