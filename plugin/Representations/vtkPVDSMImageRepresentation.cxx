@@ -9,10 +9,13 @@
 
 #include "vtkActor.h"
 #include "vtkCompositeDataIterator.h"
+#include "vtkDataArray.h"
 #include "vtkDataAssembly.h"
 #include "vtkDataAssemblyUtilities.h"
 #include "vtkDataObject.h"
 #include "vtkDataObjectTree.h"
+#include "vtkDataObjectTreeIterator.h"
+#include "vtkFieldData.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
 #include "vtkMatrix4x4.h"
@@ -27,6 +30,7 @@
 #include "vtkVolume.h"
 
 #include <algorithm>
+#include <map>
 
 vtkStandardNewMacro(vtkPVDSMImageRepresentation);
 
@@ -84,6 +88,7 @@ int vtkPVDSMImageRepresentation::RequestData(
     }
   }
   this->Mapper->SetInputData(data);
+  this->BlockLooksAreOld = true;
   this->Display->NoteUpdate();
   return this->Superclass::RequestData(request, input, output);
 }
@@ -122,6 +127,117 @@ void vtkPVDSMImageRepresentation::RemoveAllBlockSelectors()
   this->MarkModified();
 }
 
+void vtkPVDSMImageRepresentation::SetBlockColor(const char* selector, double r, double g, double b)
+{
+  this->BlockColors.push_back({ selector, { r, g, b } });
+  this->BlockLooksAreOld = true;
+}
+
+void vtkPVDSMImageRepresentation::RemoveAllBlockColors()
+{
+  this->BlockColors.clear();
+  this->BlockLooksAreOld = true;
+}
+
+void vtkPVDSMImageRepresentation::SetBlockOpacity(const char* selector, double opacity)
+{
+  this->BlockOpacities.emplace_back(selector, opacity);
+  this->BlockLooksAreOld = true;
+}
+
+void vtkPVDSMImageRepresentation::RemoveAllBlockOpacities()
+{
+  this->BlockOpacities.clear();
+  this->BlockLooksAreOld = true;
+}
+
+void vtkPVDSMImageRepresentation::SetBlockColorsDistinctValues(int number)
+{
+  this->BlockColorsDistinctValues = std::max(number, 1);
+  this->BlockLooksAreOld = true;
+}
+
+void vtkPVDSMImageRepresentation::ChooseBlockLooks()
+{
+  this->BlockLooksAreOld = false;
+  this->Mapper->RemoveBlockLooks();
+  vtkDataObject* data = this->Mapper->GetInputDataObject(0, 0);
+  if (data && !this->BlockArray.empty())
+  {
+    this->ColorBlocksByArray(data);
+  }
+  auto* tree = vtkDataObjectTree::SafeDownCast(data);
+  vtkNew<vtkDataAssembly> assembly;
+  if (!tree || !vtkDataAssemblyUtilities::GenerateHierarchy(tree, assembly))
+  {
+    return;
+  }
+  const auto find = [&](const std::string& selector)
+  {
+    return vtkDataAssemblyUtilities::GetSelectedCompositeIds(
+      { selector }, assembly, vtkPartitionedDataSetCollection::SafeDownCast(tree), true);
+  };
+  for (const auto& [selector, color] : this->BlockColors)
+  {
+    for (const unsigned int block : find(selector))
+    {
+      this->Mapper->SetBlockColor(block, color[0], color[1], color[2]);
+    }
+  }
+  for (const auto& [selector, opacity] : this->BlockOpacities)
+  {
+    for (const unsigned int block : find(selector))
+    {
+      this->Mapper->SetBlockOpacity(block, opacity);
+    }
+  }
+}
+
+void vtkPVDSMImageRepresentation::ColorBlocksByArray(vtkDataObject* data)
+{
+  const bool areNumbers = this->BlockArray == "vtkBlockColors";
+  const auto add = [&](vtkDataObject* image, unsigned int block, unsigned int number)
+  {
+    vtkDataArray* array = image->GetFieldData()->GetArray(this->BlockArray.c_str());
+    if (array && array->GetNumberOfTuples() > 0)
+    {
+      this->Mapper->SetBlockValue(block, array->GetComponent(0, 0));
+    }
+    else if (areNumbers)
+    {
+      this->Mapper->SetBlockValue(block, number % this->BlockColorsDistinctValues);
+    }
+  };
+  auto* tree = vtkDataObjectTree::SafeDownCast(data);
+  if (!tree)
+  {
+    add(data, 0, 0);
+    return;
+  }
+  // ParaView counts leaves, also empty ones, but takes all parts of a partitioned dataset in a collection for one.
+  auto* collection = vtkPartitionedDataSetCollection::SafeDownCast(tree);
+  std::map<vtkDataObject*, unsigned int> numbers;
+  for (unsigned int set = 0; collection && set < collection->GetNumberOfPartitionedDataSets();
+       ++set)
+  {
+    for (unsigned int part = 0; part < collection->GetNumberOfPartitions(set); ++part)
+    {
+      numbers[collection->GetPartitionAsDataObject(set, part)] = set;
+    }
+  }
+  vtkSmartPointer<vtkDataObjectTreeIterator> leaf;
+  leaf.TakeReference(tree->NewTreeIterator());
+  leaf->SkipEmptyNodesOff();
+  unsigned int number = 0;
+  for (leaf->InitTraversal(); !leaf->IsDoneWithTraversal(); leaf->GoToNextItem(), ++number)
+  {
+    if (vtkDataObject* image = leaf->GetCurrentDataObject())
+    {
+      add(image, leaf->GetCurrentFlatIndex(), collection ? numbers[image] : number);
+    }
+  }
+}
+
 int vtkPVDSMImageRepresentation::ProcessViewRequest(
   vtkInformationRequestKey* request, vtkInformation* inInfo, vtkInformation* outInfo)
 {
@@ -131,11 +247,18 @@ int vtkPVDSMImageRepresentation::ProcessViewRequest(
   }
   if (request == vtkPVView::REQUEST_UPDATE())
   {
+    if (this->BlockLooksAreOld)
+    {
+      this->ChooseBlockLooks();
+    }
     const bool isColored = this->Mapper->GetScalarVisibility();
+    const bool isMapped = isColored || this->Mapper->GetBlockScalarVisibility();
     // Colours that are taken as they are may have an opacity on another rank.
     const bool isTranslucent = this->Mapper->GetSurfaceProperty()->GetOpacity() < 1.0 ||
       (isColored && !this->Mapper->GetMapScalars()) ||
-      (isColored && vtkPVDSMTracedDisplay::HasOpacity(this->Mapper->GetLookupTable()));
+      (isMapped && vtkPVDSMTracedDisplay::HasOpacity(this->Mapper->GetLookupTable())) ||
+      std::any_of(this->BlockOpacities.begin(), this->BlockOpacities.end(),
+        [](const auto& block) { return block.second < 1.0; });
     this->Display->KeepData(this->Volume->GetBounds(), isTranslucent,
       this->Mapper->GetInputDataObject(0, 0), inInfo, outInfo);
   }
@@ -168,9 +291,11 @@ void vtkPVDSMImageRepresentation::SetInputArrayToProcess(
   this->Superclass::SetInputArrayToProcess(index, port, connection, association, name);
   if (index == 0)
   {
-    // An array of the whole dataset, which ParaView chooses for several blocks, says nothing of places.
     const bool isOfPlaces = association != vtkDataObject::FIELD_ASSOCIATION_NONE;
-    this->Mapper->SetColorArray(name ? name : "");
+    this->BlockArray = isOfPlaces || !name ? "" : name;
+    this->BlockLooksAreOld = true;
+    this->Mapper->SetBlockScalarVisibility(!this->BlockArray.empty());
+    this->Mapper->SetColorArray(isOfPlaces && name ? name : "");
     this->Mapper->SetColorArrayOnCells(association == vtkDataObject::FIELD_ASSOCIATION_CELLS);
     this->Mapper->SetScalarVisibility(isOfPlaces && name && name[0]);
   }

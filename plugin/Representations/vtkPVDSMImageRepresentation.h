@@ -16,9 +16,11 @@
 #include "vtkPVDataRepresentation.h"
 #include "vtkRepresentationsDSMModule.h" // for the export macro
 
-#include <memory> // for ivars
-#include <string> // for ivars
-#include <vector> // for ivars
+#include <array>   // for ivars
+#include <memory>  // for ivars
+#include <string>  // for ivars
+#include <utility> // for ivars
+#include <vector>  // for ivars
 
 class vtkDSMVolumeMapper;
 class vtkDataObject;
@@ -49,6 +51,25 @@ public:
   void AddBlockSelector(const char* selector);
   void RemoveAllBlockSelectors();
   ///@}
+
+  ///@{
+  /**
+   * Colours and opacities of the blocks that a path leads to, in place of the surfaces'; later ones count.
+   */
+  void SetBlockColor(const char* selector, double r, double g, double b);
+  void RemoveAllBlockColors();
+  void SetBlockOpacity(const char* selector, double opacity);
+  void RemoveAllBlockOpacities();
+  ///@}
+
+  /**
+   * So many colours take turns where ParaView's array vtkBlockColors colours the blocks, as it numbers them.
+   */
+  void SetBlockColorsDistinctValues(int number);
+  /**
+   * Index 0: the array that colours the surfaces, of points or of cells; one of the whole dataset colours each block by
+   * the first value that it has there.
+   */
   void SetInputArrayToProcess(
     int index, int port, int connection, int association, const char* name) override;
   using Superclass::SetInputArrayToProcess;
@@ -167,10 +188,18 @@ private:
 
   void ChooseIsoValues();
   void RemoveHiddenBlocks(vtkDataObject* data) const;
+  /// Tells the mapper how the blocks look that its data have now.
+  void ChooseBlockLooks();
+  void ColorBlocksByArray(vtkDataObject* data);
 
   vtkNew<vtkVolume> Volume;
   vtkNew<vtkDSMVolumeMapper> Mapper;
   std::vector<std::string> BlockSelectors;
+  std::vector<std::pair<std::string, std::array<double, 3>>> BlockColors;
+  std::vector<std::pair<std::string, double>> BlockOpacities;
+  int BlockColorsDistinctValues = 7;
+  std::string BlockArray; ///< that colours whole blocks; empty: none
+  bool BlockLooksAreOld = true;
   std::vector<double> IsoValues;
   double SingleIsoValue = UnsetIsoValue;
   std::unique_ptr<vtkPVDSMTracedDisplay> Display;

@@ -137,4 +137,31 @@ TEST(LatticePlan, CoverageFindsOneMissingCell)
       MakeBox({ 0, 2, 3, 4, 3, 4 }) }));
 }
 
+TEST(LatticePlan, SeamsAreWherePiecesOfTwoBlocksTouch)
+{
+  const std::vector<vtkDSMPieceInfo> pieces = { MakePiece({ 0, 4, 0, 4, 0, 4 }, 1),
+    MakePiece({ 4, 8, 0, 4, 0, 4 }, 1), MakePiece({ 8, 12, 0, 4, 2, 4 }, 2),
+    MakePiece({ 30, 32, 0, 4, 0, 4 }, 3) };
+  const vtkDSMLatticePlan plan(pieces);
+  ASSERT_EQ(plan.GetLattices().size(), 2u);
+  const std::vector<vtkDSMLatticePlan::Seam> seams = plan.FindSeams(pieces);
+  ASSERT_EQ(seams.size(), 1u);
+  EXPECT_EQ(seams[0].Points.Min, rt::Index3(8, 0, 2));
+  EXPECT_EQ(seams[0].Points.Max, rt::Index3(9, 5, 5));
+  const auto& members = plan.GetLattices()[seams[0].Lattice].Members;
+  EXPECT_EQ(members[seams[0].Members[0]].Piece + members[seams[0].Members[1]].Piece, 1 + 2);
+}
+
+TEST(LatticePlan, BlocksThatAreToStayApartDo)
+{
+  const std::vector<vtkDSMPieceInfo> pieces = { MakePiece({ 0, 4, 0, 4, 0, 4 }, 1),
+    MakePiece({ 4, 8, 0, 4, 0, 4 }, 2), MakePiece({ 0, 4, 4, 8, 0, 4 }, 1),
+    MakePiece({ 4, 8, 4, 8, 0, 4 }, 3) };
+  EXPECT_EQ(vtkDSMLatticePlan(pieces).GetLattices().size(), 1u);
+  const vtkDSMLatticePlan plan(pieces, { 2 });
+  ASSERT_EQ(plan.GetLattices().size(), 2u);
+  EXPECT_EQ(plan.GetLattices()[0].Members.size() + plan.GetLattices()[1].Members.size(), 4u);
+  EXPECT_EQ(vtkDSMLatticePlan(pieces, { 1, 2, 3 }).GetLattices().size(), 3u);
+}
+
 } // namespace

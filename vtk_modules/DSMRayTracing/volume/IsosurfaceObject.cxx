@@ -24,8 +24,14 @@ bool IsosurfaceObject::HasOpaqueColors() const
 bool IsosurfaceObject::IsOpaque() const
 {
   return this->Surface.Opacity >= 1.0f && (!this->ColorField || this->HasOpaqueColors()) &&
+    (!this->Blocks || this->Blocks->AreOpaque()) &&
     std::all_of(this->Opacities.begin(), this->Opacities.end(),
       [](float opacity) { return opacity >= 1.0f; });
+}
+
+bool IsosurfaceObject::IsSeen() const
+{
+  return this->Surface.Opacity > 0.0f || (this->Blocks && this->Blocks->AnyIsSeen());
 }
 
 void IsosurfaceObject::AddTo(ObjectDigest& digest) const
@@ -44,6 +50,11 @@ void IsosurfaceObject::AddTo(ObjectDigest& digest) const
     digest.Add(this->ColoredBy);
   }
   digest.Add(this->Surface);
+  digest.Add(this->Blocks != nullptr);
+  if (this->Blocks)
+  {
+    this->Blocks->AddTo(digest);
+  }
   digest.Add(this->Flat);
   digest.Add(this->Clipping);
 }

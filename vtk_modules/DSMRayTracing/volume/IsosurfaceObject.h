@@ -6,6 +6,7 @@
 #include "DSMRayTracing/ray/ClipRegion.h"
 #include "DSMRayTracing/surface/ColorMap.h"
 #include "DSMRayTracing/surface/Material.h"
+#include "DSMRayTracing/volume/BlockLooks.h"
 
 #include <glm/mat4x4.hpp>
 #include <glm/matrix.hpp>
@@ -53,12 +54,16 @@ struct IsosurfaceObject
   };
   Coloring ColoredBy = Coloring::Values;
   Material Surface;
+  /// May be null: all of the volume looks alike.
+  std::shared_ptr<const BlockLooks> Blocks;
   /// Lit by the normals of the surface that is in each cell, not by smooth ones.
   bool Flat = false;
   ClipRegion Clipping;
 
   /// Whether they let no light through anywhere.
   bool IsOpaque() const;
+  /// Whether any part of them is seen at all.
+  bool IsSeen() const;
   /// All that a picture of them depends on.
   void AddTo(ObjectDigest& digest) const;
 

@@ -57,7 +57,8 @@ public:
     // without.
     const dsm::BlockDirectory& directory = this->Object.Field->Segment->GetDirectory();
     const bool isCut = directory.IsFromSource() && !directory.IsOnOwnersDisk();
-    std::vector<dsm::BlockId> ids(this->IsSeen() ? std::min(forecast.Mean, bricks.size()) : 0);
+    std::vector<dsm::BlockId> ids(
+      this->Object.IsSeen() ? std::min(forecast.Mean, bricks.size()) : 0);
     std::transform(bricks.begin(), bricks.begin() + static_cast<std::ptrdiff_t>(ids.size()),
       ids.begin(), [](const BeamBricks::Brick& brick) { return brick.Id; });
     std::size_t count = ids.size();
@@ -72,7 +73,7 @@ public:
 
   void FindNext(Ray* rays, RayMask wanted, ObjectBeam* beam, ObjectHit* nearest) const override
   {
-    if (!this->IsSeen())
+    if (!this->Object.IsSeen())
     {
       return;
     }
@@ -103,10 +104,13 @@ public:
     point.Normal = object.Flat ? this->GetFlatNormal(hit, ray) : hit.Normal;
     point.Facing = hit.FromInside ? -point.Normal : point.Normal;
     point.Surface = &object.Surface;
-    point.ColorIsFromArray = object.ColorField != nullptr;
-    point.Color =
-      point.ColorIsFromArray ? this->GetColor(hit) : glm::vec4(object.Surface.DiffuseColor, 1.0f);
-    point.Color.w *= object.Surface.Opacity;
+    const BlockLooks::Look* look = object.Blocks ? object.Blocks->Find(Index3(hit.Cell)) : nullptr;
+    const bool isOfBlock = look && look->Color;
+    point.ColorIsFromArray = isOfBlock || object.ColorField;
+    point.Color = isOfBlock ? *look->Color
+      : object.ColorField   ? this->GetColor(hit)
+                            : glm::vec4(object.Surface.DiffuseColor, 1.0f);
+    point.Color.w *= look ? look->Opacity.value_or(object.Surface.Opacity) : object.Surface.Opacity;
     if (!object.Opacities.empty())
     {
       point.Color.w *= object.Opacities[hit.Isovalue];
@@ -148,8 +152,6 @@ private:
       }
     }
   }
-
-  bool IsSeen() const { return this->Object.Surface.Opacity > 0.0f; }
 
   glm::dvec3 GetFlatNormal(const IsosurfaceHit& hit, const Ray& ray) const
   {

@@ -97,12 +97,14 @@ bool Touches(const Box& a, const Box& b)
 }
 
 /// Blocks that overlap are different volumes; overlapping pieces of one block are copies.
-bool Conflicts(const Placed& a, const Placed& b)
+bool Conflicts(const Placed& a, const Placed& b, const std::set<std::int32_t>& apart)
 {
-  return a.Leaf != b.Leaf && !rt::Intersect(a.Cells, b.Cells).IsEmpty();
+  return a.Leaf != b.Leaf &&
+    (apart.count(a.Leaf) > 0 || apart.count(b.Leaf) > 0 ||
+      !rt::Intersect(a.Cells, b.Cells).IsEmpty());
 }
 
-bool CanJoin(const Group& a, const Group& b)
+bool CanJoin(const Group& a, const Group& b, const std::set<std::int32_t>& apart)
 {
   if (a.Members.front().Class != b.Members.front().Class)
   {
@@ -113,7 +115,7 @@ bool CanJoin(const Group& a, const Group& b)
   {
     for (const Placed& y : b.Members)
     {
-      if (Conflicts(x, y))
+      if (Conflicts(x, y, apart))
       {
         return false;
       }
@@ -171,7 +173,8 @@ void RefuseFlatData(const std::vector<vtkDSMPieceInfo>& pieces)
 
 } // namespace
 
-vtkDSMLatticePlan::vtkDSMLatticePlan(const std::vector<vtkDSMPieceInfo>& pieces)
+vtkDSMLatticePlan::vtkDSMLatticePlan(
+  const std::vector<vtkDSMPieceInfo>& pieces, const std::set<std::int32_t>& apart)
 {
   std::vector<Group> groups;
   for (const Placed& entry : Place(pieces))
@@ -179,7 +182,7 @@ vtkDSMLatticePlan::vtkDSMLatticePlan(const std::vector<vtkDSMPieceInfo>& pieces)
     Group joined{ { entry } };
     for (auto group = groups.begin(); group != groups.end();)
     {
-      if (CanJoin(*group, joined))
+      if (CanJoin(*group, joined, apart))
       {
         joined.Members.insert(joined.Members.begin(), group->Members.begin(), group->Members.end());
         group = groups.erase(group);
@@ -215,6 +218,32 @@ vtkDSMLatticePlan::vtkDSMLatticePlan(const std::vector<vtkDSMPieceInfo>& pieces)
     }
     this->Lattices.push_back(std::move(lattice));
   }
+}
+
+std::vector<vtkDSMLatticePlan::Seam> vtkDSMLatticePlan::FindSeams(
+  const std::vector<vtkDSMPieceInfo>& pieces) const
+{
+  std::vector<Seam> seams;
+  for (std::size_t lattice = 0; lattice < this->Lattices.size(); ++lattice)
+  {
+    const std::vector<Member>& members = this->Lattices[lattice].Members;
+    for (std::size_t second = 1; second < members.size(); ++second)
+    {
+      for (std::size_t first = 0; first < second; ++first)
+      {
+        const auto getPoints = [&](std::size_t member) {
+          return Box{ members[member].Cells.Min, members[member].Cells.Max + Index3(1) };
+        };
+        const Box common = rt::Intersect(getPoints(first), getPoints(second));
+        if (pieces[members[first].Piece].Leaf != pieces[members[second].Piece].Leaf &&
+          !common.IsEmpty())
+        {
+          seams.push_back({ lattice, { first, second }, common });
+        }
+      }
+    }
+  }
+  return seams;
 }
 
 bool vtkDSMLatticePlan::IsCovered(const Box& box, const std::vector<Box>& parts)

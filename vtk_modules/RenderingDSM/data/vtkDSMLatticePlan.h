@@ -6,7 +6,10 @@
 
 #include <glm/mat4x4.hpp>
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
+#include <set>
 #include <vector>
 
 /// Where one piece of image data lies; plain, so that it travels between ranks.
@@ -25,7 +28,8 @@ struct vtkDSMPieceInfo
 };
 
 /// Finds which pieces, of all ranks, continue one another: pieces on the same sampling points that
-/// touch form one lattice. The result depends on the pieces' order, which is the same everywhere.
+/// touch form one lattice, unless they are of blocks that are to stay apart. The result depends on the
+/// pieces' order, which is the same everywhere.
 class vtkDSMLatticePlan
 {
 public:
@@ -43,10 +47,20 @@ public:
   };
 
   vtkDSMLatticePlan() = default;
-  /// Throws dsm::Error when there are pieces, but none has a cell.
-  explicit vtkDSMLatticePlan(const std::vector<vtkDSMPieceInfo>& pieces);
+  /// Throws dsm::Error when there are pieces, but none has a cell. `apart`: blocks that join no other.
+  explicit vtkDSMLatticePlan(
+    const std::vector<vtkDSMPieceInfo>& pieces, const std::set<std::int32_t>& apart = {});
 
   const std::vector<Lattice>& GetLattices() const { return this->Lattices; }
+
+  /// Where pieces of two blocks are in one lattice, and have points in common.
+  struct Seam
+  {
+    std::size_t Lattice;
+    std::array<std::size_t, 2> Members; ///< of the lattice
+    rt::Box Points;                     ///< in lattice indices
+  };
+  std::vector<Seam> FindSeams(const std::vector<vtkDSMPieceInfo>& pieces) const;
 
   /// Whether every cell of `box` lies in one of `parts`.
   static bool IsCovered(const rt::Box& box, const std::vector<rt::Box>& parts);

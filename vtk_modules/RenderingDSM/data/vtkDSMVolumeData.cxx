@@ -46,11 +46,13 @@ struct vtkDSMVolumeData::ArrayInfo
   std::int32_t Components = 0;
 };
 
-vtkDSMVolumeData::vtkDSMVolumeData(std::shared_ptr<vtkDSMRankGroup> group, vtkDataObject* data)
+vtkDSMVolumeData::vtkDSMVolumeData(std::shared_ptr<vtkDSMRankGroup> group, vtkDataObject* data,
+  const std::vector<Choice>& shown, const vtkDSMBlockLooks& looks)
   : Group(std::move(group))
 {
   dsm::Messenger& messenger = this->Group->GetMessenger();
   std::vector<vtkDSMPieceInfo> mine;
+  std::vector<vtkDSMBlockLook> myLooks;
   messenger.RunTogether("Reading the volume",
     [&]
     {
@@ -58,12 +60,103 @@ vtkDSMVolumeData::vtkDSMVolumeData(std::shared_ptr<vtkDSMRankGroup> group, vtkDa
       for (std::size_t index = 0; index < this->Images.size(); ++index)
       {
         mine.push_back(vtkDSMImagePiece::Describe(this->Images[index], this->Leaves[index]));
+        const auto look = looks.find(static_cast<unsigned int>(this->Leaves[index]));
+        myLooks.push_back(look != looks.end() ? look->second : vtkDSMBlockLook());
       }
     });
   this->Pieces = vtkDSMGather::Items(messenger, mine, this->FirstOwnPiece);
+  this->Looks = vtkDSMGather::Items(messenger, myLooks);
   this->GatherArrays();
   messenger.RunTogether(
     "Joining the volume's pieces", [&] { this->Plan = vtkDSMLatticePlan(this->Pieces); });
+  this->SeparateBlocks(shown);
+}
+
+void vtkDSMVolumeData::SeparateBlocks(const std::vector<Choice>& shown)
+{
+  const std::vector<vtkDSMLatticePlan::Seam> seams = this->Plan.FindSeams(this->Pieces);
+  this->Seams = !seams.empty();
+  if (!this->Seams)
+  {
+    return;
+  }
+  struct Side
+  {
+    std::uint64_t Seam;
+    std::uint64_t Content;
+  };
+  std::vector<Side> mine;
+  const auto& lattices = this->Plan.GetLattices();
+  this->Group->GetMessenger().RunTogether("Comparing the blocks of the volume",
+    [&]
+    {
+      for (std::size_t index = 0; index < seams.size(); ++index)
+      {
+        for (const std::size_t side : seams[index].Members)
+        {
+          const auto& member = lattices[seams[index].Lattice].Members[side];
+          if (this->FindOwn(member))
+          {
+            mine.push_back({ index, this->HashPoints(member, seams[index].Points, shown) });
+          }
+        }
+      }
+    });
+  std::map<std::uint64_t, std::uint64_t> contents;
+  std::set<std::int32_t> apart;
+  for (const Side& side : vtkDSMGather::Items(this->Group->GetMessenger(), mine))
+  {
+    const auto known = contents.emplace(side.Seam, side.Content).first;
+    if (known->second != side.Content)
+    {
+      for (const auto& member : lattices[seams[side.Seam].Lattice].Members)
+      {
+        apart.insert(this->Pieces[member.Piece].Leaf);
+      }
+    }
+  }
+  if (!apart.empty())
+  {
+    this->Plan = vtkDSMLatticePlan(this->Pieces, apart);
+  }
+}
+
+vtkImageData* vtkDSMVolumeData::FindOwn(const vtkDSMLatticePlan::Member& member) const
+{
+  const int own = member.Piece - this->FirstOwnPiece;
+  return own >= 0 && own < static_cast<int>(this->Images.size()) ? this->Images[own].Get()
+                                                                 : nullptr;
+}
+
+std::uint64_t vtkDSMVolumeData::HashPoints(const vtkDSMLatticePlan::Member& member,
+  const rt::Box& points, const std::vector<Choice>& shown) const
+{
+  vtkImageData* image = this->FindOwn(member);
+  rt::ByteHash hash;
+  for (const Choice& wanted : shown)
+  {
+    const Choice choice = this->Normalize(wanted);
+    ArrayInfo info;
+    vtkDataArray* array = choice.OnCells ? nullptr : this->FindArray(image, choice, info);
+    hash.Add(&info.State, sizeof(info.State));
+    if (!array)
+    {
+      continue;
+    }
+    hash.Add(&info.Type, sizeof(info.Type));
+    if (vtkDSMGetFileValues(array))
+    {
+      // One volume in one file needs not be read to be shown.
+      hash.Add(&member.Piece, sizeof(member.Piece));
+      continue;
+    }
+    std::vector<std::byte> samples(
+      static_cast<std::size_t>(points.GetCount()) * rt::GetBytes(info.Type));
+    vtkDSMImagePiece(image, array, choice.Component, member, false)
+      .ReadSamples(points, samples.data());
+    hash.Add(samples.data(), samples.size());
+  }
+  return hash.Get();
 }
 
 vtkDSMVolumeData::~vtkDSMVolumeData() = default;
@@ -104,6 +197,16 @@ void vtkDSMVolumeData::CollectImages(vtkDataObject* data)
     throw dsm::Error("The blocks of the dataset are not image data, which ray tracing needs. Apply "
                      "Resample To Image first.");
   }
+}
+
+std::vector<vtkDSMVolumeData::Block> vtkDSMVolumeData::GetBlocks(std::size_t lattice) const
+{
+  std::vector<Block> blocks;
+  for (const vtkDSMLatticePlan::Member& member : this->Plan.GetLattices()[lattice].Members)
+  {
+    blocks.push_back({ member.Cells, this->Looks[member.Piece] });
+  }
+  return blocks;
 }
 
 void vtkDSMVolumeData::GetBounds(double bounds[6]) const
@@ -440,8 +543,7 @@ void vtkDSMVolumeData::PublishLattice(Publication& published, std::size_t number
   {
     const vtkDSMLatticePlan::Lattice& lattice = this->Plan.GetLattices()[number];
     const vtkDSMFileValues* const own = this->FindFileValues(number, choice);
-    const int first = lattice.Members.front().Piece - this->FirstOwnPiece;
-    const bool isFirst = first >= 0 && first < static_cast<int>(this->Images.size());
+    const bool isFirst = this->FindOwn(lattice.Members.front());
     if (std::shared_ptr<const vtkDSMFileVolume> file =
           vtkDSMFileVolume::Find(messenger, lattice, seats, own, isFirst && own, choice.Component))
     {
@@ -476,11 +578,10 @@ const vtkDSMFileValues* vtkDSMVolumeData::FindFileValues(
 {
   for (const auto& member : this->Plan.GetLattices()[lattice].Members)
   {
-    const int own = member.Piece - this->FirstOwnPiece;
-    if (own >= 0 && own < static_cast<int>(this->Images.size()))
+    if (vtkImageData* image = this->FindOwn(member))
     {
       ArrayInfo info;
-      vtkDataArray* const array = this->FindArray(this->Images[own], choice, info);
+      vtkDataArray* const array = this->FindArray(image, choice, info);
       return array ? vtkDSMGetFileValues(array) : nullptr;
     }
   }
@@ -546,14 +647,13 @@ std::vector<std::shared_ptr<const rt::VoxelSource>> vtkDSMVolumeData::CreateSour
   std::vector<std::shared_ptr<const rt::VoxelSource>> sources;
   for (const auto& member : this->Plan.GetLattices()[lattice].Members)
   {
-    const int own = member.Piece - this->FirstOwnPiece;
-    if (own >= 0 && own < static_cast<int>(this->Images.size()))
+    if (vtkImageData* image = this->FindOwn(member))
     {
       ArrayInfo info;
-      if (vtkDataArray* array = this->FindArray(this->Images[own], choice, info))
+      if (vtkDataArray* array = this->FindArray(image, choice, info))
       {
-        sources.push_back(std::make_shared<vtkDSMImagePiece>(this->Images[own], array,
-          choice.Component, member, this->Pieces[member.Piece].HasMask != 0, choice.OnCells));
+        sources.push_back(std::make_shared<vtkDSMImagePiece>(image, array, choice.Component, member,
+          this->Pieces[member.Piece].HasMask != 0, choice.OnCells));
       }
     }
   }

@@ -6,6 +6,7 @@
 #include "DSMCore/publish/FragmentDigests.h"
 #include "DSMRayTracing/build/VoxelSource.h"
 #include "DSMRayTracing/scene/Scene.h"
+#include "vtkDSMBlockLooks.h"
 #include "vtkDSMFileVolume.h"
 #include "vtkDSMLatticePlan.h"
 #include "vtkDSMRankGroup.h"
@@ -80,15 +81,28 @@ public:
     std::vector<std::vector<CoarserLattice>> Levels;
   };
 
-  /// Collective. `data` is this rank's part: vtkImageData, a composite dataset of images, or null.
-  vtkDSMVolumeData(std::shared_ptr<vtkDSMRankGroup> group, vtkDataObject* data);
+  /// Collective. `data` is this rank's part: vtkImageData, a composite dataset of images, or null; `looks` are of its blocks.
+  /// Blocks that continue one another are taken for one volume, where the arrays that are to be shown agree at the points
+  /// that the blocks have in common.
+  vtkDSMVolumeData(std::shared_ptr<vtkDSMRankGroup> group, vtkDataObject* data,
+    const std::vector<Choice>& shown = {}, const vtkDSMBlockLooks& looks = {});
   ~vtkDSMVolumeData();
 
+  /// Whether it depends on the arrays which blocks are one volume.
+  bool HasSeams() const { return this->Seams; }
   std::size_t GetNumberOfLattices() const { return this->Plan.GetLattices().size(); }
   const glm::dmat4& GetIndexToWorld(std::size_t lattice) const
   {
     return this->Plan.GetLattices()[lattice].IndexToWorld;
   }
+  /// What was set for the cells of a lattice.
+  struct Block
+  {
+    rt::Box Cells;
+    vtkDSMBlockLook Look;
+  };
+  /// Of all ranks' pieces of a lattice.
+  std::vector<Block> GetBlocks(std::size_t lattice) const;
   /// The choice with its component made definite: an array of one component has but one. The same on
   /// every rank, also where there is no data.
   Choice Normalize(const Choice& choice) const;
@@ -122,6 +136,13 @@ private:
   void CollectImages(vtkDataObject* data);
   vtkDataArray* FindArray(vtkImageData* image, const Choice& choice, ArrayInfo& info) const;
   void GatherArrays();
+  /// Collective: takes apart what is no one volume.
+  void SeparateBlocks(const std::vector<Choice>& shown);
+  /// Local: a piece's image, if it is this rank's; else null.
+  vtkImageData* FindOwn(const vtkDSMLatticePlan::Member& member) const;
+  /// Local. Of a piece's values at points of its lattice, in the arrays that are shown.
+  std::uint64_t HashPoints(const vtkDSMLatticePlan::Member& member, const rt::Box& points,
+    const std::vector<Choice>& shown) const;
   [[noreturn]] void RefuseArray(
     const Choice& choice, const std::string& purpose, const std::vector<ArrayInfo>& infos) const;
   /// Of this rank's first piece of a lattice that has the array in a file; null when none has.
@@ -152,7 +173,9 @@ private:
   std::shared_ptr<vtkDSMRankGroup> Group;
   vtkDSMLatticePlan Plan;
   std::vector<vtkDSMPieceInfo> Pieces; ///< of all ranks, in rank order
+  std::vector<vtkDSMBlockLook> Looks;  ///< of the pieces, in their order
   int FirstOwnPiece = 0;
+  bool Seams = false;
   std::vector<vtkSmartPointer<vtkImageData>> Images; ///< of this rank
   std::vector<int> Leaves;                           ///< of this rank's images
   /// All ranks' numeric ones, of points and of cells: number of components.

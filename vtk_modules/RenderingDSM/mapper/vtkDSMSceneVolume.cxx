@@ -94,7 +94,9 @@ bool MayHoldAny(
 bool vtkDSMSceneVolume::HasNewData()
 {
   vtkDataObject* data = this->Mapper->GetDataObjectInput();
-  return !this->Taken || data != this->SeenData || GetDataTime(data) != this->SeenTime;
+  return !this->Taken || data != this->SeenData || GetDataTime(data) != this->SeenTime ||
+    this->Mapper->GetBlockLooks() != this->SeenLooks ||
+    (this->Data && this->Data->HasSeams() && !(this->GetShown() == this->SeenShown));
 }
 
 const vtkDSMVolumeData::Fields& vtkDSMSceneVolume::Published::GetFields() const
@@ -149,11 +151,14 @@ void vtkDSMSceneVolume::TakeData(const std::shared_ptr<vtkDSMRankGroup>& group)
   this->DataFailure.clear();
   this->SeenData = mapper->GetDataObjectInput();
   this->SeenTime = GetDataTime(mapper->GetDataObjectInput());
+  this->SeenLooks = mapper->GetBlockLooks();
+  this->SeenShown = this->GetShown();
   this->Taken = true;
   this->Reported.clear();
   try
   {
-    this->Data = std::make_unique<vtkDSMVolumeData>(group, mapper->GetDataObjectInput());
+    this->Data = std::make_unique<vtkDSMVolumeData>(
+      group, mapper->GetDataObjectInput(), this->SeenShown, this->SeenLooks);
     double bounds[6];
     this->Data->GetBounds(bounds);
     mapper->SetGlobalBounds(bounds);
@@ -251,19 +256,23 @@ void vtkDSMSceneVolume::Update(const std::shared_ptr<vtkDSMRankGroup>& group, bo
   const std::shared_ptr<Published> oldIso = this->Iso;
   const std::shared_ptr<Published> oldColor = this->Color;
   const unsigned version = group->GetRetryVersion();
-  this->Iso = this->Require({ this->GetIsoArray(), mapper->GetIsoComponent() }, "isosurface array",
-    version, { oldIso, oldColor });
+  const std::vector<vtkDSMVolumeData::Choice> shown = this->GetShown();
+  this->Iso = this->Require(shown.front(), "isosurface array", version, { oldIso, oldColor });
+  if (this->TakesPointsForCells())
+  {
+    this->Messages.push_back(
+      "The scalar mode asks for cell data, but isosurfaces need values at the "
+      "points; those are taken. Use vtkCellDataToPointData.");
+  }
   if (this->Iso != oldIso)
   {
     this->SuggestIsovalue(group->GetMessenger());
   }
   this->Color.reset();
-  if (mapper->GetScalarVisibility() && !mapper->GetColorArray().empty() &&
-    (mapper->GetLookupTable() || !mapper->GetMapScalars()))
+  if (shown.size() > 1)
   {
-    this->Color = this->Require(
-      { mapper->GetColorArray(), this->GetColorComponent(), mapper->GetColorArrayOnCells() },
-      "colour array", version, { this->Iso, oldIso, oldColor });
+    this->Color =
+      this->Require(shown.back(), "colour array", version, { this->Iso, oldIso, oldColor });
   }
   this->Stale.clear();
   mapper->SetSurfaceTest(this->MakeSurfaceTest());
@@ -387,22 +396,35 @@ bool vtkDSMSceneVolume::IsLikeRayCastMapper() const
     vtkVolume::SafeDownCast(this->Prop);
 }
 
+std::vector<vtkDSMVolumeData::Choice> vtkDSMSceneVolume::GetShown() const
+{
+  vtkDSMVolumeMapper* mapper = this->Mapper;
+  std::vector<vtkDSMVolumeData::Choice> shown{ { this->GetIsoArray(), mapper->GetIsoComponent() } };
+  if (mapper->GetScalarVisibility() && !mapper->GetColorArray().empty() &&
+    (mapper->GetLookupTable() || !mapper->GetMapScalars()))
+  {
+    shown.push_back(
+      { mapper->GetColorArray(), this->GetColorComponent(), mapper->GetColorArrayOnCells() });
+  }
+  return shown;
+}
+
+bool vtkDSMSceneVolume::TakesPointsForCells() const
+{
+  const int mode = this->Mapper->GetScalarMode();
+  return this->Mapper->GetIsoArray().empty() && this->IsLikeRayCastMapper() &&
+    (mode == VTK_SCALAR_MODE_USE_CELL_DATA || mode == VTK_SCALAR_MODE_USE_CELL_FIELD_DATA);
+}
+
 /// Empty: the active scalars.
-std::string vtkDSMSceneVolume::GetIsoArray()
+std::string vtkDSMSceneVolume::GetIsoArray() const
 {
   vtkDSMVolumeMapper* mapper = this->Mapper;
   if (!mapper->GetIsoArray().empty() || !this->IsLikeRayCastMapper())
   {
     return mapper->GetIsoArray();
   }
-  const int mode = mapper->GetScalarMode();
-  if (mode == VTK_SCALAR_MODE_USE_CELL_DATA || mode == VTK_SCALAR_MODE_USE_CELL_FIELD_DATA)
-  {
-    this->Messages.push_back(
-      "The scalar mode asks for cell data, but isosurfaces need values at the "
-      "points; those are taken. Use vtkCellDataToPointData.");
-  }
-  if (mode != VTK_SCALAR_MODE_USE_POINT_FIELD_DATA)
+  if (mapper->GetScalarMode() != VTK_SCALAR_MODE_USE_POINT_FIELD_DATA)
   {
     return {};
   }
@@ -526,6 +548,38 @@ void vtkDSMSceneVolume::SetColors(std::size_t lattice, rt::IsosurfaceObject& obj
   }
 }
 
+std::shared_ptr<const rt::BlockLooks> vtkDSMSceneVolume::CreateBlockLooks(std::size_t lattice) const
+{
+  std::vector<rt::BlockLooks::Block> blocks;
+  for (const vtkDSMVolumeData::Block& block : this->Data->GetBlocks(lattice))
+  {
+    rt::BlockLooks::Look look;
+    if (block.Look.HasColor())
+    {
+      const auto& color = block.Look.Color;
+      look.Color = { color[0], color[1], color[2], 1.0 };
+    }
+    else if (block.Look.HasValue && this->Mapper->GetBlockScalarVisibility() &&
+      this->Mapper->GetLookupTable())
+    {
+      vtkScalarsToColors* table = this->Mapper->GetLookupTable();
+      double color[3];
+      table->Build();
+      table->GetColor(block.Look.Value, color);
+      look.Color = { color[0], color[1], color[2], table->GetOpacity(block.Look.Value) };
+    }
+    if (block.Look.HasOpacity())
+    {
+      look.Opacity = static_cast<float>(block.Look.Opacity);
+    }
+    if (look.Color || look.Opacity)
+    {
+      blocks.push_back({ block.Cells, look });
+    }
+  }
+  return blocks.empty() ? nullptr : std::make_shared<const rt::BlockLooks>(std::move(blocks));
+}
+
 void vtkDSMSceneVolume::AddTo(rt::Scene& scene)
 {
   if (!this->Data || !this->Iso)
@@ -561,9 +615,11 @@ void vtkDSMSceneVolume::AddTo(rt::Scene& scene)
     {
       continue;
     }
+    const auto blocks = this->CreateBlockLooks(lattice);
     for (const std::vector<double>& group : groups)
     {
       rt::IsosurfaceObject object;
+      object.Blocks = blocks;
       object.SetIndexToWorld(dataToWorld * this->Data->GetIndexToWorld(lattice));
       object.Field = this->Iso->GetFields()[lattice];
       if (level > 0)

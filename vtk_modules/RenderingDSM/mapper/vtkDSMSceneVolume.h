@@ -57,15 +57,23 @@ private:
   void SuggestIsovalue(dsm::Messenger& messenger);
   /// Whether isovalues and look come from the volume's property; else they are the mapper's.
   bool IsLikeRayCastMapper() const;
-  std::string GetIsoArray();
+  std::string GetIsoArray() const;
+  /// The arrays that are to be shown, as the mapper names them: that of the isosurfaces, and that of the colours, if any.
+  std::vector<vtkDSMVolumeData::Choice> GetShown() const;
+  /// Whether the cells' scalars are asked for, of which there are no isosurfaces.
+  bool TakesPointsForCells() const;
   int GetColorComponent() const;
   void SetColors(std::size_t lattice, rt::IsosurfaceObject& object);
+  /// What blocks look like that are not to look like the rest; null where there are none.
+  std::shared_ptr<const rt::BlockLooks> CreateBlockLooks(std::size_t lattice) const;
   std::vector<double> GetIsovalues();
   rt::Material GetMaterial(double isovalue);
   rt::ClipRegion GetClipRegion(const glm::dmat4& dataToWorld) const;
 
   const vtkDataObject* SeenData = nullptr;
   vtkMTimeType SeenTime = 0;
+  vtkDSMBlockLooks SeenLooks;
+  std::vector<vtkDSMVolumeData::Choice> SeenShown;
   bool Taken = false;
   std::unique_ptr<vtkDSMVolumeData> Data;
   std::shared_ptr<Published> Iso;

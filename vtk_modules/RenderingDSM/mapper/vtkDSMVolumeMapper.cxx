@@ -117,6 +117,34 @@ vtkScalarsToColors* vtkDSMVolumeMapper::GetLookupTable() const
   return this->LookupTable;
 }
 
+void vtkDSMVolumeMapper::SetBlockColor(unsigned int block, double r, double g, double b)
+{
+  this->BlockLooks[block].Color = { r, g, b };
+  this->Modified();
+}
+
+void vtkDSMVolumeMapper::SetBlockOpacity(unsigned int block, double opacity)
+{
+  this->BlockLooks[block].Opacity = opacity;
+  this->Modified();
+}
+
+void vtkDSMVolumeMapper::SetBlockValue(unsigned int block, double value)
+{
+  this->BlockLooks[block].Value = value;
+  this->BlockLooks[block].HasValue = 1;
+  this->Modified();
+}
+
+void vtkDSMVolumeMapper::RemoveBlockLooks()
+{
+  if (!this->BlockLooks.empty())
+  {
+    this->BlockLooks.clear();
+    this->Modified();
+  }
+}
+
 vtkProperty* vtkDSMVolumeMapper::GetSurfaceProperty() const
 {
   return this->SurfaceProperty;
@@ -250,6 +278,8 @@ void vtkDSMVolumeMapper::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "ColorArrayOnCells: " << this->ColorArrayOnCells << "\n";
   os << indent << "MapScalars: " << this->MapScalars << "\n";
   os << indent << "ScalarVisibility: " << this->ScalarVisibility << "\n";
+  os << indent << "BlockLooks: " << this->BlockLooks.size() << "\n";
+  os << indent << "BlockScalarVisibility: " << this->BlockScalarVisibility << "\n";
   os << indent << "LookupTable: " << this->LookupTable.Get() << "\n";
   os << indent << "SurfaceProperty: " << this->SurfaceProperty.Get() << "\n";
   os << indent << "MakesScene: " << this->MakesScene << "\n";

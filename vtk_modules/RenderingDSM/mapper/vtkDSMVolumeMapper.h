@@ -24,6 +24,7 @@
 #ifndef vtkDSMVolumeMapper_h
 #define vtkDSMVolumeMapper_h
 
+#include "vtkDSMBlockLooks.h"      // for ivars
 #include "vtkMath.h"               // for ivars
 #include "vtkRenderingDSMModule.h" // for the export macro
 #include "vtkSmartPointer.h"       // for ivars
@@ -127,6 +128,24 @@ public:
   vtkSetMacro(MapScalars, bool);
   vtkGetMacro(MapScalars, bool);
   vtkBooleanMacro(MapScalars, bool);
+  ///@}
+
+  ///@{
+  /**
+   * How blocks of a composite dataset look that are not to look like the rest: their colour, in place of that of the
+   * surface property and of the colour array; their opacity, in place of the property's; a value, by which the lookup
+   * table colours the block while BlockScalarVisibility is on (off by default) and it has no colour of its own. Blocks
+   * are numbered as vtkCompositeDataIterator does (GetCurrentFlatIndex) in this rank's part of the dataset; a dataset
+   * that is one image is block 0.
+   */
+  void SetBlockColor(unsigned int block, double r, double g, double b);
+  void SetBlockOpacity(unsigned int block, double opacity);
+  void SetBlockValue(unsigned int block, double value);
+  void RemoveBlockLooks();
+  const vtkDSMBlockLooks& GetBlockLooks() const { return this->BlockLooks; }
+  vtkSetMacro(BlockScalarVisibility, bool);
+  vtkGetMacro(BlockScalarVisibility, bool);
+  vtkBooleanMacro(BlockScalarVisibility, bool);
   ///@}
 
   /**
@@ -257,6 +276,8 @@ private:
   bool ColorArrayOnCells = false;
   bool MapScalars = true;
   bool ScalarVisibility = false;
+  vtkDSMBlockLooks BlockLooks;
+  bool BlockScalarVisibility = false;
   vtkSmartPointer<vtkScalarsToColors> LookupTable;
   vtkSmartPointer<vtkProperty> SurfaceProperty;
   vtkSmartPointer<vtkDSMLightOptions> LightOptions;
