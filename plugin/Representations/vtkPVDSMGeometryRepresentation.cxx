@@ -69,6 +69,7 @@ int vtkPVDSMGeometryRepresentation::RequestData(
   vtkInformation* request, vtkInformationVector** input, vtkInformationVector* output)
 {
   this->Display->NoteUpdate();
+  this->GetMapper()->SetOriginalData(vtkDataObject::GetData(input[0], 0));
   return this->Superclass::RequestData(request, input, output);
 }
 

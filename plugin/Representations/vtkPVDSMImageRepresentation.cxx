@@ -76,6 +76,7 @@ int vtkPVDSMImageRepresentation::RequestData(
   vtkInformation* request, vtkInformationVector** input, vtkInformationVector* output)
 {
   vtkSmartPointer<vtkDataObject> data;
+  this->Mapper->SetOriginalData(nullptr);
   if (input[0]->GetNumberOfInformationObjects() == 1)
   {
     // A copy of the structure only: the source may go on to its next time step while this one is
@@ -85,6 +86,7 @@ int vtkPVDSMImageRepresentation::RequestData(
       data.TakeReference(source->NewInstance());
       data->ShallowCopy(source);
       this->RemoveHiddenBlocks(data);
+      this->Mapper->SetOriginalData(source);
     }
   }
   this->Mapper->SetInputData(data);

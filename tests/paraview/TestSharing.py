@@ -12,7 +12,7 @@ add(image, distance(piece).astype('f4'))
 """
 # Ranks may differ, without contradicting one another, where each has a part of its own.
 volume = image_source(SCRIPT, EXTENT, in_parts=True)
-mesh = simple.Sphere(ThetaResolution=200, PhiResolution=200, Radius=30.0)
+mesh = simple.Sphere(ThetaResolution=300, PhiResolution=300, Radius=30.0)
 
 
 class Picture:
@@ -83,19 +83,25 @@ for source, name in ((volume, "volume"), (mesh, "mesh")):
     check_equal(again.pixels, alone.pixels, "the second view's bricks serve the first", tolerance=0)
     check(again.publications == published, "and nothing is built again")
 
-    # New data are taken in once.
+    # New data are taken in once; there need not be room for them beside the old ones.
+    if get_ranks() == 1:
+        first.DSMMemory = second.DSMMemory = -(-3 * alone.held // (2 << 20))
+        for view in views:
+            render(view)
     if is_volume:
         source.Script = source.Script.replace("distance(piece)", "0.9 * distance(piece)")
     else:
-        source.Radius = 25.0
+        source.EndTheta = 340.0
     changed = Picture(views[0], first)
     check((changed.pixels != alone.pixels).any(), "other data are drawn")
+    check(changed.held < 1.05 * alone.held, "and nothing is kept for the view that has not drawn them yet")
     if is_volume:
         second.DSMShadows = 0
         second.DiffuseColor = first.DiffuseColor
         check_equal(Picture(views[1], second).pixels, changed.pixels, "by both views", tolerance=0)
     check(Picture(views[1], second).publications == changed.publications, "from the same bricks")
     check(Picture(views[1], second, 0.5).held < 1.05 * alone.held, "and those of the old ones are gone")
+    first.DSMMemory = second.DSMMemory = 64
     if is_volume:
         # Another dataset, of the same size and for all ranks but one the same.
         like = image_source("", EXTENT, in_parts=True)

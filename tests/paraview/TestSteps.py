@@ -16,8 +16,10 @@ add(image, (distance(piece) + {base} + own * 0.004 * {step}).astype(np.float32))
 """
 REGIONS = {"one brick": "(i > 36) * (i < 44) * (j > 36) * (j < 44) * (k > 84) * (k < 92)",
            "a layer": "(k > 81)", "all": "(k >= 0)"}
-view = create_view()
-view.UseFXAA = 0
+views = [create_view(), create_view()]
+for view in views:
+    view.UseFXAA = 0
+view = views[0]
 
 
 def get_script(what, step, base=0.001):
@@ -84,3 +86,23 @@ for organization, sharing in settings:
                   f"{what}: only what changed is fetched: {received}, and {new_bricks} bricks at most of new tiles")
     simple.Delete(source)
     render(view)
+
+# Two views share the bricks. The first that is drawn brings them up to date for both, within a memory that has no room
+# for the old ones beside the new ones.
+source = image_source(None, EXTENT, True)
+template = source.Script
+source.Script = template.replace("None", SCRIPTS[0])
+display, picture = draw(source, DSMMemoryOrganization="Object based", DSMMemory=7)
+show(source, views[1], [0.9], "f")
+place_camera(views[1])
+check((render(views[1]) == expected[0]).all(), "two views: the first step, bit for bit")
+before = get_moved(display)
+for number in range(1, len(SCRIPTS)):
+    source.Script = template.replace("None", SCRIPTS[number])
+    with Messages() as messages:
+        pictures = [render(each) for each in views]
+    check("ERROR" not in messages.text, f"two views: no error: {messages.text}")
+    check(all((picture == expected[number]).all() for picture in pictures), f"two views: step {number}, bit for bit")
+    share, before = (get_moved(display) - before) / (BRICKS * 17**3 * 4), get_moved(display)
+    changed = CHANGED[number] / BRICKS
+    check(0.99 * changed <= share <= 1.25 * changed, f"two views: {share:.3f} moves of what is {changed:.3f}")

@@ -4,6 +4,7 @@
 #include "vtkDSMKnownBounds.h"
 #include "vtkDSMLightOptions.h"
 #include "vtkDSMMemoryOptions.h"
+#include "vtkDSMOriginalData.h"
 #include "vtkDSMScene.h"
 #include "vtkDSMSceneMesh.h"
 
@@ -23,11 +24,22 @@ vtkDSMPolyDataMapper::vtkDSMPolyDataMapper()
   : LightOptions(vtkSmartPointer<vtkDSMLightOptions>::New())
   , MemoryOptions(vtkSmartPointer<vtkDSMMemoryOptions>::New())
   , GlobalBounds(std::make_unique<vtkDSMKnownBounds>())
+  , Original(std::make_unique<vtkDSMOriginalData>())
 {
   vtkDSMSceneMesh::AddKind<vtkDSMSceneMesh>();
 }
 
 vtkDSMPolyDataMapper::~vtkDSMPolyDataMapper() = default;
+
+void vtkDSMPolyDataMapper::SetOriginalData(vtkDataObject* data)
+{
+  this->Original->Set(data);
+}
+
+bool vtkDSMPolyDataMapper::HasOldData() const
+{
+  return this->Original->HasChanged();
+}
 
 void vtkDSMPolyDataMapper::SetCompositeDataDisplayAttributes(
   vtkCompositeDataDisplayAttributes* attributes)

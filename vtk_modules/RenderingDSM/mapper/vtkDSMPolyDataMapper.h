@@ -37,6 +37,7 @@ class vtkCompositeDataDisplayAttributes;
 class vtkDSMKnownBounds;
 class vtkDSMLightOptions;
 class vtkDSMMemoryOptions;
+class vtkDSMOriginalData;
 
 class VTKRENDERINGDSM_EXPORT vtkDSMPolyDataMapper : public vtkPolyDataMapper
 {
@@ -44,6 +45,16 @@ public:
   static vtkDSMPolyDataMapper* New();
   vtkTypeMacro(vtkDSMPolyDataMapper, vtkPolyDataMapper);
   void PrintSelf(ostream& os, vtkIndent indent) override;
+
+  ///@{
+  /**
+   * For whoever gives the mapper copies, or parts, of a pipeline's data: what they were made from, which is not kept
+   * alive. Once that has changed, what this mapper has is old: where another one shows the new data, and there is room
+   * for one of both only, the bricks of the old ones go first.
+   */
+  void SetOriginalData(vtkDataObject* data);
+  bool HasOldData() const;
+  ///@}
 
   ///@{
   /**
@@ -152,6 +163,7 @@ private:
   vtkSmartPointer<vtkDSMLightOptions> LightOptions;
   vtkSmartPointer<vtkDSMMemoryOptions> MemoryOptions;
   std::unique_ptr<vtkDSMKnownBounds> GlobalBounds;
+  std::unique_ptr<vtkDSMOriginalData> Original;
 };
 
 #endif

@@ -16,6 +16,7 @@
 #include "vtkTexture.h"
 #include "vtkTransform.h"
 
+#include <algorithm>
 #include <utility>
 
 namespace
@@ -129,6 +130,22 @@ bool vtkDSMSceneMesh::HasNewData()
   }
   this->Seen = std::move(this->Found);
   return this->LacksEdges();
+}
+
+bool vtkDSMSceneMesh::SharesBlocks(const vtkDSMSceneMember& other) const
+{
+  const auto* mesh = dynamic_cast<const vtkDSMSceneMesh*>(&other);
+  if (!mesh || !mesh->Data || !this->Data)
+  {
+    return false;
+  }
+  const auto& others = mesh->Data->GetParts();
+  return std::any_of(this->Data->GetParts().begin(), this->Data->GetParts().end(),
+    [&](const vtkDSMMeshData::Part& part)
+    {
+      return std::any_of(others.begin(), others.end(),
+        [&](const vtkDSMMeshData::Part& one) { return one.Mesh == part.Mesh; });
+    });
 }
 
 void vtkDSMSceneMesh::GiveUpBlocks()

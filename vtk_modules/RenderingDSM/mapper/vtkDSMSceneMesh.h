@@ -20,6 +20,8 @@ public:
   using vtkDSMMapperMember::vtkDSMMapperMember;
 
   bool HasNewData() override;
+  bool IsOutdated() override { return !this->Mapper || this->Mapper->HasOldData(); }
+  bool SharesBlocks(const vtkDSMSceneMember& other) const override;
   void GiveUpBlocks() override;
   bool HasBlocks() const override { return this->Data != nullptr; }
   void Update(const std::shared_ptr<vtkDSMRankGroup>& group, bool newData) override;

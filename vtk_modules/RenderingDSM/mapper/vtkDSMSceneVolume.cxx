@@ -93,10 +93,32 @@ bool MayHoldAny(
 
 bool vtkDSMSceneVolume::HasNewData()
 {
-  vtkDataObject* data = this->Mapper->GetDataObjectInput();
-  return !this->Taken || data != this->SeenData || GetDataTime(data) != this->SeenTime ||
-    this->Mapper->GetBlockLooks() != this->SeenLooks ||
+  return !this->Taken || this->HasOtherData() || this->Mapper->GetBlockLooks() != this->SeenLooks ||
     (this->Data && this->Data->HasSeams() && !(this->GetShown() == this->SeenShown));
+}
+
+bool vtkDSMSceneVolume::HasOtherData() const
+{
+  vtkDataObject* data = this->Mapper->GetDataObjectInput();
+  return data != this->SeenData || GetDataTime(data) != this->SeenTime;
+}
+
+// Of another scene, whose prop may be gone.
+bool vtkDSMSceneVolume::IsOutdated()
+{
+  return !this->Mapper || this->Mapper->HasOldData() || this->HasOtherData();
+}
+
+bool vtkDSMSceneVolume::SharesBlocks(const vtkDSMSceneMember& other) const
+{
+  const auto* volume = dynamic_cast<const vtkDSMSceneVolume*>(&other);
+  const auto has = [&](const std::shared_ptr<Published>& mine)
+  {
+    const auto is = [&](const std::shared_ptr<Published>& one)
+    { return one && one->Publication == mine->Publication; };
+    return mine && mine->Publication && (is(volume->Iso) || is(volume->Color));
+  };
+  return volume && (has(this->Iso) || has(this->Color));
 }
 
 const vtkDSMVolumeData::Fields& vtkDSMSceneVolume::Published::GetFields() const

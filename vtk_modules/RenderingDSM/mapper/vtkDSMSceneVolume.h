@@ -21,6 +21,8 @@ public:
   using vtkDSMMapperMember::vtkDSMMapperMember;
 
   bool HasNewData() override;
+  bool IsOutdated() override;
+  bool SharesBlocks(const vtkDSMSceneMember& other) const override;
   void GiveUpBlocks() override;
   bool HasBlocks() const override { return this->Iso || this->Color; }
   void Update(const std::shared_ptr<vtkDSMRankGroup>& group, bool newData) override;
@@ -30,6 +32,9 @@ public:
   void AddTo(rt::Scene& scene) override;
 
 private:
+  /// Whether the mapper has other data than were taken in.
+  bool HasOtherData() const;
+
   struct Published
   {
     vtkDSMVolumeData::Choice Choice;

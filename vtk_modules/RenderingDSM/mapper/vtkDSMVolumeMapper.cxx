@@ -4,6 +4,7 @@
 #include "vtkDSMKnownBounds.h"
 #include "vtkDSMLightOptions.h"
 #include "vtkDSMMemoryOptions.h"
+#include "vtkDSMOriginalData.h"
 #include "vtkDSMScene.h"
 #include "vtkDSMSceneVolume.h"
 
@@ -54,11 +55,22 @@ vtkDSMVolumeMapper::vtkDSMVolumeMapper()
   , LightOptions(vtkSmartPointer<vtkDSMLightOptions>::New())
   , MemoryOptions(vtkSmartPointer<vtkDSMMemoryOptions>::New())
   , GlobalBounds(std::make_unique<vtkDSMKnownBounds>())
+  , Original(std::make_unique<vtkDSMOriginalData>())
 {
   vtkDSMSceneVolume::AddKind<vtkDSMSceneVolume>();
 }
 
 vtkDSMVolumeMapper::~vtkDSMVolumeMapper() = default;
+
+void vtkDSMVolumeMapper::SetOriginalData(vtkDataObject* data)
+{
+  this->Original->Set(data);
+}
+
+bool vtkDSMVolumeMapper::HasOldData() const
+{
+  return this->Original->HasChanged();
+}
 
 void vtkDSMVolumeMapper::SetInputData(vtkDataObject* data)
 {

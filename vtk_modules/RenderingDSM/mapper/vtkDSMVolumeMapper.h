@@ -38,6 +38,7 @@
 class vtkDSMKnownBounds;
 class vtkDSMLightOptions;
 class vtkDSMMemoryOptions;
+class vtkDSMOriginalData;
 class vtkProperty;
 class vtkScalarsToColors;
 
@@ -52,6 +53,16 @@ public:
    * This rank's part of the dataset; null where there is none.
    */
   void SetInputData(vtkDataObject* data);
+
+  ///@{
+  /**
+   * For whoever gives the mapper copies, or parts, of a pipeline's data: what they were made from, which is not kept
+   * alive. Once that has changed, what this mapper has is old: where another one shows the new data, and there is room
+   * for one of both only, the bricks of the old ones go first.
+   */
+  void SetOriginalData(vtkDataObject* data);
+  bool HasOldData() const;
+  ///@}
 
   ///@{
   /**
@@ -295,6 +306,7 @@ private:
   bool ReportProgress = true;
   int Pieces = 1; ///< as many as the input was last asked for
   std::unique_ptr<vtkDSMKnownBounds> GlobalBounds;
+  std::unique_ptr<vtkDSMOriginalData> Original;
   SurfaceTest Test;
 };
 

@@ -15,6 +15,7 @@
 #include <cstddef>
 #include <cstring>
 #include <optional>
+#include <set>
 #include <utility>
 #include <variant>
 #include <vector>
@@ -167,12 +168,19 @@ void vtkDSMScene::Internals::Update()
     this->SettledVersion = this->Group->GetSettingsVersion();
     isEmpty = !this->Group->Settle();
   }
+  std::set<const vtkDSMSceneMember*> freed;
   for (std::size_t index = 0; index < members.size(); ++index)
   {
-    const bool newData = isEmpty ||
+    vtkDSMSceneMember* member = members[index].State;
+    const bool newData = isEmpty || freed.count(member) > 0 ||
       std::any_of(all.begin(), all.end(),
         [=](const auto& flags) { return flags[sizeof(Digest) + index] != std::byte(0); });
-    members[index].State->Update(this->Group, newData);
+    if (newData)
+    {
+      const auto outdated = member->FreeOutdated(messenger);
+      freed.insert(outdated.begin(), outdated.end());
+    }
+    member->Update(this->Group, newData);
     members[index].State->TakeCoarser(this->Group, this->Settings.CoarserWhileMoving);
   }
 }

@@ -18,7 +18,59 @@ std::vector<vtkDSMSceneMember::Maker>& GetKinds()
   return kinds;
 }
 
+/// Of all scenes, in the order in which they were made. Outlives scenes that are ended with the program.
+std::vector<vtkDSMSceneMember*>& GetAll()
+{
+  static auto* const all = new std::vector<vtkDSMSceneMember*>;
+  return *all;
+}
+
 } // namespace
+
+vtkDSMSceneMember::vtkDSMSceneMember()
+{
+  GetAll().push_back(this);
+}
+
+vtkDSMSceneMember::~vtkDSMSceneMember()
+{
+  std::vector<vtkDSMSceneMember*>& all = GetAll();
+  all.erase(std::find(all.begin(), all.end(), this));
+}
+
+std::vector<const vtkDSMSceneMember*> vtkDSMSceneMember::FreeOutdated(dsm::Messenger& messenger)
+{
+  std::vector<vtkDSMSceneMember*> sharers;
+  std::vector<std::byte> mine;
+  messenger.RunTogether("Looking for old data",
+    [&]
+    {
+      for (vtkDSMSceneMember* member : GetAll())
+      {
+        if (member != this && this->SharesBlocks(*member))
+        {
+          sharers.push_back(member);
+          mine.push_back(std::byte(member->IsOutdated() ? 1 : 0));
+        }
+      }
+    });
+  std::vector<const vtkDSMSceneMember*> freed;
+  if (sharers.empty())
+  {
+    return freed;
+  }
+  const auto all = messenger.AllGather(mine);
+  for (std::size_t index = 0; index < sharers.size(); ++index)
+  {
+    if (std::all_of(all.begin(), all.end(),
+          [=](const auto& flags) { return index < flags.size() && flags[index] != std::byte(0); }))
+    {
+      sharers[index]->GiveUpBlocks();
+      freed.push_back(sharers[index]);
+    }
+  }
+  return freed;
+}
 
 void vtkDSMSceneMember::AddKind(Maker make)
 {

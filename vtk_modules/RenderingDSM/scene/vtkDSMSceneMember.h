@@ -22,7 +22,10 @@ class vtkScalarsToColors;
 class vtkDSMSceneMember
 {
 public:
-  virtual ~vtkDSMSceneMember() = default;
+  vtkDSMSceneMember();
+  virtual ~vtkDSMSceneMember();
+  vtkDSMSceneMember(const vtkDSMSceneMember&) = delete;
+  vtkDSMSceneMember& operator=(const vtkDSMSceneMember&) = delete;
 
   /// Returns null for a mapper of another kind.
   using Maker = std::unique_ptr<vtkDSMSceneMember> (*)(vtkAlgorithm* mapper);
@@ -46,6 +49,15 @@ public:
   /// Local: whether this rank's data are other than what was taken in. True also where that would
   /// only be found out by reading all of them.
   virtual bool HasNewData() = 0;
+
+  /// Local, also while the scene has not looked at its props: whether what was taken in is of data that are not there
+  /// any more.
+  virtual bool IsOutdated() = 0;
+  /// Local, the same on every rank: whether another member, of any scene, has some of this one's bricks.
+  virtual bool SharesBlocks(const vtkDSMSceneMember& other) const = 0;
+  /// Collective, before new data are taken in. Where the old ones' bricks are shared by members that are outdated on all
+  /// ranks, these give their bricks up, so that there is room, or that the bricks can be taken over. Returns those members.
+  std::vector<const vtkDSMSceneMember*> FreeOutdated(dsm::Messenger& messenger);
 
   /// Local, in the same order on every rank: retires the bricks; the next Update publishes them again.
   virtual void GiveUpBlocks() = 0;
