@@ -141,6 +141,7 @@ for block in range(3):
         child = vtkImageData()
         child.SetOrigin(2.0 * part[0], 0.0, 0.0); child.SetSpacing(2.0, 1.0, 1.0)
         child.SetDimensions(part[1] - part[0] + 1, 25, 25)
+        add(child, 0.0 * distance(part) + block, 'block')
         add(child, distance(part))
         {set}
 """
@@ -171,6 +172,12 @@ check(part.sum() > 0.2 * expected.sum() and not part[~expected].any() and expect
       f"with a block hidden, {part.sum()} pixels of {expected.sum()} are covered")
 display.BlockSelectors = ["/"]
 check_equal(render(view), whole, "all are shown again", tolerance=0)
+
+# They agree on what is shown where they touch, but not on an array that colours them.
+simple.ColorBy(display, ("POINTS", "block"))
+check((render(view, "BlocksByNumber") != whole).any(), "they can be coloured by what they disagree about")
+simple.ColorBy(display, None)
+check_equal(render(view), whole, "and are one volume again", tolerance=0)
 simple.Delete(source)
 
 # Blocks that disagree where they touch, since a Wavelet depends on its extent, and looks of their own: as Contour has

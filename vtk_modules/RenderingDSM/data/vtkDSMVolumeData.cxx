@@ -103,7 +103,6 @@ void vtkDSMVolumeData::SeparateBlocks(const std::vector<Choice>& shown)
       }
     });
   std::map<std::uint64_t, std::uint64_t> contents;
-  std::set<std::int32_t> apart;
   for (const Side& side : vtkDSMGather::Items(this->Group->GetMessenger(), mine))
   {
     const auto known = contents.emplace(side.Seam, side.Content).first;
@@ -111,13 +110,13 @@ void vtkDSMVolumeData::SeparateBlocks(const std::vector<Choice>& shown)
     {
       for (const auto& member : lattices[seams[side.Seam].Lattice].Members)
       {
-        apart.insert(this->Pieces[member.Piece].Leaf);
+        this->Apart.insert(this->Pieces[member.Piece].Leaf);
       }
     }
   }
-  if (!apart.empty())
+  if (!this->Apart.empty())
   {
-    this->Plan = vtkDSMLatticePlan(this->Pieces, apart);
+    this->Plan = vtkDSMLatticePlan(this->Pieces, this->Apart);
   }
 }
 
@@ -388,6 +387,10 @@ std::uint64_t vtkDSMVolumeData::HashContent(const Choice& choice) const
   hash.Add(&choice.Component, sizeof(choice.Component));
   hash.Add(&choice.OnCells, sizeof(choice.OnCells));
   hash.Add(this->Pieces.data(), this->Pieces.size() * sizeof(vtkDSMPieceInfo));
+  for (const std::int32_t block : this->Apart)
+  {
+    hash.Add(&block, sizeof(block));
+  }
   const auto add = [&](vtkAbstractArray* array)
   {
     const std::uint64_t value = vtkDSMContent::Hash(array, threads);

@@ -17,6 +17,7 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -176,6 +177,7 @@ private:
   std::vector<vtkDSMBlockLook> Looks;  ///< of the pieces, in their order
   int FirstOwnPiece = 0;
   bool Seams = false;
+  std::set<std::int32_t> Apart;                      ///< blocks that are volumes of their own
   std::vector<vtkSmartPointer<vtkImageData>> Images; ///< of this rank
   std::vector<int> Leaves;                           ///< of this rank's images
   /// All ranks' numeric ones, of points and of cells: number of components.
