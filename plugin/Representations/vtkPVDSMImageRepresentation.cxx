@@ -14,7 +14,6 @@
 #include "vtkDataAssemblyUtilities.h"
 #include "vtkDataObject.h"
 #include "vtkDataObjectTree.h"
-#include "vtkDataObjectTreeIterator.h"
 #include "vtkFieldData.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
@@ -30,7 +29,34 @@
 #include "vtkVolume.h"
 
 #include <algorithm>
-#include <map>
+
+namespace
+{
+
+/// Finds a dataset's blocks by the paths that ParaView's Multiblock Inspector names them by.
+class BlockPaths
+{
+public:
+  explicit BlockPaths(vtkDataObjectTree* tree)
+    : Tree(tree)
+    , IsKnown(tree && vtkDataAssemblyUtilities::GenerateHierarchy(tree, this->Assembly))
+  {
+  }
+  /// Whether there are blocks that have paths.
+  bool Any() const { return this->IsKnown; }
+  std::vector<unsigned int> Find(const std::vector<std::string>& paths) const
+  {
+    return vtkDataAssemblyUtilities::GetSelectedCompositeIds(
+      paths, this->Assembly, vtkPartitionedDataSetCollection::SafeDownCast(this->Tree), true);
+  }
+
+private:
+  vtkDataObjectTree* Tree;
+  vtkNew<vtkDataAssembly> Assembly;
+  bool IsKnown;
+};
+
+} // namespace
 
 vtkStandardNewMacro(vtkPVDSMImageRepresentation);
 
@@ -75,21 +101,18 @@ int vtkPVDSMImageRepresentation::FillInputPortInformation(int, vtkInformation* i
 int vtkPVDSMImageRepresentation::RequestData(
   vtkInformation* request, vtkInformationVector** input, vtkInformationVector* output)
 {
+  vtkDataObject* source = vtkDataObject::GetData(input[0], 0); // null without an input
   vtkSmartPointer<vtkDataObject> data;
-  this->Mapper->SetOriginalData(nullptr);
-  if (input[0]->GetNumberOfInformationObjects() == 1)
+  if (source)
   {
     // A copy of the structure only: the source may go on to its next time step while this one is
     // still shown.
-    if (vtkDataObject* source = vtkDataObject::GetData(input[0], 0))
-    {
-      data.TakeReference(source->NewInstance());
-      data->ShallowCopy(source);
-      this->RemoveHiddenBlocks(data);
-      this->Mapper->SetOriginalData(source);
-    }
+    data.TakeReference(source->NewInstance());
+    data->ShallowCopy(source);
+    this->RemoveHiddenBlocks(data);
   }
   this->Mapper->SetInputData(data);
+  this->Mapper->SetOriginalData(source);
   this->BlockLooksAreOld = true;
   this->Display->NoteUpdate();
   return this->Superclass::RequestData(request, input, output);
@@ -98,14 +121,12 @@ int vtkPVDSMImageRepresentation::RequestData(
 void vtkPVDSMImageRepresentation::RemoveHiddenBlocks(vtkDataObject* data) const
 {
   auto* tree = vtkDataObjectTree::SafeDownCast(data);
-  vtkNew<vtkDataAssembly> assembly;
-  if (this->BlockSelectors.empty() || !tree ||
-    !vtkDataAssemblyUtilities::GenerateHierarchy(tree, assembly))
+  const BlockPaths paths(this->BlockSelectors.empty() ? nullptr : tree);
+  if (!paths.Any())
   {
     return;
   }
-  const std::vector<unsigned int> shown = vtkDataAssemblyUtilities::GetSelectedCompositeIds(
-    this->BlockSelectors, assembly, vtkPartitionedDataSetCollection::SafeDownCast(tree), true);
+  const std::vector<unsigned int> shown = paths.Find(this->BlockSelectors);
   vtkSmartPointer<vtkCompositeDataIterator> leaf;
   leaf.TakeReference(tree->NewIterator());
   for (leaf->InitTraversal(); !leaf->IsDoneWithTraversal(); leaf->GoToNextItem())
@@ -168,27 +189,22 @@ void vtkPVDSMImageRepresentation::ChooseBlockLooks()
   {
     this->ColorBlocksByArray(data);
   }
-  auto* tree = vtkDataObjectTree::SafeDownCast(data);
-  vtkNew<vtkDataAssembly> assembly;
-  if (!tree || !vtkDataAssemblyUtilities::GenerateHierarchy(tree, assembly))
+  const bool areChosen = !this->BlockColors.empty() || !this->BlockOpacities.empty();
+  const BlockPaths paths(areChosen ? vtkDataObjectTree::SafeDownCast(data) : nullptr);
+  if (!paths.Any())
   {
     return;
   }
-  const auto find = [&](const std::string& selector)
-  {
-    return vtkDataAssemblyUtilities::GetSelectedCompositeIds(
-      { selector }, assembly, vtkPartitionedDataSetCollection::SafeDownCast(tree), true);
-  };
   for (const auto& [selector, color] : this->BlockColors)
   {
-    for (const unsigned int block : find(selector))
+    for (const unsigned int block : paths.Find({ selector }))
     {
       this->Mapper->SetBlockColor(block, color[0], color[1], color[2]);
     }
   }
   for (const auto& [selector, opacity] : this->BlockOpacities)
   {
-    for (const unsigned int block : find(selector))
+    for (const unsigned int block : paths.Find({ selector }))
     {
       this->Mapper->SetBlockOpacity(block, opacity);
     }
@@ -200,12 +216,13 @@ void vtkPVDSMImageRepresentation::ColorBlocksByArray(vtkDataObject* data)
   const bool areNumbers = this->BlockArray == "vtkBlockColors";
   const auto add = [&](vtkDataObject* image, unsigned int block, unsigned int number)
   {
-    vtkDataArray* array = image->GetFieldData()->GetArray(this->BlockArray.c_str());
+    vtkDataArray* array =
+      image ? image->GetFieldData()->GetArray(this->BlockArray.c_str()) : nullptr;
     if (array && array->GetNumberOfTuples() > 0)
     {
       this->Mapper->SetBlockValue(block, array->GetComponent(0, 0));
     }
-    else if (areNumbers)
+    else if (image && areNumbers)
     {
       this->Mapper->SetBlockValue(block, number % this->BlockColorsDistinctValues);
     }
@@ -216,27 +233,26 @@ void vtkPVDSMImageRepresentation::ColorBlocksByArray(vtkDataObject* data)
     add(data, 0, 0);
     return;
   }
-  // ParaView counts leaves, also empty ones, but takes all parts of a partitioned dataset in a collection for one.
-  auto* collection = vtkPartitionedDataSetCollection::SafeDownCast(tree);
-  std::map<vtkDataObject*, unsigned int> numbers;
-  for (unsigned int set = 0; collection && set < collection->GetNumberOfPartitionedDataSets();
-       ++set)
+  // As ParaView counts: leaves, also empty ones; but all parts of a partitioned dataset in a collection are one.
+  if (auto* collection = vtkPartitionedDataSetCollection::SafeDownCast(tree))
   {
-    for (unsigned int part = 0; part < collection->GetNumberOfPartitions(set); ++part)
+    for (unsigned int set = 0; set < collection->GetNumberOfPartitionedDataSets(); ++set)
     {
-      numbers[collection->GetPartitionAsDataObject(set, part)] = set;
+      for (unsigned int part = 0; part < collection->GetNumberOfPartitions(set); ++part)
+      {
+        add(collection->GetPartitionAsDataObject(set, part),
+          collection->GetCompositeIndex(set, part), set);
+      }
     }
+    return;
   }
-  vtkSmartPointer<vtkDataObjectTreeIterator> leaf;
-  leaf.TakeReference(tree->NewTreeIterator());
+  vtkSmartPointer<vtkCompositeDataIterator> leaf;
+  leaf.TakeReference(tree->NewIterator());
   leaf->SkipEmptyNodesOff();
   unsigned int number = 0;
-  for (leaf->InitTraversal(); !leaf->IsDoneWithTraversal(); leaf->GoToNextItem(), ++number)
+  for (leaf->InitTraversal(); !leaf->IsDoneWithTraversal(); leaf->GoToNextItem())
   {
-    if (vtkDataObject* image = leaf->GetCurrentDataObject())
-    {
-      add(image, leaf->GetCurrentFlatIndex(), collection ? numbers[image] : number);
-    }
+    add(leaf->GetCurrentDataObject(), leaf->GetCurrentFlatIndex(), number++);
   }
 }
 

@@ -3,27 +3,20 @@
 #define vtkDSMBlockLooks_h
 
 #include <array>
-#include <cstdint>
 #include <map>
+#include <optional>
 
 /// What was set for a block of a dataset of images; a plain value, that travels between ranks.
 struct vtkDSMBlockLook
 {
-  /// Negative: not set. In place of the colour array as well.
-  std::array<double, 3> Color{ -1.0, -1.0, -1.0 };
-  /// Negative: not set.
-  double Opacity = -1.0;
-  /// What the lookup table colours the block by, if any.
-  double Value = 0.0;
-  std::int64_t HasValue = 0;
-
-  bool HasColor() const { return this->Color[0] >= 0.0; }
-  bool HasOpacity() const { return this->Opacity >= 0.0; }
+  std::optional<std::array<double, 3>> Color; ///< in place of the colour array as well
+  std::optional<double> Opacity;
+  std::optional<double> Value; ///< what the lookup table colours the block by
 
   bool operator==(const vtkDSMBlockLook& other) const
   {
     return this->Color == other.Color && this->Opacity == other.Opacity &&
-      this->Value == other.Value && this->HasValue == other.HasValue;
+      this->Value == other.Value;
   }
 };
 

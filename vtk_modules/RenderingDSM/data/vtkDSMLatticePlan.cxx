@@ -234,9 +234,12 @@ std::vector<vtkDSMLatticePlan::Seam> vtkDSMLatticePlan::FindSeams(
         const auto getPoints = [&](std::size_t member) {
           return Box{ members[member].Cells.Min, members[member].Cells.Max + Index3(1) };
         };
+        if (pieces[members[first].Piece].Leaf == pieces[members[second].Piece].Leaf)
+        {
+          continue;
+        }
         const Box common = rt::Intersect(getPoints(first), getPoints(second));
-        if (pieces[members[first].Piece].Leaf != pieces[members[second].Piece].Leaf &&
-          !common.IsEmpty())
+        if (!common.IsEmpty())
         {
           seams.push_back({ lattice, { first, second }, common });
         }

@@ -74,7 +74,10 @@ vtkDSMVolumeData::vtkDSMVolumeData(std::shared_ptr<vtkDSMRankGroup> group, vtkDa
 
 void vtkDSMVolumeData::SeparateBlocks(const std::vector<Choice>& shown)
 {
-  const std::vector<vtkDSMLatticePlan::Seam> seams = this->Plan.FindSeams(this->Pieces);
+  dsm::Messenger& messenger = this->Group->GetMessenger();
+  std::vector<vtkDSMLatticePlan::Seam> seams;
+  messenger.RunTogether(
+    "Looking for blocks that touch", [&] { seams = this->Plan.FindSeams(this->Pieces); });
   this->Seams = !seams.empty();
   if (!this->Seams)
   {
@@ -87,7 +90,7 @@ void vtkDSMVolumeData::SeparateBlocks(const std::vector<Choice>& shown)
   };
   std::vector<Side> mine;
   const auto& lattices = this->Plan.GetLattices();
-  this->Group->GetMessenger().RunTogether("Comparing the blocks of the volume",
+  messenger.RunTogether("Comparing the blocks of the volume",
     [&]
     {
       for (std::size_t index = 0; index < seams.size(); ++index)
@@ -103,7 +106,7 @@ void vtkDSMVolumeData::SeparateBlocks(const std::vector<Choice>& shown)
       }
     });
   std::map<std::uint64_t, std::uint64_t> contents;
-  for (const Side& side : vtkDSMGather::Items(this->Group->GetMessenger(), mine))
+  for (const Side& side : vtkDSMGather::Items(messenger, mine))
   {
     const auto known = contents.emplace(side.Seam, side.Content).first;
     if (known->second != side.Content)
@@ -116,7 +119,8 @@ void vtkDSMVolumeData::SeparateBlocks(const std::vector<Choice>& shown)
   }
   if (!this->Apart.empty())
   {
-    this->Plan = vtkDSMLatticePlan(this->Pieces, this->Apart);
+    messenger.RunTogether("Joining the volume's pieces",
+      [&] { this->Plan = vtkDSMLatticePlan(this->Pieces, this->Apart); });
   }
 }
 

@@ -576,23 +576,23 @@ std::shared_ptr<const rt::BlockLooks> vtkDSMSceneVolume::CreateBlockLooks(std::s
   for (const vtkDSMVolumeData::Block& block : this->Data->GetBlocks(lattice))
   {
     rt::BlockLooks::Look look;
-    if (block.Look.HasColor())
+    if (block.Look.Color)
     {
-      const auto& color = block.Look.Color;
+      const auto& color = *block.Look.Color;
       look.Color = { color[0], color[1], color[2], 1.0 };
     }
-    else if (block.Look.HasValue && this->Mapper->GetBlockScalarVisibility() &&
+    else if (block.Look.Value && this->Mapper->GetBlockScalarVisibility() &&
       this->Mapper->GetLookupTable())
     {
       vtkScalarsToColors* table = this->Mapper->GetLookupTable();
       double color[3];
       table->Build();
-      table->GetColor(block.Look.Value, color);
-      look.Color = { color[0], color[1], color[2], table->GetOpacity(block.Look.Value) };
+      table->GetColor(*block.Look.Value, color);
+      look.Color = { color[0], color[1], color[2], table->GetOpacity(*block.Look.Value) };
     }
-    if (block.Look.HasOpacity())
+    if (block.Look.Opacity)
     {
-      look.Opacity = static_cast<float>(block.Look.Opacity);
+      look.Opacity = static_cast<float>(*block.Look.Opacity);
     }
     if (look.Color || look.Opacity)
     {

@@ -131,7 +131,7 @@ vtkScalarsToColors* vtkDSMVolumeMapper::GetLookupTable() const
 
 void vtkDSMVolumeMapper::SetBlockColor(unsigned int block, double r, double g, double b)
 {
-  this->BlockLooks[block].Color = { r, g, b };
+  this->BlockLooks[block].Color = std::array<double, 3>{ r, g, b };
   this->Modified();
 }
 
@@ -144,7 +144,6 @@ void vtkDSMVolumeMapper::SetBlockOpacity(unsigned int block, double opacity)
 void vtkDSMVolumeMapper::SetBlockValue(unsigned int block, double value)
 {
   this->BlockLooks[block].Value = value;
-  this->BlockLooks[block].HasValue = 1;
   this->Modified();
 }
 
