@@ -18,33 +18,10 @@
 #include "vtkUniformGridAMR.h"
 
 #include <algorithm>
-#include <cstring>
 #include <limits>
+#include <map>
 #include <optional>
 #include <set>
-
-namespace
-{
-
-enum class ArrayState : std::int32_t
-{
-  Usable,
-  Missing,
-  NotNumeric,
-  OnCells,
-  NoSuchComponent,
-  NoColors,
-  WrongLength
-};
-
-} // namespace
-
-struct vtkDSMVolumeData::ArrayInfo
-{
-  ArrayState State = ArrayState::Missing;
-  rt::ScalarType Type = rt::ScalarType::Float32;
-  std::int32_t Components = 0;
-};
 
 vtkDSMVolumeData::vtkDSMVolumeData(std::shared_ptr<vtkDSMRankGroup> group, vtkDataObject* data,
   const std::vector<Choice>& shown, const vtkDSMBlockLooks& looks)
@@ -66,7 +43,7 @@ vtkDSMVolumeData::vtkDSMVolumeData(std::shared_ptr<vtkDSMRankGroup> group, vtkDa
     });
   this->Pieces = vtkDSMGather::Items(messenger, mine, this->FirstOwnPiece);
   this->Looks = vtkDSMGather::Items(messenger, myLooks);
-  this->GatherArrays();
+  this->Arrays = vtkDSMImageArrays(messenger, this->Images);
   messenger.RunTogether(
     "Joining the volume's pieces", [&] { this->Plan = vtkDSMLatticePlan(this->Pieces); });
   this->SeparateBlocks(shown);
@@ -138,10 +115,10 @@ std::uint64_t vtkDSMVolumeData::HashPoints(const vtkDSMLatticePlan::Member& memb
   rt::ByteHash hash;
   for (const Choice& wanted : shown)
   {
-    const Choice choice = this->Normalize(wanted);
-    ArrayInfo info;
-    vtkDataArray* array = choice.OnCells ? nullptr : this->FindArray(image, choice, info);
-    hash.Add(&info.State, sizeof(info.State));
+    const Choice choice = this->Arrays.Normalize(wanted);
+    vtkDSMImageArrays::Info info;
+    vtkDataArray* array = choice.OnCells ? nullptr : vtkDSMImageArrays::Find(image, choice, info);
+    hash.Add(&info.Found, sizeof(info.Found));
     if (!array)
     {
       continue;
@@ -228,162 +205,6 @@ void vtkDSMVolumeData::GetBounds(double bounds[6]) const
   box.GetBounds(bounds);
 }
 
-vtkDataArray* vtkDSMVolumeData::FindArray(
-  vtkImageData* image, const Choice& choice, ArrayInfo& info) const
-{
-  vtkDataSetAttributes* attributes = image->GetPointData();
-  if (choice.OnCells)
-  {
-    attributes = image->GetCellData();
-  }
-  vtkAbstractArray* found = choice.Name.empty()
-    ? static_cast<vtkAbstractArray*>(attributes->GetScalars())
-    : attributes->GetAbstractArray(choice.Name.c_str());
-  if (!found)
-  {
-    const bool onCells = choice.Name.empty() ? image->GetPointData()->GetNumberOfArrays() == 0 &&
-        image->GetCellData()->GetNumberOfArrays() > 0
-                                             : image->GetCellData()->HasArray(choice.Name.c_str());
-    info.State = onCells && !choice.OnCells ? ArrayState::OnCells : ArrayState::Missing;
-    return nullptr;
-  }
-  auto* array = vtkDataArray::SafeDownCast(found);
-  if (!array)
-  {
-    info.State = ArrayState::NotNumeric;
-    return nullptr;
-  }
-  info.Components = array->GetNumberOfComponents();
-  const bool areColors = choice.Component == vtkDSMImagePiece::Color;
-  if (areColors && (info.Components > 4 || array->GetDataType() == VTK_CHAR))
-  {
-    info.State = ArrayState::NoColors;
-    return nullptr;
-  }
-  if (choice.Component >= info.Components || choice.Component < vtkDSMImagePiece::Color)
-  {
-    info.State = ArrayState::NoSuchComponent;
-    return nullptr;
-  }
-  if (array->GetNumberOfTuples() !=
-    (choice.OnCells ? image->GetNumberOfCells() : image->GetNumberOfPoints()))
-  {
-    info.State = ArrayState::WrongLength;
-    return nullptr;
-  }
-  info.State = ArrayState::Usable;
-  info.Type = vtkDSMImagePiece::GetScalarType(array, choice.Component);
-  return array;
-}
-
-void vtkDSMVolumeData::GatherArrays()
-{
-  std::vector<char> mine;
-  const auto append = [&mine](const std::string& text)
-  { mine.insert(mine.end(), text.c_str(), text.c_str() + text.size() + 1); };
-  const auto appendAll = [&append](vtkDataSetAttributes* attributes, const char* place)
-  {
-    for (int index = 0; index < attributes->GetNumberOfArrays(); ++index)
-    {
-      vtkDataArray* array = attributes->GetArray(index);
-      if (array && array->GetName() &&
-        std::strcmp(array->GetName(), vtkDataSetAttributes::GhostArrayName()) != 0)
-      {
-        append(place);
-        append(array->GetName());
-        append(std::to_string(array->GetNumberOfComponents()));
-      }
-    }
-  };
-  for (vtkImageData* image : this->Images)
-  {
-    appendAll(image->GetPointData(), "0");
-    appendAll(image->GetCellData(), "1");
-  }
-  int first = 0;
-  const std::vector<char> all = vtkDSMGather::Items(this->Group->GetMessenger(), mine, first);
-  for (auto place = all.begin(); place != all.end();)
-  {
-    const auto name = std::find(place, all.end(), '\0') + 1;
-    const auto components = std::find(name, all.end(), '\0') + 1;
-    this->Arrays[*place == '1' ? 1 : 0][&*name] = std::stoi(&*components);
-    place = std::find(components, all.end(), '\0') + 1;
-  }
-}
-
-vtkDSMVolumeData::Choice vtkDSMVolumeData::Normalize(const Choice& choice) const
-{
-  const auto& arrays = this->Arrays[choice.OnCells ? 1 : 0];
-  const auto known = arrays.find(choice.Name);
-  if (known == arrays.end() || choice.Component == vtkDSMImagePiece::Color)
-  {
-    return choice;
-  }
-  const int components = known->second;
-  if (components == 1)
-  {
-    return { choice.Name, 0, choice.OnCells };
-  }
-  // ParaView's panels number the magnitude after the last component.
-  return { choice.Name,
-    choice.Component == components ? vtkDSMImagePiece::Magnitude : choice.Component,
-    choice.OnCells };
-}
-
-bool vtkDSMVolumeData::HasOpacity(const Choice& choice) const
-{
-  const auto& arrays = this->Arrays[choice.OnCells ? 1 : 0];
-  const auto known = arrays.find(choice.Name);
-  return known != arrays.end() && known->second % 2 == 0;
-}
-
-void vtkDSMVolumeData::RefuseArray(
-  const Choice& choice, const std::string& purpose, const std::vector<ArrayInfo>& infos) const
-{
-  std::string list;
-  for (const auto& [name, components] : this->Arrays[choice.OnCells ? 1 : 0])
-  {
-    list += (list.empty() ? "'" : ", '") + name + "'";
-  }
-  const std::string array = "The " + purpose + " '" + choice.Name + "'";
-  const std::string remedy = !list.empty() ? " Choose one of " + list + "."
-    : choice.OnCells                       ? " The dataset has no cell array of numbers."
-                                           : " The dataset has no point array of numbers.";
-  const auto is = [&](ArrayState state)
-  {
-    return std::any_of(
-      infos.begin(), infos.end(), [=](const ArrayInfo& info) { return info.State == state; });
-  };
-  if (is(ArrayState::NotNumeric))
-  {
-    throw dsm::Error(array + " holds text, not numbers." + remedy);
-  }
-  if (is(ArrayState::NoSuchComponent))
-  {
-    throw dsm::Error(array + " has no component " + std::to_string(choice.Component) + ".");
-  }
-  if (is(ArrayState::WrongLength))
-  {
-    throw dsm::Error(array + " does not have one value for every " +
-      (choice.OnCells ? "cell" : "point") + " of the image." + remedy);
-  }
-  if (is(ArrayState::NoColors))
-  {
-    throw dsm::Error(array +
-      " holds no colours: those have up to four components, of another type than char. Switch on "
-      "Map Scalars.");
-  }
-  if (is(ArrayState::OnCells))
-  {
-    throw dsm::Error(
-      (choice.Name.empty() ? "The dataset has cell data only" : array + " belongs to the cells") +
-      ", but values at the points are needed. Apply Cell Data to Point Data first.");
-  }
-  throw dsm::Error((choice.Name.empty() ? "No " + purpose + " is chosen."
-                                        : array + " does not exist in the dataset.") +
-    remedy);
-}
-
 std::uint64_t vtkDSMVolumeData::HashContent(const Choice& choice) const
 {
   const int threads = this->Group->GetStore().GetSettings().Workers;
@@ -402,9 +223,9 @@ std::uint64_t vtkDSMVolumeData::HashContent(const Choice& choice) const
   };
   for (vtkImageData* image : this->Images)
   {
-    ArrayInfo info;
+    vtkDSMImageArrays::Info info;
     const char* const ghosts = vtkDataSetAttributes::GhostArrayName();
-    add(this->FindArray(image, choice, info));
+    add(vtkDSMImageArrays::Find(image, choice, info));
     add(image->GetPointData()->GetAbstractArray(ghosts));
     add(image->GetCellData()->GetAbstractArray(ghosts));
   }
@@ -416,7 +237,7 @@ std::shared_ptr<const vtkDSMVolumeData::Publication> vtkDSMVolumeData::Publish(c
   std::shared_ptr<const Publication> old) const
 {
   dsm::Messenger& messenger = this->Group->GetMessenger();
-  std::vector<ArrayInfo> mine(this->Images.size());
+  std::vector<vtkDSMImageArrays::Info> mine(this->Images.size());
   const auto published = std::make_shared<Publication>();
   std::vector<vtkDSMFileVolume::Seat> mySeats(this->Images.size());
   messenger.RunTogether("Reading the " + purpose,
@@ -424,18 +245,17 @@ std::shared_ptr<const vtkDSMVolumeData::Publication> vtkDSMVolumeData::Publish(c
     {
       for (std::size_t index = 0; index < this->Images.size(); ++index)
       {
-        vtkDataArray* array = this->FindArray(this->Images[index], choice, mine[index]);
+        vtkDataArray* array = vtkDSMImageArrays::Find(this->Images[index], choice, mine[index]);
         mySeats[index] = vtkDSMFileVolume::Describe(this->Images[index], array);
       }
       published->Content = this->HashContent(choice);
     });
-  int first = 0;
-  const std::vector<ArrayInfo> infos = vtkDSMGather::Items(messenger, mine, first);
+  const std::vector<vtkDSMImageArrays::Info> infos = vtkDSMGather::Items(messenger, mine);
   const auto seats = vtkDSMGather::Items(messenger, mySeats);
-  const auto isUsable = [](const ArrayInfo& info) { return info.State == ArrayState::Usable; };
+  const auto isUsable = [](const vtkDSMImageArrays::Info& info) { return info.IsUsable(); };
   if (!infos.empty() && std::none_of(infos.begin(), infos.end(), isUsable))
   {
-    this->RefuseArray(choice, purpose, infos);
+    this->Arrays.Refuse(choice, purpose, infos);
   }
 
   vtkDSMPublications& publications = this->Group->GetPublications();
@@ -515,7 +335,8 @@ std::shared_ptr<const vtkDSMVolumeData::Coarser> vtkDSMVolumeData::PublishCoarse
 }
 
 void vtkDSMVolumeData::PublishLattice(Publication& published, std::size_t number,
-  const Choice& choice, const std::string& purpose, const std::vector<ArrayInfo>& infos,
+  const Choice& choice, const std::string& purpose,
+  const std::vector<vtkDSMImageArrays::Info>& infos,
   const std::vector<vtkDSMFileVolume::Seat>& seats, const std::function<void(double)>& progress,
   Publication::Part&& old) const
 {
@@ -587,8 +408,8 @@ const vtkDSMFileValues* vtkDSMVolumeData::FindFileValues(
   {
     if (vtkImageData* image = this->FindOwn(member))
     {
-      ArrayInfo info;
-      vtkDataArray* const array = this->FindArray(image, choice, info);
+      vtkDSMImageArrays::Info info;
+      vtkDataArray* const array = vtkDSMImageArrays::Find(image, choice, info);
       return array ? vtkDSMGetFileValues(array) : nullptr;
     }
   }
@@ -612,7 +433,8 @@ std::shared_ptr<rt::VoxelField> vtkDSMVolumeData::MakeField() const
 }
 
 std::shared_ptr<rt::VoxelField> vtkDSMVolumeData::CreateField(std::size_t number,
-  const Choice& choice, const std::string& purpose, const std::vector<ArrayInfo>& infos) const
+  const Choice& choice, const std::string& purpose,
+  const std::vector<vtkDSMImageArrays::Info>& infos) const
 {
   const vtkDSMLatticePlan::Lattice& lattice = this->Plan.GetLattices()[number];
   std::vector<rt::Box> parts;
@@ -620,7 +442,7 @@ std::shared_ptr<rt::VoxelField> vtkDSMVolumeData::CreateField(std::size_t number
   bool masked = false;
   for (const auto& member : lattice.Members)
   {
-    if (infos[member.Piece].State == ArrayState::Usable)
+    if (infos[member.Piece].IsUsable())
     {
       parts.push_back(member.Cells);
       types.insert(infos[member.Piece].Type);
@@ -656,8 +478,8 @@ std::vector<std::shared_ptr<const rt::VoxelSource>> vtkDSMVolumeData::CreateSour
   {
     if (vtkImageData* image = this->FindOwn(member))
     {
-      ArrayInfo info;
-      if (vtkDataArray* array = this->FindArray(image, choice, info))
+      vtkDSMImageArrays::Info info;
+      if (vtkDataArray* array = vtkDSMImageArrays::Find(image, choice, info))
       {
         sources.push_back(std::make_shared<vtkDSMImagePiece>(image, array, choice.Component, member,
           this->Pieces[member.Piece].HasMask != 0, choice.OnCells));

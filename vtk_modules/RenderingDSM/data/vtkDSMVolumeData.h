@@ -8,6 +8,7 @@
 #include "DSMRayTracing/scene/Scene.h"
 #include "vtkDSMBlockLooks.h"
 #include "vtkDSMFileVolume.h"
+#include "vtkDSMImageArrays.h"
 #include "vtkDSMLatticePlan.h"
 #include "vtkDSMRankGroup.h"
 
@@ -15,13 +16,11 @@
 
 #include <cstdint>
 #include <functional>
-#include <map>
 #include <memory>
 #include <set>
 #include <string>
 #include <vector>
 
-class vtkDataArray;
 class vtkDataObject;
 class vtkImageData;
 
@@ -31,19 +30,7 @@ class vtkImageData;
 class vtkDSMVolumeData
 {
 public:
-  /// One array, as the user chose it.
-  struct Choice
-  {
-    std::string Name;     ///< empty: the active scalars
-    int Component = 0;    ///< also vtkDSMImagePiece::Magnitude and Color
-    bool OnCells = false; ///< the cells' array of this name, not the points', is meant
-
-    bool operator==(const Choice& other) const
-    {
-      return this->Name == other.Name && this->Component == other.Component &&
-        this->OnCells == other.OnCells;
-    }
-  };
+  using Choice = vtkDSMImageArrays::Choice;
   /// One field a lattice; null where no piece of the lattice has the array.
   using Fields = std::vector<std::shared_ptr<const rt::VoxelField>>;
   /// What an array became.
@@ -104,11 +91,7 @@ public:
   };
   /// Of all ranks' pieces of a lattice.
   std::vector<Block> GetBlocks(std::size_t lattice) const;
-  /// The choice with its component made definite: an array of one component has but one. The same on
-  /// every rank, also where there is no data.
-  Choice Normalize(const Choice& choice) const;
-  /// Whether what is chosen as colours may have opacities. The same on every rank.
-  bool HasOpacity(const Choice& choice) const;
+  const vtkDSMImageArrays& GetArrays() const { return this->Arrays; }
   /// Local, reads the data. Of all that this rank's part of a field depends on: equal only where Publish would make
   /// the same again.
   std::uint64_t HashContent(const Choice& choice) const;
@@ -132,11 +115,7 @@ public:
     const std::string& purpose, const std::function<void(double)>& progress) const;
 
 private:
-  struct ArrayInfo;
-
   void CollectImages(vtkDataObject* data);
-  vtkDataArray* FindArray(vtkImageData* image, const Choice& choice, ArrayInfo& info) const;
-  void GatherArrays();
   /// Collective: takes apart what is no one volume.
   void SeparateBlocks(const std::vector<Choice>& shown);
   /// Local: a piece's image, if it is this rank's; else null.
@@ -144,8 +123,6 @@ private:
   /// Local. Of a piece's values at points of its lattice, in the arrays that are shown.
   std::uint64_t HashPoints(const vtkDSMLatticePlan::Member& member, const rt::Box& points,
     const std::vector<Choice>& shown) const;
-  [[noreturn]] void RefuseArray(
-    const Choice& choice, const std::string& purpose, const std::vector<ArrayInfo>& infos) const;
   /// Of this rank's first piece of a lattice that has the array in a file; null when none has.
   const vtkDSMFileValues* FindFileValues(std::size_t lattice, const Choice& choice) const;
   /// Collective: a lattice that is in a file, for which `part` has a field. Its bricks come to memory when rays meet
@@ -155,7 +132,7 @@ private:
     Publication::Part&& old) const;
   /// Adds it to the publication. `old`: what is there of an earlier time, or empty.
   void PublishLattice(Publication& published, std::size_t lattice, const Choice& choice,
-    const std::string& purpose, const std::vector<ArrayInfo>& infos,
+    const std::string& purpose, const std::vector<vtkDSMImageArrays::Info>& infos,
     const std::vector<vtkDSMFileVolume::Seat>& seats, const std::function<void(double)>& progress,
     Publication::Part&& old) const;
   /// Collective: the old bricks, with what the pieces hold now.
@@ -166,7 +143,7 @@ private:
   std::shared_ptr<rt::VoxelField> MakeField() const;
   /// Local. A lattice's field without its bricks; null where no piece has the array.
   std::shared_ptr<rt::VoxelField> CreateField(std::size_t lattice, const Choice& choice,
-    const std::string& purpose, const std::vector<ArrayInfo>& infos) const;
+    const std::string& purpose, const std::vector<vtkDSMImageArrays::Info>& infos) const;
   /// Local. This rank's pieces of a lattice.
   std::vector<std::shared_ptr<const rt::VoxelSource>> CreateSources(
     std::size_t lattice, const Choice& choice) const;
@@ -180,8 +157,7 @@ private:
   std::set<std::int32_t> Apart;                      ///< blocks that are volumes of their own
   std::vector<vtkSmartPointer<vtkImageData>> Images; ///< of this rank
   std::vector<int> Leaves;                           ///< of this rank's images
-  /// All ranks' numeric ones, of points and of cells: number of components.
-  std::map<std::string, int> Arrays[2];
+  vtkDSMImageArrays Arrays;
 };
 
 #endif

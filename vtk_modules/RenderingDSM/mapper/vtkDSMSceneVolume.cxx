@@ -4,10 +4,10 @@
 #include "vtkDSMImagePiece.h"
 #include "vtkDSMLightOptions.h"
 #include "vtkDSMProgress.h"
+#include "vtkDSMSurfaceSearch.h"
 #include "vtkDSMTranslation.h"
 
 #include "DSMRayTracing/layout/FirstIsovalue.h"
-#include "DSMRayTracing/volume/IsovaluePredicate.h"
 
 #include "vtkCompositeDataIterator.h"
 #include "vtkCompositeDataSet.h"
@@ -46,47 +46,6 @@ vtkMTimeType GetDataTime(vtkDataObject* data)
     }
   }
   return time;
-}
-
-/// The bricks that a box of world space meets.
-rt::Box FindBricks(const rt::VoxelField& field, const glm::dmat4& toIndex, const double bounds[6])
-{
-  glm::dvec3 low(std::numeric_limits<double>::max());
-  glm::dvec3 high(std::numeric_limits<double>::lowest());
-  for (int corner = 0; corner < 8; ++corner)
-  {
-    const glm::dvec3 place(toIndex *
-      glm::dvec4(
-        bounds[corner & 1], bounds[2 + (corner >> 1 & 1)], bounds[4 + (corner >> 2 & 1)], 1.0));
-    low = glm::min(low, place);
-    high = glm::max(high, place);
-  }
-  // A cell more on each side, for what rounding does.
-  const double edge = field.Lattice.GetEdge();
-  return rt::Intersect({ rt::Index3(glm::floor((low - 1.0) / edge)),
-                         rt::Index3(glm::floor((high + 1.0) / edge)) + rt::Index3(1) },
-    { rt::Index3(0), field.Lattice.GetBricks() });
-}
-
-bool MayHoldAny(
-  const rt::VoxelField& field, const rt::Box& bricks, const rt::IsovaluePredicate& mayHold)
-{
-  const std::vector<rt::ValueRange>& ranges = field.Hierarchy.GetLevels().front().Ranges;
-  rt::Index3 brick;
-  for (brick.z = bricks.Min.z; brick.z < bricks.Max.z; ++brick.z)
-  {
-    for (brick.y = bricks.Min.y; brick.y < bricks.Max.y; ++brick.y)
-    {
-      for (brick.x = bricks.Min.x; brick.x < bricks.Max.x; ++brick.x)
-      {
-        if (mayHold(ranges[field.Lattice.GetId(brick)]))
-        {
-          return true;
-        }
-      }
-    }
-  }
-  return false;
 }
 
 } // namespace
@@ -139,7 +98,7 @@ std::shared_ptr<vtkDSMSceneVolume::Published> vtkDSMSceneVolume::Require(
   const vtkDSMVolumeData::Choice& wanted, const char* purpose, unsigned retryVersion,
   const std::vector<std::shared_ptr<Published>>& known)
 {
-  const vtkDSMVolumeData::Choice choice = this->Data->Normalize(wanted);
+  const vtkDSMVolumeData::Choice choice = this->Data->GetArrays().Normalize(wanted);
   for (const auto& candidate : known)
   {
     if (candidate && candidate->Choice == choice &&
@@ -329,13 +288,11 @@ vtkDSMVolumeMapper::SurfaceTest vtkDSMSceneVolume::MakeSurfaceTest() const
       return true;
     }
     std::sort(isovalues.begin(), isovalues.end());
-    const rt::IsovaluePredicate mayHold(isovalues);
     const auto& fields = iso->GetFields();
     for (std::size_t lattice = 0; lattice < fields.size(); ++lattice)
     {
       if (fields[lattice] &&
-        MayHoldAny(
-          *fields[lattice], FindBricks(*fields[lattice], toIndex[lattice], bounds), mayHold))
+        vtkDSMSurfaceSearch::MayFind(*fields[lattice], toIndex[lattice], bounds, isovalues))
       {
         return true;
       }
@@ -565,8 +522,9 @@ void vtkDSMSceneVolume::SetColors(std::size_t lattice, rt::IsosurfaceObject& obj
   }
   if (this->Color->Choice.Component == vtkDSMImagePiece::Color)
   {
-    object.ColoredBy =
-      this->Data->HasOpacity(this->Color->Choice) ? Coloring::Colors : Coloring::OpaqueColors;
+    object.ColoredBy = this->Data->GetArrays().HasOpacity(this->Color->Choice)
+      ? Coloring::Colors
+      : Coloring::OpaqueColors;
   }
 }
 

@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkDSMImageArrays.h"
+
+#include "vtkDSMGather.h"
+#include "vtkDSMImagePiece.h"
+
+#include "vtkCellData.h"
+#include "vtkDataArray.h"
+#include "vtkImageData.h"
+#include "vtkPointData.h"
+
+#include <algorithm>
+#include <cstring>
+
+vtkDataArray* vtkDSMImageArrays::Find(vtkImageData* image, const Choice& choice, Info& info)
+{
+  vtkDataSetAttributes* attributes = image->GetPointData();
+  if (choice.OnCells)
+  {
+    attributes = image->GetCellData();
+  }
+  vtkAbstractArray* found = choice.Name.empty()
+    ? static_cast<vtkAbstractArray*>(attributes->GetScalars())
+    : attributes->GetAbstractArray(choice.Name.c_str());
+  if (!found)
+  {
+    const bool onCells = choice.Name.empty() ? image->GetPointData()->GetNumberOfArrays() == 0 &&
+        image->GetCellData()->GetNumberOfArrays() > 0
+                                             : image->GetCellData()->HasArray(choice.Name.c_str());
+    info.Found = onCells && !choice.OnCells ? State::OnCells : State::Missing;
+    return nullptr;
+  }
+  auto* array = vtkDataArray::SafeDownCast(found);
+  if (!array)
+  {
+    info.Found = State::NotNumeric;
+    return nullptr;
+  }
+  info.Components = array->GetNumberOfComponents();
+  const bool areColors = choice.Component == vtkDSMImagePiece::Color;
+  if (areColors && (info.Components > 4 || array->GetDataType() == VTK_CHAR))
+  {
+    info.Found = State::NoColors;
+    return nullptr;
+  }
+  if (choice.Component >= info.Components || choice.Component < vtkDSMImagePiece::Color)
+  {
+    info.Found = State::NoSuchComponent;
+    return nullptr;
+  }
+  if (array->GetNumberOfTuples() !=
+    (choice.OnCells ? image->GetNumberOfCells() : image->GetNumberOfPoints()))
+  {
+    info.Found = State::WrongLength;
+    return nullptr;
+  }
+  info.Found = State::Usable;
+  info.Type = vtkDSMImagePiece::GetScalarType(array, choice.Component);
+  return array;
+}
+
+vtkDSMImageArrays::vtkDSMImageArrays(
+  dsm::Messenger& messenger, const std::vector<vtkSmartPointer<vtkImageData>>& images)
+{
+  std::vector<char> mine;
+  const auto append = [&mine](const std::string& text)
+  { mine.insert(mine.end(), text.c_str(), text.c_str() + text.size() + 1); };
+  const auto appendAll = [&append](vtkDataSetAttributes* attributes, const char* place)
+  {
+    for (int index = 0; index < attributes->GetNumberOfArrays(); ++index)
+    {
+      vtkDataArray* array = attributes->GetArray(index);
+      if (array && array->GetName() &&
+        std::strcmp(array->GetName(), vtkDataSetAttributes::GhostArrayName()) != 0)
+      {
+        append(place);
+        append(array->GetName());
+        append(std::to_string(array->GetNumberOfComponents()));
+      }
+    }
+  };
+  for (vtkImageData* image : images)
+  {
+    appendAll(image->GetPointData(), "0");
+    appendAll(image->GetCellData(), "1");
+  }
+  const std::vector<char> all = vtkDSMGather::Items(messenger, mine);
+  for (auto place = all.begin(); place != all.end();)
+  {
+    const auto name = std::find(place, all.end(), '\0') + 1;
+    const auto components = std::find(name, all.end(), '\0') + 1;
+    this->Components[*place == '1' ? 1 : 0][&*name] = std::stoi(&*components);
+    place = std::find(components, all.end(), '\0') + 1;
+  }
+}
+
+vtkDSMImageArrays::Choice vtkDSMImageArrays::Normalize(const Choice& choice) const
+{
+  const auto& arrays = this->Components[choice.OnCells ? 1 : 0];
+  const auto known = arrays.find(choice.Name);
+  if (known == arrays.end() || choice.Component == vtkDSMImagePiece::Color)
+  {
+    return choice;
+  }
+  const int components = known->second;
+  if (components == 1)
+  {
+    return { choice.Name, 0, choice.OnCells };
+  }
+  // ParaView's panels number the magnitude after the last component.
+  return { choice.Name,
+    choice.Component == components ? vtkDSMImagePiece::Magnitude : choice.Component,
+    choice.OnCells };
+}
+
+bool vtkDSMImageArrays::HasOpacity(const Choice& choice) const
+{
+  const auto& arrays = this->Components[choice.OnCells ? 1 : 0];
+  const auto known = arrays.find(choice.Name);
+  return known != arrays.end() && known->second % 2 == 0;
+}
+
+void vtkDSMImageArrays::Refuse(
+  const Choice& choice, const std::string& purpose, const std::vector<Info>& infos) const
+{
+  std::string list;
+  for (const auto& [name, components] : this->Components[choice.OnCells ? 1 : 0])
+  {
+    list += (list.empty() ? "'" : ", '") + name + "'";
+  }
+  const std::string array = "The " + purpose + " '" + choice.Name + "'";
+  const std::string remedy = !list.empty() ? " Choose one of " + list + "."
+    : choice.OnCells                       ? " The dataset has no cell array of numbers."
+                                           : " The dataset has no point array of numbers.";
+  const auto is = [&](State state)
+  {
+    return std::any_of(
+      infos.begin(), infos.end(), [=](const Info& info) { return info.Found == state; });
+  };
+  if (is(State::NotNumeric))
+  {
+    throw dsm::Error(array + " holds text, not numbers." + remedy);
+  }
+  if (is(State::NoSuchComponent))
+  {
+    throw dsm::Error(array + " has no component " + std::to_string(choice.Component) + ".");
+  }
+  if (is(State::WrongLength))
+  {
+    throw dsm::Error(array + " does not have one value for every " +
+      (choice.OnCells ? "cell" : "point") + " of the image." + remedy);
+  }
+  if (is(State::NoColors))
+  {
+    throw dsm::Error(array +
+      " holds no colours: those have up to four components, of another type than char. Switch on "
+      "Map Scalars.");
+  }
+  if (is(State::OnCells))
+  {
+    throw dsm::Error(
+      (choice.Name.empty() ? "The dataset has cell data only" : array + " belongs to the cells") +
+      ", but values at the points are needed. Apply Cell Data to Point Data first.");
+  }
+  throw dsm::Error((choice.Name.empty() ? "No " + purpose + " is chosen."
+                                        : array + " does not exist in the dataset.") +
+    remedy);
+}

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef vtkDSMImageArrays_h
+#define vtkDSMImageArrays_h
+
+#include "DSMCore/transport/Messenger.h"
+#include "DSMRayTracing/base/ScalarType.h"
+
+#include "vtkSmartPointer.h"
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+class vtkDataArray;
+class vtkImageData;
+
+/// The arrays of numbers of a dataset of images that is spread over the ranks: which there are, and whether one serves as what
+/// the user chose it for.
+class vtkDSMImageArrays
+{
+public:
+  /// One array, as the user chose it.
+  struct Choice
+  {
+    std::string Name;     ///< empty: the active scalars
+    int Component = 0;    ///< also vtkDSMImagePiece::Magnitude and Color
+    bool OnCells = false; ///< the cells' array of this name, not the points', is meant
+
+    bool operator==(const Choice& other) const
+    {
+      return this->Name == other.Name && this->Component == other.Component &&
+        this->OnCells == other.OnCells;
+    }
+  };
+
+  /// What an image has of a choice.
+  enum class State : std::int32_t
+  {
+    Usable,
+    Missing,
+    NotNumeric,
+    OnCells,
+    NoSuchComponent,
+    NoColors,
+    WrongLength
+  };
+  struct Info
+  {
+    State Found = State::Missing;
+    rt::ScalarType Type = rt::ScalarType::Float32; ///< of the bricks that it would become
+    std::int32_t Components = 0;
+
+    bool IsUsable() const { return this->Found == State::Usable; }
+  };
+
+  vtkDSMImageArrays() = default;
+  /// Collective. `images`: this rank's.
+  vtkDSMImageArrays(
+    dsm::Messenger& messenger, const std::vector<vtkSmartPointer<vtkImageData>>& images);
+
+  /// Null where the image's array is not usable; `info` says why.
+  static vtkDataArray* Find(vtkImageData* image, const Choice& choice, Info& info);
+
+  /// The choice with its component made definite: an array of one component has but one. The same on
+  /// every rank, also where there is no data.
+  Choice Normalize(const Choice& choice) const;
+  /// Whether what is chosen as colours may have opacities. The same on every rank.
+  bool HasOpacity(const Choice& choice) const;
+  /// Throws a dsm::Error that says why the choice is not usable, and what is. `infos`: of all ranks' images; `purpose` names
+  /// the array ("isosurface array").
+  [[noreturn]] void Refuse(
+    const Choice& choice, const std::string& purpose, const std::vector<Info>& infos) const;
+
+private:
+  /// All ranks' numeric ones, of points and of cells: number of components.
+  std::map<std::string, int> Components[2];
+};
+
+#endif

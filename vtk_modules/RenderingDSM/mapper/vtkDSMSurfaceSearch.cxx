@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkDSMSurfaceSearch.h"
+
+#include "DSMRayTracing/volume/IsovaluePredicate.h"
+
+#include <limits>
+
+namespace
+{
+
+/// The bricks that a box of world space meets.
+rt::Box FindBricks(const rt::VoxelField& field, const glm::dmat4& toIndex, const double bounds[6])
+{
+  glm::dvec3 low(std::numeric_limits<double>::max());
+  glm::dvec3 high(std::numeric_limits<double>::lowest());
+  for (int corner = 0; corner < 8; ++corner)
+  {
+    const glm::dvec3 place(toIndex *
+      glm::dvec4(
+        bounds[corner & 1], bounds[2 + (corner >> 1 & 1)], bounds[4 + (corner >> 2 & 1)], 1.0));
+    low = glm::min(low, place);
+    high = glm::max(high, place);
+  }
+  // A cell more on each side, for what rounding does.
+  const double edge = field.Lattice.GetEdge();
+  return rt::Intersect({ rt::Index3(glm::floor((low - 1.0) / edge)),
+                         rt::Index3(glm::floor((high + 1.0) / edge)) + rt::Index3(1) },
+    { rt::Index3(0), field.Lattice.GetBricks() });
+}
+
+bool MayHoldAny(
+  const rt::VoxelField& field, const rt::Box& bricks, const rt::IsovaluePredicate& mayHold)
+{
+  const std::vector<rt::ValueRange>& ranges = field.Hierarchy.GetLevels().front().Ranges;
+  rt::Index3 brick;
+  for (brick.z = bricks.Min.z; brick.z < bricks.Max.z; ++brick.z)
+  {
+    for (brick.y = bricks.Min.y; brick.y < bricks.Max.y; ++brick.y)
+    {
+      for (brick.x = bricks.Min.x; brick.x < bricks.Max.x; ++brick.x)
+      {
+        if (mayHold(ranges[field.Lattice.GetId(brick)]))
+        {
+          return true;
+        }
+      }
+    }
+  }
+  return false;
+}
+
+} // namespace
+
+bool vtkDSMSurfaceSearch::MayFind(const rt::VoxelField& field, const glm::dmat4& worldToIndex,
+  const double bounds[6], const std::vector<double>& isovalues)
+{
+  return MayHoldAny(
+    field, FindBricks(field, worldToIndex, bounds), rt::IsovaluePredicate(isovalues));
+}
