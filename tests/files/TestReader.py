@@ -222,4 +222,8 @@ with Messages() as messages:
 check(f"{21 * 13 * 4} of them are not read" in messages.text, f"what is left of the file is told: {messages.text}")
 check(bare.GetDataInformation().GetExtent() == (0, 20, 0, 12, 0, 8), "and all else is shown")
 check(bare.GetProperty("RawHeaderBytes").SMProperty.IsA("vtkSMIntVectorProperty"), "the panel has a field for a header")
-check(simple.OpenDataFile(os.path.join(FILES, "ome.zarr/.zattrs")).TimestepValues[-1] == 2, "OME's times")
+for name in ("ome.zarr", "ome.zarr/.zattrs"):
+    check(simple.OpenDataFile(os.path.join(FILES, name)).TimestepValues[-1] == 2, f"OME's times, by {name}")
+for name in ("three_raw.zarr", "three_raw.zarr/zarr.json"):
+    opened = simple.OpenDataFile(os.path.join(FILES, name))
+    check(type(opened).__name__ == "DSMVolumeReader", f"version 3, by {name}")

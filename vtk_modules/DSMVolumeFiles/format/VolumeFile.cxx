@@ -40,7 +40,7 @@ std::string ReadFirst(const std::string& path, std::size_t bytes)
   return text;
 }
 
-/// ParaView's file dialog has files, no folders: one of a Zarr folder's own may stand for it.
+/// A file of metadata in a Zarr folder may stand for it: a dialog may have files only.
 std::string FindZarrFolder(const std::string& path)
 {
   const std::filesystem::path file(path);
