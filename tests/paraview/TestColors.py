@@ -120,6 +120,7 @@ for name, values in (('n', of_cells), ('f', 10 - of_cells),
 i, j, k = points(piece)
 colours = numpy_to_vtk(np.stack([10 * i, 10 * j, 10 * k], axis=1).astype(np.uint8), deep=True)
 colours.SetName('smooth'); image.GetPointData().AddArray(colours)
+labels = numpy_to_vtk(i // 4, deep=True); labels.SetName('labels'); image.GetPointData().AddArray(labels)
 shades = numpy_to_vtk((i + k) / 48, deep=True); shades.SetName('shades')
 image.GetPointData().AddArray(shades)
 """
@@ -140,9 +141,11 @@ def color_plainly(display, array, place, mapped):
         table.RescaleTransferFunction(0.0, 10.0)
 
 
-def check_colors(dataset, name, array, place, mapped=True, share=0.02):
+def check_colors(dataset, name, array, place, mapped=True, share=0.02, counts=get_covered, prepare=lambda array: None):
+    """`counts`: which pixels of Contour's picture do; `prepare`: the colours of the array."""
     display = show(dataset, view, [0.7], "f")
     color_plainly(display, array, place, mapped)
+    prepare(array)
     place_camera(view, (0.3, 0.2, 1.0))
     view.CameraViewAngle = 15
     traced = render(view, name)
@@ -151,8 +154,9 @@ def check_colors(dataset, name, array, place, mapped=True, share=0.02):
     triangles = simple.Show(contour, view)
     triangles.Representation = "Surface"
     color_plainly(triangles, array, place, mapped)
+    prepare(array)
     reference = render(view)
-    both = get_covered(traced) & get_covered(reference)
+    both = get_covered(traced) & get_covered(reference) & counts(reference)
     check(both.sum() > 0.05 * both.size, f"{name}: Contour draws it")
     others = (abs(traced - reference).max(axis=2)[both] > 3).mean()
     check(others < share, f"{name}: the colours are Contour's but for {100 * others:.2f} % along the cells' edges")
@@ -232,3 +236,30 @@ for name, array, place, mapped, opacity, interpolation in (
     check(get_covered(pictures[1]).mean() > 0.05, f"{name}: Surface draws it")
     different = (abs(pictures[0] - pictures[1]).max(axis=2) > 8).mean()
     check(different < 0.005, f"{name}: {100 * different:.2f} % of the pixels differ from Surface")
+
+# Categories: each value has a colour of its own. Between two samples it is that of the nearer one, where Contour makes
+# values that are of no category.
+PALETTE = numpy.array([[255, 0, 0], [0, 255, 0], [0, 0, 255], [0, 255, 255], [255, 0, 255], [255, 128, 0], [0, 128, 255]])
+NO_CATEGORY = [255, 255, 255]
+
+
+def divide(array):
+    table = simple.GetColorTransferFunction(array)
+    table.InterpretValuesAsCategories = 1
+    table.Annotations = [text for value in range(len(PALETTE)) for text in (str(value), f"<{value}>")]
+    table.ActiveAnnotatedValues = [str(value) for value in range(len(PALETTE))]
+    table.IndexedColors = list(PALETTE.ravel() / 255)
+    table.NanColor = numpy.array(NO_CATEGORY) / 255
+
+
+def find_colors(pixels):
+    return set(map(tuple, pixels[get_covered(pixels)]))
+
+
+simple.HideAll(view)
+known = set(map(tuple, PALETTE))
+found = find_colors(check_colors(cells, "CategoriesOfCells", "n", "CELLS", prepare=divide))
+check(found == known | {tuple(NO_CATEGORY)}, f"four of eleven values are of no category: {found}")
+found = find_colors(check_colors(cells, "CategoriesOfPoints", "labels", "POINTS", prepare=divide,
+                                 counts=lambda pixels: (pixels[..., None, :] == PALETTE).all(axis=-1).any(axis=-1)))
+check(found <= known and len(found) > 2, f"labels of points have their colours, and no other: {found}")

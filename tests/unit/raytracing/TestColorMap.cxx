@@ -66,3 +66,22 @@ TEST(TestColorMap, DegenerateRangesAndTables)
   EXPECT_EQ(CreateMap(0.0, 1.0, 1).Map(0.7).x, 0.0f);
   EXPECT_EQ(CreateMap(0.0, 1.0, 0).Map(0.7).x, -3.0f);
 }
+
+TEST(TestColorMap, CategoriesHaveTheirOwnColorsAndNothingElseHasAny)
+{
+  rt::ColorMap map = CreateMap(0.0, 10.0, 11);
+  map.Categories.emplace({ rt::ColorMap::Category{ 1.0, glm::vec4(21.0f, 0.0f, 0.0f, 1.0f) },
+    { 3.0, glm::vec4(23.0f, 0.0f, 0.0f, 1.0f) }, { 70.0, glm::vec4(25.0f, 0.0f, 0.0f, 1.0f) } });
+  EXPECT_EQ(map.Map(1.0).x, 21.0f);
+  EXPECT_EQ(map.Map(3.0).x, 23.0f);
+  EXPECT_EQ(map.Map(70.0).x, 25.0f) << "the range does not count";
+  for (const double value : { -1.0, 2.0, std::nextafter(3.0, 4.0), 11.0, 71.0, std::nan("") })
+  {
+    EXPECT_EQ(map.Map(value).x, -3.0f) << value;
+  }
+  EXPECT_TRUE(map.IsOpaque());
+  map.Categories->back().Color.w = 0.5f;
+  EXPECT_FALSE(map.IsOpaque());
+  map.Categories->clear();
+  EXPECT_EQ(map.Map(1.0).x, -3.0f);
+}

@@ -103,3 +103,22 @@ TEST(TestFieldSamplerCases, ColorsAreInterpolatedChannelByChannel)
   ASSERT_TRUE(bench.Fields.GetColorOfCell(*field, { 1, 0, 0 }, color));
   EXPECT_EQ(color, glm::vec4(0.0f, 1.0f, 0.2f, 0.0f));
 }
+
+TEST(TestFieldSamplerCases, TheNearestSampleIsNotInterpolated)
+{
+  TestVolume<std::int16_t> volume({ 6, 5, 4 },
+    [](int x, int y, int z) { return static_cast<std::int16_t>(x + 10 * y + 100 * z); });
+  volume.Blank(4, 3, 2);
+  SearchBench bench;
+  const auto field = CreateField(bench.Store, volume, 2);
+  const auto find = [&](double x, double y, double z) {
+    return bench.Fields.SampleNearest(*field, { x, y, z });
+  };
+  EXPECT_EQ(find(0.0, 0.0, 0.0), 0.0);
+  EXPECT_EQ(find(1.49, 2.51, 0.7), 131.0);
+  EXPECT_EQ(find(2.5, 1.5, 1.5), 223.0) << "in the middle, the later one";
+  EXPECT_EQ(find(2.0, 3.6, 1.2), 142.0) << "on a face between bricks";
+  EXPECT_EQ(find(5.0, 1.2, 3.0), 315.0) << "the last samples";
+  EXPECT_TRUE(std::isnan(find(4.2, 3.2, 2.2)));
+  EXPECT_TRUE(std::isnan(find(5.1, 1.0, 1.0)));
+}

@@ -26,6 +26,7 @@ void ObjectDigest::Add(const ColorMap& map)
   this->Add(map.Below);
   this->Add(map.Above);
   this->Add(map.NotANumber);
+  this->Add(map.Categories);
 }
 
 void ObjectDigest::Add(const ClipRegion& region)

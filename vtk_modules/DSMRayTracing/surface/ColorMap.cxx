@@ -10,9 +10,16 @@ namespace rt
 
 glm::vec4 ColorMap::Map(double value) const
 {
-  if (std::isnan(value) || this->Table.empty())
+  if (std::isnan(value) || (this->Table.empty() && !this->Categories))
   {
     return this->NotANumber;
+  }
+  if (this->Categories)
+  {
+    const auto found = std::lower_bound(this->Categories->begin(), this->Categories->end(), value,
+      [](const Category& category, double sought) { return category.Value < sought; });
+    return found != this->Categories->end() && found->Value == value ? found->Color
+                                                                     : this->NotANumber;
   }
   if (value < this->First)
   {
@@ -36,6 +43,12 @@ glm::vec4 ColorMap::Map(double value) const
 bool ColorMap::IsOpaque() const
 {
   const auto isOpaque = [](const glm::vec4& color) { return color.w >= 1.0f; };
+  if (this->Categories)
+  {
+    return isOpaque(this->NotANumber) &&
+      std::all_of(this->Categories->begin(), this->Categories->end(),
+        [&](const Category& category) { return isOpaque(category.Color); });
+  }
   return isOpaque(this->Below) && isOpaque(this->Above) && isOpaque(this->NotANumber) &&
     std::all_of(this->Table.begin(), this->Table.end(), isOpaque);
 }

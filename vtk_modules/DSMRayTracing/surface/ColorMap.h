@@ -4,13 +4,14 @@
 
 #include <glm/vec4.hpp>
 
+#include <optional>
 #include <vector>
 
 namespace rt
 {
 
 /// A sampled colour map. Colours are linear in the value between First and Last, entry 0 belonging
-/// to First; nearest entry. Not premultiplied.
+/// to First; nearest entry. Or categories. Not premultiplied.
 struct ColorMap
 {
   double First = 0.0;
@@ -21,6 +22,14 @@ struct ColorMap
   glm::vec4 Below{ 0.0f };
   glm::vec4 Above{ 0.0f };
   glm::vec4 NotANumber{ 0.0f };
+
+  struct Category
+  {
+    double Value;
+    glm::vec4 Color;
+  };
+  /// Where there are, in ascending order of their values, only these have colours; all else is as what is not a number.
+  std::optional<std::vector<Category>> Categories;
 
   glm::vec4 Map(double value) const;
   /// Whether it has no colour that light gets through.

@@ -26,6 +26,9 @@ public:
   /// The trilinear value of a field of points; NaN where it holds no data.
   double Sample(const VoxelField& field, const glm::dvec3& indexPoint) const;
 
+  /// The value of the sample that is nearest, in the cell that Sample takes; NaN where it holds no data.
+  double SampleNearest(const VoxelField& field, const glm::dvec3& indexPoint) const;
+
   /// How fast the trilinear value grows on each axis, in a cell that holds data, at a place in it.
   glm::dvec3 GetGradient(
     const VoxelField& field, const Index3& cell, const glm::dvec3& indexPoint) const;

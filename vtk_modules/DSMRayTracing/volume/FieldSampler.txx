@@ -33,6 +33,24 @@ double FieldSampler<Store>::Sample(const VoxelField& field, const glm::dvec3& in
 }
 
 template <class Store>
+double FieldSampler<Store>::SampleNearest(
+  const VoxelField& field, const glm::dvec3& indexPoint) const
+{
+  return Dispatch(field.Lattice.GetScalarType(),
+    [&](auto sample)
+    {
+      decltype(sample) corners[8];
+      Lanes local;
+      if (!this->FindCorners(field, indexPoint, corners, local))
+      {
+        return std::numeric_limits<double>::quiet_NaN();
+      }
+      const auto isSecond = [&](int axis) { return local[axis] >= 0.5 ? 1 : 0; };
+      return static_cast<double>(corners[isSecond(0) | isSecond(1) << 1 | isSecond(2) << 2]);
+    });
+}
+
+template <class Store>
 glm::dvec3 FieldSampler<Store>::GetGradient(
   const VoxelField& field, const Index3& cell, const glm::dvec3& indexPoint) const
 {

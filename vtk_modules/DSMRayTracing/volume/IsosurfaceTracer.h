@@ -169,7 +169,9 @@ private:
     const bool ofCells = field.Lattice.IsOfCells();
     if (this->Object.ColoredBy == IsosurfaceObject::Coloring::Values)
     {
+      // Between categories, there is nothing.
       return map.Map(ofCells ? this->Fields.GetOfCell(field, hit.Cell)
+          : map.Categories   ? this->Fields.SampleNearest(field, hit.IndexPoint)
                              : this->Fields.Sample(field, hit.IndexPoint));
     }
     glm::vec4 color;

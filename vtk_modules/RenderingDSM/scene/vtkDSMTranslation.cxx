@@ -49,6 +49,26 @@ glm::vec4 MapValue(vtkScalarsToColors* table, double value)
   return { color[0], color[1], color[2], table->GetOpacity(value) };
 }
 
+/// Of the annotations that are numbers.
+std::vector<rt::ColorMap::Category> ToCategories(vtkScalarsToColors* table)
+{
+  std::vector<rt::ColorMap::Category> categories;
+  for (vtkIdType index = 0; index < table->GetNumberOfAnnotatedValues(); ++index)
+  {
+    bool isNumber = false;
+    const double value = table->GetAnnotatedValue(index).ToDouble(&isNumber);
+    if (isNumber && !std::isnan(value))
+    {
+      double color[4];
+      table->GetIndexedColor(index, color);
+      categories.push_back({ value, { color[0], color[1], color[2], color[3] } });
+    }
+  }
+  std::sort(categories.begin(), categories.end(),
+    [](const auto& a, const auto& b) { return a.Value < b.Value; });
+  return categories;
+}
+
 void SetCamera(
   vtkRenderer* renderer, double aspect, vtkMatrix4x4* projection, rt::FrameRequest& request)
 {
@@ -183,6 +203,10 @@ rt::ColorMap vtkDSMTranslation::ToColorMap(vtkScalarsToColors* table)
   unsigned char mapped[4];
   table->MapScalarsThroughTable2(&nan, mapped, VTK_DOUBLE, 1, 1, VTK_RGBA);
   map.NotANumber.w = static_cast<float>(mapped[3]) / 255.0f;
+  if (table->GetIndexedLookup())
+  {
+    map.Categories = ToCategories(table);
+  }
   return map;
 }
 
