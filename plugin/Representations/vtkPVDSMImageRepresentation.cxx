@@ -269,10 +269,14 @@ int vtkPVDSMImageRepresentation::ProcessViewRequest(
     {
       this->ChooseBlockLooks();
     }
+    this->ChooseBackfaces();
     const bool isColored = this->Mapper->GetScalarVisibility();
     const bool isMapped = isColored || this->Mapper->GetBlockScalarVisibility();
     // Colours that are taken as they are may have an opacity on another rank.
-    const bool isTranslucent = this->Mapper->GetSurfaceProperty()->GetOpacity() < 1.0 ||
+    vtkProperty* const front = this->Mapper->GetSurfaceProperty();
+    vtkProperty* const back = this->Mapper->GetBackfaceProperty();
+    const bool isTranslucent = front->GetOpacity() < 1.0 || front->GetBackfaceCulling() ||
+      front->GetFrontfaceCulling() || (back && back->GetOpacity() < 1.0) ||
       (isColored && !this->Mapper->GetMapScalars()) ||
       (isMapped && vtkPVDSMTracedDisplay::HasOpacity(this->Mapper->GetLookupTable())) ||
       std::any_of(this->BlockOpacities.begin(), this->BlockOpacities.end(),
@@ -282,6 +286,7 @@ int vtkPVDSMImageRepresentation::ProcessViewRequest(
   }
   else if (request == vtkPVView::REQUEST_RENDER())
   {
+    this->ChooseBackfaces();
     this->Display->PrepareRender(this->Mapper->GetBounds(), inInfo);
   }
   return 1;
@@ -418,6 +423,43 @@ void vtkPVDSMImageRepresentation::SetOpacity(double value)
 void vtkPVDSMImageRepresentation::SetInterpolation(int value)
 {
   this->Mapper->GetSurfaceProperty()->SetInterpolation(value);
+}
+
+void vtkPVDSMImageRepresentation::SetBackfaceRepresentation(int representation)
+{
+  this->BackfaceRepresentation = representation;
+}
+
+void vtkPVDSMImageRepresentation::SetBackfaceAmbientColor(double r, double g, double b)
+{
+  this->BackfaceProperty->SetAmbientColor(r, g, b);
+}
+
+void vtkPVDSMImageRepresentation::SetBackfaceDiffuseColor(double r, double g, double b)
+{
+  this->BackfaceProperty->SetDiffuseColor(r, g, b);
+}
+
+void vtkPVDSMImageRepresentation::SetBackfaceOpacity(double value)
+{
+  this->BackfaceProperty->SetOpacity(value);
+}
+
+void vtkPVDSMImageRepresentation::ChooseBackfaces()
+{
+  using Faces = vtkGeometryRepresentationWithFaces;
+  vtkProperty* const front = this->Mapper->GetSurfaceProperty();
+  vtkProperty* const back = this->BackfaceProperty;
+  back->SetAmbient(front->GetAmbient());
+  back->SetDiffuse(front->GetDiffuse());
+  back->SetSpecular(front->GetSpecular());
+  back->SetSpecularColor(front->GetSpecularColor());
+  back->SetSpecularPower(front->GetSpecularPower());
+  front->SetBackfaceCulling(this->BackfaceRepresentation == Faces::CULL_BACKFACE);
+  front->SetFrontfaceCulling(this->BackfaceRepresentation == Faces::CULL_FRONTFACE);
+  const bool isOwn = this->BackfaceRepresentation >= VTK_POINTS &&
+    this->BackfaceRepresentation < Faces::FOLLOW_FRONTFACE;
+  this->Mapper->SetBackfaceProperty(isOwn ? back : nullptr);
 }
 
 void vtkPVDSMImageRepresentation::SetPosition(double x, double y, double z)

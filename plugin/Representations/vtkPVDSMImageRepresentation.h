@@ -11,8 +11,9 @@
 #ifndef vtkPVDSMImageRepresentation_h
 #define vtkPVDSMImageRepresentation_h
 
-#include "vtkNew.h"                // for ivars
-#include "vtkPVDSMTracedDisplay.h" // for ivars
+#include "vtkGeometryRepresentationWithFaces.h" // for ivars
+#include "vtkNew.h"                             // for ivars
+#include "vtkPVDSMTracedDisplay.h"              // for ivars
 #include "vtkPVDataRepresentation.h"
 #include "vtkRepresentationsDSMModule.h" // for the export macro
 
@@ -28,6 +29,7 @@ class vtkPVDSMFrameReport;
 class vtkPVDSMLightOptions;
 class vtkPVDSMMemoryOptions;
 class vtkPolyData;
+class vtkProperty;
 class vtkScalarsToColors;
 class vtkVolume;
 
@@ -116,6 +118,17 @@ public:
 
   ///@{
   /**
+   * How the sides of the surfaces look where values are above the isovalue, as of vtkGeometryRepresentationWithFaces: as the
+   * others, not at all, they alone, or in a colour and with an opacity of their own.
+   */
+  void SetBackfaceRepresentation(int representation);
+  void SetBackfaceAmbientColor(double r, double g, double b);
+  void SetBackfaceDiffuseColor(double r, double g, double b);
+  void SetBackfaceOpacity(double value);
+  ///@}
+
+  ///@{
+  /**
    * Forwarded to vtkVolume.
    */
   void SetPosition(double x, double y, double z);
@@ -187,6 +200,8 @@ private:
   void operator=(const vtkPVDSMImageRepresentation&) = delete;
 
   void ChooseIsoValues();
+  /// Tells the mapper, whose surfaces' look may have changed since.
+  void ChooseBackfaces();
   void RemoveHiddenBlocks(vtkDataObject* data) const;
   /// Tells the mapper how the blocks look that its data have now.
   void ChooseBlockLooks();
@@ -194,6 +209,8 @@ private:
 
   vtkNew<vtkVolume> Volume;
   vtkNew<vtkDSMVolumeMapper> Mapper;
+  vtkNew<vtkProperty> BackfaceProperty;
+  int BackfaceRepresentation = vtkGeometryRepresentationWithFaces::FOLLOW_FRONTFACE;
   std::vector<std::string> BlockSelectors;
   std::vector<std::pair<std::string, std::array<double, 3>>> BlockColors;
   std::vector<std::pair<std::string, double>> BlockOpacities;

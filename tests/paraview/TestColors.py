@@ -263,3 +263,22 @@ check(found == known | {tuple(NO_CATEGORY)}, f"four of eleven values are of no c
 found = find_colors(check_colors(cells, "CategoriesOfPoints", "labels", "POINTS", prepare=divide,
                                  counts=lambda pixels: (pixels[..., None, :] == PALETTE).all(axis=-1).any(axis=-1)))
 check(found <= known and len(found) > 2, f"labels of points have their colours, and no other: {found}")
+
+# Backfaces: the side where values are above the isovalue, of a surface that the volume's border cuts open.
+simple.HideAll(view)
+view.CameraViewAngle = 40
+contour = simple.Contour(Input=cells, ContourBy=["POINTS", "f"], Isosurfaces=[1.15])
+for name, back, opacity in (("CullBackface", "Cull Backface", 1.0), ("CullFrontface", "Cull Frontface", 1.0),
+                            ("Backface", "Surface", 1.0), ("GlassBackface", "Surface", 0.4)):
+    pictures = []
+    for dataset in (cells, contour):
+        shown = show(cells, view, [1.15], "f") if dataset == cells else simple.Show(contour, view)
+        shown.ColorArrayName = [None, ""]
+        shown.Ambient, shown.Diffuse, shown.Interpolation = 0.2, 0.8, "Gouraud"
+        shown.BackfaceRepresentation, shown.BackfaceOpacity = back, opacity
+        shown.BackfaceAmbientColor = shown.BackfaceDiffuseColor = [1.0, 0.3, 0.0]
+        pictures.append(render(view, ("Traced" if dataset == cells else "Contour") + name))
+        simple.Hide(dataset, view)
+    check_same_surface(pictures[0], pictures[1], name, 0.01)
+    different = (abs(pictures[0] - pictures[1]).max(axis=2) > 24).mean()
+    check(different < 0.01, f"{name}: {100 * different:.2f} % of the pixels differ from Contour")

@@ -16,10 +16,12 @@
 #include "vtkTable.h"
 #include "vtkTestErrorObserver.h"
 #include "vtkTransform.h"
+#include "vtkUnsignedCharArray.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <string>
@@ -105,6 +107,43 @@ TEST_F(VolumeMapper, CropsInTheCoordinatesOfTheData)
   EXPECT_EQ(CountCovered(this->RenderTraced()), 0);
   this->Mapper->CroppingOff();
   EXPECT_EQ(CountCovered(this->RenderTraced()), whole);
+}
+
+TEST_F(VolumeMapper, BackFacesHaveTheirOwnLook)
+{
+  const auto getMiddle = [this]
+  {
+    this->Window->Render();
+    vtkNew<vtkUnsignedCharArray> pixel;
+    this->Window->GetPixelData(Size / 2, Size / 2, Size / 2, Size / 2, 0, pixel);
+    return std::array<int, 3>{ pixel->GetValue(0), pixel->GetValue(1), pixel->GetValue(2) };
+  };
+  const auto setColor = [](vtkProperty* property, double r, double g, double b)
+  {
+    property->SetColor(r, g, b);
+    property->SetAmbient(1.0);
+    property->SetDiffuse(0.0);
+  };
+  const std::array<int, 3> green{ 0, 255, 0 };
+  vtkProperty* const front = this->Mapper->GetSurfaceProperty();
+  setColor(front, 0.0, 1.0, 0.0);
+  this->Renderer->AddVolume(this->Volume);
+  EXPECT_EQ(getMiddle(), green);
+  // The values are above the isovalue around the ball.
+  vtkNew<vtkProperty> back;
+  setColor(back, 1.0, 0.0, 0.0);
+  this->Mapper->SetBackfaceProperty(back);
+  EXPECT_EQ(getMiddle(), (std::array<int, 3>{ 255, 0, 0 }));
+  back->SetOpacity(0.0);
+  EXPECT_EQ(getMiddle(), green) << "the far wall, from within";
+  back->SetOpacity(1.0);
+  front->BackfaceCullingOn();
+  EXPECT_EQ(getMiddle(), green);
+  front->FrontfaceCullingOn();
+  EXPECT_EQ(getMiddle(), (std::array<int, 3>{ 0, 0, 0 }));
+  front->BackfaceCullingOff();
+  this->Mapper->SetBackfaceProperty(nullptr);
+  EXPECT_EQ(getMiddle(), green);
 }
 
 TEST_F(VolumeMapper, FollowsWhatChanges)

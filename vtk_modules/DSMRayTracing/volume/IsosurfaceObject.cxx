@@ -23,7 +23,9 @@ bool IsosurfaceObject::HasOpaqueColors() const
 
 bool IsosurfaceObject::IsOpaque() const
 {
-  return this->Surface.Opacity >= 1.0f && (!this->ColorField || this->HasOpaqueColors()) &&
+  const auto isOpaque = [](const Material* side) { return side && side->Opacity >= 1.0f; };
+  return isOpaque(this->GetSurface(false)) && isOpaque(this->GetSurface(true)) &&
+    (!this->ColorField || this->HasOpaqueColors()) &&
     (!this->Blocks || this->Blocks->AreOpaque()) &&
     std::all_of(this->Opacities.begin(), this->Opacities.end(),
       [](float opacity) { return opacity >= 1.0f; });
@@ -31,7 +33,9 @@ bool IsosurfaceObject::IsOpaque() const
 
 bool IsosurfaceObject::IsSeen() const
 {
-  return this->Surface.Opacity > 0.0f || (this->Blocks && this->Blocks->AnyIsSeen());
+  const auto isSeen = [this](const Material* side)
+  { return side && (side->Opacity > 0.0f || (this->Blocks && this->Blocks->AnyIsSeen())); };
+  return isSeen(this->GetSurface(false)) || isSeen(this->GetSurface(true));
 }
 
 void IsosurfaceObject::AddTo(ObjectDigest& digest) const
@@ -50,6 +54,9 @@ void IsosurfaceObject::AddTo(ObjectDigest& digest) const
     digest.Add(this->ColoredBy);
   }
   digest.Add(this->Surface);
+  digest.Add(this->BackSurface);
+  digest.Add(this->CullsFront);
+  digest.Add(this->CullsBack);
   digest.Add(this->Blocks != nullptr);
   if (this->Blocks)
   {

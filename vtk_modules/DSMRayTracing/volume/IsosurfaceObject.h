@@ -12,6 +12,7 @@
 #include <glm/matrix.hpp>
 
 #include <memory>
+#include <optional>
 #include <vector>
 
 namespace rt
@@ -54,6 +55,11 @@ struct IsosurfaceObject
   };
   Coloring ColoredBy = Coloring::Values;
   Material Surface;
+  /// Of the side where values are above the isovalue; without, both sides are alike.
+  std::optional<Material> BackSurface;
+  /// Light passes through the side that values below the isovalue are on, or the other, and it is not seen.
+  bool CullsFront = false;
+  bool CullsBack = false;
   /// May be null: all of the volume looks alike.
   std::shared_ptr<const BlockLooks> Blocks;
   /// Lit by the normals of the surface that is in each cell, not by smooth ones.
@@ -66,6 +72,14 @@ struct IsosurfaceObject
   bool IsSeen() const;
   /// All that a picture of them depends on.
   void AddTo(ObjectDigest& digest) const;
+
+  /// What the surface is made of as it is seen from a side. Null: it is not seen.
+  const Material* GetSurface(bool fromBack) const
+  {
+    return (fromBack ? this->CullsBack : this->CullsFront) ? nullptr
+      : fromBack && this->BackSurface                      ? &*this->BackSurface
+                                                           : &this->Surface;
+  }
 
 private:
   bool HasOpaqueColors() const;

@@ -103,14 +103,16 @@ public:
     point.Position = ray.Origin + hit.T * ray.Direction;
     point.Normal = object.Flat ? this->GetFlatNormal(hit, ray) : hit.Normal;
     point.Facing = hit.FromInside ? -point.Normal : point.Normal;
-    point.Surface = &object.Surface;
+    const Material* const surface = object.GetSurface(hit.FromInside);
+    point.Surface = surface ? surface : &object.Surface;
     const BlockLooks::Look* look = object.Blocks ? object.Blocks->Find(Index3(hit.Cell)) : nullptr;
     const bool isOfBlock = look && look->Color;
     point.ColorIsFromArray = isOfBlock || object.ColorField;
     point.Color = isOfBlock ? *look->Color
       : object.ColorField   ? this->GetColor(hit)
-                            : glm::vec4(object.Surface.DiffuseColor, 1.0f);
-    point.Color.w *= look ? look->Opacity.value_or(object.Surface.Opacity) : object.Surface.Opacity;
+                            : glm::vec4(point.Surface->DiffuseColor, 1.0f);
+    point.Color.w *= look ? look->Opacity.value_or(point.Surface->Opacity) : point.Surface->Opacity;
+    point.Color.w *= surface ? 1.0f : 0.0f;
     if (!object.Opacities.empty())
     {
       point.Color.w *= object.Opacities[hit.Isovalue];

@@ -416,13 +416,28 @@ std::string vtkDSMSceneVolume::GetIsoArray() const
   return name ? name : "";
 }
 
-rt::Material vtkDSMSceneVolume::GetMaterial(double isovalue)
+void vtkDSMSceneVolume::SetMaterials(double isovalue, rt::IsosurfaceObject& object)
 {
-  rt::Material material = this->IsLikeRayCastMapper()
-    ? vtkDSMTranslation::ToMaterial(vtkVolume::SafeDownCast(this->Prop)->GetProperty(), isovalue)
-    : vtkDSMTranslation::ToMaterial(this->Mapper->GetSurfaceProperty());
-  material.Reflectivity = static_cast<float>(this->GetLightOptions()->GetReflectivity());
-  return material;
+  const auto reflectivity = static_cast<float>(this->GetLightOptions()->GetReflectivity());
+  if (this->IsLikeRayCastMapper())
+  {
+    object.Surface =
+      vtkDSMTranslation::ToMaterial(vtkVolume::SafeDownCast(this->Prop)->GetProperty(), isovalue);
+  }
+  else
+  {
+    vtkProperty* const property = this->Mapper->GetSurfaceProperty();
+    object.Surface = vtkDSMTranslation::ToMaterial(property);
+    object.CullsFront = property->GetFrontfaceCulling() != 0;
+    object.CullsBack = property->GetBackfaceCulling() != 0;
+    object.Flat = property->GetInterpolation() == VTK_FLAT;
+    if (vtkProperty* const back = this->Mapper->GetBackfaceProperty())
+    {
+      object.BackSurface = vtkDSMTranslation::ToMaterial(back);
+      object.BackSurface->Reflectivity = reflectivity;
+    }
+  }
+  object.Surface.Reflectivity = reflectivity;
 }
 
 std::vector<double> vtkDSMSceneVolume::GetIsovalues()
@@ -610,9 +625,7 @@ void vtkDSMSceneVolume::AddTo(rt::Scene& scene)
           dataToWorld * this->Data->GetIndexToWorld(lattice) * coarser.ToLattice);
       }
       object.Isovalues = group;
-      object.Surface = this->GetMaterial(group.front());
-      object.Flat = !this->IsLikeRayCastMapper() &&
-        this->Mapper->GetSurfaceProperty()->GetInterpolation() == VTK_FLAT;
+      this->SetMaterials(group.front(), object);
       object.Clipping = clipping;
       if (colored && this->Color->GetFields()[lattice])
       {

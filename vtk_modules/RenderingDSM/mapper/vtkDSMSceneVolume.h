@@ -72,7 +72,7 @@ private:
   /// What blocks look like that are not to look like the rest; null where there are none.
   std::shared_ptr<const rt::BlockLooks> CreateBlockLooks(std::size_t lattice) const;
   std::vector<double> GetIsovalues();
-  rt::Material GetMaterial(double isovalue);
+  void SetMaterials(double isovalue, rt::IsosurfaceObject& object);
   rt::ClipRegion GetClipRegion(const glm::dmat4& dataToWorld) const;
 
   const vtkDataObject* SeenData = nullptr;

@@ -161,6 +161,20 @@ vtkProperty* vtkDSMVolumeMapper::GetSurfaceProperty() const
   return this->SurfaceProperty;
 }
 
+void vtkDSMVolumeMapper::SetBackfaceProperty(vtkProperty* property)
+{
+  if (property != this->BackfaceProperty)
+  {
+    this->BackfaceProperty = property;
+    this->Modified();
+  }
+}
+
+vtkProperty* vtkDSMVolumeMapper::GetBackfaceProperty() const
+{
+  return this->BackfaceProperty;
+}
+
 void vtkDSMVolumeMapper::SetLightOptions(vtkDSMLightOptions* options)
 {
   this->LightOptions = options ? options : vtkSmartPointer<vtkDSMLightOptions>::New().Get();
@@ -262,6 +276,10 @@ vtkMTimeType vtkDSMVolumeMapper::GetMTime()
   {
     time = std::max(time, this->LookupTable->GetMTime());
   }
+  if (this->BackfaceProperty)
+  {
+    time = std::max(time, this->BackfaceProperty->GetMTime());
+  }
   return time;
 }
 
@@ -293,5 +311,6 @@ void vtkDSMVolumeMapper::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "BlockScalarVisibility: " << this->BlockScalarVisibility << "\n";
   os << indent << "LookupTable: " << this->LookupTable.Get() << "\n";
   os << indent << "SurfaceProperty: " << this->SurfaceProperty.Get() << "\n";
+  os << indent << "BackfaceProperty: " << this->BackfaceProperty.Get() << "\n";
   os << indent << "MakesScene: " << this->MakesScene << "\n";
 }

@@ -161,9 +161,18 @@ public:
 
   /**
    * Colours and coefficients of the surfaces; never null. With flat interpolation, they are lit by the normals of
-   * the surface that is in each cell; else by smooth ones.
+   * the surface that is in each cell; else by smooth ones. Front faces are the sides where values are below the isovalue;
+   * what is culled lets light through, too.
    */
   vtkProperty* GetSurfaceProperty() const;
+
+  ///@{
+  /**
+   * Colours and coefficients of back faces; null (the default): they are as the others. Opacities of blocks count for both.
+   */
+  void SetBackfaceProperty(vtkProperty* property);
+  vtkProperty* GetBackfaceProperty() const;
+  ///@}
 
   ///@{
   /**
@@ -291,6 +300,7 @@ private:
   bool BlockScalarVisibility = false;
   vtkSmartPointer<vtkScalarsToColors> LookupTable;
   vtkSmartPointer<vtkProperty> SurfaceProperty;
+  vtkSmartPointer<vtkProperty> BackfaceProperty;
   vtkSmartPointer<vtkDSMLightOptions> LightOptions;
   vtkSmartPointer<vtkDSMMemoryOptions> MemoryOptions;
   bool MakesScene = true;
