@@ -111,8 +111,8 @@ public:
     point.Color = isOfBlock ? *look->Color
       : object.ColorField   ? this->GetColor(hit)
                             : glm::vec4(point.Surface->DiffuseColor, 1.0f);
-    point.Color.w *= look ? look->Opacity.value_or(point.Surface->Opacity) : point.Surface->Opacity;
-    point.Color.w *= surface ? 1.0f : 0.0f;
+    const float opacity = surface ? surface->Opacity : 0.0f;
+    point.Color.w *= look && surface ? look->Opacity.value_or(opacity) : opacity;
     if (!object.Opacities.empty())
     {
       point.Color.w *= object.Opacities[hit.Isovalue];
