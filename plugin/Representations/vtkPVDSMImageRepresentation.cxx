@@ -263,13 +263,13 @@ int vtkPVDSMImageRepresentation::ProcessViewRequest(
   {
     return 0;
   }
+  this->ChooseBackfaces();
   if (request == vtkPVView::REQUEST_UPDATE())
   {
     if (this->BlockLooksAreOld)
     {
       this->ChooseBlockLooks();
     }
-    this->ChooseBackfaces();
     const bool isColored = this->Mapper->GetScalarVisibility();
     const bool isMapped = isColored || this->Mapper->GetBlockScalarVisibility();
     // Colours that are taken as they are may have an opacity on another rank.
@@ -286,7 +286,6 @@ int vtkPVDSMImageRepresentation::ProcessViewRequest(
   }
   else if (request == vtkPVView::REQUEST_RENDER())
   {
-    this->ChooseBackfaces();
     this->Display->PrepareRender(this->Mapper->GetBounds(), inInfo);
   }
   return 1;

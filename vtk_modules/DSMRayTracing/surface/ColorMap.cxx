@@ -10,16 +10,16 @@ namespace rt
 
 glm::vec4 ColorMap::Map(double value) const
 {
-  if (std::isnan(value) || (this->Table.empty() && !this->Categories))
-  {
-    return this->NotANumber;
-  }
   if (this->Categories)
   {
     const auto found = std::lower_bound(this->Categories->begin(), this->Categories->end(), value,
       [](const Category& category, double sought) { return category.Value < sought; });
     return found != this->Categories->end() && found->Value == value ? found->Color
                                                                      : this->NotANumber;
+  }
+  if (std::isnan(value) || this->Table.empty())
+  {
+    return this->NotANumber;
   }
   if (value < this->First)
   {

@@ -28,7 +28,8 @@ struct ColorMap
     double Value;
     glm::vec4 Color;
   };
-  /// Where there are, in ascending order of their values, only these have colours; all else is as what is not a number.
+  /// Where there are, in ascending order of their values, only these have colours, whatever the table has; all else is as
+  /// what is not a number.
   std::optional<std::vector<Category>> Categories;
 
   glm::vec4 Map(double value) const;

@@ -42,6 +42,10 @@ public:
   bool GetColorOfCell(const VoxelField& field, const Index3& cell, glm::vec4& color) const;
 
 private:
+  /// `function(corners, local)`: of the values at a cell's corners, and where in it the point is; NaN without data.
+  template <class Function>
+  double Evaluate(
+    const VoxelField& field, const glm::dvec3& indexPoint, const Function& function) const;
   /// Samples at the corners of a cell that holds data and that the point is in, and where in the cell it
   /// is; false where there is none.
   template <class T>

@@ -16,6 +16,26 @@ namespace rt
 template <class Store>
 double FieldSampler<Store>::Sample(const VoxelField& field, const glm::dvec3& indexPoint) const
 {
+  return this->Evaluate(field, indexPoint, EvaluateTrilinear);
+}
+
+template <class Store>
+double FieldSampler<Store>::SampleNearest(
+  const VoxelField& field, const glm::dvec3& indexPoint) const
+{
+  return this->Evaluate(field, indexPoint,
+    [](const double corners[8], const Lanes& local)
+    {
+      const auto isSecond = [&](int axis) { return local[axis] >= 0.5 ? 1 : 0; };
+      return corners[isSecond(0) | isSecond(1) << 1 | isSecond(2) << 2];
+    });
+}
+
+template <class Store>
+template <class Function>
+double FieldSampler<Store>::Evaluate(
+  const VoxelField& field, const glm::dvec3& indexPoint, const Function& function) const
+{
   return Dispatch(field.Lattice.GetScalarType(),
     [&](auto sample)
     {
@@ -28,25 +48,7 @@ double FieldSampler<Store>::Sample(const VoxelField& field, const glm::dvec3& in
       double values[8];
       std::transform(
         corners, corners + 8, values, [](auto value) { return static_cast<double>(value); });
-      return EvaluateTrilinear(values, local);
-    });
-}
-
-template <class Store>
-double FieldSampler<Store>::SampleNearest(
-  const VoxelField& field, const glm::dvec3& indexPoint) const
-{
-  return Dispatch(field.Lattice.GetScalarType(),
-    [&](auto sample)
-    {
-      decltype(sample) corners[8];
-      Lanes local;
-      if (!this->FindCorners(field, indexPoint, corners, local))
-      {
-        return std::numeric_limits<double>::quiet_NaN();
-      }
-      const auto isSecond = [&](int axis) { return local[axis] >= 0.5 ? 1 : 0; };
-      return static_cast<double>(corners[isSecond(0) | isSecond(1) << 1 | isSecond(2) << 2]);
+      return function(values, local);
     });
 }
 

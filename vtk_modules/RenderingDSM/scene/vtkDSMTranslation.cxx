@@ -186,14 +186,6 @@ rt::ColorMap vtkDSMTranslation::ToColorMap(vtkScalarsToColors* table)
   map.First = range[0];
   map.Last = range[1];
   map.Logarithmic = table->UsingLogScale() != 0 && map.First > 0.0;
-  map.Table.reserve(ColorMapEntries);
-  for (int entry = 0; entry < ColorMapEntries; ++entry)
-  {
-    const double part = static_cast<double>(entry) / (ColorMapEntries - 1);
-    const double value = map.Logarithmic ? map.First * std::pow(map.Last / map.First, part)
-                                         : map.First + part * (map.Last - map.First);
-    map.Table.push_back(MapValue(table, std::min(std::max(value, map.First), map.Last)));
-  }
   const double infinity = std::numeric_limits<double>::infinity();
   map.Below = MapValue(table, std::nextafter(map.First, -infinity));
   map.Above = MapValue(table, std::nextafter(map.Last, infinity));
@@ -206,6 +198,15 @@ rt::ColorMap vtkDSMTranslation::ToColorMap(vtkScalarsToColors* table)
   if (table->GetIndexedLookup())
   {
     map.Categories = ToCategories(table);
+    return map;
+  }
+  map.Table.reserve(ColorMapEntries);
+  for (int entry = 0; entry < ColorMapEntries; ++entry)
+  {
+    const double part = static_cast<double>(entry) / (ColorMapEntries - 1);
+    const double value = map.Logarithmic ? map.First * std::pow(map.Last / map.First, part)
+                                         : map.First + part * (map.Last - map.First);
+    map.Table.push_back(MapValue(table, std::min(std::max(value, map.First), map.Last)));
   }
   return map;
 }
