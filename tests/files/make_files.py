@@ -41,9 +41,9 @@ def path(name):
 
 
 def note(name, arrays, **more):
-    """arrays: name, type, components, channel, on cells."""
-    keys = ("name", "type", "components", "channel", "cells")
-    defaults = (None, None, 1, 0, False)
+    """arrays: name, type, components, channel, on cells, without time."""
+    keys = ("name", "type", "components", "channel", "cells", "still")
+    defaults = (None, None, 1, 0, False, False)
     listed = [dict(zip(keys, (*array, *defaults[len(array) :]))) for array in arrays]
     entry = {"file": name, "arrays": listed, "steps": 1, "level": 0, "dataset": "", "size": SIZE}
     entries.append({**entry, **more})
@@ -72,6 +72,53 @@ for name, (options, dtype) in plain.items():
         file.create_dataset("deep/er/f", data=values(dtype), **options)
         file["other"] = np.arange(5)
     note(name + ".h5", [("deep/er/f", np.dtype(dtype).name)])
+
+# What is not as the machine has it, the library makes so: fewer bits, half the precision, truth values.
+short = h5py.h5t.STD_I16LE.copy()
+short.set_precision(12)
+short.set_offset(3)
+stored_as = {"bits12": (short, "<i2"), "half": (h5py.h5t.IEEE_F16LE, "<f4"), "names": (h5py.h5t.py_create(np.dtype("bool"), logical=True), "|i1")}
+for name, (kind, dtype) in stored_as.items():
+    with h5py.File(path(name + ".h5"), "w") as file:
+        whole = h5py.h5s.create_simple(SIZE[::-1])
+        data = np.zeros(SIZE[::-1], bool) if name == "names" else values(dtype)
+        h5py.Dataset(h5py.h5d.create(file.id, b"f", kind, whole))[...] = data
+    note(name + ".h5", [("f", np.dtype(dtype).name)], **({"zeros": True} if name == "names" else {}))
+# Behind a block of the user's own, as MATLAB writes it.
+for name, options in (("block", {}), ("block_chunked", {"chunks": (4, 5, 8), "compression": "gzip"})):
+    with h5py.File(path(name + ".h5"), "w", userblock_size=512) as file:
+        file.create_dataset("f", data=values("<f4"), **options)
+    note(name + ".h5", [("f", "float32")])
+# Chunks at the ends that are not filtered.
+with h5py.File(path("partial.h5"), "w") as file:
+    creation = h5py.h5p.create(h5py.h5p.DATASET_CREATE)
+    creation.set_chunk((4, 5, 8))
+    creation.set_deflate(3)
+    if hasattr(creation, "set_chunk_opts"):
+        creation.set_chunk_opts(2)
+    whole = h5py.h5s.create_simple(SIZE[::-1])
+    h5py.Dataset(h5py.h5d.create(file.id, b"f", h5py.h5t.IEEE_F32LE, whole, creation))[...] = values("<f4")
+note("partial.h5", [("f", "float32")])
+# Values that are in another file.
+with h5py.File(path("linked.bin"), "w") as file:
+    file["before"] = np.zeros(1000)
+    file["f"] = values("<f4")
+    file.create_dataset("g", data=values("<f4"), chunks=(4, 5, 8))
+with h5py.File(path("links.vtkhdf"), "w") as file:
+    group = file.create_group("VTKHDF")
+    group.attrs["Version"], group.attrs["Type"] = [1, 0], np.bytes_("ImageData")
+    group.attrs["WholeExtent"] = [limit for n in SIZE for limit in (0, n - 1)]
+    group.create_group("PointData")
+    for name in "fg":
+        group["PointData/" + name] = h5py.ExternalLink("linked.bin", "/" + name)
+    file["filler"] = np.arange(5000.0)
+note("links.vtkhdf", [("f", "float32"), ("g", "float32")])
+# What has no time beside what has.
+with h5py.File(path("static.h5"), "w") as file:
+    file["a"] = values("<f4")
+    file["b"] = np.stack([values("<f4")] * 2)
+still = (1, 0, False, True)
+note("static.h5", [("a", "float32", *still), ("b", "float32", *still)], steps=2)
 
 with h5py.File(path("vectors.h5"), "w") as file:
     file.create_dataset("v", data=values("<f4", 3), chunks=(4, 5, 8, 3))
@@ -182,6 +229,58 @@ hole = zarr.open_array(
 )
 hole[0:4, 0:5, 0:8] = values("<f4")[0:4, 0:5, 0:8]
 note("holes.zarr", [("holes", "float32")], fill=42.0, filled=[8, 5, 4])
+
+# The first axis fastest within chunks; axes that are named x, y, z; both.
+for name, order, turned in (("fortran", "F", False), ("from_x", "C", True), ("both", "F", True)):
+    data = values("<f4")
+    save_zarr(f"{name}.zarr", data.T if turned else data, compressor=Zlib(), chunks=(8, 5, 4), order=order)
+    names = {"_ARRAY_DIMENSIONS": list("xyz" if turned else "zyx")}
+    with open(path(f"{name}.zarr/.zattrs"), "w", encoding="utf-8") as file:
+        json.dump(names, file)
+    note(f"{name}.zarr", [(name, "float32")])
+# As xarray writes it: times, texts beside the volume, and numbers that JSON does not have.
+zarr.open_group(path("xarray.zarr"), mode="w", **LATER)
+save_zarr("xarray.zarr/f", np.stack([values("<f4", step=t) for t in range(3)]), chunks=(1, 10, 13, 21))
+save_zarr("xarray.zarr/still", values("|u1"), chunks=(10, 13, 21))
+save_zarr("xarray.zarr/times", np.array(["one", "two"]), chunks=(2,))
+for name, text in (("", '{"missing": NaN, "least": -Infinity}'), ("/f", '{"_ARRAY_DIMENSIONS": ["time", "z", "y", "x"]}')):
+    with open(path(f"xarray.zarr{name}/.zattrs"), "w", encoding="utf-8") as file:
+        file.write(text)
+note("xarray.zarr", [("f", "float32"), ("still", "uint8", 1, 0, False, True)], steps=3)
+# Nested chunks, as old stores have them, without a word.
+save_zarr("nested.zarr", values("<f4"), "/", chunks=(4, 5, 8))
+with open(path("nested.zarr/.zarray"), encoding="utf-8") as file:
+    metadata = json.load(file)
+metadata.pop("dimension_separator", None)
+with open(path("nested.zarr/.zarray"), "w", encoding="utf-8") as file:
+    json.dump(metadata, file)
+note("nested.zarr", [("nested", "float32")])
+# Labels that are alike, transformations of the level and of all, two axes that are neither time nor space.
+group = zarr.open_group(path("labels.zarr"), mode="w", **LATER)
+save_zarr("labels.zarr/0", np.stack([np.stack([values("<u2", channel=3 * p + k) for k in range(3)]) for p in range(2)]), chunks=(1, 2, 4, 5, 8))
+axes = [{"name": "phase", "type": "other"}, {"name": "c", "type": "channel"}]
+axes += [{"name": name, "type": "space"} for name in "zyx"]
+
+
+def transform(scale, translation):
+    ones, zeros = [1, 1], [0, 0]
+    return [{"type": "scale", "scale": ones + scale}, {"type": "translation", "translation": zeros + translation}]
+
+
+group.attrs["multiscales"] = [
+    {
+        "version": "0.4",
+        "axes": axes,
+        "coordinateTransformations": transform([10, 10, 10], [100, 200, 300]),
+        "datasets": [{"path": "0", "coordinateTransformations": transform([2, 3, 4], [1, 2, 3])}],
+    }
+]
+group.attrs["omero"] = {"channels": [{"label": "same"}, {"label": "same"}, {"label": None}]}
+labels = ["same", "same 1", "channel 2", "channel 3", "channel 4", "channel 5"]
+note(
+    "labels.zarr", [(label, "uint16", 1, channel) for channel, label in enumerate(labels)],
+    spacing=[40.0, 30.0, 20.0], origin=[330.0, 220.0, 110.0],
+)
 
 # OME-Zarr: two channels, three times, two scales.
 group = zarr.open_group(path("ome.zarr"), mode="w", **LATER)
@@ -330,6 +429,58 @@ for name, dtype, teem, endian in (
     subprocess.run(save, input=made, check=True)
     os.remove(raw)
     note(name, [("values", np.dtype(dtype).name)])
+
+# Headers as people write them.
+values("<f4").tofile(path("headers.bin"))
+values("<i2", 3).tofile(path("components.bin"))
+with open(path("skipped.bin"), "wb") as file:
+    file.write(b"a line\nanother\n" + b"." * 16 + values("<f4").tobytes())
+flat = np.ascontiguousarray(values("|u1", 3)[:1])
+flat.tofile(path("flat.bin"))
+headers = {
+    "blanks.nhdr": (
+        "type: float\ndimension: 3\nsizes: 21 13 10\nspace dimension: 3\ncontent:\nkey:=value\ntype:=large\n"
+        "space directions: (0, 2, 0) ( -3, 0, 0 ) (0,0,4)\nspace origin: (10, 20, 30)\ndata file: headers.bin\n",
+        [("values", "float32")],
+        {
+            "origin": [10.0, 20.0, 30.0],
+            "spacing": [2.0, 3.0, 4.0],
+            "direction": [0.0, -1.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0],
+        },
+    ),
+    "joined.nhdr": (
+        "type: float\ndimension: 3\nsizes: 21 13 10\nspacings: 1.5 -2 2\naxismins: 1 2 3\n"
+        "centers: node node cell\ndatafile: skipped.bin\nbyteskip: -1\n",
+        [("values", "float32")],
+        {
+            "origin": [1.0, 2.0, 4.0],
+            "spacing": [1.5, 2.0, 2.0],
+            "direction": [1.0, 0.0, 0.0, 0.0, -1.0, 0.0, 0.0, 0.0, 1.0],
+        },
+    ),
+    "kinds.nhdr": (
+        "type: int16\ndimension: 4\nsizes: 3 21 13 10\nkinds: vector domain domain domain\ndata file: components.bin\n",
+        [("values", "int16", 3)],
+        {},
+    ),
+    "flat.nhdr": (
+        "type: uchar\ndimension: 3\nsizes: 3 21 13\nkinds: RGB-color domain domain\ndata file: flat.bin\n",
+        [("values", "uint8", 3)],
+        {"size": (21, 13, 1)},
+    ),
+}
+for name, (text, arrays, more) in headers.items():
+    with open(path(name), "w", encoding="utf-8") as file:
+        file.write("NRRD0005\nendian: little\nencoding: raw\n" + text)
+    note(name, arrays, **more)
+for name, text in (
+    ("colons.mhd", "ElementType : MET_FLOAT\nElementDataFile : headers.bin\n"),
+    ("big.mhd", "ElementByteOrderMSB = T\nElementType = MET_LONG\nElementDataFile = big.bin\n"),
+):
+    values(">i4").tofile(path("big.bin"))
+    with open(path(name), "w", encoding="utf-8") as file:
+        file.write("NDims = 3\nDimSize = 21 13 10\n" + text)
+    note(name, [("values", "float32" if "colons" in name else "int32")])
 
 # Bare values.
 with open(path("bare.raw"), "wb") as file:

@@ -42,6 +42,8 @@ public:
     array.Name = values.Name;
     array.Type = values.Type;
     array.Components = values.Components;
+    array.Grid.Samples = values.Samples;
+    CheckSizes(path, array);
     array.Grid = CutIntoBoxes(values.Samples, array.GetSampleBytes());
     const auto need =
       static_cast<std::uint64_t>(rt::Box{ rt::Index3(0), values.Samples }.GetCount()) *
@@ -163,11 +165,6 @@ ChunkGrid CutIntoRows(const rt::Index3& samples, std::size_t sampleBytes)
 std::shared_ptr<const VolumeFile> OpenBareFile(
   const std::string& path, const BareValues& values, const FileGeometry& geometry)
 {
-  if (values.Samples.x < 1 || values.Samples.y < 1 || values.Samples.z < 1)
-  {
-    throw dsm::Error(
-      "The file '" + path + "' does not tell how many samples it has along each axis; enter them.");
-  }
   return std::make_shared<BareFile>(path, values, geometry);
 }
 

@@ -18,11 +18,6 @@ struct HdfAxes
   hsize_t Components = 0; ///< along a last axis; 0: it has none
 
   std::size_t GetBeforeSpace() const { return this->Frames > 0 ? 1 : 0; }
-  bool operator==(const HdfAxes& other) const
-  {
-    return this->Frames == other.Frames && this->Samples == other.Samples;
-  }
-
   /// Three are z, y and x. Of four, the last has components where it is short, and `inSteps` does not say that the
   /// first is time. Of five, both. False for what is no volume. The caller has GetHdfLock.
   bool Find(hid_t dataset, bool inSteps);

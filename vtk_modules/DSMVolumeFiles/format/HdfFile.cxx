@@ -22,41 +22,56 @@ namespace vol
 namespace
 {
 
-/// False for what is no number of the machine's kinds.
-bool FindType(hid_t dataset, rt::ScalarType& type, bool& swapped)
+/// How the values of a dataset are stored.
+struct HdfValues
 {
-  const HdfHandle stored(H5Dget_type(dataset), &H5Tclose);
-  const std::size_t bytes = H5Tget_size(stored.Get());
-  const H5T_order_t order = H5Tget_order(stored.Get());
-  swapped = bytes > 1 && order != H5Tget_order(H5T_NATIVE_INT);
+  rt::ScalarType Type = rt::ScalarType::UInt8; ///< as which they are shown
+  bool Swapped = false;
+  bool IsPlain = true; ///< else the library has to make that type of what is stored
+};
+
+std::optional<HdfValues> FindValuesOfType(const HdfHandle& stored)
+{
   using Type = rt::ScalarType;
+  const std::size_t bytes = H5Tget_size(stored.Get());
+  HdfValues values;
+  values.Swapped = bytes > 1 && H5Tget_order(stored.Get()) != H5Tget_order(H5T_NATIVE_INT);
   if (H5Tget_class(stored.Get()) == H5T_FLOAT)
   {
-    type = bytes == 4 ? Type::Float32 : Type::Float64;
-    return bytes == 4 || bytes == 8;
+    values.Type = bytes <= 4 ? Type::Float32 : Type::Float64;
   }
-  if (H5Tget_class(stored.Get()) != H5T_INTEGER)
+  else if (H5Tget_class(stored.Get()) == H5T_INTEGER)
   {
-    return false;
+    const bool isSigned = H5Tget_sign(stored.Get()) == H5T_SGN_2;
+    const Type types[2][4] = { { Type::UInt8, Type::UInt16, Type::UInt32, Type::UInt64 },
+      { Type::Int8, Type::Int16, Type::Int32, Type::Int64 } };
+    int size = 0; // the smallest that has as many bytes
+    while (size < 3 && bytes > std::size_t(1) << size)
+    {
+      ++size;
+    }
+    values.Type = types[isSigned ? 1 : 0][size];
   }
-  const bool isSigned = H5Tget_sign(stored.Get()) == H5T_SGN_2;
-  switch (bytes)
+  else
   {
-    case 1:
-      type = isSigned ? Type::Int8 : Type::UInt8;
-      return true;
-    case 2:
-      type = isSigned ? Type::Int16 : Type::UInt16;
-      return true;
-    case 4:
-      type = isSigned ? Type::Int32 : Type::UInt32;
-      return true;
-    case 8:
-      type = isSigned ? Type::Int64 : Type::UInt64;
-      return true;
-    default:
-      return false;
+    return std::nullopt;
   }
+  // Fewer bits than bytes have, or other exponents, are left to the library.
+  const HdfHandle same(H5Tcopy(GetHdfType(values.Type)), &H5Tclose);
+  values.IsPlain = H5Tset_order(same.Get(), H5Tget_order(stored.Get())) >= 0 &&
+    H5Tequal(same.Get(), stored.Get()) > 0;
+  return values;
+}
+
+/// None for what is no number. Names of truth values and the like (enumerations) count as their numbers.
+std::optional<HdfValues> FindValues(hid_t dataset)
+{
+  HdfHandle stored(H5Dget_type(dataset), &H5Tclose);
+  if (H5Tget_class(stored.Get()) == H5T_ENUM)
+  {
+    return FindValuesOfType(HdfHandle(H5Tget_super(stored.Get()), &H5Tclose));
+  }
+  return FindValuesOfType(stored);
 }
 
 class HdfFile final : public StoredFile
@@ -80,9 +95,7 @@ public:
     }
     if (this->Arrays.empty())
     {
-      throw dsm::Error("The file '" + path + "' has no " +
-        (dataset.empty() ? "dataset of numbers with three axes."
-                         : "such dataset as '" + dataset + "'."));
+      throw dsm::Error("The file '" + path + "' has no " + this->Missing);
     }
   }
   ~HdfFile() override
@@ -294,6 +307,9 @@ private:
     }
     this->FindArrays(group.Get(), "PointData", false, this->Geometry.Points);
     this->FindArrays(group.Get(), "CellData", true, cells);
+    this->Missing =
+      "array of numbers in PointData or CellData that has as many samples along z, y and x as its "
+      "WholeExtent tells of.";
   }
 
   void FindArrays(hid_t parent, const char* name, bool onCells, const rt::Index3& samples)
@@ -303,8 +319,12 @@ private:
       return;
     }
     const HdfHandle group(H5Gopen2(parent, name, H5P_DEFAULT), &H5Gclose);
-    H5G_info_t info;
-    H5Gget_info(group.Get(), &info);
+    H5G_info_t info{};
+    if (!group.IsOpen() || H5Gget_info(group.Get(), &info) < 0)
+    {
+      throw dsm::Error(
+        "The file '" + this->Path + "' is no VTKHDF: what it calls " + name + " is no group.");
+    }
     for (hsize_t index = 0; index < info.nlinks; ++index)
     {
       char link[256] = {};
@@ -366,17 +386,23 @@ private:
     {
       names.push_back(wanted);
     }
+    this->Missing =
+      wanted.empty() ? "dataset of numbers with three axes." : "such dataset as '" + wanted + "'.";
     std::map<std::string, HdfAxes> volumes;
     for (const std::string& name : names)
     {
       const HdfHandle dataset(H5Dopen2(this->File.Get(), name.c_str(), H5P_DEFAULT), &H5Dclose);
       HdfAxes axes;
-      rt::ScalarType type;
-      bool swapped = false;
-      if (dataset.IsOpen() && axes.Find(dataset.Get(), false) &&
-        FindType(dataset.Get(), type, swapped))
+      if (dataset.IsOpen() && axes.Find(dataset.Get(), false) && FindValues(dataset.Get()))
       {
         volumes[name] = axes;
+      }
+      else if (dataset.IsOpen() && !wanted.empty())
+      {
+        this->Missing = "volume in its dataset '" + wanted +
+          "': that must have numbers, along three axes (z, y, x), with components behind them, and "
+          "time steps "
+          "before them, where there are such.";
       }
     }
     // Of several shapes the largest.
@@ -386,16 +412,18 @@ private:
     HdfAxes largest;
     for (const auto& [name, axes] : volumes)
     {
-      if (getCount(axes) > getCount(largest))
+      if (getCount(axes) > getCount(largest) ||
+        (axes.Samples == largest.Samples && axes.Frames > largest.Frames))
       {
         largest = axes;
       }
     }
     this->Geometry.Points = largest.Samples;
     this->Steps = static_cast<int>(std::max<hsize_t>(1, largest.Frames));
+    // What has no time is there at all times.
     for (const auto& [name, axes] : volumes)
     {
-      if (axes == largest)
+      if (axes.Samples == largest.Samples && (axes.Frames == 0 || axes.Frames == largest.Frames))
       {
         this->Add(HdfHandle(H5Dopen2(this->File.Get(), name.c_str(), H5P_DEFAULT), &H5Dclose), name,
           false, axes, {});
@@ -410,19 +438,21 @@ private:
     array.Name = name;
     array.OnCells = onCells;
     array.Components = static_cast<int>(std::max<hsize_t>(1, axes.Components));
-    bool swapped = false;
-    if (!FindType(id.Get(), array.Type, swapped))
+    const std::optional<HdfValues> values = FindValues(id.Get());
+    if (!values)
     {
       return;
     }
-    const std::size_t sampleBytes = array.GetSampleBytes();
-    array.Grid = CutIntoRows(axes.Samples, sampleBytes);
+    array.Type = values->Type;
+    array.Grid.Samples = axes.Samples;
+    CheckSizes(this->Path, array);
+    array.Grid = CutIntoRows(axes.Samples, array.GetSampleBytes());
     Dataset dataset{ std::move(id), false, HADDR_UNDEF, {}, axes, std::move(frames) };
     Storage storage;
     storage.Fill = this->GetFill(dataset.Id.Get(), array);
     const HdfHandle properties(H5Dget_create_plist(dataset.Id.Get()), &H5Pclose);
     std::vector<CodecStep> steps;
-    if (swapped)
+    if (values->Swapped)
     {
       steps.push_back({ CodecStep::Kind::SwapBytes, rt::GetBytes(array.Type) });
     }
@@ -435,11 +465,13 @@ private:
         break;
       case H5D_CHUNKED:
         dataset.ReadByLibrary = !FindSteps(properties.Get(), steps) ||
-          !this->FindChunks(properties.Get(), array, storage, dataset, swapped);
+          !this->FindChunks(properties.Get(), array, storage, dataset, values->Swapped);
         break;
       default:
         dataset.ReadByLibrary = true;
     }
+    dataset.ReadByLibrary =
+      dataset.ReadByLibrary || !values->IsPlain || !this->IsHere(dataset.Id.Get());
     storage.Codec = ChunkCodec(dataset.ReadByLibrary ? std::vector<CodecStep>() : std::move(steps));
     if (!dataset.ReadByLibrary && storage.Slices == 1)
     {
@@ -448,6 +480,19 @@ private:
     this->Arrays.push_back(std::move(array));
     this->Storages.push_back(std::move(storage));
     this->Kept.push_back(std::move(dataset));
+  }
+
+  /// Whether its values are in this file, and not behind a link to another.
+  bool IsHere(hid_t dataset) const
+  {
+    const auto getName = [](hid_t object)
+    {
+      const ssize_t length = H5Fget_name(object, nullptr, 0);
+      std::string name(static_cast<std::size_t>(std::max<ssize_t>(0, length)), '\0');
+      H5Fget_name(object, name.data(), name.size() + 1);
+      return name;
+    };
+    return getName(dataset) == getName(this->File.Get());
   }
 
   /// What a brick file has of its chunks' halos.
@@ -524,10 +569,18 @@ private:
     return true;
   }
 
-  /// False when the chunks do not have all components.
+  /// False when the chunks do not have all components, or are not where the library says, or as the filters say.
   bool FindChunks(
     hid_t properties, FileArray& array, Storage& storage, Dataset& dataset, bool swapped) const
   {
+    const HdfHandle creation(H5Fget_create_plist(this->File.Get()), &H5Pclose);
+    hsize_t before = 0;
+    unsigned partial = 0;
+    if (H5Pget_userblock(creation.Get(), &before) < 0 || before != 0 ||
+      H5Pget_chunk_opts(properties, &partial) < 0 || partial != 0)
+    {
+      return false;
+    }
     hsize_t edges[5] = { 1, 1, 1, 1, 1 };
     H5Pget_chunk(properties, 5, edges);
     const std::size_t z = dataset.Shape.GetBeforeSpace();
@@ -557,6 +610,29 @@ private:
     return true;
   }
 
+  /// A filter that the library does not find; empty where it has all.
+  static std::string FindLack(hid_t dataset)
+  {
+    const HdfHandle properties(H5Dget_create_plist(dataset), &H5Pclose);
+    const int count = H5Pget_nfilters(properties.Get());
+    for (int index = 0; index < count; ++index)
+    {
+      unsigned flags = 0;
+      std::size_t parameterCount = 0;
+      char name[64] = {};
+      const H5Z_filter_t filter = H5Pget_filter2(properties.Get(), static_cast<unsigned>(index),
+        &flags, &parameterCount, nullptr, sizeof(name) - 1, name, nullptr);
+      if (H5Zfilter_avail(filter) <= 0)
+      {
+        return "it has no filter " + std::to_string(filter) + " (" + name +
+          "). Install its plugin where HDF5_PLUGIN_PATH says, or write the file with deflate, for "
+          "example with "
+          "'h5repack -f GZIP=3'.";
+      }
+    }
+    return {};
+  }
+
   void ReadByLibrary(std::size_t number, int step, const rt::Index3& chunk, std::byte* out) const
   {
     const std::lock_guard<std::mutex> lock(GetHdfLock());
@@ -578,8 +654,10 @@ private:
           all.Get(), H5S_SELECT_SET, first + skipped, nullptr, count + skipped, nullptr) < 0 ||
       H5Dread(dataset, GetHdfType(array.Type), part.Get(), all.Get(), H5P_DEFAULT, out) < 0)
     {
+      const std::string lack = FindLack(dataset);
       throw dsm::Error("A part of the array '" + array.Name + "' in '" + this->Path +
-        "' cannot be read by the HDF5 library: it is damaged, or a filter is not installed.");
+        "' cannot be read by the HDF5 library: " +
+        (lack.empty() ? "it is damaged, or a file that it refers to is not there." : lack));
     }
   }
 
@@ -588,6 +666,7 @@ private:
   std::optional<HdfHandle> Coarser; ///< the group of a coarser level
   hid_t Root = H5I_INVALID_HID;     ///< of the level: that group, or the file
   std::vector<Dataset> Kept;        ///< of the arrays
+  std::string Missing;              ///< what there must be, where there is no array
 };
 
 } // namespace

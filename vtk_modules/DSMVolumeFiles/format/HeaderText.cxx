@@ -40,11 +40,18 @@ std::vector<std::string> HeaderText::Split(const std::string& text)
 void HeaderText::AddLine(const std::string& line, const std::string& separator)
 {
   const std::size_t place = line.find(separator);
-  if (place != std::string::npos)
+  if (place == std::string::npos)
   {
-    this->Values[ToLower(Trim(line.substr(0, place)))] =
-      Trim(line.substr(place + separator.size()));
+    return;
   }
+  std::string name = ToLower(Trim(line.substr(0, place)));
+  for (const std::string& known : this->Names)
+  {
+    std::string together = known;
+    together.erase(std::remove(together.begin(), together.end(), ' '), together.end());
+    name = name == together ? known : name;
+  }
+  this->Values[name] = Trim(line.substr(place + separator.size()));
 }
 
 std::string HeaderText::Get(const std::string& name) const
@@ -55,8 +62,19 @@ std::string HeaderText::Get(const std::string& name) const
 
 std::vector<double> HeaderText::GetNumbers(const std::string& name, std::size_t count) const
 {
+  std::vector<double> numbers = this->ToNumbers(name, this->Get(name));
+  if (count != 0 && !numbers.empty() && numbers.size() != count)
+  {
+    this->Refuse("its field '" + name + "' has " + std::to_string(numbers.size()) +
+      " numbers instead of " + std::to_string(count) + ".");
+  }
+  return numbers;
+}
+
+std::vector<double> HeaderText::ToNumbers(const std::string& name, const std::string& text) const
+{
   std::vector<double> numbers;
-  for (const std::string& word : Split(this->Get(name)))
+  for (const std::string& word : Split(text))
   {
     char* end = nullptr;
     numbers.push_back(std::strtod(word.c_str(), &end));
@@ -64,11 +82,6 @@ std::vector<double> HeaderText::GetNumbers(const std::string& name, std::size_t 
     {
       this->Refuse("'" + word + "' in its field '" + name + "' is no number.");
     }
-  }
-  if (count != 0 && !numbers.empty() && numbers.size() != count)
-  {
-    this->Refuse("its field '" + name + "' has " + std::to_string(numbers.size()) +
-      " numbers instead of " + std::to_string(count) + ".");
   }
   return numbers;
 }

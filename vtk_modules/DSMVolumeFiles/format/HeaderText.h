@@ -13,9 +13,10 @@ namespace vol
 class HeaderText
 {
 public:
-  /// `what` names the file in errors.
-  explicit HeaderText(std::string what)
+  /// `what` names the file in errors. `names`: of several words, which some programs write as one.
+  explicit HeaderText(std::string what, std::vector<std::string> names = {})
     : What(std::move(what))
+    , Names(std::move(names))
   {
   }
 
@@ -29,6 +30,8 @@ public:
   /// Throw dsm::Error for what is no number, and, when `count` is not 0, for another count; empty where there
   /// is no such name.
   std::vector<double> GetNumbers(const std::string& name, std::size_t count = 0) const;
+  /// Of a part of the field `name`.
+  std::vector<double> ToNumbers(const std::string& name, const std::string& text) const;
 
   [[noreturn]] void Refuse(const std::string& why) const;
 
@@ -38,6 +41,7 @@ public:
 
 private:
   std::string What;
+  std::vector<std::string> Names;
   std::map<std::string, std::string> Values;
 };
 

@@ -20,7 +20,8 @@ rt::ScalarType ParseType(const HeaderText& header)
   using Type = rt::ScalarType;
   static const std::map<std::string, Type> types = { { "met_char", Type::Int8 },
     { "met_uchar", Type::UInt8 }, { "met_short", Type::Int16 }, { "met_ushort", Type::UInt16 },
-    { "met_int", Type::Int32 }, { "met_uint", Type::UInt32 }, { "met_long_long", Type::Int64 },
+    { "met_int", Type::Int32 }, { "met_uint", Type::UInt32 }, { "met_long", Type::Int32 },
+    { "met_ulong", Type::UInt32 }, { "met_long_long", Type::Int64 },
     { "met_ulong_long", Type::UInt64 }, { "met_float", Type::Float32 },
     { "met_double", Type::Float64 } };
   std::string name = HeaderText::ToLower(header.Get("elementtype"));
@@ -41,7 +42,8 @@ rt::ScalarType ParseType(const HeaderText& header)
 
 bool IsTrue(const HeaderText& header, const std::string& name)
 {
-  return HeaderText::ToLower(header.Get(name)) == "true" || header.Get(name) == "1";
+  const std::string text = HeaderText::ToLower(header.Get(name));
+  return !text.empty() && (text.front() == 't' || text.front() == '1');
 }
 
 } // namespace
@@ -54,9 +56,9 @@ std::shared_ptr<const VolumeFile> OpenMetaImage(const std::string& path)
   // The name of the values' file is the last line; they may follow it.
   while (!header.Has("elementdatafile") && std::getline(file, line))
   {
-    header.AddLine(line, "=");
+    header.AddLine(line, line.find('=') != std::string::npos ? "=" : ":");
   }
-  if (!header.Has("elementdatafile") || header.Get("ndims") != "3")
+  if (header.Get("elementdatafile").empty() || header.Get("ndims") != "3")
   {
     header.Refuse("it is no MetaImage of three dimensions.");
   }
@@ -64,6 +66,10 @@ std::shared_ptr<const VolumeFile> OpenMetaImage(const std::string& path)
   {
     header.Refuse("its values are compressed as a whole, and cannot be read in parts. Save it "
                   "without compression.");
+  }
+  if (header.Has("binarydata") && !IsTrue(header, "binarydata"))
+  {
+    header.Refuse("its values are text, and cannot be read in parts. Save it as binary.");
   }
   BareValues values;
   values.Name = "values";
@@ -80,12 +86,12 @@ std::shared_ptr<const VolumeFile> OpenMetaImage(const std::string& path)
   const std::vector<double> skip = header.GetNumbers("headersize", 1);
   values.Offset = skip.empty() ? 0 : static_cast<std::int64_t>(skip.front());
   const std::string place = header.Get("elementdatafile");
-  if (place == "LOCAL")
+  if (HeaderText::ToLower(place) == "local")
   {
     values.Path = path;
     values.Offset = static_cast<std::int64_t>(file.tellg());
   }
-  else if (place == "LIST" || place.find('%') != std::string::npos)
+  else if (HeaderText::Split(place).front() == "LIST" || place.find('%') != std::string::npos)
   {
     header.Refuse("its values are in several files, which is not supported.");
   }

@@ -6,9 +6,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <limits>
 #include <map>
 #include <vector>
 
@@ -31,10 +31,12 @@ rt::ScalarType ParseType(const HeaderText& header)
     { "uint16_t", Type::UInt16 }, { "int", Type::Int32 }, { "signed int", Type::Int32 },
     { "int32", Type::Int32 }, { "int32_t", Type::Int32 }, { "uint", Type::UInt32 },
     { "unsigned int", Type::UInt32 }, { "uint32", Type::UInt32 }, { "uint32_t", Type::UInt32 },
-    { "longlong", Type::Int64 }, { "long long", Type::Int64 }, { "int64", Type::Int64 },
-    { "int64_t", Type::Int64 }, { "ulonglong", Type::UInt64 },
-    { "unsigned long long", Type::UInt64 }, { "uint64", Type::UInt64 },
-    { "uint64_t", Type::UInt64 }, { "float", Type::Float32 }, { "double", Type::Float64 } };
+    { "longlong", Type::Int64 }, { "long long", Type::Int64 }, { "long long int", Type::Int64 },
+    { "signed long long", Type::Int64 }, { "signed long long int", Type::Int64 },
+    { "int64", Type::Int64 }, { "int64_t", Type::Int64 }, { "ulonglong", Type::UInt64 },
+    { "unsigned long long", Type::UInt64 }, { "unsigned long long int", Type::UInt64 },
+    { "uint64", Type::UInt64 }, { "uint64_t", Type::UInt64 }, { "float", Type::Float32 },
+    { "double", Type::Float64 } };
   const auto known = types.find(HeaderText::ToLower(header.Get("type")));
   if (known == types.end())
   {
@@ -43,41 +45,99 @@ rt::ScalarType ParseType(const HeaderText& header)
   return known->second;
 }
 
-/// "(1,0,0) (0,1,0) none" as vectors; an axis without one has none.
+/// "(1, 0, 0) (0,1,0) none" as vectors; an axis without one has none.
 std::vector<std::vector<double>> ParseVectors(const HeaderText& header, const std::string& name)
 {
   std::vector<std::vector<double>> vectors;
-  for (std::string word : HeaderText::Split(header.Get(name)))
+  std::string text = header.Get(name);
+  while (!(text = HeaderText::Trim(text)).empty())
   {
     std::vector<double> numbers;
-    if (word != "none")
+    std::size_t end = text.find(text.front() == '(' ? ')' : ' ');
+    if (text.front() == '(')
     {
-      for (char& letter : word)
+      if (end == std::string::npos)
       {
-        letter = letter == '(' || letter == ')' || letter == ',' ? ' ' : letter;
+        header.Refuse("its field '" + name + "' has a vector without an end.");
       }
-      for (const std::string& number : HeaderText::Split(word))
-      {
-        numbers.push_back(std::strtod(number.c_str(), nullptr));
-      }
+      std::string inner = text.substr(1, end - 1);
+      std::replace(inner.begin(), inner.end(), ',', ' ');
+      numbers = header.ToNumbers(name, inner);
+      ++end;
+    }
+    else if (text.substr(0, end) != "none")
+    {
+      header.Refuse("'" + text.substr(0, end) + "' in its field '" + name + "' is no vector.");
     }
     vectors.push_back(numbers);
+    text.erase(0, end);
   }
   return vectors;
 }
 
-FileGeometry ParseGeometry(const HeaderText& header, std::size_t firstAxis)
+/// Which of its axes are those of space, or of time; what lies along the others are components.
+std::vector<std::size_t> FindDomain(const HeaderText& header, std::size_t axes)
+{
+  const std::vector<std::string> kinds =
+    HeaderText::Split(HeaderText::ToLower(header.Get("kinds")));
+  const auto directions = ParseVectors(header, "space directions");
+  std::vector<std::size_t> domain;
+  for (std::size_t axis = 0; axis < axes; ++axis)
+  {
+    const std::string kind = kinds.size() == axes ? kinds[axis] : "";
+    const bool isKnown = !kind.empty() && kind != "none" && kind != "???";
+    const bool isDomain = isKnown ? kind == "domain" || kind == "space" || kind == "time"
+      : directions.size() == axes ? !directions[axis].empty()
+                                  : axes < 4 || axis > 0;
+    if (isDomain && kind == "time")
+    {
+      header.Refuse("one of its axes is time. Save each time step as a file of its own.");
+    }
+    if (isDomain)
+    {
+      domain.push_back(axis);
+    }
+  }
+  return domain;
+}
+
+/// Where it has no vectors: "axis mins" are of the first samples, or of where these begin.
+void LocateByAxis(
+  const HeaderText& header, std::size_t axis, std::int64_t samples, FileGeometry& geometry, int to)
+{
+  const std::vector<double> spacings = header.GetNumbers("spacings");
+  const std::vector<double> mins = header.GetNumbers("axis mins");
+  const std::vector<double> maxs = header.GetNumbers("axis maxs");
+  const auto get = [axis](const std::vector<double>& numbers)
+  { return axis < numbers.size() ? numbers[axis] : std::numeric_limits<double>::quiet_NaN(); };
+  const std::vector<std::string> centers =
+    HeaderText::Split(HeaderText::ToLower(header.Get("centers")));
+  const bool ofCells = axis < centers.size() && centers[axis] == "cell";
+  double step = get(spacings);
+  if (!std::isfinite(step) || step == 0.0)
+  {
+    const auto between = static_cast<double>(ofCells ? samples : samples - 1);
+    step = between > 0.0 ? (get(maxs) - get(mins)) / between : 1.0;
+  }
+  step = std::isfinite(step) && step != 0.0 ? step : 1.0;
+  geometry.Spacing[to] = std::abs(step);
+  geometry.Direction[4 * to] = step < 0.0 ? -1.0 : 1.0;
+  if (std::isfinite(get(mins)))
+  {
+    geometry.Origin[to] = get(mins) + (ofCells ? 0.5 * step : 0.0);
+  }
+}
+
+FileGeometry ParseGeometry(
+  const HeaderText& header, const std::vector<std::size_t>& domain, const rt::Index3& samples)
 {
   FileGeometry geometry;
-  const std::vector<double> spacings = header.GetNumbers("spacings");
   const auto directions = ParseVectors(header, "space directions");
-  for (std::size_t axis = 0; axis < 3; ++axis)
+  for (std::size_t place = 0; place < domain.size(); ++place)
   {
-    const std::size_t number = firstAxis + axis;
-    if (number < spacings.size() && spacings[number] > 0.0)
-    {
-      geometry.Spacing[axis] = spacings[number];
-    }
+    const std::size_t number = domain[place];
+    const auto axis = static_cast<int>(place);
+    LocateByAxis(header, number, samples[axis], geometry, axis);
     if (number < directions.size() && directions[number].size() == 3)
     {
       const std::vector<double>& way = directions[number];
@@ -87,7 +147,7 @@ FileGeometry ParseGeometry(const HeaderText& header, std::size_t firstAxis)
         geometry.Spacing[axis] = length;
         for (std::size_t row = 0; row < 3; ++row)
         {
-          geometry.Direction[3 * row + axis] = way[row] / length;
+          geometry.Direction[3 * row + place] = way[row] / length;
         }
       }
     }
@@ -100,11 +160,22 @@ FileGeometry ParseGeometry(const HeaderText& header, std::size_t firstAxis)
   return geometry;
 }
 
+/// "LIST", "LIST 2", or a pattern and its first, last and next number.
+bool IsInSeveralFiles(const std::string& place)
+{
+  const std::vector<std::string> words = HeaderText::Split(place);
+  const auto isNumber = [](const std::string& word)
+  { return !word.empty() && word.find_first_not_of("+-0123456789") == std::string::npos; };
+  return (!words.empty() && words.size() <= 2 && words.front() == "LIST") ||
+    (words.size() >= 4 && words.front().find('%') != std::string::npos &&
+      std::all_of(words.begin() + 1, words.begin() + 4, isNumber));
+}
+
 } // namespace
 
 std::shared_ptr<const VolumeFile> OpenNrrd(const std::string& path)
 {
-  HeaderText header(path);
+  HeaderText header(path, { "byte skip", "line skip", "data file", "axis mins", "axis maxs" });
   std::ifstream file(path, std::ios::binary);
   std::string line;
   std::getline(file, line);
@@ -114,7 +185,9 @@ std::shared_ptr<const VolumeFile> OpenNrrd(const std::string& path)
   }
   while (std::getline(file, line) && !HeaderText::Trim(line).empty())
   {
-    if (line[0] != '#')
+    // What a user adds is "key:=value", and no field.
+    const std::size_t colon = line.find(':');
+    if (line[0] != '#' && line.compare(colon == std::string::npos ? 0 : colon, 2, ":=") != 0)
     {
       header.AddLine(line, ":");
     }
@@ -126,18 +199,27 @@ std::shared_ptr<const VolumeFile> OpenNrrd(const std::string& path)
       "', and only 'raw' can be read in parts. Convert it, for example with 'unu save -e raw'.");
   }
   const std::vector<double> sizes = header.GetNumbers("sizes");
-  if (sizes.size() != 3 && sizes.size() != 4)
+  const std::vector<std::size_t> domain = FindDomain(header, sizes.size());
+  const bool hasComponents = domain.size() < sizes.size();
+  if (domain.size() < 2 || domain.size() > 3 || sizes.size() > domain.size() + 1)
   {
-    header.Refuse("it has " + std::to_string(sizes.size()) +
-      " axes; volumes have 3, or 4 with components first.");
+    header.Refuse("it has " + std::to_string(sizes.size()) + " axes, " +
+      std::to_string(domain.size()) +
+      " of them in space; volumes have three, and may have components.");
   }
-  const std::size_t firstAxis = sizes.size() - 3;
-  BareValues values;
-  values.Name = header.Has("content") ? header.Get("content") : "values";
-  values.Components = firstAxis == 1 ? static_cast<int>(sizes[0]) : 1;
-  for (int axis = 0; axis < 3; ++axis)
+  if (hasComponents && domain.front() == 0)
   {
-    values.Samples[axis] = static_cast<std::int64_t>(sizes[firstAxis + axis]);
+    header.Refuse("its components do not lie together: their axis is not the first. Change that, "
+                  "for example with "
+                  "'unu permute'.");
+  }
+  BareValues values;
+  values.Name = header.Get("content").empty() ? "values" : header.Get("content");
+  values.Components = hasComponents ? static_cast<int>(sizes.front()) : 1;
+  values.Samples = rt::Index3(1);
+  for (std::size_t axis = 0; axis < domain.size(); ++axis)
+  {
+    values.Samples[static_cast<int>(axis)] = static_cast<std::int64_t>(sizes[domain[axis]]);
   }
   values.Type = ParseType(header);
   values.BigEndian = HeaderText::ToLower(header.Get("endian")) == "big";
@@ -147,14 +229,13 @@ std::shared_ptr<const VolumeFile> OpenNrrd(const std::string& path)
   {
     header.Refuse("it skips lines of text, which is not supported.");
   }
-  const std::string separate =
-    header.Has("data file") ? header.Get("data file") : header.Get("datafile");
+  const std::string separate = header.Get("data file");
   if (separate.empty())
   {
     values.Path = path;
     values.Offset += values.Offset < 0 ? 0 : static_cast<std::int64_t>(file.tellg());
   }
-  else if (separate == "LIST" || separate.find('%') != std::string::npos)
+  else if (IsInSeveralFiles(separate))
   {
     header.Refuse("its values are in several files, which is not supported.");
   }
@@ -162,7 +243,7 @@ std::shared_ptr<const VolumeFile> OpenNrrd(const std::string& path)
   {
     values.Path = (std::filesystem::path(path).parent_path() / separate).string();
   }
-  return OpenBareFile(path, values, ParseGeometry(header, firstAxis));
+  return OpenBareFile(path, values, ParseGeometry(header, domain, values.Samples));
 }
 
 } // namespace vol

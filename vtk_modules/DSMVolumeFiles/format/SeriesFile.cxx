@@ -5,6 +5,8 @@
 #include "DSMRayTracing/base/ByteHash.h"
 
 #include <algorithm>
+#include <cmath>
+#include <cstdlib>
 #include <exception>
 #include <list>
 #include <mutex>
@@ -35,6 +37,29 @@ std::uint64_t FindStampOfStep(const std::string& path, const OpenOptions& option
     return hash.Get();
   }
   return hash.Get();
+}
+
+/// But for what numbers in texts are rounded: by less than a thousandth of a sample, at any sample.
+bool IsSamePlace(const FileGeometry& a, const FileGeometry& b)
+{
+  constexpr double tolerance = 1e-3;
+  bool isSame = a.First == b.First && a.Points == b.Points;
+  for (int row = 0; row < 3; ++row)
+  {
+    double sample = 0.0; // how large it is along this axis of the world
+    double apart = std::abs(a.Origin[row] - b.Origin[row]);
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      const double step = a.Direction[3 * row + axis] * a.Spacing[axis];
+      const double other = b.Direction[3 * row + axis] * b.Spacing[axis];
+      const std::int64_t last = a.First[axis] + a.Points[axis] - 1;
+      const auto far = static_cast<double>(std::max(std::abs(a.First[axis]), std::abs(last)));
+      sample = std::max(sample, std::abs(step));
+      apart += std::abs(step - other) * far;
+    }
+    isSame = isSame && apart <= tolerance * sample;
+  }
+  return isSame;
 }
 
 class SeriesFile final : public VolumeFile
@@ -129,11 +154,13 @@ private:
 
   void CheckSame(const VolumeFile& file) const
   {
+    // A single array is often called as its file is.
+    const bool onlyOne = this->Arrays.size() == 1;
     const bool same = std::equal(this->Arrays.begin(), this->Arrays.end(), file.GetArrays().begin(),
       file.GetArrays().end(),
-      [](const FileArray& a, const FileArray& b)
+      [=](const FileArray& a, const FileArray& b)
       {
-        return a.Name == b.Name && a.Type == b.Type && a.Components == b.Components &&
+        return (onlyOne || a.Name == b.Name) && a.Type == b.Type && a.Components == b.Components &&
           a.OnCells == b.OnCells && a.Grid.Samples == b.Grid.Samples &&
           a.Grid.ChunkSamples == b.Grid.ChunkSamples;
       });
@@ -142,6 +169,12 @@ private:
       throw dsm::Error("The file '" + file.GetPath() +
         "' is no time step of the series that begins with '" + this->Path +
         "': it does not have the same arrays, in chunks of the same size. Open it alone.");
+    }
+    if (!IsSamePlace(this->Geometry, file.GetGeometry()))
+    {
+      throw dsm::Error("The file '" + file.GetPath() +
+        "' is no time step of the series that begins with '" + this->Path +
+        "': its first index, origin, spacing or direction is another. Open it alone.");
     }
   }
 

@@ -12,6 +12,28 @@
 namespace vol
 {
 
+namespace
+{
+
+/// The first samples along each axis, of as many as are stored with z fastest; out: x fastest.
+void CopyReversed(const std::byte* from, const rt::Index3& stored, std::byte* out,
+  const rt::Index3& size, std::size_t sampleBytes)
+{
+  for (std::int64_t z = 0; z < size.z; ++z)
+  {
+    for (std::int64_t y = 0; y < size.y; ++y)
+    {
+      for (std::int64_t x = 0; x < size.x; ++x, out += sampleBytes)
+      {
+        const auto place = static_cast<std::size_t>((x * stored.y + y) * stored.z + z);
+        std::memcpy(out, from + place * sampleBytes, sampleBytes);
+      }
+    }
+  }
+}
+
+} // namespace
+
 void StoredFile::ReadChunk(
   std::size_t array, int step, const rt::Index3& chunk, std::byte* out) const
 {
@@ -33,7 +55,7 @@ void StoredFile::ReadChunk(
     storage.HasWholeChunks ? rt::Box{ box.Min, box.Min + what.Grid.ChunkSamples } : box;
   const std::size_t storedBytes = static_cast<std::size_t>(stored.GetCount()) * sampleBytes;
   const std::size_t allBytes = storedBytes * storage.Slices;
-  const bool isAll = stored.Max == box.Max && storage.Slices == 1;
+  const bool isAll = stored.Max == box.Max && storage.Slices == 1 && !storage.IsReversed;
   try
   {
     if (storage.Codec.IsPlain() && isAll && place->Bytes == allBytes)
@@ -50,7 +72,15 @@ void StoredFile::ReadChunk(
     }
     ByteBuffer samples(allBytes);
     storage.Codec.Decode(std::move(bytes), place->SkippedSteps, samples.data(), samples.size());
-    CopyBox(box, samples.data() + place->Slice * storedBytes, stored, out, box, sampleBytes);
+    const std::byte* const slice = samples.data() + place->Slice * storedBytes;
+    if (storage.IsReversed)
+    {
+      CopyReversed(slice, stored.GetSize(), out, box.GetSize(), sampleBytes);
+    }
+    else
+    {
+      CopyBox(box, slice, stored, out, box, sampleBytes);
+    }
   }
   catch (const dsm::Error& error)
   {
@@ -69,7 +99,7 @@ std::vector<PositionedFile::Piece> StoredFile::FindPieces(
     storage.HasWholeChunks ? rt::Box{ box.Min, box.Min + what.Grid.ChunkSamples } : box;
   const rt::Index3 size = stored.GetSize();
   std::vector<PositionedFile::Piece> pieces;
-  if (!storage.Codec.IsPlain() || storage.Slices != 1 ||
+  if (!storage.Codec.IsPlain() || storage.Slices != 1 || storage.IsReversed ||
     place.Bytes != static_cast<std::size_t>(stored.GetCount()) * sampleBytes)
   {
     return pieces;

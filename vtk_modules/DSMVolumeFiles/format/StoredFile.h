@@ -52,6 +52,8 @@ protected:
     std::vector<std::byte> Fill;
     /// Chunks at the volume's ends are as large as all others; else they end with it.
     bool HasWholeChunks = true;
+    /// The samples of a chunk are stored with z fastest.
+    bool IsReversed = false;
     /// As many boxes of samples are in one piece of stored bytes, one behind the other: a chunk of an array with
     /// more axes than three.
     std::size_t Slices = 1;

@@ -12,8 +12,10 @@
 #include "DSMVolumeFiles/format/ZarrFile.h"
 
 #include <algorithm>
+#include <atomic>
 #include <filesystem>
 #include <fstream>
+#include <limits>
 
 namespace vol
 {
@@ -40,6 +42,25 @@ std::string ReadFirst(const std::string& path, std::size_t bytes)
   return text;
 }
 
+/// At the beginning, or behind a block of the user's own, of 512 bytes or twice as many, and so on.
+bool HasHdfSignature(const std::string& path)
+{
+  constexpr std::streamoff most = 1 << 20;
+  const std::string signature = "\x89HDF\r\n\x1a\n";
+  std::ifstream file(path, std::ios::binary);
+  std::string text(signature.size(), '\0');
+  for (std::streamoff place = 0; place <= most && file.seekg(place) &&
+       file.read(text.data(), static_cast<std::streamsize>(text.size()));
+       place = place == 0 ? 512 : 2 * place)
+  {
+    if (text == signature)
+    {
+      return true;
+    }
+  }
+  return false;
+}
+
 /// A file of metadata in a Zarr folder may stand for it: a dialog may have files only.
 std::string FindZarrFolder(const std::string& path)
 {
@@ -47,7 +68,12 @@ std::string FindZarrFolder(const std::string& path)
   const std::string name = file.filename().string();
   const bool isPart =
     name == ".zattrs" || name == ".zgroup" || name == ".zarray" || name == "zarr.json";
-  const std::string folder = isPart ? file.parent_path().string() : path;
+  std::string folder = isPart ? file.parent_path().string() : path;
+  while (folder.size() > 1 && folder.back() == '/')
+  {
+    folder.pop_back();
+  }
+  folder = folder.empty() || folder == "." ? std::filesystem::current_path().string() : folder;
   return MayBeZarr(folder) ? folder : std::string();
 }
 
@@ -62,7 +88,7 @@ Format FindFormat(const std::string& path)
   {
     return Format::Nrrd;
   }
-  if (first == "\x89HDF\r\n\x1a\n")
+  if (HasHdfSignature(path))
   {
     return Format::Hdf;
   }
@@ -108,6 +134,46 @@ std::shared_ptr<const VolumeFile> OpenRaw(const std::string& path, const OpenOpt
 }
 
 } // namespace
+
+VolumeFile::VolumeFile(std::string path)
+  : Path(std::move(path))
+{
+  static std::atomic<std::uint64_t> last{ 0 };
+  this->Number = ++last;
+}
+
+void CheckSizes(const std::string& path, const FileArray& array, std::size_t slices)
+{
+  const auto describe = [](const rt::Index3& samples)
+  {
+    return std::to_string(samples.x) + " x " + std::to_string(samples.y) + " x " +
+      std::to_string(samples.z);
+  };
+  const auto refuse = [&](const std::string& what)
+  { throw dsm::Error("The file '" + path + "' cannot be used: it tells of " + what + "."); };
+  // Indices of images are int, and bytes are counted in 64 bits.
+  constexpr std::int64_t mostAlong = std::numeric_limits<int>::max();
+  constexpr long double mostBytes = 0x1p62L;
+  const auto isRight = [&](const rt::Index3& samples)
+  {
+    const long double bytes = static_cast<long double>(samples.x) * samples.y * samples.z *
+      array.Components * rt::GetBytes(array.Type) * slices;
+    return glm::all(glm::greaterThan(samples, rt::Index3(0))) &&
+      glm::all(glm::lessThanEqual(samples, rt::Index3(mostAlong))) && bytes <= mostBytes;
+  };
+  if (array.Components < 1)
+  {
+    refuse(std::to_string(array.Components) + " components of each sample");
+  }
+  if (!isRight(array.Grid.Samples))
+  {
+    refuse(describe(array.Grid.Samples) + " samples");
+  }
+  if (!isRight(array.Grid.ChunkSamples))
+  {
+    refuse("chunks of " + describe(array.Grid.ChunkSamples) + " samples");
+  }
+}
 
 std::shared_ptr<const VolumeFile> OpenVolumeFile(
   const std::string& path, const OpenOptions& options)

@@ -29,6 +29,11 @@ struct FileArray
   }
 };
 
+/// Throws dsm::Error, which names the file, where an array or its chunks have no samples, or more than can be counted:
+/// what a header tells may be anything. To be called before its bytes are reckoned with. `slices`: boxes of samples in
+/// what is stored as one chunk.
+void CheckSizes(const std::string& path, const FileArray& array, std::size_t slices = 1);
+
 /// Where the samples are in the world, as vtkImageData has it.
 struct FileGeometry
 {
@@ -74,6 +79,8 @@ public:
   int GetLevels() const { return this->Levels; }
   /// Differs, for all practical purposes, when the file's contents do.
   std::uint64_t GetStamp() const { return this->Stamp; }
+  /// No other one of this process has it, or had it before.
+  std::uint64_t GetNumber() const { return this->Number; }
 
   /// The samples of a chunk that belong to the volume (ChunkGrid::GetBox), dense, x fastest, the components of a
   /// sample together, in the machine's byte order. Throws dsm::Error, which names file and chunk, when they
@@ -118,10 +125,7 @@ public:
   virtual Index ReadIndex(std::size_t /*array*/, int /*step*/) const { return {}; }
 
 protected:
-  explicit VolumeFile(std::string path)
-    : Path(std::move(path))
-  {
-  }
+  explicit VolumeFile(std::string path);
 
   std::string Path;
   FileGeometry Geometry;
@@ -130,6 +134,9 @@ protected:
   std::vector<double> Times; ///< of the steps, or empty
   int Levels = 1;
   std::uint64_t Stamp = 0;
+
+private:
+  std::uint64_t Number;
 };
 
 /// What a file's own header does not tell, or leaves open.

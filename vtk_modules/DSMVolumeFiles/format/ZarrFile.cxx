@@ -5,12 +5,12 @@
 #include "DSMRayTracing/base/ByteHash.h"
 #include "DSMVolumeFiles/format/StoredFile.h"
 #include "DSMVolumeFiles/format/ZarrMetadata.h"
+#include "DSMVolumeFiles/format/ZarrParts.h"
 
 #include <algorithm>
-#include <cstring>
 #include <filesystem>
 #include <map>
-#include <mutex>
+#include <system_error>
 #include <utility>
 
 namespace vol
@@ -24,31 +24,84 @@ using Json = nlohmann::json;
 /// How many axes are in space.
 constexpr std::size_t SpaceAxes = 3;
 
-/// An axis before those of space: its place, or none.
+/// More than any microscope's.
+constexpr std::int64_t MostChannels = 1000;
+
+/// The axes before those of space: which one is time, or none; the others are channels.
 struct LeadingAxes
 {
   int Time = -1;
-  int Channel = -1;
+  std::int64_t Count = 0;
+  bool FromX = false; ///< the others are x, y, z, not z, y, x
 };
 
-LeadingAxes FindLeadingAxes(const Json& axes, std::size_t count)
+std::string GetText(const Json& object, const char* name)
+{
+  const Json found = object.is_object() ? object.value(name, Json()) : Json();
+  return found.is_string() ? found.get<std::string>() : std::string();
+}
+
+/// "time", "channel" or "space"; empty where it is not told.
+std::string FindAxisType(const Json& axis)
+{
+  const std::string name = axis.is_string() ? axis.get<std::string>() : GetText(axis, "name");
+  const std::string type = GetText(axis, "type");
+  return !type.empty()                          ? type
+    : name == "t" || name == "time"             ? "time"
+    : name == "c" || name == "channel"          ? "channel"
+    : name == "x" || name == "y" || name == "z" ? "space"
+                                                : "";
+}
+
+/// Of an array in `folder`. Where the axes are not told, the last three are in space, and the first of five is time.
+LeadingAxes FindLeadingAxes(const std::string& folder, const Json& axes, std::size_t count)
 {
   LeadingAxes found;
-  const int leading = static_cast<int>(count - SpaceAxes);
-  for (int axis = 0; axis < leading; ++axis)
+  found.Count = static_cast<std::int64_t>(count - SpaceAxes);
+  if (!axes.is_array() || axes.size() != count)
   {
-    const Json known = axes.is_array() && axes.size() == count ? axes[axis] : Json();
-    const std::string type = known.is_object() ? known.value("type", "") : "";
-    const bool isTime = type == "time" || (type.empty() && leading == 2 && axis == 0);
-    (isTime ? found.Time : found.Channel) = axis;
+    found.Time = found.Count == 2 ? 0 : -1;
+    return found;
   }
+  std::string last;
+  for (std::size_t axis = 0; axis < count; ++axis)
+  {
+    const Json& one = axes[axis];
+    const std::string type = FindAxisType(one);
+    const bool inSpace = axis + SpaceAxes >= count;
+    if (inSpace ? !type.empty() && type != "space" : type == "space")
+    {
+      throw dsm::Error("The Zarr array '" + folder +
+        "' is no volume: its last three axes, and no others, must be in space.");
+    }
+    if (inSpace)
+    {
+      last += one.is_string() ? one.get<std::string>() : GetText(one, "name");
+    }
+    else if (type == "time")
+    {
+      found.Time = static_cast<int>(axis);
+    }
+  }
+  found.FromX = last == "xyz";
   return found;
 }
 
-rt::Index3 GetSpace(const std::vector<std::int64_t>& shape)
+/// Which axis of an array of so many is x, y or z.
+std::size_t FindSpaceAxis(std::size_t count, int axis, bool fromX)
 {
-  const std::size_t last = shape.size() - 1;
-  return { shape[last], shape[last - 1], shape[last - 2] };
+  const auto place = static_cast<std::size_t>(axis);
+  return fromX ? count - SpaceAxes + place : count - 1 - place;
+}
+
+rt::Index3 GetSpace(const std::vector<std::int64_t>& shape, bool fromX)
+{
+  rt::Index3 space;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    space[axis] = shape[FindSpaceAxis(shape.size(), axis, fromX)];
+  }
+  return space;
 }
 
 class ZarrFile final : public StoredFile
@@ -93,6 +146,25 @@ public:
     this->Stamp = hash.Get();
   }
 
+  std::uint64_t GetTableBytes() const override
+  {
+    std::uint64_t files = 0;
+    std::uint64_t indexBytes = 0;
+    for (const Source& source : this->Sources)
+    {
+      const ZarrMetadata& data = *source.Data;
+      const auto& across = data.Shards ? data.Shards->ShardShape : data.ChunkShape;
+      std::uint64_t mine = 1;
+      for (std::size_t axis = 0; axis < across.size(); ++axis)
+      {
+        mine *= static_cast<std::uint64_t>((data.Shape[axis] + across[axis] - 1) / across[axis]);
+      }
+      files += mine;
+      indexBytes = std::max<std::uint64_t>(indexBytes, data.Shards ? data.Shards->IndexBytes : 0);
+    }
+    return ZarrParts::CountBytes(files, indexBytes);
+  }
+
 protected:
   std::optional<Place> FindChunk(
     std::size_t array, int step, const rt::Index3& chunk) const override
@@ -101,21 +173,22 @@ protected:
     const ZarrMetadata& data = *source.Data;
     const std::size_t axes = data.Shape.size();
     std::vector<std::int64_t> index(axes, 0);
-    for (std::size_t axis = 0; axis < SpaceAxes; ++axis)
+    for (int axis = 0; axis < 3; ++axis)
     {
-      index[axes - 1 - axis] = chunk[static_cast<int>(axis)];
+      index[FindSpaceAxis(axes, axis, source.Leading.FromX)] = chunk[axis];
     }
     // A chunk may have several times and channels.
     std::size_t slice = 0;
     for (std::size_t axis = 0; axis + SpaceAxes < axes; ++axis)
     {
-      const std::int64_t at = static_cast<int>(axis) == source.Leading.Time ? step : source.Channel;
+      const std::int64_t at =
+        static_cast<int>(axis) == source.Leading.Time ? step : source.Channel[axis];
       index[axis] = at / data.ChunkShape[axis];
       slice = slice * static_cast<std::size_t>(data.ChunkShape[axis]) +
         static_cast<std::size_t>(at % data.ChunkShape[axis]);
     }
     std::optional<Place> place =
-      data.Shards ? this->FindInShard(source, index) : FindFile(source, index);
+      data.Shards ? this->FindInShard(source, index) : this->FindFile(source, index);
     if (place)
     {
       place->Slice = slice;
@@ -130,10 +203,8 @@ private:
     std::string Folder;
     std::shared_ptr<const ZarrMetadata> Data;
     LeadingAxes Leading;
-    std::int64_t Channel = 0;
+    std::vector<std::int64_t> Channel; ///< along the leading axes; of time, 0
   };
-  /// Offsets and lengths of the chunks in a shard.
-  using Index = std::shared_ptr<const std::vector<std::uint64_t>>;
 
   void OpenScale(const Json& scale, const Json& ome, int level)
   {
@@ -147,15 +218,20 @@ private:
     const Json& dataset = datasets.at(static_cast<std::size_t>(level));
     const std::string folder = this->Path + "/" + dataset.at("path").get<std::string>();
     const auto data = Read(folder);
-    const LeadingAxes leading = FindLeadingAxes(scale.value("axes", Json()), data->Shape.size());
-    this->Locate(scale.value("coordinateTransformations", Json::array()));
-    this->Locate(dataset.value("coordinateTransformations", Json::array()));
+    const LeadingAxes leading =
+      FindLeadingAxes(folder, scale.value("axes", Json()), data->Shape.size());
+    // The level's own come first.
+    for (const Json* const from : { &dataset, &scale })
+    {
+      this->Locate(from->value("coordinateTransformations", Json::array()), leading.FromX);
+    }
     const Json channels = ome.value("omero", Json::object()).value("channels", Json::array());
     const auto getName = [&](std::int64_t channel, std::int64_t count)
     {
       const auto number = static_cast<std::size_t>(channel);
-      const std::string label =
-        channels.is_array() && number < channels.size() ? channels[number].value("label", "") : "";
+      const std::string label = channels.is_array() && number < channels.size()
+        ? GetText(channels[number], "label")
+        : std::string();
       return !label.empty() ? label
         : count == 1        ? std::string("values")
                             : "channel " + std::to_string(channel);
@@ -164,15 +240,15 @@ private:
   }
 
   /// Scale and translation, the slowest axis first.
-  void Locate(const Json& transformations)
+  void Locate(const Json& transformations, bool fromX)
   {
     for (const Json& one : transformations)
     {
       const std::string type = one.value("type", "");
       const auto values = one.value(type, std::vector<double>());
-      for (std::size_t axis = 0; axis < SpaceAxes && values.size() >= SpaceAxes; ++axis)
+      for (int axis = 0; axis < 3 && values.size() >= SpaceAxes; ++axis)
       {
-        const double value = values[values.size() - 1 - axis];
+        const double value = values[FindSpaceAxis(values.size(), axis, fromX)];
         if (type == "scale")
         {
           this->Geometry.Spacing[axis] *= value;
@@ -192,38 +268,66 @@ private:
     const auto addAs = [this](const std::string& folder, const std::string& name)
     {
       const auto data = Read(folder);
-      this->Add(folder, data, FindLeadingAxes(Json(), data->Shape.size()),
+      this->Add(folder, data, FindLeadingAxes(folder, data->Axes, data->Shape.size()),
         [&](std::int64_t channel, std::int64_t count)
         { return count == 1 ? name : name + " " + std::to_string(channel); });
     };
     if (ReadZarrMetadata(this->Path))
     {
-      addAs(this->Path, std::filesystem::path(this->Path).stem().string());
+      const std::string name = std::filesystem::path(this->Path).stem().string();
+      addAs(this->Path, name.empty() ? "values" : name);
       return;
     }
-    std::map<std::string, rt::Index3> found;
-    rt::Index3 largest(0);
+    struct Shape
+    {
+      rt::Index3 Samples{ 0 };
+      std::int64_t Times = 0; ///< 0: without an axis of time
+    };
+    std::map<std::string, Shape> found;
+    Shape largest;
+    // Beside a volume there may be what is none, such as texts.
+    std::string refused;
+    const auto tryToRead = [&](const std::string& folder) -> std::optional<ZarrMetadata>
+    {
+      try
+      {
+        return ReadZarrMetadata(folder);
+      }
+      catch (const dsm::Error& error)
+      {
+        refused = error.what();
+        return std::nullopt;
+      }
+    };
     const auto getCount = [](const rt::Index3& samples) {
       return rt::Box{ rt::Index3(0), samples }.GetCount();
     };
     for (const auto& entry : std::filesystem::directory_iterator(this->Path))
     {
-      const auto data =
-        entry.is_directory() ? ReadZarrMetadata(entry.path().string()) : std::nullopt;
+      const auto data = entry.is_directory() ? tryToRead(entry.path().string()) : std::nullopt;
       if (data && data->IsVolume())
       {
-        const rt::Index3 samples = GetSpace(data->Shape);
-        found[entry.path().filename().string()] = samples;
-        largest = getCount(samples) > getCount(largest) ? samples : largest;
+        const LeadingAxes leading =
+          FindLeadingAxes(entry.path().string(), data->Axes, data->Shape.size());
+        const Shape shape{ GetSpace(data->Shape, leading.FromX),
+          leading.Time < 0 ? 0 : data->Shape[static_cast<std::size_t>(leading.Time)] };
+        found[entry.path().filename().string()] = shape;
+        const bool isLarger = getCount(shape.Samples) > getCount(largest.Samples) ||
+          (shape.Samples == largest.Samples && shape.Times > largest.Times);
+        largest = isLarger ? shape : largest;
       }
     }
     if (found.empty())
     {
-      throw dsm::Error("'" + this->Path + "' has no Zarr array of three axes.");
+      const std::string inner = this->FindInnerGroup();
+      throw dsm::Error("'" + this->Path + "' has no Zarr array of three axes." +
+        (refused.empty() ? "" : " " + refused) +
+        (inner.empty() ? "" : " There may be one in '" + inner + "'; open that."));
     }
-    for (const auto& [name, samples] : found)
+    // What has no time is there at all times.
+    for (const auto& [name, shape] : found)
     {
-      if (samples == largest)
+      if (shape.Samples == largest.Samples && (shape.Times == 0 || shape.Times == largest.Times))
       {
         addAs(this->Path + "/" + name, name);
       }
@@ -239,8 +343,8 @@ private:
     }
     if (!data->IsVolume())
     {
-      throw dsm::Error(
-        "The Zarr array '" + folder + "' is no volume: it has no samples, or not 3 to 5 axes.");
+      throw dsm::Error("The Zarr array '" + folder +
+        "' is no volume: it has no samples, or far too many, or not 3 to 5 axes.");
     }
     return std::make_shared<const ZarrMetadata>(std::move(*data));
   }
@@ -250,18 +354,38 @@ private:
   void Add(const std::string& folder, const std::shared_ptr<const ZarrMetadata>& data,
     const LeadingAxes& leading, const GetName& getName)
   {
-    const std::int64_t channels =
-      leading.Channel >= 0 ? data->Shape[static_cast<std::size_t>(leading.Channel)] : 1;
-    const std::int64_t times =
-      leading.Time >= 0 ? data->Shape[static_cast<std::size_t>(leading.Time)] : 1;
-    this->Steps = static_cast<int>(times);
-    this->Geometry.Points = GetSpace(data->Shape);
+    const auto getLength = [&](std::int64_t axis)
+    { return data->Shape[static_cast<std::size_t>(axis)]; };
+    std::int64_t channels = 1;
+    for (std::int64_t axis = 0; axis < leading.Count; ++axis)
+    {
+      channels *= axis == leading.Time ? 1 : getLength(axis);
+    }
+    if (channels > MostChannels)
+    {
+      throw dsm::Error("The Zarr array '" + folder + "' has " + std::to_string(channels) +
+        " channels, of which each would be an array; no more than " + std::to_string(MostChannels) +
+        " can be.");
+    }
+    const std::int64_t times = leading.Time >= 0 ? getLength(leading.Time) : 1;
+    this->Steps = std::max(this->Steps, static_cast<int>(times));
+    this->Geometry.Points = GetSpace(data->Shape, leading.FromX);
     for (std::int64_t channel = 0; channel < channels; ++channel)
     {
       FileArray array;
-      array.Name = getName(channel, channels);
+      array.Name = this->MakeUnique(getName(channel, channels), channel);
+      std::vector<std::int64_t> place(static_cast<std::size_t>(leading.Count), 0);
+      std::int64_t rest = channel;
+      for (std::int64_t axis = leading.Count; axis-- > 0;)
+      {
+        if (axis != leading.Time)
+        {
+          place[static_cast<std::size_t>(axis)] = rest % getLength(axis);
+          rest /= getLength(axis);
+        }
+      }
       array.Type = data->Type;
-      array.Grid = { GetSpace(data->Shape), GetSpace(data->ChunkShape) };
+      array.Grid = { this->Geometry.Points, GetSpace(data->ChunkShape, leading.FromX) };
       Storage storage;
       storage.Codec = data->Codec;
       storage.Fill = data->Fill;
@@ -269,10 +393,47 @@ private:
       {
         storage.Slices *= static_cast<std::size_t>(data->ChunkShape[axis]);
       }
+      CheckSizes(folder, array, storage.Slices);
+      storage.IsReversed = data->FortranOrder != leading.FromX;
+      if (data->FortranOrder && storage.Slices > 1)
+      {
+        throw dsm::Error("The Zarr array '" + folder +
+          "' has several times or channels in a chunk, in the order of Fortran, which is not "
+          "supported. Write it with order='C'.");
+      }
       this->Arrays.push_back(std::move(array));
       this->Storages.push_back(std::move(storage));
-      this->Sources.push_back({ folder, data, leading, channel });
+      this->Sources.push_back({ folder, data, leading, std::move(place) });
     }
+  }
+
+  /// Labels may be alike.
+  std::string MakeUnique(const std::string& name, std::int64_t channel) const
+  {
+    const auto isKnown = [&](const std::string& one)
+    {
+      return std::any_of(this->Arrays.begin(), this->Arrays.end(),
+        [&](const FileArray& array) { return array.Name == one; });
+    };
+    std::string unique = name;
+    for (std::int64_t number = channel; isKnown(unique); ++number)
+    {
+      unique = name + " " + std::to_string(number);
+    }
+    return unique;
+  }
+
+  /// Of a folder that has groups of arrays, or images.
+  std::string FindInnerGroup() const
+  {
+    for (const auto& entry : std::filesystem::directory_iterator(this->Path))
+    {
+      if (entry.is_directory() && MayBeZarr(entry.path().string()))
+      {
+        return entry.path().string();
+      }
+    }
+    return {};
   }
 
   static std::string GetKey(const ZarrMetadata& data, const std::vector<std::int64_t>& index)
@@ -285,15 +446,26 @@ private:
     return key;
   }
 
-  static std::optional<StoredFile::Place> FindFile(
-    const Source& source, const std::vector<std::int64_t>& index)
+  std::optional<StoredFile::Place> FindFile(
+    const Source& source, const std::vector<std::int64_t>& index) const
   {
     const std::string path = source.Folder + "/" + GetKey(*source.Data, index);
-    if (!std::filesystem::exists(path))
+    std::error_code failure;
+    if (!std::filesystem::exists(path, failure))
     {
+      if (failure)
+      {
+        throw dsm::Error("The file '" + path + "' cannot be read: " + failure.message() + ".");
+      }
+      this->Parts.CheckNeverThere(path);
+      if (!MayBeZarr(source.Folder))
+      {
+        throw dsm::Error("The Zarr array '" + source.Folder + "' is no longer there.");
+      }
       return std::nullopt;
     }
     const auto file = std::make_shared<const PositionedFile>(path);
+    this->Parts.CheckUnchanged(*file);
     return StoredFile::Place{ file, 0, static_cast<std::size_t>(file->GetBytes()) };
   }
 
@@ -311,12 +483,12 @@ private:
       number =
         number * static_cast<std::size_t>(across) + static_cast<std::size_t>(index[axis] % across);
     }
-    std::optional<StoredFile::Place> place = FindFile(source, shard);
+    std::optional<StoredFile::Place> place = this->FindFile(source, shard);
     if (!place)
     {
       return std::nullopt;
     }
-    const Index offsets = this->GetIndex(shards, *place->File);
+    const ZarrParts::Index offsets = this->Parts.GetIndex(shards, *place->File);
     const std::uint64_t offset = (*offsets)[2 * number];
     const std::uint64_t bytes = (*offsets)[2 * number + 1];
     if (offset == ~std::uint64_t{ 0 } && bytes == ~std::uint64_t{ 0 })
@@ -333,39 +505,8 @@ private:
     return place;
   }
 
-  Index GetIndex(const ZarrMetadata::Sharding& shards, const PositionedFile& file) const
-  {
-    const std::lock_guard<std::mutex> lock(this->IndexLock);
-    Index& known = this->Indices[file.GetPath()];
-    if (!known)
-    {
-      if (file.GetBytes() < shards.IndexBytes)
-      {
-        throw dsm::Error("The shard '" + file.GetPath() + "' is truncated.");
-      }
-      ByteBuffer stored(shards.IndexBytes);
-      file.Read(
-        shards.IndexIsFirst ? 0 : file.GetBytes() - stored.size(), stored.data(), stored.size());
-      const std::size_t count = shards.IndexBytes / sizeof(std::uint64_t); // a checksum is less
-      auto offsets = std::make_shared<std::vector<std::uint64_t>>(count / 2 * 2);
-      try
-      {
-        shards.IndexCodec.Decode(std::move(stored), 0,
-          reinterpret_cast<std::byte*>(offsets->data()), offsets->size() * sizeof(std::uint64_t));
-      }
-      catch (const dsm::Error& error)
-      {
-        throw dsm::Error(
-          "The index of the shard '" + file.GetPath() + "' cannot be used: " + error.what());
-      }
-      known = std::move(offsets);
-    }
-    return known;
-  }
-
   std::vector<Source> Sources; ///< of the arrays
-  mutable std::mutex IndexLock;
-  mutable std::map<std::string, Index> Indices; ///< of shards that were looked into
+  mutable ZarrParts Parts;
 };
 
 } // namespace
@@ -377,14 +518,13 @@ std::shared_ptr<const VolumeFile> OpenZarr(const std::string& path, int level)
 
 bool MayBeZarr(const std::string& path)
 {
-  for (const char* name : { "/.zarray", "/.zgroup", "/zarr.json" })
-  {
-    if (std::filesystem::exists(path + name))
+  const auto names = { "/.zarray", "/.zgroup", "/zarr.json" };
+  return std::any_of(names.begin(), names.end(),
+    [&](const char* name)
     {
-      return true;
-    }
-  }
-  return false;
+      std::error_code failure;
+      return std::filesystem::exists(path + name, failure);
+    });
 }
 
 } // namespace vol

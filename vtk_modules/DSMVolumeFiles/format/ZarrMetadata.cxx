@@ -3,12 +3,16 @@
 
 #include "DSMCore/base/Error.h"
 
+#include <algorithm>
 #include <cerrno>
+#include <charconv>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <limits>
 #include <map>
+#include <system_error>
 #include <utility>
 
 namespace vol
@@ -58,7 +62,35 @@ void ParseType3(const std::string& folder, const std::string& text, rt::ScalarTy
   type = known->second;
 }
 
-std::vector<std::byte> ParseFill(const Json& value, rt::ScalarType type)
+/// Version 3 may have it as bits: "0x7fc00000".
+template <class T>
+T ParseFillText(const std::string& folder, const std::string& text)
+{
+  using Limits = std::numeric_limits<T>;
+  T fill = Limits::quiet_NaN();
+  if (text.rfind("0x", 0) == 0)
+  {
+    std::uint64_t bits = 0;
+    const char* const last = text.data() + text.size();
+    const auto parsed = std::from_chars(text.data() + 2, last, bits, 16);
+    if (parsed.ec != std::errc() || parsed.ptr != last || text.size() > 2 + 2 * sizeof(T))
+    {
+      Refuse(folder, "its fill value '" + text + "' is none.");
+    }
+    std::memcpy(&fill, &bits, sizeof(T)); // lowest byte first, as is all that we run on
+  }
+  else if (text == "Infinity" || text == "-Infinity")
+  {
+    fill = text[0] == '-' ? -Limits::infinity() : Limits::infinity();
+  }
+  else if (text != "NaN")
+  {
+    Refuse(folder, "its fill value '" + text + "' is none.");
+  }
+  return fill;
+}
+
+std::vector<std::byte> ParseFill(const std::string& folder, const Json& value, rt::ScalarType type)
 {
   return rt::Dispatch(type,
     [&](auto zero)
@@ -75,11 +107,7 @@ std::vector<std::byte> ParseFill(const Json& value, rt::ScalarType type)
       }
       else if (value.is_string() && std::numeric_limits<T>::has_quiet_NaN)
       {
-        const std::string text = value.get<std::string>();
-        const T infinity = std::numeric_limits<T>::infinity();
-        fill = text == "Infinity" ? infinity
-          : text == "-Infinity"   ? -infinity
-                                  : std::numeric_limits<T>::quiet_NaN();
+        fill = ParseFillText<T>(folder, value.get<std::string>());
       }
       std::vector<std::byte> bytes(sizeof(T));
       std::memcpy(bytes.data(), &fill, sizeof(T));
@@ -89,6 +117,11 @@ std::vector<std::byte> ParseFill(const Json& value, rt::ScalarType type)
 
 CodecStep ParseCodec(const std::string& folder, const std::string& name)
 {
+  if (name == "sharding_indexed")
+  {
+    Refuse(folder,
+      "its shards have shards in them, or codecs before or behind them, which is not supported.");
+  }
   static const std::map<std::string, Kind> kinds = { { "zlib", Kind::Deflate },
     { "gzip", Kind::Deflate }, { "blosc", Kind::Blosc }, { "zstd", Kind::Zstd },
     { "crc32c", Kind::Crc32c }, { "fletcher32", Kind::Fletcher32 } };
@@ -107,23 +140,27 @@ ZarrMetadata ParseVersion2(const std::string& folder, const Json& json)
   ZarrMetadata data;
   data.Shape = json.at("shape").get<std::vector<std::int64_t>>();
   data.ChunkShape = json.at("chunks").get<std::vector<std::int64_t>>();
-  data.Separator = json.value("dimension_separator", ".");
-  if (json.value("order", "C") != "C")
-  {
-    Refuse(folder, "its values are in the order of Fortran. Write it with order='C'.");
-  }
+  // Old nested stores do not say so.
+  const bool looksNested = std::filesystem::is_directory(folder + "/0");
+  data.Separator = json.value("dimension_separator", looksNested ? "/" : ".");
+  data.FortranOrder = json.value("order", "C") == "F";
   std::vector<CodecStep> steps;
+  if (!json.at("dtype").is_string())
+  {
+    Refuse(folder, "its values are records of several fields, which is not supported.");
+  }
   if (ParseType2(folder, json.at("dtype").get<std::string>(), data.Type))
   {
     steps.push_back({ Kind::SwapBytes, rt::GetBytes(data.Type) });
   }
-  data.Fill = ParseFill(json.value("fill_value", Json()), data.Type);
+  data.Fill = ParseFill(folder, json.value("fill_value", Json()), data.Type);
   const Json filters = json.value("filters", Json());
   for (const Json& filter : filters.is_null() ? Json::array() : filters)
   {
     const std::string name = filter.at("id").get<std::string>();
     steps.push_back(name == "shuffle"
-        ? CodecStep{ Kind::Shuffle, filter.value("elementsize", std::size_t(4)) }
+        ? CodecStep{ Kind::Shuffle,
+            std::max<std::size_t>(1, filter.value("elementsize", std::size_t(4))) }
         : ParseCodec(folder, name));
   }
   const Json compressor = json.value("compressor", Json());
@@ -135,15 +172,26 @@ ZarrMetadata ParseVersion2(const std::string& folder, const Json& json)
   return data;
 }
 
-/// Of version 3, but for sharding.
+/// Version 3 has names, or objects with a name and what else there is to say.
+std::string GetName(const Json& named)
+{
+  return named.is_string() ? named.get<std::string>() : named.at("name").get<std::string>();
+}
+
+Json GetConfiguration(const Json& named)
+{
+  return named.is_object() ? named.value("configuration", Json::object()) : Json::object();
+}
+
+/// Of version 3, but for sharding. `fortranOrder` is set where all axes are transposed.
 std::vector<CodecStep> ParseCodecs3(
-  const std::string& folder, const Json& codecs, std::size_t width)
+  const std::string& folder, const Json& codecs, std::size_t width, bool& fortranOrder)
 {
   std::vector<CodecStep> steps;
   for (const Json& codec : codecs)
   {
-    const std::string name = codec.at("name").get<std::string>();
-    const Json configuration = codec.value("configuration", Json::object());
+    const std::string name = GetName(codec);
+    const Json configuration = GetConfiguration(codec);
     if (name == "bytes")
     {
       if (configuration.value("endian", "little") == "big" && width > 1)
@@ -154,13 +202,13 @@ std::vector<CodecStep> ParseCodecs3(
     else if (name == "transpose")
     {
       const auto order = configuration.at("order").get<std::vector<int>>();
-      for (std::size_t axis = 0; axis < order.size(); ++axis)
+      const bool isReversed = std::is_sorted(order.rbegin(), order.rend());
+      if (!isReversed && !std::is_sorted(order.begin(), order.end()))
       {
-        if (order[axis] != static_cast<int>(axis))
-        {
-          Refuse(folder, "its axes are transposed in the file, which is not supported.");
-        }
+        Refuse(folder,
+          "some of its axes are transposed in the file, which is not supported; only all can be.");
       }
+      fortranOrder = isReversed && order.size() > 1;
     }
     else
     {
@@ -170,36 +218,56 @@ std::vector<CodecStep> ParseCodecs3(
   return steps;
 }
 
+/// In a shard.
+std::size_t CountChunks(const std::string& folder, const std::vector<std::int64_t>& shard,
+  const std::vector<std::int64_t>& chunk)
+{
+  constexpr std::int64_t most = std::int64_t(1) << 40;
+  std::int64_t count = 1;
+  for (std::size_t axis = 0; axis < chunk.size(); ++axis)
+  {
+    if (chunk[axis] < 1 || shard.at(axis) < 1 || shard[axis] % chunk[axis] != 0 ||
+      shard[axis] / chunk[axis] > most / count)
+    {
+      Refuse(folder, "its shards are not made of chunks, or of far too many.");
+    }
+    count *= shard[axis] / chunk[axis];
+  }
+  return static_cast<std::size_t>(count);
+}
+
 ZarrMetadata ParseVersion3(const std::string& folder, const Json& json)
 {
   ZarrMetadata data;
   data.Shape = json.at("shape").get<std::vector<std::int64_t>>();
+  if (GetName(json.at("chunk_grid")) != "regular")
+  {
+    Refuse(folder,
+      "its chunks are not all alike (chunk grid '" + GetName(json.at("chunk_grid")) + "').");
+  }
   data.ChunkShape =
     json.at("chunk_grid").at("configuration").at("chunk_shape").get<std::vector<std::int64_t>>();
-  ParseType3(folder, json.at("data_type").get<std::string>(), data.Type);
-  data.Fill = ParseFill(json.value("fill_value", Json()), data.Type);
+  ParseType3(folder, GetName(json.at("data_type")), data.Type);
+  data.Fill = ParseFill(folder, json.value("fill_value", Json()), data.Type);
   const Json encoding = json.value("chunk_key_encoding", Json::object());
-  const bool isDefault = encoding.value("name", "default") == "default";
+  const bool isDefault = encoding.empty() || GetName(encoding) == "default";
   data.Prefix = isDefault ? "c" : "";
-  data.Separator =
-    encoding.value("configuration", Json::object()).value("separator", isDefault ? "/" : ".");
+  data.Separator = GetConfiguration(encoding).value("separator", isDefault ? "/" : ".");
+  data.Axes = json.value("dimension_names", Json());
   const std::size_t width = rt::GetBytes(data.Type);
   Json codecs = json.at("codecs");
-  if (codecs.size() == 1 && codecs[0].at("name") == "sharding_indexed")
+  if (codecs.size() == 1 && GetName(codecs[0]) == "sharding_indexed")
   {
-    const Json configuration = codecs[0].at("configuration");
+    const Json configuration = GetConfiguration(codecs[0]);
     ZarrMetadata::Sharding shards;
     shards.ShardShape = std::exchange(
       data.ChunkShape, configuration.at("chunk_shape").get<std::vector<std::int64_t>>());
     shards.IndexIsFirst = configuration.value("index_location", "end") == "start";
+    bool ofIndex = false;
     const std::vector<CodecStep> steps =
-      ParseCodecs3(folder, configuration.at("index_codecs"), sizeof(std::uint64_t));
-    shards.IndexBytes = 2 * sizeof(std::uint64_t);
-    for (std::size_t axis = 0; axis < data.ChunkShape.size(); ++axis)
-    {
-      shards.IndexBytes *=
-        static_cast<std::size_t>(shards.ShardShape.at(axis) / data.ChunkShape[axis]);
-    }
+      ParseCodecs3(folder, configuration.at("index_codecs"), sizeof(std::uint64_t), ofIndex);
+    shards.IndexBytes =
+      CountChunks(folder, shards.ShardShape, data.ChunkShape) * 2 * sizeof(std::uint64_t);
     for (const CodecStep& step : steps)
     {
       shards.IndexBytes += step.What == Kind::Crc32c ? sizeof(std::uint32_t) : 0;
@@ -208,7 +276,7 @@ ZarrMetadata ParseVersion3(const std::string& folder, const Json& json)
     data.Shards = std::move(shards);
     codecs = configuration.at("codecs");
   }
-  data.Codec = ChunkCodec(ParseCodecs3(folder, codecs, width));
+  data.Codec = ChunkCodec(ParseCodecs3(folder, codecs, width, data.FortranOrder));
   return data;
 }
 
@@ -216,21 +284,60 @@ ZarrMetadata ParseVersion3(const std::string& folder, const Json& json)
 
 bool ZarrMetadata::IsVolume() const
 {
+  constexpr std::int64_t most = std::numeric_limits<int>::max();
   const std::size_t axes = this->Shape.size();
   bool isRight = axes == this->ChunkShape.size() && axes >= 3 && axes <= 5;
   for (std::size_t axis = 0; isRight && axis < axes; ++axis)
   {
-    isRight = this->Shape[axis] > 0 && this->ChunkShape[axis] > 0 &&
-      (!this->Shards || this->Shards->ShardShape[axis] % this->ChunkShape[axis] == 0);
+    isRight = this->Shape[axis] > 0 && this->Shape[axis] <= most && this->ChunkShape[axis] > 0 &&
+      this->ChunkShape[axis] <= most;
   }
   return isRight;
 }
 
+namespace
+{
+
+/// Python writes NaN and infinite numbers, which JSON does not have: they are read as null.
+std::string WithoutBareWords(const std::string& text)
+{
+  std::string result;
+  bool inText = false;
+  for (std::size_t at = 0; at < text.size(); ++at)
+  {
+    const char letter = text[at];
+    inText = letter == '"' ? !inText : inText;
+    const auto begins = [&](const char* word)
+    { return text.compare(at, std::strlen(word), word) == 0; };
+    if (inText && letter == '\\' && at + 1 < text.size())
+    {
+      result += letter;
+      result += text[++at];
+      continue;
+    }
+    const char* found = nullptr;
+    for (const char* word : { "NaN", "Infinity", "-Infinity" })
+    {
+      found = !inText && begins(word) ? word : found;
+    }
+    result += found ? "null" : std::string(1, letter);
+    at += found ? std::strlen(found) - 1 : 0;
+  }
+  return result;
+}
+
+} // namespace
+
 nlohmann::json ReadZarrJson(const std::string& folder, const std::string& name)
 {
   const std::string path = folder + "/" + name;
-  if (!std::filesystem::exists(path))
+  std::error_code failure;
+  if (!std::filesystem::exists(path, failure))
   {
+    if (failure)
+    {
+      Refuse(folder, "its file " + name + " cannot be read: " + failure.message() + ".");
+    }
     return {};
   }
   std::ifstream file(path);
@@ -240,7 +347,8 @@ nlohmann::json ReadZarrJson(const std::string& folder, const std::string& name)
   }
   try
   {
-    return Json::parse(file);
+    const std::string text{ std::istreambuf_iterator<char>(file), {} };
+    return Json::parse(WithoutBareWords(text));
   }
   catch (const Json::exception& error)
   {
@@ -258,7 +366,13 @@ std::optional<ZarrMetadata> ReadZarrMetadata(const std::string& folder)
     {
       return std::nullopt;
     }
-    return version2.is_null() ? ParseVersion3(folder, version3) : ParseVersion2(folder, version2);
+    ZarrMetadata data =
+      version2.is_null() ? ParseVersion3(folder, version3) : ParseVersion2(folder, version2);
+    if (!version2.is_null()) // as xarray writes them
+    {
+      data.Axes = ReadZarrAttributes(folder).value("_ARRAY_DIMENSIONS", Json());
+    }
+    return data;
   }
   catch (const std::exception& error)
   {

@@ -29,15 +29,17 @@ struct ZarrMetadata
 
   std::vector<std::int64_t> Shape; ///< the slowest axis first
   std::vector<std::int64_t> ChunkShape;
+  nlohmann::json Axes; ///< their names, where these are told
   rt::ScalarType Type = rt::ScalarType::UInt8;
   std::vector<std::byte> Fill; ///< one value
   ChunkCodec Codec;
+  bool FortranOrder = false; ///< within a chunk the first axis is the fastest
   std::optional<Sharding> Shards;
   /// Between the indices of a chunk, and before them.
   std::string Separator = ".";
   std::string Prefix;
 
-  /// Whether it has samples, and three to five axes.
+  /// Whether it has samples, in chunks, no more along an axis than an int counts, and three to five axes.
   bool IsVolume() const;
 };
 

@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "DSMVolumeFiles/format/ZarrParts.h"
+
+#include "DSMCore/base/Error.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace vol
+{
+
+namespace
+{
+
+constexpr std::uint64_t MostIndexBytes = std::uint64_t(16) << 20;
+
+/// Files whose stamps are kept, and about what one takes with its path.
+constexpr std::uint64_t MostStamps = std::uint64_t(1) << 16;
+constexpr std::uint64_t StampBytes = 200;
+
+} // namespace
+
+void ZarrParts::CheckUnchanged(const PositionedFile& file)
+{
+  const std::lock_guard<std::mutex> lock(this->Guard);
+  if (this->Stamps.size() >= MostStamps)
+  {
+    this->Stamps.clear();
+  }
+  const auto known = this->Stamps.emplace(file.GetPath(), file.GetStamp()).first;
+  if (known->second != file.GetStamp())
+  {
+    throw dsm::Error("The file '" + file.GetPath() +
+      "' was written to, or another took its place, since it was opened first. Reload it.");
+  }
+}
+
+void ZarrParts::CheckNeverThere(const std::string& path)
+{
+  const std::lock_guard<std::mutex> lock(this->Guard);
+  if (this->Stamps.count(path) != 0)
+  {
+    throw dsm::Error("The file '" + path + "' is no longer there.");
+  }
+}
+
+ZarrParts::Index ZarrParts::GetIndex(
+  const ZarrMetadata::Sharding& shards, const PositionedFile& file)
+{
+  const std::lock_guard<std::mutex> lock(this->Guard);
+  const auto known = this->Indices.find(file.GetPath());
+  if (known != this->Indices.end())
+  {
+    this->Order.splice(this->Order.begin(), this->Order, known->second);
+    return known->second->Offsets;
+  }
+  const Index offsets = ReadIndex(shards, file);
+  this->Order.push_front({ file.GetPath(), offsets });
+  this->Indices[file.GetPath()] = this->Order.begin();
+  this->IndexBytes += shards.IndexBytes + StampBytes;
+  while (this->IndexBytes > MostIndexBytes && this->Order.size() > 1)
+  {
+    this->IndexBytes -= this->Order.back().Offsets->size() * sizeof(std::uint64_t) + StampBytes;
+    this->Indices.erase(this->Order.back().Path);
+    this->Order.pop_back();
+  }
+  return offsets;
+}
+
+std::uint64_t ZarrParts::CountBytes(std::uint64_t files, std::uint64_t indexBytes)
+{
+  const std::uint64_t indices = indexBytes == 0
+    ? 0
+    : std::max(indexBytes, std::min(MostIndexBytes, files * (indexBytes + StampBytes)));
+  return std::min(MostStamps, files) * StampBytes + indices;
+}
+
+ZarrParts::Index ZarrParts::ReadIndex(
+  const ZarrMetadata::Sharding& shards, const PositionedFile& file)
+{
+  if (file.GetBytes() < shards.IndexBytes)
+  {
+    throw dsm::Error("The shard '" + file.GetPath() + "' is truncated.");
+  }
+  ByteBuffer stored(shards.IndexBytes);
+  file.Read(
+    shards.IndexIsFirst ? 0 : file.GetBytes() - stored.size(), stored.data(), stored.size());
+  const std::size_t count = shards.IndexBytes / sizeof(std::uint64_t); // a checksum is less
+  auto offsets = std::make_shared<std::vector<std::uint64_t>>(count / 2 * 2);
+  try
+  {
+    shards.IndexCodec.Decode(std::move(stored), 0, reinterpret_cast<std::byte*>(offsets->data()),
+      offsets->size() * sizeof(std::uint64_t));
+  }
+  catch (const dsm::Error& error)
+  {
+    throw dsm::Error(
+      "The index of the shard '" + file.GetPath() + "' cannot be used: " + error.what());
+  }
+  return offsets;
+}
+
+} // namespace vol
