@@ -2,6 +2,7 @@
 """DSM Volume Reader in ParaView: its arrays look and filter like ordinary ones, and are read in parts. Called as
 run.py does, with the folder of make_files.py behind the other arguments."""
 
+import gc
 import os
 import sys
 
@@ -227,3 +228,22 @@ for name in ("ome.zarr", "ome.zarr/.zattrs"):
 for name in ("three_raw.zarr", "three_raw.zarr/zarr.json"):
     opened = simple.OpenDataFile(os.path.join(FILES, name))
     check(type(opened).__name__ == "DSMVolumeReader", f"version 3, by {name}")
+
+# A file that nobody shows any more is closed, and other programs may write to it.
+def count_open(name):
+    links = [os.path.join("/proc/self/fd", number) for number in os.listdir("/proc/self/fd")]
+    return sum(os.path.basename(os.readlink(link)) == name for link in links if os.path.islink(link))
+
+
+view = create_view()
+closing = simple.DSMVolumeReader(FileName=os.path.join(FILES, "deflate.h5"))
+display = show(closing, view, [50.0])
+place_camera(view)
+render(view)
+check(count_open("deflate.h5") > 0, "a file that is shown is open")
+for proxy in (display, closing, view):
+    simple.Delete(proxy)
+del display, closing, view, proxy
+gc.collect()
+simple.Render(create_view())
+check(count_open("deflate.h5") == 0, "and closed when it is deleted")

@@ -15,6 +15,7 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <string>
 #include <thread>
 #include <vector>
@@ -99,6 +100,7 @@ double GetExpected(
   }
   const rt::Index3 at = sample * entry.value("stride", std::int64_t(1));
   const std::int64_t channel = array["channel"];
+  step = array["still"] ? 0 : step;
   return static_cast<double>(
     (3 * at.x + 5 * at.y + 7 * at.z + component + 11 * channel + 13 * step) % 101);
 }
@@ -430,6 +432,130 @@ TEST_F(DamagedFile, WithAWrongHeaderSaysWhatIsWrong)
   ExpectWords(Read(write("e.txt", "no volume")), { "e.txt", "not known", "Zarr" });
   ExpectWords(Read(write("f.raw", "12345678")), { "f.raw", "bare values" });
   ExpectWords(Read(write("g.h5", "\x89HDF\r\n\x1a\n and then nothing")), { "g.h5", "no HDF5" });
+}
+
+/// Nothing of it may be reckoned with before it is checked.
+TEST_F(DamagedFile, WithSizesThatCannotBeIsRefused)
+{
+  const auto write = [&](const std::string& name, const std::string& text)
+  {
+    std::ofstream(GetFolder() / name) << text;
+    return Json{ { "file", name }, { "level", 0 }, { "dataset", "" } };
+  };
+  const auto nrrd = [&](const std::string& axes)
+  {
+    return write("sizes.nrrd",
+      "NRRD0004\ntype: float\nencoding: raw\nendian: little\n" + axes + "\n\n" +
+        std::string(64, 'v'));
+  };
+  ExpectWords(Read(nrrd("sizes: 0 4 4 4")), { "sizes.nrrd", "0 components" });
+  ExpectWords(Read(nrrd("sizes: 4 -4 4")), { "4 x -4 x 4 samples" });
+  ExpectWords(Read(nrrd("sizes: 2097152 2097152 1048576")), { "2097152 x 2097152 x 1048576" });
+  ExpectWords(Read(nrrd("sizes: 2 2 2 2\nkinds: domain domain domain vector")), { "permute" });
+  ExpectWords(Read(nrrd("sizes: 2 2 2 2\nkinds: domain domain domain time")), { "time" });
+  ExpectWords(Read(nrrd("sizes: 2 2 2\nspace origin: (1,x,2)")), { "'x'", "space origin" });
+  ExpectWords(Read(nrrd("sizes: 2 2 2\nspace directions: (1,0,0) (0,1")), { "without an end" });
+  ExpectWords(Read(nrrd("sizes: 2 2 2\ndata file: LIST 2")), { "several files" });
+  ExpectWords(Read(nrrd("sizes: 2 2 2\ndata file: a%03d.raw 1 2 1")), { "several files" });
+  ExpectWords(Read(nrrd("sizes: 2 2 2\nlineskip: 2")), { "skips lines" });
+  const auto meta = [&](const std::string& text)
+  {
+    return write("sizes.mha",
+      "NDims = 3\nDimSize = 2 2 2\nElementType = MET_UCHAR\n" + text +
+        "\nElementDataFile = LOCAL\n1 2 3 4 5 6 7 8");
+  };
+  ExpectWords(Read(meta("ElementNumberOfChannels = 0")), { "sizes.mha", "0 components" });
+  ExpectWords(Read(meta("BinaryData = False")), { "text" });
+  ExpectWords(Read(meta("CompressedData = T")), { "compressed" });
+
+  const auto zarr3 = [&](const Json& changes)
+  {
+    const Json entry = this->Copy("three_sharded.zarr");
+    std::ifstream old(this->Path / "zarr.json");
+    Json metadata = Json::parse(old);
+    metadata.merge_patch(changes);
+    std::ofstream(this->Path / "zarr.json") << metadata;
+    return entry;
+  };
+  const auto shards = [&](const Json& shard, const Json& chunk)
+  {
+    Json codecs = Json::parse(R"([{"name": "sharding_indexed", "configuration": {
+      "codecs": ["bytes"], "index_codecs": ["bytes"]}}])");
+    codecs[0]["configuration"]["chunk_shape"] = chunk;
+    return zarr3({ { "codecs", codecs },
+      { "chunk_grid",
+        { { "name", "regular" }, { "configuration", { { "chunk_shape", shard } } } } } });
+  };
+  ExpectWords(Read(shards({ 4, 10, 8 }, { 0, 5, 4 })), { "three_sharded", "shards" });
+  ExpectWords(Read(shards({ 4, 10, 8 }, { 3, 5, 4 })), { "shards" });
+  const std::int64_t many = std::int64_t(1) << 32;
+  ExpectWords(Read(shards({ many, many, many }, { 1, 1, 1 })), { "shards", "far too many" });
+  ExpectWords(Read(zarr3({ { "shape", { many, 4, 4 } } })), { "far too many" });
+  ExpectWords(Read(zarr3({ { "fill_value", "0x12345678f" } })), { "fill value" });
+  ExpectWords(Read(zarr3({ { "data_type", { { "name", "string" } } } })), { "'string'" });
+  ExpectWords(Read(zarr3({ { "codecs", { "sharding_indexed", "crc32c" } } })), { "shards" });
+
+  const auto ome = [&](const Json& axes)
+  {
+    const Json entry = this->Copy("ome.zarr");
+    std::ifstream old(this->Path / ".zattrs");
+    Json attributes = Json::parse(old);
+    attributes["multiscales"][0]["axes"] = axes;
+    std::ofstream(this->Path / ".zattrs") << attributes;
+    return entry;
+  };
+  ExpectWords(Read(ome({ "t", "z", "c", "y", "x" })), { "last three axes", "space" });
+  EXPECT_EQ(Open(ome({ "c", "t", "z", "y", "x" }))->GetSteps(), 2);
+}
+
+/// What was read before must not meet other values: chunks are files that are opened anew.
+TEST_F(DamagedFile, WhoseChunksChangeOrGoAwaySaysSo)
+{
+  const Json plain = this->Copy("raw_float32.zarr");
+  const auto file = Open(plain);
+  EXPECT_EQ(Read(file), "");
+  std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  FlipByte(this->Path / "1.1.1", 5);
+  ExpectWords(Read(file), { "1.1.1", "was written to", "Reload" });
+  EXPECT_EQ(Read(plain), "");
+  fs::remove(this->Path / "1.1.1");
+  ExpectWords(Read(file), { "1.1.1", "no longer there" });
+  const auto rest = Open(plain);
+  fs::remove_all(this->Path);
+  ExpectWords(Read(rest), { "raw_float32", "no longer there" });
+
+  const Json shards = this->Copy("three_sharded.zarr");
+  const auto sharded = Open(shards);
+  EXPECT_EQ(Read(sharded), "");
+  const fs::path shard = this->Path / "c/0/0/0";
+  fs::copy_file(shard, shard.string() + ".new");
+  fs::rename(shard.string() + ".new", shard);
+  ExpectWords(Read(sharded), { "c/0/0/0", "another took its place" });
+}
+
+/// A file that nobody has any more is not held open by its chunks.
+TEST(VolumeFiles, ThatNobodyHasAreClosed)
+{
+  const auto countOpen = []
+  {
+    const fs::directory_iterator all("/proc/self/fd");
+    return std::distance(fs::begin(all), fs::end(all));
+  };
+  vol::ChunkCache& cache = vol::ChunkCache::GetShared();
+  const auto before = countOpen();
+  const std::size_t held = cache.GetBytes();
+  auto file = vol::OpenCachedVolume({ (GetFolder() / "chunked.h5").string() }, {});
+  const auto other = vol::OpenCachedVolume({ (GetFolder() / "deflate.h5").string() }, {});
+  const rt::Box corner{ rt::Index3(0), rt::Index3(2) };
+  std::vector<std::byte> bytes(64);
+  cache.ReadBox(file, 0, 0, corner, bytes.data());
+  const std::size_t one = cache.GetBytes() - held;
+  EXPECT_GT(one, 0u);
+  cache.ReadBox(other, 0, 0, corner, bytes.data());
+  const std::size_t both = cache.GetBytes() - held;
+  EXPECT_GT(countOpen(), before);
+  file.reset();
+  EXPECT_EQ(cache.GetBytes() - held, both - one);
 }
 
 } // namespace

@@ -4,6 +4,7 @@
 #include "DSMRayTracing/base/ByteHash.h"
 #include "DSMVolumeFiles/base/CopyBox.h"
 #include "DSMVolumeFiles/base/ReadingManner.h"
+#include "DSMVolumeFiles/format/SeriesFile.h"
 
 #include <atomic>
 #include <exception>
@@ -52,8 +53,7 @@ ChunkCache& ChunkCache::GetShared()
 
 std::size_t ChunkCache::KeyHash::operator()(const Key& key) const
 {
-  std::uint64_t hash = reinterpret_cast<std::uintptr_t>(key.File.get());
-  hash = rt::ByteHash::AddWord(hash, key.Array);
+  std::uint64_t hash = rt::ByteHash::AddWord(key.File, key.Array);
   hash = rt::ByteHash::AddWord(hash, static_cast<std::uint64_t>(key.Step));
   return rt::ByteHash::AddWord(hash, static_cast<std::uint64_t>(key.Number));
 }
@@ -105,6 +105,25 @@ void ChunkCache::Return(std::size_t bytes)
   this->Bytes -= bytes;
 }
 
+void ChunkCache::Forget(const VolumeFile& file)
+{
+  const std::lock_guard<std::mutex> lock(this->Guard);
+  for (auto place = this->Order.begin(); place != this->Order.end();)
+  {
+    if (place->File == file.GetNumber())
+    {
+      const auto entry = this->Entries.find(*place);
+      this->Bytes -= entry->second.Bytes;
+      this->Entries.erase(entry);
+      place = this->Order.erase(place);
+    }
+    else
+    {
+      ++place;
+    }
+  }
+}
+
 std::size_t ChunkCache::GetBytes() const
 {
   const std::lock_guard<std::mutex> lock(this->Guard);
@@ -121,7 +140,7 @@ ChunkCache::Chunk ChunkCache::Get(const std::shared_ptr<const VolumeFile>& file,
   int step, const rt::Index3& chunk)
 {
   const FileArray& what = file->GetArrays()[array];
-  const Key key{ file, array, step, what.Grid.GetNumber(chunk) };
+  const Key key{ file->GetNumber(), array, step, what.Grid.GetNumber(chunk) };
   const std::size_t chunkBytes =
     static_cast<std::size_t>(what.Grid.GetBox(chunk).GetCount()) * what.GetSampleBytes();
   const std::size_t inHand = chunkBytes * InHandOfEach;
@@ -222,7 +241,7 @@ bool ChunkCache::HasChunk(const std::shared_ptr<const VolumeFile>& file, std::si
 {
   const std::lock_guard<std::mutex> lock(this->Guard);
   return this->Entries.count(
-           { file, array, step, file->GetArrays()[array].Grid.GetNumber(chunk) }) != 0;
+           { file->GetNumber(), array, step, file->GetArrays()[array].Grid.GetNumber(chunk) }) != 0;
 }
 
 void ChunkCache::Read(const std::shared_ptr<const VolumeFile>& file, std::size_t array, int step,
@@ -318,6 +337,20 @@ std::shared_ptr<ByteBuffer> ChunkCache::Evict(std::size_t bytes)
     }
   }
   return left;
+}
+
+std::shared_ptr<const VolumeFile> OpenCachedVolume(
+  const std::vector<std::string>& paths, const OpenOptions& options)
+{
+  ChunkCache::GetShared(); // so that it is there until the file is not
+  std::shared_ptr<const VolumeFile> file = OpenVolumeSeries(paths, options);
+  const VolumeFile* const bare = file.get();
+  const auto forget = [file = std::move(file)](const VolumeFile* old) mutable
+  {
+    ChunkCache::GetShared().Forget(*old);
+    file.reset();
+  };
+  return { bare, forget };
 }
 
 } // namespace vol

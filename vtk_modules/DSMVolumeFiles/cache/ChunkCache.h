@@ -48,6 +48,8 @@ public:
   bool Lend(std::size_t bytes, std::size_t divisor);
   /// So much of it is free again.
   void Return(std::size_t bytes);
+  /// The file's chunks leave.
+  void Forget(const VolumeFile& file);
   /// In memory now, with what is lent, and what is being read.
   std::size_t GetBytes() const;
   /// Read so far, of chunks as they are in memory.
@@ -71,10 +73,10 @@ public:
     const std::vector<rt::Box>& boxes) const;
 
 private:
+  /// The cache does not keep a file open.
   struct Key
   {
-    /// Kept, so that another file does not get the same address.
-    std::shared_ptr<const VolumeFile> File;
+    std::uint64_t File; ///< VolumeFile::GetNumber
     std::size_t Array;
     int Step;
     std::int64_t Number;
@@ -120,6 +122,10 @@ private:
   std::list<Key> Order; ///< of those that are here, the last used first
   std::unordered_map<Key, Entry, KeyHash> Entries;
 };
+
+/// As OpenVolumeSeries; when the last who has it lets go, its chunks leave the shared cache with it.
+std::shared_ptr<const VolumeFile> OpenCachedVolume(
+  const std::vector<std::string>& paths, const OpenOptions& options);
 
 } // namespace vol
 

@@ -3,6 +3,7 @@
 
 #include "DSMRayTracing/base/ByteHash.h"
 
+#include <chrono>
 #include <cstdint>
 #include <cstdlib>
 #include <filesystem>
@@ -13,6 +14,30 @@
 
 namespace vol
 {
+
+namespace
+{
+
+/// What nobody has used for so long is of a file that has changed, or is gone.
+constexpr auto LongestUnused = std::chrono::hours(24) * 180;
+
+void RemoveUnused(const std::filesystem::path& folder)
+{
+  std::error_code failure;
+  const auto now = std::filesystem::file_time_type::clock::now();
+  for (auto entry = std::filesystem::directory_iterator(folder, failure);
+       !failure && entry != std::filesystem::directory_iterator(); entry.increment(failure))
+  {
+    std::error_code unknown;
+    const auto used = entry->last_write_time(unknown);
+    if (!unknown && now - used > LongestUnused)
+    {
+      std::filesystem::remove(entry->path(), unknown);
+    }
+  }
+}
+
+} // namespace
 
 KeptFile::KeptFile(
   const VolumeFile& file, std::size_t array, int step, const rt::Box& box, const std::string& kind)
@@ -47,7 +72,14 @@ std::vector<std::byte> KeptFile::Load() const
   std::vector<std::byte> content(static_cast<std::size_t>(bytes > 0 ? bytes : 0));
   kept.seekg(0);
   kept.read(reinterpret_cast<char*>(content.data()), static_cast<std::streamsize>(content.size()));
-  return kept ? content : std::vector<std::byte>();
+  if (!kept)
+  {
+    return {};
+  }
+  std::error_code failure; // it is used
+  std::filesystem::last_write_time(
+    this->Path, std::filesystem::file_time_type::clock::now(), failure);
+  return content;
 }
 
 void KeptFile::Keep(const std::byte* bytes, std::size_t count) const
@@ -73,6 +105,7 @@ void KeptFile::Keep(const std::byte* bytes, std::size_t count) const
     }
   }
   std::filesystem::rename(written, path, failure);
+  RemoveUnused(path.parent_path());
 }
 
 } // namespace vol

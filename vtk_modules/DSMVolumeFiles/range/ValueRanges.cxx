@@ -4,6 +4,7 @@
 #include "DSMRayTracing/base/ParallelFor.h"
 #include "DSMRayTracing/layout/LaneRanges.h"
 #include "DSMVolumeFiles/base/ByteBuffer.h"
+#include "DSMVolumeFiles/cache/ChunkCache.h"
 #include "DSMVolumeFiles/range/KeptFile.h"
 
 #include <algorithm>
@@ -84,6 +85,36 @@ void AddRow(ValueRanges& ranges, const T* row, std::int64_t samples, int compone
   }
 }
 
+/// Of the shared cache's room, for as many threads as it is enough for: a chunk of each, and its bytes as the file has
+/// them.
+class Room
+{
+public:
+  Room(const FileArray& array, int threads)
+    : Threads(std::max(1, threads))
+  {
+    const rt::Index3 samples = glm::min(array.Grid.ChunkSamples, array.Grid.Samples);
+    const std::size_t each = 2 * array.GetSampleBytes() *
+      static_cast<std::size_t>(rt::Box{ rt::Index3(0), samples }.GetCount());
+    bool isLent = false;
+    while (
+      !(isLent = ChunkCache::GetShared().Lend(each * this->GetThreads(), 1)) && this->Threads > 1)
+    {
+      this->Threads /= 2;
+    }
+    this->Bytes = isLent ? each * this->GetThreads() : 0;
+  }
+  ~Room() { ChunkCache::GetShared().Return(this->Bytes); }
+  Room(const Room&) = delete;
+  Room& operator=(const Room&) = delete;
+
+  std::size_t GetThreads() const { return static_cast<std::size_t>(this->Threads); }
+
+private:
+  int Threads;
+  std::size_t Bytes = 0;
+};
+
 } // namespace
 
 ValueRanges::ValueRanges(int components)
@@ -131,12 +162,12 @@ std::optional<ValueRanges> FindRanges(const std::shared_ptr<const VolumeFile>& f
     (box.Max + array.Grid.ChunkSamples - rt::Index3(1)) / array.Grid.ChunkSamples;
   const rt::Box chunks{ firstChunk, lastChunk };
   const rt::Index3 counts = chunks.GetSize();
-  std::vector<ValueRanges> parts(
-    static_cast<std::size_t>(std::max(1, threads)), ValueRanges(array.Components));
+  const Room room(array, threads);
+  std::vector<ValueRanges> parts(room.GetThreads(), ValueRanges(array.Components));
   std::vector<ByteBuffer> buffers(parts.size());
   std::atomic<std::int64_t> done{ 0 };
   std::atomic<bool> stopped{ false };
-  rt::ParallelFor(threads, static_cast<std::size_t>(chunks.GetCount()),
+  rt::ParallelFor(static_cast<int>(parts.size()), static_cast<std::size_t>(chunks.GetCount()),
     [&](std::size_t index, int thread)
     {
       if (stopped)

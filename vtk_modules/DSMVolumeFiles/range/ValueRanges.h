@@ -47,7 +47,7 @@ struct ValueRanges
     const FileArray& array, const std::byte* samples, const rt::Box& have, const rt::Box& want);
 };
 
-/// Reads all of a box of an array, with so many threads. `goesOn(part)`, on the calling thread, is told how much is
+/// Reads all of a box of an array, with so many threads, or fewer where their chunks would not fit the shared cache. `goesOn(part)`, on the calling thread, is told how much is
 /// done; when it says no, nothing is returned. Throws dsm::Error when the file cannot be read.
 std::optional<ValueRanges> FindRanges(const std::shared_ptr<const VolumeFile>& file,
   std::size_t array, int step, const rt::Box& box, int threads,

@@ -4,8 +4,8 @@
 #include "DSMCore/base/Error.h"
 #include "DSMRayTracing/base/ByteHash.h"
 #include "DSMRayTracing/layout/DealBricks.h"
+#include "DSMVolumeFiles/cache/ChunkCache.h"
 #include "DSMVolumeFiles/cache/FileBrickReader.h"
-#include "DSMVolumeFiles/format/SeriesFile.h"
 #include "vtkDSMFileArray.h"
 #include "vtkDSMFileVoxels.h"
 #include "vtkDSMGather.h"
@@ -165,7 +165,7 @@ std::shared_ptr<const vol::VolumeFile> OpenAs(
     word = end + 1;
   }
   options.Dataset = words.front();
-  return vol::OpenVolumeSeries({ words.begin() + 1, words.end() }, options);
+  return vol::OpenCachedVolume({ words.begin() + 1, words.end() }, options);
 }
 
 /// Of one component of a file's values, or of the magnitude.
@@ -324,7 +324,7 @@ std::unique_ptr<vtkDSMFileVolume> vtkDSMFileVolume::OpenCoarser(int level) const
   const vol::FileArray& array = this->Values->GetArray();
   vol::OpenOptions options = this->Values->GetOptions();
   options.Level += level;
-  const auto file = vol::OpenVolumeSeries(this->Values->GetFile()->GetPaths(), options);
+  const auto file = vol::OpenCachedVolume(this->Values->GetFile()->GetPaths(), options);
   const auto& arrays = file->GetArrays();
   const auto found = std::find_if(arrays.begin(), arrays.end(),
     [&](const vol::FileArray& one)

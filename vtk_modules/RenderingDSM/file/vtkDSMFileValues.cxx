@@ -4,10 +4,34 @@
 #include "DSMCore/base/Error.h"
 #include "DSMRayTracing/base/ByteHash.h"
 
+#include "vtkMultiProcessController.h"
+
 #include <algorithm>
+#include <cstdlib>
 #include <exception>
 #include <thread>
 #include <utility>
+
+namespace
+{
+
+/// This rank's share of the host's cores. Not collective, so how many ranks the host has is what their launcher says;
+/// else all of them may be here.
+int GetThreads()
+{
+  vtkMultiProcessController* const controller = vtkMultiProcessController::GetGlobalController();
+  int ranks = controller ? controller->GetNumberOfProcesses() : 1;
+  for (const char* name : { "OMPI_COMM_WORLD_LOCAL_SIZE", "MPI_LOCALNRANKS" })
+  {
+    const char* const text = std::getenv(name);
+    const int here = text ? std::atoi(text) : 0;
+    ranks = here > 0 ? std::min(ranks, here) : ranks;
+  }
+  const int cores = static_cast<int>(std::thread::hardware_concurrency());
+  return std::max(1, cores / std::max(1, ranks));
+}
+
+} // namespace
 
 vtkDSMFileValues::vtkDSMFileValues(std::shared_ptr<const vol::VolumeFile> file, std::size_t array,
   int step, const rt::Box& box, int nextStep, vol::OpenOptions options)
@@ -72,8 +96,8 @@ const vol::ValueRanges* vtkDSMFileValues::FindRanges(
   }
   if (!this->Ranges)
   {
-    const int threads = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
-    this->Ranges = vol::FindRanges(this->File, this->Array, this->Step, this->Box, threads, goesOn);
+    this->Ranges =
+      vol::FindRanges(this->File, this->Array, this->Step, this->Box, GetThreads(), goesOn);
     if (this->Ranges)
     {
       vol::KeepRanges(*this->File, this->Array, this->Step, this->Box, *this->Ranges);

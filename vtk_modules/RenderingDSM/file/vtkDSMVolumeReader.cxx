@@ -2,7 +2,7 @@
 #include "vtkDSMVolumeReader.h"
 
 #include "DSMCore/base/Error.h"
-#include "DSMVolumeFiles/format/SeriesFile.h"
+#include "DSMVolumeFiles/cache/ChunkCache.h"
 #include "vtkDSMFileArray.h"
 #include "vtkDSMScalarType.h"
 
@@ -186,7 +186,7 @@ void vtkDSMVolumeReader::Open()
   options.Bare.HeaderBytes =
     static_cast<std::uint64_t>(std::max<vtkIdType>(0, this->RawHeaderBytes));
   std::copy_n(this->RawSpacing, 3, options.Bare.Spacing);
-  const auto file = vol::OpenVolumeSeries(this->FileNames, options);
+  const auto file = vol::OpenCachedVolume(this->FileNames, options);
   const rt::Index3 last = file->GetGeometry().First + file->GetGeometry().Points;
   if (std::max({ last.x, last.y, last.z }) > INT_MAX)
   {
