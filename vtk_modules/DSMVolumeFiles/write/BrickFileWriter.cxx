@@ -117,9 +117,18 @@ public:
     , Description({ { "source", source }, { "layout", Describe(layout) } })
   {
     const HdfSilence silence;
-    if (!this->GoOn())
+    try
     {
-      this->Begin();
+      if (!this->GoOn())
+      {
+        this->Begin();
+      }
+    }
+    catch (...)
+    {
+      this->Divert();
+      this->Close();
+      throw;
     }
   }
 
@@ -132,8 +141,57 @@ public:
 
   void Add(std::size_t number, const std::vector<EncodedChunk>& chunks, const ValueRanges& ranges)
   {
+    this->Write([&] { this->AddChunks(number, chunks, ranges); });
+  }
+
+  void CloseFile()
+  {
+    this->Write(
+      [this]
+      {
+        this->Targets.clear();
+        this->CloseWritten();
+      });
+  }
+
+  void Finish(const std::vector<std::vector<std::byte>>& indices, int levels)
+  {
+    this->Write([&] { this->WriteRest(indices, levels); });
+  }
+
+  struct Target
+  {
+    HdfHandle Values;
+    HdfHandle Table;  ///< First and Last of the chunks
+    HdfHandle Limits; ///< ValueRanges
+    HdfHandle Halos;  ///< HaloRecord of the chunks; not open: none
+    std::int64_t Chunks;
+    ValueRanges Ranges;
+  };
+  std::vector<Target> Targets;
+  std::string Path;
+
+private:
+  /// Whatever goes wrong, the library can close the file.
+  template <class Work>
+  void Write(const Work& work)
+  {
     const std::lock_guard<std::mutex> lock(GetHdfLock());
     const HdfSilence silence;
+    try
+    {
+      work();
+    }
+    catch (...)
+    {
+      this->Divert();
+      throw;
+    }
+  }
+
+  void AddChunks(
+    std::size_t number, const std::vector<EncodedChunk>& chunks, const ValueRanges& ranges)
+  {
     Target& target = this->Targets[number];
     const ChunkGrid& grid = this->Layout.Arrays[number].Grid;
     std::vector<float> table;
@@ -164,19 +222,8 @@ public:
     this->Settle();
   }
 
-  void CloseFile()
+  void WriteRest(const std::vector<std::vector<std::byte>>& indices, int levels)
   {
-    const std::lock_guard<std::mutex> lock(GetHdfLock());
-    const HdfSilence silence;
-    this->Targets.clear();
-    errno = 0;
-    this->Check(H5Fclose(std::exchange(this->File, H5I_INVALID_HID)));
-  }
-
-  void Finish(const std::vector<std::vector<std::byte>>& indices, int levels)
-  {
-    const std::lock_guard<std::mutex> lock(GetHdfLock());
-    const HdfSilence silence;
     errno = 0;
     this->File = H5Fopen(this->PartPath.c_str(), H5F_ACC_RDWR, H5P_DEFAULT);
     this->Check(this->File < 0 ? -1 : 0);
@@ -198,7 +245,7 @@ public:
           dataset.Get(), H5T_NATIVE_UCHAR, H5S_ALL, H5S_ALL, H5P_DEFAULT, indices[number].data()));
       }
     }
-    this->Check(H5Fclose(std::exchange(this->File, H5I_INVALID_HID)));
+    this->CloseWritten();
     Synchronize(this->PartPath);
     std::error_code failure;
     std::filesystem::rename(this->PartPath, this->Path, failure);
@@ -209,19 +256,6 @@ public:
     }
   }
 
-  struct Target
-  {
-    HdfHandle Values;
-    HdfHandle Table;  ///< First and Last of the chunks
-    HdfHandle Limits; ///< ValueRanges
-    HdfHandle Halos;  ///< HaloRecord of the chunks; not open: none
-    std::int64_t Chunks;
-    ValueRanges Ranges;
-  };
-  std::vector<Target> Targets;
-  std::string Path;
-
-private:
   /// As it is: the library copies chunks without looking into them.
   void AddLevel(int level)
   {
@@ -254,18 +288,48 @@ private:
 
   /// A file that cannot be written cannot be closed either, and the library ends the process with it: what it still
   /// has to write goes to memory, and then nowhere.
-  void Divert() const
+  void Divert()
+  {
+    const int descriptor = this->GetDescriptor();
+    const int memory =
+      descriptor >= 0 && !this->IsDiverted ? memfd_create("dsm-nowhere", MFD_CLOEXEC) : -1;
+    if (memory >= 0)
+    {
+      this->IsDiverted = dup2(memory, descriptor) >= 0;
+      close(memory);
+    }
+  }
+
+  int GetDescriptor() const
   {
     void* handle = nullptr;
-    if (this->File >= 0 && H5Fget_vfd_handle(this->File, H5P_DEFAULT, &handle) >= 0)
+    return this->File >= 0 && H5Fget_vfd_handle(this->File, H5P_DEFAULT, &handle) >= 0
+      ? *static_cast<int*>(handle)
+      : -1;
+  }
+
+  /// Before the library writes what it holds: once that has failed half way, it cannot be closed any more, wherever
+  /// the rest goes.
+  void Reserve()
+  {
+    hsize_t end = 0;
+    this->Check(H5Fget_filesize(this->File, &end));
+#ifdef __linux__
+    const int descriptor = this->GetDescriptor();
+    if (descriptor >= 0 && fallocate(descriptor, 0, 0, static_cast<off_t>(end)) != 0 &&
+      (errno == ENOSPC || errno == EDQUOT || errno == EFBIG || errno == EIO))
     {
-      const int memory = memfd_create("dsm-nowhere", MFD_CLOEXEC);
-      if (memory >= 0)
-      {
-        dup2(memory, *static_cast<int*>(handle));
-        close(memory);
-      }
+      this->Check(-1);
     }
+    errno = 0; // not every file system can do it
+#endif
+  }
+
+  void CloseWritten()
+  {
+    errno = 0;
+    this->Reserve();
+    this->Check(H5Fclose(std::exchange(this->File, H5I_INVALID_HID)));
   }
 
   void Check(herr_t result)
@@ -535,7 +599,12 @@ private:
       }
     }
     Synchronize(written);
-    std::filesystem::rename(written, this->StatePath);
+    std::error_code failure;
+    std::filesystem::rename(written, this->StatePath, failure);
+    if (failure)
+    {
+      throw dsm::Error("Writing '" + this->StatePath + "' failed: " + failure.message() + ".");
+    }
   }
 
   /// All that was added is in the file; while it is not quite, the state says so.
@@ -543,6 +612,7 @@ private:
   {
     this->WriteState(false);
     errno = 0;
+    this->Reserve();
     this->Check(H5Fflush(this->File, H5F_SCOPE_GLOBAL));
     Synchronize(this->PartPath);
     this->WriteState(true);
@@ -553,6 +623,7 @@ private:
   BrickFileLayout Layout;
   Json Description;
   hid_t File = H5I_INVALID_HID;
+  bool IsDiverted = false;
 };
 
 BrickFileWriter::BrickFileWriter(
