@@ -2,6 +2,7 @@
 #include "DSMCore/memory/HostMemory.h"
 #include "DSMCore/memory/HostSharedMemory.h"
 #include "DSMCore/publish/HostGroups.h"
+#include "DSMCore/table/BlockTable.h"
 #include "tests/unit/dsmcore/SharingScenarios.h"
 
 #include <fcntl.h>
@@ -369,6 +370,26 @@ TEST(MemoryPlan, RankCountThatWouldDo)
   EXPECT_EQ(find(besides + 1024 + 64), 100);
   EXPECT_EQ(find(besides + 1024 + 63), 0);
   EXPECT_EQ(find(100), 0);
+}
+
+/// Once over the blocks for all ranks: what each rank would count of its own.
+TEST(MemoryPlan, CopiesAreThoseOfTheHolders)
+{
+  const dsm::HostGroups groups({ 0, 1, 0, 3, 1, 0, 1, 1, 3 }); // of 3, 4 and 2 ranks
+  const auto directory = dsm_test::MakeDirectory(9, 211, 1000);
+  const dsm::BlockDirectory small({ 64, 128, 64, 640 }, dsm::RoundRobinAssigner(9));
+  const dsm::MemoryPlan plan(
+    { &directory, &small }, groups, std::vector<Budget>(9, Budget{ 1 << 20, 1 << 20 }), 4096);
+  for (int rank = 0; rank < 9; ++rank)
+  {
+    const std::uint64_t mine = dsm::BlockTable::CountReplicaBytes(directory, groups, rank) +
+      dsm::BlockTable::CountReplicaBytes(small, groups, rank);
+    EXPECT_GT(mine, 0u);
+    EXPECT_EQ(plan.GetNeed(dsm::MemoryOrganization::Replicated, rank) -
+        plan.GetNeed(dsm::MemoryOrganization::ObjectBased, rank),
+      mine - 3 * 1024)
+      << rank;
+  }
 }
 
 TEST(MemoryPlan, PagesAreWhole)

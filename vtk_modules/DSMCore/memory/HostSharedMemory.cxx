@@ -5,6 +5,7 @@
 
 #include <fcntl.h>
 #include <sys/mman.h>
+#include <sys/resource.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -33,6 +34,13 @@ constexpr int Collapse = 25;
 std::size_t GetFileBytes(std::size_t bytes)
 {
   return AlignBlock(std::max(bytes, std::size_t(1))) + sizeof(HostSharedMemory::Ticket::Token);
+}
+
+/// What `ulimit -f` lets files have.
+std::uint64_t GetMostFileBytes()
+{
+  rlimit limit{};
+  return getrlimit(RLIMIT_FSIZE, &limit) == 0 ? limit.rlim_cur : RLIM_INFINITY;
 }
 
 /// At a multiple of the size of a large page, else there could be none. Null when refused.
@@ -114,12 +122,16 @@ HostSharedMemory::HostSharedMemory(std::size_t bytes, bool share)
 
 bool HostSharedMemory::Create(std::size_t bytes)
 {
+  const std::size_t fileBytes = GetFileBytes(bytes);
+  if (fileBytes > GetMostFileBytes())
+  {
+    return false; // to grow beyond it would end the process by a signal
+  }
   const int file = memfd_create("dsm blocks", MFD_CLOEXEC);
   if (file < 0)
   {
     return false;
   }
-  const std::size_t fileBytes = GetFileBytes(bytes);
   std::byte* data = nullptr;
   if (ftruncate(file, static_cast<off_t>(fileBytes)) == 0)
   {

@@ -113,9 +113,8 @@ int HostGroups::GetHolder(BlockId id, int owner, int group) const
   {
     return owner;
   }
-  // Divided by the number of ranks first: else one owner's blocks would all go to one member.
   const auto& members = this->Groups[static_cast<std::size_t>(group)];
-  return members[(id / this->GroupOf.size()) % members.size()];
+  return members[this->GetTurn(id, members.size())];
 }
 
 } // namespace dsm

@@ -4,6 +4,7 @@
 
 #include "DSMCore/base/Block.h"
 
+#include <cstddef>
 #include <memory>
 #include <vector>
 
@@ -42,6 +43,12 @@ public:
   /// Who in a group holds a block when all groups have all blocks: its owner, or, where that is in
   /// another group, the members in turn.
   int GetHolder(BlockId id, int owner, int group) const;
+  /// Whose turn that is, in a group of so many members.
+  std::size_t GetTurn(BlockId id, std::size_t members) const
+  {
+    // Divided by the number of ranks first: else one owner's blocks would all go to one member.
+    return id / this->GroupOf.size() % members;
+  }
 
 private:
   std::vector<int> GroupOf;

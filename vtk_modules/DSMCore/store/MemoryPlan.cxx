@@ -8,6 +8,7 @@
 #include "DSMCore/table/BlockTable.h"
 
 #include <algorithm>
+#include <map>
 #include <utility>
 
 namespace dsm
@@ -47,21 +48,11 @@ MemoryPlan::MemoryPlan(std::vector<const BlockDirectory*> segments, const HostGr
   this->Pages.Tables += anyReadThrough ? sourceCache : 0;
   for (int rank = 0; rank < static_cast<int>(this->Copies.size()); ++rank)
   {
-    auto& copies = this->Copies[static_cast<std::size_t>(rank)];
     this->LargestGroup = std::max(this->LargestGroup, groups.GetMembers(rank).size());
-    if (this->AnyFromSource)
-    {
-      continue; // then nothing is copied
-    }
-    if (groups.GetMembers(rank).size() == 1)
-    {
-      copies = this->Blocks.Total - this->Blocks.Resident[static_cast<std::size_t>(rank)];
-      continue;
-    }
-    for (const BlockDirectory* directory : this->Segments)
-    {
-      copies += BlockTable::CountReplicaBytes(*directory, groups, rank);
-    }
+  }
+  if (!this->AnyFromSource) // else nothing is copied
+  {
+    this->CountCopies(groups);
   }
 }
 
@@ -88,6 +79,44 @@ void MemoryPlan::Count(Sums& sums) const
         sums.Resident[owner] += bytes;
       }
     }
+  }
+}
+
+void MemoryPlan::CountCopies(const HostGroups& groups)
+{
+  // Once over the blocks, of which there may be a million, not once for each of a thousand ranks: what the members
+  // of a group of each size would hold if all blocks were others', without what is the group's own.
+  std::map<std::size_t, std::vector<std::uint64_t>> turns;
+  for (int rank = 0; rank < groups.GetRankCount(); ++rank)
+  {
+    const std::size_t size = groups.GetMembers(rank).size();
+    turns[size].resize(size, 0);
+  }
+  for (const BlockDirectory* directory : this->Segments)
+  {
+    for (BlockId id = 0; id < directory->GetCount(); ++id)
+    {
+      const std::uint64_t bytes = this->Blocks.GetFootprint(directory->GetBytes(id));
+      const int owner = directory->GetOwner(id);
+      if (owner < 0 || owner >= groups.GetRankCount())
+      {
+        continue; // as in Count
+      }
+      for (auto& [size, sums] : turns)
+      {
+        sums[groups.GetTurn(id, size)] += bytes;
+      }
+      const std::vector<int>& members = groups.GetMembers(owner);
+      const int instead = members[groups.GetTurn(id, members.size())];
+      this->Copies[static_cast<std::size_t>(instead)] -= bytes; // what is added below is not less
+    }
+  }
+  for (int rank = 0; rank < groups.GetRankCount(); ++rank)
+  {
+    const std::vector<int>& members = groups.GetMembers(rank);
+    const auto turn = std::find(members.begin(), members.end(), rank) - members.begin();
+    this->Copies[static_cast<std::size_t>(rank)] +=
+      turns[members.size()][static_cast<std::size_t>(turn)];
   }
 }
 

@@ -91,6 +91,7 @@ private:
     return organization == MemoryOrganization::PageBased ? this->Pages : this->Blocks;
   }
   void Count(Sums& sums) const;
+  void CountCopies(const HostGroups& groups);
   /// In bytes.
   std::uint64_t GetLeastRoom(const Sums& sums) const;
   /// Whether any block may have to come from another rank.
