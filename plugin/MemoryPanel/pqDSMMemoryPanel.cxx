@@ -182,16 +182,9 @@ void pqDSMMemoryPanel::Update()
   }
   this->Ranks->SetRanks(ranks);
   this->Table->setEnabled(!ranks.isEmpty());
-  if (!ranks.isEmpty())
-  {
-    this->Words->setText(ranks.first().toObject().value("Explanation").toString());
-  }
-  else if (display)
-  {
-    this->Words->setText(this->tr("No picture of this view has been traced yet."));
-  }
-  else
-  {
-    this->Words->setText(this->tr("The active view shows nothing as DSM Ray Traced."));
-  }
+  const QString words = !ranks.isEmpty() ? ranks.first().toObject().value("Explanation").toString()
+    : display                            ? this->tr("No picture of this view has been traced yet.")
+              : this->tr("The active view shows nothing as DSM Ray Traced.");
+  this->Words->setText(words);
+  this->Words->setToolTip(words); // which may have more lines
 }

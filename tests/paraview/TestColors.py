@@ -198,6 +198,26 @@ for opacity in (1.0, 0.0):
     table.NanOpacity = opacity
     check_colors(holes, f"NotANumber{opacity:.0f}", "holes", "CELLS")
 
+# Infinite values of points have the first and the last colour.
+endless = image_source(CELLS + """
+f = image.GetPointData().GetArray("f")
+n = f.GetNumberOfTuples()
+side = np.arange(n) % 25
+array = numpy_to_vtk(np.where(side > 15, np.inf, np.where(side < 9, -np.inf, 0.5)), deep=True)
+array.SetName('endless')
+image.GetPointData().AddArray(array)
+""")
+display = show(endless, view, [0.7], "f")
+color_plainly(display, "endless", "POINTS", True)
+simple.GetColorTransferFunction("endless").NanColor = [1.0, 1.0, 0.0]
+pixels = render(view, "Endless")
+simple.Hide(endless, view)
+red = (pixels[:, :, 0] > 120) & (pixels[:, :, 2] < 60)
+blue = (pixels[:, :, 2] > 120) & (pixels[:, :, 0] < 90)
+yellow = (pixels[:, :, 0] > 200) & (pixels[:, :, 1] > 200) & (pixels[:, :, 2] < 60)
+check(red.sum() > 1000 and blue.sum() > 1000, f"above all numbers and below: {red.sum()} and {blue.sum()} pixels")
+check(yellow.sum() < 100, f"only between both there is no number: {yellow.sum()} pixels")
+
 # Flat: the cells can be told from one another, as Contour's triangles, in its mean as bright.
 simple.ColorBy(display, None)
 simple.Hide(holes, view)

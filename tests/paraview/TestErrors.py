@@ -64,9 +64,9 @@ image.GetCellData().AddArray(array)
 """
 expect_then_delete(image_source(CELLS), ["'onCells'", "Cell Data to Point Data"], array="onCells")
 
-expect_then_delete(image_source(GOOD), ["Isovalue 1 is not a number"],
+expect_then_delete(image_source(GOOD), ["Isovalue 2 of 2 is not a number"],
                    isovalues=[0.7, float("nan")], empty=False)
-expect_then_delete(image_source(GOOD), ["Isovalue 0 is infinite"], isovalues=[float("inf")])
+expect_then_delete(image_source(GOOD), ["The isovalue is infinite"], isovalues=[float("inf")])
 expect_then_delete(image_source(GOOD), [], isovalues=[1000.0])
 # Without any, the data suggest one.
 expect_then_delete(image_source(GOOD), [], isovalues=[], empty=False)
@@ -152,3 +152,34 @@ for name, bad, kept, good in (
             check(len(said) == 1 and name in said[0] and f"be {bad}: {kept}" in said[0], f"{name} is {bad}: {said}")
             setattr(display, name, good)
             display.UpdateVTKObjects()
+
+# Where all is behind the camera, VTK's clipping range is all but nothing. ParaView's first picture may be such a one.
+behind = create_view()
+with Messages() as messages:
+    far = simple.Wavelet(WholeExtent=[0, 10, 0, 10, 7, 17], Center=[5, 5, 12])
+    show(far, behind, [150.0])
+    for kind in (simple.Sphere(Center=[5, 5, 50]), None):
+        behind.CameraPosition, behind.CameraFocalPoint = [5.0, 5.0, -100.0], [5.0, 5.0, -200.0]
+        check(not get_covered(render(behind)).any(), "nothing is behind the camera to be seen")
+        behind.CameraPosition, behind.CameraFocalPoint = [5.0, 5.0, -100.0], [5.0, 5.0, 0.0]
+        check(get_covered(render(behind)).any(), "and all before it")
+        if kind:
+            show_traced(kind, behind)
+    said = [line for line in messages.text.splitlines() if "ERR" in line]
+    check(not said, f"and nothing is said: {said}")
+
+# Coarser data of a dataset of which no block has bricks: one is flat, one lacks the array.
+flat = simple.Wavelet(WholeExtent=[-5, 5, -5, 5, 0, 0])
+other = simple.PassArrays(Input=simple.Calculator(Input=simple.Wavelet(WholeExtent=[-5, 5, -5, 5, -5, 5]),
+                                                  ResultArrayName="other", Function="RTData*2"),
+                          PointDataArrays=["other"])
+display = show(simple.GroupDatasets(Input=[other, flat]), behind, [130.0], "RTData")
+display.DSMCoarserDataWhileMoving = 1
+render(behind)
+display.DSMCoarserDataWhileMoving = 0
+
+# A single point has a size, too.
+point = create_view()
+show_traced(simple.ProbeLocation(Input=simple.Wavelet(), ProbeType="Fixed Radius Point Source"), point)
+place_camera(point)
+check(get_covered(render(point)).any(), "a single point is seen")

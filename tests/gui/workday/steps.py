@@ -517,7 +517,7 @@ def reconnect(simple):
     port = int(os.environ["DSM_WORKDAY_PORT"])
     wait_until_listening(port)
     simple.Connect("127.0.0.1", port)
-    simple.LoadPlugin(os.environ["DSM_WORKDAY_PLUGIN"], remote=True, ns=vars(simple))
+    # The plugin that the application has is loaded there by its name, without a word.
     view = simple.GetActiveViewOrCreate("RenderView")
     display = simple.Show(simple.Wavelet(), view)
     display.Representation = TRACED

@@ -23,7 +23,7 @@ public:
   {
   }
 
-  /// The trilinear value of a field of points; NaN where it holds no data.
+  /// The trilinear value of a field of points; NaN where it holds no data, infinite between infinite ones of one sign.
   double Sample(const VoxelField& field, const glm::dvec3& indexPoint) const;
 
   /// The value of the sample that is nearest, in the cell that Sample takes; NaN where it holds no data.
@@ -46,13 +46,18 @@ private:
   template <class Function>
   double Evaluate(
     const VoxelField& field, const glm::dvec3& indexPoint, const Function& function) const;
-  /// Samples at the corners of a cell that holds data and that the point is in, and where in the cell it
-  /// is; false where there is none.
+  enum class Corners
+  {
+    Finite, ///< of a cell that holds data
+    Any     ///< of any cell that is there
+  };
+  /// Samples at the corners of such a cell that the point is in, and where in the cell it is; false where there is none.
   template <class T>
-  bool FindCorners(
-    const VoxelField& field, const glm::dvec3& indexPoint, T corners[8], Lanes& local) const;
+  bool FindCorners(const VoxelField& field, const glm::dvec3& indexPoint, T corners[8],
+    Lanes& local, Corners which = Corners::Finite) const;
   template <class T>
-  bool GetCorners(const VoxelField& field, const Index3& cell, T corners[8]) const;
+  bool GetCorners(const VoxelField& field, const Index3& cell, T corners[8],
+    Corners which = Corners::Finite) const;
   template <class T>
   bool GetCell(const VoxelField& field, const Index3& cell, T& value) const;
 

@@ -7,16 +7,25 @@
 #include "DSMRayTracing/volume/TrilinearCell.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <limits>
+#include <numeric>
 
 namespace rt
 {
 
+/// Between infinite values there are no others, though their difference is no number.
+inline double EvaluateWithInfinite(const double corners[8], const Lanes& local)
+{
+  const double value = EvaluateTrilinear(corners, local);
+  return std::isnan(value) ? std::accumulate(corners, corners + 8, 0.0) : value;
+}
+
 template <class Store>
 double FieldSampler<Store>::Sample(const VoxelField& field, const glm::dvec3& indexPoint) const
 {
-  return this->Evaluate(field, indexPoint, EvaluateTrilinear);
+  return this->Evaluate(field, indexPoint, EvaluateWithInfinite);
 }
 
 template <class Store>
@@ -41,7 +50,8 @@ double FieldSampler<Store>::Evaluate(
     {
       decltype(sample) corners[8];
       Lanes local;
-      if (!this->FindCorners(field, indexPoint, corners, local))
+      if (!this->FindCorners(field, indexPoint, corners, local) &&
+        !this->FindCorners(field, indexPoint, corners, local, Corners::Any))
       {
         return std::numeric_limits<double>::quiet_NaN();
       }
@@ -114,8 +124,8 @@ bool FieldSampler<Store>::GetColorOfCell(
 
 template <class Store>
 template <class T>
-bool FieldSampler<Store>::FindCorners(
-  const VoxelField& field, const glm::dvec3& indexPoint, T corners[8], Lanes& local) const
+bool FieldSampler<Store>::FindCorners(const VoxelField& field, const glm::dvec3& indexPoint,
+  T corners[8], Lanes& local, Corners which) const
 {
   const Index3 cells = field.Lattice.GetCells();
   Index3 cell;
@@ -138,7 +148,7 @@ bool FieldSampler<Store>::FindCorners(
         (back[axis] == 0 ||
           (cell[axis] > 0 && indexPoint[axis] == static_cast<double>(cell[axis])));
     }
-    if (touches && this->GetCorners(field, cell - back, corners))
+    if (touches && this->GetCorners(field, cell - back, corners, which))
     {
       const glm::dvec3 inside = indexPoint - glm::dvec3(cell - back);
       local = Lanes(inside.x, inside.y, inside.z, 0.0);
@@ -151,14 +161,15 @@ bool FieldSampler<Store>::FindCorners(
 template <class Store>
 template <class T>
 bool FieldSampler<Store>::GetCorners(
-  const VoxelField& field, const Index3& cell, T corners[8]) const
+  const VoxelField& field, const Index3& cell, T corners[8], Corners which) const
 {
   const Index3 brick = cell / Index3(field.Lattice.GetEdge());
   const glm::ivec3 local(cell - brick * Index3(field.Lattice.GetEdge()));
   const typename Store::Pin pin =
     this->Blocks.Acquire(this->Self, *field.Segment, field.Lattice.GetId(brick));
   const VoxelBrick<T> voxels(pin.GetData());
-  if (!voxels.HoldsData(local.x, local.y, local.z))
+  if (which == Corners::Finite ? !voxels.HoldsData(local.x, local.y, local.z)
+                               : !voxels.IsCovered(local.x, local.y, local.z))
   {
     return false;
   }

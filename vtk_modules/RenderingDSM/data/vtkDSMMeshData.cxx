@@ -79,7 +79,8 @@ std::vector<vtkDSMMeshBlock> Collect(const vtkDSMMeshInput& input)
 
 double ChooseRadius(double radius, double diagonal)
 {
-  return radius == 0.0 ? DefaultRadiusPart * diagonal : radius;
+  // What is all at one place has no size; alone in a view, VTK shows about so much around it.
+  return radius == 0.0 ? DefaultRadiusPart * (diagonal > 0.0 ? diagonal : 1.0) : radius;
 }
 
 } // namespace

@@ -18,7 +18,6 @@
 #include "vtkUniformGridAMR.h"
 
 #include <algorithm>
-#include <limits>
 #include <map>
 #include <optional>
 #include <set>
@@ -287,16 +286,17 @@ std::shared_ptr<const vtkDSMVolumeData::Coarser> vtkDSMVolumeData::PublishCoarse
   {
     return known;
   }
-  int mine = std::numeric_limits<int>::max();
+  std::optional<int> mine; // of all lattices that have bricks
   for (std::size_t lattice = 0; lattice < finest.Bricks.size(); ++lattice)
   {
     const auto& file = finest.Files[lattice];
     if (finest.Bricks[lattice])
     {
-      mine = std::min(mine, file ? file->CountCoarser() : 0);
+      const int coarser = file ? file->CountCoarser() : 0;
+      mine = std::min(mine.value_or(coarser), coarser);
     }
   }
-  const std::vector<int> all = messenger.AllGatherValue(finest.Bricks.empty() ? 0 : mine);
+  const std::vector<int> all = messenger.AllGatherValue(mine.value_or(0));
   const int levels = *std::min_element(all.begin(), all.end());
   const auto coarser = std::make_shared<Coarser>();
   for (int level = 1; level <= levels; ++level)

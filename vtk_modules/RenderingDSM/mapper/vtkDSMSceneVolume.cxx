@@ -497,8 +497,10 @@ std::vector<double> vtkDSMSceneVolume::GetIsovalues()
     }
     else
     {
-      this->Messages.push_back("Isovalue " + std::to_string(index) + " is " +
-        (std::isnan(value) ? "not a number" : "infinite") +
+      const std::string which = chosen.size() == 1
+        ? "The isovalue"
+        : "Isovalue " + std::to_string(index + 1) + " of " + std::to_string(chosen.size());
+      this->Messages.push_back(which + " is " + (std::isnan(value) ? "not a number" : "infinite") +
         " and was left out. Enter a finite value.");
     }
   }

@@ -13,6 +13,7 @@
 #include "vtkLightCollection.h"
 #include "vtkMath.h"
 #include "vtkMatrix4x4.h"
+#include "vtkNew.h"
 #include "vtkPiecewiseFunction.h"
 #include "vtkPlane.h"
 #include "vtkPlaneCollection.h"
@@ -26,6 +27,7 @@
 #include "vtkWindow.h"
 
 #include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -69,13 +71,40 @@ std::vector<rt::ColorMap::Category> ToCategories(vtkScalarsToColors* table)
   return categories;
 }
 
+bool CanBeInverted(const glm::dmat4& matrix)
+{
+  const glm::dmat4 inverse = glm::inverse(matrix);
+  bool isFinite = true;
+  for (int column = 0; column < 4; ++column)
+  {
+    for (int row = 0; row < 4; ++row)
+    {
+      isFinite = isFinite && std::isfinite(inverse[column][row]);
+    }
+  }
+  return isFinite;
+}
+
 void SetCamera(
   vtkRenderer* renderer, double aspect, vtkMatrix4x4* projection, rt::FrameRequest& request)
 {
-  vtkCamera* camera = renderer->GetActiveCamera();
-  projection->DeepCopy(camera->GetProjectionTransformMatrix(aspect, -1.0, 1.0));
-  request.WorldToClip = vtkDSMTranslation::ToMatrix(projection) *
-    vtkDSMTranslation::ToMatrix(camera->GetModelViewTransformMatrix());
+  const auto set = [&](vtkCamera* camera)
+  {
+    projection->DeepCopy(camera->GetProjectionTransformMatrix(aspect, -1.0, 1.0));
+    request.WorldToClip = vtkDSMTranslation::ToMatrix(projection) *
+      vtkDSMTranslation::ToMatrix(camera->GetModelViewTransformMatrix());
+  };
+  vtkCamera* const camera = renderer->GetActiveCamera();
+  set(camera);
+  if (!CanBeInverted(request.WorldToClip))
+  {
+    // Where all is behind the camera, VTK's clipping range is all but nothing. There is nothing to be seen, but
+    // rays must have a direction.
+    vtkNew<vtkCamera> other;
+    other->DeepCopy(camera);
+    other->SetClippingRange(camera->GetDistance(), 2.0 * camera->GetDistance());
+    set(other);
+  }
 }
 
 } // namespace
