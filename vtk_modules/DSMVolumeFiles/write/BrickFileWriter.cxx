@@ -5,11 +5,11 @@
 #include "DSMVolumeFiles/codec/ChunkCodec.h"
 #include "DSMVolumeFiles/codec/HaloRecord.h"
 #include "DSMVolumeFiles/format/HdfLibrary.h"
+#include "DSMVolumeFiles/write/WrittenHdfFile.h"
 
 #include <nlohmann/json.hpp>
 
 #include <fcntl.h>
-#include <sys/mman.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -115,6 +115,7 @@ public:
     , StatePath(this->PartPath + ".json")
     , Layout(layout)
     , Description({ { "source", source }, { "layout", Describe(layout) } })
+    , File(this->PartPath, [this] { this->RemoveState(); })
   {
     const HdfSilence silence;
     try
@@ -126,8 +127,9 @@ public:
     }
     catch (...)
     {
-      this->Divert();
-      this->Close();
+      this->File.Divert();
+      this->Targets.clear();
+      this->File.Close();
       throw;
     }
   }
@@ -136,7 +138,8 @@ public:
   {
     const std::lock_guard<std::mutex> lock(GetHdfLock());
     const HdfSilence silence;
-    this->Close();
+    this->Targets.clear();
+    this->File.Close();
   }
 
   void Add(std::size_t number, const std::vector<EncodedChunk>& chunks, const ValueRanges& ranges)
@@ -150,7 +153,7 @@ public:
       [this]
       {
         this->Targets.clear();
-        this->CloseWritten();
+        this->File.CloseWritten();
       });
   }
 
@@ -184,7 +187,7 @@ private:
     }
     catch (...)
     {
-      this->Divert();
+      this->File.Divert();
       throw;
     }
   }
@@ -203,13 +206,13 @@ private:
         grid.ChunkSamples;
       const hsize_t offset[4] = { static_cast<hsize_t>(first.z), static_cast<hsize_t>(first.y),
         static_cast<hsize_t>(first.x), 0 };
-      this->Check(H5Dwrite_chunk(
+      this->File.Check(H5Dwrite_chunk(
         target.Values.Get(), H5P_DEFAULT, 0, offset, chunk.Bytes.size(), chunk.Bytes.data()));
       if (target.Halos.IsOpen())
       {
         // Behind the chunk, for the library takes space from the end of the file.
         const hsize_t record[2] = { static_cast<hsize_t>(target.Chunks) + table.size() / 2, 0 };
-        this->Check(H5Dwrite_chunk(target.Halos.Get(), H5P_DEFAULT, 0, record,
+        this->File.Check(H5Dwrite_chunk(target.Halos.Get(), H5P_DEFAULT, 0, record,
           chunk.HaloRecord.size(), chunk.HaloRecord.data()));
       }
       table.push_back(chunk.First);
@@ -224,11 +227,8 @@ private:
 
   void WriteRest(const std::vector<std::vector<std::byte>>& indices, int levels)
   {
-    errno = 0;
-    this->File = H5Fopen(this->PartPath.c_str(), H5F_ACC_RDWR, H5P_DEFAULT);
-    this->Check(this->File < 0 ? -1 : 0);
     // What a level has is long to copy, and behind the end of what a later call goes on with.
-    this->HoldMetadata();
+    this->File.Check(this->File.Open() ? 0 : -1);
     for (int level = 1; level <= levels; ++level)
     {
       this->AddLevel(level);
@@ -240,12 +240,12 @@ private:
       if (!indices[number].empty())
       {
         const HdfHandle dataset =
-          this->CreateDataset(name, H5T_NATIVE_UCHAR, { indices[number].size() }, H5P_DEFAULT);
-        this->Check(H5Dwrite(
+          this->File.CreateDataset(name, H5T_NATIVE_UCHAR, { indices[number].size() }, H5P_DEFAULT);
+        this->File.Check(H5Dwrite(
           dataset.Get(), H5T_NATIVE_UCHAR, H5S_ALL, H5S_ALL, H5P_DEFAULT, indices[number].data()));
       }
     }
-    this->CloseWritten();
+    this->File.CloseWritten();
     Synchronize(this->PartPath);
     std::error_code failure;
     std::filesystem::rename(this->PartPath, this->Path, failure);
@@ -261,22 +261,18 @@ private:
   {
     if (level == 1)
     {
-      this->CreateGroup(HdfLevels);
+      this->File.CreateGroup(HdfLevels);
     }
     const std::string group = std::string(HdfLevels) + "/" + std::to_string(level);
-    this->CreateGroup(group.c_str());
+    this->File.CreateGroup(group.c_str());
     const std::string path = GetLevelPath(this->Path, level);
-    const HdfHandle from = this->Own(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), &H5Fclose);
+    const HdfHandle from =
+      this->File.Own(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), &H5Fclose);
     for (const std::string part : { "VTKHDF", "DSM" })
     {
-      this->Check(H5Ocopy(from.Get(), part.c_str(), this->File, (group + "/" + part).c_str(),
-        H5P_DEFAULT, H5P_DEFAULT));
+      this->File.Check(H5Ocopy(from.Get(), part.c_str(), this->File.Get(),
+        (group + "/" + part).c_str(), H5P_DEFAULT, H5P_DEFAULT));
     }
-  }
-
-  void CreateGroup(const char* name)
-  {
-    this->Own(H5Gcreate2(this->File, name, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), &H5Gclose);
   }
 
   /// Without the state, nobody goes on with what is not whole.
@@ -284,92 +280,6 @@ private:
   {
     std::error_code failure;
     std::filesystem::remove(this->StatePath, failure);
-  }
-
-  /// A file that cannot be written cannot be closed either, and the library ends the process with it: what it still
-  /// has to write goes to memory, and then nowhere.
-  void Divert()
-  {
-    const int descriptor = this->GetDescriptor();
-    const int memory =
-      descriptor >= 0 && !this->IsDiverted ? memfd_create("dsm-nowhere", MFD_CLOEXEC) : -1;
-    if (memory >= 0)
-    {
-      this->IsDiverted = dup2(memory, descriptor) >= 0;
-      close(memory);
-    }
-  }
-
-  int GetDescriptor() const
-  {
-    void* handle = nullptr;
-    return this->File >= 0 && H5Fget_vfd_handle(this->File, H5P_DEFAULT, &handle) >= 0
-      ? *static_cast<int*>(handle)
-      : -1;
-  }
-
-  /// Before the library writes what it holds: once that has failed half way, it cannot be closed any more, wherever
-  /// the rest goes.
-  void Reserve()
-  {
-    hsize_t end = 0;
-    this->Check(H5Fget_filesize(this->File, &end));
-#ifdef __linux__
-    const int descriptor = this->GetDescriptor();
-    if (descriptor >= 0 && fallocate(descriptor, 0, 0, static_cast<off_t>(end)) != 0 &&
-      (errno == ENOSPC || errno == EDQUOT || errno == EFBIG || errno == EIO))
-    {
-      this->Check(-1);
-    }
-    errno = 0; // not every file system can do it
-#endif
-  }
-
-  void CloseWritten()
-  {
-    errno = 0;
-    this->Reserve();
-    this->Check(H5Fclose(std::exchange(this->File, H5I_INVALID_HID)));
-  }
-
-  void Check(herr_t result)
-  {
-    if (result < 0)
-    {
-      const int cause = errno;
-      this->RemoveState();
-      this->Divert();
-      throw dsm::Error("Writing '" + this->PartPath + "' failed" +
-        (cause != 0 ? std::string(": ") + std::strerror(cause) : std::string()) + ".");
-    }
-  }
-  HdfHandle Own(hid_t id, HdfHandle::Closer closer)
-  {
-    this->Check(id < 0 ? -1 : 0);
-    return { id, closer };
-  }
-
-  void Close()
-  {
-    this->Targets.clear();
-    if (this->File >= 0)
-    {
-      H5Fclose(std::exchange(this->File, H5I_INVALID_HID));
-    }
-  }
-
-  /// What the library knows of the file goes to it only when it is told to, so that in between the file is as it
-  /// was then, with what has been added behind its end.
-  void HoldMetadata() const
-  {
-    H5AC_cache_config_t config;
-    config.version = H5AC__CURR_CACHE_CONFIG_VERSION;
-    H5Fget_mdc_config(this->File, &config);
-    config.evictions_enabled = false;
-    config.incr_mode = H5C_incr__off;
-    config.decr_mode = H5C_decr__off;
-    config.flash_incr_mode = H5C_flash_incr__off;
-    H5Fset_mdc_config(this->File, &config);
   }
 
   bool GoOn()
@@ -389,18 +299,16 @@ private:
     {
       return false;
     }
-    this->File = H5Fopen(this->PartPath.c_str(), H5F_ACC_RDWR, H5P_DEFAULT);
-    if (this->File < 0)
+    if (!this->File.Open())
     {
       return false;
     }
-    this->HoldMetadata();
     const std::vector<std::int64_t> chunks = state["chunks"];
     for (std::size_t number = 0; number < this->Layout.Arrays.size(); ++number)
     {
       const FileArray& array = this->Layout.Arrays[number];
       const auto find = [&](const std::string& name)
-      { return this->Own(H5Dopen2(this->File, name.c_str(), H5P_DEFAULT), &H5Dclose); };
+      { return this->File.Own(H5Dopen2(this->File.Get(), name.c_str(), H5P_DEFAULT), &H5Dclose); };
       const std::string index = "DSM/" + this->GetName(array);
       Target target{ find("VTKHDF/" + this->GetName(array)), find(index + "/BrickRanges"),
         find(index + "/ValueRanges"),
@@ -408,7 +316,7 @@ private:
                                                     : HdfHandle(),
         chunks[number], ValueRanges(array.Components) };
       std::vector<double> limits(4 * target.Ranges.All.size());
-      this->Check(H5Dread(
+      this->File.Check(H5Dread(
         target.Limits.Get(), H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, limits.data()));
       for (std::size_t range = 0; range < target.Ranges.All.size(); ++range)
       {
@@ -428,21 +336,17 @@ private:
   void Begin()
   {
     RemoveParts(this->Path);
-    const HdfHandle creation(H5Pcreate(H5P_FILE_CREATE), &H5Pclose);
-    H5Pset_istore_k(creation.Get(), IndexNodeEntries);
-    errno = 0;
-    this->File = H5Fcreate(this->PartPath.c_str(), H5F_ACC_TRUNC, creation.Get(), H5P_DEFAULT);
-    this->Check(this->File < 0 ? -1 : 0);
-    this->HoldMetadata();
+    this->File.Create(IndexNodeEntries);
     this->WriteImage();
     for (const char* folder :
       { "VTKHDF/PointData", "VTKHDF/CellData", "DSM", "DSM/PointData", "DSM/CellData" })
     {
-      this->CreateGroup(folder);
+      this->File.CreateGroup(folder);
     }
-    const HdfHandle index = this->Own(H5Gopen2(this->File, "DSM", H5P_DEFAULT), &H5Gclose);
+    const HdfHandle index =
+      this->File.Own(H5Gopen2(this->File.Get(), "DSM", H5P_DEFAULT), &H5Gclose);
     const long long edge = this->Layout.BrickEdge;
-    this->WriteAttribute(index.Get(), "BrickEdge", H5T_NATIVE_LLONG, &edge, 1);
+    this->File.WriteAttribute(index.Get(), "BrickEdge", H5T_NATIVE_LLONG, &edge, 1);
     for (std::size_t number = 0; number < this->Layout.Arrays.size(); ++number)
     {
       this->Targets.push_back(this->CreateTarget(number));
@@ -451,20 +355,11 @@ private:
     this->Settle();
   }
 
-  void WriteAttribute(hid_t object, const char* name, hid_t type, const void* numbers, int count)
-  {
-    const hsize_t shape = static_cast<hsize_t>(count);
-    const HdfHandle space = this->Own(H5Screate_simple(1, &shape, nullptr), &H5Sclose);
-    const HdfHandle attribute =
-      this->Own(H5Acreate2(object, name, type, space.Get(), H5P_DEFAULT, H5P_DEFAULT), &H5Aclose);
-    this->Check(H5Awrite(attribute.Get(), type, numbers));
-  }
-
   /// VTK's own: see "VTKHDF File Format", ImageData.
   void WriteImage()
   {
-    const HdfHandle group =
-      this->Own(H5Gcreate2(this->File, "VTKHDF", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), &H5Gclose);
+    const HdfHandle group = this->File.Own(
+      H5Gcreate2(this->File.Get(), "VTKHDF", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), &H5Gclose);
     const FileGeometry& geometry = this->Layout.Geometry;
     const long long version[2] = { 1, 0 };
     long long extent[6];
@@ -473,34 +368,34 @@ private:
       extent[2 * axis] = geometry.First[axis];
       extent[2 * axis + 1] = geometry.First[axis] + geometry.Points[axis] - 1;
     }
-    this->WriteAttribute(group.Get(), "Version", H5T_NATIVE_LLONG, version, 2);
-    this->WriteAttribute(group.Get(), "WholeExtent", H5T_NATIVE_LLONG, extent, 6);
-    this->WriteAttribute(group.Get(), "Origin", H5T_NATIVE_DOUBLE, geometry.Origin, 3);
-    this->WriteAttribute(group.Get(), "Spacing", H5T_NATIVE_DOUBLE, geometry.Spacing, 3);
-    this->WriteAttribute(group.Get(), "Direction", H5T_NATIVE_DOUBLE, geometry.Direction, 9);
+    this->File.WriteAttribute(group.Get(), "Version", H5T_NATIVE_LLONG, version, 2);
+    this->File.WriteAttribute(group.Get(), "WholeExtent", H5T_NATIVE_LLONG, extent, 6);
+    this->File.WriteAttribute(group.Get(), "Origin", H5T_NATIVE_DOUBLE, geometry.Origin, 3);
+    this->File.WriteAttribute(group.Get(), "Spacing", H5T_NATIVE_DOUBLE, geometry.Spacing, 3);
+    this->File.WriteAttribute(group.Get(), "Direction", H5T_NATIVE_DOUBLE, geometry.Direction, 9);
     constexpr char kind[] = "ImageData";
-    const HdfHandle text = this->Own(H5Tcopy(H5T_C_S1), &H5Tclose);
+    const HdfHandle text = this->File.Own(H5Tcopy(H5T_C_S1), &H5Tclose);
     H5Tset_size(text.Get(), sizeof(kind) - 1);
     H5Tset_strpad(text.Get(), H5T_STR_NULLPAD);
-    const HdfHandle one = this->Own(H5Screate(H5S_SCALAR), &H5Sclose);
-    const HdfHandle attribute = this->Own(
+    const HdfHandle one = this->File.Own(H5Screate(H5S_SCALAR), &H5Sclose);
+    const HdfHandle attribute = this->File.Own(
       H5Acreate2(group.Get(), "Type", text.Get(), one.Get(), H5P_DEFAULT, H5P_DEFAULT), &H5Aclose);
-    this->Check(H5Awrite(attribute.Get(), text.Get(), kind));
+    this->File.Check(H5Awrite(attribute.Get(), text.Get(), kind));
   }
 
   Target CreateTarget(std::size_t number)
   {
     const FileArray& array = this->Layout.Arrays[number];
     const std::string index = "DSM/" + this->GetName(array);
-    this->CreateGroup(index.c_str());
+    this->File.CreateGroup(index.c_str());
     if (this->Layout.HasHalo(number))
     {
       const HdfHandle group =
-        this->Own(H5Gopen2(this->File, index.c_str(), H5P_DEFAULT), &H5Gclose);
+        this->File.Own(H5Gopen2(this->File.Get(), index.c_str(), H5P_DEFAULT), &H5Gclose);
       const long long samples = 1;
-      this->WriteAttribute(group.Get(), HdfHalo, H5T_NATIVE_LLONG, &samples, 1);
+      this->File.WriteAttribute(group.Get(), HdfHalo, H5T_NATIVE_LLONG, &samples, 1);
     }
-    const HdfHandle creation = this->Own(H5Pcreate(H5P_DATASET_CREATE), &H5Pclose);
+    const HdfHandle creation = this->File.Own(H5Pcreate(H5P_DATASET_CREATE), &H5Pclose);
     const std::vector<hsize_t> edges = GetShape(array.Grid.ChunkSamples, array.Components);
     H5Pset_chunk(creation.Get(), static_cast<int>(edges.size()), edges.data());
     H5Pset_fill_time(creation.Get(), H5D_FILL_TIME_NEVER);
@@ -521,11 +416,11 @@ private:
     const hsize_t tableShape[2] = { static_cast<hsize_t>(array.Grid.GetCount()), 2 };
     ValueRanges ranges(array.Components);
     const hsize_t limitShape[2] = { ranges.All.size(), 4 };
-    return { this->CreateDataset("VTKHDF/" + this->GetName(array), GetHdfType(array.Type),
+    return { this->File.CreateDataset("VTKHDF/" + this->GetName(array), GetHdfType(array.Type),
                GetShape(array.Grid.Samples, array.Components), creation.Get()),
-      this->CreateDataset(index + "/BrickRanges", H5T_NATIVE_FLOAT,
+      this->File.CreateDataset(index + "/BrickRanges", H5T_NATIVE_FLOAT,
         { std::begin(tableShape), std::end(tableShape) }, H5P_DEFAULT),
-      this->CreateDataset(index + "/ValueRanges", H5T_NATIVE_DOUBLE,
+      this->File.CreateDataset(index + "/ValueRanges", H5T_NATIVE_DOUBLE,
         { std::begin(limitShape), std::end(limitShape) }, H5P_DEFAULT),
       this->CreateHalos(number), 0, std::move(ranges) };
   }
@@ -539,31 +434,22 @@ private:
     {
       return {};
     }
-    const HdfHandle creation = this->Own(H5Pcreate(H5P_DATASET_CREATE), &H5Pclose);
+    const HdfHandle creation = this->File.Own(H5Pcreate(H5P_DATASET_CREATE), &H5Pclose);
     H5Pset_chunk(creation.Get(), 2, record);
     H5Pset_fill_time(creation.Get(), H5D_FILL_TIME_NEVER);
-    return this->CreateDataset("DSM/" + this->GetName(array) + "/" + HdfHaloRecords,
+    return this->File.CreateDataset("DSM/" + this->GetName(array) + "/" + HdfHaloRecords,
       H5T_NATIVE_UCHAR, { static_cast<hsize_t>(array.Grid.GetCount()), record[1] }, creation.Get());
-  }
-
-  HdfHandle CreateDataset(
-    const std::string& name, hid_t type, const std::vector<hsize_t>& shape, hid_t creation)
-  {
-    const HdfHandle space =
-      this->Own(H5Screate_simple(static_cast<int>(shape.size()), shape.data(), nullptr), &H5Sclose);
-    return this->Own(
-      H5Dcreate2(this->File, name.c_str(), type, space.Get(), H5P_DEFAULT, creation, H5P_DEFAULT),
-      &H5Dclose);
   }
 
   void WriteTable(const Target& target, const std::vector<float>& table)
   {
     const hsize_t first[2] = { static_cast<hsize_t>(target.Chunks), 0 };
     const hsize_t count[2] = { table.size() / 2, 2 };
-    const HdfHandle all = this->Own(H5Dget_space(target.Table.Get()), &H5Sclose);
-    const HdfHandle part = this->Own(H5Screate_simple(2, count, nullptr), &H5Sclose);
-    this->Check(H5Sselect_hyperslab(all.Get(), H5S_SELECT_SET, first, nullptr, count, nullptr));
-    this->Check(H5Dwrite(
+    const HdfHandle all = this->File.Own(H5Dget_space(target.Table.Get()), &H5Sclose);
+    const HdfHandle part = this->File.Own(H5Screate_simple(2, count, nullptr), &H5Sclose);
+    this->File.Check(
+      H5Sselect_hyperslab(all.Get(), H5S_SELECT_SET, first, nullptr, count, nullptr));
+    this->File.Check(H5Dwrite(
       target.Table.Get(), H5T_NATIVE_FLOAT, part.Get(), all.Get(), H5P_DEFAULT, table.data()));
   }
 
@@ -577,7 +463,7 @@ private:
         limits.insert(limits.end(), { one->Least, one->Greatest });
       }
     }
-    this->Check(H5Dwrite(
+    this->File.Check(H5Dwrite(
       target.Limits.Get(), H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, limits.data()));
   }
 
@@ -611,9 +497,7 @@ private:
   void Settle()
   {
     this->WriteState(false);
-    errno = 0;
-    this->Reserve();
-    this->Check(H5Fflush(this->File, H5F_SCOPE_GLOBAL));
+    this->File.Flush();
     Synchronize(this->PartPath);
     this->WriteState(true);
   }
@@ -622,8 +506,7 @@ private:
   std::string StatePath;
   BrickFileLayout Layout;
   Json Description;
-  hid_t File = H5I_INVALID_HID;
-  bool IsDiverted = false;
+  WrittenHdfFile File;
 };
 
 BrickFileWriter::BrickFileWriter(

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef vol_WrittenHdfFile_h
+#define vol_WrittenHdfFile_h
+
+#include "DSMVolumeFiles/format/HdfLibrary.h"
+
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace vol
+{
+
+/// An HDF5 file that is being written, on a disk that may become full at any time. What goes wrong throws dsm::Error,
+/// which names the file and the cause; then it can still be closed. All members under GetHdfLock.
+class WrittenHdfFile
+{
+public:
+  /// `failed` is called before anything is thrown.
+  WrittenHdfFile(std::string path, std::function<void()> failed);
+  ~WrittenHdfFile();
+  WrittenHdfFile(const WrittenHdfFile&) = delete;
+  WrittenHdfFile& operator=(const WrittenHdfFile&) = delete;
+
+  void Create(unsigned indexNodeEntries);
+  /// False where it is no HDF5 file.
+  bool Open();
+  /// All that was written is in the file.
+  void Flush();
+  void CloseWritten();
+  /// Whatever has become of it. Throws nothing.
+  void Close();
+
+  hid_t Get() const { return this->Id; }
+  void Check(herr_t result);
+  HdfHandle Own(hid_t id, HdfHandle::Closer closer);
+  void CreateGroup(const char* name);
+  HdfHandle CreateDataset(
+    const std::string& name, hid_t type, const std::vector<hsize_t>& shape, hid_t creation);
+  void WriteAttribute(hid_t object, const char* name, hid_t type, const void* numbers, int count);
+
+  /// A file that cannot be written cannot be closed either, and the library ends the process with it: what it still
+  /// has to write goes to memory, and then nowhere.
+  void Divert();
+
+private:
+  /// Before the library writes what it holds: once that has failed half way, it cannot be closed any more, wherever
+  /// the rest goes.
+  void Reserve();
+  /// What the library knows of the file goes to it only when it is told to, so that in between the file is as it
+  /// was then, with what has been added behind its end.
+  void HoldMetadata() const;
+  /// Of the system; -1 when it is closed.
+  int GetDescriptor() const;
+
+  std::string Path;
+  std::function<void()> Failed;
+  hid_t Id = H5I_INVALID_HID;
+  bool IsDiverted = false;
+};
+
+} // namespace vol
+
+#endif
