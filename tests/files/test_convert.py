@@ -304,6 +304,17 @@ if subprocess.run([*IN_SMALL, "true"], capture_output=True).returncode == 0:
     check(done.returncode == 1 and "big.vtkhdf.part' failed: No space left on device" in done.stderr,
           f"no room: {done.stderr.strip()}")
     check(done.stdout.split() == ["big.vtkhdf.part"], f"half a file has no name of a whole one: {done.stdout.split()}")
+    # However little is left: in the middle of the chunks, of what the library holds, of a level, or at the end.
+    np.zeros((32, 32, 32), "<f4").tofile(path("little.raw"))
+    LITTLE = command(1, "--quiet", "--memory", "1", "--brick", "8", "--levels", "1", "--raw-size", "32,32,32", "--raw-type",
+                     "float32", path("little.raw"), os.path.join(small, "little.vtkhdf"))
+    sizes = f'for k in $(seq 8 28 1024); do mount -t tmpfs -o size="$k"k none "{small}"; "$@"; echo $?; umount "{small}"; done'
+    done = subprocess.run([*IN_SMALL[:6], sizes, "sh", *LITTLE], capture_output=True, text=True, timeout=100)
+    codes, said = done.stdout.split(), done.stderr.splitlines()
+    check(set(codes) == {"0", "1"} and codes.count("1") > 10, f"on disks of each size: {codes}")
+    check(len(said) == codes.count("1") and all(": No space left on device" in line for line in said),
+          f"each says why it ends: {set(said)}")
+    os.remove(path("little.raw"))
 else:
     print("not tried, since no file system can be mounted here: a full disk")
 sys.stdout.flush()

@@ -30,6 +30,9 @@ using Json = nlohmann::ordered_json;
 /// Entries of a node of the index of chunks: large nodes are found and read with few steps.
 constexpr unsigned IndexNodeEntries = 1024;
 
+/// What a level may take beyond its file, which has as many groups: the library aligns some of it.
+constexpr std::uint64_t RoomForGroups = 1 << 16;
+
 /// Waits until what the system holds of a file is on its disk.
 void Synchronize(const std::string& path)
 {
@@ -266,6 +269,9 @@ private:
     const std::string group = std::string(HdfLevels) + "/" + std::to_string(level);
     this->File.CreateGroup(group.c_str());
     const std::string path = GetLevelPath(this->Path, level);
+    std::error_code failure;
+    const std::uintmax_t bytes = std::filesystem::file_size(path, failure);
+    this->File.Reserve(failure ? 0 : bytes + RoomForGroups);
     const HdfHandle from =
       this->File.Own(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), &H5Fclose);
     for (const std::string part : { "VTKHDF", "DSM" })
@@ -480,8 +486,9 @@ private:
       file << state.dump(1) << std::endl;
       if (!file)
       {
+        const int cause = errno;
         this->RemoveState();
-        throw dsm::Error("Writing '" + written + "' failed: " + std::strerror(errno) + ".");
+        throw dsm::Error("Writing '" + written + "' failed: " + std::strerror(cause) + ".");
       }
     }
     Synchronize(written);

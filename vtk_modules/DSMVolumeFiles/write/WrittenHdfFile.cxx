@@ -124,18 +124,19 @@ void WrittenHdfFile::Divert()
   }
 }
 
-void WrittenHdfFile::Reserve()
+void WrittenHdfFile::Reserve(std::uint64_t beyond)
 {
   hsize_t end = 0;
   this->Check(H5Fget_filesize(this->Id, &end));
 #ifdef __linux__
   const int descriptor = this->GetDescriptor();
-  if (descriptor >= 0 && fallocate(descriptor, 0, 0, static_cast<off_t>(end)) != 0 &&
+  if (descriptor >= 0 &&
+    fallocate(descriptor, FALLOC_FL_KEEP_SIZE, 0, static_cast<off_t>(end + beyond)) != 0 &&
     (errno == ENOSPC || errno == EDQUOT || errno == EFBIG || errno == EIO))
   {
     this->Check(-1);
   }
-  errno = 0; // not every file system can do it
+  errno = 0;
 #endif
 }
 

@@ -4,6 +4,7 @@
 
 #include "DSMVolumeFiles/format/HdfLibrary.h"
 
+#include <cstdint>
 #include <functional>
 #include <string>
 #include <vector>
@@ -39,14 +40,15 @@ public:
     const std::string& name, hid_t type, const std::vector<hsize_t>& shape, hid_t creation);
   void WriteAttribute(hid_t object, const char* name, hid_t type, const void* numbers, int count);
 
+  /// Before the library writes what it holds, or much at once: once that has failed half way, the file cannot be closed
+  /// any more, wherever the rest goes. Makes sure of as many bytes beyond its end. Not every file system can do it.
+  void Reserve(std::uint64_t beyond = 0);
+
   /// A file that cannot be written cannot be closed either, and the library ends the process with it: what it still
   /// has to write goes to memory, and then nowhere.
   void Divert();
 
 private:
-  /// Before the library writes what it holds: once that has failed half way, it cannot be closed any more, wherever
-  /// the rest goes.
-  void Reserve();
   /// What the library knows of the file goes to it only when it is told to, so that in between the file is as it
   /// was then, with what has been added behind its end.
   void HoldMetadata() const;
