@@ -400,9 +400,8 @@ private:
       else if (dataset.IsOpen() && !wanted.empty())
       {
         this->Missing = "volume in its dataset '" + wanted +
-          "': that must have numbers, along three axes (z, y, x), with components behind them, and "
-          "time steps "
-          "before them, where there are such.";
+          "': that must have numbers along three axes (z, y, x), and may have a first axis of time "
+          "steps, and a last one of components.";
       }
     }
     // Of several shapes the largest.
@@ -625,9 +624,8 @@ private:
       if (H5Zfilter_avail(filter) <= 0)
       {
         return "it has no filter " + std::to_string(filter) + " (" + name +
-          "). Install its plugin where HDF5_PLUGIN_PATH says, or write the file with deflate, for "
-          "example with "
-          "'h5repack -f GZIP=3'.";
+          "). Install its plugin where HDF5_PLUGIN_PATH says, or write the file with deflate, as "
+          "'h5repack -f GZIP=3' does.";
       }
     }
     return {};

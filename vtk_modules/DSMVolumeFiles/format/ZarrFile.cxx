@@ -53,8 +53,8 @@ std::string FindAxisType(const Json& axis)
                                                 : "";
 }
 
-/// Of an array in `folder`. Where the axes are not told, the last three are in space, and the first of five is time.
-LeadingAxes FindLeadingAxes(const std::string& folder, const Json& axes, std::size_t count)
+/// Where the axes are not told, the last three are in space, and the first of five is time.
+LeadingAxes FindLeadingAxes(const Json& axes, std::size_t count)
 {
   LeadingAxes found;
   found.Count = static_cast<std::int64_t>(count - SpaceAxes);
@@ -67,24 +67,32 @@ LeadingAxes FindLeadingAxes(const std::string& folder, const Json& axes, std::si
   for (std::size_t axis = 0; axis < count; ++axis)
   {
     const Json& one = axes[axis];
-    const std::string type = FindAxisType(one);
-    const bool inSpace = axis + SpaceAxes >= count;
-    if (inSpace ? !type.empty() && type != "space" : type == "space")
-    {
-      throw dsm::Error("The Zarr array '" + folder +
-        "' is no volume: its last three axes, and no others, must be in space.");
-    }
-    if (inSpace)
+    if (axis + SpaceAxes >= count)
     {
       last += one.is_string() ? one.get<std::string>() : GetText(one, "name");
     }
-    else if (type == "time")
+    else if (FindAxisType(one) == "time")
     {
       found.Time = static_cast<int>(axis);
     }
   }
   found.FromX = last == "xyz";
   return found;
+}
+
+/// Of OME, whose images may be flat. Throws dsm::Error.
+void CheckSpace(const std::string& folder, const Json& axes)
+{
+  for (std::size_t axis = 0; axes.is_array() && axis < axes.size(); ++axis)
+  {
+    const std::string type = FindAxisType(axes[axis]);
+    const bool inSpace = axis + SpaceAxes >= axes.size();
+    if (inSpace ? !type.empty() && type != "space" : type == "space")
+    {
+      throw dsm::Error("The Zarr array '" + folder +
+        "' is no volume: its last three axes, and no others, must be in space.");
+    }
+  }
 }
 
 /// Which axis of an array of so many is x, y or z.
@@ -218,8 +226,9 @@ private:
     const Json& dataset = datasets.at(static_cast<std::size_t>(level));
     const std::string folder = this->Path + "/" + dataset.at("path").get<std::string>();
     const auto data = Read(folder);
-    const LeadingAxes leading =
-      FindLeadingAxes(folder, scale.value("axes", Json()), data->Shape.size());
+    const Json axes = scale.value("axes", Json());
+    CheckSpace(folder, axes);
+    const LeadingAxes leading = FindLeadingAxes(axes, data->Shape.size());
     // The level's own come first.
     for (const Json* const from : { &dataset, &scale })
     {
@@ -268,7 +277,7 @@ private:
     const auto addAs = [this](const std::string& folder, const std::string& name)
     {
       const auto data = Read(folder);
-      this->Add(folder, data, FindLeadingAxes(folder, data->Axes, data->Shape.size()),
+      this->Add(folder, data, FindLeadingAxes(data->Axes, data->Shape.size()),
         [&](std::int64_t channel, std::int64_t count)
         { return count == 1 ? name : name + " " + std::to_string(channel); });
     };
@@ -307,8 +316,7 @@ private:
       const auto data = entry.is_directory() ? tryToRead(entry.path().string()) : std::nullopt;
       if (data && data->IsVolume())
       {
-        const LeadingAxes leading =
-          FindLeadingAxes(entry.path().string(), data->Axes, data->Shape.size());
+        const LeadingAxes leading = FindLeadingAxes(data->Axes, data->Shape.size());
         const Shape shape{ GetSpace(data->Shape, leading.FromX),
           leading.Time < 0 ? 0 : data->Shape[static_cast<std::size_t>(leading.Time)] };
         found[entry.path().filename().string()] = shape;
@@ -365,7 +373,8 @@ private:
     {
       throw dsm::Error("The Zarr array '" + folder + "' has " + std::to_string(channels) +
         " channels, of which each would be an array; no more than " + std::to_string(MostChannels) +
-        " can be.");
+        " can be. If one of its axes is time, let its name say so (\"time\", in dimension_names or "
+        "_ARRAY_DIMENSIONS).");
     }
     const std::int64_t times = leading.Time >= 0 ? getLength(leading.Time) : 1;
     this->Steps = std::max(this->Steps, static_cast<int>(times));
