@@ -8,6 +8,7 @@
 #include <map>
 #include <sstream>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 /// How the values of command line options are read. All throw dsm::Error, naming the option.
@@ -19,7 +20,8 @@ T ToNumber(const std::string& name, const std::string& text, T smallest)
 {
   std::istringstream stream(text);
   T value{};
-  if (!(stream >> value) || !stream.eof() || value < smallest)
+  const bool wraps = std::is_unsigned_v<T> && text.find('-') != std::string::npos;
+  if (wraps || !(stream >> value) || !stream.eof() || value < smallest)
   {
     std::ostringstream message;
     message << name << " takes a number of at least " << smallest << ", not \"" << text << "\".";

@@ -293,17 +293,47 @@ with h5py.File(path("big.vtkhdf"), "r") as file:
     check(np.array_equal(level, reduce(big.astype("f8")).astype("f4")), "a level of other values")
 os.remove(path("big.vtkhdf"))
 
+# One at a time, and only what is a file, or will be.
+first = subprocess.Popen(command(1, "--memory", 2, *BIG), stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+while first.poll() is None and not os.path.exists(path("big.vtkhdf.part.json")):
+    time.sleep(0.002)
+first.send_signal(signal.SIGSTOP)
+second = convert(*BIG)
+first.send_signal(signal.SIGCONT)
+check(second.returncode == 1 and "Another process is writing" in second.stderr, f"two at a time: {second.stderr.strip()}")
+check(first.wait(100) == 0, f"the first goes on: {first.stderr.read().strip()}")
+compare_big("of the first of two")
+os.remove(path("big.vtkhdf"))
+os.mkfifo(path("pipe"))
+for place, words in ((FOLDER, "a folder or a device"), (path("pipe"), "a folder or a device"), ("", "no name")):
+    done = convert(*BIG[:-1], place)
+    check(done.returncode == 1 and words in done.stderr, f"to '{place}': {done.stderr.strip()}")
+os.remove(path("pipe"))
+# In another byte order, they are other values.
+check(kill_after(100), "it is killed once more")
+swapped = convert("--raw-big-endian", *BIG)
+check(swapped.returncode == 0, f"then of other bytes {swapped.stderr}")
+with h5py.File(path("big.vtkhdf"), "r") as file:
+    check(np.array_equal(file["VTKHDF/PointData/values"][...], big.view(">f4").astype("<f4"), equal_nan=True),
+          "all values are the other ones")
+os.remove(path("big.vtkhdf"))
+
 # A disk that is full: one of 12 MiB that only this call sees, where the system lets us make one.
 small = path("small")
 os.makedirs(small, exist_ok=True)
 IN_SMALL = ["unshare", "--user", "--map-root-user", "--mount", "sh", "-c",
-            f'mount -t tmpfs -o size=12m none "{small}" && "$@"; code=$?; ls "{small}"; exit $code', "sh"]
+            f'mount -t tmpfs -o size=12m none "{small}" && "$@"; code=$?; ls "{small}"; cat "{small}"/*.json; '
+            f'mount -o remount,size=200m none "{small}"; "$@" > /dev/null || exit 2; ls "{small}"; exit $code', "sh"]
 if subprocess.run([*IN_SMALL, "true"], capture_output=True).returncode == 0:
-    done = subprocess.run([*IN_SMALL, *command(1, *BIG[:-1], os.path.join(small, "big.vtkhdf"))],
+    done = subprocess.run([*IN_SMALL, *command(1, "--memory", 2, *BIG[:-1], os.path.join(small, "big.vtkhdf"))],
                           capture_output=True, text=True, timeout=100)
     check(done.returncode == 1 and "big.vtkhdf.part' failed: No space left on device" in done.stderr,
           f"no room: {done.stderr.strip()}")
-    check(done.stdout.split() == ["big.vtkhdf.part"], f"half a file has no name of a whole one: {done.stdout.split()}")
+    names = [word for word in done.stdout.split() if word.startswith("big.vtkhdf")]
+    check(names == ["big.vtkhdf.part", "big.vtkhdf.part.json", "big.vtkhdf"],
+          f"half a file has no name of a whole one, until there is room: {names}")
+    held = json.loads(done.stdout[done.stdout.index("{") : done.stdout.rindex("}") + 1])
+    check(held["whole"] and held["chunks"][0] > 0, f"and it goes on with what it had: {held['chunks']} chunks")
     # However little is left: in the middle of the chunks, of what the library holds, of a level, or at the end.
     np.zeros((32, 32, 32), "<f4").tofile(path("little.raw"))
     LITTLE = command(1, "--quiet", "--memory", "1", "--brick", "8", "--levels", "1", "--raw-size", "32,32,32", "--raw-type",

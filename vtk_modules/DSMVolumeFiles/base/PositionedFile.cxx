@@ -57,7 +57,8 @@ PositionedFile::PositionedFile(std::string path)
   {
     throw WouldWait{ true };
   }
-  this->Descriptor = open(this->Path.c_str(), O_RDONLY | O_CLOEXEC);
+  // A pipe would be waited for.
+  this->Descriptor = open(this->Path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
   struct stat state
   {
   };
@@ -69,6 +70,11 @@ PositionedFile::PositionedFile(std::string path)
       close(this->Descriptor);
     }
     Refuse(this->Path, "cannot be opened: " + cause + ".");
+  }
+  if (!S_ISREG(state.st_mode))
+  {
+    close(this->Descriptor);
+    Refuse(this->Path, "cannot be read in parts: it is a folder, a device or a pipe.");
   }
   this->Bytes = static_cast<std::uint64_t>(state.st_size);
   this->Stamp = GetStampOf(state);

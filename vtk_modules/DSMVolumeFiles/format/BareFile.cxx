@@ -2,6 +2,7 @@
 #include "DSMVolumeFiles/format/BareFile.h"
 
 #include "DSMCore/base/Error.h"
+#include "DSMRayTracing/base/ByteHash.h"
 #include "DSMVolumeFiles/format/StoredFile.h"
 
 #include <algorithm>
@@ -37,7 +38,6 @@ public:
   {
     this->Geometry = geometry;
     this->Geometry.Points = values.Samples;
-    this->Stamp = this->File->GetStamp();
     FileArray array;
     array.Name = values.Name;
     array.Type = values.Type;
@@ -57,6 +57,13 @@ public:
         " bytes, but " + std::to_string(need) + " of values behind " + std::to_string(this->First) +
         " of header are expected. Check the sizes and the type of the values.");
     }
+    // What is kept of values that were read in another way is not of these.
+    const std::uint64_t manner[] = { this->File->GetStamp(), this->First,
+      static_cast<std::uint64_t>(values.Type), static_cast<std::uint64_t>(values.Components),
+      values.BigEndian ? 1u : 0u };
+    rt::ByteHash hash;
+    hash.Add(manner, sizeof(manner));
+    this->Stamp = hash.Get();
     const std::size_t width = rt::GetBytes(values.Type);
     if (values.BigEndian && width > 1)
     {

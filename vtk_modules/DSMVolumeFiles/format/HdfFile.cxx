@@ -307,6 +307,7 @@ private:
     }
     this->FindArrays(group.Get(), "PointData", false, this->Geometry.Points);
     this->FindArrays(group.Get(), "CellData", true, cells);
+    this->FindActive();
     this->Missing =
       "array of numbers in PointData or CellData that has as many samples along z, y and x as its "
       "WholeExtent tells of.";
@@ -338,6 +339,27 @@ private:
         const std::string offsets = std::string("Steps/") + name + "Offsets/" + link;
         std::vector<int> frames = this->FindFrames(parent, offsets, found);
         this->Add(std::move(dataset), link, onCells, found, std::move(frames));
+      }
+    }
+  }
+
+  /// What a brick file says of it.
+  void FindActive()
+  {
+    const HdfHandle points(H5Gopen2(this->Root, "DSM/PointData", H5P_DEFAULT), &H5Gclose);
+    if (!points.IsOpen() || H5Aexists(points.Get(), HdfScalars) <= 0)
+    {
+      return;
+    }
+    const HdfHandle attribute(H5Aopen(points.Get(), HdfScalars, H5P_DEFAULT), &H5Aclose);
+    const HdfHandle type(H5Aget_type(attribute.Get()), &H5Tclose);
+    std::string name(H5Tget_size(type.Get()), '\0');
+    if (H5Tget_class(type.Get()) == H5T_STRING && H5Tis_variable_str(type.Get()) == 0 &&
+      H5Aread(attribute.Get(), type.Get(), name.data()) >= 0)
+    {
+      for (FileArray& array : this->Arrays)
+      {
+        array.IsActive = !array.OnCells && array.Name == name;
       }
     }
   }

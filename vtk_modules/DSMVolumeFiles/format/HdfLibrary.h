@@ -16,6 +16,8 @@ namespace vol
 constexpr char HdfLevels[] = "DSM/Levels";
 /// Attribute of what it has beside an array's values: samples by which a chunk's halo reaches beyond it.
 constexpr char HdfHalo[] = "HaloSamples";
+/// Attribute of the group that has all of that for the points: the name of the array that are their scalars.
+constexpr char HdfScalars[] = "Scalars";
 /// And of chunks that are not compressed: HaloRecord of each.
 constexpr char HdfHaloRecords[] = "Halos";
 

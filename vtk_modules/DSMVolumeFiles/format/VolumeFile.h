@@ -20,7 +20,8 @@ struct FileArray
   std::string Name;
   rt::ScalarType Type = rt::ScalarType::UInt8;
   int Components = 1;
-  bool OnCells = false; ///< else on the points
+  bool OnCells = false;  ///< else on the points
+  bool IsActive = false; ///< the points' scalars, where the file says so
   ChunkGrid Grid;
 
   std::size_t GetSampleBytes() const

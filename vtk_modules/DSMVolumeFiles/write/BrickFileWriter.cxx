@@ -5,6 +5,7 @@
 #include "DSMVolumeFiles/codec/ChunkCodec.h"
 #include "DSMVolumeFiles/codec/HaloRecord.h"
 #include "DSMVolumeFiles/format/HdfLibrary.h"
+#include "DSMVolumeFiles/write/PathClaim.h"
 #include "DSMVolumeFiles/write/WrittenHdfFile.h"
 
 #include <nlohmann/json.hpp>
@@ -118,7 +119,8 @@ public:
     , StatePath(this->PartPath + ".json")
     , Layout(layout)
     , Description({ { "source", source }, { "layout", Describe(layout) } })
-    , File(this->PartPath, [this] { this->RemoveState(); })
+    , Claim(this->Path)
+    , File(this->PartPath)
   {
     const HdfSilence silence;
     try
@@ -379,14 +381,7 @@ private:
     this->File.WriteAttribute(group.Get(), "Origin", H5T_NATIVE_DOUBLE, geometry.Origin, 3);
     this->File.WriteAttribute(group.Get(), "Spacing", H5T_NATIVE_DOUBLE, geometry.Spacing, 3);
     this->File.WriteAttribute(group.Get(), "Direction", H5T_NATIVE_DOUBLE, geometry.Direction, 9);
-    constexpr char kind[] = "ImageData";
-    const HdfHandle text = this->File.Own(H5Tcopy(H5T_C_S1), &H5Tclose);
-    H5Tset_size(text.Get(), sizeof(kind) - 1);
-    H5Tset_strpad(text.Get(), H5T_STR_NULLPAD);
-    const HdfHandle one = this->File.Own(H5Screate(H5S_SCALAR), &H5Sclose);
-    const HdfHandle attribute = this->File.Own(
-      H5Acreate2(group.Get(), "Type", text.Get(), one.Get(), H5P_DEFAULT, H5P_DEFAULT), &H5Aclose);
-    this->File.Check(H5Awrite(attribute.Get(), text.Get(), kind));
+    this->File.WriteAttribute(group.Get(), "Type", "ImageData");
   }
 
   Target CreateTarget(std::size_t number)
@@ -394,6 +389,12 @@ private:
     const FileArray& array = this->Layout.Arrays[number];
     const std::string index = "DSM/" + this->GetName(array);
     this->File.CreateGroup(index.c_str());
+    if (array.IsActive && !array.OnCells)
+    {
+      const HdfHandle points =
+        this->File.Own(H5Gopen2(this->File.Get(), "DSM/PointData", H5P_DEFAULT), &H5Gclose);
+      this->File.WriteAttribute(points.Get(), HdfScalars, array.Name);
+    }
     if (this->Layout.HasHalo(number))
     {
       const HdfHandle group =
@@ -487,7 +488,6 @@ private:
       if (!file)
       {
         const int cause = errno;
-        this->RemoveState();
         throw dsm::Error("Writing '" + written + "' failed: " + std::strerror(cause) + ".");
       }
     }
@@ -503,6 +503,8 @@ private:
   /// All that was added is in the file; while it is not quite, the state says so.
   void Settle()
   {
+    this->File.Reserve();
+    // From here on until it is settled, the file is neither what it was nor what it will be.
     this->WriteState(false);
     this->File.Flush();
     Synchronize(this->PartPath);
@@ -513,6 +515,7 @@ private:
   std::string StatePath;
   BrickFileLayout Layout;
   Json Description;
+  PathClaim Claim;
   WrittenHdfFile File;
 };
 

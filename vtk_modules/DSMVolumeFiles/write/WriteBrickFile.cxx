@@ -232,7 +232,15 @@ BrickFileLayout CreateLayout(const ValueOrigin& from, const WriteOptions& option
   for (FileArray array : from.GetArrays())
   {
     // HDF5's names of what lies in folders.
+    const std::string name = array.Name;
     std::replace(array.Name.begin(), array.Name.end(), '/', '_');
+    if (std::any_of(layout.Arrays.begin(), layout.Arrays.end(),
+          [&](const FileArray& one)
+          { return one.Name == array.Name && one.OnCells == array.OnCells; }))
+    {
+      throw dsm::Error("Two arrays would be called '" + array.Name + "', one of them '" + name +
+        "'. Leave one out.");
+    }
     array.Grid.ChunkSamples = glm::min(rt::Index3(layout.BrickEdge), array.Grid.Samples);
     layout.Arrays.push_back(std::move(array));
   }
@@ -480,9 +488,17 @@ void WriteBrickFile(std::unique_ptr<ValueOrigin> from, const std::string& path,
   {
     range = messenger.AllGatherValue(range).front();
   }
-  const std::vector<std::vector<std::byte>> indices =
-    FindIndices(BrickFileWriter::GetPartPath(path), layout, ranges, options, messenger,
-      [&](double part) { tellHalf(1.0, part); });
+  std::vector<std::vector<std::byte>> indices;
+  const std::string part = BrickFileWriter::GetPartPath(path);
+  try
+  {
+    indices = FindIndices(
+      part, layout, ranges, options, messenger, [&](double done) { tellHalf(1.0, done); });
+  }
+  catch (const dsm::Error& error) // the same on every rank
+  {
+    throw dsm::Error(error.what() + (" If '" + part + "' is damaged, delete it, and begin anew."));
+  }
   const int levels = WriteLevels(path, layout, source, options, messenger,
     [&](double part) { tell(finest + (1.0 - finest) * part); });
   messenger.Barrier();

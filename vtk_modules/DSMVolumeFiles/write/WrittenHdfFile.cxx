@@ -14,9 +14,8 @@
 namespace vol
 {
 
-WrittenHdfFile::WrittenHdfFile(std::string path, std::function<void()> failed)
+WrittenHdfFile::WrittenHdfFile(std::string path)
   : Path(std::move(path))
-  , Failed(std::move(failed))
 {
 }
 
@@ -74,7 +73,6 @@ void WrittenHdfFile::Check(herr_t result)
   if (result < 0)
   {
     const int cause = errno;
-    this->Failed();
     this->Divert();
     throw dsm::Error("Writing '" + this->Path + "' failed" +
       (cause != 0 ? std::string(": ") + std::strerror(cause) : std::string()) + ".");
@@ -110,6 +108,17 @@ void WrittenHdfFile::WriteAttribute(
   const HdfHandle attribute =
     this->Own(H5Acreate2(object, name, type, space.Get(), H5P_DEFAULT, H5P_DEFAULT), &H5Aclose);
   this->Check(H5Awrite(attribute.Get(), type, numbers));
+}
+
+void WrittenHdfFile::WriteAttribute(hid_t object, const char* name, const std::string& text)
+{
+  const HdfHandle type = this->Own(H5Tcopy(H5T_C_S1), &H5Tclose);
+  H5Tset_size(type.Get(), text.size());
+  H5Tset_strpad(type.Get(), H5T_STR_NULLPAD);
+  const HdfHandle one = this->Own(H5Screate(H5S_SCALAR), &H5Sclose);
+  const HdfHandle attribute =
+    this->Own(H5Acreate2(object, name, type.Get(), one.Get(), H5P_DEFAULT, H5P_DEFAULT), &H5Aclose);
+  this->Check(H5Awrite(attribute.Get(), type.Get(), text.data()));
 }
 
 void WrittenHdfFile::Divert()

@@ -5,7 +5,6 @@
 #include "DSMVolumeFiles/format/HdfLibrary.h"
 
 #include <cstdint>
-#include <functional>
 #include <string>
 #include <vector>
 
@@ -17,8 +16,7 @@ namespace vol
 class WrittenHdfFile
 {
 public:
-  /// `failed` is called before anything is thrown.
-  WrittenHdfFile(std::string path, std::function<void()> failed);
+  explicit WrittenHdfFile(std::string path);
   ~WrittenHdfFile();
   WrittenHdfFile(const WrittenHdfFile&) = delete;
   WrittenHdfFile& operator=(const WrittenHdfFile&) = delete;
@@ -39,6 +37,7 @@ public:
   HdfHandle CreateDataset(
     const std::string& name, hid_t type, const std::vector<hsize_t>& shape, hid_t creation);
   void WriteAttribute(hid_t object, const char* name, hid_t type, const void* numbers, int count);
+  void WriteAttribute(hid_t object, const char* name, const std::string& text);
 
   /// Before the library writes what it holds, or much at once: once that has failed half way, the file cannot be closed
   /// any more, wherever the rest goes. Makes sure of as many bytes beyond its end. Not every file system can do it.
@@ -56,7 +55,6 @@ private:
   int GetDescriptor() const;
 
   std::string Path;
-  std::function<void()> Failed;
   hid_t Id = H5I_INVALID_HID;
   bool IsDiverted = false;
 };

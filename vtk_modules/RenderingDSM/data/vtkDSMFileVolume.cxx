@@ -2,6 +2,7 @@
 #include "vtkDSMFileVolume.h"
 
 #include "DSMCore/base/Error.h"
+#include "DSMCore/memory/FreedMemory.h"
 #include "DSMRayTracing/base/ByteHash.h"
 #include "DSMRayTracing/layout/DealBricks.h"
 #include "DSMVolumeFiles/cache/ChunkCache.h"
@@ -562,6 +563,7 @@ rt::VoxelIndex vtkDSMFileVolume::FindIndex(dsm::Messenger& messenger,
       pass.Order = this->CreateOrder(lattice);
     });
   rt::VoxelIndex found = rt::VoxelIndex::Find(messenger, lattice, *reader, pass, progress);
+  dsm::FreedMemory::Return(); // of the threads that looked
   messenger.RunTogether(what,
     [&]
     {

@@ -38,11 +38,13 @@ struct ArrayNote
   std::int32_t Type;
   std::int32_t Components;
   std::int32_t OnCells;
-  char Name[116]; ///< longer names differ in their beginning, or are left out
+  std::int32_t IsActive; ///< the scalars
+  char Name[112];        ///< longer names differ in their beginning, or are left out
 
-  bool operator==(const ArrayNote& other) const
+  bool IsSame(const ArrayNote& other) const
   {
-    return std::memcmp(this, &other, sizeof(ArrayNote)) == 0;
+    return this->Type == other.Type && this->Components == other.Components &&
+      this->OnCells == other.OnCells && std::strcmp(this->Name, other.Name) == 0;
   }
 };
 
@@ -124,6 +126,7 @@ void vtkDSMImageOrigin::GatherArrays(
       entry.Type = isUsable ? static_cast<std::int32_t>(vtkDSMScalarType::FromArray(array)) : -1;
       entry.Components = isUsable ? array->GetNumberOfComponents() : 0;
       entry.OnCells = onCells;
+      entry.IsActive = array && array == attributes->GetScalars() ? 1 : 0;
       std::strncpy(entry.Name, name, sizeof(entry.Name) - 1);
       mine.push_back(entry);
     }
@@ -162,7 +165,8 @@ void vtkDSMImageOrigin::GatherArrays(
       const std::vector<ArrayNote>& notes = ofRanks[rank];
       isEverywhere = isEverywhere &&
         (pieces[rank].Points.x == 0 ||
-          std::find(notes.begin(), notes.end(), wanted) != notes.end());
+          std::any_of(
+            notes.begin(), notes.end(), [&](const ArrayNote& one) { return one.IsSame(wanted); }));
     }
     if (!isEverywhere)
     {
@@ -174,6 +178,7 @@ void vtkDSMImageOrigin::GatherArrays(
     array.Type = static_cast<rt::ScalarType>(wanted.Type);
     array.Components = wanted.Components;
     array.OnCells = wanted.OnCells != 0;
+    array.IsActive = wanted.OnCells == 0 && wanted.IsActive != 0;
     array.Grid.Samples = array.OnCells ? cells : this->Geometry.Points;
     this->Arrays.push_back(array);
     vtkDataSetAttributes* attributes = nullptr;

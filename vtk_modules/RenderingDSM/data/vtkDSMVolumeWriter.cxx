@@ -95,7 +95,20 @@ vtkMultiProcessController* vtkDSMVolumeWriter::GetController() const
 int vtkDSMVolumeWriter::Write()
 {
   this->SetErrorCode(vtkErrorCode::NoError);
+  this->HasJoined = false;
   this->Superclass::Write();
+  if (!this->HasJoined) // VTK has said why
+  {
+    this->SetErrorCode(vtkErrorCode::UserError);
+    try
+    {
+      this->Join(vtkDSMRankGroup::Get(this->Controller)->GetMessenger(), false);
+    }
+    catch (const std::exception&) // the other ranks say that this one has nothing
+    {
+      return 0;
+    }
+  }
   return this->GetErrorCode() == vtkErrorCode::NoError ? 1 : 0;
 }
 
@@ -120,16 +133,30 @@ vtkTypeBool vtkDSMVolumeWriter::ProcessRequest(
   return this->Superclass::ProcessRequest(request, input, output);
 }
 
+void vtkDSMVolumeWriter::Join(dsm::Messenger& messenger, bool hasImage)
+{
+  this->HasJoined = true;
+  messenger.RunTogether("Writing '" + this->FileName + "'",
+    [&]
+    {
+      if (!hasImage)
+      {
+        throw dsm::Error("It has no image to write.");
+      }
+    });
+}
+
 void vtkDSMVolumeWriter::WriteData()
 {
   try
   {
+    const auto group = vtkDSMRankGroup::Get(this->Controller);
+    dsm::Messenger& messenger = group->GetMessenger();
+    this->Join(messenger, true);
     if (this->FileName.empty())
     {
       throw dsm::Error("The file to write has no name. Set FileName.");
     }
-    const auto group = vtkDSMRankGroup::Get(this->Controller);
-    dsm::Messenger& messenger = group->GetMessenger();
     auto origin =
       std::make_unique<vtkDSMImageOrigin>(messenger, vtkImageData::SafeDownCast(this->GetInput()));
     if (!origin->GetLeftOut().empty() && messenger.GetRank() == 0)

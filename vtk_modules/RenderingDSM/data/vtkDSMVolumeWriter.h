@@ -20,6 +20,10 @@
 
 #include <string> // for ivars
 
+namespace dsm
+{
+class Messenger;
+}
 class vtkMultiProcessController;
 
 class VTKRENDERINGDSM_EXPORT vtkDSMVolumeWriter : public vtkWriter
@@ -88,9 +92,13 @@ private:
   vtkDSMVolumeWriter(const vtkDSMVolumeWriter&) = delete;
   void operator=(const vtkDSMVolumeWriter&) = delete;
 
+  /// Collective: nobody writes where one has nothing. Throws dsm::Error.
+  void Join(dsm::Messenger& messenger, bool hasImage);
+
   std::string FileName;
   int Compression = NONE;
   bool CoarserLevels = false;
+  bool HasJoined = false; ///< in this Write
   vtkSmartPointer<vtkMultiProcessController> Controller;
 };
 

@@ -2,6 +2,7 @@
 #include "vtkDSMFileValues.h"
 
 #include "DSMCore/base/Error.h"
+#include "DSMCore/memory/FreedMemory.h"
 #include "DSMRayTracing/base/ByteHash.h"
 
 #include "vtkMultiProcessController.h"
@@ -98,6 +99,7 @@ const vol::ValueRanges* vtkDSMFileValues::FindRanges(
   {
     this->Ranges =
       vol::FindRanges(this->File, this->Array, this->Step, this->Box, GetThreads(), goesOn);
+    dsm::FreedMemory::Return(); // of the threads that looked
     if (this->Ranges)
     {
       vol::KeepRanges(*this->File, this->Array, this->Step, this->Box, *this->Ranges);

@@ -294,19 +294,19 @@ bool vtkDSMVolumeReader::IsChosen(const vol::FileArray& array) const
 
 const vol::FileArray* vtkDSMVolumeReader::FindScalars() const
 {
-  const vol::FileArray* first = nullptr;
+  // What the file says; else the first of one component; else the first.
+  const auto getRank = [](const vol::FileArray& array) {
+    return array.IsActive ? 2 : array.Components == 1 ? 1 : 0;
+  };
+  const vol::FileArray* best = nullptr;
   for (const vol::FileArray& array : this->Self->File->GetArrays())
   {
-    if (!array.OnCells && this->IsChosen(array))
+    if (!array.OnCells && this->IsChosen(array) && (!best || getRank(array) > getRank(*best)))
     {
-      if (array.Components == 1)
-      {
-        return &array;
-      }
-      first = first ? first : &array;
+      best = &array;
     }
   }
-  return first;
+  return best;
 }
 
 void vtkDSMVolumeReader::TellOfScalars(vtkInformation* information) const

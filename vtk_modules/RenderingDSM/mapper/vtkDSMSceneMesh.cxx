@@ -255,6 +255,10 @@ const std::shared_ptr<const rt::Texture>& vtkDSMSceneMesh::GetPicture(vtkActor* 
   vtkInformation* keys = actor->GetPropertyKeys();
   auto* placeKey = vtkDSMCompatibility::GetTextureTransformKey();
   const double* place = keys && keys->Has(placeKey) ? keys->Get(placeKey) : nullptr;
+  if (texture->GetInputAlgorithm())
+  {
+    texture->GetInputAlgorithm()->Update();
+  }
   const std::vector<std::uint64_t> source{ reinterpret_cast<std::uintptr_t>(texture),
     texture->GetMTime(), texture->GetInput() ? texture->GetInput()->GetMTime() : 0,
     texture->GetTransform() ? texture->GetTransform()->GetMTime() : 0, keys ? keys->GetMTime() : 0,

@@ -25,10 +25,11 @@ constexpr float TracePriority = -1.0f;
 /// Before vtkSynchronizedRenderers, which makes it black while the ranks render.
 constexpr float BackgroundPriority = 1.0f;
 
+/// Never destroyed: renderers that are static end after what is static here.
 std::map<vtkRenderer*, vtkDSMScene*>& GetRegistry()
 {
-  static std::map<vtkRenderer*, vtkDSMScene*> registry;
-  return registry;
+  static auto* const registry = new std::map<vtkRenderer*, vtkDSMScene*>;
+  return *registry;
 }
 
 /// Refuses passes that draw what VTK's own mappers have, and leave other props out.
@@ -81,6 +82,11 @@ vtkDSMScene::~vtkDSMScene()
 
 vtkSmartPointer<vtkDSMScene> vtkDSMScene::ForRenderer(vtkRenderer* renderer)
 {
+  if (!renderer)
+  {
+    vtkGenericWarningMacro("vtkDSMScene needs a renderer.");
+    return nullptr;
+  }
   vtkDSMScene*& known = GetRegistry()[renderer];
   // The address of a renderer that is gone may be another's now.
   if (known && known->GetRenderer() == renderer)
@@ -97,7 +103,10 @@ vtkSmartPointer<vtkDSMScene> vtkDSMScene::ForRenderer(vtkRenderer* renderer)
 vtkDSMScene* vtkDSMScene::NewForRenderer(vtkRenderer* renderer)
 {
   const vtkSmartPointer<vtkDSMScene> scene = ForRenderer(renderer);
-  scene->Register(nullptr);
+  if (scene)
+  {
+    scene->Register(nullptr);
+  }
   return scene;
 }
 
@@ -124,9 +133,8 @@ void vtkDSMScene::DrawWithoutScene(vtkRenderer* renderer, vtkObject* mapper)
   }
   const vtkSmartPointer<vtkDSMScene> scene = ForRenderer(renderer);
   scene->Self->Keeper = scene;
-  scene->NoteBackground();
-  scene->Trace();
-  scene->Self->Prop->RenderOpaqueGeometry(renderer);
+  // Too late for this frame: what is opaque may be drawn already, and parts of assemblies are where these have put them.
+  scene->Self->DrawsAgain = true;
 }
 
 void vtkDSMScene::EndWithRenderer()
@@ -142,6 +150,11 @@ void vtkDSMScene::EndWithRenderer()
 void vtkDSMScene::EndFrame()
 {
   Internals& self = *this->Self;
+  if (std::exchange(self.DrawsAgain, false) && !self.Renderer->GetSelector())
+  {
+    self.Renderer->Render();
+    return;
+  }
   self.Prop->SetBounds(self.Bounds);
   self.Prop->SetUseBounds(self.Group && self.Group->GetMessenger().GetSize() > 1);
   this->EndReading();
@@ -362,6 +375,7 @@ bool vtkDSMScene::TraceFrame()
   {
     self.Statistics->Clear();
     self.Accumulation.Clear();
+    self.ShowWhole();
   }
   else if (!failure.empty())
   {

@@ -48,7 +48,8 @@ public:
   ///@{
   /**
    * The renderer's scene, made when there is none. It lives as long as somebody holds it. The second is
-   * for wrapped languages, and what it returns is the caller's to delete: VTK 9.1 wraps no smart pointers.
+   * for wrapped languages, and what it returns is the caller's to delete: VTK 9.1 wraps no smart pointers. Null, with
+   * a warning, without a renderer.
    */
   VTK_WRAPEXCLUDE static vtkSmartPointer<vtkDSMScene> ForRenderer(vtkRenderer* renderer);
   VTK_NEWINSTANCE static vtkDSMScene* NewForRenderer(vtkRenderer* renderer);
@@ -56,7 +57,7 @@ public:
 
   /**
    * For a mapper that is asked to draw: where the renderer has no scene, makes one that ends with the
-   * renderer, and draws its first frame. With several processes this is an error, which is reported once
+   * renderer, and has the frame drawn again when it ends. With several processes this is an error, which is reported once
    * for each renderer: other ranks may not be drawing.
    */
   static void DrawWithoutScene(vtkRenderer* renderer, vtkObject* mapper);

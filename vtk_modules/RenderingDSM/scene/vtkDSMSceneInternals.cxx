@@ -352,6 +352,17 @@ void vtkDSMScene::Internals::AddWholeView(const rt::FrameRequest& request, doubl
   box.GetBounds(bounds);
 }
 
+void vtkDSMScene::Internals::ShowWhole() const
+{
+  vtkNew<vtkMatrix4x4> projection;
+  const rt::FrameRequest request =
+    vtkDSMTranslation::ToRequest(this->Renderer, this->Display, projection);
+  double bounds[6];
+  std::copy_n(this->Bounds, 6, bounds);
+  this->AddWholeView(request, bounds);
+  this->Prop->SetBounds(bounds);
+}
+
 /// Collective. Takes rank 0's view: the camera that came from there is not always the same to the last
 /// bit, ParaView's other ranks have no background, which gives light and which mirrored rays see where
 /// they meet nothing, and lights may follow the camera. A camera that differs by more than rounding is left to be refused.

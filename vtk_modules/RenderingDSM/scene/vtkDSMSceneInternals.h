@@ -42,6 +42,8 @@ public:
   std::string MakeFrame(const dsm::FirstFailure& earlier);
   /// Nothing is shown.
   void Clear();
+  /// The last picture stays, though the camera may be another: until the frame ends, all of it is what the ranks exchange.
+  void ShowWhole() const;
   /// Into the target's image, where there is one; without pixels, nothing but background.
   void FillImage(const rt::Picture& picture) const;
 
@@ -58,6 +60,7 @@ public:
   std::optional<Target> Image; ///< while one is traced
   unsigned long Observers[4] = { 0, 0, 0, 0 };
   vtkSmartPointer<vtkDSMScene> Keeper; ///< the scene itself, when nobody but the renderer has it
+  bool DrawsAgain = false;             ///< it was made in the middle of a frame
   rt::Environment Background;          ///< of this rank's renderer, as the application set it
   vtkSmartPointer<vtkMultiProcessController> Controller;
   vtkNew<vtkDSMFrameProp> Prop;

@@ -175,28 +175,29 @@ rt::Material vtkDSMTranslation::ToMaterial(vtkVolumeProperty* property, double i
 std::shared_ptr<const rt::Texture> vtkDSMTranslation::ToTexture(
   vtkTexture* texture, vtkMatrix4x4* transform)
 {
-  if (texture->GetInputAlgorithm())
-  {
-    texture->GetInputAlgorithm()->Update();
-  }
   vtkImageData* image = texture->GetInput();
-  auto* colors =
-    image ? vtkUnsignedCharArray::SafeDownCast(image->GetPointData()->GetScalars()) : nullptr;
-  if (!colors || colors->GetNumberOfTuples() == 0)
+  vtkDataArray* const scalars = image ? image->GetPointData()->GetScalars() : nullptr;
+  if (!scalars || scalars->GetNumberOfTuples() == 0)
   {
     return nullptr;
   }
+  // Bytes are colours, unless they are to be mapped; other values are mapped, as VTK does.
+  auto* const bytes = texture->GetColorMode() != VTK_COLOR_MODE_MAP_SCALARS
+    ? vtkUnsignedCharArray::SafeDownCast(scalars)
+    : nullptr;
+  const unsigned char* const colors =
+    bytes ? bytes->GetPointer(0) : texture->MapScalarsToColors(scalars);
   auto picture = std::make_shared<rt::Texture>();
   picture->Width = image->GetDimensions()[0];
   picture->Height = image->GetDimensions()[1];
   picture->Repeat = texture->GetRepeat() != 0;
   picture->Interpolate = texture->GetInterpolate() != 0;
   picture->Transform = ToMatrix(transform);
-  const int components = colors->GetNumberOfComponents();
+  const int components = bytes ? bytes->GetNumberOfComponents() : 4;
   picture->Texels.resize(4 * static_cast<std::size_t>(picture->Width) * picture->Height);
   for (std::size_t texel = 0; texel < picture->Texels.size() / 4; ++texel)
   {
-    const unsigned char* from = colors->GetPointer(static_cast<vtkIdType>(texel) * components);
+    const unsigned char* from = colors + texel * static_cast<std::size_t>(components);
     std::uint8_t* to = &picture->Texels[4 * texel];
     // Gray, gray and alpha, colour, colour and alpha.
     to[0] = from[0];

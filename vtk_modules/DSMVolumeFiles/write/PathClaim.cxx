@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "DSMVolumeFiles/write/PathClaim.h"
+
+#include "DSMCore/base/Error.h"
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <filesystem>
+#include <system_error>
+
+namespace vol
+{
+
+namespace
+{
+
+void CheckReplaceable(const std::string& path)
+{
+  if (path.empty())
+  {
+    throw dsm::Error("The file to write has no name.");
+  }
+  std::error_code failure;
+  const std::filesystem::file_status there = std::filesystem::status(path, failure);
+  if (std::filesystem::exists(there) && !std::filesystem::is_regular_file(there))
+  {
+    throw dsm::Error("'" + path + "' is a folder or a device, and no file that can be replaced.");
+  }
+}
+
+/// Whether the file that is open is still the one at the path: who had it may have removed it meanwhile.
+bool IsAt(int file, const std::string& path)
+{
+  struct stat opened = {};
+  struct stat there = {};
+  return fstat(file, &opened) == 0 && stat(path.c_str(), &there) == 0 &&
+    opened.st_ino == there.st_ino && opened.st_dev == there.st_dev;
+}
+
+} // namespace
+
+PathClaim::PathClaim(const std::string& path)
+  : LockPath(path + ".part.lock")
+{
+  CheckReplaceable(path);
+  do
+  {
+    if (this->Lock >= 0)
+    {
+      close(this->Lock);
+    }
+    this->Lock = open(this->LockPath.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+    if (this->Lock < 0)
+    {
+      return; // what cannot be written is said by who writes
+    }
+    if (flock(this->Lock, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK)
+    {
+      close(this->Lock);
+      this->Lock = -1;
+      throw dsm::Error("Another process is writing '" + path + "'. Wait until it ends, or end it.");
+    }
+  } while (!IsAt(this->Lock, this->LockPath));
+}
+
+PathClaim::~PathClaim()
+{
+  if (this->Lock >= 0)
+  {
+    unlink(this->LockPath.c_str());
+    close(this->Lock);
+  }
+}
+
+} // namespace vol

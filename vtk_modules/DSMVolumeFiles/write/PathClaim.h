@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef vol_PathClaim_h
+#define vol_PathClaim_h
+
+#include <string>
+
+namespace vol
+{
+
+/// That this process, and no other one, writes a file that will be at a path: by a lock beside it (PATH.part.lock), which
+/// ends with the process. Where a file system has no locks, nothing is claimed.
+class PathClaim
+{
+public:
+  /// Throws dsm::Error when another process has it, or what is there cannot be replaced by a file.
+  explicit PathClaim(const std::string& path);
+  ~PathClaim();
+  PathClaim(const PathClaim&) = delete;
+  PathClaim& operator=(const PathClaim&) = delete;
+
+private:
+  std::string LockPath;
+  int Lock = -1;
+};
+
+} // namespace vol
+
+#endif
