@@ -98,6 +98,9 @@ def expect_failure(what, last, *words):
         if messages.text:
             check(all(word in messages.text for word in words), f"{what}: file and cause are named: {messages.text}")
             check((picture == last).all(), f"{what}: the last picture stays")
+            view.GetActiveCamera().Dolly(0.2)
+            with Messages():
+                check((render(view) == last).all(), f"{what}: all of it, wherever the camera goes")
             return
         last = picture
     check(False, f"{what} is noticed")

@@ -7,10 +7,12 @@
 #include "vtkDSMVolumeMapper.h"
 
 #include "vtkActor.h"
+#include "vtkAssembly.h"
 #include "vtkAutoInit.h"
 #include "vtkCamera.h"
 #include "vtkColorTransferFunction.h"
 #include "vtkContourValues.h"
+#include "vtkCubeSource.h"
 #include "vtkElevationFilter.h"
 #include "vtkGPUVolumeRayCastMapper.h"
 #include "vtkNew.h"
@@ -21,6 +23,7 @@
 #include "vtkRenderWindow.h"
 #include "vtkRenderer.h"
 #include "vtkSphereSource.h"
+#include "vtkTexture.h"
 #include "vtkUnsignedCharArray.h"
 #include "vtkVolume.h"
 #include "vtkVolumeProperty.h"
@@ -164,6 +167,98 @@ TEST(Replacement, OfThePolyDataMapperShowsItsSurface)
 {
   ExpectAlike(DrawBall<vtkDSMPolyDataMapper>(false), DrawBall<vtkPolyDataMapper>(false));
   ExpectAlike(DrawBall<vtkDSMPolyDataMapper>(true), DrawBall<vtkPolyDataMapper>(true));
+}
+
+/// A cube with a picture of values that are no colours, lit from the camera.
+template <typename Mapper>
+vtkSmartPointer<vtkActor> MakeCube()
+{
+  vtkNew<vtkCubeSource> source;
+  source->SetXLength(2.0);
+  vtkNew<Mapper> mapper;
+  mapper->SetInputConnection(source->GetOutputPort());
+  vtkNew<vtkRTAnalyticSource> values;
+  values->SetWholeExtent(0, 15, 0, 15, 0, 0);
+  vtkNew<vtkTexture> texture;
+  texture->SetInputConnection(values->GetOutputPort());
+  vtkSmartPointer<vtkActor> actor = vtkSmartPointer<vtkActor>::New();
+  actor->SetMapper(mapper);
+  actor->SetTexture(texture);
+  actor->SetPosition(3.0, 0.0, 0.0);
+  actor->RotateX(30.0);
+  return actor;
+}
+
+/// In the first frame, whose scene the mapper makes.
+template <typename Mapper>
+Picture DrawAssembly()
+{
+  vtkNew<vtkAssembly> inner;
+  inner->AddPart(MakeCube<Mapper>());
+  inner->RotateZ(40.0);
+  vtkNew<vtkAssembly> outer;
+  outer->AddPart(inner);
+  const vtkSmartPointer<vtkActor> other = MakeCube<Mapper>();
+  outer->AddPart(other);
+  outer->SetScale(1.0, 2.0, 1.0);
+  vtkNew<vtkRenderer> renderer;
+  renderer->AddViewProp(outer);
+  renderer->ResetCamera();
+  const Picture picture = Render(renderer);
+  EXPECT_EQ(other->GetPosition()[0], 3.0);
+  EXPECT_NEAR(other->GetOrientation()[0], 30.0, 1e-6);
+  return picture;
+}
+
+TEST(Replacement, OfThePolyDataMapperStaysWhereAssembliesHaveIt)
+{
+  ExpectAlike(DrawAssembly<vtkDSMPolyDataMapper>(), DrawAssembly<vtkPolyDataMapper>());
+}
+
+/// A ball that is seen through, in a larger one that VTK draws, or alone; in the first frame.
+template <typename Mapper>
+Picture DrawGlass(bool isAlone)
+{
+  vtkNew<vtkSphereSource> source;
+  source->SetThetaResolution(40);
+  source->SetPhiResolution(40);
+  vtkNew<Mapper> mapper;
+  mapper->SetInputConnection(source->GetOutputPort());
+  vtkNew<vtkActor> actor;
+  actor->SetMapper(mapper);
+  actor->GetProperty()->SetOpacity(0.5);
+  vtkNew<vtkPolyDataMapper> outerMapper;
+  outerMapper->SetInputConnection(source->GetOutputPort());
+  vtkNew<vtkActor> outer;
+  outer->SetMapper(outerMapper);
+  outer->SetScale(1.5);
+  outer->GetProperty()->SetColor(0.9, 0.5, 0.3);
+  outer->GetProperty()->SetOpacity(0.4);
+  vtkNew<vtkRenderer> renderer;
+  renderer->SetUseDepthPeeling(true);
+  renderer->SetMaximumNumberOfPeels(8);
+  renderer->AddActor(actor);
+  if (!isAlone)
+  {
+    renderer->AddActor(outer);
+  }
+  renderer->ResetCamera();
+  return Render(renderer);
+}
+
+TEST(Replacement, OfThePolyDataMapperIsSeenThroughAtOnce)
+{
+  for (const bool isAlone : { true, false })
+  {
+    ExpectAlike(DrawGlass<vtkDSMPolyDataMapper>(isAlone), DrawGlass<vtkPolyDataMapper>(isAlone));
+  }
+}
+
+TEST(Replacement, WithoutARendererThereIsNoScene)
+{
+  vtkObject::GlobalWarningDisplayOff();
+  EXPECT_EQ(vtkDSMScene::NewForRenderer(nullptr), nullptr);
+  vtkObject::GlobalWarningDisplayOn();
 }
 
 TEST(Replacement, TheSceneThatAMapperMakesEndsWithTheRenderer)
