@@ -71,10 +71,10 @@ PositionedFile::PositionedFile(std::string path)
     }
     Refuse(this->Path, "cannot be opened: " + cause + ".");
   }
-  if (!S_ISREG(state.st_mode))
+  if (!S_ISREG(state.st_mode) && !S_ISDIR(state.st_mode)) // a folder has a stamp, too
   {
     close(this->Descriptor);
-    Refuse(this->Path, "cannot be read in parts: it is a folder, a device or a pipe.");
+    Refuse(this->Path, "cannot be read in parts: it is a device or a pipe.");
   }
   this->Bytes = static_cast<std::uint64_t>(state.st_size);
   this->Stamp = GetStampOf(state);
