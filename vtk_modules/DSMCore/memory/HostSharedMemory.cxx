@@ -2,10 +2,10 @@
 #include "DSMCore/memory/HostSharedMemory.h"
 
 #include "DSMCore/base/Block.h"
+#include "DSMCore/memory/FileLimit.h"
 
 #include <fcntl.h>
 #include <sys/mman.h>
-#include <sys/resource.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -34,13 +34,6 @@ constexpr int Collapse = 25;
 std::size_t GetFileBytes(std::size_t bytes)
 {
   return AlignBlock(std::max(bytes, std::size_t(1))) + sizeof(HostSharedMemory::Ticket::Token);
-}
-
-/// What `ulimit -f` lets files have.
-std::uint64_t GetMostFileBytes()
-{
-  rlimit limit{};
-  return getrlimit(RLIMIT_FSIZE, &limit) == 0 ? limit.rlim_cur : RLIM_INFINITY;
 }
 
 /// At a multiple of the size of a large page, else there could be none. Null when refused.
@@ -125,7 +118,7 @@ bool HostSharedMemory::Create(std::size_t bytes)
   const std::size_t fileBytes = GetFileBytes(bytes);
   if (fileBytes > GetMostFileBytes())
   {
-    return false; // to grow beyond it would end the process by a signal
+    return false;
   }
   const int file = memfd_create("dsm blocks", MFD_CLOEXEC);
   if (file < 0)

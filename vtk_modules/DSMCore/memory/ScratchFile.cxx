@@ -2,6 +2,7 @@
 #include "DSMCore/memory/ScratchFile.h"
 
 #include "DSMCore/base/Error.h"
+#include "DSMCore/memory/FileLimit.h"
 #include "DSMCore/memory/HostMemory.h"
 
 #include <cerrno>
@@ -10,7 +11,6 @@
 #include <utility>
 
 #include <fcntl.h>
-#include <sys/resource.h>
 #include <sys/stat.h>
 #include <sys/uio.h>
 #include <unistd.h>
@@ -78,10 +78,7 @@ void ScratchFile::Open()
 
 void ScratchFile::SetAside()
 {
-  // To grow beyond this limit would end the process by a signal.
-  rlimit limit{};
-  if (getrlimit(RLIMIT_FSIZE, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY &&
-    this->Bytes > limit.rlim_cur)
+  if (this->Bytes > GetMostFileBytes())
   {
     this->RefuseRoom(EFBIG);
   }

@@ -3,6 +3,7 @@
 
 #include "DSMCore/base/Error.h"
 #include "DSMCore/memory/AddressRange.h"
+#include "DSMCore/memory/FileLimit.h"
 
 #include <fcntl.h>
 #include <linux/futex.h>
@@ -114,12 +115,12 @@ SignalFaults::~SignalFaults()
 
 void SignalFaults::Attach(std::byte* begin, std::size_t bytes)
 {
-  rlimit limit{};
-  if (getrlimit(RLIMIT_FSIZE, &limit) == 0 && limit.rlim_cur < bytes)
+  const std::uint64_t most = GetMostFileBytes();
+  if (most < bytes)
   {
     throw Error("A memory file of " + std::to_string(bytes) +
       " bytes is needed for the blocks of other ranks, but files are limited to " +
-      std::to_string(limit.rlim_cur) +
+      std::to_string(most) +
       " bytes (RLIMIT_FSIZE). Raise the limit (ulimit -f), or choose the object based memory "
       "organisation (DSMMemoryOrganization).");
   }
