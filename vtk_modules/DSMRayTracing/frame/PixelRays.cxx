@@ -12,24 +12,35 @@
 namespace rt
 {
 
+bool PixelRays::CanBeMade(const glm::dmat4& worldToClip)
+{
+  const glm::dmat4 inverse = glm::inverse(worldToClip);
+  bool isFinite = true;
+  for (int column = 0; column < 4; ++column)
+  {
+    for (int row = 0; row < 4; ++row)
+    {
+      isFinite = isFinite && std::isfinite(inverse[column][row]);
+    }
+  }
+  return isFinite;
+}
+
 PixelRays::PixelRays(const FrameRequest& request)
   : PixelWidth(2.0 / request.Width)
   , PixelHeight(2.0 / request.Height)
   , WorldToClip(request.WorldToClip)
   , ClipToWorld(glm::inverse(request.WorldToClip))
 {
+  if (!CanBeMade(this->WorldToClip))
+  {
+    throw dsm::Error("The camera's matrix cannot be inverted. Reset the camera.");
+  }
   for (int column = 0; column < 4; ++column)
   {
     const glm::dvec4& clip = this->WorldToClip[column];
     this->WorldToPixels[column] = { (clip.x + clip.w) / this->PixelWidth,
       (clip.y + clip.w) / this->PixelHeight, clip.w };
-    for (int row = 0; row < 4; ++row)
-    {
-      if (!std::isfinite(this->ClipToWorld[column][row]))
-      {
-        throw dsm::Error("The camera's matrix cannot be inverted. Reset the camera.");
-      }
-    }
   }
 }
 

@@ -17,7 +17,9 @@ namespace rt
 class PixelRays
 {
 public:
-  /// Throws dsm::Error when the matrix cannot be inverted.
+  /// Whether the matrix can be inverted.
+  static bool CanBeMade(const glm::dmat4& worldToClip);
+  /// Throws dsm::Error when it cannot.
   explicit PixelRays(const FrameRequest& request);
 
   /// T at the far plane.

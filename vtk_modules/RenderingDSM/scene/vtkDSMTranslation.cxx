@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkDSMTranslation.h"
 
+#include "DSMRayTracing/frame/PixelRays.h"
 #include "vtkDSMCompatibility.h"
 #include "vtkDSMMemoryOptions.h"
 
@@ -27,7 +28,6 @@
 #include "vtkWindow.h"
 
 #include <glm/geometric.hpp>
-#include <glm/matrix.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -71,20 +71,6 @@ std::vector<rt::ColorMap::Category> ToCategories(vtkScalarsToColors* table)
   return categories;
 }
 
-bool CanBeInverted(const glm::dmat4& matrix)
-{
-  const glm::dmat4 inverse = glm::inverse(matrix);
-  bool isFinite = true;
-  for (int column = 0; column < 4; ++column)
-  {
-    for (int row = 0; row < 4; ++row)
-    {
-      isFinite = isFinite && std::isfinite(inverse[column][row]);
-    }
-  }
-  return isFinite;
-}
-
 void SetCamera(
   vtkRenderer* renderer, double aspect, vtkMatrix4x4* projection, rt::FrameRequest& request)
 {
@@ -96,7 +82,7 @@ void SetCamera(
   };
   vtkCamera* const camera = renderer->GetActiveCamera();
   set(camera);
-  if (!CanBeInverted(request.WorldToClip))
+  if (!rt::PixelRays::CanBeMade(request.WorldToClip))
   {
     // Where all is behind the camera, VTK's clipping range is all but nothing. There is nothing to be seen, but
     // rays must have a direction.
