@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <mutex>
 
 #include <unistd.h>
 
@@ -105,7 +106,8 @@ void KeptFile::Keep(const std::byte* bytes, std::size_t count) const
     }
   }
   std::filesystem::rename(written, path, failure);
-  RemoveUnused(path.parent_path());
+  static std::once_flag tidied; // a series keeps something for each step
+  std::call_once(tidied, [&] { RemoveUnused(path.parent_path()); });
 }
 
 } // namespace vol
