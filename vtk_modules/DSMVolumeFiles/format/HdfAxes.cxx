@@ -13,7 +13,7 @@ namespace
 /// Components that a last axis may stand for.
 constexpr hsize_t MostComponents = 9;
 
-std::vector<hsize_t> GetShape(hid_t dataset)
+std::vector<hsize_t> GetDimensions(hid_t dataset)
 {
   const HdfHandle space(H5Dget_space(dataset), &H5Sclose);
   const int rank = H5Sget_simple_extent_ndims(space.Get());
@@ -29,7 +29,7 @@ std::vector<hsize_t> GetShape(hid_t dataset)
 
 bool HdfAxes::Find(hid_t dataset, bool inSteps)
 {
-  const std::vector<hsize_t> shape = GetShape(dataset);
+  const std::vector<hsize_t> shape = GetDimensions(dataset);
   const bool isShort = !shape.empty() && shape.back() <= MostComponents;
   const std::size_t axes = shape.size();
   if (axes < 3 || axes > 5 || (axes == 5 && !isShort) ||

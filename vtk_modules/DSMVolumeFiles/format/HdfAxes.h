@@ -4,8 +4,10 @@
 
 #include "DSMRayTracing/base/Box.h"
 #include "DSMVolumeFiles/format/HdfLibrary.h"
+#include "DSMVolumeFiles/format/VolumeShape.h"
 
 #include <cstddef>
+#include <cstdint>
 
 namespace vol
 {
@@ -17,6 +19,10 @@ struct HdfAxes
   rt::Index3 Samples{ 0 };
   hsize_t Components = 0; ///< along a last axis; 0: it has none
 
+  VolumeShape GetShape() const
+  {
+    return { this->Samples, static_cast<std::int64_t>(this->Frames) };
+  }
   std::size_t GetBeforeSpace() const { return this->Frames > 0 ? 1 : 0; }
   /// Three are z, y and x. Of four, the last has components where it is short, and `inSteps` does not say that the
   /// first is time. Of five, both. False for what is no volume. The caller has GetHdfLock.

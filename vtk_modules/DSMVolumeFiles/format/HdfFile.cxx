@@ -7,6 +7,7 @@
 #include "DSMVolumeFiles/format/HdfAxes.h"
 #include "DSMVolumeFiles/format/HdfChunks.h"
 #include "DSMVolumeFiles/format/HdfLibrary.h"
+#include "DSMVolumeFiles/format/HdfValues.h"
 #include "DSMVolumeFiles/format/StoredFile.h"
 
 #include <algorithm>
@@ -21,58 +22,6 @@ namespace vol
 
 namespace
 {
-
-/// How the values of a dataset are stored.
-struct HdfValues
-{
-  rt::ScalarType Type = rt::ScalarType::UInt8; ///< as which they are shown
-  bool Swapped = false;
-  bool IsPlain = true; ///< else the library has to make that type of what is stored
-};
-
-std::optional<HdfValues> FindValuesOfType(const HdfHandle& stored)
-{
-  using Type = rt::ScalarType;
-  const std::size_t bytes = H5Tget_size(stored.Get());
-  HdfValues values;
-  values.Swapped = bytes > 1 && H5Tget_order(stored.Get()) != H5Tget_order(H5T_NATIVE_INT);
-  if (H5Tget_class(stored.Get()) == H5T_FLOAT)
-  {
-    values.Type = bytes <= 4 ? Type::Float32 : Type::Float64;
-  }
-  else if (H5Tget_class(stored.Get()) == H5T_INTEGER)
-  {
-    const bool isSigned = H5Tget_sign(stored.Get()) == H5T_SGN_2;
-    const Type types[2][4] = { { Type::UInt8, Type::UInt16, Type::UInt32, Type::UInt64 },
-      { Type::Int8, Type::Int16, Type::Int32, Type::Int64 } };
-    int size = 0; // the smallest that has as many bytes
-    while (size < 3 && bytes > std::size_t(1) << size)
-    {
-      ++size;
-    }
-    values.Type = types[isSigned ? 1 : 0][size];
-  }
-  else
-  {
-    return std::nullopt;
-  }
-  // Fewer bits than bytes have, or other exponents, are left to the library.
-  const HdfHandle same(H5Tcopy(GetHdfType(values.Type)), &H5Tclose);
-  values.IsPlain = H5Tset_order(same.Get(), H5Tget_order(stored.Get())) >= 0 &&
-    H5Tequal(same.Get(), stored.Get()) > 0;
-  return values;
-}
-
-/// None for what is no number. Names of truth values and the like (enumerations) count as their numbers.
-std::optional<HdfValues> FindValues(hid_t dataset)
-{
-  HdfHandle stored(H5Dget_type(dataset), &H5Tclose);
-  if (H5Tget_class(stored.Get()) == H5T_ENUM)
-  {
-    return FindValuesOfType(HdfHandle(H5Tget_super(stored.Get()), &H5Tclose));
-  }
-  return FindValuesOfType(stored);
-}
 
 class HdfFile final : public StoredFile
 {
@@ -415,7 +364,7 @@ private:
     {
       const HdfHandle dataset(H5Dopen2(this->File.Get(), name.c_str(), H5P_DEFAULT), &H5Dclose);
       HdfAxes axes;
-      if (dataset.IsOpen() && axes.Find(dataset.Get(), false) && FindValues(dataset.Get()))
+      if (dataset.IsOpen() && axes.Find(dataset.Get(), false) && FindHdfValues(dataset.Get()))
       {
         volumes[name] = axes;
       }
@@ -426,25 +375,16 @@ private:
           "steps, and a last one of components.";
       }
     }
-    // Of several shapes the largest.
-    const auto getCount = [](const HdfAxes& axes) {
-      return rt::Box{ rt::Index3(0), axes.Samples }.GetCount();
-    };
-    HdfAxes largest;
+    VolumeShape largest;
     for (const auto& [name, axes] : volumes)
     {
-      if (getCount(axes) > getCount(largest) ||
-        (axes.Samples == largest.Samples && axes.Frames > largest.Frames))
-      {
-        largest = axes;
-      }
+      largest = axes.GetShape().IsLargerThan(largest) ? axes.GetShape() : largest;
     }
     this->Geometry.Points = largest.Samples;
-    this->Steps = static_cast<int>(std::max<hsize_t>(1, largest.Frames));
-    // What has no time is there at all times.
+    this->Steps = static_cast<int>(std::max<std::int64_t>(1, largest.Times));
     for (const auto& [name, axes] : volumes)
     {
-      if (axes.Samples == largest.Samples && (axes.Frames == 0 || axes.Frames == largest.Frames))
+      if (axes.GetShape().BelongsTo(largest))
       {
         this->Add(HdfHandle(H5Dopen2(this->File.Get(), name.c_str(), H5P_DEFAULT), &H5Dclose), name,
           false, axes, {});
@@ -459,7 +399,7 @@ private:
     array.Name = name;
     array.OnCells = onCells;
     array.Components = static_cast<int>(std::max<hsize_t>(1, axes.Components));
-    const std::optional<HdfValues> values = FindValues(id.Get());
+    const std::optional<HdfValues> values = FindHdfValues(id.Get());
     if (!values)
     {
       return;
@@ -485,7 +425,7 @@ private:
         storage.HasWholeChunks = false;
         break;
       case H5D_CHUNKED:
-        dataset.ReadByLibrary = !FindSteps(properties.Get(), steps) ||
+        dataset.ReadByLibrary = !FindHdfSteps(properties.Get(), steps) ||
           !this->FindChunks(properties.Get(), array, storage, dataset, values->Swapped);
         break;
       default:
@@ -554,42 +494,6 @@ private:
     return all;
   }
 
-  /// False when a filter is not known here.
-  static bool FindSteps(hid_t properties, std::vector<CodecStep>& steps)
-  {
-    const int count = H5Pget_nfilters(properties);
-    for (int index = 0; index < count; ++index)
-    {
-      unsigned flags = 0;
-      std::size_t parameterCount = 8;
-      unsigned parameters[8] = {};
-      unsigned config = 0;
-      const H5Z_filter_t filter = H5Pget_filter2(properties, static_cast<unsigned>(index), &flags,
-        &parameterCount, parameters, 0, nullptr, &config);
-      switch (filter)
-      {
-        case H5Z_FILTER_DEFLATE:
-          steps.push_back({ CodecStep::Kind::Deflate });
-          break;
-        case H5Z_FILTER_SHUFFLE:
-          steps.push_back({ CodecStep::Kind::Shuffle, std::max(1u, parameters[0]) });
-          break;
-        case H5Z_FILTER_FLETCHER32:
-          steps.push_back({ CodecStep::Kind::Fletcher32 });
-          break;
-        case HdfBloscFilter:
-          steps.push_back({ CodecStep::Kind::Blosc });
-          break;
-        case HdfZstdFilter:
-          steps.push_back({ CodecStep::Kind::Zstd });
-          break;
-        default:
-          return false;
-      }
-    }
-    return true;
-  }
-
   /// False when the chunks do not have all components, or are not where the library says, or as the filters say.
   bool FindChunks(
     hid_t properties, FileArray& array, Storage& storage, Dataset& dataset, bool swapped) const
@@ -631,28 +535,6 @@ private:
     return true;
   }
 
-  /// A filter that the library does not find; empty where it has all.
-  static std::string FindLack(hid_t dataset)
-  {
-    const HdfHandle properties(H5Dget_create_plist(dataset), &H5Pclose);
-    const int count = H5Pget_nfilters(properties.Get());
-    for (int index = 0; index < count; ++index)
-    {
-      unsigned flags = 0;
-      std::size_t parameterCount = 0;
-      char name[64] = {};
-      const H5Z_filter_t filter = H5Pget_filter2(properties.Get(), static_cast<unsigned>(index),
-        &flags, &parameterCount, nullptr, sizeof(name) - 1, name, nullptr);
-      if (H5Zfilter_avail(filter) <= 0)
-      {
-        return "it has no filter " + std::to_string(filter) + " (" + name +
-          "). Install its plugin where HDF5_PLUGIN_PATH says, or write the file with deflate, as "
-          "'h5repack -f GZIP=3' does.";
-      }
-    }
-    return {};
-  }
-
   void ReadByLibrary(std::size_t number, int step, const rt::Index3& chunk, std::byte* out) const
   {
     const std::lock_guard<std::mutex> lock(GetHdfLock());
@@ -674,7 +556,7 @@ private:
           all.Get(), H5S_SELECT_SET, first + skipped, nullptr, count + skipped, nullptr) < 0 ||
       H5Dread(dataset, GetHdfType(array.Type), part.Get(), all.Get(), H5P_DEFAULT, out) < 0)
     {
-      const std::string lack = FindLack(dataset);
+      const std::string lack = FindLackingHdfFilter(dataset);
       throw dsm::Error("A part of the array '" + array.Name + "' in '" + this->Path +
         "' cannot be read by the HDF5 library: " +
         (lack.empty() ? "it is damaged, or a file that it refers to is not there." : lack));

@@ -4,6 +4,7 @@
 #include "DSMCore/base/Error.h"
 #include "DSMRayTracing/base/ByteHash.h"
 #include "DSMVolumeFiles/format/StoredFile.h"
+#include "DSMVolumeFiles/format/VolumeShape.h"
 #include "DSMVolumeFiles/format/ZarrMetadata.h"
 #include "DSMVolumeFiles/format/ZarrParts.h"
 
@@ -287,13 +288,8 @@ private:
       addAs(this->Path, name.empty() ? "values" : name);
       return;
     }
-    struct Shape
-    {
-      rt::Index3 Samples{ 0 };
-      std::int64_t Times = 0; ///< 0: without an axis of time
-    };
-    std::map<std::string, Shape> found;
-    Shape largest;
+    std::map<std::string, VolumeShape> found;
+    VolumeShape largest;
     // Beside a volume there may be what is none, such as texts.
     std::string refused;
     const auto tryToRead = [&](const std::string& folder) -> std::optional<ZarrMetadata>
@@ -308,21 +304,16 @@ private:
         return std::nullopt;
       }
     };
-    const auto getCount = [](const rt::Index3& samples) {
-      return rt::Box{ rt::Index3(0), samples }.GetCount();
-    };
     for (const auto& entry : std::filesystem::directory_iterator(this->Path))
     {
       const auto data = entry.is_directory() ? tryToRead(entry.path().string()) : std::nullopt;
       if (data && data->IsVolume())
       {
         const LeadingAxes leading = FindLeadingAxes(data->Axes, data->Shape.size());
-        const Shape shape{ GetSpace(data->Shape, leading.FromX),
+        const VolumeShape shape{ GetSpace(data->Shape, leading.FromX),
           leading.Time < 0 ? 0 : data->Shape[static_cast<std::size_t>(leading.Time)] };
         found[entry.path().filename().string()] = shape;
-        const bool isLarger = getCount(shape.Samples) > getCount(largest.Samples) ||
-          (shape.Samples == largest.Samples && shape.Times > largest.Times);
-        largest = isLarger ? shape : largest;
+        largest = shape.IsLargerThan(largest) ? shape : largest;
       }
     }
     if (found.empty())
@@ -332,10 +323,9 @@ private:
         (refused.empty() ? "" : " " + refused) +
         (inner.empty() ? "" : " There may be one in '" + inner + "'; open that."));
     }
-    // What has no time is there at all times.
     for (const auto& [name, shape] : found)
     {
-      if (shape.Samples == largest.Samples && (shape.Times == 0 || shape.Times == largest.Times))
+      if (shape.BelongsTo(largest))
       {
         addAs(this->Path + "/" + name, name);
       }

@@ -487,8 +487,7 @@ private:
       file << state.dump(1) << std::endl;
       if (!file)
       {
-        const int cause = errno;
-        throw dsm::Error("Writing '" + written + "' failed: " + std::strerror(cause) + ".");
+        throw dsm::Error("Writing '" + written + "' failed: " + std::strerror(errno) + ".");
       }
     }
     Synchronize(written);

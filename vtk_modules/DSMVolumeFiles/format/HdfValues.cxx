@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "DSMVolumeFiles/format/HdfValues.h"
+
+#include <algorithm>
+#include <cstddef>
+
+namespace vol
+{
+
+namespace
+{
+
+std::optional<HdfValues> FindValuesOfType(const HdfHandle& stored)
+{
+  using Type = rt::ScalarType;
+  const std::size_t bytes = H5Tget_size(stored.Get());
+  HdfValues values;
+  values.Swapped = bytes > 1 && H5Tget_order(stored.Get()) != H5Tget_order(H5T_NATIVE_INT);
+  if (H5Tget_class(stored.Get()) == H5T_FLOAT)
+  {
+    values.Type = bytes <= 4 ? Type::Float32 : Type::Float64;
+  }
+  else if (H5Tget_class(stored.Get()) == H5T_INTEGER)
+  {
+    const bool isSigned = H5Tget_sign(stored.Get()) == H5T_SGN_2;
+    const Type types[2][4] = { { Type::UInt8, Type::UInt16, Type::UInt32, Type::UInt64 },
+      { Type::Int8, Type::Int16, Type::Int32, Type::Int64 } };
+    int size = 0; // the smallest that has as many bytes
+    while (size < 3 && bytes > std::size_t(1) << size)
+    {
+      ++size;
+    }
+    values.Type = types[isSigned ? 1 : 0][size];
+  }
+  else
+  {
+    return std::nullopt;
+  }
+  // Fewer bits than bytes have, or other exponents, are left to the library.
+  const HdfHandle same(H5Tcopy(GetHdfType(values.Type)), &H5Tclose);
+  values.IsPlain = H5Tset_order(same.Get(), H5Tget_order(stored.Get())) >= 0 &&
+    H5Tequal(same.Get(), stored.Get()) > 0;
+  return values;
+}
+
+} // namespace
+
+std::optional<HdfValues> FindHdfValues(hid_t dataset)
+{
+  HdfHandle stored(H5Dget_type(dataset), &H5Tclose);
+  if (H5Tget_class(stored.Get()) == H5T_ENUM)
+  {
+    return FindValuesOfType(HdfHandle(H5Tget_super(stored.Get()), &H5Tclose));
+  }
+  return FindValuesOfType(stored);
+}
+
+bool FindHdfSteps(hid_t properties, std::vector<CodecStep>& steps)
+{
+  const int count = H5Pget_nfilters(properties);
+  for (int index = 0; index < count; ++index)
+  {
+    unsigned flags = 0;
+    std::size_t parameterCount = 8;
+    unsigned parameters[8] = {};
+    unsigned config = 0;
+    const H5Z_filter_t filter = H5Pget_filter2(properties, static_cast<unsigned>(index), &flags,
+      &parameterCount, parameters, 0, nullptr, &config);
+    switch (filter)
+    {
+      case H5Z_FILTER_DEFLATE:
+        steps.push_back({ CodecStep::Kind::Deflate });
+        break;
+      case H5Z_FILTER_SHUFFLE:
+        steps.push_back({ CodecStep::Kind::Shuffle, std::max(1u, parameters[0]) });
+        break;
+      case H5Z_FILTER_FLETCHER32:
+        steps.push_back({ CodecStep::Kind::Fletcher32 });
+        break;
+      case HdfBloscFilter:
+        steps.push_back({ CodecStep::Kind::Blosc });
+        break;
+      case HdfZstdFilter:
+        steps.push_back({ CodecStep::Kind::Zstd });
+        break;
+      default:
+        return false;
+    }
+  }
+  return true;
+}
+
+std::string FindLackingHdfFilter(hid_t dataset)
+{
+  const HdfHandle properties(H5Dget_create_plist(dataset), &H5Pclose);
+  const int count = H5Pget_nfilters(properties.Get());
+  for (int index = 0; index < count; ++index)
+  {
+    unsigned flags = 0;
+    std::size_t parameterCount = 0;
+    char name[64] = {};
+    const H5Z_filter_t filter = H5Pget_filter2(properties.Get(), static_cast<unsigned>(index),
+      &flags, &parameterCount, nullptr, sizeof(name) - 1, name, nullptr);
+    if (H5Zfilter_avail(filter) <= 0)
+    {
+      return "it has no filter " + std::to_string(filter) + " (" + name +
+        "). Install its plugin where HDF5_PLUGIN_PATH says, or write the file with deflate, as "
+        "'h5repack -f GZIP=3' does.";
+    }
+  }
+  return {};
+}
+
+} // namespace vol

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef vol_HdfValues_h
+#define vol_HdfValues_h
+
+#include "DSMRayTracing/base/ScalarType.h"
+#include "DSMVolumeFiles/codec/ChunkCodec.h"
+#include "DSMVolumeFiles/format/HdfLibrary.h"
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace vol
+{
+
+/// How the values of a dataset are stored.
+struct HdfValues
+{
+  rt::ScalarType Type = rt::ScalarType::UInt8; ///< as which they are shown
+  bool Swapped = false;
+  bool IsPlain = true; ///< else the library has to make that type of what is stored
+};
+
+/// Of a dataset; none for what is no number. Names of truth values and the like (enumerations) count as their numbers.
+/// The caller of all of these has GetHdfLock.
+std::optional<HdfValues> FindHdfValues(hid_t dataset);
+
+/// The filters that a dataset with these properties has, as steps of ours. False when one is not known here.
+bool FindHdfSteps(hid_t properties, std::vector<CodecStep>& steps);
+
+/// What is to be said of a filter of a dataset that the library does not find; empty where it has all.
+std::string FindLackingHdfFilter(hid_t dataset);
+
+} // namespace vol
+
+#endif
