@@ -83,7 +83,7 @@ for package in \$packages; do
 done
 say "Configuring and building ..."
 cmake -S /project -B /build-$flavour -G Ninja -DCMAKE_BUILD_TYPE=Release \\
-  -DCMAKE_CXX_COMPILER_LAUNCHER=ccache -DDSM_BUILD_TESTING=ON -DDSM_TEST_DATA=/data \\
+  -DCMAKE_CXX_COMPILER_LAUNCHER=ccache -DDSM_BUILD_TESTING=ON -DDSM_TEST_ALL_RANKS=ON -DDSM_TEST_DATA=/data \\
   ${options[*]} >>/log 2>&1
 cmake --build /build-$flavour >>/log 2>&1
 cd /build-$flavour
