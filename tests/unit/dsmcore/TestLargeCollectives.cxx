@@ -48,6 +48,51 @@ TEST_P(LargeCollectives, GatherKeepsRankOrderAndSizes)
     });
 }
 
+TEST_P(LargeCollectives, WhatRankZeroGathersIsThereAndNowhereElse)
+{
+  this->Run(
+    [](dsm::Messenger& messenger)
+    {
+      for (const std::size_t bytes : { 20, 199, 200, 201, 12345 })
+      {
+        for (int without = -1; without < messenger.GetSize(); ++without)
+        {
+          const auto give = [=](int rank) {
+            return dsm_test::MakeBytes(
+              rank == without ? 0 : bytes + static_cast<std::size_t>(rank), rank);
+          };
+          const int own = messenger.GetRank();
+          const auto parts = messenger.GatherOnRankZero("Gathering", [&] { return give(own); });
+          ASSERT_EQ(static_cast<int>(parts.size()), messenger.GetSize());
+          for (int rank = 0; rank < messenger.GetSize(); ++rank)
+          {
+            EXPECT_EQ(parts[static_cast<std::size_t>(rank)],
+              own == 0 ? give(rank) : std::vector<std::byte>());
+          }
+        }
+      }
+    });
+}
+
+TEST_P(LargeCollectives, WhatRankZeroCannotBeGivenFailsOnAll)
+{
+  this->Run(
+    [](dsm::Messenger& messenger)
+    {
+      const int last = messenger.GetSize() - 1;
+      const auto give = [&]() -> std::vector<std::byte>
+      {
+        if (messenger.GetRank() == last)
+        {
+          throw dsm::Error("there is none");
+        }
+        return dsm_test::MakeBytes(5000, 5);
+      };
+      EXPECT_THROW(messenger.GatherOnRankZero("Gathering", give), dsm::Error);
+      messenger.Barrier();
+    });
+}
+
 TEST_P(LargeCollectives, BroadcastReachesAll)
 {
   this->Run(

@@ -160,6 +160,10 @@ public:
   std::vector<std::vector<std::byte>> GatherTogether(
     std::string_view what, FunctionRef<std::vector<std::byte>()> make);
 
+  /// The same for rank 0 alone; the others get empty bytes. What is large goes to it and nowhere else.
+  std::vector<std::vector<std::byte>> GatherOnRankZero(
+    std::string_view what, FunctionRef<std::vector<std::byte>()> make);
+
   /// The text for the exception that is being handled; for use in a catch block.
   static std::string DescribeException();
 
@@ -204,12 +208,19 @@ private:
     Failed, ///< so do all in this collective
     Left    ///< this rank is somewhere else: all end the step
   };
+  enum class Receivers
+  {
+    All,
+    RankZero
+  };
   struct Gathered;
   std::vector<std::byte> ToCause(const FirstFailure& failure);
-  Gathered Exchange(std::vector<std::byte>&& mine, Faring faring);
-  Gathered Gather(std::vector<std::byte>&& mine, Faring faring);
+  Gathered Exchange(std::vector<std::byte>&& mine, Faring faring, Receivers receivers);
+  Gathered Gather(std::vector<std::byte>&& mine, Faring faring, Receivers receivers);
   std::vector<std::vector<std::byte>> GatherPieces(
-    std::vector<std::byte>&& mine, const std::vector<std::uint64_t>& sizes);
+    std::vector<std::byte>&& mine, std::vector<std::uint64_t> sizes, Receivers receivers);
+  std::vector<std::vector<std::byte>> GatherMade(
+    std::string_view what, FunctionRef<std::vector<std::byte>()> make, Receivers receivers);
 
   class Internals;
   std::unique_ptr<Internals> Self;

@@ -163,9 +163,10 @@ std::vector<std::byte> Judge(const std::vector<const std::vector<std::byte>*>& h
 
 } // namespace
 
-Messenger::Gathered Messenger::Gather(std::vector<std::byte>&& mine, Faring faring)
+Messenger::Gathered Messenger::Gather(
+  std::vector<std::byte>&& mine, Faring faring, Receivers receivers)
 {
-  Gathered gathered = this->Exchange(std::move(mine), faring);
+  Gathered gathered = this->Exchange(std::move(mine), faring, receivers);
   if (gathered.IsStepOver)
   {
     std::optional<StepAborted> aborted;
@@ -175,7 +176,8 @@ Messenger::Gathered Messenger::Gather(std::vector<std::byte>&& mine, Faring fari
   return gathered;
 }
 
-Messenger::Gathered Messenger::Exchange(std::vector<std::byte>&& mine, Faring faring)
+Messenger::Gathered Messenger::Exchange(
+  std::vector<std::byte>&& mine, Faring faring, Receivers receivers)
 {
   Internals& self = *this->Self;
   const std::size_t size = static_cast<std::size_t>(this->GetSize());
@@ -232,13 +234,17 @@ Messenger::Gathered Messenger::Exchange(std::vector<std::byte>&& mine, Faring fa
   std::memcpy(sizes.data(), packed.data() + packed.size() - tail, size * sizeof(std::uint64_t));
   if (std::accumulate(sizes.begin(), sizes.end(), std::uint64_t(0)) > self.PieceBytes)
   {
-    gathered.Parts = this->GatherPieces(std::move(mine), sizes);
+    gathered.Parts = this->GatherPieces(std::move(mine), std::move(sizes), receivers);
     return gathered;
   }
   this->Insist(
     [&]
     {
       gathered.Parts.resize(size);
+      if (receivers == Receivers::RankZero && this->GetRank() != 0)
+      {
+        return;
+      }
       auto next = packed.begin();
       for (std::size_t rank = 0; rank < size; ++rank)
       {
@@ -250,10 +256,10 @@ Messenger::Gathered Messenger::Exchange(std::vector<std::byte>&& mine, Faring fa
   return gathered;
 }
 
-/// From every rank along a tree of its own, all at once; pieces of a rank come in order. What is on its
-/// way is in the result already, so that a rank takes no other memory than for the pieces that it posts.
+/// From every rank along a tree of its own, or to rank 0 at once, all at the same time; pieces of a rank come in order.
+/// What is on its way is in the result already, so that a rank takes no other memory than for the pieces that it posts.
 std::vector<std::vector<std::byte>> Messenger::GatherPieces(
-  std::vector<std::byte>&& mine, const std::vector<std::uint64_t>& sizes)
+  std::vector<std::byte>&& mine, std::vector<std::uint64_t> sizes, Receivers receivers)
 {
   /// Of the bytes of one rank, how many have come, and who gets which next.
   struct Stream
@@ -265,6 +271,11 @@ std::vector<std::vector<std::byte>> Messenger::GatherPieces(
   Internals& self = *this->Self;
   const std::size_t size = sizes.size();
   const auto rank = static_cast<std::size_t>(this->GetRank());
+  const bool toAll = receivers == Receivers::All;
+  for (std::size_t root = 0; root < size && !toAll && rank != 0; ++root)
+  {
+    sizes[root] = root == rank ? sizes[root] : 0; // does not pass here
+  }
   std::vector<std::vector<std::byte>> parts;
   std::vector<Stream> streams;
   this->RunTogether("What the ranks give cannot be gathered",
@@ -302,7 +313,7 @@ std::vector<std::vector<std::byte>> Messenger::GatherPieces(
   {
     Stream& stream = streams[root];
     const Tree tree(static_cast<int>(rank), static_cast<int>(size), static_cast<int>(root));
-    const int children = tree.CountChildren();
+    const int children = toAll ? tree.CountChildren() : (root == rank && rank != 0 ? 1 : 0);
     if (stream.Next == stream.Arrived || !self.MaySend())
     {
       return false;
@@ -319,7 +330,8 @@ std::vector<std::vector<std::byte>> Messenger::GatherPieces(
           piece.reserve(count + sizeof(PieceTail) + headerRoom);
           piece.assign(first, first + static_cast<std::ptrdiff_t>(count));
           AttachTail(piece, PieceTail{ static_cast<std::uint32_t>(root) });
-          this->Post(tree.GetChild(stream.Child), MessageKind::Collective, std::move(piece));
+          this->Post(
+            toAll ? tree.GetChild(stream.Child) : 0, MessageKind::Collective, std::move(piece));
         });
       ++stream.Child;
     }
@@ -347,6 +359,10 @@ std::vector<std::vector<std::byte>> Messenger::GatherPieces(
           return any;
         });
     });
+  if (!toAll && rank != 0)
+  {
+    parts[rank] = {};
+  }
   return parts;
 }
 
@@ -448,7 +464,7 @@ void Messenger::Sum(std::vector<std::uint64_t>& numbers)
 
 std::vector<std::vector<std::byte>> Messenger::AllGather(std::vector<std::byte> mine)
 {
-  return this->Gather(std::move(mine), Faring::Well).Parts;
+  return this->Gather(std::move(mine), Faring::Well, Receivers::All).Parts;
 }
 
 std::vector<std::byte> Messenger::Broadcast(std::vector<std::byte> fromRankZero)
@@ -474,7 +490,9 @@ Status Messenger::Agree(const std::string& cause)
       const auto* const bytes = reinterpret_cast<const std::byte*>(cause.data());
       mine.assign(bytes, bytes + std::min(cause.size(), LongestCause));
     });
-  return this->Gather(std::move(mine), cause.empty() ? Faring::Well : Faring::Failed).Outcome;
+  return this->Gather(
+               std::move(mine), cause.empty() ? Faring::Well : Faring::Failed, Receivers::All)
+    .Outcome;
 }
 
 std::vector<std::byte> Messenger::ToCause(const FirstFailure& failure)
@@ -515,8 +533,9 @@ Status Messenger::RunStep(FunctionRef<void()> step)
     {
       failure.Keep(std::current_exception());
     }
-    return failure.IsEmpty() ? this->Exchange({}, Faring::Well).Outcome
-                             : this->Exchange(this->ToCause(failure), Faring::Left).Outcome;
+    return failure.IsEmpty()
+      ? this->Exchange({}, Faring::Well, Receivers::All).Outcome
+      : this->Exchange(this->ToCause(failure), Faring::Left, Receivers::All).Outcome;
   }
   catch (const StepAborted& aborted)
   {
@@ -539,12 +558,24 @@ void Messenger::RunTogether(std::string_view what, FunctionRef<void()> step)
 std::vector<std::vector<std::byte>> Messenger::GatherTogether(
   std::string_view what, FunctionRef<std::vector<std::byte>()> make)
 {
+  return this->GatherMade(what, make, Receivers::All);
+}
+
+std::vector<std::vector<std::byte>> Messenger::GatherOnRankZero(
+  std::string_view what, FunctionRef<std::vector<std::byte>()> make)
+{
+  return this->GatherMade(what, make, Receivers::RankZero);
+}
+
+std::vector<std::vector<std::byte>> Messenger::GatherMade(
+  std::string_view what, FunctionRef<std::vector<std::byte>()> make, Receivers receivers)
+{
   std::vector<std::byte> mine;
   FirstFailure failure;
   failure.Try([&] { mine = make(); });
   const Faring faring = failure.IsEmpty() ? Faring::Well : Faring::Failed;
   Gathered gathered =
-    this->Gather(failure.IsEmpty() ? std::move(mine) : this->ToCause(failure), faring);
+    this->Gather(failure.IsEmpty() ? std::move(mine) : this->ToCause(failure), faring, receivers);
   const Status& status = gathered.Outcome;
   if (!status.IsOk())
   {

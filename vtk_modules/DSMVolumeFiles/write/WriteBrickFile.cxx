@@ -352,7 +352,7 @@ void WriteArray(ValueOrigin& from, const BrickFileLayout& layout, std::size_t ar
         }
       });
     const std::vector<int> ranks = from.Deal(array, boxes);
-    const auto parts = messenger.GatherTogether(what,
+    const auto parts = messenger.GatherOnRankZero(what,
       [&]
       {
         std::vector<std::int64_t> mine;
