@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Run by ParaView's application, which has loaded the plugin, alone or connected to a server: the first isovalue
-is the one that the data suggest; while the panel's slider is dragged, which sets the unchecked value of the
+is the one that the data suggest, and so is what the reset button gives; while the panel's slider is dragged, which sets the unchecked value of the
 property only, the view shows it; an animation track can change the isovalue; and a display that was made before
 there were data has their array and their box once they are there."""
 
@@ -45,6 +45,9 @@ class Session:
         display.DSMIsoValue = 255.0
         simple.Render(self.view)
         check(self.get_covered() == covered, "once it is set, the picture is the same")
+        single.ResetToDomainDefaults(True)  # as the reset button
+        check(single.GetUncheckedElement(0) == first, f"the reset button gives {single.GetUncheckedElement(0)}")
+        single.ClearUncheckedElements()
 
         scene = simple.GetAnimationScene()
         track = simple.GetAnimationTrack("DSMIsoValue", 0, display)
