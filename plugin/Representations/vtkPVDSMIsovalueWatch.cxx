@@ -6,11 +6,14 @@
 #include "vtkCallbackCommand.h"
 #include "vtkClientServerStream.h"
 #include "vtkNew.h"
+#include "vtkSMDoubleRangeDomain.h"
 #include "vtkSMProperty.h"
 #include "vtkSMPropertyHelper.h"
 #include "vtkSMProxy.h"
+#include "vtkSMProxyManager.h"
 #include "vtkSMSession.h"
 #include "vtkSMUncheckedPropertyHelper.h"
+#include "vtkSMUndoStackBuilder.h"
 
 #include <cmath>
 #include <utility>
@@ -18,6 +21,12 @@
 namespace
 {
 constexpr const char* Single = "DSMIsoValue";
+
+/// After what depends on a property, as ranges do, has heard of it.
+constexpr float Late = -1.0f;
+
+/// What that property's range depends on.
+constexpr const char* Choices[] = { "DSMIsoArray", "DSMIsoComponent" };
 
 /// Whether a box is as large as data that are not there: upside down, or, since ParaView 6, of no extent.
 bool IsOfNothing(const vtkSMPropertyHelper& bounds)
@@ -40,6 +49,33 @@ void ChooseWhatIsMissing(vtkSMProxy* representation)
     representation->UpdateVTKObjects();
   }
 }
+
+/// While it lives, nothing becomes a step of its own for the user to undo.
+class NoUndo
+{
+public:
+  NoUndo()
+    : Builder(vtkSMProxyManager::GetProxyManager()->GetUndoStackBuilder())
+    , Before(this->Builder && this->Builder->GetIgnoreAllChanges())
+  {
+    this->Ignore(true);
+  }
+  ~NoUndo() { this->Ignore(this->Before); }
+  NoUndo(const NoUndo&) = delete;
+  NoUndo& operator=(const NoUndo&) = delete;
+
+private:
+  void Ignore(bool ignores)
+  {
+    if (this->Builder)
+    {
+      this->Builder->SetIgnoreAllChanges(ignores);
+    }
+  }
+
+  vtkSMUndoStackBuilder* Builder;
+  bool Before;
+};
 } // namespace
 
 vtkPVDSMIsovalueWatch::vtkPVDSMIsovalueWatch(std::function<void()> changed)
@@ -48,11 +84,12 @@ vtkPVDSMIsovalueWatch::vtkPVDSMIsovalueWatch(std::function<void()> changed)
   vtkNew<vtkCallbackCommand> observer;
   observer->SetClientData(this);
   observer->SetCallback(
-    [](vtkObject* property, unsigned long, void* watch, void*)
+    [](vtkObject* property, unsigned long event, void* watch, void*)
     {
       if (watch)
       {
-        static_cast<vtkPVDSMIsovalueWatch*>(watch)->OnChange(vtkSMProperty::SafeDownCast(property));
+        static_cast<vtkPVDSMIsovalueWatch*>(watch)->OnEvent(
+          vtkSMProperty::SafeDownCast(property), event);
       }
     });
   this->Observer = observer;
@@ -71,7 +108,9 @@ void vtkPVDSMIsovalueWatch::TakeSuggestion(vtkSMProxy* representation)
   {
     return;
   }
+  this->IsTaking = true;
   ChooseWhatIsMissing(representation);
+  this->IsTaking = false;
   if (vtkSMPropertyHelper(single).GetAsDouble() != vtkPVDSMImageRepresentation::UnsetIsoValue ||
     vtkSMPropertyHelper(representation, "DSMIsoValues").GetNumberOfElements() > 0)
   {
@@ -83,29 +122,81 @@ void vtkPVDSMIsovalueWatch::TakeSuggestion(vtkSMProxy* representation)
   if (std::isfinite(value))
   {
     this->IsTaking = true;
+    const NoUndo noUndo;
     vtkSMPropertyHelper(single).Set(value);
     representation->UpdateVTKObjects();
     this->IsTaking = false;
   }
 }
 
-void vtkPVDSMIsovalueWatch::Watch(vtkSMProxy* representation)
+void vtkPVDSMIsovalueWatch::Watch(vtkSMProxy* representation, bool isInApplication)
 {
   vtkSMProperty* single = representation->GetProperty(Single);
-  if (single && !single->HasObserver(vtkCommand::UncheckedPropertyModifiedEvent, this->Observer))
+  if (!single)
   {
-    single->AddObserver(vtkCommand::UncheckedPropertyModifiedEvent, this->Observer);
+    return;
+  }
+  const auto observe = [this](vtkSMProperty* property, unsigned long event)
+  {
+    if (!property->HasObserver(event, this->Observer))
+    {
+      property->AddObserver(event, this->Observer, Late);
+    }
+  };
+  for (const char* choice : Choices)
+  {
+    observe(representation->GetProperty(choice), vtkCommand::ModifiedEvent);
+    observe(representation->GetProperty(choice), vtkCommand::UncheckedPropertyModifiedEvent);
+  }
+  if (isInApplication)
+  {
+    observe(single, vtkCommand::UncheckedPropertyModifiedEvent);
   }
 }
 
-// Past the property, whose changes the application traces, and may undo.
-void vtkPVDSMIsovalueWatch::OnChange(vtkSMProperty* single)
+void vtkPVDSMIsovalueWatch::OnEvent(vtkSMProperty* property, unsigned long event)
 {
-  vtkSMProxy* proxy = single->GetParent();
+  vtkSMProxy* const proxy = property->GetParent();
   if (this->IsTaking || !proxy)
   {
     return;
   }
+  if (property == proxy->GetProperty(Single))
+  {
+    this->OnSlider(property);
+  }
+  else if (event == vtkCommand::ModifiedEvent)
+  {
+    this->Choice = property;
+  }
+  else if (property == this->Choice) // what depends on it knows it now
+  {
+    this->Choice = nullptr;
+    this->OnOtherArray(proxy);
+  }
+}
+
+/// A surface that the new values do not have becomes the one that they suggest, with the next render. Whoever knows the
+/// isovalue sets it after the array: scripts, state files, undo.
+void vtkPVDSMIsovalueWatch::OnOtherArray(vtkSMProxy* representation)
+{
+  vtkSMProperty* const single = representation->GetProperty(Single);
+  auto* const range = single->FindDomain<vtkSMDoubleRangeDomain>();
+  const double value = vtkSMPropertyHelper(single).GetAsDouble();
+  int isKnown[2] = { 0, 0 };
+  const double least = range ? range->GetMinimum(0, isKnown[0]) : value;
+  const double most = range ? range->GetMaximum(0, isKnown[1]) : value;
+  if (value != vtkPVDSMImageRepresentation::UnsetIsoValue &&
+    ((isKnown[0] && value < least) || (isKnown[1] && value > most)))
+  {
+    vtkSMPropertyHelper(single).Set(vtkPVDSMImageRepresentation::UnsetIsoValue);
+  }
+}
+
+// Past the property, whose changes the application traces, and may undo.
+void vtkPVDSMIsovalueWatch::OnSlider(vtkSMProperty* single)
+{
+  vtkSMProxy* proxy = single->GetParent();
   vtkClientServerStream stream;
   stream << vtkClientServerStream::Invoke << VTKOBJECT(proxy) << "SetSingleIsoValue"
          << vtkSMUncheckedPropertyHelper(single).GetAsDouble() << vtkClientServerStream::End;

@@ -10,9 +10,10 @@
 class vtkSMProperty;
 class vtkSMProxy;
 
-/// The single isovalues of a view's datasets, on the client: one that nobody has set becomes the one
-/// that the data suggest and the picture shows; and while the panel's slider is dragged, the datasets
-/// already have the value that it is at, which the property gets when it is let go.
+/// The isovalues of a view's datasets, on the client: a single one that nobody has set becomes the one that the data
+/// suggest and the picture shows, and so does one that is out of the range of an array that is chosen in place of
+/// another; and while the panel's slider is dragged, the datasets already have the value that it is at, which the
+/// property gets when it is let go.
 class vtkPVDSMIsovalueWatch
 {
 public:
@@ -25,14 +26,17 @@ public:
   /// After a render of a traced dataset; meshes have no isovalue. Where the dataset came after its display, the
   /// array and the box to crop to, which are empty then, become what they would have been, too.
   void TakeSuggestion(vtkSMProxy* representation);
-  /// From now on. Doing so again changes nothing.
-  void Watch(vtkSMProxy* representation);
+  /// From now on; the slider, too, in the application. Doing so again changes nothing.
+  void Watch(vtkSMProxy* representation, bool isInApplication);
 
 private:
-  void OnChange(vtkSMProperty* single);
+  void OnEvent(vtkSMProperty* property, unsigned long event);
+  void OnSlider(vtkSMProperty* single);
+  void OnOtherArray(vtkSMProxy* representation);
 
   std::function<void()> Changed;
   vtkSmartPointer<vtkCommand> Observer;
+  vtkSMProperty* Choice = nullptr; ///< of an array or a component, while it becomes another
   bool IsTaking = false;
 };
 

@@ -241,10 +241,7 @@ void vtkPVDSMRefinement::OnRenderEnds(vtkObject*, unsigned long, void* interacti
       [&](vtkSMProxy* representation)
       {
         this->Isovalues.TakeSuggestion(representation);
-        if (goesOn)
-        {
-          this->Isovalues.Watch(representation);
-        }
+        this->Isovalues.Watch(representation, goesOn);
       });
   }
   if (*static_cast<int*>(interactive) != 0 || !goesOn)

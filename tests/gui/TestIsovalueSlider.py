@@ -1,15 +1,16 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Run by ParaView's application, which has loaded the plugin, alone or connected to a server: the first isovalue
-is the one that the data suggest, and so is what the reset button gives; while the panel's slider is dragged, which sets the unchecked value of the
-property only, the view shows it; an animation track can change the isovalue; and a display that was made before
-there were data has their array and their box once they are there."""
+is the one that the data suggest, and so is what the reset button gives; while the panel's slider is dragged, which
+sets the unchecked value of the property only, the view shows it; an animation track can change the isovalue; another
+array has an isovalue of its own, also back and forth; and a display that was made before there were data has their
+array and their box once they are there."""
 
 import os
 import tempfile
 
 import numpy
 from gui_testing import Steps, check, grab
-from paraview import simple
+from paraview import servermanager, simple
 
 PATIENCE = 60.0  # seconds
 
@@ -48,6 +49,7 @@ class Session:
         single.ResetToDomainDefaults(True)  # as the reset button
         check(single.GetUncheckedElement(0) == first, f"the reset button gives {single.GetUncheckedElement(0)}")
         single.ClearUncheckedElements()
+        yield from self.choose_arrays()
 
         scene = simple.GetAnimationScene()
         track = simple.GetAnimationTrack("DSMIsoValue", 0, display)
@@ -70,6 +72,65 @@ class Session:
         check(pixels[0] > pixels[1] > pixels[2], f"and shows them: {pixels}")
         simple.Hide(source, self.view)
         self.show_before_there_are_data()
+
+    def choose_arrays(self):
+        calculator = simple.Calculator(Input=simple.Wavelet(), ResultArrayName="other", Function="RTData/1000")
+        display = simple.Show(calculator, self.view)
+        display.Representation = "DSM Ray Traced"
+        display.DSMIsoArray = ["POINTS", "RTData"]
+        display.DSMIsoValue = 200.0
+        for other in simple.GetSources().values():
+            if other.SMProxy != calculator.SMProxy:
+                simple.Hide(other, self.view)
+        simple.Render(self.view)
+        check(display.DSMIsoValue == 200.0, "an isovalue that is set with the array is kept")
+        yield
+        covered = self.get_covered()
+        builder = servermanager.vtkSMProxyManager.GetProxyManager().GetUndoStackBuilder()
+        stack = builder.GetUndoStack()
+        builder.Begin("Another array")
+        display.DSMIsoArray = ["POINTS", "other"]
+        builder.End()
+        builder.PushToStack()
+        simple.Render(self.view)
+        yield
+        chosen = display.DSMIsoValue
+        check(0.05 < chosen < 0.25, f"another array has the isovalue {chosen}")
+        check(chosen == display.GetPropertyValue("DSMSuggestedIsoValue"), "as its data suggest")
+        check(self.get_covered() > 1000, f"which covers {self.get_covered()} pixels")
+        self.step(builder, stack.Undo)
+        simple.Render(self.view)
+        yield
+        check(display.DSMIsoArray[1] == "RTData" and display.DSMIsoValue == 200.0,
+              f"Undo brings back both: {display.DSMIsoArray[1]}, {display.DSMIsoValue}")
+        check(self.get_covered() == covered, f"and the picture: {self.get_covered()} pixels of {covered}")
+        self.step(builder, stack.Redo)
+        simple.Render(self.view)
+        yield
+        check(display.DSMIsoArray[1] == "other" and display.DSMIsoValue == chosen,
+              f"Redo does so, too: {display.DSMIsoArray[1]}, {display.DSMIsoValue}")
+        display.DSMIsoArray = ["POINTS", "RTData"]
+        display.DSMIsoValue = 220.0
+        simple.Render(self.view)
+        check(display.DSMIsoValue == 220.0, "what a script sets after the array counts")
+        display.DSMIsoArray = ["POINTS", "other"]
+        display.DSMIsoValue = 0.2
+        display.DSMIsoArray = ["POINTS", "RTData"]
+        display.DSMIsoArray = ["POINTS", "other"]
+        simple.Render(self.view)
+        check(display.DSMIsoValue == chosen, "and only then")
+        simple.Delete(calculator)
+        for other in simple.GetSources().values():
+            if other.SMProxy.GetXMLName() == "RTAnalyticSource":
+                simple.Show(other, self.view)
+
+    @staticmethod
+    def step(builder, go):
+        """As the application does."""
+        builder.SetIgnoreAllChanges(True)
+        go()
+        servermanager.ProxyManager().UpdateRegisteredProxies(1)
+        builder.SetIgnoreAllChanges(False)
 
     def show_before_there_are_data(self):
         """As when a file of bare values is opened, and only then its size is entered."""
