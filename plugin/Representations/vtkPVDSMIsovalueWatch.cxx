@@ -21,6 +21,7 @@
 namespace
 {
 constexpr const char* Single = "DSMIsoValue";
+constexpr const char* List = "DSMIsoValues";
 
 /// After what depends on a property, as ranges do, has heard of it.
 constexpr float Late = -1.0f;
@@ -112,7 +113,7 @@ void vtkPVDSMIsovalueWatch::TakeSuggestion(vtkSMProxy* representation)
   ChooseWhatIsMissing(representation);
   this->IsTaking = false;
   if (vtkSMPropertyHelper(single).GetAsDouble() != vtkPVDSMImageRepresentation::UnsetIsoValue ||
-    vtkSMPropertyHelper(representation, "DSMIsoValues").GetNumberOfElements() > 0)
+    vtkSMPropertyHelper(representation, List).GetNumberOfElements() > 0)
   {
     return;
   }
@@ -151,6 +152,7 @@ void vtkPVDSMIsovalueWatch::Watch(vtkSMProxy* representation, bool isInApplicati
   if (isInApplication)
   {
     observe(single, vtkCommand::UncheckedPropertyModifiedEvent);
+    observe(representation->GetProperty(List), vtkCommand::ModifiedEvent);
   }
 }
 
@@ -164,6 +166,10 @@ void vtkPVDSMIsovalueWatch::OnEvent(vtkSMProperty* property, unsigned long event
   if (property == proxy->GetProperty(Single))
   {
     this->OnSlider(property);
+  }
+  else if (property == proxy->GetProperty(List))
+  {
+    this->OnList(property, event);
   }
   else if (event == vtkCommand::ModifiedEvent)
   {
@@ -190,6 +196,15 @@ void vtkPVDSMIsovalueWatch::OnOtherArray(vtkSMProxy* representation)
     ((isKnown[0] && value < least) || (isKnown[1] && value > most)))
   {
     vtkSMPropertyHelper(single).Set(vtkPVDSMImageRepresentation::UnsetIsoValue);
+  }
+}
+
+void vtkPVDSMIsovalueWatch::OnList(vtkSMProperty* list, unsigned long event)
+{
+  if (event == vtkCommand::ModifiedEvent && vtkSMPropertyHelper(list).GetNumberOfElements() == 0)
+  {
+    // What the panel shows depends on this; ParaView tells it of values that are set, but not that there are none.
+    list->ClearUncheckedElements();
   }
 }
 

@@ -32,6 +32,7 @@ public:
 private:
   void OnEvent(vtkSMProperty* property, unsigned long event);
   void OnSlider(vtkSMProperty* single);
+  void OnList(vtkSMProperty* list, unsigned long event);
   void OnOtherArray(vtkSMProxy* representation);
 
   std::function<void()> Changed;

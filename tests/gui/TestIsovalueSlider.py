@@ -50,6 +50,7 @@ class Session:
         check(single.GetUncheckedElement(0) == first, f"the reset button gives {single.GetUncheckedElement(0)}")
         single.ClearUncheckedElements()
         yield from self.choose_arrays()
+        self.empty_list(display)
 
         scene = simple.GetAnimationScene()
         track = simple.GetAnimationTrack("DSMIsoValue", 0, display)
@@ -131,6 +132,17 @@ class Session:
         go()
         servermanager.ProxyManager().UpdateRegisteredProxies(1)
         builder.SetIgnoreAllChanges(False)
+
+    def empty_list(self, display):
+        """The slider's row is hidden while the list has values."""
+        values = display.SMProxy.GetProperty("DSMIsoValues")
+        display.DSMIsoValues = [200.0]
+        told = []
+        tag = values.AddObserver("UncheckedPropertyModifiedEvent", lambda *_: told.append(values.GetNumberOfElements()))
+        display.DSMIsoValues = []
+        check(told and told[-1] == 0, "what depends on the list is told that a script has emptied it")
+        values.RemoveObserver(tag)
+        simple.Render(self.view)
 
     def show_before_there_are_data(self):
         """As when a file of bare values is opened, and only then its size is entered."""
