@@ -12,6 +12,7 @@
 #include "vtkSMProxy.h"
 #include "vtkSMProxyManager.h"
 #include "vtkSMSession.h"
+#include "vtkSMTrace.h"
 #include "vtkSMUncheckedPropertyHelper.h"
 #include "vtkSMUndoStackBuilder.h"
 
@@ -112,6 +113,7 @@ void vtkPVDSMIsovalueWatch::TakeSuggestion(vtkSMProxy* representation)
   this->IsTaking = true;
   ChooseWhatIsMissing(representation);
   this->IsTaking = false;
+  this->BeginList(representation);
   if (vtkSMPropertyHelper(single).GetAsDouble() != vtkPVDSMImageRepresentation::UnsetIsoValue ||
     vtkSMPropertyHelper(representation, List).GetNumberOfElements() > 0)
   {
@@ -153,6 +155,7 @@ void vtkPVDSMIsovalueWatch::Watch(vtkSMProxy* representation, bool isInApplicati
   {
     observe(single, vtkCommand::UncheckedPropertyModifiedEvent);
     observe(representation->GetProperty(List), vtkCommand::ModifiedEvent);
+    observe(representation->GetProperty(List), vtkCommand::UncheckedPropertyModifiedEvent);
   }
 }
 
@@ -201,10 +204,38 @@ void vtkPVDSMIsovalueWatch::OnOtherArray(vtkSMProxy* representation)
 
 void vtkPVDSMIsovalueWatch::OnList(vtkSMProperty* list, unsigned long event)
 {
-  if (event == vtkCommand::ModifiedEvent && vtkSMPropertyHelper(list).GetNumberOfElements() == 0)
+  const vtkSMPropertyHelper values(list);
+  const vtkSMUncheckedPropertyHelper panel(list);
+  if (event == vtkCommand::ModifiedEvent && values.GetNumberOfElements() == 0)
   {
     // What the panel shows depends on this; ParaView tells it of values that are set, but not that there are none.
     list->ClearUncheckedElements();
+  }
+  else if (values.GetNumberOfElements() == 0 && panel.GetNumberOfElements() == 1 &&
+    panel.GetAsDouble() == 0.0)
+  {
+    this->Begun = list;
+  }
+}
+
+/// A first value that the panel adds is 0, which a script may mean, but here is nobody's choice.
+void vtkPVDSMIsovalueWatch::BeginList(vtkSMProxy* representation)
+{
+  vtkSMProperty* const list = representation->GetProperty(List);
+  const double single = vtkSMPropertyHelper(representation, Single).GetAsDouble();
+  if (list != this->Begun || vtkSMPropertyHelper(list).GetNumberOfElements() == 0)
+  {
+    return;
+  }
+  this->Begun = nullptr;
+  if (vtkSMPropertyHelper(list).GetAsDouble() == 0.0 &&
+    single != vtkPVDSMImageRepresentation::UnsetIsoValue)
+  {
+    const NoUndo noUndo;
+    SM_SCOPED_TRACE(PropertiesModified).arg("proxy", representation);
+    vtkSMPropertyHelper(list).Set(single);
+    representation->UpdateVTKObjects();
+    this->Changed();
   }
 }
 

@@ -24,7 +24,8 @@ public:
   vtkPVDSMIsovalueWatch& operator=(const vtkPVDSMIsovalueWatch&) = delete;
 
   /// After a render of a traced dataset; meshes have no isovalue. Where the dataset came after its display, the
-  /// array and the box to crop to, which are empty then, become what they would have been, too.
+  /// array and the box to crop to, which are empty then, become what they would have been, too. A list of isovalues
+  /// that the user begins has the single one first.
   void TakeSuggestion(vtkSMProxy* representation);
   /// From now on; the slider, too, in the application. Doing so again changes nothing.
   void Watch(vtkSMProxy* representation, bool isInApplication);
@@ -33,11 +34,13 @@ private:
   void OnEvent(vtkSMProperty* property, unsigned long event);
   void OnSlider(vtkSMProperty* single);
   void OnList(vtkSMProperty* list, unsigned long event);
+  void BeginList(vtkSMProxy* representation);
   void OnOtherArray(vtkSMProxy* representation);
 
   std::function<void()> Changed;
   vtkSmartPointer<vtkCommand> Observer;
   vtkSMProperty* Choice = nullptr; ///< of an array or a component, while it becomes another
+  vtkSMProperty* Begun = nullptr;  ///< a list to which the panel has added a first value
   bool IsTaking = false;
 };
 

@@ -30,7 +30,7 @@ int vtkSMDSMIsovalueDomain::SetDefaultValues(vtkSMProperty* property, bool useUn
     {
       vtkSMPropertyHelper helper(property);
       helper.SetUseUnchecked(useUncheckedValues);
-      helper.Set(value);
+      helper.Set(&value, 1);
       return 1;
     }
   }

@@ -2,8 +2,8 @@
 """Run by ParaView's application, which has loaded the plugin, alone or connected to a server: the first isovalue
 is the one that the data suggest, and so is what the reset button gives; while the panel's slider is dragged, which
 sets the unchecked value of the property only, the view shows it; an animation track can change the isovalue; another
-array has an isovalue of its own, also back and forth; and a display that was made before there were data has their
-array and their box once they are there."""
+array has an isovalue of its own, also back and forth; a list of several begins with the one that is there; and a
+display that was made before there were data has their array and their box once they are there."""
 
 import os
 import tempfile
@@ -50,7 +50,7 @@ class Session:
         check(single.GetUncheckedElement(0) == first, f"the reset button gives {single.GetUncheckedElement(0)}")
         single.ClearUncheckedElements()
         yield from self.choose_arrays()
-        self.empty_list(display)
+        yield from self.begin_list(display)
 
         scene = simple.GetAnimationScene()
         track = simple.GetAnimationTrack("DSMIsoValue", 0, display)
@@ -133,15 +133,29 @@ class Session:
         servermanager.ProxyManager().UpdateRegisteredProxies(1)
         builder.SetIgnoreAllChanges(False)
 
-    def empty_list(self, display):
-        """The slider's row is hidden while the list has values."""
+    def begin_list(self, display):
+        """As the panel's + does: 0 in the panel, then in the property."""
         values = display.SMProxy.GetProperty("DSMIsoValues")
-        display.DSMIsoValues = [200.0]
         told = []
         tag = values.AddObserver("UncheckedPropertyModifiedEvent", lambda *_: told.append(values.GetNumberOfElements()))
+        values.SetNumberOfUncheckedElements(1)
+        values.SetUncheckedElement(0, 0.0)
+        display.DSMIsoValues = [0.0]
+        simple.Render(self.view)
+        yield
+        check(list(display.DSMIsoValues) == [display.DSMIsoValue], f"a list begins with {display.DSMIsoValues}")
+        told.clear()
         display.DSMIsoValues = []
         check(told and told[-1] == 0, "what depends on the list is told that a script has emptied it")
         values.RemoveObserver(tag)
+        display.DSMIsoValues = [0.0]
+        simple.Render(self.view)
+        check(list(display.DSMIsoValues) == [0.0], "a script may mean 0")
+        values.ResetToDomainDefaults(True)
+        reset = values.GetUncheckedElement(0)
+        check(reset == display.GetPropertyValue("DSMSuggestedIsoValue"), f"the list's reset button gives {reset}")
+        values.ClearUncheckedElements()
+        display.DSMIsoValues = []
         simple.Render(self.view)
 
     def show_before_there_are_data(self):
