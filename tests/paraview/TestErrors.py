@@ -109,11 +109,13 @@ with Messages() as messages:
     pixels = render(view)
     text = messages.text
 check("colour array 'onCells'" in text and "Cell Data to Point Data" in text, "points have no such array: " + text)
+check("Warning" in text and "ERROR" not in text, "that is a warning, as the surface is there")
 check(get_covered(pixels).any(), "the surface is still drawn")
 with Messages() as messages:
     display.ColorArrayName = ["CELLS", "f"]
     check_equal(render(view), pixels, "the points' array of the name does not colour it either")
     text = messages.text
+check("ERROR" not in text, "which is a warning, too: ParaView's Surface says nothing")
 check("colour array 'f' does not exist" in text and "'five', 'onCells'" in text, "the cells' array is meant: " + text)
 with Messages() as messages:
     display.ColorArrayName = ["CELLS", "five"]

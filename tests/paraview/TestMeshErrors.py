@@ -83,6 +83,7 @@ for array, words in (("short", ["'short' has 7 values", "shown without them"]),
     pixels, text = render_and_listen()
     for word in words:
         check(word in text, f"'{word}' is in: {text}")
+    check(("ERROR" in text) == (array != "nothing"), "what is not there is a warning, as the surface is there")
     check_equal(pixels, solid, f"colour by {array}: the surface has its solid colour")
 display.ColorArrayName = [None, ""]
 pixels, text = render_and_listen()

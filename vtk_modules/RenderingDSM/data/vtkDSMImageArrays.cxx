@@ -158,11 +158,11 @@ void vtkDSMImageArrays::Refuse(
   }
   if (is(State::OnCells))
   {
-    throw dsm::Error(
+    throw Missing(
       (choice.Name.empty() ? "The dataset has cell data only" : array + " belongs to the cells") +
       ", but values at the points are needed. Apply Cell Data to Point Data first.");
   }
-  throw dsm::Error((choice.Name.empty() ? "No " + purpose + " is chosen."
-                                        : array + " does not exist in the dataset.") +
+  throw Missing((choice.Name.empty() ? "No " + purpose + " is chosen."
+                                     : array + " does not exist in the dataset.") +
     remedy);
 }

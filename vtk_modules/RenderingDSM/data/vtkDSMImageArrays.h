@@ -2,6 +2,7 @@
 #ifndef vtkDSMImageArrays_h
 #define vtkDSMImageArrays_h
 
+#include "DSMCore/base/Error.h"
 #include "DSMCore/transport/Messenger.h"
 #include "DSMRayTracing/base/ScalarType.h"
 
@@ -54,6 +55,13 @@ public:
     bool IsUsable() const { return this->Found == State::Usable; }
   };
 
+  /// There is no such array.
+  class Missing : public dsm::Error
+  {
+  public:
+    using Error::Error;
+  };
+
   vtkDSMImageArrays() = default;
   /// Collective. `images`: this rank's.
   vtkDSMImageArrays(
@@ -67,7 +75,7 @@ public:
   Choice Normalize(const Choice& choice) const;
   /// Whether what is chosen as colours may have opacities. The same on every rank.
   bool HasOpacity(const Choice& choice) const;
-  /// Throws a dsm::Error that says why the choice is not usable, and what is. `infos`: of all ranks' images; `purpose` names
+  /// Throws a dsm::Error (Missing, where it is that) that says why the choice is not usable, and what is. `infos`: of all ranks' images; `purpose` names
   /// the array ("isosurface array").
   [[noreturn]] void Refuse(
     const Choice& choice, const std::string& purpose, const std::vector<Info>& infos) const;

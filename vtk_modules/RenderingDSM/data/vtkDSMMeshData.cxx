@@ -389,7 +389,7 @@ void vtkDSMMeshData::CheckColors(const std::vector<ColorReport>& mine)
   }
   if (missing && !usable && this->Message.empty())
   {
-    this->Message = array + " does not exist in the dataset." + this->ListArrays();
+    this->Warning = array + " does not exist in the dataset." + this->ListArrays();
   }
 }
 

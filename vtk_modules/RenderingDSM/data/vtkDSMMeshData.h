@@ -74,6 +74,8 @@ public:
   const double* GetBounds() const { return this->Bounds; }
   /// What is wrong, but can be shown in another way; empty when nothing is. The same on every rank.
   const std::string& GetMessage() const { return this->Message; }
+  /// Empty but where there is no such colour array. The same on every rank.
+  const std::string& GetWarning() const { return this->Warning; }
 
   /// Local, quick: numbers that are others when anything may be.
   static std::vector<std::uint64_t> GetStamp(const vtkDSMMeshInput& input);
@@ -131,6 +133,7 @@ private:
   double Bounds[6];
   double Diagonal = 0.0;
   std::string Message;
+  std::string Warning;
 };
 
 #endif

@@ -157,6 +157,7 @@ void vtkDSMSceneMesh::GiveUpBlocks()
 void vtkDSMSceneMesh::Update(const std::shared_ptr<vtkDSMRankGroup>& group, bool newData)
 {
   this->Messages.clear();
+  this->Warnings.clear();
   // What was refused may succeed with other settings of the memory.
   const unsigned version = group->GetRetryVersion();
   if (newData || (!this->Failure.empty() && this->FailureVersion != version))
@@ -198,6 +199,10 @@ void vtkDSMSceneMesh::Update(const std::shared_ptr<vtkDSMRankGroup>& group, bool
   else if (!this->Data->GetMessage().empty())
   {
     this->Messages.push_back(this->Data->GetMessage());
+  }
+  else if (!this->Data->GetWarning().empty())
+  {
+    this->Warnings.push_back(this->Data->GetWarning());
   }
 }
 

@@ -117,6 +117,11 @@ std::shared_ptr<vtkDSMSceneVolume::Published> vtkDSMSceneVolume::Require(
       choice, purpose, [mapper](double part) { vtkDSMProgress::Tell(mapper, part); },
       this->TakeStale(choice));
   }
+  catch (const vtkDSMImageArrays::Missing& missing)
+  {
+    published->Failure = missing.what();
+    published->IsMissing = true;
+  }
   catch (const dsm::Error& error)
   {
     published->Failure = error.what();
@@ -223,6 +228,7 @@ void vtkDSMSceneVolume::KeepUnchanged(dsm::Messenger& messenger)
 void vtkDSMSceneVolume::Update(const std::shared_ptr<vtkDSMRankGroup>& group, bool newData)
 {
   this->Messages.clear();
+  this->Warnings.clear();
   vtkDSMVolumeMapper* mapper = this->Mapper;
   if (newData)
   {
@@ -260,7 +266,9 @@ void vtkDSMSceneVolume::Update(const std::shared_ptr<vtkDSMRankGroup>& group, bo
   {
     if (published && !published->Failure.empty())
     {
-      this->Messages.push_back(published->Failure);
+      // Without its colours a surface is there, and ParaView's own says nothing then.
+      const bool isShown = published->IsMissing && published != this->Iso;
+      (isShown ? this->Warnings : this->Messages).push_back(published->Failure);
     }
   }
 }

@@ -40,6 +40,7 @@ private:
     vtkDSMVolumeData::Choice Choice;
     std::shared_ptr<const vtkDSMVolumeData::Publication> Publication; ///< null when it failed
     std::string Failure;
+    bool IsMissing = false;                                   ///< there is no such array
     unsigned RetryVersion = 0;                                ///< the group's when it was tried
     std::shared_ptr<const vtkDSMVolumeData::Coarser> Coarser; ///< null until they are wanted
     std::string CoarserFailure;

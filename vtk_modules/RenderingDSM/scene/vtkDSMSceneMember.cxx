@@ -105,13 +105,26 @@ std::shared_ptr<const rt::ColorMap> vtkDSMSceneMember::SampleColors(vtkScalarsTo
 void vtkDSMSceneMember::ReportMessages()
 {
   std::vector<std::string> known = this->Reported;
+  const auto isNew = [&known](const std::string& message)
+  {
+    const bool isKnown = std::find(known.begin(), known.end(), message) != known.end();
+    known.push_back(message); // AddTo may have said it more than once
+    return !isKnown;
+  };
   for (const std::string& message : this->Messages)
   {
-    if (std::find(known.begin(), known.end(), message) == known.end())
+    if (isNew(message))
     {
       vtkErrorWithObjectMacro(this->GetAlgorithm(), << message);
-      known.push_back(message); // AddTo may have said it more than once
+    }
+  }
+  for (const std::string& warning : this->Warnings)
+  {
+    if (isNew(warning))
+    {
+      vtkWarningWithObjectMacro(this->GetAlgorithm(), << warning);
     }
   }
   this->Reported = this->Messages;
+  this->Reported.insert(this->Reported.end(), this->Warnings.begin(), this->Warnings.end());
 }

@@ -97,9 +97,10 @@ protected:
   int GetCoarser() const { return this->Coarser; }
 
   vtkProp3D* Prop = nullptr;
-  /// Of the last Update and AddTo.
+  /// Of the last Update and AddTo: errors, and warnings of what is shown, but not in the colours that were asked for.
   std::vector<std::string> Messages;
-  std::vector<std::string> Reported;
+  std::vector<std::string> Warnings;
+  std::vector<std::string> Reported; ///< of both
 
 private:
   int Coarser = 0;
