@@ -3,6 +3,7 @@
 // same actor.
 #include "PolyDataMapperTest.h"
 
+#include "vtkCompositeDataDisplayAttributes.h"
 #include "vtkDoubleArray.h"
 #include "vtkFloatArray.h"
 #include "vtkImageData.h"
@@ -24,6 +25,28 @@ TEST_F(PolyDataMapper, DrawsWhatVtkDraws)
   ExpectAlike(this->Render(), this->RenderWithTriangles(ball));
   this->Actor->GetProperty()->SetInterpolationToFlat();
   ExpectAlike(this->Render(), this->RenderWithTriangles(ball));
+}
+
+TEST_F(PolyDataMapper, ACopyHasAllThatWasSet)
+{
+  const auto ball = MakeBall();
+  this->Mapper->SetInputData(ball);
+  this->Mapper->SetLineRadius(0.01);
+  this->Mapper->SetPointRadius(0.02);
+  this->Mapper->SetRadiusArray("Elevation");
+  this->Mapper->MakesSceneOff();
+  vtkNew<vtkCompositeDataDisplayAttributes> blocks;
+  this->Mapper->SetCompositeDataDisplayAttributes(blocks);
+  vtkNew<vtkDSMPolyDataMapper> copy;
+  copy->ShallowCopy(this->Mapper);
+  EXPECT_EQ(copy->GetInputDataObject(0, 0), ball);
+  EXPECT_EQ(copy->GetLineRadius(), 0.01);
+  EXPECT_EQ(copy->GetPointRadius(), 0.02);
+  EXPECT_EQ(copy->GetRadiusArray(), "Elevation");
+  EXPECT_FALSE(copy->GetMakesScene());
+  EXPECT_EQ(copy->GetCompositeDataDisplayAttributes(), blocks);
+  EXPECT_EQ(copy->GetLightOptions(), this->Mapper->GetLightOptions());
+  EXPECT_EQ(copy->GetMemoryOptions(), this->Mapper->GetMemoryOptions());
 }
 
 TEST_F(PolyDataMapper, NormalsOfCellsAreUsedWherePointsHaveNone)

@@ -8,6 +8,7 @@
 #include "vtkContourValues.h"
 #include "vtkObjectFactory.h"
 #include "vtkPropAssembly.h"
+#include "vtkProperty.h"
 #include "vtkRTAnalyticSource.h"
 #include "vtkRenderPass.h"
 #include "vtkTestErrorObserver.h"
@@ -116,6 +117,24 @@ TEST_F(VolumeMapper, SaysThatItHasNoIsovalue)
   ASSERT_TRUE(observer->GetError());
   EXPECT_NE(observer->GetErrorMessage().find("GetIsoSurfaceValues"), std::string::npos)
     << observer->GetErrorMessage();
+}
+
+TEST_F(VolumeMapper, ACopyDrawsTheSame)
+{
+  this->Mapper->SetCropping(1);
+  this->Mapper->SetCroppingRegionPlanes(-16.0, 4.0, -16.0, 16.0, -16.0, 16.0);
+  this->Mapper->GetSurfaceProperty()->SetColor(0.2, 0.9, 0.3);
+  const std::vector<double> original = this->RenderTraced();
+  vtkNew<vtkDSMVolumeMapper> copy;
+  copy->ShallowCopy(this->Mapper);
+  EXPECT_EQ(copy->GetSurfaceProperty(), this->Mapper->GetSurfaceProperty());
+  EXPECT_EQ(copy->GetMemoryOptions(), this->Mapper->GetMemoryOptions());
+  EXPECT_EQ(copy->GetLightOptions(), this->Mapper->GetLightOptions());
+  this->Volume->SetMapper(copy);
+  EXPECT_EQ(this->RenderTraced(), original);
+  EXPECT_GT(CountCovered(original), 1000);
+  copy->SetIsoValue(0, 0.2);
+  EXPECT_EQ(this->Mapper->GetIsoValue(0), 0.4) << "isovalues are the copy's own";
 }
 
 /// In place of OSPRay's, which few builds of VTK have: draws nothing.

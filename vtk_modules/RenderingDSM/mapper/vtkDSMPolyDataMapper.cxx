@@ -132,6 +132,23 @@ void vtkDSMPolyDataMapper::Render(vtkRenderer* renderer, vtkActor*)
   }
 }
 
+void vtkDSMPolyDataMapper::ShallowCopy(vtkAbstractMapper* mapper)
+{
+  this->GlobalBounds->Clear();
+  this->Superclass::ShallowCopy(mapper);
+  if (auto* other = vtkDSMPolyDataMapper::SafeDownCast(mapper))
+  {
+    *this->Original = *other->Original;
+    this->SetCompositeDataDisplayAttributes(other->BlockAttributes);
+    this->SetLineRadius(other->LineRadius);
+    this->SetPointRadius(other->PointRadius);
+    this->SetRadiusArray(other->RadiusArray);
+    this->SetLightOptions(other->LightOptions);
+    this->SetMemoryOptions(other->MemoryOptions);
+    this->SetMakesScene(other->MakesScene);
+  }
+}
+
 int vtkDSMPolyDataMapper::FillInputPortInformation(int, vtkInformation* info)
 {
   info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkPolyData");

@@ -145,6 +145,12 @@ public:
   bool HasTranslucentPolygonalGeometry() override { return false; }
   ///@}
 
+  /**
+   * Of a mapper of this class, what it has beyond vtkPolyDataMapper, too; options and attributes of blocks in common with
+   * it.
+   */
+  void ShallowCopy(vtkAbstractMapper* mapper) override;
+
 protected:
   vtkDSMPolyDataMapper();
   ~vtkDSMPolyDataMapper() override;

@@ -283,6 +283,73 @@ vtkMTimeType vtkDSMVolumeMapper::GetMTime()
   return time;
 }
 
+void vtkDSMVolumeMapper::ShallowCopy(vtkAbstractMapper* mapper)
+{
+  this->Superclass::ShallowCopy(mapper);
+  if (auto* other = vtkVolumeMapper::SafeDownCast(mapper))
+  {
+    this->CopyVolumeMapper(other);
+  }
+  if (auto* other = vtkDSMVolumeMapper::SafeDownCast(mapper))
+  {
+    this->CopyOwn(other);
+  }
+}
+
+/// VTK's class does not.
+void vtkDSMVolumeMapper::CopyVolumeMapper(vtkVolumeMapper* other)
+{
+  this->GlobalBounds->Clear();
+  this->SetInputConnection(
+    other->GetNumberOfInputConnections(0) > 0 ? other->GetInputConnection(0, 0) : nullptr);
+  this->SetBlendMode(other->GetBlendMode());
+  this->SetAverageIPScalarRange(other->GetAverageIPScalarRange());
+  this->SetCropping(other->GetCropping());
+  this->SetCroppingRegionPlanes(other->GetCroppingRegionPlanes());
+  this->SetCroppingRegionFlags(other->GetCroppingRegionFlags());
+  this->SetScalarMode(other->GetScalarMode());
+  if (other->GetArrayAccessMode() == VTK_GET_ARRAY_BY_ID)
+  {
+    this->SelectScalarArray(other->GetArrayId());
+  }
+  else
+  {
+    this->SelectScalarArray(other->GetArrayName());
+  }
+}
+
+void vtkDSMVolumeMapper::CopyOwn(vtkDSMVolumeMapper* other)
+{
+  *this->Original = *other->Original;
+  this->IsoArray = other->IsoArray;
+  this->IsoComponent = other->IsoComponent;
+  this->IsoValues = other->IsoValues;
+  this->AutomaticIsoValue = other->AutomaticIsoValue;
+  this->ColorArray = other->ColorArray;
+  this->ColorArrayOnCells = other->ColorArrayOnCells;
+  this->MapScalars = other->MapScalars;
+  this->ScalarVisibility = other->ScalarVisibility;
+  this->BlockLooks = other->BlockLooks;
+  this->BlockScalarVisibility = other->BlockScalarVisibility;
+  this->LookupTable = other->LookupTable;
+  this->SurfaceProperty = other->SurfaceProperty;
+  this->BackfaceProperty = other->BackfaceProperty;
+  this->LightOptions = other->LightOptions;
+  this->MemoryOptions = other->MemoryOptions;
+  this->MakesScene = other->MakesScene;
+  this->AutoAdjustSampleDistances = other->AutoAdjustSampleDistances;
+  this->LockSampleDistanceToInputSpacing = other->LockSampleDistanceToInputSpacing;
+  this->UseJittering = other->UseJittering;
+  this->SampleDistance = other->SampleDistance;
+  this->ImageSampleDistance = other->ImageSampleDistance;
+  this->MinimumImageSampleDistance = other->MinimumImageSampleDistance;
+  this->MaximumImageSampleDistance = other->MaximumImageSampleDistance;
+  this->MaxMemoryInBytes = other->MaxMemoryInBytes;
+  this->MaxMemoryFraction = other->MaxMemoryFraction;
+  this->ReportProgress = other->ReportProgress;
+  this->Modified();
+}
+
 int vtkDSMVolumeMapper::FillInputPortInformation(int, vtkInformation* info)
 {
   info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkDataObject");

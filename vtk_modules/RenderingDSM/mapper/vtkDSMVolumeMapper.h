@@ -277,6 +277,12 @@ public:
 
   vtkMTimeType GetMTime() override;
 
+  /**
+   * Of a mapper of this class, all that was set, its input, and, in common with it, its table of colours, properties and
+   * options; of other volume mappers, what they have as well.
+   */
+  void ShallowCopy(vtkAbstractMapper* mapper) override;
+
 protected:
   vtkDSMVolumeMapper();
   ~vtkDSMVolumeMapper() override;
@@ -286,6 +292,9 @@ protected:
 private:
   vtkDSMVolumeMapper(const vtkDSMVolumeMapper&) = delete;
   void operator=(const vtkDSMVolumeMapper&) = delete;
+
+  void CopyVolumeMapper(vtkVolumeMapper* other);
+  void CopyOwn(vtkDSMVolumeMapper* other);
 
   std::string IsoArray;
   int IsoComponent = 0;
