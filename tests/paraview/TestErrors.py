@@ -77,6 +77,19 @@ expect_then_delete(image_source("image.SetExtent(piece)\nadd(image, points(piece
                                 (0, 20, 0, 20, 3, 3)), ["no cells in z", "volume"])
 expect_then_delete(image_source("image.SetExtent(0, -1, 0, -1, 0, -1)\n"), [])
 
+# Samples that are nowhere. ParaView itself cannot know where to look then.
+PLACED = """
+image.SetExtent(piece)
+image.%s(%s)
+add(image, distance(piece))
+"""
+for method, value, words in (
+    ("SetSpacing", "1, 0, 1", "spacing along y is 0"),
+    ("SetSpacing", "1, 1, np.nan", "spacing along z is not a number"),
+    ("SetOrigin", "-np.inf, 0, 0", "origin along x is infinite"),
+):
+    expect_then_delete(image_source(PLACED % (method, value)), [words])
+
 VECTOR = "image.SetExtent(piece)\nadd(image, np.stack(points(piece), axis=1), 'v')\n"
 expect_then_delete(image_source(VECTOR), ["'v' has no component 7"], array="v", DSMIsoComponent=7)
 

@@ -7,6 +7,7 @@
 #include <glm/vec4.hpp>
 
 #include <array>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -110,6 +111,35 @@ TEST(LatticePlan, FlatDataAreRefusedByAxis)
   }
   const std::vector<vtkDSMPieceInfo> none;
   EXPECT_TRUE(vtkDSMLatticePlan(none).GetLattices().empty());
+}
+
+TEST(LatticePlan, SamplesThatAreNowhereAreRefused)
+{
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const double infinite = std::numeric_limits<double>::infinity();
+  const auto refuse = [](auto change, const std::string& words)
+  {
+    vtkDSMPieceInfo piece = MakePiece({ 0, 4, 0, 4, 0, 4 }, 1);
+    change(piece);
+    std::string said;
+    try
+    {
+      vtkDSMLatticePlan({ MakePiece({ 8, 12, 0, 4, 0, 4 }), piece });
+    }
+    catch (const dsm::Error& error)
+    {
+      said = error.what();
+    }
+    EXPECT_NE(said.find(words), std::string::npos) << said;
+  };
+  refuse([](auto& piece) { piece.Spacing[1] = 0.0; }, "spacing along y is 0");
+  refuse([=](auto& piece) { piece.Spacing[0] = nan; }, "spacing along x is not a number");
+  refuse([=](auto& piece) { piece.Origin[2] = -infinite; }, "origin along z is infinite");
+  refuse([=](auto& piece) { piece.Direction[5] = nan; }, "direction matrix is not a number");
+  vtkDSMPieceInfo flat = MakePiece({ 0, 4, 3, 3, 0, 4 });
+  flat.Spacing[1] = 0.0;
+  EXPECT_EQ(vtkDSMLatticePlan({ flat, MakePiece({ 0, 4, 0, 4, 0, 4 }) }).GetLattices().size(), 1u)
+    << "what is left out may be anywhere";
 }
 
 TEST(LatticePlan, FlatPiecesAmongVolumesAreLeftOut)

@@ -125,6 +125,36 @@ bool CanJoin(const Group& a, const Group& b, const std::set<std::int32_t>& apart
   return touches;
 }
 
+/// Throws where numbers that say where the samples are make no sense.
+void RefuseImpossiblePlace(const vtkDSMPieceInfo& piece)
+{
+  const auto refuse = [](const std::string& what, double value)
+  {
+    const char* const is = value == 0.0 ? "0" : std::isnan(value) ? "not a number" : "infinite";
+    throw dsm::Error("The dataset's " + what + " is " + is +
+      ", so its samples are nowhere. Correct it where the dataset comes from.");
+  };
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    const std::string along = std::string(" along ") + "xyz"[axis];
+    if (!std::isfinite(piece.Spacing[axis]) || piece.Spacing[axis] == 0.0)
+    {
+      refuse("spacing" + along, piece.Spacing[axis]);
+    }
+    if (!std::isfinite(piece.Origin[axis]))
+    {
+      refuse("origin" + along, piece.Origin[axis]);
+    }
+  }
+  for (const double element : piece.Direction)
+  {
+    if (!std::isfinite(element))
+    {
+      refuse("direction matrix", element);
+    }
+  }
+}
+
 std::vector<Placed> Place(const std::vector<vtkDSMPieceInfo>& pieces)
 {
   std::vector<Placed> placed;
@@ -139,6 +169,7 @@ std::vector<Placed> Place(const std::vector<vtkDSMPieceInfo>& pieces)
     {
       continue;
     }
+    RefuseImpossiblePlace(piece);
     const auto known = std::find_if(classes.begin(), classes.end(),
       [&](int candidate) { return IsAligned(pieces[candidate], piece, entry.Shift); });
     if (known == classes.end())

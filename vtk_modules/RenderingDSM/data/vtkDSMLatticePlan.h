@@ -47,7 +47,8 @@ public:
   };
 
   vtkDSMLatticePlan() = default;
-  /// Throws dsm::Error when there are pieces, but none has a cell. `apart`: blocks that join no other.
+  /// Throws dsm::Error when there are pieces, but none has a cell, and when one that has is at no place: its spacing is 0,
+  /// or a number of spacing, origin or direction is not finite. `apart`: blocks that join no other.
   explicit vtkDSMLatticePlan(
     const std::vector<vtkDSMPieceInfo>& pieces, const std::set<std::int32_t>& apart = {});
 
