@@ -4,6 +4,7 @@
 //        TestTraceImage image FILE    draws without a window, on any number of ranks, and compares with FILE
 #include "vtkActor.h"
 #include "vtkCamera.h"
+#include "vtkCommand.h"
 #include "vtkDSMLightOptions.h"
 #include "vtkDSMPolyDataMapper.h"
 #include "vtkDSMSampleVolume.h"
@@ -18,6 +19,7 @@
 #include "vtkRenderWindow.h"
 #include "vtkRenderer.h"
 #include "vtkSphereSource.h"
+#include "vtkTestErrorObserver.h"
 #include "vtkUnsignedCharArray.h"
 #include "vtkVolume.h"
 #include "vtkWindowToImageFilter.h"
@@ -165,6 +167,17 @@ std::string TraceAll(Stage& stage, int rank)
   return bytes;
 }
 
+void ExpectTooLarge(Stage& stage, const char* what)
+{
+  vtkNew<vtkTest::ErrorObserver> errors;
+  const unsigned long observer = stage.Scene->AddObserver(vtkCommand::ErrorEvent, errors);
+  vtkNew<vtkImageData> image;
+  Expect(!stage.Scene->TraceImage(1000000, 1000000, image), what);
+  stage.Scene->RemoveObserver(observer);
+  Expect(errors->GetErrorMessage().find("1000000 x 1000000 pixels takes") != std::string::npos,
+    errors->GetErrorMessage().c_str());
+}
+
 void Run(const std::string& mode, const char* file, int rank)
 {
   Stage stage;
@@ -180,12 +193,14 @@ void Run(const std::string& mode, const char* file, int rank)
     std::ifstream input(file, std::ios::binary);
     const std::string expected{ std::istreambuf_iterator<char>(input), {} };
     Expect(expected == bytes, "the bits of the picture that has a display");
+    ExpectTooLarge(stage, "a picture that fits no memory is refused");
     Expect(stage.Scene->TraceImage(Width, Height, nullptr), "a rank may leave the picture out");
     stage.Volume->VisibilityOff();
     vtkNew<vtkImageData> image;
     Expect(stage.Scene->TraceImage(2, 1, image) &&
         GetColors(image) == std::string("\x33\x66\x99\xff\x33\x66\x99\xff"),
       "nothing but background where nothing is shown");
+    ExpectTooLarge(stage, "and so is that of nothing");
     Expect(!stage.Scene->TraceImage(0, 1, image), "no picture without pixels");
   }
 }

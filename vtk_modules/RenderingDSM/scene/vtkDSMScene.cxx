@@ -339,6 +339,21 @@ bool vtkDSMScene::TraceImage(int width, int height, vtkImageData* image, bool tr
   return traced;
 }
 
+bool vtkDSMScene::FillWithBackground()
+{
+  try
+  {
+    this->Self->CheckImage(1);
+    this->Self->FillImage({});
+  }
+  catch (const std::exception& error)
+  {
+    vtkErrorMacro(<< error.what());
+    return false;
+  }
+  return true;
+}
+
 /// Collective; returns whether all went well, the same on every rank.
 bool vtkDSMScene::TraceFrame()
 {
@@ -352,9 +367,8 @@ bool vtkDSMScene::TraceFrame()
   if (found.IsEmpty() && self.Members.GetShown().empty())
   {
     self.Clear();
-    self.FillImage({});
     self.Tracing = false;
-    return true;
+    return this->FillWithBackground();
   }
   const vtkDSMOpenGLGuard guard(self.Renderer->GetRenderWindow());
   std::string failure;

@@ -213,6 +213,7 @@ private:
   void NoteBackground();
   void Trace();
   bool TraceFrame();
+  bool FillWithBackground();
   void EndFrame();
   void EndReading();
 

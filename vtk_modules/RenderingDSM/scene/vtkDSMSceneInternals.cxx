@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkDSMSceneInternals.h"
 
+#include "DSMCore/memory/HostMemory.h"
 #include "vtkDSMFrameImage.h"
 #include "vtkDSMFrameNotes.h"
 
@@ -16,6 +17,7 @@
 #include <cstring>
 #include <optional>
 #include <set>
+#include <string>
 #include <utility>
 #include <variant>
 #include <vector>
@@ -29,6 +31,10 @@ constexpr double InteractiveRate = 1.0;
 /// That an interactive frame may take, where its resolution may be lowered, and the lowest one.
 constexpr double InteractiveSeconds = 0.07;
 constexpr int LargestReduction = 8;
+
+/// A pixel's colour and depth, in a picture without a window: as tiles, as the message with them, as the messages of all
+/// ranks, and as the picture or, later, the image.
+constexpr std::uint64_t BytesOfImagePixel = 4 * (4 + sizeof(float));
 
 /// Whether matrices differ by rounding only.
 bool IsNearly(const glm::dmat4& a, const glm::dmat4& b)
@@ -191,9 +197,11 @@ void vtkDSMScene::Internals::Draw()
   rt::Scene scene;
   rt::FrameRequest request;
   vtkNew<vtkMatrix4x4> projection;
+  const int ranksOnHost = this->Image ? messenger.GetRanksOnHost() : 1;
   messenger.RunTogether("Preparing the frame",
     [&]
     {
+      this->CheckImage(ranksOnHost);
       this->Members.AddTo(scene, 0);
       this->KeepProp(scene);
       scene.Lights = vtkDSMTranslation::ToLights(this->Renderer);
@@ -285,6 +293,24 @@ int vtkDSMScene::Internals::CountCoarser() const
   const int mine = mayBeCoarser ? this->Members.CountCoarser() : 0;
   const std::vector<int> all = this->Group->GetMessenger().AllGatherValue(mine);
   return *std::min_element(all.begin(), all.end());
+}
+
+void vtkDSMScene::Internals::CheckImage(int ranksOnHost) const
+{
+  if (!this->Image)
+  {
+    return;
+  }
+  const std::uint64_t pixels = static_cast<std::uint64_t>(this->Image->Width) * this->Image->Height;
+  const std::uint64_t needed = BytesOfImagePixel * pixels;
+  const std::uint64_t available = dsm::GetAvailableHostMemory() / ranksOnHost;
+  if (needed > available)
+  {
+    throw dsm::Error("A picture of " + std::to_string(this->Image->Width) + " x " +
+      std::to_string(this->Image->Height) + " pixels takes " + dsm::FormatMebibytes(needed) +
+      " of each rank, and the host has " + dsm::FormatMebibytes(available) +
+      " for it. Make a smaller one.");
+  }
 }
 
 void vtkDSMScene::Internals::FillImage(const rt::Picture& picture) const

@@ -44,6 +44,8 @@ public:
   void Clear();
   /// The last picture stays, though the camera may be another: until the frame ends, all of it is what the ranks exchange.
   void ShowWhole() const;
+  /// Throws dsm::Error where the target is larger than what memory allows for each of so many ranks of this host.
+  void CheckImage(int ranksOnHost) const;
   /// Into the target's image, where there is one; without pixels, nothing but background.
   void FillImage(const rt::Picture& picture) const;
 
@@ -60,8 +62,10 @@ public:
   std::optional<Target> Image; ///< while one is traced
   unsigned long Observers[4] = { 0, 0, 0, 0 };
   vtkSmartPointer<vtkDSMScene> Keeper; ///< the scene itself, when nobody but the renderer has it
-  bool DrawsAgain = false;             ///< it was made in the middle of a frame
-  rt::Environment Background;          ///< of this rank's renderer, as the application set it
+  vtkSmartPointer<vtkDSMScene>
+    Rendering;                ///< the scene itself, from the start of a render to its end
+  bool DrawsAgain = false;    ///< it was made in the middle of a frame
+  rt::Environment Background; ///< of this rank's renderer, as the application set it
   vtkSmartPointer<vtkMultiProcessController> Controller;
   vtkNew<vtkDSMFrameProp> Prop;
   double Bounds[6] = { 0.0, 0.0, 0.0, 0.0, 0.0, 0.0 }; ///< of what the prop shows
