@@ -3,6 +3,7 @@
 #include "VolumeMapperTest.h"
 
 #include "vtkAssembly.h"
+#include "vtkCallbackCommand.h"
 #include "vtkCameraPass.h"
 #include "vtkCommand.h"
 #include "vtkContourValues.h"
@@ -14,9 +15,11 @@
 #include "vtkTestErrorObserver.h"
 #include "vtkValuePass.h"
 #include "vtkVolumeProperty.h"
+#include "vtkWeakPointer.h"
 
 #include <array>
 #include <string>
+#include <tuple>
 
 namespace
 {
@@ -135,6 +138,45 @@ TEST_F(VolumeMapper, ACopyDrawsTheSame)
   EXPECT_GT(CountCovered(original), 1000);
   copy->SetIsoValue(0, 0.2);
   EXPECT_EQ(this->Mapper->GetIsoValue(0), 0.4) << "isovalues are the copy's own";
+}
+
+/// Until a render ends, its scene does not, whoever gives up the last reference meanwhile.
+TEST_F(VolumeMapper, SceneMayBeGivenUpInARender)
+{
+  this->Renderer->AddVolume(this->Volume);
+  this->Mapper->MakesSceneOff();
+  const std::vector<double> drawn = this->RenderDistances();
+  vtkNew<vtkCallbackCommand> giveUp;
+  giveUp->SetClientData(&this->Scene);
+  giveUp->SetCallback([](vtkObject*, unsigned long, void* scene, void*)
+    { *static_cast<vtkSmartPointer<vtkDSMScene>*>(scene) = nullptr; });
+  // Before the scene hears of the start, after it does, while it takes in data, and before it hears of the end.
+  const std::tuple<vtkObject*, unsigned long, float> events[] = {
+    { this->Renderer, vtkCommand::StartEvent, 10.0f },
+    { this->Renderer, vtkCommand::StartEvent, -10.0f },
+    { this->Mapper, vtkCommand::ProgressEvent, 0.0f },
+    { this->Renderer, vtkCommand::EndEvent, 10.0f },
+  };
+  bool isDrawn = false; // by a scene that is there when the render begins
+  for (const auto& [object, event, priority] : events)
+  {
+    this->Scene = vtkDSMScene::ForRenderer(this->Renderer);
+    this->Mapper->SetInputData(MakeBall()); // to be taken in
+    const unsigned long observer = object->AddObserver(event, giveUp, priority);
+    const vtkWeakPointer<vtkDSMScene> scene = this->Scene.Get();
+    const std::vector<double> distances = this->RenderDistances();
+    EXPECT_EQ(distances == drawn, isDrawn) << vtkCommand::GetStringFromEventId(event);
+    EXPECT_EQ(scene, nullptr);
+    object->RemoveObserver(observer);
+    isDrawn = true;
+  }
+  this->Scene = vtkDSMScene::ForRenderer(this->Renderer);
+  const unsigned long observer = this->Mapper->AddObserver(vtkCommand::ProgressEvent, giveUp);
+  vtkNew<vtkImageData> image;
+  EXPECT_TRUE(this->Scene->TraceImage(20, 10, image));
+  EXPECT_EQ(image->GetNumberOfPoints(), 200);
+  EXPECT_EQ(this->Scene, nullptr);
+  this->Mapper->RemoveObserver(observer);
 }
 
 /// In place of OSPRay's, which few builds of VTK have: draws nothing.

@@ -139,8 +139,9 @@ void vtkDSMScene::DrawWithoutScene(vtkRenderer* renderer, vtkObject* mapper)
 
 void vtkDSMScene::EndWithRenderer()
 {
-  // This may be the last reference, so `this` may be gone when it returns.
+  // These may be the last references, so `this` may be gone when it returns.
   const vtkSmartPointer<vtkDSMScene> last = std::move(this->Self->Keeper);
+  const vtkSmartPointer<vtkDSMScene> rendering = std::move(this->Self->Rendering);
 }
 
 /// Who looks between frames for all there is must not see what was added to the bounds for the frame's delivery.
@@ -150,6 +151,8 @@ void vtkDSMScene::EndWithRenderer()
 void vtkDSMScene::EndFrame()
 {
   Internals& self = *this->Self;
+  // This may be the last reference.
+  const vtkSmartPointer<vtkDSMScene> rendering = std::move(self.Rendering);
   if (std::exchange(self.DrawsAgain, false) && !self.Renderer->GetSelector())
   {
     self.Renderer->Render();
@@ -311,15 +314,17 @@ void vtkDSMScene::NoteBackground()
   background.Up = length > 0.0 ? direction / length : rt::Environment().Up;
 }
 
+/// Observers of progress, of errors, and of the renderer's events may give up the last reference.
 void vtkDSMScene::Trace()
 {
+  const vtkSmartPointer<vtkDSMScene> rendering = this;
   Internals& self = *this->Self;
   // A selection pass shows no traced surface; taking in data may make an application render.
-  if (!self.Renderer || self.Renderer->GetSelector() || self.Tracing || !self.Prop->GetVisibility())
+  if (self.Renderer && !self.Renderer->GetSelector() && !self.Tracing && self.Prop->GetVisibility())
   {
-    return;
+    this->TraceFrame();
   }
-  this->TraceFrame();
+  self.Rendering = rendering;
 }
 
 bool vtkDSMScene::TraceImage(int width, int height, vtkImageData* image, bool transparent)
@@ -331,6 +336,7 @@ bool vtkDSMScene::TraceImage(int width, int height, vtkImageData* image, bool tr
                   << " pixels cannot be traced now.");
     return false;
   }
+  const vtkSmartPointer<vtkDSMScene> tracing = this; // as Trace
   this->NoteBackground();
   self.Image = Internals::Target{ width, height, image, transparent };
   const bool traced = this->TraceFrame();
