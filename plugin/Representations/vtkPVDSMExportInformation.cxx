@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkPVDSMExportInformation.h"
 
+#include "vtkPVDSMExportLook.h"
 #include "vtkPVDSMGeometryRepresentation.h"
 #include "vtkPVDSMImageRepresentation.h"
 
-#include "vtkAppendPolyData.h"
 #include "vtkCharArray.h"
 #include "vtkClientServerStream.h"
 #include "vtkCommunicator.h"
@@ -18,24 +18,19 @@ vtkStandardNewMacro(vtkPVDSMExportInformation);
 vtkPVDSMExportInformation::vtkPVDSMExportInformation() = default;
 vtkPVDSMExportInformation::~vtkPVDSMExportInformation() = default;
 
-vtkSmartPointer<vtkPolyData> vtkPVDSMExportInformation::GetTriangles() const
+std::vector<vtkSmartPointer<vtkPolyData>> vtkPVDSMExportInformation::GetTriangles() const
 {
-  if (this->Parts.empty())
-  {
-    return nullptr;
-  }
-  vtkNew<vtkAppendPolyData> append;
+  vtkPVDSMExportParts all;
   for (const auto& part : this->Parts)
   {
-    append->AddInputData(part);
+    all.Add(part, vtkPVDSMExportLook::Get(part));
   }
-  append->Update();
-  return append->GetOutput();
+  return all.Finish();
 }
 
 void vtkPVDSMExportInformation::CopyFromObject(vtkObject* representation)
 {
-  vtkSmartPointer<vtkPolyData> mine;
+  std::vector<vtkSmartPointer<vtkPolyData>> mine;
   if (auto* image = vtkPVDSMImageRepresentation::SafeDownCast(representation))
   {
     mine = image->GetTriangles();
@@ -45,10 +40,14 @@ void vtkPVDSMExportInformation::CopyFromObject(vtkObject* representation)
     mine = mesh->GetTriangles();
   }
   this->Parts.clear();
-  this->NumberOfPolygons = mine ? mine->GetNumberOfPolys() + mine->GetNumberOfStrips() : 0;
-  if (this->WithTriangles && this->NumberOfPolygons > 0)
+  this->NumberOfPolygons = 0;
+  for (const auto& part : mine)
   {
-    this->Parts.push_back(mine);
+    this->NumberOfPolygons += part->GetNumberOfPolys() + part->GetNumberOfStrips();
+  }
+  if (this->WithTriangles)
+  {
+    this->Parts = mine;
   }
 }
 

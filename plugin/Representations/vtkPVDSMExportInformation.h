@@ -38,9 +38,10 @@ public:
   vtkGetMacro(NumberOfPolygons, vtkTypeInt64);
 
   /**
-   * The triangles of all ranks, in the dataset's coordinates, with the arrays that colour them; null without any.
+   * The triangles of all ranks, in the dataset's coordinates, with the arrays that colour them; those that look alike
+   * (vtkPVDSMExportLook) together.
    */
-  vtkSmartPointer<vtkPolyData> GetTriangles() const;
+  std::vector<vtkSmartPointer<vtkPolyData>> GetTriangles() const;
 
   void CopyFromObject(vtkObject* representation) override;
   void AddInformation(vtkPVInformation* other) override;

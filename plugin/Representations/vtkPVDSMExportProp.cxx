@@ -98,22 +98,22 @@ void vtkPVDSMExportProp::GetActors(vtkPropCollection* actors)
     return;
   }
   // An exporter asks several times.
-  if (!this->Actor)
+  if (!this->Actors)
   {
-    this->Actor = this->MakeActor();
+    this->Actors = this->MakeActors();
   }
-  if (this->Actor)
+  for (const auto& actor : *this->Actors)
   {
-    actors->AddItem(this->Actor);
+    actors->AddItem(actor);
   }
 }
 
-vtkSmartPointer<vtkActor> vtkPVDSMExportProp::MakeActor()
+std::vector<vtkSmartPointer<vtkActor>> vtkPVDSMExportProp::MakeActors()
 {
   vtkSMProxy* proxy = FindProxy(this->Representation);
   if (!proxy)
   {
-    return nullptr;
+    return {};
   }
   vtkNew<vtkPVDSMExportInformation> information;
   const auto gather = [&]
@@ -131,7 +131,7 @@ vtkSmartPointer<vtkActor> vtkPVDSMExportProp::MakeActor()
   }
   if (count == 0 || count > MostPolygons)
   {
-    return nullptr;
+    return {};
   }
   if (count > ManyPolygons)
   {
@@ -139,6 +139,10 @@ vtkSmartPointer<vtkActor> vtkPVDSMExportProp::MakeActor()
   }
   information->SetWithTriangles(true);
   gather();
-  const vtkSmartPointer<vtkPolyData> polygons = information->GetTriangles();
-  return polygons ? this->Make(polygons) : nullptr;
+  std::vector<vtkSmartPointer<vtkActor>> actors;
+  for (const auto& polygons : information->GetTriangles())
+  {
+    actors.push_back(this->Make(polygons));
+  }
+  return actors;
 }

@@ -7,6 +7,8 @@
 #include "vtkSmartPointer.h"
 
 #include <functional>
+#include <optional>
+#include <vector>
 
 class vtkPVDataRepresentation;
 class vtkPolyData;
@@ -32,7 +34,7 @@ public:
   void SetRepresentation(vtkPVDataRepresentation* representation, ActorMaker make);
 
   /// What was extracted is not the view's any more.
-  void Forget() { this->Actor = nullptr; }
+  void Forget() { this->Actors.reset(); }
 
   void GetActors(vtkPropCollection* actors) override;
   double* GetBounds() override { return nullptr; }
@@ -45,12 +47,12 @@ private:
   vtkPVDSMExportProp(const vtkPVDSMExportProp&) = delete;
   void operator=(const vtkPVDSMExportProp&) = delete;
 
-  /// Null where there is nothing, or too much, which is an error.
-  vtkSmartPointer<vtkActor> MakeActor();
+  /// One for each look of blocks. Of nothing, and of too much, which is an error, none.
+  std::vector<vtkSmartPointer<vtkActor>> MakeActors();
 
   vtkPVDataRepresentation* Representation = nullptr;
   ActorMaker Make;
-  vtkSmartPointer<vtkActor> Actor; ///< that was made for the last picture
+  std::optional<std::vector<vtkSmartPointer<vtkActor>>> Actors; ///< of the last picture
 };
 
 #endif

@@ -2,12 +2,12 @@
 #include "vtkPVDSMGeometryRepresentation.h"
 
 #include "vtkDSMPolyDataMapper.h"
+#include "vtkPVDSMExportLook.h"
 #include "vtkPVDSMFrameReport.h"
 #include "vtkPVDSMLightOptions.h"
 #include "vtkPVDSMMemoryOptions.h"
 
 #include "vtkActor.h"
-#include "vtkAppendPolyData.h"
 #include "vtkBoundingBox.h"
 #include "vtkCompositeDataDisplayAttributes.h"
 #include "vtkCompositeDataIterator.h"
@@ -210,18 +210,27 @@ void vtkPVDSMGeometryRepresentation::SelectRadiusArray(int, int, int, int, const
   this->GetMapper()->SetRadiusArray(array == "None" ? "" : array);
 }
 
-vtkSmartPointer<vtkPolyData> vtkPVDSMGeometryRepresentation::GetTriangles()
+std::vector<vtkSmartPointer<vtkPolyData>> vtkPVDSMGeometryRepresentation::GetTriangles()
 {
   vtkCompositeDataDisplayAttributes* attributes =
     this->GetMapper()->GetCompositeDataDisplayAttributes();
-  vtkNew<vtkAppendPolyData> append;
+  vtkPVDSMExportParts parts;
   const auto add = [&](vtkDataObject* block)
   {
     auto* polygons = vtkPolyData::SafeDownCast(block);
     if (polygons &&
       !(attributes->HasBlockVisibility(block) && !attributes->GetBlockVisibility(block)))
     {
-      append->AddInputData(polygons);
+      vtkPVDSMExportLook look;
+      if (attributes->HasBlockColor(block))
+      {
+        attributes->GetBlockColor(block, look.Color.emplace().data());
+      }
+      if (attributes->HasBlockOpacity(block))
+      {
+        look.Opacity = attributes->GetBlockOpacity(block);
+      }
+      parts.Add(polygons, look);
     }
   };
   vtkDataObject* data = this->GetRenderedDataObject(0);
@@ -238,11 +247,7 @@ vtkSmartPointer<vtkPolyData> vtkPVDSMGeometryRepresentation::GetTriangles()
   {
     add(data);
   }
-  if (append->GetNumberOfInputConnections(0) > 0)
-  {
-    append->Update();
-  }
-  return append->GetOutput();
+  return parts.Finish();
 }
 
 void vtkPVDSMGeometryRepresentation::SetLightOptions(vtkPVDSMLightOptions* options)

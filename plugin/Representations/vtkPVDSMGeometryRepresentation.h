@@ -17,6 +17,7 @@
 #include "vtkRepresentationsDSMModule.h" // for the export macro
 
 #include <memory> // for ivars
+#include <vector>
 
 class vtkDSMPolyDataMapper;
 class vtkPVDSMFrameReport;
@@ -89,9 +90,10 @@ public:
   ///@}
 
   /**
-   * This rank's part of the surface; polygons of blocks that are hidden are left out.
+   * This rank's part of the surface; polygons of blocks that are hidden are left out, those of blocks that look alike are
+   * together, with a vtkPVDSMExportLook.
    */
-  vtkSmartPointer<vtkPolyData> GetTriangles();
+  std::vector<vtkSmartPointer<vtkPolyData>> GetTriangles();
 
   /**
    * What shall tell of the view's frames; null on the client.

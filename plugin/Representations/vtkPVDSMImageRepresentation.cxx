@@ -488,7 +488,7 @@ void vtkPVDSMImageRepresentation::SetUserTransform(const double matrix[16])
   this->Volume->SetUserMatrix(transform);
 }
 
-vtkSmartPointer<vtkPolyData> vtkPVDSMImageRepresentation::GetTriangles()
+std::vector<vtkSmartPointer<vtkPolyData>> vtkPVDSMImageRepresentation::GetTriangles()
 {
   return vtkPVDSMIsosurfaceGeometry::MakeColored(this->Mapper);
 }

@@ -176,9 +176,10 @@ public:
   ///@}
 
   /**
-   * The isosurfaces of this rank's data as triangles, with the array that colours them.
+   * The isosurfaces of this rank's data as triangles, with the array that colours them; those of blocks that look alike
+   * together, with a vtkPVDSMExportLook.
    */
-  vtkSmartPointer<vtkPolyData> GetTriangles();
+  std::vector<vtkSmartPointer<vtkPolyData>> GetTriangles();
 
   /**
    * What shall tell of the view's frames; null on the client.

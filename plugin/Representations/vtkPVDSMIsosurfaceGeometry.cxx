@@ -2,8 +2,8 @@
 #include "vtkPVDSMIsosurfaceGeometry.h"
 
 #include "vtkDSMVolumeMapper.h"
+#include "vtkPVDSMExportLook.h"
 
-#include "vtkAppendPolyData.h"
 #include "vtkCellArray.h"
 #include "vtkCellData.h"
 #include "vtkCompositeDataIterator.h"
@@ -19,11 +19,13 @@
 #include "vtkPointData.h"
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
+#include "vtkScalarsToColors.h"
 #include "vtkStructuredData.h"
 #include "vtkUnsignedCharArray.h"
 #include "vtkUnsignedIntArray.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <limits>
@@ -477,6 +479,26 @@ vtkSmartPointer<vtkMultiBlockDataSet> MakeBlocks(
   return geometry;
 }
 
+vtkPVDSMExportLook FindLook(vtkDSMVolumeMapper* mapper, unsigned block)
+{
+  vtkPVDSMExportLook found;
+  const auto known = mapper->GetBlockLooks().find(block);
+  if (known == mapper->GetBlockLooks().end())
+  {
+    return found;
+  }
+  const vtkDSMBlockLook& look = known->second;
+  found.Color = look.Color;
+  found.Opacity = look.Opacity;
+  if (!look.Color && look.Value && mapper->GetBlockScalarVisibility() && mapper->GetLookupTable())
+  {
+    std::array<double, 3> color{};
+    mapper->GetLookupTable()->GetColor(*look.Value, color.data());
+    found.Color = color;
+  }
+  return found;
+}
+
 } // namespace
 
 vtkSmartPointer<vtkMultiBlockDataSet> vtkPVDSMIsosurfaceGeometry::Make(
@@ -485,17 +507,17 @@ vtkSmartPointer<vtkMultiBlockDataSet> vtkPVDSMIsosurfaceGeometry::Make(
   return MakeBlocks(mapper, source, false);
 }
 
-vtkSmartPointer<vtkPolyData> vtkPVDSMIsosurfaceGeometry::MakeColored(vtkDSMVolumeMapper* mapper)
+std::vector<vtkSmartPointer<vtkPolyData>> vtkPVDSMIsosurfaceGeometry::MakeColored(
+  vtkDSMVolumeMapper* mapper)
 {
   const vtkSmartPointer<vtkMultiBlockDataSet> blocks = MakeBlocks(mapper, nullptr, true);
-  vtkNew<vtkAppendPolyData> append;
-  for (unsigned block = 0; block < blocks->GetNumberOfBlocks(); ++block)
+  vtkPVDSMExportParts parts;
+  for (unsigned number = 0; number < blocks->GetNumberOfBlocks(); ++number)
   {
-    append->AddInputData(vtkPolyData::SafeDownCast(blocks->GetBlock(block)));
+    auto* triangles = vtkPolyData::SafeDownCast(blocks->GetBlock(number));
+    vtkDataArray* of = triangles->GetCellData()->GetArray("vtkCompositeIndex");
+    const bool isBlock = of && of->GetNumberOfTuples() > 0;
+    parts.Add(triangles, FindLook(mapper, isBlock ? static_cast<unsigned>(of->GetTuple1(0)) : 0));
   }
-  if (blocks->GetNumberOfBlocks() > 0)
-  {
-    append->Update();
-  }
-  return append->GetOutput();
+  return parts.Finish();
 }

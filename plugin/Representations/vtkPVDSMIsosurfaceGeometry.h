@@ -5,6 +5,8 @@
 #include "vtkSmartPointer.h"
 #include "vtkType.h"
 
+#include <vector>
+
 class vtkDSMVolumeMapper;
 class vtkDataObject;
 class vtkMultiBlockDataSet;
@@ -27,8 +29,9 @@ public:
   static vtkSmartPointer<vtkMultiBlockDataSet> Make(
     vtkDSMVolumeMapper* mapper, vtkDataObject* source);
 
-  /// The same with the values of the colour array, and normals; of all blocks together.
-  static vtkSmartPointer<vtkPolyData> MakeColored(vtkDSMVolumeMapper* mapper);
+  /// The same with the values of the colour array, and normals; of blocks that look alike together, with a
+  /// vtkPVDSMExportLook.
+  static std::vector<vtkSmartPointer<vtkPolyData>> MakeColored(vtkDSMVolumeMapper* mapper);
 };
 
 #endif

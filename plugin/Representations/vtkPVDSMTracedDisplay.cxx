@@ -3,6 +3,7 @@
 
 #include "vtkDSMScene.h"
 #include "vtkPVDSMDelivery.h"
+#include "vtkPVDSMExportLook.h"
 #include "vtkPVDSMFrameReport.h"
 #include "vtkPVDSMRefinement.h"
 #include "vtkPVDSMSharedOptions.h"
@@ -144,6 +145,7 @@ vtkSmartPointer<vtkActor> vtkPVDSMTracedDisplay::MakeExportActor(vtkPolyData* po
   actor->SetMapper(mapper);
   actor->SetUserMatrix(matrix);
   this->SetLook(actor, mapper);
+  vtkPVDSMExportLook::Get(polygons).ApplyTo(actor);
   return actor;
 }
 

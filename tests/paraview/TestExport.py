@@ -108,6 +108,33 @@ check(wrong <= 0.01 * whole.GetNumberOfPoints(),
       f"{wrong} of {whole.GetNumberOfPoints()} points or normals are not those of all at once")
 simple.Hide(large, view)
 
+# Blocks that have a look of their own.
+halves = [simple.Wavelet(WholeExtent=[low, low + 10, -10, 10, -10, 10]) for low in (-10, 0)]
+blocks = simple.GroupDatasets(Input=halves, BlockNames=["one", "two"])
+shown = show(blocks, view, [150.0], "RTData")
+render(view)
+
+
+def read_materials(name):
+    """Colours and triangles of the parts of a file."""
+    with open(name) as file:
+        scene = json.load(file)
+    parts = [part for mesh in scene["meshes"] or [] for part in mesh["primitives"]]
+    return {tuple(round(number, 2) for number in
+                  scene["materials"][part["material"]]["pbrMetallicRoughness"]["baseColorFactor"]):
+            scene["accessors"][part["indices"]]["count"] // 3 for part in parts}
+
+
+alike = read_materials(export("blocks.gltf"))
+check(list(alike) == [(1.0, 1.0, 1.0, 1.0)], f"blocks without a look of their own are together: {alike}")
+shown.BlockColors = ["/Root/one", "0.25", "0.5", "1.0"]
+shown.BlockOpacities = ["/Root/two", "0.5"]
+render(view)
+own = read_materials(export("block_looks.gltf"))
+check(sorted(own) == [(0.25, 0.5, 1.0, 1.0), (1.0, 1.0, 1.0, 0.5)], f"each has its own: {own}")
+check(sum(own.values()) == sum(alike.values()), "and nothing is lost")
+simple.Hide(blocks, view)
+
 # A mesh.
 ball = simple.Sphere(ThetaResolution=32, PhiResolution=24)
 mesh = show_traced(ball, view)
