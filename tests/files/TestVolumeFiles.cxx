@@ -106,11 +106,12 @@ double GetExpected(
 }
 
 int CountWrong(const std::shared_ptr<const vol::VolumeFile>& file, const Json& entry,
-  std::size_t number, int step, const rt::Box& box, vol::ChunkCache& cache)
+  std::size_t number, int step, const rt::Box& box, vol::ChunkCache& cache, bool scattered = false)
 {
   const vol::FileArray& array = file->GetArrays()[number];
   std::vector<std::byte> bytes(static_cast<std::size_t>(box.GetCount()) * array.GetSampleBytes());
-  cache.ReadBox(file, number, step, box, bytes.data());
+  scattered ? cache.ReadScattered(file, number, step, box, bytes.data())
+            : cache.ReadBox(file, number, step, box, bytes.data());
   return rt::Dispatch(array.Type,
     [&](auto zero)
     {
@@ -186,6 +187,8 @@ TEST(VolumeFiles, HaveTheValuesThatOtherProgramsWrote)
             const rt::Box whole{ rt::Index3(0), array.Grid.Samples };
             EXPECT_EQ(CountWrong(file, entry, number, step, whole, cache), 0) << array.Name;
             const rt::Box part{ whole.Max / rt::Index3(3), whole.Max - rt::Index3(1) };
+            vol::ChunkCache cold(cacheBytes);
+            EXPECT_EQ(CountWrong(file, entry, number, step, part, cold, true), 0) << array.Name;
             EXPECT_EQ(CountWrong(file, entry, number, step, part, cache), 0) << array.Name;
           }
         }
@@ -531,6 +534,38 @@ TEST_F(DamagedFile, WhoseChunksChangeOrGoAwaySaysSo)
   fs::copy_file(shard, shard.string() + ".new");
   fs::rename(shard.string() + ".new", shard);
   ExpectWords(Read(sharded), { "c/0/0/0", "another took its place" });
+}
+
+/// Values that an HDF5 file has from others change with those.
+TEST_F(DamagedFile, WhoseOriginsChangeOrGoAwaySaysSo)
+{
+  const auto see = [](const std::string& folder, const std::string& name, const std::string& origin)
+  {
+    SCOPED_TRACE(name);
+    const fs::path path = GetFolder() / folder / origin;
+    const Json entry = { { "file", folder + "/" + name }, { "level", 0 }, { "dataset", "" } };
+    const auto file = Open(entry);
+    EXPECT_EQ(Read(file), "");
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    FlipByte(path, 9);
+    ExpectWords(Read(file), { origin.c_str(), "was written to", "Reload" });
+    EXPECT_NE(Open(entry)->GetStamp(), file->GetStamp());
+    const std::string away = path.string() + ".away";
+    fs::rename(path, away);
+    ExpectWords(Read(file), { origin.c_str(), "is gone" });
+    EXPECT_NE(Read(entry), "");
+    fs::rename(away, path);
+  };
+  this->Copy("origins");
+  see("damaged_origins", "virtual.h5", "b.bin");
+  see("damaged_origins", "link.h5", "d.bin");
+  see("origins", "changed.h5", "changed.bin"); // which has its whole path
+}
+
+TEST_F(DamagedFile, WhoseTimesDescendSaysSo)
+{
+  const Json entry = { { "file", "descending.vtkhdf" }, { "level", 0 }, { "dataset", "" } };
+  ExpectWords(Read(entry), { "descending.vtkhdf", "do not ascend" });
 }
 
 /// A file that nobody has any more is not held open by its chunks.

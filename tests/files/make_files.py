@@ -113,6 +113,34 @@ with h5py.File(path("links.vtkhdf"), "w") as file:
         group["PointData/" + name] = h5py.ExternalLink("linked.bin", "/" + name)
     file["filler"] = np.arange(5000.0)
 note("links.vtkhdf", [("f", "float32"), ("g", "float32")])
+# Likewise, in every way that there is: by a link alone, without VTK's group; in bare bytes; put together of parts.
+os.makedirs(path("origins"))
+for name, part in (("a.bin", values("<f4")[:4]), ("b.bin", values("<f4")[4:])):
+    with h5py.File(path("origins/" + name), "w") as file:
+        file["f"] = part
+with h5py.File(path("origins/d.bin"), "w") as file:
+    file.create_dataset("f", data=values("<f4"), chunks=(4, 5, 8), compression="gzip")
+with h5py.File(path("origins/virtual.h5"), "w") as file:
+    layout = h5py.VirtualLayout(SIZE[::-1], "<f4")
+    layout[:4] = h5py.VirtualSource("a.bin", "f", (4, *SIZE[1::-1]))
+    layout[4:] = h5py.VirtualSource("b.bin", "f", (SIZE[2] - 4, *SIZE[1::-1]))
+    file.create_virtual_dataset("f", layout)
+for name in ("external", "changed"):  # where bare bytes are, counts from the folder that a process is in
+    values("<f4").tofile(path(f"origins/{name}.bin"))
+    with h5py.File(path(f"origins/{name}.h5"), "w") as file:
+        bare = [(os.path.abspath(path(f"origins/{name}.bin")), 0, h5py.h5f.UNLIMITED)]
+        file.create_dataset("f", SIZE[::-1], "<f4", external=bare)
+with h5py.File(path("origins/link.h5"), "w") as file:
+    file["f"] = h5py.ExternalLink("d.bin", "/f")
+for name in ("virtual", "external", "link"):
+    note(f"origins/{name}.h5", [("f", "float32")])
+# As many components as nobody would call a volume's, were it not VTK's.
+with h5py.File(path("ten.vtkhdf"), "w") as file:
+    group = file.create_group("VTKHDF")
+    group.attrs["Version"], group.attrs["Type"] = [1, 0], np.bytes_("ImageData")
+    group.attrs["WholeExtent"] = [limit for n in SIZE for limit in (0, n - 1)]
+    group["PointData/f"] = values("<f4", 10)
+note("ten.vtkhdf", [("f", "float32", 10)])
 # What has no time beside what has.
 with h5py.File(path("static.h5"), "w") as file:
     file["a"] = values("<f4")
@@ -188,6 +216,7 @@ def write_steps(name, times, arrays, size):
 
 swapped = stacked[[1, 0, 2]]
 write_steps("steps.vtkhdf", [0.5, 1.0, 4.0], [("f", swapped, [1, 0, 2]), ("g", stacked, None)], SIZE)
+write_steps("descending.vtkhdf", [4.0, 1.0, 0.5], [("f", stacked, None)], SIZE)
 note("steps.vtkhdf", [("f", "float32"), ("g", "float32")], steps=3)
 
 # Zarr, version 2, by either version of its library.

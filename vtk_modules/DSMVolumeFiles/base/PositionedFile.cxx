@@ -99,6 +99,14 @@ PositionedFile::~PositionedFile()
   close(this->Descriptor);
 }
 
+std::uint64_t PositionedFile::FindStampOf(const std::string& path)
+{
+  struct stat state
+  {
+  };
+  return stat(path.c_str(), &state) == 0 ? GetStampOf(state) : 0;
+}
+
 void PositionedFile::CheckUnchanged() const
 {
   struct stat state

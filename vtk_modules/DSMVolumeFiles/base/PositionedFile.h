@@ -26,6 +26,10 @@ public:
   /// Differs, for all practical purposes, when another file is there, or this one was written to: of
   /// inode, size and time of change, when it was opened. The same on all hosts that share a file system.
   std::uint64_t GetStamp() const { return this->Stamp; }
+  /// That of what is at a path now; 0: there is nothing.
+  static std::uint64_t FindStampOf(const std::string& path);
+  /// Throws dsm::Error when it was written to since it was opened.
+  void CheckUnchanged() const;
 
   /// Reads so many bytes from `offset` on; throws dsm::Error, which names file and place, when there are
   /// fewer, when reading fails, or when the file was written to since it was opened; WouldWait (WithoutWaiting).
@@ -60,7 +64,6 @@ private:
   static Run FindRun(const std::vector<Piece>& pieces, std::vector<Piece>::const_iterator first);
 
   void ReadUnchecked(std::uint64_t offset, std::byte* out, std::size_t bytes) const;
-  void CheckUnchanged() const;
 
   std::string Path;
   int Descriptor = -1;

@@ -72,6 +72,11 @@ public:
     this->Arrays.push_back(std::move(array));
   }
 
+  std::vector<std::string> GetOrigins(int) const override
+  {
+    return { this->Path, this->File->GetPath() };
+  }
+
   void ReadChunk(std::size_t, int, const rt::Index3& chunk, std::byte* out) const override
   {
     const FileArray& array = this->Arrays.front();

@@ -27,17 +27,17 @@ std::vector<hsize_t> GetDimensions(hid_t dataset)
 
 } // namespace
 
-bool HdfAxes::Find(hid_t dataset, bool inSteps)
+bool HdfAxes::Find(hid_t dataset, Time time)
 {
   const std::vector<hsize_t> shape = GetDimensions(dataset);
-  const bool isShort = !shape.empty() && shape.back() <= MostComponents;
+  const bool isShort = !shape.empty() && (time != Time::Unknown || shape.back() <= MostComponents);
   const std::size_t axes = shape.size();
-  if (axes < 3 || axes > 5 || (axes == 5 && !isShort) ||
+  if (axes < 3 || axes > 5 || (axes == 5 && (!isShort || time == Time::None)) ||
     std::find(shape.begin(), shape.end(), hsize_t(0)) != shape.end())
   {
     return false;
   }
-  const bool hasTime = axes == 5 || (axes == 4 && (inSteps || !isShort));
+  const bool hasTime = axes == 5 || (axes == 4 && (time == Time::First || !isShort));
   const std::size_t first = hasTime ? 1 : 0;
   this->Frames = hasTime ? shape.front() : 0;
   this->Components = axes - first == 4 ? shape.back() : 0;

@@ -24,9 +24,15 @@ struct HdfAxes
     return { this->Samples, static_cast<std::int64_t>(this->Frames) };
   }
   std::size_t GetBeforeSpace() const { return this->Frames > 0 ? 1 : 0; }
-  /// Three are z, y and x. Of four, the last has components where it is short, and `inSteps` does not say that the
-  /// first is time. Of five, both. False for what is no volume. The caller has GetHdfLock.
-  bool Find(hid_t dataset, bool inSteps);
+  enum class Time
+  {
+    Unknown, ///< of four axes, the last has components where it is short; else the first is time
+    None,
+    First
+  };
+  /// Three are z, y and x. A fourth one is time or has components, of five the first and the last are. False for what is
+  /// no volume. The caller has GetHdfLock.
+  bool Find(hid_t dataset, Time time);
 };
 
 } // namespace vol

@@ -3,6 +3,7 @@
 
 #include "DSMCore/base/Error.h"
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -99,6 +100,14 @@ void AskLibrary(hid_t dataset, const PositionedFile& file, const std::vector<hsi
 }
 
 } // namespace
+
+std::vector<hsize_t> GetHdfChunkEdges(hid_t properties)
+{
+  std::vector<hsize_t> edges(5, 1);
+  const int axes = H5Pget_chunk(properties, static_cast<int>(edges.size()), edges.data());
+  edges.resize(static_cast<std::size_t>(std::max(0, axes)));
+  return edges;
+}
 
 std::vector<HdfChunk> FindHdfChunks(
   hid_t dataset, const PositionedFile& file, const std::vector<hsize_t>& edges)

@@ -2,16 +2,19 @@
 #include "DSMVolumeFiles/format/HdfFile.h"
 
 #include "DSMCore/base/Error.h"
+#include "DSMVolumeFiles/base/ReadingManner.h"
 #include "DSMVolumeFiles/codec/HaloRecord.h"
 #include "DSMVolumeFiles/format/BareFile.h"
 #include "DSMVolumeFiles/format/HdfAxes.h"
 #include "DSMVolumeFiles/format/HdfChunks.h"
 #include "DSMVolumeFiles/format/HdfLibrary.h"
+#include "DSMVolumeFiles/format/HdfOrigins.h"
 #include "DSMVolumeFiles/format/HdfValues.h"
 #include "DSMVolumeFiles/format/StoredFile.h"
 
 #include <algorithm>
 #include <cstring>
+#include <functional>
 #include <map>
 #include <mutex>
 #include <optional>
@@ -32,8 +35,6 @@ public:
     , File(Open(path))
   {
     this->OpenLevel(level);
-    // What is kept of a level is not another's.
-    this->Stamp = this->Bytes->GetStamp() + static_cast<std::uint64_t>(level);
     if (H5Lexists(this->Root, "VTKHDF", H5P_DEFAULT) > 0)
     {
       this->FindImage();
@@ -46,6 +47,9 @@ public:
     {
       throw dsm::Error("The file '" + path + "' has no " + this->Missing);
     }
+    // What is kept of a level is not another's.
+    this->Stamp =
+      this->Origins.GetStamp(this->Bytes->GetStamp() + static_cast<std::uint64_t>(level));
   }
   ~HdfFile() override
   {
@@ -92,6 +96,13 @@ public:
     return index;
   }
 
+  std::vector<std::string> GetOrigins(int) const override
+  {
+    std::vector<std::string> paths = this->Origins.GetPaths();
+    paths.push_back(this->Path);
+    return paths;
+  }
+
   std::uint64_t GetTableBytes() const override
   {
     std::uint64_t bytes = 0;
@@ -107,6 +118,10 @@ protected:
     std::size_t array, int step, const rt::Index3& chunk) const override
   {
     const Dataset& dataset = this->Kept[array];
+    if (dataset.ReadByLibrary)
+    {
+      return std::nullopt; // nobody else knows
+    }
     const ChunkGrid& grid = this->Arrays[array].Grid;
     const std::size_t frame = dataset.GetFrame(step);
     if (dataset.Chunks.empty())
@@ -253,6 +268,11 @@ private:
       const HdfHandle steps(H5Gopen2(group.Get(), "Steps", H5P_DEFAULT), &H5Gclose);
       ReadWhole(steps.Get(), "Values", H5T_NATIVE_DOUBLE, this->Times);
       this->Steps = std::max(1, static_cast<int>(this->Times.size()));
+      if (!std::is_sorted(this->Times.begin(), this->Times.end(), std::less_equal<>()))
+      {
+        throw dsm::Error("The times of the steps in '" + this->Path +
+          "' (Steps/Values) do not ascend, so that steps cannot be found by their times.");
+      }
     }
     this->FindArrays(group.Get(), "PointData", false, this->Geometry.Points);
     this->FindArrays(group.Get(), "CellData", true, cells);
@@ -282,8 +302,8 @@ private:
         group.Get(), ".", H5_INDEX_NAME, H5_ITER_INC, index, link, sizeof(link), H5P_DEFAULT);
       HdfHandle dataset(H5Dopen2(group.Get(), link, H5P_DEFAULT), &H5Dclose);
       HdfAxes found;
-      if (dataset.IsOpen() && found.Find(dataset.Get(), !this->Times.empty()) &&
-        found.Samples == samples)
+      const HdfAxes::Time time = this->Times.empty() ? HdfAxes::Time::None : HdfAxes::Time::First;
+      if (dataset.IsOpen() && found.Find(dataset.Get(), time) && found.Samples == samples)
       {
         const std::string offsets = std::string("Steps/") + name + "Offsets/" + link;
         std::vector<int> frames = this->FindFrames(parent, offsets, found);
@@ -335,28 +355,10 @@ private:
     return frames;
   }
 
-  /// What the library tells of an object has another type in each of its releases.
-  template <class Info>
-  static herr_t Note(hid_t, const char* name, const Info* info, void* names)
-  {
-    if (info->type == H5O_TYPE_DATASET)
-    {
-      static_cast<std::vector<std::string>*>(names)->push_back(name);
-    }
-    return 0;
-  }
-
   void FindDatasets(const std::string& wanted)
   {
-    std::vector<std::string> names;
-    if (wanted.empty())
-    {
-      H5Ovisit2(this->File.Get(), H5_INDEX_NAME, H5_ITER_INC, &Note, &names, H5O_INFO_BASIC);
-    }
-    else
-    {
-      names.push_back(wanted);
-    }
+    const std::vector<std::string> names =
+      wanted.empty() ? FindHdfDatasets(this->File.Get()) : std::vector<std::string>{ wanted };
     this->Missing =
       wanted.empty() ? "dataset of numbers with three axes." : "such dataset as '" + wanted + "'.";
     std::map<std::string, HdfAxes> volumes;
@@ -364,7 +366,8 @@ private:
     {
       const HdfHandle dataset(H5Dopen2(this->File.Get(), name.c_str(), H5P_DEFAULT), &H5Dclose);
       HdfAxes axes;
-      if (dataset.IsOpen() && axes.Find(dataset.Get(), false) && FindHdfValues(dataset.Get()))
+      if (dataset.IsOpen() && axes.Find(dataset.Get(), HdfAxes::Time::Unknown) &&
+        FindHdfValues(dataset.Get()))
       {
         volumes[name] = axes;
       }
@@ -407,10 +410,11 @@ private:
     array.Type = values->Type;
     array.Grid.Samples = axes.Samples;
     CheckSizes(this->Path, array);
+    this->Origins.Add(this->Path, this->File.Get(), id.Get());
     array.Grid = CutIntoRows(axes.Samples, array.GetSampleBytes());
     Dataset dataset{ std::move(id), false, HADDR_UNDEF, {}, axes, std::move(frames) };
     Storage storage;
-    storage.Fill = this->GetFill(dataset.Id.Get(), array);
+    storage.Fill = GetHdfFill(dataset.Id.Get(), array.Type, array.Components);
     const HdfHandle properties(H5Dget_create_plist(dataset.Id.Get()), &H5Pclose);
     std::vector<CodecStep> steps;
     if (values->Swapped)
@@ -425,6 +429,7 @@ private:
         storage.HasWholeChunks = false;
         break;
       case H5D_CHUNKED:
+        CutAsStored(properties.Get(), axes, array.Grid);
         dataset.ReadByLibrary = !FindHdfSteps(properties.Get(), steps) ||
           !this->FindChunks(properties.Get(), array, storage, dataset, values->Swapped);
         break;
@@ -446,14 +451,16 @@ private:
   /// Whether its values are in this file, and not behind a link to another.
   bool IsHere(hid_t dataset) const
   {
-    const auto getName = [](hid_t object)
-    {
-      const ssize_t length = H5Fget_name(object, nullptr, 0);
-      std::string name(static_cast<std::size_t>(std::max<ssize_t>(0, length)), '\0');
-      H5Fget_name(object, name.data(), name.size() + 1);
-      return name;
-    };
-    return getName(dataset) == getName(this->File.Get());
+    return HdfOrigins::GetFileName(dataset) == HdfOrigins::GetFileName(this->File.Get());
+  }
+
+  /// So that the library, too, unpacks each chunk once.
+  static void CutAsStored(hid_t properties, const HdfAxes& axes, ChunkGrid& grid)
+  {
+    const std::vector<hsize_t> edges = GetHdfChunkEdges(properties);
+    const std::size_t z = axes.GetBeforeSpace();
+    grid.ChunkSamples = { static_cast<std::int64_t>(edges[z + 2]),
+      static_cast<std::int64_t>(edges[z + 1]), static_cast<std::int64_t>(edges[z]) };
   }
 
   /// What a brick file has of its chunks' halos.
@@ -475,28 +482,9 @@ private:
     }
   }
 
-  static std::vector<std::byte> GetFill(hid_t dataset, const FileArray& array)
-  {
-    const std::size_t bytes = rt::GetBytes(array.Type);
-    std::vector<std::byte> one(bytes, std::byte(0));
-    const HdfHandle properties(H5Dget_create_plist(dataset), &H5Pclose);
-    H5D_fill_value_t state = H5D_FILL_VALUE_UNDEFINED;
-    if (H5Pfill_value_defined(properties.Get(), &state) >= 0 &&
-      state == H5D_FILL_VALUE_USER_DEFINED)
-    {
-      H5Pget_fill_value(properties.Get(), GetHdfType(array.Type), one.data());
-    }
-    std::vector<std::byte> all;
-    for (int component = 0; component < array.Components; ++component)
-    {
-      all.insert(all.end(), one.begin(), one.end());
-    }
-    return all;
-  }
-
   /// False when the chunks do not have all components, or are not where the library says, or as the filters say.
-  bool FindChunks(
-    hid_t properties, FileArray& array, Storage& storage, Dataset& dataset, bool swapped) const
+  bool FindChunks(hid_t properties, const FileArray& array, Storage& storage, Dataset& dataset,
+    bool swapped) const
   {
     const HdfHandle creation(H5Fget_create_plist(this->File.Get()), &H5Pclose);
     hsize_t before = 0;
@@ -506,23 +494,19 @@ private:
     {
       return false;
     }
-    hsize_t edges[5] = { 1, 1, 1, 1, 1 };
-    H5Pget_chunk(properties, 5, edges);
+    const std::vector<hsize_t> edges = GetHdfChunkEdges(properties);
     const std::size_t z = dataset.Shape.GetBeforeSpace();
     if (dataset.Shape.Components > 0 && edges[z + 3] != dataset.Shape.Components)
     {
       return false;
     }
-    array.Grid.ChunkSamples = { static_cast<std::int64_t>(edges[z + 2]),
-      static_cast<std::int64_t>(edges[z + 1]), static_cast<std::int64_t>(edges[z]) };
     // A chunk may have several times.
     const hsize_t times = z > 0 ? edges[0] : 1;
     storage.Slices = static_cast<std::size_t>(times);
     const std::int64_t count = array.Grid.GetCount();
     const auto layers =
       static_cast<std::int64_t>((std::max<hsize_t>(1, dataset.Shape.Frames) + times - 1) / times);
-    dataset.Chunks = FindHdfChunks(dataset.Id.Get(), *this->Bytes,
-      { edges, edges + z + 3 + (dataset.Shape.Components > 0 ? 1 : 0) });
+    dataset.Chunks = FindHdfChunks(dataset.Id.Get(), *this->Bytes, edges);
     if (dataset.Chunks.size() != static_cast<std::size_t>(count * layers))
     {
       dataset.Chunks.clear();
@@ -537,6 +521,10 @@ private:
 
   void ReadByLibrary(std::size_t number, int step, const rt::Index3& chunk, std::byte* out) const
   {
+    if (WithoutWaiting::IsInForce())
+    {
+      throw WouldWait{ true };
+    }
     const std::lock_guard<std::mutex> lock(GetHdfLock());
     const HdfSilence silence;
     const FileArray& array = this->Arrays[number];
@@ -552,9 +540,12 @@ private:
       static_cast<hsize_t>(size.x), components };
     const std::size_t skipped = 1 - this->Kept[number].Shape.GetBeforeSpace();
     const HdfHandle part(H5Screate_simple(rank, count + skipped, nullptr), &H5Sclose);
-    if (H5Sselect_hyperslab(
-          all.Get(), H5S_SELECT_SET, first + skipped, nullptr, count + skipped, nullptr) < 0 ||
-      H5Dread(dataset, GetHdfType(array.Type), part.Get(), all.Get(), H5P_DEFAULT, out) < 0)
+    const bool isRead = H5Sselect_hyperslab(all.Get(), H5S_SELECT_SET, first + skipped, nullptr,
+                          count + skipped, nullptr) >= 0 &&
+      H5Dread(dataset, GetHdfType(array.Type), part.Get(), all.Get(), H5P_DEFAULT, out) >= 0;
+    this->Bytes->CheckUnchanged();
+    this->Origins.CheckUnchanged();
+    if (!isRead)
     {
       const std::string lack = FindLackingHdfFilter(dataset);
       throw dsm::Error("A part of the array '" + array.Name + "' in '" + this->Path +
@@ -564,6 +555,7 @@ private:
   }
 
   std::shared_ptr<const PositionedFile> Bytes;
+  HdfOrigins Origins;
   HdfHandle File;
   std::optional<HdfHandle> Coarser; ///< the group of a coarser level
   hid_t Root = H5I_INVALID_HID;     ///< of the level: that group, or the file

@@ -14,6 +14,28 @@ namespace
 
 std::atomic<bool> Ending{ false };
 
+// What the library tells of an object, or a link, has another type in each of its releases.
+
+template <class Info>
+herr_t NoteObject(hid_t, const char* name, const Info* info, void* names)
+{
+  if (info->type == H5O_TYPE_DATASET)
+  {
+    static_cast<std::vector<std::string>*>(names)->push_back(name);
+  }
+  return 0;
+}
+
+template <class Info>
+herr_t NoteLink(hid_t, const char* name, const Info* info, void* names)
+{
+  if (info->type == H5L_TYPE_EXTERNAL)
+  {
+    static_cast<std::vector<std::string>*>(names)->push_back(name);
+  }
+  return 0;
+}
+
 } // namespace
 
 void WatchHdfEnd()
@@ -38,6 +60,14 @@ std::mutex& GetHdfLock()
 {
   static std::mutex lock;
   return lock;
+}
+
+std::vector<std::string> FindHdfDatasets(hid_t file)
+{
+  std::vector<std::string> names;
+  H5Ovisit2(file, H5_INDEX_NAME, H5_ITER_INC, &NoteObject, &names, H5O_INFO_BASIC);
+  H5Lvisit(file, H5_INDEX_NAME, H5_ITER_INC, &NoteLink, &names);
+  return names;
 }
 
 hid_t GetHdfType(rt::ScalarType type)
@@ -77,6 +107,8 @@ HdfSilence::HdfSilence()
 
 HdfSilence::~HdfSilence()
 {
+  // Each thread has errors of its own, and where a thread that is gone has left some, the library cannot end.
+  H5Eclear2(H5E_DEFAULT);
   H5Eset_auto2(H5E_DEFAULT, this->Function, this->Data);
 }
 

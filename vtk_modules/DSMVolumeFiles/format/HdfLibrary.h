@@ -7,7 +7,9 @@
 #include <hdf5.h>
 
 #include <mutex>
+#include <string>
 #include <utility>
+#include <vector>
 
 namespace vol
 {
@@ -30,6 +32,9 @@ std::mutex& GetHdfLock();
 
 /// The library's name of the machine's own form of a type.
 hid_t GetHdfType(rt::ScalarType type);
+
+/// The names of what may be datasets, in all groups of a file, and behind external links. Under the lock.
+std::vector<std::string> FindHdfDatasets(hid_t file);
 
 /// After the library's first use: from then on the end of the process is noticed.
 void WatchHdfEnd();

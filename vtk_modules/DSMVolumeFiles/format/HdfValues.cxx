@@ -55,6 +55,23 @@ std::optional<HdfValues> FindHdfValues(hid_t dataset)
   return FindValuesOfType(stored);
 }
 
+std::vector<std::byte> GetHdfFill(hid_t dataset, rt::ScalarType type, int components)
+{
+  std::vector<std::byte> one(rt::GetBytes(type), std::byte(0));
+  const HdfHandle properties(H5Dget_create_plist(dataset), &H5Pclose);
+  H5D_fill_value_t state = H5D_FILL_VALUE_UNDEFINED;
+  if (H5Pfill_value_defined(properties.Get(), &state) >= 0 && state == H5D_FILL_VALUE_USER_DEFINED)
+  {
+    H5Pget_fill_value(properties.Get(), GetHdfType(type), one.data());
+  }
+  std::vector<std::byte> all;
+  for (int component = 0; component < components; ++component)
+  {
+    all.insert(all.end(), one.begin(), one.end());
+  }
+  return all;
+}
+
 bool FindHdfSteps(hid_t properties, std::vector<CodecStep>& steps)
 {
   const int count = H5Pget_nfilters(properties);

@@ -6,6 +6,7 @@
 #include "DSMVolumeFiles/codec/ChunkCodec.h"
 #include "DSMVolumeFiles/format/HdfLibrary.h"
 
+#include <cstddef>
 #include <optional>
 #include <string>
 #include <vector>
@@ -24,6 +25,9 @@ struct HdfValues
 /// Of a dataset; none for what is no number. Names of truth values and the like (enumerations) count as their numbers.
 /// The caller of all of these has GetHdfLock.
 std::optional<HdfValues> FindHdfValues(hid_t dataset);
+
+/// What a sample of a dataset has where nothing was written.
+std::vector<std::byte> GetHdfFill(hid_t dataset, rt::ScalarType type, int components);
 
 /// The filters that a dataset with these properties has, as steps of ours. False when one is not known here.
 bool FindHdfSteps(hid_t properties, std::vector<CodecStep>& steps);

@@ -116,6 +116,11 @@ public:
     return this->Get(step)->ReadIndex(array, 0);
   }
 
+  std::vector<std::string> GetOrigins(int step) const override
+  {
+    return this->Get(step)->GetOrigins(0);
+  }
+
   StepOrigin GetOrigin(int step) const override { return this->Get(step)->GetOrigin(0); }
 
   std::uint64_t GetTableBytes() const override

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef vol_HdfOrigins_h
+#define vol_HdfOrigins_h
+
+#include "DSMVolumeFiles/format/HdfLibrary.h"
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace vol
+{
+
+/// The other files that an HDF5 file's datasets have values from: behind external links, the bare bytes of external
+/// storage, the sources of virtual datasets. Of these the files of the sources are not looked into.
+class HdfOrigins
+{
+public:
+  /// Those of a dataset that was opened by `file`, which is at `path`. Throws dsm::Error, which names what is missing:
+  /// the library would give fill values. Under GetHdfLock.
+  void Add(const std::string& path, hid_t file, hid_t dataset);
+
+  std::vector<std::string> GetPaths() const;
+  /// `own`, where there are none; else it differs when one of them does, too.
+  std::uint64_t GetStamp(std::uint64_t own) const;
+  /// Throws dsm::Error when one was written to since it was added. Any thread.
+  void CheckUnchanged() const;
+
+  /// The file that a dataset, or anything else, is in. Under GetHdfLock.
+  static std::string GetFileName(hid_t object);
+
+private:
+  void Keep(const std::string& path);
+  void AddSources(const std::string& path, hid_t properties);
+
+  std::map<std::string, std::uint64_t> Stamps; ///< by path
+};
+
+} // namespace vol
+
+#endif
