@@ -206,16 +206,8 @@ void Tell(double part)
 void Convert(Options& options, dsm::Messenger& messenger)
 {
   std::shared_ptr<const vol::VolumeFile> file;
-  messenger.RunTogether("Opening the volume",
-    [&]
-    {
-      file = vol::OpenVolumeFile(options.In, options.Open);
-      std::error_code none;
-      if (std::filesystem::equivalent(options.In, options.Out, none))
-      {
-        throw dsm::Error("The file to write is the file to read. Choose another name.");
-      }
-    });
+  messenger.RunTogether(
+    "Opening the volume", [&] { file = vol::OpenVolumeFile(options.In, options.Open); });
   if (options.Convert.Threads == 0)
   {
     options.Convert.Threads = messenger.GetCoresPerRank();

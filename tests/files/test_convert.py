@@ -215,8 +215,8 @@ def get_chunks():
         return 0
 
 
-def kill_after(chunks):
-    process = subprocess.Popen(command(1, "--memory", 2, *BIG))
+def kill_after(chunks, what=None):
+    process = subprocess.Popen(command(1, "--memory", 2, *(what or BIG)))
     deadline = time.monotonic() + 60
     while get_chunks() < chunks and process.poll() is None and time.monotonic() < deadline:
         time.sleep(0.002)
@@ -272,6 +272,25 @@ done = convert(*BIG)
 check(done.returncode == 0, f"other values are begun anew {done.stderr}")
 compare_big("other values")
 os.remove(path("big.vtkhdf"))
+
+# Arrays whose names look alike when they are written are told apart.
+with h5py.File(path("alike.h5"), "w") as file:
+    file["p/a"], file["p_a"] = big, big + 1
+check(kill_after(100, ["--quiet", "--dataset", "p/a", path("alike.h5"), path("big.vtkhdf")]), "it is killed with one of two arrays")
+done = convert("--quiet", "--dataset", "p_a", path("alike.h5"), path("big.vtkhdf"))
+with h5py.File(path("big.vtkhdf"), "r") as file:
+    check(np.array_equal(file["VTKHDF/PointData/p_a"][...], big + 1), f"the other one is begun anew {done.stderr}")
+os.remove(path("big.vtkhdf"))
+done = convert("--quiet", path("alike.h5"), path("big.vtkhdf"))
+check(done.returncode == 1 and "'p/a' and 'p_a' would both be called 'p_a'" in done.stderr, f"both: {done.stderr.strip()}")
+
+# What is read is not written over, whatever is named.
+for name, origin in (("detached.nhdr", "detached.raw"), ("detached.mhd", "detached.bin"), ("raw_float32.zarr", "raw_float32.zarr/0.0.0"),
+                     ("origins/virtual.h5", "origins/a.bin"), ("origins/link.h5", "origins/d.bin")):
+    before = open(path(origin), "rb").read()
+    done = convert("--quiet", path(name), path(origin))
+    check(done.returncode == 1 and "would be written over what is read" in done.stderr, f"{name}: {done.stderr.strip()}")
+    check(open(path(origin), "rb").read() == before, f"{origin} is as it was")
 
 # Levels go on, too, or are made anew with what they are of.
 check(kill_in_levels(), "it is killed with one level there")

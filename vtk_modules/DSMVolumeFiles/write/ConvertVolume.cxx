@@ -5,6 +5,8 @@
 #include "DSMVolumeFiles/cache/ChunkCache.h"
 
 #include <algorithm>
+#include <filesystem>
+#include <system_error>
 #include <utility>
 
 namespace vol
@@ -35,6 +37,28 @@ std::vector<std::size_t> FindArrays(const VolumeFile& from, const std::vector<st
   return found;
 }
 
+/// What a file is read from must not be written over. Where those of a folder are, there is none to be.
+void CheckTarget(const VolumeFile& from, int step, const std::string& path)
+{
+  namespace fs = std::filesystem;
+  std::error_code none;
+  for (const std::string& origin : from.GetOrigins(step))
+  {
+    bool isIn = fs::equivalent(origin, path, none);
+    fs::path folder = fs::weakly_canonical(path, none);
+    while (!isIn && fs::is_directory(origin, none) && folder.has_relative_path())
+    {
+      folder = folder.parent_path();
+      isIn = fs::equivalent(origin, folder, none);
+    }
+    if (isIn)
+    {
+      throw dsm::Error("'" + path + "' would be written over what is read: the values of '" +
+        from.GetPath() + "' come from '" + origin + "'. Choose another name.");
+    }
+  }
+}
+
 /// One step of a file, which every rank reads by itself.
 class FileOrigin final : public ValueOrigin
 {
@@ -63,8 +87,13 @@ public:
   const std::vector<FileArray>& GetArrays() const override { return this->Arrays; }
   std::string Describe() const override
   {
-    return this->File->GetPath() + " " + std::to_string(this->File->GetStamp()) + " step " +
-      std::to_string(this->Step);
+    std::string text = this->File->GetPath() + " " + std::to_string(this->File->GetStamp()) +
+      " step " + std::to_string(this->Step);
+    for (const FileArray& array : this->Arrays) // what is written may be called otherwise
+    {
+      text += " " + array.Name;
+    }
+    return text;
   }
 
   /// Each rank gets such as lie beside one another.
@@ -98,7 +127,11 @@ void ConvertVolume(const std::shared_ptr<const VolumeFile>& from, const std::str
 {
   std::unique_ptr<ValueOrigin> origin;
   messenger.RunTogether("Converting a volume",
-    [&] { origin = std::make_unique<FileOrigin>(from, options, messenger); });
+    [&]
+    {
+      origin = std::make_unique<FileOrigin>(from, options, messenger);
+      CheckTarget(*from, options.Step, path);
+    });
   WriteBrickFile(std::move(origin), path, options, messenger, tell);
 }
 

@@ -234,12 +234,13 @@ BrickFileLayout CreateLayout(const ValueOrigin& from, const WriteOptions& option
     // HDF5's names of what lies in folders.
     const std::string name = array.Name;
     std::replace(array.Name.begin(), array.Name.end(), '/', '_');
-    if (std::any_of(layout.Arrays.begin(), layout.Arrays.end(),
-          [&](const FileArray& one)
-          { return one.Name == array.Name && one.OnCells == array.OnCells; }))
+    const auto same = std::find_if(layout.Arrays.begin(), layout.Arrays.end(),
+      [&](const FileArray& one) { return one.Name == array.Name && one.OnCells == array.OnCells; });
+    if (same != layout.Arrays.end())
     {
-      throw dsm::Error("Two arrays would be called '" + array.Name + "', one of them '" + name +
-        "'. Leave one out.");
+      const auto before = static_cast<std::size_t>(same - layout.Arrays.begin());
+      throw dsm::Error("The arrays '" + from.GetArrays()[before].Name + "' and '" + name +
+        "' would both be called '" + array.Name + "'. Leave one out.");
     }
     array.Grid.ChunkSamples = glm::min(rt::Index3(layout.BrickEdge), array.Grid.Samples);
     layout.Arrays.push_back(std::move(array));
