@@ -437,6 +437,28 @@ TEST_F(DamagedFile, WithAWrongHeaderSaysWhatIsWrong)
   ExpectWords(Read(write("g.h5", "\x89HDF\r\n\x1a\n and then nothing")), { "g.h5", "no HDF5" });
 }
 
+/// No part of a header is shown as values.
+TEST_F(DamagedFile, WhoseValuesWouldBeginInItsHeaderIsRefused)
+{
+  const auto write = [&](const std::string& name, const std::string& text)
+  {
+    std::ofstream(GetFolder() / name) << text;
+    return Json{ { "file", name }, { "level", 0 }, { "dataset", "" } };
+  };
+  const std::string meta = "NDims = 3\nDimSize = 2 2 2\nElementType = MET_UCHAR\n";
+  for (const char* size : { "9", "-1" })
+  {
+    const std::string skip = std::string("HeaderSize = ") + size + "\nElementDataFile = LOCAL\n";
+    ExpectWords(Read(write("part.mha", meta + skip + "1234567")), { "part.mha", "8 of values" });
+  }
+  EXPECT_EQ(
+    Read(write("part.mha", meta + "HeaderSize = -1\nElementDataFile = LOCAL\n12345678")), "");
+  const std::string nrrd =
+    "NRRD0004\ntype: uchar\ndimension: 3\nsizes: 2 2 2\nencoding: raw\nbyte skip: -1\n";
+  ExpectWords(Read(write("part.nrrd", nrrd + "\n1234567")), { "part.nrrd", "8 of values" });
+  EXPECT_EQ(Read(write("part.nrrd", nrrd + "\n12345678")), "");
+}
+
 /// Nothing of it may be reckoned with before it is checked.
 TEST_F(DamagedFile, WithSizesThatCannotBeIsRefused)
 {

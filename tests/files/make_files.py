@@ -511,6 +511,12 @@ for name, text in (
         file.write("NDims = 3\nDimSize = 21 13 10\n" + text)
     note(name, [("values", "float32" if "colons" in name else "int32")])
 
+# Of what a header says of its own size, MetaIO makes a place in the file, also where the values follow it.
+for name, size, between in (("skip.mha", 300, 300), ("skip_all.mha", -1, 200)):
+    header = f"NDims = 3\nDimSize = 21 13 10\nElementType = MET_SHORT\nHeaderSize = {size}\nElementDataFile = LOCAL\n"
+    with open(path(name), "wb") as file:
+        file.write(header.encode().ljust(between, b"y") + values("<i2").tobytes())
+    note(name, [("values", "int16")])
 # Bare values.
 with open(path("bare.raw"), "wb") as file:
     file.write(b"a header of 21 bytes.")

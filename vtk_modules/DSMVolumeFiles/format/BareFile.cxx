@@ -51,10 +51,12 @@ public:
     const std::uint64_t has = this->File->GetBytes();
     this->First =
       values.Offset >= 0 ? static_cast<std::uint64_t>(values.Offset) : has - std::min(has, need);
-    if (this->First > has || need > has - this->First)
+    const auto least = static_cast<std::uint64_t>(values.Least);
+    if (this->First < least || this->First > has || need > has - this->First)
     {
       throw dsm::Error("The file '" + values.Path + "' has " + std::to_string(has) +
-        " bytes, but " + std::to_string(need) + " of values behind " + std::to_string(this->First) +
+        " bytes, but " + std::to_string(need) + " of values behind " +
+        std::to_string(std::max(least, this->First)) +
         " of header are expected. Check the sizes and the type of the values.");
     }
     // What is kept of values that were read in another way is not of these.

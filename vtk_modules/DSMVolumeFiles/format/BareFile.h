@@ -22,6 +22,8 @@ struct BareValues
   bool BigEndian = false;
   /// Before the first value; negative: the values are at the end of the file.
   std::int64_t Offset = 0;
+  /// Where they may begin: of a file that has its header, behind that.
+  std::int64_t Least = 0;
 };
 
 /// A volume of bare values, as a header elsewhere describes it. Its chunks are boxes of at

@@ -83,13 +83,15 @@ std::shared_ptr<const VolumeFile> OpenMetaImage(const std::string& path)
   values.Components = channels.empty() ? 1 : static_cast<int>(channels.front());
   values.BigEndian =
     IsTrue(header, "binarydatabyteordermsb") || IsTrue(header, "elementbyteordermsb");
+  // MetaIO counts from the beginning of the file with the values, also where that has a header; -1: they end it.
   const std::vector<double> skip = header.GetNumbers("headersize", 1);
   values.Offset = skip.empty() ? 0 : static_cast<std::int64_t>(skip.front());
   const std::string place = header.Get("elementdatafile");
   if (HeaderText::ToLower(place) == "local")
   {
     values.Path = path;
-    values.Offset = static_cast<std::int64_t>(file.tellg());
+    values.Least = static_cast<std::int64_t>(file.tellg());
+    values.Offset = values.Offset == 0 ? values.Least : values.Offset;
   }
   else if (HeaderText::Split(place).front() == "LIST" || place.find('%') != std::string::npos)
   {

@@ -233,7 +233,8 @@ std::shared_ptr<const VolumeFile> OpenNrrd(const std::string& path)
   if (separate.empty())
   {
     values.Path = path;
-    values.Offset += values.Offset < 0 ? 0 : static_cast<std::int64_t>(file.tellg());
+    values.Least = static_cast<std::int64_t>(file.tellg());
+    values.Offset += values.Offset < 0 ? 0 : values.Least;
   }
   else if (IsInSeveralFiles(separate))
   {
