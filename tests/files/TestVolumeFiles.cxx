@@ -457,6 +457,17 @@ TEST_F(DamagedFile, WhoseValuesWouldBeginInItsHeaderIsRefused)
     "NRRD0004\ntype: uchar\ndimension: 3\nsizes: 2 2 2\nencoding: raw\nbyte skip: -1\n";
   ExpectWords(Read(write("part.nrrd", nrrd + "\n1234567")), { "part.nrrd", "8 of values" });
   EXPECT_EQ(Read(write("part.nrrd", nrrd + "\n12345678")), "");
+  // Nor of one that ends early.
+  for (const char* size : { "", "HeaderSize = -1\n" })
+  {
+    ExpectWords(Read(write("part.mha", meta + size + "ElementDataFile = LOCAL")),
+      { "part.mha", "ends with its header" });
+  }
+  for (const std::string& text : { nrrd, nrrd.substr(0, nrrd.find("byte")) })
+  {
+    ExpectWords(
+      Read(write("part.nrrd", text)), { "part.nrrd", "ends with its header", "empty line" });
+  }
 }
 
 /// Nothing of it may be reckoned with before it is checked.

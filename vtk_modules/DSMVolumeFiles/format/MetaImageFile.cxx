@@ -89,6 +89,10 @@ std::shared_ptr<const VolumeFile> OpenMetaImage(const std::string& path)
   const std::string place = header.Get("elementdatafile");
   if (HeaderText::ToLower(place) == "local")
   {
+    if (file.eof())
+    {
+      header.Refuse("the file ends with its header, and has no values.");
+    }
     values.Path = path;
     values.Least = static_cast<std::int64_t>(file.tellg());
     values.Offset = values.Offset == 0 ? values.Least : values.Offset;

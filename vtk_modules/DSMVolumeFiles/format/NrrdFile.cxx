@@ -232,6 +232,11 @@ std::shared_ptr<const VolumeFile> OpenNrrd(const std::string& path)
   const std::string separate = header.Get("data file");
   if (separate.empty())
   {
+    if (file.eof())
+    {
+      header.Refuse(
+        "the file ends with its header: there is no empty line, and no values behind it.");
+    }
     values.Path = path;
     values.Least = static_cast<std::int64_t>(file.tellg());
     values.Offset += values.Offset < 0 ? 0 : values.Least;
