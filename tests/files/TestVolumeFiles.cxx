@@ -544,6 +544,25 @@ TEST_F(DamagedFile, WithSizesThatCannotBeIsRefused)
   EXPECT_EQ(Open(ome({ "c", "t", "z", "y", "x" }))->GetSteps(), 2);
 }
 
+/// As Python writes them, which JSON does not have.
+TEST_F(DamagedFile, WithABareWordForAFillValueHasIt)
+{
+  for (const char* word : { "NaN", "Infinity", "-Infinity" })
+  {
+    const Json entry = this->Copy("holes.zarr");
+    std::ifstream old(this->Path / ".zarray");
+    std::string text{ std::istreambuf_iterator<char>(old), {} };
+    text.replace(text.find("42.0"), 4, word);
+    std::ofstream(this->Path / ".zarray") << text;
+    vol::ChunkCache cache(1);
+    float value = 0.0f;
+    const rt::Box last{ rt::Index3(20, 12, 9), rt::Index3(21, 13, 10) };
+    cache.ReadBox(Open(entry), 0, 0, last, reinterpret_cast<std::byte*>(&value));
+    const float expected = std::strtof(word, nullptr);
+    EXPECT_TRUE(value == expected || (std::isnan(value) && std::isnan(expected))) << value;
+  }
+}
+
 /// What was read before must not meet other values: chunks are files that are opened anew.
 TEST_F(DamagedFile, WhoseChunksChangeOrGoAwaySaysSo)
 {

@@ -298,8 +298,8 @@ bool ZarrMetadata::IsVolume() const
 namespace
 {
 
-/// Python writes NaN and infinite numbers, which JSON does not have: they are read as null.
-std::string WithoutBareWords(const std::string& text)
+/// Python writes NaN and infinite numbers, which JSON does not have: they become texts, as Zarr has them.
+std::string WithQuotedWords(const std::string& text)
 {
   std::string result;
   bool inText = false;
@@ -320,7 +320,7 @@ std::string WithoutBareWords(const std::string& text)
     {
       found = !inText && begins(word) ? word : found;
     }
-    result += found ? "null" : std::string(1, letter);
+    result += found ? '"' + std::string(found) + '"' : std::string(1, letter);
     at += found ? std::strlen(found) - 1 : 0;
   }
   return result;
@@ -348,7 +348,7 @@ nlohmann::json ReadZarrJson(const std::string& folder, const std::string& name)
   try
   {
     const std::string text{ std::istreambuf_iterator<char>(file), {} };
-    return Json::parse(WithoutBareWords(text));
+    return Json::parse(WithQuotedWords(text));
   }
   catch (const Json::exception& error)
   {
