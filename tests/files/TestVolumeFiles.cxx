@@ -530,6 +530,24 @@ TEST_F(DamagedFile, WithSizesThatCannotBeIsRefused)
   ExpectWords(Read(zarr3({ { "fill_value", "0x12345678f" } })), { "fill value" });
   ExpectWords(Read(zarr3({ { "data_type", { { "name", "string" } } } })), { "'string'" });
   ExpectWords(Read(zarr3({ { "codecs", { "sharding_indexed", "crc32c" } } })), { "shards" });
+  const auto transposed = [&](const std::vector<std::vector<int>>& orders)
+  {
+    Json codecs = Json::array();
+    for (const std::vector<int>& order : orders)
+    {
+      codecs.push_back({ { "name", "transpose" }, { "configuration", { { "order", order } } } });
+    }
+    codecs.push_back("bytes");
+    return zarr3({ { "codecs", codecs } });
+  };
+  ExpectWords(Read(transposed({ { 1, 2, 0 }, { 1, 2, 0 } })), { "some of its axes" });
+  ExpectWords(Read(transposed({ { 2, 1, 0 }, { 1, 0, 2 } })), { "some of its axes" });
+  ExpectWords(Read(transposed({ { 1, 0 } })), { "transposed", "3 axes" });
+  ExpectWords(Read(transposed({ { 0, 0, 0 } })), { "transposed", "3 axes" });
+  Json ofIndex = Json::parse(R"([{"name": "sharding_indexed", "configuration": {
+    "chunk_shape": [2, 5, 4], "codecs": ["bytes"], "index_codecs": [
+    {"name": "transpose", "configuration": {"order": [3, 2, 1, 0]}}, "bytes"]}}])");
+  ExpectWords(Read(zarr3({ { "codecs", ofIndex } })), { "index", "transposed" });
 
   const auto ome = [&](const Json& axes)
   {

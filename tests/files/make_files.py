@@ -344,7 +344,7 @@ note(
 
 
 # Zarr, version 3, which zarr 2 cannot write: by hand, after the specification.
-def write_version3(name, codecs, chunk, shard=None):
+def write_version3(name, codecs, chunk, shard=None, orders=()):
     data = values("<f4")
     os.makedirs(path(name))
     encode = {
@@ -352,7 +352,8 @@ def write_version3(name, codecs, chunk, shard=None):
         "zstd": lambda raw: bytes(Zstd().encode(raw)),
         "blosc": lambda raw: bytes(Blosc("lz4").encode(raw)),
     }
-    inner = [{"name": "bytes", "configuration": {"endian": "little"}}]
+    inner = [{"name": "transpose", "configuration": {"order": order}} for order in orders]
+    inner += [{"name": "bytes", "configuration": {"endian": "little"}}]
     inner += [{"name": codec, "configuration": {}} for codec in codecs]
     outer = inner
     if shard:
@@ -386,6 +387,8 @@ def write_version3(name, codecs, chunk, shard=None):
         whole = np.zeros(shape, "<f4")
         part = data[tuple(slice(f, f + n) for f, n in zip(first, shape))]
         whole[tuple(slice(0, n) for n in part.shape)] = part
+        for order in orders:
+            whole = whole.transpose(order)
         raw = whole.tobytes()
         for codec in codecs:
             raw = encode[codec](raw)
@@ -427,6 +430,11 @@ write_version3("three_raw.zarr", [], [4, 5, 8])
 write_version3("three_zstd.zarr", ["zstd"], [4, 5, 8])
 write_version3("three_sharded.zarr", ["blosc"], [2, 5, 4], [4, 10, 8])
 write_version3("three_sharded_gzip.zarr", ["gzip"], [4, 5, 8], [4, 5, 8])
+# Axes that are transposed, and again: to the order of C, or of Fortran.
+turn, around = [2, 1, 0], [1, 2, 0]
+for name, orders in (("turned", [turn]), ("twice", [turn, turn]), ("still", [turn, [0, 1, 2]]), ("around", [around] * 3)):
+    write_version3(f"three_{name}.zarr", [], [4, 5, 8], None, orders)
+    write_version3(f"three_{name}_sharded.zarr", ["zstd"], [2, 5, 4], [4, 10, 8], orders)
 
 # VTK's MetaImage.
 image = vtkImageData()

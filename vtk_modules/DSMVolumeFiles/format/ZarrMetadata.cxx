@@ -12,6 +12,7 @@
 #include <iterator>
 #include <limits>
 #include <map>
+#include <numeric>
 #include <system_error>
 #include <utility>
 
@@ -183,11 +184,14 @@ Json GetConfiguration(const Json& named)
   return named.is_object() ? named.value("configuration", Json::object()) : Json::object();
 }
 
-/// Of version 3, but for sharding. `fortranOrder` is set where all axes are transposed.
-std::vector<CodecStep> ParseCodecs3(
-  const std::string& folder, const Json& codecs, std::size_t width, bool& fortranOrder)
+/// Of version 3, but for sharding, of an array of so many axes. `fortranOrder`: whether all are transposed, after all
+/// transpositions, which follow one another.
+std::vector<CodecStep> ParseCodecs3(const std::string& folder, const Json& codecs,
+  std::size_t width, std::size_t count, bool& fortranOrder)
 {
   std::vector<CodecStep> steps;
+  std::vector<std::size_t> axes(count);
+  std::iota(axes.begin(), axes.end(), std::size_t(0));
   for (const Json& codec : codecs)
   {
     const std::string name = GetName(codec);
@@ -201,19 +205,26 @@ std::vector<CodecStep> ParseCodecs3(
     }
     else if (name == "transpose")
     {
-      const auto order = configuration.at("order").get<std::vector<int>>();
-      const bool isReversed = std::is_sorted(order.rbegin(), order.rend());
-      if (!isReversed && !std::is_sorted(order.begin(), order.end()))
+      const auto order = configuration.at("order").get<std::vector<std::size_t>>();
+      if (!std::is_permutation(order.begin(), order.end(), axes.begin(), axes.end()))
       {
         Refuse(folder,
-          "some of its axes are transposed in the file, which is not supported; only all can be.");
+          "its axes are transposed as those of another array; it has " + std::to_string(count) +
+            " axes.");
       }
-      fortranOrder = isReversed && order.size() > 1;
+      std::transform(order.begin(), order.end(), axes.begin(),
+        [before = axes](std::size_t axis) { return before[axis]; });
     }
     else
     {
       steps.push_back(ParseCodec(folder, name));
     }
+  }
+  fortranOrder = count > 1 && std::is_sorted(axes.rbegin(), axes.rend());
+  if (!fortranOrder && !std::is_sorted(axes.begin(), axes.end()))
+  {
+    Refuse(folder,
+      "some of its axes are transposed in the file, which is not supported; only all can be.");
   }
   return steps;
 }
@@ -263,9 +274,14 @@ ZarrMetadata ParseVersion3(const std::string& folder, const Json& json)
     shards.ShardShape = std::exchange(
       data.ChunkShape, configuration.at("chunk_shape").get<std::vector<std::int64_t>>());
     shards.IndexIsFirst = configuration.value("index_location", "end") == "start";
-    bool ofIndex = false;
-    const std::vector<CodecStep> steps =
-      ParseCodecs3(folder, configuration.at("index_codecs"), sizeof(std::uint64_t), ofIndex);
+    bool isTransposed = false;
+    // Its last axis has an offset and a length.
+    const std::vector<CodecStep> steps = ParseCodecs3(folder, configuration.at("index_codecs"),
+      sizeof(std::uint64_t), data.Shape.size() + 1, isTransposed);
+    if (isTransposed)
+    {
+      Refuse(folder, "the index of its shards is transposed, which is not supported.");
+    }
     shards.IndexBytes =
       CountChunks(folder, shards.ShardShape, data.ChunkShape) * 2 * sizeof(std::uint64_t);
     for (const CodecStep& step : steps)
@@ -276,7 +292,8 @@ ZarrMetadata ParseVersion3(const std::string& folder, const Json& json)
     data.Shards = std::move(shards);
     codecs = configuration.at("codecs");
   }
-  data.Codec = ChunkCodec(ParseCodecs3(folder, codecs, width, data.FortranOrder));
+  data.Codec =
+    ChunkCodec(ParseCodecs3(folder, codecs, width, data.Shape.size(), data.FortranOrder));
   return data;
 }
 
