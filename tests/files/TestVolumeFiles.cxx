@@ -560,6 +560,29 @@ TEST_F(DamagedFile, WithSizesThatCannotBeIsRefused)
   };
   ExpectWords(Read(ome({ "t", "z", "c", "y", "x" })), { "last three axes", "space" });
   EXPECT_EQ(Open(ome({ "c", "t", "z", "y", "x" }))->GetSteps(), 2);
+  EXPECT_EQ(Open(ome({ "C", "T", "Z", "Y", "X" }))->GetSteps(), 2);
+  ExpectWords(Read(ome({ "t", "c", "y", "x", "z" })), { "t, c, y, x, z", "order" });
+
+  const auto named = [&](const std::string& name, const Json& axes)
+  {
+    const Json entry = this->Copy(name);
+    std::ofstream(this->Path / ".zattrs") << Json{ { "_ARRAY_DIMENSIONS", axes } };
+    return entry;
+  };
+  for (const Json& axes : { Json{ "time", "y", "x" }, Json{ "y", "x", "c" }, Json{ "Y", "X", "Z" },
+         Json{ "depth", "x", "y" } })
+  {
+    ExpectWords(
+      Read(named("raw_float32.zarr", axes)), { "raw_float32.zarr", "last three axes", "order" });
+  }
+  for (const Json& axes : { Json{ "t", "c", "y", "x", "z" }, Json{ "t", "z", "y", "x", "channel" },
+         Json{ "z", "TIME", "y", "x", "c" }, Json{ "x", "y", "z", "c", "time" } })
+  {
+    Json entry = named("ome.zarr", axes);
+    fs::rename(this->Path / ".zattrs", this->Path / "0/.zattrs");
+    entry["file"] = "damaged_ome.zarr/0";
+    ExpectWords(Read(entry), { "no volume", "last three axes" });
+  }
 }
 
 /// As Python writes them, which JSON does not have.

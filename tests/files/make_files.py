@@ -267,12 +267,25 @@ for name, order, turned in (("fortran", "F", False), ("from_x", "C", True), ("bo
     with open(path(f"{name}.zarr/.zattrs"), "w", encoding="utf-8") as file:
         json.dump(names, file)
     note(f"{name}.zarr", [(name, "float32")])
+# Names in capitals, and such as only say where x, y or z is.
+for name, names in (("capitals", "XYZ"), ("capitals_z", "ZYX"), ("x_first", ["x", "lat", "lon"]), ("unknown", ["time_of_day", "lat", "dim_2"])):
+    turned = names[0] in "Xx"
+    data = values("<f4")
+    save_zarr(f"{name}.zarr", data.T if turned else data, chunks=(8, 5, 4))
+    with open(path(f"{name}.zarr/.zattrs"), "w", encoding="utf-8") as file:
+        json.dump({"_ARRAY_DIMENSIONS": list(names)}, file)
+    note(f"{name}.zarr", [(name, "float32")])
 # As xarray writes it: times, texts beside the volume, and numbers that JSON does not have.
 zarr.open_group(path("xarray.zarr"), mode="w", **LATER)
 save_zarr("xarray.zarr/f", np.stack([values("<f4", step=t) for t in range(3)]), chunks=(1, 10, 13, 21))
 save_zarr("xarray.zarr/still", values("|u1"), chunks=(10, 13, 21))
 save_zarr("xarray.zarr/times", np.array(["one", "two"]), chunks=(2,))
-for name, text in (("", '{"missing": NaN, "least": -Infinity}'), ("/f", '{"_ARRAY_DIMENSIONS": ["time", "z", "y", "x"]}')):
+save_zarr("xarray.zarr/film", np.zeros((40, 20, 30), "|u1"), chunks=(1, 20, 30))
+for name, text in (
+    ("", '{"missing": NaN, "least": -Infinity}'),
+    ("/f", '{"_ARRAY_DIMENSIONS": ["Time", "z", "y", "x"]}'),
+    ("/film", '{"_ARRAY_DIMENSIONS": ["time", "y", "x"]}'),
+):
     with open(path(f"xarray.zarr{name}/.zattrs"), "w", encoding="utf-8") as file:
         file.write(text)
 note("xarray.zarr", [("f", "float32"), ("still", "uint8", 1, 0, False, True)], steps=3)

@@ -5,6 +5,7 @@
 #include "DSMRayTracing/base/ByteHash.h"
 #include "DSMVolumeFiles/format/StoredFile.h"
 #include "DSMVolumeFiles/format/VolumeShape.h"
+#include "DSMVolumeFiles/format/ZarrAxes.h"
 #include "DSMVolumeFiles/format/ZarrMetadata.h"
 #include "DSMVolumeFiles/format/ZarrParts.h"
 
@@ -22,95 +23,13 @@ namespace
 
 using Json = nlohmann::json;
 
-/// How many axes are in space.
-constexpr std::size_t SpaceAxes = 3;
-
 /// More than any microscope's.
 constexpr std::int64_t MostChannels = 1000;
-
-/// The axes before those of space: which one is time, or none; the others are channels.
-struct LeadingAxes
-{
-  int Time = -1;
-  std::int64_t Count = 0;
-  bool FromX = false; ///< the others are x, y, z, not z, y, x
-};
 
 std::string GetText(const Json& object, const char* name)
 {
   const Json found = object.is_object() ? object.value(name, Json()) : Json();
   return found.is_string() ? found.get<std::string>() : std::string();
-}
-
-/// "time", "channel" or "space"; empty where it is not told.
-std::string FindAxisType(const Json& axis)
-{
-  const std::string name = axis.is_string() ? axis.get<std::string>() : GetText(axis, "name");
-  const std::string type = GetText(axis, "type");
-  return !type.empty()                          ? type
-    : name == "t" || name == "time"             ? "time"
-    : name == "c" || name == "channel"          ? "channel"
-    : name == "x" || name == "y" || name == "z" ? "space"
-                                                : "";
-}
-
-/// Where the axes are not told, the last three are in space, and the first of five is time.
-LeadingAxes FindLeadingAxes(const Json& axes, std::size_t count)
-{
-  LeadingAxes found;
-  found.Count = static_cast<std::int64_t>(count - SpaceAxes);
-  if (!axes.is_array() || axes.size() != count)
-  {
-    found.Time = found.Count == 2 ? 0 : -1;
-    return found;
-  }
-  std::string last;
-  for (std::size_t axis = 0; axis < count; ++axis)
-  {
-    const Json& one = axes[axis];
-    if (axis + SpaceAxes >= count)
-    {
-      last += one.is_string() ? one.get<std::string>() : GetText(one, "name");
-    }
-    else if (FindAxisType(one) == "time")
-    {
-      found.Time = static_cast<int>(axis);
-    }
-  }
-  found.FromX = last == "xyz";
-  return found;
-}
-
-/// Of OME, whose images may be flat. Throws dsm::Error.
-void CheckSpace(const std::string& folder, const Json& axes)
-{
-  for (std::size_t axis = 0; axes.is_array() && axis < axes.size(); ++axis)
-  {
-    const std::string type = FindAxisType(axes[axis]);
-    const bool inSpace = axis + SpaceAxes >= axes.size();
-    if (inSpace ? !type.empty() && type != "space" : type == "space")
-    {
-      throw dsm::Error("The Zarr array '" + folder +
-        "' is no volume: its last three axes, and no others, must be in space.");
-    }
-  }
-}
-
-/// Which axis of an array of so many is x, y or z.
-std::size_t FindSpaceAxis(std::size_t count, int axis, bool fromX)
-{
-  const auto place = static_cast<std::size_t>(axis);
-  return fromX ? count - SpaceAxes + place : count - 1 - place;
-}
-
-rt::Index3 GetSpace(const std::vector<std::int64_t>& shape, bool fromX)
-{
-  rt::Index3 space;
-  for (int axis = 0; axis < 3; ++axis)
-  {
-    space[axis] = shape[FindSpaceAxis(shape.size(), axis, fromX)];
-  }
-  return space;
 }
 
 class ZarrFile final : public StoredFile
@@ -184,14 +103,14 @@ protected:
     std::vector<std::int64_t> index(axes, 0);
     for (int axis = 0; axis < 3; ++axis)
     {
-      index[FindSpaceAxis(axes, axis, source.Leading.FromX)] = chunk[axis];
+      index[source.Axes.FindInSpace(axes, axis)] = chunk[axis];
     }
     // A chunk may have several times and channels.
     std::size_t slice = 0;
-    for (std::size_t axis = 0; axis + SpaceAxes < axes; ++axis)
+    for (std::size_t axis = 0; axis + ZarrAxes::InSpace < axes; ++axis)
     {
       const std::int64_t at =
-        static_cast<int>(axis) == source.Leading.Time ? step : source.Channel[axis];
+        static_cast<int>(axis) == source.Axes.Time ? step : source.Channel[axis];
       index[axis] = at / data.ChunkShape[axis];
       slice = slice * static_cast<std::size_t>(data.ChunkShape[axis]) +
         static_cast<std::size_t>(at % data.ChunkShape[axis]);
@@ -211,7 +130,7 @@ private:
   {
     std::string Folder;
     std::shared_ptr<const ZarrMetadata> Data;
-    LeadingAxes Leading;
+    ZarrAxes Axes;
     std::vector<std::int64_t> Channel; ///< along the leading axes; of time, 0
   };
 
@@ -227,13 +146,11 @@ private:
     const Json& dataset = datasets.at(static_cast<std::size_t>(level));
     const std::string folder = this->Path + "/" + dataset.at("path").get<std::string>();
     const auto data = Read(folder);
-    const Json axes = scale.value("axes", Json());
-    CheckSpace(folder, axes);
-    const LeadingAxes leading = FindLeadingAxes(axes, data->Shape.size());
+    const ZarrAxes axes = ZarrAxes::Find(folder, scale.value("axes", Json()), data->Shape.size());
     // The level's own come first.
     for (const Json* const from : { &dataset, &scale })
     {
-      this->Locate(from->value("coordinateTransformations", Json::array()), leading.FromX);
+      this->Locate(from->value("coordinateTransformations", Json::array()), axes);
     }
     const Json channels = ome.value("omero", Json::object()).value("channels", Json::array());
     const auto getName = [&](std::int64_t channel, std::int64_t count)
@@ -246,19 +163,19 @@ private:
         : count == 1        ? std::string("values")
                             : "channel " + std::to_string(channel);
     };
-    this->Add(folder, data, leading, getName);
+    this->Add(folder, data, axes, getName);
   }
 
   /// Scale and translation, the slowest axis first.
-  void Locate(const Json& transformations, bool fromX)
+  void Locate(const Json& transformations, const ZarrAxes& axes)
   {
     for (const Json& one : transformations)
     {
       const std::string type = one.value("type", "");
       const auto values = one.value(type, std::vector<double>());
-      for (int axis = 0; axis < 3 && values.size() >= SpaceAxes; ++axis)
+      for (int axis = 0; axis < 3 && values.size() >= ZarrAxes::InSpace; ++axis)
       {
-        const double value = values[FindSpaceAxis(values.size(), axis, fromX)];
+        const double value = values[axes.FindInSpace(values.size(), axis)];
         if (type == "scale")
         {
           this->Geometry.Spacing[axis] *= value;
@@ -278,7 +195,7 @@ private:
     const auto addAs = [this](const std::string& folder, const std::string& name)
     {
       const auto data = Read(folder);
-      this->Add(folder, data, FindLeadingAxes(data->Axes, data->Shape.size()),
+      this->Add(folder, data, ZarrAxes::Find(folder, data->Axes, data->Shape.size()),
         [&](std::int64_t channel, std::int64_t count)
         { return count == 1 ? name : name + " " + std::to_string(channel); });
     };
@@ -292,11 +209,18 @@ private:
     VolumeShape largest;
     // Beside a volume there may be what is none, such as texts.
     std::string refused;
-    const auto tryToRead = [&](const std::string& folder) -> std::optional<ZarrMetadata>
+    const auto tryToRead = [&](const std::string& folder) -> std::optional<VolumeShape>
     {
       try
       {
-        return ReadZarrMetadata(folder);
+        const std::optional<ZarrMetadata> data = ReadZarrMetadata(folder);
+        if (!data || !data->IsVolume())
+        {
+          return std::nullopt;
+        }
+        const ZarrAxes axes = ZarrAxes::Find(folder, data->Axes, data->Shape.size());
+        return VolumeShape{ axes.GetSpace(data->Shape),
+          axes.Time < 0 ? 0 : data->Shape[static_cast<std::size_t>(axes.Time)] };
       }
       catch (const dsm::Error& error)
       {
@@ -306,14 +230,11 @@ private:
     };
     for (const auto& entry : std::filesystem::directory_iterator(this->Path))
     {
-      const auto data = entry.is_directory() ? tryToRead(entry.path().string()) : std::nullopt;
-      if (data && data->IsVolume())
+      const auto shape = entry.is_directory() ? tryToRead(entry.path().string()) : std::nullopt;
+      if (shape)
       {
-        const LeadingAxes leading = FindLeadingAxes(data->Axes, data->Shape.size());
-        const VolumeShape shape{ GetSpace(data->Shape, leading.FromX),
-          leading.Time < 0 ? 0 : data->Shape[static_cast<std::size_t>(leading.Time)] };
-        found[entry.path().filename().string()] = shape;
-        largest = shape.IsLargerThan(largest) ? shape : largest;
+        found[entry.path().filename().string()] = *shape;
+        largest = shape->IsLargerThan(largest) ? *shape : largest;
       }
     }
     if (found.empty())
@@ -350,14 +271,14 @@ private:
   /// `getName(channel, count)`.
   template <class GetName>
   void Add(const std::string& folder, const std::shared_ptr<const ZarrMetadata>& data,
-    const LeadingAxes& leading, const GetName& getName)
+    const ZarrAxes& axes, const GetName& getName)
   {
     const auto getLength = [&](std::int64_t axis)
     { return data->Shape[static_cast<std::size_t>(axis)]; };
     std::int64_t channels = 1;
-    for (std::int64_t axis = 0; axis < leading.Count; ++axis)
+    for (std::int64_t axis = 0; axis < axes.Leading; ++axis)
     {
-      channels *= axis == leading.Time ? 1 : getLength(axis);
+      channels *= axis == axes.Time ? 1 : getLength(axis);
     }
     if (channels > MostChannels)
     {
@@ -366,34 +287,34 @@ private:
         " can be. If one of its axes is time, let its name say so (\"time\", in dimension_names or "
         "_ARRAY_DIMENSIONS).");
     }
-    const std::int64_t times = leading.Time >= 0 ? getLength(leading.Time) : 1;
+    const std::int64_t times = axes.Time >= 0 ? getLength(axes.Time) : 1;
     this->Steps = std::max(this->Steps, static_cast<int>(times));
-    this->Geometry.Points = GetSpace(data->Shape, leading.FromX);
+    this->Geometry.Points = axes.GetSpace(data->Shape);
     for (std::int64_t channel = 0; channel < channels; ++channel)
     {
       FileArray array;
       array.Name = this->MakeUnique(getName(channel, channels), channel);
-      std::vector<std::int64_t> place(static_cast<std::size_t>(leading.Count), 0);
+      std::vector<std::int64_t> place(static_cast<std::size_t>(axes.Leading), 0);
       std::int64_t rest = channel;
-      for (std::int64_t axis = leading.Count; axis-- > 0;)
+      for (std::int64_t axis = axes.Leading; axis-- > 0;)
       {
-        if (axis != leading.Time)
+        if (axis != axes.Time)
         {
           place[static_cast<std::size_t>(axis)] = rest % getLength(axis);
           rest /= getLength(axis);
         }
       }
       array.Type = data->Type;
-      array.Grid = { this->Geometry.Points, GetSpace(data->ChunkShape, leading.FromX) };
+      array.Grid = { this->Geometry.Points, axes.GetSpace(data->ChunkShape) };
       Storage storage;
       storage.Codec = data->Codec;
       storage.Fill = data->Fill;
-      for (std::size_t axis = 0; axis + SpaceAxes < data->Shape.size(); ++axis)
+      for (std::size_t axis = 0; axis + ZarrAxes::InSpace < data->Shape.size(); ++axis)
       {
         storage.Slices *= static_cast<std::size_t>(data->ChunkShape[axis]);
       }
       CheckSizes(folder, array, storage.Slices);
-      storage.IsReversed = data->FortranOrder != leading.FromX;
+      storage.IsReversed = data->FortranOrder != axes.FromX;
       if (data->FortranOrder && storage.Slices > 1)
       {
         throw dsm::Error("The Zarr array '" + folder +
@@ -402,7 +323,7 @@ private:
       }
       this->Arrays.push_back(std::move(array));
       this->Storages.push_back(std::move(storage));
-      this->Sources.push_back({ folder, data, leading, std::move(place) });
+      this->Sources.push_back({ folder, data, axes, std::move(place) });
     }
   }
 

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef vol_ZarrAxes_h
+#define vol_ZarrAxes_h
+
+#include "DSMRayTracing/base/Box.h"
+
+#include <nlohmann/json.hpp>
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace vol
+{
+
+/// What the axes of a Zarr array are, of which the slowest is the first. The last three are in space; those before
+/// them are time, or channels.
+struct ZarrAxes
+{
+  static constexpr std::size_t InSpace = 3;
+
+  int Time = -1;            ///< which one; -1: none
+  std::int64_t Leading = 0; ///< how many are before those of space
+  bool FromX = false;       ///< those of space are x, y, z, not z, y, x
+
+  /// Of an array of so many axes, at least three, in this folder. `named`: names, or what OME says of each; null, or
+  /// of another count, where it is not told: then the first of five is time. Case does not count, and of a name that
+  /// is not known nothing is. Throws dsm::Error where the last three, and no others, are not in space, or in another
+  /// order.
+  static ZarrAxes Find(const std::string& folder, const nlohmann::json& named, std::size_t count);
+
+  /// Which one of an array, or of its transformation, of so many axes is x, y or z.
+  std::size_t FindInSpace(std::size_t count, int axis) const;
+  /// Of the shape of an array, or of its chunks.
+  rt::Index3 GetSpace(const std::vector<std::int64_t>& shape) const;
+};
+
+} // namespace vol
+
+#endif
