@@ -15,9 +15,11 @@
 #include <atomic>
 #include <chrono>
 #include <cstdint>
+#include <iterator>
 #include <limits>
 #include <memory>
 #include <optional>
+#include <random>
 #include <thread>
 #include <vector>
 
@@ -220,6 +222,37 @@ TEST(ChunkCodec, ShuffledElementsOfEveryWidthComeBack)
     vol::ByteBuffer found(samples.size());
     EXPECT_TRUE(codec.Decode(stored, 0, found.data(), found.size()));
     EXPECT_EQ(found, samples) << width;
+  }
+}
+
+/// What does not shrink grows, by what the compression needs for itself.
+TEST(ChunkCodec, WhatIsPackedAgainComesBack)
+{
+  using Kind = vol::CodecStep::Kind;
+  std::mt19937 random;
+  for (const std::size_t bytes : { 1, 100, 100000 })
+  {
+    vol::ByteBuffer samples(bytes);
+    std::generate(samples.begin(), samples.end(), [&] { return std::byte(random() & 0xff); });
+    for (const auto& kinds : { std::vector{ Kind::Deflate, Kind::Zstd },
+           std::vector{ Kind::Zstd, Kind::Fletcher32, Kind::Deflate, Kind::Zstd } })
+    {
+      std::vector<vol::CodecStep> steps;
+      std::transform(kinds.begin(), kinds.end(), std::back_inserter(steps),
+        [](Kind kind) { return vol::CodecStep{ kind }; });
+      vol::ChunkCodec codec;
+      try
+      {
+        codec = vol::ChunkCodec(steps);
+      }
+      catch (const dsm::Error& error)
+      {
+        GTEST_SKIP() << error.what();
+      }
+      vol::ByteBuffer found(bytes);
+      EXPECT_TRUE(codec.Decode(codec.Encode(samples), 0, found.data(), found.size()));
+      EXPECT_EQ(found, samples);
+    }
   }
 }
 

@@ -248,6 +248,10 @@ for name, compressor in compressors.items():
         note(file, [(file[: -len(".zarr")], np.dtype(dtype).name)])
 save_zarr("shuffled.zarr", values("<f8"), compressor=Zlib(), chunks=(4, 5, 8), filters=[Shuffle(8)])
 note("shuffled.zarr", [("shuffled", "float64")])
+# What is packed and does not shrink is packed again.
+for name, inner, outer in (("packed_zlib", Zlib(0), Zstd()), ("packed_gzip", GZip(0), Blosc("lz4"))):
+    save_zarr(f"{name}.zarr", values("|u1"), compressor=outer, chunks=(4, 5, 8), filters=[inner])
+    note(f"{name}.zarr", [(name, "uint8")])
 zarr.open_group(path("group.zarr"), mode="w", **LATER)
 save_zarr("group.zarr/a", values("|u1"), chunks=(10, 13, 21))
 save_zarr("group.zarr/b", values("<f4", channel=2), chunks=(4, 5, 8))

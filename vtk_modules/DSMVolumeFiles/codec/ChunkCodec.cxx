@@ -289,6 +289,24 @@ Bytes Undo(const CodecStep& step, Bytes bytes, [[maybe_unused]] std::size_t most
   }
 }
 
+/// As many bytes as a step makes at most of so many, which may not shrink.
+std::size_t GetMost(const CodecStep& step, std::size_t bytes)
+{
+  switch (step.What)
+  {
+    case Kind::Fletcher32:
+    case Kind::Crc32c:
+      return bytes + sizeof(std::uint32_t);
+    case Kind::Deflate:
+    case Kind::Blosc:
+    case Kind::Zstd:
+      // More than zlib's bound for any of its settings, the largest: an eighth, a 64th, and its header.
+      return bytes + bytes / 4 + 1024;
+    default:
+      return bytes;
+  }
+}
+
 Bytes Do(const CodecStep& step, Bytes bytes)
 {
   switch (step.What)
@@ -411,8 +429,12 @@ bool ChunkCodec::Decode(
   ByteBuffer stored, unsigned skipped, std::byte* out, std::size_t bytes, ByteBuffer* halo) const
 {
   std::optional<Bytes> beside;
-  // Checksums below a compression add to what it makes.
-  const std::size_t most = bytes + sizeof(std::uint32_t) * this->Steps.size();
+  // What was there before each step: at most so many bytes.
+  std::vector<std::size_t> most{ bytes };
+  for (const CodecStep& step : this->Steps)
+  {
+    most.push_back(GetMost(step, most.back()));
+  }
   for (std::size_t step = this->Steps.size(); step-- > 0;)
   {
     if ((skipped >> step & 1) == 0)
@@ -425,7 +447,7 @@ bool ChunkCodec::Decode(
       {
         beside = Undo(this->Steps[step], std::move(*beside), halo->size());
       }
-      stored = Undo(this->Steps[step], std::move(stored), most);
+      stored = Undo(this->Steps[step], std::move(stored), most[step]);
     }
   }
   if (stored.size() != bytes)
