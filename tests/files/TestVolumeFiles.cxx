@@ -604,6 +604,29 @@ TEST_F(DamagedFile, WithABareWordForAFillValueHasIt)
   }
 }
 
+/// What is kept of it is of other values, or lies elsewhere; but not when attributes change that are not read.
+TEST_F(DamagedFile, WhoseAttributesChangeHasAnotherStamp)
+{
+  const auto change = [&](const Json& entry, const char* pointer, const Json& value)
+  {
+    const std::uint64_t before = Open(entry)->GetStamp();
+    std::ifstream old(this->Path / ".zattrs");
+    Json attributes = Json::parse(old);
+    attributes[Json::json_pointer(pointer)] = value;
+    std::ofstream(this->Path / ".zattrs") << attributes;
+    return Open(entry)->GetStamp() != before;
+  };
+  const Json ome = this->Copy("ome.zarr");
+  EXPECT_FALSE(change(ome, "/of_no_use", 1));
+  EXPECT_TRUE(change(ome, "/multiscales/0/axes", { "t", "c", "x", "y", "z" }));
+  EXPECT_TRUE(change(ome, "/multiscales/0/axes", { "c", "t", "x", "y", "z" }));
+  EXPECT_TRUE(change(ome, "/omero/channels/0/label", "blue"));
+  EXPECT_TRUE(change(ome, "/multiscales/0/datasets/0/coordinateTransformations/0/scale/4", 7));
+  const Json named = this->Copy("from_x.zarr");
+  EXPECT_FALSE(change(named, "/of_no_use", 1));
+  EXPECT_TRUE(change(named, "/_ARRAY_DIMENSIONS", { "z", "y", "x" }));
+}
+
 /// What was read before must not meet other values: chunks are files that are opened anew.
 TEST_F(DamagedFile, WhoseChunksChangeOrGoAwaySaysSo)
 {

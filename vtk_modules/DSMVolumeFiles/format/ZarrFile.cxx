@@ -57,21 +57,7 @@ public:
       throw dsm::Error("The metadata of '" + path + "' are not as they should be (" +
         std::string(error.what()) + ").");
     }
-    rt::ByteHash hash;
-    for (const Source& source : this->Sources)
-    {
-      for (const char* name : { "/.zarray", "/zarr.json" })
-      {
-        if (std::filesystem::exists(source.Folder + name))
-        {
-          // The folder's, too: most programs replace chunks by others of the same name.
-          const std::uint64_t stamps[] = { PositionedFile(source.Folder + name).GetStamp(),
-            PositionedFile(source.Folder).GetStamp() };
-          hash.Add(stamps, sizeof(stamps));
-        }
-      }
-    }
-    this->Stamp = hash.Get();
+    this->Stamp = this->MakeStamp();
   }
 
   std::uint64_t GetTableBytes() const override
@@ -133,6 +119,35 @@ private:
     ZarrAxes Axes;
     std::vector<std::int64_t> Channel; ///< along the leading axes; of time, 0
   };
+
+  /// Of the arrays' own files, and of what was made of the attributes, which others may have: axes, time, channels, their
+  /// names, and where the samples are.
+  std::uint64_t MakeStamp() const
+  {
+    rt::ByteHash hash;
+    hash.Add(&this->Geometry, sizeof(this->Geometry));
+    for (std::size_t array = 0; array < this->Sources.size(); ++array)
+    {
+      const Source& source = this->Sources[array];
+      const std::string& name = this->Arrays[array].Name;
+      const std::int64_t numbers[] = { source.Axes.Time, source.Axes.FromX ? 1 : 0,
+        static_cast<std::int64_t>(name.size()) };
+      hash.Add(numbers, sizeof(numbers));
+      hash.Add(name.data(), name.size());
+      hash.Add(source.Channel.data(), source.Channel.size() * sizeof(std::int64_t));
+      for (const char* metadata : { "/.zarray", "/zarr.json" })
+      {
+        if (std::filesystem::exists(source.Folder + metadata))
+        {
+          // The folder's, too: most programs replace chunks by others of the same name.
+          const std::uint64_t stamps[] = { PositionedFile(source.Folder + metadata).GetStamp(),
+            PositionedFile(source.Folder).GetStamp() };
+          hash.Add(stamps, sizeof(stamps));
+        }
+      }
+    }
+    return hash.Get();
+  }
 
   void OpenScale(const Json& scale, const Json& ome, int level)
   {
