@@ -433,6 +433,8 @@ TEST_F(DamagedFile, WithAWrongHeaderSaysWhatIsWrong)
                 "NDims = 3\nDimSize = 2 2 2\nCompressedData = True\nElementDataFile = e\n")),
     { "compressed" });
   ExpectWords(Read(write("e.txt", "no volume")), { "e.txt", "not known", "Zarr" });
+  ExpectWords(
+    Read(write("e.zarr.zip", "PK\x03\x04 and so on")), { "e.zarr.zip", "ZIP", "Unpack it" });
   ExpectWords(Read(write("f.raw", "12345678")), { "f.raw", "bare values" });
   ExpectWords(Read(write("g.h5", "\x89HDF\r\n\x1a\n and then nothing")), { "g.h5", "no HDF5" });
 }

@@ -208,6 +208,11 @@ std::shared_ptr<const VolumeFile> OpenVolumeFile(
     case Format::Unknown:
       break;
   }
+  if (ReadFirst(path, 4) == "PK\x03\x04")
+  {
+    throw dsm::Error("'" + path +
+      "' is a ZIP archive, and cannot be read. Unpack it, and open what it has: a Zarr's folder.");
+  }
   throw dsm::Error("The format of '" + path +
     "' is not known. HDF5, Zarr (a folder), NRRD, MetaImage (.mhd, .mha) and .raw are.");
 }
