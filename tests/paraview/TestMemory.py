@@ -118,5 +118,52 @@ for organization in ("Page based", "Object based", "Automatic", "Page based"):
     expected = "Replicated" if organization == "Automatic" else organization
     for each in (display, other):
         check(get_rows(each)[0]["Organization"] == expected.lower(), "both say so")
+
+# What is set counts at once, though the other view has not been rendered since.
+changes = {"DSMMemoryOrganization": ("Page based", "Object based"), "DSMThreads": (3, 1), "DSMCacheSize": (8, 2),
+           "DSMMemory": (96, 48), "DSMHostSharing": (0, 1)}
+for each in (view, second):
+    render(each)
+for name, (before, after) in changes.items():
+    setattr(display, name, before)
+    for each in (view, second):
+        render(each)
+    for each, shown, reference in ((view, display, references[0]), (second, other, references[1])):
+        setattr(display, name, before)
+        render(each)
+        setattr(display, name, after)
+        check_equal(render(each), reference, f"{name} {after}: same picture", tolerance=0)
+        row = get_rows(shown)[0]
+        said = {"DSMMemoryOrganization": ("Organization", "object based"), "DSMThreads": ("Threads", 1),
+                "DSMCacheSize": ("CacheCapacity", 2 << 20), "DSMMemory": ("MemoryBudget", 48 << 20)}
+        if name in said and (several or name != "DSMCacheSize"):
+            key, value = said[name]
+            check(row[key] == value, f"{name}: {key} is {row[key]}, with one view rendered")
+display.DSMThreads = 0
+display.DSMCacheSize = 256
+display.DSMMemoryOrganization = "Automatic"
+display.DSMMemory = 0
+for each, reference in zip((view, second), references):
+    check_equal(render(each), reference, "as it was", tolerance=0)
+
+# Too little memory for both, and enough again; a failure that stays is said again.
+display.DSMMemory = 1
+with Messages() as messages:
+    for each in (view, second):
+        check(not get_covered(render(each)).any(), "too little memory for both views")
+check("Raise the memory per rank" in messages.text, "it says why: " + messages.text)
+with Messages() as messages:
+    render(second)
+check(messages.text.strip() == "", "but once: " + messages.text)
+display.DSMMemoryOrganization = "Object based"
+with Messages() as messages:
+    render(second)
+check("Raise the memory per rank" in messages.text, "a change that does not help is told: " + messages.text)
+display.DSMMemoryOrganization = "Automatic"
+display.DSMMemory = 0
+with Messages() as messages:
+    for each, reference in zip((second, second, view), references[::-1][:1] * 2 + references[:1]):
+        check_equal(render(each), reference, "enough again, whichever view is rendered", tolerance=0)
+check("ERROR" not in messages.text, "and nothing is reported: " + messages.text)
 simple.Delete(source)
 render(view)

@@ -262,10 +262,16 @@ void vtkDSMSceneVolume::Update(const std::shared_ptr<vtkDSMRankGroup>& group, bo
   }
   this->Stale.clear();
   mapper->SetSurfaceTest(this->MakeSurfaceTest());
+  const bool isConfigured = this->SettingsVersion != group->GetSettingsVersion();
+  this->SettingsVersion = group->GetSettingsVersion();
   for (const auto& published : { this->Iso, this->Color })
   {
     if (published && !published->Failure.empty())
     {
+      if (isConfigured && !published->IsMissing)
+      {
+        this->Reported.clear(); // whoever has changed the settings shall know that it did not help
+      }
       // Without its colours a surface is there, and ParaView's own says nothing then.
       const bool isShown = published->IsMissing && published != this->Iso;
       (isShown ? this->Warnings : this->Messages).push_back(published->Failure);

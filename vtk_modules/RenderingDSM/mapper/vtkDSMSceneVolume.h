@@ -89,6 +89,7 @@ private:
   std::optional<double> Suggested; ///< isovalue
   vtkDSMVolumeData::Choice SuggestedFor;
   std::string DataFailure;
+  unsigned SettingsVersion = 0; ///< the group's at the last Update
 };
 
 #endif

@@ -4,9 +4,9 @@
  * @brief   how the ranks keep the bricks of a dataset, with how many threads they trace, and how long
  *          they wait for one another
  *
- * Held by each mapper of a vtkDSMScene. All that is shown shares one memory, so what the visible
- * datasets ask for is merged as said below; the picture is the same whatever is chosen. Same values on
- * every rank, but that the number of threads may differ.
+ * Held by each mapper of a vtkDSMScene, of its own or together with others. All that is shown shares one memory, so
+ * what the visible datasets of all scenes ask for when one of these is drawn is merged as said below; the picture is
+ * the same whatever is chosen. Same values on every rank, but that the number of threads may differ.
  */
 
 #ifndef vtkDSMMemoryOptions_h

@@ -115,51 +115,23 @@ vtkDSMRankGroup::vtkDSMRankGroup(std::unique_ptr<dsm::Transport> transport)
 
 void vtkDSMRankGroup::Join(Publisher* publisher)
 {
-  this->Publishers.emplace_back(publisher, std::nullopt);
+  this->Publishers.push_back(publisher);
 }
 
 void vtkDSMRankGroup::Leave(Publisher* publisher)
 {
-  this->Publishers.erase(std::remove_if(this->Publishers.begin(), this->Publishers.end(),
-                           [=](const auto& candidate) { return candidate.first == publisher; }),
+  this->Publishers.erase(std::remove(this->Publishers.begin(), this->Publishers.end(), publisher),
     this->Publishers.end());
 }
 
-void vtkDSMRankGroup::Withdraw(Publisher* publisher)
-{
-  for (auto& [candidate, settings] : this->Publishers)
-  {
-    if (candidate == publisher)
-    {
-      settings.reset();
-    }
-  }
-}
-
-vtkDSMMemorySettings vtkDSMRankGroup::MergeSettings() const
-{
-  vtkDSMMemorySettings merged;
-  for (const auto& [publisher, settings] : this->Publishers)
-  {
-    if (settings)
-    {
-      merged.Merge(*settings);
-    }
-  }
-  return merged;
-}
-
-void vtkDSMRankGroup::Configure(Publisher* publisher, const vtkDSMMemorySettings& settings)
+vtkDSMMemorySettings vtkDSMRankGroup::Configure()
 {
   const int coresPerRank = this->Messenger.GetCoresPerRank();
-  for (auto& [candidate, known] : this->Publishers)
+  vtkDSMMemorySettings merged;
+  for (const Publisher* publisher : this->Publishers)
   {
-    if (candidate == publisher)
-    {
-      known = settings;
-    }
+    merged.Merge(publisher->GetMemorySettings());
   }
-  const vtkDSMMemorySettings merged = this->MergeSettings();
   const dsm::BlockStore::Settings old = this->Store.GetSettings();
   dsm::BlockStore::Settings next = old;
   next.Organization = merged.Organization;
@@ -176,9 +148,9 @@ void vtkDSMRankGroup::Configure(Publisher* publisher, const vtkDSMMemorySettings
   if (next.HostSharing != old.HostSharing ||
     isPaged(next.Organization) != isPaged(this->Store.GetOrganization()))
   {
-    for (const auto& [candidate, known] : this->Publishers)
+    for (Publisher* publisher : this->Publishers)
     {
-      candidate->GiveUpBlocks();
+      publisher->GiveUpBlocks();
     }
   }
   if (next.Organization != old.Organization || next.HostSharing != old.HostSharing ||
@@ -188,6 +160,7 @@ void vtkDSMRankGroup::Configure(Publisher* publisher, const vtkDSMMemorySettings
   }
   this->Messenger.SetSilenceLimit(std::isinf(merged.SilenceLimit) ? 0.0 : merged.SilenceLimit);
   this->Store.SetSettings(next);
+  return merged;
 }
 
 bool vtkDSMRankGroup::Settle()
@@ -204,7 +177,7 @@ bool vtkDSMRankGroup::Settle()
       throw;
     }
   }
-  for (const auto& [publisher, settings] : this->Publishers)
+  for (Publisher* publisher : this->Publishers)
   {
     publisher->GiveUpBlocks();
   }
@@ -215,7 +188,7 @@ bool vtkDSMRankGroup::Settle()
 bool vtkDSMRankGroup::MakeRoom()
 {
   Publisher* oldest = nullptr;
-  for (const auto& [publisher, settings] : this->Publishers)
+  for (Publisher* publisher : this->Publishers)
   {
     if (publisher->GetOldestHidden() != 0 &&
       (!oldest || publisher->GetOldestHidden() < oldest->GetOldestHidden()))

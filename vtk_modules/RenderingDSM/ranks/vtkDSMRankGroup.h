@@ -10,8 +10,6 @@
 
 #include <cstdint>
 #include <memory>
-#include <optional>
-#include <utility>
 #include <vector>
 
 class vtkMultiProcessController;
@@ -35,6 +33,9 @@ public:
     virtual std::uint64_t GetOldestHidden() const = 0;
     /// Lets go of the blocks of that, likewise.
     virtual void GiveUpOldestHidden() = 0;
+    /// What is asked for by all that it showed in its last frame and still shows; what asks for nothing, without
+    /// any. As it is now: it may have changed since that frame.
+    virtual vtkDSMMemorySettings GetMemorySettings() const = 0;
   };
 
   /// The group of a controller, made at the first call and kept until its last user lets go. Without
@@ -56,13 +57,10 @@ public:
   void Join(Publisher* publisher);
   void Leave(Publisher* publisher);
 
-  /// What a publisher that has joined asks for from now on; what all ask for together has its effect
-  /// with the next publication or frame. All publishers give up their blocks when these cannot pass to
-  /// the new organisation as they are. Between frames; local, in the same order on every rank. Throws
-  /// dsm::Error.
-  void Configure(Publisher* publisher, const vtkDSMMemorySettings& settings);
-  /// The publisher shows nothing, and asks for nothing from now on. Local; changes nothing by itself.
-  void Withdraw(Publisher* publisher);
+  /// What all publishers together ask for now, which is returned, has its effect with the next publication or
+  /// frame. All of them give up their blocks when these cannot pass to the new organisation as they are. Between
+  /// frames; local, in the same order on every rank. Throws dsm::Error.
+  vtkDSMMemorySettings Configure();
 
   /// Collective. Calls `work`, which throws dsm::Error on all ranks where memory is short, and again for
   /// as long as anything hidden can make room: what was shown the longest ago goes first. Not for
@@ -131,11 +129,9 @@ public:
   void TellOrganization();
 
 private:
-  vtkDSMMemorySettings MergeSettings() const;
   bool MakeRoom();
 
-  /// In the order in which they joined, with what they ask for.
-  std::vector<std::pair<Publisher*, std::optional<vtkDSMMemorySettings>>> Publishers;
+  std::vector<Publisher*> Publishers; ///< in the order in which they joined
   unsigned SettingsVersion = 0;
   unsigned ScratchFailures = 0;
   std::uint64_t BytesOfFiles = 0; ///< read by this process when memory was returned last

@@ -405,11 +405,14 @@ bool vtkDSMScene::TraceFrame()
   {
     member.State->ReportMessages();
   }
-  if (!failure.empty() && failure != self.Failure)
+  // One that other settings do not mend is told again: whoever has changed them shall know.
+  const unsigned version = self.Group ? self.Group->GetSettingsVersion() : 0;
+  if (!failure.empty() && (failure != self.Failure || version != self.FailureVersion))
   {
     vtkErrorMacro(<< failure);
   }
   self.Failure = failure;
+  self.FailureVersion = version;
   self.Tracing = false;
   return failure.empty();
 }

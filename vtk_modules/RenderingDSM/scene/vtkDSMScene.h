@@ -14,7 +14,7 @@
  * vtkDSMPolyDataMapper, to the renderer as usual. Light and shadow go across all of them. In one process
  * the mappers make a scene where there is none, and the renderer keeps it.
  *
- * Failures are reported with vtkErrorMacro, once for each change of state, on every rank; the picture
+ * Failures are reported with vtkErrorMacro, once for each change of state or of the memory's settings, on every rank; the picture
  * then lacks what could not be drawn, and the application goes on.
  */
 

@@ -92,6 +92,11 @@ void vtkDSMScene::Internals::GiveUpOldestHidden()
   this->Members.FindOldestHidden()->GiveUpBlocks();
 }
 
+vtkDSMMemorySettings vtkDSMScene::Internals::GetMemorySettings() const
+{
+  return this->Renderer ? this->Members.GetMemorySettings(this->Renderer) : vtkDSMMemorySettings();
+}
+
 void vtkDSMScene::Internals::FindGroup(vtkMultiProcessController* controller)
 {
   const auto group = vtkDSMRankGroup::Get(controller);
@@ -141,11 +146,10 @@ void vtkDSMScene::Internals::Update()
   messenger.RunTogether("Updating the data",
     [&]
     {
-      this->Settings = this->Members.GetMemorySettings();
-      this->Group->Configure(this, this->Settings);
-      const vtkDSMMemorySettings& settings = this->Settings;
+      this->Settings = this->GetMemorySettings();
+      const vtkDSMMemorySettings settings = this->Group->Configure();
       mine = dsm::Encode(Digest{ static_cast<std::uint64_t>(settings.Organization),
-        (settings.HostSharing ? 1u : 0u) + (settings.CoarserWhileMoving ? 2u : 0u),
+        (settings.HostSharing ? 1u : 0u) + (this->Settings.CoarserWhileMoving ? 2u : 0u),
         settings.MemoryBytes, settings.CacheBytes, settings.ScratchDirectory.empty() ? 0u : 1u });
       for (const auto& member : members)
       {
@@ -487,8 +491,4 @@ void vtkDSMScene::Internals::Clear()
   this->Prop->Clear();
   this->Statistics->Clear();
   this->Accumulation.Clear();
-  if (this->Group && this->Members.GetShown().empty())
-  {
-    this->Group->Withdraw(this);
-  }
 }

@@ -34,6 +34,7 @@ public:
   void GiveUpBlocks() override;
   std::uint64_t GetOldestHidden() const override;
   void GiveUpOldestHidden() override;
+  vtkDSMMemorySettings GetMemorySettings() const override;
 
   /// The ranks that trace together; joins them. Throws dsm::Error on all ranks.
   void FindGroup(vtkMultiProcessController* controller);
@@ -75,7 +76,8 @@ public:
   vtkDSMFrameAccumulation Accumulation;
   vtkDSMMovingDetail Detail;
   vtkDSMFrameDelivery Delivery;
-  std::string Failure; ///< that was reported last
+  std::string Failure;         ///< that was reported last
+  unsigned FailureVersion = 0; ///< of the group's settings then
   bool Tracing = false;
   bool IsTraced =
     false; ///< the frame, of data that were taken in: should it fail, the last picture stays
@@ -85,7 +87,7 @@ public:
   vtkDSMTranslation::TileDisplay Display;
   /// Nothing is read ahead until the renderer has drawn the frame.
   std::optional<vtkDSMReadAhead::Pause> Busy;
-  vtkDSMMemorySettings Settings; ///< that the objects ask for
+  vtkDSMMemorySettings Settings; ///< that the frame's objects ask for
   unsigned SettledVersion = 0;   ///< of the group's settings
 
 private:

@@ -252,13 +252,20 @@ double vtkDSMSceneMembers::GetEnvironmentLight() const
   return strength;
 }
 
-vtkDSMMemorySettings vtkDSMSceneMembers::GetMemorySettings() const
+vtkDSMMemorySettings vtkDSMSceneMembers::GetMemorySettings(vtkRenderer* renderer) const
 {
   vtkDSMMemorySettings settings;
-  for (const Member& member : this->Shown)
-  {
-    settings.Merge(vtkDSMTranslation::ToMemorySettings(member.State->GetMemoryOptions()));
-  }
+  ForEachPart(renderer,
+    [&](const Part& part)
+    {
+      const vtkAlgorithm* mapper = part.IsVisible() ? GetMapper(part.Prop) : nullptr;
+      const auto known = std::find_if(this->States.begin(), this->States.end(),
+        [=](const auto& state) { return mapper && state->GetAlgorithm() == mapper; });
+      if (known != this->States.end())
+      {
+        settings.Merge(vtkDSMTranslation::ToMemorySettings((*known)->GetMemoryOptions()));
+      }
+    });
   return settings;
 }
 

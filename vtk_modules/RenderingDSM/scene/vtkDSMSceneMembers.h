@@ -50,6 +50,9 @@ public:
   /// Of what is shown, in world space; not initialised where nothing is.
   void GetBounds(double bounds[6]) const;
 
+  /// What is asked for by those that the renderer, which may have been changed since, still shows.
+  vtkDSMMemorySettings GetMemorySettings(vtkRenderer* renderer) const;
+
   /// Whether the renderer has anything else to show, that may be behind, or between, translucent surfaces.
   bool AreBesideOthers(vtkRenderer* renderer) const;
 
@@ -57,7 +60,6 @@ public:
   /// A first look costs rays that a picture in passing does without.
   rt::LightTransport GetTransport(bool isPassing) const;
   double GetEnvironmentLight() const;
-  vtkDSMMemorySettings GetMemorySettings() const;
   int GetSamplesPerPixel() const;
   bool ShowStatistics() const;
   /// The first that an object asks for.
