@@ -284,3 +284,17 @@ check(text == again, "which is said once")
 check((get_covered(wrong) == get_covered(pixels)).all(), "and the surface is shown without it")
 display.ColorArrayName = [None, ""]
 check_equal(render(view), pixels, "until it is right again")
+simple.Delete(one)
+
+# ParaView's views of slices show meshes traced beside these.
+sphere = simple.Sphere(ThetaResolution=64, PhiResolution=48)
+for kind in ("MultiSlice", "OrthographicSliceView"):
+    slices = simple.CreateView(kind)
+    slices.ViewSize = [400, 300]
+    slices.OrientationAxesVisibility = 0
+    show_traced(sphere, slices, DSMLook="Plain")
+    simple.ResetCamera(slices)
+    traced = render(slices)
+    show_surface(sphere, slices)
+    check_same_surface(traced, render(slices), f"a mesh in a {kind}")
+    simple.Delete(slices)
