@@ -354,10 +354,18 @@ void vtkPVDSMImageRepresentation::SetSingleIsoValue(double value)
   this->ChooseIsoValues();
 }
 
+void vtkPVDSMImageRepresentation::SetUnchosenIsoValue(double value)
+{
+  this->UnchosenIsoValue = value;
+  this->ChooseIsoValues();
+}
+
 void vtkPVDSMImageRepresentation::ChooseIsoValues()
 {
   std::vector<double> shown = this->IsoValues;
-  if (shown.empty() && this->SingleIsoValue != UnsetIsoValue)
+  const bool isChosen =
+    this->SingleIsoValue != FirstIsoValue && this->SingleIsoValue != this->UnchosenIsoValue;
+  if (shown.empty() && isChosen)
   {
     shown.push_back(this->SingleIsoValue);
   }

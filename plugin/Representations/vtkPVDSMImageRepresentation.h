@@ -88,18 +88,22 @@ public:
 
   ///@{
   /**
-   * What isosurfaces are shown: those of a list of values; while it is empty, the one of the single value;
-   * until that is set, the one of a value that the data suggest.
+   * What isosurfaces are shown: those of a list of values; while it is empty, the one of the single value; as long as
+   * nobody has chosen that, the one of a value that the data suggest.
    */
   void SetNumberOfIsoValues(int number);
   void SetIsoValue(int index, double value);
   void SetSingleIsoValue(double value);
   ///@}
 
+  ///@{
   /**
-   * The single value as long as it is not set.
+   * As long as the single value is this one, nobody has chosen it. The number that a display begins with is nobody's
+   * choice, and not for the eye; another that stands there instead is told here.
    */
-  static constexpr double UnsetIsoValue = -1e-299;
+  void SetUnchosenIsoValue(double value);
+  static constexpr double FirstIsoValue = -1e-299;
+  ///@}
 
   ///@{
   /**
@@ -219,7 +223,8 @@ private:
   std::string BlockArray; ///< that colours whole blocks; empty: none
   bool BlockLooksAreOld = true;
   std::vector<double> IsoValues;
-  double SingleIsoValue = UnsetIsoValue;
+  double SingleIsoValue = FirstIsoValue;
+  double UnchosenIsoValue = FirstIsoValue;
   std::unique_ptr<vtkPVDSMTracedDisplay> Display;
 };
 

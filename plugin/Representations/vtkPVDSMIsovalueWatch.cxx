@@ -23,6 +23,7 @@ namespace
 {
 constexpr const char* Single = "DSMIsoValue";
 constexpr const char* List = "DSMIsoValues";
+constexpr const char* Unchosen = "DSMUnchosenIsoValue";
 
 /// After what depends on a property, as ranges do, has heard of it.
 constexpr float Late = -1.0f;
@@ -50,6 +51,26 @@ void ChooseWhatIsMissing(vtkSMProxy* representation)
   {
     representation->UpdateVTKObjects();
   }
+}
+
+/// Whether somebody has chosen the single isovalue.
+bool IsChosen(vtkSMProxy* representation)
+{
+  const double value = vtkSMPropertyHelper(representation, Single).GetAsDouble();
+  return value != vtkPVDSMImageRepresentation::FirstIsoValue &&
+    value != vtkSMPropertyHelper(representation, Unchosen).GetAsDouble();
+}
+
+/// What stands there where the data suggest no isovalue: the middle of their range, which is the value of those that are
+/// the same everywhere; without a range, 0.
+double FindStandIn(vtkSMProperty* single)
+{
+  auto* const range = single->FindDomain<vtkSMDoubleRangeDomain>();
+  int isKnown[2] = { 0, 0 };
+  const double least = range ? range->GetMinimum(0, isKnown[0]) : 0.0;
+  const double most = range ? range->GetMaximum(0, isKnown[1]) : 0.0;
+  const double middle = 0.5 * least + 0.5 * most;
+  return isKnown[0] && isKnown[1] && least <= most && std::isfinite(middle) ? middle : 0.0;
 }
 
 /// While it lives, nothing becomes a step of its own for the user to undo.
@@ -114,22 +135,23 @@ void vtkPVDSMIsovalueWatch::TakeSuggestion(vtkSMProxy* representation)
   ChooseWhatIsMissing(representation);
   this->IsTaking = false;
   this->BeginList(representation);
-  if (vtkSMPropertyHelper(single).GetAsDouble() != vtkPVDSMImageRepresentation::UnsetIsoValue ||
+  if (IsChosen(representation) ||
     vtkSMPropertyHelper(representation, List).GetNumberOfElements() > 0)
   {
     return;
   }
   vtkSMProperty* suggestion = representation->GetProperty("DSMSuggestedIsoValue");
   suggestion->GetParent()->UpdatePropertyInformation(suggestion);
-  const double value = vtkSMPropertyHelper(suggestion).GetAsDouble();
-  if (std::isfinite(value))
-  {
-    this->IsTaking = true;
-    const NoUndo noUndo;
-    vtkSMPropertyHelper(single).Set(value);
-    representation->UpdateVTKObjects();
-    this->IsTaking = false;
-  }
+  const double suggested = vtkSMPropertyHelper(suggestion).GetAsDouble();
+  const bool isSuggested = std::isfinite(suggested);
+  const double value = isSuggested ? suggested : FindStandIn(single);
+  this->IsTaking = true;
+  const NoUndo noUndo;
+  vtkSMPropertyHelper(representation, Unchosen)
+    .Set(isSuggested ? vtkPVDSMImageRepresentation::FirstIsoValue : value);
+  vtkSMPropertyHelper(single).Set(value);
+  representation->UpdateVTKObjects();
+  this->IsTaking = false;
 }
 
 void vtkPVDSMIsovalueWatch::Watch(vtkSMProxy* representation, bool isInApplication)
@@ -151,6 +173,7 @@ void vtkPVDSMIsovalueWatch::Watch(vtkSMProxy* representation, bool isInApplicati
     observe(representation->GetProperty(choice), vtkCommand::ModifiedEvent);
     observe(representation->GetProperty(choice), vtkCommand::UncheckedPropertyModifiedEvent);
   }
+  observe(single, vtkCommand::ModifiedEvent);
   if (isInApplication)
   {
     observe(single, vtkCommand::UncheckedPropertyModifiedEvent);
@@ -168,7 +191,7 @@ void vtkPVDSMIsovalueWatch::OnEvent(vtkSMProperty* property, unsigned long event
   }
   if (property == proxy->GetProperty(Single))
   {
-    this->OnSlider(property);
+    event == vtkCommand::ModifiedEvent ? this->OnChoice(proxy) : this->OnSlider(property);
   }
   else if (property == proxy->GetProperty(List))
   {
@@ -195,10 +218,19 @@ void vtkPVDSMIsovalueWatch::OnOtherArray(vtkSMProxy* representation)
   int isKnown[2] = { 0, 0 };
   const double least = range ? range->GetMinimum(0, isKnown[0]) : value;
   const double most = range ? range->GetMaximum(0, isKnown[1]) : value;
-  if (value != vtkPVDSMImageRepresentation::UnsetIsoValue &&
-    ((isKnown[0] && value < least) || (isKnown[1] && value > most)))
+  if (IsChosen(representation) && ((isKnown[0] && value < least) || (isKnown[1] && value > most)))
   {
-    vtkSMPropertyHelper(single).Set(vtkPVDSMImageRepresentation::UnsetIsoValue);
+    vtkSMPropertyHelper(single).Set(vtkPVDSMImageRepresentation::FirstIsoValue);
+  }
+}
+
+/// The number that stood there may be chosen later. With the choice, so that both are undone together; whoever has
+/// made it brings both to the datasets.
+void vtkPVDSMIsovalueWatch::OnChoice(vtkSMProxy* representation)
+{
+  if (IsChosen(representation))
+  {
+    vtkSMPropertyHelper(representation, Unchosen).Set(vtkPVDSMImageRepresentation::FirstIsoValue);
   }
 }
 
@@ -229,7 +261,7 @@ void vtkPVDSMIsovalueWatch::BeginList(vtkSMProxy* representation)
   }
   this->Begun = nullptr;
   if (vtkSMPropertyHelper(list).GetAsDouble() == 0.0 &&
-    single != vtkPVDSMImageRepresentation::UnsetIsoValue)
+    single != vtkPVDSMImageRepresentation::FirstIsoValue)
   {
     const NoUndo noUndo;
     SM_SCOPED_TRACE(PropertiesModified).arg("proxy", representation);

@@ -2,7 +2,8 @@
 """Run by ParaView's application, which has loaded the plugin, alone or connected to a server: the first isovalue
 is the one that the data suggest, and so is what the reset button gives; while the panel's slider is dragged, which
 sets the unchecked value of the property only, the view shows it; an animation track can change the isovalue; another
-array has an isovalue of its own, also back and forth; a list of several begins with the one that is there; and a
+array has an isovalue of its own, also back and forth; where none is suggested, a number stands there that is nobody's
+choice, and is so again when a choice is undone; a list of several begins with the one that is there; and a
 display that was made before there were data has their array and their box once they are there."""
 
 import os
@@ -50,6 +51,7 @@ class Session:
         check(single.GetUncheckedElement(0) == first, f"the reset button gives {single.GetUncheckedElement(0)}")
         single.ClearUncheckedElements()
         yield from self.choose_arrays()
+        yield from self.undo_choice()
         yield from self.begin_list(display)
 
         scene = simple.GetAnimationScene()
@@ -124,6 +126,32 @@ class Session:
         for other in simple.GetSources().values():
             if other.SMProxy.GetXMLName() == "RTAnalyticSource":
                 simple.Show(other, self.view)
+
+    def undo_choice(self):
+        calculator = simple.Calculator(Input=simple.Wavelet(), ResultArrayName="level", Function="7")
+        display = simple.Show(calculator, self.view)
+        display.Representation = "DSM Ray Traced"
+        display.DSMIsoArray = ["POINTS", "level"]
+        simple.Render(self.view)
+        yield
+        check(display.DSMIsoValue == 7.0, f"a constant array has the isovalue {display.DSMIsoValue}")
+        builder = servermanager.vtkSMProxyManager.GetProxyManager().GetUndoStackBuilder()
+        stack = builder.GetUndoStack()
+        builder.Begin("An isovalue")
+        display.DSMIsoValue = 3.0
+        builder.End()
+        builder.PushToStack()
+        simple.Render(self.view)
+        yield
+        check(display.DSMIsoValue == 3.0, "what is chosen counts")
+        self.step(builder, stack.Undo)
+        simple.Render(self.view)
+        check(display.DSMIsoValue == 7.0, f"Undo brings back {display.DSMIsoValue}")
+        calculator.Function = "RTData/1000"
+        simple.Render(self.view)
+        yield
+        check(0.05 < display.DSMIsoValue < 0.25, f"which is nobody's choice: {display.DSMIsoValue}")
+        simple.Delete(calculator)
 
     @staticmethod
     def step(builder, go):

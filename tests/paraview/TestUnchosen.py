@@ -1,0 +1,97 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Where the data suggest no isovalue, the middle of their range stands there, or 0, and is nobody's choice: once they
+suggest one, it takes its place. ParaView's Python alone, or with a server at the port that is given."""
+
+from dsm_testing import *
+
+if len(sys.argv) > 3:
+    simple.Connect("127.0.0.1", int(sys.argv[3]))
+load_plugin()
+view = create_view()
+
+FIRST = -1e-299
+image = "image.SetExtent(piece)\nadd(image, %s)\n"
+
+
+def change(source, values):
+    other = image_source(image % values)
+    source.Script = other.Script
+    simple.Delete(other)
+
+
+cases = {"a constant array": ("0 * distance(piece) + 7", 7.0), "nothing but NaN": ("distance(piece) * float('nan')", 0.0)}
+for name, (values, expected) in cases.items():
+    source = image_source(image % values)
+    display = show_traced(source, view)
+    place_camera(view)
+    render(view)
+    check(display.DSMIsoValue == expected, f"{name}: the isovalue is {display.DSMIsoValue}")
+    change(source, "distance(piece)")
+    picture = render(view)
+    check(get_covered(picture).any(), "data that suggest one are shown at it")
+    value = display.DSMIsoValue
+    check(0.4 < value < 1.0 and value == display.GetPropertyValue("DSMSuggestedIsoValue"), f"which is told: {value}")
+    check_equal(render(view), picture, "and stays", 0)
+    change(source, values)
+    render(view)
+    check(display.DSMIsoValue == value, "what was suggested stays, too")
+    simple.Delete(source)
+
+# A state file has both.
+source = image_source(image % cases["a constant array"][0])
+show_traced(source, view)
+place_camera(view)
+render(view)
+path = os.path.join(OUTPUT, "unchosen.pvsm")
+simple.SaveState(path)
+simple.Delete(source)
+simple.Delete(view)
+simple.LoadState(path)
+view = simple.GetActiveView()
+(source,) = simple.GetSources().values()
+display = simple.GetRepresentation(source, view)
+check(display.DSMIsoValue == 7.0, f"a state has the isovalue {display.DSMIsoValue}")
+change(source, "distance(piece)")
+check(get_covered(render(view)).any(), "which is nobody's choice, either")
+check(0.4 < display.DSMIsoValue < 1.0, f"and becomes {display.DSMIsoValue}")
+simple.Delete(source)
+
+flat = image_source(image % "distance(piece)", (0, 24, 0, 24, 12, 12))
+flat.Script = flat.Script.replace("0.5 * (high - low)", "max(0.5 * (high - low), 1)")
+display = show_traced(flat, view)
+render(view)
+check(0.4 < display.DSMIsoValue < 0.9, f"a flat image: the isovalue is {display.DSMIsoValue}")
+check(display.DSMIsoValue == display.DSMUnchosenIsoValue, "which nobody has chosen")
+stand_in = display.DSMIsoValue
+display.DSMIsoValue = 0.25
+display.DSMIsoValue = stand_in
+check(display.DSMUnchosenIsoValue == FIRST, "the same number can be chosen")
+simple.Delete(flat)
+
+CELLS = """
+image.SetExtent(piece)
+values = numpy_to_vtk(np.arange(float(image.GetNumberOfCells())), deep=True)
+values.SetName('c')
+image.GetCellData().AddArray(values)
+"""
+cells = image_source(CELLS)
+display = show_traced(cells, view)
+with Messages():
+    render(view)
+check(display.DSMIsoValue == 0.0, f"data of cells only: the isovalue is {display.DSMIsoValue}")
+simple.Delete(cells)
+
+# Memory that is too small, and then raised.
+volume = simple.DSMSampleVolume(Dimensions=[96, 96, 96])
+display = show_traced(volume, view)
+place_camera(view)
+display.DSMMemory = 1
+with Messages():
+    refused = render(view)
+check(not get_covered(refused).any(), "too little memory")
+check(abs(display.DSMIsoValue) > 1e-3, f"the isovalue is {display.DSMIsoValue}")
+display.DSMMemory = 0
+picture = render(view)
+check(get_covered(picture).any(), "enough memory")
+check(display.DSMIsoValue == display.GetPropertyValue("DSMSuggestedIsoValue"), "and the data's isovalue")
+check_equal(render(view), picture, "which the picture has", 0)
