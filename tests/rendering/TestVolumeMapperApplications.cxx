@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What VTK applications do with their renderers, assemblies, pipelines and cameras.
 #include "VolumeMapperTest.h"
+#include "vtkDSMStatistics.h"
 
 #include "vtkAssembly.h"
 #include "vtkCallbackCommand.h"
@@ -138,6 +139,61 @@ TEST_F(VolumeMapper, ACopyDrawsTheSame)
   EXPECT_GT(CountCovered(original), 1000);
   copy->SetIsoValue(0, 0.2);
   EXPECT_EQ(this->Mapper->GetIsoValue(0), 0.4) << "isovalues are the copy's own";
+}
+
+/// Beside a ball in another window.
+class VolumeMapperAndAnother : public VolumeMapper
+{
+protected:
+  VolumeMapperAndAnother()
+  {
+    this->Renderer->AddViewProp(this->Volume);
+    this->OtherWindow->SetOffScreenRendering(1);
+    this->OtherWindow->AddRenderer(this->OtherRenderer);
+    this->OtherMapper->ShallowCopy(this->Mapper); // with its options
+    this->OtherVolume->SetMapper(this->OtherMapper);
+    this->OtherRenderer->AddViewProp(this->OtherVolume);
+  }
+  void RenderBoth()
+  {
+    this->Window->Render();
+    this->OtherWindow->Render();
+  }
+  /// Of the next frame of the first window.
+  bool HasThreads(int number)
+  {
+    this->Window->Render();
+    const std::string text = "\"Threads\": " + std::to_string(number) + ",";
+    return this->Scene->GetStatistics()->GetJson().find(text) != std::string::npos;
+  }
+
+  vtkNew<vtkDSMVolumeMapper> OtherMapper;
+  vtkNew<vtkVolume> OtherVolume;
+  vtkNew<vtkRenderer> OtherRenderer;
+  vtkNew<vtkRenderWindow> OtherWindow;
+};
+
+TEST_F(VolumeMapperAndAnother, SharedOptionsCountAsTheyAreNow)
+{
+  this->RenderBoth();
+  EXPECT_TRUE(this->HasThreads(2));
+  this->Mapper->GetMemoryOptions()->SetNumberOfThreads(1);
+  EXPECT_TRUE(this->HasThreads(1)) << this->Scene->GetStatistics()->GetJson();
+}
+
+TEST_F(VolumeMapperAndAnother, OptionsOfItsOwnCountForAsLongAsItIsShown)
+{
+  vtkNew<vtkDSMMemoryOptions> options;
+  options->SetNumberOfThreads(3);
+  this->OtherMapper->SetMemoryOptions(options);
+  this->RenderBoth();
+  EXPECT_TRUE(this->HasThreads(3));
+  this->OtherVolume->VisibilityOff();
+  EXPECT_TRUE(this->HasThreads(2));
+  this->OtherVolume->VisibilityOn();
+  EXPECT_TRUE(this->HasThreads(3));
+  this->OtherRenderer->RemoveViewProp(this->OtherVolume);
+  EXPECT_TRUE(this->HasThreads(2));
 }
 
 /// Until a render ends, its scene does not, whoever gives up the last reference meanwhile.
