@@ -272,7 +272,8 @@ std::vector<std::vector<std::byte>> Messenger::GatherPieces(
   const std::size_t size = sizes.size();
   const auto rank = static_cast<std::size_t>(this->GetRank());
   const bool toAll = receivers == Receivers::All;
-  for (std::size_t root = 0; root < size && !toAll && rank != 0; ++root)
+  const bool isReceiver = toAll || rank == 0;
+  for (std::size_t root = 0; root < size && !isReceiver; ++root)
   {
     sizes[root] = root == rank ? sizes[root] : 0; // does not pass here
   }
@@ -313,7 +314,7 @@ std::vector<std::vector<std::byte>> Messenger::GatherPieces(
   {
     Stream& stream = streams[root];
     const Tree tree(static_cast<int>(rank), static_cast<int>(size), static_cast<int>(root));
-    const int children = toAll ? tree.CountChildren() : (root == rank && rank != 0 ? 1 : 0);
+    const int children = toAll ? tree.CountChildren() : isReceiver ? 0 : 1;
     if (stream.Next == stream.Arrived || !self.MaySend())
     {
       return false;
@@ -359,7 +360,7 @@ std::vector<std::vector<std::byte>> Messenger::GatherPieces(
           return any;
         });
     });
-  if (!toAll && rank != 0)
+  if (!isReceiver)
   {
     parts[rank] = {};
   }

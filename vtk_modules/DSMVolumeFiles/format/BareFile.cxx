@@ -74,7 +74,7 @@ public:
     this->Arrays.push_back(std::move(array));
   }
 
-  std::vector<std::string> GetOrigins(int) const override
+  std::vector<std::string> GetFiles(int) const override
   {
     return { this->Path, this->File->GetPath() };
   }

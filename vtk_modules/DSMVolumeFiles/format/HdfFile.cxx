@@ -96,7 +96,7 @@ public:
     return index;
   }
 
-  std::vector<std::string> GetOrigins(int) const override
+  std::vector<std::string> GetFiles(int) const override
   {
     std::vector<std::string> paths = this->Origins.GetPaths();
     paths.push_back(this->Path);
@@ -410,7 +410,7 @@ private:
     array.Type = values->Type;
     array.Grid.Samples = axes.Samples;
     CheckSizes(this->Path, array);
-    this->Origins.Add(this->Path, this->File.Get(), id.Get());
+    const bool isElsewhere = this->Origins.Add(this->Path, this->File.Get(), id.Get());
     array.Grid = CutIntoRows(axes.Samples, array.GetSampleBytes());
     Dataset dataset{ std::move(id), false, HADDR_UNDEF, {}, axes, std::move(frames) };
     Storage storage;
@@ -425,7 +425,6 @@ private:
     {
       case H5D_CONTIGUOUS:
         dataset.First = H5Dget_offset(dataset.Id.Get());
-        dataset.ReadByLibrary = H5Pget_external_count(properties.Get()) > 0;
         storage.HasWholeChunks = false;
         break;
       case H5D_CHUNKED:
@@ -436,8 +435,7 @@ private:
       default:
         dataset.ReadByLibrary = true;
     }
-    dataset.ReadByLibrary =
-      dataset.ReadByLibrary || !values->IsPlain || !this->IsHere(dataset.Id.Get());
+    dataset.ReadByLibrary = dataset.ReadByLibrary || !values->IsPlain || isElsewhere;
     storage.Codec = ChunkCodec(dataset.ReadByLibrary ? std::vector<CodecStep>() : std::move(steps));
     if (!dataset.ReadByLibrary && storage.Slices == 1)
     {
@@ -446,12 +444,6 @@ private:
     this->Arrays.push_back(std::move(array));
     this->Storages.push_back(std::move(storage));
     this->Kept.push_back(std::move(dataset));
-  }
-
-  /// Whether its values are in this file, and not behind a link to another.
-  bool IsHere(hid_t dataset) const
-  {
-    return HdfOrigins::GetFileName(dataset) == HdfOrigins::GetFileName(this->File.Get());
   }
 
   /// So that the library, too, unpacks each chunk once.

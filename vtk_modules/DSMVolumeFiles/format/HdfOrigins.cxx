@@ -29,6 +29,12 @@ std::string GetText(const Get& get)
   return text;
 }
 
+/// The file that an object is in.
+std::string GetFileName(hid_t object)
+{
+  return GetText([=](char* to, std::size_t size) { return H5Fget_name(object, to, size); });
+}
+
 /// Where the library looks for a file that another names, first in folders of the environment's; none: nowhere.
 std::optional<std::string> FindFile(
   const std::string& name, const fs::path& folder, const char* variable)
@@ -62,7 +68,7 @@ std::optional<std::string> FindFile(
   return std::nullopt;
 }
 
-/// A source's name, in which %b may stand for the number of a block; none where it stands for no single file.
+/// A source's name, in which %b stands for the number of a block.
 std::string WithNumber(const std::string& name, std::size_t number)
 {
   std::string made;
@@ -91,10 +97,11 @@ bool HasDataset(const std::string& path, const std::string& name)
 
 } // namespace
 
-void HdfOrigins::Add(const std::string& path, hid_t file, hid_t dataset)
+bool HdfOrigins::Add(const std::string& path, hid_t file, hid_t dataset)
 {
   const std::string in = GetFileName(dataset);
-  if (in != GetFileName(file))
+  const bool isLinked = in != GetFileName(file);
+  if (isLinked)
   {
     this->Keep(in);
   }
@@ -116,10 +123,12 @@ void HdfOrigins::Add(const std::string& path, hid_t file, hid_t dataset)
     }
     this->Keep(*found);
   }
-  if (H5Pget_layout(properties.Get()) == H5D_VIRTUAL)
+  const bool isVirtual = H5Pget_layout(properties.Get()) == H5D_VIRTUAL;
+  if (isVirtual)
   {
     this->AddSources(in, properties.Get());
   }
+  return isLinked || bare > 0 || isVirtual;
 }
 
 void HdfOrigins::AddSources(const std::string& path, hid_t properties)
@@ -202,11 +211,6 @@ void HdfOrigins::CheckUnchanged() const
         "them.");
     }
   }
-}
-
-std::string HdfOrigins::GetFileName(hid_t object)
-{
-  return GetText([=](char* to, std::size_t size) { return H5Fget_name(object, to, size); });
 }
 
 } // namespace vol

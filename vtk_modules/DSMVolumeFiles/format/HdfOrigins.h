@@ -17,18 +17,16 @@ namespace vol
 class HdfOrigins
 {
 public:
-  /// Those of a dataset that was opened by `file`, which is at `path`. Throws dsm::Error, which names what is missing:
-  /// the library would give fill values. Under GetHdfLock.
-  void Add(const std::string& path, hid_t file, hid_t dataset);
+  /// Those of a dataset that was opened by `file`, which is at `path`; returns whether there are any, or its values are put
+  /// together of others'. Throws dsm::Error, which names what is missing: the library would give fill values. Under
+  /// GetHdfLock.
+  bool Add(const std::string& path, hid_t file, hid_t dataset);
 
   std::vector<std::string> GetPaths() const;
   /// `own`, where there are none; else it differs when one of them does, too.
   std::uint64_t GetStamp(std::uint64_t own) const;
   /// Throws dsm::Error when one was written to since it was added. Any thread.
   void CheckUnchanged() const;
-
-  /// The file that a dataset, or anything else, is in. Under GetHdfLock.
-  static std::string GetFileName(hid_t object);
 
 private:
   void Keep(const std::string& path);

@@ -116,9 +116,9 @@ public:
     return this->Get(step)->ReadIndex(array, 0);
   }
 
-  std::vector<std::string> GetOrigins(int step) const override
+  std::vector<std::string> GetFiles(int step) const override
   {
-    return this->Get(step)->GetOrigins(0);
+    return this->Get(step)->GetFiles(0);
   }
 
   StepOrigin GetOrigin(int step) const override { return this->Get(step)->GetOrigin(0); }

@@ -69,7 +69,7 @@ public:
   /// All that were opened for it, in the order of steps: GetPath, unless it is a series of files.
   virtual std::vector<std::string> GetPaths() const { return { this->Path }; }
   /// The files that a step's values come from, or folders of files. Throws dsm::Error.
-  virtual std::vector<std::string> GetOrigins(int) const { return { this->Path }; }
+  virtual std::vector<std::string> GetFiles(int) const { return { this->Path }; }
   /// The file that has a step's values, with its stamp, and which of its own steps it is. Throws dsm::Error.
   struct StepOrigin
   {

@@ -42,10 +42,11 @@ void CheckTarget(const VolumeFile& from, int step, const std::string& path)
 {
   namespace fs = std::filesystem;
   std::error_code none;
-  for (const std::string& origin : from.GetOrigins(step))
+  const fs::path whole = fs::weakly_canonical(path, none);
+  for (const std::string& origin : from.GetFiles(step))
   {
     bool isIn = fs::equivalent(origin, path, none);
-    fs::path folder = fs::weakly_canonical(path, none);
+    fs::path folder = whole;
     while (!isIn && fs::is_directory(origin, none) && folder.has_relative_path())
     {
       folder = folder.parent_path();
