@@ -16,7 +16,9 @@
 #include "vtkSMUncheckedPropertyHelper.h"
 #include "vtkSMUndoStackBuilder.h"
 
+#include <array>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 namespace
@@ -61,16 +63,24 @@ bool IsChosen(vtkSMProxy* representation)
     value != vtkSMPropertyHelper(representation, Unchosen).GetAsDouble();
 }
 
-/// What stands there where the data suggest no isovalue: the middle of their range, which is the value of those that are
-/// the same everywhere; without a range, 0.
-double FindStandIn(vtkSMProperty* single)
+/// Of the values among which an isovalue is chosen, least and greatest, where they are known.
+std::optional<std::array<double, 2>> FindRange(vtkSMProperty* single)
 {
   auto* const range = single->FindDomain<vtkSMDoubleRangeDomain>();
   int isKnown[2] = { 0, 0 };
   const double least = range ? range->GetMinimum(0, isKnown[0]) : 0.0;
   const double most = range ? range->GetMaximum(0, isKnown[1]) : 0.0;
+  return isKnown[0] && isKnown[1] ? std::optional(std::array<double, 2>{ least, most })
+                                  : std::nullopt;
+}
+
+/// What stands there where the data suggest no isovalue: the middle of their range, which is the value of those that are
+/// the same everywhere; without a range, 0.
+double FindStandIn(vtkSMProperty* single)
+{
+  const auto [least, most] = FindRange(single).value_or(std::array<double, 2>{ 0.0, 0.0 });
   const double middle = 0.5 * least + 0.5 * most;
-  return isKnown[0] && isKnown[1] && least <= most && std::isfinite(middle) ? middle : 0.0;
+  return least <= most && std::isfinite(middle) ? middle : 0.0;
 }
 
 /// While it lives, nothing becomes a step of its own for the user to undo.
@@ -213,12 +223,9 @@ void vtkPVDSMIsovalueWatch::OnEvent(vtkSMProperty* property, unsigned long event
 void vtkPVDSMIsovalueWatch::OnOtherArray(vtkSMProxy* representation)
 {
   vtkSMProperty* const single = representation->GetProperty(Single);
-  auto* const range = single->FindDomain<vtkSMDoubleRangeDomain>();
   const double value = vtkSMPropertyHelper(single).GetAsDouble();
-  int isKnown[2] = { 0, 0 };
-  const double least = range ? range->GetMinimum(0, isKnown[0]) : value;
-  const double most = range ? range->GetMaximum(0, isKnown[1]) : value;
-  if (IsChosen(representation) && ((isKnown[0] && value < least) || (isKnown[1] && value > most)))
+  const auto [least, most] = FindRange(single).value_or(std::array<double, 2>{ value, value });
+  if (IsChosen(representation) && (value < least || value > most))
   {
     vtkSMPropertyHelper(single).Set(vtkPVDSMImageRepresentation::FirstIsoValue);
   }

@@ -12,8 +12,9 @@ class vtkSMProxy;
 
 /// The isovalues of a view's datasets, on the client: a single one that nobody has chosen becomes the one that the data
 /// suggest and the picture shows, and so does one that is out of the range of an array that is chosen in place of
-/// another. Where the data suggest none, it is the middle of their range, and still nobody's choice. And while the panel's slider is dragged, the datasets already have the value that it is at, which the
-/// property gets when it is let go.
+/// another. Where the data suggest none, it is the middle of their range, and still nobody's choice. And while the
+/// panel's slider is dragged, the datasets already have the value that it is at, which the property gets when it is let
+/// go.
 class vtkPVDSMIsovalueWatch
 {
 public:
