@@ -40,6 +40,14 @@ def path(name):
     return os.path.join(folder, name)
 
 
+def create_image(file, size=SIZE, version=(1, 0)):
+    """The group of a VTKHDF file's image; where it is, counts from 0."""
+    group = file.create_group("VTKHDF")
+    group.attrs["Version"], group.attrs["Type"] = version, np.bytes_("ImageData")
+    group.attrs["WholeExtent"] = [limit for n in size for limit in (0, n - 1)]
+    return group
+
+
 def note(name, arrays, **more):
     """arrays: name, type, components, channel, on cells, without time."""
     keys = ("name", "type", "components", "channel", "cells", "still")
@@ -105,9 +113,7 @@ with h5py.File(path("linked.bin"), "w") as file:
     file["f"] = values("<f4")
     file.create_dataset("g", data=values("<f4"), chunks=(4, 5, 8))
 with h5py.File(path("links.vtkhdf"), "w") as file:
-    group = file.create_group("VTKHDF")
-    group.attrs["Version"], group.attrs["Type"] = [1, 0], np.bytes_("ImageData")
-    group.attrs["WholeExtent"] = [limit for n in SIZE for limit in (0, n - 1)]
+    group = create_image(file)
     group.create_group("PointData")
     for name in "fg":
         group["PointData/" + name] = h5py.ExternalLink("linked.bin", "/" + name)
@@ -136,9 +142,7 @@ for name in ("virtual", "external", "link"):
     note(f"origins/{name}.h5", [("f", "float32")])
 # As many components as nobody would call a volume's, were it not VTK's.
 with h5py.File(path("ten.vtkhdf"), "w") as file:
-    group = file.create_group("VTKHDF")
-    group.attrs["Version"], group.attrs["Type"] = [1, 0], np.bytes_("ImageData")
-    group.attrs["WholeExtent"] = [limit for n in SIZE for limit in (0, n - 1)]
+    group = create_image(file)
     group["PointData/f"] = values("<f4", 10)
 note("ten.vtkhdf", [("f", "float32", 10)])
 # What has no time beside what has.
@@ -198,10 +202,7 @@ note("steps_vectors.h5", [("by_library", "int16", 3), ("v", "int16", 3)], steps=
 def write_steps(name, times, arrays, size):
     """VTKHDF; arrays: name, values of the frames, and of each step its frame, or None."""
     with h5py.File(path(name), "w") as file:
-        group = file.create_group("VTKHDF")
-        group.attrs["Version"] = [2, 0]
-        group.attrs["Type"] = np.bytes_("ImageData")
-        group.attrs["WholeExtent"] = [limit for n in size for limit in (0, n - 1)]
+        group = create_image(file, size, (2, 0))
         group.attrs["Origin"] = [0.0, 0.0, 0.0]
         group.attrs["Spacing"] = [1.0, 1.0, 1.0]
         group.attrs["Direction"] = [1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0]
