@@ -4,21 +4,16 @@
 #include "DSMCore/memory/HostMemory.h"
 #include "DSMRayTracing/base/ByteHash.h"
 #include "DSMRayTracing/build/TriangleMeshBuilder.h"
-#include "vtkDSMContent.h"
 #include "vtkDSMGather.h"
 #include "vtkDSMProgress.h"
 #include "vtkDSMTubesAndSpheres.h"
 
 #include "vtkBoundingBox.h"
-#include "vtkCellArray.h"
 #include "vtkCellData.h"
-#include "vtkDataArray.h"
 #include "vtkDataSetAttributes.h"
 #include "vtkMath.h"
 #include "vtkPointData.h"
-#include "vtkPoints.h"
 #include "vtkPolyData.h"
-#include "vtkScalarsToColors.h"
 #include "vtkUnsignedCharArray.h"
 
 #include <algorithm>
@@ -42,13 +37,6 @@ constexpr std::uint64_t SolidTriangleBytes = 200;
 /// as they are. Every ray is tested against every mesh.
 constexpr std::size_t MostOwnMeshes = 64;
 
-void AddNumber(std::vector<std::uint64_t>& numbers, double number)
-{
-  std::uint64_t bits;
-  std::memcpy(&bits, &number, sizeof(bits));
-  numbers.push_back(bits);
-}
-
 /// Tubes and spheres are cut into triangles for us only.
 void HideEdges(vtkPolyData* data)
 {
@@ -71,11 +59,6 @@ struct PlacedStore
     return this->Store.Publish(what, std::move(directory), source, sink, progress, this->Place);
   }
 };
-
-std::vector<vtkDSMMeshBlock> Collect(const vtkDSMMeshInput& input)
-{
-  return vtkDSMMeshBlock::Collect(input.GetData(), input.BlockAttributes);
-}
 
 double ChooseRadius(double radius, double diagonal)
 {
@@ -103,7 +86,7 @@ bool vtkDSMMeshData::Key::operator<(const Key& other) const
 }
 
 vtkDSMMeshData::vtkDSMMeshData(std::shared_ptr<vtkDSMRankGroup> group, vtkDSMMeshInput input,
-  const Content& content, std::unique_ptr<vtkDSMMeshData> old)
+  const vtkDSMMeshContent& content, std::unique_ptr<vtkDSMMeshData> old)
   : Group(std::move(group))
   , Input(std::move(input))
 {
@@ -112,7 +95,7 @@ vtkDSMMeshData::vtkDSMMeshData(std::shared_ptr<vtkDSMRankGroup> group, vtkDSMMes
   messenger.RunTogether(what,
     [&]
     {
-      this->Blocks = Collect(this->Input);
+      this->Blocks = this->Input.CollectBlocks();
       if (this->Blocks.size() != content.Blocks.size())
       {
         throw dsm::Error("The blocks of a surface changed while it was read.");
@@ -212,7 +195,7 @@ std::uint32_t vtkDSMMeshData::FindGroup(const Part& part) const
   return found != this->Looks.end() ? found->first : none;
 }
 
-void vtkDSMMeshData::DescribeSources(const Content& content)
+void vtkDSMMeshData::DescribeSources(const vtkDSMMeshContent& content)
 {
   for (std::size_t index = 0; index < this->Blocks.size(); ++index)
   {
@@ -220,8 +203,8 @@ void vtkDSMMeshData::DescribeSources(const Content& content)
     std::vector<std::uint64_t> numbers = content.Blocks[index];
     if (block.Data->GetNumberOfVerts() > 0 || block.Data->GetNumberOfLines() > 0)
     {
-      AddNumber(numbers, ChooseRadius(this->Input.LineRadius, this->Diagonal));
-      AddNumber(numbers, ChooseRadius(this->Input.PointRadius, this->Diagonal));
+      vtkDSMMeshContent::AddNumber(numbers, ChooseRadius(this->Input.LineRadius, this->Diagonal));
+      vtkDSMMeshContent::AddNumber(numbers, ChooseRadius(this->Input.PointRadius, this->Diagonal));
     }
     std::vector<std::uint64_t>& source = this->Sources[this->Groups[index]];
     source.insert(source.end(), numbers.begin(), numbers.end());
@@ -512,108 +495,4 @@ std::uint64_t vtkDSMMeshData::HashSource(const Key& kind, const vtkDSMMeshWish& 
     hash.Add(source->second.data(), source->second.size() * sizeof(source->second[0]));
   }
   return hash.Get();
-}
-
-std::vector<std::uint64_t> vtkDSMMeshData::GetStamp(const vtkDSMMeshInput& input)
-{
-  // Times of change are unique in a process: the same place and time is the same array.
-  std::vector<std::uint64_t> numbers = Describe(input,
-    [](vtkAbstractArray* array)
-    {
-      const std::uint64_t identity[] = { reinterpret_cast<std::uintptr_t>(array),
-        array ? array->GetMTime() : 0 };
-      rt::ByteHash hash;
-      hash.Add(identity, sizeof(identity));
-      return hash.Get();
-    }).Whole;
-  // Who writes new values to an old array need not say so at the array.
-  for (const vtkDSMMeshBlock& block : Collect(input))
-  {
-    numbers.push_back(block.Data->GetMTime());
-  }
-  vtkDataObject* data = input.GetData();
-  numbers.push_back(reinterpret_cast<std::uintptr_t>(data));
-  numbers.push_back(data ? data->GetMTime() : 0);
-  numbers.push_back(data ? data->GetUpdateTime() : 0);
-  return numbers;
-}
-
-vtkDSMMeshData::Content vtkDSMMeshData::HashContent(const vtkDSMMeshInput& input, int threads)
-{
-  return Describe(
-    input, [threads](vtkAbstractArray* array) { return vtkDSMContent::Hash(array, threads); });
-}
-
-std::vector<std::uint64_t> vtkDSMMeshData::DescribeBlock(
-  const vtkDSMMeshInput& input, const vtkDSMMeshBlock& block, const Identify& identify)
-{
-  vtkMapper* mapper = input.Mapper;
-  std::vector<std::uint64_t> numbers;
-  const auto addArray = [&](vtkAbstractArray* array) { numbers.push_back(identify(array)); };
-  vtkScalarsToColors* table = mapper->GetLookupTable();
-  vtkPolyData* data = block.Data;
-  addArray(data->GetPoints()->GetData());
-  for (vtkCellArray* cells :
-    { data->GetVerts(), data->GetLines(), data->GetPolys(), data->GetStrips() })
-  {
-    addArray(cells->GetNumberOfCells() > 0 ? cells->GetOffsetsArray() : nullptr);
-    addArray(cells->GetNumberOfCells() > 0 ? cells->GetConnectivityArray() : nullptr);
-  }
-  addArray(data->GetPointData()->GetNormals());
-  addArray(data->GetPointData()->GetNormals() ? nullptr : data->GetCellData()->GetNormals());
-  addArray(input.Wish.TextureCoordinates ? data->GetPointData()->GetTCoords() : nullptr);
-  addArray(data->GetCellData()->GetAbstractArray(vtkDataSetAttributes::GhostArrayName()));
-  addArray(data->GetPointData()->GetAttribute(vtkDataSetAttributes::EDGEFLAG));
-  addArray(data->GetPointData()->GetAbstractArray(input.RadiusArray.c_str()));
-  int field = 0;
-  vtkAbstractArray* colors = vtkDSMMeshColors::FindArray(mapper, data, field);
-  addArray(colors);
-  if (colors)
-  {
-    AddNumber(numbers, field);
-    AddNumber(numbers, mapper->GetColorMode());
-    AddNumber(numbers, mapper->GetArrayComponent());
-    AddNumber(numbers, static_cast<double>(mapper->GetFieldDataTupleId()));
-    if (colors->GetNumberOfComponents() > 1)
-    {
-      AddNumber(numbers, table->GetVectorMode());
-      AddNumber(numbers, table->GetVectorComponent());
-    }
-    if (vtkDSMMeshColors::DependsOnTable(mapper, colors))
-    {
-      numbers.push_back(reinterpret_cast<std::uintptr_t>(table));
-      numbers.push_back(table->GetMTime());
-    }
-  }
-  return numbers;
-}
-
-vtkDSMMeshData::Content vtkDSMMeshData::Describe(
-  const vtkDSMMeshInput& input, const Identify& identify)
-{
-  vtkMapper* mapper = input.Mapper;
-  Content content;
-  std::vector<std::uint64_t>& numbers = content.Whole;
-  AddNumber(numbers, input.LineRadius);
-  AddNumber(numbers, input.PointRadius);
-  if (mapper->GetScalarVisibility())
-  {
-    // Also when there is no such array: that must be said.
-    AddNumber(numbers, mapper->GetScalarMode());
-    const char* name = mapper->GetArrayName();
-    numbers.push_back(std::hash<std::string>{}(name ? name : ""));
-  }
-  for (const vtkDSMMeshBlock& block : Collect(input))
-  {
-    numbers.push_back(block.Number);
-    AddNumber(numbers, block.Appearance.Visible);
-    AddNumber(numbers, block.Appearance.Opacity);
-    for (const float channel : block.Appearance.Color)
-    {
-      AddNumber(numbers, channel);
-    }
-    content.Blocks.push_back(DescribeBlock(input, block, identify));
-    numbers.insert(numbers.end(), content.Blocks.back().begin(), content.Blocks.back().end());
-  }
-  return content;
 }

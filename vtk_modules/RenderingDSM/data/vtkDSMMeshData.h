@@ -5,6 +5,7 @@
 #include "DSMRayTracing/layout/TriangleMesh.h"
 #include "vtkDSMMeshBlock.h"
 #include "vtkDSMMeshColors.h"
+#include "vtkDSMMeshContent.h"
 #include "vtkDSMMeshInput.h"
 #include "vtkDSMRankGroup.h"
 
@@ -18,7 +19,6 @@
 #include <string>
 #include <vector>
 
-class vtkAbstractArray;
 class vtkDSMTubesAndSpheres;
 class vtkPolyData;
 
@@ -50,22 +50,14 @@ public:
     std::vector<std::uint64_t> Source;
   };
 
-  /// What this rank's data, and what is read of them, hold.
-  struct Content
-  {
-    std::vector<std::uint64_t> Whole;
-    std::vector<std::vector<std::uint64_t>>
-      Blocks; ///< of each, in vtkDSMMeshBlock::Collect's order
-  };
-
   /// Collective; a rank without data takes part. What the input asks for is the same on every rank.
-  /// `content`: what HashContent says of the input now. `old`: what was made of the mapper's data
+  /// `content`: of the input now. `old`: what was made of the mapper's data
   /// before, or null; its meshes are taken over where they would be the same, also those of blocks
   /// that are hidden now, and else leave the store first, since there may not be room for both. Meshes
   /// that others made of the same data are shared.
   /// Failures are dsm::Error, the same on every rank.
   vtkDSMMeshData(std::shared_ptr<vtkDSMRankGroup> group, vtkDSMMeshInput input,
-    const Content& content, std::unique_ptr<vtkDSMMeshData> old);
+    const vtkDSMMeshContent& content, std::unique_ptr<vtkDSMMeshData> old);
 
   const std::vector<Part>& GetParts() const { return this->Parts; }
   /// Without edge flags, the meshes may yet have them: those that were taken over.
@@ -77,13 +69,6 @@ public:
   /// Empty but where there is no such colour array. The same on every rank.
   const std::string& GetWarning() const { return this->Warning; }
 
-  /// Local, quick: numbers that are others when anything may be.
-  static std::vector<std::uint64_t> GetStamp(const vtkDSMMeshInput& input);
-
-  /// Local, reads the data: numbers that are others when, and only when, this rank's data or what is
-  /// read of them are.
-  static Content HashContent(const vtkDSMMeshInput& input, int threads);
-
 private:
   struct Surface
   {
@@ -93,17 +78,10 @@ private:
   };
   struct ColorReport;
 
-  /// Numbers an array, by its identity or by what it holds.
-  using Identify = std::function<std::uint64_t(vtkAbstractArray*)>;
-
-  static Content Describe(const vtkDSMMeshInput& input, const Identify& identify);
-  static std::vector<std::uint64_t> DescribeBlock(
-    const vtkDSMMeshInput& input, const vtkDSMMeshBlock& block, const Identify& identify);
-
   void FormGroups();
   /// The group that an old part would be of; one that does not exist if there is none.
   std::uint32_t FindGroup(const Part& part) const;
-  void DescribeSources(const Content& content);
+  void DescribeSources(const vtkDSMMeshContent& content);
   void TakeOver(std::vector<Part>&& old);
   void FindBounds(const std::vector<vtkPolyData*>& mine);
   void CheckSolids(const vtkDSMTubesAndSpheres& solids) const;

@@ -2,11 +2,13 @@
 #ifndef vtkDSMMeshInput_h
 #define vtkDSMMeshInput_h
 
+#include "vtkDSMMeshBlock.h"
 #include "vtkDSMMeshPiece.h"
 
 #include "vtkMapper.h"
 
 #include <string>
+#include <vector>
 
 class vtkCompositeDataDisplayAttributes;
 
@@ -28,6 +30,11 @@ struct vtkDSMMeshInput
   {
     return this->Mapper->GetNumberOfInputConnections(0) > 0 ? this->Mapper->GetInputDataObject(0, 0)
                                                             : nullptr;
+  }
+  /// Of this rank, in order; as vtkDSMMeshBlock::Collect.
+  std::vector<vtkDSMMeshBlock> CollectBlocks() const
+  {
+    return vtkDSMMeshBlock::Collect(this->GetData(), this->BlockAttributes);
   }
 };
 

@@ -87,7 +87,7 @@ std::vector<std::uint64_t> vtkDSMSceneMesh::GetStamp() const
 {
   try
   {
-    return vtkDSMMeshData::GetStamp(this->GetInput());
+    return vtkDSMMeshContent::GetStamp(this->GetInput());
   }
   catch (const dsm::Error&)
   {
@@ -96,11 +96,11 @@ std::vector<std::uint64_t> vtkDSMSceneMesh::GetStamp() const
   }
 }
 
-vtkDSMMeshData::Content vtkDSMSceneMesh::HashContent() const
+vtkDSMMeshContent vtkDSMSceneMesh::HashContent() const
 {
   try
   {
-    return vtkDSMMeshData::HashContent(this->GetInput(), this->Threads);
+    return vtkDSMMeshContent::Hash(this->GetInput(), this->Threads);
   }
   catch (const dsm::Error&)
   {

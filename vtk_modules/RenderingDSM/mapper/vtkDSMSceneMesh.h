@@ -31,7 +31,7 @@ public:
 private:
   vtkDSMMeshInput GetInput() const;
   std::vector<std::uint64_t> GetStamp() const;
-  vtkDSMMeshData::Content HashContent() const;
+  vtkDSMMeshContent HashContent() const;
   bool IsTextured() const;
   bool ShowsEdges() const;
   /// Edges are to be shown, but the data were taken in without their flags.
@@ -43,7 +43,7 @@ private:
   struct State
   {
     std::vector<std::uint64_t> Stamp;
-    vtkDSMMeshData::Content Content;
+    vtkDSMMeshContent Content;
   };
   State Seen;      ///< of what was taken in, or is the same; see vtkDSMMeshData
   State Found;     ///< of what HasNewData found to be new, until it is taken in

@@ -2,7 +2,6 @@
 #include "vtkDSMSceneVolume.h"
 
 #include "vtkDSMImagePiece.h"
-#include "vtkDSMLightOptions.h"
 #include "vtkDSMProgress.h"
 #include "vtkDSMSurfaceSearch.h"
 #include "vtkDSMTranslation.h"
@@ -11,21 +10,14 @@
 
 #include "vtkCompositeDataIterator.h"
 #include "vtkCompositeDataSet.h"
-#include "vtkContourValues.h"
 #include "vtkDataObject.h"
-#include "vtkDataSet.h"
 #include "vtkMath.h"
 #include "vtkMatrix4x4.h"
-#include "vtkPointData.h"
 #include "vtkProp3D.h"
-#include "vtkProperty.h"
 #include "vtkScalarsToColors.h"
 #include "vtkSmartPointer.h"
-#include "vtkVolume.h"
-#include "vtkVolumeProperty.h"
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
 namespace
@@ -52,7 +44,7 @@ vtkMTimeType GetDataTime(vtkDataObject* data)
 bool vtkDSMSceneVolume::HasNewData()
 {
   return !this->Taken || this->HasOtherData() || this->Mapper->GetBlockLooks() != this->SeenLooks ||
-    (this->Data && this->Data->HasSeams() && !(this->GetShown() == this->SeenShown));
+    (this->Data && this->Data->HasSeams() && !(this->GetLook().GetShown() == this->SeenShown));
 }
 
 bool vtkDSMSceneVolume::HasOtherData() const
@@ -137,7 +129,7 @@ void vtkDSMSceneVolume::TakeData(const std::shared_ptr<vtkDSMRankGroup>& group)
   this->SeenData = mapper->GetDataObjectInput();
   this->SeenTime = GetDataTime(mapper->GetDataObjectInput());
   this->SeenLooks = mapper->GetBlockLooks();
-  this->SeenShown = this->GetShown();
+  this->SeenShown = this->GetLook().GetShown();
   this->Taken = true;
   this->Reported.clear();
   try
@@ -242,9 +234,9 @@ void vtkDSMSceneVolume::Update(const std::shared_ptr<vtkDSMRankGroup>& group, bo
   const std::shared_ptr<Published> oldIso = this->Iso;
   const std::shared_ptr<Published> oldColor = this->Color;
   const unsigned version = group->GetRetryVersion();
-  const std::vector<vtkDSMVolumeData::Choice> shown = this->GetShown();
+  const std::vector<vtkDSMVolumeData::Choice> shown = this->GetLook().GetShown();
   this->Iso = this->Require(shown.front(), "isosurface array", version, { oldIso, oldColor });
-  if (this->TakesPointsForCells())
+  if (this->GetLook().TakesPointsForCells())
   {
     this->Messages.push_back(
       "The scalar mode asks for cell data, but isosurfaces need values at the "
@@ -361,17 +353,6 @@ int vtkDSMSceneVolume::CountCoarser() const
   return static_cast<int>(levels);
 }
 
-int vtkDSMSceneVolume::GetColorComponent() const
-{
-  vtkScalarsToColors* table = this->Mapper->GetLookupTable();
-  if (!this->Mapper->GetMapScalars())
-  {
-    return vtkDSMImagePiece::Color;
-  }
-  return table->GetVectorMode() == vtkScalarsToColors::COMPONENT ? table->GetVectorComponent()
-                                                                 : vtkDSMImagePiece::Magnitude;
-}
-
 void vtkDSMSceneVolume::SuggestIsovalue(dsm::Messenger& messenger)
 {
   if (!this->Suggested || !(this->SuggestedFor == this->Iso->Choice))
@@ -380,166 +361,6 @@ void vtkDSMSceneVolume::SuggestIsovalue(dsm::Messenger& messenger)
     this->Suggested = rt::FindFirstIsovalue(this->Iso->GetFields(), messenger);
   }
   this->Mapper->SetSuggestedIsoValue(this->Suggested.value_or(vtkMath::Nan()));
-}
-
-bool vtkDSMSceneVolume::IsLikeRayCastMapper() const
-{
-  return this->Mapper->GetBlendMode() == vtkVolumeMapper::ISOSURFACE_BLEND &&
-    vtkVolume::SafeDownCast(this->Prop);
-}
-
-std::vector<vtkDSMVolumeData::Choice> vtkDSMSceneVolume::GetShown() const
-{
-  vtkDSMVolumeMapper* mapper = this->Mapper;
-  std::vector<vtkDSMVolumeData::Choice> shown{ { this->GetIsoArray(), mapper->GetIsoComponent() } };
-  if (mapper->GetScalarVisibility() && !mapper->GetColorArray().empty() &&
-    (mapper->GetLookupTable() || !mapper->GetMapScalars()))
-  {
-    shown.push_back(
-      { mapper->GetColorArray(), this->GetColorComponent(), mapper->GetColorArrayOnCells() });
-  }
-  return shown;
-}
-
-bool vtkDSMSceneVolume::TakesPointsForCells() const
-{
-  const int mode = this->Mapper->GetScalarMode();
-  return this->Mapper->GetIsoArray().empty() && this->IsLikeRayCastMapper() &&
-    (mode == VTK_SCALAR_MODE_USE_CELL_DATA || mode == VTK_SCALAR_MODE_USE_CELL_FIELD_DATA);
-}
-
-/// Empty: the active scalars.
-std::string vtkDSMSceneVolume::GetIsoArray() const
-{
-  vtkDSMVolumeMapper* mapper = this->Mapper;
-  if (!mapper->GetIsoArray().empty() || !this->IsLikeRayCastMapper())
-  {
-    return mapper->GetIsoArray();
-  }
-  if (mapper->GetScalarMode() != VTK_SCALAR_MODE_USE_POINT_FIELD_DATA)
-  {
-    return {};
-  }
-  if (mapper->GetArrayAccessMode() == VTK_GET_ARRAY_BY_NAME)
-  {
-    return mapper->GetArrayName() ? mapper->GetArrayName() : "";
-  }
-  auto* data = vtkDataSet::SafeDownCast(mapper->GetDataObjectInput());
-  const char* name = data ? data->GetPointData()->GetArrayName(mapper->GetArrayId()) : nullptr;
-  return name ? name : "";
-}
-
-void vtkDSMSceneVolume::SetMaterials(double isovalue, rt::IsosurfaceObject& object)
-{
-  const auto reflectivity = static_cast<float>(this->GetLightOptions()->GetReflectivity());
-  if (this->IsLikeRayCastMapper())
-  {
-    object.Surface =
-      vtkDSMTranslation::ToMaterial(vtkVolume::SafeDownCast(this->Prop)->GetProperty(), isovalue);
-  }
-  else
-  {
-    vtkProperty* const property = this->Mapper->GetSurfaceProperty();
-    object.Surface = vtkDSMTranslation::ToMaterial(property);
-    object.CullsFront = property->GetFrontfaceCulling() != 0;
-    object.CullsBack = property->GetBackfaceCulling() != 0;
-    object.Flat = property->GetInterpolation() == VTK_FLAT;
-    if (vtkProperty* const back = this->Mapper->GetBackfaceProperty())
-    {
-      object.BackSurface = vtkDSMTranslation::ToMaterial(back);
-      object.BackSurface->Reflectivity = reflectivity;
-    }
-  }
-  object.Surface.Reflectivity = reflectivity;
-}
-
-std::vector<double> vtkDSMSceneVolume::GetIsovalues()
-{
-  vtkDSMVolumeMapper* mapper = this->Mapper;
-  std::vector<double> chosen;
-  if (this->IsLikeRayCastMapper())
-  {
-    vtkContourValues* contours =
-      vtkVolume::SafeDownCast(this->Prop)->GetProperty()->GetIsoSurfaceValues();
-    for (int index = 0; index < contours->GetNumberOfContours(); ++index)
-    {
-      chosen.push_back(contours->GetValue(index));
-    }
-    if (chosen.empty())
-    {
-      this->Messages.push_back(
-        "The volume's property has no isosurface value, so nothing is drawn. Call "
-        "GetIsoSurfaceValues()->SetValue(0, VALUE) on it.");
-    }
-  }
-  else
-  {
-    for (int index = 0; index < mapper->GetNumberOfIsoValues(); ++index)
-    {
-      chosen.push_back(mapper->GetIsoValue(index));
-    }
-    if (chosen.empty() && mapper->GetAutomaticIsoValue() && this->Suggested)
-    {
-      chosen.push_back(*this->Suggested);
-    }
-    else if (chosen.empty() && !mapper->GetAutomaticIsoValue())
-    {
-      this->Messages.push_back(
-        "The mapper has no isovalue, so nothing is drawn. Call SetIsoValue(0, VALUE), "
-        "or AutomaticIsoValueOn() for one that the data suggest.");
-    }
-    if (chosen.empty() && mapper->GetAutomaticIsoValue() && !this->Iso->GetFields().empty())
-    {
-      this->Messages.push_back("The isosurface array '" + this->Iso->Choice.Name +
-        "' has the same value everywhere, or none, so there is no surface to show. Choose another "
-        "array.");
-    }
-    if (mapper->GetBlendMode() != vtkVolumeMapper::COMPOSITE_BLEND)
-    {
-      this->Messages.push_back(
-        "The mapper draws isosurfaces; its other blend modes are not there. Call "
-        "SetBlendModeToIsoSurface(), or use VTK's own mapper.");
-    }
-  }
-  std::vector<double> values;
-  for (std::size_t index = 0; index < chosen.size(); ++index)
-  {
-    const double value = chosen[index];
-    if (std::isfinite(value))
-    {
-      values.push_back(value);
-    }
-    else
-    {
-      const std::string which = chosen.size() == 1
-        ? "The isovalue"
-        : "Isovalue " + std::to_string(index + 1) + " of " + std::to_string(chosen.size());
-      this->Messages.push_back(which + " is " + (std::isnan(value) ? "not a number" : "infinite") +
-        " and was left out. Enter a finite value.");
-    }
-  }
-  std::sort(values.begin(), values.end());
-  values.erase(std::unique(values.begin(), values.end()), values.end());
-  return values;
-}
-
-rt::ClipRegion vtkDSMSceneVolume::GetClipRegion(const glm::dmat4& dataToWorld) const
-{
-  rt::ClipRegion region = vtkDSMTranslation::ToClipRegion(this->Mapper);
-  if (this->Mapper->GetCropping())
-  {
-    const double* planes = this->Mapper->GetCroppingRegionPlanes();
-    rt::ClipRegion::Grid boxes;
-    boxes.WorldToGrid = glm::inverse(dataToWorld);
-    for (int axis = 0; axis < 3; ++axis)
-    {
-      boxes.Lower[axis] = std::min(planes[2 * axis], planes[2 * axis + 1]);
-      boxes.Upper[axis] = std::max(planes[2 * axis], planes[2 * axis + 1]);
-    }
-    boxes.Kept = static_cast<std::uint32_t>(this->Mapper->GetCroppingRegionFlags());
-    region.Boxes = boxes;
-  }
-  return region;
 }
 
 void vtkDSMSceneVolume::SetColors(std::size_t lattice, rt::IsosurfaceObject& object)
@@ -596,17 +417,25 @@ void vtkDSMSceneVolume::AddTo(rt::Scene& scene)
   {
     return;
   }
-  const std::vector<double> isovalues = this->GetIsovalues();
+  const vtkDSMVolumeLook look = this->GetLook();
+  const std::vector<double> isovalues = look.GetIsovalues(this->Suggested, this->Messages);
+  if (!look.IsLikeRayCastMapper() && this->Mapper->GetNumberOfIsoValues() == 0 &&
+    this->Mapper->GetAutomaticIsoValue() && !this->Suggested && !this->Iso->GetFields().empty())
+  {
+    this->Messages.push_back("The isosurface array '" + this->Iso->Choice.Name +
+      "' has the same value everywhere, or none, so there is no surface to show. Choose another "
+      "array.");
+  }
   if (isovalues.empty() || this->Iso->GetFields().empty())
   {
     return;
   }
   this->Prop->ComputeMatrix();
   const glm::dmat4 dataToWorld = vtkDSMTranslation::ToMatrix(this->Prop->GetMatrix());
-  const rt::ClipRegion clipping = this->GetClipRegion(dataToWorld);
+  const rt::ClipRegion clipping = look.GetClipRegion(dataToWorld);
   // A property's transfer functions may give each isovalue a look of its own.
   std::vector<std::vector<double>> groups;
-  if (this->IsLikeRayCastMapper())
+  if (look.IsLikeRayCastMapper())
   {
     for (const double isovalue : isovalues)
     {
@@ -640,7 +469,7 @@ void vtkDSMSceneVolume::AddTo(rt::Scene& scene)
           dataToWorld * this->Data->GetIndexToWorld(lattice) * coarser.ToLattice);
       }
       object.Isovalues = group;
-      this->SetMaterials(group.front(), object);
+      look.SetMaterials(group.front(), object);
       object.Clipping = clipping;
       if (colored && this->Color->GetFields()[lattice])
       {

@@ -4,6 +4,7 @@
 
 #include "vtkDSMMapperMember.h"
 #include "vtkDSMVolumeData.h"
+#include "vtkDSMVolumeLook.h"
 #include "vtkDSMVolumeMapper.h"
 
 #include "vtkType.h"
@@ -61,20 +62,10 @@ private:
   vtkDSMVolumeMapper::SurfaceTest MakeSurfaceTest() const;
   /// Collective. Finds the isovalue for a first look at the array, once for an array.
   void SuggestIsovalue(dsm::Messenger& messenger);
-  /// Whether isovalues and look come from the volume's property; else they are the mapper's.
-  bool IsLikeRayCastMapper() const;
-  std::string GetIsoArray() const;
-  /// The arrays that are to be shown, as the mapper names them: that of the isosurfaces, and that of the colours, if any.
-  std::vector<vtkDSMVolumeData::Choice> GetShown() const;
-  /// Whether the cells' scalars are asked for, of which there are no isosurfaces.
-  bool TakesPointsForCells() const;
-  int GetColorComponent() const;
+  vtkDSMVolumeLook GetLook() const { return { this->Mapper, this->Prop }; }
   void SetColors(std::size_t lattice, rt::IsosurfaceObject& object);
   /// What blocks look like that are not to look like the rest; null where there are none.
   std::shared_ptr<const rt::BlockLooks> CreateBlockLooks(std::size_t lattice) const;
-  std::vector<double> GetIsovalues();
-  void SetMaterials(double isovalue, rt::IsosurfaceObject& object);
-  rt::ClipRegion GetClipRegion(const glm::dmat4& dataToWorld) const;
 
   const vtkDataObject* SeenData = nullptr;
   vtkMTimeType SeenTime = 0;

@@ -1,0 +1,189 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkDSMVolumeLook.h"
+
+#include "vtkDSMImagePiece.h"
+#include "vtkDSMLightOptions.h"
+#include "vtkDSMTranslation.h"
+#include "vtkDSMVolumeMapper.h"
+
+#include "vtkContourValues.h"
+#include "vtkDataSet.h"
+#include "vtkPointData.h"
+#include "vtkProp3D.h"
+#include "vtkProperty.h"
+#include "vtkScalarsToColors.h"
+#include "vtkVolume.h"
+#include "vtkVolumeProperty.h"
+
+#include <algorithm>
+#include <cmath>
+
+vtkDSMVolumeLook::vtkDSMVolumeLook(vtkDSMVolumeMapper* mapper, vtkProp3D* prop)
+  : Mapper(mapper)
+  , Prop(prop)
+{
+}
+
+bool vtkDSMVolumeLook::IsLikeRayCastMapper() const
+{
+  return this->Mapper->GetBlendMode() == vtkVolumeMapper::ISOSURFACE_BLEND &&
+    vtkVolume::SafeDownCast(this->Prop);
+}
+
+int vtkDSMVolumeLook::GetColorComponent() const
+{
+  vtkScalarsToColors* table = this->Mapper->GetLookupTable();
+  if (!this->Mapper->GetMapScalars())
+  {
+    return vtkDSMImagePiece::Color;
+  }
+  return table->GetVectorMode() == vtkScalarsToColors::COMPONENT ? table->GetVectorComponent()
+                                                                 : vtkDSMImagePiece::Magnitude;
+}
+
+std::vector<vtkDSMVolumeData::Choice> vtkDSMVolumeLook::GetShown() const
+{
+  vtkDSMVolumeMapper* mapper = this->Mapper;
+  std::vector<vtkDSMVolumeData::Choice> shown{ { this->GetIsoArray(), mapper->GetIsoComponent() } };
+  if (mapper->GetScalarVisibility() && !mapper->GetColorArray().empty() &&
+    (mapper->GetLookupTable() || !mapper->GetMapScalars()))
+  {
+    shown.push_back(
+      { mapper->GetColorArray(), this->GetColorComponent(), mapper->GetColorArrayOnCells() });
+  }
+  return shown;
+}
+
+bool vtkDSMVolumeLook::TakesPointsForCells() const
+{
+  const int mode = this->Mapper->GetScalarMode();
+  return this->Mapper->GetIsoArray().empty() && this->IsLikeRayCastMapper() &&
+    (mode == VTK_SCALAR_MODE_USE_CELL_DATA || mode == VTK_SCALAR_MODE_USE_CELL_FIELD_DATA);
+}
+
+/// Empty: the active scalars.
+std::string vtkDSMVolumeLook::GetIsoArray() const
+{
+  vtkDSMVolumeMapper* mapper = this->Mapper;
+  if (!mapper->GetIsoArray().empty() || !this->IsLikeRayCastMapper())
+  {
+    return mapper->GetIsoArray();
+  }
+  if (mapper->GetScalarMode() != VTK_SCALAR_MODE_USE_POINT_FIELD_DATA)
+  {
+    return {};
+  }
+  if (mapper->GetArrayAccessMode() == VTK_GET_ARRAY_BY_NAME)
+  {
+    return mapper->GetArrayName() ? mapper->GetArrayName() : "";
+  }
+  auto* data = vtkDataSet::SafeDownCast(mapper->GetDataObjectInput());
+  const char* name = data ? data->GetPointData()->GetArrayName(mapper->GetArrayId()) : nullptr;
+  return name ? name : "";
+}
+
+void vtkDSMVolumeLook::SetMaterials(double isovalue, rt::IsosurfaceObject& object) const
+{
+  const auto reflectivity = static_cast<float>(this->Mapper->GetLightOptions()->GetReflectivity());
+  if (this->IsLikeRayCastMapper())
+  {
+    object.Surface =
+      vtkDSMTranslation::ToMaterial(vtkVolume::SafeDownCast(this->Prop)->GetProperty(), isovalue);
+  }
+  else
+  {
+    vtkProperty* const property = this->Mapper->GetSurfaceProperty();
+    object.Surface = vtkDSMTranslation::ToMaterial(property);
+    object.CullsFront = property->GetFrontfaceCulling() != 0;
+    object.CullsBack = property->GetBackfaceCulling() != 0;
+    object.Flat = property->GetInterpolation() == VTK_FLAT;
+    if (vtkProperty* const back = this->Mapper->GetBackfaceProperty())
+    {
+      object.BackSurface = vtkDSMTranslation::ToMaterial(back);
+      object.BackSurface->Reflectivity = reflectivity;
+    }
+  }
+  object.Surface.Reflectivity = reflectivity;
+}
+
+std::vector<double> vtkDSMVolumeLook::GetIsovalues(
+  const std::optional<double>& suggested, std::vector<std::string>& messages) const
+{
+  vtkDSMVolumeMapper* mapper = this->Mapper;
+  std::vector<double> chosen;
+  if (this->IsLikeRayCastMapper())
+  {
+    vtkContourValues* contours =
+      vtkVolume::SafeDownCast(this->Prop)->GetProperty()->GetIsoSurfaceValues();
+    for (int index = 0; index < contours->GetNumberOfContours(); ++index)
+    {
+      chosen.push_back(contours->GetValue(index));
+    }
+    if (chosen.empty())
+    {
+      messages.push_back("The volume's property has no isosurface value, so nothing is drawn. Call "
+                         "GetIsoSurfaceValues()->SetValue(0, VALUE) on it.");
+    }
+  }
+  else
+  {
+    for (int index = 0; index < mapper->GetNumberOfIsoValues(); ++index)
+    {
+      chosen.push_back(mapper->GetIsoValue(index));
+    }
+    if (chosen.empty() && mapper->GetAutomaticIsoValue() && suggested)
+    {
+      chosen.push_back(*suggested);
+    }
+    else if (chosen.empty() && !mapper->GetAutomaticIsoValue())
+    {
+      messages.push_back(
+        "The mapper has no isovalue, so nothing is drawn. Call SetIsoValue(0, VALUE), "
+        "or AutomaticIsoValueOn() for one that the data suggest.");
+    }
+    if (mapper->GetBlendMode() != vtkVolumeMapper::COMPOSITE_BLEND)
+    {
+      messages.push_back("The mapper draws isosurfaces; its other blend modes are not there. Call "
+                         "SetBlendModeToIsoSurface(), or use VTK's own mapper.");
+    }
+  }
+  std::vector<double> values;
+  for (std::size_t index = 0; index < chosen.size(); ++index)
+  {
+    const double value = chosen[index];
+    if (std::isfinite(value))
+    {
+      values.push_back(value);
+    }
+    else
+    {
+      const std::string which = chosen.size() == 1
+        ? "The isovalue"
+        : "Isovalue " + std::to_string(index + 1) + " of " + std::to_string(chosen.size());
+      messages.push_back(which + " is " + (std::isnan(value) ? "not a number" : "infinite") +
+        " and was left out. Enter a finite value.");
+    }
+  }
+  std::sort(values.begin(), values.end());
+  values.erase(std::unique(values.begin(), values.end()), values.end());
+  return values;
+}
+
+rt::ClipRegion vtkDSMVolumeLook::GetClipRegion(const glm::dmat4& dataToWorld) const
+{
+  rt::ClipRegion region = vtkDSMTranslation::ToClipRegion(this->Mapper);
+  if (this->Mapper->GetCropping())
+  {
+    const double* planes = this->Mapper->GetCroppingRegionPlanes();
+    rt::ClipRegion::Grid boxes;
+    boxes.WorldToGrid = glm::inverse(dataToWorld);
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      boxes.Lower[axis] = std::min(planes[2 * axis], planes[2 * axis + 1]);
+      boxes.Upper[axis] = std::max(planes[2 * axis], planes[2 * axis + 1]);
+    }
+    boxes.Kept = static_cast<std::uint32_t>(this->Mapper->GetCroppingRegionFlags());
+    region.Boxes = boxes;
+  }
+  return region;
+}

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef vtkDSMVolumeLook_h
+#define vtkDSMVolumeLook_h
+
+#include "DSMRayTracing/scene/Scene.h"
+#include "vtkDSMVolumeData.h"
+
+#include <glm/mat4x4.hpp>
+
+#include <optional>
+#include <string>
+#include <vector>
+
+class vtkDSMVolumeMapper;
+class vtkProp3D;
+
+/// What a volume's mapper and prop ask for now, in the ray tracer's words. Owns neither; local, the same on every rank where
+/// they are.
+class vtkDSMVolumeLook
+{
+public:
+  vtkDSMVolumeLook(vtkDSMVolumeMapper* mapper, vtkProp3D* prop);
+
+  /// Whether isovalues and look come from the volume's property; else they are the mapper's.
+  bool IsLikeRayCastMapper() const;
+  /// The arrays that are to be shown, as the mapper names them: that of the isosurfaces, and that of the colours, if any.
+  std::vector<vtkDSMVolumeData::Choice> GetShown() const;
+  /// Whether the cells' scalars are asked for, of which there are no isosurfaces.
+  bool TakesPointsForCells() const;
+  /// Finite, ascending, each once; `suggested` where none is chosen and the mapper takes what data suggest. Adds what is
+  /// wrong with them to the messages.
+  std::vector<double> GetIsovalues(
+    const std::optional<double>& suggested, std::vector<std::string>& messages) const;
+  void SetMaterials(double isovalue, rt::IsosurfaceObject& object) const;
+  rt::ClipRegion GetClipRegion(const glm::dmat4& dataToWorld) const;
+
+private:
+  int GetColorComponent() const;
+  std::string GetIsoArray() const;
+
+  vtkDSMVolumeMapper* Mapper;
+  vtkProp3D* Prop;
+};
+
+#endif
