@@ -55,11 +55,19 @@ if (DSM_BUILD_PARAVIEW_PLUGIN AND PARAVIEW_USE_QT)
   endif ()
   find_package("Qt${PARAVIEW_QT_MAJOR_VERSION}" QUIET COMPONENTS Widgets)
   if (TARGET "Qt${PARAVIEW_QT_MAJOR_VERSION}::Widgets")
+    # ParaView's headers include it, and a VTK that is packaged for itself may have it in a package of its own.
+    include(CheckIncludeFileCXX)
+    set(CMAKE_REQUIRED_LIBRARIES VTK::CommonCore "Qt${PARAVIEW_QT_MAJOR_VERSION}::Widgets")
+    check_include_file_cxx("vtkEventQtSlotConnect.h" DSM_HAS_QT_HEADERS_OF_VTK "-fPIC")
+    unset(CMAKE_REQUIRED_LIBRARIES)
+  endif ()
+  if (DSM_HAS_QT_HEADERS_OF_VTK)
     set(DSM_HAS_QT ON)
     dsm_add_targets_of_qt("Qt${PARAVIEW_QT_MAJOR_VERSION}")
   else ()
+    unset(DSM_HAS_QT_HEADERS_OF_VTK CACHE) # so that it is looked for again once it is installed
     message(STATUS "The panel Ray Tracing Memory will not be built: it needs the development files of "
-      "Qt ${PARAVIEW_QT_MAJOR_VERSION}")
+      "Qt ${PARAVIEW_QT_MAJOR_VERSION}, and VTK's for it")
   endif ()
 endif ()
 

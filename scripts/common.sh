@@ -25,7 +25,7 @@ test_packages=(libgtest-dev clang-format doxygen iproute2 python3-numpy python3-
 # the VTK that is packaged for itself; and the panel needs the Qt that ParaView has. Nothing where the package
 # lists are not there yet. (sh runs it, too.)
 packages_of_paraview() {
-  if apt-cache depends paraview 2>/dev/null | grep -q 'libvtk9\.'; then echo libvtk9-dev; fi
+  if apt-cache depends paraview 2>/dev/null | grep -q 'libvtk9\.'; then echo libvtk9-dev libvtk9-qt-dev; fi
   if apt-cache depends paraview 2>/dev/null | grep -q 'libqt5'; then echo qtbase5-dev; fi
   if apt-cache depends paraview 2>/dev/null | grep -q 'libqt6'; then echo qt6-base-dev; fi
 }
