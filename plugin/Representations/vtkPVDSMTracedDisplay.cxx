@@ -222,7 +222,8 @@ void vtkPVDSMTracedDisplay::ForwardProgress()
   // Not what the mapper says when VTK executes it while the frame is drawn.
   if (this->Scene && this->Scene->IsTracing())
   {
-    this->Representation->SetProgressText(this->Work);
+    const char* const tracing = this->Mapper->GetProgressText();
+    this->Representation->SetProgressText(tracing ? tracing : this->Work);
     this->Representation->UpdateProgress(this->Mapper->GetProgress());
   }
 }

@@ -84,7 +84,7 @@ private:
   void ShareOptions();
   vtkSmartPointer<vtkActor> MakeExportActor(vtkPolyData* polygons) const;
   void ConnectFrameReport();
-  /// Taking in data happens while the view renders; ParaView watches the representation, only.
+  /// Of what happens while the view renders; ParaView watches the representation, only.
   void ForwardProgress();
 
   vtkPVDataRepresentation* Representation;

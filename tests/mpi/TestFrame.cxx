@@ -91,7 +91,7 @@ TEST_P(FrameOverMpi, AbortedFramesEndOnAllRanks)
     SphereScene::CreateScene(SphereScene::Publish(this->Messenger, store), 1.0f);
   rt::FrameRenderer renderer(this->Messenger);
   int left = -1; // looks at the abort status before it is set
-  renderer.SetAbortCheck([&] { return left >= 0 && left-- == 0; });
+  renderer.SetWatch([&](double) { return left >= 0 && left-- == 0; });
   std::mt19937 random(11);
   int aborted = 0;
   std::uint64_t expected = 0;

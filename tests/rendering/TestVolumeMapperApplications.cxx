@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What VTK applications do with their renderers, assemblies, pipelines and cameras.
 #include "VolumeMapperTest.h"
+#include "vtkDSMLightOptions.h"
 #include "vtkDSMStatistics.h"
 
 #include "vtkAssembly.h"
@@ -194,6 +195,57 @@ TEST_F(VolumeMapperAndAnother, OptionsOfItsOwnCountForAsLongAsItIsShown)
   EXPECT_TRUE(this->HasThreads(3));
   this->OtherRenderer->RemoveViewProp(this->OtherVolume);
   EXPECT_TRUE(this->HasThreads(2));
+}
+
+/// While tiles are traced, another scene cannot be: its picture comes with the next render.
+TEST_F(VolumeMapperAndAnother, TellsOfTheTracingOfAFrameThatTakesLong)
+{
+  struct Watch
+  {
+    vtkDSMVolumeMapper* Mapper;
+    vtkRenderWindow* Window;
+    vtkRenderWindow* OtherWindow;
+    vtkSmartPointer<vtkDSMScene> OtherScene;
+    std::vector<double> Parts;
+    bool OtherIsRefined = true;
+  } watch{ this->Mapper, this->Window, this->OtherWindow,
+    vtkDSMScene::ForRenderer(this->OtherRenderer), {} };
+  this->RenderBoth();
+  ASSERT_TRUE(watch.OtherScene->IsRefined());
+  vtkNew<vtkCallbackCommand> progress;
+  progress->SetClientData(&watch);
+  progress->SetCallback(
+    [](vtkObject*, unsigned long, void* data, void*)
+    {
+      auto* self = static_cast<Watch*>(data);
+      if (const char* text = self->Mapper->GetProgressText())
+      {
+        EXPECT_STREQ(text, "Ray tracing");
+        self->Parts.push_back(self->Mapper->GetProgress());
+        self->OtherWindow->Render();
+        self->OtherIsRefined = self->OtherScene->IsRefined();
+      }
+    });
+  vtkNew<vtkCallbackCommand> abort;
+  abort->SetClientData(&watch);
+  abort->SetCallback(
+    [](vtkObject*, unsigned long, void* data, void*)
+    {
+      auto* self = static_cast<Watch*>(data);
+      self->Window->SetAbortRender(self->Parts.size() > 1 ? 1 : 0);
+    });
+  this->Mapper->AddObserver(vtkCommand::ProgressEvent, progress);
+  this->Window->AddObserver(vtkCommand::AbortCheckEvent, abort);
+  this->Mapper->GetLightOptions()->SetSamplesPerPixel(3000);
+  this->Window->Render();
+  ASSERT_EQ(watch.Parts.size(), 2u);
+  EXPECT_GT(watch.Parts[0], 0.0);
+  EXPECT_GT(watch.Parts[1], watch.Parts[0]);
+  EXPECT_LT(watch.Parts[1], 1.0);
+  EXPECT_FALSE(watch.OtherIsRefined);
+  this->OtherMapper->GetLightOptions()->SetSamplesPerPixel(1);
+  this->OtherWindow->Render();
+  EXPECT_TRUE(watch.OtherScene->IsRefined());
 }
 
 /// Until a render ends, its scene does not, whoever gives up the last reference meanwhile.

@@ -373,7 +373,7 @@ TEST_P(AbortedFrame, EndsOnAllRanksAndTheNextOneIsRight)
         rt::GetHash(rt::GatherFrame(messenger, renderer.Render(store, scene, request)));
       std::mt19937 random(7);
       int left = -1; // looks at the abort status, before it is set; negative: it is not
-      renderer.SetAbortCheck([&] { return left >= 0 && left-- == 0; });
+      renderer.SetWatch([&](double) { return left >= 0 && left-- == 0; });
       for (int round = 0; round < rounds; ++round)
       {
         request.FirstSample = 0;

@@ -346,6 +346,7 @@ void FrameRenderer::TraceTiles(Store& store, bool agreed, dsm::WorkerSlots& slot
   TilePlan plan;
   std::vector<int> mine;
   std::vector<std::vector<Tile>> tilesOfWorker;
+  std::atomic<int> tracedTiles{ 0 };
   const auto prepare = [&]
   {
     rays.emplace(request);
@@ -389,6 +390,7 @@ void FrameRenderer::TraceTiles(Store& store, bool agreed, dsm::WorkerSlots& slot
           (plan.HasHistory && !std::binary_search(mine.begin(), mine.end(), tile->Index));
         sampler.Finish(*tile, GetTint(scene.View, this->Messenger.GetRank(), *tile));
         tilesOfWorker[index].push_back(std::move(*tile));
+        ++tracedTiles;
         slots.LetOthersResume();
       }
     }
@@ -400,6 +402,8 @@ void FrameRenderer::TraceTiles(Store& store, bool agreed, dsm::WorkerSlots& slot
   };
 
   std::atomic<double> busySeconds{ 0.0 };
+  const double share = tiles.EstimateShare(this->Messenger.GetSize());
+  const auto getPart = [&] { return share > 0.0 ? std::min(1.0, tracedTiles / share) : 1.0; };
   bool cancelled = false;
   Standstill standstill(this->Messenger.GetSilenceLimit());
   std::vector<Tile> traced;
@@ -425,8 +429,8 @@ void FrameRenderer::TraceTiles(Store& store, bool agreed, dsm::WorkerSlots& slot
     {
       didSomething = store.Service();
       didSomething = tiles.Service() || didSomething;
-      const bool mayAbort = this->AbortCheck && this->Messenger.GetRank() == 0;
-      if (mayAbort && !agreement.IsAborted() && !agreement.IsOver() && this->AbortCheck())
+      const bool isWatched = this->Watch && this->Messenger.GetRank() == 0;
+      if (isWatched && !agreement.IsAborted() && !agreement.IsOver() && this->Watch(getPart()))
       {
         agreement.Abort();
       }

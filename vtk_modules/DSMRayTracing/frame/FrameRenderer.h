@@ -48,10 +48,11 @@ public:
   void Refine(
     dsm::BlockStore& store, const Scene& scene, const FrameRequest& request, Frame& frame);
 
-  /// Asked on rank 0, by the calling thread, again and again during a frame: whether the frame is to be
-  /// aborted. The ranks then finish the tiles that they are tracing, and every rank's frame says so: one
-  /// that was rendered is of no use, one that was refined can be refined again.
-  void SetAbortCheck(std::function<bool()> check) { this->AbortCheck = std::move(check); }
+  /// Called on rank 0, by the calling thread, again and again during a frame, with about the part of it that is
+  /// traced, 0 to 1, as rank 0 can tell by its own tiles. Returns whether the frame is to be aborted. The ranks then
+  /// finish the tiles that they are tracing, and every rank's frame says so: one that was rendered is of no use,
+  /// one that was refined can be refined again.
+  void SetWatch(std::function<bool(double part)> watch) { this->Watch = std::move(watch); }
 
 private:
   void RenderTiles(dsm::BlockStore& store, const Scene& scene, const FrameRequest& request,
@@ -66,7 +67,7 @@ private:
   CentralQueueScheduler Queue;
   WorkStealingScheduler Stealing;
   WorkerPool Pool;
-  std::function<bool()> AbortCheck;
+  std::function<bool(double)> Watch;
 };
 
 } // namespace rt

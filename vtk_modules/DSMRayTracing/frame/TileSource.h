@@ -30,6 +30,8 @@ public:
   virtual std::optional<Tile> Pop(dsm::WorkerSlots& slots) = 0;
   /// As TileScheduler; without pixels.
   virtual std::optional<Tile> Peek(int ahead) = 0;
+  /// About how many tiles this one of so many ranks will trace.
+  virtual double EstimateShare(int ranks) const = 0;
   /// After the workers have stopped: how many tiles with pixels were not given out; adds them to `tiles`,
   /// which has room for them.
   virtual std::size_t CountRest() const { return 0; }
@@ -64,6 +66,10 @@ public:
   {
     const std::optional<int> number = this->Scheduler.Peek(ahead);
     return number ? std::optional<Tile>(this->Grid.CreateTile(*number)) : std::nullopt;
+  }
+  double EstimateShare(int ranks) const override
+  {
+    return static_cast<double>(this->Grid.GetCount()) / ranks;
   }
 
 private:
@@ -108,6 +114,7 @@ public:
 
   /// Nothing: the bricks of a still picture are where they were.
   std::optional<Tile> Peek(int) override { return std::nullopt; }
+  double EstimateShare(int) const override { return static_cast<double>(this->Tiles.size()); }
 
   std::size_t CountRest() const override
   {

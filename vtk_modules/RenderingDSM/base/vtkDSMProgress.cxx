@@ -18,3 +18,10 @@ void vtkDSMProgress::Tell(vtkAlgorithm* mapper, double part)
     throw dsm::Error("It was aborted, and is not shown. Update the dataset to show it after all.");
   }
 }
+
+void vtkDSMProgress::TellOfTracing(vtkAlgorithm* mapper, double part)
+{
+  mapper->SetProgressText("Ray tracing");
+  mapper->UpdateProgress(part);
+  mapper->SetProgressText(nullptr);
+}

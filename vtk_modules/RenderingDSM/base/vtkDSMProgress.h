@@ -4,7 +4,8 @@
 
 class vtkAlgorithm;
 
-/// How a mapper tells of the building of its bricks, and hears that nobody wants to wait for them.
+/// How a mapper tells of the building of its bricks, and hears that nobody wants to wait for them; and of the tracing of
+/// what it shows.
 namespace vtkDSMProgress
 {
 /// Before the building: an earlier wish to stop is over.
@@ -13,6 +14,9 @@ void Begin(vtkAlgorithm* mapper);
 /// Invokes the mapper's ProgressEvent with `part`, 0 to 1. Throws dsm::Error when AbortExecute is set
 /// then; where bricks are built, that ends the building on all ranks.
 void Tell(vtkAlgorithm* mapper, double part);
+
+/// The same of a frame's tiles; until it returns, the mapper's ProgressText says so. Nothing is aborted.
+void TellOfTracing(vtkAlgorithm* mapper, double part);
 }
 
 #endif

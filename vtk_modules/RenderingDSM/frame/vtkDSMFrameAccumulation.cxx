@@ -79,6 +79,12 @@ void vtkDSMFrameAccumulation::Restart()
   this->Wanted = 0;
 }
 
+void vtkDSMFrameAccumulation::Postpone()
+{
+  this->Restart();
+  this->Wanted = 1;
+}
+
 int vtkDSMFrameAccumulation::CountNext(const Pace& pace, double lastSeconds) const
 {
   const int missing = this->Wanted - this->Samples;

@@ -53,6 +53,8 @@ public:
   void Restart();
   /// The same without the tiles.
   void Clear();
+  /// As Restart, of a frame that could not be traced now, but shall be: until it is, there is none that is complete.
+  void Postpone();
 
 private:
   Result TraceOnce(vtkDSMRankGroup& group, const rt::Scene& scene, rt::FrameRequest request);

@@ -319,8 +319,14 @@ void vtkDSMScene::Trace()
 {
   const vtkSmartPointer<vtkDSMScene> rendering = this;
   Internals& self = *this->Self;
-  // A selection pass shows no traced surface; taking in data may make an application render.
-  if (self.Renderer && !self.Renderer->GetSelector() && !self.Tracing && self.Prop->GetVisibility())
+  // A selection pass shows no traced surface; hearing of progress may make an application render.
+  const bool traces =
+    self.Renderer && !self.Renderer->GetSelector() && !self.Tracing && self.Prop->GetVisibility();
+  if (traces && Internals::TracingTiles)
+  {
+    self.Accumulation.Postpone();
+  }
+  else if (traces)
   {
     this->TraceFrame();
   }
@@ -330,7 +336,7 @@ void vtkDSMScene::Trace()
 bool vtkDSMScene::TraceImage(int width, int height, vtkImageData* image, bool transparent)
 {
   Internals& self = *this->Self;
-  if (!self.Renderer || self.Tracing || width < 1 || height < 1)
+  if (!self.Renderer || self.Tracing || Internals::TracingTiles || width < 1 || height < 1)
   {
     vtkErrorMacro(<< "A picture of " << width << " x " << height
                   << " pixels cannot be traced now.");

@@ -4,6 +4,7 @@
 #include "DSMCore/memory/HostMemory.h"
 #include "vtkDSMFrameImage.h"
 #include "vtkDSMFrameNotes.h"
+#include "vtkDSMProgress.h"
 
 #include "vtkBoundingBox.h"
 #include "vtkMatrix4x4.h"
@@ -12,6 +13,7 @@
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <cmath>
 #include <cstddef>
 #include <cstring>
@@ -51,6 +53,26 @@ bool IsNearly(const glm::dmat4& a, const glm::dmat4& b)
   }
   return difference <= tolerance * largest;
 }
+
+/// When a frame that takes long tells how far it is, first and then again.
+constexpr std::chrono::milliseconds FirstTold(1500);
+constexpr std::chrono::milliseconds ThenTold(500);
+
+class Raised
+{
+public:
+  explicit Raised(bool& flag)
+    : Flag(flag)
+  {
+    this->Flag = true;
+  }
+  ~Raised() { this->Flag = false; }
+  Raised(const Raised&) = delete;
+  Raised& operator=(const Raised&) = delete;
+
+private:
+  bool& Flag;
+};
 
 /// Pixels are squares of so many: lines are as wide on the screen.
 void ScaleEdges(rt::Scene& scene, int reduction)
@@ -254,6 +276,9 @@ vtkDSMFrameAccumulation::Result vtkDSMScene::Internals::TraceScene(
   const std::vector<int> tries = this->Detail.GetTries(this->CountCoarser());
   using Result = vtkDSMFrameAccumulation::Result;
   Result result = Result::Aborted;
+  const Raised tracing(TracingTiles);
+  using Clock = std::chrono::steady_clock;
+  auto told = Clock::now() + FirstTold;
   for (auto level = tries.begin(); level != tries.end() && result == Result::Aborted; ++level)
   {
     if (*level > 0)
@@ -263,9 +288,14 @@ vtkDSMFrameAccumulation::Result vtkDSMScene::Internals::TraceScene(
     ScaleEdges(scene, reduction);
     const bool isLast = level + 1 == tries.end();
     this->Detail.Begin();
-    this->Group->GetFrameRenderer().SetAbortCheck(
-      [this, window, isLast]
+    this->Group->GetFrameRenderer().SetWatch(
+      [this, window, isLast, &told](double part)
       {
+        if (Clock::now() > told)
+        {
+          this->TellOfTracing(part);
+          told = Clock::now() + ThenTold;
+        }
         return (window && window->CheckAbortStatus() != 0) ||
           (!isLast && this->Detail.IsTooLong(this->Group->GetStore()));
       });
@@ -282,8 +312,16 @@ vtkDSMFrameAccumulation::Result vtkDSMScene::Internals::TraceScene(
       }
     }
   }
-  this->Group->GetFrameRenderer().SetAbortCheck({});
+  this->Group->GetFrameRenderer().SetWatch({});
   return result;
+}
+
+void vtkDSMScene::Internals::TellOfTracing(double part) const
+{
+  if (vtkAlgorithm* const mapper = this->Members.GetShown().front().State->GetAlgorithm())
+  {
+    vtkDSMProgress::TellOfTracing(mapper, part);
+  }
 }
 
 /// Collective: levels below the finest that may stand in.

@@ -79,6 +79,8 @@ public:
   std::string Failure;         ///< that was reported last
   unsigned FailureVersion = 0; ///< of the group's settings then
   bool Tracing = false;
+  /// Tiles of any scene: while they are traced, there is no other frame.
+  inline static bool TracingTiles = false;
   bool IsTraced =
     false; ///< the frame, of data that were taken in: should it fail, the last picture stays
   vtkDSMFrameAccumulation::Pace Pace; ///< of still pictures
@@ -101,6 +103,7 @@ private:
   int CountCoarser() const;
   vtkDSMFrameAccumulation::Result TraceScene(
     rt::Scene& scene, const rt::FrameRequest& request, int reduction);
+  void TellOfTracing(double part) const;
   void DrawPicture(rt::Picture picture, const rt::FrameRequest& request, vtkMatrix4x4* projection,
     rt::DebugView view, bool hasNotes, bool hasEdges);
   bool WriteNotes(rt::DebugView view, rt::Picture& picture) const;
