@@ -175,7 +175,8 @@ bool vtkPVDSMTracedDisplay::Process(
   {
     return false;
   }
-  if (needsUpdate && !this->IsUpdated)
+  // In a comparative view, the data of this cell's own update stay, whatever their source has become since.
+  if (needsUpdate && !this->IsUpdated && !this->Representation->GetForceUseCache())
   {
     vtkPVDSMDelivery::UpdateInSpiteOfCache(this->Representation);
   }

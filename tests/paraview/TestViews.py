@@ -141,3 +141,28 @@ check_equal(render(first), picture, "the second volume is gone")
 check(get_resident() == resident, "and its bricks")
 simple.Delete(source)
 check(not get_covered(render(first)).any(), "nothing is left")
+
+# A comparative view: each of its cells keeps what it was given, whatever the source has become since.
+def compare(traced, surface, source, name, values):
+    pictures = []
+    for show_it in (traced, surface):
+        view = simple.CreateView("ComparativeRenderView", ViewSize=[300, 150], Dimensions=[2, 1])
+        view.OrientationAxesVisibility = 0
+        show_it(view)
+        cue = servermanager.animation.ComparativeAnimationCue()
+        cue.AnimatedProxy, cue.AnimatedPropertyName = source, name
+        for column, value in enumerate(values):
+            cue.SMProxy.UpdateValue(column, 0, value)
+        view.Cues = [cue]
+        view.CameraPosition, view.CameraFocalPoint = [0.0, 0.0, 12.0 * values[-1] ** 0.5], [0.0, 0.0, 0.0]
+        pictures.append(render(view))
+        simple.Delete(view)
+    for what, cell in (("first", numpy.s_[:, :149]), ("last", numpy.s_[:, 151:])):
+        mine, expected = (picture[cell] for picture in pictures)
+        check_same_surface(mine, expected, f"the {what} cell of {name}", 0.02)
+
+
+wavelet, sphere = simple.Wavelet(), simple.Sphere(ThetaResolution=32, PhiResolution=32)
+edges = flying_edges(wavelet, [160.0])
+compare(lambda view: show(wavelet, view, [160.0]), lambda view: show_surface(edges, view), wavelet, "XFreq", (5, 20))
+compare(lambda view: show_traced(sphere, view), lambda view: show_surface(sphere, view), sphere, "Radius", (1, 3))
