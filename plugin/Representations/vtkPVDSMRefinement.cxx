@@ -14,6 +14,7 @@
 #include "vtkProcessModule.h"
 #include "vtkRenderWindow.h"
 #include "vtkRenderWindowInteractor.h"
+#include "vtkSMCollaborationManager.h"
 #include "vtkSMProperty.h"
 #include "vtkSMPropertyHelper.h"
 #include "vtkSMProxy.h"
@@ -235,7 +236,9 @@ void vtkPVDSMRefinement::OnRenderEnds(vtkObject*, unsigned long, void* interacti
   this->CanAbort = false;
   this->IsRefined = true;
   const bool goesOn = this->CanGoOn();
-  if (!this->View->GetSession()->IsMultiClients())
+  vtkSMSession* const session = this->View->GetSession();
+  // Of several clients, one says what the others show.
+  if (!session->IsMultiClients() || session->GetCollaborationManager()->IsMaster())
   {
     ForEachTraced(this->View,
       [&](vtkSMProxy* representation)
