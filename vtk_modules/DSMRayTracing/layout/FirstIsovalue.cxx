@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 
 namespace rt
 {
@@ -152,6 +153,13 @@ std::optional<double> FindFirstIsovalue(
     0.5 * static_cast<double>((first - worths.begin()) + (last - worths.begin()));
   const double width = (static_cast<double>(range.Last) - range.First) / Intervals;
   return range.First + (border + 1.0) * width;
+}
+
+bool AreBeyondFloats(const std::vector<std::shared_ptr<const VoxelField>>& fields)
+{
+  const ValueRange range = FindRange(fields);
+  const float width = range.Last - range.First;
+  return width > 0.0f && (std::isinf(width) || width < std::numeric_limits<float>::min());
 }
 
 } // namespace rt
