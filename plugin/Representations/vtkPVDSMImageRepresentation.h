@@ -6,6 +6,9 @@
  * Holds the input and a vtkVolume with a vtkDSMVolumeMapper, and keeps the view's vtkDSMScene alive
  * on the processes that render. The data never leave the rank: what is delivered is an empty
  * placeholder, and the view is asked to render where the data are.
+ *
+ * Of ParaView's volume representation, it needs nothing but the method GetActor, which Python asks all that shows data
+ * for when a scene is exported for vtk.js. The actor is in no view.
  */
 
 #ifndef vtkPVDSMImageRepresentation_h
@@ -14,8 +17,8 @@
 #include "vtkGeometryRepresentationWithFaces.h" // for ivars
 #include "vtkNew.h"                             // for ivars
 #include "vtkPVDSMTracedDisplay.h"              // for ivars
-#include "vtkPVDataRepresentation.h"
-#include "vtkRepresentationsDSMModule.h" // for the export macro
+#include "vtkRepresentationsDSMModule.h"        // for the export macro
+#include "vtkVolumeRepresentation.h"
 
 #include <array>   // for ivars
 #include <memory>  // for ivars
@@ -33,11 +36,11 @@ class vtkProperty;
 class vtkScalarsToColors;
 class vtkVolume;
 
-class VTKREPRESENTATIONSDSM_EXPORT vtkPVDSMImageRepresentation : public vtkPVDataRepresentation
+class VTKREPRESENTATIONSDSM_EXPORT vtkPVDSMImageRepresentation : public vtkVolumeRepresentation
 {
 public:
   static vtkPVDSMImageRepresentation* New();
-  vtkTypeMacro(vtkPVDSMImageRepresentation, vtkPVDataRepresentation);
+  vtkTypeMacro(vtkPVDSMImageRepresentation, vtkVolumeRepresentation);
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
   int ProcessViewRequest(

@@ -4,6 +4,7 @@ TestExport.py PLUGIN OUTPUT [PORT]."""
 
 import json
 import re
+import zipfile
 
 from dsm_testing import *
 from vtkmodules.vtkFiltersCore import vtkFlyingEdges3D
@@ -140,3 +141,13 @@ ball = simple.Sphere(ThetaResolution=32, PhiResolution=24)
 mesh = show_traced(ball, view)
 found = read_gltf(export("mesh.gltf"))[1]
 check(found == 2 * 32 * 22, f"a mesh has {found} triangles")
+
+# For vtk.js, which nothing of a traced volume reaches, what is drawn is packed, with the names of its datasets.
+simple.Delete(mesh)
+show_surface(ball, view)
+simple.Hide(wavelet, view)
+render(view)
+simple.RenameSource("ball", ball)
+with zipfile.ZipFile(export("scene.vtkjs")) as scene:
+    names = [item["name"] for item in json.loads(scene.read("index.json"))["scene"]]
+check("ball" in names, f"a scene for vtk.js has {names}")
