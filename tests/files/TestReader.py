@@ -165,6 +165,51 @@ for apply in (calculate, extract, contour, cut, gradient, threshold, line, descr
     found, expected = apply(source), apply(plain)
     check(found == expected, f"{apply.__name__}: as of an array in memory: {found}, {expected}")
 
+# A filter that arranges the samples anew has another image's; the values stay those of their numbers. One that makes
+# more points than there are values has an error.
+ARRANGE = """
+data = self.GetInputDataObject(0, 0)
+output = self.GetOutputDataObject(0)
+output.SetDimensions(SIZE)
+output.GetPointData().SetScalars(data.GetPointData().GetScalars())
+"""
+ARRANGED_EXTENT = """
+from vtkmodules.vtkCommonExecutionModel import vtkStreamingDemandDrivenPipeline as Pipeline
+self.GetOutputInformation(0).Set(Pipeline.WHOLE_EXTENT(), [end for n in SIZE for end in (0, n - 1)], 6)
+"""
+WHOLE_INPUT = """
+from vtkmodules.vtkCommonExecutionModel import vtkStreamingDemandDrivenPipeline as Pipeline
+source = self.GetInputInformation(0, 0)
+source.Set(Pipeline.UPDATE_EXTENT(), source.Get(Pipeline.WHOLE_EXTENT()), 6)
+"""
+
+
+def arrange(source, size):
+    filter_ = simple.ProgrammableFilter(Input=source)
+    filter_.CopyArrays = 0
+    filter_.Script = f"SIZE = {size}" + ARRANGE
+    filter_.RequestInformationScript = f"SIZE = {size}" + ARRANGED_EXTENT
+    filter_.RequestUpdateExtentScript = WHOLE_INPUT
+    return filter_
+
+
+if get_ranks() == 1:
+    x, y, z = (end + 1 for end in source.GetDataInformation().GetExtent()[1::2])
+    for size in ([y, x, z], [z, y, x]):
+        arranged, expected = arrange(source, size), arrange(plain, size)
+        same = (picture(arranged, "f")[0] == picture(expected, "f")[0]).all()
+        check(same, f"arranged as {size}: the picture is as of an array in memory")
+        simple.Delete(arranged)
+        simple.Delete(expected)
+    with Messages() as messages:
+        larger = arrange(source, [x, y, 2 * z])
+        probe = simple.ProbeLocation(Input=larger)
+        probe.ProbeType.Center = [1.5, 1.5, 1.5 * z]
+        probe.UpdatePipeline()
+    check(f"has values for {x * y * z} points" in messages.text, f"more points than values: {messages.text}")
+    simple.Delete(probe)
+    simple.Delete(larger)
+
 # Filters of images make room for values of the type that the pipeline has told them of. On several ranks VTK's read
 # beyond their part, also of an image in memory.
 if get_ranks() == 1:

@@ -183,13 +183,17 @@ vol::ValueRange GetFinite(const vtkDSMFileValues& values, int component)
 
 } // namespace
 
-vtkDSMFileVolume::Seat vtkDSMFileVolume::Describe(vtkImageData* image, vtkAbstractArray* array)
+vtkDSMFileVolume::Seat vtkDSMFileVolume::Describe(
+  vtkImageData* image, vtkAbstractArray* array, bool onCells)
 {
   Seat seat{};
-  if (const vtkDSMFileValues* values = array ? vtkDSMGetFileValues(array) : nullptr)
+  int extent[6];
+  image->GetExtent(extent);
+  const int ends = onCells ? 0 : 1;
+  const Index3 size(
+    extent[1] - extent[0] + ends, extent[3] - extent[2] + ends, extent[5] - extent[4] + ends);
+  if (const vtkDSMFileValues* values = array ? vtkDSMGetFileValues(array, size) : nullptr)
   {
-    int extent[6];
-    image->GetExtent(extent);
     seat.InFile = 1;
     seat.Step = values->GetStep();
     seat.NextStep = values->GetNextStep();

@@ -39,8 +39,8 @@ public:
     std::int64_t ToFile[3]; ///< add to the image's own index
   };
 
-  /// Local. `array` may be null.
-  static Seat Describe(vtkImageData* image, vtkAbstractArray* array);
+  /// Local. `array`, of the image's points or cells, may be null.
+  static Seat Describe(vtkImageData* image, vtkAbstractArray* array, bool onCells);
 
   /// Collective. Null, on all ranks, where the members' values are not all of one array of one file, or a rank
   /// cannot open it. `seats`: of all pieces of all ranks; `own`: the values of this rank's first member, or null;

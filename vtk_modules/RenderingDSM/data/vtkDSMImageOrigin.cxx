@@ -305,7 +305,7 @@ void vtkDSMImageOrigin::Copy(std::size_t array, const rt::Box& box, std::byte* o
   const rt::Box& piece =
     this->GetPieces(array)[static_cast<std::size_t>(this->Messenger.GetRank())];
   const std::size_t sampleBytes = this->Arrays[array].GetSampleBytes();
-  if (const vtkDSMFileValues* const file = vtkDSMGetFileValues(values))
+  if (const vtkDSMFileValues* const file = vtkDSMGetFileValues(values, piece.GetSize()))
   {
     file->ReadBox({ box.Min - piece.Min, box.Max - piece.Min }, out);
     return;

@@ -177,7 +177,7 @@ void GatherComponent(
   vtkDataArray* array, int component, const Box& points, const Box& image, std::byte* out)
 {
   const int components = array->GetNumberOfComponents();
-  if (const vtkDSMFileValues* values = vtkDSMGetFileValues(array))
+  if (const vtkDSMFileValues* values = vtkDSMGetFileValues(array, image.GetSize()))
   {
     GatherFromFile<Native>(*values, component, points, image, out);
   }

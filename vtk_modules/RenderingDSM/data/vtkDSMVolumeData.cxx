@@ -245,7 +245,7 @@ std::shared_ptr<const vtkDSMVolumeData::Publication> vtkDSMVolumeData::Publish(c
       for (std::size_t index = 0; index < this->Images.size(); ++index)
       {
         vtkDataArray* array = vtkDSMImageArrays::Find(this->Images[index], choice, mine[index]);
-        mySeats[index] = vtkDSMFileVolume::Describe(this->Images[index], array);
+        mySeats[index] = vtkDSMFileVolume::Describe(this->Images[index], array, choice.OnCells);
       }
       published->Content = this->HashContent(choice);
     });

@@ -13,6 +13,7 @@
 #include <array>
 #include <cstring>
 #include <limits>
+#include <string>
 #include <utility>
 
 #include <sys/mman.h>
@@ -129,6 +130,13 @@ void vtkDSMFileArray<ValueTypeT>::Report(const std::string& what) const
 template <class ValueTypeT>
 const ValueTypeT* vtkDSMFileArray<ValueTypeT>::Find(vtkIdType tuple) const
 {
+  if (tuple < 0 || tuple * this->NumberOfComponents > this->MaxId)
+  {
+    this->Report("has values for " + std::to_string(this->Values->GetCount()) +
+      " points or cells, and that of number " + std::to_string(tuple) +
+      " was asked for: a filter has given it to a dataset of another size.");
+    return nullptr;
+  }
   const rt::Index3 sample = this->Values->GetSample(tuple);
   const auto getValues = [&](const vtkDSMFileValues::Place& place)
   {
@@ -351,6 +359,12 @@ const vtkDSMFileValues* vtkDSMGetFileValues(vtkAbstractArray* array)
 {
   return GetValuesAsAny<signed char, unsigned char, short, unsigned short, int, unsigned int,
     long long, unsigned long long, float, double>(array);
+}
+
+const vtkDSMFileValues* vtkDSMGetFileValues(vtkAbstractArray* array, const rt::Index3& size)
+{
+  const vtkDSMFileValues* const values = vtkDSMGetFileValues(array);
+  return values && values->GetBox().GetSize() == size ? values : nullptr;
 }
 
 vtkSmartPointer<vtkDataArray> vtkDSMCreateFileArray(

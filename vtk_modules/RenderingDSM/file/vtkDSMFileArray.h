@@ -123,6 +123,9 @@ private:
 
 /// The values of an array that is a vtkDSMFileArray; else null.
 const vtkDSMFileValues* vtkDSMGetFileValues(vtkAbstractArray* array);
+/// The same for the points or cells of an image that has so many along each axis; null, too, where a filter has given
+/// the array to an image of another shape, so that boxes of the image are none of the file.
+const vtkDSMFileValues* vtkDSMGetFileValues(vtkAbstractArray* array, const rt::Index3& size);
 
 /// An array that shows them, of their type, with the file's name for it.
 vtkSmartPointer<vtkDataArray> vtkDSMCreateFileArray(
