@@ -119,6 +119,29 @@ TEST(ChunkCache, WhatIsBeingReadCountsToo)
   }
 }
 
+TEST(ChunkCache, HoldsWhatIsNeededTogetherWhereItMay)
+{
+  vol::ChunkCache cache(3000);
+  cache.Widen(2000);
+  EXPECT_EQ(cache.GetRoom(), 3000u);
+  cache.Widen(5000);
+  EXPECT_EQ(cache.GetRoom(), 5000u);
+  EXPECT_EQ(cache.Restrict(4000), 4000u);
+  cache.SetLimit(1000);
+  EXPECT_EQ(cache.GetRoom(), 1000u) << "until the limit is set anew";
+}
+
+TEST(ChunkGrid, CountsTheChunksOfABoxAtWorst)
+{
+  const vol::ChunkGrid planes{ rt::Index3(40, 30, 20), rt::Index3(40, 30, 1) };
+  EXPECT_EQ(planes.CountBytesOfChunks(17, 4), 17u * 40 * 30 * 4);
+  EXPECT_EQ(planes.CountBytesOfChunks(33, 4), 20u * 40 * 30 * 4) << "no more than there are";
+  EXPECT_EQ(planes.CountBytesOfChunks(1, 4), 40u * 30 * 4);
+  const vol::ChunkGrid cubes{ rt::Index3(100), rt::Index3(16) };
+  EXPECT_EQ(cubes.CountBytesOfChunks(17, 1), 8u * 16 * 16 * 16);
+  EXPECT_EQ(cubes.CountBytesOfChunks(18, 1), 27u * 16 * 16 * 16);
+}
+
 /// The memory of what has left is used again, but not what somebody still looks at.
 TEST(ChunkCache, ChunksThatAreHeldStayWhatTheyAre)
 {

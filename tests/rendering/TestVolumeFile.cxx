@@ -96,10 +96,11 @@ protected:
   }
 
   /// The colours of a picture of all that is new but the file.
-  std::vector<unsigned char> Render()
+  std::vector<unsigned char> Render(
+    const std::string& name = "ball.raw", const char* array = "values", int mebibytes = 128)
   {
     vtkDSMVolumeReader::SetCacheMebibytes(0); // forgets what is there
-    vtkDSMVolumeReader::SetCacheMebibytes(128);
+    vtkDSMVolumeReader::SetCacheMebibytes(mebibytes);
     vtkNew<vtkRenderer> renderer;
     vtkNew<vtkRenderWindow> window;
     window->SetOffScreenRendering(1);
@@ -108,12 +109,12 @@ protected:
     window->AddRenderer(renderer);
     const auto scene = vtkDSMScene::ForRenderer(renderer);
     vtkNew<vtkDSMVolumeReader> reader;
-    reader->SetFileName((this->Folder / "ball.raw").c_str());
+    reader->SetFileName((this->Folder / name).c_str());
     reader->SetRawDimensions(Edge, Edge, Edge);
     reader->SetRawScalarType(VTK_FLOAT);
     vtkNew<vtkDSMVolumeMapper> mapper;
     mapper->SetInputConnection(reader->GetOutputPort());
-    mapper->SetIsoArray("values");
+    mapper->SetIsoArray(array);
     mapper->SetIsoValue(0, 0.15);
     mapper->GetMemoryOptions()->SetNumberOfThreads(2);
     vtkNew<vtkVolume> volume;
@@ -142,6 +143,29 @@ TEST_F(VolumeFile, LaterPicturesReadWhatRaysMeet)
   EXPECT_LT(read, FileBytes * 2 / 3) << "the ball is in the middle";
   EXPECT_GT(
     std::count_if(first.begin(), first.end(), [](unsigned char c) { return c != 0; }), 1000);
+}
+
+/// Planes that can only be read as a whole, as of compressed slices: a brick needs as many as it has samples along z.
+TEST_F(VolumeFile, ChunksThatABrickNeedsTogetherAreReadOnce)
+{
+  const std::filesystem::path planes = this->Folder / "planes.zarr";
+  std::filesystem::create_directories(planes);
+  std::ofstream(planes / ".zarray")
+    << R"({"zarr_format": 2, "shape": [96, 96, 96], "chunks": [1, 96, 96], "dtype": "<f4", "order": "F",
+           "compressor": null, "filters": null, "fill_value": 0})";
+  std::ifstream ball(this->Folder / "ball.raw", std::ios::binary);
+  std::vector<char> plane(FileBytes / Edge); // as wide as it is high, and the same transposed
+  for (int z = 0; z < Edge; ++z)
+  {
+    ball.read(plane.data(), static_cast<std::streamsize>(plane.size()));
+    std::ofstream(planes / (std::to_string(z) + ".0.0"), std::ios::binary)
+      .write(plane.data(), static_cast<std::streamsize>(plane.size()));
+  }
+  const vtkTypeUInt64 before = vtkDSMVolumeReader::GetBytesRead();
+  const auto first = this->Render("planes.zarr", "planes", 0);
+  EXPECT_LT(vtkDSMVolumeReader::GetBytesRead() - before, 3 * FileBytes)
+    << "to look through, and for the picture";
+  EXPECT_EQ(first, this->Render());
 }
 
 /// What was kept is of no use when it is damaged.

@@ -68,6 +68,17 @@ struct ChunkGrid
     }
     return halo;
   }
+  /// Bytes of the chunks that a box of so many samples along each axis lies in, at most.
+  std::uint64_t CountBytesOfChunks(std::int64_t samples, std::size_t sampleBytes) const
+  {
+    const rt::Index3 most =
+      (rt::Index3(samples - 2) + this->ChunkSamples) / this->ChunkSamples + rt::Index3(1);
+    const rt::Index3 chunks = glm::min(most, this->GetCounts());
+    const rt::Index3 chunk = glm::min(this->ChunkSamples, this->Samples);
+    return static_cast<std::uint64_t>(
+             chunks.x * chunks.y * chunks.z * chunk.x * chunk.y * chunk.z) *
+      sampleBytes;
+  }
   /// Samples of it, at most.
   std::size_t CountMostOfHalo() const
   {

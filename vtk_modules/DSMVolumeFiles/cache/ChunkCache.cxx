@@ -18,9 +18,6 @@ namespace
 
 constexpr std::size_t SharedBytes = std::size_t(128) << 20;
 
-/// While a chunk is read, its bytes as the file has them are in memory, too, which hardly are more than it.
-constexpr std::size_t InHandOfEach = 2;
-
 /// Samples along an axis that a brick has in common with the next.
 constexpr int Overlap = 2;
 
@@ -62,6 +59,7 @@ void ChunkCache::SetLimit(std::size_t bytes)
 {
   const std::lock_guard<std::mutex> lock(this->Guard);
   this->Limit = bytes;
+  this->Together = 0;
   this->Evict();
 }
 
@@ -69,6 +67,12 @@ std::size_t ChunkCache::GetLimit() const
 {
   const std::lock_guard<std::mutex> lock(this->Guard);
   return this->Limit;
+}
+
+void ChunkCache::Widen(std::size_t bytes)
+{
+  const std::lock_guard<std::mutex> lock(this->Guard);
+  this->Together = std::max(this->Together, bytes);
 }
 
 std::size_t ChunkCache::GetRoom() const

@@ -27,6 +27,9 @@ class ChunkCache
 public:
   using Chunk = std::shared_ptr<const ByteBuffer>;
 
+  /// While a chunk is read, its bytes as the file has them are in memory, too, which hardly are more than it.
+  static constexpr std::size_t InHandOfEach = 2;
+
   explicit ChunkCache(std::size_t bytes)
     : Limit(bytes)
   {
@@ -38,6 +41,8 @@ public:
   /// From now on. What is in use stays in memory until it is not.
   void SetLimit(std::size_t bytes);
   std::size_t GetLimit() const;
+  /// At least so much where the limit is less, until that is set anew: somebody needs chunks together that are as large.
+  void Widen(std::size_t bytes);
   /// Less than the limit, from now on, for whoever must keep to an amount of memory; the limit itself stays.
   /// Returns what holds then.
   std::size_t Restrict(std::size_t bytes);
@@ -106,13 +111,17 @@ private:
   bool ReadWithHalo(const std::shared_ptr<const VolumeFile>& file, std::size_t array, int step,
     const rt::Box& box, std::byte* out);
   /// Under the lock, as GetRoom without it.
-  std::size_t ComputeRoom() const { return std::min(this->Limit, this->Restriction); }
+  std::size_t ComputeRoom() const
+  {
+    return std::min(std::max(this->Limit, this->Together), this->Restriction);
+  }
   /// Under the lock. Returns the memory of one that has left and that nobody uses, if it has so many bytes: memory
   /// that the system gives anew has to be filled with zeros first.
   std::shared_ptr<ByteBuffer> Evict(std::size_t bytes = 0);
 
   mutable std::mutex Guard;
   std::size_t Limit;
+  std::size_t Together = 0; ///< see Widen
   std::size_t Restriction = SIZE_MAX;
   std::size_t Bytes = 0;
   std::size_t Lent = 0;   ///< of them

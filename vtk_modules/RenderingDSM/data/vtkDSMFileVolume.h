@@ -6,6 +6,7 @@
 #include "DSMRayTracing/build/VoxelIndex.h"
 #include "DSMRayTracing/build/VoxelSource.h"
 #include "DSMRayTracing/layout/BrickLattice.h"
+#include "DSMVolumeFiles/cache/ChunkCache.h"
 #include "DSMVolumeFiles/range/KeptFile.h"
 #include "vtkDSMFileValues.h"
 #include "vtkDSMLatticePlan.h"
@@ -55,6 +56,14 @@ public:
   /// Collective. The first coarser level is 1. Null, on all ranks, where a rank cannot open it, or it has no such array,
   /// or does not fill the same place.
   std::unique_ptr<vtkDSMFileVolume> FindCoarser(dsm::Messenger& messenger, int level) const;
+  /// The cache of chunks has to hold so much, lest it reads all that a brick lies in anew for each brick: these, and
+  /// what two threads read of others meanwhile.
+  std::uint64_t CountChunkBytesOfBrick(const rt::BrickLattice& lattice) const
+  {
+    const vol::FileArray& array = this->Values->GetArray();
+    return array.Grid.CountBytesOfChunks(lattice.GetEdge() + 1, array.GetSampleBytes()) +
+      2 * vol::ChunkCache::InHandOfEach * array.Grid.CountBytesOfChunks(1, array.GetSampleBytes());
+  }
   /// Samples along each axis.
   rt::Index3 GetPoints() const { return this->Values->GetBox().GetSize(); }
   /// From indices of another level's samples to those of this one's.

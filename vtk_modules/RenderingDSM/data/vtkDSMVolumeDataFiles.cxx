@@ -2,11 +2,35 @@
 // Lattices that are in a file.
 #include "vtkDSMVolumeData.h"
 
+#include "DSMCore/memory/HostMemory.h"
 #include "DSMRayTracing/build/VoxelIndex.h"
 
+#include "vtkObject.h"
+
 #include <optional>
+#include <set>
 #include <string>
 #include <utility>
+
+namespace
+{
+
+/// Once for each file.
+void TellOfLargeChunks(const std::string& name, std::uint64_t need, std::uint64_t room)
+{
+  static std::set<std::string> told;
+  if (told.insert(name).second)
+  {
+    vtkGenericWarningMacro("The chunks of "
+      << name << " are so large that a brick of it needs up to " << dsm::FormatMebibytes(need)
+      << " of them together, and they may take " << dsm::FormatMebibytes(room)
+      << ", an eighth of a rank's memory. Each is read, and unpacked, many "
+         "times, which takes long. Allow more "
+         "memory (DSMMemory), or convert the file with dsm_convert.");
+  }
+}
+
+} // namespace
 
 void vtkDSMVolumeData::PublishFile(const vtkDSMFileVolume& file, bool isCoarser,
   const vtkDSMFileValues* own, const std::string& what, const std::function<void(double)>& progress,
@@ -17,6 +41,13 @@ void vtkDSMVolumeData::PublishFile(const vtkDSMFileVolume& file, bool isCoarser,
   rt::VoxelField& field = *part.Field;
   const bool hasSteps = !isCoarser && file.HasSteps();
   const std::string name = "the file '" + file.GetPath() + "'";
+  // Twice: bricks beside one another need others, too.
+  const std::uint64_t need = file.CountChunkBytesOfBrick(field.Lattice);
+  const std::uint64_t room = this->Group->WidenRoomForChunks(2 * need);
+  if (room < need && messenger.GetRank() == 0)
+  {
+    TellOfLargeChunks(name, need, room);
+  }
   std::optional<dsm::BlockDirectory> directory;
   bool staysInMemory = false;
   messenger.RunTogether("Opening the volume's file",

@@ -2,6 +2,7 @@
 #include "vtkDSMRankGroup.h"
 
 #include "DSMCore/memory/FreedMemory.h"
+#include "DSMCore/memory/HostMemory.h"
 #include "DSMCore/transport/LoopbackTransport.h"
 #include "DSMCore/transport/MpiTransport.h"
 #include "DSMVolumeFiles/cache/ChunkCache.h"
@@ -137,9 +138,7 @@ vtkDSMMemorySettings vtkDSMRankGroup::Configure()
   next.Organization = merged.Organization;
   next.HostSharing = merged.HostSharing;
   next.MemoryBytes = merged.MemoryBytes;
-  next.SourceCacheBytes = vol::ChunkCache::GetShared().Restrict(merged.MemoryBytes == 0
-      ? SIZE_MAX
-      : static_cast<std::size_t>(merged.MemoryBytes / ChunksDivisor));
+  next.SourceCacheBytes = RestrictRoomForChunks(merged.MemoryBytes);
   next.ScratchDirectory = merged.ScratchDirectory;
   next.CacheBytes = static_cast<std::size_t>(merged.CacheBytes);
   next.Workers = merged.Threads > 0 ? merged.Threads : coresPerRank;
@@ -161,6 +160,29 @@ vtkDSMMemorySettings vtkDSMRankGroup::Configure()
   this->Messenger.SetSilenceLimit(std::isinf(merged.SilenceLimit) ? 0.0 : merged.SilenceLimit);
   this->Store.SetSettings(next);
   return merged;
+}
+
+std::uint64_t vtkDSMRankGroup::RestrictRoomForChunks(std::uint64_t memoryBytes)
+{
+  return vol::ChunkCache::GetShared().Restrict(
+    memoryBytes == 0 ? SIZE_MAX : static_cast<std::size_t>(memoryBytes / ChunksDivisor));
+}
+
+std::uint64_t vtkDSMRankGroup::WidenRoomForChunks(std::uint64_t bytes)
+{
+  dsm::BlockStore::Settings settings = this->Store.GetSettings();
+  const auto ranksOnHost = static_cast<std::uint64_t>(this->Messenger.GetRanksOnHost());
+  const auto memory = this->Messenger.GatherValueTogether("Making room for chunks of a file",
+    [&]
+    {
+      return settings.MemoryBytes != 0 ? settings.MemoryBytes
+                                       : dsm::GetAvailableHostMemory() / 2 / ranksOnHost;
+    });
+  const std::uint64_t most = *std::min_element(memory.begin(), memory.end()) / ChunksDivisor;
+  vol::ChunkCache::GetShared().Widen(static_cast<std::size_t>(std::min(bytes, most)));
+  settings.SourceCacheBytes = RestrictRoomForChunks(settings.MemoryBytes);
+  this->Store.SetSettings(settings);
+  return settings.SourceCacheBytes;
 }
 
 bool vtkDSMRankGroup::Settle()
