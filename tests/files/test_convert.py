@@ -89,6 +89,19 @@ for ranks in (1, 3) if MPIRUN else (1,):
         compare(name, name)
         check(not os.path.exists(path(name) + ".part"), f"{name}: nothing else is left")
 
+# Chunks of which a brick needs more together than the memory holds, as of slices: not read for each brick anew.
+slices = np.tile(values[:20], (1, 9, 6))
+with h5py.File(path("slices.h5"), "w") as file:
+    file.create_dataset("values", data=slices, chunks=(1, *slices.shape[1:]), compression="gzip")
+for ranks in (1, 3) if MPIRUN else (1,):
+    name = f"slices_{ranks}.vtkhdf"
+    start = time.monotonic()
+    done = convert("--quiet", "--memory", 32, path("slices.h5"), path(name), ranks=ranks)
+    took = time.monotonic() - start
+    check(done.returncode == 0 and took < 30, f"{name} is written, in {took:.1f} s {done.stderr}")
+    with h5py.File(path(name), "r") as file:
+        check(np.array_equal(file["VTKHDF/PointData/values"][...], slices, equal_nan=True), f"{name}: every value")
+
 # What h5py lacks the filter for is read back by our own reader.
 done = convert(*BARE, "--compression", "zstd", path("convert.raw"), path("zstd.vtkhdf"))
 check(done.returncode == 0, f"Zstandard is written {done.stderr}")

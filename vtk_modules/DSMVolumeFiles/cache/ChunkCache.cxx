@@ -2,12 +2,14 @@
 #include "DSMVolumeFiles/cache/ChunkCache.h"
 
 #include "DSMRayTracing/base/ByteHash.h"
+#include "DSMRayTracing/base/ParallelFor.h"
 #include "DSMVolumeFiles/base/CopyBox.h"
 #include "DSMVolumeFiles/base/ReadingManner.h"
 #include "DSMVolumeFiles/format/SeriesFile.h"
 
 #include <atomic>
 #include <exception>
+#include <map>
 #include <utility>
 
 namespace vol
@@ -238,6 +240,32 @@ void ChunkCache::ReadScattered(const std::shared_ptr<const VolumeFile>& file, st
 {
   const ScatteredReads scope;
   this->Read(file, array, step, box, true, out);
+}
+
+void ChunkCache::ReadBoxes(const std::shared_ptr<const VolumeFile>& file, std::size_t array,
+  int step, const std::vector<rt::Box>& boxes, const std::vector<std::byte*>& outs, int threads)
+{
+  const FileArray& what = file->GetArrays()[array];
+  std::map<std::int64_t, std::vector<std::size_t>> wanted; // by which boxes a chunk is
+  for (std::size_t box = 0; box < boxes.size(); ++box)
+  {
+    ForEachChunk(what.Grid, boxes[box],
+      [&](const rt::Index3& chunk) { wanted[what.Grid.GetNumber(chunk)].push_back(box); });
+  }
+  const std::vector<std::pair<std::int64_t, std::vector<std::size_t>>> chunks(
+    wanted.begin(), wanted.end());
+  rt::ParallelFor(threads, chunks.size(),
+    [&](std::size_t index, int)
+    {
+      const rt::Index3 chunk = what.Grid.GetChunk(chunks[index].first);
+      const rt::Box part = what.Grid.GetBox(chunk);
+      const Chunk samples = this->Get(file, array, step, chunk);
+      for (const std::size_t box : chunks[index].second)
+      {
+        CopyBox(rt::Intersect(part, boxes[box]), samples->data(), part, outs[box], boxes[box],
+          what.GetSampleBytes());
+      }
+    });
 }
 
 bool ChunkCache::HasChunk(const std::shared_ptr<const VolumeFile>& file, std::size_t array,

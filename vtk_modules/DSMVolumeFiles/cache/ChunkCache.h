@@ -72,6 +72,10 @@ public:
   void ReadScattered(const std::shared_ptr<const VolumeFile>& file, std::size_t array, int step,
     const rt::Box& box, std::byte* out);
 
+  /// The samples of boxes, likewise, each to its own place, by so many threads; each chunk is read once for all of them.
+  void ReadBoxes(const std::shared_ptr<const VolumeFile>& file, std::size_t array, int step,
+    const std::vector<rt::Box>& boxes, const std::vector<std::byte*>& outs, int threads);
+
   /// Boxes will probably be read soon: the system is told of what is not here, without what boxes side by side
   /// have in common. What goes wrong is said when it is read.
   void Foresee(const std::shared_ptr<const VolumeFile>& file, std::size_t array, int step,

@@ -5,7 +5,10 @@
 #include "DSMVolumeFiles/cache/ChunkCache.h"
 
 #include <algorithm>
+#include <array>
+#include <cstdint>
 #include <filesystem>
+#include <map>
 #include <system_error>
 #include <utility>
 
@@ -69,7 +72,8 @@ public:
     : File(std::move(file))
     , Numbers(FindArrays(*this->File, options.Arrays))
     , Step(options.Step)
-    , Ranks(messenger.GetSize())
+    , Messenger(messenger)
+    , Threads(options.Threads)
     , Cache(options.MemoryBytes / 2)
   {
     if (this->Step < 0 || this->Step >= this->File->GetSteps())
@@ -98,27 +102,70 @@ public:
   }
 
   /// Each rank gets such as lie beside one another.
-  std::vector<int> Deal(std::size_t, const std::vector<rt::Box>& boxes) override
+  std::vector<int> Deal(std::size_t array, const std::vector<rt::Box>& boxes) override
   {
+    const auto count = static_cast<std::size_t>(this->Messenger.GetSize());
     std::vector<int> ranks(boxes.size());
     for (std::size_t box = 0; box < boxes.size(); ++box)
     {
-      ranks[box] = static_cast<int>(box * static_cast<std::size_t>(this->Ranks) / boxes.size());
+      ranks[box] = static_cast<int>(box * count / boxes.size());
     }
+    this->Messenger.RunTogether(
+      "Reading large chunks of a file", [&] { this->Gather(array, boxes, ranks); });
     return ranks;
   }
   void Read(std::size_t array, const rt::Box& box, std::byte* out) const override
   {
+    const auto gathered = this->Gathered.find(GetKey(box));
+    if (gathered != this->Gathered.end())
+    {
+      std::copy(gathered->second.begin(), gathered->second.end(), out);
+      return;
+    }
     this->Cache.ReadBox(this->File, this->Numbers[array], this->Step, box, out);
   }
 
 private:
+  using Key = std::array<std::int64_t, 3>;
+  static Key GetKey(const rt::Box& box) { return { box.Min.x, box.Min.y, box.Min.z }; }
+
+  /// Where the cache cannot hold the chunks that a box lies in, all boxes of this rank are read chunk by chunk.
+  void Gather(std::size_t array, const std::vector<rt::Box>& boxes, const std::vector<int>& ranks)
+  {
+    this->Gathered.clear();
+    const rt::Index3 size = boxes.front().GetSize();
+    const std::size_t sampleBytes = this->Arrays[array].GetSampleBytes();
+    const ChunkGrid& grid = this->Arrays[array].Grid;
+    const std::uint64_t need =
+      grid.CountBytesOfChunks(std::max({ size.x, size.y, size.z }), sampleBytes) +
+      2 * ChunkCache::InHandOfEach * grid.CountBytesOfChunks(1, sampleBytes);
+    if (need <= this->Cache.GetLimit())
+    {
+      return;
+    }
+    std::vector<rt::Box> mine;
+    std::vector<std::byte*> outs;
+    for (std::size_t box = 0; box < boxes.size(); ++box)
+    {
+      if (ranks[box] == this->Messenger.GetRank())
+      {
+        ByteBuffer& samples = this->Gathered[GetKey(boxes[box])];
+        samples.resize(static_cast<std::size_t>(boxes[box].GetCount()) * sampleBytes);
+        mine.push_back(boxes[box]);
+        outs.push_back(samples.data());
+      }
+    }
+    this->Cache.ReadBoxes(this->File, this->Numbers[array], this->Step, mine, outs, this->Threads);
+  }
+
   std::shared_ptr<const VolumeFile> File;
   std::vector<std::size_t> Numbers; ///< in the file
   std::vector<FileArray> Arrays;
   int Step;
-  int Ranks;
+  dsm::Messenger& Messenger;
+  int Threads;
   mutable ChunkCache Cache;
+  std::map<Key, ByteBuffer> Gathered; ///< of the boxes that were dealt last, to this rank
 };
 
 } // namespace
