@@ -64,6 +64,13 @@ public:
     return array.Grid.CountBytesOfChunks(lattice.GetEdge() + 1, array.GetSampleBytes()) +
       2 * vol::ChunkCache::InHandOfEach * array.Grid.CountBytesOfChunks(1, array.GetSampleBytes());
   }
+  /// Of all samples of the file's array.
+  std::uint64_t CountBytes() const
+  {
+    const vol::FileArray& array = this->Values->GetArray();
+    return static_cast<std::uint64_t>(rt::Box{ rt::Index3(0), array.Grid.Samples }.GetCount()) *
+      array.GetSampleBytes();
+  }
   /// Samples along each axis.
   rt::Index3 GetPoints() const { return this->Values->GetBox().GetSize(); }
   /// From indices of another level's samples to those of this one's.

@@ -7,6 +7,7 @@
 
 #include "vtkObject.h"
 
+#include <algorithm>
 #include <optional>
 #include <set>
 #include <string>
@@ -41,10 +42,14 @@ void vtkDSMVolumeData::PublishFile(const vtkDSMFileVolume& file, bool isCoarser,
   rt::VoxelField& field = *part.Field;
   const bool hasSteps = !isCoarser && file.HasSteps();
   const std::string name = "the file '" + file.GetPath() + "'";
-  // Twice: bricks beside one another need others, too.
+  // Rays meet bricks here and there, which lie in other chunks.
+  constexpr std::uint64_t apart = 8;
   const std::uint64_t need = file.CountChunkBytesOfBrick(field.Lattice);
-  const std::uint64_t room = this->Group->WidenRoomForChunks(2 * need);
-  if (room < need && messenger.GetRank() == 0)
+  const std::uint64_t wanted = std::min(apart * need, file.CountBytes() + need);
+  const std::uint64_t room = this->Group->WidenRoomForChunks(wanted);
+  // Smaller ones take no time that is worth a word, nor do values that lie side by side, which are read in parts.
+  constexpr std::uint64_t large = std::uint64_t(128) << 20;
+  if (need > large && room < wanted && messenger.GetRank() == 0)
   {
     TellOfLargeChunks(name, need, room);
   }
