@@ -8,9 +8,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <cstring>
 #include <iterator>
+#include <random>
 #include <string>
 #include <thread>
 #include <vector>
@@ -135,6 +138,53 @@ TEST(VolumeFiles, HaveTheValuesThatOtherProgramsWrote)
     catch (const dsm::Error& error)
     {
       ADD_FAILURE() << error.what();
+    }
+  }
+}
+
+/// Slices, all values in one piece, and cubes: nobody has to hold a whole one for a brick.
+TEST(VolumeFiles, LargeChunksThatAreNotCompressedAreShownInParts)
+{
+  std::mt19937 random(5);
+  for (const char* name : { "slices.h5", "slices.zarr", "whole.h5", "cubes.h5" })
+  {
+    SCOPED_TRACE(name);
+    const auto file = vol::OpenVolumeFile((GetFolder() / "large" / name).string(), {});
+    const vol::FileArray& array = file->GetArrays().front();
+    const rt::Index3 samples = array.Grid.Samples;
+    EXPECT_LE(array.Grid.CountBytesOfChunks(33, 1), std::uint64_t(10) << 20);
+    const bool isOfSlices = samples.z == 20;
+    const auto getExpected = [&](const rt::Index3& at)
+    {
+      const bool isThere = !isOfSlices || at.z == 3 || at.z == 8;
+      return isThere ? (3 * at.x + 5 * at.y + 77 * at.z) % 101 : 0;
+    };
+    vol::ChunkCache cache(1 << 20);
+    for (int round = 0; round < 60; ++round)
+    {
+      rt::Box box;
+      for (int axis = 0; axis < 3; ++axis)
+      {
+        box.Min[axis] = static_cast<std::int64_t>(random()) % samples[axis];
+        box.Max[axis] = std::min<std::int64_t>(samples[axis], box.Min[axis] + 1 + random() % 40);
+      }
+      std::vector<std::uint8_t> read(static_cast<std::size_t>(box.GetCount()));
+      auto* const bytes = reinterpret_cast<std::byte*>(read.data());
+      round % 2 == 0 ? cache.ReadBox(file, 0, 0, box, bytes)
+                     : cache.ReadScattered(file, 0, 0, box, bytes);
+      std::size_t next = 0;
+      int wrong = 0;
+      for (std::int64_t z = box.Min.z; z < box.Max.z; ++z)
+      {
+        for (std::int64_t y = box.Min.y; y < box.Max.y; ++y)
+        {
+          for (std::int64_t x = box.Min.x; x < box.Max.x; ++x)
+          {
+            wrong += read[next++] != getExpected({ x, y, z });
+          }
+        }
+      }
+      EXPECT_EQ(wrong, 0);
     }
   }
 }

@@ -81,6 +81,16 @@ for name, (options, dtype) in plain.items():
         file["other"] = np.arange(5)
     note(name + ".h5", [("deep/er/f", np.dtype(dtype).name)])
 
+# Large ones that are not compressed: of slices a few are there.
+os.makedirs(path("large"))
+LARGE = {"slices": (1100, 1024, 20), "whole": (257, 260, 256), "cubes": (150, 140, 130)}
+chunks = {"slices": (1, 1024, 1100), "whole": None, "cubes": (120, 130, 140)}
+for name, size in LARGE.items():
+    with h5py.File(path(f"large/{name}.h5"), "w") as file:
+        dataset = file.create_dataset("f", size[::-1], "|u1", chunks=chunks[name])
+        for z in (3, 8) if name == "slices" else range(size[2]):
+            dataset[z] = values("|u1", size=(*size[:2], 1), channel=7 * z)[0]
+
 # What is not as the machine has it, the library makes so: fewer bits, half the precision, truth values.
 short = h5py.h5t.STD_I16LE.copy()
 short.set_precision(12)
@@ -253,6 +263,10 @@ note("shuffled.zarr", [("shuffled", "float64")])
 for name, inner, outer in (("packed_zlib", Zlib(0), Zstd()), ("packed_gzip", GZip(0), Blosc("lz4"))):
     save_zarr(f"{name}.zarr", values("|u1"), compressor=outer, chunks=(4, 5, 8), filters=[inner])
     note(f"{name}.zarr", [(name, "uint8")])
+slices = np.zeros(LARGE["slices"][::-1], "u1")
+for z in (3, 8):
+    slices[z] = values("|u1", size=(*LARGE["slices"][:2], 1), channel=7 * z)[0]
+save_zarr("large/slices.zarr", slices, compressor=None, chunks=chunks["slices"])
 zarr.open_group(path("group.zarr"), mode="w", **LATER)
 save_zarr("group.zarr/a", values("|u1"), chunks=(10, 13, 21))
 save_zarr("group.zarr/b", values("<f4", channel=2), chunks=(4, 5, 8))

@@ -15,19 +15,12 @@ namespace vol
 namespace
 {
 
-constexpr std::int64_t ChunkBytes = 1 << 20;
+/// Of chunks of rows.
+constexpr std::int64_t ChunkBytes = 1 << 18;
 
-/// Of a chunk of bare values: rows of so many bytes, and so many of them each way.
+/// Of boxes: rows of so many bytes, and so many of them each way.
 constexpr std::int64_t RowBytes = 1024;
 constexpr std::int64_t Rows = 32;
-
-/// Boxes rather than rows: what is near in space is in few of them.
-ChunkGrid CutIntoBoxes(const rt::Index3& samples, std::size_t sampleBytes)
-{
-  const std::int64_t width =
-    std::max<std::int64_t>(1, RowBytes / static_cast<std::int64_t>(sampleBytes));
-  return { samples, glm::min(samples, rt::Index3(width, Rows, Rows)) };
-}
 
 class BareFile final : public VolumeFile
 {
@@ -163,6 +156,13 @@ private:
 };
 
 } // namespace
+
+ChunkGrid CutIntoBoxes(const rt::Index3& samples, std::size_t sampleBytes)
+{
+  const std::int64_t width =
+    std::max<std::int64_t>(1, RowBytes / static_cast<std::int64_t>(sampleBytes));
+  return { samples, glm::min(samples, rt::Index3(width, Rows, Rows)) };
+}
 
 ChunkGrid CutIntoRows(const rt::Index3& samples, std::size_t sampleBytes)
 {

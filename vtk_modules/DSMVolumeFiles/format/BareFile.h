@@ -31,7 +31,9 @@ struct BareValues
 std::shared_ptr<const VolumeFile> OpenBareFile(
   const std::string& path, const BareValues& values, const FileGeometry& geometry);
 
-/// So many samples, of so many bytes, as rows, or planes when a plane is small.
+/// So many samples, of so many bytes, as boxes of at most 1 MiB: what is near in space is in few of them.
+ChunkGrid CutIntoBoxes(const rt::Index3& samples, std::size_t sampleBytes);
+/// As rows that follow one another, or planes when a plane is small.
 ChunkGrid CutIntoRows(const rt::Index3& samples, std::size_t sampleBytes);
 
 } // namespace vol

@@ -122,7 +122,7 @@ protected:
     {
       return std::nullopt; // nobody else knows
     }
-    const ChunkGrid& grid = this->Arrays[array].Grid;
+    const ChunkGrid grid = this->GetStoredGrid(array);
     const std::size_t frame = dataset.GetFrame(step);
     if (dataset.Chunks.empty())
     {
@@ -441,6 +441,14 @@ private:
     {
       this->FindHalo(array, storage);
     }
+    if (!dataset.ReadByLibrary && dataset.Chunks.empty())
+    {
+      CutContiguous(array, storage);
+    }
+    else if (!dataset.ReadByLibrary)
+    {
+      CutPlainChunks(array, storage);
+    }
     this->Arrays.push_back(std::move(array));
     this->Storages.push_back(std::move(storage));
     this->Kept.push_back(std::move(dataset));
@@ -453,6 +461,17 @@ private:
     const std::size_t z = axes.GetBeforeSpace();
     grid.ChunkSamples = { static_cast<std::int64_t>(edges[z + 2]),
       static_cast<std::int64_t>(edges[z + 1]), static_cast<std::int64_t>(edges[z]) };
+  }
+
+  /// As one chunk is, but for small ones.
+  static void CutContiguous(FileArray& array, Storage& storage)
+  {
+    const rt::Index3 rows = std::exchange(array.Grid.ChunkSamples, array.Grid.Samples);
+    CutPlainChunks(array, storage);
+    if (storage.StoredSamples == rt::Index3(0))
+    {
+      array.Grid.ChunkSamples = rows;
+    }
   }
 
   /// What a brick file has of its chunks' halos.

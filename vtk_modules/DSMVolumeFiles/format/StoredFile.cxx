@@ -4,6 +4,7 @@
 #include "DSMCore/base/Error.h"
 #include "DSMVolumeFiles/base/CopyBox.h"
 #include "DSMVolumeFiles/codec/HaloRecord.h"
+#include "DSMVolumeFiles/format/BareFile.h"
 
 #include <cstring>
 #include <map>
@@ -14,6 +15,13 @@ namespace vol
 
 namespace
 {
+
+/// Where chunks that a box of so many samples lies in take more than this together, they are cut.
+constexpr std::int64_t BoxSamples = 33;
+constexpr std::uint64_t MostTogether = std::uint64_t(16) << 20;
+
+/// What has so many planes is cut into boxes.
+constexpr std::int64_t LeastPlanes = 16;
 
 /// The first samples along each axis, of as many as are stored with z fastest; out: x fastest.
 void CopyReversed(const std::byte* from, const rt::Index3& stored, std::byte* out,
@@ -34,6 +42,49 @@ void CopyReversed(const std::byte* from, const rt::Index3& stored, std::byte* ou
 
 } // namespace
 
+ChunkGrid StoredFile::GetStoredGrid(std::size_t array) const
+{
+  const ChunkGrid& grid = this->Arrays[array].Grid;
+  const rt::Index3& stored = this->Storages[array].StoredSamples;
+  return stored == rt::Index3(0) ? grid : ChunkGrid{ grid.Samples, stored };
+}
+
+void StoredFile::CutPlainChunks(FileArray& array, Storage& storage)
+{
+  ChunkGrid& grid = array.Grid;
+  if (!storage.Codec.IsPlain() || storage.Slices != 1 || storage.IsReversed || storage.HasHalo ||
+    grid.CountBytesOfChunks(BoxSamples, array.GetSampleBytes()) <= MostTogether)
+  {
+    return;
+  }
+  const rt::Index3 size = glm::min(grid.ChunkSamples, grid.Samples);
+  const auto cut = size.z < LeastPlanes ? &CutIntoRows : &CutIntoBoxes;
+  rt::Index3 part = cut(size, array.GetSampleBytes()).ChunkSamples;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    // No part lies in two chunks of the file.
+    while (grid.GetCounts()[axis] > 1 && grid.ChunkSamples[axis] % part[axis] != 0)
+    {
+      --part[axis];
+    }
+  }
+  storage.StoredSamples = grid.ChunkSamples;
+  grid.ChunkSamples = part;
+}
+
+rt::Index3 StoredFile::FindStored(std::size_t array, const rt::Index3& chunk) const
+{
+  return this->Arrays[array].Grid.GetBox(chunk).Min / this->GetStoredGrid(array).ChunkSamples;
+}
+
+rt::Box StoredFile::GetStoredBox(std::size_t array, const rt::Index3& whole) const
+{
+  const ChunkGrid grid = this->GetStoredGrid(array);
+  const rt::Box box = grid.GetBox(whole);
+  return this->Storages[array].HasWholeChunks ? rt::Box{ box.Min, box.Min + grid.ChunkSamples }
+                                              : box;
+}
+
 void StoredFile::ReadChunk(
   std::size_t array, int step, const rt::Index3& chunk, std::byte* out) const
 {
@@ -42,7 +93,8 @@ void StoredFile::ReadChunk(
   const std::size_t sampleBytes = what.GetSampleBytes();
   const rt::Box box = what.Grid.GetBox(chunk);
   const auto count = static_cast<std::size_t>(box.GetCount());
-  const std::optional<Place> place = this->FindChunk(array, step, chunk);
+  const rt::Index3 whole = this->FindStored(array, chunk);
+  const std::optional<Place> place = this->FindChunk(array, step, whole);
   if (!place)
   {
     for (std::size_t sample = 0; sample < count; ++sample)
@@ -51,13 +103,21 @@ void StoredFile::ReadChunk(
     }
     return;
   }
-  const rt::Box stored =
-    storage.HasWholeChunks ? rt::Box{ box.Min, box.Min + what.Grid.ChunkSamples } : box;
+  const rt::Box stored = this->GetStoredBox(array, whole);
   const std::size_t storedBytes = static_cast<std::size_t>(stored.GetCount()) * sampleBytes;
   const std::size_t allBytes = storedBytes * storage.Slices;
-  const bool isAll = stored.Max == box.Max && storage.Slices == 1 && !storage.IsReversed;
+  const bool isAll =
+    stored.Min == box.Min && stored.Max == box.Max && storage.Slices == 1 && !storage.IsReversed;
   try
   {
+    const auto rows = storage.StoredSamples == rt::Index3(0)
+      ? std::vector<PositionedFile::Piece>{}
+      : this->FindPieces(array, *place, whole, box);
+    if (!rows.empty())
+    {
+      place->File->Read(rows, out);
+      return;
+    }
     if (storage.Codec.IsPlain() && isAll && place->Bytes == allBytes)
     {
       place->File->Read(place->Offset, out, allBytes);
@@ -84,19 +144,16 @@ void StoredFile::ReadChunk(
   }
   catch (const dsm::Error& error)
   {
-    RefuseChunk(what, chunk, place->File->GetPath(), error);
+    RefuseChunk(what, whole, place->File->GetPath(), error);
   }
 }
 
 std::vector<PositionedFile::Piece> StoredFile::FindPieces(
-  std::size_t array, const Place& place, const rt::Index3& chunk, const rt::Box& part) const
+  std::size_t array, const Place& place, const rt::Index3& whole, const rt::Box& part) const
 {
-  const FileArray& what = this->Arrays[array];
   const Storage& storage = this->Storages[array];
-  const std::size_t sampleBytes = what.GetSampleBytes();
-  const rt::Box box = what.Grid.GetBox(chunk);
-  const rt::Box stored =
-    storage.HasWholeChunks ? rt::Box{ box.Min, box.Min + what.Grid.ChunkSamples } : box;
+  const std::size_t sampleBytes = this->Arrays[array].GetSampleBytes();
+  const rt::Box stored = this->GetStoredBox(array, whole);
   const rt::Index3 size = stored.GetSize();
   std::vector<PositionedFile::Piece> pieces;
   if (!storage.Codec.IsPlain() || storage.Slices != 1 || storage.IsReversed ||
@@ -122,9 +179,10 @@ std::vector<PositionedFile::Piece> StoredFile::FindPieces(
 bool StoredFile::ReadPart(
   std::size_t array, int step, const rt::Index3& chunk, const rt::Box& part, std::byte* out) const
 {
-  const std::optional<Place> place = this->FindChunk(array, step, chunk);
+  const rt::Index3 whole = this->FindStored(array, chunk);
+  const std::optional<Place> place = this->FindChunk(array, step, whole);
   const auto pieces =
-    place ? this->FindPieces(array, *place, chunk, part) : std::vector<PositionedFile::Piece>{};
+    place ? this->FindPieces(array, *place, whole, part) : std::vector<PositionedFile::Piece>{};
   if (pieces.empty())
   {
     return false;
@@ -135,7 +193,7 @@ bool StoredFile::ReadPart(
   }
   catch (const dsm::Error& error)
   {
-    RefuseChunk(this->Arrays[array], chunk, place->File->GetPath(), error);
+    RefuseChunk(this->Arrays[array], whole, place->File->GetPath(), error);
   }
   return true;
 }
@@ -196,12 +254,13 @@ void StoredFile::Foresee(std::size_t array, int step, const std::vector<ChunkPar
   std::map<std::shared_ptr<const PositionedFile>, std::vector<PositionedFile::Piece>> found;
   for (const auto& [chunk, part] : parts)
   {
-    const std::optional<Place> place = this->FindChunk(array, step, chunk);
+    const rt::Index3 whole = this->FindStored(array, chunk);
+    const std::optional<Place> place = this->FindChunk(array, step, whole);
     if (!place)
     {
       continue;
     }
-    auto rows = this->FindPieces(array, *place, chunk, part);
+    auto rows = this->FindPieces(array, *place, whole, part);
     if (rows.empty())
     {
       rows.push_back({ place->Offset, place->Bytes + this->Storages[array].HaloRecordBytes });

@@ -50,6 +50,8 @@ protected:
     ChunkCodec Codec;
     /// Of a chunk that is nowhere: one sample.
     std::vector<std::byte> Fill;
+    /// Samples along each axis of a chunk in the file, where it is shown as several (CutPlainChunks); else 0.
+    rt::Index3 StoredSamples{ 0 };
     /// Chunks at the volume's ends are as large as all others; else they end with it.
     bool HasWholeChunks = true;
     /// The samples of a chunk are stored with z fastest.
@@ -63,16 +65,27 @@ protected:
     std::size_t HaloRecordBytes = 0;
   };
 
-  /// None: all samples of the chunk have the fill value.
+  /// None: all samples of the chunk have the fill value. `chunk` is one of GetStoredGrid.
   virtual std::optional<Place> FindChunk(
     std::size_t array, int step, const rt::Index3& chunk) const = 0;
+
+  /// How the array is cut in the file.
+  ChunkGrid GetStoredGrid(std::size_t array) const;
+
+  /// Shows each chunk as several, of neighbouring rows, where the chunks that a brick lies in are large together, as
+  /// slices are, and rows of a chunk can be read by themselves: nobody has to hold more of it than he needs.
+  static void CutPlainChunks(FileArray& array, Storage& storage);
 
   std::vector<Storage> Storages; ///< of the arrays
 
 private:
-  /// The rows of a part of a chunk; none where the chunk can only be read as a whole.
+  /// Which chunk of the file a chunk is of, or a part of.
+  rt::Index3 FindStored(std::size_t array, const rt::Index3& chunk) const;
+  /// The samples of a chunk of the file, those beyond the volume's ends included where it has them.
+  rt::Box GetStoredBox(std::size_t array, const rt::Index3& whole) const;
+  /// The rows of a part of a chunk of the file; none where that can only be read as a whole.
   std::vector<PositionedFile::Piece> FindPieces(
-    std::size_t array, const Place& place, const rt::Index3& chunk, const rt::Box& part) const;
+    std::size_t array, const Place& place, const rt::Index3& whole, const rt::Box& part) const;
 };
 
 } // namespace vol

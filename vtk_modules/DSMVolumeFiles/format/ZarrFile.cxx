@@ -336,6 +336,7 @@ private:
           "' has several times or channels in a chunk, in the order of Fortran, which is not "
           "supported. Write it with order='C'.");
       }
+      CutPlainChunks(array, storage);
       this->Arrays.push_back(std::move(array));
       this->Storages.push_back(std::move(storage));
       this->Sources.push_back({ folder, data, axes, std::move(place) });
