@@ -25,9 +25,8 @@ void TellOfLargeChunks(const std::string& name, std::uint64_t need, std::uint64_
     vtkGenericWarningMacro("The chunks of "
       << name << " are so large that a brick of it needs up to " << dsm::FormatMebibytes(need)
       << " of them together, and they may take " << dsm::FormatMebibytes(room)
-      << ", an eighth of a rank's memory. Each is read, and unpacked, many "
-         "times, which takes long. Allow more "
-         "memory (DSMMemory), or convert the file with dsm_convert.");
+      << ". Each is read, and unpacked, many times, which takes long. Allow more memory "
+         "(DSMMemory), or convert the file with dsm_convert.");
   }
 }
 
@@ -43,13 +42,14 @@ void vtkDSMVolumeData::PublishFile(const vtkDSMFileVolume& file, bool isCoarser,
   const bool hasSteps = !isCoarser && file.HasSteps();
   const std::string name = "the file '" + file.GetPath() + "'";
   // Rays meet bricks here and there, which lie in other chunks.
-  constexpr std::uint64_t apart = 8;
   const std::uint64_t need = file.CountChunkBytesOfBrick(field.Lattice);
-  const std::uint64_t wanted = std::min(apart * need, file.CountBytes() + need);
-  const std::uint64_t room = this->Group->WidenRoomForChunks(wanted);
+  const auto ofBricks = [&](std::uint64_t bricks)
+  { return std::min(bricks * need, file.CountBytes() + need); };
+  const std::uint64_t least = ofBricks(4);
+  const std::uint64_t room = this->Group->WidenRoomForChunks(ofBricks(8), least);
   // Smaller ones take no time that is worth a word, nor do values that lie side by side, which are read in parts.
   constexpr std::uint64_t large = std::uint64_t(128) << 20;
-  if (need > large && room < wanted && messenger.GetRank() == 0)
+  if (need > large && room < least && messenger.GetRank() == 0)
   {
     TellOfLargeChunks(name, need, room);
   }

@@ -110,7 +110,8 @@ public:
   ///@{
   /**
    * MiB of values of files that stay in memory, in the whole process; 128 by default. While pictures are made of a
-   * file, it is what eight bricks need of its chunks together, where that is more, and at most an eighth of the memory.
+   * file, it is what eight bricks need of its chunks together, where that is more, and at most an eighth of the memory; or
+   * what four need, and at most half of it.
    */
   static void SetCacheMebibytes(int size);
   static int GetCacheMebibytes();

@@ -162,14 +162,20 @@ vtkDSMMemorySettings vtkDSMRankGroup::Configure()
   return merged;
 }
 
-std::uint64_t vtkDSMRankGroup::RestrictRoomForChunks(std::uint64_t memoryBytes)
+std::uint64_t vtkDSMRankGroup::GetMostForChunks(std::uint64_t memoryBytes) const
 {
-  return vol::ChunkCache::GetShared().Restrict(
-    memoryBytes == 0 ? SIZE_MAX : static_cast<std::size_t>(memoryBytes / ChunksDivisor));
+  return std::max(memoryBytes / ChunksDivisor, std::min(memoryBytes / 2, this->LeastForChunks));
 }
 
-std::uint64_t vtkDSMRankGroup::WidenRoomForChunks(std::uint64_t bytes)
+std::uint64_t vtkDSMRankGroup::RestrictRoomForChunks(std::uint64_t memoryBytes) const
 {
+  return vol::ChunkCache::GetShared().Restrict(
+    memoryBytes == 0 ? SIZE_MAX : static_cast<std::size_t>(this->GetMostForChunks(memoryBytes)));
+}
+
+std::uint64_t vtkDSMRankGroup::WidenRoomForChunks(std::uint64_t bytes, std::uint64_t least)
+{
+  this->LeastForChunks = std::max(this->LeastForChunks, least);
   dsm::BlockStore::Settings settings = this->Store.GetSettings();
   const auto ranksOnHost = static_cast<std::uint64_t>(this->Messenger.GetRanksOnHost());
   const auto memory = this->Messenger.GatherValueTogether("Making room for chunks of a file",
@@ -178,7 +184,8 @@ std::uint64_t vtkDSMRankGroup::WidenRoomForChunks(std::uint64_t bytes)
       return settings.MemoryBytes != 0 ? settings.MemoryBytes
                                        : dsm::GetAvailableHostMemory() / 2 / ranksOnHost;
     });
-  const std::uint64_t most = *std::min_element(memory.begin(), memory.end()) / ChunksDivisor;
+  const std::uint64_t most =
+    this->GetMostForChunks(*std::min_element(memory.begin(), memory.end()));
   vol::ChunkCache::GetShared().Widen(static_cast<std::size_t>(std::min(bytes, most)));
   settings.SourceCacheBytes = RestrictRoomForChunks(settings.MemoryBytes);
   this->Store.SetSettings(settings);

@@ -113,8 +113,9 @@ public:
   }
 
   /// Collective, before what is read through the cache of chunks is published: from now on it holds so many bytes
-  /// together, where an eighth of the memory that any rank may take is as much. Returns what it holds.
-  std::uint64_t WidenRoomForChunks(std::uint64_t bytes);
+  /// together, where an eighth of the memory that any rank may take is as much; and `least`, where half of it is.
+  /// Returns what it holds.
+  std::uint64_t WidenRoomForChunks(std::uint64_t bytes, std::uint64_t least);
 
   /// Collective: the store keeps what is published as it is asked to. False when all publishers had to give
   /// up their blocks, since a part of them has to go to the scratch directory. Throws dsm::Error.
@@ -134,8 +135,12 @@ public:
 
 private:
   bool MakeRoom();
-  /// Of the cache of chunks, which keeps within a part of the memory from now on; 0: that which it has found.
-  static std::uint64_t RestrictRoomForChunks(std::uint64_t memoryBytes);
+  /// What chunks may take of so much memory.
+  std::uint64_t GetMostForChunks(std::uint64_t memoryBytes) const;
+  /// Of the cache of chunks, which keeps within that from now on; 0: the memory is what it has found.
+  std::uint64_t RestrictRoomForChunks(std::uint64_t memoryBytes) const;
+
+  std::uint64_t LeastForChunks = 0; ///< see WidenRoomForChunks
 
   std::vector<Publisher*> Publishers; ///< in the order in which they joined
   unsigned SettingsVersion = 0;
