@@ -2,6 +2,7 @@
 """Exported scenes hold what is traced, as triangles, whether the data are here or on a server. Called as
 TestExport.py PLUGIN OUTPUT [PORT]."""
 
+import importlib.util
 import json
 import re
 import zipfile
@@ -148,6 +149,8 @@ show_surface(ball, view)
 simple.Hide(wavelet, view)
 render(view)
 simple.RenameSource("ball", ball)
-with zipfile.ZipFile(export("scene.vtkjs")) as scene:
-    names = [item["name"] for item in json.loads(scene.read("index.json"))["scene"]]
-check("ball" in names, f"a scene for vtk.js has {names}")
+# ParaView packs it by a module of a package that Debian 14 does not have.
+if importlib.util.find_spec("paraview.web"):
+    with zipfile.ZipFile(export("scene.vtkjs")) as scene:
+        names = [item["name"] for item in json.loads(scene.read("index.json"))["scene"]]
+    check("ball" in names, f"a scene for vtk.js has {names}")
