@@ -189,6 +189,25 @@ TEST(VolumeFiles, LargeChunksThatAreNotCompressedAreShownInParts)
   }
 }
 
+TEST(VolumeFiles, ALevelThatIsNotThereIsRefused)
+{
+  vol::OpenOptions options;
+  options.Level = 3;
+  for (const char* name : { "ball.mha", "calm_000.nhdr", "ball.h5", "ball.zarr" })
+  {
+    try
+    {
+      vol::OpenVolumeFile((GetFolder() / name).string(), options);
+      ADD_FAILURE() << name;
+    }
+    catch (const dsm::Error& error)
+    {
+      EXPECT_NE(std::string(error.what()).find("levels of detail; level 3"), std::string::npos)
+        << error.what();
+    }
+  }
+}
+
 TEST(VolumeFiles, AChunkThatManyThreadsWantIsReadOnce)
 {
   const Json entry = FindEntry("deflate.h5");

@@ -133,6 +133,48 @@ std::shared_ptr<const VolumeFile> OpenRaw(const std::string& path, const OpenOpt
   return OpenBareFile(path, values, geometry);
 }
 
+/// As OpenVolumeFile, but that a format without levels does not look at the one that is wanted.
+std::shared_ptr<const VolumeFile> OpenAsItIs(const std::string& path, const OpenOptions& options)
+{
+  if (!std::filesystem::exists(path))
+  {
+    throw dsm::Error("There is no file '" + path + "'.");
+  }
+  if (!std::filesystem::is_directory(path))
+  {
+    // What cannot be read would look like nothing that is known.
+    const PositionedFile readable(path);
+  }
+  switch (FindFormat(path))
+  {
+    case Format::Raw:
+      return OpenRaw(path, options.Bare);
+    case Format::Nrrd:
+      return OpenNrrd(path);
+    case Format::MetaImage:
+      return OpenMetaImage(path);
+    case Format::Zarr:
+      return OpenZarr(FindZarrFolder(path), options.Level);
+    case Format::Hdf:
+#ifdef DSM_HAS_HDF5
+      return OpenHdf(path, options.Dataset, options.Level);
+#else
+      throw dsm::Error("'" + path +
+        "' is an HDF5 file, which this build cannot read. Install the package libhdf5-dev and "
+        "build again.");
+#endif
+    case Format::Unknown:
+      break;
+  }
+  if (ReadFirst(path, 4) == "PK\x03\x04")
+  {
+    throw dsm::Error("'" + path +
+      "' is a ZIP archive, and cannot be read. Unpack it, and open what it has: a Zarr's folder.");
+  }
+  throw dsm::Error("The format of '" + path +
+    "' is not known. HDF5, Zarr (a folder), NRRD, MetaImage (.mhd, .mha) and .raw are.");
+}
+
 } // namespace
 
 VolumeFile::VolumeFile(std::string path)
@@ -178,43 +220,13 @@ void CheckSizes(const std::string& path, const FileArray& array, std::size_t sli
 std::shared_ptr<const VolumeFile> OpenVolumeFile(
   const std::string& path, const OpenOptions& options)
 {
-  if (!std::filesystem::exists(path))
+  auto file = OpenAsItIs(path, options);
+  if (options.Level != 0 && options.Level >= file->GetLevels())
   {
-    throw dsm::Error("There is no file '" + path + "'.");
+    throw dsm::Error("'" + path + "' has no coarser levels of detail; level " +
+      std::to_string(options.Level) + " is none of it.");
   }
-  if (!std::filesystem::is_directory(path))
-  {
-    // What cannot be read would look like nothing that is known.
-    const PositionedFile readable(path);
-  }
-  switch (FindFormat(path))
-  {
-    case Format::Raw:
-      return OpenRaw(path, options.Bare);
-    case Format::Nrrd:
-      return OpenNrrd(path);
-    case Format::MetaImage:
-      return OpenMetaImage(path);
-    case Format::Zarr:
-      return OpenZarr(FindZarrFolder(path), options.Level);
-    case Format::Hdf:
-#ifdef DSM_HAS_HDF5
-      return OpenHdf(path, options.Dataset, options.Level);
-#else
-      throw dsm::Error("'" + path +
-        "' is an HDF5 file, which this build cannot read. Install the package libhdf5-dev and "
-        "build again.");
-#endif
-    case Format::Unknown:
-      break;
-  }
-  if (ReadFirst(path, 4) == "PK\x03\x04")
-  {
-    throw dsm::Error("'" + path +
-      "' is a ZIP archive, and cannot be read. Unpack it, and open what it has: a Zarr's folder.");
-  }
-  throw dsm::Error("The format of '" + path +
-    "' is not known. HDF5, Zarr (a folder), NRRD, MetaImage (.mhd, .mha) and .raw are.");
+  return file;
 }
 
 std::uint64_t FindStamp(const std::string& path, const OpenOptions& options)
