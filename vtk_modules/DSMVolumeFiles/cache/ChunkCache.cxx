@@ -20,6 +20,9 @@ namespace
 
 constexpr std::size_t SharedBytes = std::size_t(128) << 20;
 
+/// While a chunk is read, its bytes as the file has them are in memory, too, which hardly are more than it.
+constexpr std::size_t InHandOfEach = 2;
+
 /// Samples along an axis that a brick has in common with the next.
 constexpr int Overlap = 2;
 
@@ -69,6 +72,13 @@ std::size_t ChunkCache::GetLimit() const
 {
   const std::lock_guard<std::mutex> lock(this->Guard);
   return this->Limit;
+}
+
+std::uint64_t ChunkCache::CountBytesTogether(const FileArray& array, std::int64_t samples)
+{
+  const std::size_t sampleBytes = array.GetSampleBytes();
+  return array.Grid.CountBytesOfChunks(samples, sampleBytes) +
+    2 * InHandOfEach * array.Grid.CountBytesOfChunks(1, sampleBytes);
 }
 
 void ChunkCache::Widen(std::size_t bytes)

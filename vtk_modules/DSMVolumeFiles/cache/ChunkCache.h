@@ -27,9 +27,6 @@ class ChunkCache
 public:
   using Chunk = std::shared_ptr<const ByteBuffer>;
 
-  /// While a chunk is read, its bytes as the file has them are in memory, too, which hardly are more than it.
-  static constexpr std::size_t InHandOfEach = 2;
-
   explicit ChunkCache(std::size_t bytes)
     : Limit(bytes)
   {
@@ -41,6 +38,9 @@ public:
   /// From now on. What is in use stays in memory until it is not.
   void SetLimit(std::size_t bytes);
   std::size_t GetLimit() const;
+  /// What a cache has to hold, lest it reads all chunks that a box of so many samples along each axis lies in anew for
+  /// each box: these, and what two threads read of others meanwhile.
+  static std::uint64_t CountBytesTogether(const FileArray& array, std::int64_t samples);
   /// At least so much where the limit is less, until that is set anew: somebody needs chunks together that are as large.
   void Widen(std::size_t bytes);
   /// Less than the limit, from now on, for whoever must keep to an amount of memory; the limit itself stays.

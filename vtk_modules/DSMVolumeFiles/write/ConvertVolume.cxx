@@ -135,11 +135,8 @@ private:
     this->Gathered.clear();
     const rt::Index3 size = boxes.front().GetSize();
     const std::size_t sampleBytes = this->Arrays[array].GetSampleBytes();
-    const ChunkGrid& grid = this->Arrays[array].Grid;
-    const std::uint64_t need =
-      grid.CountBytesOfChunks(std::max({ size.x, size.y, size.z }), sampleBytes) +
-      2 * ChunkCache::InHandOfEach * grid.CountBytesOfChunks(1, sampleBytes);
-    if (need <= this->Cache.GetLimit())
+    if (ChunkCache::CountBytesTogether(this->Arrays[array], std::max({ size.x, size.y, size.z })) <=
+      this->Cache.GetLimit())
     {
       return;
     }

@@ -56,13 +56,10 @@ public:
   /// Collective. The first coarser level is 1. Null, on all ranks, where a rank cannot open it, or it has no such array,
   /// or does not fill the same place.
   std::unique_ptr<vtkDSMFileVolume> FindCoarser(dsm::Messenger& messenger, int level) const;
-  /// The cache of chunks has to hold so much, lest it reads all that a brick lies in anew for each brick: these, and
-  /// what two threads read of others meanwhile.
+  /// What the cache of chunks has to hold for a brick.
   std::uint64_t CountChunkBytesOfBrick(const rt::BrickLattice& lattice) const
   {
-    const vol::FileArray& array = this->Values->GetArray();
-    return array.Grid.CountBytesOfChunks(lattice.GetEdge() + 1, array.GetSampleBytes()) +
-      2 * vol::ChunkCache::InHandOfEach * array.Grid.CountBytesOfChunks(1, array.GetSampleBytes());
+    return vol::ChunkCache::CountBytesTogether(this->Values->GetArray(), lattice.GetEdge() + 1);
   }
   /// Of all samples of the file's array.
   std::uint64_t CountBytes() const
