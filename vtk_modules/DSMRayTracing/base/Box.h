@@ -34,6 +34,22 @@ inline Box Intersect(const Box& a, const Box& b)
   return { glm::max(a.Min, b.Min), glm::min(a.Max, b.Max) };
 }
 
+/// Calls visit(index) for all that is in a box, x fastest.
+template <class Visit>
+void ForEachIndex(const Box& box, const Visit& visit)
+{
+  for (std::int64_t z = box.Min.z; z < box.Max.z; ++z)
+  {
+    for (std::int64_t y = box.Min.y; y < box.Max.y; ++y)
+    {
+      for (std::int64_t x = box.Min.x; x < box.Max.x; ++x)
+      {
+        visit(Index3(x, y, z));
+      }
+    }
+  }
+}
+
 } // namespace rt
 
 #endif

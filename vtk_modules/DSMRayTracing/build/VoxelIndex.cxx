@@ -4,12 +4,10 @@
 #include "DSMCore/base/Error.h"
 #include "DSMRayTracing/base/ByteHash.h"
 #include "DSMRayTracing/base/ParallelFor.h"
-#include "DSMRayTracing/layout/MacrocellBuilder.h"
-#include "DSMRayTracing/layout/VoxelBrickHeader.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstring>
+#include <iterator>
 #include <utility>
 
 namespace rt
@@ -28,71 +26,47 @@ std::uint64_t Hash(const std::byte* bytes, std::size_t count)
   return hash.Get();
 }
 
-bool IsSurveyable(const ValueRange& range)
-{
-  return range.First < range.Last && std::isfinite(range.First) && std::isfinite(range.Last);
-}
-
-/// What is found of a brick.
-struct Seen
-{
-  ValueRange Range;
-  dsm::ByteDigest Digest;
-};
-
-/// Looks through a rank's bricks, with several threads.
-class Looker
+/// Who tells of which bricks: a rank of those that it has seen, and of its part of those that no rank has.
+class Division
 {
 public:
-  Looker(const BrickLattice& lattice, const dsm::BlockReader& reader, const ValueRange& guess,
-    int threads)
-    : Lattice(lattice)
-    , Reader(reader)
-    , Guess(guess)
-    , Threads(std::max(1, threads))
-    , Surveys(static_cast<std::size_t>(this->Threads))
-    , Blocks(static_cast<std::size_t>(this->Threads))
+  /// `seen`: of each rank. Of ranks that have seen the same bricks, the first tells of them.
+  Division(
+    const BrickLattice& lattice, const std::vector<dsm::BlockId>& order, std::vector<Box> seen)
+    : Seen(std::move(seen))
   {
-  }
-
-  void Look(const dsm::BlockId* ids, std::size_t count, Seen* seen)
-  {
-    ParallelFor(this->Threads, count,
-      [&](std::size_t index, int thread)
-      {
-        std::vector<std::byte>& block = this->Blocks[static_cast<std::size_t>(thread)];
-        block.resize(this->Lattice.GetBlockBytes(ids[index]));
-        this->Reader.Read(ids[index], block.data(), block.size());
-        VoxelBrickHeader header;
-        std::memcpy(&header, block.data(), sizeof(header));
-        seen[index] = { { header.First, header.Last }, {} };
-        seen[index].Digest.Add(block.data(), block.size());
-        if (IsSurveyable(this->Guess))
-        {
-          this->Surveys[static_cast<std::size_t>(thread)].CountBrick(
-            this->Lattice, ids[index], block.data(), this->Guess);
-        }
-      });
-  }
-
-  IsovalueSurvey GetSurvey() const
-  {
-    IsovalueSurvey sum;
-    for (const IsovalueSurvey& one : this->Surveys)
+    for (std::size_t rank = 0; rank < this->Seen.size(); ++rank)
     {
-      sum.Add(one);
+      const auto isSeenToo = [&](const Box& other)
+      { return !Intersect(this->Seen[rank], other).IsEmpty(); };
+      const auto self = this->Seen.begin() + static_cast<std::ptrdiff_t>(rank);
+      if (std::any_of(this->Seen.begin(), self, isSeenToo))
+      {
+        *self = {};
+      }
     }
-    sum.Range = this->Guess;
-    return sum;
+    std::vector<bool> isSeen(order.size());
+    for (const Box& bricks : this->Seen)
+    {
+      ForEachIndex(bricks, [&](const Index3& brick) { isSeen[lattice.GetId(brick)] = true; });
+    }
+    std::copy_if(order.begin(), order.end(), std::back_inserter(this->Others),
+      [&](dsm::BlockId id) { return !isSeen[id]; });
+  }
+
+  const Box& GetSeen(std::size_t rank) const { return this->Seen[rank]; }
+  const dsm::BlockId* GetBegin(std::size_t rank) const
+  {
+    return this->Others.data() + this->Others.size() * rank / this->Seen.size();
+  }
+  std::size_t CountOthers(std::size_t rank) const
+  {
+    return static_cast<std::size_t>(this->GetBegin(rank + 1) - this->GetBegin(rank));
   }
 
 private:
-  const BrickLattice& Lattice;
-  const dsm::BlockReader& Reader;
-  ValueRange Guess;
-  int Threads;
-  std::vector<IsovalueSurvey> Surveys;
-  std::vector<std::vector<std::byte>> Blocks;
+  std::vector<Box> Seen;
+  std::vector<dsm::BlockId> Others;
 };
 
 } // namespace
@@ -158,43 +132,42 @@ std::vector<bool> VoxelIndex::Compare(const std::vector<dsm::ByteDigest>& digest
   return differ;
 }
 
-ValueRange VoxelIndex::Round(ScalarType type, double least, double greatest)
-{
-  return least > greatest
-    ? ValueRange{ 1.0f, -1.0f }
-    : Dispatch(type,
-        [&](auto zero)
-        {
-          using T = decltype(zero);
-          return ValueRange{ RoundDown(static_cast<T>(least)), RoundUp(static_cast<T>(greatest)) };
-        });
-}
-
 VoxelIndex VoxelIndex::Find(dsm::Messenger& messenger, const BrickLattice& lattice,
   const dsm::BlockReader& reader, const Pass& pass, dsm::FunctionRef<void(double)> progress)
 {
   const char* const what = "Looking through the volume";
-  const auto ranks = static_cast<std::size_t>(messenger.GetSize());
-  const std::size_t count = pass.Order.size();
-  const auto getBegin = [=](std::size_t rank) { return count * rank / ranks; };
-  const std::size_t begin = getBegin(static_cast<std::size_t>(messenger.GetRank()));
-  const std::size_t mine = getBegin(static_cast<std::size_t>(messenger.GetRank()) + 1) - begin;
-  std::vector<Seen> seen;
-  std::optional<Looker> looker;
+  const auto self = static_cast<std::size_t>(messenger.GetRank());
+  const bool hasSeen = pass.Seen && pass.Seen->Lattice == lattice;
+  std::vector<Box> boxes = messenger.AllGatherValue(hasSeen ? pass.Seen->Bricks : Box{});
+  std::optional<Division> division;
+  std::optional<BrickLooker> looker;
+  std::vector<SeenBrick> seen; // in the order of the division
   messenger.RunTogether(what,
     [&]
     {
-      seen.resize(mine);
-      looker.emplace(lattice, reader, pass.Guess, pass.Threads);
+      division.emplace(lattice, pass.Order, std::move(boxes));
+      if (!division->GetSeen(self).IsEmpty())
+      {
+        seen = pass.Seen->Seen;
+      }
+      seen.resize(seen.size() + division->CountOthers(self));
+      looker.emplace(lattice, reader, std::max(1, pass.Threads));
     });
+  const std::size_t others = division->CountOthers(self);
+  SeenBrick* const found = seen.data() + (seen.size() - others);
   for (std::size_t round = 0; round < Rounds; ++round)
   {
     messenger.RunTogether(what,
       [&]
       {
-        const std::size_t first = mine * round / Rounds;
-        looker->Look(pass.Order.data() + begin + first, mine * (round + 1) / Rounds - first,
-          seen.data() + first);
+        const std::size_t first = others * round / Rounds;
+        ParallelFor(std::max(1, pass.Threads), others * (round + 1) / Rounds - first,
+          [&](std::size_t number, int thread)
+          {
+            const dsm::BlockId id = division->GetBegin(self)[first + number];
+            looker->Read(id, thread);
+            found[first + number] = looker->See(id, thread);
+          });
         if (progress)
         {
           progress(static_cast<double>(round + 1) / Rounds);
@@ -204,7 +177,7 @@ VoxelIndex VoxelIndex::Find(dsm::Messenger& messenger, const BrickLattice& latti
   const auto parts = messenger.GatherTogether(what,
     [&]
     {
-      std::vector<std::byte> bytes(mine * sizeof(Seen));
+      std::vector<std::byte> bytes(seen.size() * sizeof(SeenBrick));
       std::memcpy(bytes.data(), seen.data(), bytes.size());
       return bytes;
     });
@@ -212,31 +185,32 @@ VoxelIndex VoxelIndex::Find(dsm::Messenger& messenger, const BrickLattice& latti
   messenger.RunTogether(what,
     [&]
     {
-      index.Bricks.resize(count);
-      index.Digests.resize(count);
-      for (std::size_t rank = 0; rank < ranks; ++rank)
+      index.Bricks.resize(lattice.GetBrickCount());
+      index.Digests.resize(lattice.GetBrickCount());
+      for (std::size_t rank = 0; rank < parts.size(); ++rank)
       {
-        for (std::size_t place = getBegin(rank); place < getBegin(rank + 1); ++place)
+        const std::byte* from = parts[rank].data();
+        const auto take = [&](dsm::BlockId id)
         {
-          Seen one;
-          std::memcpy(
-            &one, parts[rank].data() + (place - getBegin(rank)) * sizeof(Seen), sizeof(Seen));
-          index.Bricks[pass.Order[place]] = one.Range;
-          index.Digests[pass.Order[place]] = one.Digest;
-        }
+          SeenBrick one;
+          std::memcpy(&one, from, sizeof(SeenBrick));
+          from += sizeof(SeenBrick);
+          index.Bricks[id] = one.Range;
+          index.Digests[id] = one.Digest;
+        };
+        ForEachIndex(
+          division->GetSeen(rank), [&](const Index3& brick) { take(lattice.GetId(brick)); });
+        std::for_each(division->GetBegin(rank), division->GetBegin(rank + 1), take);
       }
     });
-  for (const IsovalueSurvey& survey : messenger.AllGatherValue(looker->GetSurvey()))
+  IsovalueSurvey mine = looker->GetSurvey();
+  if (!division->GetSeen(self).IsEmpty())
+  {
+    mine.Add(pass.Seen->Survey);
+  }
+  for (const IsovalueSurvey& survey : messenger.AllGatherValue(mine))
   {
     index.Survey.Add(survey);
-  }
-  index.Survey.Range = pass.Guess;
-  const ValueRange all = MacrocellHierarchy(lattice, index.Bricks).GetRange();
-  if (!index.Survey.IsOf(all) && IsSurveyable(all))
-  {
-    Pass again = pass;
-    again.Guess = all;
-    return Find(messenger, lattice, reader, again, progress);
   }
   return index;
 }

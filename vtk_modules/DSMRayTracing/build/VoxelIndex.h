@@ -6,6 +6,7 @@
 #include "DSMCore/base/FunctionRef.h"
 #include "DSMCore/fetch/BlockReader.h"
 #include "DSMCore/transport/Messenger.h"
+#include "DSMRayTracing/build/BrickLooker.h"
 #include "DSMRayTracing/layout/BrickLattice.h"
 #include "DSMRayTracing/layout/IsovalueSurvey.h"
 #include "DSMRayTracing/layout/MacrocellHierarchy.h"
@@ -35,20 +36,17 @@ struct VoxelIndex
   std::vector<std::byte> Encode() const;
   static std::optional<VoxelIndex> Decode(const std::vector<std::byte>& bytes, std::size_t bricks);
 
-  /// The range that bricks of these finite values have at most; empty where Least is above Greatest.
-  static ValueRange Round(ScalarType type, double least, double greatest);
-
   /// How to look through the bricks.
   struct Pass
   {
     /// Bricks in the order in which they are best read: all of them, the same on every rank.
     std::vector<dsm::BlockId> Order;
-    /// What the range of all is thought to be; when that is wrong, bricks are read twice.
-    ValueRange Guess{ 1.0f, -1.0f };
+    /// What this rank has seen of them, of this lattice or another; may be null. These are not read.
+    const SeenBricks* Seen = nullptr;
     int Threads = 1;
   };
 
-  /// Collective: each rank reads its part of the bricks, a few at a time. `progress` (may be empty) is told
+  /// Collective: each rank reads its part of the bricks that none has seen, a few at a time. `progress` (may be empty) is told
   /// the part done, in [0, 1]; what it or the reader throws becomes an Error on every rank.
   static VoxelIndex Find(dsm::Messenger& messenger, const BrickLattice& lattice,
     const dsm::BlockReader& reader, const Pass& pass, dsm::FunctionRef<void(double)> progress);

@@ -15,9 +15,6 @@ namespace rt
 namespace
 {
 
-constexpr int Intervals = IsovalueSurvey::Intervals;
-constexpr int Borders = IsovalueSurvey::Borders;
-
 /// How much less a surface is worth that is cut open as often as one that fills the volume evenly.
 constexpr double OpenPenalty = 0.35;
 
@@ -42,39 +39,33 @@ ValueRange FindRange(const std::vector<std::shared_ptr<const VoxelField>>& field
   return range;
 }
 
-void CountField(const VoxelField& field, const ValueRange& range, IsovalueSurvey& survey)
-{
-  field.Segment->ForEachResident([&](dsm::BlockId id, const std::byte* block, std::size_t)
-    { survey.CountBrick(field.Lattice, id, block, range); });
-}
-
 /// Of each border, how much its surface is worth; negative where there is none.
-std::array<double, Borders> FindWorths(const IsovalueSurvey& survey)
+std::array<double, IsovalueSurvey::Intervals> FindWorths(const IsovalueSurvey& survey)
 {
+  const std::size_t intervals = survey.CountIntervals();
   double all = 0.0;
   double moment = 0.0;
-  for (int interval = 0; interval < Intervals; ++interval)
+  for (std::size_t interval = 0; interval < intervals; ++interval)
   {
     const auto count = static_cast<double>(survey.Values[interval]);
     all += count;
-    moment += count * interval;
+    moment += count * static_cast<double>(interval);
   }
   const double evenly = static_cast<double>(survey.AtBorder) /
     static_cast<double>(std::max<std::int64_t>(survey.All, 1));
-  std::array<double, Borders> worths;
+  std::array<double, IsovalueSurvey::Intervals> worths;
+  worths.fill(-1.0);
   double below = 0.0;
   double momentBelow = 0.0;
-  for (int border = 0; border < Borders; ++border)
+  for (std::size_t border = 0; border + 1 < intervals; ++border)
   {
     const auto count = static_cast<double>(survey.Values[border]);
     below += count;
-    momentBelow += count * border;
-    if (survey.Crossed[border] == 0)
+    momentBelow += count * static_cast<double>(border);
+    if (survey.Crossed[border] == 0 || below == 0.0 || below == all)
     {
-      worths[border] = -1.0;
       continue;
     }
-    // Below and above hold something of the macrocells that are crossed.
     const double distance = (moment - momentBelow) / (all - below) - momentBelow / below;
     const double cut =
       static_cast<double>(survey.CutOpen[border]) / static_cast<double>(survey.Crossed[border]);
@@ -84,17 +75,9 @@ std::array<double, Borders> FindWorths(const IsovalueSurvey& survey)
   return worths;
 }
 
-/// Null where the bricks must be looked through.
-const IsovalueSurvey* FindKnownSurvey(
-  const std::vector<std::shared_ptr<const VoxelField>>& fields, const ValueRange& range)
-{
-  const VoxelField* const only = fields.size() == 1 ? fields.front().get() : nullptr;
-  return only && only->Survey && only->Survey->IsOf(range) ? &*only->Survey : nullptr;
-}
-
-/// Collective.
-IsovalueSurvey LookThrough(const std::vector<std::shared_ptr<const VoxelField>>& fields,
-  const ValueRange& range, dsm::Messenger& messenger)
+/// Collective. Of those that nobody has looked through yet.
+IsovalueSurvey LookThrough(
+  const std::vector<std::shared_ptr<const VoxelField>>& fields, dsm::Messenger& messenger)
 {
   IsovalueSurvey mine;
   messenger.RunTogether("Looking through the macrocells",
@@ -102,9 +85,10 @@ IsovalueSurvey LookThrough(const std::vector<std::shared_ptr<const VoxelField>>&
     {
       for (const auto& field : fields)
       {
-        if (field)
+        if (field && !field->Survey)
         {
-          CountField(*field, range, mine);
+          field->Segment->ForEachResident([&](dsm::BlockId id, const std::byte* block, std::size_t)
+            { mine.CountBrick(field->Lattice, id, block); });
         }
       }
     });
@@ -126,14 +110,13 @@ std::optional<double> FindFirstIsovalue(
   {
     return std::nullopt;
   }
-  IsovalueSurvey all;
-  if (const IsovalueSurvey* known = FindKnownSurvey(fields, range))
+  IsovalueSurvey all = LookThrough(fields, messenger);
+  for (const auto& field : fields)
   {
-    all = *known;
-  }
-  else
-  {
-    all = LookThrough(fields, range, messenger);
+    if (field && field->Survey)
+    {
+      all.Add(*field->Survey);
+    }
   }
   all.Accumulate();
   const auto worths = FindWorths(all);
@@ -151,8 +134,7 @@ std::optional<double> FindFirstIsovalue(
   const auto last = std::find_if_not(best, worths.end(), isAsGood) - 1;
   const double border =
     0.5 * static_cast<double>((first - worths.begin()) + (last - worths.begin()));
-  const double width = (static_cast<double>(range.Last) - range.First) / Intervals;
-  return range.First + (border + 1.0) * width;
+  return all.GetBorder(border);
 }
 
 bool AreBeyondFloats(const std::vector<std::shared_ptr<const VoxelField>>& fields)

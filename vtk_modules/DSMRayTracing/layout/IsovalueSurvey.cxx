@@ -4,6 +4,7 @@
 #include "DSMRayTracing/layout/VoxelBrick.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace rt
 {
@@ -11,38 +12,46 @@ namespace rt
 namespace
 {
 
-/// What a macrocell counts for in all intervals together; a number that many counts divide, so that
-/// the sums are exact, in whatever order.
-constexpr std::int64_t Unit = 1 << 20;
+constexpr int LowestExponent = -1000;
 
-void CountMacrocell(IsovalueSurvey& survey, int first, int last, bool atBorder)
+/// Of a value in intervals of a width.
+std::int64_t FindInterval(double value, double perWidth)
 {
-  const std::int64_t share = Unit / (last - first + 1);
-  survey.Values[first] += share;
-  survey.Values[last + 1] -= share;
-  ++survey.Crossed[first];
-  --survey.Crossed[last];
-  ++survey.All;
-  if (atBorder)
-  {
-    ++survey.CutOpen[first];
-    --survey.CutOpen[last];
-    ++survey.AtBorder;
-  }
+  const double place = value * perWidth;
+  const auto interval = static_cast<std::int64_t>(place);
+  return static_cast<double>(interval) > place ? interval - 1 : interval;
 }
 
-template <class T>
-void CountTyped(const VoxelBrick<T>& brick, const Box& cells, const Index3& end,
-  const ValueRange& range, IsovalueSurvey& survey)
+/// In how many intervals, one less, a range lies.
+std::int64_t FindSpan(double least, double greatest, std::int64_t exponent)
 {
-  constexpr int intervals = IsovalueSurvey::Intervals;
-  const double first = range.First;
-  const double scale = intervals / (static_cast<double>(range.Last) - first);
-  const auto findInterval = [=](T value)
+  const double perWidth = std::ldexp(1.0, static_cast<int>(-exponent));
+  return FindInterval(greatest, perWidth) - FindInterval(least, perWidth);
+}
+
+/// The least with which the intervals reach over a range, and their numbers fit their type; it grows with the range.
+std::int64_t FindExponent(double least, double greatest)
+{
+  constexpr int bits = 60;
+  const auto getExponent = [](double value)
+  { return value > 0.0 ? std::ilogb(value) : LowestExponent; };
+  const double magnitude = std::max(std::abs(least), std::abs(greatest));
+  // The range itself may be more than a double holds.
+  const int ofRange =
+    getExponent(0.5 * greatest - 0.5 * least) + 1 - std::ilogb(double(IsovalueSurvey::Intervals));
+  std::int64_t exponent = std::max({ getExponent(magnitude) - bits, ofRange, LowestExponent });
+  while (FindSpan(least, greatest, exponent) >= IsovalueSurvey::Intervals)
   {
-    const double place = (static_cast<double>(value) - first) * scale;
-    return static_cast<int>(std::clamp(place, 0.0, intervals - 1.0));
-  };
+    ++exponent;
+  }
+  return exponent;
+}
+
+/// Of the macrocells of a brick that hold data, told to visit(range, macrocell, atBorder).
+template <class T, class Visit>
+void ForEachMacrocell(
+  const VoxelBrick<T>& brick, const Box& cells, const Index3& end, const Visit& visit)
+{
   const MacrocellRange<T>* macrocell = brick.GetMacrocellRanges();
   const auto isAtBorder = [&](int axis, int number)
   {
@@ -58,48 +67,148 @@ void CountTyped(const VoxelBrick<T>& brick, const Box& cells, const Index3& end,
       {
         if (macrocell->Min <= macrocell->Max)
         {
-          CountMacrocell(survey, findInterval(macrocell->Min), findInterval(macrocell->Max),
-            rowAtBorder || isAtBorder(0, x));
+          visit(*macrocell, rowAtBorder || isAtBorder(0, x));
         }
       }
     }
   }
 }
 
+/// Puts entries where they belong among intervals that are 2^shift times as wide, the first of which is number
+/// `first` instead of `oldFirst` of the old ones.
+void Move(
+  IsovalueSurvey::Counts& counts, std::int64_t oldFirst, std::int64_t shift, std::int64_t first)
+{
+  IsovalueSurvey::Counts moved{};
+  for (std::size_t interval = 0; interval < counts.size(); ++interval)
+  {
+    if (counts[interval] != 0)
+    {
+      const std::int64_t to = ((oldFirst + static_cast<std::int64_t>(interval)) >> shift) - first;
+      moved[static_cast<std::size_t>(to)] += counts[interval];
+    }
+  }
+  counts = moved;
+}
+
 } // namespace
 
-void IsovalueSurvey::CountBrick(
-  const BrickLattice& lattice, dsm::BlockId id, const std::byte* block, const ValueRange& range)
+void IsovalueSurvey::Reach(double least, double greatest)
 {
-  this->Range = range;
+  const bool isFirst = this->Least > this->Greatest;
+  if (!isFirst && least >= this->Least && greatest <= this->Greatest)
+  {
+    return;
+  }
+  this->Least = std::min(least, this->Least);
+  this->Greatest = std::max(greatest, this->Greatest);
+  const std::int64_t exponent = FindExponent(this->Least, this->Greatest);
+  this->Widen(isFirst ? exponent : std::max(exponent, this->Exponent));
+}
+
+void IsovalueSurvey::Widen(std::int64_t exponent)
+{
+  constexpr std::int64_t most = 63; // then all is in the intervals on both sides of 0
+  const std::int64_t shift = std::clamp<std::int64_t>(exponent - this->Exponent, 0, most);
+  const std::int64_t first =
+    FindInterval(this->Least, std::ldexp(1.0, static_cast<int>(-exponent)));
+  for (Counts* counts : { &this->Values, &this->Crossed, &this->CutOpen })
+  {
+    Move(*counts, this->First, shift, first);
+  }
+  this->First = first;
+  this->Exponent = exponent;
+}
+
+void IsovalueSurvey::CountBrick(
+  const BrickLattice& lattice, dsm::BlockId id, const std::byte* block)
+{
+  const Box cells = lattice.GetCellsOfBrick(id);
+  const Index3 end = lattice.GetCells();
   Dispatch(lattice.GetScalarType(),
     [&](auto sample)
     {
-      CountTyped(VoxelBrick<decltype(sample)>(block), lattice.GetCellsOfBrick(id),
-        lattice.GetCells(), range, *this);
+      using T = decltype(sample);
+      const VoxelBrick<T> brick(block);
+      double least = std::numeric_limits<double>::max();
+      double greatest = std::numeric_limits<double>::lowest();
+      ForEachMacrocell(brick, cells, end,
+        [&](const MacrocellRange<T>& range, bool)
+        {
+          least = std::min(least, static_cast<double>(range.Min));
+          greatest = std::max(greatest, static_cast<double>(range.Max));
+        });
+      if (least > greatest)
+      {
+        return;
+      }
+      this->Reach(least, greatest);
+      const double perWidth = std::ldexp(1.0, static_cast<int>(-this->Exponent));
+      const auto find = [&](double value)
+      { return static_cast<std::size_t>(FindInterval(value, perWidth) - this->First); };
+      ForEachMacrocell(brick, cells, end,
+        [&](const MacrocellRange<T>& range, bool atBorder)
+        {
+          const auto min = static_cast<double>(range.Min);
+          const auto max = static_cast<double>(range.Max);
+          for (const double part : { 0.125, 0.375, 0.625, 0.875 })
+          {
+            ++this->Values[find(std::clamp(min * (1.0 - part) + max * part, min, max))];
+          }
+          const std::size_t first = find(min);
+          const std::size_t last = find(max);
+          ++this->Crossed[first];
+          --this->Crossed[last];
+          ++this->All;
+          if (atBorder)
+          {
+            ++this->CutOpen[first];
+            --this->CutOpen[last];
+            ++this->AtBorder;
+          }
+        });
     });
 }
 
 void IsovalueSurvey::Add(const IsovalueSurvey& other)
 {
-  for (int interval = 0; interval <= Intervals; ++interval)
+  if (other.All == 0)
   {
-    this->Values[interval] += other.Values[interval];
-    this->Crossed[interval] += other.Crossed[interval];
-    this->CutOpen[interval] += other.CutOpen[interval];
+    return;
   }
-  this->All += other.All;
-  this->AtBorder += other.AtBorder;
+  IsovalueSurvey same = other;
+  this->Reach(other.Least, other.Greatest);
+  same.Reach(this->Least, this->Greatest);
+  for (std::size_t interval = 0; interval < this->Values.size(); ++interval)
+  {
+    this->Values[interval] += same.Values[interval];
+    this->Crossed[interval] += same.Crossed[interval];
+    this->CutOpen[interval] += same.CutOpen[interval];
+  }
+  this->All += same.All;
+  this->AtBorder += same.AtBorder;
 }
 
 void IsovalueSurvey::Accumulate()
 {
-  for (int interval = 0; interval < Intervals; ++interval)
+  for (std::size_t interval = 1; interval < this->Values.size(); ++interval)
   {
-    this->Values[interval + 1] += this->Values[interval];
-    this->Crossed[interval + 1] += this->Crossed[interval];
-    this->CutOpen[interval + 1] += this->CutOpen[interval];
+    this->Crossed[interval] += this->Crossed[interval - 1];
+    this->CutOpen[interval] += this->CutOpen[interval - 1];
   }
+}
+
+std::size_t IsovalueSurvey::CountIntervals() const
+{
+  return this->All == 0
+    ? 0
+    : static_cast<std::size_t>(FindSpan(this->Least, this->Greatest, this->Exponent) + 1);
+}
+
+double IsovalueSurvey::GetBorder(double border) const
+{
+  return std::ldexp(
+    static_cast<double>(this->First) + border + 1.0, static_cast<int>(this->Exponent));
 }
 
 } // namespace rt

@@ -4,44 +4,51 @@
 
 #include "DSMCore/base/Block.h"
 #include "DSMRayTracing/layout/BrickLattice.h"
-#include "DSMRayTracing/layout/MacrocellHierarchy.h"
 
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 
 namespace rt
 {
 
-/// How many macrocells of a volume have which values, in intervals of a range: what FindFirstIsovalue
-/// chooses by. Plain, so that it travels between ranks, and is kept. Any thread, one at a time.
+/// How many macrocells of a volume have which values, in intervals of equal width: what FindFirstIsovalue chooses
+/// by. Nobody needs to know the range of the values before: intervals are 2^Exponent wide, begin at multiples of
+/// that, and become wider as values come that they do not reach. So it depends on what was counted only, and not
+/// on the order. Plain, so that it travels between ranks, and is kept. Any thread, one at a time.
 struct IsovalueSurvey
 {
-  /// Intervals that the range of the values is divided into, and the borders between them, which are
-  /// the isovalues to choose from.
-  static constexpr int Intervals = 256;
-  static constexpr int Borders = Intervals - 1;
+  /// At most so many have something in them, and at least half as many where the values are not all the same.
+  static constexpr int Intervals = 512;
+  using Counts = std::array<std::int64_t, Intervals>;
 
-  /// Counts the macrocells of a brick. `range`: the same for all bricks that are counted.
-  void CountBrick(
-    const BrickLattice& lattice, dsm::BlockId id, const std::byte* block, const ValueRange& range);
+  /// Counts the macrocells of a brick.
+  void CountBrick(const BrickLattice& lattice, dsm::BlockId id, const std::byte* block);
   void Add(const IsovalueSurvey& other);
-  /// When all is counted: entries are numbers from then on, no more what changes there.
+  /// When all is counted: entries of Crossed and CutOpen are numbers from then on, no more what changes there.
   void Accumulate();
 
-  /// Whether it was made with this range.
-  bool IsOf(const ValueRange& range) const
-  {
-    return this->Range.First == range.First && this->Range.Last == range.Last;
-  }
+  /// Intervals from the first to the last that has something in it.
+  std::size_t CountIntervals() const;
+  /// The value between an interval and the next one; `border` may lie between two.
+  double GetBorder(double border) const;
 
-  std::array<std::int64_t, Intervals + 1>
-    Values{}; ///< their number, in units that many counts divide
-  std::array<std::int64_t, Intervals + 1> Crossed{}; ///< a surface passes
-  std::array<std::int64_t, Intervals + 1> CutOpen{}; ///< so it does, and the volume ends there
+  Counts Values{}; ///< four of each macrocell, which divide its range evenly
+  /// Of the borders between an interval and the next: a surface passes.
+  Counts Crossed{};
+  Counts CutOpen{}; ///< so it does, and the volume ends there
   std::int64_t All = 0;
   std::int64_t AtBorder = 0;
-  ValueRange Range{ 1.0f, -1.0f };
+  std::int64_t First = 0; ///< the first interval begins at First * 2^Exponent
+  std::int64_t Exponent = 0;
+  double Least = std::numeric_limits<double>::max(); ///< of all that was counted
+  double Greatest = std::numeric_limits<double>::lowest();
+
+private:
+  /// Intervals reach from `least` to `greatest` then, too.
+  void Reach(double least, double greatest);
+  void Widen(std::int64_t exponent);
 };
 
 } // namespace rt

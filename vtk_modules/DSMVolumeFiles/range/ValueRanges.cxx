@@ -140,6 +140,11 @@ void ValueRanges::Add(
     {
       const auto* values = reinterpret_cast<const decltype(zero)*>(samples);
       const rt::Index3 size = have.GetSize();
+      if (want.Min == have.Min && want.Max == have.Max)
+      {
+        AddRow(*this, values, have.GetCount(), array.Components);
+        return;
+      }
       for (std::int64_t z = want.Min.z; z < want.Max.z; ++z)
       {
         for (std::int64_t y = want.Min.y; y < want.Max.y; ++y)

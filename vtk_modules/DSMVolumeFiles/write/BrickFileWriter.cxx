@@ -532,11 +532,6 @@ std::int64_t BrickFileWriter::GetChunks(std::size_t array) const
   return this->Self->Targets[array].Chunks;
 }
 
-const ValueRanges& BrickFileWriter::GetRanges(std::size_t array) const
-{
-  return this->Self->Targets[array].Ranges;
-}
-
 void BrickFileWriter::Add(
   std::size_t array, const std::vector<EncodedChunk>& chunks, const ValueRanges& ranges)
 {

@@ -69,8 +69,6 @@ public:
 
   /// Chunks of an array that the file has, which are its first ones, in the order of their numbers.
   std::int64_t GetChunks(std::size_t array) const;
-  /// Of their values.
-  const ValueRanges& GetRanges(std::size_t array) const;
 
   /// Adds the next chunks of an array, whose values have these ranges; they stay if the process ends. Throws
   /// dsm::Error when the disk is full, or fails; the writer is of no use then.

@@ -9,7 +9,7 @@
 #include "DSMRayTracing/layout/MacrocellBuilder.h"
 #include "DSMRayTracing/layout/VoxelBrickHeader.h"
 #include "DSMVolumeFiles/base/CopyBox.h"
-#include "DSMVolumeFiles/cache/ChunkCache.h"
+#include "DSMVolumeFiles/cache/FileSamples.h"
 #include "DSMVolumeFiles/codec/ChunkCodec.h"
 #include "DSMVolumeFiles/codec/HaloRecord.h"
 #include "DSMVolumeFiles/format/HdfFile.h"
@@ -248,36 +248,11 @@ BrickFileLayout CreateLayout(const ValueOrigin& from, const WriteOptions& option
   return layout;
 }
 
-/// The points' samples of an array in a file.
-class FileSamples final : public rt::VoxelSource
-{
-public:
-  FileSamples(std::shared_ptr<const VolumeFile> file, std::size_t array, ChunkCache& cache)
-    : File(std::move(file))
-    , Array(array)
-    , Cache(cache)
-  {
-  }
-  rt::Box GetCells() const override
-  {
-    return { rt::Index3(0), this->File->GetGeometry().Points - rt::Index3(1) };
-  }
-  void ReadSamples(const rt::Box& points, std::byte* out) const override
-  {
-    this->Cache.ReadBox(this->File, this->Array, 0, points, out);
-  }
-
-private:
-  std::shared_ptr<const VolumeFile> File;
-  std::size_t Array;
-  ChunkCache& Cache;
-};
-
-/// Collective. What is to be known of the bricks of the arrays of a brick file, which is read once more for it; `ranges`
-/// of the arrays' values. Nothing of what the renderer makes no bricks of.
+/// Collective. What is to be known of the bricks of the arrays of a brick file, which is read once more for it.
+/// Nothing of what the renderer makes no bricks of.
 std::vector<std::vector<std::byte>> FindIndices(const std::string& path,
-  const BrickFileLayout& layout, const std::vector<ValueRange>& ranges, const WriteOptions& options,
-  dsm::Messenger& messenger, const std::function<void(double)>& tell)
+  const BrickFileLayout& layout, const WriteOptions& options, dsm::Messenger& messenger,
+  const std::function<void(double)>& tell)
 {
   const char* const what = "Looking through the bricks";
   // It holds the file open, which cannot be written until no rank does.
@@ -306,11 +281,9 @@ std::vector<std::vector<std::byte>> FindIndices(const std::string& path,
         lattice.emplace(points, array.Type, false, layout.BrickEdge);
         reader = std::make_shared<rt::VoxelBrickReader>(*lattice,
           std::make_shared<FileSamples>(
-            file, static_cast<std::size_t>(found - arrays.begin()), cache));
+            file, static_cast<std::size_t>(found - arrays.begin()), 0, cache));
         pass.Order.resize(lattice->GetBrickCount());
         std::iota(pass.Order.begin(), pass.Order.end(), dsm::BlockId(0));
-        pass.Guess =
-          rt::VoxelIndex::Round(array.Type, ranges[number].Least, ranges[number].Greatest);
         pass.Threads = options.Threads;
       });
     const rt::VoxelIndex index = rt::VoxelIndex::Find(messenger, *lattice, *reader, pass,
@@ -472,29 +445,20 @@ void WriteBrickFile(std::unique_ptr<ValueOrigin> from, const std::string& path,
       [&](double part) { tellHalf(0.0, (static_cast<double>(array) + part) / arrays); });
   }
   from.reset(); // and its memory
-  std::vector<ValueRange> ranges(begin.size());
   messenger.RunTogether(what,
     [&]
     {
       if (writer)
       {
-        for (std::size_t array = 0; array < ranges.size(); ++array)
-        {
-          ranges[array] = writer->GetRanges(array).Finite.front();
-        }
         writer->Close();
       }
     });
-  for (ValueRange& range : ranges)
-  {
-    range = messenger.AllGatherValue(range).front();
-  }
   std::vector<std::vector<std::byte>> indices;
   const std::string part = BrickFileWriter::GetPartPath(path);
   try
   {
-    indices = FindIndices(
-      part, layout, ranges, options, messenger, [&](double done) { tellHalf(1.0, done); });
+    indices =
+      FindIndices(part, layout, options, messenger, [&](double done) { tellHalf(1.0, done); });
   }
   catch (const dsm::Error& error) // the same on every rank
   {

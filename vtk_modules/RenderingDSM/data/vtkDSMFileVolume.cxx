@@ -7,6 +7,7 @@
 #include "DSMRayTracing/layout/DealBricks.h"
 #include "DSMVolumeFiles/cache/ChunkCache.h"
 #include "DSMVolumeFiles/cache/FileBrickReader.h"
+#include "DSMVolumeFiles/range/LookThrough.h"
 #include "vtkDSMFileArray.h"
 #include "vtkDSMFileVoxels.h"
 #include "vtkDSMGather.h"
@@ -19,7 +20,6 @@
 #include <cmath>
 #include <cstring>
 #include <filesystem>
-#include <numeric>
 #include <optional>
 #include <tuple>
 #include <utility>
@@ -169,18 +169,6 @@ std::shared_ptr<const vol::VolumeFile> OpenAs(
   return vol::OpenCachedVolume({ words.begin() + 1, words.end() }, options);
 }
 
-/// Of one component of a file's values, or of the magnitude.
-vol::ValueRange GetFinite(const vtkDSMFileValues& values, int component)
-{
-  const vol::ValueRanges* const known = values.FindRanges([](double) { return true; });
-  if (!known)
-  {
-    return {};
-  }
-  const bool magnitude = component == vtkDSMImagePiece::Magnitude;
-  return magnitude ? known->Finite.back() : known->Finite[static_cast<std::size_t>(component)];
-}
-
 } // namespace
 
 vtkDSMFileVolume::Seat vtkDSMFileVolume::Describe(
@@ -302,11 +290,17 @@ std::unique_ptr<vtkDSMFileVolume> vtkDSMFileVolume::KeepIfEverywhere(
   return volume;
 }
 
-int vtkDSMFileVolume::CountCoarser() const
+bool vtkDSMFileVolume::IsWhole() const
 {
   const Box& box = this->Values->GetBox();
-  const bool isWhole = box.Min == Index3(0) && box.Max == this->Values->GetArray().Grid.Samples;
-  return isWhole ? this->Values->GetFile()->GetLevels() - 1 - this->Values->GetOptions().Level : 0;
+  return box.Min == Index3(0) && box.Max == this->Values->GetArray().Grid.Samples;
+}
+
+int vtkDSMFileVolume::CountCoarser() const
+{
+  return this->IsWhole()
+    ? this->Values->GetFile()->GetLevels() - 1 - this->Values->GetOptions().Level
+    : 0;
 }
 
 std::unique_ptr<vtkDSMFileVolume> vtkDSMFileVolume::FindCoarser(
@@ -471,48 +465,9 @@ dsm::BlockDirectory vtkDSMFileVolume::CreateDirectory(
     lattice, this->Values->GetArray().Grid.ChunkSamples, this->Values->GetBox().Min, ranks));
 }
 
-std::vector<dsm::BlockId> vtkDSMFileVolume::CreateOrder(const rt::BrickLattice& lattice) const
-{
-  // Columns of chunks, as wide as the cache holds two layers of: of a brick that ends at a chunk's first samples
-  // the chunk behind is there, or will be read next.
-  const vol::FileArray& array = this->Values->GetArray();
-  const Index3 chunk = array.Grid.ChunkSamples;
-  const double chunkBytes =
-    static_cast<double>(chunk.x * chunk.y * chunk.z) * static_cast<double>(array.GetSampleBytes());
-  const double held =
-    static_cast<double>(vol::ChunkCache::GetShared().GetRoom()) / std::max(chunkBytes, 1.0);
-  const auto width = static_cast<std::int64_t>(std::max(1.0, std::sqrt(0.5 * held) - 1.0));
-  const Index3 first = this->Values->GetBox().Min;
-  const auto getKey = [&](dsm::BlockId id)
-  {
-    const Index3 at = (lattice.GetCellsOfBrick(id).Min + first) / chunk;
-    return std::make_tuple(at.y / width, at.x / width, at.z, at.y, at.x, id);
-  };
-  std::vector<dsm::BlockId> order(lattice.GetBrickCount());
-  std::iota(order.begin(), order.end(), dsm::BlockId(0));
-  std::sort(order.begin(), order.end(),
-    [&](dsm::BlockId a, dsm::BlockId b) { return getKey(a) < getKey(b); });
-  return order;
-}
-
-rt::ValueRange vtkDSMFileVolume::GuessRange(
-  dsm::Messenger& messenger, rt::ScalarType type, const vtkDSMFileValues* own) const
-{
-  const auto parts = messenger.GatherValueTogether("Reading the volume's range",
-    [&] { return own ? GetFinite(*own, this->Component) : vol::ValueRange{}; });
-  vol::ValueRange all;
-  for (const vol::ValueRange& part : parts)
-  {
-    all.Add(part);
-  }
-  return rt::VoxelIndex::Round(type, all.Least, all.Greatest);
-}
-
 std::vector<std::byte> vtkDSMFileVolume::ReadIndex(const rt::BrickLattice& lattice) const
 {
-  const vol::FileArray& array = this->Values->GetArray();
-  const Box& box = this->Values->GetBox();
-  if (array.Components != 1 || box.Min != Index3(0) || box.Max != array.Grid.Samples)
+  if (this->Values->GetArray().Components != 1 || !this->IsWhole())
   {
     return {};
   }
@@ -525,7 +480,7 @@ vol::KeptFile vtkDSMFileVolume::GetKept(const rt::BrickLattice& lattice) const
 {
   return { *this->Values->GetFile(), this->Values->GetArrayNumber(), this->Values->GetStep(),
     this->Values->GetBox(),
-    "bricks1-" + std::to_string(lattice.GetEdge()) + "-" + std::to_string(this->Component) };
+    "bricks2-" + std::to_string(lattice.GetEdge()) + "-" + std::to_string(this->Component) };
 }
 
 std::vector<std::byte> vtkDSMFileVolume::LoadIndex(const rt::BrickLattice& lattice) const
@@ -539,6 +494,7 @@ rt::VoxelIndex vtkDSMFileVolume::FindIndex(dsm::Messenger& messenger,
   const std::function<void(double)>& progress) const
 {
   const char* const what = "Looking through the volume";
+  const std::optional<rt::SeenBricks> seen = own ? own->TakeSeen() : std::nullopt;
   std::vector<std::byte> bytes;
   messenger.RunTogether(what,
     [&]
@@ -557,14 +513,15 @@ rt::VoxelIndex vtkDSMFileVolume::FindIndex(dsm::Messenger& messenger,
     return std::move(*known);
   }
   rt::VoxelIndex::Pass pass;
-  pass.Guess = this->GuessRange(messenger, lattice.GetScalarType(), own);
   pass.Threads = threads;
+  pass.Seen = seen && this->IsWhole() ? &*seen : nullptr;
   std::shared_ptr<const dsm::BlockReader> reader;
   messenger.RunTogether(what,
     [&]
     {
       reader = this->CreateReader(lattice, false);
-      pass.Order = this->CreateOrder(lattice);
+      pass.Order = vol::OrderBricks(lattice, { rt::Index3(0), lattice.GetBricks() },
+        this->Values->GetArray(), this->Values->GetBox().Min);
     });
   rt::VoxelIndex found = rt::VoxelIndex::Find(messenger, lattice, *reader, pass, progress);
   dsm::FreedMemory::Return(); // of the threads that looked

@@ -97,7 +97,8 @@ public:
   /// Of these bricks, of which each rank gets such as are cut out of the same chunks.
   dsm::BlockDirectory CreateDirectory(const rt::BrickLattice& lattice, int ranks) const;
 
-  /// Collective: kept since an earlier time, or found by reading everything once, and kept. `threads` of this rank
+  /// Collective: kept since an earlier time, or found by reading once what the ranks' own values, `own`, have not
+  /// seen of the bricks, and kept. `threads` of this rank
   /// read; `progress` as of vtkDSMVolumeData::Publish.
   rt::VoxelIndex FindIndex(dsm::Messenger& messenger, const rt::BrickLattice& lattice,
     const vtkDSMFileValues* own, int threads, const std::function<void(double)>& progress) const;
@@ -110,6 +111,8 @@ private:
     dsm::Messenger& messenger, std::unique_ptr<vtkDSMFileVolume> volume);
   /// Collective: that the ranks opened the same file for the step.
   void CheckSameEverywhere(dsm::Messenger& messenger) const;
+  /// Whether it has all of the array's samples.
+  bool IsWhole() const;
   /// Local; null where there is no such level.
   std::unique_ptr<vtkDSMFileVolume> OpenCoarser(int level) const;
   /// From indices of samples to the world, by the file.
@@ -124,12 +127,6 @@ private:
   std::vector<bool> FindChanges(const rt::BrickLattice& lattice, const Digests& digests) const;
   /// What is read ahead of this step has it.
   std::uint64_t GetKey(const rt::BrickLattice& lattice) const;
-  /// In the order in which chunks are best read.
-  std::vector<dsm::BlockId> CreateOrder(const rt::BrickLattice& lattice) const;
-  /// Collective: of the values, by what the ranks' pieces know of theirs.
-  rt::ValueRange GuessRange(
-    dsm::Messenger& messenger, rt::ScalarType type, const vtkDSMFileValues* own) const;
-
   std::shared_ptr<const vtkDSMFileValues> Values; ///< of all of the lattice
   int Component;                                  ///< vtkDSMImagePiece::Magnitude for the magnitude
 };

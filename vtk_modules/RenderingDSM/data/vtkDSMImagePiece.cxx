@@ -100,21 +100,6 @@ private:
   vtkUnsignedCharArray* Points;
 };
 
-template <class Visit>
-void ForEachIndex(const Box& box, Visit&& visit)
-{
-  for (std::int64_t k = box.Min.z; k < box.Max.z; ++k)
-  {
-    for (std::int64_t j = box.Min.y; j < box.Max.y; ++j)
-    {
-      for (std::int64_t i = box.Min.x; i < box.Max.x; ++i)
-      {
-        visit(Index3(i, j, k));
-      }
-    }
-  }
-}
-
 /// The box of the cells that are not copies of another piece's.
 Box TrimDuplicates(const Box& cells, const CellFlags& flags)
 {

@@ -88,7 +88,7 @@ vtkDSMFileValues::Place vtkDSMFileValues::Find(const rt::Index3& sample) const
 }
 
 const vol::ValueRanges* vtkDSMFileValues::FindRanges(
-  const std::function<bool(double)>& goesOn) const
+  const std::function<bool(double)>& goesOn, bool withBricks) const
 {
   const std::lock_guard<std::mutex> lock(this->RangesLock);
   if (!this->Ranges)
@@ -97,8 +97,7 @@ const vol::ValueRanges* vtkDSMFileValues::FindRanges(
   }
   if (!this->Ranges)
   {
-    this->Ranges =
-      vol::FindRanges(this->File, this->Array, this->Step, this->Box, GetThreads(), goesOn);
+    this->ReadRanges(goesOn, withBricks && vol::CanLookAtBricks(this->GetArray()));
     dsm::FreedMemory::Return(); // of the threads that looked
     if (this->Ranges)
     {
@@ -106,4 +105,27 @@ const vol::ValueRanges* vtkDSMFileValues::FindRanges(
     }
   }
   return this->Ranges ? &*this->Ranges : nullptr;
+}
+
+void vtkDSMFileValues::ReadRanges(const std::function<bool(double)>& goesOn, bool withBricks) const
+{
+  if (!withBricks)
+  {
+    this->Ranges =
+      vol::FindRanges(this->File, this->Array, this->Step, this->Box, GetThreads(), goesOn);
+    return;
+  }
+  std::optional<vol::Look> look =
+    vol::LookThrough(this->File, this->Array, this->Step, this->Box, GetThreads(), goesOn);
+  if (look)
+  {
+    this->Ranges = std::move(look->Ranges);
+    this->Seen = std::move(look->Bricks);
+  }
+}
+
+std::optional<rt::SeenBricks> vtkDSMFileValues::TakeSeen() const
+{
+  const std::lock_guard<std::mutex> lock(this->RangesLock);
+  return std::exchange(this->Seen, std::nullopt);
 }

@@ -3,7 +3,7 @@
 #define vtkDSMFileValues_h
 
 #include "DSMVolumeFiles/cache/ChunkCache.h"
-#include "DSMVolumeFiles/range/ValueRanges.h"
+#include "DSMVolumeFiles/range/LookThrough.h"
 
 #include <memory>
 #include <mutex>
@@ -61,11 +61,17 @@ public:
     return { number % size.x, number / size.x % size.y, number / (size.x * size.y) };
   }
 
-  /// Of all values; found when first asked for, unless they were kept. Nothing when `goesOn` says no. Throws
-  /// dsm::Error.
-  const vol::ValueRanges* FindRanges(const std::function<bool(double)>& goesOn) const;
+  /// Of all values; found when first asked for, unless they were kept. Nothing when `goesOn` says no. `withBricks`: all
+  /// that is read for it is looked at as bricks, too, where that is possible (vol::LookThrough). Throws dsm::Error.
+  const vol::ValueRanges* FindRanges(
+    const std::function<bool(double)>& goesOn, bool withBricks = false) const;
+  /// What was seen of bricks then, once: they are not kept here any longer.
+  std::optional<rt::SeenBricks> TakeSeen() const;
 
 private:
+  /// Under the lock; leaves Ranges unset when `goesOn` says no.
+  void ReadRanges(const std::function<bool(double)>& goesOn, bool withBricks) const;
+
   std::shared_ptr<const vol::VolumeFile> File;
   std::size_t Array;
   int Step;
@@ -74,6 +80,7 @@ private:
   vol::OpenOptions Options;
   mutable std::mutex RangesLock;
   mutable std::optional<vol::ValueRanges> Ranges;
+  mutable std::optional<rt::SeenBricks> Seen;
 };
 
 #endif

@@ -327,6 +327,8 @@ void vtkDSMVolumeReader::AddArrays(vtkImageData* image, int step)
   image->GetExtent(extent);
   const rt::Index3 first = file->GetGeometry().First;
   const auto& arrays = file->GetArrays();
+  const vol::FileArray* const scalars =
+    this->FindScalars(); // what is drawn, unless something else is chosen
   std::vector<std::pair<const vol::FileArray*, vtkSmartPointer<vtkDataArray>>> found;
   for (std::size_t index = 0; index < arrays.size(); ++index)
   {
@@ -352,14 +354,14 @@ void vtkDSMVolumeReader::AddArrays(vtkImageData* image, int step)
         this->UpdateProgress(
           (static_cast<double>(index) + part) / static_cast<double>(arrays.size()));
         return this->AbortExecute == 0;
-      });
+      },
+      &array == scalars);
     found.emplace_back(
       &array, this->ValuesInMemory ? vtkDSMReadFileArray(*values) : vtkDSMCreateFileArray(values));
   }
   // An image keeps its scalars from one execution to the next: when a file cannot be read, they stay for the last
   // picture, and else they go.
   image->GetPointData()->Initialize();
-  const vol::FileArray* const scalars = this->FindScalars();
   for (const auto& [array, shown] : found)
   {
     vtkDataSetAttributes* attributes = array->OnCells

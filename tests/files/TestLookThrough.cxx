@@ -1,0 +1,228 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Ranges and bricks, found in one reading.
+#include "DSMCore/transport/LoopbackTransport.h"
+#include "DSMRayTracing/build/VoxelBrickReader.h"
+#include "DSMRayTracing/build/VoxelIndex.h"
+#include "DSMVolumeFiles/cache/FileSamples.h"
+#include "DSMVolumeFiles/range/LookThrough.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <numeric>
+#include <optional>
+#include <thread>
+#include <vector>
+
+namespace
+{
+
+const rt::Index3 Samples(70, 53, 41);
+
+float GetValue(const rt::Index3& at)
+{
+  if (at == rt::Index3(33, 20, 7))
+  {
+    return std::numeric_limits<float>::quiet_NaN();
+  }
+  if (at == rt::Index3(60, 50, 40))
+  {
+    return std::numeric_limits<float>::infinity();
+  }
+  return std::sin(0.1f * static_cast<float>(at.x)) * std::cos(0.2f * static_cast<float>(at.y)) +
+    0.01f * static_cast<float>(at.z);
+}
+
+class ComputedFile final : public vol::VolumeFile
+{
+public:
+  explicit ComputedFile(const rt::Index3& chunk)
+    : VolumeFile("computed")
+  {
+    vol::FileArray array;
+    array.Type = rt::ScalarType::Float32;
+    array.Grid = { Samples, chunk };
+    this->Arrays.push_back(array);
+    this->Geometry.Points = Samples;
+  }
+  void ReadChunk(std::size_t, int, const rt::Index3& chunk, std::byte* out) const override
+  {
+    ++this->Read;
+    auto* to = reinterpret_cast<float*>(out);
+    rt::ForEachIndex(this->GetArrays().front().Grid.GetBox(chunk),
+      [&](const rt::Index3& at) { *to++ = GetValue(at); });
+  }
+
+  mutable std::atomic<int> Read{ 0 };
+};
+
+bool GoOn(double)
+{
+  return true;
+}
+
+/// Cut along z, with a layer of samples in common, as VTK cuts an image.
+std::vector<rt::Box> Cut(int pieces)
+{
+  std::vector<rt::Box> boxes;
+  for (int piece = 0; piece < pieces; ++piece)
+  {
+    const std::int64_t cells = Samples.z - 1;
+    const std::int64_t end = cells * (piece + 1) / pieces;
+    boxes.push_back({ { 0, 0, cells * piece / pieces }, { Samples.x, Samples.y, end + 1 } });
+  }
+  return boxes;
+}
+
+struct Found
+{
+  rt::VoxelIndex Index;
+  std::vector<int> Read; ///< bricks, of each rank
+};
+
+/// Counts.
+class CountingReader final : public dsm::BlockReader
+{
+public:
+  CountingReader(
+    const rt::BrickLattice& lattice, const std::shared_ptr<const vol::VolumeFile>& file)
+    : Bricks(lattice, std::make_shared<vol::FileSamples>(file, 0, 0, vol::ChunkCache::GetShared()))
+  {
+  }
+  void Read(dsm::BlockId id, std::byte* block, std::size_t bytes) const override
+  {
+    ++this->Count;
+    this->Bricks.Read(id, block, bytes);
+  }
+  mutable std::atomic<int> Count{ 0 };
+
+private:
+  rt::VoxelBrickReader Bricks;
+};
+
+/// The index that ranks find which have looked through these pieces.
+Found FindIndex(const std::vector<rt::Box>& pieces, bool look)
+{
+  const auto file = std::make_shared<const ComputedFile>(rt::Index3(24, 20, 16));
+  const rt::BrickLattice lattice(Samples, rt::ScalarType::Float32, false);
+  auto transports = dsm::LoopbackTransport::CreateGroup(static_cast<int>(pieces.size()));
+  Found found;
+  found.Read.resize(pieces.size());
+  std::vector<std::thread> threads;
+  for (std::size_t rank = 0; rank < pieces.size(); ++rank)
+  {
+    threads.emplace_back(
+      [&, rank]
+      {
+        dsm::Messenger messenger(std::move(transports[rank]));
+        std::optional<vol::Look> seen;
+        if (look)
+        {
+          seen = vol::LookThrough(file, 0, 0, pieces[rank], 2, GoOn);
+        }
+        rt::VoxelIndex::Pass pass;
+        pass.Order.resize(lattice.GetBrickCount());
+        std::iota(pass.Order.begin(), pass.Order.end(), dsm::BlockId(0));
+        pass.Seen = seen ? &seen->Bricks : nullptr;
+        const CountingReader reader(lattice, file);
+        rt::VoxelIndex index = rt::VoxelIndex::Find(messenger, lattice, reader, pass, {});
+        found.Read[rank] = reader.Count;
+        if (rank == 0)
+        {
+          found.Index = std::move(index);
+        }
+        messenger.Barrier();
+      });
+  }
+  for (std::thread& thread : threads)
+  {
+    thread.join();
+  }
+  return found;
+}
+
+} // namespace
+
+TEST(LookThrough, TheIndexIsThatOfBricksReadForIt)
+{
+  const std::vector<std::byte> expected = FindIndex(Cut(1), false).Index.Encode();
+  for (const int ranks : { 1, 2, 3 })
+  {
+    const Found found = FindIndex(Cut(ranks), true);
+    EXPECT_EQ(found.Index.Encode(), expected) << ranks << " ranks";
+    for (const int read : found.Read)
+    {
+      EXPECT_EQ(read, 0) << ranks << " ranks";
+    }
+  }
+}
+
+/// As where pieces have ghost cells: what two ranks have seen counts once, and the rest is read.
+TEST(LookThrough, BricksThatSeveralRanksHaveSeenCountOnce)
+{
+  const std::vector<std::byte> expected = FindIndex(Cut(1), false).Index.Encode();
+  const Found found =
+    FindIndex({ { rt::Index3(0), { Samples.x, Samples.y, 18 } }, { { 0, 0, 16 }, Samples } }, true);
+  EXPECT_EQ(found.Index.Encode(), expected);
+  EXPECT_GT(std::accumulate(found.Read.begin(), found.Read.end(), 0), 0);
+}
+
+TEST(LookThrough, RangesAreOfTheBoxAlone)
+{
+  const auto file = std::make_shared<const ComputedFile>(rt::Index3(16));
+  const std::vector<rt::Box> boxes = { { rt::Index3(0), Samples },
+    { rt::Index3(5, 17, 3), rt::Index3(34, 33, 20) }, { rt::Index3(48, 32, 32), Samples },
+    { rt::Index3(0, 0, 40), Samples } };
+  for (const rt::Box& box : boxes)
+  {
+    const auto look = vol::LookThrough(file, 0, 0, box, 3, GoOn);
+    const auto expected = vol::FindRanges(file, 0, 0, box, 1, GoOn);
+    ASSERT_TRUE(look && expected);
+    EXPECT_EQ(look->Ranges.All[0].Least, expected->All[0].Least);
+    EXPECT_EQ(look->Ranges.All[0].Greatest, expected->All[0].Greatest);
+    EXPECT_EQ(look->Ranges.Finite[0].Greatest, expected->Finite[0].Greatest);
+  }
+  EXPECT_FALSE(vol::LookThrough(file, 0, 0, boxes[0], 2, [](double) { return false; }));
+}
+
+TEST(LookThrough, EachChunkIsReadAboutOnce)
+{
+  const auto file = std::make_shared<const ComputedFile>(rt::Index3(16));
+  ASSERT_TRUE(vol::LookThrough(file, 0, 0, { rt::Index3(0), Samples }, 2, GoOn));
+  EXPECT_EQ(file->Read, file->GetArrays().front().Grid.GetCount());
+}
+
+/// Where the cache holds few chunks, most would be read for several bricks.
+TEST(LookThrough, IsNotForChunksThatTheCacheDoesNotHold)
+{
+  vol::ChunkCache& cache = vol::ChunkCache::GetShared();
+  const std::size_t limit = cache.GetLimit();
+  const ComputedFile file(rt::Index3(32));
+  EXPECT_TRUE(vol::CanLookAtBricks(file.GetArrays().front()));
+  cache.SetLimit(1 << 20);
+  EXPECT_FALSE(vol::CanLookAtBricks(file.GetArrays().front()));
+  cache.SetLimit(limit);
+  vol::FileArray flat = file.GetArrays().front();
+  flat.Grid.Samples.z = 1;
+  EXPECT_FALSE(vol::CanLookAtBricks(flat));
+}
+
+TEST(LookThrough, AllBricksAreInOrderOnce)
+{
+  const rt::BrickLattice lattice(Samples, rt::ScalarType::UInt8, false, 8);
+  vol::FileArray array;
+  for (const rt::Index3& chunk : { rt::Index3(5, 64, 1), rt::Index3(24, 20, 16), rt::Index3(128) })
+  {
+    array.Grid = { Samples + rt::Index3(9), chunk };
+    std::vector<dsm::BlockId> order =
+      vol::OrderBricks(lattice, { rt::Index3(0), lattice.GetBricks() }, array, rt::Index3(9, 7, 3));
+    std::sort(order.begin(), order.end());
+    std::vector<dsm::BlockId> expected(lattice.GetBrickCount());
+    std::iota(expected.begin(), expected.end(), dsm::BlockId(0));
+    EXPECT_EQ(order, expected);
+  }
+}

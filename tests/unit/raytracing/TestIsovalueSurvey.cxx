@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "DSMRayTracing/layout/IsovalueSurvey.h"
+#include "TestVolume.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <numeric>
+#include <random>
+
+namespace
+{
+
+/// Values of very different size here and there, so that intervals have to become wider.
+template <class T>
+TestVolume<T> MakeVolume(double offset, double size)
+{
+  return TestVolume<T>(rt::Index3(33, 21, 17),
+    [=](int x, int y, int z)
+    {
+      return static_cast<T>(
+        offset + size * std::pow(10.0, -0.5 * (x / 4)) * std::sin(0.9 * y + 0.4 * z + 0.1 * x));
+    });
+}
+
+/// Counted in an order, and in so many parts, which are added.
+template <class T>
+rt::IsovalueSurvey Count(const rt::VoxelField& field, std::uint32_t seed, std::size_t parts)
+{
+  std::vector<dsm::BlockId> order(field.Lattice.GetBrickCount());
+  std::iota(order.begin(), order.end(), dsm::BlockId(0));
+  std::shuffle(order.begin(), order.end(), std::mt19937(seed));
+  std::vector<const std::byte*> blocks(order.size());
+  field.Segment->ForEachResident(
+    [&](dsm::BlockId id, const std::byte* block, std::size_t) { blocks[id] = block; });
+  std::vector<rt::IsovalueSurvey> surveys(parts);
+  for (std::size_t at = 0; at < order.size(); ++at)
+  {
+    surveys[at % parts].CountBrick(field.Lattice, order[at], blocks[order[at]]);
+  }
+  rt::IsovalueSurvey sum;
+  for (const rt::IsovalueSurvey& survey : surveys)
+  {
+    sum.Add(survey);
+  }
+  return sum;
+}
+
+template <class T>
+void ExpectNoOrder(double offset, double size)
+{
+  MemoryStore store;
+  const TestVolume<T> volume = MakeVolume<T>(offset, size);
+  const auto field = CreateField(store, volume, 4);
+  const rt::IsovalueSurvey expected = Count<T>(*field, 0, 1);
+  EXPECT_EQ(expected.All, static_cast<std::int64_t>(field->Lattice.GetBrickCount()));
+  EXPECT_GE(expected.CountIntervals(), rt::IsovalueSurvey::Intervals / 2u);
+  EXPECT_LE(expected.CountIntervals(), rt::IsovalueSurvey::Intervals * 1u);
+  EXPECT_EQ(std::accumulate(expected.Values.begin(), expected.Values.end(), std::int64_t(0)),
+    4 * expected.All);
+  const auto [least, greatest] = std::minmax_element(volume.Samples.begin(), volume.Samples.end());
+  EXPECT_LE(expected.GetBorder(-1), static_cast<double>(*least));
+  EXPECT_GT(expected.GetBorder(0), static_cast<double>(*least));
+  EXPECT_GT(expected.GetBorder(static_cast<double>(expected.CountIntervals()) - 1),
+    static_cast<double>(*greatest));
+  for (std::uint32_t seed = 1; seed < 6; ++seed)
+  {
+    const rt::IsovalueSurvey found = Count<T>(*field, seed, seed);
+    EXPECT_EQ(std::memcmp(&found, &expected, sizeof(found)), 0) << offset << " " << size;
+  }
+}
+
+} // namespace
+
+TEST(TestIsovalueSurvey, DoesNotDependOnTheOrder)
+{
+  ExpectNoOrder<float>(0.0, 1.0);
+  ExpectNoOrder<float>(-1e30, 3e35);
+  ExpectNoOrder<float>(12345.0, 0.7);
+  ExpectNoOrder<double>(1e15, 2e5);
+  ExpectNoOrder<double>(-0.5, 1.6e308);
+  ExpectNoOrder<double>(0.0, 1e-280);
+  ExpectNoOrder<std::int16_t>(-300.0, 2000.0);
+  ExpectNoOrder<std::uint8_t>(100.0, 99.0);
+}
+
+TEST(TestIsovalueSurvey, ValuesThatAreAllTheSameAreInOneInterval)
+{
+  MemoryStore store;
+  for (const float value : { 0.0f, -3.5f, 1e38f, 1e-40f })
+  {
+    const TestVolume<float> volume(rt::Index3(9), [=](int, int, int) { return value; });
+    const rt::IsovalueSurvey survey = Count<float>(*CreateField(store, volume, 4), 0, 2);
+    EXPECT_EQ(survey.CountIntervals(), 1u);
+    EXPECT_EQ(survey.Values[0], 4 * survey.All);
+  }
+  EXPECT_EQ(rt::IsovalueSurvey().CountIntervals(), 0u);
+}

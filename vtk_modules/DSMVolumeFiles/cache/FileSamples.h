@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef vol_FileSamples_h
+#define vol_FileSamples_h
+
+#include "DSMRayTracing/build/VoxelSource.h"
+#include "DSMVolumeFiles/cache/ChunkCache.h"
+
+#include <cstddef>
+#include <memory>
+#include <utility>
+
+namespace vol
+{
+
+/// All samples of an array on points, of one component, in a file, read through a cache of chunks, which must outlive
+/// it, one beside the other. Any thread.
+class FileSamples final : public rt::VoxelSource
+{
+public:
+  FileSamples(
+    std::shared_ptr<const VolumeFile> file, std::size_t array, int step, ChunkCache& cache)
+    : File(std::move(file))
+    , Array(array)
+    , Step(step)
+    , Cache(cache)
+  {
+  }
+  rt::Box GetCells() const override
+  {
+    return { rt::Index3(0), this->File->GetGeometry().Points - rt::Index3(1) };
+  }
+  void ReadSamples(const rt::Box& points, std::byte* out) const override
+  {
+    this->Cache.ReadBox(this->File, this->Array, this->Step, points, out);
+  }
+
+private:
+  std::shared_ptr<const VolumeFile> File;
+  std::size_t Array;
+  int Step;
+  ChunkCache& Cache;
+};
+
+} // namespace vol
+
+#endif
