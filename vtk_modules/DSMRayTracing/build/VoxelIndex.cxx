@@ -93,14 +93,12 @@ std::optional<VoxelIndex> VoxelIndex::Decode(
   const std::vector<std::byte>& bytes, std::size_t bricks)
 {
   const std::size_t endOfSurvey = bricks * sizeof(ValueRange) + sizeof(IsovalueSurvey);
-  const std::size_t digestBytes = bricks * sizeof(dsm::ByteDigest);
+  const std::size_t end = endOfSurvey + bricks * sizeof(dsm::ByteDigest);
   std::uint64_t hash = 0;
-  const bool hasDigests = bytes.size() == endOfSurvey + digestBytes + sizeof(hash);
-  if (!hasDigests && bytes.size() != endOfSurvey + sizeof(hash))
+  if (bytes.size() != end + sizeof(hash))
   {
     return std::nullopt;
   }
-  const std::size_t end = bytes.size() - sizeof(hash);
   std::memcpy(&hash, bytes.data() + end, sizeof(hash));
   if (hash != Hash(bytes.data(), end))
   {
@@ -108,13 +106,10 @@ std::optional<VoxelIndex> VoxelIndex::Decode(
   }
   VoxelIndex index;
   index.Bricks.resize(bricks);
+  index.Digests.resize(bricks);
   std::memcpy(index.Bricks.data(), bytes.data(), bricks * sizeof(ValueRange));
   std::memcpy(&index.Survey, bytes.data() + bricks * sizeof(ValueRange), sizeof(IsovalueSurvey));
-  if (hasDigests)
-  {
-    index.Digests.resize(bricks);
-    std::memcpy(index.Digests.data(), bytes.data() + endOfSurvey, digestBytes);
-  }
+  std::memcpy(index.Digests.data(), bytes.data() + endOfSurvey, bricks * sizeof(dsm::ByteDigest));
   return index;
 }
 

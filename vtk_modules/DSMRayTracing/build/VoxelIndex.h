@@ -22,10 +22,9 @@ namespace rt
 /// and then kept.
 struct VoxelIndex
 {
-  std::vector<ValueRange> Bricks; ///< by id
-  IsovalueSurvey Survey;          ///< of the range of all
-  /// Of the bricks' bytes, by id. Empty where it was kept by a version that had none.
-  std::vector<dsm::ByteDigest> Digests;
+  std::vector<ValueRange> Bricks;       ///< by id
+  IsovalueSurvey Survey;                ///< of all
+  std::vector<dsm::ByteDigest> Digests; ///< of the bricks' bytes, by id
 
   /// Which bricks are not known to have the same bytes in both, of as many.
   static std::vector<bool> Compare(const std::vector<dsm::ByteDigest>& digests,
