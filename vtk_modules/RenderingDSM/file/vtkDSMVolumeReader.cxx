@@ -355,7 +355,7 @@ void vtkDSMVolumeReader::AddArrays(vtkImageData* image, int step)
           (static_cast<double>(index) + part) / static_cast<double>(arrays.size()));
         return this->AbortExecute == 0;
       },
-      &array == scalars);
+      !this->ValuesInMemory && &array == scalars);
     found.emplace_back(
       &array, this->ValuesInMemory ? vtkDSMReadFileArray(*values) : vtkDSMCreateFileArray(values));
   }
