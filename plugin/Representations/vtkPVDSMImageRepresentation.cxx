@@ -26,6 +26,7 @@
 #include "vtkPolyDataMapper.h"
 #include "vtkProperty.h"
 #include "vtkScalarsToColors.h"
+#include "vtkUnsignedIntArray.h"
 #include "vtkVolume.h"
 
 #include <algorithm>
@@ -55,6 +56,42 @@ private:
   vtkNew<vtkDataAssembly> Assembly;
   bool IsKnown;
 };
+
+/// Gives each block the number that a Surface gives it, in ParaView's array vtkBlockColors; so many numbers take turns.
+void NumberBlocks(vtkDataObjectTree* tree, unsigned int distinctNumbers)
+{
+  const auto add = [distinctNumbers](vtkDataObject* image, unsigned int number)
+  {
+    if (!image || image->GetFieldData()->HasArray("vtkBlockColors"))
+    {
+      return;
+    }
+    vtkNew<vtkUnsignedIntArray> array;
+    array->SetName("vtkBlockColors");
+    array->InsertNextValue(number % distinctNumbers);
+    image->GetFieldData()->AddArray(array);
+  };
+  // As ParaView counts: leaves, also empty ones; but all parts of a partitioned dataset in a collection are one.
+  if (auto* collection = vtkPartitionedDataSetCollection::SafeDownCast(tree))
+  {
+    for (unsigned int set = 0; set < collection->GetNumberOfPartitionedDataSets(); ++set)
+    {
+      for (unsigned int part = 0; part < collection->GetNumberOfPartitions(set); ++part)
+      {
+        add(collection->GetPartitionAsDataObject(set, part), set);
+      }
+    }
+    return;
+  }
+  vtkSmartPointer<vtkCompositeDataIterator> leaf;
+  leaf.TakeReference(tree->NewIterator());
+  leaf->SkipEmptyNodesOff();
+  unsigned int number = 0;
+  for (leaf->InitTraversal(); !leaf->IsDoneWithTraversal(); leaf->GoToNextItem())
+  {
+    add(leaf->GetCurrentDataObject(), number++);
+  }
+}
 
 } // namespace
 
@@ -110,12 +147,21 @@ int vtkPVDSMImageRepresentation::RequestData(
     data.TakeReference(source->NewInstance());
     data->ShallowCopy(source);
     this->RemoveHiddenBlocks(data);
+    if (auto* tree = vtkDataObjectTree::SafeDownCast(data))
+    {
+      NumberBlocks(tree, this->BlockColorsDistinctValues);
+    }
   }
   this->Mapper->SetInputData(data);
   this->Mapper->SetOriginalData(source);
   this->BlockLooksAreOld = true;
   this->Display->NoteUpdate();
   return this->Superclass::RequestData(request, input, output);
+}
+
+vtkDataObject* vtkPVDSMImageRepresentation::GetRenderedDataObject(int)
+{
+  return this->Mapper->GetInputDataObject(0, 0);
 }
 
 void vtkPVDSMImageRepresentation::RemoveHiddenBlocks(vtkDataObject* data) const
@@ -177,7 +223,7 @@ void vtkPVDSMImageRepresentation::RemoveAllBlockOpacities()
 void vtkPVDSMImageRepresentation::SetBlockColorsDistinctValues(int number)
 {
   this->BlockColorsDistinctValues = std::max(number, 1);
-  this->BlockLooksAreOld = true;
+  this->MarkModified();
 }
 
 void vtkPVDSMImageRepresentation::ChooseBlockLooks()
@@ -213,46 +259,25 @@ void vtkPVDSMImageRepresentation::ChooseBlockLooks()
 
 void vtkPVDSMImageRepresentation::ColorBlocksByArray(vtkDataObject* data)
 {
-  const bool areNumbers = this->BlockArray == "vtkBlockColors";
-  const auto add = [&](vtkDataObject* image, unsigned int block, unsigned int number)
+  const auto add = [this](vtkDataObject* image, unsigned int block)
   {
-    vtkDataArray* array =
-      image ? image->GetFieldData()->GetArray(this->BlockArray.c_str()) : nullptr;
+    vtkDataArray* array = image->GetFieldData()->GetArray(this->BlockArray.c_str());
     if (array && array->GetNumberOfTuples() > 0)
     {
       this->Mapper->SetBlockValue(block, array->GetComponent(0, 0));
-    }
-    else if (image && areNumbers)
-    {
-      this->Mapper->SetBlockValue(block, number % this->BlockColorsDistinctValues);
     }
   };
   auto* tree = vtkDataObjectTree::SafeDownCast(data);
   if (!tree)
   {
-    add(data, 0, 0);
-    return;
-  }
-  // As ParaView counts: leaves, also empty ones; but all parts of a partitioned dataset in a collection are one.
-  if (auto* collection = vtkPartitionedDataSetCollection::SafeDownCast(tree))
-  {
-    for (unsigned int set = 0; set < collection->GetNumberOfPartitionedDataSets(); ++set)
-    {
-      for (unsigned int part = 0; part < collection->GetNumberOfPartitions(set); ++part)
-      {
-        add(collection->GetPartitionAsDataObject(set, part),
-          collection->GetCompositeIndex(set, part), set);
-      }
-    }
+    add(data, 0);
     return;
   }
   vtkSmartPointer<vtkCompositeDataIterator> leaf;
   leaf.TakeReference(tree->NewIterator());
-  leaf->SkipEmptyNodesOff();
-  unsigned int number = 0;
   for (leaf->InitTraversal(); !leaf->IsDoneWithTraversal(); leaf->GoToNextItem())
   {
-    add(leaf->GetCurrentDataObject(), leaf->GetCurrentFlatIndex(), number++);
+    add(leaf->GetCurrentDataObject(), leaf->GetCurrentFlatIndex());
   }
 }
 

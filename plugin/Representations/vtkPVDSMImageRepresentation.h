@@ -47,6 +47,10 @@ public:
     vtkInformationRequestKey* request, vtkInformation* inInfo, vtkInformation* outInfo) override;
   void SetVisibility(bool visible) override;
   void SetPickable(bool pickable) { this->Display->SetPickable(pickable); }
+  /**
+   * The blocks that are shown, with ParaView's numbers of them: what the panel offers to colour by.
+   */
+  vtkDataObject* GetRenderedDataObject(int port) override;
 
   ///@{
   /**

@@ -212,6 +212,9 @@ def color_by_blocks(display):
 
 
 torn = compare_looks("TornBlocks", lambda display: None)
+arrays = traced.SMProxy.GetProperty("ColorArrayName").GetDomain("array_list")
+offered = [arrays.GetString(index) for index in range(arrays.GetNumberOfStrings())]
+check("vtkBlockColors" in offered, f"the panel offers to colour by {offered}")
 render(view)
 built = get_rows(traced)[0]["Publications"]
 by_number = compare_looks("BlockColors", color_by_blocks)
