@@ -341,14 +341,32 @@ TEST_F(DamagedFile, WithSizesThatCannotBeIsRefused)
     ExpectWords(
       Read(named("raw_float32.zarr", axes)), { "raw_float32.zarr", "last three axes", "order" });
   }
-  for (const Json& axes : { Json{ "t", "c", "y", "x", "z" }, Json{ "t", "z", "y", "x", "channel" },
-         Json{ "z", "TIME", "y", "x", "c" }, Json{ "x", "y", "z", "c", "time" } })
+  for (const Json& axes : { Json{ "t", "c", "y", "x", "z" }, Json{ "z", "TIME", "y", "x", "c" },
+         Json{ "x", "y", "z", "c", "time" } })
   {
     Json entry = named("ome.zarr", axes);
     fs::rename(this->Path / ".zattrs", this->Path / "0/.zattrs");
     entry["file"] = "damaged_ome.zarr/0";
     ExpectWords(Read(entry), { "no volume", "last three axes" });
   }
+}
+
+/// A chunk of one channel, or of all of them one behind the other, has no samples in one piece.
+TEST_F(DamagedFile, WhoseChannelsAreApartSaysSo)
+{
+  const auto change = [&](const char* name, const char* field, const Json& value)
+  {
+    const Json entry = this->Copy(name);
+    std::ifstream old(this->Path / ".zarray");
+    Json metadata = Json::parse(old);
+    metadata[field] = value;
+    std::ofstream(this->Path / ".zarray") << metadata;
+    return entry;
+  };
+  ExpectWords(Read(change("components.zarr", "chunks", { 4, 5, 8, 1 })),
+    { "damaged_components.zarr'", "chunks of 4 x 5 x 8 x 1:", "all 3 channels" });
+  ExpectWords(Read(change("components_x.zarr", "order", "F")),
+    { "damaged_components_x.zarr'", "chunks of 8 x 5 x 4 x 3 in the order of Fortran" });
 }
 
 /// As Python writes them, which JSON does not have.

@@ -294,6 +294,23 @@ for name, names in (("capitals", "XYZ"), ("capitals_z", "ZYX"), ("x_first", ["x"
     with open(path(f"{name}.zarr/.zattrs"), "w", encoding="utf-8") as file:
         json.dump({"_ARRAY_DIMENSIONS": list(names)}, file)
     note(f"{name}.zarr", [(name, "float32")])
+# The components of a sample on a last axis, which its name tells; the second one has x, y, z before it.
+for name, names in (("components", ["z", "y", "x", "channel"]), ("components_x", "XYZC"), ("components_steps", ["time", "z", "y", "x", "c"])):
+    data, chunk = values("<i2", 3), (4, 5, 8, 3)
+    if names == "XYZC":
+        data, chunk = data.transpose(2, 1, 0, 3), (8, 5, 4, 3)
+    elif len(names) == 5:
+        data, chunk = np.stack([values("<i2", 3, step=t) for t in range(3)]), (2, *chunk)
+    save_zarr(f"{name}.zarr", data, chunks=chunk)
+    with open(path(f"{name}.zarr/.zattrs"), "w", encoding="utf-8") as file:
+        json.dump({"_ARRAY_DIMENSIONS": list(names)}, file)
+    note(f"{name}.zarr", [(name, "int16", 3)], steps=3 if len(names) == 5 else 1)
+hole = zarr.open_array(
+    path("components_holes.zarr"), mode="w", shape=(*SIZE[::-1], 2), chunks=(4, 5, 8, 2), dtype=">f4", fill_value=42.0, **LATER
+)
+hole[0:4, 0:5, 0:8] = values("<f4", 2)[0:4, 0:5, 0:8]
+hole.attrs["_ARRAY_DIMENSIONS"] = ["z", "y", "x", "c"]
+note("components_holes.zarr", [("components_holes", "float32", 2)], fill=42.0, filled=[8, 5, 4])
 # As xarray writes it: times, texts beside the volume, and numbers that JSON does not have.
 zarr.open_group(path("xarray.zarr"), mode="w", **LATER)
 save_zarr("xarray.zarr/f", np.stack([values("<f4", step=t) for t in range(3)]), chunks=(1, 10, 13, 21))
@@ -343,6 +360,18 @@ note(
     spacing=[40.0, 30.0, 20.0], origin=[330.0, 220.0, 110.0],
 )
 
+# Channels that are behind space, as nobody should write them, and some do.
+group = zarr.open_group(path("ome_last.zarr"), mode="w", **LATER)
+save_zarr("ome_last.zarr/0", values("|u1", 3), chunks=(4, 13, 21, 3))
+group.attrs["multiscales"] = [
+    {
+        "version": "0.4",
+        "axes": [*({"name": name, "type": "space"} for name in "zyx"), {"name": "c", "type": "channel"}],
+        "datasets": [{"path": "0", "coordinateTransformations": [{"type": "scale", "scale": [4, 2, 1, 1]}]}],
+    }
+]
+note("ome_last.zarr", [("values", "uint8", 3)], spacing=[1.0, 2.0, 4.0])
+
 # OME-Zarr: two channels, three times, two scales.
 group = zarr.open_group(path("ome.zarr"), mode="w", **LATER)
 full = np.stack(
@@ -376,8 +405,8 @@ note(
 
 
 # Zarr, version 3, which zarr 2 cannot write: by hand, after the specification.
-def write_version3(name, codecs, chunk, shard=None, orders=()):
-    data = values("<f4")
+def write_version3(name, codecs, chunk, shard=None, orders=(), components=1):
+    data = values("<f4", components)
     os.makedirs(path(name))
     encode = {
         "gzip": lambda raw: GZip().encode(raw),
@@ -404,7 +433,7 @@ def write_version3(name, codecs, chunk, shard=None, orders=()):
     metadata = {
         "zarr_format": 3,
         "node_type": "array",
-        "shape": SIZE[::-1],
+        "shape": data.shape,
         "data_type": "float32",
         "chunk_grid": {"name": "regular", "configuration": {"chunk_shape": shard or chunk}},
         "chunk_key_encoding": {"name": "default", "configuration": {"separator": "/"}},
@@ -412,6 +441,8 @@ def write_version3(name, codecs, chunk, shard=None, orders=()):
         "codecs": outer,
         "attributes": {},
     }
+    if components > 1:
+        metadata["dimension_names"] = ["z", "y", "x", "channel"]
     with open(path(name + "/zarr.json"), "w", encoding="utf-8") as file:
         json.dump(metadata, file)
 
@@ -427,13 +458,13 @@ def write_version3(name, codecs, chunk, shard=None, orders=()):
         return raw
 
     outer_shape = shard or chunk
-    for place in np.ndindex(*(-(-n // s) for n, s in zip(SIZE[::-1], outer_shape))):
+    for place in np.ndindex(*(-(-n // s) for n, s in zip(data.shape, outer_shape))):
         first = [p * s for p, s in zip(place, outer_shape)]
         if shard:
             blob, index = b"", b""
             for within in np.ndindex(*(s // c for s, c in zip(shard, chunk))):
                 start = [f + w * c for f, w, c in zip(first, within, chunk)]
-                if any(at >= n for at, n in zip(start, SIZE[::-1])):
+                if any(at >= n for at, n in zip(start, data.shape)):
                     index += struct.pack("<QQ", 2**64 - 1, 2**64 - 1)
                     continue
                 raw = cut(start, chunk)
@@ -446,7 +477,7 @@ def write_version3(name, codecs, chunk, shard=None, orders=()):
         os.makedirs(os.path.dirname(file), exist_ok=True)
         with open(file, "wb") as out:
             out.write(blob)
-    note(name, [(name[: -len(".zarr")], "float32")])
+    note(name, [(name[: -len(".zarr")], "float32", components)])
 
 
 def crc32c(raw):
@@ -462,6 +493,8 @@ write_version3("three_raw.zarr", [], [4, 5, 8])
 write_version3("three_zstd.zarr", ["zstd"], [4, 5, 8])
 write_version3("three_sharded.zarr", ["blosc"], [2, 5, 4], [4, 10, 8])
 write_version3("three_sharded_gzip.zarr", ["gzip"], [4, 5, 8], [4, 5, 8])
+write_version3("three_components.zarr", ["zstd"], [4, 5, 8, 2], components=2)
+write_version3("three_components_sharded.zarr", ["blosc"], [2, 5, 4, 2], [4, 10, 8, 2], components=2)
 # Axes that are transposed, and again: to the order of C, or of Fortran.
 turn, around = [2, 1, 0], [1, 2, 0]
 for name, orders in (("turned", [turn]), ("twice", [turn, turn]), ("still", [turn, [0, 1, 2]]), ("around", [around] * 3)):

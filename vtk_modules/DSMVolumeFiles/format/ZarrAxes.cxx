@@ -36,14 +36,14 @@ std::string FindType(const Json& axis)
                                                 : "";
 }
 
-/// Whether nothing says that the last axes are not these three.
-bool MayBe(const Json& named, const std::string& order)
+/// Whether nothing says that the axes from this one on are not these three.
+bool MayBe(const Json& named, std::size_t first, const std::string& order)
 {
   const std::string known = "xyz";
   bool isRight = true;
   for (std::size_t place = 0; place < order.size(); ++place)
   {
-    const std::string name = GetName(named[named.size() - order.size() + place]);
+    const std::string name = GetName(named[first + place]);
     isRight = isRight &&
       (name.size() != 1 || known.find(name) == std::string::npos || name[0] == order[place]);
   }
@@ -58,8 +58,9 @@ bool MayBe(const Json& named, const std::string& order)
     names += (names.empty() ? "" : ", ") + GetText(axis, "name");
   }
   throw dsm::Error("The Zarr array '" + folder + "' is no volume with its axes '" + names +
-    "': its last three axes, and no others, must be in space, in the order z, y, x or x, y, z. "
-    "Write it with its axes in that order.");
+    "': its last three axes, and no others, must be in space, in the order z, y, x or x, y, z; one "
+    "of "
+    "channels may be behind them. Write it with its axes in that order.");
 }
 
 } // namespace
@@ -73,17 +74,20 @@ ZarrAxes ZarrAxes::Find(const std::string& folder, const Json& named, std::size_
     found.Time = found.Leading == 2 ? 0 : -1;
     return found;
   }
-  for (std::size_t axis = 0; axis < count; ++axis)
+  found.Behind = count > InSpace && FindType(named.back()) == "channel" ? 1 : 0;
+  found.Leading -= static_cast<std::int64_t>(found.Behind);
+  const auto first = static_cast<std::size_t>(found.Leading);
+  for (std::size_t axis = 0; axis < first + InSpace; ++axis)
   {
     const std::string type = FindType(named[axis]);
-    if (axis + InSpace < count ? type == "space" : !type.empty() && type != "space")
+    if (axis < first ? type == "space" : !type.empty() && type != "space")
     {
       Refuse(folder, named);
     }
     found.Time = type == "time" ? static_cast<int>(axis) : found.Time;
   }
-  found.FromX = !MayBe(named, "zyx");
-  if (found.FromX && !MayBe(named, "xyz"))
+  found.FromX = !MayBe(named, first, "zyx");
+  if (found.FromX && !MayBe(named, first, "xyz"))
   {
     Refuse(folder, named);
   }
@@ -93,7 +97,8 @@ ZarrAxes ZarrAxes::Find(const std::string& folder, const Json& named, std::size_
 std::size_t ZarrAxes::FindInSpace(std::size_t count, int axis) const
 {
   const auto place = static_cast<std::size_t>(axis);
-  return this->FromX ? count - InSpace + place : count - 1 - place;
+  const std::size_t end = count - this->Behind;
+  return this->FromX ? end - InSpace + place : end - 1 - place;
 }
 
 rt::Index3 ZarrAxes::GetSpace(const std::vector<std::int64_t>& shape) const

@@ -93,7 +93,7 @@ protected:
     }
     // A chunk may have several times and channels.
     std::size_t slice = 0;
-    for (std::size_t axis = 0; axis + ZarrAxes::InSpace < axes; ++axis)
+    for (std::size_t axis = 0; axis < source.Channel.size(); ++axis)
     {
       const std::int64_t at =
         static_cast<int>(axis) == source.Axes.Time ? step : source.Channel[axis];
@@ -131,7 +131,7 @@ private:
       const Source& source = this->Sources[array];
       const std::string& name = this->Arrays[array].Name;
       const std::int64_t numbers[] = { source.Axes.Time, source.Axes.FromX ? 1 : 0,
-        static_cast<std::int64_t>(name.size()) };
+        this->Arrays[array].Components, static_cast<std::int64_t>(name.size()) };
       hash.Add(numbers, sizeof(numbers));
       hash.Add(name.data(), name.size());
       hash.Add(source.Channel.data(), source.Channel.size() * sizeof(std::int64_t));
@@ -188,7 +188,7 @@ private:
     {
       const std::string type = one.value("type", "");
       const auto values = one.value(type, std::vector<double>());
-      for (int axis = 0; axis < 3 && values.size() >= ZarrAxes::InSpace; ++axis)
+      for (int axis = 0; axis < 3 && values.size() >= ZarrAxes::InSpace + axes.Behind; ++axis)
       {
         const double value = values[axes.FindInSpace(values.size(), axis)];
         if (type == "scale")
@@ -283,6 +283,31 @@ private:
     return std::make_shared<const ZarrMetadata>(std::move(*data));
   }
 
+  /// Those of a sample must be beside one another.
+  static void CheckComponents(
+    const std::string& folder, const ZarrMetadata& data, const ZarrAxes& axes)
+  {
+    const std::int64_t components = axes.GetComponents(data.Shape);
+    if (axes.GetComponents(data.ChunkShape) == components &&
+      (components == 1 || !data.FortranOrder))
+    {
+      return;
+    }
+    std::string shape;
+    for (const std::int64_t length : data.ChunkShape)
+    {
+      shape += (shape.empty() ? "" : " x ") + std::to_string(length);
+    }
+    throw dsm::Error("The Zarr array '" + folder +
+      "', whose last axis has channels, has chunks of " + shape +
+      (data.FortranOrder ? " in the order of Fortran" : "") +
+      ": it can be read where each "
+      "has all " +
+      std::to_string(components) +
+      " channels, in the order of C. Write it so, or with "
+      "the axis of channels first.");
+  }
+
   /// `getName(channel, count)`.
   template <class GetName>
   void Add(const std::string& folder, const std::shared_ptr<const ZarrMetadata>& data,
@@ -320,16 +345,21 @@ private:
         }
       }
       array.Type = data->Type;
+      array.Components = static_cast<int>(axes.GetComponents(data->Shape));
       array.Grid = { this->Geometry.Points, axes.GetSpace(data->ChunkShape) };
       Storage storage;
       storage.Codec = data->Codec;
-      storage.Fill = data->Fill;
-      for (std::size_t axis = 0; axis + ZarrAxes::InSpace < data->Shape.size(); ++axis)
+      for (int component = 0; component < array.Components; ++component)
+      {
+        storage.Fill.insert(storage.Fill.end(), data->Fill.begin(), data->Fill.end());
+      }
+      for (std::size_t axis = 0; axis < place.size(); ++axis)
       {
         storage.Slices *= static_cast<std::size_t>(data->ChunkShape[axis]);
       }
       CheckSizes(folder, array, storage.Slices);
       storage.IsReversed = data->FortranOrder != axes.FromX;
+      CheckComponents(folder, *data, axes);
       if (data->FortranOrder && storage.Slices > 1)
       {
         throw dsm::Error("The Zarr array '" + folder +

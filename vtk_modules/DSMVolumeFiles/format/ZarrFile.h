@@ -12,7 +12,7 @@ namespace vol
 
 /// Zarr, versions 2 and 3 (with sharding): one array, a group of arrays of one shape, or an OME-Zarr image
 /// (https://ngff.openmicroscopy.org), of whose scales `level` is taken, with its channels as arrays and its times
-/// as steps. `path` is a folder. The last three axes are z, y and x, in C order.
+/// as steps. `path` is a folder. ZarrAxes tells what the axes are.
 std::shared_ptr<const VolumeFile> OpenZarr(const std::string& path, int level);
 
 bool MayBeZarr(const std::string& path);
