@@ -83,11 +83,12 @@ for name, (options, dtype) in plain.items():
 
 # Large ones that are not compressed: of slices a few are there.
 os.makedirs(path("large"))
-LARGE = {"slices": (1100, 1024, 20), "whole": (257, 260, 256), "cubes": (150, 140, 130)}
-chunks = {"slices": (1, 1024, 1100), "whole": None, "cubes": (120, 130, 140)}
+LARGE = {"slices": (1100, 1024, 20), "whole": (257, 260, 256), "cubes": (150, 140, 130), "big_endian": (150, 140, 130)}
+chunks = {"slices": (1, 1024, 1100), "whole": None, "cubes": (120, 130, 140), "big_endian": (120, 130, 140)}
 for name, size in LARGE.items():
     with h5py.File(path(f"large/{name}.h5"), "w") as file:
-        dataset = file.create_dataset("f", size[::-1], "|u1", chunks=chunks[name])
+        kind = ">u2" if name == "big_endian" else "|u1"
+        dataset = file.create_dataset("f", size[::-1], kind, chunks=chunks[name])
         for z in (3, 8) if name == "slices" else range(size[2]):
             dataset[z] = values("|u1", size=(*size[:2], 1), channel=7 * z)[0]
 

@@ -489,4 +489,10 @@ bool ChunkCodec::KeepsHalo() const
   return std::any_of(this->Steps.begin(), this->Steps.end(), &MayHaveHalo);
 }
 
+bool ChunkCodec::KeepsPlaces() const
+{
+  return std::all_of(this->Steps.begin(), this->Steps.end(),
+    [](const CodecStep& step) { return step.What == Kind::SwapBytes; });
+}
+
 } // namespace vol

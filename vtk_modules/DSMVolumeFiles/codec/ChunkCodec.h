@@ -52,6 +52,9 @@ public:
   bool KeepsHalo() const;
 
   bool IsPlain() const { return this->Steps.empty(); }
+  /// Whether each sample lies where it would lie plain, with its bytes in whatever order: any of them may be decoded by
+  /// themselves.
+  bool KeepsPlaces() const;
 
 private:
   std::vector<CodecStep> Steps;

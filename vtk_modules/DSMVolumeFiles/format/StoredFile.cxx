@@ -52,8 +52,8 @@ ChunkGrid StoredFile::GetStoredGrid(std::size_t array) const
 void StoredFile::CutPlainChunks(FileArray& array, Storage& storage)
 {
   ChunkGrid& grid = array.Grid;
-  if (!storage.Codec.IsPlain() || storage.Slices != 1 || storage.IsReversed || storage.HasHalo ||
-    grid.CountBytesOfChunks(BoxSamples, array.GetSampleBytes()) <= MostTogether)
+  if (!storage.Codec.KeepsPlaces() || storage.Slices != 1 || storage.IsReversed ||
+    storage.HasHalo || grid.CountBytesOfChunks(BoxSamples, array.GetSampleBytes()) <= MostTogether)
   {
     return;
   }
@@ -115,7 +115,7 @@ void StoredFile::ReadChunk(
       : this->FindPieces(array, *place, whole, box);
     if (!rows.empty())
     {
-      place->File->Read(rows, out);
+      ReadPieces(storage, *place, rows, out, count * sampleBytes);
       return;
     }
     if (storage.Codec.IsPlain() && isAll && place->Bytes == allBytes)
@@ -156,7 +156,7 @@ std::vector<PositionedFile::Piece> StoredFile::FindPieces(
   const rt::Box stored = this->GetStoredBox(array, whole);
   const rt::Index3 size = stored.GetSize();
   std::vector<PositionedFile::Piece> pieces;
-  if (!storage.Codec.IsPlain() || storage.Slices != 1 || storage.IsReversed ||
+  if (!storage.Codec.KeepsPlaces() || storage.Slices != 1 || storage.IsReversed ||
     place.Bytes != static_cast<std::size_t>(stored.GetCount()) * sampleBytes)
   {
     return pieces;
@@ -176,6 +176,19 @@ std::vector<PositionedFile::Piece> StoredFile::FindPieces(
   return pieces;
 }
 
+void StoredFile::ReadPieces(const Storage& storage, const Place& place,
+  const std::vector<PositionedFile::Piece>& pieces, std::byte* out, std::size_t bytes)
+{
+  if (storage.Codec.IsPlain())
+  {
+    place.File->Read(pieces, out);
+    return;
+  }
+  ByteBuffer stored(bytes);
+  place.File->Read(pieces, stored.data());
+  storage.Codec.Decode(std::move(stored), place.SkippedSteps, out, bytes);
+}
+
 bool StoredFile::ReadPart(
   std::size_t array, int step, const rt::Index3& chunk, const rt::Box& part, std::byte* out) const
 {
@@ -189,7 +202,8 @@ bool StoredFile::ReadPart(
   }
   try
   {
-    place->File->Read(pieces, out);
+    ReadPieces(this->Storages[array], *place, pieces, out,
+      static_cast<std::size_t>(part.GetCount()) * this->Arrays[array].GetSampleBytes());
   }
   catch (const dsm::Error& error)
   {

@@ -86,6 +86,9 @@ private:
   /// The rows of a part of a chunk of the file; none where that can only be read as a whole.
   std::vector<PositionedFile::Piece> FindPieces(
     std::size_t array, const Place& place, const rt::Index3& whole, const rt::Box& part) const;
+  /// Of so many bytes together.
+  static void ReadPieces(const Storage& storage, const Place& place,
+    const std::vector<PositionedFile::Piece>& pieces, std::byte* out, std::size_t bytes);
 };
 
 } // namespace vol
