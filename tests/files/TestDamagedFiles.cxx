@@ -4,6 +4,7 @@
 
 #include "DSMCore/base/Error.h"
 #include "DSMVolumeFiles/cache/ChunkCache.h"
+#include "DSMVolumeFiles/format/SeriesFile.h"
 
 #include <gtest/gtest.h>
 
@@ -348,6 +349,25 @@ TEST_F(DamagedFile, WithSizesThatCannotBeIsRefused)
     fs::rename(this->Path / ".zattrs", this->Path / "0/.zattrs");
     entry["file"] = "damaged_ome.zarr/0";
     ExpectWords(Read(entry), { "no volume", "last three axes" });
+  }
+}
+
+TEST_F(DamagedFile, WithOtherChunksThanItsSeriesSaysSo)
+{
+  const auto path = [](const char* name) { return (GetFolder() / name).string(); };
+  const auto file =
+    vol::OpenVolumeSeries({ path("chunked.h5"), path("blosc.h5"), path("contiguous.h5") }, {});
+  std::vector<std::byte> bytes(21 * 13 * 10 * 4);
+  file->ReadChunk(0, 1, rt::Index3(0), bytes.data());
+  try
+  {
+    file->ReadChunk(0, 2, rt::Index3(0), bytes.data());
+    ADD_FAILURE() << "it is taken";
+  }
+  catch (const dsm::Error& error)
+  {
+    ExpectWords(error.what(),
+      { "contiguous.h5' is no time step", "chunks of 21 x 13 x 10 samples, not of 8 x 5 x 4" });
   }
 }
 

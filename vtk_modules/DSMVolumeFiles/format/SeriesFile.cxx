@@ -62,6 +62,12 @@ bool IsSamePlace(const FileGeometry& a, const FileGeometry& b)
   return isSame;
 }
 
+std::string Describe(const rt::Index3& samples)
+{
+  return std::to_string(samples.x) + " x " + std::to_string(samples.y) + " x " +
+    std::to_string(samples.z);
+}
+
 class SeriesFile final : public VolumeFile
 {
 public:
@@ -166,21 +172,36 @@ private:
       [=](const FileArray& a, const FileArray& b)
       {
         return (onlyOne || a.Name == b.Name) && a.Type == b.Type && a.Components == b.Components &&
-          a.OnCells == b.OnCells && a.Grid.Samples == b.Grid.Samples &&
-          a.Grid.ChunkSamples == b.Grid.ChunkSamples;
+          a.OnCells == b.OnCells && a.Grid.Samples == b.Grid.Samples;
       });
     if (!same)
     {
-      throw dsm::Error("The file '" + file.GetPath() +
-        "' is no time step of the series that begins with '" + this->Path +
-        "': it does not have the same arrays, in chunks of the same size. Open it alone.");
+      this->Refuse(file, "it does not have the same arrays. Open it alone.");
+    }
+    for (std::size_t array = 0; array < this->Arrays.size(); ++array)
+    {
+      const rt::Index3 mine = this->Arrays[array].Grid.ChunkSamples;
+      const rt::Index3 other = file.GetArrays()[array].Grid.ChunkSamples;
+      if (mine != other)
+      {
+        this->Refuse(file,
+          "its array '" + file.GetArrays()[array].Name + "' is in chunks of " + Describe(other) +
+            " samples, not of " + Describe(mine) +
+            " (large ones that are not compressed count as several). Write all steps with the same "
+            "chunks and compression, or open it alone.");
+      }
     }
     if (!IsSamePlace(this->Geometry, file.GetGeometry()))
     {
-      throw dsm::Error("The file '" + file.GetPath() +
-        "' is no time step of the series that begins with '" + this->Path +
-        "': its first index, origin, spacing or direction is another. Open it alone.");
+      this->Refuse(
+        file, "its first index, origin, spacing or direction is another. Open it alone.");
     }
+  }
+
+  [[noreturn]] void Refuse(const VolumeFile& file, const std::string& why) const
+  {
+    throw dsm::Error("The file '" + file.GetPath() +
+      "' is no time step of the series that begins with '" + this->Path + "': " + why);
   }
 
   /// Values that were read of it are still about: they must not meet others. `known`: the stamp when it was opened
