@@ -52,6 +52,7 @@ struct Options
   std::string In;
   std::string Out;
   vol::OpenOptions Open;
+  std::string OfBareValues; ///< one that tells of them; empty: none does
   vol::ConvertOptions Convert;
   bool IsQuiet = false;
   bool WantsHelp = false;
@@ -184,6 +185,8 @@ Options Parse(int argc, char** argv)
     }
     const std::string name = list[static_cast<std::size_t>(index)].name;
     known.at(name).Set("--" + name, optarg ? optarg : "");
+    const bool isOfBareValues = name.rfind("raw-", 0) == 0 || name == "spacing";
+    options.OfBareValues = isOfBareValues ? "--" + name : options.OfBareValues;
   }
   if (!options.WantsHelp && argc - optind != 2)
   {
@@ -206,8 +209,16 @@ void Tell(double part)
 void Convert(Options& options, dsm::Messenger& messenger)
 {
   std::shared_ptr<const vol::VolumeFile> file;
-  messenger.RunTogether(
-    "Opening the volume", [&] { file = vol::OpenVolumeFile(options.In, options.Open); });
+  messenger.RunTogether("Opening the volume",
+    [&]
+    {
+      file = vol::OpenVolumeFile(options.In, options.Open);
+      if (!options.OfBareValues.empty() && !vol::IsBareFile(options.In))
+      {
+        throw dsm::Error(options.OfBareValues + " is for bare values (.raw); '" + options.In +
+          "' tells itself what it has.");
+      }
+    });
   if (options.Convert.Threads == 0)
   {
     options.Convert.Threads = messenger.GetCoresPerRank();

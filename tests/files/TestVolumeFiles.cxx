@@ -210,6 +210,27 @@ TEST(VolumeFiles, ALevelThatIsNotThereIsRefused)
   }
 }
 
+TEST(VolumeFiles, ADatasetIsChosenOnlyWhereThereAreDatasets)
+{
+  vol::OpenOptions options;
+  options.Dataset = "f";
+  for (const char* name : { "ball.mha", "calm_000.nhdr", "ball.zarr", "image.vtkhdf" })
+  {
+    try
+    {
+      vol::OpenVolumeFile((GetFolder() / name).string(), options);
+      ADD_FAILURE() << name;
+    }
+    catch (const dsm::Error& error)
+    {
+      EXPECT_NE(std::string(error.what()).find("to choose 'f' from"), std::string::npos)
+        << error.what();
+    }
+  }
+  EXPECT_EQ(
+    vol::OpenVolumeFile((GetFolder() / "ball.h5").string(), options)->GetArrays().size(), 1u);
+}
+
 TEST(VolumeFiles, AChunkThatManyThreadsWantIsReadOnce)
 {
   const Json entry = FindEntry("deflate.h5");

@@ -145,6 +145,10 @@ with h5py.File(path("image.vtkhdf"), "r") as one, h5py.File(path("arrays.vtkhdf"
         check(np.array_equal(one["VTKHDF"][name], other["VTKHDF"][name]), f"{name} of several arrays")
     check((one["VTKHDF"].attrs["Direction"] == other["VTKHDF"].attrs["Direction"]).all(), "the direction")
     check(other["DSM/PointData/v/ValueRanges"].shape == (4, 4), "ranges of three components and the magnitude")
+for option, value, words in (("--dataset", "f", "no datasets to choose 'f' from"), ("--raw-size", "9,9,9", "--raw-size is for bare values"),
+                             ("--spacing", "1,1,2", "--spacing is for bare values")):
+    done = convert(option, value, path("image.vtkhdf"), path("none.vtkhdf"))
+    check(done.returncode != 0 and words in done.stderr, f"{option} of no use is refused: {done.stderr.strip()}")
 done = convert("--quiet", "--arrays", "nothing", path("image.vtkhdf"), path("none.vtkhdf"))
 check(done.returncode != 0 and "has no array 'nothing'" in done.stderr, "an array that is not there is named")
 

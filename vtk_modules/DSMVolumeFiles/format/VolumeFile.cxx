@@ -133,7 +133,7 @@ std::shared_ptr<const VolumeFile> OpenRaw(const std::string& path, const OpenOpt
   return OpenBareFile(path, values, geometry);
 }
 
-/// As OpenVolumeFile, but that a format without levels does not look at the one that is wanted.
+/// As OpenVolumeFile, but that a format without levels, or datasets, does not look at the one that is wanted.
 std::shared_ptr<const VolumeFile> OpenAsItIs(const std::string& path, const OpenOptions& options)
 {
   if (!std::filesystem::exists(path))
@@ -225,6 +225,12 @@ std::shared_ptr<const VolumeFile> OpenVolumeFile(
   {
     throw dsm::Error("'" + path + "' has no coarser levels of detail; level " +
       std::to_string(options.Level) + " is none of it.");
+  }
+  const std::vector<FileArray>& arrays = file->GetArrays();
+  if (!options.Dataset.empty() && (arrays.size() > 1 || arrays.front().Name != options.Dataset))
+  {
+    throw dsm::Error("'" + path + "' has no datasets to choose '" + options.Dataset +
+      "' from: only HDF5 files that are not VTK's have. Choose among its arrays.");
   }
   return file;
 }
