@@ -585,6 +585,10 @@ for name, text in (
         file.write("NDims = 3\nDimSize = 21 13 10\n" + text)
     note(name, [("values", "float32" if "colons" in name else "int32")])
 
+with open(path("backwards.mhd"), "w", encoding="utf-8") as file:
+    file.write("NDims = 3\nDimSize = 21 13 10\nElementType = MET_FLOAT\nElementSpacing = 1 -2 3\nElementDataFile = headers.bin\n")
+note("backwards.mhd", [("values", "float32")], spacing=[1.0, 2.0, 3.0])
+
 # Of what a header says of its own size, MetaIO makes a place in the file, also where the values follow it.
 for name, size, between in (("skip.mha", 300, 300), ("skip_all.mha", -1, 200)):
     header = f"NDims = 3\nDimSize = 21 13 10\nElementType = MET_SHORT\nHeaderSize = {size}\nElementDataFile = LOCAL\n"

@@ -4,6 +4,7 @@
 #include "DSMVolumeFiles/format/HeaderText.h"
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <map>
@@ -120,6 +121,10 @@ std::shared_ptr<const VolumeFile> OpenMetaImage(const std::string& path)
   };
   take({ "offset", "origin", "position" }, geometry.Origin, 3);
   take({ "elementspacing", "elementsize" }, geometry.Spacing, 3);
+  for (double& step : geometry.Spacing)
+  {
+    step = std::abs(step); // as MetaIO reads it
+  }
   double rows[9] = { 1, 0, 0, 0, 1, 0, 0, 0, 1 };
   take({ "transformmatrix", "rotation", "orientation" }, rows, 9);
   // One axis of the image after the other.
