@@ -274,6 +274,17 @@ for name in ("three_raw.zarr", "three_raw.zarr/zarr.json"):
     opened = simple.OpenDataFile(os.path.join(FILES, name))
     check(type(opened).__name__ == "DSMVolumeReader", f"version 3, by {name}")
 
+# Of compressed slices that all together do not fit, each is unpacked for each brick: that is told.
+view = create_view()
+packed = simple.DSMVolumeReader(FileName=os.path.join(FILES, "large/packed.h5"))
+with Messages() as messages:
+    display = show(packed, view, [150.0], DSMMemory=24)
+    render(view)
+check("a brick of it needs up to" in messages.text, f"chunks that are large for the memory: {messages.text}")
+display.DSMMemory = 0
+for proxy in (display, packed, view):
+    simple.Delete(proxy)
+
 # A file that nobody shows any more is closed, and other programs may write to it.
 def count_open(name):
     links = [os.path.join("/proc/self/fd", number) for number in os.listdir("/proc/self/fd")]

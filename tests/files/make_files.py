@@ -92,6 +92,10 @@ for name, size in LARGE.items():
         for z in (3, 8) if name == "slices" else range(size[2]):
             dataset[z] = values("|u1", size=(*size[:2], 1), channel=7 * z)[0]
 
+with h5py.File(path("large/packed.h5"), "w") as file:
+    dataset = file.create_dataset("f", (40, 1024, 1024), "|u1", chunks=(1, 1024, 1024), compression="gzip")
+    dataset[20] = 100
+
 # What is not as the machine has it, the library makes so: fewer bits, half the precision, truth values.
 short = h5py.h5t.STD_I16LE.copy()
 short.set_precision(12)

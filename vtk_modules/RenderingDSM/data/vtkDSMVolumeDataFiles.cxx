@@ -47,9 +47,10 @@ void vtkDSMVolumeData::PublishFile(const vtkDSMFileVolume& file, bool isCoarser,
   { return std::min(bricks * need, file.CountBytes() + need); };
   const std::uint64_t least = ofBricks(4);
   const std::uint64_t room = this->Group->WidenRoomForChunks(ofBricks(8), least);
-  // Smaller ones take no time that is worth a word, nor do values that lie side by side, which are read in parts.
+  // Smaller ones take no time that is worth a word, unless not even a single brick's stay, nor do values that lie side
+  // by side, which are read in parts.
   constexpr std::uint64_t large = std::uint64_t(128) << 20;
-  if (need > large && room < least && messenger.GetRank() == 0)
+  if (need > (room < need ? large / 8 : large) && room < least && messenger.GetRank() == 0)
   {
     TellOfLargeChunks(name, need, room);
   }
