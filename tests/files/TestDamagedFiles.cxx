@@ -431,6 +431,23 @@ TEST_F(DamagedFile, WhoseAttributesChangeHasAnotherStamp)
   EXPECT_TRUE(change(named, "/_ARRAY_DIMENSIONS", { "z", "y", "x" }));
 }
 
+/// The library would take it for what it was, for as long as anybody has it open.
+TEST_F(DamagedFile, ThatIsWrittenAnewInPlaceIsOpenedAsItIs)
+{
+  for (const char* name : { "deflate.h5", "bits12.h5", "contiguous.h5" })
+  {
+    SCOPED_TRACE(name);
+    const auto before = Open(this->Copy(name));
+    EXPECT_EQ(Read(before), "");
+    std::ifstream other(GetFolder() / "ball.h5", std::ios::binary);
+    std::ofstream(this->Path, std::ios::binary) << other.rdbuf();
+    const auto after = vol::OpenVolumeFile(this->Path.string());
+    EXPECT_EQ(after->GetGeometry().Points, rt::Index3(48, 40, 36));
+    EXPECT_EQ(Read(after), "");
+    ExpectWords(Read(before), { name, "was written to", "Reload" });
+  }
+}
+
 /// What was read before must not meet other values: chunks are files that are opened anew.
 TEST_F(DamagedFile, WhoseChunksChangeOrGoAwaySaysSo)
 {

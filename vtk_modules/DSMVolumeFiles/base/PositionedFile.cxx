@@ -107,12 +107,17 @@ std::uint64_t PositionedFile::FindStampOf(const std::string& path)
   return stat(path.c_str(), &state) == 0 ? GetStampOf(state) : 0;
 }
 
-void PositionedFile::CheckUnchanged() const
+bool PositionedFile::IsUnchanged() const
 {
   struct stat state
   {
   };
-  if (fstat(this->Descriptor, &state) == 0 && GetStampOf(state) != this->Stamp)
+  return fstat(this->Descriptor, &state) != 0 || GetStampOf(state) == this->Stamp;
+}
+
+void PositionedFile::CheckUnchanged() const
+{
+  if (!this->IsUnchanged())
   {
     Refuse(this->Path, "was written to since it was opened. Reload it.");
   }

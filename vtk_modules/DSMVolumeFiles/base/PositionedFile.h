@@ -28,7 +28,9 @@ public:
   std::uint64_t GetStamp() const { return this->Stamp; }
   /// That of what is at a path now; 0: there is nothing.
   static std::uint64_t FindStampOf(const std::string& path);
-  /// Throws dsm::Error when it was written to since it was opened.
+  /// Whether nobody has written to it since it was opened.
+  bool IsUnchanged() const;
+  /// Throws dsm::Error when somebody has.
   void CheckUnchanged() const;
 
   /// Reads so many bytes from `offset` on; throws dsm::Error, which names file and place, when there are

@@ -18,6 +18,7 @@
 #include <map>
 #include <mutex>
 #include <optional>
+#include <set>
 #include <utility>
 
 namespace vol
@@ -54,9 +55,8 @@ public:
   ~HdfFile() override
   {
     const std::lock_guard<std::mutex> lock(GetHdfLock());
-    this->Kept.clear();
-    this->Coarser.reset();
-    const HdfHandle last(std::move(this->File));
+    GetOpened().erase(this);
+    this->Close();
   }
 
   static std::shared_ptr<const VolumeFile> Create(
@@ -64,7 +64,17 @@ public:
   {
     const std::lock_guard<std::mutex> lock(GetHdfLock());
     const HdfSilence silence;
-    return std::make_shared<HdfFile>(path, dataset, level);
+    // The library takes a file that it has open for the same, whatever was written to it meanwhile.
+    for (HdfFile* const opened : GetOpened())
+    {
+      if (!opened->Bytes->IsUnchanged() || !opened->Origins.AreUnchanged())
+      {
+        opened->Close();
+      }
+    }
+    auto file = std::make_shared<HdfFile>(path, dataset, level);
+    GetOpened().insert(file.get());
+    return file;
   }
 
   void ReadChunk(
@@ -88,10 +98,10 @@ public:
     const HdfHandle group = this->OpenIndex(this->Arrays[array]);
     const HdfHandle all(H5Gopen2(this->Root, "DSM", H5P_DEFAULT), &H5Gclose);
     if (group.IsOpen() && all.IsOpen() &&
-      this->ReadAttribute(all.Get(), "BrickEdge", H5T_NATIVE_INT, &index.BrickEdge, 1))
+      ReadHdfAttribute(all.Get(), "BrickEdge", H5T_NATIVE_INT, &index.BrickEdge, 1))
     {
-      ReadWhole(group.Get(), "ValueRanges", H5T_NATIVE_DOUBLE, index.Ranges);
-      ReadWhole(group.Get(), "BrickIndex", H5T_NATIVE_UCHAR, index.Bricks);
+      ReadHdfWhole(group.Get(), "ValueRanges", H5T_NATIVE_DOUBLE, index.Ranges);
+      ReadHdfWhole(group.Get(), "BrickIndex", H5T_NATIVE_UCHAR, index.Bricks);
     }
     return index;
   }
@@ -169,6 +179,25 @@ private:
     }
   };
 
+  /// Those there are. Under the lock.
+  static std::set<HdfFile*>& GetOpened()
+  {
+    static auto* const opened = new std::set<HdfFile*>; // static files may end after it otherwise
+    return *opened;
+  }
+
+  /// What the library has open of it, the file last. Then nothing can be read by the library.
+  void Close()
+  {
+    for (Dataset& dataset : this->Kept)
+    {
+      dataset.Id.Reset();
+    }
+    this->Coarser.reset();
+    this->Root = H5I_INVALID_HID;
+    this->File.Reset();
+  }
+
   static HdfHandle Open(const std::string& path)
   {
     HdfHandle file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), &H5Fclose);
@@ -213,50 +242,19 @@ private:
     return { H5Gopen2(this->Root, name.c_str(), H5P_DEFAULT), &H5Gclose };
   }
 
-  /// Empty where there is no such dataset, or it cannot be read.
-  template <class T>
-  static void ReadWhole(hid_t group, const char* name, hid_t type, std::vector<T>& out)
-  {
-    const HdfHandle dataset(H5Dopen2(group, name, H5P_DEFAULT), &H5Dclose);
-    if (!dataset.IsOpen())
-    {
-      return;
-    }
-    const HdfHandle space(H5Dget_space(dataset.Get()), &H5Sclose);
-    out.resize(
-      static_cast<std::size_t>(std::max<hssize_t>(0, H5Sget_simple_extent_npoints(space.Get()))));
-    if (H5Dread(dataset.Get(), type, H5S_ALL, H5S_ALL, H5P_DEFAULT, out.data()) < 0)
-    {
-      out.clear();
-    }
-  }
-
-  template <class T>
-  bool ReadAttribute(hid_t object, const char* name, hid_t type, T* out, hssize_t count) const
-  {
-    if (H5Aexists(object, name) <= 0)
-    {
-      return false;
-    }
-    const HdfHandle attribute(H5Aopen(object, name, H5P_DEFAULT), &H5Aclose);
-    const HdfHandle space(H5Aget_space(attribute.Get()), &H5Sclose);
-    return H5Sget_simple_extent_npoints(space.Get()) == count &&
-      H5Aread(attribute.Get(), type, out) >= 0;
-  }
-
   /// VTK's own: see "VTKHDF File Format", ImageData.
   void FindImage()
   {
     const HdfHandle group(H5Gopen2(this->Root, "VTKHDF", H5P_DEFAULT), &H5Gclose);
     long long extent[6];
-    if (!this->ReadAttribute(group.Get(), "WholeExtent", H5T_NATIVE_LLONG, extent, 6))
+    if (!ReadHdfAttribute(group.Get(), "WholeExtent", H5T_NATIVE_LLONG, extent, 6))
     {
       throw dsm::Error("The file '" + this->Path +
         "' is VTKHDF, but has no image data (no WholeExtent); open it with ParaView's own reader.");
     }
-    this->ReadAttribute(group.Get(), "Origin", H5T_NATIVE_DOUBLE, this->Geometry.Origin, 3);
-    this->ReadAttribute(group.Get(), "Spacing", H5T_NATIVE_DOUBLE, this->Geometry.Spacing, 3);
-    this->ReadAttribute(group.Get(), "Direction", H5T_NATIVE_DOUBLE, this->Geometry.Direction, 9);
+    ReadHdfAttribute(group.Get(), "Origin", H5T_NATIVE_DOUBLE, this->Geometry.Origin, 3);
+    ReadHdfAttribute(group.Get(), "Spacing", H5T_NATIVE_DOUBLE, this->Geometry.Spacing, 3);
+    ReadHdfAttribute(group.Get(), "Direction", H5T_NATIVE_DOUBLE, this->Geometry.Direction, 9);
     for (int axis = 0; axis < 3; ++axis)
     {
       this->Geometry.First[axis] = extent[2 * axis];
@@ -266,7 +264,7 @@ private:
     if (H5Lexists(group.Get(), "Steps", H5P_DEFAULT) > 0)
     {
       const HdfHandle steps(H5Gopen2(group.Get(), "Steps", H5P_DEFAULT), &H5Gclose);
-      ReadWhole(steps.Get(), "Values", H5T_NATIVE_DOUBLE, this->Times);
+      ReadHdfWhole(steps.Get(), "Values", H5T_NATIVE_DOUBLE, this->Times);
       this->Steps = std::max(1, static_cast<int>(this->Times.size()));
       if (!std::is_sorted(this->Times.begin(), this->Times.end(), std::less_equal<>()))
       {
@@ -341,7 +339,7 @@ private:
     {
       return frames;
     }
-    ReadWhole(image, offsets.c_str(), H5T_NATIVE_INT, frames);
+    ReadHdfWhole(image, offsets.c_str(), H5T_NATIVE_INT, frames);
     const int last = static_cast<int>(axes.Frames) - 1;
     const auto isOutside = [=](int frame) { return frame < 0 || frame > last; };
     const bool fits = frames.empty() ? this->Steps - 1 <= last
@@ -479,7 +477,7 @@ private:
   {
     int halo = 0;
     const HdfHandle index = this->OpenIndex(array);
-    if (!index.IsOpen() || !this->ReadAttribute(index.Get(), HdfHalo, H5T_NATIVE_INT, &halo, 1) ||
+    if (!index.IsOpen() || !ReadHdfAttribute(index.Get(), HdfHalo, H5T_NATIVE_INT, &halo, 1) ||
       halo != 1)
     {
       return;

@@ -6,6 +6,7 @@
 
 #include <hdf5.h>
 
+#include <algorithm>
 #include <mutex>
 #include <string>
 #include <utility>
@@ -59,23 +60,58 @@ public:
     , Close(other.Close)
   {
   }
-  ~HdfHandle()
-  {
-    if (this->Id >= 0 && !IsHdfEnding())
-    {
-      this->Close(this->Id);
-    }
-  }
+  ~HdfHandle() { this->Reset(); }
   HdfHandle(const HdfHandle&) = delete;
   HdfHandle& operator=(const HdfHandle&) = delete;
 
   bool IsOpen() const { return this->Id >= 0; }
   hid_t Get() const { return this->Id; }
+  /// Closes it now.
+  void Reset()
+  {
+    const hid_t id = std::exchange(this->Id, H5I_INVALID_HID);
+    if (id >= 0 && !IsHdfEnding())
+    {
+      this->Close(id);
+    }
+  }
 
 private:
   hid_t Id = H5I_INVALID_HID;
   Closer Close = nullptr;
 };
+
+/// All of a dataset. Empty where there is no such dataset, or it cannot be read. Under the lock.
+template <class T>
+void ReadHdfWhole(hid_t group, const char* name, hid_t type, std::vector<T>& out)
+{
+  const HdfHandle dataset(H5Dopen2(group, name, H5P_DEFAULT), &H5Dclose);
+  if (!dataset.IsOpen())
+  {
+    return;
+  }
+  const HdfHandle space(H5Dget_space(dataset.Get()), &H5Sclose);
+  out.resize(
+    static_cast<std::size_t>(std::max<hssize_t>(0, H5Sget_simple_extent_npoints(space.Get()))));
+  if (H5Dread(dataset.Get(), type, H5S_ALL, H5S_ALL, H5P_DEFAULT, out.data()) < 0)
+  {
+    out.clear();
+  }
+}
+
+/// False where there is no such attribute, or not with so many values. Under the lock.
+template <class T>
+bool ReadHdfAttribute(hid_t object, const char* name, hid_t type, T* out, hssize_t count)
+{
+  if (H5Aexists(object, name) <= 0)
+  {
+    return false;
+  }
+  const HdfHandle attribute(H5Aopen(object, name, H5P_DEFAULT), &H5Aclose);
+  const HdfHandle space(H5Aget_space(attribute.Get()), &H5Sclose);
+  return H5Sget_simple_extent_npoints(space.Get()) == count &&
+    H5Aread(attribute.Get(), type, out) >= 0;
+}
 
 /// The library prints its errors, unless it is told not to; what went wrong is said by us.
 class HdfSilence

@@ -200,16 +200,26 @@ std::uint64_t HdfOrigins::GetStamp(std::uint64_t own) const
   return hash.Get();
 }
 
+std::string HdfOrigins::FindChanged() const
+{
+  const auto changed = std::find_if(this->Stamps.begin(), this->Stamps.end(),
+    [](const auto& one) { return PositionedFile::FindStampOf(one.first) != one.second; });
+  return changed == this->Stamps.end() ? std::string() : changed->first;
+}
+
+bool HdfOrigins::AreUnchanged() const
+{
+  return this->FindChanged().empty();
+}
+
 void HdfOrigins::CheckUnchanged() const
 {
-  for (const auto& [path, stamp] : this->Stamps)
+  const std::string changed = this->FindChanged();
+  if (!changed.empty())
   {
-    if (PositionedFile::FindStampOf(path) != stamp)
-    {
-      throw dsm::Error("The file '" + path +
-        "' was written to, or is gone, since it was opened, and others have values from it. Reload "
-        "them.");
-    }
+    throw dsm::Error("The file '" + changed +
+      "' was written to, or is gone, since it was opened, and others have values from it. Reload "
+      "them.");
   }
 }
 

@@ -27,9 +27,12 @@ public:
   std::uint64_t GetStamp(std::uint64_t own) const;
   /// Throws dsm::Error when one was written to since it was added. Any thread.
   void CheckUnchanged() const;
+  bool AreUnchanged() const;
 
 private:
   void Keep(const std::string& path);
+  /// One that was written to; empty: none was.
+  std::string FindChanged() const;
   void AddSources(const std::string& path, hid_t properties);
 
   std::map<std::string, std::uint64_t> Stamps; ///< by path
