@@ -58,9 +58,8 @@ bool MayBe(const Json& named, std::size_t first, const std::string& order)
     names += (names.empty() ? "" : ", ") + GetText(axis, "name");
   }
   throw dsm::Error("The Zarr array '" + folder + "' is no volume with its axes '" + names +
-    "': its last three axes, and no others, must be in space, in the order z, y, x or x, y, z; one "
-    "of "
-    "channels may be behind them. Write it with its axes in that order.");
+    "': its last three axes, and no others, must be in space, in the order z, y, x or x, y, z; "
+    "one of channels may be behind them. Write it with its axes in that order.");
 }
 
 } // namespace
