@@ -75,7 +75,7 @@ expect_then_delete(image_source(CONSTANT), ["'f' has the same value everywhere"]
 # Values beyond 32-bit floats.
 for scale in (1e51, 1e-60):
     scaled = f"image.SetExtent(piece)\nadd(image, distance(piece) * {scale})\n"
-    expect_then_delete(image_source(scaled), ["'f' has values too large, or too small"], isovalues=[])
+    expect_then_delete(image_source(scaled), [], isovalues=[], empty=False)
     expect_then_delete(image_source(scaled), [], isovalues=[0.7 * scale], empty=False)
 
 expect_then_delete(image_source("image.SetExtent(piece)\nadd(image, points(piece)[0])\n",

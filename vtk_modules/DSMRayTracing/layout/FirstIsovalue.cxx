@@ -5,9 +5,7 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstdint>
-#include <limits>
 
 namespace rt
 {
@@ -20,24 +18,6 @@ constexpr double OpenPenalty = 0.35;
 
 /// Worths that are this near to the best are as good; the middle of them is taken.
 constexpr double Tolerance = 0.02;
-
-/// The range of all fields; empty (First > Last) when none holds data.
-ValueRange FindRange(const std::vector<std::shared_ptr<const VoxelField>>& fields)
-{
-  ValueRange range{ 1.0f, -1.0f };
-  for (const auto& field : fields)
-  {
-    if (!field || field->Hierarchy.GetRange().First > field->Hierarchy.GetRange().Last)
-    {
-      continue;
-    }
-    const ValueRange& one = field->Hierarchy.GetRange();
-    const bool isFirst = range.First > range.Last;
-    range.First = isFirst ? one.First : std::min(range.First, one.First);
-    range.Last = isFirst ? one.Last : std::max(range.Last, one.Last);
-  }
-  return range;
-}
 
 /// Of each border, how much its surface is worth; negative where there is none.
 std::array<double, IsovalueSurvey::Intervals> FindWorths(const IsovalueSurvey& survey)
@@ -105,11 +85,6 @@ IsovalueSurvey LookThrough(
 std::optional<double> FindFirstIsovalue(
   const std::vector<std::shared_ptr<const VoxelField>>& fields, dsm::Messenger& messenger)
 {
-  const ValueRange range = FindRange(fields); // the same on every rank
-  if (!(range.First < range.Last) || !std::isfinite(range.First) || !std::isfinite(range.Last))
-  {
-    return std::nullopt;
-  }
   IsovalueSurvey all = LookThrough(fields, messenger);
   for (const auto& field : fields)
   {
@@ -135,13 +110,6 @@ std::optional<double> FindFirstIsovalue(
   const double border =
     0.5 * static_cast<double>((first - worths.begin()) + (last - worths.begin()));
   return all.GetBorder(border);
-}
-
-bool AreBeyondFloats(const std::vector<std::shared_ptr<const VoxelField>>& fields)
-{
-  const ValueRange range = FindRange(fields);
-  const float width = range.Last - range.First;
-  return width > 0.0f && (std::isinf(width) || width < std::numeric_limits<float>::min());
 }
 
 } // namespace rt

@@ -21,10 +21,6 @@ namespace rt
 std::optional<double> FindFirstIsovalue(
   const std::vector<std::shared_ptr<const VoxelField>>& fields, dsm::Messenger& messenger);
 
-/// Whether it is set nowhere because the values are so large, or so small, that macrocells, whose
-/// ranges are floats, do not tell them apart. The same on every rank.
-bool AreBeyondFloats(const std::vector<std::shared_ptr<const VoxelField>>& fields);
-
 } // namespace rt
 
 #endif

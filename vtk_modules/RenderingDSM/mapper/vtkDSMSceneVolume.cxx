@@ -422,11 +422,9 @@ void vtkDSMSceneVolume::AddTo(rt::Scene& scene)
   if (!look.IsLikeRayCastMapper() && this->Mapper->GetNumberOfIsoValues() == 0 &&
     this->Mapper->GetAutomaticIsoValue() && !this->Suggested && !this->Iso->GetFields().empty())
   {
-    this->Messages.push_back("The isosurface array '" + this->Iso->Choice.Name + "' has " +
-      (rt::AreBeyondFloats(this->Iso->GetFields())
-          ? "values too large, or too small, for an isovalue to be chosen from them. Set one."
-          : "the same value everywhere, or none, so there is no surface to show. Choose another "
-            "array."));
+    this->Messages.push_back("The isosurface array '" + this->Iso->Choice.Name +
+      "' has the same value everywhere, or none, so there is no surface to show. Choose another "
+      "array.");
   }
   if (isovalues.empty() || this->Iso->GetFields().empty())
   {
