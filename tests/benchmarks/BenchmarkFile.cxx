@@ -6,8 +6,8 @@
 #include "DSMRayTracing/build/VoxelBrickReader.h"
 #include "DSMRayTracing/build/VoxelIndex.h"
 #include "DSMRayTracing/layout/DealBricks.h"
-#include "DSMVolumeFiles/cache/ChunkCache.h"
 #include "DSMVolumeFiles/cache/FileBrickReader.h"
+#include "DSMVolumeFiles/cache/FileSamples.h"
 
 #include <numeric>
 #include <optional>
@@ -15,29 +15,11 @@
 namespace
 {
 
-class FileVoxels final : public rt::VoxelSource
+std::shared_ptr<const rt::VoxelSource> GetSamples(
+  const std::shared_ptr<const vol::VolumeFile>& file, bool scattered)
 {
-public:
-  FileVoxels(std::shared_ptr<const vol::VolumeFile> file, bool scattered)
-    : File(std::move(file))
-    , Scattered(scattered)
-  {
-  }
-  rt::Box GetCells() const override
-  {
-    return { rt::Index3(0), this->File->GetGeometry().Points - rt::Index3(1) };
-  }
-  void ReadSamples(const rt::Box& points, std::byte* out) const override
-  {
-    vol::ChunkCache& cache = vol::ChunkCache::GetShared();
-    this->Scattered ? cache.ReadScattered(this->File, 0, 0, points, out)
-                    : cache.ReadBox(this->File, 0, 0, points, out);
-  }
-
-private:
-  std::shared_ptr<const vol::VolumeFile> File;
-  bool Scattered;
-};
+  return std::make_shared<vol::FileSamples>(file, 0, 0, vol::ChunkCache::GetShared(), scattered);
+}
 
 rt::VoxelIndex FindIndex(const std::shared_ptr<const vol::VolumeFile>& file,
   const rt::BrickLattice& lattice, int threads, dsm::Messenger& messenger)
@@ -54,7 +36,7 @@ rt::VoxelIndex FindIndex(const std::shared_ptr<const vol::VolumeFile>& file,
       {
         known = rt::VoxelIndex::Decode(index.Bricks, lattice.GetBrickCount());
       }
-      reader.emplace(lattice, std::make_shared<FileVoxels>(file, false));
+      reader.emplace(lattice, GetSamples(file, false));
       pass.Order.resize(lattice.GetBrickCount());
       std::iota(pass.Order.begin(), pass.Order.end(), dsm::BlockId(0));
     });
@@ -92,8 +74,7 @@ rt::IsosurfaceObject PublishBenchmarkFile(
       directory = field->Lattice.CreateDirectory(rt::DealBricks(
         field->Lattice, array.Grid.ChunkSamples, rt::Index3(0), messenger.GetSize()));
       source = std::make_shared<dsm::ReadingSource>(messenger,
-        std::make_shared<vol::FileBrickReader>(field->Lattice,
-          std::make_shared<FileVoxels>(file, true),
+        std::make_shared<vol::FileBrickReader>(field->Lattice, GetSamples(file, true),
           [file](const std::vector<rt::Box>& boxes)
           { vol::ChunkCache::GetShared().Foresee(file, 0, 0, boxes); }),
         path);

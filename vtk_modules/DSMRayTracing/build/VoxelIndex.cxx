@@ -132,6 +132,7 @@ VoxelIndex VoxelIndex::Find(dsm::Messenger& messenger, const BrickLattice& latti
 {
   const char* const what = "Looking through the volume";
   const auto self = static_cast<std::size_t>(messenger.GetRank());
+  const int threads = std::max(1, pass.Threads);
   const bool hasSeen = pass.Seen && pass.Seen->Lattice == lattice;
   std::vector<Box> boxes = messenger.AllGatherValue(hasSeen ? pass.Seen->Bricks : Box{});
   std::optional<Division> division;
@@ -146,7 +147,7 @@ VoxelIndex VoxelIndex::Find(dsm::Messenger& messenger, const BrickLattice& latti
         seen = pass.Seen->Seen;
       }
       seen.resize(seen.size() + division->CountOthers(self));
-      looker.emplace(lattice, reader, std::max(1, pass.Threads));
+      looker.emplace(lattice, reader, threads);
     });
   const std::size_t others = division->CountOthers(self);
   SeenBrick* const found = seen.data() + (seen.size() - others);
@@ -156,7 +157,7 @@ VoxelIndex VoxelIndex::Find(dsm::Messenger& messenger, const BrickLattice& latti
       [&]
       {
         const std::size_t first = others * round / Rounds;
-        ParallelFor(std::max(1, pass.Threads), others * (round + 1) / Rounds - first,
+        ParallelFor(threads, others * (round + 1) / Rounds - first,
           [&](std::size_t number, int thread)
           {
             const dsm::BlockId id = division->GetBegin(self)[first + number];

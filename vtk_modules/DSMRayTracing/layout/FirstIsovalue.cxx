@@ -85,7 +85,23 @@ IsovalueSurvey LookThrough(
 std::optional<double> FindFirstIsovalue(
   const std::vector<std::shared_ptr<const VoxelField>>& fields, dsm::Messenger& messenger)
 {
-  IsovalueSurvey all = LookThrough(fields, messenger);
+  // The same on every rank.
+  const auto isAny = [&](const auto& holds)
+  {
+    return std::any_of(
+      fields.begin(), fields.end(), [&](const auto& field) { return field && holds(*field); });
+  };
+  const auto mayHaveSurface = [](const VoxelField& field)
+  { return field.Hierarchy.GetRange().First < field.Hierarchy.GetRange().Last; };
+  if (!isAny(mayHaveSurface))
+  {
+    return std::nullopt;
+  }
+  IsovalueSurvey all;
+  if (isAny([](const VoxelField& field) { return !field.Survey; }))
+  {
+    all = LookThrough(fields, messenger);
+  }
   for (const auto& field : fields)
   {
     if (field && field->Survey)

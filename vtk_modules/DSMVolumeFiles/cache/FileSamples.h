@@ -13,16 +13,18 @@ namespace vol
 {
 
 /// All samples of an array on points, of one component, in a file, read through a cache of chunks, which must outlive
-/// it, one beside the other. Any thread.
+/// it. Any thread.
 class FileSamples final : public rt::VoxelSource
 {
 public:
-  FileSamples(
-    std::shared_ptr<const VolumeFile> file, std::size_t array, int step, ChunkCache& cache)
+  /// `scattered`: boxes are read here and there, rather than one beside the other.
+  FileSamples(std::shared_ptr<const VolumeFile> file, std::size_t array, int step,
+    ChunkCache& cache, bool scattered = false)
     : File(std::move(file))
     , Array(array)
     , Step(step)
     , Cache(cache)
+    , Scattered(scattered)
   {
   }
   rt::Box GetCells() const override
@@ -31,7 +33,8 @@ public:
   }
   void ReadSamples(const rt::Box& points, std::byte* out) const override
   {
-    this->Cache.ReadBox(this->File, this->Array, this->Step, points, out);
+    this->Scattered ? this->Cache.ReadScattered(this->File, this->Array, this->Step, points, out)
+                    : this->Cache.ReadBox(this->File, this->Array, this->Step, points, out);
   }
 
 private:
@@ -39,6 +42,7 @@ private:
   std::size_t Array;
   int Step;
   ChunkCache& Cache;
+  bool Scattered;
 };
 
 } // namespace vol

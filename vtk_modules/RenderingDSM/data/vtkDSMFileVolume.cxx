@@ -425,17 +425,14 @@ std::shared_ptr<const dsm::BlockReader> vtkDSMFileVolume::CreateSteppingReader(
     const vtkDSMFileVolume volume(values, this->Component);
     vtkDSMReadAhead::Way way;
     way.Reader = volume.CreateReader(lattice, true);
-    if (!digests->empty())
+    way.IsSame = [volume, lattice, digests, differ = std::vector<bool>()](dsm::BlockId id) mutable
     {
-      way.IsSame = [volume, lattice, digests, differ = std::vector<bool>()](dsm::BlockId id) mutable
+      if (differ.empty())
       {
-        if (differ.empty())
-        {
-          differ = volume.FindChanges(lattice, *digests);
-        }
-        return !differ[id];
-      };
-    }
+        differ = volume.FindChanges(lattice, *digests);
+      }
+      return !differ[id];
+    };
     next = ahead.Open(volume.GetKey(lattice), std::move(way));
   }
   return std::make_shared<SteppingReader>(
@@ -514,7 +511,7 @@ rt::VoxelIndex vtkDSMFileVolume::FindIndex(dsm::Messenger& messenger,
   }
   rt::VoxelIndex::Pass pass;
   pass.Threads = threads;
-  pass.Seen = seen && this->IsWhole() ? &*seen : nullptr;
+  pass.Seen = seen ? &*seen : nullptr;
   std::shared_ptr<const dsm::BlockReader> reader;
   messenger.RunTogether(what,
     [&]

@@ -98,8 +98,7 @@ public:
   dsm::BlockDirectory CreateDirectory(const rt::BrickLattice& lattice, int ranks) const;
 
   /// Collective: kept since an earlier time, or found by reading once what the ranks' own values, `own`, have not
-  /// seen of the bricks, and kept. `threads` of this rank
-  /// read; `progress` as of vtkDSMVolumeData::Publish.
+  /// seen of the bricks, and kept. `threads` of this rank read; `progress` as of vtkDSMVolumeData::Publish.
   rt::VoxelIndex FindIndex(dsm::Messenger& messenger, const rt::BrickLattice& lattice,
     const vtkDSMFileValues* own, int threads, const std::function<void(double)>& progress) const;
 
@@ -127,6 +126,7 @@ private:
   std::vector<bool> FindChanges(const rt::BrickLattice& lattice, const Digests& digests) const;
   /// What is read ahead of this step has it.
   std::uint64_t GetKey(const rt::BrickLattice& lattice) const;
+
   std::shared_ptr<const vtkDSMFileValues> Values; ///< of all of the lattice
   int Component;                                  ///< vtkDSMImagePiece::Magnitude for the magnitude
 };
