@@ -62,12 +62,6 @@ bool IsSamePlace(const FileGeometry& a, const FileGeometry& b)
   return isSame;
 }
 
-std::string Describe(const rt::Index3& samples)
-{
-  return std::to_string(samples.x) + " x " + std::to_string(samples.y) + " x " +
-    std::to_string(samples.z);
-}
-
 class SeriesFile final : public VolumeFile
 {
 public:
@@ -185,8 +179,8 @@ private:
       if (mine != other)
       {
         this->Refuse(file,
-          "its array '" + file.GetArrays()[array].Name + "' is in chunks of " + Describe(other) +
-            " samples, not of " + Describe(mine) +
+          "its array '" + file.GetArrays()[array].Name + "' is in chunks of " +
+            DescribeShape(other) + " samples, not of " + DescribeShape(mine) +
             " (large ones that are not compressed count as several). Write all steps with the same "
             "chunks and compression, or open it alone.");
       }

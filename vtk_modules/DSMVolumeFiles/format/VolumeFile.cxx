@@ -184,13 +184,14 @@ VolumeFile::VolumeFile(std::string path)
   this->Number = ++last;
 }
 
+std::string DescribeShape(const rt::Index3& samples)
+{
+  return std::to_string(samples.x) + " x " + std::to_string(samples.y) + " x " +
+    std::to_string(samples.z);
+}
+
 void CheckSizes(const std::string& path, const FileArray& array, std::size_t slices)
 {
-  const auto describe = [](const rt::Index3& samples)
-  {
-    return std::to_string(samples.x) + " x " + std::to_string(samples.y) + " x " +
-      std::to_string(samples.z);
-  };
   const auto refuse = [&](const std::string& what)
   { throw dsm::Error("The file '" + path + "' cannot be used: it tells of " + what + "."); };
   // Indices of images are int, and bytes are counted in 64 bits.
@@ -209,11 +210,11 @@ void CheckSizes(const std::string& path, const FileArray& array, std::size_t sli
   }
   if (!isRight(array.Grid.Samples))
   {
-    refuse(describe(array.Grid.Samples) + " samples");
+    refuse(DescribeShape(array.Grid.Samples) + " samples");
   }
   if (!isRight(array.Grid.ChunkSamples))
   {
-    refuse("chunks of " + describe(array.Grid.ChunkSamples) + " samples");
+    refuse("chunks of " + DescribeShape(array.Grid.ChunkSamples) + " samples");
   }
 }
 

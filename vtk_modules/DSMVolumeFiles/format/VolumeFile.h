@@ -30,6 +30,9 @@ struct FileArray
   }
 };
 
+/// For messages: along x, y and z.
+std::string DescribeShape(const rt::Index3& samples);
+
 /// Throws dsm::Error, which names the file, where an array or its chunks have no samples, or more than can be counted:
 /// what a header tells may be anything. To be called before its bytes are reckoned with. `slices`: boxes of samples in
 /// what is stored as one chunk.
