@@ -124,6 +124,9 @@ failed = len(states) - passed - skipped
 for case in suite.iter("testcase"):
     if case.get("status") in ("notrun", "disabled"):
         print("skipped:", case.get("name"))
+    elif case.get("status") != "run":
+        said = (case.findtext("system-out") or "").split("\n")
+        print("failed:", case.get("name"), *[line for line in said if line.strip()][-12:], sep="\n  ")
 print(f"{passed} passed, {failed} failed, {skipped} skipped")
 sys.exit(0 if failed == 0 and passed > 0 else 1)
 PYTHON

@@ -17,6 +17,12 @@ def holds_blocks(process):
         return "memfd:dsm blocks" in text.read()
 
 
+def get_heap(process, folder):
+    """What a process has in use of its heap, in KiB, by the notes of HeapNotes.cxx."""
+    with open(os.path.join(folder, str(process)), encoding="utf-8") as note:
+        return int(note.read())
+
+
 def is_listening(port):
     """Without connecting, which a server would take for its client."""
     with open("/proc/net/tcp", encoding="utf-8") as text:
@@ -34,10 +40,13 @@ def wait_until_listening(port):
 
 
 class ServerOfRanks:
-    """Runs a command again and again, on one port, while it is entered."""
+    """Runs a command again and again, on one port, while it is entered. What it starts notes its heaps in a folder."""
 
-    def __init__(self, command):
+    def __init__(self, command, heap_notes):
         self.port = find_free_port()
+        self.heaps = tempfile.TemporaryDirectory()
+        loaded = filter(None, (heap_notes, os.environ.get("LD_PRELOAD")))
+        self.environment = dict(os.environ, LD_PRELOAD=":".join(loaded), DSM_HEAP_NOTES=self.heaps.name)
         self.command = command + [f"--server-port={self.port}"]
         self.log = tempfile.TemporaryFile("w+")
         self.ends = False
@@ -54,11 +63,12 @@ class ServerOfRanks:
         if self.process.poll() is None:
             os.killpg(self.process.pid, signal.SIGTERM)
         self.thread.join()
+        self.heaps.cleanup()
 
     def keep(self):
         while not self.ends:
             self.process = subprocess.Popen(
-                self.command, stdout=self.log, stderr=subprocess.STDOUT, start_new_session=True
+                self.command, stdout=self.log, stderr=subprocess.STDOUT, start_new_session=True, env=self.environment
             )
             self.process.wait()
 

@@ -12,7 +12,7 @@ from paraview import simple
 from vtkmodules.vtkIOImage import vtkPNGWriter
 from vtkmodules.vtkRenderingCore import vtkWindowToImageFilter
 
-from server_of_ranks import holds_blocks
+from server_of_ranks import get_heap, holds_blocks
 from started import find_descendants, get_memory
 from steps import get_steps
 
@@ -88,6 +88,7 @@ def describe(step, number):
     entry["said"] = hear()
     ranks = find_descendants(PARENT, "pvserver") if PARENT else []
     entry["memory"] = [get_memory(rank) for rank in ranks]
+    entry["heap"] = [get_heap(rank, os.environ["DSM_WORKDAY_HEAPS"]) for rank in ranks]
     entry["blocks"] = [holds_blocks(rank) for rank in ranks]
     return entry
 
