@@ -4,6 +4,7 @@ run.py does, with the folder of make_files.py behind the other arguments."""
 
 import gc
 import os
+import shutil
 import sys
 
 from dsm_testing import *
@@ -284,6 +285,39 @@ check("a brick of it needs up to" in messages.text, f"chunks that are large for 
 display.DSMMemory = 0
 for proxy in (display, packed, view):
     simple.Delete(proxy)
+
+# What each of three ranks has read of its part is known to two, and to one; what is asked for itself has its own range.
+def count_read():
+    with open("/proc/self/io", encoding="utf-8") as text:
+        return int(text.readline().split()[1])
+
+
+if get_ranks() == 1:
+    os.environ["XDG_CACHE_HOME"] = os.path.join(OUTPUT, "caches", "shares")
+    shutil.rmtree(os.environ["XDG_CACHE_HOME"], ignore_errors=True)
+    bare = os.path.join(OUTPUT, "Reader.raw")
+    numpy.random.default_rng(7).random((96, 96, 96)).tofile(bare)
+    parts = simple.DSMVolumeReader(FileName=bare, RawDimensions=[96] * 3, RawScalarType="double")
+    parts.UpdatePipelineInformation()
+    reader = parts.GetClientSideObject()
+    read, ranges = {}, {}
+    for number in (3, 2, 1):
+        before = count_read()
+        for piece in range(number):
+            reader.Modified()
+            reader.UpdatePiece(piece, number, 0)
+            ranges[number, piece] = reader.GetOutput().GetPointData().GetArray(0).GetRange()
+        read[number] = count_read() - before
+    size = os.path.getsize(bare)
+    check(read[3] >= size and max(read[2], read[1]) < size / 4, f"what was read once is known: {read} of {size} bytes")
+    whole = min(ranges[3, piece][0] for piece in range(3)), max(ranges[3, piece][1] for piece in range(3))
+    check(ranges[1, 0] == whole, f"the ranges of parts together: {ranges[1, 0]} is {whole}")
+    reader.Modified()
+    reader.UpdateExtent([0, 3, 0, 3, 0, 3])
+    corner = reader.GetOutput().GetPointData().GetArray(0)
+    values = [corner.GetTuple1(index) for index in range(64)]
+    check(corner.GetRange() == (min(values), max(values)) != whole, f"that of a corner is its own: {corner.GetRange()}")
+    simple.Delete(parts)
 
 # A file that nobody shows any more is closed, and other programs may write to it.
 def count_open(name):

@@ -258,7 +258,7 @@ TEST(VolumeFiles, RangesAreFoundAndKept)
   const auto file = Open(entry);
   const rt::Box whole{ rt::Index3(0), file->GetArrays()[1].Grid.Samples };
   const rt::Box corner{ rt::Index3(0), rt::Index3(2, 1, 1) };
-  EXPECT_FALSE(vol::LoadRanges(*file, 1, 0, whole));
+  EXPECT_FALSE(vol::LoadRanges(*file, 1, 0, whole, true));
   const auto found = vol::FindRanges(file, 1, 0, whole, 3, [](double) { return true; });
   ASSERT_TRUE(found);
   ASSERT_EQ(found->All.size(), 4u);
@@ -270,11 +270,51 @@ TEST(VolumeFiles, RangesAreFoundAndKept)
   EXPECT_EQ(part->All[1].Greatest, 4.0);
   EXPECT_EQ(part->All[3].Least, std::sqrt(0.0 + 1.0 + 4.0));
   vol::KeepRanges(*file, 1, 0, whole, *found);
-  const auto kept = vol::LoadRanges(*file, 1, 0, whole);
+  const auto kept = vol::LoadRanges(*file, 1, 0, whole, true);
   ASSERT_TRUE(kept);
   EXPECT_EQ(kept->All[3].Greatest, found->All[3].Greatest);
-  EXPECT_FALSE(vol::LoadRanges(*file, 1, 0, corner));
+  // A rank's share may have those of more; what is asked for itself has its own.
+  EXPECT_FALSE(vol::LoadRanges(*file, 1, 0, corner, false));
+  const auto share = vol::LoadRanges(*file, 1, 0, corner, true);
+  ASSERT_TRUE(share);
+  EXPECT_EQ(share->All[3].Greatest, found->All[3].Greatest);
   EXPECT_FALSE(vol::FindRanges(file, 1, 0, whole, 1, [](double) { return false; }));
+}
+
+/// What some ranks found of their shares is known to others with other shares.
+TEST(VolumeFiles, RangesOfSharesArePutTogether)
+{
+  const fs::path caches = GetFolder() / "shares";
+  fs::remove_all(caches);
+  setenv("XDG_CACHE_HOME", caches.c_str(), 1);
+  const auto file = Open(FindEntry("vectors.h5"));
+  const rt::Index3 samples = file->GetArrays()[1].Grid.Samples;
+  const rt::Box whole{ rt::Index3(0), samples };
+  const auto keepShare = [&](const rt::Box& share)
+  {
+    vol::KeepRanges(
+      *file, 1, 0, share, *vol::FindRanges(file, 1, 0, share, 1, [](double) { return true; }));
+  };
+  // Cut in x, and one half of it in y; neighbours share a plane of samples.
+  const rt::Index3 middle = samples / std::int64_t(2);
+  keepShare({ rt::Index3(0), { middle.x + 1, samples.y, samples.z } });
+  EXPECT_FALSE(vol::LoadRanges(*file, 1, 0, whole, true));
+  keepShare({ { middle.x, 0, 0 }, { samples.x, middle.y + 1, samples.z } });
+  EXPECT_FALSE(vol::LoadRanges(*file, 1, 0, whole, true));
+  keepShare({ middle * rt::Index3(1, 1, 0), samples });
+  EXPECT_FALSE(vol::LoadRanges(*file, 1, 0, whole, false));
+  const auto known = vol::LoadRanges(*file, 1, 0, whole, true);
+  const auto found = vol::FindRanges(file, 1, 0, whole, 1, [](double) { return true; });
+  ASSERT_TRUE(known);
+  for (std::size_t index = 0; index < found->All.size(); ++index)
+  {
+    EXPECT_EQ(known->All[index].Least, found->All[index].Least);
+    EXPECT_EQ(known->All[index].Greatest, found->All[index].Greatest);
+    EXPECT_EQ(known->Finite[index].Least, found->Finite[index].Least);
+    EXPECT_EQ(known->Finite[index].Greatest, found->Finite[index].Greatest);
+  }
+  EXPECT_TRUE(vol::LoadRanges(*file, 1, 0, { middle, samples }, true));
+  EXPECT_FALSE(vol::LoadRanges(*file, 0, 0, whole, true));
 }
 
 /// A file that nobody has any more is not held open by its chunks.

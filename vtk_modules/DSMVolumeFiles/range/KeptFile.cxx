@@ -10,6 +10,8 @@
 #include <fstream>
 #include <iterator>
 #include <mutex>
+#include <optional>
+#include <sstream>
 
 #include <unistd.h>
 
@@ -38,32 +40,94 @@ void RemoveUnused(const std::filesystem::path& folder)
   }
 }
 
-} // namespace
-
-KeptFile::KeptFile(
-  const VolumeFile& file, std::size_t array, int step, const rt::Box& box, const std::string& kind)
+/// What the names of files that are kept of an array begin with, the folder included; empty where there is no folder.
+std::filesystem::path GetBeginning(
+  const VolumeFile& file, std::size_t array, int step, const std::string& kind)
 {
   const char* const caches = std::getenv("XDG_CACHE_HOME");
   const char* const home = std::getenv("HOME");
   if (!(caches && *caches) && !(home && *home))
   {
-    return;
+    return {};
   }
   const std::filesystem::path folder =
     caches && *caches ? std::filesystem::path(caches) : std::filesystem::path(home) / ".cache";
   std::error_code failure;
   const VolumeFile::StepOrigin origin = file.GetOrigin(step);
   const std::string path = std::filesystem::absolute(origin.Path, failure).string();
-  const std::string& name = file.GetArrays()[array].Name;
+  const FileArray& kept = file.GetArrays()[array];
+  const rt::Index3& samples = kept.Grid.Samples; // another level of detail has fewer
   const std::int64_t numbers[] = { static_cast<std::int64_t>(origin.Stamp),
-    static_cast<std::int64_t>(array), origin.Step, box.Min.x, box.Min.y, box.Min.z, box.Max.x,
-    box.Max.y, box.Max.z };
+    static_cast<std::int64_t>(array), origin.Step, samples.x, samples.y, samples.z };
   rt::ByteHash hash;
   hash.Add(path.data(), path.size());
-  hash.Add(name.data(), name.size());
+  hash.Add(kept.Name.data(), kept.Name.size());
   hash.Add(kind.data(), kind.size());
   hash.Add(numbers, sizeof(numbers));
-  this->Path = folder / "dsm-ray-tracer" / (kind + "-" + std::to_string(hash.Get()));
+  return folder / "dsm-ray-tracer" / (kind + "-" + std::to_string(hash.Get()) + "-");
+}
+
+/// The box's six numbers, with nothing behind them.
+std::string Write(const rt::Box& box)
+{
+  std::string text;
+  for (const rt::Index3& corner : { box.Min, box.Max })
+  {
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      text += (text.empty() ? "" : "_") + std::to_string(corner[axis]);
+    }
+  }
+  return text;
+}
+
+std::optional<rt::Box> ReadBox(const std::string& text)
+{
+  rt::Box box;
+  std::istringstream stream(text);
+  for (rt::Index3* corner : { &box.Min, &box.Max })
+  {
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      char between = '_';
+      stream >> (*corner)[axis] && stream.get(between);
+    }
+  }
+  return Write(box) == text ? std::optional<rt::Box>(box) : std::nullopt;
+}
+
+} // namespace
+
+KeptFile::KeptFile(
+  const VolumeFile& file, std::size_t array, int step, const rt::Box& box, const std::string& kind)
+  : Path(GetBeginning(file, array, step, kind).string())
+{
+  if (!this->Path.empty())
+  {
+    this->Path += Write(box);
+  }
+}
+
+std::vector<rt::Box> KeptFile::FindBoxes(
+  const VolumeFile& file, std::size_t array, int step, const std::string& kind)
+{
+  std::vector<rt::Box> boxes;
+  const std::filesystem::path beginning = GetBeginning(file, array, step, kind);
+  const std::string name = beginning.filename().string();
+  std::error_code failure; // such as no folder
+  for (auto entry = std::filesystem::directory_iterator(beginning.parent_path(), failure);
+       !failure && entry != std::filesystem::directory_iterator(); entry.increment(failure))
+  {
+    const std::string kept = entry->path().filename().string();
+    if (kept.compare(0, name.size(), name) == 0)
+    {
+      if (const std::optional<rt::Box> box = ReadBox(kept.substr(name.size())))
+      {
+        boxes.push_back(*box);
+      }
+    }
+  }
+  return boxes;
 }
 
 std::vector<std::byte> KeptFile::Load() const

@@ -20,6 +20,10 @@ public:
   KeptFile(const VolumeFile& file, std::size_t array, int step, const rt::Box& box,
     const std::string& kind);
 
+  /// The boxes of which something of this kind is kept, in no order. Throws std::bad_alloc.
+  static std::vector<rt::Box> FindBoxes(
+    const VolumeFile& file, std::size_t array, int step, const std::string& kind);
+
   /// Empty where nothing is kept. Whether it is whole is for the caller to tell. Throws std::bad_alloc.
   std::vector<std::byte> Load() const;
   /// What cannot be kept is found again the next time.

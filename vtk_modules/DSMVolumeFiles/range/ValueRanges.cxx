@@ -11,6 +11,7 @@
 #include <atomic>
 #include <cmath>
 #include <cstring>
+#include <utility>
 
 namespace vol
 {
@@ -19,7 +20,7 @@ namespace
 {
 
 /// What is kept, and in which layout.
-constexpr const char* Kind = "ranges2";
+constexpr const char* Kind = "ranges3";
 
 void Add(ValueRanges& ranges, std::size_t number, double value)
 {
@@ -207,20 +208,30 @@ std::optional<ValueRanges> FindRanges(const std::shared_ptr<const VolumeFile>& f
   return ranges;
 }
 
-std::optional<ValueRanges> LoadRanges(
-  const VolumeFile& file, std::size_t array, int step, const rt::Box& box)
+namespace
+{
+
+/// Those of all of the array, if the file tells them.
+std::optional<ValueRanges> ReadOwn(const VolumeFile& file, std::size_t array, int step)
 {
   ValueRanges ranges(file.GetArrays()[array].Components);
   const std::vector<double> own = file.ReadIndex(array, step).Ranges;
-  if (own.size() == 4 * ranges.All.size())
+  if (own.size() != 4 * ranges.All.size())
   {
-    for (std::size_t index = 0; index < ranges.All.size(); ++index)
-    {
-      ranges.All[index] = { own[4 * index], own[4 * index + 1] };
-      ranges.Finite[index] = { own[4 * index + 2], own[4 * index + 3] };
-    }
-    return ranges;
+    return std::nullopt;
   }
+  for (std::size_t index = 0; index < ranges.All.size(); ++index)
+  {
+    ranges.All[index] = { own[4 * index], own[4 * index + 1] };
+    ranges.Finite[index] = { own[4 * index + 2], own[4 * index + 3] };
+  }
+  return ranges;
+}
+
+std::optional<ValueRanges> LoadKept(
+  const VolumeFile& file, std::size_t array, int step, const rt::Box& box)
+{
+  ValueRanges ranges(file.GetArrays()[array].Components);
   const std::vector<std::byte> kept = KeptFile(file, array, step, box, Kind).Load();
   const std::size_t list = ranges.All.size() * sizeof(ValueRange);
   if (kept.size() != 2 * list)
@@ -229,6 +240,78 @@ std::optional<ValueRanges> LoadRanges(
   }
   std::memcpy(ranges.All.data(), kept.data(), list);
   std::memcpy(ranges.Finite.data(), kept.data() + list, list);
+  return ranges;
+}
+
+/// What of `box` is outside of `other`, in boxes that share nothing.
+void AddOutside(rt::Box box, const rt::Box& other, std::vector<rt::Box>& out)
+{
+  for (int axis = 0; axis < 3 && !box.IsEmpty(); ++axis)
+  {
+    rt::Box below = box;
+    rt::Box above = box;
+    below.Max[axis] = std::min(box.Max[axis], other.Min[axis]);
+    above.Min[axis] = std::max(box.Min[axis], other.Max[axis]);
+    for (const rt::Box& beside : { below, above })
+    {
+      if (!beside.IsEmpty())
+      {
+        out.push_back(beside);
+      }
+    }
+    box.Min[axis] = std::max(box.Min[axis], other.Min[axis]);
+    box.Max[axis] = std::min(box.Max[axis], other.Max[axis]);
+  }
+}
+
+/// Of kept boxes, the smallest first, that together have all of a box; nothing where they do not.
+std::optional<ValueRanges> LoadCovering(
+  const VolumeFile& file, std::size_t array, int step, const rt::Box& box)
+{
+  std::vector<rt::Box> boxes = KeptFile::FindBoxes(file, array, step, Kind);
+  std::sort(boxes.begin(), boxes.end(),
+    [](const rt::Box& a, const rt::Box& b) { return a.GetCount() < b.GetCount(); });
+  ValueRanges ranges(file.GetArrays()[array].Components);
+  std::vector<rt::Box> left{ box };
+  for (const rt::Box& one : boxes)
+  {
+    const auto meets = [&](const rt::Box& part) { return !rt::Intersect(part, one).IsEmpty(); };
+    const std::optional<ValueRanges> kept = std::any_of(left.begin(), left.end(), meets)
+      ? LoadKept(file, array, step, one)
+      : std::nullopt;
+    if (kept)
+    {
+      ranges.Add(*kept);
+      std::vector<rt::Box> outside;
+      for (const rt::Box& part : left)
+      {
+        AddOutside(part, one, outside);
+      }
+      left = std::move(outside);
+    }
+  }
+  return left.empty() ? std::optional<ValueRanges>(std::move(ranges)) : std::nullopt;
+}
+
+} // namespace
+
+std::optional<ValueRanges> LoadRanges(
+  const VolumeFile& file, std::size_t array, int step, const rt::Box& box, bool isShare)
+{
+  const rt::Index3& samples = file.GetArrays()[array].Grid.Samples;
+  std::optional<ValueRanges> ranges;
+  if (isShare || (box.Min == rt::Index3(0) && box.Max == samples))
+  {
+    ranges = ReadOwn(file, array, step);
+  }
+  if (!ranges)
+  {
+    ranges = LoadKept(file, array, step, box);
+  }
+  if (!ranges && isShare)
+  {
+    ranges = LoadCovering(file, array, step, box);
+  }
   return ranges;
 }
 

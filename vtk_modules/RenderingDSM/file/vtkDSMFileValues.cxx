@@ -93,7 +93,7 @@ const vol::ValueRanges* vtkDSMFileValues::FindRanges(
   const std::lock_guard<std::mutex> lock(this->RangesLock);
   if (!this->Ranges)
   {
-    this->Ranges = vol::LoadRanges(*this->File, this->Array, this->Step, this->Box);
+    this->Ranges = vol::LoadRanges(*this->File, this->Array, this->Step, this->Box, this->IsShare);
   }
   if (!this->Ranges)
   {

@@ -45,6 +45,9 @@ public:
   /// The samples of boxes will probably be needed soon: the system is told. Nothing fails.
   void Foresee(std::vector<rt::Box> boxes) const;
 
+  /// The part is what a rank has of all of the array: FindRanges may find those of more (vol::LoadRanges).
+  void SetShare(bool isShare) { this->IsShare = isShare; }
+
   /// Equal only, for all practical purposes, for equal values.
   std::uint64_t GetStamp() const;
 
@@ -78,6 +81,7 @@ private:
   int NextStep;
   rt::Box Box;
   vol::OpenOptions Options;
+  bool IsShare = false;
   mutable std::mutex RangesLock;
   mutable std::optional<vol::ValueRanges> Ranges;
   mutable std::optional<rt::SeenBricks> Seen;

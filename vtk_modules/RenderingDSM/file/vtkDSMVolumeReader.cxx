@@ -39,6 +39,17 @@ void OfferNothing(vtkInformation* information)
   information->Set(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), none, 6);
 }
 
+/// Whether all of the data are wanted, by this rank or by several, of which each has its part.
+bool IsShare(vtkInformation* information)
+{
+  using Pipeline = vtkStreamingDemandDrivenPipeline;
+  const int* const whole = information->Get(Pipeline::WHOLE_EXTENT());
+  const int* const wanted = information->Has(vtkDataObject::ALL_PIECES_EXTENT())
+    ? information->Get(vtkDataObject::ALL_PIECES_EXTENT())
+    : information->Get(Pipeline::UPDATE_EXTENT());
+  return whole && wanted && std::equal(whole, whole + 6, wanted);
+}
+
 } // namespace
 
 vtkStandardNewMacro(vtkDSMVolumeReader);
@@ -319,7 +330,7 @@ void vtkDSMVolumeReader::TellOfScalars(vtkInformation* information) const
   }
 }
 
-void vtkDSMVolumeReader::AddArrays(vtkImageData* image, int step)
+void vtkDSMVolumeReader::AddArrays(vtkImageData* image, int step, bool isShare)
 {
   const int nextStep = this->Self->Advance(step);
   const auto& file = this->Self->File;
@@ -348,6 +359,7 @@ void vtkDSMVolumeReader::AddArrays(vtkImageData* image, int step)
     }
     const auto values =
       std::make_shared<vtkDSMFileValues>(file, index, step, box, nextStep, this->Self->Options);
+    values->SetShare(isShare);
     values->FindRanges(
       [&](double part)
       {
@@ -411,7 +423,7 @@ int vtkDSMVolumeReader::RequestData(
   }
   try
   {
-    this->AddArrays(image, step);
+    this->AddArrays(image, step, IsShare(information));
   }
   catch (const std::exception& error)
   {

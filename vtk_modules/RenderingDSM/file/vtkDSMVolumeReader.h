@@ -145,7 +145,7 @@ private:
   const vol::FileArray* FindScalars() const;
   /// The type of the scalars: filters of images make room by it before the values are there.
   void TellOfScalars(vtkInformation* information) const;
-  void AddArrays(vtkImageData* image, int step);
+  void AddArrays(vtkImageData* image, int step, bool isShare);
 
   std::vector<std::string> FileNames;
   std::string SelectedFor; ///< the first file when the arrays were chosen
