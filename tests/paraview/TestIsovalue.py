@@ -24,3 +24,16 @@ single = render(view)
 check(0 < get_covered(single).sum() < get_covered(suggested).sum(), "without a list, the single value counts")
 display.DSMIsoValues = [0.2]
 check_equal(render(view), single, "as a list of one would", 0)
+
+# Which array is shown: the active scalars, or, without any, the first of one component, whatever names come before it.
+FLOW = """
+from vtkmodules.numpy_interface import algorithms
+values = inputs[0].PointData.GetArray(0)
+output.PointData.append(algorithms.make_vector(values, values, 2 * values), "a velocity")
+output.PointData.append(values, "pressure")
+"""
+for script, wanted in ((FLOW, "pressure"), (FLOW + "output.PointData.SetActiveScalars('a velocity')", "a velocity")):
+    flow = simple.ProgrammableFilter(Input=volume, Script=script)
+    shown = simple.Show(flow, view)
+    check(list(shown.DSMIsoArray) == ["POINTS", wanted], f"the array that is shown first: {shown.DSMIsoArray}")
+    simple.Delete(flow)
