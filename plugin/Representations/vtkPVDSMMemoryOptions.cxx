@@ -11,21 +11,30 @@ namespace
 {
 
 /// What a setting gets that takes numbers from `least` to `most`. Where that is not `value`, it is told; once, however
-/// many displays pass the same number on, until another one is set.
+/// many displays pass the same number on, until the one that told gets another. New displays have numbers of their own
+/// for a moment.
 int KeepWithin(
   vtkPVDSMMemoryOptions* options, const std::string& setting, int value, int least, int most)
 {
-  static std::map<std::string, int> told;
+  struct Telling
+  {
+    int Value;
+    const vtkPVDSMMemoryOptions* Options;
+  };
+  static std::map<std::string, Telling> told;
+  const auto before = told.find(setting);
   const int kept = std::clamp(value, least, most);
   if (kept == value)
   {
-    told.erase(setting);
+    if (before != told.end() && before->second.Options == options)
+    {
+      told.erase(before);
+    }
     return kept;
   }
-  const auto [entry, isNew] = told.emplace(setting, value);
-  if (isNew || entry->second != value)
+  if (before == told.end() || before->second.Value != value)
   {
-    entry->second = value;
+    told[setting] = { value, options };
     vtkWarningWithObjectMacro(options, << setting << " cannot be " << value << ": it is " << kept
                                        << ", the " << (value < least ? "least." : "most."));
   }

@@ -173,6 +173,18 @@ for name, bad, kept, good in (
             setattr(display, name, good)
             display.UpdateVTKObjects()
 
+# Nor does it bring them anew to show something else meanwhile.
+with Messages() as messages:
+    display.DSMCacheSize = 0
+    for radius in (1, 2):
+        other = simple.Sphere(Radius=radius)
+        show_traced(other, view)
+        render(view)
+        simple.Delete(other)
+    said = [line for line in messages.text.splitlines() if "cannot be" in line]
+    check(len(said) == 1, f"told once, with other displays beside: {said}")
+    display.DSMCacheSize = 256
+
 # Where all is behind the camera, VTK's clipping range is all but nothing. ParaView's first picture may be such a one.
 behind = create_view()
 with Messages() as messages:
