@@ -151,7 +151,14 @@ private:
 
 std::vector<std::byte> ToBytes(const std::vector<NumberedChunk>& chunks, const ValueRanges& ranges)
 {
+  std::size_t count = 2 * ranges.All.size() * sizeof(ValueRange);
+  for (const auto& [number, chunk] : chunks)
+  {
+    count += sizeof(number) + sizeof(chunk.First) + sizeof(chunk.Last) + 2 * sizeof(std::uint64_t) +
+      chunk.Bytes.size() + chunk.HaloRecord.size();
+  }
   std::vector<std::byte> bytes;
+  bytes.reserve(count); // they are up to an eighth of the memory
   for (const std::vector<ValueRange>* list : { &ranges.All, &ranges.Finite })
   {
     Put(bytes, list->data(), list->size());
