@@ -317,6 +317,24 @@ TEST(VolumeFiles, RangesOfSharesArePutTogether)
   EXPECT_FALSE(vol::LoadRanges(*file, 0, 0, whole, true));
 }
 
+/// VTK's attribute of the points' values.
+TEST(VolumeFiles, ScalarsAreThoseThatVtkTells)
+{
+  for (const char* const name : { "scalars.vtkhdf", "scalars_text.vtkhdf" })
+  {
+    const Json entry = FindEntry(name);
+    if (entry.is_null())
+    {
+      GTEST_SKIP() << "no files";
+    }
+    const auto file = Open(entry);
+    for (const vol::FileArray& array : file->GetArrays())
+    {
+      EXPECT_EQ(array.IsActive, array.Name == "g") << name;
+    }
+  }
+}
+
 /// A file that nobody has any more is not held open by its chunks.
 TEST(VolumeFiles, ThatNobodyHasAreClosed)
 {

@@ -201,6 +201,15 @@ note(
     direction=[0.0, -1.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0],
 )
 
+# What are the scalars: of a fixed length, as VTK writes it, and as h5py does.
+for name, scalars in (("scalars.vtkhdf", np.bytes_("g")), ("scalars_text.vtkhdf", "g")):
+    with h5py.File(path(name), "w") as file:
+        points = create_image(file).create_group("PointData")
+        points.create_dataset("f", data=values("<f4"))
+        points.create_dataset("g", data=values("|u1", channel=1))
+        points.attrs["Scalars"] = scalars
+    note(name, [("f", "float32"), ("g", "uint8", 1, 1)])
+
 # Time steps in one file.
 stacked = np.stack([values("<f4", step=t) for t in range(3)])
 with h5py.File(path("steps.h5"), "w") as file:

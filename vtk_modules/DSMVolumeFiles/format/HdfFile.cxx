@@ -310,23 +310,19 @@ private:
     }
   }
 
-  /// What a brick file says of it.
+  /// What a brick file says of the scalars, or VTK's own attribute.
   void FindActive()
   {
-    const HdfHandle points(H5Gopen2(this->Root, "DSM/PointData", H5P_DEFAULT), &H5Gclose);
-    if (!points.IsOpen() || H5Aexists(points.Get(), HdfScalars) <= 0)
+    for (const char* const group : { "DSM/PointData", "VTKHDF/PointData" })
     {
-      return;
-    }
-    const HdfHandle attribute(H5Aopen(points.Get(), HdfScalars, H5P_DEFAULT), &H5Aclose);
-    const HdfHandle type(H5Aget_type(attribute.Get()), &H5Tclose);
-    std::string name(H5Tget_size(type.Get()), '\0');
-    if (H5Tget_class(type.Get()) == H5T_STRING && H5Tis_variable_str(type.Get()) == 0 &&
-      H5Aread(attribute.Get(), type.Get(), name.data()) >= 0)
-    {
-      for (FileArray& array : this->Arrays)
+      const HdfHandle points(H5Gopen2(this->Root, group, H5P_DEFAULT), &H5Gclose);
+      const std::string name = points.IsOpen() ? ReadHdfText(points.Get(), HdfScalars) : "";
+      const auto active = std::find_if(this->Arrays.begin(), this->Arrays.end(),
+        [&](const FileArray& array) { return !array.OnCells && array.Name == name; });
+      if (active != this->Arrays.end())
       {
-        array.IsActive = !array.OnCells && array.Name == name;
+        active->IsActive = true;
+        return;
       }
     }
   }

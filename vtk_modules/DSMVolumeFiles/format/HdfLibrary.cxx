@@ -99,6 +99,31 @@ hid_t GetHdfType(rt::ScalarType type)
   return H5I_INVALID_HID;
 }
 
+std::string ReadHdfText(hid_t object, const char* name)
+{
+  if (H5Aexists(object, name) <= 0)
+  {
+    return {};
+  }
+  const HdfHandle attribute(H5Aopen(object, name, H5P_DEFAULT), &H5Aclose);
+  const HdfHandle type(H5Aget_type(attribute.Get()), &H5Tclose);
+  const HdfHandle space(H5Aget_space(attribute.Get()), &H5Sclose);
+  if (H5Tget_class(type.Get()) != H5T_STRING || H5Sget_simple_extent_npoints(space.Get()) != 1)
+  {
+    return {};
+  }
+  if (H5Tis_variable_str(type.Get()) > 0)
+  {
+    char* text = nullptr;
+    const bool isRead = H5Aread(attribute.Get(), type.Get(), &text) >= 0 && text;
+    std::string copy = isRead ? text : "";
+    H5free_memory(text);
+    return copy;
+  }
+  std::string text(H5Tget_size(type.Get()), '\0');
+  return H5Aread(attribute.Get(), type.Get(), text.data()) >= 0 ? text.c_str() : "";
+}
+
 HdfSilence::HdfSilence()
 {
   H5Eget_auto2(H5E_DEFAULT, &this->Function, &this->Data);

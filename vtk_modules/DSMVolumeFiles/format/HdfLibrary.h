@@ -19,7 +19,8 @@ namespace vol
 constexpr char HdfLevels[] = "DSM/Levels";
 /// Attribute of what it has beside an array's values: samples by which a chunk's halo reaches beyond it.
 constexpr char HdfHalo[] = "HaloSamples";
-/// Attribute of the group that has all of that for the points: the name of the array that are their scalars.
+/// Attribute of the group that has all of that for the points, and of VTK's group of their values: the name of the
+/// array that are their scalars.
 constexpr char HdfScalars[] = "Scalars";
 /// And of chunks that are not compressed: HaloRecord of each.
 constexpr char HdfHaloRecords[] = "Halos";
@@ -112,6 +113,9 @@ bool ReadHdfAttribute(hid_t object, const char* name, hid_t type, T* out, hssize
   return H5Sget_simple_extent_npoints(space.Get()) == count &&
     H5Aread(attribute.Get(), type, out) >= 0;
 }
+
+/// An attribute's text; empty where there is no such attribute, or it is no text. Under the lock.
+std::string ReadHdfText(hid_t object, const char* name);
 
 /// The library prints its errors, unless it is told not to; what went wrong is said by us.
 class HdfSilence
