@@ -238,6 +238,13 @@ check(image.PointData.keys() == ["f", "v"] and image.CellData.keys() == ["c"], "
 image.PointArrays = ["v"]
 image.UpdatePipeline()
 check(image.PointData.keys() == ["v"] and image.CellData.keys() == ["c"], "what is no more chosen is not there")
+image.FileName = [os.path.join(FILES, "scalars.vtkhdf")]
+image.PointArrays = ["g"]
+image.UpdatePipeline()
+check(image.PointData.keys() == ["g"], "nor of another file")
+image.FileName = [os.path.join(FILES, "scalars_text.vtkhdf")]
+image.UpdatePipeline()
+check(image.PointData.keys() == ["g"], "and what was chosen of a file holds for the same arrays of another")
 
 with Messages() as messages:
     bare = simple.DSMVolumeReader(FileName=os.path.join(FILES, "bare.raw"))

@@ -122,13 +122,6 @@ void vtkDSMVolumeReader::AddFileName(const char* name)
     return;
   }
   this->FileNames.emplace_back(name);
-  // Files of a series that are added anew, or with others, keep the arrays that were chosen.
-  if (this->FileNames.front() != this->SelectedFor)
-  {
-    this->SelectedFor = this->FileNames.front();
-    this->PointArrays->RemoveAllArrays();
-    this->CellArrays->RemoveAllArrays();
-  }
   this->Modified();
 }
 
@@ -204,9 +197,19 @@ void vtkDSMVolumeReader::Open()
     throw dsm::Error(
       "The file '" + file->GetPath() + "' has more samples along an axis than VTK can count.");
   }
-  for (const vol::FileArray& array : file->GetArrays())
+  // What was chosen of another file holds for arrays of the same names.
+  for (const bool onCells : { false, true })
   {
-    (array.OnCells ? this->CellArrays : this->PointArrays)->AddArray(array.Name.c_str());
+    std::vector<const char*> names;
+    for (const vol::FileArray& array : file->GetArrays())
+    {
+      if (array.OnCells == onCells)
+      {
+        names.push_back(array.Name.c_str());
+      }
+    }
+    (onCells ? this->CellArrays : this->PointArrays)
+      ->SetArrays(names.data(), static_cast<int>(names.size()));
   }
   this->Self->File = file;
   this->Self->Options = options;

@@ -148,7 +148,6 @@ private:
   void AddArrays(vtkImageData* image, int step, bool isShare);
 
   std::vector<std::string> FileNames;
-  std::string SelectedFor; ///< the first file when the arrays were chosen
   int Level = 0;
   std::string DatasetName;
   int RawDimensions[3] = { 0, 0, 0 };
