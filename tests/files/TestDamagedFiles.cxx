@@ -197,7 +197,8 @@ TEST_F(DamagedFile, WithAWrongHeaderSaysWhatIsWrong)
   ExpectWords(Read(write("d.mhd",
                 "NDims = 3\nDimSize = 2 2 2\nCompressedData = True\nElementDataFile = e\n")),
     { "compressed" });
-  ExpectWords(Read(write("e.txt", "no volume")), { "e.txt", "not known", "Zarr" });
+  ExpectWords(Read(write("e.txt", "no volume")), { "e.txt", "not known", "Zarr", "Save Data" });
+  ExpectWords(Read(write("e.h5", "")), { "e.h5", "is empty" });
   ExpectWords(
     Read(write("e.zarr.zip", "PK\x03\x04 and so on")), { "e.zarr.zip", "ZIP", "Unpack it" });
   ExpectWords(Read(write("f.raw", "12345678")), { "f.raw", "bare values" });

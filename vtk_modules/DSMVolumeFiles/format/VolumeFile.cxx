@@ -116,9 +116,8 @@ std::shared_ptr<const VolumeFile> OpenRaw(const std::string& path, const OpenOpt
   if (rt::Box{ rt::Index3(0), options.Samples }.GetCount() == 0)
   {
     throw dsm::Error("The file '" + path +
-      "' has bare values and no header: enter how many samples there are (Raw Dimensions) along "
-      "each axis, and "
-      "their type.");
+      "' has bare values and no header: enter how many samples there are along each axis (Raw "
+      "Dimensions, or --raw-size of dsm_convert), and their type.");
   }
   BareValues values;
   values.Path = path;
@@ -171,8 +170,14 @@ std::shared_ptr<const VolumeFile> OpenAsItIs(const std::string& path, const Open
     throw dsm::Error("'" + path +
       "' is a ZIP archive, and cannot be read. Unpack it, and open what it has: a Zarr's folder.");
   }
+  if (!std::filesystem::is_directory(path) && std::filesystem::file_size(path) == 0)
+  {
+    throw dsm::Error("The file '" + path + "' is empty.");
+  }
   throw dsm::Error("The format of '" + path +
-    "' is not known. HDF5, Zarr (a folder), NRRD, MetaImage (.mhd, .mha) and .raw are.");
+    "' is not known, or the file is damaged at its beginning. HDF5, Zarr (a folder), NRRD, "
+    "MetaImage (.mhd, .mha) and .raw are known. Whatever else ParaView opens as an image, its Save "
+    "Data writes as a volume in bricks.");
 }
 
 } // namespace
