@@ -14,9 +14,9 @@
 #include <filesystem>
 #include <functional>
 #include <iostream>
-#include <limits>
 #include <map>
 #include <sstream>
+#include <utility>
 
 namespace
 {
@@ -26,7 +26,7 @@ constexpr char Usage[] =
 usage: dsm_convert [options] IN OUT
    or: mpirun -np 4 dsm_convert [options] IN OUT
   IN   any volume that DSM Volume Reader reads: HDF5, Zarr (its folder), NRRD, MetaImage, raw
-  OUT  the file to write, such as volume.vtkhdf: VTK's ImageData in HDF5
+  OUT  the file to write, such as volume.vtkhdf or volume.h5: VTK's ImageData in HDF5
 When it is ended early, the same call goes on where it was.
   --arrays A,B        only these arrays (default: all)
   --step N            of a file with several time steps (default 0)
@@ -157,7 +157,11 @@ Options Parse(int argc, char** argv)
       { true,
         [&](auto& name, auto& text)
         {
-          const auto spacing = ToThree(name, text, std::numeric_limits<double>::min());
+          const auto spacing = ToThree(name, text, 0.0);
+          if (std::count(spacing.begin(), spacing.end(), 0.0) > 0)
+          {
+            throw dsm::Error(name + " takes three numbers above 0, not \"" + text + "\".");
+          }
           std::copy(spacing.begin(), spacing.end(), options.Open.Bare.Spacing);
         } } },
     { "quiet", { false, [&](auto&, auto&) { options.IsQuiet = true; } } },
@@ -200,11 +204,22 @@ Options Parse(int argc, char** argv)
   return options;
 }
 
-/// A line that is written over, where somebody looks; else nothing but the end.
-void Tell(double part)
+/// Writes a line over, where somebody looks; each number once, for the line stays in the logs of jobs.
+class Teller
 {
-  std::cerr << '\r' << static_cast<int>(100.0 * part) << " %" << std::flush;
-}
+public:
+  void operator()(double part)
+  {
+    const int percent = static_cast<int>(100.0 * part);
+    if (std::exchange(this->Told, percent) != percent)
+    {
+      std::cerr << '\r' << percent << " %" << std::flush;
+    }
+  }
+
+private:
+  int Told = -1;
+};
 
 void Convert(Options& options, dsm::Messenger& messenger)
 {
@@ -223,8 +238,9 @@ void Convert(Options& options, dsm::Messenger& messenger)
   {
     options.Convert.Threads = messenger.GetCoresPerRank();
   }
-  vol::ConvertVolume(
-    file, options.Out, options.Convert, messenger, options.IsQuiet ? [](double) {} : &Tell);
+  const std::function<void(double)> tell =
+    options.IsQuiet ? std::function<void(double)>([](double) {}) : Teller();
+  vol::ConvertVolume(file, options.Out, options.Convert, messenger, tell);
   if (messenger.GetRank() == 0 && !options.IsQuiet)
   {
     std::cerr << '\r';

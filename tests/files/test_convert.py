@@ -151,6 +151,19 @@ for option, value, words in (("--dataset", "f", "no datasets to choose 'f' from"
     check(done.returncode != 0 and words in done.stderr, f"{option} of no use is refused: {done.stderr.strip()}")
 done = convert("--quiet", "--arrays", "nothing", path("image.vtkhdf"), path("none.vtkhdf"))
 check(done.returncode != 0 and "has no array 'nothing'" in done.stderr, "an array that is not there is named")
+done = convert(*BARE[:-1], "1,0,3", path("convert.raw"), path("none.vtkhdf"))
+check(done.returncode != 0 and "three numbers above 0" in done.stderr, f"no spacing: {done.stderr.strip()}")
+
+# The names the wrong way round: what was to be read is not replaced.
+done = convert("--quiet", path("image.vtkhdf"), path("convert.raw"))
+check(done.returncode != 0 and "let it end in .vtkhdf" in done.stderr, f"another format: {done.stderr.strip()}")
+check(os.path.getsize(path("convert.raw")) == values.nbytes, "and the file of that name is as it was")
+
+# Each number of how far it is, once.
+done = convert(*BARE[1:], path("convert.raw"), path("told.vtkhdf"))
+told = done.stderr.replace("\n", "\r").split("\r")
+told = [line for line in told if line.endswith(" %")]
+check(told[-1:] == ["100 %"] and len(told) == len(set(told)), f"how far it is, and no number twice: {told[:3]} ...")
 
 # Coarser levels: each the mean of 2 x 2 x 2 points of the one before that are numbers, half a sample further.
 def reduce(fine):

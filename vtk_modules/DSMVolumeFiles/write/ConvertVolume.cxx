@@ -8,6 +8,7 @@
 #include <array>
 #include <cstdint>
 #include <filesystem>
+#include <iterator>
 #include <map>
 #include <system_error>
 #include <utility>
@@ -165,6 +166,21 @@ private:
   std::map<Key, ByteBuffer> Gathered; ///< of the boxes that were dealt last, to this rank
 };
 
+/// By the name of another format programs would not open it; and when the names are given the wrong way round, what was to
+/// be read would be replaced.
+void CheckName(const std::string& path)
+{
+  const std::string extension = std::filesystem::path(path).extension().string();
+  const char* const others[] = { ".mha", ".mhd", ".nhdr", ".nrrd", ".raw", ".vti", ".vtk",
+    ".zarr" };
+  if (std::count(std::begin(others), std::end(others), extension) > 0)
+  {
+    throw dsm::Error("'" + path +
+      "' is the name of a file of another format, and HDF5 is written: let it end in .vtkhdf or "
+      ".h5. The file to read is named first.");
+  }
+}
+
 } // namespace
 
 void ConvertVolume(const std::shared_ptr<const VolumeFile>& from, const std::string& path,
@@ -176,6 +192,7 @@ void ConvertVolume(const std::shared_ptr<const VolumeFile>& from, const std::str
     {
       origin = std::make_unique<FileOrigin>(from, options, messenger);
       CheckTarget(*from, options.Step, path);
+      CheckName(path);
     });
   WriteBrickFile(std::move(origin), path, options, messenger, tell);
 }
