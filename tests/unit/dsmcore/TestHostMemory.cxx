@@ -1,7 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "DSMCore/memory/HostMemory.h"
+#include "DSMCore/memory/HostTurn.h"
 
 #include <gtest/gtest.h>
+
+#include <algorithm>
+#include <atomic>
+#include <thread>
+#include <vector>
 
 namespace
 {
@@ -11,6 +17,32 @@ TEST(HostMemory, IsKnownOnLinux)
   const std::uint64_t available = dsm::GetAvailableHostMemory();
   EXPECT_GT(available, std::uint64_t(1) << 20);
   EXPECT_LT(available, std::uint64_t(1) << 50);
+}
+
+TEST(HostMemory, IsTakenByOneAtATime)
+{
+  std::atomic<int> inTurn{ 0 };
+  std::atomic<int> most{ 0 };
+  std::vector<std::thread> threads;
+  for (int thread = 0; thread < 4; ++thread)
+  {
+    threads.emplace_back(
+      [&]
+      {
+        for (int turns = 0; turns < 50; ++turns)
+        {
+          const dsm::HostTurn turn;
+          most = std::max(most.load(), ++inTurn);
+          std::this_thread::yield();
+          --inTurn;
+        }
+      });
+  }
+  for (std::thread& thread : threads)
+  {
+    thread.join();
+  }
+  EXPECT_EQ(most, 1);
 }
 
 } // namespace

@@ -3,6 +3,7 @@
 
 #include "DSMCore/base/Error.h"
 #include "DSMCore/memory/HostMemory.h"
+#include "DSMCore/memory/HostTurn.h"
 
 #include "vtkArrayIteratorTemplate.h"
 #include "vtkObjectFactory.h"
@@ -46,14 +47,19 @@ bool Contains(const rt::Box& box, const rt::Index3& sample)
     sample.y < box.Max.y && sample.z >= box.Min.z && sample.z < box.Max.z;
 }
 
-/// For a copy of all. Throws dsm::Error, which goes on from the array's name.
-void RequireRoom(std::size_t bytes)
+/// Memory for a copy of all: the ranks of a host ask for theirs at the same time, so each has to see what is left when those
+/// before it have taken theirs. `take` also writes to it, for only then it is. Throws dsm::Error, which goes on from the
+/// array's name.
+template <class Take>
+void TakeRoom(std::size_t bytes, const Take& take)
 {
+  const dsm::HostTurn turn;
   if (bytes > dsm::GetAvailableHostMemory() / 2)
   {
     throw dsm::Error("is wanted as a whole, and its " + dsm::FormatMebibytes(bytes) +
       " do not fit half of the memory that is left. Extract a subset first.");
   }
+  take();
 }
 
 void ReadAll(const vtkDSMFileValues& values, void* out)
@@ -195,8 +201,8 @@ void* vtkDSMFileArray<ValueTypeT>::GetVoidPointer(vtkIdType index)
     const std::size_t bytes = count * sizeof(ValueType);
     try
     {
-      RequireRoom(bytes);
-      std::vector<ValueType> copy(count);
+      std::vector<ValueType> copy;
+      TakeRoom(bytes, [&] { copy.resize(count); });
       ReadAll(*this->Values, copy.data());
       this->Copy = std::move(copy);
     }
@@ -385,17 +391,22 @@ vtkSmartPointer<vtkDataArray> vtkDSMReadFileArray(const vtkDSMFileValues& values
   const vol::FileArray& array = values.GetArray();
   const auto made = vtkSmartPointer<vtkDataArray>::Take(
     vtkDataArray::CreateDataArray(vtkDSMGetFileArrayType(array.Type)));
+  made->SetName(array.Name.c_str());
+  made->SetNumberOfComponents(array.Components);
+  const std::size_t bytes = static_cast<std::size_t>(values.GetCount()) * array.GetSampleBytes();
   try
   {
-    RequireRoom(static_cast<std::size_t>(values.GetCount()) * array.GetSampleBytes());
+    TakeRoom(bytes,
+      [&]
+      {
+        made->SetNumberOfTuples(values.GetCount());
+        std::memset(made->GetVoidPointer(0), 0, bytes);
+      });
   }
   catch (const dsm::Error& error)
   {
     throw dsm::Error("The array '" + array.Name + "' " + error.what());
   }
-  made->SetName(array.Name.c_str());
-  made->SetNumberOfComponents(array.Components);
-  made->SetNumberOfTuples(values.GetCount());
   ReadAll(values, made->GetVoidPointer(0));
   return made;
 }
