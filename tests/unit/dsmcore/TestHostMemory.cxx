@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <chrono>
 #include <thread>
 #include <vector>
 
@@ -43,6 +44,16 @@ TEST(HostMemory, IsTakenByOneAtATime)
     thread.join();
   }
   EXPECT_EQ(most, 1);
+}
+
+TEST(HostMemory, IsNotWaitedForWithoutEnd)
+{
+  using Clock = std::chrono::steady_clock;
+  constexpr std::chrono::milliseconds patience(50);
+  const dsm::HostTurn turn;
+  const Clock::time_point begin = Clock::now();
+  const dsm::HostTurn other(patience);
+  EXPECT_GE(Clock::now() - begin, patience);
 }
 
 } // namespace

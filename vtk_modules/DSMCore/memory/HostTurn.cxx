@@ -1,31 +1,32 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "DSMCore/memory/HostTurn.h"
 
-#include <cerrno>
-#include <string>
+#include <thread>
 
 #include <fcntl.h>
 #include <sys/file.h>
-#include <sys/mman.h>
 #include <unistd.h>
 
 namespace dsm
 {
 
-HostTurn::HostTurn()
-  : File(shm_open(
-      ("/dsm-ray-tracer-turn-" + std::to_string(getuid())).c_str(), O_RDWR | O_CREAT, 0600))
+HostTurn::HostTurn(std::chrono::milliseconds patience)
+  : Folder(open("/dev/shm", O_RDONLY | O_DIRECTORY | O_CLOEXEC)) // nothing has to be made there
 {
-  while (this->File >= 0 && flock(this->File, LOCK_EX) != 0 && errno == EINTR)
+  constexpr auto pause = std::chrono::milliseconds(1);
+  const auto end = std::chrono::steady_clock::now() + patience;
+  while (this->Folder >= 0 && flock(this->Folder, LOCK_EX | LOCK_NB) != 0 &&
+    std::chrono::steady_clock::now() < end)
   {
+    std::this_thread::sleep_for(pause);
   }
 }
 
 HostTurn::~HostTurn()
 {
-  if (this->File >= 0)
+  if (this->Folder >= 0)
   {
-    close(this->File);
+    close(this->Folder);
   }
 }
 

@@ -2,22 +2,25 @@
 #ifndef dsm_HostTurn_h
 #define dsm_HostTurn_h
 
+#include <chrono>
+
 namespace dsm
 {
 
-/// While it lives, no other process of this user on this host has one, and no other thread of this process: ranks that ask
-/// how much memory is left, and take some of it, do so one after another. Where the host has nothing to share for that,
-/// nobody waits. To be held for a short time only. An empty file of shared memory stays.
+/// While it lives, no other process on this host has one, and no other thread of this process: ranks that ask how much
+/// memory is left, and take some of it, do so one after another. Any thread. To be held for a short time only: who has
+/// waited for so long goes on without, such as for a process that is stopped; so does everybody where the host has
+/// nothing (/dev/shm) to agree by.
 class HostTurn
 {
 public:
-  HostTurn();
+  explicit HostTurn(std::chrono::milliseconds patience = std::chrono::seconds(20));
   ~HostTurn();
   HostTurn(const HostTurn&) = delete;
   HostTurn& operator=(const HostTurn&) = delete;
 
 private:
-  int File; ///< locked
+  int Folder; ///< locked
 };
 
 } // namespace dsm
