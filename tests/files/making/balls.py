@@ -1,0 +1,70 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Balls to be looked at, in several formats, and such as change with time. Importing it makes the files."""
+
+import h5py
+import numpy as np
+from numcodecs import Blosc
+from vtkmodules.util.numpy_support import numpy_to_vtk
+from vtkmodules.vtkCommonDataModel import vtkImageData
+from vtkmodules.vtkIOImage import vtkMetaImageWriter
+from vtkmodules.vtkIOXML import vtkXMLImageDataWriter
+
+from making.hdf import write_steps
+from making.volumes import path
+from making.zarrs import save_zarr
+
+# A ball, to be looked at: distance from the middle, 1 at the nearest face.
+edges = (48, 40, 36)
+z, y, x = np.meshgrid(*(np.linspace(-1, 1, n) for n in reversed(edges)), indexing="ij")
+ball = np.sqrt(x * x + y * y + z * z).astype("<f4")
+with h5py.File(path("ball.h5"), "w") as file:
+    file.create_dataset("f", data=ball, chunks=(16, 10, 13), compression="gzip", shuffle=True)
+save_zarr("ball.zarr", ball, compressor=Blosc("zstd"), chunks=(9, 40, 20))
+image = vtkImageData()
+image.SetDimensions(*edges)
+image.GetPointData().SetScalars(numpy_to_vtk(ball.ravel(), deep=True))
+writer = vtkMetaImageWriter()
+writer.SetInputData(image)
+writer.SetCompression(False)
+writer.SetFileName(path("ball.mha"))
+writer.Write()
+
+
+def write_series(name, frames, **others):
+    """Of each frame a file with a header, and one for ParaView's own reader, which has further arrays, too."""
+    for number, frame in enumerate(frames):
+        file = f"{name}_{number:03}"
+        frame.tofile(path(file + ".bin"))
+        with open(path(file + ".nhdr"), "w", encoding="utf-8") as header:
+            header.write("NRRD0004\ntype: float\ndimension: 3\nsizes: {2} {1} {0}\n".format(*frame.shape))
+            header.write(f"endian: little\nencoding: raw\ndata file: {file}.bin\n")
+        image.SetDimensions(*reversed(frame.shape))
+        image.GetPointData().SetScalars(numpy_to_vtk(frame.ravel(), deep=True))
+        image.GetPointData().GetScalars().SetName("values")
+        for other, values_of_frames in others.items():
+            array = numpy_to_vtk(values_of_frames[number].ravel(), deep=True)
+            array.SetName(other)
+            image.GetPointData().AddArray(array)
+        writer = vtkXMLImageDataWriter()
+        writer.SetInputData(image)
+        writer.SetFileName(path(file + ".vti"))
+        writer.Write()
+
+
+# A ball that changes with time: files of four steps, and one of all.
+steps = [(ball * (1 + 0.2 * t) + 0.05 * t * x).astype("<f4") for t in range(4)]
+write_series("play", steps)
+write_steps("play.vtkhdf", [0.0, 1.0, 2.0, 3.0], [("values", np.stack(steps), None)], edges)
+
+# A ball of which little changes from step to step: bricks at one corner; the third step is as the second.
+edges = (81, 81, 81)
+z, y, x = np.meshgrid(*(np.linspace(-1, 1, n) for n in reversed(edges)), indexing="ij")
+ball = np.sqrt(x * x + y * y + z * z).astype("<f4")
+steps = [ball.copy() for _ in range(4)]
+for step, more in zip(steps, (0.0, 0.05, 0.05, 0.1)):
+    step[50:63, 50:63, 50:63] += np.float32(more)
+write_series("calm", steps)
+tints = [(x + 0.3 * t).astype("<f4") for t in range(4)]
+write_series("tinted", steps, tint=tints)
+stacks = [("values", np.stack(steps), None), ("tint", np.stack(tints), None)]
+write_steps("tinted.vtkhdf", [0.0, 1.0, 2.0, 3.0], stacks, edges)
