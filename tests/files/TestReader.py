@@ -207,7 +207,8 @@ if get_ranks() == 1:
         probe = simple.ProbeLocation(Input=larger)
         probe.ProbeType.Center = [1.5, 1.5, 1.5 * z]
         probe.UpdatePipeline()
-    check(f"has values for {x * y * z} points" in messages.text, f"more points than values: {messages.text}")
+    check(f"has values for {x * y * z} points" in messages.text and "ball.h5" in messages.text,
+          f"more points than values: {messages.text}")
     simple.Delete(probe)
     simple.Delete(larger)
 

@@ -47,6 +47,13 @@ bool Contains(const rt::Box& box, const rt::Index3& sample)
     sample.y < box.Max.y && sample.z >= box.Min.z && sample.z < box.Max.z;
 }
 
+/// What messages about an array begin with.
+std::string DescribeArray(const vtkDSMFileValues& values)
+{
+  return "The array '" + values.GetArray().Name + "' of the file '" + values.GetFile()->GetPath() +
+    "' ";
+}
+
 /// Memory for a copy of all: the ranks of a host ask for theirs at the same time, so each has to see what is left when those
 /// before it have taken theirs. `take` also writes to it, for only then it is. Throws dsm::Error, which goes on from the
 /// array's name.
@@ -129,7 +136,7 @@ void vtkDSMFileArray<ValueTypeT>::Report(const std::string& what) const
 {
   if (!this->Reported.exchange(true))
   {
-    vtkErrorMacro(<< "The array '" << this->Values->GetArray().Name << "' " << what);
+    vtkErrorMacro(<< DescribeArray(*this->Values) << what);
   }
 }
 
@@ -405,7 +412,7 @@ vtkSmartPointer<vtkDataArray> vtkDSMReadFileArray(const vtkDSMFileValues& values
   }
   catch (const dsm::Error& error)
   {
-    throw dsm::Error("The array '" + array.Name + "' " + error.what());
+    throw dsm::Error(DescribeArray(values) + error.what());
   }
   ReadAll(values, made->GetVoidPointer(0));
   return made;
