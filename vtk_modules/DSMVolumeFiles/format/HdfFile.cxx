@@ -353,8 +353,7 @@ private:
   {
     const std::vector<std::string> names =
       wanted.empty() ? FindHdfDatasets(this->File.Get()) : std::vector<std::string>{ wanted };
-    this->Missing =
-      wanted.empty() ? "dataset of numbers with three axes." : "such dataset as '" + wanted + "'.";
+    this->Missing = "dataset of numbers with three axes.";
     std::map<std::string, HdfAxes> volumes;
     for (const std::string& name : names)
     {
@@ -365,7 +364,12 @@ private:
       {
         volumes[name] = axes;
       }
-      else if (dataset.IsOpen() && !wanted.empty())
+      else if (!wanted.empty() && !dataset.IsOpen())
+      {
+        this->Missing = "such dataset as '" + wanted +
+          "'. There are: " + ListHdfNames(FindHdfDatasets(this->File.Get()));
+      }
+      else if (!wanted.empty())
       {
         this->Missing = "volume in its dataset '" + wanted +
           "': that must have numbers along three axes (z, y, x), and may have a first axis of time "

@@ -3,6 +3,7 @@
 
 #include "DSMCore/base/ReaderThreads.h"
 
+#include <algorithm>
 #include <atomic>
 #include <cstdlib>
 
@@ -68,6 +69,18 @@ std::vector<std::string> FindHdfDatasets(hid_t file)
   H5Ovisit2(file, H5_INDEX_NAME, H5_ITER_INC, &NoteObject, &names, H5O_INFO_BASIC);
   H5Lvisit(file, H5_INDEX_NAME, H5_ITER_INC, &NoteLink, &names);
   return names;
+}
+
+std::string ListHdfNames(const std::vector<std::string>& names)
+{
+  constexpr std::size_t most = 10;
+  std::string list = names.empty() ? "none" : "";
+  for (std::size_t index = 0; index < std::min(most, names.size()); ++index)
+  {
+    list += (index > 0 ? ", '" : "'") + names[index] + "'";
+  }
+  return list +
+    (names.size() > most ? " and " + std::to_string(names.size() - most) + " more." : ".");
 }
 
 hid_t GetHdfType(rt::ScalarType type)

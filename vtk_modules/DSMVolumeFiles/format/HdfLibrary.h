@@ -37,6 +37,8 @@ hid_t GetHdfType(rt::ScalarType type);
 
 /// The names of what may be datasets, in all groups of a file, and behind external links. Under the lock.
 std::vector<std::string> FindHdfDatasets(hid_t file);
+/// The first of some names, as the end of a sentence.
+std::string ListHdfNames(const std::vector<std::string>& names);
 
 /// After the library's first use: from then on the end of the process is noticed.
 void WatchHdfEnd();
