@@ -18,8 +18,12 @@ def holds_blocks(process):
 
 
 def get_heap(process, folder):
-    """What a process has in use of its heap, in KiB, by the notes of HeapNotes.cxx."""
-    with open(os.path.join(folder, str(process)), encoding="utf-8") as note:
+    """What a process has in use of its heap, in KiB, by the notes of HeapNotes.cxx; None while it is only being loaded,
+    as a server is that takes the place of another."""
+    path = os.path.join(folder, str(process))
+    if not os.path.exists(path):
+        return None
+    with open(path, encoding="utf-8") as note:
         return int(note.read())
 
 
