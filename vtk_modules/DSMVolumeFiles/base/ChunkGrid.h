@@ -38,6 +38,11 @@ struct ChunkGrid
     const rt::Index3 counts = this->GetCounts();
     return { number % counts.x, number / counts.x % counts.y, number / (counts.x * counts.y) };
   }
+  /// Whether a box has all samples, and no others.
+  bool IsWhole(const rt::Box& box) const
+  {
+    return box.Min == rt::Index3(0) && box.Max == this->Samples;
+  }
   /// The samples of a chunk that belong to the volume.
   rt::Box GetBox(const rt::Index3& chunk) const
   {

@@ -298,9 +298,8 @@ std::optional<ValueRanges> LoadCovering(
 std::optional<ValueRanges> LoadRanges(
   const VolumeFile& file, std::size_t array, int step, const rt::Box& box, bool isShare)
 {
-  const rt::Index3& samples = file.GetArrays()[array].Grid.Samples;
   std::optional<ValueRanges> ranges;
-  if (isShare || (box.Min == rt::Index3(0) && box.Max == samples))
+  if (isShare || file.GetArrays()[array].Grid.IsWhole(box))
   {
     ranges = ReadOwn(file, array, step);
   }

@@ -292,8 +292,7 @@ std::unique_ptr<vtkDSMFileVolume> vtkDSMFileVolume::KeepIfEverywhere(
 
 bool vtkDSMFileVolume::IsWhole() const
 {
-  const Box& box = this->Values->GetBox();
-  return box.Min == Index3(0) && box.Max == this->Values->GetArray().Grid.Samples;
+  return this->Values->GetArray().Grid.IsWhole(this->Values->GetBox());
 }
 
 int vtkDSMFileVolume::CountCoarser() const
