@@ -79,14 +79,19 @@ std::vector<std::byte> VoxelIndex::Encode() const
     const auto* first = static_cast<const std::byte*>(from);
     bytes.insert(bytes.end(), first, first + count);
   };
-  bytes.reserve(this->Bricks.size() * (sizeof(ValueRange) + sizeof(dsm::ByteDigest)) +
-    sizeof(IsovalueSurvey) + sizeof(std::uint64_t));
+  bytes.reserve(CountBytes(this->Bricks.size()));
   add(this->Bricks.data(), this->Bricks.size() * sizeof(ValueRange));
   add(&this->Survey, sizeof(IsovalueSurvey));
   add(this->Digests.data(), this->Digests.size() * sizeof(dsm::ByteDigest));
   const std::uint64_t hash = Hash(bytes.data(), bytes.size());
   add(&hash, sizeof(hash));
   return bytes;
+}
+
+std::uint64_t VoxelIndex::CountBytes(std::uint64_t bricks)
+{
+  return bricks * (sizeof(ValueRange) + sizeof(dsm::ByteDigest)) + sizeof(IsovalueSurvey) +
+    sizeof(std::uint64_t);
 }
 
 std::optional<VoxelIndex> VoxelIndex::Decode(

@@ -33,6 +33,8 @@ struct VoxelIndex
   /// As it is kept, with a checksum. Decode gives nothing where the bytes are not an index of as many
   /// bricks.
   std::vector<std::byte> Encode() const;
+  /// Bytes that Encode makes for so many bricks.
+  static std::uint64_t CountBytes(std::uint64_t bricks);
   static std::optional<VoxelIndex> Decode(const std::vector<std::byte>& bytes, std::size_t bricks);
 
   /// How to look through the bricks.

@@ -54,4 +54,58 @@ std::uint32_t GetCrc32c(const std::byte* bytes, std::size_t count)
   return ~value;
 }
 
+std::uint32_t GetLookup3(const std::byte* bytes, std::size_t count)
+{
+  const auto rotate = [](std::uint32_t value, int bits)
+  { return value << bits | value >> (32 - bits); };
+  std::uint32_t a = 0xdeadbeef + static_cast<std::uint32_t>(count);
+  std::uint32_t b = a;
+  std::uint32_t c = a;
+  // Bytes beyond the end count as 0.
+  const auto getWord = [&](std::size_t place)
+  {
+    std::uint32_t word = 0;
+    for (std::size_t byte = 0; byte < 4 && place + byte < count; ++byte)
+    {
+      word |= std::to_integer<std::uint32_t>(bytes[place + byte]) << (8 * byte);
+    }
+    return word;
+  };
+  std::size_t at = 0;
+  const auto addWords = [&]
+  {
+    a += getWord(at);
+    b += getWord(at + 4);
+    c += getWord(at + 8);
+  };
+  for (; count - at > 12; at += 12)
+  {
+    addWords();
+    a = (a - c) ^ rotate(c, 4);
+    c += b;
+    b = (b - a) ^ rotate(a, 6);
+    a += c;
+    c = (c - b) ^ rotate(b, 8);
+    b += a;
+    a = (a - c) ^ rotate(c, 16);
+    c += b;
+    b = (b - a) ^ rotate(a, 19);
+    a += c;
+    c = (c - b) ^ rotate(b, 4);
+    b += a;
+  }
+  if (at < count)
+  {
+    addWords();
+    c = (c ^ b) - rotate(b, 14);
+    a = (a ^ c) - rotate(c, 11);
+    b = (b ^ a) - rotate(a, 25);
+    c = (c ^ b) - rotate(b, 16);
+    a = (a ^ c) - rotate(c, 4);
+    b = (b ^ a) - rotate(a, 14);
+    c = (c ^ b) - rotate(b, 24);
+  }
+  return c;
+}
+
 } // namespace vol

@@ -15,6 +15,9 @@ std::uint32_t GetFletcher32(const std::byte* bytes, std::size_t count);
 /// CRC-32C (Castagnoli), RFC 3720 appendix B.4.
 std::uint32_t GetCrc32c(const std::byte* bytes, std::size_t count);
 
+/// Bob Jenkins' lookup3 (hashlittle, 2006), which HDF5 has behind its own structures.
+std::uint32_t GetLookup3(const std::byte* bytes, std::size_t count);
+
 } // namespace vol
 
 #endif

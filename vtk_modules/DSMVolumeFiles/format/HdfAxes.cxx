@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "DSMVolumeFiles/format/HdfAxes.h"
 
+#include "DSMVolumeFiles/base/FileLimits.h"
+
 #include <algorithm>
 #include <vector>
 
@@ -27,7 +29,7 @@ std::vector<hsize_t> GetDimensions(hid_t dataset)
 
 } // namespace
 
-bool HdfAxes::Find(hid_t dataset, Time time)
+bool HdfAxes::Find(hid_t dataset, Time time, std::string* tooLong)
 {
   const std::vector<hsize_t> shape = GetDimensions(dataset);
   const bool isShort = !shape.empty() && (time != Time::Unknown || shape.back() <= MostComponents);
@@ -39,8 +41,26 @@ bool HdfAxes::Find(hid_t dataset, Time time)
   }
   const bool hasTime = axes == 5 || (axes == 4 && (time == Time::First || !isShort));
   const std::size_t first = hasTime ? 1 : 0;
+  const bool hasComponents = axes - first == 4;
+  const auto exceeds = [&](std::size_t axis, std::uint64_t most, const char* what)
+  {
+    if (shape[axis] > most && tooLong)
+    {
+      *tooLong = std::to_string(shape[axis]) + " " + what + "; at most " + std::to_string(most) +
+        " are supported";
+    }
+    return shape[axis] > most;
+  };
+  if ((hasTime && exceeds(0, FileLimits::Steps, "time steps")) ||
+    (hasComponents && exceeds(axes - 1, FileLimits::Components, "components")) ||
+    exceeds(first, FileLimits::Samples, "samples along z") ||
+    exceeds(first + 1, FileLimits::Samples, "samples along y") ||
+    exceeds(first + 2, FileLimits::Samples, "samples along x"))
+  {
+    return false;
+  }
   this->Frames = hasTime ? shape.front() : 0;
-  this->Components = axes - first == 4 ? shape.back() : 0;
+  this->Components = hasComponents ? shape.back() : 0;
   this->Samples = { static_cast<std::int64_t>(shape[first + 2]),
     static_cast<std::int64_t>(shape[first + 1]), static_cast<std::int64_t>(shape[first]) };
   return true;

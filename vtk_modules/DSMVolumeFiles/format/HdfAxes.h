@@ -8,6 +8,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <string>
 
 namespace vol
 {
@@ -30,9 +31,10 @@ struct HdfAxes
     None,
     First
   };
-  /// Three are z, y and x. A fourth one is time or has components, of five the first and the last are. False for what is
-  /// no volume. The caller has GetHdfLock.
-  bool Find(hid_t dataset, Time time);
+  /// Three are z, y and x. A fourth one is time or has components, of five the first and the last are. Returns false for
+  /// what is no volume. `tooLong`: set to what an axis of a volume has more of than FileLimits allow, such as "time steps";
+  /// then it returns false, too. The caller has GetHdfLock.
+  bool Find(hid_t dataset, Time time, std::string* tooLong = nullptr);
 };
 
 } // namespace vol

@@ -2,12 +2,11 @@
 #include "DSMVolumeFiles/format/HdfChunks.h"
 
 #include "DSMCore/base/Error.h"
+#include "DSMVolumeFiles/base/FileLimits.h"
 
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
-#include <functional>
-#include <numeric>
 
 namespace vol
 {
@@ -36,91 +35,120 @@ bool IsPlain(hid_t dataset)
     lengthBytes == 8;
 }
 
-std::vector<hsize_t> FindCounts(hid_t dataset, const std::vector<hsize_t>& edges)
+[[noreturn]] void RefuseDamaged(
+  const std::string& path, const std::string& name, const std::string& what)
 {
-  const HdfHandle space(H5Dget_space(dataset), &H5Sclose);
-  std::vector<hsize_t> counts(edges.size());
-  H5Sget_simple_extent_dims(space.Get(), counts.data(), nullptr);
-  for (std::size_t axis = 0; axis < edges.size(); ++axis)
-  {
-    counts[axis] = (counts[axis] + edges[axis] - 1) / edges[axis];
-  }
-  return counts;
-}
-
-bool ReadTree(hid_t dataset, const PositionedFile& file, const std::vector<hsize_t>& edges,
-  const std::vector<hsize_t>& counts, std::vector<HdfChunk>& chunks)
-{
-  const haddr_t header = IsPlain(dataset) ? FindHeader(&H5Oget_info2, dataset) : HADDR_UNDEF;
-  bool fits = header != HADDR_UNDEF;
-  return fits &&
-    HdfChunkTree::Read(file, header, edges.size(),
-      [&](const std::uint64_t* first, const HdfChunk& chunk)
-      {
-        hsize_t number = 0;
-        for (std::size_t axis = 0; axis < edges.size(); ++axis)
-        {
-          const hsize_t place = first[axis] / edges[axis];
-          fits = fits && place < counts[axis] && first[axis] % edges[axis] == 0;
-          number = number * counts[axis] + place;
-        }
-        if (fits)
-        {
-          chunks[number] = chunk;
-        }
-      }) &&
-    fits;
-}
-
-/// One after the other.
-void AskLibrary(hid_t dataset, const PositionedFile& file, const std::vector<hsize_t>& edges,
-  const std::vector<hsize_t>& counts, std::vector<HdfChunk>& chunks)
-{
-  std::vector<hsize_t> first(edges.size());
-  for (std::size_t number = 0; number < chunks.size(); ++number)
-  {
-    hsize_t rest = number;
-    for (std::size_t axis = edges.size(); axis-- > 0;)
-    {
-      first[axis] = rest % counts[axis] * edges[axis];
-      rest /= counts[axis];
-    }
-    haddr_t address = HADDR_UNDEF;
-    hsize_t bytes = 0;
-    unsigned skipped = 0;
-    if (H5Dget_chunk_info_by_coord(dataset, first.data(), &skipped, &address, &bytes) < 0)
-    {
-      throw dsm::Error("The file '" + file.GetPath() +
-        "' does not tell where the chunks of an array are; it is damaged.");
-    }
-    chunks[number] = address == HADDR_UNDEF
-      ? HdfChunk{}
-      : HdfChunk{ address, static_cast<std::uint32_t>(bytes), skipped };
-  }
+  throw dsm::Error("'" + path + "' is damaged: the dataset '" + name + "' has " + what + ".");
 }
 
 } // namespace
 
-std::vector<hsize_t> GetHdfChunkEdges(hid_t properties)
+std::vector<hsize_t> GetHdfChunkEdges(
+  hid_t dataset, const std::string& path, const std::string& name)
 {
-  std::vector<hsize_t> edges(5, 1);
-  const int axes = H5Pget_chunk(properties, static_cast<int>(edges.size()), edges.data());
+  const HdfHandle space(H5Dget_space(dataset), &H5Sclose);
+  const HdfHandle properties(H5Dget_create_plist(dataset), &H5Pclose);
+  const int axes = H5Sget_simple_extent_ndims(space.Get());
+  std::vector<hsize_t> edges(H5S_MAX_RANK, 0);
+  const int axesOfChunks =
+    H5Pget_chunk(properties.Get(), static_cast<int>(edges.size()), edges.data());
+  if (axes != axesOfChunks)
+  {
+    RefuseDamaged(path, name,
+      std::to_string(axes) + " axes, but its chunks have " + std::to_string(axesOfChunks));
+  }
   edges.resize(static_cast<std::size_t>(std::max(0, axes)));
+  if (edges.empty() || std::find(edges.begin(), edges.end(), hsize_t(0)) != edges.end())
+  {
+    RefuseDamaged(path, name, "chunks without samples");
+  }
   return edges;
 }
 
-std::vector<HdfChunk> FindHdfChunks(
-  hid_t dataset, const PositionedFile& file, const std::vector<hsize_t>& edges)
+haddr_t FindHdfValuesPlace(
+  hid_t dataset, const PositionedFile& file, const FileArray& array, std::uint64_t frames)
 {
-  const std::vector<hsize_t> counts = FindCounts(dataset, edges);
-  const auto count = static_cast<std::size_t>(
-    std::accumulate(counts.begin(), counts.end(), hsize_t(1), std::multiplies<>()));
-  std::vector<HdfChunk> chunks(count);
-  if (!ReadTree(dataset, file, edges, counts, chunks))
+  // With a block of the user's own before all, the library (1.10) adds its size to an undefined place, too.
+  H5D_space_status_t status = H5D_SPACE_STATUS_NOT_ALLOCATED;
+  const haddr_t first = H5Dget_offset(dataset);
+  if (first == HADDR_UNDEF || H5Dget_space_status(dataset, &status) < 0 ||
+    status == H5D_SPACE_STATUS_NOT_ALLOCATED)
   {
-    AskLibrary(dataset, file, edges, counts, chunks);
+    return HADDR_UNDEF;
   }
-  return chunks;
+  const std::uint64_t has = file.GetBytes();
+  const auto samples =
+    static_cast<std::uint64_t>(rt::Box{ rt::Index3(0), array.Grid.Samples }.GetCount());
+  const auto needed =
+    MultiplyWithin(has, { samples, array.GetSampleBytes(), std::max<std::uint64_t>(1, frames) });
+  if (first > has || !needed || *needed > has - first)
+  {
+    throw dsm::Error("'" + file.GetPath() + "' ends before the values of its dataset '" +
+      array.Name + "': it is truncated, or damaged.");
+  }
+  return first;
+}
+
+std::optional<HdfChunkTable> FindHdfChunks(hid_t dataset, const PositionedFile& file,
+  const std::string& name, const std::vector<hsize_t>& edges, const std::function<bool()>& goesOn)
+{
+  const haddr_t header = IsPlain(dataset) ? FindHeader(&H5Oget_info2, dataset) : HADDR_UNDEF;
+  const std::optional<HdfChunkLayout> layout =
+    header == HADDR_UNDEF ? std::nullopt : HdfChunkLayout::Find(file, header);
+  if (!layout)
+  {
+    return std::nullopt;
+  }
+  const HdfHandle space(H5Dget_space(dataset), &H5Sclose);
+  std::vector<hsize_t> samples(edges.size());
+  std::vector<hsize_t> most(edges.size());
+  H5Sget_simple_extent_dims(space.Get(), samples.data(), most.data());
+  std::vector<std::uint64_t> counts(edges.size());
+  std::uint64_t all = 1;
+  for (std::size_t axis = 0; axis < edges.size(); ++axis)
+  {
+    counts[axis] = samples[axis] / edges[axis] + (samples[axis] % edges[axis] != 0 ? 1 : 0);
+    const auto product = MultiplyWithin(FileLimits::ArrayBytes, { all, counts[axis] });
+    if (!product)
+    {
+      throw dsm::Error("'" + file.GetPath() + "' has an invalid header: the dataset '" + name +
+        "' has more chunks than can be counted.");
+    }
+    all = *product;
+  }
+  constexpr std::size_t oftenEnough = 1 << 14;
+  bool isStopped = false;
+  HdfChunkTable table;
+  const bool isRight = std::equal(edges.begin(), edges.end(), layout->Edges.begin(),
+                         layout->Edges.end() - (layout->Edges.empty() ? 0 : 1)) &&
+    HdfChunkIndex::Read(file, *layout, { most.begin(), most.end() },
+      [&](const std::uint64_t* place, const HdfChunk& chunk)
+      {
+        std::uint64_t number = 0;
+        for (std::size_t axis = 0; axis < edges.size(); ++axis)
+        {
+          if (place[axis] >= counts[axis])
+          {
+            return false;
+          }
+          number = number * counts[axis] + place[axis];
+        }
+        table.Add(number, chunk);
+        isStopped = table.GetCount() % oftenEnough == 0 && goesOn && !goesOn();
+        CheckLimit(file.GetPath(), "chunks of the dataset '" + name + "'", table.GetCount(),
+          FileLimits::Chunks);
+        return !isStopped;
+      }) &&
+    table.Sort();
+  if (isStopped)
+  {
+    throw dsm::Error("Opening '" + file.GetPath() + "' was aborted.");
+  }
+  if (!isRight)
+  {
+    RefuseDamaged(file.GetPath(), name, "an invalid index of its chunks");
+  }
+  return table;
 }
 
 } // namespace vol

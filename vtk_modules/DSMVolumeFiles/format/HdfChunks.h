@@ -2,24 +2,35 @@
 #ifndef vol_HdfChunks_h
 #define vol_HdfChunks_h
 
-#include "DSMVolumeFiles/base/PositionedFile.h"
-#include "DSMVolumeFiles/format/HdfChunkTree.h"
+#include "DSMVolumeFiles/format/HdfChunkTable.h"
 #include "DSMVolumeFiles/format/HdfLibrary.h"
+#include "DSMVolumeFiles/format/VolumeFile.h"
 
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
 #include <vector>
 
 namespace vol
 {
 
-/// The samples of a chunk along each axis of a dataset with these properties, of five at most. With the library's lock
-/// held.
-std::vector<hsize_t> GetHdfChunkEdges(hid_t properties);
+/// The samples along each axis of a dataset's chunks, slowest axis first. Throws dsm::Error, which names the file and the
+/// dataset, where the chunks have another number of axes than the dataset, which makes the library write beyond what it
+/// is given, or where they have no samples. The caller has GetHdfLock, here and below.
+std::vector<hsize_t> GetHdfChunkEdges(
+  hid_t dataset, const std::string& path, const std::string& name);
 
-/// Where the chunks of a dataset are, the last axis' fastest; with the library's lock held. `edges`: samples of a
-/// chunk along each axis of the dataset. `file` is the same as the dataset's. Throws dsm::Error when it does not
-/// tell.
-std::vector<HdfChunk> FindHdfChunks(
-  hid_t dataset, const PositionedFile& file, const std::vector<hsize_t>& edges);
+/// Where the values of a dataset that is in one piece begin; HADDR_UNDEF where none have been written. `frames`: along its
+/// axis of time, 0 where it has none. Throws dsm::Error where the file ends before the values do.
+haddr_t FindHdfValuesPlace(
+  hid_t dataset, const PositionedFile& file, const FileArray& array, std::uint64_t frames);
+
+/// Where the chunks of a dataset are. Nothing where the file has an index of another kind, or with other sizes of addresses:
+/// then only the library can read the values. Throws dsm::Error where the index is damaged, or `goesOn`, which is asked
+/// now and then, says no.
+std::optional<HdfChunkTable> FindHdfChunks(hid_t dataset, const PositionedFile& file,
+  const std::string& name, const std::vector<hsize_t>& edges, const std::function<bool()>& goesOn);
 
 } // namespace vol
 

@@ -2,11 +2,14 @@
 #include "DSMVolumeFiles/format/HdfFile.h"
 
 #include "DSMCore/base/Error.h"
+#include "DSMRayTracing/build/VoxelIndex.h"
+#include "DSMVolumeFiles/base/FileLimits.h"
 #include "DSMVolumeFiles/base/ReadingManner.h"
 #include "DSMVolumeFiles/codec/HaloRecord.h"
 #include "DSMVolumeFiles/format/BareFile.h"
 #include "DSMVolumeFiles/format/HdfAxes.h"
 #include "DSMVolumeFiles/format/HdfChunks.h"
+#include "DSMVolumeFiles/format/HdfImage.h"
 #include "DSMVolumeFiles/format/HdfLibrary.h"
 #include "DSMVolumeFiles/format/HdfOrigins.h"
 #include "DSMVolumeFiles/format/HdfValues.h"
@@ -30,11 +33,13 @@ namespace
 class HdfFile final : public StoredFile
 {
 public:
-  HdfFile(const std::string& path, const std::string& dataset, int level)
+  HdfFile(const std::string& path, const OpenOptions& options)
     : StoredFile(path)
+    , GoesOn(options.GoesOn)
     , Bytes(std::make_shared<PositionedFile>(path))
     , File(Open(path))
   {
+    const int level = options.Level;
     this->OpenLevel(level);
     if (H5Lexists(this->Root, "VTKHDF", H5P_DEFAULT) > 0)
     {
@@ -42,12 +47,13 @@ public:
     }
     else
     {
-      this->FindDatasets(dataset);
+      this->FindDatasets(options.Dataset);
     }
     if (this->Arrays.empty())
     {
       throw dsm::Error("The file '" + path + "' has no " + this->Missing);
     }
+    this->GoesOn = nullptr; // whoever opens the file may be gone later
     // What is kept of a level is not another's.
     this->Stamp =
       this->Origins.GetStamp(this->Bytes->GetStamp() + static_cast<std::uint64_t>(level));
@@ -60,7 +66,7 @@ public:
   }
 
   static std::shared_ptr<const VolumeFile> Create(
-    const std::string& path, const std::string& dataset, int level)
+    const std::string& path, const OpenOptions& options)
   {
     const std::lock_guard<std::mutex> lock(GetHdfLock());
     const HdfSilence silence;
@@ -72,7 +78,7 @@ public:
         opened->Close();
       }
     }
-    auto file = std::make_shared<HdfFile>(path, dataset, level);
+    auto file = std::make_shared<HdfFile>(path, options);
     GetOpened().insert(file.get());
     return file;
   }
@@ -100,8 +106,11 @@ public:
     if (group.IsOpen() && all.IsOpen() &&
       ReadHdfAttribute(all.Get(), "BrickEdge", H5T_NATIVE_INT, &index.BrickEdge, 1))
     {
-      ReadHdfWhole(group.Get(), "ValueRanges", H5T_NATIVE_DOUBLE, index.Ranges);
-      ReadHdfWhole(group.Get(), "BrickIndex", H5T_NATIVE_UCHAR, index.Bricks);
+      const FileArray& what = this->Arrays[array];
+      ReadHdfWhole(group.Get(), "ValueRanges", H5T_NATIVE_DOUBLE,
+        4 * (static_cast<std::uint64_t>(what.Components) + 1), index.Ranges);
+      ReadHdfWhole(group.Get(), "BrickIndex", H5T_NATIVE_UCHAR,
+        this->CountIndexBytes(what, index.BrickEdge), index.Bricks);
     }
     return index;
   }
@@ -118,7 +127,7 @@ public:
     std::uint64_t bytes = 0;
     for (const Dataset& dataset : this->Kept)
     {
-      bytes += dataset.Chunks.size() * sizeof(HdfChunk);
+      bytes += dataset.Chunks ? dataset.Chunks->GetBytes() : 0;
     }
     return bytes;
   }
@@ -134,7 +143,7 @@ protected:
     }
     const ChunkGrid grid = this->GetStoredGrid(array);
     const std::size_t frame = dataset.GetFrame(step);
-    if (dataset.Chunks.empty())
+    if (!dataset.Chunks)
     {
       if (dataset.First == HADDR_UNDEF)
       {
@@ -150,14 +159,15 @@ protected:
         static_cast<std::size_t>(box.GetCount()) * bytes, 0 };
     }
     const std::size_t slices = this->Storages[array].Slices;
-    const HdfChunk& stored =
-      dataset.Chunks[static_cast<std::size_t>(grid.GetCount()) * (frame / slices) +
-        static_cast<std::size_t>(grid.GetNumber(chunk))];
-    if (stored.First == HdfChunk::Nowhere)
+    const HdfChunk* const stored =
+      dataset.Chunks->Find(static_cast<std::uint64_t>(grid.GetCount()) * (frame / slices) +
+        static_cast<std::uint64_t>(grid.GetNumber(chunk)));
+    if (!stored)
     {
       return std::nullopt;
     }
-    return Place{ this->Bytes, stored.First, stored.Bytes, stored.SkippedFilters, frame % slices };
+    return Place{ this->Bytes, stored->First, stored->Bytes, stored->SkippedFilters,
+      frame % slices };
   }
 
 private:
@@ -165,8 +175,8 @@ private:
   {
     HdfHandle Id;
     bool ReadByLibrary = false;
-    haddr_t First = HADDR_UNDEF;  ///< of contiguous values
-    std::vector<HdfChunk> Chunks; ///< of all times
+    haddr_t First = HADDR_UNDEF;         ///< of contiguous values
+    std::optional<HdfChunkTable> Chunks; ///< of all times; none where values are contiguous
     HdfAxes Shape;
     std::vector<int> Frames; ///< of the steps, along the axis of time; empty: each has its own
 
@@ -219,6 +229,7 @@ private:
       const HdfHandle levels(H5Gopen2(this->Root, HdfLevels, H5P_DEFAULT), &H5Gclose);
       H5G_info_t info{};
       H5Gget_info(levels.Get(), &info);
+      CheckLimit(this->Path, "levels of detail", info.nlinks, FileLimits::Levels);
       this->Levels = 1 + static_cast<int>(info.nlinks);
     }
     if (level < 0 || level >= this->Levels)
@@ -242,36 +253,34 @@ private:
     return { H5Gopen2(this->Root, name.c_str(), H5P_DEFAULT), &H5Gclose };
   }
 
+  /// What the index of an array's bricks takes, which the file has in one piece; 0 where that cannot be.
+  std::uint64_t CountIndexBytes(const FileArray& array, int edge) const
+  {
+    if (edge < 1)
+    {
+      return 0;
+    }
+    std::uint64_t bricks = 1;
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      const std::int64_t cells = std::max<std::int64_t>(1, array.Grid.Samples[axis] - 1);
+      bricks = MultiplyWithin(
+        this->Bytes->GetBytes(), { bricks, static_cast<std::uint64_t>((cells + edge - 1) / edge) })
+                 .value_or(0);
+    }
+    const std::uint64_t bytes = rt::VoxelIndex::CountBytes(bricks);
+    return bytes <= this->Bytes->GetBytes() ? bytes : 0;
+  }
+
   /// VTK's own: see "VTKHDF File Format", ImageData.
   void FindImage()
   {
     const HdfHandle group(H5Gopen2(this->Root, "VTKHDF", H5P_DEFAULT), &H5Gclose);
-    long long extent[6];
-    if (!ReadHdfAttribute(group.Get(), "WholeExtent", H5T_NATIVE_LLONG, extent, 6))
-    {
-      throw dsm::Error("The file '" + this->Path +
-        "' is VTKHDF, but has no image data (no WholeExtent); open it with ParaView's own reader.");
-    }
-    ReadHdfAttribute(group.Get(), "Origin", H5T_NATIVE_DOUBLE, this->Geometry.Origin, 3);
-    ReadHdfAttribute(group.Get(), "Spacing", H5T_NATIVE_DOUBLE, this->Geometry.Spacing, 3);
-    ReadHdfAttribute(group.Get(), "Direction", H5T_NATIVE_DOUBLE, this->Geometry.Direction, 9);
-    for (int axis = 0; axis < 3; ++axis)
-    {
-      this->Geometry.First[axis] = extent[2 * axis];
-      this->Geometry.Points[axis] = extent[2 * axis + 1] - extent[2 * axis] + 1;
-    }
+    HdfImage image = HdfImage::Read(group.Get(), this->Path);
+    this->Geometry = image.Geometry;
+    this->Times = std::move(image.Times);
+    this->Steps = std::max(1, static_cast<int>(this->Times.size()));
     const rt::Index3 cells = glm::max(this->Geometry.Points - rt::Index3(1), rt::Index3(1));
-    if (H5Lexists(group.Get(), "Steps", H5P_DEFAULT) > 0)
-    {
-      const HdfHandle steps(H5Gopen2(group.Get(), "Steps", H5P_DEFAULT), &H5Gclose);
-      ReadHdfWhole(steps.Get(), "Values", H5T_NATIVE_DOUBLE, this->Times);
-      this->Steps = std::max(1, static_cast<int>(this->Times.size()));
-      if (!std::is_sorted(this->Times.begin(), this->Times.end(), std::less_equal<>()))
-      {
-        throw dsm::Error("The times of the steps in '" + this->Path +
-          "' (Steps/Values) do not ascend, so that steps cannot be found by their times.");
-      }
-    }
     this->FindArrays(group.Get(), "PointData", false, this->Geometry.Points);
     this->FindArrays(group.Get(), "CellData", true, cells);
     this->FindActive();
@@ -293,15 +302,31 @@ private:
       throw dsm::Error(
         "The file '" + this->Path + "' is no VTKHDF: what it calls " + name + " is no group.");
     }
+    CheckLimit(this->Path, "arrays", info.nlinks, FileLimits::Arrays);
     for (hsize_t index = 0; index < info.nlinks; ++index)
     {
-      char link[256] = {};
-      H5Lget_name_by_idx(
-        group.Get(), ".", H5_INDEX_NAME, H5_ITER_INC, index, link, sizeof(link), H5P_DEFAULT);
-      HdfHandle dataset(H5Dopen2(group.Get(), link, H5P_DEFAULT), &H5Dclose);
+      const std::string link = GetHdfText(
+        [&](char* to, std::size_t size)
+        {
+          return H5Lget_name_by_idx(
+            group.Get(), ".", H5_INDEX_NAME, H5_ITER_INC, index, to, size, H5P_DEFAULT);
+        });
+      if (link.empty())
+      {
+        throw dsm::Error("'" + this->Path + "' has an array in " + name +
+          " whose name cannot be read, or has more than " + std::to_string(FileLimits::NameBytes) +
+          " bytes.");
+      }
+      HdfHandle dataset = OpenHdfDataset(group.Get(), link);
       HdfAxes found;
+      std::string tooLong;
       const HdfAxes::Time time = this->Times.empty() ? HdfAxes::Time::None : HdfAxes::Time::First;
-      if (dataset.IsOpen() && found.Find(dataset.Get(), time) && found.Samples == samples)
+      const bool isVolume = dataset.IsOpen() && found.Find(dataset.Get(), time, &tooLong);
+      if (!tooLong.empty())
+      {
+        this->RefuseLength(link, tooLong);
+      }
+      if (isVolume && found.Samples == samples)
       {
         const std::string offsets = std::string("Steps/") + name + "Offsets/" + link;
         std::vector<int> frames = this->FindFrames(parent, offsets, found);
@@ -335,7 +360,7 @@ private:
     {
       return frames;
     }
-    ReadHdfWhole(image, offsets.c_str(), H5T_NATIVE_INT, frames);
+    ReadHdfWhole(image, offsets.c_str(), H5T_NATIVE_INT, FileLimits::Steps, frames);
     const int last = static_cast<int>(axes.Frames) - 1;
     const auto isOutside = [=](int frame) { return frame < 0 || frame > last; };
     const bool fits = frames.empty() ? this->Steps - 1 <= last
@@ -357,12 +382,17 @@ private:
     std::map<std::string, HdfAxes> volumes;
     for (const std::string& name : names)
     {
-      const HdfHandle dataset(H5Dopen2(this->File.Get(), name.c_str(), H5P_DEFAULT), &H5Dclose);
+      const HdfHandle dataset = OpenHdfDataset(this->File.Get(), name);
       HdfAxes axes;
-      if (dataset.IsOpen() && axes.Find(dataset.Get(), HdfAxes::Time::Unknown) &&
+      std::string tooLong;
+      if (dataset.IsOpen() && axes.Find(dataset.Get(), HdfAxes::Time::Unknown, &tooLong) &&
         FindHdfValues(dataset.Get()))
       {
         volumes[name] = axes;
+      }
+      else if (!tooLong.empty() && (!wanted.empty() || names.size() == 1))
+      {
+        this->RefuseLength(name, tooLong);
       }
       else if (!wanted.empty() && !dataset.IsOpen())
       {
@@ -387,10 +417,15 @@ private:
     {
       if (axes.GetShape().BelongsTo(largest))
       {
-        this->Add(HdfHandle(H5Dopen2(this->File.Get(), name.c_str(), H5P_DEFAULT), &H5Dclose), name,
-          false, axes, {});
+        this->Add(OpenHdfDataset(this->File.Get(), name), name, false, axes, {});
       }
     }
+  }
+
+  [[noreturn]] void RefuseLength(const std::string& name, const std::string& tooLong) const
+  {
+    throw dsm::Error("'" + this->Path + "' has an invalid header: its dataset '" + name +
+      "' declares " + tooLong + ".");
   }
 
   void Add(HdfHandle id, const std::string& name, bool onCells, const HdfAxes& axes,
@@ -410,7 +445,8 @@ private:
     CheckSizes(this->Path, array);
     const bool isElsewhere = this->Origins.Add(this->Path, this->File.Get(), id.Get());
     array.Grid = CutIntoRows(axes.Samples, array.GetSampleBytes());
-    Dataset dataset{ std::move(id), false, HADDR_UNDEF, {}, axes, std::move(frames) };
+    Dataset dataset{ std::move(id), !values->IsPlain || isElsewhere, HADDR_UNDEF, std::nullopt,
+      axes, std::move(frames) };
     Storage storage;
     storage.Fill = GetHdfFill(dataset.Id.Get(), array.Type, array.Components);
     const HdfHandle properties(H5Dget_create_plist(dataset.Id.Get()), &H5Pclose);
@@ -422,24 +458,29 @@ private:
     switch (H5Pget_layout(properties.Get()))
     {
       case H5D_CONTIGUOUS:
-        dataset.First = H5Dget_offset(dataset.Id.Get());
+        dataset.First = dataset.ReadByLibrary
+          ? HADDR_UNDEF
+          : FindHdfValuesPlace(dataset.Id.Get(), *this->Bytes, array, axes.Frames);
         storage.HasWholeChunks = false;
         break;
       case H5D_CHUNKED:
-        CutAsStored(properties.Get(), axes, array.Grid);
-        dataset.ReadByLibrary = !FindHdfSteps(properties.Get(), steps) ||
-          !this->FindChunks(properties.Get(), array, storage, dataset, values->Swapped);
+      {
+        const std::vector<hsize_t> edges = GetHdfChunkEdges(dataset.Id.Get(), this->Path, name);
+        CutAsStored(edges, axes, array.Grid);
+        CheckSizes(this->Path, array);
+        dataset.ReadByLibrary = dataset.ReadByLibrary || !FindHdfSteps(properties.Get(), steps) ||
+          !this->FindChunks(edges, properties.Get(), array, storage, dataset, values->Swapped);
         break;
+      }
       default:
         dataset.ReadByLibrary = true;
     }
-    dataset.ReadByLibrary = dataset.ReadByLibrary || !values->IsPlain || isElsewhere;
     storage.Codec = ChunkCodec(dataset.ReadByLibrary ? std::vector<CodecStep>() : std::move(steps));
     if (!dataset.ReadByLibrary && storage.Slices == 1)
     {
       this->FindHalo(array, storage);
     }
-    if (!dataset.ReadByLibrary && dataset.Chunks.empty())
+    if (!dataset.ReadByLibrary && !dataset.Chunks)
     {
       CutContiguous(array, storage);
     }
@@ -453,9 +494,8 @@ private:
   }
 
   /// So that the library, too, unpacks each chunk once.
-  static void CutAsStored(hid_t properties, const HdfAxes& axes, ChunkGrid& grid)
+  static void CutAsStored(const std::vector<hsize_t>& edges, const HdfAxes& axes, ChunkGrid& grid)
   {
-    const std::vector<hsize_t> edges = GetHdfChunkEdges(properties);
     const std::size_t z = axes.GetBeforeSpace();
     grid.ChunkSamples = { static_cast<std::int64_t>(edges[z + 2]),
       static_cast<std::int64_t>(edges[z + 1]), static_cast<std::int64_t>(edges[z]) };
@@ -492,8 +532,8 @@ private:
   }
 
   /// False when the chunks do not have all components, or are not where the library says, or as the filters say.
-  bool FindChunks(hid_t properties, const FileArray& array, Storage& storage, Dataset& dataset,
-    bool swapped) const
+  bool FindChunks(const std::vector<hsize_t>& edges, hid_t properties, const FileArray& array,
+    Storage& storage, Dataset& dataset, bool swapped) const
   {
     const HdfHandle creation(H5Fget_create_plist(this->File.Get()), &H5Pclose);
     hsize_t before = 0;
@@ -503,7 +543,6 @@ private:
     {
       return false;
     }
-    const std::vector<hsize_t> edges = GetHdfChunkEdges(properties);
     const std::size_t z = dataset.Shape.GetBeforeSpace();
     if (dataset.Shape.Components > 0 && edges[z + 3] != dataset.Shape.Components)
     {
@@ -511,21 +550,14 @@ private:
     }
     // A chunk may have several times.
     const hsize_t times = z > 0 ? edges[0] : 1;
+    CheckSizes(this->Path, array, times);
     storage.Slices = static_cast<std::size_t>(times);
-    const std::int64_t count = array.Grid.GetCount();
-    const auto layers =
-      static_cast<std::int64_t>((std::max<hsize_t>(1, dataset.Shape.Frames) + times - 1) / times);
-    dataset.Chunks = FindHdfChunks(dataset.Id.Get(), *this->Bytes, edges);
-    if (dataset.Chunks.size() != static_cast<std::size_t>(count * layers))
+    dataset.Chunks = FindHdfChunks(dataset.Id.Get(), *this->Bytes, array.Name, edges, this->GoesOn);
+    if (dataset.Chunks && swapped)
     {
-      dataset.Chunks.clear();
-      return false;
+      dataset.Chunks->AddFilterInFront();
     }
-    for (HdfChunk& chunk : dataset.Chunks)
-    {
-      chunk.SkippedFilters <<= swapped ? 1 : 0; // the filters' bits
-    }
-    return true;
+    return dataset.Chunks.has_value();
   }
 
   void ReadByLibrary(std::size_t number, int step, const rt::Index3& chunk, std::byte* out) const
@@ -563,6 +595,7 @@ private:
     }
   }
 
+  std::function<bool()> GoesOn; ///< while the file is being opened
   std::shared_ptr<const PositionedFile> Bytes;
   HdfOrigins Origins;
   HdfHandle File;
@@ -574,10 +607,9 @@ private:
 
 } // namespace
 
-std::shared_ptr<const VolumeFile> OpenHdf(
-  const std::string& path, const std::string& dataset, int level)
+std::shared_ptr<const VolumeFile> OpenHdf(const std::string& path, const OpenOptions& options)
 {
-  return HdfFile::Create(path, dataset, level);
+  return HdfFile::Create(path, options);
 }
 
 } // namespace vol

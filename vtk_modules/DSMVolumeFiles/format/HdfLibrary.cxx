@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cstdlib>
+#include <new>
 
 namespace vol
 {
@@ -17,24 +18,32 @@ std::atomic<bool> Ending{ false };
 
 // What the library tells of an object, or a link, has another type in each of its releases.
 
+/// Keeps a name, as long as there are not too many; a positive number ends the visit. The library calls it, and lets no
+/// exception through.
+herr_t Note(const char* name, void* names)
+{
+  auto& list = *static_cast<std::vector<std::string>*>(names);
+  try
+  {
+    list.push_back(name);
+  }
+  catch (const std::bad_alloc&)
+  {
+    return 1;
+  }
+  return list.size() < FileLimits::Arrays ? 0 : 1;
+}
+
 template <class Info>
 herr_t NoteObject(hid_t, const char* name, const Info* info, void* names)
 {
-  if (info->type == H5O_TYPE_DATASET)
-  {
-    static_cast<std::vector<std::string>*>(names)->push_back(name);
-  }
-  return 0;
+  return info->type == H5O_TYPE_DATASET ? Note(name, names) : 0;
 }
 
 template <class Info>
 herr_t NoteLink(hid_t, const char* name, const Info* info, void* names)
 {
-  if (info->type == H5L_TYPE_EXTERNAL)
-  {
-    static_cast<std::vector<std::string>*>(names)->push_back(name);
-  }
-  return 0;
+  return info->type == H5L_TYPE_EXTERNAL ? Note(name, names) : 0;
 }
 
 } // namespace
@@ -133,7 +142,12 @@ std::string ReadHdfText(hid_t object, const char* name)
     H5free_memory(text);
     return copy;
   }
-  std::string text(H5Tget_size(type.Get()), '\0');
+  const std::size_t bytes = H5Tget_size(type.Get());
+  if (bytes > FileLimits::NameBytes)
+  {
+    return {};
+  }
+  std::string text(bytes + 1, '\0');
   return H5Aread(attribute.Get(), type.Get(), text.data()) >= 0 ? text.c_str() : "";
 }
 

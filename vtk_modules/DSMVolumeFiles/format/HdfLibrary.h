@@ -4,9 +4,12 @@
 
 #include "DSMRayTracing/base/ScalarType.h"
 
+#include "DSMVolumeFiles/base/FileLimits.h"
+
 #include <hdf5.h>
 
 #include <algorithm>
+#include <cstdint>
 #include <mutex>
 #include <string>
 #include <utility>
@@ -84,22 +87,46 @@ private:
   Closer Close = nullptr;
 };
 
-/// All of a dataset. Empty where there is no such dataset, or it cannot be read. Under the lock.
+/// All of a dataset, whose numbers become those of `type`. Returns false, and `out` is empty, where it has more than `most`
+/// numbers, which are not read. Empty where there is no such dataset, too, or it cannot be read. Under the lock.
 template <class T>
-void ReadHdfWhole(hid_t group, const char* name, hid_t type, std::vector<T>& out)
+bool ReadHdfWhole(
+  hid_t group, const char* name, hid_t type, std::uint64_t most, std::vector<T>& out)
 {
+  out.clear();
   const HdfHandle dataset(H5Dopen2(group, name, H5P_DEFAULT), &H5Dclose);
   if (!dataset.IsOpen())
   {
-    return;
+    return true;
   }
   const HdfHandle space(H5Dget_space(dataset.Get()), &H5Sclose);
-  out.resize(
-    static_cast<std::size_t>(std::max<hssize_t>(0, H5Sget_simple_extent_npoints(space.Get()))));
+  const hssize_t count = H5Sget_simple_extent_npoints(space.Get());
+  if (count > 0 && static_cast<std::uint64_t>(count) > most)
+  {
+    return false;
+  }
+  out.resize(static_cast<std::size_t>(std::max<hssize_t>(0, count)));
   if (H5Dread(dataset.Get(), type, H5S_ALL, H5S_ALL, H5P_DEFAULT, out.data()) < 0)
   {
     out.clear();
   }
+  return true;
+}
+
+/// Returns a text that the library writes to where it is told to, when asked for its length first: `get(to, size)`. Empty
+/// where it cannot be got, or is longer than FileLimits::NameBytes. Under the lock.
+template <class Get>
+std::string GetHdfText(const Get& get)
+{
+  const ssize_t length = get(nullptr, 0);
+  if (length < 0 || static_cast<std::size_t>(length) > FileLimits::NameBytes)
+  {
+    return {};
+  }
+  std::string text(static_cast<std::size_t>(length) + 1, '\0');
+  const ssize_t got = get(text.data(), text.size());
+  text.resize(got < 0 ? 0 : static_cast<std::size_t>(length));
+  return text;
 }
 
 /// False where there is no such attribute, or not with so many values. Under the lock.

@@ -3,9 +3,11 @@
 
 #include "DSMCore/base/Error.h"
 #include "DSMRayTracing/base/ByteHash.h"
+#include "DSMVolumeFiles/base/FileLimits.h"
 #include "DSMVolumeFiles/base/PositionedFile.h"
 
 #include <algorithm>
+#include <cstddef>
 #include <cstdlib>
 #include <filesystem>
 #include <optional>
@@ -19,20 +21,10 @@ namespace
 
 namespace fs = std::filesystem;
 
-/// A text that the library writes to where it is told to, when asked for its length first.
-template <class Get>
-std::string GetText(const Get& get)
-{
-  const ssize_t length = get(nullptr, 0);
-  std::string text(static_cast<std::size_t>(std::max<ssize_t>(0, length)), '\0');
-  get(text.data(), text.size() + 1);
-  return text;
-}
-
 /// The file that an object is in.
 std::string GetFileName(hid_t object)
 {
-  return GetText([=](char* to, std::size_t size) { return H5Fget_name(object, to, size); });
+  return GetHdfText([=](char* to, std::size_t size) { return H5Fget_name(object, to, size); });
 }
 
 /// Where the library looks for a file that another names, first in folders of the environment's; none: nowhere.
@@ -59,8 +51,9 @@ std::optional<std::string> FindFile(
   places.push_back(folder / fs::path(name).filename());
   for (const fs::path& place : places)
   {
+    // The library would wait for a pipe, or read a device without an end.
     std::error_code failure;
-    if (fs::exists(place, failure))
+    if (fs::is_regular_file(place, failure))
     {
       return place.string();
     }
@@ -90,12 +83,31 @@ std::string WithNumber(const std::string& name, std::size_t number)
 bool HasDataset(const std::string& path, const std::string& name)
 {
   const HdfHandle file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), &H5Fclose);
-  const HdfHandle dataset(
-    file.IsOpen() ? H5Dopen2(file.Get(), name.c_str(), H5P_DEFAULT) : H5I_INVALID_HID, &H5Dclose);
-  return dataset.IsOpen();
+  return file.IsOpen() && OpenHdfDataset(file.Get(), name).IsOpen();
+}
+
+/// The library asks before it opens the file of an external link; -1 forbids it.
+herr_t CheckLinkedFile(
+  const char* from, const char*, const char* file, const char*, unsigned*, hid_t, void*)
+{
+  try
+  {
+    return FindFile(file, fs::path(from).parent_path(), "HDF5_EXT_PREFIX") ? 0 : -1;
+  }
+  catch (const std::exception&)
+  {
+    return -1;
+  }
 }
 
 } // namespace
+
+HdfHandle OpenHdfDataset(hid_t group, const std::string& name)
+{
+  const HdfHandle access(H5Pcreate(H5P_DATASET_ACCESS), &H5Pclose);
+  H5Pset_elink_cb(access.Get(), &CheckLinkedFile, nullptr);
+  return { H5Dopen2(group, name.c_str(), access.Get()), &H5Dclose };
+}
 
 bool HdfOrigins::Add(const std::string& path, hid_t file, hid_t dataset)
 {
@@ -107,19 +119,21 @@ bool HdfOrigins::Add(const std::string& path, hid_t file, hid_t dataset)
   }
   const HdfHandle properties(H5Dget_create_plist(dataset), &H5Pclose);
   const int bare = std::max(0, H5Pget_external_count(properties.Get()));
+  CheckLimit(
+    path, "external files of a dataset", static_cast<std::uint64_t>(bare), FileLimits::Sources);
   for (int number = 0; number < bare; ++number)
   {
-    std::string name(4096, '\0');
+    std::string name(FileLimits::NameBytes, '\0');
     off_t offset = 0;
     hsize_t bytes = 0;
     H5Pget_external(properties.Get(), static_cast<unsigned>(number), name.size() - 1, name.data(),
       &offset, &bytes);
-    name.resize(name.find('\0'));
+    name.resize(std::min(name.size(), name.find('\0')));
     const auto found = FindFile(name, fs::path(in).parent_path(), "HDF5_EXTFILE_PREFIX");
     if (!found)
     {
       throw dsm::Error(
-        "The file '" + path + "' has values in the file '" + name + "', which is not there.");
+        "'" + path + "' has values in the file '" + name + "', which is not there, or is no file.");
     }
     this->Keep(*found);
   }
@@ -135,11 +149,12 @@ void HdfOrigins::AddSources(const std::string& path, hid_t properties)
 {
   std::size_t count = 0;
   H5Pget_virtual_count(properties, &count);
+  CheckLimit(path, "sources of a virtual dataset", count, FileLimits::Sources);
   for (std::size_t source = 0; source < count; ++source)
   {
-    const std::string file = GetText([&](char* to, std::size_t size)
+    const std::string file = GetHdfText([&](char* to, std::size_t size)
       { return H5Pget_virtual_filename(properties, source, to, size); });
-    const std::string dataset = GetText([&](char* to, std::size_t size)
+    const std::string dataset = GetHdfText([&](char* to, std::size_t size)
       { return H5Pget_virtual_dsetname(properties, source, to, size); });
     const auto find = [&](const std::string& name)
     {
@@ -148,11 +163,18 @@ void HdfOrigins::AddSources(const std::string& path, hid_t properties)
     };
     if (WithNumber(file, 0) != WithNumber(file, 1))
     {
-      // As many as there are: more may come, and the library finds out by itself.
-      std::optional<std::string> found;
-      for (std::size_t number = 0; (found = find(WithNumber(file, number))); ++number)
+      // As many as there are: more may come, and the library finds out by itself. Where the number is in the name of a
+      // folder, the search may end at the same file for every number.
+      std::string last;
+      for (std::size_t number = 0; number < FileLimits::Sources; ++number)
       {
+        const std::optional<std::string> found = find(WithNumber(file, number));
+        if (!found || *found == last)
+        {
+          break;
+        }
         this->Keep(*found);
+        last = *found;
       }
       continue;
     }

@@ -12,6 +12,10 @@
 namespace vol
 {
 
+/// A dataset, which may be behind external links: a linked file that is a pipe or a device is not opened. Not open where
+/// it cannot be opened. Under GetHdfLock.
+HdfHandle OpenHdfDataset(hid_t group, const std::string& name);
+
 /// The other files that an HDF5 file's datasets have values from: behind external links, the bare bytes of external
 /// storage, the sources of virtual datasets. Of these the files of the sources are not looked into.
 class HdfOrigins

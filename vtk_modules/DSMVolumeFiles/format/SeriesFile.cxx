@@ -71,6 +71,7 @@ public:
     , Options(std::move(options))
   {
     const auto first = OpenVolumeFile(this->Path, this->Options);
+    this->Options.GoesOn = nullptr; // other threads open the steps, when they are needed
     this->Geometry = first->GetGeometry();
     this->Arrays = first->GetArrays();
     this->Levels = first->GetLevels();

@@ -156,7 +156,7 @@ std::shared_ptr<const VolumeFile> OpenAsItIs(const std::string& path, const Open
       return OpenZarr(FindZarrFolder(path), options.Level);
     case Format::Hdf:
 #ifdef DSM_HAS_HDF5
-      return OpenHdf(path, options.Dataset, options.Level);
+      return OpenHdf(path, options);
 #else
       throw dsm::Error("'" + path +
         "' is an HDF5 file, which this build cannot read. Install the package libhdf5-dev and "

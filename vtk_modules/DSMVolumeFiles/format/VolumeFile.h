@@ -7,6 +7,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -152,6 +153,10 @@ struct OpenOptions
   int Level = 0;
   /// Of an HDF5 file without VTKHDF: the dataset to take; empty: those of the largest shape of three axes in space.
   std::string Dataset;
+
+  /// Asked now and then while a file is being opened, by the calling thread, as an index of many chunks takes a moment:
+  /// where it says no, opening ends with dsm::Error. Empty: nobody asks.
+  std::function<bool()> GoesOn;
 
   /// Of a file of bare values (.raw).
   struct Raw

@@ -265,7 +265,7 @@ std::vector<std::vector<std::byte>> FindIndices(const std::string& path,
   // It holds the file open, which cannot be written until no rank does.
   ChunkCache cache(options.MemoryBytes / 2);
   std::shared_ptr<const VolumeFile> file;
-  messenger.RunTogether(what, [&] { file = OpenHdf(path, ""); });
+  messenger.RunTogether(what, [&] { file = OpenHdf(path); });
   std::vector<std::vector<std::byte>> indices(layout.Arrays.size());
   const rt::Index3& points = layout.Geometry.Points;
   const bool hasCells = points.x > 1 && points.y > 1 && points.z > 1;
@@ -394,7 +394,7 @@ int WriteLevels(const std::string& path, const BrickFileLayout& layout, const st
     messenger.RunTogether(what,
       [&]
       {
-        const auto file = OpenHdf(last, "");
+        const auto file = OpenHdf(last);
         const rt::Index3& points = file->GetGeometry().Points;
         isLast = std::max({ points.x, points.y, points.z }) <= layout.BrickEdge + 1 ||
           !ReducedOrigin::CanReduce(file->GetGeometry());

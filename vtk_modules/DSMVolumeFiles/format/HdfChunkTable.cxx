@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "DSMVolumeFiles/format/HdfChunkTable.h"
+
+#include <algorithm>
+
+namespace vol
+{
+
+void HdfChunkTable::Add(std::uint64_t number, const HdfChunk& chunk)
+{
+  this->Entries.push_back({ number, chunk });
+}
+
+bool HdfChunkTable::Sort()
+{
+  const auto isBefore = [](const Entry& a, const Entry& b) { return a.Number < b.Number; };
+  if (!std::is_sorted(this->Entries.begin(), this->Entries.end(), isBefore))
+  {
+    std::sort(this->Entries.begin(), this->Entries.end(), isBefore);
+  }
+  this->Entries.shrink_to_fit();
+  return std::adjacent_find(this->Entries.begin(), this->Entries.end(),
+           [](const Entry& a, const Entry& b)
+           { return a.Number == b.Number; }) == this->Entries.end();
+}
+
+const HdfChunk* HdfChunkTable::Find(std::uint64_t number) const
+{
+  // Where all chunks are there, each is at its number.
+  const auto begin = this->Entries.begin();
+  const std::size_t last = this->Entries.size();
+  if (number < last && this->Entries[number].Number == number)
+  {
+    return &this->Entries[number].Chunk;
+  }
+  const auto found = std::lower_bound(begin,
+    begin + static_cast<std::ptrdiff_t>(std::min<std::uint64_t>(number, last)), number,
+    [](const Entry& entry, std::uint64_t wanted) { return entry.Number < wanted; });
+  return found != this->Entries.end() && found->Number == number ? &found->Chunk : nullptr;
+}
+
+std::uint64_t HdfChunkTable::GetBytes() const
+{
+  return this->Entries.size() * sizeof(Entry);
+}
+
+void HdfChunkTable::AddFilterInFront()
+{
+  for (Entry& entry : this->Entries)
+  {
+    entry.Chunk.SkippedFilters <<= 1;
+  }
+}
+
+} // namespace vol

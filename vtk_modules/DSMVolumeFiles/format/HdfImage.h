@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef vol_HdfImage_h
+#define vol_HdfImage_h
+
+#include "DSMVolumeFiles/format/HdfLibrary.h"
+#include "DSMVolumeFiles/format/VolumeFile.h"
+
+#include <string>
+#include <vector>
+
+namespace vol
+{
+
+/// What VTK's own group in an HDF5 file says of the image ("VTKHDF File Format", ImageData).
+struct HdfImage
+{
+  FileGeometry Geometry;
+  std::vector<double> Times; ///< of the steps, ascending; empty: there are none
+
+  /// `group`: VTKHDF. Throws dsm::Error, which names the file at `path`. The caller has GetHdfLock.
+  static HdfImage Read(hid_t group, const std::string& path);
+};
+
+} // namespace vol
+
+#endif
