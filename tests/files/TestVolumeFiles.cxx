@@ -211,7 +211,7 @@ TEST(VolumeFiles, ALevelThatIsNotThereIsRefused)
   options.Level = 3;
   for (const char* name : { "ball.mha", "calm_000.nhdr", "ball.h5", "ball.zarr" })
   {
-    ExpectRefusal(name, options, "levels of detail; level 3");
+    ExpectRefusal(name, options, "level 3");
   }
 }
 

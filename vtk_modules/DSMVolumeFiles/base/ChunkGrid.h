@@ -3,6 +3,9 @@
 #define vol_ChunkGrid_h
 
 #include "DSMRayTracing/base/Box.h"
+#include "DSMVolumeFiles/base/FileLimits.h"
+
+#include <glm/ext/vector_uint3_sized.hpp>
 
 #include <array>
 #include <cstddef>
@@ -73,23 +76,29 @@ struct ChunkGrid
     }
     return halo;
   }
-  /// Bytes of the chunks that a box of so many samples along each axis lies in, at most.
+  /// Bytes of the chunks that a box of so many samples along each axis lies in, at most; the greatest number where
+  /// that cannot be counted.
   std::uint64_t CountBytesOfChunks(std::int64_t samples, std::size_t sampleBytes) const
   {
     const rt::Index3 most =
       (rt::Index3(samples - 2) + this->ChunkSamples) / this->ChunkSamples + rt::Index3(1);
     const rt::Index3 chunks = glm::min(most, this->GetCounts());
     const rt::Index3 chunk = glm::min(this->ChunkSamples, this->Samples);
-    return static_cast<std::uint64_t>(
-             chunks.x * chunks.y * chunks.z * chunk.x * chunk.y * chunk.z) *
-      sampleBytes;
+    const auto product = [](const rt::Index3& sides, std::uint64_t factor)
+    {
+      return MultiplyWithin(~std::uint64_t(0),
+        { static_cast<std::uint64_t>(sides.x), static_cast<std::uint64_t>(sides.y),
+          static_cast<std::uint64_t>(sides.z), factor })
+        .value_or(~std::uint64_t(0));
+    };
+    return product(chunks, product(chunk, sampleBytes));
   }
   /// Samples of it, at most.
   std::size_t CountMostOfHalo() const
   {
-    const rt::Index3 all = this->ChunkSamples + rt::Index3(1);
-    const rt::Index3 own = this->ChunkSamples;
-    return static_cast<std::size_t>(all.x * all.y * all.z - own.x * own.y * own.z);
+    // (x + 1)(y + 1)(z + 1) - xyz. Faces of a chunk whose bytes can be counted have at most 2^62 samples each.
+    const glm::u64vec3 own(this->ChunkSamples);
+    return own.x * own.y + own.y * own.z + own.z * own.x + own.x + own.y + own.z + 1;
   }
 };
 

@@ -76,11 +76,12 @@ PositionedFile::PositionedFile(std::string path)
     close(this->Descriptor);
     Refuse(this->Path, "cannot be read in parts: it is a device or a pipe.");
   }
+  this->OfDirectory = S_ISDIR(state.st_mode);
   this->Bytes = static_cast<std::uint64_t>(state.st_size);
   this->Stamp = GetStampOf(state);
   if (this->Bytes >= SmallestWithReadAhead)
   {
-    this->Scattered = open(this->Path.c_str(), O_RDONLY | O_CLOEXEC);
+    this->Scattered = open(this->Path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
     if (this->Scattered >= 0 &&
       (fstat(this->Scattered, &state) != 0 || GetStampOf(state) != this->Stamp ||
         posix_fadvise(this->Scattered, 0, 0, POSIX_FADV_RANDOM) != 0))

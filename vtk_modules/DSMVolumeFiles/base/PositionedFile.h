@@ -21,6 +21,8 @@ public:
   PositionedFile& operator=(const PositionedFile&) = delete;
 
   const std::string& GetPath() const { return this->Path; }
+  /// A directory has a stamp, but no bytes that can be read.
+  bool IsDirectory() const { return this->OfDirectory; }
   /// When it was opened.
   std::uint64_t GetBytes() const { return this->Bytes; }
   /// Differs, for all practical purposes, when another file is there, or this one was written to: of
@@ -70,6 +72,7 @@ private:
   std::string Path;
   int Descriptor = -1;
   int Scattered = -1; ///< the same file, in which the system does not read ahead; none: it is small
+  bool OfDirectory = false;
   std::uint64_t Bytes = 0;
   std::uint64_t Stamp = 0;
 };

@@ -2,11 +2,13 @@
 #include "DSMVolumeFiles/codec/ChunkCodec.h"
 
 #include "DSMCore/base/Error.h"
+#include "DSMVolumeFiles/base/FileLimits.h"
 #include "DSMVolumeFiles/codec/Checksums.h"
 
 #include <algorithm>
 #include <cstdint>
 #include <cstring>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <type_traits>
@@ -63,6 +65,20 @@ void AddLast(Bytes& bytes, std::uint32_t value)
   }
 }
 
+/// How many times as long as what is stored the bytes before this step can be: deflate spends two bits on 258 bytes,
+/// Zstandard, which Blosc may have inside, four bytes on a block of 128 KiB.
+std::uint64_t GetGrowth(Kind step)
+{
+  return step == Kind::Deflate ? 1032 : step == Kind::Zstd || step == Kind::Blosc ? 1 << 15 : 1;
+}
+
+/// Room for what the bytes become: no more than wanted, and no more than possible.
+[[maybe_unused]] std::size_t GetRoom(const Bytes& stored, Kind step, std::size_t most)
+{
+  return static_cast<std::size_t>(
+    MultiplyWithin(most, { stored.size(), GetGrowth(step) }).value_or(most));
+}
+
 #ifdef DSM_HAS_LIBDEFLATE
 Bytes Inflate(const Bytes& stored, std::size_t most)
 {
@@ -74,7 +90,7 @@ Bytes Inflate(const Bytes& stored, std::size_t most)
   }
   const bool gzip =
     stored.size() > 1 && stored[0] == std::byte(0x1f) && stored[1] == std::byte(0x8b);
-  Bytes bytes(most);
+  Bytes bytes(GetRoom(stored, Kind::Deflate, most));
   std::size_t used = 0;
   std::size_t count = 0;
   const libdeflate_result result =
@@ -91,12 +107,14 @@ Bytes Inflate(const Bytes& stored, std::size_t most)
 Bytes Inflate(Bytes& stored, std::size_t most)
 {
   constexpr int zlibOrGzip = 15 + 32;
+  const auto toCount = [](std::size_t size)
+  { return static_cast<uInt>(std::min<std::size_t>(size, std::numeric_limits<uInt>::max())); };
   z_stream stream{};
-  Bytes bytes(most);
+  Bytes bytes(GetRoom(stored, Kind::Deflate, most));
   stream.next_in = reinterpret_cast<Bytef*>(stored.data());
-  stream.avail_in = static_cast<uInt>(stored.size());
+  stream.avail_in = toCount(stored.size());
   stream.next_out = reinterpret_cast<Bytef*>(bytes.data());
-  stream.avail_out = static_cast<uInt>(bytes.size());
+  stream.avail_out = toCount(bytes.size());
   if (inflateInit2(&stream, zlibOrGzip) != Z_OK)
   {
     throw std::bad_alloc();
@@ -132,7 +150,7 @@ Bytes DecodeBlosc(const Bytes& stored, std::size_t most)
 #ifdef DSM_HAS_ZSTD
 Bytes DecodeZstd(const Bytes& stored, std::size_t most)
 {
-  Bytes bytes(most);
+  Bytes bytes(GetRoom(stored, Kind::Zstd, most));
   const std::size_t count =
     ZSTD_decompress(bytes.data(), bytes.size(), stored.data(), stored.size());
   if (ZSTD_isError(count))
@@ -289,22 +307,24 @@ Bytes Undo(const CodecStep& step, Bytes bytes, [[maybe_unused]] std::size_t most
   }
 }
 
-/// As many bytes as a step makes at most of so many, which may not shrink.
-std::size_t GetMost(const CodecStep& step, std::size_t bytes)
+bool Compresses(const CodecStep& step)
 {
-  switch (step.What)
+  return step.What == Kind::Deflate || step.What == Kind::Blosc || step.What == Kind::Zstd;
+}
+
+/// As many bytes as a step makes at most of so many, which may not shrink; the greatest number where that is more.
+std::uint64_t GetMost(const CodecStep& step, std::uint64_t bytes)
+{
+  constexpr std::uint64_t header = 1024;
+  constexpr std::uint64_t all = std::numeric_limits<std::uint64_t>::max();
+  if (bytes > all / 2 - header)
   {
-    case Kind::Fletcher32:
-    case Kind::Crc32c:
-      return bytes + sizeof(std::uint32_t);
-    case Kind::Deflate:
-    case Kind::Blosc:
-    case Kind::Zstd:
-      // More than zlib's bound for any of its settings, the largest: an eighth, a 64th, and its header.
-      return bytes + bytes / 4 + 1024;
-    default:
-      return bytes;
+    return all;
   }
+  // More than zlib's bound for any of its settings, the largest: an eighth, a 64th, and its header.
+  return Compresses(step)                                        ? bytes + bytes / 4 + header
+    : step.What == Kind::Fletcher32 || step.What == Kind::Crc32c ? bytes + sizeof(std::uint32_t)
+                                                                 : bytes;
 }
 
 Bytes Do(const CodecStep& step, Bytes bytes)
@@ -402,6 +422,22 @@ std::optional<Bytes> FindHalo(const CodecStep& step, const Bytes& stored)
 ChunkCodec::ChunkCodec(std::vector<CodecStep> steps)
   : Steps(std::move(steps))
 {
+  const auto compressors =
+    static_cast<std::size_t>(std::count_if(this->Steps.begin(), this->Steps.end(), &Compresses));
+  if (this->Steps.size() > FileLimits::Filters || compressors > FileLimits::Compressors)
+  {
+    Refuse("its chunks have " + std::to_string(this->Steps.size()) + " filters, " +
+      std::to_string(compressors) + " of them compressors; at most " +
+      std::to_string(FileLimits::Filters) + ", " + std::to_string(FileLimits::Compressors) +
+      " of them compressors, are supported.");
+  }
+  for (const CodecStep& step : this->Steps)
+  {
+    if (step.Width == 0)
+    {
+      Refuse("a filter of its chunks has elements of 0 bytes.");
+    }
+  }
   for ([[maybe_unused]] const CodecStep& step : this->Steps)
   {
 #ifndef DSM_HAS_ZLIB
@@ -430,7 +466,7 @@ bool ChunkCodec::Decode(
 {
   std::optional<Bytes> beside;
   // What was there before each step: at most so many bytes.
-  std::vector<std::size_t> most{ bytes };
+  std::vector<std::uint64_t> most{ bytes };
   for (const CodecStep& step : this->Steps)
   {
     most.push_back(GetMost(step, most.back()));
@@ -482,6 +518,31 @@ ByteBuffer ChunkCodec::Encode(ByteBuffer samples, ByteBuffer halo) const
     }
   }
   return samples;
+}
+
+std::uint64_t ChunkCodec::CountMostStored(std::uint64_t bytes, std::uint64_t haloBytes) const
+{
+  // The halo passes the same steps, and lies behind the chunk with a header of its own.
+  std::uint64_t most = bytes;
+  std::uint64_t beside = haloBytes;
+  for (const CodecStep& step : this->Steps)
+  {
+    most = GetMost(step, most);
+    beside = GetMost(step, beside);
+  }
+  const bool hasHalo = haloBytes != 0 && this->KeepsHalo();
+  beside = hasHalo ? std::min(beside, ~beside) + HaloHeader : 0;
+  return most < ~beside ? most + beside : ~std::uint64_t(0);
+}
+
+std::uint64_t ChunkCodec::CountMostDecoded(std::uint64_t stored) const
+{
+  constexpr std::uint64_t all = std::numeric_limits<std::uint64_t>::max();
+  for (const CodecStep& step : this->Steps)
+  {
+    stored = MultiplyWithin(all, { stored, GetGrowth(step.What) }).value_or(all);
+  }
+  return stored;
 }
 
 bool ChunkCodec::KeepsHalo() const

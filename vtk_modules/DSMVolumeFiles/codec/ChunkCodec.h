@@ -5,6 +5,7 @@
 #include "DSMVolumeFiles/base/ByteBuffer.h"
 
 #include <cstddef>
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -32,7 +33,8 @@ struct CodecStep
 class ChunkCodec
 {
 public:
-  /// Throws dsm::Error when this build lacks a library that a step needs.
+  /// Throws dsm::Error, without a name, when this build lacks a library that a step needs, when there are more steps
+  /// or compressors than FileLimits has, or when a step has no width.
   explicit ChunkCodec(std::vector<CodecStep> steps = {});
 
   /// Undoes the steps, the last one first, and writes so many bytes; `skipped` has a bit for each step that was
@@ -47,6 +49,12 @@ public:
   /// the end of what is compressed: of Zstandard in a skippable frame (RFC 8878, section 3.1.2), of deflate behind
   /// the stream (RFC 1950), which tells its end. Only where KeepsHalo().
   ByteBuffer Encode(ByteBuffer samples, ByteBuffer halo = {}) const;
+
+  /// Bytes that the steps make, at most, of so many, with a halo of so many: what a file has more for a chunk is
+  /// damaged. Not to be counted: the greatest number.
+  std::uint64_t CountMostStored(std::uint64_t bytes, std::uint64_t haloBytes = 0) const;
+  /// Bytes that so many stored ones can become, at most, likewise.
+  std::uint64_t CountMostDecoded(std::uint64_t stored) const;
 
   /// Whether there is a place for a halo: behind a Zstandard frame or a deflate stream.
   bool KeepsHalo() const;

@@ -6,6 +6,7 @@
 #include "DSMVolumeFiles/format/StoredFile.h"
 
 #include <algorithm>
+#include <limits>
 #include <utility>
 #include <vector>
 
@@ -34,22 +35,27 @@ public:
     FileArray array;
     array.Name = values.Name;
     array.Type = values.Type;
-    array.Components = values.Components;
+    array.Components = static_cast<int>(std::clamp<std::int64_t>(
+      values.Components, std::numeric_limits<int>::min(), std::numeric_limits<int>::max()));
     array.Grid.Samples = values.Samples;
     CheckSizes(path, array);
     array.Grid = CutIntoBoxes(values.Samples, array.GetSampleBytes());
     const auto need =
       static_cast<std::uint64_t>(rt::Box{ rt::Index3(0), values.Samples }.GetCount()) *
       array.GetSampleBytes();
+    if (this->File->IsDirectory())
+    {
+      throw dsm::Error(
+        "Cannot read the values of '" + path + "': '" + values.Path + "' is a directory.");
+    }
     const std::uint64_t has = this->File->GetBytes();
     this->First =
       values.Offset >= 0 ? static_cast<std::uint64_t>(values.Offset) : has - std::min(has, need);
     const auto least = static_cast<std::uint64_t>(values.Least);
     if (this->First < least || this->First > has || need > has - this->First)
     {
-      throw dsm::Error("The file '" + values.Path + "' has " + std::to_string(has) +
-        " bytes, but " + std::to_string(need) + " of values behind " +
-        std::to_string(std::max(least, this->First)) +
+      throw dsm::Error("'" + values.Path + "' has " + std::to_string(has) + " bytes, but " +
+        std::to_string(need) + " of values behind " + std::to_string(std::max(least, this->First)) +
         " of header are expected. Check the sizes and the type of the values.");
     }
     // What is kept of values that were read in another way is not of these.
@@ -161,7 +167,14 @@ ChunkGrid CutIntoBoxes(const rt::Index3& samples, std::size_t sampleBytes)
 {
   const std::int64_t width =
     std::max<std::int64_t>(1, RowBytes / static_cast<std::int64_t>(sampleBytes));
-  return { samples, glm::min(samples, rt::Index3(width, Rows, Rows)) };
+  // Samples of many components take more than a row's bytes each.
+  std::int64_t rows = Rows;
+  while (rows > 1 &&
+    rows * rows * width * static_cast<std::int64_t>(sampleBytes) > RowBytes * Rows * Rows)
+  {
+    rows /= 2;
+  }
+  return { samples, glm::min(samples, rt::Index3(width, rows, rows)) };
 }
 
 ChunkGrid CutIntoRows(const rt::Index3& samples, std::size_t sampleBytes)

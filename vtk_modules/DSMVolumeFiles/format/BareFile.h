@@ -18,7 +18,7 @@ struct BareValues
   std::string Name; ///< of the array
   rt::Index3 Samples{ 0 };
   rt::ScalarType Type = rt::ScalarType::UInt8;
-  int Components = 1;
+  std::int64_t Components = 1; ///< as declared
   bool BigEndian = false;
   /// Before the first value; negative: the values are at the end of the file.
   std::int64_t Offset = 0;

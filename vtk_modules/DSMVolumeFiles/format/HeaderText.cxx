@@ -2,37 +2,123 @@
 #include "DSMVolumeFiles/format/HeaderText.h"
 
 #include "DSMCore/base/Error.h"
+#include "DSMVolumeFiles/base/SmallFile.h"
 
 #include <algorithm>
-#include <cctype>
-#include <cstdlib>
-#include <sstream>
+#include <charconv>
+#include <filesystem>
+#include <system_error>
 
 namespace vol
 {
 
+namespace
+{
+
+/// As in the "C" locale: what a program sets for its own texts does not change what a file says.
+bool IsSpace(char letter)
+{
+  return letter == ' ' || (letter >= '\t' && letter <= '\r');
+}
+
+bool IsDigit(char letter)
+{
+  return letter >= '0' && letter <= '9';
+}
+
+/// A word as printf has it for numbered files: "a%03d.raw".
+bool HasPlaceForNumber(const std::string& word)
+{
+  bool has = false;
+  for (std::size_t place = word.find('%'); place != std::string::npos && !has;
+       place = word.find('%', place + 1))
+  {
+    std::size_t end = place + 1;
+    while (end < word.size() && IsDigit(word[end]))
+    {
+      ++end;
+    }
+    has = end < word.size() && (word[end] == 'd' || word[end] == 'i' || word[end] == 'u');
+  }
+  return has;
+}
+
+/// "LIST", "LIST 2", or a pattern and its first, last and next number.
+bool MeansSeveralFiles(const std::string& place)
+{
+  const std::vector<std::string> words = HeaderText::Split(place);
+  const auto isNumber = [](const std::string& word)
+  { return !word.empty() && word.find_first_not_of("+-0123456789") == std::string::npos; };
+  return (!words.empty() && words.size() <= 2 && words.front() == "LIST") ||
+    (words.size() >= 3 && HasPlaceForNumber(words.front()) &&
+      std::all_of(words.begin() + 1, words.begin() + 3, isNumber));
+}
+
+/// Of a field: one for each axis, or a matrix.
+constexpr std::size_t MostNumbers = FileLimits::Axes;
+
+/// Most headers are shorter.
+constexpr std::size_t FirstBytes = 1 << 14;
+
+} // namespace
+
+HeaderLines::HeaderLines(const std::string& path)
+  : Path(path)
+  , Text(ReadBeginning(path, FirstBytes))
+  , IsAll(Text.size() < FirstBytes)
+{
+}
+
+bool HeaderLines::Next(std::string& line)
+{
+  std::size_t end = this->Text.find('\n', this->Place);
+  if (end == std::string::npos && !this->IsAll)
+  {
+    this->Text = ReadBeginning(this->Path, FileLimits::HeaderBytes);
+    this->IsAll = this->Text.size() < FileLimits::HeaderBytes;
+    end = this->Text.find('\n', this->Place);
+    if (end == std::string::npos && !this->IsAll)
+    {
+      throw dsm::Error("'" + this->Path + "' has an invalid header: it does not end within " +
+        std::to_string(FileLimits::HeaderBytes) + " bytes.");
+    }
+  }
+  this->Ended = end == std::string::npos;
+  if (this->Place >= this->Text.size())
+  {
+    return false;
+  }
+  line = this->Text.substr(this->Place, end - this->Place);
+  this->Place = this->Ended ? this->Text.size() : end + 1;
+  return true;
+}
+
 std::string HeaderText::Trim(const std::string& text)
 {
-  const auto isSpace = [](unsigned char letter) { return std::isspace(letter) != 0; };
-  const auto first = std::find_if_not(text.begin(), text.end(), isSpace);
-  const auto last = std::find_if_not(text.rbegin(), text.rend(), isSpace).base();
+  const auto first = std::find_if_not(text.begin(), text.end(), &IsSpace);
+  const auto last = std::find_if_not(text.rbegin(), text.rend(), &IsSpace).base();
   return first < last ? std::string(first, last) : std::string();
 }
 
 std::string HeaderText::ToLower(std::string text)
 {
   std::transform(text.begin(), text.end(), text.begin(),
-    [](unsigned char letter) { return static_cast<char>(std::tolower(letter)); });
+    [](char letter)
+    { return letter >= 'A' && letter <= 'Z' ? static_cast<char>(letter - 'A' + 'a') : letter; });
   return text;
 }
 
 std::vector<std::string> HeaderText::Split(const std::string& text)
 {
-  std::istringstream words(text);
   std::vector<std::string> found;
-  for (std::string word; words >> word;)
+  for (auto word = text.begin(); word != text.end();)
   {
-    found.push_back(word);
+    const auto first = std::find_if_not(word, text.end(), &IsSpace);
+    word = std::find_if(first, text.end(), &IsSpace);
+    if (first != word)
+    {
+      found.emplace_back(first, word);
+    }
   }
   return found;
 }
@@ -71,24 +157,74 @@ std::vector<double> HeaderText::GetNumbers(const std::string& name, std::size_t 
   return numbers;
 }
 
+std::vector<std::int64_t> HeaderText::GetIntegers(
+  const std::string& name, std::size_t count, std::int64_t least, std::int64_t most) const
+{
+  std::vector<std::int64_t> integers;
+  for (const double number : this->GetNumbers(name, count))
+  {
+    const auto integer = ToInteger(number, least, most);
+    if (!integer)
+    {
+      this->Refuse("its field '" + name + "' is " + Quote(this->Get(name)) +
+        ", which has to be of integers from " + std::to_string(least) + " to " +
+        std::to_string(most) + ".");
+    }
+    integers.push_back(*integer);
+  }
+  return integers;
+}
+
+std::int64_t HeaderText::GetInteger(
+  const std::string& name, std::int64_t usual, std::int64_t least, std::int64_t most) const
+{
+  const std::vector<std::int64_t> integers = this->GetIntegers(name, 1, least, most);
+  return integers.empty() ? usual : integers.front();
+}
+
 std::vector<double> HeaderText::ToNumbers(const std::string& name, const std::string& text) const
 {
-  std::vector<double> numbers;
-  for (const std::string& word : Split(text))
+  const std::vector<std::string> words = Split(text);
+  if (words.size() > MostNumbers)
   {
-    char* end = nullptr;
-    numbers.push_back(std::strtod(word.c_str(), &end));
-    if (end == word.c_str() || *end != '\0')
+    this->Refuse("its field '" + name + "' has " + std::to_string(words.size()) +
+      " numbers; at most " + std::to_string(MostNumbers) + " are supported.");
+  }
+  std::vector<double> numbers;
+  for (const std::string& word : words)
+  {
+    const char* const first = word.data() + (word.size() > 1 && word[0] == '+' ? 1 : 0);
+    const char* const last = word.data() + word.size();
+    double number = 0.0;
+    const auto parsed = std::from_chars(first, last, number);
+    if (parsed.ec != std::errc() || parsed.ptr != last)
     {
-      this->Refuse("'" + word + "' in its field '" + name + "' is no number.");
+      this->Refuse(Quote(word) + " in its field '" + name + "' is not a number" +
+        (parsed.ec == std::errc::result_out_of_range ? " that double precision has." : "."));
     }
+    numbers.push_back(number);
   }
   return numbers;
 }
 
+std::string HeaderText::FindValues(const std::string& name) const
+{
+  const std::string place = this->Get(name);
+  if (place.size() > FileLimits::NameBytes || place.find('\0') != std::string::npos)
+  {
+    this->Refuse("its field '" + name + "' is not the name of a file: " + Quote(place) + ".");
+  }
+  const std::string path = (std::filesystem::path(this->What).parent_path() / place).string();
+  if (MeansSeveralFiles(place) && FindPathKind(path) == PathKind::Nothing)
+  {
+    this->Refuse("its values are in several files, which is not supported. Save it as one file.");
+  }
+  return path;
+}
+
 void HeaderText::Refuse(const std::string& why) const
 {
-  throw dsm::Error("The header of '" + this->What + "' cannot be used: " + why);
+  throw dsm::Error("Cannot read '" + this->What + "': " + why);
 }
 
 } // namespace vol

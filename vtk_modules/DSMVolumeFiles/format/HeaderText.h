@@ -2,6 +2,9 @@
 #ifndef vol_HeaderText_h
 #define vol_HeaderText_h
 
+#include "DSMVolumeFiles/base/FileLimits.h"
+
+#include <cstdint>
 #include <map>
 #include <string>
 #include <vector>
@@ -9,11 +12,33 @@
 namespace vol
 {
 
+/// Reads the lines of a header from the beginning of a file, and no more of it than FileLimits::HeaderBytes.
+class HeaderLines
+{
+public:
+  /// Throws dsm::Error, as ReadBeginning does.
+  explicit HeaderLines(const std::string& path);
+
+  /// The next line, without its end. False at the end of the file. Throws dsm::Error when the header is too long.
+  bool Next(std::string& line);
+  /// Whether the file ends with the last line, so that no values can follow it.
+  bool HasEnded() const { return this->Ended; }
+  /// Where the next line, or the values, begin.
+  std::int64_t GetPlace() const { return static_cast<std::int64_t>(this->Place); }
+
+private:
+  std::string Path;
+  std::string Text;   ///< the beginning of the file
+  bool IsAll = false; ///< all of it
+  bool Ended = false;
+  std::size_t Place = 0;
+};
+
 /// A header of lines of text, as NRRD and MetaImage have: names and values.
 class HeaderText
 {
 public:
-  /// `what` names the file in errors. `names`: of several words, which some programs write as one.
+  /// `what`: the path of the file. `names`: of several words, which some programs write as one.
   explicit HeaderText(std::string what, std::vector<std::string> names = {})
     : What(std::move(what))
     , Names(std::move(names))
@@ -27,11 +52,21 @@ public:
   bool Has(const std::string& name) const { return this->Values.count(name) != 0; }
   /// Empty where there is none.
   std::string Get(const std::string& name) const;
-  /// Throw dsm::Error for what is no number, and, when `count` is not 0, for another count; empty where there
-  /// is no such name.
+  /// Throw dsm::Error for what is not a number, in any locale, and, when `count` is not 0, for another count; empty
+  /// where there is no such name.
   std::vector<double> GetNumbers(const std::string& name, std::size_t count = 0) const;
+  /// Likewise, also for what is not an integer in [least, most].
+  std::vector<std::int64_t> GetIntegers(const std::string& name, std::size_t count = 0,
+    std::int64_t least = -MostInteger, std::int64_t most = MostInteger) const;
+  /// A single one; `usual` where there is no such name.
+  std::int64_t GetInteger(const std::string& name, std::int64_t usual,
+    std::int64_t least = -MostInteger, std::int64_t most = MostInteger) const;
   /// Of a part of the field `name`.
   std::vector<double> ToNumbers(const std::string& name, const std::string& text) const;
+
+  /// The path of the file with the values, which a field names from the header's folder on. Throws dsm::Error where the
+  /// field means several files: "LIST", or a pattern ("a%03d.raw 1 9 1"), unless a file is called so.
+  std::string FindValues(const std::string& name) const;
 
   [[noreturn]] void Refuse(const std::string& why) const;
 
@@ -40,6 +75,9 @@ public:
   static std::vector<std::string> Split(const std::string& text);
 
 private:
+  /// Beyond it, double does not have every integer.
+  static constexpr std::int64_t MostInteger = std::int64_t(1) << 53;
+
   std::string What;
   std::vector<std::string> Names;
   std::map<std::string, std::string> Values;

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "DSMVolumeFiles/base/SmallFile.h"
 #include "DSMVolumeFiles/format/BareFile.h"
 #include "DSMVolumeFiles/format/HeaderFiles.h"
 #include "DSMVolumeFiles/format/HeaderText.h"
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
-#include <fstream>
 #include <map>
 #include <vector>
 
@@ -35,8 +34,7 @@ rt::ScalarType ParseType(const HeaderText& header)
   const auto known = types.find(name);
   if (known == types.end())
   {
-    header.Refuse(
-      "its values are of the type '" + header.Get("elementtype") + "', which is not known.");
+    header.Refuse("values of the type " + Quote(header.Get("elementtype")) + " are not supported.");
   }
   return known->second;
 }
@@ -52,16 +50,16 @@ bool IsTrue(const HeaderText& header, const std::string& name)
 std::shared_ptr<const VolumeFile> OpenMetaImage(const std::string& path)
 {
   HeaderText header(path);
-  std::ifstream file(path, std::ios::binary);
+  HeaderLines lines(path);
   std::string line;
   // The name of the values' file is the last line; they may follow it.
-  while (!header.Has("elementdatafile") && std::getline(file, line))
+  while (!header.Has("elementdatafile") && lines.Next(line))
   {
     header.AddLine(line, line.find('=') != std::string::npos ? "=" : ":");
   }
   if (header.Get("elementdatafile").empty() || header.Get("ndims") != "3")
   {
-    header.Refuse("it is no MetaImage of three dimensions.");
+    header.Refuse("it is not a MetaImage of three dimensions.");
   }
   if (IsTrue(header, "compresseddata"))
   {
@@ -74,37 +72,31 @@ std::shared_ptr<const VolumeFile> OpenMetaImage(const std::string& path)
   }
   BareValues values;
   values.Name = "values";
-  const std::vector<double> size = header.GetNumbers("dimsize", 3);
+  const std::vector<std::int64_t> size = header.GetIntegers("dimsize", 3);
   for (std::size_t axis = 0; axis < size.size(); ++axis)
   {
-    values.Samples[static_cast<int>(axis)] = static_cast<std::int64_t>(size[axis]);
+    values.Samples[static_cast<int>(axis)] = size[axis];
   }
   values.Type = ParseType(header);
-  const std::vector<double> channels = header.GetNumbers("elementnumberofchannels", 1);
-  values.Components = channels.empty() ? 1 : static_cast<int>(channels.front());
+  values.Components = header.GetInteger("elementnumberofchannels", 1);
   values.BigEndian =
     IsTrue(header, "binarydatabyteordermsb") || IsTrue(header, "elementbyteordermsb");
   // MetaIO counts from the beginning of the file with the values, also where that has a header; -1: they end it.
-  const std::vector<double> skip = header.GetNumbers("headersize", 1);
-  values.Offset = skip.empty() ? 0 : static_cast<std::int64_t>(skip.front());
+  values.Offset = header.GetInteger("headersize", 0, -1);
   const std::string place = header.Get("elementdatafile");
   if (HeaderText::ToLower(place) == "local")
   {
-    if (file.eof())
+    if (lines.HasEnded())
     {
       header.Refuse("the file ends with its header, and has no values.");
     }
     values.Path = path;
-    values.Least = static_cast<std::int64_t>(file.tellg());
+    values.Least = lines.GetPlace();
     values.Offset = values.Offset == 0 ? values.Least : values.Offset;
-  }
-  else if (HeaderText::Split(place).front() == "LIST" || place.find('%') != std::string::npos)
-  {
-    header.Refuse("its values are in several files, which is not supported.");
   }
   else
   {
-    values.Path = (std::filesystem::path(path).parent_path() / place).string();
+    values.Path = header.FindValues("elementdatafile");
   }
   FileGeometry geometry;
   const auto take = [&](std::initializer_list<const char*> names, double* out, std::size_t count)

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "DSMVolumeFiles/base/SmallFile.h"
 #include "DSMVolumeFiles/format/BareFile.h"
 #include "DSMVolumeFiles/format/HeaderFiles.h"
 #include "DSMVolumeFiles/format/HeaderText.h"
@@ -6,8 +7,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <filesystem>
-#include <fstream>
 #include <limits>
 #include <map>
 #include <vector>
@@ -40,7 +39,7 @@ rt::ScalarType ParseType(const HeaderText& header)
   const auto known = types.find(HeaderText::ToLower(header.Get("type")));
   if (known == types.end())
   {
-    header.Refuse("its values are of the type '" + header.Get("type") + "', which is not known.");
+    header.Refuse("values of the type " + Quote(header.Get("type")) + " are not supported.");
   }
   return known->second;
 }
@@ -49,28 +48,33 @@ rt::ScalarType ParseType(const HeaderText& header)
 std::vector<std::vector<double>> ParseVectors(const HeaderText& header, const std::string& name)
 {
   std::vector<std::vector<double>> vectors;
-  std::string text = header.Get(name);
-  while (!(text = HeaderText::Trim(text)).empty())
+  const std::string text = header.Get(name);
+  for (std::size_t at = 0; (at = text.find_first_not_of(" \t\r", at)) != std::string::npos;)
   {
+    if (vectors.size() == FileLimits::Axes)
+    {
+      header.Refuse(
+        "its field '" + name + "' has more than " + std::to_string(FileLimits::Axes) + " vectors.");
+    }
     std::vector<double> numbers;
-    std::size_t end = text.find(text.front() == '(' ? ')' : ' ');
-    if (text.front() == '(')
+    std::size_t end = text.find_first_of(text[at] == '(' ? ")" : " \t\r", at);
+    if (text[at] == '(')
     {
       if (end == std::string::npos)
       {
         header.Refuse("its field '" + name + "' has a vector without an end.");
       }
-      std::string inner = text.substr(1, end - 1);
+      std::string inner = text.substr(at + 1, end - at - 1);
       std::replace(inner.begin(), inner.end(), ',', ' ');
       numbers = header.ToNumbers(name, inner);
       ++end;
     }
-    else if (text.substr(0, end) != "none")
+    else if (const std::string word = text.substr(at, end - at); word != "none")
     {
-      header.Refuse("'" + text.substr(0, end) + "' in its field '" + name + "' is no vector.");
+      header.Refuse(Quote(word) + " in its field '" + name + "' is not a vector.");
     }
     vectors.push_back(numbers);
-    text.erase(0, end);
+    at = std::min(end, text.size());
   }
   return vectors;
 }
@@ -141,14 +145,12 @@ FileGeometry ParseGeometry(
     if (number < directions.size() && directions[number].size() == 3)
     {
       const std::vector<double>& way = directions[number];
-      const double length = std::sqrt(way[0] * way[0] + way[1] * way[1] + way[2] * way[2]);
-      if (length > 0.0)
+      // An axis of no length has no direction: OpenVolumeFile refuses that of all formats.
+      const double length = std::hypot(way[0], way[1], way[2]);
+      geometry.Spacing[axis] = length > 0.0 ? length : 1.0;
+      for (std::size_t row = 0; row < 3; ++row)
       {
-        geometry.Spacing[axis] = length;
-        for (std::size_t row = 0; row < 3; ++row)
-        {
-          geometry.Direction[3 * row + place] = way[row] / length;
-        }
+        geometry.Direction[3 * row + place] = way[row] / geometry.Spacing[axis];
       }
     }
   }
@@ -160,30 +162,19 @@ FileGeometry ParseGeometry(
   return geometry;
 }
 
-/// "LIST", "LIST 2", or a pattern and its first, last and next number.
-bool IsInSeveralFiles(const std::string& place)
-{
-  const std::vector<std::string> words = HeaderText::Split(place);
-  const auto isNumber = [](const std::string& word)
-  { return !word.empty() && word.find_first_not_of("+-0123456789") == std::string::npos; };
-  return (!words.empty() && words.size() <= 2 && words.front() == "LIST") ||
-    (words.size() >= 4 && words.front().find('%') != std::string::npos &&
-      std::all_of(words.begin() + 1, words.begin() + 4, isNumber));
-}
-
 } // namespace
 
 std::shared_ptr<const VolumeFile> OpenNrrd(const std::string& path)
 {
   HeaderText header(path, { "byte skip", "line skip", "data file", "axis mins", "axis maxs" });
-  std::ifstream file(path, std::ios::binary);
+  HeaderLines lines(path);
   std::string line;
-  std::getline(file, line);
+  lines.Next(line);
   if (line.rfind("NRRD000", 0) != 0)
   {
     header.Refuse("it does not begin with NRRD.");
   }
-  while (std::getline(file, line) && !HeaderText::Trim(line).empty())
+  while (lines.Next(line) && !HeaderText::Trim(line).empty())
   {
     // What a user adds is "key:=value", and no field.
     const std::size_t colon = line.find(':');
@@ -195,10 +186,10 @@ std::shared_ptr<const VolumeFile> OpenNrrd(const std::string& path)
   const std::string encoding = HeaderText::ToLower(header.Get("encoding"));
   if (encoding != "raw")
   {
-    header.Refuse("its encoding is '" + encoding +
-      "', and only 'raw' can be read in parts. Convert it, for example with 'unu save -e raw'.");
+    header.Refuse("its encoding is " + Quote(encoding) +
+      ", and only 'raw' can be read in parts. Convert it, for example with 'unu save -e raw'.");
   }
-  const std::vector<double> sizes = header.GetNumbers("sizes");
+  const std::vector<std::int64_t> sizes = header.GetIntegers("sizes");
   const std::vector<std::size_t> domain = FindDomain(header, sizes.size());
   const bool hasComponents = domain.size() < sizes.size();
   if (domain.size() < 2 || domain.size() > 3 || sizes.size() > domain.size() + 1)
@@ -215,39 +206,34 @@ std::shared_ptr<const VolumeFile> OpenNrrd(const std::string& path)
   }
   BareValues values;
   values.Name = header.Get("content").empty() ? "values" : header.Get("content");
-  values.Components = hasComponents ? static_cast<int>(sizes.front()) : 1;
+  values.Components = hasComponents ? sizes.front() : 1;
   values.Samples = rt::Index3(1);
   for (std::size_t axis = 0; axis < domain.size(); ++axis)
   {
-    values.Samples[static_cast<int>(axis)] = static_cast<std::int64_t>(sizes[domain[axis]]);
+    values.Samples[static_cast<int>(axis)] = sizes[domain[axis]];
   }
   values.Type = ParseType(header);
   values.BigEndian = HeaderText::ToLower(header.Get("endian")) == "big";
-  const std::vector<double> skip = header.GetNumbers("byte skip", 1);
-  values.Offset = skip.empty() ? 0 : static_cast<std::int64_t>(skip.front());
-  if (!header.GetNumbers("line skip", 1).empty() && header.GetNumbers("line skip", 1).front() > 0)
+  values.Offset = header.GetInteger("byte skip", 0, -1);
+  if (header.GetInteger("line skip", 0) > 0)
   {
     header.Refuse("it skips lines of text, which is not supported.");
   }
   const std::string separate = header.Get("data file");
   if (separate.empty())
   {
-    if (file.eof())
+    if (lines.HasEnded())
     {
       header.Refuse(
         "the file ends with its header: there is no empty line, and no values behind it.");
     }
     values.Path = path;
-    values.Least = static_cast<std::int64_t>(file.tellg());
+    values.Least = lines.GetPlace();
     values.Offset += values.Offset < 0 ? 0 : values.Least;
-  }
-  else if (IsInSeveralFiles(separate))
-  {
-    header.Refuse("its values are in several files, which is not supported.");
   }
   else
   {
-    values.Path = (std::filesystem::path(path).parent_path() / separate).string();
+    values.Path = header.FindValues("data file");
   }
   return OpenBareFile(path, values, ParseGeometry(header, domain, values.Samples));
 }

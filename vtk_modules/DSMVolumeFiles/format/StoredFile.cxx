@@ -6,6 +6,7 @@
 #include "DSMVolumeFiles/codec/HaloRecord.h"
 #include "DSMVolumeFiles/format/BareFile.h"
 
+#include <algorithm>
 #include <cstring>
 #include <map>
 #include <utility>
@@ -20,8 +21,9 @@ namespace
 constexpr std::int64_t BoxSamples = 33;
 constexpr std::uint64_t MostTogether = std::uint64_t(16) << 20;
 
-/// What has so many planes is cut into boxes.
+/// What has so many planes, or longer rows, is cut into boxes.
 constexpr std::int64_t LeastPlanes = 16;
+constexpr std::uint64_t LongestRow = std::uint64_t(1) << 20;
 
 /// The first samples along each axis, of as many as are stored with z fastest; out: x fastest.
 void CopyReversed(const std::byte* from, const rt::Index3& stored, std::byte* out,
@@ -58,7 +60,8 @@ void StoredFile::CutPlainChunks(FileArray& array, Storage& storage)
     return;
   }
   const rt::Index3 size = glm::min(grid.ChunkSamples, grid.Samples);
-  const auto cut = size.z < LeastPlanes ? &CutIntoRows : &CutIntoBoxes;
+  const bool isShort = static_cast<std::uint64_t>(size.x) * array.GetSampleBytes() <= LongestRow;
+  const auto cut = size.z < LeastPlanes && isShort ? &CutIntoRows : &CutIntoBoxes;
   rt::Index3 part = cut(size, array.GetSampleBytes()).ChunkSamples;
   for (int axis = 0; axis < 3; ++axis)
   {
@@ -97,10 +100,7 @@ void StoredFile::ReadChunk(
   const std::optional<Place> place = this->FindChunk(array, step, whole);
   if (!place)
   {
-    for (std::size_t sample = 0; sample < count; ++sample)
-    {
-      std::memcpy(out + sample * sampleBytes, storage.Fill.data(), sampleBytes);
-    }
+    FillWith(storage.Fill, out, count * sampleBytes);
     return;
   }
   const rt::Box stored = this->GetStoredBox(array, whole);
@@ -110,9 +110,11 @@ void StoredFile::ReadChunk(
     stored.Min == box.Min && stored.Max == box.Max && storage.Slices == 1 && !storage.IsReversed;
   try
   {
-    const auto rows = storage.StoredSamples == rt::Index3(0)
-      ? std::vector<PositionedFile::Piece>{}
-      : this->FindPieces(array, *place, whole, box);
+    // What is not wanted of a large chunk that lies plain in the file is not read.
+    const bool inRows =
+      storage.StoredSamples != rt::Index3(0) || (!isAll && allBytes > MostTogether);
+    const auto rows =
+      inRows ? this->FindPieces(array, *place, whole, box) : std::vector<PositionedFile::Piece>{};
     if (!rows.empty())
     {
       ReadPieces(storage, *place, rows, out, count * sampleBytes);
@@ -123,6 +125,7 @@ void StoredFile::ReadChunk(
       place->File->Read(place->Offset, out, allBytes);
       return;
     }
+    this->CheckStored(array, *place, allBytes);
     ByteBuffer bytes(place->Bytes);
     place->File->Read(place->Offset, bytes.data(), bytes.size());
     if (isAll)
@@ -148,6 +151,49 @@ void StoredFile::ReadChunk(
   }
 }
 
+void StoredFile::FillWith(const std::vector<std::byte>& fill, std::byte* out, std::size_t bytes)
+{
+  // Each pass copies what is there already, as long as that stays in the processor's cache.
+  constexpr std::size_t most = 1 << 14;
+  std::size_t done = std::min(bytes, fill.size());
+  std::memcpy(out, fill.data(), done);
+  for (std::size_t unit = done; done < bytes;)
+  {
+    const std::size_t more = std::min(unit, bytes - done);
+    std::memcpy(out + done, out, more);
+    done += more;
+    unit = unit < most ? done : unit;
+  }
+}
+
+void StoredFile::CheckStored(std::size_t array, const Place& place, std::size_t bytes) const
+{
+  const Storage& storage = this->Storages[array];
+  const FileArray& what = this->Arrays[array];
+  // Whether there is a halo is only known once the chunk is unpacked.
+  const std::uint64_t most = storage.Codec.CountMostStored(
+    bytes, storage.Codec.KeepsHalo() ? what.Grid.CountMostOfHalo() * what.GetSampleBytes() : 0);
+  if (place.Bytes > most)
+  {
+    throw dsm::Error("it has " + std::to_string(place.Bytes) + " bytes instead of " +
+      (storage.Codec.IsPlain() ? "" : "at most ") + std::to_string(most) +
+      ". The file is damaged.");
+  }
+  const std::uint64_t has = place.File->GetBytes();
+  if (place.Offset > has || place.Bytes > has - place.Offset)
+  {
+    throw dsm::Error("it has " + std::to_string(place.Bytes) + " bytes from byte " +
+      std::to_string(place.Offset) + " on, beyond the end of the file, which has " +
+      std::to_string(has) + " bytes: it is truncated, or its header is wrong.");
+  }
+  if (storage.Codec.CountMostDecoded(place.Bytes) < bytes)
+  {
+    throw dsm::Error("it has " + std::to_string(place.Bytes) + " bytes instead of " +
+      std::to_string(bytes) +
+      (storage.Codec.KeepsPlaces() ? "." : ", more than they can be unpacked to."));
+  }
+}
+
 std::vector<PositionedFile::Piece> StoredFile::FindPieces(
   std::size_t array, const Place& place, const rt::Index3& whole, const rt::Box& part) const
 {
@@ -156,11 +202,13 @@ std::vector<PositionedFile::Piece> StoredFile::FindPieces(
   const rt::Box stored = this->GetStoredBox(array, whole);
   const rt::Index3 size = stored.GetSize();
   std::vector<PositionedFile::Piece> pieces;
-  if (!storage.Codec.KeepsPlaces() || storage.Slices != 1 || storage.IsReversed ||
-    place.Bytes != static_cast<std::size_t>(stored.GetCount()) * sampleBytes)
+  const std::uint64_t sliceBytes = static_cast<std::uint64_t>(stored.GetCount()) * sampleBytes;
+  if (!storage.Codec.KeepsPlaces() || storage.IsReversed ||
+    place.Bytes != sliceBytes * storage.Slices)
   {
     return pieces;
   }
+  const std::uint64_t first = place.Offset + place.Slice * sliceBytes;
   const rt::Index3 rows = part.GetSize();
   pieces.reserve(static_cast<std::size_t>(rows.y * rows.z));
   for (std::int64_t z = part.Min.z - stored.Min.z; z < part.Max.z - stored.Min.z; ++z)
@@ -170,7 +218,7 @@ std::vector<PositionedFile::Piece> StoredFile::FindPieces(
       const auto before =
         static_cast<std::uint64_t>((z * size.y + y) * size.x + part.Min.x - stored.Min.x);
       pieces.push_back(
-        { place.Offset + before * sampleBytes, static_cast<std::size_t>(rows.x) * sampleBytes });
+        { first + before * sampleBytes, static_cast<std::size_t>(rows.x) * sampleBytes });
     }
   }
   return pieces;
@@ -227,15 +275,20 @@ bool StoredFile::ReadWithHalo(
   const rt::Box box = what.Grid.GetBox(chunk);
   const rt::Box all = what.Grid.GetBoxWithHalo(chunk);
   const rt::Box stored{ box.Min, box.Min + what.Grid.ChunkSamples };
-  ByteBuffer halo(static_cast<std::size_t>(all.GetCount() - box.GetCount()) * sampleBytes);
-  ByteBuffer samples(static_cast<std::size_t>(stored.GetCount()) * sampleBytes);
+  const std::size_t storedBytes = static_cast<std::size_t>(stored.GetCount()) * sampleBytes;
+  ByteBuffer halo;
+  ByteBuffer samples;
   try
   {
     const std::size_t behind = storage.HaloRecordBytes;
-    if (place->Offset + place->Bytes + behind > place->File->GetBytes())
+    const std::uint64_t has = place->File->GetBytes();
+    this->CheckStored(array, *place, storedBytes);
+    if (behind > has - place->Offset - place->Bytes)
     {
       return false; // as below
     }
+    halo.resize(static_cast<std::size_t>(all.GetCount() - box.GetCount()) * sampleBytes);
+    samples.resize(storedBytes);
     ByteBuffer bytes(place->Bytes + behind);
     place->File->Read(place->Offset, bytes.data(), bytes.size());
     bool isThere = behind == 0 ||

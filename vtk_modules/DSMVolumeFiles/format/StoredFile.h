@@ -48,7 +48,7 @@ protected:
   struct Storage
   {
     ChunkCodec Codec;
-    /// Of a chunk that is nowhere: one sample.
+    /// Of a chunk that is nowhere: one sample, or one component where all are alike.
     std::vector<std::byte> Fill;
     /// Samples along each axis of a chunk in the file, where it is shown as several (CutPlainChunks); else 0.
     rt::Index3 StoredSamples{ 0 };
@@ -79,6 +79,11 @@ protected:
   std::vector<Storage> Storages; ///< of the arrays
 
 private:
+  /// Fills samples of so many bytes together.
+  static void FillWith(const std::vector<std::byte>& fill, std::byte* out, std::size_t bytes);
+  /// Throws dsm::Error when a chunk of so many bytes, a halo beside it included, cannot have been stored in as many as
+  /// it has: no more than what it may take is read.
+  void CheckStored(std::size_t array, const Place& place, std::size_t bytes) const;
   /// Which chunk of the file a chunk is of, or a part of.
   rt::Index3 FindStored(std::size_t array, const rt::Index3& chunk) const;
   /// The samples of a chunk of the file, those beyond the volume's ends included where it has them.

@@ -3,6 +3,7 @@
 
 #include "DSMCore/base/Error.h"
 #include "DSMVolumeFiles/base/PositionedFile.h"
+#include "DSMVolumeFiles/base/SmallFile.h"
 #include "DSMVolumeFiles/format/BareFile.h"
 #include "DSMVolumeFiles/format/HeaderFiles.h"
 #include "DSMVolumeFiles/format/HeaderText.h"
@@ -11,11 +12,16 @@
 #endif
 #include "DSMVolumeFiles/format/ZarrFile.h"
 
+#include <glm/ext/vector_uint3_sized.hpp>
+#include <glm/vector_relational.hpp>
+
 #include <algorithm>
 #include <atomic>
+#include <cmath>
 #include <filesystem>
-#include <fstream>
 #include <limits>
+#include <new>
+#include <stdexcept>
 
 namespace vol
 {
@@ -33,26 +39,16 @@ enum class Format
   Zarr
 };
 
-std::string ReadFirst(const std::string& path, std::size_t bytes)
-{
-  std::ifstream file(path, std::ios::binary);
-  std::string text(bytes, '\0');
-  file.read(text.data(), static_cast<std::streamsize>(bytes));
-  text.resize(static_cast<std::size_t>(std::max<std::streamsize>(0, file.gcount())));
-  return text;
-}
-
 /// At the beginning, or behind a block of the user's own, of 512 bytes or twice as many, and so on.
-bool HasHdfSignature(const std::string& path)
+bool HasHdfSignature(const PositionedFile& file)
 {
-  constexpr std::streamoff most = 1 << 20;
+  constexpr std::uint64_t most = 1 << 20;
   const std::string signature = "\x89HDF\r\n\x1a\n";
-  std::ifstream file(path, std::ios::binary);
   std::string text(signature.size(), '\0');
-  for (std::streamoff place = 0; place <= most && file.seekg(place) &&
-       file.read(text.data(), static_cast<std::streamsize>(text.size()));
+  for (std::uint64_t place = 0; place <= most && place + text.size() <= file.GetBytes();
        place = place == 0 ? 512 : 2 * place)
   {
+    file.Read(place, reinterpret_cast<std::byte*>(text.data()), text.size());
     if (text == signature)
     {
       return true;
@@ -83,12 +79,15 @@ Format FindFormat(const std::string& path)
   {
     return Format::Zarr;
   }
-  const std::string first = ReadFirst(path, 8);
-  if (first.rfind("NRRD000", 0) == 0)
+  if (FindPathKind(path) != PathKind::File)
+  {
+    return Format::Unknown;
+  }
+  if (ReadBeginning(path, 7) == "NRRD000")
   {
     return Format::Nrrd;
   }
-  if (HasHdfSignature(path))
+  if (HasHdfSignature(PositionedFile(path)))
   {
     return Format::Hdf;
   }
@@ -113,7 +112,7 @@ Format TryFindFormat(const std::string& path)
 
 std::shared_ptr<const VolumeFile> OpenRaw(const std::string& path, const OpenOptions::Raw& options)
 {
-  if (rt::Box{ rt::Index3(0), options.Samples }.GetCount() == 0)
+  if (glm::any(glm::lessThanEqual(options.Samples, rt::Index3(0))))
   {
     throw dsm::Error("The file '" + path +
       "' has bare values and no header: enter how many samples there are along each axis (Raw "
@@ -126,7 +125,8 @@ std::shared_ptr<const VolumeFile> OpenRaw(const std::string& path, const OpenOpt
   values.Type = options.Type;
   values.Components = std::max(1, options.Components);
   values.BigEndian = options.BigEndian;
-  values.Offset = static_cast<std::int64_t>(options.HeaderBytes);
+  values.Offset = static_cast<std::int64_t>(
+    std::min<std::uint64_t>(options.HeaderBytes, std::numeric_limits<std::int64_t>::max()));
   FileGeometry geometry;
   std::copy_n(options.Spacing, 3, geometry.Spacing);
   return OpenBareFile(path, values, geometry);
@@ -135,11 +135,12 @@ std::shared_ptr<const VolumeFile> OpenRaw(const std::string& path, const OpenOpt
 /// As OpenVolumeFile, but that a format without levels, or datasets, does not look at the one that is wanted.
 std::shared_ptr<const VolumeFile> OpenAsItIs(const std::string& path, const OpenOptions& options)
 {
-  if (!std::filesystem::exists(path))
+  const PathKind kind = FindPathKind(path);
+  if (kind == PathKind::Nothing)
   {
     throw dsm::Error("There is no file '" + path + "'.");
   }
-  if (!std::filesystem::is_directory(path))
+  if (kind != PathKind::Directory)
   {
     // What cannot be read would look like nothing that is known.
     const PositionedFile readable(path);
@@ -165,12 +166,12 @@ std::shared_ptr<const VolumeFile> OpenAsItIs(const std::string& path, const Open
     case Format::Unknown:
       break;
   }
-  if (ReadFirst(path, 4) == "PK\x03\x04")
+  if (kind == PathKind::File && ReadBeginning(path, 4) == "PK\x03\x04")
   {
     throw dsm::Error("'" + path +
       "' is a ZIP archive, and cannot be read. Unpack it, and open what it has: a Zarr's folder.");
   }
-  if (!std::filesystem::is_directory(path) && std::filesystem::file_size(path) == 0)
+  if (kind == PathKind::File && PositionedFile(path).GetBytes() == 0)
   {
     throw dsm::Error("The file '" + path + "' is empty.");
   }
@@ -178,6 +179,29 @@ std::shared_ptr<const VolumeFile> OpenAsItIs(const std::string& path, const Open
     "' is not known, or the file is damaged at its beginning. HDF5, Zarr (a folder), NRRD, "
     "MetaImage (.mhd, .mha) and .raw are known. Whatever else ParaView opens as an image, its Save "
     "Data writes as a volume in bricks.");
+}
+
+/// Gives what other libraries throw the file's name.
+std::shared_ptr<const VolumeFile> OpenGuarded(const std::string& path, const OpenOptions& options)
+{
+  std::string why;
+  try
+  {
+    return OpenAsItIs(path, options);
+  }
+  catch (const std::bad_alloc&)
+  {
+    why = "there is not enough memory";
+  }
+  catch (const std::length_error&)
+  {
+    why = "there is not enough memory";
+  }
+  catch (const std::filesystem::filesystem_error& error)
+  {
+    why = "'" + error.path1().string() + "' cannot be read: " + error.code().message();
+  }
+  throw dsm::Error("Cannot open '" + path + "': " + why + ".");
 }
 
 } // namespace
@@ -198,21 +222,27 @@ std::string DescribeShape(const rt::Index3& samples)
 void CheckSizes(const std::string& path, const FileArray& array, std::size_t slices)
 {
   const auto refuse = [&](const std::string& what)
-  { throw dsm::Error("The file '" + path + "' cannot be used: it tells of " + what + "."); };
-  // Indices of images are int, and bytes are counted in 64 bits.
-  constexpr std::int64_t mostAlong = std::numeric_limits<int>::max();
-  constexpr long double mostBytes = 0x1p62L;
+  { throw dsm::Error("'" + path + "' has an invalid header: it declares " + what + "."); };
   const auto isRight = [&](const rt::Index3& samples)
   {
-    const long double bytes = static_cast<long double>(samples.x) * samples.y * samples.z *
-      array.Components * rt::GetBytes(array.Type) * slices;
+    const rt::Index3 most(static_cast<std::int64_t>(FileLimits::Samples));
+    const glm::u64vec3 sides(samples);
     return glm::all(glm::greaterThan(samples, rt::Index3(0))) &&
-      glm::all(glm::lessThanEqual(samples, rt::Index3(mostAlong))) && bytes <= mostBytes;
+      glm::all(glm::lessThanEqual(samples, most)) &&
+      MultiplyWithin(
+        FileLimits::ArrayBytes, { sides.x, sides.y, sides.z, array.GetSampleBytes(), slices });
   };
+  CheckLimit(path, "bytes of an array's name", array.Name.size(), FileLimits::NameBytes);
+  if (array.Name.find('\0') != std::string::npos)
+  {
+    refuse("an array whose name has a byte 0");
+  }
   if (array.Components < 1)
   {
-    refuse(std::to_string(array.Components) + " components of each sample");
+    refuse(std::to_string(array.Components) + " components");
   }
+  CheckLimit(
+    path, "components", static_cast<std::uint64_t>(array.Components), FileLimits::Components);
   if (!isRight(array.Grid.Samples))
   {
     refuse(DescribeShape(array.Grid.Samples) + " samples");
@@ -223,14 +253,62 @@ void CheckSizes(const std::string& path, const FileArray& array, std::size_t sli
   }
 }
 
+void CheckGeometry(const std::string& path, const FileGeometry& geometry)
+{
+  const auto areFinite = [](const double* numbers, int count)
+  {
+    return std::all_of(
+      numbers, numbers + count, [](double number) { return std::isfinite(number); });
+  };
+  const auto refuse = [&](const std::string& what, const std::string& why)
+  {
+    throw dsm::Error(
+      "Invalid " + what + " in '" + path + "': " + why + ". Fix the source or the file's header.");
+  };
+  if (!areFinite(geometry.Origin, 3))
+  {
+    refuse("origin", "a number is infinite or not a number");
+  }
+  if (!areFinite(geometry.Spacing, 3))
+  {
+    refuse("spacing", "a number is infinite or not a number");
+  }
+  const double* const m = geometry.Direction;
+  if (!areFinite(m, 9))
+  {
+    refuse("direction matrix", "a number is infinite or not a number");
+  }
+  // Of axes of length 1, the volume that they span. What is left of rounding is less than this.
+  constexpr double least = 1e-9;
+  double axes[3][3];
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    const double length = std::hypot(m[axis], m[3 + axis], m[6 + axis]);
+    for (int row = 0; row < 3; ++row)
+    {
+      axes[axis][row] = length > 0.0 ? m[3 * row + axis] / length : 0.0;
+    }
+  }
+  const double(&x)[3] = axes[0];
+  const double(&y)[3] = axes[1];
+  const double(&z)[3] = axes[2];
+  const double determinant = x[0] * (y[1] * z[2] - y[2] * z[1]) -
+    x[1] * (y[0] * z[2] - y[2] * z[0]) + x[2] * (y[0] * z[1] - y[1] * z[0]);
+  if (!(std::abs(determinant) >= least))
+  {
+    refuse("direction matrix", "its axes lie in one plane, so that it has no inverse");
+  }
+}
+
 std::shared_ptr<const VolumeFile> OpenVolumeFile(
   const std::string& path, const OpenOptions& options)
 {
-  auto file = OpenAsItIs(path, options);
+  auto file = OpenGuarded(path, options);
+  CheckGeometry(path, file->GetGeometry());
   if (options.Level != 0 && options.Level >= file->GetLevels())
   {
-    throw dsm::Error("'" + path + "' has no coarser levels of detail; level " +
-      std::to_string(options.Level) + " is none of it.");
+    throw dsm::Error("'" + path + "' has no level " + std::to_string(options.Level) +
+      ": it has no coarser levels of detail. The only valid level is 0.");
   }
   const std::vector<FileArray>& arrays = file->GetArrays();
   if (!options.Dataset.empty() && (arrays.size() > 1 || arrays.front().Name != options.Dataset))

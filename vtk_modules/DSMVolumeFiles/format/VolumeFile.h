@@ -34,9 +34,9 @@ struct FileArray
 /// For messages: along x, y and z.
 std::string DescribeShape(const rt::Index3& samples);
 
-/// Throws dsm::Error, which names the file, where an array or its chunks have no samples, or more than can be counted:
-/// what a header tells may be anything. To be called before its bytes are reckoned with. `slices`: boxes of samples in
-/// what is stored as one chunk.
+/// Throws dsm::Error, which names the file, where an array or its chunks have no samples, or more than FileLimits has, or
+/// a name that is too long: a header may declare anything. To be called before anything is computed with its sizes.
+/// `slices`: boxes of samples in what is stored as one chunk.
 void CheckSizes(const std::string& path, const FileArray& array, std::size_t slices = 1);
 
 /// Where the samples are in the world, as vtkImageData has it.
@@ -48,6 +48,10 @@ struct FileGeometry
   rt::Index3 First{ 0 };  ///< index of the first point
   rt::Index3 Points{ 0 }; ///< points along each axis
 };
+
+/// Throws dsm::Error, which names the file, where a number is not finite, or where the directions of the axes lie in one
+/// plane: no world position would have an index.
+void CheckGeometry(const std::string& path, const FileGeometry& geometry);
 
 /// A volume in a file, or in a folder of files, of which no values are read when it is opened. Its members may
 /// be called by any thread, at the same time.

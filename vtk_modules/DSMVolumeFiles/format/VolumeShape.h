@@ -3,6 +3,9 @@
 #define vol_VolumeShape_h
 
 #include "DSMRayTracing/base/Box.h"
+#include "DSMVolumeFiles/base/FileLimits.h"
+
+#include <glm/ext/vector_uint3_sized.hpp>
 
 #include <cstdint>
 
@@ -18,8 +21,12 @@ struct VolumeShape
   /// More samples, or as many with more times.
   bool IsLargerThan(const VolumeShape& other) const
   {
-    const auto count = [](const VolumeShape& shape) {
-      return rt::Box{ rt::Index3(0), shape.Samples }.GetCount();
+    // A file may declare more samples than a 64-bit number counts.
+    const auto count = [](const VolumeShape& shape)
+    {
+      const glm::u64vec3 sides(glm::max(shape.Samples, rt::Index3(0)));
+      return MultiplyWithin(~std::uint64_t(0), { sides.x, sides.y, sides.z })
+        .value_or(~std::uint64_t(0));
     };
     return count(*this) > count(other) ||
       (this->Samples == other.Samples && this->Times > other.Times);

@@ -2,7 +2,9 @@
 #include "DSMVolumeFiles/format/ZarrAxes.h"
 
 #include "DSMCore/base/Error.h"
+#include "DSMVolumeFiles/base/SmallFile.h"
 #include "DSMVolumeFiles/format/HeaderText.h"
+#include "DSMVolumeFiles/format/ZarrJson.h"
 
 namespace vol
 {
@@ -14,7 +16,7 @@ using Json = nlohmann::json;
 
 std::string GetText(const Json& axis, const char* field)
 {
-  const Json found = axis.is_object() ? axis.value(field, Json()) : axis;
+  const Json& found = axis.is_object() ? ZarrJson::Find(axis, field) : axis;
   return found.is_string() ? found.get<std::string>() : std::string();
 }
 
@@ -57,8 +59,8 @@ bool MayBe(const Json& named, std::size_t first, const std::string& order)
   {
     names += (names.empty() ? "" : ", ") + GetText(axis, "name");
   }
-  throw dsm::Error("The Zarr array '" + folder + "' is no volume with its axes '" + names +
-    "': its last three axes, and no others, must be in space, in the order z, y, x or x, y, z; "
+  throw dsm::Error("The Zarr array '" + folder + "' is no volume with its axes " + Quote(names) +
+    ": its last three axes, and no others, must be in space, in the order z, y, x or x, y, z; "
     "one of channels may be behind them. Write it with its axes in that order.");
 }
 

@@ -3,9 +3,11 @@
 
 #include "DSMCore/base/Error.h"
 #include "DSMRayTracing/base/ByteHash.h"
+#include "DSMVolumeFiles/base/SmallFile.h"
 #include "DSMVolumeFiles/format/StoredFile.h"
 #include "DSMVolumeFiles/format/VolumeShape.h"
 #include "DSMVolumeFiles/format/ZarrAxes.h"
+#include "DSMVolumeFiles/format/ZarrJson.h"
 #include "DSMVolumeFiles/format/ZarrMetadata.h"
 #include "DSMVolumeFiles/format/ZarrParts.h"
 
@@ -13,6 +15,7 @@
 #include <filesystem>
 #include <map>
 #include <system_error>
+#include <unordered_set>
 #include <utility>
 
 namespace vol
@@ -26,10 +29,31 @@ using Json = nlohmann::json;
 /// More than any microscope's.
 constexpr std::int64_t MostChannels = 1000;
 
-std::string GetText(const Json& object, const char* name)
+/// Opens only what lies in the folder: a name in its metadata may lead elsewhere.
+std::string JoinInside(const std::string& folder, const std::string& name)
 {
-  const Json found = object.is_object() ? object.value(name, Json()) : Json();
-  return found.is_string() ? found.get<std::string>() : std::string();
+  const std::filesystem::path path(name);
+  const bool leadsUp = std::find(path.begin(), path.end(), "..") != path.end();
+  if (name.empty() || path.is_absolute() || leadsUp || name.find('\0') != std::string::npos)
+  {
+    throw dsm::Error("'" + folder + "' has invalid metadata: the path " + Quote(name) +
+      " of a dataset leads outside of the folder, or is empty.");
+  }
+  return folder + "/" + name;
+}
+
+/// What lies in a folder. Throws dsm::Error where the system cannot tell what it is.
+std::vector<std::filesystem::path> FindFolders(const std::string& path)
+{
+  std::vector<std::filesystem::path> found;
+  for (const auto& entry : std::filesystem::directory_iterator(path))
+  {
+    if (FindPathKind(entry.path().string()) == PathKind::Directory)
+    {
+      found.push_back(entry.path());
+    }
+  }
+  return found;
 }
 
 class ZarrFile final : public StoredFile
@@ -39,8 +63,9 @@ public:
     : StoredFile(path)
   {
     const Json attributes = ReadZarrAttributes(path);
-    const Json ome = attributes.contains("ome") ? attributes["ome"] : attributes;
-    const Json scales = ome.value("multiscales", Json::array());
+    const Json& named = ZarrJson::Find(attributes, "ome");
+    const Json& ome = named.is_null() ? attributes : named;
+    const Json& scales = ZarrJson::Find(ome, "multiscales");
     try
     {
       if (scales.is_array() && !scales.empty())
@@ -54,14 +79,15 @@ public:
     }
     catch (const Json::exception& error)
     {
-      throw dsm::Error("The metadata of '" + path + "' are not as they should be (" +
-        std::string(error.what()) + ").");
+      throw dsm::Error("'" + path + "' has invalid metadata (" + std::string(error.what()) + ").");
     }
     this->Stamp = this->MakeStamp();
   }
 
   std::uint64_t GetTableBytes() const override
   {
+    // Saturates: a file may declare more chunks than a 64-bit number counts.
+    constexpr std::uint64_t most = std::uint64_t(1) << 62;
     std::uint64_t files = 0;
     std::uint64_t indexBytes = 0;
     for (const Source& source : this->Sources)
@@ -71,9 +97,10 @@ public:
       std::uint64_t mine = 1;
       for (std::size_t axis = 0; axis < across.size(); ++axis)
       {
-        mine *= static_cast<std::uint64_t>((data.Shape[axis] + across[axis] - 1) / across[axis]);
+        const std::int64_t along = (data.Shape[axis] + across[axis] - 1) / across[axis];
+        mine = MultiplyWithin(most, { mine, static_cast<std::uint64_t>(along) }).value_or(most);
       }
-      files += mine;
+      files = std::min(most, files + mine);
       indexBytes = std::max<std::uint64_t>(indexBytes, data.Shards ? data.Shards->IndexBytes : 0);
     }
     return ZarrParts::CountBytes(files, indexBytes);
@@ -137,7 +164,7 @@ private:
       hash.Add(source.Channel.data(), source.Channel.size() * sizeof(std::int64_t));
       for (const char* metadata : { "/.zarray", "/zarr.json" })
       {
-        if (std::filesystem::exists(source.Folder + metadata))
+        if (FindPathKind(source.Folder + metadata) != PathKind::Nothing)
         {
           // The folder's, too: most programs replace chunks by others of the same name.
           const std::uint64_t stamps[] = { PositionedFile(source.Folder + metadata).GetStamp(),
@@ -152,27 +179,30 @@ private:
   void OpenScale(const Json& scale, const Json& ome, int level)
   {
     const Json& datasets = scale.at("datasets");
+    CheckLimit(this->Path, "levels of detail", datasets.size(), FileLimits::Levels);
     this->Levels = static_cast<int>(datasets.size());
     if (level < 0 || level >= this->Levels)
     {
-      throw dsm::Error("'" + this->Path + "' has " + std::to_string(this->Levels) +
-        " levels of detail; level " + std::to_string(level) + " is none of them.");
+      throw dsm::Error("'" + this->Path + "' has no level " + std::to_string(level) +
+        (this->Levels > 0 ? "; valid levels are 0 to " + std::to_string(this->Levels - 1) : "") +
+        ".");
     }
     const Json& dataset = datasets.at(static_cast<std::size_t>(level));
-    const std::string folder = this->Path + "/" + dataset.at("path").get<std::string>();
+    const std::string folder =
+      JoinInside(this->Path, ZarrJson::GetText(this->Path, dataset, "path"));
     const auto data = Read(folder);
-    const ZarrAxes axes = ZarrAxes::Find(folder, scale.value("axes", Json()), data->Shape.size());
+    const ZarrAxes axes = ZarrAxes::Find(folder, ZarrJson::Find(scale, "axes"), data->Shape.size());
     // The level's own come first.
     for (const Json* const from : { &dataset, &scale })
     {
-      this->Locate(from->value("coordinateTransformations", Json::array()), axes);
+      this->Locate(ZarrJson::Find(*from, "coordinateTransformations"), axes);
     }
-    const Json channels = ome.value("omero", Json::object()).value("channels", Json::array());
+    const Json& channels = ZarrJson::Find(ZarrJson::Find(ome, "omero"), "channels");
     const auto getName = [&](std::int64_t channel, std::int64_t count)
     {
       const auto number = static_cast<std::size_t>(channel);
       const std::string label = channels.is_array() && number < channels.size()
-        ? GetText(channels[number], "label")
+        ? ZarrJson::GetText(this->Path, channels[number], "label")
         : std::string();
       return !label.empty() ? label
         : count == 1        ? std::string("values")
@@ -186,8 +216,15 @@ private:
   {
     for (const Json& one : transformations)
     {
-      const std::string type = one.value("type", "");
-      const auto values = one.value(type, std::vector<double>());
+      const std::string type = ZarrJson::GetText(this->Path, one, "type");
+      const Json& numbers = ZarrJson::Find(one, type.c_str());
+      if (type != "scale" && type != "translation")
+      {
+        continue;
+      }
+      CheckLimit(this->Path, "numbers in a transformation", numbers.size(), FileLimits::Axes);
+      const auto values =
+        numbers.is_null() ? std::vector<double>() : numbers.get<std::vector<double>>();
       for (int axis = 0; axis < 3 && values.size() >= ZarrAxes::InSpace + axes.Behind; ++axis)
       {
         const double value = values[axes.FindInSpace(values.size(), axis)];
@@ -243,12 +280,12 @@ private:
         return std::nullopt;
       }
     };
-    for (const auto& entry : std::filesystem::directory_iterator(this->Path))
+    for (const std::filesystem::path& folder : FindFolders(this->Path))
     {
-      const auto shape = entry.is_directory() ? tryToRead(entry.path().string()) : std::nullopt;
+      const auto shape = tryToRead(folder.string());
       if (shape)
       {
-        found[entry.path().filename().string()] = *shape;
+        found[folder.filename().string()] = *shape;
         largest = shape->IsLargerThan(largest) ? *shape : largest;
       }
     }
@@ -308,6 +345,25 @@ private:
       "the axis of channels first.");
   }
 
+  /// A chunk that cannot be read in parts is read whole.
+  static void CheckChunkBytes(
+    const std::string& folder, const FileArray& array, const Storage& storage)
+  {
+    if (storage.StoredSamples != rt::Index3(0) ||
+      (storage.Codec.KeepsPlaces() && !storage.IsReversed))
+    {
+      return;
+    }
+    const glm::u64vec3 chunk(array.Grid.ChunkSamples);
+    if (!MultiplyWithin(FileLimits::ChunkBytes,
+          { chunk.x, chunk.y, chunk.z, storage.Slices, array.GetSampleBytes() }))
+    {
+      throw dsm::Error("The Zarr array '" + folder + "' has chunks of " +
+        DescribeShape(array.Grid.ChunkSamples) + " samples, which are more than " +
+        std::to_string(FileLimits::ChunkBytes) + " bytes. Write it with smaller chunks.");
+    }
+  }
+
   /// `getName(channel, count)`.
   template <class GetName>
   void Add(const std::string& folder, const std::shared_ptr<const ZarrMetadata>& data,
@@ -328,6 +384,11 @@ private:
         "_ARRAY_DIMENSIONS).");
     }
     const std::int64_t times = axes.Time >= 0 ? getLength(axes.Time) : 1;
+    CheckLimit(folder, "time steps", static_cast<std::uint64_t>(times), FileLimits::Steps);
+    CheckLimit(folder, "components", static_cast<std::uint64_t>(axes.GetComponents(data->Shape)),
+      FileLimits::Components);
+    CheckLimit(this->Path, "arrays", this->Arrays.size() + static_cast<std::size_t>(channels),
+      FileLimits::Arrays);
     this->Steps = std::max(this->Steps, static_cast<int>(times));
     this->Geometry.Points = axes.GetSpace(data->Shape);
     for (std::int64_t channel = 0; channel < channels; ++channel)
@@ -349,12 +410,10 @@ private:
       array.Grid = { this->Geometry.Points, axes.GetSpace(data->ChunkShape) };
       Storage storage;
       storage.Codec = data->Codec;
-      for (int component = 0; component < array.Components; ++component)
-      {
-        storage.Fill.insert(storage.Fill.end(), data->Fill.begin(), data->Fill.end());
-      }
+      storage.Fill = data->Fill;
       for (std::size_t axis = 0; axis < place.size(); ++axis)
       {
+        // At most two axes, of fewer than 2^31 each.
         storage.Slices *= static_cast<std::size_t>(data->ChunkShape[axis]);
       }
       CheckSizes(folder, array, storage.Slices);
@@ -367,6 +426,7 @@ private:
           "supported. Write it with order='C'.");
       }
       CutPlainChunks(array, storage);
+      CheckChunkBytes(folder, array, storage);
       this->Arrays.push_back(std::move(array));
       this->Storages.push_back(std::move(storage));
       this->Sources.push_back({ folder, data, axes, std::move(place) });
@@ -374,15 +434,10 @@ private:
   }
 
   /// Labels may be alike.
-  std::string MakeUnique(const std::string& name, std::int64_t channel) const
+  std::string MakeUnique(const std::string& name, std::int64_t channel)
   {
-    const auto isKnown = [&](const std::string& one)
-    {
-      return std::any_of(this->Arrays.begin(), this->Arrays.end(),
-        [&](const FileArray& array) { return array.Name == one; });
-    };
     std::string unique = name;
-    for (std::int64_t number = channel; isKnown(unique); ++number)
+    for (std::int64_t number = channel; !this->Names.insert(unique).second; ++number)
     {
       unique = name + " " + std::to_string(number);
     }
@@ -392,11 +447,11 @@ private:
   /// Of a folder that has groups of arrays, or images.
   std::string FindInnerGroup() const
   {
-    for (const auto& entry : std::filesystem::directory_iterator(this->Path))
+    for (const std::filesystem::path& folder : FindFolders(this->Path))
     {
-      if (entry.is_directory() && MayBeZarr(entry.path().string()))
+      if (MayBeZarr(folder.string()))
       {
-        return entry.path().string();
+        return folder.string();
       }
     }
     return {};
@@ -416,13 +471,8 @@ private:
     const Source& source, const std::vector<std::int64_t>& index) const
   {
     const std::string path = source.Folder + "/" + GetKey(*source.Data, index);
-    std::error_code failure;
-    if (!std::filesystem::exists(path, failure))
+    if (FindPathKind(path) == PathKind::Nothing)
     {
-      if (failure)
-      {
-        throw dsm::Error("The file '" + path + "' cannot be read: " + failure.message() + ".");
-      }
       this->Parts.CheckNeverThere(path);
       if (!MayBeZarr(source.Folder))
       {
@@ -472,6 +522,7 @@ private:
   }
 
   std::vector<Source> Sources; ///< of the arrays
+  std::unordered_set<std::string> Names;
   mutable ZarrParts Parts;
 };
 

@@ -2,18 +2,19 @@
 #include "DSMVolumeFiles/format/ZarrMetadata.h"
 
 #include "DSMCore/base/Error.h"
+#include "DSMVolumeFiles/base/FileLimits.h"
+#include "DSMVolumeFiles/base/SmallFile.h"
+#include "DSMVolumeFiles/format/ZarrJson.h"
 
 #include <algorithm>
-#include <cerrno>
 #include <charconv>
+#include <cmath>
 #include <cstring>
-#include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <limits>
 #include <map>
 #include <numeric>
 #include <system_error>
+#include <type_traits>
 #include <utility>
 
 namespace vol
@@ -25,9 +26,12 @@ namespace
 using Json = nlohmann::json;
 using Kind = CodecStep::Kind;
 
-[[noreturn]] void Refuse(const std::string& folder, const std::string& why)
+using ZarrJson::Refuse;
+
+/// Refuses a type of values that this library does not have.
+[[noreturn]] void RefuseType(const std::string& folder, const std::string& text)
 {
-  throw dsm::Error("The Zarr array '" + folder + "' cannot be read: " + why);
+  Refuse(folder, "values of the type " + Quote(text) + " are not supported.");
 }
 
 /// Version 2: "<f4". Returns whether the bytes are the other way round than the machine's.
@@ -41,7 +45,7 @@ bool ParseType2(const std::string& folder, const std::string& text, rt::ScalarTy
   const auto known = types.find(text.size() == 3 ? text.substr(1) : text);
   if (known == types.end())
   {
-    Refuse(folder, "values of the type '" + text + "' are not known.");
+    RefuseType(folder, text);
   }
   type = known->second;
   return text[0] == '>' && rt::GetBytes(type) > 1;
@@ -58,7 +62,7 @@ void ParseType3(const std::string& folder, const std::string& text, rt::ScalarTy
   const auto known = types.find(text);
   if (known == types.end())
   {
-    Refuse(folder, "values of the type '" + text + "' are not known.");
+    RefuseType(folder, text);
   }
   type = known->second;
 }
@@ -76,7 +80,7 @@ T ParseFillText(const std::string& folder, const std::string& text)
     const auto parsed = std::from_chars(text.data() + 2, last, bits, 16);
     if (parsed.ec != std::errc() || parsed.ptr != last || text.size() > 2 + 2 * sizeof(T))
     {
-      Refuse(folder, "its fill value '" + text + "' is none.");
+      Refuse(folder, "its fill value " + Quote(text) + " is invalid.");
     }
     std::memcpy(&fill, &bits, sizeof(T)); // lowest byte first, as is all that we run on
   }
@@ -86,9 +90,45 @@ T ParseFillText(const std::string& folder, const std::string& text)
   }
   else if (text != "NaN")
   {
-    Refuse(folder, "its fill value '" + text + "' is none.");
+    Refuse(folder, "its fill value " + Quote(text) + " is invalid.");
   }
   return fill;
+}
+
+/// A number as a value of the array's type. None where it does not fit: to convert it anyway is undefined.
+template <class T>
+std::optional<T> ToValue(const Json& number)
+{
+  if constexpr (std::is_floating_point_v<T>)
+  {
+    const double value = number.get<double>();
+    const bool fits = std::abs(value) <= static_cast<double>(std::numeric_limits<T>::max());
+    return fits
+      ? static_cast<T>(value)
+      : std::copysign(std::numeric_limits<T>::infinity(), static_cast<T>(value > 0.0 ? 1 : -1));
+  }
+  else if (number.is_number_unsigned())
+  {
+    const auto value = number.get<std::uint64_t>();
+    return value <= static_cast<std::uint64_t>(std::numeric_limits<T>::max())
+      ? std::optional<T>(static_cast<T>(value))
+      : std::nullopt;
+  }
+  else
+  {
+    const auto value = number.is_number_integer()
+      ? number.get<std::int64_t>()
+      : ToInteger(number.get<double>(), std::numeric_limits<std::int64_t>::min(),
+          std::numeric_limits<std::int64_t>::max());
+    const auto fits = [](std::int64_t one)
+    {
+      return one < 0
+        ? std::is_signed_v<T> && one >= static_cast<std::int64_t>(std::numeric_limits<T>::min())
+        : static_cast<std::uint64_t>(one) <=
+          static_cast<std::uint64_t>(std::numeric_limits<T>::max());
+    };
+    return value && fits(*value) ? std::optional<T>(static_cast<T>(*value)) : std::nullopt;
+  }
 }
 
 std::vector<std::byte> ParseFill(const std::string& folder, const Json& value, rt::ScalarType type)
@@ -97,10 +137,10 @@ std::vector<std::byte> ParseFill(const std::string& folder, const Json& value, r
     [&](auto zero)
     {
       using T = decltype(zero);
-      T fill = zero;
+      std::optional<T> fill = zero;
       if (value.is_number())
       {
-        fill = value.get<T>();
+        fill = ToValue<T>(value);
       }
       else if (value.is_boolean())
       {
@@ -110,8 +150,19 @@ std::vector<std::byte> ParseFill(const std::string& folder, const Json& value, r
       {
         fill = ParseFillText<T>(folder, value.get<std::string>());
       }
+      else if (!value.is_null())
+      {
+        fill.reset();
+      }
+      if (!fill)
+      {
+        Refuse(folder,
+          "its fill value " +
+            Quote(value.is_number() ? value.dump() : std::string(value.type_name())) +
+            " is not one of its type.");
+      }
       std::vector<std::byte> bytes(sizeof(T));
-      std::memcpy(bytes.data(), &fill, sizeof(T));
+      std::memcpy(bytes.data(), &*fill, sizeof(T));
       return bytes;
     });
 }
@@ -130,58 +181,137 @@ CodecStep ParseCodec(const std::string& folder, const std::string& name)
   if (known == kinds.end())
   {
     Refuse(folder,
-      "its values are made with '" + name +
-        "', which is not known; blosc, gzip, zlib, zstd and crc32c are.");
+      "its filter or compressor " + Quote(name) +
+        " is not supported; blosc, gzip, zlib, zstd and crc32c are.");
   }
   return { known->second };
+}
+
+/// Between the indices in a chunk's name. With any other, two chunks may have one name, or lie outside of the folder.
+std::string GetSeparator(
+  const std::string& folder, const Json& object, const char* name, const std::string& usual)
+{
+  const Json& found = ZarrJson::Find(object, name);
+  const std::string separator = found.is_null() ? usual : ZarrJson::GetText(folder, object, name);
+  if (separator != "." && separator != "/")
+  {
+    Refuse(folder,
+      "its '" + std::string(name) + "' is " + Quote(separator) + "; '.' and '/' are valid.");
+  }
+  return separator;
+}
+
+/// Lengths of an array, or of its chunks, along its axes.
+std::vector<std::int64_t> GetShape(
+  const std::string& folder, const Json& object, const char* name, std::int64_t most)
+{
+  return ZarrJson::GetIntegers(folder, object, name, FileLimits::Axes, 0, most);
+}
+
+constexpr auto MostSamples = static_cast<std::int64_t>(FileLimits::Samples);
+
+/// As the class has it, with the folder's name in its errors.
+ChunkCodec MakeCodec(const std::string& folder, std::vector<CodecStep> steps)
+{
+  try
+  {
+    return ChunkCodec(std::move(steps));
+  }
+  catch (const dsm::Error& error)
+  {
+    Refuse(folder, error.what());
+  }
+}
+
+CodecStep ParseFilter2(const std::string& folder, const Json& filter)
+{
+  const std::string name = ZarrJson::GetText(folder, filter, "id");
+  if (name != "shuffle")
+  {
+    return ParseCodec(folder, name);
+  }
+  constexpr std::int64_t most = 256;
+  const Json& size = ZarrJson::Find(filter, "elementsize");
+  const auto width = size.is_null() ? std::optional<std::int64_t>(4)
+    : size.is_number()              ? ToInteger(size.get<double>(), 0, most)
+                                    : std::nullopt;
+  if (!width)
+  {
+    Refuse(folder,
+      "its filter 'shuffle' has an invalid 'elementsize'; 0 to " + std::to_string(most) +
+        " are valid.");
+  }
+  return { Kind::Shuffle, static_cast<std::size_t>(std::max<std::int64_t>(1, *width)) };
 }
 
 ZarrMetadata ParseVersion2(const std::string& folder, const Json& json)
 {
   ZarrMetadata data;
-  data.Shape = json.at("shape").get<std::vector<std::int64_t>>();
-  data.ChunkShape = json.at("chunks").get<std::vector<std::int64_t>>();
+  data.Shape = GetShape(folder, json, "shape", MostSamples);
+  data.ChunkShape = GetShape(folder, json, "chunks", MostSamples);
   // Old nested stores do not say so.
-  const bool looksNested = std::filesystem::is_directory(folder + "/0");
-  data.Separator = json.value("dimension_separator", looksNested ? "/" : ".");
-  data.FortranOrder = json.value("order", "C") == "F";
+  const bool looksNested = FindPathKind(folder + "/0") == PathKind::Directory;
+  data.Separator = GetSeparator(folder, json, "dimension_separator", looksNested ? "/" : ".");
+  data.FortranOrder = ZarrJson::GetText(folder, json, "order") == "F";
   std::vector<CodecStep> steps;
-  if (!json.at("dtype").is_string())
+  if (!ZarrJson::Find(json, "dtype").is_string())
   {
     Refuse(folder, "its values are records of several fields, which is not supported.");
   }
-  if (ParseType2(folder, json.at("dtype").get<std::string>(), data.Type))
+  if (ParseType2(folder, ZarrJson::GetText(folder, json, "dtype"), data.Type))
   {
     steps.push_back({ Kind::SwapBytes, rt::GetBytes(data.Type) });
   }
-  data.Fill = ParseFill(folder, json.value("fill_value", Json()), data.Type);
-  const Json filters = json.value("filters", Json());
-  for (const Json& filter : filters.is_null() ? Json::array() : filters)
+  data.Fill = ParseFill(folder, ZarrJson::Find(json, "fill_value"), data.Type);
+  const Json& filters = ZarrJson::Find(json, "filters");
+  CheckLimit(folder, "filters", filters.size(), FileLimits::Filters);
+  for (const Json& filter : filters)
   {
-    const std::string name = filter.at("id").get<std::string>();
-    steps.push_back(name == "shuffle"
-        ? CodecStep{ Kind::Shuffle,
-            std::max<std::size_t>(1, filter.value("elementsize", std::size_t(4))) }
-        : ParseCodec(folder, name));
+    steps.push_back(ParseFilter2(folder, filter));
   }
-  const Json compressor = json.value("compressor", Json());
+  const Json& compressor = ZarrJson::Find(json, "compressor");
   if (!compressor.is_null())
   {
-    steps.push_back(ParseCodec(folder, compressor.at("id").get<std::string>()));
+    steps.push_back(ParseCodec(folder, ZarrJson::GetText(folder, compressor, "id")));
   }
-  data.Codec = ChunkCodec(std::move(steps));
+  data.Codec = MakeCodec(folder, std::move(steps));
   return data;
 }
 
 /// Version 3 has names, or objects with a name and what else there is to say.
-std::string GetName(const Json& named)
+std::string GetName(const std::string& folder, const Json& named)
 {
-  return named.is_string() ? named.get<std::string>() : named.at("name").get<std::string>();
+  return named.is_string() ? named.get<std::string>() : ZarrJson::GetText(folder, named, "name");
 }
 
-Json GetConfiguration(const Json& named)
+const Json& GetConfiguration(const Json& named)
 {
-  return named.is_object() ? named.value("configuration", Json::object()) : Json::object();
+  return ZarrJson::Find(named, "configuration");
+}
+
+/// Applies a transposition to axes that are in any order already.
+void Transpose(const std::string& folder, const Json& configuration, std::vector<std::size_t>& axes)
+{
+  const std::size_t count = axes.size();
+  const std::vector<std::int64_t> order = ZarrJson::GetIntegers(folder, configuration, "order",
+    FileLimits::Axes, 0, static_cast<std::int64_t>(FileLimits::Axes));
+  const std::vector<std::size_t> before = std::exchange(axes, {});
+  std::vector<bool> isThere(count, false);
+  for (const std::int64_t axis : order)
+  {
+    const auto place = static_cast<std::size_t>(axis);
+    if (place < count && !isThere[place])
+    {
+      isThere[place] = true;
+      axes.push_back(before[place]);
+    }
+  }
+  if (axes.size() != count || order.size() != count)
+  {
+    Refuse(folder,
+      "its axes are transposed as those of another array; it has " + std::to_string(count) +
+        " axes.");
+  }
 }
 
 /// Of version 3, but for sharding, of an array of so many axes. `fortranOrder`: whether all are transposed, after all
@@ -189,31 +319,28 @@ Json GetConfiguration(const Json& named)
 std::vector<CodecStep> ParseCodecs3(const std::string& folder, const Json& codecs,
   std::size_t width, std::size_t count, bool& fortranOrder)
 {
+  if (!codecs.is_array())
+  {
+    Refuse(folder, "its 'codecs' are missing, or not an array.");
+  }
+  CheckLimit(folder, "codecs", codecs.size(), FileLimits::Filters);
   std::vector<CodecStep> steps;
   std::vector<std::size_t> axes(count);
   std::iota(axes.begin(), axes.end(), std::size_t(0));
   for (const Json& codec : codecs)
   {
-    const std::string name = GetName(codec);
-    const Json configuration = GetConfiguration(codec);
+    const std::string name = GetName(folder, codec);
+    const Json& configuration = GetConfiguration(codec);
     if (name == "bytes")
     {
-      if (configuration.value("endian", "little") == "big" && width > 1)
+      if (ZarrJson::GetText(folder, configuration, "endian") == "big" && width > 1)
       {
         steps.push_back({ Kind::SwapBytes, width });
       }
     }
     else if (name == "transpose")
     {
-      const auto order = configuration.at("order").get<std::vector<std::size_t>>();
-      if (!std::is_permutation(order.begin(), order.end(), axes.begin(), axes.end()))
-      {
-        Refuse(folder,
-          "its axes are transposed as those of another array; it has " + std::to_string(count) +
-            " axes.");
-      }
-      std::transform(order.begin(), order.end(), axes.begin(),
-        [before = axes](std::size_t axis) { return before[axis]; });
+      Transpose(folder, configuration, axes);
     }
     else
     {
@@ -229,71 +356,91 @@ std::vector<CodecStep> ParseCodecs3(const std::string& folder, const Json& codec
   return steps;
 }
 
-/// In a shard.
+/// Chunks in a shard.
 std::size_t CountChunks(const std::string& folder, const std::vector<std::int64_t>& shard,
   const std::vector<std::int64_t>& chunk)
 {
-  constexpr std::int64_t most = std::int64_t(1) << 40;
-  std::int64_t count = 1;
+  std::uint64_t count = 1;
   for (std::size_t axis = 0; axis < chunk.size(); ++axis)
   {
-    if (chunk[axis] < 1 || shard.at(axis) < 1 || shard[axis] % chunk[axis] != 0 ||
-      shard[axis] / chunk[axis] > most / count)
+    const bool isWhole =
+      axis < shard.size() && chunk[axis] > 0 && shard[axis] > 0 && shard[axis] % chunk[axis] == 0;
+    const auto along = isWhole ? static_cast<std::uint64_t>(shard[axis] / chunk[axis]) : 0;
+    const auto product = MultiplyWithin(FileLimits::ShardChunks, { count, along });
+    if (!isWhole || !product)
     {
-      Refuse(folder, "its shards are not made of chunks, or of far too many.");
+      Refuse(folder,
+        "its shards are not made of chunks, or of far too many: at most " +
+          std::to_string(FileLimits::ShardChunks) + " in each are supported.");
     }
-    count *= shard[axis] / chunk[axis];
+    count = *product;
   }
   return static_cast<std::size_t>(count);
+}
+
+/// Takes what a codec says of shards; the chunks of the array so far are they.
+ZarrMetadata::Sharding ParseSharding(
+  const std::string& folder, const Json& configuration, ZarrMetadata& data)
+{
+  ZarrMetadata::Sharding shards;
+  shards.ShardShape =
+    std::exchange(data.ChunkShape, GetShape(folder, configuration, "chunk_shape", MostSamples));
+  shards.IndexIsFirst = ZarrJson::GetText(folder, configuration, "index_location") == "start";
+  bool isTransposed = false;
+  // Its last axis has an offset and a length.
+  const std::vector<CodecStep> steps =
+    ParseCodecs3(folder, ZarrJson::Find(configuration, "index_codecs"), sizeof(std::uint64_t),
+      data.Shape.size() + 1, isTransposed);
+  if (isTransposed)
+  {
+    Refuse(folder, "the index of its shards is transposed, which is not supported.");
+  }
+  shards.IndexBytes =
+    CountChunks(folder, shards.ShardShape, data.ChunkShape) * 2 * sizeof(std::uint64_t);
+  for (const CodecStep& step : steps)
+  {
+    // Its length must be known before it is read.
+    if (step.What != Kind::SwapBytes && step.What != Kind::Crc32c)
+    {
+      Refuse(folder, "the index of its shards is compressed, which is not supported.");
+    }
+    shards.IndexBytes += step.What == Kind::Crc32c ? sizeof(std::uint32_t) : 0;
+  }
+  shards.IndexCodec = MakeCodec(folder, steps);
+  return shards;
 }
 
 ZarrMetadata ParseVersion3(const std::string& folder, const Json& json)
 {
   ZarrMetadata data;
-  data.Shape = json.at("shape").get<std::vector<std::int64_t>>();
-  if (GetName(json.at("chunk_grid")) != "regular")
+  data.Shape = GetShape(folder, json, "shape", MostSamples);
+  const Json& grid = ZarrJson::Find(json, "chunk_grid");
+  if (GetName(folder, grid) != "regular")
   {
-    Refuse(folder,
-      "its chunks are not all alike (chunk grid '" + GetName(json.at("chunk_grid")) + "').");
+    Refuse(
+      folder, "its chunks are not all alike (chunk grid " + Quote(GetName(folder, grid)) + ").");
   }
-  data.ChunkShape =
-    json.at("chunk_grid").at("configuration").at("chunk_shape").get<std::vector<std::int64_t>>();
-  ParseType3(folder, GetName(json.at("data_type")), data.Type);
-  data.Fill = ParseFill(folder, json.value("fill_value", Json()), data.Type);
-  const Json encoding = json.value("chunk_key_encoding", Json::object());
-  const bool isDefault = encoding.empty() || GetName(encoding) == "default";
+  // A shard may be larger than the array.
+  constexpr std::int64_t mostOfShard = std::int64_t(1) << 52;
+  data.ChunkShape = GetShape(folder, GetConfiguration(grid), "chunk_shape", mostOfShard);
+  ParseType3(folder, GetName(folder, ZarrJson::Find(json, "data_type")), data.Type);
+  data.Fill = ParseFill(folder, ZarrJson::Find(json, "fill_value"), data.Type);
+  const Json& encoding = ZarrJson::Find(json, "chunk_key_encoding");
+  const bool isDefault = encoding.empty() || GetName(folder, encoding) == "default";
   data.Prefix = isDefault ? "c" : "";
-  data.Separator = GetConfiguration(encoding).value("separator", isDefault ? "/" : ".");
-  data.Axes = json.value("dimension_names", Json());
-  const std::size_t width = rt::GetBytes(data.Type);
-  Json codecs = json.at("codecs");
-  if (codecs.size() == 1 && GetName(codecs[0]) == "sharding_indexed")
+  data.Separator =
+    GetSeparator(folder, GetConfiguration(encoding), "separator", isDefault ? "/" : ".");
+  data.Axes = ZarrJson::Find(json, "dimension_names");
+  const Json* codecs = &ZarrJson::Find(json, "codecs");
+  if (codecs->is_array() && codecs->size() == 1 &&
+    GetName(folder, codecs->front()) == "sharding_indexed")
   {
-    const Json configuration = GetConfiguration(codecs[0]);
-    ZarrMetadata::Sharding shards;
-    shards.ShardShape = std::exchange(
-      data.ChunkShape, configuration.at("chunk_shape").get<std::vector<std::int64_t>>());
-    shards.IndexIsFirst = configuration.value("index_location", "end") == "start";
-    bool isTransposed = false;
-    // Its last axis has an offset and a length.
-    const std::vector<CodecStep> steps = ParseCodecs3(folder, configuration.at("index_codecs"),
-      sizeof(std::uint64_t), data.Shape.size() + 1, isTransposed);
-    if (isTransposed)
-    {
-      Refuse(folder, "the index of its shards is transposed, which is not supported.");
-    }
-    shards.IndexBytes =
-      CountChunks(folder, shards.ShardShape, data.ChunkShape) * 2 * sizeof(std::uint64_t);
-    for (const CodecStep& step : steps)
-    {
-      shards.IndexBytes += step.What == Kind::Crc32c ? sizeof(std::uint32_t) : 0;
-    }
-    shards.IndexCodec = ChunkCodec(steps);
-    data.Shards = std::move(shards);
-    codecs = configuration.at("codecs");
+    const Json& configuration = GetConfiguration(codecs->front());
+    data.Shards = ParseSharding(folder, configuration, data);
+    codecs = &ZarrJson::Find(configuration, "codecs");
   }
-  data.Codec =
-    ChunkCodec(ParseCodecs3(folder, codecs, width, data.Shape.size(), data.FortranOrder));
+  data.Codec = MakeCodec(folder,
+    ParseCodecs3(folder, *codecs, rt::GetBytes(data.Type), data.Shape.size(), data.FortranOrder));
   return data;
 }
 
@@ -301,85 +448,23 @@ ZarrMetadata ParseVersion3(const std::string& folder, const Json& json)
 
 bool ZarrMetadata::IsVolume() const
 {
-  constexpr std::int64_t most = std::numeric_limits<int>::max();
   const std::size_t axes = this->Shape.size();
   bool isRight = axes == this->ChunkShape.size() && axes >= 3 && axes <= 5;
   for (std::size_t axis = 0; isRight && axis < axes; ++axis)
   {
-    isRight = this->Shape[axis] > 0 && this->Shape[axis] <= most && this->ChunkShape[axis] > 0 &&
-      this->ChunkShape[axis] <= most;
+    isRight = this->Shape[axis] > 0 && this->Shape[axis] <= MostSamples &&
+      this->ChunkShape[axis] > 0 && this->ChunkShape[axis] <= MostSamples;
   }
   return isRight;
-}
-
-namespace
-{
-
-/// Python writes NaN and infinite numbers, which JSON does not have: they become texts, as Zarr has them.
-std::string WithQuotedWords(const std::string& text)
-{
-  std::string result;
-  bool inText = false;
-  for (std::size_t at = 0; at < text.size(); ++at)
-  {
-    const char letter = text[at];
-    inText = letter == '"' ? !inText : inText;
-    const auto begins = [&](const char* word)
-    { return text.compare(at, std::strlen(word), word) == 0; };
-    if (inText && letter == '\\' && at + 1 < text.size())
-    {
-      result += letter;
-      result += text[++at];
-      continue;
-    }
-    const char* found = nullptr;
-    for (const char* word : { "NaN", "Infinity", "-Infinity" })
-    {
-      found = !inText && begins(word) ? word : found;
-    }
-    result += found ? '"' + std::string(found) + '"' : std::string(1, letter);
-    at += found ? std::strlen(found) - 1 : 0;
-  }
-  return result;
-}
-
-} // namespace
-
-nlohmann::json ReadZarrJson(const std::string& folder, const std::string& name)
-{
-  const std::string path = folder + "/" + name;
-  std::error_code failure;
-  if (!std::filesystem::exists(path, failure))
-  {
-    if (failure)
-    {
-      Refuse(folder, "its file " + name + " cannot be read: " + failure.message() + ".");
-    }
-    return {};
-  }
-  std::ifstream file(path);
-  if (!file)
-  {
-    Refuse(folder, "its file " + name + " cannot be read: " + std::strerror(errno) + ".");
-  }
-  try
-  {
-    const std::string text{ std::istreambuf_iterator<char>(file), {} };
-    return Json::parse(WithQuotedWords(text));
-  }
-  catch (const Json::exception& error)
-  {
-    Refuse(folder, "its file " + name + " is damaged (" + error.what() + ").");
-  }
 }
 
 std::optional<ZarrMetadata> ReadZarrMetadata(const std::string& folder)
 {
   try
   {
-    const Json version2 = ReadZarrJson(folder, ".zarray");
-    const Json version3 = version2.is_null() ? ReadZarrJson(folder, "zarr.json") : Json();
-    if (version2.is_null() && (version3.is_null() || version3.value("node_type", "") != "array"))
+    const Json version2 = ZarrJson::Read(folder, ".zarray");
+    const Json version3 = version2.is_null() ? ZarrJson::Read(folder, "zarr.json") : Json();
+    if (version2.is_null() && ZarrJson::GetText(folder, version3, "node_type") != "array")
     {
       return std::nullopt;
     }
@@ -387,26 +472,29 @@ std::optional<ZarrMetadata> ReadZarrMetadata(const std::string& folder)
       version2.is_null() ? ParseVersion3(folder, version3) : ParseVersion2(folder, version2);
     if (!version2.is_null()) // as xarray writes them
     {
-      data.Axes = ReadZarrAttributes(folder).value("_ARRAY_DIMENSIONS", Json());
+      data.Axes = ZarrJson::Find(ReadZarrAttributes(folder), "_ARRAY_DIMENSIONS");
     }
     return data;
   }
-  catch (const std::exception& error)
+  catch (const Json::exception& error)
   {
-    if (dynamic_cast<const dsm::Error*>(&error))
-    {
-      throw;
-    }
-    Refuse(folder, std::string("its metadata are not as they should be (") + error.what() + ").");
+    Refuse(folder, std::string("its metadata are invalid (") + error.what() + ").");
   }
 }
 
 nlohmann::json ReadZarrAttributes(const std::string& folder)
 {
-  const Json version3 = ReadZarrJson(folder, "zarr.json");
-  const Json attributes =
-    version3.is_null() ? ReadZarrJson(folder, ".zattrs") : version3.value("attributes", Json());
-  return attributes.is_object() ? attributes : Json::object();
+  Json version3 = ZarrJson::Read(folder, "zarr.json");
+  if (version3.is_null())
+  {
+    version3["attributes"] = ZarrJson::Read(folder, ".zattrs");
+  }
+  Json attributes = Json::object();
+  if (ZarrJson::Find(version3, "attributes").is_object())
+  {
+    attributes.swap(version3["attributes"]);
+  }
+  return attributes;
 }
 
 } // namespace vol

@@ -43,9 +43,6 @@ struct ZarrMetadata
   bool IsVolume() const;
 };
 
-/// The file with an array's, or a group's, metadata in a folder; null where there is none.
-nlohmann::json ReadZarrJson(const std::string& folder, const std::string& name);
-
 /// Of the array in a folder; none where there is no array. Throws dsm::Error for what this build cannot read.
 std::optional<ZarrMetadata> ReadZarrMetadata(const std::string& folder);
 

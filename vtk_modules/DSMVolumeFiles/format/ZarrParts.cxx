@@ -2,6 +2,7 @@
 #include "DSMVolumeFiles/format/ZarrParts.h"
 
 #include "DSMCore/base/Error.h"
+#include "DSMVolumeFiles/base/FileLimits.h"
 
 #include <algorithm>
 #include <utility>
@@ -71,14 +72,16 @@ std::uint64_t ZarrParts::CountBytes(std::uint64_t files, std::uint64_t indexByte
 {
   const std::uint64_t indices = indexBytes == 0
     ? 0
-    : std::max(indexBytes, std::min(MostIndexBytes, files * (indexBytes + StampBytes)));
+    : std::max(indexBytes,
+        MultiplyWithin(MostIndexBytes, { files, indexBytes + StampBytes })
+          .value_or(MostIndexBytes));
   return std::min(MostStamps, files) * StampBytes + indices;
 }
 
 ZarrParts::Index ZarrParts::ReadIndex(
   const ZarrMetadata::Sharding& shards, const PositionedFile& file)
 {
-  if (file.GetBytes() < shards.IndexBytes)
+  if (file.IsDirectory() || file.GetBytes() < shards.IndexBytes)
   {
     throw dsm::Error("The shard '" + file.GetPath() + "' is truncated.");
   }

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "DSMVolumeFiles/base/SmallFile.h"
+
+#include "DSMCore/base/Error.h"
+#include "DSMVolumeFiles/base/PositionedFile.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <system_error>
+
+namespace vol
+{
+
+namespace
+{
+
+/// Reads `bytes` from the beginning of a file that has at least as many.
+std::string ReadText(const PositionedFile& file, std::size_t bytes)
+{
+  if (file.IsDirectory())
+  {
+    throw dsm::Error("'" + file.GetPath() + "' cannot be read: it is a directory.");
+  }
+  std::string text(bytes, '\0');
+  file.Read(0, reinterpret_cast<std::byte*>(text.data()), text.size());
+  return text;
+}
+
+} // namespace
+
+PathKind FindPathKind(const std::string& path)
+{
+  std::error_code failure;
+  const std::filesystem::file_type type = std::filesystem::status(path, failure).type();
+  switch (type)
+  {
+    case std::filesystem::file_type::not_found:
+      return PathKind::Nothing;
+    case std::filesystem::file_type::regular:
+      return PathKind::File;
+    case std::filesystem::file_type::directory:
+      return PathKind::Directory;
+    case std::filesystem::file_type::none:
+      throw dsm::Error("'" + path + "' cannot be read: " + failure.message() + ".");
+    default:
+      return PathKind::Other;
+  }
+}
+
+std::string ReadBeginning(const std::string& path, std::size_t most)
+{
+  const PositionedFile file(path);
+  return ReadText(file, static_cast<std::size_t>(std::min<std::uint64_t>(most, file.GetBytes())));
+}
+
+std::string ReadWhole(const std::string& path, std::size_t most)
+{
+  const PositionedFile file(path);
+  if (file.GetBytes() > most && !file.IsDirectory())
+  {
+    throw dsm::Error("'" + path + "' has " + std::to_string(file.GetBytes()) + " bytes; at most " +
+      std::to_string(most) + " are supported.");
+  }
+  return ReadText(file, static_cast<std::size_t>(std::min<std::uint64_t>(most, file.GetBytes())));
+}
+
+std::string Quote(const std::string& text)
+{
+  constexpr std::size_t most = 100;
+  std::string shown = text.substr(0, most);
+  std::replace_if(
+    shown.begin(), shown.end(), [](unsigned char letter) { return letter < ' '; }, '?');
+  return "'" + shown + (text.size() > most ? "..." : "") + "'";
+}
+
+} // namespace vol

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef vol_SmallFile_h
+#define vol_SmallFile_h
+
+#include <cstddef>
+#include <string>
+
+namespace vol
+{
+
+/// What a path leads to, links followed.
+enum class PathKind
+{
+  Nothing,
+  File,
+  Directory,
+  Other ///< a pipe, a socket or a device, which a reader may wait for without end
+};
+
+/// Opens nothing. Throws dsm::Error, which names the path, when the system cannot tell, as for a symbolic link that
+/// leads to itself.
+PathKind FindPathKind(const std::string& path);
+
+/// Returns the first bytes of a file, at most `most`. Throws dsm::Error, which names the file, when it cannot be
+/// opened or is not a file: this never waits for a pipe. WouldWait (WithoutWaiting).
+std::string ReadBeginning(const std::string& path, std::size_t most);
+
+/// Returns all of a file. Throws likewise, also when it has more than `most` bytes.
+std::string ReadWhole(const std::string& path, std::size_t most);
+
+/// Text of a file in quotation marks, for messages: shortened, and without control characters.
+std::string Quote(const std::string& text);
+
+} // namespace vol
+
+#endif
