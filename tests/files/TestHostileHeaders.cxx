@@ -1,0 +1,278 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// NRRD, MetaImage and bare files whose headers, names and kinds are made to mislead, or only look so.
+#include "WatchedReading.h"
+
+#include <gtest/gtest.h>
+
+#include <clocale>
+#include <cstdlib>
+#include <locale>
+#include <string>
+
+#include <sys/stat.h>
+
+namespace
+{
+
+using namespace dsm_test;
+
+std::string GetNrrd(const std::string& more, const std::string& sizes = "4 4 4")
+{
+  return "NRRD0005\ntype: uchar\ndimension: 3\nsizes: " + sizes + "\nencoding: raw\n" + more;
+}
+
+std::string GetMeta(const std::string& more, const std::string& size = "4 4 4")
+{
+  return "NDims = 3\nDimSize = " + size + "\nElementType = MET_UCHAR\n" + more;
+}
+
+const std::string Local = "ElementDataFile = LOCAL\n";
+const std::string Values(64, 'v');
+
+fs::path WriteNrrd(
+  const std::string& name, const std::string& more, const std::string& sizes = "4 4 4")
+{
+  const fs::path path = MakeFolder(name) / (name + ".nrrd");
+  WriteText(path, GetNrrd(more + "\n\n", sizes) + Values);
+  return path;
+}
+
+fs::path WriteMeta(
+  const std::string& name, const std::string& more, const std::string& size = "4 4 4")
+{
+  const fs::path path = MakeFolder(name) / (name + ".mha");
+  WriteText(path, GetMeta(more + "\n" + Local, size) + Values);
+  return path;
+}
+
+TEST(HostileHeaders, AHeaderWithoutAnEndIsRefused)
+{
+  const fs::path folder = MakeFolder("endless");
+  for (const char* name : { "long.mha", "long.nrrd", "short.nrrd" })
+  {
+    const fs::path path = folder / name;
+    WriteText(path, path.extension() == ".mha" ? "NDims = 3\n" : "NRRD0005\ntype: float\n");
+    fs::resize_file(path, std::string(name) == "short.nrrd" ? 100 : std::uintmax_t(3) << 30);
+    ExpectRefusal(path, { std::string(name) == "short.nrrd" ? "encoding" : "does not end within" });
+  }
+  // Many short lines, and one long one.
+  std::string lines;
+  for (int line = 0; line < 400000; ++line)
+  {
+    lines += std::to_string(line) + ":a\n";
+  }
+  ExpectRefusal(WriteNrrd("lines", lines), { "does not end within" });
+  ExpectRefusal(WriteMeta("lines", lines), { "does not end within" });
+  ExpectRefusal(WriteNrrd("comment", "# " + std::string(2 << 20, 'a')), { "does not end within" });
+  lines.resize(900000);
+  EXPECT_EQ(ReadWatched(WriteNrrd("lines", lines)), "");
+  EXPECT_EQ(ReadWatched(WriteMeta("lines", lines)), "");
+}
+
+TEST(HostileHeaders, AFieldWithManyWordsIsRefused)
+{
+  std::string numbers;
+  std::string vectors;
+  std::string nones;
+  for (int place = 0; place < 100000; ++place)
+  {
+    numbers += "1 ";
+    vectors += "(1,0,0)";
+    nones += "none ";
+  }
+  ExpectRefusal(WriteNrrd("many", "", numbers), { "'sizes'", "100000 numbers" });
+  ExpectRefusal(WriteMeta("many", "", numbers), { "'dimsize'", "100000 numbers" });
+  ExpectRefusal(WriteNrrd("many", "space directions: " + vectors), { "vectors" });
+  ExpectRefusal(WriteNrrd("many", "space directions: " + nones), { "vectors" });
+  ExpectRefusal(WriteNrrd("many", "spacings: " + numbers), { "'spacings'", "100000 numbers" });
+  EXPECT_EQ(ReadWatched(WriteNrrd("many", "kinds: " + nones + "\ncenters: " + nones)), "");
+  const std::string name(100000, 'a');
+  ExpectRefusal(WriteNrrd("name", "content: " + name), { "100000 bytes of an array's name" });
+  ExpectRefusal(WriteNrrd("name", "data file: " + name), { "'data file'" });
+  ExpectRefusal(WriteNrrd("name", "encoding: " + name), { "encoding" });
+  ExpectRefusal(WriteNrrd("name", "type: " + name), { "type" });
+}
+
+TEST(HostileHeaders, NumbersOutOfRangeAreRefused)
+{
+  for (const char* number : { "1e300", "nan", "4.7", "1e19", "-1e300", "inf", "0x4", "4," })
+  {
+    const std::string sizes = "4 4 " + std::string(number);
+    ExpectRefusal(WriteNrrd("numbers", "", sizes), {});
+    ExpectRefusal(WriteMeta("numbers", "", sizes), {});
+  }
+  ExpectRefusal(WriteNrrd("numbers", "", "4 4 1e999"), { "1e999", "double precision" });
+  ExpectRefusal(WriteNrrd("numbers", "", "4 4 4.7"), { "'sizes'", "integers" });
+  ExpectRefusal(WriteNrrd("numbers", "", "4 4 -4"), { "4 x 4 x -4 samples" });
+  ExpectRefusal(WriteMeta("numbers", "", "4 4 0"), { "4 x 4 x 0 samples" });
+  ExpectRefusal(WriteNrrd("numbers", "", "2147483647 2147483647 2147483647"), { "samples" });
+  ExpectRefusal(WriteNrrd("numbers", "", "4294967296 1 1"), { "samples" });
+  ExpectRefusal(WriteNrrd("numbers", "", "2147483647 4 4 4"), { "2147483647 components" });
+  ExpectRefusal(WriteNrrd("numbers", "", "4294967297 4 4 4"), { "components" });
+  for (const char* skip : { "-2", "1e300", "9007199254740992", "4.5", "-9e18" })
+  {
+    ExpectRefusal(WriteNrrd("skip", "byte skip: " + std::string(skip)), {});
+    ExpectRefusal(WriteMeta("skip", "HeaderSize = " + std::string(skip)), {});
+  }
+  for (const char* count : { "0", "-1", "1e300", "4294967297", "2147483647", "65537" })
+  {
+    ExpectRefusal(WriteMeta("channels", "ElementNumberOfChannels = " + std::string(count)), {});
+  }
+  vol::OpenOptions bare;
+  bare.Bare.Samples = rt::Index3(4);
+  bare.Bare.HeaderBytes = ~std::uint64_t(0);
+  const fs::path raw = MakeFolder("bare") / "bare.raw";
+  WriteText(raw, Values);
+  ExpectRefusal(raw, { "header are expected" }, bare);
+  bare.Bare.HeaderBytes = 0;
+  EXPECT_EQ(ReadWatched(raw, bare), "");
+  bare.Bare.Samples = rt::Index3(0x7fffffff);
+  ExpectRefusal(raw, { "samples" }, bare);
+  bare.Bare.Samples = rt::Index3(-1, -1, 4);
+  ExpectRefusal(raw, { "Raw Dimensions" }, bare);
+}
+
+TEST(HostileHeaders, AxesInOnePlaneAreRefused)
+{
+  for (const char* rows : { "1 0 0 0 1 0 1 1 0", "0 0 0 0 0 0 0 0 0", "1 0 0 1 0 0 0 0 1",
+         "1e-200 0 0 1e-200 0 0 0 0 1" })
+  {
+    ExpectRefusal(
+      WriteMeta("plane", "TransformMatrix = " + std::string(rows)), { "Invalid direction matrix" });
+  }
+  for (const char* vectors :
+    { "(1,0,0) (0,1,0) (1,1,0)", "(1,0,0) (0,0,0) (0,0,1)", "(nan,0,0) (0,1,0) (0,0,1)" })
+  {
+    ExpectRefusal(
+      WriteNrrd("plane", "space directions: " + std::string(vectors)), { "Invalid direction" });
+  }
+  ExpectRefusal(WriteNrrd("far", "space directions: (inf,0,0) (0,1,0) (0,0,1)"), { "Invalid" });
+  ExpectRefusal(WriteNrrd("far", "space origin: (nan,0,0)"), { "Invalid origin" });
+  ExpectRefusal(WriteMeta("far", "Offset = 0 inf 0"), { "Invalid origin" });
+  ExpectRefusal(WriteMeta("far", "ElementSpacing = 1 nan 1"), { "Invalid spacing" });
+  ExpectRefusal(WriteMeta("far", "TransformMatrix = 1 0 0 0 nan 0 0 0 1"), { "Invalid direction" });
+  // What is only sheared, small, or mirrored has an inverse.
+  EXPECT_EQ(ReadWatched(WriteNrrd("sheared", "space directions: (1,0,0) (0,-1e-9,0) (1,0,1)")), "");
+  EXPECT_EQ(ReadWatched(WriteMeta("sheared", "TransformMatrix = 1 0 0 0.9 0.1 0 0 0 -1")), "");
+}
+
+/// As many programs have, which set it for their own texts.
+TEST(HostileHeaders, NumbersDoNotDependOnTheLocale)
+{
+  const fs::path folder = MakeFolder("locale");
+  const std::string make =
+    "localedef -i de_DE -f UTF-8 '" + (folder / "de_DE.UTF-8").string() + "' > /dev/null 2>&1";
+  static_cast<void>(std::system(make.c_str()));
+  setenv("LOCPATH", folder.c_str(), 1);
+  const bool hasCommas = std::setlocale(LC_ALL, "de_DE.UTF-8") != nullptr;
+  struct Commas : std::numpunct<char>
+  {
+    char do_decimal_point() const override { return ','; }
+    char do_thousands_sep() const override { return '.'; }
+    std::string do_grouping() const override { return "\3"; }
+  };
+  const std::locale before = std::locale::global(
+    std::locale(hasCommas ? std::locale("de_DE.UTF-8") : std::locale(), new Commas));
+  const auto nrrd = WriteNrrd("half", "spacings: 0.5 +0.5 5e-1");
+  const auto meta = WriteMeta("halfmeta", "ElementSpacing = 0.5 0.5 0.5");
+  for (const fs::path& path : { nrrd, meta })
+  {
+    EXPECT_EQ(ReadWatched(path), "");
+    EXPECT_EQ(vol::OpenVolumeFile(path.string())->GetGeometry().Spacing[1], 0.5);
+  }
+  ExpectRefusal(WriteNrrd("comma", "spacings: 0,5 0,5 0,5"), { "'0,5'", "not a number" });
+  std::locale::global(before);
+  std::setlocale(LC_ALL, "C");
+  unsetenv("LOCPATH");
+}
+
+/// Only a pattern with its numbers means several files, and only where no file is called so.
+TEST(HostileHeaders, NamesWithPercentSignsWork)
+{
+  const fs::path folder = MakeFolder("percent");
+  for (const char* name : { "a%b.raw", "ethanol 70%.raw", "100%d.raw", "%41.raw", "5%s",
+         "%03d 1 2 1", "LIST", "b\xe9ta.raw", "LIST of things.raw" })
+  {
+    WriteText(folder / name, Values);
+    const fs::path meta = folder / (std::string(name) + ".mhd");
+    WriteText(meta, GetMeta("ElementDataFile = " + std::string(name) + "\n"));
+    EXPECT_EQ(ReadWatched(meta), "");
+    const fs::path nrrd = folder / (std::string(name) + ".nhdr");
+    WriteText(nrrd, GetNrrd("data file: " + std::string(name) + "\n"));
+    EXPECT_EQ(ReadWatched(nrrd), "");
+  }
+  for (const char* name : { "c%03d.raw 1 3 1", "%d 1 2", "LIST 2" })
+  {
+    ExpectRefusal(
+      WriteMeta("pattern", "ElementDataFile = " + std::string(name)), { "several files" });
+    ExpectRefusal(WriteNrrd("pattern", "data file: " + std::string(name)), { "several files" });
+  }
+  const fs::path lost = folder / "lost.mhd";
+  WriteText(lost, GetMeta("ElementDataFile = 50%.raw\n"));
+  EXPECT_NE(ReadWatched(lost).find("50%.raw"), std::string::npos);
+}
+
+/// Names are bytes.
+TEST(HostileHeaders, NamesThatAreNotUtf8Work)
+{
+  const fs::path folder = MakeFolder("b\xe9ta");
+  WriteText(folder / "b\xe9ta.nrrd", GetNrrd("\n") + Values);
+  EXPECT_EQ(ReadWatched(folder / "b\xe9ta.nrrd"), "");
+  WriteText(folder / "b\xe9ta.mha", GetMeta(Local) + Values);
+  EXPECT_EQ(ReadWatched(folder / "b\xe9ta.mha"), "");
+  WriteText(folder / "b\xe9ta.raw", Values);
+  vol::OpenOptions bare;
+  bare.Bare.Samples = rt::Index3(4);
+  EXPECT_EQ(ReadWatched(folder / "b\xe9ta.raw", bare), "");
+  WriteText(folder / ".zarray",
+    R"({"zarr_format": 2, "shape": [4, 4, 4], "chunks": [4, 4, 4], "dtype": "|u1",
+    "fill_value": 0, "order": "C", "filters": null, "compressor": null})");
+  EXPECT_EQ(ReadWatched(folder), "");
+  WriteText(folder / ".zattrs", "{\"b\xe9ta\": 1}");
+  ExpectRefusal(folder, { ".zattrs", "JSON" });
+}
+
+TEST(HostileHeaders, PipesFoldersAndDevicesAreRefused)
+{
+  const fs::path folder = MakeFolder("pipes");
+  for (const char* name :
+    { "a.nrrd", "a.mha", "a.mhd", "a.raw", "a.h5", "a.vtkhdf", "a.zarr", "a" })
+  {
+    const fs::path path = folder / name;
+    ASSERT_EQ(mkfifo(path.c_str(), 0600), 0);
+    ExpectRefusal(path, { "pipe" });
+    EXPECT_FALSE(vol::MayBeVolumeFile(path.string()));
+    EXPECT_FALSE(vol::IsBareFile(path.string()));
+    fs::remove(path);
+    fs::create_symlink("/dev/zero", path);
+    ExpectRefusal(path, { "device" });
+    EXPECT_FALSE(vol::MayBeVolumeFile(path.string()));
+    fs::remove(path);
+    fs::create_directory(path);
+    ExpectRefusal(path, {});
+    EXPECT_FALSE(vol::MayBeVolumeFile(path.string()));
+  }
+  ASSERT_EQ(mkfifo((folder / "pipe").c_str(), 0600), 0);
+  fs::create_symlink("/dev/zero", folder / "device");
+  fs::create_directory(folder / "folder");
+  for (const char* values : { "pipe", "device", "folder", "none" })
+  {
+    const fs::path meta = folder / "values.mhd";
+    WriteText(meta, GetMeta("ElementDataFile = " + std::string(values) + "\n"));
+    EXPECT_NE(ReadWatched(meta).find((folder / values).string()), std::string::npos);
+    const fs::path nrrd = folder / "values.nhdr";
+    WriteText(nrrd, GetNrrd("data file: " + std::string(values) + "\n"));
+    EXPECT_NE(ReadWatched(nrrd).find((folder / values).string()), std::string::npos);
+  }
+}
+
+/// Samples of many components are in chunks of few of them.
+TEST(HostileHeaders, ChunksOfManyComponentsStaySmall)
+{
+  const fs::path path = MakeFolder("wide") / "wide.mha";
+  WriteText(path, GetMeta("ElementNumberOfChannels = 65536\n" + Local, "64 64 64"));
+  fs::resize_file(path, fs::file_size(path) + (std::uintmax_t(1) << 34));
+  EXPECT_EQ(ReadWatched(path), "");
+}
+
+} // namespace
