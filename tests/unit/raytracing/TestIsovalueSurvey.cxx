@@ -7,8 +7,12 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <functional>
+#include <limits>
 #include <numeric>
 #include <random>
+#include <utility>
+#include <vector>
 
 namespace
 {
@@ -56,6 +60,8 @@ void ExpectNoOrder(double offset, double size)
   const auto field = CreateField(store, volume, 4);
   const rt::IsovalueSurvey expected = Count<T>(*field, 0, 1);
   EXPECT_EQ(expected.All, static_cast<std::int64_t>(field->Lattice.GetBrickCount()));
+  EXPECT_TRUE(expected.IsValid(expected.All));
+  EXPECT_FALSE(expected.IsValid(expected.All - 1));
   EXPECT_GE(expected.CountIntervals(), rt::IsovalueSurvey::Intervals / 2u);
   EXPECT_LE(expected.CountIntervals(), rt::IsovalueSurvey::Intervals * 1u);
   EXPECT_EQ(std::accumulate(expected.Values.begin(), expected.Values.end(), std::int64_t(0)),
@@ -95,6 +101,89 @@ TEST(TestIsovalueSurvey, ValuesThatAreAllTheSameAreInOneInterval)
     const rt::IsovalueSurvey survey = Count<float>(*CreateField(store, volume, 4), 0, 2);
     EXPECT_EQ(survey.CountIntervals(), 1u);
     EXPECT_EQ(survey.Values[0], 4 * survey.All);
+    EXPECT_TRUE(survey.IsValid(survey.All));
   }
   EXPECT_EQ(rt::IsovalueSurvey().CountIntervals(), 0u);
+}
+
+/// Of a file, they can have any bytes.
+TEST(TestIsovalueSurvey, WhatNobodyCountedIsNotValid)
+{
+  using Survey = rt::IsovalueSurvey;
+  EXPECT_TRUE(Survey().IsValid(0));
+  MemoryStore store;
+  const Survey valid = Count<float>(*CreateField(store, MakeVolume<float>(0.0, 1.0), 4), 0, 1);
+  const std::int64_t most = valid.All;
+  ASSERT_TRUE(valid.IsValid(most));
+  const auto last = static_cast<std::size_t>(valid.CountIntervals());
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+  constexpr std::int64_t large = std::numeric_limits<std::int64_t>::max();
+  constexpr std::int64_t small = std::numeric_limits<std::int64_t>::min();
+  const std::vector<std::function<void(Survey&)>> damages = {
+    [](Survey& survey) { std::memset(static_cast<void*>(&survey), 0xff, sizeof(survey)); },
+    [](Survey& survey) { std::memset(static_cast<void*>(&survey), 0x41, sizeof(survey)); },
+    [](Survey& survey) { survey.All = 0; },
+    [](Survey& survey) { survey.All = -1; },
+    [](Survey& survey) { survey.All = large; },
+    [](Survey& survey) { survey.AtBorder = survey.All + 1; },
+    [](Survey& survey) { survey.AtBorder = -1; },
+    [](Survey& survey) { ++survey.First; },
+    [](Survey& survey) { survey.First = small; },
+    [](Survey& survey) { --survey.Exponent; },
+    [](Survey& survey) { survey.Exponent = large; },
+    [](Survey& survey) { survey.Exponent = small; },
+    [](Survey& survey) { survey.Least = nan; },
+    [](Survey& survey) { survey.Greatest = nan; },
+    [](Survey& survey) { survey.Least = -infinity; },
+    [](Survey& survey) { survey.Greatest = infinity; },
+    [](Survey& survey) { std::swap(survey.Least, survey.Greatest); },
+    [](Survey& survey) { survey.Greatest *= 4.0; },
+    [](Survey& survey) { ++survey.Values[0]; },
+    [](Survey& survey)
+    {
+      --survey.Values[0];
+      ++survey.Values[1];
+      survey.Values[1] -= 2 * survey.Values[1];
+    },
+    [](Survey& survey) { survey.Values[0] = large; },
+    [](Survey& survey) { survey.Values[0] = small; },
+    [](Survey& survey) { survey.Crossed[0] = -1; },
+    [](Survey& survey) { survey.Crossed[1] = large; },
+    [](Survey& survey) { survey.Crossed[1] = small; },
+    [](Survey& survey) { survey.CutOpen[0] += 1; },
+    [=](Survey& survey) { survey.CutOpen[last - 1] = large; },
+  };
+  for (std::size_t damage = 0; damage < damages.size(); ++damage)
+  {
+    Survey survey = valid;
+    damages[damage](survey);
+    EXPECT_FALSE(survey.IsValid(most)) << damage;
+  }
+  Survey empty;
+  empty.Least = empty.Greatest = 0.0;
+  EXPECT_FALSE(empty.IsValid(most));
+}
+
+/// Something in an interval that the range does not reach.
+TEST(TestIsovalueSurvey, NothingIsWrittenOutsideWhateverIsAdded)
+{
+  rt::IsovalueSurvey one;
+  one.All = 1;
+  one.Least = 0.0;
+  one.Greatest = 256.0;
+  one.Values = {};
+  one.Values[0] = 4;
+  one.Values[511] = 0x4141414141;
+  EXPECT_FALSE(one.IsValid(1));
+  rt::IsovalueSurvey other;
+  other.All = 1;
+  other.Least = -255.0;
+  other.Greatest = 256.0;
+  other.First = -255;
+  other.Values[0] = 4;
+  rt::IsovalueSurvey all;
+  all.Add(one);
+  all.Add(other);
+  EXPECT_EQ(std::accumulate(all.Values.begin(), all.Values.end(), std::int64_t(0)), 8);
 }

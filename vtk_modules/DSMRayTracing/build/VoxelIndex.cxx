@@ -4,8 +4,11 @@
 #include "DSMCore/base/Error.h"
 #include "DSMRayTracing/base/ByteHash.h"
 #include "DSMRayTracing/base/ParallelFor.h"
+#include "DSMRayTracing/layout/VoxelBrickHeader.h"
 
 #include <algorithm>
+#include <cmath>
+#include <cstdint>
 #include <cstring>
 #include <iterator>
 #include <utility>
@@ -88,7 +91,7 @@ std::vector<std::byte> VoxelIndex::Encode() const
   return bytes;
 }
 
-std::uint64_t VoxelIndex::CountBytes(std::uint64_t bricks)
+std::size_t VoxelIndex::CountBytes(std::size_t bricks)
 {
   return bricks * (sizeof(ValueRange) + sizeof(dsm::ByteDigest)) + sizeof(IsovalueSurvey) +
     sizeof(std::uint64_t);
@@ -97,13 +100,14 @@ std::uint64_t VoxelIndex::CountBytes(std::uint64_t bricks)
 std::optional<VoxelIndex> VoxelIndex::Decode(
   const std::vector<std::byte>& bytes, std::size_t bricks)
 {
-  const std::size_t endOfSurvey = bricks * sizeof(ValueRange) + sizeof(IsovalueSurvey);
-  const std::size_t end = endOfSurvey + bricks * sizeof(dsm::ByteDigest);
-  std::uint64_t hash = 0;
-  if (bytes.size() != end + sizeof(hash))
+  // Nothing is reckoned with before: of more bricks than there are bytes the products could wrap around.
+  if (bricks > bytes.size() || bytes.size() != CountBytes(bricks))
   {
     return std::nullopt;
   }
+  const std::size_t endOfSurvey = bricks * sizeof(ValueRange) + sizeof(IsovalueSurvey);
+  const std::size_t end = endOfSurvey + bricks * sizeof(dsm::ByteDigest);
+  std::uint64_t hash = 0;
   std::memcpy(&hash, bytes.data() + end, sizeof(hash));
   if (hash != Hash(bytes.data(), end))
   {
@@ -115,7 +119,17 @@ std::optional<VoxelIndex> VoxelIndex::Decode(
   std::memcpy(index.Bricks.data(), bytes.data(), bricks * sizeof(ValueRange));
   std::memcpy(&index.Survey, bytes.data() + bricks * sizeof(ValueRange), sizeof(IsovalueSurvey));
   std::memcpy(index.Digests.data(), bytes.data() + endOfSurvey, bricks * sizeof(dsm::ByteDigest));
-  return index;
+  // A checksum tells of damage, not of who wrote it.
+  return index.IsValid() ? std::optional<VoxelIndex>(std::move(index)) : std::nullopt;
+}
+
+bool VoxelIndex::IsValid() const
+{
+  constexpr std::int64_t edge = BrickLattice::LargestEdge / MacrocellEdge;
+  const auto bricks = static_cast<std::int64_t>(this->Bricks.size());
+  return this->Survey.IsValid(bricks * edge * edge * edge) &&
+    std::none_of(this->Bricks.begin(), this->Bricks.end(),
+      [](const ValueRange& range) { return std::isnan(range.First) || std::isnan(range.Last); });
 }
 
 std::vector<bool> VoxelIndex::Compare(const std::vector<dsm::ByteDigest>& digests,

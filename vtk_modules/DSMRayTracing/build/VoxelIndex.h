@@ -31,10 +31,10 @@ struct VoxelIndex
     const std::vector<dsm::ByteDigest>& others, std::size_t bricks);
 
   /// As it is kept, with a checksum. Decode gives nothing where the bytes are not an index of as many
-  /// bricks.
+  /// bricks, whatever they are.
   std::vector<std::byte> Encode() const;
-  /// Bytes that Encode makes for so many bricks.
-  static std::uint64_t CountBytes(std::uint64_t bricks);
+  /// What Encode takes for so many bricks.
+  static std::size_t CountBytes(std::size_t bricks);
   static std::optional<VoxelIndex> Decode(const std::vector<std::byte>& bytes, std::size_t bricks);
 
   /// How to look through the bricks.
@@ -51,6 +51,10 @@ struct VoxelIndex
   /// the part done, in [0, 1]; what it or the reader throws becomes an Error on every rank.
   static VoxelIndex Find(dsm::Messenger& messenger, const BrickLattice& lattice,
     const dsm::BlockReader& reader, const Pass& pass, dsm::FunctionRef<void(double)> progress);
+
+private:
+  /// Whether the numbers can be those of an index: they may come from a file.
+  bool IsValid() const;
 };
 
 } // namespace rt

@@ -85,13 +85,77 @@ void Move(
     if (counts[interval] != 0)
     {
       const std::int64_t to = ((oldFirst + static_cast<std::int64_t>(interval)) >> shift) - first;
-      moved[static_cast<std::size_t>(to)] += counts[interval];
+      // Of a valid survey it always is.
+      if (to >= 0 && to < IsovalueSurvey::Intervals)
+      {
+        moved[static_cast<std::size_t>(to)] += counts[interval];
+      }
     }
   }
   counts = moved;
 }
 
+/// Whether borders are crossed by so many macrocells at most, and those that begin also end. `counts`: not accumulated.
+bool AreCrossings(const IsovalueSurvey::Counts& counts, std::size_t intervals, std::int64_t most)
+{
+  std::int64_t crossed = 0;
+  for (std::size_t interval = 0; interval < counts.size(); ++interval)
+  {
+    const std::int64_t change = counts[interval];
+    if (change < -most || change > most || (interval >= intervals && change != 0))
+    {
+      return false;
+    }
+    crossed += change;
+    if (crossed < 0 || crossed > most)
+    {
+      return false;
+    }
+  }
+  return crossed == 0;
+}
+
 } // namespace
+
+bool IsovalueSurvey::IsValid(std::int64_t mostMacrocells) const
+{
+  constexpr std::int64_t valuesOfMacrocell = 4;
+  constexpr std::int64_t highestExponent = 1023; // borders are finite numbers
+  if (this->All < 0 || this->All > mostMacrocells || this->AtBorder < 0 ||
+    this->AtBorder > this->All)
+  {
+    return false;
+  }
+  std::size_t intervals = 0;
+  if (this->All > 0)
+  {
+    if (!std::isfinite(this->Least) || !std::isfinite(this->Greatest) ||
+      this->Least > this->Greatest || this->Exponent > highestExponent ||
+      this->Exponent < FindExponent(this->Least, this->Greatest) ||
+      this->First != FindInterval(this->Least, std::ldexp(1.0, static_cast<int>(-this->Exponent))))
+    {
+      return false;
+    }
+    intervals =
+      this->CountIntervals(); // no more than there is room for: the exponent is high enough
+  }
+  else if (std::isnan(this->Least) || std::isnan(this->Greatest) || this->Least <= this->Greatest)
+  {
+    return false;
+  }
+  std::int64_t left = valuesOfMacrocell * this->All;
+  for (std::size_t interval = 0; interval < this->Values.size(); ++interval)
+  {
+    const std::int64_t count = this->Values[interval];
+    if (count < 0 || count > left || (interval >= intervals && count != 0))
+    {
+      return false;
+    }
+    left -= count;
+  }
+  return left == 0 && AreCrossings(this->Crossed, intervals, this->All) &&
+    AreCrossings(this->CutOpen, intervals, this->AtBorder);
+}
 
 void IsovalueSurvey::Reach(double least, double greatest)
 {
