@@ -106,7 +106,7 @@ TEST(TestIsovalueSurvey, ValuesThatAreAllTheSameAreInOneInterval)
   EXPECT_EQ(rt::IsovalueSurvey().CountIntervals(), 0u);
 }
 
-/// Of a file, they can have any bytes.
+/// A file can have any bytes in their place.
 TEST(TestIsovalueSurvey, WhatNobodyCountedIsNotValid)
 {
   using Survey = rt::IsovalueSurvey;
@@ -165,7 +165,7 @@ TEST(TestIsovalueSurvey, WhatNobodyCountedIsNotValid)
   EXPECT_FALSE(empty.IsValid(most));
 }
 
-/// Something in an interval that the range does not reach.
+/// A count in an interval outside of the range.
 TEST(TestIsovalueSurvey, NothingIsWrittenOutsideWhateverIsAdded)
 {
   rt::IsovalueSurvey one;

@@ -28,7 +28,7 @@ rt::VoxelIndex MakeIndex()
   return index;
 }
 
-/// With a checksum that fits: whoever wrote the file knows how.
+/// Adds a matching checksum, as a forged file would have.
 std::vector<std::byte> Sign(std::vector<std::byte> bytes)
 {
   const std::size_t end = bytes.size() - sizeof(std::uint64_t);

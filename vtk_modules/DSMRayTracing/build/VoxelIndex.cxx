@@ -100,7 +100,7 @@ std::size_t VoxelIndex::CountBytes(std::size_t bricks)
 std::optional<VoxelIndex> VoxelIndex::Decode(
   const std::vector<std::byte>& bytes, std::size_t bricks)
 {
-  // Nothing is reckoned with before: of more bricks than there are bytes the products could wrap around.
+  // The first comparison keeps the products from wrapping around.
   if (bricks > bytes.size() || bytes.size() != CountBytes(bricks))
   {
     return std::nullopt;
@@ -119,7 +119,7 @@ std::optional<VoxelIndex> VoxelIndex::Decode(
   std::memcpy(index.Bricks.data(), bytes.data(), bricks * sizeof(ValueRange));
   std::memcpy(&index.Survey, bytes.data() + bricks * sizeof(ValueRange), sizeof(IsovalueSurvey));
   std::memcpy(index.Digests.data(), bytes.data() + endOfSurvey, bricks * sizeof(dsm::ByteDigest));
-  // A checksum tells of damage, not of who wrote it.
+  // The checksum detects damage, not a file that was made to deceive.
   return index.IsValid() ? std::optional<VoxelIndex>(std::move(index)) : std::nullopt;
 }
 

@@ -30,10 +30,10 @@ struct VoxelIndex
   static std::vector<bool> Compare(const std::vector<dsm::ByteDigest>& digests,
     const std::vector<dsm::ByteDigest>& others, std::size_t bricks);
 
-  /// As it is kept, with a checksum. Decode gives nothing where the bytes are not an index of as many
-  /// bricks, whatever they are.
+  /// The bytes that are kept, with a checksum. Decode accepts any bytes, and returns nothing unless they are a valid
+  /// index of `bricks` bricks.
   std::vector<std::byte> Encode() const;
-  /// What Encode takes for so many bricks.
+  /// Size of what Encode returns for an index of `bricks` bricks.
   static std::size_t CountBytes(std::size_t bricks);
   static std::optional<VoxelIndex> Decode(const std::vector<std::byte>& bytes, std::size_t bricks);
 
@@ -53,7 +53,7 @@ struct VoxelIndex
     const dsm::BlockReader& reader, const Pass& pass, dsm::FunctionRef<void(double)> progress);
 
 private:
-  /// Whether the numbers can be those of an index: they may come from a file.
+  /// Whether Find can have produced these numbers, which may come from a file.
   bool IsValid() const;
 };
 

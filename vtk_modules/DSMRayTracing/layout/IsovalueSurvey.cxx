@@ -85,7 +85,7 @@ void Move(
     if (counts[interval] != 0)
     {
       const std::int64_t to = ((oldFirst + static_cast<std::int64_t>(interval)) >> shift) - first;
-      // Of a valid survey it always is.
+      // Always true for a valid survey.
       if (to >= 0 && to < IsovalueSurvey::Intervals)
       {
         moved[static_cast<std::size_t>(to)] += counts[interval];
@@ -95,7 +95,7 @@ void Move(
   counts = moved;
 }
 
-/// Whether borders are crossed by so many macrocells at most, and those that begin also end. `counts`: not accumulated.
+/// Whether at most `most` macrocells cross each border, and none crosses the last. `counts` are not accumulated.
 bool AreCrossings(const IsovalueSurvey::Counts& counts, std::size_t intervals, std::int64_t most)
 {
   std::int64_t crossed = 0;
@@ -136,8 +136,7 @@ bool IsovalueSurvey::IsValid(std::int64_t mostMacrocells) const
     {
       return false;
     }
-    intervals =
-      this->CountIntervals(); // no more than there is room for: the exponent is high enough
+    intervals = this->CountIntervals(); // at most Intervals, as the exponent is high enough
   }
   else if (std::isnan(this->Least) || std::isnan(this->Greatest) || this->Least <= this->Greatest)
   {

@@ -23,13 +23,13 @@ struct IsovalueSurvey
   static constexpr int Intervals = 512;
   using Counts = std::array<std::int64_t, Intervals>;
 
-  /// Whether it is one that CountBrick and Add can have made, of at most so many macrocells. To be asked of a survey
-  /// that was copied out of a file, before anything else is done with it. False once it is accumulated.
+  /// Whether CountBrick and Add can have produced these numbers from at most `mostMacrocells` macrocells. A survey that
+  /// was copied out of a file must pass before any other call. Returns false after Accumulate.
   bool IsValid(std::int64_t mostMacrocells) const;
 
   /// Counts the macrocells of a brick.
   void CountBrick(const BrickLattice& lattice, dsm::BlockId id, const std::byte* block);
-  /// Both must be valid.
+  /// Both surveys must be valid.
   void Add(const IsovalueSurvey& other);
   /// When all is counted: entries of Crossed and CutOpen are numbers from then on, no more what changes there.
   void Accumulate();

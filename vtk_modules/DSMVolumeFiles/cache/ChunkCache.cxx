@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "DSMVolumeFiles/cache/ChunkCache.h"
 
+#include "DSMCore/base/Error.h"
+#include "DSMCore/memory/HostMemory.h"
 #include "DSMRayTracing/base/ByteHash.h"
 #include "DSMRayTracing/base/ParallelFor.h"
 #include "DSMVolumeFiles/base/CopyBox.h"
@@ -10,6 +12,7 @@
 #include <atomic>
 #include <exception>
 #include <map>
+#include <new>
 #include <utility>
 
 namespace vol
@@ -25,6 +28,13 @@ constexpr std::size_t InHandOfEach = 2;
 
 /// Samples along an axis that a brick has in common with the next.
 constexpr int Overlap = 2;
+
+dsm::Error OutOfMemory(const VolumeFile& file, const FileArray& array, std::size_t chunkBytes)
+{
+  return dsm::Error("Out of memory while reading a chunk of " + dsm::FormatMebibytes(chunkBytes) +
+    " of the array '" + array.Name + "' in '" + file.GetPath() +
+    "'. Convert the file with dsm_convert where there is more.");
+}
 
 /// Those that have samples of a box; x fastest.
 template <class Visit>
@@ -104,7 +114,8 @@ std::size_t ChunkCache::Restrict(std::size_t bytes)
 bool ChunkCache::Lend(std::size_t bytes, std::size_t divisor)
 {
   const std::lock_guard<std::mutex> lock(this->Guard);
-  if (this->Lent + bytes > this->ComputeRoom() / divisor)
+  const std::size_t most = this->ComputeRoom() / divisor;
+  if (bytes > most || this->Lent > most - bytes)
   {
     return false;
   }
@@ -206,6 +217,10 @@ ChunkCache::Chunk ChunkCache::Get(const std::shared_ptr<const VolumeFile>& file,
       bytes = std::make_shared<ByteBuffer>(chunkBytes);
     }
     file->ReadChunk(array, step, chunk, bytes->data());
+  }
+  catch (const std::bad_alloc&)
+  {
+    failure = std::make_exception_ptr(OutOfMemory(*file, what, chunkBytes));
   }
   catch (...)
   {

@@ -1,19 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "DSMVolumeFiles/range/KeptFile.h"
 
+#include "DSMCore/base/Error.h"
 #include "DSMRayTracing/base/ByteHash.h"
+#include "DSMVolumeFiles/base/DurableFile.h"
 
+#include <charconv>
 #include <chrono>
 #include <cstdint>
 #include <cstdlib>
+#include <cstring>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <mutex>
 #include <optional>
-#include <sstream>
-
-#include <unistd.h>
 
 namespace vol
 {
@@ -32,8 +31,9 @@ void RemoveUnused(const std::filesystem::path& folder)
        !failure && entry != std::filesystem::directory_iterator(); entry.increment(failure))
   {
     std::error_code unknown;
+    const bool isFile = entry->is_regular_file(unknown);
     const auto used = entry->last_write_time(unknown);
-    if (!unknown && now - used > LongestUnused)
+    if (!unknown && isFile && now - used > LongestUnused)
     {
       std::filesystem::remove(entry->path(), unknown);
     }
@@ -81,19 +81,22 @@ std::string Write(const rt::Box& box)
   return text;
 }
 
-std::optional<rt::Box> ReadBox(const std::string& text)
+/// Parses the end of a file name. Returns nothing unless it is a box within `whole`.
+std::optional<rt::Box> ReadBox(const std::string& text, const rt::Box& whole)
 {
   rt::Box box;
-  std::istringstream stream(text);
+  const char* at = text.data();
+  const char* const end = at + text.size();
   for (rt::Index3* corner : { &box.Min, &box.Max })
   {
     for (int axis = 0; axis < 3; ++axis)
     {
-      char between = '_';
-      stream >> (*corner)[axis] && stream.get(between);
+      at = std::from_chars(at, end, (*corner)[axis]).ptr;
+      at += at != end && *at == '_' ? 1 : 0;
     }
   }
-  return Write(box) == text ? std::optional<rt::Box>(box) : std::nullopt;
+  const bool isInside = Write(rt::Intersect(box, whole)) == text;
+  return isInside && !box.IsEmpty() ? std::optional<rt::Box>(box) : std::nullopt;
 }
 
 } // namespace
@@ -114,6 +117,7 @@ std::vector<rt::Box> KeptFile::FindBoxes(
   std::vector<rt::Box> boxes;
   const std::filesystem::path beginning = GetBeginning(file, array, step, kind);
   const std::string name = beginning.filename().string();
+  const rt::Box whole{ rt::Index3(0), file.GetArrays()[array].Grid.Samples };
   std::error_code failure; // such as no folder
   for (auto entry = std::filesystem::directory_iterator(beginning.parent_path(), failure);
        !failure && entry != std::filesystem::directory_iterator(); entry.increment(failure))
@@ -121,7 +125,7 @@ std::vector<rt::Box> KeptFile::FindBoxes(
     const std::string kept = entry->path().filename().string();
     if (kept.compare(0, name.size(), name) == 0)
     {
-      if (const std::optional<rt::Box> box = ReadBox(kept.substr(name.size())))
+      if (const std::optional<rt::Box> box = ReadBox(kept.substr(name.size()), whole))
       {
         boxes.push_back(*box);
       }
@@ -130,18 +134,34 @@ std::vector<rt::Box> KeptFile::FindBoxes(
   return boxes;
 }
 
-std::vector<std::byte> KeptFile::Load() const
+KeptFile::Header KeptFile::MakeHeader(const std::byte* bytes, std::size_t count) const
 {
-  std::ifstream kept(this->Path, std::ios::binary | std::ios::ate);
-  const std::streamoff bytes = kept ? std::streamoff(kept.tellg()) : 0;
-  std::vector<std::byte> content(static_cast<std::size_t>(bytes > 0 ? bytes : 0));
-  kept.seekg(0);
-  kept.read(reinterpret_cast<char*>(content.data()), static_cast<std::streamsize>(content.size()));
-  if (!kept)
+  constexpr std::uint64_t magic = 0x315450454b4d5344u; // "DSMKEPT1"
+  const std::string name = std::filesystem::path(this->Path).filename().string();
+  rt::ByteHash hash;
+  hash.Add(name.data(), name.size());
+  hash.Add(bytes, count);
+  return { magic, count, hash.Get() };
+}
+
+std::vector<std::byte> KeptFile::Load(std::size_t count) const
+{
+  Header header;
+  const auto kept =
+    this->Path.empty() ? std::nullopt : SmallFile::Read(this->Path, sizeof(header) + count);
+  if (!kept || kept->size() != sizeof(header) + count)
   {
     return {};
   }
-  std::error_code failure; // it is used
+  std::memcpy(&header, kept->data(), sizeof(header));
+  std::vector<std::byte> content(kept->begin() + sizeof(header), kept->end());
+  const Header expected = this->MakeHeader(content.data(), content.size());
+  if (header.Magic != expected.Magic || header.Bytes != expected.Bytes ||
+    header.Checksum != expected.Checksum)
+  {
+    return {};
+  }
+  std::error_code failure; // the time of the last use
   std::filesystem::last_write_time(
     this->Path, std::filesystem::file_time_type::clock::now(), failure);
   return content;
@@ -153,25 +173,33 @@ void KeptFile::Keep(const std::byte* bytes, std::size_t count) const
   {
     return;
   }
-  std::error_code failure;
-  const std::filesystem::path path(this->Path);
-  std::filesystem::create_directories(path.parent_path(), failure);
-  // Other processes may read it meanwhile.
-  std::filesystem::path written = path;
-  written += "." + std::to_string(getpid());
+  try
   {
-    std::ofstream kept(written, std::ios::binary);
-    kept.write(reinterpret_cast<const char*>(bytes), static_cast<std::streamsize>(count));
-    if (!kept.flush())
+    const std::filesystem::path path(this->Path);
+    std::error_code failure;
+    std::filesystem::create_directories(path.parent_path(), failure);
+    const Header header = this->MakeHeader(bytes, count);
+    std::vector<std::byte> content(sizeof(header));
+    std::memcpy(content.data(), &header, sizeof(header));
+    content.insert(content.end(), bytes, bytes + count);
+    // Other processes may read or write the same file at the same time.
+    const std::string written =
+      SmallFile::WriteBeside(this->Path + ".", content.data(), content.size());
+    try
     {
-      kept.close();
-      std::filesystem::remove(written, failure);
-      return;
+      SmallFile::Rename(written, this->Path);
     }
+    catch (const dsm::Error&)
+    {
+      std::filesystem::remove(written, failure);
+      throw;
+    }
+    static std::once_flag tidied; // a series keeps something for each step
+    std::call_once(tidied, [&] { RemoveUnused(path.parent_path()); });
   }
-  std::filesystem::rename(written, path, failure);
-  static std::once_flag tidied; // a series keeps something for each step
-  std::call_once(tidied, [&] { RemoveUnused(path.parent_path()); });
+  catch (const std::exception&) // a full disk, or something else than a file is there
+  {
+  }
 }
 
 } // namespace vol

@@ -5,6 +5,7 @@
 #include "DSMVolumeFiles/format/VolumeFile.h"
 
 #include <cstddef>
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -20,16 +21,27 @@ public:
   KeptFile(const VolumeFile& file, std::size_t array, int step, const rt::Box& box,
     const std::string& kind);
 
-  /// The boxes of which something of this kind is kept, in no order. Throws std::bad_alloc.
+  /// The boxes within the array for which something of this kind is kept, in no order. Throws std::bad_alloc.
   static std::vector<rt::Box> FindBoxes(
     const VolumeFile& file, std::size_t array, int step, const std::string& kind);
 
-  /// Empty where nothing is kept. Whether it is whole is for the caller to tell. Throws std::bad_alloc.
-  std::vector<std::byte> Load() const;
-  /// What cannot be kept is found again the next time.
+  /// Returns the `count` bytes that Keep stored, or nothing where there is no such file or its checksum differs. Throws
+  /// std::bad_alloc.
+  std::vector<std::byte> Load(std::size_t count) const;
+  /// Stores bytes if possible. Several processes may store the same file at the same time: the last one wins. Throws
+  /// nothing.
   void Keep(const std::byte* bytes, std::size_t count) const;
 
 private:
+  /// Precedes the kept bytes.
+  struct Header
+  {
+    std::uint64_t Magic;
+    std::uint64_t Bytes;
+    std::uint64_t Checksum; ///< of the kept bytes and the file's own name
+  };
+  Header MakeHeader(const std::byte* bytes, std::size_t count) const;
+
   std::string Path; ///< empty: there is no such directory
 };
 

@@ -4,6 +4,7 @@
 #include "DSMRayTracing/base/ParallelFor.h"
 #include "DSMRayTracing/layout/LaneRanges.h"
 #include "DSMVolumeFiles/base/ByteBuffer.h"
+#include "DSMVolumeFiles/base/FileLimits.h"
 #include "DSMVolumeFiles/cache/ChunkCache.h"
 #include "DSMVolumeFiles/range/KeptFile.h"
 
@@ -20,7 +21,7 @@ namespace
 {
 
 /// What is kept, and in which layout.
-constexpr const char* Kind = "ranges3";
+constexpr const char* Kind = "ranges4";
 
 void Add(ValueRanges& ranges, std::size_t number, double value)
 {
@@ -95,8 +96,12 @@ public:
     : Threads(std::max(1, threads))
   {
     const rt::Index3 samples = glm::min(array.Grid.ChunkSamples, array.Grid.Samples);
-    const std::size_t each = 2 * array.GetSampleBytes() *
-      static_cast<std::size_t>(rt::Box{ rt::Index3(0), samples }.GetCount());
+    // A product that does not fit 64 bits exceeds the room, too.
+    const std::uint64_t most = FileLimits::ArrayBytes / this->GetThreads();
+    const std::size_t each = MultiplyWithin(most,
+      { 2, array.GetSampleBytes(),
+        static_cast<std::uint64_t>(rt::Box{ rt::Index3(0), samples }.GetCount()) })
+                               .value_or(most);
     bool isLent = false;
     while (
       !(isLent = ChunkCache::GetShared().Lend(each * this->GetThreads(), 1)) && this->Threads > 1)
@@ -122,6 +127,39 @@ ValueRanges::ValueRanges(int components)
   : All(static_cast<std::size_t>(components > 1 ? components + 1 : 1))
   , Finite(this->All.size())
 {
+}
+
+bool ValueRanges::IsValid(rt::ScalarType type) const
+{
+  const auto [lowest, highest] = rt::Dispatch(type,
+    [](auto zero)
+    {
+      using T = decltype(zero);
+      const bool hasInfinity = std::numeric_limits<T>::has_infinity;
+      return hasInfinity
+        ? std::pair<double, double>(-HUGE_VAL, HUGE_VAL)
+        : std::pair<double, double>(static_cast<double>(std::numeric_limits<T>::lowest()),
+            static_cast<double>(std::numeric_limits<T>::max()));
+    });
+  const auto isRange = [](const ValueRange& range, double least, double greatest)
+  {
+    const ValueRange none;
+    return (range.Least == none.Least && range.Greatest == none.Greatest) ||
+      (range.Least >= least && range.Least <= range.Greatest && range.Greatest <= greatest);
+  };
+  constexpr double finite = std::numeric_limits<double>::max();
+  for (std::size_t index = 0; index < this->All.size(); ++index)
+  {
+    // The magnitude of vectors may exceed the type of their components.
+    const bool isMagnitude = this->All.size() > 1 && index + 1 == this->All.size();
+    const ValueRange& all = this->All[index];
+    if (!isRange(all, isMagnitude ? 0.0 : lowest, isMagnitude ? HUGE_VAL : highest) ||
+      !isRange(this->Finite[index], std::max(all.Least, -finite), std::min(all.Greatest, finite)))
+    {
+      return false;
+    }
+  }
+  return true;
 }
 
 void ValueRanges::Add(const ValueRanges& other)
@@ -225,22 +263,26 @@ std::optional<ValueRanges> ReadOwn(const VolumeFile& file, std::size_t array, in
     ranges.All[index] = { own[4 * index], own[4 * index + 1] };
     ranges.Finite[index] = { own[4 * index + 2], own[4 * index + 3] };
   }
-  return ranges;
+  return ranges.IsValid(file.GetArrays()[array].Type)
+    ? std::optional<ValueRanges>(std::move(ranges))
+    : std::nullopt;
 }
 
 std::optional<ValueRanges> LoadKept(
   const VolumeFile& file, std::size_t array, int step, const rt::Box& box)
 {
   ValueRanges ranges(file.GetArrays()[array].Components);
-  const std::vector<std::byte> kept = KeptFile(file, array, step, box, Kind).Load();
   const std::size_t list = ranges.All.size() * sizeof(ValueRange);
-  if (kept.size() != 2 * list)
+  const std::vector<std::byte> kept = KeptFile(file, array, step, box, Kind).Load(2 * list);
+  if (kept.empty())
   {
     return std::nullopt;
   }
   std::memcpy(ranges.All.data(), kept.data(), list);
   std::memcpy(ranges.Finite.data(), kept.data() + list, list);
-  return ranges;
+  return ranges.IsValid(file.GetArrays()[array].Type)
+    ? std::optional<ValueRanges>(std::move(ranges))
+    : std::nullopt;
 }
 
 /// What of `box` is outside of `other`, in boxes that share nothing.

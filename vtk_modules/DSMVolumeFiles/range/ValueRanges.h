@@ -41,6 +41,9 @@ struct ValueRanges
 
   /// Of no samples.
   explicit ValueRanges(int components);
+  /// Whether samples of a type can have these ranges. Ranges that were copied out of a file must pass before they are
+  /// used.
+  bool IsValid(rt::ScalarType type) const;
   void Add(const ValueRanges& other);
   /// Of a dense array of the samples of `have`, those of `want`.
   void Add(

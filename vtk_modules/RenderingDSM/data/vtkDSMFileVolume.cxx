@@ -147,6 +147,10 @@ std::shared_ptr<const vol::VolumeFile> OpenAs(
   const std::vector<char>& bytes, vol::OpenOptions& options)
 {
   Opening opening{};
+  if (bytes.size() <= sizeof(opening) || bytes.back() != '\0')
+  {
+    throw dsm::Error("Another rank does not say how to open the volume's file.");
+  }
   std::memcpy(&opening, bytes.data(), sizeof(opening));
   options.Level = opening.Level;
   options.Bare.Type = static_cast<rt::ScalarType>(opening.RawType);
@@ -476,13 +480,17 @@ vol::KeptFile vtkDSMFileVolume::GetKept(const rt::BrickLattice& lattice) const
 {
   return { *this->Values->GetFile(), this->Values->GetArrayNumber(), this->Values->GetStep(),
     this->Values->GetBox(),
-    "bricks2-" + std::to_string(lattice.GetEdge()) + "-" + std::to_string(this->Component) };
+    "bricks3-" + std::to_string(lattice.GetEdge()) + "-" + std::to_string(this->Component) };
 }
 
 std::vector<std::byte> vtkDSMFileVolume::LoadIndex(const rt::BrickLattice& lattice) const
 {
+  const auto bricks = static_cast<std::size_t>(lattice.GetBrickCount());
   std::vector<std::byte> bytes = this->ReadIndex(lattice);
-  return bytes.empty() ? this->GetKept(lattice).Load() : std::move(bytes);
+  // If the file's own index is damaged, the one that replaces it is kept.
+  return rt::VoxelIndex::Decode(bytes, bricks)
+    ? std::move(bytes)
+    : this->GetKept(lattice).Load(rt::VoxelIndex::CountBytes(bricks));
 }
 
 rt::VoxelIndex vtkDSMFileVolume::FindIndex(dsm::Messenger& messenger,

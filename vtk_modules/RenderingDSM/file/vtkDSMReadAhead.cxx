@@ -155,7 +155,7 @@ struct vtkDSMReadAhead::Shared : std::enable_shared_from_this<Shared>
       const std::lock_guard<std::mutex> lock(contents.Guard);
       contents.Bricks.emplace(job.Id, std::move(brick));
     }
-    catch (const std::exception&)
+    catch (...) // the brick is read when a ray needs it
     {
       contents.Cache.Return(hasRoom ? job.Bytes : 0);
     }

@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "DSMVolumeFiles/base/DurableFile.h"
+
+#include "DSMCore/base/Error.h"
+
+#include <cerrno>
+#include <cstdint>
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+#include <random>
+#include <utility>
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+namespace vol
+{
+
+namespace
+{
+
+/// Closes a file descriptor.
+class Descriptor
+{
+public:
+  explicit Descriptor(int number)
+    : Number(number)
+  {
+  }
+  ~Descriptor() { this->Close(); }
+  Descriptor(const Descriptor&) = delete;
+  Descriptor& operator=(const Descriptor&) = delete;
+
+  int Get() const { return this->Number; }
+  /// Some file systems report a failed write only here.
+  bool Close() { return this->Number < 0 || close(std::exchange(this->Number, -1)) == 0; }
+
+private:
+  int Number;
+};
+
+[[noreturn]] void Refuse(const std::string& path, int cause)
+{
+  throw dsm::Error("Writing '" + path + "' failed: " + std::strerror(cause) + ".");
+}
+
+void WriteAll(Descriptor& file, const std::string& path, const void* bytes, std::size_t count)
+{
+  struct stat state = {};
+  if (file.Get() < 0 || fstat(file.Get(), &state) != 0)
+  {
+    Refuse(path, errno);
+  }
+  if (!S_ISREG(state.st_mode))
+  {
+    throw dsm::Error("Writing '" + path + "' failed: it is a device or a pipe.");
+  }
+  const auto* const first = static_cast<const char*>(bytes);
+  for (std::size_t done = 0; done < count;)
+  {
+    const ssize_t wrote = write(file.Get(), first + done, count - done);
+    if (wrote < 0 && errno != EINTR)
+    {
+      Refuse(path, errno);
+    }
+    done += static_cast<std::size_t>(wrote > 0 ? wrote : 0);
+  }
+  if (fsync(file.Get()) != 0 || !file.Close())
+  {
+    Refuse(path, errno);
+  }
+}
+
+} // namespace
+
+std::optional<std::vector<std::byte>> SmallFile::Read(const std::string& path, std::size_t most)
+{
+  const Descriptor file(open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
+  struct stat state = {};
+  if (file.Get() < 0 || fstat(file.Get(), &state) != 0 || !S_ISREG(state.st_mode) ||
+    state.st_size < 0 || static_cast<std::uintmax_t>(state.st_size) > most)
+  {
+    return std::nullopt;
+  }
+  std::vector<std::byte> content(static_cast<std::size_t>(state.st_size));
+  for (std::size_t done = 0; done < content.size();)
+  {
+    const ssize_t got = read(file.Get(), content.data() + done, content.size() - done);
+    if (got == 0 || (got < 0 && errno != EINTR))
+    {
+      return std::nullopt;
+    }
+    done += static_cast<std::size_t>(got > 0 ? got : 0);
+  }
+  return content;
+}
+
+void SmallFile::Write(const std::string& path, const void* bytes, std::size_t count)
+{
+  // Without O_NONBLOCK, opening a pipe would block.
+  Descriptor file(open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC | O_NONBLOCK, 0666));
+  WriteAll(file, path, bytes, count);
+}
+
+std::string SmallFile::WriteBeside(
+  const std::string& beginning, const void* bytes, std::size_t count)
+{
+  std::random_device random; // process numbers are not unique among hosts that share a folder
+  std::string name;
+  int opened = -1;
+  do
+  {
+    name = beginning + std::to_string(random()) + "-" + std::to_string(random());
+    opened = open(name.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+  } while (opened < 0 && errno == EEXIST);
+  Descriptor file(opened);
+  if (file.Get() < 0)
+  {
+    Refuse(name, errno);
+  }
+  try
+  {
+    WriteAll(file, name, bytes, count);
+  }
+  catch (const dsm::Error&)
+  {
+    unlink(name.c_str());
+    throw;
+  }
+  return name;
+}
+
+void SmallFile::Synchronize(const std::string& path)
+{
+  const Descriptor file(open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
+  if (file.Get() < 0 || fsync(file.Get()) != 0)
+  {
+    Refuse(path, errno);
+  }
+}
+
+void SmallFile::Rename(const std::string& from, const std::string& to)
+{
+  if (std::rename(from.c_str(), to.c_str()) != 0)
+  {
+    throw dsm::Error(
+      "'" + from + "' could not be renamed to '" + to + "': " + std::strerror(errno) + ".");
+  }
+  const std::filesystem::path folder = std::filesystem::path(to).parent_path();
+  const Descriptor opened(
+    open(folder.empty() ? "." : folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+  // Not every file system supports this; the renamed file is there in any case.
+  if (opened.Get() >= 0 && fsync(opened.Get()) != 0 && errno == EIO)
+  {
+    Refuse(to, errno);
+  }
+}
+
+} // namespace vol
