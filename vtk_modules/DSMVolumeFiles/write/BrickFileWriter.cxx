@@ -2,21 +2,18 @@
 #include "DSMVolumeFiles/write/BrickFileWriter.h"
 
 #include "DSMCore/base/Error.h"
+#include "DSMVolumeFiles/base/SmallFile.h"
 #include "DSMVolumeFiles/codec/ChunkCodec.h"
 #include "DSMVolumeFiles/codec/HaloRecord.h"
 #include "DSMVolumeFiles/format/HdfLibrary.h"
+#include "DSMVolumeFiles/write/PartFiles.h"
+#include "DSMVolumeFiles/write/PartState.h"
 #include "DSMVolumeFiles/write/PathClaim.h"
 #include "DSMVolumeFiles/write/WrittenHdfFile.h"
-
-#include <nlohmann/json.hpp>
-
-#include <fcntl.h>
-#include <unistd.h>
 
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
-#include <fstream>
 #include <optional>
 #include <utility>
 
@@ -26,29 +23,11 @@ namespace vol
 namespace
 {
 
-using Json = nlohmann::ordered_json;
-
 /// Entries of a node of the index of chunks: large nodes are found and read with few steps.
 constexpr unsigned IndexNodeEntries = 1024;
 
 /// What a level may take beyond its file, which has as many groups: the library aligns some of it.
 constexpr std::uint64_t RoomForGroups = 1 << 16;
-
-/// Waits until what the system holds of a file is on its disk.
-void Synchronize(const std::string& path)
-{
-  const int file = open(path.c_str(), O_RDONLY | O_CLOEXEC);
-  const bool failed = file < 0 || fsync(file) != 0;
-  const int cause = errno;
-  if (file >= 0)
-  {
-    close(file);
-  }
-  if (failed)
-  {
-    throw dsm::Error("Writing '" + path + "' failed: " + std::strerror(cause) + ".");
-  }
-}
 
 std::vector<hsize_t> GetShape(const rt::Index3& samples, int components)
 {
@@ -61,24 +40,14 @@ std::vector<hsize_t> GetShape(const rt::Index3& samples, int components)
   return shape;
 }
 
-Json Describe(const BrickFileLayout& layout)
+bool HasShape(const HdfHandle& dataset, const std::vector<hsize_t>& shape)
 {
-  const auto list = [](const auto& numbers)
-  { return Json(std::vector<double>(std::begin(numbers), std::end(numbers))); };
-  const auto index = [](const rt::Index3& numbers) {
-    return Json{ numbers.x, numbers.y, numbers.z };
-  };
-  Json text{ { "origin", list(layout.Geometry.Origin) },
-    { "spacing", list(layout.Geometry.Spacing) }, { "direction", list(layout.Geometry.Direction) },
-    { "first", index(layout.Geometry.First) }, { "points", index(layout.Geometry.Points) },
-    { "edge", layout.BrickEdge }, { "compression", static_cast<int>(layout.Pressed) } };
-  for (const FileArray& array : layout.Arrays)
-  {
-    text["arrays"].push_back({ array.Name, static_cast<int>(array.Type), array.Components,
-      array.OnCells, index(array.Grid.Samples), index(array.Grid.ChunkSamples),
-      layout.HasHalo(static_cast<std::size_t>(&array - layout.Arrays.data())) });
-  }
-  return text;
+  const HdfHandle space(
+    dataset.IsOpen() ? H5Dget_space(dataset.Get()) : H5I_INVALID_HID, &H5Sclose);
+  const int rank = space.IsOpen() ? H5Sget_simple_extent_ndims(space.Get()) : -1;
+  std::vector<hsize_t> found(shape.size());
+  return rank == static_cast<int>(shape.size()) &&
+    H5Sget_simple_extent_dims(space.Get(), found.data(), nullptr) == rank && found == shape;
 }
 
 } // namespace
@@ -113,28 +82,35 @@ std::size_t BrickFileLayout::GetHaloRecordBytes(std::size_t array) const
 class BrickFileWriter::Internals
 {
 public:
-  Internals(std::string path, const BrickFileLayout& layout, const std::string& source)
+  Internals(std::string path, const BrickFileLayout& layout, const std::string& source,
+    Unfinished unfinished)
     : Path(std::move(path))
-    , PartPath(GetPartPath(this->Path))
-    , StatePath(this->PartPath + ".json")
+    , PartPath(PartFiles::GetPart(this->Path))
     , Layout(layout)
-    , Description({ { "source", source }, { "layout", Describe(layout) } })
+    , IsRemoved(unfinished == Unfinished::Remove)
+    , State(this->Path, layout, source, !this->IsRemoved)
     , Claim(this->Path)
     , File(this->PartPath)
   {
+    PartFiles::CheckOwn(this->Path);
     const HdfSilence silence;
+    if (this->IsRemoved)
+    {
+      this->State.CheckNothingIsLost();
+    }
+    else if (this->GoOn())
+    {
+      return;
+    }
     try
     {
-      if (!this->GoOn())
-      {
-        this->Begin();
-      }
+      this->Begin();
     }
     catch (...)
     {
       this->File.Divert();
-      this->Targets.clear();
-      this->File.Close();
+      this->Close();
+      PartFiles::Remove(this->Path);
       throw;
     }
   }
@@ -143,8 +119,11 @@ public:
   {
     const std::lock_guard<std::mutex> lock(GetHdfLock());
     const HdfSilence silence;
-    this->Targets.clear();
-    this->File.Close();
+    this->Close();
+    if (this->IsRemoved)
+    {
+      PartFiles::Remove(this->Path);
+    }
   }
 
   void Add(std::size_t number, const std::vector<EncodedChunk>& chunks, const ValueRanges& ranges)
@@ -165,6 +144,7 @@ public:
   void Finish(const std::vector<std::vector<std::byte>>& indices, int levels)
   {
     this->Write([&] { this->WriteRest(indices, levels); });
+    PartFiles::Remove(this->Path);
   }
 
   struct Target
@@ -180,6 +160,12 @@ public:
   std::string Path;
 
 private:
+  void Close()
+  {
+    this->Targets.clear();
+    this->File.Close();
+  }
+
   /// Whatever goes wrong, the library can close the file.
   template <class Work>
   void Write(const Work& work)
@@ -238,7 +224,8 @@ private:
     {
       this->AddLevel(level);
     }
-    this->RemoveState();
+    // A later process must not go on with a file that has an index.
+    this->WriteState(false);
     for (std::size_t number = 0; number < indices.size(); ++number)
     {
       const std::string name = "DSM/" + this->GetName(this->Layout.Arrays[number]) + "/BrickIndex";
@@ -251,14 +238,8 @@ private:
       }
     }
     this->File.CloseWritten();
-    Synchronize(this->PartPath);
-    std::error_code failure;
-    std::filesystem::rename(this->PartPath, this->Path, failure);
-    if (failure)
-    {
-      throw dsm::Error("'" + this->PartPath + "' is whole, but could not be renamed to '" +
-        this->Path + "': " + failure.message() + ".");
-    }
+    SmallFile::Synchronize(this->PartPath);
+    SmallFile::Rename(this->PartPath, this->Path);
   }
 
   /// As it is: the library copies chunks without looking into them.
@@ -270,7 +251,7 @@ private:
     }
     const std::string group = std::string(HdfLevels) + "/" + std::to_string(level);
     this->File.CreateGroup(group.c_str());
-    const std::string path = GetLevelPath(this->Path, level);
+    const std::string path = PartFiles::GetLevel(this->Path, level);
     std::error_code failure;
     const std::uintmax_t bytes = std::filesystem::file_size(path, failure);
     this->File.Reserve(failure ? 0 : bytes + RoomForGroups);
@@ -283,57 +264,55 @@ private:
     }
   }
 
-  /// Without the state, nobody goes on with what is not whole.
-  void RemoveState() const
-  {
-    std::error_code failure;
-    std::filesystem::remove(this->StatePath, failure);
-  }
-
+  /// Returns false where no earlier process can be resumed, or its file is damaged.
   bool GoOn()
   {
-    Json state;
-    try
-    {
-      std::ifstream file(this->StatePath);
-      state = Json::parse(file);
-    }
-    catch (const Json::exception&)
+    const std::optional<std::vector<std::int64_t>> chunks = this->State.Load();
+    if (!chunks || !this->File.Open())
     {
       return false;
     }
-    if (!state.is_object() || state.value("whole", Json()) != true ||
-      state.value("of", Json()) != this->Description)
-    {
-      return false;
-    }
-    if (!this->File.Open())
-    {
-      return false;
-    }
-    const std::vector<std::int64_t> chunks = state["chunks"];
     for (std::size_t number = 0; number < this->Layout.Arrays.size(); ++number)
     {
-      const FileArray& array = this->Layout.Arrays[number];
-      const auto find = [&](const std::string& name)
-      { return this->File.Own(H5Dopen2(this->File.Get(), name.c_str(), H5P_DEFAULT), &H5Dclose); };
-      const std::string index = "DSM/" + this->GetName(array);
-      Target target{ find("VTKHDF/" + this->GetName(array)), find(index + "/BrickRanges"),
-        find(index + "/ValueRanges"),
-        this->Layout.GetHaloRecordBytes(number) > 0 ? find(index + "/" + HdfHaloRecords)
-                                                    : HdfHandle(),
-        chunks[number], ValueRanges(array.Components) };
-      std::vector<double> limits(4 * target.Ranges.All.size());
-      this->File.Check(H5Dread(
-        target.Limits.Get(), H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, limits.data()));
-      for (std::size_t range = 0; range < target.Ranges.All.size(); ++range)
+      if (!this->GoOnWith(number, (*chunks)[number]))
       {
-        target.Ranges.All[range] = { limits[4 * range], limits[4 * range + 1] };
-        target.Ranges.Finite[range] = { limits[4 * range + 2], limits[4 * range + 3] };
+        this->Close();
+        return false;
       }
-      this->Targets.push_back(std::move(target));
     }
     return true;
+  }
+
+  bool GoOnWith(std::size_t number, std::int64_t chunks)
+  {
+    const FileArray& array = this->Layout.Arrays[number];
+    const auto find = [&](const std::string& name)
+    { return HdfHandle(H5Dopen2(this->File.Get(), name.c_str(), H5P_DEFAULT), &H5Dclose); };
+    const std::string index = "DSM/" + this->GetName(array);
+    const std::size_t haloBytes = this->Layout.GetHaloRecordBytes(number);
+    Target target{ find("VTKHDF/" + this->GetName(array)), find(index + "/BrickRanges"),
+      find(index + "/ValueRanges"),
+      haloBytes > 0 ? find(index + "/" + HdfHaloRecords) : HdfHandle(), chunks,
+      ValueRanges(array.Components) };
+    const auto count = static_cast<hsize_t>(array.Grid.GetCount());
+    std::vector<double> limits(4 * target.Ranges.All.size());
+    if (!HasShape(target.Values, GetShape(array.Grid.Samples, array.Components)) ||
+      !HasShape(target.Table, { count, 2 }) ||
+      !HasShape(target.Limits, { target.Ranges.All.size(), 4 }) ||
+      (haloBytes > 0 && !HasShape(target.Halos, { count, haloBytes })) ||
+      H5Dread(
+        target.Limits.Get(), H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, limits.data()) < 0)
+    {
+      return false;
+    }
+    for (std::size_t range = 0; range < target.Ranges.All.size(); ++range)
+    {
+      target.Ranges.All[range] = { limits[4 * range], limits[4 * range + 1] };
+      target.Ranges.Finite[range] = { limits[4 * range + 2], limits[4 * range + 3] };
+    }
+    const bool isValid = target.Ranges.IsValid(array.Type);
+    this->Targets.push_back(std::move(target));
+    return isValid;
   }
 
   static std::string GetName(const FileArray& array)
@@ -343,7 +322,9 @@ private:
 
   void Begin()
   {
-    RemoveParts(this->Path);
+    // The state comes first, as it marks the other files as this program's.
+    this->State.Save(false, std::vector<std::int64_t>(this->Layout.Arrays.size(), 0));
+    PartFiles::RemoveValues(this->Path);
     this->File.Create(IndexNodeEntries);
     this->WriteImage();
     for (const char* folder :
@@ -476,27 +457,13 @@ private:
 
   void WriteState(bool isWhole) const
   {
-    Json state{ { "whole", isWhole }, { "of", this->Description }, { "chunks", Json::array() } };
+    std::vector<std::int64_t> chunks;
     for (const Target& target : this->Targets)
     {
-      state["chunks"].push_back(target.Chunks);
+      chunks.push_back(target.Chunks);
     }
-    const std::string written = this->StatePath + ".new";
-    {
-      std::ofstream file(written, std::ios::trunc);
-      file << state.dump(1) << std::endl;
-      if (!file)
-      {
-        throw dsm::Error("Writing '" + written + "' failed: " + std::strerror(errno) + ".");
-      }
-    }
-    Synchronize(written);
-    std::error_code failure;
-    std::filesystem::rename(written, this->StatePath, failure);
-    if (failure)
-    {
-      throw dsm::Error("Writing '" + this->StatePath + "' failed: " + failure.message() + ".");
-    }
+    chunks.resize(this->Layout.Arrays.size()); // after CloseFile
+    this->State.Save(isWhole, chunks);
   }
 
   /// All that was added is in the file; while it is not quite, the state says so.
@@ -506,23 +473,23 @@ private:
     // From here on until it is settled, the file is neither what it was nor what it will be.
     this->WriteState(false);
     this->File.Flush();
-    Synchronize(this->PartPath);
+    SmallFile::Synchronize(this->PartPath);
     this->WriteState(true);
   }
 
   std::string PartPath;
-  std::string StatePath;
   BrickFileLayout Layout;
-  Json Description;
+  bool IsRemoved; ///< unless it is finished
+  PartState State;
   PathClaim Claim;
   WrittenHdfFile File;
 };
 
 BrickFileWriter::BrickFileWriter(
-  std::string path, const BrickFileLayout& layout, const std::string& source)
+  std::string path, const BrickFileLayout& layout, const std::string& source, Unfinished unfinished)
 {
   const std::lock_guard<std::mutex> lock(GetHdfLock());
-  this->Self = std::make_unique<Internals>(std::move(path), layout, source);
+  this->Self = std::make_unique<Internals>(std::move(path), layout, source, unfinished);
 }
 
 BrickFileWriter::~BrickFileWriter() = default;
@@ -546,28 +513,6 @@ void BrickFileWriter::Close()
 void BrickFileWriter::Finish(const std::vector<std::vector<std::byte>>& indices, int levels)
 {
   this->Self->Finish(indices, levels);
-  RemoveParts(this->Self->Path);
-}
-
-void BrickFileWriter::RemoveParts(const std::string& path)
-{
-  std::error_code failure;
-  const auto remove = [&](const std::string& part)
-  {
-    const bool hadState = std::filesystem::remove(part + ".json", failure);
-    return std::filesystem::remove(part, failure) || hadState;
-  };
-  remove(GetPartPath(path));
-  // They are made in turn; the last one may be half a file.
-  for (int level = 1; true; ++level)
-  {
-    const std::string one = GetLevelPath(path, level);
-    const bool wasHalf = remove(GetPartPath(one));
-    if (!remove(one) && !wasHalf)
-    {
-      break;
-    }
-  }
 }
 
 } // namespace vol

@@ -55,14 +55,22 @@ struct EncodedChunk
 };
 
 /// Writes a volume that any HDF5 reader opens, as VTK's ImageData (VTKHDF), with an index of ranges beside it (the
-/// group DSM; docs/files.md). Until it is whole, the file is called PATH.part, and PATH.part.json tells how far it
-/// has come, for a later process that goes on. One rank's; one thread at a time.
+/// group DSM; docs/files.md). Until it is whole, it consists of PartFiles. One rank's; one thread at a time.
 class BrickFileWriter
 {
 public:
+  /// What happens to the files of a writer that does not finish.
+  enum class Unfinished
+  {
+    Keep,  ///< A later process resumes.
+    Remove ///< The destructor removes them, and the constructor refuses to replace files that a process can resume.
+  };
+
   /// Goes on with PATH.part when that was begun for the same layout and `source` (a text that tells of which
-  /// values) and is whole up to where it has come; else begins anew. Throws dsm::Error.
-  BrickFileWriter(std::string path, const BrickFileLayout& layout, const std::string& source);
+  /// values) and is whole up to where it has come; else begins anew. Throws dsm::Error; then it has removed what it has
+  /// begun, and has not touched the files of another process or program.
+  BrickFileWriter(std::string path, const BrickFileLayout& layout, const std::string& source,
+    Unfinished unfinished);
   ~BrickFileWriter();
   BrickFileWriter(const BrickFileWriter&) = delete;
   BrickFileWriter& operator=(const BrickFileWriter&) = delete;
@@ -74,20 +82,10 @@ public:
   /// dsm::Error when the disk is full, or fails; the writer is of no use then.
   void Add(std::size_t array, const std::vector<EncodedChunk>& chunks, const ValueRanges& ranges);
 
-  /// What a file is called while it is not whole.
-  static std::string GetPartPath(const std::string& path) { return path + ".part"; }
-  /// And the file of its own that a coarser level (from 1 on) has until then.
-  static std::string GetLevelPath(const std::string& path, int level)
-  {
-    return GetPartPath(path) + ".level" + std::to_string(level);
-  }
-  /// Removes all of these files. Throws nothing.
-  static void RemoveParts(const std::string& path);
-
   /// When all chunks are there: PATH.part may be opened until Finish. Throws dsm::Error.
   void Close();
   /// After Close: adds what is known of the bricks of each array (rt::VoxelIndex as it is kept; empty: nothing) and
-  /// the first coarser levels, which are brick files at GetLevelPath, and gives the file its name. Throws dsm::Error.
+  /// the first coarser levels, which are brick files at PartFiles::GetLevel, and gives the file its name. Throws dsm::Error.
   void Finish(const std::vector<std::vector<std::byte>>& indices, int levels);
 
 private:

@@ -2,6 +2,7 @@
 #include "DSMVolumeFiles/write/PathClaim.h"
 
 #include "DSMCore/base/Error.h"
+#include "DSMVolumeFiles/write/PartFiles.h"
 
 #include <fcntl.h>
 #include <sys/file.h>
@@ -11,6 +12,7 @@
 #include <cerrno>
 #include <filesystem>
 #include <system_error>
+#include <utility>
 
 namespace vol
 {
@@ -32,6 +34,13 @@ void CheckReplaceable(const std::string& path)
   }
 }
 
+/// Locks are empty files.
+bool IsLock(int file)
+{
+  struct stat opened = {};
+  return file >= 0 && fstat(file, &opened) == 0 && S_ISREG(opened.st_mode) && opened.st_size == 0;
+}
+
 /// Whether the file that is open is still the one at the path: who had it may have removed it meanwhile.
 bool IsAt(int file, const std::string& path)
 {
@@ -44,7 +53,7 @@ bool IsAt(int file, const std::string& path)
 } // namespace
 
 PathClaim::PathClaim(const std::string& path)
-  : LockPath(path + ".part.lock")
+  : LockPath(PartFiles::GetLock(path))
 {
   CheckReplaceable(path);
   do
@@ -53,15 +62,21 @@ PathClaim::PathClaim(const std::string& path)
     {
       close(this->Lock);
     }
-    this->Lock = open(this->LockPath.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
-    if (this->Lock < 0)
+    this->Lock =
+      open(this->LockPath.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NONBLOCK | O_NOFOLLOW, 0666);
+    if (this->Lock < 0 && errno != EISDIR && errno != ELOOP && errno != ENXIO)
     {
-      return; // what cannot be written is said by who writes
+      return; // where no file can be written, the writer says so
+    }
+    if (!IsLock(this->Lock))
+    {
+      close(std::exchange(this->Lock, -1));
+      throw dsm::Error("'" + this->LockPath + "' is in the way: it is needed to write '" + path +
+        "', but is not a lock of this program. Rename or delete it.");
     }
     if (flock(this->Lock, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK)
     {
-      close(this->Lock);
-      this->Lock = -1;
+      close(std::exchange(this->Lock, -1));
       throw dsm::Error("Another process is writing '" + path + "'. Wait until it ends, or end it.");
     }
   } while (!IsAt(this->Lock, this->LockPath));

@@ -7,12 +7,13 @@
 namespace vol
 {
 
-/// That this process, and no other one, writes a file that will be at a path: by a lock beside it (PATH.part.lock), which
+/// That this process, and no other one, writes a file that will be at a path: by a lock beside it (PartFiles::GetLock), which
 /// ends with the process. Where a file system has no locks, nothing is claimed.
 class PathClaim
 {
 public:
-  /// Throws dsm::Error when another process has it, or what is there cannot be replaced by a file.
+  /// Throws dsm::Error when another process has it, what is there cannot be replaced by a file, or something
+  /// else than a lock has the lock's name.
   explicit PathClaim(const std::string& path);
   ~PathClaim();
   PathClaim(const PathClaim&) = delete;

@@ -9,10 +9,12 @@
 #include "DSMRayTracing/layout/MacrocellBuilder.h"
 #include "DSMRayTracing/layout/VoxelBrickHeader.h"
 #include "DSMVolumeFiles/base/CopyBox.h"
+#include "DSMVolumeFiles/base/FileLimits.h"
 #include "DSMVolumeFiles/cache/FileSamples.h"
 #include "DSMVolumeFiles/codec/ChunkCodec.h"
 #include "DSMVolumeFiles/codec/HaloRecord.h"
 #include "DSMVolumeFiles/format/HdfFile.h"
+#include "DSMVolumeFiles/write/PartFiles.h"
 #include "DSMVolumeFiles/write/ReducedOrigin.h"
 
 #include <algorithm>
@@ -140,8 +142,17 @@ public:
   template <class T>
   void Take(T* values, std::size_t count)
   {
+    this->Check(count, sizeof(T));
     std::memcpy(values, this->Bytes.data() + this->At, count * sizeof(T));
     this->At += count * sizeof(T);
+  }
+  /// Throws dsm::Error where fewer values are left.
+  void Check(std::uint64_t count, std::size_t bytes) const
+  {
+    if (count > (this->Bytes.size() - this->At) / bytes)
+    {
+      throw dsm::Error("A message with chunks of a brick file is shorter than it says.");
+    }
   }
 
 private:
@@ -198,6 +209,7 @@ void FromBytes(
     {
       std::uint64_t count = 0;
       from.Take(&count, 1);
+      from.Check(count, 1);
       part->resize(count);
       from.Take(part->data(), count);
     }
@@ -222,6 +234,19 @@ std::vector<EncodedChunk> Merge(
   return chunks;
 }
 
+/// HDF5 takes '/' for a folder, and "." for the folder itself.
+std::string MakeLinkName(std::string name)
+{
+  if (name.size() > FileLimits::NameBytes)
+  {
+    throw dsm::Error("The name of an array has " + std::to_string(name.size()) +
+      " bytes; at most " + std::to_string(FileLimits::NameBytes) +
+      " can be written. It begins with '" + name.substr(0, 100) + "'.");
+  }
+  std::replace(name.begin(), name.end(), '/', '_');
+  return name.empty() || name == "." ? "_" : name;
+}
+
 BrickFileLayout CreateLayout(const ValueOrigin& from, const WriteOptions& options)
 {
   BrickFileLayout layout;
@@ -238,9 +263,8 @@ BrickFileLayout CreateLayout(const ValueOrigin& from, const WriteOptions& option
   }
   for (FileArray array : from.GetArrays())
   {
-    // HDF5's names of what lies in folders.
     const std::string name = array.Name;
-    std::replace(array.Name.begin(), array.Name.end(), '/', '_');
+    array.Name = MakeLinkName(name);
     const auto same = std::find_if(layout.Arrays.begin(), layout.Arrays.end(),
       [&](const FileArray& one) { return one.Name == array.Name && one.OnCells == array.OnCells; });
     if (same != layout.Arrays.end())
@@ -285,6 +309,10 @@ std::vector<std::vector<std::byte>> FindIndices(const std::string& path,
         const auto& arrays = file->GetArrays();
         const auto found = std::find_if(arrays.begin(), arrays.end(),
           [&](const FileArray& one) { return one.Name == array.Name && !one.OnCells; });
+        if (found == arrays.end() || found->Type != array.Type || found->Components != 1)
+        {
+          throw dsm::Error("'" + path + "' lacks the array '" + array.Name + "' that was written.");
+        }
         lattice.emplace(points, array.Type, false, layout.BrickEdge);
         reader = std::make_shared<rt::VoxelBrickReader>(*lattice,
           std::make_shared<FileSamples>(
@@ -381,13 +409,13 @@ int WriteLevels(const std::string& path, const BrickFileLayout& layout, const st
   one.BrickEdge = layout.BrickEdge;
   one.Levels = 0;
   one.HasHaloRecords = false;
-  std::string last = BrickFileWriter::GetPartPath(path);
+  std::string last = PartFiles::GetPart(path);
   for (int level = 1; level <= options.Levels; ++level)
   {
     // Each takes an eighth of the one before.
     const double begin = 1.0 - std::pow(8.0, 1 - level);
     const double share = 1.0 - begin - std::pow(8.0, -level);
-    const std::string next = BrickFileWriter::GetLevelPath(path, level);
+    const std::string next = PartFiles::GetLevel(path, level);
     std::unique_ptr<ReducedOrigin> origin;
     bool isThere = false;
     bool isLast = false;
@@ -434,7 +462,9 @@ void WriteBrickFile(std::unique_ptr<ValueOrigin> from, const std::string& path,
       begin.assign(layout.Arrays.size(), 0);
       if (messenger.GetRank() == 0)
       {
-        writer.emplace(path, layout, source);
+        writer.emplace(path, layout, source,
+          options.IsResumable ? BrickFileWriter::Unfinished::Keep
+                              : BrickFileWriter::Unfinished::Remove);
         for (std::size_t array = 0; array < begin.size(); ++array)
         {
           begin[array] = writer->GetChunks(array);
@@ -461,7 +491,7 @@ void WriteBrickFile(std::unique_ptr<ValueOrigin> from, const std::string& path,
       }
     });
   std::vector<std::vector<std::byte>> indices;
-  const std::string part = BrickFileWriter::GetPartPath(path);
+  const std::string part = PartFiles::GetPart(path);
   try
   {
     indices =

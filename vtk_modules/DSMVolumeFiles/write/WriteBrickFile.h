@@ -27,6 +27,8 @@ struct WriteOptions
   /// Of values and chunks in memory, on each rank; what the HDF5 library keeps of the index comes on top.
   std::size_t MemoryBytes = std::size_t(512) << 20;
   int Threads = 1; ///< of each rank
+  /// Whether a later call can resume one that fails or is interrupted. If not, a call that fails removes its files.
+  bool IsResumable = true;
   /// See BrickFileLayout.
   bool HasHaloRecords = true;
 };

@@ -171,6 +171,7 @@ void vtkDSMVolumeWriter::WriteData()
                                          "every piece of the image.");
     }
     vol::WriteOptions options;
+    options.IsResumable = false; // the image is gone when the session ends
     options.Pressed = ToCompression(this->Compression);
     options.Levels = this->CoarserLevels ? vol::WriteOptions::AllLevels : 0;
     options.Threads = messenger.GetCoresPerRank();
@@ -183,8 +184,6 @@ void vtkDSMVolumeWriter::WriteData()
   }
   catch (const std::exception& error)
   {
-    // Nobody can go on with it.
-    vol::BrickFileWriter::RemoveParts(this->FileName);
     vtkErrorMacro(<< error.what());
     this->SetErrorCode(vtkErrorCode::UserError);
   }

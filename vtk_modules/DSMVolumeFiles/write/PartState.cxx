@@ -1,0 +1,189 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "DSMVolumeFiles/write/PartState.h"
+
+#include "DSMCore/base/Error.h"
+#include "DSMVolumeFiles/base/FileLimits.h"
+#include "DSMVolumeFiles/base/SmallFile.h"
+#include "DSMVolumeFiles/write/PartFiles.h"
+
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <exception>
+#include <functional>
+#include <iterator>
+#include <utility>
+
+namespace vol
+{
+
+namespace
+{
+
+using Json = nlohmann::ordered_json;
+
+/// JSON has UTF-8 only, but names of files and arrays may be any bytes. Distinct names stay distinct.
+std::string Escape(const std::string& name)
+{
+  constexpr const char* digits = "0123456789ABCDEF";
+  std::string text;
+  for (const char character : name)
+  {
+    const auto byte = static_cast<unsigned char>(character);
+    if (byte < 0x20 || byte >= 0x7f || byte == '%')
+    {
+      text += { '%', digits[byte >> 4], digits[byte & 15] };
+    }
+    else
+    {
+      text += character;
+    }
+  }
+  return text;
+}
+
+Json Describe(const BrickFileLayout& layout)
+{
+  const auto list = [](const auto& numbers)
+  { return Json(std::vector<double>(std::begin(numbers), std::end(numbers))); };
+  const auto index = [](const rt::Index3& numbers) {
+    return Json{ numbers.x, numbers.y, numbers.z };
+  };
+  Json text{ { "origin", list(layout.Geometry.Origin) },
+    { "spacing", list(layout.Geometry.Spacing) }, { "direction", list(layout.Geometry.Direction) },
+    { "first", index(layout.Geometry.First) }, { "points", index(layout.Geometry.Points) },
+    { "edge", layout.BrickEdge }, { "compression", static_cast<int>(layout.Pressed) } };
+  for (const FileArray& array : layout.Arrays)
+  {
+    text["arrays"].push_back({ Escape(array.Name), static_cast<int>(array.Type), array.Components,
+      array.OnCells, index(array.Grid.Samples), index(array.Grid.ChunkSamples),
+      layout.HasHalo(static_cast<std::size_t>(&array - layout.Arrays.data())) });
+  }
+  return text;
+}
+
+/// Throws Json::exception where an object is nested deeper than any state.
+Json Parse(const std::vector<std::byte>& bytes)
+{
+  const auto* const first = reinterpret_cast<const char*>(bytes.data());
+  const auto check = [](int depth, Json::parse_event_t, const Json&)
+  {
+    if (depth > FileLimits::JsonDepth)
+    {
+      throw dsm::Error("too deep");
+    }
+    return true;
+  };
+  return Json::parse(first, first + bytes.size(), check);
+}
+
+} // namespace
+
+class PartState::Internals
+{
+public:
+  /// Null where there is no state, or it is damaged.
+  Json Read() const
+  {
+    const auto bytes = SmallFile::Read(PartFiles::GetState(this->Path), FileLimits::JsonBytes);
+    if (!bytes)
+    {
+      return {};
+    }
+    try
+    {
+      Json state = Parse(*bytes);
+      return state.is_object() ? state : Json();
+    }
+    catch (const std::exception&)
+    {
+      return {};
+    }
+  }
+
+  /// The state's chunk counts, which are numbers from 0 on; nothing where they are not, or the file is not whole.
+  static std::optional<std::vector<std::int64_t>> GetChunks(const Json& state)
+  {
+    if (!state.is_object() || state.value("whole", Json()) != true)
+    {
+      return std::nullopt;
+    }
+    const Json list = state.value("chunks", Json());
+    if (!list.is_array())
+    {
+      return std::nullopt;
+    }
+    std::vector<std::int64_t> chunks;
+    for (const Json& count : list)
+    {
+      if (!count.is_number_integer() || count.get<std::int64_t>() < 0)
+      {
+        return std::nullopt;
+      }
+      chunks.push_back(count.get<std::int64_t>());
+    }
+    return chunks;
+  }
+
+  std::string Path;
+  bool IsResumable;
+  std::vector<std::int64_t> MostChunks; ///< of each array
+  Json Description;
+};
+
+PartState::PartState(
+  std::string path, const BrickFileLayout& layout, const std::string& source, bool isResumable)
+  : Self(std::make_unique<Internals>())
+{
+  this->Self->Path = std::move(path);
+  this->Self->IsResumable = isResumable;
+  for (const FileArray& array : layout.Arrays)
+  {
+    this->Self->MostChunks.push_back(array.Grid.GetCount());
+  }
+  this->Self->Description = { { "source", Escape(source) }, { "layout", Describe(layout) } };
+}
+
+PartState::~PartState() = default;
+
+std::optional<std::vector<std::int64_t>> PartState::Load() const
+{
+  const Json state = this->Self->Read();
+  std::optional<std::vector<std::int64_t>> chunks = Internals::GetChunks(state);
+  const std::vector<std::int64_t>& most = this->Self->MostChunks;
+  if (!chunks || state.value("of", Json()) != this->Self->Description ||
+    chunks->size() != most.size() ||
+    !std::equal(chunks->begin(), chunks->end(), most.begin(), std::less_equal<>()))
+  {
+    return std::nullopt;
+  }
+  return chunks;
+}
+
+void PartState::CheckNothingIsLost() const
+{
+  const Json state = this->Self->Read();
+  const auto chunks = Internals::GetChunks(state);
+  const bool hasChunks =
+    chunks && std::any_of(chunks->begin(), chunks->end(), [](auto count) { return count > 0; });
+  if (hasChunks && state.value("resumable", Json(true)) != false)
+  {
+    const std::string part = PartFiles::GetPart(this->Self->Path);
+    throw dsm::Error("'" + part +
+      "' belongs to a conversion that was interrupted and can be resumed. Run dsm_convert again to "
+      "finish it, or delete '" +
+      part + "' and '" + PartFiles::GetState(this->Self->Path) + "', or choose another name.");
+  }
+}
+
+void PartState::Save(bool isWhole, const std::vector<std::int64_t>& chunks) const
+{
+  const Json state{ { "whole", isWhole }, { "resumable", this->Self->IsResumable },
+    { "of", this->Self->Description }, { "chunks", chunks } };
+  const std::string text = state.dump(1) + "\n";
+  const std::string path = PartFiles::GetState(this->Self->Path);
+  SmallFile::Write(path + ".new", text.data(), text.size());
+  SmallFile::Rename(path + ".new", path);
+}
+
+} // namespace vol
