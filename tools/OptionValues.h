@@ -5,6 +5,8 @@
 #include "DSMCore/base/Error.h"
 
 #include <functional>
+#include <limits>
+#include <locale>
 #include <map>
 #include <sstream>
 #include <string>
@@ -15,16 +17,25 @@
 namespace OptionValues
 {
 
+/// Reads a number in [smallest, greatest], whatever the locale is.
 template <class T>
-T ToNumber(const std::string& name, const std::string& text, T smallest)
+T ToNumber(const std::string& name, const std::string& text, T smallest,
+  T greatest = std::numeric_limits<T>::max())
 {
   std::istringstream stream(text);
+  stream.imbue(std::locale::classic());
   T value{};
   const bool wraps = std::is_unsigned_v<T> && text.find('-') != std::string::npos;
-  if (wraps || !(stream >> value) || !stream.eof() || value < smallest)
+  if (wraps || !(stream >> value) || !stream.eof() || value < smallest || value > greatest)
   {
     std::ostringstream message;
-    message << name << " takes a number of at least " << smallest << ", not \"" << text << "\".";
+    message.imbue(std::locale::classic());
+    message << name << " takes a number of at least " << smallest;
+    if (greatest != std::numeric_limits<T>::max())
+    {
+      message << " and at most " << greatest;
+    }
+    message << ", not \"" << text << "\".";
     throw dsm::Error(message.str());
   }
   return value;

@@ -15,6 +15,7 @@
 #include <functional>
 #include <iostream>
 #include <map>
+#include <new>
 #include <sstream>
 #include <utility>
 
@@ -47,6 +48,9 @@ When it is ended early, the same call goes on where it was.
   --help
 )";
 
+constexpr std::size_t MostMebibytes = std::size_t(1) << 40;
+constexpr int MostThreads = 1 << 12;
+
 struct Options
 {
   std::string In;
@@ -54,6 +58,7 @@ struct Options
   vol::OpenOptions Open;
   std::string OfBareValues; ///< one that tells of them; empty: none does
   vol::ConvertOptions Convert;
+  bool HasStep = false; ///< --step is given
   bool IsQuiet = false;
   bool WantsHelp = false;
 };
@@ -96,7 +101,10 @@ Options Parse(int argc, char** argv)
     { "step",
       { true,
         [&](auto& name, auto& text)
-        { options.Convert.Step = OptionValues::ToNumber(name, text, 0); } } },
+        {
+          options.Convert.Step = OptionValues::ToNumber(name, text, 0);
+          options.HasStep = true;
+        } } },
     { "level",
       { true,
         [&](auto& name, auto& text)
@@ -123,13 +131,15 @@ Options Parse(int argc, char** argv)
         { options.Convert.BrickEdge = OptionValues::ToNumber(name, text, 1); } } },
     { "memory",
       { true,
-        [&](auto& name, auto& text) {
-          options.Convert.MemoryBytes = OptionValues::ToNumber<std::size_t>(name, text, 1) << 20;
+        [&](auto& name, auto& text)
+        {
+          options.Convert.MemoryBytes =
+            OptionValues::ToNumber<std::size_t>(name, text, 1, MostMebibytes) << 20;
         } } },
     { "threads",
       { true,
         [&](auto& name, auto& text)
-        { options.Convert.Threads = OptionValues::ToNumber(name, text, 1); } } },
+        { options.Convert.Threads = OptionValues::ToNumber(name, text, 1, MostThreads); } } },
     { "raw-size",
       { true,
         [&](auto& name, auto& text)
@@ -240,6 +250,13 @@ void Convert(Options& options, dsm::Messenger& messenger)
   }
   const std::function<void(double)> tell =
     options.IsQuiet ? std::function<void(double)>([](double) {}) : Teller();
+  if (messenger.GetRank() == 0 && file->GetSteps() > 1 && !options.HasStep)
+  {
+    std::cerr << "dsm_convert: '" << options.In << "' has " << file->GetSteps()
+              << " time steps (0 to " << file->GetSteps() - 1
+              << "); only step 0 is written. Use --step to write another one to a file of its own."
+              << std::endl;
+  }
   vol::ConvertVolume(file, options.Out, options.Convert, messenger, tell);
   if (messenger.GetRank() == 0 && !options.IsQuiet)
   {
@@ -250,14 +267,10 @@ void Convert(Options& options, dsm::Messenger& messenger)
   }
 }
 
-} // namespace
-
-int main(int argc, char** argv)
+/// Returns whether the command succeeds. An error is printed by the first rank.
+bool Run(int argc, char** argv, dsm::Messenger& messenger)
 {
-  const dsm::MpiTransport::Environment environment(argc, argv);
-  auto transport = dsm::MpiTransport::Create(nullptr);
-  dsm::Messenger messenger(
-    transport ? std::move(transport) : std::move(dsm::LoopbackTransport::CreateGroup(1).front()));
+  std::string failure;
   try
   {
     Options options = Parse(argc, argv);
@@ -269,14 +282,38 @@ int main(int argc, char** argv)
     {
       std::cout << Usage;
     }
-    return EXIT_SUCCESS;
+    return true;
+  }
+  catch (const std::bad_alloc&)
+  {
+    failure = "Out of memory. Lower --memory or --threads, or use more hosts.";
   }
   catch (const std::exception& error)
   {
-    if (messenger.GetRank() == 0)
-    {
-      std::cerr << "dsm_convert: " << error.what() << std::endl;
-    }
-    return EXIT_FAILURE;
+    failure = error.what();
   }
+  if (messenger.GetRank() == 0)
+  {
+    std::cerr << "dsm_convert: " << failure << std::endl;
+  }
+  return false;
+}
+
+} // namespace
+
+int main(int argc, char** argv)
+{
+  try
+  {
+    const dsm::MpiTransport::Environment environment(argc, argv);
+    auto transport = dsm::MpiTransport::Create(nullptr);
+    dsm::Messenger messenger(
+      transport ? std::move(transport) : std::move(dsm::LoopbackTransport::CreateGroup(1).front()));
+    return Run(argc, argv, messenger) ? EXIT_SUCCESS : EXIT_FAILURE;
+  }
+  catch (const std::exception& error)
+  {
+    std::cerr << "dsm_convert: " << error.what() << std::endl;
+  }
+  return EXIT_FAILURE;
 }
