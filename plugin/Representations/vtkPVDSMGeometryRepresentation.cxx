@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkPVDSMGeometryRepresentation.h"
 
+#include "vtkDSMErrorGuard.h"
 #include "vtkDSMPolyDataMapper.h"
 #include "vtkPVDSMExportLook.h"
 #include "vtkPVDSMFrameReport.h"
@@ -68,27 +69,35 @@ vtkDSMPolyDataMapper* vtkPVDSMGeometryRepresentation::GetMapper() const
 int vtkPVDSMGeometryRepresentation::RequestData(
   vtkInformation* request, vtkInformationVector** input, vtkInformationVector* output)
 {
-  this->Display->NoteUpdate();
-  this->GetMapper()->SetOriginalData(vtkDataObject::GetData(input[0], 0));
-  return this->Superclass::RequestData(request, input, output);
+  return vtkDSMErrorGuard::Run(this, "updating", this->GetLogName().c_str(),
+    [&]
+    {
+      this->Display->NoteUpdate();
+      this->GetMapper()->SetOriginalData(vtkDataObject::GetData(input[0], 0));
+      return this->Superclass::RequestData(request, input, output);
+    });
 }
 
 int vtkPVDSMGeometryRepresentation::ProcessViewRequest(
   vtkInformationRequestKey* request, vtkInformation* inInfo, vtkInformation* outInfo)
 {
-  if (!this->Display->Process(request, inInfo, outInfo))
-  {
-    return 0;
-  }
-  if (request == vtkPVView::REQUEST_UPDATE())
-  {
-    this->PrepareUpdate(inInfo, outInfo);
-  }
-  else if (request == vtkPVView::REQUEST_RENDER())
-  {
-    this->PrepareRender(inInfo);
-  }
-  return 1;
+  return vtkDSMErrorGuard::Run(this, "preparing", this->GetLogName().c_str(),
+    [&]
+    {
+      if (!this->Display->Process(request, inInfo, outInfo))
+      {
+        return 0;
+      }
+      if (request == vtkPVView::REQUEST_UPDATE())
+      {
+        this->PrepareUpdate(inInfo, outInfo);
+      }
+      else if (request == vtkPVView::REQUEST_RENDER())
+      {
+        this->PrepareRender(inInfo);
+      }
+      return 1;
+    });
 }
 
 void vtkPVDSMGeometryRepresentation::PrepareUpdate(vtkInformation* inInfo, vtkInformation* outInfo)

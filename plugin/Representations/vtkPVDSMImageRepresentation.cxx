@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkPVDSMImageRepresentation.h"
 
+#include "vtkDSMErrorGuard.h"
 #include "vtkDSMVolumeMapper.h"
 #include "vtkPVDSMFrameReport.h"
 #include "vtkPVDSMIsosurfaceGeometry.h"
@@ -138,7 +139,16 @@ int vtkPVDSMImageRepresentation::FillInputPortInformation(int, vtkInformation* i
 int vtkPVDSMImageRepresentation::RequestData(
   vtkInformation* request, vtkInformationVector** input, vtkInformationVector* output)
 {
-  vtkDataObject* source = vtkDataObject::GetData(input[0], 0); // null without an input
+  return vtkDSMErrorGuard::Run(this, "updating", this->GetLogName().c_str(),
+    [&]
+    {
+      this->TakeInput(vtkDataObject::GetData(input[0], 0)); // null without an input
+      return this->Superclass::RequestData(request, input, output);
+    });
+}
+
+void vtkPVDSMImageRepresentation::TakeInput(vtkDataObject* source)
+{
   vtkSmartPointer<vtkDataObject> data;
   if (source)
   {
@@ -156,7 +166,6 @@ int vtkPVDSMImageRepresentation::RequestData(
   this->Mapper->SetOriginalData(source);
   this->BlockLooksAreOld = true;
   this->Display->NoteUpdate();
-  return this->Superclass::RequestData(request, input, output);
 }
 
 vtkDataObject* vtkPVDSMImageRepresentation::GetRenderedDataObject(int)
@@ -282,6 +291,13 @@ void vtkPVDSMImageRepresentation::ColorBlocksByArray(vtkDataObject* data)
 }
 
 int vtkPVDSMImageRepresentation::ProcessViewRequest(
+  vtkInformationRequestKey* request, vtkInformation* inInfo, vtkInformation* outInfo)
+{
+  return vtkDSMErrorGuard::Run(this, "preparing", this->GetLogName().c_str(),
+    [&] { return this->Process(request, inInfo, outInfo); });
+}
+
+int vtkPVDSMImageRepresentation::Process(
   vtkInformationRequestKey* request, vtkInformation* inInfo, vtkInformation* outInfo)
 {
   if (!this->Display->Process(request, inInfo, outInfo))

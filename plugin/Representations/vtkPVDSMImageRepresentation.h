@@ -211,6 +211,10 @@ private:
   vtkPVDSMImageRepresentation(const vtkPVDSMImageRepresentation&) = delete;
   void operator=(const vtkPVDSMImageRepresentation&) = delete;
 
+  /// Shows a copy of the structure of `source`, which may be null.
+  void TakeInput(vtkDataObject* source);
+  /// What ProcessViewRequest does and returns.
+  int Process(vtkInformationRequestKey* request, vtkInformation* inInfo, vtkInformation* outInfo);
   void ChooseIsoValues();
   /// Tells the mapper, whose surfaces' look may have changed since.
   void ChooseBackfaces();

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkDSMSampleVolume.h"
 
+#include "vtkDSMErrorGuard.h"
 #include "vtkDSMScalarType.h"
 
 #include "DSMRayTracing/sample/SampleVolume.h"
@@ -15,6 +16,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <exception>
 #include <thread>
 #include <vector>
 
@@ -58,7 +60,16 @@ int vtkDSMSampleVolume::RequestInformation(
       return 0;
     }
   }
-  vtkInformation* information = output->GetInformationObject(0);
+  return vtkDSMErrorGuard::Run(this, "making", GetArrayName(this->Kind),
+    [&]
+    {
+      this->TellOfVolume(output->GetInformationObject(0));
+      return 1;
+    });
+}
+
+void vtkDSMSampleVolume::TellOfVolume(vtkInformation* information) const
+{
   const int extent[6] = { 0, this->Dimensions[0] - 1, 0, this->Dimensions[1] - 1, 0,
     this->Dimensions[2] - 1 };
   const rt::SampleVolume volume = CreateVolume(this->Kind, this->Dimensions);
@@ -69,21 +80,28 @@ int vtkDSMSampleVolume::RequestInformation(
   information->Set(vtkDataObject::SPACING(), spacing, spacing, spacing);
   information->Set(vtkAlgorithm::CAN_PRODUCE_SUB_EXTENT(), 1);
   vtkDataObject::SetPointDataActiveScalarInfo(information, this->ScalarType, 1);
-  return 1;
 }
 
 int vtkDSMSampleVolume::RequestData(
   vtkInformation*, vtkInformationVector**, vtkInformationVector* output)
 {
-  vtkInformation* information = output->GetInformationObject(0);
-  vtkImageData* image = vtkImageData::GetData(output);
+  return vtkDSMErrorGuard::Run(this, "making", GetArrayName(this->Kind),
+    [&]
+    {
+      this->FillImage(vtkImageData::GetData(output), output->GetInformationObject(0));
+      return 1;
+    });
+}
+
+void vtkDSMSampleVolume::FillImage(vtkImageData* image, vtkInformation* information)
+{
   int extent[6];
   information->Get(vtkStreamingDemandDrivenPipeline::UPDATE_EXTENT(), extent);
   this->AllocateOutputData(image, information, extent);
   vtkDataArray* scalars = image->GetPointData()->GetScalars();
   if (!scalars || scalars->GetNumberOfTuples() == 0)
   {
-    return 1;
+    return;
   }
   scalars->SetName(GetArrayName(this->Kind));
 
@@ -107,9 +125,16 @@ int vtkDSMSampleVolume::RequestData(
   };
   std::vector<std::thread> helpers;
   const unsigned int cores = std::max(std::thread::hardware_concurrency(), 1u);
-  for (unsigned int helper = 1; helper < cores; ++helper)
+  helpers.reserve(cores);
+  try
   {
-    helpers.emplace_back([&] { fill([](int) {}); });
+    for (unsigned int helper = 1; helper < cores; ++helper)
+    {
+      helpers.emplace_back([&] { fill([](int) {}); });
+    }
+  }
+  catch (const std::exception&) // the system has no more threads; those that there are do the work
+  {
   }
   // Only the calling thread may tell the application how far it is.
   fill([&](int done) { this->UpdateProgress(static_cast<double>(done) / slices); });
@@ -117,7 +142,6 @@ int vtkDSMSampleVolume::RequestData(
   {
     helper.join();
   }
-  return 1;
 }
 
 void vtkDSMSampleVolume::PrintSelf(ostream& os, vtkIndent indent)

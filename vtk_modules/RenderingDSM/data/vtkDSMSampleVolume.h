@@ -56,6 +56,11 @@ private:
   vtkDSMSampleVolume(const vtkDSMSampleVolume&) = delete;
   void operator=(const vtkDSMSampleVolume&) = delete;
 
+  /// The extent, the place in the world, and the scalars.
+  void TellOfVolume(vtkInformation* information) const;
+  /// The part that is asked for.
+  void FillImage(vtkImageData* image, vtkInformation* information);
+
   int Kind = SPHERE;
   int Dimensions[3] = { 256, 256, 256 };
   int ScalarType;

@@ -3,6 +3,7 @@
 
 #include "DSMCore/base/Error.h"
 #include "DSMVolumeFiles/write/WriteBrickFile.h"
+#include "vtkDSMErrorGuard.h"
 #include "vtkDSMImageOrigin.h"
 #include "vtkDSMRankGroup.h"
 
@@ -121,16 +122,21 @@ int vtkDSMVolumeWriter::FillInputPortInformation(int, vtkInformation* info)
 vtkTypeBool vtkDSMVolumeWriter::ProcessRequest(
   vtkInformation* request, vtkInformationVector** input, vtkInformationVector* output)
 {
-  if (request->Has(vtkStreamingDemandDrivenPipeline::REQUEST_UPDATE_EXTENT()) && this->Controller)
-  {
-    vtkInformation* const info = input[0]->GetInformationObject(0);
-    using Pipeline = vtkStreamingDemandDrivenPipeline;
-    info->Set(Pipeline::UPDATE_PIECE_NUMBER(), this->Controller->GetLocalProcessId());
-    info->Set(Pipeline::UPDATE_NUMBER_OF_PIECES(), this->Controller->GetNumberOfProcesses());
-    info->Set(Pipeline::UPDATE_NUMBER_OF_GHOST_LEVELS(), 0);
-    return 1;
-  }
-  return this->Superclass::ProcessRequest(request, input, output);
+  return vtkDSMErrorGuard::Run(this, "writing", this->GetFileName(),
+    [&]() -> int
+    {
+      if (!request->Has(vtkStreamingDemandDrivenPipeline::REQUEST_UPDATE_EXTENT()) ||
+        !this->Controller)
+      {
+        return this->Superclass::ProcessRequest(request, input, output);
+      }
+      vtkInformation* const info = input[0]->GetInformationObject(0);
+      using Pipeline = vtkStreamingDemandDrivenPipeline;
+      info->Set(Pipeline::UPDATE_PIECE_NUMBER(), this->Controller->GetLocalProcessId());
+      info->Set(Pipeline::UPDATE_NUMBER_OF_PIECES(), this->Controller->GetNumberOfProcesses());
+      info->Set(Pipeline::UPDATE_NUMBER_OF_GHOST_LEVELS(), 0);
+      return 1;
+    });
 }
 
 void vtkDSMVolumeWriter::Join(dsm::Messenger& messenger, bool hasImage)
@@ -148,45 +154,51 @@ void vtkDSMVolumeWriter::Join(dsm::Messenger& messenger, bool hasImage)
 
 void vtkDSMVolumeWriter::WriteData()
 {
-  try
-  {
-    const auto group = vtkDSMRankGroup::Get(this->Controller);
-    dsm::Messenger& messenger = group->GetMessenger();
-    this->Join(messenger, true);
-    if (this->FileName.empty())
+  const int done = vtkDSMErrorGuard::Run(this, "writing", this->GetFileName(),
+    [&]
     {
-      throw dsm::Error("The file to write has no name. Set FileName.");
-    }
-    auto origin =
-      std::make_unique<vtkDSMImageOrigin>(messenger, vtkImageData::SafeDownCast(this->GetInput()));
-    if (!origin->GetLeftOut().empty() && messenger.GetRank() == 0)
-    {
-      std::string names;
-      for (const std::string& name : origin->GetLeftOut())
-      {
-        names += (names.empty() ? "'" : ", '") + name + "'";
-      }
-      vtkWarningMacro("Left out of '" << this->FileName << "': " << names
-                                      << ", which are not arrays of numbers that are the same in "
-                                         "every piece of the image.");
-    }
-    vol::WriteOptions options;
-    options.IsResumable = false; // the image is gone when the session ends
-    options.Pressed = ToCompression(this->Compression);
-    options.Levels = this->CoarserLevels ? vol::WriteOptions::AllLevels : 0;
-    options.Threads = messenger.GetCoresPerRank();
-    const std::uint64_t limit = group->GetStore().GetSettings().MemoryBytes;
-    options.MemoryBytes = limit == 0
-      ? options.MemoryBytes
-      : static_cast<std::size_t>(std::min<std::uint64_t>(limit, options.MemoryBytes));
-    vol::WriteBrickFile(std::move(origin), this->FileName, options, messenger,
-      [this](double part) { this->UpdateProgress(part); });
-  }
-  catch (const std::exception& error)
+      this->WriteImage();
+      return 1;
+    });
+  if (done == 0)
   {
-    vtkErrorMacro(<< error.what());
     this->SetErrorCode(vtkErrorCode::UserError);
   }
+}
+
+void vtkDSMVolumeWriter::WriteImage()
+{
+  const auto group = vtkDSMRankGroup::Get(this->Controller);
+  dsm::Messenger& messenger = group->GetMessenger();
+  this->Join(messenger, true);
+  if (this->FileName.empty())
+  {
+    throw dsm::Error("The file to write has no name. Set FileName.");
+  }
+  auto origin =
+    std::make_unique<vtkDSMImageOrigin>(messenger, vtkImageData::SafeDownCast(this->GetInput()));
+  if (!origin->GetLeftOut().empty() && messenger.GetRank() == 0)
+  {
+    std::string names;
+    for (const std::string& name : origin->GetLeftOut())
+    {
+      names += (names.empty() ? "'" : ", '") + name + "'";
+    }
+    vtkWarningMacro("Left out of '" << this->FileName << "': " << names
+                                    << ", which are not arrays of numbers that are the same in "
+                                       "every piece of the image.");
+  }
+  vol::WriteOptions options;
+  options.IsResumable = false; // the image is gone when the session ends
+  options.Pressed = ToCompression(this->Compression);
+  options.Levels = this->CoarserLevels ? vol::WriteOptions::AllLevels : 0;
+  options.Threads = messenger.GetCoresPerRank();
+  const std::uint64_t limit = group->GetStore().GetSettings().MemoryBytes;
+  options.MemoryBytes = limit == 0
+    ? options.MemoryBytes
+    : static_cast<std::size_t>(std::min<std::uint64_t>(limit, options.MemoryBytes));
+  vol::WriteBrickFile(std::move(origin), this->FileName, options, messenger,
+    [this](double part) { this->UpdateProgress(part); });
 }
 
 void vtkDSMVolumeWriter::PrintSelf(ostream& os, vtkIndent indent)

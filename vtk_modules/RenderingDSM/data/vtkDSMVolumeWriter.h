@@ -6,7 +6,8 @@
  * The file is VTK's ImageData in HDF5 (VTKHDF), which other programs read, too, with chunks that fit bricks, a
  * checksum of each, and an index of what bricks hold (docs/files.md); dsm_convert writes the same. Every rank of the
  * controller writes its piece of the input: Write is collective. Rank 0 writes, and all ranks must see the file's
- * folder. What cannot be written is an error on every rank, and leaves no file of that name.
+ * folder. What cannot be written is an error on every rank, and leaves no file of that name. A
+ * conversion of dsm_convert to the same name that can be resumed is not replaced: that is an error, too.
  *
  * All arrays of numbers are written, of points and of cells; which cells are blanked is not.
  */
@@ -94,6 +95,8 @@ private:
 
   /// Collective: nobody writes where one has nothing. Throws dsm::Error.
   void Join(dsm::Messenger& messenger, bool hasImage);
+  /// Collective. Throws dsm::Error.
+  void WriteImage();
 
   std::string FileName;
   int Compression = NONE;

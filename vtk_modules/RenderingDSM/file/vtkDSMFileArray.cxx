@@ -81,11 +81,15 @@ template <class ValueTypeT>
 class vtkDSMFileArray<ValueTypeT>::Zeros
 {
 public:
+  /// Of more than a process can address there are fewer; no loop comes to their end.
   explicit Zeros(std::size_t bytes)
     : Bytes(bytes)
-    , First(mmap(
-        nullptr, bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0))
   {
+    do
+    {
+      this->First = mmap(nullptr, this->Bytes, PROT_READ | PROT_WRITE,
+        MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+    } while (this->First == MAP_FAILED && (this->Bytes /= 2) > 0);
     if (this->First == MAP_FAILED)
     {
       throw std::bad_alloc();
@@ -96,7 +100,7 @@ public:
   Zeros& operator=(const Zeros&) = delete;
 
   std::size_t Bytes;
-  void* First;
+  void* First = nullptr;
 };
 
 template <class ValueTypeT>

@@ -3,6 +3,7 @@
 
 #include "DSMCore/base/Error.h"
 #include "DSMVolumeFiles/cache/ChunkCache.h"
+#include "vtkDSMErrorGuard.h"
 #include "vtkDSMFileArray.h"
 #include "vtkDSMScalarType.h"
 
@@ -48,6 +49,25 @@ bool IsShare(vtkInformation* information)
     ? information->Get(vtkDataObject::ALL_PIECES_EXTENT())
     : information->Get(Pipeline::UPDATE_EXTENT());
   return whole && wanted && std::equal(whole, whole + 6, wanted);
+}
+
+/// Throws dsm::Error where the points' indices do not fit VTK's.
+void CheckExtent(const vol::VolumeFile& file)
+{
+  const vol::FileGeometry& geometry = file.GetGeometry();
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    const std::int64_t first = geometry.First[axis];
+    const std::int64_t points = geometry.Points[axis];
+    if (first < INT_MIN || first > INT_MAX || points < 1 || points > INT_MAX ||
+      first + points - 1 > INT_MAX)
+    {
+      throw dsm::Error("'" + file.GetPath() + "' has " + std::to_string(points) +
+        " points from index " + std::to_string(first) + " on along the " + "xyz"[axis] +
+        " axis; VTK's indices go from " + std::to_string(INT_MIN) + " to " +
+        std::to_string(INT_MAX) + ".");
+    }
+  }
 }
 
 } // namespace
@@ -143,7 +163,14 @@ const char* vtkDSMVolumeReader::GetFileName() const
 
 int vtkDSMVolumeReader::CanReadFile(const char* name)
 {
-  return name && vol::MayBeVolumeFile(name) ? 1 : 0;
+  try
+  {
+    return name && vol::MayBeVolumeFile(name) ? 1 : 0;
+  }
+  catch (const std::exception&) // there may be another reader
+  {
+    return 0;
+  }
 }
 
 vtkDataArraySelection* vtkDSMVolumeReader::GetPointDataArraySelection()
@@ -191,12 +218,7 @@ void vtkDSMVolumeReader::Open()
     static_cast<std::uint64_t>(std::max<vtkIdType>(0, this->RawHeaderBytes));
   std::copy_n(this->RawSpacing, 3, options.Bare.Spacing);
   const auto file = vol::OpenCachedVolume(this->FileNames, options);
-  const rt::Index3 last = file->GetGeometry().First + file->GetGeometry().Points;
-  if (std::max({ last.x, last.y, last.z }) > INT_MAX)
-  {
-    throw dsm::Error(
-      "The file '" + file->GetPath() + "' has more samples along an axis than VTK can count.");
-  }
+  CheckExtent(*file);
   // What was chosen of another file holds for arrays of the same names.
   for (const bool onCells : { false, true })
   {
@@ -242,34 +264,38 @@ void vtkDSMVolumeReader::TellOfRest() const
   }
 }
 
-int vtkDSMVolumeReader::Refuse(const std::exception& error)
-{
-  vtkErrorMacro(<< error.what());
-  return 0;
-}
-
 int vtkDSMVolumeReader::RequestInformation(
   vtkInformation*, vtkInformationVector**, vtkInformationVector* output)
 {
   vtkInformation* information = output->GetInformationObject(0);
+  const int done = vtkDSMErrorGuard::Run(this, "opening", this->GetFileName(),
+    [&]
+    {
+      // ParaView asks before the user can enter anything.
+      const bool isWanted = *std::min_element(this->RawDimensions, this->RawDimensions + 3) >= 1 ||
+        !vol::IsBareFile(this->GetFileName());
+      if (isWanted)
+      {
+        this->Open();
+        this->TellOfFile(information);
+      }
+      else
+      {
+        OfferNothing(information);
+        this->Self->File.reset();
+      }
+      return 1;
+    });
+  if (done == 0)
+  {
+    OfferNothing(information);
+  }
+  return done;
+}
+
+void vtkDSMVolumeReader::TellOfFile(vtkInformation* information) const
+{
   using Pipeline = vtkStreamingDemandDrivenPipeline;
-  // ParaView asks before the user can enter anything.
-  if (*std::min_element(this->RawDimensions, this->RawDimensions + 3) < 1 &&
-    vol::IsBareFile(this->GetFileName()))
-  {
-    OfferNothing(information);
-    this->Self->File.reset();
-    return 1;
-  }
-  try
-  {
-    this->Open();
-  }
-  catch (const std::exception& error)
-  {
-    OfferNothing(information);
-    return this->Refuse(error);
-  }
   const vol::VolumeFile& file = *this->Self->File;
   const vol::FileGeometry& geometry = file.GetGeometry();
   int extent[6];
@@ -297,7 +323,6 @@ int vtkDSMVolumeReader::RequestInformation(
     information->Set(Pipeline::TIME_STEPS(), steps.data(), file.GetSteps());
     information->Set(Pipeline::TIME_RANGE(), range, 2);
   }
-  return 1;
 }
 
 bool vtkDSMVolumeReader::IsChosen(const vol::FileArray& array) const
@@ -393,16 +418,17 @@ void vtkDSMVolumeReader::AddArrays(vtkImageData* image, int step, bool isShare)
 int vtkDSMVolumeReader::RequestData(
   vtkInformation*, vtkInformationVector**, vtkInformationVector* output)
 {
-  vtkInformation* information = output->GetInformationObject(0);
-  try
-  {
-    this->Open();
-  }
-  catch (const std::exception& error)
-  {
-    return this->Refuse(error);
-  }
-  vtkImageData* image = vtkImageData::GetData(output);
+  return vtkDSMErrorGuard::Run(this, "reading", this->GetFileName(),
+    [&]
+    {
+      this->Open();
+      this->FillImage(vtkImageData::GetData(output), output->GetInformationObject(0));
+      return 1;
+    });
+}
+
+void vtkDSMVolumeReader::FillImage(vtkImageData* image, vtkInformation* information)
+{
   using Pipeline = vtkStreamingDemandDrivenPipeline;
   int extent[6];
   information->Get(Pipeline::UPDATE_EXTENT(), extent);
@@ -413,7 +439,7 @@ int vtkDSMVolumeReader::RequestData(
   image->SetDirectionMatrix(geometry.Direction);
   if (image->GetNumberOfPoints() == 0)
   {
-    return 1;
+    return;
   }
   int step = 0;
   if (this->Self->File->GetSteps() > 1)
@@ -424,15 +450,7 @@ int vtkDSMVolumeReader::RequestData(
     step = this->Self->FindStep(time);
     image->GetInformation()->Set(vtkDataObject::DATA_TIME_STEP(), this->Self->File->GetTime(step));
   }
-  try
-  {
-    this->AddArrays(image, step, IsShare(information));
-  }
-  catch (const std::exception& error)
-  {
-    return this->Refuse(error);
-  }
-  return 1;
+  this->AddArrays(image, step, IsShare(information));
 }
 
 void vtkDSMVolumeReader::PrintSelf(ostream& os, vtkIndent indent)

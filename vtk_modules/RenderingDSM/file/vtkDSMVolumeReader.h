@@ -17,7 +17,6 @@
 #include "vtkNew.h"                // for ivars
 #include "vtkRenderingDSMModule.h" // for the export macro
 
-#include <exception>
 #include <memory> // for ivars
 #include <string> // for ivars
 #include <vector> // for ivars
@@ -138,8 +137,10 @@ private:
   void Open();
   /// Warns of bytes behind the values of a bare file: what was entered may be wrong. On the first rank.
   void TellOfRest() const;
-  /// Says what is wrong; what RequestInformation and RequestData return then.
-  int Refuse(const std::exception& error);
+  /// The extent, the place in the world, the scalars and the time steps of the open file.
+  void TellOfFile(vtkInformation* information) const;
+  /// What of the open file is asked for. Throws dsm::Error.
+  void FillImage(vtkImageData* image, vtkInformation* information);
   bool IsChosen(const vol::FileArray& array) const;
   /// The image's: the first chosen array of points that has one component, or else the first one. Null: there is none.
   const vol::FileArray* FindScalars() const;
