@@ -99,7 +99,9 @@ TEST_F(TestKeptFiles, WhatIsDamagedIsNot)
   const Bytes bytes = MakeBytes(300, 1);
   this->GetKept().Keep(bytes.data(), bytes.size());
   const fs::path path = this->FindOnly();
-  const Bytes whole = *vol::SmallFile::Read(path.string(), 1 << 20);
+  const std::string text = vol::ReadWhole(path.string(), 1 << 20);
+  Bytes whole(text.size());
+  std::memcpy(whole.data(), text.data(), text.size());
   Overwrite(path, Bytes(whole.size()));
   EXPECT_TRUE(this->GetKept().Load(bytes.size()).empty());
   Overwrite(path, Bytes(whole.size(), std::byte{ 0xff }));

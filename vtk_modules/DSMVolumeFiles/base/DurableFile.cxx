@@ -75,36 +75,14 @@ void WriteAll(Descriptor& file, const std::string& path, const void* bytes, std:
 
 } // namespace
 
-std::optional<std::vector<std::byte>> SmallFile::Read(const std::string& path, std::size_t most)
-{
-  const Descriptor file(open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
-  struct stat state = {};
-  if (file.Get() < 0 || fstat(file.Get(), &state) != 0 || !S_ISREG(state.st_mode) ||
-    state.st_size < 0 || static_cast<std::uintmax_t>(state.st_size) > most)
-  {
-    return std::nullopt;
-  }
-  std::vector<std::byte> content(static_cast<std::size_t>(state.st_size));
-  for (std::size_t done = 0; done < content.size();)
-  {
-    const ssize_t got = read(file.Get(), content.data() + done, content.size() - done);
-    if (got == 0 || (got < 0 && errno != EINTR))
-    {
-      return std::nullopt;
-    }
-    done += static_cast<std::size_t>(got > 0 ? got : 0);
-  }
-  return content;
-}
-
-void SmallFile::Write(const std::string& path, const void* bytes, std::size_t count)
+void DurableFile::Write(const std::string& path, const void* bytes, std::size_t count)
 {
   // Without O_NONBLOCK, opening a pipe would block.
   Descriptor file(open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC | O_NONBLOCK, 0666));
   WriteAll(file, path, bytes, count);
 }
 
-std::string SmallFile::WriteBeside(
+std::string DurableFile::WriteBeside(
   const std::string& beginning, const void* bytes, std::size_t count)
 {
   std::random_device random; // process numbers are not unique among hosts that share a folder
@@ -132,7 +110,7 @@ std::string SmallFile::WriteBeside(
   return name;
 }
 
-void SmallFile::Synchronize(const std::string& path)
+void DurableFile::Synchronize(const std::string& path)
 {
   const Descriptor file(open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
   if (file.Get() < 0 || fsync(file.Get()) != 0)
@@ -141,7 +119,7 @@ void SmallFile::Synchronize(const std::string& path)
   }
 }
 
-void SmallFile::Rename(const std::string& from, const std::string& to)
+void DurableFile::Rename(const std::string& from, const std::string& to)
 {
   if (std::rename(from.c_str(), to.c_str()) != 0)
   {

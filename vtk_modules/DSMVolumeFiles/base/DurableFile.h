@@ -3,20 +3,14 @@
 #define vol_DurableFile_h
 
 #include <cstddef>
-#include <optional>
 #include <string>
-#include <vector>
 
 namespace vol
 {
 
-/// Reads and writes files as a whole. Refuses pipes, devices and folders, and never waits for one.
-namespace SmallFile
+/// Writes files as a whole, to the disk. Refuses pipes, devices and folders, and never waits for one.
+namespace DurableFile
 {
-
-/// Returns the content of a file. Returns nothing where there is none, it cannot be read, or it has more than `most`
-/// bytes. Throws std::bad_alloc.
-std::optional<std::vector<std::byte>> Read(const std::string& path, std::size_t most);
 
 /// Creates or overwrites a file, and waits until it is on the disk. Throws dsm::Error, which names file and cause; the
 /// file may be incomplete then.
@@ -33,7 +27,7 @@ void Synchronize(const std::string& path);
 /// power failure there is either the old file or the new one. Throws dsm::Error.
 void Rename(const std::string& from, const std::string& to);
 
-} // namespace SmallFile
+} // namespace DurableFile
 
 } // namespace vol
 

@@ -4,6 +4,7 @@
 #include "DSMCore/base/Error.h"
 #include "DSMRayTracing/base/ByteHash.h"
 #include "DSMVolumeFiles/base/DurableFile.h"
+#include "DSMVolumeFiles/base/SmallFile.h"
 
 #include <charconv>
 #include <chrono>
@@ -147,14 +148,22 @@ KeptFile::Header KeptFile::MakeHeader(const std::byte* bytes, std::size_t count)
 std::vector<std::byte> KeptFile::Load(std::size_t count) const
 {
   Header header;
-  const auto kept =
-    this->Path.empty() ? std::nullopt : SmallFile::Read(this->Path, sizeof(header) + count);
-  if (!kept || kept->size() != sizeof(header) + count)
+  std::string kept;
+  try
+  {
+    kept = this->Path.empty() ? std::string() : ReadWhole(this->Path, sizeof(header) + count);
+  }
+  catch (const dsm::Error&) // such as no file
   {
     return {};
   }
-  std::memcpy(&header, kept->data(), sizeof(header));
-  std::vector<std::byte> content(kept->begin() + sizeof(header), kept->end());
+  if (kept.size() != sizeof(header) + count)
+  {
+    return {};
+  }
+  std::memcpy(&header, kept.data(), sizeof(header));
+  std::vector<std::byte> content(count);
+  std::memcpy(content.data(), kept.data() + sizeof(header), count);
   const Header expected = this->MakeHeader(content.data(), content.size());
   if (header.Magic != expected.Magic || header.Bytes != expected.Bytes ||
     header.Checksum != expected.Checksum)
@@ -184,10 +193,10 @@ void KeptFile::Keep(const std::byte* bytes, std::size_t count) const
     content.insert(content.end(), bytes, bytes + count);
     // Other processes may read or write the same file at the same time.
     const std::string written =
-      SmallFile::WriteBeside(this->Path + ".", content.data(), content.size());
+      DurableFile::WriteBeside(this->Path + ".", content.data(), content.size());
     try
     {
-      SmallFile::Rename(written, this->Path);
+      DurableFile::Rename(written, this->Path);
     }
     catch (const dsm::Error&)
     {

@@ -2,7 +2,7 @@
 #include "DSMVolumeFiles/write/BrickFileWriter.h"
 
 #include "DSMCore/base/Error.h"
-#include "DSMVolumeFiles/base/SmallFile.h"
+#include "DSMVolumeFiles/base/DurableFile.h"
 #include "DSMVolumeFiles/codec/ChunkCodec.h"
 #include "DSMVolumeFiles/codec/HaloRecord.h"
 #include "DSMVolumeFiles/format/HdfLibrary.h"
@@ -238,8 +238,8 @@ private:
       }
     }
     this->File.CloseWritten();
-    SmallFile::Synchronize(this->PartPath);
-    SmallFile::Rename(this->PartPath, this->Path);
+    DurableFile::Synchronize(this->PartPath);
+    DurableFile::Rename(this->PartPath, this->Path);
   }
 
   /// As it is: the library copies chunks without looking into them.
@@ -473,7 +473,7 @@ private:
     // From here on until it is settled, the file is neither what it was nor what it will be.
     this->WriteState(false);
     this->File.Flush();
-    SmallFile::Synchronize(this->PartPath);
+    DurableFile::Synchronize(this->PartPath);
     this->WriteState(true);
   }
 

@@ -2,6 +2,7 @@
 #include "DSMVolumeFiles/write/PartState.h"
 
 #include "DSMCore/base/Error.h"
+#include "DSMVolumeFiles/base/DurableFile.h"
 #include "DSMVolumeFiles/base/FileLimits.h"
 #include "DSMVolumeFiles/base/SmallFile.h"
 #include "DSMVolumeFiles/write/PartFiles.h"
@@ -63,9 +64,8 @@ Json Describe(const BrickFileLayout& layout)
 }
 
 /// Throws Json::exception where an object is nested deeper than any state.
-Json Parse(const std::vector<std::byte>& bytes)
+Json Parse(const std::string& text)
 {
-  const auto* const first = reinterpret_cast<const char*>(bytes.data());
   const auto check = [](int depth, Json::parse_event_t, const Json&)
   {
     if (depth > FileLimits::JsonDepth)
@@ -74,7 +74,7 @@ Json Parse(const std::vector<std::byte>& bytes)
     }
     return true;
   };
-  return Json::parse(first, first + bytes.size(), check);
+  return Json::parse(text, check);
 }
 
 } // namespace
@@ -85,14 +85,9 @@ public:
   /// Null where there is no state, or it is damaged.
   Json Read() const
   {
-    const auto bytes = SmallFile::Read(PartFiles::GetState(this->Path), FileLimits::JsonBytes);
-    if (!bytes)
-    {
-      return {};
-    }
     try
     {
-      Json state = Parse(*bytes);
+      Json state = Parse(ReadWhole(PartFiles::GetState(this->Path), FileLimits::JsonBytes));
       return state.is_object() ? state : Json();
     }
     catch (const std::exception&)
@@ -182,8 +177,8 @@ void PartState::Save(bool isWhole, const std::vector<std::int64_t>& chunks) cons
     { "of", this->Self->Description }, { "chunks", chunks } };
   const std::string text = state.dump(1) + "\n";
   const std::string path = PartFiles::GetState(this->Self->Path);
-  SmallFile::Write(path + ".new", text.data(), text.size());
-  SmallFile::Rename(path + ".new", path);
+  DurableFile::Write(path + ".new", text.data(), text.size());
+  DurableFile::Rename(path + ".new", path);
 }
 
 } // namespace vol

@@ -217,7 +217,13 @@ void vtkDSMVolumeReader::Open()
   options.Bare.HeaderBytes =
     static_cast<std::uint64_t>(std::max<vtkIdType>(0, this->RawHeaderBytes));
   std::copy_n(this->RawSpacing, 3, options.Bare.Spacing);
-  const auto file = vol::OpenCachedVolume(this->FileNames, options);
+  vol::OpenOptions abortable = options;
+  abortable.GoesOn = [this]
+  {
+    this->UpdateProgress(0.0); // observers may abort
+    return this->AbortExecute == 0;
+  };
+  const auto file = vol::OpenCachedVolume(this->FileNames, abortable);
   CheckExtent(*file);
   // What was chosen of another file holds for arrays of the same names.
   for (const bool onCells : { false, true })

@@ -1,0 +1,414 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// HDF5 files whose numbers are made to mislead, or are only unusual.
+#include "WatchedReading.h"
+
+#include "DSMCore/base/Error.h"
+#include "DSMVolumeFiles/format/HdfLibrary.h"
+
+#include <gtest/gtest.h>
+
+#include <climits>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <fstream>
+#include <iterator>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include <sys/stat.h>
+
+namespace
+{
+
+using namespace dsm_test;
+using vol::HdfHandle;
+using Shape = std::vector<hsize_t>;
+
+/// An HDF5 file that is being written.
+class Writer
+{
+public:
+  explicit Writer(fs::path path, hsize_t userBlock = 0, bool isLatest = false)
+    : Path(std::move(path))
+  {
+    const HdfHandle creation(H5Pcreate(H5P_FILE_CREATE), &H5Pclose);
+    const HdfHandle access(H5Pcreate(H5P_FILE_ACCESS), &H5Pclose);
+    H5Pset_userblock(creation.Get(), userBlock);
+    if (isLatest)
+    {
+      H5Pset_libver_bounds(access.Get(), H5F_LIBVER_LATEST, H5F_LIBVER_LATEST);
+    }
+    this->File = HdfHandle(
+      H5Fcreate(this->Path.c_str(), H5F_ACC_TRUNC, creation.Get(), access.Get()), &H5Fclose);
+  }
+
+  void AddGroup(const char* name)
+  {
+    const HdfHandle group(
+      H5Gcreate2(this->File.Get(), name, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), &H5Gclose);
+  }
+
+  /// Of bytes, unless a type is given. `chunk`: empty for values in one piece.
+  HdfHandle Add(const std::string& name, const Shape& shape, const Shape& chunk,
+    hid_t type = H5T_NATIVE_UINT8, const HdfHandle& creation = CreateProperties())
+  {
+    const int axes = static_cast<int>(shape.size());
+    const HdfHandle space(H5Screate_simple(axes, shape.data(), nullptr), &H5Sclose);
+    if (!chunk.empty())
+    {
+      H5Pset_chunk(creation.Get(), static_cast<int>(chunk.size()), chunk.data());
+    }
+    HdfHandle dataset(H5Dcreate2(this->File.Get(), name.c_str(), type, space.Get(), H5P_DEFAULT,
+                        creation.Get(), H5P_DEFAULT),
+      &H5Dclose);
+    EXPECT_TRUE(dataset.IsOpen()) << name;
+    return dataset;
+  }
+
+  static HdfHandle CreateProperties()
+  {
+    return HdfHandle(H5Pcreate(H5P_DATASET_CREATE), &H5Pclose);
+  }
+
+  template <class T>
+  void AddAttribute(const char* object, const char* name, hid_t type, const std::vector<T>& values)
+  {
+    const HdfHandle group(H5Gopen2(this->File.Get(), object, H5P_DEFAULT), &H5Gclose);
+    const hsize_t count = values.size();
+    const HdfHandle space(H5Screate_simple(1, &count, nullptr), &H5Sclose);
+    const HdfHandle attribute(
+      H5Acreate2(group.Get(), name, type, space.Get(), H5P_DEFAULT, H5P_DEFAULT), &H5Aclose);
+    H5Awrite(attribute.Get(), type, values.data());
+  }
+
+  void AddImage(const std::vector<long long>& extent)
+  {
+    this->AddGroup("VTKHDF");
+    this->AddGroup("VTKHDF/PointData");
+    this->AddAttribute("VTKHDF", "WholeExtent", H5T_NATIVE_LLONG, extent);
+  }
+
+  template <class T>
+  static void WriteAll(const HdfHandle& dataset, hid_t type, const std::vector<T>& values)
+  {
+    EXPECT_GE(H5Dwrite(dataset.Get(), type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()), 0);
+  }
+
+  hid_t Get() const { return this->File.Get(); }
+
+  /// Closes the file; then replaces bytes, which must be there.
+  void Replace(const std::string& old, const std::string& changed)
+  {
+    this->File.Reset();
+    std::string bytes = ReadBytes(this->Path);
+    const std::size_t place = bytes.find(old);
+    ASSERT_NE(place, std::string::npos);
+    bytes.replace(place, changed.size(), changed);
+    WriteText(this->Path, bytes);
+  }
+
+  static std::string ReadBytes(const fs::path& path)
+  {
+    std::ifstream file(path, std::ios::binary);
+    return { std::istreambuf_iterator<char>(file), {} };
+  }
+
+private:
+  fs::path Path;
+  HdfHandle File;
+};
+
+template <class T>
+std::string Bytes(const std::vector<T>& numbers)
+{
+  std::string bytes(numbers.size() * sizeof(T), '\0');
+  std::memcpy(bytes.data(), numbers.data(), bytes.size());
+  return bytes;
+}
+
+using Words = std::vector<std::uint32_t>;
+using LongWords = std::vector<std::uint64_t>;
+
+TEST(HostileHdf, AxesWithoutABoundAreRefused)
+{
+  const fs::path folder = MakeFolder("axes");
+  const std::uint64_t huge = std::uint64_t(1) << 34;
+  {
+    Writer file(folder / "time.h5");
+    file.Add("a", { 1000, 1024, 1024, 1024 }, { 1, 1, 1, 1 });
+    file.Replace(Bytes(LongWords{ 1000, 1024, 1024, 1024 }), Bytes(LongWords{ huge }));
+  }
+  ExpectRefusal(folder / "time.h5", { "'a'", "17179869184 time steps", "at most" });
+  {
+    Writer file(folder / "along.h5");
+    file.Add("a", { 1000, 1024, 1024 }, { 1, 1, 1 });
+    file.Replace(Bytes(LongWords{ 1000, 1024, 1024 }), Bytes(LongWords{ huge }));
+  }
+  ExpectRefusal(folder / "along.h5", { "'a'", "17179869184 samples along z" });
+  {
+    Writer file(folder / "components.vtkhdf");
+    file.AddImage({ 0, 1, 0, 0, 0, 0 });
+    file.Add("VTKHDF/PointData/a", { 1, 1, 2, INT_MAX }, { 1, 1, 1, 1 << 20 }, H5T_NATIVE_DOUBLE);
+  }
+  ExpectRefusal(folder / "components.vtkhdf", { "'a'", "2147483647 components" });
+  {
+    Writer file(folder / "steps.vtkhdf");
+    file.AddImage({ 0, 1, 0, 1, 0, 1 });
+    file.AddGroup("VTKHDF/Steps");
+    file.Add("VTKHDF/Steps/Values", { huge }, { 1 << 20 }, H5T_NATIVE_DOUBLE);
+    file.Add("VTKHDF/PointData/a", { 2, 2, 2 }, {});
+  }
+  ExpectRefusal(folder / "steps.vtkhdf", { "Steps/Values", "time steps" });
+}
+
+/// The product of their numbers would wrap around, or takes more memory than there is; nothing is stored.
+TEST(HostileHdf, ChunksThatAreNotThereTakeNoMemory)
+{
+  const fs::path folder = MakeFolder("sparse");
+  {
+    Writer file(folder / "table.h5");
+    file.Add("a", { 2048, 1024, 1024 }, { 1, 1, 1 });
+  }
+  EXPECT_EQ(ReadWatched(folder / "table.h5"), "");
+  {
+    Writer file(folder / "wrap.h5");
+    file.Add("a", { 1000, 1024, 1024 }, { 1, 1, 1 });
+    const std::uint64_t most = INT_MAX;
+    file.Replace(Bytes(LongWords{ 1000, 1024, 1024 }), Bytes(LongWords{ most, most, most }));
+  }
+  ExpectRefusal(folder / "wrap.h5", { "samples" });
+}
+
+TEST(HostileHdf, ChunksOfOtherAxesAreRefused)
+{
+  const fs::path folder = MakeFolder("rank");
+  for (const bool hasMore : { false, true })
+  {
+    const fs::path path = folder / (hasMore ? "more.h5" : "less.h5");
+    Writer file(path);
+    file.Add("a", { 6, 7, 8, 9 }, { 4, 4, 4, 4 });
+    // The layout: its version, that it is of chunks, and how many axes they have, one more for the bytes.
+    const std::string layout{ 3, 2, 5 };
+    const std::string edges = Bytes(Words{ 4, 4, 4, 4, 1 });
+    if (hasMore)
+    {
+      // The dataspace: its version, and its axes.
+      file.Replace(std::string{ 1, 4, 0 }, std::string{ 1, 3, 0 });
+    }
+    else
+    {
+      file.Replace(layout, std::string{ 3, 2, 4 });
+    }
+    ExpectRefusal(
+      path, { "'a'", hasMore ? "3 axes, but its chunks have 4" : "but its chunks have 3" });
+  }
+}
+
+TEST(HostileHdf, ExtentsBeyondTheIndicesOfVtkAreRefused)
+{
+  const fs::path folder = MakeFolder("extent");
+  constexpr long long far = 1LL << 32;
+  constexpr long long last = std::numeric_limits<long long>::max();
+  for (const std::vector<long long>& extent :
+    { std::vector<long long>{ -far, 3 - far, 0, 3, 0, 3 }, { 0, 3, far, far + 3, 0, 3 },
+      { 0, 3, 0, 3, -last - 1, last }, { 3, 0, 0, 3, 0, 3 }, { 0, 3, -last - 1, 3 - last, 0, 3 } })
+  {
+    const fs::path path = folder / "extent.vtkhdf";
+    {
+      Writer file(path);
+      file.AddImage(extent);
+      file.Add("VTKHDF/PointData/a", { 4, 4, 4 }, { 2, 2, 2 });
+    }
+    ExpectRefusal(path, { "WholeExtent" });
+  }
+}
+
+TEST(HostileHdf, TimesThatAreNotNumbersAreRefused)
+{
+  const fs::path path = MakeFolder("times") / "times.vtkhdf";
+  {
+    Writer file(path);
+    file.AddImage({ 0, 1, 0, 1, 0, 1 });
+    file.AddGroup("VTKHDF/Steps");
+    Writer::WriteAll(file.Add("VTKHDF/Steps/Values", { 3 }, {}, H5T_NATIVE_DOUBLE),
+      H5T_NATIVE_DOUBLE, std::vector<double>{ 0.0, std::nan(""), 2.0 });
+    file.Add("VTKHDF/PointData/a", { 3, 2, 2, 2 }, {});
+  }
+  ExpectRefusal(path, { "Steps/Values", "not finite" });
+}
+
+/// More than the 255 bytes of a file's name: nothing of it is cut off.
+TEST(HostileHdf, LongNamesAreRead)
+{
+  const fs::path path = MakeFolder("names") / "names.vtkhdf";
+  const std::string name(1000, 'n');
+  {
+    Writer file(path);
+    file.AddImage({ 0, 1, 0, 1, 0, 1 });
+    file.Add("VTKHDF/PointData/" + name, { 2, 2, 2 }, {});
+    file.Add("VTKHDF/PointData/Dichte\xe9%s", { 2, 2, 2 }, {});
+  }
+  EXPECT_EQ(ReadWatched(path), "");
+  const auto file = vol::OpenVolumeFile(path.string());
+  ASSERT_EQ(file->GetArrays().size(), 2u);
+  EXPECT_EQ(file->GetArrays()[0].Name, "Dichte\xe9%s");
+  EXPECT_EQ(file->GetArrays()[1].Name, name);
+  {
+    Writer longer(path);
+    longer.AddImage({ 0, 1, 0, 1, 0, 1 });
+    longer.Add("VTKHDF/PointData/" + std::string(5000, 'n'), { 2, 2, 2 }, {});
+  }
+  ExpectRefusal(path, { "name", "4096 bytes" });
+}
+
+/// An index that the file declares, and does not have, is not read.
+TEST(HostileHdf, IndicesOfBricksAreBounded)
+{
+  const fs::path path = MakeFolder("index") / "index.vtkhdf";
+  {
+    Writer file(path);
+    file.AddImage({ 0, 3, 0, 3, 0, 3 });
+    file.Add("VTKHDF/PointData/a", { 4, 4, 4 }, {});
+    for (const char* group : { "DSM", "DSM/PointData", "DSM/PointData/a" })
+    {
+      file.AddGroup(group);
+    }
+    file.AddAttribute("DSM", "BrickEdge", H5T_NATIVE_INT, std::vector<int>{ 16 });
+    file.Add("DSM/PointData/a/BrickIndex", { std::uint64_t(1) << 36 }, { 1 << 20 });
+    file.Add("DSM/PointData/a/ValueRanges", { std::uint64_t(1) << 33 }, { 1 << 20 });
+  }
+  EXPECT_EQ(ReadWatched(path), "");
+  const auto index = vol::OpenVolumeFile(path.string())->ReadIndex(0, 0);
+  EXPECT_TRUE(index.Bricks.empty());
+  EXPECT_TRUE(index.Ranges.empty());
+}
+
+/// A tree of few nodes that is walked along every way takes 2^32 steps.
+TEST(HostileHdf, ATreeWhoseNodesMeetAgainIsRefused)
+{
+  const fs::path path = MakeFolder("tree") / "tree.h5";
+  {
+    Writer file(path);
+    Writer::WriteAll(
+      file.Add("a", { 4, 4, 4 }, { 4, 4, 4 }), H5T_NATIVE_UINT8, std::vector<std::uint8_t>(64, 1));
+  }
+  std::string bytes = Writer::ReadBytes(path);
+  const std::size_t layout = bytes.find(Bytes(Words{ 4, 4, 4, 1 }));
+  const std::size_t tree = bytes.rfind("TREE");
+  ASSERT_NE(layout, std::string::npos);
+  ASSERT_NE(tree, std::string::npos);
+  std::uint64_t address = 0;
+  std::memcpy(&address, bytes.data() + layout - 8, 8);
+  ASSERT_EQ(address, tree);
+  const std::string key = bytes.substr(tree + 24, 40);
+  std::uint64_t child = address;
+  for (char level = 1; level <= 32; ++level)
+  {
+    const std::string pointer = key + Bytes(LongWords{ child });
+    child = bytes.size();
+    bytes += "TREE" + std::string{ 1, level, 2, 0 } +
+      Bytes(LongWords{ vol::HdfUndefined, vol::HdfUndefined }) + pointer + pointer + key;
+  }
+  std::memcpy(bytes.data() + layout - 8, &child, 8);
+  const std::uint64_t end = bytes.size();
+  std::memcpy(bytes.data() + 40, &end, 8); // in the superblock
+  WriteText(path, bytes);
+  ExpectRefusal(path, { "'a'", "index of its chunks" });
+}
+
+/// The library adds the size of the block to a place that is none.
+TEST(HostileHdf, ValuesBehindAUserBlockThatWereNotWrittenHaveTheFillValue)
+{
+  const fs::path path = MakeFolder("block") / "block.h5";
+  {
+    Writer file(path, 512);
+    const HdfHandle creation = Writer::CreateProperties();
+    const float fill = 7.5f;
+    H5Pset_fill_value(creation.Get(), H5T_NATIVE_FLOAT, &fill);
+    file.Add("a", { 4, 4, 4 }, {}, H5T_NATIVE_FLOAT, creation);
+  }
+  EXPECT_EQ(ReadWatched(path), "");
+  std::vector<float> values(64);
+  const auto file = vol::OpenVolumeFile(path.string());
+  file->ReadChunk(0, 0, rt::Index3(0), reinterpret_cast<std::byte*>(values.data()));
+  EXPECT_EQ(values, std::vector<float>(64, 7.5f));
+}
+
+/// Where the number is in the name of a folder, the search ends at the same file for each.
+TEST(HostileHdf, SourcesOfAVirtualDatasetAreCountedOnce)
+{
+  const fs::path folder = MakeFolder("virtual");
+  fs::create_directories(folder / "part0");
+  Writer::WriteAll(Writer(folder / "part0/data.h5").Add("a", { 4, 8, 8 }, {}), H5T_NATIVE_UINT8,
+    std::vector<std::uint8_t>(256, 1));
+  {
+    Writer file(folder / "data.h5", 0, true);
+    const Shape shape{ 4, 8, 8 };
+    const Shape most{ H5S_UNLIMITED, 8, 8 };
+    const HdfHandle space(H5Screate_simple(3, shape.data(), most.data()), &H5Sclose);
+    const HdfHandle source(H5Screate_simple(3, shape.data(), nullptr), &H5Sclose);
+    const HdfHandle selected(H5Scopy(space.Get()), &H5Sclose);
+    const Shape start{ 0, 0, 0 };
+    const Shape count{ H5S_UNLIMITED, 1, 1 };
+    const Shape stride{ 4, 1, 1 };
+    H5Sselect_hyperslab(
+      selected.Get(), H5S_SELECT_SET, start.data(), stride.data(), count.data(), shape.data());
+    const HdfHandle creation = Writer::CreateProperties();
+    H5Pset_virtual(creation.Get(), selected.Get(), "part%b/data.h5", "a", source.Get());
+    const HdfHandle dataset(H5Dcreate2(file.Get(), "a", H5T_NATIVE_UINT8, space.Get(), H5P_DEFAULT,
+                              creation.Get(), H5P_DEFAULT),
+      &H5Dclose);
+    ASSERT_TRUE(dataset.IsOpen());
+  }
+  EXPECT_EQ(ReadWatched(folder / "data.h5"), "");
+}
+
+/// Reading from a pipe would wait for whoever writes to it.
+TEST(HostileHdf, ValuesInAPipeAreRefused)
+{
+  const fs::path folder = MakeFolder("pipes");
+  ASSERT_EQ(mkfifo((folder / "pipe").c_str(), 0600), 0);
+  {
+    Writer file(folder / "external.h5");
+    const HdfHandle creation = Writer::CreateProperties();
+    H5Pset_external(creation.Get(), (folder / "pipe").c_str(), 0, H5F_UNLIMITED);
+    file.Add("a", { 4, 4, 4 }, {}, H5T_NATIVE_UINT8, creation);
+  }
+  ExpectRefusal(folder / "external.h5", { "pipe", "not there, or is no file" });
+  {
+    Writer file(folder / "linked.vtkhdf");
+    file.AddImage({ 0, 3, 0, 3, 0, 3 });
+    H5Lcreate_external("pipe", "/a", file.Get(), "VTKHDF/PointData/a", H5P_DEFAULT, H5P_DEFAULT);
+  }
+  ExpectRefusal(folder / "linked.vtkhdf", { "no array" });
+  {
+    Writer file(folder / "virtual.h5", 0, true);
+    const Shape shape{ 4, 4, 4 };
+    const HdfHandle space(H5Screate_simple(3, shape.data(), nullptr), &H5Sclose);
+    const HdfHandle creation = Writer::CreateProperties();
+    H5Pset_virtual(creation.Get(), space.Get(), "pipe", "a", space.Get());
+    file.Add("a", shape, {}, H5T_NATIVE_UINT8, creation);
+  }
+  ExpectRefusal(folder / "virtual.h5", { "pipe", "not there" });
+}
+
+/// As h5py writes them with libver="latest", and programs of detectors do.
+TEST(HostileHdf, ManyChunksOfTheNewFormatsAreOpenedAtOnce)
+{
+  const fs::path path = MakeFolder("latest") / "latest.h5";
+  {
+    Writer file(path, 0, true);
+    Writer::WriteAll(file.Add("a", { 64, 64, 64 }, { 2, 2, 2 }), H5T_NATIVE_UINT8,
+      std::vector<std::uint8_t>(64 * 64 * 64, 9));
+  }
+  EXPECT_EQ(ReadWatched(path), "");
+  int asked = 0;
+  vol::OpenOptions options;
+  options.GoesOn = [&] { return ++asked < 2; };
+  ExpectRefusal(path, { "was aborted" }, options);
+  EXPECT_EQ(asked, 2);
+}
+
+} // namespace
