@@ -59,13 +59,14 @@ void CheckExtent(const vol::VolumeFile& file)
   {
     const std::int64_t first = geometry.First[axis];
     const std::int64_t points = geometry.Points[axis];
+    // The code also computes the index after the last point.
     if (first < INT_MIN || first > INT_MAX || points < 1 || points > INT_MAX ||
-      first + points - 1 > INT_MAX)
+      first + points > INT_MAX)
     {
       throw dsm::Error("'" + file.GetPath() + "' has " + std::to_string(points) +
         " points from index " + std::to_string(first) + " on along the " + "xyz"[axis] +
         " axis; VTK's indices go from " + std::to_string(INT_MIN) + " to " +
-        std::to_string(INT_MAX) + ".");
+        std::to_string(INT_MAX - 1) + ".");
     }
   }
 }
