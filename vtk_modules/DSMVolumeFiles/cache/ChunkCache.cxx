@@ -2,7 +2,6 @@
 #include "DSMVolumeFiles/cache/ChunkCache.h"
 
 #include "DSMCore/base/Error.h"
-#include "DSMCore/memory/HostMemory.h"
 #include "DSMRayTracing/base/ByteHash.h"
 #include "DSMRayTracing/base/ParallelFor.h"
 #include "DSMVolumeFiles/base/CopyBox.h"
@@ -31,8 +30,8 @@ constexpr int Overlap = 2;
 
 dsm::Error OutOfMemory(const VolumeFile& file, const FileArray& array, std::size_t chunkBytes)
 {
-  return dsm::Error("Out of memory while reading a chunk of " + dsm::FormatMebibytes(chunkBytes) +
-    " of the array '" + array.Name + "' in '" + file.GetPath() +
+  return dsm::Error("Out of memory while reading a chunk of " + std::to_string(chunkBytes) +
+    " bytes of the array '" + array.Name + "' in '" + file.GetPath() +
     "'. Convert the file with dsm_convert where there is more.");
 }
 
@@ -212,15 +211,18 @@ ChunkCache::Chunk ChunkCache::Get(const std::shared_ptr<const VolumeFile>& file,
   std::exception_ptr failure;
   try
   {
-    if (!bytes)
+    try
     {
-      bytes = std::make_shared<ByteBuffer>(chunkBytes);
+      if (!bytes)
+      {
+        bytes = std::make_shared<ByteBuffer>(chunkBytes);
+      }
+      file->ReadChunk(array, step, chunk, bytes->data());
     }
-    file->ReadChunk(array, step, chunk, bytes->data());
-  }
-  catch (const std::bad_alloc&)
-  {
-    failure = std::make_exception_ptr(OutOfMemory(*file, what, chunkBytes));
+    catch (const std::bad_alloc&)
+    {
+      throw OutOfMemory(*file, what, chunkBytes);
+    }
   }
   catch (...)
   {

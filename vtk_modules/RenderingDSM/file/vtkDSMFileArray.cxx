@@ -14,6 +14,7 @@
 #include <array>
 #include <cstring>
 #include <limits>
+#include <new>
 #include <string>
 #include <utility>
 
@@ -52,6 +53,11 @@ std::string DescribeArray(const vtkDSMFileValues& values)
 {
   return "The array '" + values.GetArray().Name + "' of the file '" + values.GetFile()->GetPath() +
     "' ";
+}
+
+std::string DescribeError(const std::exception& error)
+{
+  return dynamic_cast<const std::bad_alloc*>(&error) ? "out of memory." : error.what();
 }
 
 /// Memory for a copy of all: the ranks of a host ask for theirs at the same time, so each has to see what is left when those
@@ -180,7 +186,7 @@ const ValueTypeT* vtkDSMFileArray<ValueTypeT>::Find(vtkIdType tuple) const
   }
   catch (const std::exception& error)
   {
-    this->Report(std::string("could not be read: ") + error.what());
+    this->Report("could not be read: " + DescribeError(error));
     return nullptr;
   }
 }
@@ -220,7 +226,7 @@ void* vtkDSMFileArray<ValueTypeT>::GetVoidPointer(vtkIdType index)
     catch (const std::exception& error)
     {
       this->Reported = false; // weightier than what may have been said
-      this->Report(error.what());
+      this->Report(DescribeError(error));
       this->NoValues = std::make_unique<Zeros>(bytes);
     }
   }
@@ -262,7 +268,7 @@ const vol::ValueRanges* vtkDSMFileArray<ValueTypeT>::FindRanges() const
   }
   catch (const std::exception& error)
   {
-    this->Report(std::string("could not be read: ") + error.what());
+    this->Report("could not be read: " + DescribeError(error));
     return nullptr;
   }
 }

@@ -14,6 +14,7 @@
 #include <algorithm>
 #include <iterator>
 #include <map>
+#include <new>
 #include <set>
 #include <utility>
 
@@ -392,6 +393,10 @@ bool vtkDSMScene::TraceFrame()
     }
     self.FindGroup(this->GetController());
     failure = self.MakeFrame(found);
+  }
+  catch (const std::bad_alloc&)
+  {
+    failure = "Out of memory while drawing.";
   }
   catch (const std::exception& error)
   {
