@@ -315,5 +315,9 @@ int main(int argc, char** argv)
   {
     std::cerr << "dsm_convert: " << error.what() << std::endl;
   }
+  catch (...)
+  {
+    std::cerr << "dsm_convert: an unknown error" << std::endl;
+  }
   return EXIT_FAILURE;
 }

@@ -195,6 +195,18 @@ for state in (STATE % (b"false", 7, b""), STATE % (b"true", 0, b""), STATE % (b"
     said, _ = save("taken.h5")
     check(said == "" and list(list_folder()) == ["taken.h5"], f"a state that nobody can resume ({state[:40]}): {said}")
     os.remove(path("taken.h5"))
+# Names of arrays.
+NAMES = ("x" * 200, "%s%n", "caf\u00e9", "a/b", ".")
+source.Script = source.Script + "".join(f"\nadd(image, distance(piece).astype('f4') + {number}, {name!r})"
+                                        for number, name in enumerate(NAMES))
+said, _ = save("taken.h5")
+check(said == "", f"names of arrays are written: {said}")
+said, reader, _ = open_file("taken.h5")
+for number, name in enumerate(NAMES):
+    found = reader.PointData[{"a/b": "a_b", ".": "_"}.get(name, name)]
+    check(found is not None and abs(found.GetRange()[1] - true_range[1] - number) < 1e-5, f"the array {name[:20]}")
+simple.Delete(reader)
+os.remove(path("taken.h5"))
 for name in ("taken caf\u00e9 %s%n.h5", "taken" + "x" * 235 + ".h5"):
     said, _ = save(name)
     check(said == "" and list(list_folder()) == [name], f"a name such as {name[:20]}: {said}")

@@ -5,6 +5,7 @@ the right file, or an error that names file and cause, soon. Called as test_writ
 import glob
 import json
 import os
+import resource
 import shutil
 import signal
 import stat
@@ -117,6 +118,13 @@ check(done.returncode == 0 and "'steps.h5' has 5 time steps (0 to 4); only step 
       f"a note of the other steps: {done.stderr.strip()}")
 done = convert("--step", "3", "steps.h5", "step.h5")
 check(done.returncode == 0 and done.stderr == "" and np.array_equal(get_values("step.h5"), values + 3), "none with --step")
+
+# A chunk that does not fit the memory.
+with h5py.File("large.h5", "w") as file:
+    large = file.create_dataset("v", shape=(2048, 1024, 512), chunks=(1024, 1024, 512), dtype="f4", compression="gzip")
+    large.id.write_direct_chunk((0, 0, 0), b"no deflate stream")
+refuses("a chunk of 2 GiB in 1.5 GB of memory", ["Out of memory", "'v'", "'large.h5'"], "large.h5", "small.h5",
+        preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_AS, (1500000000, 1500000000)))
 
 # What is in the way belongs to others, and stays.
 def make_file(name):

@@ -32,7 +32,7 @@ dsm::Error OutOfMemory(const VolumeFile& file, const FileArray& array, std::size
 {
   return dsm::Error("Out of memory while reading a chunk of " + std::to_string(chunkBytes) +
     " bytes of the array '" + array.Name + "' in '" + file.GetPath() +
-    "'. Convert the file with dsm_convert where there is more.");
+    "'. Use a host with more memory, or write the file with smaller chunks.");
 }
 
 /// Those that have samples of a box; x fastest.

@@ -28,6 +28,10 @@ public:
     {
       vtkErrorWithObjectMacro(self, << error.what());
     }
+    catch (...)
+    {
+      vtkErrorWithObjectMacro(self, << "An unknown error while " << doing << " '" << name << "'.");
+    }
     return 0;
   }
 };

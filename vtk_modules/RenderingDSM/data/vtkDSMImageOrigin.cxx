@@ -17,7 +17,11 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cstdint>
 #include <cstring>
+#include <string>
+#include <utility>
+#include <vector>
 
 namespace
 {
@@ -35,18 +39,64 @@ std::vector<std::int64_t> GetKey(const rt::Box& box)
 /// An array of a piece, as ranks tell one another.
 struct ArrayNote
 {
-  std::int32_t Type;
-  std::int32_t Components;
-  std::int32_t OnCells;
-  std::int32_t IsActive; ///< the scalars
-  char Name[112];        ///< longer names differ in their beginning, or are left out
+  struct Plain
+  {
+    std::int32_t Type;
+    std::int32_t Components;
+    std::int32_t OnCells;
+    std::int32_t IsActive; ///< the scalars
+    std::uint64_t NameBytes;
+  };
+  Plain Numbers;
+  std::string Name;
 
   bool IsSame(const ArrayNote& other) const
   {
-    return this->Type == other.Type && this->Components == other.Components &&
-      this->OnCells == other.OnCells && std::strcmp(this->Name, other.Name) == 0;
+    return this->Numbers.Type == other.Numbers.Type &&
+      this->Numbers.Components == other.Numbers.Components &&
+      this->Numbers.OnCells == other.Numbers.OnCells && this->Name == other.Name;
   }
 };
+
+std::vector<std::byte> Encode(const std::vector<ArrayNote>& notes)
+{
+  std::vector<std::byte> bytes;
+  const auto add = [&](const void* from, std::size_t count)
+  {
+    const auto* const first = static_cast<const std::byte*>(from);
+    bytes.insert(bytes.end(), first, first + count);
+  };
+  for (const ArrayNote& note : notes)
+  {
+    add(&note.Numbers, sizeof(note.Numbers));
+    add(note.Name.data(), note.Name.size());
+  }
+  return bytes;
+}
+
+/// Throws dsm::Error where the bytes end early.
+std::vector<ArrayNote> Decode(const std::vector<std::byte>& bytes)
+{
+  std::vector<ArrayNote> notes;
+  std::size_t at = 0;
+  const auto take = [&](void* to, std::uint64_t count)
+  {
+    if (count > bytes.size() - at)
+    {
+      throw dsm::Error("A message about the arrays of an image is shorter than it says.");
+    }
+    std::copy_n(bytes.data() + at, count, static_cast<std::byte*>(to));
+    at += count;
+  };
+  while (at < bytes.size())
+  {
+    ArrayNote& note = notes.emplace_back();
+    take(&note.Numbers, sizeof(note.Numbers));
+    note.Name.resize(std::min<std::uint64_t>(note.Numbers.NameBytes, bytes.size()));
+    take(note.Name.data(), note.Numbers.NameBytes);
+  }
+  return notes;
+}
 
 } // namespace
 
@@ -120,15 +170,16 @@ void vtkDSMImageOrigin::GatherArrays(
       {
         continue;
       }
-      const bool isUsable = array && array->GetDataType() != VTK_BIT &&
-        array->GetNumberOfTuples() == tuples && std::strlen(name) < sizeof(ArrayNote::Name);
-      ArrayNote entry{};
-      entry.Type = isUsable ? static_cast<std::int32_t>(vtkDSMScalarType::FromArray(array)) : -1;
-      entry.Components = isUsable ? array->GetNumberOfComponents() : 0;
-      entry.OnCells = onCells;
-      entry.IsActive = array && array == attributes->GetScalars() ? 1 : 0;
-      std::strncpy(entry.Name, name, sizeof(entry.Name) - 1);
-      mine.push_back(entry);
+      const bool isUsable =
+        array && array->GetDataType() != VTK_BIT && array->GetNumberOfTuples() == tuples;
+      ArrayNote entry{ {}, name };
+      entry.Numbers.Type =
+        isUsable ? static_cast<std::int32_t>(vtkDSMScalarType::FromArray(array)) : -1;
+      entry.Numbers.Components = isUsable ? array->GetNumberOfComponents() : 0;
+      entry.Numbers.OnCells = onCells;
+      entry.Numbers.IsActive = array && array == attributes->GetScalars() ? 1 : 0;
+      entry.Numbers.NameBytes = entry.Name.size();
+      mine.push_back(std::move(entry));
     }
   };
   const bool isThere = image && image->GetNumberOfPoints() > 0;
@@ -138,17 +189,10 @@ void vtkDSMImageOrigin::GatherArrays(
     note(image->GetCellData(), 1, image->GetNumberOfCells());
   }
   std::vector<std::vector<ArrayNote>> ofRanks;
-  for (const auto& bytes : this->Messenger.GatherTogether("Writing a volume",
-         [&]
-         {
-           std::vector<std::byte> bytes(mine.size() * sizeof(ArrayNote));
-           std::copy_n(reinterpret_cast<const std::byte*>(mine.data()), bytes.size(), bytes.data());
-           return bytes;
-         }))
+  for (const auto& bytes :
+    this->Messenger.GatherTogether("Writing a volume", [&] { return Encode(mine); }))
   {
-    std::vector<ArrayNote> notes(bytes.size() / sizeof(ArrayNote));
-    std::copy(bytes.begin(), bytes.end(), reinterpret_cast<std::byte*>(notes.data()));
-    ofRanks.push_back(std::move(notes));
+    ofRanks.push_back(Decode(bytes));
   }
   std::size_t first = 0;
   while (pieces[first].Points.x == 0)
@@ -159,7 +203,7 @@ void vtkDSMImageOrigin::GatherArrays(
   cells = glm::max(this->Geometry.Points - cells, cells);
   for (const ArrayNote& wanted : ofRanks[first])
   {
-    bool isEverywhere = wanted.Type >= 0;
+    bool isEverywhere = wanted.Numbers.Type >= 0;
     for (std::size_t rank = 0; rank < pieces.size(); ++rank)
     {
       const std::vector<ArrayNote>& notes = ofRanks[rank];
@@ -175,10 +219,10 @@ void vtkDSMImageOrigin::GatherArrays(
     }
     vol::FileArray array;
     array.Name = wanted.Name;
-    array.Type = static_cast<rt::ScalarType>(wanted.Type);
-    array.Components = wanted.Components;
-    array.OnCells = wanted.OnCells != 0;
-    array.IsActive = wanted.OnCells == 0 && wanted.IsActive != 0;
+    array.Type = static_cast<rt::ScalarType>(wanted.Numbers.Type);
+    array.Components = wanted.Numbers.Components;
+    array.OnCells = wanted.Numbers.OnCells != 0;
+    array.IsActive = wanted.Numbers.OnCells == 0 && wanted.Numbers.IsActive != 0;
     array.Grid.Samples = array.OnCells ? cells : this->Geometry.Points;
     this->Arrays.push_back(array);
     vtkDataSetAttributes* attributes = nullptr;
@@ -187,7 +231,7 @@ void vtkDSMImageOrigin::GatherArrays(
       attributes = image->GetPointData();
       attributes = array.OnCells ? image->GetCellData() : attributes;
     }
-    this->Values.emplace_back(attributes ? attributes->GetArray(wanted.Name) : nullptr);
+    this->Values.emplace_back(attributes ? attributes->GetArray(wanted.Name.c_str()) : nullptr);
   }
   if (this->Arrays.empty())
   {
