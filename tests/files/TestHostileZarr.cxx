@@ -230,6 +230,45 @@ TEST(HostileZarr, ChunksThatCannotBeSoLargeAreNotRead)
   EXPECT_EQ(ReadWatched(several), "");
 }
 
+/// Of a plain chunk with several times and channels, only the rows of one are read.
+TEST(HostileZarr, SlicesOfALargeChunkAreReadByThemselves)
+{
+  const Json shape = { { "shape", { 2, 3, 2, 8, 2048 } }, { "chunks", { 2, 3, 3, 512, 4096 } },
+    { "dtype", "|u1" } };
+  const fs::path folder = Write2("manyslices", shape);
+  constexpr std::size_t row = 4096;
+  constexpr std::size_t slice = 3 * 512 * row;
+  std::string text(6 * slice, '\0');
+  for (std::size_t place = 0; place < 6 * 3; ++place)
+  {
+    text[place * 512 * row + 7 * row + 5] = static_cast<char>(place + 1);
+  }
+  WriteText(folder / "0.0.0.0.0", text);
+  const auto file = vol::OpenVolumeFile(folder.string());
+  ASSERT_EQ(file->GetArrays().size(), 3u);
+  ASSERT_EQ(file->GetSteps(), 2);
+  const rt::Box box = file->GetArrays()[0].Grid.GetBox(rt::Index3(0));
+  ASSERT_EQ(box.GetSize(), rt::Index3(2048, 8, 2));
+  for (int step = 0; step < 2; ++step)
+  {
+    for (std::size_t array = 0; array < 3; ++array)
+    {
+      std::vector<std::byte> values(2048 * 8 * 2, std::byte{ 77 });
+      file->ReadChunk(array, step, rt::Index3(0), values.data());
+      for (std::size_t z = 0; z < 2; ++z)
+      {
+        const std::size_t place = (static_cast<std::size_t>(step) * 3 + array) * 3 + z;
+        EXPECT_EQ(values[(z * 8 + 7) * 2048 + 5], static_cast<std::byte>(place + 1));
+        EXPECT_EQ(values[(z * 8 + 7) * 2048 + 6], std::byte{ 0 });
+      }
+      std::byte part{ 77 };
+      const rt::Box one{ rt::Index3(5, 7, 1), rt::Index3(6, 8, 2) };
+      EXPECT_TRUE(file->ReadPart(array, step, rt::Index3(0), one, &part));
+      EXPECT_EQ(part, values[(8 + 7) * 2048 + 5]);
+    }
+  }
+}
+
 /// What unpacks to more, or less, than a chunk has is damaged.
 TEST(HostileZarr, ChunksThatUnpackToAnotherSizeAreRefused)
 {

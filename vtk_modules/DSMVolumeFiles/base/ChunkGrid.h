@@ -76,22 +76,18 @@ struct ChunkGrid
     }
     return halo;
   }
-  /// Bytes of the chunks that a box of so many samples along each axis lies in, at most; the greatest number where
-  /// that cannot be counted.
+  /// Bytes of the chunks that a box of so many samples along each axis lies in, at most; 2^56 where it would be more,
+  /// so that callers can add up what a file declares.
   std::uint64_t CountBytesOfChunks(std::int64_t samples, std::size_t sampleBytes) const
   {
+    constexpr std::uint64_t greatest = std::uint64_t(1) << 56;
     const rt::Index3 most =
       (rt::Index3(samples - 2) + this->ChunkSamples) / this->ChunkSamples + rt::Index3(1);
-    const rt::Index3 chunks = glm::min(most, this->GetCounts());
-    const rt::Index3 chunk = glm::min(this->ChunkSamples, this->Samples);
-    const auto product = [](const rt::Index3& sides, std::uint64_t factor)
-    {
-      return MultiplyWithin(~std::uint64_t(0),
-        { static_cast<std::uint64_t>(sides.x), static_cast<std::uint64_t>(sides.y),
-          static_cast<std::uint64_t>(sides.z), factor })
-        .value_or(~std::uint64_t(0));
-    };
-    return product(chunks, product(chunk, sampleBytes));
+    const glm::u64vec3 chunks(glm::min(most, this->GetCounts()));
+    const glm::u64vec3 chunk(glm::min(this->ChunkSamples, this->Samples));
+    return MultiplyWithin(
+      greatest, { chunks.x, chunks.y, chunks.z, chunk.x, chunk.y, chunk.z, sampleBytes })
+      .value_or(greatest);
   }
   /// Samples of it, at most.
   std::size_t CountMostOfHalo() const
