@@ -6,6 +6,7 @@
 
 #include <clocale>
 #include <cstdlib>
+#include <iostream>
 #include <locale>
 #include <string>
 
@@ -156,34 +157,47 @@ TEST(HostileHeaders, AxesInOnePlaneAreRefused)
   EXPECT_EQ(ReadWatched(WriteMeta("sheared", "TransformMatrix = 1 0 0 0.9 0.1 0 0 0 -1")), "");
 }
 
-/// As many programs have, which set it for their own texts.
-TEST(HostileHeaders, NumbersDoNotDependOnTheLocale)
+/// Reads numbers under a locale with decimal commas, of the C library and of iostreams.
+void ReadWithCommas(const fs::path& locales)
 {
-  const fs::path folder = MakeFolder("locale");
-  const std::string make =
-    "localedef -i de_DE -f UTF-8 '" + (folder / "de_DE.UTF-8").string() + "' > /dev/null 2>&1";
-  static_cast<void>(std::system(make.c_str()));
-  setenv("LOCPATH", folder.c_str(), 1);
-  const bool hasCommas = std::setlocale(LC_ALL, "de_DE.UTF-8") != nullptr;
+  setenv("LOCPATH", locales.c_str(), 1);
+  const bool hasLocale = std::setlocale(LC_ALL, "de_DE.UTF-8") != nullptr;
   struct Commas : std::numpunct<char>
   {
     char do_decimal_point() const override { return ','; }
     char do_thousands_sep() const override { return '.'; }
     std::string do_grouping() const override { return "\3"; }
   };
-  const std::locale before = std::locale::global(
-    std::locale(hasCommas ? std::locale("de_DE.UTF-8") : std::locale(), new Commas));
-  const auto nrrd = WriteNrrd("half", "spacings: 0.5 +0.5 5e-1");
-  const auto meta = WriteMeta("halfmeta", "ElementSpacing = 0.5 0.5 0.5");
+  std::locale::global(
+    std::locale(hasLocale ? std::locale("de_DE.UTF-8") : std::locale(), new Commas));
+  const fs::path nrrd = WriteNrrd("half", "spacings: 0.5 +0.5 5e-1");
+  const fs::path meta = WriteMeta("halfmeta", "ElementSpacing = 0.5 0.5 0.5");
   for (const fs::path& path : { nrrd, meta })
   {
     EXPECT_EQ(ReadWatched(path), "");
     EXPECT_EQ(vol::OpenVolumeFile(path.string())->GetGeometry().Spacing[1], 0.5);
   }
   ExpectRefusal(WriteNrrd("comma", "spacings: 0,5 0,5 0,5"), { "'0,5'", "not a number" });
-  std::locale::global(before);
-  std::setlocale(LC_ALL, "C");
-  unsetenv("LOCPATH");
+}
+
+/// Programs set the locale for their own texts.
+TEST(HostileHeaders, NumbersDoNotDependOnTheLocale)
+{
+  const fs::path locales = MakeFolder("locale");
+  const std::string make =
+    "localedef -i de_DE -f UTF-8 '" + (locales / "de_DE.UTF-8").string() + "' > /dev/null 2>&1";
+  const int outcome = std::system(make.c_str()); // not 0 where it only warns
+  if (!fs::exists(locales / "de_DE.UTF-8"))
+  {
+    std::cout << "localedef returns " << outcome << ": only the locale of iostreams has commas.\n";
+  }
+  // The locale belongs to the whole process.
+  EXPECT_EXIT(
+    {
+      ReadWithCommas(locales);
+      std::_Exit(HasFailure() ? 1 : 0);
+    },
+    testing::ExitedWithCode(0), "");
 }
 
 /// Only a pattern with its numbers means several files, and only where no file is called so.
