@@ -32,16 +32,8 @@ class Writer
 public:
   explicit Writer(fs::path path, hsize_t userBlock = 0, bool isLatest = false)
     : Path(std::move(path))
+    , File(Create(this->Path, userBlock, isLatest), &H5Fclose)
   {
-    const HdfHandle creation(H5Pcreate(H5P_FILE_CREATE), &H5Pclose);
-    const HdfHandle access(H5Pcreate(H5P_FILE_ACCESS), &H5Pclose);
-    H5Pset_userblock(creation.Get(), userBlock);
-    if (isLatest)
-    {
-      H5Pset_libver_bounds(access.Get(), H5F_LIBVER_LATEST, H5F_LIBVER_LATEST);
-    }
-    this->File = HdfHandle(
-      H5Fcreate(this->Path.c_str(), H5F_ACC_TRUNC, creation.Get(), access.Get()), &H5Fclose);
   }
 
   void AddGroup(const char* name)
@@ -116,6 +108,18 @@ public:
   }
 
 private:
+  static hid_t Create(const fs::path& path, hsize_t userBlock, bool isLatest)
+  {
+    const HdfHandle creation(H5Pcreate(H5P_FILE_CREATE), &H5Pclose);
+    const HdfHandle access(H5Pcreate(H5P_FILE_ACCESS), &H5Pclose);
+    H5Pset_userblock(creation.Get(), userBlock);
+    if (isLatest)
+    {
+      H5Pset_libver_bounds(access.Get(), H5F_LIBVER_LATEST, H5F_LIBVER_LATEST);
+    }
+    return H5Fcreate(path.c_str(), H5F_ACC_TRUNC, creation.Get(), access.Get());
+  }
+
   fs::path Path;
   HdfHandle File;
 };
@@ -308,8 +312,8 @@ TEST(HostileHdf, ATreeWhoseNodesMeetAgainIsRefused)
   {
     const std::string pointer = key + Bytes(LongWords{ child });
     child = bytes.size();
-    bytes += "TREE" + std::string{ 1, level, 2, 0 } +
-      Bytes(LongWords{ vol::HdfUndefined, vol::HdfUndefined }) + pointer + pointer + key;
+    bytes += "TREE" + std::string{ 1, level, 2, 0 } + Bytes(LongWords{ UINT64_MAX, UINT64_MAX }) +
+      pointer + pointer + key;
   }
   std::memcpy(bytes.data() + layout - 8, &child, 8);
   const std::uint64_t end = bytes.size();
