@@ -109,7 +109,7 @@ TEST(HostileZarr, LargeMetadataAreRefused)
 TEST(HostileZarr, ConsolidatedMetadataDoNotCount)
 {
   Json all = Json::object();
-  for (int array = 0; array < 20000; ++array)
+  for (int array = 0; array < 10000; ++array)
   {
     all["array" + std::to_string(array)] = { 1, 2, { { "a", { 3, 4, 5, 6 } } } };
   }

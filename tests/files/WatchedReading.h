@@ -19,14 +19,14 @@ namespace fs = std::filesystem;
 fs::path MakeFolder(const std::string& name);
 
 void WriteText(const fs::path& path, const std::string& text);
-/// Of so many bytes, all zero, which take no space on the disk.
+/// Writes a file of zeros that takes no space on the disk.
 void WriteSparse(const fs::path& path, std::uintmax_t bytes);
 
 /// Opens a file and reads the first chunk of each of its arrays. Returns what goes wrong; empty where nothing does. Fails
-/// the test where it takes a second, or 100 MB more memory than before.
+/// the test where it takes a second of the processor, or 100 MB more memory than before.
 std::string ReadWatched(const fs::path& path, const vol::OpenOptions& options = {});
 
-/// That it is refused, with its name and all of these words.
+/// Expects that ReadWatched refuses a file, and that the error has its path and all of these words.
 void ExpectRefusal(const fs::path& path, std::initializer_list<const char*> words,
   const vol::OpenOptions& options = {});
 

@@ -65,14 +65,14 @@ void AddLast(Bytes& bytes, std::uint32_t value)
   }
 }
 
-/// How many times as long as what is stored the bytes before this step can be: deflate spends two bits on 258 bytes,
-/// Zstandard, which Blosc may have inside, four bytes on a block of 128 KiB.
+/// Returns an upper bound for the ratio of unpacked to stored bytes. Deflate spends at least two bits on 258 bytes.
+/// Zstandard, which Blosc may contain, spends at least four bytes on a block of 128 KiB.
 std::uint64_t GetGrowth(Kind step)
 {
   return step == Kind::Deflate ? 1032 : step == Kind::Zstd || step == Kind::Blosc ? 1 << 15 : 1;
 }
 
-/// Room for what the bytes become: no more than wanted, and no more than possible.
+/// Returns the size of the buffer to unpack to: no more than wanted, and no more than possible.
 [[maybe_unused]] std::size_t GetRoom(const Bytes& stored, Kind step, std::size_t most)
 {
   return static_cast<std::size_t>(

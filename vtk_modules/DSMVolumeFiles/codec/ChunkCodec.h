@@ -50,10 +50,10 @@ public:
   /// the stream (RFC 1950), which tells its end. Only where KeepsHalo().
   ByteBuffer Encode(ByteBuffer samples, ByteBuffer halo = {}) const;
 
-  /// Bytes that the steps make, at most, of so many, with a halo of so many: what a file has more for a chunk is
-  /// damaged. Not to be counted: the greatest number.
+  /// Returns an upper bound for the stored size of a chunk and its halo. A stored chunk that is larger is damaged.
+  /// Saturates.
   std::uint64_t CountMostStored(std::uint64_t bytes, std::uint64_t haloBytes = 0) const;
-  /// Bytes that so many stored ones can become, at most, likewise.
+  /// Returns an upper bound for the size that a chunk of this stored size can unpack to. Saturates.
   std::uint64_t CountMostDecoded(std::uint64_t stored) const;
 
   /// Whether there is a place for a halo: behind a Zstandard frame or a deflate stream.

@@ -158,17 +158,18 @@ std::vector<double> HeaderText::GetNumbers(const std::string& name, std::size_t 
 }
 
 std::vector<std::int64_t> HeaderText::GetIntegers(
-  const std::string& name, std::size_t count, std::int64_t least, std::int64_t most) const
+  const std::string& name, std::size_t count, std::int64_t least) const
 {
   std::vector<std::int64_t> integers;
   for (const double number : this->GetNumbers(name, count))
   {
-    const auto integer = ToInteger(number, least, most);
+    const auto integer = ToInteger(number, least, MostInteger);
     if (!integer)
     {
+      const std::string range =
+        least == -MostInteger ? "" : " from " + std::to_string(least) + " on";
       this->Refuse("its field '" + name + "' is " + Quote(this->Get(name)) +
-        ", which has to be of integers from " + std::to_string(least) + " to " +
-        std::to_string(most) + ".");
+        "; it has to have integers" + range + ".");
     }
     integers.push_back(*integer);
   }
@@ -176,9 +177,9 @@ std::vector<std::int64_t> HeaderText::GetIntegers(
 }
 
 std::int64_t HeaderText::GetInteger(
-  const std::string& name, std::int64_t usual, std::int64_t least, std::int64_t most) const
+  const std::string& name, std::int64_t usual, std::int64_t least) const
 {
-  const std::vector<std::int64_t> integers = this->GetIntegers(name, 1, least, most);
+  const std::vector<std::int64_t> integers = this->GetIntegers(name, 1, least);
   return integers.empty() ? usual : integers.front();
 }
 

@@ -55,12 +55,12 @@ public:
   /// Throw dsm::Error for what is not a number, in any locale, and, when `count` is not 0, for another count; empty
   /// where there is no such name.
   std::vector<double> GetNumbers(const std::string& name, std::size_t count = 0) const;
-  /// Likewise, also for what is not an integer in [least, most].
-  std::vector<std::int64_t> GetIntegers(const std::string& name, std::size_t count = 0,
-    std::int64_t least = -MostInteger, std::int64_t most = MostInteger) const;
+  /// Likewise, also for what is not an integer, or less than `least`.
+  std::vector<std::int64_t> GetIntegers(
+    const std::string& name, std::size_t count = 0, std::int64_t least = -MostInteger) const;
   /// A single one; `usual` where there is no such name.
-  std::int64_t GetInteger(const std::string& name, std::int64_t usual,
-    std::int64_t least = -MostInteger, std::int64_t most = MostInteger) const;
+  std::int64_t GetInteger(
+    const std::string& name, std::int64_t usual, std::int64_t least = -MostInteger) const;
   /// Of a part of the field `name`.
   std::vector<double> ToNumbers(const std::string& name, const std::string& text) const;
 

@@ -79,10 +79,10 @@ protected:
   std::vector<Storage> Storages; ///< of the arrays
 
 private:
-  /// Fills samples of so many bytes together.
+  /// Repeats the bytes of `fill` until `out` has so many bytes.
   static void FillWith(const std::vector<std::byte>& fill, std::byte* out, std::size_t bytes);
-  /// Throws dsm::Error when a chunk of so many bytes, a halo beside it included, cannot have been stored in as many as
-  /// it has: no more than what it may take is read.
+  /// Throws dsm::Error when the stored size of a chunk cannot be right for its `bytes`. Called before memory is
+  /// allocated for the chunk.
   void CheckStored(std::size_t array, const Place& place, std::size_t bytes) const;
   /// Which chunk of the file a chunk is of, or a part of.
   rt::Index3 FindStored(std::size_t array, const rt::Index3& chunk) const;
