@@ -55,7 +55,7 @@ public:
     HdfHandle dataset(H5Dcreate2(this->File.Get(), name.c_str(), type, space.Get(), H5P_DEFAULT,
                         creation.Get(), H5P_DEFAULT),
       &H5Dclose);
-    EXPECT_TRUE(dataset.IsOpen()) << name;
+    EXPECT_TRUE(dataset.IsOpen()) << name.substr(0, 100);
     return dataset;
   }
 
@@ -193,17 +193,16 @@ TEST(HostileHdf, ChunksOfOtherAxesAreRefused)
     const fs::path path = folder / (hasMore ? "more.h5" : "less.h5");
     Writer file(path);
     file.Add("a", { 6, 7, 8, 9 }, { 4, 4, 4, 4 });
-    // The layout: its version, that it is of chunks, and how many axes they have, one more for the bytes.
-    const std::string layout{ 3, 2, 5 };
-    const std::string edges = Bytes(Words{ 4, 4, 4, 4, 1 });
     if (hasMore)
     {
-      // The dataspace: its version, and its axes.
-      file.Replace(std::string{ 1, 4, 0 }, std::string{ 1, 3, 0 });
+      // The dataspace: version, number of axes, whether they may grow, five bytes that are not used, and the axes.
+      const std::string axes = std::string(5, '\0') + Bytes(LongWords{ 6, 7, 8, 9 });
+      file.Replace(std::string{ 1, 4, 1 } + axes, std::string{ 1, 3, 1 });
     }
     else
     {
-      file.Replace(layout, std::string{ 3, 2, 4 });
+      // The layout: version, that it is of chunks, and the number of their axes, one more for the bytes.
+      file.Replace(std::string{ 3, 2, 5 }, std::string{ 3, 2, 4 });
     }
     ExpectRefusal(
       path, { "'a'", hasMore ? "3 axes, but its chunks have 4" : "but its chunks have 3" });
@@ -259,12 +258,13 @@ TEST(HostileHdf, LongNamesAreRead)
   ASSERT_EQ(file->GetArrays().size(), 2u);
   EXPECT_EQ(file->GetArrays()[0].Name, "Dichte\xe9%s");
   EXPECT_EQ(file->GetArrays()[1].Name, name);
+  const fs::path longer = path.parent_path() / "longer.vtkhdf";
   {
-    Writer longer(path);
-    longer.AddImage({ 0, 1, 0, 1, 0, 1 });
-    longer.Add("VTKHDF/PointData/" + std::string(5000, 'n'), { 2, 2, 2 }, {});
+    Writer other(longer);
+    other.AddImage({ 0, 1, 0, 1, 0, 1 });
+    other.Add("VTKHDF/PointData/" + std::string(5000, 'n'), { 2, 2, 2 }, {});
   }
-  ExpectRefusal(path, { "name", "4096 bytes" });
+  ExpectRefusal(longer, { "name", "4096 bytes" });
 }
 
 /// An index that the file declares, and does not have, is not read.
