@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef fuzz_CrashNotes_h
+#define fuzz_CrashNotes_h
+
+#include <cstddef>
+
+namespace fuzz
+{
+
+/// How a process ends whose input makes the HDF5 library crash, not the project. The targets go on after such inputs, and
+/// count them.
+constexpr int EndedInLibrary = 76;
+
+/// From now on, a signal such as SIGSEGV or SIGABRT prints the stack. Where the innermost function that is not one of the
+/// C or C++ library is libhdf5's, the process ends with `codeForLibrary`; else as it would have without.
+void InstallCrashNotes(int codeForLibrary);
+
+/// From now on, an allocation of more bytes ends the process by SIGABRT, whatever library asks for it; or with
+/// `codeForLibrary`, where that is libhdf5.
+void LimitAllocations(std::size_t bytes);
+
+/// The process ends by SIGABRT when it has used the processor for so many seconds from now, so that a busy machine makes
+/// no difference, or when ten times as many have passed; 0: there is no limit. It ends with `codeForLibrary` where it is
+/// in a function of libhdf5 that is known not to end for some files.
+void LimitTime(unsigned seconds);
+
+} // namespace fuzz
+
+#endif

@@ -1,0 +1,9 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// MetaImage: a header, with values behind it or in "values.bin".
+#include "FuzzedHeader.h"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t count)
+{
+  fuzz::CheckHeader("input.mhd", bytes, count);
+  return 0;
+}
