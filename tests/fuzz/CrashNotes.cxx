@@ -24,6 +24,13 @@
 #endif
 #endif
 
+#ifdef FUZZ_HAS_SANITIZER
+extern "C" int __sanitizer_install_malloc_and_free_hooks(
+  void (*onMalloc)(const volatile void*, std::size_t), void (*onFree)(const volatile void*));
+extern "C" void __sanitizer_symbolize_pc(
+  void* place, const char* format, char* out, std::size_t bytes);
+#endif
+
 namespace fuzz
 {
 
@@ -106,11 +113,18 @@ private:
     Dl_info info{};
     return dladdr(place, &info) != 0 && info.dli_sname ? info.dli_sname : "";
   }
-  static bool IsOfSanitizer(void* place)
+  static bool IsOfSanitizer([[maybe_unused]] void* place)
   {
-    const char* const name = FindName(place);
-    return BeginsWith(name, "__interceptor_") || BeginsWith(name, "__asan_") ||
-      BeginsWith(name, "__sanitizer_");
+#ifdef FUZZ_HAS_SANITIZER
+    char name[256] = {};
+    __sanitizer_symbolize_pc(place, "%f", name, sizeof(name));
+    return BeginsWith(name, "__interceptor_") || BeginsWith(name, "__asan") ||
+      BeginsWith(name, "__sanitizer") || std::strcmp(name, "free") == 0 ||
+      std::strcmp(name, "malloc") == 0 || std::strcmp(name, "realloc") == 0 ||
+      std::strcmp(name, "calloc") == 0;
+#else
+    return false;
+#endif
   }
 
   void* Frames[64];
@@ -213,9 +227,6 @@ void LimitTime(unsigned seconds)
 } // namespace fuzz
 
 #ifdef FUZZ_HAS_SANITIZER
-
-extern "C" int __sanitizer_install_malloc_and_free_hooks(
-  void (*onMalloc)(const volatile void*, std::size_t), void (*onFree)(const volatile void*));
 
 void fuzz::LimitAllocations(std::size_t bytes)
 {
