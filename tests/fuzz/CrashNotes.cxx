@@ -44,6 +44,7 @@ constexpr const char* EndlessFunctions[] = { "H5HG__protect" };
 int CodeForLibrary = EndedInLibrary;
 std::map<int, struct sigaction>* Before = nullptr;
 std::atomic<std::size_t> MostBytes{ SIZE_MAX };
+unsigned long long Inputs = 0;
 
 void Print(const char* text)
 {
@@ -135,6 +136,10 @@ private:
 {
   Print("This happened in the HDF5 library:\n");
   stack.PrintAll();
+  // The process that started this one adds it up (libFuzzer's -fork).
+  char text[60];
+  std::snprintf(text, sizeof(text), "stat::number_of_executed_units: %llu\n", Inputs);
+  Print(text);
   _exit(CodeForLibrary);
 }
 
@@ -217,6 +222,7 @@ void InstallCrashNotes(int codeForLibrary)
 
 void LimitTime(unsigned seconds)
 {
+  Inputs += seconds > 0 ? 1 : 0;
   std::signal(SIGPROF, &NoteTime);
   std::signal(SIGALRM, &NoteTime);
   const itimerval limit{ { 0, 0 }, { static_cast<time_t>(seconds), 0 } };
