@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <limits>
 #include <set>
 #include <string>
 #include <vector>
@@ -202,6 +203,15 @@ void CheckGeometry(const vol::FileGeometry& geometry)
   Require(areFinite(geometry.Origin, 3) && areFinite(geometry.Spacing, 3) &&
       areFinite(geometry.Direction, 9),
     "the geometry has a number that is not finite");
+  // VTK's indices are int.
+  const auto areInt = [](const rt::Index3& indices)
+  {
+    return glm::all(glm::greaterThanEqual(indices, rt::Index3(std::numeric_limits<int>::min()))) &&
+      glm::all(glm::lessThanEqual(indices, rt::Index3(std::numeric_limits<int>::max())));
+  };
+  Require(areInt(geometry.First) && areInt(geometry.Points) &&
+      areInt(geometry.First + geometry.Points - rt::Index3(1)),
+    "indices of points are beyond those that VTK has");
 }
 
 void CheckValues(
