@@ -15,7 +15,7 @@ namespace
 
 namespace fs = std::filesystem;
 
-const std::string IndexKind = "bricks2-4-0";
+const std::string IndexKind = "bricks3-4-0";
 
 struct Places
 {
@@ -82,7 +82,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t cou
   else if (kind == 1)
   {
     fuzz::WriteInput(places.Index, content, contentBytes);
-    UseIndex(volume, vol::KeptFile(*volume.File, 0, 0, volume.Whole, IndexKind).Load());
+    const std::size_t indexBytes = rt::VoxelIndex::CountBytes(volume.Lattice.GetBrickCount());
+    UseIndex(volume, vol::KeptFile(*volume.File, 0, 0, volume.Whole, IndexKind).Load(indexBytes));
   }
   else
   {

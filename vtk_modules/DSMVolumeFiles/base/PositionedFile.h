@@ -39,6 +39,9 @@ public:
   /// fewer, when reading fails, or when the file was written to since it was opened; WouldWait (WithoutWaiting).
   void Read(std::uint64_t offset, std::byte* out, std::size_t bytes) const;
 
+  /// Likewise, also when the file was written to since it was opened.
+  void ReadUnchecked(std::uint64_t offset, std::byte* out, std::size_t bytes) const;
+
   struct Piece
   {
     std::uint64_t Offset;
@@ -66,8 +69,6 @@ private:
   };
   /// Offsets ascend; pieces may overlap.
   static Run FindRun(const std::vector<Piece>& pieces, std::vector<Piece>::const_iterator first);
-
-  void ReadUnchecked(std::uint64_t offset, std::byte* out, std::size_t bytes) const;
 
   std::string Path;
   int Descriptor = -1;

@@ -547,7 +547,9 @@ std::uint64_t ChunkCodec::CountMostDecoded(std::uint64_t stored) const
 
 bool ChunkCodec::KeepsHalo() const
 {
-  return std::any_of(this->Steps.begin(), this->Steps.end(), &MayHaveHalo);
+  // A second compressor would have to unpack more than the chunk, without knowing how much.
+  return std::count_if(this->Steps.begin(), this->Steps.end(), &Compresses) == 1 &&
+    std::any_of(this->Steps.begin(), this->Steps.end(), &MayHaveHalo);
 }
 
 bool ChunkCodec::KeepsPlaces() const

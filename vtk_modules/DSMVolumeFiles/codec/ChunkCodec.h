@@ -56,7 +56,7 @@ public:
   /// Returns an upper bound for the size that a chunk of this stored size can unpack to. Saturates.
   std::uint64_t CountMostDecoded(std::uint64_t stored) const;
 
-  /// Whether there is a place for a halo: behind a Zstandard frame or a deflate stream.
+  /// Whether there is a place for a halo: behind a Zstandard frame or a deflate stream, where it is the only compressor.
   bool KeepsHalo() const;
 
   bool IsPlain() const { return this->Steps.empty(); }

@@ -475,7 +475,10 @@ private:
       default:
         dataset.ReadByLibrary = true;
     }
-    storage.Codec = ChunkCodec(dataset.ReadByLibrary ? std::vector<CodecStep>() : std::move(steps));
+    if (!dataset.ReadByLibrary)
+    {
+      storage.Codec = this->CreateCodec(name, std::move(steps));
+    }
     if (!dataset.ReadByLibrary && storage.Slices == 1)
     {
       this->FindHalo(array, storage);
@@ -491,6 +494,19 @@ private:
     this->Arrays.push_back(std::move(array));
     this->Storages.push_back(std::move(storage));
     this->Kept.push_back(std::move(dataset));
+  }
+
+  ChunkCodec CreateCodec(const std::string& name, std::vector<CodecStep> steps) const
+  {
+    try
+    {
+      return ChunkCodec(std::move(steps));
+    }
+    catch (const dsm::Error& error)
+    {
+      throw dsm::Error(
+        "Cannot read the dataset '" + name + "' of '" + this->Path + "': " + error.what());
+    }
   }
 
   /// So that the library, too, unpacks each chunk once.
