@@ -174,21 +174,24 @@ void NoteTime(int)
   std::abort();
 }
 
-void CheckAllocation(std::size_t bytes)
+/// False where libhdf5 asks for more than the limit: it gets nothing.
+bool MayAllocate(std::size_t bytes)
 {
-  if (bytes <= MostBytes)
+  const std::size_t most = MostBytes;
+  if (bytes <= most)
   {
-    return;
+    return true;
   }
-  MostBytes = SIZE_MAX;
-  char text[100];
-  std::snprintf(text, sizeof(text), "FAILED: an allocation of %zu bytes\n", bytes);
-  Print(text);
+  MostBytes = SIZE_MAX; // the stack may need memory
   const Stack stack;
   if (stack.IsInLibrary())
   {
-    EndInLibrary(stack);
+    MostBytes = most;
+    return false;
   }
+  char text[100];
+  std::snprintf(text, sizeof(text), "FAILED: an allocation of %zu bytes\n", bytes);
+  Print(text);
   std::abort();
 }
 
@@ -237,9 +240,14 @@ void LimitTime(unsigned seconds)
 void fuzz::LimitAllocations(std::size_t bytes)
 {
   MostBytes = bytes;
-  __sanitizer_install_malloc_and_free_hooks([](const volatile void*, std::size_t count)
-    { CheckAllocation(count); },
-    [](const volatile void*) {});
+  const auto onMalloc = [](const volatile void*, std::size_t count)
+  {
+    if (!MayAllocate(count))
+    {
+      EndInLibrary(Stack());
+    }
+  };
+  __sanitizer_install_malloc_and_free_hooks(onMalloc, [](const volatile void*) {});
 }
 
 #else
@@ -258,19 +266,17 @@ extern "C"
 
   void* malloc(std::size_t bytes)
   {
-    fuzz::CheckAllocation(bytes);
-    return __libc_malloc(bytes);
+    return fuzz::MayAllocate(bytes) ? __libc_malloc(bytes) : nullptr;
   }
   void* calloc(std::size_t count, std::size_t bytes)
   {
     std::size_t all = 0;
-    fuzz::CheckAllocation(__builtin_mul_overflow(count, bytes, &all) ? SIZE_MAX : all);
-    return __libc_calloc(count, bytes);
+    const bool fits = !__builtin_mul_overflow(count, bytes, &all);
+    return fuzz::MayAllocate(fits ? all : SIZE_MAX) ? __libc_calloc(count, bytes) : nullptr;
   }
   void* realloc(void* old, std::size_t bytes)
   {
-    fuzz::CheckAllocation(bytes);
-    return __libc_realloc(old, bytes);
+    return fuzz::MayAllocate(bytes) ? __libc_realloc(old, bytes) : nullptr;
   }
 }
 

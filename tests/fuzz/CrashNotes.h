@@ -15,8 +15,8 @@ constexpr int EndedInLibrary = 76;
 /// C or C++ library is libhdf5's, the process ends with `codeForLibrary`; else as it would have without.
 void InstallCrashNotes(int codeForLibrary);
 
-/// From now on, an allocation of more bytes ends the process by SIGABRT, whatever library asks for it; or with
-/// `codeForLibrary`, where that is libhdf5.
+/// From now on, an allocation of more bytes ends the process by SIGABRT, whatever library asks for it. libhdf5 gets nothing
+/// then, and goes on; with a sanitizer, the process ends with `codeForLibrary`.
 void LimitAllocations(std::size_t bytes);
 
 /// The process ends by SIGABRT when it has used the processor for so many seconds from now, so that a busy machine makes
