@@ -223,6 +223,12 @@ void InstallCrashNotes(int codeForLibrary)
   }
 }
 
+void BlameLibrary(const char* what)
+{
+  Print(what);
+  EndInLibrary(Stack());
+}
+
 void LimitTime(unsigned seconds)
 {
   Inputs += seconds > 0 ? 1 : 0;

@@ -15,6 +15,9 @@ constexpr int EndedInLibrary = 76;
 /// C or C++ library is libhdf5's, the process ends with `codeForLibrary`; else as it would have without.
 void InstallCrashNotes(int codeForLibrary);
 
+/// Ends the process with `codeForLibrary` after printing what the HDF5 library did wrong.
+[[noreturn]] void BlameLibrary(const char* what);
+
 /// From now on, an allocation of more bytes ends the process by SIGABRT, whatever library asks for it. libhdf5 gets nothing
 /// then, and goes on; with a sanitizer, the process ends with `codeForLibrary`.
 void LimitAllocations(std::size_t bytes);

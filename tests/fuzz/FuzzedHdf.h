@@ -13,8 +13,7 @@
 namespace fuzz
 {
 
-/// CheckLevels of an HDF5 file, which may have values in the file "values.bin" beside it. Afterwards, nothing of it may
-/// be open in the library.
+/// CheckLevels of an HDF5 file, which may have values in the file "values.bin" beside it.
 inline void CheckHdf(const char* name, const std::uint8_t* bytes, std::size_t count)
 {
   static const bool isThere = []
@@ -29,9 +28,11 @@ inline void CheckHdf(const char* name, const std::uint8_t* bytes, std::size_t co
   CheckLevels(path);
   LimitTime(0);
   static_cast<void>(isThere);
+  // The readers close what they open; functions of the library that fail do not always, such as H5Ovisit. The next input
+  // must not find this one's file.
   if (H5Fget_obj_count(static_cast<hid_t>(H5F_OBJ_ALL), H5F_OBJ_ALL) > 0)
   {
-    Fail("objects of the file are still open in the HDF5 library");
+    BlameLibrary("objects of the file are still open\n");
   }
 }
 
