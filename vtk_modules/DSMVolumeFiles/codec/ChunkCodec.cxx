@@ -467,9 +467,11 @@ bool ChunkCodec::Decode(
   std::optional<Bytes> beside;
   // What was there before each step: at most so many bytes.
   std::vector<std::uint64_t> most{ bytes };
+  std::vector<std::uint64_t> mostBeside{ halo ? halo->size() : 0 };
   for (const CodecStep& step : this->Steps)
   {
     most.push_back(GetMost(step, most.back()));
+    mostBeside.push_back(GetMost(step, mostBeside.back()));
   }
   for (std::size_t step = this->Steps.size(); step-- > 0;)
   {
@@ -481,7 +483,7 @@ bool ChunkCodec::Decode(
       }
       if (beside)
       {
-        beside = Undo(this->Steps[step], std::move(*beside), halo->size());
+        beside = Undo(this->Steps[step], std::move(*beside), mostBeside[step]);
       }
       stored = Undo(this->Steps[step], std::move(stored), most[step]);
     }

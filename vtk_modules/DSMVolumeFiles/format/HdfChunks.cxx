@@ -89,6 +89,19 @@ haddr_t FindHdfValuesPlace(
   return first;
 }
 
+void CheckHdfCompact(hid_t dataset, const std::string& path, const std::string& name)
+{
+  const HdfHandle space(H5Dget_space(dataset), &H5Sclose);
+  const HdfHandle type(H5Dget_type(dataset), &H5Tclose);
+  const hssize_t count = H5Sget_simple_extent_npoints(space.Get());
+  const auto needed = MultiplyWithin(H5Dget_storage_size(dataset),
+    { static_cast<std::uint64_t>(std::max<hssize_t>(0, count)), H5Tget_size(type.Get()) });
+  if (count < 0 || !needed)
+  {
+    RefuseDamaged(path, name, "fewer values than its shape says");
+  }
+}
+
 std::optional<HdfChunkTable> FindHdfChunks(hid_t dataset, const PositionedFile& file,
   const std::string& name, const std::vector<hsize_t>& edges, const std::function<bool()>& goesOn)
 {

@@ -26,6 +26,10 @@ std::vector<hsize_t> GetHdfChunkEdges(
 haddr_t FindHdfValuesPlace(
   hid_t dataset, const PositionedFile& file, const FileArray& array, std::uint64_t frames);
 
+/// Throws dsm::Error where a dataset whose values are in its header has fewer of them than its shape says: the library
+/// would read beyond them.
+void CheckHdfCompact(hid_t dataset, const std::string& path, const std::string& name);
+
 /// Where the chunks of a dataset are. Nothing where the file has an index of another kind, or with other sizes of addresses:
 /// then only the library can read the values. Throws dsm::Error where the index is damaged, or `goesOn`, which is asked
 /// now and then, says no.

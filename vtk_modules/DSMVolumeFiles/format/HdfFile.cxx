@@ -472,6 +472,10 @@ private:
           !this->FindChunks(edges, properties.Get(), array, storage, dataset, values->Swapped);
         break;
       }
+      case H5D_COMPACT:
+        CheckHdfCompact(dataset.Id.Get(), this->Path, name);
+        dataset.ReadByLibrary = true;
+        break;
       default:
         dataset.ReadByLibrary = true;
     }
@@ -595,6 +599,8 @@ private:
       static_cast<hsize_t>(box.Min.y), static_cast<hsize_t>(box.Min.x), 0 };
     const hsize_t count[5] = { 1, static_cast<hsize_t>(size.z), static_cast<hsize_t>(size.y),
       static_cast<hsize_t>(size.x), components };
+    std::fill_n(
+      out, static_cast<std::size_t>(box.GetCount()) * array.GetSampleBytes(), std::byte(0));
     const std::size_t skipped = 1 - this->Kept[number].Shape.GetBeforeSpace();
     const HdfHandle part(H5Screate_simple(rank, count + skipped, nullptr), &H5Sclose);
     const bool isRead = H5Sselect_hyperslab(all.Get(), H5S_SELECT_SET, first + skipped, nullptr,

@@ -14,9 +14,16 @@ std::optional<HdfValues> FindValuesOfType(const HdfHandle& stored)
 {
   using Type = rt::ScalarType;
   const std::size_t bytes = H5Tget_size(stored.Get());
+  constexpr std::size_t mostOfIntegers = 8;
+  constexpr std::size_t mostOfFloats = 16;
+  const bool isFloat = H5Tget_class(stored.Get()) == H5T_FLOAT;
+  if (bytes == 0 || bytes > (isFloat ? mostOfFloats : mostOfIntegers))
+  {
+    return std::nullopt;
+  }
   HdfValues values;
   values.Swapped = bytes > 1 && H5Tget_order(stored.Get()) != H5Tget_order(H5T_NATIVE_INT);
-  if (H5Tget_class(stored.Get()) == H5T_FLOAT)
+  if (isFloat)
   {
     values.Type = bytes <= 4 ? Type::Float32 : Type::Float64;
   }
