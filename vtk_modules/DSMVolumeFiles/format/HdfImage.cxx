@@ -58,7 +58,7 @@ HdfImage HdfImage::Read(hid_t group, const std::string& path)
   {
     const long long first = extent[2 * axis];
     const long long last = extent[2 * axis + 1];
-    if (first < -farthest || last >= farthest || last < first || last - first >= farthest)
+    if (first < -farthest - 1 || last >= farthest || last < first || last - first >= farthest)
     {
       throw dsm::Error("'" + path + "' has an invalid header: its WholeExtent is " +
         std::to_string(first) + " to " + std::to_string(last) + " along " + "xyz"[axis] + ".");
