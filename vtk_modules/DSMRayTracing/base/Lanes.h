@@ -68,7 +68,17 @@ struct Lanes
   }
 
   double operator[](int axis) const { return axis < 2 ? this->Low[axis] : this->High[axis - 2]; }
-  void Set(int axis, double value) { (axis < 2 ? this->Low[axis] : this->High[axis - 2]) = value; }
+  void Set(int axis, double value)
+  {
+    if (axis < 2)
+    {
+      this->Low[axis] = value;
+    }
+    else
+    {
+      this->High[axis - 2] = value;
+    }
+  }
 
   double GetSum() const
   {

@@ -139,7 +139,7 @@ void IsosurfacePacketSearch<Store>::SearchBrick(
     }
     const IsovalueLevel<T> level(object.Isovalues[isovalue]);
     const TypedPacketBrick<T> surface(
-      voxels, level, this->Kernel.Macrocells.Get<T>(), progress.Rays.Forward);
+      voxels, level, this->Kernel.Macrocells.template Get<T>(), progress.Rays.Forward);
     PacketHits candidates;
     this->Kernel.SearchBrick(progress.Rays, progress.Meets, surface, brick.Lower, candidates);
     for (int number = 0; number < candidates.Count; ++number)
@@ -245,7 +245,7 @@ void IsosurfacePacketSearch<Store>::FindOccludedInBrick(
     }
     const IsovalueLevel<T> level(isovalue);
     const TypedPacketBrick<T> surface(
-      voxels, level, this->Kernel.Macrocells.Get<T>(), progress.Rays.Forward);
+      voxels, level, this->Kernel.Macrocells.template Get<T>(), progress.Rays.Forward);
     progress.Found |= this->Kernel.FindOccluded(progress.Rays, open, surface, brick.Lower);
   }
 }
