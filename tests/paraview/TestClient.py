@@ -2,11 +2,10 @@
 """A client that draws on a server. Called as TestClient.py PLUGIN OUTPUT PORT RANKS, where OUTPUT
 holds the pictures of TestViews.py."""
 
-import dsm_testing
 from dsm_testing import *
 
-PORT, RANKS = int(sys.argv[3]), int(sys.argv[4])
-simple.Connect("127.0.0.1", PORT)
+PORT, RANKS = sys.argv[3], int(sys.argv[4])
+connect(PORT)
 load_plugin()
 view = create_view()
 source = simple.Wavelet()
@@ -96,4 +95,3 @@ check(selections[0] > 3 and selections[0] == selections[1],
 simple.Delete(ball)
 simple.Delete(source)
 render(view)
-simple.Disconnect()

@@ -12,7 +12,7 @@ from vtkmodules.vtkFiltersCore import vtkFlyingEdges3D
 from vtkmodules.vtkImagingCore import vtkRTAnalyticSource
 
 if len(sys.argv) > 3:
-    simple.Connect("127.0.0.1", int(sys.argv[3]))
+    connect(sys.argv[3])
 load_plugin()
 view = create_view()
 wavelet = simple.Wavelet()

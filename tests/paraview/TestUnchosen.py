@@ -5,7 +5,7 @@ suggest one, it takes its place. ParaView's Python alone, or with a server at th
 from dsm_testing import *
 
 if len(sys.argv) > 3:
-    simple.Connect("127.0.0.1", int(sys.argv[3]))
+    connect(sys.argv[3])
 load_plugin()
 view = create_view()
 

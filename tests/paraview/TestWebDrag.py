@@ -12,7 +12,7 @@ except ImportError:
     sys.exit(77)
 
 if len(sys.argv) > 3:
-    simple.Connect("127.0.0.1", int(sys.argv[3]))
+    connect(sys.argv[3])
 load_plugin()
 view = create_view()
 display = show(simple.Wavelet(), view, [150.0], "RTData", DSMSamplesPerPixel=16)

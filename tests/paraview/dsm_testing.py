@@ -19,6 +19,12 @@ REPRESENTATION = "DSM Ray Traced"
 is_on_ranks = False  # the plugin, which outlives a session, and which ParaView 6.1 will not load there anew
 
 
+def connect(port):
+    """Connects to a server, unless a script before this one, in the same start of ParaView, has done so."""
+    if not servermanager.ActiveConnection.IsRemote():
+        simple.Connect("127.0.0.1", int(port))
+
+
 def load_plugin():
     global is_on_ranks
     if servermanager.ActiveConnection.IsRemote() and not is_on_ranks:

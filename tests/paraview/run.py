@@ -1,12 +1,107 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Called as `pvbatch run.py TestX.py PLUGIN OUTPUT`. Runs a test in a namespace of its own: ParaView
-executes programmable sources in that of the main script, where they replace names like `max`."""
+"""Runs test scripts in pvbatch or pvpython:
 
+    pvbatch run.py TestX.py PLUGIN OUTPUT ...       one script, by hand
+    pvbatch run.py --list LIST REPORT               all scripts of a list, in turn; run_scripts.py makes both files
+
+Each line of LIST has a script and its arguments, separated by tabs; @PORT@ stands for that of with_server.py's server. Each line of REPORT has a script's name, what became
+of it (begun, passed, failed or skipped), its time in seconds, and why it failed.
+
+A script runs in a namespace of its own, because ParaView executes programmable sources in that of the main script, where
+they replace names like `max`. Between two scripts the session is reset, which deletes sources, views and settings."""
+
+import gc
 import os
 import runpy
 import sys
+import time
+import traceback
 
 folder = os.path.dirname(os.path.abspath(sys.argv[0]))
 sys.path.insert(0, folder)
-sys.argv = sys.argv[1:]
-runpy.run_path(os.path.join(folder, sys.argv[0]))
+SKIPPED = 77  # CTest's SKIP_RETURN_CODE
+MEMORY = ("DSMMemoryOrganization", "DSMHostSharing", "DSMMemory", "DSMCacheSize", "DSMThreads", "DSMScheduler",
+          "DSMSilenceLimit", "DSMScratchDirectory", "DSMCoarserDataWhileMoving")
+
+
+def run(arguments):
+    """Runs a script as if it had been called with these arguments."""
+    sys.argv = arguments
+    runpy.run_path(os.path.join(folder, arguments[0]))
+
+
+def reset_memory(simple):
+    """Sets what a session's displays share back to its defaults: a reset leaves the session itself, which keeps them."""
+    view = simple.CreateRenderView()
+    sphere = simple.Sphere()
+    proxy = simple.Show(sphere, view).SMProxy
+    names = [name for name in MEMORY if proxy.GetProperty(name)]
+    if names:  # the plugin is loaded
+        simple.GetDisplayProperties(sphere, view).Representation = "DSM Ray Traced"
+        for name in names:
+            proxy.GetProperty(name).ResetToDefault()
+        proxy.UpdateVTKObjects()
+    simple.Delete(sphere)
+    simple.Delete(view)
+
+
+def reset_session(environment):
+    """Leaves nothing of a script: no proxy, setting, active object or environment variable."""
+    from paraview import servermanager, simple
+
+    gc.collect()  # proxies that only cycles of objects still refer to
+    simple.ResetSession()
+    reset_memory(simple)
+    # A script that loads the plugin itself has no settings page; a session that begins with the plugin has one.
+    proxies = servermanager.ProxyManager().SMProxyManager
+    page = proxies.GetProxy("settings", "DSMRayTracerSettings")
+    if page:
+        proxies.UnRegisterProxy("settings", "DSMRayTracerSettings", page)
+    if hasattr(simple, "_funcs_internals"):
+        simple._funcs_internals.first_render = True  # ParaView resets the camera before a script's first render
+    os.environ.clear()
+    os.environ.update(environment)
+
+
+def run_isolated(arguments):
+    """Returns what became of a script, and why it failed."""
+    import dsm_testing
+
+    dsm_testing.PLUGIN, dsm_testing.OUTPUT = arguments[1:3]
+    environment = dict(os.environ)
+    result = "passed", ""
+    try:
+        run(arguments)
+    except SystemExit as exit_:
+        if exit_.code == SKIPPED:
+            result = "skipped", ""
+        elif exit_.code not in (None, 0):
+            result = "failed", f"exit code {exit_.code}"
+    except BaseException as error:
+        traceback.print_exc()
+        result = "failed", f"{type(error).__name__}: {error}"
+        error.__traceback__ = None  # its frames have the script's proxies
+    reset_session(environment)
+    return result
+
+
+def run_list(scripts, report):
+    sys.argv = scripts[0]  # dsm_testing takes its folders from there
+    for arguments in scripts:
+        name = os.path.basename(arguments[0])
+        print(f"--- {name}", *arguments[1:], flush=True)
+        print(name, "begun", 0, "", sep="\t", file=report, flush=True)
+        start = time.monotonic()
+        result, reason = run_isolated(arguments)
+        seconds = f"{time.monotonic() - start:.2f}"
+        print(name, result, seconds, reason.replace("\n", " ").replace("\t", " "), sep="\t", file=report, flush=True)
+
+
+if sys.argv[1] == "--list":
+    with open(sys.argv[2], encoding="utf-8") as text:
+        read = text.read().replace("@PORT@", os.environ.get("DSM_TEST_PORT", "@PORT@"))
+    lines = [line.split("\t") for line in read.splitlines()]
+    with open(sys.argv[3], "a", encoding="utf-8") as text:
+        run_list(lines, text)
+else:
+    run(sys.argv[1:])

@@ -2,7 +2,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Starts a server on a free port and runs a client against it:
     with_server.py --server COMMAND... --client COMMAND...
-@PORT@ in the client's command stands for the port. Returns what the client returns; fails when the
+@PORT@ in the client's command stands for the port, which the client also has in the environment
+variable DSM_TEST_PORT. Returns what the client returns; fails when the
 server does not come up, or does not end by itself after the client has left. Nothing that either has
 started is left when this ends."""
 
@@ -40,7 +41,7 @@ def main():
         result = 1
         try:
             if wait_until_listening(server, log, 60):
-                result = subprocess.call(client_command)
+                result = subprocess.call(client_command, env={**os.environ, "DSM_TEST_PORT": str(port)})
                 result = result or server.wait(timeout=30)
             else:
                 print("the server did not come up")
