@@ -75,12 +75,15 @@ public:
   /// Lower left corner at (x, y), over the panel's colour.
   void Draw(rt::Picture& picture, int x, int y) const
   {
+    // The text's lower left corner: some fonts and sizes put it below 0.
+    const int* const first = this->Image->GetExtent();
     for (int row = 0; row < this->Size[1]; ++row)
     {
       for (int column = 0; column < this->Size[0]; ++column)
       {
         const auto* ink =
-          static_cast<const std::uint8_t*>(this->Image->GetScalarPointer(column, row, 0));
+          static_cast<const std::uint8_t*>(
+            this->Image->GetScalarPointer(first[0] + column, first[2] + row, 0));
         const glm::vec3 color = glm::vec3(ink[0], ink[1], ink[2]) / 255.0f;
         SetPixel(picture, x + column, y + row, glm::mix(PanelColor, color, ink[3] / 255.0f));
       }
