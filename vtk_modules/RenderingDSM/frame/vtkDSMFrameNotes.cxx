@@ -81,9 +81,8 @@ public:
     {
       for (int column = 0; column < this->Size[0]; ++column)
       {
-        const auto* ink =
-          static_cast<const std::uint8_t*>(
-            this->Image->GetScalarPointer(first[0] + column, first[2] + row, 0));
+        const auto* ink = static_cast<const std::uint8_t*>(
+          this->Image->GetScalarPointer(first[0] + column, first[2] + row, 0));
         const glm::vec3 color = glm::vec3(ink[0], ink[1], ink[2]) / 255.0f;
         SetPixel(picture, x + column, y + row, glm::mix(PanelColor, color, ink[3] / 255.0f));
       }
