@@ -108,26 +108,12 @@ start_ranks() {
     mpirun "${options[@]}" "$@"
 }
 
-# Names the skipped tests of a ctest run and counts all, from its JUnit file; fails unless some passed
-# and none failed.
+# Keeps all that tests say in ctest's JUnit file, where count_tests looks for the scripts and cases of a test.
+keep_output=(--test-output-size-passed 4000000 --test-output-size-failed 4000000)
+
+# Prints the slowest tests of a ctest run, those that were skipped, those that failed, and counts all, from its JUnit
+# file; fails unless some passed and none failed.
 count_tests() {
   [ -s "$1" ] || fail "ctest did not write $1"
-  python3 - "$1" <<'PYTHON'
-import sys
-import xml.etree.ElementTree as tree
-
-suite = tree.parse(sys.argv[1]).getroot()
-states = [case.get("status") for case in suite.iter("testcase")]
-skipped = sum(state in ("notrun", "disabled") for state in states)
-passed = states.count("run")
-failed = len(states) - passed - skipped
-for case in suite.iter("testcase"):
-    if case.get("status") in ("notrun", "disabled"):
-        print("skipped:", case.get("name"))
-    elif case.get("status") != "run":
-        said = (case.findtext("system-out") or "").split("\n")
-        print("failed:", case.get("name"), *[line for line in said if line.strip()][-12:], sep="\n  ")
-print(f"{passed} passed, {failed} failed, {skipped} skipped")
-sys.exit(0 if failed == 0 and passed > 0 else 1)
-PYTHON
+  python3 "$project/scripts/count_tests.py" "$1"
 }

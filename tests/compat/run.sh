@@ -87,7 +87,7 @@ cmake -S /project -B /build-$flavour -G Ninja -DCMAKE_BUILD_TYPE=Release \\
   ${options[*]} >>/log 2>&1
 cmake --build /build-$flavour >>/log 2>&1
 cd /build-$flavour
-ctest --parallel 2 --output-on-failure --output-junit /build-$flavour/tests.xml "\$@" || true
+ctest --parallel 2 --output-on-failure --output-junit /build-$flavour/tests.xml ${keep_output[*]} "\$@" || true
 INSIDE
 rm -f "$tree/build-$flavour/tests.xml"
 # shellcheck disable=SC2016

@@ -307,6 +307,10 @@ TEST(VolumeFiles, RangesOfSharesArePutTogether)
   const auto known = vol::LoadRanges(*file, 1, 0, whole, true);
   const auto found = vol::FindRanges(file, 1, 0, whole, 1, [](double) { return true; });
   ASSERT_TRUE(known);
+  ASSERT_TRUE(found);
+  ASSERT_FALSE(found->All.empty());
+  ASSERT_EQ(known->All.size(), found->All.size());
+  ASSERT_EQ(known->Finite.size(), found->Finite.size());
   for (std::size_t index = 0; index < found->All.size(); ++index)
   {
     EXPECT_EQ(known->All[index].Least, found->All[index].Least);
@@ -329,10 +333,13 @@ TEST(VolumeFiles, ScalarsAreThoseThatVtkTells)
       GTEST_SKIP() << "no files";
     }
     const auto file = Open(entry);
+    int active = 0;
     for (const vol::FileArray& array : file->GetArrays())
     {
       EXPECT_EQ(array.IsActive, array.Name == "g") << name;
+      active += array.IsActive ? 1 : 0;
     }
+    EXPECT_EQ(active, 1) << name;
   }
 }
 

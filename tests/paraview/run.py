@@ -33,30 +33,27 @@ def run(arguments):
 def reset_memory(simple):
     """Sets what a session's displays share back to its defaults: a reset leaves the session itself, which keeps them."""
     view = simple.CreateRenderView()
-    sphere = simple.Sphere()
-    proxy = simple.Show(sphere, view).SMProxy
-    names = [name for name in MEMORY if proxy.GetProperty(name)]
+    display = simple.Show(simple.Sphere(), view)
+    names = [name for name in MEMORY if display.SMProxy.GetProperty(name)]
     if names:  # the plugin is loaded
-        simple.GetDisplayProperties(sphere, view).Representation = "DSM Ray Traced"
+        display.Representation = "DSM Ray Traced"
         for name in names:
-            proxy.GetProperty(name).ResetToDefault()
-        proxy.UpdateVTKObjects()
-    simple.Delete(sphere)
-    simple.Delete(view)
+            display.SMProxy.GetProperty(name).ResetToDefault()
+        display.SMProxy.UpdateVTKObjects()
 
 
 def reset_session(environment):
     """Leaves nothing of a script: no proxy, setting, active object or environment variable."""
     from paraview import servermanager, simple
 
+    reset_memory(simple)
     gc.collect()  # proxies that only cycles of objects still refer to
     simple.ResetSession()
-    reset_memory(simple)
-    # A script that loads the plugin itself has no settings page; a session that begins with the plugin has one.
-    proxies = servermanager.ProxyManager().SMProxyManager
-    page = proxies.GetProxy("settings", "DSMRayTracerSettings")
+    # A session that begins with the plugin has a settings page, whose first look is not that of scripts without one.
+    page = servermanager.ProxyManager().SMProxyManager.GetProxy("settings", "DSMRayTracerSettings")
     if page:
-        proxies.UnRegisterProxy("settings", "DSMRayTracerSettings", page)
+        servermanager.vtkSMPropertyHelper(page, "DSMLook").Set(0)
+        page.UpdateVTKObjects()
     if hasattr(simple, "_funcs_internals"):
         simple._funcs_internals.first_render = True  # ParaView resets the camera before a script's first render
     os.environ.clear()

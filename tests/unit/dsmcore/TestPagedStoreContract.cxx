@@ -219,8 +219,14 @@ TEST(PagedStore, SegmentOutlivesItsStore)
       const auto segment =
         dsm_test::PublishPattern(messenger, *store, dsm_test::MakeDirectory(2, 6, 100));
       store.reset();
-      segment->ForEachResident([](dsm::BlockId id, const std::byte* block, std::size_t bytes)
-        { EXPECT_EQ(dsm_test::CountWrongBytes(id, block, bytes), 0u); });
+      int residents = 0;
+      segment->ForEachResident(
+        [&](dsm::BlockId id, const std::byte* block, std::size_t bytes)
+        {
+          ++residents;
+          EXPECT_EQ(dsm_test::CountWrongBytes(id, block, bytes), 0u);
+        });
+      EXPECT_EQ(residents, 3) << "each rank has its half";
     });
 }
 

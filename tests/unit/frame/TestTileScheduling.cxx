@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <memory>
 #include <mutex>
@@ -133,6 +134,45 @@ void Spin(double microseconds)
   }
 }
 
+/// How many tiles the ranks of a cluster have begun, for workers that wait for one another instead of for the clock.
+class Progress
+{
+public:
+  explicit Progress(int ranks)
+    : Begun(ranks)
+  {
+  }
+
+  void Begin(int rank) { ++this->Begun[rank]; }
+  int Get(int rank) const { return this->Begun[rank]; }
+
+  int GetLeast() const { return *std::min_element(this->Begun.begin(), this->Begun.end()); }
+  int GetSum() const
+  {
+    int sum = 0;
+    for (const std::atomic<int>& begun : this->Begun)
+    {
+      sum += begun;
+    }
+    return sum;
+  }
+
+  /// Waits for a condition; without end it would hide that a test fails.
+  template <class Condition>
+  static void WaitFor(const Condition& condition)
+  {
+    const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(20);
+    while (!condition() && std::chrono::steady_clock::now() < end)
+    {
+      std::this_thread::sleep_for(std::chrono::microseconds(50));
+    }
+    EXPECT_TRUE(condition());
+  }
+
+private:
+  std::vector<std::atomic<int>> Begun;
+};
+
 struct Case
 {
   rt::TileScheduling Scheduling;
@@ -239,8 +279,9 @@ TEST(TestTileScheduling, TheFirstCutIsFairAndWhole)
 
 TEST(TestTileScheduling, WithoutNeedARankKeepsItsTiles)
 {
+  Progress progress(2);
   RunOnCluster(2,
-    [](dsm::Messenger& messenger)
+    [&progress](dsm::Messenger& messenger)
     {
       Cluster cluster(messenger, rt::TileScheduling::WorkStealing, 1);
       rt::TilePlan plan;
@@ -251,12 +292,21 @@ TEST(TestTileScheduling, WithoutNeedARankKeepsItsTiles)
       {
         plan.Mine.push_back(tile);
       }
-      // Equal ranks, 32 tiles of 2 ms each: at the end one may steal, but of few that are left.
-      const auto mine = cluster.RunFrame(
-        plan, [](int) { std::this_thread::sleep_for(std::chrono::milliseconds(2)); });
+      // Equal ranks: neither is more than a tile ahead of the other, so that few are left to steal at the end.
+      const int rank = messenger.GetRank();
+      const auto mine = cluster.RunFrame(plan,
+        [&](int)
+        {
+          progress.Begin(rank);
+          Progress::WaitFor(
+            [&] {
+              return progress.Get(1 - rank) + 1 >= progress.Get(rank) ||
+                progress.GetSum() >= plan.Tiles;
+            });
+        });
       const auto changed = std::count_if(
         mine.begin(), mine.end(), [&](int tile) { return tile % 2 != messenger.GetRank(); });
-      EXPECT_LE(changed, 16);
+      EXPECT_LE(changed, 2);
       cluster.ExpectAllTilesOnce(mine, plan.Tiles);
     });
 }
@@ -305,8 +355,9 @@ TEST(TestTileScheduling, PeekTellsWhatPopGivesLater)
 
 TEST(TestTileScheduling, AnIdleRankSteals)
 {
+  Progress progress(3);
   RunOnCluster(3,
-    [](dsm::Messenger& messenger)
+    [&progress](dsm::Messenger& messenger)
     {
       Cluster cluster(messenger, rt::TileScheduling::WorkStealing, 1);
       rt::TilePlan plan;
@@ -317,9 +368,18 @@ TEST(TestTileScheduling, AnIdleRankSteals)
       {
         plan.Mine.push_back(tile);
       }
-      const auto mine = cluster.RunFrame(
-        plan, [](int) { std::this_thread::sleep_for(std::chrono::milliseconds(1)); });
-      EXPECT_GT(mine.size(), 30u) << "all had something to do";
+      // A rank that has had a tenth waits until the others have, too: without stealing, none of them would.
+      constexpr int tenth = 30;
+      const auto mine = cluster.RunFrame(plan,
+        [&](int)
+        {
+          progress.Begin(messenger.GetRank());
+          if (progress.Get(messenger.GetRank()) > tenth)
+          {
+            Progress::WaitFor([&] { return progress.GetLeast() > tenth; });
+          }
+        });
+      EXPECT_GT(mine.size(), static_cast<std::size_t>(tenth)) << "all had something to do";
       cluster.ExpectAllTilesOnce(mine, plan.Tiles);
     });
 }
