@@ -13,7 +13,7 @@ sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), ".."
 import started
 
 ROUNDS = 10
-LARGEST_RATIO = 1.15  # of times to draw; of the same thing twice, they differ as much on a busy machine
+LARGEST_RATIO = 1.15  # of processor times to draw; those of the same thing twice differ as much on a busy machine
 LARGEST_GROWTH = 5 * 1024  # KiB
 
 
@@ -82,15 +82,15 @@ def draw_moving(view):
 
 
 def compare_times(draw, view, other):
-    """How much longer it takes to draw a view than another, in turn."""
+    """How much more processor time it takes to draw a view than another, in turn."""
     taken = {view: [], other: []}
     for number in range(2 * ROUNDS):
         # Each comes as often after the other as after itself.
         drawn = (view, other, other, view)[number % 4]
-        start = time.perf_counter()
+        start = time.process_time()
         draw(drawn)
-        taken[drawn].append(time.perf_counter() - start)
-    # The quicker half: the machine may do other things, too.
+        taken[drawn].append(time.process_time() - start)
+    # The quicker half: caches are cold now and then.
     quick = {drawn: statistics.mean(sorted(times)[: len(times) // 2]) for drawn, times in taken.items()}
     return quick[view] / quick[other], 1000 * quick[view]
 

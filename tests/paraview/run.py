@@ -4,8 +4,8 @@
     pvbatch run.py TestX.py PLUGIN OUTPUT ...       one script, by hand
     pvbatch run.py --list LIST REPORT               all scripts of a list, in turn; run_scripts.py makes both files
 
-Each line of LIST has a script and its arguments, separated by tabs; @PORT@ stands for that of with_server.py's server. Each line of REPORT has a script's name, what became
-of it (begun, passed, failed or skipped), its time in seconds, and why it failed.
+Each line of LIST has a script and its arguments, separated by tabs; @PORT@ stands for that of the server. Each line of
+REPORT has what became of a script (begun, passed, failed or skipped), its time in seconds, and why it failed.
 
 A script runs in a namespace of its own, because ParaView executes programmable sources in that of the main script, where
 they replace names like `max`. Between two scripts the session is reset, which deletes sources, views and settings."""
@@ -87,11 +87,11 @@ def run_list(scripts, report):
     for arguments in scripts:
         name = os.path.basename(arguments[0])
         print(f"--- {name}", *arguments[1:], flush=True)
-        print(name, "begun", 0, "", sep="\t", file=report, flush=True)
+        print("begun", 0, "", sep="\t", file=report, flush=True)
         start = time.monotonic()
         result, reason = run_isolated(arguments)
         seconds = f"{time.monotonic() - start:.2f}"
-        print(name, result, seconds, reason.replace("\n", " ").replace("\t", " "), sep="\t", file=report, flush=True)
+        print(result, seconds, reason.replace("\n", " ").replace("\t", " "), sep="\t", file=report, flush=True)
 
 
 if sys.argv[1] == "--list":

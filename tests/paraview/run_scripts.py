@@ -25,25 +25,29 @@ from started import end_descendants, ended_with_this
 Result = collections.namedtuple("Result", "name state seconds reason")
 
 
-def get_name(path):
-    """Volumes, of TestVolumes.py."""
+def get_name(script):
+    """Volumes, of TestVolumes.py; of a script of several cases, the one that `--case` tells."""
+    path = script[script.index("--case") + 1] if "--case" in script else script[0]
     return os.path.splitext(os.path.basename(path))[0].removeprefix("Test")
 
 
-def read_report(path):
+def read_report(path, scripts):
+    """The results of the scripts that have ended, and how many have begun."""
     with open(path, encoding="utf-8") as text:
         lines = [line.split("\t") for line in text if line.endswith("\n")]
-    return [Result(get_name(name), state, float(seconds), reason.strip()) for name, state, seconds, reason in lines]
+    ended = [line for line in lines if line[0] != "begun"]
+    results = [Result(get_name(script), state, float(seconds), reason.strip())
+               for script, (state, seconds, reason) in zip(scripts, ended)]
+    return results, len(lines) - len(ended)
 
 
-def watch(process, report, limit):
-    """Waits for ParaView's end, at most `limit` seconds for each script. Returns the number of scripts begun and the
-    reason why the last one ended ParaView, if it did."""
+def watch(process, report, scripts, limit):
+    """Waits for ParaView's end, at most `limit` seconds for each script. Returns how many scripts were begun, and how
+    ParaView ended."""
     begun, since = 0, time.monotonic()
     while True:
         ended = process.poll() is not None
-        events = read_report(report)
-        count = sum(event.state == "begun" for event in events)
+        count = read_report(report, scripts)[1]
         if count != begun:
             begun, since = count, time.monotonic()
         if ended:
@@ -61,7 +65,7 @@ def pass_on(stream, tail):
 
 
 def fail(script, reason, tail):
-    return Result(get_name(script[0]), "failed", 0.0, "\n  ".join([reason + ":", *tail]))
+    return Result(get_name(script), "failed", 0.0, "\n  ".join([reason + ":", *tail]))
 
 
 def run_once(scripts, command, limit, folder):
@@ -70,12 +74,12 @@ def run_once(scripts, command, limit, folder):
     with open(paths["@LIST@"], "w", encoding="utf-8") as text:
         text.writelines("\t".join(script) + "\n" for script in scripts)
     open(paths["@REPORT@"], "w", encoding="utf-8").close()
-    tail = collections.deque(maxlen=8)
+    tail = collections.deque(maxlen=15)
     process = subprocess.Popen([paths.get(word, word) for word in command], stdout=subprocess.PIPE,
                                stderr=subprocess.STDOUT, text=True, errors="replace")
     reader = threading.Thread(target=pass_on, args=(process.stdout, tail), daemon=True)
     reader.start()
-    begun, reason = watch(process, paths["@REPORT@"], limit)
+    begun, reason = watch(process, paths["@REPORT@"], scripts, limit)
     if process.poll() is None:
         process.terminate()  # with_server.py tells what its server said
         try:
@@ -85,7 +89,7 @@ def run_once(scripts, command, limit, folder):
         end_descendants(5)
         process.wait()
     reader.join(timeout=5)
-    results = [event for event in read_report(paths["@REPORT@"]) if event.state != "begun"]
+    results = read_report(paths["@REPORT@"], scripts)[0]
     if begun > len(results):
         results.append(fail(scripts[begun - 1], reason, tail))
     elif not results:
@@ -101,7 +105,7 @@ def main():
         scripts = [line.rstrip("\n").split("\t") for line in text if line.strip()]
     chosen = os.environ.get("DSM_TEST_SCRIPTS", "").replace(",", " ").split()
     if chosen:
-        scripts = [script for script in scripts if get_name(script[0]) in chosen]
+        scripts = [script for script in scripts if get_name(script) in chosen]
         if not scripts:
             print("none of the scripts has a name in DSM_TEST_SCRIPTS")
             return 77
@@ -116,7 +120,7 @@ def main():
             if result.state != "failed":
                 print(f"script {result.name}: {result.state} in {result.seconds:.2f} s")
         for script in scripts[len(results):]:
-            print(f"script {get_name(script[0])}: failed: the test ended before")
+            print(f"script {get_name(script)}: failed: the test ended before")
         for result in results:
             if result.state == "failed":
                 print(f"script {result.name}: failed: {result.reason}")
