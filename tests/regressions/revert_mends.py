@@ -12,29 +12,32 @@ meanwhile. The test must pass before the fault is there, and fail with it. Exits
 import argparse
 import collections
 import os
+import signal
 import subprocess
 import sys
 
 ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
-# What was mended, where; the text as it is, and with the fault; the programs to build; the test; and the scripts of it
-# that are enough (DSM_TEST_SCRIPTS).
-Mend = collections.namedtuple("Mend", "what path text fault targets test scripts", defaults=("",))
+# What was mended, where; the text as it is, and with the fault; the programs to build; the test; and the cases or scripts
+# of it that are enough (GTEST_FILTER, DSM_TEST_SCRIPTS).
+Mend = collections.namedtuple("Mend", "what path text fault targets test cases", defaults=("",))
 VOLUME_FILES = ["files_TestVolumeFiles"], "files.VolumeFiles"
 MENDS = (
     # DSMCore
     Mend("ulimit -f ended a rank by a signal", "vtk_modules/DSMCore/memory/HostSharedMemory.cxx",
-         "if (fileBytes > GetMostFileBytes())", "if (fileBytes > RLIM_INFINITY)", ["unit_dsmcore"], "unit.dsmcore"),
+         "if (fileBytes > GetMostFileBytes())", "if (fileBytes > RLIM_INFINITY)", ["unit_dsmcore"], "unit.dsmcore",
+         "*Sharing*:*Host*"),
     Mend("one owner's blocks were all copied by one rank of a host", "vtk_modules/DSMCore/publish/HostGroups.h",
-         "return id / this->GroupOf.size() % members;", "return id % members;", ["unit_dsmcore"], "unit.dsmcore"),
+         "return id / this->GroupOf.size() % members;", "return id % members;", ["unit_dsmcore"], "unit.dsmcore", "*Sharing*:*Host*"),
     Mend("blocks that come from a file were counted as resident", "vtk_modules/DSMCore/publish/BlockDirectory.cxx",
          "this->GetOwner(id) == owner && !this->FromSource", "this->GetOwner(id) == owner", ["unit_dsmcore"],
-         "unit.dsmcore"),
+         "unit.dsmcore", "*Source*:*Disk*:*Scratch*:*Directory*"),
     # DSMRayTracing
     Mend("a rank's last tile was stolen", "vtk_modules/DSMRayTracing/schedule/WorkStealingScheduler.cxx",
          "this->TakeFromEnd(this->Own.size() / 2)", "this->TakeFromEnd((this->Own.size() + 1) / 2)", ["unit_frame"],
-         "unit.frame"),
+         "unit.frame", "*Scheduling*"),
     Mend("lights that differ between ranks were not noticed", "vtk_modules/DSMRayTracing/frame/SceneDigest.cxx",
-         "    Add(digest, light);", "    digest.Add(light.Type);", ["unit_frame"], "unit.frame"),
+         "    Add(digest, light);", "    digest.Add(light.Type);", ["unit_frame"], "unit.frame",
+         "*Digest*"),
     Mend("triangles whose corners are nowhere got a place in the order", "vtk_modules/DSMRayTracing/build/TriangleCells.cxx",
          "canBeHit ? order.GetOfTriangle(corners) : NoCode", "canBeHit ? order.GetOfTriangle(corners) : 0",
          ["unit_mesh"], "unit.mesh"),
@@ -78,7 +81,9 @@ def build(folder, targets):
 
 def passes(folder, mend):
     """Whether the test passes; None where there is no such test."""
-    environment = {**os.environ, "DSM_TEST_SCRIPTS": mend.scripts}
+    environment = dict(os.environ)
+    if mend.cases:
+        environment["DSM_TEST_SCRIPTS" if "Scripts" in mend.test else "GTEST_FILTER"] = mend.cases
     pattern = f"^{mend.test}$".replace(".", "[.]")
     run = subprocess.run(["ctest", "--test-dir", folder, "-R", pattern, "--no-tests=error"], env=environment,
                          stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, check=False)
@@ -113,12 +118,13 @@ def main():
     parser.add_argument("--build", default=os.path.join(ROOT, "build"))
     parser.add_argument("numbers", type=int, nargs="*", metavar="NUMBER")
     arguments = parser.parse_args()
+    signal.signal(signal.SIGTERM, lambda *_: sys.exit(1))  # so that sources are put back
     wrong = 0
     for number in arguments.numbers or range(1, len(MENDS) + 1):
         mend = MENDS[number - 1]
         answer = try_out(arguments.build, mend)
         wrong += answer is not None
-        print(f"{number}: {mend.what}: {answer or 'found by ' + ' '.join([mend.test, mend.scripts]).strip()}", flush=True)
+        print(f"{number}: {mend.what}: {answer or 'found by ' + ' '.join([mend.test, mend.cases]).strip()}", flush=True)
     print("every fault is found" if wrong == 0 else f"{wrong} are not")
     return 1 if wrong else 0
 
