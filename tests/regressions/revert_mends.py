@@ -23,11 +23,11 @@ Mend = collections.namedtuple("Mend", "what path text fault targets test cases",
 VOLUME_FILES = ["files_TestVolumeFiles"], "files.VolumeFiles"
 MENDS = (
     # DSMCore
-    Mend("ulimit -f ended a rank by a signal", "vtk_modules/DSMCore/memory/HostSharedMemory.cxx",
-         "if (fileBytes > GetMostFileBytes())", "if (fileBytes > RLIM_INFINITY)", ["unit_dsmcore"], "unit.dsmcore",
-         "*Sharing*:*Host*"),
-    Mend("one owner's blocks were all copied by one rank of a host", "vtk_modules/DSMCore/publish/HostGroups.h",
-         "return id / this->GroupOf.size() % members;", "return id % members;", ["unit_dsmcore"], "unit.dsmcore", "*Sharing*:*Host*"),
+    Mend("ulimit -f ended a rank by a signal", "vtk_modules/DSMCore/memory/ScratchFile.cxx",
+         "GetMostFileBytes()", "RLIM_INFINITY", ["unit_dsmcore"], "unit.dsmcore",
+         "*Scratch*"),
+    Mend("blocks of more than 4 GiB on a rank were counted wrongly", "vtk_modules/DSMCore/publish/BlockDirectory.cxx",
+         "std::uint64_t sum = 0;", "std::uint32_t sum = 0;", ["unit_dsmcore"], "unit.dsmcore", "*Directory*"),
     Mend("blocks that come from a file were counted as resident", "vtk_modules/DSMCore/publish/BlockDirectory.cxx",
          "this->GetOwner(id) == owner && !this->FromSource", "this->GetOwner(id) == owner", ["unit_dsmcore"],
          "unit.dsmcore", "*Source*:*Disk*:*Scratch*:*Directory*"),
@@ -44,8 +44,9 @@ MENDS = (
     # DSMVolumeFiles
     Mend("the sign of a MetaImage's spacing counted", "vtk_modules/DSMVolumeFiles/format/MetaImageFile.cxx",
          "step = std::abs(step);", "step = step + 0.0 * std::abs(step);", *VOLUME_FILES),
-    Mend("a MetaImage that ends with its header was read", "vtk_modules/DSMVolumeFiles/format/MetaImageFile.cxx",
-         "if (file.eof())", "if (false)", *VOLUME_FILES),
+    Mend("the values of an NRRD were looked for before the end of its header",
+         "vtk_modules/DSMVolumeFiles/format/NrrdFile.cxx", "values.Offset += values.Offset < 0 ? 0 : values.Least;",
+         "values.Offset += 0;", *VOLUME_FILES),
     Mend("HeaderSize did not count where values follow a MetaImage's header",
          "vtk_modules/DSMVolumeFiles/format/MetaImageFile.cxx",
          "values.Offset = values.Offset == 0 ? values.Least : values.Offset;", "values.Offset = values.Least;",
