@@ -79,7 +79,14 @@ def run_once(scripts, command, limit, folder):
                                stderr=subprocess.STDOUT, text=True, errors="replace")
     reader = threading.Thread(target=pass_on, args=(process.stdout, tail), daemon=True)
     reader.start()
-    begun, reason = watch(process, paths["@REPORT@"], scripts, limit)
+    try:
+        begun, reason = watch(process, paths["@REPORT@"], scripts, limit)
+    except SystemExit:  # the test's own time is over
+        results, begun = read_report(paths["@REPORT@"], scripts)
+        for result in results:
+            print(f"script {result.name}: {result.state} in {result.seconds:.2f} s {result.reason}")
+        print(f"in the middle of {get_name(scripts[max(begun, 1) - 1])}:", *tail, sep="\n  ", flush=True)
+        raise
     if process.poll() is None:
         process.terminate()  # with_server.py tells what its server said
         try:
