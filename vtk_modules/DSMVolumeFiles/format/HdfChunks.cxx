@@ -131,12 +131,24 @@ std::optional<HdfChunkTable> FindHdfChunks(hid_t dataset, const PositionedFile& 
   }
   constexpr std::size_t oftenEnough = 1 << 14;
   bool isStopped = false;
+  const HdfHandle properties(H5Dget_create_plist(dataset), &H5Pclose);
+  const bool isFiltered = H5Pget_nfilters(properties.Get()) != 0;
+  std::uint64_t plainBytes = 1;
+  for (const std::uint64_t edge : layout->Edges) // the last one is the bytes of a sample
+  {
+    plainBytes = MultiplyWithin(UINT32_MAX, { plainBytes, edge }).value_or(0);
+  }
   HdfChunkTable table;
   const bool isRight = std::equal(edges.begin(), edges.end(), layout->Edges.begin(),
                          layout->Edges.end() - (layout->Edges.empty() ? 0 : 1)) &&
     HdfChunkIndex::Read(file, *layout, { most.begin(), most.end() },
       [&](const std::uint64_t* place, const HdfChunk& chunk)
       {
+        // The library reads beyond the bytes of a chunk that has too few.
+        if (!isFiltered && chunk.Bytes != plainBytes)
+        {
+          return false;
+        }
         std::uint64_t number = 0;
         for (std::size_t axis = 0; axis < edges.size(); ++axis)
         {

@@ -564,15 +564,15 @@ private:
       return false;
     }
     const std::size_t z = dataset.Shape.GetBeforeSpace();
-    if (dataset.Shape.Components > 0 && edges[z + 3] != dataset.Shape.Components)
-    {
-      return false;
-    }
     // A chunk may have several times.
     const hsize_t times = z > 0 ? edges[0] : 1;
     CheckSizes(this->Path, array, times);
     storage.Slices = static_cast<std::size_t>(times);
     dataset.Chunks = FindHdfChunks(dataset.Id.Get(), *this->Bytes, array.Name, edges, this->GoesOn);
+    if (dataset.Shape.Components > 0 && edges[z + 3] != dataset.Shape.Components)
+    {
+      dataset.Chunks.reset();
+    }
     if (dataset.Chunks && swapped)
     {
       dataset.Chunks->AddFilterInFront();
@@ -590,22 +590,11 @@ private:
     const HdfSilence silence;
     const FileArray& array = this->Arrays[number];
     const hid_t dataset = this->Kept[number].Id.Get();
-    const rt::Box box = array.Grid.GetBox(chunk);
-    const rt::Index3 size = box.GetSize();
-    const HdfHandle all(H5Dget_space(dataset), &H5Sclose);
-    const int rank = H5Sget_simple_extent_ndims(all.Get());
-    const auto components = static_cast<hsize_t>(array.Components);
-    const hsize_t first[5] = { this->Kept[number].GetFrame(step), static_cast<hsize_t>(box.Min.z),
-      static_cast<hsize_t>(box.Min.y), static_cast<hsize_t>(box.Min.x), 0 };
-    const hsize_t count[5] = { 1, static_cast<hsize_t>(size.z), static_cast<hsize_t>(size.y),
-      static_cast<hsize_t>(size.x), components };
-    std::fill_n(
-      out, static_cast<std::size_t>(box.GetCount()) * array.GetSampleBytes(), std::byte(0));
-    const std::size_t skipped = 1 - this->Kept[number].Shape.GetBeforeSpace();
-    const HdfHandle part(H5Screate_simple(rank, count + skipped, nullptr), &H5Sclose);
-    const bool isRead = H5Sselect_hyperslab(all.Get(), H5S_SELECT_SET, first + skipped, nullptr,
-                          count + skipped, nullptr) >= 0 &&
-      H5Dread(dataset, GetHdfType(array.Type), part.Get(), all.Get(), H5P_DEFAULT, out) >= 0;
+    const Dataset& kept = this->Kept[number];
+    const std::optional<std::size_t> frame =
+      kept.Shape.Frames > 0 ? std::optional<std::size_t>(kept.GetFrame(step)) : std::nullopt;
+    const bool isRead =
+      ReadHdfBox(dataset, array.Type, array.Components, frame, array.Grid.GetBox(chunk), out);
     this->Bytes->CheckUnchanged();
     this->Origins.CheckUnchanged();
     if (!isRead)

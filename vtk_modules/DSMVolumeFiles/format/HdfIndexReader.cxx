@@ -75,7 +75,8 @@ std::optional<HdfBytes> HdfIndexReader::ReadPage(std::uint64_t offset, std::uint
 
 bool HdfIndexReader::Add(const std::uint64_t* place, const HdfChunk& chunk)
 {
-  return chunk.First <= this->File.GetBytes() && this->Tell(place, chunk);
+  const std::uint64_t bytes = this->File.GetBytes();
+  return chunk.First <= bytes && chunk.Bytes <= bytes - chunk.First && this->Tell(place, chunk);
 }
 
 bool HdfIndexReader::AddNumbered(std::uint64_t number, const HdfChunk& chunk)

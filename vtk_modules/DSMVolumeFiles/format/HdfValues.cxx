@@ -79,6 +79,25 @@ std::vector<std::byte> GetHdfFill(hid_t dataset, rt::ScalarType type, int compon
   return all;
 }
 
+bool ReadHdfBox(hid_t dataset, rt::ScalarType type, int components,
+  std::optional<std::size_t> frame, const rt::Box& box, std::byte* out)
+{
+  const rt::Index3 size = box.GetSize();
+  const hsize_t first[5] = { frame.value_or(0), static_cast<hsize_t>(box.Min.z),
+    static_cast<hsize_t>(box.Min.y), static_cast<hsize_t>(box.Min.x), 0 };
+  const hsize_t count[5] = { 1, static_cast<hsize_t>(size.z), static_cast<hsize_t>(size.y),
+    static_cast<hsize_t>(size.x), static_cast<hsize_t>(components) };
+  const std::size_t sampleBytes = rt::GetBytes(type) * static_cast<std::size_t>(components);
+  std::fill_n(out, static_cast<std::size_t>(box.GetCount()) * sampleBytes, std::byte(0));
+  const HdfHandle all(H5Dget_space(dataset), &H5Sclose);
+  const int axes = H5Sget_simple_extent_ndims(all.Get());
+  const std::size_t skipped = frame ? 0 : 1;
+  const HdfHandle part(H5Screate_simple(axes, count + skipped, nullptr), &H5Sclose);
+  return H5Sselect_hyperslab(
+           all.Get(), H5S_SELECT_SET, first + skipped, nullptr, count + skipped, nullptr) >= 0 &&
+    H5Dread(dataset, GetHdfType(type), part.Get(), all.Get(), H5P_DEFAULT, out) >= 0;
+}
+
 bool FindHdfSteps(hid_t properties, std::vector<CodecStep>& steps)
 {
   const int count = H5Pget_nfilters(properties);

@@ -2,6 +2,7 @@
 #ifndef vol_HdfValues_h
 #define vol_HdfValues_h
 
+#include "DSMRayTracing/base/Box.h"
 #include "DSMRayTracing/base/ScalarType.h"
 #include "DSMVolumeFiles/codec/ChunkCodec.h"
 #include "DSMVolumeFiles/format/HdfLibrary.h"
@@ -28,6 +29,11 @@ std::optional<HdfValues> FindHdfValues(hid_t dataset);
 
 /// What a sample of a dataset has where nothing was written.
 std::vector<std::byte> GetHdfFill(hid_t dataset, rt::ScalarType type, int components);
+
+/// Reads the samples of a box, dense and x fastest, by the library. `frame`: along a first axis of time, where there is one.
+/// Returns false, and `out` has zeros where nothing was read, when the library cannot.
+bool ReadHdfBox(hid_t dataset, rt::ScalarType type, int components,
+  std::optional<std::size_t> frame, const rt::Box& box, std::byte* out);
 
 /// The filters that a dataset with these properties has, as steps of ours. False when one is not known here.
 bool FindHdfSteps(hid_t properties, std::vector<CodecStep>& steps);
