@@ -6,22 +6,35 @@
 namespace vol
 {
 
+void HdfChunkTable::Reserve(std::uint64_t count)
+{
+  constexpr std::uint64_t most = 1 << 20; // the count may be wrong
+  this->Entries.reserve(static_cast<std::size_t>(std::min(count, most)));
+}
+
 void HdfChunkTable::Add(std::uint64_t number, const HdfChunk& chunk)
 {
+  this->IsSorted =
+    this->Entries.empty() || (this->IsSorted && this->Entries.back().Number < number);
   this->Entries.push_back({ number, chunk });
 }
 
 bool HdfChunkTable::Sort()
 {
-  const auto isBefore = [](const Entry& a, const Entry& b) { return a.Number < b.Number; };
-  if (!std::is_sorted(this->Entries.begin(), this->Entries.end(), isBefore))
+  if (this->Entries.size() < this->Entries.capacity() / 2)
   {
-    std::sort(this->Entries.begin(), this->Entries.end(), isBefore);
+    this->Entries.shrink_to_fit();
   }
-  this->Entries.shrink_to_fit();
-  return std::adjacent_find(this->Entries.begin(), this->Entries.end(),
-           [](const Entry& a, const Entry& b)
-           { return a.Number == b.Number; }) == this->Entries.end();
+  if (this->IsSorted)
+  {
+    return true;
+  }
+  std::sort(this->Entries.begin(), this->Entries.end(),
+    [](const Entry& a, const Entry& b) { return a.Number < b.Number; });
+  this->IsSorted =
+    std::adjacent_find(this->Entries.begin(), this->Entries.end(),
+      [](const Entry& a, const Entry& b) { return a.Number == b.Number; }) == this->Entries.end();
+  return this->IsSorted;
 }
 
 const HdfChunk* HdfChunkTable::Find(std::uint64_t number) const

@@ -16,6 +16,8 @@ namespace vol
 class HdfChunkTable
 {
 public:
+  /// Probably so many will be added.
+  void Reserve(std::uint64_t count);
   /// In any order. `number`: along the dataset's axes, of which the last one is the fastest.
   void Add(std::uint64_t number, const HdfChunk& chunk);
   /// After the last one was added. Returns false where a chunk was added twice.
@@ -34,7 +36,8 @@ private:
     std::uint64_t Number;
     HdfChunk Chunk;
   };
-  std::vector<Entry> Entries; ///< in the order of their numbers
+  std::vector<Entry> Entries; ///< in the order of their numbers, once they are sorted
+  bool IsSorted = true;       ///< and no number is there twice
 };
 
 } // namespace vol

@@ -139,6 +139,8 @@ std::optional<HdfChunkTable> FindHdfChunks(hid_t dataset, const PositionedFile& 
     plainBytes = MultiplyWithin(UINT32_MAX, { plainBytes, edge }).value_or(0);
   }
   HdfChunkTable table;
+  // Each takes at least an address in the index.
+  table.Reserve(std::min(all, file.GetBytes() / sizeof(std::uint64_t)));
   const bool isRight = std::equal(edges.begin(), edges.end(), layout->Edges.begin(),
                          layout->Edges.end() - (layout->Edges.empty() ? 0 : 1)) &&
     HdfChunkIndex::Read(file, *layout, { most.begin(), most.end() },
@@ -160,8 +162,11 @@ std::optional<HdfChunkTable> FindHdfChunks(hid_t dataset, const PositionedFile& 
         }
         table.Add(number, chunk);
         isStopped = table.GetCount() % oftenEnough == 0 && goesOn && !goesOn();
-        CheckLimit(file.GetPath(), "chunks of the dataset '" + name + "'", table.GetCount(),
-          FileLimits::Chunks);
+        if (table.GetCount() > FileLimits::Chunks)
+        {
+          CheckLimit(file.GetPath(), "chunks of the dataset '" + name + "'", table.GetCount(),
+            FileLimits::Chunks);
+        }
         return !isStopped;
       }) &&
     table.Sort();
