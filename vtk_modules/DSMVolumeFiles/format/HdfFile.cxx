@@ -2,12 +2,12 @@
 #include "DSMVolumeFiles/format/HdfFile.h"
 
 #include "DSMCore/base/Error.h"
-#include "DSMRayTracing/build/VoxelIndex.h"
 #include "DSMVolumeFiles/base/FileLimits.h"
 #include "DSMVolumeFiles/base/ReadingManner.h"
 #include "DSMVolumeFiles/codec/HaloRecord.h"
 #include "DSMVolumeFiles/format/BareFile.h"
 #include "DSMVolumeFiles/format/HdfAxes.h"
+#include "DSMVolumeFiles/format/HdfBrickIndex.h"
 #include "DSMVolumeFiles/format/HdfChunks.h"
 #include "DSMVolumeFiles/format/HdfImage.h"
 #include "DSMVolumeFiles/format/HdfLibrary.h"
@@ -100,19 +100,7 @@ public:
   {
     const std::lock_guard<std::mutex> lock(GetHdfLock());
     const HdfSilence silence;
-    Index index;
-    const HdfHandle group = this->OpenIndex(this->Arrays[array]);
-    const HdfHandle all(H5Gopen2(this->Root, "DSM", H5P_DEFAULT), &H5Gclose);
-    if (group.IsOpen() && all.IsOpen() &&
-      ReadHdfAttribute(all.Get(), "BrickEdge", H5T_NATIVE_INT, &index.BrickEdge, 1))
-    {
-      const FileArray& what = this->Arrays[array];
-      ReadHdfWhole(group.Get(), "ValueRanges", H5T_NATIVE_DOUBLE,
-        4 * (static_cast<std::uint64_t>(what.Components) + 1), index.Ranges);
-      ReadHdfWhole(group.Get(), "BrickIndex", H5T_NATIVE_UCHAR,
-        this->CountIndexBytes(what, index.BrickEdge), index.Bricks);
-    }
-    return index;
+    return ReadHdfBrickIndex(this->Root, this->Arrays[array], this->Bytes->GetBytes());
   }
 
   std::vector<std::string> GetFiles(int) const override
@@ -243,33 +231,6 @@ private:
       this->Coarser.emplace(H5Gopen2(this->Root, name.c_str(), H5P_DEFAULT), &H5Gclose);
       this->Root = this->Coarser->Get();
     }
-  }
-
-  /// What a brick file has beside an array's values; not open where there is nothing.
-  HdfHandle OpenIndex(const FileArray& array) const
-  {
-    const std::string name =
-      std::string("DSM/") + (array.OnCells ? "CellData/" : "PointData/") + array.Name;
-    return { H5Gopen2(this->Root, name.c_str(), H5P_DEFAULT), &H5Gclose };
-  }
-
-  /// What the index of an array's bricks takes, which the file has in one piece; 0 where that cannot be.
-  std::uint64_t CountIndexBytes(const FileArray& array, int edge) const
-  {
-    if (edge < 1)
-    {
-      return 0;
-    }
-    std::uint64_t bricks = 1;
-    for (int axis = 0; axis < 3; ++axis)
-    {
-      const std::int64_t cells = std::max<std::int64_t>(1, array.Grid.Samples[axis] - 1);
-      bricks = MultiplyWithin(
-        this->Bytes->GetBytes(), { bricks, static_cast<std::uint64_t>((cells + edge - 1) / edge) })
-                 .value_or(0);
-    }
-    const std::uint64_t bytes = rt::VoxelIndex::CountBytes(bricks);
-    return bytes <= this->Bytes->GetBytes() ? bytes : 0;
   }
 
   /// VTK's own: see "VTKHDF File Format", ImageData.
@@ -468,8 +429,15 @@ private:
         const std::vector<hsize_t> edges = GetHdfChunkEdges(dataset.Id.Get(), this->Path, name);
         CutAsStored(edges, axes, array.Grid);
         CheckSizes(this->Path, array);
-        dataset.ReadByLibrary = dataset.ReadByLibrary || !FindHdfSteps(properties.Get(), steps) ||
-          !this->FindChunks(edges, properties.Get(), array, storage, dataset, values->Swapped);
+        // Also of chunks that the library reads: it does not check how many bytes they have.
+        const bool areFound = !isElsewhere &&
+          this->FindChunks(edges, properties.Get(), array, storage, dataset, values->Swapped);
+        dataset.ReadByLibrary =
+          dataset.ReadByLibrary || !areFound || !FindHdfSteps(properties.Get(), steps);
+        if (dataset.ReadByLibrary)
+        {
+          dataset.Chunks.reset();
+        }
         break;
       }
       case H5D_COMPACT:
@@ -536,7 +504,7 @@ private:
   void FindHalo(const FileArray& array, Storage& storage) const
   {
     int halo = 0;
-    const HdfHandle index = this->OpenIndex(array);
+    const HdfHandle index = OpenHdfBrickIndex(this->Root, array);
     if (!index.IsOpen() || !ReadHdfAttribute(index.Get(), HdfHalo, H5T_NATIVE_INT, &halo, 1) ||
       halo != 1)
     {

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cstdlib>
+#include <cstring>
 #include <new>
 
 namespace vol
@@ -18,32 +19,42 @@ std::atomic<bool> Ending{ false };
 
 // What the library tells of an object, or a link, has another type in each of its releases.
 
-/// Keeps a name, as long as there are not too many; a positive number ends the visit. The library calls it, and lets no
-/// exception through.
-herr_t Note(const char* name, void* names)
+/// What a visit of all objects of a file finds. In a damaged file groups may contain one another.
+struct Visit
 {
-  auto& list = *static_cast<std::vector<std::string>*>(names);
+  std::vector<std::string> Names;
+  std::uint64_t Objects = 0;
+};
+
+/// Keeps a name that is `wanted`; a positive number ends the visit. The library calls it, and lets no exception through.
+herr_t Note(const char* name, bool wanted, void* data)
+{
+  auto& visit = *static_cast<Visit*>(data);
   try
   {
-    list.push_back(name);
+    if (wanted)
+    {
+      visit.Names.emplace_back(name);
+    }
   }
   catch (const std::bad_alloc&)
   {
     return 1;
   }
-  return list.size() < FileLimits::Arrays ? 0 : 1;
+  return ++visit.Objects < FileLimits::Objects && std::strlen(name) <= FileLimits::NameBytes ? 0
+                                                                                             : 1;
 }
 
 template <class Info>
-herr_t NoteObject(hid_t, const char* name, const Info* info, void* names)
+herr_t NoteObject(hid_t, const char* name, const Info* info, void* visit)
 {
-  return info->type == H5O_TYPE_DATASET ? Note(name, names) : 0;
+  return Note(name, info->type == H5O_TYPE_DATASET, visit);
 }
 
 template <class Info>
-herr_t NoteLink(hid_t, const char* name, const Info* info, void* names)
+herr_t NoteLink(hid_t, const char* name, const Info* info, void* visit)
 {
-  return info->type == H5L_TYPE_EXTERNAL ? Note(name, names) : 0;
+  return Note(name, info->type == H5L_TYPE_EXTERNAL, visit);
 }
 
 } // namespace
@@ -74,10 +85,11 @@ std::mutex& GetHdfLock()
 
 std::vector<std::string> FindHdfDatasets(hid_t file)
 {
-  std::vector<std::string> names;
-  H5Ovisit2(file, H5_INDEX_NAME, H5_ITER_INC, &NoteObject, &names, H5O_INFO_BASIC);
-  H5Lvisit(file, H5_INDEX_NAME, H5_ITER_INC, &NoteLink, &names);
-  return names;
+  Visit visit;
+  H5Ovisit2(file, H5_INDEX_NAME, H5_ITER_INC, &NoteObject, &visit, H5O_INFO_BASIC);
+  visit.Objects = 0;
+  H5Lvisit(file, H5_INDEX_NAME, H5_ITER_INC, &NoteLink, &visit);
+  return std::move(visit.Names);
 }
 
 std::string ListHdfNames(const std::vector<std::string>& names)

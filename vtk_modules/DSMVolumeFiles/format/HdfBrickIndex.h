@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef vol_HdfBrickIndex_h
+#define vol_HdfBrickIndex_h
+
+#include "DSMVolumeFiles/format/HdfLibrary.h"
+#include "DSMVolumeFiles/format/VolumeFile.h"
+
+#include <cstdint>
+
+namespace vol
+{
+
+/// The group in which a brick file (BrickFileWriter) has more of an array than its values; not open where there is none.
+/// `root`: of the file, or of a coarser level. The caller has GetHdfLock, here and below.
+HdfHandle OpenHdfBrickIndex(hid_t root, const FileArray& array);
+
+/// What that group says; empty where there is none, or where a part is larger than a file of so many bytes can have.
+VolumeFile::Index ReadHdfBrickIndex(hid_t root, const FileArray& array, std::uint64_t fileBytes);
+
+} // namespace vol
+
+#endif
