@@ -38,8 +38,9 @@ namespace
 {
 
 constexpr int CrashSignals[] = { SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT };
-/// Functions of HDF5 1.10 that go round for ever in damaged files: global heaps with an object of no size.
-constexpr const char* EndlessFunctions[] = { "H5HG__protect" };
+/// Functions of HDF5 1.10 that do not end in damaged files: global heaps with an object of no size, and selections of virtual
+/// datasets with far too many blocks.
+constexpr const char* EndlessFunctions[] = { "H5HG__protect", "H5S_select_deserialize" };
 
 int CodeForLibrary = EndedInLibrary;
 std::map<int, struct sigaction>* Before = nullptr;
