@@ -37,7 +37,7 @@ constexpr auto ReceiptKind =
 constexpr std::size_t MaximumArrivingBytes = std::size_t(16) << 20;
 /// Lets a rank without memory take part in what all must agree on.
 constexpr std::size_t ReserveBytes = std::size_t(1) << 20;
-/// How long a transport waits, on destruction, for the other ranks to take its last messages.
+/// How long an ended transport waits, before it is closed, for the other ranks to take its last messages.
 constexpr std::chrono::seconds DrainTime(5);
 
 /// Travels behind the payload (see AttachTail).
@@ -55,6 +55,15 @@ struct Receipt
   std::uint64_t PayloadBytes = 0;
 };
 
+bool IsRunning()
+{
+  int initialized = 0;
+  int finalized = 0;
+  MPI_Initialized(&initialized);
+  MPI_Finalized(&finalized);
+  return initialized && !finalized;
+}
+
 class Transmission final : public Transport
 {
 public:
@@ -70,24 +79,33 @@ public:
     this->Receipts.resize(static_cast<std::size_t>(this->Size));
   }
 
+  /// Does not wait for the other ranks, which may be at something else that waits for this one. What is still under way
+  /// stays with an ended transmission, until CloseEnded.
   ~Transmission() override
   {
-    int finalized = 0;
-    MPI_Finalized(&finalized);
-    if (finalized)
+    if (this->IsEnded || !IsRunning())
     {
       return;
     }
-    if (this->Drain())
+    this->IsEnded = true;
+    try
     {
-      MPI_Comm_free(&this->Communicator);
+      std::vector<std::unique_ptr<Transmission>>& ended = GetEnded();
+      ended.reserve(ended.size() + 1); // once it is moved, nothing may fail
+      ended.emplace_back(new Transmission(std::move(*this)));
     }
-    else
+    catch (const std::bad_alloc&)
     {
-      // MPI may still read and write these buffers and use the communicator: they stay.
-      new std::vector<Sending>(std::move(this->Outgoing));
-      new std::vector<std::list<Receiving>>(std::move(this->Arriving));
-      new std::vector<Confirming>(std::move(this->Receipts));
+      this->Close();
+    }
+  }
+
+  /// Closes what this rank has ended. Collective over the communicators of all of it.
+  static void CloseEnded()
+  {
+    for (const std::unique_ptr<Transmission>& ended : std::exchange(GetEnded(), {}))
+    {
+      ended->Close();
     }
   }
 
@@ -162,6 +180,30 @@ public:
   }
 
 private:
+  Transmission(Transmission&&) = default; ///< MPI's buffers stay where they are
+
+  /// What this rank has ended, and not closed. They close, at the latest, before MPI ends.
+  static std::vector<std::unique_ptr<Transmission>>& GetEnded()
+  {
+    static std::vector<std::unique_ptr<Transmission>> ended;
+    return ended;
+  }
+
+  void Close()
+  {
+    if (this->Drain())
+    {
+      MPI_Comm_free(&this->Communicator);
+    }
+    else
+    {
+      // MPI may still read and write these buffers and use the communicator: they stay.
+      new std::vector<Sending>(std::move(this->Outgoing));
+      new std::vector<std::list<Receiving>>(std::move(this->Arriving));
+      new std::vector<Confirming>(std::move(this->Receipts));
+    }
+  }
+
   struct Sending
   {
     MessageKind Kind = MessageKind::Collective;
@@ -514,16 +556,27 @@ private:
   MPI_Message Matched = MPI_MESSAGE_NULL; ///< of Spare, as long as there is no memory for it
   std::size_t ArrivingBytes = 0;
   std::deque<Message> ToSelf;
+  bool IsEnded = false;           ///< what was under way is with another, or is closed
   std::vector<std::byte> Reserve; ///< for receiving when no memory is left; untouched until then
 };
 
-bool IsRunning()
+/// MPI deletes the attributes of MPI_COMM_SELF before it ends, while communication still works (MPI 4.0, section 11.2.4).
+void CloseEndedBeforeMpiEnds()
 {
-  int initialized = 0;
-  int finalized = 0;
-  MPI_Initialized(&initialized);
-  MPI_Finalized(&finalized);
-  return initialized && !finalized;
+  static bool isAsked = false;
+  if (isAsked)
+  {
+    return;
+  }
+  isAsked = true;
+  const auto close = [](MPI_Comm, int, void*, void*)
+  {
+    Transmission::CloseEnded();
+    return MPI_SUCCESS;
+  };
+  int key = MPI_KEYVAL_INVALID;
+  MPI_Comm_create_keyval(MPI_COMM_NULL_COPY_FN, close, &key, nullptr);
+  MPI_Comm_set_attr(MPI_COMM_SELF, key, nullptr);
 }
 
 } // namespace
@@ -534,8 +587,11 @@ std::unique_ptr<Transport> MpiTransport::Create(const void* communicator)
   {
     return nullptr;
   }
-  return std::make_unique<Transmission>(
+  auto created = std::make_unique<Transmission>(
     communicator ? *static_cast<const MPI_Comm*>(communicator) : MPI_COMM_WORLD);
+  Transmission::CloseEnded(); // all ranks are here
+  CloseEndedBeforeMpiEnds();
+  return created;
 }
 
 MpiTransport::Environment::Environment(int& argc, char**& argv)

@@ -16,8 +16,8 @@ class MpiTransport
 public:
   /// Collective over the communicator. `communicator` points to an MPI_Comm (kept opaque so that
   /// no header needs MPI); null means MPI_COMM_WORLD. Returns null when MPI is not initialised or
-  /// the library was built without it. The duplicate is freed by the destructor, unless MPI was
-  /// finalised before. Throws Error with MPI's own text.
+  /// the library was built without it. The destructor is not collective: the duplicate is freed by the next Create, or
+  /// before MPI is finalized. Throws Error with MPI's own text.
   static std::unique_ptr<Transport> Create(const void* communicator);
 
   /// For programs that have no other owner of MPI (tests, dsm_bench): initialise now and finalise
