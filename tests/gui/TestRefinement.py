@@ -167,9 +167,9 @@ class Watch:
             simple.Render(self.view)
             return time.monotonic() - start
 
-        while (whole := time_render()) < 4.0:
+        while (whole := time_render()) < 3.0:
             check(self.display.DSMAmbientOcclusionSamples < MOST_RAYS, f"a frame takes time: {whole:.2f} s")
-            self.display.DSMAmbientOcclusionSamples *= 2
+            self.display.DSMAmbientOcclusionSamples *= 4
         shown = grab(self.view)
         press = subprocess.Popen(["python3", "-c", PRESS, str(0.1 * whole), str(whole)])
         seconds = time_render()

@@ -15,9 +15,11 @@ place_camera(view)
 
 
 def compare(what, clips, **place):
-    """With the triangles on this number of ranks, clipped by filters, in a place."""
+    """One rank's picture with the triangles, clipped by filters, in a place."""
     transform(traced, **place)
     picture = render(view, what.replace(" ", "_"))
+    if get_ranks() > 1:
+        return picture
     simple.Hide(source, view)
     clipped = surface
     for parameters in clips:

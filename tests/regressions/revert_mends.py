@@ -31,7 +31,17 @@ MENDS = (
     Mend("blocks that come from a file were counted as resident", "vtk_modules/DSMCore/publish/BlockDirectory.cxx",
          "this->GetOwner(id) == owner && !this->FromSource", "this->GetOwner(id) == owner", ["unit_dsmcore"],
          "unit.dsmcore", "*Source*:*Disk*:*Scratch*:*Directory*"),
+    Mend("ulimit -f ended a rank that shares memory by a signal", "vtk_modules/DSMCore/memory/HostSharedMemory.cxx",
+         "if (fileBytes > GetMostFileBytes())", "if (false)", ["unit_dsmcore"], "unit.dsmcore", "HostSharedMemory*"),
+    Mend("one member of a group held all blocks of an owner", "vtk_modules/DSMCore/publish/HostGroups.h",
+         "id / this->GroupOf.size() % members", "id % members", ["unit_dsmcore"], "unit.dsmcore", "HostGroups*"),
+    Mend("the end of a session waited for the other ranks", "vtk_modules/DSMCore/transport/MpiTransport.cxx",
+         "ended.emplace_back(new Transmission(std::move(*this)));", "this->Close();", ["mpi_TestMpiTransport"],
+         "mpi.TestMpiTransport.3"),
     # DSMRayTracing
+    Mend("the last tile of a rank was stolen", "vtk_modules/DSMRayTracing/schedule/WorkStealingScheduler.cxx",
+         "this->TakeFromEnd(this->Own.size() / 2)", "this->TakeFromEnd((this->Own.size() + 1) / 2)", ["unit_frame"],
+         "unit.frame", "*Scheduling*"),
     Mend("a rank that was idle got no tiles of others", "vtk_modules/DSMRayTracing/schedule/WorkStealingScheduler.cxx",
          "this->TakeFromEnd(this->Own.size() / 2)", "this->TakeFromEnd(0)", ["unit_frame"],
          "unit.frame", "*Scheduling*"),
@@ -51,8 +61,11 @@ MENDS = (
          "vtk_modules/DSMVolumeFiles/format/MetaImageFile.cxx",
          "values.Offset = values.Offset == 0 ? values.Least : values.Offset;", "values.Offset = values.Least;",
          *VOLUME_FILES),
+    Mend("the values of a MetaImage that ends with its header were looked for",
+         "vtk_modules/DSMVolumeFiles/format/MetaImageFile.cxx", "if (lines.HasEnded())", "if (false)",
+         ["files_TestDamagedFiles"], "files.DamagedFiles"),
     Mend("an empty file was called one of an unknown format", "vtk_modules/DSMVolumeFiles/format/VolumeFile.cxx",
-         "std::filesystem::file_size(path) == 0", "false", ["files_TestDamagedFiles"], "files.DamagedFiles"),
+         "PositionedFile(path).GetBytes() == 0", "false", ["files_TestDamagedFiles"], "files.DamagedFiles"),
     # RenderingDSM
     Mend("images whose samples are nowhere were drawn", "vtk_modules/RenderingDSM/data/vtkDSMLatticePlan.cxx",
          "    RefuseImpossiblePlace(piece);", "    (void)&RefuseImpossiblePlace;", ["unit_rendering"], "unit.rendering"),
@@ -62,7 +75,7 @@ MENDS = (
     # The plugin
     Mend("a cache of 0 was told again and again", "plugin/Representations/vtkPVDSMMemoryOptions.cxx",
          "before != told.end() && before->second.Options == options", "before != told.end()", ["DSMRayTracer"],
-         "paraview.Scripts.1", "Errors"),
+         "paraview.Scripts.3", "Errors"),
     Mend("the first isosurface was of a vector", "plugin/Representations/vtkSMDSMIsosurfaceArrayDomain.cxx",
          "array && array->GetNumberOfComponents() == 1", "array && array->GetNumberOfComponents() > 0", ["DSMRayTracer"],
          "paraview.Scripts.1", "Isovalue"),
@@ -130,4 +143,5 @@ def main():
     return 1 if wrong else 0
 
 
-sys.exit(main())
+if __name__ == "__main__":
+    sys.exit(main())

@@ -134,9 +134,34 @@ TEST(HostGroups, HoldersTakeTurns)
     ++held[static_cast<std::size_t>(groups.GetHolder(id, owner, 1 - groups.GetGroup(owner)))];
   }
   EXPECT_EQ(held, (std::vector<int>{ 90, 90, 40, 40, 40 }));
+
+  // Also of the blocks of one owner, whose numbers, of four ranks, are all even.
+  const dsm::HostGroups four({ 0, 0, 2, 2 });
+  std::vector<int> heldOfOne(2, 0);
+  for (dsm::BlockId id = 2; id < 200; id += 4)
+  {
+    ++heldOfOne[static_cast<std::size_t>(four.GetHolder(id, 2, four.GetGroup(0)))];
+  }
+  EXPECT_EQ(heldOfOne, (std::vector<int>{ 25, 25 }));
 }
 
 // -- HostSharedMemory ------------------------------------------------------------------------------
+
+/// `ulimit -f` holds for memory that is shared, too, and exceeding it would end the process by a signal.
+TEST(HostSharedMemory, IsNotSharedBeyondTheLimitOfFiles)
+{
+  rlimit before{};
+  ASSERT_EQ(getrlimit(RLIMIT_FSIZE, &before), 0);
+  rlimit low = before;
+  low.rlim_cur = rlim_t(1) << 20;
+  ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &low), 0);
+  const dsm::HostSharedMemory small(std::size_t(1) << 16, true);
+  const dsm::HostSharedMemory large(std::size_t(2) << 20, true);
+  ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &before), 0);
+  EXPECT_GE(small.GetTicket().File, 0);
+  EXPECT_LT(large.GetTicket().File, 0);
+  EXPECT_NE(large.GetData(), nullptr);
+}
 
 TEST(HostSharedMemory, IsZeroedAndSeenByOthers)
 {
