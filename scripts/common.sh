@@ -14,7 +14,7 @@ packages=(
   libopenmpi-dev openmpi-bin
   libglm-dev libhwy-dev nlohmann-json3-dev
   pkg-config libhdf5-dev zlib1g-dev libdeflate-dev libblosc-dev libzstd-dev
-  libx11-dev libgl-dev libopengl-dev libglew-dev libpng-dev libpython3-dev
+  libx11-dev libxi-dev libgl-dev libopengl-dev libglew-dev libpng-dev libpython3-dev
   xvfb xauth libgl1-mesa-dri
 )
 # And those that the tests need besides.

@@ -317,10 +317,12 @@ void vtkPVDSMDelivery::Choose(
     report && (report->GetInteracting() || (report->GetProgressive() && CanRefine(view)));
   scene->SetSamplesPerFrame(takesFew ? 1 : 0);
   scene->SetSecondsPerFrame(report && report->GetInteracting() ? 0.0 : SecondsPerFrame);
+  // Where nobody sees a picture for long, it may be as coarse as its time demands; ParaView's level of detail makes it
+  // coarser at least.
+  const bool usesLevels =
+    view && inInfo->Has(vtkPVRenderView::USE_LOD()) && !AskedView::IsCapturing(view);
   scene->SetInteractiveReduction(
-    view && inInfo->Has(vtkPVRenderView::USE_LOD()) && !AskedView::IsCapturing(view)
-      ? GetReduction(view->GetLODResolution())
-      : 0);
+    usesLevels ? GetReduction(view->GetLODResolution()) : (takesFew ? 1 : 0));
   scene->SetAlwaysFinest(view && AskedView::IsCapturing(view));
   if (!view || !controller || controller->GetNumberOfProcesses() < 2)
   {

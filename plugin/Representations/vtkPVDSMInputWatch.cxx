@@ -4,11 +4,11 @@
 #ifdef DSM_HAS_X11
 #include <X11/Xatom.h>
 #include <X11/Xlib.h>
+#include <X11/extensions/XInput2.h>
 
 #include <unistd.h>
 
 #include <algorithm>
-#include <array>
 #endif
 
 #ifdef DSM_HAS_X11
@@ -40,6 +40,11 @@ public:
   Internals()
     : Server(XOpenDisplay(nullptr))
   {
+    if (this->Server && !this->Listen())
+    {
+      XCloseDisplay(this->Server);
+      this->Server = nullptr;
+    }
   }
   ~Internals()
   {
@@ -51,29 +56,76 @@ public:
   Internals(const Internals&) = delete;
   void operator=(const Internals&) = delete;
 
-  /// A bit for each key, then the buttons.
-  static constexpr int KeyBytes = 32;
-  using Held = std::array<unsigned char, KeyBytes + 1>;
-
-  Held Ask() const
+  /// What has come is known.
+  void Begin()
   {
-    Held held{};
-    if (!this->Server || this->IsElsewhere())
+    this->Read();
+    this->HasCome = false;
+  }
+
+  bool HasPressed()
+  {
+    this->Read();
+    this->HasCome = this->HasCome && !this->IsElsewhere();
+    return this->HasCome;
+  }
+
+private:
+  /// Raw events come whichever window has grabbed the mouse or the keyboard. Returns false where the server has none.
+  bool Listen()
+  {
+    int event = 0;
+    int error = 0;
+    int major = 2;
+    int minor = 1;
+    if (!XQueryExtension(this->Server, "XInputExtension", &this->Opcode, &event, &error) ||
+      XIQueryVersion(this->Server, &major, &minor) != Success)
     {
-      return held;
+      return false;
     }
-    char keys[KeyBytes];
-    XQueryKeymap(this->Server, keys);
-    std::copy_n(keys, KeyBytes, held.begin());
-    Window root;
-    Window child;
-    int places[4];
-    unsigned int mask = 0;
-    XQueryPointer(this->Server, DefaultRootWindow(this->Server), &root, &child, &places[0],
-      &places[1], &places[2], &places[3], &mask);
-    constexpr unsigned int buttons = Button1Mask | Button2Mask | Button3Mask;
-    held[KeyBytes] = static_cast<unsigned char>((mask & buttons) / Button1Mask);
-    return held;
+    unsigned char bits[XIMaskLen(XI_LASTEVENT)] = {};
+    for (const int kind :
+      { XI_RawKeyPress, XI_RawKeyRelease, XI_RawButtonPress, XI_RawButtonRelease, XI_RawMotion })
+    {
+      XISetMask(bits, kind);
+    }
+    XIEventMask mask{ XIAllMasterDevices, sizeof(bits), bits };
+    XISelectEvents(this->Server, DefaultRootWindow(this->Server), &mask, 1);
+    XFlush(this->Server);
+    return true;
+  }
+
+  /// Takes all events that have come; none waits for the server.
+  void Read()
+  {
+    while (this->Server && XPending(this->Server) > 0)
+    {
+      XEvent event;
+      XNextEvent(this->Server, &event);
+      if (event.type == GenericEvent && event.xcookie.extension == this->Opcode)
+      {
+        this->Count(event.xcookie.evtype);
+      }
+    }
+  }
+
+  /// The wheel presses buttons, too. The mouse counts where it drags something.
+  void Count(int kind)
+  {
+    if (kind == XI_RawMotion)
+    {
+      this->HasCome = this->HasCome || this->ButtonsHeld > 0;
+      return;
+    }
+    this->HasCome = true;
+    if (kind == XI_RawButtonPress)
+    {
+      ++this->ButtonsHeld;
+    }
+    else if (kind == XI_RawButtonRelease)
+    {
+      this->ButtonsHeld = std::max(0, this->ButtonsHeld - 1);
+    }
   }
 
   /// Whether the keyboard is another application's. Nobody knows without a window manager.
@@ -121,7 +173,9 @@ public:
   }
 
   Display* Server; ///< null where there is none
-  Held Before{};
+  int Opcode = 0;  ///< of the events' extension
+  int ButtonsHeld = 0;
+  bool HasCome = false;
 };
 
 void vtkPVDSMInputWatch::Begin()
@@ -130,18 +184,12 @@ void vtkPVDSMInputWatch::Begin()
   {
     this->Self = std::make_unique<Internals>();
   }
-  this->Self->Before = this->Self->Ask();
+  this->Self->Begin();
 }
 
-bool vtkPVDSMInputWatch::HasPressed() const
+bool vtkPVDSMInputWatch::HasPressed()
 {
-  if (!this->Self)
-  {
-    return false;
-  }
-  const Internals::Held now = this->Self->Ask();
-  return !std::equal(now.begin(), now.end(), this->Self->Before.begin(),
-    [](unsigned char held, unsigned char before) { return (held & ~before) == 0; });
+  return this->Self && this->Self->HasPressed();
 }
 
 #else
@@ -152,7 +200,7 @@ class vtkPVDSMInputWatch::Internals
 
 void vtkPVDSMInputWatch::Begin() {}
 
-bool vtkPVDSMInputWatch::HasPressed() const
+bool vtkPVDSMInputWatch::HasPressed()
 {
   return false;
 }

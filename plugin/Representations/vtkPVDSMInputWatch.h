@@ -4,9 +4,10 @@
 
 #include <memory>
 
-/// Whether the user has pressed a mouse button or a key that the application has not heard of yet,
-/// because it is busy: asks the X server, by a connection of its own. What is typed or pressed in another
-/// application does not count. Without X11, nobody ever has. One thread.
+/// Whether the user has pressed or released a mouse button or a key, turned the wheel or dragged, and the application has
+/// not heard of it yet, because it is busy. The X server tells of each event, however short, by a connection of its
+/// own. What is typed or pressed in another application does not count. Without X11 and its input extension, nobody ever
+/// has. One thread.
 class vtkPVDSMInputWatch
 {
 public:
@@ -15,10 +16,10 @@ public:
   vtkPVDSMInputWatch(const vtkPVDSMInputWatch&) = delete;
   void operator=(const vtkPVDSMInputWatch&) = delete;
 
-  /// What is held down now does not count.
+  /// What has happened until now does not count.
   void Begin();
-  /// Whether anything was pressed since, and is still held down.
-  bool HasPressed() const;
+  /// Whether anything has happened since. Takes microseconds.
+  bool HasPressed();
 
 private:
   class Internals;

@@ -220,7 +220,10 @@ void vtkPVDSMRefinement::OnRenderBegins(vtkObject*, unsigned long, void* interac
   this->CanAbort = *static_cast<int*>(interactive) == 0 &&
     !vtkPVDSMDelivery::IsCapturing(
       vtkPVRenderView::SafeDownCast(this->View->GetClientSideObject()));
-  this->Input.Begin();
+  if (!this->IsRefining)
+  {
+    this->Input.Begin(); // most probably, this render follows what the user did
+  }
   ForEachReport(this->View,
     [this](vtkSMProxy* report)
     {
@@ -326,6 +329,13 @@ void vtkPVDSMRefinement::OnTimer(vtkObject*, unsigned long, void* timer)
   if (this->View->GetSession()->GetPendingProgress())
   {
     this->RenderLater(LongDelay);
+    return;
+  }
+  // What the application has not heard of comes first.
+  if (this->Input.HasPressed())
+  {
+    this->Input.Begin();
+    this->RenderLater(ShortDelay);
     return;
   }
   // A trace of what the user does has no place for these renders.

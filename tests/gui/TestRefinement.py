@@ -22,16 +22,23 @@ BEAT = 0.02  # seconds between two looks at the application
 MOST_RAYS = 1024  # of ambient occlusion, that the display takes
 PATIENCE = 250.0  # seconds for everything
 
-# Presses the left button of the mouse after some seconds, and holds it down for some.
-PRESS = """
+HOLDS = (0.02, 0.08, 0.2, 0.4)  # seconds that the left button of the mouse is held
+CLICKS = 10  # of each
+
+# Clicks in the middle of the view, in the middle of frames, and tells when.
+CLICK = """
 import ctypes, sys, time
 x11, xtst = ctypes.CDLL('libX11.so.6'), ctypes.CDLL('libXtst.so.6')
 x11.XOpenDisplay.restype = ctypes.c_void_p
 display = ctypes.c_void_p(x11.XOpenDisplay(None))
-for pressed, seconds in ((1, float(sys.argv[1])), (0, float(sys.argv[2]))):
-    time.sleep(seconds)
-    xtst.XTestFakeButtonEvent(display, 1, pressed, 0)
-    x11.XFlush(display)
+xtst.XTestFakeMotionEvent(display, -1, int(sys.argv[1]), int(sys.argv[2]), 0)
+for hold in sys.argv[3:]:
+    time.sleep(0.7)
+    print(time.monotonic(), flush=True)
+    for pressed, seconds in ((1, float(hold)), (0, 0.0)):
+        xtst.XTestFakeButtonEvent(display, 1, pressed, 0)
+        x11.XFlush(display)
+        time.sleep(seconds)
 """
 
 
@@ -151,10 +158,10 @@ class Watch:
         yield
         check(self.get_samples() == self.wanted, "nothing changes once all samples are there")
         if not servermanager.ActiveConnection.IsRemote():
-            yield from self.press_while_tracing()
+            yield from self.click_while_tracing()
 
-    def press_while_tracing(self):
-        """Where the application itself traces, a press of the mouse ends the frame."""
+    def click_while_tracing(self):
+        """Where the application itself traces, a press of the mouse ends the frame, however short it is."""
         try:
             ctypes.CDLL("libXtst.so.6")
         except OSError:
@@ -171,11 +178,35 @@ class Watch:
             check(self.display.DSMAmbientOcclusionSamples < MOST_RAYS, f"a frame takes time: {whole:.2f} s")
             self.display.DSMAmbientOcclusionSamples *= 4
         shown = grab(self.view)
-        press = subprocess.Popen(["python3", "-c", PRESS, str(0.1 * whole), str(whole)])
-        seconds = time_render()
-        check(self.get_samples() == 0, f"a press of the mouse ends a frame of {whole:.2f} s after {seconds:.2f} s")
+        heard = []
+        interactor = self.view.GetInteractor()
+        interactor.AddObserver("LeftButtonPressEvent", lambda *_: heard.append(time.monotonic()), 10.0)
+        window = self.view.GetRenderWindow()
+        place = [start + size // 2 for start, size in zip(window.GetPosition(), window.GetSize())]
+        holds = [str(hold) for hold in HOLDS * CLICKS]
+        clicks = subprocess.Popen(["python3", "-c", CLICK, *map(str, place), *holds], stdout=subprocess.PIPE, text=True)
+        while clicks.poll() is None:
+            yield
+        pressed = [float(line) for line in clicks.stdout]
+        waits = sorted(after - before for before, after in zip(pressed, heard))
+        check(len(pressed) == len(heard) == len(holds), f"{len(heard)} of {len(pressed)} clicks are heard of")
+        check(waits[0] >= 0 and waits[-1] < 0.3,
+              f"in frames of {whole:.1f} s, clicks are heard of after {waits[len(waits) // 2]:.3f} s, "
+              f"and {waits[-1]:.3f} s at most: {[round(wait, 3) for wait in waits]}")
         check((grab(self.view) == shown).all(), "which leaves the last picture")
-        check(press.wait(timeout=60) == 0, "the mouse could be pressed")
+        # While the mouse turns the scene, pictures are as coarse as their time demands.
+        width, height = self.view.ViewSize
+        interactor.SetEventInformation(width // 2, height // 2)
+        interactor.InvokeEvent("LeftButtonPressEvent")
+        times = []
+        for step in range(1, 5):
+            interactor.SetEventInformation(width // 2 + 20 * step, height // 2)
+            start = time.monotonic()
+            interactor.InvokeEvent("MouseMoveEvent")
+            times.append(time.monotonic() - start)
+            yield
+        interactor.InvokeEvent("LeftButtonReleaseEvent")
+        check(max(times) < 0.25 * whole, f"moving pictures take {max(times):.2f} s at most")
         self.display.DSMAmbientOcclusionSamples = 1
         self.display.DSMIsoValues = [140.0]
         simple.Render(self.view)

@@ -17,13 +17,16 @@ TEST(RoundRobinAssigner, DealsBlocksInTurn)
 
 TEST(BlockDirectory, SumsPerOwnerAreAligned)
 {
-  const dsm::BlockDirectory directory({ 1, 64, 65, 0 }, dsm::RoundRobinAssigner(2));
+  dsm::BlockDirectory directory({ 1, 64, 65, 0 }, dsm::RoundRobinAssigner(2));
   EXPECT_EQ(directory.GetCount(), 4u);
   EXPECT_EQ(directory.GetBytes(2), 65u);
   EXPECT_EQ(directory.GetLargest(), 65u);
   EXPECT_EQ(directory.GetTotalBytes(), 130u);
   EXPECT_EQ(directory.GetResidentBytes(0), 64u + 128u);
   EXPECT_EQ(directory.GetResidentBytes(1), 64u);
+  directory.SetFromSource();
+  EXPECT_EQ(directory.GetTotalBytes(), 130u);
+  EXPECT_EQ(directory.GetResidentBytes(0), 0u) << "no owner holds what is read from its source";
 }
 
 TEST(BlockDirectory, SumsDoNotOverflow32Bits)
