@@ -14,6 +14,8 @@
 #include "vtkSMProxy.h"
 #include "vtkSMSession.h"
 #include "vtkSMSessionProxyManager.h"
+#include "vtkSMSettingsProxy.h"
+#include "vtkSMTrace.h"
 #include "vtkVariant.h"
 
 #include <algorithm>
@@ -96,6 +98,20 @@ bool IsGiven(vtkSMProxy* proxy, const char* name)
         vtkSMPropertyHelper(proxy, name).GetAsVariant(0).ToString());
 }
 
+/// The look with which a display begins is its own from then on: what is linked to settings, ParaView writes into no
+/// Python state and no trace, which would bring back another picture.
+void KeepLook(vtkSMProxy* light)
+{
+  constexpr const char* name = "DSMLook";
+  auto* page = vtkSMSettingsProxy::SafeDownCast(FindPage(light));
+  if (page && page->GetSourcePropertyName(light, name))
+  {
+    page->RemoveLink(name, light, name);
+    SM_SCOPED_TRACE(PropertiesModified).arg("proxy", light->GetTrueParentProxy());
+    light->GetProperty(name)->Modified();
+  }
+}
+
 } // namespace
 
 void vtkPVDSMSharedOptions::Join(vtkPVRenderView* view, vtkObjectBase* light, vtkObjectBase* memory)
@@ -118,6 +134,7 @@ void vtkPVDSMSharedOptions::Join(vtkPVRenderView* view, vtkObjectBase* light, vt
     vtkPVDSMOldStates::Watch(manager);
   }
   shared->Add(lightProxy, manager->GetInLoadXMLState());
+  KeepLook(lightProxy);
 
   vtkSMSession* session = memoryProxy->GetSession();
   shared = Registry::Find(session);

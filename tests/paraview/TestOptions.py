@@ -113,6 +113,7 @@ settings.UpdateVTKObjects()
 view = create_view()
 first = show_traced(simple.Cone(), view)
 check(first.DSMLook == "With depth", "the page's look")
+check("DSMLook = 'With depth'" in smstate.get_state(), "which a Python state has, too")
 first.DSMLook = "Plain"
 second = show_traced(simple.Sphere(), view)
 check((first.DSMLook, second.DSMLook) == ("Plain", "Plain"), "who comes later takes the view's")

@@ -34,6 +34,18 @@ def read(proxy, names):
     return [list(value) if hasattr(value, "__len__") and not isinstance(value, str) else value for value in values]
 
 
+# The application's first look, which scripts do not have.
+controller = servermanager.vtkSMParaViewPipelineController()
+controller.UpdateSettingsProxies(servermanager.ActiveConnection.Session)
+page = servermanager.ProxyManager().SMProxyManager.GetProxy("settings", "DSMRayTracerSettings")
+
+
+def set_first_look(number):
+    servermanager.vtkSMPropertyHelper(page, "DSMLook").Set(number)
+    page.UpdateVTKObjects()
+
+
+set_first_look(1)
 smtrace.start_trace()
 view = simple.GetActiveViewOrCreate("RenderView")
 volume = simple.DSMSampleVolume(Dimensions=[24, 24, 24])
@@ -44,18 +56,27 @@ mesh = simple.Cone()
 meshDisplay = simple.Show(mesh, view)
 meshDisplay.SetRepresentationType(REPRESENTATION)
 change(meshDisplay, MESH_CHANGES)
+ball = simple.Sphere()
+other = simple.CreateRenderView()
+ballDisplay = simple.Show(ball, other)
+ballDisplay.SetRepresentationType(REPRESENTATION)
+simple.Render(other)
 text = smtrace.stop_trace()
+set_first_look(0)
+check(ballDisplay.DSMLook == "With depth", "a display keeps the look with which it began")
 for name in list(CHANGES) + list(MESH_CHANGES):
     # Since ParaView 6.0, what changes together are arguments of one call.
     check(re.search(rf"(Display\.{name} = |^ +{name}=)", text, re.MULTILINE), name + " is in the trace")
 check(not any(word in text for word in ("DSMSamples ", "DSMStatistics", "DSMSuggested")), "what is only told is not")
 
 expected = read(display, CHANGES), read(meshDisplay, MESH_CHANGES)
-for proxy in (mesh, volume, view):
+for proxy in (ball, other, mesh, volume, view):
     simple.Delete(proxy)
 exec(text, {})
-view = simple.GetActiveView()
-found = {source.GetXMLName(): simple.GetRepresentation(source, view) for source in simple.GetSources().values()}
+views = simple.GetViews()
+found = {source.GetXMLName(): next(filter(None, (servermanager.GetRepresentation(source, view) for view in views)))
+         for source in simple.GetSources().values()}
+check(found["SphereSource"].DSMLook == "With depth", "run again, it gives the other view the same look")
 check(read(found["DSMSampleVolume"], CHANGES) == expected[0], "run again, it gives the volume the same settings")
 check(read(found["ConeSource"], MESH_CHANGES) == expected[1], "and the mesh")
 for source in found:
