@@ -241,7 +241,7 @@ class FrameFaults : public testing::TestWithParam<std::tuple<int, Keeping>>
 };
 
 INSTANTIATE_TEST_SUITE_P(Keepings, FrameFaults,
-  testing::Combine(testing::Values(1, 2, 3),
+  testing::Combine(testing::Values(1, 3),
     testing::Values(Keeping{ "Automatic_shared", dsm::MemoryOrganization::Automatic, true },
       Keeping{ "Automatic", dsm::MemoryOrganization::Automatic, false },
       Keeping{ "Replicated", dsm::MemoryOrganization::Replicated, false },

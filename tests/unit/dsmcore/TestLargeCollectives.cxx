@@ -21,7 +21,7 @@ protected:
 };
 
 INSTANTIATE_TEST_SUITE_P(
-  Ranks, LargeCollectives, testing::Values(1, 2, 3, 4, 5, 8), testing::PrintToStringParamName());
+  Ranks, LargeCollectives, testing::Values(1, 3, 8), testing::PrintToStringParamName());
 
 TEST_P(LargeCollectives, GatherKeepsRankOrderAndSizes)
 {

@@ -188,7 +188,7 @@ class PublishingMemoryShortage
 };
 
 INSTANTIATE_TEST_SUITE_P(Stores, PublishingMemoryShortage,
-  testing::Combine(testing::Values(1, 2, 3),
+  testing::Combine(testing::Values(1, 3),
     testing::Values(dsm::MemoryOrganization::Automatic, dsm::MemoryOrganization::Replicated,
       dsm::MemoryOrganization::ObjectBased, dsm::MemoryOrganization::PageBased),
     testing::Bool()));

@@ -11,7 +11,7 @@ class ObjectStoreOnLoopback : public testing::TestWithParam<int>
 {
 };
 
-INSTANTIATE_TEST_SUITE_P(Ranks, ObjectStoreOnLoopback, testing::Values(1, 2, 3, 4));
+INSTANTIATE_TEST_SUITE_P(Ranks, ObjectStoreOnLoopback, testing::Values(1, 3));
 
 #define RUN_SCENARIO(scenario)                                                                     \
   TEST_P(ObjectStoreOnLoopback, scenario)                                                          \

@@ -29,7 +29,7 @@ protected:
 };
 
 INSTANTIATE_TEST_SUITE_P(Ranks, PagedStoreOnLoopback,
-  testing::Combine(testing::Values(1, 2, 3, 4), testing::ValuesIn(dsm_test::GetAllWays())),
+  testing::Combine(testing::Values(1, 3), testing::ValuesIn(dsm_test::GetAllWays())),
   [](const testing::TestParamInfo<Parameters>& parameters)
   {
     return std::to_string(std::get<int>(parameters.param)) +
