@@ -1,10 +1,12 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """What matters most stands directly below Representation in the application's panel, which shows properties in
-their order, but those of a group after one another, where the group begins."""
+their order, but those of a group after one another, where the group begins. A picture of the panel in the documents has
+the same properties; docs/images/gui.py sets DSM_TEST_PANEL to have their labels written."""
 
 from dsm_testing import *
 
 load_plugin()
+PICTURED = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "docs", "images", "gui_isosurface.txt")
 
 
 def list_panel(display):
@@ -37,6 +39,16 @@ for source, own in (
     expected = own + LIGHT
     check(names[first + 1 : first + 1 + len(expected)] == expected, f"{source.GetXMLName()}: {names[: first + 9]}")
     proxy = simple.GetRepresentation(source, view).SMProxy
+    if own:
+        visible = [name for name in names[first:] if proxy.GetProperty(name).GetPanelVisibility() == "default"]
+        labels = [proxy.GetProperty(name).GetXMLLabel() for name in visible[: visible.index(LIGHT[-1]) + 1]]
+        if "DSM_TEST_PANEL" in os.environ:
+            with open(os.environ["DSM_TEST_PANEL"], "w", encoding="utf-8") as text:
+                text.writelines(label + "\n" for label in labels)
+        else:
+            with open(PICTURED, encoding="utf-8") as text:
+                pictured = text.read().splitlines()
+            check(labels == pictured, f"the documents' picture shows these properties, {labels}; if not, run docs/images/gui.py")
     widgets = {}
     for number in range(proxy.GetNumberOfPropertyGroups()):
         group = proxy.GetPropertyGroup(number)
