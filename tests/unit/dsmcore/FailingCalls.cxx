@@ -107,6 +107,7 @@ void operator delete(void* memory, std::size_t) noexcept
   std::free(memory);
 }
 
+#ifndef __SANITIZE_THREAD__ // which has calls of its own, before this program begins
 extern "C" void* mmap(
   void* address, std::size_t bytes, int protection, int flags, int file, off_t offset) noexcept
 {
@@ -142,3 +143,4 @@ extern "C" int ioctl(int file, unsigned long request, ...) noexcept
   }
   return static_cast<int>(syscall(SYS_ioctl, file, request, argument));
 }
+#endif
