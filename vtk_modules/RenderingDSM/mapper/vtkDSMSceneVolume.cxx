@@ -7,6 +7,7 @@
 #include "vtkDSMTranslation.h"
 
 #include "DSMRayTracing/layout/FirstIsovalue.h"
+#include "DSMRayTracing/layout/MacrocellHierarchy.h"
 
 #include "vtkCompositeDataIterator.h"
 #include "vtkCompositeDataSet.h"
@@ -18,6 +19,7 @@
 #include "vtkSmartPointer.h"
 
 #include <algorithm>
+#include <limits>
 #include <utility>
 
 namespace
@@ -37,6 +39,30 @@ vtkMTimeType GetDataTime(vtkDataObject* data)
     }
   }
   return time;
+}
+
+/// The range of all values; without any, its First is greater than its Last.
+rt::ValueRange FindRange(const vtkDSMVolumeData::Fields& fields)
+{
+  rt::ValueRange all{ std::numeric_limits<float>::max(), std::numeric_limits<float>::lowest() };
+  for (const auto& field : fields)
+  {
+    if (field)
+    {
+      all.First = std::min(all.First, field->Hierarchy.GetRange().First);
+      all.Last = std::max(all.Last, field->Hierarchy.GetRange().Last);
+    }
+  }
+  return all;
+}
+
+/// Whether two ranges have at least half of the values in common that either has.
+bool AreAlike(const rt::ValueRange& one, const rt::ValueRange& other)
+{
+  const auto getWidth = [](float first, float last)
+  { return static_cast<double>(last) - static_cast<double>(first); };
+  return 2.0 * getWidth(std::max(one.First, other.First), std::min(one.Last, other.Last)) >=
+    getWidth(std::min(one.First, other.First), std::max(one.Last, other.Last));
 }
 
 } // namespace
@@ -355,9 +381,15 @@ int vtkDSMSceneVolume::CountCoarser() const
 
 void vtkDSMSceneVolume::SuggestIsovalue(dsm::Messenger& messenger)
 {
-  if (!this->Suggested || !(this->SuggestedFor == this->Iso->Choice))
+  const rt::ValueRange range = FindRange(this->Iso->GetFields());
+  const bool isOther =
+    !this->Suggested || !range.MayHold(*this->Suggested) || !AreAlike(range, this->SuggestedFrom);
+  // Bricks that do not fit the memory at present tell nothing of their values.
+  const bool isKnown = range.First <= range.Last;
+  if (!(this->SuggestedFor == this->Iso->Choice) || (isKnown && isOther))
   {
     this->SuggestedFor = this->Iso->Choice;
+    this->SuggestedFrom = range;
     this->Suggested = rt::FindFirstIsovalue(this->Iso->GetFields(), messenger);
   }
   this->Mapper->SetSuggestedIsoValue(this->Suggested.value_or(vtkMath::Nan()));

@@ -60,7 +60,7 @@ private:
     unsigned retryVersion, const std::vector<std::shared_ptr<Published>>& known);
   /// As it is now.
   vtkDSMVolumeMapper::SurfaceTest MakeSurfaceTest() const;
-  /// Collective. Finds the isovalue for a first look at the array, once for an array.
+  /// Collective. Finds the isovalue for a first look at the array, unless the last one still suits its values.
   void SuggestIsovalue(dsm::Messenger& messenger);
   vtkDSMVolumeLook GetLook() const { return { this->Mapper, this->Prop }; }
   void SetColors(std::size_t lattice, rt::IsosurfaceObject& object);
@@ -79,6 +79,7 @@ private:
   std::vector<std::shared_ptr<Published>> Stale;
   std::optional<double> Suggested; ///< isovalue
   vtkDSMVolumeData::Choice SuggestedFor;
+  rt::ValueRange SuggestedFrom{}; ///< of the values that suggested it
   std::string DataFailure;
   unsigned SettingsVersion = 0; ///< the group's at the last Update
 };

@@ -93,8 +93,9 @@ public:
   ///@{
   /**
    * Whether the surface of a value that the data suggest is drawn while there are no isovalues. Off by
-   * default. The same value for any number of ranks; once chosen for an array, it stays when its data
-   * change.
+   * default. The same value for any number of ranks. When the array's data change, the value stays if the new
+   * data have a surface there and at least half of their range of values in common with the data that suggested it,
+   * as time steps usually do. Otherwise the new data suggest another.
    */
   vtkSetMacro(AutomaticIsoValue, bool);
   vtkGetMacro(AutomaticIsoValue, bool);
