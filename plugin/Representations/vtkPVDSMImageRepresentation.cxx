@@ -395,18 +395,16 @@ void vtkPVDSMImageRepresentation::SetSingleIsoValue(double value)
   this->ChooseIsoValues();
 }
 
-void vtkPVDSMImageRepresentation::SetUnchosenIsoValue(double value)
+void vtkPVDSMImageRepresentation::SetAutomaticIsoValue(bool automatic)
 {
-  this->UnchosenIsoValue = value;
+  this->AutomaticIsoValue = automatic;
   this->ChooseIsoValues();
 }
 
 void vtkPVDSMImageRepresentation::ChooseIsoValues()
 {
   std::vector<double> shown = this->IsoValues;
-  const bool isChosen =
-    this->SingleIsoValue != FirstIsoValue && this->SingleIsoValue != this->UnchosenIsoValue;
-  if (shown.empty() && isChosen)
+  if (shown.empty() && !this->AutomaticIsoValue)
   {
     shown.push_back(this->SingleIsoValue);
   }

@@ -95,21 +95,13 @@ public:
 
   ///@{
   /**
-   * What isosurfaces are shown: those of a list of values; while it is empty, the one of the single value; as long as
-   * nobody has chosen that, the one of a value that the data suggest.
+   * What isosurfaces are shown: those of a list of values; while it is empty, the one of a value that the data suggest
+   * (default), or, where it is not automatic, the one of the single value.
    */
   void SetNumberOfIsoValues(int number);
   void SetIsoValue(int index, double value);
   void SetSingleIsoValue(double value);
-  ///@}
-
-  ///@{
-  /**
-   * As long as the single value is this one, nobody has chosen it. The number that a display begins with is nobody's
-   * choice, and not for the eye; another that stands there instead is told here.
-   */
-  void SetUnchosenIsoValue(double value);
-  static constexpr double FirstIsoValue = -1e-299;
+  void SetAutomaticIsoValue(bool automatic);
   ///@}
 
   ///@{
@@ -234,8 +226,8 @@ private:
   std::string BlockArray; ///< that colours whole blocks; empty: none
   bool BlockLooksAreOld = true;
   std::vector<double> IsoValues;
-  double SingleIsoValue = FirstIsoValue;
-  double UnchosenIsoValue = FirstIsoValue;
+  double SingleIsoValue = 0.0;
+  bool AutomaticIsoValue = true;
   std::unique_ptr<vtkPVDSMTracedDisplay> Display;
 };
 

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkPVDSMIsovalueWatch.h"
 
-#include "vtkPVDSMImageRepresentation.h"
+#include "vtkPVDSMNoUndo.h"
+#include "vtkSMDSMImageRepresentationProxy.h"
 
 #include "vtkCallbackCommand.h"
 #include "vtkClientServerStream.h"
@@ -10,11 +11,9 @@
 #include "vtkSMProperty.h"
 #include "vtkSMPropertyHelper.h"
 #include "vtkSMProxy.h"
-#include "vtkSMProxyManager.h"
 #include "vtkSMSession.h"
 #include "vtkSMTrace.h"
 #include "vtkSMUncheckedPropertyHelper.h"
-#include "vtkSMUndoStackBuilder.h"
 
 #include <array>
 #include <cmath>
@@ -25,7 +24,6 @@ namespace
 {
 constexpr const char* Single = "DSMIsoValue";
 constexpr const char* List = "DSMIsoValues";
-constexpr const char* Unchosen = "DSMUnchosenIsoValue";
 
 /// After what depends on a property, as ranges do, has heard of it.
 constexpr float Late = -1.0f;
@@ -33,34 +31,11 @@ constexpr float Late = -1.0f;
 /// What that property's range depends on.
 constexpr const char* Choices[] = { "DSMIsoArray", "DSMIsoComponent" };
 
-/// Whether a box is as large as data that are not there: upside down, or, since ParaView 6, of no extent.
-bool IsOfNothing(const vtkSMPropertyHelper& bounds)
+/// Null for a mesh, which has no isovalue.
+vtkSMDSMImageRepresentationProxy* FindVolume(vtkSMProxy* representation)
 {
-  const auto isFlat = [&](unsigned int axis)
-  { return !(bounds.GetAsDouble(2 * axis) < bounds.GetAsDouble(2 * axis + 1)); };
-  return isFlat(0) && isFlat(1) && isFlat(2);
-}
-
-/// A display that was made before its data came had nothing to choose its array or its box from, and has none.
-void ChooseWhatIsMissing(vtkSMProxy* representation)
-{
-  vtkSMProperty* const array = representation->GetProperty("DSMIsoArray");
-  const char* const name = vtkSMPropertyHelper(array).GetInputArrayNameToProcess();
-  bool any = (!name || !*name) && array->ResetToDomainDefaults();
-  vtkSMProperty* const box = representation->GetProperty("DSMCroppingBox");
-  any = (IsOfNothing(vtkSMPropertyHelper(box)) && box->ResetToDomainDefaults()) || any;
-  if (any)
-  {
-    representation->UpdateVTKObjects();
-  }
-}
-
-/// Whether somebody has chosen the single isovalue.
-bool IsChosen(vtkSMProxy* representation)
-{
-  const double value = vtkSMPropertyHelper(representation, Single).GetAsDouble();
-  return value != vtkPVDSMImageRepresentation::FirstIsoValue &&
-    value != vtkSMPropertyHelper(representation, Unchosen).GetAsDouble();
+  vtkSMProperty* const single = representation->GetProperty(Single);
+  return vtkSMDSMImageRepresentationProxy::SafeDownCast(single ? single->GetParent() : nullptr);
 }
 
 /// Of the values among which an isovalue is chosen, least and greatest, where they are known.
@@ -82,33 +57,6 @@ double FindStandIn(vtkSMProperty* single)
   const double middle = 0.5 * least + 0.5 * most;
   return least <= most && std::isfinite(middle) ? middle : 0.0;
 }
-
-/// While it lives, nothing becomes a step of its own for the user to undo.
-class NoUndo
-{
-public:
-  NoUndo()
-    : Builder(vtkSMProxyManager::GetProxyManager()->GetUndoStackBuilder())
-    , Before(this->Builder && this->Builder->GetIgnoreAllChanges())
-  {
-    this->Ignore(true);
-  }
-  ~NoUndo() { this->Ignore(this->Before); }
-  NoUndo(const NoUndo&) = delete;
-  NoUndo& operator=(const NoUndo&) = delete;
-
-private:
-  void Ignore(bool ignores)
-  {
-    if (this->Builder)
-    {
-      this->Builder->SetIgnoreAllChanges(ignores);
-    }
-  }
-
-  vtkSMUndoStackBuilder* Builder;
-  bool Before;
-};
 } // namespace
 
 vtkPVDSMIsovalueWatch::vtkPVDSMIsovalueWatch(std::function<void()> changed)
@@ -136,16 +84,14 @@ vtkPVDSMIsovalueWatch::~vtkPVDSMIsovalueWatch()
 
 void vtkPVDSMIsovalueWatch::TakeSuggestion(vtkSMProxy* representation)
 {
-  vtkSMProperty* single = representation->GetProperty(Single);
-  if (!single)
+  vtkSMDSMImageRepresentationProxy* const volume = FindVolume(representation);
+  if (!volume)
   {
     return;
   }
-  this->IsTaking = true;
-  ChooseWhatIsMissing(representation);
-  this->IsTaking = false;
+  volume->NoteRender();
   this->BeginList(representation);
-  if (IsChosen(representation) ||
+  if (!volume->IsIsovalueAutomatic() ||
     vtkSMPropertyHelper(representation, List).GetNumberOfElements() > 0)
   {
     return;
@@ -153,15 +99,8 @@ void vtkPVDSMIsovalueWatch::TakeSuggestion(vtkSMProxy* representation)
   vtkSMProperty* suggestion = representation->GetProperty("DSMSuggestedIsoValue");
   suggestion->GetParent()->UpdatePropertyInformation(suggestion);
   const double suggested = vtkSMPropertyHelper(suggestion).GetAsDouble();
-  const bool isSuggested = std::isfinite(suggested);
-  const double value = isSuggested ? suggested : FindStandIn(single);
-  this->IsTaking = true;
-  const NoUndo noUndo;
-  vtkSMPropertyHelper(representation, Unchosen)
-    .Set(isSuggested ? vtkPVDSMImageRepresentation::FirstIsoValue : value);
-  vtkSMPropertyHelper(single).Set(value);
-  representation->UpdateVTKObjects();
-  this->IsTaking = false;
+  volume->SetAutomaticIsovalue(
+    std::isfinite(suggested) ? suggested : FindStandIn(volume->GetProperty(Single)));
 }
 
 void vtkPVDSMIsovalueWatch::Watch(vtkSMProxy* representation, bool isInApplication)
@@ -183,7 +122,6 @@ void vtkPVDSMIsovalueWatch::Watch(vtkSMProxy* representation, bool isInApplicati
     observe(representation->GetProperty(choice), vtkCommand::ModifiedEvent);
     observe(representation->GetProperty(choice), vtkCommand::UncheckedPropertyModifiedEvent);
   }
-  observe(single, vtkCommand::ModifiedEvent);
   if (isInApplication)
   {
     observe(single, vtkCommand::UncheckedPropertyModifiedEvent);
@@ -195,13 +133,13 @@ void vtkPVDSMIsovalueWatch::Watch(vtkSMProxy* representation, bool isInApplicati
 void vtkPVDSMIsovalueWatch::OnEvent(vtkSMProperty* property, unsigned long event)
 {
   vtkSMProxy* const proxy = property->GetParent();
-  if (this->IsTaking || !proxy)
+  if (!proxy)
   {
     return;
   }
   if (property == proxy->GetProperty(Single))
   {
-    event == vtkCommand::ModifiedEvent ? this->OnChoice(proxy) : this->OnSlider(property);
+    this->OnSlider(property);
   }
   else if (property == proxy->GetProperty(List))
   {
@@ -218,26 +156,17 @@ void vtkPVDSMIsovalueWatch::OnEvent(vtkSMProperty* property, unsigned long event
   }
 }
 
-/// A surface that the new values do not have becomes the one that they suggest, with the next render. Whoever knows the
-/// isovalue sets it after the array: scripts, state files, undo.
+/// Another array has another isovalue, which its data suggest with the next render, unless somebody who knows it has just
+/// set it: scripts may do so before they set the array. What is set after the array counts in any case.
 void vtkPVDSMIsovalueWatch::OnOtherArray(vtkSMProxy* representation)
 {
-  vtkSMProperty* const single = representation->GetProperty(Single);
+  vtkSMDSMImageRepresentationProxy* const volume = FindVolume(representation);
+  vtkSMProperty* const single = volume->GetProperty(Single);
   const double value = vtkSMPropertyHelper(single).GetAsDouble();
   const auto [least, most] = FindRange(single).value_or(std::array<double, 2>{ value, value });
-  if (IsChosen(representation) && (value < least || value > most))
+  if (volume->IsIsovalueAutomatic() || !volume->IsIsovalueNew() || value < least || value > most)
   {
-    vtkSMPropertyHelper(single).Set(vtkPVDSMImageRepresentation::FirstIsoValue);
-  }
-}
-
-/// The number that stood there may be chosen later. With the choice, so that both are undone together; whoever has
-/// made it brings both to the datasets.
-void vtkPVDSMIsovalueWatch::OnChoice(vtkSMProxy* representation)
-{
-  if (IsChosen(representation))
-  {
-    vtkSMPropertyHelper(representation, Unchosen).Set(vtkPVDSMImageRepresentation::FirstIsoValue);
+    volume->SetIsovalueAutomatic();
   }
 }
 
@@ -267,10 +196,9 @@ void vtkPVDSMIsovalueWatch::BeginList(vtkSMProxy* representation)
     return;
   }
   this->Begun = nullptr;
-  if (vtkSMPropertyHelper(list).GetAsDouble() == 0.0 &&
-    single != vtkPVDSMImageRepresentation::FirstIsoValue)
+  if (vtkSMPropertyHelper(list).GetAsDouble() == 0.0)
   {
-    const NoUndo noUndo;
+    const vtkPVDSMNoUndo noUndo;
     SM_SCOPED_TRACE(PropertiesModified).arg("proxy", representation);
     vtkSMPropertyHelper(list).Set(single);
     representation->UpdateVTKObjects();
@@ -281,10 +209,20 @@ void vtkPVDSMIsovalueWatch::BeginList(vtkSMProxy* representation)
 // Past the property, whose changes the application traces, and may undo.
 void vtkPVDSMIsovalueWatch::OnSlider(vtkSMProperty* single)
 {
+  const double shown = vtkSMUncheckedPropertyHelper(single).GetAsDouble();
+  const bool isDragged = shown != vtkSMPropertyHelper(single).GetAsDouble();
+  if (!isDragged && single != this->Dragged)
+  {
+    return;
+  }
+  this->Dragged = isDragged ? single : nullptr;
   vtkSMProxy* proxy = single->GetParent();
+  const int isAutomatic = !isDragged && FindVolume(proxy)->IsIsovalueAutomatic() ? 1 : 0;
   vtkClientServerStream stream;
-  stream << vtkClientServerStream::Invoke << VTKOBJECT(proxy) << "SetSingleIsoValue"
-         << vtkSMUncheckedPropertyHelper(single).GetAsDouble() << vtkClientServerStream::End;
+  stream << vtkClientServerStream::Invoke << VTKOBJECT(proxy) << "SetSingleIsoValue" << shown
+         << vtkClientServerStream::End;
+  stream << vtkClientServerStream::Invoke << VTKOBJECT(proxy) << "SetAutomaticIsoValue"
+         << isAutomatic << vtkClientServerStream::End;
   proxy->GetSession()->ExecuteStream(proxy->GetLocation(), stream);
   this->Changed();
 }

@@ -10,11 +10,10 @@
 class vtkSMProperty;
 class vtkSMProxy;
 
-/// The isovalues of a view's datasets, on the client: a single one that nobody has chosen becomes the one that the data
-/// suggest and the picture shows, and so does one that is out of the range of an array that is chosen in place of
-/// another. Where the data suggest none, it is the middle of their range, and still nobody's choice. And while the
-/// panel's slider is dragged, the datasets already have the value that it is at, which the property gets when it is let
-/// go.
+/// The isovalues of a view's datasets, on the client. An automatic isovalue becomes the one that the data suggest and the
+/// picture shows. Where the data suggest none, it is the middle of their range. The isovalue of another array is automatic.
+/// While the panel's slider is dragged, the datasets already have the value that it is at, which the property gets when
+/// it is let go.
 class vtkPVDSMIsovalueWatch
 {
 public:
@@ -24,9 +23,8 @@ public:
   vtkPVDSMIsovalueWatch(const vtkPVDSMIsovalueWatch&) = delete;
   vtkPVDSMIsovalueWatch& operator=(const vtkPVDSMIsovalueWatch&) = delete;
 
-  /// After a render of a traced dataset; meshes have no isovalue. Where the dataset came after its display, the
-  /// array and the box to crop to, which are empty then, become what they would have been, too. A list of isovalues
-  /// that the user begins has the single one first.
+  /// After a render of a traced dataset; meshes have no isovalue. A list of isovalues that the user begins has the single
+  /// one first.
   void TakeSuggestion(vtkSMProxy* representation);
   /// From now on; the slider, too, in the application. Doing so again changes nothing.
   void Watch(vtkSMProxy* representation, bool isInApplication);
@@ -37,13 +35,12 @@ private:
   void OnList(vtkSMProperty* list, unsigned long event);
   void BeginList(vtkSMProxy* representation);
   void OnOtherArray(vtkSMProxy* representation);
-  void OnChoice(vtkSMProxy* representation);
 
   std::function<void()> Changed;
   vtkSmartPointer<vtkCommand> Observer;
-  vtkSMProperty* Choice = nullptr; ///< of an array or a component, while it becomes another
-  vtkSMProperty* Begun = nullptr;  ///< a list to which the panel has added a first value
-  bool IsTaking = false;
+  vtkSMProperty* Choice = nullptr;  ///< of an array or a component, while it becomes another
+  vtkSMProperty* Begun = nullptr;   ///< a list to which the panel has added a first value
+  vtkSMProperty* Dragged = nullptr; ///< an isovalue that the slider shows, and that is not set yet
 };
 
 #endif

@@ -14,39 +14,64 @@
 #include "vtkSMSessionProxyManager.h"
 #include "vtkSmartPointer.h"
 
+#include <optional>
 #include <string>
 
 namespace
 {
 
-bool HasProperty(vtkPVXMLElement* proxy, const std::string& name)
+/// Null where the state of a proxy does not have it.
+vtkPVXMLElement* FindProperty(vtkPVXMLElement* proxy, const std::string& name)
 {
   for (unsigned int number = 0; number < proxy->GetNumberOfNestedElements(); ++number)
   {
     vtkPVXMLElement* property = proxy->GetNestedElement(number);
     if (property->GetAttributeOrEmpty("name") == name)
     {
-      return true;
+      return property;
     }
   }
-  return false;
+  return nullptr;
 }
 
-void SetPlainLook(vtkPVXMLElement* element, vtkSMProxyLocator* locator)
+/// The value of a property that has one number; nothing where the state of a proxy does not have it.
+std::optional<double> FindNumber(vtkPVXMLElement* proxy, const std::string& name)
+{
+  vtkPVXMLElement* const property = FindProperty(proxy, name);
+  vtkPVXMLElement* const element =
+    property ? property->FindNestedElementByName("Element") : nullptr;
+  double number = 0.0;
+  return element && element->GetScalarAttribute("value", &number) ? std::optional(number)
+                                                                  : std::nullopt;
+}
+
+/// Before there was a property for it, an isovalue was automatic as long as it had the number of a hidden one.
+bool HasOldAutomaticIsovalue(vtkPVXMLElement* proxy)
+{
+  const std::optional<double> isovalue = FindNumber(proxy, "DSMIsoValue");
+  return isovalue && isovalue == FindNumber(proxy, "DSMUnchosenIsoValue");
+}
+
+void Complete(vtkPVXMLElement* element, vtkSMProxyLocator* locator)
 {
   int id = 0;
-  if (HasProperty(element, "DSMShadows") && !HasProperty(element, "DSMLook") &&
-    element->GetScalarAttribute("id", &id))
+  const bool isDisplay =
+    FindProperty(element, "DSMShadows") && element->GetScalarAttribute("id", &id);
+  if (vtkSMProxy* const proxy = isDisplay ? locator->LocateProxy(id) : nullptr)
   {
-    if (vtkSMProxy* proxy = locator->LocateProxy(id))
+    if (!FindProperty(element, "DSMLook"))
     {
       vtkSMPropertyHelper(proxy, "DSMLook").Set(vtkDSMLightOptions::PlainLook);
-      proxy->UpdateVTKObjects();
     }
+    if (HasOldAutomaticIsovalue(element))
+    {
+      vtkSMPropertyHelper(proxy, "DSMIsoValueAutomatic").Set(1);
+    }
+    proxy->UpdateVTKObjects();
   }
   for (unsigned int number = 0; number < element->GetNumberOfNestedElements(); ++number)
   {
-    SetPlainLook(element->GetNestedElement(number), locator);
+    Complete(element->GetNestedElement(number), locator);
   }
 }
 
@@ -62,7 +87,7 @@ vtkCommand* GetObserver()
         const auto* state = static_cast<vtkSMProxyManager::LoadStateInformation*>(loaded);
         if (state && state->RootElement && state->ProxyLocator)
         {
-          SetPlainLook(state->RootElement, state->ProxyLocator);
+          Complete(state->RootElement, state->ProxyLocator);
         }
       });
     return vtkSmartPointer<vtkCommand>(made);

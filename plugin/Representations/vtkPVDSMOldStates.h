@@ -4,7 +4,8 @@
 
 class vtkSMSessionProxyManager;
 
-/// State files from before there was a first look show what they showed: the plain one.
+/// State files show what they showed: those from before there was a first look the plain one, and those from before there
+/// was a switch for an automatic isovalue such an isovalue, where they had one.
 class vtkPVDSMOldStates
 {
 public:

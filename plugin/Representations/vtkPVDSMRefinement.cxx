@@ -46,8 +46,8 @@ std::map<vtkPVRenderView*, vtkWeakPointer<vtkPVDSMRefinement>>& GetRegistry()
 
 vtkSMRenderViewProxy* FindProxy(vtkPVRenderView* view)
 {
-  auto* module = vtkProcessModule::GetProcessModule();
-  return module && module->GetProcessType() == vtkProcessModule::PROCESS_CLIENT
+  const auto type = vtkProcessModule::GetProcessType();
+  return type == vtkProcessModule::PROCESS_CLIENT || type == vtkProcessModule::PROCESS_BATCH
     ? vtkSMRenderViewProxy::SafeDownCast(vtkPVDSMProxyFinder::Find(view))
     : nullptr;
 }
@@ -240,8 +240,9 @@ void vtkPVDSMRefinement::OnRenderEnds(vtkObject*, unsigned long, void* interacti
   this->IsRefined = true;
   const bool goesOn = this->CanGoOn();
   vtkSMSession* const session = this->View->GetSession();
+  const bool isStill = *static_cast<int*>(interactive) == 0;
   // Of several clients, one says what the others show.
-  if (!session->IsMultiClients() || session->GetCollaborationManager()->IsMaster())
+  if (isStill && (!session->IsMultiClients() || session->GetCollaborationManager()->IsMaster()))
   {
     ForEachTraced(this->View,
       [&](vtkSMProxy* representation)
@@ -250,7 +251,7 @@ void vtkPVDSMRefinement::OnRenderEnds(vtkObject*, unsigned long, void* interacti
         this->Isovalues.Watch(representation, goesOn);
       });
   }
-  if (*static_cast<int*>(interactive) != 0 || !goesOn)
+  if (!isStill || !goesOn)
   {
     return;
   }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkSMDSMIsosurfaceArrayDomain.h"
 
+#include "vtkSMDSMImageRepresentationProxy.h"
+
 #include "vtkDataSetAttributes.h"
 #include "vtkObjectFactory.h"
 #include "vtkPVArrayInformation.h"
@@ -11,6 +13,12 @@
 
 #include <string>
 
+namespace
+{
+/// Where the selection of an array has it, and its name behind it.
+constexpr unsigned int Association = 3;
+}
+
 vtkStandardNewMacro(vtkSMDSMIsosurfaceArrayDomain);
 
 vtkSMDSMIsosurfaceArrayDomain::vtkSMDSMIsosurfaceArrayDomain() = default;
@@ -19,17 +27,34 @@ vtkSMDSMIsosurfaceArrayDomain::~vtkSMDSMIsosurfaceArrayDomain() = default;
 int vtkSMDSMIsosurfaceArrayDomain::SetDefaultValues(
   vtkSMProperty* property, bool useUncheckedValues)
 {
-  // Where the selection of an array has it, and its name behind it.
-  constexpr unsigned int association = 3;
+  if (useUncheckedValues)
+  {
+    return this->SetDefault(property, true);
+  }
+  int isSet = 0;
+  vtkSMDSMImageRepresentationProxy::SetAutomatic(property,
+    [&]
+    {
+      isSet = this->SetDefault(property, false);
+      // 00 for 0: ParaView does not tell when a property is set to what it is, but a script may choose this array.
+      vtkSMPropertyHelper chosen(property);
+      const std::string number = "0" + std::to_string(chosen.GetAsInt(Association));
+      chosen.Set(Association, number.c_str());
+    });
+  return isSet;
+}
+
+int vtkSMDSMIsosurfaceArrayDomain::SetDefault(vtkSMProperty* property, bool useUncheckedValues)
+{
   const int isSet = this->Superclass::SetDefaultValues(property, useUncheckedValues);
   vtkPVDataInformation* const data = this->GetInputDataInformation("Input");
   vtkSMPropertyHelper chosen(property);
   chosen.SetUseUnchecked(useUncheckedValues);
-  if (!data || chosen.GetNumberOfElements() <= association + 1)
+  if (!data || chosen.GetNumberOfElements() <= Association + 1)
   {
     return isSet;
   }
-  const std::string name = chosen.GetAsString(association + 1);
+  const std::string name = chosen.GetAsString(Association + 1);
   vtkPVDataSetAttributesInformation* const points =
     data->GetAttributeInformation(vtkDataObject::POINT);
   vtkPVArrayInformation* const scalars =
@@ -44,8 +69,8 @@ int vtkSMDSMIsosurfaceArrayDomain::SetDefaultValues(
       data->GetArrayInformation(this->GetString(number), this->GetFieldAssociation(number));
     if (array && array->GetNumberOfComponents() == 1)
     {
-      chosen.Set(association, this->GetFieldAssociation(number));
-      chosen.Set(association + 1, this->GetString(number));
+      chosen.Set(Association, this->GetFieldAssociation(number));
+      chosen.Set(Association + 1, this->GetString(number));
       return 1;
     }
   }

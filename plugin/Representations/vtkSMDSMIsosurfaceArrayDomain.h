@@ -27,6 +27,8 @@ protected:
   ~vtkSMDSMIsosurfaceArrayDomain() override;
 
 private:
+  int SetDefault(vtkSMProperty* property, bool useUncheckedValues);
+
   vtkSMDSMIsosurfaceArrayDomain(const vtkSMDSMIsosurfaceArrayDomain&) = delete;
   void operator=(const vtkSMDSMIsosurfaceArrayDomain&) = delete;
 };

@@ -1,12 +1,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkSMDSMIsovalueDomain.h"
 
+#include "vtkSMDSMImageRepresentationProxy.h"
+
 #include "vtkObjectFactory.h"
 #include "vtkSMProperty.h"
 #include "vtkSMPropertyHelper.h"
 #include "vtkSMProxy.h"
 
 #include <cmath>
+
+namespace
+{
+/// Where a single isovalue begins, as a part of the range: an even fraction could be what somebody enters.
+constexpr double Beginning = 0.5 + 0.01 / 3.14159265358979;
+}
 
 vtkStandardNewMacro(vtkSMDSMIsovalueDomain);
 
@@ -15,6 +23,10 @@ vtkSMDSMIsovalueDomain::~vtkSMDSMIsovalueDomain() = default;
 
 int vtkSMDSMIsovalueDomain::SetDefaultValues(vtkSMProperty* property, bool useUncheckedValues)
 {
+  if (!useUncheckedValues && !property->GetRepeatable())
+  {
+    return this->SetSingle(property);
+  }
   vtkSMProxy* const representation = property->GetParent();
   vtkSMProperty* const suggestion =
     representation ? representation->GetProperty("DSMSuggestedIsoValue") : nullptr;
@@ -35,4 +47,19 @@ int vtkSMDSMIsovalueDomain::SetDefaultValues(vtkSMProperty* property, bool useUn
     }
   }
   return this->Superclass::SetDefaultValues(property, useUncheckedValues);
+}
+
+int vtkSMDSMIsovalueDomain::SetSingle(vtkSMProperty* property)
+{
+  int isKnown[2] = { 0, 0 };
+  const double least = this->GetMinimum(0, isKnown[0]);
+  const double most = this->GetMaximum(0, isKnown[1]);
+  const double value = (1.0 - Beginning) * least + Beginning * most;
+  if (!isKnown[0] || !isKnown[1] || least > most || !std::isfinite(value))
+  {
+    return 0;
+  }
+  vtkSMDSMImageRepresentationProxy::SetAutomatic(
+    property, [&] { vtkSMPropertyHelper(property).Set(least < most ? value : least); });
+  return 1;
 }

@@ -4,8 +4,9 @@
  * @brief   the range of an array, of which the default is the isovalue that the data suggest
  *
  * The panel's reset button takes it. What the data suggest is known once they have been shown; until then, and where
- * they suggest none, the default is that of ParaView's ArrayRangeDomain. The name is what ParaView makes of the
- * element DSMIsovalueDomain.
+ * they suggest none, the default is that of ParaView's ArrayRangeDomain. A display's single isovalue is automatic by
+ * default, and begins with a number near the middle of the range that nobody would enter: ParaView does not tell when a
+ * property is set to the number that it has. The name is what ParaView makes of the element DSMIsovalueDomain.
  */
 
 #ifndef vtkSMDSMIsovalueDomain_h
@@ -27,6 +28,8 @@ protected:
   ~vtkSMDSMIsovalueDomain() override;
 
 private:
+  int SetSingle(vtkSMProperty* property);
+
   vtkSMDSMIsovalueDomain(const vtkSMDSMIsovalueDomain&) = delete;
   void operator=(const vtkSMDSMIsovalueDomain&) = delete;
 };

@@ -37,3 +37,72 @@ for script, wanted in ((FLOW, "pressure"), (FLOW + "output.PointData.SetActiveSc
     shown = simple.Show(flow, view)
     check(list(shown.DSMIsoArray) == ["POINTS", wanted], f"the array that is shown first: {shown.DSMIsoArray}")
     simple.Delete(flow)
+
+# An array that was chosen automatically is chosen anew when it is gone; it has an isovalue of its own.
+simple.Hide(volume, view)
+sample = simple.DSMSampleVolume(Dimensions=[64, 64, 64])
+display = show_traced(sample, view)
+place_camera(view)
+
+
+def expect_automatic(what, array, least, most):
+    """An automatic isovalue between these two, with a surface, and without a message."""
+    with Messages() as messages:
+        covered = get_covered(render(view)).mean()
+    check(display.DSMIsoArray[1] == array and messages.text == "", f"{what}: {display.DSMIsoArray}{messages.text}")
+    check(display.DSMIsoValueAutomatic == 1 and least < display.DSMIsoValue < most, f"it has {display.DSMIsoValue}")
+    check(display.DSMIsoValue == display.GetPropertyValue("DSMSuggestedIsoValue"), "which its data suggest")
+    check(covered > 0.02, f"there is a surface on {100 * covered:.0f} % of the view")
+    return display.DSMIsoValue
+
+
+check(0.1 < display.DSMIsoValue < 3.0, f"before it is shown, its isovalue is in its range: {display.DSMIsoValue}")
+expect_automatic("a sphere", "f", 0.4, 0.95)
+sample.Kind = "Mixing Layer"
+expect_automatic("another kind", "entropy", 20.0, 240.0)
+display.DSMIsoValue = 200.0
+render(view)
+check(display.DSMIsoValueAutomatic == 0 and display.DSMIsoValue == 200.0, "a value that is set is not automatic")
+display.DSMIsoValueAutomatic = 1
+expect_automatic("automatic again", "entropy", 20.0, 240.0)
+display.DSMIsoValue = 1.2
+render(view)
+sample.Kind = "Noisy Sphere"
+expect_automatic("the array has gone, and its isovalue with it", "f", 0.4, 0.95)
+display.DSMIsoArray = ["POINTS", "f"]
+check(display.DSMIsoArrayAutomatic == 0, "an array that a script sets is not automatic")
+sample.Kind = "Mixing Layer"
+with Messages() as messages:
+    render(view)
+check("'f' does not exist" in messages.text and display.DSMIsoArray[1] == "f", "and stays, with an error: " + messages.text)
+simple.Delete(sample)
+
+# An automatic isovalue follows the data.
+calculator = simple.Calculator(Input=simple.Wavelet(), ResultArrayName="r", Function="RTData*1.0")
+display = show_traced(calculator, view)
+place_camera(view)
+first = expect_automatic("a calculator", "r", 100.0, 250.0)
+calculator.Function = "RTData*0.001"
+expect_automatic("smaller values", "r", 0.1, 0.25)
+calculator.Function = "RTData*1000"
+expect_automatic("greater values", "r", 1e5, 2.5e5)
+calculator.Function = "RTData"
+check(expect_automatic("the first ones", "r", 100.0, 250.0) == first, "have their first isovalue")
+calculator.Function = "RTData*1.05"
+check(expect_automatic("values that are much the same, as time steps are", "r", 100.0, 250.0) == first, "keep it")
+display.DSMIsoValue = 0.0
+check(display.DSMIsoValueAutomatic == 0, "0 is a value, too")
+calculator.Function = "RTData*0.001"
+check(not get_covered(render(view)).any(), "a value that is set stays, whatever the data are")
+simple.Delete(calculator)
+
+flow = simple.Calculator(Input=simple.Wavelet(), ResultArrayName="r", Function="RTData")
+display = show_traced(flow, view)
+display.DSMIsoValue = 150.0
+display.DSMIsoValueAutomatic = 1
+check(display.DSMIsoValue == 150.0, "switched on, it has a number with the next picture")
+expect_automatic("which it has", "r", 150.1, 250.0)
+display.DSMIsoValues = [200.0]
+render(view)
+display.DSMIsoValues = []
+expect_automatic("after a list, too", "r", 150.1, 250.0)

@@ -31,7 +31,8 @@ def list_panel(display):
 view = create_view()
 LIGHT = ["DSMShadows", "DSMAmbientOcclusionSamples", "DSMSamplesPerPixel"]
 for source, own in (
-    (simple.Wavelet(), ["DSMIsoArray", "DSMIsoValue", "DSMIsoValues", "DSMIsoComponent"]),
+    (simple.Wavelet(), ["DSMIsoArray", "DSMIsoArrayAutomatic", "DSMIsoValue", "DSMIsoValueAutomatic", "DSMIsoValues",
+                        "DSMIsoComponent"]),
     (simple.Cone(), []),
 ):
     names = list_panel(simple.Show(source, view))

@@ -5,7 +5,8 @@ from dsm_testing import *
 
 load_plugin()
 SETTINGS = {
-    "Representation": REPRESENTATION, "DSMIsoValue": 0.7, "DSMIsoValues": [0.5, 0.8], "DSMIsoComponent": 0,
+    "Representation": REPRESENTATION, "DSMIsoValue": 0.7, "DSMIsoValueAutomatic": 0,
+    "DSMIsoArrayAutomatic": 0, "DSMIsoValues": [0.5, 0.8], "DSMIsoComponent": 0,
     "DSMThreads": 1, "DSMCacheSize": 33, "DSMMemoryOrganization": "Object based",
     "DSMHostSharing": 0, "DSMCoarserDataWhileMoving": 1, "DSMScheduler": "Central queue", "DSMSilenceLimit": 90, "DSMMemory": 123, "DSMScratchDirectory": "/nowhere/at/all",
     "DSMShadows": 1, "DSMLightRadius": 0.02,

@@ -9,7 +9,7 @@ from paraview import smtrace
 
 load_plugin()
 CHANGES = {
-    "DSMIsoValue": 0.7, "DSMIsoValues": [0.5, 0.8], "DSMIsoComponent": 1, "DSMThreads": 1, "DSMCacheSize": 33,
+    "DSMIsoValue": 0.7, "DSMIsoValueAutomatic": 0, "DSMIsoValues": [0.5, 0.8], "DSMIsoComponent": 1, "DSMThreads": 1, "DSMCacheSize": 33,
     "DSMMemoryOrganization": "Object based", "DSMHostSharing": 0, "DSMScheduler": "Central queue", "DSMSilenceLimit": 90,
     "DSMMemory": 123, "DSMScratchDirectory": "/nowhere", "DSMShadows": 1, "DSMLightRadius": 0.02, "DSMAmbientOcclusionSamples": 2,
     "DSMAmbientOcclusionDistance": 0.75, "DSMReflectivity": 0.25, "DSMMaxBounces": 3,

@@ -1,15 +1,17 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Where the data suggest no isovalue, the middle of their range stands there, or 0, and is nobody's choice: once they
-suggest one, it takes its place. ParaView's Python alone, or with a server at the port that is given."""
+"""Where the data suggest no isovalue, an automatic one is the middle of their range, or 0, until they do. State files tell
+whether it is automatic. ParaView's Python alone, or with a server at the port that is given."""
+
+import re
 
 from dsm_testing import *
+from paraview import smstate
 
 if len(sys.argv) > 3:
     connect(sys.argv[3])
 load_plugin()
 view = create_view()
 
-FIRST = -1e-299
 image = "image.SetExtent(piece)\nadd(image, %s)\n"
 
 
@@ -34,26 +36,51 @@ for name, (values, expected) in cases.items():
     check_equal(render(view), picture, "and stays", 0)
     change(source, values)
     render(view)
-    check(display.DSMIsoValue == value, "what was suggested stays, too")
+    check(display.DSMIsoValue == (expected or value), f"{name} again: {display.DSMIsoValue}")
     simple.Delete(source)
 
-# A state file has both.
+def go_on(path):
+    """Loads a state in which the array was constant; shows other values."""
+    for old in simple.GetSources().values():
+        simple.Delete(old)
+    for old in simple.GetRenderViews():
+        simple.Delete(old)
+    if path.endswith(".py"):
+        with open(path, encoding="utf-8") as text:
+            exec(compile(text.read(), path, "exec"), {"__name__": "state"})
+    else:
+        simple.LoadState(path)
+    view = simple.GetActiveView()
+    (source,) = simple.GetSources().values()
+    display = simple.GetRepresentation(source, view)
+    check(display.DSMIsoValue == 7.0, f"{path} has the isovalue {display.DSMIsoValue}")
+    is_automatic = display.DSMIsoValueAutomatic
+    change(source, "distance(piece)")
+    return view, source, display, is_automatic, get_covered(render(view)).any()
+
+
 source = image_source(image % cases["a constant array"][0])
 show_traced(source, view)
 place_camera(view)
 render(view)
 path = os.path.join(OUTPUT, "unchosen.pvsm")
 simple.SaveState(path)
-simple.Delete(source)
-simple.Delete(view)
-simple.LoadState(path)
-view = simple.GetActiveView()
-(source,) = simple.GetSources().values()
-display = simple.GetRepresentation(source, view)
-check(display.DSMIsoValue == 7.0, f"a state has the isovalue {display.DSMIsoValue}")
-change(source, "distance(piece)")
-check(get_covered(render(view)).any(), "which is nobody's choice, either")
-check(0.4 < display.DSMIsoValue < 1.0, f"and becomes {display.DSMIsoValue}")
+with open(path, encoding="utf-8") as text:
+    state = text.read()
+OLD = re.compile(r'(<Property name="DSMIsoValueAutomatic".*?</Property>)', re.DOTALL)
+check(OLD.search(state), "states tell that an isovalue is automatic")
+HIDDEN = '<Property name="DSMUnchosenIsoValue" number_of_elements="1"><Element index="0" value="%s"/></Property>'
+for name, number in (("old", 7), ("chosen", -1e-299)):  # from before there was a property for it
+    with open(os.path.join(OUTPUT, name + ".pvsm"), "w", encoding="utf-8") as text:
+        text.write(OLD.sub(HIDDEN % number, state))
+with open(os.path.join(OUTPUT, "unchosen.py"), "w", encoding="utf-8") as text:
+    text.write(smstate.get_state())
+for name in ("unchosen.pvsm", "unchosen.py", "old.pvsm"):
+    view, source, display, is_automatic, is_shown = go_on(os.path.join(OUTPUT, name))
+    check(is_automatic and is_shown, "which is automatic: the surface is there")
+    check(0.4 < display.DSMIsoValue < 1.0, f"and the isovalue becomes {display.DSMIsoValue}")
+view, source, display, is_automatic, is_shown = go_on(os.path.join(OUTPUT, "chosen.pvsm"))
+check(not is_automatic and not is_shown and display.DSMIsoValue == 7.0, "what was chosen stays")
 simple.Delete(source)
 
 flat = image_source(image % "distance(piece)", (0, 24, 0, 24, 12, 12))
@@ -61,11 +88,11 @@ flat.Script = flat.Script.replace("0.5 * (high - low)", "max(0.5 * (high - low),
 display = show_traced(flat, view)
 render(view)
 check(0.4 < display.DSMIsoValue < 0.9, f"a flat image: the isovalue is {display.DSMIsoValue}")
-check(display.DSMIsoValue == display.DSMUnchosenIsoValue, "which nobody has chosen")
+check(display.DSMIsoValueAutomatic == 1, "which is automatic")
 stand_in = display.DSMIsoValue
 display.DSMIsoValue = 0.25
 display.DSMIsoValue = stand_in
-check(display.DSMUnchosenIsoValue == FIRST, "the same number can be chosen")
+check(display.DSMIsoValueAutomatic == 0, "the same number can be chosen")
 simple.Delete(flat)
 
 CELLS = """

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @class   vtkSMDSMImageRepresentationProxy
+ * @brief   keeps track of which isosurface array and isovalue nobody has chosen
+ *
+ * DSMIsoArrayAutomatic and DSMIsoValueAutomatic are on at first. Whoever sets DSMIsoArray or DSMIsoValue (the panel, a
+ * script, an animation, a state file) switches the one or the other off, because ParaView tells this proxy of it. Only
+ * their domains, whose defaults switch them on again, and this class do not. An automatic array that the data do not have any more becomes
+ * another before the view renders; vtkPVDSMIsovalueWatch gives an automatic isovalue its number after the render.
+ *
+ * ParaView restores state files in the order of the properties' names, and Python states in that of the definitions.
+ * In both, the switch comes after what it is about. Undo, and other clients, set all as it was.
+ *
+ * The name is what ParaView makes of the element DSMImageRepresentationProxy.
+ */
+
+#ifndef vtkSMDSMImageRepresentationProxy_h
+#define vtkSMDSMImageRepresentationProxy_h
+
+#include "vtkRepresentationsDSMModule.h" // for the export macro
+#include "vtkSMRepresentationProxy.h"
+
+#include <functional> // for arguments
+
+class VTKREPRESENTATIONSDSM_EXPORT vtkSMDSMImageRepresentationProxy
+  : public vtkSMRepresentationProxy
+{
+public:
+  static vtkSMDSMImageRepresentationProxy* New();
+  vtkTypeMacro(vtkSMDSMImageRepresentationProxy, vtkSMRepresentationProxy);
+
+  /**
+   * Calls `choose`, which sets the array or the isovalue of a proxy of this class, and switches on that it is automatic.
+   */
+  static void SetAutomatic(vtkSMProperty* property, const std::function<void()>& choose);
+
+  bool IsIsovalueAutomatic();
+  /**
+   * From now on, until somebody sets the isovalue. Until the next render it has its domain's default.
+   */
+  void SetIsovalueAutomatic();
+  /**
+   * Sets the number that an automatic isovalue has, on the servers, too, and not as a step for the user to undo.
+   */
+  void SetAutomaticIsovalue(double value);
+
+  ///@{
+  /**
+   * Whether somebody has set the isovalue since the last render.
+   */
+  bool IsIsovalueNew() const { return this->IsNew; }
+  void NoteRender() { this->IsNew = false; }
+  ///@}
+
+  void LoadState(const vtkSMMessage* message, vtkSMProxyLocator* locator) override;
+
+protected:
+  vtkSMDSMImageRepresentationProxy();
+  ~vtkSMDSMImageRepresentationProxy() override;
+
+  int ReadXMLAttributes(vtkSMSessionProxyManager* manager, vtkPVXMLElement* element) override;
+  void SetPropertyModifiedFlag(const char* name, int flag) override;
+  void ViewUpdated(vtkSMProxy* view) override;
+
+private:
+  vtkSMDSMImageRepresentationProxy(const vtkSMDSMImageRepresentationProxy&) = delete;
+  void operator=(const vtkSMDSMImageRepresentationProxy&) = delete;
+
+  bool IsChoosing = false;
+  bool IsNew = false;
+};
+
+#endif
