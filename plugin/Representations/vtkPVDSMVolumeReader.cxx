@@ -43,9 +43,19 @@ void vtkPVDSMVolumeReader::SetLevel(int level)
   this->Superclass::SetLevel(level);
 }
 
+const char* vtkPVDSMVolumeReader::GetLevelNames()
+{
+  return this->Superclass::GetLevelNames();
+}
+
 void vtkPVDSMVolumeReader::SetDatasetName(const char* name)
 {
   this->Superclass::SetDatasetName(name ? name : "");
+}
+
+bool vtkPVDSMVolumeReader::GetRawFile()
+{
+  return this->Superclass::GetRawFile();
 }
 
 void vtkPVDSMVolumeReader::SetRawDimensions(int i, int j, int k)

@@ -28,7 +28,9 @@ public:
   vtkDataArraySelection* GetPointDataArraySelection() override;
   vtkDataArraySelection* GetCellDataArraySelection() override;
   void SetLevel(int level) override;
+  const char* GetLevelNames() override;
   void SetDatasetName(const char* name);
+  bool GetRawFile() override;
   void SetRawDimensions(int i, int j, int k) override;
   void SetRawDimensions(const int dimensions[3]) override;
   void SetRawScalarType(int type) override;

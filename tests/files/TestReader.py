@@ -252,8 +252,11 @@ with Messages() as messages:
     bare.UpdatePipelineInformation()
     check(messages.text == "", "a bare file may be opened before its sizes are entered")
     bare.UpdatePipeline()
+    bare.UpdatePipeline()
 if get_ranks() == 1:
-    check("Dimensions" in messages.text, "and then an error asks for them")
+    check(messages.text.count("ERR") == 1, f"and then an error asks for them, once: {messages.text}")
+    check("Enter Raw Dimensions in the Properties panel" in messages.text, "and says where they are entered")
+check(bare.GetProperty("RawFile").GetElement(0) == 1, "the panel shows what describes bare values")
 bare.RawDimensions, bare.RawScalarType, bare.RawBigEndian = [21, 13, 10], "int", 1
 bare.RawHeaderBytes = 21
 bare.UpdatePipeline()
@@ -279,6 +282,20 @@ check(bare.GetDataInformation().GetExtent() == (0, 20, 0, 12, 0, 8), "and all el
 check(bare.GetProperty("RawHeaderBytes").SMProperty.IsA("vtkSMIntVectorProperty"), "the panel has a field for a header")
 for name in ("ome.zarr", "ome.zarr/.zattrs"):
     check(simple.OpenDataFile(os.path.join(FILES, name)).TimestepValues[-1] == 2, f"OME's times, by {name}")
+scales = simple.DSMVolumeReader(FileName=os.path.join(FILES, "ome.zarr"), LevelofDetail=1)
+scales.UpdatePipeline()
+check(scales.GetDataInformation().GetExtent() == (0, 10, 0, 6, 0, 4), "scripts choose a level by its number")
+check(scales.LevelofDetail == 1 and scales.GetProperty("RawFile").GetElement(0) == 0, "and read it back")
+levels = ["0: 21 x 13 x 10", "1: 11 x 7 x 5"]
+check(scales.GetProperty("LevelNames").GetElement(0).split("\n") == levels, "the panel lists the levels and their sizes")
+with Messages() as messages:
+    scales.LevelofDetail = 2
+    scales.UpdatePipeline()
+    scales.UpdatePipeline()
+if get_ranks() == 1:
+    check(messages.text.count("ERR") == 1, f"a level that the file lacks is one error: {messages.text}")
+    check("has no level 2; valid levels are 0 to 1" in messages.text, "which lists those that it has")
+check(scales.GetProperty("LevelNames").GetElement(0).split("\n") == levels, "and so does the panel")
 for name in ("three_raw.zarr", "three_raw.zarr/zarr.json"):
     opened = simple.OpenDataFile(os.path.join(FILES, name))
     check(type(opened).__name__ == "DSMVolumeReader", f"version 3, by {name}")

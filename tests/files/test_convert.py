@@ -213,7 +213,7 @@ with h5py.File(path("level_2.vtkhdf"), "r") as one, h5py.File(path("levels_1.vtk
     level = all_levels["DSM/Levels/2/VTKHDF/PointData/values"]
     check(np.array_equal(one["VTKHDF/PointData/values"], level, equal_nan=True), "a level is read")
 done = convert("--quiet", "--level", 4, path("levels_1.vtkhdf"), path("none.vtkhdf"))
-check(done.returncode != 0 and "has 4 levels of detail; level 4 is none" in done.stderr, "one that is not there is named")
+check(done.returncode != 0 and "has no level 4; valid levels are 0 to 3" in done.stderr, "one that is not there is named")
 
 # Integers are rounded, vectors go by component, cells have that at their centre; the direction counts.
 done = convert("--quiet", "--levels", 1, "--brick", 4, path("image.vtkhdf"), path("arrays_levels.vtkhdf"))

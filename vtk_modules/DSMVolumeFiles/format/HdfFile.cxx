@@ -222,8 +222,8 @@ private:
     }
     if (level < 0 || level >= this->Levels)
     {
-      throw dsm::Error("'" + this->Path + "' has " + std::to_string(this->Levels) +
-        " levels of detail; level " + std::to_string(level) + " is none of them.");
+      throw dsm::Error("'" + this->Path + "' has no level " + std::to_string(level) +
+        "; valid levels are 0 to " + std::to_string(this->Levels - 1) + ".");
     }
     if (level > 0)
     {

@@ -114,9 +114,10 @@ std::shared_ptr<const VolumeFile> OpenRaw(const std::string& path, const OpenOpt
 {
   if (glm::any(glm::lessThanEqual(options.Samples, rt::Index3(0))))
   {
-    throw dsm::Error("The file '" + path +
-      "' has bare values and no header: enter how many samples there are along each axis (Raw "
-      "Dimensions, or --raw-size of dsm_convert), and their type.");
+    throw dsm::Error("Enter Raw Dimensions in the Properties panel and press Apply: '" + path +
+      "' has no header that gives its number of samples along x, y and z. Check Raw Scalar Type, "
+      "Components, Big Endian, "
+      "Header Bytes and Spacing, too. (Python: RawDimensions; dsm_convert: --raw-size.)");
   }
   BareValues values;
   values.Path = path;

@@ -7,15 +7,18 @@
 #include "vtkDSMFileArray.h"
 #include "vtkDSMScalarType.h"
 
+#include "vtkCallbackCommand.h"
 #include "vtkCellData.h"
 #include "vtkCommand.h"
 #include "vtkDataArray.h"
 #include "vtkDataArraySelection.h"
+#include "vtkExecutive.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
 #include "vtkMultiProcessController.h"
 #include "vtkObjectFactory.h"
+#include "vtkOutputWindow.h"
 #include "vtkPointData.h"
 #include "vtkSmartPointer.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
@@ -24,6 +27,7 @@
 #include <climits>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <filesystem>
 #include <system_error>
 #include <utility>
@@ -38,6 +42,26 @@ void OfferNothing(vtkInformation* information)
 {
   const int none[6] = { 0, -1, 0, -1, 0, -1 };
   information->Set(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), none, 6);
+}
+
+/// The executive says of each failed request that it failed, with addresses: what failed is reported already.
+void Silence(vtkExecutive* executive)
+{
+  if (executive->HasObserver(vtkCommand::ErrorEvent))
+  {
+    return;
+  }
+  vtkNew<vtkCallbackCommand> command;
+  command->SetCallback(
+    [](vtkObject*, unsigned long, void*, void* text)
+    {
+      const auto* const message = static_cast<const char*>(text);
+      if (message && !std::strstr(message, "returned failure for request"))
+      {
+        vtkOutputWindowDisplayErrorText(message);
+      }
+    });
+  executive->AddObserver(vtkCommand::ErrorEvent, command);
 }
 
 /// Whether all of the data are wanted, by this rank or by several, of which each has its part.
@@ -81,6 +105,12 @@ public:
   std::shared_ptr<const vol::VolumeFile> File;
   vol::OpenOptions Options;  ///< with which it was opened
   vtkMTimeType OpenedAt = 0; ///< the reader's time then
+
+  std::string Told; ///< the last error
+  vtkMTimeType ToldAt = 0;
+
+  std::string LevelNames;
+  vtkMTimeType LevelNamesAt = 0;
 
   int LastStep = vtkDSMFileValues::None; ///< that was asked for
   int Stride = 0;                        ///< from the one before
@@ -199,13 +229,53 @@ vtkTypeUInt64 vtkDSMVolumeReader::GetBytesRead()
   return vol::ChunkCache::GetShared().GetBytesRead();
 }
 
-void vtkDSMVolumeReader::Open()
+int vtkDSMVolumeReader::Attempt(const char* doing, const std::function<void()>& work)
 {
-  if (this->Self->File && this->Self->OpenedAt == this->GetMTime())
+  Silence(this->GetExecutive());
+  const std::string failure = vtkDSMErrorGuard::Try(doing, this->GetFileName(), work);
+  if (!failure.empty() && (failure != this->Self->Told || this->Self->ToldAt != this->GetMTime()))
   {
-    return;
+    vtkErrorMacro(<< failure);
+    this->Self->ToldAt = this->GetMTime();
   }
-  this->Self->File.reset();
+  this->Self->Told = failure;
+  return failure.empty() ? 1 : 0;
+}
+
+bool vtkDSMVolumeReader::GetRawFile()
+{
+  return vol::IsBareFile(this->GetFileName());
+}
+
+const char* vtkDSMVolumeReader::GetLevelNames()
+{
+  Internals& self = *this->Self;
+  if (self.LevelNamesAt != this->GetMTime())
+  {
+    self.LevelNamesAt = this->GetMTime();
+    self.LevelNames.clear();
+    // What fails is reported when the level is asked for.
+    vtkDSMErrorGuard::Try("opening", this->GetFileName(),
+      [&]
+      {
+        vol::OpenOptions options = this->GetOptions();
+        options.Level = 0;
+        for (int levels = 1; options.Level < levels; ++options.Level)
+        {
+          const auto file = self.File && self.Options.Level == options.Level
+            ? self.File
+            : vol::OpenVolumeFile(this->GetFileName(), options);
+          levels = file->GetLevels();
+          self.LevelNames += (options.Level > 0 ? "\n" : "") + std::to_string(options.Level) +
+            ": " + vol::DescribeShape(file->GetGeometry().Points);
+        }
+      });
+  }
+  return self.LevelNames.c_str();
+}
+
+vol::OpenOptions vtkDSMVolumeReader::GetOptions() const
+{
   vol::OpenOptions options;
   options.Level = this->Level;
   options.Dataset = this->DatasetName;
@@ -218,6 +288,17 @@ void vtkDSMVolumeReader::Open()
   options.Bare.HeaderBytes =
     static_cast<std::uint64_t>(std::max<vtkIdType>(0, this->RawHeaderBytes));
   std::copy_n(this->RawSpacing, 3, options.Bare.Spacing);
+  return options;
+}
+
+void vtkDSMVolumeReader::Open()
+{
+  if (this->Self->File && this->Self->OpenedAt == this->GetMTime())
+  {
+    return;
+  }
+  this->Self->File.reset();
+  const vol::OpenOptions options = this->GetOptions();
   vol::OpenOptions abortable = options;
   abortable.GoesOn = [this]
   {
@@ -275,12 +356,12 @@ int vtkDSMVolumeReader::RequestInformation(
   vtkInformation*, vtkInformationVector**, vtkInformationVector* output)
 {
   vtkInformation* information = output->GetInformationObject(0);
-  const int done = vtkDSMErrorGuard::Run(this, "opening", this->GetFileName(),
+  const int done = this->Attempt("opening",
     [&]
     {
       // ParaView asks before the user can enter anything.
-      const bool isWanted = *std::min_element(this->RawDimensions, this->RawDimensions + 3) >= 1 ||
-        !vol::IsBareFile(this->GetFileName());
+      const bool isWanted =
+        *std::min_element(this->RawDimensions, this->RawDimensions + 3) >= 1 || !this->GetRawFile();
       if (isWanted)
       {
         this->Open();
@@ -291,7 +372,6 @@ int vtkDSMVolumeReader::RequestInformation(
         OfferNothing(information);
         this->Self->File.reset();
       }
-      return 1;
     });
   if (done == 0)
   {
@@ -425,12 +505,11 @@ void vtkDSMVolumeReader::AddArrays(vtkImageData* image, int step, bool isShare)
 int vtkDSMVolumeReader::RequestData(
   vtkInformation*, vtkInformationVector**, vtkInformationVector* output)
 {
-  return vtkDSMErrorGuard::Run(this, "reading", this->GetFileName(),
+  return this->Attempt("reading",
     [&]
     {
       this->Open();
       this->FillImage(vtkImageData::GetData(output), output->GetInformationObject(0));
-      return 1;
     });
 }
 

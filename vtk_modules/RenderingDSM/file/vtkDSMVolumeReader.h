@@ -17,14 +17,16 @@
 #include "vtkNew.h"                // for ivars
 #include "vtkRenderingDSMModule.h" // for the export macro
 
-#include <memory> // for ivars
-#include <string> // for ivars
-#include <vector> // for ivars
+#include <functional> // for parameters
+#include <memory>     // for ivars
+#include <string>     // for ivars
+#include <vector>     // for ivars
 
 class vtkDataArraySelection;
 namespace vol
 {
 struct FileArray;
+struct OpenOptions;
 }
 
 class VTKRENDERINGDSM_EXPORT vtkDSMVolumeReader : public vtkImageAlgorithm
@@ -67,6 +69,12 @@ public:
   vtkGetMacro(Level, int);
   ///@}
 
+  /**
+   * The file's levels of detail, each in a line, such as "1: 256 x 256 x 128", which has the points along x, y and z.
+   * Opens those that are not open; empty where the file cannot be opened.
+   */
+  virtual const char* GetLevelNames();
+
   ///@{
   /**
    * Of an HDF5 file that is not VTK's: the dataset to have. Empty (the default): all those that have the largest
@@ -78,9 +86,10 @@ public:
 
   ///@{
   /**
-   * Of a file of bare values (.raw): samples along each axis, their type (VTK_FLOAT and so on) and number of
+   * Of a file of bare values (.raw), which GetRawFile tells: samples along each axis, their type (VTK_FLOAT and so on) and number of
    * components, whether the high byte comes first, bytes before the first value, and the distance of samples.
    */
+  virtual bool GetRawFile();
   vtkSetVector3Macro(RawDimensions, int);
   vtkGetVector3Macro(RawDimensions, int);
   vtkSetMacro(RawScalarType, int);
@@ -134,6 +143,10 @@ private:
   void operator=(const vtkDSMVolumeReader&) = delete;
 
   class Internals;
+  /// Calls `work`. Returns 0 when it throws: the error is reported, once for each state of the reader, and the
+  /// executive, which would report that there was one, is silent.
+  int Attempt(const char* doing, const std::function<void()>& work);
+  vol::OpenOptions GetOptions() const;
   void Open();
   /// Warns of bytes behind the values of a bare file: what was entered may be wrong. On the first rank.
   void TellOfRest() const;
