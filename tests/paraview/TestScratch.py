@@ -25,10 +25,12 @@ def go_round():
     return pictures
 
 
-def check_scratch(display, expected, memory, what):
+def check_scratch(display, expected, memory, what, is_told=False):
     with Messages() as messages:
         pictures = go_round()
     check("ERROR" not in messages.text, f"{what}: no error: {messages.text}")
+    if is_told and get_ranks() > 1:
+        check(messages.text.count("is in scratch files") == 1, f"{what}: that scratch files are used is said, once")
     check(all((a == b).all() for a, b in zip(pictures, expected)), f"{what}: the same pictures, bit for bit")
     for row in get_rows(display):
         check("scratch files" in row["Explanation"], f"{what}: {row['Explanation']}")
@@ -46,7 +48,7 @@ check(all(get_covered(picture).mean() > 0.05 for picture in expected), "somethin
 # What is in memory goes to the disk when the memory is to be less.
 display.DSMScratchDirectory = DISK
 display.DSMMemory = 1
-check_scratch(display, expected, 1, "less memory")
+check_scratch(display, expected, 1, "less memory", is_told=True)
 for organization in ("Object based", "Page based", "Replicated", "Automatic"):
     display.DSMMemoryOrganization = organization
     check_scratch(display, expected, 1, organization)

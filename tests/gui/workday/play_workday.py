@@ -46,8 +46,7 @@ MEMORY_AFTER = 0.45
 START, BEFORE, FIRST = "Load Plugin", "Save State as Python", "Delete All"
 DELETED = ("Delete All once more", "Delete All a third time", "Delete All at last")
 # What the application says of itself.
-HARMLESS = ("QStandardPaths: ", "QPixmap::scaled: ", "Process started", "Playing: ", "debug: ", "Success",
-            "DSM Ray Tracer: The memory organisation is ")
+HARMLESS = ("QStandardPaths: ", "QPixmap::scaled: ", "Process started", "Playing: ", "debug: ", "Success")
 
 
 def check(condition, what):

@@ -214,7 +214,7 @@ BlockStore::Decision BlockStore::Decide(
       const auto decide = [&](MemoryOrganization chosen)
       {
         return Decision{ chosen, plan.GetRoom(chosen, this->Messages.GetRank()),
-          plan.Explain(wanted, chosen) };
+          plan.Explain(wanted, chosen), plan.LacksMemory(wanted, chosen) };
       };
       try
       {
@@ -284,6 +284,7 @@ MemoryPlan BlockStore::MakePlan(
 void BlockStore::PutInForce(Decision&& decision)
 {
   this->Explanation = std::move(decision.Explanation);
+  this->IsShort = decision.IsShort;
   this->Room = decision.Room;
   this->ReadByAll =
     this->IsAnyFromSource() && this->Current.Organization == MemoryOrganization::Replicated;

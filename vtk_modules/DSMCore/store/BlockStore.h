@@ -134,6 +134,8 @@ public:
   {
     return this->ReadByAll ? MemoryOrganization::Replicated : this->InForce;
   }
+  /// MemoryPlan::LacksMemory of what is in force.
+  bool LacksMemory() const { return this->IsShort; }
   /// A sentence for the user: what is in force, and why.
   const std::string& GetExplanation() const { return this->Explanation; }
   /// What this rank may take; 0 before anything was published.
@@ -177,6 +179,7 @@ private:
     MemoryOrganization Chosen = MemoryOrganization::ObjectBased;
     MemoryPlan::Room Room; ///< of this rank
     std::string Explanation;
+    bool IsShort = false; ///< of memory
   };
 
   /// Collective: for what is published and, unless null, for what is to be, which may then be added
@@ -211,6 +214,7 @@ private:
   MemoryOrganization InForce = MemoryOrganization::ObjectBased;
   bool ReadByAll = false;
   std::string Explanation;
+  bool IsShort = false;
   MemoryPlan::Budget Budget;
   std::uint64_t AvailableBytes = 0; ///< to this rank, when first asked
   MemoryPlan::Room Room;

@@ -46,6 +46,15 @@ public:
   /// A sentence: what was chosen, and why.
   std::string Explain(MemoryOrganization wanted, MemoryOrganization chosen) const;
 
+  /// Whether memory is what keeps the blocks from being replicated: some are in scratch files, or Automatic has not
+  /// replicated them.
+  bool LacksMemory(MemoryOrganization wanted, MemoryOrganization chosen) const
+  {
+    return this->AnyOnOwnersDisk ||
+      (!this->AnyFromSource && wanted == MemoryOrganization::Automatic &&
+        chosen != MemoryOrganization::Replicated);
+  }
+
   /// What the resident set, or everything, and the tables take of a rank; where blocks are fetched,
   /// also a cache of one block, a reply with one, and one that has just come; where sources bring blocks,
   /// one more of the rank's own.

@@ -7,6 +7,7 @@
 #include "DSMCore/transport/MpiTransport.h"
 #include "DSMVolumeFiles/cache/ChunkCache.h"
 
+#include "vtkLogger.h"
 #include "vtkMultiProcessController.h"
 #include "vtkOutputWindow.h"
 
@@ -21,6 +22,7 @@
 #include <cstring>
 #include <map>
 #include <string>
+#include <utility>
 
 namespace
 {
@@ -247,18 +249,26 @@ void vtkDSMRankGroup::TellOrganization()
   const bool automatic =
     this->Store.GetSettings().Organization == dsm::MemoryOrganization::Automatic;
   // Groups come and go with what is shown; the user need not hear the same again.
-  static dsm::MemoryOrganization told = dsm::MemoryOrganization::Automatic;
+  static std::pair told(dsm::MemoryOrganization::Automatic, false);
+  const std::pair chosen(this->Store.GetOrganization(), this->Store.LacksMemory());
   const std::string& explanation =
     this->Store.GetExplanation(); // none before there is anything to keep
-  if (!automatic || explanation.empty() || this->Store.GetOrganization() == told)
+  if (!automatic || explanation.empty() || chosen == told)
   {
     return;
   }
-  told = this->Store.GetOrganization();
+  told = chosen;
   // One rank has no choice to make.
   if (this->Messenger.GetRank() == 0 && this->Messenger.GetSize() > 1)
   {
-    const std::string text = "DSM Ray Tracer: " + explanation + "\n";
-    vtkOutputWindow::GetInstance()->DisplayText(text.c_str());
+    const std::string text = "DSM Ray Tracer: " + explanation;
+    if (chosen.second)
+    {
+      vtkOutputWindow::GetInstance()->DisplayText((text + "\n").c_str());
+    }
+    else
+    {
+      vtkLogF(INFO, "%s", text.c_str());
+    }
   }
 }

@@ -130,7 +130,8 @@ public:
   /// Grows then, too, and whenever a scratch directory was of no use: there may be room in it the next time.
   unsigned GetRetryVersion() const { return this->SettingsVersion + this->ScratchFailures; }
 
-  /// Says on rank 0, in the output window, what Automatic has chosen; again when that changes.
+  /// Reports on rank 0 what Automatic has chosen, again when that changes: in the output window where memory is
+  /// short, else in the log.
   void TellOrganization();
 
 private:
