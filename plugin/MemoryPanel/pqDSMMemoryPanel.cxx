@@ -17,6 +17,7 @@
 #include <QJsonDocument>
 #include <QJsonObject>
 #include <QLabel>
+#include <QMainWindow>
 #include <QTableView>
 #include <QVBoxLayout>
 
@@ -28,19 +29,29 @@ namespace
 /// While a picture is refined, it is rendered several times a second.
 constexpr int MillisecondsToWait = 200;
 
+/// As large whatever its text says: another hint would resize the view, which would be traced again.
+class Body : public QWidget
+{
+public:
+  using QWidget::QWidget;
+  QSize sizeHint() const override { return QSize(256, 240); }
+};
+
 } // namespace
 
 pqDSMMemoryPanel::pqDSMMemoryPanel(QWidget* parent)
   : QDockWidget(parent)
 {
   this->setWindowTitle(this->tr("Ray Tracing Memory"));
-  auto* body = new QWidget(this);
+  auto* body = new Body(this);
   this->Words = new QLabel(body);
   this->Words->setObjectName("words");
   this->Words->setWordWrap(true);
-  // Always of two lines, so that what they say does not resize the view, and so have it traced again.
-  this->Words->setSizePolicy(QSizePolicy::Ignored, QSizePolicy::Fixed);
-  this->Words->setFixedHeight(2 * this->Words->fontMetrics().lineSpacing());
+  // A text of more lines takes room from the table.
+  QSizePolicy policy(QSizePolicy::Ignored, QSizePolicy::Ignored);
+  policy.setHeightForWidth(true);
+  this->Words->setSizePolicy(policy);
+  this->Words->setMinimumHeight(2 * this->Words->fontMetrics().lineSpacing());
   this->Words->setTextInteractionFlags(Qt::TextSelectableByMouse);
   this->Ranks = new pqDSMRankTable(this);
   auto* order = new pqDSMRankOrder(this);
@@ -53,7 +64,10 @@ pqDSMMemoryPanel::pqDSMMemoryPanel(QWidget* parent)
   this->Table->verticalHeader()->hide();
   this->Table->setSortingEnabled(true);
   this->Table->sortByColumn(0, Qt::AscendingOrder);
+  // Names of hosts may be long: their column takes the room that the numbers leave.
   this->Table->horizontalHeader()->setSectionResizeMode(QHeaderView::ResizeToContents);
+  this->Table->horizontalHeader()->setSectionResizeMode(
+    pqDSMRankTable::HostColumn, QHeaderView::Stretch);
   auto* layout = new QVBoxLayout(body);
   layout->addWidget(this->Words);
   layout->addWidget(this->Table, 1);
@@ -95,6 +109,43 @@ bool pqDSMMemoryPanel::IsTraced() const
 QString pqDSMMemoryPanel::GetWords() const
 {
   return this->Words->text();
+}
+
+bool pqDSMMemoryPanel::IsTab() const
+{
+  const auto* const window = qobject_cast<QMainWindow*>(this->parentWidget());
+  return window && !window->tabifiedDockWidgets(const_cast<pqDSMMemoryPanel*>(this)).isEmpty();
+}
+
+void pqDSMMemoryPanel::showEvent(QShowEvent* event)
+{
+  this->QDockWidget::showEvent(event);
+  auto* const window = qobject_cast<QMainWindow*>(this->parentWidget());
+  if (!this->IsPlaced && window && window->dockWidgetArea(this) == Qt::BottomDockWidgetArea)
+  {
+    this->IsPlaced = true;
+    // Later: the window is laying out its docks.
+    QTimer::singleShot(0, this, [this, window] { this->PlaceIn(window); });
+  }
+}
+
+void pqDSMMemoryPanel::PlaceIn(QMainWindow* window)
+{
+  QDockWidget* neighbor = nullptr;
+  for (auto* dock : window->findChildren<QDockWidget*>(QString(), Qt::FindDirectChildrenOnly))
+  {
+    const bool isBeside = dock != this && !dock->isFloating() &&
+      window->dockWidgetArea(dock) == Qt::BottomDockWidgetArea;
+    if (isBeside && (!neighbor || dock->isVisible()))
+    {
+      neighbor = dock;
+    }
+  }
+  if (neighbor)
+  {
+    window->tabifyDockWidget(neighbor, this);
+    this->raise();
+  }
 }
 
 void pqDSMMemoryPanel::Watch(pqView* view)
@@ -186,5 +237,4 @@ void pqDSMMemoryPanel::Update()
     : display                            ? this->tr("No picture of this view has been traced yet.")
               : this->tr("The active view shows nothing as DSM Ray Traced.");
   this->Words->setText(words);
-  this->Words->setToolTip(words); // which may have more lines
 }

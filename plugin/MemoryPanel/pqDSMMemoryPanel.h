@@ -8,6 +8,7 @@
 #include <QTimer>      // for ivars
 
 class QLabel;
+class QMainWindow;
 class QTableView;
 class pqDSMRankTable;
 class pqView;
@@ -22,10 +23,12 @@ class vtkSMProxy;
 class pqDSMMemoryPanel : public QDockWidget
 {
   Q_OBJECT
-  /// For test players, which read properties: rows without the sum, and the words above the table.
+  /// For test players, which read properties: rows without the sum, the words above the table,
+  /// and so on.
   Q_PROPERTY(int ranks READ GetNumberOfRanks)
   Q_PROPERTY(bool traced READ IsTraced)
   Q_PROPERTY(QString words READ GetWords)
+  Q_PROPERTY(bool beside READ IsTab)
 
 public:
   explicit pqDSMMemoryPanel(QWidget* parent = nullptr);
@@ -35,8 +38,15 @@ public:
   /// Whether the sum says that rays met bricks.
   bool IsTraced() const;
   QString GetWords() const;
+  /// Whether it is a tab beside another dock.
+  bool IsTab() const;
+
+protected:
+  /// The first time, it becomes a tab beside the application's other docks at the bottom.
+  void showEvent(QShowEvent* event) override;
 
 private:
+  void PlaceIn(QMainWindow* window);
   void Watch(pqView* view);
   void OnVisibilityChanged(bool visible);
   void OnActiveViewChanged(pqView* view);
@@ -52,6 +62,7 @@ private:
   QTimer Soon;
   QPointer<pqView> View;
   unsigned long Observer = 0;
+  bool IsPlaced = false;
 };
 
 #endif

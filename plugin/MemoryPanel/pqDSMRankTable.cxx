@@ -171,7 +171,7 @@ QVariant pqDSMRankTable::headerData(int section, Qt::Orientation orientation, in
   const Column& column = Columns[section];
   if (role == Qt::DisplayRole)
   {
-    return column.Is == Kind::Bytes ? this->tr("%1 (MiB)").arg(this->tr(column.Title))
+    return column.Is == Kind::Bytes ? this->tr("%1\n(MiB)").arg(this->tr(column.Title))
                                     : this->tr(column.Title);
   }
   return role == Qt::ToolTipRole ? QVariant(this->tr(column.Description)) : QVariant();

@@ -16,6 +16,8 @@ class pqDSMRankTable : public QAbstractTableModel
 public:
   /// What a cell is worth when rows are put in order; the text of a cell is its DisplayRole.
   static constexpr int ValueRole = Qt::UserRole;
+  /// The only column of names that may be long.
+  static constexpr int HostColumn = 1;
 
   explicit pqDSMRankTable(QObject* parent);
 

@@ -10,10 +10,12 @@
 #include "vtkPVSessionBase.h"
 #include "vtkProcessModule.h"
 #include "vtkSIProxyDefinitionManager.h"
+#include "vtkSMParaViewPipelineController.h"
 #include "vtkSMProxyDefinitionManager.h"
 #include "vtkSMProxyManager.h"
 #include "vtkSMSessionClient.h"
 #include "vtkSMSessionProxyManager.h"
+#include "vtkSMUndoStackBuilder.h"
 #include "vtkSessionIterator.h"
 #include "vtkSmartPointer.h"
 
@@ -83,6 +85,24 @@ void AskFor(vtkSMSessionClient* session)
   }
 }
 
+/// ParaView makes the proxy of a new settings page when the plugin was loaded, as a change that can be undone. Here it is
+/// made before, as one that cannot. Only the application has changes to undo.
+void MakeSettings(vtkSMSession* session)
+{
+  vtkSMUndoStackBuilder* const undo = vtkSMProxyManager::GetProxyManager()->GetUndoStackBuilder();
+  vtkSMSessionProxyManager* const proxies = session->GetSessionProxyManager();
+  // A session that is being made gets all of its settings later.
+  if (!undo || !proxies || !HaveDefinitions(session) ||
+    !proxies->GetProxy("settings", "GeneralSettings"))
+  {
+    return;
+  }
+  const bool ignored = undo->GetIgnoreAllChanges();
+  undo->SetIgnoreAllChanges(true);
+  vtkNew<vtkSMParaViewPipelineController>()->UpdateSettingsProxies(session);
+  undo->SetIgnoreAllChanges(ignored);
+}
+
 void Update();
 
 /// Calls Update.
@@ -124,6 +144,10 @@ void Update()
     else if (auto* own = vtkPVSessionBase::SafeDownCast(session))
     {
       Add(own);
+    }
+    if (auto* application = vtkSMSession::SafeDownCast(session))
+    {
+      MakeSettings(application);
     }
   }
 }

@@ -5,7 +5,7 @@ import os
 import time
 import traceback
 
-from paraview import simple
+from paraview import servermanager, simple
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkRenderingCore import vtkWindowToImageFilter
 
@@ -18,6 +18,12 @@ def check(condition, what):
     if not condition:
         raise AssertionError(what)
     say("ok: " + what)
+
+
+def list_undo_steps():
+    """What the application can undo, the last first."""
+    stack = servermanager.vtkSMProxyManager.GetProxyManager().GetUndoStackBuilder().GetUndoStack()
+    return [stack.GetUndoSetLabel(number) for number in range(stack.GetNumberOfUndoSets())]
 
 
 def finish(code):

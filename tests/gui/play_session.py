@@ -5,6 +5,8 @@ pictures with Contour's. Called as
     play_session.py PLUGIN OUTPUT [RANKS --server-url=URL] PARAVIEW
 RANKS is how many the server has."""
 
+import json
+import math
 import os
 import shutil
 import subprocess
@@ -44,6 +46,27 @@ def write_session(path):
                 text.write(line + "\n")
 
 
+def write_files():
+    """Bare values, and OME-Zarr with two levels."""
+    with open(os.path.join(OUTPUT, "bare.raw"), "wb") as raw:
+        raw.write(bytes(range(8 * 6 * 4)))
+    for level, shape in enumerate(([4, 6, 8], [2, 3, 4])):
+        folder = os.path.join(OUTPUT, "levels.zarr", str(level))
+        os.makedirs(folder)
+        with open(os.path.join(folder, ".zarray"), "w", encoding="utf-8") as text:
+            json.dump({"zarr_format": 2, "shape": shape, "chunks": shape, "dtype": "|u1", "compressor": None,
+                       "fill_value": 0, "order": "C", "filters": None}, text)
+        with open(os.path.join(folder, "0.0.0"), "wb") as chunk:
+            chunk.write(bytes(range(math.prod(shape))))
+    axes = [{"name": name, "type": "space"} for name in "zyx"]
+    scales = [{"path": str(level), "coordinateTransformations": [{"type": "scale", "scale": [2**level] * 3}]}
+              for level in range(2)]
+    for name, content in ((".zgroup", {"zarr_format": 2}),
+                          (".zattrs", {"multiscales": [{"version": "0.4", "axes": axes, "datasets": scales}]})):
+        with open(os.path.join(OUTPUT, "levels.zarr", name), "w", encoding="utf-8") as text:
+            json.dump(content, text)
+
+
 def read_picture(name):
     reader = vtkPNGReader()
     reader.SetFileName(os.path.join(OUTPUT, name))
@@ -56,6 +79,7 @@ def read_picture(name):
 def main():
     shutil.rmtree(OUTPUT, ignore_errors=True)
     os.makedirs(OUTPUT)
+    write_files()
     session = os.path.join(OUTPUT, "session.xml")
     write_session(session)
     command = [PARAVIEW, "--dr", *OPTIONS, f"--test-directory={OUTPUT}", f"--test-script={session}", "--exit"]

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef pqDSMWidgetWatch_h
+#define pqDSMWidgetWatch_h
+
+#include <QObject>
+
+/// Corrects ParaView's own widgets when they are shown for the first time. The application's thread.
+/// - The cropping box of a display: ParaView draws it relative to where it was placed last, and does not place it anew
+///   when *Use Reference Bounds* is toggled, or the bounds are reset. Here it is placed.
+/// - The widgets in the view of a display, such as that box: each mouse move was an undo step. Here a drag is one.
+/// - The settings dialog: its pages are in the order of their proxies' names, and it opens on the first one, which is the
+///   plugin's. Here it opens on the next one, *General*.
+class pqDSMWidgetWatch : public QObject
+{
+  Q_OBJECT
+
+public:
+  explicit pqDSMWidgetWatch(QObject* parent = nullptr);
+  ~pqDSMWidgetWatch() override;
+
+  // Of an auto start plugin.
+  void OnStartup();
+  void OnShutdown();
+
+  /// Of the application.
+  bool eventFilter(QObject* watched, QEvent* event) override;
+};
+
+#endif
