@@ -39,9 +39,9 @@ for source, own in (
     first = names.index("Representation")
     expected = own + LIGHT
     check(names[first + 1 : first + 1 + len(expected)] == expected, f"{source.GetXMLName()}: {names[: first + 9]}")
-    for switch, first in (("DSMClip", "DSMClipOrigin"), ("DSMCropping", "DSMCroppingPosition")):
+    for switch, control in (("DSMClip", "DSMClipOrigin"), ("DSMCropping", "DSMCroppingPosition")):
         below = names[names.index(switch) + 1]
-        check(below == first, f"what {switch} switches on stands directly below: {below}")
+        check(below == control, f"what {switch} switches on stands directly below: {below}")
     proxy = simple.GetRepresentation(source, view).SMProxy
     if own:
         visible = [name for name in names[first:] if proxy.GetProperty(name).GetPanelVisibility() == "default"]
