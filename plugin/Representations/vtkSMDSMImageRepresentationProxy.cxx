@@ -3,12 +3,19 @@
 
 #include "vtkPVDSMNoUndo.h"
 
+#include "vtkDataObject.h"
 #include "vtkObjectFactory.h"
+#include "vtkPVArrayInformation.h"
+#include "vtkPVDataInformation.h"
+#include "vtkSMArrayListDomain.h"
+#include "vtkSMDoubleRangeDomain.h"
 #include "vtkSMProperty.h"
 #include "vtkSMPropertyHelper.h"
-#include "vtkSMStringListDomain.h"
 
+#include <algorithm>
+#include <sstream>
 #include <string>
+#include <vector>
 
 namespace
 {
@@ -16,6 +23,9 @@ constexpr const char* Array = "DSMIsoArray";
 constexpr const char* ArrayAutomatic = "DSMIsoArrayAutomatic";
 constexpr const char* Isovalue = "DSMIsoValue";
 constexpr const char* IsovalueAutomatic = "DSMIsoValueAutomatic";
+constexpr const char* Isovalues = "DSMIsoValues";
+constexpr const char* Component = "DSMIsoComponent";
+constexpr const char* Range = "DSMValueRange";
 constexpr const char* Box = "DSMCroppingBox";
 
 /// Whether a box is as large as data that are not there: upside down, or, since ParaView 6, of no extent.
@@ -24,6 +34,17 @@ bool IsOfNothing(const vtkSMPropertyHelper& bounds)
   const auto isFlat = [&](unsigned int axis)
   { return !(bounds.GetAsDouble(2 * axis) < bounds.GetAsDouble(2 * axis + 1)); };
   return isFlat(0) && isFlat(1) && isFlat(2);
+}
+
+/// Components of the array that a property selects; 0 where the data do not have it.
+int CountComponents(vtkSMProperty* property)
+{
+  auto* const arrays = property->FindDomain<vtkSMArrayListDomain>();
+  vtkPVDataInformation* const data = arrays ? arrays->GetInputDataInformation("Input") : nullptr;
+  const char* const name = vtkSMPropertyHelper(property).GetInputArrayNameToProcess();
+  vtkPVArrayInformation* const array =
+    data && name ? data->GetArrayInformation(name, vtkDataObject::POINT) : nullptr;
+  return array ? array->GetNumberOfComponents() : 0;
 }
 
 /// While it lives, a value is true.
@@ -86,7 +107,7 @@ void vtkSMDSMImageRepresentationProxy::SetAutomaticIsovalue(double value)
 void vtkSMDSMImageRepresentationProxy::LoadState(
   const vtkSMMessage* message, vtkSMProxyLocator* locator)
 {
-  const Flag choosing(this->IsChoosing);
+  const Flag loading(this->IsLoading);
   this->Superclass::LoadState(message, locator);
 }
 
@@ -94,7 +115,7 @@ void vtkSMDSMImageRepresentationProxy::LoadState(
 int vtkSMDSMImageRepresentationProxy::ReadXMLAttributes(
   vtkSMSessionProxyManager* manager, vtkPVXMLElement* element)
 {
-  const Flag choosing(this->IsChoosing);
+  const Flag loading(this->IsLoading);
   const int isRead = this->Superclass::ReadXMLAttributes(manager, element);
   for (const char* name : { ArrayAutomatic, IsovalueAutomatic })
   {
@@ -106,18 +127,32 @@ int vtkSMDSMImageRepresentationProxy::ReadXMLAttributes(
 void vtkSMDSMImageRepresentationProxy::SetPropertyModifiedFlag(const char* name, int flag)
 {
   this->Superclass::SetPropertyModifiedFlag(name, flag);
-  if (this->IsChoosing)
+  if (this->IsLoading)
   {
     return;
   }
   if (std::string(name) == Array)
   {
-    vtkSMPropertyHelper(this, ArrayAutomatic).Set(0);
+    this->OnArray();
   }
-  else if (std::string(name) == Isovalue)
+  else if (std::string(name) == Isovalue && !this->IsChoosing)
   {
     this->IsNew = true;
     vtkSMPropertyHelper(this, IsovalueAutomatic).Set(0);
+  }
+}
+
+void vtkSMDSMImageRepresentationProxy::OnArray()
+{
+  if (!this->IsChoosing)
+  {
+    vtkSMPropertyHelper(this, ArrayAutomatic).Set(0);
+  }
+  const int components = CountComponents(this->GetProperty(Array));
+  if (components > 0 && components != this->Components)
+  {
+    this->Components = components;
+    vtkSMPropertyHelper(this, Component).Set(components > 1 ? components : 0);
   }
 }
 
@@ -128,7 +163,7 @@ void vtkSMDSMImageRepresentationProxy::ViewUpdated(vtkSMProxy* view)
   this->Superclass::ViewUpdated(view);
   vtkSMProperty* const array = this->GetProperty(Array);
   const char* const name = vtkSMPropertyHelper(array).GetInputArrayNameToProcess();
-  auto* const arrays = array->FindDomain<vtkSMStringListDomain>();
+  auto* const arrays = array->FindDomain<vtkSMArrayListDomain>();
   unsigned int index = 0;
   const bool isMissing = !name || !*name ||
     (vtkSMPropertyHelper(this, ArrayAutomatic).GetAsInt() && !arrays->IsInDomain(name, index));
@@ -140,4 +175,37 @@ void vtkSMDSMImageRepresentationProxy::ViewUpdated(vtkSMProxy* view)
     const vtkPVDSMNoUndo noUndo;
     this->UpdateVTKObjects();
   }
+  this->Components = CountComponents(array); // also those of a state file, whose component stays
+  this->TellRange();
+}
+
+void vtkSMDSMImageRepresentationProxy::TellRange()
+{
+  vtkSMProperty* const single = this->GetProperty(Isovalue);
+  auto* const range = single->FindDomain<vtkSMDoubleRangeDomain>();
+  int isKnown[2] = { 0, 0 };
+  const double least = range->GetMinimum(0, isKnown[0]);
+  const double most = range->GetMaximum(0, isKnown[1]);
+  std::ostringstream text;
+  if (isKnown[0] && isKnown[1])
+  {
+    std::vector<double> values = vtkSMPropertyHelper(this, Isovalues).GetDoubleArray();
+    if (values.empty() && !this->IsIsovalueAutomatic())
+    {
+      values.push_back(vtkSMPropertyHelper(single).GetAsDouble());
+    }
+    const auto isOutside = [=](double value) { return value < least || value > most; };
+    const auto outside = std::count_if(values.begin(), values.end(), isOutside);
+    text << least << " to " << most;
+    // A narrow panel shows the end.
+    if (outside > 0 && values.size() == 1)
+    {
+      text << ": isovalue outside";
+    }
+    else if (outside > 0)
+    {
+      text << ": " << outside << " of " << values.size() << " isovalues outside";
+    }
+  }
+  vtkSMPropertyHelper(this, Range).Set(text.str().c_str());
 }

@@ -8,6 +8,8 @@
  * their domains, whose defaults switch them on again, and this class do not. An automatic array that the data do not have any more becomes
  * another before the view renders; vtkPVDSMIsovalueWatch gives an automatic isovalue its number after the render.
  *
+ * Another array whose number of components differs is shown by its magnitude, as ParaView colors by.
+ *
  * ParaView restores state files in the order of the properties' names, and Python states in that of the definitions.
  * In both, the switch comes after what it is about. Undo, and other clients, set all as it was.
  *
@@ -66,8 +68,13 @@ private:
   vtkSMDSMImageRepresentationProxy(const vtkSMDSMImageRepresentationProxy&) = delete;
   void operator=(const vtkSMDSMImageRepresentationProxy&) = delete;
 
-  bool IsChoosing = false;
+  void OnArray();
+  void TellRange();
+
+  bool IsChoosing = false; ///< properties change that nobody has set
+  bool IsLoading = false;  ///< all properties become what they were
   bool IsNew = false;
+  int Components = 0; ///< of the isosurface array; 0: not known
 };
 
 #endif

@@ -32,10 +32,27 @@ values = inputs[0].PointData.GetArray(0)
 output.PointData.append(algorithms.make_vector(values, values, 2 * values), "a velocity")
 output.PointData.append(values, "pressure")
 """
+
+
+def display_component(display):
+    return display.SMProxy.GetProperty("DSMIsoComponent").GetElement(0)
+
+
 for script, wanted in ((FLOW, "pressure"), (FLOW + "output.PointData.SetActiveScalars('a velocity')", "a velocity")):
     flow = simple.ProgrammableFilter(Input=volume, Script=script)
     shown = simple.Show(flow, view)
     check(list(shown.DSMIsoArray) == ["POINTS", wanted], f"the array that is shown first: {shown.DSMIsoArray}")
+    component = display_component(shown)
+    check(component == (3 if wanted == "a velocity" else 0), f"a vector is shown by its magnitude: {component}")
+    shown.DSMIsoArray = ["POINTS", "a velocity"]
+    check(display_component(shown) == 3, "also one that is chosen later")
+    shown.DSMIsoComponent = 1
+    shown.DSMIsoArray = ["POINTS", "pressure"]
+    check(display_component(shown) == 0, "an array of one component has no other")
+    shown.DSMIsoArray = ["POINTS", "a velocity"]
+    shown.DSMIsoComponent = 0
+    render(view)
+    check(display_component(shown) == 0, "a component that is set stays")
     simple.Delete(flow)
 
 # An array that was chosen automatically is chosen anew when it is gone; it has an isovalue of its own.
@@ -92,6 +109,9 @@ calculator.Function = "RTData*1.05"
 check(expect_automatic("values that are much the same, as time steps are", "r", 100.0, 250.0) == first, "keep it")
 display.DSMIsoValue = 0.0
 check(display.DSMIsoValueAutomatic == 0, "0 is a value, too")
+render(view)
+told = display.GetPropertyValue("DSMValueRange")
+check(told.startswith("39.2") and told.endswith(": isovalue outside"), f"the range is told: {told}")
 calculator.Function = "RTData*0.001"
 check(not get_covered(render(view)).any(), "a value that is set stays, whatever the data are")
 simple.Delete(calculator)
@@ -106,3 +126,5 @@ display.DSMIsoValues = [200.0]
 render(view)
 display.DSMIsoValues = []
 expect_automatic("after a list, too", "r", 150.1, 250.0)
+told = display.GetPropertyValue("DSMValueRange")
+check(told.startswith("37.3") and told.endswith(" to 276.829"), f"the range is told: {told}")

@@ -31,8 +31,8 @@ def list_panel(display):
 view = create_view()
 LIGHT = ["DSMShadows", "DSMAmbientOcclusionSamples", "DSMSamplesPerPixel"]
 for source, own in (
-    (simple.Wavelet(), ["DSMIsoArray", "DSMIsoArrayAutomatic", "DSMIsoValue", "DSMIsoValueAutomatic", "DSMIsoValues",
-                        "DSMIsoComponent"]),
+    (simple.Wavelet(), ["DSMIsoArray", "DSMIsoArrayAutomatic", "DSMIsoComponent", "DSMIsoValue", "DSMIsoValueAutomatic",
+                        "DSMValueRange", "DSMIsoValues"]),
     (simple.Cone(), []),
 ):
     names = list_panel(simple.Show(source, view))
