@@ -32,6 +32,8 @@ const char* BenchmarkOptions::Usage()
          "                      diagonal long (default 0). With either, every frame is also "
          "traced\n"
          "                      without, and the result has the rates of both kinds of rays\n"
+         "  --opacity O         of the surfaces (default 1)\n"
+         "  --samples N         per pixel (default 1)\n"
          "  --tile-seconds T    on: the result has the mean cost of each tile "
          "(default off)\n"
          "  --picture FILE.ppm  writes the picture of the first position\n"
@@ -67,6 +69,11 @@ void BenchmarkOptions::AddTo(OptionValues::Setters& setters)
       [this](const auto& name, const auto& text) { this->Shadows = ToSwitch(name, text); } },
     { "--occlusion",
       [this](const auto& name, const auto& text) { this->Occlusion = ToNumber(name, text, 0); } },
+    { "--opacity",
+      [this](const auto& name, const auto& text)
+      { this->Opacity = ToNumber<float>(name, text, 0.0f); } },
+    { "--samples",
+      [this](const auto& name, const auto& text) { this->Samples = ToNumber(name, text, 1); } },
     { "--session", [this](const auto&, const auto& text) { this->Session = text; } },
     { "--tile-seconds",
       [this](const auto& name, const auto& text) { this->TileSeconds = ToSwitch(name, text); } },

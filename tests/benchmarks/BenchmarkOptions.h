@@ -21,6 +21,8 @@ struct BenchmarkOptions : RunOptions
   int TileSize = rt::FrameRequest().TileSize;
   bool Shadows = false;     ///< of a lamp beside the camera
   int Occlusion = 0;        ///< ambient occlusion rays for each hit
+  float Opacity = 1.0f;     ///< of the surfaces
+  int Samples = 1;          ///< per pixel
   std::string Session;      ///< file; empty: an orbit
   bool TileSeconds = false; ///< the result has those of the tiles
   std::string Picture;      ///< PPM file of the first frame; empty: none

@@ -248,6 +248,7 @@ void RunIsosurface(const BenchmarkOptions& options, dsm::Messenger& messenger)
   auto& object = std::get<rt::IsosurfaceObject>(scene.Objects.front());
   object.Isovalues = options.Isovalues;
   std::sort(object.Isovalues.begin(), object.Isovalues.end());
+  object.Surface.Opacity = options.Opacity;
   settings.CacheBytes = static_cast<std::size_t>(
     options.CacheFraction * object.Field->Segment->GetDirectory().GetTotalBytes());
   store.SetSettings(settings);
@@ -274,6 +275,7 @@ void RunIsosurface(const BenchmarkOptions& options, dsm::Messenger& messenger)
     request.Width = options.Width;
     request.Height = options.Height;
     request.TileSize = options.TileSize;
+    request.Samples = options.Samples;
     request.WorldToClip = camera.WorldToClip;
     request.Scheduling = options.Scheduling;
     frame = renderer.Render(store, scene, request, &frame);

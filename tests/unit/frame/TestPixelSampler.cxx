@@ -161,10 +161,11 @@ TEST_F(LightTransportTest, ShadowOfATranslucentBallIsDimmedAndTinted)
   const glm::dvec3 place = BallCenter + way * ((FloorHeight - BallCenter.z) / way.z);
   const auto pixel = static_cast<std::size_t>(std::floor((place.y + 1.0) * Size / 2.0)) * Size +
     static_cast<std::size_t>(std::floor((place.x + 1.0) * Size / 2.0));
-  // Twice through a surface of opacity one half: a quarter of the red light, a sixteenth of the rest.
+  // Twice through a surface of opacity one half: half of the light passes straight, and half of the red light that is
+  // scattered.
   const double full = 255.0 * -way.z;
-  EXPECT_NEAR(picture.Color[4 * pixel], full / 4.0, 2.0);
-  EXPECT_NEAR(picture.Color[4 * pixel + 1], full / 16.0, 2.0);
+  EXPECT_NEAR(picture.Color[4 * pixel], full * 0.75 * 0.75, 2.0);
+  EXPECT_NEAR(picture.Color[4 * pixel + 1], full * 0.5 * 0.5, 2.0);
 }
 
 TEST_F(LightTransportTest, OcclusionOfACornerIsThatOfBruteForce)

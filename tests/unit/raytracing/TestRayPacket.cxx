@@ -142,7 +142,22 @@ std::vector<rt::Ray> CreateLightRays(const rt::Index3& cells, unsigned seed, boo
   return rays;
 }
 
-/// Rays are occluded together exactly where they are alone, and where there is a hit.
+/// The product over all hits of a ray, one after the other.
+double GetTransmittance(const rt::IsosurfaceSearch<MemoryStore>& search,
+  const rt::IsosurfaceObject& object, rt::Ray ray, const std::vector<glm::dvec3>& sheets)
+{
+  double transmittance = 1.0;
+  rt::IsosurfaceHit hit;
+  while (search.Intersect(object, ray, hit))
+  {
+    transmittance *= sheets[hit.Isovalue].x;
+    ray.Min = hit.T + 1e-6;
+  }
+  return transmittance;
+}
+
+/// Rays are occluded together exactly where they are alone, and where there is a hit. They are attenuated together
+/// exactly as alone, and by each of their hits.
 template <class T>
 void CompareOcclusion(const TestVolume<T>& volume, const std::vector<double>& isovalues, int edge)
 {
@@ -150,7 +165,10 @@ void CompareOcclusion(const TestVolume<T>& volume, const std::vector<double>& is
   MemoryStore::Worker worker;
   const rt::IsosurfaceObject object = CreateObject(store, volume, isovalues, edge);
   const rt::IsosurfaceSearch<MemoryStore> alone(store, worker);
+  std::vector<glm::dvec3> sheets = { { 0.9, 0.8, 0.7 }, { 0.6, 0.5, 0.9 } };
+  sheets.resize(isovalues.size());
   int counts[2] = { 0, 0 };
+  int apart = 0;
   for (const rt::PacketKernel& kernel : rt::PacketKernel::GetAll())
   {
     SCOPED_TRACE(kernel.Name);
@@ -160,6 +178,9 @@ void CompareOcclusion(const TestVolume<T>& volume, const std::vector<double>& is
       const auto rays = CreateLightRays(volume.GetCells(), seed, seed % 4 < 2);
       const std::uint64_t wanted = seed % 5 == 0 ? 0x8421fffe7373abcdull : ~std::uint64_t{ 0 };
       const std::uint64_t occluded = tracer.FindOccluded(object, rays.data(), wanted);
+      std::vector<glm::dvec3> transmittances(64, glm::dvec3(1.0));
+      const std::uint64_t dark =
+        tracer.Attenuate(object, sheets, rays.data(), wanted, transmittances.data());
       for (int index = 0; index < 64; ++index)
       {
         SCOPED_TRACE(testing::Message() << "rays " << seed << ", ray " << index);
@@ -169,6 +190,14 @@ void CompareOcclusion(const TestVolume<T>& volume, const std::vector<double>& is
         EXPECT_EQ(isOccluded, alone.Intersect(object, rays[index], hit));
         EXPECT_EQ((occluded >> index & 1) != 0, isWanted && isOccluded);
         ++counts[isOccluded ? 1 : 0];
+        glm::dvec3 transmittance(1.0);
+        const bool isDark = alone.Attenuate(object, sheets, rays[index], transmittance);
+        EXPECT_EQ((dark >> index & 1) != 0, isWanted && isDark);
+        EXPECT_EQ(transmittances[index], isWanted ? transmittance : glm::dvec3(1.0));
+        EXPECT_EQ(isOccluded, transmittance.x < 1.0);
+        const double expected = GetTransmittance(alone, object, rays[index], sheets);
+        // Two hits may be nearer than the step from one to the next.
+        apart += !isDark && std::fabs(transmittance.x / expected - 1.0) > 1e-9;
         if (testing::Test::HasFailure())
         {
           return;
@@ -178,6 +207,7 @@ void CompareOcclusion(const TestVolume<T>& volume, const std::vector<double>& is
   }
   EXPECT_GT(counts[0], 500);
   EXPECT_GT(counts[1], 500);
+  EXPECT_LT(apart, counts[1] / 500);
 }
 
 template <class T>

@@ -43,6 +43,16 @@ float GetBrightness(const Light& light)
   return light.Color.x + light.Color.y + light.Color.z;
 }
 
+/// How much a light that arrives adds to the color of a surface at most.
+double GetBrightest(
+  const Light& light, const Incidence& incidence, const LightPath& path, const ShadingPoint& point)
+{
+  const Material& surface = *path.Point.Surface;
+  const double cosine = -glm::dot(point.Normal, incidence.Direction);
+  const double part = surface.Diffuse * cosine + surface.Specular;
+  return part * incidence.Attenuation * std::max({ light.Color.x, light.Color.y, light.Color.z });
+}
+
 } // namespace
 
 ArrivingLight::ArrivingLight(const ObjectTracers& objects, const Scene& scene)
@@ -128,23 +138,40 @@ ShadingPoint ArrivingLight::GetPoint(const LightPath& path) const
 void ArrivingLight::FindVisibility(const Light& light, LightPath* const* paths, int count,
   const ShadingPoint* points, glm::dvec3* visibility) const
 {
+  const std::ptrdiff_t lamp = &light - this->World.Lights.data();
+  const bool isKept = lamp < LightPath::MaxKnownLamps;
   Ray rays[MaxRays];
   int numbers[MaxRays];
   int rayCount = 0;
   for (int number = 0; number < count; ++number)
   {
+    LightPath& path = *paths[number];
     const Incidence incidence = GetIncidence(light, points[number].Position);
-    if (paths[number]->Point.Surface->Lighting && Arrives(incidence, points[number]))
+    if (!path.Point.Surface->Lighting || !Arrives(incidence, points[number]))
     {
-      rays[rayCount] = this->GetLightRay(incidence, *paths[number]);
-      numbers[rayCount++] = number;
+      continue;
     }
+    if (isKept && (path.KnownLamps >> lamp & 1u) != 0 &&
+      path.Lamps[lamp].Lend(
+        path.GetWeight() * GetBrightest(light, incidence, path, points[number])))
+    {
+      visibility[number] = path.Lamps[lamp].Get();
+      continue;
+    }
+    rays[rayCount] = this->GetLightRay(incidence, path);
+    numbers[rayCount++] = number;
   }
   glm::dvec3 transmittances[MaxRays];
   this->Transmittances.Find(rays, rayCount, transmittances);
   for (int ray = 0; ray < rayCount; ++ray)
   {
+    LightPath& path = *paths[numbers[ray]];
     visibility[numbers[ray]] = transmittances[ray];
+    if (isKept && path.Point.Color.w < 1.0f)
+    {
+      path.Lamps[lamp].Set(transmittances[ray]);
+      path.KnownLamps |= 1u << lamp;
+    }
   }
 }
 
@@ -174,32 +201,49 @@ void ArrivingLight::LookAround(LightPath* const* paths, int count, ShadingPoint*
 {
   const LightTransport& transport = this->World.Transport;
   const int samples = transport.AmbientOcclusionSamples;
+  int numbers[MaxRays];
+  int rayCount = 0;
+  for (int number = 0; number < count; ++number)
+  {
+    LightPath& path = *paths[number];
+    if (path.KnowsAmbient && path.Ambient.Lend(path.GetWeight()))
+    {
+      points[number].AmbientVisibility = path.Ambient.Get();
+      points[number].Surroundings *= path.Ambient.Get();
+      continue;
+    }
+    numbers[rayCount++] = number;
+  }
   double visible[MaxRays] = {};
   glm::dvec3 arriving[MaxRays];
-  std::fill_n(arriving, count, glm::dvec3(0.0));
+  std::fill_n(arriving, rayCount, glm::dvec3(0.0));
   for (int sample = 0; sample < samples; ++sample)
   {
     Ray rays[MaxRays];
-    for (int number = 0; number < count; ++number)
+    for (int ray = 0; ray < rayCount; ++ray)
     {
-      rays[number] = this->GetOcclusionRay(points[number].Normal, *paths[number]);
+      rays[ray] = this->GetOcclusionRay(points[numbers[ray]].Normal, *paths[numbers[ray]]);
     }
     glm::dvec3 transmittances[MaxRays];
-    this->Transmittances.Find(rays, count, transmittances);
-    for (int number = 0; number < count; ++number)
+    this->Transmittances.Find(rays, rayCount, transmittances);
+    for (int ray = 0; ray < rayCount; ++ray)
     {
-      const glm::dvec3& transmittance = transmittances[number];
-      visible[number] += (transmittance.x + transmittance.y + transmittance.z) / 3.0;
+      const glm::dvec3& transmittance = transmittances[ray];
+      visible[ray] += (transmittance.x + transmittance.y + transmittance.z) / 3.0;
       if (this->HasSurroundings)
       {
-        arriving[number] += transmittance * transport.Surroundings.GetLight(rays[number].Direction);
+        arriving[ray] += transmittance * transport.Surroundings.GetLight(rays[ray].Direction);
       }
     }
   }
-  for (int number = 0; number < count; ++number)
+  for (int ray = 0; ray < rayCount; ++ray)
   {
-    points[number].AmbientVisibility = visible[number] / samples;
-    points[number].Surroundings = arriving[number] / static_cast<double>(samples);
+    LightPath& path = *paths[numbers[ray]];
+    ShadingPoint& point = points[numbers[ray]];
+    point.AmbientVisibility = visible[ray] / samples;
+    point.Surroundings = arriving[ray] / static_cast<double>(samples);
+    path.Ambient.Set(point.AmbientVisibility);
+    path.KnowsAmbient = true;
   }
 }
 

@@ -2,6 +2,7 @@
 #ifndef rt_LightPath_h
 #define rt_LightPath_h
 
+#include "DSMRayTracing/frame/KnownLight.h"
 #include "DSMRayTracing/frame/PixelSample.h"
 #include "DSMRayTracing/light/SampleSequence.h"
 #include "DSMRayTracing/object/SurfacePoint.h"
@@ -30,6 +31,13 @@ struct LightPath
   PixelSample* Layers = nullptr; ///< gets the surfaces one by one, if not null
   /// Where in the picture the ray sees a point of the world; see PixelRays::GetWorldToPixels.
   const glm::dmat4x3* View = nullptr;
+  /// Visibility of the scene's first lamps from surfaces in front. Bit *i* of KnownLamps: lamp *i* has a value.
+  static constexpr int MaxKnownLamps = 8;
+  KnownLight<glm::dvec3> Lamps[MaxKnownLamps];
+  unsigned KnownLamps = 0;
+  /// ShadingPoint::AmbientVisibility of a surface in front.
+  KnownLight<double> Ambient;
+  bool KnowsAmbient = false;
   std::uint64_t Number = 0; ///< what a debug view of owners or bricks shows of the surface
 
   /// What the surface contributes to the colour.

@@ -11,6 +11,8 @@
 #include "DSMRayTracing/ray/Ray.h"
 #include "DSMRayTracing/ray/RayMask.h"
 
+#include <glm/vec3.hpp>
+
 #include <cstddef>
 #include <memory>
 
@@ -47,6 +49,11 @@ public:
   /// Those of the rays that are `wanted` which have any hit in [ray.Min, ray.Max]: for which FindNext
   /// finds one.
   virtual RayMask FindOccluded(const Ray* rays, RayMask wanted) const = 0;
+
+  /// Multiplies the transmittances of those of the rays that are `wanted` by GetSheetTransmittance of every
+  /// surface that they meet in [ray.Min, ray.Max]. Returns the rays that are dark (IsDark) then, whose search
+  /// ends early. Unless overridden, finds the surfaces one after the other.
+  virtual RayMask Attenuate(const Ray* rays, RayMask wanted, glm::dvec3* transmittances) const;
 
   /// Tells what the ray meets there.
   virtual void Describe(const ObjectHit& hit, const Ray& ray, SurfacePoint& point) const = 0;

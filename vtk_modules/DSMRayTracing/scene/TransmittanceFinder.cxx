@@ -1,11 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "DSMRayTracing/scene/TransmittanceFinder.h"
 
-#include <glm/common.hpp>
-#include <glm/geometric.hpp>
-
-#include <algorithm>
-
 namespace rt
 {
 
@@ -23,11 +18,6 @@ std::vector<const ObjectTracer*> GetObjects(const ObjectTracers& objects, bool o
     }
   }
   return some;
-}
-
-double GetLargest(const glm::dvec3& color)
-{
-  return std::max({ color.x, color.y, color.z });
 }
 
 } // namespace
@@ -49,37 +39,13 @@ void TransmittanceFinder::Find(const Ray* rays, int count, glm::dvec3* transmitt
   {
     transmittances[index] = glm::dvec3((open & GetBit(index)) != 0 ? 1.0 : 0.0);
   }
-  if (this->Others.HasObjects())
+  RayMask dark = 0;
+  for (const ObjectTracer* object : this->Others)
   {
-    this->FindTints(rays, open, transmittances);
+    open &= ~dark;
+    dark |= open != 0 ? object->Attenuate(rays, open, transmittances) : 0;
   }
-}
-
-void TransmittanceFinder::FindTints(
-  const Ray* rays, RayMask wanted, glm::dvec3* transmittances) const
-{
-  Ray rest[MaxRays];
-  ForEachRay(wanted, [&](int index) { rest[index] = rays[index]; });
-  ObjectHit hits[MaxRays];
-  while ((wanted = this->Others.Find(rest, wanted, nullptr, hits)) != 0)
-  {
-    wanted = FindRays(wanted,
-      [&](int index)
-      {
-        Ray& ray = rest[index];
-        SurfacePoint point;
-        hits[index].GetObject()->Describe(hits[index], ray, point);
-        const double opacity = point.Color.w;
-        const glm::dvec3 tint = glm::mix(glm::dvec3(1.0), glm::dvec3(point.Color), opacity);
-        glm::dvec3& transmittance = transmittances[index];
-        transmittance *= (1.0 - opacity) * tint;
-        ray.Min = point.T + point.Clearance / glm::length(ray.Direction);
-        ray.Max = rays[index].Max;
-        const bool goesOn = GetLargest(transmittance) > Dark;
-        transmittance = goesOn ? transmittance : glm::dvec3(0.0);
-        return goesOn;
-      });
-  }
+  ForEachRay(dark, [&](int index) { transmittances[index] = glm::dvec3(0.0); });
 }
 
 } // namespace rt

@@ -2,8 +2,8 @@
 #ifndef rt_TransmittanceFinder_h
 #define rt_TransmittanceFinder_h
 
+#include "DSMRayTracing/ray/Ray.h"
 #include "DSMRayTracing/scene/ObjectTracers.h"
-#include "DSMRayTracing/scene/SurfaceFinder.h"
 
 #include <glm/vec3.hpp>
 
@@ -13,7 +13,7 @@ namespace rt
 {
 
 /// How much of each colour of light gets along rays: none where an opaque surface is anywhere on the
-/// way; translucent surfaces dim and tint it, from the ray's origin on. One for each worker.
+/// way; translucent surfaces dim and tint it (GetSheetTransmittance). One for each worker.
 class TransmittanceFinder
 {
 public:
@@ -24,15 +24,9 @@ public:
   void Find(const Ray* rays, int count, glm::dvec3* transmittances) const;
 
 private:
-  /// Less than half a step of an 8-bit channel.
-  static constexpr double Dark = 0.5 / 255.0;
-
-  /// What objects that are not opaque leave of the light.
-  void FindTints(const Ray* rays, RayMask wanted, glm::dvec3* transmittances) const;
-
   /// Any hit of these decides.
   std::vector<const ObjectTracer*> Opaque;
-  SurfaceFinder Others;
+  std::vector<const ObjectTracer*> Others;
 };
 
 } // namespace rt

@@ -104,13 +104,15 @@ public:
   static constexpr int Width = static_cast<int>(hn::MaxLanes(D()));
 
   /// `origin`: the brick's first cell. `crossings` is null when only those rays that meet the surface
-  /// are asked for, not where.
+  /// are asked for, not where. `counts` (of each ray), if not null, makes rays go on through the brick, and gets the
+  /// number of times that each meets the surface added.
   BrickSearch(const RayPacket& packet, const PacketBrick& brick, const double origin[3],
-    CellCrossings* crossings)
+    CellCrossings* crossings, int* counts)
     : Packet(packet)
     , Brick(brick)
     , Origin(origin)
     , Crossings(crossings)
+    , Counts(counts)
     , Forward(packet.Forward)
   {
   }
@@ -426,6 +428,11 @@ private:
       end[axis] = getLocal(exit, out[axis], hn::Sub(one, entry));
     }
     const PacketCrossing<D> crossing(tag, values, start, end);
+    if (this->Counts)
+    {
+      this->Count(batch, crossing.Count(rays));
+      return;
+    }
     Bracket<D> bracket;
     const std::uint32_t found =
       GetMaskBits(tag, crossing.FindFirst(rays, bracket)) & batch.GetLanes();
@@ -462,10 +469,25 @@ private:
     }
   }
 
+  /// Rays go on whether they meet the surface in the cell or not.
+  HWY_INLINE void Count(const Batch& batch, Vector crossings)
+  {
+    HWY_ALIGN double numbers[Width];
+    hn::Store(crossings, D(), numbers);
+    for (int lane = 0; lane < batch.Count; ++lane)
+    {
+      const std::size_t ray = batch.Ray[lane];
+      this->Counts[ray] += static_cast<int>(numbers[lane]);
+      this->Cells[ray] &= this->Cells[ray] - 1;
+      this->GoOn(ray, true);
+    }
+  }
+
   const RayPacket& Packet;
   const PacketBrick& Brick;
   const double* Origin;
   CellCrossings* Crossings;
+  int* Counts;
   const bool* Forward;
   int Part[3];
   double Start[3]; ///< planes through which rays enter the part

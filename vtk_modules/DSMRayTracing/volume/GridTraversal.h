@@ -55,6 +55,25 @@ public:
       });
   }
 
+  /// The number of crossings in [enter, leave].
+  int CountHits(const IsovalueLevel<T>& level, double enter, double leave) const
+  {
+    int count = 0;
+    this->Walk(level, enter, leave, leave,
+      [&](const GridWalk& cells, const T* corner, double in, double out)
+      {
+        double corners[8];
+        Lanes start;
+        Lanes end;
+        if (this->EnterCell(level, cells, corner, in, out, corners, start, end))
+        {
+          count += CountCrossings(corners, start, end);
+        }
+        return false;
+      });
+    return count;
+  }
+
 private:
   /// Calls `intersect(cells, corner, enter, leave)` for the cells that the isovalue is in, until it
   /// says that there is a hit, and returns whether it did.

@@ -2,8 +2,10 @@
 #include "DSMRayTracing/volume/IsosurfaceObject.h"
 
 #include "DSMRayTracing/object/ObjectDigest.h"
+#include "DSMRayTracing/surface/SheetTransmittance.h"
 
 #include <algorithm>
+#include <cstddef>
 
 namespace rt
 {
@@ -29,6 +31,27 @@ bool IsosurfaceObject::IsOpaque() const
     (!this->Blocks || this->Blocks->AreOpaque()) &&
     std::all_of(this->Opacities.begin(), this->Opacities.end(),
       [](float opacity) { return opacity >= 1.0f; });
+}
+
+std::vector<glm::dvec3> IsosurfaceObject::GetSheetTransmittances() const
+{
+  const bool isColoredByItself = this->ColorField == this->Field &&
+    this->ColoredBy == Coloring::Values && !this->Colors.Categories;
+  if (this->CullsFront || this->CullsBack || this->BackSurface || this->Blocks ||
+    (this->ColorField && !isColoredByItself))
+  {
+    return {};
+  }
+  std::vector<glm::dvec3> sheets;
+  for (std::size_t index = 0; index < this->Isovalues.size(); ++index)
+  {
+    glm::vec4 color = this->ColorField ? this->Colors.Map(this->Isovalues[index])
+                                       : glm::vec4(this->Surface.DiffuseColor, 1.0f);
+    color.w *= this->Surface.Opacity;
+    color.w *= this->Opacities.empty() ? 1.0f : this->Opacities[index];
+    sheets.push_back(GetSheetTransmittance(color));
+  }
+  return sheets;
 }
 
 bool IsosurfaceObject::IsSeen() const

@@ -10,6 +10,7 @@
 
 #include <glm/mat4x4.hpp>
 #include <glm/matrix.hpp>
+#include <glm/vec3.hpp>
 
 #include <memory>
 #include <optional>
@@ -68,6 +69,9 @@ struct IsosurfaceObject
 
   /// Whether they let no light through anywhere.
   bool IsOpaque() const;
+  /// GetSheetTransmittance for each isovalue. Empty where it is not the same all over a surface and on both of
+  /// its sides.
+  std::vector<glm::dvec3> GetSheetTransmittances() const;
   /// Whether any part of them is seen at all.
   bool IsSeen() const;
   /// All that a picture of them depends on.

@@ -50,6 +50,10 @@ public:
   /// anything in common, but are traced together where they go the same way.
   RayMask FindOccluded(const IsosurfaceObject& object, const Ray* rays, RayMask wanted) const;
 
+  /// IsosurfaceSearch::Attenuate for the same; returns those that are dark then.
+  RayMask Attenuate(const IsosurfaceObject& object, const std::vector<glm::dvec3>& sheets,
+    const Ray* rays, RayMask wanted, glm::dvec3* transmittances) const;
+
 private:
   /// A packet on its way through the bricks.
   struct Progress
@@ -85,14 +89,27 @@ private:
   /// Length of the mean of unit directions: those of less have too little in common for a beam.
   static constexpr double BeamCoherence = 0.98;
 
-  /// FindOccluded for rays that all move to the same sides.
-  RayMask FindOccludedInPacket(
-    const IsosurfaceObject& object, const bool forward[3], const Ray* rays, RayMask wanted) const;
+  /// Searches those of RayPacket::Size rays that are `wanted`, together where they go the same way, and returns those
+  /// whose search ended early. Ask each brick's surfaces in turn:
+  ///
+  ///   bool alone(int ray): searches all of a ray
+  ///   RayMask together(packet, open, index, surface, origin): searches a PacketBrick, whose first cell is at `origin`,
+  ///     for the isovalue of that index and the rays that are still `open`
+  ///
+  /// Both tell of which rays the search ends.
+  template <class SearchAlone, class SearchSurface>
+  RayMask SearchForLight(const IsosurfaceObject& object, const Ray* rays, RayMask wanted,
+    const SearchAlone& alone, const SearchSurface& together) const;
 
-  /// Adds those rays that meet a surface in a brick to what they have found.
-  template <class T>
-  void FindOccludedInBrick(
-    const IsosurfaceObject& object, const BeamBricks::Brick& brick, Progress& progress) const;
+  /// The same for rays that all move to the same sides.
+  template <class SearchAlone, class SearchSurface>
+  RayMask SearchPacketForLight(const IsosurfaceObject& object, const bool forward[3],
+    const Ray* rays, RayMask wanted, const SearchAlone& alone, const SearchSurface& together) const;
+
+  /// The same in a brick: adds those whose search ends to what is found.
+  template <class T, class SearchSurface>
+  void SearchBrickForLight(const IsosurfaceObject& object, const BeamBricks::Brick& brick,
+    Progress& progress, const SearchSurface& together) const;
 
   Store& Blocks;
   typename Store::Worker& Self;

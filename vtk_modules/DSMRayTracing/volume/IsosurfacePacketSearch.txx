@@ -3,6 +3,7 @@
 #define rt_IsosurfacePacketSearch_txx
 
 #include "DSMRayTracing/layout/VoxelBrick.h"
+#include "DSMRayTracing/surface/SheetTransmittance.h"
 #include "DSMRayTracing/volume/BeamDescent.h"
 #include "DSMRayTracing/volume/HitGradient.h"
 #include "DSMRayTracing/volume/IndexSpace.h"
@@ -165,12 +166,38 @@ template <class Store>
 RayMask IsosurfacePacketSearch<Store>::FindOccluded(
   const IsosurfaceObject& object, const Ray* rays, RayMask wanted) const
 {
-  const auto findEach = [&](RayMask some) {
-    return FindRays(some, [&](int index) { return this->Single.IsOccluded(object, rays[index]); });
-  };
+  return this->SearchForLight(
+    object, rays, wanted, [&](int ray) { return this->Single.IsOccluded(object, rays[ray]); },
+    [&](const RayPacket& packet, RayMask open, std::size_t, const PacketBrick& surface,
+      const double origin[3]) { return this->Kernel.FindOccluded(packet, open, surface, origin); });
+}
+
+template <class Store>
+RayMask IsosurfacePacketSearch<Store>::Attenuate(const IsosurfaceObject& object,
+  const std::vector<glm::dvec3>& sheets, const Ray* rays, RayMask wanted,
+  glm::dvec3* transmittances) const
+{
+  return this->SearchForLight(
+    object, rays, wanted,
+    [&](int ray) { return this->Single.Attenuate(object, sheets, rays[ray], transmittances[ray]); },
+    [&](const RayPacket& packet, RayMask open, std::size_t isovalue, const PacketBrick& surface,
+      const double origin[3])
+    {
+      int counts[RayPacket::Size] = {};
+      this->Kernel.CountCrossings(packet, open, surface, origin, counts);
+      return FindRays(open,
+        [&](int ray) { return PassSheet(sheets[isovalue], counts[ray], transmittances[ray]); });
+    });
+}
+
+template <class Store>
+template <class SearchAlone, class SearchSurface>
+RayMask IsosurfacePacketSearch<Store>::SearchForLight(const IsosurfaceObject& object,
+  const Ray* rays, RayMask wanted, const SearchAlone& alone, const SearchSurface& together) const
+{
   if (GetCount(wanted) < FewestInBeam)
   {
-    return findEach(wanted);
+    return FindRays(wanted, alone);
   }
   const IndexSpace space(object.IndexToWorld, object.WorldToIndex);
   RayMask sides[8] = {};
@@ -183,30 +210,30 @@ RayMask IsosurfacePacketSearch<Store>::FindOccluded(
       sides[side] |= GetBit(index);
       sums[side] += direction / glm::length(direction);
     });
-  RayMask occluded = 0;
+  RayMask ended = 0;
   for (int side = 0; side < 8; ++side)
   {
     const int count = GetCount(sides[side]);
     const bool forward[3] = { (side & 1) != 0, (side & 2) != 0, (side & 4) != 0 };
-    occluded |= count >= FewestInBeam && glm::length(sums[side]) > BeamCoherence * count
-      ? this->FindOccludedInPacket(object, forward, rays, sides[side])
-      : findEach(sides[side]);
+    ended |= count >= FewestInBeam && glm::length(sums[side]) > BeamCoherence * count
+      ? this->SearchPacketForLight(object, forward, rays, sides[side], alone, together)
+      : FindRays(sides[side], alone);
   }
-  return occluded;
+  return ended;
 }
 
 template <class Store>
-RayMask IsosurfacePacketSearch<Store>::FindOccludedInPacket(
-  const IsosurfaceObject& object, const bool forward[3], const Ray* rays, RayMask wanted) const
+template <class SearchAlone, class SearchSurface>
+RayMask IsosurfacePacketSearch<Store>::SearchPacketForLight(const IsosurfaceObject& object,
+  const bool forward[3], const Ray* rays, RayMask wanted, const SearchAlone& alone,
+  const SearchSurface& together) const
 {
   const IndexSpace space(object.IndexToWorld, object.WorldToIndex);
   const BrickLattice& lattice = object.Field->Lattice;
   Progress progress;
   std::copy_n(forward, 3, progress.Rays.Forward);
-  const RayMask alone =
-    this->Kernel.SetRays(progress.Rays, rays, wanted, space, lattice.GetCells());
   progress.Found =
-    FindRays(alone, [&](int index) { return this->Single.IsOccluded(object, rays[index]); });
+    FindRays(this->Kernel.SetRays(progress.Rays, rays, wanted, space, lattice.GetCells()), alone);
   if (progress.Rays.Rays != 0)
   {
     RayBeam beam;
@@ -219,7 +246,7 @@ RayMask IsosurfacePacketSearch<Store>::FindOccludedInPacket(
         {
           if (this->MeetBrick(brick, progress))
           {
-            this->FindOccludedInBrick<decltype(sample)>(object, brick, progress);
+            this->SearchBrickForLight<decltype(sample)>(object, brick, progress, together);
           }
         }
       });
@@ -228,16 +255,17 @@ RayMask IsosurfacePacketSearch<Store>::FindOccludedInPacket(
 }
 
 template <class Store>
-template <class T>
-void IsosurfacePacketSearch<Store>::FindOccludedInBrick(
-  const IsosurfaceObject& object, const BeamBricks::Brick& brick, Progress& progress) const
+template <class T, class SearchSurface>
+void IsosurfacePacketSearch<Store>::SearchBrickForLight(const IsosurfaceObject& object,
+  const BeamBricks::Brick& brick, Progress& progress, const SearchSurface& together) const
 {
   const typename Store::Pin pin =
     this->Blocks.Acquire(this->Self, *object.Field->Segment, brick.Id);
   const VoxelBrick<T> voxels(pin.GetData());
   const ValueRange range{ voxels.GetHeader().First, voxels.GetHeader().Last };
-  for (const double isovalue : object.Isovalues)
+  for (std::size_t index = 0; index < object.Isovalues.size(); ++index)
   {
+    const double isovalue = object.Isovalues[index];
     const RayMask open = progress.Meets & ~progress.Found;
     if (open == 0 || !range.MayHold(isovalue))
     {
@@ -246,7 +274,7 @@ void IsosurfacePacketSearch<Store>::FindOccludedInBrick(
     const IsovalueLevel<T> level(isovalue);
     const TypedPacketBrick<T> surface(
       voxels, level, this->Kernel.Macrocells.template Get<T>(), progress.Rays.Forward);
-    progress.Found |= this->Kernel.FindOccluded(progress.Rays, open, surface, brick.Lower);
+    progress.Found |= together(progress.Rays, open, index, surface, brick.Lower);
   }
 }
 

@@ -13,6 +13,10 @@
 #include "DSMRayTracing/volume/IsosurfaceObject.h"
 #include "DSMRayTracing/volume/IsovaluePredicate.h"
 
+#include <glm/vec3.hpp>
+
+#include <vector>
+
 namespace rt
 {
 
@@ -61,6 +65,11 @@ public:
   /// bricks.
   bool IsOccluded(const IsosurfaceObject& object, const Ray& ray) const;
 
+  /// Multiplies `transmittance` by those of all surfaces in [ray.Min, ray.Max]: `sheets` has one for each isovalue.
+  /// Returns whether the ray is dark (IsDark) then; the search ends early when it is. May wait for bricks.
+  bool Attenuate(const IsosurfaceObject& object, const std::vector<glm::dvec3>& sheets,
+    const Ray& ray, glm::dvec3& transmittance) const;
+
 private:
   using Walk = BrickWalk<IsovaluePredicate>;
 
@@ -74,9 +83,10 @@ private:
   bool IntersectBrick(const IsosurfaceObject& object, const GridRay& line, const Walk& walk,
     CellHit& cell, int& isovalue, double gradient[3], bool& hasGradient) const;
 
-  template <class T>
-  bool IsOccludedInBrick(
-    const IsosurfaceObject& object, const GridRay& line, const Walk& walk) const;
+  /// Calls `isDone(sample, traversal, range, walk)` for the bricks on the ray, front to back, until it says so, and returns
+  /// whether it did. `sample` has the type of the samples; `range` is that of the brick's values.
+  template <class IsDone>
+  bool SearchBricks(const IsosurfaceObject& object, const Ray& ray, const IsDone& isDone) const;
 
   Store& Blocks;
   typename Store::Worker& Self;

@@ -3,11 +3,13 @@
 #define rt_IsosurfaceSearch_txx
 
 #include "DSMRayTracing/layout/VoxelBrick.h"
+#include "DSMRayTracing/surface/SheetTransmittance.h"
 #include "DSMRayTracing/volume/GridTraversal.h"
 #include "DSMRayTracing/volume/IndexSpace.h"
 #include "DSMRayTracing/volume/IsovalueLevel.h"
 
 #include <algorithm>
+#include <cstddef>
 #include <limits>
 
 namespace rt
@@ -114,6 +116,47 @@ template <class Store, template <class> class Access>
 bool IsosurfaceSearch<Store, Access>::IsOccluded(
   const IsosurfaceObject& object, const Ray& ray) const
 {
+  return this->SearchBricks(object, ray,
+    [&](auto sample, const auto& traversal, const ValueRange& range, const Walk& walk)
+    {
+      return std::any_of(object.Isovalues.begin(), object.Isovalues.end(),
+        [&](double isovalue)
+        {
+          return range.MayHold(isovalue) &&
+            traversal.HasHit(
+              IsovalueLevel<decltype(sample)>(isovalue), walk.GetEnter(), walk.GetLeave());
+        });
+    });
+}
+
+template <class Store, template <class> class Access>
+bool IsosurfaceSearch<Store, Access>::Attenuate(const IsosurfaceObject& object,
+  const std::vector<glm::dvec3>& sheets, const Ray& ray, glm::dvec3& transmittance) const
+{
+  return this->SearchBricks(object, ray,
+    [&](auto sample, const auto& traversal, const ValueRange& range, const Walk& walk)
+    {
+      for (std::size_t index = 0; index < sheets.size(); ++index)
+      {
+        const double isovalue = object.Isovalues[index];
+        if (range.MayHold(isovalue) &&
+          PassSheet(sheets[index],
+            traversal.CountHits(
+              IsovalueLevel<decltype(sample)>(isovalue), walk.GetEnter(), walk.GetLeave()),
+            transmittance))
+        {
+          return true;
+        }
+      }
+      return false;
+    });
+}
+
+template <class Store, template <class> class Access>
+template <class IsDone>
+bool IsosurfaceSearch<Store, Access>::SearchBricks(
+  const IsosurfaceObject& object, const Ray& ray, const IsDone& isDone) const
+{
   const IndexSpace space(object.IndexToWorld, object.WorldToIndex);
   const VoxelField& field = *object.Field;
   GridRay line;
@@ -126,35 +169,23 @@ bool IsosurfaceSearch<Store, Access>::IsOccluded(
   return Dispatch(field.Lattice.GetScalarType(),
     [&](auto sample)
     {
+      using T = decltype(sample);
+      const dsm::BlockSegment& segment = *field.Segment;
       const IsovaluePredicate mayHold(object.Isovalues);
       Walk walk(field.Hierarchy, line, mayHold, enter, leave);
       while (walk.Next())
       {
-        if (this->IsOccludedInBrick<decltype(sample)>(object, line, walk))
+        const typename Store::Pin pin = this->Blocks.Acquire(this->Self, segment, walk.GetId());
+        const VoxelBrick<T> voxels(pin.GetData());
+        const ValueRange range{ voxels.GetHeader().First, voxels.GetHeader().Last };
+        const Access<Store> access(this->Blocks, this->Self, segment, walk.GetId());
+        const GridTraversal<T, Access<Store>> traversal(line, voxels, walk.GetOrigin(), access);
+        if (isDone(sample, traversal, range, walk))
         {
           return true;
         }
       }
       return false;
-    });
-}
-
-template <class Store, template <class> class Access>
-template <class T>
-bool IsosurfaceSearch<Store, Access>::IsOccludedInBrick(
-  const IsosurfaceObject& object, const GridRay& line, const Walk& walk) const
-{
-  const dsm::BlockSegment& segment = *object.Field->Segment;
-  const typename Store::Pin pin = this->Blocks.Acquire(this->Self, segment, walk.GetId());
-  const VoxelBrick<T> voxels(pin.GetData());
-  const ValueRange range{ voxels.GetHeader().First, voxels.GetHeader().Last };
-  const Access<Store> access(this->Blocks, this->Self, segment, walk.GetId());
-  const GridTraversal<T, Access<Store>> traversal(line, voxels, walk.GetOrigin(), access);
-  return std::any_of(object.Isovalues.begin(), object.Isovalues.end(),
-    [&](double isovalue)
-    {
-      return range.MayHold(isovalue) &&
-        traversal.HasHit(IsovalueLevel<T>(isovalue), walk.GetEnter(), walk.GetLeave());
     });
 }
 

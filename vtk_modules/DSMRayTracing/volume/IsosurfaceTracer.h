@@ -38,6 +38,7 @@ public:
     , Fields(store, worker)
   {
     const glm::dmat3 edges(object.IndexToWorld);
+    this->Sheets = object.GetSheetTransmittances();
     this->Clearance = ClearancePart *
       std::min({ glm::length(edges[0]), glm::length(edges[1]), glm::length(edges[2]) });
   }
@@ -93,6 +94,17 @@ public:
     return this->Object.Clipping.SearchParts(rays, wanted,
       [&](const Ray* parts, RayMask some)
       { return this->Packets.FindOccluded(this->Object, parts, some); });
+  }
+
+  RayMask Attenuate(const Ray* rays, RayMask wanted, glm::dvec3* transmittances) const override
+  {
+    if (!this->Object.IsSeen() || this->Sheets.empty())
+    {
+      return this->ObjectTracer::Attenuate(rays, wanted, transmittances);
+    }
+    return this->Object.Clipping.SearchParts(rays, wanted,
+      [&](const Ray* parts, RayMask some)
+      { return this->Packets.Attenuate(this->Object, this->Sheets, parts, some, transmittances); });
   }
 
   void Describe(const ObjectHit& nearest, const Ray& ray, SurfacePoint& point) const override
@@ -187,6 +199,7 @@ private:
   IsosurfaceSearch<Store> Search;
   IsosurfacePacketSearch<Store> Packets;
   FieldSampler<Store> Fields;
+  std::vector<glm::dvec3> Sheets; ///< IsosurfaceObject::GetSheetTransmittances
   double Clearance;
 };
 

@@ -81,20 +81,10 @@ public:
   /// Which of `rays` cross, and where the first crossing of each is; undefined for the others.
   Mask FindFirst(Mask rays, Bracket<D>& bracket) const
   {
-    // Signs of the four Bernstein coefficients; there are no more crossings than they have changes.
-    const Vector third = hn::Set(this->Tag, 1.0 / 3.0);
-    const Vector two = hn::Set(this->Tag, 2.0);
     const Mask inside0 = this->IsInside(this->C0);
-    const Mask inside1 = this->IsInside(hn::Add(this->C0, hn::Mul(this->C1, third)));
-    const Mask inside2 =
-      this->IsInside(hn::Add(this->C0, hn::Mul(hn::Add(hn::Mul(two, this->C1), this->C2), third)));
     const Mask inside3 = this->IsInside(this->Last);
-    const Mask change0 = hn::Xor(inside0, inside1);
-    const Mask change1 = hn::Xor(inside1, inside2);
-    const Mask change2 = hn::Xor(inside2, inside3);
     const Mask single = hn::Xor(inside0, inside3);
-    const Mask several =
-      hn::And(rays, hn::Or(hn::And(change0, hn::Or(change1, change2)), hn::And(change1, change2)));
+    const Mask several = hn::And(rays, this->MayCrossAgain(inside0, inside3));
     bracket = { this->Zero, this->C0, this->One, this->Last };
     Mask crossing = hn::And(rays, single);
     if (hn::AllFalse(this->Tag, several))
@@ -119,6 +109,30 @@ public:
       open = hn::AndNot(found, open);
     }
     return crossing;
+  }
+
+  /// How often each of `rays` crosses; 0 for the others.
+  Vector Count(Mask rays) const
+  {
+    Mask inside = this->IsInside(this->C0);
+    const Mask inside3 = this->IsInside(this->Last);
+    const Mask several = hn::And(rays, this->MayCrossAgain(inside, inside3));
+    Vector count = this->Zero;
+    if (!hn::AllFalse(this->Tag, several))
+    {
+      Vector extrema[2];
+      this->FindExtrema(extrema);
+      for (const Vector& place : extrema)
+      {
+        const Mask valid =
+          hn::And(several, hn::And(hn::Gt(place, this->Zero), hn::Lt(place, this->One)));
+        const Mask change = hn::And(valid, hn::Xor(this->IsInside(this->Evaluate(place)), inside));
+        count = hn::Add(count, hn::IfThenElseZero(change, this->One));
+        inside = hn::Xor(inside, change);
+      }
+    }
+    const Mask change = hn::And(rays, hn::Xor(inside, inside3));
+    return hn::Add(count, hn::IfThenElseZero(change, this->One));
   }
 
   /// Where in their brackets `rays` cross; undefined for the others.
@@ -164,6 +178,21 @@ public:
 
 private:
   Mask IsInside(Vector value) const { return hn::Ge(value, this->Zero); }
+
+  /// Which rays may cross more than once: there are no more crossings than changes between the signs of the four
+  /// Bernstein coefficients, of which those of the first and the last are given.
+  Mask MayCrossAgain(Mask inside0, Mask inside3) const
+  {
+    const Vector third = hn::Set(this->Tag, 1.0 / 3.0);
+    const Vector two = hn::Set(this->Tag, 2.0);
+    const Mask inside1 = this->IsInside(hn::Add(this->C0, hn::Mul(this->C1, third)));
+    const Mask inside2 =
+      this->IsInside(hn::Add(this->C0, hn::Mul(hn::Add(hn::Mul(two, this->C1), this->C2), third)));
+    const Mask change0 = hn::Xor(inside0, inside1);
+    const Mask change1 = hn::Xor(inside1, inside2);
+    const Mask change2 = hn::Xor(inside2, inside3);
+    return hn::Or(hn::And(change0, hn::Or(change1, change2)), hn::And(change1, change2));
+  }
 
   Vector Interpolate(Vector a, Vector b, Vector u) const
   {

@@ -132,14 +132,20 @@ public:
     const double origin[3], PacketHits& hits)
   {
     CellCrossings crossings;
-    BrickSearch<D>(packet, brick, origin, &crossings).Search(rays);
+    BrickSearch<D>(packet, brick, origin, &crossings, nullptr).Search(rays);
     Refine(crossings, hits);
   }
 
   static RayPacket::Mask FindOccluded(
     const RayPacket& packet, RayPacket::Mask rays, const PacketBrick& brick, const double origin[3])
   {
-    return BrickSearch<D>(packet, brick, origin, nullptr).Search(rays);
+    return BrickSearch<D>(packet, brick, origin, nullptr, nullptr).Search(rays);
+  }
+
+  static void CountCrossings(const RayPacket& packet, RayPacket::Mask rays,
+    const PacketBrick& brick, const double origin[3], int* counts)
+  {
+    BrickSearch<D>(packet, brick, origin, nullptr, counts).Search(rays);
   }
 
 private:
@@ -202,7 +208,8 @@ template <class D>
 PacketKernel Create(const char* name, const MacrocellKernel& macrocells)
 {
   return { name, PacketSteps<D>::Width, &PacketSteps<D>::SetRays, &PacketSteps<D>::MeetBrick,
-    &PacketSteps<D>::SearchBrick, &PacketSteps<D>::FindOccluded, macrocells };
+    &PacketSteps<D>::SearchBrick, &PacketSteps<D>::FindOccluded, &PacketSteps<D>::CountCrossings,
+    macrocells };
 }
 
 PacketKernel CreateWide()

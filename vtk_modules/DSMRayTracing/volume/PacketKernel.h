@@ -42,6 +42,10 @@ struct PacketKernel
   RayPacket::Mask (*FindOccluded)(const RayPacket& packet, RayPacket::Mask rays,
     const PacketBrick& brick, const double origin[3]);
 
+  /// Adds to `counts[ray]` how often each of `rays` meets the surface in the brick.
+  void (*CountCrossings)(const RayPacket& packet, RayPacket::Mask rays, const PacketBrick& brick,
+    const double origin[3], int* counts);
+
   /// For TypedPacketBrick.
   MacrocellKernel Macrocells;
 

@@ -162,6 +162,30 @@ bool FindFirstCrossing(const double corners[8], const Lanes& start, const Lanes&
   return true;
 }
 
+int CountCrossings(const double corners[8], const Lanes& start, const Lanes& end)
+{
+  const Cubic cubic(corners, start, end - start);
+  const double last = EvaluateTrilinear(corners, end);
+  bool inside = cubic.Coefficients[0] >= 0.0;
+  int crossings = 0;
+  const auto pass = [&](double value)
+  {
+    crossings += (value >= 0.0) != inside;
+    inside = value >= 0.0;
+  };
+  if (CountSignChanges(cubic, last) > 1)
+  {
+    double extrema[2];
+    const int count = FindExtrema(cubic, extrema);
+    for (int i = 0; i < count; ++i)
+    {
+      pass(cubic.Evaluate(extrema[i]));
+    }
+  }
+  pass(last);
+  return crossings;
+}
+
 bool HasCrossing(const double corners[8], const Lanes& start, const Lanes& end)
 {
   End before;

@@ -17,6 +17,9 @@ namespace rt
 /// and accurate ray-voxel intersection techniques for iso-surface ray tracing").
 bool FindFirstCrossing(const double corners[8], const Lanes& start, const Lanes& end, double& s);
 
+/// How often the function changes its side on that way: 0 to 3.
+int CountCrossings(const double corners[8], const Lanes& start, const Lanes& end);
+
 /// Whether FindFirstCrossing finds a place, which it does not look for.
 bool HasCrossing(const double corners[8], const Lanes& start, const Lanes& end);
 
