@@ -241,8 +241,11 @@ void vtkPVDSMRefinement::OnRenderEnds(vtkObject*, unsigned long, void* interacti
   const bool goesOn = this->CanGoOn();
   vtkSMSession* const session = this->View->GetSession();
   const bool isStill = *static_cast<int*>(interactive) == 0;
+  // More samples of a picture are of the same data: a server is not asked again.
+  const bool isSame = this->IsRefining && this->Samples > 0;
   // Of several clients, one says what the others show.
-  if (isStill && (!session->IsMultiClients() || session->GetCollaborationManager()->IsMaster()))
+  if (isStill && !isSame &&
+    (!session->IsMultiClients() || session->GetCollaborationManager()->IsMaster()))
   {
     ForEachTraced(this->View,
       [&](vtkSMProxy* representation)

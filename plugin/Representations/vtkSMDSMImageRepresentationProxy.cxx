@@ -109,6 +109,7 @@ void vtkSMDSMImageRepresentationProxy::LoadState(
 {
   const Flag loading(this->IsLoading);
   this->Superclass::LoadState(message, locator);
+  this->Components = CountComponents(this->GetProperty(Array));
 }
 
 /// Their definitions have no default, so that Python states have them in any case.
@@ -148,12 +149,19 @@ void vtkSMDSMImageRepresentationProxy::OnArray()
   {
     vtkSMPropertyHelper(this, ArrayAutomatic).Set(0);
   }
+  this->ChooseComponent();
+}
+
+bool vtkSMDSMImageRepresentationProxy::ChooseComponent()
+{
   const int components = CountComponents(this->GetProperty(Array));
-  if (components > 0 && components != this->Components)
+  const bool isOther = components > 0 && components != this->Components;
+  if (isOther)
   {
     this->Components = components;
     vtkSMPropertyHelper(this, Component).Set(components > 1 ? components : 0);
   }
+  return isOther;
 }
 
 /// The data have been updated, and with them the domains; then the view renders. Data that come after their display left
@@ -170,12 +178,16 @@ void vtkSMDSMImageRepresentationProxy::ViewUpdated(vtkSMProxy* view)
   bool isAny = isMissing && array->ResetToDomainDefaults();
   vtkSMProperty* const box = this->GetProperty(Box);
   isAny = (IsOfNothing(vtkSMPropertyHelper(box)) && box->ResetToDomainDefaults()) || isAny;
+  if (this->Components == 0)
+  {
+    this->Components = CountComponents(array); // of a state file, whose component stays
+  }
+  isAny = this->ChooseComponent() || isAny;
   if (isAny)
   {
     const vtkPVDSMNoUndo noUndo;
     this->UpdateVTKObjects();
   }
-  this->Components = CountComponents(array); // also those of a state file, whose component stays
   this->TellRange();
 }
 

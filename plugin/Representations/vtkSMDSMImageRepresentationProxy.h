@@ -69,6 +69,8 @@ private:
   void operator=(const vtkSMDSMImageRepresentationProxy&) = delete;
 
   void OnArray();
+  /// The magnitude, or the only component, where their number is another. Returns whether it is.
+  bool ChooseComponent();
   void TellRange();
 
   bool IsChoosing = false; ///< properties change that nobody has set

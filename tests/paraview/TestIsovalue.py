@@ -122,6 +122,11 @@ display.DSMIsoValue = 150.0
 display.DSMIsoValueAutomatic = 1
 check(display.DSMIsoValue == 150.0, "switched on, it has a number with the next picture")
 expect_automatic("which it has", "r", 150.1, 250.0)
+flow.Function = "RTData*iHat"
+expect_automatic("an array that becomes a vector", "r", 150.1, 250.0)
+check(display_component(display) == 3, "is shown by its magnitude")
+flow.Function = "RTData"
+expect_automatic("and one that becomes a scalar", "r", 150.1, 250.0)
 display.DSMIsoValues = [200.0]
 render(view)
 display.DSMIsoValues = []
