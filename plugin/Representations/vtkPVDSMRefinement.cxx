@@ -250,6 +250,7 @@ void vtkPVDSMRefinement::OnRenderEnds(vtkObject*, unsigned long, void* interacti
     ForEachTraced(this->View,
       [&](vtkSMProxy* representation)
       {
+        this->Colors.Note(representation);
         this->Isovalues.TakeSuggestion(representation);
         this->Isovalues.Watch(representation, goesOn);
       });

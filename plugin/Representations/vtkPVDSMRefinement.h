@@ -2,6 +2,7 @@
 #ifndef vtkPVDSMRefinement_h
 #define vtkPVDSMRefinement_h
 
+#include "vtkPVDSMColorWatch.h"
 #include "vtkPVDSMInputWatch.h"
 #include "vtkPVDSMIsovalueWatch.h"
 
@@ -67,6 +68,7 @@ private:
   vtkWeakPointer<vtkRenderWindow> Window;
   vtkNew<vtkPVDSMProgressGuard> ProgressGuard;
   vtkPVDSMInputWatch Input;
+  vtkPVDSMColorWatch Colors;
   vtkPVDSMIsovalueWatch Isovalues{ [this] { this->OnIsovalue(); } };
   std::vector<unsigned long> ViewObservers;
   std::vector<unsigned long> InteractorObservers;

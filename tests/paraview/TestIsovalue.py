@@ -133,3 +133,28 @@ display.DSMIsoValues = []
 expect_automatic("after a list, too", "r", 150.1, 250.0)
 told = display.GetPropertyValue("DSMValueRange")
 check(told.startswith("37.3") and told.endswith(" to 276.829"), f"the range is told: {told}")
+simple.Delete(flow)
+
+# ParaView colors a new mesh by its scalars; so it does when they have another name. What somebody chooses stays.
+mesh = simple.Calculator(Input=simple.Sphere(), ResultArrayName="r", Function="coordsX")
+display = simple.Show(mesh, view)
+display.Representation = REPRESENTATION
+place_camera(view)
+colored = render(view)
+check(display.ColorArrayName[1] == "r", f"a mesh is colored by {display.ColorArrayName}")
+mesh.ResultArrayName = "s"
+with Messages() as messages:
+    again = render(view)
+check(display.ColorArrayName[1] == "s" and messages.text == "", f"then by {display.ColorArrayName}{messages.text}")
+check_equal(again, colored, "in the same colors")
+mesh.Function, mesh.AttributeType = "5", "Cell Data"
+mesh.ResultArrayName = "t"
+with Messages() as messages:
+    render(view)
+check(display.ColorArrayName[1] in (None, "") and messages.text == "", f"and by none: {display.ColorArrayName}{messages.text}")
+simple.ColorBy(display, ("POINTS", "Normals"))
+render(view)
+mesh.Input = simple.Cone()
+with Messages() as messages:
+    render(view)
+check("'Normals' does not exist" in messages.text, "what is chosen stays, with a warning: " + messages.text)

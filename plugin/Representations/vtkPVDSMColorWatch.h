@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef vtkPVDSMColorWatch_h
+#define vtkPVDSMColorWatch_h
+
+#include "vtkCommand.h"
+#include "vtkSmartPointer.h"
+#include "vtkWeakPointer.h"
+
+#include <vector>
+
+class vtkSMProxy;
+
+/// The arrays that color a view's datasets, on the client. ParaView colors a new dataset by its active scalars. When the
+/// data do not have that array any more, they are colored by the scalars that they have, or not at all, before they are
+/// rendered. An array other than the active scalars is somebody's choice, and stays.
+class vtkPVDSMColorWatch
+{
+public:
+  vtkPVDSMColorWatch();
+  ~vtkPVDSMColorWatch();
+  vtkPVDSMColorWatch(const vtkPVDSMColorWatch&) = delete;
+  vtkPVDSMColorWatch& operator=(const vtkPVDSMColorWatch&) = delete;
+
+  /// After a render of a traced dataset.
+  void Note(vtkSMProxy* representation);
+
+private:
+  void OnData(vtkSMProxy* producer);
+
+  vtkSmartPointer<vtkCommand> Observer;
+  std::vector<vtkWeakPointer<vtkSMProxy>> Automatic; ///< datasets that the active scalars color
+};
+
+#endif
