@@ -12,6 +12,7 @@
 #include "vtkSMProxy.h"
 #include "vtkSMViewProxy.h"
 
+#include <QAction>
 #include <QHeaderView>
 #include <QJsonArray>
 #include <QJsonDocument>
@@ -76,11 +77,14 @@ pqDSMMemoryPanel::pqDSMMemoryPanel(QWidget* parent)
   this->Soon.setSingleShot(true);
   this->Soon.setInterval(MillisecondsToWait);
   QObject::connect(&this->Soon, &QTimer::timeout, this, &pqDSMMemoryPanel::Update);
+  QObject::connect(this->toggleViewAction(), &QAction::triggered, this, &QWidget::raise);
   QObject::connect(
     this, &QDockWidget::visibilityChanged, this, &pqDSMMemoryPanel::OnVisibilityChanged);
   QObject::connect(&pqActiveObjects::instance(), &pqActiveObjects::viewChanged, this,
     &pqDSMMemoryPanel::OnActiveViewChanged);
   this->hide();
+  // As soon as the application has placed it, and while it is hidden: beside others it could widen the window.
+  QTimer::singleShot(0, this, &pqDSMMemoryPanel::BecomeTab);
 }
 
 pqDSMMemoryPanel::~pqDSMMemoryPanel()
@@ -117,25 +121,19 @@ bool pqDSMMemoryPanel::IsTab() const
   return window && !window->tabifiedDockWidgets(const_cast<pqDSMMemoryPanel*>(this)).isEmpty();
 }
 
-void pqDSMMemoryPanel::showEvent(QShowEvent* event)
+void pqDSMMemoryPanel::BecomeTab()
 {
-  this->QDockWidget::showEvent(event);
   auto* const window = qobject_cast<QMainWindow*>(this->parentWidget());
-  if (!this->IsPlaced && window && window->dockWidgetArea(this) == Qt::BottomDockWidgetArea)
+  const auto area = window ? window->dockWidgetArea(this) : Qt::NoDockWidgetArea;
+  if (area == Qt::NoDockWidgetArea)
   {
-    this->IsPlaced = true;
-    // Later: the window is laying out its docks.
-    QTimer::singleShot(0, this, [this, window] { this->PlaceIn(window); });
+    return;
   }
-}
-
-void pqDSMMemoryPanel::PlaceIn(QMainWindow* window)
-{
   QDockWidget* neighbor = nullptr;
-  for (auto* dock : window->findChildren<QDockWidget*>(QString(), Qt::FindDirectChildrenOnly))
+  for (auto* dock : window->findChildren<QDockWidget*>())
   {
-    const bool isBeside = dock != this && !dock->isFloating() &&
-      window->dockWidgetArea(dock) == Qt::BottomDockWidgetArea;
+    const bool isBeside =
+      dock != this && !dock->isFloating() && window->dockWidgetArea(dock) == area;
     if (isBeside && (!neighbor || dock->isVisible()))
     {
       neighbor = dock;
@@ -144,7 +142,6 @@ void pqDSMMemoryPanel::PlaceIn(QMainWindow* window)
   if (neighbor)
   {
     window->tabifyDockWidget(neighbor, this);
-    this->raise();
   }
 }
 

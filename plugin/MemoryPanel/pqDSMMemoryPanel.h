@@ -8,7 +8,6 @@
 #include <QTimer>      // for ivars
 
 class QLabel;
-class QMainWindow;
 class QTableView;
 class pqDSMRankTable;
 class pqView;
@@ -41,12 +40,9 @@ public:
   /// Whether it is a tab beside another dock.
   bool IsTab() const;
 
-protected:
-  /// The first time, it becomes a tab beside the application's other docks at the bottom.
-  void showEvent(QShowEvent* event) override;
-
 private:
-  void PlaceIn(QMainWindow* window);
+  /// Beside the application's other docks at the bottom.
+  void BecomeTab();
   void Watch(pqView* view);
   void OnVisibilityChanged(bool visible);
   void OnActiveViewChanged(pqView* view);
@@ -62,7 +58,6 @@ private:
   QTimer Soon;
   QPointer<pqView> View;
   unsigned long Observer = 0;
-  bool IsPlaced = false;
 };
 
 #endif

@@ -86,8 +86,9 @@ public:
 
   ///@{
   /**
-   * Of a file of bare values (.raw), which GetRawFile tells: samples along each axis, their type (VTK_FLOAT and so on) and number of
-   * components, whether the high byte comes first, bytes before the first value, and the distance of samples.
+   * Whether the file has bare values (.raw), and what describes these: samples along each axis, their type (VTK_FLOAT
+   * and so on) and number of components, whether the high byte comes first, bytes before the first value, and the
+   * distance of samples.
    */
   virtual bool GetRawFile();
   vtkSetVector3Macro(RawDimensions, int);
