@@ -245,6 +245,7 @@ inline void AutomaticFollowsTheData(dsm::Messenger& messenger)
   const auto one = PublishPattern(messenger, store, directory);
   EXPECT_EQ(store.GetOrganization(), dsm::MemoryOrganization::Replicated);
   EXPECT_NE(store.GetExplanation().find("replicated"), std::string::npos);
+  EXPECT_FALSE(store.LacksMemory());
   EXPECT_TRUE(store.IsSettled());
   ReadEverything(messenger, store, *one);
   EXPECT_EQ(store.GetCounters().Workers.Misses, 0u);
@@ -260,6 +261,7 @@ inline void AutomaticFollowsTheData(dsm::Messenger& messenger)
                                         "which do not fit the 1 MiB"),
     std::string::npos)
     << store.GetExplanation();
+  EXPECT_TRUE(store.LacksMemory());
   for (int frame = 0; frame < 2; ++frame)
   {
     ReadEverything(messenger, store, *one);

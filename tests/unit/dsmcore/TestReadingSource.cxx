@@ -97,6 +97,7 @@ TEST_P(BlocksOnDisk, AreReadOnceWhereThereIsRoom)
       const std::string& text = disks.Store.GetExplanation();
       EXPECT_NE(text.find(byAll ? "by each rank" : "once for all ranks"), std::string::npos)
         << text;
+      EXPECT_FALSE(disks.Store.LacksMemory());
     });
 }
 

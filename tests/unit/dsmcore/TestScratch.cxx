@@ -169,6 +169,7 @@ TEST_P(Scratch, HoldsWhatDoesNotFitTheMemory)
       const auto segment = Publish(messenger, store, Place::Scratch);
       const std::string& text = store.GetExplanation();
       EXPECT_NE(text.find("is in scratch files"), std::string::npos) << text;
+      EXPECT_TRUE(store.LacksMemory());
       for (int frame = 0; frame < 2; ++frame)
       {
         ReadAll(messenger, store, *segment);
