@@ -176,6 +176,10 @@ void vtkSMDSMImageRepresentationProxy::ViewUpdated(vtkSMProxy* view)
   const bool isMissing = !name || !*name ||
     (vtkSMPropertyHelper(this, ArrayAutomatic).GetAsInt() && !arrays->IsInDomain(name, index));
   bool isAny = isMissing && array->ResetToDomainDefaults();
+  if (isAny && this->IsIsovalueAutomatic())
+  {
+    this->SetIsovalueAutomatic(); // within the other range, also where nothing is traced yet
+  }
   vtkSMProperty* const box = this->GetProperty(Box);
   isAny = (IsOfNothing(vtkSMPropertyHelper(box)) && box->ResetToDomainDefaults()) || isAny;
   if (this->Components == 0)

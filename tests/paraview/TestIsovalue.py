@@ -73,6 +73,14 @@ def expect_automatic(what, array, least, most):
     return display.DSMIsoValue
 
 
+sample.Kind = "Mixing Layer"
+display.Representation = "Outline"
+render(view)
+told = display.DSMIsoArray, display.DSMIsoValue
+check(told[0][1] == "entropy" and 100.0 < told[1] < 150.0, f"before it is traced, it has the array and a value of its data: {told}")
+sample.Kind = "Noisy Sphere"
+render(view)
+display.Representation = REPRESENTATION
 check(0.1 < display.DSMIsoValue < 3.0, f"before it is shown, its isovalue is in its range: {display.DSMIsoValue}")
 expect_automatic("a sphere", "f", 0.4, 0.95)
 sample.Kind = "Mixing Layer"
