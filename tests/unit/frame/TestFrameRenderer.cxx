@@ -316,17 +316,21 @@ TEST(TestFrameRenderer, SamplesAddedLaterGiveTheSamePicture)
         rt::Scene scene = SphereScene::CreateScene(SphereScene::Publish(messenger, store), 0.5f);
         scene.Transport.Shadows = true;
         scene.Transport.LightRadius = 0.2;
+        scene.Transport.AmbientOcclusionSamples = 1;
+        scene.Transport.AmbientOcclusionDistance = 1.0;
         rt::FrameRenderer renderer(messenger);
         rt::FrameRequest request = SphereScene::CreateRequest(97, 61);
         request.Samples = 6;
         const rt::Picture whole =
           rt::GatherFrame(messenger, renderer.Render(store, scene, request));
         request.Samples = 1;
+        request.IsPreview = true;
         rt::Frame frame = renderer.Render(store, scene, request);
         for (const int samples : { 2, 3 })
         {
           request.FirstSample += request.Samples;
           request.Samples = samples;
+          request.IsPreview = samples == 2;
           renderer.Refine(store, scene, request, frame);
         }
         const rt::Picture refined = rt::GatherFrame(messenger, frame);

@@ -43,13 +43,14 @@ protected:
     return FunctionVolume::Publish(points, function, this->Messenger, this->Store);
   }
 
-  rt::Picture Trace(const rt::Scene& scene, int samples = 1)
+  rt::Picture Trace(const rt::Scene& scene, int samples = 1, bool isPreview = false)
   {
     rt::FrameRequest request;
     request.Width = Size;
     request.Height = Size;
     request.WorldToClip = Parallel;
     request.Samples = samples;
+    request.IsPreview = isPreview;
     rt::FrameRenderer renderer(this->Messenger);
     return rt::GatherFrame(this->Messenger, renderer.Render(this->Store, scene, request));
   }
@@ -205,6 +206,32 @@ TEST_F(LightTransportTest, OcclusionOfACornerIsThatOfBruteForce)
     }
     EXPECT_NEAR(traced / Size, expected / Size, 0.01) << x;
   }
+}
+
+TEST_F(LightTransportTest, PreviewSharesOcclusionBetweenPixels)
+{
+  rt::Scene scene;
+  scene.Objects = { this->Publish(
+    [](const glm::dvec3& p) { return std::min(p.z - FloorHeight, p.x + 0.5); }) };
+  scene.Lights = { rt::Light() };
+  scene.Transport.AmbientOcclusionSamples = 1;
+  scene.Transport.AmbientOcclusionDistance = 1.0;
+  const rt::Picture expected = this->Trace(scene, 256);
+  const auto getError = [&](const rt::Picture& picture)
+  {
+    double sum = 0.0;
+    for (int y = 0; y < Size; ++y)
+    {
+      for (int x = Size / 4 + 2; x < Size; ++x)
+      {
+        sum += std::abs(GetRed(picture, x, y) - GetRed(expected, x, y));
+      }
+    }
+    return sum;
+  };
+  EXPECT_LT(getError(this->Trace(scene, 1, true)), 0.3 * getError(this->Trace(scene)));
+  scene.Transport.AmbientOcclusionSamples = 0;
+  EXPECT_EQ(rt::GetHash(this->Trace(scene, 1, true)), rt::GetHash(this->Trace(scene)));
 }
 
 TEST_F(LightTransportTest, OcclusionEndsAtItsDistance)

@@ -30,6 +30,10 @@ public:
   std::vector<glm::dvec3> FindVisibility(
     LightPath* const* paths, int count, const ShadingPoint* points) const;
 
+  /// For previews: gives each of at most MaxRays points that lie close together in the picture the mean ambient
+  /// light of those that are on the same surface, which is that of more rays.
+  void ShareAmbient(std::vector<ShadingPoint>& points) const;
+
 private:
   ShadingPoint GetPoint(const LightPath& path) const;
   void LookAround(LightPath* const* paths, int count, ShadingPoint* points) const;

@@ -5,6 +5,7 @@
 #include "DSMCore/base/Counters.h"
 #include "DSMCore/store/MemoryOrganization.h"
 
+#include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
 
 #include <cstddef>
@@ -42,6 +43,8 @@ struct Tile
   /// Premultiplied colours, summed over the samples so far, in order: what further samples are
   /// added to.
   std::vector<glm::vec4> Sum;
+  /// What neighbors' ambient occlusion adds to Sum in previews; empty: nothing.
+  std::vector<glm::vec3> Shared;
 };
 
 /// What this rank has of a frame: the tiles that it traced. Together the ranks have all of them.

@@ -141,6 +141,7 @@ struct RequestDigest
   std::int64_t FirstSample;
   std::int64_t Samples;
   std::int64_t Scheduling;
+  std::int64_t IsPreview;
 };
 
 /// What a rank brings to the frame.
@@ -163,7 +164,7 @@ constexpr double Unbalanced = 1.02;
 RequestDigest GetDigest(const FrameRequest& request, const Scene& scene)
 {
   return { GetSceneDigest(scene, request), request.FirstSample, request.Samples,
-    static_cast<std::int64_t>(request.Scheduling) };
+    static_cast<std::int64_t>(request.Scheduling), request.IsPreview };
 }
 
 Entry CreateEntry(

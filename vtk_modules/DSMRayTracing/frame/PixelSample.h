@@ -5,6 +5,7 @@
 #include "DSMRayTracing/frame/FrameRequest.h"
 
 #include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
 
 namespace rt
@@ -17,8 +18,9 @@ struct PixelSample
 
   glm::ivec2 Pixel{ 0 };
   glm::vec4 Color{ 0.0f };
-  float Depth = 1.0f; ///< of the nearest surface
-  int LightRays = 0;  ///< shadow and occlusion rays that were traced for it
+  glm::vec3 Shared{ 0.0f }; ///< what neighbors' ambient occlusion adds to Color in previews
+  float Depth = 1.0f;       ///< of the nearest surface
+  int LightRays = 0;        ///< shadow and occlusion rays that were traced for it
 
   /// The same surface by surface, front to back: what each contributes to the colour, and its depth.
   /// The last one stands for all behind it.

@@ -62,11 +62,13 @@ struct PixelSampler::Mirrored
   PixelSampler::Paths Paths;
 };
 
-PixelSampler::PixelSampler(const ObjectTracers& objects, const Scene& scene, const PixelRays& rays)
+PixelSampler::PixelSampler(
+  const ObjectTracers& objects, const Scene& scene, const PixelRays& rays, bool isPreview)
   : Surfaces(GetAll(objects))
   , Lighting(objects, scene)
   , World(scene)
   , Rays(rays)
+  , SharesAmbient(isPreview && scene.Transport.AmbientOcclusionSamples > 0)
 {
 }
 
@@ -111,6 +113,7 @@ void PixelSampler::Sample(
   {
     const LightPath& path = paths[number];
     path.Layers->Color = path.Color;
+    path.Layers->Shared = path.Shared;
     path.Layers->LightRays = path.LightRays;
   }
 }
@@ -181,13 +184,15 @@ void PixelSampler::AddSurfaces(LightPath* const* paths, int count, int bounces) 
     }
   }
   glm::vec3 colors[MaxRays];
-  this->Shade(seen, seenCount, bounces, colors);
+  glm::vec3 shared[MaxRays] = {};
+  this->Shade(seen, seenCount, bounces, colors, shared);
   for (int number = 0; number < seenCount; ++number)
   {
     LightPath& path = *seen[number];
     const float weight = path.GetWeight();
     const glm::vec4 layer(weight * colors[number], weight);
     path.Color += layer;
+    path.Shared += weight * shared[number];
     if (path.Layers)
     {
       path.Layers->AddLayer(layer, this->Rays.GetDepth(path.Point.Position));
@@ -195,7 +200,8 @@ void PixelSampler::AddSurfaces(LightPath* const* paths, int count, int bounces) 
   }
 }
 
-void PixelSampler::Shade(LightPath* const* paths, int count, int bounces, glm::vec3* colors) const
+void PixelSampler::Shade(
+  LightPath* const* paths, int count, int bounces, glm::vec3* colors, glm::vec3* shared) const
 {
   if (this->World.View != DebugView::Off)
   {
@@ -205,18 +211,32 @@ void PixelSampler::Shade(LightPath* const* paths, int count, int bounces, glm::v
     }
     return;
   }
-  const std::vector<ShadingPoint> points = this->Lighting.FindPoints(paths, count);
+  std::vector<ShadingPoint> points = this->Lighting.FindPoints(paths, count);
   const std::vector<glm::dvec3> visibility =
     this->Lighting.FindVisibility(paths, count, points.data());
   const std::vector<Light>& lights = this->World.Lights;
-  for (int number = 0; number < count; ++number)
+  const auto shade = [&](int number)
   {
-    colors[number] = rt::Shade(lights, *paths[number]->Point.Surface, points[number],
+    return rt::Shade(lights, *paths[number]->Point.Surface, points[number],
       [&](const Light& light, const Incidence&)
       {
         return visibility.empty() ? glm::dvec3(1.0)
                                   : visibility[MaxRays * (&light - lights.data()) + number];
       });
+  };
+  for (int number = 0; number < count; ++number)
+  {
+    colors[number] = shade(number);
+  }
+  // Not of what is seen in mirrors, where pixels side by side may show places far apart.
+  if (this->SharesAmbient && count > 0 && paths[0]->Layers)
+  {
+    this->Lighting.ShareAmbient(points);
+    for (int number = 0; number < count; ++number)
+    {
+      shared[number] =
+        (1.0f - paths[number]->Point.Surface->Reflectivity) * (shade(number) - colors[number]);
+    }
   }
   if (bounces > 0)
   {

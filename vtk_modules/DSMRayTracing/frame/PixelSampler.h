@@ -21,8 +21,9 @@ namespace rt
 class PixelSampler
 {
 public:
-  /// Keeps references.
-  PixelSampler(const ObjectTracers& objects, const Scene& scene, const PixelRays& rays);
+  /// Keeps references. `isPreview`: see FrameRequest.
+  PixelSampler(const ObjectTracers& objects, const Scene& scene, const PixelRays& rays,
+    bool isPreview = false);
 
   /// What the pixels of a box have in common: for Sample. Usable or not, it can be used; but where it is
   /// not, a smaller box may be.
@@ -58,7 +59,9 @@ private:
   /// Adds what the surfaces at which paths are contribute.
   void AddSurfaces(LightPath* const* paths, int count, int bounces) const;
 
-  void Shade(LightPath* const* paths, int count, int bounces, glm::vec3* colors) const;
+  /// `shared`: see PixelSample; written only in previews.
+  void Shade(
+    LightPath* const* paths, int count, int bounces, glm::vec3* colors, glm::vec3* shared) const;
   void AddReflections(LightPath* const* paths, int count, const ShadingPoint* points, int bounces,
     glm::vec3* colors) const;
   glm::vec3 ShowForDebugging(const LightPath& path) const;
@@ -67,6 +70,7 @@ private:
   ArrivingLight Lighting;
   const Scene& World;
   const PixelRays& Rays;
+  bool SharesAmbient;
 };
 
 } // namespace rt

@@ -22,7 +22,7 @@ constexpr int SmallestBeamEdge = PixelSampler::BlockEdge;
 TileSampler::TileSampler(const ObjectTracers& objects, const Scene& scene, const PixelRays& rays,
   const FrameRequest& request, BeamHistory* beams)
   : Objects(objects)
-  , Pixels(objects, scene, rays)
+  , Pixels(objects, scene, rays, request.IsPreview)
   , Request(request)
   , Beams(beams)
 {
@@ -49,6 +49,7 @@ void TileSampler::Trace(Tile& tile) const
     tile.Layers = this->Request.Layers;
     tile.Sum.assign(tile.Layers * pixels, glm::vec4(0.0f));
     tile.Depth.assign(tile.Layers * pixels, 1.0f);
+    tile.Shared.assign(this->Request.IsPreview && tile.Layers == 1 ? pixels : 0, glm::vec3(0.0f));
   }
   tile.Color.resize(4 * tile.Layers * pixels);
   tile.Samples = this->Request.FirstSample + this->Request.Samples;
@@ -71,12 +72,16 @@ void TileSampler::Finish(Tile& tile, const glm::vec3& tint) const
     glm::vec4(tint, 1.0f) / float(this->Request.FirstSample + this->Request.Samples);
   for (std::size_t pixel = 0; pixel < pixels; ++pixel)
   {
-    const glm::vec4 sum = tile.Sum[pixel];
+    glm::vec4 sum = tile.Sum[pixel];
     std::uint8_t* const color = &tile.Color[4 * pixel];
     if (sum == glm::vec4(0.0f))
     {
       std::fill_n(color, 4, std::uint8_t{ 0 });
       continue;
+    }
+    if (this->Request.IsPreview && !tile.Shared.empty())
+    {
+      sum += glm::vec4(tile.Shared[pixel], 0.0f);
     }
     for (int channel = 0; channel < 4; ++channel)
     {
@@ -166,6 +171,10 @@ void TileSampler::AddSample(const PixelSample& traced, Tile& tile)
   if (tile.Layers == 1)
   {
     tile.Sum[pixel] += traced.Color;
+    if (!tile.Shared.empty())
+    {
+      tile.Shared[pixel] += traced.Shared;
+    }
     // A pixel is as near as the nearest of its samples, so that a surface's antialiased
     // border still covers what is behind.
     tile.Depth[pixel] = std::min(tile.Depth[pixel], traced.Depth);

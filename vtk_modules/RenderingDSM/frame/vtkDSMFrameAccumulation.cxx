@@ -33,6 +33,7 @@ vtkDSMFrameAccumulation::Result vtkDSMFrameAccumulation::Trace(vtkDSMRankGroup& 
     request.FirstSample = this->Samples;
     request.Samples =
       this->SamplesUnderWay > 0 ? this->SamplesUnderWay : this->CountNext(pace, lastSeconds);
+    request.IsPreview = request.FirstSample + request.Samples < wanted;
     result = this->TraceOnce(group, scene, request);
     if (result == Result::Aborted || pace.Samples > 0)
     {
