@@ -220,6 +220,7 @@ void vtkPVDSMRefinement::OnRenderBegins(vtkObject*, unsigned long, void* interac
   this->CanAbort = *static_cast<int*>(interactive) == 0 &&
     !vtkPVDSMDelivery::IsCapturing(
       vtkPVRenderView::SafeDownCast(this->View->GetClientSideObject()));
+  this->IsAborted = false;
   if (!this->IsRefining)
   {
     this->Input.Begin(); // most probably, this render follows what the user did
@@ -271,7 +272,8 @@ void vtkPVDSMRefinement::OnRenderEnds(vtkObject*, unsigned long, void* interacti
       }
     });
   this->Samples = samples[0];
-  this->Standstill = this->IsRefining && this->Samples <= before ? this->Standstill + 1 : 0;
+  const bool stoodStill = this->IsRefining && !this->IsAborted && this->Samples <= before;
+  this->Standstill = stoodStill ? this->Standstill + 1 : 0;
   this->IsRefined = samples[0] >= samples[1] || this->Standstill > LongestStandstill;
   if (!this->IsRefined && !this->IsInteracting)
   {
@@ -283,6 +285,7 @@ void vtkPVDSMRefinement::OnAbortCheck(vtkObject*, unsigned long, void*)
 {
   if (this->CanAbort && this->Input.HasPressed())
   {
+    this->IsAborted = true;
     this->Window->SetAbortRender(1);
   }
 }

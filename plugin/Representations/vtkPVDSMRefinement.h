@@ -78,6 +78,7 @@ private:
   bool IsRefined = true;   ///< the last picture, as far as this client knows
   bool IsRefining = false; ///< in a render of its own
   bool CanAbort = false;   ///< in a still render, which is to be looked at
+  bool IsAborted = false;  ///< by the user, the last render
   int Samples = 0;         ///< of the last picture
   int Standstill = 0;      ///< renders of its own that added nothing
   int Timer = 0;           ///< 0: none is set
