@@ -39,9 +39,6 @@ MENDS = (
          "ended.emplace_back(new Transmission(std::move(*this)));", "this->Close();", ["mpi_TestMpiTransport"],
          "mpi.TestMpiTransport.3"),
     # DSMRayTracing
-    Mend("the last tile of a rank was stolen", "vtk_modules/DSMRayTracing/schedule/WorkStealingScheduler.cxx",
-         "this->TakeFromEnd(this->Own.size() / 2)", "this->TakeFromEnd((this->Own.size() + 1) / 2)", ["unit_frame"],
-         "unit.frame", "*Scheduling*"),
     Mend("a rank that was idle got no tiles of others", "vtk_modules/DSMRayTracing/schedule/WorkStealingScheduler.cxx",
          "this->TakeFromEnd(this->Own.size() / 2)", "this->TakeFromEnd(0)", ["unit_frame"],
          "unit.frame", "*Scheduling*"),

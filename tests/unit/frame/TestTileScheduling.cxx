@@ -384,27 +384,6 @@ TEST(TestTileScheduling, AnIdleRankSteals)
     });
 }
 
-TEST(TestTileScheduling, TheLastTileOfARankIsNotStolen)
-{
-  RunOnCluster(2,
-    [](dsm::Messenger& messenger)
-    {
-      Cluster cluster(messenger, rt::TileScheduling::WorkStealing, 1);
-      rt::TilePlan plan;
-      plan.Columns = 2;
-      plan.Tiles = 2;
-      plan.HasHistory = true;
-      if (messenger.GetRank() == 0)
-      {
-        plan.Mine = { 0, 1 };
-      }
-      // The other rank has asked long before this one comes to its last.
-      const auto mine = cluster.RunFrame(
-        plan, [](int) { std::this_thread::sleep_for(std::chrono::milliseconds(50)); });
-      EXPECT_EQ(mine.size(), messenger.GetRank() == 0 ? 2u : 0u);
-    });
-}
-
 TEST(TestTileScheduling, TheSlowestGivesToTheFastest)
 {
   RunOnCluster(3,
