@@ -201,7 +201,7 @@ TEST_F(DamagedFile, WithAWrongHeaderSaysWhatIsWrong)
   ExpectWords(Read(write("e.h5", "")), { "e.h5", "is empty" });
   ExpectWords(
     Read(write("e.zarr.zip", "PK\x03\x04 and so on")), { "e.zarr.zip", "ZIP", "Unpack it" });
-  ExpectWords(Read(write("f.raw", "12345678")), { "f.raw", "bare values" });
+  ExpectWords(Read(write("f.raw", "12345678")), { "f.raw", "has no header" });
   ExpectWords(Read(write("g.h5", "\x89HDF\r\n\x1a\n and then nothing")), { "g.h5", "no HDF5" });
 }
 
