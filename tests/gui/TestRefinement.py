@@ -154,7 +154,9 @@ class Watch:
         simple.SaveScreenshot(PICTURE + ".late.png", self.view)
         early, late = read_picture(PICTURE + ".early.png"), read_picture(PICTURE + ".late.png")
         check(early.shape == late.shape and (early == late).all(), "early or late, the saved picture is the same")
+        start = time.monotonic()
         simple.Render(self.view)
+        self.redraw = time.monotonic() - start
         yield
         check(self.get_samples() == self.wanted, "nothing changes once all samples are there")
         if not servermanager.ActiveConnection.IsRemote():
@@ -191,9 +193,11 @@ class Watch:
         pressed = [float(line) for line in clicks.stdout]
         waits = sorted(after - before for before, after in zip(pressed, heard))
         check(len(pressed) == len(heard) == len(holds), f"{len(heard)} of {len(pressed)} clicks are heard of")
-        check(waits[0] >= 0 and waits[-1] < 0.3,
+        # An ended frame draws the last picture and hands it to the window, which a slow machine takes long for.
+        limit = max(0.3, 0.1 + 2.0 * self.redraw)
+        check(waits[0] >= 0 and waits[-1] < limit,
               f"in frames of {whole:.1f} s, clicks are heard of after {waits[len(waits) // 2]:.3f} s, "
-              f"and {waits[-1]:.3f} s at most: {[round(wait, 3) for wait in waits]}")
+              f"and {waits[-1]:.3f} s of {limit:.3f} s at most: {[round(wait, 3) for wait in waits]}")
         check(self.get_samples() < self.wanted, "there was always a frame to be ended")
         # While the mouse turns the scene, pictures are as coarse as their time demands.
         width, height = self.view.ViewSize
