@@ -2,6 +2,7 @@
 #include "vtkPVDSMDefinitions.h"
 
 #include "vtkPVDSMDefinitionsText.h"
+#include "vtkPVDSMNoUndo.h"
 #include "vtkPVDSMVersionInformation.h"
 
 #include "vtkCallbackCommand.h"
@@ -15,7 +16,6 @@
 #include "vtkSMProxyManager.h"
 #include "vtkSMSessionClient.h"
 #include "vtkSMSessionProxyManager.h"
-#include "vtkSMUndoStackBuilder.h"
 #include "vtkSessionIterator.h"
 #include "vtkSmartPointer.h"
 
@@ -89,18 +89,15 @@ void AskFor(vtkSMSessionClient* session)
 /// made before, as one that cannot. Only the application has changes to undo.
 void MakeSettings(vtkSMSession* session)
 {
-  vtkSMUndoStackBuilder* const undo = vtkSMProxyManager::GetProxyManager()->GetUndoStackBuilder();
   vtkSMSessionProxyManager* const proxies = session->GetSessionProxyManager();
   // A session that is being made gets all of its settings later.
-  if (!undo || !proxies || !HaveDefinitions(session) ||
-    !proxies->GetProxy("settings", "GeneralSettings"))
+  if (!vtkSMProxyManager::GetProxyManager()->GetUndoStackBuilder() || !proxies ||
+    !HaveDefinitions(session) || !proxies->GetProxy("settings", "GeneralSettings"))
   {
     return;
   }
-  const bool ignored = undo->GetIgnoreAllChanges();
-  undo->SetIgnoreAllChanges(true);
+  const vtkPVDSMNoUndo noUndo;
   vtkNew<vtkSMParaViewPipelineController>()->UpdateSettingsProxies(session);
-  undo->SetIgnoreAllChanges(ignored);
 }
 
 void Update();

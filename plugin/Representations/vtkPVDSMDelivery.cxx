@@ -317,8 +317,8 @@ void vtkPVDSMDelivery::Choose(
     report && (report->GetInteracting() || (report->GetProgressive() && CanRefine(view)));
   scene->SetSamplesPerFrame(takesFew ? 1 : 0);
   scene->SetSecondsPerFrame(report && report->GetInteracting() ? 0.0 : SecondsPerFrame);
-  // Where nobody sees a picture for long, it may be as coarse as its time demands; ParaView's level of detail makes it
-  // coarser at least.
+  // While the user interacts, a picture may be as coarse as its time demands. ParaView's level of detail sets how coarse it
+  // is at least.
   const bool usesLevels =
     view && inInfo->Has(vtkPVRenderView::USE_LOD()) && !AskedView::IsCapturing(view);
   scene->SetInteractiveReduction(

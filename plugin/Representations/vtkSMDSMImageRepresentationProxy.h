@@ -4,9 +4,10 @@
  * @brief   keeps track of which isosurface array and isovalue nobody has chosen
  *
  * DSMIsoArrayAutomatic and DSMIsoValueAutomatic are on at first. Whoever sets DSMIsoArray or DSMIsoValue (the panel, a
- * script, an animation, a state file) switches the one or the other off, because ParaView tells this proxy of it. Only
- * their domains, whose defaults switch them on again, and this class do not. An automatic array that the data do not have any more becomes
- * another before the view renders; vtkPVDSMIsovalueWatch gives an automatic isovalue its number after the render.
+ * script, an animation, a state file) switches the one or the other off, because ParaView tells this proxy of it. What
+ * this class sets itself leaves them on, and the defaults of their domains switch them on again. An automatic array that
+ * the data do not have any more becomes another before the view renders; vtkPVDSMIsovalueWatch gives an automatic
+ * isovalue its number after the render.
  *
  * Another array whose number of components differs is shown by its magnitude, as ParaView colors by.
  *
