@@ -38,9 +38,10 @@ namespace
 {
 
 constexpr int CrashSignals[] = { SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT };
-/// Functions of HDF5 1.10 that do not end in damaged files: global heaps with an object of no size, and selections of virtual
-/// datasets with far too many blocks.
-constexpr const char* EndlessFunctions[] = { "H5HG__protect", "H5S_select_deserialize" };
+/// Functions of HDF5 1.10 that do not end in damaged files: global heaps with an object of no size, local heaps with a free
+/// block that follows itself, and selections of virtual datasets with far too many blocks.
+constexpr const char* EndlessFunctions[] = { "H5HG__protect", "H5HL_protect",
+  "H5S_select_deserialize" };
 
 int CodeForLibrary = EndedInLibrary;
 std::map<int, struct sigaction>* Before = nullptr;

@@ -141,8 +141,10 @@ std::optional<HdfChunkTable> FindHdfChunks(hid_t dataset, const PositionedFile& 
   HdfChunkTable table;
   // Each takes at least an address in the index.
   table.Reserve(std::min(all, file.GetBytes() / sizeof(std::uint64_t)));
-  const bool isRight = std::equal(edges.begin(), edges.end(), layout->Edges.begin(),
-                         layout->Edges.end() - (layout->Edges.empty() ? 0 : 1)) &&
+  const HdfHandle type(H5Dget_type(dataset), &H5Tclose);
+  std::vector<std::uint64_t> expected(edges.begin(), edges.end());
+  expected.push_back(H5Tget_size(type.Get()));
+  const bool isRight = layout->Edges == expected &&
     HdfChunkIndex::Read(file, *layout, { most.begin(), most.end() },
       [&](const std::uint64_t* place, const HdfChunk& chunk)
       {

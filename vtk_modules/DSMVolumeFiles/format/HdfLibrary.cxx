@@ -41,8 +41,10 @@ herr_t Note(const char* name, bool wanted, void* data)
   {
     return 1;
   }
-  return ++visit.Objects < FileLimits::Objects && std::strlen(name) <= FileLimits::NameBytes ? 0
-                                                                                             : 1;
+  const std::size_t bytes = std::strlen(name);
+  const bool goesOn = ++visit.Objects < FileLimits::Objects && bytes <= FileLimits::NameBytes &&
+    std::count(name, name + bytes, '/') < FileLimits::GroupDepth;
+  return goesOn ? 0 : 1;
 }
 
 template <class Info>

@@ -68,7 +68,7 @@ Json Parse(const std::string& text)
 {
   const auto check = [](int depth, Json::parse_event_t, const Json&)
   {
-    if (depth > FileLimits::JsonDepth)
+    if (static_cast<std::size_t>(depth) > FileLimits::JsonDepth)
     {
       throw dsm::Error("too deep");
     }
