@@ -25,10 +25,10 @@ constexpr std::uint64_t Components = 1 << 16;                ///< of a sample
 constexpr std::uint64_t Steps = 1 << 20;                     ///< time steps
 constexpr std::uint64_t Arrays = 1 << 16;
 constexpr std::uint64_t Objects = 1
-  << 17;                              ///< groups and datasets that are looked at in an HDF5 file
+  << 17; ///< groups and datasets that are looked at in an HDF5 file
 constexpr std::ptrdiff_t GroupDepth = 64; ///< groups within one another that are looked at
-constexpr std::uint64_t Axes = 32;    ///< HDF5's own limit
-constexpr std::uint64_t Filters = 32; ///< HDF5's own limit; also codecs of a Zarr array
+constexpr std::uint64_t Axes = 32;        ///< HDF5's own limit
+constexpr std::uint64_t Filters = 32;     ///< HDF5's own limit; also codecs of a Zarr array
 constexpr std::uint64_t Compressors =
   4; ///< among the filters: each may need more memory than the one before
 constexpr std::uint64_t Levels = 64;      ///< of detail

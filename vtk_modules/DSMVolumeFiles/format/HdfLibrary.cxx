@@ -135,6 +135,32 @@ hid_t GetHdfType(rt::ScalarType type)
   return H5I_INVALID_HID;
 }
 
+bool IsHdfNumber(hid_t type)
+{
+  const H5T_class_t kind = H5Tget_class(type);
+  if (kind == H5T_ENUM)
+  {
+    return IsHdfNumber(HdfHandle(H5Tget_super(type), &H5Tclose).Get());
+  }
+  const std::size_t bits = 8 * H5Tget_size(type);
+  const auto isWithin = [=](std::size_t first, std::size_t count)
+  { return first <= bits && count <= bits - first; };
+  const int first = H5Tget_offset(type);
+  if ((kind != H5T_INTEGER && kind != H5T_FLOAT) || first < 0 ||
+    !isWithin(static_cast<std::size_t>(first), H5Tget_precision(type)))
+  {
+    return false;
+  }
+  std::size_t sign = 0;
+  std::size_t exponent = 0;
+  std::size_t exponentBits = 0;
+  std::size_t fraction = 0;
+  std::size_t fractionBits = 0;
+  return kind == H5T_INTEGER ||
+    (H5Tget_fields(type, &sign, &exponent, &exponentBits, &fraction, &fractionBits) >= 0 &&
+      isWithin(sign, 1) && isWithin(exponent, exponentBits) && isWithin(fraction, fractionBits));
+}
+
 std::string ReadHdfText(hid_t object, const char* name)
 {
   if (H5Aexists(object, name) <= 0)

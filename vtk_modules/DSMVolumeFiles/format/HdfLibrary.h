@@ -38,6 +38,10 @@ std::mutex& GetHdfLock();
 /// The library's name of the machine's own form of a type.
 hid_t GetHdfType(rt::ScalarType type);
 
+/// Whether a type is that of numbers whose bits, and the fields of a float, are within its bytes. The library (1.10) does
+/// not check it, and converts with memory that is not the number's. Under the lock.
+bool IsHdfNumber(hid_t type);
+
 /// The names of what may be datasets, in all groups of a file, and behind external links. Under the lock.
 std::vector<std::string> FindHdfDatasets(hid_t file);
 /// The first of some names, as the end of a sentence.
@@ -88,7 +92,8 @@ private:
 };
 
 /// All of a dataset, whose numbers become those of `type`. Returns false, and `out` is empty, where it has more than `most`
-/// numbers, which are not read. Empty where there is no such dataset, too, or it cannot be read. Under the lock.
+/// numbers, which are not read. Empty where there is no such dataset, too, or it has no numbers, or it cannot be read. Under
+/// the lock.
 template <class T>
 bool ReadHdfWhole(
   hid_t group, const char* name, hid_t type, std::uint64_t most, std::vector<T>& out)
@@ -106,7 +111,9 @@ bool ReadHdfWhole(
     return false;
   }
   out.resize(static_cast<std::size_t>(std::max<hssize_t>(0, count)));
-  if (H5Dread(dataset.Get(), type, H5S_ALL, H5S_ALL, H5P_DEFAULT, out.data()) < 0)
+  const HdfHandle stored(H5Dget_type(dataset.Get()), &H5Tclose);
+  if (!IsHdfNumber(stored.Get()) ||
+    H5Dread(dataset.Get(), type, H5S_ALL, H5S_ALL, H5P_DEFAULT, out.data()) < 0)
   {
     out.clear();
   }
@@ -129,7 +136,7 @@ std::string GetHdfText(const Get& get)
   return text;
 }
 
-/// False where there is no such attribute, or not with so many values. Under the lock.
+/// False where there is no such attribute, or not with so many numbers. Under the lock.
 template <class T>
 bool ReadHdfAttribute(hid_t object, const char* name, hid_t type, T* out, hssize_t count)
 {
@@ -139,7 +146,8 @@ bool ReadHdfAttribute(hid_t object, const char* name, hid_t type, T* out, hssize
   }
   const HdfHandle attribute(H5Aopen(object, name, H5P_DEFAULT), &H5Aclose);
   const HdfHandle space(H5Aget_space(attribute.Get()), &H5Sclose);
-  return H5Sget_simple_extent_npoints(space.Get()) == count &&
+  const HdfHandle stored(H5Aget_type(attribute.Get()), &H5Tclose);
+  return H5Sget_simple_extent_npoints(space.Get()) == count && IsHdfNumber(stored.Get()) &&
     H5Aread(attribute.Get(), type, out) >= 0;
 }
 

@@ -10,28 +10,6 @@ namespace vol
 namespace
 {
 
-/// Whether the bits of a number, and the fields of a float, are within its bytes. The library (1.10) does not check it, and
-/// converts with memory that is not the number's.
-bool AreBitsWithin(hid_t type, std::size_t bytes)
-{
-  const std::size_t bits = 8 * bytes;
-  const auto isWithin = [=](std::size_t first, std::size_t count)
-  { return first <= bits && count <= bits - first; };
-  const int first = H5Tget_offset(type);
-  if (first < 0 || !isWithin(static_cast<std::size_t>(first), H5Tget_precision(type)))
-  {
-    return false;
-  }
-  std::size_t sign = 0;
-  std::size_t exponent = 0;
-  std::size_t exponentBits = 0;
-  std::size_t fraction = 0;
-  std::size_t fractionBits = 0;
-  return H5Tget_class(type) != H5T_FLOAT ||
-    (H5Tget_fields(type, &sign, &exponent, &exponentBits, &fraction, &fractionBits) >= 0 &&
-      isWithin(sign, 1) && isWithin(exponent, exponentBits) && isWithin(fraction, fractionBits));
-}
-
 std::optional<HdfValues> FindValuesOfType(const HdfHandle& stored)
 {
   using Type = rt::ScalarType;
@@ -39,8 +17,7 @@ std::optional<HdfValues> FindValuesOfType(const HdfHandle& stored)
   constexpr std::size_t mostOfIntegers = 8;
   constexpr std::size_t mostOfFloats = 16;
   const bool isFloat = H5Tget_class(stored.Get()) == H5T_FLOAT;
-  if (bytes == 0 || bytes > (isFloat ? mostOfFloats : mostOfIntegers) ||
-    !AreBitsWithin(stored.Get(), bytes))
+  if (bytes == 0 || bytes > (isFloat ? mostOfFloats : mostOfIntegers) || !IsHdfNumber(stored.Get()))
   {
     return std::nullopt;
   }
