@@ -25,6 +25,7 @@ set(DOXYGEN_WARN_AS_ERROR FAIL_ON_WARNINGS)
 doxygen_add_docs(api_documentation
   "${PROJECT_SOURCE_DIR}/docs/architecture.md"
   "${PROJECT_SOURCE_DIR}/vtk_modules/DSMCore"
+  "${PROJECT_SOURCE_DIR}/vtk_modules/DSMBricks"
   "${PROJECT_SOURCE_DIR}/vtk_modules/DSMRayTracing"
   "${PROJECT_SOURCE_DIR}/vtk_modules/DSMVolumeFiles"
   "${PROJECT_SOURCE_DIR}/vtk_modules/RenderingDSM"

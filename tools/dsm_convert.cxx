@@ -89,7 +89,7 @@ Options Parse(int argc, char** argv)
 {
   Options options;
   options.Convert.Threads = 0;
-  using Type = rt::ScalarType;
+  using Type = bricks::ScalarType;
   using Setter = std::function<void(const std::string& name, const std::string& text)>;
   struct Option
   {

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "BenchmarkFile.h"
 
+#include "DSMBricks/build/VoxelBrickReader.h"
+#include "DSMBricks/build/VoxelIndex.h"
+#include "DSMBricks/layout/DealBricks.h"
 #include "DSMCore/base/Error.h"
 #include "DSMCore/fetch/ReadingSource.h"
-#include "DSMRayTracing/build/VoxelBrickReader.h"
-#include "DSMRayTracing/build/VoxelIndex.h"
-#include "DSMRayTracing/layout/DealBricks.h"
 #include "DSMVolumeFiles/cache/FileBrickReader.h"
 #include "DSMVolumeFiles/cache/FileSamples.h"
 
@@ -15,18 +15,18 @@
 namespace
 {
 
-std::shared_ptr<const rt::VoxelSource> GetSamples(
+std::shared_ptr<const bricks::VoxelSource> GetSamples(
   const std::shared_ptr<const vol::VolumeFile>& file, bool scattered)
 {
   return std::make_shared<vol::FileSamples>(file, 0, 0, vol::ChunkCache::GetShared(), scattered);
 }
 
-rt::VoxelIndex FindIndex(const std::shared_ptr<const vol::VolumeFile>& file,
-  const rt::BrickLattice& lattice, int threads, dsm::Messenger& messenger)
+bricks::VoxelIndex FindIndex(const std::shared_ptr<const vol::VolumeFile>& file,
+  const bricks::BrickLattice& lattice, int threads, dsm::Messenger& messenger)
 {
-  std::optional<rt::VoxelIndex> known;
-  std::optional<rt::VoxelBrickReader> reader;
-  rt::VoxelIndex::Pass pass;
+  std::optional<bricks::VoxelIndex> known;
+  std::optional<bricks::VoxelBrickReader> reader;
+  bricks::VoxelIndex::Pass pass;
   pass.Threads = threads;
   messenger.RunTogether("Reading the file's index",
     [&]
@@ -34,13 +34,14 @@ rt::VoxelIndex FindIndex(const std::shared_ptr<const vol::VolumeFile>& file,
       const vol::VolumeFile::Index index = file->ReadIndex(0, 0);
       if (index.BrickEdge == lattice.GetEdge())
       {
-        known = rt::VoxelIndex::Decode(index.Bricks, lattice.GetBrickCount());
+        known = bricks::VoxelIndex::Decode(index.Bricks, lattice.GetBrickCount());
       }
       reader.emplace(lattice, GetSamples(file, false));
       pass.Order.resize(lattice.GetBrickCount());
       std::iota(pass.Order.begin(), pass.Order.end(), dsm::BlockId(0));
     });
-  return known ? std::move(*known) : rt::VoxelIndex::Find(messenger, lattice, *reader, pass, {});
+  return known ? std::move(*known)
+               : bricks::VoxelIndex::Find(messenger, lattice, *reader, pass, {});
 }
 
 } // namespace
@@ -48,7 +49,7 @@ rt::VoxelIndex FindIndex(const std::shared_ptr<const vol::VolumeFile>& file,
 rt::IsosurfaceObject PublishBenchmarkFile(
   const std::string& path, int brickEdge, dsm::BlockStore& store, dsm::Messenger& messenger)
 {
-  auto field = std::make_shared<rt::VoxelField>();
+  auto field = std::make_shared<bricks::VoxelField>();
   std::shared_ptr<const vol::VolumeFile> file;
   std::shared_ptr<dsm::ReadingSource> source;
   std::optional<dsm::BlockDirectory> directory;
@@ -63,26 +64,27 @@ rt::IsosurfaceObject PublishBenchmarkFile(
         throw dsm::Error("The first array of '" + path + "' is not one of numbers on points.");
       }
       const vol::FileGeometry& geometry = file->GetGeometry();
-      field->Lattice = rt::BrickLattice(geometry.Points, array.Type, /*cellMask=*/false,
-        brickEdge > 0 ? brickEdge : rt::BrickLattice::GetDefaultEdge(array.Type));
+      field->Lattice = bricks::BrickLattice(geometry.Points, array.Type, /*cellMask=*/false,
+        brickEdge > 0 ? brickEdge : bricks::BrickLattice::GetDefaultEdge(array.Type));
       glm::dmat4 indexToWorld(1.0);
       for (int axis = 0; axis < 3; ++axis)
       {
         indexToWorld[axis][axis] = geometry.Spacing[axis];
       }
       object.SetIndexToWorld(indexToWorld);
-      directory = field->Lattice.CreateDirectory(rt::DealBricks(
-        field->Lattice, array.Grid.ChunkSamples, rt::Index3(0), messenger.GetSize()));
+      directory = field->Lattice.CreateDirectory(bricks::DealBricks(
+        field->Lattice, array.Grid.ChunkSamples, bricks::Index3(0), messenger.GetSize()));
       source = std::make_shared<dsm::ReadingSource>(messenger,
         std::make_shared<vol::FileBrickReader>(field->Lattice, GetSamples(file, true),
-          [file](const std::vector<rt::Box>& boxes)
+          [file](const std::vector<bricks::Box>& boxes)
           { vol::ChunkCache::GetShared().Foresee(file, 0, 0, boxes); }),
         path);
     });
   field->Segment = store.Publish(path, *directory, source);
-  rt::VoxelIndex index = FindIndex(file, field->Lattice, store.GetSettings().Workers, messenger);
+  bricks::VoxelIndex index =
+    FindIndex(file, field->Lattice, store.GetSettings().Workers, messenger);
   field->Survey = index.Survey;
-  field->Hierarchy = rt::MacrocellHierarchy(field->Lattice, std::move(index.Bricks));
+  field->Hierarchy = bricks::MacrocellHierarchy(field->Lattice, std::move(index.Bricks));
   object.Field = field;
   // The first picture finds no chunks in memory, as if the index had been kept.
   vol::ChunkCache& chunks = vol::ChunkCache::GetShared();

@@ -3,8 +3,8 @@
 
 #include "tools/OptionValues.h"
 
-#include "DSMRayTracing/build/TriangleMeshBuilder.h"
-#include "DSMRayTracing/build/TriangleReader.h"
+#include "DSMBricks/build/TriangleMeshBuilder.h"
+#include "DSMBricks/build/TriangleReader.h"
 
 #include <glm/common.hpp>
 
@@ -47,7 +47,7 @@ MeshFile::Mesh CreateGrid(std::uint64_t n)
 }
 
 /// A run of the triangles of a mesh.
-class Slice final : public rt::TriangleSource
+class Slice final : public bricks::TriangleSource
 {
 public:
   Slice(const MeshFile::Mesh& mesh, std::uint64_t first, std::uint64_t last)
@@ -56,7 +56,7 @@ public:
     , Last(last)
   {
   }
-  rt::MeshAttributes GetAttributes() const override { return this->Mesh.GetAttributes(); }
+  bricks::MeshAttributes GetAttributes() const override { return this->Mesh.GetAttributes(); }
   std::uint64_t GetTriangleCount() const override { return this->Last - this->First; }
   std::uint64_t GetPointCount() const override { return this->Mesh.GetPointCount(); }
   void GetTriangle(std::uint64_t triangle, std::uint64_t points[3]) const override
@@ -108,7 +108,7 @@ BenchmarkMesh::BenchmarkMesh(const std::string& description, int subdivisions)
   }
 }
 
-std::shared_ptr<rt::TriangleMesh> BenchmarkMesh::Publish(
+std::shared_ptr<bricks::TriangleMesh> BenchmarkMesh::Publish(
   Order order, int threads, dsm::BlockStore& store, dsm::Messenger& messenger, double& seconds)
 {
   const auto start = std::chrono::steady_clock::now();
@@ -132,19 +132,19 @@ std::shared_ptr<rt::TriangleMesh> BenchmarkMesh::Publish(
   return mesh;
 }
 
-std::shared_ptr<rt::TriangleMesh> BenchmarkMesh::PublishSorted(
+std::shared_ptr<bricks::TriangleMesh> BenchmarkMesh::PublishSorted(
   int threads, dsm::BlockStore& store, dsm::Messenger& messenger) const
 {
   const std::uint64_t count = this->Triangles.GetTriangleCount();
   const auto rank = static_cast<std::uint64_t>(messenger.GetRank());
   const auto ranks = static_cast<std::uint64_t>(messenger.GetSize());
   const Slice mine(this->Triangles, count * rank / ranks, count * (rank + 1) / ranks);
-  rt::TriangleMeshSettings settings;
+  bricks::TriangleMeshSettings settings;
   settings.Threads = threads;
-  return rt::PublishMesh("the mesh", mine, settings, store, messenger);
+  return bricks::PublishMesh("the mesh", mine, settings, store, messenger);
 }
 
-std::shared_ptr<rt::TriangleMesh> BenchmarkMesh::PublishRuns(
+std::shared_ptr<bricks::TriangleMesh> BenchmarkMesh::PublishRuns(
   bool shuffled, dsm::BlockStore& store, dsm::Messenger& messenger) const
 {
   std::vector<std::uint64_t> order(this->Triangles.GetTriangleCount());
@@ -153,7 +153,7 @@ std::shared_ptr<rt::TriangleMesh> BenchmarkMesh::PublishRuns(
   {
     std::shuffle(order.begin(), order.end(), std::mt19937_64(1));
   }
-  auto mesh = std::make_shared<rt::TriangleMesh>();
+  auto mesh = std::make_shared<bricks::TriangleMesh>();
   mesh->Attributes = this->Triangles.GetAttributes();
   mesh->Lower = glm::dvec3(std::numeric_limits<double>::infinity());
   mesh->Upper = -mesh->Lower;
@@ -166,18 +166,18 @@ std::shared_ptr<rt::TriangleMesh> BenchmarkMesh::PublishRuns(
   const float lower[3] = { static_cast<float>(mesh->Lower.x), static_cast<float>(mesh->Lower.y),
     static_cast<float>(mesh->Lower.z) };
   const glm::dvec3 size = mesh->Upper - mesh->Lower;
-  const rt::MortonCode curve(lower, std::max({ size.x, size.y, size.z }));
-  const rt::TriangleReader reader(this->Triangles, mesh->Attributes, &mesh->Origin.x);
-  rt::TriangleBrickBuilder builder(
-    mesh->Attributes, curve, rt::TriangleBrickHeader::LargestTriangles);
+  const bricks::MortonCode curve(lower, std::max({ size.x, size.y, size.z }));
+  const bricks::TriangleReader reader(this->Triangles, mesh->Attributes, &mesh->Origin.x);
+  bricks::TriangleBrickBuilder builder(
+    mesh->Attributes, curve, bricks::TriangleBrickHeader::LargestTriangles);
   const auto words = static_cast<std::size_t>(reader.GetLayout().Words);
   std::vector<std::uint32_t> records;
-  std::vector<rt::BoundingBox> boxes;
+  std::vector<bricks::BoundingBox> boxes;
   std::vector<std::uint32_t> bytes;
   std::vector<dsm::Fragment> mine;
   const auto closeBrick = [&]
   {
-    for (rt::TriangleBrickBuilder::Brick& brick :
+    for (bricks::TriangleBrickBuilder::Brick& brick :
       builder.Build(records.data(), records.size() / words))
     {
       if (bytes.size() % static_cast<std::size_t>(messenger.GetSize()) ==
@@ -209,7 +209,7 @@ std::shared_ptr<rt::TriangleMesh> BenchmarkMesh::PublishRuns(
   {
     closeBrick();
   }
-  mesh->Bricks = rt::BrickBvh(boxes);
+  mesh->Bricks = bricks::BrickBvh(boxes);
   rt::BlockSource source(std::move(mine));
   rt::BlockSink sink;
   mesh->Segment = store.Publish(

@@ -4,9 +4,9 @@
 
 #include "tests/support/MeshFile.h"
 
+#include "DSMBricks/layout/TriangleMesh.h"
 #include "DSMCore/store/BlockStore.h"
 #include "DSMCore/transport/Messenger.h"
-#include "DSMRayTracing/layout/TriangleMesh.h"
 
 #include <cstdint>
 #include <memory>
@@ -33,13 +33,13 @@ public:
 
   /// Collective. `seconds` is how long the building took. Bricks of all orders have as many triangles
   /// as the sorted ones have on the average.
-  std::shared_ptr<rt::TriangleMesh> Publish(
+  std::shared_ptr<bricks::TriangleMesh> Publish(
     Order order, int threads, dsm::BlockStore& store, dsm::Messenger& messenger, double& seconds);
 
 private:
-  std::shared_ptr<rt::TriangleMesh> PublishSorted(
+  std::shared_ptr<bricks::TriangleMesh> PublishSorted(
     int threads, dsm::BlockStore& store, dsm::Messenger& messenger) const;
-  std::shared_ptr<rt::TriangleMesh> PublishRuns(
+  std::shared_ptr<bricks::TriangleMesh> PublishRuns(
     bool shuffled, dsm::BlockStore& store, dsm::Messenger& messenger) const;
 
   MeshFile::Mesh Triangles;

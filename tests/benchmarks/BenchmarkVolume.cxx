@@ -3,9 +3,9 @@
 
 #include "BenchmarkFile.h"
 
+#include "DSMBricks/build/VoxelBrickBuilder.h"
+#include "DSMBricks/sample/SampleVolume.h"
 #include "DSMCore/publish/ConcurrentFragmentSource.h"
-#include "DSMRayTracing/build/VoxelBrickBuilder.h"
-#include "DSMRayTracing/sample/SampleVolume.h"
 #include "DSMVolumeFiles/format/VolumeFile.h"
 
 #include <vtkDataArray.h>
@@ -29,23 +29,23 @@ namespace
 /// A whole volume, before it is cut: what it is made of and how to get a box of its cells.
 struct Input
 {
-  rt::Index3 Points;
-  rt::ScalarType Type;
+  bricks::Index3 Points;
+  bricks::ScalarType Type;
   glm::dmat4 IndexToWorld{ 1.0 };
-  std::function<std::shared_ptr<const rt::VoxelSource>(const rt::Box& cells)> CreatePiece;
+  std::function<std::shared_ptr<const bricks::VoxelSource>(const bricks::Box& cells)> CreatePiece;
 };
 
 /// One component of the point scalars of an image that holds all points of the piece.
-class ImageSource final : public rt::VoxelSource
+class ImageSource final : public bricks::VoxelSource
 {
 public:
-  ImageSource(vtkImageData* image, const rt::Box& cells)
+  ImageSource(vtkImageData* image, const bricks::Box& cells)
     : Image(image)
     , Cells(cells)
   {
   }
-  rt::Box GetCells() const override { return this->Cells; }
-  void ReadSamples(const rt::Box& points, std::byte* out) const override
+  bricks::Box GetCells() const override { return this->Cells; }
+  void ReadSamples(const bricks::Box& points, std::byte* out) const override
   {
     vtkDataArray* scalars = this->Image->GetPointData()->GetScalars();
     const std::size_t row = points.GetSize().x * scalars->GetDataTypeSize();
@@ -62,17 +62,18 @@ public:
 
 private:
   vtkSmartPointer<vtkImageData> Image;
-  rt::Box Cells;
+  bricks::Box Cells;
 };
 
-rt::ScalarType ToScalarType(const std::string& name)
+bricks::ScalarType ToScalarType(const std::string& name)
 {
-  static const std::map<std::string, rt::ScalarType> types{ { "char", rt::ScalarType::Int8 },
-    { "uchar", rt::ScalarType::UInt8 }, { "short", rt::ScalarType::Int16 },
-    { "ushort", rt::ScalarType::UInt16 }, { "int", rt::ScalarType::Int32 },
-    { "uint", rt::ScalarType::UInt32 }, { "long", rt::ScalarType::Int64 },
-    { "ulong", rt::ScalarType::UInt64 }, { "float", rt::ScalarType::Float32 },
-    { "double", rt::ScalarType::Float64 } };
+  static const std::map<std::string, bricks::ScalarType> types{
+    { "char", bricks::ScalarType::Int8 }, { "uchar", bricks::ScalarType::UInt8 },
+    { "short", bricks::ScalarType::Int16 }, { "ushort", bricks::ScalarType::UInt16 },
+    { "int", bricks::ScalarType::Int32 }, { "uint", bricks::ScalarType::UInt32 },
+    { "long", bricks::ScalarType::Int64 }, { "ulong", bricks::ScalarType::UInt64 },
+    { "float", bricks::ScalarType::Float32 }, { "double", bricks::ScalarType::Float64 }
+  };
   const auto type = types.find(name);
   if (type == types.end())
   {
@@ -81,22 +82,22 @@ rt::ScalarType ToScalarType(const std::string& name)
   return type->second;
 }
 
-rt::ScalarType ToScalarType(vtkDataArray* array)
+bricks::ScalarType ToScalarType(vtkDataArray* array)
 {
   const bool floating = array->GetDataType() == VTK_FLOAT || array->GetDataType() == VTK_DOUBLE;
   const bool isSigned = array->GetDataTypeMin() < 0.0;
   switch (array->GetDataTypeSize())
   {
     case 1:
-      return isSigned ? rt::ScalarType::Int8 : rt::ScalarType::UInt8;
+      return isSigned ? bricks::ScalarType::Int8 : bricks::ScalarType::UInt8;
     case 2:
-      return isSigned ? rt::ScalarType::Int16 : rt::ScalarType::UInt16;
+      return isSigned ? bricks::ScalarType::Int16 : bricks::ScalarType::UInt16;
     case 4:
-      return floating ? rt::ScalarType::Float32
-                      : (isSigned ? rt::ScalarType::Int32 : rt::ScalarType::UInt32);
+      return floating ? bricks::ScalarType::Float32
+                      : (isSigned ? bricks::ScalarType::Int32 : bricks::ScalarType::UInt32);
     default:
-      return floating ? rt::ScalarType::Float64
-                      : (isSigned ? rt::ScalarType::Int64 : rt::ScalarType::UInt64);
+      return floating ? bricks::ScalarType::Float64
+                      : (isSigned ? bricks::ScalarType::Int64 : bricks::ScalarType::UInt64);
   }
 }
 
@@ -116,17 +117,17 @@ Input GenerateVolume(const std::string& description)
       "\" is neither a file that can be read nor a sample volume such as sphere:256:float or "
       "rm:256:uchar.");
   }
-  const rt::SampleVolume volume(
-    kind == "sphere" ? rt::SampleVolume::Kind::Sphere : rt::SampleVolume::Kind::MixingLayer,
-    rt::Index3(points));
+  const bricks::SampleVolume volume(
+    kind == "sphere" ? bricks::SampleVolume::Kind::Sphere : bricks::SampleVolume::Kind::MixingLayer,
+    bricks::Index3(points));
   Input input{ volume.GetPoints(), ToScalarType(type), glm::dmat4(1.0), {} };
   for (int axis = 0; axis < 3; ++axis)
   {
     input.IndexToWorld[axis][axis] = volume.GetSpacing();
     input.IndexToWorld[3][axis] = volume.GetOrigin()[axis];
   }
-  input.CreatePiece = [volume, scalars = input.Type](const rt::Box& cells)
-  { return std::make_shared<rt::SampleVolumeSource>(volume, cells, scalars); };
+  input.CreatePiece = [volume, scalars = input.Type](const bricks::Box& cells)
+  { return std::make_shared<bricks::SampleVolumeSource>(volume, cells, scalars); };
   return input;
 }
 
@@ -150,11 +151,11 @@ Input ReadVolume(const std::string& file, int rank, int ranks)
   {
     throw dsm::Error(file + " could not be read, or its points have no scalars of one component.");
   }
-  const rt::Index3 first(whole[0], whole[2], whole[4]);
+  const bricks::Index3 first(whole[0], whole[2], whole[4]);
   // The lattice starts at index 0, so the image is moved there.
   double origin[3];
   image->TransformIndexToPhysicalPoint(whole[0], whole[2], whole[4], origin);
-  Input input{ rt::Index3(whole[1], whole[3], whole[5]) - first + rt::Index3(1),
+  Input input{ bricks::Index3(whole[1], whole[3], whole[5]) - first + bricks::Index3(1),
     ToScalarType(scalars), glm::dmat4(1.0), {} };
   for (int axis = 0; axis < 3; ++axis)
   {
@@ -168,7 +169,7 @@ Input ReadVolume(const std::string& file, int rank, int ranks)
   image->GetExtent(held);
   image->SetExtent(held[0] - whole[0], held[1] - whole[0], held[2] - whole[2], held[3] - whole[2],
     held[4] - whole[4], held[5] - whole[4]);
-  input.CreatePiece = [image](const rt::Box& cells)
+  input.CreatePiece = [image](const bricks::Box& cells)
   { return std::make_shared<ImageSource>(image, cells); };
   return input;
 }
@@ -179,9 +180,9 @@ bool EndsWith(const std::string& text, const std::string& end)
 }
 
 /// Cells [count * part / parts, count * (part + 1) / parts) along an axis of the box.
-rt::Box CutAlong(int axis, const rt::Box& box, std::int64_t part, std::int64_t parts)
+bricks::Box CutAlong(int axis, const bricks::Box& box, std::int64_t part, std::int64_t parts)
 {
-  rt::Box piece = box;
+  bricks::Box piece = box;
   const std::int64_t count = box.Max[axis] - box.Min[axis];
   piece.Min[axis] = box.Min[axis] + count * part / parts;
   piece.Max[axis] = box.Min[axis] + count * (part + 1) / parts;
@@ -205,29 +206,29 @@ rt::IsosurfaceObject PublishBenchmarkVolume(const std::string& description, int 
         ? ReadVolume(description, messenger.GetRank(), messenger.GetSize())
         : GenerateVolume(description);
     });
-  const rt::BrickLattice lattice(input.Points, input.Type, /*cellMask=*/false,
-    brickEdge > 0 ? brickEdge : rt::BrickLattice::GetDefaultEdge(input.Type));
+  const bricks::BrickLattice lattice(input.Points, input.Type, /*cellMask=*/false,
+    brickEdge > 0 ? brickEdge : bricks::BrickLattice::GetDefaultEdge(input.Type));
 
-  const rt::Box whole{ rt::Index3(0), lattice.GetCells() };
-  const rt::Box slab = CutAlong(2, whole, messenger.GetRank(), messenger.GetSize());
+  const bricks::Box whole{ bricks::Index3(0), lattice.GetCells() };
+  const bricks::Box slab = CutAlong(2, whole, messenger.GetRank(), messenger.GetSize());
   std::vector<std::unique_ptr<dsm::FragmentSource>> sources;
   for (int thread = 0; thread < threads; ++thread)
   {
-    const rt::Box cells = CutAlong(1, slab, thread, threads);
+    const bricks::Box cells = CutAlong(1, slab, thread, threads);
     if (!cells.IsEmpty())
     {
-      sources.push_back(std::make_unique<rt::VoxelFragmentSource>(
-        lattice, std::vector<std::shared_ptr<const rt::VoxelSource>>{ input.CreatePiece(cells) }));
+      sources.push_back(std::make_unique<bricks::VoxelFragmentSource>(lattice,
+        std::vector<std::shared_ptr<const bricks::VoxelSource>>{ input.CreatePiece(cells) }));
     }
   }
   dsm::ConcurrentFragmentSource source(std::move(sources));
-  rt::VoxelBrickSink sink(lattice);
+  bricks::VoxelBrickSink sink(lattice);
 
-  auto field = std::make_shared<rt::VoxelField>();
+  auto field = std::make_shared<bricks::VoxelField>();
   field->Lattice = lattice;
   field->Segment =
     store.Publish(description, lattice.CreateDirectory(messenger.GetSize()), source, sink);
-  field->Hierarchy = rt::MacrocellHierarchy(lattice, *field->Segment, messenger);
+  field->Hierarchy = bricks::MacrocellHierarchy(lattice, *field->Segment, messenger);
   rt::IsosurfaceObject object;
   object.SetIndexToWorld(input.IndexToWorld);
   object.Field = field;

@@ -55,7 +55,7 @@ struct Orbit
   glm::dvec3 Center;
   double Radius;
 
-  explicit Orbit(const rt::TriangleMesh& mesh)
+  explicit Orbit(const bricks::TriangleMesh& mesh)
     : Center(0.5 * (mesh.Lower + mesh.Upper) + mesh.Origin)
     , Radius(0.5 * glm::length(mesh.Upper - mesh.Lower))
   {
@@ -89,7 +89,7 @@ struct FrameResult
 };
 
 FrameResult TraceFrames(const MeshBenchmark::Options& options,
-  const std::shared_ptr<const rt::TriangleMesh>& mesh, dsm::BlockStore& store,
+  const std::shared_ptr<const bricks::TriangleMesh>& mesh, dsm::BlockStore& store,
   dsm::Messenger& messenger)
 {
   rt::Scene scene;
@@ -305,7 +305,7 @@ RayResult TraceOwnRays(const MeshBenchmark::Options& options, const Orbit& orbit
 }
 
 Json CompareWithEmbree(const MeshBenchmark::Options& options, const MeshFile::Mesh& triangles,
-  const std::shared_ptr<const rt::TriangleMesh>& mesh, double buildSeconds, int threads,
+  const std::shared_ptr<const bricks::TriangleMesh>& mesh, double buildSeconds, int threads,
   dsm::BlockStore& store)
 {
   const EmbreeMesh embree(triangles, threads);

@@ -167,17 +167,18 @@ private:
   struct Input
   {
     explicit Input(const dsm::Messenger& messenger)
-      : Field(std::make_shared<rt::VoxelField>())
+      : Field(std::make_shared<bricks::VoxelField>())
       , Sink(this->Lattice)
     {
       const int size = messenger.GetSize();
       const int rank = messenger.GetRank();
-      const rt::SampleVolume volume(rt::SampleVolume::Kind::Sphere, rt::Index3(Points));
-      const rt::Box cells{ { 0, 0, (Points - 1) * rank / size },
+      const bricks::SampleVolume volume(bricks::SampleVolume::Kind::Sphere, bricks::Index3(Points));
+      const bricks::Box cells{ { 0, 0, (Points - 1) * rank / size },
         { Points - 1, Points - 1, (Points - 1) * (rank + 1) / size } };
       this->Source.emplace(this->Lattice,
-        std::vector<std::shared_ptr<const rt::VoxelSource>>{
-          std::make_shared<rt::SampleVolumeSource>(volume, cells, rt::ScalarType::Float32) });
+        std::vector<std::shared_ptr<const bricks::VoxelSource>>{
+          std::make_shared<bricks::SampleVolumeSource>(
+            volume, cells, bricks::ScalarType::Float32) });
       this->Directory.emplace(this->Lattice.CreateDirectory(size));
       this->Field->Lattice = this->Lattice;
       this->Scene = SphereScene::CreateScene(this->Field, 0.7f);
@@ -185,11 +186,12 @@ private:
       this->Scene.Objects.emplace_back(rt::MeshObject());
     }
     static constexpr int Points = 20;
-    const rt::BrickLattice Lattice{ rt::Index3(Points), rt::ScalarType::Float32, false, 4 };
-    std::shared_ptr<rt::VoxelField> Field;
-    std::optional<rt::VoxelFragmentSource> Source;
+    const bricks::BrickLattice Lattice{ bricks::Index3(Points), bricks::ScalarType::Float32, false,
+      4 };
+    std::shared_ptr<bricks::VoxelField> Field;
+    std::optional<bricks::VoxelFragmentSource> Source;
     std::optional<dsm::BlockDirectory> Directory;
-    rt::VoxelBrickSink Sink;
+    bricks::VoxelBrickSink Sink;
     rt::Scene Scene;
   };
 
@@ -209,12 +211,13 @@ private:
       this->Store.Publish("sphere", std::move(*input->Directory), *input->Source, input->Sink);
     input->Field->Segment = this->Segments[0];
     input->Field->Hierarchy =
-      rt::MacrocellHierarchy(input->Lattice, *this->Segments[0], this->Messenger);
+      bricks::MacrocellHierarchy(input->Lattice, *this->Segments[0], this->Messenger);
 
-    rt::TriangleMeshSettings settings;
+    bricks::TriangleMeshSettings settings;
     settings.BrickBytes = MeshScene::BrickBytes;
     settings.Threads = 2;
-    const auto mesh = rt::PublishMesh("mesh", this->Piece, settings, this->Store, this->Messenger);
+    const auto mesh =
+      bricks::PublishMesh("mesh", this->Piece, settings, this->Store, this->Messenger);
     this->Segments[1] = mesh->Segment;
     this->Messenger.RunTogether("Preparing the frame",
       [&]

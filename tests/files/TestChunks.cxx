@@ -34,10 +34,10 @@ public:
     : VolumeFile("slow")
   {
     vol::FileArray array;
-    array.Grid = { rt::Index3(10 * Chunks, 10, 10), rt::Index3(10) };
+    array.Grid = { bricks::Index3(10 * Chunks, 10, 10), bricks::Index3(10) };
     this->Arrays.push_back(array);
   }
-  void ReadChunk(std::size_t, int, const rt::Index3& chunk, std::byte* out) const override
+  void ReadChunk(std::size_t, int, const bricks::Index3& chunk, std::byte* out) const override
   {
     const int now = ++this->Reading;
     for (int most = this->Most; now > most && !this->Most.compare_exchange_weak(most, now);)
@@ -66,10 +66,10 @@ public:
     : VolumeFile("cold")
   {
     vol::FileArray array;
-    array.Grid = { rt::Index3(10), rt::Index3(10) };
+    array.Grid = { bricks::Index3(10), bricks::Index3(10) };
     this->Arrays.push_back(array);
   }
-  void ReadChunk(std::size_t, int, const rt::Index3&, std::byte* out) const override
+  void ReadChunk(std::size_t, int, const bricks::Index3&, std::byte* out) const override
   {
     std::this_thread::sleep_for(std::chrono::milliseconds(20));
     if (vol::WithoutWaiting::IsInForce())
@@ -98,7 +98,7 @@ TEST(ChunkCache, WhatIsBeingReadCountsToo)
           {
             try
             {
-              const auto bytes = cache.Get(file, 0, 0, rt::Index3(chunk, 0, 0));
+              const auto bytes = cache.Get(file, 0, 0, bricks::Index3(chunk, 0, 0));
               wrong += bytes->size() == 1000 && bytes->back() == std::byte(chunk) ? 0 : 1;
             }
             catch (const dsm::Error&)
@@ -133,11 +133,11 @@ TEST(ChunkCache, HoldsWhatIsNeededTogetherWhereItMay)
 
 TEST(ChunkGrid, CountsTheChunksOfABoxAtWorst)
 {
-  const vol::ChunkGrid planes{ rt::Index3(40, 30, 20), rt::Index3(40, 30, 1) };
+  const vol::ChunkGrid planes{ bricks::Index3(40, 30, 20), bricks::Index3(40, 30, 1) };
   EXPECT_EQ(planes.CountBytesOfChunks(17, 4), 17u * 40 * 30 * 4);
   EXPECT_EQ(planes.CountBytesOfChunks(33, 4), 20u * 40 * 30 * 4) << "no more than there are";
   EXPECT_EQ(planes.CountBytesOfChunks(1, 4), 40u * 30 * 4);
-  const vol::ChunkGrid cubes{ rt::Index3(100), rt::Index3(16) };
+  const vol::ChunkGrid cubes{ bricks::Index3(100), bricks::Index3(16) };
   EXPECT_EQ(cubes.CountBytesOfChunks(17, 1), 8u * 16 * 16 * 16);
   EXPECT_EQ(cubes.CountBytesOfChunks(18, 1), 27u * 16 * 16 * 16);
 }
@@ -151,7 +151,7 @@ TEST(ChunkCache, ChunksThatAreHeldStayWhatTheyAre)
   std::vector<const std::byte*> places;
   for (int chunk = 0; chunk < SlowFile::Bad; ++chunk)
   {
-    const auto bytes = cache.Get(file, 0, 0, rt::Index3(chunk, 0, 0));
+    const auto bytes = cache.Get(file, 0, 0, bricks::Index3(chunk, 0, 0));
     places.push_back(bytes->data());
     if (chunk % 3 == 0)
     {
@@ -187,7 +187,7 @@ TEST(ChunkCache, OthersAreNotToldThatAThreadWouldWait)
         }
         try
         {
-          read += cache.Get(file, 0, 0, rt::Index3(0))->back() == std::byte(7) ? 1 : 0;
+          read += cache.Get(file, 0, 0, bricks::Index3(0))->back() == std::byte(7) ? 1 : 0;
         }
         catch (const vol::WouldWait&)
         {
@@ -202,7 +202,7 @@ TEST(ChunkCache, OthersAreNotToldThatAThreadWouldWait)
   EXPECT_EQ(read + wouldWait, 8);
   EXPECT_GE(read, 4);
   const vol::WithoutWaiting scope;
-  EXPECT_EQ(cache.Get(file, 0, 0, rt::Index3(0))->back(), std::byte(7)) << "it is here now";
+  EXPECT_EQ(cache.Get(file, 0, 0, bricks::Index3(0))->back(), std::byte(7)) << "it is here now";
 }
 
 TEST(ChunkGrid, AChunkAndItsHaloAreTheBoxOfABrick)
@@ -210,18 +210,18 @@ TEST(ChunkGrid, AChunkAndItsHaloAreTheBoxOfABrick)
   const vol::ChunkGrid grid{ { 9, 5, 4 }, { 4, 4, 4 } };
   for (std::int64_t number = 0; number < grid.GetCount(); ++number)
   {
-    const rt::Index3 chunk = grid.GetChunk(number);
-    const rt::Box all = grid.GetBoxWithHalo(chunk);
+    const bricks::Index3 chunk = grid.GetChunk(number);
+    const bricks::Box all = grid.GetBoxWithHalo(chunk);
     std::vector<std::byte> seen(static_cast<std::size_t>(all.GetCount()), std::byte(0));
     std::int64_t count = 0;
-    const auto add = [&](const rt::Box& box)
+    const auto add = [&](const bricks::Box& box)
     {
       const std::vector<std::byte> ones(static_cast<std::size_t>(box.GetCount()), std::byte(1));
       vol::CopyBox(box, ones.data(), box, seen.data(), all, 1);
       count += box.GetCount();
     };
     add(grid.GetBox(chunk));
-    for (const rt::Box& part : grid.GetHalo(chunk))
+    for (const bricks::Box& part : grid.GetHalo(chunk))
     {
       add(part);
     }
@@ -361,11 +361,12 @@ TEST(HaloRecord, IsToldFromAnythingElse)
 }
 
 template <class T>
-vol::ValueRanges FindRangesOf(const std::vector<T>& values, rt::ScalarType type)
+vol::ValueRanges FindRangesOf(const std::vector<T>& values, bricks::ScalarType type)
 {
   vol::FileArray array;
   array.Type = type;
-  const rt::Box box{ rt::Index3(0), rt::Index3(static_cast<std::int64_t>(values.size()), 1, 1) };
+  const bricks::Box box{ bricks::Index3(0),
+    bricks::Index3(static_cast<std::int64_t>(values.size()), 1, 1) };
   array.Grid = { box.Max, box.Max };
   vol::ValueRanges ranges(1);
   ranges.Add(array, reinterpret_cast<const std::byte*>(values.data()), box, box);
@@ -383,10 +384,10 @@ TEST(ValueRanges, OfRowsOfAnyLength)
       floats[place] = -7.5f;
       floats[count - 1 - place] = place == count - 1 - place ? -7.5f : 9.0f;
       bytes[place] = 250;
-      const vol::ValueRange all = FindRangesOf(floats, rt::ScalarType::Float32).All[0];
+      const vol::ValueRange all = FindRangesOf(floats, bricks::ScalarType::Float32).All[0];
       EXPECT_EQ(all.Least, -7.5) << count << ", " << place;
       EXPECT_EQ(all.Greatest, *std::max_element(floats.begin(), floats.end()));
-      const vol::ValueRange small = FindRangesOf(bytes, rt::ScalarType::UInt8).Finite[0];
+      const vol::ValueRange small = FindRangesOf(bytes, bricks::ScalarType::UInt8).Finite[0];
       EXPECT_EQ(small.Least, count == 1 ? 250.0 : 100.0);
       EXPECT_EQ(small.Greatest, 250.0);
     }
@@ -401,17 +402,17 @@ TEST(ValueRanges, WhatIsNotFiniteIsToldApart)
     std::vector<double> values(20, 4.0);
     values[(place + 5) % 20] = 3.0;
     values[place] = std::numeric_limits<double>::quiet_NaN();
-    const vol::ValueRanges numbers = FindRangesOf(values, rt::ScalarType::Float64);
+    const vol::ValueRanges numbers = FindRangesOf(values, bricks::ScalarType::Float64);
     EXPECT_EQ(numbers.All[0].Least, 3.0) << place;
     EXPECT_EQ(numbers.All[0].Greatest, 4.0);
     values[place] = -infinite;
-    const vol::ValueRanges ranges = FindRangesOf(values, rt::ScalarType::Float64);
+    const vol::ValueRanges ranges = FindRangesOf(values, bricks::ScalarType::Float64);
     EXPECT_EQ(ranges.All[0].Least, -infinite);
     EXPECT_EQ(ranges.Finite[0].Least, 3.0);
     EXPECT_EQ(ranges.Finite[0].Greatest, 4.0);
   }
   EXPECT_TRUE(FindRangesOf(
-    std::vector<double>(3, std::numeric_limits<double>::quiet_NaN()), rt::ScalarType::Float64)
+    std::vector<double>(3, std::numeric_limits<double>::quiet_NaN()), bricks::ScalarType::Float64)
                 .All[0]
                 .IsEmpty());
 }

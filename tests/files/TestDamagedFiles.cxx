@@ -66,7 +66,7 @@ protected:
     {
       vol::ChunkCache cache(1);
       const vol::FileArray& array = file->GetArrays()[0];
-      const rt::Box whole{ rt::Index3(0), array.Grid.Samples };
+      const bricks::Box whole{ bricks::Index3(0), array.Grid.Samples };
       std::vector<std::byte> bytes(
         static_cast<std::size_t>(whole.GetCount()) * array.GetSampleBytes());
       cache.ReadBox(file, 0, 0, whole, bytes.data());
@@ -359,10 +359,10 @@ TEST_F(DamagedFile, WithOtherChunksThanItsSeriesSaysSo)
   const auto file =
     vol::OpenVolumeSeries({ path("chunked.h5"), path("blosc.h5"), path("contiguous.h5") }, {});
   std::vector<std::byte> bytes(21 * 13 * 10 * 4);
-  file->ReadChunk(0, 1, rt::Index3(0), bytes.data());
+  file->ReadChunk(0, 1, bricks::Index3(0), bytes.data());
   try
   {
-    file->ReadChunk(0, 2, rt::Index3(0), bytes.data());
+    file->ReadChunk(0, 2, bricks::Index3(0), bytes.data());
     ADD_FAILURE() << "it is taken";
   }
   catch (const dsm::Error& error)
@@ -402,7 +402,7 @@ TEST_F(DamagedFile, WithABareWordForAFillValueHasIt)
     std::ofstream(this->Path / ".zarray") << text;
     vol::ChunkCache cache(1);
     float value = 0.0f;
-    const rt::Box last{ rt::Index3(20, 12, 9), rt::Index3(21, 13, 10) };
+    const bricks::Box last{ bricks::Index3(20, 12, 9), bricks::Index3(21, 13, 10) };
     cache.ReadBox(Open(entry), 0, 0, last, reinterpret_cast<std::byte*>(&value));
     const float expected = std::strtof(word, nullptr);
     EXPECT_TRUE(value == expected || (std::isnan(value) && std::isnan(expected))) << value;
@@ -443,7 +443,7 @@ TEST_F(DamagedFile, ThatIsWrittenAnewInPlaceIsOpenedAsItIs)
     std::ifstream other(GetFolder() / "ball.h5", std::ios::binary);
     std::ofstream(this->Path, std::ios::binary) << other.rdbuf();
     const auto after = vol::OpenVolumeFile(this->Path.string());
-    EXPECT_EQ(after->GetGeometry().Points, rt::Index3(48, 40, 36));
+    EXPECT_EQ(after->GetGeometry().Points, bricks::Index3(48, 40, 36));
     EXPECT_EQ(Read(after), "");
     ExpectWords(Read(before), { name, "was written to", "Reload" });
   }

@@ -336,7 +336,7 @@ TEST(HostileHdf, ValuesBehindAUserBlockThatWereNotWrittenHaveTheFillValue)
   EXPECT_EQ(ReadWatched(path), "");
   std::vector<float> values(64);
   const auto file = vol::OpenVolumeFile(path.string());
-  file->ReadChunk(0, 0, rt::Index3(0), reinterpret_cast<std::byte*>(values.data()));
+  file->ReadChunk(0, 0, bricks::Index3(0), reinterpret_cast<std::byte*>(values.data()));
   EXPECT_EQ(values, std::vector<float>(64, 7.5f));
 }
 

@@ -120,16 +120,16 @@ TEST(HostileHeaders, NumbersOutOfRangeAreRefused)
     ExpectRefusal(WriteMeta("channels", "ElementNumberOfChannels = " + std::string(count)), {});
   }
   vol::OpenOptions bare;
-  bare.Bare.Samples = rt::Index3(4);
+  bare.Bare.Samples = bricks::Index3(4);
   bare.Bare.HeaderBytes = ~std::uint64_t(0);
   const fs::path raw = MakeFolder("bare") / "bare.raw";
   WriteText(raw, Values);
   ExpectRefusal(raw, { "header are expected" }, bare);
   bare.Bare.HeaderBytes = 0;
   EXPECT_EQ(ReadWatched(raw, bare), "");
-  bare.Bare.Samples = rt::Index3(0x7fffffff);
+  bare.Bare.Samples = bricks::Index3(0x7fffffff);
   ExpectRefusal(raw, { "samples" }, bare);
-  bare.Bare.Samples = rt::Index3(-1, -1, 4);
+  bare.Bare.Samples = bricks::Index3(-1, -1, 4);
   ExpectRefusal(raw, { "Raw Dimensions" }, bare);
 }
 
@@ -236,7 +236,7 @@ TEST(HostileHeaders, NamesThatAreNotUtf8Work)
   EXPECT_EQ(ReadWatched(folder / "b\xe9ta.mha"), "");
   WriteText(folder / "b\xe9ta.raw", Values);
   vol::OpenOptions bare;
-  bare.Bare.Samples = rt::Index3(4);
+  bare.Bare.Samples = bricks::Index3(4);
   EXPECT_EQ(ReadWatched(folder / "b\xe9ta.raw", bare), "");
   WriteText(folder / ".zarray",
     R"({"zarr_format": 2, "shape": [4, 4, 4], "chunks": [4, 4, 4], "dtype": "|u1",

@@ -247,14 +247,14 @@ TEST(HostileZarr, SlicesOfALargeChunkAreReadByThemselves)
   const auto file = vol::OpenVolumeFile(folder.string());
   ASSERT_EQ(file->GetArrays().size(), 3u);
   ASSERT_EQ(file->GetSteps(), 2);
-  const rt::Box box = file->GetArrays()[0].Grid.GetBox(rt::Index3(0));
-  ASSERT_EQ(box.GetSize(), rt::Index3(2048, 8, 2));
+  const bricks::Box box = file->GetArrays()[0].Grid.GetBox(bricks::Index3(0));
+  ASSERT_EQ(box.GetSize(), bricks::Index3(2048, 8, 2));
   for (int step = 0; step < 2; ++step)
   {
     for (std::size_t array = 0; array < 3; ++array)
     {
       std::vector<std::byte> values(2048 * 8 * 2, std::byte{ 77 });
-      file->ReadChunk(array, step, rt::Index3(0), values.data());
+      file->ReadChunk(array, step, bricks::Index3(0), values.data());
       for (std::size_t z = 0; z < 2; ++z)
       {
         const std::size_t place = (static_cast<std::size_t>(step) * 3 + array) * 3 + z;
@@ -262,8 +262,8 @@ TEST(HostileZarr, SlicesOfALargeChunkAreReadByThemselves)
         EXPECT_EQ(values[(z * 8 + 7) * 2048 + 6], std::byte{ 0 });
       }
       std::byte part{ 77 };
-      const rt::Box one{ rt::Index3(5, 7, 1), rt::Index3(6, 8, 2) };
-      EXPECT_TRUE(file->ReadPart(array, step, rt::Index3(0), one, &part));
+      const bricks::Box one{ bricks::Index3(5, 7, 1), bricks::Index3(6, 8, 2) };
+      EXPECT_TRUE(file->ReadPart(array, step, bricks::Index3(0), one, &part));
       EXPECT_EQ(part, values[(8 + 7) * 2048 + 5]);
     }
   }

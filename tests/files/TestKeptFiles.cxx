@@ -39,7 +39,7 @@ protected:
     const fs::path raw = this->Folder / "values.raw";
     std::ofstream(raw, std::ios::binary) << std::string(8, '\1') << std::string(56, '\2');
     vol::OpenOptions options;
-    options.Bare.Samples = rt::Index3(4);
+    options.Bare.Samples = bricks::Index3(4);
     this->File = vol::OpenVolumeFile(raw.string(), options);
   }
   ~TestKeptFiles() override { fs::remove_all(this->Folder); }
@@ -59,7 +59,7 @@ protected:
 
   const fs::path Folder = fs::path(DSM_TEST_FILES) / "kept";
   const fs::path Caches = Folder / "caches";
-  const rt::Box Whole{ rt::Index3(0), rt::Index3(4) };
+  const bricks::Box Whole{ bricks::Index3(0), bricks::Index3(4) };
   std::shared_ptr<const vol::VolumeFile> File;
 };
 
@@ -209,10 +209,10 @@ TEST_F(TestKeptFiles, BoxesOutsideOfTheArrayAreNone)
   Overwrite(beginning + "1_2_3_4_4_4", bytes);
   const auto boxes = vol::KeptFile::FindBoxes(*this->File, 0, 0, "test1");
   ASSERT_EQ(boxes.size(), 2u);
-  for (const rt::Box& box : boxes)
+  for (const bricks::Box& box : boxes)
   {
-    EXPECT_TRUE(box.Min == rt::Index3(0) || box.Min == rt::Index3(1, 2, 3));
-    EXPECT_EQ(box.Max, rt::Index3(4));
+    EXPECT_TRUE(box.Min == bricks::Index3(0) || box.Min == bricks::Index3(1, 2, 3));
+    EXPECT_EQ(box.Max, bricks::Index3(4));
   }
 }
 
@@ -248,7 +248,7 @@ TEST_F(TestKeptFiles, RangesThatCannotBeAreFoundAnew)
 
 TEST(TestValueRanges, OfFloatsMayBeInfiniteOrNone)
 {
-  const auto isValid = [](vol::ValueRange all, vol::ValueRange finite, rt::ScalarType type)
+  const auto isValid = [](vol::ValueRange all, vol::ValueRange finite, bricks::ScalarType type)
   {
     vol::ValueRanges ranges(1);
     ranges.All[0] = all;
@@ -256,7 +256,7 @@ TEST(TestValueRanges, OfFloatsMayBeInfiniteOrNone)
     return ranges.IsValid(type);
   };
   const vol::ValueRange none;
-  for (const auto type : { rt::ScalarType::Float32, rt::ScalarType::Float64 })
+  for (const auto type : { bricks::ScalarType::Float32, bricks::ScalarType::Float64 })
   {
     EXPECT_TRUE(isValid(none, none, type));
     EXPECT_TRUE(isValid({ -HUGE_VAL, HUGE_VAL }, none, type));
@@ -266,15 +266,15 @@ TEST(TestValueRanges, OfFloatsMayBeInfiniteOrNone)
     EXPECT_FALSE(isValid({ 0.0, 1.0 }, { 0.0, 2.0 }, type));
     EXPECT_FALSE(isValid(none, { 0.0, 2.0 }, type));
   }
-  EXPECT_FALSE(isValid({ 0.0, 300.0 }, { 0.0, 30.0 }, rt::ScalarType::UInt8));
-  EXPECT_TRUE(isValid({ 0.0, 0x1p64 }, { 0.0, 0x1p64 }, rt::ScalarType::UInt64));
+  EXPECT_FALSE(isValid({ 0.0, 300.0 }, { 0.0, 30.0 }, bricks::ScalarType::UInt8));
+  EXPECT_TRUE(isValid({ 0.0, 0x1p64 }, { 0.0, 0x1p64 }, bricks::ScalarType::UInt64));
   vol::ValueRanges vectors(3); // of bytes; the magnitude of three
   for (std::vector<vol::ValueRange>* const list : { &vectors.All, &vectors.Finite })
   {
     std::fill(list->begin(), list->end(), vol::ValueRange{ 0.0, 255.0 });
     list->back().Greatest = 441.7;
   }
-  EXPECT_TRUE(vectors.IsValid(rt::ScalarType::UInt8));
+  EXPECT_TRUE(vectors.IsValid(bricks::ScalarType::UInt8));
   vectors.All.back().Least = -1.0;
-  EXPECT_FALSE(vectors.IsValid(rt::ScalarType::UInt8));
+  EXPECT_FALSE(vectors.IsValid(bricks::ScalarType::UInt8));
 }

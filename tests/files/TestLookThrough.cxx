@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Ranges and bricks, found in one reading.
+#include "DSMBricks/build/VoxelBrickReader.h"
+#include "DSMBricks/build/VoxelIndex.h"
 #include "DSMCore/transport/LoopbackTransport.h"
-#include "DSMRayTracing/build/VoxelBrickReader.h"
-#include "DSMRayTracing/build/VoxelIndex.h"
 #include "DSMVolumeFiles/cache/FileSamples.h"
 #include "DSMVolumeFiles/range/LookThrough.h"
 
@@ -21,15 +21,15 @@
 namespace
 {
 
-const rt::Index3 Samples(70, 53, 41);
+const bricks::Index3 Samples(70, 53, 41);
 
-float GetValue(const rt::Index3& at)
+float GetValue(const bricks::Index3& at)
 {
-  if (at == rt::Index3(33, 20, 7))
+  if (at == bricks::Index3(33, 20, 7))
   {
     return std::numeric_limits<float>::quiet_NaN();
   }
-  if (at == rt::Index3(60, 50, 40))
+  if (at == bricks::Index3(60, 50, 40))
   {
     return std::numeric_limits<float>::infinity();
   }
@@ -40,21 +40,21 @@ float GetValue(const rt::Index3& at)
 class ComputedFile final : public vol::VolumeFile
 {
 public:
-  explicit ComputedFile(const rt::Index3& chunk)
+  explicit ComputedFile(const bricks::Index3& chunk)
     : VolumeFile("computed")
   {
     vol::FileArray array;
-    array.Type = rt::ScalarType::Float32;
+    array.Type = bricks::ScalarType::Float32;
     array.Grid = { Samples, chunk };
     this->Arrays.push_back(array);
     this->Geometry.Points = Samples;
   }
-  void ReadChunk(std::size_t, int, const rt::Index3& chunk, std::byte* out) const override
+  void ReadChunk(std::size_t, int, const bricks::Index3& chunk, std::byte* out) const override
   {
     ++this->Read;
     auto* to = reinterpret_cast<float*>(out);
-    rt::ForEachIndex(this->GetArrays().front().Grid.GetBox(chunk),
-      [&](const rt::Index3& at) { *to++ = GetValue(at); });
+    bricks::ForEachIndex(this->GetArrays().front().Grid.GetBox(chunk),
+      [&](const bricks::Index3& at) { *to++ = GetValue(at); });
   }
 
   mutable std::atomic<int> Read{ 0 };
@@ -66,9 +66,9 @@ bool GoOn(double)
 }
 
 /// Cut along z, with a layer of samples in common, as VTK cuts an image.
-std::vector<rt::Box> Cut(int pieces)
+std::vector<bricks::Box> Cut(int pieces)
 {
-  std::vector<rt::Box> boxes;
+  std::vector<bricks::Box> boxes;
   for (int piece = 0; piece < pieces; ++piece)
   {
     const std::int64_t cells = Samples.z - 1;
@@ -80,7 +80,7 @@ std::vector<rt::Box> Cut(int pieces)
 
 struct Found
 {
-  rt::VoxelIndex Index;
+  bricks::VoxelIndex Index;
   std::vector<int> Read; ///< bricks, of each rank
 };
 
@@ -89,7 +89,7 @@ class CountingReader final : public dsm::BlockReader
 {
 public:
   CountingReader(
-    const rt::BrickLattice& lattice, const std::shared_ptr<const vol::VolumeFile>& file)
+    const bricks::BrickLattice& lattice, const std::shared_ptr<const vol::VolumeFile>& file)
     : Bricks(lattice, std::make_shared<vol::FileSamples>(file, 0, 0, vol::ChunkCache::GetShared()))
   {
   }
@@ -101,14 +101,14 @@ public:
   mutable std::atomic<int> Count{ 0 };
 
 private:
-  rt::VoxelBrickReader Bricks;
+  bricks::VoxelBrickReader Bricks;
 };
 
 /// The index that ranks find which have looked through these pieces.
-Found FindIndex(const std::vector<rt::Box>& pieces, bool look)
+Found FindIndex(const std::vector<bricks::Box>& pieces, bool look)
 {
-  const auto file = std::make_shared<const ComputedFile>(rt::Index3(24, 20, 16));
-  const rt::BrickLattice lattice(Samples, rt::ScalarType::Float32, false);
+  const auto file = std::make_shared<const ComputedFile>(bricks::Index3(24, 20, 16));
+  const bricks::BrickLattice lattice(Samples, bricks::ScalarType::Float32, false);
   auto transports = dsm::LoopbackTransport::CreateGroup(static_cast<int>(pieces.size()));
   Found found;
   found.Read.resize(pieces.size());
@@ -124,12 +124,12 @@ Found FindIndex(const std::vector<rt::Box>& pieces, bool look)
         {
           seen = vol::LookThrough(file, 0, 0, pieces[rank], 2, GoOn);
         }
-        rt::VoxelIndex::Pass pass;
+        bricks::VoxelIndex::Pass pass;
         pass.Order.resize(lattice.GetBrickCount());
         std::iota(pass.Order.begin(), pass.Order.end(), dsm::BlockId(0));
         pass.Seen = seen ? &seen->Bricks : nullptr;
         const CountingReader reader(lattice, file);
-        rt::VoxelIndex index = rt::VoxelIndex::Find(messenger, lattice, reader, pass, {});
+        bricks::VoxelIndex index = bricks::VoxelIndex::Find(messenger, lattice, reader, pass, {});
         found.Read[rank] = reader.Count;
         if (rank == 0)
         {
@@ -165,19 +165,19 @@ TEST(LookThrough, TheIndexIsThatOfBricksReadForIt)
 TEST(LookThrough, BricksThatSeveralRanksHaveSeenCountOnce)
 {
   const std::vector<std::byte> expected = FindIndex(Cut(1), false).Index.Encode();
-  const Found found =
-    FindIndex({ { rt::Index3(0), { Samples.x, Samples.y, 18 } }, { { 0, 0, 16 }, Samples } }, true);
+  const Found found = FindIndex(
+    { { bricks::Index3(0), { Samples.x, Samples.y, 18 } }, { { 0, 0, 16 }, Samples } }, true);
   EXPECT_EQ(found.Index.Encode(), expected);
   EXPECT_GT(std::accumulate(found.Read.begin(), found.Read.end(), 0), 0);
 }
 
 TEST(LookThrough, RangesAreOfTheBoxAlone)
 {
-  const auto file = std::make_shared<const ComputedFile>(rt::Index3(16));
-  const std::vector<rt::Box> boxes = { { rt::Index3(0), Samples },
-    { rt::Index3(5, 17, 3), rt::Index3(34, 33, 20) }, { rt::Index3(48, 32, 32), Samples },
-    { rt::Index3(0, 0, 40), Samples } };
-  for (const rt::Box& box : boxes)
+  const auto file = std::make_shared<const ComputedFile>(bricks::Index3(16));
+  const std::vector<bricks::Box> boxes = { { bricks::Index3(0), Samples },
+    { bricks::Index3(5, 17, 3), bricks::Index3(34, 33, 20) },
+    { bricks::Index3(48, 32, 32), Samples }, { bricks::Index3(0, 0, 40), Samples } };
+  for (const bricks::Box& box : boxes)
   {
     const auto look = vol::LookThrough(file, 0, 0, box, 3, GoOn);
     const auto expected = vol::FindRanges(file, 0, 0, box, 1, GoOn);
@@ -191,8 +191,8 @@ TEST(LookThrough, RangesAreOfTheBoxAlone)
 
 TEST(LookThrough, EachChunkIsReadAboutOnce)
 {
-  const auto file = std::make_shared<const ComputedFile>(rt::Index3(16));
-  ASSERT_TRUE(vol::LookThrough(file, 0, 0, { rt::Index3(0), Samples }, 2, GoOn));
+  const auto file = std::make_shared<const ComputedFile>(bricks::Index3(16));
+  ASSERT_TRUE(vol::LookThrough(file, 0, 0, { bricks::Index3(0), Samples }, 2, GoOn));
   EXPECT_EQ(file->Read, file->GetArrays().front().Grid.GetCount());
 }
 
@@ -201,7 +201,7 @@ TEST(LookThrough, IsNotForChunksThatTheCacheDoesNotHold)
 {
   vol::ChunkCache& cache = vol::ChunkCache::GetShared();
   const std::size_t limit = cache.GetLimit();
-  const ComputedFile file(rt::Index3(32));
+  const ComputedFile file(bricks::Index3(32));
   EXPECT_TRUE(vol::CanLookAtBricks(file.GetArrays().front()));
   cache.SetLimit(1 << 20);
   EXPECT_FALSE(vol::CanLookAtBricks(file.GetArrays().front()));
@@ -213,13 +213,14 @@ TEST(LookThrough, IsNotForChunksThatTheCacheDoesNotHold)
 
 TEST(LookThrough, AllBricksAreInOrderOnce)
 {
-  const rt::BrickLattice lattice(Samples, rt::ScalarType::UInt8, false, 8);
+  const bricks::BrickLattice lattice(Samples, bricks::ScalarType::UInt8, false, 8);
   vol::FileArray array;
-  for (const rt::Index3& chunk : { rt::Index3(5, 64, 1), rt::Index3(24, 20, 16), rt::Index3(128) })
+  for (const bricks::Index3& chunk :
+    { bricks::Index3(5, 64, 1), bricks::Index3(24, 20, 16), bricks::Index3(128) })
   {
-    array.Grid = { Samples + rt::Index3(9), chunk };
-    std::vector<dsm::BlockId> order =
-      vol::OrderBricks(lattice, { rt::Index3(0), lattice.GetBricks() }, array, rt::Index3(9, 7, 3));
+    array.Grid = { Samples + bricks::Index3(9), chunk };
+    std::vector<dsm::BlockId> order = vol::OrderBricks(
+      lattice, { bricks::Index3(0), lattice.GetBricks() }, array, bricks::Index3(9, 7, 3));
     std::sort(order.begin(), order.end());
     std::vector<dsm::BlockId> expected(lattice.GetBrickCount());
     std::iota(expected.begin(), expected.end(), dsm::BlockId(0));

@@ -25,7 +25,7 @@ using namespace dsm_test;
 
 /// What make_files.py says.
 double GetExpected(
-  const Json& entry, const Json& array, int step, const rt::Index3& sample, int component)
+  const Json& entry, const Json& array, int step, const bricks::Index3& sample, int component)
 {
   if (entry.contains("zeros"))
   {
@@ -38,7 +38,7 @@ double GetExpected(
       return entry["fill"];
     }
   }
-  const rt::Index3 at = sample * entry.value("stride", std::int64_t(1));
+  const bricks::Index3 at = sample * entry.value("stride", std::int64_t(1));
   const std::int64_t channel = array["channel"];
   step = array["still"] ? 0 : step;
   return static_cast<double>(
@@ -46,13 +46,14 @@ double GetExpected(
 }
 
 int CountWrong(const std::shared_ptr<const vol::VolumeFile>& file, const Json& entry,
-  std::size_t number, int step, const rt::Box& box, vol::ChunkCache& cache, bool scattered = false)
+  std::size_t number, int step, const bricks::Box& box, vol::ChunkCache& cache,
+  bool scattered = false)
 {
   const vol::FileArray& array = file->GetArrays()[number];
   std::vector<std::byte> bytes(static_cast<std::size_t>(box.GetCount()) * array.GetSampleBytes());
   scattered ? cache.ReadScattered(file, number, step, box, bytes.data())
             : cache.ReadBox(file, number, step, box, bytes.data());
-  return rt::Dispatch(array.Type,
+  return bricks::Dispatch(array.Type,
     [&](auto zero)
     {
       using T = decltype(zero);
@@ -124,9 +125,9 @@ TEST(VolumeFiles, HaveTheValuesThatOtherProgramsWrote)
           EXPECT_EQ(array.OnCells, expected["cells"]);
           for (int step = 0; step < file->GetSteps(); ++step)
           {
-            const rt::Box whole{ rt::Index3(0), array.Grid.Samples };
+            const bricks::Box whole{ bricks::Index3(0), array.Grid.Samples };
             EXPECT_EQ(CountWrong(file, entry, number, step, whole, cache), 0) << array.Name;
-            const rt::Box part{ whole.Max / rt::Index3(3), whole.Max - rt::Index3(1) };
+            const bricks::Box part{ whole.Max / bricks::Index3(3), whole.Max - bricks::Index3(1) };
             vol::ChunkCache cold(cacheBytes);
             EXPECT_EQ(CountWrong(file, entry, number, step, part, cold, true), 0) << array.Name;
             EXPECT_EQ(CountWrong(file, entry, number, step, part, cache), 0) << array.Name;
@@ -151,11 +152,11 @@ TEST(VolumeFiles, LargeChunksThatAreNotCompressedAreShownInParts)
     SCOPED_TRACE(name);
     const auto file = vol::OpenVolumeFile((GetFolder() / "large" / name).string(), {});
     const vol::FileArray& array = file->GetArrays().front();
-    const rt::Index3 samples = array.Grid.Samples;
+    const bricks::Index3 samples = array.Grid.Samples;
     const std::size_t width = array.GetSampleBytes();
     EXPECT_LE(array.Grid.CountBytesOfChunks(33, width), std::uint64_t(10) << 20);
     const bool isOfSlices = samples.z == 20;
-    const auto getExpected = [&](const rt::Index3& at)
+    const auto getExpected = [&](const bricks::Index3& at)
     {
       const bool isThere = !isOfSlices || at.z == 3 || at.z == 8;
       return isThere ? (3 * at.x + 5 * at.y + 77 * at.z) % 101 : 0;
@@ -163,7 +164,7 @@ TEST(VolumeFiles, LargeChunksThatAreNotCompressedAreShownInParts)
     vol::ChunkCache cache(1 << 20);
     for (int round = 0; round < 60; ++round)
     {
-      rt::Box box;
+      bricks::Box box;
       for (int axis = 0; axis < 3; ++axis)
       {
         box.Min[axis] = static_cast<std::int64_t>(random()) % samples[axis];
@@ -234,7 +235,7 @@ TEST(VolumeFiles, AChunkThatManyThreadsWantIsReadOnce)
   ASSERT_FALSE(entry.is_null());
   const auto file = Open(entry);
   vol::ChunkCache cache(1 << 20);
-  const rt::Box whole{ rt::Index3(0), file->GetArrays()[0].Grid.Samples };
+  const bricks::Box whole{ bricks::Index3(0), file->GetArrays()[0].Grid.Samples };
   std::vector<std::thread> threads;
   std::vector<int> wrong(8, -1);
   for (int& mine : wrong)
@@ -257,8 +258,8 @@ TEST(VolumeFiles, RangesAreFoundAndKept)
   setenv("XDG_CACHE_HOME", caches.c_str(), 1);
   const Json entry = FindEntry("vectors.h5");
   const auto file = Open(entry);
-  const rt::Box whole{ rt::Index3(0), file->GetArrays()[1].Grid.Samples };
-  const rt::Box corner{ rt::Index3(0), rt::Index3(2, 1, 1) };
+  const bricks::Box whole{ bricks::Index3(0), file->GetArrays()[1].Grid.Samples };
+  const bricks::Box corner{ bricks::Index3(0), bricks::Index3(2, 1, 1) };
   EXPECT_FALSE(vol::LoadRanges(*file, 1, 0, whole, true));
   const auto found = vol::FindRanges(file, 1, 0, whole, 3, [](double) { return true; });
   ASSERT_TRUE(found);
@@ -289,20 +290,20 @@ TEST(VolumeFiles, RangesOfSharesArePutTogether)
   fs::remove_all(caches);
   setenv("XDG_CACHE_HOME", caches.c_str(), 1);
   const auto file = Open(FindEntry("vectors.h5"));
-  const rt::Index3 samples = file->GetArrays()[1].Grid.Samples;
-  const rt::Box whole{ rt::Index3(0), samples };
-  const auto keepShare = [&](const rt::Box& share)
+  const bricks::Index3 samples = file->GetArrays()[1].Grid.Samples;
+  const bricks::Box whole{ bricks::Index3(0), samples };
+  const auto keepShare = [&](const bricks::Box& share)
   {
     vol::KeepRanges(
       *file, 1, 0, share, *vol::FindRanges(file, 1, 0, share, 1, [](double) { return true; }));
   };
   // Cut in x, and one half of it in y; neighbours share a plane of samples.
-  const rt::Index3 middle = samples / std::int64_t(2);
-  keepShare({ rt::Index3(0), { middle.x + 1, samples.y, samples.z } });
+  const bricks::Index3 middle = samples / std::int64_t(2);
+  keepShare({ bricks::Index3(0), { middle.x + 1, samples.y, samples.z } });
   EXPECT_FALSE(vol::LoadRanges(*file, 1, 0, whole, true));
   keepShare({ { middle.x, 0, 0 }, { samples.x, middle.y + 1, samples.z } });
   EXPECT_FALSE(vol::LoadRanges(*file, 1, 0, whole, true));
-  keepShare({ middle * rt::Index3(1, 1, 0), samples });
+  keepShare({ middle * bricks::Index3(1, 1, 0), samples });
   EXPECT_FALSE(vol::LoadRanges(*file, 1, 0, whole, false));
   const auto known = vol::LoadRanges(*file, 1, 0, whole, true);
   const auto found = vol::FindRanges(file, 1, 0, whole, 1, [](double) { return true; });
@@ -356,7 +357,7 @@ TEST(VolumeFiles, ThatNobodyHasAreClosed)
   const std::size_t held = cache.GetBytes();
   auto file = vol::OpenCachedVolume({ (GetFolder() / "chunked.h5").string() }, {});
   const auto other = vol::OpenCachedVolume({ (GetFolder() / "deflate.h5").string() }, {});
-  const rt::Box corner{ rt::Index3(0), rt::Index3(2) };
+  const bricks::Box corner{ bricks::Index3(0), bricks::Index3(2) };
   std::vector<std::byte> bytes(64);
   cache.ReadBox(file, 0, 0, corner, bytes.data());
   const std::size_t one = cache.GetBytes() - held;

@@ -33,9 +33,9 @@ inline Json ReadManifest()
   return file ? Json::parse(file) : Json::array();
 }
 
-inline rt::ScalarType ToType(const std::string& name)
+inline bricks::ScalarType ToType(const std::string& name)
 {
-  using Type = rt::ScalarType;
+  using Type = bricks::ScalarType;
   const std::vector<std::pair<std::string, Type>> types = { { "int8", Type::Int8 },
     { "uint8", Type::UInt8 }, { "int16", Type::Int16 }, { "uint16", Type::UInt16 },
     { "int32", Type::Int32 }, { "int64", Type::Int64 }, { "float32", Type::Float32 },

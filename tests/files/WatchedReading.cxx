@@ -81,11 +81,11 @@ void ReadFirstChunks(const fs::path& path, const vol::OpenOptions& options)
   for (std::size_t array = 0; array < file->GetArrays().size(); ++array)
   {
     const vol::FileArray& what = file->GetArrays()[array];
-    const rt::Box box = what.Grid.GetBox(rt::Index3(0));
+    const bricks::Box box = what.Grid.GetBox(bricks::Index3(0));
     what.Grid.CountBytesOfChunks(33, what.GetSampleBytes());
     std::vector<std::byte> bytes(static_cast<std::size_t>(box.GetCount()) * what.GetSampleBytes());
-    file->Foresee(array, 0, { { rt::Index3(0), box } });
-    file->ReadChunk(array, 0, rt::Index3(0), bytes.data());
+    file->Foresee(array, 0, { { bricks::Index3(0), box } });
+    file->ReadChunk(array, 0, bricks::Index3(0), bytes.data());
   }
 }
 

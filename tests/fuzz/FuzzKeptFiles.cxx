@@ -53,8 +53,8 @@ Places MakePlaces()
 
 void UseIndex(const fuzz::KeptVolume& volume, const std::vector<std::byte>& bytes)
 {
-  const std::optional<rt::VoxelIndex> index =
-    rt::VoxelIndex::Decode(bytes, volume.Lattice.GetBrickCount());
+  const std::optional<bricks::VoxelIndex> index =
+    bricks::VoxelIndex::Decode(bytes, volume.Lattice.GetBrickCount());
   if (index)
   {
     fuzz::CheckIndex(volume.Lattice, *index);
@@ -82,7 +82,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t cou
   else if (kind == 1)
   {
     fuzz::WriteInput(places.Index, content, contentBytes);
-    const std::size_t indexBytes = rt::VoxelIndex::CountBytes(volume.Lattice.GetBrickCount());
+    const std::size_t indexBytes = bricks::VoxelIndex::CountBytes(volume.Lattice.GetBrickCount());
     UseIndex(volume, vol::KeptFile(*volume.File, 0, 0, volume.Whole, IndexKind).Load(indexBytes));
   }
   else

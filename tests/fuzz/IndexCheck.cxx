@@ -12,9 +12,9 @@ namespace
 {
 
 /// As of one more brick, whose values are elsewhere.
-rt::IsovalueSurvey MakeOther(double least, double greatest, std::int64_t exponent)
+bricks::IsovalueSurvey MakeOther(double least, double greatest, std::int64_t exponent)
 {
-  rt::IsovalueSurvey other;
+  bricks::IsovalueSurvey other;
   other.All = 1;
   other.Exponent = exponent;
   other.Least = least;
@@ -26,17 +26,17 @@ rt::IsovalueSurvey MakeOther(double least, double greatest, std::int64_t exponen
 
 } // namespace
 
-void CheckIndex(const rt::BrickLattice& lattice, const rt::VoxelIndex& index)
+void CheckIndex(const bricks::BrickLattice& lattice, const bricks::VoxelIndex& index)
 {
-  const rt::MacrocellHierarchy levels(lattice, index.Bricks);
+  const bricks::MacrocellHierarchy levels(lattice, index.Bricks);
   levels.GetRange();
-  for (const rt::IsovalueSurvey& other :
-    { rt::IsovalueSurvey(), MakeOther(-255.0, 256.0, 0), MakeOther(0.0, 1.0, -3) })
+  for (const bricks::IsovalueSurvey& other :
+    { bricks::IsovalueSurvey(), MakeOther(-255.0, 256.0, 0), MakeOther(0.0, 1.0, -3) })
   {
-    rt::IsovalueSurvey all;
+    bricks::IsovalueSurvey all;
     all.Add(index.Survey);
     all.Add(other);
-    rt::IsovalueSurvey turned = other;
+    bricks::IsovalueSurvey turned = other;
     turned.Add(index.Survey);
     all.Accumulate();
     const std::size_t intervals = all.CountIntervals();
@@ -49,7 +49,7 @@ void CheckIndex(const rt::BrickLattice& lattice, const rt::VoxelIndex& index)
 
 void CheckIndex(const vol::FileArray& array, const vol::VolumeFile::Index& kept)
 {
-  std::optional<rt::BrickLattice> lattice;
+  std::optional<bricks::BrickLattice> lattice;
   try
   {
     lattice.emplace(array.Grid.Samples, array.Type, false, kept.BrickEdge);
@@ -58,8 +58,8 @@ void CheckIndex(const vol::FileArray& array, const vol::VolumeFile::Index& kept)
   {
     return; // no bricks can be cut so
   }
-  const std::optional<rt::VoxelIndex> index =
-    rt::VoxelIndex::Decode(kept.Bricks, lattice->GetBrickCount());
+  const std::optional<bricks::VoxelIndex> index =
+    bricks::VoxelIndex::Decode(kept.Bricks, lattice->GetBrickCount());
   if (index)
   {
     CheckIndex(*lattice, *index);

@@ -4,7 +4,7 @@
 
 #include "InputFolder.h"
 
-#include "DSMRayTracing/build/VoxelIndex.h"
+#include "DSMBricks/build/VoxelIndex.h"
 #include "DSMVolumeFiles/format/VolumeFile.h"
 
 #include <algorithm>
@@ -30,18 +30,18 @@ public:
     WriteInput(path, reinterpret_cast<const std::uint8_t*>(text.data()), text.size());
     this->File = vol::OpenVolumeFile(path.string());
     const vol::FileArray& array = this->File->GetArrays().front();
-    this->Lattice = rt::BrickLattice(array.Grid.Samples, array.Type, false, 4);
-    this->Whole = { rt::Index3(0), array.Grid.Samples };
+    this->Lattice = bricks::BrickLattice(array.Grid.Samples, array.Type, false, 4);
+    this->Whole = { bricks::Index3(0), array.Grid.Samples };
   }
 
   std::shared_ptr<const vol::VolumeFile> File;
-  rt::BrickLattice Lattice;
-  rt::Box Whole;
+  bricks::BrickLattice Lattice;
+  bricks::Box Whole;
 
   /// As it is kept, with bytes of its own for all that a file could say, from the first one on; behind these, zeros.
-  rt::VoxelIndex MakeIndex(const std::uint8_t* bytes, std::size_t count) const
+  bricks::VoxelIndex MakeIndex(const std::uint8_t* bytes, std::size_t count) const
   {
-    rt::VoxelIndex index;
+    bricks::VoxelIndex index;
     index.Bricks.resize(this->Lattice.GetBrickCount());
     index.Digests.resize(this->Lattice.GetBrickCount());
     const auto take = [&](void* to, std::size_t size)
@@ -52,7 +52,7 @@ public:
       count -= some;
     };
     take(&index.Survey, sizeof(index.Survey));
-    take(index.Bricks.data(), index.Bricks.size() * sizeof(rt::ValueRange));
+    take(index.Bricks.data(), index.Bricks.size() * sizeof(bricks::ValueRange));
     return index;
   }
 };

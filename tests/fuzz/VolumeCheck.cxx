@@ -97,12 +97,12 @@ public:
   {
   }
 
-  void Check(const rt::Index3& chunk) const
+  void Check(const bricks::Index3& chunk) const
   {
-    const rt::Box box = this->Grid.GetBox(chunk);
-    const rt::Box halo = this->Grid.GetBoxWithHalo(chunk);
+    const bricks::Box box = this->Grid.GetBox(chunk);
+    const bricks::Box halo = this->Grid.GetBoxWithHalo(chunk);
     const long double most = static_cast<long double>(MostChunkBytes) / this->SampleBytes;
-    const rt::Index3 size = halo.GetSize();
+    const bricks::Index3 size = halo.GetSize();
     if (static_cast<long double>(size.x) * size.y * size.z > most)
     {
       return;
@@ -125,10 +125,10 @@ public:
 
 private:
   /// `samples`: of the chunk, null where it cannot be read.
-  void CheckPart(const rt::Index3& chunk, const rt::Box& box, const Guarded* samples) const
+  void CheckPart(const bricks::Index3& chunk, const bricks::Box& box, const Guarded* samples) const
   {
-    const rt::Index3 half = (box.GetSize() + rt::Index3(1)) / std::int64_t(2);
-    const rt::Box part{ box.Max - half, box.Max };
+    const bricks::Index3 half = (box.GetSize() + bricks::Index3(1)) / std::int64_t(2);
+    const bricks::Box part{ box.Max - half, box.Max };
     const std::size_t bytes = static_cast<std::size_t>(part.GetCount()) * this->SampleBytes;
     Guarded read(bytes, 0x5a);
     bool isThere = false;
@@ -143,8 +143,8 @@ private:
     }
   }
 
-  void CheckHalo(
-    const rt::Index3& chunk, const rt::Box& box, const rt::Box& halo, const Guarded* samples) const
+  void CheckHalo(const bricks::Index3& chunk, const bricks::Box& box, const bricks::Box& halo,
+    const Guarded* samples) const
   {
     Guarded read(static_cast<std::size_t>(halo.GetCount()) * this->SampleBytes, 0x5a);
     bool isThere = false;
@@ -171,15 +171,15 @@ private:
 void CheckArrays(const vol::VolumeFile& file)
 {
   const std::vector<vol::FileArray>& arrays = file.GetArrays();
-  const rt::Index3 points = file.GetGeometry().Points;
-  const rt::Index3 cells = glm::max(points - rt::Index3(1), rt::Index3(1));
+  const bricks::Index3 points = file.GetGeometry().Points;
+  const bricks::Index3 cells = glm::max(points - bricks::Index3(1), bricks::Index3(1));
   Require(!arrays.empty(), "the file has no arrays");
   for (const vol::FileArray& array : arrays)
   {
-    const rt::Index3& samples = array.Grid.Samples;
+    const bricks::Index3& samples = array.Grid.Samples;
     Require(array.Components >= 1, "an array has no components");
-    Require(glm::all(glm::greaterThan(samples, rt::Index3(0))) &&
-        glm::all(glm::greaterThan(array.Grid.ChunkSamples, rt::Index3(0))),
+    Require(glm::all(glm::greaterThan(samples, bricks::Index3(0))) &&
+        glm::all(glm::greaterThan(array.Grid.ChunkSamples, bricks::Index3(0))),
       "an array, or its chunks, have no samples");
     Require(
       samples == (array.OnCells ? cells : points), "an array has another shape than the file");
@@ -204,13 +204,14 @@ void CheckGeometry(const vol::FileGeometry& geometry)
       areFinite(geometry.Direction, 9),
     "the geometry has a number that is not finite");
   // VTK's indices are int.
-  const auto areInt = [](const rt::Index3& indices)
+  const auto areInt = [](const bricks::Index3& indices)
   {
-    return glm::all(glm::greaterThanEqual(indices, rt::Index3(std::numeric_limits<int>::min()))) &&
-      glm::all(glm::lessThanEqual(indices, rt::Index3(std::numeric_limits<int>::max())));
+    return glm::all(
+             glm::greaterThanEqual(indices, bricks::Index3(std::numeric_limits<int>::min()))) &&
+      glm::all(glm::lessThanEqual(indices, bricks::Index3(std::numeric_limits<int>::max())));
   };
   Require(areInt(geometry.First) && areInt(geometry.Points) &&
-      areInt(geometry.First + geometry.Points - rt::Index3(1)),
+      areInt(geometry.First + geometry.Points - bricks::Index3(1)),
     "indices of points are beyond those that VTK has");
 }
 
@@ -219,21 +220,21 @@ void CheckValues(
 {
   const vol::ChunkGrid& grid = file.GetArrays()[array].Grid;
   const ChunkCheck check(file, names, array, step);
-  const rt::Index3 last = grid.GetCounts() - rt::Index3(1);
-  const auto isLess = [](const rt::Index3& a, const rt::Index3& b)
+  const bricks::Index3 last = grid.GetCounts() - bricks::Index3(1);
+  const auto isLess = [](const bricks::Index3& a, const bricks::Index3& b)
   { return std::tie(a.z, a.y, a.x) < std::tie(b.z, b.y, b.x); };
-  std::set<rt::Index3, decltype(isLess)> chunks(isLess);
-  for (const rt::Index3& chunk : { rt::Index3(0), last / std::int64_t(2), last,
-         rt::Index3(0, last.y, last.z / 2), glm::min(last, rt::Index3(1)) })
+  std::set<bricks::Index3, decltype(isLess)> chunks(isLess);
+  for (const bricks::Index3& chunk : { bricks::Index3(0), last / std::int64_t(2), last,
+         bricks::Index3(0, last.y, last.z / 2), glm::min(last, bricks::Index3(1)) })
   {
     chunks.insert(chunk);
   }
-  for (const rt::Index3& chunk : chunks)
+  for (const bricks::Index3& chunk : chunks)
   {
     check.Check(chunk);
   }
   Try(names, [&] { CheckIndex(file.GetArrays()[array], file.ReadIndex(array, step)); });
-  const rt::Box whole{ rt::Index3(0), grid.Samples };
+  const bricks::Box whole{ bricks::Index3(0), grid.Samples };
   Try(names, [&] { vol::LoadRanges(file, array, step, whole, true); });
 }
 

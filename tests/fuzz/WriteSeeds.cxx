@@ -100,8 +100,8 @@ void WriteKept(const fs::path& folder)
     bytes.insert(bytes.end(), std::istreambuf_iterator<char>(file), {});
     Write(folder / "ranges", bytes);
   }
-  rt::VoxelIndex index = volume.MakeIndex(nullptr, 0);
-  std::fill(index.Bricks.begin(), index.Bricks.end(), rt::ValueRange{ 0.0f, 100.0f });
+  bricks::VoxelIndex index = volume.MakeIndex(nullptr, 0);
+  std::fill(index.Bricks.begin(), index.Bricks.end(), bricks::ValueRange{ 0.0f, 100.0f });
   index.Survey.All = 64;
   index.Survey.Exponent = -2;
   index.Survey.Least = 0.0;

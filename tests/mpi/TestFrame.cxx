@@ -77,8 +77,8 @@ TEST_P(FrameOverMpi, EqualsOneRankAlone)
 
 TEST_P(FrameOverMpi, CacheHoldsOneBrick)
 {
-  const rt::BrickLattice lattice(
-    rt::Index3(SphereScene::Points), rt::ScalarType::Float32, false, SphereScene::BrickEdge);
+  const bricks::BrickLattice lattice(bricks::Index3(SphereScene::Points),
+    bricks::ScalarType::Float32, false, SphereScene::BrickEdge);
   const std::size_t page = 4096; // a brick takes whole ones, where it is paged
   const std::size_t oneBrick = (lattice.CreateDirectory(1).GetLargest() + page - 1) / page * page;
   EXPECT_EQ(rt::GetHash(TraceTurning(this->Messenger, this->Create(oneBrick, 2))), GetReference());

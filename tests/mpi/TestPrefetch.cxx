@@ -81,8 +81,8 @@ TEST_P(PrefetchOverMpi, MovingCameraWaitsLessAndSeesTheSame)
     SphereScene::CreateSettings(std::size_t(16) << 20, 1, dsm::MemoryOrganization::Replicated),
     false);
   EXPECT_EQ(alone.Misses, 0u);
-  const rt::BrickLattice lattice(
-    rt::Index3(SphereScene::Points), rt::ScalarType::Float32, false, SphereScene::BrickEdge);
+  const bricks::BrickLattice lattice(bricks::Index3(SphereScene::Points),
+    bricks::ScalarType::Float32, false, SphereScene::BrickEdge);
   const std::size_t page = 4096; // a brick takes whole ones, where it is paged
   const std::size_t oneBrick = (lattice.CreateDirectory(1).GetLargest() + page - 1) / page * page;
   const auto settings = SphereScene::CreateSettings(16 * oneBrick, 1, this->GetParam());

@@ -103,7 +103,7 @@ void AddCrowd(SceneStage& stage, float opacity)
   };
   Recipe ball;
   ball.Form = Recipe::Shape::Ball;
-  ball.Type = rt::ScalarType::UInt8;
+  ball.Type = bricks::ScalarType::UInt8;
   add(stage.CreateIsosurface({}, { 45.0 }), { 0.9f, 0.6f, 0.2f });
   add(
     stage.CreateMesh(Generated::CreateBall(4, 0.7), Scale(glm::dvec3(0.8))), { 0.2f, 0.6f, 0.9f });

@@ -4,7 +4,7 @@
 
 #include "tests/scenes/GeneratedVolume.h"
 
-#include "DSMRayTracing/build/TriangleArrays.h"
+#include "DSMBricks/build/TriangleArrays.h"
 
 #include <glm/geometric.hpp>
 #include <glm/vec3.hpp>
@@ -12,7 +12,7 @@
 namespace Generated
 {
 
-using Mesh = rt::TriangleArrays<double>;
+using Mesh = bricks::TriangleArrays<double>;
 
 /// Adds a point with all that points may have.
 inline void AddPoint(
@@ -180,7 +180,7 @@ inline Mesh Strip(Mesh mesh)
 inline Mesh MoveToTriangles(const Mesh& mesh)
 {
   Mesh moved = mesh;
-  moved.NormalsOf = moved.ValuesOf = moved.ColorsOf = rt::Attachment::Triangles;
+  moved.NormalsOf = moved.ValuesOf = moved.ColorsOf = bricks::Attachment::Triangles;
   moved.Normals.clear();
   moved.Values.clear();
   moved.Colors.clear();

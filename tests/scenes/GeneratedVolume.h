@@ -2,8 +2,8 @@
 #ifndef tests_scenes_GeneratedVolume_h
 #define tests_scenes_GeneratedVolume_h
 
-#include "DSMRayTracing/build/VoxelSource.h"
-#include "DSMRayTracing/layout/BrickLattice.h"
+#include "DSMBricks/build/VoxelSource.h"
+#include "DSMBricks/layout/BrickLattice.h"
 
 #include <algorithm>
 #include <cmath>
@@ -82,15 +82,15 @@ struct Recipe
     Infinite
   };
   Shape Form = Shape::Waves;
-  rt::ScalarType Type = rt::ScalarType::Float32;
-  rt::Index3 Points{ 23, 19, 21 };
+  bricks::ScalarType Type = bricks::ScalarType::Float32;
+  bricks::Index3 Points{ 23, 19, 21 };
   int BrickEdge = 8;
   Hole Holes = Hole::None;
   bool Blanked = false; ///< some cells do not hold data
   unsigned Seed = 1;
 };
 
-inline double Evaluate(const Recipe& recipe, const rt::Index3& point)
+inline double Evaluate(const Recipe& recipe, const bricks::Index3& point)
 {
   const auto x = static_cast<double>(point.x);
   const auto y = static_cast<double>(point.y);
@@ -121,54 +121,54 @@ inline double Evaluate(const Recipe& recipe, const rt::Index3& point)
 }
 
 /// The sample that a value becomes: integers of all sizes, signed ones on both sides of zero.
-inline double Scale(rt::ScalarType type, double value)
+inline double Scale(bricks::ScalarType type, double value)
 {
   switch (type)
   {
-    case rt::ScalarType::Int8:
+    case bricks::ScalarType::Int8:
       return value - 50.0;
-    case rt::ScalarType::UInt8:
+    case bricks::ScalarType::UInt8:
       return 2.0 * value;
-    case rt::ScalarType::Int16:
+    case bricks::ScalarType::Int16:
       return 500.0 * (value - 50.0);
-    case rt::ScalarType::UInt16:
+    case bricks::ScalarType::UInt16:
       return 600.0 * value;
-    case rt::ScalarType::Int32:
+    case bricks::ScalarType::Int32:
       return 4e7 * (value - 50.0);
-    case rt::ScalarType::UInt32:
+    case bricks::ScalarType::UInt32:
       return 4e7 * value;
-    case rt::ScalarType::Int64:
+    case bricks::ScalarType::Int64:
       return 1.5e17 * (value - 50.0);
-    case rt::ScalarType::UInt64:
+    case bricks::ScalarType::UInt64:
       return 1.5e17 * value;
-    case rt::ScalarType::Float32:
+    case bricks::ScalarType::Float32:
       return value;
-    case rt::ScalarType::Float64:
+    case bricks::ScalarType::Float64:
       return 1e-3 * (value - 50.0);
   }
   return value;
 }
 
 /// A piece of a volume.
-class Volume final : public rt::VoxelSource
+class Volume final : public bricks::VoxelSource
 {
 public:
-  Volume(const Recipe& recipe, const rt::Box& cells)
+  Volume(const Recipe& recipe, const bricks::Box& cells)
     : Made(recipe)
     , Cells(cells)
   {
   }
 
-  rt::Box GetCells() const override { return this->Cells; }
+  bricks::Box GetCells() const override { return this->Cells; }
 
-  void ReadSamples(const rt::Box& points, std::byte* out) const override
+  void ReadSamples(const bricks::Box& points, std::byte* out) const override
   {
-    rt::Dispatch(this->Made.Type,
+    bricks::Dispatch(this->Made.Type,
       [&](auto type)
       {
         using Sample = decltype(type);
         ForEach(points,
-          [&](const rt::Index3& point)
+          [&](const bricks::Index3& point)
           {
             const Sample sample = this->GetSample<Sample>(point);
             std::memcpy(out, &sample, sizeof(sample));
@@ -178,18 +178,18 @@ public:
   }
 
   bool HasCellMask() const override { return this->Made.Blanked; }
-  void ReadCellMask(const rt::Box& cells, std::uint8_t* out) const override
+  void ReadCellMask(const bricks::Box& cells, std::uint8_t* out) const override
   {
     ForEach(cells,
-      [&](const rt::Index3& cell)
+      [&](const bricks::Index3& cell)
       { *out++ = Hash(cell.x, cell.y, cell.z, this->Made.Seed + 7) % 9 != 0 ? 1 : 0; });
   }
 
 private:
   template <class Use>
-  static void ForEach(const rt::Box& box, const Use& use)
+  static void ForEach(const bricks::Box& box, const Use& use)
   {
-    rt::Index3 at;
+    bricks::Index3 at;
     for (at.z = box.Min.z; at.z < box.Max.z; ++at.z)
     {
       for (at.y = box.Min.y; at.y < box.Max.y; ++at.y)
@@ -203,7 +203,7 @@ private:
   }
 
   template <class Sample>
-  Sample GetSample(const rt::Index3& point) const
+  Sample GetSample(const bricks::Index3& point) const
   {
     if constexpr (std::numeric_limits<Sample>::has_quiet_NaN)
     {
@@ -219,7 +219,7 @@ private:
   }
 
   Recipe Made;
-  rt::Box Cells;
+  bricks::Box Cells;
 };
 
 } // namespace Generated

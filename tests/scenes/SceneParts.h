@@ -25,12 +25,12 @@ inline const Named<Camera> Cameras = { { "Perspective", Camera::Perspective },
   { "AlongY", Camera::AlongY }, { "AgainstY", Camera::AgainstY }, { "AlongZ", Camera::AlongZ },
   { "AgainstZ", Camera::AgainstZ } };
 
-inline const Named<rt::ScalarType> Types = { { "Int8", rt::ScalarType::Int8 },
-  { "UInt8", rt::ScalarType::UInt8 }, { "Int16", rt::ScalarType::Int16 },
-  { "UInt16", rt::ScalarType::UInt16 }, { "Int32", rt::ScalarType::Int32 },
-  { "UInt32", rt::ScalarType::UInt32 }, { "Int64", rt::ScalarType::Int64 },
-  { "UInt64", rt::ScalarType::UInt64 }, { "Float32", rt::ScalarType::Float32 },
-  { "Float64", rt::ScalarType::Float64 } };
+inline const Named<bricks::ScalarType> Types = { { "Int8", bricks::ScalarType::Int8 },
+  { "UInt8", bricks::ScalarType::UInt8 }, { "Int16", bricks::ScalarType::Int16 },
+  { "UInt16", bricks::ScalarType::UInt16 }, { "Int32", bricks::ScalarType::Int32 },
+  { "UInt32", bricks::ScalarType::UInt32 }, { "Int64", bricks::ScalarType::Int64 },
+  { "UInt64", bricks::ScalarType::UInt64 }, { "Float32", bricks::ScalarType::Float32 },
+  { "Float64", bricks::ScalarType::Float64 } };
 
 /// What several features are tried on.
 enum class Subject

@@ -6,10 +6,10 @@
 #include "tests/scenes/GeneratedVolume.h"
 #include "tests/unit/mesh/TestMesh.h"
 
+#include "DSMBricks/build/TriangleMeshBuilder.h"
+#include "DSMBricks/build/VoxelBrickBuilder.h"
 #include "DSMCore/store/BlockStore.h"
 #include "DSMCore/transport/Messenger.h"
-#include "DSMRayTracing/build/TriangleMeshBuilder.h"
-#include "DSMRayTracing/build/VoxelBrickBuilder.h"
 #include "DSMRayTracing/frame/FrameRequest.h"
 #include "DSMRayTracing/scene/Scene.h"
 
@@ -67,26 +67,27 @@ public:
   }
 
   /// Rank r has the r-th slab, the last rank none when there are several.
-  std::shared_ptr<rt::VoxelField> Publish(const Generated::Recipe& recipe)
+  std::shared_ptr<bricks::VoxelField> Publish(const Generated::Recipe& recipe)
   {
-    const rt::BrickLattice lattice(recipe.Points, recipe.Type, recipe.Blanked, recipe.BrickEdge);
+    const bricks::BrickLattice lattice(
+      recipe.Points, recipe.Type, recipe.Blanked, recipe.BrickEdge);
     const int rank = this->Messenger.GetRank();
     const int parts = std::max(this->Messenger.GetSize() - 1, 1);
-    std::vector<std::shared_ptr<const rt::VoxelSource>> pieces;
+    std::vector<std::shared_ptr<const bricks::VoxelSource>> pieces;
     if (rank < parts)
     {
-      rt::Box cells{ rt::Index3(0), lattice.GetCells() };
+      bricks::Box cells{ bricks::Index3(0), lattice.GetCells() };
       cells.Min.z = cells.Max.z * rank / parts;
       cells.Max.z = cells.Max.z * (rank + 1) / parts;
       pieces.push_back(std::make_shared<Generated::Volume>(recipe, cells));
     }
-    rt::VoxelFragmentSource source(lattice, pieces);
-    rt::VoxelBrickSink sink(lattice);
-    auto field = std::make_shared<rt::VoxelField>();
+    bricks::VoxelFragmentSource source(lattice, pieces);
+    bricks::VoxelBrickSink sink(lattice);
+    auto field = std::make_shared<bricks::VoxelField>();
     field->Lattice = lattice;
     field->Segment = this->Store.Publish(
       "volume", lattice.CreateDirectory(this->Messenger.GetSize()), source, sink);
-    field->Hierarchy = rt::MacrocellHierarchy(lattice, *field->Segment, this->Messenger);
+    field->Hierarchy = bricks::MacrocellHierarchy(lattice, *field->Segment, this->Messenger);
     return field;
   }
 
@@ -96,7 +97,7 @@ public:
   {
     rt::IsosurfaceObject object;
     object.Field = this->Publish(recipe);
-    const glm::dvec3 cells(recipe.Points - rt::Index3(1));
+    const glm::dvec3 cells(recipe.Points - bricks::Index3(1));
     const double spacing = 2.0 / std::max({ cells.x, cells.y, cells.z });
     object.SetIndexToWorld(place * glm::scale(glm::dmat4(1.0), glm::dvec3(spacing)) *
       glm::translate(glm::dmat4(1.0), -0.5 * cells));
@@ -116,10 +117,10 @@ public:
     const auto rank = static_cast<std::uint64_t>(this->Messenger.GetRank());
     const Generated::Mesh piece =
       rank < parts ? TestMesh::TakePart(mesh, rank, parts, 7) : Generated::Mesh();
-    rt::TriangleMeshSettings settings;
+    bricks::TriangleMeshSettings settings;
     settings.BrickBytes = 2048;
     rt::MeshInstance instance(
-      rt::PublishMesh("mesh", piece, settings, this->Store, this->Messenger), place);
+      bricks::PublishMesh("mesh", piece, settings, this->Store, this->Messenger), place);
     instance.Culling = cull;
     rt::MeshObject object;
     object.Instance = std::make_shared<rt::MeshInstance>(std::move(instance));

@@ -52,7 +52,7 @@ void AddShapes(Scenes& scenes)
   Recipe sheet = rough;
   sheet.Points = { 33, 3, 17 };
   Recipe bytes = rough;
-  bytes.Type = rt::ScalarType::UInt8;
+  bytes.Type = bricks::ScalarType::UInt8;
   bytes.Seed = 30;
   const Named<Recipe> recipes = { { "Waves", waves }, { "Ball", ball }, { "Rough", rough },
     { "Steps", steps }, { "Ramp", ramp }, { "Cell", cell }, { "Sheet", sheet },
@@ -83,8 +83,8 @@ void AddMissingData(Scenes& scenes)
         Recipe recipe;
         recipe.Holes = holes;
         recipe.Blanked = blanked;
-        recipe.Type =
-          blanked && camera == Camera::AlongZ ? rt::ScalarType::Float64 : rt::ScalarType::Float32;
+        recipe.Type = blanked && camera == Camera::AlongZ ? bricks::ScalarType::Float64
+                                                          : bricks::ScalarType::Float32;
         if (blanked || holes != Recipe::Hole::None)
         {
           scenes.push_back({ "missing." + holeName + (blanked ? ".Blanked." : ".") + name,
@@ -109,7 +109,7 @@ void AddBricks(Scenes& scenes)
       [edge](SceneStage& stage)
       {
         Recipe recipe;
-        recipe.Points = edge == 20 ? rt::Index3(45, 40, 43) : rt::Index3(23, 19, 21);
+        recipe.Points = edge == 20 ? bricks::Index3(45, 40, 43) : bricks::Index3(23, 19, 21);
         recipe.BrickEdge = edge;
         stage.World.Transport.Shadows = true;
         stage.Add(stage.CreateIsosurface(recipe, { 35.0, 60.0 }));
@@ -119,7 +119,7 @@ void AddBricks(Scenes& scenes)
 
 void AddFieldColors(Scenes& scenes)
 {
-  const auto add = [&](const std::string& name, rt::ScalarType type, double first, double last,
+  const auto add = [&](const std::string& name, bricks::ScalarType type, double first, double last,
                      bool logarithmic, Recipe::Hole holes)
   {
     scenes.push_back({ "colors." + name,
@@ -143,12 +143,12 @@ void AddFieldColors(Scenes& scenes)
   {
     add("Linear." + name, type, 20.0, 80.0, false, Hole::None);
   }
-  add("OutOfRange", rt::ScalarType::Float32, 45.0, 55.0, false, Hole::None);
-  add("Constant", rt::ScalarType::Float32, 50.0, 50.0, false, Hole::None);
-  add("Missing", rt::ScalarType::Float32, 20.0, 80.0, false, Hole::NotANumber);
-  add("Infinite", rt::ScalarType::Float64, 20.0, 80.0, false, Hole::Infinite);
-  add("Logarithmic", rt::ScalarType::UInt16, 10.0, 90.0, true, Hole::None);
-  add("LogarithmicOutOfRange", rt::ScalarType::Float32, 40.0, 60.0, true, Hole::NotANumber);
+  add("OutOfRange", bricks::ScalarType::Float32, 45.0, 55.0, false, Hole::None);
+  add("Constant", bricks::ScalarType::Float32, 50.0, 50.0, false, Hole::None);
+  add("Missing", bricks::ScalarType::Float32, 20.0, 80.0, false, Hole::NotANumber);
+  add("Infinite", bricks::ScalarType::Float64, 20.0, 80.0, false, Hole::Infinite);
+  add("Logarithmic", bricks::ScalarType::UInt16, 10.0, 90.0, true, Hole::None);
+  add("LogarithmicOutOfRange", bricks::ScalarType::Float32, 40.0, 60.0, true, Hole::NotANumber);
   scenes.push_back({ "colors.Itself",
     [](SceneStage& stage)
     {

@@ -2,9 +2,9 @@
 #ifndef FunctionVolume_h
 #define FunctionVolume_h
 
+#include "DSMBricks/build/VoxelBrickBuilder.h"
 #include "DSMCore/store/BlockStore.h"
 #include "DSMCore/transport/Messenger.h"
-#include "DSMRayTracing/build/VoxelBrickBuilder.h"
 #include "DSMRayTracing/scene/Scene.h"
 
 #include <cstring>
@@ -12,7 +12,7 @@
 #include <memory>
 
 /// A volume of doubles that samples a function of the world position over [-1, 1]^3.
-class FunctionVolume final : public rt::VoxelSource
+class FunctionVolume final : public bricks::VoxelSource
 {
 public:
   using Function = std::function<double(const glm::dvec3&)>;
@@ -23,9 +23,12 @@ public:
   {
   }
 
-  rt::Box GetCells() const override { return { rt::Index3(0), rt::Index3(this->Points - 1) }; }
+  bricks::Box GetCells() const override
+  {
+    return { bricks::Index3(0), bricks::Index3(this->Points - 1) };
+  }
 
-  void ReadSamples(const rt::Box& points, std::byte* out) const override
+  void ReadSamples(const bricks::Box& points, std::byte* out) const override
   {
     for (auto k = points.Min.z; k < points.Max.z; ++k)
     {
@@ -58,14 +61,15 @@ public:
   static rt::IsosurfaceObject Publish(
     std::int64_t points, Function function, dsm::Messenger& messenger, dsm::BlockStore& store)
   {
-    const rt::BrickLattice lattice(rt::Index3(points), rt::ScalarType::Float64, false, 16);
-    rt::VoxelFragmentSource source(
+    const bricks::BrickLattice lattice(
+      bricks::Index3(points), bricks::ScalarType::Float64, false, 16);
+    bricks::VoxelFragmentSource source(
       lattice, { std::make_shared<FunctionVolume>(points, std::move(function)) });
-    rt::VoxelBrickSink sink(lattice);
-    auto field = std::make_shared<rt::VoxelField>();
+    bricks::VoxelBrickSink sink(lattice);
+    auto field = std::make_shared<bricks::VoxelField>();
     field->Lattice = lattice;
     field->Segment = store.Publish("function", lattice.CreateDirectory(1), source, sink);
-    field->Hierarchy = rt::MacrocellHierarchy(lattice, *field->Segment, messenger);
+    field->Hierarchy = bricks::MacrocellHierarchy(lattice, *field->Segment, messenger);
     rt::IsosurfaceObject object;
     object.Field = field;
     object.SetIndexToWorld(GetIndexToWorld(points));

@@ -2,8 +2,8 @@
 #ifndef MeshFile_h
 #define MeshFile_h
 
+#include "DSMBricks/build/TriangleArrays.h"
 #include "DSMCore/base/Error.h"
-#include "DSMRayTracing/build/TriangleArrays.h"
 
 #include <algorithm>
 #include <cstdint>
@@ -18,7 +18,7 @@
 namespace MeshFile
 {
 
-using Mesh = rt::TriangleArrays<float>;
+using Mesh = bricks::TriangleArrays<float>;
 
 inline void AddFan(Mesh& mesh, const std::vector<std::uint64_t>& points)
 {

@@ -5,7 +5,7 @@
 #include "tests/support/SphereScene.h"
 #include "tests/unit/mesh/TestMesh.h"
 
-#include "DSMRayTracing/build/TriangleMeshBuilder.h"
+#include "DSMBricks/build/TriangleMeshBuilder.h"
 
 /// The noisy sphere's isosurfaces, a blob of triangles that cuts through them, and a coloured
 /// terrain of squares below, with edges, shadows and translucency across the objects.
@@ -15,17 +15,17 @@ namespace MeshScene
 constexpr std::uint32_t BrickBytes = 2048;
 
 /// Rank r has the r-th part of the shuffled triangles, the last rank none when there are several.
-inline std::shared_ptr<rt::TriangleMesh> Publish(
+inline std::shared_ptr<bricks::TriangleMesh> Publish(
   const TestMesh::Mesh& mesh, dsm::Messenger& messenger, dsm::BlockStore& store)
 {
   const auto parts = static_cast<std::uint64_t>(std::max(messenger.GetSize() - 1, 1));
   const auto rank = static_cast<std::uint64_t>(messenger.GetRank());
   const TestMesh::Mesh piece =
     rank < parts ? TestMesh::TakePart(mesh, rank, parts, 7) : TestMesh::Mesh();
-  rt::TriangleMeshSettings settings;
+  bricks::TriangleMeshSettings settings;
   settings.BrickBytes = BrickBytes;
   settings.Threads = 2;
-  return rt::PublishMesh("mesh", piece, settings, store, messenger);
+  return bricks::PublishMesh("mesh", piece, settings, store, messenger);
 }
 
 inline rt::Scene Create(dsm::Messenger& messenger, dsm::BlockStore& store)

@@ -2,11 +2,11 @@
 #ifndef SphereScene_h
 #define SphereScene_h
 
+#include "DSMBricks/build/VoxelBrickBuilder.h"
+#include "DSMBricks/sample/SampleVolume.h"
 #include "DSMCore/store/BlockStore.h"
 #include "DSMCore/transport/Messenger.h"
-#include "DSMRayTracing/build/VoxelBrickBuilder.h"
 #include "DSMRayTracing/frame/FrameRequest.h"
-#include "DSMRayTracing/sample/SampleVolume.h"
 #include "DSMRayTracing/scene/Scene.h"
 
 #include <glm/gtc/matrix_transform.hpp>
@@ -35,27 +35,29 @@ inline dsm::BlockStore::Settings CreateSettings(std::size_t cacheBytes, int work
 }
 
 /// A noisy sphere; rank r has the r-th slab, the last rank none when there are several.
-inline std::shared_ptr<rt::VoxelField> Publish(dsm::Messenger& messenger, dsm::BlockStore& store)
+inline std::shared_ptr<bricks::VoxelField> Publish(
+  dsm::Messenger& messenger, dsm::BlockStore& store)
 {
-  const rt::SampleVolume volume(rt::SampleVolume::Kind::Sphere, rt::Index3(Points));
-  const rt::BrickLattice lattice(rt::Index3(Points), rt::ScalarType::Float32, false, BrickEdge);
+  const bricks::SampleVolume volume(bricks::SampleVolume::Kind::Sphere, bricks::Index3(Points));
+  const bricks::BrickLattice lattice(
+    bricks::Index3(Points), bricks::ScalarType::Float32, false, BrickEdge);
   const int rank = messenger.GetRank();
   const int parts = std::max(messenger.GetSize() - 1, 1);
-  std::vector<std::shared_ptr<const rt::VoxelSource>> pieces;
+  std::vector<std::shared_ptr<const bricks::VoxelSource>> pieces;
   if (rank < parts)
   {
-    const rt::Box cells{ { 0, 0, (Points - 1) * rank / parts },
+    const bricks::Box cells{ { 0, 0, (Points - 1) * rank / parts },
       { Points - 1, Points - 1, (Points - 1) * (rank + 1) / parts } };
     pieces.push_back(
-      std::make_shared<rt::SampleVolumeSource>(volume, cells, rt::ScalarType::Float32));
+      std::make_shared<bricks::SampleVolumeSource>(volume, cells, bricks::ScalarType::Float32));
   }
-  rt::VoxelFragmentSource source(lattice, pieces);
-  rt::VoxelBrickSink sink(lattice);
-  auto field = std::make_shared<rt::VoxelField>();
+  bricks::VoxelFragmentSource source(lattice, pieces);
+  bricks::VoxelBrickSink sink(lattice);
+  auto field = std::make_shared<bricks::VoxelField>();
   field->Lattice = lattice;
   field->Segment =
     store.Publish("sphere", lattice.CreateDirectory(messenger.GetSize()), source, sink);
-  field->Hierarchy = rt::MacrocellHierarchy(lattice, *field->Segment, messenger);
+  field->Hierarchy = bricks::MacrocellHierarchy(lattice, *field->Segment, messenger);
   return field;
 }
 
@@ -71,7 +73,7 @@ inline rt::FrameRequest CreateRequest(int width, int height)
   return request;
 }
 
-inline rt::Scene CreateScene(const std::shared_ptr<rt::VoxelField>& field, float opacity)
+inline rt::Scene CreateScene(const std::shared_ptr<bricks::VoxelField>& field, float opacity)
 {
   rt::Scene scene;
   scene.Lights.emplace_back();

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The lines along the sides of triangles, in pixels.
+#include "DSMBricks/layout/MeshAttributes.h"
 #include "DSMRayTracing/frame/PixelRays.h"
-#include "DSMRayTracing/layout/MeshAttributes.h"
 #include "DSMRayTracing/light/EdgeCover.h"
 
 #include <gtest/gtest.h>
@@ -58,7 +58,7 @@ TEST(EdgeCover, OnlySidesThatAreEdgesCount)
   const glm::dvec3 middles[3] = { { 0.0, -2.99, 0.0 }, { 1.99, 1.0, 0.0 }, { -1.99, 1.0, 0.0 } };
   for (int side = 0; side < 3; ++side)
   {
-    for (unsigned flags = 0; flags <= rt::AllEdges; ++flags)
+    for (unsigned flags = 0; flags <= bricks::AllEdges; ++flags)
     {
       EXPECT_EQ(rt::GetEdgeCover(middles[side], corners, flags, 2.0f, view),
         (flags >> side & 1u) != 0 ? 1.0 : 0.0)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "DSMRayTracing/sample/SampleVolume.h"
+#include "DSMBricks/sample/SampleVolume.h"
 
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
@@ -11,9 +11,10 @@
 namespace
 {
 
-std::vector<std::byte> Fill(const rt::SampleVolume& volume, const rt::Box& box, rt::ScalarType type)
+std::vector<std::byte> Fill(
+  const bricks::SampleVolume& volume, const bricks::Box& box, bricks::ScalarType type)
 {
-  std::vector<std::byte> bytes(box.GetCount() * rt::GetBytes(type));
+  std::vector<std::byte> bytes(box.GetCount() * bricks::GetBytes(type));
   volume.Fill(box, type, bytes.data());
   return bytes;
 }
@@ -22,12 +23,13 @@ std::vector<std::byte> Fill(const rt::SampleVolume& volume, const rt::Box& box, 
 
 TEST(SampleVolume, PiecesAreThePartsOfTheWhole)
 {
-  for (const auto kind : { rt::SampleVolume::Kind::Sphere, rt::SampleVolume::Kind::MixingLayer })
+  for (const auto kind :
+    { bricks::SampleVolume::Kind::Sphere, bricks::SampleVolume::Kind::MixingLayer })
   {
-    const rt::SampleVolume volume(kind, { 20, 17, 23 });
-    const auto whole = Fill(volume, { { 0, 0, 0 }, { 20, 17, 23 } }, rt::ScalarType::Float32);
-    const rt::Box box{ { 3, 5, 7 }, { 11, 6, 20 } };
-    const auto piece = Fill(volume, box, rt::ScalarType::Float32);
+    const bricks::SampleVolume volume(kind, { 20, 17, 23 });
+    const auto whole = Fill(volume, { { 0, 0, 0 }, { 20, 17, 23 } }, bricks::ScalarType::Float32);
+    const bricks::Box box{ { 3, 5, 7 }, { 11, 6, 20 } };
+    const auto piece = Fill(volume, box, bricks::ScalarType::Float32);
     std::size_t at = 0;
     for (auto k = box.Min.z; k < box.Max.z; ++k)
     {
@@ -42,7 +44,7 @@ TEST(SampleVolume, PiecesAreThePartsOfTheWhole)
 
 TEST(SampleVolume, SphereIsARadiusWithNoise)
 {
-  const rt::SampleVolume volume(rt::SampleVolume::Kind::Sphere, rt::Index3(64));
+  const bricks::SampleVolume volume(bricks::SampleVolume::Kind::Sphere, bricks::Index3(64));
   EXPECT_NEAR(volume.GetSpacing(), 2.0 / 64.0, 1e-15);
   double largest = 0.0;
   for (std::int64_t at = 0; at < 64; ++at)
@@ -57,10 +59,10 @@ TEST(SampleVolume, SphereIsARadiusWithNoise)
 
 TEST(SampleVolume, IntegersAreScaledAndRounded)
 {
-  const rt::SampleVolume volume(rt::SampleVolume::Kind::Sphere, rt::Index3(8));
-  const rt::Box box{ { 0, 0, 0 }, { 8, 8, 8 } };
-  const auto bytes = Fill(volume, box, rt::ScalarType::UInt8);
-  const auto shorts = Fill(volume, box, rt::ScalarType::Int16);
+  const bricks::SampleVolume volume(bricks::SampleVolume::Kind::Sphere, bricks::Index3(8));
+  const bricks::Box box{ { 0, 0, 0 }, { 8, 8, 8 } };
+  const auto bytes = Fill(volume, box, bricks::ScalarType::UInt8);
+  const auto shorts = Fill(volume, box, bricks::ScalarType::Int16);
   for (std::int64_t at = 0; at < 8; ++at)
   {
     const std::size_t index = at + 8 * (at + 8 * at);

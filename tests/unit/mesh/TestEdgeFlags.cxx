@@ -2,7 +2,7 @@
 // Which sides of triangles are edges of polygons, from the source to the hit.
 #include "TestMesh.h"
 
-#include "DSMRayTracing/layout/TriangleBrick.h"
+#include "DSMBricks/layout/TriangleBrick.h"
 
 #include <gtest/gtest.h>
 
@@ -58,7 +58,7 @@ Sizes Measure(const Mesh& mesh, std::uint32_t brickBytes)
   TraceOnStore(
     mesh,
     [&](dsm::ObjectStore&, dsm::ObjectStore::Worker&,
-      const std::shared_ptr<rt::TriangleMesh>& published)
+      const std::shared_ptr<bricks::TriangleMesh>& published)
     {
       sizes.Triangles = published->Triangles;
       published->Segment->ForEachResident([&](dsm::BlockId, const std::byte*, std::size_t bytes)
@@ -80,7 +80,7 @@ TEST(EdgeFlags, TurnWithTheCorners)
       mesh.EdgeFlags.clear();
     }
     TraceAlone(mesh,
-      [&](const Tracer& tracer, const std::shared_ptr<rt::TriangleMesh>& published)
+      [&](const Tracer& tracer, const std::shared_ptr<bricks::TriangleMesh>& published)
       {
         EXPECT_EQ(published->Attributes.EdgeFlags, flagged);
         const rt::MeshInstance instance(published, glm::dmat4(1.0));
@@ -112,7 +112,7 @@ TEST(EdgeFlags, TakeThreeBitsATriangleAndNothingWhereThereAreNone)
   Mesh mesh = CreateSquares(120);
   mesh.Colors.clear();
   mesh.TextureCoordinates.clear();
-  const std::uint32_t brickBytes = rt::TriangleMeshSettings().BrickBytes;
+  const std::uint32_t brickBytes = bricks::TriangleMeshSettings().BrickBytes;
   const Sizes with = Measure(mesh, brickBytes);
   mesh.EdgeFlags.clear();
   const Sizes without = Measure(mesh, brickBytes);

@@ -4,9 +4,9 @@
 
 #include "tests/support/LoopbackCluster.h"
 
+#include "DSMBricks/build/TriangleArrays.h"
+#include "DSMBricks/build/TriangleMeshBuilder.h"
 #include "DSMCore/table/ObjectStore.h"
-#include "DSMRayTracing/build/TriangleArrays.h"
-#include "DSMRayTracing/build/TriangleMeshBuilder.h"
 #include "DSMRayTracing/frame/FrameAgreement.h"
 #include "DSMRayTracing/mesh/MeshSearch.h"
 
@@ -29,7 +29,7 @@
 namespace TestMesh
 {
 
-using Mesh = rt::TriangleArrays<double>;
+using Mesh = bricks::TriangleArrays<double>;
 using Tracer = rt::MeshSearch<dsm::ObjectStore>;
 
 /// What Tracer::Intersect gives the hits of a packet to.
@@ -140,8 +140,8 @@ inline Mesh CreateTerrain(int n)
 /// The triangles whose number in a shuffled order falls to `part`; all attributes go with them. A
 /// part's points are in another order too.
 template <class Real>
-rt::TriangleArrays<Real> TakePart(
-  const rt::TriangleArrays<Real>& mesh, std::uint64_t part, std::uint64_t parts, unsigned seed)
+bricks::TriangleArrays<Real> TakePart(
+  const bricks::TriangleArrays<Real>& mesh, std::uint64_t part, std::uint64_t parts, unsigned seed)
 {
   std::vector<std::uint64_t> order(mesh.GetTriangleCount());
   std::iota(order.begin(), order.end(), 0u);
@@ -149,7 +149,7 @@ rt::TriangleArrays<Real> TakePart(
   {
     std::shuffle(order.begin(), order.end(), std::mt19937(seed));
   }
-  rt::TriangleArrays<Real> piece;
+  bricks::TriangleArrays<Real> piece;
   piece.NormalsOf = mesh.NormalsOf;
   piece.ValuesOf = mesh.ValuesOf;
   piece.ColorsOf = mesh.ColorsOf;
@@ -174,29 +174,29 @@ rt::TriangleArrays<Real> TakePart(
       {
         copy(mesh.Positions, point, 3, piece.Positions);
         copy(mesh.TextureCoordinates, point, 2, piece.TextureCoordinates);
-        if (mesh.NormalsOf == rt::Attachment::Points)
+        if (mesh.NormalsOf == bricks::Attachment::Points)
         {
           copy(mesh.Normals, point, 3, piece.Normals);
         }
-        if (mesh.ValuesOf == rt::Attachment::Points)
+        if (mesh.ValuesOf == bricks::Attachment::Points)
         {
           copy(mesh.Values, point, 1, piece.Values);
         }
-        if (mesh.ColorsOf == rt::Attachment::Points)
+        if (mesh.ColorsOf == bricks::Attachment::Points)
         {
           copy(mesh.Colors, point, 4, piece.Colors);
         }
       }
     }
-    if (mesh.NormalsOf == rt::Attachment::Triangles)
+    if (mesh.NormalsOf == bricks::Attachment::Triangles)
     {
       copy(mesh.Normals, triangle, 3, piece.Normals);
     }
-    if (mesh.ValuesOf == rt::Attachment::Triangles)
+    if (mesh.ValuesOf == bricks::Attachment::Triangles)
     {
       copy(mesh.Values, triangle, 1, piece.Values);
     }
-    if (mesh.ColorsOf == rt::Attachment::Triangles)
+    if (mesh.ColorsOf == bricks::Attachment::Triangles)
     {
       copy(mesh.Colors, triangle, 4, piece.Colors);
     }
@@ -249,33 +249,33 @@ inline void TraceOnWorker(dsm::ObjectStore& store, dsm::Messenger& messenger,
 }
 
 /// Publishes `mesh` on one rank, in small bricks, and runs `work` on a worker.
-inline void TraceOnStore(const rt::TriangleSource& mesh,
-  const std::function<void(
-    dsm::ObjectStore&, dsm::ObjectStore::Worker&, const std::shared_ptr<rt::TriangleMesh>&)>& work,
+inline void TraceOnStore(const bricks::TriangleSource& mesh,
+  const std::function<void(dsm::ObjectStore&, dsm::ObjectStore::Worker&,
+    const std::shared_ptr<bricks::TriangleMesh>&)>& work,
   std::uint32_t brickBytes = 1024)
 {
   RunOnCluster(1,
     [&](dsm::Messenger& messenger)
     {
       dsm::ObjectStore store(messenger, { std::size_t(1) << 20, 1 });
-      rt::TriangleMeshSettings settings;
+      bricks::TriangleMeshSettings settings;
       settings.BrickBytes = brickBytes;
       settings.Threads = 2;
-      const auto published = rt::PublishMesh("mesh", mesh, settings, store, messenger);
+      const auto published = bricks::PublishMesh("mesh", mesh, settings, store, messenger);
       TraceOnWorker(store, messenger,
         [&](dsm::ObjectStore::Worker& worker) { work(store, worker, published); });
     });
 }
 
 /// The same with a tracer.
-inline void TraceAlone(const rt::TriangleSource& mesh,
-  const std::function<void(const Tracer&, const std::shared_ptr<rt::TriangleMesh>&)>& work,
+inline void TraceAlone(const bricks::TriangleSource& mesh,
+  const std::function<void(const Tracer&, const std::shared_ptr<bricks::TriangleMesh>&)>& work,
   std::uint32_t brickBytes = 1024)
 {
   TraceOnStore(
     mesh,
     [&](dsm::ObjectStore& store, dsm::ObjectStore::Worker& worker,
-      const std::shared_ptr<rt::TriangleMesh>& published)
+      const std::shared_ptr<bricks::TriangleMesh>& published)
     { work(Tracer(store, worker), published); },
     brickBytes);
 }
@@ -290,7 +290,7 @@ struct Oracle
   double Weights[3] = {};
 };
 
-inline glm::dvec3 GetPoint(const rt::TriangleSource& mesh, std::uint64_t triangle, int corner)
+inline glm::dvec3 GetPoint(const bricks::TriangleSource& mesh, std::uint64_t triangle, int corner)
 {
   std::uint64_t points[3];
   mesh.GetTriangle(triangle, points);
@@ -299,7 +299,7 @@ inline glm::dvec3 GetPoint(const rt::TriangleSource& mesh, std::uint64_t triangl
   return point;
 }
 
-inline Oracle FindByTryingAll(const rt::TriangleSource& mesh, const rt::Ray& ray)
+inline Oracle FindByTryingAll(const bricks::TriangleSource& mesh, const rt::Ray& ray)
 {
   Oracle nearest;
   for (std::uint64_t triangle = 0; triangle < mesh.GetTriangleCount(); ++triangle)

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "TestMesh.h"
 
-#include "DSMRayTracing/layout/OctahedralNormal.h"
+#include "DSMBricks/layout/OctahedralNormal.h"
 
 #include <gtest/gtest.h>
 
@@ -21,7 +21,7 @@ void LookDown(const Mesh& mesh,
     check)
 {
   TraceAlone(mesh,
-    [&](const Tracer& tracer, const std::shared_ptr<rt::TriangleMesh>& published)
+    [&](const Tracer& tracer, const std::shared_ptr<bricks::TriangleMesh>& published)
     {
       const rt::MeshInstance instance(published, glm::dmat4(1.0));
       std::mt19937 random(51);
@@ -51,7 +51,7 @@ TEST(OctahedralNormal, WithinAHundredthOfADegree)
       glm::normalize(glm::dvec3(normal(random), normal(random), normal(random)));
     glm::vec3 unpacked;
     const glm::dvec3 longer = 7.0 * direction;
-    rt::OctahedralNormal::Unpack(rt::OctahedralNormal::Pack(&longer.x), &unpacked.x);
+    bricks::OctahedralNormal::Unpack(bricks::OctahedralNormal::Pack(&longer.x), &unpacked.x);
     const double sine = glm::length(glm::cross(glm::normalize(glm::dvec3(unpacked)), direction));
     ASSERT_LT(glm::degrees(std::asin(sine)), 0.01);
     ASSERT_GT(glm::dot(glm::dvec3(unpacked), direction), 0.0);
@@ -67,14 +67,14 @@ TEST(OctahedralNormal, AxesAndNoDirection)
       glm::dvec3 direction(0.0);
       direction[axis] = sign;
       glm::vec3 unpacked;
-      rt::OctahedralNormal::Unpack(rt::OctahedralNormal::Pack(&direction.x), &unpacked.x);
+      bricks::OctahedralNormal::Unpack(bricks::OctahedralNormal::Pack(&direction.x), &unpacked.x);
       EXPECT_NEAR(glm::distance(glm::dvec3(unpacked), direction), 0.0, 1e-6);
     }
   }
   const double zero[3] = { 0.0, 0.0, 0.0 };
   const double nan[3] = { 1.0, std::numeric_limits<double>::quiet_NaN(), 0.0 };
-  EXPECT_EQ(rt::OctahedralNormal::Pack(zero), rt::OctahedralNormal::None);
-  EXPECT_EQ(rt::OctahedralNormal::Pack(nan), rt::OctahedralNormal::None);
+  EXPECT_EQ(bricks::OctahedralNormal::Pack(zero), bricks::OctahedralNormal::None);
+  EXPECT_EQ(bricks::OctahedralNormal::Pack(nan), bricks::OctahedralNormal::None);
 }
 
 TEST(MeshAttributes, OfPointsAreInterpolated)
@@ -116,8 +116,8 @@ TEST(MeshAttributes, NormalsAreInterpolatedAsUnitVectors)
 TEST(MeshAttributes, OfTrianglesAreExact)
 {
   Mesh mesh = CreateTerrain(12);
-  mesh.ValuesOf = rt::Attachment::Triangles;
-  mesh.ColorsOf = rt::Attachment::Triangles;
+  mesh.ValuesOf = bricks::Attachment::Triangles;
+  mesh.ColorsOf = bricks::Attachment::Triangles;
   mesh.Values.clear();
   mesh.Colors.clear();
   for (std::uint64_t triangle = 0; triangle < mesh.GetTriangleCount(); ++triangle)
@@ -137,7 +137,7 @@ TEST(MeshAttributes, OfTrianglesAreExact)
 TEST(MeshAttributes, NormalsOfTrianglesAreNotInterpolated)
 {
   Mesh mesh = CreateTerrain(10);
-  mesh.NormalsOf = rt::Attachment::Triangles;
+  mesh.NormalsOf = bricks::Attachment::Triangles;
   mesh.Normals.clear();
   for (std::uint64_t triangle = 0; triangle < mesh.GetTriangleCount(); ++triangle)
   {

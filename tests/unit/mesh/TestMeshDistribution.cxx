@@ -49,10 +49,10 @@ Outcome Publish(const Mesh& mesh, const Setting& setting)
         ? (rank + 1 == ranks ? TakePart(mesh, 0, 1, setting.Seed) : Mesh())
         : TakePart(mesh, rank, ranks, setting.Seed);
       dsm::ObjectStore store(messenger, { setting.Cache, 1 });
-      rt::TriangleMeshSettings settings;
+      bricks::TriangleMeshSettings settings;
       settings.BrickBytes = 1500;
       settings.Threads = setting.Threads;
-      const auto published = rt::PublishMesh("mesh", piece, settings, store, messenger);
+      const auto published = bricks::PublishMesh("mesh", piece, settings, store, messenger);
       const rt::MeshInstance instance(published, glm::dmat4(1.0));
       std::vector<double> hits;
       TraceOnWorker(store, messenger,
@@ -110,8 +110,8 @@ Mesh CreateRichMesh()
   {
     mesh.Triangles.insert(mesh.Triangles.end(), mesh.Triangles.begin(), mesh.Triangles.begin() + 3);
   }
-  mesh.ValuesOf = rt::Attachment::Triangles;
-  mesh.ColorsOf = rt::Attachment::Triangles;
+  mesh.ValuesOf = bricks::Attachment::Triangles;
+  mesh.ColorsOf = bricks::Attachment::Triangles;
   for (std::uint64_t triangle = 0; triangle < mesh.GetTriangleCount(); ++triangle)
   {
     mesh.Values.push_back(static_cast<double>(triangle / 2));
@@ -193,7 +193,7 @@ TEST(MeshDistribution, TheStoreHoldsNothingButTheBricks)
     {
       dsm::ObjectStore store(messenger, { CacheBytes, 1 });
       const Mesh piece = TakePart(CreateBlob(3), messenger.GetRank(), 2, 5);
-      const auto published = rt::PublishMesh("mesh", piece, {}, store, messenger);
+      const auto published = bricks::PublishMesh("mesh", piece, {}, store, messenger);
       TraceOnWorker(store, messenger, [](dsm::ObjectStore::Worker&) {});
       EXPECT_EQ(store.GetCounters().ResidentBytes, published->Segment->GetResidentBytes());
     });
@@ -207,7 +207,7 @@ TEST(MeshDistribution, ProgressRisesToOne)
       dsm::ObjectStore store(messenger, { CacheBytes, 1 });
       const Mesh piece = TakePart(CreateBlob(4), messenger.GetRank(), 2, 5);
       double last = -1.0;
-      rt::PublishMesh("mesh", piece, {}, store, messenger,
+      bricks::PublishMesh("mesh", piece, {}, store, messenger,
         [&last](double done)
         {
           EXPECT_GE(done, last);

@@ -18,12 +18,12 @@ namespace
 using namespace TestMesh;
 
 /// Every ray: hit or miss, T, the side and the plane's normal as the oracle has them.
-void CompareWithOracle(const rt::TriangleSource& mesh, const std::vector<rt::Ray>& rays,
+void CompareWithOracle(const bricks::TriangleSource& mesh, const std::vector<rt::Ray>& rays,
   double tolerance, std::uint32_t brickBytes)
 {
   TraceAlone(
     mesh,
-    [&](const Tracer& tracer, const std::shared_ptr<rt::TriangleMesh>& published)
+    [&](const Tracer& tracer, const std::shared_ptr<bricks::TriangleMesh>& published)
     {
       const rt::MeshInstance instance(published, glm::dmat4(1.0));
       int hits = 0;
@@ -49,7 +49,7 @@ void CompareWithOracle(const rt::TriangleSource& mesh, const std::vector<rt::Ray
 
 /// What the bricks hold: positions in single precision.
 template <class Real>
-rt::TriangleArrays<Real> RoundToFloat(rt::TriangleArrays<Real> mesh)
+bricks::TriangleArrays<Real> RoundToFloat(bricks::TriangleArrays<Real> mesh)
 {
   for (Real& coordinate : mesh.Positions)
   {
@@ -150,7 +150,7 @@ TEST(MeshHits, MovedScaledAndMirrored)
   matrix = glm::rotate(matrix, 0.7, glm::normalize(glm::dvec3(1.0, 2.0, -1.0)));
   matrix = glm::scale(matrix, glm::dvec3(-2.0, 0.5, 3.0));
   TraceAlone(mesh,
-    [&](const Tracer& tracer, const std::shared_ptr<rt::TriangleMesh>& published)
+    [&](const Tracer& tracer, const std::shared_ptr<bricks::TriangleMesh>& published)
     {
       const rt::MeshInstance instance(published, matrix);
       int hits = 0;
@@ -184,7 +184,7 @@ TEST(MeshHits, MovedScaledAndMirrored)
 TEST(MeshHits, Culling)
 {
   TraceAlone(RoundToFloat(CreateBlob(3)),
-    [&](const Tracer& tracer, const std::shared_ptr<rt::TriangleMesh>& published)
+    [&](const Tracer& tracer, const std::shared_ptr<bricks::TriangleMesh>& published)
     {
       rt::MeshInstance instance(published, glm::dmat4(1.0));
       int both = 0;
@@ -221,7 +221,7 @@ TEST(MeshHits, Culling)
 TEST(MeshHits, RaysThatCannotHit)
 {
   TraceAlone(CreateBlob(2),
-    [&](const Tracer& tracer, const std::shared_ptr<rt::TriangleMesh>& published)
+    [&](const Tracer& tracer, const std::shared_ptr<bricks::TriangleMesh>& published)
     {
       const rt::MeshInstance instance(published, glm::dmat4(1.0));
       const double nan = std::numeric_limits<double>::quiet_NaN();
@@ -265,7 +265,7 @@ TEST_P(ScannedMesh, HitsAndBytes)
   mesh.Values.assign(mesh.GetPointCount(), 1.0);
   TraceAlone(
     mesh,
-    [&](const Tracer& tracer, const std::shared_ptr<rt::TriangleMesh>& published)
+    [&](const Tracer& tracer, const std::shared_ptr<bricks::TriangleMesh>& published)
     {
       EXPECT_EQ(published->Triangles + published->Dropped, mesh.GetTriangleCount());
       const double bytes = static_cast<double>(published->Segment->GetDirectory().GetTotalBytes()) +

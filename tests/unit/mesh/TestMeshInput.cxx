@@ -16,8 +16,8 @@ constexpr double NaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double Infinity = std::numeric_limits<double>::infinity();
 
 /// The error that every rank gets when rank r publishes pieces[r]; the store works on afterwards.
-std::string GetError(const std::vector<const rt::TriangleSource*>& pieces,
-  const rt::TriangleMeshSettings& settings = {})
+std::string GetError(const std::vector<const bricks::TriangleSource*>& pieces,
+  const bricks::TriangleMeshSettings& settings = {})
 {
   std::vector<std::string> errors(pieces.size());
   RunOnCluster(static_cast<int>(pieces.size()),
@@ -26,14 +26,14 @@ std::string GetError(const std::vector<const rt::TriangleSource*>& pieces,
       dsm::ObjectStore store(messenger, { std::size_t(1) << 20, 1 });
       try
       {
-        rt::PublishMesh("mesh", *pieces[messenger.GetRank()], settings, store, messenger);
+        bricks::PublishMesh("mesh", *pieces[messenger.GetRank()], settings, store, messenger);
       }
       catch (const dsm::Error& error)
       {
         errors[messenger.GetRank()] = error.what();
       }
       const Mesh good = TakePart(CreateBlob(2), messenger.GetRank(), messenger.GetSize(), 1);
-      EXPECT_EQ(rt::PublishMesh("mesh", good, {}, store, messenger)->Triangles, 320u);
+      EXPECT_EQ(bricks::PublishMesh("mesh", good, {}, store, messenger)->Triangles, 320u);
       TraceOnWorker(store, messenger, [](dsm::ObjectStore::Worker&) {});
     });
   for (const std::string& error : errors)
@@ -44,10 +44,10 @@ std::string GetError(const std::vector<const rt::TriangleSource*>& pieces,
 }
 
 /// Claims to have very many triangles.
-class BoundlessSource final : public rt::TriangleSource
+class BoundlessSource final : public bricks::TriangleSource
 {
 public:
-  rt::MeshAttributes GetAttributes() const override { return {}; }
+  bricks::MeshAttributes GetAttributes() const override { return {}; }
   std::uint64_t GetTriangleCount() const override { return std::uint64_t(1) << 31; }
   std::uint64_t GetPointCount() const override { return 3; }
   void GetTriangle(std::uint64_t, std::uint64_t*) const override { throw dsm::Error("was read"); }
@@ -56,7 +56,7 @@ public:
   double GetValue(std::uint64_t) const override { return 0.0; }
   void GetColor(std::uint64_t, std::uint8_t*) const override {}
   void GetTextureCoordinate(std::uint64_t, double*) const override {}
-  unsigned GetEdgeFlags(std::uint64_t) const override { return rt::AllEdges; }
+  unsigned GetEdgeFlags(std::uint64_t) const override { return bricks::AllEdges; }
 };
 
 } // namespace
@@ -69,7 +69,7 @@ TEST(MeshInput, EmptyOnAllRanks)
       [](dsm::Messenger& messenger)
       {
         dsm::ObjectStore store(messenger, { std::size_t(1) << 20, 1 });
-        const auto published = rt::PublishMesh("mesh", Mesh(), {}, store, messenger);
+        const auto published = bricks::PublishMesh("mesh", Mesh(), {}, store, messenger);
         EXPECT_EQ(published->Triangles, 0u);
         EXPECT_TRUE(published->Bricks.IsEmpty());
         TraceOnWorker(store, messenger,
@@ -100,7 +100,7 @@ TEST(MeshInput, WhatCannotBeHitIsLeftOut)
       5, 5, 6, 5, 5, 5,                      // points that coincide
       points + 3, points + 4, points + 5 }); // on one line
   TraceAlone(mesh,
-    [&](const Tracer& tracer, const std::shared_ptr<rt::TriangleMesh>& published)
+    [&](const Tracer& tracer, const std::shared_ptr<bricks::TriangleMesh>& published)
     {
       EXPECT_EQ(published->Triangles, good);
       EXPECT_EQ(published->Dropped, 5u);
@@ -125,7 +125,7 @@ TEST(MeshInput, OnlyWhatCannotBeHit)
   mesh.Positions = { 0.0, 0.0, 0.0, NaN, 1.0, 1.0, 5.0, 5.0, 5.0 };
   mesh.Triangles = { 0, 1, 2, 0, 0, 2 };
   TraceAlone(mesh,
-    [&](const Tracer&, const std::shared_ptr<rt::TriangleMesh>& published)
+    [&](const Tracer&, const std::shared_ptr<bricks::TriangleMesh>& published)
     {
       EXPECT_EQ(published->Triangles, 0u);
       EXPECT_EQ(published->Dropped, 2u);
@@ -148,7 +148,7 @@ TEST(MeshInput, NearlyFlatTrianglesAreHarmless)
   }
   const Mesh clean = CreateBlob(2);
   TraceAlone(mesh,
-    [&](const Tracer& tracer, const std::shared_ptr<rt::TriangleMesh>& published)
+    [&](const Tracer& tracer, const std::shared_ptr<bricks::TriangleMesh>& published)
     {
       const rt::MeshInstance instance(published, glm::dmat4(1.0));
       for (const rt::Ray& ray : CreateRays(2000, 42))
@@ -175,10 +175,10 @@ TEST(MeshInput, MoreTrianglesInOnePlaceThanABrickHolds)
     mesh.Triangles.insert(mesh.Triangles.end(), { 0, 1, 2 });
     mesh.Values.push_back(copy % 5000);
   }
-  mesh.ValuesOf = rt::Attachment::Triangles;
+  mesh.ValuesOf = bricks::Attachment::Triangles;
   TraceAlone(
     mesh,
-    [&](const Tracer& tracer, const std::shared_ptr<rt::TriangleMesh>& published)
+    [&](const Tracer& tracer, const std::shared_ptr<bricks::TriangleMesh>& published)
     {
       EXPECT_EQ(published->Triangles, 20000u);
       EXPECT_GT(published->Segment->GetDirectory().GetCount(), 2u);
@@ -199,7 +199,7 @@ TEST(MeshInput, OneTriangle)
   mesh.Positions = { 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0 };
   mesh.Triangles = { 1, 2, 0 };
   TraceAlone(mesh,
-    [&](const Tracer& tracer, const std::shared_ptr<rt::TriangleMesh>& published)
+    [&](const Tracer& tracer, const std::shared_ptr<bricks::TriangleMesh>& published)
     {
       EXPECT_EQ(published->Segment->GetDirectory().GetCount(), 1u);
       rt::Ray ray;
@@ -221,7 +221,7 @@ TEST(MeshInput, CoordinatesThatAreFloatsAreKeptExactly)
     coordinate = static_cast<float>(123456.0 + coordinate);
   }
   TraceAlone(mesh,
-    [&](const Tracer&, const std::shared_ptr<rt::TriangleMesh>& published)
+    [&](const Tracer&, const std::shared_ptr<bricks::TriangleMesh>& published)
     {
       EXPECT_NE(published->Origin, glm::dvec3(0.0));
       std::vector<double> expected = mesh.Positions;
@@ -229,7 +229,7 @@ TEST(MeshInput, CoordinatesThatAreFloatsAreKeptExactly)
       published->Segment->ForEachResident(
         [&](dsm::BlockId, const std::byte* block, std::size_t)
         {
-          const rt::TriangleBrick brick(block);
+          const bricks::TriangleBrick brick(block);
           for (int vertex = 0; vertex < brick.GetHeader().Vertices; ++vertex)
           {
             for (int axis = 0; axis < 3; ++axis)
@@ -251,7 +251,7 @@ TEST(MeshInput, TooManyTrianglesAreRefusedBeforeTheyAreRead)
 {
   const BoundlessSource boundless;
   const Mesh none;
-  rt::TriangleMeshSettings settings;
+  bricks::TriangleMeshSettings settings;
   settings.MemoryBytes = std::uint64_t(1) << 30;
   const std::string error = GetError({ &none, &boundless }, settings);
   EXPECT_NE(error.find("2147483648 triangles"), std::string::npos) << error;

@@ -69,7 +69,7 @@ void ExpectEqual(const rt::MeshHit& hit, const rt::MeshHit& expected)
 }
 
 /// With every kernel, for all rays of a packet and for some.
-Tally ComparePackets(const rt::TriangleSource& mesh, const std::vector<Packet>& packets,
+Tally ComparePackets(const bricks::TriangleSource& mesh, const std::vector<Packet>& packets,
   const glm::dmat4& matrix = glm::dmat4(1.0), const rt::MeshCulling& culling = {},
   std::uint32_t brickBytes = 1024)
 {
@@ -77,7 +77,7 @@ Tally ComparePackets(const rt::TriangleSource& mesh, const std::vector<Packet>& 
   TraceOnStore(
     mesh,
     [&](dsm::ObjectStore& store, dsm::ObjectStore::Worker& worker,
-      const std::shared_ptr<rt::TriangleMesh>& published)
+      const std::shared_ptr<bricks::TriangleMesh>& published)
     {
       rt::MeshInstance instance(published, matrix);
       instance.Culling = culling;
@@ -209,7 +209,7 @@ TEST(MeshPackets, TrianglesThatAreThereTwice)
   {
     mesh.Values.push_back(static_cast<double>(triangle));
   }
-  mesh.ValuesOf = rt::Attachment::Triangles;
+  mesh.ValuesOf = bricks::Attachment::Triangles;
   const auto blocks = CreateBlocks(150, 0.05, 25, glm::dvec3(0.5, 0.5, 0.0), 0.5);
   EXPECT_GT(ComparePackets(mesh, blocks).Hits, 1000);
   EXPECT_GT(ComparePackets(mesh, blocks, glm::dmat4(1.0), {}, 1).Hits, 1000);

@@ -18,7 +18,7 @@ void ExpectClosed(const Mesh& mesh, const glm::dvec3& center, std::uint32_t bric
 {
   TraceAlone(
     mesh,
-    [&](const Tracer& tracer, const std::shared_ptr<rt::TriangleMesh>& published)
+    [&](const Tracer& tracer, const std::shared_ptr<bricks::TriangleMesh>& published)
     {
       EXPECT_GT(published->Segment->GetDirectory().GetCount(), 10u);
       const rt::MeshInstance instance(published, glm::dmat4(1.0));
@@ -88,7 +88,7 @@ TEST(Watertight, GridWhoseEdgesLieInThePixelsPlanes)
   }
   TraceAlone(
     mesh,
-    [&](const Tracer& tracer, const std::shared_ptr<rt::TriangleMesh>& published)
+    [&](const Tracer& tracer, const std::shared_ptr<bricks::TriangleMesh>& published)
     {
       const rt::MeshInstance instance(published, glm::dmat4(1.0));
       for (int j = 0; j <= 4 * n; ++j)
@@ -123,7 +123,7 @@ TEST(Watertight, EdgesAndPointsGiveTheSameHitHoweverTheMeshIsCut)
     hits.emplace_back();
     TraceAlone(
       mesh,
-      [&](const Tracer& tracer, const std::shared_ptr<rt::TriangleMesh>& published)
+      [&](const Tracer& tracer, const std::shared_ptr<bricks::TriangleMesh>& published)
       {
         const rt::MeshInstance instance(published, glm::dmat4(1.0));
         for (std::uint64_t triangle = 0; triangle < mesh.GetTriangleCount(); ++triangle)

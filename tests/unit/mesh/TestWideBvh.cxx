@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "DSMRayTracing/accel/BrickBvh.h"
-#include "DSMRayTracing/accel/WideBvhBuilder.h"
+#include "DSMBricks/accel/BrickBvh.h"
+#include "DSMBricks/accel/WideBvhBuilder.h"
 #include "DSMRayTracing/ray/WideBvhTraversal.h"
 
 #include <gtest/gtest.h>
@@ -15,18 +15,18 @@
 namespace
 {
 
-rt::BoundingBox CreateBox(const float lower[3], const float upper[3])
+bricks::BoundingBox CreateBox(const float lower[3], const float upper[3])
 {
   const float low[4] = { lower[0], lower[1], lower[2], 0.0f };
   const float high[4] = { upper[0], upper[1], upper[2], 0.0f };
-  return { rt::Float4::Load(low), rt::Float4::Load(high) };
+  return { bricks::Float4::Load(low), bricks::Float4::Load(high) };
 }
 
-std::vector<rt::BoundingBox> CreateBoxes(int count, unsigned seed, float spread)
+std::vector<bricks::BoundingBox> CreateBoxes(int count, unsigned seed, float spread)
 {
   std::mt19937 random(seed);
   std::uniform_real_distribution<float> uniform(0.0f, 1.0f);
-  std::vector<rt::BoundingBox> boxes;
+  std::vector<bricks::BoundingBox> boxes;
   for (int box = 0; box < count; ++box)
   {
     float lower[3];
@@ -43,11 +43,11 @@ std::vector<rt::BoundingBox> CreateBoxes(int count, unsigned seed, float spread)
 
 /// Every item stands in one leaf, and lies within the boxes of all nodes above it.
 template <class Reference>
-void CheckNode(const rt::WideBvhBuilder<Reference>& tree, const std::vector<rt::BoundingBox>& boxes,
-  std::uint32_t leafSize, std::size_t index, std::multiset<std::uint32_t>& found,
-  std::vector<std::uint32_t>& below, int depth)
+void CheckNode(const bricks::WideBvhBuilder<Reference>& tree,
+  const std::vector<bricks::BoundingBox>& boxes, std::uint32_t leafSize, std::size_t index,
+  std::multiset<std::uint32_t>& found, std::vector<std::uint32_t>& below, int depth)
 {
-  using Node = rt::WideBvhNode<Reference>;
+  using Node = bricks::WideBvhNode<Reference>;
   ASSERT_LT(index, tree.GetNodes().size());
   ASSERT_LT(depth, 33);
   const Node& node = tree.GetNodes()[index];
@@ -91,9 +91,9 @@ void CheckNode(const rt::WideBvhBuilder<Reference>& tree, const std::vector<rt::
 }
 
 template <class Reference>
-void CheckTree(const std::vector<rt::BoundingBox>& boxes, std::uint32_t leafSize)
+void CheckTree(const std::vector<bricks::BoundingBox>& boxes, std::uint32_t leafSize)
 {
-  rt::WideBvhBuilder<Reference> tree(leafSize);
+  bricks::WideBvhBuilder<Reference> tree(leafSize);
   tree.Build(boxes);
   std::multiset<std::uint32_t> found;
   std::vector<std::uint32_t> below;
@@ -115,13 +115,13 @@ TEST(WideBvh, HoldsEveryItemOnceWithinItsBoxes)
 
 TEST(WideBvh, ItemsInOnePlaceAreCutByNumber)
 {
-  CheckTree<std::uint16_t>(std::vector<rt::BoundingBox>(8191, CreateBoxes(1, 62, 1.0f)[0]), 4);
+  CheckTree<std::uint16_t>(std::vector<bricks::BoundingBox>(8191, CreateBoxes(1, 62, 1.0f)[0]), 4);
 }
 
 TEST(WideBvh, ItemsThatNoBinningPartsWell)
 {
   // Each is a tenth of the size of the one before: every cut takes off one.
-  std::vector<rt::BoundingBox> boxes;
+  std::vector<bricks::BoundingBox> boxes;
   for (int item = 0; item < 3000; ++item)
   {
     const float place = std::pow(0.98f, static_cast<float>(item));
@@ -135,7 +135,7 @@ TEST(WideBvh, ItemsThatNoBinningPartsWell)
 
 TEST(WideBvh, PointsAndHugeBoxes)
 {
-  std::vector<rt::BoundingBox> boxes = CreateBoxes(100, 63, 1e18f);
+  std::vector<bricks::BoundingBox> boxes = CreateBoxes(100, 63, 1e18f);
   const float point[3] = { 0.0f, 0.0f, 0.0f };
   boxes.push_back(CreateBox(point, point));
   CheckTree<std::uint16_t>(boxes, 4);
@@ -144,8 +144,8 @@ TEST(WideBvh, PointsAndHugeBoxes)
 
 TEST(BrickBvh, RaysMeetEveryBrickOnTheirWayNearestFirst)
 {
-  const std::vector<rt::BoundingBox> boxes = CreateBoxes(2000, 64, 1.0f);
-  const rt::BrickBvh bvh(boxes);
+  const std::vector<bricks::BoundingBox> boxes = CreateBoxes(2000, 64, 1.0f);
+  const bricks::BrickBvh bvh(boxes);
   std::mt19937 random(65);
   std::uniform_real_distribution<double> uniform(-0.5, 1.5);
   for (int count = 0; count < 500; ++count)
@@ -167,7 +167,7 @@ TEST(BrickBvh, RaysMeetEveryBrickOnTheirWayNearestFirst)
     std::set<std::uint32_t> visited;
     rt::TraverseWideBvh(bvh.GetNodes(), ray, last,
       [&](std::uint32_t leaf)
-      { EXPECT_TRUE(visited.insert(rt::BrickBvh::GetBrick(leaf)).second); });
+      { EXPECT_TRUE(visited.insert(bricks::BrickBvh::GetBrick(leaf)).second); });
     std::size_t expected = 0;
     for (std::size_t brick = 0; brick < boxes.size(); ++brick)
     {
@@ -202,14 +202,14 @@ TEST(BrickBvh, RaysMeetEveryBrickOnTheirWayNearestFirst)
 
 TEST(BrickBvh, ShorteningTheRayEndsTheWalk)
 {
-  std::vector<rt::BoundingBox> boxes;
+  std::vector<bricks::BoundingBox> boxes;
   for (int slab = 0; slab < 200; ++slab)
   {
     const float lower[3] = { 0.0f, 0.0f, static_cast<float>(slab) };
     const float upper[3] = { 1.0f, 1.0f, slab + 0.5f };
     boxes.push_back(CreateBox(lower, upper));
   }
-  const rt::BrickBvh bvh(boxes);
+  const bricks::BrickBvh bvh(boxes);
   const double origin[3] = { 0.5, 0.5, -1.0 };
   const double infinity = std::numeric_limits<double>::infinity();
   const double inverse[3] = { infinity, infinity, 1.0 };
@@ -220,9 +220,9 @@ TEST(BrickBvh, ShorteningTheRayEndsTheWalk)
   rt::TraverseWideBvh(bvh.GetNodes(), ray, last,
     [&](std::uint32_t leaf)
     {
-      visited.push_back(rt::BrickBvh::GetBrick(leaf));
+      visited.push_back(bricks::BrickBvh::GetBrick(leaf));
       last = visited.size() == 5 ? 6.2f : last;
     });
   EXPECT_EQ(visited, (std::vector<std::uint32_t>{ 0, 1, 2, 3, 4, 5 }));
-  EXPECT_TRUE(rt::BrickBvh(std::vector<rt::BoundingBox>()).IsEmpty());
+  EXPECT_TRUE(bricks::BrickBvh(std::vector<bricks::BoundingBox>()).IsEmpty());
 }

@@ -30,7 +30,7 @@ public:
   std::optional<double> FindFirst(const rt::Ray& ray) const
   {
     std::optional<double> first;
-    const rt::Index3 cells = this->Volume.GetCells();
+    const bricks::Index3 cells = this->Volume.GetCells();
     for (int z = 0; z < cells.z; ++z)
     {
       for (int y = 0; y < cells.y; ++y)
@@ -48,7 +48,7 @@ public:
     return first;
   }
 
-  bool HoldsData(const rt::Index3& cell) const
+  bool HoldsData(const bricks::Index3& cell) const
   {
     if (!this->Volume.IsCovered(cell.x, cell.y, cell.z))
     {
@@ -65,7 +65,7 @@ public:
   }
 
   /// The trilinear value less the isovalue.
-  Real Evaluate(const rt::Index3& cell, const rt::Ray& ray, Real t) const
+  Real Evaluate(const bricks::Index3& cell, const rt::Ray& ray, Real t) const
   {
     Real local[3];
     for (int axis = 0; axis < 3; ++axis)
@@ -91,14 +91,14 @@ public:
   }
 
 private:
-  Real GetCorner(const rt::Index3& cell, int corner) const
+  Real GetCorner(const bricks::Index3& cell, int corner) const
   {
     return Real(this->Volume.At(
              cell.x + (corner & 1), cell.y + (corner >> 1 & 1), cell.z + (corner >> 2))) -
       this->Isovalue - this->Shift;
   }
 
-  bool Clip(const rt::Ray& ray, const rt::Index3& cell, Real& enter, Real& leave) const
+  bool Clip(const rt::Ray& ray, const bricks::Index3& cell, Real& enter, Real& leave) const
   {
     enter = ray.Min;
     leave = ray.Max;
@@ -123,7 +123,7 @@ private:
     return leave - enter > 1e-15L * std::max<Real>(1, std::abs(leave));
   }
 
-  std::optional<double> IntersectCell(const rt::Ray& ray, const rt::Index3& cell) const
+  std::optional<double> IntersectCell(const rt::Ray& ray, const bricks::Index3& cell) const
   {
     Real enter;
     Real leave;

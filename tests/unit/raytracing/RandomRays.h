@@ -2,7 +2,7 @@
 #ifndef tests_RandomRays_h
 #define tests_RandomRays_h
 
-#include "DSMRayTracing/base/Box.h"
+#include "DSMBricks/base/Box.h"
 #include "DSMRayTracing/ray/Ray.h"
 
 #include <glm/geometric.hpp>
@@ -26,7 +26,7 @@ public:
     Count
   };
 
-  RandomRays(const rt::Index3& cells, unsigned seed)
+  RandomRays(const bricks::Index3& cells, unsigned seed)
     : Cells(cells)
     , Random(seed)
   {
@@ -86,7 +86,7 @@ public:
   double GetSign() { return this->Get(-1, 1) < 0 ? -1.0 : 1.0; }
 
 private:
-  rt::Index3 Cells;
+  bricks::Index3 Cells;
   std::mt19937 Random;
 };
 

@@ -37,9 +37,9 @@ std::vector<Block> MakeBlocks(std::mt19937& random, std::int64_t edge)
   return blocks;
 }
 
-bool Holds(const rt::Box& box, const rt::Index3& cell)
+bool Holds(const bricks::Box& box, const bricks::Index3& cell)
 {
-  return !rt::Intersect(box, { cell, cell + rt::Index3(1) }).IsEmpty();
+  return !bricks::Intersect(box, { cell, cell + bricks::Index3(1) }).IsEmpty();
 }
 
 std::uint64_t GetDigest(const std::vector<Block>& blocks)
@@ -64,7 +64,7 @@ TEST(BlockLooks, TheBlockOfACellIsFound)
     for (int trial = 0; trial < 2000; ++trial)
     {
       const auto draw = [&] { return static_cast<std::int64_t>(random() % 26) - 1; };
-      const rt::Index3 cell(draw(), draw(), draw());
+      const bricks::Index3 cell(draw(), draw(), draw());
       const auto expected = std::find_if(
         blocks.begin(), blocks.end(), [&](const Block& block) { return Holds(block.Cells, cell); });
       const rt::BlockLooks::Look* found = looks.Find(cell);

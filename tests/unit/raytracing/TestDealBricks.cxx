@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "DSMRayTracing/layout/DealBricks.h"
+#include "DSMBricks/layout/DealBricks.h"
 
 #include <gtest/gtest.h>
 
@@ -14,7 +14,7 @@ namespace
 
 /// The bricks that each rank has, of those that `wanted` says.
 template <class Wanted>
-std::vector<int> Count(const rt::BrickLattice& lattice, const dsm::BlockAssigner& assigner,
+std::vector<int> Count(const bricks::BrickLattice& lattice, const dsm::BlockAssigner& assigner,
   int ranks, const Wanted& wanted)
 {
   std::vector<int> counts(static_cast<std::size_t>(ranks), 0);
@@ -30,14 +30,15 @@ std::vector<int> Count(const rt::BrickLattice& lattice, const dsm::BlockAssigner
 
 TEST(DealBricks, AChunkBelongsToOneRank)
 {
-  const rt::BrickLattice lattice(rt::Index3(257), rt::ScalarType::Float32, false, 16);
-  const dsm::BlockAssigner assigner = rt::DealBricks(lattice, rt::Index3(64), rt::Index3(0), 3);
-  std::map<rt::Index3, int, bool (*)(const rt::Index3&, const rt::Index3&)> owners(
-    [](const rt::Index3& a, const rt::Index3& b)
+  const bricks::BrickLattice lattice(bricks::Index3(257), bricks::ScalarType::Float32, false, 16);
+  const dsm::BlockAssigner assigner =
+    bricks::DealBricks(lattice, bricks::Index3(64), bricks::Index3(0), 3);
+  std::map<bricks::Index3, int, bool (*)(const bricks::Index3&, const bricks::Index3&)> owners(
+    [](const bricks::Index3& a, const bricks::Index3& b)
     { return std::tie(a.x, a.y, a.z) < std::tie(b.x, b.y, b.z); });
   for (dsm::BlockId id = 0; id < lattice.GetBrickCount(); ++id)
   {
-    const rt::Index3 chunk = lattice.GetCellsOfBrick(id).Min / rt::Index3(64);
+    const bricks::Index3 chunk = lattice.GetCellsOfBrick(id).Min / bricks::Index3(64);
     EXPECT_EQ(owners.emplace(chunk, assigner.GetOwner(id)).first->second, assigner.GetOwner(id));
   }
   EXPECT_EQ(owners.size(), 64u);
@@ -45,9 +46,9 @@ TEST(DealBricks, AChunkBelongsToOneRank)
 
 TEST(DealBricks, APartThatBeginsWithinAChunkIsCutWhereTheChunksAre)
 {
-  const rt::BrickLattice lattice(rt::Index3(193), rt::ScalarType::Float32, false, 16);
+  const bricks::BrickLattice lattice(bricks::Index3(193), bricks::ScalarType::Float32, false, 16);
   const dsm::BlockAssigner assigner =
-    rt::DealBricks(lattice, rt::Index3(64), rt::Index3(48, 0, 0), 2);
+    bricks::DealBricks(lattice, bricks::Index3(64), bricks::Index3(48, 0, 0), 2);
   std::set<int> owners;
   for (int x = 1; x < 5; ++x)
   {
@@ -58,14 +59,14 @@ TEST(DealBricks, APartThatBeginsWithinAChunkIsCutWhereTheChunksAre)
 
 TEST(DealBricks, SurfacesAreBalanced)
 {
-  const rt::BrickLattice lattice(rt::Index3(513), rt::ScalarType::Float32, false, 16);
-  const rt::Index3 middle = lattice.GetBricks() / rt::Index3(2);
+  const bricks::BrickLattice lattice(bricks::Index3(513), bricks::ScalarType::Float32, false, 16);
+  const bricks::Index3 middle = lattice.GetBricks() / bricks::Index3(2);
   for (const std::int64_t chunk : { 16, 32, 64 })
   {
     for (const int ranks : { 1, 2, 3, 4, 7, 16 })
     {
       const dsm::BlockAssigner assigner =
-        rt::DealBricks(lattice, rt::Index3(chunk), rt::Index3(0), ranks);
+        bricks::DealBricks(lattice, bricks::Index3(chunk), bricks::Index3(0), ranks);
       const auto check = [&](double worst, const auto& wanted)
       {
         const std::vector<int> counts = Count(lattice, assigner, ranks, wanted);
@@ -77,12 +78,12 @@ TEST(DealBricks, SurfacesAreBalanced)
         EXPECT_LE(*std::max_element(counts.begin(), counts.end()), worst * sum / ranks)
           << chunk << " samples, " << ranks << " ranks";
       };
-      check(1.1, [](const rt::Index3&) { return true; });
+      check(1.1, [](const bricks::Index3&) { return true; });
       const double few = ranks > 7 ? 1.6 : 1.35;
       check(few,
-        [&](const rt::Index3& brick)
+        [&](const bricks::Index3& brick)
         {
-          const rt::Index3 from = brick - middle;
+          const bricks::Index3 from = brick - middle;
           const double far = std::sqrt(double(from.x * from.x + from.y * from.y + from.z * from.z));
           return far > 11.0 && far < 12.5;
         });
@@ -94,15 +95,17 @@ TEST(DealBricks, EachRankHasSomeOfASmallVolume)
 {
   for (const int edge : { 16, 50 })
   {
-    const rt::BrickLattice lattice(rt::Index3(100), rt::ScalarType::Float32, false, 16);
+    const bricks::BrickLattice lattice(bricks::Index3(100), bricks::ScalarType::Float32, false, 16);
     for (const int ranks : { 1, 2, 4, 30 })
     {
       // One chunk of all, and chunks that are layers.
-      for (const rt::Index3& chunk : { rt::Index3(100), rt::Index3(100, 100, 1), rt::Index3(edge) })
+      for (const bricks::Index3& chunk :
+        { bricks::Index3(100), bricks::Index3(100, 100, 1), bricks::Index3(edge) })
       {
-        const dsm::BlockAssigner assigner = rt::DealBricks(lattice, chunk, rt::Index3(0), ranks);
+        const dsm::BlockAssigner assigner =
+          bricks::DealBricks(lattice, chunk, bricks::Index3(0), ranks);
         const std::vector<int> counts =
-          Count(lattice, assigner, ranks, [](const rt::Index3&) { return true; });
+          Count(lattice, assigner, ranks, [](const bricks::Index3&) { return true; });
         EXPECT_GT(*std::min_element(counts.begin(), counts.end()), 0)
           << chunk.x << " " << chunk.z << " " << ranks;
       }

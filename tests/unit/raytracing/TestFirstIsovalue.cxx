@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "DSMBricks/layout/FirstIsovalue.h"
 #include "DSMCore/transport/LoopbackTransport.h"
-#include "DSMRayTracing/layout/FirstIsovalue.h"
 #include "TestVolume.h"
 
 #include <gtest/gtest.h>
@@ -43,7 +43,7 @@ private:
   int Rank;
 };
 
-using Fields = std::vector<std::shared_ptr<rt::VoxelField>>;
+using Fields = std::vector<std::shared_ptr<bricks::VoxelField>>;
 
 /// What each of several ranks finds.
 std::vector<std::optional<double>> FindOnRanks(const Fields& fields, int ranks)
@@ -57,10 +57,10 @@ std::vector<std::optional<double>> FindOnRanks(const Fields& fields, int ranks)
       [&, rank]
       {
         dsm::Messenger messenger(std::move(transports[rank]));
-        std::vector<std::shared_ptr<const rt::VoxelField>> mine;
+        std::vector<std::shared_ptr<const bricks::VoxelField>> mine;
         for (const auto& field : fields)
         {
-          auto share = field ? std::make_shared<rt::VoxelField>(*field) : nullptr;
+          auto share = field ? std::make_shared<bricks::VoxelField>(*field) : nullptr;
           if (share)
           {
             share->Segment = std::make_shared<ShareOfSegment>(
@@ -68,7 +68,7 @@ std::vector<std::optional<double>> FindOnRanks(const Fields& fields, int ranks)
           }
           mine.push_back(share);
         }
-        found[rank] = rt::FindFirstIsovalue(mine, messenger);
+        found[rank] = bricks::FindFirstIsovalue(mine, messenger);
         messenger.Barrier();
       });
   }
@@ -113,7 +113,7 @@ std::uint8_t GetScanned(int x, int y, int z)
 
 TEST(TestFirstIsovalue, TheBorderDoesNotCutTheSphereOpen)
 {
-  const auto found = Find(TestVolume<float>(rt::Index3(Points), GetSquaredDistance));
+  const auto found = Find(TestVolume<float>(bricks::Index3(Points), GetSquaredDistance));
   ASSERT_TRUE(found);
   EXPECT_GT(*found, 0.5);
   EXPECT_LT(*found, 0.95);
@@ -121,7 +121,7 @@ TEST(TestFirstIsovalue, TheBorderDoesNotCutTheSphereOpen)
 
 TEST(TestFirstIsovalue, LiesBetweenNoiseAndObject)
 {
-  const auto found = Find(TestVolume<std::uint8_t>(rt::Index3(Points), GetScanned));
+  const auto found = Find(TestVolume<std::uint8_t>(bricks::Index3(Points), GetScanned));
   ASSERT_TRUE(found);
   EXPECT_GT(*found, 12.0);
   EXPECT_LT(*found, 110.0);
@@ -130,8 +130,8 @@ TEST(TestFirstIsovalue, LiesBetweenNoiseAndObject)
 TEST(TestFirstIsovalue, IsTheSameOnEveryNumberOfRanks)
 {
   MemoryStore store;
-  const TestVolume<float> sphere(rt::Index3(Points), GetSquaredDistance);
-  const TestVolume<std::uint8_t> scan(rt::Index3(Points, 23, 41), GetScanned);
+  const TestVolume<float> sphere(bricks::Index3(Points), GetSquaredDistance);
+  const TestVolume<std::uint8_t> scan(bricks::Index3(Points, 23, 41), GetScanned);
   const Fields fields{ CreateField(store, sphere), nullptr, CreateField(store, scan) };
   const std::optional<double> expected = FindOnRanks(fields, 1).front();
   ASSERT_TRUE(expected);
@@ -146,7 +146,7 @@ TEST(TestFirstIsovalue, IsTheSameOnEveryNumberOfRanks)
 
 TEST(TestFirstIsovalue, BlankCellsDoNotCount)
 {
-  TestVolume<float> volume(rt::Index3(Points), GetSquaredDistance);
+  TestVolume<float> volume(bricks::Index3(Points), GetSquaredDistance);
   // Only a slab in the middle holds data, and values elsewhere would move everything.
   for (int z = 0; z < Points - 1; ++z)
   {
@@ -175,7 +175,7 @@ TEST(TestFirstIsovalue, BlankCellsDoNotCount)
 
 TEST(TestFirstIsovalue, ThereIsNoneWhereNoSurfaceIs)
 {
-  EXPECT_FALSE(Find(TestVolume<float>(rt::Index3(Points), [](int, int, int) { return 3.0f; })));
-  EXPECT_FALSE(Find(TestVolume<float>(rt::Index3(Points), [](int, int, int) { return NAN; })));
+  EXPECT_FALSE(Find(TestVolume<float>(bricks::Index3(Points), [](int, int, int) { return 3.0f; })));
+  EXPECT_FALSE(Find(TestVolume<float>(bricks::Index3(Points), [](int, int, int) { return NAN; })));
   EXPECT_FALSE(FindOnRanks({ nullptr }, 2).back());
 }

@@ -18,9 +18,9 @@ struct Visit
 
 /// All nodes of a grid of `edge` cells over `cells` cells that a ray visits.
 std::vector<Visit> Walk(
-  const rt::GridRay& line, const rt::Index3& cells, int edge, double enter, double leave)
+  const rt::GridRay& line, const bricks::Index3& cells, int edge, double enter, double leave)
 {
-  const rt::Index3 counts = (cells + rt::Index3(edge - 1)) / rt::Index3(edge);
+  const bricks::Index3 counts = (cells + bricks::Index3(edge - 1)) / bricks::Index3(edge);
   const rt::NodeStrides strides(counts.x, counts.x * counts.y);
   const rt::NodeGrid grid{ rt::Lanes(0.0), double(edge), 1.0 / edge,
     rt::Lanes(counts.x, counts.y, counts.z, 1.0), strides };
@@ -41,7 +41,7 @@ std::vector<Visit> Walk(
 
 TEST(TestGridWalk, EveryNodeContainsItsPartOfTheRay)
 {
-  const rt::Index3 cells(13, 9, 17);
+  const bricks::Index3 cells(13, 9, 17);
   RandomRays generator(cells, 3);
   int walks = 0;
   for (int i = 0; i < 7000; ++i)
@@ -59,14 +59,14 @@ TEST(TestGridWalk, EveryNodeContainsItsPartOfTheRay)
     ++walks;
     for (const int edge : { 1, 3, 4 })
     {
-      const rt::Index3 counts = (cells + rt::Index3(edge - 1)) / rt::Index3(edge);
+      const bricks::Index3 counts = (cells + bricks::Index3(edge - 1)) / bricks::Index3(edge);
       double last = enter;
       for (const Visit& visit : Walk(line, cells, edge, enter, leave))
       {
         ASSERT_EQ(visit.Enter, last);
         ASSERT_GT(visit.Leave, visit.Enter);
         last = visit.Leave;
-        const rt::Index3 node(visit.Node % counts.x, visit.Node / counts.x % counts.y,
+        const bricks::Index3 node(visit.Node % counts.x, visit.Node / counts.x % counts.y,
           visit.Node / (counts.x * counts.y));
         for (int axis = 0; axis < 3; ++axis)
         {
@@ -84,7 +84,7 @@ TEST(TestGridWalk, EveryNodeContainsItsPartOfTheRay)
 
 TEST(TestGridWalk, StartingAnywhereGivesTheSameCells)
 {
-  const rt::Index3 cells(13, 9, 17);
+  const bricks::Index3 cells(13, 9, 17);
   RandomRays generator(cells, 4);
   for (int i = 0; i < 3500; ++i)
   {
@@ -121,7 +121,7 @@ TEST(TestGridWalk, DiagonalRayVisitsOnlyTheDiagonal)
   ASSERT_TRUE(line.Set(origin, direction));
   double enter = 0.0;
   double leave = 100.0;
-  const rt::Index3 cells(5, 5, 5);
+  const bricks::Index3 cells(5, 5, 5);
   ASSERT_TRUE(line.Clip(cells, enter, leave));
   const std::vector<Visit> visits = Walk(line, cells, 1, enter, leave);
   ASSERT_EQ(visits.size(), 5u);

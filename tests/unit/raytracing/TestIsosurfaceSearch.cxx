@@ -51,7 +51,7 @@ struct Values
 };
 
 template <class T>
-TestVolume<T> CreateNoise(const rt::Index3& points, unsigned seed)
+TestVolume<T> CreateNoise(const bricks::Index3& points, unsigned seed)
 {
   std::mt19937 random(seed);
   std::uniform_real_distribution<double> uniform(-1.0, 1.0);
@@ -59,7 +59,7 @@ TestVolume<T> CreateNoise(const rt::Index3& points, unsigned seed)
 }
 
 template <class T>
-TestVolume<T> CreateSmooth(const rt::Index3& points, unsigned seed)
+TestVolume<T> CreateSmooth(const bricks::Index3& points, unsigned seed)
 {
   std::mt19937 random(seed);
   std::uniform_real_distribution<double> uniform(0.2, 0.9);
@@ -76,7 +76,7 @@ TestVolume<T> CreateSmooth(const rt::Index3& points, unsigned seed)
 
 /// Three values only: plateaus of samples that equal the isovalue.
 template <class T>
-TestVolume<T> CreatePlateaus(const rt::Index3& points, unsigned seed)
+TestVolume<T> CreatePlateaus(const bricks::Index3& points, unsigned seed)
 {
   std::mt19937 random(seed);
   std::uniform_int_distribution<int> step(-1, 1);

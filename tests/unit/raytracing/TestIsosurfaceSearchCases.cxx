@@ -18,7 +18,7 @@ namespace
 
 constexpr float NotANumber = std::numeric_limits<float>::quiet_NaN();
 
-TestVolume<float> CreateNoise(const rt::Index3& points, unsigned seed)
+TestVolume<float> CreateNoise(const bricks::Index3& points, unsigned seed)
 {
   std::mt19937 random(seed);
   std::uniform_real_distribution<float> uniform(-1.0f, 1.0f);
@@ -145,7 +145,7 @@ TEST(TestIsosurfaceSearchCases, HitsDoNotDependOnTheBricks)
         ASSERT_EQ(hit.Normal, expected.Normal);
         ASSERT_EQ(hit.IndexPoint, expected.IndexPoint);
         ASSERT_EQ(hit.Isovalue, expected.Isovalue);
-        const rt::Box cells = object.Field->Lattice.GetCellsOfBrick(hit.Brick);
+        const bricks::Box cells = object.Field->Lattice.GetCellsOfBrick(hit.Brick);
         ASSERT_TRUE(glm::all(glm::greaterThanEqual(hit.IndexPoint, glm::dvec3(cells.Min))));
         ASSERT_TRUE(glm::all(glm::lessThanEqual(hit.IndexPoint, glm::dvec3(cells.Max))));
       }
@@ -359,7 +359,7 @@ TEST(TestIsosurfaceSearchCases, PreciseAnywhereInALargeVolume)
   // One long row of cells along each axis; the samples are a linear function.
   for (int axis = 0; axis < 3; ++axis)
   {
-    rt::Index3 points(3);
+    bricks::Index3 points(3);
     points[axis] = 2049;
     glm::dvec3 gradient(7.0);
     gradient[axis] = 31.0;

@@ -26,13 +26,13 @@ glm::dvec3 GetNormal(const TestVolume<T>& volume, const rt::Ray& ray, double iso
 
 /// The gradient that Contour has at a sample: central differences, one-sided at the border.
 template <class T>
-glm::dvec3 GetDifference(const TestVolume<T>& volume, const rt::Index3& at)
+glm::dvec3 GetDifference(const TestVolume<T>& volume, const bricks::Index3& at)
 {
   glm::dvec3 gradient;
   for (int axis = 0; axis < 3; ++axis)
   {
-    rt::Index3 low = at;
-    rt::Index3 high = at;
+    bricks::Index3 low = at;
+    bricks::Index3 high = at;
     low[axis] = std::max<std::int64_t>(at[axis] - 1, 0);
     high[axis] = std::min(at[axis] + 1, volume.Points[axis] - 1);
     const auto span = static_cast<double>(high[axis] - low[axis]);

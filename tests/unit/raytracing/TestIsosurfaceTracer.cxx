@@ -16,7 +16,7 @@ namespace
 
 using Tracer = rt::IsosurfaceTracer<MemoryStore>;
 
-const rt::Index3 Points(37, 41, 34);
+const bricks::Index3 Points(37, 41, 34);
 
 TestVolume<float> CreateWaves()
 {
@@ -61,7 +61,7 @@ protected:
   {
     dsm::BlockDirectory directory = this->Object.Field->Segment->GetDirectory();
     directory.SetFromSource();
-    auto field = std::make_shared<rt::VoxelField>(*this->Object.Field);
+    auto field = std::make_shared<bricks::VoxelField>(*this->Object.Field);
     field->Segment = std::make_shared<MemoryStore::Segment>(directory);
     this->Object.Field = field;
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "DSMRayTracing/layout/IsovalueSurvey.h"
+#include "DSMBricks/layout/IsovalueSurvey.h"
 #include "TestVolume.h"
 
 #include <gtest/gtest.h>
@@ -21,7 +21,7 @@ namespace
 template <class T>
 TestVolume<T> MakeVolume(double offset, double size)
 {
-  return TestVolume<T>(rt::Index3(33, 21, 17),
+  return TestVolume<T>(bricks::Index3(33, 21, 17),
     [=](int x, int y, int z)
     {
       return static_cast<T>(
@@ -31,7 +31,7 @@ TestVolume<T> MakeVolume(double offset, double size)
 
 /// Counted in an order, and in so many parts, which are added.
 template <class T>
-rt::IsovalueSurvey Count(const rt::VoxelField& field, std::uint32_t seed, std::size_t parts)
+bricks::IsovalueSurvey Count(const bricks::VoxelField& field, std::uint32_t seed, std::size_t parts)
 {
   std::vector<dsm::BlockId> order(field.Lattice.GetBrickCount());
   std::iota(order.begin(), order.end(), dsm::BlockId(0));
@@ -39,13 +39,13 @@ rt::IsovalueSurvey Count(const rt::VoxelField& field, std::uint32_t seed, std::s
   std::vector<const std::byte*> blocks(order.size());
   field.Segment->ForEachResident(
     [&](dsm::BlockId id, const std::byte* block, std::size_t) { blocks[id] = block; });
-  std::vector<rt::IsovalueSurvey> surveys(parts);
+  std::vector<bricks::IsovalueSurvey> surveys(parts);
   for (std::size_t at = 0; at < order.size(); ++at)
   {
     surveys[at % parts].CountBrick(field.Lattice, order[at], blocks[order[at]]);
   }
-  rt::IsovalueSurvey sum;
-  for (const rt::IsovalueSurvey& survey : surveys)
+  bricks::IsovalueSurvey sum;
+  for (const bricks::IsovalueSurvey& survey : surveys)
   {
     sum.Add(survey);
   }
@@ -58,12 +58,12 @@ void ExpectNoOrder(double offset, double size)
   MemoryStore store;
   const TestVolume<T> volume = MakeVolume<T>(offset, size);
   const auto field = CreateField(store, volume, 4);
-  const rt::IsovalueSurvey expected = Count<T>(*field, 0, 1);
+  const bricks::IsovalueSurvey expected = Count<T>(*field, 0, 1);
   EXPECT_EQ(expected.All, static_cast<std::int64_t>(field->Lattice.GetBrickCount()));
   EXPECT_TRUE(expected.IsValid(expected.All));
   EXPECT_FALSE(expected.IsValid(expected.All - 1));
-  EXPECT_GE(expected.CountIntervals(), rt::IsovalueSurvey::Intervals / 2u);
-  EXPECT_LE(expected.CountIntervals(), rt::IsovalueSurvey::Intervals * 1u);
+  EXPECT_GE(expected.CountIntervals(), bricks::IsovalueSurvey::Intervals / 2u);
+  EXPECT_LE(expected.CountIntervals(), bricks::IsovalueSurvey::Intervals * 1u);
   EXPECT_EQ(std::accumulate(expected.Values.begin(), expected.Values.end(), std::int64_t(0)),
     4 * expected.All);
   const auto [least, greatest] = std::minmax_element(volume.Samples.begin(), volume.Samples.end());
@@ -73,7 +73,7 @@ void ExpectNoOrder(double offset, double size)
     static_cast<double>(*greatest));
   for (std::uint32_t seed = 1; seed < 6; ++seed)
   {
-    const rt::IsovalueSurvey found = Count<T>(*field, seed, seed);
+    const bricks::IsovalueSurvey found = Count<T>(*field, seed, seed);
     EXPECT_EQ(std::memcmp(&found, &expected, sizeof(found)), 0) << offset << " " << size;
   }
 }
@@ -97,19 +97,19 @@ TEST(TestIsovalueSurvey, ValuesThatAreAllTheSameAreInOneInterval)
   MemoryStore store;
   for (const float value : { 0.0f, -3.5f, 1e38f, 1e-40f })
   {
-    const TestVolume<float> volume(rt::Index3(9), [=](int, int, int) { return value; });
-    const rt::IsovalueSurvey survey = Count<float>(*CreateField(store, volume, 4), 0, 2);
+    const TestVolume<float> volume(bricks::Index3(9), [=](int, int, int) { return value; });
+    const bricks::IsovalueSurvey survey = Count<float>(*CreateField(store, volume, 4), 0, 2);
     EXPECT_EQ(survey.CountIntervals(), 1u);
     EXPECT_EQ(survey.Values[0], 4 * survey.All);
     EXPECT_TRUE(survey.IsValid(survey.All));
   }
-  EXPECT_EQ(rt::IsovalueSurvey().CountIntervals(), 0u);
+  EXPECT_EQ(bricks::IsovalueSurvey().CountIntervals(), 0u);
 }
 
 /// A file can have any bytes in their place.
 TEST(TestIsovalueSurvey, WhatNobodyCountedIsNotValid)
 {
-  using Survey = rt::IsovalueSurvey;
+  using Survey = bricks::IsovalueSurvey;
   EXPECT_TRUE(Survey().IsValid(0));
   MemoryStore store;
   const Survey valid = Count<float>(*CreateField(store, MakeVolume<float>(0.0, 1.0), 4), 0, 1);
@@ -168,7 +168,7 @@ TEST(TestIsovalueSurvey, WhatNobodyCountedIsNotValid)
 /// A count in an interval outside of the range.
 TEST(TestIsovalueSurvey, NothingIsWrittenOutsideWhateverIsAdded)
 {
-  rt::IsovalueSurvey one;
+  bricks::IsovalueSurvey one;
   one.All = 1;
   one.Least = 0.0;
   one.Greatest = 256.0;
@@ -176,13 +176,13 @@ TEST(TestIsovalueSurvey, NothingIsWrittenOutsideWhateverIsAdded)
   one.Values[0] = 4;
   one.Values[511] = 0x4141414141;
   EXPECT_FALSE(one.IsValid(1));
-  rt::IsovalueSurvey other;
+  bricks::IsovalueSurvey other;
   other.All = 1;
   other.Least = -255.0;
   other.Greatest = 256.0;
   other.First = -255;
   other.Values[0] = 4;
-  rt::IsovalueSurvey all;
+  bricks::IsovalueSurvey all;
   all.Add(one);
   all.Add(other);
   EXPECT_EQ(std::accumulate(all.Values.begin(), all.Values.end(), std::int64_t(0)), 8);

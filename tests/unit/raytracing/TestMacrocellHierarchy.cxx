@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "DSMBricks/layout/MacrocellHierarchy.h"
+#include "DSMBricks/layout/VoxelBrickHeader.h"
 #include "DSMCore/base/Error.h"
 #include "DSMCore/transport/LoopbackTransport.h"
-#include "DSMRayTracing/layout/MacrocellHierarchy.h"
-#include "DSMRayTracing/layout/VoxelBrickHeader.h"
 #include "tests/support/LimitedCluster.h"
 
 #include <gtest/gtest.h>
@@ -15,21 +15,21 @@ namespace
 
 constexpr int Bricks[3] = { 10, 3, 17 };
 
-rt::BrickLattice CreateLattice()
+bricks::BrickLattice CreateLattice()
 {
-  return rt::BrickLattice(
-    { 4 * Bricks[0] + 1, 4 * Bricks[1], 4 * Bricks[2] - 2 }, rt::ScalarType::Float32, false, 4);
+  return bricks::BrickLattice(
+    { 4 * Bricks[0] + 1, 4 * Bricks[1], 4 * Bricks[2] - 2 }, bricks::ScalarType::Float32, false, 4);
 }
 
-rt::ValueRange CreateRange(dsm::BlockId id)
+bricks::ValueRange CreateRange(dsm::BlockId id)
 {
   const auto value = static_cast<float>(id * 37 % 101);
   return { value, value + static_cast<float>(id % 7) };
 }
 
-std::vector<rt::ValueRange> CreateRanges(const rt::BrickLattice& lattice)
+std::vector<bricks::ValueRange> CreateRanges(const bricks::BrickLattice& lattice)
 {
-  std::vector<rt::ValueRange> ranges;
+  std::vector<bricks::ValueRange> ranges;
   for (dsm::BlockId id = 0; id < lattice.GetBrickCount(); ++id)
   {
     ranges.push_back(CreateRange(id));
@@ -41,7 +41,7 @@ std::vector<rt::ValueRange> CreateRanges(const rt::BrickLattice& lattice)
 class HeaderSegment final : public dsm::BlockSegment
 {
 public:
-  HeaderSegment(const rt::BrickLattice& lattice, int rank, int ranks)
+  HeaderSegment(const bricks::BrickLattice& lattice, int rank, int ranks)
     : BlockSegment(0, lattice.CreateDirectory(ranks))
     , Rank(rank)
   {
@@ -52,7 +52,7 @@ public:
     {
       if (this->GetDirectory().GetOwner(id) == this->Rank)
       {
-        rt::VoxelBrickHeader header{};
+        bricks::VoxelBrickHeader header{};
         header.First = CreateRange(id).First;
         header.Last = CreateRange(id).Last;
         visit(id, reinterpret_cast<const std::byte*>(&header), sizeof(header));
@@ -71,8 +71,8 @@ private:
 
 TEST(TestMacrocellHierarchy, EachLevelSpansTheOneBelow)
 {
-  const rt::BrickLattice lattice = CreateLattice();
-  const rt::MacrocellHierarchy hierarchy(lattice, CreateRanges(lattice));
+  const bricks::BrickLattice lattice = CreateLattice();
+  const bricks::MacrocellHierarchy hierarchy(lattice, CreateRanges(lattice));
   const auto& levels = hierarchy.GetLevels();
   ASSERT_EQ(levels.size(), 4u);
   EXPECT_EQ(levels[1].Size[0], 3);
@@ -83,10 +83,10 @@ TEST(TestMacrocellHierarchy, EachLevelSpansTheOneBelow)
   for (std::size_t level = 0; level < levels.size(); ++level)
   {
     const auto& macrocells = levels[level];
-    std::vector<rt::ValueRange> expected(macrocells.Ranges.size(), { 1e30f, -1e30f });
+    std::vector<bricks::ValueRange> expected(macrocells.Ranges.size(), { 1e30f, -1e30f });
     for (dsm::BlockId id = 0; id < lattice.GetBrickCount(); ++id)
     {
-      const rt::Index3 place = lattice.GetBrick(id) >> rt::Index3(2 * level);
+      const bricks::Index3 place = lattice.GetBrick(id) >> bricks::Index3(2 * level);
       auto& range = expected[static_cast<std::size_t>(
         place.x + macrocells.Size[0] * (place.y + macrocells.Size[1] * place.z))];
       range.First = std::min(range.First, CreateRange(id).First);
@@ -102,19 +102,19 @@ TEST(TestMacrocellHierarchy, EachLevelSpansTheOneBelow)
   std::uint64_t bytes = 0;
   for (const auto& level : levels)
   {
-    bytes += level.Ranges.size() * sizeof(rt::ValueRange);
+    bytes += level.Ranges.size() * sizeof(bricks::ValueRange);
   }
-  EXPECT_EQ(rt::MacrocellHierarchy::CountBytes(lattice), bytes);
+  EXPECT_EQ(bricks::MacrocellHierarchy::CountBytes(lattice), bytes);
   EXPECT_EQ(lattice.CreateDirectory(2).GetOwnBytes(), lattice.GetBrickCount() * 4 + bytes);
 }
 
 TEST(TestMacrocellHierarchy, EveryRankGathersAllRanges)
 {
-  const rt::BrickLattice lattice = CreateLattice();
+  const bricks::BrickLattice lattice = CreateLattice();
   for (const int ranks : { 1, 2, 3, 4 })
   {
     auto transports = dsm::LoopbackTransport::CreateGroup(ranks);
-    std::vector<rt::MacrocellHierarchy> hierarchies(ranks);
+    std::vector<bricks::MacrocellHierarchy> hierarchies(ranks);
     std::vector<std::thread> threads;
     for (int rank = 0; rank < ranks; ++rank)
     {
@@ -123,7 +123,7 @@ TEST(TestMacrocellHierarchy, EveryRankGathersAllRanges)
         {
           dsm::Messenger messenger(std::move(transports[rank]));
           hierarchies[rank] =
-            rt::MacrocellHierarchy(lattice, HeaderSegment(lattice, rank, ranks), messenger);
+            bricks::MacrocellHierarchy(lattice, HeaderSegment(lattice, rank, ranks), messenger);
           messenger.Barrier();
         });
     }
@@ -131,7 +131,7 @@ TEST(TestMacrocellHierarchy, EveryRankGathersAllRanges)
     {
       thread.join();
     }
-    for (const rt::MacrocellHierarchy& hierarchy : hierarchies)
+    for (const bricks::MacrocellHierarchy& hierarchy : hierarchies)
     {
       const auto& finest = hierarchy.GetLevels().front().Ranges;
       ASSERT_EQ(finest.size(), lattice.GetBrickCount());
@@ -147,15 +147,15 @@ TEST(TestMacrocellHierarchy, EveryRankGathersAllRanges)
 /// 8 bytes a brick are more than a message carries, for a lattice that is large enough.
 TEST(TestMacrocellHierarchy, GathersMoreThanAMessageCarries)
 {
-  const rt::BrickLattice lattice = CreateLattice();
+  const bricks::BrickLattice lattice = CreateLattice();
   constexpr std::size_t pieceBytes = 200;
-  ASSERT_GT(sizeof(rt::ValueRange) * lattice.GetBrickCount(), 4 * pieceBytes);
+  ASSERT_GT(sizeof(bricks::ValueRange) * lattice.GetBrickCount(), 4 * pieceBytes);
   for (const int ranks : { 1, 2, 3, 4 })
   {
     RunOnLimitedCluster(ranks, pieceBytes,
       [&](dsm::Messenger& messenger)
       {
-        const rt::MacrocellHierarchy hierarchy(
+        const bricks::MacrocellHierarchy hierarchy(
           lattice, HeaderSegment(lattice, messenger.GetRank(), ranks), messenger);
         const auto& finest = hierarchy.GetLevels().front().Ranges;
         ASSERT_EQ(finest.size(), lattice.GetBrickCount());
@@ -170,15 +170,16 @@ TEST(TestMacrocellHierarchy, GathersMoreThanAMessageCarries)
 
 TEST(TestMacrocellHierarchy, RefusesRangesOfAnotherLattice)
 {
-  EXPECT_THROW(rt::MacrocellHierarchy(CreateLattice(), std::vector<rt::ValueRange>(5)), dsm::Error);
+  EXPECT_THROW(
+    bricks::MacrocellHierarchy(CreateLattice(), std::vector<bricks::ValueRange>(5)), dsm::Error);
 }
 
 TEST(TestMacrocellHierarchy, RangeHoldsIsovaluesAboveItsFirst)
 {
-  const rt::ValueRange range{ 1.0f, 2.0f };
+  const bricks::ValueRange range{ 1.0f, 2.0f };
   EXPECT_FALSE(range.MayHold(1.0));
   EXPECT_TRUE(range.MayHold(1.5));
   EXPECT_TRUE(range.MayHold(2.0));
   EXPECT_FALSE(range.MayHold(2.0000001));
-  EXPECT_FALSE((rt::ValueRange{ 1.0f, -1.0f }).MayHold(0.0));
+  EXPECT_FALSE((bricks::ValueRange{ 1.0f, -1.0f }).MayHold(0.0));
 }

@@ -89,8 +89,8 @@ TYPED_TEST(MacrocellComparisonTest, MacrocellsWithSamplesOnBothSidesAreFound)
   int found = 0;
   for (int round = 0; round < 40; ++round)
   {
-    std::vector<rt::MacrocellRange<T>> ranges(3 * slice + 3 * row + 4);
-    for (rt::MacrocellRange<T>& range : ranges)
+    std::vector<bricks::MacrocellRange<T>> ranges(3 * slice + 3 * row + 4);
+    for (bricks::MacrocellRange<T>& range : ranges)
     {
       range = { this->GetSample(random), this->GetSample(random) };
     }

@@ -13,16 +13,17 @@
 namespace
 {
 
-const rt::Index3 Cells(67, 45, 90);
+const bricks::Index3 Cells(67, 45, 90);
 constexpr int Edge = 3;
 
-rt::MacrocellHierarchy CreateHierarchy()
+bricks::MacrocellHierarchy CreateHierarchy()
 {
-  const rt::BrickLattice lattice(Cells + rt::Index3(1), rt::ScalarType::Float32, false, Edge);
+  const bricks::BrickLattice lattice(
+    Cells + bricks::Index3(1), bricks::ScalarType::Float32, false, Edge);
   std::mt19937 random(5);
   std::uniform_real_distribution<float> uniform(0.0f, 1.0f);
-  std::vector<rt::ValueRange> ranges(lattice.GetBrickCount());
-  for (rt::ValueRange& range : ranges)
+  std::vector<bricks::ValueRange> ranges(lattice.GetBrickCount());
+  for (bricks::ValueRange& range : ranges)
   {
     range.First = uniform(random);
     range.Last = range.First + 0.1f * uniform(random);
@@ -31,22 +32,22 @@ rt::MacrocellHierarchy CreateHierarchy()
       range = { 1.0f, 0.0f }; // no data
     }
   }
-  return rt::MacrocellHierarchy(lattice, std::move(ranges));
+  return bricks::MacrocellHierarchy(lattice, std::move(ranges));
 }
 
-bool IsAnywhere(const rt::ValueRange&)
+bool IsAnywhere(const bricks::ValueRange&)
 {
   return true;
 }
 
 /// As of a medium that can be seen where values are large.
-bool IsLarge(const rt::ValueRange& range)
+bool IsLarge(const bricks::ValueRange& range)
 {
   return range.First <= range.Last && range.Last > 0.97f;
 }
 
 template <class Predicate>
-std::vector<dsm::BlockId> Walk(const rt::MacrocellHierarchy& hierarchy, const rt::GridRay& line,
+std::vector<dsm::BlockId> Walk(const bricks::MacrocellHierarchy& hierarchy, const rt::GridRay& line,
   double enter, double leave, const Predicate& mayHold)
 {
   std::vector<dsm::BlockId> ids;
@@ -60,7 +61,7 @@ std::vector<dsm::BlockId> Walk(const rt::MacrocellHierarchy& hierarchy, const rt
 
 template <class Predicate>
 std::vector<dsm::BlockId> Descend(
-  const rt::MacrocellHierarchy& hierarchy, const rt::RayBeam& beam, const Predicate& mayHold)
+  const bricks::MacrocellHierarchy& hierarchy, const rt::RayBeam& beam, const Predicate& mayHold)
 {
   std::vector<dsm::BlockId> ids;
   for (const auto& brick : rt::BeamDescent<Predicate>(hierarchy, mayHold, beam).Find().Bricks)
@@ -71,7 +72,7 @@ std::vector<dsm::BlockId> Descend(
 }
 
 template <class Predicate>
-std::vector<dsm::BlockId> Filter(const rt::MacrocellHierarchy& hierarchy,
+std::vector<dsm::BlockId> Filter(const bricks::MacrocellHierarchy& hierarchy,
   const std::vector<dsm::BlockId>& ids, const Predicate& mayHold)
 {
   std::vector<dsm::BlockId> kept;
@@ -89,7 +90,7 @@ std::vector<dsm::BlockId> Filter(const rt::MacrocellHierarchy& hierarchy,
 
 TEST(TestRangePredicate, RaysMeetTheBricksThatItWants)
 {
-  const rt::MacrocellHierarchy hierarchy = CreateHierarchy();
+  const bricks::MacrocellHierarchy hierarchy = CreateHierarchy();
   const std::vector<double> isovalues{ 0.35, 0.5, 0.9 };
   const rt::IsovaluePredicate mayHold(isovalues);
   RandomRays generator(Cells, 3);
@@ -120,7 +121,7 @@ TEST(TestRangePredicate, RaysMeetTheBricksThatItWants)
 
 TEST(TestRangePredicate, BeamsMeetTheBricksThatItWants)
 {
-  const rt::MacrocellHierarchy hierarchy = CreateHierarchy();
+  const bricks::MacrocellHierarchy hierarchy = CreateHierarchy();
   const std::vector<double> isovalues{ 0.35, 0.5, 0.9 };
   const rt::IsovaluePredicate mayHold(isovalues);
   std::mt19937 random(7);

@@ -21,7 +21,7 @@ public:
   static constexpr int RayCount = rt::RayPacket::Size;
 
   /// `spread`: how far apart the rays are at the volume, in parts of its size.
-  Beam(const rt::Index3& cells, unsigned seed, double spread)
+  Beam(const bricks::Index3& cells, unsigned seed, double spread)
     : Random(seed)
   {
     const glm::dvec3 size(cells);
@@ -119,7 +119,7 @@ Tally ComparePackets(const TestVolume<T>& volume, const std::vector<double>& iso
 }
 
 /// Rays from a place in the volume: to one side, as to a lamp, or to all, as ambient occlusion's.
-std::vector<rt::Ray> CreateLightRays(const rt::Index3& cells, unsigned seed, bool toOneSide)
+std::vector<rt::Ray> CreateLightRays(const bricks::Index3& cells, unsigned seed, bool toOneSide)
 {
   std::mt19937 random(seed);
   std::uniform_real_distribution<double> uniform(-1.0, 1.0);
@@ -211,7 +211,7 @@ void CompareOcclusion(const TestVolume<T>& volume, const std::vector<double>& is
 }
 
 template <class T>
-TestVolume<T> CreateWaves(const rt::Index3& points)
+TestVolume<T> CreateWaves(const bricks::Index3& points)
 {
   return TestVolume<T>(points,
     [](int x, int y, int z)
@@ -222,7 +222,7 @@ TestVolume<T> CreateWaves(const rt::Index3& points)
 }
 
 template <class T>
-TestVolume<T> CreateNoise(const rt::Index3& points)
+TestVolume<T> CreateNoise(const bricks::Index3& points)
 {
   std::mt19937 random(7);
   std::uniform_real_distribution<double> uniform(0.0, 100.0);

@@ -2,8 +2,8 @@
 #ifndef tests_TestVolume_h
 #define tests_TestVolume_h
 
-#include "DSMRayTracing/build/VoxelBrickBuilder.h"
-#include "DSMRayTracing/layout/VoxelBrickHeader.h"
+#include "DSMBricks/build/VoxelBrickBuilder.h"
+#include "DSMBricks/layout/VoxelBrickHeader.h"
 #include "DSMRayTracing/scene/Scene.h"
 #include "MemoryStore.h"
 
@@ -16,22 +16,23 @@
 
 /// The C++ type's name among the scalar types.
 template <class T>
-constexpr rt::ScalarType GetScalarType()
+constexpr bricks::ScalarType GetScalarType()
 {
   if constexpr (std::is_same_v<T, float>)
   {
-    return rt::ScalarType::Float32;
+    return bricks::ScalarType::Float32;
   }
   else if constexpr (std::is_same_v<T, double>)
   {
-    return rt::ScalarType::Float64;
+    return bricks::ScalarType::Float64;
   }
   else
   {
-    constexpr rt::ScalarType types[4][2] = { { rt::ScalarType::Int8, rt::ScalarType::UInt8 },
-      { rt::ScalarType::Int16, rt::ScalarType::UInt16 },
-      { rt::ScalarType::Int32, rt::ScalarType::UInt32 },
-      { rt::ScalarType::Int64, rt::ScalarType::UInt64 } };
+    constexpr bricks::ScalarType types[4][2] = { { bricks::ScalarType::Int8,
+                                                   bricks::ScalarType::UInt8 },
+      { bricks::ScalarType::Int16, bricks::ScalarType::UInt16 },
+      { bricks::ScalarType::Int32, bricks::ScalarType::UInt32 },
+      { bricks::ScalarType::Int64, bricks::ScalarType::UInt64 } };
     constexpr int size = sizeof(T) == 1 ? 0 : sizeof(T) == 2 ? 1 : sizeof(T) == 4 ? 2 : 3;
     return types[size][std::is_unsigned_v<T> ? 1 : 0];
   }
@@ -41,16 +42,16 @@ constexpr rt::ScalarType GetScalarType()
 template <class T>
 struct TestVolume
 {
-  rt::Index3 Points{ 2 };
+  bricks::Index3 Points{ 2 };
   std::vector<T> Samples;
   std::vector<std::uint8_t> Mask; ///< empty: all cells hold data
 
-  explicit TestVolume(const rt::Index3& points)
+  explicit TestVolume(const bricks::Index3& points)
     : Points(points)
     , Samples(static_cast<std::size_t>(points.x * points.y * points.z))
   {
   }
-  TestVolume(const rt::Index3& points, const std::function<T(int, int, int)>& function)
+  TestVolume(const bricks::Index3& points, const std::function<T(int, int, int)>& function)
     : TestVolume(points)
   {
     for (int z = 0; z < points.z; ++z)
@@ -65,7 +66,7 @@ struct TestVolume
     }
   }
 
-  rt::Index3 GetCells() const { return this->Points - rt::Index3(1); }
+  bricks::Index3 GetCells() const { return this->Points - bricks::Index3(1); }
   T& At(std::int64_t x, std::int64_t y, std::int64_t z)
   {
     return this->Samples[x + this->Points.x * (y + this->Points.y * z)];
@@ -82,7 +83,7 @@ struct TestVolume
   {
     if (this->Mask.empty())
     {
-      const rt::Index3 cells = this->GetCells();
+      const bricks::Index3 cells = this->GetCells();
       this->Mask.assign(static_cast<std::size_t>(cells.x * cells.y * cells.z), 1);
     }
     this->Mask[this->GetCellIndex(x, y, z)] = 0;
@@ -95,16 +96,16 @@ struct TestVolume
 
 /// A box of cells of a volume.
 template <class T>
-class VolumePiece final : public rt::VoxelSource
+class VolumePiece final : public bricks::VoxelSource
 {
 public:
-  VolumePiece(const TestVolume<T>& volume, const rt::Box& cells)
+  VolumePiece(const TestVolume<T>& volume, const bricks::Box& cells)
     : Volume(volume)
     , Cells(cells)
   {
   }
-  rt::Box GetCells() const override { return this->Cells; }
-  void ReadSamples(const rt::Box& points, std::byte* out) const override
+  bricks::Box GetCells() const override { return this->Cells; }
+  void ReadSamples(const bricks::Box& points, std::byte* out) const override
   {
     for (std::int64_t z = points.Min.z; z < points.Max.z; ++z)
     {
@@ -120,7 +121,7 @@ public:
     }
   }
   bool HasCellMask() const override { return !this->Volume.Mask.empty(); }
-  void ReadCellMask(const rt::Box& cells, std::uint8_t* out) const override
+  void ReadCellMask(const bricks::Box& cells, std::uint8_t* out) const override
   {
     for (std::int64_t z = cells.Min.z; z < cells.Max.z; ++z)
     {
@@ -136,44 +137,45 @@ public:
 
 private:
   const TestVolume<T>& Volume;
-  rt::Box Cells;
+  bricks::Box Cells;
 };
 
-using Pieces = std::vector<std::shared_ptr<const rt::VoxelSource>>;
+using Pieces = std::vector<std::shared_ptr<const bricks::VoxelSource>>;
 
 template <class T>
 Pieces GetWhole(const TestVolume<T>& volume)
 {
-  return { std::make_shared<VolumePiece<T>>(volume, rt::Box{ rt::Index3(0), volume.GetCells() }) };
+  return { std::make_shared<VolumePiece<T>>(
+    volume, bricks::Box{ bricks::Index3(0), volume.GetCells() }) };
 }
 
 inline std::shared_ptr<MemoryStore::Segment> PublishPieces(
-  MemoryStore& store, const rt::BrickLattice& lattice, Pieces pieces)
+  MemoryStore& store, const bricks::BrickLattice& lattice, Pieces pieces)
 {
-  rt::VoxelFragmentSource source(lattice, std::move(pieces));
-  rt::VoxelBrickSink sink(lattice);
+  bricks::VoxelFragmentSource source(lattice, std::move(pieces));
+  bricks::VoxelBrickSink sink(lattice);
   return store.Publish(lattice.CreateDirectory(1), source, sink);
 }
 
 /// The volume in bricks of `edge` cells; 0 means the default edge.
 template <class T>
-std::shared_ptr<rt::VoxelField> CreateField(
+std::shared_ptr<bricks::VoxelField> CreateField(
   MemoryStore& store, const TestVolume<T>& volume, int edge = 0)
 {
-  const rt::ScalarType type = GetScalarType<T>();
-  const auto field = std::make_shared<rt::VoxelField>();
-  field->Lattice = rt::BrickLattice(volume.Points, type, !volume.Mask.empty(),
-    edge != 0 ? edge : rt::BrickLattice::GetDefaultEdge(type));
+  const bricks::ScalarType type = GetScalarType<T>();
+  const auto field = std::make_shared<bricks::VoxelField>();
+  field->Lattice = bricks::BrickLattice(volume.Points, type, !volume.Mask.empty(),
+    edge != 0 ? edge : bricks::BrickLattice::GetDefaultEdge(type));
   const auto segment = PublishPieces(store, field->Lattice, GetWhole(volume));
-  std::vector<rt::ValueRange> ranges;
+  std::vector<bricks::ValueRange> ranges;
   segment->ForEachResident(
     [&](dsm::BlockId, const std::byte* block, std::size_t)
     {
-      const auto& header = *reinterpret_cast<const rt::VoxelBrickHeader*>(block);
+      const auto& header = *reinterpret_cast<const bricks::VoxelBrickHeader*>(block);
       ranges.push_back({ header.First, header.Last });
     });
   field->Segment = segment;
-  field->Hierarchy = rt::MacrocellHierarchy(field->Lattice, std::move(ranges));
+  field->Hierarchy = bricks::MacrocellHierarchy(field->Lattice, std::move(ranges));
   return field;
 }
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "DSMBricks/build/VoxelBrickBuilder.h"
+#include "DSMBricks/layout/MacrocellBuilder.h"
+#include "DSMBricks/layout/VoxelBrick.h"
 #include "DSMCore/base/Error.h"
-#include "DSMRayTracing/build/VoxelBrickBuilder.h"
-#include "DSMRayTracing/layout/MacrocellBuilder.h"
-#include "DSMRayTracing/layout/VoxelBrick.h"
 #include "TestVolume.h"
 
 #include <gtest/gtest.h>
@@ -16,9 +16,9 @@ namespace
 {
 
 /// Cuts a box at random planes until `cuts` are made; pieces may be one cell thick.
-std::vector<rt::Box> CutAtRandom(const rt::Box& whole, int cuts, std::mt19937& random)
+std::vector<bricks::Box> CutAtRandom(const bricks::Box& whole, int cuts, std::mt19937& random)
 {
-  std::vector<rt::Box> boxes{ whole };
+  std::vector<bricks::Box> boxes{ whole };
   for (int cut = 0; cut < cuts; ++cut)
   {
     const std::size_t which = random() % boxes.size();
@@ -29,7 +29,7 @@ std::vector<rt::Box> CutAtRandom(const rt::Box& whole, int cuts, std::mt19937& r
       continue;
     }
     const std::int64_t plane = boxes[which].Min[axis] + 1 + random() % (size - 1);
-    rt::Box upper = boxes[which];
+    bricks::Box upper = boxes[which];
     boxes[which].Max[axis] = plane;
     upper.Min[axis] = plane;
     boxes.push_back(upper);
@@ -39,7 +39,7 @@ std::vector<rt::Box> CutAtRandom(const rt::Box& whole, int cuts, std::mt19937& r
 }
 
 template <class T>
-TestVolume<T> CreateRandomVolume(const rt::Index3& points, std::mt19937& random)
+TestVolume<T> CreateRandomVolume(const bricks::Index3& points, std::mt19937& random)
 {
   return TestVolume<T>(
     points, [&](int, int, int) { return static_cast<T>(static_cast<int>(random() % 200) - 100); });
@@ -54,14 +54,15 @@ void ExpectSameBricksForAllCuts(bool masked, bool ofCells = false)
   {
     volume.Blank(random() % 13, random() % 9, random() % 11);
   }
-  const rt::BrickLattice ofPoints(volume.Points, GetScalarType<T>(), masked, 5);
-  const rt::BrickLattice lattice = ofCells ? ofPoints.OfCells() : ofPoints;
+  const bricks::BrickLattice ofPoints(volume.Points, GetScalarType<T>(), masked, 5);
+  const bricks::BrickLattice lattice = ofCells ? ofPoints.OfCells() : ofPoints;
   MemoryStore store;
   const auto expected = PublishPieces(store, lattice, GetWhole(volume));
   for (const int cuts : { 1, 3, 10, 60 })
   {
     Pieces pieces;
-    for (const rt::Box& box : CutAtRandom({ rt::Index3(0), volume.GetCells() }, cuts, random))
+    for (const bricks::Box& box :
+      CutAtRandom({ bricks::Index3(0), volume.GetCells() }, cuts, random))
     {
       pieces.push_back(std::make_shared<VolumePiece<T>>(volume, box));
     }
@@ -97,13 +98,13 @@ TYPED_TEST(TestVoxelBrickBuilder, SamplesAreKeptAsTheyAre)
 {
   std::mt19937 random(6);
   const auto volume = CreateRandomVolume<TypeParam>({ 11, 7, 9 }, random);
-  const rt::BrickLattice lattice(volume.Points, GetScalarType<TypeParam>(), false, 4);
+  const bricks::BrickLattice lattice(volume.Points, GetScalarType<TypeParam>(), false, 4);
   MemoryStore store;
   const auto segment = PublishPieces(store, lattice, GetWhole(volume));
   for (dsm::BlockId id = 0; id < lattice.GetBrickCount(); ++id)
   {
-    const rt::Box cells = lattice.GetCellsOfBrick(id);
-    const rt::VoxelBrick<TypeParam> brick(segment->GetBlock(id));
+    const bricks::Box cells = lattice.GetCellsOfBrick(id);
+    const bricks::VoxelBrick<TypeParam> brick(segment->GetBlock(id));
     ASSERT_EQ(reinterpret_cast<std::uintptr_t>(brick.GetSamples()) % 64, 0u);
     for (auto z = cells.Min.z; z <= cells.Max.z; ++z)
     {
@@ -124,10 +125,10 @@ TYPED_TEST(TestVoxelBrickBuilder, MacrocellsSpanTheirCorners)
   using T = TypeParam;
   std::mt19937 random(7);
   const auto volume = CreateRandomVolume<T>({ 8, 6, 7 }, random);
-  const rt::BrickLattice lattice(volume.Points, GetScalarType<T>(), false, 16);
+  const bricks::BrickLattice lattice(volume.Points, GetScalarType<T>(), false, 16);
   MemoryStore store;
   const auto segment = PublishPieces(store, lattice, GetWhole(volume));
-  const rt::VoxelBrick<T> brick(segment->GetBlock(0));
+  const bricks::VoxelBrick<T> brick(segment->GetBlock(0));
   ASSERT_EQ(brick.GetMacrocells(0), 2);
   ASSERT_EQ(brick.GetMacrocells(1), 2);
   ASSERT_EQ(brick.GetMacrocells(2), 2);
@@ -157,10 +158,10 @@ TEST(TestVoxelBrick, CellsWithoutDataAreLeftOutOfTheRange)
   TestVolume<float> volume({ 9, 5, 5 }, [](int x, int, int) { return static_cast<float>(x); });
   volume.At(1, 1, 1) = std::numeric_limits<float>::quiet_NaN();
   volume.At(8, 4, 4) = std::numeric_limits<float>::infinity();
-  const rt::BrickLattice lattice(volume.Points, rt::ScalarType::Float32, false, 16);
+  const bricks::BrickLattice lattice(volume.Points, bricks::ScalarType::Float32, false, 16);
   MemoryStore store;
   const auto segment = PublishPieces(store, lattice, GetWhole(volume));
-  const rt::VoxelBrick<float> brick(segment->GetBlock(0));
+  const bricks::VoxelBrick<float> brick(segment->GetBlock(0));
   EXPECT_EQ(brick.GetMacrocellRanges()[0].Min, 0.0f);
   EXPECT_EQ(brick.GetMacrocellRanges()[0].Max, 4.0f);
   EXPECT_EQ(brick.GetMacrocellRanges()[1].Max, 8.0f);
@@ -173,10 +174,10 @@ TEST(TestVoxelBrick, BrickWithoutDataIsEmpty)
 {
   TestVolume<float> volume(
     { 3, 3, 3 }, [](int, int, int) { return std::numeric_limits<float>::quiet_NaN(); });
-  const rt::BrickLattice lattice(volume.Points, rt::ScalarType::Float32, false, 16);
+  const bricks::BrickLattice lattice(volume.Points, bricks::ScalarType::Float32, false, 16);
   MemoryStore store;
   const auto segment = PublishPieces(store, lattice, GetWhole(volume));
-  const rt::VoxelBrick<float> brick(segment->GetBlock(0));
+  const bricks::VoxelBrick<float> brick(segment->GetBlock(0));
   EXPECT_GT(brick.GetHeader().First, brick.GetHeader().Last);
   EXPECT_GT(brick.GetMacrocellRanges()[0].Min, brick.GetMacrocellRanges()[0].Max);
 }
@@ -184,11 +185,11 @@ TEST(TestVoxelBrick, BrickWithoutDataIsEmpty)
 TEST(TestVoxelBrick, CellsThatNoPieceCoversHoldNoData)
 {
   const TestVolume<short> volume({ 7, 5, 5 }, [](int x, int, int) { return x; });
-  const rt::BrickLattice lattice(volume.Points, rt::ScalarType::Int16, true, 8);
+  const bricks::BrickLattice lattice(volume.Points, bricks::ScalarType::Int16, true, 8);
   MemoryStore store;
   const auto segment = PublishPieces(store, lattice,
-    { std::make_shared<VolumePiece<short>>(volume, rt::Box{ { 2, 0, 0 }, { 3, 4, 4 } }) });
-  const rt::VoxelBrick<short> brick(segment->GetBlock(0));
+    { std::make_shared<VolumePiece<short>>(volume, bricks::Box{ { 2, 0, 0 }, { 3, 4, 4 } }) });
+  const bricks::VoxelBrick<short> brick(segment->GetBlock(0));
   for (int x = 0; x < 6; ++x)
   {
     EXPECT_EQ(brick.HoldsData(x, 1, 2), x == 2);
@@ -205,27 +206,27 @@ TEST(TestVoxelBrick, RangesAreRoundedOutward)
   for (const std::int64_t value : { large, -large, std::int64_t(16777217), std::int64_t(-3),
          std::numeric_limits<std::int64_t>::max(), std::numeric_limits<std::int64_t>::lowest() })
   {
-    EXPECT_TRUE(contains(value, rt::RoundDown(value), rt::RoundUp(value))) << value;
+    EXPECT_TRUE(contains(value, bricks::RoundDown(value), bricks::RoundUp(value))) << value;
   }
   EXPECT_TRUE(contains(std::numeric_limits<std::uint64_t>::max(),
-    rt::RoundDown(std::numeric_limits<std::uint64_t>::max()),
-    rt::RoundUp(std::numeric_limits<std::uint64_t>::max())));
+    bricks::RoundDown(std::numeric_limits<std::uint64_t>::max()),
+    bricks::RoundUp(std::numeric_limits<std::uint64_t>::max())));
   for (const double value : { 0.1, -0.1, 1e300, -1e300, 1e-300, -1e-300, 0.0 })
   {
-    EXPECT_TRUE(contains(value, rt::RoundDown(value), rt::RoundUp(value))) << value;
+    EXPECT_TRUE(contains(value, bricks::RoundDown(value), bricks::RoundUp(value))) << value;
   }
-  EXPECT_EQ(rt::RoundDown(0.25f), 0.25f);
-  EXPECT_EQ(rt::RoundUp(std::uint8_t(255)), 255.0f);
+  EXPECT_EQ(bricks::RoundDown(0.25f), 0.25f);
+  EXPECT_EQ(bricks::RoundUp(std::uint8_t(255)), 255.0f);
 }
 
 TEST(TestVoxelFragmentSource, OneFragmentForEachPieceAndBrick)
 {
   const TestVolume<float> volume({ 9, 9, 9 });
-  const rt::BrickLattice lattice(volume.Points, rt::ScalarType::Float32, false, 4);
-  rt::VoxelFragmentSource source(lattice,
-    { std::make_shared<VolumePiece<float>>(volume, rt::Box{ { 0, 0, 0 }, { 8, 8, 3 } }),
-      std::make_shared<VolumePiece<float>>(volume, rt::Box{ { 5, 5, 5 }, { 5, 8, 8 } }),
-      std::make_shared<VolumePiece<float>>(volume, rt::Box{ { 3, 3, 3 }, { 5, 4, 4 } }) });
+  const bricks::BrickLattice lattice(volume.Points, bricks::ScalarType::Float32, false, 4);
+  bricks::VoxelFragmentSource source(lattice,
+    { std::make_shared<VolumePiece<float>>(volume, bricks::Box{ { 0, 0, 0 }, { 8, 8, 3 } }),
+      std::make_shared<VolumePiece<float>>(volume, bricks::Box{ { 5, 5, 5 }, { 5, 8, 8 } }),
+      std::make_shared<VolumePiece<float>>(volume, bricks::Box{ { 3, 3, 3 }, { 5, 4, 4 } }) });
   dsm::Fragment fragment;
   std::vector<dsm::BlockId> blocks;
   double progress = -1.0;
@@ -241,7 +242,8 @@ TEST(TestVoxelFragmentSource, OneFragmentForEachPieceAndBrick)
 
 TEST(TestVoxelFragmentSource, RankWithoutDataHasNoFragment)
 {
-  rt::VoxelFragmentSource source(rt::BrickLattice({ 9, 9, 9 }, rt::ScalarType::Int8, false), {});
+  bricks::VoxelFragmentSource source(
+    bricks::BrickLattice({ 9, 9, 9 }, bricks::ScalarType::Int8, false), {});
   dsm::Fragment fragment;
   EXPECT_FALSE(source.Next(fragment));
   EXPECT_EQ(source.GetProgress(), 1.0);
@@ -251,21 +253,21 @@ TEST(TestVoxelFragmentSource, RefusesAMaskThatTheLatticeLacks)
 {
   TestVolume<float> volume({ 3, 3, 3 });
   volume.Blank(0, 0, 0);
-  const rt::BrickLattice lattice(volume.Points, rt::ScalarType::Float32, false);
-  EXPECT_THROW(rt::VoxelFragmentSource(lattice, GetWhole(volume)), dsm::Error);
+  const bricks::BrickLattice lattice(volume.Points, bricks::ScalarType::Float32, false);
+  EXPECT_THROW(bricks::VoxelFragmentSource(lattice, GetWhole(volume)), dsm::Error);
 }
 
 TEST(TestVoxelBrickSink, RefusesFragmentsThatDoNotFit)
 {
   const TestVolume<float> volume({ 9, 9, 9 });
-  const rt::BrickLattice lattice(volume.Points, rt::ScalarType::Float32, false, 8);
-  const rt::BrickLattice wider({ 17, 9, 9 }, rt::ScalarType::Float32, false, 16);
-  rt::VoxelBrickSink sink(lattice);
+  const bricks::BrickLattice lattice(volume.Points, bricks::ScalarType::Float32, false, 8);
+  const bricks::BrickLattice wider({ 17, 9, 9 }, bricks::ScalarType::Float32, false, 16);
+  bricks::VoxelBrickSink sink(lattice);
   std::vector<std::byte> block(lattice.GetBlockBytes(0));
   EXPECT_THROW(sink.Begin(0, block.data(), block.size() - 1), dsm::Error);
   sink.Begin(0, block.data(), block.size());
   dsm::Fragment fragment;
-  rt::VoxelFragmentSource source(lattice, GetWhole(volume));
+  bricks::VoxelFragmentSource source(lattice, GetWhole(volume));
   ASSERT_TRUE(source.Next(fragment));
   const auto absorb = [&](std::size_t bytes)
   { sink.Absorb(0, block.data(), block.size(), fragment.Bytes.data(), bytes); };
@@ -273,7 +275,7 @@ TEST(TestVoxelBrickSink, RefusesFragmentsThatDoNotFit)
   EXPECT_THROW(absorb(fragment.Bytes.size() - 1), dsm::Error);
   EXPECT_THROW(absorb(7), dsm::Error);
   const TestVolume<float> wide({ 17, 9, 9 });
-  rt::VoxelFragmentSource foreign(wider, GetWhole(wide));
+  bricks::VoxelFragmentSource foreign(wider, GetWhole(wide));
   ASSERT_TRUE(foreign.Next(fragment));
   EXPECT_THROW(absorb(fragment.Bytes.size()), dsm::Error);
 }

@@ -54,14 +54,15 @@ void ForEachPoint(Set&& set)
 /// The lattice starts at the image's first point.
 vtkDSMLatticePlan::Member MakePlace(const vtkDSMPieceInfo& info)
 {
-  const rt::Index3 shift(1, -2, -5);
+  const bricks::Index3 shift(1, -2, -5);
   return { 0, shift,
-    { rt::Index3(info.Min[0], info.Min[1], info.Min[2]) + shift,
-      rt::Index3(info.Max[0], info.Max[1], info.Max[2]) + shift } };
+    { bricks::Index3(info.Min[0], info.Min[1], info.Min[2]) + shift,
+      bricks::Index3(info.Max[0], info.Max[1], info.Max[2]) + shift } };
 }
 
 template <class T>
-std::vector<T> Read(vtkImageData* image, vtkDataArray* array, int component, const rt::Box& points)
+std::vector<T> Read(
+  vtkImageData* image, vtkDataArray* array, int component, const bricks::Box& points)
 {
   const vtkDSMImagePiece piece(
     image, array, component, MakePlace(vtkDSMImagePiece::Describe(image, 0)), false);
@@ -70,7 +71,7 @@ std::vector<T> Read(vtkImageData* image, vtkDataArray* array, int component, con
   return samples;
 }
 
-const rt::Box Some{ { 1, 0, 1 }, { 3, 2, 3 } };
+const bricks::Box Some{ { 1, 0, 1 }, { 3, 2, 3 } };
 
 /// What Some holds, through `change`.
 template <class T, class Change>
@@ -121,7 +122,7 @@ TEST(ImagePiece, KeepsAll64BitsOfIntegersInEitherLayout)
       separate->SetTypedComponent(tuple, 0, 0);
       separate->SetTypedComponent(tuple, 1, widen(value));
     });
-  EXPECT_EQ(vtkDSMImagePiece::GetScalarType(interleaved, 0), rt::ScalarType::Int64);
+  EXPECT_EQ(vtkDSMImagePiece::GetScalarType(interleaved, 0), bricks::ScalarType::Int64);
   EXPECT_EQ(Read<std::int64_t>(image, interleaved, 0, Some), expected);
   EXPECT_EQ(Read<std::int64_t>(image, separate, 1, Some), expected);
 }
@@ -133,7 +134,7 @@ TEST(ImagePiece, ReadsBits)
   array->SetNumberOfTuples(image->GetNumberOfPoints());
   const auto toBit = [](double value) { return std::fmod(value, 2.0) != 0.0 ? 1 : 0; };
   ForEachPoint([&](vtkIdType tuple, double value) { array->SetValue(tuple, toBit(value)); });
-  EXPECT_EQ(vtkDSMImagePiece::GetScalarType(array, 0), rt::ScalarType::UInt8);
+  EXPECT_EQ(vtkDSMImagePiece::GetScalarType(array, 0), bricks::ScalarType::UInt8);
   EXPECT_EQ(Read<std::uint8_t>(image, array, 0, Some), GetExpected<std::uint8_t>(toBit));
 }
 
@@ -151,13 +152,13 @@ TEST(ImagePiece, ComputesTheMagnitude)
 
 TEST(ImagePiece, TypesKeepSizeAndSign)
 {
-  const std::vector<std::pair<int, rt::ScalarType>> types = {
-    { VTK_SIGNED_CHAR, rt::ScalarType::Int8 }, { VTK_UNSIGNED_CHAR, rt::ScalarType::UInt8 },
-    { VTK_SHORT, rt::ScalarType::Int16 }, { VTK_UNSIGNED_SHORT, rt::ScalarType::UInt16 },
-    { VTK_INT, rt::ScalarType::Int32 }, { VTK_UNSIGNED_INT, rt::ScalarType::UInt32 },
-    { VTK_LONG_LONG, rt::ScalarType::Int64 }, { VTK_UNSIGNED_LONG_LONG, rt::ScalarType::UInt64 },
-    { VTK_FLOAT, rt::ScalarType::Float32 }, { VTK_DOUBLE, rt::ScalarType::Float64 }
-  };
+  const std::vector<std::pair<int, bricks::ScalarType>> types = { { VTK_SIGNED_CHAR,
+                                                                    bricks::ScalarType::Int8 },
+    { VTK_UNSIGNED_CHAR, bricks::ScalarType::UInt8 }, { VTK_SHORT, bricks::ScalarType::Int16 },
+    { VTK_UNSIGNED_SHORT, bricks::ScalarType::UInt16 }, { VTK_INT, bricks::ScalarType::Int32 },
+    { VTK_UNSIGNED_INT, bricks::ScalarType::UInt32 }, { VTK_LONG_LONG, bricks::ScalarType::Int64 },
+    { VTK_UNSIGNED_LONG_LONG, bricks::ScalarType::UInt64 },
+    { VTK_FLOAT, bricks::ScalarType::Float32 }, { VTK_DOUBLE, bricks::ScalarType::Float64 } };
   for (const auto& [number, type] : types)
   {
     vtkSmartPointer<vtkDataArray> array;

@@ -30,7 +30,7 @@ vtkDSMPieceInfo MakePiece(const Extent& cells, int leaf = 0)
   return piece;
 }
 
-rt::Box MakeBox(const Extent& cells)
+bricks::Box MakeBox(const Extent& cells)
 {
   return { { cells[0], cells[2], cells[4] }, { cells[1], cells[3], cells[5] } };
 }
@@ -46,12 +46,12 @@ TEST(LatticePlan, PiecesOfOneImageMakeOneLatticeThatStartsAtItsFirstPoint)
     MakePiece({ 3, 9, 2, 8, 10, 14 }), MakePiece({ -5, 9, 8, 9, 10, 14 }) });
   ASSERT_EQ(plan.GetLattices().size(), 1u);
   const auto& lattice = plan.GetLattices()[0];
-  EXPECT_EQ(lattice.Points, rt::Index3(15, 8, 5));
+  EXPECT_EQ(lattice.Points, bricks::Index3(15, 8, 5));
   EXPECT_EQ(GetCorner(lattice), glm::dvec3(-5.0, 4.0, 30.0));
   ASSERT_EQ(lattice.Members.size(), 3u);
   EXPECT_EQ(lattice.Members[1].Piece, 1);
-  EXPECT_EQ(lattice.Members[1].Cells.Min, rt::Index3(8, 0, 0));
-  EXPECT_EQ(lattice.Members[1].IndexToLattice, rt::Index3(5, -2, -10));
+  EXPECT_EQ(lattice.Members[1].Cells.Min, bricks::Index3(8, 0, 0));
+  EXPECT_EQ(lattice.Members[1].IndexToLattice, bricks::Index3(5, -2, -10));
 }
 
 TEST(LatticePlan, ShiftedOriginsAreAligned)
@@ -60,8 +60,8 @@ TEST(LatticePlan, ShiftedOriginsAreAligned)
   second.Origin[0] = 4.00001;
   const vtkDSMLatticePlan plan({ MakePiece({ 0, 4, 0, 4, 0, 4 }), second });
   ASSERT_EQ(plan.GetLattices().size(), 1u);
-  EXPECT_EQ(plan.GetLattices()[0].Points, rt::Index3(9, 5, 5));
-  EXPECT_EQ(plan.GetLattices()[0].Members[1].IndexToLattice, rt::Index3(4, 0, 0));
+  EXPECT_EQ(plan.GetLattices()[0].Points, bricks::Index3(9, 5, 5));
+  EXPECT_EQ(plan.GetLattices()[0].Members[1].IndexToLattice, bricks::Index3(4, 0, 0));
 }
 
 TEST(LatticePlan, ALaterPieceJoinsTwoGroups)
@@ -69,7 +69,7 @@ TEST(LatticePlan, ALaterPieceJoinsTwoGroups)
   const vtkDSMLatticePlan plan({ MakePiece({ 0, 4, 0, 4, 0, 4 }), MakePiece({ 8, 12, 0, 4, 0, 4 }),
     MakePiece({ 4, 8, 0, 4, 0, 4 }) });
   ASSERT_EQ(plan.GetLattices().size(), 1u);
-  EXPECT_EQ(plan.GetLattices()[0].Points, rt::Index3(13, 5, 5));
+  EXPECT_EQ(plan.GetLattices()[0].Points, bricks::Index3(13, 5, 5));
 }
 
 TEST(LatticePlan, WhatDoesNotFitStaysApart)
@@ -152,14 +152,14 @@ TEST(LatticePlan, FlatPiecesAmongVolumesAreLeftOut)
 
 TEST(LatticePlan, CoverageFindsOneMissingCell)
 {
-  const rt::Box whole = MakeBox({ 0, 4, 0, 4, 0, 4 });
-  const rt::Box left = MakeBox({ 0, 2, 0, 4, 0, 4 });
-  const rt::Box right = MakeBox({ 1, 4, 0, 4, 0, 4 });
+  const bricks::Box whole = MakeBox({ 0, 4, 0, 4, 0, 4 });
+  const bricks::Box left = MakeBox({ 0, 2, 0, 4, 0, 4 });
+  const bricks::Box right = MakeBox({ 1, 4, 0, 4, 0, 4 });
   EXPECT_TRUE(vtkDSMLatticePlan::IsCovered(whole, { left, right }));
   EXPECT_FALSE(vtkDSMLatticePlan::IsCovered(whole, { left }));
-  const rt::Box allButOneLayer = MakeBox({ 1, 4, 0, 4, 0, 3 });
-  const rt::Box allButOneCell = MakeBox({ 2, 4, 0, 4, 3, 4 });
-  const rt::Box lastRow = MakeBox({ 0, 2, 0, 3, 3, 4 });
+  const bricks::Box allButOneLayer = MakeBox({ 1, 4, 0, 4, 0, 3 });
+  const bricks::Box allButOneCell = MakeBox({ 2, 4, 0, 4, 3, 4 });
+  const bricks::Box lastRow = MakeBox({ 0, 2, 0, 3, 3, 4 });
   EXPECT_FALSE(vtkDSMLatticePlan::IsCovered(
     whole, { MakeBox({ 0, 1, 0, 4, 0, 3 }), allButOneLayer, allButOneCell, lastRow }));
   EXPECT_TRUE(vtkDSMLatticePlan::IsCovered(whole,
@@ -176,8 +176,8 @@ TEST(LatticePlan, SeamsAreWherePiecesOfTwoBlocksTouch)
   ASSERT_EQ(plan.GetLattices().size(), 2u);
   const std::vector<vtkDSMLatticePlan::Seam> seams = plan.FindSeams(pieces);
   ASSERT_EQ(seams.size(), 1u);
-  EXPECT_EQ(seams[0].Points.Min, rt::Index3(8, 0, 2));
-  EXPECT_EQ(seams[0].Points.Max, rt::Index3(9, 5, 5));
+  EXPECT_EQ(seams[0].Points.Min, bricks::Index3(8, 0, 2));
+  EXPECT_EQ(seams[0].Points.Max, bricks::Index3(9, 5, 5));
   const auto& members = plan.GetLattices()[seams[0].Lattice].Members;
   EXPECT_EQ(members[seams[0].Members[0]].Piece + members[seams[0].Members[1]].Piece, 1 + 2);
 }

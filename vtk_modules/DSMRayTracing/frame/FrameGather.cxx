@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "DSMRayTracing/frame/FrameGather.h"
 
-#include "DSMRayTracing/base/ByteHash.h"
+#include "DSMBricks/base/ByteHash.h"
 
 #include <algorithm>
 #include <cstddef>
@@ -245,7 +245,7 @@ Picture AssembleTilesWithEdges(dsm::Messenger& messenger, const Frame& frame)
 
 std::uint64_t GetHash(const Picture& picture)
 {
-  ByteHash hash;
+  bricks::ByteHash hash;
   const std::int32_t size[2] = { picture.Width, picture.Height };
   hash.Add(size, sizeof(size));
   hash.Add(picture.Color.data(), picture.Color.size());

@@ -29,13 +29,13 @@ TileSampler::TileSampler(const ObjectTracers& objects, const Scene& scene, const
 }
 
 template <class Visit>
-void TileSampler::Split(const Box& whole, int edge, const Visit& visit)
+void TileSampler::Split(const PixelBox& whole, int edge, const Visit& visit)
 {
   for (int top = 0; top < whole.Height; top += edge)
   {
     for (int left = 0; left < whole.Width; left += edge)
     {
-      visit(Box{ whole.Left + left, whole.Top + top, std::min(edge, whole.Width - left),
+      visit(PixelBox{ whole.Left + left, whole.Top + top, std::min(edge, whole.Width - left),
         std::min(edge, whole.Height - top) });
     }
   }
@@ -54,14 +54,15 @@ void TileSampler::Trace(Tile& tile) const
   tile.Color.resize(4 * tile.Layers * pixels);
   tile.Samples = this->Request.FirstSample + this->Request.Samples;
   Split({ 0, 0, tile.Width, tile.Height }, BeamEdge,
-    [&](const Box& box) { this->TraceBeam(tile, box); });
+    [&](const PixelBox& box) { this->TraceBeam(tile, box); });
 }
 
 bool TileSampler::Prefetch(const Tile& tile) const
 {
   bool anyAbsent = false;
   Split({ 0, 0, tile.Width, tile.Height }, BeamEdge,
-    [&](const Box& box) { anyAbsent |= this->Prefetch(this->FindBeam(tile, box), tile, box); });
+    [&](const PixelBox& box)
+    { anyAbsent |= this->Prefetch(this->FindBeam(tile, box), tile, box); });
   return anyAbsent;
 }
 
@@ -91,13 +92,13 @@ void TileSampler::Finish(Tile& tile, const glm::vec3& tint) const
   }
 }
 
-SceneBeam TileSampler::FindBeam(const Tile& tile, const Box& box) const
+SceneBeam TileSampler::FindBeam(const Tile& tile, const PixelBox& box) const
 {
   return this->Pixels.FindBeam(tile.X + box.Left, tile.Y + box.Top, box.Width, box.Height);
 }
 
 /// Returns whether any brick was absent.
-bool TileSampler::Prefetch(const SceneBeam& beam, const Tile& tile, const Box& box) const
+bool TileSampler::Prefetch(const SceneBeam& beam, const Tile& tile, const PixelBox& box) const
 {
   bool anyAbsent = false;
   for (std::size_t object = 0; this->Beams && object < beam.Objects.size(); ++object)
@@ -111,7 +112,7 @@ bool TileSampler::Prefetch(const SceneBeam& beam, const Tile& tile, const Box& b
   return anyAbsent;
 }
 
-void TileSampler::Record(const SceneBeam& beam, const Tile& tile, const Box& box) const
+void TileSampler::Record(const SceneBeam& beam, const Tile& tile, const PixelBox& box) const
 {
   for (std::size_t object = 0; this->Beams && object < beam.Objects.size(); ++object)
   {
@@ -123,7 +124,7 @@ void TileSampler::Record(const SceneBeam& beam, const Tile& tile, const Box& box
   }
 }
 
-void TileSampler::TraceBeam(Tile& tile, const Box& box) const
+void TileSampler::TraceBeam(Tile& tile, const PixelBox& box) const
 {
   SceneBeam beam = this->FindBeam(tile, box);
   if (beam.MayMeet())
@@ -133,7 +134,7 @@ void TileSampler::TraceBeam(Tile& tile, const Box& box) const
     const bool splits =
       !beam.IsUsable() && (box.Width > SmallestBeamEdge || box.Height > SmallestBeamEdge);
     Split(box, splits ? SmallestBeamEdge : PixelSampler::BoxEdge,
-      [&](const Box& part)
+      [&](const PixelBox& part)
       {
         if (splits)
         {
@@ -148,7 +149,7 @@ void TileSampler::TraceBeam(Tile& tile, const Box& box) const
   this->Record(beam, tile, box);
 }
 
-void TileSampler::TraceBatch(Tile& tile, SceneBeam& beam, const Box& box) const
+void TileSampler::TraceBatch(Tile& tile, SceneBeam& beam, const PixelBox& box) const
 {
   for (int sample = 0; sample < this->Request.Samples; ++sample)
   {

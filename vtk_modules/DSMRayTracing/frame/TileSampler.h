@@ -35,7 +35,7 @@ public:
 
 private:
   /// Some of a tile's pixels.
-  struct Box
+  struct PixelBox
   {
     int Left;
     int Top;
@@ -45,15 +45,15 @@ private:
 
   /// Calls `visit(box)` for squares of `edge` pixels, and what remains at the borders.
   template <class Visit>
-  static void Split(const Box& whole, int edge, const Visit& visit);
+  static void Split(const PixelBox& whole, int edge, const Visit& visit);
 
-  SceneBeam FindBeam(const Tile& tile, const Box& box) const;
-  bool Prefetch(const SceneBeam& beam, const Tile& tile, const Box& box) const;
-  void Record(const SceneBeam& beam, const Tile& tile, const Box& box) const;
+  SceneBeam FindBeam(const Tile& tile, const PixelBox& box) const;
+  bool Prefetch(const SceneBeam& beam, const Tile& tile, const PixelBox& box) const;
+  void Record(const SceneBeam& beam, const Tile& tile, const PixelBox& box) const;
 
   /// Adds the samples of pixels that share a beam; of one that fits into a batch.
-  void TraceBeam(Tile& tile, const Box& box) const;
-  void TraceBatch(Tile& tile, SceneBeam& beam, const Box& box) const;
+  void TraceBeam(Tile& tile, const PixelBox& box) const;
+  void TraceBatch(Tile& tile, SceneBeam& beam, const PixelBox& box) const;
   static void AddSample(const PixelSample& traced, Tile& tile);
 
   const ObjectTracers& Objects;

@@ -37,7 +37,7 @@ struct MeshHit
   /// Of the corners as the brick has them: the smallest position first.
   glm::dvec3 Weights{ 0.0 };
   glm::vec3 Corners[3]; ///< in that order, relative to the mesh's origin
-  unsigned EdgeFlags = AllEdges;
+  unsigned EdgeFlags = bricks::AllEdges;
   dsm::BlockId Brick = 0;
   std::uint32_t Triangle = 0; ///< of the brick
 
@@ -72,8 +72,8 @@ struct MeshHit
       this->Normal = size > 0.0 ? normal / size : this->GeometricNormal;
     }
 
-    const MeshAttributes& has = instance.GetMesh().Attributes;
-    const bool hasValues = has.Values != Attachment::None;
+    const bricks::MeshAttributes& has = instance.GetMesh().Attributes;
+    const bool hasValues = has.Values != bricks::Attachment::None;
     const double notANumber = std::numeric_limits<double>::quiet_NaN();
     this->Value = hasValues ? attributes.GetValue(triangle.Weights) : notANumber;
     for (int corner = 0; corner < 3; ++corner)
@@ -81,7 +81,7 @@ struct MeshHit
       this->CornerValues[corner] = hasValues ? attributes.Values[corner] : notANumber;
     }
     this->Color =
-      has.Colors != Attachment::None ? attributes.GetColor(triangle.Weights) : glm::vec4(1.0f);
+      has.Colors != bricks::Attachment::None ? attributes.GetColor(triangle.Weights) : glm::vec4(1.0f);
     this->TextureCoordinate =
       has.TextureCoordinates ? attributes.GetTextureCoordinate(triangle.Weights) : glm::dvec2(0.0);
   }

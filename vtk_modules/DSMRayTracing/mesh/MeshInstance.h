@@ -2,7 +2,7 @@
 #ifndef rt_MeshInstance_h
 #define rt_MeshInstance_h
 
-#include "DSMRayTracing/layout/TriangleMesh.h"
+#include "DSMBricks/layout/TriangleMesh.h"
 #include "DSMRayTracing/mesh/MeshRay.h"
 #include "DSMRayTracing/ray/Ray.h"
 
@@ -31,7 +31,7 @@ class MeshInstance
 {
 public:
   /// `meshToWorld` is affine and invertible.
-  MeshInstance(std::shared_ptr<const TriangleMesh> mesh, const glm::dmat4& meshToWorld)
+  MeshInstance(std::shared_ptr<const bricks::TriangleMesh> mesh, const glm::dmat4& meshToWorld)
     : Shape(std::move(mesh))
     , MeshToWorld(meshToWorld)
     , WorldOrigin(meshToWorld * glm::dvec4(this->Shape->Origin, 1.0))
@@ -44,7 +44,7 @@ public:
 
   MeshCulling Culling;
 
-  const TriangleMesh& GetMesh() const { return *this->Shape; }
+  const bricks::TriangleMesh& GetMesh() const { return *this->Shape; }
   const glm::dmat4& GetMeshToWorld() const { return this->MeshToWorld; }
 
   /// World length that two triangles can at most be apart, near these corners, for the rounding of
@@ -83,7 +83,7 @@ private:
   /// Corners are floats: each of two may be off by half of this part of its coordinates.
   static constexpr double CornerStep = 0x1p-23;
 
-  std::shared_ptr<const TriangleMesh> Shape;
+  std::shared_ptr<const bricks::TriangleMesh> Shape;
   glm::dmat4 MeshToWorld;
   glm::dvec3 WorldOrigin; ///< of the positions in bricks
   glm::dmat3 WorldToMesh;

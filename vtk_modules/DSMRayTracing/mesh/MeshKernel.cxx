@@ -41,21 +41,21 @@ public:
     return MeshPacketSetup<D>(packet, instance, rays, wanted).Set(alone);
   }
 
-  static void FindBricks(
-    const MeshPacket& packet, Mask rays, const BrickBvh& bricks, MeshKernel::Visitor& visitor)
+  static void FindBricks(const MeshPacket& packet, Mask rays, const bricks::BrickBvh& bricks,
+    MeshKernel::Visitor& visitor)
   {
     MeshPacketWalk<D>(packet).Traverse(
       bricks.GetNodes(), rays, [](std::uint32_t) {},
-      [&](std::uint32_t leaf, Mask met) { visitor.Visit(BrickBvh::GetBrick(leaf), met); });
+      [&](std::uint32_t leaf, Mask met) { visitor.Visit(bricks::BrickBvh::GetBrick(leaf), met); });
   }
 
   static Mask SearchBrick(
-    MeshPacket& packet, Mask rays, const TriangleBrick& brick, std::uint32_t number)
+    MeshPacket& packet, Mask rays, const bricks::TriangleBrick& brick, std::uint32_t number)
   {
     return Search(packet, rays, brick, NearestSearch(packet, brick, number));
   }
 
-  static Mask FindOccluded(MeshPacket& packet, Mask rays, const TriangleBrick& brick)
+  static Mask FindOccluded(MeshPacket& packet, Mask rays, const bricks::TriangleBrick& brick)
   {
     return Search(packet, rays, brick, AnySearch(packet, brick));
   }
@@ -65,7 +65,7 @@ private:
   class NearestSearch
   {
   public:
-    NearestSearch(MeshPacket& packet, const TriangleBrick& brick, std::uint32_t number)
+    NearestSearch(MeshPacket& packet, const bricks::TriangleBrick& brick, std::uint32_t number)
       : Packet(packet)
       , Brick(brick)
       , Number(number)
@@ -88,7 +88,7 @@ private:
 
   private:
     MeshPacket& Packet;
-    const TriangleBrick& Brick;
+    const bricks::TriangleBrick& Brick;
     std::uint32_t Number;
   };
 
@@ -96,7 +96,7 @@ private:
   class AnySearch
   {
   public:
-    AnySearch(MeshPacket& packet, const TriangleBrick& brick)
+    AnySearch(MeshPacket& packet, const bricks::TriangleBrick& brick)
       : Packet(packet)
       , Brick(brick)
     {
@@ -117,11 +117,11 @@ private:
 
   private:
     MeshPacket& Packet;
-    const TriangleBrick& Brick;
+    const bricks::TriangleBrick& Brick;
   };
 
   template <class Rule>
-  static Mask Search(MeshPacket& packet, Mask rays, const TriangleBrick& brick, Rule rule)
+  static Mask Search(MeshPacket& packet, Mask rays, const bricks::TriangleBrick& brick, Rule rule)
   {
     for (Mask left = rays; left != 0; left &= left - 1)
     {
@@ -139,15 +139,16 @@ private:
   }
 
   template <int Axis, class Rule>
-  static Mask SearchAlong(MeshPacket& packet, Mask rays, const TriangleBrick& brick, Rule& rule)
+  static Mask SearchAlong(
+    MeshPacket& packet, Mask rays, const bricks::TriangleBrick& brick, Rule& rule)
   {
     using Walk = MeshPacketWalk<D>;
     LeafSearch<Axis, Rule> search(packet, brick, rule);
     Walk(packet).Traverse(
       brick.GetNodes(), rays,
       [&](std::uint16_t leaf)
-      { Walk::Fetch(brick.GetTriangle(TriangleBrick::Leaf(leaf).First), 1); },
-      [&](std::uint16_t leaf, Mask met) { search.Search(TriangleBrick::Leaf(leaf), met); });
+      { Walk::Fetch(brick.GetTriangle(bricks::TriangleBrick::Leaf(leaf).First), 1); },
+      [&](std::uint16_t leaf, Mask met) { search.Search(bricks::TriangleBrick::Leaf(leaf), met); });
     return search.GetFound();
   }
 
@@ -156,14 +157,14 @@ private:
   class LeafSearch
   {
   public:
-    LeafSearch(const MeshPacket& packet, const TriangleBrick& brick, Rule& rule)
+    LeafSearch(const MeshPacket& packet, const bricks::TriangleBrick& brick, Rule& rule)
       : Packet(packet)
       , Brick(brick)
       , Hits(rule)
     {
     }
 
-    HWY_INLINE void Search(const TriangleBrick::Leaf& leaf, Mask rays)
+    HWY_INLINE void Search(const bricks::TriangleBrick::Leaf& leaf, Mask rays)
     {
       const TriangleFilter<Axis> filter(this->Brick, leaf.First);
       for (; rays != 0; rays &= rays - 1)
@@ -190,7 +191,7 @@ private:
 
   private:
     const MeshPacket& Packet;
-    const TriangleBrick& Brick;
+    const bricks::TriangleBrick& Brick;
     Rule& Hits;
     Mask Found = 0;
   };

@@ -2,8 +2,8 @@
 #ifndef rt_MeshKernel_h
 #define rt_MeshKernel_h
 
-#include "DSMRayTracing/accel/BrickBvh.h"
-#include "DSMRayTracing/layout/TriangleBrick.h"
+#include "DSMBricks/accel/BrickBvh.h"
+#include "DSMBricks/layout/TriangleBrick.h"
 #include "DSMRayTracing/mesh/MeshPacket.h"
 
 #include <cstdint>
@@ -41,17 +41,17 @@ struct MeshKernel
 
   /// Visits the bricks whose boxes any of `rays` meet before their ends, about front to back. A visit
   /// may shorten rays.
-  void (*FindBricks)(
-    const MeshPacket& packet, MeshPacket::Mask rays, const BrickBvh& bricks, Visitor& visitor);
+  void (*FindBricks)(const MeshPacket& packet, MeshPacket::Mask rays,
+    const bricks::BrickBvh& bricks, Visitor& visitor);
 
   /// Searches a brick. Returns those of `rays` for which it has a nearer hit than those so far, or
   /// one as near that comes first.
-  MeshPacket::Mask (*SearchBrick)(
-    MeshPacket& packet, MeshPacket::Mask rays, const TriangleBrick& brick, std::uint32_t number);
+  MeshPacket::Mask (*SearchBrick)(MeshPacket& packet, MeshPacket::Mask rays,
+    const bricks::TriangleBrick& brick, std::uint32_t number);
 
   /// Searches a brick for any hit. Returns those of `rays` that have one, and ends them.
   MeshPacket::Mask (*FindOccluded)(
-    MeshPacket& packet, MeshPacket::Mask rays, const TriangleBrick& brick);
+    MeshPacket& packet, MeshPacket::Mask rays, const bricks::TriangleBrick& brick);
 
   /// The fastest that this processor can run.
   static const MeshKernel& GetBest();

@@ -60,7 +60,7 @@ struct MeshPacket
     return ray;
   }
 
-  void SetFilter(int index, const TriangleBrick& brick)
+  void SetFilter(int index, const bricks::TriangleBrick& brick)
   {
     const float start[3] = { this->Start[0][index], this->Start[1][index], this->Start[2][index] };
     const float shear[2] = { this->FilterShear[0][index], this->FilterShear[1][index] };

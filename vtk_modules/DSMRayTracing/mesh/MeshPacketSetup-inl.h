@@ -105,7 +105,7 @@ private:
   {
     const Tag tag;
     const Vector zero = hn::Zero(tag);
-    const TriangleMesh& mesh = this->Instance.GetMesh();
+    const bricks::TriangleMesh& mesh = this->Instance.GetMesh();
     Vector worldOrigin[3];
     Vector worldDirection[3];
     for (int axis = 0; axis < 3; ++axis)

@@ -7,7 +7,7 @@
 #define rt_MeshPacketWalk_inl_h
 #endif
 
-#include "DSMRayTracing/accel/WideBvhNode.h"
+#include "DSMBricks/accel/WideBvhNode.h"
 #include "DSMRayTracing/base/MaskBits-inl.h"
 #include "DSMRayTracing/mesh/MeshPacket.h"
 #include "DSMRayTracing/ray/WideBvhTraversal.h"
@@ -46,9 +46,9 @@ public:
   /// and ahead of time, `prepare(reference)`.
   template <class Reference, class Prepare, class Visit>
   HWY_INLINE void Traverse(
-    const WideBvhNode<Reference>* nodes, Mask rays, Prepare&& prepare, Visit&& visit) const
+    const bricks::WideBvhNode<Reference>* nodes, Mask rays, Prepare&& prepare, Visit&& visit) const
   {
-    using Node = WideBvhNode<Reference>;
+    using Node = bricks::WideBvhNode<Reference>;
     constexpr int depth = LargestWideBvhDepth;
     HWY_ALIGN float enters[(Node::Width - 1) * depth + Node::Width][Size];
     struct Entry
@@ -127,8 +127,8 @@ public:
 private:
   struct Children
   {
-    HWY_ALIGN float Enter[WideBvhWidth][Size];
-    Mask Rays[WideBvhWidth];
+    HWY_ALIGN float Enter[bricks::WideBvhWidth][Size];
+    Mask Rays[bricks::WideBvhWidth];
   };
 
   static Mask GetBits(hn::Mask<D> mask) { return static_cast<Mask>(GetMaskBits(D(), mask)); }
@@ -158,11 +158,12 @@ private:
 
   /// BoxRay::FindChildren.
   template <class Reference>
-  HWY_INLINE void FindChildren(const WideBvhNode<Reference>& node, Mask rays, Children& met) const
+  HWY_INLINE void FindChildren(
+    const bricks::WideBvhNode<Reference>& node, Mask rays, Children& met) const
   {
     const D tag;
-    float planes[6 * WideBvhWidth];
-    for (int plane = 0; plane < 6 * WideBvhWidth; ++plane)
+    float planes[6 * bricks::WideBvhWidth];
+    for (int plane = 0; plane < 6 * bricks::WideBvhWidth; ++plane)
     {
       planes[plane] = node.Bounds[plane];
     }
@@ -173,8 +174,10 @@ private:
     {
       const std::uint32_t bits = std::uint32_t{ node.Exponent[axis] } << 23;
       std::memcpy(&scale[axis], &bits, sizeof(bits));
-      nearest[axis] = planes + WideBvhWidth * (this->Packet.Backward[axis] ? 3 + axis : axis);
-      farthest[axis] = planes + WideBvhWidth * (this->Packet.Backward[axis] ? axis : 3 + axis);
+      nearest[axis] =
+        planes + bricks::WideBvhWidth * (this->Packet.Backward[axis] ? 3 + axis : axis);
+      farthest[axis] =
+        planes + bricks::WideBvhWidth * (this->Packet.Backward[axis] ? axis : 3 + axis);
     }
     for (Mask& child : met.Rays)
     {

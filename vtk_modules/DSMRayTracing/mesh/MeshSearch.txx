@@ -12,7 +12,7 @@ namespace rt
 template <class Store>
 bool MeshSearch<Store>::Intersect(const MeshInstance& instance, const Ray& ray, MeshHit& hit) const
 {
-  const TriangleMesh& mesh = instance.GetMesh();
+  const bricks::TriangleMesh& mesh = instance.GetMesh();
   MeshRay line;
   if (mesh.Bricks.IsEmpty() || !instance.GetMeshRay(ray, line))
   {
@@ -23,9 +23,9 @@ bool MeshSearch<Store>::Intersect(const MeshInstance& instance, const Ray& ray, 
   TraverseWideBvh(mesh.Bricks.GetNodes(), line.Boxes, line.BoxesEnd,
     [&](std::uint32_t leaf)
     {
-      const std::uint32_t number = BrickBvh::GetBrick(leaf);
+      const std::uint32_t number = bricks::BrickBvh::GetBrick(leaf);
       const typename Store::Pin pin = this->Blocks.Acquire(this->Self, *mesh.Segment, number);
-      const TriangleBrick brick(pin.GetData());
+      const bricks::TriangleBrick brick(pin.GetData());
       if (TreeletTraversal(brick, number, instance.Culling).Intersect(line, nearest))
       {
         attributes.Copy(brick, nearest.Hit.Triangle);
@@ -41,7 +41,7 @@ bool MeshSearch<Store>::Intersect(const MeshInstance& instance, const Ray& ray, 
 template <class Store>
 bool MeshSearch<Store>::IsOccluded(const MeshInstance& instance, const Ray& ray) const
 {
-  const TriangleMesh& mesh = instance.GetMesh();
+  const bricks::TriangleMesh& mesh = instance.GetMesh();
   MeshRay line;
   if (mesh.Bricks.IsEmpty() || !instance.GetMeshRay(ray, line))
   {
@@ -51,9 +51,9 @@ bool MeshSearch<Store>::IsOccluded(const MeshInstance& instance, const Ray& ray)
   TraverseWideBvh(mesh.Bricks.GetNodes(), line.Boxes, line.BoxesEnd,
     [&](std::uint32_t leaf)
     {
-      const std::uint32_t number = BrickBvh::GetBrick(leaf);
+      const std::uint32_t number = bricks::BrickBvh::GetBrick(leaf);
       const typename Store::Pin pin = this->Blocks.Acquire(this->Self, *mesh.Segment, number);
-      const TriangleBrick brick(pin.GetData());
+      const bricks::TriangleBrick brick(pin.GetData());
       occluded = TreeletTraversal(brick, number, instance.Culling).IsOccluded(line) || occluded;
     });
   return occluded;
@@ -64,7 +64,7 @@ template <class Store>
 class MeshSearch<Store>::PacketVisitor final : public MeshKernel::Visitor
 {
 public:
-  PacketVisitor(const MeshSearch& search, const TriangleMesh& mesh)
+  PacketVisitor(const MeshSearch& search, const bricks::TriangleMesh& mesh)
     : Search(search)
     , Mesh(mesh)
   {
@@ -74,7 +74,7 @@ public:
   {
     const typename Store::Pin pin =
       this->Search.Blocks.Acquire(this->Search.Self, *this->Mesh.Segment, number);
-    const TriangleBrick brick(pin.GetData());
+    const bricks::TriangleBrick brick(pin.GetData());
     MeshPacket::Mask better = this->Search.Kernel.SearchBrick(this->Packet, rays, brick, number);
     this->Found |= better;
     for (; better != 0; better &= better - 1)
@@ -90,7 +90,7 @@ public:
 
 private:
   const MeshSearch& Search;
-  const TriangleMesh& Mesh;
+  const bricks::TriangleMesh& Mesh;
 };
 
 template <class Store>
@@ -127,7 +127,7 @@ template <class Visitor>
 MeshPacket::Mask MeshSearch<Store>::VisitBricks(
   const MeshInstance& instance, const Ray* rays, MeshPacket::Mask wanted, Visitor& visitor) const
 {
-  const TriangleMesh& mesh = instance.GetMesh();
+  const bricks::TriangleMesh& mesh = instance.GetMesh();
   if (mesh.Bricks.IsEmpty())
   {
     return 0;
@@ -181,7 +181,7 @@ template <class Store>
 class MeshSearch<Store>::OcclusionVisitor final : public MeshKernel::Visitor
 {
 public:
-  OcclusionVisitor(const MeshSearch& search, const TriangleMesh& mesh)
+  OcclusionVisitor(const MeshSearch& search, const bricks::TriangleMesh& mesh)
     : Search(search)
     , Mesh(mesh)
   {
@@ -192,7 +192,7 @@ public:
     const typename Store::Pin pin =
       this->Search.Blocks.Acquire(this->Search.Self, *this->Mesh.Segment, number);
     this->Found |=
-      this->Search.Kernel.FindOccluded(this->Packet, rays, TriangleBrick(pin.GetData()));
+      this->Search.Kernel.FindOccluded(this->Packet, rays, bricks::TriangleBrick(pin.GetData()));
   }
 
   MeshPacket Packet;
@@ -200,7 +200,7 @@ public:
 
 private:
   const MeshSearch& Search;
-  const TriangleMesh& Mesh;
+  const bricks::TriangleMesh& Mesh;
 };
 
 template <class Store>

@@ -2,7 +2,7 @@
 #ifndef rt_NearestTriangle_h
 #define rt_NearestTriangle_h
 
-#include "DSMRayTracing/layout/TriangleBrick.h"
+#include "DSMBricks/layout/TriangleBrick.h"
 #include "DSMRayTracing/mesh/MeshInstance.h"
 #include "DSMRayTracing/mesh/TriangleHit.h"
 #include "DSMRayTracing/mesh/TriangleIntersector.h"
@@ -21,10 +21,10 @@ struct NearestTriangle
   bool Found = false;
 
   /// Whether a ray meets a triangle of a brick, at `hit`.
-  static bool Meets(const TriangleRay& ray, const MeshCulling& culling, const TriangleBrick& brick,
-    std::uint32_t triangle, TriangleHit& hit)
+  static bool Meets(const TriangleRay& ray, const MeshCulling& culling,
+    const bricks::TriangleBrick& brick, std::uint32_t triangle, TriangleHit& hit)
   {
-    const TriangleBrickVertex* vertices = brick.GetVertices();
+    const bricks::TriangleBrickVertex* vertices = brick.GetVertices();
     const std::uint16_t* corners = brick.GetTriangle(triangle);
     return IntersectTriangle(ray, vertices[corners[0]].Position, vertices[corners[1]].Position,
              vertices[corners[2]].Position, hit) &&
@@ -33,7 +33,7 @@ struct NearestTriangle
 
   /// Whether a triangle of a brick is the nearest so far. If so the ray ends there: ray.Max is to be
   /// lowered to Hit.T.
-  bool Try(const TriangleRay& ray, const MeshCulling& culling, const TriangleBrick& brick,
+  bool Try(const TriangleRay& ray, const MeshCulling& culling, const bricks::TriangleBrick& brick,
     std::uint32_t number, std::uint32_t triangle)
   {
     TriangleHit hit;

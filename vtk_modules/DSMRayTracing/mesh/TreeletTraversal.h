@@ -2,7 +2,7 @@
 #ifndef rt_TreeletTraversal_h
 #define rt_TreeletTraversal_h
 
-#include "DSMRayTracing/layout/TriangleBrick.h"
+#include "DSMBricks/layout/TriangleBrick.h"
 #include "DSMRayTracing/mesh/MeshInstance.h"
 #include "DSMRayTracing/mesh/MeshRay.h"
 #include "DSMRayTracing/mesh/NearestTriangle.h"
@@ -19,7 +19,8 @@ class TreeletTraversal
 {
 public:
   /// `number`: of the brick.
-  TreeletTraversal(const TriangleBrick& brick, std::uint32_t number, const MeshCulling& culling)
+  TreeletTraversal(
+    const bricks::TriangleBrick& brick, std::uint32_t number, const MeshCulling& culling)
     : Brick(brick)
     , Number(number)
     , Culling(culling)
@@ -98,7 +99,7 @@ private:
     TraverseWideBvh(this->Brick.GetNodes(), ray.Boxes, ray.BoxesEnd,
       [&](std::uint16_t reference)
       {
-        const TriangleBrick::Leaf leaf(reference);
+        const bricks::TriangleBrick::Leaf leaf(reference);
         const TriangleFilter<Axis> filter(this->Brick, leaf.First);
         unsigned candidates = filter.FindCandidates(line) & leaf.GetMask();
         for (; candidates != 0; candidates &= candidates - 1)
@@ -108,7 +109,7 @@ private:
       });
   }
 
-  TriangleBrick Brick;
+  bricks::TriangleBrick Brick;
   std::uint32_t Number;
   MeshCulling Culling;
 };

@@ -2,8 +2,8 @@
 #ifndef rt_TriangleAttributes_h
 #define rt_TriangleAttributes_h
 
-#include "DSMRayTracing/layout/OctahedralNormal.h"
-#include "DSMRayTracing/layout/TriangleBrick.h"
+#include "DSMBricks/layout/OctahedralNormal.h"
+#include "DSMBricks/layout/TriangleBrick.h"
 
 #include <glm/geometric.hpp>
 #include <glm/vec2.hpp>
@@ -26,23 +26,23 @@ struct TriangleAttributes
   float TextureCoordinates[3][2];
   unsigned EdgeFlags;
 
-  void Copy(const TriangleBrick& brick, std::uint32_t triangle)
+  void Copy(const bricks::TriangleBrick& brick, std::uint32_t triangle)
   {
-    const TriangleBrickHeader& header = brick.GetHeader();
+    const bricks::TriangleBrickHeader& header = brick.GetHeader();
     const std::uint16_t* corners = brick.GetTriangle(triangle);
     this->EdgeFlags = brick.GetEdgeFlags(triangle);
     for (int corner = 0; corner < 3; ++corner)
     {
       const std::uint32_t vertex = corners[corner];
       this->Normals[corner] = brick.GetVertices()[vertex].Normal;
-      if (header.Values != Attachment::None)
+      if (header.Values != bricks::Attachment::None)
       {
         this->Values[corner] =
-          brick.GetValues()[header.Values == Attachment::Points ? vertex : triangle];
+          brick.GetValues()[header.Values == bricks::Attachment::Points ? vertex : triangle];
       }
-      if (header.Colors != Attachment::None)
+      if (header.Colors != bricks::Attachment::None)
       {
-        const std::uint32_t element = header.Colors == Attachment::Points ? vertex : triangle;
+        const std::uint32_t element = header.Colors == bricks::Attachment::Points ? vertex : triangle;
         std::memcpy(this->Colors[corner], brick.GetColors() + 4 * element, 4);
       }
       if (header.TextureOffset != 0)
@@ -59,12 +59,12 @@ struct TriangleAttributes
     glm::vec3 sum(0.0f);
     for (int corner = 0; corner < 3; ++corner)
     {
-      if (this->Normals[corner] == OctahedralNormal::None)
+      if (this->Normals[corner] == bricks::OctahedralNormal::None)
       {
         return false;
       }
       glm::vec3 direction;
-      OctahedralNormal::Unpack(this->Normals[corner], &direction.x);
+      bricks::OctahedralNormal::Unpack(this->Normals[corner], &direction.x);
       sum += static_cast<float>(weights[corner]) / glm::length(direction) * direction;
     }
     normal = sum;

@@ -2,8 +2,8 @@
 #ifndef rt_TriangleFilter_h
 #define rt_TriangleFilter_h
 
-#include "DSMRayTracing/base/Float4.h"
-#include "DSMRayTracing/layout/TriangleBrick.h"
+#include "DSMBricks/base/Float4.h"
+#include "DSMBricks/layout/TriangleBrick.h"
 
 #include <cstdint>
 
@@ -20,8 +20,8 @@ struct FilterRay
 
   FilterRay() = default;
   /// `uncertainty`: see MeshRay.
-  FilterRay(
-    const float origin[3], const float shear[2], float uncertainty, const TriangleBrick& brick)
+  FilterRay(const float origin[3], const float shear[2], float uncertainty,
+    const bricks::TriangleBrick& brick)
     : Origin{ origin[0], origin[1], origin[2] }
     , Shear{ shear[0], shear[1] }
   {
@@ -45,14 +45,14 @@ class TriangleFilter
 {
 public:
   /// The triangles `first` and on; reads four whatever their number. Called, it costs packets 6 %.
-  [[gnu::always_inline]] TriangleFilter(const TriangleBrick& brick, std::uint32_t first)
+  [[gnu::always_inline]] TriangleFilter(const bricks::TriangleBrick& brick, std::uint32_t first)
   {
-    const TriangleBrickVertex* vertices = brick.GetVertices();
+    const bricks::TriangleBrickVertex* vertices = brick.GetVertices();
     const std::uint16_t* corners = brick.GetTriangle(first);
     for (int corner = 0; corner < 3; ++corner)
     {
-      Float4* const position = this->Corners[corner];
-      Float4::LoadTransposed(vertices[corners[corner]].Position,
+      bricks::Float4* const position = this->Corners[corner];
+      bricks::Float4::LoadTransposed(vertices[corners[corner]].Position,
         vertices[corners[corner + 3]].Position, vertices[corners[corner + 6]].Position,
         vertices[corners[corner + 9]].Position, position[0], position[1], position[2]);
     }
@@ -61,30 +61,30 @@ public:
   /// Bit i is set where triangle first + i may be hit.
   unsigned FindCandidates(const FilterRay& ray) const
   {
-    const Float4 origin[3] = { Float4::Fill(ray.Origin[0]), Float4::Fill(ray.Origin[1]),
-      Float4::Fill(ray.Origin[2]) };
-    const Float4 shearX = Float4::Fill(ray.Shear[0]);
-    const Float4 shearY = Float4::Fill(ray.Shear[1]);
+    const bricks::Float4 origin[3] = { bricks::Float4::Fill(ray.Origin[0]),
+      bricks::Float4::Fill(ray.Origin[1]), bricks::Float4::Fill(ray.Origin[2]) };
+    const bricks::Float4 shearX = bricks::Float4::Fill(ray.Shear[0]);
+    const bricks::Float4 shearY = bricks::Float4::Fill(ray.Shear[1]);
     // Each corner sheared so that the ray is the origin of the plane.
-    Float4 x[3];
-    Float4 y[3];
+    bricks::Float4 x[3];
+    bricks::Float4 y[3];
     for (int corner = 0; corner < 3; ++corner)
     {
-      const Float4* const position = this->Corners[corner];
-      const Float4 z = position[Axis] - origin[Axis];
+      const bricks::Float4* const position = this->Corners[corner];
+      const bricks::Float4 z = position[Axis] - origin[Axis];
       x[corner] = position[(Axis + 1) % 3] - origin[(Axis + 1) % 3] - shearX * z;
       y[corner] = position[(Axis + 2) % 3] - origin[(Axis + 2) % 3] - shearY * z;
     }
-    const Float4 u = x[2] * y[1] - y[2] * x[1];
-    const Float4 v = x[0] * y[2] - y[0] * x[2];
-    const Float4 w = x[1] * y[0] - y[1] * x[0];
+    const bricks::Float4 u = x[2] * y[1] - y[2] * x[1];
+    const bricks::Float4 v = x[0] * y[2] - y[0] * x[2];
+    const bricks::Float4 w = x[1] * y[0] - y[1] * x[0];
     // Written so that what is not a number is a candidate.
-    return ~GetBothLess(
-      Min(Min(u, v), w), Float4::Fill(-ray.Error), Float4::Fill(ray.Error), Max(Max(u, v), w));
+    return ~GetBothLess(Min(Min(u, v), w), bricks::Float4::Fill(-ray.Error),
+      bricks::Float4::Fill(ray.Error), Max(Max(u, v), w));
   }
 
 private:
-  Float4 Corners[3][3]; ///< by corner, then axis
+  bricks::Float4 Corners[3][3]; ///< by corner, then axis
 };
 
 } // namespace rt

@@ -2,7 +2,7 @@
 #ifndef rt_ObjectDigest_h
 #define rt_ObjectDigest_h
 
-#include "DSMRayTracing/base/ByteHash.h"
+#include "DSMBricks/base/ByteHash.h"
 #include "DSMRayTracing/ray/ClipRegion.h"
 #include "DSMRayTracing/surface/ColorMap.h"
 #include "DSMRayTracing/surface/EdgeLines.h"
@@ -65,7 +65,7 @@ public:
   void Add(const Texture& picture);
 
 private:
-  ByteHash Bytes;
+  bricks::ByteHash Bytes;
 };
 
 } // namespace rt

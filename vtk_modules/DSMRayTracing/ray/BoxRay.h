@@ -2,8 +2,8 @@
 #ifndef rt_BoxRay_h
 #define rt_BoxRay_h
 
-#include "DSMRayTracing/accel/WideBvhNode.h"
-#include "DSMRayTracing/base/Float4.h"
+#include "DSMBricks/accel/WideBvhNode.h"
+#include "DSMBricks/base/Float4.h"
 
 #include <algorithm>
 #include <cmath>
@@ -40,8 +40,8 @@ struct BoxRay
       this->Origin[axis] = static_cast<float>(origin[axis]);
       this->Inverse[axis] = static_cast<float>(std::copysign(size, inverse[axis]));
       this->Margin[axis] = static_cast<float>(margin * size);
-      const std::size_t lower = WideBvhWidth * axis;
-      const std::size_t upper = WideBvhWidth * (3 + axis);
+      const std::size_t lower = bricks::WideBvhWidth * axis;
+      const std::size_t upper = bricks::WideBvhWidth * (3 + axis);
       this->Near[axis] = inverse[axis] < 0.0 ? upper : lower;
       this->Far[axis] = inverse[axis] < 0.0 ? lower : upper;
     }
@@ -53,17 +53,18 @@ struct BoxRay
   /// Bit i set when the ray meets child i within [0, last]; `enter` tells where, at the latest.
   template <class Reference>
   unsigned FindChildren(
-    const WideBvhNode<Reference>& node, float last, float enter[WideBvhWidth]) const
+    const bricks::WideBvhNode<Reference>& node, float last, float enter[bricks::WideBvhWidth]) const
   {
     // The node's origin and what follows it, with nothing in the fourth lane but what is ignored.
-    const Float4 inverse = Float4::Load(this->Inverse);
-    const Float4 margin = Float4::Load(this->Margin);
-    const Float4 start = (Float4::Load(node.Origin) - Float4::Load(this->Origin)) * inverse;
-    const Float4 step = Float4::LoadExponents(node.Exponent) * inverse;
-    const Float4 nearStart = start - margin;
-    const Float4 farStart = start + margin;
-    Float4 first[2] = { Float4::Fill(0.0f), Float4::Fill(0.0f) };
-    Float4 second[2] = { Float4::Fill(last), Float4::Fill(last) };
+    const bricks::Float4 inverse = bricks::Float4::Load(this->Inverse);
+    const bricks::Float4 margin = bricks::Float4::Load(this->Margin);
+    const bricks::Float4 start =
+      (bricks::Float4::Load(node.Origin) - bricks::Float4::Load(this->Origin)) * inverse;
+    const bricks::Float4 step = bricks::Float4::LoadExponents(node.Exponent) * inverse;
+    const bricks::Float4 nearStart = start - margin;
+    const bricks::Float4 farStart = start + margin;
+    bricks::Float4 first[2] = { bricks::Float4::Fill(0.0f), bricks::Float4::Fill(0.0f) };
+    bricks::Float4 second[2] = { bricks::Float4::Fill(last), bricks::Float4::Fill(last) };
     this->Clip<0>(node, step, nearStart, farStart, first, second);
     this->Clip<1>(node, step, nearStart, farStart, first, second);
     this->Clip<2>(node, step, nearStart, farStart, first, second);
@@ -75,16 +76,17 @@ struct BoxRay
 
 private:
   template <int Axis, class Reference>
-  void Clip(const WideBvhNode<Reference>& node, Float4 steps, Float4 nearStarts, Float4 farStarts,
-    Float4 first[2], Float4 second[2]) const
+  void Clip(const bricks::WideBvhNode<Reference>& node, bricks::Float4 steps,
+    bricks::Float4 nearStarts, bricks::Float4 farStarts, bricks::Float4 first[2],
+    bricks::Float4 second[2]) const
   {
-    const Float4 step = steps.Spread<Axis>();
-    const Float4 nearStart = nearStarts.Spread<Axis>();
-    const Float4 farStart = farStarts.Spread<Axis>();
-    Float4 near[2];
-    Float4 far[2];
-    Float4::LoadBytes(node.Bounds + this->Near[Axis], near[0], near[1]);
-    Float4::LoadBytes(node.Bounds + this->Far[Axis], far[0], far[1]);
+    const bricks::Float4 step = steps.Spread<Axis>();
+    const bricks::Float4 nearStart = nearStarts.Spread<Axis>();
+    const bricks::Float4 farStart = farStarts.Spread<Axis>();
+    bricks::Float4 near[2];
+    bricks::Float4 far[2];
+    bricks::Float4::LoadBytes(node.Bounds + this->Near[Axis], near[0], near[1]);
+    bricks::Float4::LoadBytes(node.Bounds + this->Far[Axis], far[0], far[1]);
     for (int half = 0; half < 2; ++half)
     {
       first[half] = Max(near[half] * step + nearStart, first[half]);

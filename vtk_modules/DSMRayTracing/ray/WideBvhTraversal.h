@@ -2,7 +2,7 @@
 #ifndef rt_WideBvhTraversal_h
 #define rt_WideBvhTraversal_h
 
-#include "DSMRayTracing/accel/WideBvhNode.h"
+#include "DSMBricks/accel/WideBvhNode.h"
 #include "DSMRayTracing/ray/BoxRay.h"
 
 #include <utility>
@@ -18,9 +18,9 @@ constexpr int LargestWideBvhDepth = 33;
 /// `visit(reference)` may lower `last`. Kernels under it must be inlined: no call but the leaf's.
 template <class Reference, class Visit>
 inline void TraverseWideBvh(
-  const WideBvhNode<Reference>* nodes, const BoxRay& ray, const float& last, Visit&& visit)
+  const bricks::WideBvhNode<Reference>* nodes, const BoxRay& ray, const float& last, Visit&& visit)
 {
-  using Node = WideBvhNode<Reference>;
+  using Node = bricks::WideBvhNode<Reference>;
   struct Entry
   {
     float Enter;

@@ -2,7 +2,7 @@
 #ifndef rt_BeamDescent_h
 #define rt_BeamDescent_h
 
-#include "DSMRayTracing/layout/MacrocellHierarchy.h"
+#include "DSMBricks/layout/MacrocellHierarchy.h"
 #include "DSMRayTracing/volume/BeamBricks.h"
 #include "DSMRayTracing/volume/RayBeam.h"
 
@@ -21,12 +21,13 @@ class BeamDescent
 {
 public:
   /// All is kept by reference.
-  BeamDescent(const MacrocellHierarchy& hierarchy, const Predicate& mayHold, const RayBeam& beam)
+  BeamDescent(
+    const bricks::MacrocellHierarchy& hierarchy, const Predicate& mayHold, const RayBeam& beam)
     : Levels(hierarchy.GetLevels())
     , MayHold(mayHold)
     , Beam(beam)
   {
-    for (const MacrocellHierarchy::Level& level : this->Levels)
+    for (const bricks::MacrocellHierarchy::Level& level : this->Levels)
     {
       this->Cubes.push_back(beam.GetCubes(level.Edge));
     }
@@ -49,7 +50,7 @@ private:
   /// Macrocells [begin, end) of a level.
   void VisitBox(int number, const int begin[3], const int end[3], Bricks& bricks)
   {
-    const MacrocellHierarchy::Level& level = this->Levels[number];
+    const bricks::MacrocellHierarchy::Level& level = this->Levels[number];
     const RayBeam::Cubes& cubes = this->Cubes[number];
     int first[3];
     int last[3];
@@ -102,7 +103,7 @@ private:
           { (place.x + 1) * edge, (place.y + 1) * edge, (place.z + 1) * edge } });
       return;
     }
-    constexpr int ratio = 1 << MacrocellHierarchy::Shift;
+    constexpr int ratio = 1 << bricks::MacrocellHierarchy::Shift;
     const int first[3] = { ratio * place.x, ratio * place.y, ratio * place.z };
     const int* size = this->Levels[number - 1].Size;
     const int last[3] = { std::min(first[0] + ratio, size[0]), std::min(first[1] + ratio, size[1]),
@@ -110,7 +111,7 @@ private:
     this->VisitBox(number - 1, first, last, bricks);
   }
 
-  const std::vector<MacrocellHierarchy::Level>& Levels;
+  const std::vector<bricks::MacrocellHierarchy::Level>& Levels;
   const Predicate& MayHold;
   const RayBeam& Beam;
   std::vector<RayBeam::Cubes> Cubes; ///< of each level

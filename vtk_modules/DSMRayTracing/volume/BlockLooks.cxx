@@ -16,12 +16,12 @@ namespace
 /// So many blocks are asked one after the other.
 constexpr std::size_t MostTogether = 4;
 
-bool Holds(const Box& box, const Index3& cell)
+bool Holds(const bricks::Box& box, const bricks::Index3& cell)
 {
   return glm::all(glm::lessThanEqual(box.Min, cell)) && glm::all(glm::lessThan(cell, box.Max));
 }
 
-int FindLongestAxis(const Index3& size)
+int FindLongestAxis(const bricks::Index3& size)
 {
   return size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
 }
@@ -65,7 +65,7 @@ void BlockLooks::Build(std::size_t first, std::size_t last)
   this->Build(middle, last);
 }
 
-const BlockLooks::Look* BlockLooks::Find(const Index3& cell) const
+const BlockLooks::Look* BlockLooks::Find(const bricks::Index3& cell) const
 {
   // As many as halvings of 2^64 blocks.
   std::size_t waiting[64] = { 0 };

@@ -2,7 +2,7 @@
 #ifndef rt_BlockLooks_h
 #define rt_BlockLooks_h
 
-#include "DSMRayTracing/base/Box.h"
+#include "DSMBricks/base/Box.h"
 
 #include <glm/vec4.hpp>
 
@@ -27,7 +27,7 @@ public:
   };
   struct Block
   {
-    Box Cells; ///< of the lattice
+    bricks::Box Cells; ///< of the lattice
     Look Appearance;
   };
 
@@ -35,7 +35,7 @@ public:
   explicit BlockLooks(std::vector<Block> blocks);
 
   /// Null: as the rest.
-  const Look* Find(const Index3& cell) const;
+  const Look* Find(const bricks::Index3& cell) const;
   /// Whether none lets more light through than the rest.
   bool AreOpaque() const;
   /// Whether one is to be seen even where the rest is not.
@@ -46,7 +46,7 @@ private:
   /// A box around some of the blocks, and how to go on: half of them each, or the blocks.
   struct Node
   {
-    Box Cells;
+    bricks::Box Cells;
     std::size_t First = 0; ///< of the blocks
     std::size_t Last = 0;  ///< behind them
     std::size_t Second =

@@ -7,8 +7,8 @@
 #define rt_BrickSearch_inl_h
 #endif
 
+#include "DSMBricks/layout/VoxelBrickHeader.h"
 #include "DSMRayTracing/base/MaskBits-inl.h"
-#include "DSMRayTracing/layout/VoxelBrickHeader.h"
 #include "DSMRayTracing/ray/RayPacket.h"
 #include "DSMRayTracing/volume/NodePath-inl.h"
 #include "DSMRayTracing/volume/PacketBrick.h"
@@ -217,7 +217,7 @@ private:
     for (int axis = 0; axis < 3; ++axis)
     {
       const int begin = this->Part[axis] + (this->Forward[axis] ? 0 : 1);
-      this->Start[axis] = this->Origin[axis] + 4.0 * MacrocellEdge * begin;
+      this->Start[axis] = this->Origin[axis] + 4.0 * bricks::MacrocellEdge * begin;
     }
     for (int first = 0; first < RayPacket::Size; first += Width)
     {
@@ -257,7 +257,7 @@ private:
     {
       entry[axis] = hn::Set(tag, this->Start[axis]);
     }
-    const Numbers crossed = FindCrossedNodes(lines, this->Forward, entry, MacrocellEdge,
+    const Numbers crossed = FindCrossedNodes(lines, this->Forward, entry, bricks::MacrocellEdge,
       hn::Load(tag, this->Packet.BrickEnter + first),
       hn::Load(tag, this->Packet.BrickLeave + first));
     hn::Store(hn::And(crossed, hn::Set(NumberTag(), known.Macrocells)), NumberTag(),
@@ -279,7 +279,7 @@ private:
     Vector entry[3];
     for (int axis = 0; axis < 3; ++axis)
     {
-      const double step = this->Forward[axis] ? MacrocellEdge : -MacrocellEdge;
+      const double step = this->Forward[axis] ? bricks::MacrocellEdge : -bricks::MacrocellEdge;
       entry[axis] = hn::Add(hn::Set(tag, this->Start[axis]),
         hn::Mul(hn::Set(tag, step), ToReal(GetCoordinate(macrocells, axis))));
     }

@@ -2,8 +2,8 @@
 #ifndef rt_BrickWalk_h
 #define rt_BrickWalk_h
 
+#include "DSMBricks/layout/MacrocellHierarchy.h"
 #include "DSMCore/base/Block.h"
-#include "DSMRayTracing/layout/MacrocellHierarchy.h"
 #include "DSMRayTracing/volume/GridRay.h"
 #include "DSMRayTracing/volume/GridWalk.h"
 
@@ -22,15 +22,15 @@ class BrickWalk
 {
 public:
   /// The ray is followed from `enter` to `leave`, within the volume. All is kept by reference.
-  BrickWalk(const MacrocellHierarchy& hierarchy, const GridRay& ray, const Predicate& mayHold,
-    double enter, double leave)
+  BrickWalk(const bricks::MacrocellHierarchy& hierarchy, const GridRay& ray,
+    const Predicate& mayHold, double enter, double leave)
     : Levels(hierarchy.GetLevels())
     , Line(ray)
     , MayHold(mayHold)
     , Top(GetTop(this->Levels))
     , Level(this->Top)
   {
-    const MacrocellHierarchy::Level& top = this->Levels[this->Top];
+    const bricks::MacrocellHierarchy::Level& top = this->Levels[this->Top];
     this->StartLevel(Lanes(0.0), Lanes(top.Size[0], top.Size[1], top.Size[2], 1.0), enter, leave);
   }
 
@@ -40,7 +40,7 @@ public:
     for (;;)
     {
       Place& place = this->Places[this->Level];
-      const ValueRange* ranges = this->Levels[this->Level].Ranges.data();
+      const bricks::ValueRange* ranges = this->Levels[this->Level].Ranges.data();
       // In local variables, which stay in registers.
       GridWalk walk = place.Walk;
       std::int64_t index = place.Index;
@@ -78,7 +78,7 @@ public:
         return true;
       }
       --this->Level;
-      this->StartLevel(this->Origin, Lanes(1 << MacrocellHierarchy::Shift), enter, exit);
+      this->StartLevel(this->Origin, Lanes(1 << bricks::MacrocellHierarchy::Shift), enter, exit);
     }
   }
 
@@ -104,7 +104,7 @@ private:
   };
 
   /// The top is where a ray begins: not at a level so coarse that it would be entered anyway.
-  static int GetTop(const std::vector<MacrocellHierarchy::Level>& levels)
+  static int GetTop(const std::vector<bricks::MacrocellHierarchy::Level>& levels)
   {
     int top = static_cast<int>(levels.size()) - 1;
     while (top > 0 &&
@@ -118,7 +118,7 @@ private:
   /// Starts in a box whose first cell is given, of up to `counts` macrocells of the level.
   void StartLevel(const Lanes& first, const Lanes& counts, double enter, double leave)
   {
-    const MacrocellHierarchy::Level& level = this->Levels[this->Level];
+    const bricks::MacrocellHierarchy::Level& level = this->Levels[this->Level];
     const Lanes size(level.Size[0], level.Size[1], level.Size[2], 1.0);
     const Lanes begin = Round(first * Lanes(level.InverseEdge));
     const NodeStrides strides(level.Size[0], std::int64_t{ level.Size[0] } * level.Size[1]);
@@ -130,7 +130,7 @@ private:
     place.Leave = leave;
   }
 
-  const std::vector<MacrocellHierarchy::Level>& Levels;
+  const std::vector<bricks::MacrocellHierarchy::Level>& Levels;
   const GridRay& Line;
   const Predicate& MayHold;
   int Top;

@@ -13,7 +13,7 @@ constexpr int SampleStrides[3] = { 1, 4, 16 };
 
 } // namespace
 
-void CellNeighbourhood::CoverWithin(const Index3& cell, const Index3& cells)
+void CellNeighbourhood::CoverWithin(const bricks::Index3& cell, const bricks::Index3& cells)
 {
   bool* covered = this->Covered;
   for (int z = -1; z <= 1; ++z)
@@ -22,7 +22,7 @@ void CellNeighbourhood::CoverWithin(const Index3& cell, const Index3& cells)
     {
       for (int x = -1; x <= 1; ++x)
       {
-        const Index3 place = cell + Index3(x, y, z);
+        const bricks::Index3 place = cell + bricks::Index3(x, y, z);
         *covered++ = place.x >= 0 && place.y >= 0 && place.z >= 0 && place.x < cells.x &&
           place.y < cells.y && place.z < cells.z;
       }

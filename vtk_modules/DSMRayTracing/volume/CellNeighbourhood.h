@@ -2,9 +2,9 @@
 #ifndef rt_CellNeighbourhood_h
 #define rt_CellNeighbourhood_h
 
-#include "DSMRayTracing/base/Box.h"
+#include "DSMBricks/base/Box.h"
+#include "DSMBricks/layout/VoxelBrick.h"
 #include "DSMRayTracing/base/Lanes.h"
-#include "DSMRayTracing/layout/VoxelBrick.h"
 #include "DSMRayTracing/volume/IsovalueLevel.h"
 
 #include <algorithm>
@@ -20,7 +20,7 @@ class CellNeighbourhood
 public:
   /// Whether a brick has all of it, and no mask. `cell` is the brick's.
   template <class T>
-  static bool IsWithin(const VoxelBrick<T>& brick, const int cell[3])
+  static bool IsWithin(const bricks::VoxelBrick<T>& brick, const int cell[3])
   {
     return brick.GetHeader().MaskOffset == 0 && cell[0] >= 1 && cell[1] >= 1 && cell[2] >= 1 &&
       cell[0] + 2 <= brick.GetCells(0) && cell[1] + 2 <= brick.GetCells(1) &&
@@ -28,14 +28,15 @@ public:
   }
   /// Before any CopyPart of a lattice without mask: all cells are covered that the volume has.
   /// `cell` is the volume's.
-  void CoverWithin(const Index3& cell, const Index3& cells);
+  void CoverWithin(const bricks::Index3& cell, const bricks::Index3& cells);
 
   /// Before any CopyPart of a lattice with mask: no cell is known to be covered.
   void Clear() { std::fill_n(this->Covered, 27, false); }
 
   /// Adds what a brick has of it; `cell` is in the brick's coordinates, but may lie outside of it.
   template <class T>
-  void CopyPart(const VoxelBrick<T>& brick, const int cell[3], const IsovalueLevel<T>& level)
+  void CopyPart(
+    const bricks::VoxelBrick<T>& brick, const int cell[3], const IsovalueLevel<T>& level)
   {
     int first[3];
     int last[3];

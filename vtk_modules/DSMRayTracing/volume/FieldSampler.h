@@ -2,8 +2,8 @@
 #ifndef rt_FieldSampler_h
 #define rt_FieldSampler_h
 
+#include "DSMBricks/layout/VoxelField.h"
 #include "DSMRayTracing/base/Lanes.h"
-#include "DSMRayTracing/layout/VoxelField.h"
 
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
@@ -24,28 +24,30 @@ public:
   }
 
   /// The trilinear value of a field of points; NaN where it holds no data, infinite between infinite ones of one sign.
-  double Sample(const VoxelField& field, const glm::dvec3& indexPoint) const;
+  double Sample(const bricks::VoxelField& field, const glm::dvec3& indexPoint) const;
 
   /// The value of the sample that is nearest, in the cell that Sample takes; NaN where it holds no data.
-  double SampleNearest(const VoxelField& field, const glm::dvec3& indexPoint) const;
+  double SampleNearest(const bricks::VoxelField& field, const glm::dvec3& indexPoint) const;
 
   /// How fast the trilinear value grows on each axis, in a cell that holds data, at a place in it.
-  glm::dvec3 GetGradient(
-    const VoxelField& field, const Index3& cell, const glm::dvec3& indexPoint) const;
+  glm::dvec3 GetGradient(const bricks::VoxelField& field, const bricks::Index3& cell,
+    const glm::dvec3& indexPoint) const;
 
   /// The value of a cell of a field of cells (BrickLattice::IsOfCells); NaN where it holds no data.
-  double GetOfCell(const VoxelField& field, const Index3& cell) const;
+  double GetOfCell(const bricks::VoxelField& field, const bricks::Index3& cell) const;
 
   /// The same for fields whose samples are colours (PackedColor), each channel by itself. Returns false
   /// where there are no data.
-  bool SampleColor(const VoxelField& field, const glm::dvec3& indexPoint, glm::vec4& color) const;
-  bool GetColorOfCell(const VoxelField& field, const Index3& cell, glm::vec4& color) const;
+  bool SampleColor(
+    const bricks::VoxelField& field, const glm::dvec3& indexPoint, glm::vec4& color) const;
+  bool GetColorOfCell(
+    const bricks::VoxelField& field, const bricks::Index3& cell, glm::vec4& color) const;
 
 private:
   /// `function(corners, local)`: of the values at a cell's corners, and where in it the point is; NaN without data.
   template <class Function>
   double Evaluate(
-    const VoxelField& field, const glm::dvec3& indexPoint, const Function& function) const;
+    const bricks::VoxelField& field, const glm::dvec3& indexPoint, const Function& function) const;
   enum class Corners
   {
     Finite, ///< of a cell that holds data
@@ -53,13 +55,13 @@ private:
   };
   /// Samples at the corners of such a cell that the point is in, and where in the cell it is; false where there is none.
   template <class T>
-  bool FindCorners(const VoxelField& field, const glm::dvec3& indexPoint, T corners[8],
+  bool FindCorners(const bricks::VoxelField& field, const glm::dvec3& indexPoint, T corners[8],
     Lanes& local, Corners which = Corners::Finite) const;
   template <class T>
-  bool GetCorners(const VoxelField& field, const Index3& cell, T corners[8],
+  bool GetCorners(const bricks::VoxelField& field, const bricks::Index3& cell, T corners[8],
     Corners which = Corners::Finite) const;
   template <class T>
-  bool GetCell(const VoxelField& field, const Index3& cell, T& value) const;
+  bool GetCell(const bricks::VoxelField& field, const bricks::Index3& cell, T& value) const;
 
   Store& Blocks;
   typename Store::Worker& Self;

@@ -2,7 +2,7 @@
 #ifndef rt_FieldSampler_txx
 #define rt_FieldSampler_txx
 
-#include "DSMRayTracing/layout/VoxelBrick.h"
+#include "DSMBricks/layout/VoxelBrick.h"
 #include "DSMRayTracing/surface/PackedColor.h"
 #include "DSMRayTracing/volume/TrilinearCell.h"
 
@@ -23,14 +23,15 @@ inline double EvaluateWithInfinite(const double corners[8], const Lanes& local)
 }
 
 template <class Store>
-double FieldSampler<Store>::Sample(const VoxelField& field, const glm::dvec3& indexPoint) const
+double FieldSampler<Store>::Sample(
+  const bricks::VoxelField& field, const glm::dvec3& indexPoint) const
 {
   return this->Evaluate(field, indexPoint, EvaluateWithInfinite);
 }
 
 template <class Store>
 double FieldSampler<Store>::SampleNearest(
-  const VoxelField& field, const glm::dvec3& indexPoint) const
+  const bricks::VoxelField& field, const glm::dvec3& indexPoint) const
 {
   return this->Evaluate(field, indexPoint,
     [](const double corners[8], const Lanes& local)
@@ -43,9 +44,9 @@ double FieldSampler<Store>::SampleNearest(
 template <class Store>
 template <class Function>
 double FieldSampler<Store>::Evaluate(
-  const VoxelField& field, const glm::dvec3& indexPoint, const Function& function) const
+  const bricks::VoxelField& field, const glm::dvec3& indexPoint, const Function& function) const
 {
-  return Dispatch(field.Lattice.GetScalarType(),
+  return bricks::Dispatch(field.Lattice.GetScalarType(),
     [&](auto sample)
     {
       decltype(sample) corners[8];
@@ -64,9 +65,9 @@ double FieldSampler<Store>::Evaluate(
 
 template <class Store>
 glm::dvec3 FieldSampler<Store>::GetGradient(
-  const VoxelField& field, const Index3& cell, const glm::dvec3& indexPoint) const
+  const bricks::VoxelField& field, const bricks::Index3& cell, const glm::dvec3& indexPoint) const
 {
-  return Dispatch(field.Lattice.GetScalarType(),
+  return bricks::Dispatch(field.Lattice.GetScalarType(),
     [&](auto sample)
     {
       decltype(sample) corners[8] = {};
@@ -82,9 +83,10 @@ glm::dvec3 FieldSampler<Store>::GetGradient(
 }
 
 template <class Store>
-double FieldSampler<Store>::GetOfCell(const VoxelField& field, const Index3& cell) const
+double FieldSampler<Store>::GetOfCell(
+  const bricks::VoxelField& field, const bricks::Index3& cell) const
 {
-  return Dispatch(field.Lattice.GetScalarType(),
+  return bricks::Dispatch(field.Lattice.GetScalarType(),
     [&](auto value)
     {
       return this->GetCell(field, cell, value) ? static_cast<double>(value)
@@ -94,7 +96,7 @@ double FieldSampler<Store>::GetOfCell(const VoxelField& field, const Index3& cel
 
 template <class Store>
 bool FieldSampler<Store>::SampleColor(
-  const VoxelField& field, const glm::dvec3& indexPoint, glm::vec4& color) const
+  const bricks::VoxelField& field, const glm::dvec3& indexPoint, glm::vec4& color) const
 {
   std::uint32_t corners[8];
   Lanes local;
@@ -114,7 +116,7 @@ bool FieldSampler<Store>::SampleColor(
 
 template <class Store>
 bool FieldSampler<Store>::GetColorOfCell(
-  const VoxelField& field, const Index3& cell, glm::vec4& color) const
+  const bricks::VoxelField& field, const bricks::Index3& cell, glm::vec4& color) const
 {
   std::uint32_t packed = 0;
   const bool found = this->GetCell(field, cell, packed);
@@ -124,11 +126,11 @@ bool FieldSampler<Store>::GetColorOfCell(
 
 template <class Store>
 template <class T>
-bool FieldSampler<Store>::FindCorners(const VoxelField& field, const glm::dvec3& indexPoint,
+bool FieldSampler<Store>::FindCorners(const bricks::VoxelField& field, const glm::dvec3& indexPoint,
   T corners[8], Lanes& local, Corners which) const
 {
-  const Index3 cells = field.Lattice.GetCells();
-  Index3 cell;
+  const bricks::Index3 cells = field.Lattice.GetCells();
+  bricks::Index3 cell;
   for (int axis = 0; axis < 3; ++axis)
   {
     if (!(indexPoint[axis] >= 0.0 && indexPoint[axis] <= static_cast<double>(cells[axis])))
@@ -140,7 +142,7 @@ bool FieldSampler<Store>::FindCorners(const VoxelField& field, const glm::dvec3&
   // A point on a face belongs to the cells on both sides; either may hold data.
   for (int side = 0; side < 8; ++side)
   {
-    const Index3 back(side & 1, side >> 1 & 1, side >> 2);
+    const bricks::Index3 back(side & 1, side >> 1 & 1, side >> 2);
     bool touches = true;
     for (int axis = 0; axis < 3; ++axis)
     {
@@ -161,13 +163,13 @@ bool FieldSampler<Store>::FindCorners(const VoxelField& field, const glm::dvec3&
 template <class Store>
 template <class T>
 bool FieldSampler<Store>::GetCorners(
-  const VoxelField& field, const Index3& cell, T corners[8], Corners which) const
+  const bricks::VoxelField& field, const bricks::Index3& cell, T corners[8], Corners which) const
 {
-  const Index3 brick = cell / Index3(field.Lattice.GetEdge());
-  const glm::ivec3 local(cell - brick * Index3(field.Lattice.GetEdge()));
+  const bricks::Index3 brick = cell / bricks::Index3(field.Lattice.GetEdge());
+  const glm::ivec3 local(cell - brick * bricks::Index3(field.Lattice.GetEdge()));
   const typename Store::Pin pin =
     this->Blocks.Acquire(this->Self, *field.Segment, field.Lattice.GetId(brick));
-  const VoxelBrick<T> voxels(pin.GetData());
+  const bricks::VoxelBrick<T> voxels(pin.GetData());
   if (which == Corners::Finite ? !voxels.HoldsData(local.x, local.y, local.z)
                                : !voxels.IsCovered(local.x, local.y, local.z))
   {
@@ -183,13 +185,14 @@ bool FieldSampler<Store>::GetCorners(
 
 template <class Store>
 template <class T>
-bool FieldSampler<Store>::GetCell(const VoxelField& field, const Index3& cell, T& value) const
+bool FieldSampler<Store>::GetCell(
+  const bricks::VoxelField& field, const bricks::Index3& cell, T& value) const
 {
-  const Index3 brick = cell / Index3(field.Lattice.GetEdge());
-  const glm::ivec3 local(cell - brick * Index3(field.Lattice.GetEdge()));
+  const bricks::Index3 brick = cell / bricks::Index3(field.Lattice.GetEdge());
+  const glm::ivec3 local(cell - brick * bricks::Index3(field.Lattice.GetEdge()));
   const typename Store::Pin pin =
     this->Blocks.Acquire(this->Self, *field.Segment, field.Lattice.GetId(brick));
-  const VoxelBrick<T> voxels(pin.GetData());
+  const bricks::VoxelBrick<T> voxels(pin.GetData());
   value = voxels.GetSample(local.x, local.y, local.z);
   return voxels.IsCovered(local.x, local.y, local.z);
 }

@@ -2,7 +2,7 @@
 #ifndef rt_GridRay_h
 #define rt_GridRay_h
 
-#include "DSMRayTracing/base/Box.h"
+#include "DSMBricks/base/Box.h"
 #include "DSMRayTracing/base/Lanes.h"
 
 #include <algorithm>
@@ -77,7 +77,7 @@ struct GridRay
 
   /// Shortens [enter, leave] to the part inside of the box from 0 to `cells`; false when none of
   /// positive length is left.
-  bool Clip(const Index3& cells, double& enter, double& leave) const
+  bool Clip(const bricks::Index3& cells, double& enter, double& leave) const
   {
     for (int axis = 0; axis < 3; ++axis)
     {

@@ -2,7 +2,7 @@
 #ifndef rt_GridTraversal_h
 #define rt_GridTraversal_h
 
-#include "DSMRayTracing/layout/VoxelBrick.h"
+#include "DSMBricks/layout/VoxelBrick.h"
 #include "DSMRayTracing/ray/CellHit.h"
 #include "DSMRayTracing/volume/CornerTest.h"
 #include "DSMRayTracing/volume/GridRay.h"
@@ -21,8 +21,8 @@ class GridTraversal
 {
 public:
   /// `origin`: the brick's first cell.
-  GridTraversal(
-    const GridRay& ray, const VoxelBrick<T>& brick, const Lanes& origin, const Access& access)
+  GridTraversal(const GridRay& ray, const bricks::VoxelBrick<T>& brick, const Lanes& origin,
+    const Access& access)
     : Line(ray)
     , Brick(brick)
     , Reads(access)
@@ -83,7 +83,7 @@ private:
   {
     return VisitMacrocells(
       this->Line, this->Brick, this->Origin, enter, leave, limit,
-      [&](const MacrocellRange<T>& range)
+      [&](const bricks::MacrocellRange<T>& range)
       {
         this->Reads.ReadRange();
         return level.Separates(range.Min, range.Max);
@@ -97,11 +97,11 @@ private:
   bool WalkCells(const IsovalueLevel<T>& level, const GridWalk& macrocells, double enter,
     double leave, const Intersect& intersect) const
   {
-    const Lanes first = macrocells.GetFirst(this->Line, MacrocellEdge);
+    const Lanes first = macrocells.GetFirst(this->Line, bricks::MacrocellEdge);
     const Lanes size(
       this->Brick.GetCells(0), this->Brick.GetCells(1), this->Brick.GetCells(2), 1.0);
     const Lanes place = first - this->Origin;
-    const Lanes counts = Min(size - place, Lanes(MacrocellEdge));
+    const Lanes counts = Min(size - place, Lanes(bricks::MacrocellEdge));
     GridWalk walk;
     const T* corner = this->Brick.GetSamples() +
       static_cast<std::int64_t>((place * this->CellStrides.Real).GetSum()) +
@@ -201,7 +201,7 @@ private:
   }
 
   const GridRay& Line;
-  const VoxelBrick<T>& Brick;
+  const bricks::VoxelBrick<T>& Brick;
   const Access& Reads;
   Lanes Origin;
   NodeStrides CellStrides;

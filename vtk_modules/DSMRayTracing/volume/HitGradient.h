@@ -2,9 +2,9 @@
 #ifndef rt_HitGradient_h
 #define rt_HitGradient_h
 
+#include "DSMBricks/layout/VoxelBrick.h"
+#include "DSMBricks/layout/VoxelField.h"
 #include "DSMCore/base/Block.h"
-#include "DSMRayTracing/layout/VoxelBrick.h"
-#include "DSMRayTracing/layout/VoxelField.h"
 #include "DSMRayTracing/ray/CellHit.h"
 #include "DSMRayTracing/volume/CellNeighbourhood.h"
 #include "DSMRayTracing/volume/GradientStencil.h"
@@ -25,7 +25,7 @@ public:
   /// Where all samples that it needs are in the brick of the hit, are numbers, and none is masked;
   /// else returns false.
   template <class T>
-  static bool FindWithin(const VoxelBrick<T>& brick, const CellHit& hit,
+  static bool FindWithin(const bricks::VoxelBrick<T>& brick, const CellHit& hit,
     const IsovalueLevel<T>& level, double gradient[3])
   {
     if (!CellNeighbourhood::IsWithin(brick, hit.Cell))
@@ -49,11 +49,11 @@ public:
 
   /// At any hit; acquires the bricks that it needs, so no pin may be held.
   template <class T, class Store>
-  static void Find(Store& store, typename Store::Worker& worker, const VoxelField& field,
+  static void Find(Store& store, typename Store::Worker& worker, const bricks::VoxelField& field,
     dsm::BlockId id, const CellHit& cell, double isovalue, double gradient[3])
   {
     const IsovalueLevel<T> level(isovalue);
-    const Index3 home = field.Lattice.GetBrick(id);
+    const bricks::Index3 home = field.Lattice.GetBrick(id);
     if (!FindAcrossFaces(store, worker, field, home, cell, level, gradient))
     {
       FindCarefully(store, worker, field, home, cell, level, gradient);
@@ -63,10 +63,11 @@ public:
 private:
   /// Where no sample is missing; else returns false.
   template <class T, class Store>
-  static bool FindAcrossFaces(Store& store, typename Store::Worker& worker, const VoxelField& field,
-    const Index3& home, const CellHit& cell, const IsovalueLevel<T>& level, double gradient[3])
+  static bool FindAcrossFaces(Store& store, typename Store::Worker& worker,
+    const bricks::VoxelField& field, const bricks::Index3& home, const CellHit& cell,
+    const IsovalueLevel<T>& level, double gradient[3])
   {
-    const BrickLattice& lattice = field.Lattice;
+    const bricks::BrickLattice& lattice = field.Lattice;
     const int edge = lattice.GetEdge();
     if (lattice.HasCellMask())
     {
@@ -75,7 +76,7 @@ private:
     GradientStencil stencil;
     {
       const typename Store::Pin pin = store.Acquire(worker, *field.Segment, lattice.GetId(home));
-      const VoxelBrick<T> brick(pin.GetData());
+      const bricks::VoxelBrick<T> brick(pin.GetData());
       const int strides[3] = { 1, brick.GetRow(), brick.GetSlice() };
       const T* const first =
         brick.GetSamples() + brick.GetOffset(cell.Cell[0], cell.Cell[1], cell.Cell[2]);
@@ -106,13 +107,13 @@ private:
         {
           continue;
         }
-        Index3 next = home;
+        bricks::Index3 next = home;
         next[axis] += side == 0 ? -1 : 1;
         int sample[3] = { cell.Cell[0], cell.Cell[1], cell.Cell[2] };
         // Neighbours share the samples between them.
         sample[axis] = side == 0 ? edge - 1 : 1;
         const typename Store::Pin pin = store.Acquire(worker, *field.Segment, lattice.GetId(next));
-        const VoxelBrick<T> brick(pin.GetData());
+        const bricks::VoxelBrick<T> brick(pin.GetData());
         stencil.SetFace(axis, side,
           brick.GetSamples() + brick.GetOffset(sample[0], sample[1], sample[2]), brick.GetRow(),
           brick.GetSlice(), level);
@@ -123,14 +124,17 @@ private:
 
   /// Whatever is missing.
   template <class T, class Store>
-  static void FindCarefully(Store& store, typename Store::Worker& worker, const VoxelField& field,
-    const Index3& home, const CellHit& cell, const IsovalueLevel<T>& level, double gradient[3])
+  static void FindCarefully(Store& store, typename Store::Worker& worker,
+    const bricks::VoxelField& field, const bricks::Index3& home, const CellHit& cell,
+    const IsovalueLevel<T>& level, double gradient[3])
   {
-    const BrickLattice& lattice = field.Lattice;
-    const Index3 edge(lattice.GetEdge());
-    const Index3 place = home * edge + Index3(cell.Cell[0], cell.Cell[1], cell.Cell[2]);
-    const Index3 first = glm::max(place - Index3(1), Index3(0)) / edge;
-    const Index3 last = glm::min(place + Index3(1), lattice.GetCells() - Index3(1)) / edge;
+    const bricks::BrickLattice& lattice = field.Lattice;
+    const bricks::Index3 edge(lattice.GetEdge());
+    const bricks::Index3 place =
+      home * edge + bricks::Index3(cell.Cell[0], cell.Cell[1], cell.Cell[2]);
+    const bricks::Index3 first = glm::max(place - bricks::Index3(1), bricks::Index3(0)) / edge;
+    const bricks::Index3 last =
+      glm::min(place + bricks::Index3(1), lattice.GetCells() - bricks::Index3(1)) / edge;
     CellNeighbourhood samples;
     if (lattice.HasCellMask())
     {
@@ -153,13 +157,13 @@ private:
           {
             continue;
           }
-          const Index3 brick(x, y, z);
-          const Index3 local = place - brick * edge;
+          const bricks::Index3 brick(x, y, z);
+          const bricks::Index3 local = place - brick * edge;
           const int localCell[3] = { static_cast<int>(local.x), static_cast<int>(local.y),
             static_cast<int>(local.z) };
           const typename Store::Pin pin =
             store.Acquire(worker, *field.Segment, lattice.GetId(brick));
-          samples.CopyPart(VoxelBrick<T>(pin.GetData()), localCell, level);
+          samples.CopyPart(bricks::VoxelBrick<T>(pin.GetData()), localCell, level);
         }
       }
     }

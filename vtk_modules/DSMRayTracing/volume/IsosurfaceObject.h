@@ -2,7 +2,7 @@
 #ifndef rt_IsosurfaceObject_h
 #define rt_IsosurfaceObject_h
 
-#include "DSMRayTracing/layout/VoxelField.h"
+#include "DSMBricks/layout/VoxelField.h"
 #include "DSMRayTracing/ray/ClipRegion.h"
 #include "DSMRayTracing/surface/ColorMap.h"
 #include "DSMRayTracing/surface/Material.h"
@@ -38,14 +38,14 @@ struct IsosurfaceObject
     this->IndexToWorld = matrix;
     this->WorldToIndex = glm::inverse(matrix);
   }
-  std::shared_ptr<const VoxelField> Field;
+  std::shared_ptr<const bricks::VoxelField> Field;
   /// Ascending, finite, no duplicates.
   std::vector<double> Isovalues;
   /// One for each isovalue, times the material's; empty: 1.
   std::vector<float> Opacities;
   /// May be null: then the material's diffuse colour is used. Same lattice points as Field; of points, whose
   /// values are interpolated, or of cells.
-  std::shared_ptr<const VoxelField> ColorField;
+  std::shared_ptr<const bricks::VoxelField> ColorField;
   ColorMap Colors;
   /// What ColorField holds.
   enum class Coloring

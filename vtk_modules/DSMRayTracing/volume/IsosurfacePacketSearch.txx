@@ -2,7 +2,7 @@
 #ifndef rt_IsosurfacePacketSearch_txx
 #define rt_IsosurfacePacketSearch_txx
 
-#include "DSMRayTracing/layout/VoxelBrick.h"
+#include "DSMBricks/layout/VoxelBrick.h"
 #include "DSMRayTracing/surface/SheetTransmittance.h"
 #include "DSMRayTracing/volume/BeamDescent.h"
 #include "DSMRayTracing/volume/HitGradient.h"
@@ -50,7 +50,7 @@ RayMask IsosurfacePacketSearch<Store>::Intersect(const IsosurfaceObject& object,
   const Ray* rays, RayMask wanted, const Open& open) const
 {
   const IndexSpace space(object.IndexToWorld, object.WorldToIndex);
-  const BrickLattice& lattice = object.Field->Lattice;
+  const bricks::BrickLattice& lattice = object.Field->Lattice;
   Progress progress;
   std::copy_n(bricks.Forward, 3, progress.Rays.Forward);
   RayMask alone = wanted;
@@ -59,7 +59,7 @@ RayMask IsosurfacePacketSearch<Store>::Intersect(const IsosurfaceObject& object,
     alone = this->Kernel.SetRays(progress.Rays, rays, wanted, space, lattice.GetCells());
   }
   const RayMask found = this->Single.IntersectEach(object, rays, alone, open);
-  Dispatch(lattice.GetScalarType(),
+  bricks::Dispatch(lattice.GetScalarType(),
     [&](auto sample)
     { this->SearchBricks<decltype(sample)>(object, bricks, progress, rays, open); });
   return found | progress.Found;
@@ -128,8 +128,8 @@ void IsosurfacePacketSearch<Store>::SearchBrick(
 {
   const typename Store::Pin pin =
     this->Blocks.Acquire(this->Self, *object.Field->Segment, brick.Id);
-  const VoxelBrick<T> voxels(pin.GetData());
-  const ValueRange range{ voxels.GetHeader().First, voxels.GetHeader().Last };
+  const bricks::VoxelBrick<T> voxels(pin.GetData());
+  const bricks::ValueRange range{ voxels.GetHeader().First, voxels.GetHeader().Last };
   progress.Hit = 0;
   progress.WithoutGradient = 0;
   for (std::size_t isovalue = 0; isovalue < object.Isovalues.size(); ++isovalue)
@@ -229,7 +229,7 @@ RayMask IsosurfacePacketSearch<Store>::SearchPacketForLight(const IsosurfaceObje
   const SearchSurface& together) const
 {
   const IndexSpace space(object.IndexToWorld, object.WorldToIndex);
-  const BrickLattice& lattice = object.Field->Lattice;
+  const bricks::BrickLattice& lattice = object.Field->Lattice;
   Progress progress;
   std::copy_n(forward, 3, progress.Rays.Forward);
   progress.Found =
@@ -239,7 +239,7 @@ RayMask IsosurfacePacketSearch<Store>::SearchPacketForLight(const IsosurfaceObje
     RayBeam beam;
     beam.Set(progress.Rays);
     const BeamBricks bricks = FindBricks(object, beam);
-    Dispatch(lattice.GetScalarType(),
+    bricks::Dispatch(lattice.GetScalarType(),
       [&](auto sample)
       {
         for (const BeamBricks::Brick& brick : bricks.Bricks)
@@ -261,8 +261,8 @@ void IsosurfacePacketSearch<Store>::SearchBrickForLight(const IsosurfaceObject& 
 {
   const typename Store::Pin pin =
     this->Blocks.Acquire(this->Self, *object.Field->Segment, brick.Id);
-  const VoxelBrick<T> voxels(pin.GetData());
-  const ValueRange range{ voxels.GetHeader().First, voxels.GetHeader().Last };
+  const bricks::VoxelBrick<T> voxels(pin.GetData());
+  const bricks::ValueRange range{ voxels.GetHeader().First, voxels.GetHeader().Last };
   for (std::size_t index = 0; index < object.Isovalues.size(); ++index)
   {
     const double isovalue = object.Isovalues[index];

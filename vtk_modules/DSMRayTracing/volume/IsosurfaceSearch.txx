@@ -2,7 +2,7 @@
 #ifndef rt_IsosurfaceSearch_txx
 #define rt_IsosurfaceSearch_txx
 
-#include "DSMRayTracing/layout/VoxelBrick.h"
+#include "DSMBricks/layout/VoxelBrick.h"
 #include "DSMRayTracing/surface/SheetTransmittance.h"
 #include "DSMRayTracing/volume/GridTraversal.h"
 #include "DSMRayTracing/volume/IndexSpace.h"
@@ -20,7 +20,7 @@ bool IsosurfaceSearch<Store, Access>::Intersect(
   const IsosurfaceObject& object, const Ray& ray, IsosurfaceHit& hit) const
 {
   const IndexSpace space(object.IndexToWorld, object.WorldToIndex);
-  const BrickLattice& lattice = object.Field->Lattice;
+  const bricks::BrickLattice& lattice = object.Field->Lattice;
   GridRay line;
   double enter = ray.Min;
   double leave = ray.Max;
@@ -28,7 +28,7 @@ bool IsosurfaceSearch<Store, Access>::Intersect(
   {
     return false;
   }
-  return Dispatch(lattice.GetScalarType(),
+  return bricks::Dispatch(lattice.GetScalarType(),
     [&](auto sample)
     {
       double gradient[3];
@@ -46,7 +46,7 @@ template <class T>
 bool IsosurfaceSearch<Store, Access>::IntersectBricks(const IsosurfaceObject& object,
   const GridRay& line, double enter, double leave, IsosurfaceHit& hit, double gradient[3]) const
 {
-  const VoxelField& field = *object.Field;
+  const bricks::VoxelField& field = *object.Field;
   const IsovaluePredicate mayHold(object.Isovalues);
   Walk walk(field.Hierarchy, line, mayHold, enter, leave);
   while (walk.Next())
@@ -83,8 +83,8 @@ bool IsosurfaceSearch<Store, Access>::IntersectBrick(const IsosurfaceObject& obj
 {
   const typename Store::Pin pin =
     this->Blocks.Acquire(this->Self, *object.Field->Segment, walk.GetId());
-  const VoxelBrick<T> voxels(pin.GetData());
-  const ValueRange range{ voxels.GetHeader().First, voxels.GetHeader().Last };
+  const bricks::VoxelBrick<T> voxels(pin.GetData());
+  const bricks::ValueRange range{ voxels.GetHeader().First, voxels.GetHeader().Last };
   const Access<Store> access(this->Blocks, this->Self, *object.Field->Segment, walk.GetId());
   const GridTraversal<T, Access<Store>> traversal(line, voxels, walk.GetOrigin(), access);
   bool found = false;
@@ -117,7 +117,7 @@ bool IsosurfaceSearch<Store, Access>::IsOccluded(
   const IsosurfaceObject& object, const Ray& ray) const
 {
   return this->SearchBricks(object, ray,
-    [&](auto sample, const auto& traversal, const ValueRange& range, const Walk& walk)
+    [&](auto sample, const auto& traversal, const bricks::ValueRange& range, const Walk& walk)
     {
       return std::any_of(object.Isovalues.begin(), object.Isovalues.end(),
         [&](double isovalue)
@@ -134,7 +134,7 @@ bool IsosurfaceSearch<Store, Access>::Attenuate(const IsosurfaceObject& object,
   const std::vector<glm::dvec3>& sheets, const Ray& ray, glm::dvec3& transmittance) const
 {
   return this->SearchBricks(object, ray,
-    [&](auto sample, const auto& traversal, const ValueRange& range, const Walk& walk)
+    [&](auto sample, const auto& traversal, const bricks::ValueRange& range, const Walk& walk)
     {
       for (std::size_t index = 0; index < sheets.size(); ++index)
       {
@@ -158,7 +158,7 @@ bool IsosurfaceSearch<Store, Access>::SearchBricks(
   const IsosurfaceObject& object, const Ray& ray, const IsDone& isDone) const
 {
   const IndexSpace space(object.IndexToWorld, object.WorldToIndex);
-  const VoxelField& field = *object.Field;
+  const bricks::VoxelField& field = *object.Field;
   GridRay line;
   double enter = ray.Min;
   double leave = ray.Max;
@@ -166,7 +166,7 @@ bool IsosurfaceSearch<Store, Access>::SearchBricks(
   {
     return false;
   }
-  return Dispatch(field.Lattice.GetScalarType(),
+  return bricks::Dispatch(field.Lattice.GetScalarType(),
     [&](auto sample)
     {
       using T = decltype(sample);
@@ -176,8 +176,8 @@ bool IsosurfaceSearch<Store, Access>::SearchBricks(
       while (walk.Next())
       {
         const typename Store::Pin pin = this->Blocks.Acquire(this->Self, segment, walk.GetId());
-        const VoxelBrick<T> voxels(pin.GetData());
-        const ValueRange range{ voxels.GetHeader().First, voxels.GetHeader().Last };
+        const bricks::VoxelBrick<T> voxels(pin.GetData());
+        const bricks::ValueRange range{ voxels.GetHeader().First, voxels.GetHeader().Last };
         const Access<Store> access(this->Blocks, this->Self, segment, walk.GetId());
         const GridTraversal<T, Access<Store>> traversal(line, voxels, walk.GetOrigin(), access);
         if (isDone(sample, traversal, range, walk))

@@ -117,7 +117,8 @@ public:
     point.Facing = hit.FromInside ? -point.Normal : point.Normal;
     const Material* const surface = object.GetSurface(hit.FromInside);
     point.Surface = surface ? surface : &object.Surface;
-    const BlockLooks::Look* look = object.Blocks ? object.Blocks->Find(Index3(hit.Cell)) : nullptr;
+    const BlockLooks::Look* look =
+      object.Blocks ? object.Blocks->Find(bricks::Index3(hit.Cell)) : nullptr;
     const bool isOfBlock = look && look->Color;
     point.ColorIsFromArray = isOfBlock || object.ColorField;
     point.Color = isOfBlock ? *look->Color
@@ -135,7 +136,7 @@ public:
 
   Brick FindBrick(const ObjectHit& hit) const override
   {
-    const VoxelField& field = *this->Object.Field;
+    const bricks::VoxelField& field = *this->Object.Field;
     return { field.Segment.get(), field.Lattice.FindBrick(hit.Get<IsosurfaceHit>().IndexPoint) };
   }
 
@@ -150,10 +151,10 @@ private:
   /// brings it along for little.
   void AddRow(dsm::BlockId id, std::vector<dsm::BlockId>& around) const
   {
-    const VoxelField& field = *this->Object.Field;
-    const std::vector<ValueRange>& ranges = field.Hierarchy.GetLevels().front().Ranges;
+    const bricks::VoxelField& field = *this->Object.Field;
+    const std::vector<bricks::ValueRange>& ranges = field.Hierarchy.GetLevels().front().Ranges;
     const IsovaluePredicate mayHold(this->Object.Isovalues);
-    const Index3 place = field.Lattice.GetBrick(id);
+    const bricks::Index3 place = field.Lattice.GetBrick(id);
     const std::int64_t first = place.x / PartOfRow * PartOfRow;
     const std::int64_t last = std::min(first + PartOfRow, field.Lattice.GetBricks().x) - 1;
     const auto find = [&](std::int64_t x) { return field.Lattice.GetId({ x, place.y, place.z }); };
@@ -178,7 +179,7 @@ private:
   /// Where the field has no data, the colour of what is not a number.
   glm::vec4 GetColor(const IsosurfaceHit& hit) const
   {
-    const VoxelField& field = *this->Object.ColorField;
+    const bricks::VoxelField& field = *this->Object.ColorField;
     const ColorMap& map = this->Object.Colors;
     const bool ofCells = field.Lattice.IsOfCells();
     if (this->Object.ColoredBy == IsosurfaceObject::Coloring::Values)

@@ -2,7 +2,7 @@
 #ifndef rt_IsovaluePredicate_h
 #define rt_IsovaluePredicate_h
 
-#include "DSMRayTracing/layout/MacrocellHierarchy.h"
+#include "DSMBricks/layout/MacrocellHierarchy.h"
 
 #include <algorithm>
 #include <limits>
@@ -24,7 +24,7 @@ public:
   {
   }
 
-  bool operator()(const ValueRange& range) const
+  bool operator()(const bricks::ValueRange& range) const
   {
     if (!(range.First < this->Highest && this->Lowest <= range.Last))
     {
@@ -34,7 +34,7 @@ public:
   }
 
 private:
-  bool MayHoldAny(const ValueRange& range) const
+  bool MayHoldAny(const bricks::ValueRange& range) const
   {
     return std::any_of(this->Isovalues.begin(), this->Isovalues.end(),
       [&](double isovalue) { return range.MayHold(isovalue); });

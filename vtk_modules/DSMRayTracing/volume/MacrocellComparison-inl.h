@@ -105,7 +105,7 @@ private:
   }
 
   static std::uint64_t FindMacrocells(
-    const MacrocellRange<T>* ranges, std::ptrdiff_t row, std::ptrdiff_t slice, T first)
+    const bricks::MacrocellRange<T>* ranges, std::ptrdiff_t row, std::ptrdiff_t slice, T first)
   {
     const hn::CappedTag<T, std::min<std::size_t>(Lanes, Edge)> tag;
     constexpr int width = static_cast<int>(hn::MaxLanes(tag));
@@ -113,7 +113,8 @@ private:
     std::uint64_t found = 0;
     for (int number = 0; number < Edge * Edge; ++number)
     {
-      const MacrocellRange<T>* const begin = ranges + number % Edge * row + number / Edge * slice;
+      const bricks::MacrocellRange<T>* const begin =
+        ranges + number % Edge * row + number / Edge * slice;
       for (int x = 0; x < Edge; x += width)
       {
         hn::Vec<decltype(tag)> least;

@@ -2,7 +2,7 @@
 #ifndef rt_MacrocellKernel_h
 #define rt_MacrocellKernel_h
 
-#include "DSMRayTracing/layout/VoxelBrick.h"
+#include "DSMBricks/layout/VoxelBrick.h"
 
 #include <cstddef>
 #include <cstdint>
@@ -30,7 +30,7 @@ struct MacrocellComparison
   /// Bit x + 4 y + 16 z is set where a macrocell of 4 x 4 x 4 has samples on both sides; `row` and
   /// `slice` lead to the next one on y and z.
   std::uint64_t (*FindMacrocells)(
-    const MacrocellRange<T>* ranges, std::ptrdiff_t row, std::ptrdiff_t slice, T first);
+    const bricks::MacrocellRange<T>* ranges, std::ptrdiff_t row, std::ptrdiff_t slice, T first);
 };
 
 /// MacrocellComparison of all types.

@@ -2,7 +2,7 @@
 #ifndef rt_MacrocellWalk_h
 #define rt_MacrocellWalk_h
 
-#include "DSMRayTracing/layout/VoxelBrick.h"
+#include "DSMBricks/layout/VoxelBrick.h"
 #include "DSMRayTracing/volume/GridRay.h"
 #include "DSMRayTracing/volume/GridWalk.h"
 
@@ -16,16 +16,17 @@ namespace rt
 /// for those of whose range `mayHold` says so, until it says that it has found something; returns
 /// whether it has.
 template <class T, class Predicate, class Visit>
-bool VisitMacrocells(const GridRay& line, const VoxelBrick<T>& brick, const Lanes& origin,
+bool VisitMacrocells(const GridRay& line, const bricks::VoxelBrick<T>& brick, const Lanes& origin,
   double enter, double leave, double limit, const Predicate& mayHold, const Visit& visit)
 {
   const int rows = brick.GetMacrocells(0);
   const int slices = brick.GetMacrocells(1);
   const NodeStrides strides(rows, rows * slices);
-  const NodeGrid macrocells{ origin, MacrocellEdge, 1.0 / MacrocellEdge,
+  const NodeGrid macrocells{ origin, bricks::MacrocellEdge, 1.0 / bricks::MacrocellEdge,
     Lanes(rows, slices, brick.GetMacrocells(2), 1.0), strides };
   GridWalk walk;
-  const MacrocellRange<T>* range = brick.GetMacrocellRanges() + walk.Start(line, enter, macrocells);
+  const bricks::MacrocellRange<T>* range =
+    brick.GetMacrocellRanges() + walk.Start(line, enter, macrocells);
   double t = enter;
   while (t < limit)
   {

@@ -37,7 +37,7 @@ public:
   static constexpr int Width = static_cast<int>(hn::MaxLanes(D()));
 
   static RayPacket::Mask SetRays(RayPacket& packet, const Ray* rays, RayPacket::Mask wanted,
-    const IndexSpace& space, const Index3& cells)
+    const IndexSpace& space, const bricks::Index3& cells)
   {
     const D tag;
     const glm::dmat3& matrix = space.GetWorldToIndex();

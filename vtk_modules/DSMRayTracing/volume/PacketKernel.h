@@ -2,7 +2,7 @@
 #ifndef rt_PacketKernel_h
 #define rt_PacketKernel_h
 
-#include "DSMRayTracing/base/Box.h"
+#include "DSMBricks/base/Box.h"
 #include "DSMRayTracing/ray/Ray.h"
 #include "DSMRayTracing/ray/RayPacket.h"
 #include "DSMRayTracing/volume/IndexSpace.h"
@@ -28,7 +28,7 @@ struct PacketKernel
   /// Makes the packet of those rays (world space) of `wanted` that cross the volume's `cells`, Forward
   /// being set. Returns those that do not fit into a packet.
   RayPacket::Mask (*SetRays)(RayPacket& packet, const Ray* rays, RayPacket::Mask wanted,
-    const IndexSpace& space, const Index3& cells);
+    const IndexSpace& space, const bricks::Index3& cells);
 
   /// Those of `rays` that cross a brick (planes in cells) within the volume, and where.
   RayPacket::Mask (*MeetBrick)(

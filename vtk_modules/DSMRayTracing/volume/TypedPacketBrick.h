@@ -2,8 +2,8 @@
 #ifndef rt_TypedPacketBrick_h
 #define rt_TypedPacketBrick_h
 
+#include "DSMBricks/layout/VoxelBrick.h"
 #include "DSMRayTracing/base/Lanes.h"
-#include "DSMRayTracing/layout/VoxelBrick.h"
 #include "DSMRayTracing/volume/IsovalueLevel.h"
 #include "DSMRayTracing/volume/MacrocellKernel.h"
 #include "DSMRayTracing/volume/NodeOrder.h"
@@ -23,7 +23,7 @@ template <class T>
 class TypedPacketBrick final : public PacketBrick
 {
 public:
-  TypedPacketBrick(const VoxelBrick<T>& brick, const IsovalueLevel<T>& level,
+  TypedPacketBrick(const bricks::VoxelBrick<T>& brick, const IsovalueLevel<T>& level,
     const MacrocellComparison<T>& comparison, const bool forward[3])
     : Brick(brick)
     , Level(level)
@@ -52,9 +52,9 @@ public:
   void FindCells(const int part[3], int macrocell) const override
   {
     const int number = this->Order.Turn(macrocell);
-    const int first[3] = { MacrocellEdge * (4 * part[0] + (number & 3)),
-      MacrocellEdge * (4 * part[1] + (number >> 2 & 3)),
-      MacrocellEdge * (4 * part[2] + (number >> 4)) };
+    const int first[3] = { bricks::MacrocellEdge * (4 * part[0] + (number & 3)),
+      bricks::MacrocellEdge * (4 * part[1] + (number >> 2 & 3)),
+      bricks::MacrocellEdge * (4 * part[2] + (number >> 4)) };
     this->Part.Cells[macrocell] = this->Order.TurnAll(this->CompareCells(first));
     this->Part.Known |= std::uint64_t{ 1 } << macrocell;
   }
@@ -81,7 +81,7 @@ private:
 
   std::uint64_t ComparePart(const int part[3]) const
   {
-    const MacrocellRange<T>* const ranges = this->Brick.GetMacrocellRanges();
+    const bricks::MacrocellRange<T>* const ranges = this->Brick.GetMacrocellRanges();
     int last[3];
     for (int axis = 0; axis < 3; ++axis)
     {
@@ -101,7 +101,7 @@ private:
     {
       for (int y = 0; y < last[1]; ++y)
       {
-        const MacrocellRange<T>* const row = ranges + 4 * part[0] +
+        const bricks::MacrocellRange<T>* const row = ranges + 4 * part[0] +
           this->Brick.GetMacrocells(0) *
             (4 * part[1] + y + this->Brick.GetMacrocells(1) * (4 * part[2] + z));
         for (int x = 0; x < last[0]; ++x)
@@ -140,10 +140,10 @@ private:
     int counts[3];
     for (int axis = 0; axis < 3; ++axis)
     {
-      counts[axis] = std::min(MacrocellEdge, this->Brick.GetCells(axis) - first[axis]);
+      counts[axis] = std::min(bricks::MacrocellEdge, this->Brick.GetCells(axis) - first[axis]);
     }
     const int row = this->Brick.GetRow();
-    if (*std::min_element(counts, counts + 3) == MacrocellEdge &&
+    if (*std::min_element(counts, counts + 3) == bricks::MacrocellEdge &&
       row >= MacrocellComparison<T>::RowSamples)
     {
       return this->Comparison.FindCells(
@@ -156,7 +156,7 @@ private:
     {
       const Slice next = this->GetSlice(first, counts, z + 1);
       const std::uint32_t mixed = (last.Any | next.Any) & ~(last.All & next.All);
-      for (int y = 0; y < MacrocellEdge; ++y)
+      for (int y = 0; y < bricks::MacrocellEdge; ++y)
       {
         const std::uint64_t bits = mixed >> (RowBits * y) & 15u;
         cells |= bits << (4 * y + 16 * z);
@@ -211,7 +211,7 @@ private:
     return box;
   }
 
-  const VoxelBrick<T>& Brick;
+  const bricks::VoxelBrick<T>& Brick;
   const IsovalueLevel<T>& Level;
   const MacrocellComparison<T>& Comparison;
   NodeOrder Order;

@@ -2,7 +2,7 @@
 #ifndef vol_ChunkGrid_h
 #define vol_ChunkGrid_h
 
-#include "DSMRayTracing/base/Box.h"
+#include "DSMBricks/base/Box.h"
 #include "DSMVolumeFiles/base/FileLimits.h"
 
 #include <glm/ext/vector_uint3_sized.hpp>
@@ -18,52 +18,52 @@ namespace vol
 /// Indices count from the array's first sample; x is the fastest axis.
 struct ChunkGrid
 {
-  rt::Index3 Samples{ 0 };
-  rt::Index3 ChunkSamples{ 1 };
+  bricks::Index3 Samples{ 0 };
+  bricks::Index3 ChunkSamples{ 1 };
 
   /// Chunks along each axis.
-  rt::Index3 GetCounts() const
+  bricks::Index3 GetCounts() const
   {
-    return (this->Samples + this->ChunkSamples - rt::Index3(1)) / this->ChunkSamples;
+    return (this->Samples + this->ChunkSamples - bricks::Index3(1)) / this->ChunkSamples;
   }
   std::int64_t GetCount() const
   {
-    const rt::Index3 counts = this->GetCounts();
+    const bricks::Index3 counts = this->GetCounts();
     return counts.x * counts.y * counts.z;
   }
-  std::int64_t GetNumber(const rt::Index3& chunk) const
+  std::int64_t GetNumber(const bricks::Index3& chunk) const
   {
-    const rt::Index3 counts = this->GetCounts();
+    const bricks::Index3 counts = this->GetCounts();
     return (chunk.z * counts.y + chunk.y) * counts.x + chunk.x;
   }
-  rt::Index3 GetChunk(std::int64_t number) const
+  bricks::Index3 GetChunk(std::int64_t number) const
   {
-    const rt::Index3 counts = this->GetCounts();
+    const bricks::Index3 counts = this->GetCounts();
     return { number % counts.x, number / counts.x % counts.y, number / (counts.x * counts.y) };
   }
   /// Whether a box has all samples, and no others.
-  bool IsWhole(const rt::Box& box) const
+  bool IsWhole(const bricks::Box& box) const
   {
-    return box.Min == rt::Index3(0) && box.Max == this->Samples;
+    return box.Min == bricks::Index3(0) && box.Max == this->Samples;
   }
   /// The samples of a chunk that belong to the volume.
-  rt::Box GetBox(const rt::Index3& chunk) const
+  bricks::Box GetBox(const bricks::Index3& chunk) const
   {
-    const rt::Index3 first = chunk * this->ChunkSamples;
+    const bricks::Index3 first = chunk * this->ChunkSamples;
     return { first, glm::min(first + this->ChunkSamples, this->Samples) };
   }
   /// And the first samples of its upper neighbours along each axis: what a brick that begins with it has.
-  rt::Box GetBoxWithHalo(const rt::Index3& chunk) const
+  bricks::Box GetBoxWithHalo(const bricks::Index3& chunk) const
   {
-    const rt::Index3 first = chunk * this->ChunkSamples;
-    return { first, glm::min(first + this->ChunkSamples + rt::Index3(1), this->Samples) };
+    const bricks::Index3 first = chunk * this->ChunkSamples;
+    return { first, glm::min(first + this->ChunkSamples + bricks::Index3(1), this->Samples) };
   }
   /// The latter alone, in three boxes that do not overlap: beyond the chunk on x, then on y, then on z. At the
   /// volume's ends some are empty.
-  std::array<rt::Box, 3> GetHalo(const rt::Index3& chunk) const
+  std::array<bricks::Box, 3> GetHalo(const bricks::Index3& chunk) const
   {
-    const rt::Box own = this->GetBox(chunk);
-    std::array<rt::Box, 3> halo;
+    const bricks::Box own = this->GetBox(chunk);
+    std::array<bricks::Box, 3> halo;
     halo.fill(this->GetBoxWithHalo(chunk));
     for (int axis = 0; axis < 3; ++axis)
     {
@@ -81,8 +81,8 @@ struct ChunkGrid
   std::uint64_t CountBytesOfChunks(std::int64_t samples, std::size_t sampleBytes) const
   {
     constexpr std::uint64_t greatest = std::uint64_t(1) << 56;
-    const rt::Index3 most =
-      (rt::Index3(samples - 2) + this->ChunkSamples) / this->ChunkSamples + rt::Index3(1);
+    const bricks::Index3 most =
+      (bricks::Index3(samples - 2) + this->ChunkSamples) / this->ChunkSamples + bricks::Index3(1);
     const glm::u64vec3 chunks(glm::min(most, this->GetCounts()));
     const glm::u64vec3 chunk(glm::min(this->ChunkSamples, this->Samples));
     return MultiplyWithin(

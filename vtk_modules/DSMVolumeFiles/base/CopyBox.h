@@ -2,7 +2,7 @@
 #ifndef vol_CopyBox_h
 #define vol_CopyBox_h
 
-#include "DSMRayTracing/base/Box.h"
+#include "DSMBricks/base/Box.h"
 
 #include <cstddef>
 #include <cstring>
@@ -12,12 +12,12 @@ namespace vol
 
 /// Copies the samples of `box` from a dense array of the samples of `fromBox` to one of those of `toBox`, x
 /// fastest; both boxes contain it. A sample has so many bytes.
-inline void CopyBox(const rt::Box& box, const std::byte* from, const rt::Box& fromBox,
-  std::byte* to, const rt::Box& toBox, std::size_t sampleBytes)
+inline void CopyBox(const bricks::Box& box, const std::byte* from, const bricks::Box& fromBox,
+  std::byte* to, const bricks::Box& toBox, std::size_t sampleBytes)
 {
-  const auto getOffset = [=](const rt::Box& whole, std::int64_t y, std::int64_t z)
+  const auto getOffset = [=](const bricks::Box& whole, std::int64_t y, std::int64_t z)
   {
-    const rt::Index3 size = whole.GetSize();
+    const bricks::Index3 size = whole.GetSize();
     const std::int64_t sample =
       ((z - whole.Min.z) * size.y + (y - whole.Min.y)) * size.x + (box.Min.x - whole.Min.x);
     return static_cast<std::size_t>(sample) * sampleBytes;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "DSMVolumeFiles/base/PositionedFile.h"
 
+#include "DSMBricks/base/ByteHash.h"
 #include "DSMCore/base/Error.h"
-#include "DSMRayTracing/base/ByteHash.h"
 #include "DSMVolumeFiles/base/ByteBuffer.h"
 #include "DSMVolumeFiles/base/ReadingManner.h"
 
@@ -38,7 +38,7 @@ std::uint64_t GetStampOf(const struct stat& state)
   const std::uint64_t parts[] = { state.st_ino, static_cast<std::uint64_t>(state.st_size),
     static_cast<std::uint64_t>(state.st_mtim.tv_sec),
     static_cast<std::uint64_t>(state.st_mtim.tv_nsec) };
-  rt::ByteHash hash;
+  bricks::ByteHash hash;
   hash.Add(parts, sizeof(parts));
   return hash.Get();
 }

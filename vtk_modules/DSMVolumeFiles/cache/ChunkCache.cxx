@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "DSMVolumeFiles/cache/ChunkCache.h"
 
+#include "DSMBricks/base/ByteHash.h"
+#include "DSMBricks/base/ParallelFor.h"
 #include "DSMCore/base/Error.h"
-#include "DSMRayTracing/base/ByteHash.h"
-#include "DSMRayTracing/base/ParallelFor.h"
 #include "DSMVolumeFiles/base/CopyBox.h"
 #include "DSMVolumeFiles/base/ReadingManner.h"
 #include "DSMVolumeFiles/format/SeriesFile.h"
@@ -37,11 +37,11 @@ dsm::Error OutOfMemory(const VolumeFile& file, const FileArray& array, std::size
 
 /// Those that have samples of a box; x fastest.
 template <class Visit>
-void ForEachChunk(const ChunkGrid& grid, const rt::Box& box, const Visit& visit)
+void ForEachChunk(const ChunkGrid& grid, const bricks::Box& box, const Visit& visit)
 {
-  const rt::Index3 first = box.Min / grid.ChunkSamples;
-  const rt::Index3 last = (box.Max - rt::Index3(1)) / grid.ChunkSamples;
-  rt::Index3 chunk;
+  const bricks::Index3 first = box.Min / grid.ChunkSamples;
+  const bricks::Index3 last = (box.Max - bricks::Index3(1)) / grid.ChunkSamples;
+  bricks::Index3 chunk;
   for (chunk.z = first.z; chunk.z <= last.z; ++chunk.z)
   {
     for (chunk.y = first.y; chunk.y <= last.y; ++chunk.y)
@@ -64,9 +64,9 @@ ChunkCache& ChunkCache::GetShared()
 
 std::size_t ChunkCache::KeyHash::operator()(const Key& key) const
 {
-  std::uint64_t hash = rt::ByteHash::AddWord(key.File, key.Array);
-  hash = rt::ByteHash::AddWord(hash, static_cast<std::uint64_t>(key.Step));
-  return rt::ByteHash::AddWord(hash, static_cast<std::uint64_t>(key.Number));
+  std::uint64_t hash = bricks::ByteHash::AddWord(key.File, key.Array);
+  hash = bricks::ByteHash::AddWord(hash, static_cast<std::uint64_t>(key.Step));
+  return bricks::ByteHash::AddWord(hash, static_cast<std::uint64_t>(key.Number));
 }
 
 void ChunkCache::SetLimit(std::size_t bytes)
@@ -163,7 +163,7 @@ std::uint64_t ChunkCache::GetBytesRead() const
 }
 
 ChunkCache::Chunk ChunkCache::Get(const std::shared_ptr<const VolumeFile>& file, std::size_t array,
-  int step, const rt::Index3& chunk)
+  int step, const bricks::Index3& chunk)
 {
   const FileArray& what = file->GetArrays()[array];
   const Key key{ file->GetNumber(), array, step, what.Grid.GetNumber(chunk) };
@@ -257,46 +257,46 @@ ChunkCache::Chunk ChunkCache::Get(const std::shared_ptr<const VolumeFile>& file,
 }
 
 void ChunkCache::ReadBox(const std::shared_ptr<const VolumeFile>& file, std::size_t array, int step,
-  const rt::Box& box, std::byte* out)
+  const bricks::Box& box, std::byte* out)
 {
   this->Read(file, array, step, box, false, out);
 }
 
 void ChunkCache::ReadScattered(const std::shared_ptr<const VolumeFile>& file, std::size_t array,
-  int step, const rt::Box& box, std::byte* out)
+  int step, const bricks::Box& box, std::byte* out)
 {
   const ScatteredReads scope;
   this->Read(file, array, step, box, true, out);
 }
 
 void ChunkCache::ReadBoxes(const std::shared_ptr<const VolumeFile>& file, std::size_t array,
-  int step, const std::vector<rt::Box>& boxes, const std::vector<std::byte*>& outs, int threads)
+  int step, const std::vector<bricks::Box>& boxes, const std::vector<std::byte*>& outs, int threads)
 {
   const FileArray& what = file->GetArrays()[array];
   std::map<std::int64_t, std::vector<std::size_t>> wanted; // by which boxes a chunk is
   for (std::size_t box = 0; box < boxes.size(); ++box)
   {
     ForEachChunk(what.Grid, boxes[box],
-      [&](const rt::Index3& chunk) { wanted[what.Grid.GetNumber(chunk)].push_back(box); });
+      [&](const bricks::Index3& chunk) { wanted[what.Grid.GetNumber(chunk)].push_back(box); });
   }
   const std::vector<std::pair<std::int64_t, std::vector<std::size_t>>> chunks(
     wanted.begin(), wanted.end());
-  rt::ParallelFor(threads, chunks.size(),
+  bricks::ParallelFor(threads, chunks.size(),
     [&](std::size_t index, int)
     {
-      const rt::Index3 chunk = what.Grid.GetChunk(chunks[index].first);
-      const rt::Box part = what.Grid.GetBox(chunk);
+      const bricks::Index3 chunk = what.Grid.GetChunk(chunks[index].first);
+      const bricks::Box part = what.Grid.GetBox(chunk);
       const Chunk samples = this->Get(file, array, step, chunk);
       for (const std::size_t box : chunks[index].second)
       {
-        CopyBox(rt::Intersect(part, boxes[box]), samples->data(), part, outs[box], boxes[box],
+        CopyBox(bricks::Intersect(part, boxes[box]), samples->data(), part, outs[box], boxes[box],
           what.GetSampleBytes());
       }
     });
 }
 
 bool ChunkCache::HasChunk(const std::shared_ptr<const VolumeFile>& file, std::size_t array,
-  int step, const rt::Index3& chunk) const
+  int step, const bricks::Index3& chunk) const
 {
   const std::lock_guard<std::mutex> lock(this->Guard);
   return this->Entries.count(
@@ -304,7 +304,7 @@ bool ChunkCache::HasChunk(const std::shared_ptr<const VolumeFile>& file, std::si
 }
 
 void ChunkCache::Read(const std::shared_ptr<const VolumeFile>& file, std::size_t array, int step,
-  const rt::Box& box, bool scattered, std::byte* out)
+  const bricks::Box& box, bool scattered, std::byte* out)
 {
   if (this->ReadWithHalo(file, array, step, box, out))
   {
@@ -313,10 +313,10 @@ void ChunkCache::Read(const std::shared_ptr<const VolumeFile>& file, std::size_t
   ByteBuffer dense;
   const FileArray& what = file->GetArrays()[array];
   ForEachChunk(what.Grid, box,
-    [&](const rt::Index3& chunk)
+    [&](const bricks::Index3& chunk)
     {
-      const rt::Box part = what.Grid.GetBox(chunk);
-      const rt::Box common = rt::Intersect(part, box);
+      const bricks::Box part = what.Grid.GetBox(chunk);
+      const bricks::Box common = bricks::Intersect(part, box);
       if (scattered && !this->HasChunk(file, array, step, chunk))
       {
         dense.resize(static_cast<std::size_t>(common.GetCount()) * what.GetSampleBytes());
@@ -334,11 +334,11 @@ void ChunkCache::Read(const std::shared_ptr<const VolumeFile>& file, std::size_t
 }
 
 bool ChunkCache::ReadWithHalo(const std::shared_ptr<const VolumeFile>& file, std::size_t array,
-  int step, const rt::Box& box, std::byte* out)
+  int step, const bricks::Box& box, std::byte* out)
 {
   const FileArray& what = file->GetArrays()[array];
-  const rt::Index3 chunk = box.Min / what.Grid.ChunkSamples;
-  const rt::Box all = what.Grid.GetBoxWithHalo(chunk);
+  const bricks::Index3 chunk = box.Min / what.Grid.ChunkSamples;
+  const bricks::Box all = what.Grid.GetBoxWithHalo(chunk);
   if (all.Min != box.Min || all.Max != box.Max || this->HasChunk(file, array, step, chunk) ||
     !file->ReadWithHalo(array, step, chunk, out))
   {
@@ -350,23 +350,23 @@ bool ChunkCache::ReadWithHalo(const std::shared_ptr<const VolumeFile>& file, std
 }
 
 void ChunkCache::Foresee(const std::shared_ptr<const VolumeFile>& file, std::size_t array, int step,
-  const std::vector<rt::Box>& boxes) const
+  const std::vector<bricks::Box>& boxes) const
 {
   const FileArray& what = file->GetArrays()[array];
   try
   {
     std::vector<VolumeFile::ChunkPart> parts;
-    for (const rt::Box& box : boxes)
+    for (const bricks::Box& box : boxes)
     {
       // What bricks need beyond their own cells is another one's, too.
-      const rt::Box own{ box.Min,
-        glm::max(box.Min + rt::Index3(1), box.Max - rt::Index3(Overlap)) };
+      const bricks::Box own{ box.Min,
+        glm::max(box.Min + bricks::Index3(1), box.Max - bricks::Index3(Overlap)) };
       ForEachChunk(what.Grid, own,
-        [&](const rt::Index3& chunk)
+        [&](const bricks::Index3& chunk)
         {
           if (!this->HasChunk(file, array, step, chunk))
           {
-            parts.push_back({ chunk, rt::Intersect(what.Grid.GetBox(chunk), box) });
+            parts.push_back({ chunk, bricks::Intersect(what.Grid.GetBox(chunk), box) });
           }
         });
     }

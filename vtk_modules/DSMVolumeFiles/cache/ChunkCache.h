@@ -63,23 +63,23 @@ public:
   /// The samples of a chunk, as VolumeFile::ReadChunk gives them. Throws what that throws, to all who wait; the
   /// next one who asks tries again. Where a thread is not to wait (WithoutWaiting), not for another one either.
   Chunk Get(const std::shared_ptr<const VolumeFile>& file, std::size_t array, int step,
-    const rt::Index3& chunk);
+    const bricks::Index3& chunk);
 
   /// The samples of a box of an array, dense, x fastest, through the cache.
   void ReadBox(const std::shared_ptr<const VolumeFile>& file, std::size_t array, int step,
-    const rt::Box& box, std::byte* out);
+    const bricks::Box& box, std::byte* out);
   /// The same for boxes far from one another: of chunks that are not here, no more is read than must be.
   void ReadScattered(const std::shared_ptr<const VolumeFile>& file, std::size_t array, int step,
-    const rt::Box& box, std::byte* out);
+    const bricks::Box& box, std::byte* out);
 
   /// The samples of boxes, likewise, each to its own place, by so many threads; each chunk is read once for all of them.
   void ReadBoxes(const std::shared_ptr<const VolumeFile>& file, std::size_t array, int step,
-    const std::vector<rt::Box>& boxes, const std::vector<std::byte*>& outs, int threads);
+    const std::vector<bricks::Box>& boxes, const std::vector<std::byte*>& outs, int threads);
 
   /// Boxes will probably be read soon: the system is told of what is not here, without what boxes side by side
   /// have in common. What goes wrong is said when it is read.
   void Foresee(const std::shared_ptr<const VolumeFile>& file, std::size_t array, int step,
-    const std::vector<rt::Box>& boxes) const;
+    const std::vector<bricks::Box>& boxes) const;
 
 private:
   /// The cache does not keep a file open.
@@ -108,12 +108,12 @@ private:
   };
 
   void Read(const std::shared_ptr<const VolumeFile>& file, std::size_t array, int step,
-    const rt::Box& box, bool scattered, std::byte* out);
+    const bricks::Box& box, bool scattered, std::byte* out);
   bool HasChunk(const std::shared_ptr<const VolumeFile>& file, std::size_t array, int step,
-    const rt::Index3& chunk) const;
+    const bricks::Index3& chunk) const;
   /// A box that a chunk and its halo fill, where the file has these together and the chunk is not here.
   bool ReadWithHalo(const std::shared_ptr<const VolumeFile>& file, std::size_t array, int step,
-    const rt::Box& box, std::byte* out);
+    const bricks::Box& box, std::byte* out);
   /// Under the lock, as GetRoom without it.
   std::size_t ComputeRoom() const
   {

@@ -10,8 +10,8 @@
 namespace vol
 {
 
-FileBrickReader::FileBrickReader(
-  const rt::BrickLattice& lattice, std::shared_ptr<const rt::VoxelSource> source, Foresight foresee)
+FileBrickReader::FileBrickReader(const bricks::BrickLattice& lattice,
+  std::shared_ptr<const bricks::VoxelSource> source, Foresight foresee)
   : Lattice(lattice)
   , Bricks(lattice, std::move(source))
   , Foresee(std::move(foresee))
@@ -49,12 +49,12 @@ void FileBrickReader::TellSystem(const std::vector<dsm::BlockId>& ids) const
 {
   try
   {
-    std::vector<rt::Box> boxes(ids.size());
+    std::vector<bricks::Box> boxes(ids.size());
     std::transform(ids.begin(), ids.end(), boxes.begin(),
       [&](dsm::BlockId id)
       {
-        const rt::Box cells = this->Lattice.GetCellsOfBrick(id);
-        return rt::Box{ cells.Min, cells.Max + rt::Index3(1) };
+        const bricks::Box cells = this->Lattice.GetCellsOfBrick(id);
+        return bricks::Box{ cells.Min, cells.Max + bricks::Index3(1) };
       });
     this->Foresee(std::move(boxes));
   }

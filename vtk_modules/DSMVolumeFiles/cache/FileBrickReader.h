@@ -2,8 +2,8 @@
 #ifndef vol_FileBrickReader_h
 #define vol_FileBrickReader_h
 
+#include "DSMBricks/build/VoxelBrickReader.h"
 #include "DSMCore/fetch/BlockReader.h"
-#include "DSMRayTracing/build/VoxelBrickReader.h"
 
 #include <atomic>
 #include <functional>
@@ -18,11 +18,11 @@ class FileBrickReader final : public dsm::BlockReader
 {
 public:
   /// Tells the system that samples in boxes will be read. Any thread; throws nothing.
-  using Foresight = std::function<void(std::vector<rt::Box> boxes)>;
+  using Foresight = std::function<void(std::vector<bricks::Box> boxes)>;
 
-  /// `source` reads through vol::PositionedFile. Throws as rt::VoxelBrickReader does.
-  FileBrickReader(const rt::BrickLattice& lattice, std::shared_ptr<const rt::VoxelSource> source,
-    Foresight foresee);
+  /// `source` reads through vol::PositionedFile. Throws as bricks::VoxelBrickReader does.
+  FileBrickReader(const bricks::BrickLattice& lattice,
+    std::shared_ptr<const bricks::VoxelSource> source, Foresight foresee);
 
   void Read(dsm::BlockId id, std::byte* block, std::size_t bytes) const override;
   bool ReadWithoutWaiting(dsm::BlockId id, std::byte* block, std::size_t bytes) const override;
@@ -31,8 +31,8 @@ public:
   void TellSystem(const std::vector<dsm::BlockId>& ids) const override;
 
 private:
-  rt::BrickLattice Lattice;
-  rt::VoxelBrickReader Bricks;
+  bricks::BrickLattice Lattice;
+  bricks::VoxelBrickReader Bricks;
   Foresight Foresee;
   mutable std::atomic<bool> CanTell{ true }; ///< the file system, what is in memory
 };

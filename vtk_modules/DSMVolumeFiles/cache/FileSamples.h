@@ -2,7 +2,7 @@
 #ifndef vol_FileSamples_h
 #define vol_FileSamples_h
 
-#include "DSMRayTracing/build/VoxelSource.h"
+#include "DSMBricks/build/VoxelSource.h"
 #include "DSMVolumeFiles/cache/ChunkCache.h"
 
 #include <cstddef>
@@ -14,7 +14,7 @@ namespace vol
 
 /// All samples of an array on points, of one component, in a file, read through a cache of chunks, which must outlive
 /// it. Any thread.
-class FileSamples final : public rt::VoxelSource
+class FileSamples final : public bricks::VoxelSource
 {
 public:
   /// `scattered`: boxes are read here and there, rather than one beside the other.
@@ -27,11 +27,11 @@ public:
     , Scattered(scattered)
   {
   }
-  rt::Box GetCells() const override
+  bricks::Box GetCells() const override
   {
-    return { rt::Index3(0), this->File->GetGeometry().Points - rt::Index3(1) };
+    return { bricks::Index3(0), this->File->GetGeometry().Points - bricks::Index3(1) };
   }
-  void ReadSamples(const rt::Box& points, std::byte* out) const override
+  void ReadSamples(const bricks::Box& points, std::byte* out) const override
   {
     this->Scattered ? this->Cache.ReadScattered(this->File, this->Array, this->Step, points, out)
                     : this->Cache.ReadBox(this->File, this->Array, this->Step, points, out);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "DSMVolumeFiles/format/BareFile.h"
 
+#include "DSMBricks/base/ByteHash.h"
 #include "DSMCore/base/Error.h"
-#include "DSMRayTracing/base/ByteHash.h"
 #include "DSMVolumeFiles/format/StoredFile.h"
 
 #include <algorithm>
@@ -41,7 +41,7 @@ public:
     CheckSizes(path, array);
     array.Grid = CutIntoBoxes(values.Samples, array.GetSampleBytes());
     const auto need =
-      static_cast<std::uint64_t>(rt::Box{ rt::Index3(0), values.Samples }.GetCount()) *
+      static_cast<std::uint64_t>(bricks::Box{ bricks::Index3(0), values.Samples }.GetCount()) *
       array.GetSampleBytes();
     if (this->File->IsDirectory())
     {
@@ -62,10 +62,10 @@ public:
     const std::uint64_t manner[] = { this->File->GetStamp(), this->First,
       static_cast<std::uint64_t>(values.Type), static_cast<std::uint64_t>(values.Components),
       values.BigEndian ? 1u : 0u };
-    rt::ByteHash hash;
+    bricks::ByteHash hash;
     hash.Add(manner, sizeof(manner));
     this->Stamp = hash.Get();
-    const std::size_t width = rt::GetBytes(values.Type);
+    const std::size_t width = bricks::GetBytes(values.Type);
     if (values.BigEndian && width > 1)
     {
       this->Codec = ChunkCodec({ { CodecStep::Kind::SwapBytes, width } });
@@ -78,10 +78,10 @@ public:
     return { this->Path, this->File->GetPath() };
   }
 
-  void ReadChunk(std::size_t, int, const rt::Index3& chunk, std::byte* out) const override
+  void ReadChunk(std::size_t, int, const bricks::Index3& chunk, std::byte* out) const override
   {
     const FileArray& array = this->Arrays.front();
-    const rt::Box box = array.Grid.GetBox(chunk);
+    const bricks::Box box = array.Grid.GetBox(chunk);
     try
     {
       if (this->Codec.IsPlain())
@@ -100,8 +100,8 @@ public:
     }
   }
 
-  bool ReadPart(
-    std::size_t, int, const rt::Index3& chunk, const rt::Box& part, std::byte* out) const override
+  bool ReadPart(std::size_t, int, const bricks::Index3& chunk, const bricks::Box& part,
+    std::byte* out) const override
   {
     if (!this->Codec.IsPlain())
     {
@@ -132,16 +132,17 @@ public:
   }
 
 private:
-  void ReadRows(const FileArray& array, const rt::Box& box, std::byte* out) const
+  void ReadRows(const FileArray& array, const bricks::Box& box, std::byte* out) const
   {
     this->File->Read(this->FindPieces(array, box), out);
   }
 
-  std::vector<PositionedFile::Piece> FindPieces(const FileArray& array, const rt::Box& box) const
+  std::vector<PositionedFile::Piece> FindPieces(
+    const FileArray& array, const bricks::Box& box) const
   {
     std::vector<PositionedFile::Piece> pieces;
-    const rt::Index3 samples = array.Grid.Samples;
-    const rt::Index3 size = box.GetSize();
+    const bricks::Index3 samples = array.Grid.Samples;
+    const bricks::Index3 size = box.GetSize();
     // Whole rows follow one another.
     const std::int64_t rows = size.x == samples.x ? size.y : 1;
     const std::size_t bytes = static_cast<std::size_t>(size.x * rows) * array.GetSampleBytes();
@@ -163,7 +164,7 @@ private:
 
 } // namespace
 
-ChunkGrid CutIntoBoxes(const rt::Index3& samples, std::size_t sampleBytes)
+ChunkGrid CutIntoBoxes(const bricks::Index3& samples, std::size_t sampleBytes)
 {
   const std::int64_t width =
     std::max<std::int64_t>(1, RowBytes / static_cast<std::int64_t>(sampleBytes));
@@ -174,10 +175,10 @@ ChunkGrid CutIntoBoxes(const rt::Index3& samples, std::size_t sampleBytes)
   {
     rows /= 2;
   }
-  return { samples, glm::min(samples, rt::Index3(width, rows, rows)) };
+  return { samples, glm::min(samples, bricks::Index3(width, rows, rows)) };
 }
 
-ChunkGrid CutIntoRows(const rt::Index3& samples, std::size_t sampleBytes)
+ChunkGrid CutIntoRows(const bricks::Index3& samples, std::size_t sampleBytes)
 {
   const std::int64_t row =
     std::max<std::int64_t>(1, samples.x) * static_cast<std::int64_t>(sampleBytes);

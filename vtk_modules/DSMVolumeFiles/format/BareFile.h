@@ -16,8 +16,8 @@ struct BareValues
 {
   std::string Path;
   std::string Name; ///< of the array
-  rt::Index3 Samples{ 0 };
-  rt::ScalarType Type = rt::ScalarType::UInt8;
+  bricks::Index3 Samples{ 0 };
+  bricks::ScalarType Type = bricks::ScalarType::UInt8;
   std::int64_t Components = 1; ///< as declared
   bool BigEndian = false;
   /// Before the first value; negative: the values are at the end of the file.
@@ -32,9 +32,9 @@ std::shared_ptr<const VolumeFile> OpenBareFile(
   const std::string& path, const BareValues& values, const FileGeometry& geometry);
 
 /// So many samples, of so many bytes, as boxes of at most 1 MiB: what is near in space is in few of them.
-ChunkGrid CutIntoBoxes(const rt::Index3& samples, std::size_t sampleBytes);
+ChunkGrid CutIntoBoxes(const bricks::Index3& samples, std::size_t sampleBytes);
 /// As rows that follow one another, or planes when a plane is small.
-ChunkGrid CutIntoRows(const rt::Index3& samples, std::size_t sampleBytes);
+ChunkGrid CutIntoRows(const bricks::Index3& samples, std::size_t sampleBytes);
 
 } // namespace vol
 

@@ -2,7 +2,7 @@
 #ifndef vol_HdfAxes_h
 #define vol_HdfAxes_h
 
-#include "DSMRayTracing/base/Box.h"
+#include "DSMBricks/base/Box.h"
 #include "DSMVolumeFiles/format/HdfLibrary.h"
 #include "DSMVolumeFiles/format/VolumeShape.h"
 
@@ -17,7 +17,7 @@ namespace vol
 struct HdfAxes
 {
   hsize_t Frames = 0; ///< along a first axis of time; 0: it has none
-  rt::Index3 Samples{ 0 };
+  bricks::Index3 Samples{ 0 };
   hsize_t Components = 0; ///< along a last axis; 0: it has none
 
   VolumeShape GetShape() const

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "DSMVolumeFiles/format/HdfBrickIndex.h"
 
-#include "DSMRayTracing/build/VoxelIndex.h"
+#include "DSMBricks/build/VoxelIndex.h"
 #include "DSMVolumeFiles/base/FileLimits.h"
 
 #include <algorithm>
@@ -28,7 +28,7 @@ std::uint64_t CountBytes(const FileArray& array, int edge, std::uint64_t fileByt
       MultiplyWithin(fileBytes, { bricks, static_cast<std::uint64_t>((cells - 1) / edge + 1) })
         .value_or(0);
   }
-  const std::uint64_t bytes = rt::VoxelIndex::CountBytes(bricks);
+  const std::uint64_t bytes = bricks::VoxelIndex::CountBytes(bricks);
   return bytes <= fileBytes ? bytes : 0;
 }
 

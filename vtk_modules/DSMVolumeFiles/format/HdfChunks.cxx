@@ -78,7 +78,7 @@ haddr_t FindHdfValuesPlace(
   }
   const std::uint64_t has = file.GetBytes();
   const auto samples =
-    static_cast<std::uint64_t>(rt::Box{ rt::Index3(0), array.Grid.Samples }.GetCount());
+    static_cast<std::uint64_t>(bricks::Box{ bricks::Index3(0), array.Grid.Samples }.GetCount());
   const auto needed =
     MultiplyWithin(has, { samples, array.GetSampleBytes(), std::max<std::uint64_t>(1, frames) });
   if (first > has || !needed || *needed > has - first)

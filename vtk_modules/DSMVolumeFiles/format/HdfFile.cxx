@@ -84,7 +84,7 @@ public:
   }
 
   void ReadChunk(
-    std::size_t array, int step, const rt::Index3& chunk, std::byte* out) const override
+    std::size_t array, int step, const bricks::Index3& chunk, std::byte* out) const override
   {
     if (this->Kept[array].ReadByLibrary)
     {
@@ -122,7 +122,7 @@ public:
 
 protected:
   std::optional<Place> FindChunk(
-    std::size_t array, int step, const rt::Index3& chunk) const override
+    std::size_t array, int step, const bricks::Index3& chunk) const override
   {
     const Dataset& dataset = this->Kept[array];
     if (dataset.ReadByLibrary)
@@ -137,7 +137,7 @@ protected:
       {
         return std::nullopt;
       }
-      const rt::Box box = grid.GetBox(chunk);
+      const bricks::Box box = grid.GetBox(chunk);
       const auto before =
         static_cast<std::uint64_t>((box.Min.z * grid.Samples.y + box.Min.y) * grid.Samples.x);
       const std::size_t bytes = this->Arrays[array].GetSampleBytes();
@@ -241,7 +241,8 @@ private:
     this->Geometry = image.Geometry;
     this->Times = std::move(image.Times);
     this->Steps = std::max(1, static_cast<int>(this->Times.size()));
-    const rt::Index3 cells = glm::max(this->Geometry.Points - rt::Index3(1), rt::Index3(1));
+    const bricks::Index3 cells =
+      glm::max(this->Geometry.Points - bricks::Index3(1), bricks::Index3(1));
     this->FindArrays(group.Get(), "PointData", false, this->Geometry.Points);
     this->FindArrays(group.Get(), "CellData", true, cells);
     this->FindActive();
@@ -250,7 +251,7 @@ private:
       "WholeExtent tells of.";
   }
 
-  void FindArrays(hid_t parent, const char* name, bool onCells, const rt::Index3& samples)
+  void FindArrays(hid_t parent, const char* name, bool onCells, const bricks::Index3& samples)
   {
     if (H5Lexists(parent, name, H5P_DEFAULT) <= 0)
     {
@@ -414,7 +415,7 @@ private:
     std::vector<CodecStep> steps;
     if (values->Swapped)
     {
-      steps.push_back({ CodecStep::Kind::SwapBytes, rt::GetBytes(array.Type) });
+      steps.push_back({ CodecStep::Kind::SwapBytes, bricks::GetBytes(array.Type) });
     }
     switch (H5Pget_layout(properties.Get()))
     {
@@ -492,9 +493,9 @@ private:
   /// As one chunk is, but for small ones.
   static void CutContiguous(FileArray& array, Storage& storage)
   {
-    const rt::Index3 rows = std::exchange(array.Grid.ChunkSamples, array.Grid.Samples);
+    const bricks::Index3 rows = std::exchange(array.Grid.ChunkSamples, array.Grid.Samples);
     CutPlainChunks(array, storage);
-    if (storage.StoredSamples == rt::Index3(0))
+    if (storage.StoredSamples == bricks::Index3(0))
     {
       array.Grid.ChunkSamples = rows;
     }
@@ -548,7 +549,8 @@ private:
     return dataset.Chunks.has_value();
   }
 
-  void ReadByLibrary(std::size_t number, int step, const rt::Index3& chunk, std::byte* out) const
+  void ReadByLibrary(
+    std::size_t number, int step, const bricks::Index3& chunk, std::byte* out) const
   {
     if (WithoutWaiting::IsInForce())
     {

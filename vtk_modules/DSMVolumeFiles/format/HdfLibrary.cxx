@@ -106,9 +106,9 @@ std::string ListHdfNames(const std::vector<std::string>& names)
     (names.size() > most ? " and " + std::to_string(names.size() - most) + " more." : ".");
 }
 
-hid_t GetHdfType(rt::ScalarType type)
+hid_t GetHdfType(bricks::ScalarType type)
 {
-  using Type = rt::ScalarType;
+  using Type = bricks::ScalarType;
   switch (type)
   {
     case Type::Int8:

@@ -2,7 +2,7 @@
 #ifndef vol_HdfLibrary_h
 #define vol_HdfLibrary_h
 
-#include "DSMRayTracing/base/ScalarType.h"
+#include "DSMBricks/base/ScalarType.h"
 
 #include "DSMVolumeFiles/base/FileLimits.h"
 
@@ -36,7 +36,7 @@ constexpr H5Z_filter_t HdfZstdFilter = 32015;
 std::mutex& GetHdfLock();
 
 /// The library's name of the machine's own form of a type.
-hid_t GetHdfType(rt::ScalarType type);
+hid_t GetHdfType(bricks::ScalarType type);
 
 /// Whether a type is that of numbers whose bits, and the fields of a float, are within its bytes. The library (1.10) does
 /// not check it, and converts with memory that is not the number's. Under the lock.

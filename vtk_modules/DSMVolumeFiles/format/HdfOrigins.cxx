@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "DSMVolumeFiles/format/HdfOrigins.h"
 
+#include "DSMBricks/base/ByteHash.h"
 #include "DSMCore/base/Error.h"
-#include "DSMRayTracing/base/ByteHash.h"
 #include "DSMVolumeFiles/base/FileLimits.h"
 #include "DSMVolumeFiles/base/PositionedFile.h"
 
@@ -213,7 +213,7 @@ std::uint64_t HdfOrigins::GetStamp(std::uint64_t own) const
   {
     return own;
   }
-  rt::ByteHash hash;
+  bricks::ByteHash hash;
   hash.Add(&own, sizeof(own));
   for (const auto& [path, stamp] : this->Stamps)
   {

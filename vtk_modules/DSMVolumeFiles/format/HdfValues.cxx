@@ -12,7 +12,7 @@ namespace
 
 std::optional<HdfValues> FindValuesOfType(const HdfHandle& stored)
 {
-  using Type = rt::ScalarType;
+  using Type = bricks::ScalarType;
   const std::size_t bytes = H5Tget_size(stored.Get());
   constexpr std::size_t mostOfIntegers = 8;
   constexpr std::size_t mostOfFloats = 16;
@@ -62,9 +62,9 @@ std::optional<HdfValues> FindHdfValues(hid_t dataset)
   return FindValuesOfType(stored);
 }
 
-std::vector<std::byte> GetHdfFill(hid_t dataset, rt::ScalarType type, int components)
+std::vector<std::byte> GetHdfFill(hid_t dataset, bricks::ScalarType type, int components)
 {
-  std::vector<std::byte> one(rt::GetBytes(type), std::byte(0));
+  std::vector<std::byte> one(bricks::GetBytes(type), std::byte(0));
   const HdfHandle properties(H5Dget_create_plist(dataset), &H5Pclose);
   H5D_fill_value_t state = H5D_FILL_VALUE_UNDEFINED;
   if (H5Pfill_value_defined(properties.Get(), &state) >= 0 && state == H5D_FILL_VALUE_USER_DEFINED)
@@ -79,15 +79,15 @@ std::vector<std::byte> GetHdfFill(hid_t dataset, rt::ScalarType type, int compon
   return all;
 }
 
-bool ReadHdfBox(hid_t dataset, rt::ScalarType type, int components,
-  std::optional<std::size_t> frame, const rt::Box& box, std::byte* out)
+bool ReadHdfBox(hid_t dataset, bricks::ScalarType type, int components,
+  std::optional<std::size_t> frame, const bricks::Box& box, std::byte* out)
 {
-  const rt::Index3 size = box.GetSize();
+  const bricks::Index3 size = box.GetSize();
   const hsize_t first[5] = { frame.value_or(0), static_cast<hsize_t>(box.Min.z),
     static_cast<hsize_t>(box.Min.y), static_cast<hsize_t>(box.Min.x), 0 };
   const hsize_t count[5] = { 1, static_cast<hsize_t>(size.z), static_cast<hsize_t>(size.y),
     static_cast<hsize_t>(size.x), static_cast<hsize_t>(components) };
-  const std::size_t sampleBytes = rt::GetBytes(type) * static_cast<std::size_t>(components);
+  const std::size_t sampleBytes = bricks::GetBytes(type) * static_cast<std::size_t>(components);
   std::fill_n(out, static_cast<std::size_t>(box.GetCount()) * sampleBytes, std::byte(0));
   const HdfHandle all(H5Dget_space(dataset), &H5Sclose);
   const int axes = H5Sget_simple_extent_ndims(all.Get());

@@ -2,8 +2,8 @@
 #ifndef vol_HdfValues_h
 #define vol_HdfValues_h
 
-#include "DSMRayTracing/base/Box.h"
-#include "DSMRayTracing/base/ScalarType.h"
+#include "DSMBricks/base/Box.h"
+#include "DSMBricks/base/ScalarType.h"
 #include "DSMVolumeFiles/codec/ChunkCodec.h"
 #include "DSMVolumeFiles/format/HdfLibrary.h"
 
@@ -18,7 +18,7 @@ namespace vol
 /// How the values of a dataset are stored.
 struct HdfValues
 {
-  rt::ScalarType Type = rt::ScalarType::UInt8; ///< as which they are shown
+  bricks::ScalarType Type = bricks::ScalarType::UInt8; ///< as which they are shown
   bool Swapped = false;
   bool IsPlain = true; ///< else the library has to make that type of what is stored
 };
@@ -28,12 +28,12 @@ struct HdfValues
 std::optional<HdfValues> FindHdfValues(hid_t dataset);
 
 /// What a sample of a dataset has where nothing was written.
-std::vector<std::byte> GetHdfFill(hid_t dataset, rt::ScalarType type, int components);
+std::vector<std::byte> GetHdfFill(hid_t dataset, bricks::ScalarType type, int components);
 
 /// Reads the samples of a box, dense and x fastest, by the library. `frame`: along a first axis of time, where there is one.
 /// Returns false, and `out` has zeros where nothing was read, when the library cannot.
-bool ReadHdfBox(hid_t dataset, rt::ScalarType type, int components,
-  std::optional<std::size_t> frame, const rt::Box& box, std::byte* out);
+bool ReadHdfBox(hid_t dataset, bricks::ScalarType type, int components,
+  std::optional<std::size_t> frame, const bricks::Box& box, std::byte* out);
 
 /// The filters that a dataset with these properties has, as steps of ours. False when one is not known here.
 bool FindHdfSteps(hid_t properties, std::vector<CodecStep>& steps);

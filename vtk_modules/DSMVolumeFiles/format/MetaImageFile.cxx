@@ -15,9 +15,9 @@ namespace vol
 namespace
 {
 
-rt::ScalarType ParseType(const HeaderText& header)
+bricks::ScalarType ParseType(const HeaderText& header)
 {
-  using Type = rt::ScalarType;
+  using Type = bricks::ScalarType;
   static const std::map<std::string, Type> types = { { "met_char", Type::Int8 },
     { "met_uchar", Type::UInt8 }, { "met_short", Type::Int16 }, { "met_ushort", Type::UInt16 },
     { "met_int", Type::Int32 }, { "met_uint", Type::UInt32 }, { "met_long", Type::Int32 },

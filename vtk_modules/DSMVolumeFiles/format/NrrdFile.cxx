@@ -17,9 +17,9 @@ namespace vol
 namespace
 {
 
-rt::ScalarType ParseType(const HeaderText& header)
+bricks::ScalarType ParseType(const HeaderText& header)
 {
-  using Type = rt::ScalarType;
+  using Type = bricks::ScalarType;
   static const std::map<std::string, Type> types = { { "signed char", Type::Int8 },
     { "int8", Type::Int8 }, { "int8_t", Type::Int8 }, { "uchar", Type::UInt8 },
     { "unsigned char", Type::UInt8 }, { "uint8", Type::UInt8 }, { "uint8_t", Type::UInt8 },
@@ -133,7 +133,7 @@ void LocateByAxis(
 }
 
 FileGeometry ParseGeometry(
-  const HeaderText& header, const std::vector<std::size_t>& domain, const rt::Index3& samples)
+  const HeaderText& header, const std::vector<std::size_t>& domain, const bricks::Index3& samples)
 {
   FileGeometry geometry;
   const auto directions = ParseVectors(header, "space directions");
@@ -207,7 +207,7 @@ std::shared_ptr<const VolumeFile> OpenNrrd(const std::string& path)
   BareValues values;
   values.Name = header.Get("content").empty() ? "values" : header.Get("content");
   values.Components = hasComponents ? sizes.front() : 1;
-  values.Samples = rt::Index3(1);
+  values.Samples = bricks::Index3(1);
   for (std::size_t axis = 0; axis < domain.size(); ++axis)
   {
     values.Samples[static_cast<int>(axis)] = sizes[domain[axis]];

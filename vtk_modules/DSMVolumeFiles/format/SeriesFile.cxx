@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "DSMVolumeFiles/format/SeriesFile.h"
 
+#include "DSMBricks/base/ByteHash.h"
 #include "DSMCore/base/Error.h"
-#include "DSMRayTracing/base/ByteHash.h"
 
 #include <algorithm>
 #include <cmath>
@@ -25,7 +25,7 @@ constexpr std::size_t MostOpen = 6;
 /// Of what is where a step was expected.
 std::uint64_t FindStampOfStep(const std::string& path, const OpenOptions& options)
 {
-  rt::ByteHash hash;
+  bricks::ByteHash hash;
   hash.Add(path.data(), path.size());
   try
   {
@@ -79,7 +79,7 @@ public:
     this->Stamps.resize(paths.size());
     this->Stamps.front() = first->GetStamp();
     this->Open.emplace_back(0, first);
-    rt::ByteHash hash;
+    bricks::ByteHash hash;
     for (const std::string& path : paths)
     {
       const std::uint64_t stamp = FindStampOfStep(path, this->Options);
@@ -91,18 +91,18 @@ public:
   std::vector<std::string> GetPaths() const override { return this->Paths; }
 
   void ReadChunk(
-    std::size_t array, int step, const rt::Index3& chunk, std::byte* out) const override
+    std::size_t array, int step, const bricks::Index3& chunk, std::byte* out) const override
   {
     this->Get(step)->ReadChunk(array, 0, chunk, out);
   }
 
-  bool ReadPart(std::size_t array, int step, const rt::Index3& chunk, const rt::Box& part,
+  bool ReadPart(std::size_t array, int step, const bricks::Index3& chunk, const bricks::Box& part,
     std::byte* out) const override
   {
     return this->Get(step)->ReadPart(array, 0, chunk, part, out);
   }
   bool ReadWithHalo(
-    std::size_t array, int step, const rt::Index3& chunk, std::byte* out) const override
+    std::size_t array, int step, const bricks::Index3& chunk, std::byte* out) const override
   {
     return this->Get(step)->ReadWithHalo(array, 0, chunk, out);
   }
@@ -175,8 +175,8 @@ private:
     }
     for (std::size_t array = 0; array < this->Arrays.size(); ++array)
     {
-      const rt::Index3 mine = this->Arrays[array].Grid.ChunkSamples;
-      const rt::Index3 other = file.GetArrays()[array].Grid.ChunkSamples;
+      const bricks::Index3 mine = this->Arrays[array].Grid.ChunkSamples;
+      const bricks::Index3 other = file.GetArrays()[array].Grid.ChunkSamples;
       if (mine != other)
       {
         this->Refuse(file,

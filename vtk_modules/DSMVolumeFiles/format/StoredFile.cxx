@@ -26,8 +26,8 @@ constexpr std::int64_t LeastPlanes = 16;
 constexpr std::uint64_t LongestRow = std::uint64_t(1) << 20;
 
 /// The first samples along each axis, of as many as are stored with z fastest; out: x fastest.
-void CopyReversed(const std::byte* from, const rt::Index3& stored, std::byte* out,
-  const rt::Index3& size, std::size_t sampleBytes)
+void CopyReversed(const std::byte* from, const bricks::Index3& stored, std::byte* out,
+  const bricks::Index3& size, std::size_t sampleBytes)
 {
   for (std::int64_t z = 0; z < size.z; ++z)
   {
@@ -47,8 +47,8 @@ void CopyReversed(const std::byte* from, const rt::Index3& stored, std::byte* ou
 ChunkGrid StoredFile::GetStoredGrid(std::size_t array) const
 {
   const ChunkGrid& grid = this->Arrays[array].Grid;
-  const rt::Index3& stored = this->Storages[array].StoredSamples;
-  return stored == rt::Index3(0) ? grid : ChunkGrid{ grid.Samples, stored };
+  const bricks::Index3& stored = this->Storages[array].StoredSamples;
+  return stored == bricks::Index3(0) ? grid : ChunkGrid{ grid.Samples, stored };
 }
 
 void StoredFile::CutPlainChunks(FileArray& array, Storage& storage)
@@ -59,10 +59,10 @@ void StoredFile::CutPlainChunks(FileArray& array, Storage& storage)
   {
     return;
   }
-  const rt::Index3 size = glm::min(grid.ChunkSamples, grid.Samples);
+  const bricks::Index3 size = glm::min(grid.ChunkSamples, grid.Samples);
   const bool isShort = static_cast<std::uint64_t>(size.x) * array.GetSampleBytes() <= LongestRow;
   const auto cut = size.z < LeastPlanes && isShort ? &CutIntoRows : &CutIntoBoxes;
-  rt::Index3 part = cut(size, array.GetSampleBytes()).ChunkSamples;
+  bricks::Index3 part = cut(size, array.GetSampleBytes()).ChunkSamples;
   for (int axis = 0; axis < 3; ++axis)
   {
     // No part lies in two chunks of the file.
@@ -75,35 +75,35 @@ void StoredFile::CutPlainChunks(FileArray& array, Storage& storage)
   grid.ChunkSamples = part;
 }
 
-rt::Index3 StoredFile::FindStored(std::size_t array, const rt::Index3& chunk) const
+bricks::Index3 StoredFile::FindStored(std::size_t array, const bricks::Index3& chunk) const
 {
   return this->Arrays[array].Grid.GetBox(chunk).Min / this->GetStoredGrid(array).ChunkSamples;
 }
 
-rt::Box StoredFile::GetStoredBox(std::size_t array, const rt::Index3& whole) const
+bricks::Box StoredFile::GetStoredBox(std::size_t array, const bricks::Index3& whole) const
 {
   const ChunkGrid grid = this->GetStoredGrid(array);
-  const rt::Box box = grid.GetBox(whole);
-  return this->Storages[array].HasWholeChunks ? rt::Box{ box.Min, box.Min + grid.ChunkSamples }
+  const bricks::Box box = grid.GetBox(whole);
+  return this->Storages[array].HasWholeChunks ? bricks::Box{ box.Min, box.Min + grid.ChunkSamples }
                                               : box;
 }
 
 void StoredFile::ReadChunk(
-  std::size_t array, int step, const rt::Index3& chunk, std::byte* out) const
+  std::size_t array, int step, const bricks::Index3& chunk, std::byte* out) const
 {
   const FileArray& what = this->Arrays[array];
   const Storage& storage = this->Storages[array];
   const std::size_t sampleBytes = what.GetSampleBytes();
-  const rt::Box box = what.Grid.GetBox(chunk);
+  const bricks::Box box = what.Grid.GetBox(chunk);
   const auto count = static_cast<std::size_t>(box.GetCount());
-  const rt::Index3 whole = this->FindStored(array, chunk);
+  const bricks::Index3 whole = this->FindStored(array, chunk);
   const std::optional<Place> place = this->FindChunk(array, step, whole);
   if (!place)
   {
     FillWith(storage.Fill, out, count * sampleBytes);
     return;
   }
-  const rt::Box stored = this->GetStoredBox(array, whole);
+  const bricks::Box stored = this->GetStoredBox(array, whole);
   const std::size_t storedBytes = static_cast<std::size_t>(stored.GetCount()) * sampleBytes;
   const std::size_t allBytes = storedBytes * storage.Slices;
   const bool isAll =
@@ -112,7 +112,7 @@ void StoredFile::ReadChunk(
   {
     // What is not wanted of a large chunk that lies plain in the file is not read.
     const bool inRows =
-      storage.StoredSamples != rt::Index3(0) || (!isAll && allBytes > MostTogether);
+      storage.StoredSamples != bricks::Index3(0) || (!isAll && allBytes > MostTogether);
     const auto rows =
       inRows ? this->FindPieces(array, *place, whole, box) : std::vector<PositionedFile::Piece>{};
     if (!rows.empty())
@@ -195,12 +195,12 @@ void StoredFile::CheckStored(std::size_t array, const Place& place, std::size_t 
 }
 
 std::vector<PositionedFile::Piece> StoredFile::FindPieces(
-  std::size_t array, const Place& place, const rt::Index3& whole, const rt::Box& part) const
+  std::size_t array, const Place& place, const bricks::Index3& whole, const bricks::Box& part) const
 {
   const Storage& storage = this->Storages[array];
   const std::size_t sampleBytes = this->Arrays[array].GetSampleBytes();
-  const rt::Box stored = this->GetStoredBox(array, whole);
-  const rt::Index3 size = stored.GetSize();
+  const bricks::Box stored = this->GetStoredBox(array, whole);
+  const bricks::Index3 size = stored.GetSize();
   std::vector<PositionedFile::Piece> pieces;
   const std::uint64_t sliceBytes = static_cast<std::uint64_t>(stored.GetCount()) * sampleBytes;
   if (!storage.Codec.KeepsPlaces() || storage.IsReversed ||
@@ -209,7 +209,7 @@ std::vector<PositionedFile::Piece> StoredFile::FindPieces(
     return pieces;
   }
   const std::uint64_t first = place.Offset + place.Slice * sliceBytes;
-  const rt::Index3 rows = part.GetSize();
+  const bricks::Index3 rows = part.GetSize();
   pieces.reserve(static_cast<std::size_t>(rows.y * rows.z));
   for (std::int64_t z = part.Min.z - stored.Min.z; z < part.Max.z - stored.Min.z; ++z)
   {
@@ -237,10 +237,10 @@ void StoredFile::ReadPieces(const Storage& storage, const Place& place,
   storage.Codec.Decode(std::move(stored), place.SkippedSteps, out, bytes);
 }
 
-bool StoredFile::ReadPart(
-  std::size_t array, int step, const rt::Index3& chunk, const rt::Box& part, std::byte* out) const
+bool StoredFile::ReadPart(std::size_t array, int step, const bricks::Index3& chunk,
+  const bricks::Box& part, std::byte* out) const
 {
-  const rt::Index3 whole = this->FindStored(array, chunk);
+  const bricks::Index3 whole = this->FindStored(array, chunk);
   const std::optional<Place> place = this->FindChunk(array, step, whole);
   const auto pieces =
     place ? this->FindPieces(array, *place, whole, part) : std::vector<PositionedFile::Piece>{};
@@ -261,7 +261,7 @@ bool StoredFile::ReadPart(
 }
 
 bool StoredFile::ReadWithHalo(
-  std::size_t array, int step, const rt::Index3& chunk, std::byte* out) const
+  std::size_t array, int step, const bricks::Index3& chunk, std::byte* out) const
 {
   const FileArray& what = this->Arrays[array];
   const Storage& storage = this->Storages[array];
@@ -272,9 +272,9 @@ bool StoredFile::ReadWithHalo(
     return false;
   }
   const std::size_t sampleBytes = what.GetSampleBytes();
-  const rt::Box box = what.Grid.GetBox(chunk);
-  const rt::Box all = what.Grid.GetBoxWithHalo(chunk);
-  const rt::Box stored{ box.Min, box.Min + what.Grid.ChunkSamples };
+  const bricks::Box box = what.Grid.GetBox(chunk);
+  const bricks::Box all = what.Grid.GetBoxWithHalo(chunk);
+  const bricks::Box stored{ box.Min, box.Min + what.Grid.ChunkSamples };
   const std::size_t storedBytes = static_cast<std::size_t>(stored.GetCount()) * sampleBytes;
   ByteBuffer halo;
   ByteBuffer samples;
@@ -308,7 +308,7 @@ bool StoredFile::ReadWithHalo(
   }
   CopyBox(box, samples.data(), stored, out, all, sampleBytes);
   const std::byte* from = halo.data();
-  for (const rt::Box& part : what.Grid.GetHalo(chunk))
+  for (const bricks::Box& part : what.Grid.GetHalo(chunk))
   {
     CopyBox(part, from, part, out, all, sampleBytes);
     from += static_cast<std::size_t>(part.GetCount()) * sampleBytes;
@@ -321,7 +321,7 @@ void StoredFile::Foresee(std::size_t array, int step, const std::vector<ChunkPar
   std::map<std::shared_ptr<const PositionedFile>, std::vector<PositionedFile::Piece>> found;
   for (const auto& [chunk, part] : parts)
   {
-    const rt::Index3 whole = this->FindStored(array, chunk);
+    const bricks::Index3 whole = this->FindStored(array, chunk);
     const std::optional<Place> place = this->FindChunk(array, step, whole);
     if (!place)
     {
@@ -341,8 +341,8 @@ void StoredFile::Foresee(std::size_t array, int step, const std::vector<ChunkPar
   }
 }
 
-void StoredFile::RefuseChunk(
-  const FileArray& array, const rt::Index3& chunk, const std::string& path, const dsm::Error& error)
+void StoredFile::RefuseChunk(const FileArray& array, const bricks::Index3& chunk,
+  const std::string& path, const dsm::Error& error)
 {
   throw dsm::Error("Chunk (" + std::to_string(chunk.x) + ", " + std::to_string(chunk.y) + ", " +
     std::to_string(chunk.z) + ") of the array '" + array.Name + "' in '" + path +

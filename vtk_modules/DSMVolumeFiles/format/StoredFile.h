@@ -19,16 +19,16 @@ class StoredFile : public VolumeFile
 {
 public:
   void ReadChunk(
-    std::size_t array, int step, const rt::Index3& chunk, std::byte* out) const override;
-  bool ReadPart(std::size_t array, int step, const rt::Index3& chunk, const rt::Box& part,
+    std::size_t array, int step, const bricks::Index3& chunk, std::byte* out) const override;
+  bool ReadPart(std::size_t array, int step, const bricks::Index3& chunk, const bricks::Box& part,
     std::byte* out) const override;
   bool ReadWithHalo(
-    std::size_t array, int step, const rt::Index3& chunk, std::byte* out) const override;
+    std::size_t array, int step, const bricks::Index3& chunk, std::byte* out) const override;
 
   void Foresee(std::size_t array, int step, const std::vector<ChunkPart>& parts) const override;
 
   /// Throws what reading a chunk threw, with the chunk's and the file's names.
-  [[noreturn]] static void RefuseChunk(const FileArray& array, const rt::Index3& chunk,
+  [[noreturn]] static void RefuseChunk(const FileArray& array, const bricks::Index3& chunk,
     const std::string& path, const dsm::Error& error);
 
 protected:
@@ -51,7 +51,7 @@ protected:
     /// Of a chunk that is nowhere: one sample, or one component where all are alike.
     std::vector<std::byte> Fill;
     /// Samples along each axis of a chunk in the file, where it is shown as several (CutPlainChunks); else 0.
-    rt::Index3 StoredSamples{ 0 };
+    bricks::Index3 StoredSamples{ 0 };
     /// Chunks at the volume's ends are as large as all others; else they end with it.
     bool HasWholeChunks = true;
     /// The samples of a chunk are stored with z fastest.
@@ -67,7 +67,7 @@ protected:
 
   /// None: all samples of the chunk have the fill value. `chunk` is one of GetStoredGrid.
   virtual std::optional<Place> FindChunk(
-    std::size_t array, int step, const rt::Index3& chunk) const = 0;
+    std::size_t array, int step, const bricks::Index3& chunk) const = 0;
 
   /// How the array is cut in the file.
   ChunkGrid GetStoredGrid(std::size_t array) const;
@@ -85,12 +85,12 @@ private:
   /// allocated for the chunk.
   void CheckStored(std::size_t array, const Place& place, std::size_t bytes) const;
   /// Which chunk of the file a chunk is of, or a part of.
-  rt::Index3 FindStored(std::size_t array, const rt::Index3& chunk) const;
+  bricks::Index3 FindStored(std::size_t array, const bricks::Index3& chunk) const;
   /// The samples of a chunk of the file, those beyond the volume's ends included where it has them.
-  rt::Box GetStoredBox(std::size_t array, const rt::Index3& whole) const;
+  bricks::Box GetStoredBox(std::size_t array, const bricks::Index3& whole) const;
   /// The rows of a part of a chunk of the file; none where that can only be read as a whole.
-  std::vector<PositionedFile::Piece> FindPieces(
-    std::size_t array, const Place& place, const rt::Index3& whole, const rt::Box& part) const;
+  std::vector<PositionedFile::Piece> FindPieces(std::size_t array, const Place& place,
+    const bricks::Index3& whole, const bricks::Box& part) const;
   /// Of so many bytes together.
   static void ReadPieces(const Storage& storage, const Place& place,
     const std::vector<PositionedFile::Piece>& pieces, std::byte* out, std::size_t bytes);

@@ -112,7 +112,7 @@ Format TryFindFormat(const std::string& path)
 
 std::shared_ptr<const VolumeFile> OpenRaw(const std::string& path, const OpenOptions::Raw& options)
 {
-  if (glm::any(glm::lessThanEqual(options.Samples, rt::Index3(0))))
+  if (glm::any(glm::lessThanEqual(options.Samples, bricks::Index3(0))))
   {
     throw dsm::Error("Enter Raw Dimensions in the Properties panel and press Apply: '" + path +
       "' has no header that gives its number of samples along x, y and z. Check Raw Scalar Type, "
@@ -214,7 +214,7 @@ VolumeFile::VolumeFile(std::string path)
   this->Number = ++last;
 }
 
-std::string DescribeShape(const rt::Index3& samples)
+std::string DescribeShape(const bricks::Index3& samples)
 {
   return std::to_string(samples.x) + " x " + std::to_string(samples.y) + " x " +
     std::to_string(samples.z);
@@ -224,11 +224,11 @@ void CheckSizes(const std::string& path, const FileArray& array, std::size_t sli
 {
   const auto refuse = [&](const std::string& what)
   { throw dsm::Error("'" + path + "' has an invalid header: it declares " + what + "."); };
-  const auto isRight = [&](const rt::Index3& samples)
+  const auto isRight = [&](const bricks::Index3& samples)
   {
-    const rt::Index3 most(static_cast<std::int64_t>(FileLimits::Samples));
+    const bricks::Index3 most(static_cast<std::int64_t>(FileLimits::Samples));
     const glm::u64vec3 sides(samples);
-    return glm::all(glm::greaterThan(samples, rt::Index3(0))) &&
+    return glm::all(glm::greaterThan(samples, bricks::Index3(0))) &&
       glm::all(glm::lessThanEqual(samples, most)) &&
       MultiplyWithin(
         FileLimits::ArrayBytes, { sides.x, sides.y, sides.z, array.GetSampleBytes(), slices });

@@ -2,7 +2,7 @@
 #ifndef vol_VolumeFile_h
 #define vol_VolumeFile_h
 
-#include "DSMRayTracing/base/ScalarType.h"
+#include "DSMBricks/base/ScalarType.h"
 #include "DSMVolumeFiles/base/ChunkGrid.h"
 
 #include <cstddef>
@@ -19,7 +19,7 @@ namespace vol
 struct FileArray
 {
   std::string Name;
-  rt::ScalarType Type = rt::ScalarType::UInt8;
+  bricks::ScalarType Type = bricks::ScalarType::UInt8;
   int Components = 1;
   bool OnCells = false;  ///< else on the points
   bool IsActive = false; ///< the points' scalars, where the file says so
@@ -27,12 +27,12 @@ struct FileArray
 
   std::size_t GetSampleBytes() const
   {
-    return rt::GetBytes(this->Type) * static_cast<std::size_t>(this->Components);
+    return bricks::GetBytes(this->Type) * static_cast<std::size_t>(this->Components);
   }
 };
 
 /// For messages: along x, y and z.
-std::string DescribeShape(const rt::Index3& samples);
+std::string DescribeShape(const bricks::Index3& samples);
 
 /// Throws dsm::Error, which names the file, where an array or its chunks have no samples, or more than FileLimits has, or
 /// a name that is too long: a header may declare anything. To be called before anything is computed with its sizes.
@@ -45,8 +45,8 @@ struct FileGeometry
   double Origin[3] = { 0.0, 0.0, 0.0 };
   double Spacing[3] = { 1.0, 1.0, 1.0 };
   double Direction[9] = { 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0 };
-  rt::Index3 First{ 0 };  ///< index of the first point
-  rt::Index3 Points{ 0 }; ///< points along each axis
+  bricks::Index3 First{ 0 };  ///< index of the first point
+  bricks::Index3 Points{ 0 }; ///< points along each axis
 };
 
 /// Throws dsm::Error, which names the file, where a number is not finite, or where the directions of the axes lie in one
@@ -97,26 +97,30 @@ public:
   /// sample together, in the machine's byte order. Throws dsm::Error, which names file and chunk, when they
   /// cannot be read, or are not what the file's checksums and lengths tell.
   virtual void ReadChunk(
-    std::size_t array, int step, const rt::Index3& chunk, std::byte* out) const = 0;
+    std::size_t array, int step, const bricks::Index3& chunk, std::byte* out) const = 0;
 
   /// What it has in memory, as long as it is open, of where chunks are.
   virtual std::uint64_t GetTableBytes() const { return 0; }
 
   /// The samples of a part of a chunk, likewise, where no more than these need be read for them; else false, and
   /// nothing is read.
-  virtual bool ReadPart(std::size_t, int, const rt::Index3&, const rt::Box&, std::byte*) const
+  virtual bool ReadPart(
+    std::size_t, int, const bricks::Index3&, const bricks::Box&, std::byte*) const
   {
     return false;
   }
 
   /// The samples of ChunkGrid::GetBoxWithHalo, likewise, where the file has them together, as that of a brick file
   /// with Zstandard; else false.
-  virtual bool ReadWithHalo(std::size_t, int, const rt::Index3&, std::byte*) const { return false; }
+  virtual bool ReadWithHalo(std::size_t, int, const bricks::Index3&, std::byte*) const
+  {
+    return false;
+  }
 
   struct ChunkPart
   {
-    rt::Index3 Chunk;
-    rt::Box Samples;
+    bricks::Index3 Chunk;
+    bricks::Box Samples;
   };
   /// Parts of chunks will probably be read soon: the system may fetch them to its own cache meanwhile, or all of a
   /// chunk where a part cannot be read alone. Throws dsm::Error.
@@ -129,7 +133,7 @@ public:
     /// For each component, and, where there are several, for the magnitude: least and greatest value, and the
     /// same of finite ones.
     std::vector<double> Ranges;
-    /// rt::VoxelIndex as it is kept, of a lattice with this edge.
+    /// bricks::VoxelIndex as it is kept, of a lattice with this edge.
     std::vector<std::byte> Bricks;
     int BrickEdge = 0;
   };
@@ -165,8 +169,8 @@ struct OpenOptions
   /// Of a file of bare values (.raw).
   struct Raw
   {
-    rt::Index3 Samples{ 0 };
-    rt::ScalarType Type = rt::ScalarType::UInt8;
+    bricks::Index3 Samples{ 0 };
+    bricks::ScalarType Type = bricks::ScalarType::UInt8;
     int Components = 1;
     bool BigEndian = false;
     std::uint64_t HeaderBytes = 0;

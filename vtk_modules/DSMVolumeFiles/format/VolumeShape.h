@@ -2,7 +2,7 @@
 #ifndef vol_VolumeShape_h
 #define vol_VolumeShape_h
 
-#include "DSMRayTracing/base/Box.h"
+#include "DSMBricks/base/Box.h"
 #include "DSMVolumeFiles/base/FileLimits.h"
 
 #include <glm/ext/vector_uint3_sized.hpp>
@@ -15,7 +15,7 @@ namespace vol
 /// Of several arrays beside one another, those of the largest shape are one volume.
 struct VolumeShape
 {
-  rt::Index3 Samples{ 0 };
+  bricks::Index3 Samples{ 0 };
   std::int64_t Times = 0; ///< along an axis of time; 0: it has none
 
   /// More samples, or as many with more times.
@@ -24,7 +24,7 @@ struct VolumeShape
     // A file may declare more samples than a 64-bit number counts.
     const auto count = [](const VolumeShape& shape)
     {
-      const glm::u64vec3 sides(glm::max(shape.Samples, rt::Index3(0)));
+      const glm::u64vec3 sides(glm::max(shape.Samples, bricks::Index3(0)));
       return MultiplyWithin(~std::uint64_t(0), { sides.x, sides.y, sides.z })
         .value_or(~std::uint64_t(0));
     };

@@ -102,9 +102,9 @@ std::size_t ZarrAxes::FindInSpace(std::size_t count, int axis) const
   return this->FromX ? end - InSpace + place : end - 1 - place;
 }
 
-rt::Index3 ZarrAxes::GetSpace(const std::vector<std::int64_t>& shape) const
+bricks::Index3 ZarrAxes::GetSpace(const std::vector<std::int64_t>& shape) const
 {
-  rt::Index3 space;
+  bricks::Index3 space;
   for (int axis = 0; axis < 3; ++axis)
   {
     space[axis] = shape[this->FindInSpace(shape.size(), axis)];

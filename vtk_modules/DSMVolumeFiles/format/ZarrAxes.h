@@ -2,7 +2,7 @@
 #ifndef vol_ZarrAxes_h
 #define vol_ZarrAxes_h
 
-#include "DSMRayTracing/base/Box.h"
+#include "DSMBricks/base/Box.h"
 
 #include <nlohmann/json.hpp>
 
@@ -34,7 +34,7 @@ struct ZarrAxes
   /// Which one of an array, or of its transformation, of so many axes is x, y or z.
   std::size_t FindInSpace(std::size_t count, int axis) const;
   /// Of the shape of an array, or of its chunks.
-  rt::Index3 GetSpace(const std::vector<std::int64_t>& shape) const;
+  bricks::Index3 GetSpace(const std::vector<std::int64_t>& shape) const;
   /// Likewise; 1 where no axis has them.
   std::int64_t GetComponents(const std::vector<std::int64_t>& shape) const
   {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "DSMVolumeFiles/format/ZarrFile.h"
 
+#include "DSMBricks/base/ByteHash.h"
 #include "DSMCore/base/Error.h"
-#include "DSMRayTracing/base/ByteHash.h"
 #include "DSMVolumeFiles/base/SmallFile.h"
 #include "DSMVolumeFiles/format/StoredFile.h"
 #include "DSMVolumeFiles/format/VolumeShape.h"
@@ -108,7 +108,7 @@ public:
 
 protected:
   std::optional<Place> FindChunk(
-    std::size_t array, int step, const rt::Index3& chunk) const override
+    std::size_t array, int step, const bricks::Index3& chunk) const override
   {
     const Source& source = this->Sources[array];
     const ZarrMetadata& data = *source.Data;
@@ -151,7 +151,7 @@ private:
   /// names, and where the samples are.
   std::uint64_t MakeStamp() const
   {
-    rt::ByteHash hash;
+    bricks::ByteHash hash;
     hash.Add(&this->Geometry, sizeof(this->Geometry));
     for (std::size_t array = 0; array < this->Sources.size(); ++array)
     {
@@ -349,7 +349,7 @@ private:
   static void CheckChunkBytes(
     const std::string& folder, const FileArray& array, const Storage& storage)
   {
-    if (storage.StoredSamples != rt::Index3(0) ||
+    if (storage.StoredSamples != bricks::Index3(0) ||
       (storage.Codec.KeepsPlaces() && !storage.IsReversed))
     {
       return;

@@ -35,9 +35,9 @@ using ZarrJson::Refuse;
 }
 
 /// Version 2: "<f4". Returns whether the bytes are the other way round than the machine's.
-bool ParseType2(const std::string& folder, const std::string& text, rt::ScalarType& type)
+bool ParseType2(const std::string& folder, const std::string& text, bricks::ScalarType& type)
 {
-  using Type = rt::ScalarType;
+  using Type = bricks::ScalarType;
   static const std::map<std::string, Type> types = { { "i1", Type::Int8 }, { "u1", Type::UInt8 },
     { "b1", Type::UInt8 }, { "i2", Type::Int16 }, { "u2", Type::UInt16 }, { "i4", Type::Int32 },
     { "u4", Type::UInt32 }, { "i8", Type::Int64 }, { "u8", Type::UInt64 }, { "f4", Type::Float32 },
@@ -48,12 +48,12 @@ bool ParseType2(const std::string& folder, const std::string& text, rt::ScalarTy
     RefuseType(folder, text);
   }
   type = known->second;
-  return text[0] == '>' && rt::GetBytes(type) > 1;
+  return text[0] == '>' && bricks::GetBytes(type) > 1;
 }
 
-void ParseType3(const std::string& folder, const std::string& text, rt::ScalarType& type)
+void ParseType3(const std::string& folder, const std::string& text, bricks::ScalarType& type)
 {
-  using Type = rt::ScalarType;
+  using Type = bricks::ScalarType;
   static const std::map<std::string, Type> types = { { "int8", Type::Int8 },
     { "uint8", Type::UInt8 }, { "bool", Type::UInt8 }, { "int16", Type::Int16 },
     { "uint16", Type::UInt16 }, { "int32", Type::Int32 }, { "uint32", Type::UInt32 },
@@ -131,9 +131,10 @@ std::optional<T> ToValue(const Json& number)
   }
 }
 
-std::vector<std::byte> ParseFill(const std::string& folder, const Json& value, rt::ScalarType type)
+std::vector<std::byte> ParseFill(
+  const std::string& folder, const Json& value, bricks::ScalarType type)
 {
-  return rt::Dispatch(type,
+  return bricks::Dispatch(type,
     [&](auto zero)
     {
       using T = decltype(zero);
@@ -260,7 +261,7 @@ ZarrMetadata ParseVersion2(const std::string& folder, const Json& json)
   }
   if (ParseType2(folder, ZarrJson::GetText(folder, json, "dtype"), data.Type))
   {
-    steps.push_back({ Kind::SwapBytes, rt::GetBytes(data.Type) });
+    steps.push_back({ Kind::SwapBytes, bricks::GetBytes(data.Type) });
   }
   data.Fill = ParseFill(folder, ZarrJson::Find(json, "fill_value"), data.Type);
   const Json& filters = ZarrJson::Find(json, "filters");
@@ -440,7 +441,8 @@ ZarrMetadata ParseVersion3(const std::string& folder, const Json& json)
     codecs = &ZarrJson::Find(configuration, "codecs");
   }
   data.Codec = MakeCodec(folder,
-    ParseCodecs3(folder, *codecs, rt::GetBytes(data.Type), data.Shape.size(), data.FortranOrder));
+    ParseCodecs3(
+      folder, *codecs, bricks::GetBytes(data.Type), data.Shape.size(), data.FortranOrder));
   return data;
 }
 

@@ -2,7 +2,7 @@
 #ifndef vol_ZarrMetadata_h
 #define vol_ZarrMetadata_h
 
-#include "DSMRayTracing/base/ScalarType.h"
+#include "DSMBricks/base/ScalarType.h"
 #include "DSMVolumeFiles/codec/ChunkCodec.h"
 
 #include <nlohmann/json.hpp>
@@ -30,7 +30,7 @@ struct ZarrMetadata
   std::vector<std::int64_t> Shape; ///< the slowest axis first
   std::vector<std::int64_t> ChunkShape;
   nlohmann::json Axes; ///< their names, where these are told
-  rt::ScalarType Type = rt::ScalarType::UInt8;
+  bricks::ScalarType Type = bricks::ScalarType::UInt8;
   std::vector<std::byte> Fill; ///< one value
   ChunkCodec Codec;
   bool FortranOrder = false; ///< within a chunk the first axis is the fastest

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "DSMVolumeFiles/range/KeptFile.h"
 
+#include "DSMBricks/base/ByteHash.h"
 #include "DSMCore/base/Error.h"
-#include "DSMRayTracing/base/ByteHash.h"
 #include "DSMVolumeFiles/base/DurableFile.h"
 #include "DSMVolumeFiles/base/SmallFile.h"
 
@@ -57,10 +57,10 @@ std::filesystem::path GetBeginning(
   const VolumeFile::StepOrigin origin = file.GetOrigin(step);
   const std::string path = std::filesystem::absolute(origin.Path, failure).string();
   const FileArray& kept = file.GetArrays()[array];
-  const rt::Index3& samples = kept.Grid.Samples; // another level of detail has fewer
+  const bricks::Index3& samples = kept.Grid.Samples; // another level of detail has fewer
   const std::int64_t numbers[] = { static_cast<std::int64_t>(origin.Stamp),
     static_cast<std::int64_t>(array), origin.Step, samples.x, samples.y, samples.z };
-  rt::ByteHash hash;
+  bricks::ByteHash hash;
   hash.Add(path.data(), path.size());
   hash.Add(kept.Name.data(), kept.Name.size());
   hash.Add(kind.data(), kind.size());
@@ -69,10 +69,10 @@ std::filesystem::path GetBeginning(
 }
 
 /// The box's six numbers, with nothing behind them.
-std::string Write(const rt::Box& box)
+std::string Write(const bricks::Box& box)
 {
   std::string text;
-  for (const rt::Index3& corner : { box.Min, box.Max })
+  for (const bricks::Index3& corner : { box.Min, box.Max })
   {
     for (int axis = 0; axis < 3; ++axis)
     {
@@ -83,12 +83,12 @@ std::string Write(const rt::Box& box)
 }
 
 /// Parses the end of a file name. Returns nothing unless it is a box within `whole`.
-std::optional<rt::Box> ReadBox(const std::string& text, const rt::Box& whole)
+std::optional<bricks::Box> ReadBox(const std::string& text, const bricks::Box& whole)
 {
-  rt::Box box;
+  bricks::Box box;
   const char* at = text.data();
   const char* const end = at + text.size();
-  for (rt::Index3* corner : { &box.Min, &box.Max })
+  for (bricks::Index3* corner : { &box.Min, &box.Max })
   {
     for (int axis = 0; axis < 3; ++axis)
     {
@@ -96,14 +96,14 @@ std::optional<rt::Box> ReadBox(const std::string& text, const rt::Box& whole)
       at += at != end && *at == '_' ? 1 : 0;
     }
   }
-  const bool isInside = Write(rt::Intersect(box, whole)) == text;
-  return isInside && !box.IsEmpty() ? std::optional<rt::Box>(box) : std::nullopt;
+  const bool isInside = Write(bricks::Intersect(box, whole)) == text;
+  return isInside && !box.IsEmpty() ? std::optional<bricks::Box>(box) : std::nullopt;
 }
 
 } // namespace
 
-KeptFile::KeptFile(
-  const VolumeFile& file, std::size_t array, int step, const rt::Box& box, const std::string& kind)
+KeptFile::KeptFile(const VolumeFile& file, std::size_t array, int step, const bricks::Box& box,
+  const std::string& kind)
   : Path(GetBeginning(file, array, step, kind).string())
 {
   if (!this->Path.empty())
@@ -112,13 +112,13 @@ KeptFile::KeptFile(
   }
 }
 
-std::vector<rt::Box> KeptFile::FindBoxes(
+std::vector<bricks::Box> KeptFile::FindBoxes(
   const VolumeFile& file, std::size_t array, int step, const std::string& kind)
 {
-  std::vector<rt::Box> boxes;
+  std::vector<bricks::Box> boxes;
   const std::filesystem::path beginning = GetBeginning(file, array, step, kind);
   const std::string name = beginning.filename().string();
-  const rt::Box whole{ rt::Index3(0), file.GetArrays()[array].Grid.Samples };
+  const bricks::Box whole{ bricks::Index3(0), file.GetArrays()[array].Grid.Samples };
   std::error_code failure; // such as no folder
   for (auto entry = std::filesystem::directory_iterator(beginning.parent_path(), failure);
        !failure && entry != std::filesystem::directory_iterator(); entry.increment(failure))
@@ -126,7 +126,7 @@ std::vector<rt::Box> KeptFile::FindBoxes(
     const std::string kept = entry->path().filename().string();
     if (kept.compare(0, name.size(), name) == 0)
     {
-      if (const std::optional<rt::Box> box = ReadBox(kept.substr(name.size()), whole))
+      if (const std::optional<bricks::Box> box = ReadBox(kept.substr(name.size()), whole))
       {
         boxes.push_back(*box);
       }
@@ -139,7 +139,7 @@ KeptFile::Header KeptFile::MakeHeader(const std::byte* bytes, std::size_t count)
 {
   constexpr std::uint64_t magic = 0x315450454b4d5344u; // "DSMKEPT1"
   const std::string name = std::filesystem::path(this->Path).filename().string();
-  rt::ByteHash hash;
+  bricks::ByteHash hash;
   hash.Add(name.data(), name.size());
   hash.Add(bytes, count);
   return { magic, count, hash.Get() };

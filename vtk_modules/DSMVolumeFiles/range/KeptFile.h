@@ -18,11 +18,11 @@ class KeptFile
 {
 public:
   /// `kind` says what is kept, and in which layout: it names no other.
-  KeptFile(const VolumeFile& file, std::size_t array, int step, const rt::Box& box,
+  KeptFile(const VolumeFile& file, std::size_t array, int step, const bricks::Box& box,
     const std::string& kind);
 
   /// The boxes within the array for which something of this kind is kept, in no order. Throws std::bad_alloc.
-  static std::vector<rt::Box> FindBoxes(
+  static std::vector<bricks::Box> FindBoxes(
     const VolumeFile& file, std::size_t array, int step, const std::string& kind);
 
   /// Returns the `count` bytes that Keep stored, or nothing where there is no such file or its checksum differs. Throws

@@ -2,7 +2,7 @@
 #ifndef vol_LookThrough_h
 #define vol_LookThrough_h
 
-#include "DSMRayTracing/build/BrickLooker.h"
+#include "DSMBricks/build/BrickLooker.h"
 #include "DSMVolumeFiles/range/ValueRanges.h"
 
 #include <cstddef>
@@ -16,8 +16,8 @@ namespace vol
 
 /// Bricks in the order in which the chunks that they lie in are best read through the shared cache. `bricks`: which, on
 /// the lattice of bricks; `first`: the sample of the array at the lattice's first point.
-std::vector<dsm::BlockId> OrderBricks(const rt::BrickLattice& lattice, const rt::Box& bricks,
-  const FileArray& array, const rt::Index3& first);
+std::vector<dsm::BlockId> OrderBricks(const bricks::BrickLattice& lattice,
+  const bricks::Box& bricks, const FileArray& array, const bricks::Index3& first);
 
 /// Whether the bricks that an array is drawn with can be looked at in the same reading as its ranges are found: they
 /// have samples in common with their neighbours, so the shared cache has to hold the chunks of many.
@@ -28,12 +28,12 @@ struct Look
 {
   ValueRanges Ranges; ///< of the samples of the box
   /// The bricks, of all of the array, of which the first cell is among the box's cells.
-  rt::SeenBricks Bricks;
+  bricks::SeenBricks Bricks;
 };
 
 /// As FindRanges, of an array that CanLookAtBricks; local.
 std::optional<Look> LookThrough(const std::shared_ptr<const VolumeFile>& file, std::size_t array,
-  int step, const rt::Box& box, int threads, const std::function<bool(double)>& goesOn);
+  int step, const bricks::Box& box, int threads, const std::function<bool(double)>& goesOn);
 
 } // namespace vol
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "DSMVolumeFiles/range/ValueRanges.h"
 
-#include "DSMRayTracing/base/ParallelFor.h"
-#include "DSMRayTracing/layout/LaneRanges.h"
+#include "DSMBricks/base/ParallelFor.h"
+#include "DSMBricks/layout/LaneRanges.h"
 #include "DSMVolumeFiles/base/ByteBuffer.h"
 #include "DSMVolumeFiles/base/FileLimits.h"
 #include "DSMVolumeFiles/cache/ChunkCache.h"
@@ -49,9 +49,9 @@ bool FindFinite(const T* values, std::int64_t count, T& least, T& greatest)
   std::int64_t at = 0;
   for (; at + lanes <= count; at += lanes)
   {
-    rt::AddToLanes(values + at, lanes, low, high, check);
+    bricks::AddToLanes(values + at, lanes, low, high, check);
   }
-  rt::AddToLanes(values + at, static_cast<int>(count - at), low, high, check);
+  bricks::AddToLanes(values + at, static_cast<int>(count - at), low, high, check);
   least = *std::min_element(low, low + lanes);
   greatest = *std::max_element(high, high + lanes);
   return std::all_of(check, check + lanes, [](T one) { return one == T{ 0 }; });
@@ -95,12 +95,12 @@ public:
   Room(const FileArray& array, int threads)
     : Threads(std::max(1, threads))
   {
-    const rt::Index3 samples = glm::min(array.Grid.ChunkSamples, array.Grid.Samples);
+    const bricks::Index3 samples = glm::min(array.Grid.ChunkSamples, array.Grid.Samples);
     // A product that does not fit 64 bits exceeds the room, too.
     const std::uint64_t most = FileLimits::ArrayBytes / this->GetThreads();
     const std::size_t each = MultiplyWithin(most,
       { 2, array.GetSampleBytes(),
-        static_cast<std::uint64_t>(rt::Box{ rt::Index3(0), samples }.GetCount()) })
+        static_cast<std::uint64_t>(bricks::Box{ bricks::Index3(0), samples }.GetCount()) })
                                .value_or(most);
     bool isLent = false;
     while (
@@ -129,9 +129,9 @@ ValueRanges::ValueRanges(int components)
 {
 }
 
-bool ValueRanges::IsValid(rt::ScalarType type) const
+bool ValueRanges::IsValid(bricks::ScalarType type) const
 {
-  const auto [lowest, highest] = rt::Dispatch(type,
+  const auto [lowest, highest] = bricks::Dispatch(type,
     [](auto zero)
     {
       using T = decltype(zero);
@@ -171,14 +171,14 @@ void ValueRanges::Add(const ValueRanges& other)
   }
 }
 
-void ValueRanges::Add(
-  const FileArray& array, const std::byte* samples, const rt::Box& have, const rt::Box& want)
+void ValueRanges::Add(const FileArray& array, const std::byte* samples, const bricks::Box& have,
+  const bricks::Box& want)
 {
-  rt::Dispatch(array.Type,
+  bricks::Dispatch(array.Type,
     [&](auto zero)
     {
       const auto* values = reinterpret_cast<const decltype(zero)*>(samples);
-      const rt::Index3 size = have.GetSize();
+      const bricks::Index3 size = have.GetSize();
       if (want.Min == have.Min && want.Max == have.Max)
       {
         AddRow(*this, values, have.GetCount(), array.Components);
@@ -197,21 +197,21 @@ void ValueRanges::Add(
 }
 
 std::optional<ValueRanges> FindRanges(const std::shared_ptr<const VolumeFile>& file,
-  std::size_t number, int step, const rt::Box& box, int threads,
+  std::size_t number, int step, const bricks::Box& box, int threads,
   const std::function<bool(double)>& goesOn)
 {
   const FileArray& array = file->GetArrays()[number];
-  const rt::Index3 firstChunk = box.Min / array.Grid.ChunkSamples;
-  const rt::Index3 lastChunk =
-    (box.Max + array.Grid.ChunkSamples - rt::Index3(1)) / array.Grid.ChunkSamples;
-  const rt::Box chunks{ firstChunk, lastChunk };
-  const rt::Index3 counts = chunks.GetSize();
+  const bricks::Index3 firstChunk = box.Min / array.Grid.ChunkSamples;
+  const bricks::Index3 lastChunk =
+    (box.Max + array.Grid.ChunkSamples - bricks::Index3(1)) / array.Grid.ChunkSamples;
+  const bricks::Box chunks{ firstChunk, lastChunk };
+  const bricks::Index3 counts = chunks.GetSize();
   const Room room(array, threads);
   std::vector<ValueRanges> parts(room.GetThreads(), ValueRanges(array.Components));
   std::vector<ByteBuffer> buffers(parts.size());
   std::atomic<std::int64_t> done{ 0 };
   std::atomic<bool> stopped{ false };
-  rt::ParallelFor(static_cast<int>(parts.size()), static_cast<std::size_t>(chunks.GetCount()),
+  bricks::ParallelFor(static_cast<int>(parts.size()), static_cast<std::size_t>(chunks.GetCount()),
     [&](std::size_t index, int thread)
     {
       if (stopped)
@@ -219,14 +219,14 @@ std::optional<ValueRanges> FindRanges(const std::shared_ptr<const VolumeFile>& f
         return;
       }
       const auto at = static_cast<std::int64_t>(index);
-      const rt::Index3 chunk = firstChunk +
-        rt::Index3(at % counts.x, at / counts.x % counts.y, at / (counts.x * counts.y));
-      const rt::Box have = array.Grid.GetBox(chunk);
+      const bricks::Index3 chunk = firstChunk +
+        bricks::Index3(at % counts.x, at / counts.x % counts.y, at / (counts.x * counts.y));
+      const bricks::Box have = array.Grid.GetBox(chunk);
       ByteBuffer& samples = buffers[static_cast<std::size_t>(thread)];
       samples.resize(static_cast<std::size_t>(have.GetCount()) * array.GetSampleBytes());
       file->ReadChunk(number, step, chunk, samples.data());
       parts[static_cast<std::size_t>(thread)].Add(
-        array, samples.data(), have, rt::Intersect(have, box));
+        array, samples.data(), have, bricks::Intersect(have, box));
       ++done;
       if (thread == 0 &&
         !goesOn(static_cast<double>(done) / static_cast<double>(chunks.GetCount())))
@@ -269,7 +269,7 @@ std::optional<ValueRanges> ReadOwn(const VolumeFile& file, std::size_t array, in
 }
 
 std::optional<ValueRanges> LoadKept(
-  const VolumeFile& file, std::size_t array, int step, const rt::Box& box)
+  const VolumeFile& file, std::size_t array, int step, const bricks::Box& box)
 {
   ValueRanges ranges(file.GetArrays()[array].Components);
   const std::size_t list = ranges.All.size() * sizeof(ValueRange);
@@ -286,15 +286,15 @@ std::optional<ValueRanges> LoadKept(
 }
 
 /// What of `box` is outside of `other`, in boxes that share nothing.
-void AddOutside(rt::Box box, const rt::Box& other, std::vector<rt::Box>& out)
+void AddOutside(bricks::Box box, const bricks::Box& other, std::vector<bricks::Box>& out)
 {
   for (int axis = 0; axis < 3 && !box.IsEmpty(); ++axis)
   {
-    rt::Box below = box;
-    rt::Box above = box;
+    bricks::Box below = box;
+    bricks::Box above = box;
     below.Max[axis] = std::min(box.Max[axis], other.Min[axis]);
     above.Min[axis] = std::max(box.Min[axis], other.Max[axis]);
-    for (const rt::Box& beside : { below, above })
+    for (const bricks::Box& beside : { below, above })
     {
       if (!beside.IsEmpty())
       {
@@ -308,24 +308,25 @@ void AddOutside(rt::Box box, const rt::Box& other, std::vector<rt::Box>& out)
 
 /// Of kept boxes, the smallest first, that together have all of a box; nothing where they do not.
 std::optional<ValueRanges> LoadCovering(
-  const VolumeFile& file, std::size_t array, int step, const rt::Box& box)
+  const VolumeFile& file, std::size_t array, int step, const bricks::Box& box)
 {
-  std::vector<rt::Box> boxes = KeptFile::FindBoxes(file, array, step, Kind);
+  std::vector<bricks::Box> boxes = KeptFile::FindBoxes(file, array, step, Kind);
   std::sort(boxes.begin(), boxes.end(),
-    [](const rt::Box& a, const rt::Box& b) { return a.GetCount() < b.GetCount(); });
+    [](const bricks::Box& a, const bricks::Box& b) { return a.GetCount() < b.GetCount(); });
   ValueRanges ranges(file.GetArrays()[array].Components);
-  std::vector<rt::Box> left{ box };
-  for (const rt::Box& one : boxes)
+  std::vector<bricks::Box> left{ box };
+  for (const bricks::Box& one : boxes)
   {
-    const auto meets = [&](const rt::Box& part) { return !rt::Intersect(part, one).IsEmpty(); };
+    const auto meets = [&](const bricks::Box& part)
+    { return !bricks::Intersect(part, one).IsEmpty(); };
     const std::optional<ValueRanges> kept = std::any_of(left.begin(), left.end(), meets)
       ? LoadKept(file, array, step, one)
       : std::nullopt;
     if (kept)
     {
       ranges.Add(*kept);
-      std::vector<rt::Box> outside;
-      for (const rt::Box& part : left)
+      std::vector<bricks::Box> outside;
+      for (const bricks::Box& part : left)
       {
         AddOutside(part, one, outside);
       }
@@ -338,7 +339,7 @@ std::optional<ValueRanges> LoadCovering(
 } // namespace
 
 std::optional<ValueRanges> LoadRanges(
-  const VolumeFile& file, std::size_t array, int step, const rt::Box& box, bool isShare)
+  const VolumeFile& file, std::size_t array, int step, const bricks::Box& box, bool isShare)
 {
   std::optional<ValueRanges> ranges;
   if (isShare || file.GetArrays()[array].Grid.IsWhole(box))
@@ -356,7 +357,7 @@ std::optional<ValueRanges> LoadRanges(
   return ranges;
 }
 
-void KeepRanges(const VolumeFile& file, std::size_t array, int step, const rt::Box& box,
+void KeepRanges(const VolumeFile& file, std::size_t array, int step, const bricks::Box& box,
   const ValueRanges& ranges)
 {
   const std::size_t list = ranges.All.size() * sizeof(ValueRange);

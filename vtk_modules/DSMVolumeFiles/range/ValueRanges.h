@@ -43,17 +43,17 @@ struct ValueRanges
   explicit ValueRanges(int components);
   /// Whether samples of a type can have these ranges. Ranges that were copied out of a file must pass before they are
   /// used.
-  bool IsValid(rt::ScalarType type) const;
+  bool IsValid(bricks::ScalarType type) const;
   void Add(const ValueRanges& other);
   /// Of a dense array of the samples of `have`, those of `want`.
-  void Add(
-    const FileArray& array, const std::byte* samples, const rt::Box& have, const rt::Box& want);
+  void Add(const FileArray& array, const std::byte* samples, const bricks::Box& have,
+    const bricks::Box& want);
 };
 
 /// Reads all of a box of an array, with so many threads, or fewer where their chunks would not fit the shared cache. `goesOn(part)`, on the calling thread, is told how much is
 /// done; when it says no, nothing is returned. Throws dsm::Error when the file cannot be read.
 std::optional<ValueRanges> FindRanges(const std::shared_ptr<const VolumeFile>& file,
-  std::size_t array, int step, const rt::Box& box, int threads,
+  std::size_t array, int step, const bricks::Box& box, int threads,
   const std::function<bool(double)>& goesOn);
 
 /// Ranges that the file itself tells, which are those of all of the array, or that were found before, in the user's
@@ -62,8 +62,8 @@ std::optional<ValueRanges> FindRanges(const std::shared_ptr<const VolumeFile>& f
 /// more than the box, such as what was found with another number of ranks. Neither throws; what cannot be kept is found
 /// again.
 std::optional<ValueRanges> LoadRanges(
-  const VolumeFile& file, std::size_t array, int step, const rt::Box& box, bool isShare);
-void KeepRanges(const VolumeFile& file, std::size_t array, int step, const rt::Box& box,
+  const VolumeFile& file, std::size_t array, int step, const bricks::Box& box, bool isShare);
+void KeepRanges(const VolumeFile& file, std::size_t array, int step, const bricks::Box& box,
   const ValueRanges& ranges);
 
 } // namespace vol

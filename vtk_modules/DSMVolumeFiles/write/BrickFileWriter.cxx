@@ -29,7 +29,7 @@ constexpr unsigned IndexNodeEntries = 1024;
 /// What a level may take beyond its file, which has as many groups: the library aligns some of it.
 constexpr std::uint64_t RoomForGroups = 1 << 16;
 
-std::vector<hsize_t> GetShape(const rt::Index3& samples, int components)
+std::vector<hsize_t> GetShape(const bricks::Index3& samples, int components)
 {
   std::vector<hsize_t> shape{ static_cast<hsize_t>(samples.z), static_cast<hsize_t>(samples.y),
     static_cast<hsize_t>(samples.x) };
@@ -57,7 +57,7 @@ ChunkCodec BrickFileLayout::CreateCodec(std::size_t array) const
   std::vector<CodecStep> steps;
   if (this->Pressed != Compression::None)
   {
-    steps.push_back({ CodecStep::Kind::Shuffle, rt::GetBytes(this->Arrays[array].Type) });
+    steps.push_back({ CodecStep::Kind::Shuffle, bricks::GetBytes(this->Arrays[array].Type) });
     steps.push_back(
       { this->Pressed == Compression::Zstd ? CodecStep::Kind::Zstd : CodecStep::Kind::Deflate });
   }
@@ -192,7 +192,7 @@ private:
     errno = 0;
     for (const EncodedChunk& chunk : chunks)
     {
-      const rt::Index3 first =
+      const bricks::Index3 first =
         grid.GetChunk(target.Chunks + static_cast<std::int64_t>(table.size() / 2)) *
         grid.ChunkSamples;
       const hsize_t offset[4] = { static_cast<hsize_t>(first.z), static_cast<hsize_t>(first.y),

@@ -84,7 +84,7 @@ public:
 
   /// When all chunks are there: PATH.part may be opened until Finish. Throws dsm::Error.
   void Close();
-  /// After Close: adds what is known of the bricks of each array (rt::VoxelIndex as it is kept; empty: nothing) and
+  /// After Close: adds what is known of the bricks of each array (bricks::VoxelIndex as it is kept; empty: nothing) and
   /// the first coarser levels, which are brick files at PartFiles::GetLevel, and gives the file its name. Throws dsm::Error.
   void Finish(const std::vector<std::vector<std::byte>>& indices, int levels);
 

@@ -103,7 +103,7 @@ public:
   }
 
   /// Each rank gets such as lie beside one another.
-  std::vector<int> Deal(std::size_t array, const std::vector<rt::Box>& boxes) override
+  std::vector<int> Deal(std::size_t array, const std::vector<bricks::Box>& boxes) override
   {
     const auto count = static_cast<std::size_t>(this->Messenger.GetSize());
     std::vector<int> ranks(boxes.size());
@@ -115,7 +115,7 @@ public:
       "Reading large chunks of a file", [&] { this->Gather(array, boxes, ranks); });
     return ranks;
   }
-  void Read(std::size_t array, const rt::Box& box, std::byte* out) const override
+  void Read(std::size_t array, const bricks::Box& box, std::byte* out) const override
   {
     const auto gathered = this->Gathered.find(GetKey(box));
     if (gathered != this->Gathered.end())
@@ -128,20 +128,21 @@ public:
 
 private:
   using Key = std::array<std::int64_t, 3>;
-  static Key GetKey(const rt::Box& box) { return { box.Min.x, box.Min.y, box.Min.z }; }
+  static Key GetKey(const bricks::Box& box) { return { box.Min.x, box.Min.y, box.Min.z }; }
 
   /// Where the cache cannot hold the chunks that a box lies in, all boxes of this rank are read chunk by chunk.
-  void Gather(std::size_t array, const std::vector<rt::Box>& boxes, const std::vector<int>& ranks)
+  void Gather(
+    std::size_t array, const std::vector<bricks::Box>& boxes, const std::vector<int>& ranks)
   {
     this->Gathered.clear();
-    const rt::Index3 size = boxes.front().GetSize();
+    const bricks::Index3 size = boxes.front().GetSize();
     const std::size_t sampleBytes = this->Arrays[array].GetSampleBytes();
     if (ChunkCache::CountBytesTogether(this->Arrays[array], std::max({ size.x, size.y, size.z })) <=
       this->Cache.GetLimit())
     {
       return;
     }
-    std::vector<rt::Box> mine;
+    std::vector<bricks::Box> mine;
     std::vector<std::byte*> outs;
     for (std::size_t box = 0; box < boxes.size(); ++box)
     {

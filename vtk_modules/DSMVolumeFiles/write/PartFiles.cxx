@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "DSMVolumeFiles/write/PartFiles.h"
 
+#include "DSMBricks/base/ByteHash.h"
 #include "DSMCore/base/Error.h"
-#include "DSMRayTracing/base/ByteHash.h"
 #include "DSMVolumeFiles/base/FileLimits.h"
 
 #include <algorithm>
@@ -56,7 +56,7 @@ std::string PartFiles::GetPart(const std::string& path)
   {
     return path + ".part";
   }
-  rt::ByteHash hash;
+  bricks::ByteHash hash;
   hash.Add(path.data() + first, path.size() - first);
   return path.substr(0, first + ShortenedName) + "-" + std::to_string(hash.Get()) + ".part";
 }

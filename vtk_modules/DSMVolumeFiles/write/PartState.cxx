@@ -47,7 +47,7 @@ Json Describe(const BrickFileLayout& layout)
 {
   const auto list = [](const auto& numbers)
   { return Json(std::vector<double>(std::begin(numbers), std::end(numbers))); };
-  const auto index = [](const rt::Index3& numbers) {
+  const auto index = [](const bricks::Index3& numbers) {
     return Json{ numbers.x, numbers.y, numbers.z };
   };
   Json text{ { "origin", list(layout.Geometry.Origin) },

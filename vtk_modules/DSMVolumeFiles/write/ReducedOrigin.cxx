@@ -14,9 +14,9 @@ namespace
 
 constexpr std::int64_t LeastPoints = 3;
 
-rt::Index3 FindFactors(const rt::Index3& points)
+bricks::Index3 FindFactors(const bricks::Index3& points)
 {
-  rt::Index3 factors(1);
+  bricks::Index3 factors(1);
   for (int axis = 0; axis < 3; ++axis)
   {
     factors[axis] = points[axis] >= LeastPoints ? 2 : 1;
@@ -51,25 +51,25 @@ bool IsNumber(T value)
 
 /// The samples of `fineBox` and `box` are dense; both begin where the factors say.
 template <class T>
-void Average(const T* fine, const rt::Box& fineBox, const rt::Index3& factors, int components,
-  const rt::Box& box, T* out)
+void Average(const T* fine, const bricks::Box& fineBox, const bricks::Index3& factors,
+  int components, const bricks::Box& box, T* out)
 {
-  const rt::Index3 has = fineBox.GetSize();
-  const rt::Index3 size = box.GetSize();
-  rt::Index3 at;
+  const bricks::Index3 has = fineBox.GetSize();
+  const bricks::Index3 size = box.GetSize();
+  bricks::Index3 at;
   for (at.z = 0; at.z < size.z; ++at.z)
   {
     for (at.y = 0; at.y < size.y; ++at.y)
     {
       for (at.x = 0; at.x < size.x; ++at.x)
       {
-        const rt::Index3 first = at * factors;
-        const rt::Index3 last = glm::min(first + factors, has);
+        const bricks::Index3 first = at * factors;
+        const bricks::Index3 last = glm::min(first + factors, has);
         for (int component = 0; component < components; ++component)
         {
           Sum<T> sum = 0;
           int count = 0;
-          rt::Index3 from;
+          bricks::Index3 from;
           for (from.z = first.z; from.z < last.z; ++from.z)
           {
             for (from.y = first.y; from.y < last.y; ++from.y)
@@ -97,11 +97,11 @@ void Average(const T* fine, const rt::Box& fineBox, const rt::Index3& factors, i
 }
 
 /// Every sample that the factors say; `fineBox` begins with the first.
-void Pick(const std::byte* fine, const rt::Box& fineBox, const rt::Index3& factors,
-  std::size_t sampleBytes, const rt::Box& box, std::byte* out)
+void Pick(const std::byte* fine, const bricks::Box& fineBox, const bricks::Index3& factors,
+  std::size_t sampleBytes, const bricks::Box& box, std::byte* out)
 {
-  const rt::Index3 has = fineBox.GetSize();
-  const rt::Index3 size = box.GetSize();
+  const bricks::Index3 has = fineBox.GetSize();
+  const bricks::Index3 size = box.GetSize();
   for (std::int64_t z = 0; z < size.z; ++z)
   {
     for (std::int64_t y = 0; y < size.y; ++y)
@@ -143,9 +143,10 @@ ReducedOrigin::ReducedOrigin(
       this->Geometry.Origin[row] += fine.Direction[3 * row + axis] * shift[axis];
     }
   }
-  this->Geometry.First = rt::Index3(0);
-  this->Geometry.Points = (fine.Points + this->Factors - rt::Index3(1)) / this->Factors;
-  const rt::Index3 cells = glm::max(this->Geometry.Points - rt::Index3(1), rt::Index3(1));
+  this->Geometry.First = bricks::Index3(0);
+  this->Geometry.Points = (fine.Points + this->Factors - bricks::Index3(1)) / this->Factors;
+  const bricks::Index3 cells =
+    glm::max(this->Geometry.Points - bricks::Index3(1), bricks::Index3(1));
   for (FileArray& array : this->Arrays)
   {
     array.Grid.Samples = array.OnCells ? cells : this->Geometry.Points;
@@ -154,10 +155,10 @@ ReducedOrigin::ReducedOrigin(
 
 bool ReducedOrigin::CanReduce(const FileGeometry& geometry)
 {
-  return FindFactors(geometry.Points) != rt::Index3(1);
+  return FindFactors(geometry.Points) != bricks::Index3(1);
 }
 
-std::vector<int> ReducedOrigin::Deal(std::size_t, const std::vector<rt::Box>& boxes)
+std::vector<int> ReducedOrigin::Deal(std::size_t, const std::vector<bricks::Box>& boxes)
 {
   std::vector<int> ranks(boxes.size());
   for (std::size_t box = 0; box < boxes.size(); ++box)
@@ -167,23 +168,23 @@ std::vector<int> ReducedOrigin::Deal(std::size_t, const std::vector<rt::Box>& bo
   return ranks;
 }
 
-rt::Box ReducedOrigin::GetFineBox(std::size_t array, const rt::Box& box) const
+bricks::Box ReducedOrigin::GetFineBox(std::size_t array, const bricks::Box& box) const
 {
   if (!this->Arrays[array].OnCells)
   {
-    const rt::Index3 end = this->File->GetArrays()[array].Grid.Samples;
+    const bricks::Index3 end = this->File->GetArrays()[array].Grid.Samples;
     return { box.Min * this->Factors, glm::min(box.Max * this->Factors, end) };
   }
   // Of the file's cells, cell 2 i + 1 has its centre where cell i of this has it.
-  const rt::Index3 centre = this->Factors - rt::Index3(1);
+  const bricks::Index3 centre = this->Factors - bricks::Index3(1);
   return { box.Min * this->Factors + centre,
-    (box.Max - rt::Index3(1)) * this->Factors + centre + rt::Index3(1) };
+    (box.Max - bricks::Index3(1)) * this->Factors + centre + bricks::Index3(1) };
 }
 
-void ReducedOrigin::Read(std::size_t number, const rt::Box& box, std::byte* out) const
+void ReducedOrigin::Read(std::size_t number, const bricks::Box& box, std::byte* out) const
 {
   const FileArray& array = this->Arrays[number];
-  const rt::Box fineBox = this->GetFineBox(number, box);
+  const bricks::Box fineBox = this->GetFineBox(number, box);
   ByteBuffer fine(static_cast<std::size_t>(fineBox.GetCount()) * array.GetSampleBytes());
   this->Cache.ReadBox(this->File, number, 0, fineBox, fine.data());
   if (array.OnCells)
@@ -191,7 +192,7 @@ void ReducedOrigin::Read(std::size_t number, const rt::Box& box, std::byte* out)
     Pick(fine.data(), fineBox, this->Factors, array.GetSampleBytes(), box, out);
     return;
   }
-  rt::Dispatch(array.Type,
+  bricks::Dispatch(array.Type,
     [&](auto zero)
     {
       using T = decltype(zero);

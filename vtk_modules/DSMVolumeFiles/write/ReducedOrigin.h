@@ -32,16 +32,16 @@ public:
   const std::vector<FileArray>& GetArrays() const override { return this->Arrays; }
   std::string Describe() const override { return this->Source; }
   /// Each rank gets such as lie beside one another.
-  std::vector<int> Deal(std::size_t array, const std::vector<rt::Box>& boxes) override;
-  void Read(std::size_t array, const rt::Box& box, std::byte* out) const override;
+  std::vector<int> Deal(std::size_t array, const std::vector<bricks::Box>& boxes) override;
+  void Read(std::size_t array, const bricks::Box& box, std::byte* out) const override;
 
 private:
-  rt::Box GetFineBox(std::size_t array, const rt::Box& box) const;
+  bricks::Box GetFineBox(std::size_t array, const bricks::Box& box) const;
 
   std::shared_ptr<const VolumeFile> File;
   std::string Source;
   int Ranks;
-  rt::Index3 Factors; ///< along each axis, 2 or 1
+  bricks::Index3 Factors; ///< along each axis, 2 or 1
   FileGeometry Geometry;
   std::vector<FileArray> Arrays;
   mutable ChunkCache Cache;

@@ -26,10 +26,10 @@ public:
 
   /// Collective. The rank that each of these boxes of an array's samples is dealt to. Throws the same dsm::Error on
   /// every rank.
-  virtual std::vector<int> Deal(std::size_t array, const std::vector<rt::Box>& boxes) = 0;
+  virtual std::vector<int> Deal(std::size_t array, const std::vector<bricks::Box>& boxes) = 0;
   /// Any thread: the samples of one of the boxes that were dealt last, to this rank; dense, x fastest, the
   /// components of a sample together. Throws dsm::Error.
-  virtual void Read(std::size_t array, const rt::Box& box, std::byte* out) const = 0;
+  virtual void Read(std::size_t array, const bricks::Box& box, std::byte* out) const = 0;
 };
 
 } // namespace vol

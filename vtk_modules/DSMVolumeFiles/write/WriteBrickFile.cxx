@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "DSMVolumeFiles/write/WriteBrickFile.h"
 
+#include "DSMBricks/base/ParallelFor.h"
+#include "DSMBricks/build/VoxelBrickReader.h"
+#include "DSMBricks/build/VoxelIndex.h"
+#include "DSMBricks/layout/BrickLattice.h"
+#include "DSMBricks/layout/MacrocellBuilder.h"
+#include "DSMBricks/layout/VoxelBrickHeader.h"
 #include "DSMCore/base/Error.h"
-#include "DSMRayTracing/base/ParallelFor.h"
-#include "DSMRayTracing/build/VoxelBrickReader.h"
-#include "DSMRayTracing/build/VoxelIndex.h"
-#include "DSMRayTracing/layout/BrickLattice.h"
-#include "DSMRayTracing/layout/MacrocellBuilder.h"
-#include "DSMRayTracing/layout/VoxelBrickHeader.h"
 #include "DSMVolumeFiles/base/CopyBox.h"
 #include "DSMVolumeFiles/base/FileLimits.h"
 #include "DSMVolumeFiles/cache/FileSamples.h"
@@ -34,17 +34,17 @@ namespace
 /// The range that the renderer finds for a brick of these samples.
 template <class T>
 std::pair<float, float> FindBrickRange(
-  const rt::Index3& cells, rt::ScalarType type, const std::byte* samples)
+  const bricks::Index3& cells, bricks::ScalarType type, const std::byte* samples)
 {
-  const rt::VoxelBrickHeader header = rt::CreateVoxelBrickHeader(cells, type, false);
+  const bricks::VoxelBrickHeader header = bricks::CreateVoxelBrickHeader(cells, type, false);
   std::vector<std::uint64_t> block(header.BlockBytes / sizeof(std::uint64_t) + 1);
   auto* const bytes = reinterpret_cast<std::byte*>(block.data());
-  const rt::Index3 points = cells + rt::Index3(1);
+  const bricks::Index3 points = cells + bricks::Index3(1);
   std::memcpy(bytes, &header, sizeof(header));
   std::memcpy(bytes + header.SampleOffset, samples,
     static_cast<std::size_t>(points.x * points.y * points.z) * sizeof(T));
-  rt::BuildMacrocells<T>(bytes);
-  rt::VoxelBrickHeader built;
+  bricks::BuildMacrocells<T>(bytes);
+  bricks::VoxelBrickHeader built;
   std::memcpy(&built, bytes, sizeof(built));
   return { built.First, built.Last };
 }
@@ -68,31 +68,31 @@ public:
 
   /// The samples that a chunk is made of: those that the brick that begins here has, so the first ones of its
   /// neighbours, too.
-  rt::Box GetSource(std::int64_t chunk) const
+  bricks::Box GetSource(std::int64_t chunk) const
   {
     return this->Array.Grid.GetBoxWithHalo(this->Array.Grid.GetChunk(chunk));
   }
 
   NumberedChunk Make(std::int64_t chunk, ValueRanges& ranges) const
   {
-    const rt::Index3 place = this->Array.Grid.GetChunk(chunk);
-    const rt::Box own = this->Array.Grid.GetBox(place);
-    const rt::Box have = this->GetSource(chunk);
+    const bricks::Index3 place = this->Array.Grid.GetChunk(chunk);
+    const bricks::Box own = this->Array.Grid.GetBox(place);
+    const bricks::Box have = this->GetSource(chunk);
     const std::size_t sampleBytes = this->Array.GetSampleBytes();
     ByteBuffer samples(static_cast<std::size_t>(have.GetCount()) * sampleBytes);
     this->From.Read(this->Number, have, samples.data());
     ranges.Add(this->Array, samples.data(), have, own);
     EncodedChunk encoded;
-    const rt::Index3 cells = have.GetSize() - rt::Index3(1);
+    const bricks::Index3 cells = have.GetSize() - bricks::Index3(1);
     encoded.First = 1.0f; // of no cells
     if (this->Array.Components == 1 && cells.x > 0 && cells.y > 0 && cells.z > 0)
     {
-      std::tie(encoded.First, encoded.Last) = rt::Dispatch(this->Array.Type,
+      std::tie(encoded.First, encoded.Last) = bricks::Dispatch(this->Array.Type,
         [&](auto zero)
         { return FindBrickRange<decltype(zero)>(cells, this->Array.Type, samples.data()); });
     }
     // Chunks at the volume's ends are as large as all others.
-    const rt::Box whole{ own.Min, own.Min + this->Array.Grid.ChunkSamples };
+    const bricks::Box whole{ own.Min, own.Min + this->Array.Grid.ChunkSamples };
     ByteBuffer bytes(static_cast<std::size_t>(whole.GetCount()) * sampleBytes, std::byte{ 0 });
     CopyBox(own, samples.data(), have, bytes.data(), whole, sampleBytes);
     ByteBuffer halo;
@@ -100,7 +100,7 @@ public:
     {
       halo.resize(static_cast<std::size_t>(have.GetCount() - own.GetCount()) * sampleBytes);
       std::byte* to = halo.data();
-      for (const rt::Box& part : this->Array.Grid.GetHalo(place))
+      for (const bricks::Box& part : this->Array.Grid.GetHalo(place))
       {
         CopyBox(part, samples.data(), have, to, part, sampleBytes);
         to += static_cast<std::size_t>(part.GetCount()) * sampleBytes;
@@ -255,10 +255,10 @@ BrickFileLayout CreateLayout(const ValueOrigin& from, const WriteOptions& option
   layout.HasHaloRecords = options.HasHaloRecords;
   layout.BrickEdge = options.BrickEdge != 0
     ? options.BrickEdge
-    : rt::BrickLattice::GetDefaultEdge(from.GetArrays().front().Type);
-  if (layout.BrickEdge < 1 || layout.BrickEdge > rt::BrickLattice::LargestEdge)
+    : bricks::BrickLattice::GetDefaultEdge(from.GetArrays().front().Type);
+  if (layout.BrickEdge < 1 || layout.BrickEdge > bricks::BrickLattice::LargestEdge)
   {
-    throw dsm::Error("A brick has from 1 to " + std::to_string(rt::BrickLattice::LargestEdge) +
+    throw dsm::Error("A brick has from 1 to " + std::to_string(bricks::BrickLattice::LargestEdge) +
       " cells along an axis, and not " + std::to_string(layout.BrickEdge) + ".");
   }
   for (FileArray array : from.GetArrays())
@@ -273,7 +273,7 @@ BrickFileLayout CreateLayout(const ValueOrigin& from, const WriteOptions& option
       throw dsm::Error("The arrays '" + from.GetArrays()[before].Name + "' and '" + name +
         "' would both be called '" + array.Name + "'. Leave one out.");
     }
-    array.Grid.ChunkSamples = glm::min(rt::Index3(layout.BrickEdge), array.Grid.Samples);
+    array.Grid.ChunkSamples = glm::min(bricks::Index3(layout.BrickEdge), array.Grid.Samples);
     layout.Arrays.push_back(std::move(array));
   }
   return layout;
@@ -291,7 +291,7 @@ std::vector<std::vector<std::byte>> FindIndices(const std::string& path,
   std::shared_ptr<const VolumeFile> file;
   messenger.RunTogether(what, [&] { file = OpenHdf(path); });
   std::vector<std::vector<std::byte>> indices(layout.Arrays.size());
-  const rt::Index3& points = layout.Geometry.Points;
+  const bricks::Index3& points = layout.Geometry.Points;
   const bool hasCells = points.x > 1 && points.y > 1 && points.z > 1;
   for (std::size_t number = 0; number < indices.size(); ++number)
   {
@@ -300,9 +300,9 @@ std::vector<std::vector<std::byte>> FindIndices(const std::string& path,
     {
       continue;
     }
-    std::optional<rt::BrickLattice> lattice;
+    std::optional<bricks::BrickLattice> lattice;
     std::shared_ptr<const dsm::BlockReader> reader;
-    rt::VoxelIndex::Pass pass;
+    bricks::VoxelIndex::Pass pass;
     messenger.RunTogether(what,
       [&]
       {
@@ -314,14 +314,14 @@ std::vector<std::vector<std::byte>> FindIndices(const std::string& path,
           throw dsm::Error("'" + path + "' lacks the array '" + array.Name + "' that was written.");
         }
         lattice.emplace(points, array.Type, false, layout.BrickEdge);
-        reader = std::make_shared<rt::VoxelBrickReader>(*lattice,
+        reader = std::make_shared<bricks::VoxelBrickReader>(*lattice,
           std::make_shared<FileSamples>(
             file, static_cast<std::size_t>(found - arrays.begin()), 0, cache));
         pass.Order.resize(lattice->GetBrickCount());
         std::iota(pass.Order.begin(), pass.Order.end(), dsm::BlockId(0));
         pass.Threads = options.Threads;
       });
-    const rt::VoxelIndex index = rt::VoxelIndex::Find(messenger, *lattice, *reader, pass,
+    const bricks::VoxelIndex index = bricks::VoxelIndex::Find(messenger, *lattice, *reader, pass,
       [&](double part)
       {
         if (messenger.GetRank() == 0)
@@ -345,13 +345,13 @@ void WriteArray(ValueOrigin& from, const BrickFileLayout& layout, std::size_t ar
   messenger.RunTogether(what, [&] { maker.emplace(from, layout, array); });
   const std::int64_t count = made.Grid.GetCount();
   const auto chunkBytes = static_cast<std::size_t>(
-    rt::Box{ rt::Index3(0), made.Grid.ChunkSamples }.GetCount() * made.GetSampleBytes());
+    bricks::Box{ bricks::Index3(0), made.Grid.ChunkSamples }.GetCount() * made.GetSampleBytes());
   const std::int64_t share =
     std::max<std::int64_t>(1, static_cast<std::int64_t>(options.MemoryBytes / 8 / chunkBytes));
   while (done < count)
   {
     const std::int64_t last = std::min(count, done + share);
-    std::vector<rt::Box> boxes;
+    std::vector<bricks::Box> boxes;
     messenger.RunTogether(what,
       [&]
       {
@@ -375,7 +375,7 @@ void WriteArray(ValueOrigin& from, const BrickFileLayout& layout, std::size_t ar
         std::vector<NumberedChunk> chunks(mine.size());
         std::vector<ValueRanges> ranges(
           static_cast<std::size_t>(options.Threads), ValueRanges(made.Components));
-        rt::ParallelFor(options.Threads, mine.size(),
+        bricks::ParallelFor(options.Threads, mine.size(),
           [&](std::size_t index, int thread)
           { chunks[index] = maker->Make(mine[index], ranges[static_cast<std::size_t>(thread)]); });
         for (const ValueRanges& part : ranges)
@@ -423,7 +423,7 @@ int WriteLevels(const std::string& path, const BrickFileLayout& layout, const st
       [&]
       {
         const auto file = OpenHdf(last);
-        const rt::Index3& points = file->GetGeometry().Points;
+        const bricks::Index3& points = file->GetGeometry().Points;
         isLast = std::max({ points.x, points.y, points.z }) <= layout.BrickEdge + 1 ||
           !ReducedOrigin::CanReduce(file->GetGeometry());
         isThere = messenger.GetRank() == 0 && std::filesystem::exists(next);

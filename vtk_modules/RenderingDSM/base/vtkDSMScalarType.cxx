@@ -3,23 +3,23 @@
 
 #include "vtkDataArray.h"
 
-rt::ScalarType vtkDSMScalarType::FromArray(vtkDataArray* array)
+bricks::ScalarType vtkDSMScalarType::FromArray(vtkDataArray* array)
 {
   const int type = array->GetDataType();
   if (type == VTK_FLOAT || type == VTK_DOUBLE)
   {
-    return type == VTK_FLOAT ? rt::ScalarType::Float32 : rt::ScalarType::Float64;
+    return type == VTK_FLOAT ? bricks::ScalarType::Float32 : bricks::ScalarType::Float64;
   }
   const bool isSigned = array->GetDataTypeMin() < 0.0;
   switch (array->GetDataTypeSize())
   {
     case 1:
-      return isSigned ? rt::ScalarType::Int8 : rt::ScalarType::UInt8;
+      return isSigned ? bricks::ScalarType::Int8 : bricks::ScalarType::UInt8;
     case 2:
-      return isSigned ? rt::ScalarType::Int16 : rt::ScalarType::UInt16;
+      return isSigned ? bricks::ScalarType::Int16 : bricks::ScalarType::UInt16;
     case 4:
-      return isSigned ? rt::ScalarType::Int32 : rt::ScalarType::UInt32;
+      return isSigned ? bricks::ScalarType::Int32 : bricks::ScalarType::UInt32;
     default:
-      return isSigned ? rt::ScalarType::Int64 : rt::ScalarType::UInt64;
+      return isSigned ? bricks::ScalarType::Int64 : bricks::ScalarType::UInt64;
   }
 }

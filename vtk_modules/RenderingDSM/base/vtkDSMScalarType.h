@@ -2,7 +2,7 @@
 #ifndef vtkDSMScalarType_h
 #define vtkDSMScalarType_h
 
-#include "DSMRayTracing/base/ScalarType.h"
+#include "DSMBricks/base/ScalarType.h"
 
 class vtkDataArray;
 
@@ -10,7 +10,7 @@ class vtkDataArray;
 namespace vtkDSMScalarType
 {
 /// By size, sign and kind, so that long, long long and vtkIdType need no cases.
-rt::ScalarType FromArray(vtkDataArray* array);
+bricks::ScalarType FromArray(vtkDataArray* array);
 }
 
 #endif

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkDSMContent.h"
 
+#include "DSMBricks/base/ByteHash.h"
+#include "DSMBricks/base/ParallelFor.h"
 #include "DSMCore/base/InterleavedHash.h"
-#include "DSMRayTracing/base/ByteHash.h"
-#include "DSMRayTracing/base/ParallelFor.h"
 #include "vtkDSMFileArray.h"
 
 #include "vtkDataArray.h"
@@ -112,8 +112,8 @@ std::uint64_t HashChunk(const std::byte* data, std::size_t bytes)
 {
   std::array<std::uint64_t, 4> state{ 1, 2, 3, 4 };
   const std::size_t at = dsm::HashInterleaved(data, bytes, state,
-    [](std::uint64_t& lane, std::uint64_t word) { lane = rt::ByteHash::AddWord(lane, word); });
-  rt::ByteHash hash;
+    [](std::uint64_t& lane, std::uint64_t word) { lane = bricks::ByteHash::AddWord(lane, word); });
+  bricks::ByteHash hash;
   hash.Add(state.data(), sizeof(state));
   hash.Add(data + at, bytes - at);
   return hash.Get();
@@ -122,10 +122,10 @@ std::uint64_t HashChunk(const std::byte* data, std::size_t bytes)
 std::uint64_t HashBytes(const Bytes& bytes, int threads)
 {
   std::vector<std::uint64_t> chunks((bytes.Size + ChunkBytes - 1) / ChunkBytes);
-  rt::ParallelForChunks(threads, bytes.Size, ChunkBytes,
+  bricks::ParallelForChunks(threads, bytes.Size, ChunkBytes,
     [&](std::size_t begin, std::size_t end, std::size_t chunk, int)
     { chunks[chunk] = HashChunk(static_cast<const std::byte*>(bytes.Data) + begin, end - begin); });
-  rt::ByteHash hash;
+  bricks::ByteHash hash;
   hash.Add(chunks.data(), chunks.size() * sizeof(chunks[0]));
   return hash.Get();
 }
@@ -138,14 +138,14 @@ std::uint64_t HashCopies(vtkDataArray* array, int threads)
   const auto tuples = static_cast<std::size_t>(array->GetNumberOfTuples());
   const std::size_t step = std::max<std::size_t>(ChunkBytes / tupleBytes, 1);
   std::vector<std::uint64_t> chunks((tuples + step - 1) / step);
-  rt::ParallelForChunks(copier.Threads, tuples, step,
+  bricks::ParallelForChunks(copier.Threads, tuples, step,
     [&](std::size_t begin, std::size_t end, std::size_t chunk, int)
     {
       std::vector<std::byte> copy((end - begin) * tupleBytes);
       copier.Copy(static_cast<vtkIdType>(begin), static_cast<vtkIdType>(end - begin), copy.data());
       chunks[chunk] = HashChunk(copy.data(), copy.size());
     });
-  rt::ByteHash hash;
+  bricks::ByteHash hash;
   hash.Add(chunks.data(), chunks.size() * sizeof(chunks[0]));
   return hash.Get();
 }
@@ -170,7 +170,7 @@ std::uint64_t vtkDSMContent::Hash(vtkAbstractArray* array, int threads)
   }
   const std::array<std::int64_t, 3> shape{ array->GetDataType(), array->GetNumberOfComponents(),
     array->GetNumberOfTuples() };
-  rt::ByteHash hash;
+  bricks::ByteHash hash;
   hash.Add(shape.data(), sizeof(shape));
   Bytes bytes;
   const std::uint64_t values =

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkDSMFileVolume.h"
 
+#include "DSMBricks/base/ByteHash.h"
+#include "DSMBricks/layout/DealBricks.h"
 #include "DSMCore/base/Error.h"
 #include "DSMCore/memory/FreedMemory.h"
-#include "DSMRayTracing/base/ByteHash.h"
-#include "DSMRayTracing/layout/DealBricks.h"
 #include "DSMVolumeFiles/cache/ChunkCache.h"
 #include "DSMVolumeFiles/cache/FileBrickReader.h"
 #include "DSMVolumeFiles/range/LookThrough.h"
@@ -27,8 +27,8 @@
 namespace
 {
 
-using rt::Box;
-using rt::Index3;
+using bricks::Box;
+using bricks::Index3;
 
 /// Bricks of a time step; the same ones of the next step are read ahead.
 class SteppingReader final : public dsm::BlockReader
@@ -153,7 +153,7 @@ std::shared_ptr<const vol::VolumeFile> OpenAs(
   }
   std::memcpy(&opening, bytes.data(), sizeof(opening));
   options.Level = opening.Level;
-  options.Bare.Type = static_cast<rt::ScalarType>(opening.RawType);
+  options.Bare.Type = static_cast<bricks::ScalarType>(opening.RawType);
   options.Bare.Components = opening.RawComponents;
   options.Bare.BigEndian = opening.RawBigEndian != 0;
   options.Bare.HeaderBytes = opening.RawHeaderBytes;
@@ -243,7 +243,7 @@ std::unique_ptr<vtkDSMFileVolume> vtkDSMFileVolume::Find(dsm::Messenger& messeng
     const auto array = static_cast<std::size_t>(std::get<2>(place));
     const Box box{ first, first + lattice.Points };
     if (file->GetStamp() == std::get<3>(place) && array < file->GetArrays().size() &&
-      rt::Intersect(box, { Index3(0), file->GetArrays()[array].Grid.Samples }).GetCount() ==
+      bricks::Intersect(box, { Index3(0), file->GetArrays()[array].Grid.Samples }).GetCount() ==
         box.GetCount())
     {
       const int nextStep = seats[members.front().Piece].NextStep;
@@ -397,7 +397,7 @@ bool vtkDSMFileVolume::HasSteps() const
 }
 
 std::shared_ptr<const dsm::BlockReader> vtkDSMFileVolume::CreateReader(
-  const rt::BrickLattice& lattice, bool scattered) const
+  const bricks::BrickLattice& lattice, bool scattered) const
 {
   return std::make_shared<vol::FileBrickReader>(lattice,
     std::make_shared<vtkDSMFileVoxels>(
@@ -405,18 +405,18 @@ std::shared_ptr<const dsm::BlockReader> vtkDSMFileVolume::CreateReader(
     [values = this->Values](std::vector<Box> boxes) { values->Foresee(std::move(boxes)); });
 }
 
-std::uint64_t vtkDSMFileVolume::GetKey(const rt::BrickLattice& lattice) const
+std::uint64_t vtkDSMFileVolume::GetKey(const bricks::BrickLattice& lattice) const
 {
   const std::uint64_t numbers[] = { this->Values->GetStamp(),
     static_cast<std::uint64_t>(this->Component), static_cast<std::uint64_t>(lattice.GetEdge()),
     static_cast<std::uint64_t>(lattice.GetScalarType()) };
-  rt::ByteHash hash;
+  bricks::ByteHash hash;
   hash.Add(numbers, sizeof(numbers));
   return hash.Get();
 }
 
 std::shared_ptr<const dsm::BlockReader> vtkDSMFileVolume::CreateSteppingReader(
-  const rt::BrickLattice& lattice, std::shared_ptr<const Digests> digests) const
+  const bricks::BrickLattice& lattice, std::shared_ptr<const Digests> digests) const
 {
   vtkDSMReadAhead& ahead = vtkDSMReadAhead::GetShared();
   SteppingReader::Step next;
@@ -443,29 +443,29 @@ std::shared_ptr<const dsm::BlockReader> vtkDSMFileVolume::CreateSteppingReader(
 }
 
 std::vector<bool> vtkDSMFileVolume::FindChanges(
-  const rt::BrickLattice& lattice, const Digests& digests) const
+  const bricks::BrickLattice& lattice, const Digests& digests) const
 {
   const auto bricks = static_cast<std::size_t>(lattice.GetBrickCount());
-  std::optional<rt::VoxelIndex> index;
+  std::optional<bricks::VoxelIndex> index;
   try
   {
-    index = rt::VoxelIndex::Decode(this->LoadIndex(lattice), bricks);
+    index = bricks::VoxelIndex::Decode(this->LoadIndex(lattice), bricks);
   }
   catch (const dsm::Error&) // it is said when the step is shown
   {
     index.reset();
   }
-  return rt::VoxelIndex::Compare(index ? index->Digests : Digests(), digests, bricks);
+  return bricks::VoxelIndex::Compare(index ? index->Digests : Digests(), digests, bricks);
 }
 
 dsm::BlockDirectory vtkDSMFileVolume::CreateDirectory(
-  const rt::BrickLattice& lattice, int ranks) const
+  const bricks::BrickLattice& lattice, int ranks) const
 {
-  return lattice.CreateDirectory(rt::DealBricks(
+  return lattice.CreateDirectory(bricks::DealBricks(
     lattice, this->Values->GetArray().Grid.ChunkSamples, this->Values->GetBox().Min, ranks));
 }
 
-std::vector<std::byte> vtkDSMFileVolume::ReadIndex(const rt::BrickLattice& lattice) const
+std::vector<std::byte> vtkDSMFileVolume::ReadIndex(const bricks::BrickLattice& lattice) const
 {
   if (this->Values->GetArray().Components != 1 || !this->IsWhole())
   {
@@ -476,29 +476,29 @@ std::vector<std::byte> vtkDSMFileVolume::ReadIndex(const rt::BrickLattice& latti
   return index.BrickEdge == lattice.GetEdge() ? std::move(index.Bricks) : std::vector<std::byte>();
 }
 
-vol::KeptFile vtkDSMFileVolume::GetKept(const rt::BrickLattice& lattice) const
+vol::KeptFile vtkDSMFileVolume::GetKept(const bricks::BrickLattice& lattice) const
 {
   return { *this->Values->GetFile(), this->Values->GetArrayNumber(), this->Values->GetStep(),
     this->Values->GetBox(),
     "bricks3-" + std::to_string(lattice.GetEdge()) + "-" + std::to_string(this->Component) };
 }
 
-std::vector<std::byte> vtkDSMFileVolume::LoadIndex(const rt::BrickLattice& lattice) const
+std::vector<std::byte> vtkDSMFileVolume::LoadIndex(const bricks::BrickLattice& lattice) const
 {
   const auto bricks = static_cast<std::size_t>(lattice.GetBrickCount());
   std::vector<std::byte> bytes = this->ReadIndex(lattice);
   // If the file's own index is damaged, the one that replaces it is kept.
-  return rt::VoxelIndex::Decode(bytes, bricks)
+  return bricks::VoxelIndex::Decode(bytes, bricks)
     ? std::move(bytes)
-    : this->GetKept(lattice).Load(rt::VoxelIndex::CountBytes(bricks));
+    : this->GetKept(lattice).Load(bricks::VoxelIndex::CountBytes(bricks));
 }
 
-rt::VoxelIndex vtkDSMFileVolume::FindIndex(dsm::Messenger& messenger,
-  const rt::BrickLattice& lattice, const vtkDSMFileValues* own, int threads,
+bricks::VoxelIndex vtkDSMFileVolume::FindIndex(dsm::Messenger& messenger,
+  const bricks::BrickLattice& lattice, const vtkDSMFileValues* own, int threads,
   const std::function<void(double)>& progress) const
 {
   const char* const what = "Looking through the volume";
-  const std::optional<rt::SeenBricks> seen = own ? own->TakeSeen() : std::nullopt;
+  const std::optional<bricks::SeenBricks> seen = own ? own->TakeSeen() : std::nullopt;
   std::vector<std::byte> bytes;
   messenger.RunTogether(what,
     [&]
@@ -509,14 +509,14 @@ rt::VoxelIndex vtkDSMFileVolume::FindIndex(dsm::Messenger& messenger,
       }
     });
   bytes = messenger.Broadcast(std::move(bytes));
-  std::optional<rt::VoxelIndex> known;
+  std::optional<bricks::VoxelIndex> known;
   messenger.RunTogether(
-    what, [&] { known = rt::VoxelIndex::Decode(bytes, lattice.GetBrickCount()); });
+    what, [&] { known = bricks::VoxelIndex::Decode(bytes, lattice.GetBrickCount()); });
   if (known)
   {
     return std::move(*known);
   }
-  rt::VoxelIndex::Pass pass;
+  bricks::VoxelIndex::Pass pass;
   pass.Threads = threads;
   pass.Seen = seen ? &*seen : nullptr;
   std::shared_ptr<const dsm::BlockReader> reader;
@@ -524,10 +524,10 @@ rt::VoxelIndex vtkDSMFileVolume::FindIndex(dsm::Messenger& messenger,
     [&]
     {
       reader = this->CreateReader(lattice, false);
-      pass.Order = vol::OrderBricks(lattice, { rt::Index3(0), lattice.GetBricks() },
+      pass.Order = vol::OrderBricks(lattice, { bricks::Index3(0), lattice.GetBricks() },
         this->Values->GetArray(), this->Values->GetBox().Min);
     });
-  rt::VoxelIndex found = rt::VoxelIndex::Find(messenger, lattice, *reader, pass, progress);
+  bricks::VoxelIndex found = bricks::VoxelIndex::Find(messenger, lattice, *reader, pass, progress);
   dsm::FreedMemory::Return(); // of the threads that looked
   messenger.RunTogether(what,
     [&]

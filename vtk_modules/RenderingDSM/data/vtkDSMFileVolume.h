@@ -2,10 +2,10 @@
 #ifndef vtkDSMFileVolume_h
 #define vtkDSMFileVolume_h
 
-#include "DSMRayTracing/build/VoxelBrickReader.h"
-#include "DSMRayTracing/build/VoxelIndex.h"
-#include "DSMRayTracing/build/VoxelSource.h"
-#include "DSMRayTracing/layout/BrickLattice.h"
+#include "DSMBricks/build/VoxelBrickReader.h"
+#include "DSMBricks/build/VoxelIndex.h"
+#include "DSMBricks/build/VoxelSource.h"
+#include "DSMBricks/layout/BrickLattice.h"
 #include "DSMVolumeFiles/cache/ChunkCache.h"
 #include "DSMVolumeFiles/range/KeptFile.h"
 #include "vtkDSMFileValues.h"
@@ -57,7 +57,7 @@ public:
   /// or does not fill the same place.
   std::unique_ptr<vtkDSMFileVolume> FindCoarser(dsm::Messenger& messenger, int level) const;
   /// What the cache of chunks has to hold for a brick.
-  std::uint64_t CountChunkBytesOfBrick(const rt::BrickLattice& lattice) const
+  std::uint64_t CountChunkBytesOfBrick(const bricks::BrickLattice& lattice) const
   {
     return vol::ChunkCache::CountBytesTogether(this->Values->GetArray(), lattice.GetEdge() + 1);
   }
@@ -65,11 +65,12 @@ public:
   std::uint64_t CountBytes() const
   {
     const vol::FileArray& array = this->Values->GetArray();
-    return static_cast<std::uint64_t>(rt::Box{ rt::Index3(0), array.Grid.Samples }.GetCount()) *
+    return static_cast<std::uint64_t>(
+             bricks::Box{ bricks::Index3(0), array.Grid.Samples }.GetCount()) *
       array.GetSampleBytes();
   }
   /// Samples along each axis.
-  rt::Index3 GetPoints() const { return this->Values->GetBox().GetSize(); }
+  bricks::Index3 GetPoints() const { return this->Values->GetBox().GetSize(); }
   /// From indices of another level's samples to those of this one's.
   glm::dmat4 GetIndexOf(const vtkDSMFileVolume& other) const;
 
@@ -81,25 +82,25 @@ public:
   bool HasSteps() const;
 
   /// What these take of a rank's memory: those of a step, and of the next.
-  static std::uint64_t CountDigestBytes(const rt::BrickLattice& lattice)
+  static std::uint64_t CountDigestBytes(const bricks::BrickLattice& lattice)
   {
     return 2 * lattice.GetBrickCount() * sizeof(dsm::ByteDigest);
   }
 
   /// Bricks of the lattice; it has no cell mask. `scattered`: they are read as rays meet them, not all in turn.
   std::shared_ptr<const dsm::BlockReader> CreateReader(
-    const rt::BrickLattice& lattice, bool scattered) const;
+    const bricks::BrickLattice& lattice, bool scattered) const;
   /// The same as rays meet them. What is read or kept is read ahead of the next time step, too, but for bricks that
   /// have the same digests there; `digests` may be empty.
   std::shared_ptr<const dsm::BlockReader> CreateSteppingReader(
-    const rt::BrickLattice& lattice, std::shared_ptr<const Digests> digests) const;
+    const bricks::BrickLattice& lattice, std::shared_ptr<const Digests> digests) const;
 
   /// Of these bricks, of which each rank gets such as are cut out of the same chunks.
-  dsm::BlockDirectory CreateDirectory(const rt::BrickLattice& lattice, int ranks) const;
+  dsm::BlockDirectory CreateDirectory(const bricks::BrickLattice& lattice, int ranks) const;
 
   /// Collective: kept since an earlier time, or found by reading once what the ranks' own values, `own`, have not
   /// seen of the bricks, and kept. `threads` of this rank read; `progress` as of vtkDSMVolumeData::Publish.
-  rt::VoxelIndex FindIndex(dsm::Messenger& messenger, const rt::BrickLattice& lattice,
+  bricks::VoxelIndex FindIndex(dsm::Messenger& messenger, const bricks::BrickLattice& lattice,
     const vtkDSMFileValues* own, int threads, const std::function<void(double)>& progress) const;
 
 private:
@@ -118,14 +119,14 @@ private:
   glm::dmat4 GetIndexToWorld() const;
 
   /// Of the lattice's bricks, as the file itself has it (vol::VolumeFile::Index); else empty.
-  std::vector<std::byte> ReadIndex(const rt::BrickLattice& lattice) const;
-  vol::KeptFile GetKept(const rt::BrickLattice& lattice) const;
+  std::vector<std::byte> ReadIndex(const bricks::BrickLattice& lattice) const;
+  vol::KeptFile GetKept(const bricks::BrickLattice& lattice) const;
   /// That, or what was kept since an earlier time, or empty.
-  std::vector<std::byte> LoadIndex(const rt::BrickLattice& lattice) const;
+  std::vector<std::byte> LoadIndex(const bricks::BrickLattice& lattice) const;
   /// Local: which bricks are not known to have these digests. One of a step that cannot be read is no failure.
-  std::vector<bool> FindChanges(const rt::BrickLattice& lattice, const Digests& digests) const;
+  std::vector<bool> FindChanges(const bricks::BrickLattice& lattice, const Digests& digests) const;
   /// What is read ahead of this step has it.
-  std::uint64_t GetKey(const rt::BrickLattice& lattice) const;
+  std::uint64_t GetKey(const bricks::BrickLattice& lattice) const;
 
   std::shared_ptr<const vtkDSMFileValues> Values; ///< of all of the lattice
   int Component;                                  ///< vtkDSMImagePiece::Magnitude for the magnitude

@@ -47,7 +47,7 @@ void FindMagnitudes(const Native* from, const Samples& samples, Result* out)
 } // namespace
 
 vtkDSMFileVoxels::vtkDSMFileVoxels(std::shared_ptr<const vtkDSMFileValues> values, int component,
-  rt::ScalarType type, bool scattered)
+  bricks::ScalarType type, bool scattered)
   : Values(std::move(values))
   , Component(component)
   , Type(type)
@@ -55,12 +55,12 @@ vtkDSMFileVoxels::vtkDSMFileVoxels(std::shared_ptr<const vtkDSMFileValues> value
 {
 }
 
-rt::Box vtkDSMFileVoxels::GetCells() const
+bricks::Box vtkDSMFileVoxels::GetCells() const
 {
-  return { rt::Index3(0), this->Values->GetBox().GetSize() - rt::Index3(1) };
+  return { bricks::Index3(0), this->Values->GetBox().GetSize() - bricks::Index3(1) };
 }
 
-void vtkDSMFileVoxels::ReadSamples(const rt::Box& points, std::byte* out) const
+void vtkDSMFileVoxels::ReadSamples(const bricks::Box& points, std::byte* out) const
 {
   const vol::FileArray& array = this->Values->GetArray();
   if (array.Components == 1)
@@ -71,7 +71,7 @@ void vtkDSMFileVoxels::ReadSamples(const rt::Box& points, std::byte* out) const
   const Samples count{ points.GetCount(), array.Components };
   std::vector<std::byte> samples(static_cast<std::size_t>(count.Count) * array.GetSampleBytes());
   this->ReadBox(points, samples.data());
-  rt::Dispatch(array.Type,
+  bricks::Dispatch(array.Type,
     [&](auto zero)
     {
       using Native = decltype(zero);
@@ -80,7 +80,7 @@ void vtkDSMFileVoxels::ReadSamples(const rt::Box& points, std::byte* out) const
       {
         Pick(from, count, this->Component, reinterpret_cast<Native*>(out));
       }
-      else if (this->Type == rt::ScalarType::Float32)
+      else if (this->Type == bricks::ScalarType::Float32)
       {
         FindMagnitudes(from, count, reinterpret_cast<float*>(out));
       }
@@ -91,7 +91,7 @@ void vtkDSMFileVoxels::ReadSamples(const rt::Box& points, std::byte* out) const
     });
 }
 
-void vtkDSMFileVoxels::ReadBox(const rt::Box& points, std::byte* out) const
+void vtkDSMFileVoxels::ReadBox(const bricks::Box& points, std::byte* out) const
 {
   if (!this->Scattered)
   {

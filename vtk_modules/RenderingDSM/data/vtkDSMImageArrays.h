@@ -2,9 +2,9 @@
 #ifndef vtkDSMImageArrays_h
 #define vtkDSMImageArrays_h
 
+#include "DSMBricks/base/ScalarType.h"
 #include "DSMCore/base/Error.h"
 #include "DSMCore/transport/Messenger.h"
-#include "DSMRayTracing/base/ScalarType.h"
 
 #include "vtkSmartPointer.h"
 
@@ -49,7 +49,7 @@ public:
   struct Info
   {
     State Found = State::Missing;
-    rt::ScalarType Type = rt::ScalarType::Float32; ///< of the bricks that it would become
+    bricks::ScalarType Type = bricks::ScalarType::Float32; ///< of the bricks that it would become
     std::int32_t Components = 0;
 
     bool IsUsable() const { return this->Found == State::Usable; }

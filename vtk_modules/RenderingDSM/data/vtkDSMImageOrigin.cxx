@@ -26,12 +26,12 @@
 namespace
 {
 
-bool IsInside(const rt::Box& box, const rt::Box& whole)
+bool IsInside(const bricks::Box& box, const bricks::Box& whole)
 {
-  return rt::Intersect(box, whole).GetCount() == box.GetCount();
+  return bricks::Intersect(box, whole).GetCount() == box.GetCount();
 }
 
-std::vector<std::int64_t> GetKey(const rt::Box& box)
+std::vector<std::int64_t> GetKey(const bricks::Box& box)
 {
   return { box.Min.x, box.Min.y, box.Min.z };
 }
@@ -132,7 +132,7 @@ std::vector<vol::FileGeometry> vtkDSMImageOrigin::GatherPieces(vtkImageData* ima
     throw dsm::Error("There is nothing to write: the image has no points.");
   }
   this->Geometry = *first;
-  rt::Index3 end = this->Geometry.First + this->Geometry.Points;
+  bricks::Index3 end = this->Geometry.First + this->Geometry.Points;
   for (const vol::FileGeometry& piece : pieces)
   {
     if (isThere(piece))
@@ -144,14 +144,17 @@ std::vector<vol::FileGeometry> vtkDSMImageOrigin::GatherPieces(vtkImageData* ima
   this->Geometry.Points = end - this->Geometry.First;
   for (const vol::FileGeometry& piece : pieces)
   {
-    const rt::Index3 begin = piece.First - this->Geometry.First;
-    const rt::Index3& points = piece.Points;
-    this->PointsOfRanks.push_back(
-      isThere(piece) ? rt::Box{ begin, begin + points } : rt::Box{ rt::Index3(0), rt::Index3(0) });
+    const bricks::Index3 begin = piece.First - this->Geometry.First;
+    const bricks::Index3& points = piece.Points;
+    this->PointsOfRanks.push_back(isThere(piece)
+        ? bricks::Box{ begin, begin + points }
+        : bricks::Box{ bricks::Index3(0), bricks::Index3(0) });
     // Flat images have one cell across, as VTK counts them.
-    const rt::Index3 cells = glm::max(points - rt::Index3(1), glm::min(points, rt::Index3(1)));
-    this->CellsOfRanks.push_back(
-      isThere(piece) ? rt::Box{ begin, begin + cells } : rt::Box{ rt::Index3(0), rt::Index3(0) });
+    const bricks::Index3 cells =
+      glm::max(points - bricks::Index3(1), glm::min(points, bricks::Index3(1)));
+    this->CellsOfRanks.push_back(isThere(piece)
+        ? bricks::Box{ begin, begin + cells }
+        : bricks::Box{ bricks::Index3(0), bricks::Index3(0) });
   }
   return pieces;
 }
@@ -199,7 +202,7 @@ void vtkDSMImageOrigin::GatherArrays(
   {
     ++first;
   }
-  rt::Index3 cells(1);
+  bricks::Index3 cells(1);
   cells = glm::max(this->Geometry.Points - cells, cells);
   for (const ArrayNote& wanted : ofRanks[first])
   {
@@ -219,7 +222,7 @@ void vtkDSMImageOrigin::GatherArrays(
     }
     vol::FileArray array;
     array.Name = wanted.Name;
-    array.Type = static_cast<rt::ScalarType>(wanted.Numbers.Type);
+    array.Type = static_cast<bricks::ScalarType>(wanted.Numbers.Type);
     array.Components = wanted.Numbers.Components;
     array.OnCells = wanted.Numbers.OnCells != 0;
     array.IsActive = wanted.Numbers.OnCells == 0 && wanted.Numbers.IsActive != 0;
@@ -244,7 +247,7 @@ void vtkDSMImageOrigin::CheckCover() const
 {
   for (std::size_t array = 0; array < this->Arrays.size(); ++array)
   {
-    const rt::Box whole{ rt::Index3(0), this->Arrays[array].Grid.Samples };
+    const bricks::Box whole{ bricks::Index3(0), this->Arrays[array].Grid.Samples };
     if (!vtkDSMLatticePlan::IsCovered(whole, this->GetPieces(array)))
     {
       throw dsm::Error("The array '" + this->Arrays[array].Name +
@@ -260,10 +263,10 @@ std::string vtkDSMImageOrigin::Describe() const
   return "values of process " + std::to_string(getpid()) + " at " + std::to_string(now.count());
 }
 
-std::vector<int> vtkDSMImageOrigin::Deal(std::size_t array, const std::vector<rt::Box>& boxes)
+std::vector<int> vtkDSMImageOrigin::Deal(std::size_t array, const std::vector<bricks::Box>& boxes)
 {
   const char* const what = "Writing a volume";
-  const std::vector<rt::Box>& pieces = this->GetPieces(array);
+  const std::vector<bricks::Box>& pieces = this->GetPieces(array);
   const std::size_t sampleBytes = this->Arrays[array].GetSampleBytes();
   const int rank = this->Messenger.GetRank();
   std::vector<int> dealt;
@@ -291,7 +294,8 @@ std::vector<int> vtkDSMImageOrigin::Deal(std::size_t array, const std::vector<rt
         }
         dealt.push_back(static_cast<int>(box % pieces.size()));
         shared.push_back(box);
-        const rt::Box own = rt::Intersect(boxes[box], pieces[static_cast<std::size_t>(rank)]);
+        const bricks::Box own =
+          bricks::Intersect(boxes[box], pieces[static_cast<std::size_t>(rank)]);
         if (!own.IsEmpty())
         {
           const std::size_t first = mine.size();
@@ -315,7 +319,7 @@ std::vector<int> vtkDSMImageOrigin::Deal(std::size_t array, const std::vector<rt
         }
         for (std::size_t one = 0; one < parts.size(); ++one)
         {
-          const rt::Box part = rt::Intersect(boxes[box], pieces[one]);
+          const bricks::Box part = bricks::Intersect(boxes[box], pieces[one]);
           if (part.IsEmpty())
           {
             continue;
@@ -332,7 +336,7 @@ std::vector<int> vtkDSMImageOrigin::Deal(std::size_t array, const std::vector<rt
   return dealt;
 }
 
-void vtkDSMImageOrigin::Read(std::size_t array, const rt::Box& box, std::byte* out) const
+void vtkDSMImageOrigin::Read(std::size_t array, const bricks::Box& box, std::byte* out) const
 {
   const auto gathered = this->Gathered.find(GetKey(box));
   if (gathered == this->Gathered.end())
@@ -343,10 +347,10 @@ void vtkDSMImageOrigin::Read(std::size_t array, const rt::Box& box, std::byte* o
   std::copy(gathered->second.begin(), gathered->second.end(), out);
 }
 
-void vtkDSMImageOrigin::Copy(std::size_t array, const rt::Box& box, std::byte* out) const
+void vtkDSMImageOrigin::Copy(std::size_t array, const bricks::Box& box, std::byte* out) const
 {
   vtkDataArray* const values = this->Values[array];
-  const rt::Box& piece =
+  const bricks::Box& piece =
     this->GetPieces(array)[static_cast<std::size_t>(this->Messenger.GetRank())];
   const std::size_t sampleBytes = this->Arrays[array].GetSampleBytes();
   if (const vtkDSMFileValues* const file = vtkDSMGetFileValues(values, piece.GetSize()))
@@ -364,8 +368,8 @@ void vtkDSMImageOrigin::Copy(std::size_t array, const rt::Box& box, std::byte* o
   vtkSmartPointer<vtkDataArray> row;
   row.TakeReference(vtkDataArray::CreateDataArray(values->GetDataType()));
   row->SetNumberOfComponents(values->GetNumberOfComponents());
-  const rt::Index3 size = piece.GetSize();
-  const rt::Index3 count = box.GetSize();
+  const bricks::Index3 size = piece.GetSize();
+  const bricks::Index3 count = box.GetSize();
   row->SetNumberOfTuples(count.x);
   const std::size_t rowBytes = static_cast<std::size_t>(count.x) * sampleBytes;
   for (std::int64_t z = box.Min.z; z < box.Max.z; ++z)

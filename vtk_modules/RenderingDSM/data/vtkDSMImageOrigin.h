@@ -28,8 +28,8 @@ public:
   const std::vector<vol::FileArray>& GetArrays() const override { return this->Arrays; }
   /// Of no other process's: values in memory are gone with it.
   std::string Describe() const override;
-  std::vector<int> Deal(std::size_t array, const std::vector<rt::Box>& boxes) override;
-  void Read(std::size_t array, const rt::Box& box, std::byte* out) const override;
+  std::vector<int> Deal(std::size_t array, const std::vector<bricks::Box>& boxes) override;
+  void Read(std::size_t array, const bricks::Box& box, std::byte* out) const override;
 
   /// Names of arrays that are left out: not numbers, or not the same in all pieces.
   const std::vector<std::string>& GetLeftOut() const { return this->LeftOut; }
@@ -41,10 +41,10 @@ private:
   void GatherArrays(vtkImageData* image, const std::vector<vol::FileGeometry>& pieces);
   void CheckCover() const;
   /// Of this rank's piece.
-  void Copy(std::size_t array, const rt::Box& box, std::byte* out) const;
+  void Copy(std::size_t array, const bricks::Box& box, std::byte* out) const;
 
   /// Which of an array's samples each rank has; counted from the whole image's first.
-  const std::vector<rt::Box>& GetPieces(std::size_t array) const
+  const std::vector<bricks::Box>& GetPieces(std::size_t array) const
   {
     return this->Arrays[array].OnCells ? this->CellsOfRanks : this->PointsOfRanks;
   }
@@ -54,8 +54,8 @@ private:
   std::vector<vol::FileArray> Arrays;
   std::vector<std::string> LeftOut;
   std::vector<vtkSmartPointer<vtkDataArray>> Values; ///< of this rank's piece; null without one
-  std::vector<rt::Box> PointsOfRanks;
-  std::vector<rt::Box> CellsOfRanks;
+  std::vector<bricks::Box> PointsOfRanks;
+  std::vector<bricks::Box> CellsOfRanks;
   /// Boxes of which no piece has all, that were dealt to this rank, by their first sample.
   std::map<std::vector<std::int64_t>, std::vector<std::byte>> Gathered;
   mutable std::mutex Lock; ///< of arrays that compute what they are asked for

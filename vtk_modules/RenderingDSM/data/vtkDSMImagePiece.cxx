@@ -25,8 +25,8 @@
 namespace
 {
 
-using rt::Box;
-using rt::Index3;
+using bricks::Box;
+using bricks::Index3;
 
 constexpr unsigned char CellsWithoutData = vtkDataSetAttributes::DUPLICATECELL |
   vtkDataSetAttributes::HIDDENCELL | vtkDataSetAttributes::REFINEDCELL;
@@ -95,7 +95,7 @@ private:
     return at.x + size.x * (at.y + size.y * at.z);
   }
 
-  rt::Box Box;
+  bricks::Box Box;
   vtkUnsignedCharArray* Cells;
   vtkUnsignedCharArray* Points;
 };
@@ -220,35 +220,35 @@ vtkDSMPieceInfo vtkDSMImagePiece::Describe(vtkImageData* image, int leaf)
   return info;
 }
 
-rt::ScalarType vtkDSMImagePiece::GetScalarType(vtkDataArray* array, int component)
+bricks::ScalarType vtkDSMImagePiece::GetScalarType(vtkDataArray* array, int component)
 {
   const int type = array->GetDataType();
   const std::size_t bytes = type == VTK_BIT ? 1 : array->GetDataTypeSize();
   const bool real = type == VTK_FLOAT || type == VTK_DOUBLE;
   if (component == Color)
   {
-    return rt::ScalarType::UInt32;
+    return bricks::ScalarType::UInt32;
   }
   if (component == Magnitude && array->GetNumberOfComponents() > 1)
   {
     const bool fits = type == VTK_FLOAT || (!real && bytes <= 2);
-    return fits ? rt::ScalarType::Float32 : rt::ScalarType::Float64;
+    return fits ? bricks::ScalarType::Float32 : bricks::ScalarType::Float64;
   }
   if (real)
   {
-    return type == VTK_FLOAT ? rt::ScalarType::Float32 : rt::ScalarType::Float64;
+    return type == VTK_FLOAT ? bricks::ScalarType::Float32 : bricks::ScalarType::Float64;
   }
   const bool isSigned = type != VTK_BIT && array->GetDataTypeMin() < 0.0;
   switch (bytes)
   {
     case 1:
-      return isSigned ? rt::ScalarType::Int8 : rt::ScalarType::UInt8;
+      return isSigned ? bricks::ScalarType::Int8 : bricks::ScalarType::UInt8;
     case 2:
-      return isSigned ? rt::ScalarType::Int16 : rt::ScalarType::UInt16;
+      return isSigned ? bricks::ScalarType::Int16 : bricks::ScalarType::UInt16;
     case 4:
-      return isSigned ? rt::ScalarType::Int32 : rt::ScalarType::UInt32;
+      return isSigned ? bricks::ScalarType::Int32 : bricks::ScalarType::UInt32;
     case 8:
-      return isSigned ? rt::ScalarType::Int64 : rt::ScalarType::UInt64;
+      return isSigned ? bricks::ScalarType::Int64 : bricks::ScalarType::UInt64;
     default:
       throw dsm::Error(std::string("The array '") + (array->GetName() ? array->GetName() : "") +
         "' of type " + array->GetDataTypeAsString() + " cannot be ray traced.");
@@ -282,7 +282,7 @@ void vtkDSMImagePiece::ReadSamples(const Box& points, std::byte* out) const
   if (this->Component == Magnitude)
   {
     const auto read = [array](vtkIdType tuple) { return GetMagnitude(array, tuple); };
-    if (this->Type == rt::ScalarType::Float32)
+    if (this->Type == bricks::ScalarType::Float32)
     {
       Gather<float>(points, this->Samples, out, read);
     }

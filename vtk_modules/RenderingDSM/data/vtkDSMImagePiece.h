@@ -2,8 +2,8 @@
 #ifndef vtkDSMImagePiece_h
 #define vtkDSMImagePiece_h
 
-#include "DSMRayTracing/base/ScalarType.h"
-#include "DSMRayTracing/build/VoxelSource.h"
+#include "DSMBricks/base/ScalarType.h"
+#include "DSMBricks/build/VoxelSource.h"
 #include "vtkDSMLatticePlan.h"
 
 #include "vtkSmartPointer.h"
@@ -15,7 +15,7 @@ class vtkUnsignedCharArray;
 /// One vtkImageData of this rank as a piece of a lattice: one component of an array of its points or cells, the
 /// magnitude of all, or the colours that they are (rt::PackedColor). Copies nothing; reading is safe from any
 /// thread while the image is not modified.
-class vtkDSMImagePiece final : public rt::VoxelSource
+class vtkDSMImagePiece final : public bricks::VoxelSource
 {
 public:
   /// Component that stands for the magnitude of all components.
@@ -29,27 +29,27 @@ public:
   static vtkDSMPieceInfo Describe(vtkImageData* image, int leaf);
 
   /// Arrays keep their type; the magnitude is float where that holds it, else double; colours are packed.
-  static rt::ScalarType GetScalarType(vtkDataArray* array, int component);
+  static bricks::ScalarType GetScalarType(vtkDataArray* array, int component);
 
   vtkDSMImagePiece(vtkImageData* image, vtkDataArray* array, int component,
     const vtkDSMLatticePlan::Member& place, bool hasMask, bool ofCells = false);
   ~vtkDSMImagePiece() override;
 
-  rt::Box GetCells() const override { return this->Place.Cells; }
-  void ReadSamples(const rt::Box& points, std::byte* out) const override;
+  bricks::Box GetCells() const override { return this->Place.Cells; }
+  void ReadSamples(const bricks::Box& points, std::byte* out) const override;
   bool HasCellMask() const override { return this->Masked; }
-  void ReadCellMask(const rt::Box& cells, std::uint8_t* out) const override;
+  void ReadCellMask(const bricks::Box& cells, std::uint8_t* out) const override;
 
 private:
-  void ReadColors(const rt::Box& samples, std::byte* out) const;
+  void ReadColors(const bricks::Box& samples, std::byte* out) const;
 
   vtkSmartPointer<vtkImageData> Image;
   vtkSmartPointer<vtkDataArray> Array;
   int Component;
   vtkDSMLatticePlan::Member Place;
   bool Masked;
-  rt::ScalarType Type;
-  rt::Box Samples; ///< that the array has, in lattice indices
+  bricks::ScalarType Type;
+  bricks::Box Samples; ///< that the array has, in lattice indices
 };
 
 #endif

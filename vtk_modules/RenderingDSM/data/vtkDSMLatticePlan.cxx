@@ -13,8 +13,8 @@
 namespace
 {
 
-using rt::Box;
-using rt::Index3;
+using bricks::Box;
+using bricks::Index3;
 
 /// Two pieces share sampling points when their origins differ by whole cells, within this part of
 /// one: files keep origins in single precision, too.
@@ -101,7 +101,7 @@ bool Conflicts(const Placed& a, const Placed& b, const std::set<std::int32_t>& a
 {
   return a.Leaf != b.Leaf &&
     (apart.count(a.Leaf) > 0 || apart.count(b.Leaf) > 0 ||
-      !rt::Intersect(a.Cells, b.Cells).IsEmpty());
+      !bricks::Intersect(a.Cells, b.Cells).IsEmpty());
 }
 
 bool CanJoin(const Group& a, const Group& b, const std::set<std::int32_t>& apart)
@@ -269,7 +269,7 @@ std::vector<vtkDSMLatticePlan::Seam> vtkDSMLatticePlan::FindSeams(
         {
           continue;
         }
-        const Box common = rt::Intersect(getPoints(first), getPoints(second));
+        const Box common = bricks::Intersect(getPoints(first), getPoints(second));
         if (!common.IsEmpty())
         {
           seams.push_back({ lattice, { first, second }, common });
@@ -288,7 +288,7 @@ bool vtkDSMLatticePlan::IsCovered(const Box& box, const std::vector<Box>& parts)
   }
   for (const Box& part : parts)
   {
-    const Box common = rt::Intersect(box, part);
+    const Box common = bricks::Intersect(box, part);
     if (common.IsEmpty())
     {
       continue;

@@ -2,7 +2,7 @@
 #ifndef vtkDSMLatticePlan_h
 #define vtkDSMLatticePlan_h
 
-#include "DSMRayTracing/base/Box.h"
+#include "DSMBricks/base/Box.h"
 
 #include <glm/mat4x4.hpp>
 
@@ -35,13 +35,13 @@ class vtkDSMLatticePlan
 public:
   struct Member
   {
-    int Piece;                 ///< index into the pieces
-    rt::Index3 IndexToLattice; ///< add to a piece's own index
-    rt::Box Cells;             ///< in lattice indices, which start at 0
+    int Piece;                     ///< index into the pieces
+    bricks::Index3 IndexToLattice; ///< add to a piece's own index
+    bricks::Box Cells;             ///< in lattice indices, which start at 0
   };
   struct Lattice
   {
-    rt::Index3 Points;
+    bricks::Index3 Points;
     glm::dmat4 IndexToWorld;
     std::vector<Member> Members;
   };
@@ -59,12 +59,12 @@ public:
   {
     std::size_t Lattice;
     std::array<std::size_t, 2> Members; ///< of the lattice
-    rt::Box Points;                     ///< in lattice indices
+    bricks::Box Points;                 ///< in lattice indices
   };
   std::vector<Seam> FindSeams(const std::vector<vtkDSMPieceInfo>& pieces) const;
 
   /// Whether every cell of `box` lies in one of `parts`.
-  static bool IsCovered(const rt::Box& box, const std::vector<rt::Box>& parts);
+  static bool IsCovered(const bricks::Box& box, const std::vector<bricks::Box>& parts);
 
 private:
   std::vector<Lattice> Lattices;

@@ -124,18 +124,18 @@ vtkDSMMeshColors::vtkDSMMeshColors(vtkMapper* mapper, vtkPolyData* data)
     this->Values = numbers;
     this->Component = GetComponent(mapper, numbers);
   }
-  this->Attached = field == 0 ? rt::Attachment::Points : rt::Attachment::Triangles;
+  this->Attached = field == 0 ? bricks::Attachment::Points : bricks::Attachment::Triangles;
   this->Found = State::Usable;
 }
 
-rt::Attachment vtkDSMMeshColors::GetValues() const
+bricks::Attachment vtkDSMMeshColors::GetValues() const
 {
-  return this->Values ? this->Attached : rt::Attachment::None;
+  return this->Values ? this->Attached : bricks::Attachment::None;
 }
 
-rt::Attachment vtkDSMMeshColors::GetColors() const
+bricks::Attachment vtkDSMMeshColors::GetColors() const
 {
-  return this->Colors ? this->Attached : rt::Attachment::None;
+  return this->Colors ? this->Attached : bricks::Attachment::None;
 }
 
 double vtkDSMMeshColors::GetValue(vtkIdType element) const

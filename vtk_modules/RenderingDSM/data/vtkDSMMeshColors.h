@@ -2,7 +2,7 @@
 #ifndef vtkDSMMeshColors_h
 #define vtkDSMMeshColors_h
 
-#include "DSMRayTracing/layout/MeshAttributes.h"
+#include "DSMBricks/layout/MeshAttributes.h"
 
 #include "vtkSmartPointer.h"
 #include "vtkType.h"
@@ -39,8 +39,8 @@ public:
   vtkIdType GetExpectedLength() const { return this->ExpectedLength; }
 
   /// At most one of the two is there.
-  rt::Attachment GetValues() const;
-  rt::Attachment GetColors() const;
+  bricks::Attachment GetValues() const;
+  bricks::Attachment GetColors() const;
 
   /// Of a point or cell; may be called by several threads at a time.
   double GetValue(vtkIdType element) const;
@@ -55,7 +55,7 @@ private:
   /// Null when the colours are the array's own.
   vtkSmartPointer<vtkDataArray> Values;
   vtkSmartPointer<vtkUnsignedCharArray> Colors;
-  rt::Attachment Attached = rt::Attachment::None;
+  bricks::Attachment Attached = bricks::Attachment::None;
   int Component = 0;          ///< -1 is the magnitude
   vtkIdType OnlyElement = -1; ///< the one that all share, or -1
   State Found = State::NotAsked;

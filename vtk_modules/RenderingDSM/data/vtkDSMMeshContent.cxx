@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkDSMMeshContent.h"
 
-#include "DSMRayTracing/base/ByteHash.h"
+#include "DSMBricks/base/ByteHash.h"
 #include "vtkDSMContent.h"
 #include "vtkDSMMeshColors.h"
 
@@ -31,7 +31,7 @@ std::vector<std::uint64_t> vtkDSMMeshContent::GetStamp(const vtkDSMMeshInput& in
     {
       const std::uint64_t identity[] = { reinterpret_cast<std::uintptr_t>(array),
         array ? array->GetMTime() : 0 };
-      rt::ByteHash hash;
+      bricks::ByteHash hash;
       hash.Add(identity, sizeof(identity));
       return hash.Get();
     }).Whole;

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkDSMMeshData.h"
 
+#include "DSMBricks/base/ByteHash.h"
+#include "DSMBricks/build/TriangleMeshBuilder.h"
 #include "DSMCore/memory/HostMemory.h"
-#include "DSMRayTracing/base/ByteHash.h"
-#include "DSMRayTracing/build/TriangleMeshBuilder.h"
 #include "vtkDSMGather.h"
 #include "vtkDSMProgress.h"
 #include "vtkDSMTubesAndSpheres.h"
@@ -334,7 +334,7 @@ void vtkDSMMeshData::AddSurface(std::uint32_t group, vtkPolyData* data)
   Surface surface;
   surface.Data = data;
   surface.Colors = vtkDSMMeshColors(this->Input.Mapper, data);
-  const rt::MeshAttributes attributes =
+  const bricks::MeshAttributes attributes =
     vtkDSMMeshPiece::GetAttributes(data, surface.Colors, this->Input.Wish);
   surface.Kind.Group = group;
   surface.Kind.Normals = static_cast<std::uint32_t>(attributes.Normals);
@@ -438,7 +438,7 @@ void vtkDSMMeshData::Publish()
   }
 }
 
-std::shared_ptr<const rt::TriangleMesh> vtkDSMMeshData::PublishMesh(
+std::shared_ptr<const bricks::TriangleMesh> vtkDSMMeshData::PublishMesh(
   const Key& kind, const std::function<void(double)>& progress)
 {
   std::shared_ptr<vtkDSMRankGroup> group = this->Group;
@@ -446,7 +446,7 @@ std::shared_ptr<const rt::TriangleMesh> vtkDSMMeshData::PublishMesh(
   vtkDSMMeshWish wish = this->Input.Wish;
   wish.EdgeFlags = this->Flagged.count(kind.Group) != 0;
   const std::uint64_t content = this->HashSource(kind, wish);
-  if (auto known = group->GetPublications().Find<rt::TriangleMesh>(messenger, content))
+  if (auto known = group->GetPublications().Find<bricks::TriangleMesh>(messenger, content))
   {
     return known;
   }
@@ -462,17 +462,17 @@ std::shared_ptr<const rt::TriangleMesh> vtkDSMMeshData::PublishMesh(
         }
       }
     });
-  rt::TriangleMeshSettings settings;
+  bricks::TriangleMeshSettings settings;
   settings.Threads = group->GetStore().GetSettings().Workers;
-  std::shared_ptr<rt::TriangleMesh> mesh = group->PublishWithRoom(
+  std::shared_ptr<bricks::TriangleMesh> mesh = group->PublishWithRoom(
     [&](dsm::BlockStore::Place place)
     {
       PlacedStore store{ group->GetStore(), place };
-      return rt::PublishMesh("the surface", piece, settings, store, messenger, progress);
+      return bricks::PublishMesh("the surface", piece, settings, store, messenger, progress);
     });
   // The group's publications hold what this captures after the last user has left, and so the group itself.
-  const std::shared_ptr<const rt::TriangleMesh> shared(mesh.get(),
-    [group, mesh](const rt::TriangleMesh*) mutable
+  const std::shared_ptr<const bricks::TriangleMesh> shared(mesh.get(),
+    [group, mesh](const bricks::TriangleMesh*) mutable
     {
       const auto last = std::move(group);
       last->GetStore().Retire(mesh->Segment);
@@ -485,7 +485,7 @@ std::shared_ptr<const rt::TriangleMesh> vtkDSMMeshData::PublishMesh(
 /// Of all that this rank's part of a mesh depends on; the number of its group says nothing.
 std::uint64_t vtkDSMMeshData::HashSource(const Key& kind, const vtkDSMMeshWish& wish) const
 {
-  rt::ByteHash hash;
+  bricks::ByteHash hash;
   const std::uint32_t form[] = { kind.Normals, kind.Values, kind.Colors, kind.TextureCoordinates,
     wish.TextureCoordinates ? 1u : 0u, wish.EdgeFlags ? 1u : 0u };
   hash.Add(form, sizeof(form));

@@ -2,7 +2,7 @@
 #ifndef vtkDSMMeshData_h
 #define vtkDSMMeshData_h
 
-#include "DSMRayTracing/layout/TriangleMesh.h"
+#include "DSMBricks/layout/TriangleMesh.h"
 #include "vtkDSMMeshBlock.h"
 #include "vtkDSMMeshColors.h"
 #include "vtkDSMMeshContent.h"
@@ -44,7 +44,7 @@ public:
     vtkDSMMeshBlock::Look Appearance;
     /// Leaves the store when its last user lets go, which must happen in the same order on every
     /// rank.
-    std::shared_ptr<const rt::TriangleMesh> Mesh;
+    std::shared_ptr<const bricks::TriangleMesh> Mesh;
     Key Kind;
     /// Describes what this rank's part of the mesh was made of.
     std::vector<std::uint64_t> Source;
@@ -90,7 +90,7 @@ private:
   void CheckColors(const std::vector<ColorReport>& mine);
   std::string ListArrays() const;
   void Publish();
-  std::shared_ptr<const rt::TriangleMesh> PublishMesh(
+  std::shared_ptr<const bricks::TriangleMesh> PublishMesh(
     const Key& kind, const std::function<void(double)>& progress);
   std::uint64_t HashSource(const Key& kind, const vtkDSMMeshWish& wish) const;
 
@@ -105,7 +105,7 @@ private:
   /// Groups are blocks, and not looks.
   bool OwnMeshes = true;
   std::map<std::uint32_t, vtkDSMMeshBlock::Look> Looks; ///< of each group, of all ranks
-  /// Groups in which edge flags are wanted, and not all would be rt::AllEdges.
+  /// Groups in which edge flags are wanted, and not all would be bricks::AllEdges.
   std::set<std::uint32_t> Flagged;
   std::vector<Part> Parts;
   double Bounds[6];

@@ -13,21 +13,21 @@ namespace
 {
 
 /// As VTK: those of the cells where points have none.
-vtkDataArray* FindNormals(vtkPolyData* data, rt::Attachment& attachment)
+vtkDataArray* FindNormals(vtkPolyData* data, bricks::Attachment& attachment)
 {
   vtkDataArray* normals = data->GetPointData()->GetNormals();
-  attachment = rt::Attachment::Points;
+  attachment = bricks::Attachment::Points;
   if (normals && normals->GetNumberOfTuples() == data->GetNumberOfPoints())
   {
     return normals;
   }
   normals = data->GetCellData()->GetNormals();
-  attachment = rt::Attachment::Triangles;
+  attachment = bricks::Attachment::Triangles;
   if (normals && normals->GetNumberOfTuples() == data->GetNumberOfCells())
   {
     return normals;
   }
-  attachment = rt::Attachment::None;
+  attachment = bricks::Attachment::None;
   return nullptr;
 }
 
@@ -42,10 +42,10 @@ vtkDataArray* FindTextureCoordinates(vtkPolyData* data)
 
 } // namespace
 
-rt::MeshAttributes vtkDSMMeshPiece::GetAttributes(
+bricks::MeshAttributes vtkDSMMeshPiece::GetAttributes(
   vtkPolyData* data, const vtkDSMMeshColors& colors, const vtkDSMMeshWish& wish)
 {
-  rt::MeshAttributes attributes;
+  bricks::MeshAttributes attributes;
   attributes.TextureCoordinates = wish.TextureCoordinates && FindTextureCoordinates(data);
   attributes.EdgeFlags = wish.EdgeFlags;
   FindNormals(data, attributes.Normals);
@@ -104,9 +104,9 @@ void vtkDSMMeshPiece::GetNormal(std::uint64_t element, double normal[3]) const
 }
 
 const vtkDSMMeshPiece::Part& vtkDSMMeshPiece::FindElement(
-  rt::Attachment attachment, std::uint64_t element, vtkIdType& number) const
+  bricks::Attachment attachment, std::uint64_t element, vtkIdType& number) const
 {
-  if (attachment == rt::Attachment::Points)
+  if (attachment == bricks::Attachment::Points)
   {
     const Part& part = this->FindByPoint(element);
     number = static_cast<vtkIdType>(element - part.FirstPoint);

@@ -2,7 +2,7 @@
 #ifndef vtkDSMMeshPiece_h
 #define vtkDSMMeshPiece_h
 
-#include "DSMRayTracing/build/TriangleSource.h"
+#include "DSMBricks/build/TriangleSource.h"
 #include "vtkDSMMeshColors.h"
 #include "vtkDSMTriangleList.h"
 
@@ -23,17 +23,17 @@ struct vtkDSMMeshWish
 
 /// This rank's part of one mesh: the triangles of several vtkPolyData that have the same attributes,
 /// read where they lie.
-class vtkDSMMeshPiece final : public rt::TriangleSource
+class vtkDSMMeshPiece final : public bricks::TriangleSource
 {
 public:
   /// What a mesh made of the data would carry.
-  static rt::MeshAttributes GetAttributes(
+  static bricks::MeshAttributes GetAttributes(
     vtkPolyData* data, const vtkDSMMeshColors& colors, const vtkDSMMeshWish& wish);
 
   /// All that are added must have the same attributes. Throws dsm::Error for invalid cells.
   void Add(vtkPolyData* data, const vtkDSMMeshColors& colors, const vtkDSMMeshWish& wish);
 
-  rt::MeshAttributes GetAttributes() const override { return this->Attributes; }
+  bricks::MeshAttributes GetAttributes() const override { return this->Attributes; }
   std::uint64_t GetTriangleCount() const override { return this->Triangles; }
   std::uint64_t GetPointCount() const override { return this->Points; }
   void GetTriangle(std::uint64_t triangle, std::uint64_t points[3]) const override;
@@ -61,9 +61,9 @@ private:
   const Part& FindByPoint(std::uint64_t point) const;
   /// The part that has the element, and the point or cell that the element is in it.
   const Part& FindElement(
-    rt::Attachment attachment, std::uint64_t element, vtkIdType& number) const;
+    bricks::Attachment attachment, std::uint64_t element, vtkIdType& number) const;
 
-  rt::MeshAttributes Attributes;
+  bricks::MeshAttributes Attributes;
   std::vector<Part> Parts;
   std::uint64_t Triangles = 0;
   std::uint64_t Points = 0;

@@ -4,7 +4,7 @@
 #include "vtkDSMErrorGuard.h"
 #include "vtkDSMScalarType.h"
 
-#include "DSMRayTracing/sample/SampleVolume.h"
+#include "DSMBricks/sample/SampleVolume.h"
 
 #include "vtkDataArray.h"
 #include "vtkImageData.h"
@@ -25,11 +25,12 @@ vtkStandardNewMacro(vtkDSMSampleVolume);
 namespace
 {
 
-rt::SampleVolume CreateVolume(int kind, const int dimensions[3])
+bricks::SampleVolume CreateVolume(int kind, const int dimensions[3])
 {
-  return rt::SampleVolume(kind == vtkDSMSampleVolume::SPHERE ? rt::SampleVolume::Kind::Sphere
-                                                             : rt::SampleVolume::Kind::MixingLayer,
-    rt::Index3(dimensions[0], dimensions[1], dimensions[2]));
+  return bricks::SampleVolume(kind == vtkDSMSampleVolume::SPHERE
+      ? bricks::SampleVolume::Kind::Sphere
+      : bricks::SampleVolume::Kind::MixingLayer,
+    bricks::Index3(dimensions[0], dimensions[1], dimensions[2]));
 }
 
 const char* GetArrayName(int kind)
@@ -72,7 +73,7 @@ void vtkDSMSampleVolume::TellOfVolume(vtkInformation* information) const
 {
   const int extent[6] = { 0, this->Dimensions[0] - 1, 0, this->Dimensions[1] - 1, 0,
     this->Dimensions[2] - 1 };
-  const rt::SampleVolume volume = CreateVolume(this->Kind, this->Dimensions);
+  const bricks::SampleVolume volume = CreateVolume(this->Kind, this->Dimensions);
   const glm::dvec3 origin = volume.GetOrigin();
   const double spacing = volume.GetSpacing();
   information->Set(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), extent, 6);
@@ -105,11 +106,11 @@ void vtkDSMSampleVolume::FillImage(vtkImageData* image, vtkInformation* informat
   }
   scalars->SetName(GetArrayName(this->Kind));
 
-  const rt::SampleVolume volume = CreateVolume(this->Kind, this->Dimensions);
-  const rt::ScalarType type = vtkDSMScalarType::FromArray(scalars);
+  const bricks::SampleVolume volume = CreateVolume(this->Kind, this->Dimensions);
+  const bricks::ScalarType type = vtkDSMScalarType::FromArray(scalars);
   const int rows = extent[3] - extent[2] + 1;
   const int slices = extent[5] - extent[4] + 1;
-  const std::size_t rowBytes = (extent[1] - extent[0] + 1) * rt::GetBytes(type);
+  const std::size_t rowBytes = (extent[1] - extent[0] + 1) * bricks::GetBytes(type);
   auto* const first = static_cast<std::byte*>(scalars->GetVoidPointer(0));
   std::atomic<int> nextSlice{ 0 };
   std::atomic<int> slicesDone{ 0 };
@@ -117,7 +118,7 @@ void vtkDSMSampleVolume::FillImage(vtkImageData* image, vtkInformation* informat
   {
     for (int slice = nextSlice++; slice < slices && !this->AbortExecute; slice = nextSlice++)
     {
-      const rt::Box points{ { extent[0], extent[2], extent[4] + slice },
+      const bricks::Box points{ { extent[0], extent[2], extent[4] + slice },
         { extent[1] + 1, extent[3] + 1, extent[4] + slice + 1 } };
       volume.Fill(points, type, first + slice * rows * rowBytes);
       report(++slicesDone);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkDSMTriangleList.h"
 
+#include "DSMBricks/layout/MeshAttributes.h"
 #include "DSMCore/base/Error.h"
-#include "DSMRayTracing/layout/MeshAttributes.h"
 #include "vtkDSMCompatibility.h"
 
 #include "vtkAOSDataArrayTemplate.h"
@@ -243,7 +243,7 @@ vtkIdType vtkDSMTriangleList::GetCell(std::uint64_t triangle) const
 
 unsigned vtkDSMTriangleList::GetEdgeFlags(std::uint64_t triangle) const
 {
-  unsigned flags = this->Edges.empty() ? rt::AllEdges : this->Edges[triangle];
+  unsigned flags = this->Edges.empty() ? bricks::AllEdges : this->Edges[triangle];
   if (this->PointFlags)
   {
     std::uint64_t points[3];
@@ -251,7 +251,7 @@ unsigned vtkDSMTriangleList::GetEdgeFlags(std::uint64_t triangle) const
     for (int side = 0; side < 3; ++side)
     {
       const auto point = static_cast<vtkIdType>(points[side]);
-      flags &= this->PointFlags->GetValue(point) != 0 ? rt::AllEdges : ~(1u << side);
+      flags &= this->PointFlags->GetValue(point) != 0 ? bricks::AllEdges : ~(1u << side);
     }
   }
   return flags;

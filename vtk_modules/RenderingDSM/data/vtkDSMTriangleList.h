@@ -27,7 +27,7 @@ public:
   void GetTriangle(std::uint64_t triangle, std::uint64_t points[3]) const;
   /// The number of the cell, as VTK counts: verts, lines, polygons, strips.
   vtkIdType GetCell(std::uint64_t triangle) const;
-  /// Which sides of a triangle are edges of its polygon (rt::AllEdges), and not hidden by the edge flags
+  /// Which sides of a triangle are edges of its polygon (bricks::AllEdges), and not hidden by the edge flags
   /// that points may have (vtkDataSetAttributes::EDGEFLAG: of the edge that begins at the point). Of
   /// strips all sides are, as VTK draws them.
   unsigned GetEdgeFlags(std::uint64_t triangle) const;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkDSMVolumeData.h"
 
-#include "DSMRayTracing/base/ByteHash.h"
-#include "DSMRayTracing/build/VoxelBrickBuilder.h"
+#include "DSMBricks/base/ByteHash.h"
+#include "DSMBricks/build/VoxelBrickBuilder.h"
 #include "vtkDSMContent.h"
 #include "vtkDSMFileArray.h"
 #include "vtkDSMGather.h"
@@ -108,10 +108,10 @@ vtkImageData* vtkDSMVolumeData::FindOwn(const vtkDSMLatticePlan::Member& member)
 }
 
 std::uint64_t vtkDSMVolumeData::HashPoints(const vtkDSMLatticePlan::Member& member,
-  const rt::Box& points, const std::vector<Choice>& shown) const
+  const bricks::Box& points, const std::vector<Choice>& shown) const
 {
   vtkImageData* image = this->FindOwn(member);
-  rt::ByteHash hash;
+  bricks::ByteHash hash;
   for (const Choice& wanted : shown)
   {
     const Choice choice = this->Arrays.Normalize(wanted);
@@ -130,7 +130,7 @@ std::uint64_t vtkDSMVolumeData::HashPoints(const vtkDSMLatticePlan::Member& memb
       continue;
     }
     std::vector<std::byte> samples(
-      static_cast<std::size_t>(points.GetCount()) * rt::GetBytes(info.Type));
+      static_cast<std::size_t>(points.GetCount()) * bricks::GetBytes(info.Type));
     vtkDSMImagePiece(image, array, choice.Component, member, false)
       .ReadSamples(points, samples.data());
     hash.Add(samples.data(), samples.size());
@@ -195,7 +195,7 @@ void vtkDSMVolumeData::GetBounds(double bounds[6]) const
   {
     for (int corner = 0; corner < 8; ++corner)
     {
-      const rt::Index3 end = lattice.Points - rt::Index3(1);
+      const bricks::Index3 end = lattice.Points - bricks::Index3(1);
       const glm::dvec4 point = lattice.IndexToWorld *
         glm::dvec4(corner & 1 ? end.x : 0, corner & 2 ? end.y : 0, corner & 4 ? end.z : 0, 1);
       box.AddPoint(point.x, point.y, point.z);
@@ -207,7 +207,7 @@ void vtkDSMVolumeData::GetBounds(double bounds[6]) const
 std::uint64_t vtkDSMVolumeData::HashContent(const Choice& choice) const
 {
   const int threads = this->Group->GetStore().GetSettings().Workers;
-  rt::ByteHash hash;
+  bricks::ByteHash hash;
   hash.Add(&choice.Component, sizeof(choice.Component));
   hash.Add(&choice.OnCells, sizeof(choice.OnCells));
   hash.Add(this->Pieces.data(), this->Pieces.size() * sizeof(vtkDSMPieceInfo));
@@ -304,7 +304,7 @@ std::shared_ptr<const vtkDSMVolumeData::Coarser> vtkDSMVolumeData::PublishCoarse
     std::vector<CoarserLattice> lattices(finest.Bricks.size());
     for (std::size_t lattice = 0; lattice < finest.Bricks.size(); ++lattice)
     {
-      const std::shared_ptr<const rt::VoxelField>& fine = finest.Bricks[lattice];
+      const std::shared_ptr<const bricks::VoxelField>& fine = finest.Bricks[lattice];
       const auto file = fine ? finest.Files[lattice]->FindCoarser(messenger, level) : nullptr;
       if (fine && !file)
       {
@@ -321,7 +321,7 @@ std::shared_ptr<const vtkDSMVolumeData::Coarser> vtkDSMVolumeData::PublishCoarse
         {
           part.Field = this->MakeField();
           part.Field->Lattice =
-            rt::BrickLattice(file->GetPoints(), fine->Lattice.GetScalarType(), false);
+            bricks::BrickLattice(file->GetPoints(), fine->Lattice.GetScalarType(), false);
           lattices[lattice] = { part.Field, finest.Files[lattice]->GetIndexOf(*file) };
         });
       this->PublishFile(*file, true, this->FindFileValues(lattice, choice),
@@ -344,8 +344,8 @@ void vtkDSMVolumeData::PublishLattice(Publication& published, std::size_t number
   published.Bricks.emplace_back();
   published.Files.emplace_back();
   Publication::Part& part = published.Parts.emplace_back();
-  std::shared_ptr<rt::VoxelField>& field = part.Field;
-  std::vector<std::shared_ptr<const rt::VoxelSource>> sources;
+  std::shared_ptr<bricks::VoxelField>& field = part.Field;
+  std::vector<std::shared_ptr<const bricks::VoxelSource>> sources;
   std::optional<dsm::BlockDirectory> directory;
   messenger.RunTogether("Preparing the " + purpose,
     [&]
@@ -384,7 +384,7 @@ void vtkDSMVolumeData::PublishLattice(Publication& published, std::size_t number
   if (old.Field && !old.Source && old.Field->Lattice == field->Lattice)
   {
     this->Renew(part, std::move(old), sources, what, progress);
-    field->Hierarchy = rt::MacrocellHierarchy(field->Lattice, *field->Segment, messenger);
+    field->Hierarchy = bricks::MacrocellHierarchy(field->Lattice, *field->Segment, messenger);
     return;
   }
   old = {};
@@ -393,12 +393,12 @@ void vtkDSMVolumeData::PublishLattice(Publication& published, std::size_t number
     [&](dsm::BlockStore::Place place)
     {
       part.Digests = dsm::FragmentDigests(directory->GetCount());
-      rt::VoxelFragmentSource voxels(field->Lattice, sources);
+      bricks::VoxelFragmentSource voxels(field->Lattice, sources);
       dsm::NotingFragmentSource source(voxels, part.Digests);
-      rt::VoxelBrickSink sink(field->Lattice);
+      bricks::VoxelBrickSink sink(field->Lattice);
       return this->Group->GetStore().Publish(what, *directory, source, sink, progress, place);
     });
-  field->Hierarchy = rt::MacrocellHierarchy(field->Lattice, *field->Segment, messenger);
+  field->Hierarchy = bricks::MacrocellHierarchy(field->Lattice, *field->Segment, messenger);
 }
 
 const vtkDSMFileValues* vtkDSMVolumeData::FindFileValues(
@@ -416,12 +416,12 @@ const vtkDSMFileValues* vtkDSMVolumeData::FindFileValues(
   return nullptr;
 }
 
-std::shared_ptr<rt::VoxelField> vtkDSMVolumeData::MakeField() const
+std::shared_ptr<bricks::VoxelField> vtkDSMVolumeData::MakeField() const
 {
   std::shared_ptr<vtkDSMRankGroup> group = this->Group;
   // The group's publications hold what this captures after the last user has left, and so the group itself.
-  return { new rt::VoxelField,
-    [group](rt::VoxelField* old) mutable
+  return { new bricks::VoxelField,
+    [group](bricks::VoxelField* old) mutable
     {
       const auto last = std::move(group);
       if (old->Segment)
@@ -432,13 +432,13 @@ std::shared_ptr<rt::VoxelField> vtkDSMVolumeData::MakeField() const
     } };
 }
 
-std::shared_ptr<rt::VoxelField> vtkDSMVolumeData::CreateField(std::size_t number,
+std::shared_ptr<bricks::VoxelField> vtkDSMVolumeData::CreateField(std::size_t number,
   const Choice& choice, const std::string& purpose,
   const std::vector<vtkDSMImageArrays::Info>& infos) const
 {
   const vtkDSMLatticePlan::Lattice& lattice = this->Plan.GetLattices()[number];
-  std::vector<rt::Box> parts;
-  std::set<rt::ScalarType> types;
+  std::vector<bricks::Box> parts;
+  std::set<bricks::ScalarType> types;
   bool masked = false;
   for (const auto& member : lattice.Members)
   {
@@ -458,11 +458,11 @@ std::shared_ptr<rt::VoxelField> vtkDSMVolumeData::CreateField(std::size_t number
     throw dsm::Error("The pieces of the " + purpose + " '" + choice.Name +
       "' do not all have the same type. Convert them to one type, for example with Calculator.");
   }
-  const rt::Box whole{ rt::Index3(0), lattice.Points - rt::Index3(1) };
+  const bricks::Box whole{ bricks::Index3(0), lattice.Points - bricks::Index3(1) };
   masked = masked || !vtkDSMLatticePlan::IsCovered(whole, parts);
 
-  std::shared_ptr<rt::VoxelField> field = this->MakeField();
-  field->Lattice = rt::BrickLattice(lattice.Points, *types.begin(), masked);
+  std::shared_ptr<bricks::VoxelField> field = this->MakeField();
+  field->Lattice = bricks::BrickLattice(lattice.Points, *types.begin(), masked);
   if (choice.OnCells)
   {
     field->Lattice = field->Lattice.OfCells();
@@ -470,10 +470,10 @@ std::shared_ptr<rt::VoxelField> vtkDSMVolumeData::CreateField(std::size_t number
   return field;
 }
 
-std::vector<std::shared_ptr<const rt::VoxelSource>> vtkDSMVolumeData::CreateSources(
+std::vector<std::shared_ptr<const bricks::VoxelSource>> vtkDSMVolumeData::CreateSources(
   std::size_t lattice, const Choice& choice) const
 {
-  std::vector<std::shared_ptr<const rt::VoxelSource>> sources;
+  std::vector<std::shared_ptr<const bricks::VoxelSource>> sources;
   for (const auto& member : this->Plan.GetLattices()[lattice].Members)
   {
     if (vtkImageData* image = this->FindOwn(member))

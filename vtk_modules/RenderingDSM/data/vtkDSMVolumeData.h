@@ -2,9 +2,9 @@
 #ifndef vtkDSMVolumeData_h
 #define vtkDSMVolumeData_h
 
+#include "DSMBricks/build/VoxelSource.h"
 #include "DSMCore/fetch/ReadingSource.h"
 #include "DSMCore/publish/FragmentDigests.h"
-#include "DSMRayTracing/build/VoxelSource.h"
 #include "DSMRayTracing/scene/Scene.h"
 #include "vtkDSMBlockLooks.h"
 #include "vtkDSMFileVolume.h"
@@ -32,7 +32,7 @@ class vtkDSMVolumeData
 public:
   using Choice = vtkDSMImageArrays::Choice;
   /// One field a lattice; null where no piece of the lattice has the array.
-  using Fields = std::vector<std::shared_ptr<const rt::VoxelField>>;
+  using Fields = std::vector<std::shared_ptr<const bricks::VoxelField>>;
   /// What an array became.
   struct Publication
   {
@@ -45,7 +45,7 @@ public:
     /// What it takes to put other values into a lattice's bricks.
     struct Part
     {
-      std::shared_ptr<rt::VoxelField> Field;
+      std::shared_ptr<bricks::VoxelField> Field;
       dsm::FragmentDigests Digests; ///< of what this rank has contributed
       /// Of a lattice in a file, instead: what brings its bricks, and, where there are other time steps, what is
       /// known of these (else none).
@@ -59,7 +59,7 @@ public:
   /// An array's lattices at a coarser level of their files.
   struct CoarserLattice
   {
-    std::shared_ptr<const rt::VoxelField>
+    std::shared_ptr<const bricks::VoxelField>
       Field;              ///< null where no piece of the lattice has the array
     glm::dmat4 ToLattice; ///< from its indices to the lattice's
   };
@@ -86,7 +86,7 @@ public:
   /// What was set for the cells of a lattice.
   struct Block
   {
-    rt::Box Cells;
+    bricks::Box Cells;
     vtkDSMBlockLook Look;
   };
   /// Of all ranks' pieces of a lattice.
@@ -121,7 +121,7 @@ private:
   /// Local: a piece's image, if it is this rank's; else null.
   vtkImageData* FindOwn(const vtkDSMLatticePlan::Member& member) const;
   /// Local. Of a piece's values at points of its lattice, in the arrays that are shown.
-  std::uint64_t HashPoints(const vtkDSMLatticePlan::Member& member, const rt::Box& points,
+  std::uint64_t HashPoints(const vtkDSMLatticePlan::Member& member, const bricks::Box& points,
     const std::vector<Choice>& shown) const;
   /// Of this rank's first piece of a lattice that has the array in a file; null when none has.
   const vtkDSMFileValues* FindFileValues(std::size_t lattice, const Choice& choice) const;
@@ -137,15 +137,15 @@ private:
     Publication::Part&& old) const;
   /// Collective: the old bricks, with what the pieces hold now.
   void Renew(Publication::Part& part, Publication::Part&& old,
-    const std::vector<std::shared_ptr<const rt::VoxelSource>>& pieces, const std::string& what,
+    const std::vector<std::shared_ptr<const bricks::VoxelSource>>& pieces, const std::string& what,
     const std::function<void(double)>& progress) const;
   /// Local. A field that leaves the store with its last user.
-  std::shared_ptr<rt::VoxelField> MakeField() const;
+  std::shared_ptr<bricks::VoxelField> MakeField() const;
   /// Local. A lattice's field without its bricks; null where no piece has the array.
-  std::shared_ptr<rt::VoxelField> CreateField(std::size_t lattice, const Choice& choice,
+  std::shared_ptr<bricks::VoxelField> CreateField(std::size_t lattice, const Choice& choice,
     const std::string& purpose, const std::vector<vtkDSMImageArrays::Info>& infos) const;
   /// Local. This rank's pieces of a lattice.
-  std::vector<std::shared_ptr<const rt::VoxelSource>> CreateSources(
+  std::vector<std::shared_ptr<const bricks::VoxelSource>> CreateSources(
     std::size_t lattice, const Choice& choice) const;
 
   std::shared_ptr<vtkDSMRankGroup> Group;

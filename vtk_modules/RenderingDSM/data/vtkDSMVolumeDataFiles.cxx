@@ -2,8 +2,8 @@
 // Lattices that are in a file.
 #include "vtkDSMVolumeData.h"
 
+#include "DSMBricks/build/VoxelIndex.h"
 #include "DSMCore/memory/HostMemory.h"
-#include "DSMRayTracing/build/VoxelIndex.h"
 
 #include "vtkObject.h"
 
@@ -38,7 +38,7 @@ void vtkDSMVolumeData::PublishFile(const vtkDSMFileVolume& file, bool isCoarser,
 {
   dsm::Messenger& messenger = this->Group->GetMessenger();
   dsm::BlockStore& store = this->Group->GetStore();
-  rt::VoxelField& field = *part.Field;
+  bricks::VoxelField& field = *part.Field;
   const bool hasSteps = !isCoarser && file.HasSteps();
   const std::string name = "the file '" + file.GetPath() + "'";
   // Rays meet bricks here and there, which lie in other chunks.
@@ -77,7 +77,7 @@ void vtkDSMVolumeData::PublishFile(const vtkDSMFileVolume& file, bool isCoarser,
     const auto publish = [&] { return store.Publish(what, *directory, part.Source); };
     field.Segment = isCoarser ? publish() : this->Group->WithRoom(publish);
   }
-  rt::VoxelIndex index =
+  bricks::VoxelIndex index =
     file.FindIndex(messenger, field.Lattice, own, store.GetSettings().Workers, progress);
   std::vector<bool> differ;
   messenger.RunTogether("Building the macrocells",
@@ -87,13 +87,13 @@ void vtkDSMVolumeData::PublishFile(const vtkDSMFileVolume& file, bool isCoarser,
         hasSteps ? std::move(index.Digests) : vtkDSMFileVolume::Digests());
       if (staysInMemory)
       {
-        differ = rt::VoxelIndex::Compare(*old.Bricks, *part.Bricks, index.Bricks.size());
+        differ = bricks::VoxelIndex::Compare(*old.Bricks, *part.Bricks, index.Bricks.size());
         field.Segment =
           std::move(old.Field->Segment); // retired with the field, should anything fail
       }
       part.Source->SetReader(file.CreateSteppingReader(field.Lattice, part.Bricks), name);
       field.Survey = index.Survey;
-      field.Hierarchy = rt::MacrocellHierarchy(field.Lattice, std::move(index.Bricks));
+      field.Hierarchy = bricks::MacrocellHierarchy(field.Lattice, std::move(index.Bricks));
     });
   if (staysInMemory)
   {

@@ -2,8 +2,8 @@
 // Other values for bricks that are there.
 #include "vtkDSMVolumeData.h"
 
+#include "DSMBricks/build/VoxelBrickBuilder.h"
 #include "DSMCore/publish/SegmentUpdate.h"
-#include "DSMRayTracing/build/VoxelBrickBuilder.h"
 
 #include <utility>
 
@@ -15,7 +15,7 @@ bool vtkDSMVolumeData::MayTakeOver(const std::shared_ptr<const Publication>& old
   }
   for (std::size_t lattice = 0; lattice < old->Parts.size(); ++lattice)
   {
-    const std::shared_ptr<rt::VoxelField>& field = old->Parts[lattice].Field;
+    const std::shared_ptr<bricks::VoxelField>& field = old->Parts[lattice].Field;
     const dsm::BlockStore& store = this->Group->GetStore();
     const auto mayChange = [&]
     {
@@ -34,16 +34,16 @@ bool vtkDSMVolumeData::MayTakeOver(const std::shared_ptr<const Publication>& old
 }
 
 void vtkDSMVolumeData::Renew(Publication::Part& part, Publication::Part&& old,
-  const std::vector<std::shared_ptr<const rt::VoxelSource>>& pieces, const std::string& what,
+  const std::vector<std::shared_ptr<const bricks::VoxelSource>>& pieces, const std::string& what,
   const std::function<void(double)>& progress) const
 {
-  rt::VoxelField& field = *part.Field;
+  bricks::VoxelField& field = *part.Field;
   field.Segment = std::move(old.Field->Segment); // retired with the field, should anything fail
   const std::vector<bool> chosen =
     dsm::SegmentUpdate::GatherAny(this->Group->GetMessenger(), "Looking for changes",
       [&]
       {
-        rt::VoxelFragmentSource source(field.Lattice, pieces);
+        bricks::VoxelFragmentSource source(field.Lattice, pieces);
         dsm::NotingFragmentSource noting(source, part.Digests);
         for (dsm::Fragment fragment; noting.Next(fragment);)
         {
@@ -55,8 +55,8 @@ void vtkDSMVolumeData::Renew(Publication::Part& part, Publication::Part&& old,
         }
         return differ;
       });
-  rt::VoxelFragmentSource source(field.Lattice, pieces);
+  bricks::VoxelFragmentSource source(field.Lattice, pieces);
   source.Restrict(chosen);
-  rt::VoxelBrickSink sink(field.Lattice);
+  bricks::VoxelBrickSink sink(field.Lattice);
   this->Group->GetStore().Update(what, field.Segment, chosen, source, sink, progress);
 }

@@ -42,7 +42,7 @@ std::uint64_t TakeNumber()
   return ++last;
 }
 
-bool Contains(const rt::Box& box, const rt::Index3& sample)
+bool Contains(const bricks::Box& box, const bricks::Index3& sample)
 {
   return sample.x >= box.Min.x && sample.x < box.Max.x && sample.y >= box.Min.y &&
     sample.y < box.Max.y && sample.z >= box.Min.z && sample.z < box.Max.z;
@@ -77,7 +77,7 @@ void TakeRoom(std::size_t bytes, const Take& take)
 
 void ReadAll(const vtkDSMFileValues& values, void* out)
 {
-  values.ReadBox({ rt::Index3(0), values.GetBox().GetSize() }, static_cast<std::byte*>(out));
+  values.ReadBox({ bricks::Index3(0), values.GetBox().GetSize() }, static_cast<std::byte*>(out));
 }
 
 } // namespace
@@ -160,11 +160,11 @@ const ValueTypeT* vtkDSMFileArray<ValueTypeT>::Find(vtkIdType tuple) const
       " was asked for: a filter has given it to a dataset of another size.");
     return nullptr;
   }
-  const rt::Index3 sample = this->Values->GetSample(tuple);
+  const bricks::Index3 sample = this->Values->GetSample(tuple);
   const auto getValues = [&](const vtkDSMFileValues::Place& place)
   {
-    const rt::Index3 size = place.Has.GetSize();
-    const rt::Index3 at = sample - place.Has.Min;
+    const bricks::Index3 size = place.Has.GetSize();
+    const bricks::Index3 at = sample - place.Has.Min;
     const std::int64_t number = (at.z * size.y + at.y) * size.x + at.x;
     return reinterpret_cast<const ValueTypeT*>(place.Samples->data()) +
       number * this->NumberOfComponents;
@@ -333,9 +333,9 @@ namespace
 
 /// Calls `use` with a null pointer to VTK's type for one of ours.
 template <class Use>
-auto DispatchType(rt::ScalarType type, const Use& use)
+auto DispatchType(bricks::ScalarType type, const Use& use)
 {
-  using Type = rt::ScalarType;
+  using Type = bricks::ScalarType;
   switch (type)
   {
     case Type::Int8:
@@ -384,7 +384,7 @@ const vtkDSMFileValues* vtkDSMGetFileValues(vtkAbstractArray* array)
     long long, unsigned long long, float, double>(array);
 }
 
-const vtkDSMFileValues* vtkDSMGetFileValues(vtkAbstractArray* array, const rt::Index3& size)
+const vtkDSMFileValues* vtkDSMGetFileValues(vtkAbstractArray* array, const bricks::Index3& size)
 {
   const vtkDSMFileValues* const values = vtkDSMGetFileValues(array);
   return values && values->GetBox().GetSize() == size ? values : nullptr;
@@ -428,7 +428,7 @@ vtkSmartPointer<vtkDataArray> vtkDSMReadFileArray(const vtkDSMFileValues& values
   return made;
 }
 
-int vtkDSMGetFileArrayType(rt::ScalarType type)
+int vtkDSMGetFileArrayType(bricks::ScalarType type)
 {
   return DispatchType(type,
     [](auto* null) { return vtkTypeTraits<std::remove_pointer_t<decltype(null)>>::VTKTypeID(); });

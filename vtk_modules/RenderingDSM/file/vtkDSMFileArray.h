@@ -125,7 +125,7 @@ private:
 const vtkDSMFileValues* vtkDSMGetFileValues(vtkAbstractArray* array);
 /// The same for the points or cells of an image that has so many along each axis; null, too, where a filter has given
 /// the array to an image of another shape, so that boxes of the image are none of the file.
-const vtkDSMFileValues* vtkDSMGetFileValues(vtkAbstractArray* array, const rt::Index3& size);
+const vtkDSMFileValues* vtkDSMGetFileValues(vtkAbstractArray* array, const bricks::Index3& size);
 
 /// An array that shows them, of their type, with the file's name for it.
 vtkSmartPointer<vtkDataArray> vtkDSMCreateFileArray(
@@ -133,6 +133,6 @@ vtkSmartPointer<vtkDataArray> vtkDSMCreateFileArray(
 /// An ordinary array with all of them, which takes no more than half of what the host has left. Throws dsm::Error.
 vtkSmartPointer<vtkDataArray> vtkDSMReadFileArray(const vtkDSMFileValues& values);
 /// VTK's number (VTK_FLOAT and so on) for its type.
-int vtkDSMGetFileArrayType(rt::ScalarType type);
+int vtkDSMGetFileArrayType(bricks::ScalarType type);
 
 #endif

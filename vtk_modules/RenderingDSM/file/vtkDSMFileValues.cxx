@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkDSMFileValues.h"
 
+#include "DSMBricks/base/ByteHash.h"
 #include "DSMCore/base/Error.h"
 #include "DSMCore/memory/FreedMemory.h"
-#include "DSMRayTracing/base/ByteHash.h"
 
 #include "vtkMultiProcessController.h"
 
@@ -35,7 +35,7 @@ int GetThreads()
 } // namespace
 
 vtkDSMFileValues::vtkDSMFileValues(std::shared_ptr<const vol::VolumeFile> file, std::size_t array,
-  int step, const rt::Box& box, int nextStep, vol::OpenOptions options)
+  int step, const bricks::Box& box, int nextStep, vol::OpenOptions options)
   : File(std::move(file))
   , Array(array)
   , Step(step)
@@ -45,21 +45,21 @@ vtkDSMFileValues::vtkDSMFileValues(std::shared_ptr<const vol::VolumeFile> file, 
 {
 }
 
-void vtkDSMFileValues::ReadBox(const rt::Box& box, std::byte* out) const
+void vtkDSMFileValues::ReadBox(const bricks::Box& box, std::byte* out) const
 {
   vol::ChunkCache::GetShared().ReadBox(
     this->File, this->Array, this->Step, { box.Min + this->Box.Min, box.Max + this->Box.Min }, out);
 }
 
-void vtkDSMFileValues::ReadScattered(const rt::Box& box, std::byte* out) const
+void vtkDSMFileValues::ReadScattered(const bricks::Box& box, std::byte* out) const
 {
   vol::ChunkCache::GetShared().ReadScattered(
     this->File, this->Array, this->Step, { box.Min + this->Box.Min, box.Max + this->Box.Min }, out);
 }
 
-void vtkDSMFileValues::Foresee(std::vector<rt::Box> boxes) const
+void vtkDSMFileValues::Foresee(std::vector<bricks::Box> boxes) const
 {
-  for (rt::Box& box : boxes)
+  for (bricks::Box& box : boxes)
   {
     box = { box.Min + this->Box.Min, box.Max + this->Box.Min };
   }
@@ -72,17 +72,17 @@ std::uint64_t vtkDSMFileValues::GetStamp() const
   const std::int64_t numbers[] = { static_cast<std::int64_t>(this->File->GetStamp()),
     static_cast<std::int64_t>(this->Array), this->Step, this->Box.Min.x, this->Box.Min.y,
     this->Box.Min.z, this->Box.Max.x, this->Box.Max.y, this->Box.Max.z };
-  rt::ByteHash hash;
+  bricks::ByteHash hash;
   hash.Add(path.data(), path.size());
   hash.Add(numbers, sizeof(numbers));
   return hash.Get();
 }
 
-vtkDSMFileValues::Place vtkDSMFileValues::Find(const rt::Index3& sample) const
+vtkDSMFileValues::Place vtkDSMFileValues::Find(const bricks::Index3& sample) const
 {
   const vol::ChunkGrid& grid = this->GetArray().Grid;
-  const rt::Index3 chunk = (sample + this->Box.Min) / grid.ChunkSamples;
-  const rt::Box has = grid.GetBox(chunk);
+  const bricks::Index3 chunk = (sample + this->Box.Min) / grid.ChunkSamples;
+  const bricks::Box has = grid.GetBox(chunk);
   return { vol::ChunkCache::GetShared().Get(this->File, this->Array, this->Step, chunk),
     { has.Min - this->Box.Min, has.Max - this->Box.Min } };
 }
@@ -124,7 +124,7 @@ void vtkDSMFileValues::ReadRanges(const std::function<bool(double)>& goesOn, boo
   }
 }
 
-std::optional<rt::SeenBricks> vtkDSMFileValues::TakeSeen() const
+std::optional<bricks::SeenBricks> vtkDSMFileValues::TakeSeen() const
 {
   const std::lock_guard<std::mutex> lock(this->RangesLock);
   return std::exchange(this->Seen, std::nullopt);

@@ -20,7 +20,7 @@ public:
   /// `box`: the samples that the part has, in the file's indices. `options`: with which the file was opened.
   /// `nextStep`: that will probably be wanted next, or None.
   vtkDSMFileValues(std::shared_ptr<const vol::VolumeFile> file, std::size_t array, int step,
-    const rt::Box& box, int nextStep, vol::OpenOptions options = {});
+    const bricks::Box& box, int nextStep, vol::OpenOptions options = {});
 
   static constexpr int None = -1;
 
@@ -29,21 +29,21 @@ public:
   std::size_t GetArrayNumber() const { return this->Array; }
   int GetStep() const { return this->Step; }
   int GetNextStep() const { return this->NextStep; }
-  const rt::Box& GetBox() const { return this->Box; }
+  const bricks::Box& GetBox() const { return this->Box; }
 
   const vol::FileArray& GetArray() const { return this->File->GetArrays()[this->Array]; }
   /// As the file has them.
-  rt::ScalarType GetType() const { return this->GetArray().Type; }
+  bricks::ScalarType GetType() const { return this->GetArray().Type; }
   std::int64_t GetCount() const { return this->Box.GetCount(); }
 
   /// The samples of a box that counts from the part's first sample, dense, x fastest, all components of a sample
   /// together. Throws dsm::Error.
-  void ReadBox(const rt::Box& box, std::byte* out) const;
+  void ReadBox(const bricks::Box& box, std::byte* out) const;
   /// The same where boxes are read here and there, rather than one beside the other.
-  void ReadScattered(const rt::Box& box, std::byte* out) const;
+  void ReadScattered(const bricks::Box& box, std::byte* out) const;
 
   /// The samples of boxes will probably be needed soon: the system is told. Nothing fails.
-  void Foresee(std::vector<rt::Box> boxes) const;
+  void Foresee(std::vector<bricks::Box> boxes) const;
 
   /// The part is what a rank has of all of the array: FindRanges may find those of more (vol::LoadRanges).
   void SetShare(bool isShare) { this->IsShare = isShare; }
@@ -55,12 +55,12 @@ public:
   struct Place
   {
     vol::ChunkCache::Chunk Samples;
-    rt::Box Has; ///< that Samples has, in the part's indices
+    bricks::Box Has; ///< that Samples has, in the part's indices
   };
-  Place Find(const rt::Index3& sample) const;
-  rt::Index3 GetSample(std::int64_t number) const
+  Place Find(const bricks::Index3& sample) const;
+  bricks::Index3 GetSample(std::int64_t number) const
   {
-    const rt::Index3 size = this->Box.GetSize();
+    const bricks::Index3 size = this->Box.GetSize();
     return { number % size.x, number / size.x % size.y, number / (size.x * size.y) };
   }
 
@@ -69,7 +69,7 @@ public:
   const vol::ValueRanges* FindRanges(
     const std::function<bool(double)>& goesOn, bool withBricks = false) const;
   /// What was seen of bricks then, once: they are not kept here any longer.
-  std::optional<rt::SeenBricks> TakeSeen() const;
+  std::optional<bricks::SeenBricks> TakeSeen() const;
 
 private:
   /// Under the lock; leaves Ranges unset when `goesOn` says no.
@@ -79,12 +79,12 @@ private:
   std::size_t Array;
   int Step;
   int NextStep;
-  rt::Box Box;
+  bricks::Box Box;
   vol::OpenOptions Options;
   bool IsShare = false;
   mutable std::mutex RangesLock;
   mutable std::optional<vol::ValueRanges> Ranges;
-  mutable std::optional<rt::SeenBricks> Seen;
+  mutable std::optional<bricks::SeenBricks> Seen;
 };
 
 #endif

@@ -338,7 +338,7 @@ void vtkDSMVolumeReader::TellOfRest() const
   }
   const std::uint64_t header = this->Self->Options.Bare.HeaderBytes;
   const std::uint64_t values =
-    static_cast<std::uint64_t>(rt::Box{ rt::Index3(0), array.Grid.Samples }.GetCount()) *
+    static_cast<std::uint64_t>(bricks::Box{ bricks::Index3(0), array.Grid.Samples }.GetCount()) *
     array.GetSampleBytes();
   std::error_code failure;
   const std::uint64_t has = std::filesystem::file_size(file.GetPath(), failure);
@@ -451,7 +451,7 @@ void vtkDSMVolumeReader::AddArrays(vtkImageData* image, int step, bool isShare)
   const auto& file = this->Self->File;
   int extent[6];
   image->GetExtent(extent);
-  const rt::Index3 first = file->GetGeometry().First;
+  const bricks::Index3 first = file->GetGeometry().First;
   const auto& arrays = file->GetArrays();
   const vol::FileArray* const scalars =
     this->FindScalars(); // what is drawn, unless something else is chosen
@@ -463,7 +463,7 @@ void vtkDSMVolumeReader::AddArrays(vtkImageData* image, int step, bool isShare)
     {
       continue;
     }
-    rt::Box box;
+    bricks::Box box;
     for (int axis = 0; axis < 3; ++axis)
     {
       // Along an axis of one point there is one cell.

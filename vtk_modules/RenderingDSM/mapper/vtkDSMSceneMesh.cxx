@@ -37,22 +37,22 @@ void Apply(const vtkDSMMeshBlock::Look& look, rt::Material& material)
 }
 
 rt::MeshObject::Coloring GetColoring(const vtkDSMMeshBlock::Look& look,
-  const rt::MeshAttributes& has, bool interpolateScalarsBeforeMapping)
+  const bricks::MeshAttributes& has, bool interpolateScalarsBeforeMapping)
 {
   using Coloring = rt::MeshObject::Coloring;
   if (look.Color[0] >= 0.0f)
   {
     return Coloring::Material;
   }
-  if (has.Colors != rt::Attachment::None)
+  if (has.Colors != bricks::Attachment::None)
   {
     return Coloring::Colors;
   }
-  if (has.Values == rt::Attachment::None)
+  if (has.Values == bricks::Attachment::None)
   {
     return Coloring::Material;
   }
-  return interpolateScalarsBeforeMapping || has.Values == rt::Attachment::Triangles
+  return interpolateScalarsBeforeMapping || has.Values == bricks::Attachment::Triangles
     ? Coloring::Values
     : Coloring::CornerValues;
 }
@@ -227,7 +227,7 @@ rt::MeshObject vtkDSMSceneMesh::CreateObject(const vtkDSMMeshData::Part& part, v
   object.Instance = std::move(instance);
   object.Clipping = vtkDSMTranslation::ToClipRegion(this->Mapper);
   object.Flat = property->GetInterpolation() == VTK_FLAT &&
-    part.Mesh->Attributes.Normals != rt::Attachment::Triangles;
+    part.Mesh->Attributes.Normals != bricks::Attachment::Triangles;
   object.Surface = vtkDSMTranslation::ToMaterial(property);
   object.Surface.Reflectivity = static_cast<float>(this->GetLightOptions()->GetReflectivity());
   Apply(part.Appearance, object.Surface);

@@ -6,8 +6,8 @@
 #include "vtkDSMSurfaceSearch.h"
 #include "vtkDSMTranslation.h"
 
-#include "DSMRayTracing/layout/FirstIsovalue.h"
-#include "DSMRayTracing/layout/MacrocellHierarchy.h"
+#include "DSMBricks/layout/FirstIsovalue.h"
+#include "DSMBricks/layout/MacrocellHierarchy.h"
 
 #include "vtkCompositeDataIterator.h"
 #include "vtkCompositeDataSet.h"
@@ -42,9 +42,9 @@ vtkMTimeType GetDataTime(vtkDataObject* data)
 }
 
 /// The range of all values; without any, its First is greater than its Last.
-rt::ValueRange FindRange(const vtkDSMVolumeData::Fields& fields)
+bricks::ValueRange FindRange(const vtkDSMVolumeData::Fields& fields)
 {
-  rt::ValueRange all{ std::numeric_limits<float>::max(), std::numeric_limits<float>::lowest() };
+  bricks::ValueRange all{ std::numeric_limits<float>::max(), std::numeric_limits<float>::lowest() };
   for (const auto& field : fields)
   {
     if (field)
@@ -57,7 +57,7 @@ rt::ValueRange FindRange(const vtkDSMVolumeData::Fields& fields)
 }
 
 /// Whether two ranges have at least half of the values in common that either has.
-bool AreAlike(const rt::ValueRange& one, const rt::ValueRange& other)
+bool AreAlike(const bricks::ValueRange& one, const bricks::ValueRange& other)
 {
   const auto getWidth = [](float first, float last)
   { return static_cast<double>(last) - static_cast<double>(first); };
@@ -381,7 +381,7 @@ int vtkDSMSceneVolume::CountCoarser() const
 
 void vtkDSMSceneVolume::SuggestIsovalue(dsm::Messenger& messenger)
 {
-  const rt::ValueRange range = FindRange(this->Iso->GetFields());
+  const bricks::ValueRange range = FindRange(this->Iso->GetFields());
   const bool isOther =
     !this->Suggested || !range.MayHold(*this->Suggested) || !AreAlike(range, this->SuggestedFrom);
   // Bricks that do not fit the memory at present tell nothing of their values.
@@ -390,7 +390,7 @@ void vtkDSMSceneVolume::SuggestIsovalue(dsm::Messenger& messenger)
   {
     this->SuggestedFor = this->Iso->Choice;
     this->SuggestedFrom = range;
-    this->Suggested = rt::FindFirstIsovalue(this->Iso->GetFields(), messenger);
+    this->Suggested = bricks::FindFirstIsovalue(this->Iso->GetFields(), messenger);
   }
   this->Mapper->SetSuggestedIsoValue(this->Suggested.value_or(vtkMath::Nan()));
 }

@@ -79,7 +79,7 @@ private:
   std::vector<std::shared_ptr<Published>> Stale;
   std::optional<double> Suggested; ///< isovalue
   vtkDSMVolumeData::Choice SuggestedFor;
-  rt::ValueRange SuggestedFrom{}; ///< of the values that suggested it
+  bricks::ValueRange SuggestedFrom{}; ///< of the values that suggested it
   std::string DataFailure;
   unsigned SettingsVersion = 0; ///< the group's at the last Update
 };

@@ -9,7 +9,8 @@ namespace
 {
 
 /// The bricks that a box of world space meets.
-rt::Box FindBricks(const rt::VoxelField& field, const glm::dmat4& toIndex, const double bounds[6])
+bricks::Box FindBricks(
+  const bricks::VoxelField& field, const glm::dmat4& toIndex, const double bounds[6])
 {
   glm::dvec3 low(std::numeric_limits<double>::max());
   glm::dvec3 high(std::numeric_limits<double>::lowest());
@@ -23,16 +24,16 @@ rt::Box FindBricks(const rt::VoxelField& field, const glm::dmat4& toIndex, const
   }
   // A cell more on each side, for what rounding does.
   const double edge = field.Lattice.GetEdge();
-  return rt::Intersect({ rt::Index3(glm::floor((low - 1.0) / edge)),
-                         rt::Index3(glm::floor((high + 1.0) / edge)) + rt::Index3(1) },
-    { rt::Index3(0), field.Lattice.GetBricks() });
+  return bricks::Intersect({ bricks::Index3(glm::floor((low - 1.0) / edge)),
+                             bricks::Index3(glm::floor((high + 1.0) / edge)) + bricks::Index3(1) },
+    { bricks::Index3(0), field.Lattice.GetBricks() });
 }
 
 bool MayHoldAny(
-  const rt::VoxelField& field, const rt::Box& bricks, const rt::IsovaluePredicate& mayHold)
+  const bricks::VoxelField& field, const bricks::Box& bricks, const rt::IsovaluePredicate& mayHold)
 {
-  const std::vector<rt::ValueRange>& ranges = field.Hierarchy.GetLevels().front().Ranges;
-  rt::Index3 brick;
+  const std::vector<bricks::ValueRange>& ranges = field.Hierarchy.GetLevels().front().Ranges;
+  bricks::Index3 brick;
   for (brick.z = bricks.Min.z; brick.z < bricks.Max.z; ++brick.z)
   {
     for (brick.y = bricks.Min.y; brick.y < bricks.Max.y; ++brick.y)
@@ -51,7 +52,7 @@ bool MayHoldAny(
 
 } // namespace
 
-bool vtkDSMSurfaceSearch::MayFind(const rt::VoxelField& field, const glm::dmat4& worldToIndex,
+bool vtkDSMSurfaceSearch::MayFind(const bricks::VoxelField& field, const glm::dmat4& worldToIndex,
   const double bounds[6], const std::vector<double>& isovalues)
 {
   return MayHoldAny(

@@ -2,7 +2,7 @@
 #ifndef vtkDSMSurfaceSearch_h
 #define vtkDSMSurfaceSearch_h
 
-#include "DSMRayTracing/layout/VoxelField.h"
+#include "DSMBricks/layout/VoxelField.h"
 
 #include <glm/mat4x4.hpp>
 
@@ -14,7 +14,7 @@ class vtkDSMSurfaceSearch
 public:
   /// Whether bricks that a box of world space meets (xmin, xmax, ymin, ...) may have a surface of one of the isovalues, which
   /// are in ascending order. Any thread, not collective.
-  static bool MayFind(const rt::VoxelField& field, const glm::dmat4& worldToIndex,
+  static bool MayFind(const bricks::VoxelField& field, const glm::dmat4& worldToIndex,
     const double bounds[6], const std::vector<double>& isovalues);
 };
 

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef bricks_BrickLooker_h
+#define bricks_BrickLooker_h
+
+#include "DSMBricks/layout/BrickLattice.h"
+#include "DSMBricks/layout/IsovalueSurvey.h"
+#include "DSMBricks/layout/MacrocellHierarchy.h"
+#include "DSMCore/base/ByteDigest.h"
+#include "DSMCore/fetch/BlockReader.h"
+
+#include <cstddef>
+#include <vector>
+
+namespace bricks
+{
+
+/// What is found of a brick by looking at it once. Plain.
+struct SeenBrick
+{
+  ValueRange Range;
+  dsm::ByteDigest Digest;
+};
+
+/// What one rank has seen of a volume's bricks, by itself.
+struct SeenBricks
+{
+  BrickLattice Lattice;
+  Box Bricks;                  ///< which, on the lattice of bricks
+  std::vector<SeenBrick> Seen; ///< x fastest
+  IsovalueSurvey Survey;       ///< of all of them
+
+  bool Has(const Index3& brick) const
+  {
+    return !Intersect(this->Bricks, { brick, brick + Index3(1) }).IsEmpty();
+  }
+  /// Where in Seen a brick is that is among them.
+  std::size_t Find(const Index3& brick) const
+  {
+    const Index3 at = brick - this->Bricks.Min;
+    const Index3 size = this->Bricks.GetSize();
+    return static_cast<std::size_t>(at.x + size.x * (at.y + size.y * at.z));
+  }
+};
+
+/// Reads bricks, and finds out what there is to know of them. Its threads are numbered from 0; each keeps its own
+/// brick and survey, so that none waits.
+class BrickLooker
+{
+public:
+  /// `reader` must outlive it. Throws std::bad_alloc.
+  BrickLooker(const BrickLattice& lattice, const dsm::BlockReader& reader, int threads);
+
+  /// The block of a brick, which stays until the thread's next one. Throws what the reader does.
+  const std::byte* Read(dsm::BlockId id, int thread);
+  /// Of the brick that the thread has read; each counts once in the survey.
+  SeenBrick See(dsm::BlockId id, int thread);
+  /// Of all that was seen.
+  IsovalueSurvey GetSurvey() const;
+
+private:
+  const BrickLattice& Lattice;
+  const dsm::BlockReader& Reader;
+  std::vector<IsovalueSurvey> Surveys;
+  std::vector<std::vector<std::byte>> Blocks;
+};
+
+} // namespace bricks
+
+#endif

@@ -1,0 +1,206 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "DSMBricks/build/TriangleCells.h"
+
+#include "DSMBricks/base/ParallelFor.h"
+
+#include <algorithm>
+#include <array>
+#include <functional>
+
+namespace bricks
+{
+
+namespace
+{
+
+constexpr const char* What = "Sorting a mesh";
+
+/// Behind all codes.
+constexpr std::uint64_t NoCode = ~std::uint64_t(0);
+
+constexpr std::size_t ChunkSize = std::size_t(1) << 16;
+
+/// Bits that are counted in the first round, and in each further one.
+constexpr int FirstBits = 12;
+constexpr int FurtherBits = 6;
+
+/// Cells that are divided at a time; bounds what counting their parts takes.
+constexpr std::size_t MostCells = std::size_t(1) << 14;
+
+} // namespace
+
+TriangleCells::TriangleCells(const TriangleReader& reader, std::uint64_t triangles,
+  const MortonCode& order, std::uint64_t largestCount, int threads, dsm::Messenger& messenger)
+{
+  messenger.RunTogether(What,
+    [&]
+    {
+      this->ReadKeys(reader, triangles, order, threads);
+      this->SortKeys(threads);
+    });
+  this->FindCells(largestCount, messenger);
+}
+
+void TriangleCells::ReadKeys(
+  const TriangleReader& reader, std::uint64_t triangles, const MortonCode& order, int threads)
+{
+  this->Keys.resize(triangles);
+  ParallelForChunks(threads, triangles, ChunkSize,
+    [&](std::size_t begin, std::size_t end, std::size_t, int)
+    {
+      for (std::size_t triangle = begin; triangle < end; ++triangle)
+      {
+        float corners[9];
+        const bool canBeHit = reader.ReadCorners(triangle, corners);
+        this->Keys[triangle] = { canBeHit ? order.GetOfTriangle(corners) : NoCode, triangle };
+      }
+    });
+  const auto kept = std::remove_if(
+    this->Keys.begin(), this->Keys.end(), [](const Key& key) { return key.Code == NoCode; });
+  this->Dropped = static_cast<std::uint64_t>(this->Keys.end() - kept);
+  this->Keys.erase(kept, this->Keys.end());
+}
+
+void TriangleCells::SortKeys(int threads)
+{
+  // One pass over the highest bits, then the buckets by themselves.
+  constexpr int bucketBits = 12;
+  constexpr std::size_t buckets = std::size_t(1) << bucketBits;
+  const auto bucketOf = [](const Key& key) { return key.Code >> (MortonCode::Bits - bucketBits); };
+  const std::size_t count = this->Keys.size();
+  const std::size_t chunkSize = std::max(ChunkSize, count / (4 * threads) + 1);
+  const std::size_t chunks = (count + chunkSize - 1) / chunkSize;
+  std::vector<std::array<std::uint64_t, buckets>> places(chunks);
+  ParallelForChunks(threads, count, chunkSize,
+    [&](std::size_t begin, std::size_t end, std::size_t chunk, int)
+    {
+      places[chunk].fill(0);
+      for (std::size_t index = begin; index < end; ++index)
+      {
+        ++places[chunk][bucketOf(this->Keys[index])];
+      }
+    });
+  std::vector<std::uint64_t> bounds(buckets + 1, 0);
+  std::uint64_t place = 0;
+  for (std::size_t bucket = 0; bucket < buckets; ++bucket)
+  {
+    for (auto& chunk : places)
+    {
+      place += std::exchange(chunk[bucket], place);
+    }
+    bounds[bucket + 1] = place;
+  }
+  std::vector<Key> sorted(count);
+  ParallelForChunks(threads, count, chunkSize,
+    [&](std::size_t begin, std::size_t end, std::size_t chunk, int)
+    {
+      for (std::size_t index = begin; index < end; ++index)
+      {
+        sorted[places[chunk][bucketOf(this->Keys[index])]++] = this->Keys[index];
+      }
+    });
+  ParallelFor(threads, buckets,
+    [&](std::size_t bucket, int)
+    {
+      std::sort(sorted.begin() + bounds[bucket], sorted.begin() + bounds[bucket + 1],
+        [](const Key& a, const Key& b) { return a.Code < b.Code; });
+    });
+  this->Keys = std::move(sorted);
+}
+
+std::vector<std::uint64_t> TriangleCells::Divide(const Cell& cell, int bits) const
+{
+  const std::size_t parts = std::size_t(1) << bits;
+  std::vector<std::uint64_t> bounds(parts + 1, cell.Begin);
+  const auto end = this->Keys.begin() + cell.End;
+  for (std::size_t part = 1; part < parts; ++part)
+  {
+    const std::uint64_t code = cell.Code + (part << (MortonCode::Bits - cell.Bits - bits));
+    const auto first = std::lower_bound(this->Keys.begin() + bounds[part - 1], end, code,
+      [](const Key& key, std::uint64_t value) { return key.Code < value; });
+    bounds[part] = static_cast<std::uint64_t>(first - this->Keys.begin());
+  }
+  bounds[parts] = cell.End;
+  return bounds;
+}
+
+void TriangleCells::FindCells(std::uint64_t largestCount, dsm::Messenger& messenger)
+{
+  // Of one generation, all have as many bits.
+  std::vector<Cell> open;
+  std::vector<Cell> next;
+  std::vector<std::uint64_t> counts;
+  std::vector<std::vector<std::uint64_t>> bounds;
+  const auto add = [&](const Cell& cell)
+  {
+    if (cell.Count > largestCount && cell.Bits < MortonCode::Bits)
+    {
+      next.push_back(cell);
+    }
+    else if (cell.Count > 0)
+    {
+      this->Cells.push_back(cell);
+    }
+  };
+  messenger.RunTogether(What, [&] { counts.assign(1, this->Keys.size()); });
+  messenger.Sum(counts);
+  messenger.RunTogether(What, [&] { add({ 0, 0, 0, this->Keys.size(), counts.front() }); });
+  for (int step = FirstBits; !next.empty(); step = FurtherBits)
+  {
+    open = std::exchange(next, {});
+    const int bits = std::min(step, MortonCode::Bits - open.front().Bits);
+    const std::size_t parts = std::size_t(1) << bits;
+    for (std::size_t first = 0; first < open.size(); first += MostCells)
+    {
+      const std::size_t last = std::min(first + MostCells, open.size());
+      messenger.RunTogether(What,
+        [&]
+        {
+          bounds.clear();
+          counts.clear();
+          for (std::size_t cell = first; cell < last; ++cell)
+          {
+            bounds.push_back(this->Divide(open[cell], bits));
+            for (std::size_t part = 0; part < parts; ++part)
+            {
+              counts.push_back(bounds.back()[part + 1] - bounds.back()[part]);
+            }
+          }
+        });
+      messenger.Sum(counts);
+      messenger.RunTogether(What,
+        [&]
+        {
+          for (std::size_t cell = first; cell < last; ++cell)
+          {
+            const std::uint64_t* partCounts = counts.data() + (cell - first) * parts;
+            const auto& partBounds = bounds[cell - first];
+            const Cell& whole = open[cell];
+            // Halves until it fits, or the parts that were counted are reached.
+            const std::function<void(std::size_t, int)> halve = [&](std::size_t begin, int depth)
+            {
+              const std::size_t size = parts >> depth;
+              std::uint64_t count = 0;
+              for (std::size_t part = begin; part < begin + size; ++part)
+              {
+                count += partCounts[part];
+              }
+              if (count > largestCount && size > 1)
+              {
+                halve(begin, depth + 1);
+                halve(begin + size / 2, depth + 1);
+                return;
+              }
+              add({ whole.Code + (begin << (MortonCode::Bits - whole.Bits - bits)),
+                whole.Bits + depth, partBounds[begin], partBounds[begin + size], count });
+            };
+            halve(0, 0);
+          }
+        });
+    }
+  }
+  std::sort(this->Cells.begin(), this->Cells.end(),
+    [](const Cell& a, const Cell& b) { return a.Code < b.Code; });
+}
+
+} // namespace bricks

@@ -1,0 +1,185 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "DSMBricks/build/TriangleReader.h"
+
+#include "DSMBricks/layout/OctahedralNormal.h"
+#include "DSMCore/base/Error.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <string>
+
+namespace bricks
+{
+
+namespace
+{
+
+std::uint32_t GetBits(float value)
+{
+  std::uint32_t bits;
+  std::memcpy(&bits, &value, sizeof(bits));
+  return bits;
+}
+
+/// Exactly zero only when the three points lie on a line, or so nearly that rounding hides it.
+bool HasArea(const float corners[9])
+{
+  double first[3];
+  double second[3];
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    first[axis] = static_cast<double>(corners[3 + axis]) - corners[axis];
+    second[axis] = static_cast<double>(corners[6 + axis]) - corners[axis];
+  }
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    const int y = (axis + 1) % 3;
+    const int z = (axis + 2) % 3;
+    if (first[y] * second[z] != first[z] * second[y])
+    {
+      return true;
+    }
+  }
+  return false;
+}
+
+} // namespace
+
+TriangleReader::TriangleReader(
+  const TriangleSource& source, const MeshAttributes& attributes, const double origin[3])
+  : Source(source)
+  , Attributes(attributes)
+  , Layout(attributes)
+{
+  std::copy_n(origin, 3, this->Origin);
+}
+
+bool TriangleReader::ReadPositions(
+  const TriangleSource& source, std::uint64_t triangle, double positions[9])
+{
+  std::uint64_t points[3];
+  source.GetTriangle(triangle, points);
+  bool finite = true;
+  for (int corner = 0; corner < 3; ++corner)
+  {
+    if (points[corner] >= source.GetPointCount())
+    {
+      throw dsm::Error("Triangle " + std::to_string(triangle) + " of the mesh has point " +
+        std::to_string(points[corner]) + ", but there are only " +
+        std::to_string(source.GetPointCount()) + " points. Check the dataset's cells.");
+    }
+    double* position = positions + 3 * corner;
+    source.GetPosition(points[corner], position);
+    finite = finite && std::isfinite(position[0]) && std::isfinite(position[1]) &&
+      std::isfinite(position[2]);
+  }
+  return finite;
+}
+
+bool TriangleReader::ReadCorners(std::uint64_t triangle, float corners[9]) const
+{
+  int order[3];
+  return this->ReadCorners(triangle, corners, order);
+}
+
+bool TriangleReader::ReadCorners(std::uint64_t triangle, float corners[9], int order[3]) const
+{
+  double positions[9];
+  if (!ReadPositions(this->Source, triangle, positions))
+  {
+    return false;
+  }
+  float read[9];
+  for (int word = 0; word < 9; ++word)
+  {
+    // Adding zero makes zeros positive.
+    read[word] = static_cast<float>(positions[word] - this->Origin[word % 3]) + 0.0f;
+  }
+  int first = 0;
+  for (int corner = 1; corner < 3; ++corner)
+  {
+    if (std::lexicographical_compare(
+          read + 3 * corner, read + 3 * corner + 3, read + 3 * first, read + 3 * first + 3))
+    {
+      first = corner;
+    }
+  }
+  for (int corner = 0; corner < 3; ++corner)
+  {
+    order[corner] = (first + corner) % 3;
+    std::copy_n(read + 3 * order[corner], 3, corners + 3 * corner);
+  }
+  return HasArea(corners);
+}
+
+template <class GetWord>
+void TriangleReader::WriteElements(Attachment attachment, std::uint64_t triangle,
+  const std::uint64_t points[3], std::uint32_t* words, GetWord&& getWord)
+{
+  if (attachment == Attachment::Triangles)
+  {
+    *words = getWord(triangle);
+  }
+  else if (attachment == Attachment::Points)
+  {
+    std::transform(points, points + 3, words, getWord);
+  }
+}
+
+void TriangleReader::ReadRecord(std::uint64_t triangle, std::uint32_t* record) const
+{
+  float corners[9];
+  int order[3];
+  this->ReadCorners(triangle, corners, order);
+  std::memcpy(record, corners, sizeof(corners));
+  std::uint64_t read[3];
+  this->Source.GetTriangle(triangle, read);
+  const std::uint64_t points[3] = { read[order[0]], read[order[1]], read[order[2]] };
+
+  if (this->Attributes.Normals != Attachment::None)
+  {
+    for (int corner = 0; corner < 3; ++corner)
+    {
+      const bool own = this->Attributes.Normals == Attachment::Triangles;
+      double normal[3];
+      this->Source.GetNormal(own ? triangle : points[corner], normal);
+      record[this->Layout.Normals + corner] = OctahedralNormal::Pack(normal);
+    }
+  }
+  WriteElements(this->Attributes.Values, triangle, points, record + this->Layout.Values,
+    [this](std::uint64_t element)
+    { return GetBits(static_cast<float>(this->Source.GetValue(element)) + 0.0f); });
+  WriteElements(this->Attributes.Colors, triangle, points, record + this->Layout.Colors,
+    [this](std::uint64_t element)
+    {
+      std::uint8_t rgba[4];
+      this->Source.GetColor(element, rgba);
+      std::uint32_t word;
+      std::memcpy(&word, rgba, sizeof(word));
+      return word;
+    });
+  if (this->Attributes.TextureCoordinates)
+  {
+    for (int corner = 0; corner < 3; ++corner)
+    {
+      double coordinate[2];
+      this->Source.GetTextureCoordinate(points[corner], coordinate);
+      std::uint32_t* words = record + this->Layout.TextureCoordinates + 2 * corner;
+      words[0] = GetBits(static_cast<float>(coordinate[0]) + 0.0f);
+      words[1] = GetBits(static_cast<float>(coordinate[1]) + 0.0f);
+    }
+  }
+  if (this->Attributes.EdgeFlags)
+  {
+    const unsigned flags = this->Source.GetEdgeFlags(triangle);
+    std::uint32_t turned = 0;
+    for (int side = 0; side < 3; ++side)
+    {
+      turned |= (flags >> order[side] & 1u) << side;
+    }
+    record[this->Layout.EdgeFlags] = turned;
+  }
+}
+
+} // namespace bricks

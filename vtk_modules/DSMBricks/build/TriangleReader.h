@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef bricks_TriangleReader_h
+#define bricks_TriangleReader_h
+
+#include "DSMBricks/build/TriangleRecord.h"
+#include "DSMBricks/build/TriangleSource.h"
+
+#include <cstdint>
+
+namespace bricks
+{
+
+/// Makes records out of the triangles of a source. May be used by several threads at a time.
+class TriangleReader
+{
+public:
+  /// `origin` is the mesh's, the same on every rank.
+  TriangleReader(
+    const TriangleSource& source, const MeshAttributes& attributes, const double origin[3]);
+
+  const TriangleRecord& GetLayout() const { return this->Layout; }
+
+  /// Three positions in the mesh's space. False when one is not finite. Throws dsm::Error when the
+  /// triangle has a point that the source does not.
+  static bool ReadPositions(
+    const TriangleSource& source, std::uint64_t triangle, double positions[9]);
+
+  /// The record's corners. False for a triangle that no ray can hit.
+  bool ReadCorners(std::uint64_t triangle, float corners[9]) const;
+
+  /// The whole record, of a triangle for which ReadCorners is true.
+  void ReadRecord(std::uint64_t triangle, std::uint32_t* record) const;
+
+private:
+  /// As ReadCorners; order[i] is the corner of the source that comes to the i-th place.
+  bool ReadCorners(std::uint64_t triangle, float corners[9], int order[3]) const;
+  /// Writes as many words as the attachment asks for.
+  template <class GetWord>
+  static void WriteElements(Attachment attachment, std::uint64_t triangle,
+    const std::uint64_t points[3], std::uint32_t* words, GetWord&& getWord);
+
+  const TriangleSource& Source;
+  MeshAttributes Attributes;
+  TriangleRecord Layout;
+  double Origin[3];
+};
+
+} // namespace bricks
+
+#endif

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "DSMBricks/build/VoxelBrickReader.h"
+
+#include "DSMBricks/layout/VoxelBrickHeader.h"
+#include "DSMCore/base/Error.h"
+
+#include <algorithm>
+#include <cstring>
+#include <utility>
+
+namespace bricks
+{
+
+VoxelBrickReader::VoxelBrickReader(
+  const BrickLattice& lattice, std::shared_ptr<const VoxelSource> source)
+  : Lattice(lattice)
+  , Source(std::move(source))
+{
+  const Box all{ Index3(0), lattice.GetCells() };
+  if (lattice.HasCellMask() || this->Source->HasCellMask() ||
+    Intersect(this->Source->GetCells(), all).GetCount() != all.GetCount())
+  {
+    throw dsm::Error("Bricks can be cut from a file only where it has all of the volume, without "
+                     "blanked cells.");
+  }
+}
+
+void VoxelBrickReader::Read(dsm::BlockId id, std::byte* block, std::size_t bytes) const
+{
+  std::fill_n(block, bytes, std::byte{ 0 }); // what lies between the parts counts, too
+  VoxelBrickSink sink(this->Lattice);
+  sink.Begin(id, block, bytes);
+  VoxelBrickHeader header;
+  std::memcpy(&header, block, sizeof(header));
+  const Box cells = this->Lattice.GetCellsOfBrick(id);
+  this->Source->ReadSamples({ cells.Min, cells.Max + Index3(1) }, block + header.SampleOffset);
+  sink.Finish(id, block, bytes);
+}
+
+} // namespace bricks

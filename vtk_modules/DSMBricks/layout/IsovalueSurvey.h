@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef bricks_IsovalueSurvey_h
+#define bricks_IsovalueSurvey_h
+
+#include "DSMBricks/layout/BrickLattice.h"
+#include "DSMCore/base/Block.h"
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+
+namespace bricks
+{
+
+/// How many macrocells of a volume have which values, in intervals of equal width: what FindFirstIsovalue chooses
+/// by. Nobody needs to know the range of the values before: intervals are 2^Exponent wide, begin at multiples of
+/// that, and become wider as values come that they do not reach. So it depends on what was counted only, and not
+/// on the order. Plain, so that it travels between ranks, and is kept. Any thread, one at a time.
+struct IsovalueSurvey
+{
+  /// At most so many have something in them, and at least half as many where the values are not all the same.
+  static constexpr int Intervals = 512;
+  using Counts = std::array<std::int64_t, Intervals>;
+
+  /// Whether CountBrick and Add can have produced these numbers from at most `mostMacrocells` macrocells. A survey that
+  /// was copied out of a file must pass before any other call. Returns false after Accumulate.
+  bool IsValid(std::int64_t mostMacrocells) const;
+
+  /// Counts the macrocells of a brick.
+  void CountBrick(const BrickLattice& lattice, dsm::BlockId id, const std::byte* block);
+  /// Both surveys must be valid.
+  void Add(const IsovalueSurvey& other);
+  /// When all is counted: entries of Crossed and CutOpen are numbers from then on, no more what changes there.
+  void Accumulate();
+
+  /// Intervals from the first to the last that has something in it.
+  std::size_t CountIntervals() const;
+  /// The value between an interval and the next one; `border` may lie between two.
+  double GetBorder(double border) const;
+
+  Counts Values{}; ///< four of each macrocell, which divide its range evenly
+  /// Of the borders between an interval and the next: a surface passes.
+  Counts Crossed{};
+  Counts CutOpen{}; ///< so it does, and the volume ends there
+  std::int64_t All = 0;
+  std::int64_t AtBorder = 0;
+  std::int64_t First = 0; ///< the first interval begins at First * 2^Exponent
+  std::int64_t Exponent = 0;
+  double Least = std::numeric_limits<double>::max(); ///< of all that was counted
+  double Greatest = std::numeric_limits<double>::lowest();
+
+private:
+  /// Intervals reach from `least` to `greatest` then, too.
+  void Reach(double least, double greatest);
+  void Widen(std::int64_t exponent);
+};
+
+} // namespace bricks
+
+#endif

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef bricks_MacrocellHierarchy_h
+#define bricks_MacrocellHierarchy_h
+
+#include "DSMBricks/layout/BrickLattice.h"
+#include "DSMCore/publish/BlockSegment.h"
+#include "DSMCore/transport/Messenger.h"
+
+#include <cstdint>
+#include <vector>
+
+namespace bricks
+{
+
+/// Smallest and largest value of the cells of a macrocell, rounded outward to float; empty (First >
+/// Last) when no cell holds data.
+struct ValueRange
+{
+  float First;
+  float Last;
+
+  /// Whether a surface of this isovalue may pass. A value equal to the isovalue counts as inside of
+  /// the surface, so First must be below it; that skips an integer volume's flat background.
+  bool MayHold(double isovalue) const
+  {
+    return static_cast<double>(this->First) < isovalue &&
+      isovalue <= static_cast<double>(this->Last);
+  }
+};
+
+/// Minimum and maximum over ever coarser boxes of bricks (the paper, section 4.1), whole on every
+/// rank: level 0 has one macrocell a brick, each further level one for 4 x 4 x 4 of the level
+/// below, up to a single one. The levels finer than a brick lie inside the bricks.
+class MacrocellHierarchy
+{
+public:
+  /// log2 of the edge ratio between levels.
+  static constexpr int Shift = 2;
+
+  /// One level; x fastest.
+  struct Level
+  {
+    int Size[3];
+    double Edge; ///< of a macrocell, in cells
+    double InverseEdge;
+    std::vector<ValueRange> Ranges;
+  };
+
+  MacrocellHierarchy() = default;
+  /// Collective: gathers the ranges that the bricks know of themselves.
+  MacrocellHierarchy(
+    const BrickLattice& lattice, const dsm::BlockSegment& segment, dsm::Messenger& messenger);
+  /// Local: builds the levels over the ranges of all bricks, in order of their ids.
+  MacrocellHierarchy(const BrickLattice& lattice, std::vector<ValueRange> bricks);
+
+  /// What the levels take.
+  static std::uint64_t CountBytes(const BrickLattice& lattice);
+
+  /// Level 0 is the finest.
+  const std::vector<Level>& GetLevels() const { return this->Levels; }
+  /// The range of the whole volume.
+  const ValueRange& GetRange() const { return this->Levels.back().Ranges.front(); }
+
+private:
+  std::vector<Level> Levels;
+};
+
+} // namespace bricks
+
+#endif

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef bricks_VoxelField_h
+#define bricks_VoxelField_h
+
+#include "DSMBricks/layout/BrickLattice.h"
+#include "DSMBricks/layout/IsovalueSurvey.h"
+#include "DSMBricks/layout/MacrocellHierarchy.h"
+#include "DSMCore/publish/BlockSegment.h"
+
+#include <memory>
+#include <optional>
+
+namespace bricks
+{
+
+/// One array of a volume, in bricks. Shared by all that draw it.
+struct VoxelField
+{
+  BrickLattice Lattice;
+  std::shared_ptr<dsm::BlockSegment> Segment;
+  MacrocellHierarchy Hierarchy;
+  /// Of all bricks, the same on every rank, where they need not be looked through for it.
+  std::optional<IsovalueSurvey> Survey;
+};
+
+} // namespace bricks
+
+#endif
