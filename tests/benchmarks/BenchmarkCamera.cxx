@@ -42,14 +42,14 @@ std::vector<Position> GetPositions(const BenchmarkOptions& options)
   return positions;
 }
 
-Camera GetCamera(const rt::IsosurfaceObject& object, double aspect, const Position& position)
+Camera GetCamera(const rt::LatticeIsosurface& object, double aspect, const Position& position)
 {
-  const glm::dvec3 last(object.Field->Lattice.GetCells());
-  const glm::dvec3 center(object.IndexToWorld * glm::dvec4(0.5 * last, 1.0));
+  const glm::dvec3 last(object.Field.Voxels->Lattice.GetCells());
+  const glm::dvec3 center(object.Field.IndexToWorld * glm::dvec4(0.5 * last, 1.0));
   glm::dvec3 halfExtents(0.0);
   for (int axis = 0; axis < 3; ++axis)
   {
-    halfExtents += 0.5 * last[axis] * glm::abs(glm::dvec3(object.IndexToWorld[axis]));
+    halfExtents += 0.5 * last[axis] * glm::abs(glm::dvec3(object.Field.IndexToWorld[axis]));
   }
   const double distance =
     position.Distance * std::max({ halfExtents.x, halfExtents.y, halfExtents.z });

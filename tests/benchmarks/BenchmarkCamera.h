@@ -30,6 +30,6 @@ struct Camera
 };
 
 /// Looks at the volume's centre, view angle 30 degrees.
-Camera GetCamera(const rt::IsosurfaceObject& object, double aspect, const Position& position);
+Camera GetCamera(const rt::LatticeIsosurface& object, double aspect, const Position& position);
 
 #endif

@@ -46,14 +46,14 @@ bricks::VoxelIndex FindIndex(const std::shared_ptr<const vol::VolumeFile>& file,
 
 } // namespace
 
-rt::IsosurfaceObject PublishBenchmarkFile(
+rt::LatticeIsosurface PublishBenchmarkFile(
   const std::string& path, int brickEdge, dsm::BlockStore& store, dsm::Messenger& messenger)
 {
   auto field = std::make_shared<bricks::VoxelField>();
   std::shared_ptr<const vol::VolumeFile> file;
   std::shared_ptr<dsm::ReadingSource> source;
   std::optional<dsm::BlockDirectory> directory;
-  rt::IsosurfaceObject object;
+  rt::LatticeIsosurface object;
   messenger.RunTogether("Opening the volume's file",
     [&]
     {
@@ -71,7 +71,7 @@ rt::IsosurfaceObject PublishBenchmarkFile(
       {
         indexToWorld[axis][axis] = geometry.Spacing[axis];
       }
-      object.SetIndexToWorld(indexToWorld);
+      object.Field.SetIndexToWorld(indexToWorld);
       directory = field->Lattice.CreateDirectory(bricks::DealBricks(
         field->Lattice, array.Grid.ChunkSamples, bricks::Index3(0), messenger.GetSize()));
       source = std::make_shared<dsm::ReadingSource>(messenger,
@@ -85,7 +85,7 @@ rt::IsosurfaceObject PublishBenchmarkFile(
     FindIndex(file, field->Lattice, store.GetSettings().Workers, messenger);
   field->Survey = index.Survey;
   field->Hierarchy = bricks::MacrocellHierarchy(field->Lattice, std::move(index.Bricks));
-  object.Field = field;
+  object.Field.Voxels = field;
   // The first picture finds no chunks in memory, as if the index had been kept.
   vol::ChunkCache& chunks = vol::ChunkCache::GetShared();
   const std::size_t limit = chunks.GetLimit();

@@ -12,7 +12,7 @@
 /// bricks come from the file when rays meet them. A brick edge of 0 is the renderer's own. What they hold is taken
 /// from the file's index, else found by reading it once; what of that is in memory is forgotten. Returns the object without isovalues. Collective; throws
 /// dsm::Error.
-rt::IsosurfaceObject PublishBenchmarkFile(
+rt::LatticeIsosurface PublishBenchmarkFile(
   const std::string& path, int brickEdge, dsm::BlockStore& store, dsm::Messenger& messenger);
 
 #endif

@@ -191,7 +191,7 @@ bricks::Box CutAlong(int axis, const bricks::Box& box, std::int64_t part, std::i
 
 } // namespace
 
-rt::IsosurfaceObject PublishBenchmarkVolume(const std::string& description, int brickEdge,
+rt::LatticeIsosurface PublishBenchmarkVolume(const std::string& description, int brickEdge,
   int threads, dsm::BlockStore& store, dsm::Messenger& messenger)
 {
   if (vol::MayBeVolumeFile(description))
@@ -229,8 +229,8 @@ rt::IsosurfaceObject PublishBenchmarkVolume(const std::string& description, int 
   field->Segment =
     store.Publish(description, lattice.CreateDirectory(messenger.GetSize()), source, sink);
   field->Hierarchy = bricks::MacrocellHierarchy(lattice, *field->Segment, messenger);
-  rt::IsosurfaceObject object;
-  object.SetIndexToWorld(input.IndexToWorld);
-  object.Field = field;
+  rt::LatticeIsosurface object;
+  object.Field.SetIndexToWorld(input.IndexToWorld);
+  object.Field.Voxels = field;
   return object;
 }

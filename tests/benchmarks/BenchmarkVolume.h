@@ -10,7 +10,7 @@
 
 /// Publishes the volume that `description` names (see BenchmarkOptions::Usage): each rank makes or
 /// reads a slab of its own. Returns the object without isovalues. Collective; throws dsm::Error.
-rt::IsosurfaceObject PublishBenchmarkVolume(const std::string& description, int brickEdge,
+rt::LatticeIsosurface PublishBenchmarkVolume(const std::string& description, int brickEdge,
   int threads, dsm::BlockStore& store, dsm::Messenger& messenger);
 
 #endif

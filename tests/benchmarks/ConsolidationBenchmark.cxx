@@ -6,9 +6,9 @@
 #include "BenchmarkVolume.h"
 #include "RepeatedAccess.h"
 
+#include "DSMRayTracing/field/lattice/IsosurfaceSearch.h"
 #include "DSMRayTracing/frame/PixelRays.h"
 #include "DSMRayTracing/frame/TileGrid.h"
-#include "DSMRayTracing/volume/IsosurfaceSearch.h"
 
 #include <nlohmann/json.hpp>
 
@@ -35,7 +35,7 @@ struct Counts
 /// Traces this rank's tiles of a frame; collective.
 template <template <class> class Access, class Store>
 void TraceFrame(dsm::Messenger& messenger, Store& store, rt::WorkerPool& pool,
-  const rt::IsosurfaceObject& object, const rt::FrameRequest& request, Counts& counts)
+  const rt::LatticeIsosurface& object, const rt::FrameRequest& request, Counts& counts)
 {
   const rt::PixelRays rays(request);
   const rt::TileGrid grid(request.Width, request.Height, request.TileSize);
@@ -53,7 +53,7 @@ void TraceFrame(dsm::Messenger& messenger, Store& store, rt::WorkerPool& pool,
         {
           for (int x = tile.X; x < tile.X + tile.Width; ++x)
           {
-            rt::IsosurfaceHit hit;
+            rt::LatticeHit hit;
             hits += tracer.Intersect(object, rays.GetRay(x, y), hit) ? 1 : 0;
           }
         }
@@ -69,7 +69,7 @@ void TraceFrame(dsm::Messenger& messenger, Store& store, rt::WorkerPool& pool,
 
 template <class Store>
 void TraceFrame(const std::string& pattern, dsm::Messenger& messenger, Store& store,
-  rt::WorkerPool& pool, const rt::IsosurfaceObject& object, const rt::FrameRequest& request,
+  rt::WorkerPool& pool, const rt::LatticeIsosurface& object, const rt::FrameRequest& request,
   Counts& counts)
 {
   if (pattern == "one")
@@ -120,12 +120,12 @@ void ConsolidationBenchmark::Run(const Options& options, dsm::Messenger& messeng
 {
   dsm::BlockStore::Settings settings = options.CreateSettings(messenger);
   dsm::BlockStore store(messenger, settings);
-  rt::IsosurfaceObject object =
+  rt::LatticeIsosurface object =
     PublishBenchmarkVolume(options.Volume, options.BrickEdge, settings.Workers, store, messenger);
   object.Isovalues = options.Isovalues;
   std::sort(object.Isovalues.begin(), object.Isovalues.end());
   settings.CacheBytes = static_cast<std::size_t>(
-    options.CacheFraction * object.Field->Segment->GetDirectory().GetTotalBytes());
+    options.CacheFraction * object.Field.Voxels->Segment->GetDirectory().GetTotalBytes());
   store.SetSettings(settings);
   if (!store.IsSettled())
   {

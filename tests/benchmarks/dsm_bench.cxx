@@ -245,12 +245,12 @@ void RunIsosurface(const BenchmarkOptions& options, dsm::Messenger& messenger)
   rt::Scene scene;
   scene.Objects.push_back(
     PublishBenchmarkVolume(options.Volume, options.BrickEdge, settings.Workers, store, messenger));
-  auto& object = std::get<rt::IsosurfaceObject>(scene.Objects.front());
+  auto& object = std::get<rt::LatticeIsosurface>(scene.Objects.front());
   object.Isovalues = options.Isovalues;
   std::sort(object.Isovalues.begin(), object.Isovalues.end());
-  object.Surface.Opacity = options.Opacity;
+  object.Look.Surface.Opacity = options.Opacity;
   settings.CacheBytes = static_cast<std::size_t>(
-    options.CacheFraction * object.Field->Segment->GetDirectory().GetTotalBytes());
+    options.CacheFraction * object.Field.Voxels->Segment->GetDirectory().GetTotalBytes());
   store.SetSettings(settings);
 
   rt::FrameRenderer renderer(messenger);
@@ -258,7 +258,8 @@ void RunIsosurface(const BenchmarkOptions& options, dsm::Messenger& messenger)
   scene.Transport.Shadows = options.Shadows;
   scene.Transport.AmbientOcclusionSamples = options.Occlusion;
   scene.Transport.AmbientOcclusionDistance = 0.2 *
-    glm::length(glm::dmat3(object.IndexToWorld) * glm::dvec3(object.Field->Lattice.GetCells()));
+    glm::length(
+      glm::dmat3(object.Field.IndexToWorld) * glm::dvec3(object.Field.Voxels->Lattice.GetCells()));
   const std::vector<double> isovalues = object.Isovalues;
   const std::vector<Position> positions = GetPositions(options);
   rt::Frame frame;
@@ -366,7 +367,7 @@ void RunIsosurface(const BenchmarkOptions& options, dsm::Messenger& messenger)
   if (messenger.GetRank() == 0)
   {
     Json result = Summarise(options, store, timing, ranks);
-    result["brick_bytes"] = object.Field->Segment->GetDirectory().GetLargest();
+    result["brick_bytes"] = object.Field.Voxels->Segment->GetDirectory().GetLargest();
     result["opening"] = { { "seconds", timing.OpeningSeconds }, { "ranks", Json::array() } };
     for (const RankResult& rank : openings)
     {

@@ -16,14 +16,14 @@ void AddPlaces(Scenes& scenes)
     { "Small", Scale(glm::dvec3(1.0 / 1048576.0)) }, { "Large", Scale(glm::dvec3(65536.0)) } };
   const auto add = [](SceneStage& stage, const glm::dmat4& place)
   {
-    rt::IsosurfaceObject volume = stage.CreateIsosurface({}, { 40.0, 60.0 }, place);
-    volume.Surface.Opacity = 0.8f;
+    rt::LatticeIsosurface volume = stage.CreateIsosurface({}, { 40.0, 60.0 }, place);
+    volume.Look.Surface.Opacity = 0.8f;
     stage.Add(std::move(volume));
     rt::MeshObject mesh =
       stage.CreateMesh(Generated::CreateBall(5, 0.7), place * Scale(glm::dvec3(0.8)));
-    mesh.Surface.Opacity = 0.5f;
-    mesh.BackSurface = mesh.Surface;
-    mesh.BackSurface->DiffuseColor = { 1.0f, 0.3f, 0.2f };
+    mesh.Look.Surface.Opacity = 0.5f;
+    mesh.Look.BackSurface = mesh.Look.Surface;
+    mesh.Look.BackSurface->DiffuseColor = { 1.0f, 0.3f, 0.2f };
     stage.Add(std::move(mesh));
     stage.World.Transport.Shadows = true;
   };
@@ -97,8 +97,8 @@ void AddCrowd(SceneStage& stage, float opacity)
 {
   const auto add = [&](auto object, const glm::vec3& color)
   {
-    object.Surface.DiffuseColor = color;
-    object.Surface.Opacity = opacity;
+    object.Look.Surface.DiffuseColor = color;
+    object.Look.Surface.Opacity = opacity;
     stage.Add(std::move(object));
   };
   Recipe ball;
@@ -137,8 +137,8 @@ void AddCrowds(Scenes& scenes)
     for (const glm::vec3& color : { glm::vec3(1.0f, 0.0f, 0.0f), glm::vec3(0.0f, 0.0f, 1.0f) })
     {
       auto object = create();
-      object.Surface.Opacity = 0.6f;
-      object.Surface.DiffuseColor = color;
+      object.Look.Surface.Opacity = 0.6f;
+      object.Look.Surface.DiffuseColor = color;
       stage.Add(std::move(object));
     }
   };

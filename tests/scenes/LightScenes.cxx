@@ -54,10 +54,10 @@ void AddLights(Scenes& scenes)
             AddSubject(stage, subject, 1.0f,
               [](auto& object)
               {
-                object.Surface.Specular = 0.6f;
-                object.Surface.SpecularPower = 12.0f;
-                object.Surface.SpecularColor = { 1.0f, 0.9f, 0.6f };
-                object.Surface.Ambient = 0.1f;
+                object.Look.Surface.Specular = 0.6f;
+                object.Look.Surface.SpecularPower = 12.0f;
+                object.Look.Surface.SpecularColor = { 1.0f, 0.9f, 0.6f };
+                object.Look.Surface.Ambient = 0.1f;
               });
           } });
       }
@@ -66,7 +66,8 @@ void AddLights(Scenes& scenes)
   scenes.push_back({ "light.Unlit",
     [](SceneStage& stage)
     {
-      AddSubject(stage, Subject::Both, 0.5f, [](auto& object) { object.Surface.Lighting = false; });
+      AddSubject(
+        stage, Subject::Both, 0.5f, [](auto& object) { object.Look.Surface.Lighting = false; });
     } });
 }
 
@@ -129,11 +130,11 @@ void AddTransport(Scenes& scenes)
           stage.World.Transport.Shadows = bounces == 3;
           stage.World.Transport.Background = { 0.3f, 0.5f, 0.7f };
           AddSubject(stage, subject, bounces == 3 ? 0.8f : 1.0f,
-            [](auto& object) { object.Surface.Reflectivity = 0.7f; });
+            [](auto& object) { object.Look.Surface.Reflectivity = 0.7f; });
           rt::MeshObject wall = stage.CreateMesh(Generated::CreateTerrain(4, 0.05),
             Translate({ -0.6, 0.2, -1.2 }) * Scale(glm::dvec3(1.2)));
-          wall.Surface.Reflectivity = 0.9f;
-          wall.Edges = rt::EdgeLines{ { 0.9f, 0.2f, 0.2f }, 2.0f, 0.8f };
+          wall.Look.Surface.Reflectivity = 0.9f;
+          wall.Look.Edges = rt::EdgeLines{ { 0.9f, 0.2f, 0.2f }, 2.0f, 0.8f };
           stage.Add(std::move(wall));
         } });
     }
@@ -147,11 +148,11 @@ void AddShadows(Scenes& scenes)
     [](SceneStage& stage)
     {
       stage.World.Transport.Shadows = true;
-      rt::IsosurfaceObject object = stage.CreateIsosurface({}, { 35.0, 60.0 });
+      rt::LatticeIsosurface object = stage.CreateIsosurface({}, { 35.0, 60.0 });
       Recipe recipe;
       recipe.Seed = 20;
-      object.ColorField = stage.Publish(recipe);
-      object.Colors = CreateColors(20.0, 80.0);
+      object.ColorValues = stage.Publish(recipe);
+      object.Look.Colors = CreateColors(20.0, 80.0);
       stage.Add(std::move(object));
       AddFloor(stage);
     } });
@@ -160,9 +161,9 @@ void AddShadows(Scenes& scenes)
     {
       stage.World.Transport.Shadows = true;
       rt::MeshObject object = stage.CreateMesh(Generated::CreateScan(8), Scale(glm::dvec3(0.7)));
-      object.Picture = CreateTexture();
-      object.ColoredBy = rt::MeshObject::Coloring::Colors;
-      object.Surface.Opacity = 0.8f;
+      object.Look.Picture = CreateTexture();
+      object.Look.ColoredBy = rt::MeshLook::Coloring::Colors;
+      object.Look.Surface.Opacity = 0.8f;
       stage.Add(std::move(object));
       AddFloor(stage);
     } });
@@ -170,8 +171,8 @@ void AddShadows(Scenes& scenes)
     [](SceneStage& stage)
     {
       stage.World.Transport.Shadows = true;
-      rt::IsosurfaceObject object = stage.CreateIsosurface({}, { 35.0, 50.0, 60.0 });
-      object.Opacities = { 0.2f, 1.0f, 0.0f };
+      rt::LatticeIsosurface object = stage.CreateIsosurface({}, { 35.0, 50.0, 60.0 });
+      object.Look.Opacities = { 0.2f, 1.0f, 0.0f };
       stage.Add(std::move(object));
       AddFloor(stage);
     } });
@@ -180,8 +181,8 @@ void AddShadows(Scenes& scenes)
     {
       stage.World.Transport.Shadows = true;
       rt::MeshObject object = stage.CreateMesh(Generated::CreateScan(8), Scale(glm::dvec3(0.7)));
-      object.BackSurface = object.Surface;
-      object.BackSurface->Opacity = 0.3f;
+      object.Look.BackSurface = object.Look.Surface;
+      object.Look.BackSurface->Opacity = 0.3f;
       stage.Add(std::move(object));
       AddFloor(stage);
     } });

@@ -29,14 +29,14 @@ void AddMeshes(Scenes& scenes)
 
 void AddMeshLooks(Scenes& scenes)
 {
-  using Coloring = rt::MeshObject::Coloring;
+  using Coloring = rt::MeshLook::Coloring;
   using Change = std::function<void(rt::MeshObject&)>;
   const auto colorBy = [](Coloring coloring)
   {
     return [coloring](rt::MeshObject& object)
     {
-      object.ColoredBy = coloring;
-      object.Colors = std::make_shared<rt::ColorMap>(CreateColors(-1.5, 2.0));
+      object.Look.ColoredBy = coloring;
+      object.Look.Colors = std::make_shared<rt::ColorMap>(CreateColors(-1.5, 2.0));
     };
   };
   const auto layOn = [](bool repeat, bool interpolate, const glm::dmat4& transform)
@@ -47,30 +47,30 @@ void AddMeshLooks(Scenes& scenes)
       texture->Repeat = repeat;
       texture->Interpolate = interpolate;
       texture->Transform = transform;
-      object.Picture = texture;
+      object.Look.Picture = texture;
     };
   };
   const auto paintBack = [](rt::MeshObject& object)
   {
-    object.BackSurface = object.Surface;
-    object.BackSurface->DiffuseColor = { 0.9f, 0.2f, 0.1f };
-    object.BackSurface->Opacity = 0.8f;
-    object.Surface.Opacity = 0.6f;
+    object.Look.BackSurface = object.Look.Surface;
+    object.Look.BackSurface->DiffuseColor = { 0.9f, 0.2f, 0.1f };
+    object.Look.BackSurface->Opacity = 0.8f;
+    object.Look.Surface.Opacity = 0.6f;
   };
   const auto drawEdges = [](float width, float opacity)
   {
     return [=](rt::MeshObject& object) {
-      object.Edges = rt::EdgeLines{ { 0.1f, 0.0f, 0.5f }, width, opacity };
+      object.Look.Edges = rt::EdgeLines{ { 0.1f, 0.0f, 0.5f }, width, opacity };
     };
   };
   const Named<Change> looks = { { "Smooth", [](rt::MeshObject&) {} },
-    { "Flat", [](rt::MeshObject& object) { object.Flat = true; } },
+    { "Flat", [](rt::MeshObject& object) { object.Look.Flat = true; } },
     { "Values", colorBy(Coloring::Values) }, { "CornerValues", colorBy(Coloring::CornerValues) },
     { "Colors", colorBy(Coloring::Colors) }, { "Texture", layOn(true, false, glm::dmat4(1.0)) },
     { "TextureBetween", layOn(true, true, Turn()) },
     { "TextureBorder", layOn(false, true, Scale({ 2.0, 1.5, 1.0 })) }, { "BackSurface", paintBack },
     { "Edges", drawEdges(1.0f, 1.0f) }, { "WideEdges", drawEdges(3.0f, 0.6f) },
-    { "Translucent", [](rt::MeshObject& object) { object.Surface.Opacity = 0.4f; } } };
+    { "Translucent", [](rt::MeshObject& object) { object.Look.Surface.Opacity = 0.4f; } } };
   const Generated::Mesh ball = Generated::CreateBall(5, 0.7);
   const Named<Generated::Mesh> meshes = { { "Points", ball },
     { "Triangles", Generated::MoveToTriangles(ball) }, { "Soup", Generated::CreateSoup(300) } };
@@ -95,7 +95,7 @@ void AddMeshLooks(Scenes& scenes)
         stage.World.Transport.Shadows = true;
         rt::MeshObject object = stage.CreateMesh(
           Generated::CreateScan(10), Scale({ 1.0, -1.0, 1.0 }), rt::MeshCulling{ front, !front });
-        object.Edges = rt::EdgeLines{};
+        object.Look.Edges = rt::EdgeLines{};
         stage.Add(std::move(object));
         AddFloor(stage);
       } });

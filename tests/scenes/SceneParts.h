@@ -106,9 +106,9 @@ void AddSubject(SceneStage& stage, Subject subject, float opacity, const Change&
   {
     Recipe recipe;
     recipe.Form = Recipe::Shape::Ball;
-    rt::IsosurfaceObject ball =
+    rt::LatticeIsosurface ball =
       stage.CreateIsosurface(recipe, { 40.0, 80.0 }, Translate({ -0.3, 0.1, 0.0 }));
-    ball.Surface.Opacity = opacity;
+    ball.Look.Surface.Opacity = opacity;
     change(ball);
     stage.Add(std::move(ball));
   }
@@ -116,7 +116,7 @@ void AddSubject(SceneStage& stage, Subject subject, float opacity, const Change&
   {
     rt::MeshObject ball = stage.CreateMesh(
       Generated::CreateBall(5, 0.8), Translate({ 0.4, 0.2, 0.3 }) * Scale(glm::dvec3(0.7)));
-    ball.Surface.Opacity = opacity;
+    ball.Look.Surface.Opacity = opacity;
     change(ball);
     stage.Add(std::move(ball));
   }

@@ -92,20 +92,20 @@ public:
   }
 
   /// The longest axis is [-1, 1], and `place` comes after that; `levels` in [0, 100].
-  rt::IsosurfaceObject CreateIsosurface(const Generated::Recipe& recipe,
+  rt::LatticeIsosurface CreateIsosurface(const Generated::Recipe& recipe,
     const std::vector<double>& levels = { 50.0 }, const glm::dmat4& place = glm::dmat4(1.0))
   {
-    rt::IsosurfaceObject object;
-    object.Field = this->Publish(recipe);
+    rt::LatticeIsosurface object;
+    object.Field.Voxels = this->Publish(recipe);
     const glm::dvec3 cells(recipe.Points - bricks::Index3(1));
     const double spacing = 2.0 / std::max({ cells.x, cells.y, cells.z });
-    object.SetIndexToWorld(place * glm::scale(glm::dmat4(1.0), glm::dvec3(spacing)) *
+    object.Field.SetIndexToWorld(place * glm::scale(glm::dmat4(1.0), glm::dvec3(spacing)) *
       glm::translate(glm::dmat4(1.0), -0.5 * cells));
     for (const double level : levels)
     {
       object.Isovalues.push_back(Generated::Scale(recipe.Type, level));
     }
-    object.Surface.DiffuseColor = { 0.9f, 0.7f, 0.4f };
+    object.Look.Surface.DiffuseColor = { 0.9f, 0.7f, 0.4f };
     return object;
   }
 
@@ -124,7 +124,7 @@ public:
     instance.Culling = cull;
     rt::MeshObject object;
     object.Instance = std::make_shared<rt::MeshInstance>(std::move(instance));
-    object.Surface.DiffuseColor = { 0.4f, 0.8f, 0.6f };
+    object.Look.Surface.DiffuseColor = { 0.4f, 0.8f, 0.6f };
     return object;
   }
 

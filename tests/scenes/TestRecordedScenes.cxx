@@ -16,10 +16,10 @@
 #include "tests/support/LoopbackCluster.h"
 
 #include "DSMCore/base/Error.h"
+#include "DSMRayTracing/field/lattice/PacketKernel.h"
 #include "DSMRayTracing/frame/FrameGather.h"
 #include "DSMRayTracing/frame/FrameRenderer.h"
 #include "DSMRayTracing/mesh/MeshKernel.h"
-#include "DSMRayTracing/volume/PacketKernel.h"
 
 #include <hwy/targets.h>
 

@@ -18,9 +18,9 @@ void AddTypes(Scenes& scenes)
       [recipe](SceneStage& stage)
       {
         stage.LookFrom(Camera::Parallel, 47, 41);
-        rt::IsosurfaceObject object = stage.CreateIsosurface(recipe, { 30.0, 45.0, 50.0, 70.0 });
-        object.Surface.Opacity = 0.5f;
-        object.Opacities = { 1.0f, 0.4f, 0.0f, 1.5f };
+        rt::LatticeIsosurface object = stage.CreateIsosurface(recipe, { 30.0, 45.0, 50.0, 70.0 });
+        object.Look.Surface.Opacity = 0.5f;
+        object.Look.Opacities = { 1.0f, 0.4f, 0.0f, 1.5f };
         stage.Add(std::move(object));
       } });
     scenes.push_back({ "type." + name + ".Steps",
@@ -91,8 +91,8 @@ void AddMissingData(Scenes& scenes)
             [recipe, camera = camera](SceneStage& stage)
             {
               stage.LookFrom(camera);
-              rt::IsosurfaceObject object = stage.CreateIsosurface(recipe, { 40.0, 55.0 });
-              object.Surface.Opacity = 0.7f;
+              rt::LatticeIsosurface object = stage.CreateIsosurface(recipe, { 40.0, 55.0 });
+              object.Look.Surface.Opacity = 0.7f;
               stage.Add(std::move(object));
             } });
         }
@@ -125,16 +125,17 @@ void AddFieldColors(Scenes& scenes)
     scenes.push_back({ "colors." + name,
       [=](SceneStage& stage)
       {
-        rt::IsosurfaceObject object = stage.CreateIsosurface({}, { 35.0, 60.0 });
+        rt::LatticeIsosurface object = stage.CreateIsosurface({}, { 35.0, 60.0 });
         Recipe recipe;
         recipe.Type = type;
         recipe.Seed = 20;
         recipe.Holes = holes;
-        object.ColorField = stage.Publish(recipe);
-        object.Colors = CreateColors(Generated::Scale(type, first), Generated::Scale(type, last));
-        object.Colors.Logarithmic = logarithmic;
-        object.Surface.Ambient = 0.2f;
-        object.Surface.AmbientColor = { 0.0f, 1.0f, 0.0f };
+        object.ColorValues = stage.Publish(recipe);
+        object.Look.Colors =
+          CreateColors(Generated::Scale(type, first), Generated::Scale(type, last));
+        object.Look.Colors.Logarithmic = logarithmic;
+        object.Look.Surface.Ambient = 0.2f;
+        object.Look.Surface.AmbientColor = { 0.0f, 1.0f, 0.0f };
         stage.Add(std::move(object));
       } });
   };
@@ -152,9 +153,9 @@ void AddFieldColors(Scenes& scenes)
   scenes.push_back({ "colors.Itself",
     [](SceneStage& stage)
     {
-      rt::IsosurfaceObject object = stage.CreateIsosurface({}, { 30.0, 45.0, 60.0 });
-      object.ColorField = object.Field;
-      object.Colors = CreateColors(25.0, 65.0);
+      rt::LatticeIsosurface object = stage.CreateIsosurface({}, { 30.0, 45.0, 60.0 });
+      object.ColorValues = object.Field.Voxels;
+      object.Look.Colors = CreateColors(25.0, 65.0);
       stage.Add(std::move(object));
     } });
 }

@@ -30,7 +30,7 @@ ROOMS = {
     "DSMCore": ["base", "transport", "memory", "publish", "fetch", "table", "paged", "store"],
     "DSMBricks": ["base", "accel", "layout", "build", "sample"],
     "DSMRayTracing": [
-        "base", "ray", "surface", "object", "volume", "mesh", "light", "scene", "schedule", "frame",
+        "base", "ray", "look", "object", "field", "surface", "mesh", "light", "scene", "schedule", "frame",
     ],
     "DSMVolumeFiles": ["base", "codec", "format", "cache", "range", "write"],
     "RenderingDSM": ["base", "options", "ranks", "file", "data", "frame", "scene", "mapper"],

@@ -58,7 +58,7 @@ public:
   }
 
   /// The function's surface at zero, published by the only rank.
-  static rt::IsosurfaceObject Publish(
+  static rt::LatticeIsosurface Publish(
     std::int64_t points, Function function, dsm::Messenger& messenger, dsm::BlockStore& store)
   {
     const bricks::BrickLattice lattice(
@@ -70,9 +70,9 @@ public:
     field->Lattice = lattice;
     field->Segment = store.Publish("function", lattice.CreateDirectory(1), source, sink);
     field->Hierarchy = bricks::MacrocellHierarchy(lattice, *field->Segment, messenger);
-    rt::IsosurfaceObject object;
-    object.Field = field;
-    object.SetIndexToWorld(GetIndexToWorld(points));
+    rt::LatticeIsosurface object;
+    object.Field.Voxels = field;
+    object.Field.SetIndexToWorld(GetIndexToWorld(points));
     object.Isovalues = { 0.0 };
     return object;
   }

@@ -40,11 +40,11 @@ inline rt::Scene Create(dsm::Messenger& messenger, dsm::BlockStore& store)
   rt::MeshObject blob;
   blob.Instance = std::make_shared<rt::MeshInstance>(
     Publish(TestMesh::CreateBlob(4), messenger, store), blobToWorld);
-  blob.Surface.Opacity = 0.8f;
-  blob.Surface.DiffuseColor = { 1.0f, 0.5f, 0.2f };
-  blob.BackSurface = blob.Surface;
-  blob.BackSurface->DiffuseColor = { 0.1f, 0.2f, 1.0f };
-  blob.Edges = rt::EdgeLines{ { 0.2f, 0.0f, 0.0f }, 1.1f };
+  blob.Look.Surface.Opacity = 0.8f;
+  blob.Look.Surface.DiffuseColor = { 1.0f, 0.5f, 0.2f };
+  blob.Look.BackSurface = blob.Look.Surface;
+  blob.Look.BackSurface->DiffuseColor = { 0.1f, 0.2f, 1.0f };
+  blob.Look.Edges = rt::EdgeLines{ { 0.2f, 0.0f, 0.0f }, 1.1f };
   scene.Objects.push_back(blob);
 
   const glm::dmat4 terrainToWorld = glm::scale(
@@ -59,14 +59,14 @@ inline rt::Scene Create(dsm::Messenger& messenger, dsm::BlockStore& store)
   rt::MeshObject terrain;
   terrain.Instance =
     std::make_shared<rt::MeshInstance>(Publish(squares, messenger, store), terrainToWorld);
-  terrain.Edges = rt::EdgeLines{ { 1.0f, 1.0f, 1.0f }, 2.0f, 0.5f };
-  terrain.ColoredBy = rt::MeshObject::Coloring::Values;
+  terrain.Look.Edges = rt::EdgeLines{ { 1.0f, 1.0f, 1.0f }, 2.0f, 0.5f };
+  terrain.Look.ColoredBy = rt::MeshLook::Coloring::Values;
   auto colors = std::make_shared<rt::ColorMap>();
   colors->First = -2.0;
   colors->Last = 3.0;
   colors->Table = { { 0.0f, 0.0f, 1.0f, 1.0f }, { 0.0f, 1.0f, 0.0f, 1.0f },
     { 1.0f, 0.0f, 0.0f, 1.0f } };
-  terrain.Colors = colors;
+  terrain.Look.Colors = colors;
   scene.Objects.push_back(terrain);
   return scene;
 }

@@ -77,10 +77,10 @@ inline rt::Scene CreateScene(const std::shared_ptr<bricks::VoxelField>& field, f
 {
   rt::Scene scene;
   scene.Lights.emplace_back();
-  rt::IsosurfaceObject object;
-  object.Field = field;
+  rt::LatticeIsosurface object;
+  object.Field.Voxels = field;
   object.Isovalues = { 0.3, 0.5 };
-  object.Surface.Opacity = opacity;
+  object.Look.Surface.Opacity = opacity;
   scene.Objects.push_back(object);
   return scene;
 }

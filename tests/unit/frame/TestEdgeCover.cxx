@@ -2,7 +2,7 @@
 // The lines along the sides of triangles, in pixels.
 #include "DSMBricks/layout/MeshAttributes.h"
 #include "DSMRayTracing/frame/PixelRays.h"
-#include "DSMRayTracing/light/EdgeCover.h"
+#include "DSMRayTracing/mesh/EdgeCover.h"
 
 #include <gtest/gtest.h>
 
@@ -28,7 +28,8 @@ rt::FrameRequest CreateRequest(const glm::dmat4& projection)
 glm::dmat4x3 GetParallelView()
 {
   return rt::PixelRays(CreateRequest(glm::ortho(-10.0, 10.0, -5.0, 5.0, 0.0, 20.0)))
-    .GetWorldToPixels();
+    .GetView()
+    .WorldToPixels;
 }
 
 constexpr unsigned FirstSide = 1;
@@ -77,7 +78,7 @@ TEST(EdgeCover, AsManyPixelsNearAndFarAlsoFarFromTheWorldsOrigin)
     // Half the height is the distance; 50 pixels.
     request.WorldToClip = glm::perspective(2.0 * std::atan(1.0), 1.0, 0.1, 100.0) *
       glm::lookAt(center, center - glm::dvec3(0.0, 0.0, 1.0), glm::dvec3(0.0, 1.0, 0.0));
-    const glm::dmat4x3 view = rt::PixelRays(request).GetWorldToPixels();
+    const glm::dmat4x3 view = rt::PixelRays(request).GetView().WorldToPixels;
     for (const double distance : { 1.0, 5.0, 40.0 })
     {
       const glm::dvec3 corners[3] = { center + distance * glm::dvec3(-0.5, 0.0, -1.0),
@@ -92,7 +93,7 @@ TEST(EdgeCover, AsManyPixelsNearAndFarAlsoFarFromTheWorldsOrigin)
 TEST(EdgeCover, CornersBehindTheCamera)
 {
   const glm::dmat4x3 view =
-    rt::PixelRays(CreateRequest(glm::perspective(1.0, 2.0, 0.1, 100.0))).GetWorldToPixels();
+    rt::PixelRays(CreateRequest(glm::perspective(1.0, 2.0, 0.1, 100.0))).GetView().WorldToPixels;
   // The same line, by a far end before the camera or behind it; the other sides are out of view.
   const glm::dvec3 before[3] = { { 1.0, -1.0, -30.0 }, { 1.0, -1.0, 4.0 }, { -30.0, -1.0, -10.0 } };
   const glm::dvec3 behind[3] = { before[0], { 1.0, -1.0, 20.0 }, before[2] };
@@ -108,15 +109,15 @@ TEST(EdgeCover, CornersBehindTheCamera)
 
 TEST(EdgeCover, AMirrorShowsWhatIsBehindItsPlane)
 {
-  const glm::dmat4x3 view =
-    rt::PixelRays(CreateRequest(glm::perspective(1.0, 2.0, 0.1, 100.0))).GetWorldToPixels();
+  const rt::PictureView view =
+    rt::PixelRays(CreateRequest(glm::perspective(1.0, 2.0, 0.1, 100.0))).GetView();
   const glm::dvec3 position(0.3, -0.2, -1.0);
   const glm::dvec3 normal = glm::normalize(glm::dvec3(0.2, 0.7, 0.5));
-  const glm::dmat4x3 mirrored = rt::GetMirroredView(view, position, normal);
+  const glm::dmat4x3 mirrored = view.GetMirrored(position, normal).WorldToPixels;
   for (const glm::dvec3& point : { glm::dvec3(1.0, 2.0, 0.5), glm::dvec3(-2.0, 0.3, 1.5) })
   {
     const glm::dvec3 image = position + glm::reflect(point - position, normal);
-    const glm::dvec3 expected = view * glm::dvec4(image, 1.0);
+    const glm::dvec3 expected = view.WorldToPixels * glm::dvec4(image, 1.0);
     const glm::dvec3 found = mirrored * glm::dvec4(point, 1.0);
     EXPECT_NEAR(glm::distance(found, expected), 0.0, 1e-9);
   }

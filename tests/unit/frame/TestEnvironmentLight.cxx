@@ -120,7 +120,7 @@ TEST_F(EnvironmentLight, OfAWhiteSphereIsThatOfItsNormals)
 TEST_F(EnvironmentLight, IsAddedToThatOfLampsAndUntouchedWhereSurfacesAreNotLit)
 {
   this->AddFloorAndWall();
-  rt::Material& surface = std::get<rt::MeshObject>(this->World.Objects.front()).Surface;
+  rt::Material& surface = std::get<rt::MeshObject>(this->World.Objects.front()).Look.Surface;
   surface.Diffuse = 0.4f;
   this->World.Transport.Surroundings = CreateEnvironment({ 0.0, 0.0, 1.0 });
   const glm::dvec3 alone = 0.4 * Mix(0.5 + 1.0 / 3.0);

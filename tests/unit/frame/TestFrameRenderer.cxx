@@ -218,10 +218,10 @@ INSTANTIATE_TEST_SUITE_P(Differences, FrameThatDiffers,
     Difference{ "Objects", [](auto&, auto& scene) { scene.Objects.clear(); } },
     Difference{ "Isovalue",
       [](auto&, auto& scene)
-      { std::get<rt::IsosurfaceObject>(scene.Objects[0]).Isovalues[1] = 0.6; } },
+      { std::get<rt::LatticeIsosurface>(scene.Objects[0]).Isovalues[1] = 0.6; } },
     Difference{ "Look",
       [](auto&, auto& scene)
-      { std::get<rt::IsosurfaceObject>(scene.Objects[0]).Surface.DiffuseColor.y = 0.3f; } },
+      { std::get<rt::LatticeIsosurface>(scene.Objects[0]).Look.Surface.DiffuseColor.y = 0.3f; } },
     Difference{ "Light", [](auto&, auto& scene) { scene.Lights[0].Color.x = 0.5f; } }),
   [](const auto& info) { return info.param.Name; });
 

@@ -27,7 +27,7 @@ protected:
     rt::MeshObject object;
     object.Instance = std::make_shared<rt::MeshInstance>(
       MeshScene::Publish(mesh, this->Messenger, this->Store), place);
-    object.Flat = true;
+    object.Look.Flat = true;
     this->World.Objects = { object };
   }
 
@@ -159,7 +159,7 @@ TEST_F(MeshClearance, DoesNotGrowWithWhatIsFarAwayInTheSameMesh)
   TestMesh::Mesh mesh = CreateSphere(1.0, glm::dvec3(0.0));
   AddSquare(mesh, { 3e6, 0.0, 0.0 }, 1.0);
   this->Show(mesh);
-  std::get<rt::MeshObject>(this->World.Objects.front()).Surface.Opacity = 0.5f;
+  std::get<rt::MeshObject>(this->World.Objects.front()).Look.Surface.Opacity = 0.5f;
   const rt::Picture picture = this->Trace(LookDown(0.0, 0.0, 0.6));
   for (int y = 0; y < Size; ++y)
   {
@@ -241,7 +241,7 @@ TEST_P(SphereAtScale, ShadowsNothingOfItselfAndHidesNothingOfItself)
     this->World.Transport.AmbientOcclusionDistance = 10.0 * radius;
     EXPECT_EQ(this->Trace(worldToClip).Color, bright.Color) << what << ": ambient occlusion";
 
-    std::get<rt::MeshObject>(this->World.Objects.front()).Surface.Opacity = 0.5f;
+    std::get<rt::MeshObject>(this->World.Objects.front()).Look.Surface.Opacity = 0.5f;
     this->World.Transport = rt::LightTransport();
     const rt::Picture clear = this->Trace(worldToClip);
     int layers = 0;

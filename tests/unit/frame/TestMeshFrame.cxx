@@ -90,7 +90,7 @@ protected:
     rt::MeshObject object;
     object.Instance = std::make_shared<rt::MeshInstance>(
       MeshScene::Publish(mesh, this->Messenger, this->Store), place);
-    object.Surface.Lighting = false;
+    object.Look.Surface.Lighting = false;
     return object;
   }
 
@@ -176,9 +176,9 @@ TEST_P(MeshFrame, ClippedPictureDoesNotDependOnRanks)
 TEST_F(MeshPicture, ClippingShowsWhatLiesBehind)
 {
   rt::MeshObject above = this->Publish(CreateSquare(0.5));
-  above.Surface.DiffuseColor = { 1.0f, 0.0f, 0.0f };
+  above.Look.Surface.DiffuseColor = { 1.0f, 0.0f, 0.0f };
   rt::MeshObject below = this->Publish(CreateSquare(-0.5));
-  below.Surface.DiffuseColor = { 0.0f, 0.0f, 1.0f };
+  below.Look.Surface.DiffuseColor = { 0.0f, 0.0f, 1.0f };
   below.Clipping.HalfSpaces = { { { 0.0, 1.0, 0.0 }, { 0.0, -0.4, 0.0 } } };
   above.Clipping.HalfSpaces = { { { 2.0, 0.0, 0.0 }, { 0.2, 0.0, 0.0 } },
     { { 0.0, 0.0, 1.0 }, { 0.0, 0.0, 0.5 } } }; // it lies in the border itself
@@ -199,7 +199,7 @@ TEST_F(MeshPicture, ClippingShowsWhatLiesBehind)
 TEST_F(MeshPicture, WhatIsClippedCastsNoShadow)
 {
   rt::MeshObject floor = this->Publish(CreateSquare(-0.5));
-  floor.Surface.Lighting = true;
+  floor.Look.Surface.Lighting = true;
   rt::MeshObject roof =
     this->Publish(CreateSquare(0.5), glm::translate(glm::dmat4(1.0), glm::dvec3(1.0, 0.0, 0.0)));
   this->World.Lights.resize(1);
@@ -237,14 +237,14 @@ TEST_F(MeshPicture, IsosurfacesAndMeshesHideOneAnother)
 {
   const auto field = SphereScene::Publish(this->Messenger, this->Store);
   this->World = SphereScene::CreateScene(field, 1.0f);
-  rt::IsosurfaceObject& ball = std::get<rt::IsosurfaceObject>(this->World.Objects.front());
+  rt::LatticeIsosurface& ball = std::get<rt::LatticeIsosurface>(this->World.Objects.front());
   const double scale = 2.0 / (SphereScene::Points - 1);
-  ball.SetIndexToWorld(glm::translate(glm::dmat4(1.0), glm::dvec3(-1.0)) *
+  ball.Field.SetIndexToWorld(glm::translate(glm::dmat4(1.0), glm::dvec3(-1.0)) *
     glm::scale(glm::dmat4(1.0), glm::dvec3(scale)));
   ball.Isovalues = { 0.5 };
-  ball.Surface.Lighting = false;
+  ball.Look.Surface.Lighting = false;
   rt::MeshObject square = this->Publish(CreateSquare(0.0));
-  square.Surface.DiffuseColor = { 0.0f, 0.0f, 1.0f };
+  square.Look.Surface.DiffuseColor = { 0.0f, 0.0f, 1.0f };
   const rt::Picture picture = this->Trace({ square });
   EXPECT_EQ(GetColor(picture, 0.0, 0.0), glm::ivec4(255)); // the ball's upper half
   EXPECT_EQ(GetColor(picture, 0.95, 0.95), glm::ivec4(0, 0, 255, 255));
@@ -259,10 +259,10 @@ TEST_F(MeshPicture, CullingAndTheColourOfTheBack)
   for (const bool back : { false, true })
   {
     rt::MeshObject object = this->Publish(CreateSquare(0.0), back ? turned : glm::dmat4(1.0));
-    object.Surface.DiffuseColor = { 1.0f, 0.0f, 0.0f };
+    object.Look.Surface.DiffuseColor = { 1.0f, 0.0f, 0.0f };
     EXPECT_EQ(GetColor(this->Trace({ object }), 0.1, 0.2), glm::ivec4(255, 0, 0, 255)) << back;
-    object.BackSurface = object.Surface;
-    object.BackSurface->DiffuseColor = { 0.0f, 0.0f, 1.0f };
+    object.Look.BackSurface = object.Look.Surface;
+    object.Look.BackSurface->DiffuseColor = { 0.0f, 0.0f, 1.0f };
     EXPECT_EQ(GetColor(this->Trace({ object }), 0.1, 0.2),
       back ? glm::ivec4(0, 0, 255, 255) : glm::ivec4(255, 0, 0, 255));
     auto culled = std::make_shared<rt::MeshInstance>(*object.Instance);
@@ -276,14 +276,14 @@ TEST_F(MeshPicture, CullingAndTheColourOfTheBack)
 TEST_F(MeshPicture, ColoursByTheirSource)
 {
   rt::MeshObject object = this->Publish(CreateSquare(0.0));
-  object.Colors = CreateRainbow();
-  object.ColoredBy = rt::MeshObject::Coloring::Values;
+  object.Look.Colors = CreateRainbow();
+  object.Look.ColoredBy = rt::MeshLook::Coloring::Values;
   rt::Picture picture = this->Trace({ object });
   EXPECT_EQ(GetColor(picture, -0.8, 0.3), glm::ivec4(255, 0, 0, 255));
   EXPECT_EQ(GetColor(picture, 0.02, -0.4), glm::ivec4(0, 255, 0, 255));
   EXPECT_EQ(GetColor(picture, 0.8, 0.3), glm::ivec4(0, 0, 255, 255));
 
-  object.ColoredBy = rt::MeshObject::Coloring::CornerValues;
+  object.Look.ColoredBy = rt::MeshLook::Coloring::CornerValues;
   picture = this->Trace({ object });
   const double part = (GetPlace(Size / 2) + 1.0) / 2.0; // of the way from red to blue
   const glm::ivec4 middle = GetColor(picture, 0.01, 0.3);
@@ -291,7 +291,7 @@ TEST_F(MeshPicture, ColoursByTheirSource)
   EXPECT_EQ(middle.y, 0);
   EXPECT_NEAR(middle.z, 255.0 * part, 1.0);
 
-  object.ColoredBy = rt::MeshObject::Coloring::Colors;
+  object.Look.ColoredBy = rt::MeshLook::Coloring::Colors;
   picture = this->Trace({ object });
   EXPECT_NEAR(GetColor(picture, 0.01, 0.3).x, 255.0 * part, 1.0);
   EXPECT_EQ(GetColor(picture, 0.01, 0.3).z, 0);
@@ -306,7 +306,7 @@ TEST_F(MeshPicture, ATextureIsLaidOnByItsCoordinates)
   texture->Width = 2;
   texture->Height = 1;
   texture->Texels = { 255, 0, 0, 255, 0, 255, 0, 255 };
-  object.Picture = texture;
+  object.Look.Picture = texture;
   rt::Picture picture = this->Trace({ object });
   EXPECT_EQ(GetColor(picture, -0.8, 0.1), glm::ivec4(255, 0, 0, 255));
   EXPECT_EQ(GetColor(picture, -0.3, 0.1), glm::ivec4(0, 255, 0, 255));
@@ -327,8 +327,8 @@ TEST_F(MeshPicture, EdgesAreDrawnWithoutTheDiagonal)
   TestMesh::Mesh square = CreateSquare(0.0);
   square.EdgeFlags = { 0b011, 0b110 };
   rt::MeshObject object = this->Publish(square);
-  object.Surface.DiffuseColor = { 0.0f, 1.0f, 0.0f };
-  object.Edges = rt::EdgeLines{ { 1.0f, 0.0f, 0.0f }, 3.0f };
+  object.Look.Surface.DiffuseColor = { 0.0f, 1.0f, 0.0f };
+  object.Look.Edges = rt::EdgeLines{ { 1.0f, 0.0f, 0.0f }, 3.0f };
   const rt::Picture picture = this->Trace({ object });
   const double pixel = 3.0 / Size;
   for (int y = 0; y < Size; ++y)
@@ -354,14 +354,14 @@ TEST_F(MeshPicture, EdgesAreSeenInMirrorsAndPaintedOnThem)
   square.EdgeFlags = { 0b011, 0b110 };
   rt::MeshObject mirror = this->Publish(
     square, glm::rotate(glm::dmat4(1.0), -glm::quarter_pi<double>(), glm::dvec3(0.0, 1.0, 0.0)));
-  mirror.Surface.Reflectivity = 1.0f;
-  mirror.Edges = rt::EdgeLines{ { 0.0f, 0.0f, 1.0f }, 4.0f };
+  mirror.Look.Surface.Reflectivity = 1.0f;
+  mirror.Look.Edges = rt::EdgeLines{ { 0.0f, 0.0f, 1.0f }, 4.0f };
   const glm::dmat4 upright =
     glm::rotate(glm::translate(glm::dmat4(1.0), glm::dvec3(-2.0, 0.0, 0.0)), glm::half_pi<double>(),
       glm::dvec3(0.0, 1.0, 0.0));
   rt::MeshObject wall = this->Publish(square, glm::scale(upright, glm::dvec3(0.5)));
-  wall.Surface.DiffuseColor = { 0.0f, 1.0f, 0.0f };
-  wall.Edges = rt::EdgeLines{ { 1.0f, 0.0f, 0.0f }, 4.0f };
+  wall.Look.Surface.DiffuseColor = { 0.0f, 1.0f, 0.0f };
+  wall.Look.Edges = rt::EdgeLines{ { 1.0f, 0.0f, 0.0f }, 4.0f };
   const rt::Picture picture = this->Trace({ mirror, wall });
   const double pixel = 3.0 / Size;
   EXPECT_EQ(GetColor(picture, 0.1, 0.1), glm::ivec4(0, 255, 0, 255)) << "no diagonal";
@@ -375,7 +375,7 @@ TEST_F(MeshPicture, TwoTranslucentSquaresAndTheirCommonEdges)
 {
   rt::MeshObject above = this->Publish(CreateSquare(0.5));
   rt::MeshObject below = this->Publish(CreateSquare(-0.5));
-  above.Surface.Opacity = below.Surface.Opacity = 0.5f;
+  above.Look.Surface.Opacity = below.Look.Surface.Opacity = 0.5f;
   const rt::Picture picture = this->Trace({ below, above });
   for (int y = 0; y < Size; ++y)
   {
@@ -442,7 +442,7 @@ TEST_F(MeshPicture, BothSidesAreLitWhereverTheNormalsPoint)
       }
       rt::MeshObject object =
         this->Publish(square, glm::scale(glm::dmat4(1.0), glm::dvec3(1.0, side, side)));
-      object.Surface.Lighting = true;
+      object.Look.Surface.Lighting = true;
       this->World.Lights.resize(1);
       EXPECT_NEAR(GetColor(this->Trace({ object }), 0.3, 0.2).x, 255.0 / std::sqrt(1.25), 1.5)
         << side << ", " << points;
@@ -455,10 +455,10 @@ TEST_F(MeshPicture, NormalsOfPointsOrOfPlanes)
   TestMesh::Mesh square = CreateSquare(0.0);
   square.Normals = { 1, 0, 1, 1, 0, 1, 1, 0, 1, 1, 0, 1 };
   rt::MeshObject object = this->Publish(square);
-  object.Surface.Lighting = true;
+  object.Look.Surface.Lighting = true;
   this->World.Lights.emplace_back(); // along -z
   EXPECT_NEAR(GetColor(this->Trace({ object }), 0.3, 0.2).x, 255.0 * std::sqrt(0.5), 1.0);
-  object.Flat = true;
+  object.Look.Flat = true;
   EXPECT_EQ(GetColor(this->Trace({ object }), 0.3, 0.2).x, 255);
 }
 
@@ -475,7 +475,7 @@ TEST_F(MeshPicture, NoSurfaceShadowsItself)
     plane.Normals.clear();
     const glm::dvec3 center(farAway, -farAway, farAway);
     rt::MeshObject object = this->Publish(plane, glm::translate(glm::dmat4(1.0), center));
-    object.Surface.Lighting = true;
+    object.Look.Surface.Lighting = true;
     this->World.Lights.resize(1);
     this->World.Lights[0].Direction = glm::normalize(glm::dvec3(1.0, 0.3, -0.02));
     this->World.Lights[0].Color = glm::vec3(40.0f);

@@ -38,7 +38,7 @@ double GetBallAboveFloor(const glm::dvec3& p)
 class LightTransportTest : public testing::Test
 {
 protected:
-  rt::IsosurfaceObject Publish(const FunctionVolume::Function& function, int points = 65)
+  rt::LatticeIsosurface Publish(const FunctionVolume::Function& function, int points = 65)
   {
     return FunctionVolume::Publish(points, function, this->Messenger, this->Store);
   }
@@ -152,8 +152,9 @@ TEST_F(LightTransportTest, ShadowOfATranslucentBallIsDimmedAndTinted)
   rt::Scene scene;
   scene.Objects = { this->Publish(GetBall),
     this->Publish([](const glm::dvec3& p) { return p.z - FloorHeight; }) };
-  std::get<rt::IsosurfaceObject>(scene.Objects[0]).Surface.Opacity = 0.5f;
-  std::get<rt::IsosurfaceObject>(scene.Objects[0]).Surface.DiffuseColor = { 1.0f, 0.0f, 0.0f };
+  std::get<rt::LatticeIsosurface>(scene.Objects[0]).Look.Surface.Opacity = 0.5f;
+  std::get<rt::LatticeIsosurface>(scene.Objects[0]).Look.Surface.DiffuseColor = { 1.0f, 0.0f,
+    0.0f };
   scene.Lights = { GetSlantedLight() };
   scene.Transport.Shadows = true;
   const rt::Picture picture = this->Trace(scene);
@@ -252,10 +253,10 @@ TEST_F(LightTransportTest, NestOfTranslucentSpheres)
   const auto distance = [](const glm::dvec3& p) { return glm::length(p); };
   rt::Scene scene;
   scene.Objects = { this->Publish(distance) };
-  auto& nest = std::get<rt::IsosurfaceObject>(scene.Objects.front());
+  auto& nest = std::get<rt::LatticeIsosurface>(scene.Objects.front());
   nest.Isovalues = { 0.2, 0.5, 0.8 };
-  nest.Opacities = { 1.0f, 0.5f, 0.25f };
-  nest.Surface.Lighting = false;
+  nest.Look.Opacities = { 1.0f, 0.5f, 0.25f };
+  nest.Look.Surface.Lighting = false;
   const rt::Picture picture = this->Trace(scene);
   const auto getAlpha = [&](double radius)
   {
@@ -272,9 +273,10 @@ TEST_F(LightTransportTest, MirrorShowsTheBackground)
 {
   rt::Scene scene;
   scene.Objects = { this->Publish([](const glm::dvec3& p) { return p.z; }) };
-  std::get<rt::IsosurfaceObject>(scene.Objects.front()).Surface.Reflectivity = 0.75f;
-  std::get<rt::IsosurfaceObject>(scene.Objects.front()).Surface.Lighting = false;
-  std::get<rt::IsosurfaceObject>(scene.Objects.front()).Surface.DiffuseColor = glm::vec3(0.0f);
+  std::get<rt::LatticeIsosurface>(scene.Objects.front()).Look.Surface.Reflectivity = 0.75f;
+  std::get<rt::LatticeIsosurface>(scene.Objects.front()).Look.Surface.Lighting = false;
+  std::get<rt::LatticeIsosurface>(scene.Objects.front()).Look.Surface.DiffuseColor =
+    glm::vec3(0.0f);
   scene.Transport.Background = { 0.2f, 0.4f, 0.8f };
   const rt::Picture picture = this->Trace(scene);
   EXPECT_NEAR(GetRed(picture, 40, 50), 255.0 * 0.75 * 0.2, 1.0);
@@ -286,8 +288,8 @@ TEST_F(LightTransportTest, MirrorsNeverBrightenAWhiteScene)
 {
   rt::Scene scene;
   scene.Objects = { this->Publish(GetBallAboveFloor) };
-  std::get<rt::IsosurfaceObject>(scene.Objects.front()).Surface.Reflectivity = 0.5f;
-  std::get<rt::IsosurfaceObject>(scene.Objects.front()).Surface.Lighting = false;
+  std::get<rt::LatticeIsosurface>(scene.Objects.front()).Look.Surface.Reflectivity = 0.5f;
+  std::get<rt::LatticeIsosurface>(scene.Objects.front()).Look.Surface.Lighting = false;
   scene.Transport.Background = glm::vec3(1.0f);
   scene.Transport.MaxBounces = 8;
   for (const std::uint8_t channel : this->Trace(scene).Color)

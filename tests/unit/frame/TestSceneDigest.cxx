@@ -16,9 +16,9 @@
 namespace
 {
 
-rt::IsosurfaceObject& GetIsosurface(rt::Scene& scene)
+rt::LatticeIsosurface& GetIsosurface(rt::Scene& scene)
 {
-  return std::get<rt::IsosurfaceObject>(scene.Objects.front());
+  return std::get<rt::LatticeIsosurface>(scene.Objects.front());
 }
 
 } // namespace
@@ -41,9 +41,10 @@ TEST(TestSceneDigest, ChangesWithAllThatThePictureShows)
         [](rt::Scene&, rt::FrameRequest& r) { r.WorldToClip[3][0] += 1e-12; },
         [](rt::Scene& s, rt::FrameRequest&) { GetIsosurface(s).Isovalues[0] += 1e-12; },
         [](rt::Scene& s, rt::FrameRequest&) { GetIsosurface(s).Isovalues.push_back(1e3); },
-        [](rt::Scene& s, rt::FrameRequest&) { GetIsosurface(s).Surface.DiffuseColor.y = 0.1f; },
-        [](rt::Scene& s, rt::FrameRequest&) { GetIsosurface(s).Surface.Reflectivity = 0.5f; },
-        [](rt::Scene& s, rt::FrameRequest&) { GetIsosurface(s).IndexToWorld[3][1] += 1.0; },
+        [](rt::Scene& s, rt::FrameRequest&)
+        { GetIsosurface(s).Look.Surface.DiffuseColor.y = 0.1f; },
+        [](rt::Scene& s, rt::FrameRequest&) { GetIsosurface(s).Look.Surface.Reflectivity = 0.5f; },
+        [](rt::Scene& s, rt::FrameRequest&) { GetIsosurface(s).Field.IndexToWorld[3][1] += 1.0; },
         [](rt::Scene& s, rt::FrameRequest&) { s.Objects.push_back(s.Objects[0]); },
         [](rt::Scene& s, rt::FrameRequest&)
         { GetIsosurface(s).Clipping.HalfSpaces.emplace_back(); },
@@ -58,7 +59,7 @@ TEST(TestSceneDigest, ChangesWithAllThatThePictureShows)
         [](rt::Scene& s, rt::FrameRequest&) { s.Transport.Surroundings.Upper.z = 0.3f; },
         [](rt::Scene& s, rt::FrameRequest&) { s.Transport.Surroundings.Up.x = 0.3; },
         [&](rt::Scene& s, rt::FrameRequest&)
-        { GetIsosurface(s).Field = SphereScene::Publish(messenger, store); },
+        { GetIsosurface(s).Field.Voxels = SphereScene::Publish(messenger, store); },
       };
       for (const auto& change : changes)
       {
@@ -101,7 +102,7 @@ TEST(TestSceneDigest, ChangesWithWhatIsLaidOnAMesh)
         rt::Texture other = texture;
         change(other);
         rt::Scene textured = scene;
-        std::get<rt::MeshObject>(textured.Objects[1]).Picture =
+        std::get<rt::MeshObject>(textured.Objects[1]).Look.Picture =
           std::make_shared<rt::Texture>(other);
         digests.insert(rt::GetSceneDigest(textured, request));
       }
@@ -117,7 +118,7 @@ TEST(TestSceneDigest, ChangesWithWhatIsLaidOnAMesh)
       for (const auto& change : lines)
       {
         rt::Scene other = scene;
-        change(std::get<rt::MeshObject>(other.Objects[1]).Edges);
+        change(std::get<rt::MeshObject>(other.Objects[1]).Look.Edges);
         digests.insert(rt::GetSceneDigest(other, request));
       }
       EXPECT_EQ(digests.size(), before + lines.size());

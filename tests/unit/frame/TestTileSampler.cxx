@@ -40,8 +40,8 @@ protected:
       FunctionVolume::Publish(
         50, [](const glm::dvec3& p) { return glm::length(p) - 0.8; }, this->Messenger,
         this->Store) };
-    std::get<rt::IsosurfaceObject>(scene.Objects[0]).Clipping = clipping;
-    std::get<rt::IsosurfaceObject>(scene.Objects[1]).Surface.Opacity = 0.4f;
+    std::get<rt::LatticeIsosurface>(scene.Objects[0]).Clipping = clipping;
+    std::get<rt::LatticeIsosurface>(scene.Objects[1]).Look.Surface.Opacity = 0.4f;
     return this->Compare(scene, worldToClip, width, height, tileSize);
   }
 
@@ -63,7 +63,7 @@ protected:
     rt::MeshObject object;
     object.Instance = std::make_shared<rt::MeshInstance>(
       MeshScene::Publish(mesh, this->Messenger, this->Store), glm::dmat4(1.0));
-    object.Surface.Opacity = opacity;
+    object.Look.Surface.Opacity = opacity;
     return object;
   }
 
@@ -188,7 +188,7 @@ TEST_F(TestTileSampler, LightRaysEqualSinglePixels)
   rt::Scene scene;
   scene.Objects = { FunctionVolume::Publish(65, GetWaves, this->Messenger, this->Store),
     this->Publish(TestMesh::CreateBlob(4), 1.0f) };
-  auto& isosurface = std::get<rt::IsosurfaceObject>(scene.Objects[0]);
+  auto& isosurface = std::get<rt::LatticeIsosurface>(scene.Objects[0]);
   auto& mesh = std::get<rt::MeshObject>(scene.Objects[1]);
   scene.Lights.emplace_back();
   scene.Lights.back().Direction = glm::normalize(glm::dvec3(-0.4, -1.0, -0.3));
@@ -196,16 +196,16 @@ TEST_F(TestTileSampler, LightRaysEqualSinglePixels)
   scene.Lights.back().Type = rt::Light::Kind::Positional;
   scene.Lights.back().Position = { 1.5, 1.0, 0.2 };
   scene.Transport.Shadows = true;
-  isosurface.Surface.Reflectivity = 0.3f;
+  isosurface.Look.Surface.Reflectivity = 0.3f;
   for (int variant = 0; variant < 5; ++variant)
   {
     SCOPED_TRACE(variant);
     scene.Transport.AmbientOcclusionSamples = variant == 0 ? 0 : 2;
     scene.Transport.AmbientOcclusionDistance = 0.7;
     scene.Transport.LightRadius = variant == 2 ? 0.1 : 0.0;
-    isosurface.Surface.Opacity = variant == 3 ? 0.5f : 1.0f;
-    mesh.Surface.Opacity = variant == 1 ? 0.6f : 1.0f;
-    mesh.Surface.DiffuseColor = { 0.9f, 0.4f, 0.2f };
+    isosurface.Look.Surface.Opacity = variant == 3 ? 0.5f : 1.0f;
+    mesh.Look.Surface.Opacity = variant == 1 ? 0.6f : 1.0f;
+    mesh.Look.Surface.DiffuseColor = { 0.9f, 0.4f, 0.2f };
     if (variant == 4)
     {
       isosurface.Clipping.HalfSpaces = { { { 0.3, -1.0, 0.2 }, { 0.0, 0.2, 0.0 } } };

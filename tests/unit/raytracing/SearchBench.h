@@ -2,8 +2,8 @@
 #ifndef tests_SearchBench_h
 #define tests_SearchBench_h
 
-#include "DSMRayTracing/volume/FieldSampler.h"
-#include "DSMRayTracing/volume/IsosurfaceSearch.h"
+#include "DSMRayTracing/field/lattice/IsosurfaceSearch.h"
+#include "DSMRayTracing/field/lattice/LatticeSampler.h"
 #include "MemoryStore.h"
 
 /// All that a trace in a test needs.
@@ -12,7 +12,15 @@ struct SearchBench
   MemoryStore Store;
   MemoryStore::Worker Worker;
   rt::IsosurfaceSearch<MemoryStore> Search{ Store, Worker };
-  rt::FieldSampler<MemoryStore> Fields{ Store, Worker };
+  rt::LatticeSampler<MemoryStore> Sampler{ Store, Worker };
+
+  double Sample(const bricks::VoxelField& field, const glm::dvec3& indexPoint) const
+  {
+    const rt::LatticePlace place{ indexPoint };
+    double value;
+    this->Sampler.FindValues(field, &place, 1, &value);
+    return value;
+  }
 };
 
 /// From one point (T = 0) to another (T = 1).

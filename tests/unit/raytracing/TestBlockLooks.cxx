@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "DSMRayTracing/object/ObjectDigest.h"
-#include "DSMRayTracing/volume/BlockLooks.h"
+#include "DSMRayTracing/surface/BlockLooks.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "DSMRayTracing/volume/IsosurfaceSearch.h"
+#include "DSMRayTracing/field/lattice/IsosurfaceSearch.h"
 #include "Oracle.h"
 #include "RandomRays.h"
 #include "TestVolume.h"
@@ -98,7 +98,7 @@ void CompareWithOracle(const TestVolume<T>& volume, double isovalue, int edge, u
 {
   MemoryStore store;
   MemoryStore::Worker worker;
-  const rt::IsosurfaceObject object = CreateObject(store, volume, { isovalue }, edge);
+  const rt::LatticeIsosurface object = CreateObject(store, volume, { isovalue }, edge);
   const rt::IsosurfaceSearch<MemoryStore> tracer(store, worker);
   const Oracle<T> oracle(volume, isovalue);
   RandomRays generator(volume.GetCells(), seed);
@@ -107,7 +107,7 @@ void CompareWithOracle(const TestVolume<T>& volume, double isovalue, int edge, u
     const rt::Ray ray = generator.Create(kind);
     const double cells = glm::length(ray.Direction);
     const std::optional<double> expected = oracle.FindFirst(ray);
-    rt::IsosurfaceHit hit;
+    rt::LatticeHit hit;
     const bool found = tracer.Intersect(object, ray, hit);
     ++comparison.Rays;
     comparison.Hits += found;
@@ -117,8 +117,8 @@ void CompareWithOracle(const TestVolume<T>& volume, double isovalue, int edge, u
       ASSERT_LE(hit.T, ray.Max);
       ASSERT_NEAR(glm::length(hit.Normal), 1.0, 1e-12);
       const glm::dvec3 point = ray.Origin + hit.T * ray.Direction;
-      ASSERT_LT(glm::length(point - hit.IndexPoint), 1e-9);
-      const glm::dvec3 inCell = hit.IndexPoint - glm::dvec3(hit.Cell);
+      ASSERT_LT(glm::length(point - hit.At.IndexPoint), 1e-9);
+      const glm::dvec3 inCell = hit.At.IndexPoint - glm::dvec3(hit.At.Cell);
       ASSERT_TRUE(glm::all(glm::greaterThanEqual(inCell, glm::dvec3(-1e-9))));
       ASSERT_TRUE(glm::all(glm::lessThanEqual(inCell, glm::dvec3(1.0 + 1e-9))));
     }

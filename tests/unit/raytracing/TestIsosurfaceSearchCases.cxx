@@ -55,7 +55,7 @@ void ExpectNoHoles(double isovalue, int edge, unsigned seed)
     {
       target = glm::round(target);
     }
-    if (!(bench.Fields.Sample(*object.Field, target) >= isovalue))
+    if (!(bench.Sample(*object.Field.Voxels, target) >= isovalue))
     {
       continue;
     }
@@ -69,7 +69,7 @@ void ExpectNoHoles(double isovalue, int edge, unsigned seed)
     {
       outside += 40.0 * glm::round(glm::dvec3(generator.Get(-2, 2), generator.Get(-2, 2), 3.0));
     }
-    rt::IsosurfaceHit hit;
+    rt::LatticeHit hit;
     ASSERT_TRUE(bench.Search.Intersect(object, CreateRay(outside, target), hit)) << i;
     ASSERT_TRUE(bench.Search.Intersect(object, CreateRay(target, outside), hit)) << i;
   }
@@ -102,7 +102,7 @@ TEST(TestIsosurfaceSearchCases, SidesAlternateAlongARay)
   for (int i = 0; i < 2000; ++i)
   {
     rt::Ray ray = generator.Create(RandomRays::Kind::Through);
-    rt::IsosurfaceHit hit;
+    rt::LatticeHit hit;
     int hits = 0;
     double last = -1.0;
     while (bench.Search.Intersect(object, ray, hit))
@@ -121,7 +121,7 @@ TEST(TestIsosurfaceSearchCases, HitsDoNotDependOnTheBricks)
   const auto volume = CreateNoise({ 20, 17, 15 }, 9);
   SearchBench bench;
   const auto reference = CreateObject(bench.Store, volume, { 0.8, 0.9 }, 64);
-  std::vector<rt::IsosurfaceObject> others;
+  std::vector<rt::LatticeIsosurface> others;
   for (const int edge : { 1, 2, 3, 4, 5, 7, 8, 16 })
   {
     others.push_back(CreateObject(bench.Store, volume, { 0.8, 0.9 }, edge));
@@ -132,22 +132,22 @@ TEST(TestIsosurfaceSearchCases, HitsDoNotDependOnTheBricks)
   {
     const rt::Ray ray = generator.Create(
       static_cast<RandomRays::Kind>(i % static_cast<int>(RandomRays::Kind::Count)));
-    rt::IsosurfaceHit expected;
+    rt::LatticeHit expected;
     const bool found = bench.Search.Intersect(reference, ray, expected);
     hits += found;
-    for (const rt::IsosurfaceObject& object : others)
+    for (const rt::LatticeIsosurface& object : others)
     {
-      rt::IsosurfaceHit hit;
+      rt::LatticeHit hit;
       ASSERT_EQ(bench.Search.Intersect(object, ray, hit), found);
       if (found)
       {
         ASSERT_EQ(hit.T, expected.T);
         ASSERT_EQ(hit.Normal, expected.Normal);
-        ASSERT_EQ(hit.IndexPoint, expected.IndexPoint);
+        ASSERT_EQ(hit.At.IndexPoint, expected.At.IndexPoint);
         ASSERT_EQ(hit.Isovalue, expected.Isovalue);
-        const bricks::Box cells = object.Field->Lattice.GetCellsOfBrick(hit.Brick);
-        ASSERT_TRUE(glm::all(glm::greaterThanEqual(hit.IndexPoint, glm::dvec3(cells.Min))));
-        ASSERT_TRUE(glm::all(glm::lessThanEqual(hit.IndexPoint, glm::dvec3(cells.Max))));
+        const bricks::Box cells = object.Field.Voxels->Lattice.GetCellsOfBrick(hit.At.Brick);
+        ASSERT_TRUE(glm::all(glm::greaterThanEqual(hit.At.IndexPoint, glm::dvec3(cells.Min))));
+        ASSERT_TRUE(glm::all(glm::lessThanEqual(hit.At.IndexPoint, glm::dvec3(cells.Max))));
       }
     }
   }
@@ -165,13 +165,13 @@ TEST(TestIsosurfaceSearchCases, SeveralIsovaluesGiveTheNearestHit)
   {
     const rt::Ray ray = generator.Create(
       static_cast<RandomRays::Kind>(i % static_cast<int>(RandomRays::Kind::Count)));
-    rt::IsosurfaceHit expected;
+    rt::LatticeHit expected;
     bool found = false;
     for (std::size_t index = 0; index < isovalues.size(); ++index)
     {
-      rt::IsosurfaceObject one = all;
+      rt::LatticeIsosurface one = all;
       one.Isovalues = { isovalues[index] };
-      rt::IsosurfaceHit hit;
+      rt::LatticeHit hit;
       if (bench.Search.Intersect(one, ray, hit) && (!found || hit.T < expected.T))
       {
         found = true;
@@ -179,7 +179,7 @@ TEST(TestIsosurfaceSearchCases, SeveralIsovaluesGiveTheNearestHit)
         expected.Isovalue = static_cast<int>(index);
       }
     }
-    rt::IsosurfaceHit hit;
+    rt::LatticeHit hit;
     ASSERT_EQ(bench.Search.Intersect(all, ray, hit), found);
     if (found)
     {
@@ -210,15 +210,15 @@ TEST(TestIsosurfaceSearchCases, TheUnitOfTheValuesDoesNotMatter)
     {
       const rt::Ray ray = generator.Create(
         static_cast<RandomRays::Kind>(i % static_cast<int>(RandomRays::Kind::Count)));
-      rt::IsosurfaceHit expected;
-      rt::IsosurfaceHit hit;
+      rt::LatticeHit expected;
+      rt::LatticeHit hit;
       const bool found = bench.Search.Intersect(reference, ray, expected);
       ASSERT_EQ(bench.Search.Intersect(object, ray, hit), found);
       if (found)
       {
         ++hits;
         ASSERT_EQ(hit.T, expected.T);
-        ASSERT_EQ(hit.IndexPoint, expected.IndexPoint);
+        ASSERT_EQ(hit.At.IndexPoint, expected.At.IndexPoint);
         ASSERT_LT(glm::length(hit.Normal - expected.Normal), 1e-14);
       }
     }
@@ -230,7 +230,7 @@ TEST(TestIsosurfaceSearchCases, NoIsovalueNoHit)
 {
   SearchBench bench;
   const auto volume = CreateNoise({ 5, 5, 5 }, 13);
-  rt::IsosurfaceHit hit;
+  rt::LatticeHit hit;
   const rt::Ray ray = CreateRay({ -1, 2, 2 }, { 6, 2, 2 });
   EXPECT_FALSE(bench.Search.Intersect(CreateObject(bench.Store, volume, {}), ray, hit));
   EXPECT_FALSE(bench.Search.Intersect(CreateObject(bench.Store, volume, { 5.0 }), ray, hit));
@@ -256,7 +256,7 @@ TEST(TestIsosurfaceSearchCases, CellsWithNaNHoldNoSurface)
     const rt::Ray ray =
       generator.Create(i % 2 == 0 ? RandomRays::Kind::Through : RandomRays::Kind::FromInside);
     const auto expected = oracle.FindFirst(ray);
-    rt::IsosurfaceHit hit;
+    rt::LatticeHit hit;
     ASSERT_EQ(bench.Search.Intersect(object, ray, hit), expected.has_value());
     if (expected)
     {
@@ -286,7 +286,7 @@ TEST(TestIsosurfaceSearchCases, BlankedCellsHoldNoSurface)
     const rt::Ray ray =
       generator.Create(i % 2 == 0 ? RandomRays::Kind::Through : RandomRays::Kind::FromInside);
     const auto expected = oracle.FindFirst(ray);
-    rt::IsosurfaceHit hit;
+    rt::LatticeHit hit;
     ASSERT_EQ(bench.Search.Intersect(object, ray, hit), expected.has_value());
     if (expected)
     {
@@ -303,17 +303,17 @@ TEST(TestIsosurfaceSearchCases, VolumeOfOneCell)
   const TestVolume<std::uint8_t> volume({ 2, 2, 2 }, [](int x, int, int) { return 10 * x; });
   SearchBench bench;
   const auto object = CreateObject(bench.Store, volume, { 4.0 });
-  rt::IsosurfaceHit hit;
+  rt::LatticeHit hit;
   ASSERT_TRUE(bench.Search.Intersect(object, CreateRay({ -1, 0.3, 0.6 }, { 2, 0.3, 0.6 }), hit));
-  EXPECT_NEAR(hit.IndexPoint.x, 0.4, 1e-14);
+  EXPECT_NEAR(hit.At.IndexPoint.x, 0.4, 1e-14);
   EXPECT_EQ(hit.Normal, glm::dvec3(-1.0, 0.0, 0.0));
-  EXPECT_EQ(hit.Brick, 0u);
+  EXPECT_EQ(hit.At.Brick, 0u);
   // Along the volume's own faces and edges.
   for (const glm::dvec2 place : { glm::dvec2(0, 0), { 1, 0 }, { 0, 1 }, { 1, 1 }, { 0.5, 1 } })
   {
     ASSERT_TRUE(bench.Search.Intersect(
       object, CreateRay({ 3, place.x, place.y }, { -3, place.x, place.y }), hit));
-    EXPECT_NEAR(hit.IndexPoint.x, 0.4, 1e-14);
+    EXPECT_NEAR(hit.At.IndexPoint.x, 0.4, 1e-14);
   }
   EXPECT_FALSE(
     bench.Search.Intersect(object, CreateRay({ -1, 1.001, 0.5 }, { 2, 1.001, 0.5 }), hit));
@@ -328,7 +328,7 @@ TEST(TestIsosurfaceSearchCases, MinAndMaxAreRespected)
   ray.Origin = { -2.0, 1.2, 0.7 };
   ray.Direction = { 2.0, 0.0, 0.0 };
   ray.Max = 100.0;
-  rt::IsosurfaceHit hit;
+  rt::LatticeHit hit;
   for (int crossing = 0; crossing < 8; ++crossing)
   {
     ASSERT_TRUE(bench.Search.Intersect(object, ray, hit));
@@ -348,7 +348,7 @@ TEST(TestIsosurfaceSearchCases, RaysThatAreNoneMiss)
 {
   SearchBench bench;
   const auto object = CreateObject(bench.Store, CreateNoise({ 5, 5, 5 }, 20), { 0.0 });
-  rt::IsosurfaceHit hit;
+  rt::LatticeHit hit;
   EXPECT_FALSE(bench.Search.Intersect(object, CreateRay({ 2, 2, 2 }, { 2, 2, 2 }), hit));
   EXPECT_FALSE(bench.Search.Intersect(object, CreateRay({ NotANumber, 2, 2 }, { 2, 2, 2 }), hit));
   EXPECT_FALSE(bench.Search.Intersect(object, CreateRay({ -1, 2, 2 }, { INFINITY, 2, 2 }), hit));
@@ -379,10 +379,10 @@ TEST(TestIsosurfaceSearchCases, PreciseAnywhereInALargeVolume)
           glm::normalize(glm::dvec3(0.3, -0.2, 0.1) + glm::dvec3(axis == 0, axis == 1, axis == 2));
         ray.Origin = target - distance * ray.Direction;
         ray.Max = 2.0 * distance;
-        rt::IsosurfaceHit hit;
+        rt::LatticeHit hit;
         ASSERT_TRUE(bench.Search.Intersect(object, ray, hit));
         EXPECT_NEAR(hit.T, distance, 1e-6);
-        EXPECT_LT(glm::length(hit.IndexPoint - target), 1e-6);
+        EXPECT_LT(glm::length(hit.At.IndexPoint - target), 1e-6);
         EXPECT_LT(glm::length(hit.Normal + glm::normalize(gradient)), 1e-12);
       }
     }
@@ -399,7 +399,7 @@ TEST(TestIsosurfaceSearchCases, AnyPlacementInTheWorld)
   matrix = glm::rotate(matrix, 0.7, { 1.0, 2.0, -0.5 });
   matrix = glm::scale(matrix, { 0.01, 3.0, -0.5 });
   matrix[1] += 0.3 * matrix[0] + 0.2 * matrix[2];
-  placed.SetIndexToWorld(matrix);
+  placed.Field.SetIndexToWorld(matrix);
   RandomRays generator(volume.GetCells(), 22);
   int hits = 0;
   for (int i = 0; i < 2000; ++i)
@@ -408,8 +408,8 @@ TEST(TestIsosurfaceSearchCases, AnyPlacementInTheWorld)
     rt::Ray world = ray;
     world.Origin = glm::dvec3(matrix * glm::dvec4(ray.Origin, 1.0));
     world.Direction = glm::dvec3(matrix * glm::dvec4(ray.Direction, 0.0));
-    rt::IsosurfaceHit expected;
-    rt::IsosurfaceHit hit;
+    rt::LatticeHit expected;
+    rt::LatticeHit hit;
     ASSERT_EQ(
       bench.Search.Intersect(placed, world, hit), bench.Search.Intersect(plain, ray, expected));
     if (expected.T == 0.0)
@@ -431,9 +431,9 @@ TEST(TestIsosurfaceSearchCases, EachBrickIsAcquiredOnceAVisit)
     { 65, 17, 17 }, [](int x, int, int) { return x < 63 ? 0.0f : 1.0f; });
   SearchBench bench;
   const auto object = CreateObject(bench.Store, volume, { 0.5 }, 16);
-  rt::IsosurfaceHit hit;
+  rt::LatticeHit hit;
   ASSERT_TRUE(bench.Search.Intersect(object, CreateRay({ -5, 8.5, 8.5 }, { 70, 8.5, 8.5 }), hit));
-  EXPECT_NEAR(hit.IndexPoint.x, 62.5, 1e-12);
+  EXPECT_NEAR(hit.At.IndexPoint.x, 62.5, 1e-12);
   // Empty bricks are leapt over; the hit's neighbourhood lies in its brick.
   EXPECT_EQ(bench.Worker.Accesses, 1);
 }

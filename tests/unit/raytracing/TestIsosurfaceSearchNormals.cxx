@@ -19,7 +19,7 @@ glm::dvec3 GetNormal(const TestVolume<T>& volume, const rt::Ray& ray, double iso
 {
   SearchBench bench;
   const auto object = CreateObject(bench.Store, volume, { isovalue }, edge);
-  rt::IsosurfaceHit hit;
+  rt::LatticeHit hit;
   EXPECT_TRUE(bench.Search.Intersect(object, ray, hit));
   return hit.Normal;
 }
@@ -60,10 +60,10 @@ TEST(TestIsosurfaceSearchNormals, EqualTheAnalyticGradientOfAParaboloid)
   {
     const glm::dvec3 direction =
       glm::normalize(glm::dvec3(uniform(random), uniform(random), uniform(random)));
-    rt::IsosurfaceHit hit;
+    rt::LatticeHit hit;
     const glm::dvec3 center(19.5, 18.2, 20.0);
     ASSERT_TRUE(bench.Search.Intersect(object, CreateRay(center, center + 50.0 * direction), hit));
-    const glm::dvec3 expected = glm::normalize(glm::dvec3(2, 2, 1) * (hit.IndexPoint - center));
+    const glm::dvec3 expected = glm::normalize(glm::dvec3(2, 2, 1) * (hit.At.IndexPoint - center));
     ASSERT_LT(glm::length(hit.Normal - expected), 1e-9);
   }
 }
@@ -90,7 +90,7 @@ TEST(TestIsosurfaceSearchNormals, EqualContoursOnGridEdges)
           continue;
         }
         ++edges;
-        rt::IsosurfaceHit hit;
+        rt::LatticeHit hit;
         ASSERT_TRUE(bench.Search.Intersect(object, CreateRay({ x, y, z }, { x + 1, y, z }), hit));
         const double place = a / (a - b);
         ASSERT_NEAR(hit.T, place, 1e-12);
@@ -118,7 +118,7 @@ TEST(TestIsosurfaceSearchNormals, ContinuousAcrossCellsAndBricks)
     {
       for (const bool first : { false, true })
       {
-        rt::IsosurfaceHit hits[2];
+        rt::LatticeHit hits[2];
         for (int side = 0; side < 2; ++side)
         {
           const double place = plane + (side == 0 ? -1e-9 : 1e-9);

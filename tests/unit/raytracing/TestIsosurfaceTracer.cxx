@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What the rooms above know of an object: batches against the same rays one by one.
+#include "DSMRayTracing/field/lattice/LatticeSampler.h"
+#include "DSMRayTracing/field/lattice/LatticeSurfaces.h"
 #include "DSMRayTracing/scene/SurfaceFinder.h"
-#include "DSMRayTracing/volume/IsosurfaceTracer.h"
+#include "DSMRayTracing/surface/IsosurfaceTracer.h"
 #include "TestVolume.h"
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <set>
@@ -14,7 +17,7 @@
 namespace
 {
 
-using Tracer = rt::IsosurfaceTracer<MemoryStore>;
+using Tracer = rt::IsosurfaceTracer<rt::LatticeField, MemoryStore>;
 
 const bricks::Index3 Points(37, 41, 34);
 
@@ -51,24 +54,37 @@ struct Batch
   rt::ObjectHit Hits[rt::MaxRays];
 };
 
+/// What all rays with hits meet, asked for together.
+std::vector<rt::SurfacePoint> Describe(const Tracer& tracer, const Batch& batch)
+{
+  std::vector<rt::SurfacePoint> points(rt::MaxRays);
+  rt::SurfacePoint* places[rt::MaxRays];
+  std::transform(
+    points.begin(), points.end(), places, [](rt::SurfacePoint& point) { return &point; });
+  const rt::RayMask hit = rt::FindRays(
+    ~rt::RayMask{ 0 }, [&](int index) { return batch.Hits[index].GetObject() != nullptr; });
+  tracer.Describe(batch.Hits, batch.Rays, nullptr, hit, places);
+  return points;
+}
+
 class TestIsosurfaceTracer : public testing::Test
 {
 protected:
-  TestIsosurfaceTracer() { this->Object.Surface.Opacity = 0.5f; }
+  TestIsosurfaceTracer() { this->Object.Look.Surface.Opacity = 0.5f; }
 
   /// As far as its directory tells.
   void PutInFile()
   {
-    dsm::BlockDirectory directory = this->Object.Field->Segment->GetDirectory();
+    dsm::BlockDirectory directory = this->Object.Field.Voxels->Segment->GetDirectory();
     directory.SetFromSource();
-    auto field = std::make_shared<bricks::VoxelField>(*this->Object.Field);
+    auto field = std::make_shared<bricks::VoxelField>(*this->Object.Field.Voxels);
     field->Segment = std::make_shared<MemoryStore::Segment>(directory);
-    this->Object.Field = field;
+    this->Object.Field.Voxels = field;
   }
 
   MemoryStore Store;
   MemoryStore::Worker Worker;
-  rt::IsosurfaceObject Object = CreateObject(this->Store, CreateWaves(), { 0.3, 1.1 }, 4);
+  rt::LatticeIsosurface Object = CreateObject(this->Store, CreateWaves(), { 0.3, 1.1 }, 4);
 };
 
 } // namespace
@@ -96,6 +112,8 @@ TEST_F(TestIsosurfaceTracer, BatchesFindWhatRaysFindAlone)
     tracer.FindNext(together.Rays, wanted, beam.get(), together.Hits);
     tracer.FindNext(apart.Rays, wanted, nullptr, apart.Hits);
     EXPECT_GT(beam->Reached, 0u);
+    const std::vector<rt::SurfacePoint> described[2] = { Describe(tracer, together),
+      Describe(tracer, apart) };
     int hits = 0;
     for (int index = 0; index < rt::MaxRays; ++index)
     {
@@ -112,10 +130,10 @@ TEST_F(TestIsosurfaceTracer, BatchesFindWhatRaysFindAlone)
         EXPECT_EQ(other->Rays[index].Max, alone.Rays[index].Max);
         if (found)
         {
-          rt::SurfacePoint point;
           rt::SurfacePoint expected;
-          tracer.Describe(other->Hits[index], other->Rays[index], point);
-          tracer.Describe(alone.Hits[index], alone.Rays[index], expected);
+          rt::SurfacePoint* const place = &expected;
+          tracer.Describe(&alone.Hits[index], &alone.Rays[index], nullptr, 1, &place);
+          const rt::SurfacePoint& point = described[other == &apart].at(index);
           EXPECT_EQ(point.T, alone.Rays[index].Max);
           EXPECT_EQ(point.Position, expected.Position);
           EXPECT_EQ(point.Normal, expected.Normal);
@@ -137,7 +155,7 @@ TEST_F(TestIsosurfaceTracer, OfEquallyNearHitsThatOfTheFirstObjectCounts)
   ray.Max = 3.0;
   rt::ObjectHit nearest;
   nearest.Clear();
-  rt::IsosurfaceHit hit;
+  rt::LatticeHit hit;
   hit.T = 3.0;
   nearest.Take(first, hit, ray);
   EXPECT_EQ(nearest.GetObject(), &first) << "a hit at the end of the ray";
@@ -147,15 +165,15 @@ TEST_F(TestIsosurfaceTracer, OfEquallyNearHitsThatOfTheFirstObjectCounts)
   hit.Isovalue = 5;
   nearest.Take(second, hit, ray);
   EXPECT_EQ(nearest.GetObject(), &second);
-  EXPECT_EQ(nearest.Get<rt::IsosurfaceHit>().Isovalue, 5);
+  EXPECT_EQ(nearest.Get<rt::LatticeHit>().Isovalue, 5);
   EXPECT_EQ(ray.Max, 2.0);
 }
 
 TEST_F(TestIsosurfaceTracer, WhatIsInvisibleIsNotMet)
 {
   const Tracer seen(this->Store, this->Worker, this->Object);
-  rt::IsosurfaceObject invisible = this->Object;
-  invisible.Surface.Opacity = 0.0f;
+  rt::LatticeIsosurface invisible = this->Object;
+  invisible.Look.Surface.Opacity = 0.0f;
   const Tracer none(this->Store, this->Worker, invisible);
   const rt::SurfaceFinder finder({ &none, &seen });
   Batch batch;
@@ -190,7 +208,7 @@ TEST_F(TestIsosurfaceTracer, AsksForTheFirstBricksOfABeam)
   EXPECT_EQ(this->Store.Prefetched, std::vector<dsm::BlockId>(all.begin(), all.begin() + 2));
   EXPECT_EQ(this->Store.Told, all) << "the system can read them in vain";
   this->Store.Prefetched.clear();
-  this->Object.Surface.Opacity = 0.0f;
+  this->Object.Look.Surface.Opacity = 0.0f;
   tracer.Prefetch(*beam, { 3, 3 });
   EXPECT_TRUE(this->Store.Prefetched.empty());
 }

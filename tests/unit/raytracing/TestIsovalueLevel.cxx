@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "DSMRayTracing/volume/IsovalueLevel.h"
+#include "DSMRayTracing/field/lattice/IsovalueLevel.h"
 
 #include <gtest/gtest.h>
 

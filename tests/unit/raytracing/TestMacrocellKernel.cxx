@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "DSMRayTracing/volume/MacrocellKernel.h"
-#include "DSMRayTracing/volume/PacketKernel.h"
+#include "DSMRayTracing/field/lattice/MacrocellKernel.h"
+#include "DSMRayTracing/field/lattice/PacketKernel.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "DSMRayTracing/volume/NodeOrder.h"
+#include "DSMRayTracing/field/lattice/NodeOrder.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "DSMRayTracing/volume/IsosurfacePacketSearch.h"
+#include "DSMRayTracing/field/lattice/IsosurfacePacketSearch.h"
 #include "TestVolume.h"
 
 #include <gtest/gtest.h>
@@ -74,7 +74,7 @@ Tally ComparePackets(const TestVolume<T>& volume, const std::vector<double>& iso
 {
   MemoryStore store;
   MemoryStore::Worker worker;
-  const rt::IsosurfaceObject object = CreateObject(store, volume, isovalues, edge);
+  const rt::LatticeIsosurface object = CreateObject(store, volume, isovalues, edge);
   const rt::IsosurfaceSearch<MemoryStore> alone(store, worker);
   Tally tally;
   for (const rt::PacketKernel& kernel : rt::PacketKernel::GetAll())
@@ -86,7 +86,7 @@ Tally ComparePackets(const TestVolume<T>& volume, const std::vector<double>& iso
       const Beam beam(volume.GetCells(), seed, seed % 2 == 0 ? 0.05 : 0.6);
       rt::BeamBricks bricks = tracer.FindBricks(object, beam.Corners);
       tally.Shared += bricks.Usable;
-      rt::IsosurfaceHit hits[Beam::RayCount];
+      rt::LatticeHit hits[Beam::RayCount];
       const rt::RayMask wanted = seed % 5 == 0 ? 0x00009137ffffu
         : seed % 5 == 1                        ? ~std::uint64_t{ 0 }
                                                : 0x80019137ffffu;
@@ -95,7 +95,7 @@ Tally ComparePackets(const TestVolume<T>& volume, const std::vector<double>& iso
       for (int index = 0; index < Beam::RayCount; ++index)
       {
         const rt::RayMask bit = rt::RayMask{ 1 } << index;
-        rt::IsosurfaceHit expected;
+        rt::LatticeHit expected;
         const bool hit = (wanted & bit) != 0 && alone.Intersect(object, beam.Rays[index], expected);
         EXPECT_EQ((found & bit) != 0, hit) << "beam " << seed << ", ray " << index;
         if (hit && (found & bit) != 0)
@@ -103,8 +103,8 @@ Tally ComparePackets(const TestVolume<T>& volume, const std::vector<double>& iso
           ++tally.Hits;
           EXPECT_EQ(hits[index].T, expected.T) << "beam " << seed << ", ray " << index;
           EXPECT_EQ(hits[index].Normal, expected.Normal);
-          EXPECT_EQ(hits[index].IndexPoint, expected.IndexPoint);
-          EXPECT_EQ(hits[index].Cell, expected.Cell);
+          EXPECT_EQ(hits[index].At.IndexPoint, expected.At.IndexPoint);
+          EXPECT_EQ(hits[index].At.Cell, expected.At.Cell);
           EXPECT_EQ(hits[index].Isovalue, expected.Isovalue);
           EXPECT_EQ(hits[index].FromInside, expected.FromInside);
         }
@@ -144,10 +144,10 @@ std::vector<rt::Ray> CreateLightRays(const bricks::Index3& cells, unsigned seed,
 
 /// The product over all hits of a ray, one after the other.
 double GetTransmittance(const rt::IsosurfaceSearch<MemoryStore>& search,
-  const rt::IsosurfaceObject& object, rt::Ray ray, const std::vector<glm::dvec3>& sheets)
+  const rt::LatticeIsosurface& object, rt::Ray ray, const std::vector<glm::dvec3>& sheets)
 {
   double transmittance = 1.0;
-  rt::IsosurfaceHit hit;
+  rt::LatticeHit hit;
   while (search.Intersect(object, ray, hit))
   {
     transmittance *= sheets[hit.Isovalue].x;
@@ -163,7 +163,7 @@ void CompareOcclusion(const TestVolume<T>& volume, const std::vector<double>& is
 {
   MemoryStore store;
   MemoryStore::Worker worker;
-  const rt::IsosurfaceObject object = CreateObject(store, volume, isovalues, edge);
+  const rt::LatticeIsosurface object = CreateObject(store, volume, isovalues, edge);
   const rt::IsosurfaceSearch<MemoryStore> alone(store, worker);
   std::vector<glm::dvec3> sheets = { { 0.9, 0.8, 0.7 }, { 0.6, 0.5, 0.9 } };
   sheets.resize(isovalues.size());
@@ -185,7 +185,7 @@ void CompareOcclusion(const TestVolume<T>& volume, const std::vector<double>& is
       {
         SCOPED_TRACE(testing::Message() << "rays " << seed << ", ray " << index);
         const bool isWanted = (wanted >> index & 1) != 0;
-        rt::IsosurfaceHit hit;
+        rt::LatticeHit hit;
         const bool isOccluded = alone.IsOccluded(object, rays[index]);
         EXPECT_EQ(isOccluded, alone.Intersect(object, rays[index], hit));
         EXPECT_EQ((occluded >> index & 1) != 0, isWanted && isOccluded);

@@ -180,11 +180,11 @@ std::shared_ptr<bricks::VoxelField> CreateField(
 }
 
 template <class T>
-rt::IsosurfaceObject CreateObject(
+rt::LatticeIsosurface CreateObject(
   MemoryStore& store, const TestVolume<T>& volume, std::vector<double> isovalues, int edge = 0)
 {
-  rt::IsosurfaceObject object;
-  object.Field = CreateField(store, volume, edge);
+  rt::LatticeIsosurface object;
+  object.Field.Voxels = CreateField(store, volume, edge);
   object.Isovalues = std::move(isovalues);
   return object;
 }

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "DSMRayTracing/frame/ArrivingLight.h"
 
-#include "DSMRayTracing/light/EdgeCover.h"
-
 #include <glm/geometric.hpp>
 #include <glm/gtc/constants.hpp>
 
@@ -161,12 +159,8 @@ ShadingPoint ArrivingLight::GetPoint(const LightPath& path) const
   shading.ToViewer = path.ToViewer;
   shading.Color = glm::vec3(point.Color);
   shading.ColorIsFromArray = point.ColorIsFromArray;
-  if (point.Edges)
-  {
-    shading.LineColor = point.Edges->Color;
-    shading.LineCover = point.Edges->Opacity *
-      GetEdgeCover(point.Position, point.Corners, point.EdgeFlags, point.Edges->Width, *path.View);
-  }
+  shading.LineColor = point.LineColor;
+  shading.LineCover = point.LineCover;
   shading.HasSurroundings = this->HasSurroundings;
   if (this->HasSurroundings)
   {

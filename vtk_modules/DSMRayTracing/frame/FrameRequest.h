@@ -18,6 +18,8 @@ struct FrameRequest
   /// World to clip space (OpenGL's: -1..1 on each axis after the division by w, near at z = -1) for
   /// the rectangle of Width x Height pixels; column vectors. Perspective, parallel, oblique alike.
   glm::dmat4 WorldToClip{ 1.0 };
+  /// Pixels of the screen, along each axis, that a pixel of the picture is shown as: lines are as wide there.
+  int PixelSize = 1;
   int TileSize = 16;
   /// Samples [FirstSample, FirstSample + Samples) of every pixel are averaged. Sample 0 is the
   /// pixel's centre; the others are spread over the pixel.

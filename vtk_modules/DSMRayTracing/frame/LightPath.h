@@ -5,11 +5,11 @@
 #include "DSMRayTracing/frame/KnownLight.h"
 #include "DSMRayTracing/frame/PixelSample.h"
 #include "DSMRayTracing/light/SampleSequence.h"
+#include "DSMRayTracing/object/PictureView.h"
 #include "DSMRayTracing/object/SurfacePoint.h"
 #include "DSMRayTracing/ray/Ray.h"
 
 #include <glm/geometric.hpp>
-#include <glm/mat4x3.hpp>
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
 
@@ -30,8 +30,8 @@ struct LightPath
   glm::vec3 Shared{ 0.0f }; ///< see PixelSample
   int LightRays = 0;
   PixelSample* Layers = nullptr; ///< gets the surfaces one by one, if not null
-  /// Where in the picture the ray sees a point of the world; see PixelRays::GetWorldToPixels.
-  const glm::dmat4x3* View = nullptr;
+  /// The picture that the ray belongs to.
+  const PictureView* View = nullptr;
   /// Visibility of the scene's first lamps from surfaces in front. Bit *i* of KnownLamps: lamp *i* has a value.
   static constexpr int MaxKnownLamps = 8;
   KnownLight<glm::dvec3> Lamps[MaxKnownLamps];

@@ -36,10 +36,11 @@ PixelRays::PixelRays(const FrameRequest& request)
   {
     throw dsm::Error("The camera's matrix cannot be inverted. Reset the camera.");
   }
+  this->View.PixelSize = static_cast<float>(request.PixelSize);
   for (int column = 0; column < 4; ++column)
   {
     const glm::dvec4& clip = this->WorldToClip[column];
-    this->WorldToPixels[column] = { (clip.x + clip.w) / this->PixelWidth,
+    this->View.WorldToPixels[column] = { (clip.x + clip.w) / this->PixelWidth,
       (clip.y + clip.w) / this->PixelHeight, clip.w };
   }
 }

@@ -3,9 +3,9 @@
 #define rt_PixelRays_h
 
 #include "DSMRayTracing/frame/FrameRequest.h"
+#include "DSMRayTracing/object/PictureView.h"
 #include "DSMRayTracing/ray/Ray.h"
 
-#include <glm/mat4x3.hpp>
 #include <glm/mat4x4.hpp>
 #include <glm/vec2.hpp>
 
@@ -32,16 +32,15 @@ public:
   /// OpenGL window depth in [0, 1] of a world point.
   float GetDepth(const glm::dvec3& point) const;
 
-  /// Takes a world point (with a fourth coordinate of 1) to the picture: x and y in pixels, both times
-  /// the third coordinate.
-  const glm::dmat4x3& GetWorldToPixels() const { return this->WorldToPixels; }
+  /// Where the picture shows points of the world.
+  const PictureView& GetView() const { return this->View; }
 
 private:
   double PixelWidth;
   double PixelHeight;
   glm::dmat4 WorldToClip;
   glm::dmat4 ClipToWorld;
-  glm::dmat4x3 WorldToPixels;
+  PictureView View;
 };
 
 } // namespace rt

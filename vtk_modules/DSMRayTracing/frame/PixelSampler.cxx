@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "DSMRayTracing/frame/PixelSampler.h"
 
-#include "DSMRayTracing/light/EdgeCover.h"
 #include "DSMRayTracing/light/Shading.h"
 
 #include <glm/geometric.hpp>
@@ -58,7 +57,7 @@ struct PixelSampler::Mirrored
   Mirrored() {}
 
   Ray Rays[MaxRays];
-  glm::dmat4x3 Views[MaxRays];
+  PictureView Views[MaxRays];
   PixelSampler::Paths Paths;
 };
 
@@ -105,7 +104,7 @@ void PixelSampler::Sample(
       path.Layers->Pixel = glm::ivec2(x, y) + GetPlace(index);
       path.Random = SampleSequence(path.Layers->Pixel.x, path.Layers->Pixel.y, sample);
       path.ToViewer = -glm::normalize(rays[index].Direction);
-      path.View = &this->Rays.GetWorldToPixels();
+      path.View = &this->Rays.GetView();
       return path;
     });
   this->Follow(beam, rays, PixelRays::Last, this->World.Transport.MaxBounces, paths);
@@ -123,17 +122,21 @@ void PixelSampler::FindSurfaces(
   Ray* rays, RayMask wanted, SceneBeam* beam, const GetPath& getPath) const
 {
   ObjectHit hits[MaxRays];
-  ForEachRay(this->Surfaces.Find(rays, wanted, beam, hits),
+  SurfacePoint* points[MaxRays];
+  const PictureView* views[MaxRays];
+  const RayMask found = this->Surfaces.Find(rays, wanted, beam, hits);
+  ForEachRay(found,
     [&](int index)
     {
-      const ObjectTracer& object = *hits[index].GetObject();
       LightPath& path = getPath(index);
-      object.Describe(hits[index], rays[index], path.Point);
+      points[index] = &path.Point;
+      views[index] = path.View;
       if (this->World.View == DebugView::Owner || this->World.View == DebugView::Brick)
       {
-        path.Number = GetNumber(this->World.View, object.FindBrick(hits[index]));
+        path.Number = GetNumber(this->World.View, hits[index].GetObject()->FindBrick(hits[index]));
       }
     });
+  SurfaceFinder::Describe(hits, rays, views, found, points);
 }
 
 void PixelSampler::Follow(SceneBeam* beam, Ray* rays, double last, int bounces, Paths& paths) const
@@ -273,7 +276,7 @@ void PixelSampler::AddReflections(LightPath* const* paths, int count, const Shad
       ray.Direction = glm::reflect(-path.ToViewer, normal);
       ray.Min = path.Point.Clearance;
       ray.Max = std::numeric_limits<double>::infinity();
-      mirrored->Views[number] = GetMirroredView(*path.View, path.Point.Position, normal);
+      mirrored->Views[number] = path.View->GetMirrored(path.Point.Position, normal);
     });
   this->FindSurfaces(mirrored->Rays, mirrors, nullptr,
     [&](int number) -> LightPath&

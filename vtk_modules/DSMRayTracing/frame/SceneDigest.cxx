@@ -45,6 +45,7 @@ std::uint64_t GetSceneDigest(const Scene& scene, const FrameRequest& request)
   digest.Add(request.Width);
   digest.Add(request.Height);
   digest.Add(request.WorldToClip);
+  digest.Add(request.PixelSize);
   digest.Add(request.TileSize);
   digest.Add(request.Layers);
   Add(digest, scene.Transport);

@@ -3,7 +3,7 @@
 #define rt_Shading_h
 
 #include "DSMRayTracing/light/Light.h"
-#include "DSMRayTracing/surface/Material.h"
+#include "DSMRayTracing/look/Material.h"
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>

@@ -8,25 +8,27 @@ namespace rt
 
 bool MeshObject::IsOpaque() const
 {
-  return this->Surface.Opacity >= 1.0f &&
-    (!this->BackSurface || this->BackSurface->Opacity >= 1.0f) && !this->Picture &&
-    (this->ColoredBy == Coloring::Material ||
-      (this->ColoredBy != Coloring::Colors && this->Colors->IsOpaque()));
+  const MeshLook& look = this->Look;
+  return look.Surface.Opacity >= 1.0f && (!look.BackSurface || look.BackSurface->Opacity >= 1.0f) &&
+    !look.Picture &&
+    (look.ColoredBy == MeshLook::Coloring::Material ||
+      (look.ColoredBy != MeshLook::Coloring::Colors && look.Colors->IsOpaque()));
 }
 
 void MeshObject::AddTo(ObjectDigest& digest) const
 {
+  const MeshLook& look = this->Look;
   digest.Add(this->Instance->GetMesh().Segment->GetNumber());
   digest.Add(this->Instance->GetMeshToWorld());
   digest.Add(this->Instance->Culling.Front);
   digest.Add(this->Instance->Culling.Back);
-  digest.Add(this->ColoredBy);
-  digest.AddIf(this->Colors.get());
-  digest.Add(this->Flat);
-  digest.Add(this->Surface);
-  digest.Add(this->BackSurface);
-  digest.Add(this->Edges);
-  digest.AddIf(this->Picture.get());
+  digest.Add(look.ColoredBy);
+  digest.AddIf(look.Colors.get());
+  digest.Add(look.Flat);
+  digest.Add(look.Surface);
+  digest.Add(look.BackSurface);
+  digest.Add(look.Edges);
+  digest.AddIf(look.Picture.get());
   digest.Add(this->Clipping);
 }
 

@@ -2,6 +2,7 @@
 #ifndef rt_MeshTracer_h
 #define rt_MeshTracer_h
 
+#include "DSMRayTracing/mesh/EdgeCover.h"
 #include "DSMRayTracing/mesh/MeshObject.h"
 #include "DSMRayTracing/mesh/MeshSearch.h"
 #include "DSMRayTracing/object/ObjectTracer.h"
@@ -51,37 +52,19 @@ public:
       { return this->Search.FindOccluded(*this->Object.Instance, parts, some); });
   }
 
-  void Describe(const ObjectHit& nearest, const Ray& ray, SurfacePoint& point) const override
+  void Describe(const ObjectHit* hits, const Ray* rays, const PictureView* const* views,
+    RayMask wanted, SurfacePoint* const* points) const override
   {
-    const auto& hit = nearest.Get<MeshHit>();
-    const MeshObject& object = this->Object;
-    point.T = hit.T;
-    point.Position = ray.Origin + hit.T * ray.Direction;
-    point.Normal = object.Flat ? hit.GeometricNormal : hit.Normal;
-    // The triangle tells the side; the points' normals may point to either.
-    const bool agrees = glm::dot(point.Normal, hit.GeometricNormal) >= 0.0;
-    point.Facing = agrees == hit.Front ? point.Normal : -point.Normal;
-    point.Surface = !hit.Front && object.BackSurface ? &*object.BackSurface : &object.Surface;
-    point.ColorIsFromArray = object.ColoredBy != MeshObject::Coloring::Material;
-    point.Color = this->GetColor(hit, *point.Surface);
-    if (object.Picture)
-    {
-      point.Color *= object.Picture->Sample(hit.TextureCoordinate);
-      point.ColorIsFromArray = true;
-    }
-    point.Color.w *= point.Surface->Opacity;
-    const glm::dvec3 distance = glm::abs(point.Position) + glm::abs(ray.Origin);
-    point.Clearance = object.Instance->GetResolution(hit.Corners) +
-      HitError * (distance.x + distance.y + distance.z);
-    point.Edges = object.Edges ? &*object.Edges : nullptr;
-    if (point.Edges)
-    {
-      point.EdgeFlags = hit.EdgeFlags;
-      for (int corner = 0; corner < 3; ++corner)
+    ForEachRay(wanted,
+      [&](int index)
       {
-        point.Corners[corner] = object.Instance->Place(hit.Corners[corner]);
-      }
-    }
+        const auto& hit = hits[index].Get<MeshHit>();
+        this->Describe(hit, rays[index], *points[index]);
+        if (this->Object.Look.Edges && views)
+        {
+          this->DrawEdges(hit, *views[index], *points[index]);
+        }
+      });
   }
 
   Brick FindBrick(const ObjectHit& hit) const override
@@ -94,19 +77,58 @@ private:
   /// test in double precision can be off by, a few 1e-16 of them, and enough for rays at low angles.
   static constexpr double HitError = 1e-13;
 
+  void Describe(const MeshHit& hit, const Ray& ray, SurfacePoint& point) const
+  {
+    const MeshLook& look = this->Object.Look;
+    point.T = hit.T;
+    point.Position = ray.Origin + hit.T * ray.Direction;
+    point.Normal = look.Flat ? hit.GeometricNormal : hit.Normal;
+    // The triangle tells the side; the points' normals may point to either.
+    const bool agrees = glm::dot(point.Normal, hit.GeometricNormal) >= 0.0;
+    point.Facing = agrees == hit.Front ? point.Normal : -point.Normal;
+    point.Surface = !hit.Front && look.BackSurface ? &*look.BackSurface : &look.Surface;
+    point.ColorIsFromArray = look.ColoredBy != MeshLook::Coloring::Material;
+    point.Color = this->GetColor(hit, *point.Surface);
+    if (look.Picture)
+    {
+      point.Color *= look.Picture->Sample(hit.TextureCoordinate);
+      point.ColorIsFromArray = true;
+    }
+    point.Color.w *= point.Surface->Opacity;
+    const glm::dvec3 distance = glm::abs(point.Position) + glm::abs(ray.Origin);
+    point.Clearance = this->Object.Instance->GetResolution(hit.Corners) +
+      HitError * (distance.x + distance.y + distance.z);
+    point.LineCover = 0.0;
+  }
+
+  void DrawEdges(const MeshHit& hit, const PictureView& view, SurfacePoint& point) const
+  {
+    const EdgeLines& edges = *this->Object.Look.Edges;
+    glm::dvec3 corners[3];
+    for (int corner = 0; corner < 3; ++corner)
+    {
+      corners[corner] = this->Object.Instance->Place(hit.Corners[corner]);
+    }
+    point.LineColor = edges.Color;
+    point.LineCover = edges.Opacity *
+      GetEdgeCover(
+        point.Position, corners, hit.EdgeFlags, edges.Width / view.PixelSize, view.WorldToPixels);
+  }
+
   glm::vec4 GetColor(const MeshHit& hit, const Material& surface) const
   {
-    switch (this->Object.ColoredBy)
+    switch (this->Object.Look.ColoredBy)
     {
-      case MeshObject::Coloring::Values:
-        return this->Object.Colors->Map(hit.Value);
-      case MeshObject::Coloring::CornerValues:
-        return static_cast<float>(hit.Weights[0]) * this->Object.Colors->Map(hit.CornerValues[0]) +
-          static_cast<float>(hit.Weights[1]) * this->Object.Colors->Map(hit.CornerValues[1]) +
-          static_cast<float>(hit.Weights[2]) * this->Object.Colors->Map(hit.CornerValues[2]);
-      case MeshObject::Coloring::Colors:
+      case MeshLook::Coloring::Values:
+        return this->Object.Look.Colors->Map(hit.Value);
+      case MeshLook::Coloring::CornerValues:
+        return static_cast<float>(hit.Weights[0]) *
+          this->Object.Look.Colors->Map(hit.CornerValues[0]) +
+          static_cast<float>(hit.Weights[1]) * this->Object.Look.Colors->Map(hit.CornerValues[1]) +
+          static_cast<float>(hit.Weights[2]) * this->Object.Look.Colors->Map(hit.CornerValues[2]);
+      case MeshLook::Coloring::Colors:
         return hit.Color;
-      case MeshObject::Coloring::Material:
+      case MeshLook::Coloring::Material:
         break;
     }
     return glm::vec4(surface.DiffuseColor, 1.0f);

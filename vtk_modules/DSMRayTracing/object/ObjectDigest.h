@@ -3,11 +3,11 @@
 #define rt_ObjectDigest_h
 
 #include "DSMBricks/base/ByteHash.h"
+#include "DSMRayTracing/look/ColorMap.h"
+#include "DSMRayTracing/look/EdgeLines.h"
+#include "DSMRayTracing/look/Material.h"
+#include "DSMRayTracing/look/Texture.h"
 #include "DSMRayTracing/ray/ClipRegion.h"
-#include "DSMRayTracing/surface/ColorMap.h"
-#include "DSMRayTracing/surface/EdgeLines.h"
-#include "DSMRayTracing/surface/Material.h"
-#include "DSMRayTracing/surface/Texture.h"
 
 #include <cstdint>
 #include <optional>

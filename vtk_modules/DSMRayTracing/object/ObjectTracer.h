@@ -7,6 +7,7 @@
 #include "DSMRayTracing/object/BrickForecast.h"
 #include "DSMRayTracing/object/ObjectBeam.h"
 #include "DSMRayTracing/object/ObjectHit.h"
+#include "DSMRayTracing/object/PictureView.h"
 #include "DSMRayTracing/object/SurfacePoint.h"
 #include "DSMRayTracing/ray/Ray.h"
 #include "DSMRayTracing/ray/RayMask.h"
@@ -55,8 +56,10 @@ public:
   /// ends early. Unless overridden, finds the surfaces one after the other.
   virtual RayMask Attenuate(const Ray* rays, RayMask wanted, glm::dvec3* transmittances) const;
 
-  /// Tells what the ray meets there.
-  virtual void Describe(const ObjectHit& hit, const Ray& ray, SurfacePoint& point) const = 0;
+  /// Tells what those of the rays that are `wanted` meet, which all have hits of this object. All arrays are by ray.
+  /// `views`: the pictures that the rays belong to; null: they are rays of light, and no lines are drawn.
+  virtual void Describe(const ObjectHit* hits, const Ray* rays, const PictureView* const* views,
+    RayMask wanted, SurfacePoint* const* points) const = 0;
 
   /// A brick of a segment.
   struct Brick

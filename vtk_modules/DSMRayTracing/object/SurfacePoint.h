@@ -2,8 +2,7 @@
 #ifndef rt_SurfacePoint_h
 #define rt_SurfacePoint_h
 
-#include "DSMRayTracing/surface/EdgeLines.h"
-#include "DSMRayTracing/surface/Material.h"
+#include "DSMRayTracing/look/Material.h"
 
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
@@ -26,10 +25,9 @@ struct SurfacePoint
   /// World length that is more than the error of the hit, and less than the distance of two
   /// surfaces that can be told apart: where rays that leave the surface begin.
   double Clearance = 0.0;
-  /// Of the triangle's sides; null: none are drawn.
-  const EdgeLines* Edges = nullptr;
-  glm::dvec3 Corners[3]; ///< of the triangle, world, when edges are drawn
-  unsigned EdgeFlags = 0;
+  /// A line that is drawn on the surface, and how much of the place it covers, in [0, 1].
+  glm::vec3 LineColor{ 0.0f };
+  double LineCover = 0.0;
 };
 
 } // namespace rt

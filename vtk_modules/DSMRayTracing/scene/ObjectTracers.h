@@ -2,10 +2,12 @@
 #ifndef rt_ObjectTracers_h
 #define rt_ObjectTracers_h
 
+#include "DSMRayTracing/field/lattice/LatticeSampler.h"
+#include "DSMRayTracing/field/lattice/LatticeSurfaces.h"
 #include "DSMRayTracing/mesh/MeshTracer.h"
 #include "DSMRayTracing/object/ObjectTracer.h"
 #include "DSMRayTracing/scene/Scene.h"
-#include "DSMRayTracing/volume/IsosurfaceTracer.h"
+#include "DSMRayTracing/surface/IsosurfaceTracer.h"
 
 #include <cstddef>
 #include <memory>

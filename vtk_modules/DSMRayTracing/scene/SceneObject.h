@@ -3,7 +3,7 @@
 #define rt_SceneObject_h
 
 #include "DSMRayTracing/mesh/MeshObject.h"
-#include "DSMRayTracing/volume/IsosurfaceObject.h"
+#include "DSMRayTracing/surface/IsosurfaceOf.h"
 
 #include <variant>
 
@@ -14,7 +14,7 @@ namespace rt
 /// - a description, named here, with IsOpaque, AddTo and the name of
 /// - its Tracer, an ObjectTracer for a store, whose header CreateObjectTracers includes.
 /// Of surfaces that are equally near, that of the kind that comes first here is seen.
-using SceneObject = std::variant<IsosurfaceObject, MeshObject>;
+using SceneObject = std::variant<LatticeIsosurface, MeshObject>;
 
 } // namespace rt
 

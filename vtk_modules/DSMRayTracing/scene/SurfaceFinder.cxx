@@ -33,4 +33,17 @@ RayMask SurfaceFinder::Find(Ray* rays, RayMask wanted, SceneBeam* beam, ObjectHi
   return FindRays(wanted, [&](int index) { return hits[index].GetObject() != nullptr; });
 }
 
+void SurfaceFinder::Describe(const ObjectHit* hits, const Ray* rays,
+  const PictureView* const* views, RayMask wanted, SurfacePoint* const* points)
+{
+  while (wanted != 0)
+  {
+    const ObjectTracer* const object = hits[GetLowest(wanted)].GetObject();
+    const RayMask own =
+      FindRays(wanted, [&](int index) { return hits[index].GetObject() == object; });
+    object->Describe(hits, rays, views, own, points);
+    wanted &= ~own;
+  }
+}
+
 } // namespace rt

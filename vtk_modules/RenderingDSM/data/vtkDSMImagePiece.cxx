@@ -2,7 +2,7 @@
 #include "vtkDSMImagePiece.h"
 
 #include "DSMCore/base/Error.h"
-#include "DSMRayTracing/surface/PackedColor.h"
+#include "DSMRayTracing/look/PackedColor.h"
 #include "vtkDSMFileArray.h"
 
 #include "vtkCellData.h"

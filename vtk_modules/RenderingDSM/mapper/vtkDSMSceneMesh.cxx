@@ -36,10 +36,10 @@ void Apply(const vtkDSMMeshBlock::Look& look, rt::Material& material)
   }
 }
 
-rt::MeshObject::Coloring GetColoring(const vtkDSMMeshBlock::Look& look,
+rt::MeshLook::Coloring GetColoring(const vtkDSMMeshBlock::Look& look,
   const bricks::MeshAttributes& has, bool interpolateScalarsBeforeMapping)
 {
-  using Coloring = rt::MeshObject::Coloring;
+  using Coloring = rt::MeshLook::Coloring;
   if (look.Color[0] >= 0.0f)
   {
     return Coloring::Material;
@@ -226,30 +226,30 @@ rt::MeshObject vtkDSMSceneMesh::CreateObject(const vtkDSMMeshData::Part& part, v
   instance->Culling.Back = property->GetBackfaceCulling() != 0;
   object.Instance = std::move(instance);
   object.Clipping = vtkDSMTranslation::ToClipRegion(this->Mapper);
-  object.Flat = property->GetInterpolation() == VTK_FLAT &&
+  object.Look.Flat = property->GetInterpolation() == VTK_FLAT &&
     part.Mesh->Attributes.Normals != bricks::Attachment::Triangles;
-  object.Surface = vtkDSMTranslation::ToMaterial(property);
-  object.Surface.Reflectivity = static_cast<float>(this->GetLightOptions()->GetReflectivity());
-  Apply(part.Appearance, object.Surface);
+  object.Look.Surface = vtkDSMTranslation::ToMaterial(property);
+  object.Look.Surface.Reflectivity = static_cast<float>(this->GetLightOptions()->GetReflectivity());
+  Apply(part.Appearance, object.Look.Surface);
   if (vtkProperty* back = actor->GetBackfaceProperty())
   {
-    object.BackSurface = vtkDSMTranslation::ToMaterial(back);
-    object.BackSurface->Reflectivity = object.Surface.Reflectivity;
+    object.Look.BackSurface = vtkDSMTranslation::ToMaterial(back);
+    object.Look.BackSurface->Reflectivity = object.Look.Surface.Reflectivity;
   }
   if (this->ShowsEdges())
   {
-    object.Edges = vtkDSMTranslation::ToEdgeLines(property);
+    object.Look.Edges = vtkDSMTranslation::ToEdgeLines(property);
   }
-  object.ColoredBy = GetColoring(part.Appearance, part.Mesh->Attributes,
+  object.Look.ColoredBy = GetColoring(part.Appearance, part.Mesh->Attributes,
     this->Mapper->GetInterpolateScalarsBeforeMapping() != 0);
-  if (object.ColoredBy == rt::MeshObject::Coloring::Values ||
-    object.ColoredBy == rt::MeshObject::Coloring::CornerValues)
+  if (object.Look.ColoredBy == rt::MeshLook::Coloring::Values ||
+    object.Look.ColoredBy == rt::MeshLook::Coloring::CornerValues)
   {
-    object.Colors = this->GetColorMap();
+    object.Look.Colors = this->GetColorMap();
   }
   if (part.Mesh->Attributes.TextureCoordinates && actor->GetTexture())
   {
-    object.Picture = this->GetPicture(actor);
+    object.Look.Picture = this->GetPicture(actor);
   }
   return object;
 }
@@ -301,7 +301,8 @@ void vtkDSMSceneMesh::AddTo(rt::Scene& scene)
       continue;
     }
     rt::MeshObject object = this->CreateObject(part, actor);
-    if (object.Surface.Opacity > 0.0f || (object.BackSurface && object.BackSurface->Opacity > 0.0f))
+    if (object.Look.Surface.Opacity > 0.0f ||
+      (object.Look.BackSurface && object.Look.BackSurface->Opacity > 0.0f))
     {
       scene.Objects.push_back(std::move(object));
     }

@@ -395,17 +395,17 @@ void vtkDSMSceneVolume::SuggestIsovalue(dsm::Messenger& messenger)
   this->Mapper->SetSuggestedIsoValue(this->Suggested.value_or(vtkMath::Nan()));
 }
 
-void vtkDSMSceneVolume::SetColors(std::size_t lattice, rt::IsosurfaceObject& object)
+void vtkDSMSceneVolume::SetColors(std::size_t lattice, rt::LatticeIsosurface& object)
 {
-  using Coloring = rt::IsosurfaceObject::Coloring;
-  object.ColorField = this->Color->GetFields()[lattice];
+  using Coloring = rt::IsosurfaceLook::Coloring;
+  object.ColorValues = this->Color->GetFields()[lattice];
   if (this->Mapper->GetLookupTable())
   {
-    object.Colors = *this->SampleColors(this->Mapper->GetLookupTable());
+    object.Look.Colors = *this->SampleColors(this->Mapper->GetLookupTable());
   }
   if (this->Color->Choice.Component == vtkDSMImagePiece::Color)
   {
-    object.ColoredBy = this->Data->GetArrays().HasOpacity(this->Color->Choice)
+    object.Look.ColoredBy = this->Data->GetArrays().HasOpacity(this->Color->Choice)
       ? Coloring::Colors
       : Coloring::OpaqueColors;
   }
@@ -489,26 +489,26 @@ void vtkDSMSceneVolume::AddTo(rt::Scene& scene)
     const auto blocks = this->CreateBlockLooks(lattice);
     for (const std::vector<double>& group : groups)
     {
-      rt::IsosurfaceObject object;
-      object.Blocks = blocks;
-      object.SetIndexToWorld(dataToWorld * this->Data->GetIndexToWorld(lattice));
-      object.Field = this->Iso->GetFields()[lattice];
+      rt::LatticeIsosurface object;
+      object.Look.Blocks = blocks;
+      object.Field.SetIndexToWorld(dataToWorld * this->Data->GetIndexToWorld(lattice));
+      object.Field.Voxels = this->Iso->GetFields()[lattice];
       if (level > 0)
       {
         const auto& coarser = this->Iso->Coarser->Levels[level - 1][lattice];
-        object.Field = coarser.Field;
-        object.SetIndexToWorld(
+        object.Field.Voxels = coarser.Field;
+        object.Field.SetIndexToWorld(
           dataToWorld * this->Data->GetIndexToWorld(lattice) * coarser.ToLattice);
       }
       object.Isovalues = group;
-      look.SetMaterials(group.front(), object);
+      look.SetMaterials(group.front(), object.Look);
       object.Clipping = clipping;
       if (colored && this->Color->GetFields()[lattice])
       {
         this->SetColors(lattice, object);
         if (level > 0)
         {
-          object.ColorField = this->Color->Coarser->Levels[level - 1][lattice].Field;
+          object.ColorValues = this->Color->Coarser->Levels[level - 1][lattice].Field;
         }
       }
       scene.Objects.push_back(std::move(object));

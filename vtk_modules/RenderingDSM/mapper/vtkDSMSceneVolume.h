@@ -63,7 +63,7 @@ private:
   /// Collective. Finds the isovalue for a first look at the array, unless the last one still suits its values.
   void SuggestIsovalue(dsm::Messenger& messenger);
   vtkDSMVolumeLook GetLook() const { return { this->Mapper, this->Prop }; }
-  void SetColors(std::size_t lattice, rt::IsosurfaceObject& object);
+  void SetColors(std::size_t lattice, rt::LatticeIsosurface& object);
   /// What blocks look like that are not to look like the rest; null where there are none.
   std::shared_ptr<const rt::BlockLooks> CreateBlockLooks(std::size_t lattice) const;
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkDSMSurfaceSearch.h"
 
-#include "DSMRayTracing/volume/IsovaluePredicate.h"
+#include "DSMRayTracing/field/lattice/IsovaluePredicate.h"
 
 #include <limits>
 

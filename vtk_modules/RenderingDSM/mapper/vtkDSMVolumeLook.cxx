@@ -82,28 +82,28 @@ std::string vtkDSMVolumeLook::GetIsoArray() const
   return name ? name : "";
 }
 
-void vtkDSMVolumeLook::SetMaterials(double isovalue, rt::IsosurfaceObject& object) const
+void vtkDSMVolumeLook::SetMaterials(double isovalue, rt::IsosurfaceLook& look) const
 {
   const auto reflectivity = static_cast<float>(this->Mapper->GetLightOptions()->GetReflectivity());
   if (this->IsLikeRayCastMapper())
   {
-    object.Surface =
+    look.Surface =
       vtkDSMTranslation::ToMaterial(vtkVolume::SafeDownCast(this->Prop)->GetProperty(), isovalue);
   }
   else
   {
     vtkProperty* const property = this->Mapper->GetSurfaceProperty();
-    object.Surface = vtkDSMTranslation::ToMaterial(property);
-    object.CullsFront = property->GetFrontfaceCulling() != 0;
-    object.CullsBack = property->GetBackfaceCulling() != 0;
-    object.Flat = property->GetInterpolation() == VTK_FLAT;
+    look.Surface = vtkDSMTranslation::ToMaterial(property);
+    look.CullsFront = property->GetFrontfaceCulling() != 0;
+    look.CullsBack = property->GetBackfaceCulling() != 0;
+    look.Flat = property->GetInterpolation() == VTK_FLAT;
     if (vtkProperty* const back = this->Mapper->GetBackfaceProperty())
     {
-      object.BackSurface = vtkDSMTranslation::ToMaterial(back);
-      object.BackSurface->Reflectivity = reflectivity;
+      look.BackSurface = vtkDSMTranslation::ToMaterial(back);
+      look.BackSurface->Reflectivity = reflectivity;
     }
   }
-  object.Surface.Reflectivity = reflectivity;
+  look.Surface.Reflectivity = reflectivity;
 }
 
 std::vector<double> vtkDSMVolumeLook::GetIsovalues(

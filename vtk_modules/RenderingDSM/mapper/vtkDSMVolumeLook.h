@@ -31,7 +31,7 @@ public:
   /// wrong with them to the messages.
   std::vector<double> GetIsovalues(
     const std::optional<double>& suggested, std::vector<std::string>& messages) const;
-  void SetMaterials(double isovalue, rt::IsosurfaceObject& object) const;
+  void SetMaterials(double isovalue, rt::IsosurfaceLook& look) const;
   rt::ClipRegion GetClipRegion(const glm::dmat4& dataToWorld) const;
 
 private:

@@ -74,19 +74,6 @@ private:
   bool& Flag;
 };
 
-/// Pixels are squares of so many: lines are as wide on the screen.
-void ScaleEdges(rt::Scene& scene, int reduction)
-{
-  for (rt::SceneObject& object : scene.Objects)
-  {
-    auto* const mesh = std::get_if<rt::MeshObject>(&object);
-    if (mesh && mesh->Edges)
-    {
-      mesh->Edges->Width /= static_cast<float>(reduction);
-    }
-  }
-}
-
 } // namespace
 
 vtkDSMScene::Internals::~Internals()
@@ -246,11 +233,11 @@ void vtkDSMScene::Internals::Draw()
     return;
   }
   this->AgreeOnView(scene, request);
-  const int reduction = this->GetReduction(request);
-  request.Width = (request.Width + reduction - 1) / reduction;
-  request.Height = (request.Height + reduction - 1) / reduction;
+  request.PixelSize = this->GetReduction(request);
+  request.Width = (request.Width + request.PixelSize - 1) / request.PixelSize;
+  request.Height = (request.Height + request.PixelSize - 1) / request.PixelSize;
   this->IsTraced = true;
-  if (this->TraceScene(scene, request, reduction) == vtkDSMFrameAccumulation::Result::Aborted)
+  if (this->TraceScene(scene, request) == vtkDSMFrameAccumulation::Result::Aborted)
   {
     // The renderer goes on, with the last picture: other ranks may wait for what this one draws.
     this->Renderer->GetRenderWindow()->SetAbortRender(0);
@@ -264,12 +251,12 @@ void vtkDSMScene::Internals::Draw()
   const bool hasEdges =
     messenger.GetSize() > 1 && scene.IsOpaque() && this->Accumulation.GetSamples() > 1;
   this->DrawPicture(this->Delivery.Gather(messenger, this->Accumulation.GetFrame(), hasEdges),
-    request, projection, scene.View, reduction == 1, hasEdges);
+    request, projection, scene.View, request.PixelSize == 1, hasEdges);
 }
 
 /// Collective: the scene's objects come in again where they are shown at another level of detail.
 vtkDSMFrameAccumulation::Result vtkDSMScene::Internals::TraceScene(
-  rt::Scene& scene, const rt::FrameRequest& request, int reduction)
+  rt::Scene& scene, const rt::FrameRequest& request)
 {
   dsm::Messenger& messenger = this->Group->GetMessenger();
   vtkRenderWindow* window = this->Image ? nullptr : this->Renderer->GetRenderWindow();
@@ -285,7 +272,6 @@ vtkDSMFrameAccumulation::Result vtkDSMScene::Internals::TraceScene(
     {
       messenger.RunTogether("Preparing the frame", [&] { this->Members.AddTo(scene, *level); });
     }
-    ScaleEdges(scene, reduction);
     const bool isLast = level + 1 == tries.end();
     this->Detail.Begin();
     this->Group->GetFrameRenderer().SetWatch(

@@ -101,8 +101,7 @@ private:
   vtkDSMFrameAccumulation::Pace GetPace() const;
   int GetReduction(const rt::FrameRequest& request) const;
   int CountCoarser() const;
-  vtkDSMFrameAccumulation::Result TraceScene(
-    rt::Scene& scene, const rt::FrameRequest& request, int reduction);
+  vtkDSMFrameAccumulation::Result TraceScene(rt::Scene& scene, const rt::FrameRequest& request);
   void TellOfTracing(double part) const;
   void DrawPicture(rt::Picture picture, const rt::FrameRequest& request, vtkMatrix4x4* projection,
     rt::DebugView view, bool hasNotes, bool hasEdges);

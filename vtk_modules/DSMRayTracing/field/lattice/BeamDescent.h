@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef rt_BeamDescent_h
+#define rt_BeamDescent_h
+
+#include "DSMBricks/layout/MacrocellHierarchy.h"
+#include "DSMRayTracing/field/lattice/BeamBricks.h"
+#include "DSMRayTracing/field/lattice/RayBeam.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace rt
+{
+
+/// Takes a beam down through the levels above the bricks, nearer macrocells first. `Predicate` tells of a
+/// ValueRange whether what the rays look for may be there; see IsovaluePredicate.
+template <class Predicate>
+class BeamDescent
+{
+public:
+  /// All is kept by reference.
+  BeamDescent(
+    const bricks::MacrocellHierarchy& hierarchy, const Predicate& mayHold, const RayBeam& beam)
+    : Levels(hierarchy.GetLevels())
+    , MayHold(mayHold)
+    , Beam(beam)
+  {
+    for (const bricks::MacrocellHierarchy::Level& level : this->Levels)
+    {
+      this->Cubes.push_back(beam.GetCubes(level.Edge));
+    }
+  }
+
+  BeamBricks Find()
+  {
+    BeamBricks found;
+    found.Usable = true;
+    std::copy_n(this->Beam.GetForward(), 3, found.Forward);
+    const int top = static_cast<int>(this->Levels.size()) - 1;
+    const int first[3] = { 0, 0, 0 };
+    this->VisitBox(top, first, this->Levels[top].Size, found.Bricks);
+    return found;
+  }
+
+private:
+  using Bricks = std::vector<BeamBricks::Brick>;
+
+  /// Macrocells [begin, end) of a level.
+  void VisitBox(int number, const int begin[3], const int end[3], Bricks& bricks)
+  {
+    const bricks::MacrocellHierarchy::Level& level = this->Levels[number];
+    const RayBeam::Cubes& cubes = this->Cubes[number];
+    int first[3];
+    int last[3];
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      first[axis] = std::max(begin[axis], cubes.First[axis]);
+      last[axis] = std::min(end[axis], cubes.Last[axis] + 1);
+    }
+    const bool* forward = this->Beam.GetForward();
+    const int size[3] = { last[0] - first[0], last[1] - first[1], last[2] - first[2] };
+    for (int k = 0; k < size[2]; ++k)
+    {
+      const int z = forward[2] ? first[2] + k : last[2] - 1 - k;
+      for (int j = 0; j < size[1]; ++j)
+      {
+        const int y = forward[1] ? first[1] + j : last[1] - 1 - j;
+        int low = first[0];
+        int high = last[0] - 1;
+        if (!this->Beam.ClipRow(cubes, y * level.Edge, z * level.Edge, low, high))
+        {
+          continue;
+        }
+        const std::int64_t row = level.Size[0] * (y + std::int64_t{ level.Size[1] } * z);
+        for (int i = low; i <= high; ++i)
+        {
+          const int x = forward[0] ? i : low + high - i;
+          if (this->MayHold(level.Ranges[static_cast<std::size_t>(row + x)]))
+          {
+            this->Visit(number, row + x, { x, y, z }, bricks);
+          }
+        }
+      }
+    }
+  }
+
+  struct Place
+  {
+    int x;
+    int y;
+    int z;
+  };
+
+  void Visit(int number, std::int64_t index, const Place& place, Bricks& bricks)
+  {
+    if (number == 0)
+    {
+      const double edge = this->Levels[0].Edge;
+      bricks.push_back(
+        { static_cast<dsm::BlockId>(index), { place.x * edge, place.y * edge, place.z * edge },
+          { (place.x + 1) * edge, (place.y + 1) * edge, (place.z + 1) * edge } });
+      return;
+    }
+    constexpr int ratio = 1 << bricks::MacrocellHierarchy::Shift;
+    const int first[3] = { ratio * place.x, ratio * place.y, ratio * place.z };
+    const int* size = this->Levels[number - 1].Size;
+    const int last[3] = { std::min(first[0] + ratio, size[0]), std::min(first[1] + ratio, size[1]),
+      std::min(first[2] + ratio, size[2]) };
+    this->VisitBox(number - 1, first, last, bricks);
+  }
+
+  const std::vector<bricks::MacrocellHierarchy::Level>& Levels;
+  const Predicate& MayHold;
+  const RayBeam& Beam;
+  std::vector<RayBeam::Cubes> Cubes; ///< of each level
+};
+
+} // namespace rt
+
+#endif

@@ -1,0 +1,212 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef rt_GridTraversal_h
+#define rt_GridTraversal_h
+
+#include "DSMBricks/layout/VoxelBrick.h"
+#include "DSMRayTracing/field/lattice/CornerTest.h"
+#include "DSMRayTracing/field/lattice/GridRay.h"
+#include "DSMRayTracing/field/lattice/GridWalk.h"
+#include "DSMRayTracing/field/lattice/IsovalueLevel.h"
+#include "DSMRayTracing/field/lattice/MacrocellWalk.h"
+#include "DSMRayTracing/field/lattice/TrilinearIsosurface.h"
+#include "DSMRayTracing/ray/CellHit.h"
+
+namespace rt
+{
+
+/// A ray in one brick: over its macrocells, then over the cells of those that the isovalue is in.
+/// `Access` is told what is read; see BrickAccess.
+template <class T, class Access>
+class GridTraversal
+{
+public:
+  /// `origin`: the brick's first cell.
+  GridTraversal(const GridRay& ray, const bricks::VoxelBrick<T>& brick, const Lanes& origin,
+    const Access& access)
+    : Line(ray)
+    , Brick(brick)
+    , Reads(access)
+    , Origin(origin)
+    , CellStrides(brick.GetRow(), brick.GetSlice())
+  {
+  }
+
+  /// The first hit in [enter, leave], which is not empty and lies in the brick. Gives up at `limit`,
+  /// from which on hits are of no interest, though it may find one there.
+  bool FindFirst(
+    const IsovalueLevel<T>& level, double enter, double leave, double limit, CellHit& hit) const
+  {
+    return this->Walk(level, enter, leave, limit,
+      [&](const GridWalk& cells, const T* corner, double in, double out)
+      { return this->IntersectCell(level, cells, corner, in, out, hit); });
+  }
+
+  /// Whether there is a hit in [enter, leave].
+  bool HasHit(const IsovalueLevel<T>& level, double enter, double leave) const
+  {
+    return this->Walk(level, enter, leave, leave,
+      [&](const GridWalk& cells, const T* corner, double in, double out)
+      {
+        double corners[8];
+        Lanes start;
+        Lanes end;
+        return this->EnterCell(level, cells, corner, in, out, corners, start, end) &&
+          HasCrossing(corners, start, end);
+      });
+  }
+
+  /// The number of crossings in [enter, leave].
+  int CountHits(const IsovalueLevel<T>& level, double enter, double leave) const
+  {
+    int count = 0;
+    this->Walk(level, enter, leave, leave,
+      [&](const GridWalk& cells, const T* corner, double in, double out)
+      {
+        double corners[8];
+        Lanes start;
+        Lanes end;
+        if (this->EnterCell(level, cells, corner, in, out, corners, start, end))
+        {
+          count += CountCrossings(corners, start, end);
+        }
+        return false;
+      });
+    return count;
+  }
+
+private:
+  /// Calls `intersect(cells, corner, enter, leave)` for the cells that the isovalue is in, until it
+  /// says that there is a hit, and returns whether it did.
+  template <class Intersect>
+  bool Walk(const IsovalueLevel<T>& level, double enter, double leave, double limit,
+    const Intersect& intersect) const
+  {
+    return VisitMacrocells(
+      this->Line, this->Brick, this->Origin, enter, leave, limit,
+      [&](const bricks::MacrocellRange<T>& range)
+      {
+        this->Reads.ReadRange();
+        return level.Separates(range.Min, range.Max);
+      },
+      [&](const GridWalk& walk, double in, double out)
+      { return this->WalkCells(level, walk, in, out, intersect); });
+  }
+
+  /// The same in the macrocell of `macrocells`, which the ray crosses from enter to leave.
+  template <class Intersect>
+  bool WalkCells(const IsovalueLevel<T>& level, const GridWalk& macrocells, double enter,
+    double leave, const Intersect& intersect) const
+  {
+    const Lanes first = macrocells.GetFirst(this->Line, bricks::MacrocellEdge);
+    const Lanes size(
+      this->Brick.GetCells(0), this->Brick.GetCells(1), this->Brick.GetCells(2), 1.0);
+    const Lanes place = first - this->Origin;
+    const Lanes counts = Min(size - place, Lanes(bricks::MacrocellEdge));
+    GridWalk walk;
+    const T* corner = this->Brick.GetSamples() +
+      static_cast<std::int64_t>((place * this->CellStrides.Real).GetSum()) +
+      walk.Start(this->Line, enter, NodeGrid{ first, 1.0, 1.0, counts, this->CellStrides });
+    const std::ptrdiff_t row = this->Brick.GetRow();
+    const std::ptrdiff_t slice = this->Brick.GetSlice();
+    double t = enter;
+    for (;;)
+    {
+      const double exit = std::min(walk.GetExit(), leave);
+      this->Reads.ReadCell();
+      if (CornerTest<T>::IsSeparated(corner, row, slice, level.GetFirst()) &&
+        intersect(walk, corner, t, exit))
+      {
+        return true;
+      }
+      if (exit >= leave)
+      {
+        return false;
+      }
+      corner += walk.Advance(this->Line, exit);
+      t = exit;
+    }
+  }
+
+  /// Where the ray is in a cell at t, given its point there: exactly 0 or 1 where it meets a plane
+  /// of the cell.
+  Lanes GetLocal(const Lanes& cell, double t) const
+  {
+    const Lanes zero(0.0);
+    const Lanes one(1.0);
+    const Lanes inside = Clamp(this->Line.GetPoint(t) - cell, zero, one);
+    const Lanes lower = Select(this->Line.GetPlaneT(cell) == Lanes(t), zero, inside);
+    return Select(this->Line.GetPlaneT(cell + one) == Lanes(t), one, lower);
+  }
+
+  /// Whether the cell holds data, and where it does its corners less the isovalue.
+  bool GetCorners(
+    const IsovalueLevel<T>& level, const T* corner, const Lanes& cell, double corners[8]) const
+  {
+    if (this->Brick.GetHeader().MaskOffset != 0)
+    {
+      const Lanes local = cell - this->Origin;
+      if (!this->Brick.IsCovered(
+            static_cast<int>(local[0]), static_cast<int>(local[1]), static_cast<int>(local[2])))
+      {
+        return false;
+      }
+    }
+    const std::ptrdiff_t row = this->Brick.GetRow();
+    const std::ptrdiff_t slice = this->Brick.GetSlice();
+    double check = 0.0;
+    for (int pair = 0; pair < 4; ++pair)
+    {
+      const T* from = corner + (pair & 1) * row + (pair >> 1) * slice;
+      corners[2 * pair] = level.Subtract(from[0]);
+      corners[2 * pair + 1] = level.Subtract(from[1]);
+      // Becomes, and stays, not a number where one of them is not finite.
+      check += (corners[2 * pair] + corners[2 * pair + 1]) * 0.0;
+    }
+    return std::is_integral_v<T> || check == 0.0;
+  }
+
+  /// What is known of the cell with the given first corner, which the ray crosses from enter to
+  /// leave; false when it holds no data.
+  bool EnterCell(const IsovalueLevel<T>& level, const GridWalk& cells, const T* corner,
+    double enter, double leave, double corners[8], Lanes& start, Lanes& end) const
+  {
+    const Lanes cell = cells.GetFirst(this->Line, 1.0);
+    start = this->GetLocal(cell, enter);
+    end = this->GetLocal(cell, leave);
+    return this->GetCorners(level, corner, cell, corners);
+  }
+
+  /// The first hit in that cell.
+  bool IntersectCell(const IsovalueLevel<T>& level, const GridWalk& cells, const T* corner,
+    double enter, double leave, CellHit& hit) const
+  {
+    double corners[8];
+    Lanes start;
+    Lanes end;
+    double s;
+    if (!this->EnterCell(level, cells, corner, enter, leave, corners, start, end) ||
+      !FindFirstCrossing(corners, start, end, s))
+    {
+      return false;
+    }
+    const Lanes cell = cells.GetFirst(this->Line, 1.0);
+    hit.T = std::min(enter + s * (leave - enter), leave);
+    hit.FromInside = EvaluateTrilinear(corners, start) >= 0.0;
+    hit.Local = Clamp(start + Lanes(s) * (end - start), Lanes(0.0), Lanes(1.0));
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      hit.Cell[axis] = static_cast<int>(cell[axis] - this->Origin[axis]);
+    }
+    return true;
+  }
+
+  const GridRay& Line;
+  const bricks::VoxelBrick<T>& Brick;
+  const Access& Reads;
+  Lanes Origin;
+  NodeStrides CellStrides;
+};
+
+} // namespace rt
+
+#endif

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef rt_IndexSpace_h
+#define rt_IndexSpace_h
+
+#include "DSMRayTracing/field/lattice/GridRay.h"
+#include "DSMRayTracing/ray/Ray.h"
+
+#include <glm/mat3x3.hpp>
+#include <glm/mat4x4.hpp>
+#include <glm/vec3.hpp>
+
+namespace rt
+{
+
+/// The affine map from world space to the index space of an object.
+class IndexSpace
+{
+public:
+  /// `indexToWorld` and its inverse.
+  IndexSpace(const glm::dmat4& indexToWorld, const glm::dmat4& worldToIndex)
+    : WorldOrigin(indexToWorld[3])
+    , WorldToIndex(worldToIndex)
+  {
+  }
+
+  /// Of the index space, in world space.
+  const glm::dvec3& GetOrigin() const { return this->WorldOrigin; }
+  /// Takes differences of world points to index space.
+  const glm::dmat3& GetWorldToIndex() const { return this->WorldToIndex; }
+
+  /// The same T in both spaces. False when the ray cannot be traced (no direction, not finite).
+  bool GetGridRay(const Ray& ray, GridRay& line) const
+  {
+    // Subtracting first keeps the digits of a small volume far from the world's origin.
+    const glm::dvec3 origin = this->WorldToIndex * (ray.Origin - this->WorldOrigin);
+    const glm::dvec3 direction = this->WorldToIndex * ray.Direction;
+    return line.Set(&origin.x, &direction.x);
+  }
+
+  /// The unit normal of a surface in world space, in which the scalar falls, out of the scalar's
+  /// gradient in index space. Where there is no gradient: towards the viewer.
+  glm::dvec3 GetNormal(const double gradient[3], const glm::dvec3& rayDirection) const;
+
+private:
+  glm::dvec3 WorldOrigin; ///< of the index space
+  glm::dmat3 WorldToIndex;
+};
+
+} // namespace rt
+
+#endif

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "DSMRayTracing/field/lattice/LatticeField.h"
+
+#include "DSMRayTracing/object/ObjectDigest.h"
+
+#include <glm/geometric.hpp>
+#include <glm/mat3x3.hpp>
+
+#include <algorithm>
+
+namespace rt
+{
+
+double LatticeField::GetFinestLength() const
+{
+  const glm::dmat3 edges(this->IndexToWorld);
+  return std::min({ glm::length(edges[0]), glm::length(edges[1]), glm::length(edges[2]) });
+}
+
+void LatticeField::AddTo(ObjectDigest& digest) const
+{
+  digest.Add(this->IndexToWorld);
+  AddTo(digest, *this->Voxels);
+}
+
+void LatticeField::AddTo(ObjectDigest& digest, const Values& values)
+{
+  digest.Add(values.Segment->GetNumber());
+  digest.Add(values.Segment->GetVersion());
+}
+
+} // namespace rt

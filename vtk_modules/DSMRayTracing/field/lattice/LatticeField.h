@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef rt_LatticeField_h
+#define rt_LatticeField_h
+
+#include "DSMBricks/layout/VoxelField.h"
+#include "DSMRayTracing/field/lattice/IndexSpace.h"
+#include "DSMRayTracing/field/lattice/LatticePlace.h"
+
+#include <glm/mat4x4.hpp>
+#include <glm/matrix.hpp>
+#include <glm/vec3.hpp>
+
+#include <memory>
+
+namespace rt
+{
+
+class ObjectDigest;
+template <class Store>
+class LatticeSampler;
+template <class Store>
+class LatticeSurfaces;
+
+/// Values at the points of a uniform lattice, in bricks of voxels, and where they are in the world. A kind of field:
+/// IsosurfaceOf says what one has to offer.
+struct LatticeField
+{
+  /// What is sampled. Of several with the same points, one may give the surfaces and another their colors.
+  using Values = bricks::VoxelField;
+  using Place = LatticePlace;
+  template <class Store>
+  using Sampler = LatticeSampler<Store>;
+  template <class Store>
+  using Surfaces = LatticeSurfaces<Store>;
+
+  /// Point index space (sample (i,j,k) at (i,j,k) of the lattice) to world; affine, invertible.
+  glm::dmat4 IndexToWorld{ 1.0 };
+  /// Its inverse; SetIndexToWorld keeps the two together.
+  glm::dmat4 WorldToIndex{ 1.0 };
+  void SetIndexToWorld(const glm::dmat4& matrix)
+  {
+    this->IndexToWorld = matrix;
+    this->WorldToIndex = glm::inverse(matrix);
+  }
+  std::shared_ptr<const Values> Voxels;
+  const Values& GetValues() const { return *this->Voxels; }
+
+  IndexSpace GetIndexSpace() const { return IndexSpace(this->IndexToWorld, this->WorldToIndex); }
+  /// The unit normal, in world space, of a surface where the values grow so fast on each axis of the index space.
+  glm::dvec3 GetNormal(const glm::dvec3& gradient, const glm::dvec3& rayDirection) const
+  {
+    return this->GetIndexSpace().GetNormal(&gradient.x, rayDirection);
+  }
+  /// World length of a cell's shortest edge.
+  double GetFinestLength() const;
+  /// All that a picture depends on.
+  void AddTo(ObjectDigest& digest) const;
+
+  /// Whether there are places within that have no value.
+  static bool HasHoles(const Values& values) { return values.Lattice.HasCellMask(); }
+  static void AddTo(ObjectDigest& digest, const Values& values);
+};
+
+} // namespace rt
+
+#endif

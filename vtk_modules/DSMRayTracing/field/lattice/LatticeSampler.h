@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef rt_LatticeSampler_h
+#define rt_LatticeSampler_h
+
+#include "DSMBricks/layout/VoxelField.h"
+#include "DSMRayTracing/base/Lanes.h"
+#include "DSMRayTracing/field/lattice/LatticePlace.h"
+#include "DSMRayTracing/ray/RayMask.h"
+
+#include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
+
+namespace rt
+{
+
+/// Reads values of a lattice through a store, at a batch of places: those of `places` that are `wanted`, of as many as
+/// MaxRays. Places in the same brick are read together. Pure. One for each worker: it holds at most one pin, and none
+/// while it acquires or when a call returns. May wait for bricks.
+///
+/// Values of points are interpolated, and read at LatticePlace::IndexPoint; those of cells (BrickLattice::IsOfCells)
+/// are the cell's.
+template <class Store>
+class LatticeSampler
+{
+public:
+  LatticeSampler(Store& store, typename Store::Worker& worker)
+    : Blocks(store)
+    , Self(worker)
+  {
+  }
+
+  /// NaN where there are no data; infinite between infinite values of one sign.
+  void FindValues(const bricks::VoxelField& field, const LatticePlace* places, RayMask wanted,
+    double* values) const;
+
+  /// The same, but of points the value of the nearest one in the cell that FindValues takes.
+  void FindNearestValues(const bricks::VoxelField& field, const LatticePlace* places,
+    RayMask wanted, double* values) const;
+
+  /// How fast the trilinear value grows on each axis of the index space, in cells that hold data.
+  void FindGradients(const bricks::VoxelField& field, const LatticePlace* places, RayMask wanted,
+    glm::dvec3* gradients) const;
+
+  /// Of fields whose samples are colors (PackedColor), each channel by itself. Returns the places that have data.
+  RayMask FindColors(const bricks::VoxelField& field, const LatticePlace* places, RayMask wanted,
+    glm::vec4* colors) const;
+
+private:
+  template <class T>
+  class Reader;
+  enum class Corners
+  {
+    Finite, ///< of a cell that holds data
+    Any     ///< of any cell that is there
+  };
+
+  /// Calls `visit(reader, index)` for the wanted places, those of a brick one after the other.
+  template <class T, class Visit>
+  void VisitPlaces(const bricks::VoxelField& field, const LatticePlace* places, RayMask wanted,
+    const Visit& visit) const;
+
+  /// `evaluate(corners, local)`: of the values at a cell's corners, and where in it the point is; NaN without data.
+  template <class Evaluate>
+  void FindValues(const bricks::VoxelField& field, const LatticePlace* places, RayMask wanted,
+    double* values, const Evaluate& evaluate) const;
+
+  Store& Blocks;
+  typename Store::Worker& Self;
+};
+
+} // namespace rt
+
+#include "DSMRayTracing/field/lattice/LatticeSampler.txx"
+
+#endif

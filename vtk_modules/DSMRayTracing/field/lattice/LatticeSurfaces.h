@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef rt_LatticeSurfaces_h
+#define rt_LatticeSurfaces_h
+
+#include "DSMRayTracing/field/lattice/IsosurfacePacketSearch.h"
+#include "DSMRayTracing/field/lattice/IsosurfaceSearch.h"
+#include "DSMRayTracing/field/lattice/IsovaluePredicate.h"
+#include "DSMRayTracing/object/ObjectTracer.h"
+
+#include <glm/vec3.hpp>
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+namespace rt
+{
+
+/// Finds the isosurfaces of a lattice for batches of rays. Rays within a beam, and those to a lamp, are searched as
+/// packets, others one by one. Threads and pins as IsosurfaceSearch.
+template <class Store>
+class LatticeSurfaces
+{
+public:
+  using Sets = LevelSets<LatticeField>;
+
+  LatticeSurfaces(Store& store, typename Store::Worker& worker)
+    : Blocks(store)
+    , Search(store, worker)
+    , Packets(store, worker)
+  {
+  }
+
+  /// See ObjectTracer.
+  std::unique_ptr<ObjectBeam> FindBeam(const Sets& sets, const Ray corners[4]) const
+  {
+    return std::make_unique<BeamBricks>(this->Packets.FindBricks(sets, corners));
+  }
+
+  /// See ObjectTracer.
+  bool Prefetch(const Sets& sets, const ObjectBeam& beam, const BrickForecast& forecast) const
+  {
+    const auto& bricks = static_cast<const BeamBricks&>(beam).Bricks;
+    // One that was sent in vain, or that the system has read in vain, costs little; one that was cut out of a file in
+    // vain costs a thread's time, so of these only the first ones are foreseen of those that no beam around did
+    // without.
+    const dsm::BlockSegment& segment = *sets.Field.Voxels->Segment;
+    const dsm::BlockDirectory& directory = segment.GetDirectory();
+    const bool isCut = directory.IsFromSource() && !directory.IsOnOwnersDisk();
+    std::vector<dsm::BlockId> ids(std::min(forecast.Mean, bricks.size()));
+    std::transform(bricks.begin(), bricks.begin() + static_cast<std::ptrdiff_t>(ids.size()),
+      ids.begin(), [](const BeamBricks::Brick& brick) { return brick.Id; });
+    std::size_t count = ids.size();
+    if (isCut)
+    {
+      this->Blocks.TellSystem(segment, ids.data(), ids.size(),
+        [&](dsm::BlockId id, std::vector<dsm::BlockId>& around) { AddRow(sets, id, around); });
+      count = std::min(count, (forecast.Least + 1) / 2);
+    }
+    return this->Blocks.Prefetch(segment, ids.data(), count);
+  }
+
+  /// Finds the first hits of those of the rays that are `wanted` in [ray.Min, ray.Max], returns which have one, and
+  /// calls `open(index, t)` for each of them, which says where the IsosurfaceHit is to be stored, or null: nowhere.
+  /// `beam`: from FindBeam, with all of the rays within; null: rays go where they like.
+  template <class Open>
+  RayMask Intersect(
+    const Sets& sets, ObjectBeam* beam, const Ray* rays, RayMask wanted, const Open& open) const
+  {
+    return beam ? this->Packets.Intersect(sets, static_cast<BeamBricks&>(*beam), rays, wanted, open)
+                : this->Search.IntersectEach(sets, rays, wanted, open);
+  }
+
+  RayMask FindOccluded(const Sets& sets, const Ray* rays, RayMask wanted) const
+  {
+    return this->Packets.FindOccluded(sets, rays, wanted);
+  }
+
+  /// `sheets`: what a surface lets through, for each isovalue. Returns the rays that are dark then.
+  RayMask Attenuate(const Sets& sets, const std::vector<glm::dvec3>& sheets, const Ray* rays,
+    RayMask wanted, glm::dvec3* transmittances) const
+  {
+    return this->Packets.Attenuate(sets, sheets, rays, wanted, transmittances);
+  }
+
+  static ObjectTracer::Brick FindBrick(const LatticeField& field, const LatticePlace& place)
+  {
+    return { field.Voxels->Segment.get(), field.Voxels->Lattice.FindBrick(place.IndexPoint) };
+  }
+
+private:
+  /// Bricks in a row are told of together when they are in the same part of it, of so many.
+  static constexpr std::int64_t PartOfRow = 8;
+
+  /// What lies beside a brick in its row, and so in most files, as far as it may have to do with the surface: a disk
+  /// brings it along for little.
+  static void AddRow(const Sets& sets, dsm::BlockId id, std::vector<dsm::BlockId>& around)
+  {
+    const bricks::VoxelField& field = *sets.Field.Voxels;
+    const std::vector<bricks::ValueRange>& ranges = field.Hierarchy.GetLevels().front().Ranges;
+    const IsovaluePredicate mayHold(sets.Isovalues);
+    const bricks::Index3 place = field.Lattice.GetBrick(id);
+    const std::int64_t first = place.x / PartOfRow * PartOfRow;
+    const std::int64_t last = std::min(first + PartOfRow, field.Lattice.GetBricks().x) - 1;
+    const auto find = [&](std::int64_t x) { return field.Lattice.GetId({ x, place.y, place.z }); };
+    for (const std::int64_t step : { -1, 1 })
+    {
+      for (std::int64_t x = place.x + step; x >= first && x <= last && mayHold(ranges[find(x)]);
+           x += step)
+      {
+        around.push_back(find(x));
+      }
+    }
+  }
+
+  Store& Blocks;
+  IsosurfaceSearch<Store> Search;
+  IsosurfacePacketSearch<Store> Packets;
+};
+
+} // namespace rt
+
+#endif

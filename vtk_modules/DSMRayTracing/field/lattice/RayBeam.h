@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef rt_RayBeam_h
+#define rt_RayBeam_h
+
+#include "DSMRayTracing/field/lattice/GridRay.h"
+#include "DSMRayTracing/ray/RayPacket.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace rt
+{
+
+/// The space, in a volume's index space, that rays pass through which have something in common.
+class RayBeam
+{
+public:
+  /// The rays between four others: those of a tile lie between the rays of its corners, whatever the
+  /// camera. `corners`: in order around the beam. Returns false when it is of no use: corners that move to
+  /// different sides or not at all on an axis, or that are not apart.
+  bool Set(const GridRay corners[4]);
+
+  /// The rays of a packet, from where they enter the volume to where they leave it. There is at least
+  /// one.
+  void Set(const RayPacket& packet);
+
+  /// Whether all rays of the beam move towards larger coordinates.
+  const bool* GetForward() const { return this->Forward; }
+
+  /// Cubes of `edge`, on one lattice.
+  struct Cubes
+  {
+    double Least[4];    ///< for each side: normal * lower corner of a cube that may be met
+    double InverseX[4]; ///< of each side's normal, in cubes
+    int First[3];       ///< cubes before have no part of the beam
+    int Last[3];
+  };
+  Cubes GetCubes(double edge) const;
+
+  /// Which of the cubes whose lower corners are at (x Edge, y, z), for whole numbers x from `first`
+  /// to `last`, rays may meet: shortens the row to them; false when there is none. May keep cubes
+  /// that no ray meets, but only near the beam.
+  bool ClipRow(const Cubes& cubes, double y, double z, int& first, int& last) const
+  {
+    double low = first;
+    double high = last;
+    for (int side = 0; side < 4; ++side)
+    {
+      const Side& plane = this->Sides[side];
+      const double missing = cubes.Least[side] - (plane.Normal[1] * y + plane.Normal[2] * z);
+      const double x = missing * cubes.InverseX[side];
+      low = plane.Normal[0] > 0.0 ? std::max(low, x) : low;
+      high = plane.Normal[0] < 0.0 ? std::min(high, x) : high;
+    }
+    if (!(low <= high))
+    {
+      return false;
+    }
+    first = static_cast<int>(std::ceil(low));
+    last = static_cast<int>(std::floor(high));
+    return first <= last;
+  }
+
+private:
+  void SetSide(int number, const double normal[3], double least);
+
+  /// A plane between two corners; the normal points into the beam.
+  struct Side
+  {
+    double Normal[3];
+    double InverseX; ///< of the normal; finite
+    double Least;    ///< of normal * point within the beam
+  };
+
+  Side Sides[4];
+  double Lower[3];
+  double Upper[3];
+  bool Forward[3];
+};
+
+} // namespace rt
+
+#endif

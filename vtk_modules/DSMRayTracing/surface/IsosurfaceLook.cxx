@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "DSMRayTracing/surface/IsosurfaceLook.h"
+
+#include "DSMRayTracing/object/ObjectDigest.h"
+
+#include <algorithm>
+
+namespace rt
+{
+
+bool IsosurfaceLook::IsOpaque() const
+{
+  const auto isOpaque = [](const Material* side) { return side && side->Opacity >= 1.0f; };
+  return isOpaque(this->GetSurface(false)) && isOpaque(this->GetSurface(true)) &&
+    (!this->Blocks || this->Blocks->AreOpaque()) &&
+    std::all_of(this->Opacities.begin(), this->Opacities.end(),
+      [](float opacity) { return opacity >= 1.0f; });
+}
+
+bool IsosurfaceLook::IsSeen() const
+{
+  const auto isSeen = [this](const Material* side)
+  { return side && (side->Opacity > 0.0f || (this->Blocks && this->Blocks->AnyIsSeen())); };
+  return isSeen(this->GetSurface(false)) || isSeen(this->GetSurface(true));
+}
+
+bool IsosurfaceLook::IsAlikeEverywhere() const
+{
+  return !this->CullsFront && !this->CullsBack && !this->BackSurface && !this->Blocks;
+}
+
+void IsosurfaceLook::AddTo(ObjectDigest& digest) const
+{
+  digest.Add(this->Opacities);
+  digest.Add(this->Colors);
+  digest.Add(this->ColoredBy);
+  digest.Add(this->Surface);
+  digest.Add(this->BackSurface);
+  digest.Add(this->CullsFront);
+  digest.Add(this->CullsBack);
+  digest.Add(this->Blocks != nullptr);
+  if (this->Blocks)
+  {
+    this->Blocks->AddTo(digest);
+  }
+  digest.Add(this->Flat);
+}
+
+} // namespace rt

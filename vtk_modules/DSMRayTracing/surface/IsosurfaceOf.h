@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef rt_IsosurfaceOf_h
+#define rt_IsosurfaceOf_h
+
+#include "DSMRayTracing/field/LevelSets.h"
+#include "DSMRayTracing/field/lattice/LatticeField.h"
+#include "DSMRayTracing/look/SheetTransmittance.h"
+#include "DSMRayTracing/object/ObjectDigest.h"
+#include "DSMRayTracing/ray/ClipRegion.h"
+#include "DSMRayTracing/surface/IsosurfaceLook.h"
+
+#include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
+
+#include <cstddef>
+#include <memory>
+#include <vector>
+
+namespace rt
+{
+
+template <class FieldType, class Store>
+class IsosurfaceTracer;
+
+/// Isosurfaces of one field: a kind of object for each kind of field. LatticeField shows what a field offers:
+/// - Values, what is sampled, and Place, where;
+/// - Surfaces, which finds the isosurfaces, and Sampler, which reads values, both for a store (LatticeSurfaces and
+///   LatticeSampler say what for);
+/// - GetValues, GetNormal, GetFinestLength and AddTo; HasHoles and AddTo of values.
+template <class FieldType>
+struct IsosurfaceOf : LevelSets<FieldType>
+{
+  template <class Store>
+  using Tracer = IsosurfaceTracer<FieldType, Store>;
+  using Values = typename FieldType::Values;
+
+  /// Color the surfaces, as Look says; may be null: then the material's diffuse color is used.
+  std::shared_ptr<const Values> ColorValues;
+  IsosurfaceLook Look;
+  ClipRegion Clipping;
+
+  /// Whether they let no light through anywhere.
+  bool IsOpaque() const
+  {
+    return this->Look.IsOpaque() && (!this->ColorValues || this->HasOpaqueColors());
+  }
+
+  /// GetSheetTransmittance for each isovalue. Empty where it is not the same all over a surface and on both of
+  /// its sides.
+  std::vector<glm::dvec3> GetSheetTransmittances() const
+  {
+    const IsosurfaceLook& look = this->Look;
+    const bool isColoredByItself = this->ColorValues.get() == &this->Field.GetValues() &&
+      look.ColoredBy == IsosurfaceLook::Coloring::Values && !look.Colors.Categories;
+    std::vector<glm::dvec3> sheets;
+    if (!look.IsAlikeEverywhere() || (this->ColorValues && !isColoredByItself))
+    {
+      return sheets;
+    }
+    for (std::size_t index = 0; index < this->Isovalues.size(); ++index)
+    {
+      glm::vec4 color = this->ColorValues ? look.Colors.Map(this->Isovalues[index])
+                                          : glm::vec4(look.Surface.DiffuseColor, 1.0f);
+      color.w *= look.Surface.Opacity;
+      color.w *= look.Opacities.empty() ? 1.0f : look.Opacities[index];
+      sheets.push_back(GetSheetTransmittance(color));
+    }
+    return sheets;
+  }
+
+  /// All that a picture of them depends on.
+  void AddTo(ObjectDigest& digest) const
+  {
+    this->Field.AddTo(digest);
+    digest.Add(this->Isovalues);
+    digest.Add(this->ColorValues != nullptr);
+    if (this->ColorValues)
+    {
+      FieldType::AddTo(digest, *this->ColorValues);
+    }
+    this->Look.AddTo(digest);
+    digest.Add(this->Clipping);
+  }
+
+private:
+  bool HasOpaqueColors() const
+  {
+    switch (this->Look.ColoredBy)
+    {
+      case IsosurfaceLook::Coloring::Values:
+        return this->Look.Colors.IsOpaque();
+      case IsosurfaceLook::Coloring::OpaqueColors:
+        return !FieldType::HasHoles(*this->ColorValues) || this->Look.Colors.NotANumber.w >= 1.0f;
+      default:
+        return false;
+    }
+  }
+};
+
+using LatticeIsosurface = IsosurfaceOf<LatticeField>;
+
+} // namespace rt
+
+#endif
