@@ -4,6 +4,7 @@
 
 #include "DSMCore/base/Counters.h"
 #include "DSMCore/store/MemoryOrganization.h"
+#include "DSMRayTracing/frame/Channels.h"
 
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
@@ -19,10 +20,9 @@ namespace rt
 
 class BeamHistory;
 
-/// The pixels of one finished tile, row by row from the bottom, x fastest; where surfaces are kept
-/// apart, layer after layer, the nearest first. Colours of layers are what each contributes to the
-/// pixel through those before it: their sum is the pixel.
-struct Tile
+/// The pixels of one finished tile; where surfaces are kept apart, the nearest is in the first layer. Colors of layers
+/// are what each contributes to the pixel through those before it: their sum is the pixel.
+struct Tile : Channels
 {
   int X = 0; ///< of the lower left pixel in the frame
   int Y = 0;
@@ -36,10 +36,6 @@ struct Tile
   double Seconds = 0.0;     ///< of processor time that its tracing took
   /// Shadow and occlusion rays that were traced for it.
   std::uint64_t LightRays = 0;
-  /// Four bytes a pixel, red first, alpha premultiplied; alpha 0 where nothing was hit.
-  std::vector<std::uint8_t> Color;
-  /// OpenGL window depth in [0, 1]; 1 where nothing was hit.
-  std::vector<float> Depth;
   /// Premultiplied colours, summed over the samples so far, in order: what further samples are
   /// added to.
   std::vector<glm::vec4> Sum;

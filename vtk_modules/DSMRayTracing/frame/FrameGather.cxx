@@ -43,12 +43,11 @@ TileHeader Describe(const Tile& tile)
   return header;
 }
 
-template <class T>
-void Append(std::vector<std::byte>& bytes, const T* values, std::size_t count)
+void Append(std::vector<std::byte>& bytes, const void* values, std::size_t count)
 {
   const std::size_t first = bytes.size();
-  bytes.resize(first + count * sizeof(T));
-  std::memcpy(bytes.data() + first, values, count * sizeof(T));
+  bytes.resize(first + count);
+  std::memcpy(bytes.data() + first, values, count);
 }
 
 std::vector<std::byte> Pack(const Frame& frame)
@@ -58,11 +57,26 @@ std::vector<std::byte> Pack(const Frame& frame)
   {
     const TileHeader header = Describe(tile);
     const std::size_t pixels = header.Layers * header.GetPixels();
-    Append(bytes, &header, 1);
-    Append(bytes, tile.Color.data(), 4 * pixels);
-    Append(bytes, tile.Depth.data(), pixels);
+    Append(bytes, &header, sizeof(header));
+    Channels::ForEach(tile,
+      [&](const auto& values, std::size_t count, auto empty)
+      { Append(bytes, values.data(), count * pixels * sizeof(empty)); });
   }
   return bytes;
+}
+
+/// Copies the lines of a tile to their places in the picture, from one channel to another. `size`: bytes of a pixel.
+void CopyLines(
+  const TileHeader& tile, const void* from, std::size_t size, const Picture& picture, void* to)
+{
+  for (int line = 0; line < tile.Layers * tile.Height; ++line)
+  {
+    const std::size_t layer = static_cast<std::size_t>(line) / tile.Height;
+    const std::size_t row = layer * picture.Height + tile.Y + line % tile.Height;
+    const std::size_t source = static_cast<std::size_t>(line) * tile.Width;
+    std::memcpy(static_cast<std::byte*>(to) + size * (row * picture.Width + tile.X),
+      static_cast<const std::byte*>(from) + size * source, size * tile.Width);
+  }
 }
 
 /// Makes room for as many layers.
@@ -70,27 +84,39 @@ void Extend(int layers, Picture& picture)
 {
   if (layers > picture.Layers)
   {
-    const std::size_t pixels = static_cast<std::size_t>(picture.Width) * picture.Height;
     picture.Layers = layers;
-    picture.Color.resize(4 * layers * pixels, 0);
-    picture.Depth.resize(layers * pixels, 1.0f);
+    picture.Resize(static_cast<std::size_t>(picture.Width) * picture.Height * layers);
   }
 }
 
-/// Puts one tile's pixels where they belong.
-void Place(const TileHeader& tile, const void* colors, const void* depths, Picture& picture)
+/// Puts the pixels of a tile where they belong.
+void Place(const Tile& tile, Picture& picture)
 {
-  const auto* color = static_cast<const std::byte*>(colors);
-  const auto* depth = static_cast<const std::byte*>(depths);
-  Extend(tile.Layers, picture);
-  for (int line = 0; line < tile.Layers * tile.Height; ++line)
+  const TileHeader header = Describe(tile);
+  Extend(header.Layers, picture);
+  Channels::ForEach(
+    picture,
+    [&](auto& to, std::size_t count, auto empty, const auto& from)
+    { CopyLines(header, from.data(), count * sizeof(empty), picture, to.data()); },
+    tile);
+}
+
+/// Calls `visit(header, values)` for each of a rank's packed tiles until it returns false; `values` are the channels,
+/// one after the other.
+template <class Visit>
+void VisitPacked(const std::vector<std::byte>& bytes, const Visit& visit)
+{
+  std::size_t pixelBytes = 0;
+  Channels none;
+  Channels::ForEach(
+    none, [&](auto&, std::size_t count, auto empty) { pixelBytes += count * sizeof(empty); });
+  bool goesOn = true;
+  for (std::size_t at = 0; goesOn && at < bytes.size();)
   {
-    const std::size_t layer = static_cast<std::size_t>(line) / tile.Height;
-    const std::size_t row = layer * picture.Height + tile.Y + line % tile.Height;
-    const std::size_t target = row * picture.Width + tile.X;
-    const std::size_t source = static_cast<std::size_t>(line) * tile.Width;
-    std::memcpy(&picture.Color[4 * target], color + 4 * source, 4 * tile.Width);
-    std::memcpy(&picture.Depth[target], depth + sizeof(float) * source, sizeof(float) * tile.Width);
+    TileHeader header;
+    std::memcpy(&header, bytes.data() + at, sizeof(header));
+    goesOn = visit(header, bytes.data() + at + sizeof(header));
+    at += sizeof(header) + header.Layers * header.GetPixels() * pixelBytes;
   }
 }
 
@@ -98,32 +124,34 @@ void Place(const TileHeader& tile, const void* colors, const void* depths, Pictu
 std::size_t Unpack(const std::vector<std::byte>& bytes, Picture& picture)
 {
   std::size_t pixels = 0;
-  const std::byte* at = bytes.data();
-  const std::byte* end = at + bytes.size();
-  while (at < end)
-  {
-    TileHeader header;
-    std::memcpy(&header, at, sizeof(header));
-    at += sizeof(header);
-    const std::size_t tilePixels = header.Layers * header.GetPixels();
-    Place(header, at, at + 4 * tilePixels, picture);
-    at += (4 + sizeof(float)) * tilePixels;
-    pixels += header.GetPixels();
-  }
+  VisitPacked(bytes,
+    [&](const TileHeader& header, const std::byte* values)
+    {
+      Extend(header.Layers, picture);
+      Channels::ForEach(picture,
+        [&](auto& to, std::size_t count, auto empty)
+        {
+          const std::size_t size = count * sizeof(empty);
+          CopyLines(header, values, size, picture, to.data());
+          values += header.Layers * header.GetPixels() * size;
+        });
+      pixels += header.GetPixels();
+      return true;
+    });
   return pixels;
 }
 
 /// Whether any of a rank's packed tiles has several layers.
 bool HasLayers(const std::vector<std::byte>& bytes)
 {
-  std::size_t at = 0;
-  TileHeader header{};
-  while (at < bytes.size() && header.Layers <= 1)
-  {
-    std::memcpy(&header, bytes.data() + at, sizeof(header));
-    at += sizeof(header) + header.Layers * header.GetPixels() * (4 + sizeof(float));
-  }
-  return header.Layers > 1;
+  bool has = false;
+  VisitPacked(bytes,
+    [&](const TileHeader& header, const std::byte*)
+    {
+      has = header.Layers > 1;
+      return !has;
+    });
+  return has;
 }
 
 /// A pixel of the picture.
@@ -148,7 +176,7 @@ std::vector<std::byte> PackEdges(const Frame& frame)
         Edge edge{ static_cast<std::uint32_t>(row * frame.Width + tile.X + pixel % tile.Width), {},
           tile.Depth[static_cast<std::size_t>(pixel)] };
         std::copy_n(color, 4, edge.Color);
-        Append(bytes, &edge, 1);
+        Append(bytes, &edge, sizeof(edge));
       }
     }
   }
@@ -171,9 +199,7 @@ Picture CreatePicture(const Frame& frame)
   Picture picture;
   picture.Width = frame.Width;
   picture.Height = frame.Height;
-  const std::size_t pixels = static_cast<std::size_t>(frame.Width) * frame.Height;
-  picture.Color.assign(4 * pixels, 0);
-  picture.Depth.assign(pixels, 1.0f);
+  picture.Resize(static_cast<std::size_t>(frame.Width) * frame.Height);
   return picture;
 }
 
@@ -184,7 +210,7 @@ Picture AssembleTiles(const Frame& frame)
   Picture picture = CreatePicture(frame);
   for (const Tile& tile : frame.Tiles)
   {
-    Place(Describe(tile), tile.Color.data(), tile.Depth.data(), picture);
+    Place(tile, picture);
   }
   return picture;
 }
@@ -248,8 +274,9 @@ std::uint64_t GetHash(const Picture& picture)
   bricks::ByteHash hash;
   const std::int32_t size[2] = { picture.Width, picture.Height };
   hash.Add(size, sizeof(size));
-  hash.Add(picture.Color.data(), picture.Color.size());
-  hash.Add(picture.Depth.data(), picture.Depth.size() * sizeof(float));
+  Channels::ForEach(picture,
+    [&](const auto& values, std::size_t, auto empty)
+    { hash.Add(values.data(), values.size() * sizeof(empty)); });
   return hash.Get();
 }
 

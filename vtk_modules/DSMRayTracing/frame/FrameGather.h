@@ -11,15 +11,12 @@
 namespace rt
 {
 
-/// A whole frame: row 0 is the bottom row; four bytes (alpha premultiplied) and one window depth a
-/// pixel, layer after layer as in Tile.
-struct Picture
+/// A whole frame; layers as in Tile.
+struct Picture : Channels
 {
   int Width = 0;
   int Height = 0;
   int Layers = 1; ///< as many as show anything, and one at least
-  std::vector<std::uint8_t> Color;
-  std::vector<float> Depth;
 };
 
 /// Local: this rank's tiles; the rest is transparent and infinitely far away.

@@ -1,27 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "DSMRayTracing/frame/FrameRenderer.h"
 
-#include "DSMCore/base/FirstFailure.h"
-#include "DSMRayTracing/frame/BeamHistory.h"
-#include "DSMRayTracing/frame/FrameAgreement.h"
-#include "DSMRayTracing/frame/PixelRays.h"
+#include "DSMRayTracing/frame/FrameTracing.h"
 #include "DSMRayTracing/frame/SceneDigest.h"
 #include "DSMRayTracing/frame/TileGrid.h"
-#include "DSMRayTracing/frame/TileSampler.h"
 #include "DSMRayTracing/frame/TileSource.h"
 
-#include <time.h>
-
 #include <algorithm>
-#include <atomic>
 #include <chrono>
 #include <cstring>
-#include <exception>
-#include <iterator>
 #include <memory>
-#include <mutex>
-#include <optional>
 #include <string>
+#include <type_traits>
 #include <utility>
 
 namespace rt
@@ -36,103 +26,6 @@ double SecondsSince(Clock::time_point start)
 {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
-
-/// Processor time of the calling thread: what a tile costs, not what it waits.
-double GetThreadSeconds()
-{
-  timespec time{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
-  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
-}
-
-/// What a whole tile is tinted with.
-glm::vec3 GetTint(DebugView view, int rank, const Tile& tile)
-{
-  switch (view)
-  {
-    case DebugView::TracingRank:
-      return GetNumberColor(static_cast<std::uint64_t>(rank));
-    case DebugView::TileTime:
-      return GetHeatColor(std::min(tile.Seconds / LongTileSeconds, 1.0));
-    case DebugView::NewTiles:
-      return tile.IsNew ? GetNewTileColor() : glm::vec3(1.0f);
-    case DebugView::Misses:
-      return GetHeatColor(std::min(static_cast<double>(tile.Misses) / ManyMisses, 1.0));
-    default:
-      return glm::vec3(1.0f);
-  }
-}
-
-/// The first failure among a rank's workers and its communication thread.
-class SharedFailure
-{
-public:
-  void Keep(std::exception_ptr failure)
-  {
-    const std::lock_guard<std::mutex> lock(this->Mutex);
-    this->First.Keep(failure);
-  }
-  bool IsEmpty() const
-  {
-    const std::lock_guard<std::mutex> lock(this->Mutex);
-    return this->First.IsEmpty();
-  }
-  std::string GetText() const
-  {
-    try
-    {
-      const std::lock_guard<std::mutex> lock(this->Mutex);
-      this->First.Throw();
-      return {};
-    }
-    catch (...)
-    {
-      return dsm::Messenger::DescribeException();
-    }
-  }
-
-private:
-  mutable std::mutex Mutex;
-  dsm::FirstFailure First;
-};
-
-/// Tells when a rank's workers have neither computed nor got a brick for too long.
-class Standstill
-{
-public:
-  explicit Standstill(double limit)
-    : Limit(limit)
-  {
-  }
-  /// `getWork`: processor time and bytes so far, of which any growth is a sign of life. To be called often.
-  template <class GetWork>
-  bool IsOver(const GetWork& getWork)
-  {
-    const double interval = this->Limit / Looks;
-    const double passed = SecondsSince(this->LastLook);
-    if (this->Limit == 0.0 || passed < interval)
-    {
-      return false;
-    }
-    this->LastLook = Clock::now();
-    const std::pair<double, std::uint64_t> work = getWork();
-    const bool hasWorked =
-      work.first > this->Work.first + LeastSeconds || work.second != this->Work.second;
-    // Not more than that: this process may have been stopped.
-    this->Silence = hasWorked ? 0.0 : this->Silence + std::min(passed, 2.0 * interval);
-    this->Work = work;
-    return this->Silence > this->Limit;
-  }
-
-private:
-  static constexpr double Looks = 8.0;
-  static constexpr double LeastSeconds = 1e-5;
-
-  double Limit;
-  double Silence = 0.0;
-  Clock::time_point LastLook = Clock::now();
-  std::pair<double, std::uint64_t> Work{ 0.0, 0 };
-};
 
 /// Everything that must be equal on all ranks for a frame to make sense.
 struct RequestDigest
@@ -154,9 +47,6 @@ struct Entry
   std::uint64_t LastTiles;
   double LastBusySeconds;
 };
-
-/// Bricks are asked for so many tiles, for each worker, before the tile that will need them.
-constexpr int LeadOfWorker = 4;
 
 /// A slowest rank is one that took so much longer than the fastest.
 constexpr double Unbalanced = 1.02;
@@ -292,8 +182,11 @@ void FrameRenderer::RenderTiles(dsm::BlockStore& store, const Scene& scene,
   store.Visit(
     [&](auto& blocks)
     {
-      this->TraceTiles(
-        blocks, agreed, slots, scene, request, makePlan, history.get(), tiles, frame);
+      blocks.BeginFrame(agreed);
+      FrameTracing<std::decay_t<decltype(blocks)>> tracing(blocks,
+        { this->Messenger, this->Pool, slots, this->Watch, scene, request, history.get(), tiles });
+      tracing.Trace(makePlan);
+      tracing.GiveTo(frame);
     });
   frame.Width = request.Width;
   frame.Height = request.Height;
@@ -308,224 +201,6 @@ void FrameRenderer::RenderTiles(dsm::BlockStore& store, const Scene& scene,
   frame.IdleNanoseconds = slots.GetIdleNanoseconds();
   frame.Organization = store.GetOrganization();
   frame.Seconds = SecondsSince(start);
-}
-
-template <class Store>
-void FrameRenderer::TraceTiles(Store& store, bool agreed, dsm::WorkerSlots& slots,
-  const Scene& scene, const FrameRequest& request, dsm::FunctionRef<TilePlan()> makePlan,
-  const BeamHistory* last, TileSource& tiles, Frame& frame)
-{
-  store.BeginFrame(agreed);
-  // From here to the agreement's end a rank leaves the frame with all others only: whatever fails is
-  // kept, and reported.
-  const int workers = store.GetSettings().Workers;
-  SharedFailure failure;
-  std::atomic<bool> stopped{ false }; // by another rank's failure, which that rank reports
-  FrameAgreement agreement(
-    this->Messenger,
-    [&] // no more than fits in a std::function without memory
-    {
-      stopped = true;
-      tiles.Cancel();
-    },
-    [&] { tiles.Cancel(); });
-  const std::uint32_t number = this->Messenger.BeginSession();
-  this->Messenger.BeginServing();
-  const auto start = Clock::now();
-
-  const auto fail = [&](std::exception_ptr cause)
-  {
-    if (!stopped)
-    {
-      failure.Keep(cause);
-    }
-    tiles.Cancel();
-  };
-
-  std::optional<PixelRays> rays;
-  std::shared_ptr<BeamHistory> beams;
-  TilePlan plan;
-  std::vector<int> mine;
-  std::vector<std::vector<Tile>> tilesOfWorker;
-  std::atomic<int> tracedTiles{ 0 };
-  const auto prepare = [&]
-  {
-    rays.emplace(request);
-    if (store.MayPrefetch())
-    {
-      beams =
-        std::make_shared<BeamHistory>(request.Width, request.Height, scene.Objects.size(), last);
-    }
-    plan = makePlan();
-    mine = plan.Mine;
-    std::sort(mine.begin(), mine.end());
-    tilesOfWorker.resize(static_cast<std::size_t>(workers));
-    tiles.Begin(plan, workers);
-  };
-  const auto work = [&](int index)
-  {
-    auto& worker = store.GetWorker(index);
-    const dsm::WorkerSlots::Hold slot(slots);
-    try
-    {
-      std::uint64_t misses = 0; // of the tiles before
-      bool looksAhead = true;   // as long as bricks are absent
-      const ObjectTracers objects = CreateObjectTracers(store, worker, scene);
-      const TileSampler sampler(objects, scene, *rays, request, beams.get());
-      while (std::optional<Tile> tile = tiles.Pop(slots))
-      {
-        const double tileStart = GetThreadSeconds();
-        store.Enter(worker);
-        if (beams && looksAhead)
-        {
-          const std::optional<Tile> later = tiles.Peek(LeadOfWorker * workers);
-          looksAhead = later && sampler.Prefetch(*later);
-        }
-        sampler.Trace(*tile);
-        store.Leave(worker);
-        tile->Seconds = GetThreadSeconds() - tileStart;
-        const std::uint64_t before = std::exchange(misses, store.GetMisses(worker));
-        tile->Misses += misses - before;
-        looksAhead = looksAhead || misses > before;
-        tile->IsNew = tile->IsNew ||
-          (plan.HasHistory && !std::binary_search(mine.begin(), mine.end(), tile->Index));
-        sampler.Finish(*tile, GetTint(scene.View, this->Messenger.GetRank(), *tile));
-        tilesOfWorker[index].push_back(std::move(*tile));
-        ++tracedTiles;
-        slots.LetOthersResume();
-      }
-    }
-    catch (...)
-    {
-      store.Leave(worker);
-      fail(std::current_exception());
-    }
-  };
-
-  std::atomic<double> busySeconds{ 0.0 };
-  const double share = tiles.EstimateShare(this->Messenger.GetSize());
-  const auto getPart = [&] { return share > 0.0 ? std::min(1.0, tracedTiles / share) : 1.0; };
-  bool cancelled = false;
-  Standstill standstill(this->Messenger.GetSilenceLimit());
-  std::vector<Tile> traced;
-  const auto collect = [&]
-  {
-    std::size_t count = tiles.CountRest();
-    for (const auto& some : tilesOfWorker)
-    {
-      count += some.size();
-    }
-    traced.reserve(count);
-    for (auto& some : tilesOfWorker)
-    {
-      std::move(some.begin(), some.end(), std::back_inserter(traced));
-      some.clear();
-    }
-    tiles.TakeRest(traced);
-  };
-  const auto service = [&]
-  {
-    bool didSomething = false;
-    try
-    {
-      didSomething = store.Service();
-      didSomething = tiles.Service() || didSomething;
-      const bool isWatched = this->Watch && this->Messenger.GetRank() == 0;
-      if (isWatched && !agreement.IsAborted() && !agreement.IsOver() && this->Watch(getPart()))
-      {
-        agreement.Abort();
-      }
-    }
-    catch (...)
-    {
-      fail(std::current_exception());
-    }
-    const auto getWork = [&]
-    { return std::make_pair(this->Pool.GetProcessorSeconds(), store.GetCounters().BytesReceived); };
-    const bool idle = this->Pool.GetRunning() == 0; // asked first: a worker fails before it stops
-    if (!idle && standstill.IsOver(getWork))
-    {
-      this->Messenger.GiveUpThisRank();
-    }
-    if ((stopped || !failure.IsEmpty()) && !cancelled)
-    {
-      this->Messenger.Insist(
-        [&] { store.Cancel(failure.IsEmpty() ? "another rank has failed" : failure.GetText()); });
-      cancelled = true;
-    }
-    const bool isThrough = !agreement.IsDone() && idle && store.Drain();
-    if (isThrough)
-    {
-      try
-      {
-        collect();
-      }
-      catch (...)
-      {
-        fail(std::current_exception());
-      }
-    }
-    if (!failure.IsEmpty() && !agreement.HasFailed())
-    {
-      std::string cause;
-      this->Messenger.Insist([&] { cause = failure.GetText(); });
-      agreement.ReportFailure(cause);
-    }
-    if (isThrough)
-    {
-      agreement.ReportDone();
-    }
-    return didSomething || isThrough;
-  };
-
-  try
-  {
-    prepare();
-    this->Pool.Start(workers, work,
-      [&]
-      {
-        busySeconds = SecondsSince(start);
-        this->Messenger.WakeUp();
-      });
-  }
-  catch (...)
-  {
-    fail(std::current_exception());
-  }
-  dsm::FirstFailure lost; // a rank, and with it all that is collective
-  try
-  {
-    this->Messenger.ServeUntil([&] { return agreement.IsOver(); }, service, fail);
-  }
-  catch (...)
-  {
-    lost.Keep(std::current_exception());
-    this->Messenger.Insist([&] { store.Cancel(failure.GetText()); });
-  }
-  this->Messenger.EndServing();
-  this->Pool.Wait();
-  tiles.End();
-  store.EndFrame();
-  lost.Throw();
-  // What was posted last must leave before the application goes about something else.
-  this->Messenger.Flush();
-
-  const dsm::Status& outcome = agreement.GetOutcome();
-  if (!outcome.IsOk() || agreement.IsAborted())
-  {
-    // A rank that gave up may not have taken what it had asked for; it takes it while it waits here.
-    this->Messenger.Barrier();
-  }
-  if (!outcome.IsOk())
-  {
-    throw dsm::Error("The frame could not be traced. Rank " + std::to_string(outcome.FailedRank) +
-      ": " + outcome.Cause);
-  }
-  frame.Tiles = std::move(traced);
-  frame.IsAborted = agreement.IsAborted();
-  frame.Number = number;
-  frame.Beams = beams;
-  frame.BusySeconds = busySeconds;
 }
 
 } // namespace rt

@@ -2,7 +2,6 @@
 #ifndef rt_FrameRenderer_h
 #define rt_FrameRenderer_h
 
-#include "DSMCore/base/FunctionRef.h"
 #include "DSMCore/store/BlockStore.h"
 #include "DSMCore/transport/Messenger.h"
 #include "DSMRayTracing/frame/Frame.h"
@@ -57,11 +56,6 @@ public:
 private:
   void RenderTiles(dsm::BlockStore& store, const Scene& scene, const FrameRequest& request,
     const Frame* last, TileSource& tiles, Frame& frame);
-  /// `agreed`: see the stores' BeginFrame.
-  template <class Store>
-  void TraceTiles(Store& store, bool agreed, dsm::WorkerSlots& slots, const Scene& scene,
-    const FrameRequest& request, dsm::FunctionRef<TilePlan()> makePlan, const BeamHistory* last,
-    TileSource& tiles, Frame& frame);
 
   dsm::Messenger& Messenger;
   CentralQueueScheduler Queue;

@@ -1,0 +1,380 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef rt_FrameTracing_h
+#define rt_FrameTracing_h
+
+#include "DSMCore/base/FirstFailure.h"
+#include "DSMCore/base/FunctionRef.h"
+#include "DSMCore/base/WorkerSlots.h"
+#include "DSMCore/transport/Messenger.h"
+#include "DSMRayTracing/frame/BeamHistory.h"
+#include "DSMRayTracing/frame/Frame.h"
+#include "DSMRayTracing/frame/FrameAgreement.h"
+#include "DSMRayTracing/frame/FrameRequest.h"
+#include "DSMRayTracing/frame/PixelRays.h"
+#include "DSMRayTracing/frame/SharedFailure.h"
+#include "DSMRayTracing/frame/Standstill.h"
+#include "DSMRayTracing/frame/TileSampler.h"
+#include "DSMRayTracing/frame/TileSource.h"
+#include "DSMRayTracing/frame/WorkerPool.h"
+#include "DSMRayTracing/scene/ObjectTracers.h"
+#include "DSMRayTracing/scene/Scene.h"
+
+#include <time.h>
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <cstdint>
+#include <exception>
+#include <functional>
+#include <iterator>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace rt
+{
+
+/// The tracing of one frame's tiles on one rank, from the store's BeginFrame to its EndFrame: workers trace, and the
+/// thread that makes this serves the other ranks. It leaves the frame with all others only: whatever fails in between
+/// is kept, and reported (FrameAgreement).
+template <class Store>
+class FrameTracing
+{
+public:
+  /// What all of the frame's ranks have alike, and what this rank has for it. Kept by reference.
+  struct Input
+  {
+    dsm::Messenger& Messenger;
+    WorkerPool& Pool;
+    dsm::WorkerSlots& Slots;
+    const std::function<bool(double)>& Watch; ///< see FrameRenderer::SetWatch
+    const rt::Scene& Scene;
+    const FrameRequest& Request;
+    const BeamHistory* Last; ///< of the view's last frame; may be null
+    TileSource& Tiles;
+  };
+
+  /// Collective; the store's BeginFrame is called before, its EndFrame after.
+  FrameTracing(Store& store, const Input& input)
+    : Blocks(store)
+    , In(input)
+    , Workers(store.GetSettings().Workers)
+    , Agreement(
+        input.Messenger, [this] { this->Stop(); }, [this] { this->In.Tiles.Cancel(); })
+    , Number(input.Messenger.BeginSession())
+    , Share(input.Tiles.EstimateShare(input.Messenger.GetSize()))
+    , NoProgress(input.Messenger.GetSilenceLimit())
+  {
+    this->In.Messenger.BeginServing();
+  }
+
+  /// Traces tiles until all ranks have stopped. Throws only when a rank is lost, and with it all that is collective.
+  /// `makePlan` may fail.
+  void Trace(dsm::FunctionRef<TilePlan()> makePlan)
+  {
+    try
+    {
+      this->Prepare(makePlan);
+      this->In.Pool.Start(
+        this->Workers, [this](int index) { this->Work(index); }, [this] { this->FinishWorker(); });
+    }
+    catch (...)
+    {
+      this->Fail(std::current_exception());
+    }
+    dsm::FirstFailure lost;
+    try
+    {
+      this->In.Messenger.ServeUntil([this] { return this->Agreement.IsOver(); },
+        [this] { return this->Service(); },
+        [this](std::exception_ptr cause) { this->Fail(cause); });
+    }
+    catch (...)
+    {
+      lost.Keep(std::current_exception());
+      this->In.Messenger.Insist([this] { this->Blocks.Cancel(this->Failure.GetText()); });
+    }
+    this->In.Messenger.EndServing();
+    this->In.Pool.Wait();
+    this->In.Tiles.End();
+    this->Blocks.EndFrame();
+    lost.Throw();
+  }
+
+  /// What this rank has traced. Throws the same dsm::Error on every rank when one has failed. Collective.
+  void GiveTo(Frame& frame)
+  {
+    // What was posted last must leave before the application goes about something else.
+    this->In.Messenger.Flush();
+    const dsm::Status& outcome = this->Agreement.GetOutcome();
+    if (!outcome.IsOk() || this->Agreement.IsAborted())
+    {
+      // A rank that gave up may not have taken what it had asked for; it takes it while it waits here.
+      this->In.Messenger.Barrier();
+    }
+    if (!outcome.IsOk())
+    {
+      throw dsm::Error("The frame could not be traced. Rank " + std::to_string(outcome.FailedRank) +
+        ": " + outcome.Cause);
+    }
+    frame.Tiles = std::move(this->Traced);
+    frame.IsAborted = this->Agreement.IsAborted();
+    frame.Number = this->Number;
+    frame.Beams = this->Beams;
+    frame.BusySeconds = this->BusySeconds;
+  }
+
+private:
+  using Clock = std::chrono::steady_clock;
+
+  /// Bricks are asked for so many tiles, for each worker, before the tile that will need them.
+  static constexpr int LeadOfWorker = 4;
+
+  /// Processor time of the calling thread: what a tile costs, not what it waits.
+  static double GetThreadSeconds()
+  {
+    timespec time{};
+    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
+    return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
+  }
+
+  /// Another rank has failed, which that rank reports.
+  void Stop()
+  {
+    this->Stopped = true;
+    this->In.Tiles.Cancel();
+  }
+
+  /// Any thread of this rank has failed.
+  void Fail(std::exception_ptr cause)
+  {
+    if (!this->Stopped)
+    {
+      this->Failure.Keep(cause);
+    }
+    this->In.Tiles.Cancel();
+  }
+
+  void Prepare(dsm::FunctionRef<TilePlan()> makePlan)
+  {
+    const FrameRequest& request = this->In.Request;
+    this->Rays.emplace(request);
+    if (this->Blocks.MayPrefetch())
+    {
+      this->Beams = std::make_shared<BeamHistory>(
+        request.Width, request.Height, this->In.Scene.Objects.size(), this->In.Last);
+    }
+    this->Plan = makePlan();
+    this->Mine = this->Plan.Mine;
+    std::sort(this->Mine.begin(), this->Mine.end());
+    this->TilesOfWorker.resize(static_cast<std::size_t>(this->Workers));
+    this->In.Tiles.Begin(this->Plan, this->Workers);
+  }
+
+  /// A worker's thread, until there are no more tiles.
+  void Work(int index)
+  {
+    auto& worker = this->Blocks.GetWorker(index);
+    const dsm::WorkerSlots::Hold slot(this->In.Slots);
+    try
+    {
+      std::uint64_t misses = 0; // of the tiles before
+      bool looksAhead = true;   // as long as bricks are absent
+      const ObjectTracers objects = CreateObjectTracers(this->Blocks, worker, this->In.Scene);
+      const TileSampler sampler(
+        objects, this->In.Scene, *this->Rays, this->In.Request, this->Beams.get());
+      while (std::optional<Tile> tile = this->In.Tiles.Pop(this->In.Slots))
+      {
+        const double start = GetThreadSeconds();
+        this->Blocks.Enter(worker);
+        if (this->Beams && looksAhead)
+        {
+          const std::optional<Tile> later = this->In.Tiles.Peek(LeadOfWorker * this->Workers);
+          looksAhead = later && sampler.Prefetch(*later);
+        }
+        sampler.Trace(*tile);
+        this->Blocks.Leave(worker);
+        tile->Seconds = GetThreadSeconds() - start;
+        const std::uint64_t before = std::exchange(misses, this->Blocks.GetMisses(worker));
+        tile->Misses += misses - before;
+        looksAhead = looksAhead || misses > before;
+        tile->IsNew = tile->IsNew || this->IsNew(*tile);
+        sampler.Finish(*tile, this->GetTint(*tile));
+        this->TilesOfWorker[static_cast<std::size_t>(index)].push_back(std::move(*tile));
+        ++this->TracedTiles;
+        this->In.Slots.LetOthersResume();
+      }
+    }
+    catch (...)
+    {
+      this->Blocks.Leave(worker);
+      this->Fail(std::current_exception());
+    }
+  }
+
+  /// A worker's thread, behind all that it has to do.
+  void FinishWorker()
+  {
+    this->BusySeconds = std::chrono::duration<double>(Clock::now() - this->Start).count();
+    this->In.Messenger.WakeUp();
+  }
+
+  /// Whether another rank traced the tile in the last frame.
+  bool IsNew(const Tile& tile) const
+  {
+    return this->Plan.HasHistory &&
+      !std::binary_search(this->Mine.begin(), this->Mine.end(), tile.Index);
+  }
+
+  /// What a whole tile is tinted with.
+  glm::vec3 GetTint(const Tile& tile) const
+  {
+    switch (this->In.Scene.View)
+    {
+      case DebugView::TracingRank:
+        return GetNumberColor(static_cast<std::uint64_t>(this->In.Messenger.GetRank()));
+      case DebugView::TileTime:
+        return GetHeatColor(std::min(tile.Seconds / LongTileSeconds, 1.0));
+      case DebugView::NewTiles:
+        return tile.IsNew ? GetNewTileColor() : glm::vec3(1.0f);
+      case DebugView::Misses:
+        return GetHeatColor(std::min(static_cast<double>(tile.Misses) / ManyMisses, 1.0));
+      default:
+        return glm::vec3(1.0f);
+    }
+  }
+
+  /// The communication thread, again and again until all ranks have stopped; returns whether it did anything.
+  bool Service()
+  {
+    const bool didSomething = this->Serve();
+    const bool idle =
+      this->In.Pool.GetRunning() == 0; // asked first: a worker fails before it stops
+    if (!idle && this->NoProgress.IsOver([this] { return this->GetWork(); }))
+    {
+      this->In.Messenger.GiveUpThisRank();
+    }
+    this->CancelIfFailed();
+    const bool isThrough = !this->Agreement.IsDone() && idle && this->Blocks.Drain();
+    if (isThrough)
+    {
+      this->Collect();
+    }
+    this->ReportFailure();
+    if (isThrough)
+    {
+      this->Agreement.ReportDone();
+    }
+    return didSomething || isThrough;
+  }
+
+  /// Other ranks' requests, and the user's wish to end the frame.
+  bool Serve()
+  {
+    bool didSomething = false;
+    try
+    {
+      didSomething = this->Blocks.Service();
+      didSomething = this->In.Tiles.Service() || didSomething;
+      const bool isWatched = this->In.Watch && this->In.Messenger.GetRank() == 0;
+      if (isWatched && !this->Agreement.IsAborted() && !this->Agreement.IsOver() &&
+        this->In.Watch(this->GetPart()))
+      {
+        this->Agreement.Abort();
+      }
+    }
+    catch (...)
+    {
+      this->Fail(std::current_exception());
+    }
+    return didSomething;
+  }
+
+  /// About the part of the frame that is traced.
+  double GetPart() const
+  {
+    return this->Share > 0.0 ? std::min(1.0, this->TracedTiles / this->Share) : 1.0;
+  }
+
+  std::pair<double, std::uint64_t> GetWork() const
+  {
+    return { this->In.Pool.GetProcessorSeconds(), this->Blocks.GetCounters().BytesReceived };
+  }
+
+  /// Workers that wait for bricks wait no longer.
+  void CancelIfFailed()
+  {
+    if ((this->Stopped || !this->Failure.IsEmpty()) && !this->Cancelled)
+    {
+      this->In.Messenger.Insist(
+        [this]
+        {
+          this->Blocks.Cancel(
+            this->Failure.IsEmpty() ? "another rank has failed" : this->Failure.GetText());
+        });
+      this->Cancelled = true;
+    }
+  }
+
+  void Collect()
+  {
+    try
+    {
+      std::size_t count = this->In.Tiles.CountRest();
+      for (const auto& some : this->TilesOfWorker)
+      {
+        count += some.size();
+      }
+      this->Traced.reserve(count);
+      for (auto& some : this->TilesOfWorker)
+      {
+        std::move(some.begin(), some.end(), std::back_inserter(this->Traced));
+        some.clear();
+      }
+      this->In.Tiles.TakeRest(this->Traced);
+    }
+    catch (...)
+    {
+      this->Fail(std::current_exception());
+    }
+  }
+
+  void ReportFailure()
+  {
+    if (!this->Failure.IsEmpty() && !this->Agreement.HasFailed())
+    {
+      std::string cause;
+      this->In.Messenger.Insist([&] { cause = this->Failure.GetText(); });
+      this->Agreement.ReportFailure(cause);
+    }
+  }
+
+  Store& Blocks;
+  const Input In;
+  const int Workers;
+  FrameAgreement Agreement;
+  const std::uint32_t Number; ///< of the frame
+  const Clock::time_point Start = Clock::now();
+  SharedFailure Failure;
+  std::atomic<bool> Stopped{ false };
+  bool Cancelled = false;
+
+  std::optional<PixelRays> Rays;
+  std::shared_ptr<BeamHistory> Beams;
+  TilePlan Plan;
+  std::vector<int> Mine; ///< of the plan, ascending
+
+  std::vector<std::vector<Tile>> TilesOfWorker;
+  std::atomic<int> TracedTiles{ 0 };
+  std::atomic<double> BusySeconds{ 0.0 };
+  const double Share; ///< tiles that this rank will trace, about
+  Standstill NoProgress;
+  std::vector<Tile> Traced;
+};
+
+} // namespace rt
+
+#endif
