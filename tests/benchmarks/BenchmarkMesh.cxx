@@ -210,8 +210,8 @@ std::shared_ptr<bricks::TriangleMesh> BenchmarkMesh::PublishRuns(
     closeBrick();
   }
   mesh->Bricks = bricks::BrickBvh(boxes);
-  rt::BlockSource source(std::move(mine));
-  rt::BlockSink sink;
+  bricks::BlockSource source(std::move(mine));
+  bricks::BlockSink sink;
   mesh->Segment = store.Publish(
     "the mesh", { bytes, dsm::RoundRobinAssigner(messenger.GetSize()) }, source, sink);
   return mesh;

@@ -64,7 +64,7 @@ MENDS = (
     Mend("an empty file was called one of an unknown format", "vtk_modules/DSMVolumeFiles/format/VolumeFile.cxx",
          "PositionedFile(path).GetBytes() == 0", "false", ["files_TestDamagedFiles"], "files.DamagedFiles"),
     # RenderingDSM
-    Mend("images whose samples are nowhere were drawn", "vtk_modules/RenderingDSM/data/vtkDSMLatticePlan.cxx",
+    Mend("images whose samples are nowhere were drawn", "vtk_modules/DSMBricks/build/LatticePlan.cxx",
          "    RefuseImpossiblePlace(piece);", "    (void)&RefuseImpossiblePlace;", ["unit_rendering"], "unit.rendering"),
     Mend("a color array that is not there was an error", "vtk_modules/RenderingDSM/data/vtkDSMMeshData.cxx",
          'this->Warning = array + " does not exist', 'this->Message = array + " does not exist',

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A volume in a file: what a picture reads of it, the first time and later.
 #include "DSMCore/base/Error.h"
+#include "DSMVolumeFiles/cache/ReadAhead.h"
 #include "vtkDSMMemoryOptions.h"
-#include "vtkDSMReadAhead.h"
 #include "vtkDSMScene.h"
 #include "vtkDSMVolumeMapper.h"
 #include "vtkDSMVolumeReader.h"
@@ -289,7 +289,7 @@ TEST(ReadAhead, TakesHalfOfTheCacheAndWaitsForFrames)
 {
   constexpr std::size_t bytes = 1000;
   vol::ChunkCache cache(20 * bytes);
-  vtkDSMReadAhead ahead(cache);
+  vol::ReadAhead ahead(cache);
   const auto open = [&](std::uint64_t key, const std::shared_ptr<StepOnDisk>& disk) {
     return ahead.Open(key, { disk, [](dsm::BlockId id) { return id == StepOnDisk::Same; } });
   };
@@ -306,7 +306,7 @@ TEST(ReadAhead, TakesHalfOfTheCacheAndWaitsForFrames)
   };
   auto step = open(1, first);
   {
-    const vtkDSMReadAhead::Pause pause(ahead);
+    const vol::ReadAhead::Pause pause(ahead);
     for (const dsm::BlockId id : { 0, 1, 2, 3, 1 }) // one is known
     {
       ahead.Add(step, id, bytes);

@@ -52,7 +52,7 @@ void ForEachPoint(Set&& set)
 }
 
 /// The lattice starts at the image's first point.
-vtkDSMLatticePlan::Member MakePlace(const vtkDSMPieceInfo& info)
+bricks::LatticePlan::Member MakePlace(const bricks::PieceInfo& info)
 {
   const bricks::Index3 shift(1, -2, -5);
   return { 0, shift,
@@ -179,7 +179,7 @@ TEST(ImagePiece, DuplicateCellsAreTrimmedAndHiddenPointsMasked)
     cells->SetValue(cell, cell % 3 == 0 ? vtkDataSetAttributes::DUPLICATECELL : 0);
   }
   image->GetCellData()->AddArray(cells);
-  vtkDSMPieceInfo info = vtkDSMImagePiece::Describe(image, 7);
+  bricks::PieceInfo info = vtkDSMImagePiece::Describe(image, 7);
   EXPECT_EQ(info.Leaf, 7);
   EXPECT_EQ(info.Min[0], 0);
   EXPECT_EQ(info.Max[0], 2);

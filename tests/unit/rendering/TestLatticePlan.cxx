@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "DSMBricks/build/LatticePlan.h"
 #include "DSMCore/base/Error.h"
-#include "vtkDSMLatticePlan.h"
 
 #include <gtest/gtest.h>
 
@@ -16,9 +16,9 @@ namespace
 
 using Extent = std::array<std::int64_t, 6>;
 
-vtkDSMPieceInfo MakePiece(const Extent& cells, int leaf = 0)
+bricks::PieceInfo MakePiece(const Extent& cells, int leaf = 0)
 {
-  vtkDSMPieceInfo piece{};
+  bricks::PieceInfo piece{};
   for (int axis = 0; axis < 3; ++axis)
   {
     piece.Spacing[axis] = 1.0 + axis;
@@ -35,14 +35,14 @@ bricks::Box MakeBox(const Extent& cells)
   return { { cells[0], cells[2], cells[4] }, { cells[1], cells[3], cells[5] } };
 }
 
-glm::dvec3 GetCorner(const vtkDSMLatticePlan::Lattice& lattice)
+glm::dvec3 GetCorner(const bricks::LatticePlan::Lattice& lattice)
 {
   return glm::dvec3(lattice.IndexToWorld * glm::dvec4(0.0, 0.0, 0.0, 1.0));
 }
 
 TEST(LatticePlan, PiecesOfOneImageMakeOneLatticeThatStartsAtItsFirstPoint)
 {
-  const vtkDSMLatticePlan plan({ MakePiece({ -5, 3, 2, 8, 10, 14 }),
+  const bricks::LatticePlan plan({ MakePiece({ -5, 3, 2, 8, 10, 14 }),
     MakePiece({ 3, 9, 2, 8, 10, 14 }), MakePiece({ -5, 9, 8, 9, 10, 14 }) });
   ASSERT_EQ(plan.GetLattices().size(), 1u);
   const auto& lattice = plan.GetLattices()[0];
@@ -56,9 +56,9 @@ TEST(LatticePlan, PiecesOfOneImageMakeOneLatticeThatStartsAtItsFirstPoint)
 
 TEST(LatticePlan, ShiftedOriginsAreAligned)
 {
-  vtkDSMPieceInfo second = MakePiece({ 0, 4, 0, 4, 0, 4 }, 1);
+  bricks::PieceInfo second = MakePiece({ 0, 4, 0, 4, 0, 4 }, 1);
   second.Origin[0] = 4.00001;
-  const vtkDSMLatticePlan plan({ MakePiece({ 0, 4, 0, 4, 0, 4 }), second });
+  const bricks::LatticePlan plan({ MakePiece({ 0, 4, 0, 4, 0, 4 }), second });
   ASSERT_EQ(plan.GetLattices().size(), 1u);
   EXPECT_EQ(plan.GetLattices()[0].Points, bricks::Index3(9, 5, 5));
   EXPECT_EQ(plan.GetLattices()[0].Members[1].IndexToLattice, bricks::Index3(4, 0, 0));
@@ -66,24 +66,24 @@ TEST(LatticePlan, ShiftedOriginsAreAligned)
 
 TEST(LatticePlan, ALaterPieceJoinsTwoGroups)
 {
-  const vtkDSMLatticePlan plan({ MakePiece({ 0, 4, 0, 4, 0, 4 }), MakePiece({ 8, 12, 0, 4, 0, 4 }),
-    MakePiece({ 4, 8, 0, 4, 0, 4 }) });
+  const bricks::LatticePlan plan({ MakePiece({ 0, 4, 0, 4, 0, 4 }),
+    MakePiece({ 8, 12, 0, 4, 0, 4 }), MakePiece({ 4, 8, 0, 4, 0, 4 }) });
   ASSERT_EQ(plan.GetLattices().size(), 1u);
   EXPECT_EQ(plan.GetLattices()[0].Points, bricks::Index3(13, 5, 5));
 }
 
 TEST(LatticePlan, WhatDoesNotFitStaysApart)
 {
-  vtkDSMPieceInfo offGrid = MakePiece({ 4, 8, 0, 4, 0, 4 });
+  bricks::PieceInfo offGrid = MakePiece({ 4, 8, 0, 4, 0, 4 });
   offGrid.Origin[1] = 0.5;
-  vtkDSMPieceInfo coarse = MakePiece({ 4, 8, 0, 4, 0, 4 });
+  bricks::PieceInfo coarse = MakePiece({ 4, 8, 0, 4, 0, 4 });
   coarse.Spacing[2] = 6.0;
-  vtkDSMPieceInfo turned = MakePiece({ 4, 8, 0, 4, 0, 4 });
+  bricks::PieceInfo turned = MakePiece({ 4, 8, 0, 4, 0, 4 });
   turned.Direction[0] = turned.Direction[4] = 0.0;
   turned.Direction[1] = -1.0;
   turned.Direction[3] = 1.0;
-  const vtkDSMPieceInfo distant = MakePiece({ 100, 104, 0, 4, 0, 4 });
-  const vtkDSMLatticePlan plan(
+  const bricks::PieceInfo distant = MakePiece({ 100, 104, 0, 4, 0, 4 });
+  const bricks::LatticePlan plan(
     { MakePiece({ 0, 4, 0, 4, 0, 4 }), offGrid, coarse, turned, distant });
   EXPECT_EQ(plan.GetLattices().size(), 5u);
 }
@@ -93,24 +93,24 @@ TEST(LatticePlan, OverlappingBlocksAreDifferentVolumesButCopiesOfOneImageAreNot)
   const Extent cells = { 0, 4, 0, 4, 0, 4 };
   const Extent shifted = { 2, 6, 0, 4, 0, 4 };
   EXPECT_EQ(
-    vtkDSMLatticePlan({ MakePiece(cells, 1), MakePiece(shifted, 2) }).GetLattices().size(), 2u);
+    bricks::LatticePlan({ MakePiece(cells, 1), MakePiece(shifted, 2) }).GetLattices().size(), 2u);
   EXPECT_EQ(
-    vtkDSMLatticePlan({ MakePiece(cells, 1), MakePiece(shifted, 1) }).GetLattices().size(), 1u);
+    bricks::LatticePlan({ MakePiece(cells, 1), MakePiece(shifted, 1) }).GetLattices().size(), 1u);
 }
 
 TEST(LatticePlan, FlatDataAreRefusedByAxis)
 {
   try
   {
-    vtkDSMLatticePlan({ MakePiece({ 0, 4, 3, 3, 0, 4 }) });
+    bricks::LatticePlan({ MakePiece({ 0, 4, 3, 3, 0, 4 }) });
     FAIL() << "an image without cells was accepted";
   }
   catch (const dsm::Error& error)
   {
     EXPECT_NE(std::string(error.what()).find("no cells in y"), std::string::npos) << error.what();
   }
-  const std::vector<vtkDSMPieceInfo> none;
-  EXPECT_TRUE(vtkDSMLatticePlan(none).GetLattices().empty());
+  const std::vector<bricks::PieceInfo> none;
+  EXPECT_TRUE(bricks::LatticePlan(none).GetLattices().empty());
 }
 
 TEST(LatticePlan, SamplesThatAreNowhereAreRefused)
@@ -119,12 +119,12 @@ TEST(LatticePlan, SamplesThatAreNowhereAreRefused)
   const double infinite = std::numeric_limits<double>::infinity();
   const auto refuse = [](auto change, const std::string& words)
   {
-    vtkDSMPieceInfo piece = MakePiece({ 0, 4, 0, 4, 0, 4 }, 1);
+    bricks::PieceInfo piece = MakePiece({ 0, 4, 0, 4, 0, 4 }, 1);
     change(piece);
     std::string said;
     try
     {
-      vtkDSMLatticePlan({ MakePiece({ 8, 12, 0, 4, 0, 4 }), piece });
+      bricks::LatticePlan({ MakePiece({ 8, 12, 0, 4, 0, 4 }), piece });
     }
     catch (const dsm::Error& error)
     {
@@ -136,15 +136,15 @@ TEST(LatticePlan, SamplesThatAreNowhereAreRefused)
   refuse([=](auto& piece) { piece.Spacing[0] = nan; }, "spacing along x is not a number");
   refuse([=](auto& piece) { piece.Origin[2] = -infinite; }, "origin along z is infinite");
   refuse([=](auto& piece) { piece.Direction[5] = nan; }, "direction matrix is not a number");
-  vtkDSMPieceInfo flat = MakePiece({ 0, 4, 3, 3, 0, 4 });
+  bricks::PieceInfo flat = MakePiece({ 0, 4, 3, 3, 0, 4 });
   flat.Spacing[1] = 0.0;
-  EXPECT_EQ(vtkDSMLatticePlan({ flat, MakePiece({ 0, 4, 0, 4, 0, 4 }) }).GetLattices().size(), 1u)
+  EXPECT_EQ(bricks::LatticePlan({ flat, MakePiece({ 0, 4, 0, 4, 0, 4 }) }).GetLattices().size(), 1u)
     << "what is left out may be anywhere";
 }
 
 TEST(LatticePlan, FlatPiecesAmongVolumesAreLeftOut)
 {
-  const vtkDSMLatticePlan plan(
+  const bricks::LatticePlan plan(
     { MakePiece({ 0, 4, 3, 3, 0, 4 }), MakePiece({ 0, 4, 0, 4, 0, 4 }) });
   ASSERT_EQ(plan.GetLattices().size(), 1u);
   EXPECT_EQ(plan.GetLattices()[0].Members.front().Piece, 1);
@@ -155,26 +155,26 @@ TEST(LatticePlan, CoverageFindsOneMissingCell)
   const bricks::Box whole = MakeBox({ 0, 4, 0, 4, 0, 4 });
   const bricks::Box left = MakeBox({ 0, 2, 0, 4, 0, 4 });
   const bricks::Box right = MakeBox({ 1, 4, 0, 4, 0, 4 });
-  EXPECT_TRUE(vtkDSMLatticePlan::IsCovered(whole, { left, right }));
-  EXPECT_FALSE(vtkDSMLatticePlan::IsCovered(whole, { left }));
+  EXPECT_TRUE(bricks::LatticePlan::IsCovered(whole, { left, right }));
+  EXPECT_FALSE(bricks::LatticePlan::IsCovered(whole, { left }));
   const bricks::Box allButOneLayer = MakeBox({ 1, 4, 0, 4, 0, 3 });
   const bricks::Box allButOneCell = MakeBox({ 2, 4, 0, 4, 3, 4 });
   const bricks::Box lastRow = MakeBox({ 0, 2, 0, 3, 3, 4 });
-  EXPECT_FALSE(vtkDSMLatticePlan::IsCovered(
+  EXPECT_FALSE(bricks::LatticePlan::IsCovered(
     whole, { MakeBox({ 0, 1, 0, 4, 0, 3 }), allButOneLayer, allButOneCell, lastRow }));
-  EXPECT_TRUE(vtkDSMLatticePlan::IsCovered(whole,
+  EXPECT_TRUE(bricks::LatticePlan::IsCovered(whole,
     { MakeBox({ 0, 1, 0, 4, 0, 3 }), allButOneLayer, allButOneCell, lastRow,
       MakeBox({ 0, 2, 3, 4, 3, 4 }) }));
 }
 
 TEST(LatticePlan, SeamsAreWherePiecesOfTwoBlocksTouch)
 {
-  const std::vector<vtkDSMPieceInfo> pieces = { MakePiece({ 0, 4, 0, 4, 0, 4 }, 1),
+  const std::vector<bricks::PieceInfo> pieces = { MakePiece({ 0, 4, 0, 4, 0, 4 }, 1),
     MakePiece({ 4, 8, 0, 4, 0, 4 }, 1), MakePiece({ 8, 12, 0, 4, 2, 4 }, 2),
     MakePiece({ 30, 32, 0, 4, 0, 4 }, 3) };
-  const vtkDSMLatticePlan plan(pieces);
+  const bricks::LatticePlan plan(pieces);
   ASSERT_EQ(plan.GetLattices().size(), 2u);
-  const std::vector<vtkDSMLatticePlan::Seam> seams = plan.FindSeams(pieces);
+  const std::vector<bricks::LatticePlan::Seam> seams = plan.FindSeams(pieces);
   ASSERT_EQ(seams.size(), 1u);
   EXPECT_EQ(seams[0].Points.Min, bricks::Index3(8, 0, 2));
   EXPECT_EQ(seams[0].Points.Max, bricks::Index3(9, 5, 5));
@@ -184,14 +184,14 @@ TEST(LatticePlan, SeamsAreWherePiecesOfTwoBlocksTouch)
 
 TEST(LatticePlan, BlocksThatAreToStayApartDo)
 {
-  const std::vector<vtkDSMPieceInfo> pieces = { MakePiece({ 0, 4, 0, 4, 0, 4 }, 1),
+  const std::vector<bricks::PieceInfo> pieces = { MakePiece({ 0, 4, 0, 4, 0, 4 }, 1),
     MakePiece({ 4, 8, 0, 4, 0, 4 }, 2), MakePiece({ 0, 4, 4, 8, 0, 4 }, 1),
     MakePiece({ 4, 8, 4, 8, 0, 4 }, 3) };
-  EXPECT_EQ(vtkDSMLatticePlan(pieces).GetLattices().size(), 1u);
-  const vtkDSMLatticePlan plan(pieces, { 2 });
+  EXPECT_EQ(bricks::LatticePlan(pieces).GetLattices().size(), 1u);
+  const bricks::LatticePlan plan(pieces, { 2 });
   ASSERT_EQ(plan.GetLattices().size(), 2u);
   EXPECT_EQ(plan.GetLattices()[0].Members.size() + plan.GetLattices()[1].Members.size(), 4u);
-  EXPECT_EQ(vtkDSMLatticePlan(pieces, { 1, 2, 3 }).GetLattices().size(), 3u);
+  EXPECT_EQ(bricks::LatticePlan(pieces, { 1, 2, 3 }).GetLattices().size(), 3u);
 }
 
 } // namespace

@@ -2,45 +2,47 @@
 #ifndef vol_FileSamples_h
 #define vol_FileSamples_h
 
+#include "DSMBricks/base/ScalarType.h"
 #include "DSMBricks/build/VoxelSource.h"
 #include "DSMVolumeFiles/cache/ChunkCache.h"
 
 #include <cstddef>
 #include <memory>
-#include <utility>
 
 namespace vol
 {
 
-/// All samples of an array on points, of one component, in a file, read through a cache of chunks, which must outlive
-/// it. Any thread.
+/// Samples of an array in a file, of one component or the magnitude of all, read through a cache of chunks, which must
+/// outlive it. Any thread.
 class FileSamples final : public bricks::VoxelSource
 {
 public:
+  static constexpr int Magnitude = -1;
+  /// What of the array.
+  struct Part
+  {
+    bricks::Box Samples; ///< in the file's indices; those of the source count from the first one
+    int Component = 0;   ///< also Magnitude
+    bricks::ScalarType Type; ///< the array's; of a magnitude Float32 or Float64
+  };
+
   /// `scattered`: boxes are read here and there, rather than one beside the other.
+  FileSamples(std::shared_ptr<const VolumeFile> file, std::size_t array, int step, const Part& part,
+    ChunkCache& cache, bool scattered = false);
+  /// All samples of an array on points that has one component.
   FileSamples(std::shared_ptr<const VolumeFile> file, std::size_t array, int step,
-    ChunkCache& cache, bool scattered = false)
-    : File(std::move(file))
-    , Array(array)
-    , Step(step)
-    , Cache(cache)
-    , Scattered(scattered)
-  {
-  }
-  bricks::Box GetCells() const override
-  {
-    return { bricks::Index3(0), this->File->GetGeometry().Points - bricks::Index3(1) };
-  }
-  void ReadSamples(const bricks::Box& points, std::byte* out) const override
-  {
-    this->Scattered ? this->Cache.ReadScattered(this->File, this->Array, this->Step, points, out)
-                    : this->Cache.ReadBox(this->File, this->Array, this->Step, points, out);
-  }
+    ChunkCache& cache, bool scattered = false);
+
+  bricks::Box GetCells() const override;
+  void ReadSamples(const bricks::Box& points, std::byte* out) const override;
 
 private:
+  void ReadBox(const bricks::Box& points, std::byte* out) const;
+
   std::shared_ptr<const VolumeFile> File;
   std::size_t Array;
   int Step;
+  Part Read;
   ChunkCache& Cache;
   bool Scattered;
 };

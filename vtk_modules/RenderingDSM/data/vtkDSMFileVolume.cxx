@@ -7,12 +7,12 @@
 #include "DSMCore/memory/FreedMemory.h"
 #include "DSMVolumeFiles/cache/ChunkCache.h"
 #include "DSMVolumeFiles/cache/FileBrickReader.h"
+#include "DSMVolumeFiles/cache/FileSamples.h"
+#include "DSMVolumeFiles/cache/ReadAhead.h"
 #include "DSMVolumeFiles/range/LookThrough.h"
 #include "vtkDSMFileArray.h"
-#include "vtkDSMFileVoxels.h"
 #include "vtkDSMGather.h"
 #include "vtkDSMImagePiece.h"
-#include "vtkDSMReadAhead.h"
 
 #include "vtkImageData.h"
 
@@ -34,7 +34,7 @@ using bricks::Index3;
 class SteppingReader final : public dsm::BlockReader
 {
 public:
-  using Step = std::shared_ptr<vtkDSMReadAhead::Step>;
+  using Step = std::shared_ptr<vol::ReadAhead::Step>;
 
   /// `ahead`: what has been read of this step already. It and `next` may be null.
   SteppingReader(std::shared_ptr<const dsm::BlockReader> here, Step ahead, Step next)
@@ -93,7 +93,7 @@ private:
     }
     try
     {
-      vtkDSMReadAhead::GetShared().Add(this->Next, id, bytes);
+      vol::ReadAhead::GetShared().Add(this->Next, id, bytes);
     }
     catch (const std::bad_alloc&) // it is read when it is wanted
     {
@@ -206,10 +206,10 @@ vtkDSMFileVolume::vtkDSMFileVolume(std::shared_ptr<const vtkDSMFileValues> value
 }
 
 std::unique_ptr<vtkDSMFileVolume> vtkDSMFileVolume::Find(dsm::Messenger& messenger,
-  const vtkDSMLatticePlan::Lattice& lattice, const std::vector<Seat>& seats,
+  const bricks::LatticePlan::Lattice& lattice, const std::vector<Seat>& seats,
   const vtkDSMFileValues* own, bool isFirst, int component)
 {
-  const auto getPlace = [&](const vtkDSMLatticePlan::Member& member)
+  const auto getPlace = [&](const bricks::LatticePlan::Member& member)
   {
     const Seat& seat = seats[member.Piece];
     return std::make_tuple(seat.InFile, seat.Step, seat.Array, seat.Stamp,
@@ -400,8 +400,10 @@ std::shared_ptr<const dsm::BlockReader> vtkDSMFileVolume::CreateReader(
   const bricks::BrickLattice& lattice, bool scattered) const
 {
   return std::make_shared<vol::FileBrickReader>(lattice,
-    std::make_shared<vtkDSMFileVoxels>(
-      this->Values, this->Component, lattice.GetScalarType(), scattered),
+    std::make_shared<vol::FileSamples>(this->Values->GetFile(), this->Values->GetArrayNumber(),
+      this->Values->GetStep(),
+      vol::FileSamples::Part{ this->Values->GetBox(), this->Component, lattice.GetScalarType() },
+      vol::ChunkCache::GetShared(), scattered),
     [values = this->Values](std::vector<Box> boxes) { values->Foresee(std::move(boxes)); });
 }
 
@@ -418,7 +420,7 @@ std::uint64_t vtkDSMFileVolume::GetKey(const bricks::BrickLattice& lattice) cons
 std::shared_ptr<const dsm::BlockReader> vtkDSMFileVolume::CreateSteppingReader(
   const bricks::BrickLattice& lattice, std::shared_ptr<const Digests> digests) const
 {
-  vtkDSMReadAhead& ahead = vtkDSMReadAhead::GetShared();
+  vol::ReadAhead& ahead = vol::ReadAhead::GetShared();
   SteppingReader::Step next;
   if (this->Values->GetNextStep() != vtkDSMFileValues::None)
   {
@@ -426,7 +428,7 @@ std::shared_ptr<const dsm::BlockReader> vtkDSMFileVolume::CreateSteppingReader(
       this->Values->GetArrayNumber(), this->Values->GetNextStep(), this->Values->GetBox(),
       vtkDSMFileValues::None, this->Values->GetOptions());
     const vtkDSMFileVolume volume(values, this->Component);
-    vtkDSMReadAhead::Way way;
+    vol::ReadAhead::Way way;
     way.Reader = volume.CreateReader(lattice, true);
     way.IsSame = [volume, lattice, digests, differ = std::vector<bool>()](dsm::BlockId id) mutable
     {

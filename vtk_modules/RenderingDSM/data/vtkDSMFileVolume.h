@@ -2,6 +2,7 @@
 #ifndef vtkDSMFileVolume_h
 #define vtkDSMFileVolume_h
 
+#include "DSMBricks/build/LatticePlan.h"
 #include "DSMBricks/build/VoxelBrickReader.h"
 #include "DSMBricks/build/VoxelIndex.h"
 #include "DSMBricks/build/VoxelSource.h"
@@ -9,7 +10,6 @@
 #include "DSMVolumeFiles/cache/ChunkCache.h"
 #include "DSMVolumeFiles/range/KeptFile.h"
 #include "vtkDSMFileValues.h"
-#include "vtkDSMLatticePlan.h"
 
 #include <glm/mat4x4.hpp>
 
@@ -47,7 +47,7 @@ public:
   /// cannot open it. `seats`: of all pieces of all ranks; `own`: the values of this rank's first member, or null;
   /// `isFirst`: it is the lattice's first member, and the others open the file by its name.
   static std::unique_ptr<vtkDSMFileVolume> Find(dsm::Messenger& messenger,
-    const vtkDSMLatticePlan::Lattice& lattice, const std::vector<Seat>& seats,
+    const bricks::LatticePlan::Lattice& lattice, const std::vector<Seat>& seats,
     const vtkDSMFileValues* own, bool isFirst, int component);
 
   /// Levels of detail that the file has below the one that was opened; 0 where the lattice is but a part of the

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkDSMImageOrigin.h"
 
+#include "DSMBricks/build/LatticePlan.h"
 #include "DSMCore/base/Error.h"
 #include "DSMVolumeFiles/base/CopyBox.h"
 #include "vtkDSMFileArray.h"
 #include "vtkDSMGather.h"
-#include "vtkDSMLatticePlan.h"
 #include "vtkDSMScalarType.h"
 
 #include "vtkCellData.h"
@@ -248,7 +248,7 @@ void vtkDSMImageOrigin::CheckCover() const
   for (std::size_t array = 0; array < this->Arrays.size(); ++array)
   {
     const bricks::Box whole{ bricks::Index3(0), this->Arrays[array].Grid.Samples };
-    if (!vtkDSMLatticePlan::IsCovered(whole, this->GetPieces(array)))
+    if (!bricks::LatticePlan::IsCovered(whole, this->GetPieces(array)))
     {
       throw dsm::Error("The array '" + this->Arrays[array].Name +
         "' cannot be written: the pieces of the image leave out a part of the box around them. "

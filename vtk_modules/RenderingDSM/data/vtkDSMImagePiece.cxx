@@ -196,9 +196,9 @@ double GetMagnitude(vtkDataArray* array, vtkIdType tuple)
 
 } // namespace
 
-vtkDSMPieceInfo vtkDSMImagePiece::Describe(vtkImageData* image, int leaf)
+bricks::PieceInfo vtkDSMImagePiece::Describe(vtkImageData* image, int leaf)
 {
-  vtkDSMPieceInfo info{};
+  bricks::PieceInfo info{};
   image->GetOrigin(info.Origin);
   image->GetSpacing(info.Spacing);
   std::copy_n(image->GetDirectionMatrix()->GetData(), 9, info.Direction);
@@ -256,7 +256,7 @@ bricks::ScalarType vtkDSMImagePiece::GetScalarType(vtkDataArray* array, int comp
 }
 
 vtkDSMImagePiece::vtkDSMImagePiece(vtkImageData* image, vtkDataArray* array, int component,
-  const vtkDSMLatticePlan::Member& place, bool hasMask, bool ofCells)
+  const bricks::LatticePlan::Member& place, bool hasMask, bool ofCells)
   : Image(image)
   , Array(array)
   , Component(array->GetNumberOfComponents() == 1 && component != Color ? 0 : component)

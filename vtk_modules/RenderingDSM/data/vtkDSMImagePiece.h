@@ -3,8 +3,9 @@
 #define vtkDSMImagePiece_h
 
 #include "DSMBricks/base/ScalarType.h"
+#include "DSMBricks/build/LatticePlan.h"
 #include "DSMBricks/build/VoxelSource.h"
-#include "vtkDSMLatticePlan.h"
+#include "DSMVolumeFiles/cache/FileSamples.h"
 
 #include "vtkSmartPointer.h"
 
@@ -19,20 +20,20 @@ class vtkDSMImagePiece final : public bricks::VoxelSource
 {
 public:
   /// Component that stands for the magnitude of all components.
-  static constexpr int Magnitude = -1;
+  static constexpr int Magnitude = vol::FileSamples::Magnitude;
   /// Component that stands for the colour that all components make, as VTK takes colours from arrays: gray, gray
   /// and opacity, colour, colour and opacity.
   static constexpr int Color = -2;
 
   /// What the other ranks need to know of an image: ghost cells are trimmed off; ghost and blanked
   /// cells that remain make a mask.
-  static vtkDSMPieceInfo Describe(vtkImageData* image, int leaf);
+  static bricks::PieceInfo Describe(vtkImageData* image, int leaf);
 
   /// Arrays keep their type; the magnitude is float where that holds it, else double; colours are packed.
   static bricks::ScalarType GetScalarType(vtkDataArray* array, int component);
 
   vtkDSMImagePiece(vtkImageData* image, vtkDataArray* array, int component,
-    const vtkDSMLatticePlan::Member& place, bool hasMask, bool ofCells = false);
+    const bricks::LatticePlan::Member& place, bool hasMask, bool ofCells = false);
   ~vtkDSMImagePiece() override;
 
   bricks::Box GetCells() const override { return this->Place.Cells; }
@@ -46,7 +47,7 @@ private:
   vtkSmartPointer<vtkImageData> Image;
   vtkSmartPointer<vtkDataArray> Array;
   int Component;
-  vtkDSMLatticePlan::Member Place;
+  bricks::LatticePlan::Member Place;
   bool Masked;
   bricks::ScalarType Type;
   bricks::Box Samples; ///< that the array has, in lattice indices

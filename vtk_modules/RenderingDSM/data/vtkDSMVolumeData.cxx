@@ -27,7 +27,7 @@ vtkDSMVolumeData::vtkDSMVolumeData(std::shared_ptr<vtkDSMRankGroup> group, vtkDa
   : Group(std::move(group))
 {
   dsm::Messenger& messenger = this->Group->GetMessenger();
-  std::vector<vtkDSMPieceInfo> mine;
+  std::vector<bricks::PieceInfo> mine;
   std::vector<vtkDSMBlockLook> myLooks;
   messenger.RunTogether("Reading the volume",
     [&]
@@ -44,14 +44,14 @@ vtkDSMVolumeData::vtkDSMVolumeData(std::shared_ptr<vtkDSMRankGroup> group, vtkDa
   this->Looks = vtkDSMGather::Items(messenger, myLooks);
   this->Arrays = vtkDSMImageArrays(messenger, this->Images);
   messenger.RunTogether(
-    "Joining the volume's pieces", [&] { this->Plan = vtkDSMLatticePlan(this->Pieces); });
+    "Joining the volume's pieces", [&] { this->Plan = bricks::LatticePlan(this->Pieces); });
   this->SeparateBlocks(shown);
 }
 
 void vtkDSMVolumeData::SeparateBlocks(const std::vector<Choice>& shown)
 {
   dsm::Messenger& messenger = this->Group->GetMessenger();
-  std::vector<vtkDSMLatticePlan::Seam> seams;
+  std::vector<bricks::LatticePlan::Seam> seams;
   messenger.RunTogether(
     "Looking for blocks that touch", [&] { seams = this->Plan.FindSeams(this->Pieces); });
   this->Seams = !seams.empty();
@@ -96,18 +96,18 @@ void vtkDSMVolumeData::SeparateBlocks(const std::vector<Choice>& shown)
   if (!this->Apart.empty())
   {
     messenger.RunTogether("Joining the volume's pieces",
-      [&] { this->Plan = vtkDSMLatticePlan(this->Pieces, this->Apart); });
+      [&] { this->Plan = bricks::LatticePlan(this->Pieces, this->Apart); });
   }
 }
 
-vtkImageData* vtkDSMVolumeData::FindOwn(const vtkDSMLatticePlan::Member& member) const
+vtkImageData* vtkDSMVolumeData::FindOwn(const bricks::LatticePlan::Member& member) const
 {
   const int own = member.Piece - this->FirstOwnPiece;
   return own >= 0 && own < static_cast<int>(this->Images.size()) ? this->Images[own].Get()
                                                                  : nullptr;
 }
 
-std::uint64_t vtkDSMVolumeData::HashPoints(const vtkDSMLatticePlan::Member& member,
+std::uint64_t vtkDSMVolumeData::HashPoints(const bricks::LatticePlan::Member& member,
   const bricks::Box& points, const std::vector<Choice>& shown) const
 {
   vtkImageData* image = this->FindOwn(member);
@@ -181,7 +181,7 @@ void vtkDSMVolumeData::CollectImages(vtkDataObject* data)
 std::vector<vtkDSMVolumeData::Block> vtkDSMVolumeData::GetBlocks(std::size_t lattice) const
 {
   std::vector<Block> blocks;
-  for (const vtkDSMLatticePlan::Member& member : this->Plan.GetLattices()[lattice].Members)
+  for (const bricks::LatticePlan::Member& member : this->Plan.GetLattices()[lattice].Members)
   {
     blocks.push_back({ member.Cells, this->Looks[member.Piece] });
   }
@@ -210,7 +210,7 @@ std::uint64_t vtkDSMVolumeData::HashContent(const Choice& choice) const
   bricks::ByteHash hash;
   hash.Add(&choice.Component, sizeof(choice.Component));
   hash.Add(&choice.OnCells, sizeof(choice.OnCells));
-  hash.Add(this->Pieces.data(), this->Pieces.size() * sizeof(vtkDSMPieceInfo));
+  hash.Add(this->Pieces.data(), this->Pieces.size() * sizeof(bricks::PieceInfo));
   for (const std::int32_t block : this->Apart)
   {
     hash.Add(&block, sizeof(block));
@@ -257,7 +257,7 @@ std::shared_ptr<const vtkDSMVolumeData::Publication> vtkDSMVolumeData::Publish(c
     this->Arrays.Refuse(choice, purpose, infos);
   }
 
-  vtkDSMPublications& publications = this->Group->GetPublications();
+  dsm::Publications& publications = this->Group->GetPublications();
   if (const auto known = publications.Find<Publication>(messenger, published->Content))
   {
     return known;
@@ -281,7 +281,7 @@ std::shared_ptr<const vtkDSMVolumeData::Coarser> vtkDSMVolumeData::PublishCoarse
   const std::function<void(double)>& progress) const
 {
   dsm::Messenger& messenger = this->Group->GetMessenger();
-  vtkDSMPublications& publications = this->Group->GetPublications();
+  dsm::Publications& publications = this->Group->GetPublications();
   if (const auto known = publications.Find<Coarser>(messenger, finest.Content))
   {
     return known;
@@ -369,7 +369,7 @@ void vtkDSMVolumeData::PublishLattice(Publication& published, std::size_t number
     !field->Lattice.HasCellMask() && !choice.OnCells && choice.Component != vtkDSMImagePiece::Color;
   if (canBeRead)
   {
-    const vtkDSMLatticePlan::Lattice& lattice = this->Plan.GetLattices()[number];
+    const bricks::LatticePlan::Lattice& lattice = this->Plan.GetLattices()[number];
     const vtkDSMFileValues* const own = this->FindFileValues(number, choice);
     const bool isFirst = this->FindOwn(lattice.Members.front());
     if (std::shared_ptr<const vtkDSMFileVolume> file =
@@ -436,7 +436,7 @@ std::shared_ptr<bricks::VoxelField> vtkDSMVolumeData::CreateField(std::size_t nu
   const Choice& choice, const std::string& purpose,
   const std::vector<vtkDSMImageArrays::Info>& infos) const
 {
-  const vtkDSMLatticePlan::Lattice& lattice = this->Plan.GetLattices()[number];
+  const bricks::LatticePlan::Lattice& lattice = this->Plan.GetLattices()[number];
   std::vector<bricks::Box> parts;
   std::set<bricks::ScalarType> types;
   bool masked = false;
@@ -459,7 +459,7 @@ std::shared_ptr<bricks::VoxelField> vtkDSMVolumeData::CreateField(std::size_t nu
       "' do not all have the same type. Convert them to one type, for example with Calculator.");
   }
   const bricks::Box whole{ bricks::Index3(0), lattice.Points - bricks::Index3(1) };
-  masked = masked || !vtkDSMLatticePlan::IsCovered(whole, parts);
+  masked = masked || !bricks::LatticePlan::IsCovered(whole, parts);
 
   std::shared_ptr<bricks::VoxelField> field = this->MakeField();
   field->Lattice = bricks::BrickLattice(lattice.Points, *types.begin(), masked);

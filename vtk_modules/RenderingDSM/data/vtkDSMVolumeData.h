@@ -2,6 +2,7 @@
 #ifndef vtkDSMVolumeData_h
 #define vtkDSMVolumeData_h
 
+#include "DSMBricks/build/LatticePlan.h"
 #include "DSMBricks/build/VoxelSource.h"
 #include "DSMCore/fetch/ReadingSource.h"
 #include "DSMCore/publish/FragmentDigests.h"
@@ -9,7 +10,6 @@
 #include "vtkDSMBlockLooks.h"
 #include "vtkDSMFileVolume.h"
 #include "vtkDSMImageArrays.h"
-#include "vtkDSMLatticePlan.h"
 #include "vtkDSMRankGroup.h"
 
 #include "vtkSmartPointer.h"
@@ -119,9 +119,9 @@ private:
   /// Collective: takes apart what is no one volume.
   void SeparateBlocks(const std::vector<Choice>& shown);
   /// Local: a piece's image, if it is this rank's; else null.
-  vtkImageData* FindOwn(const vtkDSMLatticePlan::Member& member) const;
+  vtkImageData* FindOwn(const bricks::LatticePlan::Member& member) const;
   /// Local. Of a piece's values at points of its lattice, in the arrays that are shown.
-  std::uint64_t HashPoints(const vtkDSMLatticePlan::Member& member, const bricks::Box& points,
+  std::uint64_t HashPoints(const bricks::LatticePlan::Member& member, const bricks::Box& points,
     const std::vector<Choice>& shown) const;
   /// Of this rank's first piece of a lattice that has the array in a file; null when none has.
   const vtkDSMFileValues* FindFileValues(std::size_t lattice, const Choice& choice) const;
@@ -149,9 +149,9 @@ private:
     std::size_t lattice, const Choice& choice) const;
 
   std::shared_ptr<vtkDSMRankGroup> Group;
-  vtkDSMLatticePlan Plan;
-  std::vector<vtkDSMPieceInfo> Pieces; ///< of all ranks, in rank order
-  std::vector<vtkDSMBlockLook> Looks;  ///< of the pieces, in their order
+  bricks::LatticePlan Plan;
+  std::vector<bricks::PieceInfo> Pieces; ///< of all ranks, in rank order
+  std::vector<vtkDSMBlockLook> Looks;    ///< of the pieces, in their order
   int FirstOwnPiece = 0;
   bool Seams = false;
   std::set<std::int32_t> Apart;                      ///< blocks that are volumes of their own

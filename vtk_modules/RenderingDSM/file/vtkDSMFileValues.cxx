@@ -51,12 +51,6 @@ void vtkDSMFileValues::ReadBox(const bricks::Box& box, std::byte* out) const
     this->File, this->Array, this->Step, { box.Min + this->Box.Min, box.Max + this->Box.Min }, out);
 }
 
-void vtkDSMFileValues::ReadScattered(const bricks::Box& box, std::byte* out) const
-{
-  vol::ChunkCache::GetShared().ReadScattered(
-    this->File, this->Array, this->Step, { box.Min + this->Box.Min, box.Max + this->Box.Min }, out);
-}
-
 void vtkDSMFileValues::Foresee(std::vector<bricks::Box> boxes) const
 {
   for (bricks::Box& box : boxes)

@@ -39,8 +39,6 @@ public:
   /// The samples of a box that counts from the part's first sample, dense, x fastest, all components of a sample
   /// together. Throws dsm::Error.
   void ReadBox(const bricks::Box& box, std::byte* out) const;
-  /// The same where boxes are read here and there, rather than one beside the other.
-  void ReadScattered(const bricks::Box& box, std::byte* out) const;
 
   /// The samples of boxes will probably be needed soon: the system is told. Nothing fails.
   void Foresee(std::vector<bricks::Box> boxes) const;

@@ -3,11 +3,11 @@
 
 #include "vtkDSMImagePiece.h"
 #include "vtkDSMProgress.h"
-#include "vtkDSMSurfaceSearch.h"
 #include "vtkDSMTranslation.h"
 
 #include "DSMBricks/layout/FirstIsovalue.h"
 #include "DSMBricks/layout/MacrocellHierarchy.h"
+#include "DSMRayTracing/field/lattice/SurfaceBounds.h"
 
 #include "vtkCompositeDataIterator.h"
 #include "vtkCompositeDataSet.h"
@@ -323,7 +323,7 @@ vtkDSMVolumeMapper::SurfaceTest vtkDSMSceneVolume::MakeSurfaceTest() const
     for (std::size_t lattice = 0; lattice < fields.size(); ++lattice)
     {
       if (fields[lattice] &&
-        vtkDSMSurfaceSearch::MayFind(*fields[lattice], toIndex[lattice], bounds, isovalues))
+        rt::MayHaveSurface(*fields[lattice], toIndex[lattice], bounds, isovalues))
       {
         return true;
       }

@@ -2,11 +2,11 @@
 #ifndef vtkDSMRankGroup_h
 #define vtkDSMRankGroup_h
 
+#include "DSMCore/publish/Publications.h"
 #include "DSMCore/store/BlockStore.h"
 #include "DSMCore/transport/Messenger.h"
 #include "DSMRayTracing/frame/FrameRenderer.h"
 #include "vtkDSMMemorySettings.h"
-#include "vtkDSMPublications.h"
 
 #include <cstdint>
 #include <memory>
@@ -51,7 +51,7 @@ public:
   dsm::BlockStore& GetStore() { return this->Store; }
   rt::FrameRenderer& GetFrameRenderer() { return this->FrameRenderer; }
   /// What is in the store, for all who would publish the same.
-  vtkDSMPublications& GetPublications() { return this->Publications; }
+  dsm::Publications& GetPublications() { return this->Publications; }
 
   /// Local, in the same order on every rank.
   void Join(Publisher* publisher);
@@ -150,7 +150,7 @@ private:
   dsm::Messenger Messenger;
   dsm::BlockStore Store;
   rt::FrameRenderer FrameRenderer;
-  vtkDSMPublications Publications;
+  dsm::Publications Publications;
 };
 
 #endif

@@ -167,7 +167,7 @@ void vtkDSMScene::EndFrame()
 /// What was published for the frame has found what was read ahead for it; the rest is of no use.
 void vtkDSMScene::EndReading()
 {
-  vtkDSMReadAhead::GetShared().Tidy();
+  vol::ReadAhead::GetShared().Tidy();
   this->Self->Busy.reset();
 }
 
@@ -374,7 +374,7 @@ bool vtkDSMScene::TraceFrame()
   self.Tracing = true;
   self.IsTraced = false;
   self.Prop->UseBoundsOn();
-  self.Busy.emplace(vtkDSMReadAhead::GetShared());
+  self.Busy.emplace(vol::ReadAhead::GetShared());
   dsm::FirstFailure found;
   found.Try([&] { self.Members.Find(self.Renderer); });
   if (found.IsEmpty() && self.Members.GetShown().empty())

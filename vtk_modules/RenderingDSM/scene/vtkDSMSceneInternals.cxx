@@ -237,7 +237,7 @@ void vtkDSMScene::Internals::Draw()
   request.Width = (request.Width + request.PixelSize - 1) / request.PixelSize;
   request.Height = (request.Height + request.PixelSize - 1) / request.PixelSize;
   this->IsTraced = true;
-  if (this->TraceScene(scene, request) == vtkDSMFrameAccumulation::Result::Aborted)
+  if (this->TraceScene(scene, request) == rt::FrameAccumulation::Result::Aborted)
   {
     // The renderer goes on, with the last picture: other ranks may wait for what this one draws.
     this->Renderer->GetRenderWindow()->SetAbortRender(0);
@@ -255,13 +255,13 @@ void vtkDSMScene::Internals::Draw()
 }
 
 /// Collective: the scene's objects come in again where they are shown at another level of detail.
-vtkDSMFrameAccumulation::Result vtkDSMScene::Internals::TraceScene(
+rt::FrameAccumulation::Result vtkDSMScene::Internals::TraceScene(
   rt::Scene& scene, const rt::FrameRequest& request)
 {
   dsm::Messenger& messenger = this->Group->GetMessenger();
   vtkRenderWindow* window = this->Image ? nullptr : this->Renderer->GetRenderWindow();
   const std::vector<int> tries = this->Detail.GetTries(this->CountCoarser());
-  using Result = vtkDSMFrameAccumulation::Result;
+  using Result = rt::FrameAccumulation::Result;
   Result result = Result::Aborted;
   const Raised tracing(TracingTiles);
   using Clock = std::chrono::steady_clock;
@@ -285,7 +285,8 @@ vtkDSMFrameAccumulation::Result vtkDSMScene::Internals::TraceScene(
         return (window && window->CheckAbortStatus() != 0) ||
           (!isLast && this->Detail.IsTooLong(this->Group->GetStore()));
       });
-    result = this->Accumulation.Trace(*this->Group, scene, request,
+    result = this->Accumulation.Trace(
+      { messenger, this->Group->GetFrameRenderer(), this->Group->GetStore() }, scene, request,
       this->Members.GetSamplesPerPixel(), this->GetPace(), this->Statistics->GetFrameSeconds());
     if (result == Result::Traced)
     {
@@ -487,13 +488,13 @@ int vtkDSMScene::Internals::GetReduction(const rt::FrameRequest& request) const
     std::max(least, LargestReduction));
 }
 
-vtkDSMFrameAccumulation::Pace vtkDSMScene::Internals::GetPace() const
+rt::FrameAccumulation::Pace vtkDSMScene::Internals::GetPace() const
 {
   if (this->Image)
   {
     return {};
   }
-  return this->IsInteractive() ? vtkDSMFrameAccumulation::Pace{ 1, 0.0 } : this->Pace;
+  return this->IsInteractive() ? rt::FrameAccumulation::Pace{ 1, 0.0 } : this->Pace;
 }
 
 /// The application may have taken the prop away with its own. And what shows through a translucent surface, or beside

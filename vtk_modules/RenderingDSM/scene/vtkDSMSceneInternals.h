@@ -3,12 +3,12 @@
 #define vtkDSMSceneInternals_h
 
 #include "DSMCore/base/FirstFailure.h"
-#include "vtkDSMFrameAccumulation.h"
+#include "DSMRayTracing/frame/FrameAccumulation.h"
+#include "DSMRayTracing/frame/MovingDetail.h"
+#include "DSMVolumeFiles/cache/ReadAhead.h"
 #include "vtkDSMFrameDelivery.h"
 #include "vtkDSMFrameProp.h"
-#include "vtkDSMMovingDetail.h"
 #include "vtkDSMRankGroup.h"
-#include "vtkDSMReadAhead.h"
 #include "vtkDSMScene.h"
 #include "vtkDSMSceneMembers.h"
 #include "vtkDSMStatistics.h"
@@ -73,8 +73,8 @@ public:
   vtkNew<vtkDSMStatistics> Statistics;
   std::shared_ptr<vtkDSMRankGroup> Group;
   vtkDSMSceneMembers Members;
-  vtkDSMFrameAccumulation Accumulation;
-  vtkDSMMovingDetail Detail;
+  rt::FrameAccumulation Accumulation;
+  rt::MovingDetail Detail;
   vtkDSMFrameDelivery Delivery;
   std::string Failure;         ///< that was reported last
   unsigned FailureVersion = 0; ///< of the group's settings then
@@ -83,12 +83,12 @@ public:
   inline static bool TracingTiles = false;
   bool IsTraced =
     false; ///< the frame, of data that were taken in: should it fail, the last picture stays
-  vtkDSMFrameAccumulation::Pace Pace; ///< of still pictures
+  rt::FrameAccumulation::Pace Pace; ///< of still pictures
   int InteractiveReduction = 0;
   bool AlwaysFinest = false;
   vtkDSMTranslation::TileDisplay Display;
   /// Nothing is read ahead until the renderer has drawn the frame.
-  std::optional<vtkDSMReadAhead::Pause> Busy;
+  std::optional<vol::ReadAhead::Pause> Busy;
   vtkDSMMemorySettings Settings; ///< that the frame's objects ask for
   unsigned SettledVersion = 0;   ///< of the group's settings
 
@@ -98,10 +98,10 @@ private:
   void AgreeOnView(rt::Scene& scene, rt::FrameRequest& request) const;
   void KeepProp(const rt::Scene& scene);
   bool IsInteractive() const;
-  vtkDSMFrameAccumulation::Pace GetPace() const;
+  rt::FrameAccumulation::Pace GetPace() const;
   int GetReduction(const rt::FrameRequest& request) const;
   int CountCoarser() const;
-  vtkDSMFrameAccumulation::Result TraceScene(rt::Scene& scene, const rt::FrameRequest& request);
+  rt::FrameAccumulation::Result TraceScene(rt::Scene& scene, const rt::FrameRequest& request);
   void TellOfTracing(double part) const;
   void DrawPicture(rt::Picture picture, const rt::FrameRequest& request, vtkMatrix4x4* projection,
     rt::DebugView view, bool hasNotes, bool hasEdges);

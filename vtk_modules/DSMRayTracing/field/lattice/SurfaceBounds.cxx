@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "vtkDSMSurfaceSearch.h"
+#include "DSMRayTracing/field/lattice/SurfaceBounds.h"
 
 #include "DSMRayTracing/field/lattice/IsovaluePredicate.h"
 
 #include <limits>
+
+namespace rt
+{
 
 namespace
 {
@@ -30,7 +33,7 @@ bricks::Box FindBricks(
 }
 
 bool MayHoldAny(
-  const bricks::VoxelField& field, const bricks::Box& bricks, const rt::IsovaluePredicate& mayHold)
+  const bricks::VoxelField& field, const bricks::Box& bricks, const IsovaluePredicate& mayHold)
 {
   const std::vector<bricks::ValueRange>& ranges = field.Hierarchy.GetLevels().front().Ranges;
   bricks::Index3 brick;
@@ -52,9 +55,10 @@ bool MayHoldAny(
 
 } // namespace
 
-bool vtkDSMSurfaceSearch::MayFind(const bricks::VoxelField& field, const glm::dmat4& worldToIndex,
+bool MayHaveSurface(const bricks::VoxelField& field, const glm::dmat4& worldToIndex,
   const double bounds[6], const std::vector<double>& isovalues)
 {
-  return MayHoldAny(
-    field, FindBricks(field, worldToIndex, bounds), rt::IsovaluePredicate(isovalues));
+  return MayHoldAny(field, FindBricks(field, worldToIndex, bounds), IsovaluePredicate(isovalues));
 }
+
+} // namespace rt

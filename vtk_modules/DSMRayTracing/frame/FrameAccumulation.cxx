@@ -1,24 +1,25 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "vtkDSMFrameAccumulation.h"
+#include "DSMRayTracing/frame/FrameAccumulation.h"
 
 #include "DSMRayTracing/frame/SceneDigest.h"
-#include "vtkDSMRankGroup.h"
 
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
-vtkDSMFrameAccumulation::Result vtkDSMFrameAccumulation::Trace(vtkDSMRankGroup& group,
-  const rt::Scene& scene, rt::FrameRequest request, int wanted, const Pace& pace,
-  double lastSeconds)
+namespace rt
+{
+
+FrameAccumulation::Result FrameAccumulation::Trace(const Ranks& ranks, const Scene& scene,
+  FrameRequest request, int wanted, const Pace& pace, double lastSeconds)
 {
   bool isSame = false;
   if (wanted > 1)
   {
-    const std::uint64_t digest = rt::GetSceneDigest(scene, request);
+    const std::uint64_t digest = GetSceneDigest(scene, request);
     // A rank may have seen a change that the others have not.
     const std::uint8_t same = this->Samples > 0 && digest == this->Digest;
-    const auto all = group.GetMessenger().AllGatherValue(same);
+    const auto all = ranks.Messenger.AllGatherValue(same);
     isSame = std::count(all.begin(), all.end(), 0) == 0;
     this->Digest = digest;
   }
@@ -34,7 +35,7 @@ vtkDSMFrameAccumulation::Result vtkDSMFrameAccumulation::Trace(vtkDSMRankGroup& 
     request.Samples =
       this->SamplesUnderWay > 0 ? this->SamplesUnderWay : this->CountNext(pace, lastSeconds);
     request.IsPreview = request.FirstSample + request.Samples < wanted;
-    result = this->TraceOnce(group, scene, request);
+    result = this->TraceOnce(ranks, scene, request);
     if (result == Result::Aborted || pace.Samples > 0)
     {
       break;
@@ -43,25 +44,24 @@ vtkDSMFrameAccumulation::Result vtkDSMFrameAccumulation::Trace(vtkDSMRankGroup& 
   return result;
 }
 
-vtkDSMFrameAccumulation::Result vtkDSMFrameAccumulation::TraceOnce(
-  vtkDSMRankGroup& group, const rt::Scene& scene, rt::FrameRequest request)
+FrameAccumulation::Result FrameAccumulation::TraceOnce(
+  const Ranks& ranks, const Scene& scene, FrameRequest request)
 {
   this->Samples = 0; // unless it succeeds
   this->SamplesUnderWay = 0;
-  rt::FrameRenderer& renderer = group.GetFrameRenderer();
   if (request.FirstSample == 0)
   {
-    rt::Frame frame = renderer.Render(group.GetStore(), scene, request, &this->Frame);
+    Frame frame = ranks.Renderer.Render(ranks.Store, scene, request, &this->Traced);
     if (frame.IsAborted)
     {
       return Result::Aborted;
     }
-    this->Frame = std::move(frame);
+    this->Traced = std::move(frame);
   }
   else
   {
-    renderer.Refine(group.GetStore(), scene, request, this->Frame);
-    if (this->Frame.IsAborted)
+    ranks.Renderer.Refine(ranks.Store, scene, request, this->Traced);
+    if (this->Traced.IsAborted)
     {
       this->Samples = request.FirstSample;
       this->SamplesUnderWay = request.Samples;
@@ -73,20 +73,20 @@ vtkDSMFrameAccumulation::Result vtkDSMFrameAccumulation::TraceOnce(
   return Result::Traced;
 }
 
-void vtkDSMFrameAccumulation::Restart()
+void FrameAccumulation::Restart()
 {
   this->Samples = 0;
   this->SamplesUnderWay = 0;
   this->Wanted = 0;
 }
 
-void vtkDSMFrameAccumulation::Postpone()
+void FrameAccumulation::Postpone()
 {
   this->Restart();
   this->Wanted = 1;
 }
 
-int vtkDSMFrameAccumulation::CountNext(const Pace& pace, double lastSeconds) const
+int FrameAccumulation::CountNext(const Pace& pace, double lastSeconds) const
 {
   const int missing = this->Wanted - this->Samples;
   if (pace.Samples == 0)
@@ -101,14 +101,16 @@ int vtkDSMFrameAccumulation::CountNext(const Pace& pace, double lastSeconds) con
   return static_cast<int>(std::min<double>(samples, missing));
 }
 
-double vtkDSMFrameAccumulation::GetSecondsPerPixel(double lastSeconds) const
+double FrameAccumulation::GetSecondsPerPixel(double lastSeconds) const
 {
   const double samples =
-    static_cast<double>(this->LastSamples) * this->Frame.Width * this->Frame.Height;
+    static_cast<double>(this->LastSamples) * this->Traced.Width * this->Traced.Height;
   return samples > 0.0 ? lastSeconds / samples : 0.0;
 }
 
-void vtkDSMFrameAccumulation::Clear()
+void FrameAccumulation::Clear()
 {
   *this = {};
 }
+
+} // namespace rt

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#ifndef vtkDSMReadAhead_h
-#define vtkDSMReadAhead_h
+#ifndef vol_ReadAhead_h
+#define vol_ReadAhead_h
 
 #include "DSMCore/base/Block.h"
 #include "DSMCore/fetch/BlockReader.h"
@@ -11,11 +11,14 @@
 #include <functional>
 #include <memory>
 
+namespace vol
+{
+
 /// Reads bricks of a time step that will probably be shown next, one after the other, on one of the process's
 /// ReaderThreads, while nobody else is busy, and keeps them until they are taken. They count as part of a chunk
 /// cache, and take at most half of its room; of what would take more, the system is told. What cannot be read is
 /// passed by, as whoever needs it will be told. Any thread.
-class vtkDSMReadAhead
+class ReadAhead
 {
   struct Shared;
 
@@ -33,7 +36,7 @@ public:
   class Step
   {
   public:
-    Step(vol::ChunkCache& cache, Way way);
+    Step(ChunkCache& cache, Way way);
     ~Step();
     Step(const Step&) = delete;
     Step& operator=(const Step&) = delete;
@@ -42,17 +45,17 @@ public:
     bool Take(dsm::BlockId id, std::byte* block, std::size_t bytes);
 
   private:
-    friend struct vtkDSMReadAhead::Shared;
+    friend struct ReadAhead::Shared;
     struct Contents;
 
     std::unique_ptr<Contents> Self;
   };
 
   /// With the cache that all files of the process share.
-  static vtkDSMReadAhead& GetShared();
+  static ReadAhead& GetShared();
 
   /// The cache must outlive the read that is under way, and the steps.
-  explicit vtkDSMReadAhead(vol::ChunkCache& cache);
+  explicit ReadAhead(ChunkCache& cache);
 
   /// What has been read ahead of the step that `key` stands for; null: nothing.
   std::shared_ptr<Step> Find(std::uint64_t key) const;
@@ -67,18 +70,20 @@ public:
   class Pause
   {
   public:
-    explicit Pause(vtkDSMReadAhead& ahead);
+    explicit Pause(ReadAhead& ahead);
     ~Pause();
     Pause(const Pause&) = delete;
     Pause& operator=(const Pause&) = delete;
 
   private:
-    vtkDSMReadAhead& Ahead;
+    ReadAhead& Ahead;
   };
 
 private:
   /// What the reads under way have, too.
   std::shared_ptr<Shared> State;
 };
+
+} // namespace vol
 
 #endif

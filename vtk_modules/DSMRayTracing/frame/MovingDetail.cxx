@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "vtkDSMMovingDetail.h"
+#include "DSMRayTracing/frame/MovingDetail.h"
 
 #include <algorithm>
+
+namespace rt
+{
 
 namespace
 {
@@ -13,7 +16,7 @@ constexpr std::chrono::milliseconds LookInterval(2);
 
 } // namespace
 
-std::vector<int> vtkDSMMovingDetail::GetTries(int coarser) const
+std::vector<int> MovingDetail::GetTries(int coarser) const
 {
   const bool rises = this->MayRise && this->IsOdd && this->Level > 1 && this->Level <= coarser;
   std::vector<int> tries{ rises ? this->Level - 1 : 0 };
@@ -24,7 +27,7 @@ std::vector<int> vtkDSMMovingDetail::GetTries(int coarser) const
   return tries;
 }
 
-void vtkDSMMovingDetail::Begin()
+void MovingDetail::Begin()
 {
   this->Start = Clock::now();
   this->NextLook = this->Start +
@@ -32,7 +35,7 @@ void vtkDSMMovingDetail::Begin()
       std::chrono::duration<double>(WaitingSeconds + this->Seconds));
 }
 
-bool vtkDSMMovingDetail::IsTooLong(dsm::BlockStore& store)
+bool MovingDetail::IsTooLong(dsm::BlockStore& store)
 {
   const Clock::time_point now = Clock::now();
   if (now < this->NextLook)
@@ -43,7 +46,7 @@ bool vtkDSMMovingDetail::IsTooLong(dsm::BlockStore& store)
   return store.GetCounters().Workers.Misses > 0;
 }
 
-void vtkDSMMovingDetail::Note(int level, std::int64_t misses, double seconds)
+void MovingDetail::Note(int level, std::int64_t misses, double seconds)
 {
   if (misses == 0)
   {
@@ -53,3 +56,5 @@ void vtkDSMMovingDetail::Note(int level, std::int64_t misses, double seconds)
   this->MayRise = level > 0 && misses == 0;
   this->IsOdd = level > 0 && !this->IsOdd;
 }
+
+} // namespace rt

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "vtkDSMReadAhead.h"
+#include "DSMVolumeFiles/cache/ReadAhead.h"
 
 #include "DSMCore/base/ReaderThreads.h"
 
@@ -15,6 +15,9 @@
 #include <utility>
 #include <vector>
 
+namespace vol
+{
+
 namespace
 {
 
@@ -27,9 +30,9 @@ constexpr std::chrono::milliseconds Rest{ 30 };
 
 } // namespace
 
-struct vtkDSMReadAhead::Step::Contents
+struct ReadAhead::Step::Contents
 {
-  vol::ChunkCache& Cache;
+  ChunkCache& Cache;
   const Way To;
 
   std::mutex Guard;
@@ -37,12 +40,12 @@ struct vtkDSMReadAhead::Step::Contents
   std::unordered_set<dsm::BlockId> Known; ///< that were added
 };
 
-vtkDSMReadAhead::Step::Step(vol::ChunkCache& cache, Way way)
+ReadAhead::Step::Step(ChunkCache& cache, Way way)
   : Self(new Contents{ cache, std::move(way), {}, {}, {} })
 {
 }
 
-vtkDSMReadAhead::Step::~Step()
+ReadAhead::Step::~Step()
 {
   for (const auto& [id, brick] : this->Self->Bricks)
   {
@@ -50,7 +53,7 @@ vtkDSMReadAhead::Step::~Step()
   }
 }
 
-bool vtkDSMReadAhead::Step::Take(dsm::BlockId id, std::byte* block, std::size_t bytes)
+bool ReadAhead::Step::Take(dsm::BlockId id, std::byte* block, std::size_t bytes)
 {
   std::vector<std::byte> brick;
   {
@@ -68,7 +71,7 @@ bool vtkDSMReadAhead::Step::Take(dsm::BlockId id, std::byte* block, std::size_t 
   return true;
 }
 
-struct vtkDSMReadAhead::Shared : std::enable_shared_from_this<Shared>
+struct ReadAhead::Shared : std::enable_shared_from_this<Shared>
 {
   struct Job
   {
@@ -77,7 +80,7 @@ struct vtkDSMReadAhead::Shared : std::enable_shared_from_this<Shared>
     std::size_t Bytes;
   };
 
-  explicit Shared(vol::ChunkCache& cache)
+  explicit Shared(ChunkCache& cache)
     : Cache(cache)
   {
   }
@@ -161,7 +164,7 @@ struct vtkDSMReadAhead::Shared : std::enable_shared_from_this<Shared>
     }
   }
 
-  vol::ChunkCache& Cache;
+  ChunkCache& Cache;
   std::mutex Guard;
   int Pauses = 0;
   std::chrono::steady_clock::time_point RestsUntil;
@@ -170,25 +173,25 @@ struct vtkDSMReadAhead::Shared : std::enable_shared_from_this<Shared>
   std::map<std::uint64_t, std::shared_ptr<Step>> Steps;
 };
 
-vtkDSMReadAhead& vtkDSMReadAhead::GetShared()
+ReadAhead& ReadAhead::GetShared()
 {
-  static vtkDSMReadAhead ahead(vol::ChunkCache::GetShared());
+  static ReadAhead ahead(ChunkCache::GetShared());
   return ahead;
 }
 
-vtkDSMReadAhead::vtkDSMReadAhead(vol::ChunkCache& cache)
+ReadAhead::ReadAhead(ChunkCache& cache)
   : State(std::make_shared<Shared>(cache))
 {
 }
 
-std::shared_ptr<vtkDSMReadAhead::Step> vtkDSMReadAhead::Find(std::uint64_t key) const
+std::shared_ptr<ReadAhead::Step> ReadAhead::Find(std::uint64_t key) const
 {
   const std::lock_guard<std::mutex> lock(this->State->Guard);
   const auto known = this->State->Steps.find(key);
   return known == this->State->Steps.end() ? nullptr : known->second;
 }
 
-std::shared_ptr<vtkDSMReadAhead::Step> vtkDSMReadAhead::Open(std::uint64_t key, Way way)
+std::shared_ptr<ReadAhead::Step> ReadAhead::Open(std::uint64_t key, Way way)
 {
   const std::lock_guard<std::mutex> lock(this->State->Guard);
   std::shared_ptr<Step>& step = this->State->Steps[key];
@@ -199,7 +202,7 @@ std::shared_ptr<vtkDSMReadAhead::Step> vtkDSMReadAhead::Open(std::uint64_t key, 
   return step;
 }
 
-void vtkDSMReadAhead::Add(const std::shared_ptr<Step>& step, dsm::BlockId id, std::size_t bytes)
+void ReadAhead::Add(const std::shared_ptr<Step>& step, dsm::BlockId id, std::size_t bytes)
 {
   if (Shared::Note(*step, id))
   {
@@ -209,7 +212,7 @@ void vtkDSMReadAhead::Add(const std::shared_ptr<Step>& step, dsm::BlockId id, st
   }
 }
 
-void vtkDSMReadAhead::Tidy()
+void ReadAhead::Tidy()
 {
   std::vector<std::shared_ptr<Step>> unused; // goes without the lock
   const std::lock_guard<std::mutex> lock(this->State->Guard);
@@ -225,17 +228,19 @@ void vtkDSMReadAhead::Tidy()
   }
 }
 
-vtkDSMReadAhead::Pause::Pause(vtkDSMReadAhead& ahead)
+ReadAhead::Pause::Pause(ReadAhead& ahead)
   : Ahead(ahead)
 {
   const std::lock_guard<std::mutex> lock(this->Ahead.State->Guard);
   ++this->Ahead.State->Pauses;
 }
 
-vtkDSMReadAhead::Pause::~Pause()
+ReadAhead::Pause::~Pause()
 {
   const std::lock_guard<std::mutex> lock(this->Ahead.State->Guard);
   --this->Ahead.State->Pauses;
   this->Ahead.State->RestsUntil = std::chrono::steady_clock::now() + Rest;
   this->Ahead.State->Begin();
 }
+
+} // namespace vol

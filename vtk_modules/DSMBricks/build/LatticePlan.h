@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#ifndef vtkDSMLatticePlan_h
-#define vtkDSMLatticePlan_h
+#ifndef bricks_LatticePlan_h
+#define bricks_LatticePlan_h
 
 #include "DSMBricks/base/Box.h"
 
@@ -12,8 +12,11 @@
 #include <set>
 #include <vector>
 
+namespace bricks
+{
+
 /// Where one piece of image data lies; plain, so that it travels between ranks.
-struct vtkDSMPieceInfo
+struct PieceInfo
 {
   double Origin[3]; ///< world position of index (0, 0, 0), as vtkImageData's
   double Spacing[3];
@@ -30,27 +33,27 @@ struct vtkDSMPieceInfo
 /// Finds which pieces, of all ranks, continue one another: pieces on the same sampling points that
 /// touch form one lattice, unless they are of blocks that are to stay apart. The result depends on the
 /// pieces' order, which is the same everywhere.
-class vtkDSMLatticePlan
+class LatticePlan
 {
 public:
   struct Member
   {
-    int Piece;                     ///< index into the pieces
-    bricks::Index3 IndexToLattice; ///< add to a piece's own index
-    bricks::Box Cells;             ///< in lattice indices, which start at 0
+    int Piece;             ///< index into the pieces
+    Index3 IndexToLattice; ///< add to a piece's own index
+    Box Cells;             ///< in lattice indices, which start at 0
   };
   struct Lattice
   {
-    bricks::Index3 Points;
+    Index3 Points;
     glm::dmat4 IndexToWorld;
     std::vector<Member> Members;
   };
 
-  vtkDSMLatticePlan() = default;
+  LatticePlan() = default;
   /// Throws dsm::Error when there are pieces, but none has a cell, and when one that has is at no place: its spacing is 0,
   /// or a number of spacing, origin or direction is not finite. `apart`: blocks that join no other.
-  explicit vtkDSMLatticePlan(
-    const std::vector<vtkDSMPieceInfo>& pieces, const std::set<std::int32_t>& apart = {});
+  explicit LatticePlan(
+    const std::vector<PieceInfo>& pieces, const std::set<std::int32_t>& apart = {});
 
   const std::vector<Lattice>& GetLattices() const { return this->Lattices; }
 
@@ -59,15 +62,17 @@ public:
   {
     std::size_t Lattice;
     std::array<std::size_t, 2> Members; ///< of the lattice
-    bricks::Box Points;                 ///< in lattice indices
+    Box Points;                         ///< in lattice indices
   };
-  std::vector<Seam> FindSeams(const std::vector<vtkDSMPieceInfo>& pieces) const;
+  std::vector<Seam> FindSeams(const std::vector<PieceInfo>& pieces) const;
 
   /// Whether every cell of `box` lies in one of `parts`.
-  static bool IsCovered(const bricks::Box& box, const std::vector<bricks::Box>& parts);
+  static bool IsCovered(const Box& box, const std::vector<Box>& parts);
 
 private:
   std::vector<Lattice> Lattices;
 };
+
+} // namespace bricks
 
 #endif

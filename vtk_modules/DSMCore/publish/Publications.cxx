@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "vtkDSMPublications.h"
+#include "DSMCore/publish/Publications.h"
 
 #include <algorithm>
 #include <cstddef>
 #include <cstring>
 
-std::shared_ptr<const void> vtkDSMPublications::FindAny(
-  dsm::Messenger& messenger, std::type_index type, std::uint64_t content)
+namespace dsm
+{
+
+std::shared_ptr<const void> Publications::FindAny(
+  Messenger& messenger, std::type_index type, std::uint64_t content)
 {
   const auto all = messenger.GatherTogether("Looking for what is published",
     [&]
@@ -19,7 +22,7 @@ std::shared_ptr<const void> vtkDSMPublications::FindAny(
       {
         if (entry.Type == type && entry.Content == content)
         {
-          dsm::AttachTail(mine, entry.Number);
+          AttachTail(mine, entry.Number);
         }
       }
       return mine;
@@ -47,8 +50,10 @@ std::shared_ptr<const void> vtkDSMPublications::FindAny(
   return nullptr;
 }
 
-void vtkDSMPublications::Forget()
+void Publications::Forget()
 {
   this->Entries.clear();
   this->Next = 0;
 }
+
+} // namespace dsm

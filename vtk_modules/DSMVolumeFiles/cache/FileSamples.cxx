@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "vtkDSMFileVoxels.h"
-
-#include "vtkDSMFileValues.h"
-#include "vtkDSMImagePiece.h"
+#include "DSMVolumeFiles/cache/FileSamples.h"
 
 #include <cmath>
 #include <cstdint>
 #include <utility>
 #include <vector>
+
+namespace vol
+{
 
 namespace
 {
@@ -28,7 +28,6 @@ void Pick(const Native* from, const Samples& samples, int component, Native* out
   }
 }
 
-/// As vtkDSMImagePiece finds them.
 template <class Native, class Result>
 void FindMagnitudes(const Native* from, const Samples& samples, Result* out)
 {
@@ -46,23 +45,33 @@ void FindMagnitudes(const Native* from, const Samples& samples, Result* out)
 
 } // namespace
 
-vtkDSMFileVoxels::vtkDSMFileVoxels(std::shared_ptr<const vtkDSMFileValues> values, int component,
-  bricks::ScalarType type, bool scattered)
-  : Values(std::move(values))
-  , Component(component)
-  , Type(type)
+FileSamples::FileSamples(std::shared_ptr<const VolumeFile> file, std::size_t array, int step,
+  const Part& part, ChunkCache& cache, bool scattered)
+  : File(std::move(file))
+  , Array(array)
+  , Step(step)
+  , Read(part)
+  , Cache(cache)
   , Scattered(scattered)
 {
 }
 
-bricks::Box vtkDSMFileVoxels::GetCells() const
+FileSamples::FileSamples(std::shared_ptr<const VolumeFile> file, std::size_t array, int step,
+  ChunkCache& cache, bool scattered)
+  : FileSamples(file, array, step,
+      { { bricks::Index3(0), file->GetGeometry().Points }, 0, file->GetArrays()[array].Type }, cache,
+      scattered)
 {
-  return { bricks::Index3(0), this->Values->GetBox().GetSize() - bricks::Index3(1) };
 }
 
-void vtkDSMFileVoxels::ReadSamples(const bricks::Box& points, std::byte* out) const
+bricks::Box FileSamples::GetCells() const
 {
-  const vol::FileArray& array = this->Values->GetArray();
+  return { bricks::Index3(0), this->Read.Samples.GetSize() - bricks::Index3(1) };
+}
+
+void FileSamples::ReadSamples(const bricks::Box& points, std::byte* out) const
+{
+  const FileArray& array = this->File->GetArrays()[this->Array];
   if (array.Components == 1)
   {
     this->ReadBox(points, out);
@@ -76,11 +85,11 @@ void vtkDSMFileVoxels::ReadSamples(const bricks::Box& points, std::byte* out) co
     {
       using Native = decltype(zero);
       const auto* from = reinterpret_cast<const Native*>(samples.data());
-      if (this->Component != vtkDSMImagePiece::Magnitude)
+      if (this->Read.Component != Magnitude)
       {
-        Pick(from, count, this->Component, reinterpret_cast<Native*>(out));
+        Pick(from, count, this->Read.Component, reinterpret_cast<Native*>(out));
       }
-      else if (this->Type == bricks::ScalarType::Float32)
+      else if (this->Read.Type == bricks::ScalarType::Float32)
       {
         FindMagnitudes(from, count, reinterpret_cast<float*>(out));
       }
@@ -91,12 +100,12 @@ void vtkDSMFileVoxels::ReadSamples(const bricks::Box& points, std::byte* out) co
     });
 }
 
-void vtkDSMFileVoxels::ReadBox(const bricks::Box& points, std::byte* out) const
+void FileSamples::ReadBox(const bricks::Box& points, std::byte* out) const
 {
-  if (!this->Scattered)
-  {
-    this->Values->ReadBox(points, out);
-    return;
-  }
-  this->Values->ReadScattered(points, out);
+  const bricks::Index3& first = this->Read.Samples.Min;
+  const bricks::Box box{ points.Min + first, points.Max + first };
+  this->Scattered ? this->Cache.ReadScattered(this->File, this->Array, this->Step, box, out)
+                  : this->Cache.ReadBox(this->File, this->Array, this->Step, box, out);
 }
+
+} // namespace vol

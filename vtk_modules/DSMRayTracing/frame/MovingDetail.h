@@ -1,18 +1,21 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#ifndef vtkDSMMovingDetail_h
-#define vtkDSMMovingDetail_h
+#ifndef rt_MovingDetail_h
+#define rt_MovingDetail_h
 
 #include "DSMCore/store/BlockStore.h"
 
 #include <chrono>
 #include <vector>
 
+namespace rt
+{
+
 /// Which level of detail a picture in passing is traced at, where data in files have coarser ones. The finest is tried
 /// first, and given up when it waits for bricks for longer than a moving camera allows; what it has read until then
 /// stays in memory, so that by and by it gets through. In its place stands the level that got through the last time; or,
 /// every other time, when that one had all of its bricks, the next finer one is tried instead. Local; but the ranks come
 /// to the same by what they agree on.
-class vtkDSMMovingDetail
+class MovingDetail
 {
 public:
   /// Levels to try, one after the other, of so many below the finest (0). Only the last is traced whatever it takes.
@@ -37,5 +40,7 @@ private:
   Clock::time_point Start;
   Clock::time_point NextLook;
 };
+
+} // namespace rt
 
 #endif

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#ifndef vtkDSMPublications_h
-#define vtkDSMPublications_h
+#ifndef dsm_Publications_h
+#define dsm_Publications_h
 
 #include "DSMCore/transport/Messenger.h"
 
@@ -9,16 +9,19 @@
 #include <typeindex>
 #include <vector>
 
+namespace dsm
+{
+
 /// What the ranks of a group have published, by what it was made of: who would publish the same takes
 /// what is there, so that two views of a dataset share its bricks. Keeps nothing alive. Communication
 /// thread only.
-class vtkDSMPublications
+class Publications
 {
 public:
   /// Collective. What was added for `content` on every rank and is still used; null where there is
   /// nothing. `content` says what this rank's part is made of, and is another on each rank.
   template <class T>
-  std::shared_ptr<const T> Find(dsm::Messenger& messenger, std::uint64_t content)
+  std::shared_ptr<const T> Find(Messenger& messenger, std::uint64_t content)
   {
     return std::static_pointer_cast<const T>(this->FindAny(messenger, typeid(T), content));
   }
@@ -35,7 +38,7 @@ public:
 
 private:
   std::shared_ptr<const void> FindAny(
-    dsm::Messenger& messenger, std::type_index type, std::uint64_t content);
+    Messenger& messenger, std::type_index type, std::uint64_t content);
 
   struct Entry
   {
@@ -47,5 +50,7 @@ private:
   std::vector<Entry> Entries;
   std::uint64_t Next = 0;
 };
+
+} // namespace dsm
 
 #endif

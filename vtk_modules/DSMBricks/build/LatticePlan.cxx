@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "vtkDSMLatticePlan.h"
+#include "DSMBricks/build/LatticePlan.h"
 
 #include "DSMCore/base/Error.h"
 
@@ -10,18 +10,18 @@
 #include <cmath>
 #include <string>
 
-namespace
+namespace bricks
 {
 
-using bricks::Box;
-using bricks::Index3;
+namespace
+{
 
 /// Two pieces share sampling points when their origins differ by whole cells, within this part of
 /// one: files keep origins in single precision, too.
 constexpr double AlignmentTolerance = 1e-3;
 constexpr double SpacingTolerance = 1e-7;
 
-glm::dmat4 GetIndexToWorld(const vtkDSMPieceInfo& piece)
+glm::dmat4 GetIndexToWorld(const PieceInfo& piece)
 {
   glm::dmat4 matrix(1.0);
   for (int row = 0; row < 3; ++row)
@@ -35,7 +35,7 @@ glm::dmat4 GetIndexToWorld(const vtkDSMPieceInfo& piece)
   return matrix;
 }
 
-bool HasSameAxes(const vtkDSMPieceInfo& a, const vtkDSMPieceInfo& b)
+bool HasSameAxes(const PieceInfo& a, const PieceInfo& b)
 {
   for (int axis = 0; axis < 3; ++axis)
   {
@@ -49,7 +49,7 @@ bool HasSameAxes(const vtkDSMPieceInfo& a, const vtkDSMPieceInfo& b)
 }
 
 /// Whether b's points are among a's; `shift` takes b's indices to a's.
-bool IsAligned(const vtkDSMPieceInfo& a, const vtkDSMPieceInfo& b, Index3& shift)
+bool IsAligned(const PieceInfo& a, const PieceInfo& b, Index3& shift)
 {
   if (!HasSameAxes(a, b))
   {
@@ -100,8 +100,7 @@ bool Touches(const Box& a, const Box& b)
 bool Conflicts(const Placed& a, const Placed& b, const std::set<std::int32_t>& apart)
 {
   return a.Leaf != b.Leaf &&
-    (apart.count(a.Leaf) > 0 || apart.count(b.Leaf) > 0 ||
-      !bricks::Intersect(a.Cells, b.Cells).IsEmpty());
+    (apart.count(a.Leaf) > 0 || apart.count(b.Leaf) > 0 || !Intersect(a.Cells, b.Cells).IsEmpty());
 }
 
 bool CanJoin(const Group& a, const Group& b, const std::set<std::int32_t>& apart)
@@ -126,7 +125,7 @@ bool CanJoin(const Group& a, const Group& b, const std::set<std::int32_t>& apart
 }
 
 /// Throws where numbers that say where the samples are make no sense.
-void RefuseImpossiblePlace(const vtkDSMPieceInfo& piece)
+void RefuseImpossiblePlace(const PieceInfo& piece)
 {
   const auto refuse = [](const std::string& what, double value)
   {
@@ -155,13 +154,13 @@ void RefuseImpossiblePlace(const vtkDSMPieceInfo& piece)
   }
 }
 
-std::vector<Placed> Place(const std::vector<vtkDSMPieceInfo>& pieces)
+std::vector<Placed> Place(const std::vector<PieceInfo>& pieces)
 {
   std::vector<Placed> placed;
   std::vector<int> classes;
   for (int index = 0; index < static_cast<int>(pieces.size()); ++index)
   {
-    const vtkDSMPieceInfo& piece = pieces[index];
+    const PieceInfo& piece = pieces[index];
     Placed entry{ index, piece.Leaf, index, Index3(0),
       { { piece.Min[0], piece.Min[1], piece.Min[2] },
         { piece.Max[0], piece.Max[1], piece.Max[2] } } };
@@ -188,12 +187,12 @@ std::vector<Placed> Place(const std::vector<vtkDSMPieceInfo>& pieces)
   return placed;
 }
 
-void RefuseFlatData(const std::vector<vtkDSMPieceInfo>& pieces)
+void RefuseFlatData(const std::vector<PieceInfo>& pieces)
 {
   for (int axis = 0; axis < 3; ++axis)
   {
     if (std::all_of(pieces.begin(), pieces.end(),
-          [axis](const vtkDSMPieceInfo& piece) { return piece.Max[axis] <= piece.Min[axis]; }))
+          [axis](const PieceInfo& piece) { return piece.Max[axis] <= piece.Min[axis]; }))
     {
       throw dsm::Error(std::string("The dataset has no cells in ") + "xyz"[axis] +
         "; an isosurface needs a volume, with at least two points on every axis. Use Contour for "
@@ -204,8 +203,7 @@ void RefuseFlatData(const std::vector<vtkDSMPieceInfo>& pieces)
 
 } // namespace
 
-vtkDSMLatticePlan::vtkDSMLatticePlan(
-  const std::vector<vtkDSMPieceInfo>& pieces, const std::set<std::int32_t>& apart)
+LatticePlan::LatticePlan(const std::vector<PieceInfo>& pieces, const std::set<std::int32_t>& apart)
 {
   std::vector<Group> groups;
   for (const Placed& entry : Place(pieces))
@@ -251,8 +249,7 @@ vtkDSMLatticePlan::vtkDSMLatticePlan(
   }
 }
 
-std::vector<vtkDSMLatticePlan::Seam> vtkDSMLatticePlan::FindSeams(
-  const std::vector<vtkDSMPieceInfo>& pieces) const
+std::vector<LatticePlan::Seam> LatticePlan::FindSeams(const std::vector<PieceInfo>& pieces) const
 {
   std::vector<Seam> seams;
   for (std::size_t lattice = 0; lattice < this->Lattices.size(); ++lattice)
@@ -269,7 +266,7 @@ std::vector<vtkDSMLatticePlan::Seam> vtkDSMLatticePlan::FindSeams(
         {
           continue;
         }
-        const Box common = bricks::Intersect(getPoints(first), getPoints(second));
+        const Box common = Intersect(getPoints(first), getPoints(second));
         if (!common.IsEmpty())
         {
           seams.push_back({ lattice, { first, second }, common });
@@ -280,7 +277,7 @@ std::vector<vtkDSMLatticePlan::Seam> vtkDSMLatticePlan::FindSeams(
   return seams;
 }
 
-bool vtkDSMLatticePlan::IsCovered(const Box& box, const std::vector<Box>& parts)
+bool LatticePlan::IsCovered(const Box& box, const std::vector<Box>& parts)
 {
   if (box.IsEmpty())
   {
@@ -288,7 +285,7 @@ bool vtkDSMLatticePlan::IsCovered(const Box& box, const std::vector<Box>& parts)
   }
   for (const Box& part : parts)
   {
-    const Box common = bricks::Intersect(box, part);
+    const Box common = Intersect(box, part);
     if (common.IsEmpty())
     {
       continue;
@@ -312,3 +309,5 @@ bool vtkDSMLatticePlan::IsCovered(const Box& box, const std::vector<Box>& parts)
   }
   return false;
 }
+
+} // namespace bricks

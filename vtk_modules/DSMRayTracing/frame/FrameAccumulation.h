@@ -1,20 +1,30 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#ifndef vtkDSMFrameAccumulation_h
-#define vtkDSMFrameAccumulation_h
+#ifndef rt_FrameAccumulation_h
+#define rt_FrameAccumulation_h
 
 #include "DSMRayTracing/frame/Frame.h"
+#include "DSMRayTracing/frame/FrameRenderer.h"
 #include "DSMRayTracing/frame/FrameRequest.h"
 #include "DSMRayTracing/scene/Scene.h"
 
 #include <cstdint>
 
-class vtkDSMRankGroup;
+namespace rt
+{
 
 /// A frame that gets its samples in one or several renders: as long as it shows the same, samples are
 /// added to those that are there.
-class vtkDSMFrameAccumulation
+class FrameAccumulation
 {
 public:
+  /// Who traces.
+  struct Ranks
+  {
+    dsm::Messenger& Messenger;
+    FrameRenderer& Renderer;
+    dsm::BlockStore& Store;
+  };
+
   /// How many samples a render adds.
   struct Pace
   {
@@ -33,10 +43,10 @@ public:
   /// many as the pace allows. `lastSeconds`: that the last ones took, on every rank the same. Returns
   /// what came of it, the same on every rank. Throws dsm::Error on every rank; then there is nothing to
   /// add to.
-  Result Trace(vtkDSMRankGroup& group, const rt::Scene& scene, rt::FrameRequest request, int wanted,
+  Result Trace(const Ranks& ranks, const Scene& scene, FrameRequest request, int wanted,
     const Pace& pace, double lastSeconds);
 
-  const rt::Frame& GetFrame() const { return this->Frame; }
+  const Frame& GetFrame() const { return this->Traced; }
 
   /// Whether the frame has what was wanted, or there is none; the same on every rank.
   bool IsComplete() const { return this->Samples >= this->Wanted && this->SamplesUnderWay == 0; }
@@ -57,15 +67,17 @@ public:
   void Postpone();
 
 private:
-  Result TraceOnce(vtkDSMRankGroup& group, const rt::Scene& scene, rt::FrameRequest request);
+  Result TraceOnce(const Ranks& ranks, const Scene& scene, FrameRequest request);
   int CountNext(const Pace& pace, double lastSeconds) const;
 
-  rt::Frame Frame;
+  Frame Traced;
   std::uint64_t Digest = 0; ///< of what it shows
   int Samples = 0;          ///< that it has; 0 when there is nothing to add to
   int SamplesUnderWay = 0;  ///< that some tiles have got already: their adding was aborted
   int LastSamples = 0;      ///< that were added last
   int Wanted = 0;
 };
+
+} // namespace rt
 
 #endif
