@@ -45,7 +45,7 @@ MENDS = (
     Mend("lights that differ between ranks were not noticed", "vtk_modules/DSMRayTracing/frame/SceneDigest.cxx",
          "    Add(digest, light);", "    digest.Add(light.Type);", ["unit_frame"], "unit.frame",
          "*Digest*"),
-    Mend("triangles whose corners are nowhere got a place in the order", "vtk_modules/DSMRayTracing/build/TriangleCells.cxx",
+    Mend("triangles whose corners are nowhere got a place in the order", "vtk_modules/DSMBricks/build/TriangleCells.cxx",
          "canBeHit ? order.GetOfTriangle(corners) : NoCode", "canBeHit ? order.GetOfTriangle(corners) : 0",
          ["unit_mesh"], "unit.mesh"),
     # DSMVolumeFiles

@@ -91,9 +91,17 @@ def find_unlisted(root):
                 yield f"{path.relative_to(root).as_posix()}: {listing.relative_to(root).as_posix()} does not name it"
 
 
+def find_untold(root):
+    """What docs/architecture.md says of the order of the rooms."""
+    text = re.sub(r" +", " ", (root / "docs/architecture.md").read_text())
+    for module, rooms in ROOMS.items():
+        if f"\n{module} {' '.join(rooms)}\n" not in text:
+            yield f"docs/architecture.md: the rooms of {module} are {' '.join(rooms)}"
+
+
 def main():
     root = pathlib.Path(sys.argv[1])
-    faults = [*find_faults(root), *find_arrows_back(root), *find_unlisted(root)]
+    faults = [*find_faults(root), *find_arrows_back(root), *find_unlisted(root), *find_untold(root)]
     print("\n".join(faults) or "every room uses the rooms below it only, and every file is listed")
     return 1 if faults else 0
 
