@@ -45,8 +45,8 @@ MENDS = (
     Mend("lights that differ between ranks were not noticed", "vtk_modules/DSMRayTracing/frame/SceneDigest.cxx",
          "    Add(digest, light);", "    digest.Add(light.Type);", ["unit_frame"], "unit.frame",
          "*Digest*"),
-    Mend("triangles whose corners are nowhere got a place in the order", "vtk_modules/DSMBricks/build/TriangleCells.cxx",
-         "canBeHit ? order.GetOfTriangle(corners) : NoCode", "canBeHit ? order.GetOfTriangle(corners) : 0",
+    Mend("triangles whose corners are nowhere got a place in the order", "vtk_modules/DSMBricks/sorted/SortedCells.cxx",
+         "canBeHit ? code : NoCode", "code",
          ["unit_mesh"], "unit.mesh"),
     # DSMVolumeFiles
     Mend("the sign of a MetaImage's spacing counted", "vtk_modules/DSMVolumeFiles/format/MetaImageFile.cxx",

@@ -28,7 +28,7 @@ FORBIDDEN = {
 # Module -> its rooms, lowest first: a room uses itself and those before it.
 ROOMS = {
     "DSMCore": ["base", "transport", "memory", "publish", "fetch", "table", "paged", "store"],
-    "DSMBricks": ["base", "accel", "layout", "build", "sample"],
+    "DSMBricks": ["base", "accel", "layout", "sorted", "build", "sample"],
     "DSMRayTracing": [
         "base", "ray", "look", "object", "field", "surface", "mesh", "light", "scene", "schedule", "frame",
     ],

@@ -394,7 +394,7 @@ TEST_F(MeshPicture, LayersAreWhatEachSurfaceContributes)
   for (const double height : { -0.5, 0.5, 0.0 })
   {
     squares.push_back(this->Publish(CreateSquare(height)));
-    squares.back().Surface.Opacity = 0.5f;
+    squares.back().Look.Surface.Opacity = 0.5f;
   }
   squares[1].Clipping.HalfSpaces = { { { 1.0, 0.0, 0.0 }, glm::dvec3(0.0) } };
   const auto trace = [&](int layers)

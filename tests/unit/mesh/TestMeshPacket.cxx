@@ -57,7 +57,7 @@ void ExpectEqual(const rt::MeshHit& hit, const rt::MeshHit& expected)
   EXPECT_EQ(hit.Normal, expected.Normal);
   EXPECT_EQ(hit.Front, expected.Front);
   EXPECT_EQ(hit.Weights, expected.Weights);
-  EXPECT_EQ(hit.At.Brick, expected.At.Brick);
+  EXPECT_EQ(hit.Brick, expected.Brick);
   EXPECT_EQ(hit.Triangle, expected.Triangle);
   EXPECT_EQ(hit.Color, expected.Color);
   EXPECT_EQ(hit.TextureCoordinate, expected.TextureCoordinate);

@@ -64,12 +64,12 @@ TriangleMeshBuilder::TriangleMeshBuilder(std::string_view what, const TriangleSo
     std::clamp(1.4 * this->Settings.BrickBytes / this->EstimateBrickBytesPerTriangle(), 1.0,
       static_cast<double>(TriangleBrickHeader::LargestTriangles)));
   this->Reader.emplace(this->Source, this->Mesh->Attributes, &this->Mesh->Origin.x);
-  this->Cells.emplace(*this->Reader, this->Source.GetTriangleCount(), this->Order,
-    this->LargestTriangles, this->Settings.Threads, this->Messages);
+  this->Cells.emplace(
+    *this->Reader, this->Order, this->LargestTriangles, this->Settings.Threads, this->Messages);
   std::uint64_t kept = 0;
   for (std::uint64_t cell = 0; cell < this->Cells->GetCount(); ++cell)
   {
-    kept += this->Cells->GetTriangleCount(cell);
+    kept += this->Cells->GetPrimitiveCount(cell);
   }
   this->Mesh->Dropped = this->Mesh->Triangles - kept;
   this->Mesh->Triangles = kept;
@@ -235,7 +235,7 @@ std::unique_ptr<dsm::FragmentSource> TriangleMeshBuilder::CreateRecordSource() c
   const std::uint64_t cells = this->Cells->GetCount();
   for (std::uint64_t thread = 0; thread < threads; ++thread)
   {
-    sources.push_back(std::make_unique<TriangleRecordSource>(
+    sources.push_back(std::make_unique<RecordSource>(
       *this->Reader, *this->Cells, cells * thread / threads, cells * (thread + 1) / threads));
   }
   return std::make_unique<dsm::ConcurrentFragmentSource>(std::move(sources));
@@ -247,16 +247,15 @@ void TriangleMeshBuilder::BuildBricks(dsm::FunctionRef<void(double)> progress)
   {
     std::unique_ptr<dsm::FragmentSource> source;
     this->Messages.RunTogether(this->What, [&] { source = this->CreateRecordSource(); });
-    const TriangleRecordBlocks records(
-      this->What, *this->Cells, this->Reader->GetLayout(), *source, this->Messages, progress);
+    const RecordBlocks records(
+      this->What, *this->Cells, *this->Reader, *source, this->Messages, progress);
     this->Messages.RunTogether(this->What, [&] { bricks = this->BuildOwnBricks(records); });
   }
   this->GatherBricks(std::move(bricks));
   this->Cells.reset();
 }
 
-TriangleMeshBuilder::BricksOfCells TriangleMeshBuilder::BuildOwnBricks(
-  const TriangleRecordBlocks& records)
+TriangleMeshBuilder::BricksOfCells TriangleMeshBuilder::BuildOwnBricks(const RecordBlocks& records)
 {
   BricksOfCells bricks(records.GetCount());
   std::vector<TriangleBrickBuilder> builders(this->Settings.Threads,
@@ -265,7 +264,7 @@ TriangleMeshBuilder::BricksOfCells TriangleMeshBuilder::BuildOwnBricks(
     [&](std::size_t index, int thread)
     {
       bricks[index] = builders[thread].Build(
-        records.GetRecords(index), this->Cells->GetTriangleCount(records.GetCell(index)));
+        records.GetRecords(index), this->Cells->GetPrimitiveCount(records.GetCell(index)));
     });
   return bricks;
 }

@@ -3,10 +3,11 @@
 #define bricks_TriangleMeshBuilder_h
 
 #include "DSMBricks/build/TriangleBrickBuilder.h"
-#include "DSMBricks/build/TriangleCells.h"
-#include "DSMBricks/build/TriangleExchange.h"
+#include "DSMBricks/build/TriangleReader.h"
 #include "DSMBricks/build/TriangleSource.h"
 #include "DSMBricks/layout/TriangleMesh.h"
+#include "DSMBricks/sorted/RecordExchange.h"
+#include "DSMBricks/sorted/SortedCells.h"
 #include "DSMCore/base/FunctionRef.h"
 #include "DSMCore/publish/BlockDirectory.h"
 #include "DSMCore/publish/Publication.h"
@@ -73,7 +74,7 @@ private:
   /// In order of GetOwnCells.
   using BricksOfCells = std::vector<std::vector<TriangleBrickBuilder::Brick>>;
   std::unique_ptr<dsm::FragmentSource> CreateRecordSource() const;
-  BricksOfCells BuildOwnBricks(const TriangleRecordBlocks& records);
+  BricksOfCells BuildOwnBricks(const RecordBlocks& records);
   void GatherBricks(BricksOfCells bricksOfCells);
 
   std::string_view What;
@@ -84,7 +85,7 @@ private:
   MortonCode Order;
   std::uint32_t LargestTriangles = 0;
   std::optional<TriangleReader> Reader;
-  std::optional<TriangleCells> Cells;
+  std::optional<SortedCells> Cells;
   std::vector<std::uint32_t> BrickBytes; ///< of all ranks
   std::unique_ptr<BlockSource> Bricks;   ///< this rank's
 };

@@ -77,10 +77,14 @@ bool TriangleReader::ReadPositions(
   return finite;
 }
 
-bool TriangleReader::ReadCorners(std::uint64_t triangle, float corners[9]) const
+bool TriangleReader::FindCode(
+  std::uint64_t triangle, const MortonCode& order, std::uint64_t& code) const
 {
-  int order[3];
-  return this->ReadCorners(triangle, corners, order);
+  float corners[9];
+  int turned[3];
+  const bool canBeHit = this->ReadCorners(triangle, corners, turned);
+  code = canBeHit ? order.GetOfTriangle(corners) : 0;
+  return canBeHit;
 }
 
 bool TriangleReader::ReadCorners(std::uint64_t triangle, float corners[9], int order[3]) const

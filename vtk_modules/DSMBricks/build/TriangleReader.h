@@ -4,6 +4,7 @@
 
 #include "DSMBricks/build/TriangleRecord.h"
 #include "DSMBricks/build/TriangleSource.h"
+#include "DSMBricks/sorted/RecordReader.h"
 
 #include <cstdint>
 
@@ -11,28 +12,30 @@ namespace bricks
 {
 
 /// Makes records out of the triangles of a source. May be used by several threads at a time.
-class TriangleReader
+class TriangleReader final : public RecordReader
 {
 public:
   /// `origin` is the mesh's, the same on every rank.
   TriangleReader(
     const TriangleSource& source, const MeshAttributes& attributes, const double origin[3]);
 
-  const TriangleRecord& GetLayout() const { return this->Layout; }
+  const char* GetNames() const override { return "triangles"; }
+  std::uint64_t GetCount() const override { return this->Source.GetTriangleCount(); }
+  std::size_t GetRecordBytes() const override { return this->Layout.GetBytes(); }
+  /// That of the centroid.
+  bool FindCode(
+    std::uint64_t triangle, const MortonCode& order, std::uint64_t& code) const override;
+  /// A TriangleRecord.
+  void ReadRecord(std::uint64_t triangle, std::uint32_t* record) const override;
 
   /// Three positions in the mesh's space. False when one is not finite. Throws dsm::Error when the
   /// triangle has a point that the source does not.
   static bool ReadPositions(
     const TriangleSource& source, std::uint64_t triangle, double positions[9]);
 
-  /// The record's corners. False for a triangle that no ray can hit.
-  bool ReadCorners(std::uint64_t triangle, float corners[9]) const;
-
-  /// The whole record, of a triangle for which ReadCorners is true.
-  void ReadRecord(std::uint64_t triangle, std::uint32_t* record) const;
-
 private:
-  /// As ReadCorners; order[i] is the corner of the source that comes to the i-th place.
+  /// The record's corners; order[i] is the corner of the source that comes to the i-th place. False for a triangle that
+  /// no ray can hit.
   bool ReadCorners(std::uint64_t triangle, float corners[9], int order[3]) const;
   /// Writes as many words as the attachment asks for.
   template <class GetWord>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "DSMBricks/build/TriangleCells.h"
+#include "DSMBricks/sorted/SortedCells.h"
 
 #include "DSMBricks/base/ParallelFor.h"
 
@@ -13,7 +13,7 @@ namespace bricks
 namespace
 {
 
-constexpr const char* What = "Sorting a mesh";
+constexpr const char* What = "Sorting primitives";
 
 /// Behind all codes.
 constexpr std::uint64_t NoCode = ~std::uint64_t(0);
@@ -29,30 +29,30 @@ constexpr std::size_t MostCells = std::size_t(1) << 14;
 
 } // namespace
 
-TriangleCells::TriangleCells(const TriangleReader& reader, std::uint64_t triangles,
-  const MortonCode& order, std::uint64_t largestCount, int threads, dsm::Messenger& messenger)
+SortedCells::SortedCells(const RecordReader& reader, const MortonCode& order,
+  std::uint64_t largestCount, int threads, dsm::Messenger& messenger)
 {
   messenger.RunTogether(What,
     [&]
     {
-      this->ReadKeys(reader, triangles, order, threads);
+      this->ReadKeys(reader, order, threads);
       this->SortKeys(threads);
     });
   this->FindCells(largestCount, messenger);
 }
 
-void TriangleCells::ReadKeys(
-  const TriangleReader& reader, std::uint64_t triangles, const MortonCode& order, int threads)
+void SortedCells::ReadKeys(const RecordReader& reader, const MortonCode& order, int threads)
 {
-  this->Keys.resize(triangles);
-  ParallelForChunks(threads, triangles, ChunkSize,
+  const std::uint64_t count = reader.GetCount();
+  this->Keys.resize(count);
+  ParallelForChunks(threads, count, ChunkSize,
     [&](std::size_t begin, std::size_t end, std::size_t, int)
     {
-      for (std::size_t triangle = begin; triangle < end; ++triangle)
+      for (std::size_t primitive = begin; primitive < end; ++primitive)
       {
-        float corners[9];
-        const bool canBeHit = reader.ReadCorners(triangle, corners);
-        this->Keys[triangle] = { canBeHit ? order.GetOfTriangle(corners) : NoCode, triangle };
+        std::uint64_t code = 0;
+        const bool canBeHit = reader.FindCode(primitive, order, code);
+        this->Keys[primitive] = { canBeHit ? code : NoCode, primitive };
       }
     });
   const auto kept = std::remove_if(
@@ -61,7 +61,7 @@ void TriangleCells::ReadKeys(
   this->Keys.erase(kept, this->Keys.end());
 }
 
-void TriangleCells::SortKeys(int threads)
+void SortedCells::SortKeys(int threads)
 {
   // One pass over the highest bits, then the buckets by themselves.
   constexpr int bucketBits = 12;
@@ -108,7 +108,7 @@ void TriangleCells::SortKeys(int threads)
   this->Keys = std::move(sorted);
 }
 
-std::vector<std::uint64_t> TriangleCells::Divide(const Cell& cell, int bits) const
+std::vector<std::uint64_t> SortedCells::Divide(const Cell& cell, int bits) const
 {
   const std::size_t parts = std::size_t(1) << bits;
   std::vector<std::uint64_t> bounds(parts + 1, cell.Begin);
@@ -124,7 +124,7 @@ std::vector<std::uint64_t> TriangleCells::Divide(const Cell& cell, int bits) con
   return bounds;
 }
 
-void TriangleCells::FindCells(std::uint64_t largestCount, dsm::Messenger& messenger)
+void SortedCells::FindCells(std::uint64_t largestCount, dsm::Messenger& messenger)
 {
   // Of one generation, all have as many bits.
   std::vector<Cell> open;

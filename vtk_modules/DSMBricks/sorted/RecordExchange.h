@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#ifndef bricks_TriangleExchange_h
-#define bricks_TriangleExchange_h
+#ifndef bricks_RecordExchange_h
+#define bricks_RecordExchange_h
 
-#include "DSMBricks/build/TriangleCells.h"
-#include "DSMBricks/build/TriangleReader.h"
+#include "DSMBricks/sorted/RecordReader.h"
+#include "DSMBricks/sorted/SortedCells.h"
 #include "DSMCore/base/Block.h"
 #include "DSMCore/base/FunctionRef.h"
 #include "DSMCore/publish/BlockSegment.h"
@@ -20,37 +20,37 @@
 namespace bricks
 {
 
-/// Yields the records of this rank's triangles in cells [first, last), in pieces of bounded size.
-class TriangleRecordSource final : public dsm::FragmentSource
+/// Yields the records of this rank's primitives in cells [first, last), in pieces of bounded size.
+class RecordSource final : public dsm::FragmentSource
 {
 public:
-  TriangleRecordSource(const TriangleReader& reader, const TriangleCells& cells,
-    std::uint64_t first, std::uint64_t last);
+  RecordSource(
+    const RecordReader& reader, const SortedCells& cells, std::uint64_t first, std::uint64_t last);
   bool Next(dsm::Fragment& fragment) override;
   double GetProgress() const override;
 
 private:
-  const TriangleReader& Reader;
-  const TriangleCells& Cells;
+  const RecordReader& Reader;
+  const SortedCells& Cells;
   std::uint64_t Cell;
   std::uint64_t LastCell;
-  std::uint64_t Begin = 0; ///< this rank's triangles in the cells
+  std::uint64_t Begin = 0; ///< this rank's primitives in the cells
   std::uint64_t End = 0;
   std::uint64_t Position = 0;
 };
 
 /// The records of the cells that this rank owns, in no order within a cell. In memory of their own,
 /// not in the store: they are read once, by their owner, whatever organisation the bricks will have.
-class TriangleRecordBlocks
+class RecordBlocks
 {
 public:
   /// Collective: every rank's source goes to the owners, round robin by cell. Throws dsm::Error on
   /// every rank alike. `progress` may be empty.
-  TriangleRecordBlocks(std::string_view what, const TriangleCells& cells,
-    const TriangleRecord& layout, dsm::FragmentSource& source, dsm::Messenger& messenger,
+  RecordBlocks(std::string_view what, const SortedCells& cells, const RecordReader& reader,
+    dsm::FragmentSource& source, dsm::Messenger& messenger,
     dsm::FunctionRef<void(double)> progress);
 
-  ~TriangleRecordBlocks();
+  ~RecordBlocks();
 
   /// Own cells, in order.
   std::size_t GetCount() const

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "DSMBricks/build/TriangleExchange.h"
+#include "DSMBricks/sorted/RecordExchange.h"
 
 #include "DSMCore/base/Error.h"
 #include "DSMCore/memory/BlockArena.h"
@@ -21,8 +21,8 @@ constexpr std::uint64_t FragmentBytes = std::uint64_t(1) << 18;
 
 } // namespace
 
-TriangleRecordSource::TriangleRecordSource(
-  const TriangleReader& reader, const TriangleCells& cells, std::uint64_t first, std::uint64_t last)
+RecordSource::RecordSource(
+  const RecordReader& reader, const SortedCells& cells, std::uint64_t first, std::uint64_t last)
   : Reader(reader)
   , Cells(cells)
   , Cell(first)
@@ -36,7 +36,7 @@ TriangleRecordSource::TriangleRecordSource(
   }
 }
 
-bool TriangleRecordSource::Next(dsm::Fragment& fragment)
+bool RecordSource::Next(dsm::Fragment& fragment)
 {
   while (this->Cell < this->LastCell && this->Position >= this->Cells.GetRange(this->Cell).second)
   {
@@ -46,30 +46,30 @@ bool TriangleRecordSource::Next(dsm::Fragment& fragment)
   {
     return false;
   }
-  const TriangleRecord& layout = this->Reader.GetLayout();
+  const std::size_t size = this->Reader.GetRecordBytes();
   const std::uint64_t count = std::min(this->Cells.GetRange(this->Cell).second - this->Position,
-    std::max<std::uint64_t>(FragmentBytes / layout.GetBytes(), 1));
+    std::max<std::uint64_t>(FragmentBytes / size, 1));
   fragment.Block = this->Cell;
-  fragment.Bytes.resize(count * layout.GetBytes());
+  fragment.Bytes.resize(count * size);
+  std::vector<std::uint32_t> record((size + sizeof(std::uint32_t) - 1) / sizeof(std::uint32_t));
   std::byte* bytes = fragment.Bytes.data();
   for (std::uint64_t index = 0; index < count; ++index)
   {
-    std::uint32_t record[TriangleRecord::LargestWords];
-    this->Reader.ReadRecord(this->Cells.GetTriangle(this->Position++), record);
-    std::memcpy(bytes, record, layout.GetBytes());
-    bytes += layout.GetBytes();
+    this->Reader.ReadRecord(this->Cells.GetPrimitive(this->Position++), record.data());
+    std::memcpy(bytes, record.data(), size);
+    bytes += size;
   }
   return true;
 }
 
-double TriangleRecordSource::GetProgress() const
+double RecordSource::GetProgress() const
 {
   return this->End > this->Begin ? static_cast<double>(this->Position - this->Begin) /
       static_cast<double>(this->End - this->Begin)
                                  : 1.0;
 }
 
-class TriangleRecordBlocks::Sink final : public dsm::FragmentSink
+class RecordBlocks::Sink final : public dsm::FragmentSink
 {
 public:
   void Begin(dsm::BlockId, std::byte*, std::size_t) override {}
@@ -81,7 +81,7 @@ public:
     if (fragmentBytes > bytes - RecordOffset - filled)
     {
       throw dsm::Error("Cell " + std::to_string(id) +
-        " of the mesh got more triangles than were counted. Do all ranks run the same build?");
+        " got more records than were counted. Do all ranks run the same build?");
     }
     std::memcpy(block + RecordOffset + filled, fragment, fragmentBytes);
     filled += fragmentBytes;
@@ -94,13 +94,13 @@ public:
     if (RecordOffset + filled != bytes)
     {
       throw dsm::Error("Cell " + std::to_string(id) +
-        " of the mesh got fewer triangles than were counted. Did the dataset change meanwhile?");
+        " got fewer records than were counted. Did the dataset change meanwhile?");
     }
   }
 };
 
 /// The memory of this rank's cells, one after the other.
-class TriangleRecordBlocks::Segment final : public dsm::BlockSegment
+class RecordBlocks::Segment final : public dsm::BlockSegment
 {
 public:
   Segment(std::uint32_t number, dsm::BlockDirectory&& directory, int rank, int ranks)
@@ -145,10 +145,10 @@ private:
   std::vector<std::size_t> Offsets;
 };
 
-TriangleRecordBlocks::~TriangleRecordBlocks() = default;
+RecordBlocks::~RecordBlocks() = default;
 
-TriangleRecordBlocks::TriangleRecordBlocks(std::string_view what, const TriangleCells& cells,
-  const TriangleRecord& layout, dsm::FragmentSource& source, dsm::Messenger& messenger,
+RecordBlocks::RecordBlocks(std::string_view what, const SortedCells& cells,
+  const RecordReader& reader, dsm::FragmentSource& source, dsm::Messenger& messenger,
   dsm::FunctionRef<void(double)> progress)
   : Rank(messenger.GetRank())
   , Ranks(messenger.GetSize())
@@ -161,12 +161,12 @@ TriangleRecordBlocks::TriangleRecordBlocks(std::string_view what, const Triangle
       for (std::uint64_t cell = 0; cell < cells.GetCount(); ++cell)
       {
         const std::uint64_t needed =
-          RecordOffset + cells.GetTriangleCount(cell) * layout.GetBytes();
+          RecordOffset + cells.GetPrimitiveCount(cell) * reader.GetRecordBytes();
         if (needed > std::numeric_limits<std::uint32_t>::max() - dsm::BlockAlignment)
         {
-          throw dsm::Error(std::to_string(cells.GetTriangleCount(cell)) +
-            " triangles have their centroid in one place. Remove duplicate triangles, or points "
-            "that are far from the others.");
+          throw dsm::Error(std::to_string(cells.GetPrimitiveCount(cell)) + " " + reader.GetNames() +
+            " have their centroid in one place. Remove duplicate " + reader.GetNames() +
+            ", or points that are far from the others.");
         }
         bytes.push_back(static_cast<std::uint32_t>(needed));
       }

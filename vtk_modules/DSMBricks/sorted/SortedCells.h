@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef bricks_SortedCells_h
+#define bricks_SortedCells_h
+
+#include "DSMBricks/base/MortonCode.h"
+#include "DSMBricks/sorted/RecordReader.h"
+#include "DSMCore/transport/Messenger.h"
+
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+namespace bricks
+{
+
+/// Primitives in spatial order (the paper, section 4.3), cut into cells of at most a brickful. A cell is a part of the
+/// octree over all, halved along one axis at a time, so the codes of its primitives begin with the same bits. The cells are
+/// found by counting on all ranks together, so they are a function of the primitives, not of who has what. Where the
+/// paper's preprocessing rewrites a file, here only 16 bytes a primitive are sorted, and each rank its own.
+class SortedCells
+{
+public:
+  /// Collective. Throws dsm::Error on every rank alike.
+  SortedCells(const RecordReader& reader, const MortonCode& order, std::uint64_t largestCount,
+    int threads, dsm::Messenger& messenger);
+
+  /// Cells are numbered along the curve; none is empty.
+  std::uint64_t GetCount() const { return this->Cells.size(); }
+  /// Over all ranks.
+  std::uint64_t GetPrimitiveCount(std::uint64_t cell) const { return this->Cells[cell].Count; }
+  /// This rank's part of the cell: numbers of primitives of the reader, `second` past the last.
+  std::pair<std::uint64_t, std::uint64_t> GetRange(std::uint64_t cell) const
+  {
+    return { this->Cells[cell].Begin, this->Cells[cell].End };
+  }
+  std::uint64_t GetPrimitive(std::uint64_t index) const { return this->Keys[index].Primitive; }
+
+  /// Of this rank's primitives: those that no ray can hit; they are in no cell.
+  std::uint64_t GetDropped() const { return this->Dropped; }
+
+private:
+  struct Key
+  {
+    std::uint64_t Code;
+    std::uint64_t Primitive;
+  };
+  struct Cell
+  {
+    std::uint64_t Code; ///< of its first place
+    int Bits;           ///< how many of the code's bits all its places share
+    std::uint64_t Begin;
+    std::uint64_t End;
+    std::uint64_t Count; ///< over all ranks
+  };
+
+  void ReadKeys(const RecordReader& reader, const MortonCode& order, int threads);
+  void SortKeys(int threads);
+  void FindCells(std::uint64_t largestCount, dsm::Messenger& messenger);
+  /// Where the parts of a cell that share `bits` more bits begin, and the last one ends.
+  std::vector<std::uint64_t> Divide(const Cell& cell, int bits) const;
+
+  std::vector<Key> Keys;
+  std::vector<Cell> Cells;
+  std::uint64_t Dropped = 0;
+};
+
+} // namespace bricks
+
+#endif
