@@ -170,7 +170,7 @@ std::shared_ptr<bricks::TriangleMesh> BenchmarkMesh::PublishRuns(
   const bricks::TriangleReader reader(this->Triangles, mesh->Attributes, &mesh->Origin.x);
   bricks::TriangleBrickBuilder builder(
     mesh->Attributes, curve, bricks::TriangleBrickHeader::LargestTriangles);
-  const auto words = static_cast<std::size_t>(reader.GetLayout().Words);
+  const auto words = reader.GetRecordBytes() / sizeof(std::uint32_t);
   std::vector<std::uint32_t> records;
   std::vector<bricks::BoundingBox> boxes;
   std::vector<std::uint32_t> bytes;
@@ -192,8 +192,8 @@ std::shared_ptr<bricks::TriangleMesh> BenchmarkMesh::PublishRuns(
   };
   for (const std::uint64_t triangle : order)
   {
-    float corners[9];
-    if (!reader.ReadCorners(triangle, corners))
+    std::uint64_t code = 0;
+    if (!reader.FindCode(triangle, curve, code))
     {
       continue;
     }
