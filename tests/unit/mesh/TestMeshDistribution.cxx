@@ -65,8 +65,8 @@ Outcome Publish(const Mesh& mesh, const Setting& setting)
             const bool found = tracer.Intersect(instance, ray, hit);
             hits.insert(hits.end(),
               { found ? hit.T : -1.0, hit.Normal.x, hit.Normal.y, hit.Normal.z, hit.Value,
-                hit.Color.x, hit.TextureCoordinate.x, hit.Weights.x,
-                static_cast<double>(hit.Brick), static_cast<double>(hit.Triangle) });
+                hit.Color.x, hit.TextureCoordinate.x, hit.Weights.x, static_cast<double>(hit.Brick),
+                static_cast<double>(hit.Triangle) });
           }
         });
       const std::lock_guard<std::mutex> lock(guard);

@@ -80,8 +80,8 @@ struct MeshHit
     {
       this->CornerValues[corner] = hasValues ? attributes.Values[corner] : notANumber;
     }
-    this->Color =
-      has.Colors != bricks::Attachment::None ? attributes.GetColor(triangle.Weights) : glm::vec4(1.0f);
+    this->Color = has.Colors != bricks::Attachment::None ? attributes.GetColor(triangle.Weights)
+                                                         : glm::vec4(1.0f);
     this->TextureCoordinate =
       has.TextureCoordinates ? attributes.GetTextureCoordinate(triangle.Weights) : glm::dvec2(0.0);
   }

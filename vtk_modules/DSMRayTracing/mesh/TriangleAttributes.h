@@ -42,7 +42,8 @@ struct TriangleAttributes
       }
       if (header.Colors != bricks::Attachment::None)
       {
-        const std::uint32_t element = header.Colors == bricks::Attachment::Points ? vertex : triangle;
+        const std::uint32_t element =
+          header.Colors == bricks::Attachment::Points ? vertex : triangle;
         std::memcpy(this->Colors[corner], brick.GetColors() + 4 * element, 4);
       }
       if (header.TextureOffset != 0)

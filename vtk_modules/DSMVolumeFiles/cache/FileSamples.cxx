@@ -59,8 +59,8 @@ FileSamples::FileSamples(std::shared_ptr<const VolumeFile> file, std::size_t arr
 FileSamples::FileSamples(std::shared_ptr<const VolumeFile> file, std::size_t array, int step,
   ChunkCache& cache, bool scattered)
   : FileSamples(file, array, step,
-      { { bricks::Index3(0), file->GetGeometry().Points }, 0, file->GetArrays()[array].Type }, cache,
-      scattered)
+      { { bricks::Index3(0), file->GetGeometry().Points }, 0, file->GetArrays()[array].Type },
+      cache, scattered)
 {
 }
 
