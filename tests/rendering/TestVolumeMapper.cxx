@@ -358,6 +358,37 @@ TEST_F(VolumeMapper, LowersTheResolutionAtInteractiveRates)
   EXPECT_EQ(countTiles(), 13 * 13);
 }
 
+TEST_F(VolumeMapper, SharesTheLightOfOcclusionAtInteractiveRates)
+{
+  this->Renderer->AddVolume(this->Volume);
+  vtkNew<vtkPlane> middle; // lays the hollow open, of which a single ray sees all or nothing
+  middle->SetOrigin(this->Volume->GetCenter());
+  middle->SetNormal(this->Renderer->GetActiveCamera()->GetDirectionOfProjection());
+  this->Mapper->AddClippingPlane(middle);
+  this->Mapper->GetLightOptions()->SetAmbientOcclusionSamples(1);
+  const auto grab = [this](double rate)
+  {
+    this->Window->SetDesiredUpdateRate(rate);
+    this->Window->Render();
+    vtkNew<vtkUnsignedCharArray> pixels;
+    this->Window->GetPixelData(0, 0, Size - 1, Size - 1, 0, pixels);
+    return std::vector<unsigned char>(pixels->Begin(), pixels->End());
+  };
+  const std::vector<unsigned char> still = grab(0.001);
+  const std::vector<unsigned char> moving = grab(15.0);
+  const auto sumSteps = [](const std::vector<unsigned char>& pixels)
+  {
+    double sum = 0.0;
+    for (std::size_t value = 3; value < pixels.size(); ++value)
+    {
+      sum += std::abs(pixels[value] - pixels[value - 3]);
+    }
+    return sum;
+  };
+  EXPECT_LT(sumSteps(moving), 0.5 * sumSteps(still)) << "no black dots";
+  EXPECT_EQ(grab(0.001), still) << "a picture at rest is the same on any number of ranks";
+}
+
 TEST_F(VolumeMapper, TellsTheProgressAndCanBeAborted)
 {
   struct Watch

@@ -28,13 +28,15 @@ FrameAccumulation::Result FrameAccumulation::Trace(const Ranks& ranks, const Sce
     this->Restart();
   }
   this->Wanted = wanted;
+  // A single sample is traced anew at rest; a last one of several stays.
+  const bool isPreview = request.IsPreview && wanted == 1;
   Result result = Result::Nothing;
   while (this->SamplesUnderWay > 0 || this->Samples < wanted)
   {
     request.FirstSample = this->Samples;
     request.Samples =
       this->SamplesUnderWay > 0 ? this->SamplesUnderWay : this->CountNext(pace, lastSeconds);
-    request.IsPreview = request.FirstSample + request.Samples < wanted;
+    request.IsPreview = isPreview || request.FirstSample + request.Samples < wanted;
     result = this->TraceOnce(ranks, scene, request);
     if (result == Result::Aborted || pace.Samples > 0)
     {

@@ -40,9 +40,9 @@ public:
   };
 
   /// Collective. Traces the samples of the request that are missing to `wanted` for each pixel, or as
-  /// many as the pace allows. `lastSeconds`: that the last ones took, on every rank the same. Returns
-  /// what came of it, the same on every rank. Throws dsm::Error on every rank; then there is nothing to
-  /// add to.
+  /// many as the pace allows: as a preview where others are to follow, or, with one sample in all, where the request
+  /// says so. `lastSeconds`: that the last ones took, on every rank the same. Returns what came of it, the same on
+  /// every rank. Throws dsm::Error on every rank; then there is nothing to add to.
   Result Trace(const Ranks& ranks, const Scene& scene, FrameRequest request, int wanted,
     const Pace& pace, double lastSeconds);
 

@@ -225,6 +225,7 @@ void vtkDSMScene::Internals::Draw()
             this->Renderer, this->Image->Width, this->Image->Height, projection)
         : vtkDSMTranslation::ToRequest(this->Renderer, this->Display, projection);
       request.Scheduling = this->Settings.Scheduling;
+      request.IsPreview = this->IsInteractive(); // also where a pixel gets only one sample
     });
   if (scene.Objects.empty())
   {
