@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkPVDSMRefinement.h"
 
+#include "vtkDSMScene.h"
 #include "vtkPVDSMDelivery.h"
 #include "vtkPVDSMProgressGuard.h"
 #include "vtkPVDSMProxyFinder.h"
@@ -281,9 +282,16 @@ void vtkPVDSMRefinement::OnRenderEnds(vtkObject*, unsigned long, void* interacti
   }
 }
 
+/// Whether this client traces now. What is drawn afterwards is not to be left out: nothing may follow that draws it.
+bool vtkPVDSMRefinement::IsTracing() const
+{
+  auto* const view = vtkPVRenderView::SafeDownCast(this->View->GetClientSideObject());
+  return view && vtkDSMScene::ForRenderer(view->GetRenderer())->IsTracing();
+}
+
 void vtkPVDSMRefinement::OnAbortCheck(vtkObject*, unsigned long, void*)
 {
-  if (this->CanAbort && this->Input.HasPressed())
+  if (this->CanAbort && this->IsTracing() && this->Input.HasPressed())
   {
     this->IsAborted = true;
     this->Window->SetAbortRender(1);

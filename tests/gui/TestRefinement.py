@@ -161,6 +161,7 @@ class Watch:
         check(self.get_samples() == self.wanted, "nothing changes once all samples are there")
         if not servermanager.ActiveConnection.IsRemote():
             yield from self.click_while_tracing()
+            yield from self.click_after_tracing()
 
     def click_while_tracing(self):
         """Where the application itself traces, a press of the mouse ends the frame, however short it is."""
@@ -221,6 +222,32 @@ class Watch:
         while self.get_samples() < 3:
             yield
         check((grab(self.view) != shown).any(), "the next pictures are drawn and refined")
+
+    def click_after_tracing(self):
+        """What is drawn after the traced picture, such as the orientation axes, is drawn whatever the user presses."""
+        self.display.DSMAmbientOcclusionSamples = 0
+        self.display.DSMSamplesPerPixel = self.wanted = 1
+        self.view.OrientationAxesVisibility = 1
+        self.display.DSMIsoValues = [141.0]
+        simple.Render(self.view)
+        yield
+        window = self.view.GetRenderWindow()
+        place = [str(start + size // 2) for start, size in zip(window.GetPosition(), window.GetSize())]
+        clicks = []
+
+        def click(*_):
+            clicks.append(subprocess.call(["python3", "-c", CLICK, *place, "0.02"], stdout=subprocess.DEVNULL))
+
+        renderer = self.view.GetRenderer()
+        observer = renderer.AddObserver("EndEvent", click)
+        self.display.DSMIsoValues = [142.0]
+        simple.Render(self.view)
+        renderer.RemoveObserver(observer)
+        shown = grab(self.view)
+        yield
+        simple.Render(self.view)
+        different = (grab(self.view) != shown).any(axis=1).sum()
+        check(clicks == [0] and different == 0, f"a click while axes are drawn leaves out {different} pixels")
 
 
 def test():
