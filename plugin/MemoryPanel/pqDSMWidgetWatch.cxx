@@ -1,18 +1,23 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "pqDSMWidgetWatch.h"
 
+#include "pqDoubleRangeWidget.h"
 #include "pqInteractivePropertyWidget.h"
+#include "pqScaleByButton.h"
 #include "pqUndoStack.h"
+#include "vtkSMProperty.h"
 #include "vtkSMProxy.h"
 
 #include <QAbstractButton>
 #include <QCoreApplication>
 #include <QEvent>
+#include <QSlider>
 #include <QTabBar>
 
 namespace
 {
 
+constexpr int LeastSliderWidth = 60;                ///< pixels
 constexpr const char* PageTitle = "DSM Ray Tracer"; ///< dsm_settings.xml
 
 /// Has one undo step for each drag of a widget, which owns it.
@@ -65,6 +70,19 @@ void PlaceAgain(pqInteractivePropertyWidget* box)
   }
 }
 
+/// Of the isovalue's widget.
+void WidenSlider(const pqPropertyWidget* isovalue)
+{
+  auto* const range = isovalue->findChild<pqDoubleRangeWidget*>();
+  auto* const slider = range ? range->findChild<QSlider*>() : nullptr;
+  auto* const scale = isovalue->findChild<pqScaleByButton*>();
+  if (slider && scale)
+  {
+    slider->setMinimumWidth(LeastSliderWidth);
+    scale->hide();
+  }
+}
+
 void OpenOnGeneral(QTabBar* pages)
 {
   if (pages && pages->count() > 1 && pages->tabText(0) == PageTitle)
@@ -101,6 +119,12 @@ bool pqDSMWidgetWatch::eventFilter(QObject* watched, QEvent* event)
   if (watched->inherits("pqSettingsDialog"))
   {
     OpenOnGeneral(watched->findChild<QTabBar*>("tabBar"));
+  }
+  const auto* const ofProperty = qobject_cast<pqPropertyWidget*>(watched);
+  if (ofProperty && ofProperty->property() && ofProperty->proxy() &&
+    ofProperty->property() == ofProperty->proxy()->GetProperty("DSMIsoValue"))
+  {
+    WidenSlider(ofProperty);
   }
   auto* const widget = qobject_cast<pqInteractivePropertyWidget*>(watched);
   if (widget && widget->proxy() && widget->proxy()->GetProperty("DSMCroppingBox"))
