@@ -117,8 +117,13 @@ QString pqDSMMemoryPanel::GetWords() const
 
 bool pqDSMMemoryPanel::IsTab() const
 {
+  // Newer Qt does not count docks that are hidden among those that share a place.
   const auto* const window = qobject_cast<QMainWindow*>(this->parentWidget());
-  return window && !window->tabifiedDockWidgets(const_cast<pqDSMMemoryPanel*>(this)).isEmpty();
+  auto* const panel = const_cast<pqDSMMemoryPanel*>(this);
+  return window && this->Neighbor &&
+    (window->tabifiedDockWidgets(panel).contains(this->Neighbor) ||
+      (!this->Neighbor->isVisible() &&
+        window->dockWidgetArea(this->Neighbor) == window->dockWidgetArea(panel)));
 }
 
 void pqDSMMemoryPanel::BecomeTab()
@@ -142,6 +147,7 @@ void pqDSMMemoryPanel::BecomeTab()
   if (neighbor)
   {
     window->tabifyDockWidget(neighbor, this);
+    this->Neighbor = neighbor;
   }
 }
 

@@ -56,6 +56,7 @@ private:
   QTableView* Table;
   pqDSMRankTable* Ranks;
   QTimer Soon;
+  QPointer<QDockWidget> Neighbor; ///< that it became a tab beside
   QPointer<pqView> View;
   unsigned long Observer = 0;
 };
