@@ -29,4 +29,6 @@ doxygen_add_docs(api_documentation
   "${PROJECT_SOURCE_DIR}/vtk_modules/DSMRayTracing"
   "${PROJECT_SOURCE_DIR}/vtk_modules/DSMVolumeFiles"
   "${PROJECT_SOURCE_DIR}/vtk_modules/RenderingDSM"
+  "${PROJECT_BINARY_DIR}/vtk_modules/RenderingDSM/vtkDSMLightOptions.h"
+  "${PROJECT_BINARY_DIR}/vtk_modules/RenderingDSM/vtkDSMMemoryOptions.h"
   COMMENT "The reference, from the headers")

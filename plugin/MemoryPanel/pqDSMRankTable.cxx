@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "pqDSMRankTable.h"
 
+#include "vtkDSMCounters.h"
+
 #include <QFont>
 #include <QJsonObject>
 #include <QLocale>
@@ -11,7 +13,7 @@
 namespace
 {
 
-enum class Kind
+enum class Unit
 {
   Name,
   Count,
@@ -22,46 +24,32 @@ enum class Kind
 struct Column
 {
   const char* Title;
-  /// What is added up.
-  QStringList Keys;
-  Kind Is;
+  Unit Is;
   /// What ranks share on a host is each one's, but not several times the host's.
   bool HasTotal;
   const char* Description;
+  /// What is added up.
+  QStringList Keys;
 };
 
-const Column Columns[] = {
-  { "Rank", { "Rank" }, Kind::Name, false, "Number of the rank, in the order of MPI" },
-  { "Host", { "Host" }, Kind::Name, false, "The machine on which the rank runs" },
-  { "Bricks", { "BytesResident", "BytesCopied" }, Kind::Bytes, true,
-    "Memory of the bricks that the rank owns, and of its copies of others' when they are "
-    "replicated" },
-  { "Shared", { "BytesShared" }, Kind::Bytes, false,
-    "Bricks of other ranks of the host, which are read in place and take no memory" },
-  { "Limit", { "MemoryBudget" }, Kind::Bytes, true, "What the rank may take for all of this" },
-  { "Cache", { "BytesCached" }, Kind::Bytes, true,
-    "Memory of bricks that other ranks own, or a file has, and that were fetched" },
-  { "Cache Limit", { "CacheCapacity" }, Kind::Bytes, true, "What fetched bricks may take" },
-  { "Hits", { "Hits" }, Kind::Count, true,
-    "How often a ray found the brick that it needed in memory" },
-  { "Misses", { "Misses" }, Kind::Count, true,
-    "How often it was not there, and had to be fetched" },
-  { "Tiles", { "Tiles" }, Kind::Count, true, "Parts of the picture that the rank traced" },
-  { "Seconds", { "Seconds" }, Kind::Seconds, true, "Processor time of tracing, of all threads" },
-};
+#define DSM_COLUMN(title, unit, hasTotal, description, ...)                                        \
+  { title, unit, hasTotal, description, { __VA_ARGS__ } },
+const Column Columns[] = { { "Rank", Unit::Name, false, "Number of the rank in MPI.", { "Rank" } },
+  { "Host", Unit::Name, false, "Host on which the rank runs.", { "Host" } },
+  DSM_PANEL_COLUMNS(DSM_COLUMN) };
 
 constexpr int NumberOfColumns = static_cast<int>(std::size(Columns));
 
-QString ToText(const QVariant& value, Kind kind)
+QString ToText(const QVariant& value, Unit unit)
 {
   const QLocale locale;
-  switch (kind)
+  switch (unit)
   {
-    case Kind::Count:
+    case Unit::Count:
       return locale.toString(value.toLongLong());
-    case Kind::Bytes:
+    case Unit::Bytes:
       return locale.toString(value.toDouble() / (1024.0 * 1024.0), 'f', 1);
-    case Kind::Seconds:
+    case Unit::Seconds:
       return locale.toString(value.toDouble(), 'f', 3);
     default:
       return value.toString();
@@ -120,7 +108,7 @@ QVariant pqDSMRankTable::GetValue(int row, int number) const
     return sum;
   }
   const QJsonObject rank = this->Ranks.at(row).toObject();
-  if (column.Is == Kind::Name)
+  if (column.Is == Unit::Name)
   {
     return rank.value(column.Keys.front()).toVariant();
   }
@@ -150,7 +138,7 @@ QVariant pqDSMRankTable::data(const QModelIndex& index, int role) const
       return this->tr(column.Description);
     case Qt::TextAlignmentRole:
       return QVariant(
-        (column.Is == Kind::Name ? Qt::AlignLeft : Qt::AlignRight) | Qt::AlignVCenter);
+        (column.Is == Unit::Name ? Qt::AlignLeft : Qt::AlignRight) | Qt::AlignVCenter);
     case Qt::FontRole:
     {
       QFont font;
@@ -171,7 +159,7 @@ QVariant pqDSMRankTable::headerData(int section, Qt::Orientation orientation, in
   const Column& column = Columns[section];
   if (role == Qt::DisplayRole)
   {
-    return column.Is == Kind::Bytes ? this->tr("%1\n(MiB)").arg(this->tr(column.Title))
+    return column.Is == Unit::Bytes ? this->tr("%1\n(MiB)").arg(this->tr(column.Title))
                                     : this->tr(column.Title);
   }
   return role == Qt::ToolTipRole ? QVariant(this->tr(column.Description)) : QVariant();

@@ -22,12 +22,13 @@ pages = build / "doc" / "html"
 assert (pages / "index.html").is_file()
 exported = re.compile(r"^class VTKRENDERINGDSM_EXPORT (\w+)", re.MULTILINE)
 names = set()
-for header in (source / "vtk_modules" / "RenderingDSM").rglob("*.h"):
+made = (build / "vtk_modules" / "RenderingDSM").glob("vtkDSM*Options.h")
+for header in (*(source / "vtk_modules" / "RenderingDSM").rglob("*.h"), *made):
     text = header.read_text()
     for name in exported.findall(text):
         names.add(name)
         brief = re.search(r"@brief\s+(.+)", text).group(1)
         page = html.unescape((pages / f"class{name}.html").read_text())
         assert " ".join(brief.split()) in " ".join(re.sub("<[^>]+>", "", page).split()), f"{name}: {brief}"
-assert {"vtkDSMScene", "vtkDSMVolumeMapper", "vtkDSMPolyDataMapper"} <= names, names
+assert {"vtkDSMScene", "vtkDSMLightOptions", "vtkDSMMemoryOptions", "vtkDSMVolumeMapper", "vtkDSMPolyDataMapper"} <= names, names
 print(f"{len(names)} classes have their pages: {' '.join(sorted(names))}")

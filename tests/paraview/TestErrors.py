@@ -159,17 +159,17 @@ with Messages() as messages:
 
 # Numbers that make no sense are said, once for all displays, and again when they are set again later.
 for name, bad, kept, good in (
-    ("DSMCacheSize", 0, "it is 1, the least", 256),
-    ("DSMMemory", -5, "it is 0, the least", 0),
-    ("DSMThreads", 99999, "it is 1024, the most", 0),
-    ("DSMSilenceLimit", -1, "it is 0, the least", 60),
+    ("DSMCacheSize", 0, "using 1 (minimum)", 256),
+    ("DSMMemory", -5, "using 0 (minimum)", 0),
+    ("DSMThreads", 99999, "using 1024 (maximum)", 0),
+    ("DSMSilenceLimit", -1, "using 0 (minimum)", 60),
 ):
     for _ in range(2):
         with Messages() as messages:
             setattr(display, name, bad)
             display.UpdateVTKObjects()
-            said = [line for line in messages.text.splitlines() if "cannot be" in line]
-            check(len(said) == 1 and name in said[0] and f"be {bad}: {kept}" in said[0], f"{name} is {bad}: {said}")
+            said = [line for line in messages.text.splitlines() if "out of range" in line]
+            check(len(said) == 1 and name in said[0] and f"{bad} is out of range; {kept}" in said[0], f"{name} is {bad}: {said}")
             setattr(display, name, good)
             display.UpdateVTKObjects()
 
@@ -181,7 +181,7 @@ with Messages() as messages:
         show_traced(other, view)
         render(view)
         simple.Delete(other)
-    said = [line for line in messages.text.splitlines() if "cannot be" in line]
+    said = [line for line in messages.text.splitlines() if "out of range" in line]
     check(len(said) == 1, f"told once, with other displays beside: {said}")
     display.DSMCacheSize = 256
 

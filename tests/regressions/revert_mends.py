@@ -70,14 +70,14 @@ MENDS = (
          'this->Warning = array + " does not exist', 'this->Message = array + " does not exist',
          ["rendering_TestPolyDataMapper"], "rendering.PolyDataMapper"),
     # The plugin
-    Mend("a cache of 0 was told again and again", "plugin/Representations/vtkPVDSMMemoryOptions.cxx",
-         "before != told.end() && before->second.Options == options", "before != told.end()", ["DSMRayTracer"],
+    Mend("a cache of 0 was told again and again", "plugin/Representations/settings/vtkPVDSMSettingRange.h",
+         "before != warned.end() && before->second.Options == options", "before != warned.end()", ["DSMRayTracer"],
          "paraview.Scripts.3", "Errors"),
-    Mend("the first isosurface was of a vector", "plugin/Representations/vtkSMDSMIsosurfaceArrayDomain.cxx",
+    Mend("the first isosurface was of a vector", "plugin/Representations/domains/vtkSMDSMIsosurfaceArrayDomain.cxx",
          "array && array->GetNumberOfComponents() == 1", "array && array->GetNumberOfComponents() > 0", ["DSMRayTracer"],
          "paraview.Scripts.1", "Isovalue"),
-    Mend("reflectivity was a property of all of a view", "plugin/Representations/vtkPVDSMSharedOptions.cxx",
-         'lightProxy, { "DSMReflectivity" }', "lightProxy, std::vector<std::string>{}", ["DSMRayTracer"],
+    Mend("reflectivity was a property of all of a view", "vtk_modules/RenderingDSM/options/settings.cmake",
+         "dsm_setting(Reflectivity OWNER dataset", "dsm_setting(Reflectivity OWNER scene", ["DSMRayTracer"],
          "paraview.Scripts.1", "Options"),
 )
 

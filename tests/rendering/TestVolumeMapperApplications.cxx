@@ -182,19 +182,47 @@ TEST_F(VolumeMapperAndAnother, SharedOptionsCountAsTheyAreNow)
   EXPECT_TRUE(this->HasThreads(1)) << this->Scene->GetStatistics()->GetJson();
 }
 
-TEST_F(VolumeMapperAndAnother, OptionsOfItsOwnCountForAsLongAsItIsShown)
+TEST_F(VolumeMapperAndAnother, MostRecentMemoryOptionsApply)
 {
   vtkNew<vtkDSMMemoryOptions> options;
-  options->SetNumberOfThreads(3);
   this->OtherMapper->SetMemoryOptions(options);
   this->RenderBoth();
+  EXPECT_TRUE(this->HasThreads(2)) << "options that nobody has set change nothing";
+  options->SetNumberOfThreads(3);
   EXPECT_TRUE(this->HasThreads(3));
   this->OtherVolume->VisibilityOff();
-  EXPECT_TRUE(this->HasThreads(2));
-  this->OtherVolume->VisibilityOn();
-  EXPECT_TRUE(this->HasThreads(3));
-  this->OtherRenderer->RemoveViewProp(this->OtherVolume);
-  EXPECT_TRUE(this->HasThreads(2));
+  EXPECT_TRUE(this->HasThreads(3)) << "the ranks keep them";
+  this->Mapper->GetMemoryOptions()->SetNumberOfThreads(2);
+  EXPECT_TRUE(this->HasThreads(2)) << "also where the mapper's own have not changed";
+  options->SetNumberOfThreads(-1);
+  EXPECT_EQ(options->GetNumberOfThreads(), 0);
+}
+
+TEST_F(VolumeMapperAndAnother, SceneHasTheLightOfItsMappers)
+{
+  vtkNew<vtkDSMLightOptions> options;
+  options->ShadowsOn();
+  options->SetReflectivity(0.5);
+  this->OtherMapper->SetLightOptions(options);
+  this->Mapper->GetLightOptions()->SetSamplesPerPixel(2);
+  this->RenderBoth();
+  vtkDSMLightOptions* light = this->Scene->GetLightOptions();
+  vtkSmartPointer<vtkDSMScene> otherScene = vtkDSMScene::ForRenderer(this->OtherRenderer);
+  vtkDSMLightOptions* otherLight = otherScene->GetLightOptions();
+  EXPECT_EQ(light->GetSamplesPerPixel(), 2);
+  EXPECT_FALSE(light->GetShadows());
+  EXPECT_TRUE(otherLight->GetShadows());
+  EXPECT_EQ(otherLight->GetReflectivity(), 0.0) << "it is the mapper's own";
+  otherLight->ShadowsOff();
+  this->RenderBoth();
+  EXPECT_FALSE(otherLight->GetShadows()) << "the most recent value applies";
+  options->ShadowsOn();
+  EXPECT_TRUE(otherLight->GetShadows()) << "also where the mapper's own has not changed";
+  this->Renderer->AddVolume(this->OtherVolume);
+  this->RenderBoth();
+  options->SetMaxBounces(3);
+  EXPECT_EQ(light->GetMaxBounces(), 3) << "in all scenes that have drawn the mapper";
+  EXPECT_EQ(otherLight->GetMaxBounces(), 3);
 }
 
 /// While tiles are traced, another scene cannot be: its picture comes with the next render.

@@ -3,6 +3,7 @@
 
 #include "DSMCore/transport/Messenger.h"
 #include "DSMRayTracing/frame/Frame.h"
+#include "vtkDSMCounters.h"
 
 #include "vtkDoubleArray.h"
 #include "vtkNew.h"
@@ -55,95 +56,40 @@ double ToSeconds(std::uint64_t nanoseconds)
 
 } // namespace
 
+#define DSM_MEMBER(type, name, value) type name;
+#define DSM_VISIT(type, name, value) visit(Column<Row, type>(#name, &Row::name));
+#define DSM_TAKE(type, name, value) row.name = static_cast<type>(value);
+
 /// Plain, so that it travels between ranks.
 struct vtkDSMStatistics::RankRow
 {
+  using Row = RankRow;
   std::int64_t Rank;
   char Host[64];
-  std::int64_t Threads;
-  std::int64_t BytesResident;
-  std::int64_t BytesShared;
-  std::int64_t BytesCopied;
-  std::int64_t BytesOfTables;
-  std::int64_t BytesCached;
-  std::int64_t PeakBytesCached;
-  std::int64_t CacheCapacity;
-  std::int64_t MemoryBudget;
-  std::int64_t Publications;
-  std::int64_t BytesPublished;
-  std::int64_t Accesses;
-  std::int64_t Hits;
-  std::int64_t Misses;
-  std::int64_t Joins;
-  std::int64_t Evictions;
-  std::int64_t Prefetches;
-  std::int64_t PrefetchesUsed;
-  std::int64_t Requests;
-  std::int64_t BytesReceived;
-  std::int64_t BytesSent;
-  double WaitSeconds;
-  double IdleSeconds;
-  std::int64_t Tiles;
-  std::int64_t NewTiles;
-  double Seconds;
   double FrameSeconds;
+  DSM_RANK_COUNTERS(DSM_MEMBER)
 
   /// Calls `visit` with every column behind Rank, Host and Organization.
   template <class Visit>
   static void ForEachColumn(const Visit& visit)
   {
-    using Count = Column<RankRow, std::int64_t>;
-    using Time = Column<RankRow, double>;
-    visit(Count("Threads", &RankRow::Threads));
-    visit(Count("BytesResident", &RankRow::BytesResident));
-    visit(Count("BytesShared", &RankRow::BytesShared));
-    visit(Count("BytesCopied", &RankRow::BytesCopied));
-    visit(Count("BytesOfTables", &RankRow::BytesOfTables));
-    visit(Count("BytesCached", &RankRow::BytesCached));
-    visit(Count("PeakBytesCached", &RankRow::PeakBytesCached));
-    visit(Count("CacheCapacity", &RankRow::CacheCapacity));
-    visit(Count("MemoryBudget", &RankRow::MemoryBudget));
-    visit(Count("Publications", &RankRow::Publications));
-    visit(Count("BytesPublished", &RankRow::BytesPublished));
-    visit(Count("Accesses", &RankRow::Accesses));
-    visit(Count("Hits", &RankRow::Hits));
-    visit(Count("Misses", &RankRow::Misses));
-    visit(Count("Joins", &RankRow::Joins));
-    visit(Count("Evictions", &RankRow::Evictions));
-    visit(Count("Prefetches", &RankRow::Prefetches));
-    visit(Count("PrefetchesUsed", &RankRow::PrefetchesUsed));
-    visit(Count("Requests", &RankRow::Requests));
-    visit(Count("BytesReceived", &RankRow::BytesReceived));
-    visit(Count("BytesSent", &RankRow::BytesSent));
-    visit(Time("WaitSeconds", &RankRow::WaitSeconds));
-    visit(Time("IdleSeconds", &RankRow::IdleSeconds));
-    visit(Count("Tiles", &RankRow::Tiles));
-    visit(Count("NewTiles", &RankRow::NewTiles));
-    visit(Time("Seconds", &RankRow::Seconds));
+    DSM_RANK_COUNTERS(DSM_VISIT)
   }
 };
 
 struct vtkDSMStatistics::WorkerRow
 {
+  using Row = WorkerRow;
   std::int64_t Rank;
   std::int64_t Worker;
-  std::int64_t Accesses;
-  std::int64_t Hits;
-  std::int64_t Misses;
-  std::int64_t Joins;
-  double WaitSeconds;
+  DSM_WORKER_COUNTERS(DSM_MEMBER)
 
   /// Calls `visit` with every column behind Rank.
   template <class Visit>
   static void ForEachColumn(const Visit& visit)
   {
-    using Count = Column<WorkerRow, std::int64_t>;
-    visit(Count("Worker", &WorkerRow::Worker));
-    visit(Count("Accesses", &WorkerRow::Accesses));
-    visit(Count("Hits", &WorkerRow::Hits));
-    visit(Count("Misses", &WorkerRow::Misses));
-    visit(Count("Joins", &WorkerRow::Joins));
-    visit(Column<WorkerRow, double>("WaitSeconds", &WorkerRow::WaitSeconds));
+    visit(Column<Row, std::int64_t>("Worker", &Row::Worker));
+    DSM_WORKER_COUNTERS(DSM_VISIT)
   }
 };
 
@@ -158,52 +104,30 @@ void vtkDSMStatistics::Gather(
   this->Samples = samples;
   this->Wanted = wanted;
   this->CoarserLevel = coarser;
-  RankRow mine{};
-  mine.Rank = messenger.GetRank();
-  vtksys::SystemInformation system;
-  const char* host = system.GetHostname();
-  std::strncpy(mine.Host, host ? host : "", sizeof(mine.Host) - 1);
   const dsm::StoreCounters& counters = frame.Counters;
-  mine.Threads = static_cast<std::int64_t>(frame.WorkerCounters.size());
-  mine.BytesResident = static_cast<std::int64_t>(counters.ResidentBytes);
-  mine.BytesShared = static_cast<std::int64_t>(counters.SharedBytes);
-  mine.BytesCopied = static_cast<std::int64_t>(counters.ReplicaBytes);
-  mine.BytesOfTables = static_cast<std::int64_t>(counters.TableBytes);
-  mine.BytesCached = static_cast<std::int64_t>(counters.CachedBytes);
-  mine.PeakBytesCached = static_cast<std::int64_t>(counters.PeakCachedBytes);
-  mine.CacheCapacity = static_cast<std::int64_t>(counters.CacheCapacity);
-  mine.MemoryBudget = static_cast<std::int64_t>(counters.MemoryBudget);
-  mine.Publications = static_cast<std::int64_t>(counters.Publications);
-  mine.BytesPublished = static_cast<std::int64_t>(counters.BytesPublished);
-  mine.Accesses = static_cast<std::int64_t>(counters.Workers.Accesses);
-  mine.Hits = static_cast<std::int64_t>(counters.Workers.Hits);
-  mine.Misses = static_cast<std::int64_t>(counters.Workers.Misses);
-  mine.Joins = static_cast<std::int64_t>(counters.Workers.Joins);
-  mine.Evictions = static_cast<std::int64_t>(counters.Evictions);
-  mine.Prefetches = static_cast<std::int64_t>(counters.Prefetches);
-  mine.PrefetchesUsed = static_cast<std::int64_t>(counters.PrefetchesUsed);
-  mine.Requests = static_cast<std::int64_t>(counters.Requests);
-  mine.BytesReceived = static_cast<std::int64_t>(counters.BytesReceived);
-  mine.BytesSent = static_cast<std::int64_t>(counters.BytesSent);
-  mine.WaitSeconds = ToSeconds(counters.Workers.WaitNanoseconds);
-  mine.IdleSeconds = ToSeconds(frame.IdleNanoseconds);
-  mine.Tiles = static_cast<std::int64_t>(frame.Tiles.size());
+  std::int64_t newTiles = 0;
+  double seconds = 0.0;
   for (const rt::Tile& tile : frame.Tiles)
   {
-    mine.NewTiles += tile.IsNew ? 1 : 0;
-    mine.Seconds += tile.Seconds;
+    newTiles += tile.IsNew ? 1 : 0;
+    seconds += tile.Seconds;
   }
-  mine.FrameSeconds = frame.Seconds;
-
-  std::vector<std::byte> bytes = dsm::Encode(mine);
+  RankRow row{};
+  row.Rank = messenger.GetRank();
+  vtksys::SystemInformation system;
+  const char* host = system.GetHostname();
+  std::strncpy(row.Host, host ? host : "", sizeof(row.Host) - 1);
+  row.FrameSeconds = frame.Seconds;
+  DSM_RANK_COUNTERS(DSM_TAKE)
+  std::vector<std::byte> bytes = dsm::Encode(row);
   for (std::size_t index = 0; index < frame.WorkerCounters.size(); ++index)
   {
     const dsm::WorkerCounters& worker = frame.WorkerCounters[index];
-    dsm::AttachTail(bytes,
-      WorkerRow{ mine.Rank, static_cast<std::int64_t>(index),
-        static_cast<std::int64_t>(worker.Accesses), static_cast<std::int64_t>(worker.Hits),
-        static_cast<std::int64_t>(worker.Misses), static_cast<std::int64_t>(worker.Joins),
-        ToSeconds(worker.WaitNanoseconds) });
+    WorkerRow row{};
+    row.Rank = messenger.GetRank();
+    row.Worker = static_cast<std::int64_t>(index);
+    DSM_WORKER_COUNTERS(DSM_TAKE)
+    dsm::AttachTail(bytes, row);
   }
   this->Rows.clear();
   this->Workers.clear();
@@ -287,16 +211,7 @@ std::string vtkDSMStatistics::GetSummary() const
   double longest = 0.0;
   for (const RankRow& row : this->Rows)
   {
-    sum.Threads += row.Threads;
-    sum.BytesResident += row.BytesResident;
-    sum.BytesShared += row.BytesShared;
-    sum.BytesCopied += row.BytesCopied;
-    sum.BytesCached += row.BytesCached;
-    sum.Accesses += row.Accesses;
-    sum.Misses += row.Misses;
-    sum.BytesReceived += row.BytesReceived;
-    sum.WaitSeconds += row.WaitSeconds;
-    sum.Seconds += row.Seconds;
+    RankRow::ForEachColumn([&](const auto& column) { sum.*column.second += row.*column.second; });
     longest =
       std::max(longest, row.Seconds / static_cast<double>(std::max<std::int64_t>(row.Threads, 1)));
   }

@@ -65,23 +65,14 @@ public:
   vtkGetMacro(Explanation, std::string);
 
   /**
-   * One row for each rank. Columns: Rank, Host, Organization (as the frame found it), Threads,
-   * BytesResident (bricks that it owns), BytesShared (read in place, on its host), BytesCopied
-   * (replicated), BytesOfTables (which find bricks), BytesCached, PeakBytesCached, CacheCapacity,
-   * MemoryBudget, Publications (how often an array or a surface was cut into bricks since the ranks
-   * came together), BytesPublished (that it put into bricks for it, since then), Accesses, Hits, Misses, Joins (misses that found the brick requested already),
-   * Evictions, Prefetches (bricks asked for before a tile came to them), PrefetchesUsed (those of
-   * them that were needed in the frame), Requests (messages that asked for bricks), BytesReceived,
-   * BytesSent, WaitSeconds (of tiles, for bricks), IdleSeconds (of threads that found no other tile
-   * to trace meanwhile), Tiles, NewTiles (those that another rank traced in the last frame),
-   * Seconds (of tracing, processor time). Times and what workers count are summed over the rank's
+   * One row for each rank. Columns: Rank, Host, Organization (as the frame found it), and the counters of
+   * frame/counters.cmake, which docs/settings.md lists. Times and what workers count are summed over the rank's
    * threads.
    */
   void GetTable(vtkTable* table) const;
 
   /**
-   * One row for each tracing thread of each rank. Columns: Rank, Worker, Accesses, Hits, Misses, Joins,
-   * WaitSeconds.
+   * One row for each tracing thread of each rank. Columns: Rank, Worker, and those counters that are of threads.
    */
   void GetWorkerTable(vtkTable* table) const;
 

@@ -88,7 +88,8 @@ public:
 
   ///@{
   /**
-   * Shadows, ambient occlusion, mirrors and samples; never null. Null makes new ones.
+   * Shadows, ambient occlusion, mirrors and samples; never null. Null makes new ones. All but the reflectivity are
+   * forwarded to the scenes that draw the mapper (vtkDSMScene::GetLightOptions).
    */
   void SetLightOptions(vtkDSMLightOptions* options);
   vtkDSMLightOptions* GetLightOptions() const;
@@ -96,7 +97,8 @@ public:
 
   ///@{
   /**
-   * Memory organisation, sizes and threads; never null. Null makes new ones.
+   * Memory organization, sizes and threads; never null. Null makes new ones. They are forwarded to the ranks that draw
+   * the mapper.
    */
   void SetMemoryOptions(vtkDSMMemoryOptions* options);
   vtkDSMMemoryOptions* GetMemoryOptions() const;

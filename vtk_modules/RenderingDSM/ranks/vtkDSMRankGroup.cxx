@@ -17,7 +17,6 @@
 #endif
 
 #include <algorithm>
-#include <cmath>
 #include <cstdint>
 #include <cstring>
 #include <map>
@@ -127,23 +126,24 @@ void vtkDSMRankGroup::Leave(Publisher* publisher)
     this->Publishers.end());
 }
 
-vtkDSMMemorySettings vtkDSMRankGroup::Configure()
+void vtkDSMRankGroup::Configure()
 {
-  const int coresPerRank = this->Messenger.GetCoresPerRank();
-  vtkDSMMemorySettings merged;
-  for (const Publisher* publisher : this->Publishers)
-  {
-    merged.Merge(publisher->GetMemorySettings());
-  }
+  using Options = vtkDSMMemoryOptions;
+  static_assert(static_cast<int>(dsm::MemoryOrganization::Automatic) == Options::Automatic &&
+      static_cast<int>(dsm::MemoryOrganization::Replicated) == Options::Replicated &&
+      static_cast<int>(dsm::MemoryOrganization::ObjectBased) == Options::ObjectBased &&
+      static_cast<int>(dsm::MemoryOrganization::PageBased) == Options::PageBased,
+    "the options number the organizations as the store does");
   const dsm::BlockStore::Settings old = this->Store.GetSettings();
   dsm::BlockStore::Settings next = old;
-  next.Organization = merged.Organization;
-  next.HostSharing = merged.HostSharing;
-  next.MemoryBytes = merged.MemoryBytes;
-  next.SourceCacheBytes = RestrictRoomForChunks(merged.MemoryBytes);
-  next.ScratchDirectory = merged.ScratchDirectory;
-  next.CacheBytes = static_cast<std::size_t>(merged.CacheBytes);
-  next.Workers = merged.Threads > 0 ? merged.Threads : coresPerRank;
+  next.Organization = static_cast<dsm::MemoryOrganization>(this->Options->GetMemoryOrganization());
+  next.HostSharing = this->Options->GetHostSharing();
+  next.MemoryBytes = static_cast<std::uint64_t>(this->Options->GetMemory()) << 20;
+  next.SourceCacheBytes = RestrictRoomForChunks(next.MemoryBytes);
+  next.ScratchDirectory = this->Options->GetScratchDirectory();
+  next.CacheBytes = static_cast<std::size_t>(this->Options->GetCacheSize()) << 20;
+  const int threads = this->Options->GetNumberOfThreads();
+  next.Workers = threads > 0 ? threads : this->Messenger.GetCoresPerRank();
   const auto isPaged = [](dsm::MemoryOrganization organization)
   { return organization == dsm::MemoryOrganization::PageBased; };
   if (next.HostSharing != old.HostSharing ||
@@ -159,9 +159,8 @@ vtkDSMMemorySettings vtkDSMRankGroup::Configure()
   {
     ++this->SettingsVersion;
   }
-  this->Messenger.SetSilenceLimit(std::isinf(merged.SilenceLimit) ? 0.0 : merged.SilenceLimit);
+  this->Messenger.SetSilenceLimit(this->Options->GetSilenceLimit());
   this->Store.SetSettings(next);
-  return merged;
 }
 
 std::uint64_t vtkDSMRankGroup::GetMostForChunks(std::uint64_t memoryBytes) const

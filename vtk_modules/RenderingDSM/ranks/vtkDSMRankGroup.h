@@ -6,7 +6,9 @@
 #include "DSMCore/store/BlockStore.h"
 #include "DSMCore/transport/Messenger.h"
 #include "DSMRayTracing/frame/FrameRenderer.h"
-#include "vtkDSMMemorySettings.h"
+#include "vtkDSMMemoryOptions.h"
+
+#include "vtkNew.h"
 
 #include <cstdint>
 #include <memory>
@@ -33,9 +35,6 @@ public:
     virtual std::uint64_t GetOldestHidden() const = 0;
     /// Lets go of the blocks of that, likewise.
     virtual void GiveUpOldestHidden() = 0;
-    /// What is asked for by all that it showed in its last frame and still shows; what asks for nothing, without
-    /// any. As it is now: it may have changed since that frame.
-    virtual vtkDSMMemorySettings GetMemorySettings() const = 0;
   };
 
   /// The group of a controller, made at the first call and kept until its last user lets go. Without
@@ -57,10 +56,12 @@ public:
   void Join(Publisher* publisher);
   void Leave(Publisher* publisher);
 
-  /// What all publishers together ask for now, which is returned, has its effect with the next publication or
-  /// frame. All of them give up their blocks when these cannot pass to the new organisation as they are. Between
-  /// frames; local, in the same order on every rank. Throws dsm::Error.
-  vtkDSMMemorySettings Configure();
+  /// How the ranks keep their bricks, for all of their publishers.
+  vtkDSMMemoryOptions* GetOptions() const { return this->Options; }
+  /// The options as they are now have their effect with the next publication or frame. All publishers give up their
+  /// blocks when these cannot pass to the new organization as they are. Between frames; local, in the same order on
+  /// every rank. Throws dsm::Error.
+  void Configure();
 
   /// Collective. Calls `work`, which throws dsm::Error on all ranks where memory is short, and again for
   /// as long as anything hidden can make room: what was shown the longest ago goes first. Not for
@@ -143,6 +144,7 @@ private:
 
   std::uint64_t LeastForChunks = 0; ///< see WidenRoomForChunks
 
+  vtkNew<vtkDSMMemoryOptions> Options;
   std::vector<Publisher*> Publishers; ///< in the order in which they joined
   unsigned SettingsVersion = 0;
   unsigned ScratchFailures = 0;

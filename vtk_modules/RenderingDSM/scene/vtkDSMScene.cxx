@@ -200,6 +200,11 @@ vtkMultiProcessController* vtkDSMScene::GetController() const
                                 : vtkMultiProcessController::GetGlobalController();
 }
 
+vtkDSMLightOptions* vtkDSMScene::GetLightOptions() const
+{
+  return this->Self->Light;
+}
+
 vtkRenderer* vtkDSMScene::GetRenderer() const
 {
   return this->Self->Renderer;

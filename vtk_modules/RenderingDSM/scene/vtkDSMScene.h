@@ -34,6 +34,7 @@
 
 class vtkCamera;
 class vtkDSMFrameProp;
+class vtkDSMLightOptions;
 class vtkDSMStatistics;
 class vtkImageData;
 class vtkMultiProcessController;
@@ -71,6 +72,11 @@ public:
   ///@}
 
   vtkRenderer* GetRenderer() const;
+
+  /**
+   * The light of everything that the scene shows; never null. Set the same values on every rank.
+   */
+  vtkDSMLightOptions* GetLightOptions() const;
 
   /**
    * How the frame reaches the picture. By default each rank draws the tiles that it traced, colour
@@ -125,7 +131,7 @@ public:
   ///@{
   /**
    * Samples of each pixel that one render adds to the picture as long as camera, data and look stay
-   * as they are, until it has as many as the objects' vtkDSMLightOptions ask for; 0 (the default):
+   * as they are, until it has as many as GetLightOptions() asks for; 0 (the default):
    * all at once. An interactive application takes 1, and renders again while IsRefined() is false.
    * While the window wants interactive rates (its DesiredUpdateRate is 1 or more), it is 1.
    * Same value on every rank.
@@ -155,8 +161,8 @@ public:
 
   ///@{
   /**
-   * Whether every frame is of the finest data, also while the window wants interactive rates and the objects'
-   * vtkDSMMemoryOptions let coarser ones stand in: for pictures that are kept. Off by default. Same value on every
+   * Whether every frame is of the finest data, also while the window wants interactive rates and
+   * vtkDSMMemoryOptions lets coarser ones stand in: for pictures that are kept. Off by default. Same value on every
    * rank.
    */
   void SetAlwaysFinest(bool finest);

@@ -101,11 +101,6 @@ void vtkDSMScene::Internals::GiveUpOldestHidden()
   this->Members.FindOldestHidden()->GiveUpBlocks();
 }
 
-vtkDSMMemorySettings vtkDSMScene::Internals::GetMemorySettings() const
-{
-  return this->Renderer ? this->Members.GetMemorySettings(this->Renderer) : vtkDSMMemorySettings();
-}
-
 void vtkDSMScene::Internals::FindGroup(vtkMultiProcessController* controller)
 {
   const auto group = vtkDSMRankGroup::Get(controller);
@@ -148,6 +143,7 @@ std::string vtkDSMScene::Internals::MakeFrame(const dsm::FirstFailure& earlier)
 void vtkDSMScene::Internals::Update()
 {
   dsm::Messenger& messenger = this->Group->GetMessenger();
+  vtkDSMMemoryOptions* const options = this->Group->GetOptions();
   const auto& members = this->Members.GetShown();
   // To publish in step, the ranks must agree on the settings of the memory; threads may differ.
   using Digest = std::array<std::uint64_t, 5>;
@@ -155,10 +151,11 @@ void vtkDSMScene::Internals::Update()
   messenger.RunTogether("Updating the data",
     [&]
     {
-      this->Settings = this->GetMemorySettings();
-      const vtkDSMMemorySettings settings = this->Group->Configure();
+      this->Members.ForwardOptions(this->Light, options);
+      this->Group->Configure();
+      const dsm::BlockStore::Settings& settings = this->Group->GetStore().GetSettings();
       mine = dsm::Encode(Digest{ static_cast<std::uint64_t>(settings.Organization),
-        (settings.HostSharing ? 1u : 0u) + (this->Settings.CoarserWhileMoving ? 2u : 0u),
+        (settings.HostSharing ? 1u : 0u) + (options->GetCoarserDataWhileMoving() ? 2u : 0u),
         settings.MemoryBytes, settings.CacheBytes, settings.ScratchDirectory.empty() ? 0u : 1u });
       for (const auto& member : members)
       {
@@ -200,7 +197,7 @@ void vtkDSMScene::Internals::Update()
       freed.insert(outdated.begin(), outdated.end());
     }
     member->Update(this->Group, newData);
-    members[index].State->TakeCoarser(this->Group, this->Settings.CoarserWhileMoving);
+    members[index].State->TakeCoarser(this->Group, options->GetCoarserDataWhileMoving());
   }
 }
 
@@ -218,13 +215,18 @@ void vtkDSMScene::Internals::Draw()
       this->Members.AddTo(scene, 0);
       this->KeepProp(scene);
       scene.Lights = vtkDSMTranslation::ToLights(this->Renderer);
-      scene.Transport = this->Members.GetTransport(this->IsInteractive());
-      scene.View = this->Members.GetDebugView();
+      double bounds[6];
+      this->Members.GetBounds(bounds);
+      scene.Transport = vtkDSMTranslation::ToTransport(this->Light, bounds, this->IsInteractive());
+      scene.View = vtkDSMTranslation::ToDebugView(this->Light);
       request = this->Image
         ? vtkDSMTranslation::ToRequest(
             this->Renderer, this->Image->Width, this->Image->Height, projection)
         : vtkDSMTranslation::ToRequest(this->Renderer, this->Display, projection);
-      request.Scheduling = this->Settings.Scheduling;
+      request.Scheduling =
+        this->Group->GetOptions()->GetScheduler() == vtkDSMMemoryOptions::CentralQueue
+        ? rt::TileScheduling::CentralQueue
+        : rt::TileScheduling::WorkStealing;
       request.IsPreview = this->IsInteractive(); // also where a pixel gets only one sample
     });
   if (scene.Objects.empty())
@@ -288,7 +290,7 @@ rt::FrameAccumulation::Result vtkDSMScene::Internals::TraceScene(
       });
     result = this->Accumulation.Trace(
       { messenger, this->Group->GetFrameRenderer(), this->Group->GetStore() }, scene, request,
-      this->Members.GetSamplesPerPixel(), this->GetPace(), this->Statistics->GetFrameSeconds());
+      this->Light->GetSamplesPerPixel(), this->GetPace(), this->Statistics->GetFrameSeconds());
     if (result == Result::Traced)
     {
       this->Statistics->Gather(messenger, this->Accumulation.GetFrame(),
@@ -315,7 +317,7 @@ void vtkDSMScene::Internals::TellOfTracing(double part) const
 /// Collective: levels below the finest that may stand in.
 int vtkDSMScene::Internals::CountCoarser() const
 {
-  if (!this->Settings.CoarserWhileMoving)
+  if (!this->Group->GetOptions()->GetCoarserDataWhileMoving())
   {
     return 0;
   }
@@ -374,8 +376,8 @@ void vtkDSMScene::Internals::DrawPicture(rt::Picture picture, const rt::FrameReq
 /// Returns whether there is anything to write, on any rank.
 bool vtkDSMScene::Internals::WriteNotes(rt::DebugView view, rt::Picture& picture) const
 {
-  const bool showsStatistics = this->Members.ShowStatistics();
-  const bool showsLegend = view != rt::DebugView::Off && this->Members.ShowLegend();
+  const bool showsStatistics = this->Light->GetShowStatistics();
+  const bool showsLegend = view != rt::DebugView::Off && this->Light->GetShowLegend();
   if (!showsStatistics && !showsLegend)
   {
     return false;
@@ -452,7 +454,7 @@ void vtkDSMScene::Internals::AgreeOnView(rt::Scene& scene, rt::FrameRequest& req
   View view;
   std::memcpy(&view, first.data(), sizeof(view));
   scene.Transport.Background = view.Background.Lower;
-  const auto strength = static_cast<float>(this->Members.GetEnvironmentLight());
+  const auto strength = static_cast<float>(this->Light->GetEnvironmentLight());
   scene.Transport.Surroundings = view.Background;
   scene.Transport.Surroundings.Lower *= strength;
   scene.Transport.Surroundings.Upper *= strength;
@@ -502,7 +504,7 @@ rt::FrameAccumulation::Pace vtkDSMScene::Internals::GetPace() const
 /// one that covers a pixel in part, must have been drawn before it.
 void vtkDSMScene::Internals::KeepProp(const rt::Scene& scene)
 {
-  const bool showsOthers = !scene.IsOpaque() || this->Members.GetSamplesPerPixel() > 1;
+  const bool showsOthers = !scene.IsOpaque() || this->Light->GetSamplesPerPixel() > 1;
   const bool mustBeLast =
     showsOthers && this->Renderer->GetViewProps()->GetLastProp() != this->Prop;
   if (mustBeLast || !this->Renderer->HasViewProp(this->Prop))

@@ -8,6 +8,7 @@
 #include "DSMVolumeFiles/cache/ReadAhead.h"
 #include "vtkDSMFrameDelivery.h"
 #include "vtkDSMFrameProp.h"
+#include "vtkDSMLightOptions.h"
 #include "vtkDSMRankGroup.h"
 #include "vtkDSMScene.h"
 #include "vtkDSMSceneMembers.h"
@@ -34,7 +35,6 @@ public:
   void GiveUpBlocks() override;
   std::uint64_t GetOldestHidden() const override;
   void GiveUpOldestHidden() override;
-  vtkDSMMemorySettings GetMemorySettings() const override;
 
   /// The ranks that trace together; joins them. Throws dsm::Error on all ranks.
   void FindGroup(vtkMultiProcessController* controller);
@@ -72,6 +72,7 @@ public:
   double Bounds[6] = { 0.0, 0.0, 0.0, 0.0, 0.0, 0.0 }; ///< of what the prop shows
   vtkNew<vtkDSMStatistics> Statistics;
   std::shared_ptr<vtkDSMRankGroup> Group;
+  vtkNew<vtkDSMLightOptions> Light;
   vtkDSMSceneMembers Members;
   rt::FrameAccumulation Accumulation;
   rt::MovingDetail Detail;
@@ -89,8 +90,7 @@ public:
   vtkDSMTranslation::TileDisplay Display;
   /// Nothing is read ahead until the renderer has drawn the frame.
   std::optional<vol::ReadAhead::Pause> Busy;
-  vtkDSMMemorySettings Settings; ///< that the frame's objects ask for
-  unsigned SettledVersion = 0;   ///< of the group's settings
+  unsigned SettledVersion = 0; ///< of the group's settings
 
 private:
   void Update();

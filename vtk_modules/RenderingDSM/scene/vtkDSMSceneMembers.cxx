@@ -3,7 +3,7 @@
 
 #include "DSMCore/memory/FreedMemory.h"
 #include "vtkDSMLightOptions.h"
-#include "vtkDSMTranslation.h"
+#include "vtkDSMMemoryOptions.h"
 
 #include "vtkAbstractVolumeMapper.h"
 #include "vtkActor.h"
@@ -23,9 +23,6 @@
 
 namespace
 {
-
-/// Of the diagonal of what is shown: as far as ambient occlusion looks when nothing is said.
-constexpr double AmbientOcclusionPart = 0.2;
 
 /// One of the renderer's props, or a part of one that is an assembly.
 struct Part
@@ -211,105 +208,12 @@ bool vtkDSMSceneMembers::AreBesideOthers(vtkRenderer* renderer) const
   return found;
 }
 
-rt::LightTransport vtkDSMSceneMembers::GetTransport(bool isPassing) const
+void vtkDSMSceneMembers::ForwardOptions(
+  vtkDSMLightOptions* light, vtkDSMMemoryOptions* memory) const
 {
-  rt::LightTransport transport;
-  bool hasDepth = false;
-  transport.MaxBounces = 0;
   for (const Member& member : this->Shown)
   {
-    vtkDSMLightOptions* options = member.State->GetLightOptions();
-    transport.Shadows = transport.Shadows || options->GetShadows();
-    transport.LightRadius = std::max(transport.LightRadius, options->GetLightRadius());
-    transport.AmbientOcclusionSamples =
-      std::max(transport.AmbientOcclusionSamples, options->GetAmbientOcclusionSamples());
-    transport.AmbientOcclusionDistance =
-      std::max(transport.AmbientOcclusionDistance, options->GetAmbientOcclusionDistance());
-    transport.MaxBounces = std::max(transport.MaxBounces, options->GetMaxBounces());
-    hasDepth = hasDepth || options->GetLook() == vtkDSMLightOptions::DepthLook;
+    member.State->GetLightOptions()->ForwardTo(light);
+    member.State->GetMemoryOptions()->ForwardTo(memory);
   }
-  transport.FaintShadows = hasDepth && !isPassing && !transport.Shadows &&
-    transport.AmbientOcclusionSamples == 0 && this->GetEnvironmentLight() == 0.0;
-  if (transport.AmbientOcclusionSamples > 0 && transport.AmbientOcclusionDistance == 0.0)
-  {
-    double bounds[6];
-    this->GetBounds(bounds);
-    const vtkBoundingBox box(bounds);
-    // Without anything to show there is no diagonal.
-    transport.AmbientOcclusionDistance =
-      box.IsValid() ? AmbientOcclusionPart * box.GetDiagonalLength() : 0.0;
-  }
-  return transport;
-}
-
-double vtkDSMSceneMembers::GetEnvironmentLight() const
-{
-  double strength = 0.0;
-  for (const Member& member : this->Shown)
-  {
-    strength = std::max(strength, member.State->GetLightOptions()->GetEnvironmentLight());
-  }
-  return strength;
-}
-
-vtkDSMMemorySettings vtkDSMSceneMembers::GetMemorySettings(vtkRenderer* renderer) const
-{
-  vtkDSMMemorySettings settings;
-  ForEachPart(renderer,
-    [&](const Part& part)
-    {
-      const vtkAlgorithm* mapper = part.IsVisible() ? GetMapper(part.Prop) : nullptr;
-      const auto known = std::find_if(this->States.begin(), this->States.end(),
-        [=](const auto& state) { return mapper && state->GetAlgorithm() == mapper; });
-      if (known != this->States.end())
-      {
-        settings.Merge(vtkDSMTranslation::ToMemorySettings((*known)->GetMemoryOptions()));
-      }
-    });
-  return settings;
-}
-
-int vtkDSMSceneMembers::GetSamplesPerPixel() const
-{
-  int samples = 1;
-  for (const Member& member : this->Shown)
-  {
-    samples = std::max(samples, member.State->GetLightOptions()->GetSamplesPerPixel());
-  }
-  return samples;
-}
-
-bool vtkDSMSceneMembers::ShowStatistics() const
-{
-  return std::any_of(this->Shown.begin(), this->Shown.end(),
-    [](const Member& member) { return member.State->GetLightOptions()->GetShowStatistics(); });
-}
-
-rt::DebugView vtkDSMSceneMembers::GetDebugView() const
-{
-  using Options = vtkDSMLightOptions;
-  static_assert(static_cast<int>(rt::DebugView::Off) == Options::Off &&
-      static_cast<int>(rt::DebugView::Owner) == Options::Owner &&
-      static_cast<int>(rt::DebugView::TracingRank) == Options::TracingRank &&
-      static_cast<int>(rt::DebugView::Brick) == Options::Brick &&
-      static_cast<int>(rt::DebugView::TileTime) == Options::TileTime &&
-      static_cast<int>(rt::DebugView::Normal) == Options::Normal &&
-      static_cast<int>(rt::DebugView::Depth) == Options::Depth &&
-      static_cast<int>(rt::DebugView::NewTiles) == Options::NewTiles &&
-      static_cast<int>(rt::DebugView::Misses) == Options::Misses,
-    "the options number the views as the tracer does");
-  for (const Member& member : this->Shown)
-  {
-    if (const int view = member.State->GetLightOptions()->GetDebugView())
-    {
-      return static_cast<rt::DebugView>(view);
-    }
-  }
-  return rt::DebugView::Off;
-}
-
-bool vtkDSMSceneMembers::ShowLegend() const
-{
-  return std::all_of(this->Shown.begin(), this->Shown.end(),
-    [](const Member& member) { return member.State->GetLightOptions()->GetShowLegend(); });
 }

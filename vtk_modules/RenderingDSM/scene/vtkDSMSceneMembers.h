@@ -2,9 +2,7 @@
 #ifndef vtkDSMSceneMembers_h
 #define vtkDSMSceneMembers_h
 
-#include "DSMRayTracing/scene/DebugView.h"
 #include "DSMRayTracing/scene/Scene.h"
-#include "vtkDSMMemorySettings.h"
 #include "vtkDSMSceneMember.h"
 
 #include "vtkSmartPointer.h"
@@ -16,7 +14,7 @@ class vtkMatrix4x4;
 class vtkProp3D;
 class vtkRenderer;
 
-/// The objects of a renderer that are traced, and what they ask for together. Local; but the ranks find
+/// The objects of a renderer that are traced. Local; but the ranks find
 /// the same objects in the same order.
 class vtkDSMSceneMembers
 {
@@ -50,22 +48,11 @@ public:
   /// Of what is shown, in world space; not initialised where nothing is.
   void GetBounds(double bounds[6]) const;
 
-  /// What is asked for by those that the renderer, which may have been changed since, still shows.
-  vtkDSMMemorySettings GetMemorySettings(vtkRenderer* renderer) const;
+  /// What is set for the mappers that are shown has its effect on the light and the memory of all.
+  void ForwardOptions(vtkDSMLightOptions* light, vtkDSMMemoryOptions* memory) const;
 
   /// Whether the renderer has anything else to show, that may be behind, or between, translucent surfaces.
   bool AreBesideOthers(vtkRenderer* renderer) const;
-
-  /// Of each property, what the most demanding object that is shown wants.
-  /// A first look costs rays that a picture in passing does without.
-  rt::LightTransport GetTransport(bool isPassing) const;
-  double GetEnvironmentLight() const;
-  int GetSamplesPerPixel() const;
-  bool ShowStatistics() const;
-  /// The first that an object asks for.
-  rt::DebugView GetDebugView() const;
-  /// Whether every object agrees to a debug view's legend.
-  bool ShowLegend() const;
 
 private:
   std::vector<std::unique_ptr<vtkDSMSceneMember>> States;

@@ -3,10 +3,11 @@
 
 #include "DSMRayTracing/frame/PixelRays.h"
 #include "vtkDSMCompatibility.h"
-#include "vtkDSMMemoryOptions.h"
+#include "vtkDSMLightOptions.h"
 
 #include "vtkAbstractMapper.h"
 #include "vtkAlgorithm.h"
+#include "vtkBoundingBox.h"
 #include "vtkCamera.h"
 #include "vtkColorTransferFunction.h"
 #include "vtkImageData.h"
@@ -38,6 +39,9 @@ namespace
 
 /// Entries of a sampled colour map: well above the 256 of ParaView's discretised ones.
 constexpr int ColorMapEntries = 4096;
+
+/// Default length of ambient occlusion rays, over the diagonal of what is shown.
+constexpr double AmbientOcclusionPart = 0.2;
 
 glm::vec3 ToColor(const double color[3])
 {
@@ -242,28 +246,42 @@ rt::ClipRegion vtkDSMTranslation::ToClipRegion(vtkAbstractMapper* mapper)
   return region;
 }
 
-vtkDSMMemorySettings vtkDSMTranslation::ToMemorySettings(vtkDSMMemoryOptions* options)
+rt::LightTransport vtkDSMTranslation::ToTransport(
+  vtkDSMLightOptions* options, const double bounds[6], bool isPassing)
 {
-  using Options = vtkDSMMemoryOptions;
-  static_assert(static_cast<int>(dsm::MemoryOrganization::Automatic) == Options::Automatic &&
-      static_cast<int>(dsm::MemoryOrganization::Replicated) == Options::Replicated &&
-      static_cast<int>(dsm::MemoryOrganization::ObjectBased) == Options::ObjectBased &&
-      static_cast<int>(dsm::MemoryOrganization::PageBased) == Options::PageBased,
-    "the options number the organisations as the store does");
-  vtkDSMMemorySettings settings;
-  settings.Organization = static_cast<dsm::MemoryOrganization>(options->GetMemoryOrganization());
-  settings.HostSharing = options->GetHostSharing();
-  settings.MemoryBytes = static_cast<std::uint64_t>(options->GetMemory()) << 20;
-  settings.CacheBytes = static_cast<std::uint64_t>(options->GetCacheSize()) << 20;
-  settings.ScratchDirectory = options->GetScratchDirectory();
-  settings.CoarserWhileMoving = options->GetCoarserDataWhileMoving();
-  settings.Threads = options->GetNumberOfThreads();
-  settings.SilenceLimit = options->GetSilenceLimit() > 0 ? options->GetSilenceLimit()
-                                                         : std::numeric_limits<double>::infinity();
-  settings.Scheduling = options->GetScheduler() == Options::CentralQueue
-    ? rt::TileScheduling::CentralQueue
-    : rt::TileScheduling::WorkStealing;
-  return settings;
+  rt::LightTransport transport;
+  transport.Shadows = options->GetShadows();
+  transport.LightRadius = options->GetLightRadius();
+  transport.AmbientOcclusionSamples = options->GetAmbientOcclusionSamples();
+  transport.AmbientOcclusionDistance = options->GetAmbientOcclusionDistance();
+  transport.MaxBounces = options->GetMaxBounces();
+  transport.FaintShadows = options->GetLook() == vtkDSMLightOptions::DepthLook && !isPassing &&
+    !transport.Shadows && transport.AmbientOcclusionSamples == 0 &&
+    options->GetEnvironmentLight() == 0.0;
+  if (transport.AmbientOcclusionSamples > 0 && transport.AmbientOcclusionDistance == 0.0)
+  {
+    const vtkBoundingBox box(bounds);
+    // Without anything to show there is no diagonal.
+    transport.AmbientOcclusionDistance =
+      box.IsValid() ? AmbientOcclusionPart * box.GetDiagonalLength() : 0.0;
+  }
+  return transport;
+}
+
+rt::DebugView vtkDSMTranslation::ToDebugView(vtkDSMLightOptions* options)
+{
+  using Options = vtkDSMLightOptions;
+  static_assert(static_cast<int>(rt::DebugView::Off) == Options::Off &&
+      static_cast<int>(rt::DebugView::Owner) == Options::Owner &&
+      static_cast<int>(rt::DebugView::TracingRank) == Options::TracingRank &&
+      static_cast<int>(rt::DebugView::Brick) == Options::Brick &&
+      static_cast<int>(rt::DebugView::TileTime) == Options::TileTime &&
+      static_cast<int>(rt::DebugView::Normal) == Options::Normal &&
+      static_cast<int>(rt::DebugView::Depth) == Options::Depth &&
+      static_cast<int>(rt::DebugView::NewTiles) == Options::NewTiles &&
+      static_cast<int>(rt::DebugView::Misses) == Options::Misses,
+    "the options number the views as the tracer does");
+  return static_cast<rt::DebugView>(options->GetDebugView());
 }
 
 std::vector<rt::Light> vtkDSMTranslation::ToLights(vtkRenderer* renderer)

@@ -3,14 +3,14 @@
 #define vtkDSMTranslation_h
 
 #include "DSMRayTracing/frame/FrameRequest.h"
+#include "DSMRayTracing/scene/DebugView.h"
 #include "DSMRayTracing/scene/Scene.h"
-#include "vtkDSMMemorySettings.h"
 
 #include <memory>
 #include <vector>
 
 class vtkAbstractMapper;
-class vtkDSMMemoryOptions;
+class vtkDSMLightOptions;
 class vtkMatrix4x4;
 class vtkProperty;
 class vtkRenderer;
@@ -42,7 +42,10 @@ public:
   /// What a mapper's clipping planes leave, in world space.
   static rt::ClipRegion ToClipRegion(vtkAbstractMapper* mapper);
 
-  static vtkDSMMemorySettings ToMemorySettings(vtkDSMMemoryOptions* options);
+  /// `bounds` are those of what is shown, in world space. A picture in passing goes without the rays of a first look.
+  static rt::LightTransport ToTransport(
+    vtkDSMLightOptions* options, const double bounds[6], bool isPassing);
+  static rt::DebugView ToDebugView(vtkDSMLightOptions* options);
 
   /// The lights that are on, in world space. Moves the lights that follow the camera to where the
   /// renderer will have them, and makes the renderer's automatic light if there is none.

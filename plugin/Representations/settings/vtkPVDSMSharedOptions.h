@@ -36,8 +36,9 @@ public:
 private:
   struct Registry;
 
-  /// `values` holds what holds while nobody has joined; all properties of `like` but the exceptions are shared.
-  vtkPVDSMSharedOptions(vtkSMProxy* values, vtkSMProxy* like, std::vector<std::string> exceptions);
+  /// `values` has the values while no display has joined. All properties of `like` are shared, except those with the
+  /// hint DSMOfDataset.
+  vtkPVDSMSharedOptions(vtkSMProxy* values, vtkSMProxy* like);
 
   void Add(vtkSMProxy* proxy, bool speaks);
   void Remove(vtkObjectBase* object);

@@ -13,6 +13,7 @@
 #define vtkPVDSMGeometryRepresentation_h
 
 #include "vtkGeometryRepresentationWithFaces.h"
+#include "vtkPVDSMExportSource.h"
 #include "vtkPVDSMTracedDisplay.h"       // for ivars
 #include "vtkRepresentationsDSMModule.h" // for the export macro
 
@@ -26,6 +27,7 @@ class vtkPVDSMMemoryOptions;
 
 class VTKREPRESENTATIONSDSM_EXPORT vtkPVDSMGeometryRepresentation
   : public vtkGeometryRepresentationWithFaces
+  , public vtkPVDSMExportSource
 {
 public:
   static vtkPVDSMGeometryRepresentation* New();
@@ -93,7 +95,7 @@ public:
    * This rank's part of the surface; polygons of blocks that are hidden are left out, those of blocks that look alike are
    * together, with a vtkPVDSMExportLook.
    */
-  std::vector<vtkSmartPointer<vtkPolyData>> GetTriangles();
+  std::vector<vtkSmartPointer<vtkPolyData>> GetTriangles() override;
 
   /**
    * What shall tell of the view's frames; null on the client.

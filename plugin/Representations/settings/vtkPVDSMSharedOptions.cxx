@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkPVDSMSharedOptions.h"
 
-#include "vtkPVDSMOldStates.h"
 #include "vtkPVDSMProxyFinder.h"
 
 #include "vtkCallbackCommand.h"
 #include "vtkCommand.h"
 #include "vtkNew.h"
 #include "vtkPVRenderView.h"
+#include "vtkPVXMLElement.h"
 #include "vtkSMProperty.h"
 #include "vtkSMPropertyHelper.h"
 #include "vtkSMPropertyIterator.h"
@@ -21,7 +21,6 @@
 #include <algorithm>
 #include <map>
 #include <memory>
-#include <utility>
 
 /// The options of each view and session, for as long as it lives.
 struct vtkPVDSMSharedOptions::Registry
@@ -57,14 +56,13 @@ struct vtkPVDSMSharedOptions::Registry
     return found == Get().Owners.end() ? nullptr : found->second.get();
   }
 
-  static vtkPVDSMSharedOptions* Make(
-    vtkObject* owner, vtkSMProxy* values, vtkSMProxy* like, std::vector<std::string> exceptions)
+  static vtkPVDSMSharedOptions* Make(vtkObject* owner, vtkSMProxy* values, vtkSMProxy* like)
   {
     vtkNew<vtkCallbackCommand> forget;
     forget->SetCallback([](vtkObject* gone, unsigned long, void*, void*) { Forget(gone); });
     owner->AddObserver(vtkCommand::DeleteEvent, forget);
     auto& made = Get().Owners[owner];
-    made.reset(new vtkPVDSMSharedOptions(values, like, std::move(exceptions)));
+    made.reset(new vtkPVDSMSharedOptions(values, like));
     return made.get();
   }
 };
@@ -125,15 +123,9 @@ void vtkPVDSMSharedOptions::Join(vtkPVRenderView* view, vtkObjectBase* light, vt
   vtkPVDSMSharedOptions* shared = Registry::Find(view);
   if (!shared)
   {
-    // What part of the light a surface mirrors is a matter of that surface.
-    shared = Registry::Make(view, CreateValues(lightProxy), lightProxy, { "DSMReflectivity" });
+    shared = Registry::Make(view, CreateValues(lightProxy), lightProxy);
   }
-  vtkSMSessionProxyManager* manager = lightProxy->GetSessionProxyManager();
-  if (manager->GetInLoadXMLState())
-  {
-    vtkPVDSMOldStates::Watch(manager);
-  }
-  shared->Add(lightProxy, manager->GetInLoadXMLState());
+  shared->Add(lightProxy, lightProxy->GetSessionProxyManager()->GetInLoadXMLState());
   KeepLook(lightProxy);
 
   vtkSMSession* session = memoryProxy->GetSession();
@@ -141,8 +133,8 @@ void vtkPVDSMSharedOptions::Join(vtkPVRenderView* view, vtkObjectBase* light, vt
   vtkSMProxy* page = FindPage(memoryProxy);
   if (!shared)
   {
-    shared = Registry::Make(session,
-      page ? vtkSmartPointer<vtkSMProxy>(page) : CreateValues(memoryProxy), memoryProxy, {});
+    shared = Registry::Make(
+      session, page ? vtkSmartPointer<vtkSMProxy>(page) : CreateValues(memoryProxy), memoryProxy);
   }
   if (page)
   {
@@ -160,16 +152,15 @@ void vtkPVDSMSharedOptions::Leave(
   }
 }
 
-vtkPVDSMSharedOptions::vtkPVDSMSharedOptions(
-  vtkSMProxy* values, vtkSMProxy* like, std::vector<std::string> exceptions)
+vtkPVDSMSharedOptions::vtkPVDSMSharedOptions(vtkSMProxy* values, vtkSMProxy* like)
   : Proxies{ values }
 {
   vtkSmartPointer<vtkSMPropertyIterator> property;
   property.TakeReference(like->NewPropertyIterator());
   for (property->Begin(); !property->IsAtEnd(); property->Next())
   {
-    if (!property->GetProperty()->GetInformationOnly() &&
-      std::find(exceptions.begin(), exceptions.end(), property->GetKey()) == exceptions.end())
+    vtkPVXMLElement* hints = property->GetProperty()->GetHints();
+    if (!hints || !hints->FindNestedElementByName("DSMOfDataset"))
     {
       this->Names.emplace_back(property->GetKey());
     }

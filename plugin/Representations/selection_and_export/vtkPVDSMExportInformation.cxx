@@ -2,8 +2,7 @@
 #include "vtkPVDSMExportInformation.h"
 
 #include "vtkPVDSMExportLook.h"
-#include "vtkPVDSMGeometryRepresentation.h"
-#include "vtkPVDSMImageRepresentation.h"
+#include "vtkPVDSMExportSource.h"
 
 #include "vtkCharArray.h"
 #include "vtkClientServerStream.h"
@@ -30,15 +29,8 @@ std::vector<vtkSmartPointer<vtkPolyData>> vtkPVDSMExportInformation::GetTriangle
 
 void vtkPVDSMExportInformation::CopyFromObject(vtkObject* representation)
 {
-  std::vector<vtkSmartPointer<vtkPolyData>> mine;
-  if (auto* image = vtkPVDSMImageRepresentation::SafeDownCast(representation))
-  {
-    mine = image->GetTriangles();
-  }
-  else if (auto* mesh = vtkPVDSMGeometryRepresentation::SafeDownCast(representation))
-  {
-    mine = mesh->GetTriangles();
-  }
+  auto* source = dynamic_cast<vtkPVDSMExportSource*>(representation);
+  const auto mine = source ? source->GetTriangles() : std::vector<vtkSmartPointer<vtkPolyData>>();
   this->Parts.clear();
   this->NumberOfPolygons = 0;
   for (const auto& part : mine)

@@ -16,8 +16,9 @@
 
 #include "vtkGeometryRepresentationWithFaces.h" // for ivars
 #include "vtkNew.h"                             // for ivars
-#include "vtkPVDSMTracedDisplay.h"              // for ivars
-#include "vtkRepresentationsDSMModule.h"        // for the export macro
+#include "vtkPVDSMExportSource.h"
+#include "vtkPVDSMTracedDisplay.h"       // for ivars
+#include "vtkRepresentationsDSMModule.h" // for the export macro
 #include "vtkVolumeRepresentation.h"
 
 #include <array>   // for ivars
@@ -36,7 +37,9 @@ class vtkProperty;
 class vtkScalarsToColors;
 class vtkVolume;
 
-class VTKREPRESENTATIONSDSM_EXPORT vtkPVDSMImageRepresentation : public vtkVolumeRepresentation
+class VTKREPRESENTATIONSDSM_EXPORT vtkPVDSMImageRepresentation
+  : public vtkVolumeRepresentation
+  , public vtkPVDSMExportSource
 {
 public:
   static vtkPVDSMImageRepresentation* New();
@@ -182,7 +185,7 @@ public:
    * The isosurfaces of this rank's data as triangles, with the array that colours them; those of blocks that look alike
    * together, with a vtkPVDSMExportLook.
    */
-  std::vector<vtkSmartPointer<vtkPolyData>> GetTriangles();
+  std::vector<vtkSmartPointer<vtkPolyData>> GetTriangles() override;
 
   /**
    * What shall tell of the view's frames; null on the client.
