@@ -35,7 +35,8 @@ ROOMS = {
     "vtk_modules/DSMVolumeFiles": ["base", "codec", "format", "cache", "range", "write"],
     "vtk_modules/RenderingDSM": ["base", "options", "ranks", "file", "data", "frame", "scene", "mapper"],
     "plugin/Representations": [
-        "base", "settings", "domains", "session", "selection_and_export", "displays", "sources", "paraview_before_6_0",
+        "base", "paraview_before_6_0", "paraview_from_6_0", "settings", "domains", "session",
+        "selection_and_export", "displays", "sources",
     ],
 }
 MPI_FILE = "vtk_modules/DSMCore/transport/MpiTransport.cxx"

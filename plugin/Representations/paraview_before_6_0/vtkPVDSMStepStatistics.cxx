@@ -1,111 +1,83 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkPVDSMStepStatistics.h"
 
-#include "vtkCallbackCommand.h"
-#include "vtkCommand.h"
-#include "vtkNew.h"
-#include "vtkProcessModule.h"
-#include "vtkSMInputProperty.h"
-#include "vtkSMPropertyHelper.h"
-#include "vtkSMPropertyIterator.h"
-#include "vtkSMProxy.h"
-#include "vtkSMProxyIterator.h"
-#include "vtkSMProxyManager.h"
-#include "vtkSMSessionProxyManager.h"
-#include "vtkSmartPointer.h"
 #include "vtkVersionMacros.h"
 
-#include <cstring>
-#include <set>
+#if VTK_MAJOR_VERSION == 9 && VTK_MINOR_VERSION < 4
+
+#include "vtkClientServerInterpreter.h"
+#include "vtkClientServerInterpreterInitializer.h"
+#include "vtkDataArray.h"
+#include "vtkFieldData.h"
+#include "vtkPVXMLElement.h"
+#include "vtkSIProxyDefinitionManager.h"
+#include "vtkSmartPointer.h"
+#include "vtkTemporalStatistics.h"
 
 namespace
 {
 
-bool Is(vtkSMProxy* proxy, const char* name)
-{
-  return proxy && proxy->GetXMLName() && std::strcmp(proxy->GetXMLName(), name) == 0;
-}
+constexpr const char* Name = "vtkPVDSMStepStatistics";
 
-/// Adds all readers of volumes that a filter's input comes from.
-void FindReaders(vtkSMProxy* filter, std::set<vtkSMProxy*>& found)
+/// Returns the arrays; those that are not VTK's own as ordinary ones.
+vtkSmartPointer<vtkFieldData> Copy(vtkFieldData* arrays)
 {
-  const auto properties =
-    vtkSmartPointer<vtkSMPropertyIterator>::Take(filter->NewPropertyIterator());
-  for (properties->Begin(); !properties->IsAtEnd(); properties->Next())
+  auto copy = vtkSmartPointer<vtkFieldData>::Take(arrays->NewInstance());
+  copy->ShallowCopy(arrays);
+  for (int number = 0; number < arrays->GetNumberOfArrays(); ++number)
   {
-    auto* const input = vtkSMInputProperty::SafeDownCast(properties->GetProperty());
-    for (unsigned int number = 0; input && number < input->GetNumberOfProxies(); ++number)
+    vtkDataArray* const array = arrays->GetArray(number);
+    if (array && !array->HasStandardMemoryLayout())
     {
-      vtkSMProxy* const source = input->GetProxy(number);
-      if (Is(source, "DSMVolumeReader"))
-      {
-        found.insert(source);
-      }
-      else if (source)
-      {
-        FindReaders(source, found);
-      }
+      const auto ordinary = vtkSmartPointer<vtkDataArray>::Take(array->NewInstance());
+      ordinary->DeepCopy(array);
+      ordinary->SetName(array->GetName());
+      copy->AddArray(ordinary); // replaces the one with this name
     }
   }
+  return copy;
 }
 
-bool IsStatistics(vtkSMProxy* proxy)
+/// Has its superclass's name for ParaView, which finds methods by it.
+class StepStatistics final : public vtkTemporalStatistics
 {
-  return Is(proxy, "TemporalStatistics");
-}
+public:
+  static vtkObjectBase* Make(void*)
+  {
+    auto* const made = new StepStatistics;
+    made->InitializeObjectBase();
+    return made;
+  }
 
-/// Those that come before any of the session's filters.
-std::set<vtkSMProxy*> FindReadersOfAll(vtkSMProxy* filter)
-{
-  std::set<vtkSMProxy*> found;
-  vtkNew<vtkSMProxyIterator> proxies;
-  proxies->SetSessionProxyManager(filter->GetSessionProxyManager());
-  for (proxies->Begin("sources"); !proxies->IsAtEnd(); proxies->Next())
+private:
+  void InitializeArrays(vtkFieldData* input, vtkFieldData* output) override
   {
-    if (IsStatistics(proxies->GetProxy()))
-    {
-      FindReaders(proxies->GetProxy(), found);
-    }
+    vtkTemporalStatistics::InitializeArrays(Copy(input), output);
   }
-  return found;
-}
-
-/// A filter has come or gone.
-void OnChange(vtkObject*, unsigned long, void*, void* registered)
-{
-  vtkSMProxy* const filter =
-    static_cast<vtkSMProxyManager::RegisteredProxyInformation*>(registered)->Proxy;
-  if (!IsStatistics(filter))
+  void AccumulateArrays(vtkFieldData* input, vtkFieldData* output) override
   {
-    return;
+    vtkTemporalStatistics::AccumulateArrays(Copy(input), output);
   }
-  const std::set<vtkSMProxy*> wanted = FindReadersOfAll(filter);
-  std::set<vtkSMProxy*> readers;
-  FindReaders(filter, readers);
-  for (vtkSMProxy* reader : readers)
-  {
-    vtkSMPropertyHelper(reader, "ValuesInMemory").Set(static_cast<int>(wanted.count(reader)));
-    reader->UpdateProperty("ValuesInMemory");
-  }
-}
+};
 
 } // namespace
 
-void vtkPVDSMStepStatistics::Load()
+void vtkPVDSMStepStatistics::Replace(vtkSIProxyDefinitionManager* definitions)
 {
-  constexpr bool isNeeded = VTK_MAJOR_VERSION == 9 && VTK_MINOR_VERSION < 4;
-  static bool isLoaded = !isNeeded;
-  const auto type = vtkProcessModule::GetProcessType();
-  const bool hasProxies =
-    type == vtkProcessModule::PROCESS_CLIENT || type == vtkProcessModule::PROCESS_BATCH;
-  if (hasProxies && !isLoaded)
+  vtkPVXMLElement* const filter =
+    definitions->GetProxyDefinition("filters", "TemporalStatistics", false);
+  if (filter)
   {
-    isLoaded = true;
-    vtkNew<vtkCallbackCommand> command;
-    command->SetCallback(OnChange);
-    for (const auto event : { vtkCommand::RegisterEvent, vtkCommand::UnRegisterEvent })
-    {
-      vtkSMProxyManager::GetProxyManager()->AddObserver(event, command);
-    }
+    // Of all sessions, also later ones; again does nothing.
+    vtkClientServerInterpreterInitializer::GetInitializer()->RegisterCallback(
+      [](vtkClientServerInterpreter* interpreter)
+      { interpreter->AddNewInstanceFunction(Name, &StepStatistics::Make); });
+    filter->SetAttribute("class", Name);
   }
 }
+
+#else
+
+void vtkPVDSMStepStatistics::Replace(vtkSIProxyDefinitionManager*) {}
+
+#endif

@@ -2,15 +2,16 @@
 #ifndef vtkPVDSMStepStatistics_h
 #define vtkPVDSMStepStatistics_h
 
-#include "vtkRepresentationsDSMModule.h" // for the export macro
+class vtkSIProxyDefinitionManager;
 
-/// Before VTK 9.4, Temporal Statistics adds up wrongly, without a word, what is not in VTK's own arrays: readers of
-/// volumes that come before such a filter are told to have their values in memory, as long as there is one.
-class VTKREPRESENTATIONSDSM_EXPORT vtkPVDSMStepStatistics
+/// Before VTK 9.4, vtkTemporalStatistics silently computes wrong sums of arrays that are not VTK's own, such as those of
+/// vtkDSMVolumeReader.
+class vtkPVDSMStepStatistics
 {
 public:
-  /// Called when the plugin is loaded: from now on, in processes that have proxies.
-  static void Load();
+  /// From now on, ParaView's filter Temporal Statistics copies such arrays of a time step before it adds them up. On
+  /// processes that have the filter. Does nothing where VTK is newer.
+  static void Replace(vtkSIProxyDefinitionManager* definitions);
 };
 
 #endif

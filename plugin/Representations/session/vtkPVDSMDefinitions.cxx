@@ -3,6 +3,8 @@
 
 #include "vtkPVDSMDefinitionsText.h"
 #include "vtkPVDSMNoUndo.h"
+#include "vtkPVDSMPanelLoader.h"
+#include "vtkPVDSMStepStatistics.h"
 #include "vtkPVDSMVersionInformation.h"
 
 #include "vtkCallbackCommand.h"
@@ -62,6 +64,7 @@ void Add(vtkPVSessionBase* session)
   {
     vtkSIProxyDefinitionManager* const definitions = session->GetProxyDefinitionManager();
     Kept::Forget(*definitions);
+    vtkPVDSMStepStatistics::Replace(definitions);
     definitions->LoadConfigurationXMLFromString(vtkPVDSMDefinitionsText);
   }
 }
@@ -145,6 +148,7 @@ void Update()
     if (auto* application = vtkSMSession::SafeDownCast(session))
     {
       MakeSettings(application);
+      vtkPVDSMPanelLoader::Load();
     }
   }
 }

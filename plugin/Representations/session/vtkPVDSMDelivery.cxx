@@ -2,6 +2,7 @@
 #include "vtkPVDSMDelivery.h"
 
 #include "vtkDSMScene.h"
+#include "vtkPVDSMDrawing.h"
 #include "vtkPVDSMFrameReport.h"
 
 #include "vtkBoundingBox.h"
@@ -14,7 +15,6 @@
 #include "vtkPVDataRepresentationPipeline.h"
 #include "vtkPVRenderView.h"
 #include "vtkPVRenderViewDataDeliveryManager.h"
-#include "vtkPVRenderingCapabilitiesInformation.h"
 #include "vtkPVSession.h"
 #include "vtkPVSynchronizedRenderer.h"
 #include "vtkPartitionedDataSet.h"
@@ -24,8 +24,6 @@
 #include "vtkRemotingCoreConfiguration.h"
 #include "vtkRenderWindow.h"
 #include "vtkSmartPointer.h"
-
-#include <dlfcn.h>
 
 #include <algorithm>
 #include <cmath>
@@ -42,26 +40,6 @@ bool HasRole(vtkPVSession::ServerFlags role)
   return !session || session->HasProcessRole(role);
 }
 
-/// Whether this process has anything to draw with. Since 6.0, ParaView claims so in any case: it chooses when
-/// it makes a window, and without a display or EGL it is left with OSMesa, whether that is there or not.
-bool CanDraw()
-{
-  using Capabilities = vtkPVRenderingCapabilitiesInformation;
-  const vtkTypeUInt32 local = Capabilities::GetLocalCapabilities();
-  if (Capabilities::Supports(local, Capabilities::ONSCREEN_RENDERING) ||
-    !Capabilities::Supports(local, Capabilities::RENDERING))
-  {
-    return Capabilities::Supports(local, Capabilities::RENDERING);
-  }
-  static const bool chosen = []
-  {
-    auto window = Capabilities::NewOffscreenRenderWindow();
-    return window &&
-      (!window->IsA("vtkOSOpenGLRenderWindow") || dlsym(RTLD_DEFAULT, "OSMesaCreateContext"));
-  }();
-  return chosen;
-}
-
 /// Why this rendering process cannot draw anything, and what to do; empty when it can.
 std::string FindObstacle()
 {
@@ -76,7 +54,7 @@ std::string FindObstacle()
            "and the ranks "
            "trace one picture together. Show it as Surface, or as Contour.";
   }
-  if (!CanDraw())
+  if (!vtkPVDSMDrawing::IsPossible())
   {
     return "There is no display to draw on, and ParaView is going to stop. Start it with: "
            "xvfb-run -a -s \"-noreset -screen 0 1280x1024x24\" COMMAND";

@@ -4,6 +4,7 @@
 #include "vtkNew.h"
 #include "vtkPVPluginLoader.h"
 #include "vtkPVPluginTracker.h"
+#include "vtkSMProxyManager.h"
 
 #include <dlfcn.h>
 #include <vtksys/SystemTools.hxx>
@@ -16,12 +17,10 @@ namespace
 
 constexpr const char* PanelName = "DSMRayTracerPanel";
 
-/// Whether this process is ParaView's application: pqApplicationCore::instance is there, and is an object.
+/// Only ParaView's application has changes to undo.
 bool HasUserInterface()
 {
-  using InstanceFunction = void* (*)();
-  void* const symbol = dlsym(RTLD_DEFAULT, "_ZN17pqApplicationCore8instanceEv");
-  return symbol && reinterpret_cast<InstanceFunction>(symbol)();
+  return vtkSMProxyManager::GetProxyManager()->GetUndoStackBuilder() != nullptr;
 }
 
 bool IsLoaded()
