@@ -120,16 +120,6 @@ extern "C" void* mmap(
     syscall(SYS_mmap, address, bytes, protection, flags, file, offset));
 }
 
-extern "C" int mprotect(void* address, std::size_t bytes, int protection) noexcept
-{
-  if (protection == PROT_READ && MustFail(dsm_test::Call::Protect))
-  {
-    errno = ENOMEM;
-    return -1;
-  }
-  return static_cast<int>(syscall(SYS_mprotect, address, bytes, protection));
-}
-
 extern "C" int ioctl(int file, unsigned long request, ...) noexcept
 {
   va_list arguments;

@@ -12,7 +12,6 @@ enum class Call
   Allocate,     ///< operator new
   AllocateMuch, ///< operator new for LargeBytes or more: no message that ranks agree by
   Map,          ///< mmap, of memory that is no file's
-  Protect,      ///< mprotect, to make pages readable
   FillPages     ///< ioctl of userfaultfd that fills pages
 };
 

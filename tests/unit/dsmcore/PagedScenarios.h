@@ -14,8 +14,8 @@
 #include <thread>
 #include <vector>
 
-/// What the page store must do on any transport and number of ranks, with either handling of faults,
-/// asking first or not; each is run by every rank.
+/// What the page store must do on any transport and number of ranks, asking first or not; each is run by
+/// every rank.
 namespace dsm_test
 {
 
@@ -24,23 +24,22 @@ inline std::size_t GetPage()
   return dsm::AddressRange::GetPageBytes();
 }
 
-/// How a test's stores handle faults.
+/// How a test's stores read blocks.
 struct Way
 {
-  dsm::FaultHandling Handling = dsm::FaultHandling::Automatic;
   bool PureFaulting = false;
 
   dsm::PagedStore::Settings GetSettings(std::size_t cacheBytes, int workers = 1) const
   {
-    return { cacheBytes, workers, this->Handling, this->PureFaulting };
+    return { cacheBytes, workers, this->PureFaulting };
   }
 
   /// Empty where the system allows it.
-  std::string GetRefusal() const
+  static std::string GetRefusal()
   {
     try
     {
-      dsm::PageFaults::Create(this->Handling);
+      const dsm::PageFaults faults;
     }
     catch (const dsm::Error& error)
     {
@@ -49,17 +48,12 @@ struct Way
     return {};
   }
 
-  std::string GetName() const
-  {
-    return std::string(this->Handling == dsm::FaultHandling::Signal ? "Signal" : "UserFaultFd") +
-      (this->PureFaulting ? "Pure" : "");
-  }
+  std::string GetName() const { return this->PureFaulting ? "Pure" : "AsksFirst"; }
 };
 
 inline std::vector<Way> GetAllWays()
 {
-  return { { dsm::FaultHandling::UserFaultFd, false }, { dsm::FaultHandling::UserFaultFd, true },
-    { dsm::FaultHandling::Signal, false }, { dsm::FaultHandling::Signal, true } };
+  return { { false }, { true } };
 }
 
 inline std::size_t RoundUp(std::size_t bytes)

@@ -10,7 +10,7 @@
 #include <cstdlib>
 #include <functional>
 
-/// For tests of what the page store shares with its process, once for each handling of faults.
+/// For tests of what the page store shares with its process, with and without asking first.
 namespace dsm_test
 {
 

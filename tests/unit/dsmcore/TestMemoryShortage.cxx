@@ -87,13 +87,11 @@ INSTANTIATE_TEST_SUITE_P(Ways, PagedMemoryShortage, testing::ValuesIn(dsm_test::
 
 TEST_P(PagedMemoryShortage, PagesThatCannotBeFilledFailTheFrameOnly)
 {
-  const Call call =
-    this->GetParam().Handling == dsm::FaultHandling::Signal ? Call::Protect : Call::FillPages;
   dsm_test::RunRanks(2,
     [&](dsm::Messenger& messenger)
     {
       dsm::PagedStore store(messenger, this->GetParam().GetSettings(2 * dsm_test::GetPage()));
-      FailOnce(messenger, store, call, FailingCall::Of::AnyThread);
+      FailOnce(messenger, store, Call::FillPages, FailingCall::Of::AnyThread);
     });
 }
 

@@ -34,17 +34,6 @@ TEST(PagedStore, NoWorkersAreRefused)
     });
 }
 
-TEST(PagedStore, OneRankHasNoFaults)
-{
-  dsm_test::RunRanks(1,
-    [](dsm::Messenger& messenger)
-    {
-      const dsm::PagedStore store(messenger, Way().GetSettings(1000));
-      EXPECT_EQ(store.GetFaultHandling(), dsm::FaultHandling::Automatic);
-      EXPECT_NE(store.GetFaultHandlingText().find("one rank"), std::string::npos);
-    });
-}
-
 TEST(PagedStore, WithinAFrameNothingIsRearranged)
 {
   dsm_test::RunRanks(1,
@@ -65,74 +54,49 @@ TEST(PagedStore, WithinAFrameNothingIsRearranged)
     });
 }
 
-TEST(PagedStore, HandlingChangesOnlyWhileNothingIsPublished)
-{
-  const Way signal{ dsm::FaultHandling::Signal, false };
-  dsm_test::RunRanks(2,
-    [&](dsm::Messenger& messenger)
-    {
-      dsm::PagedStore store(messenger, Way().GetSettings(1 << 16));
-      store.SetSettings(signal.GetSettings(1 << 16));
-      EXPECT_EQ(store.GetFaultHandling(), dsm::FaultHandling::Signal);
-      const auto segment =
-        dsm_test::PublishPattern(messenger, store, dsm_test::MakeDirectory(2, 4, 100));
-      EXPECT_THROW(store.SetSettings(Way().GetSettings(1 << 16)), dsm::Error);
-      store.Retire(segment);
-      store.SetSettings(Way().GetSettings(1 << 16));
-    });
-}
-
 /// Else the room that it keeps may be what the worker that has the slot waits for, in a fault.
 TEST(PagedStore, WhoWaitsForASlotKeepsNoRoom)
 {
-  for (const Way& way :
-    { Way{ dsm::FaultHandling::UserFaultFd }, Way{ dsm::FaultHandling::Signal } })
-  {
-    if (!way.GetRefusal().empty())
+  dsm_test::RunRanks(2,
+    [&](dsm::Messenger& messenger)
     {
-      continue;
-    }
-    dsm_test::RunRanks(2,
-      [&](dsm::Messenger& messenger)
-      {
-        const auto slots = std::make_shared<dsm::WorkerSlots>();
-        auto settings = way.GetSettings(dsm_test::GetPage(), 2); // of the cache: one block
-        settings.Slots = slots;
-        dsm::PagedStore store(messenger, settings);
-        const auto segment =
-          dsm_test::PublishPattern(messenger, store, dsm_test::MakeDirectory(2, 4, 100));
-        std::atomic<bool> hasRead{ false };
-        std::atomic<bool> asks{ false };
-        slots->BeginFrame(1);
-        dsm_test::RunFrame(messenger, store,
-          [&](dsm::PagedStore::Worker& worker, int index)
+      const auto slots = std::make_shared<dsm::WorkerSlots>();
+      auto settings = Way().GetSettings(dsm_test::GetPage(), 2); // of the cache: one block
+      settings.Slots = slots;
+      dsm::PagedStore store(messenger, settings);
+      const auto segment =
+        dsm_test::PublishPattern(messenger, store, dsm_test::MakeDirectory(2, 4, 100));
+      std::atomic<bool> hasRead{ false };
+      std::atomic<bool> asks{ false };
+      slots->BeginFrame(1);
+      dsm_test::RunFrame(messenger, store,
+        [&](dsm::PagedStore::Worker& worker, int index)
+        {
+          if (messenger.GetRank() == 1)
           {
-            if (messenger.GetRank() == 1)
-            {
-              return;
-            }
-            const dsm::BlockId id = index == 0 ? 1 : 3; // of the other rank
-            if (index == 1)
-            {
-              WaitFor(hasRead);
-              const dsm::WorkerSlots::Hold slot(*slots);
-              asks = true;
-              EXPECT_EQ(dsm_test::Visit(store, worker, *segment, id), 0u);
-              return;
-            }
-            slots->Take();
-            const auto pin = store.Acquire(worker, *segment, id);
-            EXPECT_EQ(dsm_test::CountWrongBytes(id, pin.GetData(), pin.GetBytes()), 0u);
-            slots->Give();
-            hasRead = true;
-            WaitFor(asks);
-            const dsm::WorkerSlots::Hold slot(*slots); // from the other worker, which waits
-            std::this_thread::sleep_for(std::chrono::milliseconds(50)); // its block comes
-            EXPECT_EQ(dsm_test::CountWrongBytes(id, pin.GetData(), pin.GetBytes()), 0u);
-          });
-        EXPECT_GE(store.GetCounters().Evictions, messenger.GetRank() == 0 ? 2u : 0u);
-      });
-  }
+            return;
+          }
+          const dsm::BlockId id = index == 0 ? 1 : 3; // of the other rank
+          if (index == 1)
+          {
+            WaitFor(hasRead);
+            const dsm::WorkerSlots::Hold slot(*slots);
+            asks = true;
+            EXPECT_EQ(dsm_test::Visit(store, worker, *segment, id), 0u);
+            return;
+          }
+          slots->Take();
+          const auto pin = store.Acquire(worker, *segment, id);
+          EXPECT_EQ(dsm_test::CountWrongBytes(id, pin.GetData(), pin.GetBytes()), 0u);
+          slots->Give();
+          hasRead = true;
+          WaitFor(asks);
+          const dsm::WorkerSlots::Hold slot(*slots); // from the other worker, which waits
+          std::this_thread::sleep_for(std::chrono::milliseconds(50)); // its block comes
+          EXPECT_EQ(dsm_test::CountWrongBytes(id, pin.GetData(), pin.GetBytes()), 0u);
+        });
+      EXPECT_GE(store.GetCounters().Evictions, messenger.GetRank() == 0 ? 2u : 0u);
+    });
 }
 
 TEST(PagedStore, PureFaultingIsChosenFromFrameToFrame)

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the process or the system denies the page store: addresses, locked memory, mappings, handling.
+// What the process or the system denies the page store: addresses, locked memory, mappings, userfaultfd.
 #include "tests/unit/dsmcore/PagedStoreInProcess.h"
+#include "tests/unit/dsmcore/SharingScenarios.h"
 
 #include <linux/filter.h>
 #include <linux/seccomp.h>
@@ -155,44 +156,14 @@ TEST_P(PagedStoreLimits, FewMappingsAreLeft)
   }
   const auto check = [&]
   {
-    ExhaustMappings(2048 + 200);
+    ExhaustMappings(1500);
     dsm_test::RunRanks(2,
       [&](dsm::Messenger& messenger)
       {
         dsm::PagedStore store(messenger, this->GetParam().GetSettings(std::size_t(64) << 20));
         const auto evictions = VisitEverySecond(messenger, store, 2000);
-        // Room for all in the cache, but not for so many mappings; userfaultfd needs but one.
-        EXPECT_EQ(evictions[0] > 0, this->GetParam().Handling == dsm::FaultHandling::Signal);
-        EXPECT_EQ(store.GetCounters().CachedBytes, 1000 * dsm_test::GetPage())
-          << "neighbours share a mapping";
-      });
-  };
-  EXPECT_EXIT(RunAndExit(check), testing::ExitedWithCode(Good), "");
-}
-
-TEST_P(PagedStoreLimits, NoMappingsAreLeft)
-{
-  if (HasSanitizer)
-  {
-    GTEST_SKIP() << "a sanitizer needs many mappings itself";
-  }
-  const auto check = [&]
-  {
-    ExhaustMappings(1500);
-    dsm_test::RunRanks(2,
-      [&](dsm::Messenger& messenger)
-      {
-        dsm::PagedStore store(messenger, this->GetParam().GetSettings(1 << 20));
-        if (this->GetParam().Handling == dsm::FaultHandling::Signal)
-        {
-          const std::string text =
-            dsm_test::GetErrorText([&] { VisitEverySecond(messenger, store, 20); });
-          EXPECT_NE(text.find("vm.max_map_count"), std::string::npos) << text;
-        }
-        else
-        {
-          VisitEverySecond(messenger, store, 20);
-        }
+        EXPECT_EQ(evictions[0], 0u) << "userfaultfd needs but one mapping";
+        EXPECT_EQ(store.GetCounters().CachedBytes, 1000 * dsm_test::GetPage());
       });
   };
   EXPECT_EXIT(RunAndExit(check), testing::ExitedWithCode(Good), "");
@@ -220,49 +191,35 @@ void DenyUserFaultFd()
   }
 }
 
-TEST(PagedStore, WithoutUserFaultFdTheSignalIsTaken)
+TEST(PagedStore, RefusalOfTheSystemIsAnErrorOfAllRanksWithARemedy)
 {
   const auto check = []
   {
-    DenyUserFaultFd();
     dsm_test::RunRanks(2,
       [](dsm::Messenger& messenger)
       {
-        const Way automatic;
-        dsm::PagedStore store(messenger, automatic.GetSettings(1 << 20));
-        EXPECT_EQ(store.GetFaultHandling(), dsm::FaultHandling::Signal);
-        const std::string text = store.GetFaultHandlingText();
-        EXPECT_NE(text.find("SIGSEGV"), std::string::npos) << text;
-        EXPECT_NE(
-          text.find("userfaultfd is not available (Operation not permitted)"), std::string::npos)
-          << text;
-        dsm_test::PagedEveryByteArrives(messenger, automatic);
-      });
-  };
-  EXPECT_EXIT(RunAndExit(check), testing::ExitedWithCode(Good), "");
-}
-
-TEST(PagedStore, ForcedHandlingThatIsImpossibleIsAnErrorOfAllRanks)
-{
-  const auto check = []
-  {
-    DenyUserFaultFd();
-    dsm_test::RunRanks(2,
-      [](dsm::Messenger& messenger)
-      {
-        // Only rank 1 insists.
-        Way way;
-        way.Handling = messenger.GetRank() == 1 ? dsm::FaultHandling::UserFaultFd
-                                                : dsm::FaultHandling::Automatic;
-        dsm::PagedStore store(messenger, way.GetSettings(1 << 20));
+        if (messenger.GetRank() == 1)
+        {
+          DenyUserFaultFd(); // of this thread
+        }
+        auto settings = dsm_test::MakeStoreSettings(
+          dsm::MemoryOrganization::PageBased, std::size_t(1) << 24, true);
+        dsm::BlockStore store(messenger, settings);
         const auto directory = dsm_test::MakeDirectory(2, 4, 100);
         NullSource source;
         NullSink sink;
         const std::string text =
           dsm_test::GetErrorText([&] { store.Publish("Loading", directory, source, sink); });
-        EXPECT_EQ(text.find("Loading: Rank 1: userfaultfd is not available"), 0u) << text;
-        store.SetSettings(Way().GetSettings(1 << 20));
+        EXPECT_EQ(
+          text.find("Loading: Rank 1: Page based memory needs the system call userfaultfd, "
+                    "which fails (Operation not permitted): allow it in the seccomp profile"),
+          0u)
+          << text;
+        EXPECT_NE(text.find("Choose Object based or Automatic"), std::string::npos) << text;
+        settings.Organization = dsm::MemoryOrganization::ObjectBased;
+        store.SetSettings(settings);
         const auto segment = dsm_test::PublishPattern(messenger, store, directory);
+        dsm_test::ReadEverything(messenger, store, *segment);
       });
   };
   EXPECT_EXIT(RunAndExit(check), testing::ExitedWithCode(Good), "");

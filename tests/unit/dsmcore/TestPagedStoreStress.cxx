@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Random blocks, eight threads, a cache of three of the largest blocks, a million accesses, every
-// byte checked; for each handling of faults.
+// byte checked; with and without asking first.
 #include "DSMCore/paged/PagedStore.h"
 
 #include "tests/unit/dsmcore/PagedScenarios.h"

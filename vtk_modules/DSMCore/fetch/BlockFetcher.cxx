@@ -102,27 +102,15 @@ void BlockFetcher::BeginFrame(bool agreed)
 {
   if (!agreed)
   {
-    try
-    {
-      this->Messages.RunTogether("The frame cannot begin",
-        [this]
-        {
-          if (this->Phase != FramePhase::Closed)
-          {
-            throw Error("The previous frame of the store was not ended.");
-          }
-          this->CheckBudget();
-          this->Prepare();
-        });
-    }
-    catch (...)
-    {
-      if (this->Phase == FramePhase::Closed)
+    this->Messages.RunTogether("The frame cannot begin",
+      [this]
       {
-        this->Unprepare();
-      }
-      throw;
-    }
+        if (this->Phase != FramePhase::Closed)
+        {
+          throw Error("The previous frame of the store was not ended.");
+        }
+        this->CheckBudget();
+      });
   }
   this->Requests.BeginFrame();
 

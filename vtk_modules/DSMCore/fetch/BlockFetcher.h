@@ -58,7 +58,7 @@ public:
 
   // -- The frame, on the communication thread; see ObjectStore --
 
-  virtual bool MayBeginFrame() const;
+  bool MayBeginFrame() const;
   void BeginFrame(bool agreed);
   bool Service();
   void Cancel(std::string cause);
@@ -113,10 +113,6 @@ protected:
   virtual BlockSource* FindSource(const BlockWant& block) const = 0;
   /// Throws Error when a frame cannot begin. No lock.
   virtual void CheckBudget() const = 0;
-  /// What a frame needs besides, where the ranks agree afterwards; may throw. Undone when they do not
-  /// agree. No lock.
-  virtual void Prepare() {}
-  virtual void Unprepare() {}
   virtual bool MayPrefetch() const = 0;
   /// The source that a worker may read a block from by itself, of whichever rank it is: one for all such blocks of
   /// a segment. Null: the worker has to wait for the communication thread.

@@ -47,15 +47,14 @@ PageCache::Slot PageCache::TakeOut(std::size_t index)
   return slot;
 }
 
-bool PageCache::TryEvict(Time before, const std::function<bool(const Slot&)>& mayGo, Slot& evicted)
+bool PageCache::TryEvict(Time before, Slot& evicted)
 {
   // In the first round the hand clears the reference bits, so the second finds all there is.
   for (std::size_t step = 0; step < 2 * this->Slots.size(); ++step)
   {
     this->Hand = this->Hand + 1 < this->Slots.size() ? this->Hand + 1 : 0;
     Slot& slot = this->Slots[this->Hand];
-    if (!slot.From || slot.Placed > before || slot.From->Lines[slot.Id].Waiters > 0 ||
-      (mayGo && !mayGo(slot)))
+    if (!slot.From || slot.Placed > before || slot.From->Lines[slot.Id].Waiters > 0)
     {
       continue;
     }

@@ -52,9 +52,9 @@ public:
   /// Puts a block into the room that was set aside for it.
   void Insert(const Slot& slot);
 
-  /// Takes a block out that nobody waits for, that was placed at `before` or earlier, and that
-  /// `mayGo` (empty: any); false when there is none.
-  bool TryEvict(Time before, const std::function<bool(const Slot&)>& mayGo, Slot& evicted);
+  /// Takes a block out that nobody waits for, and that was placed at `before` or earlier; false when
+  /// there is none.
+  bool TryEvict(Time before, Slot& evicted);
   std::vector<BlockId> List(const PagedStore::Segment& segment) const;
   /// Takes out all blocks of a segment; `visit` is called for each.
   /// `which` (null: all): only blocks of which it says so.

@@ -2,13 +2,10 @@
 #ifndef dsm_PageFaults_h
 #define dsm_PageFaults_h
 
-#include "DSMCore/paged/FaultHandling.h"
+#include <sys/types.h>
 
 #include <cstddef>
-#include <cstdint>
-#include <limits>
-#include <memory>
-#include <string>
+#include <map>
 #include <vector>
 
 namespace dsm
@@ -17,7 +14,10 @@ namespace dsm
 /// Makes ranges of addresses wait for their bytes: a thread that reads an absent page stops, its
 /// fault is reported, and it goes on when the page is there. One for each page store.
 ///
-/// Absent pages take no memory. A page is seen either whole or not at all.
+/// It uses userfaultfd(2): the kernel reports faults through a file descriptor, and fills a page before
+/// it maps it (UFFDIO_COPY), so a page is seen either whole or not at all. Absent pages take no memory.
+/// The kernel need not allow faults in system calls (UFFD_USER_MODE_ONLY), since no paged address is
+/// ever handed to one.
 ///
 /// Threads: WaitForFaults is for one listening thread; Answer and PlaceZeros for it too; all else is
 /// for the communication thread. None of them may touch an absent page.
@@ -28,7 +28,6 @@ public:
   {
     std::byte* Address = nullptr; ///< anywhere in the page
     int Thread = 0;               ///< the kernel's number of the thread that waits
-    std::uint32_t Ticket = 0;     ///< the handler's own
   };
 
   enum class Reply
@@ -38,49 +37,43 @@ public:
     Refused  ///< no business of ours: the thread gets SIGSEGV, as for any other bad address
   };
 
-  virtual ~PageFaults() = default;
+  /// Throws Error with a remedy when the kernel has no userfaultfd or does not allow it.
+  PageFaults();
+  ~PageFaults();
+  PageFaults(const PageFaults&) = delete;
+  PageFaults& operator=(const PageFaults&) = delete;
 
-  /// Automatic tries both. Throws Error when the system does not allow what is asked for.
-  static std::unique_ptr<PageFaults> Create(FaultHandling handling);
-
-  /// UserFaultFd or Signal.
-  virtual FaultHandling GetKind() const = 0;
-  /// For the user.
-  virtual std::string GetText() const = 0;
-
-  /// Takes over whole pages of an AddressRange; all are absent. Throws Error.
-  virtual void Attach(std::byte* begin, std::size_t bytes) = 0;
+  /// Takes over whole pages of an AddressRange; all are absent. Throws Error, std::bad_alloc.
+  void Attach(std::byte* begin, std::size_t bytes);
   /// The pages may no longer be touched. Exactly what was attached; nobody waits there. Does nothing
   /// in a process made by fork.
-  virtual void Detach(std::byte* begin) noexcept = 0;
-
-  /// Before a frame. Returns how many separate runs of present pages there may be, `runs` being
-  /// there already. Throws Error when there may be none.
-  virtual std::size_t Open(std::size_t runs) = 0;
-  /// After a frame: until the next one, a fault is an error of the program.
-  virtual void Close() noexcept = 0;
+  void Detach(std::byte* begin) noexcept;
 
   /// Absent pages become these `count` bytes, and zeros up to the end of the last page. Threads that
-  /// wait for them may go on, but are not told (Answer). Throws std::bad_alloc, Error; the pages are
-  /// absent then.
-  virtual void Place(std::byte* begin, const std::byte* bytes, std::size_t count) = 0;
-  /// Absent pages become zeros, at the expense of no memory.
-  virtual void PlaceZeros(std::byte* begin, std::size_t bytes) = 0;
-  /// Placed pages become absent, and their memory is free.
-  virtual void Remove(std::byte* begin, std::size_t bytes) noexcept = 0;
-  /// As Remove, for what PlaceZeros made.
-  virtual void RemoveZeros(std::byte* begin, std::size_t bytes) noexcept = 0;
+  /// wait for them go on. Throws std::bad_alloc, Error; the pages are absent then.
+  void Place(std::byte* begin, const std::byte* bytes, std::size_t count);
+  /// Absent pages become zeros, at the expense of no memory. Throws as Place.
+  void PlaceZeros(std::byte* begin, std::size_t bytes);
+  /// Pages become absent, and their memory is free.
+  void Remove(std::byte* begin, std::size_t bytes) noexcept;
 
   /// To every fault exactly once.
-  virtual void Answer(const Fault& fault, Reply reply) noexcept = 0;
+  void Answer(const Fault& fault, Reply reply) noexcept;
 
   /// Waits, and replaces `faults` by new ones, no more than LargestReport; false after StopWaiting.
-  virtual bool WaitForFaults(std::vector<Fault>& faults) = 0;
-  static constexpr std::size_t LargestReport = 256;
-  virtual void StopWaiting() noexcept = 0;
+  bool WaitForFaults(std::vector<Fault>& faults);
+  static constexpr std::size_t LargestReport = 16;
+  void StopWaiting() noexcept;
 
-protected:
-  static constexpr std::size_t AnyNumberOfRuns = std::numeric_limits<std::size_t>::max();
+private:
+  void Copy(std::byte* begin, const std::byte* bytes, std::size_t count);
+  void Wake(std::byte* begin, std::size_t bytes) noexcept;
+
+  pid_t Process;
+  int Descriptor = -1;
+  int StopDescriptor = -1; ///< eventfd
+  std::map<std::byte*, std::size_t> Ranges;
+  std::vector<std::byte> LastPage; ///< of a block that does not end at a page's end
 };
 
 } // namespace dsm

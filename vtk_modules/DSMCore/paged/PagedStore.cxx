@@ -217,21 +217,6 @@ const PagedStore::Settings& PagedStore::GetSettings() const
   return this->Self->Current;
 }
 
-std::string PagedStore::GetFaultHandlingText() const
-{
-  if (this->Self->Faults)
-  {
-    return this->Self->Faults->GetText();
-  }
-  return this->Self->FaultsRefusal.empty() ? "no page faults, since there is one rank only"
-                                           : this->Self->FaultsRefusal;
-}
-
-FaultHandling PagedStore::GetFaultHandling() const
-{
-  return this->Self->Faults ? this->Self->Faults->GetKind() : FaultHandling::Automatic;
-}
-
 std::shared_ptr<BlockSegment> PagedStore::Publish(std::string_view what, BlockDirectory directory,
   FragmentSource& source, FragmentSink& sink, FunctionRef<void(double)> progress)
 {

@@ -11,7 +11,6 @@
 #include "DSMCore/fetch/FetchWorkers.h"
 #include "DSMCore/fetch/LineStatus.h"
 #include "DSMCore/memory/AddressRange.h"
-#include "DSMCore/paged/FaultHandling.h"
 #include "DSMCore/paged/PageFaults.h"
 #include "DSMCore/paged/PageHint.h"
 #include "DSMCore/paged/PageLayout.h"
@@ -50,8 +49,7 @@ namespace dsm
 /// - A process made by fork must leave the store alone; reading remote blocks ends it by SIGSEGV.
 ///   What this rank owns can be read there. It never disturbs the parent.
 ///
-/// Several stores may share a messenger; one of them at a time has a frame open. Several stores of
-/// one process share the handler of SIGSEGV (see SegmentationSignal).
+/// Several stores may share a messenger; one of them at a time has a frame open.
 class PagedStore
 {
 public:
@@ -62,8 +60,6 @@ public:
     std::size_t CacheBytes = std::size_t(64) << 20;
     /// Number of tracing threads.
     int Workers = 1;
-    /// Cannot change while segments are published.
-    FaultHandling Handling = FaultHandling::Automatic;
     /// Never look whether a block is here before it is read.
     bool PureFaulting = false;
     /// Who of them runs: a worker gives its slot to others while it waits. Null: all run.
@@ -85,19 +81,13 @@ public:
   PagedStore& operator=(const PagedStore&) = delete;
 
   /// Between frames, on the communication thread; local. Drops cached blocks over a smaller budget.
-  /// Throws Error within a frame, for less than one worker, and for another handling of faults while
-  /// there are segments.
+  /// Throws Error within a frame, and for less than one worker.
   void SetSettings(const Settings& settings);
   const Settings& GetSettings() const;
 
-  /// How faults are handled on this rank, and why; for the user. With one rank nothing can fault.
-  std::string GetFaultHandlingText() const;
-  /// UserFaultFd or Signal; Automatic as long as nothing can fault, or neither is possible.
-  FaultHandling GetFaultHandling() const;
-
   /// Collective. Sets out addresses for all blocks and memory for this rank's, feeds every rank's
   /// fragments to their owners in bounded batches, and seals. Throws the same Error on every rank
-  /// when any rank fails; too when a rank cannot handle faults as the settings say.
+  /// when any rank fails; too when the system of a rank refuses userfaultfd (see PageFaults).
   /// `progress` (may be empty) is called now and then with this rank's part done, in [0, 1].
   std::shared_ptr<BlockSegment> Publish(std::string_view what, BlockDirectory directory,
     FragmentSource& source, FragmentSink& sink, FunctionRef<void(double)> progress = {});
@@ -115,13 +105,12 @@ public:
   void Refresh(
     std::string_view what, const BlockSegment& segment, const std::vector<bool>& changed);
 
-  /// See ObjectStore. Never where faults are signalled, since it is not known before whether the address
-  /// space has room.
+  /// See ObjectStore.
   bool MayBeginFrame() const;
 
   /// Collective. Resets the counters of the frame; from now on workers may Acquire, and this rank
   /// serves others. Throws Error, on every rank alike, when a rank's cache cannot hold its largest
-  /// block, or its address space has too many mappings (see SignalFaults). `agreed`: as ObjectStore's.
+  /// block. `agreed`: as ObjectStore's.
   void BeginFrame(bool agreed = false);
   /// Communication thread, often: sends what the workers miss. Returns whether it did anything.
   /// (Serving others happens in Messenger::Progress, through handlers.)

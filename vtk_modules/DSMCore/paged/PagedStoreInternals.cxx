@@ -2,7 +2,6 @@
 #include "DSMCore/paged/PagedStoreInternals.h"
 
 #include "DSMCore/base/NanosecondsSince.h"
-#include "DSMCore/paged/SegmentationSignal.h"
 
 #include <sys/syscall.h>
 #include <unistd.h>
@@ -46,10 +45,6 @@ PagedStore::Internals::~Internals()
 
 void PagedStore::Internals::Enter(Worker& worker)
 {
-  if (this->Faults && this->Faults->GetKind() == FaultHandling::Signal)
-  {
-    SegmentationSignal::Unblock();
-  }
   worker.Thread.store(GetThread(), std::memory_order_relaxed);
 }
 
@@ -113,22 +108,12 @@ void PagedStore::Internals::Configure(const Settings& settings)
   {
     throw Error("The settings of a store cannot change within a frame.");
   }
-  const bool changes = settings.Handling != this->Current.Handling;
-  if (changes && !this->Segments.IsEmpty())
-  {
-    throw Error("The handling of page faults cannot change while data is loaded.");
-  }
-  if (changes && this->Faults)
-  {
-    this->StopListening();
-    this->Faults.reset();
-  }
-  if (this->Messages.GetSize() > 1 && (changes || !this->Faults))
+  if (this->Messages.GetSize() > 1 && !this->Faults)
   {
     this->FaultsRefusal.clear();
     try
     {
-      this->CreateFaults(settings.Handling);
+      this->CreateFaults();
     }
     catch (const std::exception& exception)
     {
@@ -142,7 +127,7 @@ void PagedStore::Internals::Configure(const Settings& settings)
     this->Workers.Resize<Worker>(settings.Workers);
     this->Requests.SetReplyBytes(settings.ReplyBytes);
     this->Cache.SetCapacity(settings.CacheBytes);
-    while (this->Cache.GetUsed() > settings.CacheBytes && this->TryEvict(false))
+    while (this->Cache.GetUsed() > settings.CacheBytes && this->TryEvict())
     {
     }
   }
@@ -163,9 +148,9 @@ void PagedStore::Internals::CheckFaults() const
   }
 }
 
-void PagedStore::Internals::CreateFaults(FaultHandling handling)
+void PagedStore::Internals::CreateFaults()
 {
-  this->Faults = PageFaults::Create(handling);
+  this->Faults = std::make_shared<PageFaults>();
   try
   {
     this->StartListening();
@@ -182,7 +167,7 @@ void PagedStore::Internals::RequireFaults()
   this->CheckFaults();
   if (!this->Faults)
   {
-    this->CreateFaults(this->Current.Handling);
+    this->CreateFaults();
   }
 }
 
@@ -259,46 +244,14 @@ const std::byte* PagedStore::Internals::FindOwned(const BlockWant& block) const
   return isHere ? segment.GetAddress(block.Id) : nullptr;
 }
 
-bool PagedStore::Internals::MayBeginFrame() const
-{
-  return this->Faults == nullptr && this->BlockFetcher::MayBeginFrame();
-}
-
-void PagedStore::Internals::Prepare()
-{
-  if (this->Faults)
-  {
-    this->LargestRuns = this->Faults->Open(this->Runs);
-  }
-}
-
-void PagedStore::Internals::Unprepare()
-{
-  if (this->Faults)
-  {
-    this->Faults->Close();
-  }
-}
-
 // -- Blocks, on the communication thread -----------------------------------------------------------
 
 bool PagedStore::Internals::MakeRoom(const BlockWant& block)
 {
-  // Every block under way may become a run of its own, and one that leaves the middle of a run
-  // makes two of it.
-  const auto isTight = [this](std::size_t more)
-  { return this->Runs + this->Reads.size() + more > this->LargestRuns; };
-  while (isTight(1))
-  {
-    if (!this->TryEvict(true))
-    {
-      return false;
-    }
-  }
   const std::size_t footprint = this->GetFootprint(block);
   while (!this->Cache.TryReserve(footprint))
   {
-    if (!this->TryEvict(isTight(2)))
+    if (!this->TryEvict())
     {
       return false;
     }
@@ -311,18 +264,12 @@ void PagedStore::Internals::GiveRoomBack(const BlockWant& block) noexcept
   this->Cache.Release(this->GetFootprint(block));
 }
 
-bool PagedStore::Internals::TryEvict(bool atEndOfRun)
+bool PagedStore::Internals::TryEvict()
 {
-  std::function<bool(const PageCache::Slot&)> mayGo;
-  if (atEndOfRun)
-  {
-    mayGo = [this](const PageCache::Slot& slot)
-    { return this->CountNeighbours(*slot.From, slot.Id) < 2; };
-  }
   const auto latest = this->Phase == FramePhase::Open ? Clock::now() - this->Hold : Clock::now();
   this->Evicted.emplace_back();
   PageCache::Slot& slot = this->Evicted.back();
-  if (!this->Cache.TryEvict(latest, mayGo, slot))
+  if (!this->Cache.TryEvict(latest, slot))
   {
     this->Evicted.pop_back();
     return false;
@@ -337,7 +284,6 @@ void PagedStore::Internals::MarkEvicted(const PageCache::Slot& slot)
   LineStatus& line = slot.From->Lines[slot.Id];
   line.MoveTo(LineState::Absent);
   line.Use.store(BlockUse::Idle, std::memory_order_relaxed);
-  this->Runs = this->Runs + this->CountNeighbours(*slot.From, slot.Id) - 1;
 }
 
 void PagedStore::Internals::EndService()
@@ -348,23 +294,6 @@ void PagedStore::Internals::EndService()
     this->Faults->Remove(slot.From->GetAddress(slot.Id), slot.Footprint);
   }
   this->Evicted.clear();
-}
-
-std::size_t PagedStore::Internals::CountNeighbours(const Segment& segment, BlockId id) const
-{
-  const std::uint64_t begin = segment.Layout.GetOffset(id);
-  const std::uint64_t end = begin + segment.Layout.GetFootprint(id);
-  std::size_t count = 0;
-  BlockId neighbour = 0;
-  if (begin > 0 && segment.Layout.Find(begin - 1, neighbour))
-  {
-    count += segment.Lines[neighbour].State == LineState::Cached ? 1 : 0;
-  }
-  if (segment.Layout.Find(end, neighbour))
-  {
-    count += segment.Lines[neighbour].State == LineState::Cached ? 1 : 0;
-  }
-  return count;
 }
 
 void PagedStore::Internals::Land(const BlockWant& block, const std::byte* bytes, BlockMemory&)
@@ -382,7 +311,6 @@ void PagedStore::Internals::Show(const BlockWant& block, BlockMemory&)
 {
   const Segment& segment = GetSegment(block);
   this->Cache.Insert({ &segment, block.Id, this->GetFootprint(block), Clock::now() });
-  this->Runs = this->Runs + 1 - this->CountNeighbours(segment, block.Id);
   LineStatus& line = this->GetLine(block);
   line.MoveTo(LineState::Cached);
   if (!segment.IsPure)
@@ -486,7 +414,6 @@ void PagedStore::Internals::Closed()
     this->Waiting.clear();
     return;
   }
-  this->Faults->Close();
   for (const Stopped& stopped : this->Waiting) // though all workers should have stopped
   {
     this->Faults->Answer(stopped.Fault, PageFaults::Reply::Refused);
@@ -507,7 +434,7 @@ void PagedStore::Internals::RemoveZeros()
     {
       if (segment.Lines[id].State == LineState::Zeroed)
       {
-        this->Faults->RemoveZeros(segment.GetAddress(id), segment.Layout.GetFootprint(id));
+        this->Faults->Remove(segment.GetAddress(id), segment.Layout.GetFootprint(id));
         segment.Lines[id].MoveTo(LineState::Absent);
       }
     }

@@ -40,13 +40,11 @@ public:
   void Leave(Worker& worker);
 
   void Configure(const Settings& settings);
-  /// Throws Error when faults cannot be handled as they should, or this process is a fork of the
-  /// store's.
+  /// Throws Error when the system refuses userfaultfd, or this process is a fork of the store's.
   void CheckFaults() const;
   /// The same where blocks fault though there is one rank.
   void RequireFaults();
 
-  bool MayBeginFrame() const override;
   /// Any thread: whether a frame runs that was not cancelled.
   bool IsEntranceOpen() const { return this->Entrance.load(std::memory_order_acquire); }
 
@@ -100,8 +98,6 @@ private:
     return GetSegment(block).Source.get();
   }
   void CheckBudget() const override;
-  void Prepare() override;
-  void Unprepare() override;
   bool MakeRoom(const BlockWant& block) override;
   void GiveRoomBack(const BlockWant& block) noexcept override;
   void Land(const BlockWant& block, const std::byte* bytes, BlockMemory& memory) override;
@@ -121,13 +117,11 @@ private:
 
   // -- Under the lock --
   /// Puts what was evicted behind Evicted; false when there is nothing.
-  bool TryEvict(bool atEndOfRun);
-  /// Cached blocks right before and behind a block's pages.
-  std::size_t CountNeighbours(const Segment& segment, BlockId id) const;
+  bool TryEvict();
   void MarkEvicted(const PageCache::Slot& slot);
   void RemoveZeros();
 
-  void CreateFaults(FaultHandling handling);
+  void CreateFaults();
   bool IsAnyFromSource() const;
   /// The largest block that comes and goes, in whole pages.
   std::size_t GetLargestBlock() const;
@@ -149,9 +143,6 @@ private:
   std::atomic<bool> HasListenerFailed{ false };
   std::condition_variable HasClosed; ///< or was cancelled: Phase is Open no more
   bool HasZeros = false;             ///< there are lines that are Zeroed
-  /// Runs of neighbouring cached blocks: each takes mappings of the process.
-  std::size_t Runs = 0;
-  std::size_t LargestRuns = 0;
   /// A block stays at least this long, so that the threads that were woken for it get to read it.
   static constexpr std::chrono::microseconds ShortestHold{ 10 };
   static constexpr std::chrono::microseconds LongestHold{ 4000 };

@@ -153,7 +153,6 @@ void BlockStore::Configure()
     paged.Workers = objects.Workers;
     paged.Slots = this->Slots;
     paged.Prefetch = this->Current.Prefetch;
-    paged.Handling = this->Current.Faults;
     paged.PureFaulting = this->Current.PureFaulting;
     this->Paged->SetSettings(paged);
   }

@@ -4,7 +4,6 @@
 
 #include "DSMCore/base/Counters.h"
 #include "DSMCore/base/WorkerSlots.h"
-#include "DSMCore/paged/FaultHandling.h"
 #include "DSMCore/paged/PagedStore.h"
 #include "DSMCore/publish/BlockDirectory.h"
 #include "DSMCore/publish/BlockSegment.h"
@@ -63,7 +62,6 @@ public:
     /// published from then on; on every rank, or on none.
     std::string ScratchDirectory;
     /// Page based only; see PagedStore.
-    FaultHandling Faults = FaultHandling::Automatic;
     bool PureFaulting = false;
   };
 
