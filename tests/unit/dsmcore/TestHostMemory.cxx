@@ -4,6 +4,10 @@
 
 #include <gtest/gtest.h>
 
+#include <fcntl.h>
+#include <sys/file.h>
+#include <unistd.h>
+
 #include <algorithm>
 #include <atomic>
 #include <chrono>
@@ -54,6 +58,20 @@ TEST(HostMemory, IsNotWaitedForWithoutEnd)
   const Clock::time_point begin = Clock::now();
   const dsm::HostTurn other(patience);
   EXPECT_GE(Clock::now() - begin, patience);
+}
+
+/// Any user can lock the folder.
+TEST(HostMemory, IsNotHeldUpByLocksOfOtherUsers)
+{
+  using Clock = std::chrono::steady_clock;
+  const int folder = open("/dev/shm", O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  flock(folder, LOCK_EX | LOCK_NB);
+  const Clock::time_point begin = Clock::now();
+  {
+    const dsm::HostTurn turn;
+  }
+  EXPECT_LT(Clock::now() - begin, std::chrono::seconds(10));
+  close(folder);
 }
 
 } // namespace

@@ -7,10 +7,10 @@
 namespace dsm
 {
 
-/// While it lives, no other process on this host has one, and no other thread of this process: ranks that ask how much
-/// memory is left, and take some of it, do so one after another. Any thread. To be held for a short time only: who has
-/// waited for so long goes on without, such as for a process that is stopped; so does everybody where the host has
-/// nothing (/dev/shm) to agree by.
+/// While it lives, no other process of this user on this host has one, and no other thread of this process: ranks that ask
+/// how much memory is left, and take some of it, do so one after another. Any thread. To be held for a short time only: who
+/// has waited for so long goes on without, such as for a process that is stopped; so does everybody where no file
+/// /dev/shm/dsm-UID.lock can be had that only this user can open.
 class HostTurn
 {
 public:
@@ -20,7 +20,7 @@ public:
   HostTurn& operator=(const HostTurn&) = delete;
 
 private:
-  int Folder; ///< locked
+  int File; ///< locked
 };
 
 } // namespace dsm
