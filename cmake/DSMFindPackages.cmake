@@ -28,6 +28,9 @@ if (PkgConfig_FOUND)
   endif ()
 endif ()
 find_package(nlohmann_json REQUIRED)
+if (TARGET DSM::HDF5 OR DSM_BUILD_BENCHMARKS OR DSM_BUILD_TESTING)
+  find_package(CLI11 REQUIRED) # of dsm_convert and dsm_bench
+endif ()
 
 # Distributions build ParaView against their own Python; another one in the PATH does not fit.
 if (NOT DEFINED Python3_EXECUTABLE AND EXISTS "/usr/bin/python3")

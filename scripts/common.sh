@@ -12,7 +12,7 @@ packages=(
   g++ cmake ninja-build
   paraview paraview-dev python3-paraview
   libopenmpi-dev openmpi-bin
-  libglm-dev libhwy-dev nlohmann-json3-dev
+  libglm-dev libhwy-dev nlohmann-json3-dev libcli11-dev libxxhash-dev
   pkg-config libhdf5-dev zlib1g-dev libdeflate-dev libblosc-dev libzstd-dev
   libx11-dev libxi-dev libgl-dev libopengl-dev libglew-dev libpng-dev libpython3-dev
   xvfb xauth libgl1-mesa-dri

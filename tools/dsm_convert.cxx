@@ -5,50 +5,24 @@
 #include "DSMCore/transport/Messenger.h"
 #include "DSMCore/transport/MpiTransport.h"
 #include "DSMVolumeFiles/write/ConvertVolume.h"
-#include "tools/OptionValues.h"
 
-#include <getopt.h>
+#include <CLI/CLI.hpp>
 
 #include <algorithm>
 #include <cstdlib>
 #include <filesystem>
 #include <functional>
 #include <iostream>
+#include <limits>
 #include <map>
 #include <new>
-#include <sstream>
 #include <utility>
 
 namespace
 {
 
-constexpr char Usage[] =
-  R"(Writes a volume in bricks, so that its first picture reads only what it shows.
-usage: dsm_convert [options] IN OUT
-   or: mpirun -np 4 dsm_convert [options] IN OUT
-  IN   any volume that DSM Volume Reader reads: HDF5, Zarr (its folder), NRRD, MetaImage, raw
-  OUT  the file to write, such as volume.vtkhdf or volume.h5: VTK's ImageData in HDF5
-When it is ended early, the same call goes on where it was.
-  --arrays A,B        only these arrays (default: all)
-  --step N            of a file with several time steps (default 0)
-  --level N           of a file with several levels of detail (default 0, the finest)
-  --dataset NAME      of an HDF5 file that is not VTK's
-  --levels N          coarser ones to write beside the values, each with half the samples along each axis, for while
-                      the camera moves; all: until one is a single brick (default 0)
-  --compression KIND  none (default), zstd, or deflate, which programs without HDF5's plugin for zstd read
-  --brick N           cells along an axis of a brick (default: the renderer's own, 16 to 32)
-  --memory MIB        of values in memory, on each rank (default 512)
-  --threads N         of each rank (default: the cores of its host, shared out)
-  --raw-size X,Y,Z    of a file of bare values: its samples along each axis
-  --raw-type TYPE     int8, uint8, int16, uint16, int32, uint32, int64, uint64, float32 or float64
-  --raw-header BYTES  before the first value (default 0)
-  --raw-big-endian    the high byte comes first
-  --spacing X,Y,Z     of the samples of such a file (default 1,1,1)
-  --quiet             tell nothing of how far it is
-  --help
-)";
-
 constexpr std::size_t MostMebibytes = std::size_t(1) << 40;
+constexpr int Most = std::numeric_limits<int>::max();
 constexpr int MostThreads = 1 << 12;
 
 struct Options
@@ -60,156 +34,105 @@ struct Options
   vol::ConvertOptions Convert;
   bool HasStep = false; ///< --step is given
   bool IsQuiet = false;
-  bool WantsHelp = false;
 };
 
 template <class T>
-std::vector<T> ToThree(const std::string& name, const std::string& text, T least)
+void AddChoice(CLI::App& app, const std::string& name, T& value,
+  const std::map<std::string, T>& choices, const std::string& text)
 {
-  const std::vector<T> numbers = OptionValues::ToNumbers<T>(name, text, least);
-  if (numbers.size() != 3)
-  {
-    throw dsm::Error(name + " takes three numbers with commas, such as 512,512,400.");
-  }
-  return numbers;
+  app
+    .add_option_function<std::string>(
+      name, [&value, choices](const std::string& word) { value = choices.at(word); }, text)
+    ->check(CLI::IsMember(choices));
 }
 
-std::vector<std::string> Split(const std::string& text)
+/// Three numbers with commas between them.
+template <class T>
+void AddThree(CLI::App& app, const std::string& name, T* numbers, const std::string& text)
 {
-  std::vector<std::string> parts;
-  std::istringstream stream(text);
-  for (std::string part; std::getline(stream, part, ',');)
+  const auto set = [name, numbers](const std::vector<T>& given)
   {
-    parts.push_back(part);
-  }
-  return parts;
+    if (given.size() != 3 ||
+      !std::all_of(given.begin(), given.end(), [](T number) { return number > 0; }))
+    {
+      throw CLI::ValidationError(name, "takes three numbers above 0 with commas, such as 1,1,2");
+    }
+    std::copy(given.begin(), given.end(), numbers);
+  };
+  app.add_option_function<std::vector<T>>(name, set, text)->delimiter(',')->allow_extra_args(false);
 }
 
-Options Parse(int argc, char** argv)
+/// Throws CLI::ParseError.
+Options Parse(CLI::App& app, int argc, char** argv)
 {
   Options options;
-  options.Convert.Threads = 0;
+  vol::ConvertOptions& convert = options.Convert;
+  vol::OpenOptions::Raw& bare = options.Open.Bare;
+  const CLI::Range atLeastZero(0, Most, "N");
+  convert.Threads = 0;
+  std::size_t mebibytes = 0;
+  app
+    .add_option("IN", options.In,
+      "any volume that DSM Volume Reader reads: HDF5, Zarr (its folder), NRRD, MetaImage, raw")
+    ->required();
+  app
+    .add_option("OUT", options.Out,
+      "the file to write, such as volume.vtkhdf or volume.h5: VTK's ImageData in HDF5")
+    ->required();
+  app.add_option("--arrays", convert.Arrays, "only these arrays, with commas (default: all)")
+    ->delimiter(',')
+    ->allow_extra_args(false);
+  CLI::Option* const step =
+    app.add_option("--step", convert.Step, "of a file with several time steps (default 0)")
+      ->check(atLeastZero);
+  app
+    .add_option("--level", options.Open.Level,
+      "of a file with several levels of detail (default 0, the finest)")
+    ->check(atLeastZero);
+  app.add_option("--dataset", options.Open.Dataset, "of an HDF5 file that is not VTK's");
+  app
+    .add_option("--levels", convert.Levels,
+      "coarser ones to write beside the values, each with half the samples along each axis, for "
+      "while the camera moves; all: until one is a single brick (default 0)")
+    ->transform(
+      CLI::Transformer(std::map<std::string, int>{ { "all", vol::WriteOptions::AllLevels } }))
+    ->check(atLeastZero);
+  AddChoice<vol::Compression>(app, "--compression", convert.Pressed,
+    { { "none", vol::Compression::None }, { "zstd", vol::Compression::Zstd },
+      { "deflate", vol::Compression::Deflate } },
+    "none (default), zstd, or deflate, which programs without HDF5's plugin for zstd read");
+  app
+    .add_option("--brick", convert.BrickEdge,
+      "cells along an axis of a brick (default: the renderer's own, 16 to 32)")
+    ->check(CLI::Range(1, Most, "N"));
+  app.add_option("--memory", mebibytes, "MiB of values in memory, on each rank (default 512)")
+    ->check(CLI::Range(std::size_t(1), MostMebibytes, "MIB"));
+  app
+    .add_option(
+      "--threads", convert.Threads, "of each rank (default: the cores of its host, shared out)")
+    ->check(CLI::Range(1, MostThreads, "N"));
+  app.add_flag("--quiet", options.IsQuiet, "tell nothing of how far it is");
+
+  CLI::App& raw = *app.add_option_group("Of a file of bare values");
+  AddThree(raw, "--raw-size", &bare.Samples[0], "its samples along each axis, with commas");
   using Type = bricks::ScalarType;
-  using Setter = std::function<void(const std::string& name, const std::string& text)>;
-  struct Option
+  AddChoice<Type>(raw, "--raw-type", bare.Type,
+    { { "int8", Type::Int8 }, { "uint8", Type::UInt8 }, { "int16", Type::Int16 },
+      { "uint16", Type::UInt16 }, { "int32", Type::Int32 }, { "uint32", Type::UInt32 },
+      { "int64", Type::Int64 }, { "uint64", Type::UInt64 }, { "float32", Type::Float32 },
+      { "float64", Type::Float64 } },
+    "of its values");
+  raw.add_option("--raw-header", bare.HeaderBytes, "bytes before the first value (default 0)")
+    ->check(CLI::Range(std::int64_t(0), std::numeric_limits<std::int64_t>::max(), "BYTES"));
+  raw.add_flag("--raw-big-endian", bare.BigEndian, "the high byte comes first");
+  AddThree(raw, "--spacing", bare.Spacing, "of its samples, with commas (default 1,1,1)");
+
+  app.parse(argc, argv);
+  convert.MemoryBytes = mebibytes > 0 ? mebibytes << 20 : convert.MemoryBytes;
+  options.HasStep = step->count() > 0;
+  for (const CLI::Option* option : raw.get_options())
   {
-    bool TakesText;
-    Setter Set;
-  };
-  const std::map<std::string, Option> known = {
-    { "arrays", { true, [&](auto&, auto& text) { options.Convert.Arrays = Split(text); } } },
-    { "step",
-      { true,
-        [&](auto& name, auto& text)
-        {
-          options.Convert.Step = OptionValues::ToNumber(name, text, 0);
-          options.HasStep = true;
-        } } },
-    { "level",
-      { true,
-        [&](auto& name, auto& text)
-        { options.Open.Level = OptionValues::ToNumber(name, text, 0); } } },
-    { "levels",
-      { true,
-        [&](auto& name, auto& text)
-        {
-          options.Convert.Levels =
-            text == "all" ? vol::WriteOptions::AllLevels : OptionValues::ToNumber(name, text, 0);
-        } } },
-    { "dataset", { true, [&](auto&, auto& text) { options.Open.Dataset = text; } } },
-    { "compression",
-      { true,
-        [&](auto& name, auto& text)
-        {
-          options.Convert.Pressed = OptionValues::ToChoice<vol::Compression>(name, text,
-            { { "none", vol::Compression::None }, { "zstd", vol::Compression::Zstd },
-              { "deflate", vol::Compression::Deflate } });
-        } } },
-    { "brick",
-      { true,
-        [&](auto& name, auto& text)
-        { options.Convert.BrickEdge = OptionValues::ToNumber(name, text, 1); } } },
-    { "memory",
-      { true,
-        [&](auto& name, auto& text)
-        {
-          options.Convert.MemoryBytes =
-            OptionValues::ToNumber<std::size_t>(name, text, 1, MostMebibytes) << 20;
-        } } },
-    { "threads",
-      { true,
-        [&](auto& name, auto& text)
-        { options.Convert.Threads = OptionValues::ToNumber(name, text, 1, MostThreads); } } },
-    { "raw-size",
-      { true,
-        [&](auto& name, auto& text)
-        {
-          const auto samples = ToThree<std::int64_t>(name, text, 1);
-          options.Open.Bare.Samples = { samples[0], samples[1], samples[2] };
-        } } },
-    { "raw-type",
-      { true,
-        [&](auto& name, auto& text)
-        {
-          options.Open.Bare.Type = OptionValues::ToChoice<Type>(name, text,
-            { { "int8", Type::Int8 }, { "uint8", Type::UInt8 }, { "int16", Type::Int16 },
-              { "uint16", Type::UInt16 }, { "int32", Type::Int32 }, { "uint32", Type::UInt32 },
-              { "int64", Type::Int64 }, { "uint64", Type::UInt64 }, { "float32", Type::Float32 },
-              { "float64", Type::Float64 } });
-        } } },
-    { "raw-header",
-      { true,
-        [&](auto& name, auto& text) {
-          options.Open.Bare.HeaderBytes = OptionValues::ToNumber<std::uint64_t>(name, text, 0);
-        } } },
-    { "raw-big-endian", { false, [&](auto&, auto&) { options.Open.Bare.BigEndian = true; } } },
-    { "spacing",
-      { true,
-        [&](auto& name, auto& text)
-        {
-          const auto spacing = ToThree(name, text, 0.0);
-          if (std::count(spacing.begin(), spacing.end(), 0.0) > 0)
-          {
-            throw dsm::Error(name + " takes three numbers above 0, not \"" + text + "\".");
-          }
-          std::copy(spacing.begin(), spacing.end(), options.Open.Bare.Spacing);
-        } } },
-    { "quiet", { false, [&](auto&, auto&) { options.IsQuiet = true; } } },
-    { "help", { false, [&](auto&, auto&) { options.WantsHelp = true; } } },
-  };
-  std::vector<option> list;
-  for (const auto& [name, entry] : known)
-  {
-    list.push_back({ name.c_str(), entry.TakesText ? required_argument : no_argument, nullptr, 0 });
-  }
-  list.push_back({});
-  opterr = 0;
-  int index = 0;
-  for (int found = 0; (found = getopt_long(argc, argv, "h", list.data(), &index)) != -1;)
-  {
-    if (found == 'h')
-    {
-      options.WantsHelp = true;
-      continue;
-    }
-    if (found == '?')
-    {
-      throw dsm::Error("'" + std::string(argv[optind - 1]) +
-        "' is no option, or lacks its value; --help lists them.");
-    }
-    const std::string name = list[static_cast<std::size_t>(index)].name;
-    known.at(name).Set("--" + name, optarg ? optarg : "");
-    const bool isOfBareValues = name.rfind("raw-", 0) == 0 || name == "spacing";
-    options.OfBareValues = isOfBareValues ? "--" + name : options.OfBareValues;
-  }
-  if (!options.WantsHelp && argc - optind != 2)
-  {
-    throw dsm::Error("Name the file to read and the file to write; --help tells more.");
-  }
-  if (!options.WantsHelp)
-  {
-    options.In = argv[optind];
-    options.Out = argv[optind + 1];
+    options.OfBareValues = option->count() > 0 ? option->get_name() : options.OfBareValues;
   }
   return options;
 }
@@ -270,18 +193,19 @@ void Convert(Options& options, dsm::Messenger& messenger)
 /// Returns whether the command succeeds. An error is printed by the first rank.
 bool Run(int argc, char** argv, dsm::Messenger& messenger)
 {
+  CLI::App app(
+    "Writes a volume in bricks, so that its first picture reads only what it shows, alone or under "
+    "mpirun. When it is ended early, the same call goes on where it was.");
   std::string failure;
   try
   {
-    Options options = Parse(argc, argv);
-    if (!options.WantsHelp)
-    {
-      Convert(options, messenger);
-    }
-    else if (messenger.GetRank() == 0)
-    {
-      std::cout << Usage;
-    }
+    Options options = Parse(app, argc, argv);
+    Convert(options, messenger);
+    return true;
+  }
+  catch (const CLI::CallForHelp&)
+  {
+    std::cout << (messenger.GetRank() == 0 ? app.help() : "");
     return true;
   }
   catch (const std::bad_alloc&)

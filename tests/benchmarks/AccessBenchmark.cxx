@@ -65,49 +65,37 @@ void Print(std::ostream& out, const std::string& name, const HitCost& cost)
 
 } // namespace
 
-const char* AccessBenchmark::Usage()
+void AccessBenchmark::Options::AddTo(CLI::App& app)
 {
-  return "usage: dsm_bench access [options], alone or under mpirun\n"
-         "  --sizes A[,B..]     MiB of data (default 128,1024)\n"
-         "  --threads A[,B..]   tracing threads of rank 0, which reads (default 1,2)\n"
-         "  --accesses N        hits of each thread in a round (default 2000000)\n"
-         "  --misses N          misses (default 4000)\n"
-         "  --block BYTES       a power of two (default 32768)\n"
-         "  --repeat R          rounds, of which the fastest counts (default 5)\n"
-         "  --json FILE         writes the result; - is standard output\n";
-}
-
-Options AccessBenchmark::Parse(int argc, char** argv)
-{
-  using namespace OptionValues;
-  Options options;
-  OptionValues::Parse(argc, argv,
-    { { "--sizes",
-        [&](const auto& name, const auto& text)
-        { options.SizesMebibytes = ToNumbers<std::uint64_t>(name, text, 1); } },
-      { "--threads",
-        [&](const auto& name, const auto& text)
-        { options.Threads = ToNumbers<int>(name, text, 1); } },
-      { "--accesses",
-        [&](const auto& name, const auto& text)
-        { options.Accesses = ToNumber<std::uint64_t>(name, text, 1); } },
-      { "--misses",
-        [&](const auto& name, const auto& text)
-        { options.Misses = ToNumber<std::uint64_t>(name, text, 1); } },
-      { "--block",
-        [&](const auto& name, const auto& text)
-        {
-          options.BlockBytes = ToNumber<std::uint32_t>(name, text, 4096);
-          if ((options.BlockBytes & (options.BlockBytes - 1)) != 0)
-          {
-            throw dsm::Error(name + " takes a power of two, not " + text + ".");
-          }
-        } },
-      { "--repeat",
-        [&](const auto& name, const auto& text) { options.Repeat = ToNumber(name, text, 1); } },
-      { "--json", [&](const auto&, const auto& text) { options.Json = text; } } },
-    Usage());
-  return options;
+  app.add_option("--sizes", this->SizesMebibytes, "MiB of data, with commas (default 128,1024)")
+    ->delimiter(',')
+    ->allow_extra_args(false)
+    ->check(CLI::PositiveNumber);
+  app
+    .add_option("--threads", this->Threads,
+      "tracing threads of rank 0, which reads, with commas (default 1,2)")
+    ->delimiter(',')
+    ->allow_extra_args(false)
+    ->check(CLI::PositiveNumber);
+  app.add_option("--accesses", this->Accesses, "hits of each thread in a round")
+    ->capture_default_str()
+    ->check(CLI::PositiveNumber);
+  app.add_option("--misses", this->Misses, "misses")
+    ->capture_default_str()
+    ->check(CLI::PositiveNumber);
+  app.add_option("--block", this->BlockBytes, "bytes of a block")
+    ->capture_default_str()
+    ->check(CLI::Range(4096, 1 << 30))
+    ->check(
+      [](const std::string& text)
+      {
+        const unsigned long bytes = std::stoul(text);
+        return std::string((bytes & (bytes - 1)) != 0 ? "is no power of two" : "");
+      });
+  app.add_option("--repeat", this->Repeat, "rounds, of which the fastest counts")
+    ->capture_default_str()
+    ->check(CLI::PositiveNumber);
+  app.add_option("--json", this->Json, "writes the result to a file; - is standard output");
 }
 
 void AccessBenchmark::Run(const Options& options, dsm::Messenger& messenger)

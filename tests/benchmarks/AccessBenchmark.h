@@ -4,6 +4,8 @@
 
 #include "DSMCore/transport/Messenger.h"
 
+#include <CLI/CLI.hpp>
+
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -22,11 +24,10 @@ public:
     std::uint32_t BlockBytes = 32768; ///< a power of two
     int Repeat = 5;                   ///< rounds, of which the fastest counts
     std::string Json;                 ///< file, or - for standard output; empty: none
-  };
 
-  static const char* Usage();
-  /// Throws dsm::Error naming the argument that is wrong.
-  static Options Parse(int argc, char** argv);
+    /// Adds the options that change this object.
+    void AddTo(CLI::App& app);
+  };
 
   /// Collective. Prints on rank 0.
   static void Run(const Options& options, dsm::Messenger& messenger);

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "BenchmarkMesh.h"
 
-#include "tools/OptionValues.h"
-
 #include "DSMBricks/build/TriangleMeshBuilder.h"
 #include "DSMBricks/build/TriangleReader.h"
 
@@ -97,7 +95,7 @@ BenchmarkMesh::BenchmarkMesh(const std::string& description, int subdivisions)
 {
   const std::string grid = "grid:";
   this->Triangles = description.compare(0, grid.size(), grid) == 0
-    ? CreateGrid(OptionValues::ToNumber<std::uint64_t>("grid", description.substr(grid.size()), 1))
+    ? CreateGrid(std::stoull(description.substr(grid.size())))
     : MeshFile::Read(description);
   this->Triangles = MeshFile::Subdivide(this->Triangles, subdivisions);
   MeshFile::AddNormals(this->Triangles);

@@ -10,14 +10,14 @@
 #include <string>
 #include <vector>
 
-/// What `dsm_bench isosurface` was asked to do; see Usage.
+/// What `dsm_bench isosurface` was asked to do.
 struct BenchmarkOptions : RunOptions
 {
   std::string Volume = "sphere:128:float";
   std::vector<double> Isovalues{ 0.5 };
-  double CacheFraction = 1.0;    ///< of the bytes of all bricks
-  std::uint64_t MemoryBytes = 0; ///< per rank; 0: a part of what the host has
-  int BrickEdge = 0;             ///< cells; 0: the default of the scalar type
+  double CacheFraction = 1.0;  ///< of the bytes of all bricks
+  std::uint64_t Mebibytes = 0; ///< of memory per rank; 0: a part of what the host has
+  int BrickEdge = 0;           ///< cells; 0: the default of the scalar type
   int TileSize = rt::FrameRequest().TileSize;
   bool Shadows = false;     ///< of a lamp beside the camera
   int Occlusion = 0;        ///< ambient occlusion rays for each hit
@@ -27,11 +27,8 @@ struct BenchmarkOptions : RunOptions
   bool TileSeconds = false; ///< the result has those of the tiles
   std::string Picture;      ///< PPM file of the first frame; empty: none
 
-  void AddTo(OptionValues::Setters& setters);
-  static const char* Usage();
-
-  /// Throws dsm::Error naming the argument that is wrong.
-  static BenchmarkOptions Parse(int argc, char** argv);
+  /// Adds the options that change this object.
+  void AddTo(CLI::App& app);
 };
 
 #endif

@@ -8,7 +8,7 @@
 
 #include <string>
 
-/// Publishes the volume that `description` names (see BenchmarkOptions::Usage): each rank makes or
+/// Publishes the volume that `description` names (see BenchmarkOptions::AddTo): each rank makes or
 /// reads a slab of its own. Returns the object without isovalues. Collective; throws dsm::Error.
 rt::LatticeIsosurface PublishBenchmarkVolume(const std::string& description, int brickEdge,
   int threads, dsm::BlockStore& store, dsm::Messenger& messenger);

@@ -88,32 +88,16 @@ void TraceFrame(const std::string& pattern, dsm::Messenger& messenger, Store& st
 
 } // namespace
 
-std::string ConsolidationBenchmark::Usage()
+void ConsolidationBenchmark::Options::AddTo(CLI::App& app)
 {
-  return "usage: dsm_bench consolidation [options], alone or under mpirun: options of isosurface, "
-         "and\n"
-         "  --access P[,Q..]    one, eight, many (default all): how often a brick is acquired\n";
-}
-
-ConsolidationBenchmark::Options ConsolidationBenchmark::Parse(int argc, char** argv)
-{
-  using namespace OptionValues;
-  Options options;
-  options.Overlap = 1;
-  Setters setters{ { "--access",
-    [&](const auto& name, const auto& text)
-    {
-      options.Patterns.clear();
-      std::istringstream stream(text);
-      for (std::string part; std::getline(stream, part, ',');)
-      {
-        options.Patterns.push_back(ToChoice<std::string>(
-          name, part, { { "one", "one" }, { "eight", "eight" }, { "many", "many" } }));
-      }
-    } } };
-  options.AddTo(setters);
-  OptionValues::Parse(argc, argv, setters, Usage().c_str());
-  return options;
+  this->Overlap = 1;
+  this->BenchmarkOptions::AddTo(app);
+  app
+    .add_option(
+      "--access", this->Patterns, "how often a brick is acquired, with commas (default all)")
+    ->delimiter(',')
+    ->allow_extra_args(false)
+    ->check(CLI::IsMember({ "one", "eight", "many" }));
 }
 
 void ConsolidationBenchmark::Run(const Options& options, dsm::Messenger& messenger)

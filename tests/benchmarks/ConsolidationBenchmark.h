@@ -17,11 +17,10 @@ public:
   struct Options : BenchmarkOptions
   {
     std::vector<std::string> Patterns{ "one", "eight", "many" };
-  };
 
-  static std::string Usage();
-  /// Throws dsm::Error naming the argument that is wrong.
-  static Options Parse(int argc, char** argv);
+    /// Adds the options that change this object.
+    void AddTo(CLI::App& app);
+  };
 
   /// Collective. Prints on rank 0.
   static void Run(const Options& options, dsm::Messenger& messenger);

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "MeshBenchmark.h"
 
-#include "tools/OptionValues.h"
-
 #include "DSMCore/store/BlockStore.h"
 #include "DSMRayTracing/frame/FrameGather.h"
 #include "DSMRayTracing/frame/FrameRenderer.h"
@@ -34,7 +32,7 @@ using Json = nlohmann::ordered_json;
 using Clock = std::chrono::steady_clock;
 using Order = BenchmarkMesh::Order;
 
-const std::map<std::string, Order> Orders{ { "sorted", Order::Sorted },
+const std::map<std::string, Order> OrdersByName{ { "sorted", Order::Sorted },
   { "original", Order::Original }, { "random", Order::Random } };
 
 [[maybe_unused]] double SecondsSince(Clock::time_point start)
@@ -44,8 +42,8 @@ const std::map<std::string, Order> Orders{ { "sorted", Order::Sorted },
 
 const std::string& GetText(Order order)
 {
-  return std::find_if(
-    Orders.begin(), Orders.end(), [=](const auto& entry) { return entry.second == order; })
+  return std::find_if(OrdersByName.begin(), OrdersByName.end(),
+    [=](const auto& entry) { return entry.second == order; })
     ->first;
 }
 
@@ -357,59 +355,30 @@ Json CompareWithEmbree(const MeshBenchmark::Options& options, const MeshFile::Me
 
 } // namespace
 
-const char* MeshBenchmark::Usage()
+void MeshBenchmark::Options::AddTo(CLI::App& app)
 {
-  return "usage: dsm_bench mesh [options], alone or under mpirun\n"
-         "  --mesh M            grid:N (2 N^2 triangles; default grid:708), or a PLY or OBJ file\n"
-         "  --subdivide K       cuts every triangle into four, K times (default 0)\n"
-         "  --order O[,O..]     sorted (default), original, random: how triangles share bricks. A "
-         "ray\n"
-         "                      must visit nearly all bricks of a mesh in random order, so take a\n"
-         "                      small one\n"
-         "  --cache-fraction F[,F..]  cache per rank, as a part of the bytes of all bricks\n"
-         "                      (default 1)\n"
-         "  --size WxH          pixels (default 512x512)\n"
-         "  --frames N          camera positions on the way around the mesh (default 8)\n"
-         "  --arc D             degrees of that way (default 360)\n"
-         "  --repeat R          times that the camera takes it; for every position the fastest "
-         "counts\n"
-         "                      (default 3), of accesses and misses those of the last time\n"
-         "  --threads T         tracing threads per rank (default 0: cores / ranks of the host)\n"
-         "  --store S           automatic, replicated, object (default) or paged\n"
-         "  --host-sharing H    on, or off (default): one machine plays many hosts\n"
-         "  --overlap N         workers per thread: while some wait for bricks, others trace "
-         "(default 4)\n"
-         "  --scheduler S       queue (rank 0 deals out tiles) or stealing (default)\n"
-         "  --latency US        microseconds that are added to every message's way (default 0)\n"
-         "  --json FILE         writes the result; - is standard output\n";
-}
-
-MeshBenchmark::Options MeshBenchmark::Parse(int argc, char** argv)
-{
-  using namespace OptionValues;
-  Options options;
-  Setters setters{ { "--mesh", [&](const auto&, const auto& text) { options.Mesh = text; } },
-    { "--subdivide",
-      [&](const auto& name, const auto& text) { options.Subdivisions = ToNumber(name, text, 0); } },
-    { "--arc",
-      [&](const auto& name, const auto& text)
-      { options.Arc = ToNumber<double>(name, text, 0.0); } },
-    { "--order",
-      [&](const auto& name, const auto& text)
-      {
-        options.Orders.clear();
-        std::istringstream stream(text);
-        for (std::string part; std::getline(stream, part, ',');)
-        {
-          options.Orders.push_back(ToChoice<Order>(name, part, Orders));
-        }
-      } },
-    { "--cache-fraction", [&](const auto& name, const auto& text) {
-       options.CacheFractions = ToNumbers<double>(name, text, 0.0);
-     } } };
-  options.AddTo(setters);
-  OptionValues::Parse(argc, argv, setters, Usage());
-  return options;
+  app.add_option("--mesh", this->Mesh, "grid:N (2 N^2 triangles), or a PLY or OBJ file")
+    ->capture_default_str();
+  app.add_option("--subdivide", this->Subdivisions, "times that each triangle becomes four")
+    ->capture_default_str()
+    ->check(CLI::NonNegativeNumber);
+  app.add_option("--arc", this->Arc, "degrees of the way around the mesh")
+    ->capture_default_str()
+    ->check(CLI::NonNegativeNumber);
+  app
+    .add_option("--order", this->Orders,
+      "how triangles share bricks, with commas (default sorted). A ray must visit nearly all "
+      "bricks of a mesh in random order, so take a small one")
+    ->delimiter(',')
+    ->allow_extra_args(false)
+    ->transform(CLI::CheckedTransformer(OrdersByName));
+  app
+    .add_option("--cache-fraction", this->CacheFractions,
+      "caches per rank, as parts of the bytes of all bricks, with commas (default 1)")
+    ->delimiter(',')
+    ->allow_extra_args(false)
+    ->check(CLI::NonNegativeNumber);
+  this->RunOptions::AddTo(app);
 }
 
 void MeshBenchmark::Run(const Options& options, dsm::Messenger& messenger)

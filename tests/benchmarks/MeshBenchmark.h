@@ -30,11 +30,10 @@ public:
     std::vector<BenchmarkMesh::Order> Orders{ BenchmarkMesh::Order::Sorted };
     std::vector<double> CacheFractions{ 1.0 }; ///< of the bytes of all bricks
     double Arc = 360.0;                        ///< degrees of the way around the mesh
-  };
 
-  static const char* Usage();
-  /// Throws dsm::Error naming the argument that is wrong.
-  static Options Parse(int argc, char** argv);
+    /// Adds the options that change this object.
+    void AddTo(CLI::App& app);
+  };
 
   /// Collective. Prints on rank 0.
   static void Run(const Options& options, dsm::Messenger& messenger);

@@ -3,51 +3,57 @@
 
 #include <fstream>
 #include <iostream>
+#include <map>
+#include <vector>
 
-void RunOptions::AddTo(OptionValues::Setters& setters)
+void RunOptions::AddTo(CLI::App& app)
 {
-  using namespace OptionValues;
-  setters.merge(Setters{
-    { "--size",
-      [this](const auto& name, const auto& text)
+  app
+    .add_option_function<std::vector<int>>(
+      "--size",
+      [this](const std::vector<int>& size)
       {
-        const auto x = text.find('x');
-        this->Width = ToNumber(name, text.substr(0, x), 1);
-        this->Height = ToNumber(name, x == std::string::npos ? "" : text.substr(x + 1), 1);
-      } },
-    { "--frames",
-      [this](const auto& name, const auto& text) { this->Frames = ToNumber(name, text, 1); } },
-    { "--repeat",
-      [this](const auto& name, const auto& text) { this->Repeat = ToNumber(name, text, 1); } },
-    { "--threads",
-      [this](const auto& name, const auto& text) { this->Threads = ToNumber(name, text, 0); } },
-    { "--store",
-      [this](const auto& name, const auto& text)
-      {
-        this->Store = ToChoice<dsm::MemoryOrganization>(name, text,
-          { { "automatic", dsm::MemoryOrganization::Automatic },
-            { "replicated", dsm::MemoryOrganization::Replicated },
-            { "object", dsm::MemoryOrganization::ObjectBased },
-            { "paged", dsm::MemoryOrganization::PageBased } });
-      } },
-    { "--host-sharing",
-      [this](const auto& name, const auto& text) { this->HostSharing = ToSwitch(name, text); } },
-    { "--overlap",
-      [this](const auto& name, const auto& text) { this->Overlap = ToNumber(name, text, 1); } },
-    { "--prefetch",
-      [this](const auto& name, const auto& text) { this->Prefetch = ToSwitch(name, text); } },
-    { "--scheduler",
-      [this](const auto& name, const auto& text)
-      {
-        this->Scheduling = ToChoice<rt::TileScheduling>(name, text,
-          { { "queue", rt::TileScheduling::CentralQueue },
-            { "stealing", rt::TileScheduling::WorkStealing } });
-      } },
-    { "--latency",
-      [this](const auto& name, const auto& text)
-      { this->Latency = 1e-6 * ToNumber<double>(name, text, 0.0); } },
-    { "--json", [this](const auto&, const auto& text) { this->Json = text; } },
-  });
+        this->Width = size.front();
+        this->Height = size.back();
+      },
+      "pixels, WxH (default 512x512)")
+    ->delimiter('x')
+    ->allow_extra_args(false)
+    ->check(CLI::PositiveNumber);
+  app.add_option("--frames", this->Frames, "camera positions around the data")
+    ->capture_default_str()
+    ->check(CLI::PositiveNumber);
+  app.add_option("--repeat", this->Repeat, "orbits; for every position the fastest counts")
+    ->capture_default_str()
+    ->check(CLI::PositiveNumber);
+  app
+    .add_option(
+      "--threads", this->Threads, "tracing threads per rank; 0: cores / ranks of the host")
+    ->capture_default_str()
+    ->check(CLI::NonNegativeNumber);
+  app.add_option("--store", this->Store, "default object")
+    ->transform(CLI::CheckedTransformer(std::map<std::string, dsm::MemoryOrganization>{
+      { "automatic", dsm::MemoryOrganization::Automatic },
+      { "replicated", dsm::MemoryOrganization::Replicated },
+      { "object", dsm::MemoryOrganization::ObjectBased },
+      { "paged", dsm::MemoryOrganization::PageBased } }));
+  app.add_option("--host-sharing", this->HostSharing,
+    "on: ranks of one host read one another's bricks in place; off (default): one machine plays "
+    "many hosts, as the paper's figures need");
+  app
+    .add_option("--overlap", this->Overlap,
+      "workers per thread: while some wait for bricks, others trace (default 4)")
+    ->check(CLI::PositiveNumber);
+  app.add_option("--prefetch", this->Prefetch,
+    "off: bricks are asked for when rays come to them, none ahead (default on)");
+  app.add_option("--scheduler", this->Scheduling, "rank 0 deals out tiles, or stealing (default)")
+    ->transform(CLI::CheckedTransformer(
+      std::map<std::string, rt::TileScheduling>{ { "queue", rt::TileScheduling::CentralQueue },
+        { "stealing", rt::TileScheduling::WorkStealing } }));
+  app.add_option("--latency", this->Latency, "microseconds that are added to every message's way")
+    ->capture_default_str()
+    ->check(CLI::NonNegativeNumber);
+  app.add_option("--json", this->Json, "writes the result to a file; - is standard output");
 }
 
 dsm::BlockStore::Settings RunOptions::CreateSettings(dsm::Messenger& messenger) const

@@ -2,11 +2,11 @@
 #ifndef RunOptions_h
 #define RunOptions_h
 
-#include "tools/OptionValues.h"
-
 #include "DSMCore/store/BlockStore.h"
 #include "DSMCore/transport/Messenger.h"
 #include "DSMRayTracing/schedule/TileScheduler.h"
+
+#include <CLI/CLI.hpp>
 
 #include <string>
 
@@ -23,11 +23,11 @@ struct RunOptions
   int Overlap = 0;          ///< workers per thread; 0: the store's default
   bool Prefetch = true;     ///< of bricks that tiles will probably need
   rt::TileScheduling Scheduling = rt::TileScheduling::WorkStealing;
-  double Latency = 0.0; ///< seconds that are added to every message's way
+  double Latency = 0.0; ///< microseconds that are added to every message's way
   std::string Json;     ///< file, or - for standard output; empty: none
 
-  /// Adds the options' setters, which change this object.
-  void AddTo(OptionValues::Setters& setters);
+  /// Adds the options that change this object.
+  void AddTo(CLI::App& app);
 
   /// How the store is to be set up. Collective the first time.
   dsm::BlockStore::Settings CreateSettings(dsm::Messenger& messenger) const;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Times the tracer and the memory below it without ParaView. See the Usage of each benchmark.
+// Times the tracer and the memory below it without ParaView.
 #include "AccessBenchmark.h"
 #include "BenchmarkCamera.h"
 #include "BenchmarkOptions.h"
@@ -239,7 +239,7 @@ std::vector<double> SumTileSeconds(dsm::Messenger& messenger, const std::vector<
 void RunIsosurface(const BenchmarkOptions& options, dsm::Messenger& messenger)
 {
   dsm::BlockStore::Settings settings = options.CreateSettings(messenger);
-  settings.MemoryBytes = options.MemoryBytes;
+  settings.MemoryBytes = options.Mebibytes << 20;
   dsm::BlockStore store(messenger, settings);
 
   rt::Scene scene;
@@ -409,37 +409,45 @@ int main(int argc, char** argv)
     transport ? std::move(transport) : std::move(dsm::LoopbackTransport::CreateGroup(1).front()));
   DelayedTransport& network = *delayed;
   dsm::Messenger messenger(std::move(delayed));
+  CLI::App app("Times the tracer and the memory below it, alone or under mpirun");
+  app.require_subcommand(1);
+  BenchmarkOptions isosurface;
+  ConsolidationBenchmark::Options consolidation;
+  AccessBenchmark::Options access;
+  MeshBenchmark::Options mesh;
+  const auto add = [&](const char* name, auto& options, const char* text, auto run)
+  {
+    CLI::App& benchmark = *app.add_subcommand(name, text);
+    options.AddTo(benchmark);
+    benchmark.callback([&options, run] { run(options); });
+  };
+  add("isosurface", isosurface, "frames of a volume",
+    [&](const BenchmarkOptions& options)
+    {
+      network.SetLatency(1e-6 * options.Latency);
+      RunIsosurface(options, messenger);
+    });
+  add("consolidation", consolidation, "the paper's Table 2",
+    [&](const ConsolidationBenchmark::Options& options)
+    {
+      network.SetLatency(1e-6 * options.Latency);
+      ConsolidationBenchmark::Run(options, messenger);
+    });
+  add("access", access, "the paper's Table 1",
+    [&](const AccessBenchmark::Options& options) { AccessBenchmark::Run(options, messenger); });
+  add("mesh", mesh, "frames of a mesh",
+    [&](const MeshBenchmark::Options& options)
+    {
+      network.SetLatency(1e-6 * options.Latency);
+      MeshBenchmark::Run(options, messenger);
+    });
   try
   {
-    const std::string name = argc > 1 ? argv[1] : "";
-    if (name == "isosurface")
-    {
-      const BenchmarkOptions options = BenchmarkOptions::Parse(argc, argv);
-      network.SetLatency(options.Latency);
-      RunIsosurface(options, messenger);
-    }
-    else if (name == "consolidation")
-    {
-      const ConsolidationBenchmark::Options options = ConsolidationBenchmark::Parse(argc, argv);
-      network.SetLatency(options.Latency);
-      ConsolidationBenchmark::Run(options, messenger);
-    }
-    else if (name == "access")
-    {
-      AccessBenchmark::Run(AccessBenchmark::Parse(argc, argv), messenger);
-    }
-    else if (name == "mesh")
-    {
-      const MeshBenchmark::Options options = MeshBenchmark::Parse(argc, argv);
-      network.SetLatency(options.Latency);
-      MeshBenchmark::Run(options, messenger);
-    }
-    else
-    {
-      throw dsm::Error(std::string("The first argument names the benchmark.\n") +
-        BenchmarkOptions::Usage() + ConsolidationBenchmark::Usage() + AccessBenchmark::Usage() +
-        MeshBenchmark::Usage());
-    }
+    app.parse(argc, argv);
+  }
+  catch (const CLI::CallForHelp&)
+  {
+    std::cout << (messenger.GetRank() == 0 ? app.help() : "");
   }
   catch (const std::exception& error)
   {
