@@ -28,6 +28,10 @@ if (PkgConfig_FOUND)
   endif ()
 endif ()
 find_package(nlohmann_json REQUIRED)
+find_path(DSM_XXHASH_INCLUDE_DIR xxhash.h REQUIRED)
+add_library(DSM::XXHASH INTERFACE IMPORTED GLOBAL)
+set_target_properties(DSM::XXHASH PROPERTIES
+  INTERFACE_INCLUDE_DIRECTORIES "${DSM_XXHASH_INCLUDE_DIR}")
 if (TARGET DSM::HDF5 OR DSM_BUILD_BENCHMARKS OR DSM_BUILD_TESTING)
   find_package(CLI11 REQUIRED) # of dsm_convert and dsm_bench
 endif ()

@@ -6,6 +6,8 @@
 #include "DSMRayTracing/frame/FrameRenderer.h"
 #include "DSMRayTracing/frame/PixelRays.h"
 #include "DSMRayTracing/mesh/MeshSearch.h"
+
+#include "tests/support/PictureHash.h"
 #ifdef DSM_HAS_EMBREE
 #include "EmbreeMesh.h"
 #endif
@@ -118,7 +120,7 @@ FrameResult TraceFrames(const MeshBenchmark::Options& options,
       if (repeat == 0)
       {
         result.Hash =
-          result.Hash * 0x100000001b3ull ^ rt::GetHash(rt::GatherFrame(messenger, frame));
+          result.Hash * 0x100000001b3ull ^ GetPictureHash(rt::GatherFrame(messenger, frame));
       }
     }
   }

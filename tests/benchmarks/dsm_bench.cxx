@@ -17,6 +17,8 @@
 #include "DSMRayTracing/frame/TileGrid.h"
 #include "DSMVolumeFiles/cache/ChunkCache.h"
 
+#include "tests/support/PictureHash.h"
+
 #include <nlohmann/json.hpp>
 
 #include <sys/resource.h>
@@ -338,7 +340,7 @@ void RunIsosurface(const BenchmarkOptions& options, dsm::Messenger& messenger)
       if (repetition == 0)
       {
         const rt::Picture picture = rt::GatherFrame(messenger, frame);
-        timing.Hash = timing.Hash * 0x100000001b3ull ^ rt::GetHash(picture);
+        timing.Hash = timing.Hash * 0x100000001b3ull ^ GetPictureHash(picture);
         if (number == 0 && !options.Picture.empty() && messenger.GetRank() == 0)
         {
           WritePicture(picture, options.Picture);

@@ -7,6 +7,7 @@
 #include "tests/faults/FailingTransport.h"
 #include "tests/faults/FaultInjection.h"
 #include "tests/support/MeshScene.h"
+#include "tests/support/PictureHash.h"
 
 #include "DSMCore/transport/LoopbackTransport.h"
 #include "DSMRayTracing/frame/FrameGather.h"
@@ -230,7 +231,7 @@ private:
       });
     const rt::Frame frame =
       this->Renderer->Render(this->Store, input->Scene, SphereScene::CreateRequest(60, 40));
-    return rt::GetHash(rt::GatherFrame(this->Messenger, frame));
+    return GetPictureHash(rt::GatherFrame(this->Messenger, frame));
   }
 
   dsm::BlockStore Store;

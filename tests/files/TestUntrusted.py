@@ -86,17 +86,17 @@ DAMAGES = {
     "a large edge": "f['DSM'].attrs['BrickEdge'] = 2 ** 31 - 1",
     "an edge beyond int": "f['DSM'].attrs['BrickEdge'] = 2 ** 40",
 }
-# A survey with numbers that nobody counted, and a checksum that fits: the hash of rt::ByteHash.
+# A survey with numbers that nobody counted, and a checksum that fits: the hash of dsm::HashBytes.
 FORGED = """i = f['%s/BrickIndex'][...].tobytes()
 n = (len(i) - 8 - {0}) // 24
 at = 8 * n
 survey = np.frombuffer(i[at : at + {0}], '<i8').copy()
 survey[{1}] = {2}
 i = i[:at] + survey.tobytes() + i[at + {0} : -8]
-h = 0xcbf29ce484222325
-for word in np.frombuffer(i, '<u8').tolist():
-    h = (h ^ word) * 0x100000001b3 & 0xffffffffffffffff
-    h ^= h >> 32
+import ctypes
+hash = ctypes.CDLL('libxxhash.so.0').XXH3_64bits_withSeed
+hash.restype = ctypes.c_uint64
+h = hash(i, ctypes.c_size_t(len(i)), ctypes.c_uint64(0))
 f['%s/BrickIndex'][...] = np.frombuffer(i + h.to_bytes(8, 'little'), 'u1')""" % (GROUP, GROUP)
 SURVEY = 8 * (3 * 512 + 4) + 16
 for what, place, number in (("a count outside of its range", 511, 0x4141414141), ("a first interval", 3 * 512 + 2, 1 << 62),

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Over real MPI ranks, the picture is that of one rank alone, bit for bit.
 #include "tests/support/LoopbackCluster.h"
+#include "tests/support/PictureHash.h"
 #include "tests/support/SphereScene.h"
 
 #include "DSMCore/transport/MpiTransport.h"
@@ -37,7 +38,7 @@ std::uint64_t GetReference()
   std::uint64_t hash = 0;
   RunOnCluster(1,
     [&](dsm::Messenger& alone)
-    { hash = rt::GetHash(TraceTurning(alone, SphereScene::CreateSettings(PlentyOfCache, 1))); });
+    { hash = GetPictureHash(TraceTurning(alone, SphereScene::CreateSettings(PlentyOfCache, 1))); });
   return hash;
 }
 
@@ -70,7 +71,7 @@ TEST_P(FrameOverMpi, EqualsOneRankAlone)
   for (const int workers : { 1, 2 })
   {
     EXPECT_EQ(
-      rt::GetHash(TraceTurning(this->Messenger, this->Create(PlentyOfCache, workers))), expected)
+      GetPictureHash(TraceTurning(this->Messenger, this->Create(PlentyOfCache, workers))), expected)
       << workers << " workers";
   }
 }
@@ -81,7 +82,8 @@ TEST_P(FrameOverMpi, CacheHoldsOneBrick)
     bricks::ScalarType::Float32, false, SphereScene::BrickEdge);
   const std::size_t page = 4096; // a brick takes whole ones, where it is paged
   const std::size_t oneBrick = (lattice.CreateDirectory(1).GetLargest() + page - 1) / page * page;
-  EXPECT_EQ(rt::GetHash(TraceTurning(this->Messenger, this->Create(oneBrick, 2))), GetReference());
+  EXPECT_EQ(
+    GetPictureHash(TraceTurning(this->Messenger, this->Create(oneBrick, 2))), GetReference());
 }
 
 TEST_P(FrameOverMpi, AbortedFramesEndOnAllRanks)
@@ -109,7 +111,7 @@ TEST_P(FrameOverMpi, AbortedFramesEndOnAllRanks)
       ++aborted;
       frame = renderer.Render(store, scene, request);
     }
-    const std::uint64_t hash = rt::GetHash(rt::GatherFrame(this->Messenger, frame));
+    const std::uint64_t hash = GetPictureHash(rt::GatherFrame(this->Messenger, frame));
     expected = round == 0 ? hash : expected;
     EXPECT_EQ(hash, expected) << "round " << round;
   }

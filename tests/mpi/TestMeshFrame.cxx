@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Over real MPI ranks, the picture of meshes and isosurfaces is that of one rank alone.
 #include "tests/support/MeshScene.h"
+#include "tests/support/PictureHash.h"
 
 #include "DSMCore/transport/MpiTransport.h"
 #include "DSMRayTracing/frame/FrameGather.h"
@@ -16,7 +17,7 @@ std::uint64_t Trace(dsm::Messenger& messenger, const dsm::BlockStore::Settings& 
   dsm::BlockStore store(messenger, settings);
   const rt::Scene scene = MeshScene::Create(messenger, store);
   rt::FrameRenderer renderer(messenger);
-  return rt::GetHash(
+  return GetPictureHash(
     rt::GatherFrame(messenger, renderer.Render(store, scene, SphereScene::CreateRequest(97, 61))));
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A camera that moves, over real MPI ranks with a small cache: prefetching changes no picture, and
 // workers wait less often.
+#include "tests/support/PictureHash.h"
 #include "tests/support/SphereScene.h"
 
 #include "DSMCore/transport/MpiTransport.h"
@@ -52,7 +53,7 @@ Session Play(dsm::Messenger& messenger, dsm::BlockStore::Settings settings, bool
   {
     request.WorldToClip = GetCamera(number);
     frame = renderer.Render(store, scene, request, &frame);
-    session.Pictures.push_back(rt::GetHash(rt::GatherFrame(messenger, frame)));
+    session.Pictures.push_back(GetPictureHash(rt::GatherFrame(messenger, frame)));
     for (const dsm::StoreCounters& counters : messenger.AllGatherValue(frame.Counters))
     {
       session.Misses += counters.Workers.Misses;

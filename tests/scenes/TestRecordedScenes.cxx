@@ -7,13 +7,14 @@
 //                                       so; 77 when this processor does not have them
 //   scene_pictures --record             prints the hashes
 //
-// A hash is rt::GetHash: of the size, the 8-bit colours and the bits of the depths. What is traced
+// A hash is GetPictureHash: of the size, the 8-bit colours and the bits of the depths. What is traced
 // is made of sums, products, quotients and roots alone, none of them contracted. Only colours use the
 // mathematical library: pow (highlights, cones), log10 (colour maps), sin and cos (directions of
 // random light rays). The last bit of these may be another on another machine; colours are rounded
 // to 8 bits, so that this all but never shows.
 #include "tests/scenes/RecordedScenes.h"
 #include "tests/support/LoopbackCluster.h"
+#include "tests/support/PictureHash.h"
 
 #include "DSMCore/base/Error.h"
 #include "DSMRayTracing/field/lattice/PacketKernel.h"
@@ -98,7 +99,7 @@ rt::Picture Trace(const RecordedScene& scene, const Keeping& keeping)
     });
   for (const rt::Picture& picture : pictures)
   {
-    if (rt::GetHash(picture) != rt::GetHash(pictures.front()))
+    if (GetPictureHash(picture) != GetPictureHash(pictures.front()))
     {
       throw dsm::Error("the ranks have different pictures");
     }
@@ -116,7 +117,7 @@ int Record()
 {
   for (const RecordedScene& scene : CreateRecordedScenes())
   {
-    const std::uint64_t hash = rt::GetHash(Trace(scene, Keepings[0]));
+    const std::uint64_t hash = GetPictureHash(Trace(scene, Keepings[0]));
     std::printf("%s %016" PRIx64 "\n", scene.Name.c_str(), hash);
   }
   return 0;
@@ -156,7 +157,7 @@ void Compare(
   try
   {
     const rt::Picture picture = Trace(scene, keeping);
-    const std::uint64_t hash = rt::GetHash(picture);
+    const std::uint64_t hash = GetPictureHash(picture);
     if (hash != expected)
     {
       char text[100];

@@ -2,6 +2,7 @@
 // Light from all around against what integrals over the half space say.
 #include "tests/support/FunctionVolume.h"
 #include "tests/support/MeshScene.h"
+#include "tests/support/PictureHash.h"
 
 #include "DSMCore/transport/LoopbackTransport.h"
 #include "DSMRayTracing/frame/FrameGather.h"
@@ -180,7 +181,7 @@ TEST(EnvironmentLightOnRanks, TheSamePictureOnAnyNumberOfRanks)
           scene.Transport.AmbientOcclusionDistance = 10.0;
           scene.Transport.Surroundings = CreateEnvironment({ 0.0, 1.0, 0.0 });
           rt::FrameRenderer renderer(messenger);
-          const std::uint64_t hash = rt::GetHash(rt::GatherFrame(
+          const std::uint64_t hash = GetPictureHash(rt::GatherFrame(
             messenger, renderer.Render(store, scene, SphereScene::CreateRequest(48, 36))));
           const std::lock_guard<std::mutex> lock(guard);
           expected = expected == 0 ? hash : expected;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tests/support/LoopbackCluster.h"
+#include "tests/support/PictureHash.h"
 #include "tests/support/SphereScene.h"
 
 #include "DSMRayTracing/frame/FrameGather.h"
@@ -65,7 +66,7 @@ rt::Picture Trace(const Setting& setting, dsm::StoreCounters* sum = nullptr)
       {
         first = picture;
       }
-      EXPECT_EQ(rt::GetHash(first), rt::GetHash(picture)) << "rank " << messenger.GetRank();
+      EXPECT_EQ(GetPictureHash(first), GetPictureHash(picture)) << "rank " << messenger.GetRank();
     });
   return first;
 }
@@ -136,7 +137,7 @@ TEST_P(FrameInOrganization, CacheHoldsOneBrick)
     bricks::ScalarType::Float32, false, SphereScene::BrickEdge);
   const std::size_t page = 4096; // a brick takes whole ones, where it is paged
   const std::size_t oneBrick = (lattice.CreateDirectory(1).GetLargest() + page - 1) / page * page;
-  const std::uint64_t expected = rt::GetHash(Trace({}));
+  const std::uint64_t expected = GetPictureHash(Trace({}));
   const bool fetches = GetParam().Organization == dsm::MemoryOrganization::PageBased ||
     (GetParam().Organization == dsm::MemoryOrganization::ObjectBased && !GetParam().HostSharing);
   for (const int ranks : { 2, 3 })
@@ -146,7 +147,7 @@ TEST_P(FrameInOrganization, CacheHoldsOneBrick)
     setting.Workers = 3;
     setting.CacheBytes = oneBrick;
     dsm::StoreCounters sum;
-    EXPECT_EQ(rt::GetHash(Trace(setting, &sum)), expected) << ranks << " ranks";
+    EXPECT_EQ(GetPictureHash(Trace(setting, &sum)), expected) << ranks << " ranks";
     EXPECT_EQ(sum.Evictions > 0, fetches);
     EXPECT_EQ(sum.Workers.Misses > 0, fetches);
     EXPECT_LE(sum.PeakCachedBytes, setting.CacheBytes);
@@ -195,7 +196,7 @@ TEST(FrameRenderer, TranslucentSurfaces)
   setting.Ranks = 3;
   setting.Workers = 2;
   setting.Organization = dsm::MemoryOrganization::ObjectBased;
-  EXPECT_EQ(rt::GetHash(Trace(setting)), rt::GetHash(alone));
+  EXPECT_EQ(GetPictureHash(Trace(setting)), GetPictureHash(alone));
 }
 
 /// One rank means another picture than the others.
@@ -334,14 +335,14 @@ TEST(TestFrameRenderer, SamplesAddedLaterGiveTheSamePicture)
           renderer.Refine(store, scene, request, frame);
         }
         const rt::Picture refined = rt::GatherFrame(messenger, frame);
-        EXPECT_EQ(rt::GetHash(refined), rt::GetHash(whole));
+        EXPECT_EQ(GetPictureHash(refined), GetPictureHash(whole));
         if (messenger.GetRank() == 0)
         {
           if (ranks == 1)
           {
             atOnce = whole;
           }
-          EXPECT_EQ(rt::GetHash(whole), rt::GetHash(atOnce)) << ranks << " ranks";
+          EXPECT_EQ(GetPictureHash(whole), GetPictureHash(atOnce)) << ranks << " ranks";
         }
       });
   }
@@ -374,7 +375,7 @@ TEST_P(AbortedFrame, EndsOnAllRanksAndTheNextOneIsRight)
       request.Scheduling = scheduling;
       request.Samples = 3;
       const std::uint64_t expected =
-        rt::GetHash(rt::GatherFrame(messenger, renderer.Render(store, scene, request)));
+        GetPictureHash(rt::GatherFrame(messenger, renderer.Render(store, scene, request)));
       std::mt19937 random(7);
       int left = -1; // looks at the abort status, before it is set; negative: it is not
       renderer.SetWatch([&](double) { return left >= 0 && left-- == 0; });
@@ -401,7 +402,7 @@ TEST_P(AbortedFrame, EndsOnAllRanksAndTheNextOneIsRight)
           ++aborted;
           renderer.Refine(store, scene, request, frame);
         }
-        EXPECT_EQ(rt::GetHash(rt::GatherFrame(messenger, frame)), expected) << "round " << round;
+        EXPECT_EQ(GetPictureHash(rt::GatherFrame(messenger, frame)), expected) << "round " << round;
       }
     });
   EXPECT_GE(aborted, ranks) << "no frame was aborted";

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Shadows, occlusion, transparency and mirrors against what analysis says of spheres and planes.
 #include "tests/support/FunctionVolume.h"
+#include "tests/support/PictureHash.h"
 
 #include "DSMCore/transport/LoopbackTransport.h"
 #include "DSMRayTracing/frame/FrameGather.h"
@@ -232,7 +233,7 @@ TEST_F(LightTransportTest, PreviewSharesOcclusionBetweenPixels)
   };
   EXPECT_LT(getError(this->Trace(scene, 1, true)), 0.3 * getError(this->Trace(scene)));
   scene.Transport.AmbientOcclusionSamples = 0;
-  EXPECT_EQ(rt::GetHash(this->Trace(scene, 1, true)), rt::GetHash(this->Trace(scene)));
+  EXPECT_EQ(GetPictureHash(this->Trace(scene, 1, true)), GetPictureHash(this->Trace(scene)));
 }
 
 TEST_F(LightTransportTest, OcclusionEndsAtItsDistance)

@@ -9,9 +9,11 @@
 namespace dsm
 {
 
-/// A hash of 128 bits, of bytes that nobody made up to deceive it: two halves that mix the same words in
-/// unlike ways. Each step can be undone when the word is known, so bytes that differ in one word never
-/// have the same.
+/// XXH3 of 64 bits, which is the same on all machines, of bytes that nobody made up to deceive it. `seed`: such as the
+/// hash of what is before them.
+std::uint64_t HashBytes(const void* data, std::size_t bytes, std::uint64_t seed = 0);
+
+/// A hash of 128 bits (XXH3): equal, for all practical purposes, only for equal bytes that were added in equal parts.
 class ByteDigest
 {
 public:
@@ -21,7 +23,7 @@ public:
   bool operator!=(const ByteDigest& other) const { return !(*this == other); }
 
 private:
-  std::array<std::uint64_t, 2> State{ 0x9e3779b97f4a7c15u, 0xc2b2ae3d27d4eb4fu };
+  std::array<std::uint64_t, 2> State{};
 };
 
 } // namespace dsm

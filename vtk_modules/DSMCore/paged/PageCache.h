@@ -23,7 +23,6 @@ class PageCache
 {
 public:
   using Time = std::chrono::steady_clock::time_point;
-  using Span = std::chrono::steady_clock::duration;
 
   struct Slot
   {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "DSMCore/publish/BlockDirectory.h"
 
+#include "DSMCore/base/ByteDigest.h"
+
 #include <algorithm>
 #include <numeric>
 #include <utility>
@@ -37,11 +39,12 @@ std::uint64_t BlockDirectory::GetTotalBytes() const
 
 std::uint64_t BlockDirectory::GetFingerprint() const
 {
-  std::uint64_t hash = 0xcbf29ce484222325u; // FNV-1a
+  std::uint64_t hash = 0;
   for (BlockId id = 0; id < this->GetCount(); ++id)
   {
-    hash = (hash ^ this->GetBytes(id)) * 0x100000001b3u;
-    hash = (hash ^ static_cast<std::uint64_t>(this->GetOwner(id))) * 0x100000001b3u;
+    const std::uint64_t block[] = { this->GetBytes(id),
+      static_cast<std::uint64_t>(this->GetOwner(id)) };
+    hash = HashBytes(block, sizeof(block), hash);
   }
   return hash;
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "DSMCore/store/BlockStore.h"
 
+#include "DSMCore/base/ByteDigest.h"
 #include "DSMCore/base/Error.h"
 #include "DSMCore/fetch/ReadingSource.h"
 #include "DSMCore/memory/AddressRange.h"
@@ -195,13 +196,10 @@ BlockStore::Decision BlockStore::Decide(
       mine.LacksHostMemory = this->LacksHostMemory(next) ? 1 : 0;
     });
   mine.Budget = this->Budget;
-  for (const std::uint64_t part :
-    { std::uint64_t(this->Segments.GetCount()), next ? next->GetFingerprint() : std::uint64_t(0),
-      std::uint64_t(next != nullptr), std::uint64_t(this->Current.HostSharing),
-      std::uint64_t(this->InForce), std::uint64_t(this->Current.ScratchDirectory.empty()) })
-  {
-    mine.Choice = (mine.Choice ^ part) * 0x100000001b3u; // FNV-1a
-  }
+  const std::uint64_t parts[] = { this->Segments.GetCount(), next ? next->GetFingerprint() : 0,
+    next != nullptr, this->Current.HostSharing, static_cast<std::uint64_t>(this->InForce),
+    this->Current.ScratchDirectory.empty() };
+  mine.Choice = HashBytes(parts, sizeof(parts));
   const auto stances = this->Messages.AllGatherValue(mine);
   Decision decision;
   std::string shortage;

@@ -1,33 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "DSMCore/store/ScratchBlocks.h"
 
+#include "DSMCore/base/ByteDigest.h"
 #include "DSMCore/base/Error.h"
 
 #include <algorithm>
-#include <cstring>
 
 namespace dsm
 {
-
-namespace
-{
-
-/// FNV-1a over words, with a fold that carries their high bits down. A block in another's place has
-/// another one.
-std::uint64_t GetChecksum(BlockId id, const std::byte* bytes, std::size_t count)
-{
-  std::uint64_t hash = 0xcbf29ce484222325u ^ id;
-  for (std::size_t place = 0; place < count; place += sizeof(hash))
-  {
-    std::uint64_t word = 0;
-    std::memcpy(&word, bytes + place, std::min(sizeof(word), count - place));
-    hash = (hash ^ word) * 0x100000001b3u;
-    hash ^= hash >> 32;
-  }
-  return hash;
-}
-
-} // namespace
 
 ScratchBlocks::ScratchBlocks(const BlockDirectory& directory, int rank, int ranks)
   : Rank(static_cast<BlockId>(rank))
@@ -105,7 +85,7 @@ void ScratchBlocks::Finish(FragmentSink& sink, FunctionRef<void(double)> progres
     Entry& entry = this->Entries[index];
     std::byte* const block = this->Load(id, sink);
     sink.Finish(id, block, entry.Bytes);
-    entry.Checksum = GetChecksum(id, block, entry.Bytes);
+    entry.Checksum = HashBytes(block, entry.Bytes, id);
     if (progress && index % step == 0)
     {
       progress(static_cast<double>(index) / static_cast<double>(this->Entries.size()));
@@ -125,7 +105,7 @@ void ScratchBlocks::Read(BlockId id, std::byte* block, std::size_t bytes) const
 {
   const Entry& entry = this->Entries[id / this->Ranks];
   this->File->Read(entry.Offset, block, bytes);
-  if (GetChecksum(id, block, bytes) != entry.Checksum)
+  if (HashBytes(block, bytes, id) != entry.Checksum)
   {
     throw Error("Brick " + std::to_string(id) + " in the scratch file in '" +
       this->File->GetDirectory() +
@@ -145,7 +125,7 @@ bool ScratchBlocks::ReadWithoutWaiting(BlockId id, std::byte* block, std::size_t
   {
     this->CanTell = false;
   }
-  return attempt == ScratchFile::Attempt::Done && GetChecksum(id, block, bytes) == entry.Checksum;
+  return attempt == ScratchFile::Attempt::Done && HashBytes(block, bytes, id) == entry.Checksum;
 }
 
 void ScratchBlocks::TellSystem(const std::vector<BlockId>& ids) const

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "DSMRayTracing/frame/FrameGather.h"
 
-#include "DSMBricks/base/ByteHash.h"
-
 #include <algorithm>
 #include <cstddef>
 #include <cstring>
@@ -267,17 +265,6 @@ Picture AssembleTilesWithEdges(dsm::Messenger& messenger, const Frame& frame)
     }
   }
   return picture;
-}
-
-std::uint64_t GetHash(const Picture& picture)
-{
-  bricks::ByteHash hash;
-  const std::int32_t size[2] = { picture.Width, picture.Height };
-  hash.Add(size, sizeof(size));
-  Channels::ForEach(picture,
-    [&](const auto& values, std::size_t, auto empty)
-    { hash.Add(values.data(), values.size() * sizeof(empty)); });
-  return hash.Get();
 }
 
 } // namespace rt

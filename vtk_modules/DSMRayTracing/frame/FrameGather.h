@@ -30,10 +30,6 @@ Picture GatherFrame(dsm::Messenger& messenger, const Frame& frame);
 /// dsm::Error on every rank.
 Picture AssembleTilesWithEdges(dsm::Messenger& messenger, const Frame& frame);
 
-/// A number that two pictures share if, for all practical purposes, they are equal bit for bit:
-/// 64-bit FNV-1a over size, colours and depths.
-std::uint64_t GetHash(const Picture& picture);
-
 } // namespace rt
 
 #endif

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "DSMVolumeFiles/cache/ChunkCache.h"
 
-#include "DSMBricks/base/ByteHash.h"
 #include "DSMBricks/base/ParallelFor.h"
+#include "DSMCore/base/ByteDigest.h"
 #include "DSMCore/base/Error.h"
 #include "DSMVolumeFiles/base/CopyBox.h"
 #include "DSMVolumeFiles/base/ReadingManner.h"
@@ -64,9 +64,9 @@ ChunkCache& ChunkCache::GetShared()
 
 std::size_t ChunkCache::KeyHash::operator()(const Key& key) const
 {
-  std::uint64_t hash = bricks::ByteHash::AddWord(key.File, key.Array);
-  hash = bricks::ByteHash::AddWord(hash, static_cast<std::uint64_t>(key.Step));
-  return bricks::ByteHash::AddWord(hash, static_cast<std::uint64_t>(key.Number));
+  const std::int64_t words[] = { static_cast<std::int64_t>(key.File),
+    static_cast<std::int64_t>(key.Array), key.Step, key.Number };
+  return dsm::HashBytes(words, sizeof(words));
 }
 
 void ChunkCache::SetLimit(std::size_t bytes)

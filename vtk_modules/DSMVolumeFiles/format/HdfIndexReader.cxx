@@ -46,25 +46,23 @@ HdfIndexReader::HdfIndexReader(const PositionedFile& file, const HdfChunkLayout&
   this->PlainBytes = static_cast<std::uint32_t>(bytes);
 }
 
+bool HdfIndexReader::Spend(std::uint64_t count)
+{
+  const bool isLeft = count <= this->Left;
+  this->Left -= isLeft ? count : 0;
+  return isLeft;
+}
+
 std::optional<HdfBytes> HdfIndexReader::Read(std::uint64_t offset, std::uint64_t count)
 {
-  if (count > this->Left)
-  {
-    return std::nullopt;
-  }
-  this->Left -= count;
-  return HdfBytes::Read(this->File, offset, count);
+  return this->Spend(count) ? HdfBytes::Read(this->File, offset, count) : std::nullopt;
 }
 
 std::optional<HdfBytes> HdfIndexReader::ReadChecked(
   std::uint64_t offset, std::uint64_t count, const char* signature)
 {
-  if (count > this->Left)
-  {
-    return std::nullopt;
-  }
-  this->Left -= count;
-  return HdfBytes::ReadChecked(this->File, offset, count, signature);
+  return this->Spend(count) ? HdfBytes::ReadChecked(this->File, offset, count, signature)
+                            : std::nullopt;
 }
 
 std::optional<HdfBytes> HdfIndexReader::ReadPage(std::uint64_t offset, std::uint64_t count)

@@ -65,6 +65,8 @@ private:
   std::uint64_t Left;               ///< bytes that may still be read
   std::uint32_t PlainBytes = 0;
 
+  /// Whether so many bytes may still be read; then they are counted.
+  bool Spend(std::uint64_t count);
   bool ReadNode1(std::uint64_t address, int level);
 };
 

@@ -2,6 +2,7 @@
 #include "DSMVolumeFiles/write/PartState.h"
 
 #include "DSMCore/base/Error.h"
+#include "DSMVolumeFiles/base/BoundedJson.h"
 #include "DSMVolumeFiles/base/DurableFile.h"
 #include "DSMVolumeFiles/base/FileLimits.h"
 #include "DSMVolumeFiles/base/SmallFile.h"
@@ -21,7 +22,7 @@ namespace vol
 namespace
 {
 
-using Json = nlohmann::ordered_json;
+using Json = nlohmann::json;
 
 /// JSON has UTF-8 only, but names of files and arrays may be any bytes. Distinct names stay distinct.
 std::string Escape(const std::string& name)
@@ -63,20 +64,6 @@ Json Describe(const BrickFileLayout& layout)
   return text;
 }
 
-/// Throws Json::exception where an object is nested deeper than any state.
-Json Parse(const std::string& text)
-{
-  const auto check = [](int depth, Json::parse_event_t, const Json&)
-  {
-    if (static_cast<std::size_t>(depth) > FileLimits::JsonDepth)
-    {
-      throw dsm::Error("too deep");
-    }
-    return true;
-  };
-  return Json::parse(text, check);
-}
-
 } // namespace
 
 class PartState::Internals
@@ -87,7 +74,7 @@ public:
   {
     try
     {
-      Json state = Parse(ReadWhole(PartFiles::GetState(this->Path), FileLimits::JsonBytes));
+      Json state = ParseJson(ReadWhole(PartFiles::GetState(this->Path), FileLimits::JsonBytes));
       return state.is_object() ? state : Json();
     }
     catch (const std::exception&)

@@ -3,7 +3,7 @@
 
 #include "DSMBricks/base/ByteHash.h"
 #include "DSMBricks/base/ParallelFor.h"
-#include "DSMCore/base/InterleavedHash.h"
+#include "DSMCore/base/ByteDigest.h"
 #include "vtkDSMFileArray.h"
 
 #include "vtkDataArray.h"
@@ -108,23 +108,15 @@ TupleCopier FindCopier(vtkDataArray* array, int threads)
   return copier;
 }
 
-std::uint64_t HashChunk(const std::byte* data, std::size_t bytes)
-{
-  std::array<std::uint64_t, 4> state{ 1, 2, 3, 4 };
-  const std::size_t at = dsm::HashInterleaved(data, bytes, state,
-    [](std::uint64_t& lane, std::uint64_t word) { lane = bricks::ByteHash::AddWord(lane, word); });
-  bricks::ByteHash hash;
-  hash.Add(state.data(), sizeof(state));
-  hash.Add(data + at, bytes - at);
-  return hash.Get();
-}
-
 std::uint64_t HashBytes(const Bytes& bytes, int threads)
 {
   std::vector<std::uint64_t> chunks((bytes.Size + ChunkBytes - 1) / ChunkBytes);
   bricks::ParallelForChunks(threads, bytes.Size, ChunkBytes,
     [&](std::size_t begin, std::size_t end, std::size_t chunk, int)
-    { chunks[chunk] = HashChunk(static_cast<const std::byte*>(bytes.Data) + begin, end - begin); });
+    {
+      chunks[chunk] =
+        dsm::HashBytes(static_cast<const std::byte*>(bytes.Data) + begin, end - begin);
+    });
   bricks::ByteHash hash;
   hash.Add(chunks.data(), chunks.size() * sizeof(chunks[0]));
   return hash.Get();
@@ -143,7 +135,7 @@ std::uint64_t HashCopies(vtkDataArray* array, int threads)
     {
       std::vector<std::byte> copy((end - begin) * tupleBytes);
       copier.Copy(static_cast<vtkIdType>(begin), static_cast<vtkIdType>(end - begin), copy.data());
-      chunks[chunk] = HashChunk(copy.data(), copy.size());
+      chunks[chunk] = dsm::HashBytes(copy.data(), copy.size());
     });
   bricks::ByteHash hash;
   hash.Add(chunks.data(), chunks.size() * sizeof(chunks[0]));
