@@ -17,7 +17,6 @@ namespace fuzz
 struct CodecInput
 {
   static constexpr std::size_t MostSteps = 4;
-  static constexpr int Kinds = 7;
 
   std::vector<vol::CodecStep> Steps;
   unsigned Skipped = 0;
@@ -33,8 +32,9 @@ struct CodecInput
     const std::size_t steps = take() % (MostSteps + 1);
     for (std::size_t step = 0; step < steps; ++step)
     {
-      const auto kind = static_cast<vol::CodecStep::Kind>(take() % Kinds);
-      input.Steps.push_back({ kind, std::max<std::size_t>(1, take()) });
+      const std::vector<vol::Codec>& codecs = vol::GetCodecs();
+      const vol::Codec* const codec = &codecs[take() % codecs.size()];
+      input.Steps.emplace_back(codec, std::max<std::size_t>(1, take()));
     }
     input.Skipped = take();
     input.SampleBytes = take();
@@ -50,7 +50,7 @@ struct CodecInput
     std::vector<std::uint8_t> bytes{ static_cast<std::uint8_t>(this->Steps.size()) };
     for (const vol::CodecStep& step : this->Steps)
     {
-      bytes.push_back(static_cast<std::uint8_t>(step.What));
+      bytes.push_back(static_cast<std::uint8_t>(step.What - vol::GetCodecs().data()));
       bytes.push_back(static_cast<std::uint8_t>(step.Width));
     }
     bytes.push_back(static_cast<std::uint8_t>(this->Skipped));

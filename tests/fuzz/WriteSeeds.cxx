@@ -15,7 +15,6 @@ namespace
 {
 
 namespace fs = std::filesystem;
-using Kind = vol::CodecStep::Kind;
 
 void Write(const fs::path& path, const std::vector<std::uint8_t>& bytes)
 {
@@ -36,12 +35,11 @@ vol::ByteBuffer MakeSamples(std::size_t count)
 
 void WriteCodecs(const fs::path& folder)
 {
-  const std::vector<std::vector<vol::CodecStep>> all = { {}, { { Kind::SwapBytes, 4 } },
-    { { Kind::Shuffle, 8 } }, { { Kind::Shuffle, 3 } }, { { Kind::Deflate } }, { { Kind::Zstd } },
-    { { Kind::Fletcher32 } }, { { Kind::Shuffle, 4 }, { Kind::Deflate }, { Kind::Fletcher32 } },
-    { { Kind::SwapBytes, 2 }, { Kind::Shuffle, 2 }, { Kind::Zstd } },
-    { { Kind::Deflate }, { Kind::Zstd } }, { { Kind::Blosc } },
-    { { Kind::Zstd }, { Kind::Crc32c } } };
+  const std::vector<std::vector<vol::CodecStep>> all = { {}, { { "swap", 4 } },
+    { { "shuffle", 8 } }, { { "shuffle", 3 } }, { { "deflate" } }, { { "zstd" } },
+    { { "fletcher32" } }, { { "shuffle", 4 }, { "deflate" }, { "fletcher32" } },
+    { { "swap", 2 }, { "shuffle", 2 }, { "zstd" } }, { { "deflate" }, { "zstd" } }, { { "blosc" } },
+    { { "zstd" }, { "crc32c" } } };
   int number = 0;
   for (const std::vector<vol::CodecStep>& steps : all)
   {

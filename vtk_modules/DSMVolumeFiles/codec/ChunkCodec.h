@@ -3,10 +3,11 @@
 #define vol_ChunkCodec_h
 
 #include "DSMVolumeFiles/base/ByteBuffer.h"
+#include "DSMVolumeFiles/codec/Codec.h"
 
 #include <cstddef>
 #include <cstdint>
-#include <string>
+#include <string_view>
 #include <vector>
 
 namespace vol
@@ -15,18 +16,13 @@ namespace vol
 /// One step of how the bytes of a chunk were made out of its samples.
 struct CodecStep
 {
-  enum class Kind
-  {
-    SwapBytes,  ///< Width bytes each
-    Shuffle,    ///< the first bytes of all elements of Width bytes, then the second ones, and so on
-    Deflate,    ///< a zlib or gzip stream
-    Blosc,      ///< version 1
-    Zstd,       ///< one frame
-    Fletcher32, ///< HDF5's checksum behind the bytes
-    Crc32c      ///< Zarr's
-  };
-  Kind What;
-  std::size_t Width = 1;
+  /// The name must be a codec's.
+  CodecStep(std::string_view name, std::size_t width = 1);
+  /// Not null.
+  explicit CodecStep(const Codec* what, std::size_t width = 1);
+
+  const Codec* What;
+  std::size_t Width; ///< bytes of an element
 };
 
 /// Turns the bytes of a chunk as a file has them into samples, and back. Any thread.
@@ -44,8 +40,8 @@ public:
   bool Decode(ByteBuffer stored, unsigned skipped, std::byte* out, std::size_t bytes,
     ByteBuffer* halo = nullptr) const;
 
-  /// What a file has for these samples: all steps, the first one first. Throws dsm::Error for Blosc and Crc32c,
-  /// which are only read. `halo`: further samples, for Decode; other programs pass over them, since they lie behind
+  /// What a file has for these samples: all steps, the first one first. Throws dsm::Error for codecs
+  /// that are only read. `halo`: further samples, for Decode; other programs pass over them, since they lie behind
   /// the end of what is compressed: of Zstandard in a skippable frame (RFC 8878, section 3.1.2), of deflate behind
   /// the stream (RFC 1950), which tells its end. Only where KeepsHalo().
   ByteBuffer Encode(ByteBuffer samples, ByteBuffer halo = {}) const;

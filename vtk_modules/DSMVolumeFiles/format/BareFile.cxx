@@ -68,7 +68,7 @@ public:
     const std::size_t width = bricks::GetBytes(values.Type);
     if (values.BigEndian && width > 1)
     {
-      this->Codec = ChunkCodec({ { CodecStep::Kind::SwapBytes, width } });
+      this->Codec = ChunkCodec({ { "swap", width } });
     }
     this->Arrays.push_back(std::move(array));
   }

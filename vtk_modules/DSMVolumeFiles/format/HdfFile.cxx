@@ -415,7 +415,7 @@ private:
     std::vector<CodecStep> steps;
     if (values->Swapped)
     {
-      steps.push_back({ CodecStep::Kind::SwapBytes, bricks::GetBytes(array.Type) });
+      steps.push_back({ "swap", bricks::GetBytes(array.Type) });
     }
     switch (H5Pget_layout(properties.Get()))
     {

@@ -28,10 +28,6 @@ constexpr char HdfScalars[] = "Scalars";
 /// And of chunks that are not compressed: HaloRecord of each.
 constexpr char HdfHaloRecords[] = "Halos";
 
-/// Registered filters (https://github.com/HDFGroup/hdf5_plugins).
-constexpr H5Z_filter_t HdfBloscFilter = 32001;
-constexpr H5Z_filter_t HdfZstdFilter = 32015;
-
 /// To be held by who calls the library, which may have been built without a lock of its own.
 std::mutex& GetHdfLock();
 

@@ -109,26 +109,12 @@ bool FindHdfSteps(hid_t properties, std::vector<CodecStep>& steps)
     unsigned config = 0;
     const H5Z_filter_t filter = H5Pget_filter2(properties, static_cast<unsigned>(index), &flags,
       &parameterCount, parameters, 0, nullptr, &config);
-    switch (filter)
+    const Codec* const codec = FindHdfCodec(filter);
+    if (!codec)
     {
-      case H5Z_FILTER_DEFLATE:
-        steps.push_back({ CodecStep::Kind::Deflate });
-        break;
-      case H5Z_FILTER_SHUFFLE:
-        steps.push_back({ CodecStep::Kind::Shuffle, std::max(1u, parameters[0]) });
-        break;
-      case H5Z_FILTER_FLETCHER32:
-        steps.push_back({ CodecStep::Kind::Fletcher32 });
-        break;
-      case HdfBloscFilter:
-        steps.push_back({ CodecStep::Kind::Blosc });
-        break;
-      case HdfZstdFilter:
-        steps.push_back({ CodecStep::Kind::Zstd });
-        break;
-      default:
-        return false;
+      return false;
     }
+    steps.emplace_back(codec, filter == H5Z_FILTER_SHUFFLE ? std::max(1u, parameters[0]) : 1u);
   }
   return true;
 }

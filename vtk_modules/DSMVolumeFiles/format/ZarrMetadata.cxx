@@ -24,7 +24,6 @@ namespace
 {
 
 using Json = nlohmann::json;
-using Kind = CodecStep::Kind;
 
 using ZarrJson::Refuse;
 
@@ -175,17 +174,14 @@ CodecStep ParseCodec(const std::string& folder, const std::string& name)
     Refuse(folder,
       "its shards have shards in them, or codecs before or behind them, which is not supported.");
   }
-  static const std::map<std::string, Kind> kinds = { { "zlib", Kind::Deflate },
-    { "gzip", Kind::Deflate }, { "blosc", Kind::Blosc }, { "zstd", Kind::Zstd },
-    { "crc32c", Kind::Crc32c }, { "fletcher32", Kind::Fletcher32 } };
-  const auto known = kinds.find(name);
-  if (known == kinds.end())
+  const Codec* const codec = FindZarrCodec(name);
+  if (!codec)
   {
     Refuse(folder,
       "its filter or compressor " + Quote(name) +
         " is not supported; blosc, gzip, zlib, zstd and crc32c are.");
   }
-  return { known->second };
+  return CodecStep(codec);
 }
 
 /// Between the indices in a chunk's name. With any other, two chunks may have one name, or lie outside of the folder.
@@ -242,7 +238,7 @@ CodecStep ParseFilter2(const std::string& folder, const Json& filter)
       "its filter 'shuffle' has an invalid 'elementsize'; 0 to " + std::to_string(most) +
         " are valid.");
   }
-  return { Kind::Shuffle, static_cast<std::size_t>(std::max<std::int64_t>(1, *width)) };
+  return { "shuffle", static_cast<std::size_t>(std::max<std::int64_t>(1, *width)) };
 }
 
 ZarrMetadata ParseVersion2(const std::string& folder, const Json& json)
@@ -261,7 +257,7 @@ ZarrMetadata ParseVersion2(const std::string& folder, const Json& json)
   }
   if (ParseType2(folder, ZarrJson::GetText(folder, json, "dtype"), data.Type))
   {
-    steps.push_back({ Kind::SwapBytes, bricks::GetBytes(data.Type) });
+    steps.push_back({ "swap", bricks::GetBytes(data.Type) });
   }
   data.Fill = ParseFill(folder, ZarrJson::Find(json, "fill_value"), data.Type);
   const Json& filters = ZarrJson::Find(json, "filters");
@@ -336,7 +332,7 @@ std::vector<CodecStep> ParseCodecs3(const std::string& folder, const Json& codec
     {
       if (ZarrJson::GetText(folder, configuration, "endian") == "big" && width > 1)
       {
-        steps.push_back({ Kind::SwapBytes, width });
+        steps.push_back({ "swap", width });
       }
     }
     else if (name == "transpose")
@@ -401,11 +397,11 @@ ZarrMetadata::Sharding ParseSharding(
   for (const CodecStep& step : steps)
   {
     // Its length must be known before it is read.
-    if (step.What != Kind::SwapBytes && step.What != Kind::Crc32c)
+    if (!step.What->KeepsPlaces && step.What->Name != "crc32c")
     {
       Refuse(folder, "the index of its shards is compressed, which is not supported.");
     }
-    shards.IndexBytes += step.What == Kind::Crc32c ? sizeof(std::uint32_t) : 0;
+    shards.IndexBytes += step.What->AddedBytes;
   }
   shards.IndexCodec = MakeCodec(folder, steps);
   return shards;

@@ -57,11 +57,10 @@ ChunkCodec BrickFileLayout::CreateCodec(std::size_t array) const
   std::vector<CodecStep> steps;
   if (this->Pressed != Compression::None)
   {
-    steps.push_back({ CodecStep::Kind::Shuffle, bricks::GetBytes(this->Arrays[array].Type) });
-    steps.push_back(
-      { this->Pressed == Compression::Zstd ? CodecStep::Kind::Zstd : CodecStep::Kind::Deflate });
+    steps.push_back({ "shuffle", bricks::GetBytes(this->Arrays[array].Type) });
+    steps.push_back({ this->Pressed == Compression::Zstd ? "zstd" : "deflate" });
   }
-  steps.push_back({ CodecStep::Kind::Fletcher32 });
+  steps.push_back({ "fletcher32" });
   return ChunkCodec(std::move(steps));
 }
 
@@ -398,7 +397,7 @@ private:
       case Compression::Zstd:
         H5Pset_shuffle(creation.Get());
         // The library itself need not have it; chunks are written as they are.
-        H5Pset_filter(creation.Get(), HdfZstdFilter, H5Z_FLAG_OPTIONAL, 0, nullptr);
+        H5Pset_filter(creation.Get(), FindCodec("zstd")->HdfFilter, H5Z_FLAG_OPTIONAL, 0, nullptr);
     }
     H5Pset_fletcher32(creation.Get());
     const hsize_t tableShape[2] = { static_cast<hsize_t>(array.Grid.GetCount()), 2 };

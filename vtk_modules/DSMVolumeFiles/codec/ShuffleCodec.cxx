@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "DSMVolumeFiles/codec/Codec.h"
+
+#include <algorithm>
+#include <type_traits>
+
+namespace vol
+{
+
+Codec MakeShuffleCodec();
+
+namespace
+{
+
+ByteBuffer Shuffle(ByteBuffer samples, std::size_t width)
+{
+  const std::size_t count = samples.size() / width;
+  ByteBuffer bytes(samples.size());
+  for (std::size_t byte = 0; byte < width; ++byte)
+  {
+    for (std::size_t element = 0; element < count; ++element)
+    {
+      bytes[byte * count + element] = samples[element * width + byte];
+    }
+  }
+  // What is left over behind the last element stays where it is.
+  std::copy_n(
+    samples.data() + count * width, samples.size() - count * width, bytes.data() + count * width);
+  return bytes;
+}
+
+ByteBuffer Unshuffle(ByteBuffer stored, std::size_t width, std::size_t)
+{
+  ByteBuffer bytes(stored.size());
+  const auto put = [from = stored.data(), to = bytes.data(), all = stored.size()](auto elementBytes)
+  {
+    const std::size_t count = all / elementBytes;
+    for (std::size_t element = 0; element < count; ++element)
+    {
+      for (std::size_t byte = 0; byte < elementBytes; ++byte)
+      {
+        to[element * elementBytes + byte] = from[byte * count + element];
+      }
+    }
+    // What is left over behind the last element stays where it is.
+    std::copy(from + count * elementBytes, from + all, to + count * elementBytes);
+  };
+  // Compilers make vectors of a width that they know.
+  switch (width)
+  {
+    case 2:
+      put(std::integral_constant<std::size_t, 2>());
+      break;
+    case 4:
+      put(std::integral_constant<std::size_t, 4>());
+      break;
+    case 8:
+      put(std::integral_constant<std::size_t, 8>());
+      break;
+    default:
+      put(width);
+  }
+  return bytes;
+}
+
+} // namespace
+
+/// The first bytes of all elements of a width, then the second ones, and so on.
+Codec MakeShuffleCodec()
+{
+  Codec codec{ "shuffle" };
+  codec.HdfFilter = 2;
+  codec.Decode = &Unshuffle;
+  codec.Encode = &Shuffle;
+  return codec;
+}
+
+} // namespace vol
