@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What an isosurface says of itself, by its two sides.
-#include "DSMRayTracing/surface/IsosurfaceOf.h"
+#include "DSMRayTracing/scene/SceneObject.h"
 
 #include <gtest/gtest.h>
 

@@ -43,7 +43,7 @@ glm::ivec2 GetPlace(int ray)
 /// What a debug view of owners or bricks numbers.
 std::uint64_t GetNumber(DebugView view, const ObjectTracer::Brick& brick)
 {
-  return view == DebugView::Owner
+  return brick.Segment && view == DebugView::Owner
     ? static_cast<std::uint64_t>(brick.Segment->GetDirectory().GetOwner(brick.Id))
     : brick.Id;
 }

@@ -61,7 +61,7 @@ public:
   virtual void Describe(const ObjectHit* hits, const Ray* rays, const PictureView* const* views,
     RayMask wanted, SurfacePoint* const* points) const = 0;
 
-  /// A brick of a segment.
+  /// A brick of a segment; null: of none, for the object has no bricks.
   struct Brick
   {
     const dsm::BlockSegment* Segment;

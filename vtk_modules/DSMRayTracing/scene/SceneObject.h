@@ -2,6 +2,7 @@
 #ifndef rt_SceneObject_h
 #define rt_SceneObject_h
 
+#include "DSMRayTracing/field/lattice/LatticeField.h"
 #include "DSMRayTracing/mesh/MeshObject.h"
 #include "DSMRayTracing/surface/IsosurfaceOf.h"
 
@@ -9,6 +10,8 @@
 
 namespace rt
 {
+
+using LatticeIsosurface = IsosurfaceOf<LatticeField>;
 
 /// The table of the kinds of objects. A kind has
 /// - a description, named here, with IsOpaque, AddTo and the name of

@@ -3,7 +3,6 @@
 #define rt_IsosurfaceOf_h
 
 #include "DSMRayTracing/field/LevelSets.h"
-#include "DSMRayTracing/field/lattice/LatticeField.h"
 #include "DSMRayTracing/look/SheetTransmittance.h"
 #include "DSMRayTracing/object/ObjectDigest.h"
 #include "DSMRayTracing/ray/ClipRegion.h"
@@ -96,8 +95,6 @@ private:
     }
   }
 };
-
-using LatticeIsosurface = IsosurfaceOf<LatticeField>;
 
 } // namespace rt
 
