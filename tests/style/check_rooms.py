@@ -100,7 +100,7 @@ def find_untold(root):
     """What docs/architecture.md says of the order of the rooms."""
     text = re.sub(r" +", " ", (root / "docs/architecture.md").read_text())
     for module, rooms in ROOMS.items():
-        line = f"{module.replace('vtk_modules/', '')} {' '.join(rooms)}"
+        line = f"| {module.replace('vtk_modules/', '')} | {' '.join(rooms)} |"
         if f"\n{line}\n" not in text:
             yield f"docs/architecture.md does not have the line '{line}'"
 
