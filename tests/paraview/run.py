@@ -20,8 +20,6 @@ import traceback
 folder = os.path.dirname(os.path.abspath(sys.argv[0]))
 sys.path.insert(0, folder)
 SKIPPED = 77  # CTest's SKIP_RETURN_CODE
-MEMORY = ("DSMMemoryOrganization", "DSMHostSharing", "DSMMemory", "DSMCacheSize", "DSMThreads", "DSMScheduler",
-          "DSMSilenceLimit", "DSMScratchDirectory", "DSMCoarserDataWhileMoving")
 
 
 def run(arguments):
@@ -34,7 +32,9 @@ def reset_memory(simple):
     """Sets what a session's displays share back to its defaults: a reset leaves the session itself, which keeps them."""
     view = simple.CreateRenderView()
     display = simple.Show(simple.Sphere(), view)
-    names = [name for name in MEMORY if display.SMProxy.GetProperty(name)]
+    # They are linked to the settings page.
+    hints = {name: display.SMProxy.GetProperty(name).GetHints() for name in display.ListProperties() if "DSM" in name}
+    names = [name for name, hint in hints.items() if hint and hint.FindNestedElementByName("PropertyLink")]
     if names:  # the plugin is loaded
         display.Representation = "DSM Ray Traced"
         for name in names:

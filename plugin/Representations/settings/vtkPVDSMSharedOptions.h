@@ -12,13 +12,12 @@ class vtkObjectBase;
 class vtkPVRenderView;
 class vtkSMProxy;
 
-/// Options of which there is one value for many proxies: the light of a view, which each display of the
-/// view has among its properties, and the memory of a session, which each display and the settings page
-/// have. Whichever is set, all of them have the value at once: the last word counts, and every panel
-/// shows what holds. Lives where proxies do, the client and rank 0 of pvbatch; its thread is theirs.
+/// Keeps the properties of displays alike that belong to a view (its light) or to a session (its memory, which the
+/// settings page has, too). A display or page that gets a value passes it on to all others at once, so every panel shows
+/// the value that applies: the most recent one. On processes that have proxies: the client, and rank 0 of pvbatch.
 ///
-/// A proxy that joins takes the values that hold. But where it has been given others than its
-/// defaults, or (of the light) comes from a state file, these are the last word.
+/// A display that joins gets the current values. It passes on its own where they are neither the defaults nor the
+/// settings page's, and, of light, where a state file is being loaded.
 class vtkPVDSMSharedOptions
 {
 public:
@@ -26,8 +25,8 @@ public:
   vtkPVDSMSharedOptions(const vtkPVDSMSharedOptions&) = delete;
   vtkPVDSMSharedOptions& operator=(const vtkPVDSMSharedOptions&) = delete;
 
-  /// The display whose options of light and memory these objects are on this process is traced in the
-  /// view. Again does nothing; nor does it where there are no proxies.
+  /// The display with these options is traced in the view. Does nothing if it has joined already, or where there are no
+  /// proxies.
   static void Join(vtkPVRenderView* view, vtkObjectBase* light, vtkObjectBase* memory);
 
   /// The display with these options is no longer in the view.
@@ -43,12 +42,12 @@ private:
   void Add(vtkSMProxy* proxy, bool speaks);
   void Remove(vtkObjectBase* object);
   void OnChange(vtkSMProxy* proxy, const char* name);
-  /// All others get the value of one.
+  /// Copies one proxy's value to all others.
   void Spread(vtkSMProxy* from, const std::string& name);
   void UpdateObjects();
 
   std::vector<std::string> Names; ///< of the properties
-  /// The first has the values, whoever joins and leaves.
+  /// The first keeps the values while displays join and leave.
   std::vector<vtkSmartPointer<vtkSMProxy>> Proxies;
   vtkSmartPointer<vtkCommand> Observer;
   bool IsSpreading = false;
