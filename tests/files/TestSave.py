@@ -32,7 +32,7 @@ with h5py.File(sys.argv[1]) as file:
     assert np.array_equal(cells['cell'][...], (i + 100 * j + 10000 * k)[:-1, :-1, :-1]), 'cells'
     assert points['f'].shape == (48, 39, 64) and points['f'].fletcher32, 'scalars'
     assert list(file['VTKHDF'].attrs['WholeExtent']) == [-3, 60, 2, 40, 5, 52], 'extent'
-    assert file['DSM/PointData/f/BrickRanges'].shape[0] > 1, 'index'
+    assert file['DSM/PointData/f/BrickIndex'].shape[0] > 1, 'index'
 """
 
 

@@ -244,7 +244,6 @@ DAMAGES = {
     "no ranges": lambda: change_part(lambda file: file.__delitem__(INDEX + "ValueRanges")),
     "ranges of NaN": lambda: change_part(lambda file: file[INDEX + "ValueRanges"].__setitem__(..., np.nan)),
     "a range the wrong way round": lambda: change_part(lambda file: file[INDEX + "ValueRanges"].__setitem__(..., [[2, 1, 2, 1]])),
-    "a table of another size": replace(INDEX + "BrickRanges", data=np.zeros((5, 2), "f4")),
     "halos of another size": replace(INDEX + "Halos", shape=(1000, 3), chunks=(1, 3), dtype="u1"),
     "values of another shape": replace("VTKHDF/PointData/" + ARRAY, shape=(16, 16, 16), chunks=(16, 16, 16), dtype="f4"),
 }

@@ -149,7 +149,6 @@ public:
   struct Target
   {
     HdfHandle Values;
-    HdfHandle Table;  ///< First and Last of the chunks
     HdfHandle Limits; ///< ValueRanges
     HdfHandle Halos;  ///< HaloRecord of the chunks; not open: none
     std::int64_t Chunks;
@@ -187,13 +186,10 @@ private:
   {
     Target& target = this->Targets[number];
     const ChunkGrid& grid = this->Layout.Arrays[number].Grid;
-    std::vector<float> table;
     errno = 0;
     for (const EncodedChunk& chunk : chunks)
     {
-      const bricks::Index3 first =
-        grid.GetChunk(target.Chunks + static_cast<std::int64_t>(table.size() / 2)) *
-        grid.ChunkSamples;
+      const bricks::Index3 first = grid.GetChunk(target.Chunks) * grid.ChunkSamples;
       const hsize_t offset[4] = { static_cast<hsize_t>(first.z), static_cast<hsize_t>(first.y),
         static_cast<hsize_t>(first.x), 0 };
       this->File.Check(H5Dwrite_chunk(
@@ -201,15 +197,12 @@ private:
       if (target.Halos.IsOpen())
       {
         // Behind the chunk, for the library takes space from the end of the file.
-        const hsize_t record[2] = { static_cast<hsize_t>(target.Chunks) + table.size() / 2, 0 };
+        const hsize_t record[2] = { static_cast<hsize_t>(target.Chunks), 0 };
         this->File.Check(H5Dwrite_chunk(target.Halos.Get(), H5P_DEFAULT, 0, record,
           chunk.HaloRecord.size(), chunk.HaloRecord.data()));
       }
-      table.push_back(chunk.First);
-      table.push_back(chunk.Last);
+      ++target.Chunks;
     }
-    this->WriteTable(target, table);
-    target.Chunks += static_cast<std::int64_t>(chunks.size());
     target.Ranges.Add(ranges);
     this->WriteRanges(target);
     this->Settle();
@@ -289,14 +282,12 @@ private:
     { return HdfHandle(H5Dopen2(this->File.Get(), name.c_str(), H5P_DEFAULT), &H5Dclose); };
     const std::string index = "DSM/" + this->GetName(array);
     const std::size_t haloBytes = this->Layout.GetHaloRecordBytes(number);
-    Target target{ find("VTKHDF/" + this->GetName(array)), find(index + "/BrickRanges"),
-      find(index + "/ValueRanges"),
+    Target target{ find("VTKHDF/" + this->GetName(array)), find(index + "/ValueRanges"),
       haloBytes > 0 ? find(index + "/" + HdfHaloRecords) : HdfHandle(), chunks,
       ValueRanges(array.Components) };
     const auto count = static_cast<hsize_t>(array.Grid.GetCount());
     std::vector<double> limits(4 * target.Ranges.All.size());
     if (!HasShape(target.Values, GetShape(array.Grid.Samples, array.Components)) ||
-      !HasShape(target.Table, { count, 2 }) ||
       !HasShape(target.Limits, { target.Ranges.All.size(), 4 }) ||
       (haloBytes > 0 && !HasShape(target.Halos, { count, haloBytes })) ||
       H5Dread(
@@ -400,13 +391,10 @@ private:
         H5Pset_filter(creation.Get(), FindCodec("zstd")->HdfFilter, H5Z_FLAG_OPTIONAL, 0, nullptr);
     }
     H5Pset_fletcher32(creation.Get());
-    const hsize_t tableShape[2] = { static_cast<hsize_t>(array.Grid.GetCount()), 2 };
     ValueRanges ranges(array.Components);
     const hsize_t limitShape[2] = { ranges.All.size(), 4 };
     return { this->File.CreateDataset("VTKHDF/" + this->GetName(array), GetHdfType(array.Type),
                GetShape(array.Grid.Samples, array.Components), creation.Get()),
-      this->File.CreateDataset(index + "/BrickRanges", H5T_NATIVE_FLOAT,
-        { std::begin(tableShape), std::end(tableShape) }, H5P_DEFAULT),
       this->File.CreateDataset(index + "/ValueRanges", H5T_NATIVE_DOUBLE,
         { std::begin(limitShape), std::end(limitShape) }, H5P_DEFAULT),
       this->CreateHalos(number), 0, std::move(ranges) };
@@ -426,18 +414,6 @@ private:
     H5Pset_fill_time(creation.Get(), H5D_FILL_TIME_NEVER);
     return this->File.CreateDataset("DSM/" + this->GetName(array) + "/" + HdfHaloRecords,
       H5T_NATIVE_UCHAR, { static_cast<hsize_t>(array.Grid.GetCount()), record[1] }, creation.Get());
-  }
-
-  void WriteTable(const Target& target, const std::vector<float>& table)
-  {
-    const hsize_t first[2] = { static_cast<hsize_t>(target.Chunks), 0 };
-    const hsize_t count[2] = { table.size() / 2, 2 };
-    const HdfHandle all = this->File.Own(H5Dget_space(target.Table.Get()), &H5Sclose);
-    const HdfHandle part = this->File.Own(H5Screate_simple(2, count, nullptr), &H5Sclose);
-    this->File.Check(
-      H5Sselect_hyperslab(all.Get(), H5S_SELECT_SET, first, nullptr, count, nullptr));
-    this->File.Check(H5Dwrite(
-      target.Table.Get(), H5T_NATIVE_FLOAT, part.Get(), all.Get(), H5P_DEFAULT, table.data()));
   }
 
   void WriteRanges(const Target& target)

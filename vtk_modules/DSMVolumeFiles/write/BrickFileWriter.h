@@ -48,10 +48,6 @@ struct EncodedChunk
 {
   ByteBuffer Bytes;
   ByteBuffer HaloRecord; ///< where the layout has them
-  /// Of the cells of the brick that begins with the chunk's first sample, rounded outward; First above Last where
-  /// there is none.
-  float First = 0.0f;
-  float Last = 0.0f;
 };
 
 /// Writes a volume that any HDF5 reader opens, as VTK's ImageData (VTKHDF), with an index of ranges beside it (the

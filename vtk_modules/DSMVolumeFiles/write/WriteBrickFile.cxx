@@ -5,8 +5,6 @@
 #include "DSMBricks/build/VoxelBrickReader.h"
 #include "DSMBricks/build/VoxelIndex.h"
 #include "DSMBricks/layout/BrickLattice.h"
-#include "DSMBricks/layout/MacrocellBuilder.h"
-#include "DSMBricks/layout/VoxelBrickHeader.h"
 #include "DSMCore/base/Error.h"
 #include "DSMVolumeFiles/base/CopyBox.h"
 #include "DSMVolumeFiles/base/FileLimits.h"
@@ -30,24 +28,6 @@ namespace vol
 
 namespace
 {
-
-/// The range that the renderer finds for a brick of these samples.
-template <class T>
-std::pair<float, float> FindBrickRange(
-  const bricks::Index3& cells, bricks::ScalarType type, const std::byte* samples)
-{
-  const bricks::VoxelBrickHeader header = bricks::CreateVoxelBrickHeader(cells, type, false);
-  std::vector<std::uint64_t> block(header.BlockBytes / sizeof(std::uint64_t) + 1);
-  auto* const bytes = reinterpret_cast<std::byte*>(block.data());
-  const bricks::Index3 points = cells + bricks::Index3(1);
-  std::memcpy(bytes, &header, sizeof(header));
-  std::memcpy(bytes + header.SampleOffset, samples,
-    static_cast<std::size_t>(points.x * points.y * points.z) * sizeof(T));
-  bricks::BuildMacrocells<T>(bytes);
-  bricks::VoxelBrickHeader built;
-  std::memcpy(&built, bytes, sizeof(built));
-  return { built.First, built.Last };
-}
 
 /// A chunk, and which one it is.
 using NumberedChunk = std::pair<std::int64_t, EncodedChunk>;
@@ -83,14 +63,6 @@ public:
     this->From.Read(this->Number, have, samples.data());
     ranges.Add(this->Array, samples.data(), have, own);
     EncodedChunk encoded;
-    const bricks::Index3 cells = have.GetSize() - bricks::Index3(1);
-    encoded.First = 1.0f; // of no cells
-    if (this->Array.Components == 1 && cells.x > 0 && cells.y > 0 && cells.z > 0)
-    {
-      std::tie(encoded.First, encoded.Last) = bricks::Dispatch(this->Array.Type,
-        [&](auto zero)
-        { return FindBrickRange<decltype(zero)>(cells, this->Array.Type, samples.data()); });
-    }
     // Chunks at the volume's ends are as large as all others.
     const bricks::Box whole{ own.Min, own.Min + this->Array.Grid.ChunkSamples };
     ByteBuffer bytes(static_cast<std::size_t>(whole.GetCount()) * sampleBytes, std::byte{ 0 });
@@ -165,8 +137,8 @@ std::vector<std::byte> ToBytes(const std::vector<NumberedChunk>& chunks, const V
   std::size_t count = 2 * ranges.All.size() * sizeof(ValueRange);
   for (const auto& [number, chunk] : chunks)
   {
-    count += sizeof(number) + sizeof(chunk.First) + sizeof(chunk.Last) + 2 * sizeof(std::uint64_t) +
-      chunk.Bytes.size() + chunk.HaloRecord.size();
+    count +=
+      sizeof(number) + 2 * sizeof(std::uint64_t) + chunk.Bytes.size() + chunk.HaloRecord.size();
   }
   std::vector<std::byte> bytes;
   bytes.reserve(count); // they are up to an eighth of the memory
@@ -177,8 +149,6 @@ std::vector<std::byte> ToBytes(const std::vector<NumberedChunk>& chunks, const V
   for (const auto& [number, chunk] : chunks)
   {
     Put(bytes, &number, 1);
-    Put(bytes, &chunk.First, 1);
-    Put(bytes, &chunk.Last, 1);
     for (const ByteBuffer* const part : { &chunk.Bytes, &chunk.HaloRecord })
     {
       const std::uint64_t count = part->size();
@@ -203,8 +173,6 @@ void FromBytes(
   {
     auto& [number, chunk] = chunks.emplace_back();
     from.Take(&number, 1);
-    from.Take(&chunk.First, 1);
-    from.Take(&chunk.Last, 1);
     for (ByteBuffer* const part : { &chunk.Bytes, &chunk.HaloRecord })
     {
       std::uint64_t count = 0;
