@@ -58,6 +58,15 @@ bool IsNearly(const glm::dmat4& a, const glm::dmat4& b)
 constexpr std::chrono::milliseconds FirstTold(1500);
 constexpr std::chrono::milliseconds ThenTold(500);
 
+/// What a rank tells of its view.
+struct View
+{
+  glm::dmat4 WorldToClip;
+  rt::Environment Background;
+  std::int32_t IsApart; ///< something of its own may be between surfaces
+  std::int32_t Coarser; ///< levels that may stand in
+};
+
 class Raised
 {
 public:
@@ -147,24 +156,24 @@ void vtkDSMScene::Internals::Update()
   const auto& members = this->Members.GetShown();
   // To publish in step, the ranks must agree on the settings of the memory; threads may differ.
   using Digest = std::array<std::uint64_t, 5>;
-  std::vector<std::byte> mine;
-  messenger.RunTogether("Updating the data",
+  // One rank's change time says nothing of another's.
+  const auto all = messenger.GatherTogether("Updating the data",
     [&]
     {
       this->Members.ForwardOptions(this->Light, options);
       this->Group->Configure();
       const dsm::BlockStore::Settings& settings = this->Group->GetStore().GetSettings();
-      mine = dsm::Encode(Digest{ static_cast<std::uint64_t>(settings.Organization),
-        (settings.HostSharing ? 1u : 0u) + (options->GetCoarserDataWhileMoving() ? 2u : 0u),
-        settings.MemoryBytes, settings.CacheBytes, settings.ScratchDirectory.empty() ? 0u : 1u });
+      std::vector<std::byte> mine =
+        dsm::Encode(Digest{ static_cast<std::uint64_t>(settings.Organization),
+          (settings.HostSharing ? 1u : 0u) + (options->GetCoarserDataWhileMoving() ? 2u : 0u),
+          settings.MemoryBytes, settings.CacheBytes, settings.ScratchDirectory.empty() ? 0u : 1u });
       for (const auto& member : members)
       {
         member.State->UpdatePiece(messenger.GetRank(), messenger.GetSize());
         mine.push_back(std::byte(member.State->HasNewData() ? 1 : 0));
       }
+      return mine;
     });
-  // One rank's change time says nothing of another's.
-  const auto all = messenger.AllGather(mine);
   for (const auto& flags : all)
   {
     if (flags.size() != all.front().size())
@@ -208,7 +217,7 @@ void vtkDSMScene::Internals::Draw()
   rt::FrameRequest request;
   vtkNew<vtkMatrix4x4> projection;
   const int ranksOnHost = this->Image ? messenger.GetRanksOnHost() : 1;
-  messenger.RunTogether("Preparing the frame",
+  const auto views = messenger.GatherTogether("Preparing the frame",
     [&]
     {
       this->CheckImage(ranksOnHost);
@@ -228,6 +237,7 @@ void vtkDSMScene::Internals::Draw()
         ? rt::TileScheduling::CentralQueue
         : rt::TileScheduling::WorkStealing;
       request.IsPreview = this->IsInteractive(); // also where a pixel gets only one sample
+      return this->EncodeView(scene, request);
     });
   if (scene.Objects.empty())
   {
@@ -235,12 +245,12 @@ void vtkDSMScene::Internals::Draw()
     this->Clear();
     return;
   }
-  this->AgreeOnView(scene, request);
+  const int coarser = this->AgreeOnView(views, scene, request);
   request.PixelSize = this->GetReduction(request);
   request.Width = (request.Width + request.PixelSize - 1) / request.PixelSize;
   request.Height = (request.Height + request.PixelSize - 1) / request.PixelSize;
   this->IsTraced = true;
-  if (this->TraceScene(scene, request) == rt::FrameAccumulation::Result::Aborted)
+  if (this->TraceScene(scene, request, coarser) == rt::FrameAccumulation::Result::Aborted)
   {
     // The renderer goes on, with the last picture: other ranks may wait for what this one draws.
     this->Renderer->GetRenderWindow()->SetAbortRender(0);
@@ -259,11 +269,11 @@ void vtkDSMScene::Internals::Draw()
 
 /// Collective: the scene's objects come in again where they are shown at another level of detail.
 rt::FrameAccumulation::Result vtkDSMScene::Internals::TraceScene(
-  rt::Scene& scene, const rt::FrameRequest& request)
+  rt::Scene& scene, const rt::FrameRequest& request, int coarser)
 {
   dsm::Messenger& messenger = this->Group->GetMessenger();
   vtkRenderWindow* window = this->Image ? nullptr : this->Renderer->GetRenderWindow();
-  const std::vector<int> tries = this->Detail.GetTries(this->CountCoarser());
+  const std::vector<int> tries = this->Detail.GetTries(coarser);
   using Result = rt::FrameAccumulation::Result;
   Result result = Result::Aborted;
   const Raised tracing(TracingTiles);
@@ -314,17 +324,12 @@ void vtkDSMScene::Internals::TellOfTracing(double part) const
   }
 }
 
-/// Collective: levels below the finest that may stand in.
+/// Levels below the finest that may stand in, as far as this rank knows.
 int vtkDSMScene::Internals::CountCoarser() const
 {
-  if (!this->Group->GetOptions()->GetCoarserDataWhileMoving())
-  {
-    return 0;
-  }
-  const bool mayBeCoarser = this->IsInteractive() && !this->AlwaysFinest;
-  const int mine = mayBeCoarser ? this->Members.CountCoarser() : 0;
-  const std::vector<int> all = this->Group->GetMessenger().AllGatherValue(mine);
-  return *std::min_element(all.begin(), all.end());
+  const bool mayBeCoarser = this->Group->GetOptions()->GetCoarserDataWhileMoving() &&
+    this->IsInteractive() && !this->AlwaysFinest;
+  return mayBeCoarser ? this->Members.CountCoarser() : 0;
 }
 
 void vtkDSMScene::Internals::CheckImage(int ranksOnHost) const
@@ -421,38 +426,46 @@ void vtkDSMScene::Internals::ShowWhole() const
   this->Prop->SetBounds(bounds);
 }
 
-/// Collective. Takes rank 0's view: the camera that came from there is not always the same to the last
-/// bit, ParaView's other ranks have no background, which gives light and which mirrored rays see where
-/// they meet nothing, and lights may follow the camera. A camera that differs by more than rounding is left to be refused.
-/// Surfaces are kept apart when any rank has something that may be between them.
-void vtkDSMScene::Internals::AgreeOnView(rt::Scene& scene, rt::FrameRequest& request) const
+/// What AgreeOnView is told of a rank: a View, and its lights.
+std::vector<std::byte> vtkDSMScene::Internals::EncodeView(
+  const rt::Scene& scene, const rt::FrameRequest& request) const
 {
-  struct View
-  {
-    glm::dmat4 WorldToClip;
-    rt::Environment Background;
-    std::uint64_t IsApart;
-  };
   const bool canBeApart = this->Delivery.CanSeparate(this->Group->GetMessenger().GetSize());
   const bool isApart = canBeApart && !this->Image && !scene.IsOpaque() &&
     this->Members.AreBesideOthers(this->Renderer);
-  std::vector<std::byte> mine =
-    dsm::Encode(View{ request.WorldToClip, this->Background, isApart ? 1u : 0u });
+  std::vector<std::byte> bytes = dsm::Encode(
+    View{ request.WorldToClip, this->Background, isApart ? 1 : 0, this->CountCoarser() });
   for (const rt::Light& light : scene.Lights)
   {
-    dsm::AttachTail(mine, light);
+    dsm::AttachTail(bytes, light);
   }
-  const auto all = this->Group->GetMessenger().AllGather(std::move(mine));
-  request.Layers = 1;
-  for (const std::vector<std::byte>& other : all)
+  return bytes;
+}
+
+/// Takes rank 0's view: the camera that came from there is not always the same to the last
+/// bit, ParaView's other ranks have no background, which gives light and which mirrored rays see where
+/// they meet nothing, and lights may follow the camera. A camera that differs by more than rounding is left to be refused.
+/// Surfaces are kept apart when any rank has something that may be between them. Returns how many levels below the finest
+/// may stand in.
+int vtkDSMScene::Internals::AgreeOnView(const std::vector<std::vector<std::byte>>& views,
+  rt::Scene& scene, rt::FrameRequest& request) const
+{
+  const auto decode = [](const std::vector<std::byte>& bytes)
   {
-    View theirs;
-    std::memcpy(&theirs, other.data(), sizeof(theirs));
+    View view;
+    std::memcpy(&view, bytes.data(), sizeof(view));
+    return view;
+  };
+  const std::vector<std::byte>& first = views.front();
+  const View view = decode(first);
+  int coarser = view.Coarser;
+  request.Layers = 1;
+  for (const std::vector<std::byte>& other : views)
+  {
+    const View theirs = decode(other);
     request.Layers = theirs.IsApart != 0 ? rt::FrameRequest::MaxLayers : request.Layers;
+    coarser = std::min<int>(coarser, theirs.Coarser);
   }
-  const std::vector<std::byte>& first = all.front();
-  View view;
-  std::memcpy(&view, first.data(), sizeof(view));
   scene.Transport.Background = view.Background.Lower;
   const auto strength = static_cast<float>(this->Light->GetEnvironmentLight());
   scene.Transport.Surroundings = view.Background;
@@ -468,6 +481,7 @@ void vtkDSMScene::Internals::AgreeOnView(rt::Scene& scene, rt::FrameRequest& req
   {
     request.WorldToClip = view.WorldToClip;
   }
+  return coarser;
 }
 
 bool vtkDSMScene::Internals::IsInteractive() const

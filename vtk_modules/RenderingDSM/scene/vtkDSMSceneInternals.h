@@ -95,13 +95,16 @@ public:
 private:
   void Update();
   void Draw();
-  void AgreeOnView(rt::Scene& scene, rt::FrameRequest& request) const;
+  std::vector<std::byte> EncodeView(const rt::Scene& scene, const rt::FrameRequest& request) const;
+  int AgreeOnView(const std::vector<std::vector<std::byte>>& views, rt::Scene& scene,
+    rt::FrameRequest& request) const;
   void KeepProp(const rt::Scene& scene);
   bool IsInteractive() const;
   rt::FrameAccumulation::Pace GetPace() const;
   int GetReduction(const rt::FrameRequest& request) const;
   int CountCoarser() const;
-  rt::FrameAccumulation::Result TraceScene(rt::Scene& scene, const rt::FrameRequest& request);
+  rt::FrameAccumulation::Result TraceScene(
+    rt::Scene& scene, const rt::FrameRequest& request, int coarser);
   void TellOfTracing(double part) const;
   void DrawPicture(rt::Picture picture, const rt::FrameRequest& request, vtkMatrix4x4* projection,
     rt::DebugView view, bool hasNotes, bool hasEdges);
