@@ -58,6 +58,7 @@ public:
 
   // -- The frame, on the communication thread; see ObjectStore --
 
+  virtual bool MayPrefetch() const = 0;
   bool MayBeginFrame() const;
   void BeginFrame(bool agreed);
   bool Service();
@@ -113,7 +114,6 @@ protected:
   virtual BlockSource* FindSource(const BlockWant& block) const = 0;
   /// Throws Error when a frame cannot begin. No lock.
   virtual void CheckBudget() const = 0;
-  virtual bool MayPrefetch() const = 0;
   /// The source that a worker may read a block from by itself, of whichever rank it is: one for all such blocks of
   /// a segment. Null: the worker has to wait for the communication thread.
   virtual BlockSource* FindSourceForWorkers(const BlockWant&) const { return nullptr; }

@@ -203,6 +203,7 @@ void PagedStore::Segment::Detach()
 PagedStore::PagedStore(Messenger& messenger, const Settings& settings)
   : Self(std::make_unique<Internals>(messenger, settings))
 {
+  this->Fetcher = this->Self.get();
 }
 
 PagedStore::~PagedStore() = default;
@@ -263,48 +264,12 @@ std::shared_ptr<BlockSegment> PagedStore::Publish(
   return segment;
 }
 
-void PagedStore::Refresh(
-  std::string_view what, const BlockSegment& segment, const std::vector<bool>& changed)
-{
-  this->Self->Messages.RunTogether(what, [&] { this->Self->Refresh(segment, changed); });
-}
-
 void PagedStore::Retire(const std::shared_ptr<BlockSegment>& segment)
 {
   if (const auto retired = segment ? this->Self->Retire(*segment) : nullptr)
   {
     static_cast<Segment&>(*retired).Detach();
   }
-}
-
-bool PagedStore::MayBeginFrame() const
-{
-  return this->Self->MayBeginFrame();
-}
-
-void PagedStore::BeginFrame(bool agreed)
-{
-  this->Self->BeginFrame(agreed);
-}
-
-bool PagedStore::Service()
-{
-  return this->Self->Service();
-}
-
-void PagedStore::Cancel(const std::string& cause)
-{
-  this->Self->Cancel(cause);
-}
-
-bool PagedStore::Drain()
-{
-  return this->Self->Drain();
-}
-
-void PagedStore::EndFrame()
-{
-  this->Self->EndFrame();
 }
 
 PagedStore::Worker& PagedStore::GetWorker(int index)
@@ -319,11 +284,6 @@ PagedStore::Pin PagedStore::Admit(Worker& worker, const Segment& segment, BlockI
     this->Self->Wait(worker, segment, id);
   }
   return Pin(segment.GetAddress(id), segment, id);
-}
-
-bool PagedStore::MayPrefetch() const
-{
-  return this->Self->MayPrefetch();
 }
 
 bool PagedStore::Prefetch(const BlockSegment& segment, const BlockId* ids, std::size_t count)
@@ -349,21 +309,6 @@ void PagedStore::Enter(Worker& worker)
 void PagedStore::Leave(Worker& worker)
 {
   this->Self->Leave(worker);
-}
-
-std::uint64_t PagedStore::GetMisses(const Worker& worker) const
-{
-  return this->Self->GetMisses(worker);
-}
-
-StoreCounters PagedStore::GetCounters() const
-{
-  return this->Self->GetCounters();
-}
-
-std::vector<WorkerCounters> PagedStore::GetWorkerCounters() const
-{
-  return this->Self->GetWorkerCounters();
 }
 
 } // namespace dsm

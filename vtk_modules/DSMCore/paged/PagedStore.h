@@ -9,6 +9,7 @@
 #include "DSMCore/fetch/BlockRequests.h"
 #include "DSMCore/fetch/BlockSource.h"
 #include "DSMCore/fetch/FetchWorkers.h"
+#include "DSMCore/fetch/FetchingStore.h"
 #include "DSMCore/fetch/LineStatus.h"
 #include "DSMCore/memory/AddressRange.h"
 #include "DSMCore/paged/PageFaults.h"
@@ -50,7 +51,7 @@ namespace dsm
 ///   What this rank owns can be read there. It never disturbs the parent.
 ///
 /// Several stores may share a messenger; one of them at a time has a frame open.
-class PagedStore
+class PagedStore : public FetchingStore
 {
 public:
   struct Settings
@@ -77,8 +78,6 @@ public:
   /// The messenger must outlive the store.
   PagedStore(Messenger& messenger, const Settings& settings);
   ~PagedStore();
-  PagedStore(const PagedStore&) = delete;
-  PagedStore& operator=(const PagedStore&) = delete;
 
   /// Between frames, on the communication thread; local. Drops cached blocks over a smaller budget.
   /// Throws Error within a frame, and for less than one worker.
@@ -101,27 +100,6 @@ public:
   /// cached blocks. What this rank owns of it stays until the last shared pointer goes.
   void Retire(const std::shared_ptr<BlockSegment>& segment);
 
-  /// See ObjectStore.
-  void Refresh(
-    std::string_view what, const BlockSegment& segment, const std::vector<bool>& changed);
-
-  /// See ObjectStore.
-  bool MayBeginFrame() const;
-
-  /// Collective. Resets the counters of the frame; from now on workers may Acquire, and this rank
-  /// serves others. Throws Error, on every rank alike, when a rank's cache cannot hold its largest
-  /// block. `agreed`: as ObjectStore's.
-  void BeginFrame(bool agreed = false);
-  /// Communication thread, often: sends what the workers miss. Returns whether it did anything.
-  /// (Serving others happens in Messenger::Progress, through handlers.)
-  bool Service();
-  /// Communication thread: from now on every Acquire throws Error(cause).
-  void Cancel(const std::string& cause);
-  /// Communication thread, often after this rank's workers have stopped; see ObjectStore.
-  bool Drain();
-  /// Communication thread, after all ranks' workers have stopped.
-  void EndFrame();
-
   /// Index in [0, Settings::Workers). The reference is valid until the number of workers changes.
   Worker& GetWorker(int index);
 
@@ -131,7 +109,6 @@ public:
   Pin Acquire(Worker& worker, const BlockSegment& segment, BlockId id);
 
   /// See ObjectStore. With Settings::PureFaulting nothing is prefetched, as in the paper.
-  bool MayPrefetch() const;
   bool Prefetch(const BlockSegment& segment, const BlockId* ids, std::size_t count);
   /// Its workers read nothing by themselves.
   void TellSystem(const BlockSegment&, const BlockId*, std::size_t,
@@ -144,14 +121,6 @@ public:
   /// Worker: starts, stops to take part.
   void Enter(Worker& worker);
   void Leave(Worker& worker);
-
-  /// The worker: how often it has waited for a block in this frame.
-  std::uint64_t GetMisses(const Worker& worker) const;
-  /// Of the frame so far; after EndFrame, of the last frame. Communication thread. Misses are
-  /// accesses or faults that waited for a fetch.
-  StoreCounters GetCounters() const;
-  /// Per worker of the last frame.
-  std::vector<WorkerCounters> GetWorkerCounters() const;
 
 private:
   friend class PageCache;

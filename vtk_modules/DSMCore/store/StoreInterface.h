@@ -21,7 +21,7 @@ namespace dsm
 
 /// What every store offers, for those who are templates over it, and checked by the compiler where it
 /// is instantiated. No base class: a hit shall be a load. What the members mean is said in
-/// ObjectStore.h.
+/// ObjectStore.h and FetchingStore.h.
 template <class Store>
 class StoreInterface
 {

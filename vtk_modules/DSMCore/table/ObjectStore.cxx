@@ -14,6 +14,7 @@ namespace dsm
 ObjectStore::ObjectStore(Messenger& messenger, const Settings& settings)
   : Self(std::make_unique<Internals>(*this, messenger, settings))
 {
+  this->Fetcher = this->Self.get();
 }
 
 ObjectStore::~ObjectStore() = default;
@@ -70,12 +71,6 @@ std::shared_ptr<BlockSegment> ObjectStore::Publish(
   return table;
 }
 
-void ObjectStore::Refresh(
-  std::string_view what, const BlockSegment& segment, const std::vector<bool>& changed)
-{
-  this->Self->Messages.RunTogether(what, [&] { this->Self->Refresh(segment, changed); });
-}
-
 void ObjectStore::Retire(const std::shared_ptr<BlockSegment>& segment)
 {
   if (segment)
@@ -99,36 +94,6 @@ void ObjectStore::Surrender(const BlockTable& table)
   this->Self->Retire(table);
 }
 
-bool ObjectStore::MayBeginFrame() const
-{
-  return this->Self->MayBeginFrame();
-}
-
-void ObjectStore::BeginFrame(bool agreed)
-{
-  this->Self->BeginFrame(agreed);
-}
-
-bool ObjectStore::Service()
-{
-  return this->Self->Service();
-}
-
-void ObjectStore::Cancel(const std::string& cause)
-{
-  this->Self->Cancel(cause);
-}
-
-bool ObjectStore::Drain()
-{
-  return this->Self->Drain();
-}
-
-void ObjectStore::EndFrame()
-{
-  this->Self->EndFrame();
-}
-
 ObjectStore::Worker& ObjectStore::GetWorker(int index)
 {
   return static_cast<Worker&>(this->Self->Workers.Get(index));
@@ -137,11 +102,6 @@ ObjectStore::Worker& ObjectStore::GetWorker(int index)
 const std::byte* ObjectStore::Wait(Worker& worker, const Segment& segment, BlockId id)
 {
   return this->Self->Wait(worker, segment, id);
-}
-
-bool ObjectStore::MayPrefetch() const
-{
-  return this->Self->MayPrefetch();
 }
 
 bool ObjectStore::Prefetch(const BlockSegment& segment, const BlockId* ids, std::size_t count)
@@ -190,21 +150,6 @@ void ObjectStore::Enter(Worker& worker)
 void ObjectStore::Leave(Worker& worker)
 {
   this->Self->Leave(worker);
-}
-
-std::uint64_t ObjectStore::GetMisses(const Worker& worker) const
-{
-  return this->Self->GetMisses(worker);
-}
-
-StoreCounters ObjectStore::GetCounters() const
-{
-  return this->Self->GetCounters();
-}
-
-std::vector<WorkerCounters> ObjectStore::GetWorkerCounters() const
-{
-  return this->Self->GetWorkerCounters();
 }
 
 } // namespace dsm

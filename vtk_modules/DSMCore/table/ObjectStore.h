@@ -9,6 +9,7 @@
 #include "DSMCore/fetch/BlockRequests.h"
 #include "DSMCore/fetch/BlockSource.h"
 #include "DSMCore/fetch/FetchWorkers.h"
+#include "DSMCore/fetch/FetchingStore.h"
 #include "DSMCore/publish/BlockDirectory.h"
 #include "DSMCore/publish/BlockSegment.h"
 #include "DSMCore/publish/Publication.h"
@@ -38,7 +39,7 @@ namespace dsm
 /// nothing, so a cache of one block is enough for any number of workers to go on.
 ///
 /// Several stores may share a messenger; one of them at a time has a frame open.
-class ObjectStore
+class ObjectStore : public FetchingStore
 {
 public:
   struct Settings
@@ -67,8 +68,6 @@ public:
   /// The messenger must outlive the store.
   ObjectStore(Messenger& messenger, const Settings& settings);
   ~ObjectStore();
-  ObjectStore(const ObjectStore&) = delete;
-  ObjectStore& operator=(const ObjectStore&) = delete;
 
   /// Between frames, on the communication thread; local. Drops cached blocks over a smaller budget.
   /// Throws Error within a frame and for less than one worker.
@@ -92,39 +91,11 @@ public:
   /// cached blocks. What this rank owns of it stays until the last shared pointer goes.
   void Retire(const std::shared_ptr<BlockSegment>& segment);
 
-  /// Collective, between frames, when SegmentUpdate has changed those blocks of a segment of which
-  /// `changed` says so: what this rank has cached of them is forgotten, and fetched again when it is
-  /// needed. Throws the same Error on every rank.
-  void Refresh(
-    std::string_view what, const BlockSegment& segment, const std::vector<bool>& changed);
-
   /// Between frames: takes over what another store on this messenger has published, or hands it over,
   /// its cached blocks forgotten. Neither fails when room was made, which may throw std::bad_alloc.
   void MakeRoom(std::size_t count);
   void Adopt(std::shared_ptr<BlockTable> table);
   void Surrender(const BlockTable& table);
-
-  /// Local, between frames: whether BeginFrame will do without an agreement of the ranks when this
-  /// holds on all of them.
-  bool MayBeginFrame() const;
-
-  /// Collective. Resets the counters of the frame; from now on workers may Acquire, and this rank
-  /// serves others. Throws Error, on every rank alike, when a rank's cache cannot hold its largest
-  /// block. `agreed`: the ranks have told one another that MayBeginFrame; no message is sent.
-  void BeginFrame(bool agreed = false);
-  /// Communication thread, often: sends what the workers miss, hands arrived blocks to them,
-  /// reclaims memory. Returns whether it did anything. (Serving others happens in
-  /// Messenger::Progress, through handlers.)
-  bool Service();
-  /// Communication thread: from now on every Acquire that would wait throws Error(cause).
-  void Cancel(const std::string& cause);
-  /// Communication thread, often after this rank's workers have stopped: gives up what Prefetch wanted
-  /// and was not asked for yet. Whether the rest has come; only then may the rank say that it is done,
-  /// since no answer may be under way to a rank that has left the frame. True after Cancel, behind
-  /// which all ranks wait for one another anyway.
-  bool Drain();
-  /// Communication thread, after all ranks' workers have stopped.
-  void EndFrame();
 
   /// Index in [0, Settings::Workers). The reference is valid until the number of workers changes.
   Worker& GetWorker(int index);
@@ -134,8 +105,6 @@ public:
   /// to wait while the worker holds another pin, has not entered, or the segment was retired.
   Pin Acquire(Worker& worker, const BlockSegment& segment, BlockId id);
 
-  /// Communication thread: whether Prefetch does anything, with the settings and what is published.
-  bool MayPrefetch() const;
   /// Worker: it will probably need these blocks soon. Those that are absent are asked for in one go,
   /// unless too much of the cache is taken by blocks that were foreseen and not used yet. Never waits;
   /// ids that there are not, blocks that are here or on their way, retired segments and frames that are
@@ -154,13 +123,6 @@ public:
   /// Worker: starts, stops to take part; while stopped it does not delay reclamation.
   void Enter(Worker& worker);
   void Leave(Worker& worker);
-
-  /// The worker: how often it has waited for a block in this frame.
-  std::uint64_t GetMisses(const Worker& worker) const;
-  /// Of the frame so far; after EndFrame, of the last frame. Communication thread.
-  StoreCounters GetCounters() const;
-  /// Per worker of the last frame.
-  std::vector<WorkerCounters> GetWorkerCounters() const;
 
 private:
   class Internals;

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef dsm_FetchingStore_h
+#define dsm_FetchingStore_h
+
+#include "DSMCore/base/Counters.h"
+#include "DSMCore/fetch/FetchWorkers.h"
+#include "DSMCore/publish/BlockSegment.h"
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace dsm
+{
+
+class BlockFetcher;
+
+/// What stores that fetch blocks (ObjectStore, PagedStore) have in common: the course of a frame.
+class FetchingStore
+{
+public:
+  FetchingStore(const FetchingStore&) = delete;
+  FetchingStore& operator=(const FetchingStore&) = delete;
+
+  /// Collective, between frames, when SegmentUpdate has changed those blocks of a segment of which
+  /// `changed` says so: what this rank has cached of them is forgotten, and fetched again when it is
+  /// needed. Throws the same Error on every rank.
+  void Refresh(
+    std::string_view what, const BlockSegment& segment, const std::vector<bool>& changed);
+
+  /// Local, between frames: whether BeginFrame will do without an agreement of the ranks when this
+  /// holds on all of them.
+  bool MayBeginFrame() const;
+
+  /// Collective. Resets the counters of the frame; from now on workers may Acquire, and this rank
+  /// serves others. Throws Error, on every rank alike, when a rank's cache cannot hold its largest
+  /// block. `agreed`: the ranks have told one another that MayBeginFrame; no message is sent.
+  void BeginFrame(bool agreed = false);
+  /// Communication thread, often: sends what the workers miss, hands arrived blocks to them,
+  /// reclaims memory. Returns whether it did anything. (Serving others happens in
+  /// Messenger::Progress, through handlers.)
+  bool Service();
+  /// Communication thread: from now on every Acquire that would wait throws Error(cause).
+  void Cancel(const std::string& cause);
+  /// Communication thread, often after this rank's workers have stopped: gives up what Prefetch wanted
+  /// and was not asked for yet. Whether the rest has come; only then may the rank say that it is done,
+  /// since no answer may be under way to a rank that has left the frame. True after Cancel, behind
+  /// which all ranks wait for one another anyway.
+  bool Drain();
+  /// Communication thread, after all ranks' workers have stopped.
+  void EndFrame();
+
+  /// Communication thread: whether Prefetch does anything, with the settings and what is published.
+  bool MayPrefetch() const;
+  /// The worker: how often it has waited for a block in this frame.
+  std::uint64_t GetMisses(const FetchWorker& worker) const;
+  /// Of the frame so far; after EndFrame, of the last frame. Communication thread.
+  StoreCounters GetCounters() const;
+  /// Per worker of the last frame.
+  std::vector<WorkerCounters> GetWorkerCounters() const;
+
+protected:
+  FetchingStore() = default;
+  ~FetchingStore() = default;
+
+  BlockFetcher* Fetcher = nullptr; ///< the store's own; set once
+};
+
+} // namespace dsm
+
+#endif
