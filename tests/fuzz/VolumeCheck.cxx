@@ -240,7 +240,7 @@ void CheckValues(
 
 } // namespace
 
-bool CheckVolume(const std::filesystem::path& path, const vol::OpenOptions& options)
+int CheckVolume(const std::filesystem::path& path, const vol::OpenOptions& options)
 {
   const std::string name = path.filename().string();
   std::shared_ptr<const vol::VolumeFile> file;
@@ -250,7 +250,7 @@ bool CheckVolume(const std::filesystem::path& path, const vol::OpenOptions& opti
   const std::vector<std::string> names{ name, GetInputFolder().string() };
   if (!Try(names, [&] { file = vol::OpenVolumeFile(path.string(), options); }))
   {
-    return false;
+    return 0;
   }
   CheckTimes(*file);
   CheckArrays(*file);
@@ -267,19 +267,17 @@ bool CheckVolume(const std::filesystem::path& path, const vol::OpenOptions& opti
       CheckValues(*file, names, array, step);
     }
   }
-  return true;
+  return file->GetLevels();
 }
 
 void CheckLevels(const std::filesystem::path& path)
 {
-  if (CheckVolume(path))
+  const int levels = CheckVolume(path);
+  if (levels > 1)
   {
     vol::OpenOptions coarsest;
-    coarsest.Level = vol::OpenVolumeFile(path.string())->GetLevels() - 1;
-    if (coarsest.Level > 0)
-    {
-      CheckVolume(path, coarsest);
-    }
+    coarsest.Level = levels - 1;
+    CheckVolume(path, coarsest);
   }
 }
 

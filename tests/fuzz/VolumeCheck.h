@@ -15,8 +15,8 @@ namespace fuzz
 /// - the arrays, steps and times agree with the contract of vol::VolumeFile;
 /// - reading a chunk sets all of its bytes, and no others; a part or a chunk with its halo has the same values.
 /// A violation ends the process (Fail). Chunks of more than 4 MiB are not read.
-/// Returns whether the file was opened.
-bool CheckVolume(const std::filesystem::path& path, const vol::OpenOptions& options = {});
+/// Returns the file's levels of detail; 0: it was refused.
+int CheckVolume(const std::filesystem::path& path, const vol::OpenOptions& options = {});
 
 /// CheckVolume of the finest level, and of the coarsest one where there are several.
 void CheckLevels(const std::filesystem::path& path);
