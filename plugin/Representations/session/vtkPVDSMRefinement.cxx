@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkPVDSMRefinement.h"
 
-#include "vtkDSMScene.h"
 #include "vtkPVDSMDelivery.h"
 #include "vtkPVDSMProgressGuard.h"
 #include "vtkPVDSMProxyFinder.h"
@@ -275,23 +274,18 @@ void vtkPVDSMRefinement::OnRenderEnds(vtkObject*, unsigned long, void* interacti
   this->Samples = samples[0];
   const bool stoodStill = this->IsRefining && !this->IsAborted && this->Samples <= before;
   this->Standstill = stoodStill ? this->Standstill + 1 : 0;
-  this->IsRefined = samples[0] >= samples[1] || this->Standstill > LongestStandstill;
+  // Of what was ended after the tracing, something else is missing, such as the orientation axes.
+  this->IsRefined =
+    !this->IsAborted && (samples[0] >= samples[1] || this->Standstill > LongestStandstill);
   if (!this->IsRefined && !this->IsInteracting)
   {
     this->RenderLater(ShortDelay);
   }
 }
 
-/// Whether this client traces now. What is drawn afterwards is not to be left out: nothing may follow that draws it.
-bool vtkPVDSMRefinement::IsTracing() const
-{
-  auto* const view = vtkPVRenderView::SafeDownCast(this->View->GetClientSideObject());
-  return view && vtkDSMScene::ForRenderer(view->GetRenderer())->IsTracing();
-}
-
 void vtkPVDSMRefinement::OnAbortCheck(vtkObject*, unsigned long, void*)
 {
-  if (this->CanAbort && this->IsTracing() && this->Input.HasPressed())
+  if (this->CanAbort && this->Input.HasPressed())
   {
     this->IsAborted = true;
     this->Window->SetAbortRender(1);

@@ -51,7 +51,6 @@ private:
   void FollowInteractor();
   void LeaveInteractor();
   bool CanGoOn() const;
-  bool IsTracing() const;
 
   void OnRenderBegins(vtkObject* caller, unsigned long event, void* interactive);
   void OnRenderEnds(vtkObject* caller, unsigned long event, void* interactive);
