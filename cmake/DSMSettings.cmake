@@ -243,9 +243,10 @@ function (dsm_define_property result name isPage)
     if (isOnPage)
       string(APPEND attributes " no_custom_default=\"1\"")
       # A view's own word counts; the page has that of the ranks.
-      string(COMPARE NOTEQUAL "${DSM_${name}_OWNER}" "ranks" unlink)
-      string(REPLACE TRUE 1 unlink "${unlink}")
-      string(REPLACE FALSE 0 unlink "${unlink}")
+      set(unlink 1)
+      if (DSM_${name}_OWNER STREQUAL "ranks")
+        set(unlink 0)
+      endif ()
       string(APPEND hints "<PropertyLink group=\"settings\" property=\"DSM${name}\""
         " proxy=\"DSMRayTracerSettings\" unlink_if_modified=\"${unlink}\" />")
     endif ()

@@ -70,7 +70,7 @@ void PlaceAgain(pqInteractivePropertyWidget* box)
   }
 }
 
-/// Of the isovalue's widget.
+/// Makes the isovalue's slider wide enough to drag, and hides the multiply button beside it.
 void WidenSlider(const pqPropertyWidget* isovalue)
 {
   auto* const range = isovalue->findChild<pqDoubleRangeWidget*>();

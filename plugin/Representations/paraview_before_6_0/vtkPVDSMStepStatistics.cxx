@@ -68,7 +68,7 @@ void vtkPVDSMStepStatistics::Replace(vtkSIProxyDefinitionManager* definitions)
     definitions->GetProxyDefinition("filters", "TemporalStatistics", false);
   if (filter)
   {
-    // Of all sessions, also later ones; again does nothing.
+    // This holds for all sessions, also later ones. A second call does nothing.
     vtkClientServerInterpreterInitializer::GetInitializer()->RegisterCallback(
       [](vtkClientServerInterpreter* interpreter)
       { interpreter->AddNewInstanceFunction(Name, &StepStatistics::Make); });

@@ -274,7 +274,7 @@ void vtkPVDSMRefinement::OnRenderEnds(vtkObject*, unsigned long, void* interacti
   this->Samples = samples[0];
   const bool stoodStill = this->IsRefining && !this->IsAborted && this->Samples <= before;
   this->Standstill = stoodStill ? this->Standstill + 1 : 0;
-  // Of what was ended after the tracing, something else is missing, such as the orientation axes.
+  // A picture that was ended after the tracing lacks what is drawn last, such as the orientation axes.
   this->IsRefined =
     !this->IsAborted && (samples[0] >= samples[1] || this->Standstill > LongestStandstill);
   if (!this->IsRefined && !this->IsInteracting)

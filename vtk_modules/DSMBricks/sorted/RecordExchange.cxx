@@ -51,12 +51,11 @@ bool RecordSource::Next(dsm::Fragment& fragment)
     std::max<std::uint64_t>(FragmentBytes / size, 1));
   fragment.Block = this->Cell;
   fragment.Bytes.resize(count * size);
-  std::vector<std::uint32_t> record((size + sizeof(std::uint32_t) - 1) / sizeof(std::uint32_t));
   std::byte* bytes = fragment.Bytes.data();
   for (std::uint64_t index = 0; index < count; ++index)
   {
-    this->Reader.ReadRecord(this->Cells.GetPrimitive(this->Position++), record.data());
-    std::memcpy(bytes, record.data(), size);
+    this->Reader.ReadRecord(
+      this->Cells.GetPrimitive(this->Position++), reinterpret_cast<std::uint32_t*>(bytes));
     bytes += size;
   }
   return true;

@@ -20,6 +20,7 @@ public:
   /// What the primitives are, in the plural: for messages.
   virtual const char* GetNames() const = 0;
   virtual std::uint64_t GetCount() const = 0;
+  /// A multiple of 4.
   virtual std::size_t GetRecordBytes() const = 0;
 
   /// The code of the primitive's place in an order of space. False for a primitive that no ray can hit.
