@@ -11,7 +11,6 @@
 #include "DSMRayTracing/base/MaskBits-inl.h"
 #include "DSMRayTracing/field/lattice/NodePath-inl.h"
 #include "DSMRayTracing/field/lattice/PacketBrick.h"
-#include "DSMRayTracing/field/lattice/PacketCrossing-inl.h"
 #include "DSMRayTracing/ray/RayPacket.h"
 
 #include <hwy/highway.h>
@@ -39,61 +38,29 @@ Vector ClampToUnit(Vector value)
   return hn::IfThenElse(hn::Lt(raised, one), raised, one);
 }
 
-/// Rays that meet the surface in a cell, one after the other as they are found, before it is known
-/// where in the cell.
-struct CellCrossings
+/// Rays of a vector in the cells that they cross; the lanes that are not `There` mean nothing.
+template <class D>
+struct CrossedCells
 {
-  /// Names of the numbers of a crossing.
-  enum Number
-  {
-    Coefficients = 0, ///< 4
-    BeginS = 4,
-    BeginValue,
-    EndS,
-    EndValue,
-    Enter, ///< where the ray is in the cell
-    Leave,
-    Start, ///< 3
-    Way = Start + 3,
-    Cell = Way + 3, ///< of the brick
-    Numbers = Cell + 3
-  };
-
-  /// Of the rays of a vector.
-  template <class D>
-  struct Vectors
-  {
-    HWY_ALIGN double Values[Numbers][hn::MaxLanes(D())];
-
-    void Put(int number, hn::Vec<D> value) { hn::Store(value, D(), this->Values[number]); }
-  };
-
-  /// Adds those of a vector's rays that are `found` (bits).
-  template <class D>
-  HWY_INLINE void Add(std::uint32_t found, const std::size_t* rays, const Vectors<D>& from)
-  {
-    for (; found != 0; found &= found - 1)
-    {
-      const int lane = __builtin_ctz(found);
-      this->Ray[this->Count] = static_cast<int>(rays[lane]);
-      for (int number = 0; number < Numbers; ++number)
-      {
-        this->Values[number][this->Count] = from.Values[number][lane];
-      }
-      ++this->Count;
-    }
-  }
-
-  int Count = 0;
-  int Ray[RayPacket::Size];
-  HWY_ALIGN double Values[Numbers][RayPacket::Size];
+  const std::size_t* Ray; ///< of each lane
+  std::uint32_t There;    ///< bits
+  /// Rays that go through their cell, and do not only touch it, where the cell holds data.
+  hn::Mask<D> Crossing;
+  hn::Vec<D> Corners[8]; ///< less what the brick subtracts
+  hn::Vec<D> Place[3];   ///< of the cell in the brick
+  hn::Vec<D> Enter;      ///< of the ray
+  hn::Vec<D> Exit;
+  hn::Vec<D> Start[3]; ///< within the cell, in [0, 1]
+  hn::Vec<D> End[3];
 };
 
 /// The rays of a packet in a brick; what GridTraversal does for one ray, with the same bits. In a part
 /// of 4 x 4 x 4 macrocells it is found out at once, for each ray, which of them it crosses (see
 /// FindCrossedNodes). Then rays wait for their next macrocell, or the next cell in it, and those that
 /// wait for the same fill the vectors, wherever they are: most meet few macrocells, and few cells there.
-template <class D>
+///
+/// `Visitor` says what is looked for: `Visit(const CrossedCells<D>&)` returns the lanes (bits) whose ray's search ends.
+template <class D, class Visitor>
 class BrickSearch
 {
 public:
@@ -103,21 +70,18 @@ public:
   using Numbers = hn::Vec<NumberTag>;
   static constexpr int Width = static_cast<int>(hn::MaxLanes(D()));
 
-  /// `origin`: the brick's first cell. `crossings` is null when only those rays that meet the surface
-  /// are asked for, not where. `counts` (of each ray), if not null, makes rays go on through the brick, and gets the
-  /// number of times that each meets the surface added.
-  BrickSearch(const RayPacket& packet, const PacketBrick& brick, const double origin[3],
-    CellCrossings* crossings, int* counts)
+  /// `origin`: the brick's first cell. Keeps references.
+  BrickSearch(
+    const RayPacket& packet, const PacketBrick& brick, const double origin[3], Visitor& visitor)
     : Packet(packet)
     , Brick(brick)
     , Origin(origin)
-    , Crossings(crossings)
-    , Counts(counts)
+    , Look(visitor)
     , Forward(packet.Forward)
   {
   }
 
-  /// Those of `rays` that meet the surface in the brick.
+  /// Those of `rays` whose search ends in the brick.
   RayPacket::Mask Search(RayPacket::Mask rays)
   {
     int parts[3];
@@ -383,7 +347,7 @@ private:
     const D tag;
     const Numbers macrocells =
       GetLowestBits(LoadLanes<std::uint64_t, Width>(this->Macrocells, batch.Ray));
-    const Numbers cells = GetLowestBits(LoadLanes<std::uint64_t, Width>(this->Cells, batch.Ray));
+    const Numbers nodes = GetLowestBits(LoadLanes<std::uint64_t, Width>(this->Cells, batch.Ray));
     const RayLines<D> lines = this->LoadLines(batch);
     const Vector one = hn::Set(tag, 1.0);
     Vector enter = Load(batch, this->Packet.BrickEnter);
@@ -396,7 +360,7 @@ private:
     {
       const bool forward = this->Forward[axis];
       const Vector steps = ToReal(
-        hn::Or(hn::ShiftLeft<2>(GetCoordinate(macrocells, axis)), GetCoordinate(cells, axis)));
+        hn::Or(hn::ShiftLeft<2>(GetCoordinate(macrocells, axis)), GetCoordinate(nodes, axis)));
       const Vector start = hn::Set(tag, this->Start[axis]);
       lower[axis] = forward ? hn::Add(start, steps) : hn::Sub(hn::Sub(start, steps), one);
       place[axis] = hn::Sub(lower[axis], hn::Set(tag, this->Origin[axis]));
@@ -406,13 +370,16 @@ private:
       enter = hn::Max(enter, in[axis]);
       exit = hn::Min(exit, out[axis]);
     }
-    Vector values[8];
-    Mask rays = this->Brick.Floats.First ? this->LoadCorners(place, values)
-                                         : this->AskForCorners(batch.GetLanes(), place, values);
+    CrossedCells<D> cells;
+    cells.Ray = batch.Ray;
+    cells.There = batch.GetLanes();
+    cells.Enter = enter;
+    cells.Exit = exit;
+    cells.Crossing = this->Brick.Floats.First
+      ? this->LoadCorners(place, cells.Corners)
+      : this->AskForCorners(batch.GetLanes(), place, cells.Corners);
     // Those that only touch the cell do not cross it.
-    rays = hn::And(rays, hn::Lt(enter, exit));
-    Vector start[3];
-    Vector end[3];
+    cells.Crossing = hn::And(cells.Crossing, hn::Lt(enter, exit));
     for (int axis = 0; axis < 3; ++axis)
     {
       const Vector origin = lines.Origin[axis];
@@ -424,70 +391,25 @@ private:
         const Vector point = hn::Add(origin, hn::Mul(t, direction));
         return hn::IfThenElse(hn::Eq(planeT, t), plane, ClampToUnit(hn::Sub(point, lower[axis])));
       };
-      start[axis] = getLocal(enter, in[axis], entry);
-      end[axis] = getLocal(exit, out[axis], hn::Sub(one, entry));
+      cells.Place[axis] = place[axis];
+      cells.Start[axis] = getLocal(enter, in[axis], entry);
+      cells.End[axis] = getLocal(exit, out[axis], hn::Sub(one, entry));
     }
-    const PacketCrossing<D> crossing(tag, values, start, end);
-    if (this->Counts)
-    {
-      this->Count(batch, crossing.Count(rays));
-      return;
-    }
-    Bracket<D> bracket;
-    const std::uint32_t found =
-      GetMaskBits(tag, crossing.FindFirst(rays, bracket)) & batch.GetLanes();
+    const std::uint32_t ended = this->Look.Visit(cells) & batch.GetLanes();
     for (int lane = 0; lane < batch.Count; ++lane)
     {
       const std::size_t ray = batch.Ray[lane];
       this->Cells[ray] &= this->Cells[ray] - 1;
-      const std::uint64_t hit = found >> lane & 1;
-      this->Found |= hit << ray;
-      this->GoOn(ray, hit == 0);
-    }
-    if (this->Crossings && found != 0)
-    {
-      CellCrossings::Vectors<D> numbers;
-      numbers.Put(CellCrossings::BeginS, bracket.BeginS);
-      numbers.Put(CellCrossings::BeginValue, bracket.BeginValue);
-      numbers.Put(CellCrossings::EndS, bracket.EndS);
-      numbers.Put(CellCrossings::EndValue, bracket.EndValue);
-      numbers.Put(CellCrossings::Enter, enter);
-      numbers.Put(CellCrossings::Leave, exit);
-      Vector coefficients[4];
-      crossing.GetCoefficients(coefficients);
-      for (int power = 0; power < 4; ++power)
-      {
-        numbers.Put(CellCrossings::Coefficients + power, coefficients[power]);
-      }
-      for (int axis = 0; axis < 3; ++axis)
-      {
-        numbers.Put(CellCrossings::Start + axis, start[axis]);
-        numbers.Put(CellCrossings::Way + axis, hn::Sub(end[axis], start[axis]));
-        numbers.Put(CellCrossings::Cell + axis, place[axis]);
-      }
-      this->Crossings->Add(found, batch.Ray, numbers);
-    }
-  }
-
-  /// Rays go on whether they meet the surface in the cell or not.
-  HWY_INLINE void Count(const Batch& batch, Vector crossings)
-  {
-    HWY_ALIGN double numbers[Width];
-    hn::Store(crossings, D(), numbers);
-    for (int lane = 0; lane < batch.Count; ++lane)
-    {
-      const std::size_t ray = batch.Ray[lane];
-      this->Counts[ray] += static_cast<int>(numbers[lane]);
-      this->Cells[ray] &= this->Cells[ray] - 1;
-      this->GoOn(ray, true);
+      const std::uint64_t isOver = ended >> lane & 1;
+      this->Found |= isOver << ray;
+      this->GoOn(ray, isOver == 0);
     }
   }
 
   const RayPacket& Packet;
   const PacketBrick& Brick;
   const double* Origin;
-  CellCrossings* Crossings;
-  int* Counts;
+  Visitor& Look;
   const bool* Forward;
   int Part[3];
   double Start[3]; ///< planes through which rays enter the part

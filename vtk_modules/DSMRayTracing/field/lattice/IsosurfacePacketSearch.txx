@@ -8,6 +8,7 @@
 #include "DSMRayTracing/field/lattice/IndexSpace.h"
 #include "DSMRayTracing/field/lattice/IsovalueLevel.h"
 #include "DSMRayTracing/field/lattice/IsovaluePredicate.h"
+#include "DSMRayTracing/field/lattice/IsovalueTest.h"
 #include "DSMRayTracing/field/lattice/TypedPacketBrick.h"
 #include "DSMRayTracing/look/SheetTransmittance.h"
 
@@ -136,8 +137,8 @@ void IsosurfacePacketSearch<Store>::SearchBrick(
       continue;
     }
     const IsovalueLevel<T> level(sets.Isovalues[isovalue]);
-    const TypedPacketBrick<T> surface(
-      voxels, level, this->Kernel.Macrocells.template Get<T>(), progress.Rays.Forward);
+    const IsovalueTest<T> test(level, this->Kernel.Macrocells.template Get<T>());
+    const TypedPacketBrick<T, IsovalueTest<T>> surface(voxels, test, progress.Rays.Forward);
     PacketHits candidates;
     this->Kernel.SearchBrick(progress.Rays, progress.Meets, surface, brick.Lower, candidates);
     for (int number = 0; number < candidates.Count; ++number)
@@ -268,8 +269,8 @@ void IsosurfacePacketSearch<Store>::SearchBrickForLight(const Sets& sets,
       continue;
     }
     const IsovalueLevel<T> level(isovalue);
-    const TypedPacketBrick<T> surface(
-      voxels, level, this->Kernel.Macrocells.template Get<T>(), progress.Rays.Forward);
+    const IsovalueTest<T> test(level, this->Kernel.Macrocells.template Get<T>());
+    const TypedPacketBrick<T, IsovalueTest<T>> surface(voxels, test, progress.Rays.Forward);
     progress.Found |= together(progress.Rays, open, index, surface, brick.Lower);
   }
 }

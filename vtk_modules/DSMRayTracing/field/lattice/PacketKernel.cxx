@@ -12,6 +12,7 @@
 #include "DSMRayTracing/field/lattice/BrickSearch-inl.h"
 #include "DSMRayTracing/field/lattice/MacrocellComparison-inl.h"
 #include "DSMRayTracing/field/lattice/NodePath-inl.h"
+#include "DSMRayTracing/field/lattice/SurfaceCells-inl.h"
 
 #include <hwy/highway.h>
 
@@ -132,20 +133,23 @@ public:
     const double origin[3], PacketHits& hits)
   {
     CellCrossings crossings;
-    BrickSearch<D>(packet, brick, origin, &crossings, nullptr).Search(rays);
+    FirstCrossings<D> first(&crossings);
+    BrickSearch<D, FirstCrossings<D>>(packet, brick, origin, first).Search(rays);
     Refine(crossings, hits);
   }
 
   static RayPacket::Mask FindOccluded(
     const RayPacket& packet, RayPacket::Mask rays, const PacketBrick& brick, const double origin[3])
   {
-    return BrickSearch<D>(packet, brick, origin, nullptr, nullptr).Search(rays);
+    FirstCrossings<D> first(nullptr);
+    return BrickSearch<D, FirstCrossings<D>>(packet, brick, origin, first).Search(rays);
   }
 
   static void CountCrossings(const RayPacket& packet, RayPacket::Mask rays,
     const PacketBrick& brick, const double origin[3], int* counts)
   {
-    BrickSearch<D>(packet, brick, origin, nullptr, counts).Search(rays);
+    CrossingCounts<D> counted(counts);
+    BrickSearch<D, CrossingCounts<D>>(packet, brick, origin, counted).Search(rays);
   }
 
 private:

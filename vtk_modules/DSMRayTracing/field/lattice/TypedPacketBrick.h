@@ -4,8 +4,6 @@
 
 #include "DSMBricks/layout/VoxelBrick.h"
 #include "DSMRayTracing/base/Lanes.h"
-#include "DSMRayTracing/field/lattice/IsovalueLevel.h"
-#include "DSMRayTracing/field/lattice/MacrocellKernel.h"
 #include "DSMRayTracing/field/lattice/NodeOrder.h"
 #include "DSMRayTracing/field/lattice/PacketBrick.h"
 
@@ -19,15 +17,15 @@ namespace rt
 
 /// A brick of samples of type T as rays see it that move `forward` or not on each axis. Remembers what
 /// it has found in a part, since neighbouring rays ask for the same. Keeps references; for one thread.
-template <class T>
+///
+/// `RangeTest` says what rays look for; see IsovalueTest.
+template <class T, class RangeTest>
 class TypedPacketBrick final : public PacketBrick
 {
 public:
-  TypedPacketBrick(const bricks::VoxelBrick<T>& brick, const IsovalueLevel<T>& level,
-    const MacrocellComparison<T>& comparison, const bool forward[3])
+  TypedPacketBrick(const bricks::VoxelBrick<T>& brick, const RangeTest& test, const bool forward[3])
     : Brick(brick)
-    , Level(level)
-    , Comparison(comparison)
+    , Test(test)
     , Order(forward)
   {
     if constexpr (std::is_same_v<T, float>)
@@ -35,7 +33,7 @@ public:
       if (brick.GetHeader().MaskOffset == 0)
       {
         this->Floats = { brick.GetSamples(), static_cast<double>(brick.GetRow()),
-          static_cast<double>(brick.GetSlice()), level.GetIsovalue() };
+          static_cast<double>(brick.GetSlice()), test.GetSubtracted() };
       }
     }
   }
@@ -76,9 +74,6 @@ public:
   }
 
 private:
-  /// Bits from one row of samples to the next within a word.
-  static constexpr int RowBits = 6;
-
   std::uint64_t ComparePart(const int part[3]) const
   {
     const bricks::MacrocellRange<T>* const ranges = this->Brick.GetMacrocellRanges();
@@ -91,10 +86,8 @@ private:
     {
       const std::ptrdiff_t row = this->Brick.GetMacrocells(0);
       const std::ptrdiff_t slice = row * this->Brick.GetMacrocells(1);
-      return this->Level.IsReachable()
-        ? this->Comparison.FindMacrocells(ranges + 4 * (part[0] + row * part[1] + slice * part[2]),
-            row, slice, this->Level.GetFirst())
-        : 0;
+      return this->Test.FindMacrocells(
+        ranges + 4 * (part[0] + row * part[1] + slice * part[2]), row, slice);
     }
     std::uint64_t found = 0;
     for (int z = 0; z < last[2]; ++z)
@@ -106,8 +99,7 @@ private:
             (4 * part[1] + y + this->Brick.GetMacrocells(1) * (4 * part[2] + z));
         for (int x = 0; x < last[0]; ++x)
         {
-          found |= std::uint64_t{ this->Level.Separates(row[x].Min, row[x].Max) }
-            << (x + 4 * y + 16 * z);
+          found |= std::uint64_t{ this->Test.MayHold(row[x]) } << (x + 4 * y + 16 * z);
         }
       }
     }
@@ -126,7 +118,7 @@ private:
     {
       const T* from =
         first + (pair & 1) * this->Brick.GetRow() + (pair >> 1) * this->Brick.GetSlice();
-      const Lanes::Half two = this->Level.SubtractPair(from);
+      const Lanes::Half two = this->Test.SubtractPair(from);
       corners[2 * pair * stride] = two[0];
       corners[(2 * pair + 1) * stride] = two[1];
       // Becomes, and stays, not a number where one of them is not finite.
@@ -142,78 +134,11 @@ private:
     {
       counts[axis] = std::min(bricks::MacrocellEdge, this->Brick.GetCells(axis) - first[axis]);
     }
-    const int row = this->Brick.GetRow();
-    if (*std::min_element(counts, counts + 3) == bricks::MacrocellEdge &&
-      row >= MacrocellComparison<T>::RowSamples)
-    {
-      return this->Comparison.FindCells(
-        this->Brick.GetSamples() + this->Brick.GetOffset(0, first[1], first[2]), first[0], row,
-        this->Brick.GetSlice(), this->Level.GetFirst());
-    }
-    std::uint64_t cells = 0;
-    Slice last = this->GetSlice(first, counts, 0);
-    for (int z = 0; z < counts[2]; ++z)
-    {
-      const Slice next = this->GetSlice(first, counts, z + 1);
-      const std::uint32_t mixed = (last.Any | next.Any) & ~(last.All & next.All);
-      for (int y = 0; y < bricks::MacrocellEdge; ++y)
-      {
-        const std::uint64_t bits = mixed >> (RowBits * y) & 15u;
-        cells |= bits << (4 * y + 16 * z);
-      }
-      last = next;
-    }
-    return cells & GetBox(counts);
-  }
-
-  /// Of the cells that have the samples of a slice as corners: whether some of those are inside,
-  /// and whether all are.
-  struct Slice
-  {
-    std::uint32_t Any;
-    std::uint32_t All;
-  };
-
-  static Slice GetSlice(std::uint32_t inside)
-  {
-    const std::uint32_t any = inside | inside >> 1;
-    const std::uint32_t all = inside & inside >> 1;
-    return { any | any >> RowBits, all & all >> RowBits };
-  }
-
-  /// At the end of the brick, where there are fewer samples.
-  Slice GetSlice(const int first[3], const int counts[3], int z) const
-  {
-    std::uint32_t inside = 0;
-    for (int y = 0; y <= counts[1]; ++y)
-    {
-      const T* row =
-        this->Brick.GetSamples() + this->Brick.GetOffset(first[0], first[1] + y, first[2] + z);
-      for (int x = 0; x <= counts[0]; ++x)
-      {
-        inside |= std::uint32_t{ this->Level.IsInside(row[x]) } << (x + RowBits * y);
-      }
-    }
-    return GetSlice(inside);
-  }
-
-  /// The bits of the cells that there are.
-  static std::uint64_t GetBox(const int counts[3])
-  {
-    std::uint64_t box = 0;
-    for (int z = 0; z < counts[2]; ++z)
-    {
-      for (int y = 0; y < counts[1]; ++y)
-      {
-        box |= ((std::uint64_t{ 1 } << counts[0]) - 1) << (4 * y + 16 * z);
-      }
-    }
-    return box;
+    return this->Test.FindCells(this->Brick, first, counts);
   }
 
   const bricks::VoxelBrick<T>& Brick;
-  const IsovalueLevel<T>& Level;
-  const MacrocellComparison<T>& Comparison;
+  const RangeTest& Test;
   NodeOrder Order;
   mutable PacketPart Part;
 };

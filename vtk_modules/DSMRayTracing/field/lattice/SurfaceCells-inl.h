@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Included once for each instruction set; see PacketKernel.cxx.
+#if defined(rt_SurfaceCells_inl_h) == defined(HWY_TARGET_TOGGLE)
+#ifdef rt_SurfaceCells_inl_h
+#undef rt_SurfaceCells_inl_h
+#else
+#define rt_SurfaceCells_inl_h
+#endif
+
+#include "DSMRayTracing/base/MaskBits-inl.h"
+#include "DSMRayTracing/field/lattice/BrickSearch-inl.h"
+#include "DSMRayTracing/field/lattice/PacketCrossing-inl.h"
+#include "DSMRayTracing/ray/RayPacket.h"
+
+#include <hwy/highway.h>
+
+#include <cstddef>
+#include <cstdint>
+
+HWY_BEFORE_NAMESPACE();
+namespace rt
+{
+namespace HWY_NAMESPACE
+{
+namespace hn = hwy::HWY_NAMESPACE;
+
+/// Rays that meet the surface in a cell, one after the other as they are found, before it is known
+/// where in the cell.
+struct CellCrossings
+{
+  /// Names of the numbers of a crossing.
+  enum Number
+  {
+    Coefficients = 0, ///< 4
+    BeginS = 4,
+    BeginValue,
+    EndS,
+    EndValue,
+    Enter, ///< where the ray is in the cell
+    Leave,
+    Start, ///< 3
+    Way = Start + 3,
+    Cell = Way + 3, ///< of the brick
+    Numbers = Cell + 3
+  };
+
+  /// Of the rays of a vector.
+  template <class D>
+  struct Vectors
+  {
+    HWY_ALIGN double Values[Numbers][hn::MaxLanes(D())];
+
+    void Put(int number, hn::Vec<D> value) { hn::Store(value, D(), this->Values[number]); }
+  };
+
+  /// Adds those of a vector's rays that are `found` (bits).
+  template <class D>
+  HWY_INLINE void Add(std::uint32_t found, const std::size_t* rays, const Vectors<D>& from)
+  {
+    for (; found != 0; found &= found - 1)
+    {
+      const int lane = __builtin_ctz(found);
+      this->Ray[this->Count] = static_cast<int>(rays[lane]);
+      for (int number = 0; number < Numbers; ++number)
+      {
+        this->Values[number][this->Count] = from.Values[number][lane];
+      }
+      ++this->Count;
+    }
+  }
+
+  int Count = 0;
+  int Ray[RayPacket::Size];
+  HWY_ALIGN double Values[Numbers][RayPacket::Size];
+};
+
+/// Of BrickSearch, for rays that end where they first meet the surface.
+template <class D>
+class FirstCrossings
+{
+public:
+  /// `crossings` is null when only those rays that meet the surface are asked for, not where.
+  explicit FirstCrossings(CellCrossings* crossings)
+    : Crossings(crossings)
+  {
+  }
+
+  HWY_INLINE std::uint32_t Visit(const CrossedCells<D>& cells)
+  {
+    const PacketCrossing<D> crossing(D(), cells.Corners, cells.Start, cells.End);
+    Bracket<D> bracket;
+    const std::uint32_t found =
+      GetMaskBits(D(), crossing.FindFirst(cells.Crossing, bracket)) & cells.There;
+    if (this->Crossings && found != 0)
+    {
+      CellCrossings::Vectors<D> numbers;
+      numbers.Put(CellCrossings::BeginS, bracket.BeginS);
+      numbers.Put(CellCrossings::BeginValue, bracket.BeginValue);
+      numbers.Put(CellCrossings::EndS, bracket.EndS);
+      numbers.Put(CellCrossings::EndValue, bracket.EndValue);
+      numbers.Put(CellCrossings::Enter, cells.Enter);
+      numbers.Put(CellCrossings::Leave, cells.Exit);
+      hn::Vec<D> coefficients[4];
+      crossing.GetCoefficients(coefficients);
+      for (int power = 0; power < 4; ++power)
+      {
+        numbers.Put(CellCrossings::Coefficients + power, coefficients[power]);
+      }
+      for (int axis = 0; axis < 3; ++axis)
+      {
+        numbers.Put(CellCrossings::Start + axis, cells.Start[axis]);
+        numbers.Put(CellCrossings::Way + axis, hn::Sub(cells.End[axis], cells.Start[axis]));
+        numbers.Put(CellCrossings::Cell + axis, cells.Place[axis]);
+      }
+      this->Crossings->Add(found, cells.Ray, numbers);
+    }
+    return found;
+  }
+
+private:
+  CellCrossings* Crossings;
+};
+
+/// Of BrickSearch, for rays that go on: adds to `counts`, by ray, how often each meets the surface.
+template <class D>
+class CrossingCounts
+{
+public:
+  explicit CrossingCounts(int* counts)
+    : Counts(counts)
+  {
+  }
+
+  HWY_INLINE std::uint32_t Visit(const CrossedCells<D>& cells)
+  {
+    const PacketCrossing<D> crossing(D(), cells.Corners, cells.Start, cells.End);
+    HWY_ALIGN double numbers[hn::MaxLanes(D())];
+    hn::Store(crossing.Count(cells.Crossing), D(), numbers);
+    for (std::uint32_t left = cells.There; left != 0; left &= left - 1)
+    {
+      const int lane = __builtin_ctz(left);
+      this->Counts[cells.Ray[lane]] += static_cast<int>(numbers[lane]);
+    }
+    return 0;
+  }
+
+private:
+  int* Counts;
+};
+
+} // namespace HWY_NAMESPACE
+} // namespace rt
+HWY_AFTER_NAMESPACE();
+
+#endif
