@@ -7,6 +7,7 @@ std::vector<RecordedScene> CreateRecordedScenes()
   AddVolumeScenes(scenes);
   AddMeshScenes(scenes);
   AddLightScenes(scenes);
+  AddMediumScenes(scenes);
   AddFrameScenes(scenes);
   return scenes;
 }

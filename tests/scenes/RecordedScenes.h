@@ -19,6 +19,8 @@ struct RecordedScene
 
 /// Types, shapes, missing data, bricks and colours of volumes.
 void AddVolumeScenes(std::vector<RecordedScene>& scenes);
+/// Media: types, shapes, transfer functions, media in one another and with surfaces, and the light that gets through.
+void AddMediumScenes(std::vector<RecordedScene>& scenes);
 /// Meshes from all sides, and what can be painted on them.
 void AddMeshScenes(std::vector<RecordedScene>& scenes);
 /// Lights, shadows, light from all around, mirrors.

@@ -58,6 +58,7 @@ public:
   std::vector<int> SampleParts{ 1 };
 
   void Add(rt::SceneObject object) { this->World.Objects.push_back(std::move(object)); }
+  void Add(rt::LatticeMedium medium) { this->World.Media.push_back(std::move(medium)); }
 
   rt::Light& AddLight(const glm::dvec3& direction)
   {
@@ -107,6 +108,40 @@ public:
     }
     object.Look.Surface.DiffuseColor = { 0.9f, 0.7f, 0.4f };
     return object;
+  }
+
+  /// The same; `nodes` (levels in [0, 100], ascending; red, green, blue, and opacity in a unit of the world) are
+  /// connected by lines.
+  rt::LatticeMedium CreateMedium(const Generated::Recipe& recipe,
+    const std::vector<std::pair<double, glm::dvec4>>& nodes,
+    const glm::dmat4& place = glm::dmat4(1.0))
+  {
+    rt::LatticeMedium medium;
+    medium.Field = this->CreateIsosurface(recipe, {}, place).Field;
+    medium.Function = CreateFunction(recipe, nodes);
+    return medium;
+  }
+
+  static std::shared_ptr<const rt::TransferFunction> CreateFunction(const Generated::Recipe& recipe,
+    const std::vector<std::pair<double, glm::dvec4>>& nodes)
+  {
+    std::vector<glm::dvec4> samples;
+    const double first = nodes.front().first;
+    const double last = nodes.back().first;
+    std::size_t node = 1;
+    for (int sample = 0; sample <= rt::TransferFunction::Bins; ++sample)
+    {
+      const double level = first + (last - first) * sample / rt::TransferFunction::Bins;
+      while (node + 1 < nodes.size() && nodes[node].first < level)
+      {
+        ++node;
+      }
+      const auto& [low, before] = nodes[node - 1];
+      const auto& [high, after] = nodes[node];
+      samples.push_back(before + (level - low) / (high - low) * (after - before));
+    }
+    return std::make_shared<rt::TransferFunction>(
+      Generated::Scale(recipe.Type, first), Generated::Scale(recipe.Type, last), samples);
   }
 
   /// Rank r has the r-th part of the shuffled triangles, the last rank none when there are several.

@@ -6,6 +6,7 @@
 //   scene_pictures FILE --vectors NAME  the same, on one rank, with the vectors that Highway calls
 //                                       so; 77 when this processor does not have them
 //   scene_pictures --record             prints the hashes
+//   scene_pictures --show NAME FILE     writes the picture of a scene, on white, as a PPM file
 //
 // A hash is GetPictureHash: of the size, the 8-bit colours and the bits of the depths. What is traced
 // is made of sums, products, quotients and roots alone, none of them contracted. Only colours use the
@@ -121,6 +122,32 @@ int Record()
     std::printf("%s %016" PRIx64 "\n", scene.Name.c_str(), hash);
   }
   return 0;
+}
+
+int Show(const std::string& name, const char* path)
+{
+  for (const RecordedScene& scene : CreateRecordedScenes())
+  {
+    if (scene.Name == name)
+    {
+      const rt::Picture picture = Trace(scene, Keepings[0]);
+      std::ofstream file(path, std::ios::binary);
+      file << "P6\n" << picture.Width << " " << picture.Height << "\n255\n";
+      for (int pixel = 0; pixel < picture.Width * picture.Height; ++pixel)
+      {
+        const int line = picture.Height - 1 - pixel / picture.Width;
+        const std::uint8_t* const color =
+          &picture.Color[4 * (std::size_t(line) * picture.Width + pixel % picture.Width)];
+        for (int channel = 0; channel < 3; ++channel)
+        {
+          file.put(static_cast<char>(std::min(255, color[channel] + 255 - color[3])));
+        }
+      }
+      return file.good() ? 0 : 1;
+    }
+  }
+  std::fprintf(stderr, "There is no scene %s.\n", name.c_str());
+  return 1;
 }
 
 std::map<std::string, std::uint64_t> ReadHashes(const char* path)
@@ -247,6 +274,11 @@ int main(int argc, char** argv)
   {
     return CompareAll(argv[1], true);
   }
-  std::fprintf(stderr, "usage: scene_pictures FILE [--vectors NAME] | --record\n");
+  if (arguments.size() == 3 && arguments[0] == "--show")
+  {
+    return Show(arguments[1], argv[3]);
+  }
+  std::fprintf(
+    stderr, "usage: scene_pictures FILE [--vectors NAME] | --record | --show NAME FILE\n");
   return 2;
 }

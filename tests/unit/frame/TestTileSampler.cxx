@@ -85,9 +85,9 @@ private:
   {
     auto& worker = store.GetWorker(0);
     const rt::PixelRays rays(request);
-    const rt::ObjectTracers objects = rt::CreateObjectTracers(store, worker, scene);
-    const rt::TileSampler together(objects, scene, rays, request);
-    const rt::PixelSampler alone(objects, scene, rays);
+    const rt::SceneTracers tracers = rt::CreateSceneTracers(store, worker, scene);
+    const rt::TileSampler together(tracers, scene, rays, request);
+    const rt::PixelSampler alone(tracers, scene, rays);
     const rt::TileGrid grid(request.Width, request.Height, request.TileSize);
     Difference difference;
     store.BeginFrame();

@@ -177,7 +177,9 @@ TEST_F(TestIsosurfaceTracer, WhatIsInvisibleIsNotMet)
   const Tracer none(this->Store, this->Worker, invisible);
   const rt::SurfaceFinder finder({ &none, &seen });
   Batch batch;
-  rt::SceneBeam beam = finder.FindBeam(batch.Corners);
+  rt::SceneBeam beam;
+  beam.Objects.push_back(none.FindBeam(batch.Corners));
+  beam.Objects.push_back(seen.FindBeam(batch.Corners));
   ASSERT_TRUE(beam.IsUsable() && beam.MayMeet());
   const rt::RayMask found = finder.Find(batch.Rays, ~rt::RayMask{ 0 }, &beam, batch.Hits);
   EXPECT_GT(rt::GetCount(found), 20);

@@ -58,8 +58,8 @@ double GetBrightest(
 
 } // namespace
 
-ArrivingLight::ArrivingLight(const ObjectTracers& objects, const Scene& scene)
-  : Transmittances(objects)
+ArrivingLight::ArrivingLight(const SceneTracers& tracers, const Scene& scene)
+  : Transmittances(tracers)
   , World(scene)
   , HasSurroundings(!scene.Transport.Surroundings.IsBlack())
 {

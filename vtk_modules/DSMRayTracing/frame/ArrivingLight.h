@@ -20,7 +20,7 @@ class ArrivingLight
 {
 public:
   /// Keeps references to the scene and the tracers of its objects.
-  ArrivingLight(const ObjectTracers& objects, const Scene& scene);
+  ArrivingLight(const SceneTracers& tracers, const Scene& scene);
 
   /// The points that paths are at, at most MaxRays, with the light from all around.
   std::vector<ShadingPoint> FindPoints(LightPath* const* paths, int count) const;

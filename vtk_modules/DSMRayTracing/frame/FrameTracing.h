@@ -16,8 +16,8 @@
 #include "DSMRayTracing/frame/TileSampler.h"
 #include "DSMRayTracing/frame/TileSource.h"
 #include "DSMRayTracing/frame/WorkerPool.h"
-#include "DSMRayTracing/scene/ObjectTracers.h"
 #include "DSMRayTracing/scene/Scene.h"
+#include "DSMRayTracing/scene/SceneTracers.h"
 
 #include <time.h>
 
@@ -164,8 +164,8 @@ private:
     this->Rays.emplace(request);
     if (this->Blocks.MayPrefetch())
     {
-      this->Beams = std::make_shared<BeamHistory>(
-        request.Width, request.Height, this->In.Scene.Objects.size(), this->In.Last);
+      this->Beams = std::make_shared<BeamHistory>(request.Width, request.Height,
+        this->In.Scene.Objects.size() + this->In.Scene.Media.size(), this->In.Last);
     }
     this->Plan = makePlan();
     this->Mine = this->Plan.Mine;
@@ -183,9 +183,9 @@ private:
     {
       std::uint64_t misses = 0; // of the tiles before
       bool looksAhead = true;   // as long as bricks are absent
-      const ObjectTracers objects = CreateObjectTracers(this->Blocks, worker, this->In.Scene);
+      const SceneTracers tracers = CreateSceneTracers(this->Blocks, worker, this->In.Scene);
       const TileSampler sampler(
-        objects, this->In.Scene, *this->Rays, this->In.Request, this->Beams.get());
+        tracers, this->In.Scene, *this->Rays, this->In.Request, this->Beams.get());
       while (std::optional<Tile> tile = this->In.Tiles.Pop(this->In.Slots))
       {
         const double start = GetThreadSeconds();

@@ -62,9 +62,11 @@ struct PixelSampler::Mirrored
 };
 
 PixelSampler::PixelSampler(
-  const ObjectTracers& objects, const Scene& scene, const PixelRays& rays, bool isPreview)
-  : Surfaces(GetAll(objects))
-  , Lighting(objects, scene)
+  const SceneTracers& tracers, const Scene& scene, const PixelRays& rays, bool isPreview)
+  : Finders(tracers.GetBeamFinders())
+  , Surfaces(GetAll(tracers.Objects))
+  , Media(tracers)
+  , Lighting(tracers, scene)
   , World(scene)
   , Rays(rays)
   , SharesAmbient(isPreview && scene.Transport.AmbientOcclusionSamples > 0)
@@ -76,7 +78,12 @@ SceneBeam PixelSampler::FindBeam(int x, int y, int width, int height) const
   const auto getCorner = [&](int right, int top)
   { return this->Rays.GetRay(x + right * width, y + top * height, glm::dvec2(0.0)); };
   const Ray corners[4] = { getCorner(0, 0), getCorner(1, 0), getCorner(1, 1), getCorner(0, 1) };
-  return this->Surfaces.FindBeam(corners);
+  SceneBeam beam;
+  for (const BeamFinder* finder : this->Finders)
+  {
+    beam.Objects.push_back(finder->FindBeam(corners));
+  }
+  return beam;
 }
 
 void PixelSampler::Sample(
@@ -95,7 +102,7 @@ void PixelSampler::Sample(
     }
   }
   Paths paths;
-  this->FindSurfaces(rays, wanted, beam,
+  this->Follow(beam, rays, wanted, PixelRays::Last, this->World.Transport.MaxBounces,
     [&](int index) -> LightPath&
     {
       LightPath& path = paths.Add();
@@ -107,7 +114,6 @@ void PixelSampler::Sample(
       path.View = &this->Rays.GetView();
       return path;
     });
-  this->Follow(beam, rays, PixelRays::Last, this->World.Transport.MaxBounces, paths);
   for (int number = 0; number < paths.GetCount(); ++number)
   {
     const LightPath& path = paths[number];
@@ -118,7 +124,7 @@ void PixelSampler::Sample(
 }
 
 template <class GetPath>
-void PixelSampler::FindSurfaces(
+RayMask PixelSampler::FindSurfaces(
   Ray* rays, RayMask wanted, SceneBeam* beam, const GetPath& getPath) const
 {
   ObjectHit hits[MaxRays];
@@ -137,42 +143,64 @@ void PixelSampler::FindSurfaces(
       }
     });
   SurfaceFinder::Describe(hits, rays, views, found, points);
+  return found;
 }
 
-void PixelSampler::Follow(SceneBeam* beam, Ray* rays, double last, int bounces, Paths& paths) const
+template <class Start>
+void PixelSampler::Follow(
+  SceneBeam* beam, Ray* rays, RayMask wanted, double last, int bounces, const Start& start) const
 {
-  LightPath* list[MaxRays];
-  LightPath* byRay[MaxRays];
-  int count = 0;
-  for (; count < paths.GetCount(); ++count)
+  LightPath* paths[MaxRays] = {};
+  const auto getPath = [&](int index) -> LightPath&
   {
-    list[count] = &paths[count];
-    byRay[paths[count].Index] = &paths[count];
-  }
-  while (count > 0)
+    if (!paths[index])
+    {
+      paths[index] = &start(index);
+    }
+    return *paths[index];
+  };
+  while (wanted != 0)
   {
+    RayMask seen = this->FindSurfaces(rays, wanted, beam, getPath);
+    if (!this->Media.IsEmpty())
+    {
+      ForEachRay(wanted, [&](int index) { getPath(index); });
+      this->AddMedia(beam, rays, wanted, paths);
+      seen = FindRays(seen, [&](int index) { return paths[index]->GoesOn(); });
+    }
+    LightPath* list[MaxRays];
+    int count = 0;
+    ForEachRay(seen, [&](int index) { list[count++] = paths[index]; });
     this->AddSurfaces(list, count, bounces);
-    RayMask wanted = 0;
-    for (int number = 0; number < count; ++number)
-    {
-      const LightPath& path = *list[number];
-      if (path.GoesOn())
-      {
-        path.Pass(rays[path.Index], last);
-        wanted |= GetBit(path.Index);
-      }
-    }
-    count = 0;
-    if (wanted != 0)
-    {
-      this->FindSurfaces(rays, wanted, beam,
-        [&](int index) -> LightPath&
-        {
-          list[count++] = byRay[index];
-          return *byRay[index];
-        });
-    }
+    wanted = FindRays(seen, [&](int index) { return paths[index]->GoesOn(); });
+    ForEachRay(wanted, [&](int index) { paths[index]->Pass(rays[index], last); });
   }
+}
+
+void PixelSampler::AddMedia(
+  SceneBeam* beam, const Ray* rays, RayMask wanted, LightPath* const* paths) const
+{
+  const auto light = std::make_unique<MediumLight>();
+  this->Media.March(rays, wanted, beam, *light);
+  ForEachRay(wanted,
+    [&](int index)
+    {
+      if (std::isinf(light->First[index]))
+      {
+        return;
+      }
+      LightPath& path = *paths[index];
+      const float weight = 1.0f - path.Color.w;
+      const glm::vec4 layer = weight *
+        glm::vec4(
+          glm::vec3(light->Color[index]), static_cast<float>(1.0 - light->Transmittance[index]));
+      path.Color += layer;
+      if (path.Layers)
+      {
+        const glm::dvec3 place = rays[index].Origin + light->First[index] * rays[index].Direction;
+        path.Layers->AddLayer(layer, this->Rays.GetDepth(place));
+      }
+    });
 }
 
 void PixelSampler::AddSurfaces(LightPath* const* paths, int count, int bounces) const
@@ -278,7 +306,8 @@ void PixelSampler::AddReflections(LightPath* const* paths, int count, const Shad
       ray.Max = std::numeric_limits<double>::infinity();
       mirrored->Views[number] = path.View->GetMirrored(path.Point.Position, normal);
     });
-  this->FindSurfaces(mirrored->Rays, mirrors, nullptr,
+  this->Follow(nullptr, mirrored->Rays, mirrors, std::numeric_limits<double>::infinity(),
+    bounces - 1,
     [&](int number) -> LightPath&
     {
       LightPath& behind = mirrored->Paths.Add();
@@ -288,8 +317,6 @@ void PixelSampler::AddReflections(LightPath* const* paths, int count, const Shad
       behind.View = &mirrored->Views[number];
       return behind;
     });
-  this->Follow(
-    nullptr, mirrored->Rays, std::numeric_limits<double>::infinity(), bounces - 1, mirrored->Paths);
   glm::vec4 seen[MaxRays];
   ForEachRay(mirrors, [&](int number) { seen[number] = glm::vec4(0.0f); });
   for (int index = 0; index < mirrored->Paths.GetCount(); ++index)

@@ -7,23 +7,26 @@
 #include "DSMRayTracing/frame/LightPath.h"
 #include "DSMRayTracing/frame/PixelRays.h"
 #include "DSMRayTracing/frame/PixelSample.h"
-#include "DSMRayTracing/scene/ObjectTracers.h"
+#include "DSMRayTracing/scene/MediaMarcher.h"
 #include "DSMRayTracing/scene/SceneBeam.h"
+#include "DSMRayTracing/scene/SceneTracers.h"
 #include "DSMRayTracing/scene/SurfaceFinder.h"
 
 #include <glm/vec3.hpp>
 
+#include <vector>
+
 namespace rt
 {
 
-/// Follows the light of samples of pixels: what lies behind translucent surfaces, shadows, ambient
+/// Follows the light of samples of pixels: through media, what lies behind translucent surfaces, shadows, ambient
 /// occlusion, mirrors. A sample depends on the scene, the camera, the pixel and the sample's number only.
 class PixelSampler
 {
 public:
   /// Keeps references. `isPreview`: see FrameRequest.
-  PixelSampler(const ObjectTracers& objects, const Scene& scene, const PixelRays& rays,
-    bool isPreview = false);
+  PixelSampler(
+    const SceneTracers& tracers, const Scene& scene, const PixelRays& rays, bool isPreview = false);
 
   /// What the pixels of a box have in common: for Sample. Usable or not, it can be used; but where it is
   /// not, a smaller box may be.
@@ -49,12 +52,18 @@ private:
   struct Mirrored;
 
   /// Finds what rays meet, and tells it the path that `getPath(index)` gives for each that meets
-  /// something; it is called once for each.
+  /// something; it is called once for each. Returns those rays.
   template <class GetPath>
-  void FindSurfaces(Ray* rays, RayMask wanted, SceneBeam* beam, const GetPath& getPath) const;
+  RayMask FindSurfaces(Ray* rays, RayMask wanted, SceneBeam* beam, const GetPath& getPath) const;
 
-  /// Follows paths that are at their first surfaces front to back until `last`.
-  void Follow(SceneBeam* beam, Ray* rays, double last, int bounces, Paths& paths) const;
+  /// Follows those of the rays that are `wanted` front to back until `last`: through media, and from surface to surface.
+  /// `start(index)` makes the path of a ray that has something to show; it is called once for each.
+  template <class Start>
+  void Follow(
+    SceneBeam* beam, Ray* rays, RayMask wanted, double last, int bounces, const Start& start) const;
+
+  /// Adds what media contribute in front of the surfaces that rays have met.
+  void AddMedia(SceneBeam* beam, const Ray* rays, RayMask wanted, LightPath* const* paths) const;
 
   /// Adds what the surfaces at which paths are contribute.
   void AddSurfaces(LightPath* const* paths, int count, int bounces) const;
@@ -66,7 +75,9 @@ private:
     glm::vec3* colors) const;
   glm::vec3 ShowForDebugging(const LightPath& path) const;
 
+  std::vector<const BeamFinder*> Finders;
   SurfaceFinder Surfaces;
+  MediaMarcher Media;
   ArrivingLight Lighting;
   const Scene& World;
   const PixelRays& Rays;

@@ -60,6 +60,12 @@ std::uint64_t GetSceneDigest(const Scene& scene, const FrameRequest& request)
     digest.Add(object.index());
     std::visit([&](const auto& known) { known.AddTo(digest); }, object);
   }
+  digest.Add(scene.Media.size());
+  for (const SceneMedium& medium : scene.Media)
+  {
+    digest.Add(medium.index());
+    std::visit([&](const auto& known) { known.AddTo(digest); }, medium);
+  }
   return digest.Get();
 }
 

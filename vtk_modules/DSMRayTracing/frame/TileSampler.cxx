@@ -19,10 +19,10 @@ constexpr int SmallestBeamEdge = PixelSampler::BlockEdge;
 
 } // namespace
 
-TileSampler::TileSampler(const ObjectTracers& objects, const Scene& scene, const PixelRays& rays,
+TileSampler::TileSampler(const SceneTracers& tracers, const Scene& scene, const PixelRays& rays,
   const FrameRequest& request, BeamHistory* beams)
-  : Objects(objects)
-  , Pixels(objects, scene, rays, request.IsPreview)
+  : Finders(tracers.GetBeamFinders())
+  , Pixels(tracers, scene, rays, request.IsPreview)
   , Request(request)
   , Beams(beams)
 {
@@ -105,7 +105,7 @@ bool TileSampler::Prefetch(const SceneBeam& beam, const Tile& tile, const PixelB
   {
     if (beam.Objects[object])
     {
-      anyAbsent |= this->Objects[object]->Prefetch(
+      anyAbsent |= this->Finders[object]->Prefetch(
         *beam.Objects[object], this->Beams->Predict(tile.X + box.Left, tile.Y + box.Top, object));
     }
   }

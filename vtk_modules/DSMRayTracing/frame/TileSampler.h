@@ -19,7 +19,7 @@ class TileSampler
 {
 public:
   /// Keeps references.
-  TileSampler(const ObjectTracers& objects, const Scene& scene, const PixelRays& rays,
+  TileSampler(const SceneTracers& tracers, const Scene& scene, const PixelRays& rays,
     const FrameRequest& request, BeamHistory* beams = nullptr);
 
   /// Adds the request's samples to the tile's sums, which hold the samples before them. May wait for
@@ -56,7 +56,7 @@ private:
   void TraceBatch(Tile& tile, SceneBeam& beam, const PixelBox& box) const;
   static void AddSample(const PixelSample& traced, Tile& tile);
 
-  const ObjectTracers& Objects;
+  std::vector<const BeamFinder*> Finders; ///< in the order of SceneBeam
   PixelSampler Pixels;
   const FrameRequest& Request;
   BeamHistory* Beams; ///< null: nothing is prefetched

@@ -4,7 +4,7 @@
 
 #include "DSMCore/base/Block.h"
 #include "DSMCore/publish/BlockSegment.h"
-#include "DSMRayTracing/object/BrickForecast.h"
+#include "DSMRayTracing/object/BeamFinder.h"
 #include "DSMRayTracing/object/ObjectBeam.h"
 #include "DSMRayTracing/object/ObjectHit.h"
 #include "DSMRayTracing/object/PictureView.h"
@@ -15,7 +15,6 @@
 #include <glm/vec3.hpp>
 
 #include <cstddef>
-#include <memory>
 
 namespace rt
 {
@@ -26,21 +25,11 @@ namespace rt
 /// a load), and chooses for each batch what is fastest.
 ///
 /// Calls may wait for bricks, and throw what the store throws.
-class ObjectTracer
+class ObjectTracer : public BeamFinder
 {
 public:
-  virtual ~ObjectTracer() = default;
-
   /// Whether the object lets no light through anywhere, so that any hit decides on a ray of light.
   virtual bool IsOpaque() const = 0;
-
-  /// What rays between those of `corners`, in order around them, have in common. Null: the object has
-  /// nothing to tell.
-  virtual std::unique_ptr<ObjectBeam> FindBeam(const Ray corners[4]) const = 0;
-
-  /// Asks for the first bricks that a beam of this object meets, as many as are foreseen, ahead of FindNext;
-  /// returns whether any was absent. Never waits.
-  virtual bool Prefetch(const ObjectBeam& beam, const BrickForecast& forecast) const = 0;
 
   /// Finds the first hits of those rays that are `wanted` in [ray.Min, ray.Max], and gives them to
   /// ObjectHit::Take, which has the hits of other objects so far. `beam`: of this object, with all of

@@ -5,6 +5,7 @@
 #include "DSMRayTracing/light/Light.h"
 #include "DSMRayTracing/light/LightTransport.h"
 #include "DSMRayTracing/scene/DebugView.h"
+#include "DSMRayTracing/scene/SceneMedium.h"
 #include "DSMRayTracing/scene/SceneObject.h"
 
 #include <algorithm>
@@ -18,16 +19,18 @@ namespace rt
 struct Scene
 {
   std::vector<SceneObject> Objects;
+  std::vector<SceneMedium> Media;
   std::vector<Light> Lights;
   LightTransport Transport;
   DebugView View = DebugView::Off;
 
-  /// Whether no object lets light through.
+  /// Whether nothing lets light through.
   bool IsOpaque() const
   {
-    return std::all_of(this->Objects.begin(), this->Objects.end(),
-      [](const SceneObject& object)
-      { return std::visit([](const auto& known) { return known.IsOpaque(); }, object); });
+    return this->Media.empty() &&
+      std::all_of(this->Objects.begin(), this->Objects.end(),
+        [](const SceneObject& object)
+        { return std::visit([](const auto& known) { return known.IsOpaque(); }, object); });
   }
 };
 

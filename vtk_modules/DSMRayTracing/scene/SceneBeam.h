@@ -11,10 +11,10 @@
 namespace rt
 {
 
-/// What the objects of a scene know beforehand of the rays of a beam.
+/// What the objects and media of a scene know beforehand of the rays of a beam.
 struct SceneBeam
 {
-  /// Of each of the ObjectTracers; null where it has nothing to tell.
+  /// Of each of SceneTracers::GetBeamFinders; null where it has nothing to tell.
   std::vector<std::unique_ptr<ObjectBeam>> Objects;
 
   /// Whether the rays may meet anything.

@@ -12,16 +12,6 @@ SurfaceFinder::SurfaceFinder(std::vector<const ObjectTracer*> objects)
 {
 }
 
-SceneBeam SurfaceFinder::FindBeam(const Ray corners[4]) const
-{
-  SceneBeam beam;
-  for (const ObjectTracer* object : this->Objects)
-  {
-    beam.Objects.push_back(object->FindBeam(corners));
-  }
-  return beam;
-}
-
 RayMask SurfaceFinder::Find(Ray* rays, RayMask wanted, SceneBeam* beam, ObjectHit* hits) const
 {
   ForEachRay(wanted, [&](int index) { hits[index].Clear(); });

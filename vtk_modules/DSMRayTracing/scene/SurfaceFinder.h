@@ -20,9 +20,6 @@ public:
 
   bool HasObjects() const { return !this->Objects.empty(); }
 
-  /// What rays between those of `corners`, in order around them, have in common.
-  SceneBeam FindBeam(const Ray corners[4]) const;
-
   /// The first surfaces in [ray.Min, ray.Max] of those of a batch of rays that are `wanted`; of equally
   /// near ones that of the first object. Returns the rays that meet something, which end there, and what
   /// in `hits`. `beam`: of FindBeam, with all of the rays within; null: they go where they like.

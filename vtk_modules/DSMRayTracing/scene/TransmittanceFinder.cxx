@@ -22,9 +22,10 @@ std::vector<const ObjectTracer*> GetObjects(const ObjectTracers& objects, bool o
 
 } // namespace
 
-TransmittanceFinder::TransmittanceFinder(const ObjectTracers& objects)
-  : Opaque(GetObjects(objects, true))
-  , Others(GetObjects(objects, false))
+TransmittanceFinder::TransmittanceFinder(const SceneTracers& tracers)
+  : Opaque(GetObjects(tracers.Objects, true))
+  , Others(GetObjects(tracers.Objects, false))
+  , Media(tracers)
 {
 }
 
@@ -46,6 +47,11 @@ void TransmittanceFinder::Find(const Ray* rays, int count, glm::dvec3* transmitt
     dark |= open != 0 ? object->Attenuate(rays, open, transmittances) : 0;
   }
   ForEachRay(dark, [&](int index) { transmittances[index] = glm::dvec3(0.0); });
+  open &= ~dark;
+  if (open != 0 && !this->Media.IsEmpty())
+  {
+    this->Media.Attenuate(rays, open, transmittances);
+  }
 }
 
 } // namespace rt

@@ -3,7 +3,8 @@
 #define rt_TransmittanceFinder_h
 
 #include "DSMRayTracing/ray/Ray.h"
-#include "DSMRayTracing/scene/ObjectTracers.h"
+#include "DSMRayTracing/scene/MediaMarcher.h"
+#include "DSMRayTracing/scene/SceneTracers.h"
 
 #include <glm/vec3.hpp>
 
@@ -13,12 +14,12 @@ namespace rt
 {
 
 /// How much of each colour of light gets along rays: none where an opaque surface is anywhere on the
-/// way; translucent surfaces dim and tint it (GetSheetTransmittance). One for each worker.
+/// way; translucent surfaces dim and tint it (GetSheetTransmittance), media dim it. One for each worker.
 class TransmittanceFinder
 {
 public:
   /// Keeps references to the tracers.
-  explicit TransmittanceFinder(const ObjectTracers& objects);
+  explicit TransmittanceFinder(const SceneTracers& tracers);
 
   /// For `count` rays, at most MaxRays.
   void Find(const Ray* rays, int count, glm::dvec3* transmittances) const;
@@ -27,6 +28,7 @@ private:
   /// Any hit of these decides.
   std::vector<const ObjectTracer*> Opaque;
   std::vector<const ObjectTracer*> Others;
+  MediaMarcher Media;
 };
 
 } // namespace rt

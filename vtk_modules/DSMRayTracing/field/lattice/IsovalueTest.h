@@ -6,6 +6,7 @@
 #include "DSMRayTracing/base/Lanes.h"
 #include "DSMRayTracing/field/lattice/IsovalueLevel.h"
 #include "DSMRayTracing/field/lattice/MacrocellKernel.h"
+#include "DSMRayTracing/field/lattice/NodeOrder.h"
 
 #include <algorithm>
 #include <cstddef>
@@ -63,7 +64,7 @@ public:
       }
       last = next;
     }
-    return cells & GetBox(counts);
+    return cells & GetNodeBox(counts);
   }
 
   /// What corners have subtracted.
@@ -103,20 +104,6 @@ private:
       }
     }
     return GetSlice(inside);
-  }
-
-  /// The bits of the cells that there are.
-  static std::uint64_t GetBox(const int counts[3])
-  {
-    std::uint64_t box = 0;
-    for (int z = 0; z < counts[2]; ++z)
-    {
-      for (int y = 0; y < counts[1]; ++y)
-      {
-        box |= ((std::uint64_t{ 1 } << counts[0]) - 1) << (4 * y + 16 * z);
-      }
-    }
-    return box;
   }
 
   const IsovalueLevel<T>& Level;

@@ -17,6 +17,8 @@ namespace rt
 
 class ObjectDigest;
 template <class Store>
+class LatticeMedia;
+template <class Store>
 class LatticeSampler;
 template <class Store>
 class LatticeSurfaces;
@@ -32,6 +34,8 @@ struct LatticeField
   using Sampler = LatticeSampler<Store>;
   template <class Store>
   using Surfaces = LatticeSurfaces<Store>;
+  template <class Store>
+  using Media = LatticeMedia<Store>;
 
   /// Point index space (sample (i,j,k) at (i,j,k) of the lattice) to world; affine, invertible.
   glm::dmat4 IndexToWorld{ 1.0 };

@@ -48,6 +48,20 @@ private:
   int Flip;
 };
 
+/// Of nodes that are counted towards larger coordinates, those of a box at the first one, with so many on each axis.
+inline std::uint64_t GetNodeBox(const int counts[3])
+{
+  std::uint64_t box = 0;
+  for (int z = 0; z < counts[2]; ++z)
+  {
+    for (int y = 0; y < counts[1]; ++y)
+    {
+      box |= ((std::uint64_t{ 1 } << counts[0]) - 1) << (4 * y + 16 * z);
+    }
+  }
+  return box;
+}
+
 } // namespace rt
 
 #endif

@@ -11,6 +11,7 @@
 #include "DSMRayTracing/base/MaskBits-inl.h"
 #include "DSMRayTracing/field/lattice/BrickSearch-inl.h"
 #include "DSMRayTracing/field/lattice/MacrocellComparison-inl.h"
+#include "DSMRayTracing/field/lattice/MediumCells-inl.h"
 #include "DSMRayTracing/field/lattice/NodePath-inl.h"
 #include "DSMRayTracing/field/lattice/SurfaceCells-inl.h"
 
@@ -152,6 +153,14 @@ public:
     BrickSearch<D, CrossingCounts<D>>(packet, brick, origin, counted).Search(rays);
   }
 
+  static RayPacket::Mask March(const RayPacket& packet, RayPacket::Mask rays,
+    const PacketBrick& brick, const double origin[3], const TransferFunction& function,
+    MediumLight& light)
+  {
+    MediumCells<D> cells(function, light);
+    return BrickSearch<D, MediumCells<D>>(packet, brick, origin, cells).Search(rays);
+  }
+
 private:
   /// A row of a matrix times a vector, in the order of glm's.
   static Vector Multiply(const glm::dmat3& matrix, int row, const Vector vector[3])
@@ -213,7 +222,7 @@ PacketKernel Create(const char* name, const MacrocellKernel& macrocells)
 {
   return { name, PacketSteps<D>::Width, &PacketSteps<D>::SetRays, &PacketSteps<D>::MeetBrick,
     &PacketSteps<D>::SearchBrick, &PacketSteps<D>::FindOccluded, &PacketSteps<D>::CountCrossings,
-    macrocells };
+    &PacketSteps<D>::March, macrocells };
 }
 
 PacketKernel CreateWide()

@@ -6,6 +6,8 @@
 #include "DSMRayTracing/field/lattice/IndexSpace.h"
 #include "DSMRayTracing/field/lattice/MacrocellKernel.h"
 #include "DSMRayTracing/field/lattice/PacketBrick.h"
+#include "DSMRayTracing/look/TransferFunction.h"
+#include "DSMRayTracing/ray/MediumLight.h"
 #include "DSMRayTracing/ray/Ray.h"
 #include "DSMRayTracing/ray/RayPacket.h"
 
@@ -45,6 +47,11 @@ struct PacketKernel
   /// Adds to `counts[ray]` how often each of `rays` meets the surface in the brick.
   void (*CountCrossings)(const RayPacket& packet, RayPacket::Mask rays, const PacketBrick& brick,
     const double origin[3], int* counts);
+
+  /// Gives to `light` what a medium adds along `rays` in the brick that they are in, whose corners have the function's
+  /// First subtracted. Returns those that are dark then.
+  RayPacket::Mask (*March)(const RayPacket& packet, RayPacket::Mask rays, const PacketBrick& brick,
+    const double origin[3], const TransferFunction& function, MediumLight& light);
 
   /// For TypedPacketBrick.
   MacrocellKernel Macrocells;

@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tests/scenes/SceneParts.h"
+
+#include <glm/gtc/matrix_transform.hpp>
+
+using namespace SceneParts;
+
+namespace
+{
+
+using Nodes = std::vector<std::pair<double, glm::dvec4>>;
+
+/// Nothing below 30, and denser and redder up from there.
+const Nodes Fog = { { 0.0, { 0.1, 0.2, 0.9, 0.0 } }, { 30.0, { 0.1, 0.3, 0.9, 0.0 } },
+  { 60.0, { 0.4, 0.9, 0.2, 1.5 } }, { 100.0, { 0.9, 0.2, 0.1, 6.0 } } };
+/// Three values that are seen, and a little around them.
+const Nodes Peaks = { { 0.0, { 0.9, 0.9, 0.2, 0.0 } }, { 29.8, { 0.9, 0.9, 0.2, 0.0 } },
+  { 30.0, { 0.9, 0.9, 0.2, 40.0 } }, { 30.2, { 0.9, 0.9, 0.2, 0.0 } },
+  { 49.8, { 0.2, 0.8, 0.9, 0.0 } }, { 50.0, { 0.2, 0.8, 0.9, 60.0 } },
+  { 50.2, { 0.2, 0.8, 0.9, 0.0 } }, { 79.5, { 0.9, 0.2, 0.6, 0.0 } },
+  { 80.0, { 0.9, 0.2, 0.6, 200.0 } }, { 80.5, { 0.9, 0.2, 0.6, 0.0 } },
+  { 100.0, { 1.0, 1.0, 1.0, 0.0 } } };
+/// All values are seen, and those beyond the ends.
+const Nodes Everything = { { 20.0, { 0.2, 0.2, 1.0, 0.4 } }, { 70.0, { 1.0, 0.6, 0.2, 2.0 } } };
+/// Walls that nothing gets through.
+const Nodes Walls = { { 0.0, { 0.2, 0.9, 0.3, 0.0 } }, { 49.0, { 0.2, 0.9, 0.3, 0.0 } },
+  { 51.0, { 0.9, 0.5, 0.3, 5000.0 } }, { 100.0, { 0.3, 0.4, 0.9, 5000.0 } } };
+
+const Named<Nodes> Functions = { { "Fog", Fog }, { "Peaks", Peaks }, { "Everything", Everything },
+  { "Walls", Walls } };
+
+void AddTypes(Scenes& scenes)
+{
+  for (const auto& [name, type] : Types)
+  {
+    Recipe recipe;
+    recipe.Type = type;
+    scenes.push_back({ "medium.type." + name,
+      [recipe](SceneStage& stage) { stage.Add(stage.CreateMedium(recipe, Fog)); } });
+  }
+}
+
+void AddShapes(Scenes& scenes)
+{
+  Recipe waves;
+  Recipe rough;
+  rough.Form = Recipe::Shape::Rough;
+  rough.Points = { 12, 11, 10 };
+  Recipe holes = waves;
+  holes.Holes = Recipe::Hole::NotANumber;
+  Recipe blanked = waves;
+  blanked.Blanked = true;
+  Recipe sheet = rough;
+  sheet.Points = { 33, 3, 17 };
+  for (const auto& [name, recipe] : Named<Recipe>{ { "Waves", waves }, { "Rough", rough },
+         { "Holes", holes }, { "Blanked", blanked }, { "Sheet", sheet } })
+  {
+    for (const auto& [functionName, nodes] : Functions)
+    {
+      scenes.push_back({ "medium." + name + "." + functionName,
+        [recipe = recipe, nodes = nodes](SceneStage& stage)
+        { stage.Add(stage.CreateMedium(recipe, nodes)); } });
+    }
+  }
+  for (const auto& [name, camera] : Cameras)
+  {
+    scenes.push_back({ "medium.Camera." + name,
+      [rough, camera = camera](SceneStage& stage)
+      {
+        stage.LookFrom(camera);
+        stage.Add(stage.CreateMedium(rough, Fog));
+      } });
+  }
+}
+
+void AddMixtures(Scenes& scenes)
+{
+  Recipe waves;
+  Recipe ball;
+  ball.Form = Recipe::Shape::Ball;
+  const glm::dmat4 beside = glm::translate(glm::dmat4(1.0), glm::dvec3(0.4, 0.2, -0.3)) * Turn();
+  const auto addBoth = [=](SceneStage& stage)
+  {
+    stage.Add(stage.CreateMedium(waves, Fog));
+    stage.Add(stage.CreateMedium(ball, Peaks, beside));
+  };
+  scenes.push_back({ "medium.Two", addBoth });
+  scenes.push_back({ "medium.Two.Reversed",
+    [=](SceneStage& stage)
+    {
+      stage.Add(stage.CreateMedium(ball, Peaks, beside));
+      stage.Add(stage.CreateMedium(waves, Fog));
+    } });
+  for (const float opacity : { 1.0f, 0.4f })
+  {
+    scenes.push_back({ opacity < 1.0f ? "medium.Around.Translucent" : "medium.Around.Opaque",
+      [=](SceneStage& stage)
+      {
+        rt::LatticeIsosurface surface = stage.CreateIsosurface(ball);
+        surface.Look.Surface.Opacity = opacity;
+        stage.Add(std::move(surface));
+        stage.Add(stage.CreateMedium(waves, Everything));
+        if (opacity < 1.0f)
+        {
+          stage.Request.Layers = 4;
+          stage.Add(stage.CreateMedium(ball, Fog, beside));
+        }
+      } });
+  }
+  scenes.push_back({ "medium.Shadows",
+    [=](SceneStage& stage)
+    {
+      rt::LatticeIsosurface surface =
+        stage.CreateIsosurface(waves, { 50.0 }, glm::translate(glm::dmat4(1.0), { 0.0, -1.0, 0.0 }));
+      stage.Add(std::move(surface));
+      stage.Add(stage.CreateMedium(ball, Everything, beside));
+      stage.World.Transport.Shadows = true;
+      stage.World.Transport.AmbientOcclusionSamples = 2;
+      stage.World.Transport.AmbientOcclusionDistance = 0.8;
+    } });
+  scenes.push_back({ "medium.Mirror",
+    [=](SceneStage& stage)
+    {
+      rt::LatticeIsosurface surface = stage.CreateIsosurface(ball);
+      surface.Look.Surface.Reflectivity = 0.7f;
+      stage.Add(std::move(surface));
+      stage.World.Transport.MaxBounces = 2;
+      stage.Add(stage.CreateMedium(waves, Everything, beside));
+    } });
+  scenes.push_back({ "medium.Clipped",
+    [=](SceneStage& stage)
+    {
+      rt::LatticeMedium medium = stage.CreateMedium(waves, Everything);
+      rt::ClipRegion::HalfSpace half;
+      half.Normal = { 1.0, 0.5, -0.3 };
+      medium.Clipping.HalfSpaces.push_back(half);
+      stage.Add(std::move(medium));
+    } });
+  scenes.push_back({ "medium.Samples",
+    [=](SceneStage& stage)
+    {
+      addBoth(stage);
+      stage.Request.Samples = 3;
+      stage.SampleParts = { 1, 2 };
+    } });
+}
+
+} // namespace
+
+void AddMediumScenes(std::vector<RecordedScene>& scenes)
+{
+  AddTypes(scenes);
+  AddShapes(scenes);
+  AddMixtures(scenes);
+}

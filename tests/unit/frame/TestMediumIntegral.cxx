@@ -1,0 +1,249 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Pixels of media against sums of so many samples that these have no error that could be seen.
+#include "tests/support/FunctionVolume.h"
+
+#include "DSMCore/transport/LoopbackTransport.h"
+#include "DSMRayTracing/frame/TileGrid.h"
+#include "DSMRayTracing/frame/TileSampler.h"
+
+#include <glm/gtc/constants.hpp>
+#include <glm/gtc/matrix_transform.hpp>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <utility>
+#include <vector>
+
+namespace
+{
+
+/// Value; red, green, blue and extinction there. Straight lines in between.
+using Nodes = std::vector<std::pair<double, glm::dvec4>>;
+
+glm::dvec4 Evaluate(const Nodes& nodes, double value)
+{
+  const double held = std::clamp(value, nodes.front().first, nodes.back().first);
+  std::size_t node = 1;
+  while (node + 1 < nodes.size() && nodes[node].first < held)
+  {
+    ++node;
+  }
+  const auto& [low, before] = nodes[node - 1];
+  const auto& [high, after] = nodes[node];
+  return before + (held - low) / (high - low) * (after - before);
+}
+
+const Nodes Fog = { { -3.0, { 0.1, 0.3, 0.9, 0.0 } }, { 0.0, { 0.3, 0.8, 0.4, 1.5 } },
+  { 3.0, { 0.9, 0.2, 0.1, 6.0 } } };
+/// A 256th of the range wide.
+const Nodes Peak = { { -3.0, { 0.9, 0.5, 0.1, 0.0 } }, { 0.0, { 0.9, 0.5, 0.1, 0.0 } },
+  { 3.0 / 256, { 0.9, 0.5, 0.1, 120.0 } }, { 6.0 / 256, { 0.9, 0.5, 0.1, 0.0 } },
+  { 3.0, { 0.9, 0.5, 0.1, 0.0 } } };
+/// Colors change where little light gets through.
+const Nodes Rainbow = { { -1.0, { 1.0, 0.0, 0.0, 0.0 } }, { -0.5, { 0.0, 1.0, 0.0, 30.0 } },
+  { 0.5, { 0.0, 0.0, 1.0, 90.0 } }, { 1.5, { 1.0, 1.0, 0.0, 10.0 } } };
+
+class TestMediumIntegral : public testing::Test
+{
+protected:
+  static constexpr int Points = 33;
+
+  static double GetWaves(const glm::dvec3& p)
+  {
+    return std::sin(7.0 * p.x) + std::sin(6.0 * p.y + p.x) + std::sin(8.0 * p.z) - 0.4;
+  }
+  /// Values of neighboring points have little to do with one another.
+  static double GetNoise(const glm::dvec3& p)
+  {
+    return 3.0 * std::sin(1e4 * (p.x + 1.7 * p.y + 2.9 * p.z));
+  }
+
+  void Add(const std::function<double(const glm::dvec3&)>& values, const Nodes& nodes)
+  {
+    rt::LatticeMedium medium;
+    medium.Field = FunctionVolume::Publish(Points, values, this->Messenger, this->Store).Field;
+    std::vector<glm::dvec4> samples;
+    for (int sample = 0; sample <= rt::TransferFunction::Bins; ++sample)
+    {
+      const double part = static_cast<double>(sample) / rt::TransferFunction::Bins;
+      samples.push_back(Evaluate(
+        nodes, nodes.front().first + part * (nodes.back().first - nodes.front().first)));
+    }
+    medium.Function = std::make_shared<rt::TransferFunction>(
+      nodes.front().first, nodes.back().first, samples);
+    this->World.Media.push_back(std::move(medium));
+    std::vector<double> own;
+    for (int z = 0; z < Points; ++z)
+    {
+      for (int y = 0; y < Points; ++y)
+      {
+        for (int x = 0; x < Points; ++x)
+        {
+          own.push_back(values(-1.0 + 2.0 / (Points - 1) * glm::dvec3(x, y, z)));
+        }
+      }
+    }
+    this->Parts.push_back({ std::move(own), nodes });
+  }
+
+  /// The largest difference of any channel of any pixel, in 255ths.
+  double Compare(const glm::dmat4& worldToClip)
+  {
+    rt::FrameRequest request;
+    request.Width = 24;
+    request.Height = 20;
+    request.TileSize = 32;
+    request.WorldToClip = worldToClip;
+    const rt::PixelRays rays(request);
+    return this->Store.Visit(
+      [&](auto& store)
+      {
+        auto& worker = store.GetWorker(0);
+        const rt::SceneTracers tracers = rt::CreateSceneTracers(store, worker, this->World);
+        const rt::TileSampler sampler(tracers, this->World, rays, request);
+        rt::Tile tile = rt::TileGrid(request.Width, request.Height, request.TileSize).CreateTile(0);
+        store.BeginFrame();
+        store.Enter(worker);
+        sampler.Trace(tile);
+        store.Leave(worker);
+        store.EndFrame();
+        double largest = 0.0;
+        double mean = 0.0;
+        for (int y = 0; y < request.Height; ++y)
+        {
+          for (int x = 0; x < request.Width; ++x)
+          {
+            const glm::dvec4 expected = this->Integrate(rays.GetRay(x, y));
+            const glm::dvec4 found(tile.Sum[static_cast<std::size_t>(y * request.Width + x)]);
+            for (int channel = 0; channel < 4; ++channel)
+            {
+              largest = std::max(largest, 255.0 * std::abs(found[channel] - expected[channel]));
+            }
+            mean += found.w;
+          }
+        }
+        EXPECT_GT(mean, 20.0) << "nothing is seen";
+        return largest;
+      });
+  }
+
+  static glm::dmat4 GetPerspective()
+  {
+    return glm::perspective(0.6, 1.2, 1.0, 20.0) *
+      glm::lookAt(glm::dvec3(2.9, 2.1, 3.3), glm::dvec3(0.0), glm::dvec3(0.0, 1.0, 0.0));
+  }
+  static glm::dmat4 GetAlongZ()
+  {
+    return glm::ortho(-1.3, 1.3, -1.1, 1.1, 1.0, 20.0) *
+      glm::lookAt(glm::dvec3(0.0, 0.0, 5.0), glm::dvec3(0.0), glm::dvec3(0.0, 1.0, 0.0));
+  }
+
+  rt::Scene World;
+
+private:
+  struct Part
+  {
+    std::vector<double> Values;
+    Nodes Function;
+  };
+
+  /// So many samples in the shortest way through a cell.
+  glm::dvec4 Integrate(const rt::Ray& ray) const
+  {
+    constexpr double step = 2.0 / (Points - 1) / 512.0;
+    const glm::dvec3 direction = glm::normalize(ray.Direction);
+    const double length = glm::length(ray.Direction) * ray.Max;
+    glm::dvec3 color(0.0);
+    double transmittance = 1.0;
+    for (double way = 0.5 * step; way < length; way += step)
+    {
+      const glm::dvec3 place =
+        (ray.Origin + way * direction + 1.0) * (0.5 * (Points - 1));
+      if (glm::any(glm::lessThan(place, glm::dvec3(0.0))) ||
+        glm::any(glm::greaterThan(place, glm::dvec3(Points - 1))))
+      {
+        continue;
+      }
+      glm::dvec4 sum(0.0);
+      for (const Part& part : this->Parts)
+      {
+        const glm::dvec4 here = Evaluate(part.Function, Interpolate(part.Values, place));
+        sum += glm::dvec4(here.w * glm::dvec3(here), here.w);
+      }
+      const double passed = std::exp(-step * sum.w);
+      if (sum.w > 0.0)
+      {
+        color += transmittance * (1.0 - passed) * glm::dvec3(sum) / sum.w;
+      }
+      transmittance *= passed;
+    }
+    return { color, 1.0 - transmittance };
+  }
+
+  static double Interpolate(const std::vector<double>& values, const glm::dvec3& place)
+  {
+    const glm::ivec3 cell = glm::min(glm::ivec3(place), glm::ivec3(Points - 2));
+    const glm::dvec3 within = place - glm::dvec3(cell);
+    double sum = 0.0;
+    for (int corner = 0; corner < 8; ++corner)
+    {
+      const glm::ivec3 side(corner & 1, corner >> 1 & 1, corner >> 2);
+      const glm::ivec3 point = cell + side;
+      double weight = 1.0;
+      for (int axis = 0; axis < 3; ++axis)
+      {
+        weight *= side[axis] != 0 ? within[axis] : 1.0 - within[axis];
+      }
+      sum += weight *
+        values[static_cast<std::size_t>(point.x + Points * (point.y + Points * point.z))];
+    }
+    return sum;
+  }
+
+  dsm::Messenger Messenger{ std::move(dsm::LoopbackTransport::CreateGroup(1).front()) };
+  dsm::BlockStore Store{ Messenger, dsm::BlockStore::Settings{} };
+  std::vector<Part> Parts;
+};
+
+TEST_F(TestMediumIntegral, OfSmoothFunctions)
+{
+  this->Add(GetWaves, Fog);
+  EXPECT_LT(this->Compare(GetPerspective()), 1.0);
+  EXPECT_LT(this->Compare(GetAlongZ()), 1.0);
+}
+
+TEST_F(TestMediumIntegral, OfANarrowPeak)
+{
+  this->Add(GetWaves, Peak);
+  EXPECT_LT(this->Compare(GetPerspective()), 1.0);
+  EXPECT_LT(this->Compare(GetAlongZ()), 1.0);
+}
+
+TEST_F(TestMediumIntegral, OfColorsThatChangeWithinAWall)
+{
+  this->Add(GetWaves, Rainbow);
+  EXPECT_LT(this->Compare(GetPerspective()), 1.0);
+}
+
+TEST_F(TestMediumIntegral, OfNoise)
+{
+  this->Add(GetNoise, Fog);
+  EXPECT_LT(this->Compare(GetPerspective()), 1.0);
+}
+
+TEST_F(TestMediumIntegral, OfANarrowPeakInNoise)
+{
+  this->Add(GetNoise, Peak);
+  EXPECT_LT(this->Compare(GetPerspective()), 1.0);
+}
+
+TEST_F(TestMediumIntegral, OfTwoMediaInOneAnother)
+{
+  this->Add(GetWaves, Fog);
+  this->Add([](const glm::dvec3& p) { return 2.0 - 3.0 * glm::length(p); }, Rainbow);
+  EXPECT_LT(this->Compare(GetPerspective()), 1.0);
+}
+
+} // namespace

@@ -1,0 +1,194 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef rt_LatticeMedia_h
+#define rt_LatticeMedia_h
+
+#include "DSMBricks/layout/VoxelBrick.h"
+#include "DSMRayTracing/field/lattice/BeamBricks.h"
+#include "DSMRayTracing/field/lattice/BeamDescent.h"
+#include "DSMRayTracing/field/lattice/LatticeField.h"
+#include "DSMRayTracing/field/lattice/PacketKernel.h"
+#include "DSMRayTracing/field/lattice/RayBeam.h"
+#include "DSMRayTracing/field/lattice/TransferTest.h"
+#include "DSMRayTracing/field/lattice/TypedPacketBrick.h"
+#include "DSMRayTracing/look/TransferFunction.h"
+#include "DSMRayTracing/object/BrickForecast.h"
+#include "DSMRayTracing/ray/MediumLight.h"
+#include "DSMRayTracing/ray/Ray.h"
+
+#include <glm/common.hpp>
+#include <glm/vec3.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <memory>
+#include <vector>
+
+namespace rt
+{
+
+/// Takes batches of rays through a medium whose values are a lattice's. Rays that move to the same sides are a packet,
+/// a lone ray one of its own: what a ray gets is the same. Threads and pins as IsosurfaceSearch.
+template <class Store>
+class LatticeMedia
+{
+public:
+  LatticeMedia(Store& store, typename Store::Worker& worker,
+    const PacketKernel& kernel = PacketKernel::GetBest())
+    : Blocks(store)
+    , Self(worker)
+    , Kernel(kernel)
+  {
+  }
+
+  /// See BeamFinder.
+  std::unique_ptr<ObjectBeam> FindBeam(
+    const LatticeField& field, const TransferFunction& function, const Ray corners[4]) const
+  {
+    const IndexSpace space = field.GetIndexSpace();
+    GridRay lines[4];
+    bool isUsable = true;
+    for (int corner = 0; corner < 4; ++corner)
+    {
+      isUsable = isUsable && space.GetGridRay(corners[corner], lines[corner]);
+    }
+    RayBeam beam;
+    return std::make_unique<BeamBricks>(
+      isUsable && beam.Set(lines) ? FindBricks(field, function, beam) : BeamBricks());
+  }
+
+  /// See BeamFinder.
+  bool Prefetch(
+    const LatticeField& field, const ObjectBeam& beam, const BrickForecast& forecast) const
+  {
+    const auto& bricks = static_cast<const BeamBricks&>(beam).Bricks;
+    std::vector<dsm::BlockId> ids(std::min(forecast.Mean, bricks.size()));
+    std::transform(bricks.begin(), bricks.begin() + static_cast<std::ptrdiff_t>(ids.size()),
+      ids.begin(), [](const BeamBricks::Brick& brick) { return brick.Id; });
+    return this->Blocks.Prefetch(*field.Voxels->Segment, ids.data(), ids.size());
+  }
+
+  /// See MediumTracer.
+  RayMask March(const LatticeField& field, const TransferFunction& function, ObjectBeam* beam,
+    const Ray* rays, RayMask wanted, MediumLight& light) const
+  {
+    RayMask dark = 0;
+    RayMask left = wanted;
+    RayPacket packet;
+    const IndexSpace space = field.GetIndexSpace();
+    const bricks::Index3 cells = field.Voxels->Lattice.GetCells();
+    if (beam && beam->Usable)
+    {
+      auto& found = static_cast<BeamBricks&>(*beam);
+      std::copy_n(found.Forward, 3, packet.Forward);
+      left = this->Kernel.SetRays(packet, rays, wanted, space, cells);
+      dark |= this->MarchPacket(field, function, found, packet, light);
+    }
+    if (left == 0)
+    {
+      return dark;
+    }
+    Ray moved[MaxRays];
+    RayMask sides[8] = {};
+    ForEachRay(left,
+      [&](int index) { sides[MoveAlongAll(field, rays[index], moved[index])] |= GetBit(index); });
+    for (int side = 0; side < 8; ++side)
+    {
+      if (sides[side] != 0)
+      {
+        for (int axis = 0; axis < 3; ++axis)
+        {
+          packet.Forward[axis] = (side >> axis & 1) != 0;
+        }
+        this->Kernel.SetRays(packet, moved, sides[side], space, cells);
+        dark |= this->MarchPacket(field, function, packet, light);
+      }
+    }
+    return dark;
+  }
+
+private:
+  static BeamBricks FindBricks(
+    const LatticeField& field, const TransferFunction& function, const RayBeam& beam)
+  {
+    const TransferPredicate mayHold(function);
+    return BeamDescent<TransferPredicate>(field.Voxels->Hierarchy, mayHold, beam).Find();
+  }
+
+  /// Rays of a packet move along all axes. One that does not, moves so little that it stays at its place for all that
+  /// can be seen. Returns the sides to which the ray moves, a bit for each axis.
+  static int MoveAlongAll(const LatticeField& field, const Ray& ray, Ray& moved)
+  {
+    constexpr double least = 1e-10;
+    glm::dvec3 direction = field.GetIndexSpace().GetWorldToIndex() * ray.Direction;
+    const glm::dvec3 size = glm::abs(direction);
+    const double small = least * std::max({ size.x, size.y, size.z });
+    int side = 0;
+    bool isMoved = false;
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      if (size[axis] < small)
+      {
+        direction[axis] = direction[axis] < 0.0 ? -small : small;
+        isMoved = true;
+      }
+      side |= (direction[axis] > 0.0 ? 1 : 0) << axis;
+    }
+    moved = ray;
+    if (isMoved)
+    {
+      moved.Direction = glm::dmat3(field.IndexToWorld) * direction;
+    }
+    return side;
+  }
+
+  RayMask MarchPacket(const LatticeField& field, const TransferFunction& function,
+    const RayPacket& packet, MediumLight& light) const
+  {
+    if (packet.Rays == 0)
+    {
+      return 0;
+    }
+    RayBeam beam;
+    beam.Set(packet);
+    BeamBricks bricks = FindBricks(field, function, beam);
+    RayPacket own = packet;
+    return this->MarchPacket(field, function, bricks, own, light);
+  }
+
+  RayMask MarchPacket(const LatticeField& field, const TransferFunction& function,
+    BeamBricks& bricks, RayPacket& packet, MediumLight& light) const
+  {
+    RayMask open = packet.Rays;
+    bricks::Dispatch(field.Voxels->Lattice.GetScalarType(),
+      [&](auto sample)
+      {
+        using T = decltype(sample);
+        const TransferTest<T> test(function);
+        for (std::size_t place = 0; place < bricks.Bricks.size() && open != 0; ++place)
+        {
+          const BeamBricks::Brick& brick = bricks.Bricks[place];
+          const RayMask meets = this->Kernel.MeetBrick(packet, open, brick.Lower, brick.Upper);
+          if (meets == 0)
+          {
+            continue;
+          }
+          bricks.Reached = std::max(bricks.Reached, place + 1);
+          const typename Store::Pin pin =
+            this->Blocks.Acquire(this->Self, *field.Voxels->Segment, brick.Id);
+          const bricks::VoxelBrick<T> voxels(pin.GetData());
+          const TypedPacketBrick<T, TransferTest<T>> medium(voxels, test, packet.Forward);
+          open &= ~this->Kernel.March(packet, meets, medium, brick.Lower, function, light);
+        }
+      });
+    return packet.Rays & ~open;
+  }
+
+  Store& Blocks;
+  typename Store::Worker& Self;
+  const PacketKernel& Kernel;
+};
+
+} // namespace rt
+
+#endif

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "DSMRayTracing/look/TransferFunction.h"
+
+#include "DSMBricks/base/ByteHash.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+
+namespace rt
+{
+
+namespace
+{
+
+constexpr int BinsOfGroup = 16;
+constexpr int Groups = TransferFunction::Bins / BinsOfGroup + 1;
+
+} // namespace
+
+TransferFunction::TransferFunction(
+  double first, double last, const std::vector<glm::dvec4>& samples)
+  : First(first)
+  , Scale(Bins / (last - first))
+  , Table(AllBins)
+  , SeenBefore(AllBins + 1, 0)
+{
+  bricks::ByteHash hash;
+  hash.Add(&first, sizeof(first));
+  hash.Add(&last, sizeof(last));
+  hash.Add(samples.data(), samples.size() * sizeof(glm::dvec4));
+  this->Digest = hash.Get();
+
+  const auto emit = [&](int sample)
+  {
+    const glm::dvec4& one = samples[static_cast<std::size_t>(std::clamp(sample, 0, int(Bins)))];
+    return glm::dvec4(glm::dvec3(one) * one.w, one.w);
+  };
+  // The bin below the range ends where the integral is 0.
+  glm::dvec4 integral = -emit(0);
+  glm::dvec4 before = emit(0);
+  std::vector<Behavior> groups(Groups);
+  for (int bin = 0; bin < AllBins; ++bin)
+  {
+    const glm::dvec4 slope = 0.5 * (emit(bin - 1) + emit(bin));
+    Bin& own = this->Table[static_cast<std::size_t>(bin)];
+    Behavior& group = groups[static_cast<std::size_t>(bin / BinsOfGroup)];
+    own.Integral = Lanes(integral.x, integral.y, integral.z, integral.w);
+    own.Slope = Lanes(slope.x, slope.y, slope.z, slope.w);
+    // The first bin of a group changes from the last one of the group before.
+    for (int channel = 0; channel < 4; ++channel)
+    {
+      group.Change = std::max(group.Change, std::abs(slope[channel] - before[channel]));
+    }
+    group.Extinction = std::max(group.Extinction, slope.w);
+    this->SeenBefore[static_cast<std::size_t>(bin) + 1] =
+      this->SeenBefore[static_cast<std::size_t>(bin)] + (slope.w > 0.0 ? 1 : 0);
+    integral += slope;
+    before = slope;
+  }
+  this->Largest.push_back(groups);
+  for (std::size_t width = 1; 2 * width <= Groups; width *= 2)
+  {
+    const std::vector<Behavior>& narrow = this->Largest.back();
+    std::vector<Behavior> next(Groups - 2 * width + 1);
+    for (std::size_t group = 0; group < next.size(); ++group)
+    {
+      const Behavior& one = narrow[group];
+      const Behavior& other = narrow[group + width];
+      next[group] = { std::max(one.Extinction, other.Extinction),
+        std::max(one.Change, other.Change) };
+    }
+    this->Largest.push_back(std::move(next));
+  }
+}
+
+TransferFunction::Behavior TransferFunction::FindBehavior(double begin, double end) const
+{
+  const int first = GetNumber(begin);
+  const int last = GetNumber(end);
+  if (!this->AnyIsSeen(first, last))
+  {
+    return {};
+  }
+  const int firstGroup = first / BinsOfGroup;
+  const int count = last / BinsOfGroup - firstGroup + 1;
+  const int level = 31 - __builtin_clz(static_cast<unsigned>(count));
+  const std::vector<Behavior>& groups = this->Largest[static_cast<std::size_t>(level)];
+  const Behavior& one = groups[static_cast<std::size_t>(firstGroup)];
+  const Behavior& other = groups[static_cast<std::size_t>(firstGroup + count - (1 << level))];
+  return { std::max(one.Extinction, other.Extinction), std::max(one.Change, other.Change) };
+}
+
+} // namespace rt

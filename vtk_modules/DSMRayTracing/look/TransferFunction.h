@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef rt_TransferFunction_h
+#define rt_TransferFunction_h
+
+#include "DSMRayTracing/base/Lanes.h"
+
+#include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace rt
+{
+
+/// What a medium emits and absorbs where it has a value. Values beyond the function's range are as those at its ends.
+/// The function is integrated over values beforehand, so that a ray between two values misses none of the values between
+/// them (Engel et al., "High-quality pre-integrated volume rendering", 2001). Any number of threads may ask.
+class TransferFunction
+{
+public:
+  /// Of the range of values.
+  static constexpr int Bins = 4096;
+
+  /// `samples`: Bins + 1 of them, evenly spaced from `first` to `last`, which is greater. Red, green, blue (straight), and
+  /// extinction (w): optical depth in a unit of world length.
+  TransferFunction(double first, double last, const std::vector<glm::dvec4>& samples);
+
+  double GetFirst() const { return this->First; }
+  /// Bins in a unit of values.
+  double GetScale() const { return this->Scale; }
+
+  /// Emission (x, y, z) and extinction, integrated from First to a place in bins from there. `slope`: what they are there.
+  Lanes Integrate(double place, Lanes& slope) const
+  {
+    const int number = GetNumber(place);
+    const Bin& bin = this->Table[static_cast<std::size_t>(number)];
+    slope = bin.Slope;
+    return bin.Integral + bin.Slope * Lanes(place - (number - 1));
+  }
+
+  /// How the function behaves between two places in bins from First, the second not less than the first.
+  struct Behavior
+  {
+    double Extinction = 0.0; ///< the largest
+    double Change = 0.0;     ///< at most, of anything, from a bin to the next
+  };
+  Behavior FindBehavior(double begin, double end) const;
+
+  /// Whether any value from `first` to `last` is seen.
+  bool IsSeen(double first, double last) const
+  {
+    return first <= last &&
+      this->AnyIsSeen(GetNumber((first - this->First) * this->Scale),
+        GetNumber((last - this->First) * this->Scale));
+  }
+  bool IsSeenAtAll() const { return this->SeenBefore.back() > 0; }
+
+  /// Shared by functions that are the same, for all practical purposes.
+  std::uint64_t GetDigest() const { return this->Digest; }
+
+private:
+  /// Integral: up to the bin's begin; Slope: how it grows in a bin.
+  struct Bin
+  {
+    Lanes Integral;
+    Lanes Slope;
+  };
+
+  /// Bin 0 is what is below the function's range, the last one what is above. A place that is not a number is in bin 0.
+  static constexpr int AllBins = Bins + 2;
+  static int GetNumber(double place)
+  {
+    return place >= Bins ? Bins + 1 : place >= 0.0 ? static_cast<int>(place) + 1 : 0;
+  }
+  bool AnyIsSeen(int first, int last) const
+  {
+    return this->SeenBefore[static_cast<std::size_t>(last) + 1] >
+      this->SeenBefore[static_cast<std::size_t>(first)];
+  }
+
+  double First;
+  double Scale;
+  std::vector<Bin> Table;
+  std::vector<int> SeenBefore; ///< bins before each that are seen; one more at the end
+  /// Largest Behavior of 1, 2, 4 ... groups of bins that follow one another, from each group on.
+  std::vector<std::vector<Behavior>> Largest;
+  std::uint64_t Digest;
+};
+
+} // namespace rt
+
+#endif

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef rt_BeamFinder_h
+#define rt_BeamFinder_h
+
+#include "DSMRayTracing/object/BrickForecast.h"
+#include "DSMRayTracing/object/ObjectBeam.h"
+#include "DSMRayTracing/ray/Ray.h"
+
+#include <memory>
+
+namespace rt
+{
+
+/// What objects and media have in common for the rooms above: beams of rays, and the bricks that these need.
+class BeamFinder
+{
+public:
+  virtual ~BeamFinder() = default;
+
+  /// What rays between those of `corners`, in order around them, have in common. Null: there is nothing to
+  /// tell.
+  virtual std::unique_ptr<ObjectBeam> FindBeam(const Ray corners[4]) const = 0;
+
+  /// Asks for the first bricks that a beam meets, as many as are foreseen, ahead of the search; returns whether any was
+  /// absent. Never waits.
+  virtual bool Prefetch(const ObjectBeam& beam, const BrickForecast& forecast) const = 0;
+};
+
+} // namespace rt
+
+#endif

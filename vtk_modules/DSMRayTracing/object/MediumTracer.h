@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef rt_MediumTracer_h
+#define rt_MediumTracer_h
+
+#include "DSMRayTracing/object/BeamFinder.h"
+#include "DSMRayTracing/object/ObjectBeam.h"
+#include "DSMRayTracing/ray/MediumLight.h"
+#include "DSMRayTracing/ray/Ray.h"
+#include "DSMRayTracing/ray/RayMask.h"
+
+namespace rt
+{
+
+/// A medium that rays pass through, as one worker traces it: all that the rooms above know of it. Rays come in batches
+/// of up to MaxRays; what a ray finds does not depend on the others. A kind of medium derives from this for a store.
+///
+/// Calls may wait for bricks, and throw what the store throws.
+class MediumTracer : public BeamFinder
+{
+public:
+  /// Gives to `light`, which was begun with the rays, what the medium adds along those of them that are `wanted`, in
+  /// [ray.Min, ray.Max], from the front. Returns those that are dark, whose march may have ended early. `beam`: of this
+  /// medium, with all of the rays within; null: rays go where they like.
+  virtual RayMask March(
+    const Ray* rays, RayMask wanted, ObjectBeam* beam, MediumLight& light) const = 0;
+};
+
+} // namespace rt
+
+#endif

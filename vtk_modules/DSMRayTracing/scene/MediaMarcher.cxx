@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "DSMRayTracing/scene/MediaMarcher.h"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <vector>
+
+namespace rt
+{
+
+namespace
+{
+
+/// Adds up what pieces of several media hold, which are in order in each medium but not between them: cuts them where
+/// any begins or ends.
+void Merge(std::vector<MediumPiece>& pieces, std::size_t ray, MediumLight& light)
+{
+  std::stable_sort(pieces.begin(), pieces.end(),
+    [](const MediumPiece& one, const MediumPiece& other) { return one.Begin < other.Begin; });
+  std::vector<double> ends;
+  for (const MediumPiece& piece : pieces)
+  {
+    ends.push_back(piece.Begin);
+    ends.push_back(piece.End);
+  }
+  std::sort(ends.begin(), ends.end());
+  ends.erase(std::unique(ends.begin(), ends.end()), ends.end());
+  std::vector<std::size_t> open; // pieces that the current part is in
+  std::size_t next = 0;
+  for (std::size_t end = 1; end < ends.size() && light.Transmittance[ray] >= MediumLight::Dark;
+       ++end)
+  {
+    const double begin = ends[end - 1];
+    for (; next < pieces.size() && pieces[next].Begin <= begin; ++next)
+    {
+      open.push_back(next);
+    }
+    open.erase(std::remove_if(open.begin(), open.end(),
+                 [&](std::size_t number) { return pieces[number].End <= begin; }),
+      open.end());
+    glm::dvec4 amount(0.0);
+    for (const std::size_t number : open)
+    {
+      const MediumPiece& piece = pieces[number];
+      amount += (ends[end] - begin) / (piece.End - piece.Begin) * piece.Amount;
+    }
+    if (amount.w > 0.0)
+    {
+      const double passed = std::exp(-amount.w);
+      const double seen = amount.w < 1e-6 ? 1.0 - 0.5 * amount.w : (1.0 - passed) / amount.w;
+      light.Color[ray] += light.Transmittance[ray] * seen * glm::dvec3(amount);
+      light.Transmittance[ray] *= passed;
+    }
+  }
+}
+
+} // namespace
+
+void MediaMarcher::March(const Ray* rays, RayMask wanted, SceneBeam* beam, MediumLight& light) const
+{
+  light.Begin(rays, wanted);
+  light.KeepsPieces = this->Media.size() > 1;
+  for (std::size_t medium = 0; medium < this->Media.size(); ++medium)
+  {
+    ObjectBeam* const own = beam ? beam->Objects[this->FirstBeam + medium].get() : nullptr;
+    // Each ends where it is dark by itself: so are the others behind that.
+    ForEachRay(wanted, [&](int ray) { light.Transmittance[ray] = 1.0; });
+    this->Media[medium]->March(rays, wanted, own, light);
+  }
+  if (light.KeepsPieces)
+  {
+    ForEachRay(wanted,
+      [&](int ray)
+      {
+        light.Transmittance[ray] = 1.0;
+        light.Color[ray] = glm::dvec3(0.0);
+        Merge(light.Pieces[ray], static_cast<std::size_t>(ray), light);
+      });
+  }
+}
+
+void MediaMarcher::Attenuate(const Ray* rays, RayMask wanted, glm::dvec3* transmittances) const
+{
+  const auto light = std::make_unique<MediumLight>();
+  for (const auto& medium : this->Media)
+  {
+    light->Begin(rays, wanted);
+    medium->March(rays, wanted, nullptr, *light);
+    ForEachRay(wanted, [&](int ray) { transmittances[ray] *= light->Transmittance[ray]; });
+  }
+}
+
+} // namespace rt

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef rt_MediaMarcher_h
+#define rt_MediaMarcher_h
+
+#include "DSMRayTracing/object/MediumTracer.h"
+#include "DSMRayTracing/scene/SceneBeam.h"
+#include "DSMRayTracing/scene/SceneTracers.h"
+
+#include <glm/vec3.hpp>
+
+#include <cstddef>
+
+namespace rt
+{
+
+/// Takes rays through all media of a scene at once: of media that overlap, what they emit and absorb at a place adds up,
+/// in whatever order they are. One for each worker.
+class MediaMarcher
+{
+public:
+  /// Keeps a reference.
+  explicit MediaMarcher(const SceneTracers& tracers)
+    : Media(tracers.Media)
+    , FirstBeam(tracers.Objects.size())
+  {
+  }
+
+  bool IsEmpty() const { return this->Media.empty(); }
+
+  /// What those of a batch of rays that are `wanted` get from media in [ray.Min, ray.Max]. `beam`: with all of the rays
+  /// within; null: they go where they like.
+  void March(const Ray* rays, RayMask wanted, SceneBeam* beam, MediumLight& light) const;
+
+  /// Multiplies the transmittances of those of the rays that are `wanted` by that of all media.
+  void Attenuate(const Ray* rays, RayMask wanted, glm::dvec3* transmittances) const;
+
+private:
+  const MediumTracers& Media;
+  std::size_t FirstBeam; ///< of SceneBeam
+};
+
+} // namespace rt
+
+#endif

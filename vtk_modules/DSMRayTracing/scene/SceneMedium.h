@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef rt_SceneMedium_h
+#define rt_SceneMedium_h
+
+#include "DSMRayTracing/field/lattice/LatticeField.h"
+#include "DSMRayTracing/medium/MediumOf.h"
+
+#include <variant>
+
+namespace rt
+{
+
+using LatticeMedium = MediumOf<LatticeField>;
+
+/// The table of the kinds of media. A kind has
+/// - a description, named here, with AddTo and the name of
+/// - its Tracer, a MediumTracer for a store, whose header CreateMediumTracers includes.
+using SceneMedium = std::variant<LatticeMedium>;
+
+} // namespace rt
+
+#endif

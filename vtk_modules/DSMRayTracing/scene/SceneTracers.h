@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef rt_SceneTracers_h
+#define rt_SceneTracers_h
+
+#include "DSMRayTracing/field/lattice/LatticeMedia.h"
+#include "DSMRayTracing/field/lattice/LatticeSampler.h"
+#include "DSMRayTracing/field/lattice/LatticeSurfaces.h"
+#include "DSMRayTracing/mesh/MeshTracer.h"
+#include "DSMRayTracing/object/BeamFinder.h"
+#include "DSMRayTracing/object/MediumTracer.h"
+#include "DSMRayTracing/object/ObjectTracer.h"
+#include "DSMRayTracing/scene/Scene.h"
+#include "DSMRayTracing/surface/IsosurfaceTracer.h"
+
+#include <cstddef>
+#include <memory>
+#include <type_traits>
+#include <variant>
+#include <vector>
+
+namespace rt
+{
+
+/// Of the objects of a scene, in the order in which they are asked for hits: kind by kind.
+using ObjectTracers = std::vector<std::unique_ptr<const ObjectTracer>>;
+using MediumTracers = std::vector<std::unique_ptr<const MediumTracer>>;
+
+/// Of all that is in a scene, for one worker.
+struct SceneTracers
+{
+  ObjectTracers Objects;
+  MediumTracers Media;
+
+  /// Objects first: in the order of SceneBeam.
+  std::vector<const BeamFinder*> GetBeamFinders() const
+  {
+    std::vector<const BeamFinder*> all;
+    for (const auto& object : this->Objects)
+    {
+      all.push_back(object.get());
+    }
+    for (const auto& medium : this->Media)
+    {
+      all.push_back(medium.get());
+    }
+    return all;
+  }
+};
+
+/// They keep references to everything.
+template <class Store>
+SceneTracers CreateSceneTracers(Store& store, typename Store::Worker& worker, const Scene& scene)
+{
+  const auto create = [&](const auto& described)
+  {
+    using Tracer = typename std::decay_t<decltype(described)>::template Tracer<Store>;
+    return std::make_unique<Tracer>(store, worker, described);
+  };
+  SceneTracers tracers;
+  for (std::size_t kind = 0; kind < std::variant_size_v<SceneObject>; ++kind)
+  {
+    for (const SceneObject& object : scene.Objects)
+    {
+      if (object.index() == kind)
+      {
+        tracers.Objects.push_back(std::visit(
+          [&](const auto& known) -> std::unique_ptr<const ObjectTracer> { return create(known); },
+          object));
+      }
+    }
+  }
+  for (const SceneMedium& medium : scene.Media)
+  {
+    tracers.Media.push_back(std::visit([&](const auto& known) -> std::unique_ptr<const MediumTracer>
+      { return create(known); },
+      medium));
+  }
+  return tracers;
+}
+
+} // namespace rt
+
+#endif
