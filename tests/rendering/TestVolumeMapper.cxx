@@ -172,6 +172,7 @@ TEST_F(VolumeMapper, WithoutIsovaluesDrawsWhatTheDataSuggest)
   this->Renderer->AddVolume(this->Volume);
   EXPECT_TRUE(std::isnan(this->Mapper->GetSuggestedIsoValue()));
   this->Mapper->SetNumberOfIsoValues(0);
+  this->Mapper->SurfacesOnlyOn();
   EXPECT_EQ(CountCovered(this->RenderDistances()), 0);
   this->Mapper->AutomaticIsoValueOn();
   const std::vector<double> automatic = this->RenderDistances();

@@ -110,8 +110,8 @@ void AddMixtures(Scenes& scenes)
   scenes.push_back({ "medium.Shadows",
     [=](SceneStage& stage)
     {
-      rt::LatticeIsosurface surface =
-        stage.CreateIsosurface(waves, { 50.0 }, glm::translate(glm::dmat4(1.0), { 0.0, -1.0, 0.0 }));
+      rt::LatticeIsosurface surface = stage.CreateIsosurface(
+        waves, { 50.0 }, glm::translate(glm::dmat4(1.0), { 0.0, -1.0, 0.0 }));
       stage.Add(std::move(surface));
       stage.Add(stage.CreateMedium(ball, Everything, beside));
       stage.World.Transport.Shadows = true;

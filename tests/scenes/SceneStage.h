@@ -122,8 +122,8 @@ public:
     return medium;
   }
 
-  static std::shared_ptr<const rt::TransferFunction> CreateFunction(const Generated::Recipe& recipe,
-    const std::vector<std::pair<double, glm::dvec4>>& nodes)
+  static std::shared_ptr<const rt::TransferFunction> CreateFunction(
+    const Generated::Recipe& recipe, const std::vector<std::pair<double, glm::dvec4>>& nodes)
   {
     std::vector<glm::dvec4> samples;
     const double first = nodes.front().first;

@@ -105,6 +105,7 @@ vtkPVDSMImageRepresentation::vtkPVDSMImageRepresentation()
   this->Volume->SetMapper(this->Mapper);
   this->Mapper->MakesSceneOff(); // on ParaView's client there shall be none
   this->Mapper->AutomaticIsoValueOn();
+  this->Mapper->SurfacesOnlyOn();
   this->Display->SelectionMapper->SetSource(
     [this]() -> vtkSmartPointer<vtkDataObject>
     {

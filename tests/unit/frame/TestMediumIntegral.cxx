@@ -68,11 +68,11 @@ protected:
     for (int sample = 0; sample <= rt::TransferFunction::Bins; ++sample)
     {
       const double part = static_cast<double>(sample) / rt::TransferFunction::Bins;
-      samples.push_back(Evaluate(
-        nodes, nodes.front().first + part * (nodes.back().first - nodes.front().first)));
+      samples.push_back(
+        Evaluate(nodes, nodes.front().first + part * (nodes.back().first - nodes.front().first)));
     }
-    medium.Function = std::make_shared<rt::TransferFunction>(
-      nodes.front().first, nodes.back().first, samples);
+    medium.Function =
+      std::make_shared<rt::TransferFunction>(nodes.front().first, nodes.back().first, samples);
     this->World.Media.push_back(std::move(medium));
     std::vector<double> own;
     for (int z = 0; z < Points; ++z)
@@ -159,8 +159,7 @@ private:
     double transmittance = 1.0;
     for (double way = 0.5 * step; way < length; way += step)
     {
-      const glm::dvec3 place =
-        (ray.Origin + way * direction + 1.0) * (0.5 * (Points - 1));
+      const glm::dvec3 place = (ray.Origin + way * direction + 1.0) * (0.5 * (Points - 1));
       if (glm::any(glm::lessThan(place, glm::dvec3(0.0))) ||
         glm::any(glm::greaterThan(place, glm::dvec3(Points - 1))))
       {
@@ -196,8 +195,8 @@ private:
       {
         weight *= side[axis] != 0 ? within[axis] : 1.0 - within[axis];
       }
-      sum += weight *
-        values[static_cast<std::size_t>(point.x + Points * (point.y + Points * point.z))];
+      sum +=
+        weight * values[static_cast<std::size_t>(point.x + Points * (point.y + Points * point.z))];
     }
     return sum;
   }

@@ -261,14 +261,16 @@ void vtkDSMSceneVolume::Update(const std::shared_ptr<vtkDSMRankGroup>& group, bo
   const std::shared_ptr<Published> oldColor = this->Color;
   const unsigned version = group->GetRetryVersion();
   const std::vector<vtkDSMVolumeData::Choice> shown = this->GetLook().GetShown();
-  this->Iso = this->Require(shown.front(), "isosurface array", version, { oldIso, oldColor });
+  const bool isMedium = this->GetLook().IsMedium();
+  this->Iso = this->Require(
+    shown.front(), isMedium ? "volume's array" : "isosurface array", version, { oldIso, oldColor });
   if (this->GetLook().TakesPointsForCells())
   {
     this->Messages.push_back(
-      "The scalar mode asks for cell data, but isosurfaces need values at the "
+      "The scalar mode asks for cell data, but isosurfaces and volumes need values at the "
       "points; those are taken. Use vtkCellDataToPointData.");
   }
-  if (this->Iso != oldIso)
+  if (this->Iso != oldIso && !isMedium)
   {
     this->SuggestIsovalue(group->GetMessenger());
   }
@@ -443,6 +445,52 @@ std::shared_ptr<const rt::BlockLooks> vtkDSMSceneVolume::CreateBlockLooks(std::s
   return blocks.empty() ? nullptr : std::make_shared<const rt::BlockLooks>(std::move(blocks));
 }
 
+rt::LatticeField vtkDSMSceneVolume::GetField(
+  std::size_t lattice, const glm::dmat4& dataToWorld) const
+{
+  rt::LatticeField field;
+  const auto level = static_cast<std::size_t>(std::min(this->GetCoarser(), this->CountCoarser()));
+  const glm::dmat4 latticeToWorld = dataToWorld * this->Data->GetIndexToWorld(lattice);
+  if (level > 0)
+  {
+    const auto& coarser = this->Iso->Coarser->Levels[level - 1][lattice];
+    field.Voxels = coarser.Field;
+    field.SetIndexToWorld(latticeToWorld * coarser.ToLattice);
+    return field;
+  }
+  field.Voxels = this->Iso->GetFields()[lattice];
+  field.SetIndexToWorld(latticeToWorld);
+  return field;
+}
+
+/// One medium for each of the volume's lattices.
+void vtkDSMSceneVolume::AddMedia(const vtkDSMVolumeLook& look, rt::Scene& scene)
+{
+  const bricks::ValueRange range = FindRange(this->Iso->GetFields());
+  if (!(range.First <= range.Last))
+  {
+    return;
+  }
+  const auto function = look.CreateTransferFunction(range, this->Messages);
+  if (!function)
+  {
+    return;
+  }
+  this->Prop->ComputeMatrix();
+  const glm::dmat4 dataToWorld = vtkDSMTranslation::ToMatrix(this->Prop->GetMatrix());
+  for (std::size_t lattice = 0; lattice < this->Data->GetNumberOfLattices(); ++lattice)
+  {
+    if (this->Iso->GetFields()[lattice])
+    {
+      rt::LatticeMedium medium;
+      medium.Field = this->GetField(lattice, dataToWorld);
+      medium.Function = function;
+      medium.Clipping = look.GetClipRegion(dataToWorld);
+      scene.Media.push_back(std::move(medium));
+    }
+  }
+}
+
 void vtkDSMSceneVolume::AddTo(rt::Scene& scene)
 {
   if (!this->Data || !this->Iso)
@@ -450,6 +498,11 @@ void vtkDSMSceneVolume::AddTo(rt::Scene& scene)
     return;
   }
   const vtkDSMVolumeLook look = this->GetLook();
+  if (look.IsMedium())
+  {
+    this->AddMedia(look, scene);
+    return;
+  }
   const std::vector<double> isovalues = look.GetIsovalues(this->Suggested, this->Messages);
   if (!look.IsLikeRayCastMapper() && this->Mapper->GetNumberOfIsoValues() == 0 &&
     this->Mapper->GetAutomaticIsoValue() && !this->Suggested && !this->Iso->GetFields().empty())
@@ -491,15 +544,7 @@ void vtkDSMSceneVolume::AddTo(rt::Scene& scene)
     {
       rt::LatticeIsosurface object;
       object.Look.Blocks = blocks;
-      object.Field.SetIndexToWorld(dataToWorld * this->Data->GetIndexToWorld(lattice));
-      object.Field.Voxels = this->Iso->GetFields()[lattice];
-      if (level > 0)
-      {
-        const auto& coarser = this->Iso->Coarser->Levels[level - 1][lattice];
-        object.Field.Voxels = coarser.Field;
-        object.Field.SetIndexToWorld(
-          dataToWorld * this->Data->GetIndexToWorld(lattice) * coarser.ToLattice);
-      }
+      object.Field = this->GetField(lattice, dataToWorld);
       object.Isovalues = group;
       look.SetMaterials(group.front(), object.Look);
       object.Clipping = clipping;

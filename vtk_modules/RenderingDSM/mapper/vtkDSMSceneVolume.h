@@ -29,7 +29,7 @@ public:
   void Update(const std::shared_ptr<vtkDSMRankGroup>& group, bool newData) override;
   void TakeCoarser(const std::shared_ptr<vtkDSMRankGroup>& group, bool wanted) override;
   int CountCoarser() const override;
-  /// One object for each of the volume's lattices.
+  /// One object, or medium, for each of the volume's lattices.
   void AddTo(rt::Scene& scene) override;
 
 private:
@@ -63,6 +63,9 @@ private:
   /// Collective. Finds the isovalue for a first look at the array, unless the last one still suits its values.
   void SuggestIsovalue(dsm::Messenger& messenger);
   vtkDSMVolumeLook GetLook() const { return { this->Mapper, this->Prop }; }
+  /// At the level of detail that is shown.
+  rt::LatticeField GetField(std::size_t lattice, const glm::dmat4& dataToWorld) const;
+  void AddMedia(const vtkDSMVolumeLook& look, rt::Scene& scene);
   void SetColors(std::size_t lattice, rt::LatticeIsosurface& object);
   /// What blocks look like that are not to look like the rest; null where there are none.
   std::shared_ptr<const rt::BlockLooks> CreateBlockLooks(std::size_t lattice) const;

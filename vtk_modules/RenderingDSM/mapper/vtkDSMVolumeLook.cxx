@@ -30,6 +30,27 @@ bool vtkDSMVolumeLook::IsLikeRayCastMapper() const
     vtkVolume::SafeDownCast(this->Prop);
 }
 
+bool vtkDSMVolumeLook::IsMedium() const
+{
+  return vtkVolume::SafeDownCast(this->Prop) && !this->Mapper->GetSurfacesOnly() &&
+    !this->Mapper->GetAutomaticIsoValue() && this->Mapper->GetNumberOfIsoValues() == 0 &&
+    this->Mapper->GetBlendMode() != vtkVolumeMapper::ISOSURFACE_BLEND;
+}
+
+std::shared_ptr<const rt::TransferFunction> vtkDSMVolumeLook::CreateTransferFunction(
+  const bricks::ValueRange& range, std::vector<std::string>& messages) const
+{
+  if (this->Mapper->GetBlendMode() != vtkVolumeMapper::COMPOSITE_BLEND)
+  {
+    messages.push_back(
+      "The mapper draws volumes in the blend modes Composite and Isosurface only, so nothing is "
+      "drawn. Call SetBlendModeToComposite(), or use VTK's own mapper.");
+    return nullptr;
+  }
+  return vtkDSMTranslation::ToTransferFunction(
+    vtkVolume::SafeDownCast(this->Prop)->GetProperty(), range.First, range.Last);
+}
+
 int vtkDSMVolumeLook::GetColorComponent() const
 {
   vtkScalarsToColors* table = this->Mapper->GetLookupTable();
@@ -45,7 +66,7 @@ std::vector<vtkDSMVolumeData::Choice> vtkDSMVolumeLook::GetShown() const
 {
   vtkDSMVolumeMapper* mapper = this->Mapper;
   std::vector<vtkDSMVolumeData::Choice> shown{ { this->GetIsoArray(), mapper->GetIsoComponent() } };
-  if (mapper->GetScalarVisibility() && !mapper->GetColorArray().empty() &&
+  if (!this->IsMedium() && mapper->GetScalarVisibility() && !mapper->GetColorArray().empty() &&
     (mapper->GetLookupTable() || !mapper->GetMapScalars()))
   {
     shown.push_back(
@@ -57,7 +78,7 @@ std::vector<vtkDSMVolumeData::Choice> vtkDSMVolumeLook::GetShown() const
 bool vtkDSMVolumeLook::TakesPointsForCells() const
 {
   const int mode = this->Mapper->GetScalarMode();
-  return this->Mapper->GetIsoArray().empty() && this->IsLikeRayCastMapper() &&
+  return this->Mapper->GetIsoArray().empty() && (this->IsLikeRayCastMapper() || this->IsMedium()) &&
     (mode == VTK_SCALAR_MODE_USE_CELL_DATA || mode == VTK_SCALAR_MODE_USE_CELL_FIELD_DATA);
 }
 
@@ -65,7 +86,7 @@ bool vtkDSMVolumeLook::TakesPointsForCells() const
 std::string vtkDSMVolumeLook::GetIsoArray() const
 {
   vtkDSMVolumeMapper* mapper = this->Mapper;
-  if (!mapper->GetIsoArray().empty() || !this->IsLikeRayCastMapper())
+  if (!mapper->GetIsoArray().empty() || !(this->IsLikeRayCastMapper() || this->IsMedium()))
   {
     return mapper->GetIsoArray();
   }

@@ -23,6 +23,11 @@ public:
 
   /// Whether isovalues and look come from the volume's property; else they are the mapper's.
   bool IsLikeRayCastMapper() const;
+  /// Whether the volume is a medium, as its property and the blend mode say, and there are no isosurfaces.
+  bool IsMedium() const;
+  /// Of the medium, for values that are all in the range. Null: nothing is to be seen. Adds what is wrong to the messages.
+  std::shared_ptr<const rt::TransferFunction> CreateTransferFunction(
+    const bricks::ValueRange& range, std::vector<std::string>& messages) const;
   /// The arrays that are to be shown, as the mapper names them: that of the isosurfaces, and that of the colours, if any.
   std::vector<vtkDSMVolumeData::Choice> GetShown() const;
   /// Whether the cells' scalars are asked for, of which there are no isosurfaces.

@@ -325,6 +325,7 @@ void vtkDSMVolumeMapper::CopyOwn(vtkDSMVolumeMapper* other)
   this->IsoComponent = other->IsoComponent;
   this->IsoValues = other->IsoValues;
   this->AutomaticIsoValue = other->AutomaticIsoValue;
+  this->SurfacesOnly = other->SurfacesOnly;
   this->ColorArray = other->ColorArray;
   this->ColorArrayOnCells = other->ColorArrayOnCells;
   this->MapScalars = other->MapScalars;
@@ -370,6 +371,7 @@ void vtkDSMVolumeMapper::PrintSelf(ostream& os, vtkIndent indent)
   os << "\n";
   os << indent << "AutomaticIsoValue: " << this->AutomaticIsoValue << "\n";
   os << indent << "SuggestedIsoValue: " << this->SuggestedIsoValue << "\n";
+  os << indent << "SurfacesOnly: " << this->SurfacesOnly << "\n";
   os << indent << "ColorArray: " << this->ColorArray << "\n";
   os << indent << "ColorArrayOnCells: " << this->ColorArrayOnCells << "\n";
   os << indent << "MapScalars: " << this->MapScalars << "\n";

@@ -1,12 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class   vtkDSMVolumeMapper
- * @brief   ray traces isosurfaces of a volume that is spread over the ranks
+ * @brief   ray traces a volume that is spread over the ranks, or isosurfaces of it
  *
  * Used by a vtkVolume, which gives its transform and visibility. The input is this rank's part of
  * the dataset: vtkImageData, or a composite dataset of images, or nothing.
  *
- * Isovalues and look are the mapper's own: IsoArray, IsoValues, ColorArray, and a vtkProperty, the
+ * It stands in for vtkGPUVolumeRayCastMapper: the blend mode Composite (the default) shows the volume as a medium, by the
+ * color and opacity functions and the unit distance of the vtkVolume's vtkVolumeProperty. ScalarMode and
+ * SelectScalarArray() choose the point array.
+ *
+ * With an isovalue, with AutomaticIsoValue or with SurfacesOnly, isosurfaces are shown instead. Isovalues and look are
+ * the mapper's own: IsoArray, IsoValues, ColorArray, and a vtkProperty, the
  * surface property. After SetBlendModeToIsoSurface() they are instead where vtkGPUVolumeRayCastMapper
  * has them, which it then stands in for: ScalarMode and SelectScalarArray() choose the point array, and
  * the vtkVolume's vtkVolumeProperty gives the isovalues (GetIsoSurfaceValues), and for each its colour
@@ -107,6 +112,16 @@ public:
    * the first frame, and where the data have no surface at any value.
    */
   vtkGetMacro(SuggestedIsoValue, double);
+
+  ///@{
+  /**
+   * Whether nothing but isosurfaces is shown, also while there are no isovalues. Off by default: then a mapper without
+   * isovalues shows the volume as its blend mode says.
+   */
+  vtkSetMacro(SurfacesOnly, bool);
+  vtkGetMacro(SurfacesOnly, bool);
+  vtkBooleanMacro(SurfacesOnly, bool);
+  ///@}
 
   ///@{
   /**
@@ -304,6 +319,7 @@ private:
   std::vector<double> IsoValues;
   bool AutomaticIsoValue = false;
   double SuggestedIsoValue = vtkMath::Nan();
+  bool SurfacesOnly = false;
   std::string ColorArray;
   bool ColorArrayOnCells = false;
   bool MapScalars = true;

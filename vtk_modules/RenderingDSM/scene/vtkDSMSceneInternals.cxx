@@ -239,7 +239,7 @@ void vtkDSMScene::Internals::Draw()
       request.IsPreview = this->IsInteractive(); // also where a pixel gets only one sample
       return this->EncodeView(scene, request);
     });
-  if (scene.Objects.empty())
+  if (scene.Objects.empty() && scene.Media.empty())
   {
     this->FillImage({});
     this->Clear();

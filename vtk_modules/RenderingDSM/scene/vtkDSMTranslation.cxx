@@ -43,6 +43,9 @@ constexpr int ColorMapEntries = 4096;
 /// Default length of ambient occlusion rays, over the diagonal of what is shown.
 constexpr double AmbientOcclusionPart = 0.2;
 
+/// That a unit of length of a medium has: what is behind that much of it is not seen anyway.
+constexpr double MostOpacity = 1.0 - 1e-15;
+
 glm::vec3 ToColor(const double color[3])
 {
   return { color[0], color[1], color[2] };
@@ -160,6 +163,57 @@ rt::Material vtkDSMTranslation::ToMaterial(vtkVolumeProperty* property, double i
   material.DiffuseColor = ToColor(color);
   material.Opacity = static_cast<float>(property->GetScalarOpacity(0)->GetValue(isovalue));
   return material;
+}
+
+std::shared_ptr<const rt::TransferFunction> vtkDSMTranslation::ToTransferFunction(
+  vtkVolumeProperty* property, double first, double last)
+{
+  vtkPiecewiseFunction* const opacity = property->GetScalarOpacity(0);
+  const bool isGray = property->GetColorChannels(0) == 1;
+  // To ask for the other one would make it the one that counts.
+  vtkPiecewiseFunction* const gray = isGray ? property->GetGrayTransferFunction(0) : nullptr;
+  vtkColorTransferFunction* const colors = isGray ? nullptr : property->GetRGBTransferFunction(0);
+  // Where both stay as they are at their ends, all bins are for what is between these.
+  const bool areClamped =
+    opacity->GetClamping() != 0 && (isGray ? gray->GetClamping() : colors->GetClamping()) != 0;
+  if (areClamped)
+  {
+    const double* const ofColors = isGray ? gray->GetRange() : colors->GetRange();
+    const double* const ofOpacity = opacity->GetRange();
+    const double low = std::max(first, std::min(ofColors[0], ofOpacity[0]));
+    const double high = std::min(last, std::max(ofColors[1], ofOpacity[1]));
+    first = low < high ? low : first;
+    last = low < high ? high : last;
+  }
+  if (!(first < last))
+  {
+    // One value: any range around it.
+    const double half = std::max(1.0, std::abs(first)) * 1e-3;
+    first -= half;
+    last += half;
+  }
+  constexpr int count = rt::TransferFunction::Bins + 1;
+  std::vector<double> alpha(count);
+  std::vector<double> color(std::size_t(isGray ? 1 : 3) * count);
+  opacity->GetTable(first, last, count, alpha.data());
+  if (isGray)
+  {
+    gray->GetTable(first, last, count, color.data());
+  }
+  else
+  {
+    colors->GetTable(first, last, count, color.data());
+  }
+  const double unit = property->GetScalarOpacityUnitDistance(0);
+  std::vector<glm::dvec4> samples(count);
+  for (std::size_t sample = 0; sample < samples.size(); ++sample)
+  {
+    const double covered = std::clamp(alpha[sample], 0.0, MostOpacity);
+    const double* const own = &color[isGray ? sample : 3 * sample];
+    samples[sample] = { own[0], own[isGray ? 0 : 1], own[isGray ? 0 : 2],
+      -std::log1p(-covered) / unit };
+  }
+  return std::make_shared<const rt::TransferFunction>(first, last, samples);
 }
 
 std::shared_ptr<const rt::Texture> vtkDSMTranslation::ToTexture(

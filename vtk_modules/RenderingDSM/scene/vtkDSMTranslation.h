@@ -39,6 +39,11 @@ public:
   /// Samples any lookup table or transfer function; finely enough for one that is discretised.
   static rt::ColorMap ToColorMap(vtkScalarsToColors* table);
 
+  /// The color and opacity functions of a property's first component, and its unit distance, for a medium whose values are
+  /// from `first` to `last`.
+  static std::shared_ptr<const rt::TransferFunction> ToTransferFunction(
+    vtkVolumeProperty* property, double first, double last);
+
   /// What a mapper's clipping planes leave, in world space.
   static rt::ClipRegion ToClipRegion(vtkAbstractMapper* mapper);
 
