@@ -209,8 +209,8 @@ vtkSMProxy* pqDSMMemoryPanel::FindTraced() const
     vtkSMProxy* display = displays.GetAsProxy(number);
     if (display && display->GetProperty("DSMStatistics") &&
       vtkSMPropertyHelper(display, "Visibility", true).GetAsInt() != 0 &&
-      std::strcmp(
-        vtkSMPropertyHelper(display, "Representation", true).GetAsString(), "DSM Ray Traced") == 0)
+      std::strncmp(vtkSMPropertyHelper(display, "Representation", true).GetAsString(), "DSM ", 4) ==
+        0)
     {
       return display;
     }

@@ -312,18 +312,7 @@ int vtkPVDSMImageRepresentation::Process(
     {
       this->ChooseBlockLooks();
     }
-    const bool isColored = this->Mapper->GetScalarVisibility();
-    const bool isMapped = isColored || this->Mapper->GetBlockScalarVisibility();
-    // Colours that are taken as they are may have an opacity on another rank.
-    vtkProperty* const front = this->Mapper->GetSurfaceProperty();
-    vtkProperty* const back = this->Mapper->GetBackfaceProperty();
-    const bool isTranslucent = front->GetOpacity() < 1.0 || front->GetBackfaceCulling() ||
-      front->GetFrontfaceCulling() || (back && back->GetOpacity() < 1.0) ||
-      (isColored && !this->Mapper->GetMapScalars()) ||
-      (isMapped && vtkPVDSMTracedDisplay::HasOpacity(this->Mapper->GetLookupTable())) ||
-      std::any_of(this->BlockOpacities.begin(), this->BlockOpacities.end(),
-        [](const auto& block) { return block.second < 1.0; });
-    this->Display->KeepData(this->Volume->GetBounds(), isTranslucent,
+    this->Display->KeepData(this->Volume->GetBounds(), this->IsTranslucent(),
       this->Mapper->GetInputDataObject(0, 0), inInfo, outInfo);
   }
   else if (request == vtkPVView::REQUEST_RENDER())
@@ -331,6 +320,20 @@ int vtkPVDSMImageRepresentation::Process(
     this->Display->PrepareRender(this->Mapper->GetBounds(), inInfo);
   }
   return 1;
+}
+
+bool vtkPVDSMImageRepresentation::IsTranslucent() const
+{
+  const bool isColored = this->Mapper->GetScalarVisibility();
+  const bool isMapped = isColored || this->Mapper->GetBlockScalarVisibility();
+  // Colours that are taken as they are may have an opacity on another rank.
+  vtkProperty* const front = this->Mapper->GetSurfaceProperty();
+  vtkProperty* const back = this->Mapper->GetBackfaceProperty();
+  return front->GetOpacity() < 1.0 || front->GetBackfaceCulling() || front->GetFrontfaceCulling() ||
+    (back && back->GetOpacity() < 1.0) || (isColored && !this->Mapper->GetMapScalars()) ||
+    (isMapped && vtkPVDSMTracedDisplay::HasOpacity(this->Mapper->GetLookupTable())) ||
+    std::any_of(this->BlockOpacities.begin(), this->BlockOpacities.end(),
+      [](const auto& block) { return block.second < 1.0; });
 }
 
 bool vtkPVDSMImageRepresentation::AddToView(vtkView* view)

@@ -201,6 +201,11 @@ protected:
     vtkInformation* request, vtkInformationVector** input, vtkInformationVector* output) override;
   bool AddToView(vtkView* view) override;
   bool RemoveFromView(vtkView* view) override;
+  /// Whether light gets through what is shown: the same on every rank.
+  virtual bool IsTranslucent() const;
+
+  vtkNew<vtkVolume> Volume;
+  vtkNew<vtkDSMVolumeMapper> Mapper;
 
 private:
   vtkPVDSMImageRepresentation(const vtkPVDSMImageRepresentation&) = delete;
@@ -218,8 +223,6 @@ private:
   void ChooseBlockLooks();
   void ColorBlocksByArray(vtkDataObject* data);
 
-  vtkNew<vtkVolume> Volume;
-  vtkNew<vtkDSMVolumeMapper> Mapper;
   vtkNew<vtkProperty> BackfaceProperty;
   int BackfaceRepresentation = vtkGeometryRepresentationWithFaces::FOLLOW_FRONTFACE;
   std::vector<std::string> BlockSelectors;

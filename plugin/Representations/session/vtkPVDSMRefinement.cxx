@@ -63,7 +63,8 @@ bool IsTraced(vtkSMProxy* representation)
   }
   // Not every representation has a choice of what it shows (scalar bars have none).
   const char* shown = helper("Representation").GetAsString();
-  return shown && std::string(shown) == "DSM Ray Traced";
+  // The names of all of our kinds begin so.
+  return shown && std::string(shown).rfind("DSM ", 0) == 0;
 }
 
 /// Calls `visit` with each dataset that is traced.

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkPVDSMVolumeRepresentation.h"
+
+#include "vtkDSMVolumeMapper.h"
+
+#include "vtkColorTransferFunction.h"
+#include "vtkObjectFactory.h"
+#include "vtkPiecewiseFunction.h"
+#include "vtkVolume.h"
+#include "vtkVolumeProperty.h"
+
+vtkStandardNewMacro(vtkPVDSMVolumeRepresentation);
+
+vtkPVDSMVolumeRepresentation::vtkPVDSMVolumeRepresentation()
+{
+  this->Volume->SetProperty(this->Property);
+  this->Mapper->AutomaticIsoValueOff();
+  this->Mapper->SurfacesOnlyOff();
+}
+
+vtkPVDSMVolumeRepresentation::~vtkPVDSMVolumeRepresentation() = default;
+
+int vtkPVDSMVolumeRepresentation::ProcessViewRequest(
+  vtkInformationRequestKey* request, vtkInformation* inInfo, vtkInformation* outInfo)
+{
+  if (auto* const map = this->Mapper->GetLookupTable())
+  {
+    const bool isOne = map->GetVectorMode() == vtkScalarsToColors::COMPONENT;
+    this->Mapper->SetIsoComponent(isOne ? map->GetVectorComponent() : -1);
+  }
+  return this->Superclass::ProcessViewRequest(request, inInfo, outInfo);
+}
+
+void vtkPVDSMVolumeRepresentation::SetInputArrayToProcess(
+  int index, int port, int connection, int association, const char* name)
+{
+  this->Superclass::SetInputArrayToProcess(index, port, connection, association, name);
+  if (index == 0)
+  {
+    this->Mapper->SetIsoArray(name ? name : "");
+  }
+}
+
+void vtkPVDSMVolumeRepresentation::SetLookupTable(vtkScalarsToColors* table)
+{
+  this->Superclass::SetLookupTable(table);
+  if (auto* const function = vtkColorTransferFunction::SafeDownCast(table))
+  {
+    this->Property->SetColor(function);
+  }
+}
+
+void vtkPVDSMVolumeRepresentation::SetScalarOpacity(vtkPiecewiseFunction* function)
+{
+  this->Property->SetScalarOpacity(function);
+}
+
+void vtkPVDSMVolumeRepresentation::SetScalarOpacityUnitDistance(double distance)
+{
+  this->Property->SetScalarOpacityUnitDistance(distance);
+}
+
+void vtkPVDSMVolumeRepresentation::PrintSelf(ostream& os, vtkIndent indent)
+{
+  this->Superclass::PrintSelf(os, indent);
+}

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @class   vtkPVDSMVolumeRepresentation
+ * @brief   shows image data as a volume, ray traced by all ranks
+ *
+ * Methods have the names of vtkImageVolumeRepresentation's.
+ */
+
+#ifndef vtkPVDSMVolumeRepresentation_h
+#define vtkPVDSMVolumeRepresentation_h
+
+#include "vtkPVDSMImageRepresentation.h"
+#include "vtkRepresentationsDSMModule.h" // for the export macro
+#include "vtkSmartPointer.h"             // for ivars
+
+class vtkPiecewiseFunction;
+class vtkVolumeProperty;
+
+class VTKREPRESENTATIONSDSM_EXPORT vtkPVDSMVolumeRepresentation : public vtkPVDSMImageRepresentation
+{
+public:
+  static vtkPVDSMVolumeRepresentation* New();
+  vtkTypeMacro(vtkPVDSMVolumeRepresentation, vtkPVDSMImageRepresentation);
+  void PrintSelf(ostream& os, vtkIndent indent) override;
+
+  int ProcessViewRequest(
+    vtkInformationRequestKey* request, vtkInformation* inInfo, vtkInformation* outInfo) override;
+
+  /**
+   * Index 0: the point array that is shown.
+   */
+  void SetInputArrayToProcess(
+    int index, int port, int connection, int association, const char* name) override;
+  using Superclass::SetInputArrayToProcess;
+
+  ///@{
+  /**
+   * Forwarded to the volume's property. The map's vector mode chooses the array's component.
+   */
+  void SetLookupTable(vtkScalarsToColors* table);
+  void SetScalarOpacity(vtkPiecewiseFunction* function);
+  void SetScalarOpacityUnitDistance(double distance);
+  ///@}
+
+protected:
+  vtkPVDSMVolumeRepresentation();
+  ~vtkPVDSMVolumeRepresentation() override;
+
+  bool IsTranslucent() const override { return true; }
+
+private:
+  vtkPVDSMVolumeRepresentation(const vtkPVDSMVolumeRepresentation&) = delete;
+  void operator=(const vtkPVDSMVolumeRepresentation&) = delete;
+
+  vtkNew<vtkVolumeProperty> Property;
+};
+
+#endif
