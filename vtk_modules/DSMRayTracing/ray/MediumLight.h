@@ -9,6 +9,8 @@
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
 
+#include <algorithm>
+#include <cmath>
 #include <limits>
 #include <vector>
 
@@ -46,6 +48,33 @@ public:
         this->Pieces[ray].clear();
       });
   }
+
+  /// Adds what a ray meets next.
+  void Add(int ray, const MediumPiece& piece)
+  {
+    const double depth = piece.Amount.w;
+    if (depth > 0.0)
+    {
+      const double passed = std::exp(-depth);
+      const double seen = depth < Thin ? 1.0 - 0.5 * depth : (1.0 - passed) / depth;
+      this->Add(ray, piece, passed, seen);
+    }
+  }
+  /// The same where the transmittance of the piece, and the part of what it emits that gets out of it, are known.
+  void Add(int ray, const MediumPiece& piece, double passed, double seen)
+  {
+    this->First[ray] = std::min(this->First[ray], piece.Begin);
+    if (this->KeepsPieces)
+    {
+      this->Pieces[ray].push_back(piece);
+    }
+    this->Color[ray] += this->Transmittance[ray] * seen * glm::dvec3(piece.Amount);
+    this->Transmittance[ray] *= passed;
+  }
+  bool IsDark(int ray) const { return this->Transmittance[ray] < Dark; }
+
+  /// Optical depth of pieces that emit nearly all that they emit.
+  static constexpr double Thin = 1e-6;
 
   /// For each ray:
   double Length[MaxRays];        ///< world length of a unit of T

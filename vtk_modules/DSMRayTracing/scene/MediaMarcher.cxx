@@ -2,8 +2,8 @@
 #include "DSMRayTracing/scene/MediaMarcher.h"
 
 #include <algorithm>
-#include <cmath>
 #include <memory>
+#include <utility>
 #include <vector>
 
 namespace rt
@@ -14,7 +14,7 @@ namespace
 
 /// Adds up what pieces of several media hold, which are in order in each medium but not between them: cuts them where
 /// any begins or ends.
-void Merge(std::vector<MediumPiece>& pieces, std::size_t ray, MediumLight& light)
+void Merge(std::vector<MediumPiece>& pieces, int ray, MediumLight& light)
 {
   std::stable_sort(pieces.begin(), pieces.end(),
     [](const MediumPiece& one, const MediumPiece& other) { return one.Begin < other.Begin; });
@@ -28,8 +28,7 @@ void Merge(std::vector<MediumPiece>& pieces, std::size_t ray, MediumLight& light
   ends.erase(std::unique(ends.begin(), ends.end()), ends.end());
   std::vector<std::size_t> open; // pieces that the current part is in
   std::size_t next = 0;
-  for (std::size_t end = 1; end < ends.size() && light.Transmittance[ray] >= MediumLight::Dark;
-       ++end)
+  for (std::size_t end = 1; end < ends.size() && !light.IsDark(ray); ++end)
   {
     const double begin = ends[end - 1];
     for (; next < pieces.size() && pieces[next].Begin <= begin; ++next)
@@ -45,13 +44,7 @@ void Merge(std::vector<MediumPiece>& pieces, std::size_t ray, MediumLight& light
       const MediumPiece& piece = pieces[number];
       amount += (ends[end] - begin) / (piece.End - piece.Begin) * piece.Amount;
     }
-    if (amount.w > 0.0)
-    {
-      const double passed = std::exp(-amount.w);
-      const double seen = amount.w < 1e-6 ? 1.0 - 0.5 * amount.w : (1.0 - passed) / amount.w;
-      light.Color[ray] += light.Transmittance[ray] * seen * glm::dvec3(amount);
-      light.Transmittance[ray] *= passed;
-    }
+    light.Add(ray, { begin, ends[end], amount });
   }
 }
 
@@ -68,14 +61,14 @@ void MediaMarcher::March(const Ray* rays, RayMask wanted, SceneBeam* beam, Mediu
     ForEachRay(wanted, [&](int ray) { light.Transmittance[ray] = 1.0; });
     this->Media[medium]->March(rays, wanted, own, light);
   }
-  if (light.KeepsPieces)
+  if (std::exchange(light.KeepsPieces, false))
   {
     ForEachRay(wanted,
       [&](int ray)
       {
         light.Transmittance[ray] = 1.0;
         light.Color[ray] = glm::dvec3(0.0);
-        Merge(light.Pieces[ray], static_cast<std::size_t>(ray), light);
+        Merge(light.Pieces[ray], ray, light);
       });
   }
 }

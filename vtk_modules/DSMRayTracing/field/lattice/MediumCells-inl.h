@@ -222,7 +222,7 @@ private:
       // (1 - exp(-depth)) / depth
       const Vector thin = hn::Sub(one, hn::Mul(hn::Set(tag, 0.5), depth));
       const Vector seen = hn::IfThenElse(
-        hn::Lt(depth, hn::Set(tag, 1e-6)), thin, hn::Div(hn::Sub(one, passed), depth));
+        hn::Lt(depth, hn::Set(tag, MediumLight::Thin)), thin, hn::Div(hn::Sub(one, passed), depth));
       HWY_ALIGN double passes[Width];
       HWY_ALIGN double parts[Width];
       HWY_ALIGN double enter[Width];
@@ -236,26 +236,14 @@ private:
       for (; lanes != 0; lanes &= lanes - 1)
       {
         const int lane = __builtin_ctz(lanes);
-        const std::size_t ray = this->Cells.Ray[lane];
+        const int ray = static_cast<int>(this->Cells.Ray[lane]);
         const Lanes& amount = this->Amount[lane];
         const auto getT = [&](int end)
         { return enter[lane] + (exit[lane] - enter[lane]) * (end * this->Inverse[lane]); };
-        if (light.First[ray] > exit[lane])
-        {
-          light.First[ray] = getT(number - 1);
-        }
-        if (light.KeepsPieces)
-        {
-          light.Pieces[ray].push_back(
-            { getT(number - 1), getT(number), { amount[0], amount[1], amount[2], amount[3] } });
-        }
-        const double weight = light.Transmittance[ray] * parts[lane];
-        glm::dvec3& color = light.Color[ray];
-        color.x += weight * amount[0];
-        color.y += weight * amount[1];
-        color.z += weight * amount[2];
-        light.Transmittance[ray] *= passes[lane];
-        ended |= std::uint32_t{ light.Transmittance[ray] < MediumLight::Dark } << lane;
+        light.Add(ray,
+          { getT(number - 1), getT(number), { amount[0], amount[1], amount[2], amount[3] } },
+          passes[lane], parts[lane]);
+        ended |= std::uint32_t{ light.IsDark(ray) } << lane;
       }
       return ended;
     }
