@@ -6,6 +6,9 @@
 
 #include <glm/mat4x4.hpp>
 
+#include <memory>
+#include <vector>
+
 namespace rt
 {
 
@@ -33,6 +36,9 @@ struct FrameRequest
   /// counts as part of it. More than one where something else is to be drawn between them.
   static constexpr int MaxLayers = 8;
   int Layers = 1;
+  /// Window depth, in [0, 1], at which the rays of each pixel end, row by row from the bottom: where something opaque is
+  /// that is not in the scene. Null: nowhere.
+  std::shared_ptr<const std::vector<float>> Limits;
   TileScheduling Scheduling = TileScheduling::WorkStealing;
 };
 

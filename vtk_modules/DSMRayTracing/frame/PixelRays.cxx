@@ -3,11 +3,13 @@
 
 #include "DSMCore/base/Error.h"
 
+#include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 #include <glm/vec4.hpp>
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 
 namespace rt
 {
@@ -31,6 +33,8 @@ PixelRays::PixelRays(const FrameRequest& request)
   , PixelHeight(2.0 / request.Height)
   , WorldToClip(request.WorldToClip)
   , ClipToWorld(glm::inverse(request.WorldToClip))
+  , Width(request.Width)
+  , Limits(request.Limits)
 {
   if (!CanBeMade(this->WorldToClip))
   {
@@ -58,6 +62,18 @@ Ray PixelRays::GetRay(int x, int y, const glm::dvec2& position) const
   ray.Direction = glm::dvec3(farPoint) * (1.0 / farPoint.w) - ray.Origin;
   ray.Min = 0.0;
   ray.Max = Last;
+  // Beams look beyond the picture's last pixels.
+  if (this->Limits && x < this->Width)
+  {
+    const std::size_t pixel = static_cast<std::size_t>(y) * this->Width + x;
+    const float depth = pixel < this->Limits->size() ? (*this->Limits)[pixel] : 1.0f;
+    if (depth < 1.0f)
+    {
+      const glm::dvec4 end = base + this->ClipToWorld[2] * (2.0 * static_cast<double>(depth) - 1.0);
+      const glm::dvec3 way = glm::dvec3(end) * (1.0 / end.w) - ray.Origin;
+      ray.Max = glm::dot(way, ray.Direction) / glm::dot(ray.Direction, ray.Direction);
+    }
+  }
   return ray;
 }
 

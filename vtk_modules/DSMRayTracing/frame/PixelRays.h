@@ -9,6 +9,9 @@
 #include <glm/mat4x4.hpp>
 #include <glm/vec2.hpp>
 
+#include <memory>
+#include <vector>
+
 namespace rt
 {
 
@@ -25,8 +28,8 @@ public:
   /// T at the far plane.
   static constexpr double Last = 1.0;
 
-  /// World space, from the near plane (T = 0) to the far plane (T = Last). `position` in the pixel is in
-  /// [0, 1), its centre being at one half.
+  /// World space, from the near plane (T = 0) to the far plane (T = Last), or to where FrameRequest::Limits end it.
+  /// `position` in the pixel is in [0, 1), its centre being at one half.
   Ray GetRay(int x, int y, const glm::dvec2& position = glm::dvec2(0.5)) const;
 
   /// OpenGL window depth in [0, 1] of a world point.
@@ -41,6 +44,8 @@ private:
   glm::dmat4 WorldToClip;
   glm::dmat4 ClipToWorld;
   PictureView View;
+  int Width;
+  std::shared_ptr<const std::vector<float>> Limits; ///< of FrameRequest
 };
 
 } // namespace rt

@@ -102,7 +102,7 @@ void PixelSampler::Sample(
     }
   }
   Paths paths;
-  this->Follow(beam, rays, wanted, PixelRays::Last, this->World.Transport.MaxBounces,
+  this->Follow(beam, rays, wanted, this->World.Transport.MaxBounces,
     [&](int index) -> LightPath&
     {
       LightPath& path = paths.Add();
@@ -148,9 +148,11 @@ RayMask PixelSampler::FindSurfaces(
 
 template <class Start>
 void PixelSampler::Follow(
-  SceneBeam* beam, Ray* rays, RayMask wanted, double last, int bounces, const Start& start) const
+  SceneBeam* beam, Ray* rays, RayMask wanted, int bounces, const Start& start) const
 {
   LightPath* paths[MaxRays] = {};
+  double last[MaxRays];
+  ForEachRay(wanted, [&](int index) { last[index] = rays[index].Max; });
   const auto getPath = [&](int index) -> LightPath&
   {
     if (!paths[index])
@@ -173,7 +175,7 @@ void PixelSampler::Follow(
     ForEachRay(seen, [&](int index) { list[count++] = paths[index]; });
     this->AddSurfaces(list, count, bounces);
     wanted = FindRays(seen, [&](int index) { return paths[index]->GoesOn(); });
-    ForEachRay(wanted, [&](int index) { paths[index]->Pass(rays[index], last); });
+    ForEachRay(wanted, [&](int index) { paths[index]->Pass(rays[index], last[index]); });
   }
 }
 
@@ -306,8 +308,7 @@ void PixelSampler::AddReflections(LightPath* const* paths, int count, const Shad
       ray.Max = std::numeric_limits<double>::infinity();
       mirrored->Views[number] = path.View->GetMirrored(path.Point.Position, normal);
     });
-  this->Follow(nullptr, mirrored->Rays, mirrors, std::numeric_limits<double>::infinity(),
-    bounces - 1,
+  this->Follow(nullptr, mirrored->Rays, mirrors, bounces - 1,
     [&](int number) -> LightPath&
     {
       LightPath& behind = mirrored->Paths.Add();

@@ -48,6 +48,11 @@ std::uint64_t GetSceneDigest(const Scene& scene, const FrameRequest& request)
   digest.Add(request.PixelSize);
   digest.Add(request.TileSize);
   digest.Add(request.Layers);
+  digest.Add(request.Limits != nullptr);
+  if (request.Limits)
+  {
+    digest.Add(*request.Limits);
+  }
   Add(digest, scene.Transport);
   digest.Add(scene.View);
   digest.Add(scene.Lights.size());

@@ -249,6 +249,7 @@ void vtkDSMScene::Internals::Draw()
   request.PixelSize = this->GetReduction(request);
   request.Width = (request.Width + request.PixelSize - 1) / request.PixelSize;
   request.Height = (request.Height + request.PixelSize - 1) / request.PixelSize;
+  this->LimitRays(scene, request);
   this->IsTraced = true;
   if (this->TraceScene(scene, request, coarser) == rt::FrameAccumulation::Result::Aborted)
   {
@@ -482,6 +483,42 @@ int vtkDSMScene::Internals::AgreeOnView(const std::vector<std::vector<std::byte>
     request.WorldToClip = view.WorldToClip;
   }
   return coarser;
+}
+
+void vtkDSMScene::Internals::LimitRays(const rt::Scene& scene, rt::FrameRequest& request)
+{
+  // Of windows that show one picture together, none has all of it.
+  if (scene.Media.empty() || this->Image || this->Display.Tiles[0] * this->Display.Tiles[1] > 1)
+  {
+    return;
+  }
+  const auto all = this->Group->GetMessenger().GatherTogether("Drawing what is in front of volumes",
+    [&]
+    {
+      const std::vector<float> own = this->OpaqueDepth.Read(this->Renderer,
+        this->Members.FindOthers(this->Renderer), request.Width, request.Height, request.PixelSize);
+      const auto* const bytes = reinterpret_cast<const std::byte*>(own.data());
+      return std::vector<std::byte>(bytes, bytes + own.size() * sizeof(float));
+    });
+  std::vector<float> nearest;
+  for (const std::vector<std::byte>& bytes : all)
+  {
+    std::vector<float> one(bytes.size() / sizeof(float));
+    std::memcpy(one.data(), bytes.data(), one.size() * sizeof(float));
+    if (nearest.empty())
+    {
+      nearest = std::move(one);
+      continue;
+    }
+    for (std::size_t pixel = 0; pixel < one.size(); ++pixel)
+    {
+      nearest[pixel] = std::min(nearest[pixel], one[pixel]);
+    }
+  }
+  if (!nearest.empty())
+  {
+    request.Limits = std::make_shared<const std::vector<float>>(std::move(nearest));
+  }
 }
 
 bool vtkDSMScene::Internals::IsInteractive() const

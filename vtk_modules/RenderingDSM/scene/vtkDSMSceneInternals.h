@@ -9,6 +9,7 @@
 #include "vtkDSMFrameDelivery.h"
 #include "vtkDSMFrameProp.h"
 #include "vtkDSMLightOptions.h"
+#include "vtkDSMOpaqueDepth.h"
 #include "vtkDSMRankGroup.h"
 #include "vtkDSMScene.h"
 #include "vtkDSMSceneMembers.h"
@@ -77,6 +78,7 @@ public:
   rt::FrameAccumulation Accumulation;
   rt::MovingDetail Detail;
   vtkDSMFrameDelivery Delivery;
+  vtkDSMOpaqueDepth OpaqueDepth;
   std::string Failure;         ///< that was reported last
   unsigned FailureVersion = 0; ///< of the group's settings then
   bool Tracing = false;
@@ -99,6 +101,8 @@ private:
   int AgreeOnView(const std::vector<std::vector<std::byte>>& views, rt::Scene& scene,
     rt::FrameRequest& request) const;
   void KeepProp(const rt::Scene& scene);
+  /// Collective. Rays through media end at what this, or any other, rank draws itself.
+  void LimitRays(const rt::Scene& scene, rt::FrameRequest& request);
   bool IsInteractive() const;
   rt::FrameAccumulation::Pace GetPace() const;
   int GetReduction(const rt::FrameRequest& request) const;

@@ -193,19 +193,22 @@ void vtkDSMSceneMembers::GetBounds(double bounds[6]) const
   box.GetBounds(bounds);
 }
 
-bool vtkDSMSceneMembers::AreBesideOthers(vtkRenderer* renderer) const
+std::vector<vtkProp*> vtkDSMSceneMembers::FindOthers(vtkRenderer* renderer) const
 {
-  bool found = false;
+  std::vector<vtkProp*> others;
   ForEachPart(renderer,
     [&](const Part& part)
     {
       const auto isProp = [&](const Member& member) { return member.Prop == part.Prop; };
       // What has no bounds of its own is no object.
-      found = found ||
-        (vtkProp3D::SafeDownCast(part.Prop) && part.IsVisible() && part.Prop->GetUseBounds() &&
-          HasBounds(part.Prop) && std::none_of(this->Shown.begin(), this->Shown.end(), isProp));
+      if (vtkProp3D::SafeDownCast(part.Prop) && part.IsVisible() && part.Prop->GetUseBounds() &&
+        HasBounds(part.Prop) && std::none_of(this->Shown.begin(), this->Shown.end(), isProp) &&
+        (others.empty() || others.back() != part.Whole))
+      {
+        others.push_back(part.Whole);
+      }
     });
-  return found;
+  return others;
 }
 
 void vtkDSMSceneMembers::ForwardOptions(

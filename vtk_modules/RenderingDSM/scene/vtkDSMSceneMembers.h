@@ -11,6 +11,7 @@
 #include <vector>
 
 class vtkMatrix4x4;
+class vtkProp;
 class vtkProp3D;
 class vtkRenderer;
 
@@ -52,7 +53,9 @@ public:
   void ForwardOptions(vtkDSMLightOptions* light, vtkDSMMemoryOptions* memory) const;
 
   /// Whether the renderer has anything else to show, that may be behind, or between, translucent surfaces.
-  bool AreBesideOthers(vtkRenderer* renderer) const;
+  bool AreBesideOthers(vtkRenderer* renderer) const { return !this->FindOthers(renderer).empty(); }
+  /// These; of assemblies, the whole.
+  std::vector<vtkProp*> FindOthers(vtkRenderer* renderer) const;
 
 private:
   std::vector<std::unique_ptr<vtkDSMSceneMember>> States;
