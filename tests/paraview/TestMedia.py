@@ -1,0 +1,68 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""DSM Volume: what ParaView's Volume shows, the same picture on any number of ranks, and what else the view shows in it."""
+
+from dsm_testing import *
+
+load_plugin()
+view = create_view()
+source = image_source("image.SetExtent(piece)\nadd(image, np.cos(3.0 * distance(piece)), 'waves')\n")
+display = simple.Show(source, view)
+display.ColorArrayName = [None, ""]
+place_camera(view)
+
+
+def show_as(kind):
+    display.Representation = kind
+    return render(view)
+
+
+def compare(name, mean=1.0, largest=60):
+    """With Volume, which ParaView draws alike on one rank only."""
+    ours = show_as("DSM Volume")
+    if get_ranks() == 1:
+        theirs = show_as("Volume")
+        simple.SaveScreenshot(os.path.join(OUTPUT, f"{name}.Volume.png"), view)
+        difference = abs(ours - theirs)
+        check(difference.mean() < mean, f"{name}: the mean difference from Volume is {difference.mean():.2f}")
+        check(difference.max() < largest, f"{name}: the largest difference from Volume is {difference.max()}")
+    display.Representation = "DSM Volume"
+    render(view, name)
+
+
+chosen = show_as("DSM Volume")
+check(list(display.ColorArrayName) == ["POINTS", "waves"], "the first look has an array")
+check(get_covered(chosen).mean() > 0.1, "the first look shows something")
+# ParaView's default counts the cells of all ranks, which all have the whole here.
+display.ScalarOpacityUnitDistance = 1.7
+compare("FirstLook")
+
+opacity = simple.GetOpacityTransferFunction("waves")
+opacity.Points = [-1.0, 0.0, 0.5, 0.0, 0.2, 0.0, 0.5, 0.0, 0.3, 0.9, 0.5, 0.0, 0.4, 0.0, 0.5, 0.0, 1.0, 0.1, 0.5, 0.0]
+compare("Shells", mean=1.5, largest=120)
+display.ScalarOpacityUnitDistance *= 4.0
+compare("UnitDistance")
+view.CameraParallelProjection = 1
+view.CameraPosition, view.CameraFocalPoint = [12.0, 12.0, 80.0], [12.0, 12.0, 12.0]
+compare("AlongAnAxis")
+view.CameraParallelProjection = 0
+place_camera(view)
+
+# What ParaView draws itself is where it is in the volume.
+sphere = simple.Sphere(Center=[12.0, 12.0, 12.0], Radius=9.0, ThetaResolution=48, PhiResolution=48)
+show_surface(sphere, view)
+compare("OrdinarySphere", mean=1.5, largest=150)
+simple.Show(sphere, view).Representation = REPRESENTATION
+inside = render(view, "TracedSphere")
+simple.Hide(sphere, view)
+check(abs(inside - render(view)).mean() > 1.0, "the sphere is seen")
+
+display.DSMClip = 1
+display.DSMClipOrigin, display.DSMClipNormal = [12.0, 12.0, 12.0], [1.0, 0.0, 0.2]
+clipped = render(view, "Clipped")
+display.DSMClip = 0
+check(get_covered(clipped).mean() < get_covered(render(view)).mean(), "a clipped volume covers less")
+
+opacity.Points = [-1.0, 0.0, 0.5, 0.0, 1.0, 0.0, 0.5, 0.0]
+check(not get_covered(render(view)).any(), "of a transparent volume, nothing is seen")
+display.Representation = REPRESENTATION
+check(get_covered(render(view)).mean() > 0.05, "its isosurface is")
