@@ -27,8 +27,9 @@ rt::Picture TraceTurning(dsm::Messenger& messenger, const dsm::BlockStore::Setti
   rt::Picture picture;
   for (const int width : { 64, 33, 97 })
   {
-    picture = rt::GatherFrame(
-      messenger, renderer.Render(store, scene, SphereScene::CreateRequest(width, 61)));
+    rt::FrameRequest request = SphereScene::CreateRequest(width, 61);
+    request.Channels.Value = width == 64 ? rt::ChannelSet::Always : rt::ChannelSet::All;
+    picture = rt::GatherFrame(messenger, renderer.Render(store, scene, request));
   }
   return picture;
 }
@@ -100,6 +101,7 @@ TEST_P(FrameOverMpi, AbortedFramesEndOnAllRanks)
   for (int round = 0; round < 12; ++round)
   {
     rt::FrameRequest request = SphereScene::CreateRequest(97, 61);
+    request.Channels.Value = rt::ChannelSet::All;
     request.Scheduling =
       round % 2 == 0 ? rt::TileScheduling::CentralQueue : rt::TileScheduling::WorkStealing;
     // The first one begins with it.

@@ -10,7 +10,7 @@
 #include <cstring>
 
 /// A number that two pictures share if, for all practical purposes, they are equal bit for bit: 64-bit FNV-1a over words
-/// of eight bytes of size, colours and depths, with a fold that carries their high bits down. Tests have recorded it.
+/// of eight bytes of size and channels, with a fold that carries their high bits down. Tests have recorded it.
 inline std::uint64_t GetPictureHash(const rt::Picture& picture)
 {
   std::uint64_t hash = 0xcbf29ce484222325u;
@@ -27,8 +27,9 @@ inline std::uint64_t GetPictureHash(const rt::Picture& picture)
   };
   const std::int32_t size[2] = { picture.Width, picture.Height };
   add(size, sizeof(size));
-  add(picture.Color.data(), picture.Color.size());
-  add(picture.Depth.data(), picture.Depth.size() * sizeof(float));
+  rt::Channels::ForEach(picture,
+    [&](const auto& values, std::size_t, auto empty)
+    { add(values.data(), values.size() * sizeof(empty)); });
   return hash;
 }
 

@@ -19,7 +19,9 @@ rt::Frame CreateFrame(int rank, int ranks)
   rt::Frame frame;
   frame.Width = Edge * ranks;
   frame.Height = frame.TileSize = Edge;
+  frame.Channels.Value = rt::ChannelSet::All;
   rt::Tile& tile = frame.Tiles.emplace_back();
+  tile.Reset(frame.Channels, Edge * Edge);
   tile.X = Edge * rank;
   tile.Width = tile.Height = Edge;
   std::mt19937 random(static_cast<unsigned>(rank));
@@ -29,10 +31,13 @@ rt::Frame CreateFrame(int rank, int ranks)
     const auto alpha = static_cast<std::uint8_t>(kind == 2 ? 1 + random() % 254 : 255 * kind);
     for (int channel = 0; channel < 3; ++channel)
     {
-      tile.Color.push_back(static_cast<std::uint8_t>(random() % (alpha + 1u)));
+      tile.Color[4 * pixel + channel] = static_cast<std::uint8_t>(random() % (alpha + 1u));
+      tile.Albedo[4 * pixel + channel] = static_cast<std::uint8_t>(random() % (alpha + 1u));
+      tile.Normal[3 * pixel + channel] = static_cast<float>(random() % 100);
     }
-    tile.Color.push_back(alpha);
-    tile.Depth.push_back(kind == 0 ? 1.0f : static_cast<float>(random() % 1000) / 1000.0f);
+    tile.Color[4 * pixel + 3] = alpha;
+    tile.Depth[pixel] = kind == 0 ? 1.0f : static_cast<float>(random() % 1000) / 1000.0f;
+    tile.Object[pixel] = static_cast<std::int32_t>(random());
   }
   return frame;
 }
@@ -54,10 +59,16 @@ TEST(FrameGather, EdgesComeToAllRanks)
         const bool isMine = static_cast<int>(pixel) % frame.Width / Edge == messenger.GetRank();
         const bool isEdge = color[3] > 0 && color[3] < 255;
         edges += isEdge ? 1 : 0;
-        const std::uint8_t nothing[4] = {};
-        const std::uint8_t* const expected = isMine || isEdge ? color : nothing;
-        EXPECT_TRUE(std::equal(expected, expected + 4, &mine.Color[4 * pixel])) << pixel;
-        EXPECT_EQ(mine.Depth[pixel], isMine || isEdge ? whole.Depth[pixel] : 1.0f) << pixel;
+        rt::Channels::ForEach(
+          mine,
+          [&](const auto& values, std::size_t count, auto empty, const auto& all)
+          {
+            for (std::size_t at = count * pixel; at < count * (pixel + 1); ++at)
+            {
+              EXPECT_EQ(values[at], isMine || isEdge ? all[at] : empty) << pixel;
+            }
+          },
+          whole);
       }
       EXPECT_GT(edges, Edge);
     });

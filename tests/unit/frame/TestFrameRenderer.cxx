@@ -216,6 +216,8 @@ INSTANTIATE_TEST_SUITE_P(Differences, FrameThatDiffers,
     Difference{ "TileSize", [](auto& request, auto&) { request.TileSize = 8; } },
     Difference{ "Samples", [](auto& request, auto&) { request.Samples = 2; } },
     Difference{ "Layers", [](auto& request, auto&) { request.Layers = 3; } },
+    Difference{
+      "Channels", [](auto& request, auto&) { request.Channels.Value |= rt::ChannelSet::Object; } },
     Difference{ "Objects", [](auto&, auto& scene) { scene.Objects.clear(); } },
     Difference{ "Isovalue",
       [](auto&, auto& scene)
@@ -308,10 +310,12 @@ TEST(FrameRenderer, EmptySceneIsAnEmptyPicture)
 TEST(TestFrameRenderer, SamplesAddedLaterGiveTheSamePicture)
 {
   rt::Picture atOnce;
-  for (const int ranks : { 1, 3 })
+  for (const auto& [ranks, scheduling] : { std::tuple(1, rt::TileScheduling::WorkStealing),
+         std::tuple(2, rt::TileScheduling::CentralQueue),
+         std::tuple(3, rt::TileScheduling::WorkStealing) })
   {
     RunOnCluster(ranks,
-      [&](dsm::Messenger& messenger)
+      [&, ranks = ranks, scheduling = scheduling](dsm::Messenger& messenger)
       {
         dsm::BlockStore store(messenger, SphereScene::CreateSettings(std::size_t(1) << 20, 2));
         rt::Scene scene = SphereScene::CreateScene(SphereScene::Publish(messenger, store), 0.5f);
@@ -322,8 +326,16 @@ TEST(TestFrameRenderer, SamplesAddedLaterGiveTheSamePicture)
         rt::FrameRenderer renderer(messenger);
         rt::FrameRequest request = SphereScene::CreateRequest(97, 61);
         request.Samples = 6;
+        request.Scheduling = scheduling;
+        const rt::Picture plain =
+          rt::GatherFrame(messenger, renderer.Render(store, scene, request));
+        EXPECT_TRUE(plain.Normal.empty() && plain.Albedo.empty() && plain.Object.empty());
+        request.Channels.Value = rt::ChannelSet::All;
         const rt::Picture whole =
           rt::GatherFrame(messenger, renderer.Render(store, scene, request));
+        EXPECT_EQ(whole.Color, plain.Color);
+        EXPECT_EQ(whole.Depth, plain.Depth);
+        EXPECT_EQ(whole.Normal.size(), 3 * whole.Depth.size());
         request.Samples = 1;
         request.IsPreview = true;
         rt::Frame frame = renderer.Render(store, scene, request);

@@ -107,6 +107,7 @@ protected:
     request.Width = Size;
     request.Height = Size;
     request.Layers = this->Layers;
+    request.Channels = this->Channels;
     request.WorldToClip = glm::ortho(-1.5, 1.5, -1.5, 1.5, 0.0, 10.0) *
       glm::lookAt(glm::dvec3(0.0, 0.0, 5.0), glm::dvec3(0.0), glm::dvec3(0.0, 1.0, 0.0));
     rt::FrameRenderer renderer(this->Messenger);
@@ -127,6 +128,7 @@ protected:
   dsm::BlockStore Store{ Messenger, dsm::BlockStore::Settings{} };
   rt::Scene World;
   int Layers = 1;
+  rt::ChannelSet Channels;
 };
 
 /// The square [-1, 1]^2 at a height, its front towards the camera; values and colours grow with x.
@@ -398,6 +400,7 @@ TEST_F(MeshPicture, LayersAreWhatEachSurfaceContributes)
     squares.back().Look.Surface.Opacity = 0.5f;
   }
   squares[1].Clipping.HalfSpaces = { { { 1.0, 0.0, 0.0 }, glm::dvec3(0.0) } };
+  this->Channels.Value = rt::ChannelSet::All;
   const auto trace = [&](int layers)
   {
     this->Layers = layers;
@@ -428,6 +431,13 @@ TEST_F(MeshPicture, LayersAreWhatEachSurfaceContributes)
   EXPECT_FLOAT_EQ(getDepth(all, 1, left), 0.55f);
   EXPECT_FLOAT_EQ(getDepth(all, 2, left), 1.0f);
   EXPECT_FLOAT_EQ(getDepth(two, 1, right), 0.5f);
+  // Other channels are of the pixel, in the first layer.
+  std::vector<std::int32_t> objects = whole.Object;
+  objects.resize(3 * objects.size(), -1);
+  EXPECT_EQ(all.Object, objects);
+  std::vector<std::uint8_t> albedo = whole.Albedo;
+  albedo.resize(3 * albedo.size(), 0);
+  EXPECT_EQ(all.Albedo, albedo);
 }
 
 TEST_F(MeshPicture, BothSidesAreLitWhereverTheNormalsPoint)

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Shadows, occlusion, transparency and mirrors against what analysis says of spheres and planes.
 #include "tests/support/FunctionVolume.h"
+#include "tests/support/MeshScene.h"
 #include "tests/support/PictureHash.h"
 
 #include "DSMCore/transport/LoopbackTransport.h"
@@ -9,9 +10,12 @@
 
 #include <glm/gtc/constants.hpp>
 #include <glm/gtc/matrix_transform.hpp>
+#include <glm/gtc/type_ptr.hpp>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <memory>
 #include <variant>
 
 namespace
@@ -44,9 +48,11 @@ protected:
     return FunctionVolume::Publish(points, function, this->Messenger, this->Store);
   }
 
-  rt::Picture Trace(const rt::Scene& scene, int samples = 1, bool isPreview = false)
+  rt::Picture Trace(
+    const rt::Scene& scene, int samples = 1, bool isPreview = false, rt::ChannelSet channels = {})
   {
     rt::FrameRequest request;
+    request.Channels = channels;
     request.Width = Size;
     request.Height = Size;
     request.WorldToClip = Parallel;
@@ -268,6 +274,72 @@ TEST_F(LightTransportTest, NestOfTranslucentSpheres)
   EXPECT_NEAR(getAlpha(0.65), 1.0 - 0.75 * 0.75, 0.005);
   EXPECT_NEAR(getAlpha(0.35), 1.0 - 0.75 * 0.5 * 0.5 * 0.75, 0.005);
   EXPECT_NEAR(getAlpha(0.0), 1.0, 0.005);
+}
+
+TEST_F(LightTransportTest, ChannelsOnRequestDescribeTheFirstSurface)
+{
+  // The mesh is asked for hits last, though it is the first object.
+  rt::Scene scene;
+  rt::MeshObject floor;
+  TestMesh::Mesh square;
+  square.Positions = { -1, -1, -0.9, 0.51, -1, -0.9, 0.51, 1, -0.9, -1, 1, -0.9 };
+  square.Triangles = { 0, 1, 2, 0, 2, 3 };
+  floor.Instance = std::make_shared<rt::MeshInstance>(
+    MeshScene::Publish(square, this->Messenger, this->Store), glm::dmat4(1.0));
+  floor.Look.Surface.DiffuseColor = { 0.0f, 0.0f, 1.0f };
+  rt::LatticeIsosurface glass = this->Publish(GetBall);
+  glass.Look.Surface.Opacity = 0.5f;
+  glass.Look.Surface.DiffuseColor = { 1.0f, 0.0f, 0.0f };
+  scene.Objects = { floor, glass };
+  scene.Lights = { GetSlantedLight() };
+  rt::ChannelSet channels;
+  channels.Value = rt::ChannelSet::All;
+  const rt::Picture picture = this->Trace(scene, 1, false, channels);
+  const rt::Picture averaged = this->Trace(scene, 16, false, channels);
+  EXPECT_EQ(averaged.Object, picture.Object);
+  int objects[2] = {};
+  int between = 0;
+  for (int y = 0; y < Size; ++y)
+  {
+    for (int x = 0; x < Size; ++x)
+    {
+      const std::size_t pixel = static_cast<std::size_t>(y) * Size + x;
+      const glm::vec3 normal = glm::make_vec3(&picture.Normal[3 * pixel]);
+      const std::int32_t object = picture.Object[pixel];
+      EXPECT_EQ(object < 0, picture.Depth[pixel] == 1.0f);
+      EXPECT_EQ(picture.Albedo[4 * pixel + 3], picture.Color[4 * pixel + 3]);
+      between += averaged.Albedo[4 * pixel + 3] % 255 % 191 != 0;
+      const glm::dvec2 fromBall = GetPlace(x, y) - glm::dvec2(BallCenter);
+      const double radius = glm::length(fromBall) / BallRadius;
+      if (std::abs(radius - 1.0) < 0.1)
+      {
+        continue; // a sampled ball has another rim
+      }
+      const bool isFloor = GetPlace(x, y).x < 0.51;
+      ASSERT_EQ(object, radius < 1.0 ? 1 : isFloor ? 0 : -1) << x << ", " << y;
+      if (object < 0)
+      {
+        EXPECT_EQ(normal, glm::vec3(0.0f));
+        continue;
+      }
+      ++objects[object];
+      // Sheets of one half: the front of the ball, its back, and what they leave of the floor.
+      const glm::ivec4 ball = isFloor ? glm::ivec4(191, 0, 64, 255) : glm::ivec4(191, 0, 0, 191);
+      EXPECT_EQ(glm::ivec4(glm::make_vec4(&picture.Albedo[4 * pixel])),
+        object == 0 ? glm::ivec4(0, 0, 255, 255) : ball);
+      const glm::dvec3 expected = object == 0
+        ? glm::dvec3(0.0, 0.0, 1.0)
+        : glm::dvec3(fromBall / BallRadius, std::sqrt(1.0 - radius * radius));
+      for (const glm::vec3& each : { normal, glm::make_vec3(&averaged.Normal[3 * pixel]) })
+      {
+        EXPECT_NEAR(glm::length(each), 1.0f, 1e-6f);
+        EXPECT_GT(glm::dot(glm::dvec3(each), expected), std::cos(glm::radians(3.0)));
+      }
+    }
+  }
+  EXPECT_GT(objects[0], Size * Size / 2);
+  EXPECT_GT(objects[1], Size * Size / 30);
+  EXPECT_GT(between, Size / 2);
 }
 
 TEST_F(LightTransportTest, MirrorShowsTheBackground)

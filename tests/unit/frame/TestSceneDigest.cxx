@@ -38,6 +38,7 @@ TEST(TestSceneDigest, ChangesWithAllThatThePictureShows)
       const std::vector<std::function<void(rt::Scene&, rt::FrameRequest&)>> changes = {
         [](rt::Scene&, rt::FrameRequest& r) { r.Width = 41; },
         [](rt::Scene&, rt::FrameRequest& r) { r.Layers = 4; },
+        [](rt::Scene&, rt::FrameRequest& r) { r.Channels.Value |= rt::ChannelSet::Normal; },
         [](rt::Scene&, rt::FrameRequest& r) { r.WorldToClip[3][0] += 1e-12; },
         [](rt::Scene& s, rt::FrameRequest&) { GetIsosurface(s).Isovalues[0] += 1e-12; },
         [](rt::Scene& s, rt::FrameRequest&) { GetIsosurface(s).Isovalues.push_back(1e3); },

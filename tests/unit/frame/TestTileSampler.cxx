@@ -54,6 +54,7 @@ protected:
     request.Height = height;
     request.TileSize = tileSize;
     request.Samples = 2;
+    request.Channels.Value = rt::ChannelSet::All;
     request.WorldToClip = worldToClip;
     return this->Store.Visit([&](auto& store) { return CompareTiles(store, scene, request); });
   }
@@ -87,7 +88,7 @@ private:
     const rt::PixelRays rays(request);
     const rt::SceneTracers tracers = rt::CreateSceneTracers(store, worker, scene);
     const rt::TileSampler together(tracers, scene, rays, request);
-    const rt::PixelSampler alone(tracers, scene, rays);
+    const rt::PixelSampler alone(tracers, scene, rays, false, request.Channels);
     const rt::TileGrid grid(request.Width, request.Height, request.TileSize);
     Difference difference;
     store.BeginFrame();
@@ -104,7 +105,10 @@ private:
         const rt::PixelSample second = SampleAlone(alone, x, y, 1);
         difference.Covered += first.Depth < 1.0f;
         difference.Pixels += tile.Sum[pixel] != first.Color + second.Color ||
-          tile.Depth[pixel] != std::min(first.Depth, second.Depth);
+          tile.Depth[pixel] != std::min(first.Depth, second.Depth) ||
+          tile.AlbedoSum[pixel] != first.Albedo + second.Albedo ||
+          tile.NormalSum[pixel] != first.Normal + second.Normal ||
+          tile.Object[pixel] != first.Object;
       }
     }
     store.Leave(worker);

@@ -39,6 +39,9 @@ struct Tile : Channels
   /// Premultiplied colours, summed over the samples so far, in order: what further samples are
   /// added to.
   std::vector<glm::vec4> Sum;
+  /// The same of channels on request, which are there only if they were asked for.
+  std::vector<glm::vec4> AlbedoSum;
+  std::vector<glm::vec3> NormalSum;
   /// What neighbors' ambient occlusion adds to Sum in previews; empty: nothing.
   std::vector<glm::vec3> Shared;
 };
@@ -49,6 +52,7 @@ struct Frame
   int Width = 0;
   int Height = 0;
   int TileSize = 0;
+  ChannelSet Channels; ///< of the tiles
   std::vector<Tile> Tiles;
   /// Of the frames of a group of ranks: the same on every rank. 0: there is no frame.
   std::uint32_t Number = 0;

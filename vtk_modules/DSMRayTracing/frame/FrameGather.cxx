@@ -99,15 +99,14 @@ void Place(const Tile& tile, Picture& picture)
     tile);
 }
 
-/// Calls `visit(header, values)` for each of a rank's packed tiles until it returns false; `values` are the channels,
-/// one after the other.
+/// Calls `visit(header, values)` for each of a rank's packed tiles until it returns false; `values` are the channels
+/// of the picture, one after the other.
 template <class Visit>
-void VisitPacked(const std::vector<std::byte>& bytes, const Visit& visit)
+void VisitPacked(const std::vector<std::byte>& bytes, const Picture& picture, const Visit& visit)
 {
   std::size_t pixelBytes = 0;
-  Channels none;
-  Channels::ForEach(
-    none, [&](auto&, std::size_t count, auto empty) { pixelBytes += count * sizeof(empty); });
+  Channels::ForEach(picture,
+    [&](const auto&, std::size_t count, auto empty) { pixelBytes += count * sizeof(empty); });
   bool goesOn = true;
   for (std::size_t at = 0; goesOn && at < bytes.size();)
   {
@@ -122,7 +121,7 @@ void VisitPacked(const std::vector<std::byte>& bytes, const Visit& visit)
 std::size_t Unpack(const std::vector<std::byte>& bytes, Picture& picture)
 {
   std::size_t pixels = 0;
-  VisitPacked(bytes,
+  VisitPacked(bytes, picture,
     [&](const TileHeader& header, const std::byte* values)
     {
       Extend(header.Layers, picture);
@@ -140,10 +139,10 @@ std::size_t Unpack(const std::vector<std::byte>& bytes, Picture& picture)
 }
 
 /// Whether any of a rank's packed tiles has several layers.
-bool HasLayers(const std::vector<std::byte>& bytes)
+bool HasLayers(const std::vector<std::byte>& bytes, const Picture& picture)
 {
   bool has = false;
-  VisitPacked(bytes,
+  VisitPacked(bytes, picture,
     [&](const TileHeader& header, const std::byte*)
     {
       has = header.Layers > 1;
@@ -152,14 +151,7 @@ bool HasLayers(const std::vector<std::byte>& bytes)
   return has;
 }
 
-/// A pixel of the picture.
-struct Edge
-{
-  std::uint32_t Place;
-  std::uint8_t Color[4];
-  float Depth;
-};
-
+/// Of each pixel in part covered, its place in the picture, and its channels.
 std::vector<std::byte> PackEdges(const Frame& frame)
 {
   std::vector<std::byte> bytes;
@@ -171,10 +163,12 @@ std::vector<std::byte> PackEdges(const Frame& frame)
       if (color[3] > 0 && color[3] < 255)
       {
         const int row = tile.Y + pixel / tile.Width;
-        Edge edge{ static_cast<std::uint32_t>(row * frame.Width + tile.X + pixel % tile.Width), {},
-          tile.Depth[static_cast<std::size_t>(pixel)] };
-        std::copy_n(color, 4, edge.Color);
-        Append(bytes, &edge, sizeof(edge));
+        const auto place =
+          static_cast<std::uint32_t>(row * frame.Width + tile.X + pixel % tile.Width);
+        Append(bytes, &place, sizeof(place));
+        Channels::ForEach(tile,
+          [&](const auto& values, std::size_t count, auto empty)
+          { Append(bytes, &values[count * pixel], count * sizeof(empty)); });
       }
     }
   }
@@ -183,12 +177,18 @@ std::vector<std::byte> PackEdges(const Frame& frame)
 
 void UnpackEdges(const std::vector<std::byte>& bytes, Picture& picture)
 {
-  for (std::size_t at = 0; at < bytes.size(); at += sizeof(Edge))
+  for (std::size_t at = 0; at < bytes.size();)
   {
-    Edge edge;
-    std::memcpy(&edge, bytes.data() + at, sizeof(edge));
-    std::copy_n(edge.Color, 4, &picture.Color[4 * static_cast<std::size_t>(edge.Place)]);
-    picture.Depth[edge.Place] = edge.Depth;
+    const auto take = [&](void* to, std::size_t size)
+    {
+      std::memcpy(to, bytes.data() + at, size);
+      at += size;
+    };
+    std::uint32_t place = 0;
+    take(&place, sizeof(place));
+    Channels::ForEach(picture,
+      [&](auto& values, std::size_t count, auto empty)
+      { take(&values[count * place], count * sizeof(empty)); });
   }
 }
 
@@ -197,7 +197,7 @@ Picture CreatePicture(const Frame& frame)
   Picture picture;
   picture.Width = frame.Width;
   picture.Height = frame.Height;
-  picture.Resize(static_cast<std::size_t>(frame.Width) * frame.Height);
+  picture.Reset(frame.Channels, static_cast<std::size_t>(frame.Width) * frame.Height);
   return picture;
 }
 
@@ -231,7 +231,8 @@ Picture GatherFrame(dsm::Messenger& messenger, const Frame& frame)
       filled += Unpack(bytes, picture);
     }
   };
-  if (std::any_of(parts.begin(), parts.end(), [](const auto& part) { return HasLayers(part); }))
+  if (std::any_of(
+        parts.begin(), parts.end(), [&](const auto& part) { return HasLayers(part, picture); }))
   {
     messenger.RunTogether(what, unpack); // takes memory
   }

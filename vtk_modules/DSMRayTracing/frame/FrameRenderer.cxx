@@ -147,6 +147,7 @@ Frame FrameRenderer::Render(
     : this->Stealing;
   NewTiles tiles(TileGrid(request.Width, request.Height, request.TileSize), scheduler);
   Frame frame;
+  frame.Channels = request.Channels;
   this->RenderTiles(store, scene, request, last, tiles, frame);
   return frame;
 }

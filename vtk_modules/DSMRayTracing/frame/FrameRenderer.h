@@ -41,7 +41,7 @@ public:
     const Frame* last = nullptr);
 
   /// Adds the request's samples to a frame that has all samples before them: each rank goes on with
-  /// the tiles that it has. Collective; as Render, but that a failure leaves the frame without tiles.
+  /// the tiles that it has, and their channels. Collective; as Render, but that a failure leaves the frame without tiles.
   /// A frame that was aborted while it got samples has to get the same ones again, before others:
   /// then only tiles that lack them are traced.
   void Refine(

@@ -2,6 +2,7 @@
 #ifndef rt_FrameRequest_h
 #define rt_FrameRequest_h
 
+#include "DSMRayTracing/frame/Channels.h"
 #include "DSMRayTracing/schedule/TileScheduler.h"
 
 #include <glm/mat4x4.hpp>
@@ -39,6 +40,8 @@ struct FrameRequest
   /// Window depth, in [0, 1], at which the rays of each pixel end, row by row from the bottom: where something opaque is
   /// that is not in the scene. Null: nowhere.
   std::shared_ptr<const std::vector<float>> Limits;
+  /// What the picture has of each pixel.
+  ChannelSet Channels;
   TileScheduling Scheduling = TileScheduling::WorkStealing;
 };
 

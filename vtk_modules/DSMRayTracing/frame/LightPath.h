@@ -39,6 +39,7 @@ struct LightPath
   /// ShadingPoint::AmbientVisibility of a surface in front.
   KnownLight<double> Ambient;
   bool KnowsAmbient = false;
+  std::int32_t Object = -1; ///< see PixelSample; of the surface that it has come to
   std::uint64_t Number = 0; ///< what a debug view of owners or bricks shows of the surface
 
   /// What the surface contributes to the colour.

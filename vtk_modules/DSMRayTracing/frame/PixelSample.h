@@ -8,6 +8,8 @@
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
 
+#include <cstdint>
+
 namespace rt
 {
 
@@ -21,6 +23,11 @@ struct PixelSample
   glm::vec3 Shared{ 0.0f }; ///< what neighbors' ambient occlusion adds to Color in previews
   float Depth = 1.0f;       ///< of the nearest surface
   int LightRays = 0;        ///< shadow and occlusion rays that were traced for it
+
+  /// Channels on request, set where any was asked for: see Channels.
+  glm::vec4 Albedo{ 0.0f };
+  glm::vec3 Normal{ 0.0f };
+  std::int32_t Object = -1;
 
   /// The same surface by surface, front to back: what each contributes to the colour, and its depth.
   /// The last one stands for all behind it.

@@ -3,6 +3,7 @@
 
 #include "DSMRayTracing/light/Shading.h"
 
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <glm/vec2.hpp>
 #include <glm/vec4.hpp>
@@ -48,6 +49,21 @@ std::uint64_t GetNumber(DebugView view, const ObjectTracer::Brick& brick)
     : brick.Id;
 }
 
+/// Adds the surface at which a path of the picture is to the channels on request. `weight`: of the surface.
+void DescribeSurface(const LightPath& path, float weight)
+{
+  PixelSample& pixel = *path.Layers;
+  const SurfacePoint& point = path.Point;
+  if (pixel.Object < 0)
+  {
+    pixel.Normal = glm::vec3(point.Facing);
+    pixel.Object = path.Object;
+  }
+  const glm::vec3 color =
+    glm::mix(glm::vec3(point.Color), point.LineColor, static_cast<float>(point.LineCover));
+  pixel.Albedo += weight * glm::vec4(glm::clamp(color, 0.0f, 1.0f), 1.0f);
+}
+
 } // namespace
 
 /// What mirrors show, on its way. Not on the stack: mirrors may show mirrors many times over.
@@ -61,8 +77,8 @@ struct PixelSampler::Mirrored
   PixelSampler::Paths Paths;
 };
 
-PixelSampler::PixelSampler(
-  const SceneTracers& tracers, const Scene& scene, const PixelRays& rays, bool isPreview)
+PixelSampler::PixelSampler(const SceneTracers& tracers, const Scene& scene, const PixelRays& rays,
+  bool isPreview, ChannelSet channels)
   : Finders(tracers.GetBeamFinders())
   , Surfaces(GetAll(tracers.Objects))
   , Media(tracers)
@@ -70,6 +86,7 @@ PixelSampler::PixelSampler(
   , World(scene)
   , Rays(rays)
   , SharesAmbient(isPreview && scene.Transport.AmbientOcclusionSamples > 0)
+  , HasMoreChannels(channels.HasMore())
 {
 }
 
@@ -137,6 +154,10 @@ RayMask PixelSampler::FindSurfaces(
       LightPath& path = getPath(index);
       points[index] = &path.Point;
       views[index] = path.View;
+      if (this->HasMoreChannels)
+      {
+        path.Object = hits[index].GetObject()->GetNumber();
+      }
       if (this->World.View == DebugView::Owner || this->World.View == DebugView::Brick)
       {
         path.Number = GetNumber(this->World.View, hits[index].GetObject()->FindBrick(hits[index]));
@@ -228,6 +249,10 @@ void PixelSampler::AddSurfaces(LightPath* const* paths, int count, int bounces) 
     path.Shared += weight * shared[number];
     if (path.Layers)
     {
+      if (this->HasMoreChannels)
+      {
+        DescribeSurface(path, weight);
+      }
       path.Layers->AddLayer(layer, this->Rays.GetDepth(path.Point.Position));
     }
   }

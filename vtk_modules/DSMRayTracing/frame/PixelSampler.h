@@ -24,9 +24,9 @@ namespace rt
 class PixelSampler
 {
 public:
-  /// Keeps references. `isPreview`: see FrameRequest.
-  PixelSampler(
-    const SceneTracers& tracers, const Scene& scene, const PixelRays& rays, bool isPreview = false);
+  /// Keeps references. `isPreview`, `channels`: see FrameRequest.
+  PixelSampler(const SceneTracers& tracers, const Scene& scene, const PixelRays& rays,
+    bool isPreview = false, ChannelSet channels = {});
 
   /// What the pixels of a box have in common: for Sample. Usable or not, it can be used; but where it is
   /// not, a smaller box may be.
@@ -81,6 +81,7 @@ private:
   const Scene& World;
   const PixelRays& Rays;
   bool SharesAmbient;
+  bool HasMoreChannels;
 };
 
 } // namespace rt

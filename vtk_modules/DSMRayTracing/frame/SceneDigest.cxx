@@ -53,6 +53,7 @@ std::uint64_t GetSceneDigest(const Scene& scene, const FrameRequest& request)
   {
     digest.Add(*request.Limits);
   }
+  digest.Add(request.Channels);
   Add(digest, scene.Transport);
   digest.Add(scene.View);
   digest.Add(scene.Lights.size());

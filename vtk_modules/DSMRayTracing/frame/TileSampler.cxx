@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "DSMRayTracing/frame/TileSampler.h"
 
+#include <glm/geometric.hpp>
 #include <glm/vec4.hpp>
 
 #include <algorithm>
@@ -17,12 +18,22 @@ namespace
 constexpr int BeamEdge = BeamHistory::Edge;
 constexpr int SmallestBeamEdge = PixelSampler::BlockEdge;
 
+/// Four bytes of a sum of samples.
+void ConvertSum(const glm::vec4& sum, const glm::vec4& scale, std::uint8_t* color)
+{
+  for (int channel = 0; channel < 4; ++channel)
+  {
+    const float value = std::clamp(scale[channel] * sum[channel], 0.0f, 1.0f);
+    color[channel] = static_cast<std::uint8_t>(255.0f * value + 0.5f);
+  }
+}
+
 } // namespace
 
 TileSampler::TileSampler(const SceneTracers& tracers, const Scene& scene, const PixelRays& rays,
   const FrameRequest& request, BeamHistory* beams)
   : Finders(tracers.GetBeamFinders())
-  , Pixels(tracers, scene, rays, request.IsPreview)
+  , Pixels(tracers, scene, rays, request.IsPreview, request.Channels)
   , Request(request)
   , Beams(beams)
 {
@@ -47,11 +58,12 @@ void TileSampler::Trace(Tile& tile) const
   if (this->Request.FirstSample == 0)
   {
     tile.Layers = this->Request.Layers;
+    tile.Reset(this->Request.Channels, tile.Layers * pixels);
     tile.Sum.assign(tile.Layers * pixels, glm::vec4(0.0f));
-    tile.Depth.assign(tile.Layers * pixels, 1.0f);
+    tile.AlbedoSum.assign(tile.Present.Has(ChannelSet::Albedo) ? pixels : 0, glm::vec4(0.0f));
+    tile.NormalSum.assign(tile.Present.Has(ChannelSet::Normal) ? pixels : 0, glm::vec3(0.0f));
     tile.Shared.assign(this->Request.IsPreview && tile.Layers == 1 ? pixels : 0, glm::vec3(0.0f));
   }
-  tile.Color.resize(4 * tile.Layers * pixels);
   tile.Samples = this->Request.FirstSample + this->Request.Samples;
   Split({ 0, 0, tile.Width, tile.Height }, BeamEdge,
     [&](const PixelBox& box) { this->TraceBeam(tile, box); });
@@ -69,8 +81,8 @@ bool TileSampler::Prefetch(const Tile& tile) const
 void TileSampler::Finish(Tile& tile, const glm::vec3& tint) const
 {
   const std::size_t pixels = tile.Sum.size();
-  const glm::vec4 scale =
-    glm::vec4(tint, 1.0f) / float(this->Request.FirstSample + this->Request.Samples);
+  const auto samples = static_cast<float>(this->Request.FirstSample + this->Request.Samples);
+  const glm::vec4 scale = glm::vec4(tint, 1.0f) / samples;
   for (std::size_t pixel = 0; pixel < pixels; ++pixel)
   {
     glm::vec4 sum = tile.Sum[pixel];
@@ -84,10 +96,18 @@ void TileSampler::Finish(Tile& tile, const glm::vec3& tint) const
     {
       sum += glm::vec4(tile.Shared[pixel], 0.0f);
     }
-    for (int channel = 0; channel < 4; ++channel)
+    ConvertSum(sum, scale, color);
+  }
+  for (std::size_t pixel = 0; pixel < tile.AlbedoSum.size(); ++pixel)
+  {
+    ConvertSum(tile.AlbedoSum[pixel], glm::vec4(1.0f / samples), &tile.Albedo[4 * pixel]);
+  }
+  for (std::size_t pixel = 0; pixel < tile.NormalSum.size(); ++pixel)
+  {
+    const float length = glm::length(tile.NormalSum[pixel]);
+    for (int axis = 0; axis < 3; ++axis)
     {
-      const float value = std::clamp(scale[channel] * sum[channel], 0.0f, 1.0f);
-      color[channel] = static_cast<std::uint8_t>(255.0f * value + 0.5f);
+      tile.Normal[3 * pixel + axis] = length > 0.0f ? tile.NormalSum[pixel][axis] / length : 0.0f;
     }
   }
 }
@@ -158,17 +178,29 @@ void TileSampler::TraceBatch(Tile& tile, SceneBeam& beam, const PixelBox& box) c
       this->Request.FirstSample + sample, samples);
     for (int number = 0; number < samples.GetCount(); ++number)
     {
-      AddSample(samples[number], tile);
+      AddSample(samples[number], this->Request.FirstSample + sample, tile);
     }
   }
 }
 
-void TileSampler::AddSample(const PixelSample& traced, Tile& tile)
+void TileSampler::AddSample(const PixelSample& traced, int sample, Tile& tile)
 {
   tile.LightRays += static_cast<std::uint64_t>(traced.LightRays);
   const std::size_t pixels = static_cast<std::size_t>(tile.Width) * tile.Height;
   const std::size_t pixel = static_cast<std::size_t>(traced.Pixel.y - tile.Y) * tile.Width +
     static_cast<std::size_t>(traced.Pixel.x - tile.X);
+  if (!tile.AlbedoSum.empty())
+  {
+    tile.AlbedoSum[pixel] += traced.Albedo;
+  }
+  if (!tile.NormalSum.empty())
+  {
+    tile.NormalSum[pixel] += traced.Normal;
+  }
+  if (!tile.Object.empty() && sample == 0)
+  {
+    tile.Object[pixel] = traced.Object;
+  }
   if (tile.Layers == 1)
   {
     tile.Sum[pixel] += traced.Color;

@@ -15,6 +15,7 @@
 #include <glm/vec3.hpp>
 
 #include <cstddef>
+#include <cstdint>
 
 namespace rt
 {
@@ -28,6 +29,10 @@ namespace rt
 class ObjectTracer : public BeamFinder
 {
 public:
+  /// Index in Scene::Objects; -1 for an object of no scene.
+  std::int32_t GetNumber() const { return this->Number; }
+  void SetNumber(std::int32_t number) { this->Number = number; }
+
   /// Whether the object lets no light through anywhere, so that any hit decides on a ray of light.
   virtual bool IsOpaque() const = 0;
 
@@ -58,6 +63,9 @@ public:
   };
   /// The one that holds the place of the hit.
   virtual Brick FindBrick(const ObjectHit& hit) const = 0;
+
+private:
+  std::int32_t Number = -1;
 };
 
 } // namespace rt

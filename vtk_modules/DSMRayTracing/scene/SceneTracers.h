@@ -13,8 +13,10 @@
 #include "DSMRayTracing/surface/IsosurfaceTracer.h"
 
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <type_traits>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -59,13 +61,15 @@ SceneTracers CreateSceneTracers(Store& store, typename Store::Worker& worker, co
   SceneTracers tracers;
   for (std::size_t kind = 0; kind < std::variant_size_v<SceneObject>; ++kind)
   {
-    for (const SceneObject& object : scene.Objects)
+    for (std::size_t number = 0; number < scene.Objects.size(); ++number)
     {
-      if (object.index() == kind)
+      if (scene.Objects[number].index() == kind)
       {
-        tracers.Objects.push_back(std::visit(
-          [&](const auto& known) -> std::unique_ptr<const ObjectTracer> { return create(known); },
-          object));
+        auto tracer = std::visit([&](const auto& known) -> std::unique_ptr<ObjectTracer>
+          { return create(known); },
+          scene.Objects[number]);
+        tracer->SetNumber(static_cast<std::int32_t>(number));
+        tracers.Objects.push_back(std::move(tracer));
       }
     }
   }
