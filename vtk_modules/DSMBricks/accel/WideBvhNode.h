@@ -21,6 +21,7 @@ constexpr int WideBvhWidth = 8;
 template <class Reference>
 struct WideBvhNode
 {
+  using ReferenceType = Reference;
   static constexpr int Width = WideBvhWidth;
   static constexpr Reference LeafBit =
     static_cast<Reference>(Reference(1) << (8 * sizeof(Reference) - 1));

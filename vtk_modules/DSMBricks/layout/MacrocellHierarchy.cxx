@@ -4,9 +4,7 @@
 #include "DSMBricks/layout/VoxelBrickHeader.h"
 #include "DSMCore/base/Error.h"
 
-#include <algorithm>
 #include <cstring>
-#include <limits>
 #include <string>
 
 namespace bricks
@@ -62,8 +60,7 @@ MacrocellHierarchy::Level Coarsen(const MacrocellHierarchy::Level& fine)
   }
   const auto count = static_cast<std::size_t>(coarse.Size[0]) *
     static_cast<std::size_t>(coarse.Size[1]) * static_cast<std::size_t>(coarse.Size[2]);
-  constexpr float infinity = std::numeric_limits<float>::infinity();
-  coarse.Ranges.assign(count, ValueRange{ infinity, -infinity });
+  coarse.Ranges.assign(count, ValueRange::GetEmpty());
   std::size_t index = 0;
   for (int z = 0; z < fine.Size[2]; ++z)
   {
@@ -76,9 +73,7 @@ MacrocellHierarchy::Level Coarsen(const MacrocellHierarchy::Level& fine)
           static_cast<std::size_t>(coarse.Size[0]) *
             (static_cast<std::size_t>(y / ratio) +
               static_cast<std::size_t>(coarse.Size[1]) * static_cast<std::size_t>(z / ratio));
-        ValueRange& to = coarse.Ranges[target];
-        to.First = std::min(to.First, from.First);
-        to.Last = std::max(to.Last, from.Last);
+        coarse.Ranges[target].Add(from);
       }
     }
   }

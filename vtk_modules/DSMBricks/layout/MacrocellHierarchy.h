@@ -2,6 +2,7 @@
 #ifndef bricks_MacrocellHierarchy_h
 #define bricks_MacrocellHierarchy_h
 
+#include "DSMBricks/base/ValueRange.h"
 #include "DSMBricks/layout/BrickLattice.h"
 #include "DSMCore/publish/BlockSegment.h"
 #include "DSMCore/transport/Messenger.h"
@@ -11,22 +12,6 @@
 
 namespace bricks
 {
-
-/// Smallest and largest value of the cells of a macrocell, rounded outward to float; empty (First >
-/// Last) when no cell holds data.
-struct ValueRange
-{
-  float First;
-  float Last;
-
-  /// Whether a surface of this isovalue may pass. A value equal to the isovalue counts as inside of
-  /// the surface, so First must be below it; that skips an integer volume's flat background.
-  bool MayHold(double isovalue) const
-  {
-    return static_cast<double>(this->First) < isovalue &&
-      isovalue <= static_cast<double>(this->Last);
-  }
-};
 
 /// Minimum and maximum over ever coarser boxes of bricks (the paper, section 4.1), whole on every
 /// rank: level 0 has one macrocell a brick, each further level one for 4 x 4 x 4 of the level

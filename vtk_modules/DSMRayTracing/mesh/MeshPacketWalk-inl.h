@@ -49,14 +49,13 @@ public:
     const bricks::WideBvhNode<Reference>* nodes, Mask rays, Prepare&& prepare, Visit&& visit) const
   {
     using Node = bricks::WideBvhNode<Reference>;
-    constexpr int depth = LargestWideBvhDepth;
-    HWY_ALIGN float enters[(Node::Width - 1) * depth + Node::Width][Size];
+    HWY_ALIGN float enters[LargestWideBvhStack][Size];
     struct Entry
     {
       Reference Child;
       Mask Rays;
     };
-    Entry stack[(Node::Width - 1) * depth + Node::Width];
+    Entry stack[LargestWideBvhStack];
     int size = 0;
     Reference child = 0;
     while (true)

@@ -4,6 +4,7 @@
 
 #include "DSMRayTracing/mesh/TreeletTraversal.h"
 #include "DSMRayTracing/mesh/TriangleAttributes.h"
+#include "DSMRayTracing/ray/ChildrenOnRay.h"
 #include "DSMRayTracing/ray/WideBvhTraversal.h"
 
 namespace rt
@@ -20,7 +21,7 @@ bool MeshSearch<Store>::Intersect(const MeshInstance& instance, const Ray& ray, 
   }
   NearestTriangle nearest;
   TriangleAttributes attributes;
-  TraverseWideBvh(mesh.Bricks.GetNodes(), line.Boxes, line.BoxesEnd,
+  TraverseWideBvh(mesh.Bricks.GetNodes(), ChildrenOnRay(line.Boxes, line.BoxesEnd),
     [&](std::uint32_t leaf)
     {
       const std::uint32_t number = bricks::BrickBvh::GetBrick(leaf);
@@ -48,7 +49,7 @@ bool MeshSearch<Store>::IsOccluded(const MeshInstance& instance, const Ray& ray)
     return false;
   }
   bool occluded = false;
-  TraverseWideBvh(mesh.Bricks.GetNodes(), line.Boxes, line.BoxesEnd,
+  TraverseWideBvh(mesh.Bricks.GetNodes(), ChildrenOnRay(line.Boxes, line.BoxesEnd),
     [&](std::uint32_t leaf)
     {
       const std::uint32_t number = bricks::BrickBvh::GetBrick(leaf);

@@ -7,6 +7,7 @@
 #include "DSMRayTracing/mesh/MeshRay.h"
 #include "DSMRayTracing/mesh/NearestTriangle.h"
 #include "DSMRayTracing/mesh/TriangleFilter.h"
+#include "DSMRayTracing/ray/ChildrenOnRay.h"
 #include "DSMRayTracing/ray/WideBvhTraversal.h"
 
 #include <cstdint>
@@ -96,7 +97,7 @@ private:
   void FindCandidates(const MeshRay& ray, Take&& take) const
   {
     const FilterRay line(ray.Boxes.Origin, ray.FilterShear, ray.Uncertainty, this->Brick);
-    TraverseWideBvh(this->Brick.GetNodes(), ray.Boxes, ray.BoxesEnd,
+    TraverseWideBvh(this->Brick.GetNodes(), ChildrenOnRay(ray.Boxes, ray.BoxesEnd),
       [&](std::uint16_t reference)
       {
         const bricks::TriangleBrick::Leaf leaf(reference);

@@ -3,7 +3,6 @@
 #define rt_WideBvhTraversal_h
 
 #include "DSMBricks/accel/WideBvhNode.h"
-#include "DSMRayTracing/ray/BoxRay.h"
 
 #include <utility>
 
@@ -13,20 +12,26 @@ namespace rt
 /// A level leaves at most seven children behind. The builder bounds the depth: 21 levels, and then
 /// those in which a node has an eighth of its parent's items, at most 11 for 2^32 items.
 constexpr int LargestWideBvhDepth = 33;
+/// Children that wait at a time, at most.
+constexpr int LargestWideBvhStack =
+  (bricks::WideBvhWidth - 1) * LargestWideBvhDepth + bricks::WideBvhWidth;
 
-/// Visits the leaves of a hierarchy whose boxes a ray meets within [0, last], nearest box first.
-/// `visit(reference)` may lower `last`. Kernels under it must be inlined: no call but the leaf's.
-template <class Reference, class Visit>
-inline void TraverseWideBvh(
-  const bricks::WideBvhNode<Reference>* nodes, const BoxRay& ray, const float& last, Visit&& visit)
+/// Visits the leaves of a hierarchy that `wanted` tells of, nearest first: see ChildrenOnRay and ChildrenInRange. It has
+/// - unsigned FindChildren(node, float enter[WideBvhWidth]): bit i set when child i may have what is looked for; `enter`
+///   tells where;
+/// - bool IsOpen(float enter): whether a child there still may, when its turn comes.
+/// `visit(reference)` may change its answers, so that fewer are wanted. Kernels under it must be inlined: no call but the
+/// leaf's.
+template <class Node, class Wanted, class Visit>
+inline void TraverseWideBvh(const Node* nodes, const Wanted& wanted, Visit&& visit)
 {
-  using Node = bricks::WideBvhNode<Reference>;
+  using Reference = typename Node::ReferenceType;
   struct Entry
   {
     float Enter;
     Reference Child;
   };
-  Entry stack[(Node::Width - 1) * LargestWideBvhDepth + Node::Width];
+  Entry stack[LargestWideBvhStack];
   int size = 0;
   Reference child = 0;
   while (true)
@@ -39,7 +44,7 @@ inline void TraverseWideBvh(
     {
       const Node& node = nodes[child];
       float enter[Node::Width];
-      unsigned met = ray.FindChildren(node, last, enter);
+      unsigned met = wanted.FindChildren(node, enter);
       if (met != 0)
       {
         // The nearest child is next; the others wait, the nearer ones on top.
@@ -72,7 +77,7 @@ inline void TraverseWideBvh(
         return;
       }
       --size;
-    } while (stack[size].Enter > last);
+    } while (!wanted.IsOpen(stack[size].Enter));
     child = stack[size].Child;
   }
 }

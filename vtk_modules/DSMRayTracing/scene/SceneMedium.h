@@ -14,7 +14,7 @@ using LatticeMedium = MediumOf<LatticeField>;
 
 /// The table of the kinds of media. A kind has
 /// - a description, named here, with AddTo and the name of
-/// - its Tracer, a MediumTracer for a store, whose header CreateMediumTracers includes.
+/// - its Tracer, a MediumTracer for a store, whose header CreateSceneTracers includes.
 using SceneMedium = std::variant<LatticeMedium>;
 
 } // namespace rt

@@ -15,7 +15,7 @@ using LatticeIsosurface = IsosurfaceOf<LatticeField>;
 
 /// The table of the kinds of objects. A kind has
 /// - a description, named here, with IsOpaque, AddTo and the name of
-/// - its Tracer, an ObjectTracer for a store, whose header CreateObjectTracers includes.
+/// - its Tracer, an ObjectTracer for a store, whose header CreateSceneTracers includes.
 /// Of surfaces that are equally near, that of the kind that comes first here is seen.
 using SceneObject = std::variant<LatticeIsosurface, MeshObject>;
 

@@ -2,7 +2,7 @@
 #ifndef rt_IsovaluePredicate_h
 #define rt_IsovaluePredicate_h
 
-#include "DSMBricks/layout/MacrocellHierarchy.h"
+#include "DSMBricks/base/ValueRange.h"
 
 #include <algorithm>
 #include <limits>
@@ -12,7 +12,7 @@ namespace rt
 {
 
 /// Tells of a range of values whether one of some isovalues may be within: what walks over macrocells
-/// (BeamDescent, BrickWalk) ask for isosurfaces.
+/// (BeamDescent, BrickWalk) and over hierarchies of boxes (ChildrenInRange) ask for isosurfaces.
 class IsovaluePredicate
 {
 public:
