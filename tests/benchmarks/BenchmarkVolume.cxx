@@ -3,9 +3,8 @@
 
 #include "BenchmarkFile.h"
 
-#include "DSMBricks/build/VoxelBrickBuilder.h"
+#include "DSMBricks/build/PublishVolume.h"
 #include "DSMBricks/sample/SampleVolume.h"
-#include "DSMCore/publish/ConcurrentFragmentSource.h"
 #include "DSMVolumeFiles/format/VolumeFile.h"
 
 #include <vtkDataArray.h>
@@ -211,26 +210,20 @@ rt::LatticeIsosurface PublishBenchmarkVolume(const std::string& description, int
 
   const bricks::Box whole{ bricks::Index3(0), lattice.GetCells() };
   const bricks::Box slab = CutAlong(2, whole, messenger.GetRank(), messenger.GetSize());
-  std::vector<std::unique_ptr<dsm::FragmentSource>> sources;
+  std::vector<std::shared_ptr<const bricks::VoxelSource>> pieces;
   for (int thread = 0; thread < threads; ++thread)
   {
     const bricks::Box cells = CutAlong(1, slab, thread, threads);
     if (!cells.IsEmpty())
     {
-      sources.push_back(std::make_unique<bricks::VoxelFragmentSource>(lattice,
-        std::vector<std::shared_ptr<const bricks::VoxelSource>>{ input.CreatePiece(cells) }));
+      pieces.push_back(input.CreatePiece(cells));
     }
   }
-  dsm::ConcurrentFragmentSource source(std::move(sources));
-  bricks::VoxelBrickSink sink(lattice);
-
-  auto field = std::make_shared<bricks::VoxelField>();
-  field->Lattice = lattice;
-  field->Segment =
-    store.Publish(description, lattice.CreateDirectory(messenger.GetSize()), source, sink);
-  field->Hierarchy = bricks::MacrocellHierarchy(lattice, *field->Segment, messenger);
+  bricks::VolumeSettings settings;
+  settings.IsConcurrent = true;
   rt::LatticeIsosurface object;
   object.Field.SetIndexToWorld(input.IndexToWorld);
-  object.Field.Voxels = field;
+  object.Field.Voxels =
+    bricks::PublishVolume(description, lattice, pieces, store, messenger, settings);
   return object;
 }

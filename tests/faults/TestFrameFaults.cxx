@@ -168,32 +168,19 @@ private:
   struct Input
   {
     explicit Input(const dsm::Messenger& messenger)
-      : Field(std::make_shared<bricks::VoxelField>())
-      , Sink(this->Lattice)
     {
       const int size = messenger.GetSize();
       const int rank = messenger.GetRank();
       const bricks::SampleVolume volume(bricks::SampleVolume::Kind::Sphere, bricks::Index3(Points));
       const bricks::Box cells{ { 0, 0, (Points - 1) * rank / size },
         { Points - 1, Points - 1, (Points - 1) * (rank + 1) / size } };
-      this->Source.emplace(this->Lattice,
-        std::vector<std::shared_ptr<const bricks::VoxelSource>>{
-          std::make_shared<bricks::SampleVolumeSource>(
-            volume, cells, bricks::ScalarType::Float32) });
-      this->Directory.emplace(this->Lattice.CreateDirectory(size));
-      this->Field->Lattice = this->Lattice;
-      this->Scene = SphereScene::CreateScene(this->Field, 0.7f);
-      this->Scene.Transport.Shadows = true;
-      this->Scene.Objects.emplace_back(rt::MeshObject());
+      this->Pieces.push_back(
+        std::make_shared<bricks::SampleVolumeSource>(volume, cells, bricks::ScalarType::Float32));
     }
     static constexpr int Points = 20;
     const bricks::BrickLattice Lattice{ bricks::Index3(Points), bricks::ScalarType::Float32, false,
       4 };
-    std::shared_ptr<bricks::VoxelField> Field;
-    std::optional<bricks::VoxelFragmentSource> Source;
-    std::optional<dsm::BlockDirectory> Directory;
-    bricks::VoxelBrickSink Sink;
-    rt::Scene Scene;
+    std::vector<std::shared_ptr<const bricks::VoxelSource>> Pieces;
   };
 
   static dsm::BlockStore::Settings CreateSettings(const Keeping& keeping)
@@ -208,11 +195,9 @@ private:
   {
     std::optional<Input> input;
     this->Messenger.RunTogether("Preparing", [&] { input.emplace(this->Messenger); });
-    this->Segments[0] =
-      this->Store.Publish("sphere", std::move(*input->Directory), *input->Source, input->Sink);
-    input->Field->Segment = this->Segments[0];
-    input->Field->Hierarchy =
-      bricks::MacrocellHierarchy(input->Lattice, *this->Segments[0], this->Messenger);
+    const auto field =
+      bricks::PublishVolume("sphere", input->Lattice, input->Pieces, this->Store, this->Messenger);
+    this->Segments[0] = field->Segment;
 
     bricks::TriangleMeshSettings settings;
     settings.BrickBytes = MeshScene::BrickBytes;
@@ -220,17 +205,21 @@ private:
     const auto mesh =
       bricks::PublishMesh("mesh", this->Piece, settings, this->Store, this->Messenger);
     this->Segments[1] = mesh->Segment;
+    rt::Scene scene;
     this->Messenger.RunTogether("Preparing the frame",
       [&]
       {
+        scene = SphereScene::CreateScene(field, 0.7f);
+        scene.Transport.Shadows = true;
+        scene.Objects.emplace_back(rt::MeshObject());
         constexpr double middle = 0.5 * (Input::Points - 1);
-        std::get<rt::MeshObject>(input->Scene.Objects.back()).Instance =
+        std::get<rt::MeshObject>(scene.Objects.back()).Instance =
           std::make_shared<rt::MeshInstance>(mesh,
             glm::scale(glm::translate(glm::dmat4(1.0), glm::dvec3(middle, middle, 2.0 * middle)),
               glm::dvec3(middle)));
       });
     const rt::Frame frame =
-      this->Renderer->Render(this->Store, input->Scene, SphereScene::CreateRequest(60, 40));
+      this->Renderer->Render(this->Store, scene, SphereScene::CreateRequest(60, 40));
     return GetPictureHash(rt::GatherFrame(this->Messenger, frame));
   }
 

@@ -6,8 +6,8 @@
 #include "tests/scenes/GeneratedVolume.h"
 #include "tests/unit/mesh/TestMesh.h"
 
+#include "DSMBricks/build/PublishVolume.h"
 #include "DSMBricks/build/TriangleMeshBuilder.h"
-#include "DSMBricks/build/VoxelBrickBuilder.h"
 #include "DSMCore/store/BlockStore.h"
 #include "DSMCore/transport/Messenger.h"
 #include "DSMRayTracing/frame/FrameRequest.h"
@@ -82,14 +82,7 @@ public:
       cells.Max.z = cells.Max.z * (rank + 1) / parts;
       pieces.push_back(std::make_shared<Generated::Volume>(recipe, cells));
     }
-    bricks::VoxelFragmentSource source(lattice, pieces);
-    bricks::VoxelBrickSink sink(lattice);
-    auto field = std::make_shared<bricks::VoxelField>();
-    field->Lattice = lattice;
-    field->Segment = this->Store.Publish(
-      "volume", lattice.CreateDirectory(this->Messenger.GetSize()), source, sink);
-    field->Hierarchy = bricks::MacrocellHierarchy(lattice, *field->Segment, this->Messenger);
-    return field;
+    return bricks::PublishVolume("volume", lattice, pieces, this->Store, this->Messenger);
   }
 
   /// The longest axis is [-1, 1], and `place` comes after that; `levels` in [0, 100].

@@ -2,7 +2,7 @@
 #ifndef FunctionVolume_h
 #define FunctionVolume_h
 
-#include "DSMBricks/build/VoxelBrickBuilder.h"
+#include "DSMBricks/build/PublishVolume.h"
 #include "DSMCore/store/BlockStore.h"
 #include "DSMCore/transport/Messenger.h"
 #include "DSMRayTracing/scene/Scene.h"
@@ -63,15 +63,9 @@ public:
   {
     const bricks::BrickLattice lattice(
       bricks::Index3(points), bricks::ScalarType::Float64, false, 16);
-    bricks::VoxelFragmentSource source(
-      lattice, { std::make_shared<FunctionVolume>(points, std::move(function)) });
-    bricks::VoxelBrickSink sink(lattice);
-    auto field = std::make_shared<bricks::VoxelField>();
-    field->Lattice = lattice;
-    field->Segment = store.Publish("function", lattice.CreateDirectory(1), source, sink);
-    field->Hierarchy = bricks::MacrocellHierarchy(lattice, *field->Segment, messenger);
     rt::LatticeIsosurface object;
-    object.Field.Voxels = field;
+    object.Field.Voxels = bricks::PublishVolume("function", lattice,
+      { std::make_shared<FunctionVolume>(points, std::move(function)) }, store, messenger);
     object.Field.SetIndexToWorld(GetIndexToWorld(points));
     object.Isovalues = { 0.0 };
     return object;

@@ -2,7 +2,7 @@
 #ifndef SphereScene_h
 #define SphereScene_h
 
-#include "DSMBricks/build/VoxelBrickBuilder.h"
+#include "DSMBricks/build/PublishVolume.h"
 #include "DSMBricks/sample/SampleVolume.h"
 #include "DSMCore/store/BlockStore.h"
 #include "DSMCore/transport/Messenger.h"
@@ -51,14 +51,7 @@ inline std::shared_ptr<bricks::VoxelField> Publish(
     pieces.push_back(
       std::make_shared<bricks::SampleVolumeSource>(volume, cells, bricks::ScalarType::Float32));
   }
-  bricks::VoxelFragmentSource source(lattice, pieces);
-  bricks::VoxelBrickSink sink(lattice);
-  auto field = std::make_shared<bricks::VoxelField>();
-  field->Lattice = lattice;
-  field->Segment =
-    store.Publish("sphere", lattice.CreateDirectory(messenger.GetSize()), source, sink);
-  field->Hierarchy = bricks::MacrocellHierarchy(lattice, *field->Segment, messenger);
-  return field;
+  return bricks::PublishVolume("sphere", lattice, pieces, store, messenger);
 }
 
 inline rt::FrameRequest CreateRequest(int width, int height)

@@ -2,7 +2,7 @@
 #include "vtkDSMVolumeData.h"
 
 #include "DSMBricks/base/ByteHash.h"
-#include "DSMBricks/build/VoxelBrickBuilder.h"
+#include "DSMBricks/build/PublishVolume.h"
 #include "vtkDSMContent.h"
 #include "vtkDSMFileArray.h"
 #include "vtkDSMGather.h"
@@ -346,7 +346,6 @@ void vtkDSMVolumeData::PublishLattice(Publication& published, std::size_t number
   Publication::Part& part = published.Parts.emplace_back();
   std::shared_ptr<bricks::VoxelField>& field = part.Field;
   std::vector<std::shared_ptr<const bricks::VoxelSource>> sources;
-  std::optional<dsm::BlockDirectory> directory;
   messenger.RunTogether("Preparing the " + purpose,
     [&]
     {
@@ -354,8 +353,7 @@ void vtkDSMVolumeData::PublishLattice(Publication& published, std::size_t number
       if (field)
       {
         sources = this->CreateSources(number, choice);
-        directory = field->Lattice.CreateDirectory(messenger.GetSize());
-        part.Digests = dsm::FragmentDigests(directory->GetCount());
+        part.Digests = dsm::FragmentDigests(field->Lattice.GetBrickCount());
       }
     });
   if (!field)
@@ -388,17 +386,12 @@ void vtkDSMVolumeData::PublishLattice(Publication& published, std::size_t number
     return;
   }
   old = {};
-  directory->AddIndexBytes(dsm::FragmentDigests::CountBytes(directory->GetCount()));
-  field->Segment = this->Group->PublishWithRoom(
+  *field = *this->Group->PublishWithRoom(
     [&](dsm::BlockStore::Place place)
     {
-      part.Digests = dsm::FragmentDigests(directory->GetCount());
-      bricks::VoxelFragmentSource voxels(field->Lattice, sources);
-      dsm::NotingFragmentSource source(voxels, part.Digests);
-      bricks::VoxelBrickSink sink(field->Lattice);
-      return this->Group->GetStore().Publish(what, *directory, source, sink, progress, place);
+      return bricks::PublishVolume(what, field->Lattice, sources, this->Group->GetStore(),
+        messenger, { place, &part.Digests }, progress);
     });
-  field->Hierarchy = bricks::MacrocellHierarchy(field->Lattice, *field->Segment, messenger);
 }
 
 const vtkDSMFileValues* vtkDSMVolumeData::FindFileValues(
