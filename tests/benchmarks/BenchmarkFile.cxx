@@ -77,7 +77,7 @@ rt::LatticeIsosurface PublishBenchmarkFile(
       source = std::make_shared<dsm::ReadingSource>(messenger,
         std::make_shared<vol::FileBrickReader>(field->Lattice, GetSamples(file, true),
           [file](const std::vector<bricks::Box>& boxes)
-          { vol::ChunkCache::GetShared().Foresee(file, 0, 0, boxes); }),
+          { vol::ChunkCache::GetShared().Prefetch(file, 0, 0, boxes); }),
         path);
     });
   field->Segment = store.Publish(path, *directory, source);

@@ -157,7 +157,7 @@ TEST(PositionedFile, WhatIsNotInMemoryIsNotWaitedFor)
   auto rows = MakeRows(500000, 100, 3000, 10);
   std::reverse(rows.begin(), rows.end());
   rows.push_back(rows[3]); // once more
-  file.Foresee(std::move(rows));
+  file.Prefetch(std::move(rows));
   for (int attempt = 0; attempt < 1000; ++attempt) // the disk may take a while
   {
     try

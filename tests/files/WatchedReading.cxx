@@ -84,7 +84,7 @@ void ReadFirstChunks(const fs::path& path, const vol::OpenOptions& options)
     const bricks::Box box = what.Grid.GetBox(bricks::Index3(0));
     what.Grid.CountBytesOfChunks(33, what.GetSampleBytes());
     std::vector<std::byte> bytes(static_cast<std::size_t>(box.GetCount()) * what.GetSampleBytes());
-    file->Foresee(array, 0, { { bricks::Index3(0), box } });
+    file->Prefetch(array, 0, { { bricks::Index3(0), box } });
     file->ReadChunk(array, 0, bricks::Index3(0), bytes.data());
   }
 }

@@ -120,7 +120,7 @@ public:
     }
     this->CheckPart(chunk, box, isRead ? &samples : nullptr);
     this->CheckHalo(chunk, box, halo, isRead ? &samples : nullptr);
-    Try(this->Names, [&] { this->File.Foresee(this->Array, this->Step, { { chunk, box } }); });
+    Try(this->Names, [&] { this->File.Prefetch(this->Array, this->Step, { { chunk, box } }); });
   }
 
 private:

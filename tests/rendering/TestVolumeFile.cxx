@@ -273,7 +273,7 @@ public:
     ++this->Reads;
   }
 
-  void TellSystem(const std::vector<dsm::BlockId>& ids) const override
+  void Prefetch(const std::vector<dsm::BlockId>& ids) const override
   {
     this->Told += static_cast<int>(ids.size());
   }

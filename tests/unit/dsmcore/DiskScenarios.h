@@ -61,8 +61,8 @@ public:
     return true;
   }
 
-  bool MayTellSystem() const override { return this->OneInMemory != 0; }
-  void TellSystem(const std::vector<dsm::BlockId>& ids) const override { this->Told += ids.size(); }
+  bool MayPrefetch() const override { return this->OneInMemory != 0; }
+  void Prefetch(const std::vector<dsm::BlockId>& ids) const override { this->Told += ids.size(); }
 
   void NoteKept(dsm::BlockId, std::size_t bytes) const override
   {

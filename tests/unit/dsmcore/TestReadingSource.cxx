@@ -252,8 +252,8 @@ TEST_P(BlocksOnDisk, WorkersReadWhatIsInMemory)
     });
 }
 
-/// What workers foresee of it is not read ahead by others: the system is told.
-TEST_P(BlocksOnDisk, SystemIsToldOfWhatWorkersForesee)
+/// What workers prefetch of it is not read by others: the system is advised.
+TEST_P(BlocksOnDisk, SystemIsAdvisedOfWhatWorkersPrefetch)
 {
   this->Run(
     [](dsm::Messenger& messenger, dsm::MemoryOrganization organization)
@@ -295,62 +295,37 @@ TEST_P(BlocksOnDisk, SystemIsToldOfWhatWorkersForesee)
     });
 }
 
-/// Of what is not worth a thread's time the system alone is told, and of what lies beside it; as long as there is
-/// anything that it does not have in memory.
-TEST_P(BlocksOnDisk, SystemIsToldOfWhatLiesAround)
+/// The system is advised of neighbors, too, once in a frame.
+TEST_P(BlocksOnDisk, SystemIsAdvisedOfNeighbors)
 {
   this->Run(
     [](dsm::Messenger& messenger, dsm::MemoryOrganization organization)
     {
-      constexpr std::size_t own = DiskStore::BlocksOfRank;
-      constexpr std::size_t free = own - 3; // of a segment, those that the system is not told of
-      DiskStore disks(messenger, organization, 4 * own);
+      DiskStore disks(messenger, organization, 4 * DiskStore::BlocksOfRank);
       disks.Disk->OneInMemory = 1;
-      const auto other =
-        disks.Store.Publish("Opening another file", DiskStore::CreateDirectory(messenger),
-          std::make_shared<dsm::ReadingSource>(messenger, disks.Disk, "the test's other disk"));
       const auto find = [&](std::size_t number)
       { return static_cast<dsm::BlockId>(messenger.GetRank() + number * messenger.GetSize()); };
-      const dsm::BlockId none = other->GetDirectory().GetCount();
-      const auto tell = [&](auto& blocks)
-      {
-        const dsm::BlockId ids[] = { find(0), find(1), none };
-        blocks.TellSystem(*disks.Segment, ids, 3,
-          [&](dsm::BlockId id, std::vector<dsm::BlockId>& around)
-          {
-            EXPECT_NE(id, none);
-            around.insert(around.end(), { find(0), find(2), none });
-          });
-      };
-      std::uint64_t told = 0;
-      const auto look = [&](const char* what, std::uint64_t more, const dsm::BlockSegment& segment,
-                          std::size_t first, std::size_t count)
-      {
-        SCOPED_TRACE(what);
-        told += organization == dsm::MemoryOrganization::PageBased ? 0 : more;
-        disks.RunFirstWorker(
-          [&](auto& blocks, auto& worker)
-          {
-            tell(blocks);
-            tell(blocks);
-            for (std::size_t number = first; number < first + count; ++number)
-            {
-              EXPECT_EQ(dsm_test::Visit(blocks, worker, segment, find(number)), 0u);
-            }
-          });
-        for (int attempt = 0; attempt < 2000 && disks.Disk->Told < told; ++attempt)
+      const dsm::BlockId none = disks.Segment->GetDirectory().GetCount();
+      const dsm::BlockId ids[] = { find(0), find(1), none };
+      disks.RunFirstWorker(
+        [&](auto& blocks, auto&)
         {
-          std::this_thread::sleep_for(std::chrono::milliseconds(5)); // a thread does it
-        }
-        EXPECT_EQ(disks.Disk->Told, told);
-      };
-      look("once in a frame", 3, *disks.Segment, 0, 0);
-      EXPECT_EQ(disks.Store.GetCounters().Prefetches, 0u);
-      look("then it has what is read", 3, *disks.Segment, 3, free);
-      look("which may be chance", 3, *other, 0, free);
-      disks.Disk->OneInMemory = 2;
-      look("or not", 0, *other, free, 2);
-      look("one was not in memory", 3, *disks.Segment, 0, 0);
+          for (int call = 0; call < 2; ++call)
+          {
+            blocks.Prefetch(*disks.Segment, ids, 3,
+              [&](dsm::BlockId id, std::vector<dsm::BlockId>& neighbors)
+              {
+                EXPECT_NE(id, none);
+                neighbors.insert(neighbors.end(), { find(0), find(2), none });
+              });
+          }
+        });
+      const std::uint64_t told = organization == dsm::MemoryOrganization::PageBased ? 0 : 3;
+      for (int attempt = 0; attempt < 2000 && disks.Disk->Told < told; ++attempt)
+      {
+        std::this_thread::sleep_for(std::chrono::milliseconds(5)); // a thread does it
+      }
+      EXPECT_EQ(disks.Disk->Told, told);
     });
 }
 

@@ -285,10 +285,10 @@ TEST(ScratchBlocks, FragmentsComeInAnyOrder)
   // It is in the system's memory now.
   for (dsm::BlockId id = 0; id < BlocksOfRank; ++id)
   {
-    blocks.TellSystem({ id });
+    blocks.Prefetch({ id });
     std::fill(block.begin(), block.end(), std::byte(0));
     const bool isRead = blocks.ReadWithoutWaiting(id, block.data(), block.size());
-    EXPECT_EQ(isRead, blocks.MayTellSystem()) << "unless the file system cannot tell";
+    EXPECT_EQ(isRead, blocks.MayPrefetch()) << "unless the file system cannot tell";
     EXPECT_EQ(!isRead, dsm_test::CountWrongBytes(id, block.data(), block.size()) != 0u);
   }
   disk.Damage();

@@ -103,24 +103,17 @@ public:
   }
 
   /// Says that none was absent.
-  bool Prefetch(const dsm::BlockSegment&, const dsm::BlockId* ids, std::size_t count)
+  bool Prefetch(const dsm::BlockSegment&, const dsm::BlockId* ids, std::size_t count,
+    dsm::FunctionRef<void(dsm::BlockId, std::vector<dsm::BlockId>&)> addNeighbors)
   {
-    this->Prefetched.insert(this->Prefetched.end(), ids, ids + count);
+    this->Prefetched.assign(ids, ids + count);
+    this->Neighbors.clear();
+    std::for_each(ids, ids + count, [&](dsm::BlockId id) { addNeighbors(id, this->Neighbors); });
     return false;
   }
 
-  /// Likewise; of all, also what is around.
-  void TellSystem(const dsm::BlockSegment&, const dsm::BlockId* ids, std::size_t count,
-    dsm::FunctionRef<void(dsm::BlockId, std::vector<dsm::BlockId>&)> around)
-  {
-    this->Told.assign(ids, ids + count);
-    this->Around.clear();
-    std::for_each(ids, ids + count, [&](dsm::BlockId id) { around(id, this->Around); });
-  }
-
-  std::vector<dsm::BlockId> Prefetched; ///< what was asked for so far
-  std::vector<dsm::BlockId> Told;       ///< last
-  std::vector<dsm::BlockId> Around;     ///< of these
+  std::vector<dsm::BlockId> Prefetched; ///< last
+  std::vector<dsm::BlockId> Neighbors;  ///< of these
 
   Pin Acquire(Worker& worker, const dsm::BlockSegment& segment, dsm::BlockId id)
   {

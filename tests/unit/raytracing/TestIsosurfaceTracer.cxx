@@ -72,16 +72,6 @@ class TestIsosurfaceTracer : public testing::Test
 protected:
   TestIsosurfaceTracer() { this->Object.Look.Surface.Opacity = 0.5f; }
 
-  /// As far as its directory tells.
-  void PutInFile()
-  {
-    dsm::BlockDirectory directory = this->Object.Field.Voxels->Segment->GetDirectory();
-    directory.SetFromSource();
-    auto field = std::make_shared<bricks::VoxelField>(*this->Object.Field.Voxels);
-    field->Segment = std::make_shared<MemoryStore::Segment>(directory);
-    this->Object.Field.Voxels = field;
-  }
-
   MemoryStore Store;
   MemoryStore::Worker Worker;
   rt::LatticeIsosurface Object = CreateObject(this->Store, CreateWaves(), { 0.3, 1.1 }, 4);
@@ -197,25 +187,17 @@ TEST_F(TestIsosurfaceTracer, AsksForTheFirstBricksOfABeam)
     all.push_back(brick.Id);
   }
   ASSERT_GT(all.size(), 3u);
-  tracer.Prefetch(*beam, { 3, 1 });
+  tracer.Prefetch(*beam, 3);
   EXPECT_EQ(this->Store.Prefetched, std::vector<dsm::BlockId>(all.begin(), all.begin() + 3));
-  this->Store.Prefetched.clear();
-  tracer.Prefetch(*beam, { all.size() + 5, 0 });
+  tracer.Prefetch(*beam, all.size() + 5);
   EXPECT_EQ(this->Store.Prefetched, all);
-  // What is cut out of a file, in vain, takes a thread's time.
-  this->Store.Prefetched.clear();
-  this->PutInFile();
-  EXPECT_TRUE(this->Store.Told.empty()) << "of what is in memory";
-  tracer.Prefetch(*beam, { all.size(), 3 });
-  EXPECT_EQ(this->Store.Prefetched, std::vector<dsm::BlockId>(all.begin(), all.begin() + 2));
-  EXPECT_EQ(this->Store.Told, all) << "the system can read them in vain";
   this->Store.Prefetched.clear();
   this->Object.Look.Surface.Opacity = 0.0f;
-  tracer.Prefetch(*beam, { 3, 3 });
+  tracer.Prefetch(*beam, 3);
   EXPECT_TRUE(this->Store.Prefetched.empty());
 }
 
-TEST_F(TestIsosurfaceTracer, TellsTheSystemOfWhatLiesInTheRow)
+TEST_F(TestIsosurfaceTracer, NeighborsLieInTheRow)
 {
   constexpr int edge = 4;
   const std::set<int> onSurface{ 1, 2, 3, 6, 7, 8, 9 }; // of ten bricks in a row
@@ -223,18 +205,17 @@ TEST_F(TestIsosurfaceTracer, TellsTheSystemOfWhatLiesInTheRow)
     [&](int x, int y, int)
     { return x % edge != 0 && onSurface.count(x / edge) > 0 ? static_cast<float>(y) : 0.0f; });
   this->Object = CreateObject(this->Store, row, { 1.5 }, edge);
-  this->PutInFile();
   const Tracer tracer(this->Store, this->Worker, this->Object);
-  const auto findAround = [&](dsm::BlockId id)
+  const auto findNeighbors = [&](dsm::BlockId id)
   {
     rt::BeamBricks beam;
     beam.Bricks.push_back({ id, {}, {} });
-    tracer.Prefetch(beam, { 1, 1 });
-    EXPECT_EQ(this->Store.Told, std::vector<dsm::BlockId>{ id });
-    return std::set<dsm::BlockId>(this->Store.Around.begin(), this->Store.Around.end());
+    tracer.Prefetch(beam, 1);
+    EXPECT_EQ(this->Store.Prefetched, std::vector<dsm::BlockId>{ id });
+    return std::set<dsm::BlockId>(this->Store.Neighbors.begin(), this->Store.Neighbors.end());
   };
   using Ids = std::set<dsm::BlockId>;
-  EXPECT_EQ(findAround(2), Ids({ 1, 3 })) << "not what lies behind a brick without surface";
-  EXPECT_EQ(findAround(6), Ids({ 7 })) << "not what lies in the next part of the row";
-  EXPECT_EQ(findAround(9), Ids({ 8 }));
+  EXPECT_EQ(findNeighbors(2), Ids({ 1, 3 })) << "not what lies behind a brick without surface";
+  EXPECT_EQ(findNeighbors(6), Ids({ 7 })) << "not what lies in the next part of the row";
+  EXPECT_EQ(findNeighbors(9), Ids({ 8 }));
 }

@@ -116,7 +116,7 @@ void BlockFetcher::BeginFrame(bool agreed)
 
   const std::lock_guard<std::mutex> lock(this->Guard);
   this->FrameCounters = StoreCounters{};
-  this->SystemUsed = 0;
+  this->AdvisedUsed = 0;
   this->Workers.BeginFrame();
   this->Phase = FramePhase::Open;
   this->Opened();
@@ -128,9 +128,9 @@ void BlockFetcher::BeginFrame(bool agreed)
       {
         if (this->MayPrefetch())
         {
-          std::vector<BlockId> forSystem;
-          this->Foresee(segment, ids.data(), ids.size(), forSystem);
-          this->Tell(segment, std::move(forSystem));
+          std::vector<BlockId> advised;
+          this->QueuePrefetches(segment, ids.data(), ids.size(), advised);
+          this->Advise(segment, std::move(advised));
         }
       }
       catch (const std::bad_alloc&) // what is wanted will be asked for one by one
@@ -158,7 +158,7 @@ bool BlockFetcher::Service()
     any = this->BeginService() || any;
     if (this->AskForWanted(this->WantedOwn) && this->AskForWanted(this->Wanted))
     {
-      this->AskForForeseen();
+      this->AskForPrefetches();
     }
     this->UpdateQueuedCount();
   }
@@ -175,11 +175,11 @@ bool BlockFetcher::AskForWanted(std::deque<BlockWant>& wanted)
   return wanted.empty();
 }
 
-void BlockFetcher::AskForForeseen()
+void BlockFetcher::AskForPrefetches()
 {
-  while (!this->Foreseen.empty() && this->Reads.size() < MostReadsAhead)
+  while (!this->PrefetchQueue.empty() && this->Reads.size() < MostReadsAhead)
   {
-    const BlockWant& block = this->Foreseen.front();
+    const BlockWant& block = this->PrefetchQueue.front();
     if (this->GetLine(block).State == LineState::Foreseen)
     {
       if (!this->TryAsk(block))
@@ -188,7 +188,7 @@ void BlockFetcher::AskForForeseen()
       }
       ++this->FrameCounters.Prefetches;
     }
-    this->Foreseen.pop_front();
+    this->PrefetchQueue.pop_front();
   }
 }
 
@@ -256,7 +256,7 @@ bool BlockFetcher::SubmitReads()
 
 void BlockFetcher::UpdateQueuedCount()
 {
-  this->QueuedCount.store(this->WantedOwn.size() + this->Wanted.size() + this->Foreseen.size(),
+  this->QueuedCount.store(this->WantedOwn.size() + this->Wanted.size() + this->PrefetchQueue.size(),
     std::memory_order_release);
 }
 
@@ -325,7 +325,7 @@ void BlockFetcher::Cancel(std::string cause)
 bool BlockFetcher::Drain()
 {
   const std::lock_guard<std::mutex> lock(this->Guard);
-  this->AbandonForeseen();
+  this->AbandonPrefetches();
   return this->Phase != FramePhase::Open || this->Reads.empty();
 }
 
@@ -351,8 +351,8 @@ void BlockFetcher::EndFrame()
       }
       return isUnused;
     });
-  this->FrameCounters.Prefetches += this->SystemUsed;
-  this->FrameCounters.PrefetchesUsed += this->SystemUsed;
+  this->FrameCounters.Prefetches += this->AdvisedUsed;
+  this->FrameCounters.PrefetchesUsed += this->AdvisedUsed;
   this->Workers.WakeAll();
   this->Closed();
 }
@@ -367,7 +367,7 @@ void BlockFetcher::AbandonAll()
     }
     wanted->clear();
   }
-  this->AbandonForeseen();
+  this->AbandonPrefetches();
   this->Requests.Abandon();
   for (BlockSource* const source : this->Busy)
   {
@@ -383,7 +383,7 @@ void BlockFetcher::AbandonAll()
   this->BytesOfOthers = 0;
 }
 
-void BlockFetcher::AbandonForeseen()
+void BlockFetcher::AbandonPrefetches()
 {
   const auto abandon = [this](const BlockWant& block)
   {
@@ -394,10 +394,10 @@ void BlockFetcher::AbandonForeseen()
       line.Use.store(BlockUse::Idle, std::memory_order_relaxed);
     }
   };
-  std::for_each(this->Foreseen.begin(), this->Foreseen.end(), abandon);
-  this->Foreseen.clear();
-  std::for_each(this->ForeseenBySystem.begin(), this->ForeseenBySystem.end(), abandon);
-  this->ForeseenBySystem.clear();
+  std::for_each(this->PrefetchQueue.begin(), this->PrefetchQueue.end(), abandon);
+  this->PrefetchQueue.clear();
+  std::for_each(this->Advised.begin(), this->Advised.end(), abandon);
+  this->Advised.clear();
   this->UpdateQueuedCount();
 }
 

@@ -73,10 +73,9 @@ public:
 
   // -- Workers --
 
-  void Prefetch(const BlockSegment& segment, const BlockId* ids, std::size_t count);
   /// See ObjectStore.
-  void TellSystem(const BlockSegment& segment, const BlockId* ids, std::size_t count,
-    FunctionRef<void(BlockId, std::vector<BlockId>&)> around);
+  void Prefetch(const BlockSegment& segment, const BlockId* ids, std::size_t count,
+    FunctionRef<void(BlockId, std::vector<BlockId>&)> addNeighbors);
 
   Messenger& Messages;
   FetchWorkers Workers;
@@ -159,7 +158,7 @@ protected:
   // -- For the stores, under the lock --
 
   /// Queues a block that is absent, or joins those who wait for it. Returns whether it joined, or the system was
-  /// told of the block before.
+  /// advised of the block before.
   bool Want(const BlockWant& block);
   /// A worker misses a block, and reads it by itself, without the lock, where nobody brings it yet, there is
   /// room, and nothing has to be waited for: it spares threads that wake one another. Returns whether the block is
@@ -198,25 +197,21 @@ private:
   void Arrive(const BlockWant& block, const std::byte* bytes, BlockMemory memory);
   /// Begin reads for those that room can be made for; whether for all.
   bool AskForWanted(std::deque<BlockWant>& wanted);
-  void AskForForeseen();
+  void AskForPrefetches();
   /// Begins a read; false when it must wait for room.
   bool TryAsk(const BlockWant& block);
   bool PollSources();
   bool SubmitReads();
   void AbandonAll();
-  void AbandonForeseen();
+  void AbandonPrefetches();
   void UpdateQueuedCount();
-  /// Queues the blocks that are absent, as far as there may be so many. Returns whether there are any.
-  /// Those that workers can read by themselves, when the system has fetched them, are not: they go to `forSystem`.
-  bool Foresee(const BlockSegment& segment, const BlockId* ids, std::size_t count,
-    std::vector<BlockId>& forSystem);
-  /// Queues for the system what is absent, and what workers can read by themselves then.
-  void ForeseeBySystem(const BlockSegment& segment, const BlockId* ids, std::size_t count,
-    std::vector<BlockId>& forSystem);
-  /// Whether it queued the block, of which a worker may as well do without.
-  bool TryForeseeBySystem(const BlockWant& block, std::vector<BlockId>& forSystem);
+  /// Of those that are absent: the system is to be advised of blocks that workers can read by themselves then, which go
+  /// to `advised`; the others are queued, as far as there may be so many. Returns whether any was queued.
+  bool QueuePrefetches(const BlockSegment& segment, const BlockId* ids, std::size_t count,
+    std::vector<BlockId>& advised);
+  bool TryAdvise(const BlockWant& block, std::vector<BlockId>& advised);
   /// With or without the lock.
-  void Tell(const BlockSegment& segment, std::vector<BlockId> ids) const;
+  void Advise(const BlockSegment& segment, std::vector<BlockId> ids) const;
 
   /// Of other ranks, and own ones, which come first: others may wait for them.
   std::deque<BlockWant> Wanted;
@@ -225,16 +220,13 @@ private:
   std::size_t BytesOfOthers = 0;
   ExpectedBlocks Expected;
   /// Some may have become wanted, or come, since they were queued.
-  std::deque<BlockWant> Foreseen;
+  std::deque<BlockWant> PrefetchQueue;
   /// Of these queues; lets Service look without the lock.
   std::atomic<std::size_t> QueuedCount{ 0 };
-  /// Foreseen, and not queued: the system was told of them.
-  std::vector<BlockWant> ForeseenBySystem;
+  /// Foreseen, and not queued: the system was advised of them.
+  std::vector<BlockWant> Advised;
   /// Of them, in this frame: wanted later. Each counts as prefetched, and whoever wants it as joining.
-  std::uint64_t SystemUsed = 0;
-  /// Blocks that the system was not told of, and had in its memory when they were wanted, one behind the other: when there
-  /// are many, it need not be told.
-  std::size_t FoundUntold = 0;
+  std::uint64_t AdvisedUsed = 0;
   /// Workers may have read blocks that other ranks asked for.
   std::atomic<bool> MayHaveDebtsHere{ false };
   /// Other than Requests; those with reads under way. Communication thread only.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What workers do: they miss blocks, and foresee them.
+// What workers do: they miss blocks, and have them prefetched.
 #include "DSMCore/fetch/BlockFetcher.h"
 
 #include "DSMCore/base/Error.h"
@@ -16,11 +16,17 @@ namespace dsm
 namespace
 {
 
-/// When the system has had so many blocks without having been told of them, it has read the others, too.
-constexpr std::size_t ManyFoundUntold = 16;
+/// Cutting a brick out of a file takes a thread's time, also in vain: where workers cannot read it by themselves, only
+/// the first part of those that are foreseen is worth it, divided by this.
+constexpr std::size_t PartOfCut = 2;
 
-/// Whether the system was told of a block that nobody has wanted yet.
-bool IsForeseenBySystem(const LineStatus& line)
+bool IsCutFromFile(const BlockDirectory& directory)
+{
+  return directory.IsFromSource() && !directory.IsOnOwnersDisk();
+}
+
+/// Whether the system was advised of a block that nobody has wanted yet.
+bool IsAdvised(const LineStatus& line)
 {
   return line.State == LineState::Foreseen &&
     line.Use.load(std::memory_order_relaxed) != BlockUse::Prefetched;
@@ -35,8 +41,8 @@ bool BlockFetcher::Want(const BlockWant& block)
   bool joins = !isNew;
   if (isNew)
   {
-    joins = IsForeseenBySystem(line);
-    this->SystemUsed += joins ? 1 : 0;
+    joins = IsAdvised(line);
+    this->AdvisedUsed += joins ? 1 : 0;
     (this->IsOwned(block) ? this->WantedOwn : this->Wanted).push_back(block);
     line.MoveTo(LineState::Wanted);
     this->UpdateQueuedCount();
@@ -63,7 +69,7 @@ bool BlockFetcher::ReadAtOnce(
     return false;
   }
   const auto start = std::chrono::steady_clock::now();
-  const bool joins = IsForeseenBySystem(line);
+  const bool joins = IsAdvised(line);
   line.MoveTo(LineState::Pending);
   if (line.Use.load(std::memory_order_relaxed) == BlockUse::Prefetched)
   {
@@ -90,10 +96,6 @@ bool BlockFetcher::ReadAtOnce(
   {
     isRead = false;
   }
-  if (!joins)
-  {
-    this->FoundUntold = isRead ? this->FoundUntold + 1 : 0;
-  }
   if (!isRead || this->Phase != FramePhase::Open)
   {
     this->GiveRoomBack(block);
@@ -107,7 +109,7 @@ bool BlockFetcher::ReadAtOnce(
   this->Show(block, memory);
   ++worker.Slow.Misses;
   worker.Slow.Joins += joins ? 1 : 0;
-  this->SystemUsed += joins ? 1 : 0;
+  this->AdvisedUsed += joins ? 1 : 0;
   worker.Slow.WaitNanoseconds += NanosecondsSince(start);
   if (line.Waiters > 0)
   {
@@ -163,104 +165,83 @@ void BlockFetcher::Refuse(const BlockSegment& segment) const
       : "A block of a retired segment was read. This is a defect of the tracer.");
 }
 
-void BlockFetcher::ForeseeBySystem(const BlockSegment& segment, const BlockId* ids,
-  std::size_t count, std::vector<BlockId>& forSystem)
-{
-  for (const BlockId* id = ids; id != ids + count; ++id)
-  {
-    const BlockWant block{ &segment, *id };
-    if (*id < segment.GetDirectory().GetCount() && this->GetLine(block).State == LineState::Absent)
-    {
-      this->TryForeseeBySystem(block, forSystem);
-    }
-  }
-}
-
-bool BlockFetcher::TryForeseeBySystem(const BlockWant& block, std::vector<BlockId>& forSystem)
+bool BlockFetcher::TryAdvise(const BlockWant& block, std::vector<BlockId>& advised)
 {
   const BlockSource* const source = this->FindSourceForWorkers(block);
-  if (!source || !source->MayForesee())
+  if (!source || !source->MayPrefetch())
   {
     return false;
   }
-  forSystem.push_back(block.Id);
-  this->ForeseenBySystem.push_back(block);
+  advised.push_back(block.Id);
+  this->Advised.push_back(block);
   this->GetLine(block).MoveTo(LineState::Foreseen);
   return true;
 }
 
-bool BlockFetcher::Foresee(const BlockSegment& segment, const BlockId* ids, std::size_t count,
-  std::vector<BlockId>& forSystem)
+bool BlockFetcher::QueuePrefetches(
+  const BlockSegment& segment, const BlockId* ids, std::size_t count, std::vector<BlockId>& advised)
 {
+  const BlockDirectory& directory = segment.GetDirectory();
+  const std::size_t most = IsCutFromFile(directory) ? (count + PartOfCut - 1) / PartOfCut : count;
   const auto isUnused = [this](const BlockWant& block) { return this->IsUnused(block); };
-  bool any = false;
-  for (const BlockId* id = ids; id != ids + count; ++id)
+  const std::size_t before = this->PrefetchQueue.size();
+  for (std::size_t index = 0; index < count; ++index)
   {
-    const BlockWant block{ &segment, *id };
-    if (*id >= segment.GetDirectory().GetCount() || this->GetLine(block).State != LineState::Absent)
+    const BlockWant block{ &segment, ids[index] };
+    if (block.Id >= directory.GetCount() || this->GetLine(block).State != LineState::Absent ||
+      this->TryAdvise(block, advised) || index >= most)
     {
       continue;
     }
-    if (this->TryForeseeBySystem(block, forSystem))
-    {
-      continue;
-    }
-    LineStatus& line = this->GetLine(block);
     if (!this->Prefetches.TryAdd(block, this->GetFootprint(block), isUnused))
     {
       break;
     }
-    this->Foreseen.push_back(block);
+    this->PrefetchQueue.push_back(block);
+    LineStatus& line = this->GetLine(block);
     line.MoveTo(LineState::Foreseen);
     line.Use.store(BlockUse::Prefetched, std::memory_order_relaxed);
-    any = true;
   }
   this->UpdateQueuedCount();
-  return any;
+  return this->PrefetchQueue.size() != before;
 }
 
-void BlockFetcher::Prefetch(const BlockSegment& segment, const BlockId* ids, std::size_t count)
+void BlockFetcher::Prefetch(const BlockSegment& segment, const BlockId* ids, std::size_t count,
+  FunctionRef<void(BlockId, std::vector<BlockId>&)> addNeighbors)
 {
-  bool any = false;
-  std::vector<BlockId> forSystem;
+  std::vector<BlockId> advised;
+  const auto mayPrefetch = [&] { return this->IsOpenFor(segment) && this->MayPrefetch(); };
+  bool anyQueued = false;
   {
     const std::lock_guard<std::mutex> lock(this->Guard);
-    any = this->IsOpenFor(segment) && this->MayPrefetch() &&
-      this->Foresee(segment, ids, count, forSystem);
+    anyQueued = mayPrefetch() && this->QueuePrefetches(segment, ids, count, advised);
   }
-  if (any)
+  if (anyQueued)
   {
     this->Messages.WakeUp();
   }
-  this->Tell(segment, std::move(forSystem));
-}
-
-void BlockFetcher::TellSystem(const BlockSegment& segment, const BlockId* ids, std::size_t count,
-  FunctionRef<void(BlockId, std::vector<BlockId>&)> around)
-{
-  std::vector<BlockId> forSystem;
-  const auto foresee = [&](const BlockId* some, std::size_t number)
+  if (addNeighbors && IsCutFromFile(segment.GetDirectory()))
   {
-    const std::lock_guard<std::mutex> lock(this->Guard);
-    if (this->FoundUntold < ManyFoundUntold && this->IsOpenFor(segment) && this->MayPrefetch())
+    std::vector<BlockId> neighbors;
+    for (const BlockId id : advised)
     {
-      this->ForeseeBySystem(segment, some, number, forSystem);
+      addNeighbors(id, neighbors);
     }
-  };
-  foresee(ids, count);
-  std::vector<BlockId> neighbours;
-  for (const BlockId id : forSystem)
-  {
-    around(id, neighbours);
+    const std::lock_guard<std::mutex> lock(this->Guard);
+    for (const BlockId id : neighbors)
+    {
+      const BlockWant block{ &segment, id };
+      if (mayPrefetch() && id < segment.GetDirectory().GetCount() &&
+        this->GetLine(block).State == LineState::Absent)
+      {
+        this->TryAdvise(block, advised);
+      }
+    }
   }
-  if (!neighbours.empty())
-  {
-    foresee(neighbours.data(), neighbours.size());
-  }
-  this->Tell(segment, std::move(forSystem));
+  this->Advise(segment, std::move(advised));
 }
 
-void BlockFetcher::Tell(const BlockSegment& segment, std::vector<BlockId> ids) const
+void BlockFetcher::Advise(const BlockSegment& segment, std::vector<BlockId> ids) const
 {
   if (ids.empty())
   {
@@ -268,7 +249,7 @@ void BlockFetcher::Tell(const BlockSegment& segment, std::vector<BlockId> ids) c
   }
   try
   {
-    this->FindSourceForWorkers({ &segment, ids.front() })->Foresee(std::move(ids));
+    this->FindSourceForWorkers({ &segment, ids.front() })->Prefetch(std::move(ids));
   }
   catch (const std::exception&) // they are read when they are wanted
   {

@@ -28,11 +28,11 @@ public:
   {
     return this->TryRead(id, block, bytes);
   }
-  /// Whether ReadWithoutWaiting can be expected to succeed where TellSystem was called some time before.
-  virtual bool MayTellSystem() const { return false; }
+  /// Whether ReadWithoutWaiting can be expected to succeed where Prefetch was called some time before.
+  virtual bool MayPrefetch() const { return false; }
   /// These blocks will probably be read soon: the system may bring what they take to its own cache, in one piece
   /// where they lie near one another. Does not wait for it. Throws nothing.
-  virtual void TellSystem(const std::vector<BlockId>&) const {}
+  virtual void Prefetch(const std::vector<BlockId>&) const {}
   /// A block that was read by the reader before this one is still in use, and need not be read again: it is
   /// what this one would read, too.
   virtual void NoteKept(BlockId, std::size_t /*bytes*/) const {}

@@ -60,11 +60,11 @@ public:
     return false;
   }
 
-  /// Whether that can be expected to succeed where Foresee was called some time before. Any thread.
-  virtual bool MayForesee() const { return false; }
+  /// Whether that can be expected to succeed where Prefetch was called some time before. Any thread.
+  virtual bool MayPrefetch() const { return false; }
   /// Any thread: these blocks will probably be read; the system may bring what they take to its own cache
   /// meanwhile. Does not wait for it. May throw.
-  virtual void Foresee(std::vector<BlockId>) {}
+  virtual void Prefetch(std::vector<BlockId>) {}
 
   /// Between frames: other contents are to be brought from now on, but this block, which is in use, has not
   /// changed, and will not be asked for.

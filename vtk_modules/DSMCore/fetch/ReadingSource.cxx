@@ -213,10 +213,10 @@ bool ReadingSource::ReadWithoutWaiting(BlockId id, std::byte* block, std::size_t
   }
 }
 
-void ReadingSource::Foresee(std::vector<BlockId> ids)
+void ReadingSource::Prefetch(std::vector<BlockId> ids)
 {
   ReaderThreads::GetShared().Add(
-    [reader = this->Reader, ids = std::move(ids)] { reader->TellSystem(ids); });
+    [reader = this->Reader, ids = std::move(ids)] { reader->Prefetch(ids); });
 }
 
 void ReadingSource::NoteKept(const BlockWant& block)

@@ -35,8 +35,8 @@ public:
   bool Poll(const Deliver& deliver) override;
   void Abandon() noexcept override;
   bool ReadWithoutWaiting(BlockId id, std::byte* block, std::size_t bytes) const override;
-  bool MayForesee() const override { return this->Reader->MayTellSystem(); }
-  void Foresee(std::vector<BlockId> ids) override;
+  bool MayPrefetch() const override { return this->Reader->MayPrefetch(); }
+  void Prefetch(std::vector<BlockId> ids) override;
   void NoteKept(const BlockWant& block) override;
   void Read(BlockId id, std::byte* block, std::size_t bytes) const override;
 

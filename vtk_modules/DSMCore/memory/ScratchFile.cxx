@@ -156,7 +156,7 @@ ScratchFile::Attempt ScratchFile::TryRead(
   return done >= 0 && static_cast<std::size_t>(done) == count ? Attempt::Done : Attempt::WouldWait;
 }
 
-void ScratchFile::Foresee(std::uint64_t offset, std::size_t count) const
+void ScratchFile::Prefetch(std::uint64_t offset, std::size_t count) const
 {
   // A hint: where the system does not take it, nothing is lost.
   posix_fadvise(

@@ -36,7 +36,7 @@ public:
   /// Any thread: reads where no disk has to be waited for.
   Attempt TryRead(std::uint64_t offset, std::byte* bytes, std::size_t count) const;
   /// Any thread: the system may read them to its memory; does not wait for it.
-  void Foresee(std::uint64_t offset, std::size_t count) const;
+  void Prefetch(std::uint64_t offset, std::size_t count) const;
 
 private:
   void Open();

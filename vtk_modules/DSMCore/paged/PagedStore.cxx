@@ -286,19 +286,19 @@ PagedStore::Pin PagedStore::Admit(Worker& worker, const Segment& segment, BlockI
   return Pin(segment.GetAddress(id), segment, id);
 }
 
-bool PagedStore::Prefetch(const BlockSegment& segment, const BlockId* ids, std::size_t count)
+bool PagedStore::Prefetch(const BlockSegment& segment, const BlockId* ids, std::size_t count,
+  FunctionRef<void(BlockId, std::vector<BlockId>&)> addNeighbors)
 {
   const Segment& self = static_cast<const Segment&>(segment);
   // Mostly all is here; then the lock is not taken.
-  const BlockId* const last = ids + count;
-  const BlockId* const absent = std::find_if(ids, last,
+  const bool isAnyAbsent = std::any_of(ids, ids + count,
     [&](BlockId id)
     { return id < self.GetDirectory().GetCount() && self.GetHint(id) == PageHint::Absent; });
-  if (absent != last)
+  if (isAnyAbsent)
   {
-    this->Self->Prefetch(self, absent, static_cast<std::size_t>(last - absent));
+    this->Self->Prefetch(segment, ids, count, addNeighbors);
   }
-  return absent != last;
+  return isAnyAbsent;
 }
 
 void PagedStore::Enter(Worker& worker)

@@ -109,12 +109,8 @@ public:
   Pin Acquire(Worker& worker, const BlockSegment& segment, BlockId id);
 
   /// See ObjectStore. With Settings::PureFaulting nothing is prefetched, as in the paper.
-  bool Prefetch(const BlockSegment& segment, const BlockId* ids, std::size_t count);
-  /// Its workers read nothing by themselves.
-  void TellSystem(const BlockSegment&, const BlockId*, std::size_t,
-    FunctionRef<void(BlockId, std::vector<BlockId>&)>)
-  {
-  }
+  bool Prefetch(const BlockSegment& segment, const BlockId* ids, std::size_t count,
+    FunctionRef<void(BlockId, std::vector<BlockId>&)> addNeighbors = {});
 
   /// Nothing needs it here.
   void Quiesce(Worker&) {}

@@ -50,7 +50,7 @@ public:
 
 private:
   std::vector<std::uint32_t> Bytes;
-  std::uint32_t Largest; ///< of these: it is asked for with every brick that is foreseen
+  std::uint32_t Largest; ///< of these: it is asked for with every brick that is prefetched
   BlockAssigner Assigner;
   std::uint64_t IndexBytes = 0;
   bool FromSource = false;

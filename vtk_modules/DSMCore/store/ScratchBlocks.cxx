@@ -128,12 +128,12 @@ bool ScratchBlocks::ReadWithoutWaiting(BlockId id, std::byte* block, std::size_t
   return attempt == ScratchFile::Attempt::Done && HashBytes(block, bytes, id) == entry.Checksum;
 }
 
-void ScratchBlocks::TellSystem(const std::vector<BlockId>& ids) const
+void ScratchBlocks::Prefetch(const std::vector<BlockId>& ids) const
 {
   for (const BlockId id : ids)
   {
     const Entry& entry = this->Entries[id / this->Ranks];
-    this->File->Foresee(entry.Offset, entry.Bytes);
+    this->File->Prefetch(entry.Offset, entry.Bytes);
   }
 }
 

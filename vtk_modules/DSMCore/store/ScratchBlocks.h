@@ -45,8 +45,8 @@ public:
 
   void Read(BlockId id, std::byte* block, std::size_t bytes) const override;
   bool ReadWithoutWaiting(BlockId id, std::byte* block, std::size_t bytes) const override;
-  bool MayTellSystem() const override { return this->CanTell; }
-  void TellSystem(const std::vector<BlockId>& ids) const override;
+  bool MayPrefetch() const override { return this->CanTell; }
+  void Prefetch(const std::vector<BlockId>& ids) const override;
 
 private:
   struct Entry

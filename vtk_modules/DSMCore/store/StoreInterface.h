@@ -4,6 +4,7 @@
 
 #include "DSMCore/base/Block.h"
 #include "DSMCore/base/Counters.h"
+#include "DSMCore/base/FunctionRef.h"
 #include "DSMCore/publish/BlockDirectory.h"
 #include "DSMCore/publish/BlockSegment.h"
 #include "DSMCore/publish/Publication.h"
@@ -43,7 +44,8 @@ class StoreInterface
   static_assert(Is<std::size_t, decltype(std::declval<const Pin&>().GetBytes())>);
   static_assert(std::is_move_constructible_v<Pin>, "it is returned");
   static_assert(Is<bool,
-    decltype(Get().Prefetch(GetSegment(), std::declval<const BlockId*>(), std::size_t()))>);
+    decltype(Get().Prefetch(GetSegment(), std::declval<const BlockId*>(), std::size_t(),
+      FunctionRef<void(BlockId, std::vector<BlockId>&)>()))>);
   static_assert(Is<void, decltype(Get().Enter(GetWorker()))>);
   static_assert(Is<void, decltype(Get().Quiesce(GetWorker()))>);
   static_assert(Is<void, decltype(Get().Leave(GetWorker()))>);

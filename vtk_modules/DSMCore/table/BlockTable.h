@@ -50,11 +50,11 @@ public:
   {
     return this->Lines[id].Address.load(std::memory_order_acquire);
   }
-  /// The first of these ids whose block is not here; ids that there are not are passed by. Any thread: mostly all is
-  /// here, and then no lock is taken.
-  const BlockId* FindAbsent(const BlockId* first, const BlockId* last) const
+  /// Whether any of these blocks is not here; ids that there are not are passed by. Any thread: mostly all is here, and
+  /// then no lock is taken.
+  bool IsAnyAbsent(const BlockId* ids, std::size_t count) const
   {
-    return std::find_if(first, last,
+    return std::any_of(ids, ids + count,
       [this](BlockId id)
       {
         return id < this->GetDirectory().GetCount() &&

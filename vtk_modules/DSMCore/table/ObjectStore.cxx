@@ -104,28 +104,15 @@ const std::byte* ObjectStore::Wait(Worker& worker, const Segment& segment, Block
   return this->Self->Wait(worker, segment, id);
 }
 
-bool ObjectStore::Prefetch(const BlockSegment& segment, const BlockId* ids, std::size_t count)
+bool ObjectStore::Prefetch(const BlockSegment& segment, const BlockId* ids, std::size_t count,
+  FunctionRef<void(BlockId, std::vector<BlockId>&)> addNeighbors)
 {
-  const Segment& self = static_cast<const Segment&>(segment);
-  const BlockId* const last = ids + count;
-  const BlockId* const absent = self.FindAbsent(ids, last);
-  if (absent != last)
+  const bool isAnyAbsent = static_cast<const Segment&>(segment).IsAnyAbsent(ids, count);
+  if (isAnyAbsent)
   {
-    this->Self->Prefetch(self, absent, static_cast<std::size_t>(last - absent));
+    this->Self->Prefetch(segment, ids, count, addNeighbors);
   }
-  return absent != last;
-}
-
-void ObjectStore::TellSystem(const BlockSegment& segment, const BlockId* ids, std::size_t count,
-  FunctionRef<void(BlockId, std::vector<BlockId>&)> around)
-{
-  const Segment& self = static_cast<const Segment&>(segment);
-  const BlockId* const last = ids + count;
-  const BlockId* const absent = self.FindAbsent(ids, last);
-  if (absent != last)
-  {
-    this->Self->TellSystem(self, absent, static_cast<std::size_t>(last - absent), around);
-  }
+  return isAnyAbsent;
 }
 
 void ObjectStore::Announce(Worker& worker)

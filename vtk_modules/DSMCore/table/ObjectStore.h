@@ -105,17 +105,14 @@ public:
   /// to wait while the worker holds another pin, has not entered, or the segment was retired.
   Pin Acquire(Worker& worker, const BlockSegment& segment, BlockId id);
 
-  /// Worker: it will probably need these blocks soon. Those that are absent are asked for in one go,
-  /// unless too much of the cache is taken by blocks that were foreseen and not used yet. Never waits;
-  /// ids that there are not, blocks that are here or on their way, retired segments and frames that are
-  /// not open are passed by. Returns whether any block was not here.
-  bool Prefetch(const BlockSegment& segment, const BlockId* ids, std::size_t count);
-  /// Worker: it will perhaps need these blocks soon, which is not worth memory, nor a thread's time. Of those that are
-  /// absent and that the worker may read from the host's disk by itself, the system is told, and of those that
-  /// `around` adds for each of them, which lie beside it in the file; unless it seems to have all in its memory. Takes
-  /// nothing of the cache. Never waits; passes by what Prefetch does.
-  void TellSystem(const BlockSegment& segment, const BlockId* ids, std::size_t count,
-    FunctionRef<void(BlockId, std::vector<BlockId>&)> around);
+  /// Worker: it will probably need these blocks soon, the likeliest first. Where the bytes of those that are absent
+  /// are decides what is done. Where the worker may read a block from the host's disk by itself, the system is advised
+  /// to read it, which takes nothing of the cache; of a file's, also those that `addNeighbors` (may be empty) adds,
+  /// which lie beside it in the file. Other ranks' blocks are asked for in one go, unless too much of the cache is taken
+  /// by blocks that were prefetched and not used yet. Never waits; ids that there are not, blocks that are here or on
+  /// their way, retired segments and frames that are not open are passed by. Returns whether any block was not here.
+  bool Prefetch(const BlockSegment& segment, const BlockId* ids, std::size_t count,
+    FunctionRef<void(BlockId, std::vector<BlockId>&)> addNeighbors = {});
 
   /// Worker: holds no pin; memory of blocks evicted before may be reused. Call between tiles; it
   /// costs two loads as long as nothing was evicted.

@@ -91,10 +91,10 @@ public:
   /// Worker: the block. The pin is valid as long as the segment is published.
   Pin Acquire(Worker& worker, const BlockSegment& segment, BlockId id);
   bool MayPrefetch() const { return false; }
-  bool Prefetch(const BlockSegment&, const BlockId*, std::size_t) { return false; }
-  void TellSystem(const BlockSegment&, const BlockId*, std::size_t,
-    FunctionRef<void(BlockId, std::vector<BlockId>&)>)
+  bool Prefetch(const BlockSegment&, const BlockId*, std::size_t,
+    FunctionRef<void(BlockId, std::vector<BlockId>&)> = {})
   {
+    return false;
   }
   void Quiesce(Worker&) {}
   void Enter(Worker&) {}

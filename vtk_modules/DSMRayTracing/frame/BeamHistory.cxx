@@ -32,13 +32,12 @@ std::size_t BeamHistory::GetPlace(int column, int row, std::size_t object) const
   return (static_cast<std::size_t>(row) * this->Columns + column) * this->Objects + object;
 }
 
-BrickForecast BeamHistory::Predict(int x, int y, std::size_t object) const
+std::size_t BeamHistory::Predict(int x, int y, std::size_t object) const
 {
   const int column = x / Edge;
   const int row = y / Edge;
   std::size_t sum = 0;
   std::size_t known = 0;
-  std::size_t least = std::numeric_limits<std::size_t>::max();
   for (int j = std::max(row - 1, 0); j <= std::min(row + 1, this->Rows - 1); ++j)
   {
     for (int i = std::max(column - 1, 0); i <= std::min(column + 1, this->Columns - 1); ++i)
@@ -48,14 +47,12 @@ BrickForecast BeamHistory::Predict(int x, int y, std::size_t object) const
       const Depth depth = now != 0 ? now : this->Last[place];
       if (depth != 0)
       {
-        const std::size_t bricks = depth - std::size_t{ 1 };
-        sum += bricks;
-        least = std::min(least, bricks);
+        sum += depth - std::size_t{ 1 };
         ++known;
       }
     }
   }
-  return known > 0 ? BrickForecast{ (sum + known / 2) / known, least } : BrickForecast{};
+  return known > 0 ? (sum + known / 2) / known : 0;
 }
 
 void BeamHistory::Record(int x, int y, std::size_t object, std::size_t reached)

@@ -2,8 +2,6 @@
 #ifndef rt_BeamHistory_h
 #define rt_BeamHistory_h
 
-#include "DSMRayTracing/object/BrickForecast.h"
-
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
@@ -26,7 +24,7 @@ public:
 
   /// How many bricks an object's beam at a pixel will probably need: as many as the beams there and around it went
   /// through, those of this frame where they are traced. None where nothing is known.
-  BrickForecast Predict(int x, int y, std::size_t object) const;
+  std::size_t Predict(int x, int y, std::size_t object) const;
 
   /// What an object's beam at a pixel has come to (ObjectBeam::Reached).
   void Record(int x, int y, std::size_t object, std::size_t reached);

@@ -64,7 +64,7 @@ struct Frame
   std::string Explanation; ///< a sentence: why they are kept so
   dsm::StoreCounters Counters;
   std::vector<dsm::WorkerCounters> WorkerCounters;
-  /// What the next frame of the view foresees the need of bricks by; null where none are fetched.
+  /// What the next frame of the view prefetches bricks by; null where none are fetched.
   std::shared_ptr<const BeamHistory> Beams;
   /// That threads had nothing to trace, before this rank's last tile was done; summed over them.
   std::uint64_t IdleNanoseconds = 0;

@@ -7,6 +7,7 @@
 #include "DSMRayTracing/object/ObjectDigest.h"
 #include "DSMRayTracing/ray/ClipRegion.h"
 
+#include <cstddef>
 #include <memory>
 
 namespace rt
@@ -53,9 +54,9 @@ public:
     return this->Media.FindBeam(this->Medium.Field, *this->Medium.Function, corners);
   }
 
-  bool Prefetch(const ObjectBeam& beam, const BrickForecast& forecast) const override
+  bool Prefetch(const ObjectBeam& beam, std::size_t count) const override
   {
-    return this->Media.Prefetch(this->Medium.Field, beam, forecast);
+    return this->Media.Prefetch(this->Medium.Field, beam, count);
   }
 
   RayMask March(

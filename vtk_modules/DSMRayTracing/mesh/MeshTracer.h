@@ -19,7 +19,7 @@ namespace rt
 {
 
 /// A mesh as an object that rays meet. Rays need have nothing in common to be searched as packets, so it
-/// has no use for beams; its bricks are not foreseen.
+/// has no use for beams; its bricks are not prefetched.
 template <class Store>
 class MeshTracer final : public ObjectTracer
 {
@@ -34,7 +34,6 @@ public:
   bool IsOpaque() const override { return this->Object.IsOpaque(); }
 
   std::unique_ptr<ObjectBeam> FindBeam(const Ray*) const override { return nullptr; }
-  bool Prefetch(const ObjectBeam&, const BrickForecast&) const override { return false; }
 
   void FindNext(Ray* rays, RayMask wanted, ObjectBeam*, ObjectHit* nearest) const override
   {

@@ -2,10 +2,10 @@
 #ifndef rt_BeamFinder_h
 #define rt_BeamFinder_h
 
-#include "DSMRayTracing/object/BrickForecast.h"
 #include "DSMRayTracing/object/ObjectBeam.h"
 #include "DSMRayTracing/ray/Ray.h"
 
+#include <cstddef>
 #include <memory>
 
 namespace rt
@@ -21,9 +21,9 @@ public:
   /// tell.
   virtual std::unique_ptr<ObjectBeam> FindBeam(const Ray corners[4]) const = 0;
 
-  /// Asks for the first bricks that a beam meets, as many as are foreseen, ahead of the search; returns whether any was
-  /// absent. Never waits.
-  virtual bool Prefetch(const ObjectBeam& beam, const BrickForecast& forecast) const = 0;
+  /// Has the first `count` bricks that a beam meets prefetched, ahead of the search; returns whether any was absent.
+  /// Never waits.
+  virtual bool Prefetch(const ObjectBeam&, std::size_t /*count*/) const { return false; }
 };
 
 } // namespace rt

@@ -41,9 +41,9 @@ public:
     return this->Surfaces.FindBeam(this->Object, corners);
   }
 
-  bool Prefetch(const ObjectBeam& beam, const BrickForecast& forecast) const override
+  bool Prefetch(const ObjectBeam& beam, std::size_t count) const override
   {
-    return this->Object.Look.IsSeen() && this->Surfaces.Prefetch(this->Object, beam, forecast);
+    return this->Object.Look.IsSeen() && this->Surfaces.Prefetch(this->Object, beam, count);
   }
 
   void FindNext(Ray* rays, RayMask wanted, ObjectBeam* beam, ObjectHit* nearest) const override

@@ -175,7 +175,7 @@ void PositionedFile::ReadUnchecked(std::uint64_t offset, std::byte* out, std::si
   const int descriptor = isScattered ? this->Scattered : this->Descriptor;
   if (isScattered && waits)
   {
-    this->Foresee(offset, bytes);
+    this->Prefetch(offset, bytes);
   }
   std::size_t done = 0;
   while (done < bytes)
@@ -207,7 +207,7 @@ void PositionedFile::ReadUnchecked(std::uint64_t offset, std::byte* out, std::si
   }
 }
 
-void PositionedFile::Foresee(std::uint64_t offset, std::size_t bytes) const
+void PositionedFile::Prefetch(std::uint64_t offset, std::size_t bytes) const
 {
   std::uint64_t end = offset + bytes;
   if (this->Scattered >= 0)
@@ -220,14 +220,14 @@ void PositionedFile::Foresee(std::uint64_t offset, std::size_t bytes) const
     POSIX_FADV_WILLNEED);
 }
 
-void PositionedFile::Foresee(std::vector<Piece> pieces) const
+void PositionedFile::Prefetch(std::vector<Piece> pieces) const
 {
   std::sort(pieces.begin(), pieces.end(),
     [](const Piece& one, const Piece& other) { return one.Offset < other.Offset; });
   for (auto piece = pieces.cbegin(); piece != pieces.cend();)
   {
     const Run run = FindRun(pieces, piece);
-    this->Foresee(run.Begin, static_cast<std::size_t>(run.End - run.Begin));
+    this->Prefetch(run.Begin, static_cast<std::size_t>(run.End - run.Begin));
     piece = run.Last;
   }
 }

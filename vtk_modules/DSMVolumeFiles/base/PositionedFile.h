@@ -54,9 +54,9 @@ public:
 
   /// The system may read them to its own cache already, of a large file with what is in the same 32 KiB; does not
   /// wait for it.
-  void Foresee(std::uint64_t offset, std::size_t bytes) const;
+  void Prefetch(std::uint64_t offset, std::size_t bytes) const;
   /// Likewise, in any order, as Read takes them together.
-  void Foresee(std::vector<Piece> pieces) const;
+  void Prefetch(std::vector<Piece> pieces) const;
 
 private:
   /// Several pieces that are read together: those from First up to Last, and bytes from Begin up to End.

@@ -349,8 +349,8 @@ bool ChunkCache::ReadWithHalo(const std::shared_ptr<const VolumeFile>& file, std
   return true;
 }
 
-void ChunkCache::Foresee(const std::shared_ptr<const VolumeFile>& file, std::size_t array, int step,
-  const std::vector<bricks::Box>& boxes) const
+void ChunkCache::Prefetch(const std::shared_ptr<const VolumeFile>& file, std::size_t array,
+  int step, const std::vector<bricks::Box>& boxes) const
 {
   const FileArray& what = file->GetArrays()[array];
   try
@@ -370,7 +370,7 @@ void ChunkCache::Foresee(const std::shared_ptr<const VolumeFile>& file, std::siz
           }
         });
     }
-    file->Foresee(array, step, parts);
+    file->Prefetch(array, step, parts);
   }
   catch (const std::exception&)
   {

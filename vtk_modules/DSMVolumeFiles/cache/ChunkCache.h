@@ -78,7 +78,7 @@ public:
 
   /// Boxes will probably be read soon: the system is told of what is not here, without what boxes side by side
   /// have in common. What goes wrong is said when it is read.
-  void Foresee(const std::shared_ptr<const VolumeFile>& file, std::size_t array, int step,
+  void Prefetch(const std::shared_ptr<const VolumeFile>& file, std::size_t array, int step,
     const std::vector<bricks::Box>& boxes) const;
 
 private:

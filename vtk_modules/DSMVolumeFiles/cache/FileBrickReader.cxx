@@ -11,10 +11,10 @@ namespace vol
 {
 
 FileBrickReader::FileBrickReader(const bricks::BrickLattice& lattice,
-  std::shared_ptr<const bricks::VoxelSource> source, Foresight foresee)
+  std::shared_ptr<const bricks::VoxelSource> source, Prefetcher prefetch)
   : Lattice(lattice)
   , Bricks(lattice, std::move(source))
-  , Foresee(std::move(foresee))
+  , PrefetchBoxes(std::move(prefetch))
 {
 }
 
@@ -45,7 +45,7 @@ bool FileBrickReader::ReadWithoutWaiting(dsm::BlockId id, std::byte* block, std:
   }
 }
 
-void FileBrickReader::TellSystem(const std::vector<dsm::BlockId>& ids) const
+void FileBrickReader::Prefetch(const std::vector<dsm::BlockId>& ids) const
 {
   try
   {
@@ -56,7 +56,7 @@ void FileBrickReader::TellSystem(const std::vector<dsm::BlockId>& ids) const
         const bricks::Box cells = this->Lattice.GetCellsOfBrick(id);
         return bricks::Box{ cells.Min, cells.Max + bricks::Index3(1) };
       });
-    this->Foresee(std::move(boxes));
+    this->PrefetchBoxes(std::move(boxes));
   }
   catch (const std::bad_alloc&) // they are read when they are wanted
   {

@@ -17,23 +17,23 @@ namespace vol
 class FileBrickReader final : public dsm::BlockReader
 {
 public:
-  /// Tells the system that samples in boxes will be read. Any thread; throws nothing.
-  using Foresight = std::function<void(std::vector<bricks::Box> boxes)>;
+  /// Advises the system that samples in boxes will be read. Any thread; throws nothing.
+  using Prefetcher = std::function<void(std::vector<bricks::Box> boxes)>;
 
   /// `source` reads through vol::PositionedFile. Throws as bricks::VoxelBrickReader does.
   FileBrickReader(const bricks::BrickLattice& lattice,
-    std::shared_ptr<const bricks::VoxelSource> source, Foresight foresee);
+    std::shared_ptr<const bricks::VoxelSource> source, Prefetcher prefetch);
 
   void Read(dsm::BlockId id, std::byte* block, std::size_t bytes) const override;
   bool ReadWithoutWaiting(dsm::BlockId id, std::byte* block, std::size_t bytes) const override;
 
-  bool MayTellSystem() const override { return this->CanTell; }
-  void TellSystem(const std::vector<dsm::BlockId>& ids) const override;
+  bool MayPrefetch() const override { return this->CanTell; }
+  void Prefetch(const std::vector<dsm::BlockId>& ids) const override;
 
 private:
   bricks::BrickLattice Lattice;
   bricks::VoxelBrickReader Bricks;
-  Foresight Foresee;
+  Prefetcher PrefetchBoxes;
   mutable std::atomic<bool> CanTell{ true }; ///< the file system, what is in memory
 };
 

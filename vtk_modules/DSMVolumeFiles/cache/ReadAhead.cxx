@@ -150,7 +150,7 @@ struct ReadAhead::Shared : std::enable_shared_from_this<Shared>
       hasRoom = contents.Cache.Lend(job.Bytes, RoomDivisor);
       if (!hasRoom)
       {
-        contents.To.Reader->TellSystem({ job.Id });
+        contents.To.Reader->Prefetch({ job.Id });
         return;
       }
       std::vector<std::byte> brick(job.Bytes);

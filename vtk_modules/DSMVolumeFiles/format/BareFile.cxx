@@ -118,7 +118,7 @@ public:
     return true;
   }
 
-  void Foresee(std::size_t, int, const std::vector<ChunkPart>& parts) const override
+  void Prefetch(std::size_t, int, const std::vector<ChunkPart>& parts) const override
   {
     const FileArray& array = this->Arrays.front();
     std::vector<PositionedFile::Piece> pieces;
@@ -128,7 +128,7 @@ public:
         this->FindPieces(array, this->Codec.IsPlain() ? part : array.Grid.GetBox(chunk));
       pieces.insert(pieces.end(), more.begin(), more.end());
     }
-    this->File->Foresee(std::move(pieces));
+    this->File->Prefetch(std::move(pieces));
   }
 
 private:

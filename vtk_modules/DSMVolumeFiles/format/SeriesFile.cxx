@@ -107,9 +107,9 @@ public:
     return this->Get(step)->ReadWithHalo(array, 0, chunk, out);
   }
 
-  void Foresee(std::size_t array, int step, const std::vector<ChunkPart>& parts) const override
+  void Prefetch(std::size_t array, int step, const std::vector<ChunkPart>& parts) const override
   {
-    this->Get(step)->Foresee(array, 0, parts);
+    this->Get(step)->Prefetch(array, 0, parts);
   }
 
   Index ReadIndex(std::size_t array, int step) const override

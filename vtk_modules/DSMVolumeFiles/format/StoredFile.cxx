@@ -316,7 +316,7 @@ bool StoredFile::ReadWithHalo(
   return true;
 }
 
-void StoredFile::Foresee(std::size_t array, int step, const std::vector<ChunkPart>& parts) const
+void StoredFile::Prefetch(std::size_t array, int step, const std::vector<ChunkPart>& parts) const
 {
   std::map<std::shared_ptr<const PositionedFile>, std::vector<PositionedFile::Piece>> found;
   for (const auto& [chunk, part] : parts)
@@ -337,7 +337,7 @@ void StoredFile::Foresee(std::size_t array, int step, const std::vector<ChunkPar
   }
   for (auto& [file, pieces] : found)
   {
-    file->Foresee(std::move(pieces));
+    file->Prefetch(std::move(pieces));
   }
 }
 

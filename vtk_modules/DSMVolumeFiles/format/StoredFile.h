@@ -25,7 +25,7 @@ public:
   bool ReadWithHalo(
     std::size_t array, int step, const bricks::Index3& chunk, std::byte* out) const override;
 
-  void Foresee(std::size_t array, int step, const std::vector<ChunkPart>& parts) const override;
+  void Prefetch(std::size_t array, int step, const std::vector<ChunkPart>& parts) const override;
 
   /// Throws what reading a chunk threw, with the chunk's and the file's names.
   [[noreturn]] static void RefuseChunk(const FileArray& array, const bricks::Index3& chunk,

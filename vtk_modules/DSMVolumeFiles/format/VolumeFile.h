@@ -124,7 +124,7 @@ public:
   };
   /// Parts of chunks will probably be read soon: the system may fetch them to its own cache meanwhile, or all of a
   /// chunk where a part cannot be read alone. Throws dsm::Error.
-  virtual void Foresee(std::size_t, int, const std::vector<ChunkPart>&) const {}
+  virtual void Prefetch(std::size_t, int, const std::vector<ChunkPart>&) const {}
 
   /// What a file that dsm_convert wrote tells of an array beside its values (docs/files.md); empty where it does
   /// not. Throws std::bad_alloc.

@@ -49,7 +49,7 @@ public:
     if (!this->TryRead(id, block, bytes))
     {
       this->Here->Read(id, block, bytes);
-      this->Foresee(id, bytes);
+      this->PrefetchNext(id, bytes);
     }
   }
 
@@ -58,7 +58,7 @@ public:
     const bool isHere = this->Ahead && this->Ahead->Take(id, block, bytes);
     if (isHere)
     {
-      this->Foresee(id, bytes);
+      this->PrefetchNext(id, bytes);
     }
     return isHere;
   }
@@ -72,20 +72,20 @@ public:
     const bool isRead = this->Here->ReadWithoutWaiting(id, block, bytes);
     if (isRead)
     {
-      this->Foresee(id, bytes);
+      this->PrefetchNext(id, bytes);
     }
     return isRead;
   }
 
-  bool MayTellSystem() const override { return this->Here->MayTellSystem(); }
-  void TellSystem(const std::vector<dsm::BlockId>& ids) const override
+  bool MayPrefetch() const override { return this->Here->MayPrefetch(); }
+  void Prefetch(const std::vector<dsm::BlockId>& ids) const override { this->Here->Prefetch(ids); }
+  void NoteKept(dsm::BlockId id, std::size_t bytes) const override
   {
-    this->Here->TellSystem(ids);
+    this->PrefetchNext(id, bytes);
   }
-  void NoteKept(dsm::BlockId id, std::size_t bytes) const override { this->Foresee(id, bytes); }
 
 private:
-  void Foresee(dsm::BlockId id, std::size_t bytes) const
+  void PrefetchNext(dsm::BlockId id, std::size_t bytes) const
   {
     if (!this->Next)
     {
@@ -404,7 +404,7 @@ std::shared_ptr<const dsm::BlockReader> vtkDSMFileVolume::CreateReader(
       this->Values->GetStep(),
       vol::FileSamples::Part{ this->Values->GetBox(), this->Component, lattice.GetScalarType() },
       vol::ChunkCache::GetShared(), scattered),
-    [values = this->Values](std::vector<Box> boxes) { values->Foresee(std::move(boxes)); });
+    [values = this->Values](std::vector<Box> boxes) { values->Prefetch(std::move(boxes)); });
 }
 
 std::uint64_t vtkDSMFileVolume::GetKey(const bricks::BrickLattice& lattice) const

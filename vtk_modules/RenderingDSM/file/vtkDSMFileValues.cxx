@@ -51,13 +51,13 @@ void vtkDSMFileValues::ReadBox(const bricks::Box& box, std::byte* out) const
     this->File, this->Array, this->Step, { box.Min + this->Box.Min, box.Max + this->Box.Min }, out);
 }
 
-void vtkDSMFileValues::Foresee(std::vector<bricks::Box> boxes) const
+void vtkDSMFileValues::Prefetch(std::vector<bricks::Box> boxes) const
 {
   for (bricks::Box& box : boxes)
   {
     box = { box.Min + this->Box.Min, box.Max + this->Box.Min };
   }
-  vol::ChunkCache::GetShared().Foresee(this->File, this->Array, this->Step, boxes);
+  vol::ChunkCache::GetShared().Prefetch(this->File, this->Array, this->Step, boxes);
 }
 
 std::uint64_t vtkDSMFileValues::GetStamp() const

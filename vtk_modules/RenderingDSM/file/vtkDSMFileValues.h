@@ -41,7 +41,7 @@ public:
   void ReadBox(const bricks::Box& box, std::byte* out) const;
 
   /// The samples of boxes will probably be needed soon: the system is told. Nothing fails.
-  void Foresee(std::vector<bricks::Box> boxes) const;
+  void Prefetch(std::vector<bricks::Box> boxes) const;
 
   /// The part is what a rank has of all of the array: FindRanges may find those of more (vol::LoadRanges).
   void SetShare(bool isShare) { this->IsShare = isShare; }

@@ -11,7 +11,6 @@
 #include "DSMRayTracing/field/lattice/TransferTest.h"
 #include "DSMRayTracing/field/lattice/TypedPacketBrick.h"
 #include "DSMRayTracing/look/TransferFunction.h"
-#include "DSMRayTracing/object/BrickForecast.h"
 #include "DSMRayTracing/ray/MediumLight.h"
 #include "DSMRayTracing/ray/Ray.h"
 
@@ -58,14 +57,13 @@ public:
   }
 
   /// See BeamFinder.
-  bool Prefetch(
-    const LatticeField& field, const ObjectBeam& beam, const BrickForecast& forecast) const
+  bool Prefetch(const LatticeField& field, const ObjectBeam& beam, std::size_t count) const
   {
     const auto& bricks = static_cast<const BeamBricks&>(beam).Bricks;
-    std::vector<dsm::BlockId> ids(std::min(forecast.Mean, bricks.size()));
+    std::vector<dsm::BlockId> ids(std::min(count, bricks.size()));
     std::transform(bricks.begin(), bricks.begin() + static_cast<std::ptrdiff_t>(ids.size()),
       ids.begin(), [](const BeamBricks::Brick& brick) { return brick.Id; });
-    return this->Blocks.Prefetch(*field.Voxels->Segment, ids.data(), ids.size());
+    return this->Blocks.Prefetch(*field.Voxels->Segment, ids.data(), ids.size(), {});
   }
 
   /// See MediumTracer.

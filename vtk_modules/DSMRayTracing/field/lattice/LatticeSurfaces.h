@@ -40,26 +40,15 @@ public:
   }
 
   /// See ObjectTracer.
-  bool Prefetch(const Sets& sets, const ObjectBeam& beam, const BrickForecast& forecast) const
+  bool Prefetch(const Sets& sets, const ObjectBeam& beam, std::size_t count) const
   {
     const auto& bricks = static_cast<const BeamBricks&>(beam).Bricks;
-    // One that was sent in vain, or that the system has read in vain, costs little; one that was cut out of a file in
-    // vain costs a thread's time, so of these only the first ones are foreseen of those that no beam around did
-    // without.
-    const dsm::BlockSegment& segment = *sets.Field.Voxels->Segment;
-    const dsm::BlockDirectory& directory = segment.GetDirectory();
-    const bool isCut = directory.IsFromSource() && !directory.IsOnOwnersDisk();
-    std::vector<dsm::BlockId> ids(std::min(forecast.Mean, bricks.size()));
+    std::vector<dsm::BlockId> ids(std::min(count, bricks.size()));
     std::transform(bricks.begin(), bricks.begin() + static_cast<std::ptrdiff_t>(ids.size()),
       ids.begin(), [](const BeamBricks::Brick& brick) { return brick.Id; });
-    std::size_t count = ids.size();
-    if (isCut)
-    {
-      this->Blocks.TellSystem(segment, ids.data(), ids.size(),
-        [&](dsm::BlockId id, std::vector<dsm::BlockId>& around) { AddRow(sets, id, around); });
-      count = std::min(count, (forecast.Least + 1) / 2);
-    }
-    return this->Blocks.Prefetch(segment, ids.data(), count);
+    return this->Blocks.Prefetch(*sets.Field.Voxels->Segment, ids.data(), ids.size(),
+      [&](dsm::BlockId id, std::vector<dsm::BlockId>& neighbors)
+      { AddNeighbors(sets, id, neighbors); });
   }
 
   /// Finds the first hits of those of the rays that are `wanted` in [ray.Min, ray.Max], returns which have one, and
@@ -91,12 +80,12 @@ public:
   }
 
 private:
-  /// Bricks in a row are told of together when they are in the same part of it, of so many.
+  /// Bricks in a row are neighbors when they are in the same part of it, of so many.
   static constexpr std::int64_t PartOfRow = 8;
 
   /// What lies beside a brick in its row, and so in most files, as far as it may have to do with the surface: a disk
   /// brings it along for little.
-  static void AddRow(const Sets& sets, dsm::BlockId id, std::vector<dsm::BlockId>& around)
+  static void AddNeighbors(const Sets& sets, dsm::BlockId id, std::vector<dsm::BlockId>& neighbors)
   {
     const bricks::VoxelField& field = *sets.Field.Voxels;
     const std::vector<bricks::ValueRange>& ranges = field.Hierarchy.GetLevels().front().Ranges;
@@ -110,7 +99,7 @@ private:
       for (std::int64_t x = place.x + step; x >= first && x <= last && mayHold(ranges[find(x)]);
            x += step)
       {
-        around.push_back(find(x));
+        neighbors.push_back(find(x));
       }
     }
   }
