@@ -7,19 +7,25 @@
 #include "vtkAssembly.h"
 #include "vtkCallbackCommand.h"
 #include "vtkCameraPass.h"
+#include "vtkColorTransferFunction.h"
 #include "vtkCommand.h"
 #include "vtkContourValues.h"
+#include "vtkFixedPointVolumeRayCastMapper.h"
 #include "vtkObjectFactory.h"
+#include "vtkPiecewiseFunction.h"
 #include "vtkPropAssembly.h"
 #include "vtkProperty.h"
 #include "vtkRTAnalyticSource.h"
 #include "vtkRenderPass.h"
 #include "vtkTestErrorObserver.h"
+#include "vtkUnsignedCharArray.h"
 #include "vtkValuePass.h"
 #include "vtkVolumeProperty.h"
 #include "vtkWeakPointer.h"
 
 #include <array>
+#include <cmath>
+#include <cstdlib>
 #include <string>
 #include <tuple>
 
@@ -31,6 +37,85 @@ std::array<double, 6> GetBounds(vtkVolume* volume)
   std::array<double, 6> bounds{};
   volume->GetBounds(bounds.data());
   return bounds;
+}
+
+/// The mean difference of two pictures' channels, in 255ths.
+double GetDifference(vtkUnsignedCharArray* one, vtkUnsignedCharArray* other)
+{
+  double sum = 0.0;
+  for (vtkIdType value = 0; value < one->GetNumberOfValues(); ++value)
+  {
+    sum += std::abs(one->GetValue(value) - other->GetValue(value));
+  }
+  return sum / static_cast<double>(one->GetNumberOfValues());
+}
+
+TEST_F(VolumeMapper, StandsInForTheRayCastMapper)
+{
+  vtkNew<vtkColorTransferFunction> colors;
+  colors->AddRGBPoint(0.0, 0.9, 0.2, 0.1);
+  colors->AddRGBPoint(0.5, 0.2, 0.9, 0.3);
+  colors->AddRGBPoint(1.0, 0.1, 0.3, 0.9);
+  vtkNew<vtkPiecewiseFunction> gray;
+  gray->AddPoint(0.0, 0.2);
+  gray->AddPoint(1.0, 1.0);
+  vtkNew<vtkPiecewiseFunction> opacity;
+  opacity->AddPoint(0.0, 0.3);
+  opacity->AddPoint(0.4, 0.0);
+  opacity->AddPoint(0.5, 0.1);
+  opacity->AddPoint(0.9, 0.0);
+  this->Place();
+  this->Renderer->AddVolume(this->Volume);
+  for (const bool isGray : { false, true })
+  {
+    vtkNew<vtkVolumeProperty> property;
+    property->SetInterpolationTypeToLinear();
+    property->SetScalarOpacity(opacity);
+    property->SetScalarOpacityUnitDistance(1.5);
+    if (isGray)
+    {
+      property->SetColor(gray);
+    }
+    else
+    {
+      property->SetColor(colors);
+    }
+    this->Volume->SetProperty(property);
+    vtkNew<vtkFixedPointVolumeRayCastMapper> theirs;
+    vtkNew<vtkDSMVolumeMapper> ours; // the class name, and nothing else
+    const auto draw = [&](vtkVolumeMapper* mapper)
+    {
+      mapper->SetInputDataObject(MakeBall());
+      this->Volume->SetMapper(mapper);
+      this->Window->Render();
+      vtkNew<vtkUnsignedCharArray> pixels;
+      this->Window->GetPixelData(0, 0, Size - 1, Size - 1, 0, pixels);
+      return vtkSmartPointer<vtkUnsignedCharArray>(pixels);
+    };
+    const auto found = draw(ours);
+    EXPECT_EQ(property->GetColorChannels(), isGray ? 1 : 3);
+    EXPECT_LT(GetDifference(found, draw(theirs)), 1.5);
+    property->SetScalarOpacityUnitDistance(1e6);
+    EXPECT_GT(GetDifference(found, draw(ours)), 5.0) << "little is seen";
+    this->Volume->SetMapper(this->Mapper); // the others go
+  }
+}
+
+TEST_F(VolumeMapper, SaysWhatMediaDoNotHave)
+{
+  this->Mapper->SetNumberOfIsoValues(0);
+  this->Renderer->AddVolume(this->Volume);
+  vtkNew<vtkTest::ErrorObserver> observer;
+  this->Mapper->AddObserver(vtkCommand::ErrorEvent, observer);
+  this->Mapper->AddObserver(vtkCommand::WarningEvent, observer);
+  this->Window->Render();
+  EXPECT_FALSE(observer->GetError() || observer->GetWarning());
+  this->Volume->GetProperty()->ShadeOn();
+  this->Window->Render();
+  EXPECT_NE(observer->GetWarningMessage().find("shading"), std::string::npos);
+  this->Mapper->SetBlendModeToMaximumIntensity();
+  this->Window->Render();
+  EXPECT_NE(observer->GetErrorMessage().find("Composite"), std::string::npos);
 }
 
 TEST_F(VolumeMapper, IsDrawnAgainAfterAllPropsWereRemoved)
@@ -107,6 +192,7 @@ TEST_F(VolumeMapper, SaysThatItHasNoIsovalue)
   vtkNew<vtkTest::ErrorObserver> observer;
   this->Mapper->AddObserver(vtkCommand::ErrorEvent, observer);
   this->Mapper->SetNumberOfIsoValues(0);
+  this->Mapper->SurfacesOnlyOn();
   this->Renderer->AddVolume(this->Volume);
   EXPECT_EQ(CountCovered(this->RenderDistances()), 0);
   ASSERT_TRUE(observer->GetError());

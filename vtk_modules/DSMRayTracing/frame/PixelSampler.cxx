@@ -216,7 +216,7 @@ void PixelSampler::AddMedia(
       const float weight = 1.0f - path.Color.w;
       const glm::vec4 layer = weight *
         glm::vec4(
-          glm::vec3(light->Color[index]), static_cast<float>(1.0 - light->Transmittance[index]));
+          glm::vec3(light->GetColor(index)), static_cast<float>(1.0 - light->Transmittance[index]));
       path.Color += layer;
       if (path.Layers)
       {

@@ -58,6 +58,11 @@ TransferFunction::TransferFunction(
     integral += slope;
     before = slope;
   }
+  for (const Behavior& group : groups)
+  {
+    this->Whole = { std::max(this->Whole.Extinction, group.Extinction),
+      std::max(this->Whole.Change, group.Change) };
+  }
   this->Largest.push_back(groups);
   for (std::size_t width = 1; 2 * width <= Groups; width *= 2)
   {

@@ -47,6 +47,8 @@ public:
     double Change = 0.0;     ///< at most, of anything, from a bin to the next
   };
   Behavior FindBehavior(double begin, double end) const;
+  /// Anywhere.
+  const Behavior& GetBehavior() const { return this->Whole; }
 
   /// Whether any value from `first` to `last` is seen.
   bool IsSeen(double first, double last) const
@@ -86,6 +88,7 @@ private:
   std::vector<int> SeenBefore; ///< bins before each that are seen; one more at the end
   /// Largest Behavior of 1, 2, 4 ... groups of bins that follow one another, from each group on.
   std::vector<std::vector<Behavior>> Largest;
+  Behavior Whole;
   std::uint64_t Digest;
 };
 

@@ -38,11 +38,11 @@ void Merge(std::vector<MediumPiece>& pieces, int ray, MediumLight& light)
     open.erase(std::remove_if(open.begin(), open.end(),
                  [&](std::size_t number) { return pieces[number].End <= begin; }),
       open.end());
-    glm::dvec4 amount(0.0);
+    Lanes amount(0.0);
     for (const std::size_t number : open)
     {
       const MediumPiece& piece = pieces[number];
-      amount += (ends[end] - begin) / (piece.End - piece.Begin) * piece.Amount;
+      amount = amount + piece.Amount * Lanes((ends[end] - begin) / (piece.End - piece.Begin));
     }
     light.Add(ray, { begin, ends[end], amount });
   }
@@ -58,18 +58,13 @@ void MediaMarcher::March(const Ray* rays, RayMask wanted, SceneBeam* beam, Mediu
   {
     ObjectBeam* const own = beam ? beam->Objects[this->FirstBeam + medium].get() : nullptr;
     // Each ends where it is dark by itself: so are the others behind that.
-    ForEachRay(wanted, [&](int ray) { light.Transmittance[ray] = 1.0; });
+    light.ClearSums(wanted);
     this->Media[medium]->March(rays, wanted, own, light);
   }
   if (std::exchange(light.KeepsPieces, false))
   {
-    ForEachRay(wanted,
-      [&](int ray)
-      {
-        light.Transmittance[ray] = 1.0;
-        light.Color[ray] = glm::dvec3(0.0);
-        Merge(light.Pieces[ray], ray, light);
-      });
+    light.ClearSums(wanted);
+    ForEachRay(wanted, [&](int ray) { Merge(light.Pieces[ray], ray, light); });
   }
 }
 

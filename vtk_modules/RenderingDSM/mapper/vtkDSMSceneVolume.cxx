@@ -471,6 +471,7 @@ void vtkDSMSceneVolume::AddMedia(const vtkDSMVolumeLook& look, rt::Scene& scene)
   {
     return;
   }
+  look.FindMissingFeatures(this->Warnings);
   const auto function = look.CreateTransferFunction(range, this->Messages);
   if (!function)
   {

@@ -51,6 +51,25 @@ std::shared_ptr<const rt::TransferFunction> vtkDSMVolumeLook::CreateTransferFunc
     vtkVolume::SafeDownCast(this->Prop)->GetProperty(), range.First, range.Last);
 }
 
+void vtkDSMVolumeLook::FindMissingFeatures(std::vector<std::string>& warnings) const
+{
+  vtkVolumeProperty* const property = vtkVolume::SafeDownCast(this->Prop)->GetProperty();
+  const auto warn = [&](bool isMissing, const char* feature, const char* remedy)
+  {
+    if (isMissing)
+    {
+      warnings.push_back(std::string("The volume's property asks for ") + feature +
+        ", which the DSM ray tracer does not have for volumes yet. The volume is drawn without. " +
+        remedy);
+    }
+  };
+  warn(property->GetShade(0) != 0, "shading", "Call ShadeOff(), or use VTK's own mapper.");
+  warn(property->HasGradientOpacity(0), "gradient opacity",
+    "Call DisableGradientOpacityOn(), or use VTK's own mapper.");
+  warn(property->GetTransferFunctionMode() == vtkVolumeProperty::TF_2D,
+    "a two-dimensional transfer function", "Call SetTransferFunctionModeTo1D().");
+}
+
 int vtkDSMVolumeLook::GetColorComponent() const
 {
   vtkScalarsToColors* table = this->Mapper->GetLookupTable();

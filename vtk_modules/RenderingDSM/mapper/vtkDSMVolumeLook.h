@@ -25,6 +25,8 @@ public:
   bool IsLikeRayCastMapper() const;
   /// Whether the volume is a medium, as its property and the blend mode say, and there are no isosurfaces.
   bool IsMedium() const;
+  /// Tells what the property asks for that media do not have yet.
+  void FindMissingFeatures(std::vector<std::string>& warnings) const;
   /// Of the medium, for values that are all in the range. Null: nothing is to be seen. Adds what is wrong to the messages.
   std::shared_ptr<const rt::TransferFunction> CreateTransferFunction(
     const bricks::ValueRange& range, std::vector<std::string>& messages) const;

@@ -8,7 +8,8 @@
  *
  * It stands in for vtkGPUVolumeRayCastMapper: the blend mode Composite (the default) shows the volume as a medium, by the
  * color and opacity functions and the unit distance of the vtkVolume's vtkVolumeProperty. ScalarMode and
- * SelectScalarArray() choose the point array.
+ * SelectScalarArray() choose the point array. Interpolation is trilinear always. Shading, gradient opacity and the other
+ * blend modes are not there yet, and the mapper says so.
  *
  * With an isovalue, with AutomaticIsoValue or with SurfacesOnly, isosurfaces are shown instead. Isovalues and look are
  * the mapper's own: IsoArray, IsoValues, ColorArray, and a vtkProperty, the

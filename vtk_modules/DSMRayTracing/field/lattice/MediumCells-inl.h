@@ -68,6 +68,7 @@ public:
   MediumCells(const TransferFunction& function, MediumLight& light)
     : Function(function)
     , Light(light)
+    , Everywhere(function.GetBehavior())
   {
   }
 
@@ -84,22 +85,45 @@ public:
     {
       coefficient = hn::Mul(coefficient, scale);
     }
-    HWY_ALIGN double inverse[Width];
-    const int most = this->CountPieces(cells, cubic, length, left, inverse);
+    Pieces pieces;
+    const Vector two = hn::Set(tag, 2.0);
+    const Vector atBegin = hn::Mul(two, cubic[2]);
+    const Vector atEnd = hn::Add(atBegin, hn::Mul(hn::Set(tag, 6.0), cubic[3]));
+    const Vector bend = hn::Max(hn::Abs(atBegin), hn::Abs(atEnd));
+    int most = 1;
+    if (this->IsOneEnough(bend, length))
+    {
+      std::fill_n(pieces.Part, Width, 1.0);
+    }
+    else
+    {
+      most = this->Count(cells, bend, length, left, pieces);
+    }
     if (left == 0)
     {
       return 0;
     }
-    Piece pieces(*this, cells, hn::Mul(length, hn::Load(tag, inverse)), inverse);
+    const Vector part = hn::Load(tag, pieces.Part);
+    hn::Store(hn::Mul(length, part), tag, pieces.Length);
+    HWY_ALIGN double places[Width];
+    hn::Store(cubic[0], tag, places);
+    for (std::uint32_t lanes = left; lanes != 0; lanes &= lanes - 1)
+    {
+      const int lane = __builtin_ctz(lanes);
+      Lanes slope;
+      pieces.Place[lane] = places[lane];
+      pieces.Integral[lane] = this->Function.Integrate(places[lane], slope);
+    }
     std::uint32_t ended = 0;
-    for (int number = 0; number <= most && left != 0; ++number)
+    for (int number = 1; number <= most && left != 0; ++number)
     {
       // The last one is the cell's end, whatever rounding does.
-      const Vector way = hn::Min(hn::Set(tag, 1.0),
-        hn::Mul(hn::Set(tag, static_cast<double>(number)), hn::Load(tag, inverse)));
+      const Vector way =
+        hn::Min(hn::Set(tag, 1.0), hn::Mul(hn::Set(tag, static_cast<double>(number)), part));
       const Vector inner = hn::Add(cubic[2], hn::Mul(way, cubic[3]));
-      const Vector place = hn::Add(cubic[0], hn::Mul(way, hn::Add(cubic[1], hn::Mul(way, inner))));
-      ended |= pieces.Add(number, place, left);
+      hn::Store(
+        hn::Add(cubic[0], hn::Mul(way, hn::Add(cubic[1], hn::Mul(way, inner)))), tag, places);
+      ended |= this->Add(cells, number, places, left, pieces);
       left &= ~ended;
     }
     return ended;
@@ -109,11 +133,34 @@ private:
   static constexpr double MostPieces = 64.0;
   /// Of optical depth, in a cell.
   static constexpr double Tolerance = 1.0 / 2048.0;
+  static constexpr double BendFactor = 0.125 / Tolerance;
+  /// Pieces for a unit of optical depth: colors change within.
+  static constexpr double DepthFactor = 4.0;
+  /// In bins: on a shorter way, the function is nearly constant, and differences would be rounding.
+  static constexpr double ShortWay = 1e-7;
 
-  /// The pieces that a cell is cut into: their parts of the whole. Takes those lanes out of `left` that see nothing.
-  /// Returns the largest number.
-  HWY_INLINE int CountPieces(const CrossedCells<D>& cells, const Vector cubic[4], Vector length,
-    std::uint32_t& left, double* inverse) const
+  /// The pieces that the cells are cut into, and where rays are in them.
+  struct Pieces
+  {
+    HWY_ALIGN double Part[Width];   ///< of a piece, of the whole
+    HWY_ALIGN double Length[Width]; ///< world, of a piece
+    HWY_ALIGN double Place[Width];  ///< in bins: where the last piece ended
+    Lanes Integral[Width];          ///< of the function up to there
+  };
+
+  /// Whether all cells are one piece, whatever values are in them.
+  HWY_INLINE bool IsOneEnough(Vector bend, Vector length) const
+  {
+    const D tag;
+    const Vector curved =
+      hn::Mul(hn::Mul(length, bend), hn::Set(tag, this->Everywhere.Change * BendFactor));
+    const Vector deep = hn::Mul(length, hn::Set(tag, this->Everywhere.Extinction * DepthFactor));
+    return hn::AllTrue(tag, hn::Le(hn::Max(curved, deep), hn::Set(tag, 1.0)));
+  }
+
+  /// Takes those lanes out of `left` that see nothing. Returns the largest number.
+  HWY_INLINE int Count(const CrossedCells<D>& cells, Vector bend, Vector length,
+    std::uint32_t& left, Pieces& pieces) const
   {
     const D tag;
     Vector least = cells.Corners[0];
@@ -126,20 +173,17 @@ private:
     const Vector scale = hn::Set(tag, this->Function.GetScale());
     HWY_ALIGN double first[Width];
     HWY_ALIGN double last[Width];
-    HWY_ALIGN double bend[Width];
+    HWY_ALIGN double bends[Width];
     HWY_ALIGN double lengths[Width];
     hn::Store(hn::Mul(least, scale), tag, first);
     hn::Store(hn::Mul(largest, scale), tag, last);
-    const Vector two = hn::Set(tag, 2.0);
-    const Vector atBegin = hn::Mul(two, cubic[2]);
-    const Vector atEnd = hn::Add(atBegin, hn::Mul(hn::Set(tag, 6.0), cubic[3]));
-    hn::Store(hn::Max(hn::Abs(atBegin), hn::Abs(atEnd)), tag, bend);
+    hn::Store(bend, tag, bends);
     hn::Store(length, tag, lengths);
     double most = 0.0;
     const std::uint32_t asked = left;
     for (int lane = 0; lane < Width; ++lane)
     {
-      inverse[lane] = 1.0;
+      pieces.Part[lane] = 1.0;
       if ((asked >> lane & 1u) == 0)
       {
         continue;
@@ -151,114 +195,87 @@ private:
         left &= ~(1u << lane);
         continue;
       }
-      const double curved =
-        std::sqrt(lengths[lane] * behavior.Change * bend[lane] * (0.125 / Tolerance));
-      const double deep = 4.0 * lengths[lane] * behavior.Extinction;
-      const double pieces = std::ceil(std::clamp(std::max(curved, deep), 1.0, MostPieces));
-      inverse[lane] = 1.0 / pieces;
-      most = std::max(most, pieces);
+      const double curved = std::sqrt(lengths[lane] * behavior.Change * bends[lane] * BendFactor);
+      const double deep = DepthFactor * lengths[lane] * behavior.Extinction;
+      const double count = std::ceil(std::clamp(std::max(curved, deep), 1.0, MostPieces));
+      pieces.Part[lane] = 1.0 / count;
+      most = std::max(most, count);
     }
     return static_cast<int>(most);
   }
 
-  /// Where rays are in the cells, and what they have met there so far.
-  class Piece
+  /// Goes on to the places, in bins, where piece `number` ends, for those of `lanes` that have as many. Returns those
+  /// that are dark.
+  HWY_INLINE std::uint32_t Add(const CrossedCells<D>& cells, int number, const double* places,
+    std::uint32_t lanes, Pieces& pieces)
   {
-  public:
-    HWY_INLINE Piece(
-      MediumCells& whole, const CrossedCells<D>& cells, Vector length, const double* inverse)
-      : Whole(whole)
-      , Cells(cells)
-      , Inverse(inverse)
+    const D tag;
+    Lanes amounts[Width];
+    HWY_ALIGN double depths[Width];
+    hn::Store(hn::Zero(tag), tag, depths);
+    std::uint32_t some = 0;
+    for (; lanes != 0; lanes &= lanes - 1)
     {
-      const D tag;
-      hn::Store(length, tag, this->Length);
-    }
-
-    /// Goes on to the place, in bins, where piece `number` ends, which no lane does that has fewer. Returns the lanes
-    /// that are dark.
-    HWY_INLINE std::uint32_t Add(int number, Vector place, std::uint32_t lanes)
-    {
-      const D tag;
-      HWY_ALIGN double places[Width];
-      HWY_ALIGN double depths[Width];
-      hn::Store(place, tag, places);
-      hn::Store(hn::Zero(tag), tag, depths);
-      std::uint32_t some = 0;
-      for (std::uint32_t left = lanes; left != 0; left &= left - 1)
+      const int lane = __builtin_ctz(lanes);
+      if (static_cast<double>(number - 1) * pieces.Part[lane] > 1.0 - 1e-9)
       {
-        const int lane = __builtin_ctz(left);
-        const double pieceOfLane = static_cast<double>(number - 1) * this->Inverse[lane];
-        if (pieceOfLane > 1.0 - 1e-9)
-        {
-          continue;
-        }
-        Lanes slope;
-        const Lanes integral = this->Whole.Function.Integrate(places[lane], slope);
-        if (number > 0)
-        {
-          const double way = places[lane] - this->Place[lane];
-          const Lanes mean =
-            std::abs(way) > ShortWay ? (integral - this->Integral[lane]) * Lanes(1.0 / way) : slope;
-          this->Amount[lane] = mean * Lanes(this->Length[lane]);
-          depths[lane] = this->Amount[lane][3];
-          some |= std::uint32_t{ depths[lane] > 0.0 } << lane;
-        }
-        this->Place[lane] = places[lane];
-        this->Integral[lane] = integral;
+        continue;
       }
-      return some == 0 ? 0 : this->Pass(number, some, hn::Load(tag, depths));
+      Lanes slope;
+      const Lanes integral = this->Function.Integrate(places[lane], slope);
+      const double way = places[lane] - pieces.Place[lane];
+      const Lanes mean =
+        std::abs(way) > ShortWay ? (integral - pieces.Integral[lane]) * Lanes(1.0 / way) : slope;
+      amounts[lane] = mean * Lanes(pieces.Length[lane]);
+      depths[lane] = amounts[lane].High[1];
+      some |= std::uint32_t{ depths[lane] > 0.0 } << lane;
+      pieces.Place[lane] = places[lane];
+      pieces.Integral[lane] = integral;
     }
-
-  private:
-    /// In bins: on a shorter way, the function is nearly constant, and differences would be rounding.
-    static constexpr double ShortWay = 1e-7;
-
-    HWY_INLINE std::uint32_t Pass(int number, std::uint32_t lanes, Vector depth)
+    if (some == 0)
     {
-      const D tag;
-      const Vector one = hn::Set(tag, 1.0);
-      const Vector passed = GetTransmittance(depth);
-      // (1 - exp(-depth)) / depth
-      const Vector thin = hn::Sub(one, hn::Mul(hn::Set(tag, 0.5), depth));
-      const Vector seen = hn::IfThenElse(
-        hn::Lt(depth, hn::Set(tag, MediumLight::Thin)), thin, hn::Div(hn::Sub(one, passed), depth));
-      HWY_ALIGN double passes[Width];
-      HWY_ALIGN double parts[Width];
-      HWY_ALIGN double enter[Width];
-      HWY_ALIGN double exit[Width];
-      hn::Store(passed, tag, passes);
-      hn::Store(seen, tag, parts);
-      hn::Store(this->Cells.Enter, tag, enter);
-      hn::Store(this->Cells.Exit, tag, exit);
-      MediumLight& light = this->Whole.Light;
-      std::uint32_t ended = 0;
-      for (; lanes != 0; lanes &= lanes - 1)
-      {
-        const int lane = __builtin_ctz(lanes);
-        const int ray = static_cast<int>(this->Cells.Ray[lane]);
-        const Lanes& amount = this->Amount[lane];
-        const auto getT = [&](int end)
-        { return enter[lane] + (exit[lane] - enter[lane]) * (end * this->Inverse[lane]); };
-        light.Add(ray,
-          { getT(number - 1), getT(number), { amount[0], amount[1], amount[2], amount[3] } },
-          passes[lane], parts[lane]);
-        ended |= std::uint32_t{ light.IsDark(ray) } << lane;
-      }
-      return ended;
+      return 0;
     }
-
-    MediumCells& Whole;
-    const CrossedCells<D>& Cells;
-    const double* Inverse;
-    HWY_ALIGN double Length[Width]; ///< world, of a piece
-    HWY_ALIGN double Place[Width];  ///< where the last piece ends
-    Lanes Integral[Width];
-    Lanes Amount[Width]; ///< of the current piece
-  };
+    const Vector one = hn::Set(tag, 1.0);
+    const Vector depth = hn::Load(tag, depths);
+    const Vector passed = GetTransmittance(depth);
+    // (1 - exp(-depth)) / depth
+    const Vector thin = hn::Sub(one, hn::Mul(hn::Set(tag, 0.5), depth));
+    const Vector seen = hn::IfThenElse(
+      hn::Lt(depth, hn::Set(tag, MediumLight::Thin)), thin, hn::Div(hn::Sub(one, passed), depth));
+    HWY_ALIGN double passes[Width];
+    HWY_ALIGN double parts[Width];
+    hn::Store(passed, tag, passes);
+    hn::Store(seen, tag, parts);
+    HWY_ALIGN double enter[Width];
+    HWY_ALIGN double exit[Width];
+    hn::Store(cells.Enter, tag, enter);
+    hn::Store(cells.Exit, tag, exit);
+    std::uint32_t ended = 0;
+    for (; some != 0; some &= some - 1)
+    {
+      const int lane = __builtin_ctz(some);
+      const int ray = static_cast<int>(cells.Ray[lane]);
+      const auto getT = [&](int end)
+      { return enter[lane] + (exit[lane] - enter[lane]) * (end * pieces.Part[lane]); };
+      if (this->Light.KeepsPieces)
+      {
+        this->Light.Keep(ray, getT(number - 1), getT(number), amounts[lane]);
+      }
+      // The first one that a ray meets.
+      if (!(this->Light.First[ray] < enter[lane]))
+      {
+        this->Light.First[ray] = std::min(this->Light.First[ray], getT(number - 1));
+      }
+      this->Light.Blend(ray, amounts[lane], passes[lane], parts[lane]);
+      ended |= std::uint32_t{ this->Light.IsDark(ray) } << lane;
+    }
+    return ended;
+  }
 
   const TransferFunction& Function;
   MediumLight& Light;
+  const TransferFunction::Behavior Everywhere;
 };
 
 } // namespace HWY_NAMESPACE
