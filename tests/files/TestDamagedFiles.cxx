@@ -176,7 +176,7 @@ TEST_F(DamagedFile, ThatChangesOrGoesAwaySaysSo)
   FlipByte(this->Path, 100);
   ExpectWords(Read(file), { "was written to", "Reload" });
   fs::remove(this->Path);
-  ExpectWords(Read(entry), { "There is no file", "damaged_chunked.h5" });
+  ExpectWords(Read(entry), { "does not exist", "damaged_chunked.h5" });
   EXPECT_NE(Open(FindEntry("chunked.h5"))->GetStamp(), file->GetStamp());
 }
 

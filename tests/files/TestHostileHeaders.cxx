@@ -139,19 +139,19 @@ TEST(HostileHeaders, AxesInOnePlaneAreRefused)
          "1e-200 0 0 1e-200 0 0 0 0 1" })
   {
     ExpectRefusal(
-      WriteMeta("plane", "TransformMatrix = " + std::string(rows)), { "Invalid direction matrix" });
+      WriteMeta("plane", "TransformMatrix = " + std::string(rows)), { "invalid direction matrix" });
   }
   for (const char* vectors :
     { "(1,0,0) (0,1,0) (1,1,0)", "(1,0,0) (0,0,0) (0,0,1)", "(nan,0,0) (0,1,0) (0,0,1)" })
   {
     ExpectRefusal(
-      WriteNrrd("plane", "space directions: " + std::string(vectors)), { "Invalid direction" });
+      WriteNrrd("plane", "space directions: " + std::string(vectors)), { "invalid direction" });
   }
-  ExpectRefusal(WriteNrrd("far", "space directions: (inf,0,0) (0,1,0) (0,0,1)"), { "Invalid" });
-  ExpectRefusal(WriteNrrd("far", "space origin: (nan,0,0)"), { "Invalid origin" });
-  ExpectRefusal(WriteMeta("far", "Offset = 0 inf 0"), { "Invalid origin" });
-  ExpectRefusal(WriteMeta("far", "ElementSpacing = 1 nan 1"), { "Invalid spacing" });
-  ExpectRefusal(WriteMeta("far", "TransformMatrix = 1 0 0 0 nan 0 0 0 1"), { "Invalid direction" });
+  ExpectRefusal(WriteNrrd("far", "space directions: (inf,0,0) (0,1,0) (0,0,1)"), { "invalid" });
+  ExpectRefusal(WriteNrrd("far", "space origin: (nan,0,0)"), { "invalid origin" });
+  ExpectRefusal(WriteMeta("far", "Offset = 0 inf 0"), { "invalid origin" });
+  ExpectRefusal(WriteMeta("far", "ElementSpacing = 1 nan 1"), { "invalid spacing" });
+  ExpectRefusal(WriteMeta("far", "TransformMatrix = 1 0 0 0 nan 0 0 0 1"), { "invalid direction" });
   // What is only sheared, small, or mirrored has an inverse.
   EXPECT_EQ(ReadWatched(WriteNrrd("sheared", "space directions: (1,0,0) (0,-1e-9,0) (1,0,1)")), "");
   EXPECT_EQ(ReadWatched(WriteMeta("sheared", "TransformMatrix = 1 0 0 0.9 0.1 0 0 0 -1")), "");

@@ -458,7 +458,7 @@ TEST(HostileZarr, PlacesThatAreNotFiniteAreRefused)
   write({ scale });
   EXPECT_EQ(ReadWatched(folder), "");
   write({ scale, scale });
-  ExpectRefusal(folder, { "Invalid spacing" });
+  ExpectRefusal(folder, { "invalid spacing" });
   write({ 1, 2 });
   EXPECT_EQ(ReadWatched(folder), "");
   write({ { { "type", "scale" }, { "scale", { "a", 1, 1 } } } });

@@ -174,7 +174,7 @@ write("taken.h5.part.level1", b"a level")
 expect_refusal("a conversion that can be resumed", "Run dsm_convert again", "taken.h5.part.json")
 with open(path("taken.h5.part.lock"), "wb") as lock:
     fcntl.flock(lock, fcntl.LOCK_EX)
-    expect_refusal("a conversion that is running", "Another process is writing")
+    expect_refusal("a conversion that is running", "is being written by another process")
 os.remove(path("taken.h5.part.lock"))
 os.remove(path("taken.h5.part.json"))
 expect_refusal("another program's files", "in the way")

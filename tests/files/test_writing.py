@@ -123,7 +123,7 @@ check(done.returncode == 0 and done.stderr == "" and np.array_equal(get_values("
 with h5py.File("large.h5", "w") as file:
     large = file.create_dataset("v", shape=(2048, 1024, 512), chunks=(1024, 1024, 512), dtype="f4", compression="gzip")
     large.id.write_direct_chunk((0, 0, 0), b"no deflate stream")
-refuses("a chunk of 2 GiB in 1.5 GB of memory", ["Out of memory", "'v'", "'large.h5'"], "large.h5", "small.h5",
+refuses("a chunk of 2 GiB in 1.5 GB of memory", ["out of memory", "'v'", "'large.h5'"], "large.h5", "small.h5",
         preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_AS, (1500000000, 1500000000)))
 
 # What is in the way belongs to others, and stays.

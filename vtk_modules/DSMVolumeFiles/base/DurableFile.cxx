@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "DSMVolumeFiles/base/DurableFile.h"
 
+#include "DSMVolumeFiles/base/FileError.h"
+
 #include "DSMCore/base/Error.h"
 
 #include <cerrno>
@@ -43,7 +45,7 @@ private:
 
 [[noreturn]] void Refuse(const std::string& path, int cause)
 {
-  throw dsm::Error("Writing '" + path + "' failed: " + std::strerror(cause) + ".");
+  throw FileError(path, "cannot be written: " + std::string(std::strerror(cause)) + ".");
 }
 
 void WriteAll(Descriptor& file, const std::string& path, const void* bytes, std::size_t count)
@@ -55,7 +57,7 @@ void WriteAll(Descriptor& file, const std::string& path, const void* bytes, std:
   }
   if (!S_ISREG(state.st_mode))
   {
-    throw dsm::Error("Writing '" + path + "' failed: it is a device or a pipe.");
+    throw FileError(path, "cannot be written: it is a device or a pipe.");
   }
   const auto* const first = static_cast<const char*>(bytes);
   for (std::size_t done = 0; done < count;)
@@ -123,8 +125,7 @@ void DurableFile::Rename(const std::string& from, const std::string& to)
 {
   if (std::rename(from.c_str(), to.c_str()) != 0)
   {
-    throw dsm::Error(
-      "'" + from + "' could not be renamed to '" + to + "': " + std::strerror(errno) + ".");
+    throw FileError(from, "could not be renamed to '" + to + "': " + std::strerror(errno) + ".");
   }
   const std::filesystem::path folder = std::filesystem::path(to).parent_path();
   const Descriptor opened(

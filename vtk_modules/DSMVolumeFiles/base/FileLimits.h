@@ -3,6 +3,7 @@
 #define vol_FileLimits_h
 
 #include "DSMCore/base/Error.h"
+#include "DSMVolumeFiles/base/FileError.h"
 
 #include <cstddef>
 #include <cstdint>
@@ -83,8 +84,9 @@ inline void CheckLimit(
 {
   if (count > most)
   {
-    throw dsm::Error("'" + path + "' has an invalid header: it declares " + std::to_string(count) +
-      " " + what + "; at most " + std::to_string(most) + " are supported.");
+    throw FileError(path,
+      "has an invalid header: it declares " + std::to_string(count) + " " + what + "; at most " +
+        std::to_string(most) + " are supported.");
   }
 }
 

@@ -2,8 +2,8 @@
 #include "DSMVolumeFiles/base/PositionedFile.h"
 
 #include "DSMBricks/base/ByteHash.h"
-#include "DSMCore/base/Error.h"
 #include "DSMVolumeFiles/base/ByteBuffer.h"
+#include "DSMVolumeFiles/base/FileError.h"
 #include "DSMVolumeFiles/base/ReadingManner.h"
 
 #include <algorithm>
@@ -43,11 +43,6 @@ std::uint64_t GetStampOf(const struct stat& state)
   return hash.Get();
 }
 
-[[noreturn]] void Refuse(const std::string& path, const std::string& what)
-{
-  throw dsm::Error("The file '" + path + "' " + what);
-}
-
 } // namespace
 
 PositionedFile::PositionedFile(std::string path)
@@ -69,12 +64,12 @@ PositionedFile::PositionedFile(std::string path)
     {
       close(this->Descriptor);
     }
-    Refuse(this->Path, "cannot be opened: " + cause + ".");
+    throw FileError(this->Path, "cannot be opened: " + cause + ".");
   }
   if (!S_ISREG(state.st_mode) && !S_ISDIR(state.st_mode)) // a folder has a stamp, too
   {
     close(this->Descriptor);
-    Refuse(this->Path, "cannot be read in parts: it is a device or a pipe.");
+    throw FileError(this->Path, "cannot be read in parts: it is a device or a pipe.");
   }
   this->OfDirectory = S_ISDIR(state.st_mode);
   this->Bytes = static_cast<std::uint64_t>(state.st_size);
@@ -120,7 +115,7 @@ void PositionedFile::CheckUnchanged() const
 {
   if (!this->IsUnchanged())
   {
-    Refuse(this->Path, "was written to since it was opened. Reload it.");
+    throw FileError(this->Path, "was written to since it was opened. Reload it.");
   }
 }
 
@@ -193,13 +188,13 @@ void PositionedFile::ReadUnchecked(std::uint64_t offset, std::byte* out, std::si
     }
     if (got < 0)
     {
-      Refuse(this->Path,
+      throw FileError(this->Path,
         "cannot be read" + place(offset + done) + ": " + std::string(std::strerror(errno)) + ".");
     }
     if (got == 0)
     {
       this->CheckUnchanged();
-      Refuse(this->Path,
+      throw FileError(this->Path,
         "ends" + place(offset + done) + ", where " + std::to_string(bytes - done) +
           " more bytes of values are expected: it is truncated, or its header is wrong.");
     }

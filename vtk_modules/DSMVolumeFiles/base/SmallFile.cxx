@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "DSMVolumeFiles/base/SmallFile.h"
 
-#include "DSMCore/base/Error.h"
+#include "DSMVolumeFiles/base/FileError.h"
 #include "DSMVolumeFiles/base/PositionedFile.h"
 
 #include <algorithm>
@@ -19,7 +19,7 @@ std::string ReadText(const PositionedFile& file, std::size_t bytes)
 {
   if (file.IsDirectory())
   {
-    throw dsm::Error("'" + file.GetPath() + "' cannot be read: it is a directory.");
+    throw FileError(file.GetPath(), "cannot be read: it is a directory.");
   }
   std::string text(bytes, '\0');
   // Whoever uses a kept file touches it, while others read it.
@@ -42,7 +42,7 @@ PathKind FindPathKind(const std::string& path)
     case std::filesystem::file_type::directory:
       return PathKind::Directory;
     case std::filesystem::file_type::none:
-      throw dsm::Error("'" + path + "' cannot be read: " + failure.message() + ".");
+      throw FileError(path, "cannot be read: " + failure.message() + ".");
     default:
       return PathKind::Other;
   }
@@ -59,8 +59,9 @@ std::string ReadWhole(const std::string& path, std::size_t most)
   const PositionedFile file(path);
   if (file.GetBytes() > most && !file.IsDirectory())
   {
-    throw dsm::Error("'" + path + "' has " + std::to_string(file.GetBytes()) + " bytes; at most " +
-      std::to_string(most) + " are supported.");
+    throw FileError(path,
+      "has " + std::to_string(file.GetBytes()) + " bytes; at most " + std::to_string(most) +
+        " are supported.");
   }
   return ReadText(file, static_cast<std::size_t>(std::min<std::uint64_t>(most, file.GetBytes())));
 }

@@ -3,8 +3,8 @@
 
 #include "DSMBricks/base/ParallelFor.h"
 #include "DSMCore/base/ByteDigest.h"
-#include "DSMCore/base/Error.h"
 #include "DSMVolumeFiles/base/CopyBox.h"
+#include "DSMVolumeFiles/base/FileError.h"
 #include "DSMVolumeFiles/base/ReadingManner.h"
 #include "DSMVolumeFiles/format/SeriesFile.h"
 
@@ -27,13 +27,6 @@ constexpr std::size_t InHandOfEach = 2;
 
 /// Samples along an axis that a brick has in common with the next.
 constexpr int Overlap = 2;
-
-dsm::Error OutOfMemory(const VolumeFile& file, const FileArray& array, std::size_t chunkBytes)
-{
-  return dsm::Error("Out of memory while reading a chunk of " + std::to_string(chunkBytes) +
-    " bytes of the array '" + array.Name + "' in '" + file.GetPath() +
-    "'. Use a host with more memory, or write the file with smaller chunks.");
-}
 
 /// Those that have samples of a box; x fastest.
 template <class Visit>
@@ -221,7 +214,10 @@ ChunkCache::Chunk ChunkCache::Get(const std::shared_ptr<const VolumeFile>& file,
     }
     catch (const std::bad_alloc&)
     {
-      throw OutOfMemory(*file, what, chunkBytes);
+      throw FileError({ file->GetPath(), what.Name, chunk },
+        "cannot be read: out of memory for its " + std::to_string(chunkBytes) +
+          " bytes. Use a host with more memory, or write the file with "
+          "smaller chunks.");
     }
   }
   catch (...)

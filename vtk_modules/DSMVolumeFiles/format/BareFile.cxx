@@ -3,6 +3,7 @@
 
 #include "DSMBricks/base/ByteHash.h"
 #include "DSMCore/base/Error.h"
+#include "DSMVolumeFiles/base/FileError.h"
 #include "DSMVolumeFiles/format/StoredFile.h"
 
 #include <algorithm>
@@ -45,8 +46,7 @@ public:
       array.GetSampleBytes();
     if (this->File->IsDirectory())
     {
-      throw dsm::Error(
-        "Cannot read the values of '" + path + "': '" + values.Path + "' is a directory.");
+      throw FileError(path, "has its values in '" + values.Path + "', which is a directory.");
     }
     const std::uint64_t has = this->File->GetBytes();
     this->First =
@@ -54,9 +54,10 @@ public:
     const auto least = static_cast<std::uint64_t>(values.Least);
     if (this->First < least || this->First > has || need > has - this->First)
     {
-      throw dsm::Error("'" + values.Path + "' has " + std::to_string(has) + " bytes, but " +
-        std::to_string(need) + " of values behind " + std::to_string(std::max(least, this->First)) +
-        " of header are expected. Check the sizes and the type of the values.");
+      throw FileError(values.Path,
+        "has " + std::to_string(has) + " bytes, but " + std::to_string(need) +
+          " of values behind " + std::to_string(std::max(least, this->First)) +
+          " of header are expected. Check the sizes and the type of the values.");
     }
     // What is kept of values that were read in another way is not of these.
     const std::uint64_t manner[] = { this->File->GetStamp(), this->First,
@@ -96,7 +97,7 @@ public:
     }
     catch (const dsm::Error& error)
     {
-      StoredFile::RefuseChunk(array, chunk, this->File->GetPath(), error);
+      throw FileError({ this->File->GetPath(), array.Name, chunk }, error);
     }
   }
 
@@ -113,7 +114,7 @@ public:
     }
     catch (const dsm::Error& error)
     {
-      StoredFile::RefuseChunk(this->Arrays.front(), chunk, this->File->GetPath(), error);
+      throw FileError({ this->File->GetPath(), this->Arrays.front().Name, chunk }, error);
     }
     return true;
   }

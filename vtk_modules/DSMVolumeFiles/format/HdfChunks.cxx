@@ -2,6 +2,7 @@
 #include "DSMVolumeFiles/format/HdfChunks.h"
 
 #include "DSMCore/base/Error.h"
+#include "DSMVolumeFiles/base/FileError.h"
 #include "DSMVolumeFiles/base/FileLimits.h"
 
 #include <algorithm>
@@ -38,7 +39,7 @@ bool IsPlain(hid_t dataset)
 [[noreturn]] void RefuseDamaged(
   const std::string& path, const std::string& name, const std::string& what)
 {
-  throw dsm::Error("'" + path + "' is damaged: the dataset '" + name + "' has " + what + ".");
+  throw FileError({ path, name, {} }, "is damaged: it has " + what + ".");
 }
 
 } // namespace
@@ -83,8 +84,8 @@ haddr_t FindHdfValuesPlace(
     MultiplyWithin(has, { samples, array.GetSampleBytes(), std::max<std::uint64_t>(1, frames) });
   if (first > has || !needed || *needed > has - first)
   {
-    throw dsm::Error("'" + file.GetPath() + "' ends before the values of its dataset '" +
-      array.Name + "': it is truncated, or damaged.");
+    throw FileError(file.GetPath(),
+      "ends before the values of its dataset '" + array.Name + "': it is truncated, or damaged.");
   }
   return first;
 }
@@ -124,8 +125,8 @@ std::optional<HdfChunkTable> FindHdfChunks(hid_t dataset, const PositionedFile& 
     const auto product = MultiplyWithin(FileLimits::ArrayBytes, { all, counts[axis] });
     if (!product)
     {
-      throw dsm::Error("'" + file.GetPath() + "' has an invalid header: the dataset '" + name +
-        "' has more chunks than can be counted.");
+      throw FileError(file.GetPath(),
+        "has an invalid header: the dataset '" + name + "' has more chunks than can be counted.");
     }
     all = *product;
   }

@@ -2,6 +2,7 @@
 #include "DSMVolumeFiles/format/HdfFile.h"
 
 #include "DSMCore/base/Error.h"
+#include "DSMVolumeFiles/base/FileError.h"
 #include "DSMVolumeFiles/base/FileLimits.h"
 #include "DSMVolumeFiles/base/ReadingManner.h"
 #include "DSMVolumeFiles/codec/HaloRecord.h"
@@ -51,7 +52,7 @@ public:
     }
     if (this->Arrays.empty())
     {
-      throw dsm::Error("The file '" + path + "' has no " + this->Missing);
+      throw FileError(path, "has no " + this->Missing);
     }
     this->GoesOn = nullptr; // whoever opens the file may be gone later
     // What is kept of a level is not another's.
@@ -201,8 +202,7 @@ private:
     HdfHandle file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), &H5Fclose);
     if (!file.IsOpen())
     {
-      throw dsm::Error(
-        "The file '" + path + "' is no HDF5 file, or is damaged, or is open for writing.");
+      throw FileError(path, "is no HDF5 file, or is damaged, or is open for writing.");
     }
     return file;
   }
@@ -222,8 +222,9 @@ private:
     }
     if (level < 0 || level >= this->Levels)
     {
-      throw dsm::Error("'" + this->Path + "' has no level " + std::to_string(level) +
-        "; valid levels are 0 to " + std::to_string(this->Levels - 1) + ".");
+      throw FileError(this->Path,
+        "has no level " + std::to_string(level) + "; valid levels are 0 to " +
+          std::to_string(this->Levels - 1) + ".");
     }
     if (level > 0)
     {
@@ -261,8 +262,8 @@ private:
     H5G_info_t info{};
     if (!group.IsOpen() || H5Gget_info(group.Get(), &info) < 0)
     {
-      throw dsm::Error(
-        "The file '" + this->Path + "' is no VTKHDF: what it calls " + name + " is no group.");
+      throw FileError(
+        this->Path, std::string("is no VTKHDF: what it calls ") + name + " is no group.");
     }
     CheckLimit(this->Path, "arrays", info.nlinks, FileLimits::Arrays);
     for (hsize_t index = 0; index < info.nlinks; ++index)
@@ -275,9 +276,9 @@ private:
         });
       if (link.empty())
       {
-        throw dsm::Error("'" + this->Path + "' has an array in " + name +
-          " whose name cannot be read, or has more than " + std::to_string(FileLimits::NameBytes) +
-          " bytes.");
+        throw FileError(this->Path,
+          std::string("has an array in ") + name + " whose name cannot be read, or has more than " +
+            std::to_string(FileLimits::NameBytes) + " bytes.");
       }
       HdfHandle dataset = OpenHdfDataset(group.Get(), link);
       HdfAxes found;
@@ -330,8 +331,9 @@ private:
         std::none_of(frames.begin(), frames.end(), isOutside);
     if (!fits)
     {
-      throw dsm::Error("The file '" + this->Path + "' has " + std::to_string(this->Steps) +
-        " time steps, but its array of '" + offsets + "' does not have values for all of them.");
+      throw FileError(this->Path,
+        "has " + std::to_string(this->Steps) + " time steps, but its array of '" + offsets +
+          "' does not have values for all of them.");
     }
     return frames;
   }
@@ -386,8 +388,8 @@ private:
 
   [[noreturn]] void RefuseLength(const std::string& name, const std::string& tooLong) const
   {
-    throw dsm::Error("'" + this->Path + "' has an invalid header: its dataset '" + name +
-      "' declares " + tooLong + ".");
+    throw FileError(
+      this->Path, "has an invalid header: its dataset '" + name + "' declares " + tooLong + ".");
   }
 
   void Add(HdfHandle id, const std::string& name, bool onCells, const HdfAxes& axes,
@@ -477,8 +479,7 @@ private:
     }
     catch (const dsm::Error& error)
     {
-      throw dsm::Error(
-        "Cannot read the dataset '" + name + "' of '" + this->Path + "': " + error.what());
+      throw FileError({ this->Path, name, {} }, error);
     }
   }
 
@@ -570,9 +571,9 @@ private:
     if (!isRead)
     {
       const std::string lack = FindLackingHdfFilter(dataset);
-      throw dsm::Error("A part of the array '" + array.Name + "' in '" + this->Path +
-        "' cannot be read by the HDF5 library: " +
-        (lack.empty() ? "it is damaged, or a file that it refers to is not there." : lack));
+      throw FileError({ this->Path, array.Name, chunk },
+        "cannot be read by the HDF5 library: " +
+          (lack.empty() ? "it is damaged, or a file that it refers to is not there." : lack));
     }
   }
 

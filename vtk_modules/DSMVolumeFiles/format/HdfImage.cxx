@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "DSMVolumeFiles/format/HdfImage.h"
 
-#include "DSMCore/base/Error.h"
+#include "DSMVolumeFiles/base/FileError.h"
 #include "DSMVolumeFiles/base/FileLimits.h"
 
 #include <algorithm>
@@ -24,15 +24,17 @@ std::vector<double> ReadTimes(hid_t group, const std::string& path)
   const HdfHandle steps(H5Gopen2(group, "Steps", H5P_DEFAULT), &H5Gclose);
   if (!ReadHdfWhole(steps.Get(), "Values", H5T_NATIVE_DOUBLE, FileLimits::Steps, times))
   {
-    throw dsm::Error("'" + path + "' has an invalid header: Steps/Values declares more than " +
-      std::to_string(FileLimits::Steps) + " time steps.");
+    throw FileError(path,
+      "has an invalid header: Steps/Values declares more than " +
+        std::to_string(FileLimits::Steps) + " time steps.");
   }
   const bool areNumbers =
     std::all_of(times.begin(), times.end(), [](double time) { return std::isfinite(time); });
   if (!areNumbers || !std::is_sorted(times.begin(), times.end(), std::less_equal<>()))
   {
-    throw dsm::Error("'" + path + "' has invalid times of steps: Steps/Values " +
-      (areNumbers ? "do not ascend." : "has values that are not finite numbers."));
+    throw FileError(path,
+      std::string("has invalid times of steps: Steps/Values ") +
+        (areNumbers ? "do not ascend." : "has values that are not finite numbers."));
   }
   return times;
 }
@@ -45,8 +47,8 @@ HdfImage HdfImage::Read(hid_t group, const std::string& path)
   long long extent[6];
   if (!ReadHdfAttribute(group, "WholeExtent", H5T_NATIVE_LLONG, extent, 6))
   {
-    throw dsm::Error("'" + path +
-      "' is VTKHDF, but has no image data (no WholeExtent). Open it with ParaView's own reader.");
+    throw FileError(path,
+      "is VTKHDF, but has no image data (no WholeExtent). Open it with ParaView's own reader.");
   }
   FileGeometry& geometry = image.Geometry;
   ReadHdfAttribute(group, "Origin", H5T_NATIVE_DOUBLE, geometry.Origin, 3);
@@ -60,8 +62,9 @@ HdfImage HdfImage::Read(hid_t group, const std::string& path)
     const long long last = extent[2 * axis + 1];
     if (first < -farthest - 1 || last >= farthest || last < first || last - first >= farthest)
     {
-      throw dsm::Error("'" + path + "' has an invalid header: its WholeExtent is " +
-        std::to_string(first) + " to " + std::to_string(last) + " along " + "xyz"[axis] + ".");
+      throw FileError(path,
+        "has an invalid header: its WholeExtent is " + std::to_string(first) + " to " +
+          std::to_string(last) + " along " + "xyz"[axis] + ".");
     }
     geometry.First[axis] = first;
     geometry.Points[axis] = last - first + 1;

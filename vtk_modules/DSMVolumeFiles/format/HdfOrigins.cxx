@@ -2,7 +2,7 @@
 #include "DSMVolumeFiles/format/HdfOrigins.h"
 
 #include "DSMBricks/base/ByteHash.h"
-#include "DSMCore/base/Error.h"
+#include "DSMVolumeFiles/base/FileError.h"
 #include "DSMVolumeFiles/base/FileLimits.h"
 #include "DSMVolumeFiles/base/PositionedFile.h"
 
@@ -132,8 +132,8 @@ bool HdfOrigins::Add(const std::string& path, hid_t file, hid_t dataset)
     const auto found = FindFile(name, fs::path(in).parent_path(), "HDF5_EXTFILE_PREFIX");
     if (!found)
     {
-      throw dsm::Error(
-        "'" + path + "' has values in the file '" + name + "', which is not there, or is no file.");
+      throw FileError(
+        path, "has values in the file '" + name + "', which is not there, or is no file.");
     }
     this->Keep(*found);
   }
@@ -182,8 +182,9 @@ void HdfOrigins::AddSources(const std::string& path, hid_t properties)
     const bool isNumbered = WithNumber(dataset, 0) != WithNumber(dataset, 1);
     if (!found || (!isNumbered && !HasDataset(*found, WithNumber(dataset, 0))))
     {
-      throw dsm::Error("The file '" + path + "' has values of the dataset '" + dataset +
-        "' of the file '" + file + "', which is not there, or cannot be read.");
+      throw FileError(path,
+        "has values of the dataset '" + dataset + "' of the file '" + file +
+          "', which is not there, or cannot be read.");
     }
     if (*found != path)
     {
@@ -239,8 +240,8 @@ void HdfOrigins::CheckUnchanged() const
   const std::string changed = this->FindChanged();
   if (!changed.empty())
   {
-    throw dsm::Error("The file '" + changed +
-      "' was written to, or is gone, since it was opened, and others have values from it. Reload "
+    throw FileError(changed,
+      "was written to, or is gone, since it was opened, and others have values from it. Reload "
       "them.");
   }
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "DSMVolumeFiles/format/HeaderText.h"
 
-#include "DSMCore/base/Error.h"
+#include "DSMVolumeFiles/base/FileError.h"
 #include "DSMVolumeFiles/base/SmallFile.h"
 
 #include <algorithm>
@@ -79,8 +79,9 @@ bool HeaderLines::Next(std::string& line)
     end = this->Text.find('\n', this->Place);
     if (end == std::string::npos && !this->IsAll)
     {
-      throw dsm::Error("'" + this->Path + "' has an invalid header: it does not end within " +
-        std::to_string(FileLimits::HeaderBytes) + " bytes.");
+      throw FileError(this->Path,
+        "has an invalid header: it does not end within " + std::to_string(FileLimits::HeaderBytes) +
+          " bytes.");
     }
   }
   this->Ended = end == std::string::npos;
@@ -225,7 +226,7 @@ std::string HeaderText::FindValues(const std::string& name) const
 
 void HeaderText::Refuse(const std::string& why) const
 {
-  throw dsm::Error("Cannot read '" + this->What + "': " + why);
+  throw FileError(this->What, "cannot be read: " + why);
 }
 
 } // namespace vol

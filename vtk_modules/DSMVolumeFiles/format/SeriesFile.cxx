@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "DSMVolumeFiles/format/SeriesFile.h"
 
+#include "DSMVolumeFiles/base/FileError.h"
+
 #include "DSMBricks/base/ByteHash.h"
 #include "DSMCore/base/Error.h"
 
@@ -195,8 +197,8 @@ private:
 
   [[noreturn]] void Refuse(const VolumeFile& file, const std::string& why) const
   {
-    throw dsm::Error("The file '" + file.GetPath() +
-      "' is no time step of the series that begins with '" + this->Path + "': " + why);
+    throw FileError(file.GetPath(),
+      "is no time step of the series that begins with '" + this->Path + "': " + why);
   }
 
   /// Values that were read of it are still about: they must not meet others. `known`: the stamp when it was opened
@@ -205,8 +207,8 @@ private:
   {
     if (known.value_or(file.GetStamp()) != file.GetStamp())
     {
-      throw dsm::Error("The file '" + file.GetPath() +
-        "' was written to, or another took its place, since it was opened first. Reload it.");
+      throw FileError(file.GetPath(),
+        "was written to, or another took its place, since it was opened first. Reload it.");
     }
     known = file.GetStamp();
   }

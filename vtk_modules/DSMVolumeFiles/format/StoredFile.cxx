@@ -3,6 +3,7 @@
 
 #include "DSMCore/base/Error.h"
 #include "DSMVolumeFiles/base/CopyBox.h"
+#include "DSMVolumeFiles/base/FileError.h"
 #include "DSMVolumeFiles/codec/HaloRecord.h"
 #include "DSMVolumeFiles/format/BareFile.h"
 
@@ -147,7 +148,7 @@ void StoredFile::ReadChunk(
   }
   catch (const dsm::Error& error)
   {
-    RefuseChunk(what, whole, place->File->GetPath(), error);
+    throw FileError({ place->File->GetPath(), what.Name, whole }, error);
   }
 }
 
@@ -255,7 +256,7 @@ bool StoredFile::ReadPart(std::size_t array, int step, const bricks::Index3& chu
   }
   catch (const dsm::Error& error)
   {
-    RefuseChunk(this->Arrays[array], whole, place->File->GetPath(), error);
+    throw FileError({ place->File->GetPath(), this->Arrays[array].Name, whole }, error);
   }
   return true;
 }
@@ -304,7 +305,7 @@ bool StoredFile::ReadWithHalo(
   }
   catch (const dsm::Error& error)
   {
-    RefuseChunk(what, chunk, place->File->GetPath(), error);
+    throw FileError({ place->File->GetPath(), what.Name, chunk }, error);
   }
   CopyBox(box, samples.data(), stored, out, all, sampleBytes);
   const std::byte* from = halo.data();
@@ -339,14 +340,6 @@ void StoredFile::Prefetch(std::size_t array, int step, const std::vector<ChunkPa
   {
     file->Prefetch(std::move(pieces));
   }
-}
-
-void StoredFile::RefuseChunk(const FileArray& array, const bricks::Index3& chunk,
-  const std::string& path, const dsm::Error& error)
-{
-  throw dsm::Error("Chunk (" + std::to_string(chunk.x) + ", " + std::to_string(chunk.y) + ", " +
-    std::to_string(chunk.z) + ") of the array '" + array.Name + "' in '" + path +
-    "' cannot be read: " + error.what());
 }
 
 } // namespace vol

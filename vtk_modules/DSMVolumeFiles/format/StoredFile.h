@@ -27,10 +27,6 @@ public:
 
   void Prefetch(std::size_t array, int step, const std::vector<ChunkPart>& parts) const override;
 
-  /// Throws what reading a chunk threw, with the chunk's and the file's names.
-  [[noreturn]] static void RefuseChunk(const FileArray& array, const bricks::Index3& chunk,
-    const std::string& path, const dsm::Error& error);
-
 protected:
   using VolumeFile::VolumeFile;
 

@@ -2,6 +2,7 @@
 #include "DSMVolumeFiles/format/VolumeFile.h"
 
 #include "DSMCore/base/Error.h"
+#include "DSMVolumeFiles/base/FileError.h"
 #include "DSMVolumeFiles/base/PositionedFile.h"
 #include "DSMVolumeFiles/base/SmallFile.h"
 #include "DSMVolumeFiles/format/BareFile.h"
@@ -139,7 +140,7 @@ std::shared_ptr<const VolumeFile> OpenAsItIs(const std::string& path, const Open
   const PathKind kind = FindPathKind(path);
   if (kind == PathKind::Nothing)
   {
-    throw dsm::Error("There is no file '" + path + "'.");
+    throw FileError(path, "does not exist.");
   }
   if (kind != PathKind::Directory)
   {
@@ -160,8 +161,8 @@ std::shared_ptr<const VolumeFile> OpenAsItIs(const std::string& path, const Open
 #ifdef DSM_HAS_HDF5
       return OpenHdf(path, options);
 #else
-      throw dsm::Error("'" + path +
-        "' is an HDF5 file, which this build cannot read. Install the package libhdf5-dev and "
+      throw FileError(path,
+        "is an HDF5 file, which this build cannot read. Install the package libhdf5-dev and "
         "build again.");
 #endif
     case Format::Unknown:
@@ -169,15 +170,15 @@ std::shared_ptr<const VolumeFile> OpenAsItIs(const std::string& path, const Open
   }
   if (kind == PathKind::File && ReadBeginning(path, 4) == "PK\x03\x04")
   {
-    throw dsm::Error("'" + path +
-      "' is a ZIP archive, and cannot be read. Unpack it, and open what it has: a Zarr's folder.");
+    throw FileError(path,
+      "is a ZIP archive, and cannot be read. Unpack it, and open what it has: a Zarr's folder.");
   }
   if (kind == PathKind::File && PositionedFile(path).GetBytes() == 0)
   {
-    throw dsm::Error("The file '" + path + "' is empty.");
+    throw FileError(path, "is empty.");
   }
-  throw dsm::Error("The format of '" + path +
-    "' is not known, or the file is damaged at its beginning. HDF5, Zarr (a folder), NRRD, "
+  throw FileError(path,
+    "has a format that is not known, or is damaged at its beginning. HDF5, Zarr (a folder), NRRD, "
     "MetaImage (.mhd, .mha) and .raw are known. Whatever else ParaView opens as an image, its Save "
     "Data writes as a volume in bricks.");
 }
@@ -202,7 +203,7 @@ std::shared_ptr<const VolumeFile> OpenGuarded(const std::string& path, const Ope
   {
     why = "'" + error.path1().string() + "' cannot be read: " + error.code().message();
   }
-  throw dsm::Error("Cannot open '" + path + "': " + why + ".");
+  throw FileError(path, "cannot be opened: " + why + ".");
 }
 
 } // namespace
@@ -223,7 +224,7 @@ std::string DescribeShape(const bricks::Index3& samples)
 void CheckSizes(const std::string& path, const FileArray& array, std::size_t slices)
 {
   const auto refuse = [&](const std::string& what)
-  { throw dsm::Error("'" + path + "' has an invalid header: it declares " + what + "."); };
+  { throw FileError(path, "has an invalid header: it declares " + what + "."); };
   const auto isRight = [&](const bricks::Index3& samples)
   {
     const bricks::Index3 most(static_cast<std::int64_t>(FileLimits::Samples));
@@ -263,8 +264,8 @@ void CheckGeometry(const std::string& path, const FileGeometry& geometry)
   };
   const auto refuse = [&](const std::string& what, const std::string& why)
   {
-    throw dsm::Error(
-      "Invalid " + what + " in '" + path + "': " + why + ". Fix the source or the file's header.");
+    throw FileError(
+      path, "has an invalid " + what + ": " + why + ". Fix the source or the file's header.");
   };
   if (!areFinite(geometry.Origin, 3))
   {
@@ -308,14 +309,16 @@ std::shared_ptr<const VolumeFile> OpenVolumeFile(
   CheckGeometry(path, file->GetGeometry());
   if (options.Level != 0 && options.Level >= file->GetLevels())
   {
-    throw dsm::Error("'" + path + "' has no level " + std::to_string(options.Level) +
-      ": it has no coarser levels of detail. The only valid level is 0.");
+    throw FileError(path,
+      "has no level " + std::to_string(options.Level) +
+        ": it has no coarser levels of detail. The only valid level is 0.");
   }
   const std::vector<FileArray>& arrays = file->GetArrays();
   if (!options.Dataset.empty() && (arrays.size() > 1 || arrays.front().Name != options.Dataset))
   {
-    throw dsm::Error("'" + path + "' has no datasets to choose '" + options.Dataset +
-      "' from: only HDF5 files that are not VTK's have. Choose among its arrays.");
+    throw FileError(path,
+      "has no datasets to choose '" + options.Dataset +
+        "' from: only HDF5 files that are not VTK's have. Choose among its arrays.");
   }
   return file;
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "DSMVolumeFiles/format/ZarrAxes.h"
 
-#include "DSMCore/base/Error.h"
+#include "DSMVolumeFiles/base/FileError.h"
 #include "DSMVolumeFiles/base/SmallFile.h"
 #include "DSMVolumeFiles/format/HeaderText.h"
 #include "DSMVolumeFiles/format/ZarrJson.h"
@@ -59,9 +59,10 @@ bool MayBe(const Json& named, std::size_t first, const std::string& order)
   {
     names += (names.empty() ? "" : ", ") + GetText(axis, "name");
   }
-  throw dsm::Error("The Zarr array '" + folder + "' is no volume with its axes " + Quote(names) +
-    ": its last three axes, and no others, must be in space, in the order z, y, x or x, y, z; "
-    "one of channels may be behind them. Write it with its axes in that order.");
+  throw FileError(folder,
+    "is no volume with its axes " + Quote(names) +
+      ": its last three axes, and no others, must be in space, in the order z, y, x or x, y, z; "
+      "one of channels may be behind them. Write it with its axes in that order.");
 }
 
 } // namespace

@@ -3,6 +3,7 @@
 
 #include "DSMBricks/base/ByteHash.h"
 #include "DSMCore/base/Error.h"
+#include "DSMVolumeFiles/base/FileError.h"
 #include "DSMVolumeFiles/base/SmallFile.h"
 #include "DSMVolumeFiles/format/StoredFile.h"
 #include "DSMVolumeFiles/format/VolumeShape.h"
@@ -36,8 +37,9 @@ std::string JoinInside(const std::string& folder, const std::string& name)
   const bool leadsUp = std::find(path.begin(), path.end(), "..") != path.end();
   if (name.empty() || path.is_absolute() || leadsUp || name.find('\0') != std::string::npos)
   {
-    throw dsm::Error("'" + folder + "' has invalid metadata: the path " + Quote(name) +
-      " of a dataset leads outside of the folder, or is empty.");
+    throw FileError(folder,
+      "has invalid metadata: the path " + Quote(name) +
+        " of a dataset leads outside of the folder, or is empty.");
   }
   return folder + "/" + name;
 }
@@ -79,7 +81,7 @@ public:
     }
     catch (const Json::exception& error)
     {
-      throw dsm::Error("'" + path + "' has invalid metadata (" + std::string(error.what()) + ").");
+      throw FileError(path, "has invalid metadata (" + std::string(error.what()) + ").");
     }
     this->Stamp = this->MakeStamp();
   }
@@ -183,9 +185,10 @@ private:
     this->Levels = static_cast<int>(datasets.size());
     if (level < 0 || level >= this->Levels)
     {
-      throw dsm::Error("'" + this->Path + "' has no level " + std::to_string(level) +
-        (this->Levels > 0 ? "; valid levels are 0 to " + std::to_string(this->Levels - 1) : "") +
-        ".");
+      throw FileError(this->Path,
+        "has no level " + std::to_string(level) +
+          (this->Levels > 0 ? "; valid levels are 0 to " + std::to_string(this->Levels - 1) : "") +
+          ".");
     }
     const Json& dataset = datasets.at(static_cast<std::size_t>(level));
     const std::string folder =
@@ -292,9 +295,9 @@ private:
     if (found.empty())
     {
       const std::string inner = this->FindInnerGroup();
-      throw dsm::Error("'" + this->Path + "' has no Zarr array of three axes." +
-        (refused.empty() ? "" : " " + refused) +
-        (inner.empty() ? "" : " There may be one in '" + inner + "'; open that."));
+      throw FileError(this->Path,
+        "has no Zarr array of three axes." + (refused.empty() ? "" : " " + refused) +
+          (inner.empty() ? "" : " There may be one in '" + inner + "'; open that."));
     }
     for (const auto& [name, shape] : found)
     {
@@ -310,12 +313,12 @@ private:
     std::optional<ZarrMetadata> data = ReadZarrMetadata(folder);
     if (!data)
     {
-      throw dsm::Error("'" + folder + "' is no Zarr array: it has neither .zarray nor zarr.json.");
+      throw FileError(folder, "is no Zarr array: it has neither .zarray nor zarr.json.");
     }
     if (!data->IsVolume())
     {
-      throw dsm::Error("The Zarr array '" + folder +
-        "' is no volume: it has no samples, or far too many, or not 3 to 5 axes.");
+      throw FileError(
+        folder, "is no volume: it has no samples, or far too many, or not 3 to 5 axes.");
     }
     return std::make_shared<const ZarrMetadata>(std::move(*data));
   }
@@ -335,14 +338,14 @@ private:
     {
       shape += (shape.empty() ? "" : " x ") + std::to_string(length);
     }
-    throw dsm::Error("The Zarr array '" + folder +
-      "', whose last axis has channels, has chunks of " + shape +
-      (data.FortranOrder ? " in the order of Fortran" : "") +
-      ": it can be read where each "
-      "has all " +
-      std::to_string(components) +
-      " channels, in the order of C. Write it so, or with "
-      "the axis of channels first.");
+    throw FileError(folder,
+      "has channels on its last axis, and chunks of " + shape +
+        (data.FortranOrder ? " in the order of Fortran" : "") +
+        ": it can be read where each "
+        "has all " +
+        std::to_string(components) +
+        " channels, in the order of C. Write it so, or with "
+        "the axis of channels first.");
   }
 
   /// A chunk that cannot be read in parts is read whole.
@@ -358,9 +361,10 @@ private:
     if (!MultiplyWithin(FileLimits::ChunkBytes,
           { chunk.x, chunk.y, chunk.z, storage.Slices, array.GetSampleBytes() }))
     {
-      throw dsm::Error("The Zarr array '" + folder + "' has chunks of " +
-        DescribeShape(array.Grid.ChunkSamples) + " samples, which are more than " +
-        std::to_string(FileLimits::ChunkBytes) + " bytes. Write it with smaller chunks.");
+      throw FileError(folder,
+        "has chunks of " + DescribeShape(array.Grid.ChunkSamples) +
+          " samples, which are more than " + std::to_string(FileLimits::ChunkBytes) +
+          " bytes. Write it with smaller chunks.");
     }
   }
 
@@ -378,10 +382,13 @@ private:
     }
     if (channels > MostChannels)
     {
-      throw dsm::Error("The Zarr array '" + folder + "' has " + std::to_string(channels) +
-        " channels, of which each would be an array; no more than " + std::to_string(MostChannels) +
-        " can be. If one of its axes is time, let its name say so (\"time\", in dimension_names or "
-        "_ARRAY_DIMENSIONS).");
+      throw FileError(folder,
+        "has " + std::to_string(channels) +
+          " channels, of which each would be an array; no more than " +
+          std::to_string(MostChannels) +
+          " can be. If one of its axes is time, let its name say so (\"time\", in dimension_names "
+          "or "
+          "_ARRAY_DIMENSIONS).");
     }
     const std::int64_t times = axes.Time >= 0 ? getLength(axes.Time) : 1;
     CheckLimit(folder, "time steps", static_cast<std::uint64_t>(times), FileLimits::Steps);
@@ -421,8 +428,8 @@ private:
       CheckComponents(folder, *data, axes);
       if (data->FortranOrder && storage.Slices > 1)
       {
-        throw dsm::Error("The Zarr array '" + folder +
-          "' has several times or channels in a chunk, in the order of Fortran, which is not "
+        throw FileError(folder,
+          "has several times or channels in a chunk, in the order of Fortran, which is not "
           "supported. Write it with order='C'.");
       }
       CutPlainChunks(array, storage);
@@ -476,7 +483,7 @@ private:
       this->Parts.CheckNeverThere(path);
       if (!MayBeZarr(source.Folder))
       {
-        throw dsm::Error("The Zarr array '" + source.Folder + "' is no longer there.");
+        throw FileError(source.Folder, "is no longer there.");
       }
       return std::nullopt;
     }
@@ -513,8 +520,7 @@ private:
     }
     if (offset > place->Bytes || bytes > place->Bytes - offset)
     {
-      throw dsm::Error(
-        "The shard '" + place->File->GetPath() + "' is truncated, or its index is wrong.");
+      throw FileError(place->File->GetPath(), "is truncated, or its index is wrong.");
     }
     place->Offset = offset;
     place->Bytes = static_cast<std::size_t>(bytes);

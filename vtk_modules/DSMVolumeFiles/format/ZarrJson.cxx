@@ -3,6 +3,7 @@
 
 #include "DSMCore/base/Error.h"
 #include "DSMVolumeFiles/base/BoundedJson.h"
+#include "DSMVolumeFiles/base/FileError.h"
 #include "DSMVolumeFiles/base/SmallFile.h"
 
 #include <cstring>
@@ -60,7 +61,7 @@ std::string WithQuotedWords(const std::string& text)
 
 void ZarrJson::Refuse(const std::string& folder, const std::string& why)
 {
-  throw dsm::Error("Cannot read the Zarr array '" + folder + "': " + why);
+  throw FileError(folder, "cannot be read: " + why);
 }
 
 nlohmann::json ZarrJson::Read(const std::string& folder, const std::string& name)

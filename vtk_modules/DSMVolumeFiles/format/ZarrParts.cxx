@@ -2,6 +2,7 @@
 #include "DSMVolumeFiles/format/ZarrParts.h"
 
 #include "DSMCore/base/Error.h"
+#include "DSMVolumeFiles/base/FileError.h"
 #include "DSMVolumeFiles/base/FileLimits.h"
 
 #include <algorithm>
@@ -31,8 +32,8 @@ void ZarrParts::CheckUnchanged(const PositionedFile& file)
   const auto known = this->Stamps.emplace(file.GetPath(), file.GetStamp()).first;
   if (known->second != file.GetStamp())
   {
-    throw dsm::Error("The file '" + file.GetPath() +
-      "' was written to, or another took its place, since it was opened first. Reload it.");
+    throw FileError(file.GetPath(),
+      "was written to, or another took its place, since it was opened first. Reload it.");
   }
 }
 
@@ -41,7 +42,7 @@ void ZarrParts::CheckNeverThere(const std::string& path)
   const std::lock_guard<std::mutex> lock(this->Guard);
   if (this->Stamps.count(path) != 0)
   {
-    throw dsm::Error("The file '" + path + "' is no longer there.");
+    throw FileError(path, "is no longer there.");
   }
 }
 
@@ -83,7 +84,7 @@ ZarrParts::Index ZarrParts::ReadIndex(
 {
   if (file.IsDirectory() || file.GetBytes() < shards.IndexBytes)
   {
-    throw dsm::Error("The shard '" + file.GetPath() + "' is truncated.");
+    throw FileError(file.GetPath(), "is truncated.");
   }
   ByteBuffer stored(shards.IndexBytes);
   file.Read(
@@ -97,8 +98,8 @@ ZarrParts::Index ZarrParts::ReadIndex(
   }
   catch (const dsm::Error& error)
   {
-    throw dsm::Error(
-      "The index of the shard '" + file.GetPath() + "' cannot be used: " + error.what());
+    throw FileError(
+      file.GetPath(), "is a shard whose index cannot be used: " + std::string(error.what()));
   }
   return offsets;
 }

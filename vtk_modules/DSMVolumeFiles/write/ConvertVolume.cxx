@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "DSMVolumeFiles/write/ConvertVolume.h"
 
-#include "DSMCore/base/Error.h"
+#include "DSMVolumeFiles/base/FileError.h"
 #include "DSMVolumeFiles/cache/ChunkCache.h"
 
 #include <algorithm>
@@ -35,7 +35,7 @@ std::vector<std::size_t> FindArrays(const VolumeFile& from, const std::vector<st
     if (std::none_of(found.begin(), found.end(),
           [&](std::size_t number) { return from.GetArrays()[number].Name == name; }))
     {
-      throw dsm::Error("The file '" + from.GetPath() + "' has no array '" + name + "'.");
+      throw FileError(from.GetPath(), "has no array '" + name + "'.");
     }
   }
   return found;
@@ -58,8 +58,9 @@ void CheckTarget(const VolumeFile& from, int step, const std::string& path)
     }
     if (isIn)
     {
-      throw dsm::Error("'" + path + "' would be written over what is read: the values of '" +
-        from.GetPath() + "' come from '" + origin + "'. Choose another name.");
+      throw FileError(path,
+        "would be written over what is read: the values of '" + from.GetPath() + "' come from '" +
+          origin + "'. Choose another name.");
     }
   }
 }
@@ -79,9 +80,9 @@ public:
   {
     if (this->Step < 0 || this->Step >= this->File->GetSteps())
     {
-      throw dsm::Error("The file '" + this->File->GetPath() + "' has the steps 0 to " +
-        std::to_string(this->File->GetSteps() - 1) + ", and not " + std::to_string(this->Step) +
-        ".");
+      throw FileError(this->File->GetPath(),
+        "has the steps 0 to " + std::to_string(this->File->GetSteps() - 1) + ", and not " +
+          std::to_string(this->Step) + ".");
     }
     for (const std::size_t number : this->Numbers)
     {
@@ -176,8 +177,8 @@ void CheckName(const std::string& path)
     ".zarr" };
   if (std::count(std::begin(others), std::end(others), extension) > 0)
   {
-    throw dsm::Error("'" + path +
-      "' is the name of a file of another format, and HDF5 is written: let it end in .vtkhdf or "
+    throw FileError(path,
+      "is the name of a file of another format, and HDF5 is written: let it end in .vtkhdf or "
       ".h5. The file to read is named first.");
   }
 }

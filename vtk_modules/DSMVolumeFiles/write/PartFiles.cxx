@@ -2,7 +2,7 @@
 #include "DSMVolumeFiles/write/PartFiles.h"
 
 #include "DSMBricks/base/ByteHash.h"
-#include "DSMCore/base/Error.h"
+#include "DSMVolumeFiles/base/FileError.h"
 #include "DSMVolumeFiles/base/FileLimits.h"
 
 #include <algorithm>
@@ -84,8 +84,9 @@ void PartFiles::CheckOwn(const std::string& path)
     const fs::file_status there = GetStatus(name);
     if (fs::exists(there) && (!hasState || !fs::is_regular_file(there)))
     {
-      throw dsm::Error("'" + name + "' is in the way: it is needed to write '" + path +
-        "', but is not a file that this program has begun. Rename or delete it.");
+      throw FileError(name,
+        "is in the way: it is needed to write '" + path +
+          "', but is not a file that this program has begun. Rename or delete it.");
     }
   };
   check(GetState(path));

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "DSMVolumeFiles/write/PartState.h"
 
-#include "DSMCore/base/Error.h"
 #include "DSMVolumeFiles/base/BoundedJson.h"
 #include "DSMVolumeFiles/base/DurableFile.h"
+#include "DSMVolumeFiles/base/FileError.h"
 #include "DSMVolumeFiles/base/FileLimits.h"
 #include "DSMVolumeFiles/base/SmallFile.h"
 #include "DSMVolumeFiles/write/PartFiles.h"
@@ -151,10 +151,10 @@ void PartState::CheckNothingIsLost() const
   if (hasChunks && state.value("resumable", Json(true)) != false)
   {
     const std::string part = PartFiles::GetPart(this->Self->Path);
-    throw dsm::Error("'" + part +
-      "' belongs to a conversion that was interrupted and can be resumed. Run dsm_convert again to "
+    throw FileError(part,
+      "belongs to a conversion that was interrupted and can be resumed. Run dsm_convert again to "
       "finish it, or delete '" +
-      part + "' and '" + PartFiles::GetState(this->Self->Path) + "', or choose another name.");
+        part + "' and '" + PartFiles::GetState(this->Self->Path) + "', or choose another name.");
   }
 }
 

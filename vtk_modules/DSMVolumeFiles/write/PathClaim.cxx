@@ -2,6 +2,7 @@
 #include "DSMVolumeFiles/write/PathClaim.h"
 
 #include "DSMCore/base/Error.h"
+#include "DSMVolumeFiles/base/FileError.h"
 #include "DSMVolumeFiles/write/PartFiles.h"
 
 #include <fcntl.h>
@@ -30,7 +31,7 @@ void CheckReplaceable(const std::string& path)
   const std::filesystem::file_status there = std::filesystem::status(path, failure);
   if (std::filesystem::exists(there) && !std::filesystem::is_regular_file(there))
   {
-    throw dsm::Error("'" + path + "' is a folder or a device, and no file that can be replaced.");
+    throw FileError(path, "is a folder or a device, and no file that can be replaced.");
   }
 }
 
@@ -71,13 +72,14 @@ PathClaim::PathClaim(const std::string& path)
     if (!IsLock(this->Lock))
     {
       close(std::exchange(this->Lock, -1));
-      throw dsm::Error("'" + this->LockPath + "' is in the way: it is needed to write '" + path +
-        "', but is not a lock of this program. Rename or delete it.");
+      throw FileError(this->LockPath,
+        "is in the way: it is needed to write '" + path +
+          "', but is not a lock of this program. Rename or delete it.");
     }
     if (flock(this->Lock, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK)
     {
       close(std::exchange(this->Lock, -1));
-      throw dsm::Error("Another process is writing '" + path + "'. Wait until it ends, or end it.");
+      throw FileError(path, "is being written by another process. Wait until it ends, or end it.");
     }
   } while (!IsAt(this->Lock, this->LockPath));
 }

@@ -7,6 +7,7 @@
 #include "DSMBricks/layout/BrickLattice.h"
 #include "DSMCore/base/Error.h"
 #include "DSMVolumeFiles/base/CopyBox.h"
+#include "DSMVolumeFiles/base/FileError.h"
 #include "DSMVolumeFiles/base/FileLimits.h"
 #include "DSMVolumeFiles/cache/FileSamples.h"
 #include "DSMVolumeFiles/codec/ChunkCodec.h"
@@ -279,7 +280,7 @@ std::vector<std::vector<std::byte>> FindIndices(const std::string& path,
           [&](const FileArray& one) { return one.Name == array.Name && !one.OnCells; });
         if (found == arrays.end() || found->Type != array.Type || found->Components != 1)
         {
-          throw dsm::Error("'" + path + "' lacks the array '" + array.Name + "' that was written.");
+          throw FileError(path, "lacks the array '" + array.Name + "' that was written.");
         }
         lattice.emplace(points, array.Type, false, layout.BrickEdge);
         reader = std::make_shared<bricks::VoxelBrickReader>(*lattice,

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "DSMVolumeFiles/write/WrittenHdfFile.h"
 
-#include "DSMCore/base/Error.h"
+#include "DSMVolumeFiles/base/FileError.h"
 
 #include <fcntl.h>
 #include <sys/mman.h>
@@ -74,8 +74,8 @@ void WrittenHdfFile::Check(herr_t result)
   {
     const int cause = errno;
     this->Divert();
-    throw dsm::Error("Writing '" + this->Path + "' failed" +
-      (cause != 0 ? std::string(": ") + std::strerror(cause) : std::string()) + ".");
+    throw FileError(this->Path,
+      "cannot be written" + (cause != 0 ? std::string(": ") + std::strerror(cause) : "") + ".");
   }
 }
 

@@ -5,6 +5,7 @@
 #include "DSMBricks/layout/DealBricks.h"
 #include "DSMCore/base/Error.h"
 #include "DSMCore/memory/FreedMemory.h"
+#include "DSMVolumeFiles/base/FileError.h"
 #include "DSMVolumeFiles/cache/ChunkCache.h"
 #include "DSMVolumeFiles/cache/FileBrickReader.h"
 #include "DSMVolumeFiles/cache/FileSamples.h"
@@ -277,8 +278,8 @@ void vtkDSMFileVolume::CheckSameEverywhere(dsm::Messenger& messenger) const
   if (std::any_of(
         stamps.begin(), stamps.end(), [&](std::uint64_t stamp) { return stamp != stamps.front(); }))
   {
-    throw dsm::Error("The file '" + origin.Path +
-      "' was written to, or another took its place, since some of the ranks opened it: they would "
+    throw vol::FileError(origin.Path,
+      "was written to, or another took its place, since some of the ranks opened it: they would "
       "not show the same. Reload it.");
   }
 }
