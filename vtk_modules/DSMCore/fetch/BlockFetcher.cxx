@@ -83,6 +83,31 @@ void BlockFetcher::Refresh(const BlockSegment& segment, const std::vector<bool>&
   this->EndService(); // their memory goes
 }
 
+std::size_t BlockFetcher::GetRoomForOwn() const
+{
+  std::size_t room = 0;
+  for (const auto& segment : this->Segments)
+  {
+    const BlockDirectory& directory = segment->GetDirectory();
+    room =
+      std::max(room, directory.IsFromSource() ? this->CountFootprint(directory.GetLargest()) : 0);
+  }
+  return this->Messages.GetSize() > 1 ? room : 0; // alone there is nobody to wait for
+}
+
+void BlockFetcher::CheckCache(std::size_t cacheBytes, std::size_t largest) const
+{
+  const std::size_t footprint = this->CountFootprint(largest);
+  const std::size_t own = this->GetRoomForOwn();
+  if (largest > 0 && cacheBytes < footprint + own)
+  {
+    throw Error("The cache of " + std::to_string(cacheBytes) +
+      " bytes is smaller than one brick (" + std::to_string(footprint) + " bytes)" +
+      (own > 0 ? " and one of the rank's own (" + std::to_string(own) + " bytes)" : "") +
+      ". Raise the cache size (DSMCacheSize).");
+  }
+}
+
 // -- The frame, on the communication thread --------------------------------------------------------
 
 bool BlockFetcher::MayBeginFrame() const

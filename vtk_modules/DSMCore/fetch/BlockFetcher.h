@@ -100,8 +100,8 @@ protected:
   // -- What a store says; under the lock unless it says otherwise --
 
   virtual LineStatus& GetLine(const BlockWant& block) const = 0;
-  /// What a block takes of the cache.
-  virtual std::size_t GetFootprint(const BlockWant& block) const = 0;
+  /// What so many bytes of a block take of the cache.
+  virtual std::size_t CountFootprint(std::size_t bytes) const = 0;
   /// Null when the block is not in memory. Communication thread, no lock.
   virtual const std::byte* FindOwned(const BlockWant& block) const = 0;
   /// Whether this rank's own source brings a block that is not in memory, not another rank.
@@ -170,6 +170,15 @@ protected:
     WorkerSlots* slots, bool keeps);
   /// Throws why a block cannot be had now.
   [[noreturn]] void Refuse(const BlockSegment& segment) const;
+  std::size_t GetFootprint(const BlockWant& block) const
+  {
+    return this->CountFootprint(block.From->GetDirectory().GetBytes(block.Id));
+  }
+  /// Room for this rank's own blocks while others are on their way.
+  std::size_t GetRoomForOwn() const;
+  /// Throws Error when a cache of so many bytes cannot hold the largest block that comes and goes, of so many bytes,
+  /// and one of the rank's own.
+  void CheckCache(std::size_t cacheBytes, std::size_t largest) const;
   bool IsOpenFor(const BlockSegment& segment) const
   {
     return this->Phase == FramePhase::Open && this->Segments.Has(segment);

@@ -201,15 +201,7 @@ void PagedStore::Internals::Forget(const BlockSegment& segment, const std::vecto
 void PagedStore::Internals::CheckBudget() const
 {
   this->CheckFaults();
-  const std::size_t largest = this->GetLargestBlock();
-  const std::size_t own = this->GetRoomForOwn();
-  if (largest > 0 && this->Current.CacheBytes < largest + own)
-  {
-    throw Error("The cache of " + std::to_string(this->Current.CacheBytes) +
-      " bytes is smaller than one brick (" + std::to_string(largest) + " bytes in whole pages)" +
-      (own > 0 ? " and one of the rank's own (" + std::to_string(own) + " bytes)" : "") +
-      ". Raise the cache size (DSMCacheSize).");
-  }
+  this->CheckCache(this->Current.CacheBytes, this->GetLargestBlock());
 }
 
 std::size_t PagedStore::Internals::GetLargestBlock() const
@@ -221,18 +213,7 @@ std::size_t PagedStore::Internals::GetLargestBlock() const
     const bool stays = this->Messages.GetSize() == 1 && !directory.IsFromSource();
     largest = std::max(largest, stays ? 0 : std::size_t(directory.GetLargest()));
   }
-  return AddressRange::RoundUpToPages(largest);
-}
-
-std::size_t PagedStore::Internals::GetRoomForOwn() const
-{
-  std::size_t room = 0;
-  for (const auto& segment : this->Segments)
-  {
-    const BlockDirectory& directory = segment->GetDirectory();
-    room = std::max(room, directory.IsFromSource() ? std::size_t(directory.GetLargest()) : 0);
-  }
-  return this->Messages.GetSize() > 1 ? AddressRange::RoundUpToPages(room) : 0;
+  return largest;
 }
 
 const std::byte* PagedStore::Internals::FindOwned(const BlockWant& block) const

@@ -3,6 +3,7 @@
 #define dsm_PagedStoreInternals_h
 
 #include "DSMCore/fetch/BlockFetcher.h"
+#include "DSMCore/memory/AddressRange.h"
 #include "DSMCore/paged/PageCache.h"
 #include "DSMCore/paged/PageFaults.h"
 #include "DSMCore/paged/PagedStore.h"
@@ -88,9 +89,9 @@ private:
   {
     return GetSegment(block).Lines[block.Id];
   }
-  std::size_t GetFootprint(const BlockWant& block) const override
+  std::size_t CountFootprint(std::size_t bytes) const override
   {
-    return GetSegment(block).Layout.GetFootprint(block.Id);
+    return AddressRange::RoundUpToPages(bytes);
   }
   const std::byte* FindOwned(const BlockWant& block) const override;
   BlockSource* FindSource(const BlockWant& block) const override
@@ -123,10 +124,8 @@ private:
 
   void CreateFaults();
   bool IsAnyFromSource() const;
-  /// The largest block that comes and goes, in whole pages.
+  /// The largest block that comes and goes.
   std::size_t GetLargestBlock() const;
-  /// Room for this rank's own blocks while others are on their way.
-  std::size_t GetRoomForOwn() const;
 
   pid_t Process;
   std::thread Listener;

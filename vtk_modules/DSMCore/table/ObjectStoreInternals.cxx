@@ -143,37 +143,7 @@ std::size_t ObjectStore::Internals::GetLargestBlock() const
   return largest;
 }
 
-void ObjectStore::Internals::CheckBudget() const
-{
-  const std::size_t largest = this->GetLargestBlock();
-  const std::size_t own = this->GetRoomForOwn();
-  if (largest > 0 && this->Current.CacheBytes < GetBlockFootprint(largest) + own)
-  {
-    throw Error("The cache of " + std::to_string(this->Current.CacheBytes) +
-      " bytes is smaller than one brick (" + std::to_string(GetBlockFootprint(largest)) +
-      " bytes)" +
-      (own > 0 ? " and one of the rank's own (" + std::to_string(own) + " bytes)" : "") +
-      ". Raise the cache size (DSMCacheSize).");
-  }
-}
-
-std::size_t ObjectStore::Internals::GetRoomForOwn() const
-{
-  std::size_t room = 0;
-  for (const auto& segment : this->Segments)
-  {
-    const bool mayLeave = static_cast<const Segment&>(*segment).Source != nullptr;
-    room = std::max(room, mayLeave ? GetBlockFootprint(segment->GetDirectory().GetLargest()) : 0);
-  }
-  return this->Messages.GetSize() > 1 ? room : 0; // alone there is nobody to wait for
-}
-
 // -- Blocks, on the communication thread -----------------------------------------------------------
-
-std::size_t ObjectStore::Internals::GetFootprint(const BlockWant& block) const
-{
-  return GetBlockFootprint(GetBlockLine(block).Bytes);
-}
 
 const std::byte* ObjectStore::Internals::FindOwned(const BlockWant& block) const
 {

@@ -41,12 +41,15 @@ private:
   }
 
   LineStatus& GetLine(const BlockWant& block) const override { return GetBlockLine(block); }
-  std::size_t GetFootprint(const BlockWant& block) const override;
+  std::size_t CountFootprint(std::size_t bytes) const override { return GetBlockFootprint(bytes); }
   const std::byte* FindOwned(const BlockWant& block) const override;
   bool IsOwned(const BlockWant& block) const override;
   BlockSource* FindSource(const BlockWant& block) const override;
   BlockSource* FindSourceForWorkers(const BlockWant& block) const override;
-  void CheckBudget() const override;
+  void CheckBudget() const override
+  {
+    this->CheckCache(this->Current.CacheBytes, this->GetLargestBlock());
+  }
   bool MakeRoom(const BlockWant& block) override;
   bool TakeRoom(const BlockWant& block) override;
   void GiveRoomBack(const BlockWant& block) noexcept override;
@@ -66,8 +69,6 @@ private:
 
   std::uint64_t GetOldestEpoch() const;
   std::size_t GetLargestBlock() const;
-  /// Room for this rank's own blocks while others are on their way.
-  std::size_t GetRoomForOwn() const;
 
   ObjectStore& Store;
   BlockCache Cache; ///< under the lock
