@@ -49,8 +49,6 @@ public:
   int EdgeFlags = 9;
   int Words = 9;
 
-  static constexpr int LargestWords = 9 + 3 + 3 + 3 + 6 + 1;
-
   std::size_t GetBytes() const { return sizeof(std::uint32_t) * this->Words; }
 
   static void GetCorners(const std::uint32_t* record, float corners[9])

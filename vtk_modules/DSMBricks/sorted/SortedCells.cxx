@@ -57,7 +57,6 @@ void SortedCells::ReadKeys(const RecordReader& reader, const MortonCode& order, 
     });
   const auto kept = std::remove_if(
     this->Keys.begin(), this->Keys.end(), [](const Key& key) { return key.Code == NoCode; });
-  this->Dropped = static_cast<std::uint64_t>(this->Keys.end() - kept);
   this->Keys.erase(kept, this->Keys.end());
 }
 

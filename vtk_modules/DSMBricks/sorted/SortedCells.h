@@ -35,9 +35,6 @@ public:
   }
   std::uint64_t GetPrimitive(std::uint64_t index) const { return this->Keys[index].Primitive; }
 
-  /// Of this rank's primitives: those that no ray can hit; they are in no cell.
-  std::uint64_t GetDropped() const { return this->Dropped; }
-
 private:
   struct Key
   {
@@ -61,7 +58,6 @@ private:
 
   std::vector<Key> Keys;
   std::vector<Cell> Cells;
-  std::uint64_t Dropped = 0;
 };
 
 } // namespace bricks
