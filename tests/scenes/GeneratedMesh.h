@@ -3,8 +3,7 @@
 #define tests_scenes_GeneratedMesh_h
 
 #include "tests/scenes/GeneratedVolume.h"
-
-#include "DSMBricks/build/TriangleArrays.h"
+#include "tests/support/TriangleArrays.h"
 
 #include <glm/geometric.hpp>
 #include <glm/vec3.hpp>
@@ -12,7 +11,7 @@
 namespace Generated
 {
 
-using Mesh = bricks::TriangleArrays<double>;
+using Mesh = TriangleArrays<double>;
 
 /// Adds a point with all that points may have.
 inline void AddPoint(

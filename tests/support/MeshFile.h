@@ -2,7 +2,8 @@
 #ifndef MeshFile_h
 #define MeshFile_h
 
-#include "DSMBricks/build/TriangleArrays.h"
+#include "tests/support/TriangleArrays.h"
+
 #include "DSMCore/base/Error.h"
 
 #include <algorithm>
@@ -18,7 +19,7 @@
 namespace MeshFile
 {
 
-using Mesh = bricks::TriangleArrays<float>;
+using Mesh = TriangleArrays<float>;
 
 inline void AddFan(Mesh& mesh, const std::vector<std::uint64_t>& points)
 {

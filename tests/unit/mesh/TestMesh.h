@@ -3,8 +3,8 @@
 #define tests_TestMesh_h
 
 #include "tests/support/LoopbackCluster.h"
+#include "tests/support/TriangleArrays.h"
 
-#include "DSMBricks/build/TriangleArrays.h"
 #include "DSMBricks/build/TriangleMeshBuilder.h"
 #include "DSMCore/table/ObjectStore.h"
 #include "DSMRayTracing/frame/FrameAgreement.h"
@@ -29,7 +29,7 @@
 namespace TestMesh
 {
 
-using Mesh = bricks::TriangleArrays<double>;
+using Mesh = TriangleArrays<double>;
 using Tracer = rt::MeshSearch<dsm::ObjectStore>;
 
 /// What Tracer::Intersect gives the hits of a packet to.
@@ -140,8 +140,8 @@ inline Mesh CreateTerrain(int n)
 /// The triangles whose number in a shuffled order falls to `part`; all attributes go with them. A
 /// part's points are in another order too.
 template <class Real>
-bricks::TriangleArrays<Real> TakePart(
-  const bricks::TriangleArrays<Real>& mesh, std::uint64_t part, std::uint64_t parts, unsigned seed)
+TriangleArrays<Real> TakePart(
+  const TriangleArrays<Real>& mesh, std::uint64_t part, std::uint64_t parts, unsigned seed)
 {
   std::vector<std::uint64_t> order(mesh.GetTriangleCount());
   std::iota(order.begin(), order.end(), 0u);
@@ -149,7 +149,7 @@ bricks::TriangleArrays<Real> TakePart(
   {
     std::shuffle(order.begin(), order.end(), std::mt19937(seed));
   }
-  bricks::TriangleArrays<Real> piece;
+  TriangleArrays<Real> piece;
   piece.NormalsOf = mesh.NormalsOf;
   piece.ValuesOf = mesh.ValuesOf;
   piece.ColorsOf = mesh.ColorsOf;

@@ -49,7 +49,7 @@ void CompareWithOracle(const bricks::TriangleSource& mesh, const std::vector<rt:
 
 /// What the bricks hold: positions in single precision.
 template <class Real>
-bricks::TriangleArrays<Real> RoundToFloat(bricks::TriangleArrays<Real> mesh)
+TriangleArrays<Real> RoundToFloat(TriangleArrays<Real> mesh)
 {
   for (Real& coordinate : mesh.Positions)
   {

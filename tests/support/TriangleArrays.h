@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#ifndef bricks_TriangleArrays_h
-#define bricks_TriangleArrays_h
+#ifndef TriangleArrays_h
+#define TriangleArrays_h
 
 #include "DSMBricks/build/TriangleSource.h"
 
@@ -10,13 +10,10 @@
 #include <utility>
 #include <vector>
 
-namespace bricks
-{
-
 /// Triangles in plain arrays. An attribute is there when its array is not empty; `Real` is the type
 /// of the positions, float or double.
 template <class Real>
-class TriangleArrays final : public TriangleSource
+class TriangleArrays final : public bricks::TriangleSource
 {
 public:
   std::vector<Real> Positions;          ///< three a point
@@ -27,16 +24,16 @@ public:
   std::vector<float> TextureCoordinates; ///< two a point
   std::vector<std::uint8_t> EdgeFlags;   ///< one a triangle
   /// What Normals, Values and Colors belong to, when there are any.
-  Attachment NormalsOf = Attachment::Points;
-  Attachment ValuesOf = Attachment::Points;
-  Attachment ColorsOf = Attachment::Points;
+  bricks::Attachment NormalsOf = bricks::Attachment::Points;
+  bricks::Attachment ValuesOf = bricks::Attachment::Points;
+  bricks::Attachment ColorsOf = bricks::Attachment::Points;
 
-  MeshAttributes GetAttributes() const override
+  bricks::MeshAttributes GetAttributes() const override
   {
-    MeshAttributes attributes;
-    attributes.Normals = this->Normals.empty() ? Attachment::None : this->NormalsOf;
-    attributes.Values = this->Values.empty() ? Attachment::None : this->ValuesOf;
-    attributes.Colors = this->Colors.empty() ? Attachment::None : this->ColorsOf;
+    bricks::MeshAttributes attributes;
+    attributes.Normals = this->Normals.empty() ? bricks::Attachment::None : this->NormalsOf;
+    attributes.Values = this->Values.empty() ? bricks::Attachment::None : this->ValuesOf;
+    attributes.Colors = this->Colors.empty() ? bricks::Attachment::None : this->ColorsOf;
     attributes.TextureCoordinates = !this->TextureCoordinates.empty();
     attributes.EdgeFlags = !this->EdgeFlags.empty();
     return attributes;
@@ -66,7 +63,5 @@ public:
   }
   unsigned GetEdgeFlags(std::uint64_t triangle) const override { return this->EdgeFlags[triangle]; }
 };
-
-} // namespace bricks
 
 #endif
