@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkDSMImagePiece.h"
 
-#include "DSMCore/base/Error.h"
 #include "DSMRayTracing/look/PackedColor.h"
 #include "vtkDSMFileArray.h"
+#include "vtkDSMScalarType.h"
 
 #include "vtkCellData.h"
 #include "vtkDataArray.h"
@@ -222,37 +222,19 @@ bricks::PieceInfo vtkDSMImagePiece::Describe(vtkImageData* image, int leaf)
 
 bricks::ScalarType vtkDSMImagePiece::GetScalarType(vtkDataArray* array, int component)
 {
-  const int type = array->GetDataType();
-  const std::size_t bytes = type == VTK_BIT ? 1 : array->GetDataTypeSize();
-  const bool real = type == VTK_FLOAT || type == VTK_DOUBLE;
   if (component == Color)
   {
     return bricks::ScalarType::UInt32;
   }
+  const bricks::ScalarType type = array->GetDataType() == VTK_BIT
+    ? bricks::ScalarType::UInt8
+    : vtkDSMScalarType::FromArray(array);
   if (component == Magnitude && array->GetNumberOfComponents() > 1)
   {
-    const bool fits = type == VTK_FLOAT || (!real && bytes <= 2);
+    const bool fits = type == bricks::ScalarType::Float32 || bricks::GetBytes(type) <= 2;
     return fits ? bricks::ScalarType::Float32 : bricks::ScalarType::Float64;
   }
-  if (real)
-  {
-    return type == VTK_FLOAT ? bricks::ScalarType::Float32 : bricks::ScalarType::Float64;
-  }
-  const bool isSigned = type != VTK_BIT && array->GetDataTypeMin() < 0.0;
-  switch (bytes)
-  {
-    case 1:
-      return isSigned ? bricks::ScalarType::Int8 : bricks::ScalarType::UInt8;
-    case 2:
-      return isSigned ? bricks::ScalarType::Int16 : bricks::ScalarType::UInt16;
-    case 4:
-      return isSigned ? bricks::ScalarType::Int32 : bricks::ScalarType::UInt32;
-    case 8:
-      return isSigned ? bricks::ScalarType::Int64 : bricks::ScalarType::UInt64;
-    default:
-      throw dsm::Error(std::string("The array '") + (array->GetName() ? array->GetName() : "") +
-        "' of type " + array->GetDataTypeAsString() + " cannot be ray traced.");
-  }
+  return type;
 }
 
 vtkDSMImagePiece::vtkDSMImagePiece(vtkImageData* image, vtkDataArray* array, int component,
