@@ -32,15 +32,16 @@ struct LightPath
   PixelSample* Layers = nullptr; ///< gets the surfaces one by one, if not null
   /// The picture that the ray belongs to.
   const PictureView* View = nullptr;
-  /// Visibility of the scene's first lamps from surfaces in front. Bit *i* of KnownLamps: lamp *i* has a value.
-  static constexpr int MaxKnownLamps = 8;
-  KnownLight<glm::dvec3> Lamps[MaxKnownLamps];
-  unsigned KnownLamps = 0;
-  /// ShadingPoint::AmbientVisibility of a surface in front.
-  KnownLight<double> Ambient;
-  bool KnowsAmbient = false;
   std::int32_t Object = -1; ///< see PixelSample; of the surface that it has come to
   std::uint64_t Number = 0; ///< what a debug view of owners or bricks shows of the surface
+  unsigned KnownLamps = 0;  ///< bit *i*: Lamps[i] has a value
+  bool KnowsAmbient = false;
+  // Last, so that what all paths use is together.
+  /// ShadingPoint::AmbientVisibility of a surface in front.
+  KnownLight<double> Ambient;
+  /// Visibility of the scene's first lamps from surfaces in front.
+  static constexpr int MaxKnownLamps = 8;
+  KnownLight<glm::dvec3> Lamps[MaxKnownLamps];
 
   /// What the surface contributes to the colour.
   float GetWeight() const { return (1.0f - this->Color.w) * this->Point.Color.w; }

@@ -29,11 +29,11 @@ struct PixelSample
   glm::vec3 Normal{ 0.0f };
   std::int32_t Object = -1;
 
-  /// The same surface by surface, front to back: what each contributes to the colour, and its depth.
+  /// The same surface by surface, front to back: its depth, and what it contributes to the colour.
   /// The last one stands for all behind it.
   int Layers = 0;
-  glm::vec4 LayerColors[MaxLayers];
   float LayerDepths[MaxLayers];
+  glm::vec4 LayerColors[MaxLayers];
 
   void AddLayer(const glm::vec4& color, float depth)
   {

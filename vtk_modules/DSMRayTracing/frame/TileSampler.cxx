@@ -18,13 +18,39 @@ namespace
 constexpr int BeamEdge = BeamHistory::Edge;
 constexpr int SmallestBeamEdge = PixelSampler::BlockEdge;
 
-/// Four bytes of a sum of samples.
-void ConvertSum(const glm::vec4& sum, const glm::vec4& scale, std::uint8_t* color)
+/// Four bytes of a sum of samples. Called, it costs frames 0.5 %.
+[[gnu::always_inline]] inline void ConvertSum(
+  const glm::vec4& sum, const glm::vec4& scale, std::uint8_t* color)
 {
   for (int channel = 0; channel < 4; ++channel)
   {
     const float value = std::clamp(scale[channel] * sum[channel], 0.0f, 1.0f);
     color[channel] = static_cast<std::uint8_t>(255.0f * value + 0.5f);
+  }
+}
+
+/// The place of a sample's pixel in its tile.
+std::size_t GetPixel(const PixelSample& traced, const Tile& tile)
+{
+  return static_cast<std::size_t>(traced.Pixel.y - tile.Y) * tile.Width +
+    static_cast<std::size_t>(traced.Pixel.x - tile.X);
+}
+
+/// Adds a sample of that number to the channels on request that the tile has.
+void AddMoreChannels(const PixelSample& traced, int sample, Tile& tile)
+{
+  const std::size_t pixel = GetPixel(traced, tile);
+  if (tile.Present.Has(ChannelSet::Albedo))
+  {
+    tile.AlbedoSum[pixel] += traced.Albedo;
+  }
+  if (tile.Present.Has(ChannelSet::Normal))
+  {
+    tile.NormalSum[pixel] += traced.Normal;
+  }
+  if (tile.Present.Has(ChannelSet::Object) && sample == 0)
+  {
+    tile.Object[pixel] = traced.Object;
   }
 }
 
@@ -178,29 +204,20 @@ void TileSampler::TraceBatch(Tile& tile, SceneBeam& beam, const PixelBox& box) c
       this->Request.FirstSample + sample, samples);
     for (int number = 0; number < samples.GetCount(); ++number)
     {
-      AddSample(samples[number], this->Request.FirstSample + sample, tile);
+      AddSample(samples[number], tile);
+    }
+    for (int number = 0; tile.Present.HasMore() && number < samples.GetCount(); ++number)
+    {
+      AddMoreChannels(samples[number], this->Request.FirstSample + sample, tile);
     }
   }
 }
 
-void TileSampler::AddSample(const PixelSample& traced, int sample, Tile& tile)
+void TileSampler::AddSample(const PixelSample& traced, Tile& tile)
 {
   tile.LightRays += static_cast<std::uint64_t>(traced.LightRays);
   const std::size_t pixels = static_cast<std::size_t>(tile.Width) * tile.Height;
-  const std::size_t pixel = static_cast<std::size_t>(traced.Pixel.y - tile.Y) * tile.Width +
-    static_cast<std::size_t>(traced.Pixel.x - tile.X);
-  if (!tile.AlbedoSum.empty())
-  {
-    tile.AlbedoSum[pixel] += traced.Albedo;
-  }
-  if (!tile.NormalSum.empty())
-  {
-    tile.NormalSum[pixel] += traced.Normal;
-  }
-  if (!tile.Object.empty() && sample == 0)
-  {
-    tile.Object[pixel] = traced.Object;
-  }
+  const std::size_t pixel = GetPixel(traced, tile);
   if (tile.Layers == 1)
   {
     tile.Sum[pixel] += traced.Color;

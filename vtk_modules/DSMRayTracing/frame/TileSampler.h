@@ -54,7 +54,7 @@ private:
   /// Adds the samples of pixels that share a beam; of one that fits into a batch.
   void TraceBeam(Tile& tile, const PixelBox& box) const;
   void TraceBatch(Tile& tile, SceneBeam& beam, const PixelBox& box) const;
-  static void AddSample(const PixelSample& traced, int sample, Tile& tile);
+  static void AddSample(const PixelSample& traced, Tile& tile);
 
   std::vector<const BeamFinder*> Finders; ///< in the order of SceneBeam
   PixelSampler Pixels;
