@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// One rank runs out of memory, in turn at each of the larger allocations that it makes between the
-// data and the frame: every rank reports it, none waits, and the next frame is as it should be.
-// Several MPI ranks; draws nothing.
+// Several MPI ranks; draws nothing. What they exchange for a frame. And: one rank runs out of memory, in turn at each of
+// the larger allocations that it makes between the data and the frame: every rank reports it, none waits, and the next
+// frame is as it should be.
+#include "vtkDSMLightOptions.h"
 #include "vtkDSMMemoryOptions.h"
+#include "vtkDSMRankGroup.h"
 #include "vtkDSMScene.h"
 #include "vtkDSMStatistics.h"
 #include "vtkDSMVolumeMapper.h"
 
 #include "vtkAutoInit.h"
+#include "vtkCallbackCommand.h"
 #include "vtkCamera.h"
 #include "vtkCommand.h"
 #include "vtkFloatArray.h"
@@ -15,6 +18,7 @@
 #include "vtkMPIController.h"
 #include "vtkNew.h"
 #include "vtkPointData.h"
+#include "vtkPropCollection.h"
 #include "vtkRenderWindow.h"
 #include "vtkRenderer.h"
 #include "vtkTestErrorObserver.h"
@@ -24,8 +28,10 @@
 
 #include <atomic>
 #include <cmath>
+#include <cstdint>
 #include <cstdlib>
 #include <new>
+#include <stdexcept>
 #include <string>
 
 namespace
@@ -112,10 +118,10 @@ vtkSmartPointer<vtkImageData> MakeSlab(int rank, int ranks)
   return image;
 }
 
-class OutOfMemory : public testing::Test
+class SeveralRanks : public testing::Test
 {
 protected:
-  OutOfMemory()
+  SeveralRanks()
     : Controller(vtkMultiProcessController::GetGlobalController())
     , Scene(vtkDSMScene::ForRenderer(this->Renderer))
   {
@@ -156,6 +162,27 @@ protected:
     return this->Errors->GetError() ? this->Errors->GetErrorMessage() : std::string();
   }
 
+  /// Traces a frame; returns how many collective steps the ranks have taken for it.
+  int CountSteps()
+  {
+    const auto group = vtkDSMRankGroup::Get(this->Controller);
+    const std::uint32_t before = group->GetMessenger().GetSession();
+    EXPECT_EQ(this->Trace(), "");
+    return static_cast<int>(group->GetMessenger().GetSession() - before);
+  }
+
+  /// Whether all ranks have the statistics of rank 0.
+  bool HaveSameStatistics()
+  {
+    const std::string mine = this->Scene->GetStatistics()->GetJson();
+    auto size = static_cast<vtkIdType>(mine.size());
+    this->Controller->Broadcast(&size, 1, 0);
+    std::string first = mine;
+    first.resize(static_cast<std::size_t>(size));
+    this->Controller->Broadcast(first.data(), size, 0);
+    return mine == first;
+  }
+
   vtkMultiProcessController* Controller;
   vtkNew<vtkRenderer> Renderer;
   vtkNew<vtkRenderWindow> Window;
@@ -166,7 +193,7 @@ protected:
   int TimesGiven = 0;
 };
 
-TEST_F(OutOfMemory, OfOneRankIsReportedByAllAndTheNextFrameIsDrawn)
+TEST_F(SeveralRanks, OutOfMemoryOfOneIsReportedByAllAndTheNextFrameIsDrawn)
 {
   const int last = this->Controller->GetNumberOfProcesses() - 1;
   int failures = 0;
@@ -197,6 +224,64 @@ TEST_F(OutOfMemory, OfOneRankIsReportedByAllAndTheNextFrameIsDrawn)
     EXPECT_GT(this->Scene->GetStatistics()->GetFrameSeconds(), 0.0) << allocation;
   }
   EXPECT_GT(failures, 20) << "the sweep came by the places where memory is taken";
+}
+
+TEST_F(SeveralRanks, ExchangeTwoRecordsForAFrameWithNothingNew)
+{
+  using Options = vtkDSMMemoryOptions;
+  vtkDSMMemoryOptions* const options = this->Mapper->GetMemoryOptions();
+  for (const int organization : { Options::Replicated, Options::ObjectBased })
+  {
+    // Object based memory numbers the requests for bricks, too, but exchanges nothing for it.
+    const int steps = organization == Options::Replicated ? 2 : 3;
+    options->SetMemoryOrganization(organization);
+    this->GiveNewData();
+    EXPECT_GT(this->CountSteps(), steps);
+    EXPECT_EQ(this->CountSteps(), steps) << "nothing has changed";
+    EXPECT_TRUE(this->HaveSameStatistics());
+    EXPECT_EQ(
+      this->Scene->GetStatistics()->GetNumberOfRanks(), this->Controller->GetNumberOfProcesses());
+    this->Renderer->GetActiveCamera()->Azimuth(10.0);
+    EXPECT_EQ(this->CountSteps(), steps) << "another camera";
+    this->Mapper->SetIsoValue(0, 21.0);
+    EXPECT_EQ(this->CountSteps(), steps) << "another isovalue";
+    if (this->Controller->GetLocalProcessId() == 1)
+    {
+      this->GiveNewData();
+    }
+    EXPECT_GT(this->CountSteps(), steps) << "one rank has new data";
+    EXPECT_EQ(this->CountSteps(), steps);
+
+    this->Mapper->GetLightOptions()->SetSamplesPerPixel(2);
+    EXPECT_EQ(this->CountSteps(), steps + 1) << "with the pixels that surfaces cover in part";
+    EXPECT_EQ(this->CountSteps(), 2) << "all samples are there: the view, and these pixels again";
+    this->Mapper->GetLightOptions()->SetSamplesPerPixel(1);
+    this->Mapper->SetIsoValue(0, 20.0);
+  }
+}
+
+TEST_F(SeveralRanks, WhatFailsOnOneAfterTheFrameEndsTheNextOne)
+{
+  const int last = this->Controller->GetNumberOfProcesses() - 1;
+  const bool fails = this->Controller->GetLocalProcessId() == last;
+  this->GiveNewData();
+  EXPECT_EQ(this->Trace(), "");
+  vtkNew<vtkCallbackCommand> failure;
+  failure->SetCallback([](vtkObject*, unsigned long, void*, void*)
+    { throw std::runtime_error("the picture is lost"); });
+  vtkObject* const picture = this->Renderer->GetViewProps()->GetItemAsObject(0);
+  ASSERT_TRUE(picture->IsA("vtkDSMFrameProp"));
+  if (fails)
+  {
+    picture->AddObserver(vtkCommand::ModifiedEvent, failure);
+  }
+  const auto isTold = [](const std::string& report)
+  { return report.find("the picture is lost") != std::string::npos; };
+  EXPECT_EQ(isTold(this->Trace()), fails);
+  picture->RemoveObserver(failure);
+  EXPECT_EQ(isTold(this->Trace()), !fails) << "it was told already where it was";
+  EXPECT_EQ(this->Trace(), "");
+  EXPECT_GT(this->Scene->GetStatistics()->GetFrameSeconds(), 0.0);
 }
 
 } // namespace

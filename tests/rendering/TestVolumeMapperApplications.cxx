@@ -116,6 +116,10 @@ TEST_F(VolumeMapper, SaysWhatMediaDoNotHave)
   this->Mapper->SetBlendModeToMaximumIntensity();
   this->Window->Render();
   EXPECT_NE(observer->GetErrorMessage().find("Composite"), std::string::npos);
+  this->Mapper->AutomaticIsoValueOn();
+  this->Window->Render();
+  EXPECT_TRUE(std::isfinite(this->Mapper->GetSuggestedIsoValue()))
+    << "a surface in place of the medium";
 }
 
 TEST_F(VolumeMapper, IsDrawnAgainAfterAllPropsWereRemoved)

@@ -50,7 +50,8 @@ TEST(FrameGather, EdgesComeToAllRanks)
     {
       const rt::Frame frame = CreateFrame(messenger.GetRank(), ranks);
       const rt::Picture whole = rt::GatherFrame(messenger, frame);
-      const rt::Picture mine = rt::AssembleTilesWithEdges(messenger, frame);
+      rt::Picture mine = rt::AssembleTiles(frame);
+      rt::AddEdges(messenger, frame, mine);
       ASSERT_EQ(mine.Color.size(), whole.Color.size());
       int edges = 0;
       for (std::size_t pixel = 0; pixel < whole.Depth.size(); ++pixel)

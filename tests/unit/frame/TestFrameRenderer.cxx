@@ -11,11 +11,13 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <cstddef>
 #include <mutex>
 #include <random>
 #include <string>
 #include <tuple>
 #include <variant>
+#include <vector>
 
 namespace
 {
@@ -292,6 +294,54 @@ TEST(FrameRenderer, CacheSmallerThanABrickIsRefusedByAllAndTheNextFrameWorks)
   ASSERT_EQ(errors.size(), 2u);
   EXPECT_NE(errors[0].find("DSMCacheSize"), std::string::npos) << errors[0];
   EXPECT_EQ(errors[0], errors[1]);
+}
+
+TEST(FrameRenderer, ReportsComeToAllRanksAndOneThatFailsIsEverybodysFailure)
+{
+  constexpr int ranks = 5; // the end of a frame goes by way of other ranks
+  std::mutex guard;
+  std::vector<std::string> errors;
+  RunOnCluster(ranks,
+    [&](dsm::Messenger& messenger)
+    {
+      dsm::BlockStore store(messenger, SphereScene::CreateSettings(std::size_t(16) << 20, 1));
+      const rt::Scene scene =
+        SphereScene::CreateScene(SphereScene::Publish(messenger, store), 1.0f);
+      rt::FrameRenderer renderer(messenger);
+      const rt::FrameRequest request = SphereScene::CreateRequest(32, 32);
+      const auto report = [&](const rt::Frame& frame)
+      {
+        // Of different sizes, and none.
+        std::vector<std::byte> bytes(static_cast<std::size_t>(3 * messenger.GetRank()),
+          static_cast<std::byte>(messenger.GetRank()));
+        EXPECT_GT(frame.Counters.Workers.Accesses + (frame.Tiles.empty() ? 1 : 0), 0u);
+        return bytes;
+      };
+      const auto failing = [&](const rt::Frame& frame)
+      { return messenger.GetRank() == 3 ? throw dsm::Error("no picture") : report(frame); };
+      for (int round = 0; round < 2; ++round)
+      {
+        const rt::Frame frame = renderer.Render(store, scene, request, nullptr, { {}, report });
+        EXPECT_EQ(frame.Reports.size(), std::size_t(ranks));
+        for (std::size_t rank = 0; rank < frame.Reports.size(); ++rank)
+        {
+          EXPECT_EQ(
+            frame.Reports[rank], std::vector<std::byte>(3 * rank, static_cast<std::byte>(rank)));
+        }
+        try
+        {
+          renderer.Render(store, scene, request, nullptr, { {}, failing });
+        }
+        catch (const dsm::Error& error)
+        {
+          const std::lock_guard<std::mutex> lock(guard);
+          errors.push_back(error.what());
+        }
+      }
+    });
+  ASSERT_EQ(errors.size(), 2u * ranks);
+  EXPECT_NE(errors[0].find("Rank 3: no picture"), std::string::npos) << errors[0];
+  EXPECT_EQ(std::count(errors.begin(), errors.end(), errors[0]), 2 * ranks);
 }
 
 TEST(FrameRenderer, EmptySceneIsAnEmptyPicture)

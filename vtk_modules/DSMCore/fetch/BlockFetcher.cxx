@@ -351,7 +351,12 @@ bool BlockFetcher::Drain()
 {
   const std::lock_guard<std::mutex> lock(this->Guard);
   this->AbandonPrefetches();
-  return this->Phase != FramePhase::Open || this->Reads.empty();
+  const bool isThrough = this->Phase != FramePhase::Open || this->Reads.empty();
+  if (isThrough)
+  {
+    this->SettlePrefetches();
+  }
+  return isThrough;
 }
 
 void BlockFetcher::EndFrame()
@@ -366,18 +371,7 @@ void BlockFetcher::EndFrame()
   this->Closing();
   this->Workers.EndFrame();
   this->AbandonAll();
-  this->FrameCounters.PrefetchesUsed = this->Prefetches.EndFrame(
-    [this](const BlockWant& block)
-    {
-      const bool isUnused = this->Settle(block);
-      if (isUnused)
-      {
-        this->Expected.NoteUnused(block);
-      }
-      return isUnused;
-    });
-  this->FrameCounters.Prefetches += this->AdvisedUsed;
-  this->FrameCounters.PrefetchesUsed += this->AdvisedUsed;
+  this->SettlePrefetches();
   this->Workers.WakeAll();
   this->Closed();
 }
@@ -406,6 +400,22 @@ void BlockFetcher::AbandonAll()
   }
   this->Reads.clear();
   this->BytesOfOthers = 0;
+}
+
+/// Finds out how many were used. No worker may use any behind it; again does nothing.
+void BlockFetcher::SettlePrefetches()
+{
+  this->FrameCounters.PrefetchesUsed = this->Prefetches.EndFrame(
+                                         [this](const BlockWant& block)
+                                         {
+                                           const bool isUnused = this->Settle(block);
+                                           if (isUnused)
+                                           {
+                                             this->Expected.NoteUnused(block);
+                                           }
+                                           return isUnused;
+                                         }) +
+    this->AdvisedUsed;
 }
 
 void BlockFetcher::AbandonPrefetches()
@@ -451,6 +461,7 @@ StoreCounters BlockFetcher::GetCounters()
   const auto workers = this->GetWorkerCounters();
   const std::lock_guard<std::mutex> lock(this->Guard);
   StoreCounters counters = this->FrameCounters;
+  counters.Prefetches += this->AdvisedUsed;
   counters.Requests = this->Requests.GetCount();
   counters.BytesSent = this->Requests.GetBytesSent();
   counters.BytesReceived = this->Requests.GetBytesReceived();

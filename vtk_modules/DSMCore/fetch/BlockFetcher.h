@@ -69,6 +69,7 @@ public:
 
   std::uint64_t GetMisses(const FetchWorker& worker) const;
   StoreCounters GetCounters();
+  std::uint64_t GetBytesFrom(int owner) const { return this->Requests.GetBytesFrom(owner); }
   std::vector<WorkerCounters> GetWorkerCounters();
 
   // -- Workers --
@@ -213,6 +214,7 @@ private:
   bool SubmitReads();
   void AbandonAll();
   void AbandonPrefetches();
+  void SettlePrefetches();
   void UpdateQueuedCount();
   /// Of those that are absent: the system is to be advised of blocks that workers can read by themselves then, which go
   /// to `advised`; the others are queued, as far as there may be so many. Returns whether any was queued.

@@ -14,6 +14,7 @@ namespace dsm
 BlockRequests::BlockRequests(Messenger& messenger, Callbacks callbacks)
   : Messages(messenger)
   , Store(std::move(callbacks))
+  , BytesFrom(static_cast<std::size_t>(messenger.GetSize()))
 {
 }
 
@@ -28,6 +29,7 @@ void BlockRequests::BeginFrame()
   this->Count = 0;
   this->BytesSent = 0;
   this->BytesReceived = 0;
+  std::fill(this->BytesFrom.begin(), this->BytesFrom.end(), 0);
   this->Messages.SetHandler(
     MessageKind::BlockRequest, [this](Message&& message) { this->Serve(message); });
   this->Messages.SetHandler(
@@ -236,6 +238,7 @@ void BlockRequests::Receive(Message& message)
   this->Store.Take(block, message.Payload.data());
   this->Pending.erase(asked);
   this->BytesReceived += bytes;
+  this->BytesFrom[static_cast<std::size_t>(message.Source)] += bytes;
 }
 
 } // namespace dsm

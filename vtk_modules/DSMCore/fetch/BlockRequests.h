@@ -77,6 +77,11 @@ public:
   /// Bytes of blocks, in this frame.
   std::uint64_t GetBytesSent() const { return this->BytesSent; }
   std::uint64_t GetBytesReceived() const { return this->BytesReceived; }
+  /// Of those, what came from this owner.
+  std::uint64_t GetBytesFrom(int owner) const
+  {
+    return this->BytesFrom[static_cast<std::size_t>(owner)];
+  }
 
 private:
   /// On the wire: a request has one or more; a reply has one, behind the bytes.
@@ -117,6 +122,7 @@ private:
   std::uint64_t Count = 0;
   std::uint64_t BytesSent = 0;
   std::uint64_t BytesReceived = 0;
+  std::vector<std::uint64_t> BytesFrom; ///< each owner
 };
 
 } // namespace dsm

@@ -57,6 +57,11 @@ StoreCounters FetchingStore::GetCounters() const
   return this->Fetcher->GetCounters();
 }
 
+std::uint64_t FetchingStore::GetBytesFrom(int owner) const
+{
+  return this->Fetcher->GetBytesFrom(owner);
+}
+
 std::vector<WorkerCounters> FetchingStore::GetWorkerCounters() const
 {
   return this->Fetcher->GetWorkerCounters();

@@ -57,6 +57,8 @@ public:
   std::uint64_t GetMisses(const FetchWorker& worker) const;
   /// Of the frame so far; after EndFrame, of the last frame. Communication thread.
   StoreCounters GetCounters() const;
+  /// Likewise: how many bytes of blocks came from this rank.
+  std::uint64_t GetBytesFrom(int owner) const;
   /// Per worker of the last frame.
   std::vector<WorkerCounters> GetWorkerCounters() const;
 

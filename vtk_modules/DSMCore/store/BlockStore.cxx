@@ -526,6 +526,11 @@ StoreCounters BlockStore::GetCounters()
   return counters;
 }
 
+std::uint64_t BlockStore::GetBytesFrom(int owner)
+{
+  return this->Visit([=](auto& store) { return store.GetBytesFrom(owner); });
+}
+
 std::vector<WorkerCounters> BlockStore::GetWorkerCounters()
 {
   const auto all = this->Visit([](auto& store) { return store.GetWorkerCounters(); });

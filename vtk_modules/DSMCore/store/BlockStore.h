@@ -159,6 +159,7 @@ public:
 
   /// See ObjectStore; of the store in force.
   StoreCounters GetCounters();
+  std::uint64_t GetBytesFrom(int owner);
   /// Settings::Workers of them: the workers beyond are added to those that they take turns with.
   std::vector<WorkerCounters> GetWorkerCounters();
 

@@ -74,6 +74,7 @@ class StoreInterface
     decltype(Get().Refresh(
       std::string(), GetSegment(), std::declval<const std::vector<bool>&>()))>);
   static_assert(Is<StoreCounters, decltype(GetConst().GetCounters())>);
+  static_assert(Is<std::uint64_t, decltype(GetConst().GetBytesFrom(int()))>);
   static_assert(Is<std::vector<WorkerCounters>, decltype(GetConst().GetWorkerCounters())>);
   static_assert(!std::is_copy_constructible_v<Store>, "it has the memory");
 };

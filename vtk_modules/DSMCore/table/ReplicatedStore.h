@@ -102,6 +102,7 @@ public:
 
   std::uint64_t GetMisses(const Worker&) const { return 0; }
   StoreCounters GetCounters() const;
+  static constexpr std::uint64_t GetBytesFrom(int /*owner*/) { return 0; }
   std::vector<WorkerCounters> GetWorkerCounters() const;
 
 private:

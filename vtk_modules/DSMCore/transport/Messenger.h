@@ -117,6 +117,9 @@ public:
   /// it threw for ten seconds is thrown at last.
   void Insist(FunctionRef<void()> step);
 
+  /// The ranks that this one hands on to what comes from rank 0, so that it reaches all along a tree.
+  std::vector<int> GetChildren() const;
+
   /// Any thread: there is something to do for the communication thread.
   void WakeUp();
 
@@ -154,7 +157,10 @@ public:
   /// `step` throws ends it for all, on one rank alone, too: those that wait for that rank in another
   /// collective leave it by a StepAborted, which `step` must let through. Between the collectives of a
   /// step anything may be thrown, except where the next thing is BeginSession.
-  Status RunStep(FunctionRef<void()> step);
+  /// `isOver`: `step` sets it when the ranks have just agreed that all went well, and what is left needs no memory. Then
+  /// nothing more is exchanged. What `step` throws after that is the outcome of this rank alone, which tells the others in
+  /// the next step.
+  Status RunStep(FunctionRef<void()> step, const bool& isOver = false);
 
   /// AllGather of what `make` returns; what it throws is treated as by RunTogether.
   std::vector<std::vector<std::byte>> GatherTogether(
@@ -215,6 +221,7 @@ private:
   };
   struct Gathered;
   std::vector<std::byte> ToCause(const FirstFailure& failure);
+  Status ToStatus(const FirstFailure& failure);
   Gathered Exchange(std::vector<std::byte>&& mine, Faring faring, Receivers receivers);
   Gathered Gather(std::vector<std::byte>&& mine, Faring faring, Receivers receivers);
   std::vector<std::vector<std::byte>> GatherPieces(

@@ -119,6 +119,17 @@ void Messenger::Internals::SpreadFromRankZero(std::vector<std::byte>& bytes)
   }
 }
 
+std::vector<int> Messenger::GetChildren() const
+{
+  const Tree tree(this->GetRank(), this->GetSize());
+  std::vector<int> children;
+  for (int child = tree.CountChildren() - 1; child >= 0; --child)
+  {
+    children.push_back(tree.GetChild(child));
+  }
+  return children;
+}
+
 namespace
 {
 
@@ -517,7 +528,21 @@ std::vector<std::byte> Messenger::ToCause(const FirstFailure& failure)
   return bytes;
 }
 
-Status Messenger::RunStep(FunctionRef<void()> step)
+/// Of this rank alone.
+Status Messenger::ToStatus(const FirstFailure& failure)
+{
+  Status status;
+  if (!failure.IsEmpty())
+  {
+    const std::vector<std::byte> cause = this->ToCause(failure);
+    status.FailedRank = this->GetRank();
+    status.IsEverywhere = this->GetSize() == 1;
+    this->Insist([&] { status.Cause = ToText(cause.data(), cause.size()); });
+  }
+  return status;
+}
+
+Status Messenger::RunStep(FunctionRef<void()> step, const bool& isOver)
 {
   FirstFailure failure;
   try
@@ -533,6 +558,10 @@ Status Messenger::RunStep(FunctionRef<void()> step)
     catch (...)
     {
       failure.Keep(std::current_exception());
+    }
+    if (isOver)
+    {
+      return this->ToStatus(failure);
     }
     return failure.IsEmpty()
       ? this->Exchange({}, Faring::Well, Receivers::All).Outcome

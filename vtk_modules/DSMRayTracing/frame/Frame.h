@@ -66,6 +66,8 @@ struct Frame
   std::vector<dsm::WorkerCounters> WorkerCounters;
   /// What the next frame of the view prefetches bricks by; null where none are fetched.
   std::shared_ptr<const BeamHistory> Beams;
+  /// Of all ranks, in rank order; see FrameRenderer::Records.
+  std::vector<std::vector<std::byte>> Reports;
   /// That threads had nothing to trace, before this rank's last tile was done; summed over them.
   std::uint64_t IdleNanoseconds = 0;
 };

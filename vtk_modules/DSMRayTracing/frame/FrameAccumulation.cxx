@@ -5,28 +5,65 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <utility>
 
 namespace rt
 {
 
-FrameAccumulation::Result FrameAccumulation::Trace(const Ranks& ranks, const Scene& scene,
-  FrameRequest request, int wanted, const Pace& pace, double lastSeconds)
+FrameAccumulation::Offer FrameAccumulation::CreateOffer(dsm::BlockStore& store, const Scene& scene,
+  const FrameRequest& request, int wanted, const Pace& pace) const
 {
-  bool isSame = false;
-  if (wanted > 1)
+  return { FrameEntry::Create(store, scene, request, &this->Traced), this->Digest, this->Samples,
+    this->SamplesUnderWay, wanted, pace.Samples, pace.Seconds };
+}
+
+/// Whether all ranks have samples of what is to be shown, and the same.
+bool FrameAccumulation::IsSame(const std::vector<Offer>& offers, std::uint64_t digest) const
+{
+  return this->Samples > 0 && digest == this->Digest &&
+    std::all_of(offers.begin(), offers.end(),
+      [&](const Offer& other)
+      {
+        return other.Digest == this->Digest && other.Samples == this->Samples &&
+          other.SamplesUnderWay == this->SamplesUnderWay;
+      });
+}
+
+FrameAccumulation::Result FrameAccumulation::Trace(const Ranks& ranks,
+  const std::vector<Offer>& offers, const Scene& scene, FrameRequest request, int wanted,
+  const Pace& pace, double lastSeconds, Report report)
+{
+  const auto isUnlike = [&](const Offer& other)
   {
-    const std::uint64_t digest = GetSceneDigest(scene, request);
-    // A rank may have seen a change that the others have not.
-    const std::uint8_t same = this->Samples > 0 && digest == this->Digest;
-    const auto all = ranks.Messenger.AllGatherValue(same);
-    isSame = std::count(all.begin(), all.end(), 0) == 0;
-    this->Digest = digest;
+    const Offer& first = offers.front();
+    return other.Wanted != first.Wanted || other.PaceSamples != first.PaceSamples ||
+      other.PaceSeconds != first.PaceSeconds;
+  };
+  const auto unlike = std::find_if(offers.begin(), offers.end(), isUnlike);
+  if (unlike != offers.end())
+  {
+    FrameEntry::Refuse(static_cast<std::size_t>(unlike - offers.begin()));
   }
-  if (!isSame)
+  FrameRenderer::Records records{ {}, report };
+  std::uint64_t digest = 0;
+  // The ranks count on one another from here on.
+  ranks.Messenger.Insist(
+    [&]
+    {
+      digest = wanted > 1 ? GetSceneDigest(scene, request) : 0;
+      records.Entries.clear();
+      for (const Offer& offer : offers)
+      {
+        records.Entries.push_back(offer.Entry);
+      }
+    });
+  FrameEntry::Check(records.Entries, request);
+  if (wanted == 1 || !this->IsSame(offers, digest))
   {
     this->Restart();
   }
+  this->Digest = digest;
   this->Wanted = wanted;
   // A single sample is traced anew at rest; a last one of several stays.
   const bool isPreview = request.IsPreview && wanted == 1;
@@ -37,7 +74,8 @@ FrameAccumulation::Result FrameAccumulation::Trace(const Ranks& ranks, const Sce
     request.Samples =
       this->SamplesUnderWay > 0 ? this->SamplesUnderWay : this->CountNext(pace, lastSeconds);
     request.IsPreview = isPreview || request.FirstSample + request.Samples < wanted;
-    result = this->TraceOnce(ranks, scene, request);
+    result = this->TraceOnce(ranks, scene, request, records);
+    records.Entries.clear();
     if (result == Result::Aborted || pace.Samples > 0)
     {
       break;
@@ -46,14 +84,14 @@ FrameAccumulation::Result FrameAccumulation::Trace(const Ranks& ranks, const Sce
   return result;
 }
 
-FrameAccumulation::Result FrameAccumulation::TraceOnce(
-  const Ranks& ranks, const Scene& scene, FrameRequest request)
+FrameAccumulation::Result FrameAccumulation::TraceOnce(const Ranks& ranks, const Scene& scene,
+  FrameRequest request, const FrameRenderer::Records& records)
 {
   this->Samples = 0; // unless it succeeds
   this->SamplesUnderWay = 0;
   if (request.FirstSample == 0)
   {
-    Frame frame = ranks.Renderer.Render(ranks.Store, scene, request, &this->Traced);
+    Frame frame = ranks.Renderer.Render(ranks.Store, scene, request, &this->Traced, records);
     if (frame.IsAborted)
     {
       return Result::Aborted;
@@ -62,7 +100,7 @@ FrameAccumulation::Result FrameAccumulation::TraceOnce(
   }
   else
   {
-    ranks.Renderer.Refine(ranks.Store, scene, request, this->Traced);
+    ranks.Renderer.Refine(ranks.Store, scene, request, this->Traced, records);
     if (this->Traced.IsAborted)
     {
       this->Samples = request.FirstSample;

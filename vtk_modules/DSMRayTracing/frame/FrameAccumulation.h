@@ -3,11 +3,13 @@
 #define rt_FrameAccumulation_h
 
 #include "DSMRayTracing/frame/Frame.h"
+#include "DSMRayTracing/frame/FrameEntry.h"
 #include "DSMRayTracing/frame/FrameRenderer.h"
 #include "DSMRayTracing/frame/FrameRequest.h"
 #include "DSMRayTracing/scene/Scene.h"
 
 #include <cstdint>
+#include <vector>
 
 namespace rt
 {
@@ -32,6 +34,26 @@ public:
     double Seconds = 0.0; ///< more than Samples, as long as they take less, when added to others
   };
 
+  /// What a rank tells the others before Trace: what it has, and what it is to add. Plain, so that it travels between
+  /// ranks.
+  struct Offer
+  {
+    FrameEntry Entry;
+    /// What there is to add to, which a rank may have lost that the others have not.
+    std::uint64_t Digest;
+    std::int64_t Samples;
+    std::int64_t SamplesUnderWay;
+    // What must be equal.
+    std::int64_t Wanted;
+    std::int64_t PaceSamples;
+    double PaceSeconds;
+  };
+  /// Local. Arguments as of Trace; the scene and the request may lack what the ranks agree on before Trace.
+  Offer CreateOffer(dsm::BlockStore& store, const Scene& scene, const FrameRequest& request,
+    int wanted, const Pace& pace) const;
+
+  using Report = dsm::FunctionRef<std::vector<std::byte>(const Frame&)>;
+
   enum class Result
   {
     Nothing, ///< was missing
@@ -39,12 +61,13 @@ public:
     Aborted ///< the frame is not to be shown; the next Trace goes on
   };
 
-  /// Collective. Traces the samples of the request that are missing to `wanted` for each pixel, or as
+  /// Collective. `offers`: of all ranks, in rank order; when there is anything to trace, its first part takes no other
+  /// agreement before. Traces the samples of the request that are missing to `wanted` for each pixel, or as
   /// many as the pace allows: as a preview where others are to follow, or, with one sample in all, where the request
-  /// says so. `lastSeconds`: that the last ones took, on every rank the same. Returns what came of it, the same on
-  /// every rank. Throws dsm::Error on every rank; then there is nothing to add to.
-  Result Trace(const Ranks& ranks, const Scene& scene, FrameRequest request, int wanted,
-    const Pace& pace, double lastSeconds);
+  /// says so. `lastSeconds`: that the last ones took, on every rank the same. `report`: see FrameRenderer::Records.
+  /// Returns what came of it, the same on every rank. Throws dsm::Error on every rank; then there is nothing to add to.
+  Result Trace(const Ranks& ranks, const std::vector<Offer>& offers, const Scene& scene,
+    FrameRequest request, int wanted, const Pace& pace, double lastSeconds, Report report);
 
   const Frame& GetFrame() const { return this->Traced; }
 
@@ -67,11 +90,13 @@ public:
   void Postpone();
 
 private:
-  Result TraceOnce(const Ranks& ranks, const Scene& scene, FrameRequest request);
+  bool IsSame(const std::vector<Offer>& offers, std::uint64_t digest) const;
+  Result TraceOnce(const Ranks& ranks, const Scene& scene, FrameRequest request,
+    const FrameRenderer::Records& records);
   int CountNext(const Pace& pace, double lastSeconds) const;
 
   Frame Traced;
-  std::uint64_t Digest = 0; ///< of what it shows
+  std::uint64_t Digest = 0; ///< of what it shows; 0: a single sample, to which none is added
   int Samples = 0;          ///< that it has; 0 when there is nothing to add to
   int SamplesUnderWay = 0;  ///< that some tiles have got already: their adding was aborted
   int LastSamples = 0;      ///< that were added last

@@ -6,15 +6,17 @@
 #include "DSMCore/transport/Messenger.h"
 
 #include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace rt
 {
 
 /// How the ranks of a frame come to its common end: each reports to rank 0 that its workers are
-/// through, and how it fared; when all have, rank 0 tells all. When one fails, rank 0 tells the others
+/// through, and how it fared; when all have, rank 0 tells all, along a tree, what they have reported. When one fails, rank 0 tells the others
 /// at once, since they may be waiting for what that rank will never send. Rank 0 may also abort the
 /// frame, which is no failure: all ranks finish what they have begun. A rank without memory tells, and
 /// hears, the same (Messenger::Insist). Communication thread only.
@@ -34,8 +36,8 @@ public:
   bool HasFailed() const { return this->Failed; }
   /// Rank 0, before the frame is over: no rank begins anything more.
   void Abort();
-  /// This rank's workers have stopped. Once a frame.
-  void ReportDone();
+  /// This rank's workers have stopped. Once a frame. `report`: bytes for all ranks; few, for rank 0 gets those of all.
+  void ReportDone(std::vector<std::byte> report = {});
   bool IsDone() const { return this->Done; }
 
   /// Whether all ranks have stopped.
@@ -45,14 +47,25 @@ public:
   const dsm::Status& GetOutcome() const { return this->Outcome; }
   /// Likewise: whether it was aborted.
   bool IsAborted() const { return this->Aborted; }
+  /// Likewise: every rank's report, in rank order. None of a frame that failed or was aborted.
+  std::vector<std::vector<std::byte>> TakeReports() { return std::move(this->Reports); }
 
 private:
-  void Tell(const std::string& cause);
-  void Collect(int source, std::vector<std::byte>&& cause);
+  enum class Tale : std::uint32_t
+  {
+    Failure,
+    Done
+  };
+  void Tell(Tale tale, std::vector<std::byte>&& bytes);
+  void Collect(int source, Tale tale, std::vector<std::byte>&& bytes);
+  void CollectCause(int source, std::vector<std::byte>&& cause);
+  void TellEnd();
+  void SpreadEnd(const std::vector<std::byte>& bytes);
   void Post(int rank, dsm::MessageKind kind, const std::vector<std::byte>& payload);
   void Stop();
   void Cease();
-  void End(dsm::Message&& message);
+  void End(std::vector<std::byte>&& bytes);
+  void Unpack(std::vector<std::byte>& bytes);
 
   dsm::Messenger& Messenger;
   std::function<void()> FailureSeen;
@@ -63,7 +76,9 @@ private:
   bool Stopped = false;
   bool Aborted = false;
   bool Over = false;
+  std::vector<int> Children;    ///< this rank hands the end on to them
   std::vector<std::byte> Cause; ///< rank 0: of the lowest rank that has failed so far
+  std::vector<std::vector<std::byte>> Reports;
   dsm::Status Outcome;
 };
 

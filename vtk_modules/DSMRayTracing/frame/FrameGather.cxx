@@ -249,15 +249,10 @@ Picture GatherFrame(dsm::Messenger& messenger, const Frame& frame)
   return picture;
 }
 
-Picture AssembleTilesWithEdges(dsm::Messenger& messenger, const Frame& frame)
+void AddEdges(dsm::Messenger& messenger, const Frame& frame, Picture& picture)
 {
-  Picture picture;
-  const auto parts = messenger.GatherTogether("Gathering the frame's edges",
-    [&]
-    {
-      picture = AssembleTiles(frame);
-      return PackEdges(frame);
-    });
+  const auto parts =
+    messenger.GatherTogether("Gathering the frame's edges", [&] { return PackEdges(frame); });
   for (std::size_t rank = 0; rank < parts.size(); ++rank)
   {
     if (static_cast<int>(rank) != messenger.GetRank())
@@ -265,7 +260,6 @@ Picture AssembleTilesWithEdges(dsm::Messenger& messenger, const Frame& frame)
       UnpackEdges(parts[rank], picture);
     }
   }
-  return picture;
 }
 
 } // namespace rt

@@ -26,9 +26,9 @@ Picture AssembleTiles(const Frame& frame);
 /// every rank, when tiles are missing or stand twice.
 Picture GatherFrame(dsm::Messenger& messenger, const Frame& frame);
 
-/// Collective: AssembleTiles, and the pixels of the other ranks' tiles that their first layer covers in part. Throws
+/// Collective: adds to AssembleTiles the pixels of the other ranks' tiles that their first layer covers in part. Throws
 /// dsm::Error on every rank.
-Picture AssembleTilesWithEdges(dsm::Messenger& messenger, const Frame& frame);
+void AddEdges(dsm::Messenger& messenger, const Frame& frame, Picture& picture);
 
 } // namespace rt
 

@@ -2,15 +2,18 @@
 #ifndef rt_FrameRenderer_h
 #define rt_FrameRenderer_h
 
+#include "DSMCore/base/FunctionRef.h"
 #include "DSMCore/store/BlockStore.h"
 #include "DSMCore/transport/Messenger.h"
 #include "DSMRayTracing/frame/Frame.h"
+#include "DSMRayTracing/frame/FrameEntry.h"
 #include "DSMRayTracing/frame/FrameRequest.h"
 #include "DSMRayTracing/frame/WorkerPool.h"
 #include "DSMRayTracing/scene/Scene.h"
 #include "DSMRayTracing/schedule/CentralQueueScheduler.h"
 #include "DSMRayTracing/schedule/WorkStealingScheduler.h"
 
+#include <cstddef>
 #include <functional>
 #include <utility>
 #include <vector>
@@ -30,6 +33,19 @@ public:
   explicit FrameRenderer(dsm::Messenger& messenger);
   ~FrameRenderer();
 
+  /// The ranks exchange two records for a frame: what they bring to it before, and how it went after. What else they
+  /// have to tell one another may go with these.
+  struct Records
+  {
+    /// Of all ranks, in rank order, where they have exchanged them already: FrameEntry::Create of what the frame is to
+    /// show, or of as much of it as is not agreed otherwise. Empty: the renderer gathers them.
+    std::vector<FrameEntry> Entries;
+    /// Local: called when this rank has traced its part of the frame, before the ranks agree on how it went. What it returns
+    /// comes to all ranks (Frame::Reports); what it throws is the frame's failure. Not always called when the frame is
+    /// aborted, or fails.
+    dsm::FunctionRef<std::vector<std::byte>(const Frame&)> Report;
+  };
+
   /// Collective; always from the same thread. Every rank passes the same request and scene. Settles
   /// the store first.
   /// `store.GetSettings().Workers` threads trace at a time. Returns the tiles that this rank traced. Throws
@@ -38,14 +54,14 @@ public:
   /// `last`: the view's last frame, if there is one; with work stealing, a rank begins with the tiles
   /// that it traced then; it also tells which bricks the tiles will probably need.
   Frame Render(dsm::BlockStore& store, const Scene& scene, const FrameRequest& request,
-    const Frame* last = nullptr);
+    const Frame* last = nullptr, const Records& records = {});
 
   /// Adds the request's samples to a frame that has all samples before them: each rank goes on with
   /// the tiles that it has, and their channels. Collective; as Render, but that a failure leaves the frame without tiles.
   /// A frame that was aborted while it got samples has to get the same ones again, before others:
   /// then only tiles that lack them are traced.
-  void Refine(
-    dsm::BlockStore& store, const Scene& scene, const FrameRequest& request, Frame& frame);
+  void Refine(dsm::BlockStore& store, const Scene& scene, const FrameRequest& request, Frame& frame,
+    const Records& records = {});
 
   /// Called on rank 0, by the calling thread, again and again during a frame, with about the part of it that is
   /// traced, 0 to 1, as rank 0 can tell by its own tiles. Returns whether the frame is to be aborted. The ranks then
@@ -55,7 +71,7 @@ public:
 
 private:
   void RenderTiles(dsm::BlockStore& store, const Scene& scene, const FrameRequest& request,
-    const Frame* last, TileSource& tiles, Frame& frame);
+    const Frame* last, const Records& records, TileSource& tiles, Frame& frame);
 
   dsm::Messenger& Messenger;
   CentralQueueScheduler Queue;

@@ -24,6 +24,7 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <cstddef>
 #include <cstdint>
 #include <exception>
 #include <functional>
@@ -55,6 +56,8 @@ public:
     const FrameRequest& Request;
     const BeamHistory* Last; ///< of the view's last frame; may be null
     TileSource& Tiles;
+    /// For all ranks, when this one has traced its part; see FrameRenderer::Records.
+    dsm::FunctionRef<std::vector<std::byte>(Frame&)> Report;
   };
 
   /// Collective; the store's BeginFrame is called before, its EndFrame after.
@@ -120,11 +123,10 @@ public:
       throw dsm::Error("The frame could not be traced. Rank " + std::to_string(outcome.FailedRank) +
         ": " + outcome.Cause);
     }
-    frame.Tiles = std::move(this->Traced);
+    frame = std::move(this->Traced);
     frame.IsAborted = this->Agreement.IsAborted();
-    frame.Number = this->Number;
-    frame.Beams = this->Beams;
     frame.BusySeconds = this->BusySeconds;
+    frame.Reports = this->Agreement.TakeReports();
   }
 
 private:
@@ -266,7 +268,7 @@ private:
     this->ReportFailure();
     if (isThrough)
     {
-      this->Agreement.ReportDone();
+      this->Agreement.ReportDone(std::move(this->Report));
     }
     return didSomething || isThrough;
   }
@@ -323,18 +325,28 @@ private:
   {
     try
     {
+      std::vector<Tile>& tiles = this->Traced.Tiles;
       std::size_t count = this->In.Tiles.CountRest();
       for (const auto& some : this->TilesOfWorker)
       {
         count += some.size();
       }
-      this->Traced.reserve(count);
+      tiles.reserve(count);
       for (auto& some : this->TilesOfWorker)
       {
-        std::move(some.begin(), some.end(), std::back_inserter(this->Traced));
+        std::move(some.begin(), some.end(), std::back_inserter(tiles));
         some.clear();
       }
-      this->In.Tiles.TakeRest(this->Traced);
+      this->In.Tiles.TakeRest(tiles);
+      this->Traced.Width = this->In.Request.Width;
+      this->Traced.Height = this->In.Request.Height;
+      this->Traced.TileSize = this->In.Request.TileSize;
+      this->Traced.Number = this->Number;
+      this->Traced.Beams = this->Beams;
+      if (this->Failure.IsEmpty() && !this->Stopped && !this->Agreement.IsAborted())
+      {
+        this->Report = this->In.Report(this->Traced);
+      }
     }
     catch (...)
     {
@@ -372,7 +384,8 @@ private:
   std::atomic<double> BusySeconds{ 0.0 };
   const double Share; ///< tiles that this rank will trace, about
   Standstill NoProgress;
-  std::vector<Tile> Traced;
+  Frame Traced;                  ///< this rank's part
+  std::vector<std::byte> Report; ///< for all ranks
 };
 
 } // namespace rt

@@ -20,14 +20,23 @@ void vtkDSMFrameDelivery::UseWholeFrames(ColorChoice drawsColor, PlaceChoice dra
   this->DrawsPlace = std::move(drawsPlace);
 }
 
+rt::Picture vtkDSMFrameDelivery::Assemble(const rt::Frame& frame) const
+{
+  return this->DrawsColor ? rt::Picture() : rt::AssembleTiles(frame);
+}
+
 rt::Picture vtkDSMFrameDelivery::Gather(
-  dsm::Messenger& messenger, const rt::Frame& frame, bool hasEdges) const
+  dsm::Messenger& messenger, const rt::Frame& frame, rt::Picture assembled, bool hasEdges) const
 {
   if (this->DrawsColor)
   {
     return rt::GatherFrame(messenger, frame);
   }
-  return hasEdges ? rt::AssembleTilesWithEdges(messenger, frame) : rt::AssembleTiles(frame);
+  if (hasEdges)
+  {
+    rt::AddEdges(messenger, frame, assembled);
+  }
+  return assembled;
 }
 
 void vtkDSMFrameDelivery::Prepare(const rt::FrameRequest& request, rt::Picture& picture) const

@@ -32,9 +32,15 @@ public:
   /// Whether the application blends the ranks' pictures; otherwise the nearest of them counts.
   bool AreBlended() const { return static_cast<bool>(this->DrawsColor); }
 
-  /// Collective: what this rank draws; the whole frame, or its own tiles. `hasEdges`: an opaque surface may cover pixels
-  /// in part. What is behind it may be another rank's, so all ranks draw such pixels.
-  rt::Picture Gather(dsm::Messenger& messenger, const rt::Frame& frame, bool hasEdges) const;
+  /// Local, before Gather: of this rank's part of a frame, as much of what it draws as needs no other ranks; else nothing.
+  rt::Picture Assemble(const rt::Frame& frame) const;
+
+  /// Collective where NeedsRanks: what this rank draws; the whole frame, or its own tiles. `assembled`: see Assemble.
+  /// `hasEdges`: an opaque surface may cover pixels in part. What is behind it may be another rank's, so all ranks draw
+  /// such pixels.
+  rt::Picture Gather(
+    dsm::Messenger& messenger, const rt::Frame& frame, rt::Picture assembled, bool hasEdges) const;
+  bool NeedsRanks(bool hasEdges) const { return this->DrawsColor || hasEdges; }
 
   /// Local: leaves, of surfaces that are kept apart, what this rank has to draw.
   void Prepare(const rt::FrameRequest& request, rt::Picture& picture) const;

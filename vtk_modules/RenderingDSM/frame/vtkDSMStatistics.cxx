@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkDSMStatistics.h"
 
-#include "DSMCore/transport/Messenger.h"
+#include "DSMCore/store/BlockStore.h"
+#include "DSMCore/transport/Message.h"
 #include "DSMRayTracing/frame/Frame.h"
 #include "vtkDSMCounters.h"
 
@@ -93,17 +94,21 @@ struct vtkDSMStatistics::WorkerRow
   }
 };
 
+/// What a rank has received from one owner; behind the rows of its report.
+struct vtkDSMStatistics::Delivery
+{
+  std::int64_t Owner;
+  std::int64_t Bytes;
+};
+
 vtkStandardNewMacro(vtkDSMStatistics);
 
 vtkDSMStatistics::vtkDSMStatistics() = default;
 vtkDSMStatistics::~vtkDSMStatistics() = default;
 
-void vtkDSMStatistics::Gather(
-  dsm::Messenger& messenger, const rt::Frame& frame, int samples, int wanted, int coarser)
+std::vector<std::byte> vtkDSMStatistics::CreateReport(
+  dsm::BlockStore& store, const rt::Frame& frame, int rank, int ranks)
 {
-  this->Samples = samples;
-  this->Wanted = wanted;
-  this->CoarserLevel = coarser;
   const dsm::StoreCounters& counters = frame.Counters;
   std::int64_t newTiles = 0;
   double seconds = 0.0;
@@ -113,7 +118,7 @@ void vtkDSMStatistics::Gather(
     seconds += tile.Seconds;
   }
   RankRow row{};
-  row.Rank = messenger.GetRank();
+  row.Rank = rank;
   vtksys::SystemInformation system;
   const char* host = system.GetHostname();
   std::strncpy(row.Host, host ? host : "", sizeof(row.Host) - 1);
@@ -124,25 +129,57 @@ void vtkDSMStatistics::Gather(
   {
     const dsm::WorkerCounters& worker = frame.WorkerCounters[index];
     WorkerRow row{};
-    row.Rank = messenger.GetRank();
+    row.Rank = rank;
     row.Worker = static_cast<std::int64_t>(index);
     DSM_WORKER_COUNTERS(DSM_TAKE)
     dsm::AttachTail(bytes, row);
   }
-  this->Rows.clear();
-  this->Workers.clear();
-  for (const auto& part : messenger.AllGather(std::move(bytes)))
+  for (int owner = 0; owner < ranks; ++owner)
   {
-    std::memcpy(&this->Rows.emplace_back(), part.data(), sizeof(RankRow));
-    for (std::size_t at = sizeof(RankRow); at < part.size(); at += sizeof(WorkerRow))
+    const auto received = static_cast<std::int64_t>(store.GetBytesFrom(owner));
+    if (received > 0)
     {
-      std::memcpy(&this->Workers.emplace_back(), part.data() + at, sizeof(WorkerRow));
+      dsm::AttachTail(bytes, Delivery{ owner, received });
     }
   }
+  return bytes;
+}
+
+void vtkDSMStatistics::Take(const rt::Frame& frame, int samples, int wanted, int coarser)
+{
+  this->Samples = samples;
+  this->Wanted = wanted;
+  this->CoarserLevel = coarser;
+  this->Rows.clear();
+  this->Workers.clear();
   this->FrameSeconds = 0.0;
-  for (const RankRow& row : this->Rows)
+  std::vector<std::int64_t> sent(frame.Reports.size());
+  for (const std::vector<std::byte>& report : frame.Reports)
   {
+    std::size_t at = 0;
+    const auto read = [&](auto& value)
+    {
+      std::memcpy(&value, report.data() + at, sizeof(value));
+      at += sizeof(value);
+    };
+    RankRow& row = this->Rows.emplace_back();
+    read(row);
+    for (std::int64_t worker = 0; worker < row.Threads; ++worker)
+    {
+      read(this->Workers.emplace_back());
+    }
+    while (at < report.size())
+    {
+      Delivery delivery;
+      read(delivery);
+      sent[static_cast<std::size_t>(delivery.Owner)] += delivery.Bytes;
+    }
     this->FrameSeconds = std::max(this->FrameSeconds, row.FrameSeconds);
+  }
+  // A rank goes on sending after its report.
+  for (std::size_t rank = 0; rank < sent.size(); ++rank)
+  {
+    this->Rows[rank].BytesSent = sent[rank];
   }
   this->Organization = dsm::GetText(frame.Organization);
   this->Explanation = frame.Explanation;

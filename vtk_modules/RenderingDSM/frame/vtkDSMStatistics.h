@@ -10,12 +10,13 @@
 #include "vtkObject.h"
 #include "vtkRenderingDSMModule.h" // for the export macro
 
-#include <string> // for ivars
-#include <vector> // for ivars
+#include <cstddef> // for std::byte
+#include <string>  // for ivars
+#include <vector>  // for ivars
 
 namespace dsm
 {
-class Messenger;
+class BlockStore;
 }
 namespace rt
 {
@@ -31,11 +32,17 @@ public:
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
   /**
-   * Collective: every rank learns of every rank's counters. `samples` of each pixel are there of those
+   * This rank's counters of a frame, for all ranks: what rt::FrameRenderer::Records calls a report. `ranks` trace, of which
+   * this is number `rank`.
+   */
+  static std::vector<std::byte> CreateReport(
+    dsm::BlockStore& store, const rt::Frame& frame, int rank, int ranks);
+
+  /**
+   * Takes in every rank's counters, from the reports that the frame has. `samples` of each pixel are there of those
    * that are `wanted`; the data were shown `coarser` levels below the finest.
    */
-  void Gather(
-    dsm::Messenger& messenger, const rt::Frame& frame, int samples, int wanted, int coarser);
+  void Take(const rt::Frame& frame, int samples, int wanted, int coarser);
 
   /**
    * No frame.
@@ -43,8 +50,7 @@ public:
   void Clear();
 
   /**
-   * From the collective start of the frame to its collective end, on the slowest rank; 0 without a
-   * frame.
+   * From the collective start of the frame until the slowest rank was done; 0 without a frame.
    */
   vtkGetMacro(FrameSeconds, double);
 
@@ -107,6 +113,7 @@ private:
 
   struct RankRow;
   struct WorkerRow;
+  struct Delivery;
   double FrameSeconds = 0.0;
   int Samples = 0;
   int Wanted = 0;

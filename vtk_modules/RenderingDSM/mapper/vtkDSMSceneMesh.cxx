@@ -132,6 +132,12 @@ bool vtkDSMSceneMesh::HasNewData()
   return this->LacksEdges();
 }
 
+/// What was refused may succeed with other settings of the memory.
+bool vtkDSMSceneMesh::NeedsRanks(const vtkDSMRankGroup& group, bool) const
+{
+  return !this->Failure.empty() && this->FailureVersion != group.GetRetryVersion();
+}
+
 bool vtkDSMSceneMesh::SharesBlocks(const vtkDSMSceneMember& other) const
 {
   const auto* mesh = dynamic_cast<const vtkDSMSceneMesh*>(&other);
@@ -158,9 +164,8 @@ void vtkDSMSceneMesh::Update(const std::shared_ptr<vtkDSMRankGroup>& group, bool
 {
   this->Messages.clear();
   this->Warnings.clear();
-  // What was refused may succeed with other settings of the memory.
   const unsigned version = group->GetRetryVersion();
-  if (newData || (!this->Failure.empty() && this->FailureVersion != version))
+  if (newData || this->NeedsRanks(*group, false))
   {
     this->Failure.clear();
     if (newData || this->ReportedVersion != group->GetSettingsVersion())

@@ -20,6 +20,7 @@ public:
   using vtkDSMMapperMember::vtkDSMMapperMember;
 
   bool HasNewData() override;
+  bool NeedsRanks(const vtkDSMRankGroup& group, bool wantsCoarser) const override;
   bool IsOutdated() override { return !this->Mapper || this->Mapper->HasOldData(); }
   bool SharesBlocks(const vtkDSMSceneMember& other) const override;
   void GiveUpBlocks() override;

@@ -97,6 +97,40 @@ bool vtkDSMSceneVolume::SharesBlocks(const vtkDSMSceneMember& other) const
   return volume && (has(this->Iso) || has(this->Color));
 }
 
+bool vtkDSMSceneVolume::NeedsRanks(const vtkDSMRankGroup& group, bool wantsCoarser) const
+{
+  if (!this->Data)
+  {
+    return false;
+  }
+  const auto is = [&](const std::shared_ptr<Published>& known,
+                    const vtkDSMVolumeData::Choice& shown) {
+    return known && known->IsOf(this->Data->GetArrays().Normalize(shown), group.GetRetryVersion());
+  };
+  const auto lacksLevels = [&](const std::shared_ptr<Published>& known)
+  { return known && known->Publication && wantsCoarser != static_cast<bool>(known->Coarser); };
+  const std::vector<vtkDSMVolumeData::Choice> shown = this->GetLook().GetShown();
+  const bool isColored = shown.size() > 1;
+  const bool sharesColor = isColored && is(this->Iso, shown.back());
+  const bool hasColor = sharesColor ? this->Color == this->Iso
+    : isColored                     ? is(this->Color, shown.back())
+                                    : !this->Color;
+  return !is(this->Iso, shown.front()) || !hasColor || lacksLevels(this->Iso) ||
+    lacksLevels(this->Color) || this->LacksSuggestion();
+}
+
+/// What was a medium before has none.
+bool vtkDSMSceneVolume::LacksSuggestion() const
+{
+  return this->Iso && !this->GetLook().IsMedium() && !(this->SuggestedFor == this->Iso->Choice);
+}
+
+bool vtkDSMSceneVolume::Published::IsOf(
+  const vtkDSMVolumeData::Choice& choice, unsigned retryVersion) const
+{
+  return this->Choice == choice && (this->Failure.empty() || this->RetryVersion == retryVersion);
+}
+
 const vtkDSMVolumeData::Fields& vtkDSMSceneVolume::Published::GetFields() const
 {
   static const vtkDSMVolumeData::Fields none;
@@ -118,8 +152,7 @@ std::shared_ptr<vtkDSMSceneVolume::Published> vtkDSMSceneVolume::Require(
   const vtkDSMVolumeData::Choice choice = this->Data->GetArrays().Normalize(wanted);
   for (const auto& candidate : known)
   {
-    if (candidate && candidate->Choice == choice &&
-      (candidate->Failure.empty() || candidate->RetryVersion == retryVersion))
+    if (candidate && candidate->IsOf(choice, retryVersion))
     {
       return candidate;
     }
@@ -270,7 +303,7 @@ void vtkDSMSceneVolume::Update(const std::shared_ptr<vtkDSMRankGroup>& group, bo
       "The scalar mode asks for cell data, but isosurfaces and volumes need values at the "
       "points; those are taken. Use vtkCellDataToPointData.");
   }
-  if (this->Iso != oldIso && !isMedium)
+  if (this->LacksSuggestion() || (this->Iso != oldIso && !isMedium))
   {
     this->SuggestIsovalue(group->GetMessenger());
   }

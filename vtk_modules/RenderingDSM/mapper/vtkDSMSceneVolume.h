@@ -22,6 +22,7 @@ public:
   using vtkDSMMapperMember::vtkDSMMapperMember;
 
   bool HasNewData() override;
+  bool NeedsRanks(const vtkDSMRankGroup& group, bool wantsCoarser) const override;
   bool IsOutdated() override;
   bool SharesBlocks(const vtkDSMSceneMember& other) const override;
   void GiveUpBlocks() override;
@@ -45,6 +46,8 @@ private:
     unsigned RetryVersion = 0;                                ///< the group's when it was tried
     std::shared_ptr<const vtkDSMVolumeData::Coarser> Coarser; ///< null until they are wanted
     std::string CoarserFailure;
+    /// Whether it is what became of the array, and would become of it again.
+    bool IsOf(const vtkDSMVolumeData::Choice& choice, unsigned retryVersion) const;
     /// Empty when it failed.
     const vtkDSMVolumeData::Fields& GetFields() const;
   };
@@ -62,6 +65,7 @@ private:
   vtkDSMVolumeMapper::SurfaceTest MakeSurfaceTest() const;
   /// Collective. Finds the isovalue for a first look at the array, unless the last one still suits its values.
   void SuggestIsovalue(dsm::Messenger& messenger);
+  bool LacksSuggestion() const;
   vtkDSMVolumeLook GetLook() const { return { this->Mapper, this->Prop }; }
   /// At the level of detail that is shown.
   rt::LatticeField GetField(std::size_t lattice, const glm::dmat4& dataToWorld) const;

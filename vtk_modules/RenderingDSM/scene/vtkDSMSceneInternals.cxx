@@ -12,16 +12,11 @@
 #include "vtkRenderWindow.h"
 
 #include <algorithm>
-#include <array>
 #include <chrono>
 #include <cmath>
 #include <cstddef>
-#include <cstring>
-#include <optional>
-#include <set>
 #include <string>
 #include <utility>
-#include <variant>
 #include <vector>
 
 namespace
@@ -38,34 +33,9 @@ constexpr int LargestReduction = 8;
 /// ranks, and as the picture or, later, the image.
 constexpr std::uint64_t BytesOfImagePixel = 4 * (4 + sizeof(float));
 
-/// Whether matrices differ by rounding only.
-bool IsNearly(const glm::dmat4& a, const glm::dmat4& b)
-{
-  constexpr double tolerance = 1e-9;
-  double difference = 0.0;
-  double largest = 0.0;
-  for (int element = 0; element < 16; ++element)
-  {
-    const double one = a[element / 4][element % 4];
-    const double other = b[element / 4][element % 4];
-    difference = std::max(difference, std::abs(one - other));
-    largest = std::max(largest, std::abs(one));
-  }
-  return difference <= tolerance * largest;
-}
-
 /// When a frame that takes long tells how far it is, first and then again.
 constexpr std::chrono::milliseconds FirstTold(1500);
 constexpr std::chrono::milliseconds ThenTold(500);
-
-/// What a rank tells of its view.
-struct View
-{
-  glm::dmat4 WorldToClip;
-  rt::Environment Background;
-  std::int32_t IsApart; ///< something of its own may be between surfaces
-  std::int32_t Coarser; ///< levels that may stand in
-};
 
 class Raised
 {
@@ -130,151 +100,57 @@ void vtkDSMScene::Internals::FindGroup(vtkMultiProcessController* controller)
 /// anew.
 std::string vtkDSMScene::Internals::MakeFrame(const dsm::FirstFailure& earlier)
 {
-  const dsm::Status outcome = this->Group->GetMessenger().RunStep(
+  bool isOver = false;
+  dsm::Status outcome = this->Group->GetMessenger().RunStep(
     [&]
     {
       earlier.Throw();
-      this->Update();
-      this->Draw();
-      this->Group->TellOrganization();
-    });
+      if (!this->LateFailure.empty())
+      {
+        throw dsm::Error(std::exchange(this->LateFailure, {}));
+      }
+      this->Draw(isOver);
+    },
+    isOver);
   this->Group->ReturnMemoryOfFiles();
-  if (outcome.IsOk() || outcome.IsEverywhere)
+  if (outcome.IsOk())
+  {
+    this->Group->TellOrganization();
+    return {};
+  }
+  if (outcome.IsEverywhere)
   {
     return outcome.Cause;
+  }
+  const std::string failure = "Rank " + std::to_string(outcome.FailedRank) + ": " + outcome.Cause;
+  if (isOver)
+  {
+    this->LateFailure = std::move(outcome.Cause);
+    return failure;
   }
   this->IsTraced = false;
   this->GiveUpBlocks(); // what the ranks have of them may differ now
   this->Group->GetPublications().Forget();
-  return "Rank " + std::to_string(outcome.FailedRank) + ": " + outcome.Cause;
+  return failure;
 }
 
-void vtkDSMScene::Internals::Update()
+/// Collective: the scene's objects come in again where they are shown at another level of detail. `picture`: what this rank
+/// draws, as far as it needs no other ranks, when the frame was traced.
+rt::FrameAccumulation::Result vtkDSMScene::Internals::TraceScene(rt::Scene& scene,
+  const rt::FrameRequest& request, Offers offers, int coarser, rt::Picture& picture)
 {
   dsm::Messenger& messenger = this->Group->GetMessenger();
-  vtkDSMMemoryOptions* const options = this->Group->GetOptions();
-  const auto& members = this->Members.GetShown();
-  // To publish in step, the ranks must agree on the settings of the memory; threads may differ.
-  using Digest = std::array<std::uint64_t, 5>;
-  // One rank's change time says nothing of another's.
-  const auto all = messenger.GatherTogether("Updating the data",
-    [&]
-    {
-      this->Members.ForwardOptions(this->Light, options);
-      this->Group->Configure();
-      const dsm::BlockStore::Settings& settings = this->Group->GetStore().GetSettings();
-      std::vector<std::byte> mine =
-        dsm::Encode(Digest{ static_cast<std::uint64_t>(settings.Organization),
-          (settings.HostSharing ? 1u : 0u) + (options->GetCoarserDataWhileMoving() ? 2u : 0u),
-          settings.MemoryBytes, settings.CacheBytes, settings.ScratchDirectory.empty() ? 0u : 1u });
-      for (const auto& member : members)
-      {
-        member.State->UpdatePiece(messenger.GetRank(), messenger.GetSize());
-        mine.push_back(std::byte(member.State->HasNewData() ? 1 : 0));
-      }
-      return mine;
-    });
-  for (const auto& flags : all)
-  {
-    if (flags.size() != all.front().size())
-    {
-      throw dsm::Error("The ranks do not show the same datasets; the frame was left out.");
-    }
-    if (!std::equal(flags.begin(), flags.begin() + sizeof(Digest), all.front().begin()))
-    {
-      throw dsm::Error("The ranks have different settings of the memory (DSMMemoryOrganization, "
-                       "DSMHostSharing, DSMMemory, DSMCacheSize, DSMScratchDirectory, "
-                       "DSMCoarserDataWhileMoving); the frame was left out. Set them alike.");
-    }
-  }
-  bool isEmpty = false;
-  if (this->SettledVersion != this->Group->GetSettingsVersion())
-  {
-    this->SettledVersion = this->Group->GetSettingsVersion();
-    isEmpty = !this->Group->Settle();
-  }
-  std::set<const vtkDSMSceneMember*> freed;
-  for (std::size_t index = 0; index < members.size(); ++index)
-  {
-    vtkDSMSceneMember* member = members[index].State;
-    const bool newData = isEmpty || freed.count(member) > 0 ||
-      std::any_of(all.begin(), all.end(),
-        [=](const auto& flags) { return flags[sizeof(Digest) + index] != std::byte(0); });
-    if (newData)
-    {
-      const auto outdated = member->FreeOutdated(messenger);
-      freed.insert(outdated.begin(), outdated.end());
-    }
-    member->Update(this->Group, newData);
-    members[index].State->TakeCoarser(this->Group, options->GetCoarserDataWhileMoving());
-  }
-}
-
-void vtkDSMScene::Internals::Draw()
-{
-  dsm::Messenger& messenger = this->Group->GetMessenger();
-  rt::Scene scene;
-  rt::FrameRequest request;
-  vtkNew<vtkMatrix4x4> projection;
-  const int ranksOnHost = this->Image ? messenger.GetRanksOnHost() : 1;
-  const auto views = messenger.GatherTogether("Preparing the frame",
-    [&]
-    {
-      this->CheckImage(ranksOnHost);
-      this->Members.AddTo(scene, 0);
-      this->KeepProp(scene);
-      scene.Lights = vtkDSMTranslation::ToLights(this->Renderer);
-      double bounds[6];
-      this->Members.GetBounds(bounds);
-      scene.Transport = vtkDSMTranslation::ToTransport(this->Light, bounds, this->IsInteractive());
-      scene.View = vtkDSMTranslation::ToDebugView(this->Light);
-      request = this->Image
-        ? vtkDSMTranslation::ToRequest(
-            this->Renderer, this->Image->Width, this->Image->Height, projection)
-        : vtkDSMTranslation::ToRequest(this->Renderer, this->Display, projection);
-      request.Scheduling =
-        this->Group->GetOptions()->GetScheduler() == vtkDSMMemoryOptions::CentralQueue
-        ? rt::TileScheduling::CentralQueue
-        : rt::TileScheduling::WorkStealing;
-      request.IsPreview = this->IsInteractive(); // also where a pixel gets only one sample
-      return this->EncodeView(scene, request);
-    });
-  if (scene.Objects.empty() && scene.Media.empty())
-  {
-    this->FillImage({});
-    this->Clear();
-    return;
-  }
-  const int coarser = this->AgreeOnView(views, scene, request);
-  request.PixelSize = this->GetReduction(request);
-  request.Width = (request.Width + request.PixelSize - 1) / request.PixelSize;
-  request.Height = (request.Height + request.PixelSize - 1) / request.PixelSize;
-  this->LimitRays(scene, request);
-  this->IsTraced = true;
-  if (this->TraceScene(scene, request, coarser) == rt::FrameAccumulation::Result::Aborted)
-  {
-    // The renderer goes on, with the last picture: other ranks may wait for what this one draws.
-    this->Renderer->GetRenderWindow()->SetAbortRender(0);
-    return;
-  }
-  if (this->Image)
-  {
-    this->FillImage(rt::GatherFrame(messenger, this->Accumulation.GetFrame()));
-    return;
-  }
-  const bool hasEdges =
-    messenger.GetSize() > 1 && scene.IsOpaque() && this->Accumulation.GetSamples() > 1;
-  this->DrawPicture(this->Delivery.Gather(messenger, this->Accumulation.GetFrame(), hasEdges),
-    request, projection, scene.View, request.PixelSize == 1, hasEdges);
-}
-
-/// Collective: the scene's objects come in again where they are shown at another level of detail.
-rt::FrameAccumulation::Result vtkDSMScene::Internals::TraceScene(
-  rt::Scene& scene, const rt::FrameRequest& request, int coarser)
-{
-  dsm::Messenger& messenger = this->Group->GetMessenger();
+  dsm::BlockStore& store = this->Group->GetStore();
   vtkRenderWindow* window = this->Image ? nullptr : this->Renderer->GetRenderWindow();
-  const std::vector<int> tries = this->Detail.GetTries(coarser);
+  const int wanted = this->Light->GetSamplesPerPixel();
+  const rt::FrameAccumulation::Pace pace = this->GetPace();
+  std::vector<int> tries;
+  messenger.Insist([&] { tries = this->Detail.GetTries(coarser); });
+  const auto report = [&](const rt::Frame& frame)
+  {
+    picture = this->Image ? rt::Picture() : this->Delivery.Assemble(frame);
+    return vtkDSMStatistics::CreateReport(store, frame, messenger.GetRank(), messenger.GetSize());
+  };
   using Result = rt::FrameAccumulation::Result;
   Result result = Result::Aborted;
   const Raised tracing(TracingTiles);
@@ -284,28 +160,36 @@ rt::FrameAccumulation::Result vtkDSMScene::Internals::TraceScene(
   {
     if (*level > 0)
     {
-      messenger.RunTogether("Preparing the frame", [&] { this->Members.AddTo(scene, *level); });
+      offers = messenger.GatherValueTogether("Preparing the frame",
+        [&]
+        {
+          this->Members.AddTo(scene, *level);
+          return this->Accumulation.CreateOffer(store, scene, request, wanted, pace);
+        });
     }
     const bool isLast = level + 1 == tries.end();
     this->Detail.Begin();
-    this->Group->GetFrameRenderer().SetWatch(
-      [this, window, isLast, &told](double part)
+    const auto watch = [this, window, isLast, &told](double part)
+    {
+      if (Clock::now() > told)
       {
-        if (Clock::now() > told)
-        {
-          this->TellOfTracing(part);
-          told = Clock::now() + ThenTold;
-        }
-        return (window && window->CheckAbortStatus() != 0) ||
-          (!isLast && this->Detail.IsTooLong(this->Group->GetStore()));
-      });
-    result = this->Accumulation.Trace(
-      { messenger, this->Group->GetFrameRenderer(), this->Group->GetStore() }, scene, request,
-      this->Light->GetSamplesPerPixel(), this->GetPace(), this->Statistics->GetFrameSeconds());
+        this->TellOfTracing(part);
+        told = Clock::now() + ThenTold;
+      }
+      return (window && window->CheckAbortStatus() != 0) ||
+        (!isLast && this->Detail.IsTooLong(this->Group->GetStore()));
+    };
+    messenger.Insist([&] { this->Group->GetFrameRenderer().SetWatch(watch); });
+    result = this->Accumulation.Trace({ messenger, this->Group->GetFrameRenderer(), store }, offers,
+      scene, request, wanted, pace, this->Statistics->GetFrameSeconds(), report);
     if (result == Result::Traced)
     {
-      this->Statistics->Gather(messenger, this->Accumulation.GetFrame(),
-        this->Accumulation.GetSamples(), this->Accumulation.GetWanted(), *level);
+      messenger.Insist(
+        [&]
+        {
+          this->Statistics->Take(this->Accumulation.GetFrame(), this->Accumulation.GetSamples(),
+            this->Accumulation.GetWanted(), *level);
+        });
       if (tries.size() > 1)
       {
         this->Detail.Note(
@@ -379,15 +263,22 @@ void vtkDSMScene::Internals::DrawPicture(rt::Picture picture, const rt::FrameReq
     bounds, hasEdges, this->Prop);
 }
 
+bool vtkDSMScene::Internals::HasNotes() const
+{
+  return this->Light->GetShowStatistics() ||
+    (vtkDSMTranslation::ToDebugView(this->Light) != rt::DebugView::Off &&
+      this->Light->GetShowLegend());
+}
+
 /// Returns whether there is anything to write, on any rank.
 bool vtkDSMScene::Internals::WriteNotes(rt::DebugView view, rt::Picture& picture) const
 {
-  const bool showsStatistics = this->Light->GetShowStatistics();
-  const bool showsLegend = view != rt::DebugView::Off && this->Light->GetShowLegend();
-  if (!showsStatistics && !showsLegend)
+  if (!this->HasNotes())
   {
     return false;
   }
+  const bool showsStatistics = this->Light->GetShowStatistics();
+  const bool showsLegend = view != rt::DebugView::Off && this->Light->GetShowLegend();
   std::vector<vtkDSMFrameNotes::Entry> legend;
   if (showsLegend)
   {
@@ -425,100 +316,6 @@ void vtkDSMScene::Internals::ShowWhole() const
   std::copy_n(this->Bounds, 6, bounds);
   this->AddWholeView(request, bounds);
   this->Prop->SetBounds(bounds);
-}
-
-/// What AgreeOnView is told of a rank: a View, and its lights.
-std::vector<std::byte> vtkDSMScene::Internals::EncodeView(
-  const rt::Scene& scene, const rt::FrameRequest& request) const
-{
-  const bool canBeApart = this->Delivery.CanSeparate(this->Group->GetMessenger().GetSize());
-  const bool isApart = canBeApart && !this->Image && !scene.IsOpaque() &&
-    this->Members.AreBesideOthers(this->Renderer);
-  std::vector<std::byte> bytes = dsm::Encode(
-    View{ request.WorldToClip, this->Background, isApart ? 1 : 0, this->CountCoarser() });
-  for (const rt::Light& light : scene.Lights)
-  {
-    dsm::AttachTail(bytes, light);
-  }
-  return bytes;
-}
-
-/// Takes rank 0's view: the camera that came from there is not always the same to the last
-/// bit, ParaView's other ranks have no background, which gives light and which mirrored rays see where
-/// they meet nothing, and lights may follow the camera. A camera that differs by more than rounding is left to be refused.
-/// Surfaces are kept apart when any rank has something that may be between them. Returns how many levels below the finest
-/// may stand in.
-int vtkDSMScene::Internals::AgreeOnView(const std::vector<std::vector<std::byte>>& views,
-  rt::Scene& scene, rt::FrameRequest& request) const
-{
-  const auto decode = [](const std::vector<std::byte>& bytes)
-  {
-    View view;
-    std::memcpy(&view, bytes.data(), sizeof(view));
-    return view;
-  };
-  const std::vector<std::byte>& first = views.front();
-  const View view = decode(first);
-  int coarser = view.Coarser;
-  request.Layers = 1;
-  for (const std::vector<std::byte>& other : views)
-  {
-    const View theirs = decode(other);
-    request.Layers = theirs.IsApart != 0 ? rt::FrameRequest::MaxLayers : request.Layers;
-    coarser = std::min<int>(coarser, theirs.Coarser);
-  }
-  scene.Transport.Background = view.Background.Lower;
-  const auto strength = static_cast<float>(this->Light->GetEnvironmentLight());
-  scene.Transport.Surroundings = view.Background;
-  scene.Transport.Surroundings.Lower *= strength;
-  scene.Transport.Surroundings.Upper *= strength;
-  scene.Lights.resize((first.size() - sizeof(view)) / sizeof(rt::Light));
-  for (std::size_t index = 0; index < scene.Lights.size(); ++index)
-  {
-    std::memcpy(&scene.Lights[index], first.data() + sizeof(view) + index * sizeof(rt::Light),
-      sizeof(rt::Light));
-  }
-  if (IsNearly(view.WorldToClip, request.WorldToClip))
-  {
-    request.WorldToClip = view.WorldToClip;
-  }
-  return coarser;
-}
-
-void vtkDSMScene::Internals::LimitRays(const rt::Scene& scene, rt::FrameRequest& request)
-{
-  // Of windows that show one picture together, none has all of it.
-  if (scene.Media.empty() || this->Image || this->Display.Tiles[0] * this->Display.Tiles[1] > 1)
-  {
-    return;
-  }
-  const auto all = this->Group->GetMessenger().GatherTogether("Drawing what is in front of volumes",
-    [&]
-    {
-      const std::vector<float> own = this->OpaqueDepth.Read(this->Renderer,
-        this->Members.FindOthers(this->Renderer), request.Width, request.Height, request.PixelSize);
-      const auto* const bytes = reinterpret_cast<const std::byte*>(own.data());
-      return std::vector<std::byte>(bytes, bytes + own.size() * sizeof(float));
-    });
-  std::vector<float> nearest;
-  for (const std::vector<std::byte>& bytes : all)
-  {
-    std::vector<float> one(bytes.size() / sizeof(float));
-    std::memcpy(one.data(), bytes.data(), one.size() * sizeof(float));
-    if (nearest.empty())
-    {
-      nearest = std::move(one);
-      continue;
-    }
-    for (std::size_t pixel = 0; pixel < one.size(); ++pixel)
-    {
-      nearest[pixel] = std::min(nearest[pixel], one[pixel]);
-    }
-  }
-  if (!nearest.empty())
-  {
-    request.Limits = std::make_shared<const std::vector<float>>(std::move(nearest));
-  }
 }
 
 bool vtkDSMScene::Internals::IsInteractive() const

@@ -22,10 +22,12 @@
 #include "vtkSmartPointer.h"
 #include "vtkWeakPointer.h"
 
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 /// What a scene is made of. What takes part in a frame is collective: on every rank, in this order,
 /// Members.Find, FindGroup and MakeFrame.
@@ -79,6 +81,7 @@ public:
   rt::MovingDetail Detail;
   vtkDSMFrameDelivery Delivery;
   vtkDSMOpaqueDepth OpaqueDepth;
+  std::string LateFailure;     ///< of the last frame, on this rank alone
   std::string Failure;         ///< that was reported last
   unsigned FailureVersion = 0; ///< of the group's settings then
   bool Tracing = false;
@@ -95,20 +98,29 @@ public:
   unsigned SettledVersion = 0; ///< of the group's settings
 
 private:
-  void Update();
-  void Draw();
-  std::vector<std::byte> EncodeView(const rt::Scene& scene, const rt::FrameRequest& request) const;
-  int AgreeOnView(const std::vector<std::vector<std::byte>>& views, rt::Scene& scene,
-    rt::FrameRequest& request) const;
+  using Records = std::vector<std::vector<std::byte>>;
+  using Offers = std::vector<rt::FrameAccumulation::Offer>;
+  struct View;
+  void Draw(bool& isOver);
+  std::vector<std::byte> EncodeHoldings(bool& needsUpdate);
+  static void CheckHoldings(const Records& records);
+  void Update(const Records& records);
+  void Update(vtkDSMSceneMember& member, bool newData);
+  std::vector<std::byte> EncodeView(
+    rt::Scene& scene, rt::FrameRequest& request, vtkMatrix4x4* projection);
+  static void CheckViews(const std::vector<View>& views);
+  static void TakeLights(const std::vector<std::byte>& record, std::size_t at, rt::Scene& scene);
+  int AgreeOnView(
+    const std::vector<View>& views, rt::Scene& scene, rt::FrameRequest& request) const;
   void KeepProp(const rt::Scene& scene);
-  /// Collective. Rays through media end at what this, or any other, rank draws itself.
-  void LimitRays(const rt::Scene& scene, rt::FrameRequest& request);
+  void LimitRays(rt::FrameRequest& request);
   bool IsInteractive() const;
   rt::FrameAccumulation::Pace GetPace() const;
+  bool HasNotes() const;
   int GetReduction(const rt::FrameRequest& request) const;
   int CountCoarser() const;
-  rt::FrameAccumulation::Result TraceScene(
-    rt::Scene& scene, const rt::FrameRequest& request, int coarser);
+  rt::FrameAccumulation::Result TraceScene(rt::Scene& scene, const rt::FrameRequest& request,
+    Offers offers, int coarser, rt::Picture& picture);
   void TellOfTracing(double part) const;
   void DrawPicture(rt::Picture picture, const rt::FrameRequest& request, vtkMatrix4x4* projection,
     rt::DebugView view, bool hasNotes, bool hasEdges);

@@ -49,6 +49,9 @@ public:
   /// Local: whether this rank's data are other than what was taken in. True also where that would
   /// only be found out by reading all of them.
   virtual bool HasNewData() = 0;
+  /// Local, likewise, without new data: whether Update, or TakeCoarser with the same `wantsCoarser`, has anything to do
+  /// together with the other ranks, or to give up. Else both are local, and change nothing that the ranks share.
+  virtual bool NeedsRanks(const vtkDSMRankGroup& group, bool wantsCoarser) const = 0;
 
   /// Local, also while the scene has not looked at its props: whether what was taken in is of data that are not there
   /// any more.

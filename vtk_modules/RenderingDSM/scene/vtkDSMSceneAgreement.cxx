@@ -1,0 +1,382 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What the ranks tell one another before a frame, and what follows from it.
+#include "vtkDSMSceneInternals.h"
+
+#include "vtkMatrix4x4.h"
+#include "vtkRenderWindow.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstring>
+#include <memory>
+#include <set>
+#include <utility>
+
+namespace
+{
+
+/// Whether matrices differ by rounding only.
+bool IsNearly(const glm::dmat4& a, const glm::dmat4& b)
+{
+  constexpr double tolerance = 1e-9;
+  double difference = 0.0;
+  double largest = 0.0;
+  for (int element = 0; element < 16; ++element)
+  {
+    const double one = a[element / 4][element % 4];
+    const double other = b[element / 4][element % 4];
+    difference = std::max(difference, std::abs(one - other));
+    largest = std::max(largest, std::abs(one));
+  }
+  return difference <= tolerance * largest;
+}
+
+/// What a rank tells of its data and of the memory's settings, before a flag for each of its datasets: whether it has
+/// new data.
+struct Holdings
+{
+  /// To publish in step, the ranks must agree on the settings of the memory; threads may differ.
+  std::array<std::uint64_t, 5> Settings;
+  std::uint64_t Datasets;
+  /// Something has to be taken in, or to be kept otherwise, before there can be a frame. Else a View follows.
+  std::uint64_t NeedsUpdate;
+};
+
+template <class T>
+T Read(const std::vector<std::byte>& bytes, std::size_t at = 0)
+{
+  T value;
+  std::memcpy(&value, bytes.data() + at, sizeof(value));
+  return value;
+}
+
+bool HasNewData(const std::vector<std::byte>& record, std::size_t dataset)
+{
+  return record[sizeof(Holdings) + dataset] != std::byte(0);
+}
+
+} // namespace
+
+/// What a rank tells of its view, before its lights.
+struct vtkDSMScene::Internals::View
+{
+  rt::FrameAccumulation::Offer Offer; ///< without what rank 0 decides: camera, background, lights
+  glm::dmat4 WorldToClip;
+  rt::Environment Background;
+  std::int32_t IsApart; ///< something of its own may be between surfaces
+  std::int32_t Coarser; ///< levels that may stand in
+  std::int32_t HasObjects;
+  std::int32_t LimitsRays; ///< draws something itself that ends rays through media
+  std::int32_t NeedsRanks; ///< to deliver a picture, also without edges
+  std::int32_t HasNotes;
+};
+
+/// Brings the inputs up to date. `needsUpdate`: as Holdings say.
+std::vector<std::byte> vtkDSMScene::Internals::EncodeHoldings(bool& needsUpdate)
+{
+  vtkDSMMemoryOptions* const options = this->Group->GetOptions();
+  this->Members.ForwardOptions(this->Light, options);
+  this->Group->Configure();
+  const dsm::BlockStore::Settings& settings = this->Group->GetStore().GetSettings();
+  const bool wantsCoarser = options->GetCoarserDataWhileMoving();
+  needsUpdate = this->SettledVersion != this->Group->GetSettingsVersion();
+  const auto& members = this->Members.GetShown();
+  std::vector<std::byte> bytes(sizeof(Holdings) + members.size());
+  for (std::size_t index = 0; index < members.size(); ++index)
+  {
+    vtkDSMSceneMember& member = *members[index].State;
+    dsm::Messenger& messenger = this->Group->GetMessenger();
+    member.UpdatePiece(messenger.GetRank(), messenger.GetSize());
+    const bool hasNewData = member.HasNewData();
+    bytes[sizeof(Holdings) + index] = std::byte(hasNewData ? 1 : 0);
+    needsUpdate = needsUpdate || hasNewData || member.NeedsRanks(*this->Group, wantsCoarser);
+  }
+  const Holdings holdings{ { static_cast<std::uint64_t>(settings.Organization),
+                             (settings.HostSharing ? 1u : 0u) + (wantsCoarser ? 2u : 0u),
+                             settings.MemoryBytes, settings.CacheBytes,
+                             settings.ScratchDirectory.empty() ? 0u : 1u },
+    members.size(), needsUpdate ? 1u : 0u };
+  std::memcpy(bytes.data(), &holdings, sizeof(holdings));
+  return bytes;
+}
+
+/// Throws, on every rank alike, when the ranks cannot take in data together.
+void vtkDSMScene::Internals::CheckHoldings(const Records& records)
+{
+  const auto first = Read<Holdings>(records.front());
+  for (const auto& record : records)
+  {
+    const auto other = Read<Holdings>(record);
+    if (other.Datasets != first.Datasets)
+    {
+      throw dsm::Error("The ranks do not show the same datasets; the frame was left out.");
+    }
+    if (other.Settings != first.Settings)
+    {
+      throw dsm::Error("The ranks have different settings of the memory (DSMMemoryOrganization, "
+                       "DSMHostSharing, DSMMemory, DSMCacheSize, DSMScratchDirectory, "
+                       "DSMCoarserDataWhileMoving); the frame was left out. Set them alike.");
+    }
+  }
+}
+
+/// Collective. Takes in what is new on any rank.
+void vtkDSMScene::Internals::Update(const Records& records)
+{
+  bool isEmpty = false;
+  if (this->SettledVersion != this->Group->GetSettingsVersion())
+  {
+    this->SettledVersion = this->Group->GetSettingsVersion();
+    isEmpty = !this->Group->Settle();
+  }
+  std::set<const vtkDSMSceneMember*> freed;
+  const auto& members = this->Members.GetShown();
+  for (std::size_t index = 0; index < members.size(); ++index)
+  {
+    vtkDSMSceneMember* member = members[index].State;
+    const bool newData = isEmpty || freed.count(member) > 0 ||
+      std::any_of(records.begin(), records.end(),
+        [=](const auto& record) { return HasNewData(record, index); });
+    if (newData)
+    {
+      const auto outdated = member->FreeOutdated(this->Group->GetMessenger());
+      freed.insert(outdated.begin(), outdated.end());
+    }
+    this->Update(*member, newData);
+  }
+}
+
+/// Collective, but where vtkDSMSceneMember::NeedsRanks is false on all ranks.
+void vtkDSMScene::Internals::Update(vtkDSMSceneMember& member, bool newData)
+{
+  member.Update(this->Group, newData);
+  member.TakeCoarser(this->Group, this->Group->GetOptions()->GetCoarserDataWhileMoving());
+}
+
+/// Puts what this rank shows into the tracer's words, without what rank 0 decides; see AgreeOnView.
+std::vector<std::byte> vtkDSMScene::Internals::EncodeView(
+  rt::Scene& scene, rt::FrameRequest& request, vtkMatrix4x4* projection)
+{
+  scene = {};
+  this->Members.AddTo(scene, 0);
+  this->KeepProp(scene);
+  double bounds[6];
+  this->Members.GetBounds(bounds);
+  scene.Transport = vtkDSMTranslation::ToTransport(this->Light, bounds, this->IsInteractive());
+  scene.Transport.Surroundings.Lower = scene.Transport.Surroundings.Upper =
+    glm::vec3(static_cast<float>(this->Light->GetEnvironmentLight()));
+  scene.View = vtkDSMTranslation::ToDebugView(this->Light);
+  request = this->Image ? vtkDSMTranslation::ToRequest(
+                            this->Renderer, this->Image->Width, this->Image->Height, projection)
+                        : vtkDSMTranslation::ToRequest(this->Renderer, this->Display, projection);
+  request.Scheduling =
+    this->Group->GetOptions()->GetScheduler() == vtkDSMMemoryOptions::CentralQueue
+    ? rt::TileScheduling::CentralQueue
+    : rt::TileScheduling::WorkStealing;
+  request.IsPreview = this->IsInteractive(); // also where a pixel gets only one sample
+  request.PixelSize = this->GetReduction(request);
+  request.Width = (request.Width + request.PixelSize - 1) / request.PixelSize;
+  request.Height = (request.Height + request.PixelSize - 1) / request.PixelSize;
+
+  View view{};
+  view.WorldToClip = std::exchange(request.WorldToClip, glm::dmat4(1.0));
+  view.Offer = this->Accumulation.CreateOffer(
+    this->Group->GetStore(), scene, request, this->Light->GetSamplesPerPixel(), this->GetPace());
+  view.Background = this->Background;
+  const bool canBeApart = this->Delivery.CanSeparate(this->Group->GetMessenger().GetSize());
+  view.IsApart = canBeApart && !this->Image && !scene.IsOpaque() &&
+    this->Members.AreBesideOthers(this->Renderer);
+  view.Coarser = this->CountCoarser();
+  view.HasObjects = !scene.Objects.empty() || !scene.Media.empty();
+  // Of windows that show one picture together, none has all of it.
+  view.LimitsRays = !scene.Media.empty() && !this->Image &&
+    this->Display.Tiles[0] * this->Display.Tiles[1] == 1 &&
+    this->Members.AreBesideOthers(this->Renderer);
+  view.NeedsRanks = this->Image || this->Delivery.NeedsRanks(false);
+  view.HasNotes = this->HasNotes();
+  std::vector<std::byte> bytes = dsm::Encode(view);
+  for (const rt::Light& light : vtkDSMTranslation::ToLights(this->Renderer))
+  {
+    dsm::AttachTail(bytes, light);
+  }
+  return bytes;
+}
+
+/// Throws, on every rank alike, for a camera that differs by more than rounding, or for a picture that is to be delivered
+/// in another way.
+void vtkDSMScene::Internals::CheckViews(const std::vector<View>& views)
+{
+  for (std::size_t rank = 0; rank < views.size(); ++rank)
+  {
+    if (!IsNearly(views[rank].WorldToClip, views.front().WorldToClip) ||
+      views[rank].NeedsRanks != views.front().NeedsRanks)
+    {
+      rt::FrameEntry::Refuse(rank);
+    }
+  }
+}
+
+/// Out of rank 0's record, which has them behind `at` bytes: lights may follow the camera.
+void vtkDSMScene::Internals::TakeLights(
+  const std::vector<std::byte>& record, std::size_t at, rt::Scene& scene)
+{
+  scene.Lights.clear();
+  for (; at < record.size(); at += sizeof(rt::Light))
+  {
+    scene.Lights.push_back(Read<rt::Light>(record, at));
+  }
+}
+
+/// Takes rank 0's view: the camera that came from there is not always the same to the last
+/// bit, and ParaView's other ranks have no background, which gives light and which mirrored rays see where
+/// they meet nothing.
+/// Surfaces are kept apart when any rank has something that may be between them. Returns how many levels below the finest
+/// may stand in.
+int vtkDSMScene::Internals::AgreeOnView(
+  const std::vector<View>& views, rt::Scene& scene, rt::FrameRequest& request) const
+{
+  const View& view = views.front();
+  int coarser = view.Coarser;
+  request.Layers = 1;
+  for (const View& other : views)
+  {
+    request.Layers = other.IsApart != 0 ? rt::FrameRequest::MaxLayers : request.Layers;
+    coarser = std::min<int>(coarser, other.Coarser);
+  }
+  scene.Transport.Background = view.Background.Lower;
+  const auto strength = static_cast<float>(this->Light->GetEnvironmentLight());
+  scene.Transport.Surroundings = view.Background;
+  scene.Transport.Surroundings.Lower *= strength;
+  scene.Transport.Surroundings.Upper *= strength;
+  request.WorldToClip = view.WorldToClip;
+  return coarser;
+}
+
+/// Collective. Rays end at what this, or any other, rank draws itself.
+void vtkDSMScene::Internals::LimitRays(rt::FrameRequest& request)
+{
+  const std::size_t pixels = static_cast<std::size_t>(request.Width) * request.Height;
+  const auto all = this->Group->GetMessenger().GatherTogether("Drawing what is in front of volumes",
+    [&]
+    {
+      const std::vector<float> own = this->OpaqueDepth.Read(this->Renderer,
+        this->Members.FindOthers(this->Renderer), request.Width, request.Height, request.PixelSize);
+      const auto* const bytes = reinterpret_cast<const std::byte*>(own.data());
+      return std::vector<std::byte>(bytes, bytes + own.size() * sizeof(float));
+    });
+  auto nearest = std::make_shared<std::vector<float>>(pixels, 1.0f);
+  for (const std::vector<std::byte>& bytes : all)
+  {
+    // A rank whose picture has another size is refused later.
+    for (std::size_t pixel = 0; bytes.size() == pixels * sizeof(float) && pixel < pixels; ++pixel)
+    {
+      (*nearest)[pixel] = std::min((*nearest)[pixel], Read<float>(bytes, pixel * sizeof(float)));
+    }
+  }
+  request.Limits = std::move(nearest);
+}
+
+/// Collective. As long as no rank has anything new, the ranks agree on the frame with one record, and on how it went with
+/// another. `isOver`: see dsm::Messenger::RunStep.
+void vtkDSMScene::Internals::Draw(bool& isOver)
+{
+  const char* const what = "Preparing the frame";
+  dsm::Messenger& messenger = this->Group->GetMessenger();
+  rt::Scene scene;
+  rt::FrameRequest request;
+  vtkNew<vtkMatrix4x4> projection;
+  const int ranksOnHost = this->Image ? messenger.GetRanksOnHost() : 1;
+  std::size_t place = sizeof(Holdings) + this->Members.GetShown().size(); // of the View in a record
+  Records records = messenger.GatherTogether(what,
+    [&]
+    {
+      this->CheckImage(ranksOnHost);
+      bool needsUpdate = false;
+      std::vector<std::byte> bytes = this->EncodeHoldings(needsUpdate);
+      if (!needsUpdate)
+      {
+        for (const auto& member : this->Members.GetShown())
+        {
+          this->Update(*member.State, false);
+        }
+        const std::vector<std::byte> view = this->EncodeView(scene, request, projection);
+        bytes.insert(bytes.end(), view.begin(), view.end());
+      }
+      return bytes;
+    });
+  CheckHoldings(records);
+  if (std::any_of(records.begin(), records.end(),
+        [](const auto& record) { return Read<Holdings>(record).NeedsUpdate != 0; }))
+  {
+    scene = {}; // bricks are given up by all ranks, or by none
+    this->Update(records);
+    records =
+      messenger.GatherTogether(what, [&] { return this->EncodeView(scene, request, projection); });
+    place = 0;
+  }
+
+  // From here until the tiles are traced, the ranks count on one another without further agreements.
+  std::vector<View> views;
+  std::vector<rt::FrameAccumulation::Offer> offers;
+  messenger.Insist(
+    [&]
+    {
+      views.clear();
+      offers.clear();
+      for (const auto& record : records)
+      {
+        views.push_back(Read<View>(record, place));
+        offers.push_back(views.back().Offer);
+      }
+    });
+  const auto isAny = [&](std::int32_t View::*flag)
+  {
+    return std::any_of(views.begin(), views.end(), [=](const View& one) { return one.*flag != 0; });
+  };
+  if (!isAny(&View::HasObjects))
+  {
+    this->FillImage({});
+    this->Clear();
+    return;
+  }
+  this->IsTraced = true;
+  CheckViews(views);
+  int coarser = 0;
+  messenger.Insist(
+    [&]
+    {
+      this->TakeLights(records.front(), place + sizeof(View), scene);
+      coarser = this->AgreeOnView(views, scene, request);
+    });
+  if (isAny(&View::LimitsRays))
+  {
+    this->LimitRays(request);
+  }
+  rt::Picture picture;
+  const auto result = this->TraceScene(scene, request, std::move(offers), coarser, picture);
+  if (result == rt::FrameAccumulation::Result::Aborted)
+  {
+    // The renderer goes on, with the last picture: other ranks may wait for what this one draws.
+    this->Renderer->GetRenderWindow()->SetAbortRender(0);
+    return;
+  }
+  const rt::Frame& frame = this->Accumulation.GetFrame();
+  if (this->Image)
+  {
+    this->FillImage(rt::GatherFrame(messenger, frame));
+    return;
+  }
+  const bool hasEdges =
+    messenger.GetSize() > 1 && scene.IsOpaque() && this->Accumulation.GetSamples() > 1;
+  const bool isNew = result == rt::FrameAccumulation::Result::Traced;
+  if (!isNew)
+  {
+    picture = this->Delivery.Assemble(frame);
+  }
+  picture = this->Delivery.Gather(messenger, frame, std::move(picture), hasEdges);
+  isOver = (isNew || this->Delivery.NeedsRanks(hasEdges)) && request.Layers == 1 &&
+    !isAny(&View::HasNotes);
+  this->DrawPicture(
+    std::move(picture), request, projection, scene.View, request.PixelSize == 1, hasEdges);
+}
