@@ -32,6 +32,12 @@ public:
   /// `position` in the pixel is in [0, 1), its centre being at one half.
   Ray GetRay(int x, int y, const glm::dvec2& position = glm::dvec2(0.5)) const;
 
+  /// Max of such a ray.
+  double GetEnd(int x, int y, const glm::dvec2& position) const
+  {
+    return this->Limits ? this->GetRay(x, y, position).Max : Last;
+  }
+
   /// OpenGL window depth in [0, 1] of a world point.
   float GetDepth(const glm::dvec3& point) const;
 

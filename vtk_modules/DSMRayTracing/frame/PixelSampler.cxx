@@ -119,7 +119,8 @@ void PixelSampler::Sample(
     }
   }
   Paths paths;
-  this->Follow(beam, rays, wanted, this->World.Transport.MaxBounces,
+  this->Follow(
+    beam, rays, wanted, this->World.Transport.MaxBounces,
     [&](int index) -> LightPath&
     {
       LightPath& path = paths.Add();
@@ -130,6 +131,11 @@ void PixelSampler::Sample(
       path.ToViewer = -glm::normalize(rays[index].Direction);
       path.View = &this->Rays.GetView();
       return path;
+    },
+    [&](int index)
+    {
+      const glm::ivec2 place = GetPlace(index);
+      return this->Rays.GetEnd(x + place.x, y + place.y, position);
     });
   for (int number = 0; number < paths.GetCount(); ++number)
   {
@@ -167,13 +173,11 @@ RayMask PixelSampler::FindSurfaces(
   return found;
 }
 
-template <class Start>
-void PixelSampler::Follow(
-  SceneBeam* beam, Ray* rays, RayMask wanted, int bounces, const Start& start) const
+template <class Start, class GetEnd>
+void PixelSampler::Follow(SceneBeam* beam, Ray* rays, RayMask wanted, int bounces,
+  const Start& start, const GetEnd& getEnd) const
 {
   LightPath* paths[MaxRays] = {};
-  double last[MaxRays];
-  ForEachRay(wanted, [&](int index) { last[index] = rays[index].Max; });
   const auto getPath = [&](int index) -> LightPath&
   {
     if (!paths[index])
@@ -196,7 +200,7 @@ void PixelSampler::Follow(
     ForEachRay(seen, [&](int index) { list[count++] = paths[index]; });
     this->AddSurfaces(list, count, bounces);
     wanted = FindRays(seen, [&](int index) { return paths[index]->GoesOn(); });
-    ForEachRay(wanted, [&](int index) { paths[index]->Pass(rays[index], last[index]); });
+    ForEachRay(wanted, [&](int index) { paths[index]->Pass(rays[index], getEnd(index)); });
   }
 }
 
@@ -333,7 +337,8 @@ void PixelSampler::AddReflections(LightPath* const* paths, int count, const Shad
       ray.Max = std::numeric_limits<double>::infinity();
       mirrored->Views[number] = path.View->GetMirrored(path.Point.Position, normal);
     });
-  this->Follow(nullptr, mirrored->Rays, mirrors, bounces - 1,
+  this->Follow(
+    nullptr, mirrored->Rays, mirrors, bounces - 1,
     [&](int number) -> LightPath&
     {
       LightPath& behind = mirrored->Paths.Add();
@@ -342,7 +347,8 @@ void PixelSampler::AddReflections(LightPath* const* paths, int count, const Shad
       behind.ToViewer = -glm::normalize(mirrored->Rays[number].Direction);
       behind.View = &mirrored->Views[number];
       return behind;
-    });
+    },
+    [](int) { return std::numeric_limits<double>::infinity(); });
   glm::vec4 seen[MaxRays];
   ForEachRay(mirrors, [&](int number) { seen[number] = glm::vec4(0.0f); });
   for (int index = 0; index < mirrored->Paths.GetCount(); ++index)

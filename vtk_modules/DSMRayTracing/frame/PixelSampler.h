@@ -56,10 +56,12 @@ private:
   template <class GetPath>
   RayMask FindSurfaces(Ray* rays, RayMask wanted, SceneBeam* beam, const GetPath& getPath) const;
 
-  /// Follows those of the rays that are `wanted` front to back until they end: through media, and from surface to surface.
-  /// `start(index)` makes the path of a ray that has something to show; it is called once for each.
-  template <class Start>
-  void Follow(SceneBeam* beam, Ray* rays, RayMask wanted, int bounces, const Start& start) const;
+  /// Follows those of the rays that are `wanted` front to back until they end: through media, and from surface to
+  /// surface. `start(index)` makes the path of a ray that has something to show; it is called once for each.
+  /// `getEnd(index)`: T where a ray ends.
+  template <class Start, class GetEnd>
+  void Follow(SceneBeam* beam, Ray* rays, RayMask wanted, int bounces, const Start& start,
+    const GetEnd& getEnd) const;
 
   /// Adds what media contribute in front of the surfaces that rays have met.
   void AddMedia(SceneBeam* beam, const Ray* rays, RayMask wanted, LightPath* const* paths) const;

@@ -82,20 +82,29 @@ public:
     SurfacePoint* const* points) const override
   {
     const IsosurfaceLook& look = this->Object.Look;
+    // Where all of the surface looks alike, nobody asks for the places.
+    const bool asksForPlaces = look.Flat || look.Blocks || this->Object.ColorValues;
     Place places[MaxRays];
-    ForEachRay(wanted, [&](int index) { places[index] = hits[index].Get<Hit>().At; });
+    if (asksForPlaces)
+    {
+      ForEachRay(wanted, [&](int index) { places[index] = hits[index].Get<Hit>().At; });
+    }
     glm::dvec3 gradients[MaxRays];
     if (look.Flat)
     {
       this->Values.FindGradients(this->Object.Field.GetValues(), places, wanted, gradients);
     }
     const BlockLooks::Look* ofBlocks[MaxRays];
-    const RayMask uncolored = FindRays(wanted,
-      [&](int index)
-      {
-        ofBlocks[index] = look.Blocks ? look.Blocks->Find(places[index].GetCell()) : nullptr;
-        return !ofBlocks[index] || !ofBlocks[index]->Color;
-      });
+    RayMask uncolored = wanted;
+    if (look.Blocks)
+    {
+      uncolored = FindRays(wanted,
+        [&](int index)
+        {
+          ofBlocks[index] = look.Blocks->Find(places[index].GetCell());
+          return !ofBlocks[index] || !ofBlocks[index]->Color;
+        });
+    }
     glm::vec4 colors[MaxRays];
     if (this->Object.ColorValues)
     {
@@ -112,7 +121,7 @@ public:
           ? this->Object.Field.GetNormal(gradients[index], rays[index].Direction)
           : hit.Normal;
         point.Facing = hit.FromInside ? -point.Normal : point.Normal;
-        const BlockLooks::Look* const block = ofBlocks[index];
+        const BlockLooks::Look* const block = look.Blocks ? ofBlocks[index] : nullptr;
         const bool isOfBlock = block && block->Color;
         point.ColorIsFromArray = isOfBlock || this->Object.ColorValues;
         const Material* const surface = look.GetSurface(hit.FromInside);

@@ -11,13 +11,13 @@
 namespace rt
 {
 
-/// A place in a lattice.
+/// A place in a lattice. Without values at first: batches of them are made for each batch of rays.
 struct LatticePlace
 {
-  glm::dvec3 IndexPoint{ 0.0 };
+  glm::dvec3 IndexPoint;
   /// IndexPoint may be on a face that the cell shares with another.
-  glm::ivec3 Cell{ 0 };
-  dsm::BlockId Brick = 0; ///< the one that holds it
+  glm::ivec3 Cell;
+  dsm::BlockId Brick; ///< the one that holds it
 
   bricks::Index3 GetCell() const { return bricks::Index3(this->Cell); }
 };
