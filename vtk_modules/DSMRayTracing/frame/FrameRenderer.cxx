@@ -52,7 +52,6 @@ Frame FrameRenderer::Render(dsm::BlockStore& store, const Scene& scene, const Fr
     : this->Stealing;
   NewTiles tiles(TileGrid(request.Width, request.Height, request.TileSize), scheduler);
   Frame frame;
-  frame.Channels = request.Channels;
   this->RenderTiles(store, scene, request, last, records, tiles, frame);
   return frame;
 }

@@ -341,6 +341,7 @@ private:
       this->Traced.Width = this->In.Request.Width;
       this->Traced.Height = this->In.Request.Height;
       this->Traced.TileSize = this->In.Request.TileSize;
+      this->Traced.Channels = this->In.Request.Channels;
       this->Traced.Number = this->Number;
       this->Traced.Beams = this->Beams;
       if (this->Failure.IsEmpty() && !this->Stopped && !this->Agreement.IsAborted())
