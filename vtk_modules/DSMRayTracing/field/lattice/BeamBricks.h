@@ -5,6 +5,8 @@
 #include "DSMCore/base/Block.h"
 #include "DSMRayTracing/object/ObjectBeam.h"
 
+#include <algorithm>
+#include <cstddef>
 #include <vector>
 
 namespace rt
@@ -27,6 +29,17 @@ struct BeamBricks final : ObjectBeam
   std::vector<Brick> Bricks; ///< where the beam is not usable, it is empty, and means nothing
 
   bool MayMeet() const override { return !this->Usable || !this->Bricks.empty(); }
+
+  /// Ids of the first bricks, at most so many.
+  std::vector<dsm::BlockId> GetFirst(std::size_t count) const
+  {
+    std::vector<dsm::BlockId> ids;
+    for (std::size_t place = 0; place < std::min(count, this->Bricks.size()); ++place)
+    {
+      ids.push_back(this->Bricks[place].Id);
+    }
+    return ids;
+  }
 };
 
 } // namespace rt

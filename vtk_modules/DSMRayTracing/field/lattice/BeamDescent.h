@@ -4,7 +4,9 @@
 
 #include "DSMBricks/layout/MacrocellHierarchy.h"
 #include "DSMRayTracing/field/lattice/BeamBricks.h"
+#include "DSMRayTracing/field/lattice/LatticeField.h"
 #include "DSMRayTracing/field/lattice/RayBeam.h"
+#include "DSMRayTracing/ray/Ray.h"
 
 #include <algorithm>
 #include <cstddef>
@@ -116,6 +118,24 @@ private:
   const RayBeam& Beam;
   std::vector<RayBeam::Cubes> Cubes; ///< of each level
 };
+
+/// The bricks of a lattice that hold what rays between those of `corners`, in order around them, look for.
+template <class Predicate>
+BeamBricks FindBeamBricks(const LatticeField& field, const Predicate& mayHold, const Ray corners[4])
+{
+  const IndexSpace space = field.GetIndexSpace();
+  GridRay lines[4];
+  for (int corner = 0; corner < 4; ++corner)
+  {
+    if (!space.GetGridRay(corners[corner], lines[corner]))
+    {
+      return BeamBricks();
+    }
+  }
+  RayBeam beam;
+  return beam.Set(lines) ? BeamDescent<Predicate>(field.Voxels->Hierarchy, mayHold, beam).Find()
+                         : BeamBricks();
+}
 
 } // namespace rt
 

@@ -23,17 +23,8 @@ namespace rt
 template <class Store>
 BeamBricks IsosurfacePacketSearch<Store>::FindBricks(const Sets& sets, const Ray corners[4])
 {
-  const IndexSpace space = sets.Field.GetIndexSpace();
-  GridRay lines[4];
-  for (int corner = 0; corner < 4; ++corner)
-  {
-    if (!space.GetGridRay(corners[corner], lines[corner]))
-    {
-      return BeamBricks();
-    }
-  }
-  RayBeam beam;
-  return beam.Set(lines) ? FindBricks(sets, beam) : BeamBricks();
+  const IsovaluePredicate mayHold(sets.Isovalues);
+  return FindBeamBricks(sets.Field, mayHold, corners);
 }
 
 template <class Store>

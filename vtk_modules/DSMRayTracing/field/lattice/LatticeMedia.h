@@ -44,25 +44,14 @@ public:
   std::unique_ptr<ObjectBeam> FindBeam(
     const LatticeField& field, const TransferFunction& function, const Ray corners[4]) const
   {
-    const IndexSpace space = field.GetIndexSpace();
-    GridRay lines[4];
-    bool isUsable = true;
-    for (int corner = 0; corner < 4; ++corner)
-    {
-      isUsable = isUsable && space.GetGridRay(corners[corner], lines[corner]);
-    }
-    RayBeam beam;
-    return std::make_unique<BeamBricks>(
-      isUsable && beam.Set(lines) ? FindBricks(field, function, beam) : BeamBricks());
+    const TransferPredicate mayHold(function);
+    return std::make_unique<BeamBricks>(FindBeamBricks(field, mayHold, corners));
   }
 
   /// See BeamFinder.
   bool Prefetch(const LatticeField& field, const ObjectBeam& beam, std::size_t count) const
   {
-    const auto& bricks = static_cast<const BeamBricks&>(beam).Bricks;
-    std::vector<dsm::BlockId> ids(std::min(count, bricks.size()));
-    std::transform(bricks.begin(), bricks.begin() + static_cast<std::ptrdiff_t>(ids.size()),
-      ids.begin(), [](const BeamBricks::Brick& brick) { return brick.Id; });
+    const std::vector<dsm::BlockId> ids = static_cast<const BeamBricks&>(beam).GetFirst(count);
     return this->Blocks.Prefetch(*field.Voxels->Segment, ids.data(), ids.size(), {});
   }
 
@@ -106,13 +95,6 @@ public:
   }
 
 private:
-  static BeamBricks FindBricks(
-    const LatticeField& field, const TransferFunction& function, const RayBeam& beam)
-  {
-    const TransferPredicate mayHold(function);
-    return BeamDescent<TransferPredicate>(field.Voxels->Hierarchy, mayHold, beam).Find();
-  }
-
   /// Rays of a packet move along all axes. One that does not, moves so little that it stays at its place for all that
   /// can be seen. Returns the sides to which the ray moves, a bit for each axis.
   static int MoveAlongAll(const LatticeField& field, const Ray& ray, Ray& moved)
@@ -149,7 +131,9 @@ private:
     }
     RayBeam beam;
     beam.Set(packet);
-    BeamBricks bricks = FindBricks(field, function, beam);
+    const TransferPredicate mayHold(function);
+    BeamBricks bricks =
+      BeamDescent<TransferPredicate>(field.Voxels->Hierarchy, mayHold, beam).Find();
     RayPacket own = packet;
     return this->MarchPacket(field, function, bricks, own, light);
   }

@@ -42,10 +42,7 @@ public:
   /// See ObjectTracer.
   bool Prefetch(const Sets& sets, const ObjectBeam& beam, std::size_t count) const
   {
-    const auto& bricks = static_cast<const BeamBricks&>(beam).Bricks;
-    std::vector<dsm::BlockId> ids(std::min(count, bricks.size()));
-    std::transform(bricks.begin(), bricks.begin() + static_cast<std::ptrdiff_t>(ids.size()),
-      ids.begin(), [](const BeamBricks::Brick& brick) { return brick.Id; });
+    const std::vector<dsm::BlockId> ids = static_cast<const BeamBricks&>(beam).GetFirst(count);
     return this->Blocks.Prefetch(*sets.Field.Voxels->Segment, ids.data(), ids.size(),
       [&](dsm::BlockId id, std::vector<dsm::BlockId>& neighbors)
       { AddNeighbors(sets, id, neighbors); });
