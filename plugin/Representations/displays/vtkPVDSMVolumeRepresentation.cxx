@@ -59,8 +59,3 @@ void vtkPVDSMVolumeRepresentation::SetScalarOpacityUnitDistance(double distance)
 {
   this->Property->SetScalarOpacityUnitDistance(distance);
 }
-
-void vtkPVDSMVolumeRepresentation::PrintSelf(ostream& os, vtkIndent indent)
-{
-  this->Superclass::PrintSelf(os, indent);
-}

@@ -9,9 +9,9 @@
 #ifndef vtkPVDSMVolumeRepresentation_h
 #define vtkPVDSMVolumeRepresentation_h
 
+#include "vtkNew.h" // for ivars
 #include "vtkPVDSMImageRepresentation.h"
 #include "vtkRepresentationsDSMModule.h" // for the export macro
-#include "vtkSmartPointer.h"             // for ivars
 
 class vtkPiecewiseFunction;
 class vtkVolumeProperty;
@@ -21,7 +21,6 @@ class VTKREPRESENTATIONSDSM_EXPORT vtkPVDSMVolumeRepresentation : public vtkPVDS
 public:
   static vtkPVDSMVolumeRepresentation* New();
   vtkTypeMacro(vtkPVDSMVolumeRepresentation, vtkPVDSMImageRepresentation);
-  void PrintSelf(ostream& os, vtkIndent indent) override;
 
   int ProcessViewRequest(
     vtkInformationRequestKey* request, vtkInformation* inInfo, vtkInformation* outInfo) override;

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <utility>
 
 namespace rt
 {
@@ -15,6 +16,13 @@ namespace
 
 constexpr int BinsOfGroup = 16;
 constexpr int Groups = TransferFunction::Bins / BinsOfGroup + 1;
+
+/// Of either.
+TransferFunction::Behavior GetLarger(
+  const TransferFunction::Behavior& one, const TransferFunction::Behavior& other)
+{
+  return { std::max(one.Extinction, other.Extinction), std::max(one.Change, other.Change) };
+}
 
 } // namespace
 
@@ -60,8 +68,7 @@ TransferFunction::TransferFunction(
   }
   for (const Behavior& group : groups)
   {
-    this->Whole = { std::max(this->Whole.Extinction, group.Extinction),
-      std::max(this->Whole.Change, group.Change) };
+    this->Whole = GetLarger(this->Whole, group);
   }
   this->Largest.push_back(groups);
   for (std::size_t width = 1; 2 * width <= Groups; width *= 2)
@@ -70,10 +77,7 @@ TransferFunction::TransferFunction(
     std::vector<Behavior> next(Groups - 2 * width + 1);
     for (std::size_t group = 0; group < next.size(); ++group)
     {
-      const Behavior& one = narrow[group];
-      const Behavior& other = narrow[group + width];
-      next[group] = { std::max(one.Extinction, other.Extinction),
-        std::max(one.Change, other.Change) };
+      next[group] = GetLarger(narrow[group], narrow[group + width]);
     }
     this->Largest.push_back(std::move(next));
   }
@@ -91,9 +95,8 @@ TransferFunction::Behavior TransferFunction::FindBehavior(double begin, double e
   const int count = last / BinsOfGroup - firstGroup + 1;
   const int level = 31 - __builtin_clz(static_cast<unsigned>(count));
   const std::vector<Behavior>& groups = this->Largest[static_cast<std::size_t>(level)];
-  const Behavior& one = groups[static_cast<std::size_t>(firstGroup)];
-  const Behavior& other = groups[static_cast<std::size_t>(firstGroup + count - (1 << level))];
-  return { std::max(one.Extinction, other.Extinction), std::max(one.Change, other.Change) };
+  return GetLarger(groups[static_cast<std::size_t>(firstGroup)],
+    groups[static_cast<std::size_t>(firstGroup + count - (1 << level))]);
 }
 
 } // namespace rt

@@ -10,6 +10,7 @@
 #include "vtkProp.h"
 #include "vtkRenderState.h"
 #include "vtkRenderer.h"
+#include "vtkSmartPointer.h"
 #include "vtkTextureObject.h"
 
 #include <algorithm>
@@ -80,11 +81,4 @@ std::vector<float> vtkDSMOpaqueDepth::Read(
     }
   }
   return picture;
-}
-
-void vtkDSMOpaqueDepth::ReleaseGraphicsResources(vtkWindow* window)
-{
-  this->Buffer->ReleaseGraphicsResources(window);
-  this->Color->ReleaseGraphicsResources(window);
-  this->Depth->ReleaseGraphicsResources(window);
 }

@@ -3,7 +3,6 @@
 #define vtkDSMOpaqueDepth_h
 
 #include "vtkNew.h"
-#include "vtkSmartPointer.h"
 
 #include <vector>
 
@@ -11,7 +10,6 @@ class vtkOpenGLFramebufferObject;
 class vtkProp;
 class vtkRenderer;
 class vtkTextureObject;
-class vtkWindow;
 
 /// How far rays come until opaque props of the application end them. The props are drawn for that, into a buffer of their
 /// own, before the renderer draws them.
@@ -28,8 +26,6 @@ public:
   /// renders, while the window is current.
   std::vector<float> Read(vtkRenderer* renderer, const std::vector<vtkProp*>& props, int width,
     int height, int pixelSize);
-
-  void ReleaseGraphicsResources(vtkWindow* window);
 
 private:
   vtkNew<vtkTextureObject> Color;

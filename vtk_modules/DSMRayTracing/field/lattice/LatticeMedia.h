@@ -18,7 +18,6 @@
 #include <glm/vec3.hpp>
 
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
 #include <memory>
 #include <vector>
@@ -123,7 +122,7 @@ private:
   }
 
   RayMask MarchPacket(const LatticeField& field, const TransferFunction& function,
-    const RayPacket& packet, MediumLight& light) const
+    RayPacket& packet, MediumLight& light) const
   {
     if (packet.Rays == 0)
     {
@@ -134,8 +133,7 @@ private:
     const TransferPredicate mayHold(function);
     BeamBricks bricks =
       BeamDescent<TransferPredicate>(field.Voxels->Hierarchy, mayHold, beam).Find();
-    RayPacket own = packet;
-    return this->MarchPacket(field, function, bricks, own, light);
+    return this->MarchPacket(field, function, bricks, packet, light);
   }
 
   RayMask MarchPacket(const LatticeField& field, const TransferFunction& function,

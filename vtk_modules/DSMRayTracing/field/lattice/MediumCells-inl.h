@@ -20,6 +20,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <iterator>
 
 HWY_BEFORE_NAMESPACE();
 namespace rt
@@ -76,6 +77,10 @@ public:
   {
     const D tag;
     std::uint32_t left = GetMaskBits(tag, cells.Crossing) & cells.There;
+    if (left == 0)
+    {
+      return 0;
+    }
     const Vector scale = hn::Set(tag, this->Function.GetScale());
     const Vector length = hn::Mul(hn::Sub(cells.Exit, cells.Enter),
       SetLanes<double, Width>([&](int lane) { return this->Light.Length[cells.Ray[lane]]; }));
@@ -98,10 +103,6 @@ public:
     else
     {
       most = this->Count(cells, bend, length, left, pieces);
-    }
-    if (left == 0)
-    {
-      return 0;
     }
     const Vector part = hn::Load(tag, pieces.Part);
     hn::Store(hn::Mul(length, part), tag, pieces.Length);
@@ -158,9 +159,9 @@ private:
     return hn::AllTrue(tag, hn::Le(hn::Max(curved, deep), hn::Set(tag, 1.0)));
   }
 
-  /// Takes those lanes out of `left` that see nothing. Returns the largest number.
+  /// Of those of `lanes`. Returns the largest number.
   HWY_INLINE int Count(const CrossedCells<D>& cells, Vector bend, Vector length,
-    std::uint32_t& left, Pieces& pieces) const
+    std::uint32_t lanes, Pieces& pieces) const
   {
     const D tag;
     Vector least = cells.Corners[0];
@@ -180,23 +181,18 @@ private:
     hn::Store(bend, tag, bends);
     hn::Store(length, tag, lengths);
     double most = 0.0;
-    const std::uint32_t asked = left;
     for (int lane = 0; lane < Width; ++lane)
     {
       pieces.Part[lane] = 1.0;
-      if ((asked >> lane & 1u) == 0)
+      if ((lanes >> lane & 1u) == 0)
       {
         continue;
       }
       const TransferFunction::Behavior behavior =
         this->Function.FindBehavior(first[lane], last[lane]);
-      if (behavior.Extinction == 0.0)
-      {
-        left &= ~(1u << lane);
-        continue;
-      }
-      const double curved = std::sqrt(lengths[lane] * behavior.Change * bends[lane] * BendFactor);
-      const double deep = DepthFactor * lengths[lane] * behavior.Extinction;
+      // In IsOneEnough's order: what is one piece there is so here, too, whatever other lanes are.
+      const double curved = std::sqrt(lengths[lane] * bends[lane] * (behavior.Change * BendFactor));
+      const double deep = lengths[lane] * (behavior.Extinction * DepthFactor);
       const double count = std::ceil(std::clamp(std::max(curved, deep), 1.0, MostPieces));
       pieces.Part[lane] = 1.0 / count;
       most = std::max(most, count);
