@@ -62,6 +62,30 @@ clipped = render(view, "Clipped")
 display.DSMClip = 0
 check(get_covered(clipped).mean() < get_covered(render(view)).mean(), "a clipped volume covers less")
 
+# Light.
+opacity.Points = [-1.0, 0.0, 0.5, 0.0, 0.2, 0.0, 0.5, 0.0, 1.0, 0.4, 0.5, 0.0]
+display.Shade, display.Specular, display.SpecularPower = 1, 0.3, 20.0
+compare("Shaded", mean=1.0, largest=60)
+# Volume has it for a headlight alone.
+display.Ambient = 0.2
+display.DSMShadows = 1
+view.AdditionalLights = [simple.CreateLight()]
+view.AdditionalLights[0].Coords, view.AdditionalLights[0].Position = "Scene", [80.0, 60.0, 12.0]
+shadows = render(view, "Shadows")
+display.DSMShadows = 0
+lit = render(view)
+covered = get_covered(lit)
+check(lit[covered].mean() > shadows[covered].mean() + 2.0, "a volume casts shadows on itself")
+display.DSMAmbientOcclusionSamples = 8
+check(lit[covered].mean() > render(view, "Occlusion")[covered].mean() + 2.0, "and hides what is around it")
+display.DSMAmbientOcclusionSamples = 0
+display.DSMScattering, display.DSMShadows = 1.0, 1
+scattered = render(view, "Scattering")
+display.VolumeAnisotropy = 0.6
+check(abs(scattered - render(view))[covered].mean() > 2.0, "light is scattered forward")
+display.DSMScattering, display.DSMShadows, display.Shade = 0.0, 0, 0
+view.AdditionalLights = []
+
 opacity.Points = [-1.0, 0.0, 0.5, 0.0, 1.0, 0.0, 0.5, 0.0]
 check(not get_covered(render(view)).any(), "of a transparent volume, nothing is seen")
 display.Representation = REPRESENTATION

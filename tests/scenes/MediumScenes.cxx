@@ -145,6 +145,72 @@ void AddMixtures(Scenes& scenes)
     } });
 }
 
+void AddLit(Scenes& scenes)
+{
+  rt::MediumLook shaded;
+  shaded.Shade = true;
+  shaded.Surface.Ambient = 0.2f;
+  shaded.Surface.Specular = 0.4f;
+  shaded.Surface.SpecularPower = 20.0f;
+  rt::MediumLook scattering;
+  scattering.Scattering = 1.0;
+  scattering.Anisotropy = 0.4;
+  rt::MediumLook edges;
+  edges.Gradients = std::make_shared<const rt::GradientOpacity>(
+    rt::GradientOpacity{ 20.0, { 0.0, 0.1, 0.5, 1.0, 1.0 } });
+  rt::MediumLook mixed = shaded;
+  mixed.Scattering = 0.5;
+  mixed.Gradients = edges.Gradients;
+  Recipe waves;
+  Recipe rough;
+  rough.Form = Recipe::Shape::Rough;
+  rough.Points = { 12, 11, 10 };
+  Recipe blanked = waves;
+  blanked.Blanked = true;
+  const auto add = [&](const char* name, const Recipe& recipe, const Nodes& nodes,
+                     const rt::MediumLook& look, bool shadows, int samples)
+  {
+    scenes.push_back({ std::string("medium.Lit.") + name,
+      [=](SceneStage& stage)
+      {
+        rt::LatticeMedium medium = stage.CreateMedium(recipe, nodes);
+        medium.Look = look;
+        stage.Add(std::move(medium));
+        stage.World.Transport.Shadows = shadows;
+        stage.World.Transport.AmbientOcclusionSamples = shadows ? samples : 0;
+        stage.World.Transport.AmbientOcclusionDistance = 0.8;
+        stage.Request.Samples = samples;
+        stage.SampleParts = { samples };
+      } });
+  };
+  add("Fog", waves, Fog, shaded, false, 1);
+  add("Walls", waves, Walls, shaded, false, 1);
+  add("Peaks", rough, Peaks, shaded, false, 1);
+  add("Blanked", blanked, Everything, shaded, false, 1);
+  add("Shadows", waves, Fog, shaded, true, 1);
+  add("Shadows.Samples", waves, Everything, shaded, true, 3);
+  add("Scattering", waves, Fog, scattering, true, 1);
+  add("Scattering.Rough", rough, Everything, scattering, true, 2);
+  add("Edges", waves, Everything, edges, false, 1);
+  add("Edges.Rough", rough, Fog, mixed, true, 1);
+  scenes.push_back({ "medium.Lit.Mixture",
+    [=](SceneStage& stage)
+    {
+      Recipe ball;
+      ball.Form = Recipe::Shape::Ball;
+      rt::LatticeIsosurface surface = stage.CreateIsosurface(ball);
+      surface.Look.Surface.Reflectivity = 0.5f;
+      stage.Add(std::move(surface));
+      rt::LatticeMedium medium = stage.CreateMedium(waves, Fog);
+      medium.Look = mixed;
+      stage.Add(std::move(medium));
+      stage.Add(stage.CreateMedium(
+        ball, Peaks, glm::translate(glm::dmat4(1.0), glm::dvec3(0.4, 0.2, -0.3)) * Turn()));
+      stage.World.Transport.Shadows = true;
+      stage.World.Transport.MaxBounces = 2;
+    } });
+}
+
 } // namespace
 
 void AddMediumScenes(std::vector<RecordedScene>& scenes)
@@ -152,4 +218,5 @@ void AddMediumScenes(std::vector<RecordedScene>& scenes)
   AddTypes(scenes);
   AddShapes(scenes);
   AddMixtures(scenes);
+  AddLit(scenes);
 }

@@ -6,6 +6,7 @@
 #include "vtkColorTransferFunction.h"
 #include "vtkObjectFactory.h"
 #include "vtkPiecewiseFunction.h"
+#include "vtkProperty.h"
 #include "vtkVolume.h"
 #include "vtkVolumeProperty.h"
 
@@ -28,6 +29,11 @@ int vtkPVDSMVolumeRepresentation::ProcessViewRequest(
     const bool isOne = map->GetVectorMode() == vtkScalarsToColors::COMPONENT;
     this->Mapper->SetIsoComponent(isOne ? map->GetVectorComponent() : -1);
   }
+  vtkProperty* const surface = this->Mapper->GetSurfaceProperty();
+  this->Property->SetAmbient(surface->GetAmbient());
+  this->Property->SetDiffuse(surface->GetDiffuse());
+  this->Property->SetSpecular(surface->GetSpecular());
+  this->Property->SetSpecularPower(surface->GetSpecularPower());
   return this->Superclass::ProcessViewRequest(request, inInfo, outInfo);
 }
 
@@ -58,4 +64,19 @@ void vtkPVDSMVolumeRepresentation::SetScalarOpacity(vtkPiecewiseFunction* functi
 void vtkPVDSMVolumeRepresentation::SetScalarOpacityUnitDistance(double distance)
 {
   this->Property->SetScalarOpacityUnitDistance(distance);
+}
+
+void vtkPVDSMVolumeRepresentation::SetShade(bool shade)
+{
+  this->Property->SetShade(shade);
+}
+
+void vtkPVDSMVolumeRepresentation::SetAnisotropy(double anisotropy)
+{
+  this->Property->SetScatteringAnisotropy(static_cast<float>(anisotropy));
+}
+
+void vtkPVDSMVolumeRepresentation::SetScattering(double part)
+{
+  this->Mapper->SetScattering(part);
 }

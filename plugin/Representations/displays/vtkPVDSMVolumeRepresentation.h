@@ -39,7 +39,14 @@ public:
   void SetLookupTable(vtkScalarsToColors* table);
   void SetScalarOpacity(vtkPiecewiseFunction* function);
   void SetScalarOpacityUnitDistance(double distance);
+  void SetShade(bool shade);
+  void SetAnisotropy(double anisotropy);
   ///@}
+
+  /**
+   * Forwarded to the mapper.
+   */
+  void SetScattering(double part);
 
 protected:
   vtkPVDSMVolumeRepresentation();

@@ -60,9 +60,11 @@ protected:
     return 3.0 * std::sin(1e4 * (p.x + 1.7 * p.y + 2.9 * p.z));
   }
 
-  void Add(const std::function<double(const glm::dvec3&)>& values, const Nodes& nodes)
+  void Add(const std::function<double(const glm::dvec3&)>& values, const Nodes& nodes,
+    const rt::MediumLook& look = {})
   {
     rt::LatticeMedium medium;
+    medium.Look = look;
     medium.Field = FunctionVolume::Publish(Points, values, this->Messenger, this->Store).Field;
     std::vector<glm::dvec4> samples;
     for (int sample = 0; sample <= rt::TransferFunction::Bins; ++sample)
@@ -85,11 +87,16 @@ protected:
         }
       }
     }
-    this->Parts.push_back({ std::move(own), nodes });
+    this->Parts.push_back({ std::move(own), nodes, look });
   }
 
   /// The largest difference of any channel of any pixel, in 255ths.
   double Compare(const glm::dmat4& worldToClip)
+  {
+    return this->Compare(worldToClip, [this](const rt::Ray& ray) { return this->Integrate(ray); });
+  }
+  double Compare(
+    const glm::dmat4& worldToClip, const std::function<glm::dvec4(const rt::Ray&)>& expect)
   {
     rt::FrameRequest request;
     request.Width = 24;
@@ -115,7 +122,7 @@ protected:
         {
           for (int x = 0; x < request.Width; ++x)
           {
-            const glm::dvec4 expected = this->Integrate(rays.GetRay(x, y));
+            const glm::dvec4 expected = expect(rays.GetRay(x, y));
             const glm::dvec4 found(tile.Sum[static_cast<std::size_t>(y * request.Width + x)]);
             for (int channel = 0; channel < 4; ++channel)
             {
@@ -147,6 +154,7 @@ private:
   {
     std::vector<double> Values;
     Nodes Function;
+    rt::MediumLook Look;
   };
 
   /// So many samples in the shortest way through a cell.
@@ -169,7 +177,9 @@ private:
       for (const Part& part : this->Parts)
       {
         const glm::dvec4 here = Evaluate(part.Function, Interpolate(part.Values, place));
-        sum += glm::dvec4(here.w * glm::dvec3(here), here.w);
+        sum += here.w == 0.0
+          ? glm::dvec4(0.0)
+          : this->Light(part, place, direction, glm::dvec4(here.w * glm::dvec3(here), here.w));
       }
       const double passed = std::exp(-step * sum.w);
       if (sum.w > 0.0)
@@ -179,6 +189,39 @@ private:
       transmittance *= passed;
     }
     return { color, 1.0 - transmittance };
+  }
+
+  /// What becomes of a color with its extinction.
+  glm::dvec4 Light(const Part& part, const glm::dvec3& place, const glm::dvec3& direction,
+    const glm::dvec4& amount) const
+  {
+    const rt::MediumLook& look = part.Look;
+    glm::dvec3 gradient(0.0);
+    for (int axis = 0; axis < 3 && (look.Shade || look.Gradients); ++axis)
+    {
+      glm::dvec3 before = place;
+      glm::dvec3 after = place;
+      before[axis] = std::max(0.0, place[axis] - 1.0);
+      after[axis] = std::min(Points - 1.0, place[axis] + 1.0);
+      gradient[axis] = (Interpolate(part.Values, after) - Interpolate(part.Values, before)) /
+        (after[axis] - before[axis]);
+    }
+    const double density = look.Gradients ? look.Gradients->GetFactor(glm::length(gradient)) : 1.0;
+    if (!look.Shade)
+    {
+      return density * amount;
+    }
+    glm::dvec3 lit = double(look.Surface.Ambient) * glm::dvec3(amount);
+    for (const rt::Light& light : this->World.Lights)
+    {
+      const glm::dvec3 normal = glm::normalize(gradient);
+      const glm::dvec3 mirrored = glm::reflect(light.Direction, normal);
+      lit += glm::dvec3(light.Color) *
+        (look.Surface.Diffuse * std::abs(glm::dot(normal, light.Direction)) * glm::dvec3(amount) +
+          look.Surface.Specular * amount.w *
+            std::pow(std::max(0.0, glm::dot(mirrored, -direction)), look.Surface.SpecularPower));
+    }
+    return density * glm::dvec4(lit, amount.w);
   }
 
   static double Interpolate(const std::vector<double>& values, const glm::dvec3& place)
@@ -243,6 +286,69 @@ TEST_F(TestMediumIntegral, OfTwoMediaInOneAnother)
   this->Add(GetWaves, Fog);
   this->Add([](const glm::dvec3& p) { return 2.0 - 3.0 * glm::length(p); }, Rainbow);
   EXPECT_LT(this->Compare(GetPerspective()), 1.0);
+}
+
+rt::MediumLook GetShaded()
+{
+  rt::MediumLook look;
+  look.Shade = true;
+  look.Surface.Ambient = 0.2f;
+  look.Surface.Diffuse = 0.7f;
+  look.Surface.Specular = 0.3f;
+  look.Surface.SpecularPower = 12.0f;
+  return look;
+}
+
+TEST_F(TestMediumIntegral, OfShadedMedia)
+{
+  rt::Light light;
+  light.Direction = glm::normalize(glm::dvec3(-1.0, -2.0, -1.5));
+  light.Color = { 0.9f, 0.8f, 0.7f };
+  this->World.Lights.push_back(light);
+  // Highlights are taken where the middle of a cell's piece is.
+  this->Add(GetWaves, Fog, GetShaded());
+  EXPECT_LT(this->Compare(GetPerspective()), 3.0);
+  this->Add([](const glm::dvec3& p) { return 2.0 - 3.0 * glm::length(p); }, Rainbow);
+  EXPECT_LT(this->Compare(GetPerspective()), 3.0);
+}
+
+TEST_F(TestMediumIntegral, OfExtinctionByGradients)
+{
+  rt::MediumLook look;
+  rt::GradientOpacity opacity;
+  opacity.Last = 0.6;
+  for (int factor = 0; factor < 1024; ++factor)
+  {
+    opacity.Factors.push_back(factor < 200 ? 0.0 : (factor - 200) / 824.0);
+  }
+  look.Gradients = std::make_shared<const rt::GradientOpacity>(std::move(opacity));
+  this->Add(GetWaves, Fog, look);
+  EXPECT_LT(this->Compare(GetPerspective()), 2.0);
+}
+
+TEST_F(TestMediumIntegral, OfLightThatIsScattered)
+{
+  // A cube that is the same everywhere, and light that comes from -x: as deep as a place lies, as dark is it.
+  constexpr double extinction = 0.8;
+  rt::MediumLook look;
+  look.Scattering = 1.0;
+  this->Add([](const glm::dvec3&) { return 0.5; },
+    { { 0.0, { 0.9, 0.6, 0.3, extinction } }, { 1.0, { 0.9, 0.6, 0.3, extinction } } }, look);
+  rt::Light light;
+  light.Direction = { 1.0, 0.0, 0.0 };
+  this->World.Lights.push_back(light);
+  this->World.Transport.Shadows = true;
+  const auto expect = [&](const rt::Ray& ray)
+  {
+    if (std::abs(ray.Origin.x) >= 1.0 || std::abs(ray.Origin.y) >= 1.0)
+    {
+      return glm::dvec4(0.0);
+    }
+    const double covered = 1.0 - std::exp(-2.0 * extinction);
+    const double arriving = std::exp(-extinction * (ray.Origin.x + 1.0));
+    return glm::dvec4(covered * arriving * glm::dvec3(0.9, 0.6, 0.3), covered);
+  };
+  EXPECT_LT(this->Compare(GetAlongZ(), expect), 0.5);
 }
 
 } // namespace

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "DSMRayTracing/frame/ArrivingLight.h"
 
+#include "DSMRayTracing/light/Directions.h"
+
 #include <glm/geometric.hpp>
-#include <glm/gtc/constants.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -13,22 +14,6 @@ namespace rt
 
 namespace
 {
-
-/// Two directions at right angles to a unit one, and to each other (Duff et al., Building an
-/// Orthonormal Basis, Revisited, JCGT 2017).
-struct Frame3
-{
-  explicit Frame3(const glm::dvec3& unit)
-  {
-    const double sign = std::copysign(1.0, unit.z);
-    const double a = -1.0 / (sign + unit.z);
-    const double b = unit.x * unit.y * a;
-    this->Tangent = { 1.0 + sign * unit.x * unit.x * a, sign * b, -sign * unit.x };
-    this->Bitangent = { b, sign + unit.y * unit.y * a, -unit.y };
-  }
-  glm::dvec3 Tangent;
-  glm::dvec3 Bitangent;
-};
 
 /// Of the brightest light, what a faint shadow leaves.
 constexpr double LeftInFaintShadow = 0.4;
@@ -217,11 +202,8 @@ Ray ArrivingLight::GetLightRay(const Incidence& incidence, LightPath& path) cons
   ray.Direction = -incidence.Direction;
   if (this->World.Transport.LightRadius > 0.0)
   {
-    const Frame3 frame(ray.Direction);
-    const double radius = this->World.Transport.LightRadius * std::sqrt(path.Random.Next());
-    const double angle = glm::two_pi<double>() * path.Random.Next();
-    ray.Direction = glm::normalize(ray.Direction + radius * std::cos(angle) * frame.Tangent +
-      radius * std::sin(angle) * frame.Bitangent);
+    ray.Direction =
+      Directions(ray.Direction).GetInCone(this->World.Transport.LightRadius, path.Random);
   }
   ray.Min = path.Point.Clearance;
   ray.Max = incidence.Distance;
@@ -283,15 +265,9 @@ void ArrivingLight::LookAround(LightPath* const* paths, int count, ShadingPoint*
 
 Ray ArrivingLight::GetOcclusionRay(const glm::dvec3& normal, LightPath& path) const
 {
-  const Frame3 frame(normal);
-  // Uniform on the disc, then up to the sphere: the density is the cosine over pi.
-  const double square = path.Random.Next();
-  const double radius = std::sqrt(square);
-  const double angle = glm::two_pi<double>() * path.Random.Next();
   Ray ray;
   ray.Origin = path.Point.Position;
-  ray.Direction = radius * std::cos(angle) * frame.Tangent +
-    radius * std::sin(angle) * frame.Bitangent + std::sqrt(1.0 - square) * normal;
+  ray.Direction = Directions(normal).GetByCosine(path.Random);
   ray.Min = path.Point.Clearance;
   ray.Max = this->World.Transport.AmbientOcclusionDistance;
   ++path.LightRays;

@@ -83,6 +83,7 @@ PixelSampler::PixelSampler(const SceneTracers& tracers, const Scene& scene, cons
   , Surfaces(GetAll(tracers.Objects))
   , Media(tracers)
   , Lighting(tracers, scene)
+  , LitMedia(tracers, scene)
   , World(scene)
   , Rays(rays)
   , SharesAmbient(isPreview && scene.Transport.AmbientOcclusionSamples > 0)
@@ -208,7 +209,8 @@ void PixelSampler::AddMedia(
   SceneBeam* beam, const Ray* rays, RayMask wanted, LightPath* const* paths) const
 {
   const auto light = std::make_unique<MediumLight>();
-  this->Media.March(rays, wanted, beam, *light);
+  this->Media.March(rays, wanted, beam, *light,
+    [&](MediumLight& gathered) { this->LitMedia.Shine(rays, wanted, paths, gathered); });
   ForEachRay(wanted,
     [&](int index)
     {

@@ -5,6 +5,7 @@
 #include "DSMRayTracing/base/FixedList.h"
 #include "DSMRayTracing/frame/ArrivingLight.h"
 #include "DSMRayTracing/frame/LightPath.h"
+#include "DSMRayTracing/frame/MediumLighting.h"
 #include "DSMRayTracing/frame/PixelRays.h"
 #include "DSMRayTracing/frame/PixelSample.h"
 #include "DSMRayTracing/scene/MediaMarcher.h"
@@ -80,6 +81,7 @@ private:
   SurfaceFinder Surfaces;
   MediaMarcher Media;
   ArrivingLight Lighting;
+  MediumLighting LitMedia;
   const Scene& World;
   const PixelRays& Rays;
   bool SharesAmbient;

@@ -50,11 +50,14 @@ TransferFunction::TransferFunction(
   std::vector<Behavior> groups(Groups);
   for (int bin = 0; bin < AllBins; ++bin)
   {
-    const glm::dvec4 slope = 0.5 * (emit(bin - 1) + emit(bin));
+    const glm::dvec4 begin = emit(bin - 1);
+    const glm::dvec4 growth = emit(bin) - begin;
+    const glm::dvec4 slope = begin + 0.5 * growth;
     Bin& own = this->Table[static_cast<std::size_t>(bin)];
     Behavior& group = groups[static_cast<std::size_t>(bin / BinsOfGroup)];
     own.Integral = Lanes(integral.x, integral.y, integral.z, integral.w);
-    own.Slope = Lanes(slope.x, slope.y, slope.z, slope.w);
+    own.Begin = Lanes(begin.x, begin.y, begin.z, begin.w);
+    own.Growth = Lanes(growth.x, growth.y, growth.z, growth.w);
     // The first bin of a group changes from the last one of the group before.
     for (int channel = 0; channel < 4; ++channel)
     {

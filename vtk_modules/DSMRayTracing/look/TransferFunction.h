@@ -36,8 +36,10 @@ public:
   {
     const int number = GetNumber(place);
     const Bin& bin = this->Table[static_cast<std::size_t>(number)];
-    slope = bin.Slope;
-    return bin.Integral + bin.Slope * Lanes(place - (number - 1));
+    const double way = place - (number - 1);
+    const Lanes change = bin.Growth * Lanes(way);
+    slope = bin.Begin + change;
+    return bin.Integral + (bin.Begin + Lanes(0.5) * change) * Lanes(way);
   }
 
   /// How the function behaves between two places in bins from First, the second not less than the first.
@@ -63,11 +65,12 @@ public:
   std::uint64_t GetDigest() const { return this->Digest; }
 
 private:
-  /// Integral: up to the bin's begin; Slope: how it grows in a bin.
+  /// Linear in each.
   struct Bin
   {
-    Lanes Integral;
-    Lanes Slope;
+    Lanes Integral; ///< up to the bin's begin
+    Lanes Begin;    ///< emission and extinction there
+    Lanes Growth;   ///< up to the bin's end
   };
 
   /// Bin 0 is what is below the function's range, the last one what is above. A place that is not a number is in bin 0.

@@ -2,13 +2,17 @@
 #ifndef rt_MediumOf_h
 #define rt_MediumOf_h
 
+#include "DSMRayTracing/look/MediumLook.h"
 #include "DSMRayTracing/look/TransferFunction.h"
 #include "DSMRayTracing/object/MediumTracer.h"
 #include "DSMRayTracing/object/ObjectDigest.h"
 #include "DSMRayTracing/ray/ClipRegion.h"
 
+#include <glm/vec3.hpp>
+
 #include <cstddef>
 #include <memory>
+#include <vector>
 
 namespace rt
 {
@@ -26,6 +30,7 @@ struct MediumOf
 
   FieldType Field;
   std::shared_ptr<const TransferFunction> Function; ///< not null
+  MediumLook Look;
   ClipRegion Clipping;
 
   /// All that a picture of it depends on.
@@ -33,6 +38,7 @@ struct MediumOf
   {
     this->Field.AddTo(digest);
     digest.Add(this->Function->GetDigest());
+    digest.Add(this->Look);
     digest.Add(this->Clipping);
   }
 };
@@ -72,6 +78,55 @@ public:
         return this->Media.March(
           this->Medium.Field, *this->Medium.Function, beam, parts, some, light);
       });
+  }
+
+  bool IsLit() const override { return this->Medium.Look.IsLit(); }
+  bool HasLateExtinction() const override { return this->Medium.Look.Gradients != nullptr; }
+
+  /// Gradients hardly change within.
+  double GetJoinedLength() const override { return this->Medium.Field.GetFinestLength(); }
+
+  void Describe(const Ray* rays, RayMask wanted, MediumLight& light) const override
+  {
+    std::vector<glm::dvec3> points;
+    std::vector<MediumPiece*> pieces;
+    ForEachRay(wanted,
+      [&](int ray)
+      {
+        for (std::size_t number = light.FirstPiece[ray]; number < light.Pieces[ray].size();
+             ++number)
+        {
+          MediumPiece& piece = light.Pieces[ray][number];
+          if (piece.Share > MediumLight::LeastShare)
+          {
+            pieces.push_back(&piece);
+            points.push_back(rays[ray].Origin + piece.GetMiddle() * rays[ray].Direction);
+          }
+        }
+      });
+    const MediumLook& look = this->Medium.Look;
+    std::vector<glm::dvec3> gradients(points.size(), glm::dvec3(0.0));
+    if (look.Shade || look.Gradients)
+    {
+      this->Media.FindGradients(this->Medium.Field, points, gradients);
+    }
+    for (std::size_t number = 0; number < pieces.size(); ++number)
+    {
+      MediumPiece& piece = *pieces[number];
+      const glm::dvec3& gradient = gradients[number];
+      if (look.Gradients)
+      {
+        const double growth = this->Medium.Field.GetGrowth(gradient);
+        piece.Amount = piece.Amount * Lanes(look.Gradients->GetFactor(growth));
+      }
+      if (look.IsLit())
+      {
+        piece.Look = &look;
+        piece.Normal = gradient == glm::dvec3(0.0)
+          ? glm::dvec3(0.0)
+          : this->Medium.Field.GetNormal(gradient, rays[0].Direction);
+      }
+    }
   }
 
 private:

@@ -23,6 +23,17 @@ public:
   /// medium, with all of the rays within; null: rays go where they like.
   virtual RayMask March(
     const Ray* rays, RayMask wanted, ObjectBeam* beam, MediumLight& light) const = 0;
+
+  ///@{
+  /// What is only known of pieces once they are kept, and Describe has been called: how light makes them shine, or how
+  /// dense they are.
+  virtual bool IsLit() const { return false; }
+  virtual bool HasLateExtinction() const { return false; }
+  ///@}
+  /// World length up to which pieces may be joined, before they are described.
+  virtual double GetJoinedLength() const { return 0.0; }
+  /// Adds that to the pieces of the rays that are `wanted`, from MediumLight::FirstPiece on.
+  virtual void Describe(const Ray* /*rays*/, RayMask /*wanted*/, MediumLight&) const {}
 };
 
 } // namespace rt

@@ -17,6 +17,20 @@ void ObjectDigest::Add(const Material& material)
   this->Add(material.Lighting);
 }
 
+void ObjectDigest::Add(const MediumLook& look)
+{
+  this->Add(look.Shade);
+  this->Add(look.Surface);
+  this->Add(look.Scattering);
+  this->Add(look.Anisotropy);
+  this->Add(look.Gradients != nullptr);
+  if (look.Gradients)
+  {
+    this->Add(look.Gradients->Last);
+    this->Add(look.Gradients->Factors);
+  }
+}
+
 void ObjectDigest::Add(const ColorMap& map)
 {
   this->Add(map.First);

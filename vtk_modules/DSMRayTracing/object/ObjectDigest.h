@@ -6,6 +6,7 @@
 #include "DSMRayTracing/look/ColorMap.h"
 #include "DSMRayTracing/look/EdgeLines.h"
 #include "DSMRayTracing/look/Material.h"
+#include "DSMRayTracing/look/MediumLook.h"
 #include "DSMRayTracing/look/Texture.h"
 #include "DSMRayTracing/ray/ClipRegion.h"
 
@@ -57,6 +58,7 @@ public:
   }
 
   void Add(const Material& material);
+  void Add(const MediumLook& look);
   void Add(const ColorMap& map);
   void Add(const ClipRegion& region);
   void Add(const ClipRegion::HalfSpace& half);

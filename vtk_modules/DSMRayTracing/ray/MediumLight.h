@@ -11,11 +11,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <limits>
 #include <vector>
 
 namespace rt
 {
+
+struct MediumLook;
 
 /// A part of a ray within a medium. Amounts of the same part in several media add up.
 struct MediumPiece
@@ -24,11 +27,19 @@ struct MediumPiece
   double End;
   /// Red, green and blue that the medium emits there, and its optical depth.
   Lanes Amount;
+  /// What it adds to the opacity of the ray, were its medium the only one.
+  double Share = 0.0;
+  /// Which light makes it shine; null: it shines by itself.
+  const MediumLook* Look = nullptr;
+  /// Unit, in world space, along the gradient of the values; 0: there is none.
+  glm::dvec3 Normal{ 0.0 };
+
+  double GetMiddle() const { return 0.5 * (this->Begin + this->End); }
 };
 
 /// What the rays of a batch get from media between two surfaces, from the front: the emission-absorption integral of
-/// Max, "Optical models for direct volume rendering" (1995). One medium adds to the sums as it is met; of several,
-/// pieces are kept first, and merged.
+/// Max, "Optical models for direct volume rendering" (1995). One medium that shines by itself adds to the sums as it is
+/// met; of others, pieces are kept first, lit, and merged.
 class MediumLight
 {
 public:
@@ -36,6 +47,13 @@ public:
   static constexpr double Dark = 0.5 / 255.0;
   /// Optical depth of pieces out of which nearly all gets that they emit.
   static constexpr double Thin = 1e-6;
+  /// Optical depth of pieces that are joined, at most.
+  static constexpr double JoinedDepth = 1.0 / 32.0;
+  /// Pieces that add so little to what is seen are joined when they are up to so many times as long.
+  static constexpr double FaintShare = 1.0 / 512.0;
+  static constexpr double FaintLength = 4.0;
+  /// Pieces that add less need no description.
+  static constexpr double LeastShare = 1.0 / 65536.0;
 
   /// Of those of the rays that are `wanted`.
   void Begin(const Ray* rays, RayMask wanted)
@@ -69,7 +87,7 @@ public:
       this->First[ray] = std::min(this->First[ray], piece.Begin);
       if (this->KeepsPieces)
       {
-        this->Pieces[ray].push_back(piece);
+        this->Keep(ray, piece.Begin, piece.End, piece.Amount, passed);
       }
       this->Blend(
         ray, piece.Amount, passed, depth < Thin ? 1.0 - 0.5 * depth : (1.0 - passed) / depth);
@@ -78,9 +96,21 @@ public:
 
   ///@{
   /// The parts of Add, for those who know the transmittance of a piece, and the part of what it emits that gets out.
-  void Keep(int ray, double begin, double end, const Lanes& amount)
+  void Keep(int ray, double begin, double end, const Lanes& amount, double passed)
   {
-    this->Pieces[ray].push_back({ begin, end, amount });
+    std::vector<MediumPiece>& pieces = this->Pieces[ray];
+    const double share = this->Transmittance[ray] * (1.0 - passed);
+    if (pieces.size() > this->FirstPiece[ray] &&
+      this->IsJoined(ray, pieces.back(), end, amount, share) &&
+      begin <= pieces.back().End + 1e-6 * (end - begin))
+    {
+      MediumPiece& last = pieces.back();
+      last.End = end;
+      last.Amount = last.Amount + amount;
+      last.Share += share;
+      return;
+    }
+    pieces.push_back({ begin, end, amount, share });
   }
   void Blend(int ray, const Lanes& amount, double passed, double seen)
   {
@@ -90,7 +120,7 @@ public:
   }
   ///@}
 
-  bool IsDark(int ray) const { return this->Transmittance[ray] < Dark; }
+  bool IsDark(int ray) const { return this->Transmittance[ray] < this->DarkBelow; }
   /// What arrives at the ray's begin.
   glm::dvec3 GetColor(int ray) const
   {
@@ -105,8 +135,21 @@ public:
   /// Whether pieces are kept, too.
   bool KeepsPieces = false;
   std::vector<MediumPiece> Pieces[MaxRays];
+  std::size_t FirstPiece[MaxRays]; ///< of the medium that is met
+  /// World length up to which thin pieces that follow one another are joined into one.
+  double JoinedLength = 0.0;
+  /// Transmittance of rays that need not go on in the medium that is met.
+  double DarkBelow = Dark;
 
 private:
+  bool IsJoined(
+    int ray, const MediumPiece& last, double end, const Lanes& amount, double share) const
+  {
+    const double most = this->JoinedLength * (last.Share + share <= FaintShare ? FaintLength : 1.0);
+    return (end - last.Begin) * this->Length[ray] <= most &&
+      last.Amount[3] + amount[3] <= JoinedDepth;
+  }
+
   Lanes Sum[MaxRays]; ///< red, green and blue
 };
 

@@ -2,6 +2,7 @@
 #include "DSMRayTracing/scene/MediaMarcher.h"
 
 #include <algorithm>
+#include <limits>
 #include <memory>
 #include <utility>
 #include <vector>
@@ -14,7 +15,7 @@ namespace
 
 /// Adds up what pieces of several media hold, which are in order in each medium but not between them: cuts them where
 /// any begins or ends.
-void Merge(std::vector<MediumPiece>& pieces, int ray, MediumLight& light)
+void MergePieces(std::vector<MediumPiece>& pieces, int ray, MediumLight& light)
 {
   std::stable_sort(pieces.begin(), pieces.end(),
     [](const MediumPiece& one, const MediumPiece& other) { return one.Begin < other.Begin; });
@@ -50,22 +51,71 @@ void Merge(std::vector<MediumPiece>& pieces, int ray, MediumLight& light)
 
 } // namespace
 
-void MediaMarcher::March(const Ray* rays, RayMask wanted, SceneBeam* beam, MediumLight& light) const
+MediaMarcher::MediaMarcher(const SceneTracers& tracers)
+  : Media(tracers.Media)
+  , FirstBeam(tracers.Objects.size())
+{
+  const auto any = [&](const auto& test)
+  { return std::any_of(this->Media.begin(), this->Media.end(), test); };
+  this->IsLit = any([](const auto& medium) { return medium->IsLit(); });
+  this->KeepsPieces = this->Media.size() > 1 ||
+    any([](const auto& medium) { return medium->IsLit() || medium->HasLateExtinction(); });
+}
+
+void MediaMarcher::March(
+  const MediumTracer& medium, const Ray* rays, RayMask wanted, ObjectBeam* beam, MediumLight& light)
+{
+  const bool isDescribed = light.KeepsPieces && (medium.IsLit() || medium.HasLateExtinction());
+  // Each ends where it is dark by itself: so are the others behind that.
+  light.ClearSums(wanted);
+  light.DarkBelow = medium.HasLateExtinction() ? 0.0 : MediumLight::Dark;
+  light.JoinedLength = isDescribed ? medium.GetJoinedLength() : 0.0;
+  ForEachRay(wanted, [&](int ray) { light.FirstPiece[ray] = light.Pieces[ray].size(); });
+  medium.March(rays, wanted, beam, light);
+  if (isDescribed)
+  {
+    medium.Describe(rays, wanted, light);
+  }
+  light.DarkBelow = MediumLight::Dark;
+}
+
+void MediaMarcher::Gather(
+  const Ray* rays, RayMask wanted, SceneBeam* beam, MediumLight& light) const
 {
   light.Begin(rays, wanted);
-  light.KeepsPieces = this->Media.size() > 1;
+  light.KeepsPieces = this->KeepsPieces;
   for (std::size_t medium = 0; medium < this->Media.size(); ++medium)
   {
     ObjectBeam* const own = beam ? beam->Objects[this->FirstBeam + medium].get() : nullptr;
-    // Each ends where it is dark by itself: so are the others behind that.
-    light.ClearSums(wanted);
-    this->Media[medium]->March(rays, wanted, own, light);
+    March(*this->Media[medium], rays, wanted, own, light);
   }
-  if (std::exchange(light.KeepsPieces, false))
+}
+
+void MediaMarcher::Merge(RayMask wanted, MediumLight& light) const
+{
+  if (!std::exchange(light.KeepsPieces, false))
   {
-    light.ClearSums(wanted);
-    ForEachRay(wanted, [&](int ray) { Merge(light.Pieces[ray], ray, light); });
+    return;
   }
+  light.ClearSums(wanted);
+  ForEachRay(wanted,
+    [&](int ray)
+    {
+      light.First[ray] = std::numeric_limits<double>::infinity();
+      if (this->Media.size() > 1)
+      {
+        MergePieces(light.Pieces[ray], ray, light);
+        return;
+      }
+      for (const MediumPiece& piece : light.Pieces[ray])
+      {
+        if (light.IsDark(ray))
+        {
+          break;
+        }
+        light.Add(ray, piece);
+      }
+    });
 }
 
 void MediaMarcher::Attenuate(const Ray* rays, RayMask wanted, glm::dvec3* transmittances) const
@@ -74,7 +124,20 @@ void MediaMarcher::Attenuate(const Ray* rays, RayMask wanted, glm::dvec3* transm
   for (const auto& medium : this->Media)
   {
     light->Begin(rays, wanted);
-    medium->March(rays, wanted, nullptr, *light);
+    light->KeepsPieces = medium->HasLateExtinction();
+    March(*medium, rays, wanted, nullptr, *light);
+    if (std::exchange(light->KeepsPieces, false))
+    {
+      light->ClearSums(wanted);
+      ForEachRay(wanted,
+        [&](int ray)
+        {
+          for (const MediumPiece& piece : light->Pieces[ray])
+          {
+            light->Add(ray, piece);
+          }
+        });
+    }
     ForEachRay(wanted, [&](int ray) { transmittances[ray] *= light->Transmittance[ray]; });
   }
 }

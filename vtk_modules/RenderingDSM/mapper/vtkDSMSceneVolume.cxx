@@ -510,6 +510,7 @@ void vtkDSMSceneVolume::AddMedia(const vtkDSMVolumeLook& look, rt::Scene& scene)
   {
     return;
   }
+  const rt::MediumLook mediumLook = look.GetMediumLook(range);
   this->Prop->ComputeMatrix();
   const glm::dmat4 dataToWorld = vtkDSMTranslation::ToMatrix(this->Prop->GetMatrix());
   for (std::size_t lattice = 0; lattice < this->Data->GetNumberOfLattices(); ++lattice)
@@ -519,6 +520,7 @@ void vtkDSMSceneVolume::AddMedia(const vtkDSMVolumeLook& look, rt::Scene& scene)
       rt::LatticeMedium medium;
       medium.Field = this->GetField(lattice, dataToWorld);
       medium.Function = function;
+      medium.Look = mediumLook;
       medium.Clipping = look.GetClipRegion(dataToWorld);
       scene.Media.push_back(std::move(medium));
     }

@@ -63,11 +63,16 @@ void vtkDSMVolumeLook::FindMissingFeatures(std::vector<std::string>& warnings) c
         remedy);
     }
   };
-  warn(property->GetShade(0) != 0, "shading", "Call ShadeOff(), or use VTK's own mapper.");
-  warn(property->HasGradientOpacity(0), "gradient opacity",
-    "Call DisableGradientOpacityOn(), or use VTK's own mapper.");
   warn(property->GetTransferFunctionMode() == vtkVolumeProperty::TF_2D,
     "a two-dimensional transfer function", "Call SetTransferFunctionModeTo1D().");
+}
+
+rt::MediumLook vtkDSMVolumeLook::GetMediumLook(const bricks::ValueRange& range) const
+{
+  rt::MediumLook look = vtkDSMTranslation::ToMediumLook(
+    vtkVolume::SafeDownCast(this->Prop)->GetProperty(), range.Last - range.First);
+  look.Scattering = this->Mapper->GetScattering();
+  return look;
 }
 
 int vtkDSMVolumeLook::GetColorComponent() const

@@ -30,6 +30,8 @@ public:
   /// Of the medium, for values that are all in the range. Null: nothing is to be seen. Adds what is wrong to the messages.
   std::shared_ptr<const rt::TransferFunction> CreateTransferFunction(
     const bricks::ValueRange& range, std::vector<std::string>& messages) const;
+  /// The same; how light makes it shine, and what gradients do.
+  rt::MediumLook GetMediumLook(const bricks::ValueRange& range) const;
   /// The arrays that are to be shown, as the mapper names them: that of the isosurfaces, and that of the colours, if any.
   std::vector<vtkDSMVolumeData::Choice> GetShown() const;
   /// Whether the cells' scalars are asked for, of which there are no isosurfaces.

@@ -326,6 +326,7 @@ void vtkDSMVolumeMapper::CopyOwn(vtkDSMVolumeMapper* other)
   this->IsoValues = other->IsoValues;
   this->AutomaticIsoValue = other->AutomaticIsoValue;
   this->SurfacesOnly = other->SurfacesOnly;
+  this->Scattering = other->Scattering;
   this->ColorArray = other->ColorArray;
   this->ColorArrayOnCells = other->ColorArrayOnCells;
   this->MapScalars = other->MapScalars;
@@ -372,6 +373,7 @@ void vtkDSMVolumeMapper::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "AutomaticIsoValue: " << this->AutomaticIsoValue << "\n";
   os << indent << "SuggestedIsoValue: " << this->SuggestedIsoValue << "\n";
   os << indent << "SurfacesOnly: " << this->SurfacesOnly << "\n";
+  os << indent << "Scattering: " << this->Scattering << "\n";
   os << indent << "ColorArray: " << this->ColorArray << "\n";
   os << indent << "ColorArrayOnCells: " << this->ColorArrayOnCells << "\n";
   os << indent << "MapScalars: " << this->MapScalars << "\n";

@@ -8,8 +8,9 @@
  *
  * It stands in for vtkGPUVolumeRayCastMapper: the blend mode Composite (the default) shows the volume as a medium, by the
  * color and opacity functions and the unit distance of the vtkVolume's vtkVolumeProperty. ScalarMode and
- * SelectScalarArray() choose the point array. Interpolation is trilinear always. Shading, gradient opacity and the other
- * blend modes are not there yet, and the mapper says so.
+ * SelectScalarArray() choose the point array. Interpolation is trilinear always. Shading is VTK's,
+ * also gradient opacity; with shadows and ambient occlusion of the light options, volumes shade themselves. The other blend
+ * modes are not there yet, and the mapper says so.
  *
  * With an isovalue, with AutomaticIsoValue or with SurfacesOnly, isosurfaces are shown instead. Isovalues and look are
  * the mapper's own: IsoArray, IsoValues, ColorArray, and a vtkProperty, the
@@ -122,6 +123,16 @@ public:
   vtkSetMacro(SurfacesOnly, bool);
   vtkGetMacro(SurfacesOnly, bool);
   vtkBooleanMacro(SurfacesOnly, bool);
+  ///@}
+
+  ///@{
+  /**
+   * The part of a volume's look that is light scattered once towards the viewer, from 0 to 1; the rest is as the property
+   * says: shaded, or the color itself. The property's ScatteringAnisotropy tells where light is scattered to. Shadows
+   * are those of the light options. 0 by default.
+   */
+  vtkSetClampMacro(Scattering, double, 0.0, 1.0);
+  vtkGetMacro(Scattering, double);
   ///@}
 
   ///@{
@@ -321,6 +332,7 @@ private:
   bool AutomaticIsoValue = false;
   double SuggestedIsoValue = vtkMath::Nan();
   bool SurfacesOnly = false;
+  double Scattering = 0.0;
   std::string ColorArray;
   bool ColorArrayOnCells = false;
   bool MapScalars = true;

@@ -216,6 +216,29 @@ std::shared_ptr<const rt::TransferFunction> vtkDSMTranslation::ToTransferFunctio
   return std::make_shared<const rt::TransferFunction>(first, last, samples);
 }
 
+rt::MediumLook vtkDSMTranslation::ToMediumLook(vtkVolumeProperty* property, double range)
+{
+  rt::MediumLook look;
+  look.Shade = property->GetShade(0) != 0;
+  look.Surface.Ambient = static_cast<float>(property->GetAmbient(0));
+  look.Surface.Diffuse = static_cast<float>(property->GetDiffuse(0));
+  look.Surface.Specular = static_cast<float>(property->GetSpecular(0));
+  look.Surface.SpecularPower = static_cast<float>(property->GetSpecularPower(0));
+  constexpr double most = 0.99; // at 1, all light goes straight on
+  look.Anisotropy = std::clamp<double>(property->GetScatteringAnisotropy(), -most, most);
+  if (property->HasGradientOpacity(0) && range > 0.0)
+  {
+    // As VTK's mapper, which takes what values do in a cell to be a quarter of their range at most.
+    constexpr int count = 1024;
+    rt::GradientOpacity opacity;
+    opacity.Last = 0.25 * range;
+    opacity.Factors.resize(count);
+    property->GetGradientOpacity(0)->GetTable(0.0, opacity.Last, count, opacity.Factors.data());
+    look.Gradients = std::make_shared<const rt::GradientOpacity>(std::move(opacity));
+  }
+  return look;
+}
+
 std::shared_ptr<const rt::Texture> vtkDSMTranslation::ToTexture(
   vtkTexture* texture, vtkMatrix4x4* transform)
 {

@@ -44,6 +44,9 @@ public:
   static std::shared_ptr<const rt::TransferFunction> ToTransferFunction(
     vtkVolumeProperty* property, double first, double last);
 
+  /// The shading of a property's first component, and its gradient opacity, for a medium whose values differ so much.
+  static rt::MediumLook ToMediumLook(vtkVolumeProperty* property, double range);
+
   /// What a mapper's clipping planes leave, in world space.
   static rt::ClipRegion ToClipRegion(vtkAbstractMapper* mapper);
 

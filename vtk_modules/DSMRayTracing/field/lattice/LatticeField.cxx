@@ -11,6 +11,14 @@
 namespace rt
 {
 
+double LatticeField::GetGrowth(const glm::dvec3& gradient) const
+{
+  const glm::dmat3 edges(this->IndexToWorld);
+  const glm::dvec3 lengths(glm::length(edges[0]), glm::length(edges[1]), glm::length(edges[2]));
+  const double mean = (lengths.x + lengths.y + lengths.z) / 3.0;
+  return glm::length(gradient / lengths) * mean;
+}
+
 double LatticeField::GetFinestLength() const
 {
   const glm::dmat3 edges(this->IndexToWorld);

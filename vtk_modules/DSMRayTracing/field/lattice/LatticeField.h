@@ -55,6 +55,8 @@ struct LatticeField
   {
     return this->GetIndexSpace().GetNormal(&gradient.x, rayDirection);
   }
+  /// How much values grow in a cell of mean size where they grow so fast on each axis of the index space.
+  double GetGrowth(const glm::dvec3& gradient) const;
   /// World length of a cell's shortest edge.
   double GetFinestLength() const;
   /// All that a picture depends on.

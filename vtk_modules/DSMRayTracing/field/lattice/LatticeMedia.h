@@ -5,6 +5,8 @@
 #include "DSMBricks/layout/VoxelBrick.h"
 #include "DSMRayTracing/field/lattice/BeamBricks.h"
 #include "DSMRayTracing/field/lattice/BeamDescent.h"
+#include "DSMRayTracing/field/lattice/HitGradient.h"
+#include "DSMRayTracing/field/lattice/IsovalueLevel.h"
 #include "DSMRayTracing/field/lattice/LatticeField.h"
 #include "DSMRayTracing/field/lattice/PacketKernel.h"
 #include "DSMRayTracing/field/lattice/RayBeam.h"
@@ -20,6 +22,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <memory>
+#include <tuple>
 #include <vector>
 
 namespace rt
@@ -93,7 +96,84 @@ public:
     return dark;
   }
 
+  /// How fast values grow on each axis of the index space at points in world space: CellNeighbourhood::GetGradient.
+  void FindGradients(const LatticeField& field, const std::vector<glm::dvec3>& points,
+    std::vector<glm::dvec3>& gradients) const
+  {
+    std::vector<Asked> all(points.size());
+    for (std::size_t number = 0; number < points.size(); ++number)
+    {
+      all[number].Number = number;
+      FindCell(field, points[number], all[number]);
+    }
+    std::sort(all.begin(), all.end(),
+      [](const Asked& one, const Asked& other)
+      { return std::tie(one.Brick, one.Number) < std::tie(other.Brick, other.Number); });
+    bricks::Dispatch(field.Voxels->Lattice.GetScalarType(),
+      [&](auto sample)
+      {
+        using T = decltype(sample);
+        for (auto begin = all.begin(); begin != all.end();)
+        {
+          const auto end = std::find_if(
+            begin, all.end(), [&](const Asked& asked) { return asked.Brick != begin->Brick; });
+          const auto beyond = this->FindGradientsWithin<T>(field, begin, end, gradients);
+          for (const Asked* asked : beyond)
+          {
+            HitGradient::Find<T>(this->Blocks, this->Self, *field.Voxels, asked->Brick, asked->Cell,
+              0.0, &gradients[asked->Number].x);
+          }
+          begin = end;
+        }
+      });
+  }
+
 private:
+  /// A gradient to be found.
+  struct Asked
+  {
+    dsm::BlockId Brick;
+    CellHit Cell;
+    std::size_t Number;
+  };
+
+  static void FindCell(const LatticeField& field, const glm::dvec3& point, Asked& asked)
+  {
+    const bricks::BrickLattice& lattice = field.Voxels->Lattice;
+    const IndexSpace space = field.GetIndexSpace();
+    const glm::dvec3 place = space.GetWorldToIndex() * (point - space.GetOrigin());
+    const bricks::Index3 cell = glm::clamp(
+      bricks::Index3(glm::floor(place)), bricks::Index3(0), lattice.GetCells() - bricks::Index3(1));
+    const bricks::Index3 home = cell / bricks::Index3(lattice.GetEdge());
+    asked.Brick = lattice.GetId(home);
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      asked.Cell.Cell[axis] = static_cast<int>(cell[axis] - home[axis] * lattice.GetEdge());
+    }
+    const glm::dvec3 inside = glm::clamp(place - glm::dvec3(cell), 0.0, 1.0);
+    asked.Cell.Local = Lanes(inside.x, inside.y, inside.z, 0.0);
+  }
+
+  /// Of places in the same brick. Returns those whose samples are not all there.
+  template <class T, class Iterator>
+  std::vector<const Asked*> FindGradientsWithin(const LatticeField& field, Iterator begin,
+    Iterator end, std::vector<glm::dvec3>& gradients) const
+  {
+    std::vector<const Asked*> beyond;
+    const IsovalueLevel<T> level(0.0);
+    const typename Store::Pin pin =
+      this->Blocks.Acquire(this->Self, *field.Voxels->Segment, begin->Brick);
+    const bricks::VoxelBrick<T> voxels(pin.GetData());
+    for (auto asked = begin; asked != end; ++asked)
+    {
+      if (!HitGradient::FindWithin(voxels, asked->Cell, level, &gradients[asked->Number].x))
+      {
+        beyond.push_back(&*asked);
+      }
+    }
+    return beyond;
+  }
+
   /// Rays of a packet move along all axes. One that does not, moves so little that it stays at its place for all that
   /// can be seen. Returns the sides to which the ray moves, a bit for each axis.
   static int MoveAlongAll(const LatticeField& field, const Ray& ray, Ray& moved)

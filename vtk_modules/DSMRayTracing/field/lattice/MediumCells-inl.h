@@ -256,7 +256,7 @@ private:
       { return enter[lane] + (exit[lane] - enter[lane]) * (end * pieces.Part[lane]); };
       if (this->Light.KeepsPieces)
       {
-        this->Light.Keep(ray, getT(number - 1), getT(number), amounts[lane]);
+        this->Light.Keep(ray, getT(number - 1), getT(number), amounts[lane], passes[lane]);
       }
       // The first one that a ray meets.
       if (!(this->Light.First[ray] < enter[lane]))

@@ -1,0 +1,257 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "DSMRayTracing/frame/MediumLighting.h"
+
+#include "DSMRayTracing/light/Directions.h"
+#include "DSMRayTracing/light/Shading.h"
+#include "DSMRayTracing/look/MediumLook.h"
+
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+
+namespace rt
+{
+
+namespace
+{
+
+/// Henyey and Greenstein, "Diffuse radiation in the galaxy" (1941), beside light that is scattered evenly. `cosine`: of
+/// the angle by which light turns.
+double GetPhase(double anisotropy, double cosine)
+{
+  const double square = anisotropy * anisotropy;
+  const double base = 1.0 + square - 2.0 * anisotropy * cosine;
+  return (1.0 - square) / (base * std::sqrt(base));
+}
+
+glm::dvec3 GetPosition(const Ray& ray, const MediumPiece& piece)
+{
+  return ray.Origin + piece.GetMiddle() * ray.Direction;
+}
+
+} // namespace
+
+MediumLighting::MediumLighting(const SceneTracers& tracers, const Scene& scene)
+  : Transmittances(tracers)
+  , World(scene)
+{
+}
+
+void MediumLighting::Shine(
+  const Ray* rays, RayMask wanted, LightPath* const* paths, MediumLight& light) const
+{
+  std::vector<Places> places(MaxRays);
+  const bool looks =
+    this->World.Transport.Shadows || this->World.Transport.AmbientOcclusionSamples > 0;
+  if (looks)
+  {
+    ForEachRay(wanted,
+      [&](int ray)
+      { places[static_cast<std::size_t>(ray)] = Choose(light.Pieces[ray], paths[ray]->Random); });
+    for (int number = 0; number < MostPlaces; ++number)
+    {
+      const RayMask some = FindRays(wanted,
+        [&](int ray)
+        { return number < static_cast<int>(places[static_cast<std::size_t>(ray)].All.size()); });
+      if (some != 0)
+      {
+        this->Look(number, rays, some, paths, places);
+      }
+    }
+  }
+  ForEachRay(wanted,
+    [&](int ray)
+    {
+      const Places& own = places[static_cast<std::size_t>(ray)];
+      double before = 0.0;
+      for (MediumPiece& piece : light.Pieces[ray])
+      {
+        if (!piece.Look)
+        {
+          continue;
+        }
+        const Place* arriving = nullptr;
+        if (!own.All.empty())
+        {
+          const double middle = (before + 0.5 * piece.Share) / own.Share;
+          const std::size_t count = own.All.size();
+          arriving = &own.All[std::min(
+            static_cast<std::size_t>(middle * static_cast<double>(count)), count - 1)];
+        }
+        before += piece.Share;
+        piece.Amount =
+          this->GetLit(piece, GetPosition(rays[ray], piece), paths[ray]->ToViewer, arriving);
+      }
+    });
+}
+
+/// Each stands for an equal part of what is seen, and lies in it by chance.
+MediumLighting::Places MediumLighting::Choose(
+  const std::vector<MediumPiece>& pieces, SampleSequence& random)
+{
+  Places places;
+  for (const MediumPiece& piece : pieces)
+  {
+    places.Share += piece.Look ? piece.Share : 0.0;
+  }
+  if (!(places.Share > 0.0))
+  {
+    return places;
+  }
+  const int count =
+    std::clamp(static_cast<int>(std::ceil(places.Share * MostPlaces)), 1, MostPlaces);
+  places.All.resize(static_cast<std::size_t>(count));
+  const double within = random.Next();
+  std::size_t next = 0;
+  double before = 0.0;
+  for (const MediumPiece& piece : pieces)
+  {
+    if (!piece.Look)
+    {
+      continue;
+    }
+    before += piece.Share;
+    for (; next < places.All.size() &&
+         (static_cast<double>(next) + within) * places.Share / count <= before;
+         ++next)
+    {
+      places.All[next].Piece = &piece;
+    }
+    // Whatever rounding does to the last ones.
+    for (std::size_t left = next; left < places.All.size(); ++left)
+    {
+      places.All[left].Piece = &piece;
+    }
+  }
+  return places;
+}
+
+void MediumLighting::Look(int number, const Ray* rays, RayMask wanted, LightPath* const* paths,
+  std::vector<Places>& places) const
+{
+  if (this->World.Transport.AmbientOcclusionSamples > 0)
+  {
+    this->LookAround(number, rays, wanted, paths, places);
+  }
+  if (this->World.Transport.Shadows)
+  {
+    this->LookToLamps(number, rays, wanted, paths, places);
+  }
+}
+
+void MediumLighting::LookAround(int number, const Ray* rays, RayMask wanted,
+  LightPath* const* paths, std::vector<Places>& places) const
+{
+  const LightTransport& transport = this->World.Transport;
+  // All places of a ray together look as often as a surface does.
+  const int samples = (transport.AmbientOcclusionSamples + MostPlaces - 1) / MostPlaces;
+  double visible[MaxRays] = {};
+  for (int sample = 0; sample < samples; ++sample)
+  {
+    Ray around[MaxRays];
+    Place* asking[MaxRays];
+    int count = 0;
+    ForEachRay(wanted,
+      [&](int index)
+      {
+        LightPath& path = *paths[index];
+        Place& place =
+          places[static_cast<std::size_t>(index)].All[static_cast<std::size_t>(number)];
+        const glm::dvec3& normal = place.Piece->Normal;
+        Ray& ray = around[count];
+        ray.Origin = GetPosition(rays[index], *place.Piece);
+        ray.Direction = normal == glm::dvec3(0.0)
+          ? Directions::GetAny(path.Random)
+          : Directions(glm::dot(normal, path.ToViewer) < 0.0 ? -normal : normal)
+              .GetByCosine(path.Random);
+        ray.Min = 0.0;
+        ray.Max = transport.AmbientOcclusionDistance;
+        ++path.LightRays;
+        asking[count++] = &place;
+      });
+    glm::dvec3 transmittances[MaxRays];
+    this->Transmittances.Find(around, count, transmittances);
+    for (int index = 0; index < count; ++index)
+    {
+      visible[index] +=
+        (transmittances[index].x + transmittances[index].y + transmittances[index].z) / 3.0;
+      asking[index]->Ambient = visible[index] / samples;
+    }
+  }
+}
+
+void MediumLighting::LookToLamps(int number, const Ray* rays, RayMask wanted,
+  LightPath* const* paths, std::vector<Places>& places) const
+{
+  for (const Light& lamp : this->World.Lights)
+  {
+    Ray towards[MaxRays];
+    Place* asking[MaxRays];
+    int count = 0;
+    ForEachRay(wanted,
+      [&](int index)
+      {
+        LightPath& path = *paths[index];
+        Place& place =
+          places[static_cast<std::size_t>(index)].All[static_cast<std::size_t>(number)];
+        Ray& ray = towards[count];
+        ray.Origin = GetPosition(rays[index], *place.Piece);
+        const Incidence incidence = GetIncidence(lamp, ray.Origin);
+        const double radius = this->World.Transport.LightRadius;
+        ray.Direction = radius > 0.0
+          ? Directions(-incidence.Direction).GetInCone(radius, path.Random)
+          : -incidence.Direction;
+        ray.Min = 0.0;
+        ray.Max = incidence.Distance;
+        ++path.LightRays;
+        asking[count++] = &place;
+      });
+    glm::dvec3 transmittances[MaxRays];
+    this->Transmittances.Find(towards, count, transmittances);
+    for (int index = 0; index < count; ++index)
+    {
+      asking[index]->Lamps.push_back(transmittances[index]);
+    }
+  }
+}
+
+/// As VTK's ray cast mappers shade (vtkVolumeShaderComposer), on both sides alike.
+Lanes MediumLighting::GetLit(const MediumPiece& piece, const glm::dvec3& position,
+  const glm::dvec3& toViewer, const Place* arriving) const
+{
+  const MediumLook& look = *piece.Look;
+  const Material& surface = look.Surface;
+  const glm::dvec3 color(piece.Amount[0], piece.Amount[1], piece.Amount[2]);
+  const double ambient = arriving ? arriving->Ambient : 1.0;
+  const double surfacePart = 1.0 - look.Scattering;
+  glm::dvec3 lit =
+    look.Shade ? surfacePart * ambient * surface.Ambient * color : surfacePart * color;
+  for (std::size_t number = 0; number < this->World.Lights.size(); ++number)
+  {
+    const Light& lamp = this->World.Lights[number];
+    const Incidence incidence = GetIncidence(lamp, position);
+    glm::dvec3 light = incidence.Attenuation * glm::dvec3(lamp.Color);
+    if (arriving && !arriving->Lamps.empty())
+    {
+      light *= arriving->Lamps[number];
+    }
+    lit += look.Scattering * ambient *
+      GetPhase(look.Anisotropy, glm::dot(incidence.Direction, toViewer)) * light * color;
+    if (look.Shade && piece.Normal != glm::dvec3(0.0))
+    {
+      const double cosine = std::abs(glm::dot(piece.Normal, incidence.Direction));
+      lit += surfacePart * ambient * surface.Diffuse * cosine * light * color;
+      const double highlight = glm::dot(glm::reflect(incidence.Direction, piece.Normal), toViewer);
+      if (surface.Specular > 0.0f && highlight > 0.0)
+      {
+        lit += surfacePart * surface.Specular * std::pow(highlight, surface.SpecularPower) *
+          piece.Amount[3] * light;
+      }
+    }
+  }
+  return Lanes(lit.x, lit.y, lit.z, piece.Amount[3]);
+}
+
+} // namespace rt
