@@ -118,6 +118,18 @@ void AddMixtures(Scenes& scenes)
       stage.World.Transport.AmbientOcclusionSamples = 2;
       stage.World.Transport.AmbientOcclusionDistance = 0.8;
     } });
+  // So smooth that rays take macrocells as a whole.
+  for (const auto& [name, type] : Types)
+  {
+    if (type == bricks::ScalarType::Float32 || type == bricks::ScalarType::UInt16)
+    {
+      Recipe smooth;
+      smooth.Type = type;
+      smooth.Points = { 83, 70, 65 };
+      scenes.push_back({ "medium.Smooth." + std::string(name),
+        [smooth](SceneStage& stage) { stage.Add(stage.CreateMedium(smooth, Fog)); } });
+    }
+  }
   scenes.push_back({ "medium.Mirror",
     [=](SceneStage& stage)
     {

@@ -73,8 +73,8 @@ protected:
       samples.push_back(
         Evaluate(nodes, nodes.front().first + part * (nodes.back().first - nodes.front().first)));
     }
-    medium.Function =
-      std::make_shared<rt::TransferFunction>(nodes.front().first, nodes.back().first, samples);
+    medium.Function = std::make_shared<rt::TransferFunction>(
+      nodes.front().first, nodes.back().first, samples, 2.0 / (Points - 1));
     this->World.Media.push_back(std::move(medium));
     std::vector<double> own;
     for (int z = 0; z < Points; ++z)
@@ -254,6 +254,15 @@ TEST_F(TestMediumIntegral, OfSmoothFunctions)
   this->Add(GetWaves, Fog);
   EXPECT_LT(this->Compare(GetPerspective()), 1.0);
   EXPECT_LT(this->Compare(GetAlongZ()), 1.0);
+}
+
+TEST_F(TestMediumIntegral, OfValuesThatHardlyBend)
+{
+  // Rays take macrocells as a whole.
+  this->Add(
+    [](const glm::dvec3& p) { return 2.0 * std::sin(0.7 * p.x + 0.5 * p.y - 0.6 * p.z); }, Fog);
+  EXPECT_LT(this->Compare(GetPerspective()), 0.5);
+  EXPECT_LT(this->Compare(GetAlongZ()), 0.5);
 }
 
 TEST_F(TestMediumIntegral, OfANarrowPeak)

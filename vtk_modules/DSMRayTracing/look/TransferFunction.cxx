@@ -3,6 +3,8 @@
 
 #include "DSMBricks/base/ByteHash.h"
 
+#include <glm/common.hpp>
+
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -21,13 +23,14 @@ constexpr int Groups = TransferFunction::Bins / BinsOfGroup + 1;
 TransferFunction::Behavior GetLarger(
   const TransferFunction::Behavior& one, const TransferFunction::Behavior& other)
 {
-  return { std::max(one.Extinction, other.Extinction), std::max(one.Change, other.Change) };
+  return { std::max(one.Extinction, other.Extinction), std::max(one.Change, other.Change),
+    std::max(one.Tinge, other.Tinge) };
 }
 
 } // namespace
 
 TransferFunction::TransferFunction(
-  double first, double last, const std::vector<glm::dvec4>& samples)
+  double first, double last, const std::vector<glm::dvec4>& samples, double cellLength)
   : First(first)
   , Scale(Bins / (last - first))
   , Table(AllBins)
@@ -37,6 +40,7 @@ TransferFunction::TransferFunction(
   hash.Add(&first, sizeof(first));
   hash.Add(&last, sizeof(last));
   hash.Add(samples.data(), samples.size() * sizeof(glm::dvec4));
+  hash.Add(&cellLength, sizeof(cellLength));
   this->Digest = hash.Get();
 
   const auto emit = [&](int sample)
@@ -44,9 +48,22 @@ TransferFunction::TransferFunction(
     const glm::dvec4& one = samples[static_cast<std::size_t>(std::clamp(sample, 0, int(Bins)))];
     return glm::dvec4(glm::dvec3(one) * one.w, one.w);
   };
+  // Where nothing is at one end of a bin, it has the color of the other.
+  const auto getTinge = [&](int bin)
+  {
+    const auto& before = samples[static_cast<std::size_t>(std::clamp(bin - 1, 0, int(Bins)))];
+    const auto& after = samples[static_cast<std::size_t>(std::clamp(bin, 0, int(Bins)))];
+    const glm::dvec3 change = glm::abs(glm::dvec3(after) - glm::dvec3(before));
+    return before.w > 0.0 && after.w > 0.0 ? std::max({ change.x, change.y, change.z }) : 0.0;
+  };
   // The bin below the range ends where the integral is 0.
   glm::dvec4 integral = -emit(0);
-  glm::dvec4 before = emit(0);
+  const auto getSeen = [&](const glm::dvec4& slope)
+  {
+    const double depth = slope.w * cellLength;
+    return depth > 0.0 ? slope * (-std::expm1(-depth) / depth) : slope;
+  };
+  glm::dvec4 before = getSeen(emit(0));
   std::vector<Behavior> groups(Groups);
   for (int bin = 0; bin < AllBins; ++bin)
   {
@@ -59,15 +76,17 @@ TransferFunction::TransferFunction(
     own.Begin = Lanes(begin.x, begin.y, begin.z, begin.w);
     own.Growth = Lanes(growth.x, growth.y, growth.z, growth.w);
     // The first bin of a group changes from the last one of the group before.
+    const glm::dvec4 seen = getSeen(slope);
     for (int channel = 0; channel < 4; ++channel)
     {
-      group.Change = std::max(group.Change, std::abs(slope[channel] - before[channel]));
+      group.Change = std::max(group.Change, std::abs(seen[channel] - before[channel]));
     }
     group.Extinction = std::max(group.Extinction, slope.w);
+    group.Tinge = std::max(group.Tinge, getTinge(bin));
     this->SeenBefore[static_cast<std::size_t>(bin) + 1] =
       this->SeenBefore[static_cast<std::size_t>(bin)] + (slope.w > 0.0 ? 1 : 0);
     integral += slope;
-    before = slope;
+    before = seen;
   }
   for (const Behavior& group : groups)
   {

@@ -24,8 +24,10 @@ public:
   static constexpr int Bins = 4096;
 
   /// `samples`: Bins + 1 of them, evenly spaced from `first` to `last`, which is greater. Red, green, blue (straight), and
-  /// extinction (w): optical depth in a unit of world length.
-  TransferFunction(double first, double last, const std::vector<glm::dvec4>& samples);
+  /// extinction (w): optical depth in a unit of world length. `cellLength`, in world space: of two extinctions with which
+  /// a cell is opaque, one is as good as the other.
+  TransferFunction(
+    double first, double last, const std::vector<glm::dvec4>& samples, double cellLength = 0.0);
 
   double GetFirst() const { return this->First; }
   /// Bins in a unit of values.
@@ -42,11 +44,23 @@ public:
     return bin.Integral + (bin.Begin + Lanes(0.5) * change) * Lanes(way);
   }
 
+  /// Linear in each of Bins and what is beyond: bin 0 is what is below the function's range, the last one what is above.
+  struct Bin
+  {
+    Lanes Integral; ///< up to the bin's begin
+    Lanes Begin;    ///< emission and extinction there
+    Lanes Growth;   ///< up to the bin's end
+  };
+  static constexpr int AllBins = Bins + 2;
+  const Bin* GetTable() const { return this->Table.data(); }
+
   /// How the function behaves between two places in bins from First, the second not less than the first.
   struct Behavior
   {
     double Extinction = 0.0; ///< the largest
-    double Change = 0.0;     ///< at most, of anything, from a bin to the next
+    double Change =
+      0.0; ///< at most, of what is seen of a short way for its length, from a bin to the next
+    double Tinge = 0.0; ///< at most, of the color itself, from a bin to the next
   };
   Behavior FindBehavior(double begin, double end) const;
   /// Anywhere.
@@ -65,16 +79,7 @@ public:
   std::uint64_t GetDigest() const { return this->Digest; }
 
 private:
-  /// Linear in each.
-  struct Bin
-  {
-    Lanes Integral; ///< up to the bin's begin
-    Lanes Begin;    ///< emission and extinction there
-    Lanes Growth;   ///< up to the bin's end
-  };
-
-  /// Bin 0 is what is below the function's range, the last one what is above. A place that is not a number is in bin 0.
-  static constexpr int AllBins = Bins + 2;
+  /// A place that is not a number is in bin 0.
   static int GetNumber(double place)
   {
     return place >= Bins ? Bins + 1 : place >= 0.0 ? static_cast<int>(place) + 1 : 0;

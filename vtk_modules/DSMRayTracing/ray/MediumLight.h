@@ -119,6 +119,8 @@ public:
     transmittance *= passed;
   }
   ///@}
+  /// Red, green and blue of the sum.
+  Lanes& GetSum(int ray) { return this->Sum[ray]; }
 
   bool IsDark(int ray) const { return this->Transmittance[ray] < this->DarkBelow; }
   /// What arrives at the ray's begin.

@@ -18,6 +18,9 @@
 #include "vtkScalarsToColors.h"
 #include "vtkSmartPointer.h"
 
+#include <glm/geometric.hpp>
+#include <glm/mat3x3.hpp>
+
 #include <algorithm>
 #include <limits>
 #include <utility>
@@ -505,14 +508,27 @@ void vtkDSMSceneVolume::AddMedia(const vtkDSMVolumeLook& look, rt::Scene& scene)
     return;
   }
   look.FindMissingFeatures(this->Warnings);
-  const auto function = look.CreateTransferFunction(range, this->Messages);
+  this->Prop->ComputeMatrix();
+  const glm::dmat4 dataToWorld = vtkDSMTranslation::ToMatrix(this->Prop->GetMatrix());
+  double cellLength = std::numeric_limits<double>::infinity();
+  for (std::size_t lattice = 0; lattice < this->Data->GetNumberOfLattices(); ++lattice)
+  {
+    if (this->Iso->GetFields()[lattice])
+    {
+      cellLength = std::min(cellLength, this->GetField(lattice, dataToWorld).GetFinestLength());
+    }
+  }
+  double bounds[6];
+  this->Data->GetBounds(bounds);
+  const glm::dvec3 lower(bounds[0], bounds[2], bounds[4]);
+  const glm::dvec3 upper(bounds[1], bounds[3], bounds[5]);
+  const double diagonal = glm::length(glm::dmat3(dataToWorld) * (upper - lower));
+  const auto function = look.CreateTransferFunction(range, cellLength, diagonal, this->Messages);
   if (!function)
   {
     return;
   }
   const rt::MediumLook mediumLook = look.GetMediumLook(range);
-  this->Prop->ComputeMatrix();
-  const glm::dmat4 dataToWorld = vtkDSMTranslation::ToMatrix(this->Prop->GetMatrix());
   for (std::size_t lattice = 0; lattice < this->Data->GetNumberOfLattices(); ++lattice)
   {
     if (this->Iso->GetFields()[lattice])

@@ -38,7 +38,8 @@ bool vtkDSMVolumeLook::IsMedium() const
 }
 
 std::shared_ptr<const rt::TransferFunction> vtkDSMVolumeLook::CreateTransferFunction(
-  const bricks::ValueRange& range, std::vector<std::string>& messages) const
+  const bricks::ValueRange& range, double cellLength, double diagonal,
+  std::vector<std::string>& messages) const
 {
   if (this->Mapper->GetBlendMode() != vtkVolumeMapper::COMPOSITE_BLEND)
   {
@@ -47,8 +48,8 @@ std::shared_ptr<const rt::TransferFunction> vtkDSMVolumeLook::CreateTransferFunc
       "drawn. Call SetBlendModeToComposite(), or use VTK's own mapper.");
     return nullptr;
   }
-  return vtkDSMTranslation::ToTransferFunction(
-    vtkVolume::SafeDownCast(this->Prop)->GetProperty(), range.First, range.Last);
+  return vtkDSMTranslation::ToTransferFunction(vtkVolume::SafeDownCast(this->Prop)->GetProperty(),
+    range.First, range.Last, cellLength, diagonal);
 }
 
 void vtkDSMVolumeLook::FindMissingFeatures(std::vector<std::string>& warnings) const

@@ -27,9 +27,10 @@ public:
   bool IsMedium() const;
   /// Tells what the property asks for that media do not have yet.
   void FindMissingFeatures(std::vector<std::string>& warnings) const;
-  /// Of the medium, for values that are all in the range. Null: nothing is to be seen. Adds what is wrong to the messages.
-  std::shared_ptr<const rt::TransferFunction> CreateTransferFunction(
-    const bricks::ValueRange& range, std::vector<std::string>& messages) const;
+  /// Of the medium, for values that are all in the range; see vtkDSMTranslation::ToTransferFunction. Null: nothing is to be
+  /// seen. Adds what is wrong to the messages.
+  std::shared_ptr<const rt::TransferFunction> CreateTransferFunction(const bricks::ValueRange& range,
+    double cellLength, double diagonal, std::vector<std::string>& messages) const;
   /// The same; how light makes it shine, and what gradients do.
   rt::MediumLook GetMediumLook(const bricks::ValueRange& range) const;
   /// The arrays that are to be shown, as the mapper names them: that of the isosurfaces, and that of the colours, if any.

@@ -43,6 +43,8 @@ constexpr int ColorMapEntries = 4096;
 /// Default length of ambient occlusion rays, over the diagonal of what is shown.
 constexpr double AmbientOcclusionPart = 0.2;
 
+/// Optical depth of a way that is as good as transparent: a sixteenth of a step of an 8-bit channel.
+constexpr double LeastDepth = 1.0 / 4096.0;
 /// That a unit of length of a medium has: what is behind that much of it is not seen anyway.
 constexpr double MostOpacity = 1.0 - 1e-15;
 
@@ -166,7 +168,7 @@ rt::Material vtkDSMTranslation::ToMaterial(vtkVolumeProperty* property, double i
 }
 
 std::shared_ptr<const rt::TransferFunction> vtkDSMTranslation::ToTransferFunction(
-  vtkVolumeProperty* property, double first, double last)
+  vtkVolumeProperty* property, double first, double last, double cellLength, double diagonal)
 {
   vtkPiecewiseFunction* const opacity = property->GetScalarOpacity(0);
   const bool isGray = property->GetColorChannels(0) == 1;
@@ -210,10 +212,12 @@ std::shared_ptr<const rt::TransferFunction> vtkDSMTranslation::ToTransferFunctio
   {
     const double covered = std::clamp(alpha[sample], 0.0, MostOpacity);
     const double* const own = &color[isGray ? sample : 3 * sample];
+    // What cannot be seen though the whole way lies in it is skipped.
+    const double extinction = -std::log1p(-covered) / unit;
     samples[sample] = { own[0], own[isGray ? 0 : 1], own[isGray ? 0 : 2],
-      -std::log1p(-covered) / unit };
+      extinction * diagonal < LeastDepth ? 0.0 : extinction };
   }
-  return std::make_shared<const rt::TransferFunction>(first, last, samples);
+  return std::make_shared<const rt::TransferFunction>(first, last, samples, cellLength);
 }
 
 rt::MediumLook vtkDSMTranslation::ToMediumLook(vtkVolumeProperty* property, double range)

@@ -40,9 +40,9 @@ public:
   static rt::ColorMap ToColorMap(vtkScalarsToColors* table);
 
   /// The color and opacity functions of a property's first component, and its unit distance, for a medium whose values are
-  /// from `first` to `last`.
+  /// from `first` to `last`. `cellLength` and `diagonal`: of a cell's edge, and of the medium, in world space.
   static std::shared_ptr<const rt::TransferFunction> ToTransferFunction(
-    vtkVolumeProperty* property, double first, double last);
+    vtkVolumeProperty* property, double first, double last, double cellLength, double diagonal);
 
   /// The shading of a property's first component, and its gradient opacity, for a medium whose values differ so much.
   static rt::MediumLook ToMediumLook(vtkVolumeProperty* property, double range);

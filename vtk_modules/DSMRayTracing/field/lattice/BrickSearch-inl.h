@@ -38,6 +38,15 @@ Vector ClampToUnit(Vector value)
   return hn::IfThenElse(hn::Lt(raised, one), raised, one);
 }
 
+/// What the transfer function of a medium does in the macrocells that rays are in; see PacketPart.
+template <class D>
+struct MediumBehavior
+{
+  hn::Vec<D> Extinction;
+  hn::Vec<D> Change;
+  hn::Vec<D> Tinge;
+};
+
 /// Rays of a vector in the cells that they cross; the lanes that are not `There` mean nothing.
 template <class D>
 struct CrossedCells
@@ -52,6 +61,21 @@ struct CrossedCells
   hn::Vec<D> Exit;
   hn::Vec<D> Start[3]; ///< within the cell, in [0, 1]
   hn::Vec<D> End[3];
+  MediumBehavior<D> Behavior; ///< set for visitors that take macrocells
+};
+
+/// Rays of a vector in macrocells that they go through as a whole; as CrossedCells.
+template <class D>
+struct PassedMacrocells
+{
+  const std::size_t* Ray;
+  std::uint32_t There;
+  hn::Vec<D> Enter; ///< of the ray; not below Exit: it only touches the macrocell
+  hn::Vec<D> Exit;
+  hn::Vec<D> First; ///< values, less what the brick subtracts: where the ray enters
+  hn::Vec<D> Middle;
+  hn::Vec<D> Last;
+  MediumBehavior<D> Behavior;
 };
 
 /// The rays of a packet in a brick; what GridTraversal does for one ray, with the same bits. In a part
@@ -60,6 +84,7 @@ struct CrossedCells
 /// wait for the same fill the vectors, wherever they are: most meet few macrocells, and few cells there.
 ///
 /// `Visitor` says what is looked for: `Visit(const CrossedCells<D>&)` returns the lanes (bits) whose ray's search ends.
+/// If it `TakesMacrocells`, `Pass(const PassedMacrocells<D>&)` gets those that are smooth (PacketPart), and returns the same.
 template <class D, class Visitor>
 class BrickSearch
 {
@@ -202,7 +227,7 @@ private:
       // Vectors that are not full can wait as long as there is something else to do.
       if (forCell >= Width || forMacrocell == 0)
       {
-        this->SearchCells(Batch(this->ForCell));
+        this->SearchCells(Batch(this->ForCell), known);
       }
       else
       {
@@ -257,17 +282,128 @@ private:
         this->Brick.FindCells(this->Part, macrocell);
       }
     }
+    std::uint32_t passed = 0;
+    std::uint32_t ended = 0;
+    if constexpr (Visitor::TakesMacrocells)
+    {
+      for (int lane = 0; lane < batch.Count; ++lane)
+      {
+        passed |= std::uint32_t{ (known.Smooth >> numbers[lane] & 1) != 0 } << lane;
+      }
+      if (passed != 0)
+      {
+        ended = this->Pass(batch, passed, lines, entry, known);
+        if (passed == batch.GetLanes())
+        {
+          this->EndMacrocells(batch, passed, ended);
+          return;
+        }
+      }
+    }
     const Numbers crossed = FindCrossedNodes(lines, this->Forward, entry, 1.0,
       Load(batch, this->Packet.BrickEnter), Load(batch, this->Packet.BrickLeave));
     HWY_ALIGN std::uint64_t cells[Width];
     hn::Store(
       hn::And(crossed, LoadLanes<std::uint64_t, Width>(known.Cells, numbers)), NumberTag(), cells);
-    for (int lane = 0; lane < batch.Count; ++lane)
+    for (std::uint32_t left = batch.GetLanes() & ~passed; left != 0; left &= left - 1)
     {
+      const int lane = __builtin_ctz(left);
       const std::size_t ray = batch.Ray[lane];
       this->Cells[ray] = cells[lane];
       this->GoOn(ray, true);
     }
+    this->EndMacrocells(batch, passed, ended);
+  }
+
+  /// Lets the rays of those lanes (bits) wait for what comes behind their macrocells, if they have not `ended`.
+  HWY_INLINE void EndMacrocells(const Batch& batch, std::uint32_t lanes, std::uint32_t ended)
+  {
+    for (; lanes != 0; lanes &= lanes - 1)
+    {
+      const int lane = __builtin_ctz(lanes);
+      const std::size_t ray = batch.Ray[lane];
+      const std::uint64_t isOver = ended >> lane & 1;
+      this->Found |= isOver << ray;
+      this->Cells[ray] = 0;
+      this->GoOn(ray, isOver == 0);
+    }
+  }
+
+  /// Takes the rays of those lanes (bits) through macrocells that they enter at those planes. Returns those that end.
+  HWY_INLINE std::uint32_t Pass(const Batch& batch, std::uint32_t lanes, const RayLines<D>& lines,
+    const Vector entry[3], const PacketPart& known)
+  {
+    const D tag;
+    PassedMacrocells<D> passed;
+    passed.Ray = batch.Ray;
+    passed.There = lanes;
+    passed.Enter = Load(batch, this->Packet.BrickEnter);
+    passed.Exit = Load(batch, this->Packet.BrickLeave);
+    Vector direction[3];
+    Vector lowest[3];
+    Vector highest[3];
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      const bool forward = this->Forward[axis];
+      const Vector edge = hn::Set(tag, bricks::MacrocellEdge);
+      const Vector leave = forward ? hn::Add(entry[axis], edge) : hn::Sub(entry[axis], edge);
+      passed.Enter = hn::Max(passed.Enter, lines.GetPlaneT(axis, entry[axis]));
+      passed.Exit = hn::Min(passed.Exit, lines.GetPlaneT(axis, leave));
+      direction[axis] = Load(batch, this->Packet.Direction[axis]);
+      const Vector origin = hn::Set(tag, this->Origin[axis]);
+      lowest[axis] = hn::Sub(forward ? entry[axis] : leave, origin);
+      highest[axis] = hn::Min(hn::Sub(forward ? leave : entry[axis], origin),
+        hn::Set(tag, static_cast<double>(this->Brick.GetCells(axis))));
+    }
+    // Values, less what the brick subtracts, at T.
+    const auto getValues = [&](Vector t)
+    {
+      Vector place[3];
+      Vector within[3];
+      for (int axis = 0; axis < 3; ++axis)
+      {
+        const Vector point = hn::Sub(hn::Add(lines.Origin[axis], hn::Mul(t, direction[axis])),
+          hn::Set(tag, this->Origin[axis]));
+        const Vector last = hn::Sub(highest[axis], hn::Set(tag, 1.0));
+        place[axis] = hn::Min(hn::Max(hn::Floor(point), lowest[axis]), last);
+        within[axis] = ClampToUnit(hn::Sub(point, place[axis]));
+      }
+      Vector corners[8];
+      if (this->Brick.Floats.First)
+      {
+        this->LoadCorners(place, corners);
+      }
+      else
+      {
+        this->AskForCorners(lanes, place, corners);
+      }
+      const auto mix = [](Vector a, Vector b, Vector part)
+      { return hn::Add(a, hn::Mul(part, hn::Sub(b, a))); };
+      const Vector front = mix(
+        mix(corners[0], corners[1], within[0]), mix(corners[2], corners[3], within[0]), within[1]);
+      const Vector back = mix(
+        mix(corners[4], corners[5], within[0]), mix(corners[6], corners[7], within[0]), within[1]);
+      return mix(front, back, within[2]);
+    };
+    passed.First = getValues(passed.Enter);
+    passed.Middle = getValues(hn::Mul(hn::Set(tag, 0.5), hn::Add(passed.Enter, passed.Exit)));
+    passed.Last = getValues(passed.Exit);
+    this->Describe(batch, known, passed);
+    return this->Look.Pass(passed);
+  }
+
+  /// Tells what is known of the macrocells that rays are in.
+  template <class Crossed>
+  HWY_INLINE void Describe(const Batch& batch, const PacketPart& known, Crossed& crossed) const
+  {
+    std::size_t numbers[Width];
+    for (int lane = 0; lane < Width; ++lane)
+    {
+      numbers[lane] = static_cast<std::size_t>(__builtin_ctzll(this->Macrocells[batch.Ray[lane]]));
+    }
+    crossed.Behavior = { LoadLanes<double, Width>(known.Extinction, numbers),
+      LoadLanes<double, Width>(known.Change, numbers),
+      LoadLanes<double, Width>(known.Tinge, numbers) };
   }
 
   /// Lets a ray wait for what comes next, if it is `open`.
@@ -342,7 +478,7 @@ private:
   }
 
   /// Searches the cell for which rays wait.
-  HWY_INLINE void SearchCells(const Batch& batch)
+  HWY_INLINE void SearchCells(const Batch& batch, const PacketPart& known)
   {
     const D tag;
     const Numbers macrocells =
@@ -394,6 +530,10 @@ private:
       cells.Place[axis] = place[axis];
       cells.Start[axis] = getLocal(enter, in[axis], entry);
       cells.End[axis] = getLocal(exit, out[axis], hn::Sub(one, entry));
+    }
+    if constexpr (Visitor::TakesMacrocells)
+    {
+      this->Describe(batch, known, cells);
     }
     const std::uint32_t ended = this->Look.Visit(cells) & batch.GetLanes();
     for (int lane = 0; lane < batch.Count; ++lane)

@@ -7,6 +7,7 @@
 #include "DSMRayTracing/field/lattice/IsovalueLevel.h"
 #include "DSMRayTracing/field/lattice/MacrocellKernel.h"
 #include "DSMRayTracing/field/lattice/NodeOrder.h"
+#include "DSMRayTracing/field/lattice/PacketBrick.h"
 
 #include <algorithm>
 #include <cstddef>
@@ -66,6 +67,9 @@ public:
     }
     return cells & GetNodeBox(counts);
   }
+
+  /// Surfaces are looked for in cells.
+  void Describe(const bricks::VoxelBrick<T>&, const int*, const int*, int, PacketPart&) const {}
 
   /// What corners have subtracted.
   double GetSubtracted() const { return this->Level.GetIsovalue(); }

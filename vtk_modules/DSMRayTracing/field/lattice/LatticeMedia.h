@@ -17,6 +17,8 @@
 #include "DSMRayTracing/ray/Ray.h"
 
 #include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <glm/mat3x3.hpp>
 #include <glm/vec3.hpp>
 
 #include <algorithm>
@@ -154,6 +156,21 @@ private:
     asked.Cell.Local = Lanes(inside.x, inside.y, inside.z, 0.0);
   }
 
+  /// Through a cell, in world space.
+  static double GetLongestWay(const LatticeField& field)
+  {
+    const glm::dmat3 edges(field.IndexToWorld);
+    double longest = 0.0;
+    for (const double y : { -1.0, 1.0 })
+    {
+      for (const double z : { -1.0, 1.0 })
+      {
+        longest = std::max(longest, glm::length(edges[0] + y * edges[1] + z * edges[2]));
+      }
+    }
+    return longest;
+  }
+
   /// Of places in the same brick. Returns those whose samples are not all there.
   template <class T, class Iterator>
   std::vector<const Asked*> FindGradientsWithin(const LatticeField& field, Iterator begin,
@@ -224,7 +241,7 @@ private:
       [&](auto sample)
       {
         using T = decltype(sample);
-        const TransferTest<T> test(function);
+        const TransferTest<T> test(function, this->Kernel, GetLongestWay(field));
         for (std::size_t place = 0; place < bricks.Bricks.size() && open != 0; ++place)
         {
           const BeamBricks::Brick& brick = bricks.Bricks[place];

@@ -56,78 +56,120 @@ HWY_INLINE Vector GetTransmittance(Vector depth)
   return hn::Mul(sum, hn::BitCast(tag, exponent));
 }
 
+/// Emission and extinction, as Lanes has them, in vectors that are as wide as the processor's.
+class Row
+{
+public:
+  using Tag = hn::CappedTag<double, 4>;
+  static constexpr int Width = static_cast<int>(hn::MaxLanes(Tag()));
+  static constexpr int Parts = 4 / Width;
+
+  Row() = default;
+  HWY_INLINE explicit Row(double all)
+  {
+    for (auto& part : this->Part)
+    {
+      part = hn::Set(Tag(), all);
+    }
+  }
+  HWY_INLINE explicit Row(const Lanes& lanes)
+  {
+    for (int part = 0; part < Parts; ++part)
+    {
+      this->Part[part] = hn::LoadU(Tag(), reinterpret_cast<const double*>(&lanes) + part * Width);
+    }
+  }
+  HWY_INLINE void Store(Lanes& lanes) const
+  {
+    for (int part = 0; part < Parts; ++part)
+    {
+      hn::StoreU(this->Part[part], Tag(), reinterpret_cast<double*>(&lanes) + part * Width);
+    }
+  }
+
+  friend HWY_INLINE Row operator+(const Row& a, const Row& b)
+  {
+    Row sum;
+    for (int part = 0; part < Parts; ++part)
+    {
+      sum.Part[part] = hn::Add(a.Part[part], b.Part[part]);
+    }
+    return sum;
+  }
+  friend HWY_INLINE Row operator-(const Row& a, const Row& b)
+  {
+    Row difference;
+    for (int part = 0; part < Parts; ++part)
+    {
+      difference.Part[part] = hn::Sub(a.Part[part], b.Part[part]);
+    }
+    return difference;
+  }
+  friend HWY_INLINE Row operator*(const Row& a, const Row& b)
+  {
+    Row product;
+    for (int part = 0; part < Parts; ++part)
+    {
+      product.Part[part] = hn::Mul(a.Part[part], b.Part[part]);
+    }
+    return product;
+  }
+
+private:
+  hn::Vec<Tag> Part[Parts];
+};
+
 /// Of BrickSearch, for rays through a medium. Within a cell, the value along a ray is a cubic. It is cut into so many
 /// pieces that it is nearly linear in each, as far as the transfer function makes a difference, and each piece is
-/// integrated over its values.
+/// integrated over its values. Where values hardly bend, that is done for a macrocell as a whole.
 template <class D>
 class MediumCells
 {
 public:
+  static constexpr bool TakesMacrocells = true;
   using Vector = hn::Vec<D>;
+  using Mask = hn::Mask<D>;
   static constexpr int Width = static_cast<int>(hn::MaxLanes(D()));
 
   MediumCells(const TransferFunction& function, MediumLight& light)
     : Function(function)
+    , Table(function.GetTable())
     , Light(light)
-    , Everywhere(function.GetBehavior())
   {
   }
 
   HWY_INLINE std::uint32_t Visit(const CrossedCells<D>& cells)
   {
     const D tag;
-    std::uint32_t left = GetMaskBits(tag, cells.Crossing) & cells.There;
+    const std::uint32_t left = GetMaskBits(tag, cells.Crossing) & cells.There;
     if (left == 0)
     {
       return 0;
     }
-    const Vector scale = hn::Set(tag, this->Function.GetScale());
-    const Vector length = hn::Mul(hn::Sub(cells.Exit, cells.Enter),
-      SetLanes<double, Width>([&](int lane) { return this->Light.Length[cells.Ray[lane]]; }));
-    Vector cubic[4];
-    PacketCrossing<D>(tag, cells.Corners, cells.Start, cells.End).GetCoefficients(cubic);
-    for (Vector& coefficient : cubic)
-    {
-      coefficient = hn::Mul(coefficient, scale);
-    }
     Pieces pieces;
+    PacketCrossing<D>(tag, cells.Corners, cells.Start, cells.End).GetCoefficients(pieces.Cubic);
+    return this->Go(cells, left, pieces,
+      [&](std::uint32_t lanes, MediumBehavior<D>& behavior)
+      { this->FindBehavior(cells.Corners, lanes, behavior); });
+  }
+
+  HWY_INLINE std::uint32_t Pass(const PassedMacrocells<D>& passed)
+  {
+    const D tag;
+    const std::uint32_t left = GetMaskBits(tag, hn::Lt(passed.Enter, passed.Exit)) & passed.There;
+    if (left == 0)
+    {
+      return 0;
+    }
     const Vector two = hn::Set(tag, 2.0);
-    const Vector atBegin = hn::Mul(two, cubic[2]);
-    const Vector atEnd = hn::Add(atBegin, hn::Mul(hn::Set(tag, 6.0), cubic[3]));
-    const Vector bend = hn::Max(hn::Abs(atBegin), hn::Abs(atEnd));
-    int most = 1;
-    if (this->IsOneEnough(bend, length))
-    {
-      std::fill_n(pieces.Part, Width, 1.0);
-    }
-    else
-    {
-      most = this->Count(cells, bend, length, left, pieces);
-    }
-    const Vector part = hn::Load(tag, pieces.Part);
-    hn::Store(hn::Mul(length, part), tag, pieces.Length);
-    HWY_ALIGN double places[Width];
-    hn::Store(cubic[0], tag, places);
-    for (std::uint32_t lanes = left; lanes != 0; lanes &= lanes - 1)
-    {
-      const int lane = __builtin_ctz(lanes);
-      Lanes slope;
-      pieces.Place[lane] = places[lane];
-      pieces.Integral[lane] = this->Function.Integrate(places[lane], slope);
-    }
-    std::uint32_t ended = 0;
-    for (int number = 1; number <= most && left != 0; ++number)
-    {
-      // The last one is the cell's end, whatever rounding does.
-      const Vector way =
-        hn::Min(hn::Set(tag, 1.0), hn::Mul(hn::Set(tag, static_cast<double>(number)), part));
-      const Vector inner = hn::Add(cubic[2], hn::Mul(way, cubic[3]));
-      hn::Store(
-        hn::Add(cubic[0], hn::Mul(way, hn::Add(cubic[1], hn::Mul(way, inner)))), tag, places);
-      ended |= this->Add(cells, number, places, left, pieces);
-      left &= ~ended;
-    }
-    return ended;
+    const Vector bend =
+      hn::Mul(two, hn::Sub(hn::Add(passed.First, passed.Last), hn::Mul(two, passed.Middle)));
+    Pieces pieces;
+    pieces.Cubic[0] = passed.First;
+    pieces.Cubic[1] = hn::Sub(hn::Sub(passed.Last, passed.First), bend);
+    pieces.Cubic[2] = bend;
+    pieces.Cubic[3] = hn::Zero(tag);
+    return this->Go(passed, left, pieces, [](std::uint32_t, MediumBehavior<D>&) {});
   }
 
 private:
@@ -135,77 +177,185 @@ private:
   /// Of optical depth, in a cell.
   static constexpr double Tolerance = 1.0 / 2048.0;
   static constexpr double BendFactor = 0.125 / Tolerance;
-  /// Pieces for a unit of optical depth: colors change within.
+  /// Of the color that a piece shows, because what is behind in it is hidden by what is before.
+  static constexpr double ColorTolerance = 1.0 / 1024.0;
+  static constexpr double ColorFactor = 1.0 / (12.0 * ColorTolerance);
+  /// Pieces that are described for a unit of optical depth.
   static constexpr double DepthFactor = 4.0;
   /// In bins: on a shorter way, the function is nearly constant, and differences would be rounding.
   static constexpr double ShortWay = 1e-7;
 
-  /// The pieces that the cells are cut into, and where rays are in them.
+  /// The pieces that ways are cut into, and where rays are on them.
   struct Pieces
   {
-    HWY_ALIGN double Part[Width];   ///< of a piece, of the whole
-    HWY_ALIGN double Length[Width]; ///< world, of a piece
-    HWY_ALIGN double Place[Width];  ///< in bins: where the last piece ended
-    Lanes Integral[Width];          ///< of the function up to there
+    Vector Cubic[4];       ///< values: of the way, from 0 to 1
+    Vector Part;           ///< of a piece, of the whole
+    Vector Length;         ///< world, of a piece
+    Vector Place;          ///< in bins: where the last piece ended
+    Lanes Integral[Width]; ///< of the function up to there
   };
 
-  /// Whether all cells are one piece, whatever values are in them.
-  HWY_INLINE bool IsOneEnough(Vector bend, Vector length) const
+  /// Bins of places, and the ways in them.
+  struct Located
+  {
+    HWY_ALIGN std::uint64_t Number[Width];
+    HWY_ALIGN double Way[Width];
+
+    HWY_INLINE explicit Located(Vector places)
+    {
+      const D tag;
+      const Vector one = hn::Set(tag, 1.0);
+      const Vector last = hn::Set(tag, TransferFunction::Bins + 1.0);
+      const Vector number = hn::Floor(hn::Min(hn::Max(hn::Add(places, one), hn::Zero(tag)), last));
+      hn::Store(ToNumbers(number), hn::RebindToUnsigned<D>(), this->Number);
+      hn::Store(hn::Sub(places, hn::Sub(number, one)), tag, this->Way);
+    }
+  };
+
+  /// Takes those of `left` through cells or macrocells. `refine(lanes, behavior)`: of those lanes, more exactly.
+  /// Returns those that are dark then.
+  template <class Crossed, class Refine>
+  HWY_INLINE std::uint32_t Go(
+    const Crossed& crossed, std::uint32_t left, Pieces& pieces, const Refine& refine)
+  {
+    const D tag;
+    const Vector one = hn::Set(tag, 1.0);
+    const Vector scale = hn::Set(tag, this->Function.GetScale());
+    for (Vector& coefficient : pieces.Cubic)
+    {
+      coefficient = hn::Mul(coefficient, scale);
+    }
+    const Vector length = hn::Mul(hn::Sub(crossed.Exit, crossed.Enter),
+      SetLanes<double, Width>([&](int lane) { return this->Light.Length[crossed.Ray[lane]]; }));
+    const Vector atBegin = hn::Mul(hn::Set(tag, 2.0), pieces.Cubic[2]);
+    const Vector atEnd = hn::Add(atBegin, hn::Mul(hn::Set(tag, 6.0), pieces.Cubic[3]));
+    const Vector bend = hn::Max(hn::Abs(atBegin), hn::Abs(atEnd));
+    const Vector range = hn::Add(
+      hn::Abs(pieces.Cubic[1]), hn::Add(hn::Abs(pieces.Cubic[2]), hn::Abs(pieces.Cubic[3])));
+    MediumBehavior<D> behavior = crossed.Behavior;
+    Vector count = GetCount(length, bend, range, behavior);
+    const std::uint32_t several = GetMaskBits(tag, hn::Gt(count, one)) & left;
+    if (several != 0)
+    {
+      refine(several, behavior);
+      count = GetCount(length, bend, range, behavior);
+    }
+    if (this->Light.JoinedLength > 0.0)
+    {
+      // Pieces are described one by one, and light changes along the way.
+      const Vector parts = hn::Mul(length,
+        hn::Max(hn::Set(tag, 1.0 / this->Light.JoinedLength),
+          hn::Mul(behavior.Extinction, hn::Set(tag, DepthFactor))));
+      count = hn::Max(count, hn::Min(hn::Ceil(parts), hn::Set(tag, MostPieces)));
+    }
+    HWY_ALIGN double counts[Width];
+    hn::Store(count, tag, counts);
+    int most = 1;
+    for (std::uint32_t lanes = left; lanes != 0; lanes &= lanes - 1)
+    {
+      most = std::max(most, static_cast<int>(counts[__builtin_ctz(lanes)]));
+    }
+    pieces.Part = hn::Div(one, count);
+    pieces.Length = hn::Mul(length, pieces.Part);
+    pieces.Place = pieces.Cubic[0];
+    const Located begin(pieces.Place);
+    for (std::uint32_t lanes = left; lanes != 0; lanes &= lanes - 1)
+    {
+      const int lane = __builtin_ctz(lanes);
+      this->Integrate(begin, lane).Store(pieces.Integral[lane]);
+    }
+    std::uint32_t ended = 0;
+    for (int number = 1; number <= most && left != 0; ++number)
+    {
+      ended |= this->Add(crossed, number, left, pieces);
+      left &= ~ended;
+    }
+    return ended;
+  }
+
+  /// Of pieces. `range`: of values, in bins.
+  static HWY_INLINE Vector GetCount(
+    Vector length, Vector bend, Vector range, const MediumBehavior<D>& behavior)
   {
     const D tag;
     const Vector curved =
-      hn::Mul(hn::Mul(length, bend), hn::Set(tag, this->Everywhere.Change * BendFactor));
-    const Vector deep = hn::Mul(length, hn::Set(tag, this->Everywhere.Extinction * DepthFactor));
-    return hn::AllTrue(tag, hn::Le(hn::Max(curved, deep), hn::Set(tag, 1.0)));
+      hn::Mul(hn::Mul(length, bend), hn::Mul(behavior.Change, hn::Set(tag, BendFactor)));
+    const Vector deep = hn::Mul(hn::Mul(length, behavior.Extinction),
+      hn::Mul(hn::Mul(behavior.Tinge, range), hn::Set(tag, ColorFactor)));
+    const Vector count = hn::Ceil(hn::Sqrt(hn::Max(curved, deep)));
+    return hn::Min(hn::Max(count, hn::Set(tag, 1.0)), hn::Set(tag, MostPieces));
   }
 
-  /// Of those of `lanes`. Returns the largest number.
-  HWY_INLINE int Count(const CrossedCells<D>& cells, Vector bend, Vector length,
-    std::uint32_t lanes, Pieces& pieces) const
+  /// What the function does between the corners of cells, of those of `lanes`.
+  HWY_INLINE void FindBehavior(
+    const Vector corners[8], std::uint32_t lanes, MediumBehavior<D>& found) const
   {
     const D tag;
-    Vector least = cells.Corners[0];
-    Vector largest = cells.Corners[0];
+    Vector least = corners[0];
+    Vector largest = corners[0];
     for (int corner = 1; corner < 8; ++corner)
     {
-      least = hn::Min(least, cells.Corners[corner]);
-      largest = hn::Max(largest, cells.Corners[corner]);
+      least = hn::Min(least, corners[corner]);
+      largest = hn::Max(largest, corners[corner]);
     }
     const Vector scale = hn::Set(tag, this->Function.GetScale());
     HWY_ALIGN double first[Width];
     HWY_ALIGN double last[Width];
-    HWY_ALIGN double bends[Width];
-    HWY_ALIGN double lengths[Width];
+    HWY_ALIGN double extinctions[Width];
+    HWY_ALIGN double changes[Width];
+    HWY_ALIGN double tinges[Width];
     hn::Store(hn::Mul(least, scale), tag, first);
     hn::Store(hn::Mul(largest, scale), tag, last);
-    hn::Store(bend, tag, bends);
-    hn::Store(length, tag, lengths);
-    double most = 0.0;
-    for (int lane = 0; lane < Width; ++lane)
+    hn::Store(found.Extinction, tag, extinctions);
+    hn::Store(found.Change, tag, changes);
+    hn::Store(found.Tinge, tag, tinges);
+    for (; lanes != 0; lanes &= lanes - 1)
     {
-      pieces.Part[lane] = 1.0;
-      if ((lanes >> lane & 1u) == 0)
-      {
-        continue;
-      }
+      const int lane = __builtin_ctz(lanes);
       const TransferFunction::Behavior behavior =
         this->Function.FindBehavior(first[lane], last[lane]);
-      // In IsOneEnough's order: what is one piece there is so here, too, whatever other lanes are.
-      const double curved = std::sqrt(lengths[lane] * bends[lane] * (behavior.Change * BendFactor));
-      const double deep = lengths[lane] * (behavior.Extinction * DepthFactor);
-      const double count = std::ceil(std::clamp(std::max(curved, deep), 1.0, MostPieces));
-      pieces.Part[lane] = 1.0 / count;
-      most = std::max(most, count);
+      extinctions[lane] = behavior.Extinction;
+      changes[lane] = behavior.Change;
+      tinges[lane] = behavior.Tinge;
     }
-    return static_cast<int>(most);
+    found = { hn::Load(tag, extinctions), hn::Load(tag, changes), hn::Load(tag, tinges) };
   }
 
-  /// Goes on to the places, in bins, where piece `number` ends, for those of `lanes` that have as many. Returns those
-  /// that are dark.
-  HWY_INLINE std::uint32_t Add(const CrossedCells<D>& cells, int number, const double* places,
-    std::uint32_t lanes, Pieces& pieces)
+  /// TransferFunction::Integrate, and what it says of the slope.
+  HWY_INLINE Row Integrate(const Located& places, int lane) const
+  {
+    const TransferFunction::Bin& bin = this->Table[places.Number[lane]];
+    const Row way(places.Way[lane]);
+    return Row(bin.Integral) + (Row(bin.Begin) + Row(0.5) * (Row(bin.Growth) * way)) * way;
+  }
+  HWY_INLINE Row GetSlope(const Located& places, int lane) const
+  {
+    const TransferFunction::Bin& bin = this->Table[places.Number[lane]];
+    return Row(bin.Begin) + Row(bin.Growth) * Row(places.Way[lane]);
+  }
+
+  /// Goes on to where piece `number` ends, for those of `lanes` that have as many. Returns those that are dark.
+  template <class Crossed>
+  HWY_INLINE std::uint32_t Add(
+    const Crossed& crossed, int number, std::uint32_t lanes, Pieces& pieces)
   {
     const D tag;
+    const Vector one = hn::Set(tag, 1.0);
+    const Vector begin = hn::Mul(hn::Set(tag, static_cast<double>(number - 1)), pieces.Part);
+    // The last one is the end, whatever rounding does.
+    const Vector end =
+      hn::Min(one, hn::Mul(hn::Set(tag, static_cast<double>(number)), pieces.Part));
+    lanes &= GetMaskBits(tag, hn::Le(begin, hn::Set(tag, 1.0 - 1e-9)));
+    const Vector inner = hn::Add(pieces.Cubic[2], hn::Mul(end, pieces.Cubic[3]));
+    const Vector places =
+      hn::Add(pieces.Cubic[0], hn::Mul(end, hn::Add(pieces.Cubic[1], hn::Mul(end, inner))));
+    const Vector way = hn::Sub(places, pieces.Place);
+    const Mask isShort = hn::Le(hn::Abs(way), hn::Set(tag, ShortWay));
+    const std::uint32_t shortOnes = GetMaskBits(tag, isShort);
+    HWY_ALIGN double factors[Width];
+    hn::Store(hn::IfThenElse(isShort, pieces.Length, hn::Div(pieces.Length, way)), tag, factors);
+    pieces.Place = places;
+    const Located located(places);
     Lanes amounts[Width];
     HWY_ALIGN double depths[Width];
     hn::Store(hn::Zero(tag), tag, depths);
@@ -213,65 +363,55 @@ private:
     for (; lanes != 0; lanes &= lanes - 1)
     {
       const int lane = __builtin_ctz(lanes);
-      if (static_cast<double>(number - 1) * pieces.Part[lane] > 1.0 - 1e-9)
-      {
-        continue;
-      }
-      Lanes slope;
-      const Lanes integral = this->Function.Integrate(places[lane], slope);
-      const double way = places[lane] - pieces.Place[lane];
-      const Lanes mean =
-        std::abs(way) > ShortWay ? (integral - pieces.Integral[lane]) * Lanes(1.0 / way) : slope;
-      amounts[lane] = mean * Lanes(pieces.Length[lane]);
+      const Row integral = this->Integrate(located, lane);
+      const Row growth = (shortOnes >> lane & 1) != 0 ? this->GetSlope(located, lane)
+                                                      : integral - Row(pieces.Integral[lane]);
+      (growth * Row(factors[lane])).Store(amounts[lane]);
+      integral.Store(pieces.Integral[lane]);
       depths[lane] = amounts[lane].High[1];
       some |= std::uint32_t{ depths[lane] > 0.0 } << lane;
-      pieces.Place[lane] = places[lane];
-      pieces.Integral[lane] = integral;
     }
     if (some == 0)
     {
       return 0;
     }
-    const Vector one = hn::Set(tag, 1.0);
     const Vector depth = hn::Load(tag, depths);
     const Vector passed = GetTransmittance(depth);
     // (1 - exp(-depth)) / depth
     const Vector thin = hn::Sub(one, hn::Mul(hn::Set(tag, 0.5), depth));
     const Vector seen = hn::IfThenElse(
       hn::Lt(depth, hn::Set(tag, MediumLight::Thin)), thin, hn::Div(hn::Sub(one, passed), depth));
+    const Vector distance = hn::Sub(crossed.Exit, crossed.Enter);
     HWY_ALIGN double passes[Width];
     HWY_ALIGN double parts[Width];
+    HWY_ALIGN double begins[Width];
+    HWY_ALIGN double ends[Width];
     hn::Store(passed, tag, passes);
     hn::Store(seen, tag, parts);
-    HWY_ALIGN double enter[Width];
-    HWY_ALIGN double exit[Width];
-    hn::Store(cells.Enter, tag, enter);
-    hn::Store(cells.Exit, tag, exit);
+    hn::Store(hn::Add(crossed.Enter, hn::Mul(distance, begin)), tag, begins);
+    hn::Store(hn::Add(crossed.Enter, hn::Mul(distance, end)), tag, ends);
     std::uint32_t ended = 0;
     for (; some != 0; some &= some - 1)
     {
       const int lane = __builtin_ctz(some);
-      const int ray = static_cast<int>(cells.Ray[lane]);
-      const auto getT = [&](int end)
-      { return enter[lane] + (exit[lane] - enter[lane]) * (end * pieces.Part[lane]); };
+      const int ray = static_cast<int>(crossed.Ray[lane]);
       if (this->Light.KeepsPieces)
       {
-        this->Light.Keep(ray, getT(number - 1), getT(number), amounts[lane], passes[lane]);
+        this->Light.Keep(ray, begins[lane], ends[lane], amounts[lane], passes[lane]);
       }
-      // The first one that a ray meets.
-      if (!(this->Light.First[ray] < enter[lane]))
-      {
-        this->Light.First[ray] = std::min(this->Light.First[ray], getT(number - 1));
-      }
-      this->Light.Blend(ray, amounts[lane], passes[lane], parts[lane]);
+      this->Light.First[ray] = std::min(this->Light.First[ray], begins[lane]);
+      double& transmittance = this->Light.Transmittance[ray];
+      Lanes& sum = this->Light.GetSum(ray);
+      (Row(sum) + Row(amounts[lane]) * Row(transmittance * parts[lane])).Store(sum);
+      transmittance *= passes[lane];
       ended |= std::uint32_t{ this->Light.IsDark(ray) } << lane;
     }
     return ended;
   }
 
   const TransferFunction& Function;
+  const TransferFunction::Bin* Table;
   MediumLight& Light;
-  const TransferFunction::Behavior Everywhere;
 };
 
 } // namespace HWY_NAMESPACE

@@ -14,6 +14,14 @@ struct PacketPart
   std::uint64_t Macrocells; ///< those that may hold the surface
   std::uint64_t Known;      ///< those of which Cells tells something
   std::uint64_t Cells[64];  ///< of each macrocell: those that have corners on both sides
+  ///@{
+  /// Of media: TransferFunction::Behavior in each macrocell.
+  double Extinction[64];
+  double Change[64];
+  double Tinge[64];
+  ///@}
+  /// Those of Known in which values bend so little that rays may go through them as a whole; see TransferTest.
+  std::uint64_t Smooth;
 };
 
 /// What a packet asks of a brick and an isovalue, whatever the type of the samples. Coordinates are
@@ -22,6 +30,7 @@ class PacketBrick
 {
 public:
   virtual int GetMacrocells(int axis) const = 0;
+  virtual int GetCells(int axis) const = 0;
 
   /// The macrocells from 4 part on. Valid until the next call.
   virtual const PacketPart& FindPart(const int part[3]) const = 0;

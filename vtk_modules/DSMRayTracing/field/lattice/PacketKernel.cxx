@@ -13,6 +13,7 @@
 #include "DSMRayTracing/field/lattice/MacrocellComparison-inl.h"
 #include "DSMRayTracing/field/lattice/MediumCells-inl.h"
 #include "DSMRayTracing/field/lattice/NodePath-inl.h"
+#include "DSMRayTracing/field/lattice/Roughness-inl.h"
 #include "DSMRayTracing/field/lattice/SurfaceCells-inl.h"
 
 #include <hwy/highway.h>
@@ -222,7 +223,7 @@ PacketKernel Create(const char* name, const MacrocellKernel& macrocells)
 {
   return { name, PacketSteps<D>::Width, &PacketSteps<D>::SetRays, &PacketSteps<D>::MeetBrick,
     &PacketSteps<D>::SearchBrick, &PacketSteps<D>::FindOccluded, &PacketSteps<D>::CountCrossings,
-    &PacketSteps<D>::March, macrocells };
+    &PacketSteps<D>::March, &Roughness<PacketSteps<D>::Width>::Find, macrocells };
 }
 
 PacketKernel CreateWide()

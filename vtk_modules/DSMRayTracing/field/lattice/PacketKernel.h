@@ -5,6 +5,7 @@
 #include "DSMBricks/base/Box.h"
 #include "DSMRayTracing/field/lattice/IndexSpace.h"
 #include "DSMRayTracing/field/lattice/MacrocellKernel.h"
+#include "DSMRayTracing/field/lattice/MacrocellSamples.h"
 #include "DSMRayTracing/field/lattice/PacketBrick.h"
 #include "DSMRayTracing/look/TransferFunction.h"
 #include "DSMRayTracing/ray/MediumLight.h"
@@ -52,6 +53,9 @@ struct PacketKernel
   /// First subtracted. Returns those that are dark then.
   RayPacket::Mask (*March)(const RayPacket& packet, RayPacket::Mask rays, const PacketBrick& brick,
     const double origin[3], const TransferFunction& function, MediumLight& light);
+
+  /// Of finite samples: how much the values along a line can bend, see Roughness.
+  double (*FindRoughness)(const MacrocellSamples& samples);
 
   /// For TypedPacketBrick.
   MacrocellKernel Macrocells;

@@ -79,6 +79,8 @@ template <class D>
 class FirstCrossings
 {
 public:
+  static constexpr bool TakesMacrocells = false;
+
   /// `crossings` is null when only those rays that meet the surface are asked for, not where.
   explicit FirstCrossings(CellCrossings* crossings)
     : Crossings(crossings)
@@ -126,6 +128,8 @@ template <class D>
 class CrossingCounts
 {
 public:
+  static constexpr bool TakesMacrocells = false;
+
   explicit CrossingCounts(int* counts)
     : Counts(counts)
   {

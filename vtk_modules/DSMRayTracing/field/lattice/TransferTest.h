@@ -6,6 +6,8 @@
 #include "DSMBricks/layout/VoxelBrick.h"
 #include "DSMRayTracing/base/Lanes.h"
 #include "DSMRayTracing/field/lattice/NodeOrder.h"
+#include "DSMRayTracing/field/lattice/PacketBrick.h"
+#include "DSMRayTracing/field/lattice/PacketKernel.h"
 #include "DSMRayTracing/look/TransferFunction.h"
 
 #include <cstddef>
@@ -37,8 +39,11 @@ template <class T>
 class TransferTest
 {
 public:
-  explicit TransferTest(const TransferFunction& function)
+  /// `cellLength`: the longest way through a cell, in world space.
+  TransferTest(const TransferFunction& function, const PacketKernel& kernel, double cellLength)
     : Function(function)
+    , Kernel(kernel)
+    , CellLength(cellLength)
   {
   }
 
@@ -66,6 +71,33 @@ public:
     return GetNodeBox(counts);
   }
 
+  /// Tells what is known of a macrocell of the part: also, whether the value along any ray in it is as good as quadratic.
+  /// The trilinear values in between are away from that by what they are away from any smooth curve, which is an eighth of
+  /// how much they bend in a cell.
+  void Describe(const bricks::VoxelBrick<T>& brick, const int first[3], const int counts[3],
+    int macrocell, PacketPart& part) const
+  {
+    constexpr int edge = bricks::MacrocellEdge;
+    const bricks::MacrocellRange<T>& range = brick.GetMacrocellRanges()[first[0] / edge +
+      brick.GetMacrocells(0) * (first[1] / edge + brick.GetMacrocells(1) * (first[2] / edge))];
+    const double scale = this->Function.GetScale();
+    const auto getPlace = [&](T value)
+    { return (static_cast<double>(value) - this->Function.GetFirst()) * scale; };
+    const TransferFunction::Behavior behavior =
+      this->Function.FindBehavior(getPlace(range.Min), getPlace(range.Max));
+    part.Extinction[macrocell] = behavior.Extinction;
+    part.Change[macrocell] = behavior.Change;
+    part.Tinge[macrocell] = behavior.Tinge;
+    const double factor = edge * this->CellLength * behavior.Change * scale * 0.125;
+    if (brick.GetHeader().MaskOffset == 0)
+    {
+      MacrocellSamples samples;
+      const bool isSmooth = samples.Set(brick, first, counts) &&
+        factor * this->Kernel.FindRoughness(samples) <= Tolerance;
+      part.Smooth |= std::uint64_t{ isSmooth } << macrocell;
+    }
+  }
+
   double GetSubtracted() const { return this->Function.GetFirst(); }
   Lanes::Half SubtractPair(const T* samples) const
   {
@@ -74,7 +106,12 @@ public:
   }
 
 private:
+  /// Of optical depth, in a macrocell.
+  static constexpr double Tolerance = 1.0 / 2048.0;
+
   const TransferFunction& Function;
+  const PacketKernel& Kernel;
+  double CellLength;
 };
 
 } // namespace rt

@@ -39,11 +39,13 @@ public:
   }
 
   int GetMacrocells(int axis) const override { return this->Brick.GetMacrocells(axis); }
+  int GetCells(int axis) const override { return this->Brick.GetCells(axis); }
 
   const PacketPart& FindPart(const int part[3]) const override
   {
     this->Part.Macrocells = this->Order.TurnAll(this->ComparePart(part));
     this->Part.Known = 0;
+    this->Part.Smooth = 0;
     return this->Part;
   }
 
@@ -53,7 +55,14 @@ public:
     const int first[3] = { bricks::MacrocellEdge * (4 * part[0] + (number & 3)),
       bricks::MacrocellEdge * (4 * part[1] + (number >> 2 & 3)),
       bricks::MacrocellEdge * (4 * part[2] + (number >> 4)) };
-    this->Part.Cells[macrocell] = this->Order.TurnAll(this->CompareCells(first));
+    int counts[3];
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      counts[axis] = std::min(bricks::MacrocellEdge, this->Brick.GetCells(axis) - first[axis]);
+    }
+    this->Part.Cells[macrocell] =
+      this->Order.TurnAll(this->Test.FindCells(this->Brick, first, counts));
+    this->Test.Describe(this->Brick, first, counts, macrocell, this->Part);
     this->Part.Known |= std::uint64_t{ 1 } << macrocell;
   }
 
@@ -125,16 +134,6 @@ private:
       check += two * 0.0;
     }
     return std::is_integral_v<T> || check[0] + check[1] == 0.0;
-  }
-
-  std::uint64_t CompareCells(const int first[3]) const
-  {
-    int counts[3];
-    for (int axis = 0; axis < 3; ++axis)
-    {
-      counts[axis] = std::min(bricks::MacrocellEdge, this->Brick.GetCells(axis) - first[axis]);
-    }
-    return this->Test.FindCells(this->Brick, first, counts);
   }
 
   const bricks::VoxelBrick<T>& Brick;

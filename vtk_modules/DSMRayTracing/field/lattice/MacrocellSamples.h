@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef rt_MacrocellSamples_h
+#define rt_MacrocellSamples_h
+
+#include "DSMBricks/layout/VoxelBrick.h"
+
+#include <algorithm>
+#include <type_traits>
+
+namespace rt
+{
+
+/// The samples of a macrocell, less the first of them, with room for vectors.
+struct MacrocellSamples
+{
+  static constexpr int Edge = bricks::MacrocellEdge + 1;
+  static constexpr int RowLength = 10; ///< so that 8 can be read from each of the first three
+
+  int Counts[3]; ///< of cells
+  float Values[Edge][Edge][RowLength] = {};
+
+  /// Of cells from `first` on. Returns false where a sample is not finite.
+  template <class T>
+  bool Set(const bricks::VoxelBrick<T>& brick, const int first[3], const int counts[3])
+  {
+    std::copy_n(counts, 3, this->Counts);
+    const T origin = brick.GetSample(first[0], first[1], first[2]);
+    float check = 0.0f;
+    for (int z = 0; z <= counts[2]; ++z)
+    {
+      for (int y = 0; y <= counts[1]; ++y)
+      {
+        const T* const from =
+          brick.GetSamples() + brick.GetOffset(first[0], first[1] + y, first[2] + z);
+        float* const to = this->Values[z][y];
+        // A loop of known length is one of vectors.
+        if (counts[0] == Edge - 1)
+        {
+          Copy(from, origin, Edge, to);
+        }
+        else
+        {
+          Copy(from, origin, counts[0] + 1, to);
+        }
+        for (int x = 0; x < Edge; ++x)
+        {
+          check += to[x] * 0.0f;
+        }
+      }
+    }
+    return std::is_integral_v<T> || check == 0.0f;
+  }
+
+private:
+  template <class T>
+  [[gnu::always_inline]] static void Copy(const T* from, T origin, int count, float* to)
+  {
+    for (int x = 0; x < count; ++x)
+    {
+      if constexpr (sizeof(T) < 4 || std::is_same_v<T, float>)
+      {
+        to[x] = static_cast<float>(from[x]) - static_cast<float>(origin);
+      }
+      else
+      {
+        to[x] = static_cast<float>(static_cast<double>(from[x]) - static_cast<double>(origin));
+      }
+    }
+  }
+};
+
+} // namespace rt
+
+#endif
