@@ -8,6 +8,7 @@ std::vector<RecordedScene> CreateRecordedScenes()
   AddMeshScenes(scenes);
   AddLightScenes(scenes);
   AddMediumScenes(scenes);
+  AddSliceScenes(scenes);
   AddFrameScenes(scenes);
   return scenes;
 }

@@ -21,6 +21,8 @@ struct RecordedScene
 void AddVolumeScenes(std::vector<RecordedScene>& scenes);
 /// Media: types, shapes, transfer functions, media in one another and with surfaces, and the light that gets through.
 void AddMediumScenes(std::vector<RecordedScene>& scenes);
+/// Planes through volumes: types, shapes, looks, clip regions, and with isosurfaces and media.
+void AddSliceScenes(std::vector<RecordedScene>& scenes);
 /// Meshes from all sides, and what can be painted on them.
 void AddMeshScenes(std::vector<RecordedScene>& scenes);
 /// Lights, shadows, light from all around, mirrors.

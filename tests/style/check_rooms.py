@@ -30,7 +30,8 @@ ROOMS = {
     "vtk_modules/DSMCore": ["base", "transport", "memory", "publish", "fetch", "table", "paged", "store"],
     "vtk_modules/DSMBricks": ["base", "accel", "layout", "sorted", "build", "sample"],
     "vtk_modules/DSMRayTracing": [
-        "base", "ray", "look", "object", "field", "surface", "medium", "mesh", "light", "scene", "schedule", "frame",
+        "base", "ray", "look", "object", "field", "surface", "slice", "medium", "mesh", "light", "scene", "schedule",
+        "frame",
     ],
     "vtk_modules/DSMVolumeFiles": ["base", "codec", "format", "cache", "range", "write"],
     "vtk_modules/RenderingDSM": ["base", "options", "ranks", "file", "data", "frame", "scene", "mapper"],

@@ -4,6 +4,7 @@
 
 #include "DSMRayTracing/field/lattice/LatticeField.h"
 #include "DSMRayTracing/mesh/MeshObject.h"
+#include "DSMRayTracing/slice/SliceOf.h"
 #include "DSMRayTracing/surface/IsosurfaceOf.h"
 
 #include <variant>
@@ -12,12 +13,13 @@ namespace rt
 {
 
 using LatticeIsosurface = IsosurfaceOf<LatticeField>;
+using LatticeSlice = SliceOf<LatticeField>;
 
 /// The table of the kinds of objects. A kind has
 /// - a description, named here, with IsOpaque, AddTo and the name of
 /// - its Tracer, an ObjectTracer for a store, whose header CreateSceneTracers includes.
 /// Of surfaces that are equally near, that of the kind that comes first here is seen.
-using SceneObject = std::variant<LatticeIsosurface, MeshObject>;
+using SceneObject = std::variant<LatticeIsosurface, MeshObject, LatticeSlice>;
 
 } // namespace rt
 

@@ -4,12 +4,14 @@
 
 #include "DSMRayTracing/field/lattice/LatticeMedia.h"
 #include "DSMRayTracing/field/lattice/LatticeSampler.h"
+#include "DSMRayTracing/field/lattice/LatticeSections.h"
 #include "DSMRayTracing/field/lattice/LatticeSurfaces.h"
 #include "DSMRayTracing/mesh/MeshTracer.h"
 #include "DSMRayTracing/object/BeamFinder.h"
 #include "DSMRayTracing/object/MediumTracer.h"
 #include "DSMRayTracing/object/ObjectTracer.h"
 #include "DSMRayTracing/scene/Scene.h"
+#include "DSMRayTracing/slice/SliceTracer.h"
 #include "DSMRayTracing/surface/IsosurfaceTracer.h"
 
 #include <cstddef>

@@ -17,6 +17,19 @@ bool IsosurfaceLook::IsOpaque() const
       [](float opacity) { return opacity >= 1.0f; });
 }
 
+bool IsosurfaceLook::HasOpaqueColors(bool hasHoles) const
+{
+  switch (this->ColoredBy)
+  {
+    case Coloring::Values:
+      return this->Colors.IsOpaque();
+    case Coloring::OpaqueColors:
+      return !hasHoles || this->Colors.NotANumber.w >= 1.0f;
+    default:
+      return false;
+  }
+}
+
 bool IsosurfaceLook::IsSeen() const
 {
   const auto isSeen = [this](const Material* side)

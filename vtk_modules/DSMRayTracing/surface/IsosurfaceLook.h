@@ -43,6 +43,8 @@ struct IsosurfaceLook
 
   /// Whether the surfaces let no light through anywhere, but for what colors them.
   bool IsOpaque() const;
+  /// Whether what colors the surfaces lets no light through anywhere. `hasHoles`: it has places without a color.
+  bool HasOpaqueColors(bool hasHoles) const;
   /// Whether any part of the surfaces is seen at all.
   bool IsSeen() const;
   /// Whether all of a surface, and both of its sides, look alike, but for what colors it.

@@ -41,7 +41,8 @@ struct IsosurfaceOf : LevelSets<FieldType>
   /// Whether they let no light through anywhere.
   bool IsOpaque() const
   {
-    return this->Look.IsOpaque() && (!this->ColorValues || this->HasOpaqueColors());
+    return this->Look.IsOpaque() &&
+      (!this->ColorValues || this->Look.HasOpaqueColors(FieldType::HasHoles(*this->ColorValues)));
   }
 
   /// GetSheetTransmittance for each isovalue. Empty where it is not the same all over a surface and on both of
@@ -79,20 +80,6 @@ struct IsosurfaceOf : LevelSets<FieldType>
     }
     this->Look.AddTo(digest);
     digest.Add(this->Clipping);
-  }
-
-private:
-  bool HasOpaqueColors() const
-  {
-    switch (this->Look.ColoredBy)
-    {
-      case IsosurfaceLook::Coloring::Values:
-        return this->Look.Colors.IsOpaque();
-      case IsosurfaceLook::Coloring::OpaqueColors:
-        return !FieldType::HasHoles(*this->ColorValues) || this->Look.Colors.NotANumber.w >= 1.0f;
-      default:
-        return false;
-    }
   }
 };
 

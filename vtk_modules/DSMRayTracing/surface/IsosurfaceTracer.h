@@ -5,6 +5,7 @@
 #include "DSMRayTracing/field/IsosurfaceHit.h"
 #include "DSMRayTracing/object/ObjectTracer.h"
 #include "DSMRayTracing/surface/IsosurfaceOf.h"
+#include "DSMRayTracing/surface/ValueColors.h"
 
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
@@ -108,7 +109,8 @@ public:
     glm::vec4 colors[MaxRays];
     if (this->Object.ColorValues)
     {
-      this->FindColors(places, uncolored, colors);
+      FindValueColors(
+        this->Values, *this->Object.ColorValues, look, false, places, uncolored, colors);
     }
     ForEachRay(wanted,
       [&](int index)
@@ -145,29 +147,6 @@ public:
 private:
   /// Of the shortest edge of a cell. Roots are found to 1e-7 of the way through a cell.
   static constexpr double ClearancePart = 1e-4;
-
-  /// Where the field has no data, the color of what is not a number.
-  void FindColors(const Place* places, RayMask wanted, glm::vec4* colors) const
-  {
-    const auto& values = *this->Object.ColorValues;
-    const ColorMap& map = this->Object.Look.Colors;
-    if (this->Object.Look.ColoredBy != IsosurfaceLook::Coloring::Values)
-    {
-      const RayMask found = this->Values.FindColors(values, places, wanted, colors);
-      ForEachRay(wanted & ~found, [&](int index) { colors[index] = map.NotANumber; });
-      return;
-    }
-    double numbers[MaxRays];
-    if (map.Categories) // between categories, there is nothing
-    {
-      this->Values.FindNearestValues(values, places, wanted, numbers);
-    }
-    else
-    {
-      this->Values.FindValues(values, places, wanted, numbers);
-    }
-    ForEachRay(wanted, [&](int index) { colors[index] = map.Map(numbers[index]); });
-  }
 
   const IsosurfaceOf<FieldType>& Object;
   typename FieldType::template Surfaces<Store> Surfaces;

@@ -22,6 +22,7 @@ template <class Store>
 class LatticeSampler;
 template <class Store>
 class LatticeSurfaces;
+class LatticeSections;
 
 /// Values at the points of a uniform lattice, in bricks of voxels, and where they are in the world. A kind of field:
 /// IsosurfaceOf says what one has to offer.
@@ -36,6 +37,7 @@ struct LatticeField
   using Surfaces = LatticeSurfaces<Store>;
   template <class Store>
   using Media = LatticeMedia<Store>;
+  using Sections = LatticeSections;
 
   /// Point index space (sample (i,j,k) at (i,j,k) of the lattice) to world; affine, invertible.
   glm::dmat4 IndexToWorld{ 1.0 };

@@ -29,12 +29,13 @@ public:
   {
   }
 
-  /// NaN where there are no data; infinite between infinite values of one sign.
-  void FindValues(const bricks::VoxelField& field, const LatticePlace* places, RayMask wanted,
+  /// NaN where there are no data; infinite between infinite values of one sign. Returns the places that are in cells that
+  /// are there, whatever the values of these.
+  RayMask FindValues(const bricks::VoxelField& field, const LatticePlace* places, RayMask wanted,
     double* values) const;
 
   /// The same, but of points the value of the nearest one in the cell that FindValues takes.
-  void FindNearestValues(const bricks::VoxelField& field, const LatticePlace* places,
+  RayMask FindNearestValues(const bricks::VoxelField& field, const LatticePlace* places,
     RayMask wanted, double* values) const;
 
   /// How fast the trilinear value grows on each axis of the index space, in cells that hold data.
@@ -61,7 +62,7 @@ private:
 
   /// `evaluate(corners, local)`: of the values at a cell's corners, and where in it the point is; NaN without data.
   template <class Evaluate>
-  void FindValues(const bricks::VoxelField& field, const LatticePlace* places, RayMask wanted,
+  RayMask FindValues(const bricks::VoxelField& field, const LatticePlace* places, RayMask wanted,
     double* values, const Evaluate& evaluate) const;
 
   Store& Blocks;

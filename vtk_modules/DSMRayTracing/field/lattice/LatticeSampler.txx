@@ -146,10 +146,11 @@ void LatticeSampler<Store>::VisitPlaces(const bricks::VoxelField& field, const L
 
 template <class Store>
 template <class Evaluate>
-void LatticeSampler<Store>::FindValues(const bricks::VoxelField& field, const LatticePlace* places,
-  RayMask wanted, double* values, const Evaluate& evaluate) const
+RayMask LatticeSampler<Store>::FindValues(const bricks::VoxelField& field,
+  const LatticePlace* places, RayMask wanted, double* values, const Evaluate& evaluate) const
 {
   const bool ofCells = field.Lattice.IsOfCells();
+  RayMask found = 0;
   bricks::Dispatch(field.Lattice.GetScalarType(),
     [&](auto sample)
     {
@@ -163,6 +164,7 @@ void LatticeSampler<Store>::FindValues(const bricks::VoxelField& field, const La
             T value;
             if (reader.GetCell(places[index].GetCell(), value))
             {
+              found |= GetBit(index);
               values[index] = static_cast<double>(value);
             }
             return;
@@ -173,6 +175,7 @@ void LatticeSampler<Store>::FindValues(const bricks::VoxelField& field, const La
           if (reader.FindCorners(point, corners, local) ||
             reader.FindCorners(point, corners, local, Corners::Any))
           {
+            found |= GetBit(index);
             double numbers[8];
             std::transform(
               corners, corners + 8, numbers, [](T value) { return static_cast<double>(value); });
@@ -180,20 +183,21 @@ void LatticeSampler<Store>::FindValues(const bricks::VoxelField& field, const La
           }
         });
     });
+  return found;
 }
 
 template <class Store>
-void LatticeSampler<Store>::FindValues(
+RayMask LatticeSampler<Store>::FindValues(
   const bricks::VoxelField& field, const LatticePlace* places, RayMask wanted, double* values) const
 {
-  this->FindValues(field, places, wanted, values, EvaluateWithInfinite);
+  return this->FindValues(field, places, wanted, values, EvaluateWithInfinite);
 }
 
 template <class Store>
-void LatticeSampler<Store>::FindNearestValues(
+RayMask LatticeSampler<Store>::FindNearestValues(
   const bricks::VoxelField& field, const LatticePlace* places, RayMask wanted, double* values) const
 {
-  this->FindValues(field, places, wanted, values, EvaluateNearest);
+  return this->FindValues(field, places, wanted, values, EvaluateNearest);
 }
 
 template <class Store>

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef rt_LatticeSections_h
+#define rt_LatticeSections_h
+
+#include "DSMBricks/layout/VoxelField.h"
+#include "DSMCore/base/Block.h"
+#include "DSMRayTracing/field/PlaneSections.h"
+#include "DSMRayTracing/field/lattice/GridRay.h"
+#include "DSMRayTracing/field/lattice/IndexSpace.h"
+#include "DSMRayTracing/field/lattice/LatticePlace.h"
+#include "DSMRayTracing/object/ObjectBeam.h"
+#include "DSMRayTracing/ray/Ray.h"
+
+#include <glm/vec3.hpp>
+
+#include <algorithm>
+#include <cstddef>
+#include <vector>
+
+namespace rt
+{
+
+struct LatticeField;
+
+/// The sections of planes through a lattice: where rays meet them, and the bricks that they pass through. Reads no
+/// bricks. Any number of threads may ask.
+class LatticeSections
+{
+public:
+  using Line = GridRay;
+  using Hit = SectionHit<LatticePlace>;
+
+  /// Keeps both by reference.
+  LatticeSections(const LatticeField& field, const std::vector<SectionPlane>& planes);
+
+  /// The ray in the lattice's index space; false where it cannot be traced.
+  bool GetLine(const Ray& ray, Line& line) const { return this->Space.GetGridRay(ray, line); }
+
+  /// Finds the first place in [ray.Min, ray.Max], behind the one that `hit` has, where the ray meets a plane within the
+  /// lattice's box. Of places that are equally near, that of the first plane comes first. Returns whether there is one.
+  bool FindNext(const Ray& ray, const Line& line, Hit& hit) const;
+
+  /// The bricks that the planes pass through within a beam.
+  struct Beam final : ObjectBeam
+  {
+    bool IsKnown = true;              ///< false: rays may meet other bricks, too
+    std::vector<dsm::BlockId> Bricks; ///< plane by plane, from the nearest one
+
+    bool MayMeet() const override { return !this->IsKnown || !this->Bricks.empty(); }
+    /// Tells that a ray has come to a brick.
+    void Reach(dsm::BlockId brick)
+    {
+      const auto begin = this->Bricks.begin() + static_cast<std::ptrdiff_t>(this->Reached);
+      const auto found = std::find(begin, this->Bricks.end(), brick);
+      this->Reached +=
+        found == this->Bricks.end() ? 0 : static_cast<std::size_t>(found - begin) + 1;
+    }
+  };
+  /// Of the rays between those of `corners`, in order around them.
+  Beam FindBeam(const Ray corners[4]) const;
+
+private:
+  /// A plane in index space: the points x with dot(Normal, x) == Offset.
+  struct IndexPlane
+  {
+    glm::dvec3 Normal; ///< its largest component is 1 or -1
+    double Offset;
+    int Steepest;      ///< the axis of this component
+    bool IsAlongAxes;  ///< the others are 0
+    double Coordinate; ///< on that axis, then; a whole number where the plane goes through samples
+  };
+
+  struct Box
+  {
+    glm::dvec3 Lower;
+    glm::dvec3 Upper;
+  };
+
+  bool FindPlace(const Line& line, double t, const IndexPlane& plane, LatticePlace& place) const;
+  void AddBricks(const IndexPlane& plane, const Box& box, std::vector<dsm::BlockId>& bricks) const;
+
+  const bricks::VoxelField& Voxels;
+  const std::vector<SectionPlane>& Planes;
+  IndexSpace Space;
+  std::vector<IndexPlane> IndexPlanes;
+};
+
+} // namespace rt
+
+#endif
