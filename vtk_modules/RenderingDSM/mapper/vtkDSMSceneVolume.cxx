@@ -122,10 +122,11 @@ bool vtkDSMSceneVolume::NeedsRanks(const vtkDSMRankGroup& group, bool wantsCoars
     lacksLevels(this->Color) || this->LacksSuggestion();
 }
 
-/// What was a medium before has none.
+/// What was a medium, or slices, before has none.
 bool vtkDSMSceneVolume::LacksSuggestion() const
 {
-  return this->Iso && !this->GetLook().IsMedium() && !(this->SuggestedFor == this->Iso->Choice);
+  return this->Iso && this->GetLook().HasIsosurfaces() &&
+    !(this->SuggestedFor == this->Iso->Choice);
 }
 
 bool vtkDSMSceneVolume::Published::IsOf(
@@ -297,16 +298,18 @@ void vtkDSMSceneVolume::Update(const std::shared_ptr<vtkDSMRankGroup>& group, bo
   const std::shared_ptr<Published> oldColor = this->Color;
   const unsigned version = group->GetRetryVersion();
   const std::vector<vtkDSMVolumeData::Choice> shown = this->GetLook().GetShown();
-  const bool isMedium = this->GetLook().IsMedium();
-  this->Iso = this->Require(
-    shown.front(), isMedium ? "volume's array" : "isosurface array", version, { oldIso, oldColor });
+  const bool hasIsosurfaces = this->GetLook().HasIsosurfaces();
+  const char* const purpose = hasIsosurfaces ? "isosurface array"
+    : this->GetLook().IsMedium()             ? "volume's array"
+                                             : "array of the slices";
+  this->Iso = this->Require(shown.front(), purpose, version, { oldIso, oldColor });
   if (this->GetLook().TakesPointsForCells())
   {
     this->Messages.push_back(
       "The scalar mode asks for cell data, but isosurfaces and volumes need values at the "
       "points; those are taken. Use vtkCellDataToPointData.");
   }
-  if (this->LacksSuggestion() || (this->Iso != oldIso && !isMedium))
+  if (this->LacksSuggestion() || (this->Iso != oldIso && hasIsosurfaces))
   {
     this->SuggestIsovalue(group->GetMessenger());
   }
@@ -433,19 +436,23 @@ void vtkDSMSceneVolume::SuggestIsovalue(dsm::Messenger& messenger)
   this->Mapper->SetSuggestedIsoValue(this->Suggested.value_or(vtkMath::Nan()));
 }
 
-void vtkDSMSceneVolume::SetColors(std::size_t lattice, rt::LatticeIsosurface& object)
+void vtkDSMSceneVolume::SetColors(
+  std::size_t lattice, std::shared_ptr<const bricks::VoxelField>& values, rt::IsosurfaceLook& look)
 {
   using Coloring = rt::IsosurfaceLook::Coloring;
-  object.ColorValues = this->Color->GetFields()[lattice];
+  // Slices alone are colored by the array that they are of.
+  const std::shared_ptr<Published>& color = this->Color ? this->Color : this->Iso;
+  const auto level = static_cast<std::size_t>(std::min(this->GetCoarser(), this->CountCoarser()));
+  values =
+    level > 0 ? color->Coarser->Levels[level - 1][lattice].Field : color->GetFields()[lattice];
   if (this->Mapper->GetLookupTable())
   {
-    object.Look.Colors = *this->SampleColors(this->Mapper->GetLookupTable());
+    look.Colors = *this->SampleColors(this->Mapper->GetLookupTable());
   }
-  if (this->Color->Choice.Component == vtkDSMImagePiece::Color)
+  if (color->Choice.Component == vtkDSMImagePiece::Color)
   {
-    object.Look.ColoredBy = this->Data->GetArrays().HasOpacity(this->Color->Choice)
-      ? Coloring::Colors
-      : Coloring::OpaqueColors;
+    look.ColoredBy =
+      this->Data->GetArrays().HasOpacity(color->Choice) ? Coloring::Colors : Coloring::OpaqueColors;
   }
 }
 
@@ -541,6 +548,7 @@ void vtkDSMSceneVolume::AddMedia(const vtkDSMVolumeLook& look, rt::Scene& scene)
       scene.Media.push_back(std::move(medium));
     }
   }
+  this->AddCaps(look, dataToWorld, scene);
 }
 
 void vtkDSMSceneVolume::AddTo(rt::Scene& scene)
@@ -555,6 +563,16 @@ void vtkDSMSceneVolume::AddTo(rt::Scene& scene)
     this->AddMedia(look, scene);
     return;
   }
+  this->Prop->ComputeMatrix();
+  const glm::dmat4 dataToWorld = vtkDSMTranslation::ToMatrix(this->Prop->GetMatrix());
+  if (this->Mapper->GetSlicing())
+  {
+    this->AddSlices(look, dataToWorld, scene);
+  }
+  if (!look.HasIsosurfaces())
+  {
+    return;
+  }
   const std::vector<double> isovalues = look.GetIsovalues(this->Suggested, this->Messages);
   if (!look.IsLikeRayCastMapper() && this->Mapper->GetNumberOfIsoValues() == 0 &&
     this->Mapper->GetAutomaticIsoValue() && !this->Suggested && !this->Iso->GetFields().empty())
@@ -567,8 +585,6 @@ void vtkDSMSceneVolume::AddTo(rt::Scene& scene)
   {
     return;
   }
-  this->Prop->ComputeMatrix();
-  const glm::dmat4 dataToWorld = vtkDSMTranslation::ToMatrix(this->Prop->GetMatrix());
   const rt::ClipRegion clipping = look.GetClipRegion(dataToWorld);
   // A property's transfer functions may give each isovalue a look of its own.
   std::vector<std::vector<double>> groups;
@@ -583,7 +599,6 @@ void vtkDSMSceneVolume::AddTo(rt::Scene& scene)
   {
     groups.push_back(isovalues);
   }
-  const auto level = static_cast<std::size_t>(std::min(this->GetCoarser(), this->CountCoarser()));
   const bool colored = this->Color && !this->Color->GetFields().empty();
   for (std::size_t lattice = 0; lattice < this->Data->GetNumberOfLattices(); ++lattice)
   {
@@ -602,13 +617,10 @@ void vtkDSMSceneVolume::AddTo(rt::Scene& scene)
       object.Clipping = clipping;
       if (colored && this->Color->GetFields()[lattice])
       {
-        this->SetColors(lattice, object);
-        if (level > 0)
-        {
-          object.ColorValues = this->Color->Coarser->Levels[level - 1][lattice].Field;
-        }
+        this->SetColors(lattice, object.ColorValues, object.Look);
       }
       scene.Objects.push_back(std::move(object));
     }
   }
+  this->AddCaps(look, dataToWorld, isovalues, scene);
 }

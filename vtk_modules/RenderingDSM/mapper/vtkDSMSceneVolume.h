@@ -70,7 +70,19 @@ private:
   /// At the level of detail that is shown.
   rt::LatticeField GetField(std::size_t lattice, const glm::dmat4& dataToWorld) const;
   void AddMedia(const vtkDSMVolumeLook& look, rt::Scene& scene);
-  void SetColors(std::size_t lattice, rt::LatticeIsosurface& object);
+  /// Sets the colors of a surface by the color array, at the level of detail that is shown.
+  void SetColors(std::size_t lattice, std::shared_ptr<const bricks::VoxelField>& values,
+    rt::IsosurfaceLook& look);
+  /// Slices alone, or with isosurfaces.
+  void AddSlices(const vtkDSMVolumeLook& look, const glm::dmat4& dataToWorld, rt::Scene& scene);
+  /// The faces that clipping planes cut out of isosurfaces of these values, which ascend.
+  void AddCaps(const vtkDSMVolumeLook& look, const glm::dmat4& dataToWorld,
+    const std::vector<double>& isovalues, rt::Scene& scene);
+  /// The same of the medium.
+  void AddCaps(const vtkDSMVolumeLook& look, const glm::dmat4& dataToWorld, rt::Scene& scene);
+  /// What slices and faces of isosurfaces have in common.
+  rt::LatticeSlice CreateSlice(
+    const vtkDSMVolumeLook& look, const glm::dmat4& dataToWorld, std::size_t lattice, bool isLit);
   /// What blocks look like that are not to look like the rest; null where there are none.
   std::shared_ptr<const rt::BlockLooks> CreateBlockLooks(std::size_t lattice) const;
 

@@ -8,12 +8,18 @@
 
 #include "vtkContourValues.h"
 #include "vtkDataSet.h"
+#include "vtkPlane.h"
+#include "vtkPlaneCollection.h"
 #include "vtkPointData.h"
 #include "vtkProp3D.h"
 #include "vtkProperty.h"
 #include "vtkScalarsToColors.h"
 #include "vtkVolume.h"
 #include "vtkVolumeProperty.h"
+
+#include <glm/geometric.hpp>
+#include <glm/mat3x3.hpp>
+#include <glm/matrix.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -34,7 +40,62 @@ bool vtkDSMVolumeLook::IsMedium() const
 {
   return vtkVolume::SafeDownCast(this->Prop) && !this->Mapper->GetSurfacesOnly() &&
     !this->Mapper->GetAutomaticIsoValue() && this->Mapper->GetNumberOfIsoValues() == 0 &&
-    this->Mapper->GetBlendMode() != vtkVolumeMapper::ISOSURFACE_BLEND;
+    this->Mapper->GetBlendMode() != vtkVolumeMapper::ISOSURFACE_BLEND &&
+    !this->Mapper->GetSlicing();
+}
+
+bool vtkDSMVolumeLook::IsSlicesOnly() const
+{
+  return this->Mapper->GetSlicing() && !this->Mapper->GetAutomaticIsoValue() &&
+    this->Mapper->GetNumberOfIsoValues() == 0 && !this->IsLikeRayCastMapper();
+}
+
+bool vtkDSMVolumeLook::HasColoredSlices() const
+{
+  return this->Mapper->GetScalarVisibility() &&
+    (this->Mapper->GetLookupTable() || !this->Mapper->GetMapScalars());
+}
+
+std::vector<rt::SectionPlane> vtkDSMVolumeLook::GetSlices(
+  const glm::dmat4& toWorld, const bricks::Index3& points) const
+{
+  std::vector<rt::SectionPlane> slices;
+  const glm::dmat3 toIndex = glm::inverse(glm::dmat3(toWorld));
+  for (int number = 0; number < this->Mapper->GetNumberOfSlices(); ++number)
+  {
+    const int axis = this->Mapper->GetSliceAxis(number);
+    const int index = this->Mapper->GetSliceIndex(number);
+    if (index >= 0 && index < points[axis])
+    {
+      glm::dvec4 place(0.0, 0.0, 0.0, 1.0);
+      place[axis] = index;
+      glm::dvec3 normal(0.0);
+      normal[axis] = 1.0;
+      slices.push_back({ glm::normalize(normal * toIndex), glm::dvec3(toWorld * place) });
+    }
+  }
+  vtkPlaneCollection* const planes = this->Mapper->GetSlicePlanes();
+  for (int number = 0; planes && number < planes->GetNumberOfItems(); ++number)
+  {
+    const double* normal = planes->GetItem(number)->GetNormal();
+    const double* origin = planes->GetItem(number)->GetOrigin();
+    slices.push_back({ { normal[0], normal[1], normal[2] }, { origin[0], origin[1], origin[2] } });
+  }
+  return slices;
+}
+
+void vtkDSMVolumeLook::SetSliceLook(bool isLit, rt::LatticeSlice& slice) const
+{
+  this->SetMaterials(0.0, slice.Look);
+  slice.NearestValues = !this->Mapper->GetInterpolateSlices();
+  if (!isLit)
+  {
+    rt::Material& surface = slice.Look.Surface;
+    surface.Lighting = false;
+    surface.Ambient = 0.0f;
+    surface.Diffuse = 1.0f;
+    surface.Reflectivity = 0.0f;
+  }
 }
 
 std::shared_ptr<const rt::TransferFunction> vtkDSMVolumeLook::CreateTransferFunction(
@@ -76,6 +137,11 @@ rt::MediumLook vtkDSMVolumeLook::GetMediumLook(const bricks::ValueRange& range) 
   return look;
 }
 
+bool vtkDSMVolumeLook::HasColorArray() const
+{
+  return this->HasColoredSlices() && !this->Mapper->GetColorArray().empty();
+}
+
 int vtkDSMVolumeLook::GetColorComponent() const
 {
   vtkScalarsToColors* table = this->Mapper->GetLookupTable();
@@ -90,9 +156,13 @@ int vtkDSMVolumeLook::GetColorComponent() const
 std::vector<vtkDSMVolumeData::Choice> vtkDSMVolumeLook::GetShown() const
 {
   vtkDSMVolumeMapper* mapper = this->Mapper;
-  std::vector<vtkDSMVolumeData::Choice> shown{ { this->GetIsoArray(), mapper->GetIsoComponent() } };
-  if (!this->IsMedium() && mapper->GetScalarVisibility() && !mapper->GetColorArray().empty() &&
-    (mapper->GetLookupTable() || !mapper->GetMapScalars()))
+  std::vector<vtkDSMVolumeData::Choice> shown;
+  const bool isColored = !this->IsMedium() && this->HasColorArray();
+  if (!isColored || !this->IsSlicesOnly())
+  {
+    shown.push_back({ this->GetIsoArray(), mapper->GetIsoComponent() });
+  }
+  if (isColored)
   {
     shown.push_back(
       { mapper->GetColorArray(), this->GetColorComponent(), mapper->GetColorArrayOnCells() });

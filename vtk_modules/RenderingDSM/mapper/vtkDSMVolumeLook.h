@@ -23,8 +23,11 @@ public:
 
   /// Whether isovalues and look come from the volume's property; else they are the mapper's.
   bool IsLikeRayCastMapper() const;
-  /// Whether the volume is a medium, as its property and the blend mode say, and there are no isosurfaces.
+  /// Whether the volume is a medium, as its property and the blend mode say, and there are no isosurfaces and slices.
   bool IsMedium() const;
+  /// Whether there are slices, or may be, and no isosurfaces.
+  bool IsSlicesOnly() const;
+  bool HasIsosurfaces() const { return !this->IsMedium() && !this->IsSlicesOnly(); }
   /// Tells what the property asks for that media do not have yet.
   void FindMissingFeatures(std::vector<std::string>& warnings) const;
   /// Of the medium, for values that are all in the range; see vtkDSMTranslation::ToTransferFunction. Null: nothing is to be
@@ -34,6 +37,7 @@ public:
   /// The same; how light makes it shine, and what gradients do.
   rt::MediumLook GetMediumLook(const bricks::ValueRange& range) const;
   /// The arrays that are to be shown, as the mapper names them: that of the isosurfaces, and that of the colours, if any.
+  /// Of slices alone the one that colors them, if any.
   std::vector<vtkDSMVolumeData::Choice> GetShown() const;
   /// Whether the cells' scalars are asked for, of which there are no isosurfaces.
   bool TakesPointsForCells() const;
@@ -42,9 +46,18 @@ public:
   std::vector<double> GetIsovalues(
     const std::optional<double>& suggested, std::vector<std::string>& messages) const;
   void SetMaterials(double isovalue, rt::IsosurfaceLook& look) const;
+  /// Whether the slices, and the faces of isosurfaces, have the colors of an array.
+  bool HasColoredSlices() const;
+  /// The slices of a lattice of so many points, in world space; `toWorld`: from its indices. Slices by an index that the
+  /// lattice does not have are left out.
+  std::vector<rt::SectionPlane> GetSlices(
+    const glm::dmat4& toWorld, const bricks::Index3& points) const;
+  /// Sets how slices and faces of isosurfaces look, but for their colors.
+  void SetSliceLook(bool isLit, rt::LatticeSlice& slice) const;
   rt::ClipRegion GetClipRegion(const glm::dmat4& dataToWorld) const;
 
 private:
+  bool HasColorArray() const;
   int GetColorComponent() const;
   std::string GetIsoArray() const;
 

@@ -15,10 +15,15 @@
 #include "vtkMath.h"
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
+#include "vtkPiecewiseFunction.h"
+#include "vtkPlane.h"
+#include "vtkPlaneCollection.h"
 #include "vtkProperty.h"
 #include "vtkScalarsToColors.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
 #include "vtkTrivialProducer.h"
+
+#include <algorithm>
 
 namespace
 {
@@ -113,6 +118,74 @@ void vtkDSMVolumeMapper::SetIsoValue(int index, double value)
 double vtkDSMVolumeMapper::GetIsoValue(int index) const
 {
   return index >= 0 && index < this->GetNumberOfIsoValues() ? this->IsoValues[index] : 0.0;
+}
+
+void vtkDSMVolumeMapper::AddSlice(int axis, int index)
+{
+  if (axis < 0 || axis > 2)
+  {
+    vtkErrorMacro("AddSlice: axis " << axis << " is not valid; use 0, 1 or 2. No slice is added.");
+    return;
+  }
+  const std::pair<int, int> slice(axis, index);
+  const auto place = std::lower_bound(this->Slices.begin(), this->Slices.end(), slice);
+  if (place == this->Slices.end() || *place != slice)
+  {
+    this->Slices.insert(place, slice);
+    this->Modified();
+  }
+}
+
+void vtkDSMVolumeMapper::RemoveAllSlices()
+{
+  if (!this->Slices.empty())
+  {
+    this->Slices.clear();
+    this->Modified();
+  }
+}
+
+void vtkDSMVolumeMapper::SetSlicePlanes(vtkPlaneCollection* planes)
+{
+  if (this->SlicePlanes != planes)
+  {
+    this->SlicePlanes = planes;
+    this->Modified();
+  }
+}
+
+vtkPlaneCollection* vtkDSMVolumeMapper::GetSlicePlanes() const
+{
+  return this->SlicePlanes;
+}
+
+void vtkDSMVolumeMapper::AddSlicePlane(vtkPlane* plane)
+{
+  if (!this->SlicePlanes)
+  {
+    this->SlicePlanes = vtkSmartPointer<vtkPlaneCollection>::New();
+  }
+  this->SlicePlanes->AddItem(plane);
+  this->Modified();
+}
+
+void vtkDSMVolumeMapper::RemoveAllSlicePlanes()
+{
+  this->SetSlicePlanes(nullptr);
+}
+
+void vtkDSMVolumeMapper::SetSliceOpacity(vtkPiecewiseFunction* function)
+{
+  if (this->SliceOpacity != function)
+  {
+    this->SliceOpacity = function;
+    this->Modified();
+  }
+}
+
+vtkPiecewiseFunction* vtkDSMVolumeMapper::GetSliceOpacity() const
+{
+  return this->SliceOpacity;
 }
 
 void vtkDSMVolumeMapper::SetLookupTable(vtkScalarsToColors* table)
@@ -280,6 +353,15 @@ vtkMTimeType vtkDSMVolumeMapper::GetMTime()
   {
     time = std::max(time, this->BackfaceProperty->GetMTime());
   }
+  if (this->SliceOpacity)
+  {
+    time = std::max(time, this->SliceOpacity->GetMTime());
+  }
+  const int planes = this->SlicePlanes ? this->SlicePlanes->GetNumberOfItems() : 0;
+  for (int number = 0; number < planes; ++number)
+  {
+    time = std::max(time, this->SlicePlanes->GetItem(number)->GetMTime());
+  }
   return time;
 }
 
@@ -327,6 +409,15 @@ void vtkDSMVolumeMapper::CopyOwn(vtkDSMVolumeMapper* other)
   this->AutomaticIsoValue = other->AutomaticIsoValue;
   this->SurfacesOnly = other->SurfacesOnly;
   this->Scattering = other->Scattering;
+  this->Slicing = other->Slicing;
+  this->Slices = other->Slices;
+  this->SlicePlanes = other->SlicePlanes;
+  this->SliceLighting = other->SliceLighting;
+  this->InterpolateSlices = other->InterpolateSlices;
+  this->SliceOpacity = other->SliceOpacity;
+  this->Capping = other->Capping;
+  this->CapOpacity = other->CapOpacity;
+  this->CapSide = other->CapSide;
   this->ColorArray = other->ColorArray;
   this->ColorArrayOnCells = other->ColorArrayOnCells;
   this->MapScalars = other->MapScalars;
@@ -374,6 +465,15 @@ void vtkDSMVolumeMapper::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "SuggestedIsoValue: " << this->SuggestedIsoValue << "\n";
   os << indent << "SurfacesOnly: " << this->SurfacesOnly << "\n";
   os << indent << "Scattering: " << this->Scattering << "\n";
+  os << indent << "Slicing: " << this->Slicing << "\n";
+  os << indent << "Slices: " << this->Slices.size() << "\n";
+  os << indent << "SlicePlanes: " << this->SlicePlanes.Get() << "\n";
+  os << indent << "SliceLighting: " << this->SliceLighting << "\n";
+  os << indent << "InterpolateSlices: " << this->InterpolateSlices << "\n";
+  os << indent << "SliceOpacity: " << this->SliceOpacity.Get() << "\n";
+  os << indent << "Capping: " << this->Capping << "\n";
+  os << indent << "CapOpacity: " << this->CapOpacity << "\n";
+  os << indent << "CapSide: " << this->CapSide << "\n";
   os << indent << "ColorArray: " << this->ColorArray << "\n";
   os << indent << "ColorArrayOnCells: " << this->ColorArrayOnCells << "\n";
   os << indent << "MapScalars: " << this->MapScalars << "\n";

@@ -20,6 +20,10 @@
  * and opacity by the transfer functions of the first component, and the shading. Interpolation is
  * trilinear always.
  *
+ * With Slicing, planes through the volume are shown instead of the medium: AddSlice() and SlicePlanes. They are
+ * colored as isosurfaces are: by the lookup table when ScalarVisibility is on. With Capping, the faces that clipping
+ * planes cut out of isosurfaces and of the medium are shown, too.
+ *
  * vtkVolumeMapper's cropping is honoured; its planes are in the data's coordinates, without the volume's
  * transform. So are the mapper's clipping planes, which are in world coordinates.
  *
@@ -40,12 +44,16 @@
 #include <functional> // for SurfaceTest
 #include <memory>     // for ivars
 #include <string>     // for ivars
+#include <utility>    // for ivars
 #include <vector>     // for ivars
 
 class vtkDSMKnownBounds;
 class vtkDSMLightOptions;
 class vtkDSMMemoryOptions;
 class vtkDSMOriginalData;
+class vtkPiecewiseFunction;
+class vtkPlane;
+class vtkPlaneCollection;
 class vtkProperty;
 class vtkScalarsToColors;
 
@@ -133,6 +141,98 @@ public:
    */
   vtkSetClampMacro(Scattering, double, 0.0, 1.0);
   vtkGetMacro(Scattering, double);
+  ///@}
+
+  ///@{
+  /**
+   * Whether planes through the volume are shown, and not the medium. Off by default. Isosurfaces are shown with them
+   * if there are isovalues. Planes have the color of the array ColorArray; while ScalarVisibility is on and ColorArray is
+   * empty, of the array IsoArray; while it is off, of the surface property, which gives their opacity in any case.
+   */
+  vtkSetMacro(Slicing, bool);
+  vtkGetMacro(Slicing, bool);
+  vtkBooleanMacro(Slicing, bool);
+  ///@}
+
+  ///@{
+  /**
+   * Slices along the volume's axes, through its samples: `axis` is 0, 1 or 2, and `index` counts samples along it,
+   * from 0. Slices of the same place are one. A slice outside of the volume is reported and not shown.
+   */
+  void AddSlice(int axis, int index);
+  void RemoveAllSlices();
+  int GetNumberOfSlices() const { return static_cast<int>(this->Slices.size()); }
+  int GetSliceAxis(int number) const { return this->Slices.at(number).first; }
+  int GetSliceIndex(int number) const { return this->Slices.at(number).second; }
+  ///@}
+
+  ///@{
+  /**
+   * Planes in world coordinates that are slices, too; their transforms as functions are ignored, as those of clipping
+   * planes are. Null (the default): none. Kept, not copied.
+   */
+  void SetSlicePlanes(vtkPlaneCollection* planes);
+  vtkPlaneCollection* GetSlicePlanes() const;
+  void AddSlicePlane(vtkPlane* plane);
+  void RemoveAllSlicePlanes();
+  ///@}
+
+  ///@{
+  /**
+   * Whether slices are lit. Off by default: they show the colors of the lookup table as they are.
+   */
+  vtkSetMacro(SliceLighting, bool);
+  vtkGetMacro(SliceLighting, bool);
+  vtkBooleanMacro(SliceLighting, bool);
+  ///@}
+
+  ///@{
+  /**
+   * Whether a place of a slice has the color of the value interpolated there (the default), or that of the nearest
+   * sample. Values of cells are never interpolated.
+   */
+  vtkSetMacro(InterpolateSlices, bool);
+  vtkGetMacro(InterpolateSlices, bool);
+  vtkBooleanMacro(InterpolateSlices, bool);
+  ///@}
+
+  ///@{
+  /**
+   * The opacity of slices by the values that color them, times that of the surface property. Null (the default): that
+   * of the lookup table.
+   */
+  void SetSliceOpacity(vtkPiecewiseFunction* function);
+  vtkPiecewiseFunction* GetSliceOpacity() const;
+  ///@}
+
+  ///@{
+  /**
+   * Whether the faces are shown that the mapper's clipping planes cut. Off by default. Those of isosurfaces look as
+   * slices do; those of the medium have its colors, unlit, and the opacities of its opacity function, unless
+   * CapOpacity is off. vtkVolumeMapper's cropping regions have no such faces.
+   */
+  vtkSetMacro(Capping, bool);
+  vtkGetMacro(Capping, bool);
+  vtkBooleanMacro(Capping, bool);
+  vtkSetMacro(CapOpacity, bool);
+  vtkGetMacro(CapOpacity, bool);
+  vtkBooleanMacro(CapOpacity, bool);
+  ///@}
+
+  ///@{
+  /**
+   * What is shown of the faces that are cut out of isosurfaces: where values are not below the lowest isovalue
+   * (ValuesAbove, the default), where they are not above the highest one (ValuesBelow), or all of them. All of the
+   * medium's faces are shown.
+   */
+  enum CapSides
+  {
+    ValuesAbove,
+    ValuesBelow,
+    WholeFace
+  };
+  vtkSetClampMacro(CapSide, int, ValuesAbove, WholeFace);
+  vtkGetMacro(CapSide, int);
   ///@}
 
   ///@{
@@ -333,6 +433,15 @@ private:
   double SuggestedIsoValue = vtkMath::Nan();
   bool SurfacesOnly = false;
   double Scattering = 0.0;
+  bool Slicing = false;
+  std::vector<std::pair<int, int>> Slices; ///< axis, index; ascending
+  vtkSmartPointer<vtkPlaneCollection> SlicePlanes;
+  bool SliceLighting = false;
+  bool InterpolateSlices = true;
+  vtkSmartPointer<vtkPiecewiseFunction> SliceOpacity;
+  bool Capping = false;
+  bool CapOpacity = true;
+  int CapSide = ValuesAbove;
   std::string ColorArray;
   bool ColorArrayOnCells = false;
   bool MapScalars = true;

@@ -38,7 +38,7 @@ namespace
 {
 
 /// Entries of a sampled colour map: well above the 256 of ParaView's discretised ones.
-constexpr int ColorMapEntries = 4096;
+constexpr std::size_t ColorMapEntries = 4096;
 
 /// Default length of ambient occlusion rays, over the diagonal of what is shown.
 constexpr double AmbientOcclusionPart = 0.2;
@@ -51,6 +51,25 @@ constexpr double MostOpacity = 1.0 - 1e-15;
 glm::vec3 ToColor(const double color[3])
 {
   return { color[0], color[1], color[2] };
+}
+
+/// The value of an entry of a sampled map's table.
+double GetValue(const rt::ColorMap& map, std::size_t entry, std::size_t entries)
+{
+  const double part = static_cast<double>(entry) / static_cast<double>(entries - 1);
+  const double value = map.Logarithmic ? map.First * std::pow(map.Last / map.First, part)
+                                       : map.First + part * (map.Last - map.First);
+  return std::min(std::max(value, map.First), map.Last);
+}
+
+/// The next values beyond the ends of a map.
+double GetBelow(const rt::ColorMap& map)
+{
+  return std::nextafter(map.First, -std::numeric_limits<double>::infinity());
+}
+double GetAbove(const rt::ColorMap& map)
+{
+  return std::nextafter(map.Last, std::numeric_limits<double>::infinity());
 }
 
 glm::vec4 MapValue(vtkScalarsToColors* table, double value)
@@ -287,9 +306,8 @@ rt::ColorMap vtkDSMTranslation::ToColorMap(vtkScalarsToColors* table)
   map.First = range[0];
   map.Last = range[1];
   map.Logarithmic = table->UsingLogScale() != 0 && map.First > 0.0;
-  const double infinity = std::numeric_limits<double>::infinity();
-  map.Below = MapValue(table, std::nextafter(map.First, -infinity));
-  map.Above = MapValue(table, std::nextafter(map.Last, infinity));
+  map.Below = MapValue(table, GetBelow(map));
+  map.Above = MapValue(table, GetAbove(map));
   map.NotANumber = MapValue(table, vtkMath::Nan());
   // Only this way of mapping knows the opacity.
   double nan = vtkMath::Nan();
@@ -302,12 +320,71 @@ rt::ColorMap vtkDSMTranslation::ToColorMap(vtkScalarsToColors* table)
     return map;
   }
   map.Table.reserve(ColorMapEntries);
-  for (int entry = 0; entry < ColorMapEntries; ++entry)
+  for (std::size_t entry = 0; entry < ColorMapEntries; ++entry)
   {
-    const double part = static_cast<double>(entry) / (ColorMapEntries - 1);
-    const double value = map.Logarithmic ? map.First * std::pow(map.Last / map.First, part)
-                                         : map.First + part * (map.Last - map.First);
-    map.Table.push_back(MapValue(table, std::min(std::max(value, map.First), map.Last)));
+    map.Table.push_back(MapValue(table, GetValue(map, entry, ColorMapEntries)));
+  }
+  return map;
+}
+
+void vtkDSMTranslation::SetOpacity(vtkPiecewiseFunction* opacity, rt::ColorMap& map)
+{
+  const auto get = [&](double value)
+  { return static_cast<float>(std::clamp(opacity->GetValue(value), 0.0, 1.0)); };
+  for (std::size_t entry = 0; entry < map.Table.size(); ++entry)
+  {
+    map.Table[entry].w = get(GetValue(map, entry, map.Table.size()));
+  }
+  map.Below.w = get(GetBelow(map));
+  map.Above.w = get(GetAbove(map));
+  if (map.Categories)
+  {
+    for (rt::ColorMap::Category& category : *map.Categories)
+    {
+      category.Color.w = get(category.Value);
+    }
+  }
+}
+
+rt::ColorMap vtkDSMTranslation::ToColorMap(
+  vtkVolumeProperty* property, const bricks::ValueRange& range, bool withOpacity)
+{
+  const bool isGray = property->GetColorChannels(0) == 1;
+  // To ask for the other one would make it the one that counts.
+  vtkPiecewiseFunction* const gray = isGray ? property->GetGrayTransferFunction(0) : nullptr;
+  vtkColorTransferFunction* const colors = isGray ? nullptr : property->GetRGBTransferFunction(0);
+  const auto get = [&](double value)
+  {
+    double color[3];
+    if (isGray)
+    {
+      std::fill_n(color, 3, gray->GetValue(value));
+    }
+    else
+    {
+      colors->GetColor(value, color);
+    }
+    return glm::vec4(ToColor(color), 1.0f);
+  };
+  // The functions say what is beyond their ends; all values are within the range.
+  const double* const ends = isGray ? gray->GetRange() : colors->GetRange();
+  rt::ColorMap map;
+  map.First = std::max<double>(range.First, std::min(ends[0], ends[1]));
+  map.Last = std::min<double>(range.Last, std::max(ends[0], ends[1]));
+  if (!(map.First <= map.Last))
+  {
+    map.First = range.First;
+    map.Last = range.Last;
+  }
+  for (std::size_t entry = 0; entry < ColorMapEntries; ++entry)
+  {
+    map.Table.push_back(get(GetValue(map, entry, ColorMapEntries)));
+  }
+  map.Below = get(GetBelow(map));
+  map.Above = get(GetAbove(map));
+  if (withOpacity)
+  {
+    SetOpacity(property->GetScalarOpacity(0), map);
   }
   return map;
 }

@@ -12,6 +12,7 @@
 class vtkAbstractMapper;
 class vtkDSMLightOptions;
 class vtkMatrix4x4;
+class vtkPiecewiseFunction;
 class vtkProperty;
 class vtkRenderer;
 class vtkScalarsToColors;
@@ -38,6 +39,14 @@ public:
 
   /// Samples any lookup table or transfer function; finely enough for one that is discretised.
   static rt::ColorMap ToColorMap(vtkScalarsToColors* table);
+
+  /// Gives all colors of a map the opacities of their values, but that of what is not a number.
+  static void SetOpacity(vtkPiecewiseFunction* opacity, rt::ColorMap& map);
+
+  /// The color function of a property's first component for values of a range; with its opacity function, or opaque.
+  /// What is not a number is transparent.
+  static rt::ColorMap ToColorMap(
+    vtkVolumeProperty* property, const bricks::ValueRange& range, bool withOpacity);
 
   /// The color and opacity functions of a property's first component, and its unit distance, for a medium whose values are
   /// from `first` to `last`. `cellLength` and `diagonal`: of a cell's edge, and of the medium, in world space.
