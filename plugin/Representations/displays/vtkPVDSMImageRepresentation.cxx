@@ -306,6 +306,10 @@ int vtkPVDSMImageRepresentation::Process(
     return 0;
   }
   this->ChooseBackfaces();
+  if (this->Mapper->GetSlicing())
+  {
+    this->Slicing.ApplyTo(this->Mapper);
+  }
   if (request == vtkPVView::REQUEST_UPDATE())
   {
     if (this->BlockLooksAreOld)
@@ -418,6 +422,21 @@ void vtkPVDSMImageRepresentation::ChooseIsoValues()
   {
     this->Mapper->SetIsoValue(index, shown[index]);
   }
+}
+
+void vtkPVDSMImageRepresentation::SetCap(bool cap)
+{
+  this->Mapper->SetCapping(cap);
+}
+
+void vtkPVDSMImageRepresentation::SetCapSide(int side)
+{
+  this->Mapper->SetCapSide(side);
+}
+
+void vtkPVDSMImageRepresentation::SetCapOpacityFromMap(bool fromMap)
+{
+  this->Mapper->SetCapOpacity(fromMap);
 }
 
 void vtkPVDSMImageRepresentation::SetLookupTable(vtkScalarsToColors* table)

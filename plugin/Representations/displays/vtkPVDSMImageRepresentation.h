@@ -17,6 +17,7 @@
 #include "vtkGeometryRepresentationWithFaces.h" // for ivars
 #include "vtkNew.h"                             // for ivars
 #include "vtkPVDSMExportSource.h"
+#include "vtkPVDSMSlicing.h"             // for ivars
 #include "vtkPVDSMTracedDisplay.h"       // for ivars
 #include "vtkRepresentationsDSMModule.h" // for the export macro
 #include "vtkVolumeRepresentation.h"
@@ -175,6 +176,38 @@ public:
 
   ///@{
   /**
+   * Whether the faces that the plane and the box cut are shown, of isosurfaces on which side (vtkDSMVolumeMapper::CapSides),
+   * of volumes whether with the opacities of their opacity function.
+   */
+  void SetCap(bool cap);
+  void SetCapSide(int side);
+  void SetCapOpacityFromMap(bool fromMap);
+  ///@}
+
+  ///@{
+  /**
+   * The slices that vtkPVDSMSliceRepresentation shows: for each axis one by its index (of the samples, from 0), and a list
+   * of further ones; and a plane in world coordinates.
+   */
+  void SetSliceX(bool isShown) { this->Slicing.Axes[0].IsShown = isShown; }
+  void SetSliceY(bool isShown) { this->Slicing.Axes[1].IsShown = isShown; }
+  void SetSliceZ(bool isShown) { this->Slicing.Axes[2].IsShown = isShown; }
+  void SetSliceXIndex(int index) { this->Slicing.Axes[0].Index = index; }
+  void SetSliceYIndex(int index) { this->Slicing.Axes[1].Index = index; }
+  void SetSliceZIndex(int index) { this->Slicing.Axes[2].Index = index; }
+  void AddSliceX(int index) { this->Slicing.Axes[0].Further.push_back(index); }
+  void AddSliceY(int index) { this->Slicing.Axes[1].Further.push_back(index); }
+  void AddSliceZ(int index) { this->Slicing.Axes[2].Further.push_back(index); }
+  void RemoveSlicesX() { this->Slicing.Axes[0].Further.clear(); }
+  void RemoveSlicesY() { this->Slicing.Axes[1].Further.clear(); }
+  void RemoveSlicesZ() { this->Slicing.Axes[2].Further.clear(); }
+  void SetSlicePlane(bool isShown) { this->Slicing.HasPlane = isShown; }
+  void SetSliceOrigin(double x, double y, double z) { this->Slicing.Origin = { x, y, z }; }
+  void SetSliceNormal(double x, double y, double z) { this->Slicing.Normal = { x, y, z }; }
+  ///@}
+
+  ///@{
+  /**
    * Shadows, ambient occlusion, mirrors and samples; memory organisation, sizes and threads.
    */
   void SetLightOptions(vtkPVDSMLightOptions* options);
@@ -234,6 +267,7 @@ private:
   std::vector<double> IsoValues;
   double SingleIsoValue = 0.0;
   bool AutomaticIsoValue = true;
+  vtkPVDSMSlicing Slicing;
   std::unique_ptr<vtkPVDSMTracedDisplay> Display;
 };
 

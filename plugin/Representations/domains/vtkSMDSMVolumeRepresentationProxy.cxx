@@ -11,6 +11,7 @@
 #include "vtkSMPropertyHelper.h"
 
 #include <string>
+#include <vector>
 
 vtkStandardNewMacro(vtkSMDSMVolumeRepresentationProxy);
 
@@ -21,11 +22,38 @@ void vtkSMDSMVolumeRepresentationProxy::ViewUpdated(vtkSMProxy* view)
 {
   this->Superclass::ViewUpdated(view);
   auto* const display = vtkSMPVRepresentationProxy::SafeDownCast(this->GetParentProxy());
-  if (this->HasChosen || !display ||
-    vtkSMPropertyHelper(display, "Representation").GetAsString() != std::string("DSM Volume"))
+  const bool isOfSlices = this->GetXMLName() == std::string("DSMSliceRepresentation");
+  const std::string type = isOfSlices ? "DSM Slices" : "DSM Volume";
+  if (!display || vtkSMPropertyHelper(display, "Representation").GetAsString() != type)
   {
     return;
   }
+  if (isOfSlices)
+  {
+    this->ChooseSlices();
+  }
+  if (!this->HasChosen)
+  {
+    this->ChooseArray(display);
+  }
+}
+
+void vtkSMDSMVolumeRepresentationProxy::ChooseSlices()
+{
+  const vtkPVDSMNoUndo noUndo;
+  for (const char* name : { "DSMSliceXIndex", "DSMSliceYIndex", "DSMSliceZIndex" })
+  {
+    if (vtkSMPropertyHelper(this, name).GetAsInt() < 0)
+    {
+      this->GetProperty(name)->ResetToDomainDefaults();
+    }
+  }
+  this->UpdateVTKObjects();
+}
+
+/// The first one of points; slices may show one of cells.
+void vtkSMDSMVolumeRepresentationProxy::ChooseArray(vtkSMPVRepresentationProxy* display)
+{
   vtkSMProperty* const property = display->GetProperty("ColorArrayName");
   auto* const arrays = property->FindDomain<vtkSMArrayListDomain>();
   const unsigned int count = arrays ? arrays->GetNumberOfStrings() : 0;
@@ -34,14 +62,22 @@ void vtkSMDSMVolumeRepresentationProxy::ViewUpdated(vtkSMProxy* view)
   {
     return;
   }
-  for (unsigned int index = 0; index < count; ++index)
+  std::vector<int> associations{ vtkDataObject::POINT };
+  if (this->GetXMLName() == std::string("DSMSliceRepresentation"))
   {
-    if (arrays->GetFieldAssociation(index) == vtkDataObject::POINT)
+    associations.push_back(vtkDataObject::CELL);
+  }
+  for (const int association : associations)
+  {
+    for (unsigned int index = 0; index < count; ++index)
     {
-      const vtkPVDSMNoUndo noUndo;
-      display->SetScalarColoring(arrays->GetString(index), vtkDataObject::POINT);
-      display->RescaleTransferFunctionToDataRange(true);
-      return;
+      if (arrays->GetFieldAssociation(index) == association)
+      {
+        const vtkPVDSMNoUndo noUndo;
+        display->SetScalarColoring(arrays->GetString(index), association);
+        display->RescaleTransferFunctionToDataRange(true);
+        return;
+      }
     }
   }
 }

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class   vtkSMDSMVolumeRepresentationProxy
- * @brief   chooses the array of a volume when the user first asks for one
+ * @brief   chooses the array of a volume, or of slices, when the user first asks for them
  *
- * A volume shows the array that colors its dataset. ParaView chooses one for its own Volume where there is none yet; this
- * does it for DSM Volume, before the view renders: once for each dataset, so that the user can choose none.
+ * A volume, and slices, show the array that colors their dataset. ParaView chooses one for its own Volume where there is
+ * none yet; this does it for DSM Volume and DSM Slices, before the view renders: once for each dataset, so that the user can
+ * choose none. Slices begin in the middle of the data, also of those that come after their display.
  *
  * The name is what ParaView makes of the element DSMVolumeRepresentationProxy.
  */
@@ -14,6 +15,8 @@
 
 #include "vtkRepresentationsDSMModule.h" // for the export macro
 #include "vtkSMRepresentationProxy.h"
+
+class vtkSMPVRepresentationProxy;
 
 class VTKREPRESENTATIONSDSM_EXPORT vtkSMDSMVolumeRepresentationProxy
   : public vtkSMRepresentationProxy
@@ -32,7 +35,10 @@ private:
   vtkSMDSMVolumeRepresentationProxy(const vtkSMDSMVolumeRepresentationProxy&) = delete;
   void operator=(const vtkSMDSMVolumeRepresentationProxy&) = delete;
 
-  bool HasChosen = false;
+  void ChooseArray(vtkSMPVRepresentationProxy* display);
+  void ChooseSlices();
+
+  bool HasChosen = false; ///< an array
 };
 
 #endif

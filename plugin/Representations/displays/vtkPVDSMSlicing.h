@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef vtkPVDSMSlicing_h
+#define vtkPVDSMSlicing_h
+
+#include <array>
+#include <vector>
+
+class vtkDSMVolumeMapper;
+
+/// The slices of a display.
+class vtkPVDSMSlicing
+{
+public:
+  struct Axis
+  {
+    bool IsShown = true;
+    int Index =
+      -1; ///< of the samples along the axis, from 0; less: not known yet, nothing is shown
+    std::vector<int> Further; ///< further indices, shown in any case
+  };
+  std::array<Axis, 3> Axes;
+  bool HasPlane = false;
+  std::array<double, 3> Origin{ 0.0, 0.0, 0.0 }; ///< of the plane, world
+  std::array<double, 3> Normal{ 1.0, 0.0, 0.0 };
+
+  /// Gives the mapper its slices.
+  void ApplyTo(vtkDSMVolumeMapper* mapper) const;
+};
+
+#endif

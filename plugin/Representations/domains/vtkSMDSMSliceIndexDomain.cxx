@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkSMDSMSliceIndexDomain.h"
+
+#include "vtkObjectFactory.h"
+#include "vtkPVDataInformation.h"
+#include "vtkPVXMLElement.h"
+#include "vtkSMProperty.h"
+#include "vtkSMPropertyHelper.h"
+
+vtkStandardNewMacro(vtkSMDSMSliceIndexDomain);
+
+vtkSMDSMSliceIndexDomain::vtkSMDSMSliceIndexDomain() = default;
+vtkSMDSMSliceIndexDomain::~vtkSMDSMSliceIndexDomain() = default;
+
+int vtkSMDSMSliceIndexDomain::ReadXMLAttributes(vtkSMProperty* property, vtkPVXMLElement* element)
+{
+  return this->Superclass::ReadXMLAttributes(property, element) &&
+    element->GetScalarAttribute("axis", &this->Axis) && this->Axis >= 0 && this->Axis < 3;
+}
+
+void vtkSMDSMSliceIndexDomain::Update(vtkSMProperty*)
+{
+  vtkPVDataInformation* const data = this->GetInputDataInformation("Input");
+  const int* const extent = data ? data->GetExtent() : nullptr;
+  std::vector<vtkEntry> entries;
+  if (extent && extent[2 * this->Axis] <= extent[2 * this->Axis + 1])
+  {
+    entries.push_back(vtkEntry(0, extent[2 * this->Axis + 1] - extent[2 * this->Axis]));
+  }
+  this->SetEntries(entries);
+}
+
+int vtkSMDSMSliceIndexDomain::SetDefaultValues(vtkSMProperty* property, bool useUncheckedValues)
+{
+  if (!this->GetMaximumExists(0) || property->GetRepeatable())
+  {
+    return 0;
+  }
+  vtkSMPropertyHelper helper(property);
+  helper.SetUseUnchecked(useUncheckedValues);
+  helper.Set(this->GetMaximum(0) / 2);
+  return 1;
+}
