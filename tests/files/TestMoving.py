@@ -111,6 +111,34 @@ for number, place in enumerate(PLACES):
         wrong = (get_covered(moving) != get_covered(plain)).mean()
         check(wrong < 0.1, f"and clipped alike while moving: {100 * wrong:.1f} %")
 
+# Slices read the bricks that they pass through.
+simple.Delete(source)
+source = simple.DSMVolumeReader(FileName=path + ".vtkhdf")
+display = simple.Show(source, view)
+simple.ColorBy(display, ("POINTS", "values"))
+display.DSMMemory, display.DSMThreads = 64, 1
+display.DSMSliceX = display.DSMSliceY = 0
+display.DSMSliceZIndex = 75
+display.Representation = "DSM Slices"
+view.CameraParallelProjection = 1
+before = 0
+BRICK_BYTES = 4 * 17**3  # and a little for ranges; bricks have 16 cells along each axis
+for number, place in enumerate(((0.0, 0.0, 1.0), (0.3, 0.5, 1.0))):
+    place_camera(view, place)
+    if number == 1:
+        display.DSMSliceZ, display.DSMSlicePlane = 0, 1
+        display.DSMSliceOrigin, display.DSMSliceNormal = [0.5] * 3, [0.2, -0.3, 1.0]
+    picture = render(view)
+    check(get_covered(picture).mean() > 0.15, "the slice is shown")
+    cached = sum(row["BytesCached"] for row in get_rows(display))
+    fetched, before = (cached - before) // BRICK_BYTES, cached
+    corners = numpy.arange(-(-(EDGE - 1) // 16)) * 16 / EDGE
+    heights = [0.2 * (corners[None, None, :] - 0.5 + c % 2 * 16 / EDGE) - 0.3 * (corners[None, :, None] - 0.5 + c // 2 % 2 * 16 / EDGE)
+               + (corners[:, None, None] - 0.5 + c // 4 * 16 / EDGE) for c in range(8)]
+    crossed = len(corners) ** 2 if number == 0 else ((numpy.min(heights, 0) <= 0) & (numpy.max(heights, 0) >= 0)).sum()
+    check(0.5 * crossed < fetched <= 2 * crossed, f"{fetched} bricks are fetched of a slice through {crossed}")
+view.CameraParallelProjection = 0
+
 # A coarser level that was opened has its own below it; where there is none, the option does nothing.
 simple.Delete(source)
 source = simple.DSMVolumeReader(FileName=path + ".vtkhdf", LevelofDetail=4)

@@ -86,6 +86,7 @@ first = show_as("DSM Slices")
 check(list(display.ColorArrayName)[0] == "POINTS", "the first look has an array")
 check([display.DSMSliceXIndex, display.DSMSliceYIndex, display.DSMSliceZIndex] == [12, 10, 9], "slices begin in the middle")
 check(get_covered(first).mean() > 0.1, "the first look shows something")
+check(sum(row["Tiles"] for row in get_rows(display)) > 0, "statistics are those of the slices")
 color_by("POINTS", "waves")
 render(view, "FirstLook")
 

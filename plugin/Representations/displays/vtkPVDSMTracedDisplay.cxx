@@ -45,6 +45,7 @@ vtkPVDSMTracedDisplay::~vtkPVDSMTracedDisplay()
 bool vtkPVDSMTracedDisplay::AddToView(vtkView* view)
 {
   this->View = vtkPVRenderView::SafeDownCast(view);
+  this->ConnectFrameReport();
   this->SetVisibility(this->Representation->GetVisibility());
   return this->View != nullptr;
 }
@@ -54,6 +55,7 @@ bool vtkPVDSMTracedDisplay::RemoveFromView(vtkView* view)
   this->Leave();
   vtkPVDSMSharedOptions::Leave(this->View, this->LightOptions, this->MemoryOptions);
   this->View = nullptr;
+  this->ConnectFrameReport();
   return vtkPVRenderView::SafeDownCast(view) != nullptr;
 }
 
@@ -77,7 +79,6 @@ void vtkPVDSMTracedDisplay::SetVisibility(bool visible)
   {
     this->View->GetRenderer()->AddViewProp(this->Prop);
     this->View->GetRenderer()->AddViewProp(this->SelectionActor);
-    this->ConnectFrameReport();
   }
   // A mesh that is drawn here is an actor for exporters, too.
   if (!this->Scene || !vtkActor::SafeDownCast(this->Prop))
@@ -112,7 +113,6 @@ void vtkPVDSMTracedDisplay::Leave()
   this->IsInView = false;
   this->Scene = nullptr;
   this->Refinement = nullptr;
-  this->ConnectFrameReport();
 }
 
 void vtkPVDSMTracedDisplay::SetLightOptions(vtkObject* options)
@@ -159,7 +159,7 @@ void vtkPVDSMTracedDisplay::ConnectFrameReport()
 {
   if (this->FrameReport)
   {
-    this->FrameReport->SetSource(this->Scene);
+    this->FrameReport->SetView(this->View);
   }
 }
 

@@ -7,15 +7,21 @@
 
 #include "vtkMath.h"
 #include "vtkObjectFactory.h"
+#include "vtkPVRenderView.h"
 
 vtkStandardNewMacro(vtkPVDSMFrameReport);
 
 vtkPVDSMFrameReport::vtkPVDSMFrameReport() = default;
 vtkPVDSMFrameReport::~vtkPVDSMFrameReport() = default;
 
-void vtkPVDSMFrameReport::SetSource(vtkDSMScene* source)
+void vtkPVDSMFrameReport::SetView(vtkPVRenderView* view)
 {
-  this->Source = source;
+  this->View = view;
+}
+
+vtkDSMScene* vtkPVDSMFrameReport::FindScene() const
+{
+  return this->View ? vtkDSMScene::Find(this->View->GetRenderer()) : nullptr;
 }
 
 void vtkPVDSMFrameReport::SetVolume(vtkDSMVolumeMapper* volume)
@@ -30,25 +36,29 @@ double vtkPVDSMFrameReport::GetSuggestedIsoValue()
 
 double vtkPVDSMFrameReport::GetFrameTime()
 {
-  return this->Source ? this->Source->GetStatistics()->GetFrameSeconds() : 0.0;
+  vtkDSMScene* const scene = this->FindScene();
+  return scene ? scene->GetStatistics()->GetFrameSeconds() : 0.0;
 }
 
 const char* vtkPVDSMFrameReport::GetStatistics()
 {
-  this->Text = this->Source ? this->Source->GetStatistics()->GetJson() : "[]";
+  vtkDSMScene* const scene = this->FindScene();
+  this->Text = scene ? scene->GetStatistics()->GetJson() : "[]";
   return this->Text.c_str();
 }
 
 const char* vtkPVDSMFrameReport::GetSummary()
 {
-  this->Text = this->Source ? this->Source->GetStatistics()->GetSummary() : std::string();
+  vtkDSMScene* const scene = this->FindScene();
+  this->Text = scene ? scene->GetStatistics()->GetSummary() : std::string();
   return this->Text.c_str();
 }
 
 int* vtkPVDSMFrameReport::GetSamples()
 {
-  this->Samples[0] = this->Source ? this->Source->GetNumberOfSamples() : 0;
-  this->Samples[1] = this->Source ? this->Source->GetNumberOfSamplesWanted() : 0;
+  vtkDSMScene* const scene = this->FindScene();
+  this->Samples[0] = scene ? scene->GetNumberOfSamples() : 0;
+  this->Samples[1] = scene ? scene->GetNumberOfSamplesWanted() : 0;
   return this->Samples;
 }
 

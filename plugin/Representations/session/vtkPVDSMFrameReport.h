@@ -18,6 +18,7 @@
 
 class vtkDSMScene;
 class vtkDSMVolumeMapper;
+class vtkPVRenderView;
 
 class VTKREPRESENTATIONSDSM_EXPORT vtkPVDSMFrameReport : public vtkObject
 {
@@ -27,9 +28,10 @@ public:
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
   /**
-   * Where to read from; null when the representation is in no view.
+   * Whose scene to read from; null when the representation is in no view. A dataset has a representation for each way in
+   * which it can be shown, and all of them tell of the same frames.
    */
-  void SetSource(vtkDSMScene* source);
+  void SetView(vtkPVRenderView* view);
 
   /**
    * Whose isovalue to tell; null for a mesh.
@@ -88,7 +90,10 @@ private:
   vtkPVDSMFrameReport(const vtkPVDSMFrameReport&) = delete;
   void operator=(const vtkPVDSMFrameReport&) = delete;
 
-  vtkWeakPointer<vtkDSMScene> Source;
+  /// Null where there is none.
+  vtkDSMScene* FindScene() const;
+
+  vtkWeakPointer<vtkPVRenderView> View;
   vtkWeakPointer<vtkDSMVolumeMapper> Volume;
   bool Progressive = false;
   bool Interacting = false;

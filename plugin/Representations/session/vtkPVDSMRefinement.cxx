@@ -81,6 +81,27 @@ void ForEachTraced(vtkSMProxy* view, const Visit& visit)
   }
 }
 
+/// Only subclasses of a proxy may ask for its parts. None of these is ever made.
+struct AskedProxy : vtkSMProxy
+{
+  static vtkSMProxy* GetPart(vtkSMProxy* proxy, const char* name)
+  {
+    vtkSMProxy* (vtkSMProxy::*const get)(const char*) = &AskedProxy::GetSubProxy;
+    return (proxy->*get)(name);
+  }
+};
+
+/// The proxy of the way in which a traced dataset is shown.
+vtkSMProxy* FindShown(vtkSMProxy* representation)
+{
+  const std::string shown = vtkSMPropertyHelper(representation, "Representation").GetAsString();
+  const char* const name = shown == "DSM Volume" ? "DSMVolumeRepresentation"
+    : shown == "DSM Slices"                      ? "DSMSliceRepresentation"
+                                                 : nullptr;
+  vtkSMProxy* const own = name ? AskedProxy::GetPart(representation, name) : nullptr;
+  return own ? own : representation;
+}
+
 /// Calls `visit` with what tells of the frames that each traced dataset is in.
 template <class Visit>
 void ForEachReport(vtkSMProxy* view, const Visit& visit)
@@ -88,7 +109,7 @@ void ForEachReport(vtkSMProxy* view, const Visit& visit)
   ForEachTraced(view,
     [&](vtkSMProxy* representation)
     {
-      if (vtkSMProperty* samples = representation->GetProperty("DSMSamples"))
+      if (vtkSMProperty* samples = FindShown(representation)->GetProperty("DSMSamples"))
       {
         visit(samples->GetParent());
       }

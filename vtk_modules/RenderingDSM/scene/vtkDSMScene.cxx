@@ -88,15 +88,13 @@ vtkSmartPointer<vtkDSMScene> vtkDSMScene::ForRenderer(vtkRenderer* renderer)
     vtkGenericWarningMacro("vtkDSMScene needs a renderer.");
     return nullptr;
   }
-  vtkDSMScene*& known = GetRegistry()[renderer];
-  // The address of a renderer that is gone may be another's now.
-  if (known && known->GetRenderer() == renderer)
+  if (vtkDSMScene* const known = Find(renderer))
   {
     return known;
   }
   vtkSmartPointer<vtkDSMScene> scene;
   scene.TakeReference(vtkDSMScene::New());
-  known = scene;
+  GetRegistry()[renderer] = scene;
   scene->Attach(renderer);
   return scene;
 }
@@ -111,10 +109,17 @@ vtkDSMScene* vtkDSMScene::NewForRenderer(vtkRenderer* renderer)
   return scene;
 }
 
+vtkDSMScene* vtkDSMScene::Find(vtkRenderer* renderer)
+{
+  // The address of a renderer that is gone may be another's now.
+  const auto known = GetRegistry().find(renderer);
+  const bool isThere = known != GetRegistry().end() && known->second->GetRenderer() == renderer;
+  return isThere ? known->second : nullptr;
+}
+
 void vtkDSMScene::DrawWithoutScene(vtkRenderer* renderer, vtkObject* mapper)
 {
-  const auto known = GetRegistry().find(renderer);
-  if (known != GetRegistry().end() && known->second->GetRenderer() == renderer)
+  if (Find(renderer))
   {
     return;
   }

@@ -53,6 +53,10 @@ public:
    * a warning, without a renderer.
    */
   VTK_WRAPEXCLUDE static vtkSmartPointer<vtkDSMScene> ForRenderer(vtkRenderer* renderer);
+  /**
+   * The renderer's scene if there is one, else null.
+   */
+  static vtkDSMScene* Find(vtkRenderer* renderer);
   VTK_NEWINSTANCE static vtkDSMScene* NewForRenderer(vtkRenderer* renderer);
   ///@}
 
