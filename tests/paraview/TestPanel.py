@@ -29,22 +29,26 @@ def list_panel(display):
 
 
 view = create_view()
+SLICES = [f"DSMSlice{axis}{part}" for axis in "XYZ" for part in ("", "Index", "Indices")] + ["DSMSlicePlane"]
 LIGHT = ["DSMShadows", "DSMAmbientOcclusionSamples", "DSMSamplesPerPixel"]
 for source, own in (
     (simple.Wavelet(), ["DSMIsoArray", "DSMIsoArrayAutomatic", "DSMIsoComponent", "DSMIsoValue", "DSMIsoValueAutomatic",
-                        "DSMValueRange", "DSMIsoValues"]),
+                        "DSMValueRange", "DSMIsoValues", *SLICES]),
     (simple.Cone(), []),
 ):
     names = list_panel(simple.Show(source, view))
     first = names.index("Representation")
     expected = own + LIGHT
     check(names[first + 1 : first + 1 + len(expected)] == expected, f"{source.GetXMLName()}: {names[: first + 9]}")
-    for switch, control in (("DSMClip", "DSMClipOrigin"), ("DSMCropping", "DSMCroppingPosition")):
+    switches = [("DSMClip", "DSMClipOrigin"), ("DSMCropping", "DSMCroppingPosition")]
+    for switch, control in switches + ([("DSMCap", "DSMCapSide")] if own else []):
         below = names[names.index(switch) + 1]
         check(below == control, f"what {switch} switches on stands directly below: {below}")
     proxy = simple.GetRepresentation(source, view).SMProxy
     if own:
-        visible = [name for name in names[first:] if proxy.GetProperty(name).GetPanelVisibility() == "default"]
+        # What says where slices are is there for slices only.
+        visible = [name for name in names[first:]
+                   if proxy.GetProperty(name).GetPanelVisibility() == "default" and name not in SLICES]
         labels = [proxy.GetProperty(name).GetXMLLabel() for name in visible[: visible.index(LIGHT[-1]) + 1]]
         if "DSM_TEST_PANEL" in os.environ:
             with open(os.environ["DSM_TEST_PANEL"], "w", encoding="utf-8") as text:

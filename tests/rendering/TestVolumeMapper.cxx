@@ -9,6 +9,9 @@
 #include "vtkAutoInit.h"
 #include "vtkCallbackCommand.h"
 #include "vtkCamera.h"
+#include "vtkLookupTable.h"
+#include "vtkMath.h"
+#include "vtkMatrix4x4.h"
 #include "vtkNew.h"
 #include "vtkPlane.h"
 #include "vtkProperty.h"
@@ -107,6 +110,85 @@ TEST_F(VolumeMapper, CropsInTheCoordinatesOfTheData)
   EXPECT_EQ(CountCovered(this->RenderTraced()), 0);
   this->Mapper->CroppingOff();
   EXPECT_EQ(CountCovered(this->RenderTraced()), whole);
+}
+
+TEST_F(VolumeMapper, ShowsSlicesByIndexAndByPlane)
+{
+  vtkNew<vtkLookupTable> table;
+  table->SetRange(0.0, 1.0);
+  this->Mapper->SetNumberOfIsoValues(0);
+  this->Mapper->SetLookupTable(table);
+  this->Mapper->ScalarVisibilityOn();
+  this->Mapper->SlicingOn();
+  this->Place();
+  const auto liesIn = [this](const std::array<double, 3>& normal, double height)
+  {
+    const std::vector<double> distances = this->RenderTraced();
+    EXPECT_GT(CountCovered(distances), Size * Size / 20);
+    for (int pixel = 0; pixel < Size * Size; ++pixel)
+    {
+      double place[4];
+      this->Renderer->SetDisplayPoint(
+        pixel % Size + 0.5, pixel / Size + 0.5, this->GetDepth(distances[pixel]));
+      this->Renderer->DisplayToWorld();
+      this->Renderer->GetWorldPoint(place);
+      if (std::isfinite(distances[pixel]))
+      {
+        ASSERT_NEAR(vtkMath::Dot(normal.data(), place) / place[3], height, 0.05)
+          << "pixel " << pixel;
+      }
+    }
+  };
+  // Index 20 of the samples from -16 on, in a volume that is turned.
+  this->Mapper->AddSlice(0, 20);
+  this->Mapper->AddSlice(0, 20);
+  EXPECT_EQ(this->Mapper->GetNumberOfSlices(), 1);
+  const double* matrix = this->Volume->GetMatrix()->GetData();
+  const std::array<double, 3> along{ matrix[0], matrix[4], matrix[8] };
+  const double position[3] = { matrix[3], matrix[7], matrix[11] };
+  liesIn(along, vtkMath::Dot(along.data(), position) + 4.0);
+
+  this->Mapper->RemoveAllSlices();
+  EXPECT_EQ(CountCovered(this->RenderTraced()), 0);
+  vtkNew<vtkPlane> plane;
+  plane->SetOrigin(1.0, 2.0, 4.0);
+  plane->SetNormal(0.6, 0.0, 0.8);
+  this->Mapper->AddSlicePlane(plane);
+  liesIn({ 0.6, 0.0, 0.8 }, 0.6 + 3.2);
+  plane->SetOrigin(2.0, 2.0, 4.0);
+  liesIn({ 0.6, 0.0, 0.8 }, 1.2 + 3.2);
+
+  // Surfaces are shown with them, and a copy shows the same.
+  this->Mapper->SetIsoValue(0, 0.4);
+  const std::vector<double> both = this->RenderTraced();
+  vtkNew<vtkDSMVolumeMapper> copy;
+  copy->ShallowCopy(this->Mapper);
+  this->Volume->SetMapper(copy);
+  EXPECT_EQ(this->RenderTraced(), both);
+  copy->SlicingOff();
+  EXPECT_LT(CountCovered(this->RenderTraced()), CountCovered(both));
+}
+
+TEST_F(VolumeMapper, CapsWhatClippingCuts)
+{
+  vtkNew<vtkPlane> plane;
+  plane->SetNormal(-0.3, -0.3, -0.9);
+  this->Mapper->AddClippingPlane(plane);
+  const std::vector<double> open = this->RenderTraced();
+  this->Mapper->CappingOn();
+  this->Mapper->SetCapSide(vtkDSMVolumeMapper::ValuesBelow);
+  const std::vector<double> capped = this->RenderTraced();
+  // The face is where the inside was seen, and nowhere else.
+  EXPECT_EQ(CountCovered(capped), CountCovered(open));
+  int nearer = 0;
+  for (int pixel = 0; pixel < Size * Size; ++pixel)
+  {
+    EXPECT_LE(capped[pixel], open[pixel] + 1e-3);
+    nearer += capped[pixel] < open[pixel] - 0.5 ? 1 : 0;
+  }
+  EXPECT_GT(nearer, CountCovered(open) / 2);
+  this->Mapper->SetCapSide(vtkDSMVolumeMapper::WholeFace);
+  EXPECT_GT(CountCovered(this->RenderTraced()), CountCovered(capped));
 }
 
 TEST_F(VolumeMapper, BackFacesHaveTheirOwnLook)

@@ -94,6 +94,15 @@ protected:
     return distances;
   }
 
+  /// The depth in [0, 1] of what is so far away.
+  double GetDepth(double distance)
+  {
+    double nearest;
+    double farthest;
+    this->Renderer->GetActiveCamera()->GetClippingRange(nearest, farthest);
+    return (farthest - nearest * farthest / distance) / (farthest - nearest);
+  }
+
   void Place()
   {
     this->Volume->SetPosition(1.0, 2.0, 3.0);
