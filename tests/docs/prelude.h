@@ -10,6 +10,7 @@
 #include "vtkImageData.h"
 #include "vtkMPIController.h"
 #include "vtkNew.h"
+#include "vtkPlane.h"
 #include "vtkProperty.h"
 #include "vtkRenderWindow.h"
 #include "vtkRenderer.h"
@@ -19,6 +20,7 @@
 extern vtkAlgorithm* reader;
 extern vtkAlgorithm* source;
 extern vtkRenderer* renderer;
+extern vtkScalarsToColors* table;
 extern vtkRenderWindow* window;
 extern int argc;
 extern char** argv;
