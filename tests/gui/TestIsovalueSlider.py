@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Run by ParaView's application, which has loaded the plugin, alone or connected to a server: the first isovalue
 is the one that the data suggest, and so is what the reset button gives; while the panel's slider is dragged, which
-sets the unchecked value of the property only, the view shows it; an animation track can change the isovalue; another
+sets the unchecked value of the property only, the view shows it, and so it does with the index of a slice; an animation track can change the isovalue; another
 array has an isovalue of its own, also back and forth; where none is suggested, a number stands there that is nobody's
 choice, and is so again when a choice is undone; a list of several begins with the one that is there; and a
 display that was made before there were data has their array and their box once they are there."""
@@ -74,6 +74,7 @@ class Session:
         check(seen == [150.0, 200.0, 250.0], f"an animation has isovalues {seen}")
         check(pixels[0] > pixels[1] > pixels[2], f"and shows them: {pixels}")
         simple.Hide(source, self.view)
+        yield from self.drag_slice()
         self.show_before_there_are_data()
 
     def choose_arrays(self):
@@ -185,6 +186,26 @@ class Session:
         values.ClearUncheckedElements()
         display.DSMIsoValues = []
         simple.Render(self.view)
+
+    def drag_slice(self):
+        source = simple.Wavelet()
+        display = simple.Show(source, self.view)
+        display.Representation = "DSM Slices"
+        simple.Render(self.view)
+        yield
+        check(display.ColorArrayName[1] == "RTData", "slices are colored at first")
+        index = display.SMProxy.GetProperty("DSMSliceZIndex")
+        for value in (13, 16):
+            before = grab(self.view)
+            index.SetUncheckedElement(0, value)
+            while (grab(self.view) == before).all():
+                yield
+            check(index.GetElement(0) == 10, f"slice {value} is shown, and not yet set")
+        shown = grab(self.view)
+        display.DSMSliceZIndex = 16
+        simple.Render(self.view)
+        check((grab(self.view) == shown).all(), "once it is set, the picture is the same")
+        simple.Delete(source)
 
     def show_before_there_are_data(self):
         """As when a file of bare values is opened, and only then its size is entered."""

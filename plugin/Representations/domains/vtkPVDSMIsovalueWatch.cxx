@@ -15,15 +15,22 @@
 #include "vtkSMTrace.h"
 #include "vtkSMUncheckedPropertyHelper.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <optional>
+#include <string>
 #include <utility>
 
 namespace
 {
 constexpr const char* Single = "DSMIsoValue";
 constexpr const char* List = "DSMIsoValues";
+
+constexpr const char* SliceIndices[] = { "DSMSliceXIndex", "DSMSliceYIndex", "DSMSliceZIndex" };
+/// A property that no other way to show a dataset has.
+constexpr const char* OfSlices = "DSMSliceLighting";
 
 /// After what depends on a property, as ranges do, has heard of it.
 constexpr float Late = -1.0f;
@@ -127,6 +134,10 @@ void vtkPVDSMIsovalueWatch::Watch(vtkSMProxy* representation, bool isInApplicati
     observe(single, vtkCommand::UncheckedPropertyModifiedEvent);
     observe(representation->GetProperty(List), vtkCommand::ModifiedEvent);
     observe(representation->GetProperty(List), vtkCommand::UncheckedPropertyModifiedEvent);
+    for (const char* index : SliceIndices)
+    {
+      observe(representation->GetProperty(index), vtkCommand::UncheckedPropertyModifiedEvent);
+    }
   }
 }
 
@@ -144,6 +155,11 @@ void vtkPVDSMIsovalueWatch::OnEvent(vtkSMProperty* property, unsigned long event
   else if (property == proxy->GetProperty(List))
   {
     this->OnList(property, event);
+  }
+  else if (std::any_of(std::begin(SliceIndices), std::end(SliceIndices),
+             [&](const char* index) { return property == proxy->GetProperty(index); }))
+  {
+    this->OnSliceIndex(property);
   }
   else if (event == vtkCommand::ModifiedEvent)
   {
@@ -206,23 +222,49 @@ void vtkPVDSMIsovalueWatch::BeginList(vtkSMProxy* representation)
   }
 }
 
+bool vtkPVDSMIsovalueWatch::IsDragged(vtkSMProperty* property, bool differs)
+{
+  const bool wasDragged = property == this->Dragged;
+  this->Dragged = differs ? property : wasDragged ? nullptr : this->Dragged;
+  return differs || wasDragged;
+}
+
 // Past the property, whose changes the application traces, and may undo.
 void vtkPVDSMIsovalueWatch::OnSlider(vtkSMProperty* single)
 {
   const double shown = vtkSMUncheckedPropertyHelper(single).GetAsDouble();
-  const bool isDragged = shown != vtkSMPropertyHelper(single).GetAsDouble();
-  if (!isDragged && single != this->Dragged)
+  const bool differs = shown != vtkSMPropertyHelper(single).GetAsDouble();
+  if (!this->IsDragged(single, differs))
   {
     return;
   }
-  this->Dragged = isDragged ? single : nullptr;
   vtkSMProxy* proxy = single->GetParent();
-  const int isAutomatic = !isDragged && FindVolume(proxy)->IsIsovalueAutomatic() ? 1 : 0;
+  const int isAutomatic = !differs && FindVolume(proxy)->IsIsovalueAutomatic() ? 1 : 0;
   vtkClientServerStream stream;
   stream << vtkClientServerStream::Invoke << VTKOBJECT(proxy) << "SetSingleIsoValue" << shown
          << vtkClientServerStream::End;
   stream << vtkClientServerStream::Invoke << VTKOBJECT(proxy) << "SetAutomaticIsoValue"
          << isAutomatic << vtkClientServerStream::End;
   proxy->GetSession()->ExecuteStream(proxy->GetLocation(), stream);
+  this->Changed();
+}
+
+/// Of the ways to show a dataset, which share the property, it matters to the slices.
+void vtkPVDSMIsovalueWatch::OnSliceIndex(vtkSMProperty* index)
+{
+  const int shown = vtkSMUncheckedPropertyHelper(index).GetAsInt();
+  vtkSMProxy* const display = index->GetParent()->GetParentProxy();
+  vtkSMProperty* const ofSlices = display ? display->GetProperty(OfSlices) : nullptr;
+  if (!ofSlices || !this->IsDragged(index, shown != vtkSMPropertyHelper(index).GetAsInt()))
+  {
+    return;
+  }
+  vtkSMProxy* slices = ofSlices->GetParent();
+  const std::string name = index->GetXMLName();
+  const std::string method = "Set" + name.substr(std::string("DSM").size());
+  vtkClientServerStream stream;
+  stream << vtkClientServerStream::Invoke << VTKOBJECT(slices) << method.c_str() << shown
+         << vtkClientServerStream::End;
+  slices->GetSession()->ExecuteStream(slices->GetLocation(), stream);
   this->Changed();
 }

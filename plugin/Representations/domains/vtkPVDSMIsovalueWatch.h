@@ -12,8 +12,8 @@ class vtkSMProxy;
 
 /// The isovalues of a view's datasets, on the client. An automatic isovalue becomes the one that the data suggest and the
 /// picture shows. Where the data suggest none, it is the middle of their range. The isovalue of another array is automatic.
-/// While the panel's slider is dragged, the datasets already have the value that it is at, which the property gets when
-/// it is let go.
+/// While the panel's slider of an isovalue or of a slice's index is dragged, the datasets already have the value that it is
+/// at, which the property gets when it is let go.
 class vtkPVDSMIsovalueWatch
 {
 public:
@@ -32,6 +32,9 @@ public:
 private:
   void OnEvent(vtkSMProperty* property, unsigned long event);
   void OnSlider(vtkSMProperty* single);
+  void OnSliceIndex(vtkSMProperty* index);
+  /// Whether a slider is dragged, or was until now. `differs`: it shows another value than is set.
+  bool IsDragged(vtkSMProperty* property, bool differs);
   void OnList(vtkSMProperty* list, unsigned long event);
   void BeginList(vtkSMProxy* representation);
   void OnOtherArray(vtkSMProxy* representation);
@@ -40,7 +43,7 @@ private:
   vtkSmartPointer<vtkCommand> Observer;
   vtkSMProperty* Choice = nullptr;  ///< of an array or a component, while it becomes another
   vtkSMProperty* Begun = nullptr;   ///< a list to which the panel has added a first value
-  vtkSMProperty* Dragged = nullptr; ///< an isovalue that the slider shows, and that is not set yet
+  vtkSMProperty* Dragged = nullptr; ///< what a slider shows another value of than is set
 };
 
 #endif
