@@ -47,6 +47,16 @@ compare("AlongAnAxis")
 view.CameraParallelProjection = 0
 place_camera(view)
 
+# ParaView's panel offers none of these for Volume, which has them.
+for mode in (1, 2, 3, 4):
+    display.DSMBlendMode = mode
+    display.BlendMode = mode
+    name = display.GetProperty("DSMBlendMode").GetData().replace(" ", "")
+    compare(name, mean=1.5, largest=255)
+check(name == "Additive", "the modes have names")
+display.DSMBlendMode = "Composite"
+display.BlendMode = "Composite"
+
 # What ParaView draws itself is where it is in the volume.
 sphere = simple.Sphere(Center=[12.0, 12.0, 12.0], Radius=9.0, ThetaResolution=48, PhiResolution=48)
 show_surface(sphere, view)

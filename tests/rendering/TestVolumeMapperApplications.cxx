@@ -10,7 +10,9 @@
 #include "vtkColorTransferFunction.h"
 #include "vtkCommand.h"
 #include "vtkContourValues.h"
+#include "vtkDiscretizableColorTransferFunction.h"
 #include "vtkFixedPointVolumeRayCastMapper.h"
+#include "vtkGPUVolumeRayCastMapper.h"
 #include "vtkObjectFactory.h"
 #include "vtkPiecewiseFunction.h"
 #include "vtkPropAssembly.h"
@@ -101,6 +103,101 @@ TEST_F(VolumeMapper, StandsInForTheRayCastMapper)
   }
 }
 
+TEST_F(VolumeMapper, BlendsAsTheRayCastMapper)
+{
+  vtkNew<vtkColorTransferFunction> colors;
+  colors->AddRGBPoint(0.0, 0.9, 0.2, 0.1);
+  colors->AddRGBPoint(0.5, 0.2, 0.9, 0.3);
+  vtkNew<vtkPiecewiseFunction> opacity;
+  opacity->AddPoint(0.0, 1.0);
+  opacity->AddPoint(0.3, 0.1);
+  opacity->AddPoint(0.6, 0.8);
+  vtkNew<vtkVolumeProperty> property;
+  property->SetInterpolationTypeToLinear();
+  property->SetScalarOpacity(opacity);
+  property->SetColor(colors);
+  property->SetScalarOpacityUnitDistance(20.0);
+  this->Volume->SetProperty(property);
+  this->Place();
+  this->Renderer->AddVolume(this->Volume);
+  vtkNew<vtkGPUVolumeRayCastMapper> theirs;
+  theirs->SetAutoAdjustSampleDistances(0);
+  theirs->SetSampleDistance(0.25f);
+  vtkNew<vtkDSMVolumeMapper> ours;
+  const auto draw = [&](vtkVolumeMapper* mapper, int mode)
+  {
+    mapper->SetInputDataObject(MakeBall());
+    mapper->SetBlendMode(mode);
+    this->Volume->SetMapper(mapper);
+    this->Window->Render();
+    vtkNew<vtkUnsignedCharArray> pixels;
+    this->Window->GetPixelData(0, 0, Size - 1, Size - 1, 0, pixels);
+    return vtkSmartPointer<vtkUnsignedCharArray>(pixels);
+  };
+  auto before = draw(ours, vtkVolumeMapper::COMPOSITE_BLEND);
+  for (const int mode :
+    { vtkVolumeMapper::MAXIMUM_INTENSITY_BLEND, vtkVolumeMapper::MINIMUM_INTENSITY_BLEND,
+      vtkVolumeMapper::AVERAGE_INTENSITY_BLEND, vtkVolumeMapper::ADDITIVE_BLEND })
+  {
+    const auto found = draw(ours, mode);
+    EXPECT_LT(GetDifference(found, draw(theirs, mode)), 1.5) << mode;
+    EXPECT_GT(GetDifference(found, before), 5.0) << mode;
+    before = found;
+  }
+  for (vtkVolumeMapper* const mapper :
+    { static_cast<vtkVolumeMapper*>(theirs.Get()), static_cast<vtkVolumeMapper*>(ours.Get()) })
+  {
+    mapper->SetAverageIPScalarRange(0.2, 0.4);
+  }
+  const int average = vtkVolumeMapper::AVERAGE_INTENSITY_BLEND;
+  EXPECT_LT(GetDifference(draw(ours, average), draw(theirs, average)), 1.5);
+  this->Volume->SetMapper(this->Mapper); // the others go
+}
+
+/// Beside the logarithms of the values with functions that are linear in these.
+TEST_F(VolumeMapper, LowDecadesOfALogarithmicMapAreSeen)
+{
+  const double nodes[][3] = { { 0.0, 0.9, 0.0 }, { 0.3, 0.2, 0.0 }, { 0.5, 0.2, 0.9 },
+    { 0.7, 0.4, 0.0 }, { 2.5, 0.6, 0.0 }, { 3.0, 0.9, 0.5 }, { 3.5, 0.5, 0.0 }, { 5.0, 0.3, 0.0 } };
+  this->Place();
+  this->Renderer->AddVolume(this->Volume);
+  vtkNew<vtkDSMVolumeMapper> mapper;
+  vtkSmartPointer<vtkUnsignedCharArray> pictures[2];
+  for (const bool isLogarithmic : { false, true })
+  {
+    const auto image = MakeBall();
+    vtkDataArray* const values = image->GetPointData()->GetScalars();
+    vtkNew<vtkDiscretizableColorTransferFunction> colors;
+    colors->DiscretizeOff();
+    vtkNew<vtkPiecewiseFunction> opacity;
+    const auto get = [=](double exponent)
+    { return isLogarithmic ? std::pow(10.0, exponent) : exponent; };
+    for (vtkIdType point = 0; point < values->GetNumberOfTuples(); ++point)
+    {
+      values->SetTuple1(point, get(std::min(6.0 * values->GetTuple1(point), 5.0)));
+    }
+    for (const auto& node : nodes)
+    {
+      colors->AddRGBPoint(get(node[0]), node[1], 1.0 - node[1], 0.3);
+      opacity->AddPoint(get(node[0]), node[2]);
+    }
+    colors->SetUseLogScale(isLogarithmic);
+    opacity->SetUseLogScale(isLogarithmic);
+    vtkNew<vtkVolumeProperty> property;
+    property->SetColor(colors);
+    property->SetScalarOpacity(opacity);
+    this->Volume->SetProperty(property);
+    mapper->SetInputDataObject(image);
+    this->Volume->SetMapper(mapper);
+    this->Window->Render();
+    vtkNew<vtkUnsignedCharArray> pixels;
+    this->Window->GetPixelData(0, 0, Size - 1, Size - 1, 0, pixels);
+    pictures[isLogarithmic ? 1 : 0] = pixels;
+  }
+  EXPECT_LT(GetDifference(pictures[0], pictures[1]), 0.8);
+  this->Volume->SetMapper(this->Mapper); // the other one goes
+}
+
 TEST_F(VolumeMapper, SaysWhatMediaDoNotHave)
 {
   this->Mapper->SetNumberOfIsoValues(0);
@@ -113,9 +210,29 @@ TEST_F(VolumeMapper, SaysWhatMediaDoNotHave)
   this->Volume->GetProperty()->ShadeOn();
   this->Window->Render();
   EXPECT_NE(observer->GetWarningMessage().find("shading"), std::string::npos);
-  this->Mapper->SetBlendModeToMaximumIntensity();
+  const auto both = MakeBall();
+  vtkNew<vtkFloatArray> pairs;
+  pairs->SetName("distance");
+  pairs->SetNumberOfComponents(2);
+  pairs->SetNumberOfTuples(both->GetNumberOfPoints());
+  pairs->CopyComponent(0, both->GetPointData()->GetScalars(), 0);
+  pairs->CopyComponent(1, both->GetPointData()->GetScalars(), 0);
+  both->GetPointData()->SetScalars(pairs);
+  this->Mapper->SetInputData(both);
+  observer->Clear();
   this->Window->Render();
-  EXPECT_NE(observer->GetErrorMessage().find("Composite"), std::string::npos);
+  EXPECT_NE(observer->GetWarningMessage().find("all components"), std::string::npos);
+  observer->Clear();
+  this->Volume->GetProperty()->SetComponentWeight(1, 0.0);
+  this->Window->Render();
+  EXPECT_FALSE(observer->GetWarning()) << observer->GetWarningMessage();
+  this->Volume->GetProperty()->IndependentComponentsOff();
+  this->Window->Render();
+  EXPECT_NE(observer->GetWarningMessage().find("IndependentComponentsOn"), std::string::npos);
+  this->Mapper->SetInputData(MakeBall());
+  this->Mapper->SetBlendMode(vtkVolumeMapper::SLICE_BLEND);
+  this->Window->Render();
+  EXPECT_NE(observer->GetErrorMessage().find("Slice"), std::string::npos);
   this->Mapper->AutomaticIsoValueOn();
   this->Window->Render();
   EXPECT_TRUE(std::isfinite(this->Mapper->GetSuggestedIsoValue()))

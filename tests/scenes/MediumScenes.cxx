@@ -223,6 +223,112 @@ void AddLit(Scenes& scenes)
     } });
 }
 
+/// What is shown of all values along a ray is one value.
+enum class Blending
+{
+  Maximum,
+  Minimum,
+  Mean,
+  Sum
+};
+const Named<Blending> Blendings = { { "Maximum", Blending::Maximum },
+  { "Minimum", Blending::Minimum }, { "Mean", Blending::Mean }, { "Sum", Blending::Sum } };
+
+/// `clipping`: of the medium.
+void AddBlended(SceneStage& stage, const Recipe& recipe, const Nodes& nodes, Blending blending,
+  const rt::ClipRegion& clipping = {})
+{
+  if (blending == Blending::Maximum || blending == Blending::Minimum)
+  {
+    rt::LatticeExtremum medium = stage.CreateExtremum(recipe, nodes, blending == Blending::Minimum);
+    medium.Clipping = clipping;
+    stage.Add(std::move(medium));
+  }
+  else
+  {
+    rt::LatticeSum medium = stage.CreateSum(recipe, nodes, blending == Blending::Mean);
+    medium.Clipping = clipping;
+    stage.Add(std::move(medium));
+  }
+}
+
+void AddBlendings(Scenes& scenes)
+{
+  Recipe waves;
+  Recipe rough;
+  rough.Form = Recipe::Shape::Rough;
+  rough.Points = { 12, 11, 10 };
+  Recipe holes = waves;
+  holes.Holes = Recipe::Hole::NotANumber;
+  Recipe blanked = waves;
+  blanked.Blanked = true;
+  Recipe ball;
+  ball.Form = Recipe::Shape::Ball;
+  for (const auto& [blendingName, blending] : Blendings)
+  {
+    const std::string begin = "medium." + blendingName + ".";
+    const auto add = [&scenes, begin](const std::string& name, const auto& change) {
+      scenes.push_back({ begin + name, change });
+    };
+    for (const auto& [name, recipe] : Named<Recipe>{
+           { "Waves", waves }, { "Rough", rough }, { "Holes", holes }, { "Blanked", blanked } })
+    {
+      add(name,
+        [recipe = recipe, blending = blending](SceneStage& stage)
+        { AddBlended(stage, recipe, Everything, blending); });
+    }
+    for (const auto& [name, camera] :
+      Named<Camera>{ { "AlongZ", Camera::AlongZ }, { "Inside", Camera::Inside } })
+    {
+      add(name,
+        [camera = camera, rough, blending = blending](SceneStage& stage)
+        {
+          stage.LookFrom(camera);
+          AddBlended(stage, rough, Fog, blending);
+        });
+    }
+    add("Clipped",
+      [waves, blending = blending](SceneStage& stage)
+      {
+        rt::ClipRegion clipping;
+        clipping.Boxes = { glm::dmat4(1.0), glm::dvec3(-0.3), glm::dvec3(0.4), ~(1u << 13) };
+        AddBlended(stage, waves, Fog, blending, clipping);
+      });
+    add("Shadows",
+      [waves, ball, blending = blending](SceneStage& stage)
+      {
+        AddBlended(stage, waves, Fog, blending);
+        stage.Add(stage.CreateIsosurface(ball));
+        stage.Add(stage.CreateMedium(ball, Everything, Translate({ 0.4, 0.2, -0.3 })));
+        stage.World.Transport.Shadows = true;
+      });
+  }
+  for (const auto& [name, view] :
+    Named<rt::DebugView>{ { "Owner", rt::DebugView::Owner }, { "Brick", rt::DebugView::Brick },
+      { "Normal", rt::DebugView::Normal }, { "Depth", rt::DebugView::Depth } })
+  {
+    scenes.push_back({ "medium.View." + name,
+      [waves, ball, view = view](SceneStage& stage)
+      {
+        stage.World.View = view;
+        stage.Add(stage.CreateMedium(waves, Fog));
+        stage.Add(stage.CreateExtremum(ball, Fog, false, Translate({ 0.9, 0.4, -0.3 })));
+      },
+      view == rt::DebugView::Owner });
+  }
+  for (const auto& [name, type] : Types)
+  {
+    Recipe recipe;
+    recipe.Type = type;
+    for (const bool isMinimum : { false, true })
+    {
+      scenes.push_back({ std::string("medium.type.") + (isMinimum ? "Minimum." : "Maximum.") + name,
+        [recipe, isMinimum](SceneStage& stage)
+        { stage.Add(stage.CreateExtremum(recipe, Everything, isMinimum)); } });
+    }
+  }
+}
+
 } // namespace
 
 void AddMediumScenes(std::vector<RecordedScene>& scenes)
@@ -231,4 +337,5 @@ void AddMediumScenes(std::vector<RecordedScene>& scenes)
   AddShapes(scenes);
   AddMixtures(scenes);
   AddLit(scenes);
+  AddBlendings(scenes);
 }

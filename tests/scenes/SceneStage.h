@@ -58,7 +58,7 @@ public:
   std::vector<int> SampleParts{ 1 };
 
   void Add(rt::SceneObject object) { this->World.Objects.push_back(std::move(object)); }
-  void Add(rt::LatticeMedium medium) { this->World.Media.push_back(std::move(medium)); }
+  void Add(rt::SceneMedium medium) { this->World.Media.push_back(std::move(medium)); }
 
   rt::Light& AddLight(const glm::dvec3& direction)
   {
@@ -115,8 +115,57 @@ public:
     return medium;
   }
 
+  /// The nodes' colors and opacities as those of extrema.
+  rt::LatticeExtremum CreateExtremum(const Generated::Recipe& recipe,
+    const std::vector<std::pair<double, glm::dvec4>>& nodes, bool isMinimum,
+    const glm::dmat4& place = glm::dmat4(1.0))
+  {
+    auto colors = std::make_shared<rt::ColorMap>();
+    colors->First = Generated::Scale(recipe.Type, nodes.front().first);
+    colors->Last = Generated::Scale(recipe.Type, nodes.back().first);
+    for (const glm::dvec4& sample : Sample(nodes))
+    {
+      colors->Table.emplace_back(glm::dvec3(sample), sample.w / (1.0 + sample.w));
+    }
+    colors->Below = colors->Table.front();
+    colors->Above = colors->Table.back();
+    rt::LatticeExtremum medium;
+    medium.Field = this->CreateIsosurface(recipe, {}, place).Field;
+    medium.Colors = colors;
+    medium.IsMinimum = isMinimum;
+    return medium;
+  }
+
+  /// The nodes' red, in a unit of the world; values above the middle of their range count for a mean.
+  rt::LatticeSum CreateSum(const Generated::Recipe& recipe,
+    const std::vector<std::pair<double, glm::dvec4>>& nodes, bool isMean,
+    const glm::dmat4& place = glm::dmat4(1.0))
+  {
+    std::vector<rt::LatticeSum::Sample> samples;
+    for (const glm::dvec4& sample : Sample(nodes))
+    {
+      const bool counts = !isMean || 2 * samples.size() >= rt::TransferFunction::Bins;
+      samples.push_back({ sample.x, counts ? 1.0 : 0.0 });
+    }
+    rt::LatticeSum medium;
+    medium.Field = this->CreateIsosurface(recipe, {}, place).Field;
+    medium.Function =
+      rt::LatticeSum::CreateFunction(Generated::Scale(recipe.Type, nodes.front().first),
+        Generated::Scale(recipe.Type, nodes.back().first), samples, 1.0);
+    medium.IsMean = isMean;
+    return medium;
+  }
+
   static std::shared_ptr<const rt::TransferFunction> CreateFunction(
     const Generated::Recipe& recipe, const std::vector<std::pair<double, glm::dvec4>>& nodes)
+  {
+    return std::make_shared<rt::TransferFunction>(
+      Generated::Scale(recipe.Type, nodes.front().first),
+      Generated::Scale(recipe.Type, nodes.back().first), Sample(nodes));
+  }
+
+  /// TransferFunction::Bins + 1 of the lines between the nodes.
+  static std::vector<glm::dvec4> Sample(const std::vector<std::pair<double, glm::dvec4>>& nodes)
   {
     std::vector<glm::dvec4> samples;
     const double first = nodes.front().first;
@@ -133,8 +182,7 @@ public:
       const auto& [high, after] = nodes[node];
       samples.push_back(before + (level - low) / (high - low) * (after - before));
     }
-    return std::make_shared<rt::TransferFunction>(
-      Generated::Scale(recipe.Type, first), Generated::Scale(recipe.Type, last), samples);
+    return samples;
   }
 
   /// Rank r has the r-th part of the shuffled triangles, the last rank none when there are several.

@@ -28,12 +28,20 @@ int vtkPVDSMVolumeRepresentation::ProcessViewRequest(
   {
     const bool isOne = map->GetVectorMode() == vtkScalarsToColors::COMPONENT;
     this->Mapper->SetIsoComponent(isOne ? map->GetVectorComponent() : -1);
+    // As vtkSmartVolumeMapper does: the others are not asked for.
+    for (int component = 0; component < VTK_MAX_VRCOMP; ++component)
+    {
+      this->Property->SetComponentWeight(
+        component, isOne && component != map->GetVectorComponent() ? 0.0 : 1.0);
+    }
   }
   vtkProperty* const surface = this->Mapper->GetSurfaceProperty();
   this->Property->SetAmbient(surface->GetAmbient());
   this->Property->SetDiffuse(surface->GetDiffuse());
   this->Property->SetSpecular(surface->GetSpecular());
   this->Property->SetSpecularPower(surface->GetSpecularPower());
+  this->Property->SetIndependentComponents(
+    this->Mapper->GetMapScalars() && !this->MultiComponentsMapping);
   return this->Superclass::ProcessViewRequest(request, inInfo, outInfo);
 }
 
@@ -79,4 +87,14 @@ void vtkPVDSMVolumeRepresentation::SetAnisotropy(double anisotropy)
 void vtkPVDSMVolumeRepresentation::SetScattering(double part)
 {
   this->Mapper->SetScattering(part);
+}
+
+void vtkPVDSMVolumeRepresentation::SetBlendMode(int mode)
+{
+  this->Mapper->SetBlendMode(mode);
+}
+
+void vtkPVDSMVolumeRepresentation::SetMultiComponentsMapping(bool maps)
+{
+  this->MultiComponentsMapping = maps;
 }

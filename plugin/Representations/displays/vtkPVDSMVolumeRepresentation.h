@@ -48,6 +48,16 @@ public:
    */
   void SetScattering(double part);
 
+  /**
+   * One of vtkVolumeMapper's blend modes, but those of isosurfaces and slices.
+   */
+  void SetBlendMode(int mode);
+
+  /**
+   * Whether a second or fourth component is to be the opacity: there is a warning that it is not.
+   */
+  void SetMultiComponentsMapping(bool maps);
+
 protected:
   vtkPVDSMVolumeRepresentation();
   ~vtkPVDSMVolumeRepresentation() override;
@@ -59,6 +69,7 @@ private:
   void operator=(const vtkPVDSMVolumeRepresentation&) = delete;
 
   vtkNew<vtkVolumeProperty> Property;
+  bool MultiComponentsMapping = false;
 };
 
 #endif

@@ -21,8 +21,9 @@ struct PixelSample
   glm::ivec2 Pixel{ 0 };
   glm::vec4 Color{ 0.0f };
   glm::vec3 Shared{ 0.0f }; ///< what neighbors' ambient occlusion adds to Color in previews
-  float Depth = 1.0f;       ///< of the nearest surface
-  int LightRays = 0;        ///< shadow and occlusion rays that were traced for it
+  float Depth =
+    1.0f;            ///< of the nearest surface; of media in front, where half of it all is covered
+  int LightRays = 0; ///< shadow and occlusion rays that were traced for it
 
   /// Channels on request, set where any was asked for: see Channels.
   glm::vec4 Albedo{ 0.0f };
@@ -35,17 +36,25 @@ struct PixelSample
   float LayerDepths[MaxLayers];
   glm::vec4 LayerColors[MaxLayers];
 
-  void AddLayer(const glm::vec4& color, float depth)
+  /// `isMedium`: a surface behind it that is better seen gives the sample its depth.
+  void AddLayer(const glm::vec4& color, float depth, bool isMedium = false)
   {
+    const bool isNearest = this->Layers == 0;
+    this->Cover += color.w;
     if (this->Layers == MaxLayers)
     {
       this->LayerColors[MaxLayers - 1] += color;
       return;
     }
-    this->Depth = this->Layers == 0 ? depth : this->Depth;
+    this->Depth = isNearest || (this->IsFaint && this->Cover >= 0.5f) ? depth : this->Depth;
+    this->IsFaint = this->Cover < 0.5f && (isNearest ? isMedium : this->IsFaint);
     this->LayerColors[this->Layers] = color;
     this->LayerDepths[this->Layers++] = depth;
   }
+
+private:
+  float Cover = 0.0f;   ///< by all layers
+  bool IsFaint = false; ///< Depth is that of a medium that covers less than half
 };
 
 } // namespace rt

@@ -220,14 +220,16 @@ void PixelSampler::AddMedia(
       }
       LightPath& path = *paths[index];
       const float weight = 1.0f - path.Color.w;
-      const glm::vec4 layer = weight *
-        glm::vec4(
-          glm::vec3(light->GetColor(index)), static_cast<float>(1.0 - light->Transmittance[index]));
+      const auto opacity = static_cast<float>(1.0 - light->Transmittance[index]);
+      const glm::dvec3 place = rays[index].Origin + light->GetPlace(index) * rays[index].Direction;
+      const glm::vec3 color = this->World.View == DebugView::Off
+        ? glm::vec3(light->GetColor(index))
+        : opacity * this->ShowForDebugging(place);
+      const glm::vec4 layer = weight * glm::vec4(color, opacity);
       path.Color += layer;
       if (path.Layers)
       {
-        const glm::dvec3 place = rays[index].Origin + light->First[index] * rays[index].Direction;
-        path.Layers->AddLayer(layer, this->Rays.GetDepth(place));
+        path.Layers->AddLayer(layer, this->Rays.GetDepth(place), true);
       }
     });
 }
@@ -368,6 +370,19 @@ void PixelSampler::AddReflections(LightPath* const* paths, int count, const Shad
         glm::vec3(seen[number]) + (1.0f - seen[number].w) * this->World.Transport.Background;
       colors[number] = (1.0f - reflectivity) * colors[number] + reflectivity * reflection;
     });
+}
+
+glm::vec3 PixelSampler::ShowForDebugging(const glm::dvec3& place) const
+{
+  const DebugView view = this->World.View;
+  if (view == DebugView::Depth)
+  {
+    return glm::vec3(1.0f - this->Rays.GetDepth(place));
+  }
+  const bool isOfBricks = view == DebugView::Owner || view == DebugView::Brick;
+  // Tinted when the tile is done; a medium has no normals.
+  return isOfBricks ? GetNumberColor(GetNumber(view, this->Media.FindBrick(place)))
+                    : glm::vec3(1.0f);
 }
 
 glm::vec3 PixelSampler::ShowForDebugging(const LightPath& path) const

@@ -76,6 +76,8 @@ private:
   void AddReflections(LightPath* const* paths, int count, const ShadingPoint* points, int bounces,
     glm::vec3* colors) const;
   glm::vec3 ShowForDebugging(const LightPath& path) const;
+  /// Of media, by the place that stands for them.
+  glm::vec3 ShowForDebugging(const glm::dvec3& place) const;
 
   std::vector<const BeamFinder*> Finders;
   SurfaceFinder Surfaces;

@@ -40,6 +40,29 @@ glm::vec4 ColorMap::Map(double value) const
   return this->Table[entry];
 }
 
+double ColorMap::GetValue(std::size_t entry) const
+{
+  const double part = static_cast<double>(entry) / static_cast<double>(this->Table.size() - 1);
+  const double value = this->Logarithmic ? this->First * std::pow(this->Last / this->First, part)
+                                         : this->First + part * (this->Last - this->First);
+  return std::min(std::max(value, this->First), this->Last);
+}
+
+double ColorMap::FindUnseenEnd(bool fromAbove) const
+{
+  const double end = fromAbove ? -HUGE_VAL : HUGE_VAL;
+  const std::size_t count = this->Table.size();
+  for (std::size_t number = 0; number < count; ++number)
+  {
+    const std::size_t entry = fromAbove ? count - 1 - number : number;
+    if (this->Table[entry].w > 0.0f)
+    {
+      return number == 0 ? -end : this->GetValue(fromAbove ? entry + 1 : entry - 1);
+    }
+  }
+  return end;
+}
+
 bool ColorMap::IsOpaque() const
 {
   const auto isOpaque = [](const glm::vec4& color) { return color.w >= 1.0f; };

@@ -4,6 +4,7 @@
 
 #include <glm/vec4.hpp>
 
+#include <cstddef>
 #include <optional>
 #include <vector>
 
@@ -33,6 +34,11 @@ struct ColorMap
   std::optional<std::vector<Category>> Categories;
 
   glm::vec4 Map(double value) const;
+  /// The value to which an entry of the table belongs.
+  double GetValue(std::size_t entry) const;
+  /// The table shows no value up to this one, or, `fromAbove`, no value down to it; infinite where it shows all, or none.
+  /// Below and Above are to be as the first and the last entry.
+  double FindUnseenEnd(bool fromAbove) const;
   /// Whether it has no colour that light gets through.
   bool IsOpaque() const;
 };

@@ -17,7 +17,6 @@ namespace
 {
 
 constexpr int BinsOfGroup = 16;
-constexpr int Groups = TransferFunction::Bins / BinsOfGroup + 1;
 
 /// Of either.
 TransferFunction::Behavior GetLarger(
@@ -32,9 +31,11 @@ TransferFunction::Behavior GetLarger(
 TransferFunction::TransferFunction(
   double first, double last, const std::vector<glm::dvec4>& samples, double cellLength)
   : First(first)
-  , Scale(Bins / (last - first))
-  , Table(AllBins)
-  , SeenBefore(AllBins + 1, 0)
+  , Scale(static_cast<double>(samples.size() - 1) / (last - first))
+  , Last(static_cast<double>(samples.size() - 1))
+  , AllBins(static_cast<int>(samples.size()) + 1)
+  , Table(samples.size() + 1)
+  , SeenBefore(samples.size() + 2, 0)
 {
   bricks::ByteHash hash;
   hash.Add(&first, sizeof(first));
@@ -45,14 +46,15 @@ TransferFunction::TransferFunction(
 
   const auto emit = [&](int sample)
   {
-    const glm::dvec4& one = samples[static_cast<std::size_t>(std::clamp(sample, 0, int(Bins)))];
+    const glm::dvec4& one =
+      samples[static_cast<std::size_t>(std::clamp(sample, 0, this->AllBins - 2))];
     return glm::dvec4(glm::dvec3(one) * one.w, one.w);
   };
   // Where nothing is at one end of a bin, it has the color of the other.
   const auto getTinge = [&](int bin)
   {
-    const auto& before = samples[static_cast<std::size_t>(std::clamp(bin - 1, 0, int(Bins)))];
-    const auto& after = samples[static_cast<std::size_t>(std::clamp(bin, 0, int(Bins)))];
+    const auto& before = samples[static_cast<std::size_t>(std::clamp(bin - 1, 0, this->AllBins - 2))];
+    const auto& after = samples[static_cast<std::size_t>(std::clamp(bin, 0, this->AllBins - 2))];
     const glm::dvec3 change = glm::abs(glm::dvec3(after) - glm::dvec3(before));
     return before.w > 0.0 && after.w > 0.0 ? std::max({ change.x, change.y, change.z }) : 0.0;
   };
@@ -64,8 +66,9 @@ TransferFunction::TransferFunction(
     return depth > 0.0 ? slope * (-std::expm1(-depth) / depth) : slope;
   };
   glm::dvec4 before = getSeen(emit(0));
-  std::vector<Behavior> groups(Groups);
-  for (int bin = 0; bin < AllBins; ++bin)
+  const std::size_t groupCount = samples.size() / BinsOfGroup + 1;
+  std::vector<Behavior> groups(groupCount);
+  for (int bin = 0; bin < this->AllBins; ++bin)
   {
     const glm::dvec4 begin = emit(bin - 1);
     const glm::dvec4 growth = emit(bin) - begin;
@@ -93,10 +96,10 @@ TransferFunction::TransferFunction(
     this->Whole = GetLarger(this->Whole, group);
   }
   this->Largest.push_back(groups);
-  for (std::size_t width = 1; 2 * width <= Groups; width *= 2)
+  for (std::size_t width = 1; 2 * width <= groupCount; width *= 2)
   {
     const std::vector<Behavior>& narrow = this->Largest.back();
-    std::vector<Behavior> next(Groups - 2 * width + 1);
+    std::vector<Behavior> next(groupCount - 2 * width + 1);
     for (std::size_t group = 0; group < next.size(); ++group)
     {
       next[group] = GetLarger(narrow[group], narrow[group + width]);
@@ -107,8 +110,8 @@ TransferFunction::TransferFunction(
 
 TransferFunction::Behavior TransferFunction::FindBehavior(double begin, double end) const
 {
-  const int first = GetNumber(begin);
-  const int last = GetNumber(end);
+  const int first = this->GetNumber(begin);
+  const int last = this->GetNumber(end);
   if (!this->AnyIsSeen(first, last))
   {
     return {};

@@ -20,10 +20,10 @@ namespace rt
 class TransferFunction
 {
 public:
-  /// Of the range of values.
+  /// Of the range of values, that suffice for most functions.
   static constexpr int Bins = 4096;
 
-  /// `samples`: Bins + 1 of them, evenly spaced from `first` to `last`, which is greater. Red, green, blue (straight), and
+  /// `samples`: one more than bins, evenly spaced from `first` to `last`, which is greater. Red, green, blue (straight), and
   /// extinction (w): optical depth in a unit of world length. `cellLength`, in world space: of two extinctions with which
   /// a cell is opaque, one is as good as the other.
   TransferFunction(
@@ -36,7 +36,7 @@ public:
   /// Emission (x, y, z) and extinction, integrated from First to a place in bins from there. `slope`: what they are there.
   Lanes Integrate(double place, Lanes& slope) const
   {
-    const int number = GetNumber(place);
+    const int number = this->GetNumber(place);
     const Bin& bin = this->Table[static_cast<std::size_t>(number)];
     const double way = place - (number - 1);
     const Lanes change = bin.Growth * Lanes(way);
@@ -44,15 +44,15 @@ public:
     return bin.Integral + (bin.Begin + Lanes(0.5) * change) * Lanes(way);
   }
 
-  /// Linear in each of Bins and what is beyond: bin 0 is what is below the function's range, the last one what is above.
+  /// Linear in each: bin 0 is what is below the function's range, the last one what is above.
   struct Bin
   {
     Lanes Integral; ///< up to the bin's begin
     Lanes Begin;    ///< emission and extinction there
     Lanes Growth;   ///< up to the bin's end
   };
-  static constexpr int AllBins = Bins + 2;
   const Bin* GetTable() const { return this->Table.data(); }
+  int GetTableSize() const { return this->AllBins; }
 
   /// How the function behaves between two places in bins from First, the second not less than the first.
   struct Behavior
@@ -70,8 +70,8 @@ public:
   bool IsSeen(double first, double last) const
   {
     return first <= last &&
-      this->AnyIsSeen(GetNumber((first - this->First) * this->Scale),
-        GetNumber((last - this->First) * this->Scale));
+      this->AnyIsSeen(this->GetNumber((first - this->First) * this->Scale),
+        this->GetNumber((last - this->First) * this->Scale));
   }
   bool IsSeenAtAll() const { return this->SeenBefore.back() > 0; }
 
@@ -80,9 +80,9 @@ public:
 
 private:
   /// A place that is not a number is in bin 0.
-  static int GetNumber(double place)
+  int GetNumber(double place) const
   {
-    return place >= Bins ? Bins + 1 : place >= 0.0 ? static_cast<int>(place) + 1 : 0;
+    return place >= this->Last ? this->AllBins - 1 : place >= 0.0 ? static_cast<int>(place) + 1 : 0;
   }
   bool AnyIsSeen(int first, int last) const
   {
@@ -92,6 +92,8 @@ private:
 
   double First;
   double Scale;
+  double Last; ///< of the range, in bins from First
+  int AllBins;
   std::vector<Bin> Table;
   std::vector<int> SeenBefore; ///< bins before each that are seen; one more at the end
   /// Largest Behavior of 1, 2, 4 ... groups of bins that follow one another, from each group on.

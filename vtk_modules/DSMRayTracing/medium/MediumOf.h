@@ -65,6 +65,11 @@ public:
     return this->Media.Prefetch(this->Medium.Field, beam, count);
   }
 
+  ObjectTracer::Brick FindBrick(const glm::dvec3& place) const override
+  {
+    return this->Medium.Field.FindBrick(place);
+  }
+
   RayMask March(
     const Ray* rays, RayMask wanted, ObjectBeam* beam, MediumLight& light) const override
   {

@@ -4,9 +4,12 @@
 
 #include "DSMRayTracing/object/BeamFinder.h"
 #include "DSMRayTracing/object/ObjectBeam.h"
+#include "DSMRayTracing/object/ObjectTracer.h"
 #include "DSMRayTracing/ray/MediumLight.h"
 #include "DSMRayTracing/ray/Ray.h"
 #include "DSMRayTracing/ray/RayMask.h"
+
+#include <glm/vec3.hpp>
 
 namespace rt
 {
@@ -23,6 +26,12 @@ public:
   /// medium, with all of the rays within; null: rays go where they like.
   virtual RayMask March(
     const Ray* rays, RayMask wanted, ObjectBeam* beam, MediumLight& light) const = 0;
+
+  /// The brick that has a place's values (world space); of no segment, where the medium is not.
+  virtual ObjectTracer::Brick FindBrick(const glm::dvec3& place) const = 0;
+
+  /// Whether the light of lamps is dimmed on its way through: else the medium is only for the eye.
+  virtual bool DimsLamps() const { return true; }
 
   ///@{
   /// What is only known of pieces once they are kept, and Describe has been called: how light makes them shine, or how

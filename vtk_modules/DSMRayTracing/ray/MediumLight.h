@@ -73,6 +73,7 @@ public:
       [&](int ray)
       {
         this->Transmittance[ray] = 1.0;
+        this->Middle[ray] = std::numeric_limits<double>::infinity();
         this->Sum[ray] = Lanes(0.0);
       });
   }
@@ -89,6 +90,7 @@ public:
       {
         this->Keep(ray, piece.Begin, piece.End, piece.Amount, passed);
       }
+      this->Locate(ray, piece.Begin, piece.End, passed);
       this->Blend(
         ray, piece.Amount, passed, depth < Thin ? 1.0 - 0.5 * depth : (1.0 - passed) / depth);
     }
@@ -118,10 +120,25 @@ public:
     this->Sum[ray] = this->Sum[ray] + amount * Lanes(transmittance * seen);
     transmittance *= passed;
   }
+  /// Before Blend: tells where the piece is.
+  void Locate(int ray, double begin, double end, double passed)
+  {
+    const double before = this->Transmittance[ray];
+    const double after = before * passed;
+    if (before > 0.5 && after <= 0.5)
+    {
+      this->Middle[ray] = begin + (before - 0.5) / (before - after) * (end - begin);
+    }
+  }
   ///@}
   /// Red, green and blue of the sum.
   Lanes& GetSum(int ray) { return this->Sum[ray]; }
 
+  /// T of the place that stands for all that a ray meets: where half of the light is gone; else, where there is anything.
+  double GetPlace(int ray) const
+  {
+    return std::isinf(this->Middle[ray]) ? this->First[ray] : this->Middle[ray];
+  }
   bool IsDark(int ray) const { return this->Transmittance[ray] < this->DarkBelow; }
   /// What arrives at the ray's begin.
   glm::dvec3 GetColor(int ray) const
@@ -133,6 +150,7 @@ public:
   double Length[MaxRays];        ///< world length of a unit of T
   double Transmittance[MaxRays]; ///< what gets through what was met so far
   double First[MaxRays];         ///< T where there is anything first; infinite: nowhere
+  double Middle[MaxRays];        ///< T where half of the light is gone; infinite: nowhere
 
   /// Whether pieces are kept, too.
   bool KeepsPieces = false;

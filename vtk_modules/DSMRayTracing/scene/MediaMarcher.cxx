@@ -118,11 +118,25 @@ void MediaMarcher::Merge(RayMask wanted, MediumLight& light) const
     });
 }
 
+ObjectTracer::Brick MediaMarcher::FindBrick(const glm::dvec3& place) const
+{
+  ObjectTracer::Brick brick{ nullptr, 0 };
+  for (const auto& medium : this->Media)
+  {
+    brick = brick.Segment ? brick : medium->FindBrick(place);
+  }
+  return brick;
+}
+
 void MediaMarcher::Attenuate(const Ray* rays, RayMask wanted, glm::dvec3* transmittances) const
 {
   const auto light = std::make_unique<MediumLight>();
   for (const auto& medium : this->Media)
   {
+    if (!medium->DimsLamps())
+    {
+      continue;
+    }
     light->Begin(rays, wanted);
     light->KeepsPieces = medium->HasLateExtinction();
     March(*medium, rays, wanted, nullptr, *light);

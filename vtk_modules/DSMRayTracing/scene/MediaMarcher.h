@@ -38,6 +38,9 @@ public:
     this->Merge(wanted, light);
   }
 
+  /// The brick that has a place's values (world space), of the first medium that is there; of no segment, where none is.
+  ObjectTracer::Brick FindBrick(const glm::dvec3& place) const;
+
   /// Multiplies the transmittances of those of the rays that are `wanted` by that of all media.
   void Attenuate(const Ray* rays, RayMask wanted, glm::dvec3* transmittances) const;
 

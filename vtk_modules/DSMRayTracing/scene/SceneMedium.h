@@ -3,7 +3,9 @@
 #define rt_SceneMedium_h
 
 #include "DSMRayTracing/field/lattice/LatticeField.h"
+#include "DSMRayTracing/medium/ExtremumOf.h"
 #include "DSMRayTracing/medium/MediumOf.h"
+#include "DSMRayTracing/medium/SumOf.h"
 
 #include <variant>
 
@@ -11,11 +13,13 @@ namespace rt
 {
 
 using LatticeMedium = MediumOf<LatticeField>;
+using LatticeExtremum = ExtremumOf<LatticeField>;
+using LatticeSum = SumOf<LatticeField>;
 
 /// The table of the kinds of media. A kind has
 /// - a description, named here, with AddTo and the name of
 /// - its Tracer, a MediumTracer for a store, whose header CreateSceneTracers includes.
-using SceneMedium = std::variant<LatticeMedium>;
+using SceneMedium = std::variant<LatticeMedium, LatticeExtremum, LatticeSum>;
 
 } // namespace rt
 

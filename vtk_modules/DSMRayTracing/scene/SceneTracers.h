@@ -2,6 +2,7 @@
 #ifndef rt_SceneTracers_h
 #define rt_SceneTracers_h
 
+#include "DSMRayTracing/field/lattice/LatticeExtrema.h"
 #include "DSMRayTracing/field/lattice/LatticeMedia.h"
 #include "DSMRayTracing/field/lattice/LatticeSampler.h"
 #include "DSMRayTracing/field/lattice/LatticeSections.h"

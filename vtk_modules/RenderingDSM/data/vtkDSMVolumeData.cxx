@@ -107,6 +107,18 @@ vtkImageData* vtkDSMVolumeData::FindOwn(const bricks::LatticePlan::Member& membe
                                                                  : nullptr;
 }
 
+int vtkDSMVolumeData::CountComponents(const Choice& choice) const
+{
+  int most = 0;
+  for (vtkImageData* image : this->Images)
+  {
+    vtkDSMImageArrays::Info info;
+    vtkDSMImageArrays::Find(image, choice, info);
+    most = std::max(most, static_cast<int>(info.Components));
+  }
+  return most;
+}
+
 std::uint64_t vtkDSMVolumeData::HashPoints(const bricks::LatticePlan::Member& member,
   const bricks::Box& points, const std::vector<Choice>& shown) const
 {

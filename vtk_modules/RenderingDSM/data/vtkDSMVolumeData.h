@@ -92,6 +92,8 @@ public:
   /// Of all ranks' pieces of a lattice.
   std::vector<Block> GetBlocks(std::size_t lattice) const;
   const vtkDSMImageArrays& GetArrays() const { return this->Arrays; }
+  /// Local. Of an array, in this rank's part; 0 where that does not have it.
+  int CountComponents(const Choice& choice) const;
   /// Local, reads the data. Of all that this rank's part of a field depends on: equal only where Publish would make
   /// the same again.
   std::uint64_t HashContent(const Choice& choice) const;

@@ -514,39 +514,38 @@ void vtkDSMSceneVolume::AddMedia(const vtkDSMVolumeLook& look, rt::Scene& scene)
   {
     return;
   }
-  look.FindMissingFeatures(this->Warnings);
+  look.FindMissingFeatures(this->Data->CountComponents(this->Iso->Choice), this->Warnings);
   this->Prop->ComputeMatrix();
   const glm::dmat4 dataToWorld = vtkDSMTranslation::ToMatrix(this->Prop->GetMatrix());
-  double cellLength = std::numeric_limits<double>::infinity();
-  for (std::size_t lattice = 0; lattice < this->Data->GetNumberOfLattices(); ++lattice)
-  {
-    if (this->Iso->GetFields()[lattice])
-    {
-      cellLength = std::min(cellLength, this->GetField(lattice, dataToWorld).GetFinestLength());
-    }
-  }
+  const rt::ClipRegion clipping = look.GetClipRegion(dataToWorld);
   double bounds[6];
   this->Data->GetBounds(bounds);
   const glm::dvec3 lower(bounds[0], bounds[2], bounds[4]);
   const glm::dvec3 upper(bounds[1], bounds[3], bounds[5]);
   const double diagonal = glm::length(glm::dmat3(dataToWorld) * (upper - lower));
-  const auto function = look.CreateTransferFunction(range, cellLength, diagonal, this->Messages);
-  if (!function)
-  {
-    return;
-  }
-  const rt::MediumLook mediumLook = look.GetMediumLook(range);
   for (std::size_t lattice = 0; lattice < this->Data->GetNumberOfLattices(); ++lattice)
   {
-    if (this->Iso->GetFields()[lattice])
+    if (!this->Iso->GetFields()[lattice])
     {
-      rt::LatticeMedium medium;
-      medium.Field = this->GetField(lattice, dataToWorld);
-      medium.Function = function;
-      medium.Look = mediumLook;
-      medium.Clipping = look.GetClipRegion(dataToWorld);
-      scene.Media.push_back(std::move(medium));
+      continue;
     }
+    const rt::LatticeField field = this->GetField(lattice, dataToWorld);
+    const auto key = look.GetMediumKey(range, field.GetFinestLength(), diagonal);
+    if (!this->MakeMedium || key != this->MediumKey)
+    {
+      this->MediumKey = key;
+      this->MakeMedium = vtkDSMVolumeLook::GetMediumMaker(key, this->Messages);
+    }
+    if (!this->MakeMedium)
+    {
+      return;
+    }
+    rt::SceneMedium medium = this->MakeMedium(field, clipping);
+    if (auto* const lit = std::get_if<rt::LatticeMedium>(&medium))
+    {
+      lit->Look = look.GetMediumLook(range);
+    }
+    scene.Media.push_back(std::move(medium));
   }
   this->AddCaps(look, dataToWorld, scene);
 }

@@ -98,7 +98,9 @@ private:
   std::vector<std::shared_ptr<Published>> Stale;
   std::optional<double> Suggested; ///< isovalue
   vtkDSMVolumeData::Choice SuggestedFor;
-  bricks::ValueRange SuggestedFrom{}; ///< of the values that suggested it
+  bricks::ValueRange SuggestedFrom{};       ///< of the values that suggested it
+  vtkDSMVolumeLook::MediumMaker MakeMedium; ///< for MediumKey
+  vtkDSMVolumeLook::MediumKey MediumKey;
   std::string DataFailure;
   unsigned SettingsVersion = 0; ///< the group's at the last Update
 };

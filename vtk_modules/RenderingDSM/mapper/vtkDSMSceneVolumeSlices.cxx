@@ -13,6 +13,17 @@
 namespace
 {
 
+/// But for what is not a number.
+void MakeOpaque(rt::ColorMap& map)
+{
+  for (glm::vec4& color : map.Table)
+  {
+    color.w = 1.0f;
+  }
+  map.Below.w = 1.0f;
+  map.Above.w = 1.0f;
+}
+
 /// The planes of a region's half spaces.
 std::vector<rt::SectionPlane> GetFaces(const rt::ClipRegion& region)
 {
@@ -119,8 +130,12 @@ void vtkDSMSceneVolume::AddCaps(
       face.Clipping = look.GetClipRegion(dataToWorld);
       face.Planes = GetFaces(face.Clipping);
       face.Look.Surface.Lighting = false;
-      face.Look.Colors = vtkDSMTranslation::ToColorMap(
-        property, fields[lattice]->Hierarchy.GetRange(), this->Mapper->GetCapOpacity());
+      const bricks::ValueRange range = fields[lattice]->Hierarchy.GetRange();
+      face.Look.Colors = *vtkDSMTranslation::ToColorMap(property, range.First, range.Last);
+      if (!this->Mapper->GetCapOpacity())
+      {
+        MakeOpaque(face.Look.Colors);
+      }
       scene.Objects.push_back(std::move(face));
     }
   }

@@ -98,22 +98,56 @@ void vtkDSMVolumeLook::SetSliceLook(bool isLit, rt::LatticeSlice& slice) const
   }
 }
 
-std::shared_ptr<const rt::TransferFunction> vtkDSMVolumeLook::CreateTransferFunction(
-  const bricks::ValueRange& range, double cellLength, double diagonal,
-  std::vector<std::string>& messages) const
+vtkDSMVolumeLook::MediumKey vtkDSMVolumeLook::GetMediumKey(
+  const bricks::ValueRange& range, double cellLength, double diagonal) const
 {
-  if (this->Mapper->GetBlendMode() != vtkVolumeMapper::COMPOSITE_BLEND)
-  {
-    messages.push_back(
-      "The mapper draws volumes in the blend modes Composite and Isosurface only, so nothing is "
-      "drawn. Call SetBlendModeToComposite(), or use VTK's own mapper.");
-    return nullptr;
-  }
-  return vtkDSMTranslation::ToTransferFunction(vtkVolume::SafeDownCast(this->Prop)->GetProperty(),
-    range.First, range.Last, cellLength, diagonal);
+  vtkVolumeProperty* const property = vtkVolume::SafeDownCast(this->Prop)->GetProperty();
+  const double* const averaged = this->Mapper->GetAverageIPScalarRange();
+  const int mode = this->Mapper->GetBlendMode();
+  const bool isComposite = mode == vtkVolumeMapper::COMPOSITE_BLEND;
+  return { range.First, range.Last,
+    isComposite || mode == vtkVolumeMapper::AVERAGE_INTENSITY_BLEND ? cellLength : 0.0,
+    isComposite ? diagonal : 0.0, property, property->GetMTime(), mode,
+    { averaged[0], averaged[1] } };
 }
 
-void vtkDSMVolumeLook::FindMissingFeatures(std::vector<std::string>& warnings) const
+vtkDSMVolumeLook::MediumMaker vtkDSMVolumeLook::GetMediumMaker(
+  const MediumKey& key, std::vector<std::string>& messages)
+{
+  const auto& [first, last, cellLength, diagonal, property, time, mode, averaged] = key;
+  switch (mode)
+  {
+    case vtkVolumeMapper::COMPOSITE_BLEND:
+      return [function = vtkDSMTranslation::ToTransferFunction(property, first, last, cellLength,
+                diagonal)](const rt::LatticeField& field, const rt::ClipRegion& clipping) {
+        return rt::LatticeMedium{ field, function, {}, clipping };
+      };
+    case vtkVolumeMapper::MAXIMUM_INTENSITY_BLEND:
+    case vtkVolumeMapper::MINIMUM_INTENSITY_BLEND:
+      return [colors = vtkDSMTranslation::ToColorMap(property, first, last),
+               isMinimum = mode == vtkVolumeMapper::MINIMUM_INTENSITY_BLEND](
+               const rt::LatticeField& field, const rt::ClipRegion& clipping) {
+        return rt::LatticeExtremum{ field, colors, isMinimum, clipping };
+      };
+    case vtkVolumeMapper::AVERAGE_INTENSITY_BLEND:
+    case vtkVolumeMapper::ADDITIVE_BLEND:
+    {
+      const bool isMean = mode == vtkVolumeMapper::AVERAGE_INTENSITY_BLEND;
+      const auto function = vtkDSMTranslation::ToSum(property, first, last,
+        isMean ? averaged : std::array<double, 2>{ first, last },
+        isMean ? cellLength : property->GetScalarOpacityUnitDistance(0));
+      return [=](const rt::LatticeField& field, const rt::ClipRegion& clipping) {
+        return rt::LatticeSum{ field, function, isMean, clipping };
+      };
+    }
+    default:
+      messages.push_back("The mapper does not draw volumes in the blend mode Slice, so nothing is "
+                         "drawn. Call SetBlendMode() with another one, or use VTK's own mapper.");
+      return {};
+  }
+}
+
+void vtkDSMVolumeLook::FindMissingFeatures(int components, std::vector<std::string>& warnings) const
 {
   vtkVolumeProperty* const property = vtkVolume::SafeDownCast(this->Prop)->GetProperty();
   const auto warn = [&](bool isMissing, const char* feature, const char* remedy)
@@ -127,6 +161,26 @@ void vtkDSMVolumeLook::FindMissingFeatures(std::vector<std::string>& warnings) c
   };
   warn(property->GetTransferFunctionMode() == vtkVolumeProperty::TF_2D,
     "a two-dimensional transfer function", "Call SetTransferFunctionModeTo1D().");
+  warn(components > 1 && property->GetIndependentComponents() == 0,
+    "colors or opacities that are other components of the array",
+    "Call IndependentComponentsOn(), or use VTK's own mapper; in ParaView, turn on Map Scalars and "
+    "turn off Multi Components Mapping, or use the representation Volume.");
+  const auto isWeighted = [&]
+  {
+    for (int component = 1; component < std::min(components, VTK_MAX_VRCOMP); ++component)
+    {
+      if (property->GetComponentWeight(component) != 0.0)
+      {
+        return true;
+      }
+    }
+    return false;
+  };
+  warn(property->GetIndependentComponents() != 0 && this->Mapper->GetIsoComponent() == 0 &&
+      isWeighted(),
+    "all components of the array at once",
+    "The first component is drawn. Call SetComponentWeight(COMPONENT, 0.0) for the others, or "
+    "SetIsoComponent() of the mapper for another one, or the magnitude (-1).");
 }
 
 rt::MediumLook vtkDSMVolumeLook::GetMediumLook(const bricks::ValueRange& range) const
@@ -259,8 +313,9 @@ std::vector<double> vtkDSMVolumeLook::GetIsovalues(
     }
     if (mapper->GetBlendMode() != vtkVolumeMapper::COMPOSITE_BLEND)
     {
-      messages.push_back("The mapper draws isosurfaces; its other blend modes are not there. Call "
-                         "SetBlendModeToIsoSurface(), or use VTK's own mapper.");
+      messages.push_back(
+        "The mapper has isovalues, so it draws isosurfaces, whatever the blend mode. "
+        "Call SetNumberOfIsoValues(0) and AutomaticIsoValueOff() to draw a volume.");
     }
   }
   std::vector<double> values;

@@ -7,12 +7,16 @@
 
 #include <glm/mat4x4.hpp>
 
+#include <array>
+#include <functional>
 #include <optional>
 #include <string>
+#include <tuple>
 #include <vector>
 
 class vtkDSMVolumeMapper;
 class vtkProp3D;
+class vtkVolumeProperty;
 
 /// What a volume's mapper and prop ask for now, in the ray tracer's words. Owns neither; local, the same on every rank where
 /// they are.
@@ -28,14 +32,21 @@ public:
   /// Whether there are slices, or may be, and no isosurfaces.
   bool IsSlicesOnly() const;
   bool HasIsosurfaces() const { return !this->IsMedium() && !this->IsSlicesOnly(); }
-  /// Tells what the property asks for that media do not have yet.
-  void FindMissingFeatures(std::vector<std::string>& warnings) const;
-  /// Of the medium, for values that are all in the range; see vtkDSMTranslation::ToTransferFunction. Null: nothing is to be
-  /// seen. Adds what is wrong to the messages.
-  std::shared_ptr<const rt::TransferFunction> CreateTransferFunction(const bricks::ValueRange& range,
-    double cellLength, double diagonal, std::vector<std::string>& messages) const;
-  /// The same; how light makes it shine, and what gradients do.
+  /// Tells what the property asks for, of an array of so many components, that media do not have yet.
+  void FindMissingFeatures(int components, std::vector<std::string>& warnings) const;
+  /// All that the colors and opacities of the medium depend on: the values' range, the length of a cell, that of
+  /// the medium, the property and its time, the blend mode and the range of an average.
+  using MediumKey = std::tuple<double, double, double, double, vtkVolumeProperty*, vtkMTimeType,
+    int, std::array<double, 2>>;
+  MediumKey GetMediumKey(const bricks::ValueRange& range, double cellLength, double diagonal) const;
+  /// How light makes the medium shine, and what gradients do.
   rt::MediumLook GetMediumLook(const bricks::ValueRange& range) const;
+  /// Makes the medium that has the values of a field, within a region.
+  using MediumMaker =
+    std::function<rt::SceneMedium(const rt::LatticeField&, const rt::ClipRegion&)>;
+  /// Of the blend mode. Takes time, which a key of the same says to be needless. Empty: nothing is drawn; says why in the
+  /// messages.
+  static MediumMaker GetMediumMaker(const MediumKey& key, std::vector<std::string>& messages);
   /// The arrays that are to be shown, as the mapper names them: that of the isosurfaces, and that of the colours, if any.
   /// Of slices alone the one that colors them, if any.
   std::vector<vtkDSMVolumeData::Choice> GetShown() const;

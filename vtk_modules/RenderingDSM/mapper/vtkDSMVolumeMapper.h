@@ -7,10 +7,10 @@
  * the dataset: vtkImageData, or a composite dataset of images, or nothing.
  *
  * It stands in for vtkGPUVolumeRayCastMapper: the blend mode Composite (the default) shows the volume as a medium, by the
- * color and opacity functions and the unit distance of the vtkVolume's vtkVolumeProperty. ScalarMode and
- * SelectScalarArray() choose the point array. Interpolation is trilinear always. Shading is VTK's,
- * also gradient opacity; with shadows and ambient occlusion of the light options, volumes shade themselves. The other blend
- * modes are not there yet, and the mapper says so.
+ * color and opacity functions and the unit distance of the vtkVolume's vtkVolumeProperty. Maximum, minimum, average (of
+ * AverageIPScalarRange) and additive show what they show there. ScalarMode and SelectScalarArray() choose the point array.
+ * Interpolation is trilinear always. Shading is VTK's, also gradient opacity; with shadows and ambient occlusion of the
+ * light options, volumes shade themselves. The blend mode Slice is not there yet, and the mapper says so.
  *
  * With an isovalue, with AutomaticIsoValue or with SurfacesOnly, isosurfaces are shown instead. Isovalues and look are
  * the mapper's own: IsoArray, IsoValues, ColorArray, and a vtkProperty, the

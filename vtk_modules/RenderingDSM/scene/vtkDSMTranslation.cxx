@@ -53,15 +53,6 @@ glm::vec3 ToColor(const double color[3])
   return { color[0], color[1], color[2] };
 }
 
-/// The value of an entry of a sampled map's table.
-double GetValue(const rt::ColorMap& map, std::size_t entry, std::size_t entries)
-{
-  const double part = static_cast<double>(entry) / static_cast<double>(entries - 1);
-  const double value = map.Logarithmic ? map.First * std::pow(map.Last / map.First, part)
-                                       : map.First + part * (map.Last - map.First);
-  return std::min(std::max(value, map.First), map.Last);
-}
-
 /// The next values beyond the ends of a map.
 double GetBelow(const rt::ColorMap& map)
 {
@@ -98,6 +89,136 @@ std::vector<rt::ColorMap::Category> ToCategories(vtkScalarsToColors* table)
     [](const auto& a, const auto& b) { return a.Value < b.Value; });
   return categories;
 }
+
+/// Where there is one value only, makes it any range around.
+void Widen(double& first, double& last)
+{
+  if (!(first < last))
+  {
+    const double half = std::max(1.0, std::abs(first)) * 1e-3;
+    first -= half;
+    last += half;
+  }
+}
+
+/// The color and opacity functions of a volume property's first component. Keeps references.
+class VolumeFunctions
+{
+public:
+  explicit VolumeFunctions(vtkVolumeProperty* property)
+    : Opacity(property->GetScalarOpacity(0))
+  {
+    // To ask for the other one would make it the one that counts.
+    if (property->GetColorChannels(0) == 1)
+    {
+      this->Gray = property->GetGrayTransferFunction(0);
+    }
+    else
+    {
+      this->Colors = property->GetRGBTransferFunction(0);
+    }
+  }
+
+  /// Where both functions stay as they are at their ends, takes what is between these of a range of values. There is some
+  /// range after that.
+  void Narrow(double& first, double& last) const
+  {
+    const bool areClamped = this->Opacity->GetClamping() != 0 &&
+      (this->Gray ? this->Gray->GetClamping() : this->Colors->GetClamping()) != 0;
+    if (areClamped)
+    {
+      const double* const ofColors = this->Gray ? this->Gray->GetRange() : this->Colors->GetRange();
+      const double* const ofOpacity = this->Opacity->GetRange();
+      const double low = std::max(first, std::min(ofColors[0], ofOpacity[0]));
+      const double high = std::min(last, std::max(ofColors[1], ofOpacity[1]));
+      first = low < high ? low : first;
+      last = low < high ? high : last;
+    }
+    Widen(first, last);
+  }
+
+  /// Whether the functions are spread over the decades of values from `first` on.
+  bool AreLogarithmic(double first) const
+  {
+    return first > 0.0 && (this->Opacity->GetUseLogScale() || this->HasLogColors());
+  }
+
+  /// How many bins of a range of values the functions need: the lowest decade gets some, too.
+  int CountBins(double first, double last) const
+  {
+    constexpr double inLowest = 64.0;
+    constexpr int most = 1 << 18;
+    int bins = rt::TransferFunction::Bins;
+    while (
+      this->AreLogarithmic(first) && 9.0 * first * bins < inLowest * (last - first) && bins < most)
+    {
+      bins *= 2;
+    }
+    return bins;
+  }
+
+  /// Colors (not premultiplied) and opacities (w) of so many values, evenly spaced from `first` to `last`.
+  std::vector<glm::dvec4> Sample(double first, double last, int count) const
+  {
+    const std::size_t channels = this->Gray ? 1 : 3;
+    std::vector<double> opacities(static_cast<std::size_t>(count));
+    std::vector<double> colors(channels * opacities.size());
+    this->Opacity->GetTable(first, last, count, opacities.data());
+    if (this->Gray)
+    {
+      this->Gray->GetTable(first, last, count, colors.data());
+    }
+    else if (count > 1 && first > 0.0 && this->HasLogColors())
+    {
+      this->SampleLogColors(first, last, colors);
+    }
+    else
+    {
+      this->Colors->GetTable(first, last, count, colors.data());
+    }
+    std::vector<glm::dvec4> samples;
+    for (std::size_t sample = 0; sample < opacities.size(); ++sample)
+    {
+      const double* const own = &colors[channels * sample];
+      samples.emplace_back(
+        own[0], own[this->Gray ? 0 : 1], own[this->Gray ? 0 : 2], opacities[sample]);
+    }
+    return samples;
+  }
+
+private:
+  bool HasLogColors() const
+  {
+    return this->Colors && this->Colors->GetScale() == VTK_CTF_LOG10 &&
+      this->Colors->GetRange()[0] > 0.0;
+  }
+
+  /// Tables of such colors are spaced evenly in the logarithm of the value.
+  void SampleLogColors(double first, double last, std::vector<double>& colors) const
+  {
+    std::vector<double> table(std::size_t{ 3 } * ColorMapEntries);
+    this->Colors->GetTable(first, last, ColorMapEntries, table.data());
+    const std::size_t count = colors.size() / 3;
+    const double scale = (ColorMapEntries - 1) / std::log(last / first);
+    for (std::size_t sample = 0; sample < count; ++sample)
+    {
+      const double part = static_cast<double>(sample) / static_cast<double>(count - 1);
+      const double place = scale * std::log(1.0 + part * (last / first - 1.0));
+      const auto entry = static_cast<std::size_t>(
+        std::clamp(std::floor(place), 0.0, static_cast<double>(ColorMapEntries - 2)));
+      const double rest = place - static_cast<double>(entry);
+      for (std::size_t channel = 0; channel < 3; ++channel)
+      {
+        const double* const own = &table[3 * entry + channel];
+        colors[3 * sample + channel] = own[0] + rest * (own[3] - own[0]);
+      }
+    }
+  }
+
+  vtkPiecewiseFunction* Opacity;
+  vtkPiecewiseFunction* Gray = nullptr;
+  vtkColorTransferFunction* Colors = nullptr;
+};
 
 void SetCamera(
   vtkRenderer* renderer, double aspect, vtkMatrix4x4* projection, rt::FrameRequest& request)
@@ -189,52 +310,16 @@ rt::Material vtkDSMTranslation::ToMaterial(vtkVolumeProperty* property, double i
 std::shared_ptr<const rt::TransferFunction> vtkDSMTranslation::ToTransferFunction(
   vtkVolumeProperty* property, double first, double last, double cellLength, double diagonal)
 {
-  vtkPiecewiseFunction* const opacity = property->GetScalarOpacity(0);
-  const bool isGray = property->GetColorChannels(0) == 1;
-  // To ask for the other one would make it the one that counts.
-  vtkPiecewiseFunction* const gray = isGray ? property->GetGrayTransferFunction(0) : nullptr;
-  vtkColorTransferFunction* const colors = isGray ? nullptr : property->GetRGBTransferFunction(0);
-  // Where both stay as they are at their ends, all bins are for what is between these.
-  const bool areClamped =
-    opacity->GetClamping() != 0 && (isGray ? gray->GetClamping() : colors->GetClamping()) != 0;
-  if (areClamped)
-  {
-    const double* const ofColors = isGray ? gray->GetRange() : colors->GetRange();
-    const double* const ofOpacity = opacity->GetRange();
-    const double low = std::max(first, std::min(ofColors[0], ofOpacity[0]));
-    const double high = std::min(last, std::max(ofColors[1], ofOpacity[1]));
-    first = low < high ? low : first;
-    last = low < high ? high : last;
-  }
-  if (!(first < last))
-  {
-    // One value: any range around it.
-    const double half = std::max(1.0, std::abs(first)) * 1e-3;
-    first -= half;
-    last += half;
-  }
-  constexpr int count = rt::TransferFunction::Bins + 1;
-  std::vector<double> alpha(count);
-  std::vector<double> color(std::size_t(isGray ? 1 : 3) * count);
-  opacity->GetTable(first, last, count, alpha.data());
-  if (isGray)
-  {
-    gray->GetTable(first, last, count, color.data());
-  }
-  else
-  {
-    colors->GetTable(first, last, count, color.data());
-  }
+  const VolumeFunctions functions(property);
+  functions.Narrow(first, last);
+  std::vector<glm::dvec4> samples =
+    functions.Sample(first, last, functions.CountBins(first, last) + 1);
   const double unit = property->GetScalarOpacityUnitDistance(0);
-  std::vector<glm::dvec4> samples(count);
-  for (std::size_t sample = 0; sample < samples.size(); ++sample)
+  for (glm::dvec4& sample : samples)
   {
-    const double covered = std::clamp(alpha[sample], 0.0, MostOpacity);
-    const double* const own = &color[isGray ? sample : 3 * sample];
     // What cannot be seen though the whole way lies in it is skipped.
-    const double extinction = -std::log1p(-covered) / unit;
-    samples[sample] = { own[0], own[isGray ? 0 : 1], own[isGray ? 0 : 2],
-      extinction * diagonal < LeastDepth ? 0.0 : extinction };
+    const double extinction = -std::log1p(-std::clamp(sample.w, 0.0, MostOpacity)) / unit;
+    sample.w = extinction * diagonal < LeastDepth ? 0.0 : extinction;
   }
   return std::make_shared<const rt::TransferFunction>(first, last, samples, cellLength);
 }
@@ -260,6 +345,45 @@ rt::MediumLook vtkDSMTranslation::ToMediumLook(vtkVolumeProperty* property, doub
     look.Gradients = std::make_shared<const rt::GradientOpacity>(std::move(opacity));
   }
   return look;
+}
+
+std::shared_ptr<const rt::ColorMap> vtkDSMTranslation::ToColorMap(
+  vtkVolumeProperty* property, double first, double last)
+{
+  const VolumeFunctions functions(property);
+  functions.Narrow(first, last);
+  auto map = std::make_shared<rt::ColorMap>();
+  map->First = first;
+  map->Last = last;
+  map->Logarithmic = functions.AreLogarithmic(first);
+  map->Table.resize(ColorMapEntries);
+  for (std::size_t entry = 0; entry < map->Table.size(); ++entry)
+  {
+    const double value = map->GetValue(entry);
+    map->Table[entry] = functions.Sample(value, value, 1).front();
+  }
+  map->Below = map->Table.front();
+  map->Above = map->Table.back();
+  return map;
+}
+
+std::shared_ptr<const rt::TransferFunction> vtkDSMTranslation::ToSum(vtkVolumeProperty* property,
+  double first, double last, const std::array<double, 2>& counted, double unit)
+{
+  Widen(first, last);
+  const VolumeFunctions functions(property);
+  const int bins = functions.CountBins(first, last);
+  const std::vector<glm::dvec4> looks = functions.Sample(first, last, bins + 1);
+  std::vector<rt::LatticeSum::Sample> samples;
+  for (const glm::dvec4& look : looks)
+  {
+    const double part = static_cast<double>(samples.size()) / bins;
+    const double value = first + part * (last - first);
+    const bool counts =
+      std::min(counted[0], counted[1]) <= value && value <= std::max(counted[0], counted[1]);
+    samples.push_back({ look.w * part, counts ? 1.0 : 0.0 });
+  }
+  return rt::LatticeSum::CreateFunction(first, last, samples, unit);
 }
 
 std::shared_ptr<const rt::Texture> vtkDSMTranslation::ToTexture(
@@ -319,10 +443,10 @@ rt::ColorMap vtkDSMTranslation::ToColorMap(vtkScalarsToColors* table)
     map.Categories = ToCategories(table);
     return map;
   }
-  map.Table.reserve(ColorMapEntries);
-  for (std::size_t entry = 0; entry < ColorMapEntries; ++entry)
+  map.Table.resize(ColorMapEntries);
+  for (std::size_t entry = 0; entry < map.Table.size(); ++entry)
   {
-    map.Table.push_back(MapValue(table, GetValue(map, entry, ColorMapEntries)));
+    map.Table[entry] = MapValue(table, map.GetValue(entry));
   }
   return map;
 }
@@ -333,7 +457,7 @@ void vtkDSMTranslation::SetOpacity(vtkPiecewiseFunction* opacity, rt::ColorMap& 
   { return static_cast<float>(std::clamp(opacity->GetValue(value), 0.0, 1.0)); };
   for (std::size_t entry = 0; entry < map.Table.size(); ++entry)
   {
-    map.Table[entry].w = get(GetValue(map, entry, map.Table.size()));
+    map.Table[entry].w = get(map.GetValue(entry));
   }
   map.Below.w = get(GetBelow(map));
   map.Above.w = get(GetAbove(map));
@@ -344,49 +468,6 @@ void vtkDSMTranslation::SetOpacity(vtkPiecewiseFunction* opacity, rt::ColorMap& 
       category.Color.w = get(category.Value);
     }
   }
-}
-
-rt::ColorMap vtkDSMTranslation::ToColorMap(
-  vtkVolumeProperty* property, const bricks::ValueRange& range, bool withOpacity)
-{
-  const bool isGray = property->GetColorChannels(0) == 1;
-  // To ask for the other one would make it the one that counts.
-  vtkPiecewiseFunction* const gray = isGray ? property->GetGrayTransferFunction(0) : nullptr;
-  vtkColorTransferFunction* const colors = isGray ? nullptr : property->GetRGBTransferFunction(0);
-  const auto get = [&](double value)
-  {
-    double color[3];
-    if (isGray)
-    {
-      std::fill_n(color, 3, gray->GetValue(value));
-    }
-    else
-    {
-      colors->GetColor(value, color);
-    }
-    return glm::vec4(ToColor(color), 1.0f);
-  };
-  // The functions say what is beyond their ends; all values are within the range.
-  const double* const ends = isGray ? gray->GetRange() : colors->GetRange();
-  rt::ColorMap map;
-  map.First = std::max<double>(range.First, std::min(ends[0], ends[1]));
-  map.Last = std::min<double>(range.Last, std::max(ends[0], ends[1]));
-  if (!(map.First <= map.Last))
-  {
-    map.First = range.First;
-    map.Last = range.Last;
-  }
-  for (std::size_t entry = 0; entry < ColorMapEntries; ++entry)
-  {
-    map.Table.push_back(get(GetValue(map, entry, ColorMapEntries)));
-  }
-  map.Below = get(GetBelow(map));
-  map.Above = get(GetAbove(map));
-  if (withOpacity)
-  {
-    SetOpacity(property->GetScalarOpacity(0), map);
-  }
-  return map;
 }
 
 rt::ClipRegion vtkDSMTranslation::ToClipRegion(vtkAbstractMapper* mapper)

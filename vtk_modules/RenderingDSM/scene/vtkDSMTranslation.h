@@ -6,6 +6,7 @@
 #include "DSMRayTracing/scene/DebugView.h"
 #include "DSMRayTracing/scene/Scene.h"
 
+#include <array>
 #include <memory>
 #include <vector>
 
@@ -43,11 +44,6 @@ public:
   /// Gives all colors of a map the opacities of their values, but that of what is not a number.
   static void SetOpacity(vtkPiecewiseFunction* opacity, rt::ColorMap& map);
 
-  /// The color function of a property's first component for values of a range; with its opacity function, or opaque.
-  /// What is not a number is transparent.
-  static rt::ColorMap ToColorMap(
-    vtkVolumeProperty* property, const bricks::ValueRange& range, bool withOpacity);
-
   /// The color and opacity functions of a property's first component, and its unit distance, for a medium whose values are
   /// from `first` to `last`. `cellLength` and `diagonal`: of a cell's edge, and of the medium, in world space.
   static std::shared_ptr<const rt::TransferFunction> ToTransferFunction(
@@ -55,6 +51,13 @@ public:
 
   /// The shading of a property's first component, and its gradient opacity, for a medium whose values differ so much.
   static rt::MediumLook ToMediumLook(vtkVolumeProperty* property, double range);
+  /// The same functions as colors and opacities of single values.
+  static std::shared_ptr<const rt::ColorMap> ToColorMap(
+    vtkVolumeProperty* property, double first, double last);
+  /// The values, 0 to 1 in that range, times their opacities, which LatticeSum adds up over `unit` of world length. In a mean,
+  /// the values between the two that are `counted` count.
+  static std::shared_ptr<const rt::TransferFunction> ToSum(vtkVolumeProperty* property,
+    double first, double last, const std::array<double, 2>& counted, double unit);
 
   /// What a mapper's clipping planes leave, in world space.
   static rt::ClipRegion ToClipRegion(vtkAbstractMapper* mapper);

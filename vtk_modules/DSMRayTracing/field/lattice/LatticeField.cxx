@@ -25,6 +25,17 @@ double LatticeField::GetFinestLength() const
   return std::min({ glm::length(edges[0]), glm::length(edges[1]), glm::length(edges[2]) });
 }
 
+ObjectTracer::Brick LatticeField::FindBrick(const glm::dvec3& place) const
+{
+  constexpr double slack = 1e-3; // a ray begins and ends at the border
+  const glm::dvec3 point(this->WorldToIndex * glm::dvec4(place, 1.0));
+  const glm::dvec3 end(this->Voxels->Lattice.GetCells());
+  const bool isInside = glm::all(glm::greaterThanEqual(point, glm::dvec3(-slack))) &&
+    glm::all(glm::lessThanEqual(point, end + slack));
+  return { isInside ? this->Voxels->Segment.get() : nullptr,
+    this->Voxels->Lattice.FindBrick(point) };
+}
+
 void LatticeField::AddTo(ObjectDigest& digest) const
 {
   digest.Add(this->IndexToWorld);

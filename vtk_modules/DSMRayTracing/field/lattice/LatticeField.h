@@ -5,6 +5,7 @@
 #include "DSMBricks/layout/VoxelField.h"
 #include "DSMRayTracing/field/lattice/IndexSpace.h"
 #include "DSMRayTracing/field/lattice/LatticePlace.h"
+#include "DSMRayTracing/object/ObjectTracer.h"
 
 #include <glm/mat4x4.hpp>
 #include <glm/matrix.hpp>
@@ -16,6 +17,8 @@ namespace rt
 {
 
 class ObjectDigest;
+template <class Store>
+class LatticeExtrema;
 template <class Store>
 class LatticeMedia;
 template <class Store>
@@ -38,6 +41,8 @@ struct LatticeField
   template <class Store>
   using Media = LatticeMedia<Store>;
   using Sections = LatticeSections;
+  template <class Store>
+  using Extrema = LatticeExtrema<Store>;
 
   /// Point index space (sample (i,j,k) at (i,j,k) of the lattice) to world; affine, invertible.
   glm::dmat4 IndexToWorld{ 1.0 };
@@ -59,6 +64,8 @@ struct LatticeField
   }
   /// How much values grow in a cell of mean size where they grow so fast on each axis of the index space.
   double GetGrowth(const glm::dvec3& gradient) const;
+  /// The brick that has a place's values (world space); of no segment, outside of the lattice.
+  ObjectTracer::Brick FindBrick(const glm::dvec3& place) const;
   /// World length of a cell's shortest edge.
   double GetFinestLength() const;
   /// All that a picture depends on.

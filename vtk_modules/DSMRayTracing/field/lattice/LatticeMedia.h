@@ -8,8 +8,8 @@
 #include "DSMRayTracing/field/lattice/HitGradient.h"
 #include "DSMRayTracing/field/lattice/IsovalueLevel.h"
 #include "DSMRayTracing/field/lattice/LatticeField.h"
+#include "DSMRayTracing/field/lattice/LatticePackets.h"
 #include "DSMRayTracing/field/lattice/PacketKernel.h"
-#include "DSMRayTracing/field/lattice/RayBeam.h"
 #include "DSMRayTracing/field/lattice/TransferTest.h"
 #include "DSMRayTracing/field/lattice/TypedPacketBrick.h"
 #include "DSMRayTracing/look/TransferFunction.h"
@@ -30,8 +30,8 @@
 namespace rt
 {
 
-/// Takes batches of rays through a medium whose values are a lattice's. Rays that move to the same sides are a packet,
-/// a lone ray one of its own: what a ray gets is the same. Threads and pins as IsosurfaceSearch.
+/// Takes batches of rays through a medium whose values are a lattice's. What a ray gets does not depend on its packet.
+/// Threads and pins as IsosurfaceSearch.
 template <class Store>
 class LatticeMedia
 {
@@ -63,39 +63,10 @@ public:
   RayMask March(const LatticeField& field, const TransferFunction& function, ObjectBeam* beam,
     const Ray* rays, RayMask wanted, MediumLight& light) const
   {
-    RayMask dark = 0;
-    RayMask left = wanted;
-    RayPacket packet;
-    const IndexSpace space = field.GetIndexSpace();
-    const bricks::Index3 cells = field.Voxels->Lattice.GetCells();
-    if (beam && beam->Usable)
-    {
-      auto& found = static_cast<BeamBricks&>(*beam);
-      std::copy_n(found.Forward, 3, packet.Forward);
-      left = this->Kernel.SetRays(packet, rays, wanted, space, cells);
-      dark |= this->MarchPacket(field, function, found, packet, light);
-    }
-    if (left == 0)
-    {
-      return dark;
-    }
-    Ray moved[MaxRays];
-    RayMask sides[8] = {};
-    ForEachRay(left,
-      [&](int index) { sides[MoveAlongAll(field, rays[index], moved[index])] |= GetBit(index); });
-    for (int side = 0; side < 8; ++side)
-    {
-      if (sides[side] != 0)
-      {
-        for (int axis = 0; axis < 3; ++axis)
-        {
-          packet.Forward[axis] = (side >> axis & 1) != 0;
-        }
-        this->Kernel.SetRays(packet, moved, sides[side], space, cells);
-        dark |= this->MarchPacket(field, function, packet, light);
-      }
-    }
-    return dark;
+    return ForEachPacket(field, TransferPredicate(function), this->Kernel,
+      static_cast<BeamBricks*>(beam), rays, wanted,
+      [&](BeamBricks& bricks, RayPacket& packet)
+      { return this->MarchPacket(field, function, bricks, packet, light); });
   }
 
   /// How fast values grow on each axis of the index space at points in world space: CellNeighbourhood::GetGradient.
@@ -189,48 +160,6 @@ private:
       }
     }
     return beyond;
-  }
-
-  /// Rays of a packet move along all axes. One that does not, moves so little that it stays at its place for all that
-  /// can be seen. Returns the sides to which the ray moves, a bit for each axis.
-  static int MoveAlongAll(const LatticeField& field, const Ray& ray, Ray& moved)
-  {
-    constexpr double least = 1e-10;
-    glm::dvec3 direction = field.GetIndexSpace().GetWorldToIndex() * ray.Direction;
-    const glm::dvec3 size = glm::abs(direction);
-    const double small = least * std::max({ size.x, size.y, size.z });
-    int side = 0;
-    bool isMoved = false;
-    for (int axis = 0; axis < 3; ++axis)
-    {
-      if (size[axis] < small)
-      {
-        direction[axis] = direction[axis] < 0.0 ? -small : small;
-        isMoved = true;
-      }
-      side |= (direction[axis] > 0.0 ? 1 : 0) << axis;
-    }
-    moved = ray;
-    if (isMoved)
-    {
-      moved.Direction = glm::dmat3(field.IndexToWorld) * direction;
-    }
-    return side;
-  }
-
-  RayMask MarchPacket(const LatticeField& field, const TransferFunction& function,
-    RayPacket& packet, MediumLight& light) const
-  {
-    if (packet.Rays == 0)
-    {
-      return 0;
-    }
-    RayBeam beam;
-    beam.Set(packet);
-    const TransferPredicate mayHold(function);
-    BeamBricks bricks =
-      BeamDescent<TransferPredicate>(field.Voxels->Hierarchy, mayHold, beam).Find();
-    return this->MarchPacket(field, function, bricks, packet, light);
   }
 
   RayMask MarchPacket(const LatticeField& field, const TransferFunction& function,

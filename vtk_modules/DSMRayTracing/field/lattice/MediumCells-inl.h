@@ -201,11 +201,11 @@ private:
     HWY_ALIGN std::uint64_t Number[Width];
     HWY_ALIGN double Way[Width];
 
-    HWY_INLINE explicit Located(Vector places)
+    HWY_INLINE Located(Vector places, int bins)
     {
       const D tag;
       const Vector one = hn::Set(tag, 1.0);
-      const Vector last = hn::Set(tag, TransferFunction::Bins + 1.0);
+      const Vector last = hn::Set(tag, bins - 1.0);
       const Vector number = hn::Floor(hn::Min(hn::Max(hn::Add(places, one), hn::Zero(tag)), last));
       hn::Store(ToNumbers(number), hn::RebindToUnsigned<D>(), this->Number);
       hn::Store(hn::Sub(places, hn::Sub(number, one)), tag, this->Way);
@@ -258,7 +258,7 @@ private:
     pieces.Part = hn::Div(one, count);
     pieces.Length = hn::Mul(length, pieces.Part);
     pieces.Place = pieces.Cubic[0];
-    const Located begin(pieces.Place);
+    const Located begin(pieces.Place, this->Function.GetTableSize());
     for (std::uint32_t lanes = left; lanes != 0; lanes &= lanes - 1)
     {
       const int lane = __builtin_ctz(lanes);
@@ -354,8 +354,12 @@ private:
     const std::uint32_t shortOnes = GetMaskBits(tag, isShort);
     HWY_ALIGN double factors[Width];
     hn::Store(hn::IfThenElse(isShort, pieces.Length, hn::Div(pieces.Length, way)), tag, factors);
+    HWY_ALIGN double starts[Width];
+    HWY_ALIGN double stops[Width];
+    hn::Store(pieces.Place, tag, starts);
+    hn::Store(places, tag, stops);
     pieces.Place = places;
-    const Located located(places);
+    const Located located(places, this->Function.GetTableSize());
     Lanes amounts[Width];
     HWY_ALIGN double depths[Width];
     hn::Store(hn::Zero(tag), tag, depths);
@@ -401,12 +405,43 @@ private:
       }
       this->Light.First[ray] = std::min(this->Light.First[ray], begins[lane]);
       double& transmittance = this->Light.Transmittance[ray];
+      if (transmittance > 0.5 && transmittance * passes[lane] <= 0.5)
+      {
+        this->Light.Middle[ray] = begins[lane] +
+          (ends[lane] - begins[lane]) *
+            this->FindPart(starts[lane], stops[lane], std::log(2.0 * transmittance) / depths[lane]);
+      }
       Lanes& sum = this->Light.GetSum(ray);
       (Row(sum) + Row(amounts[lane]) * Row(transmittance * parts[lane])).Store(sum);
       transmittance *= passes[lane];
       ended |= std::uint32_t{ this->Light.IsDark(ray) } << lane;
     }
     return ended;
+  }
+
+  /// The part of a piece, between two places in bins, that has such a part of its optical depth.
+  double FindPart(double start, double stop, double part) const
+  {
+    if (std::abs(stop - start) <= ShortWay)
+    {
+      return part;
+    }
+    const auto integrate = [&](double place)
+    {
+      Lanes slope;
+      return this->Function.Integrate(place, slope)[3];
+    };
+    const double first = integrate(start);
+    const double whole = integrate(stop) - first;
+    double low = 0.0;
+    double high = 1.0;
+    for (int step = 0; step < 16; ++step)
+    {
+      const double middle = 0.5 * (low + high);
+      const bool isBefore = (integrate(start + middle * (stop - start)) - first) / whole < part;
+      (isBefore ? low : high) = middle;
+    }
+    return high;
   }
 
   const TransferFunction& Function;

@@ -78,6 +78,27 @@ public:
     coefficients[3] = this->C3;
   }
 
+  /// The largest value on the way, and where it is first.
+  void FindLargest(Vector& value, Vector& place) const
+  {
+    value = this->C0;
+    place = this->Zero;
+    const auto take = [&](Mask valid, Vector otherValue, Vector otherPlace)
+    {
+      const Mask larger = hn::And(valid, hn::Gt(otherValue, value));
+      value = hn::IfThenElse(larger, otherValue, value);
+      place = hn::IfThenElse(larger, otherPlace, place);
+    };
+    Vector extrema[2];
+    this->FindExtrema(extrema);
+    for (const Vector& other : extrema)
+    {
+      take(
+        hn::And(hn::Gt(other, this->Zero), hn::Lt(other, this->One)), this->Evaluate(other), other);
+    }
+    take(hn::Eq(this->Last, this->Last), this->Last, this->One);
+  }
+
   /// Which of `rays` cross, and where the first crossing of each is; undefined for the others.
   Mask FindFirst(Mask rays, Bracket<D>& bracket) const
   {

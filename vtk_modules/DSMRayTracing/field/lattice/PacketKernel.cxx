@@ -10,6 +10,7 @@
 
 #include "DSMRayTracing/base/MaskBits-inl.h"
 #include "DSMRayTracing/field/lattice/BrickSearch-inl.h"
+#include "DSMRayTracing/field/lattice/ExtremumCells-inl.h"
 #include "DSMRayTracing/field/lattice/MacrocellComparison-inl.h"
 #include "DSMRayTracing/field/lattice/MediumCells-inl.h"
 #include "DSMRayTracing/field/lattice/NodePath-inl.h"
@@ -162,6 +163,13 @@ public:
     return BrickSearch<D, MediumCells<D>>(packet, brick, origin, cells).Search(rays);
   }
 
+  static RayPacket::Mask FindExtrema(const RayPacket& packet, RayPacket::Mask rays,
+    const PacketBrick& brick, const double origin[3], RayExtrema& extrema)
+  {
+    ExtremumCells<D> cells(extrema);
+    return BrickSearch<D, ExtremumCells<D>>(packet, brick, origin, cells).Search(rays);
+  }
+
 private:
   /// A row of a matrix times a vector, in the order of glm's.
   static Vector Multiply(const glm::dmat3& matrix, int row, const Vector vector[3])
@@ -223,7 +231,8 @@ PacketKernel Create(const char* name, const MacrocellKernel& macrocells)
 {
   return { name, PacketSteps<D>::Width, &PacketSteps<D>::SetRays, &PacketSteps<D>::MeetBrick,
     &PacketSteps<D>::SearchBrick, &PacketSteps<D>::FindOccluded, &PacketSteps<D>::CountCrossings,
-    &PacketSteps<D>::March, &Roughness<PacketSteps<D>::Width>::Find, macrocells };
+    &PacketSteps<D>::March, &PacketSteps<D>::FindExtrema, &Roughness<PacketSteps<D>::Width>::Find,
+    macrocells };
 }
 
 PacketKernel CreateWide()

@@ -10,6 +10,7 @@
 #include "DSMRayTracing/look/TransferFunction.h"
 #include "DSMRayTracing/ray/MediumLight.h"
 #include "DSMRayTracing/ray/Ray.h"
+#include "DSMRayTracing/ray/RayExtrema.h"
 #include "DSMRayTracing/ray/RayPacket.h"
 
 #include <vector>
@@ -53,6 +54,11 @@ struct PacketKernel
   /// First subtracted. Returns those that are dark then.
   RayPacket::Mask (*March)(const RayPacket& packet, RayPacket::Mask rays, const PacketBrick& brick,
     const double origin[3], const TransferFunction& function, MediumLight& light);
+
+  /// Looks for the extrema of values along `rays` in the brick that they are in, whose corners have nothing subtracted.
+  /// Returns those that have met the goal.
+  RayPacket::Mask (*FindExtrema)(const RayPacket& packet, RayPacket::Mask rays,
+    const PacketBrick& brick, const double origin[3], RayExtrema& extrema);
 
   /// Of finite samples: how much the values along a line can bend, see Roughness.
   double (*FindRoughness)(const MacrocellSamples& samples);

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Included once for each instruction set; see PacketKernel.cxx.
+#if defined(rt_ExtremumCells_inl_h) == defined(HWY_TARGET_TOGGLE)
+#ifdef rt_ExtremumCells_inl_h
+#undef rt_ExtremumCells_inl_h
+#else
+#define rt_ExtremumCells_inl_h
+#endif
+
+#include "DSMRayTracing/base/MaskBits-inl.h"
+#include "DSMRayTracing/field/lattice/BrickSearch-inl.h"
+#include "DSMRayTracing/field/lattice/PacketCrossing-inl.h"
+#include "DSMRayTracing/ray/RayExtrema.h"
+
+#include <hwy/highway.h>
+
+#include <cstddef>
+#include <cstdint>
+
+HWY_BEFORE_NAMESPACE();
+namespace rt
+{
+namespace HWY_NAMESPACE
+{
+namespace hn = hwy::HWY_NAMESPACE;
+
+/// Of BrickSearch, for rays that look for their largest value, or their smallest one. A ray never finds more than the
+/// largest corner of a cell has, so that bricks and macrocells whose values are not larger can be left out: whether
+/// they are, which depends on the other rays, makes no difference.
+template <class D>
+class ExtremumCells
+{
+public:
+  static constexpr bool TakesMacrocells = false;
+
+  using Vector = hn::Vec<D>;
+  using Mask = hn::Mask<D>;
+  static constexpr int Width = static_cast<int>(hn::MaxLanes(D()));
+
+  explicit ExtremumCells(RayExtrema& extrema)
+    : Extrema(extrema)
+  {
+  }
+
+  HWY_INLINE std::uint32_t Visit(const CrossedCells<D>& cells)
+  {
+    const D tag;
+    const Vector sign = hn::Set(tag, this->Extrema.Sign);
+    Vector corners[8];
+    for (int corner = 0; corner < 8; ++corner)
+    {
+      corners[corner] = hn::Mul(cells.Corners[corner], sign);
+    }
+    Vector most = corners[0];
+    for (const Vector& corner : corners)
+    {
+      most = hn::Max(most, corner);
+    }
+    const Vector known = LoadLanes<double, Width>(this->Extrema.Value, cells.Ray);
+    const Mask promising = hn::And(cells.Crossing, hn::Gt(most, known));
+    if (hn::AllFalse(tag, promising))
+    {
+      return 0;
+    }
+    Vector value;
+    Vector place;
+    PacketCrossing<D>(tag, corners, cells.Start, cells.End).FindLargest(value, place);
+    value = hn::Min(value, most);
+    std::uint32_t better = GetMaskBits(tag, hn::And(promising, hn::Gt(value, known))) & cells.There;
+    const std::uint32_t ended =
+      better & GetMaskBits(tag, hn::Ge(value, hn::Set(tag, this->Extrema.Goal)));
+    HWY_ALIGN double values[Width];
+    HWY_ALIGN double places[Width];
+    hn::Store(value, tag, values);
+    hn::Store(hn::Add(cells.Enter, hn::Mul(place, hn::Sub(cells.Exit, cells.Enter))), tag, places);
+    for (; better != 0; better &= better - 1)
+    {
+      const int lane = __builtin_ctz(better);
+      const int ray = static_cast<int>(cells.Ray[lane]);
+      this->Extrema.Value[ray] = values[lane];
+      this->Extrema.T[ray] = places[lane];
+      this->Extrema.Found |= GetBit(ray);
+    }
+    return ended;
+  }
+
+private:
+  RayExtrema& Extrema;
+};
+
+} // namespace HWY_NAMESPACE
+} // namespace rt
+HWY_AFTER_NAMESPACE();
+
+#endif

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef rt_ExtremumTest_h
+#define rt_ExtremumTest_h
+
+#include "DSMBricks/base/ValueRange.h"
+#include "DSMBricks/layout/MacrocellHierarchy.h"
+#include "DSMBricks/layout/VoxelBrick.h"
+#include "DSMRayTracing/base/Lanes.h"
+#include "DSMRayTracing/field/lattice/NodeOrder.h"
+#include "DSMRayTracing/field/lattice/PacketBrick.h"
+
+#include <cstddef>
+#include <cstdint>
+
+namespace rt
+{
+
+/// Tells of a range of values whether any is above a limit, all times a sign: what BeamDescent asks.
+class ExtremumPredicate
+{
+public:
+  ExtremumPredicate(double sign, double limit)
+    : Sign(sign)
+    , Limit(limit)
+  {
+  }
+
+  bool operator()(const bricks::ValueRange& range) const
+  {
+    return (*this)(static_cast<double>(range.First), static_cast<double>(range.Last));
+  }
+  bool operator()(double first, double last) const
+  {
+    return first <= last && this->Sign * (this->Sign > 0.0 ? last : first) > this->Limit;
+  }
+
+private:
+  double Sign;
+  double Limit;
+};
+
+/// What TypedPacketBrick asks about an extremum; see IsovalueTest.
+template <class T>
+class ExtremumTest
+{
+public:
+  explicit ExtremumTest(const ExtremumPredicate& isOfUse)
+    : IsOfUse(isOfUse)
+  {
+  }
+
+  std::uint64_t FindMacrocells(
+    const bricks::MacrocellRange<T>* ranges, std::ptrdiff_t row, std::ptrdiff_t slice) const
+  {
+    std::uint64_t found = 0;
+    for (int number = 0; number < 64; ++number)
+    {
+      const bricks::MacrocellRange<T>& range =
+        ranges[number % 4 + number / 4 % 4 * row + number / 16 * slice];
+      found |= std::uint64_t{ this->MayHold(range) } << number;
+    }
+    return found;
+  }
+  bool MayHold(const bricks::MacrocellRange<T>& range) const
+  {
+    return this->IsOfUse(static_cast<double>(range.Min), static_cast<double>(range.Max));
+  }
+
+  /// All cells of the macrocell: their corners are compared when they are crossed.
+  std::uint64_t FindCells(const bricks::VoxelBrick<T>&, const int*, const int counts[3]) const
+  {
+    return GetNodeBox(counts);
+  }
+
+  /// Extrema are looked for in cells.
+  void Describe(const bricks::VoxelBrick<T>&, const int*, const int*, int, PacketPart&) const {}
+
+  double GetSubtracted() const { return 0.0; }
+  Lanes::Half SubtractPair(const T* samples) const
+  {
+    return Lanes::Half{ static_cast<double>(samples[0]), static_cast<double>(samples[1]) };
+  }
+
+private:
+  ExtremumPredicate IsOfUse;
+};
+
+} // namespace rt
+
+#endif

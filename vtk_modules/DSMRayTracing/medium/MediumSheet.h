@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef rt_MediumSheet_h
+#define rt_MediumSheet_h
+
+#include "DSMRayTracing/ray/MediumLight.h"
+
+#include <glm/vec3.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace rt
+{
+
+/// Gives to `light` what a sheet across a ray adds, as thin as can be: its color (not premultiplied) and opacity.
+inline void AddSheet(MediumLight& light, int ray, double t, const glm::dvec3& color, double opacity)
+{
+  // What is behind that much is not seen anyway.
+  constexpr double most = 1.0 - 1e-15;
+  const double depth = -std::log1p(-std::clamp(opacity, 0.0, most));
+  const glm::dvec3 emission = depth * color;
+  light.Add(ray,
+    { t, std::nextafter(t, std::numeric_limits<double>::infinity()),
+      Lanes(emission.x, emission.y, emission.z, depth) });
+}
+
+} // namespace rt
+
+#endif
