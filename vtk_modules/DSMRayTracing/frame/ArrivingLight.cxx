@@ -103,6 +103,7 @@ void ArrivingLight::ShareAmbient(std::vector<ShadingPoint>& points) const
 {
   const double apart = FlatPart * this->World.Transport.AmbientOcclusionDistance;
   RayMask left = points.empty() ? 0 : ~RayMask{ 0 } >> (MaxRays - points.size());
+  left = FindRays(left, [&](int number) { return points[number].IsLit; });
   for (std::size_t first = 0; first < points.size(); ++first)
   {
     if ((left & GetBit(static_cast<int>(first))) == 0)
@@ -146,6 +147,7 @@ ShadingPoint ArrivingLight::GetPoint(const LightPath& path) const
   shading.ColorIsFromArray = point.ColorIsFromArray;
   shading.LineColor = point.LineColor;
   shading.LineCover = point.LineCover;
+  shading.IsLit = point.Surface->Lighting;
   shading.HasSurroundings = this->HasSurroundings;
   if (this->HasSurroundings)
   {
@@ -222,6 +224,10 @@ void ArrivingLight::LookAround(LightPath* const* paths, int count, ShadingPoint*
   for (int number = 0; number < count; ++number)
   {
     LightPath& path = *paths[number];
+    if (!points[number].IsLit)
+    {
+      continue;
+    }
     if (path.KnowsAmbient && path.Ambient.Lend(path.GetWeight()))
     {
       points[number].AmbientVisibility = path.Ambient.Get();

@@ -38,6 +38,7 @@ struct ShadingPoint
   /// ambient one.
   glm::vec3 Color{ 1.0f };
   bool ColorIsFromArray = false;
+  bool IsLit = true; ///< Material::Lighting
   /// Part of the surroundings that the point sees; dims what comes from all sides, and the diffuse
   /// light as ParaView's own ambient occlusion does.
   double AmbientVisibility = 1.0;
