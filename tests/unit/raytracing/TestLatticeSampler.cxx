@@ -71,11 +71,12 @@ TEST(TestLatticeSamplerCases, CellsHaveTheirOwnValuesAndNoneIsOfAnother)
   const auto field = CreateField(bench.Store, volume, 2);
   field->Lattice = field->Lattice.OfCells();
   field->Segment = PublishPieces(bench.Store, field->Lattice, GetWhole(volume));
-  const auto find = [&](const glm::ivec3& cell)
+  const auto find = [&](const glm::ivec3& cell, const glm::dvec3& inside = glm::dvec3(0.5))
   {
-    const rt::LatticePlace place{ glm::dvec3(0.0), cell };
+    const rt::LatticePlace place{ glm::dvec3(cell) + inside, cell };
     double value;
-    bench.Sampler.FindValues(*field, &place, 1, &value);
+    const bool isThere = bench.Sampler.FindValues(*field, &place, 1, &value) != 0;
+    EXPECT_EQ(isThere, !std::isnan(value));
     return value;
   };
   for (int z = 0; z < 3; ++z)
@@ -90,6 +91,8 @@ TEST(TestLatticeSamplerCases, CellsHaveTheirOwnValuesAndNoneIsOfAnother)
       }
     }
   }
+  // A face of the blank cell is another one's, too.
+  EXPECT_EQ(find({ 1, 2, 1 }, { 0.5, 0.0, 0.5 }), 1 + 10 + 100);
 }
 
 TEST(TestLatticeSamplerCases, ColorsAreInterpolatedChannelByChannel)

@@ -46,6 +46,46 @@ public:
   bool FindCorners(
     const glm::dvec3& indexPoint, T corners[8], Lanes& local, Corners which = Corners::Finite)
   {
+    return this->AnyCellHas(indexPoint,
+      [&](const bricks::Index3& cell)
+      {
+        const glm::dvec3 inside = indexPoint - glm::dvec3(cell);
+        local = Lanes(inside.x, inside.y, inside.z, 0.0);
+        return this->GetCorners(cell, corners, which);
+      });
+  }
+
+  /// The value, in a field of cells, of the place's cell, or of another one that the point is in, too; false where none
+  /// is there.
+  bool FindCell(const LatticePlace& place, T& value)
+  {
+    return this->GetCell(place.GetCell(), value) ||
+      this->AnyCellHas(
+        place.IndexPoint, [&](const bricks::Index3& cell) { return this->GetCell(cell, value); });
+  }
+
+  bool GetCorners(const bricks::Index3& cell, T corners[8], Corners which = Corners::Finite)
+  {
+    const bricks::VoxelBrick<T> voxels = this->Enter(cell);
+    const glm::ivec3 local(cell - this->Brick * bricks::Index3(this->Field.Lattice.GetEdge()));
+    if (which == Corners::Finite ? !voxels.HoldsData(local.x, local.y, local.z)
+                                 : !voxels.IsCovered(local.x, local.y, local.z))
+    {
+      return false;
+    }
+    for (int corner = 0; corner < 8; ++corner)
+    {
+      corners[corner] = voxels.GetSample(
+        local.x + (corner & 1), local.y + (corner >> 1 & 1), local.z + (corner >> 2));
+    }
+    return true;
+  }
+
+private:
+  /// Calls `has(cell)` for the cells that a point is in, until it says yes; returns whether it did.
+  template <class Has>
+  bool AnyCellHas(const glm::dvec3& indexPoint, const Has& has)
+  {
     const bricks::Index3 cells = this->Field.Lattice.GetCells();
     bricks::Index3 cell;
     for (int axis = 0; axis < 3; ++axis)
@@ -67,31 +107,12 @@ public:
           (back[axis] == 0 ||
             (cell[axis] > 0 && indexPoint[axis] == static_cast<double>(cell[axis])));
       }
-      if (touches && this->GetCorners(cell - back, corners, which))
+      if (touches && has(cell - back))
       {
-        const glm::dvec3 inside = indexPoint - glm::dvec3(cell - back);
-        local = Lanes(inside.x, inside.y, inside.z, 0.0);
         return true;
       }
     }
     return false;
-  }
-
-  bool GetCorners(const bricks::Index3& cell, T corners[8], Corners which = Corners::Finite)
-  {
-    const bricks::VoxelBrick<T> voxels = this->Enter(cell);
-    const glm::ivec3 local(cell - this->Brick * bricks::Index3(this->Field.Lattice.GetEdge()));
-    if (which == Corners::Finite ? !voxels.HoldsData(local.x, local.y, local.z)
-                                 : !voxels.IsCovered(local.x, local.y, local.z))
-    {
-      return false;
-    }
-    for (int corner = 0; corner < 8; ++corner)
-    {
-      corners[corner] = voxels.GetSample(
-        local.x + (corner & 1), local.y + (corner >> 1 & 1), local.z + (corner >> 2));
-    }
-    return true;
   }
 
   /// The value of a cell of a field of cells.
@@ -103,7 +124,6 @@ public:
     return voxels.IsCovered(local.x, local.y, local.z);
   }
 
-private:
   /// The brick of a cell.
   bricks::VoxelBrick<T> Enter(const bricks::Index3& cell)
   {
@@ -162,7 +182,7 @@ RayMask LatticeSampler<Store>::FindValues(const bricks::VoxelField& field,
           if (ofCells)
           {
             T value;
-            if (reader.GetCell(places[index].GetCell(), value))
+            if (reader.FindCell(places[index], value))
             {
               found |= GetBit(index);
               values[index] = static_cast<double>(value);
@@ -236,7 +256,7 @@ RayMask LatticeSampler<Store>::FindColors(const bricks::VoxelField& field,
       Lanes local;
       if (ofCells)
       {
-        found |= GetBit(index, reader.GetCell(places[index].GetCell(), corners[0]));
+        found |= GetBit(index, reader.FindCell(places[index], corners[0]));
         colors[index] = PackedColor::Get(corners[0]);
       }
       else if (reader.FindCorners(places[index].IndexPoint, corners, local))
