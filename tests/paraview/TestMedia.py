@@ -57,6 +57,12 @@ check(name == "Additive", "the modes have names")
 display.DSMBlendMode = "Composite"
 display.BlendMode = "Composite"
 
+display.DSMDebugView = "Brick"
+bricks = render(view, "Bricks")
+display.DSMDebugView = "Off"
+check(abs(bricks - render(view)).mean() > 1.0, "a debug view shows volumes")
+check(sum(row["Accesses"] for row in get_rows(display)) > 0, "bricks of volumes are counted")
+
 # What ParaView draws itself is where it is in the volume.
 sphere = simple.Sphere(Center=[12.0, 12.0, 12.0], Radius=9.0, ThetaResolution=48, PhiResolution=48)
 show_surface(sphere, view)
@@ -100,3 +106,4 @@ opacity.Points = [-1.0, 0.0, 0.5, 0.0, 1.0, 0.0, 0.5, 0.0]
 check(not get_covered(render(view)).any(), "of a transparent volume, nothing is seen")
 display.Representation = REPRESENTATION
 check(get_covered(render(view)).mean() > 0.05, "its isosurface is")
+check(sum(row["Accesses"] for row in get_rows(display)) > 0, "and bricks of that are counted, too")
