@@ -98,3 +98,26 @@ void vtkPVDSMVolumeRepresentation::SetMultiComponentsMapping(bool maps)
 {
   this->MultiComponentsMapping = maps;
 }
+
+void vtkPVDSMVolumeRepresentation::SetUseSeparateOpacityArray(bool use)
+{
+  this->UseSeparateOpacityArray = use;
+  this->UpdateOpacityArray();
+}
+
+void vtkPVDSMVolumeRepresentation::SelectOpacityArray(
+  int, int, int, int vtkNotUsed(association), const char* name)
+{
+  this->OpacityArray = name ? name : "";
+  this->UpdateOpacityArray();
+}
+
+void vtkPVDSMVolumeRepresentation::SelectOpacityArrayComponent(int component)
+{
+  this->Mapper->SetOpacityComponent(component);
+}
+
+void vtkPVDSMVolumeRepresentation::UpdateOpacityArray()
+{
+  this->Mapper->SetOpacityArray(this->UseSeparateOpacityArray ? this->OpacityArray : "");
+}

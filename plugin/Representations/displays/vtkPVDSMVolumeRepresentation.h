@@ -13,6 +13,8 @@
 #include "vtkPVDSMImageRepresentation.h"
 #include "vtkRepresentationsDSMModule.h" // for the export macro
 
+#include <string> // for ivars
+
 class vtkPiecewiseFunction;
 class vtkVolumeProperty;
 
@@ -48,6 +50,15 @@ public:
    */
   void SetScattering(double part);
 
+  ///@{
+  /**
+   * The array, and its component, that the opacity function maps, if it is used.
+   */
+  void SetUseSeparateOpacityArray(bool use);
+  void SelectOpacityArray(int index, int port, int connection, int association, const char* name);
+  void SelectOpacityArrayComponent(int component);
+  ///@}
+
   /**
    * One of vtkVolumeMapper's blend modes, but those of isosurfaces and slices.
    */
@@ -68,7 +79,11 @@ private:
   vtkPVDSMVolumeRepresentation(const vtkPVDSMVolumeRepresentation&) = delete;
   void operator=(const vtkPVDSMVolumeRepresentation&) = delete;
 
+  void UpdateOpacityArray();
+
   vtkNew<vtkVolumeProperty> Property;
+  bool UseSeparateOpacityArray = false;
+  std::string OpacityArray;
   bool MultiComponentsMapping = false;
 };
 

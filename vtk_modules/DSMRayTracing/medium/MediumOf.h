@@ -2,6 +2,7 @@
 #ifndef rt_MediumOf_h
 #define rt_MediumOf_h
 
+#include "DSMRayTracing/look/ColorMap.h"
 #include "DSMRayTracing/look/MediumLook.h"
 #include "DSMRayTracing/look/TransferFunction.h"
 #include "DSMRayTracing/object/MediumTracer.h"
@@ -9,7 +10,9 @@
 #include "DSMRayTracing/ray/ClipRegion.h"
 
 #include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
 
+#include <algorithm>
 #include <cstddef>
 #include <memory>
 #include <vector>
@@ -32,6 +35,10 @@ struct MediumOf
   std::shared_ptr<const TransferFunction> Function; ///< not null
   MediumLook Look;
   ClipRegion Clipping;
+  /// What the colors come from by `Colors`, or are, if they are colors themselves (PackedColor); then the function only
+  /// says how dense the medium is. Null: the field.
+  std::shared_ptr<const typename FieldType::Values> ColorValues = nullptr;
+  std::shared_ptr<const ColorMap> Colors = nullptr;
 
   /// All that a picture of it depends on.
   void AddTo(ObjectDigest& digest) const
@@ -40,6 +47,12 @@ struct MediumOf
     digest.Add(this->Function->GetDigest());
     digest.Add(this->Look);
     digest.Add(this->Clipping);
+    digest.Add(this->ColorValues != nullptr);
+    if (this->ColorValues)
+    {
+      FieldType::AddTo(digest, *this->ColorValues);
+    }
+    digest.AddIf(this->Colors.get());
   }
 };
 
@@ -52,6 +65,7 @@ public:
   FieldMediumTracer(Store& store, typename Store::Worker& worker, const MediumOf<FieldType>& medium)
     : Medium(medium)
     , Media(store, worker)
+    , Sampler(store, worker)
   {
   }
 
@@ -85,6 +99,10 @@ public:
       });
   }
 
+  bool IsDescribed() const override
+  {
+    return this->IsLit() || this->HasLateExtinction() || this->Medium.ColorValues;
+  }
   bool IsLit() const override { return this->Medium.Look.IsLit(); }
   bool HasLateExtinction() const override { return this->Medium.Look.Gradients != nullptr; }
 
@@ -109,6 +127,10 @@ public:
           }
         }
       });
+    if (this->Medium.ColorValues)
+    {
+      this->SetColors(points, pieces);
+    }
     const MediumLook& look = this->Medium.Look;
     std::vector<glm::dvec3> gradients(points.size(), glm::dvec3(0.0));
     if (look.Shade || look.Gradients)
@@ -135,8 +157,45 @@ public:
   }
 
 private:
+  /// Gives pieces the colors that there are at points.
+  void SetColors(
+    const std::vector<glm::dvec3>& points, const std::vector<MediumPiece*>& pieces) const
+  {
+    for (std::size_t first = 0; first < points.size(); first += MaxRays)
+    {
+      const auto count = static_cast<int>(std::min<std::size_t>(MaxRays, points.size() - first));
+      typename FieldType::Place places[MaxRays];
+      for (int index = 0; index < count; ++index)
+      {
+        places[index] =
+          this->Medium.Field.GetPlace(points[first + static_cast<std::size_t>(index)]);
+      }
+      const RayMask all = ~RayMask{ 0 } >> (MaxRays - count);
+      glm::vec4 colors[MaxRays];
+      if (this->Medium.Colors)
+      {
+        double values[MaxRays];
+        this->Sampler.FindValues(*this->Medium.ColorValues, places, all, values);
+        std::transform(values, values + count, colors,
+          [&](double value) { return this->Medium.Colors->Map(value); });
+      }
+      else
+      {
+        std::fill_n(colors, count, glm::vec4(0.0f));
+        this->Sampler.FindColors(*this->Medium.ColorValues, places, all, colors);
+      }
+      for (int index = 0; index < count; ++index)
+      {
+        Lanes& amount = pieces[first + static_cast<std::size_t>(index)]->Amount;
+        const glm::dvec3 color = amount[3] * glm::dvec3(colors[index]);
+        amount = Lanes(color.x, color.y, color.z, amount[3]);
+      }
+    }
+  }
+
   const MediumOf<FieldType>& Medium;
   typename FieldType::template Media<Store> Media;
+  typename FieldType::template Sampler<Store> Sampler;
 };
 
 } // namespace rt

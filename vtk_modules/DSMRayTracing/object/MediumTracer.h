@@ -33,9 +33,10 @@ public:
   /// Whether the light of lamps is dimmed on its way through: else the medium is only for the eye.
   virtual bool DimsLamps() const { return true; }
 
+  /// Whether pieces have to be kept, and described.
+  virtual bool IsDescribed() const { return false; }
   ///@{
-  /// What is only known of pieces once they are kept, and Describe has been called: how light makes them shine, or how
-  /// dense they are.
+  /// What is only known then: how light makes them shine, and how dense they are.
   virtual bool IsLit() const { return false; }
   virtual bool HasLateExtinction() const { return false; }
   ///@}

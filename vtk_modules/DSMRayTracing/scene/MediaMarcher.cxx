@@ -58,14 +58,14 @@ MediaMarcher::MediaMarcher(const SceneTracers& tracers)
   const auto any = [&](const auto& test)
   { return std::any_of(this->Media.begin(), this->Media.end(), test); };
   this->IsLit = any([](const auto& medium) { return medium->IsLit(); });
-  this->KeepsPieces = this->Media.size() > 1 ||
-    any([](const auto& medium) { return medium->IsLit() || medium->HasLateExtinction(); });
+  this->KeepsPieces =
+    this->Media.size() > 1 || any([](const auto& medium) { return medium->IsDescribed(); });
 }
 
 void MediaMarcher::March(
   const MediumTracer& medium, const Ray* rays, RayMask wanted, ObjectBeam* beam, MediumLight& light)
 {
-  const bool isDescribed = light.KeepsPieces && (medium.IsLit() || medium.HasLateExtinction());
+  const bool isDescribed = light.KeepsPieces && medium.IsDescribed();
   // Each ends where it is dark by itself: so are the others behind that.
   light.ClearSums(wanted);
   light.DarkBelow = medium.HasLateExtinction() ? 0.0 : MediumLight::Dark;

@@ -17,6 +17,8 @@
 #include "vtkProp3D.h"
 #include "vtkScalarsToColors.h"
 #include "vtkSmartPointer.h"
+#include "vtkVolume.h"
+#include "vtkVolumeProperty.h"
 
 #include <glm/geometric.hpp>
 #include <glm/mat3x3.hpp>
@@ -436,15 +438,21 @@ void vtkDSMSceneVolume::SuggestIsovalue(dsm::Messenger& messenger)
   this->Mapper->SetSuggestedIsoValue(this->Suggested.value_or(vtkMath::Nan()));
 }
 
+std::shared_ptr<const bricks::VoxelField> vtkDSMSceneVolume::GetColorValues(
+  std::size_t lattice) const
+{
+  const std::shared_ptr<Published>& color = this->Color ? this->Color : this->Iso;
+  const auto level = static_cast<std::size_t>(std::min(this->GetCoarser(), this->CountCoarser()));
+  return level > 0 ? color->Coarser->Levels[level - 1][lattice].Field : color->GetFields()[lattice];
+}
+
 void vtkDSMSceneVolume::SetColors(
   std::size_t lattice, std::shared_ptr<const bricks::VoxelField>& values, rt::IsosurfaceLook& look)
 {
   using Coloring = rt::IsosurfaceLook::Coloring;
   // Slices alone are colored by the array that they are of.
   const std::shared_ptr<Published>& color = this->Color ? this->Color : this->Iso;
-  const auto level = static_cast<std::size_t>(std::min(this->GetCoarser(), this->CountCoarser()));
-  values =
-    level > 0 ? color->Coarser->Levels[level - 1][lattice].Field : color->GetFields()[lattice];
+  values = this->GetColorValues(lattice);
   if (this->Mapper->GetLookupTable())
   {
     look.Colors = *this->SampleColors(this->Mapper->GetLookupTable());
@@ -454,6 +462,18 @@ void vtkDSMSceneVolume::SetColors(
     look.ColoredBy =
       this->Data->GetArrays().HasOpacity(color->Choice) ? Coloring::Colors : Coloring::OpaqueColors;
   }
+}
+
+void vtkDSMSceneVolume::SetColors(std::size_t lattice, rt::LatticeMedium& medium)
+{
+  if (!this->Color || this->Color->GetFields().empty() || !this->Color->GetFields()[lattice])
+  {
+    return;
+  }
+  medium.ColorValues = this->GetColorValues(lattice);
+  vtkVolumeProperty* const property = vtkVolume::SafeDownCast(this->Prop)->GetProperty();
+  medium.Colors = std::make_shared<const rt::ColorMap>(
+    vtkDSMTranslation::ToOpaqueColors(property, FindRange(this->Color->GetFields())));
 }
 
 std::shared_ptr<const rt::BlockLooks> vtkDSMSceneVolume::CreateBlockLooks(std::size_t lattice) const
@@ -544,6 +564,7 @@ void vtkDSMSceneVolume::AddMedia(const vtkDSMVolumeLook& look, rt::Scene& scene)
     if (auto* const lit = std::get_if<rt::LatticeMedium>(&medium))
     {
       lit->Look = look.GetMediumLook(range);
+      this->SetColors(lattice, *lit);
     }
     scene.Media.push_back(std::move(medium));
   }

@@ -71,6 +71,9 @@ private:
   rt::LatticeField GetField(std::size_t lattice, const glm::dmat4& dataToWorld) const;
   void AddMedia(const vtkDSMVolumeLook& look, rt::Scene& scene);
   /// Sets the colors of a surface by the color array, at the level of detail that is shown.
+  /// Of the level of detail that is shown.
+  std::shared_ptr<const bricks::VoxelField> GetColorValues(std::size_t lattice) const;
+  void SetColors(std::size_t lattice, rt::LatticeMedium& medium);
   void SetColors(std::size_t lattice, std::shared_ptr<const bricks::VoxelField>& values,
     rt::IsosurfaceLook& look);
   /// Slices alone, or with isosurfaces.

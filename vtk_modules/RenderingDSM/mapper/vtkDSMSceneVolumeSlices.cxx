@@ -3,7 +3,6 @@
 
 #include "vtkDSMTranslation.h"
 
-#include "vtkColorTransferFunction.h"
 #include "vtkProp3D.h"
 #include "vtkVolume.h"
 #include "vtkVolumeProperty.h"
@@ -13,23 +12,6 @@
 
 namespace
 {
-
-/// The color function of a medium as a map, as its legend shows it; what is not a number is transparent.
-rt::ColorMap GetColors(vtkVolumeProperty* property, const bricks::ValueRange& range)
-{
-  // To ask for the other one would make it the one that counts.
-  rt::ColorMap map = property->GetColorChannels(0) == 1
-    ? *vtkDSMTranslation::ToColorMap(property, range.First, range.Last)
-    : vtkDSMTranslation::ToColorMap(property->GetRGBTransferFunction(0));
-  for (glm::vec4& color : map.Table)
-  {
-    color.w = 1.0f;
-  }
-  map.Below.w = 1.0f;
-  map.Above.w = 1.0f;
-  map.NotANumber = glm::vec4(0.0f);
-  return map;
-}
 
 /// The planes of a region's half spaces.
 std::vector<rt::SectionPlane> GetFaces(const rt::ClipRegion& region)
@@ -138,7 +120,7 @@ void vtkDSMSceneVolume::AddCaps(
       face.Planes = GetFaces(face.Clipping);
       face.Look.Surface.Lighting = false;
       const bricks::ValueRange range = fields[lattice]->Hierarchy.GetRange();
-      face.Look.Colors = GetColors(property, range);
+      face.Look.Colors = vtkDSMTranslation::ToOpaqueColors(property, range);
       if (this->Mapper->GetCapOpacity())
       {
         vtkDSMTranslation::SetOpacity(property->GetScalarOpacity(0), face.Look.Colors);

@@ -183,6 +183,12 @@ void vtkDSMVolumeLook::FindMissingFeatures(int components, std::vector<std::stri
     "SetIsoComponent() of the mapper for another one, or the magnitude (-1).");
 }
 
+bool vtkDSMVolumeLook::HasOpacityArray() const
+{
+  return this->IsMedium() && !this->Mapper->GetOpacityArray().empty() &&
+    this->Mapper->GetBlendMode() == vtkVolumeMapper::COMPOSITE_BLEND;
+}
+
 rt::MediumLook vtkDSMVolumeLook::GetMediumLook(const bricks::ValueRange& range) const
 {
   rt::MediumLook look = vtkDSMTranslation::ToMediumLook(
@@ -211,6 +217,11 @@ std::vector<vtkDSMVolumeData::Choice> vtkDSMVolumeLook::GetShown() const
 {
   vtkDSMVolumeMapper* mapper = this->Mapper;
   std::vector<vtkDSMVolumeData::Choice> shown;
+  if (this->HasOpacityArray())
+  {
+    return { { mapper->GetOpacityArray(), mapper->GetOpacityComponent() },
+      { this->GetIsoArray(), mapper->GetIsoComponent() } };
+  }
   const bool isColored = !this->IsMedium() && this->HasColorArray();
   if (!isColored || !this->IsSlicesOnly())
   {

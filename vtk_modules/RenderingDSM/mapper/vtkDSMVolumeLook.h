@@ -39,6 +39,8 @@ public:
   using MediumKey = std::tuple<double, double, double, double, vtkVolumeProperty*, vtkMTimeType,
     int, std::array<double, 2>>;
   MediumKey GetMediumKey(const bricks::ValueRange& range, double cellLength, double diagonal) const;
+  /// Whether another array says how dense the medium is.
+  bool HasOpacityArray() const;
   /// How light makes the medium shine, and what gradients do.
   rt::MediumLook GetMediumLook(const bricks::ValueRange& range) const;
   /// Makes the medium that has the values of a field, within a region.

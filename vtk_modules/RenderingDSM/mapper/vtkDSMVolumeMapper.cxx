@@ -409,6 +409,8 @@ void vtkDSMVolumeMapper::CopyOwn(vtkDSMVolumeMapper* other)
   this->AutomaticIsoValue = other->AutomaticIsoValue;
   this->SurfacesOnly = other->SurfacesOnly;
   this->Scattering = other->Scattering;
+  this->OpacityArray = other->OpacityArray;
+  this->OpacityComponent = other->OpacityComponent;
   this->Slicing = other->Slicing;
   this->Slices = other->Slices;
   this->SlicePlanes = other->SlicePlanes;
@@ -465,6 +467,8 @@ void vtkDSMVolumeMapper::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "SuggestedIsoValue: " << this->SuggestedIsoValue << "\n";
   os << indent << "SurfacesOnly: " << this->SurfacesOnly << "\n";
   os << indent << "Scattering: " << this->Scattering << "\n";
+  os << indent << "OpacityArray: " << this->OpacityArray << "\n";
+  os << indent << "OpacityComponent: " << this->OpacityComponent << "\n";
   os << indent << "Slicing: " << this->Slicing << "\n";
   os << indent << "Slices: " << this->Slices.size() << "\n";
   os << indent << "SlicePlanes: " << this->SlicePlanes.Get() << "\n";

@@ -135,6 +135,17 @@ public:
 
   ///@{
   /**
+   * The point array, and its component (-1: its magnitude), whose values the opacity function maps; the color function
+   * maps those that are shown else. Empty (the default): both map the same.
+   */
+  vtkSetMacro(OpacityArray, std::string);
+  vtkGetMacro(OpacityArray, std::string);
+  vtkSetMacro(OpacityComponent, int);
+  vtkGetMacro(OpacityComponent, int);
+  ///@}
+
+  ///@{
+  /**
    * The part of a volume's look that is light scattered once towards the viewer, from 0 to 1; the rest is as the property
    * says: shaded, or the color itself. The property's ScatteringAnisotropy tells where light is scattered to. Shadows
    * are those of the light options. 0 by default.
@@ -433,6 +444,8 @@ private:
   double SuggestedIsoValue = vtkMath::Nan();
   bool SurfacesOnly = false;
   double Scattering = 0.0;
+  std::string OpacityArray;
+  int OpacityComponent = 0;
   bool Slicing = false;
   std::vector<std::pair<int, int>> Slices; ///< axis, index; ascending
   vtkSmartPointer<vtkPlaneCollection> SlicePlanes;

@@ -367,6 +367,23 @@ std::shared_ptr<const rt::ColorMap> vtkDSMTranslation::ToColorMap(
   return map;
 }
 
+rt::ColorMap vtkDSMTranslation::ToOpaqueColors(
+  vtkVolumeProperty* property, const bricks::ValueRange& range)
+{
+  // To ask for the other one would make it the one that counts.
+  rt::ColorMap map = property->GetColorChannels(0) == 1
+    ? *ToColorMap(property, range.First, range.Last)
+    : ToColorMap(property->GetRGBTransferFunction(0));
+  for (glm::vec4& color : map.Table)
+  {
+    color.w = 1.0f;
+  }
+  map.Below.w = 1.0f;
+  map.Above.w = 1.0f;
+  map.NotANumber = glm::vec4(0.0f);
+  return map;
+}
+
 std::shared_ptr<const rt::TransferFunction> vtkDSMTranslation::ToSum(vtkVolumeProperty* property,
   double first, double last, const std::array<double, 2>& counted, double unit)
 {

@@ -54,6 +54,9 @@ public:
   /// The same functions as colors and opacities of single values.
   static std::shared_ptr<const rt::ColorMap> ToColorMap(
     vtkVolumeProperty* property, double first, double last);
+  /// The color function alone, as the legend of a property's first component shows it, for values of a range. What is not a
+  /// number is transparent.
+  static rt::ColorMap ToOpaqueColors(vtkVolumeProperty* property, const bricks::ValueRange& range);
   /// The values, 0 to 1 in that range, times their opacities, which LatticeSum adds up over `unit` of world length. In a mean,
   /// the values between the two that are `counted` count.
   static std::shared_ptr<const rt::TransferFunction> ToSum(vtkVolumeProperty* property,

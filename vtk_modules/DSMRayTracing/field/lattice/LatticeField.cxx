@@ -11,6 +11,21 @@
 namespace rt
 {
 
+LatticePlace LatticeField::GetPlace(const glm::dvec3& point) const
+{
+  const bricks::BrickLattice& lattice = this->Voxels->Lattice;
+  const IndexSpace space = this->GetIndexSpace();
+  const bricks::Index3 cells = lattice.GetCells();
+  LatticePlace place;
+  place.IndexPoint = glm::clamp(
+    space.GetWorldToIndex() * (point - space.GetOrigin()), glm::dvec3(0.0), glm::dvec3(cells));
+  const bricks::Index3 cell =
+    glm::min(bricks::Index3(glm::floor(place.IndexPoint)), cells - bricks::Index3(1));
+  place.Cell = glm::ivec3(cell);
+  place.Brick = lattice.GetId(cell / bricks::Index3(lattice.GetEdge()));
+  return place;
+}
+
 double LatticeField::GetGrowth(const glm::dvec3& gradient) const
 {
   const glm::dmat3 edges(this->IndexToWorld);

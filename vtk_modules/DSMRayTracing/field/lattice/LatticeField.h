@@ -62,6 +62,8 @@ struct LatticeField
   {
     return this->GetIndexSpace().GetNormal(&gradient.x, rayDirection);
   }
+  /// The place of a point in world space; of the nearest cell, beyond the lattice.
+  LatticePlace GetPlace(const glm::dvec3& point) const;
   /// How much values grow in a cell of mean size where they grow so fast on each axis of the index space.
   double GetGrowth(const glm::dvec3& gradient) const;
   /// The brick that has a place's values (world space); of no segment, outside of the lattice.

@@ -112,18 +112,14 @@ private:
 
   static void FindCell(const LatticeField& field, const glm::dvec3& point, Asked& asked)
   {
-    const bricks::BrickLattice& lattice = field.Voxels->Lattice;
-    const IndexSpace space = field.GetIndexSpace();
-    const glm::dvec3 place = space.GetWorldToIndex() * (point - space.GetOrigin());
-    const bricks::Index3 cell = glm::clamp(
-      bricks::Index3(glm::floor(place)), bricks::Index3(0), lattice.GetCells() - bricks::Index3(1));
-    const bricks::Index3 home = cell / bricks::Index3(lattice.GetEdge());
-    asked.Brick = lattice.GetId(home);
+    const LatticePlace place = field.GetPlace(point);
+    asked.Brick = place.Brick;
+    const int edge = field.Voxels->Lattice.GetEdge();
     for (int axis = 0; axis < 3; ++axis)
     {
-      asked.Cell.Cell[axis] = static_cast<int>(cell[axis] - home[axis] * lattice.GetEdge());
+      asked.Cell.Cell[axis] = place.Cell[axis] % edge;
     }
-    const glm::dvec3 inside = glm::clamp(place - glm::dvec3(cell), 0.0, 1.0);
+    const glm::dvec3 inside = place.IndexPoint - glm::dvec3(place.Cell);
     asked.Cell.Local = Lanes(inside.x, inside.y, inside.z, 0.0);
   }
 
