@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """DSM Volume: what ParaView's Volume shows, the same picture on any number of ranks, and what else the view shows in it."""
 
+import numpy as np
 from dsm_testing import *
 
 load_plugin()
@@ -62,6 +63,22 @@ bricks = render(view, "Bricks")
 display.DSMDebugView = "Off"
 check(abs(bricks - render(view)).mean() > 1.0, "a debug view shows volumes")
 check(sum(row["Accesses"] for row in get_rows(display)) > 0, "bricks of volumes are counted")
+
+# Cells are selected where half of the light is covered, by the ranks that have them; also for the center of rotation.
+before = render(view)
+simple.SelectSurfaceCells(Rectangle=[130, 100, 170, 140], View=view)
+extract = simple.ExtractSelection(Input=source)
+extract.UpdatePipeline()
+selected = extract.GetDataInformation().GetNumberOfCells()
+bounds = extract.GetDataInformation().GetBounds()
+saved = os.path.join(OUTPUT, "selected.npy")
+if get_ranks() == 1:
+    np.save(saved, selected)
+check(selected == np.load(saved), f"{selected} cells are selected, as on one rank")
+check(selected > 20 and max(bounds[1], bounds[3], bounds[5]) < 20.0, f"they are those of the shells, in {bounds}")
+simple.Delete(extract)
+simple.ClearSelection(source)
+check_equal(render(view), before, "after a selection")
 
 # What ParaView draws itself is where it is in the volume.
 sphere = simple.Sphere(Center=[12.0, 12.0, 12.0], Radius=9.0, ThetaResolution=48, PhiResolution=48)

@@ -110,9 +110,11 @@ vtkPVDSMImageRepresentation::vtkPVDSMImageRepresentation()
     [this]() -> vtkSmartPointer<vtkDataObject>
     {
       const bool hasInput = this->GetNumberOfInputConnections(0) > 0;
-      return vtkPVDSMIsosurfaceGeometry::Make(
-        this->Mapper, hasInput ? this->GetInputDataObject(0, 0) : nullptr);
+      return this->MakeSelectable(hasInput ? this->GetInputDataObject(0, 0) : nullptr);
     });
+  this->Display->PrepareSelection = [this](
+                                      vtkDSMScene* scene, vtkRenderer* renderer, bool selecting)
+  { this->PrepareSelection(scene, renderer, selecting); };
   this->Display->SetLook = [this](vtkActor* actor, vtkMapper* mapper)
   {
     actor->SetProperty(this->Mapper->GetSurfaceProperty());
@@ -324,6 +326,11 @@ int vtkPVDSMImageRepresentation::Process(
     this->Display->PrepareRender(this->Mapper->GetBounds(), inInfo);
   }
   return 1;
+}
+
+vtkSmartPointer<vtkDataObject> vtkPVDSMImageRepresentation::MakeSelectable(vtkDataObject* data)
+{
+  return vtkPVDSMIsosurfaceGeometry::Make(this->Mapper, data);
 }
 
 bool vtkPVDSMImageRepresentation::IsTranslucent() const

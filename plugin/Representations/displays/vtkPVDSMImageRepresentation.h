@@ -28,6 +28,7 @@
 #include <utility> // for ivars
 #include <vector>  // for ivars
 
+class vtkDSMScene;
 class vtkDSMVolumeMapper;
 class vtkDataObject;
 class vtkPVDSMFrameReport;
@@ -35,6 +36,7 @@ class vtkPVDSMLightOptions;
 class vtkPVDSMMemoryOptions;
 class vtkPolyData;
 class vtkProperty;
+class vtkRenderer;
 class vtkScalarsToColors;
 class vtkVolume;
 
@@ -236,6 +238,10 @@ protected:
   bool RemoveFromView(vtkView* view) override;
   /// Whether light gets through what is shown: the same on every rank.
   virtual bool IsTranslucent() const;
+  /// What selections draw, of this rank's part of the dataset, which may be null.
+  virtual vtkSmartPointer<vtkDataObject> MakeSelectable(vtkDataObject* data);
+  /// On all ranks, before each render.
+  virtual void PrepareSelection(vtkDSMScene*, vtkRenderer*, bool) {}
 
   vtkNew<vtkVolume> Volume;
   vtkNew<vtkDSMVolumeMapper> Mapper;

@@ -210,6 +210,10 @@ void vtkPVDSMTracedDisplay::PrepareRender(const double* dataBounds, vtkInformati
   this->Prop->GetMatrix(matrix);
   this->Clipping.ApplyTo(this->Mapper, matrix);
   const bool selecting = vtkPVDSMDelivery::IsSelecting(this->Representation->GetView());
+  if (this->PrepareSelection && this->View)
+  {
+    this->PrepareSelection(this->Scene, this->View->GetRenderer(), selecting);
+  }
   this->SelectionMapper->SetClippingPlanes(this->Mapper->GetClippingPlanes());
   this->SelectionMapper->SetSelecting(selecting);
   this->SelectionMapper->SetShownBounds(dataBounds);

@@ -28,6 +28,7 @@ class vtkPVDataRepresentation;
 class vtkPartitionedDataSet;
 class vtkPolyData;
 class vtkProp3D;
+class vtkRenderer;
 class vtkScalarsToColors;
 class vtkView;
 
@@ -49,6 +50,8 @@ public:
   /// Gives an actor, which exporters are to have, the look of what is traced.
   std::function<void(vtkActor* actor, vtkMapper* mapper)> SetLook;
   vtkNew<vtkPVDSMSelectionMapper> SelectionMapper; ///< gets its source from the representation
+  /// Called on all ranks before a render, if set; `selecting`: it is for a selection.
+  std::function<void(vtkDSMScene* scene, vtkRenderer* renderer, bool selecting)> PrepareSelection;
 
   ///@{
   /// Of the representation's methods of these names, what is the same for all.

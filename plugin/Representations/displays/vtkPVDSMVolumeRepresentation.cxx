@@ -2,8 +2,12 @@
 #include "vtkPVDSMVolumeRepresentation.h"
 
 #include "vtkDSMVolumeMapper.h"
+#include "vtkPVDSMVolumePlaces.h"
 
 #include "vtkColorTransferFunction.h"
+#include "vtkDataObject.h"
+#include "vtkMatrix4x4.h"
+#include "vtkMultiBlockDataSet.h"
 #include "vtkObjectFactory.h"
 #include "vtkPiecewiseFunction.h"
 #include "vtkProperty.h"
@@ -13,6 +17,7 @@
 vtkStandardNewMacro(vtkPVDSMVolumeRepresentation);
 
 vtkPVDSMVolumeRepresentation::vtkPVDSMVolumeRepresentation()
+  : Places(std::make_unique<vtkPVDSMVolumePlaces>())
 {
   this->Volume->SetProperty(this->Property);
   this->Mapper->AutomaticIsoValueOff();
@@ -120,4 +125,24 @@ void vtkPVDSMVolumeRepresentation::SelectOpacityArrayComponent(int component)
 void vtkPVDSMVolumeRepresentation::UpdateOpacityArray()
 {
   this->Mapper->SetOpacityArray(this->UseSeparateOpacityArray ? this->OpacityArray : "");
+}
+
+vtkSmartPointer<vtkDataObject> vtkPVDSMVolumeRepresentation::MakeSelectable(vtkDataObject* data)
+{
+  this->Volume->ComputeMatrix();
+  return this->Places->MakePoints(
+    data ? data : this->Mapper->GetDataObjectInput(), this->Volume->GetMatrix());
+}
+
+void vtkPVDSMVolumeRepresentation::PrepareSelection(
+  vtkDSMScene* scene, vtkRenderer* renderer, bool selecting)
+{
+  if (selecting)
+  {
+    this->Places->Find(scene, renderer);
+  }
+  else
+  {
+    this->Places->Forget();
+  }
 }

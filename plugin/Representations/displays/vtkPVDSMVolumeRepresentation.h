@@ -13,8 +13,10 @@
 #include "vtkPVDSMImageRepresentation.h"
 #include "vtkRepresentationsDSMModule.h" // for the export macro
 
+#include <memory> // for ivars
 #include <string> // for ivars
 
+class vtkPVDSMVolumePlaces;
 class vtkPiecewiseFunction;
 class vtkVolumeProperty;
 
@@ -74,6 +76,8 @@ protected:
   ~vtkPVDSMVolumeRepresentation() override;
 
   bool IsTranslucent() const override { return true; }
+  vtkSmartPointer<vtkDataObject> MakeSelectable(vtkDataObject* data) override;
+  void PrepareSelection(vtkDSMScene* scene, vtkRenderer* renderer, bool selecting) override;
 
 private:
   vtkPVDSMVolumeRepresentation(const vtkPVDSMVolumeRepresentation&) = delete;
@@ -85,6 +89,7 @@ private:
   bool UseSeparateOpacityArray = false;
   std::string OpacityArray;
   bool MultiComponentsMapping = false;
+  std::unique_ptr<vtkPVDSMVolumePlaces> Places;
 };
 
 #endif

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef vtkPVDSMVolumePlaces_h
+#define vtkPVDSMVolumePlaces_h
+
+#include "vtkSmartPointer.h"
+
+#include <array>
+#include <vector>
+
+class vtkDSMScene;
+class vtkDataObject;
+class vtkImageData;
+class vtkMatrix4x4;
+class vtkMultiBlockDataSet;
+class vtkRenderer;
+
+/// The places that the pixels of a picture of volumes show, for selections: where half of the light is covered. Each rank
+/// draws those in its own data, as points that know their cells and the nearest points.
+class vtkPVDSMVolumePlaces
+{
+public:
+  /// Collective, unless the places are known: traces a picture of the renderer's size.
+  void Find(vtkDSMScene* scene, vtkRenderer* renderer);
+  void Forget();
+
+  /// Of this rank's data, an image or a composite dataset of images.
+  vtkSmartPointer<vtkMultiBlockDataSet> MakePoints(
+    vtkDataObject* data, vtkMatrix4x4* dataToWorld) const;
+
+private:
+  using Place = std::array<double, 3>;
+  static void AddImage(vtkImageData* image, unsigned block, const std::vector<Place>& places,
+    vtkMultiBlockDataSet* geometry);
+
+  std::vector<Place> Places; ///< world
+  bool AreKnown = false;
+};
+
+#endif
