@@ -46,8 +46,8 @@ public:
   /// Makes the medium that has the values of a field, within a region.
   using MediumMaker =
     std::function<rt::SceneMedium(const rt::LatticeField&, const rt::ClipRegion&)>;
-  /// Of the blend mode. Takes time, which a key of the same says to be needless. Empty: nothing is drawn; says why in the
-  /// messages.
+  /// Of the blend mode. Expensive: keep it as long as the key is the same. Empty where nothing is drawn; the messages say
+  /// why.
   static MediumMaker GetMediumMaker(const MediumKey& key, std::vector<std::string>& messages);
   /// The arrays that are to be shown, as the mapper names them: that of the isosurfaces, and that of the colours, if any.
   /// Of slices alone the one that colors them, if any.
