@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Makes volume.png, a volume as ParaView shows it and ray traced, with a surface inside:
+"""Makes volume.png, a volume as ParaView shows it and ray traced, with a surface inside, and volume_light.png, in light:
     xvfb-run -a -s "-noreset -screen 0 1280x1024x24" pvbatch volume.py PLUGIN FOLDER"""
 
 import os
@@ -34,3 +34,20 @@ for kind in ("Volume", "DSM Volume"):
     display.Representation = kind
     pictures.append(draw(view))
 write(os.path.join(FOLDER, "volume.png"), numpy.hstack(pictures))
+
+cone.Visibility = 0
+lamp = simple.CreateLight()
+lamp.Coords, lamp.Position, lamp.FocalPoint = "Scene", [6.0, 8.0, 5.0], [0.0, 0.0, 0.0]
+view.AdditionalLights = [lamp]
+opacity.Points = [0.0, 0.6, 0.5, 0.0, 0.3, 0.4, 0.5, 0.0, 0.5, 0.02, 0.5, 0.0, 0.6, 0.0, 0.5, 0.0, 1.4, 0.0, 0.5, 0.0]
+view.UseLight = 0
+camera.Dolly(1.1)
+display.DSMSamplesPerPixel = 4
+pictures = [draw(view)]
+display.Shade, display.Specular, display.SpecularPower = 1, 0.3, 30.0
+pictures.append(draw(view))
+display.DSMShadows = 1
+pictures.append(draw(view))
+display.Shade, display.DSMScattering = 0, 1.0
+pictures.append(draw(view))
+write(os.path.join(FOLDER, "volume_light.png"), numpy.hstack(pictures))

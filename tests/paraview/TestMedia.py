@@ -6,7 +6,9 @@ from dsm_testing import *
 
 load_plugin()
 view = create_view()
-source = image_source("image.SetExtent(piece)\nadd(image, np.cos(3.0 * distance(piece)), 'waves')\n")
+source = image_source(
+    "image.SetExtent(piece)\nadd(image, np.cos(3.0 * distance(piece)), 'waves')\nadd(image, distance(piece), 'ways')\n"
+)
 display = simple.Show(source, view)
 display.ColorArrayName = [None, ""]
 place_camera(view)
@@ -94,6 +96,17 @@ display.DSMClipOrigin, display.DSMClipNormal = [12.0, 12.0, 12.0], [1.0, 0.0, 0.
 clipped = render(view, "Clipped")
 display.DSMClip = 0
 check(get_covered(clipped).mean() < get_covered(render(view)).mean(), "a clipped volume covers less")
+
+# Another array says how dense it is.
+display.UseSeparateOpacityArray, display.OpacityArrayName = 1, ["POINTS", "waves"]
+opacity.Points = [-1.0, 0.0, 0.5, 0.0, 0.2, 0.0, 0.5, 0.0, 1.0, 0.4, 0.5, 0.0]
+twice = render(view, "OpacityOfWaves")
+display.OpacityArrayName = ["POINTS", "ways"]
+far = render(view, "OpacityOfWays")
+display.UseSeparateOpacityArray = 0
+once = render(view)
+check(abs(once - twice).mean() < 0.1, f"the same array twice is once: {abs(once - twice).mean():.3f}")
+check(abs(once - far)[get_covered(once)].mean() > 5.0, "another array for opacity is another picture")
 
 # Light.
 opacity.Points = [-1.0, 0.0, 0.5, 0.0, 0.2, 0.0, 0.5, 0.0, 1.0, 0.4, 0.5, 0.0]

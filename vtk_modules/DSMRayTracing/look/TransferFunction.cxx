@@ -53,7 +53,8 @@ TransferFunction::TransferFunction(
   // Where nothing is at one end of a bin, it has the color of the other.
   const auto getTinge = [&](int bin)
   {
-    const auto& before = samples[static_cast<std::size_t>(std::clamp(bin - 1, 0, this->AllBins - 2))];
+    const auto& before =
+      samples[static_cast<std::size_t>(std::clamp(bin - 1, 0, this->AllBins - 2))];
     const auto& after = samples[static_cast<std::size_t>(std::clamp(bin, 0, this->AllBins - 2))];
     const glm::dvec3 change = glm::abs(glm::dvec3(after) - glm::dvec3(before));
     return before.w > 0.0 && after.w > 0.0 ? std::max({ change.x, change.y, change.z }) : 0.0;
