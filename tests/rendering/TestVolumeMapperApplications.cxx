@@ -154,6 +154,54 @@ TEST_F(VolumeMapper, BlendsAsTheRayCastMapper)
   this->Volume->SetMapper(this->Mapper); // the others go
 }
 
+TEST_F(VolumeMapper, IsShadedAsTheRayCastMapper)
+{
+  vtkNew<vtkColorTransferFunction> colors;
+  colors->AddRGBPoint(0.0, 0.9, 0.2, 0.1);
+  colors->AddRGBPoint(0.5, 0.2, 0.9, 0.3);
+  vtkNew<vtkPiecewiseFunction> opacity;
+  opacity->AddPoint(0.0, 0.0);
+  opacity->AddPoint(0.6, 0.8);
+  vtkNew<vtkPiecewiseFunction> gradientOpacity;
+  gradientOpacity->AddPoint(0.0, 1.0);
+  gradientOpacity->AddPoint(0.2, 0.0);
+  vtkNew<vtkVolumeProperty> property;
+  property->SetInterpolationTypeToLinear();
+  property->SetColor(colors);
+  property->SetScalarOpacity(opacity);
+  property->SetScalarOpacityUnitDistance(4.0);
+  property->SetAmbient(0.2);
+  property->SetDiffuse(0.7);
+  property->SetSpecular(0.4);
+  property->SetSpecularPower(10.0);
+  this->Volume->SetProperty(property);
+  this->Place();
+  this->Renderer->AddVolume(this->Volume);
+  vtkNew<vtkGPUVolumeRayCastMapper> theirs;
+  theirs->SetAutoAdjustSampleDistances(0);
+  theirs->SetSampleDistance(0.25f);
+  vtkNew<vtkDSMVolumeMapper> ours;
+  const auto draw = [&](vtkVolumeMapper* mapper)
+  {
+    mapper->SetInputDataObject(MakeBall());
+    this->Volume->SetMapper(mapper);
+    this->Window->Render();
+    vtkNew<vtkUnsignedCharArray> pixels;
+    this->Window->GetPixelData(0, 0, Size - 1, Size - 1, 0, pixels);
+    return vtkSmartPointer<vtkUnsignedCharArray>(pixels);
+  };
+  const auto plain = draw(ours);
+  property->ShadeOn();
+  const auto shaded = draw(ours);
+  EXPECT_GT(GetDifference(shaded, plain), 5.0);
+  EXPECT_LT(GetDifference(shaded, draw(theirs)), 3.0);
+  property->SetGradientOpacity(gradientOpacity);
+  const auto edges = draw(ours);
+  EXPECT_GT(GetDifference(edges, shaded), 2.0);
+  EXPECT_LT(GetDifference(edges, draw(theirs)), 3.0);
+  this->Volume->SetMapper(this->Mapper); // the others go
+}
+
 /// Beside the logarithms of the values with functions that are linear in these.
 TEST_F(VolumeMapper, LowDecadesOfALogarithmicMapAreSeen)
 {
@@ -209,7 +257,11 @@ TEST_F(VolumeMapper, SaysWhatMediaDoNotHave)
   EXPECT_FALSE(observer->GetError() || observer->GetWarning());
   this->Volume->GetProperty()->ShadeOn();
   this->Window->Render();
-  EXPECT_NE(observer->GetWarningMessage().find("shading"), std::string::npos);
+  EXPECT_FALSE(observer->GetError() || observer->GetWarning());
+  this->Volume->GetProperty()->SetTransferFunctionModeTo2D();
+  this->Window->Render();
+  EXPECT_NE(observer->GetWarningMessage().find("two-dimensional"), std::string::npos);
+  this->Volume->GetProperty()->SetTransferFunctionModeTo1D();
   const auto both = MakeBall();
   vtkNew<vtkFloatArray> pairs;
   pairs->SetName("distance");
