@@ -18,6 +18,29 @@ vtkStandardNewMacro(vtkSMDSMVolumeRepresentationProxy);
 vtkSMDSMVolumeRepresentationProxy::vtkSMDSMVolumeRepresentationProxy() = default;
 vtkSMDSMVolumeRepresentationProxy::~vtkSMDSMVolumeRepresentationProxy() = default;
 
+/// Volume's definition lets the panel show these to advanced users only, or Shade for Volume, too, and a property can name only
+/// one representation. Shade is in a group that is hidden for all others.
+void vtkSMDSMVolumeRepresentationProxy::CreateVTKObjects()
+{
+  this->Superclass::CreateVTKObjects();
+  vtkSMProxy* const display = this->GetParentProxy();
+  if (!display)
+  {
+    return;
+  }
+  if (vtkSMProperty* const shade = display->GetProperty("Shade"))
+  {
+    shade->SetPanelVisibility("default");
+  }
+  for (const char* name : { "ScalarOpacityUnitDistance", "VolumeAnisotropy" })
+  {
+    if (vtkSMProperty* const property = display->GetProperty(name))
+    {
+      property->SetPanelVisibilityDefaultForRepresentation("DSM Volume");
+    }
+  }
+}
+
 void vtkSMDSMVolumeRepresentationProxy::ViewUpdated(vtkSMProxy* view)
 {
   this->Superclass::ViewUpdated(view);

@@ -5,7 +5,8 @@
  *
  * A volume, and slices, show the array that colors their dataset. ParaView chooses one for its own Volume where there is
  * none yet; this does it for DSM Volume and DSM Slices, before the view renders: once for each dataset, so that the user can
- * choose none. Slices begin in the middle of the data, also of those that come after their display.
+ * choose none. Slices begin in the middle of the data, also of those that come after their display. The panel shows what
+ * shades a volume and sets its density without the gear button.
  *
  * The name is what ParaView makes of the element DSMVolumeRepresentationProxy.
  */
@@ -29,6 +30,7 @@ protected:
   vtkSMDSMVolumeRepresentationProxy();
   ~vtkSMDSMVolumeRepresentationProxy() override;
 
+  void CreateVTKObjects() override;
   void ViewUpdated(vtkSMProxy* view) override;
 
 private:
