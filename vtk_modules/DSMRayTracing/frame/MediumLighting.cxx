@@ -141,79 +141,76 @@ void MediumLighting::Look(int number, const Ray* rays, RayMask wanted, LightPath
   }
 }
 
+template <class Aim, class Take>
+void MediumLighting::Send(int number, const Ray* rays, RayMask wanted, LightPath* const* paths,
+  std::vector<Places>& places, const Aim& aim, const Take& take) const
+{
+  Ray sent[MaxRays];
+  Place* asking[MaxRays];
+  int count = 0;
+  ForEachRay(wanted,
+    [&](int index)
+    {
+      LightPath& path = *paths[index];
+      Place& place = places[static_cast<std::size_t>(index)].All[static_cast<std::size_t>(number)];
+      Ray& ray = sent[count];
+      ray.Origin = GetPosition(rays[index], *place.Piece);
+      ray.Min = 0.0;
+      aim(ray, path, place.Piece->Normal);
+      ++path.LightRays;
+      asking[count++] = &place;
+    });
+  glm::dvec3 transmittances[MaxRays];
+  this->Transmittances.Find(sent, count, transmittances);
+  for (int index = 0; index < count; ++index)
+  {
+    take(*asking[index], transmittances[index]);
+  }
+}
+
 void MediumLighting::LookAround(int number, const Ray* rays, RayMask wanted,
   LightPath* const* paths, std::vector<Places>& places) const
 {
   const LightTransport& transport = this->World.Transport;
   // All places of a ray together look as often as a surface does.
   const int samples = (transport.AmbientOcclusionSamples + MostPlaces - 1) / MostPlaces;
-  double visible[MaxRays] = {};
   for (int sample = 0; sample < samples; ++sample)
   {
-    Ray around[MaxRays];
-    Place* asking[MaxRays];
-    int count = 0;
-    ForEachRay(wanted,
-      [&](int index)
+    this->Send(
+      number, rays, wanted, paths, places,
+      [&](Ray& ray, LightPath& path, const glm::dvec3& normal)
       {
-        LightPath& path = *paths[index];
-        Place& place =
-          places[static_cast<std::size_t>(index)].All[static_cast<std::size_t>(number)];
-        const glm::dvec3& normal = place.Piece->Normal;
-        Ray& ray = around[count];
-        ray.Origin = GetPosition(rays[index], *place.Piece);
         ray.Direction = normal == glm::dvec3(0.0)
           ? Directions::GetAny(path.Random)
           : Directions(glm::dot(normal, path.ToViewer) < 0.0 ? -normal : normal)
               .GetByCosine(path.Random);
-        ray.Min = 0.0;
         ray.Max = transport.AmbientOcclusionDistance;
-        ++path.LightRays;
-        asking[count++] = &place;
+      },
+      [&](Place& place, const glm::dvec3& transmittance)
+      {
+        place.Ambient = (sample == 0 ? 0.0 : place.Ambient) +
+          (transmittance.x + transmittance.y + transmittance.z) / (3.0 * samples);
       });
-    glm::dvec3 transmittances[MaxRays];
-    this->Transmittances.Find(around, count, transmittances);
-    for (int index = 0; index < count; ++index)
-    {
-      visible[index] +=
-        (transmittances[index].x + transmittances[index].y + transmittances[index].z) / 3.0;
-      asking[index]->Ambient = visible[index] / samples;
-    }
   }
 }
 
 void MediumLighting::LookToLamps(int number, const Ray* rays, RayMask wanted,
   LightPath* const* paths, std::vector<Places>& places) const
 {
+  const double radius = this->World.Transport.LightRadius;
   for (const Light& lamp : this->World.Lights)
   {
-    Ray towards[MaxRays];
-    Place* asking[MaxRays];
-    int count = 0;
-    ForEachRay(wanted,
-      [&](int index)
+    this->Send(
+      number, rays, wanted, paths, places,
+      [&](Ray& ray, LightPath& path, const glm::dvec3&)
       {
-        LightPath& path = *paths[index];
-        Place& place =
-          places[static_cast<std::size_t>(index)].All[static_cast<std::size_t>(number)];
-        Ray& ray = towards[count];
-        ray.Origin = GetPosition(rays[index], *place.Piece);
         const Incidence incidence = GetIncidence(lamp, ray.Origin);
-        const double radius = this->World.Transport.LightRadius;
         ray.Direction = radius > 0.0
           ? Directions(-incidence.Direction).GetInCone(radius, path.Random)
           : -incidence.Direction;
-        ray.Min = 0.0;
         ray.Max = incidence.Distance;
-        ++path.LightRays;
-        asking[count++] = &place;
-      });
-    glm::dvec3 transmittances[MaxRays];
-    this->Transmittances.Find(towards, count, transmittances);
-    for (int index = 0; index < count; ++index)
-    {
-      asking[index]->Lamps.push_back(transmittances[index]);
-    }
+      },
+      [](Place& place, const glm::dvec3& transmittance) { place.Lamps.push_back(transmittance); });
   }
 }
 

@@ -149,9 +149,7 @@ public:
       if (look.IsLit())
       {
         piece.Look = &look;
-        piece.Normal = gradient == glm::dvec3(0.0)
-          ? glm::dvec3(0.0)
-          : this->Medium.Field.GetNormal(gradient, rays[0].Direction);
+        piece.Normal = this->Medium.Field.GetNormal(gradient, glm::dvec3(0.0));
       }
     }
   }
