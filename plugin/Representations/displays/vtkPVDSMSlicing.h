@@ -14,8 +14,8 @@ public:
   struct Axis
   {
     bool IsShown = true;
-    int Index =
-      -1; ///< of the samples along the axis, from 0; less: not known yet, nothing is shown
+    /// Of the samples along the axis, from 0; less: not known yet, nothing is shown.
+    int Index = -1;
     std::vector<int> Further; ///< further indices, shown in any case
   };
   std::array<Axis, 3> Axes;

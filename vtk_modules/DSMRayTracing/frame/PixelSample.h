@@ -21,8 +21,8 @@ struct PixelSample
   glm::ivec2 Pixel{ 0 };
   glm::vec4 Color{ 0.0f };
   glm::vec3 Shared{ 0.0f }; ///< what neighbors' ambient occlusion adds to Color in previews
-  float Depth =
-    1.0f;            ///< of the nearest surface; of media in front, where half of it all is covered
+  /// Of the nearest surface; of media in front, where half of it all is covered.
+  float Depth = 1.0f;
   int LightRays = 0; ///< shadow and occlusion rays that were traced for it
 
   /// Channels on request, set where any was asked for: see Channels.

@@ -92,10 +92,6 @@ TransferFunction::TransferFunction(
     integral += slope;
     before = seen;
   }
-  for (const Behavior& group : groups)
-  {
-    this->Whole = GetLarger(this->Whole, group);
-  }
   this->Largest.push_back(groups);
   for (std::size_t width = 1; 2 * width <= groupCount; width *= 2)
   {

@@ -58,13 +58,11 @@ public:
   struct Behavior
   {
     double Extinction = 0.0; ///< the largest
-    double Change =
-      0.0; ///< at most, of what is seen of a short way for its length, from a bin to the next
-    double Tinge = 0.0; ///< at most, of the color itself, from a bin to the next
+    /// From a bin to the next, at most: of what is seen of a short way for its length, and of the color itself.
+    double Change = 0.0;
+    double Tinge = 0.0;
   };
   Behavior FindBehavior(double begin, double end) const;
-  /// Anywhere.
-  const Behavior& GetBehavior() const { return this->Whole; }
 
   /// Whether any value from `first` to `last` is seen.
   bool IsSeen(double first, double last) const
@@ -98,7 +96,6 @@ private:
   std::vector<int> SeenBefore; ///< bins before each that are seen; one more at the end
   /// Largest Behavior of 1, 2, 4 ... groups of bins that follow one another, from each group on.
   std::vector<std::vector<Behavior>> Largest;
-  Behavior Whole;
   std::uint64_t Digest;
 };
 

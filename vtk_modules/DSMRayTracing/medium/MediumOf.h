@@ -10,7 +10,6 @@
 #include "DSMRayTracing/ray/ClipRegion.h"
 
 #include <glm/vec3.hpp>
-#include <glm/vec4.hpp>
 
 #include <algorithm>
 #include <cstddef>
@@ -35,8 +34,7 @@ struct MediumOf
   std::shared_ptr<const TransferFunction> Function; ///< not null
   MediumLook Look;
   ClipRegion Clipping;
-  /// What the colors come from by `Colors`, or are, if they are colors themselves (PackedColor); then the function only
-  /// says how dense the medium is. Null: the field.
+  /// What the colors come from by `Colors`; then the function only says how dense the medium is. Both, or neither.
   std::shared_ptr<const typename FieldType::Values> ColorValues = nullptr;
   std::shared_ptr<const ColorMap> Colors = nullptr;
 
@@ -169,23 +167,12 @@ private:
           this->Medium.Field.GetPlace(points[first + static_cast<std::size_t>(index)]);
       }
       const RayMask all = ~RayMask{ 0 } >> (MaxRays - count);
-      glm::vec4 colors[MaxRays];
-      if (this->Medium.Colors)
-      {
-        double values[MaxRays];
-        this->Sampler.FindValues(*this->Medium.ColorValues, places, all, values);
-        std::transform(values, values + count, colors,
-          [&](double value) { return this->Medium.Colors->Map(value); });
-      }
-      else
-      {
-        std::fill_n(colors, count, glm::vec4(0.0f));
-        this->Sampler.FindColors(*this->Medium.ColorValues, places, all, colors);
-      }
+      double values[MaxRays];
+      this->Sampler.FindValues(*this->Medium.ColorValues, places, all, values);
       for (int index = 0; index < count; ++index)
       {
         Lanes& amount = pieces[first + static_cast<std::size_t>(index)]->Amount;
-        const glm::dvec3 color = amount[3] * glm::dvec3(colors[index]);
+        const glm::dvec3 color = amount[3] * glm::dvec3(this->Medium.Colors->Map(values[index]));
         amount = Lanes(color.x, color.y, color.z, amount[3]);
       }
     }

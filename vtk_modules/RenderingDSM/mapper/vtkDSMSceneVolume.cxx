@@ -563,7 +563,7 @@ void vtkDSMSceneVolume::AddMedia(const vtkDSMVolumeLook& look, rt::Scene& scene)
     rt::SceneMedium medium = this->MakeMedium(field, clipping);
     if (auto* const lit = std::get_if<rt::LatticeMedium>(&medium))
     {
-      lit->Look = look.GetMediumLook(range);
+      lit->Look.Scattering = this->Mapper->GetScattering();
       this->SetColors(lattice, *lit);
     }
     scene.Media.push_back(std::move(medium));

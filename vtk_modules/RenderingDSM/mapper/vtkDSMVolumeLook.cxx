@@ -118,9 +118,11 @@ vtkDSMVolumeLook::MediumMaker vtkDSMVolumeLook::GetMediumMaker(
   switch (mode)
   {
     case vtkVolumeMapper::COMPOSITE_BLEND:
-      return [function = vtkDSMTranslation::ToTransferFunction(property, first, last, cellLength,
-                diagonal)](const rt::LatticeField& field, const rt::ClipRegion& clipping) {
-        return rt::LatticeMedium{ field, function, {}, clipping };
+      return [function =
+                 vtkDSMTranslation::ToTransferFunction(property, first, last, cellLength, diagonal),
+               look = vtkDSMTranslation::ToMediumLook(property, last - first)](
+               const rt::LatticeField& field, const rt::ClipRegion& clipping) {
+        return rt::LatticeMedium{ field, function, look, clipping };
       };
     case vtkVolumeMapper::MAXIMUM_INTENSITY_BLEND:
     case vtkVolumeMapper::MINIMUM_INTENSITY_BLEND:
@@ -187,14 +189,6 @@ bool vtkDSMVolumeLook::HasOpacityArray() const
 {
   return this->IsMedium() && !this->Mapper->GetOpacityArray().empty() &&
     this->Mapper->GetBlendMode() == vtkVolumeMapper::COMPOSITE_BLEND;
-}
-
-rt::MediumLook vtkDSMVolumeLook::GetMediumLook(const bricks::ValueRange& range) const
-{
-  rt::MediumLook look = vtkDSMTranslation::ToMediumLook(
-    vtkVolume::SafeDownCast(this->Prop)->GetProperty(), range.Last - range.First);
-  look.Scattering = this->Mapper->GetScattering();
-  return look;
 }
 
 bool vtkDSMVolumeLook::HasColorArray() const

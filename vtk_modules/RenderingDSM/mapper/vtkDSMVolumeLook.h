@@ -41,8 +41,6 @@ public:
   MediumKey GetMediumKey(const bricks::ValueRange& range, double cellLength, double diagonal) const;
   /// Whether another array says how dense the medium is.
   bool HasOpacityArray() const;
-  /// How light makes the medium shine, and what gradients do.
-  rt::MediumLook GetMediumLook(const bricks::ValueRange& range) const;
   /// Makes the medium that has the values of a field, within a region.
   using MediumMaker =
     std::function<rt::SceneMedium(const rt::LatticeField&, const rt::ClipRegion&)>;

@@ -52,14 +52,8 @@ public:
   std::uint64_t FindMacrocells(
     const bricks::MacrocellRange<T>* ranges, std::ptrdiff_t row, std::ptrdiff_t slice) const
   {
-    std::uint64_t found = 0;
-    for (int number = 0; number < 64; ++number)
-    {
-      const bricks::MacrocellRange<T>& range =
-        ranges[number % 4 + number / 4 % 4 * row + number / 16 * slice];
-      found |= std::uint64_t{ this->MayHold(range) } << number;
-    }
-    return found;
+    return FindEachMacrocell(ranges, row, slice,
+      [this](const bricks::MacrocellRange<T>& range) { return this->MayHold(range); });
   }
   bool MayHold(const bricks::MacrocellRange<T>& range) const
   {

@@ -2,10 +2,26 @@
 #ifndef rt_NodeOrder_h
 #define rt_NodeOrder_h
 
+#include <cstddef>
 #include <cstdint>
 
 namespace rt
 {
+
+/// Bit x + 4 y + 16 z is set where `mayHold(range)` says so of a macrocell of 4 x 4 x 4; `row` and `slice` lead to the next
+/// one on y and z.
+template <class Range, class MayHold>
+std::uint64_t FindEachMacrocell(
+  const Range* ranges, std::ptrdiff_t row, std::ptrdiff_t slice, const MayHold& mayHold)
+{
+  std::uint64_t found = 0;
+  for (int number = 0; number < 64; ++number)
+  {
+    const Range& range = ranges[number % 4 + number / 4 % 4 * row + number / 16 * slice];
+    found |= std::uint64_t{ mayHold(range) } << number;
+  }
+  return found;
+}
 
 /// 4 x 4 x 4 nodes, x + 4 y + 16 z each, counted on every axis in the direction in which rays move:
 /// along a ray the numbers rise, so that of nodes in a word of 64 bits the lowest is met first.
