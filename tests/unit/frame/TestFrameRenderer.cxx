@@ -462,7 +462,9 @@ TEST_P(AbortedFrame, EndsOnAllRanksAndTheNextOneIsRight)
         if (frame.IsAborted)
         {
           ++aborted;
+          const double before = frame.Seconds;
           renderer.Refine(store, scene, request, frame);
+          EXPECT_GT(frame.Seconds, before) << "the time of the aborted part belongs to the frame's";
         }
         EXPECT_EQ(GetPictureHash(rt::GatherFrame(messenger, frame)), expected) << "round " << round;
       }

@@ -58,7 +58,8 @@ struct Frame
   std::uint32_t Number = 0;
   bool IsAborted = false;   ///< on every rank; tiles, or samples of tiles, are missing
   double BusySeconds = 0.0; ///< from the start to the end of this rank's last tile
-  double Seconds = 0.0;     ///< from the collective start to the collective end
+  /// From the collective start to the collective end; where adding samples was aborted and goes on, of all its parts.
+  double Seconds = 0.0;
   /// How the bricks were kept; never Automatic.
   dsm::MemoryOrganization Organization = dsm::MemoryOrganization::ObjectBased;
   std::string Explanation; ///< a sentence: why they are kept so

@@ -70,6 +70,7 @@ void FrameRenderer::RenderTiles(dsm::BlockStore& store, const Scene& scene,
   Frame& frame)
 {
   const auto start = std::chrono::steady_clock::now();
+  const double before = frame.IsAborted ? frame.Seconds : 0.0;
   std::vector<FrameEntry> gathered;
   if (records.Entries.empty())
   {
@@ -91,7 +92,7 @@ void FrameRenderer::RenderTiles(dsm::BlockStore& store, const Scene& scene,
   const auto report = [&](Frame& traced)
   {
     Describe(store, traced);
-    traced.Seconds = SecondsSince(start);
+    traced.Seconds = before + SecondsSince(start);
     return records.Report ? records.Report(traced) : std::vector<std::byte>();
   };
   const std::shared_ptr<const BeamHistory> history = last ? last->Beams : frame.Beams;
@@ -108,7 +109,7 @@ void FrameRenderer::RenderTiles(dsm::BlockStore& store, const Scene& scene,
       tracing.GiveTo(frame);
     });
   this->Messenger.Insist([&] { Describe(store, frame); });
-  frame.Seconds = SecondsSince(start);
+  frame.Seconds = before + SecondsSince(start);
 }
 
 } // namespace rt
