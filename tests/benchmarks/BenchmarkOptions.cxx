@@ -12,6 +12,13 @@ void BenchmarkOptions::AddTo(CLI::App& app)
   app.add_option("--isovalue", this->Isovalues, "isovalues, with commas (default 0.5)")
     ->delimiter(',')
     ->allow_extra_args(false);
+  app
+    .add_option("--medium", this->Medium,
+      "first, last and opacity, with commas: trace the volume as a medium; the opacity of a cell "
+      "rises from 0 at the first value to this at the last one (default: isosurfaces)")
+    ->delimiter(',')
+    ->expected(3)
+    ->allow_extra_args(false);
   app.add_option("--session", this->Session,
     "positions and isovalues from a file instead of an orbit; each repetition counts as a whole, "
     "the first one apart");

@@ -15,6 +15,8 @@ struct BenchmarkOptions : RunOptions
 {
   std::string Volume = "sphere:128:float";
   std::vector<double> Isovalues{ 0.5 };
+  std::vector<double>
+    Medium; ///< first and last value, and opacity of a cell at the last; empty: isosurfaces
   double CacheFraction = 1.0;  ///< of the bytes of all bricks
   std::uint64_t Mebibytes = 0; ///< of memory per rank; 0: a part of what the host has
   int BrickEdge = 0;           ///< cells; 0: the default of the scalar type

@@ -24,6 +24,7 @@
 #include <sys/resource.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <fstream>
 #include <functional>
@@ -238,6 +239,23 @@ std::vector<double> SumTileSeconds(dsm::Messenger& messenger, const std::vector<
   return sums;
 }
 
+/// Blue to red over the range of values; a cell's edge is the unit of opacity.
+rt::LatticeMedium CreateMedium(const rt::LatticeField& field, const std::vector<double>& medium)
+{
+  const double cell = field.GetFinestLength();
+  std::vector<glm::dvec4> samples;
+  for (int bin = 0; bin <= rt::TransferFunction::Bins; ++bin)
+  {
+    const double part = static_cast<double>(bin) / rt::TransferFunction::Bins;
+    const double opacity = std::min(part * medium[2], 0.9999);
+    samples.emplace_back(part, 0.3, 1.0 - part, -std::log1p(-opacity) / cell);
+  }
+  rt::LatticeMedium result;
+  result.Field = field;
+  result.Function = std::make_shared<rt::TransferFunction>(medium[0], medium[1], samples, cell);
+  return result;
+}
+
 void RunIsosurface(const BenchmarkOptions& options, dsm::Messenger& messenger)
 {
   dsm::BlockStore::Settings settings = options.CreateSettings(messenger);
@@ -251,6 +269,11 @@ void RunIsosurface(const BenchmarkOptions& options, dsm::Messenger& messenger)
   object.Isovalues = options.Isovalues;
   std::sort(object.Isovalues.begin(), object.Isovalues.end());
   object.Look.Surface.Opacity = options.Opacity;
+  if (!options.Medium.empty())
+  {
+    object.Isovalues.clear();
+    scene.Media.emplace_back(CreateMedium(object.Field, options.Medium));
+  }
   settings.CacheBytes = static_cast<std::size_t>(
     options.CacheFraction * object.Field.Voxels->Segment->GetDirectory().GetTotalBytes());
   store.SetSettings(settings);
