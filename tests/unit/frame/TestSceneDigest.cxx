@@ -38,6 +38,10 @@ TEST(TestSceneDigest, ChangesWithAllThatThePictureShows)
       const std::vector<std::function<void(rt::Scene&, rt::FrameRequest&)>> changes = {
         [](rt::Scene&, rt::FrameRequest& r) { r.Width = 41; },
         [](rt::Scene&, rt::FrameRequest& r) { r.Layers = 4; },
+        [](rt::Scene&, rt::FrameRequest& r)
+        { r.Limits = std::make_shared<const std::vector<float>>(1200, 0.5f); },
+        [](rt::Scene&, rt::FrameRequest& r)
+        { r.MediumCuts = std::make_shared<const std::vector<float>>(1200, 0.5f); },
         [](rt::Scene&, rt::FrameRequest& r) { r.Channels.Value |= rt::ChannelSet::Normal; },
         [](rt::Scene&, rt::FrameRequest& r) { r.WorldToClip[3][0] += 1e-12; },
         [](rt::Scene& s, rt::FrameRequest&) { GetIsosurface(s).Isovalues[0] += 1e-12; },

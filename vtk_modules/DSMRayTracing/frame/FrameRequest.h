@@ -40,6 +40,9 @@ struct FrameRequest
   /// Window depth, in [0, 1], at which the rays of each pixel end, row by row from the bottom: where something opaque is
   /// that is not in the scene. Null: nowhere.
   std::shared_ptr<const std::vector<float>> Limits;
+  /// Window depths at which media are cut into layers: where something translucent is that is not in the scene. As many
+  /// pictures of Width x Height, one after the other, as there are in any pixel; from front to back, then 1. Null: nowhere.
+  std::shared_ptr<const std::vector<float>> MediumCuts;
   /// What the picture has of each pixel.
   ChannelSet Channels;
   TileScheduling Scheduling = TileScheduling::WorkStealing;

@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 
 namespace rt
 {
@@ -34,7 +35,9 @@ PixelRays::PixelRays(const FrameRequest& request)
   , WorldToClip(request.WorldToClip)
   , ClipToWorld(glm::inverse(request.WorldToClip))
   , Width(request.Width)
+  , Height(request.Height)
   , Limits(request.Limits)
+  , MediumCuts(request.MediumCuts)
 {
   if (!CanBeMade(this->WorldToClip))
   {
@@ -75,6 +78,30 @@ Ray PixelRays::GetRay(int x, int y, const glm::dvec2& position) const
     }
   }
   return ray;
+}
+
+double PixelRays::FindMediumCut(const Ray& ray, const glm::ivec2& pixel) const
+{
+  const auto getW = [&](const glm::dvec3& point)
+  {
+    const glm::dmat4& matrix = this->WorldToClip;
+    return matrix[0][3] * point.x + matrix[1][3] * point.y + matrix[2][3] * point.z + matrix[3][3];
+  };
+  const double nearW = getW(ray.Origin);
+  const double farW = getW(ray.Origin + ray.Direction);
+  const std::vector<float>& cuts = *this->MediumCuts;
+  const std::size_t pixels = static_cast<std::size_t>(this->Width) * this->Height;
+  for (std::size_t place = static_cast<std::size_t>(pixel.y) * this->Width + pixel.x;
+       place < cuts.size() && cuts[place] < 1.0f; place += pixels)
+  {
+    const double depth = cuts[place];
+    const double t = depth * nearW / ((1.0 - depth) * farW + depth * nearW);
+    if (t > ray.Min)
+    {
+      return t;
+    }
+  }
+  return std::numeric_limits<double>::infinity();
 }
 
 float PixelRays::GetDepth(const glm::dvec3& point) const

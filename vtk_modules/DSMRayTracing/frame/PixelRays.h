@@ -38,6 +38,10 @@ public:
     return this->Limits ? this->GetRay(x, y, position).Max : Last;
   }
 
+  bool HasMediumCuts() const { return this->MediumCuts != nullptr; }
+  /// T where a pixel's ray meets the next of FrameRequest::MediumCuts beyond its Min; infinite: there is none.
+  double FindMediumCut(const Ray& ray, const glm::ivec2& pixel) const;
+
   /// OpenGL window depth in [0, 1] of a world point.
   float GetDepth(const glm::dvec3& point) const;
 
@@ -51,7 +55,9 @@ private:
   glm::dmat4 ClipToWorld;
   PictureView View;
   int Width;
-  std::shared_ptr<const std::vector<float>> Limits; ///< of FrameRequest
+  int Height;
+  std::shared_ptr<const std::vector<float>> Limits;     ///< of FrameRequest
+  std::shared_ptr<const std::vector<float>> MediumCuts; ///< of FrameRequest
 };
 
 } // namespace rt

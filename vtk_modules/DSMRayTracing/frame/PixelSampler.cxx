@@ -8,6 +8,7 @@
 #include <glm/vec2.hpp>
 #include <glm/vec4.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -209,21 +210,54 @@ void PixelSampler::AddMedia(
   SceneBeam* beam, const Ray* rays, RayMask wanted, LightPath* const* paths) const
 {
   const auto light = std::make_unique<MediumLight>();
-  this->Media.March(rays, wanted, beam, *light,
+  if (!this->Rays.HasMediumCuts())
+  {
+    this->AddPart(beam, rays, wanted, paths, 0, *light);
+    return;
+  }
+  Ray parts[MaxRays];
+  ForEachRay(wanted, [&](int index) { parts[index] = rays[index]; });
+  RayMask begunAtCut = 0;
+  while (wanted != 0)
+  {
+    RayMask endedByCut = 0;
+    ForEachRay(wanted,
+      [&](int index)
+      {
+        const PixelSample* const pixel = paths[index]->Layers;
+        const double cut = pixel ? this->Rays.FindMediumCut(parts[index], pixel->Pixel)
+                                 : std::numeric_limits<double>::infinity();
+        parts[index].Max = std::min(rays[index].Max, cut);
+        endedByCut |= GetBit(index, cut < rays[index].Max);
+      });
+    this->AddPart(beam, parts, wanted, paths, begunAtCut | endedByCut, *light);
+    wanted = FindRays(endedByCut, [&](int index) { return paths[index]->GoesOn(); });
+    begunAtCut = wanted;
+    ForEachRay(wanted, [&](int index) { parts[index].Min = parts[index].Max; });
+  }
+}
+
+void PixelSampler::AddPart(SceneBeam* beam, const Ray* rays, RayMask wanted,
+  LightPath* const* paths, RayMask cut, MediumLight& light) const
+{
+  this->Media.March(rays, wanted, beam, light,
     [&](MediumLight& gathered) { this->LitMedia.Shine(rays, wanted, paths, gathered); });
   ForEachRay(wanted,
     [&](int index)
     {
-      if (std::isinf(light->First[index]))
+      if (std::isinf(light.First[index]))
       {
         return;
       }
       LightPath& path = *paths[index];
       const float weight = 1.0f - path.Color.w;
-      const auto opacity = static_cast<float>(1.0 - light->Transmittance[index]);
-      const glm::dvec3 place = rays[index].Origin + light->GetPlace(index) * rays[index].Direction;
+      const auto opacity = static_cast<float>(1.0 - light.Transmittance[index]);
+      // At a cut, something else is drawn.
+      const bool isCut = (cut & GetBit(index)) != 0;
+      const double t = isCut ? light.GetHalfWay(index) : light.GetPlace(index);
+      const glm::dvec3 place = rays[index].Origin + t * rays[index].Direction;
       const glm::vec3 color = this->World.View == DebugView::Off
-        ? glm::vec3(light->GetColor(index))
+        ? glm::vec3(light.GetColor(index))
         : opacity * this->ShowForDebugging(place);
       const glm::vec4 layer = weight * glm::vec4(color, opacity);
       path.Color += layer;

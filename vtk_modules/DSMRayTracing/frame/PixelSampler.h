@@ -66,6 +66,9 @@ private:
 
   /// Adds what media contribute in front of the surfaces that rays have met.
   void AddMedia(SceneBeam* beam, const Ray* rays, RayMask wanted, LightPath* const* paths) const;
+  /// Of parts of such rays. `cut`: those that begin or end at one of FrameRequest::MediumCuts.
+  void AddPart(SceneBeam* beam, const Ray* rays, RayMask wanted, LightPath* const* paths,
+    RayMask cut, MediumLight& light) const;
 
   /// Adds what the surfaces at which paths are contribute.
   void AddSurfaces(LightPath* const* paths, int count, int bounces) const;

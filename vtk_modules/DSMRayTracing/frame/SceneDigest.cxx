@@ -53,6 +53,11 @@ std::uint64_t GetSceneDigest(const Scene& scene, const FrameRequest& request)
   {
     digest.Add(*request.Limits);
   }
+  digest.Add(request.MediumCuts != nullptr);
+  if (request.MediumCuts)
+  {
+    digest.Add(*request.MediumCuts);
+  }
   digest.Add(request.Channels);
   Add(digest, scene.Transport);
   digest.Add(scene.View);

@@ -86,6 +86,7 @@ public:
     {
       const double passed = std::exp(-depth);
       this->First[ray] = std::min(this->First[ray], piece.Begin);
+      this->Last[ray] = piece.End;
       if (this->KeepsPieces)
       {
         this->Keep(ray, piece.Begin, piece.End, piece.Amount, passed);
@@ -139,6 +140,8 @@ public:
   {
     return std::isinf(this->Middle[ray]) ? this->First[ray] : this->Middle[ray];
   }
+  /// T of a place with as much of the way through all that a ray meets before it as behind it.
+  double GetHalfWay(int ray) const { return 0.5 * (this->First[ray] + this->Last[ray]); }
   bool IsDark(int ray) const { return this->Transmittance[ray] < this->DarkBelow; }
   /// What arrives at the ray's begin.
   glm::dvec3 GetColor(int ray) const
@@ -150,6 +153,7 @@ public:
   double Length[MaxRays];        ///< world length of a unit of T
   double Transmittance[MaxRays]; ///< what gets through what was met so far
   double First[MaxRays];         ///< T where there is anything first; infinite: nowhere
+  double Last[MaxRays];          ///< T where the last of it ends, where there is anything
   double Middle[MaxRays];        ///< T where half of the light is gone; infinite: nowhere
 
   /// Whether pieces are kept, too.

@@ -12,6 +12,7 @@
 #include <memory>
 #include <set>
 #include <utility>
+#include <variant>
 
 namespace
 {
@@ -49,6 +50,34 @@ T Read(const std::vector<std::byte>& bytes, std::size_t at = 0)
   T value;
   std::memcpy(&value, bytes.data() + at, sizeof(value));
   return value;
+}
+
+/// Adds a picture of depths, behind `first` others in a record, to those of each pixel's surfaces: the nearest first, and
+/// at most vtkDSMDepthReader::MaxSurfaces of them.
+void AddCuts(const std::vector<std::byte>& record, std::size_t first, std::size_t pixels,
+  std::vector<float>& cuts)
+{
+  for (std::size_t pixel = 0; pixel < pixels; ++pixel)
+  {
+    auto depth = Read<float>(record, (first + pixel) * sizeof(float));
+    for (std::size_t place = pixel; depth < 1.0f; place += pixels)
+    {
+      if (place >= pixels * vtkDSMDepthReader::MaxSurfaces)
+      {
+        break;
+      }
+      cuts.resize(std::max(cuts.size(), place - pixel + pixels), 1.0f);
+      // Ranks may draw the same surface.
+      if (std::abs(depth - cuts[place]) <= vtkDSMDepthReader::SurfaceDistance)
+      {
+        break;
+      }
+      if (depth < cuts[place])
+      {
+        std::swap(depth, cuts[place]);
+      }
+    }
+  }
 }
 
 bool HasNewData(const std::vector<std::byte>& record, std::size_t dataset)
@@ -253,28 +282,53 @@ int vtkDSMScene::Internals::AgreeOnView(
   return coarser;
 }
 
-/// Collective. Rays end at what this, or any other, rank draws itself.
-void vtkDSMScene::Internals::LimitRays(rt::FrameRequest& request)
+/// Collective. Rays end at what is opaque of what this, or any other, rank draws itself; media are cut into layers at what
+/// is translucent, where `cutsMedia`.
+void vtkDSMScene::Internals::LimitRays(rt::FrameRequest& request, bool cutsMedia)
 {
   const std::size_t pixels = static_cast<std::size_t>(request.Width) * request.Height;
   const auto all = this->Group->GetMessenger().GatherTogether("Drawing what is in front of volumes",
     [&]
     {
-      const std::vector<float> own = this->OpaqueDepth.Read(this->Renderer,
-        this->Members.FindOthers(this->Renderer), request.Width, request.Height, request.PixelSize);
+      const std::vector<vtkProp*> others = this->Members.FindOthers(this->Renderer);
+      std::vector<float> own = this->DepthReader.ReadOpaque(
+        this->Renderer, others, request.Width, request.Height, request.PixelSize);
+      const std::vector<float> translucent = cutsMedia
+        ? this->DepthReader.ReadTranslucent(
+            this->Renderer, others, request.Width, request.Height, request.PixelSize)
+        : std::vector<float>();
+      if (!translucent.empty())
+      {
+        own.resize(pixels, 1.0f);
+        own.insert(own.end(), translucent.begin(), translucent.end());
+      }
       const auto* const bytes = reinterpret_cast<const std::byte*>(own.data());
       return std::vector<std::byte>(bytes, bytes + own.size() * sizeof(float));
     });
   auto nearest = std::make_shared<std::vector<float>>(pixels, 1.0f);
+  std::vector<float> cuts;
   for (const std::vector<std::byte>& bytes : all)
   {
     // A rank whose picture has another size is refused later.
-    for (std::size_t pixel = 0; bytes.size() == pixels * sizeof(float) && pixel < pixels; ++pixel)
+    const std::size_t pictures = bytes.size() / sizeof(float) / std::max<std::size_t>(pixels, 1);
+    if (bytes.size() != pictures * pixels * sizeof(float))
+    {
+      continue;
+    }
+    for (std::size_t pixel = 0; pictures > 0 && pixel < pixels; ++pixel)
     {
       (*nearest)[pixel] = std::min((*nearest)[pixel], Read<float>(bytes, pixel * sizeof(float)));
     }
+    for (std::size_t picture = 1; picture < pictures; ++picture)
+    {
+      AddCuts(bytes, picture * pixels, pixels, cuts);
+    }
   }
   request.Limits = std::move(nearest);
+  if (!cuts.empty())
+  {
+    request.MediumCuts = std::make_shared<std::vector<float>>(std::move(cuts));
+  }
 }
 
 /// Collective. As long as no rank has anything new, the ranks agree on the frame with one record, and on how it went with
@@ -351,7 +405,11 @@ void vtkDSMScene::Internals::Draw(bool& isOver)
     });
   if (isAny(&View::LimitsRays))
   {
-    this->LimitRays(request);
+    const auto isMedium = [](const rt::SceneMedium& medium)
+    { return std::holds_alternative<rt::LatticeMedium>(medium); };
+    // What shows one value of a ray has no layers.
+    this->LimitRays(
+      request, request.Layers > 1 && std::any_of(scene.Media.begin(), scene.Media.end(), isMedium));
   }
   rt::Picture picture;
   const auto result = this->TraceScene(scene, request, std::move(offers), coarser, picture);

@@ -6,10 +6,10 @@
 #include "DSMRayTracing/frame/FrameAccumulation.h"
 #include "DSMRayTracing/frame/MovingDetail.h"
 #include "DSMVolumeFiles/cache/ReadAhead.h"
+#include "vtkDSMDepthReader.h"
 #include "vtkDSMFrameDelivery.h"
 #include "vtkDSMFrameProp.h"
 #include "vtkDSMLightOptions.h"
-#include "vtkDSMOpaqueDepth.h"
 #include "vtkDSMRankGroup.h"
 #include "vtkDSMScene.h"
 #include "vtkDSMSceneMembers.h"
@@ -80,7 +80,7 @@ public:
   rt::FrameAccumulation Accumulation;
   rt::MovingDetail Detail;
   vtkDSMFrameDelivery Delivery;
-  vtkDSMOpaqueDepth OpaqueDepth;
+  vtkDSMDepthReader DepthReader;
   std::string LateFailure;     ///< of the last frame, on this rank alone
   std::string Failure;         ///< that was reported last
   unsigned FailureVersion = 0; ///< of the group's settings then
@@ -113,7 +113,7 @@ private:
   int AgreeOnView(
     const std::vector<View>& views, rt::Scene& scene, rt::FrameRequest& request) const;
   void KeepProp(const rt::Scene& scene);
-  void LimitRays(rt::FrameRequest& request);
+  void LimitRays(rt::FrameRequest& request, bool cutsMedia);
   bool IsInteractive() const;
   rt::FrameAccumulation::Pace GetPace() const;
   bool HasNotes() const;

@@ -404,6 +404,7 @@ private:
         this->Light.Keep(ray, begins[lane], ends[lane], amounts[lane], passes[lane]);
       }
       this->Light.First[ray] = std::min(this->Light.First[ray], begins[lane]);
+      this->Light.Last[ray] = ends[lane];
       double& transmittance = this->Light.Transmittance[ray];
       if (transmittance > 0.5 && transmittance * passes[lane] <= 0.5)
       {
