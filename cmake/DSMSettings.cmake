@@ -323,8 +323,8 @@ include("${PROJECT_SOURCE_DIR}/vtk_modules/RenderingDSM/frame/counters.cmake")
 set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS
   "${PROJECT_SOURCE_DIR}/vtk_modules/RenderingDSM/frame/counters.cmake")
 
-# Writes docs/settings.md, from its template, to a file.
-function (dsm_write_settings_document file)
+# Writes docs/properties.md, from its template, to a file, except for the rows that tests/docs/make_properties.py adds from xml/.
+function (dsm_write_properties_document file)
   foreach (name IN LISTS DSM_SETTINGS)
     string(TOUPPER "${DSM_${name}_OWNER}" owner)
     set(default "`${DSM_${name}_DEFAULT}`")
@@ -348,8 +348,8 @@ function (dsm_write_settings_document file)
         string(APPEND values " or more")
       endif ()
     endif ()
-    string(APPEND DSM_${owner}_ROWS "| ${DSM_${name}_LABEL} | `DSM${name}` | `Set${DSM_${name}_METHOD}` | ${values} |"
-      " ${default} | ${DSM_${name}_TEXT} |\n")
+    string(APPEND DSM_${owner}_ROWS "| ${DSM_${name}_LABEL} | `DSM${name}` | `Set${DSM_${name}_METHOD}` | ${default} |"
+      " ${values} | ${DSM_${name}_TEXT} |\n")
   endforeach ()
-  configure_file("${PROJECT_SOURCE_DIR}/docs/settings.md.in" "${file}" @ONLY)
+  configure_file("${PROJECT_SOURCE_DIR}/docs/properties.md.in" "${file}" @ONLY)
 endfunction ()

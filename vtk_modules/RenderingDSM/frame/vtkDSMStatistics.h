@@ -72,7 +72,7 @@ public:
 
   /**
    * One row for each rank. Columns: Rank, Host, Organization (as the frame found it), and the counters of
-   * frame/counters.cmake, which docs/settings.md lists. Times and what workers count are summed over the rank's
+   * frame/counters.cmake, which docs/properties.md lists. Times and what workers count are summed over the rank's
    * threads.
    */
   void GetTable(vtkTable* table) const;

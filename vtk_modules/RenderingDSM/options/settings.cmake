@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # The settings of light and memory. Made from this table: the classes vtkDSMLightOptions and vtkDSMMemoryOptions, those
 # of ParaView (vtkPVDSM...Options), the properties of displays and of the settings page, the panel's lists, and the
-# first table of docs/settings.md. cmake/DSMSettings.cmake says what each word means.
+# first table of docs/properties.md. cmake/DSMSettings.cmake says what each word means.
 
 dsm_setting(Shadows OWNER scene TYPE bool DEFAULT 0
   LABEL "Shadows" PANEL first
