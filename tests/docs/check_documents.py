@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Runs the fenced blocks of README.md and docs/*.md. Called as
+"""Runs the fenced blocks of README.md and docs/**/*.md. Called as
     check_documents.py LANGUAGE PROJECT BUILD OUTPUT PVBATCH MPIRUN...
 
 Blocks of one document and language are run in a folder of that document's, one after the other:
@@ -70,8 +70,7 @@ def read_blocks(document):
 
 def read_all():
     documents = ["README.md"]
-    documents += sorted("docs/" + name for name in os.listdir(os.path.join(PROJECT, "docs"))
-                        if name.endswith(".md"))
+    documents += sorted(glob.glob("docs/**/*.md", root_dir=PROJECT, recursive=True))
     return {document: read_blocks(document) for document in documents}
 
 
