@@ -75,7 +75,7 @@ build_project() {
   if [ ! -f "$build/build.ninja" ] || { [ $tests = ON ] && ! builds_tests; }; then
     say "Configuring ..."
     cmake -S "$project" -B "$build" -G Ninja -DCMAKE_BUILD_TYPE=Release \
-      -DDSM_BUILD_TESTING=$tests >"$build/configure.log" 2>&1 || {
+      -DDSM_BUILD_TESTING=$tests -DDSM_WARNINGS_AS_ERRORS="${DSM_WARNINGS_AS_ERRORS:-OFF}" >"$build/configure.log" 2>&1 || {
       tail -n 30 "$build/configure.log" >&2
       rm -f "$build/build.ninja"
       fail "the project could not be configured; the whole log is $build/configure.log"

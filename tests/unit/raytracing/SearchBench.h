@@ -16,7 +16,7 @@ struct SearchBench
 
   double Sample(const bricks::VoxelField& field, const glm::dvec3& indexPoint) const
   {
-    const rt::LatticePlace place{ indexPoint };
+    const rt::LatticePlace place{ indexPoint, {}, {} };
     double value;
     this->Sampler.FindValues(field, &place, 1, &value);
     return value;

@@ -73,7 +73,7 @@ TEST(TestLatticeSamplerCases, CellsHaveTheirOwnValuesAndNoneIsOfAnother)
   field->Segment = PublishPieces(bench.Store, field->Lattice, GetWhole(volume));
   const auto find = [&](const glm::ivec3& cell, const glm::dvec3& inside = glm::dvec3(0.5))
   {
-    const rt::LatticePlace place{ glm::dvec3(cell) + inside, cell };
+    const rt::LatticePlace place{ glm::dvec3(cell) + inside, cell, {} };
     double value;
     const bool isThere = bench.Sampler.FindValues(*field, &place, 1, &value) != 0;
     EXPECT_EQ(isThere, !std::isnan(value));
@@ -104,14 +104,14 @@ TEST(TestLatticeSamplerCases, ColorsAreInterpolatedChannelByChannel)
   SearchBench bench;
   const auto field = CreateField(bench.Store, volume, 2);
   glm::vec4 color;
-  const rt::LatticePlace between{ { 0.25, 0.5, 0.5 } };
+  const rt::LatticePlace between{ { 0.25, 0.5, 0.5 }, {}, {} };
   ASSERT_EQ(bench.Sampler.FindColors(*field, &between, 1, &color), 1u);
   EXPECT_NEAR(color.x, 0.75, 1e-6);
   EXPECT_NEAR(color.y, 0.25, 1e-6);
   EXPECT_NEAR(color.z, 0.2, 1e-6);
   EXPECT_NEAR(color.w, 0.75, 1e-6);
   field->Lattice = field->Lattice.OfCells();
-  const rt::LatticePlace second{ glm::dvec3(0.0), { 1, 0, 0 } };
+  const rt::LatticePlace second{ glm::dvec3(0.0), { 1, 0, 0 }, {} };
   ASSERT_EQ(bench.Sampler.FindColors(*field, &second, 1, &color), 1u);
   EXPECT_EQ(color, glm::vec4(0.0f, 1.0f, 0.2f, 0.0f));
 }
@@ -125,7 +125,7 @@ TEST(TestLatticeSamplerCases, TheNearestSampleIsNotInterpolated)
   const auto field = CreateField(bench.Store, volume, 2);
   const auto find = [&](double x, double y, double z)
   {
-    const rt::LatticePlace place{ { x, y, z } };
+    const rt::LatticePlace place{ { x, y, z }, {}, {} };
     double value;
     bench.Sampler.FindNearestValues(*field, &place, 1, &value);
     return value;
