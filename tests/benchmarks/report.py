@@ -17,6 +17,7 @@ from measuring import BENCH, HERE, SESSION, run_bench
 PROJECT = os.path.normpath(os.path.join(HERE, "..", ".."))
 ORGANIZATIONS = (("Replicated", "replicated"), ("Object based", "object"), ("Page based", "paged"))
 VOLUMES = (("noisy sphere", "sphere", 0.5), ("mixing layer", "rm", 127.5))
+MEDIA = {"noisy sphere": "0,1,0.05", "mixing layer": "0,255,0.05"}
 EDGES = (("1 byte", "uchar"), ("2 bytes", "short"), ("4 bytes", "float"), ("8 bytes", "double"))
 
 
@@ -58,12 +59,15 @@ def main():
           "pictures of 512 x 512 pixels. Load of the machine at the start: "
           f"{os.getloadavg()[0]:.1f}.\n")
 
-    def rate(kind, store):
-        return f"{measure(kind, options.samples, store=store, frames=10, repeat=2)['rays_per_second'] / 1e6:.1f}"
+    def rate(kind, store, **more):
+        result = measure(kind, options.samples, store=store, **{"frames": 10, "repeat": 2, **more})
+        return f"{result['rays_per_second'] / 1e6:.1f}"
 
     print_table(f"Million primary rays per second, one rank, {cores} threads, all bricks in memory",
                 ("volume", *(title for title, _ in ORGANIZATIONS)),
-                [(kind, *(rate(kind, store) for _, store in ORGANIZATIONS)) for kind, _, _ in VOLUMES])
+                [(kind, *(rate(kind, store) for _, store in ORGANIZATIONS)) for kind, _, _ in VOLUMES] +
+                [(f"{kind}, as a volume", *(rate(kind, store, medium=medium, frames=3) for _, store in ORGANIZATIONS))
+                 for kind, medium in MEDIA.items()])
 
     def light(kind, **more):
         return f"{measure(kind, options.samples, store='replicated', frames=4, repeat=2, **more)['frame_over_primary_frame']:.1f}"
