@@ -201,6 +201,11 @@ display.ScalarOpacityUnitDistance = 1.7  # ParaView's default counts the cells o
 display.DSMCapOpacityFromMap = 0
 opacity.Points = [-2.0, 0.0, 0.5, 0.0, 2.0, 0.0, 0.5, 0.0]
 ours = render(view, "CapOfVolume")
+display.UseSeparateOpacityArray, display.OpacityArrayName = 1, ["POINTS", "ball"]
+display.DSMCapOpacityFromMap = 1
+other = render(view, "CapOfOpacityArray")
+check_equal(other, ours, "with an opacity array, the face has the colors of the coloring array, and is opaque")
+display.UseSeparateOpacityArray, display.DSMCapOpacityFromMap = 0, 0
 display.DSMClip = 0
 display.Representation = "DSM Slices"
 set_slices()

@@ -46,21 +46,6 @@ vtkMTimeType GetDataTime(vtkDataObject* data)
   return time;
 }
 
-/// The range of all values; without any, its First is greater than its Last.
-bricks::ValueRange FindRange(const vtkDSMVolumeData::Fields& fields)
-{
-  bricks::ValueRange all{ std::numeric_limits<float>::max(), std::numeric_limits<float>::lowest() };
-  for (const auto& field : fields)
-  {
-    if (field)
-    {
-      all.First = std::min(all.First, field->Hierarchy.GetRange().First);
-      all.Last = std::max(all.Last, field->Hierarchy.GetRange().Last);
-    }
-  }
-  return all;
-}
-
 /// Whether two ranges have at least half of the values in common that either has.
 bool AreAlike(const bricks::ValueRange& one, const bricks::ValueRange& other)
 {
@@ -149,6 +134,20 @@ void vtkDSMSceneVolume::GiveUpBlocks()
   this->Iso.reset();
   this->Stale.clear();
   this->Taken = false;
+}
+
+bricks::ValueRange vtkDSMSceneVolume::Published::GetRange() const
+{
+  bricks::ValueRange all{ std::numeric_limits<float>::max(), std::numeric_limits<float>::lowest() };
+  for (const auto& field : this->GetFields())
+  {
+    if (field)
+    {
+      all.First = std::min(all.First, field->Hierarchy.GetRange().First);
+      all.Last = std::max(all.Last, field->Hierarchy.GetRange().Last);
+    }
+  }
+  return all;
 }
 
 std::shared_ptr<vtkDSMSceneVolume::Published> vtkDSMSceneVolume::Require(
@@ -424,7 +423,7 @@ int vtkDSMSceneVolume::CountCoarser() const
 
 void vtkDSMSceneVolume::SuggestIsovalue(dsm::Messenger& messenger)
 {
-  const bricks::ValueRange range = FindRange(this->Iso->GetFields());
+  const bricks::ValueRange range = this->Iso->GetRange();
   const bool isOther =
     !this->Suggested || !range.MayHold(*this->Suggested) || !AreAlike(range, this->SuggestedFrom);
   // Bricks that do not fit the memory at present tell nothing of their values.
@@ -462,18 +461,6 @@ void vtkDSMSceneVolume::SetColors(
     look.ColoredBy =
       this->Data->GetArrays().HasOpacity(color->Choice) ? Coloring::Colors : Coloring::OpaqueColors;
   }
-}
-
-void vtkDSMSceneVolume::SetColors(std::size_t lattice, rt::LatticeMedium& medium)
-{
-  if (!this->Color || this->Color->GetFields().empty() || !this->Color->GetFields()[lattice])
-  {
-    return;
-  }
-  medium.ColorValues = this->GetColorValues(lattice);
-  vtkVolumeProperty* const property = vtkVolume::SafeDownCast(this->Prop)->GetProperty();
-  medium.Colors = std::make_shared<const rt::ColorMap>(
-    vtkDSMTranslation::ToOpaqueColors(property, FindRange(this->Color->GetFields())));
 }
 
 std::shared_ptr<const rt::BlockLooks> vtkDSMSceneVolume::CreateBlockLooks(std::size_t lattice) const
@@ -524,51 +511,6 @@ rt::LatticeField vtkDSMSceneVolume::GetField(
   field.Voxels = this->Iso->GetFields()[lattice];
   field.SetIndexToWorld(latticeToWorld);
   return field;
-}
-
-/// One medium for each of the volume's lattices.
-void vtkDSMSceneVolume::AddMedia(const vtkDSMVolumeLook& look, rt::Scene& scene)
-{
-  const bricks::ValueRange range = FindRange(this->Iso->GetFields());
-  if (!(range.First <= range.Last))
-  {
-    return;
-  }
-  look.FindMissingFeatures(this->Data->CountComponents(this->Iso->Choice), this->Warnings);
-  this->Prop->ComputeMatrix();
-  const glm::dmat4 dataToWorld = vtkDSMTranslation::ToMatrix(this->Prop->GetMatrix());
-  const rt::ClipRegion clipping = look.GetClipRegion(dataToWorld);
-  double bounds[6];
-  this->Data->GetBounds(bounds);
-  const glm::dvec3 lower(bounds[0], bounds[2], bounds[4]);
-  const glm::dvec3 upper(bounds[1], bounds[3], bounds[5]);
-  const double diagonal = glm::length(glm::dmat3(dataToWorld) * (upper - lower));
-  for (std::size_t lattice = 0; lattice < this->Data->GetNumberOfLattices(); ++lattice)
-  {
-    if (!this->Iso->GetFields()[lattice])
-    {
-      continue;
-    }
-    const rt::LatticeField field = this->GetField(lattice, dataToWorld);
-    const auto key = look.GetMediumKey(range, field.GetFinestLength(), diagonal);
-    if (!this->MakeMedium || key != this->MediumKey)
-    {
-      this->MediumKey = key;
-      this->MakeMedium = vtkDSMVolumeLook::GetMediumMaker(key, this->Messages);
-    }
-    if (!this->MakeMedium)
-    {
-      return;
-    }
-    rt::SceneMedium medium = this->MakeMedium(field, clipping);
-    if (auto* const lit = std::get_if<rt::LatticeMedium>(&medium))
-    {
-      lit->Look.Scattering = this->Mapper->GetScattering();
-      this->SetColors(lattice, *lit);
-    }
-    scene.Media.push_back(std::move(medium));
-  }
-  this->AddCaps(look, dataToWorld, scene);
 }
 
 void vtkDSMSceneVolume::AddTo(rt::Scene& scene)

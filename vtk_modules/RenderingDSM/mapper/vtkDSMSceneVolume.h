@@ -2,6 +2,7 @@
 #ifndef vtkDSMSceneVolume_h
 #define vtkDSMSceneVolume_h
 
+#include "vtkDSMKept.h"
 #include "vtkDSMMapperMember.h"
 #include "vtkDSMVolumeData.h"
 #include "vtkDSMVolumeLook.h"
@@ -13,6 +14,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <tuple>
 #include <vector>
 
 /// A volume of a scene.
@@ -50,6 +52,8 @@ private:
     bool IsOf(const vtkDSMVolumeData::Choice& choice, unsigned retryVersion) const;
     /// Empty when it failed.
     const vtkDSMVolumeData::Fields& GetFields() const;
+    /// Of all values; without any, its First is greater than its Last.
+    bricks::ValueRange GetRange() const;
   };
 
   /// Collective. Takes in the mapper's dataset; bricks of arrays that hold what they held are kept.
@@ -69,11 +73,15 @@ private:
   vtkDSMVolumeLook GetLook() const { return { this->Mapper, this->Prop }; }
   /// At the level of detail that is shown.
   rt::LatticeField GetField(std::size_t lattice, const glm::dmat4& dataToWorld) const;
+  /// One medium for each of the volume's lattices.
   void AddMedia(const vtkDSMVolumeLook& look, rt::Scene& scene);
-  /// Sets the colors of a surface by the color array, at the level of detail that is shown.
+  /// Whether a lattice's medium has the colors of another array than that of its opacities.
+  bool HasOwnColors(std::size_t lattice) const;
+  /// The medium's colors, with the opacities of the same values or without.
+  std::shared_ptr<const rt::ColorMap> GetMediumColors(bool hasOpacity);
   /// Of the level of detail that is shown.
   std::shared_ptr<const bricks::VoxelField> GetColorValues(std::size_t lattice) const;
-  void SetColors(std::size_t lattice, rt::LatticeMedium& medium);
+  /// Sets the colors of a surface by the color array, at the level of detail that is shown.
   void SetColors(std::size_t lattice, std::shared_ptr<const bricks::VoxelField>& values,
     rt::IsosurfaceLook& look);
   /// Slices alone, or with isosurfaces.
@@ -101,9 +109,14 @@ private:
   std::vector<std::shared_ptr<Published>> Stale;
   std::optional<double> Suggested; ///< isovalue
   vtkDSMVolumeData::Choice SuggestedFor;
-  bricks::ValueRange SuggestedFrom{};       ///< of the values that suggested it
-  vtkDSMVolumeLook::MediumMaker MakeMedium; ///< for MediumKey
-  vtkDSMVolumeLook::MediumKey MediumKey;
+  bricks::ValueRange SuggestedFrom{}; ///< of the values that suggested it
+  vtkDSMKept<vtkDSMVolumeLook::MediumKey, vtkDSMVolumeLook::MediumMaker> MakeMedium;
+  using KeptColors = std::shared_ptr<const rt::ColorMap>;
+  /// By the property and its time, the range of values, and whether there are opacities.
+  vtkDSMKept<std::tuple<vtkVolumeProperty*, vtkMTimeType, float, float, bool>, KeptColors>
+    MediumColors;
+  /// By the map, and the opacity function and its time.
+  vtkDSMKept<std::tuple<KeptColors, vtkPiecewiseFunction*, vtkMTimeType>, KeptColors> SliceColors;
   std::string DataFailure;
   unsigned SettingsVersion = 0; ///< the group's at the last Update
 };

@@ -3,28 +3,10 @@
 
 #include "vtkDSMTranslation.h"
 
-#include "vtkProp3D.h"
-#include "vtkVolume.h"
-#include "vtkVolumeProperty.h"
+#include "vtkPiecewiseFunction.h"
 
 #include <algorithm>
 #include <utility>
-
-namespace
-{
-
-/// The planes of a region's half spaces.
-std::vector<rt::SectionPlane> GetFaces(const rt::ClipRegion& region)
-{
-  std::vector<rt::SectionPlane> planes;
-  for (const rt::ClipRegion::HalfSpace& half : region.HalfSpaces)
-  {
-    planes.push_back({ half.Normal, half.Point });
-  }
-  return planes;
-}
-
-} // namespace
 
 rt::LatticeSlice vtkDSMSceneVolume::CreateSlice(
   const vtkDSMVolumeLook& look, const glm::dmat4& dataToWorld, std::size_t lattice, bool isLit)
@@ -38,9 +20,18 @@ rt::LatticeSlice vtkDSMSceneVolume::CreateSlice(
   if (look.HasColoredSlices() && !color->GetFields().empty() && color->GetFields()[lattice])
   {
     this->SetColors(lattice, slice.ColorValues, slice.Look);
-    if (vtkPiecewiseFunction* const opacity = this->Mapper->GetSliceOpacity())
+    vtkPiecewiseFunction* const opacity = this->Mapper->GetSliceOpacity();
+    if (opacity && this->Mapper->GetLookupTable())
     {
-      vtkDSMTranslation::SetOpacity(opacity, slice.Look.Colors);
+      const auto& colors = slice.Look.Colors;
+      slice.Look.Colors = *this->SliceColors.Get(
+        { this->SampleColors(this->Mapper->GetLookupTable()), opacity, opacity->GetMTime() },
+        [&]
+        {
+          auto map = std::make_shared<rt::ColorMap>(colors);
+          vtkDSMTranslation::SetOpacity(opacity, *map);
+          return map;
+        });
     }
   }
   return slice;
@@ -90,7 +81,7 @@ void vtkDSMSceneVolume::AddCaps(const vtkDSMVolumeLook& look, const glm::dmat4& 
       // A face of one color shows its shape by light, colors of values are to be read.
       rt::LatticeSlice face = this->CreateSlice(
         look, dataToWorld, lattice, this->Mapper->GetSliceLighting() || !look.HasColoredSlices());
-      face.Planes = GetFaces(face.Clipping);
+      face.Planes = vtkDSMVolumeLook::GetFaces(face.Clipping);
       if (this->Mapper->GetCapSide() == vtkDSMVolumeMapper::ValuesAbove)
       {
         face.Least = isovalues.front();
@@ -98,32 +89,6 @@ void vtkDSMSceneVolume::AddCaps(const vtkDSMVolumeLook& look, const glm::dmat4& 
       else if (this->Mapper->GetCapSide() == vtkDSMVolumeMapper::ValuesBelow)
       {
         face.Most = isovalues.back();
-      }
-      scene.Objects.push_back(std::move(face));
-    }
-  }
-}
-
-void vtkDSMSceneVolume::AddCaps(
-  const vtkDSMVolumeLook& look, const glm::dmat4& dataToWorld, rt::Scene& scene)
-{
-  const auto& fields = this->Iso->GetFields();
-  vtkVolumeProperty* const property = vtkVolume::SafeDownCast(this->Prop)->GetProperty();
-  for (std::size_t lattice = 0; this->Mapper->GetCapping() && lattice < fields.size(); ++lattice)
-  {
-    if (fields[lattice])
-    {
-      rt::LatticeSlice face;
-      face.Field = this->GetField(lattice, dataToWorld);
-      face.ColorValues = face.Field.Voxels;
-      face.Clipping = look.GetClipRegion(dataToWorld);
-      face.Planes = GetFaces(face.Clipping);
-      face.Look.Surface.Lighting = false;
-      const bricks::ValueRange range = fields[lattice]->Hierarchy.GetRange();
-      face.Look.Colors = vtkDSMTranslation::ToOpaqueColors(property, range);
-      if (this->Mapper->GetCapOpacity())
-      {
-        vtkDSMTranslation::SetOpacity(property->GetScalarOpacity(0), face.Look.Colors);
       }
       scene.Objects.push_back(std::move(face));
     }

@@ -111,8 +111,7 @@ vtkDSMVolumeLook::MediumKey vtkDSMVolumeLook::GetMediumKey(
     { averaged[0], averaged[1] } };
 }
 
-vtkDSMVolumeLook::MediumMaker vtkDSMVolumeLook::GetMediumMaker(
-  const MediumKey& key, std::vector<std::string>& messages)
+vtkDSMVolumeLook::MediumMaker vtkDSMVolumeLook::GetMediumMaker(const MediumKey& key)
 {
   const auto& [first, last, cellLength, diagonal, property, time, mode, averaged] = key;
   switch (mode)
@@ -143,8 +142,6 @@ vtkDSMVolumeLook::MediumMaker vtkDSMVolumeLook::GetMediumMaker(
       };
     }
     default:
-      messages.push_back("The mapper does not draw volumes in the blend mode Slice, so nothing is "
-                         "drawn. Call SetBlendMode() with another one, or use VTK's own mapper.");
       return {};
   }
 }
@@ -362,4 +359,14 @@ rt::ClipRegion vtkDSMVolumeLook::GetClipRegion(const glm::dmat4& dataToWorld) co
     region.Boxes = boxes;
   }
   return region;
+}
+
+std::vector<rt::SectionPlane> vtkDSMVolumeLook::GetFaces(const rt::ClipRegion& region)
+{
+  std::vector<rt::SectionPlane> planes;
+  for (const rt::ClipRegion::HalfSpace& half : region.HalfSpaces)
+  {
+    planes.push_back({ half.Normal, half.Point });
+  }
+  return planes;
 }

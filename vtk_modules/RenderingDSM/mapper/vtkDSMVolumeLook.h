@@ -44,9 +44,8 @@ public:
   /// Makes the medium that has the values of a field, within a region.
   using MediumMaker =
     std::function<rt::SceneMedium(const rt::LatticeField&, const rt::ClipRegion&)>;
-  /// Of the blend mode. Expensive: keep it as long as the key is the same. Empty where nothing is drawn; the messages say
-  /// why.
-  static MediumMaker GetMediumMaker(const MediumKey& key, std::vector<std::string>& messages);
+  /// Of the blend mode. Expensive: keep it as long as the key is the same. Empty where the mode is none that is drawn.
+  static MediumMaker GetMediumMaker(const MediumKey& key);
   /// The arrays that are to be shown, as the mapper names them: that of the isosurfaces, and that of the colours, if any.
   /// Of slices alone the one that colors them, if any.
   std::vector<vtkDSMVolumeData::Choice> GetShown() const;
@@ -66,6 +65,8 @@ public:
   /// Sets how slices and faces of isosurfaces look, but for their colors.
   void SetSliceLook(bool isLit, rt::LatticeSlice& slice) const;
   rt::ClipRegion GetClipRegion(const glm::dmat4& dataToWorld) const;
+  /// The planes of a region's half spaces.
+  static std::vector<rt::SectionPlane> GetFaces(const rt::ClipRegion& region);
 
 private:
   bool HasColorArray() const;
