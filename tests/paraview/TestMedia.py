@@ -7,7 +7,22 @@ from dsm_testing import *
 load_plugin()
 view = create_view()
 source = image_source(
-    "image.SetExtent(piece)\nadd(image, np.cos(3.0 * distance(piece)), 'waves')\nadd(image, distance(piece), 'ways')\n"
+    """
+image.SetExtent(piece)
+add(image, np.cos(3.0 * distance(piece)), 'waves')
+add(image, distance(piece), 'ways')
+i, j, k = points(piece)
+near = 1.0 / (1.0 + distance(piece))
+for name, parts in {
+    'x2': [np.sin(i / 4.0) * np.sin(j / 5.0), near],
+    'x3': [i, j, k],
+    'x4bytes': [(10.0 * i).astype(np.uint8), (10.0 * j).astype(np.uint8), (10.0 * k).astype(np.uint8), (255.0 - 12.0 * distance(piece)).clip(0.0, 255.0).astype(np.uint8)],
+    'x4': [i / 24.0, j / 24.0, k / 24.0, near],
+}.items():
+    several = numpy_to_vtk(np.stack(parts, axis=1), deep=True)
+    several.SetName(name)
+    image.GetPointData().AddArray(several)
+"""
 )
 display = simple.Show(source, view)
 display.ColorArrayName = [None, ""]
@@ -107,6 +122,36 @@ display.UseSeparateOpacityArray = 0
 once = render(view)
 check(abs(once - twice).mean() < 0.1, f"the same array twice is once: {abs(once - twice).mean():.3f}")
 check(abs(once - far)[get_covered(once)].mean() > 5.0, "another array for opacity is another picture")
+
+# Components are colors and opacities: of two, the color function maps the first and the opacity function the second; of
+# four, the first three are the color. Volume has the unit distance 1 then, and takes bytes for 0 to 255.
+unit_distance = display.ScalarOpacityUnitDistance
+display.ScalarOpacityUnitDistance = 1.0
+for name, last in (("x2", 1.0), ("x4", 1.0), ("x4bytes", 255.0)):
+    simple.ColorBy(display, ("POINTS", name))
+    several = simple.GetOpacityTransferFunction(name)
+    several.Points = [0.0, 0.0, 0.5, 0.0, 0.1 * last, 0.0, 0.5, 0.0, last, 0.6, 0.5, 0.0]
+    magnitude = render(view)
+    display.MapScalars = 0
+    compare(f"Dependent.{name}", mean=1.0, largest=80)
+    direct = render(view)
+    check(abs(direct - magnitude).mean() > 0.3, f"{name}: components are another picture than the magnitude")
+    display.MapScalars, display.MultiComponentsMapping = 1, 1
+    check_equal(render(view), direct, f"{name}: Multi Components Mapping shows the same")
+    display.DSMCap = display.DSMClip = 1
+    capped = render(view, f"Dependent.{name}.Cap")
+    check(abs(capped - direct).mean() > 1.0, f"{name}: the cap is seen")
+    display.DSMCap = display.DSMClip = 0
+    display.MultiComponentsMapping = 0
+simple.ColorBy(display, ("POINTS", "x3"))
+display.MapScalars = 0
+with Messages() as messages:
+    nothing = render(view)
+    check(get_ranks() > 1 or "array 'x3' has 3, so nothing is drawn" in messages.text, "three components are refused")
+check(not get_covered(nothing).any(), "and not shown")
+display.MapScalars = 1
+simple.ColorBy(display, ("POINTS", "waves"))
+display.ScalarOpacityUnitDistance = unit_distance
 
 # Light.
 opacity.Points = [-1.0, 0.0, 0.5, 0.0, 0.2, 0.0, 0.5, 0.0, 1.0, 0.4, 0.5, 0.0]

@@ -223,6 +223,53 @@ void AddLit(Scenes& scenes)
     } });
 }
 
+/// Media of a group, and such as have their colors from other values.
+void AddComponents(Scenes& scenes)
+{
+  Recipe waves;
+  Recipe ball;
+  ball.Form = Recipe::Shape::Ball;
+  for (const bool isLit : { false, true })
+  {
+    scenes.push_back({ isLit ? "medium.Components.Lit" : "medium.Components",
+      [=](SceneStage& stage)
+      {
+        for (const int group : { 1, 2 })
+        {
+          const glm::dmat4 place =
+            Translate(group == 1 ? glm::dvec3(0.0) : glm::dvec3(0.5, 0.3, -0.2));
+          for (const Recipe& recipe : { waves, ball })
+          {
+            rt::LatticeMedium medium =
+              stage.CreateMedium(recipe, recipe.Form == ball.Form ? Everything : Fog, place);
+            medium.Group = group;
+            medium.Look.Shade = isLit;
+            medium.Look.Scattering = isLit && recipe.Form == ball.Form ? 0.5 : 0.0;
+            stage.Add(std::move(medium));
+          }
+        }
+        stage.Add(stage.CreateIsosurface(ball, { 80.0 }));
+        stage.World.Transport.Shadows = isLit;
+      } });
+  }
+  for (const bool areDirect : { false, true })
+  {
+    scenes.push_back({ areDirect ? "medium.Colors.Direct" : "medium.Colors.Mapped",
+      [=](SceneStage& stage)
+      {
+        Recipe colors = waves;
+        colors.Type = areDirect ? bricks::ScalarType::UInt32 : bricks::ScalarType::Float32;
+        rt::LatticeMedium medium = stage.CreateMedium(ball, Fog);
+        medium.ColorValues = stage.Publish(colors);
+        if (!areDirect)
+        {
+          medium.Colors = std::make_shared<const rt::ColorMap>(CreateColors(20.0, 80.0));
+        }
+        stage.Add(std::move(medium));
+      } });
+  }
+}
+
 /// What is shown of all values along a ray is one value.
 enum class Blending
 {
@@ -337,5 +384,6 @@ void AddMediumScenes(std::vector<RecordedScene>& scenes)
   AddShapes(scenes);
   AddMixtures(scenes);
   AddLit(scenes);
+  AddComponents(scenes);
   AddBlendings(scenes);
 }

@@ -29,7 +29,15 @@ vtkPVDSMVolumeRepresentation::~vtkPVDSMVolumeRepresentation() = default;
 int vtkPVDSMVolumeRepresentation::ProcessViewRequest(
   vtkInformationRequestKey* request, vtkInformation* inInfo, vtkInformation* outInfo)
 {
-  if (auto* const map = this->Mapper->GetLookupTable())
+  // As ParaView's Volume does.
+  const bool areDependent = !this->UseSeparateOpacityArray &&
+    (!this->Mapper->GetMapScalars() || this->MultiComponentsMapping);
+  this->Property->SetIndependentComponents(!areDependent);
+  if (areDependent)
+  {
+    this->Mapper->SetIsoComponent(0);
+  }
+  else if (auto* const map = this->Mapper->GetLookupTable())
   {
     const bool isOne = map->GetVectorMode() == vtkScalarsToColors::COMPONENT;
     this->Mapper->SetIsoComponent(isOne ? map->GetVectorComponent() : -1);
@@ -45,8 +53,6 @@ int vtkPVDSMVolumeRepresentation::ProcessViewRequest(
   this->Property->SetDiffuse(surface->GetDiffuse());
   this->Property->SetSpecular(surface->GetSpecular());
   this->Property->SetSpecularPower(surface->GetSpecularPower());
-  this->Property->SetIndependentComponents(
-    this->Mapper->GetMapScalars() && !this->MultiComponentsMapping);
   return this->Superclass::ProcessViewRequest(request, inInfo, outInfo);
 }
 

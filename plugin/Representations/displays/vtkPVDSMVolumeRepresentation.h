@@ -67,7 +67,8 @@ public:
   void SetBlendMode(int mode);
 
   /**
-   * Whether a second or fourth component is to be the opacity: there is a warning that it is not.
+   * Whether of two components the first is colored and the second gives the opacity, and of four the first three are the color
+   * and the fourth gives the opacity. So they do, too, where scalars are not mapped to colors.
    */
   void SetMultiComponentsMapping(bool maps);
 

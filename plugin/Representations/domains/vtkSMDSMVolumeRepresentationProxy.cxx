@@ -5,6 +5,8 @@
 
 #include "vtkDataObject.h"
 #include "vtkObjectFactory.h"
+#include "vtkPVXMLElement.h"
+#include "vtkPVXMLParser.h"
 #include "vtkSMArrayListDomain.h"
 #include "vtkSMPVRepresentationProxy.h"
 #include "vtkSMProperty.h"
@@ -17,6 +19,34 @@ vtkStandardNewMacro(vtkSMDSMVolumeRepresentationProxy);
 
 vtkSMDSMVolumeRepresentationProxy::vtkSMDSMVolumeRepresentationProxy() = default;
 vtkSMDSMVolumeRepresentationProxy::~vtkSMDSMVolumeRepresentationProxy() = default;
+
+namespace
+{
+
+/// ParaView's definition lets the panel show the property for Volume alone, by a hint that is the same for all datasets.
+void ShowForVolumes(vtkSMProperty* property)
+{
+  vtkPVXMLElement* const hints = property ? property->GetHints() : nullptr;
+  for (unsigned int number = 0; hints && number < hints->GetNumberOfNestedElements(); ++number)
+  {
+    vtkPVXMLElement* const hint = hints->GetNestedElement(number);
+    if (hint->GetAttributeOrEmpty("property") == std::string("Representation") &&
+      hint->GetAttributeOrEmpty("value") == std::string("Volume"))
+    {
+      const std::string one = "<PropertyWidgetDecorator type='GenericDecorator' mode='visibility' "
+                              "property='Representation' value=";
+      const auto both = vtkPVXMLParser::ParseXML(
+        ("<PropertyWidgetDecorator type='CompositeDecorator'><Expression type='or'>" + one +
+          "'Volume'/>" + one + "'DSM Volume'/></Expression></PropertyWidgetDecorator>")
+          .c_str());
+      hints->RemoveNestedElement(hint);
+      hints->AddNestedElement(both);
+      return;
+    }
+  }
+}
+
+} // namespace
 
 /// Volume's definition lets the panel show these to advanced users only, or Shade for Volume, too, and a property can name only
 /// one representation. Shade is in a group that is hidden for all others.
@@ -32,6 +62,7 @@ void vtkSMDSMVolumeRepresentationProxy::CreateVTKObjects()
   {
     shade->SetPanelVisibility("default");
   }
+  ShowForVolumes(display->GetProperty("MultiComponentsMapping"));
   for (const char* name : { "ScalarOpacityUnitDistance", "VolumeAnisotropy" })
   {
     if (vtkSMProperty* const property = display->GetProperty(name))

@@ -34,9 +34,11 @@ struct MediumOf
   std::shared_ptr<const TransferFunction> Function; ///< not null
   MediumLook Look;
   ClipRegion Clipping;
-  /// What the colors come from by `Colors`; then the function only says how dense the medium is. Both, or neither.
+  /// What the colors come from by `Colors`, or, without, are (PackedColor, whose opacities do not count); then the function
+  /// only says how dense the medium is. Null: the function has the colors.
   std::shared_ptr<const typename FieldType::Values> ColorValues = nullptr;
   std::shared_ptr<const ColorMap> Colors = nullptr;
+  int Group = 0; ///< MediumTracer::GetGroup; of up to four media
 
   /// All that a picture of it depends on.
   void AddTo(ObjectDigest& digest) const
@@ -51,6 +53,7 @@ struct MediumOf
       FieldType::AddTo(digest, *this->ColorValues);
     }
     digest.AddIf(this->Colors.get());
+    digest.Add(this->Group);
   }
 };
 
@@ -96,6 +99,8 @@ public:
           this->Medium.Field, *this->Medium.Function, beam, parts, some, light);
       });
   }
+
+  int GetGroup() const override { return this->Medium.Group; }
 
   bool IsDescribed() const override
   {
@@ -167,12 +172,24 @@ private:
           this->Medium.Field.GetPlace(points[first + static_cast<std::size_t>(index)]);
       }
       const RayMask all = ~RayMask{ 0 } >> (MaxRays - count);
-      double values[MaxRays];
-      this->Sampler.FindValues(*this->Medium.ColorValues, places, all, values);
+      glm::vec4 colors[MaxRays];
+      if (this->Medium.Colors)
+      {
+        double values[MaxRays];
+        this->Sampler.FindValues(*this->Medium.ColorValues, places, all, values);
+        ForEachRay(
+          all, [&](int index) { colors[index] = this->Medium.Colors->Map(values[index]); });
+      }
+      else
+      {
+        const RayMask found =
+          this->Sampler.FindColors(*this->Medium.ColorValues, places, all, colors);
+        ForEachRay(all & ~found, [&](int index) { colors[index] = glm::vec4(0.0f); });
+      }
       for (int index = 0; index < count; ++index)
       {
         Lanes& amount = pieces[first + static_cast<std::size_t>(index)]->Amount;
-        const glm::dvec3 color = amount[3] * glm::dvec3(this->Medium.Colors->Map(values[index]));
+        const glm::dvec3 color = amount[3] * glm::dvec3(colors[index]);
         amount = Lanes(color.x, color.y, color.z, amount[3]);
       }
     }

@@ -33,6 +33,10 @@ public:
   /// Whether the light of lamps is dimmed on its way through: else the medium is only for the eye.
   virtual bool DimsLamps() const { return true; }
 
+  /// Media of the same group, if it is not 0, are looks of one: where several are, what they emit adds up, and their depth is
+  /// the mean of their depths, weighted by these.
+  virtual int GetGroup() const { return 0; }
+
   /// Whether pieces have to be kept, and described.
   virtual bool IsDescribed() const { return false; }
   ///@{

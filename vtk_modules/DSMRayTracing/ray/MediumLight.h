@@ -20,7 +20,7 @@ namespace rt
 
 struct MediumLook;
 
-/// A part of a ray within a medium. Amounts of the same part in several media add up.
+/// A part of a ray within a medium. Amounts of the same part in several media add up, but for the depths of a group.
 struct MediumPiece
 {
   double Begin; ///< T
@@ -33,6 +33,7 @@ struct MediumPiece
   const MediumLook* Look = nullptr;
   /// Unit, in world space, along the gradient of the values; 0: there is none.
   glm::dvec3 Normal{ 0.0 };
+  int Group = 0; ///< MediumTracer::GetGroup
 
   double GetMiddle() const { return 0.5 * (this->Begin + this->End); }
 };
@@ -45,6 +46,8 @@ class MediumLight
 public:
   /// Rays that let less light through than this are as good as opaque: less than half a step of an 8-bit channel.
   static constexpr double Dark = 0.5 / 255.0;
+  /// The same of one medium in a group of up to four: the group has at least 2 / 3 of its depth.
+  static constexpr double DarkInGroup = 8e-5;
   /// Optical depth of pieces out of which nearly all gets that they emit.
   static constexpr double Thin = 1e-6;
   /// Optical depth of pieces that are joined, at most.

@@ -13,6 +13,56 @@ namespace rt
 namespace
 {
 
+/// What pieces of media hold in the same part of a ray.
+class PartSum
+{
+public:
+  void Clear()
+  {
+    this->Sum = Lanes(0.0);
+    this->Groups.clear();
+  }
+
+  void Add(const Lanes& amount, int group)
+  {
+    if (group == 0)
+    {
+      this->Sum = this->Sum + amount;
+      return;
+    }
+    auto known = std::find_if(this->Groups.begin(), this->Groups.end(),
+      [=](const Group& one) { return one.Number == group; });
+    if (known == this->Groups.end())
+    {
+      known = this->Groups.insert(known, { group, Lanes(0.0), 0.0 });
+    }
+    known->Sum = known->Sum + amount;
+    known->Squares += amount[3] * amount[3];
+  }
+
+  Lanes Get() const
+  {
+    Lanes all = this->Sum;
+    for (const Group& group : this->Groups)
+    {
+      const Lanes& sum = group.Sum;
+      all = sum[3] > 0.0 ? all + Lanes(sum[0], sum[1], sum[2], group.Squares / sum[3]) : all;
+    }
+    return all;
+  }
+
+private:
+  struct Group
+  {
+    int Number;
+    Lanes Sum;
+    double Squares; ///< of its depths
+  };
+
+  Lanes Sum{ 0.0 };
+  std::vector<Group> Groups;
+};
+
 /// Adds up what pieces of several media hold, which are in order in each medium but not between them: cuts them where
 /// any begins or ends.
 void MergePieces(std::vector<MediumPiece>& pieces, int ray, MediumLight& light)
@@ -28,6 +78,7 @@ void MergePieces(std::vector<MediumPiece>& pieces, int ray, MediumLight& light)
   std::sort(ends.begin(), ends.end());
   ends.erase(std::unique(ends.begin(), ends.end()), ends.end());
   std::vector<std::size_t> open; // pieces that the current part is in
+  PartSum sum;
   std::size_t next = 0;
   for (std::size_t end = 1; end < ends.size() && !light.IsDark(ray); ++end)
   {
@@ -39,13 +90,13 @@ void MergePieces(std::vector<MediumPiece>& pieces, int ray, MediumLight& light)
     open.erase(std::remove_if(open.begin(), open.end(),
                  [&](std::size_t number) { return pieces[number].End <= begin; }),
       open.end());
-    Lanes amount(0.0);
+    sum.Clear();
     for (const std::size_t number : open)
     {
       const MediumPiece& piece = pieces[number];
-      amount = amount + piece.Amount * Lanes((ends[end] - begin) / (piece.End - piece.Begin));
+      sum.Add(piece.Amount * Lanes((ends[end] - begin) / (piece.End - piece.Begin)), piece.Group);
     }
-    light.Add(ray, { begin, ends[end], amount });
+    light.Add(ray, { begin, ends[end], sum.Get() });
   }
 }
 
@@ -62,13 +113,14 @@ MediaMarcher::MediaMarcher(const SceneTracers& tracers)
     this->Media.size() > 1 || any([](const auto& medium) { return medium->IsDescribed(); });
 }
 
-void MediaMarcher::March(
-  const MediumTracer& medium, const Ray* rays, RayMask wanted, ObjectBeam* beam, MediumLight& light)
+void MediaMarcher::March(const MediumTracer& medium, bool isDescribed, const Ray* rays,
+  RayMask wanted, ObjectBeam* beam, MediumLight& light)
 {
-  const bool isDescribed = light.KeepsPieces && medium.IsDescribed();
   // Each ends where it is dark by itself: so are the others behind that.
   light.ClearSums(wanted);
-  light.DarkBelow = medium.HasLateExtinction() ? 0.0 : MediumLight::Dark;
+  light.DarkBelow = medium.HasLateExtinction() ? 0.0
+    : medium.GetGroup() != 0                   ? MediumLight::DarkInGroup
+                                               : MediumLight::Dark;
   light.JoinedLength = isDescribed ? medium.GetJoinedLength() : 0.0;
   ForEachRay(wanted, [&](int ray) { light.FirstPiece[ray] = light.Pieces[ray].size(); });
   medium.March(rays, wanted, beam, light);
@@ -77,6 +129,17 @@ void MediaMarcher::March(
     medium.Describe(rays, wanted, light);
   }
   light.DarkBelow = MediumLight::Dark;
+  if (medium.GetGroup() != 0)
+  {
+    ForEachRay(wanted,
+      [&](int ray)
+      {
+        for (std::size_t piece = light.FirstPiece[ray]; piece < light.Pieces[ray].size(); ++piece)
+        {
+          light.Pieces[ray][piece].Group = medium.GetGroup();
+        }
+      });
+  }
 }
 
 void MediaMarcher::Gather(
@@ -87,7 +150,8 @@ void MediaMarcher::Gather(
   for (std::size_t medium = 0; medium < this->Media.size(); ++medium)
   {
     ObjectBeam* const own = beam ? beam->Objects[this->FirstBeam + medium].get() : nullptr;
-    March(*this->Media[medium], rays, wanted, own, light);
+    const bool isDescribed = light.KeepsPieces && this->Media[medium]->IsDescribed();
+    March(*this->Media[medium], isDescribed, rays, wanted, own, light);
   }
 }
 
@@ -131,21 +195,38 @@ ObjectTracer::Brick MediaMarcher::FindBrick(const glm::dvec3& place) const
 void MediaMarcher::Attenuate(const Ray* rays, RayMask wanted, glm::dvec3* transmittances) const
 {
   const auto light = std::make_unique<MediumLight>();
+  std::vector<int> groups;
   for (const auto& medium : this->Media)
   {
-    if (!medium->DimsLamps())
+    const int group = medium->GetGroup();
+    if (!medium->DimsLamps() || std::find(groups.begin(), groups.end(), group) != groups.end())
     {
       continue;
     }
     light->Begin(rays, wanted);
-    light->KeepsPieces = medium->HasLateExtinction();
-    March(*medium, rays, wanted, nullptr, *light);
+    light->KeepsPieces = group != 0 || medium->HasLateExtinction();
+    for (const auto& other : this->Media)
+    {
+      if (other == medium || (group != 0 && other->GetGroup() == group))
+      {
+        March(*other, other->HasLateExtinction(), rays, wanted, nullptr, *light);
+      }
+    }
+    if (group != 0)
+    {
+      groups.push_back(group);
+    }
     if (std::exchange(light->KeepsPieces, false))
     {
       light->ClearSums(wanted);
       ForEachRay(wanted,
         [&](int ray)
         {
+          if (group != 0)
+          {
+            MergePieces(light->Pieces[ray], ray, *light);
+            return;
+          }
           for (const MediumPiece& piece : light->Pieces[ray])
           {
             light->Add(ray, piece);

@@ -14,7 +14,7 @@ namespace rt
 {
 
 /// Takes rays through all media of a scene at once: of media that overlap, what they emit and absorb at a place adds up,
-/// in whatever order they are. One for each worker.
+/// in whatever order they are, but for media of a group (MediumTracer::GetGroup). One for each worker.
 class MediaMarcher
 {
 public:
@@ -45,9 +45,9 @@ public:
   void Attenuate(const Ray* rays, RayMask wanted, glm::dvec3* transmittances) const;
 
 private:
-  /// Takes rays through one medium, up to its description.
-  static void March(const MediumTracer& medium, const Ray* rays, RayMask wanted, ObjectBeam* beam,
-    MediumLight& light);
+  /// Takes rays through one medium, up to its description, if it `isDescribed`.
+  static void March(const MediumTracer& medium, bool isDescribed, const Ray* rays, RayMask wanted,
+    ObjectBeam* beam, MediumLight& light);
   /// Takes rays through all, each by itself.
   void Gather(const Ray* rays, RayMask wanted, SceneBeam* beam, MediumLight& light) const;
   /// Sums up pieces that were kept.

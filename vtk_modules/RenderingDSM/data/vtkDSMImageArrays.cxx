@@ -67,6 +67,12 @@ vtkDSMImageArrays::vtkDSMImageArrays(
   { mine.insert(mine.end(), text.c_str(), text.c_str() + text.size() + 1); };
   const auto appendAll = [&append](vtkDataSetAttributes* attributes, const char* place)
   {
+    if (vtkDataArray* active = attributes->GetScalars())
+    {
+      append(place);
+      append("");
+      append(std::to_string(active->GetNumberOfComponents()));
+    }
     for (int index = 0; index < attributes->GetNumberOfArrays(); ++index)
     {
       vtkDataArray* array = attributes->GetArray(index);
@@ -96,13 +102,11 @@ vtkDSMImageArrays::vtkDSMImageArrays(
 
 vtkDSMImageArrays::Choice vtkDSMImageArrays::Normalize(const Choice& choice) const
 {
-  const auto& arrays = this->Components[choice.OnCells ? 1 : 0];
-  const auto known = arrays.find(choice.Name);
-  if (known == arrays.end() || choice.Component == vtkDSMImagePiece::Color)
+  const int components = this->CountComponents(choice);
+  if (components == 0 || choice.Component == vtkDSMImagePiece::Color)
   {
     return choice;
   }
-  const int components = known->second;
   if (components == 1)
   {
     return { choice.Name, 0, choice.OnCells };
@@ -113,11 +117,17 @@ vtkDSMImageArrays::Choice vtkDSMImageArrays::Normalize(const Choice& choice) con
     choice.OnCells };
 }
 
-bool vtkDSMImageArrays::HasOpacity(const Choice& choice) const
+int vtkDSMImageArrays::CountComponents(const Choice& choice) const
 {
   const auto& arrays = this->Components[choice.OnCells ? 1 : 0];
   const auto known = arrays.find(choice.Name);
-  return known != arrays.end() && known->second % 2 == 0;
+  return known != arrays.end() ? known->second : 0;
+}
+
+bool vtkDSMImageArrays::HasOpacity(const Choice& choice) const
+{
+  const int components = this->CountComponents(choice);
+  return components > 0 && components % 2 == 0;
 }
 
 void vtkDSMImageArrays::Refuse(
@@ -126,7 +136,7 @@ void vtkDSMImageArrays::Refuse(
   std::string list;
   for (const auto& [name, components] : this->Components[choice.OnCells ? 1 : 0])
   {
-    list += (list.empty() ? "'" : ", '") + name + "'";
+    list += name.empty() ? "" : (list.empty() ? "'" : ", '") + name + "'";
   }
   const std::string array = "The " + purpose + " '" + choice.Name + "'";
   const std::string remedy = !list.empty() ? " Choose one of " + list + "."

@@ -73,6 +73,8 @@ public:
   /// The choice with its component made definite: an array of one component has but one. The same on
   /// every rank, also where there is no data.
   Choice Normalize(const Choice& choice) const;
+  /// How many components the array has; 0 where there is none. The same on every rank.
+  int CountComponents(const Choice& choice) const;
   /// Whether what is chosen as colours may have opacities. The same on every rank.
   bool HasOpacity(const Choice& choice) const;
   /// Throws a dsm::Error (Missing, where it is that) that says why the choice is not usable, and what is. `infos`: of all ranks' images; `purpose` names
@@ -81,7 +83,7 @@ public:
     const Choice& choice, const std::string& purpose, const std::vector<Info>& infos) const;
 
 private:
-  /// All ranks' numeric ones, of points and of cells: number of components.
+  /// All ranks' numeric ones, of points and of cells, and the active scalars, of no name: number of components.
   std::map<std::string, int> Components[2];
 };
 

@@ -23,7 +23,7 @@
 #include <set>
 
 vtkDSMVolumeData::vtkDSMVolumeData(std::shared_ptr<vtkDSMRankGroup> group, vtkDataObject* data,
-  const std::vector<Choice>& shown, const vtkDSMBlockLooks& looks)
+  const Chooser& choose, const vtkDSMBlockLooks& looks)
   : Group(std::move(group))
 {
   dsm::Messenger& messenger = this->Group->GetMessenger();
@@ -45,7 +45,7 @@ vtkDSMVolumeData::vtkDSMVolumeData(std::shared_ptr<vtkDSMRankGroup> group, vtkDa
   this->Arrays = vtkDSMImageArrays(messenger, this->Images);
   messenger.RunTogether(
     "Joining the volume's pieces", [&] { this->Plan = bricks::LatticePlan(this->Pieces); });
-  this->SeparateBlocks(shown);
+  this->SeparateBlocks(choose(this->Arrays));
 }
 
 void vtkDSMVolumeData::SeparateBlocks(const std::vector<Choice>& shown)
@@ -105,18 +105,6 @@ vtkImageData* vtkDSMVolumeData::FindOwn(const bricks::LatticePlan::Member& membe
   const int own = member.Piece - this->FirstOwnPiece;
   return own >= 0 && own < static_cast<int>(this->Images.size()) ? this->Images[own].Get()
                                                                  : nullptr;
-}
-
-int vtkDSMVolumeData::CountComponents(const Choice& choice) const
-{
-  int most = 0;
-  for (vtkImageData* image : this->Images)
-  {
-    vtkDSMImageArrays::Info info;
-    vtkDSMImageArrays::Find(image, choice, info);
-    most = std::max(most, static_cast<int>(info.Components));
-  }
-  return most;
 }
 
 std::uint64_t vtkDSMVolumeData::HashPoints(const bricks::LatticePlan::Member& member,

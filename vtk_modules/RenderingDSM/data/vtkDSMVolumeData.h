@@ -69,11 +69,14 @@ public:
     std::vector<std::vector<CoarserLattice>> Levels;
   };
 
+  /// Which arrays are to be shown, of those that there are.
+  using Chooser = std::function<std::vector<Choice>(const vtkDSMImageArrays&)>;
+
   /// Collective. `data` is this rank's part: vtkImageData, a composite dataset of images, or null; `looks` are of its blocks.
-  /// Blocks that continue one another are taken for one volume, where the arrays that are to be shown agree at the points
+  /// Blocks that continue one another are taken for one volume, where the arrays that `choose` names agree at the points
   /// that the blocks have in common.
   vtkDSMVolumeData(std::shared_ptr<vtkDSMRankGroup> group, vtkDataObject* data,
-    const std::vector<Choice>& shown = {}, const vtkDSMBlockLooks& looks = {});
+    const Chooser& choose, const vtkDSMBlockLooks& looks);
   ~vtkDSMVolumeData();
 
   /// Whether it depends on the arrays which blocks are one volume.
@@ -92,8 +95,6 @@ public:
   /// Of all ranks' pieces of a lattice.
   std::vector<Block> GetBlocks(std::size_t lattice) const;
   const vtkDSMImageArrays& GetArrays() const { return this->Arrays; }
-  /// Local. Of an array, in this rank's part; 0 where that does not have it.
-  int CountComponents(const Choice& choice) const;
   /// Local, reads the data. Of all that this rank's part of a field depends on: equal only where Publish would make
   /// the same again.
   std::uint64_t HashContent(const Choice& choice) const;

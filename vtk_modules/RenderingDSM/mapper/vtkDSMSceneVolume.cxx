@@ -60,7 +60,7 @@ bool AreAlike(const bricks::ValueRange& one, const bricks::ValueRange& other)
 bool vtkDSMSceneVolume::HasNewData()
 {
   return !this->Taken || this->HasOtherData() || this->Mapper->GetBlockLooks() != this->SeenLooks ||
-    (this->Data && this->Data->HasSeams() && !(this->GetLook().GetShown() == this->SeenShown));
+    (this->Data && this->Data->HasSeams() && !(this->GetShown() == this->SeenShown));
 }
 
 bool vtkDSMSceneVolume::HasOtherData() const
@@ -80,11 +80,11 @@ bool vtkDSMSceneVolume::SharesBlocks(const vtkDSMSceneMember& other) const
   const auto* volume = dynamic_cast<const vtkDSMSceneVolume*>(&other);
   const auto has = [&](const std::shared_ptr<Published>& mine)
   {
-    const auto is = [&](const std::shared_ptr<Published>& one)
-    { return one && one->Publication == mine->Publication; };
-    return mine && mine->Publication && (is(volume->Iso) || is(volume->Color));
+    return mine->Publication &&
+      std::any_of(volume->Arrays.begin(), volume->Arrays.end(),
+        [&](const auto& one) { return one->Publication == mine->Publication; });
   };
-  return volume && (has(this->Iso) || has(this->Color));
+  return volume && std::any_of(this->Arrays.begin(), this->Arrays.end(), has);
 }
 
 bool vtkDSMSceneVolume::NeedsRanks(const vtkDSMRankGroup& group, bool wantsCoarser) const
@@ -93,27 +93,34 @@ bool vtkDSMSceneVolume::NeedsRanks(const vtkDSMRankGroup& group, bool wantsCoars
   {
     return false;
   }
-  const auto is = [&](const std::shared_ptr<Published>& known,
-                    const vtkDSMVolumeData::Choice& shown) {
-    return known && known->IsOf(this->Data->GetArrays().Normalize(shown), group.GetRetryVersion());
-  };
-  const auto lacksLevels = [&](const std::shared_ptr<Published>& known)
-  { return known && known->Publication && wantsCoarser != static_cast<bool>(known->Coarser); };
-  const std::vector<vtkDSMVolumeData::Choice> shown = this->GetLook().GetShown();
-  const bool isColored = shown.size() > 1;
-  const bool sharesColor = isColored && is(this->Iso, shown.back());
-  const bool hasColor = sharesColor ? this->Color == this->Iso
-    : isColored                     ? is(this->Color, shown.back())
-                                    : !this->Color;
-  return !is(this->Iso, shown.front()) || !hasColor || lacksLevels(this->Iso) ||
-    lacksLevels(this->Color) || this->LacksSuggestion();
+  const std::vector<vtkDSMVolumeData::Choice> shown = this->GetShown();
+  if (shown.size() != this->Arrays.size() || this->LacksSuggestion())
+  {
+    return true;
+  }
+  for (std::size_t number = 0; number < shown.size(); ++number)
+  {
+    const Published& known = *this->Arrays[number];
+    const vtkDSMVolumeData::Choice choice = this->Data->GetArrays().Normalize(shown[number]);
+    if (!known.IsOf(choice, group.GetRetryVersion()) ||
+      (known.Publication && wantsCoarser != static_cast<bool>(known.Coarser)))
+    {
+      return true;
+    }
+  }
+  return false;
+}
+
+std::vector<vtkDSMVolumeData::Choice> vtkDSMSceneVolume::GetShown() const
+{
+  return this->GetLook().GetShown(this->Data->GetArrays());
 }
 
 /// What was a medium, or slices, before has none.
 bool vtkDSMSceneVolume::LacksSuggestion() const
 {
-  return this->Iso && this->GetLook().HasIsosurfaces() &&
-    !(this->SuggestedFor == this->Iso->Choice);
+  return this->GetIso() && this->GetLook().HasIsosurfaces() &&
+    !(this->SuggestedFor == this->GetIso()->Choice);
 }
 
 bool vtkDSMSceneVolume::Published::IsOf(
@@ -130,8 +137,7 @@ const vtkDSMVolumeData::Fields& vtkDSMSceneVolume::Published::GetFields() const
 
 void vtkDSMSceneVolume::GiveUpBlocks()
 {
-  this->Color.reset();
-  this->Iso.reset();
+  this->Arrays.clear();
   this->Stale.clear();
   this->Taken = false;
 }
@@ -193,13 +199,16 @@ void vtkDSMSceneVolume::TakeData(const std::shared_ptr<vtkDSMRankGroup>& group)
   this->SeenData = mapper->GetDataObjectInput();
   this->SeenTime = GetDataTime(mapper->GetDataObjectInput());
   this->SeenLooks = mapper->GetBlockLooks();
-  this->SeenShown = this->GetLook().GetShown();
+  this->SeenShown.clear();
   this->Taken = true;
   this->Reported.clear();
   try
   {
     this->Data = std::make_unique<vtkDSMVolumeData>(
-      group, mapper->GetDataObjectInput(), this->SeenShown, this->SeenLooks);
+      group, mapper->GetDataObjectInput(),
+      [this](const vtkDSMImageArrays& arrays)
+      { return this->SeenShown = this->GetLook().GetShown(arrays); },
+      this->SeenLooks);
     double bounds[6];
     this->Data->GetBounds(bounds);
     mapper->SetGlobalBounds(bounds);
@@ -209,8 +218,7 @@ void vtkDSMSceneVolume::TakeData(const std::shared_ptr<vtkDSMRankGroup>& group)
   {
     this->Data.reset();
     this->DataFailure = error.what();
-    this->Color.reset();
-    this->Iso.reset();
+    this->Arrays.clear();
     this->Stale.clear();
   }
 }
@@ -239,46 +247,43 @@ void vtkDSMSceneVolume::KeepUnchanged(dsm::Messenger& messenger)
 {
   struct Flags
   {
-    std::uint8_t SameColor = 0;
-    std::uint8_t SameIso = 0;
-    std::uint8_t FreeColor = 0; ///< may be taken over
-    std::uint8_t FreeIso = 0;
+    std::uint8_t Same[MostArrays] = {};
+    std::uint8_t Free[MostArrays] = {}; ///< may be taken over
   };
   Flags mine;
   messenger.RunTogether("Looking for changes",
     [&]
     {
-      const auto isSame = [this](const std::shared_ptr<Published>& known)
+      for (std::size_t number = 0; number < this->Arrays.size(); ++number)
       {
-        return known && known->Publication &&
-          known->Publication->Content == this->Data->HashContent(known->Choice);
-      };
-      mine.SameIso = isSame(this->Iso);
-      mine.SameColor = this->Color == this->Iso ? mine.SameIso : isSame(this->Color);
-      const auto isFree = [this](const std::shared_ptr<Published>& known)
-      { return known && this->Data->MayTakeOver(known->Publication); };
-      mine.FreeIso = isFree(this->Iso);
-      mine.FreeColor = isFree(this->Color);
+        const std::shared_ptr<Published>& known = this->Arrays[number];
+        const auto first = static_cast<std::size_t>(
+          std::find(this->Arrays.begin(), this->Arrays.end(), known) - this->Arrays.begin());
+        mine.Same[number] = first < number ? mine.Same[first]
+                                           : known->Publication &&
+            known->Publication->Content == this->Data->HashContent(known->Choice);
+        mine.Free[number] = this->Data->MayTakeOver(known->Publication);
+      }
     });
   const auto all = messenger.AllGatherValue(mine);
-  const auto everywhere = [&](std::uint8_t Flags::*flag)
-  { return std::all_of(all.begin(), all.end(), [=](const Flags& one) { return one.*flag != 0; }); };
-  const auto leave = [&](std::shared_ptr<Published>& known, std::uint8_t Flags::*free)
+  std::vector<std::shared_ptr<Published>> same;
+  for (std::size_t number = 0; number < this->Arrays.size(); ++number)
   {
-    if (everywhere(free))
+    const auto everywhere = [&](auto Flags::*flags)
     {
-      this->Stale.push_back(known);
+      return std::all_of(
+        all.begin(), all.end(), [=](const Flags& one) { return (one.*flags)[number] != 0; });
+    };
+    if (everywhere(&Flags::Same))
+    {
+      same.push_back(this->Arrays[number]);
     }
-    known.reset();
-  };
-  if (!everywhere(&Flags::SameColor))
-  {
-    leave(this->Color, &Flags::FreeColor);
+    else if (everywhere(&Flags::Free))
+    {
+      this->Stale.push_back(this->Arrays[number]);
+    }
   }
-  if (!everywhere(&Flags::SameIso))
-  {
-    leave(this->Iso, &Flags::FreeIso);
-  }
+  this->Arrays = std::move(same);
 }
 
 void vtkDSMSceneVolume::Update(const std::shared_ptr<vtkDSMRankGroup>& group, bool newData)
@@ -295,45 +300,45 @@ void vtkDSMSceneVolume::Update(const std::shared_ptr<vtkDSMRankGroup>& group, bo
     this->Messages.push_back(this->DataFailure);
     return;
   }
-  const std::shared_ptr<Published> oldIso = this->Iso;
-  const std::shared_ptr<Published> oldColor = this->Color;
-  const unsigned version = group->GetRetryVersion();
-  const std::vector<vtkDSMVolumeData::Choice> shown = this->GetLook().GetShown();
+  // Those that are shown no longer leave after their successors have come.
+  std::vector<std::shared_ptr<Published>> known = std::move(this->Arrays);
+  this->Arrays.clear();
+  const std::shared_ptr<Published> oldIso = known.empty() ? nullptr : known.front();
   const bool hasIsosurfaces = this->GetLook().HasIsosurfaces();
   const char* const purpose = hasIsosurfaces ? "isosurface array"
     : this->GetLook().IsMedium()             ? "volume's array"
                                              : "array of the slices";
-  this->Iso = this->Require(shown.front(), purpose, version, { oldIso, oldColor });
+  for (const vtkDSMVolumeData::Choice& choice : this->GetShown())
+  {
+    const bool isOfColors = !this->Arrays.empty() && !this->HasSeveralMedia();
+    this->Arrays.push_back(this->Require(
+      choice, isOfColors ? "colour array" : purpose, group->GetRetryVersion(), known));
+    known.push_back(this->Arrays.back());
+  }
   if (this->GetLook().TakesPointsForCells())
   {
     this->Messages.push_back(
       "The scalar mode asks for cell data, but isosurfaces and volumes need values at the "
       "points; those are taken. Use vtkCellDataToPointData.");
   }
-  if (this->LacksSuggestion() || (this->Iso != oldIso && hasIsosurfaces))
+  if (this->LacksSuggestion() || (this->GetIso() != oldIso && hasIsosurfaces))
   {
     this->SuggestIsovalue(group->GetMessenger());
-  }
-  this->Color.reset();
-  if (shown.size() > 1)
-  {
-    this->Color =
-      this->Require(shown.back(), "colour array", version, { this->Iso, oldIso, oldColor });
   }
   this->Stale.clear();
   mapper->SetSurfaceTest(this->MakeSurfaceTest());
   const bool isConfigured = this->SettingsVersion != group->GetSettingsVersion();
   this->SettingsVersion = group->GetSettingsVersion();
-  for (const auto& published : { this->Iso, this->Color })
+  for (const auto& published : this->Arrays)
   {
-    if (published && !published->Failure.empty())
+    if (!published->Failure.empty())
     {
       if (isConfigured && !published->IsMissing)
       {
         this->Reported.clear(); // whoever has changed the settings shall know that it did not help
       }
       // Without its colours a surface is there, and ParaView's own says nothing then.
-      const bool isShown = published->IsMissing && published != this->Iso;
+      const bool isShown = published->IsMissing && published != this->GetIso();
       (isShown ? this->Warnings : this->Messages).push_back(published->Failure);
     }
   }
@@ -350,7 +355,7 @@ vtkDSMVolumeMapper::SurfaceTest vtkDSMSceneVolume::MakeSurfaceTest() const
   return [toIndex = std::move(toIndex), mapper = this->Mapper.GetPointer(), data = this->SeenData,
            time = this->SeenTime, array = this->Mapper->GetIsoArray(),
            component = this->Mapper->GetIsoComponent(),
-           weak = std::weak_ptr<const Published>(this->Iso)](
+           weak = std::weak_ptr<const Published>(this->GetIso())](
            const double bounds[6], std::vector<double> isovalues)
   {
     vtkDataObject* now = mapper->GetDataObjectInput();
@@ -376,9 +381,9 @@ vtkDSMVolumeMapper::SurfaceTest vtkDSMSceneVolume::MakeSurfaceTest() const
 
 void vtkDSMSceneVolume::TakeCoarser(const std::shared_ptr<vtkDSMRankGroup>&, bool wanted)
 {
-  for (const auto& published : { this->Iso, this->Color })
+  for (const auto& published : this->Arrays)
   {
-    if (!this->Data || !published || !published->Publication)
+    if (!this->Data || !published->Publication)
     {
       continue;
     }
@@ -394,7 +399,7 @@ void vtkDSMSceneVolume::TakeCoarser(const std::shared_ptr<vtkDSMRankGroup>&, boo
         vtkDSMVolumeMapper* mapper = this->Mapper;
         vtkDSMProgress::Begin(mapper);
         published->Coarser = this->Data->PublishCoarser(*published->Publication, published->Choice,
-          published == this->Iso ? "isosurface array" : "colour array",
+          published == this->GetIso() ? "isosurface array" : "colour array",
           [mapper](double part) { vtkDSMProgress::Tell(mapper, part); });
       }
       catch (const dsm::Error& error)
@@ -413,26 +418,26 @@ void vtkDSMSceneVolume::TakeCoarser(const std::shared_ptr<vtkDSMRankGroup>&, boo
 
 int vtkDSMSceneVolume::CountCoarser() const
 {
-  std::size_t levels = this->Iso && this->Iso->Coarser ? this->Iso->Coarser->Levels.size() : 0;
-  if (this->Color && !this->Color->GetFields().empty())
+  std::size_t levels = this->GetIso() ? this->GetIso()->CountCoarser() : 0;
+  for (const auto& published : this->Arrays)
   {
-    levels = std::min(levels, this->Color->Coarser ? this->Color->Coarser->Levels.size() : 0);
+    levels = published->GetFields().empty() ? levels : std::min(levels, published->CountCoarser());
   }
   return static_cast<int>(levels);
 }
 
 void vtkDSMSceneVolume::SuggestIsovalue(dsm::Messenger& messenger)
 {
-  const bricks::ValueRange range = this->Iso->GetRange();
+  const bricks::ValueRange range = this->GetIso()->GetRange();
   const bool isOther =
     !this->Suggested || !range.MayHold(*this->Suggested) || !AreAlike(range, this->SuggestedFrom);
   // Bricks that do not fit the memory at present tell nothing of their values.
   const bool isKnown = range.First <= range.Last;
-  if (!(this->SuggestedFor == this->Iso->Choice) || (isKnown && isOther))
+  if (!(this->SuggestedFor == this->GetIso()->Choice) || (isKnown && isOther))
   {
-    this->SuggestedFor = this->Iso->Choice;
+    this->SuggestedFor = this->GetIso()->Choice;
     this->SuggestedFrom = range;
-    this->Suggested = bricks::FindFirstIsovalue(this->Iso->GetFields(), messenger);
+    this->Suggested = bricks::FindFirstIsovalue(this->GetIso()->GetFields(), messenger);
   }
   this->Mapper->SetSuggestedIsoValue(this->Suggested.value_or(vtkMath::Nan()));
 }
@@ -440,26 +445,25 @@ void vtkDSMSceneVolume::SuggestIsovalue(dsm::Messenger& messenger)
 std::shared_ptr<const bricks::VoxelField> vtkDSMSceneVolume::GetColorValues(
   std::size_t lattice) const
 {
-  const std::shared_ptr<Published>& color = this->Color ? this->Color : this->Iso;
+  const Published& color = this->GetColoring();
   const auto level = static_cast<std::size_t>(std::min(this->GetCoarser(), this->CountCoarser()));
-  return level > 0 ? color->Coarser->Levels[level - 1][lattice].Field : color->GetFields()[lattice];
+  return level > 0 ? color.Coarser->Levels[level - 1][lattice].Field : color.GetFields()[lattice];
 }
 
 void vtkDSMSceneVolume::SetColors(
   std::size_t lattice, std::shared_ptr<const bricks::VoxelField>& values, rt::IsosurfaceLook& look)
 {
   using Coloring = rt::IsosurfaceLook::Coloring;
-  // Slices alone are colored by the array that they are of.
-  const std::shared_ptr<Published>& color = this->Color ? this->Color : this->Iso;
+  const vtkDSMVolumeData::Choice& choice = this->GetColoring().Choice;
   values = this->GetColorValues(lattice);
   if (this->Mapper->GetLookupTable())
   {
     look.Colors = *this->SampleColors(this->Mapper->GetLookupTable());
   }
-  if (color->Choice.Component == vtkDSMImagePiece::Color)
+  if (choice.Component == vtkDSMImagePiece::Color)
   {
     look.ColoredBy =
-      this->Data->GetArrays().HasOpacity(color->Choice) ? Coloring::Colors : Coloring::OpaqueColors;
+      this->Data->GetArrays().HasOpacity(choice) ? Coloring::Colors : Coloring::OpaqueColors;
   }
 }
 
@@ -496,26 +500,26 @@ std::shared_ptr<const rt::BlockLooks> vtkDSMSceneVolume::CreateBlockLooks(std::s
 }
 
 rt::LatticeField vtkDSMSceneVolume::GetField(
-  std::size_t lattice, const glm::dmat4& dataToWorld) const
+  const Published& array, std::size_t lattice, const glm::dmat4& dataToWorld) const
 {
   rt::LatticeField field;
   const auto level = static_cast<std::size_t>(std::min(this->GetCoarser(), this->CountCoarser()));
   const glm::dmat4 latticeToWorld = dataToWorld * this->Data->GetIndexToWorld(lattice);
   if (level > 0)
   {
-    const auto& coarser = this->Iso->Coarser->Levels[level - 1][lattice];
+    const auto& coarser = array.Coarser->Levels[level - 1][lattice];
     field.Voxels = coarser.Field;
     field.SetIndexToWorld(latticeToWorld * coarser.ToLattice);
     return field;
   }
-  field.Voxels = this->Iso->GetFields()[lattice];
+  field.Voxels = array.GetFields()[lattice];
   field.SetIndexToWorld(latticeToWorld);
   return field;
 }
 
 void vtkDSMSceneVolume::AddTo(rt::Scene& scene)
 {
-  if (!this->Data || !this->Iso)
+  if (!this->Data || !this->GetIso())
   {
     return;
   }
@@ -537,13 +541,14 @@ void vtkDSMSceneVolume::AddTo(rt::Scene& scene)
   }
   const std::vector<double> isovalues = look.GetIsovalues(this->Suggested, this->Messages);
   if (!look.IsLikeRayCastMapper() && this->Mapper->GetNumberOfIsoValues() == 0 &&
-    this->Mapper->GetAutomaticIsoValue() && !this->Suggested && !this->Iso->GetFields().empty())
+    this->Mapper->GetAutomaticIsoValue() && !this->Suggested &&
+    !this->GetIso()->GetFields().empty())
   {
-    this->Messages.push_back("The isosurface array '" + this->Iso->Choice.Name +
+    this->Messages.push_back("The isosurface array '" + this->GetIso()->Choice.Name +
       "' has the same value everywhere, or none, so there is no surface to show. Choose another "
       "array.");
   }
-  if (isovalues.empty() || this->Iso->GetFields().empty())
+  if (isovalues.empty() || this->GetIso()->GetFields().empty())
   {
     return;
   }
@@ -561,10 +566,10 @@ void vtkDSMSceneVolume::AddTo(rt::Scene& scene)
   {
     groups.push_back(isovalues);
   }
-  const bool colored = this->Color && !this->Color->GetFields().empty();
+  const std::shared_ptr<Published> color = this->GetColor();
   for (std::size_t lattice = 0; lattice < this->Data->GetNumberOfLattices(); ++lattice)
   {
-    if (!this->Iso->GetFields()[lattice])
+    if (!this->GetIso()->GetFields()[lattice])
     {
       continue;
     }
@@ -573,11 +578,11 @@ void vtkDSMSceneVolume::AddTo(rt::Scene& scene)
     {
       rt::LatticeIsosurface object;
       object.Look.Blocks = blocks;
-      object.Field = this->GetField(lattice, dataToWorld);
+      object.Field = this->GetField(*this->GetIso(), lattice, dataToWorld);
       object.Isovalues = group;
       look.SetMaterials(group.front(), object.Look);
       object.Clipping = clipping;
-      if (colored && this->Color->GetFields()[lattice])
+      if (color && !color->GetFields().empty() && color->GetFields()[lattice])
       {
         this->SetColors(lattice, object.ColorValues, object.Look);
       }

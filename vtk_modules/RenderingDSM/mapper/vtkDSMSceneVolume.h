@@ -28,11 +28,11 @@ public:
   bool IsOutdated() override;
   bool SharesBlocks(const vtkDSMSceneMember& other) const override;
   void GiveUpBlocks() override;
-  bool HasBlocks() const override { return this->Iso || this->Color; }
+  bool HasBlocks() const override { return !this->Arrays.empty(); }
   void Update(const std::shared_ptr<vtkDSMRankGroup>& group, bool newData) override;
   void TakeCoarser(const std::shared_ptr<vtkDSMRankGroup>& group, bool wanted) override;
   int CountCoarser() const override;
-  /// One object, or medium, for each of the volume's lattices.
+  /// One object, or medium, for each of the volume's lattices, and of the components that are shown at once.
   void AddTo(rt::Scene& scene) override;
 
 private:
@@ -52,9 +52,13 @@ private:
     bool IsOf(const vtkDSMVolumeData::Choice& choice, unsigned retryVersion) const;
     /// Empty when it failed.
     const vtkDSMVolumeData::Fields& GetFields() const;
+    std::size_t CountCoarser() const { return this->Coarser ? this->Coarser->Levels.size() : 0; }
     /// Of all values; without any, its First is greater than its Last.
     bricks::ValueRange GetRange() const;
   };
+
+  /// That are shown at once: components of an array, at most.
+  static constexpr std::size_t MostArrays = 4;
 
   /// Collective. Takes in the mapper's dataset; bricks of arrays that hold what they held are kept.
   void TakeData(const std::shared_ptr<vtkDSMRankGroup>& group);
@@ -71,13 +75,39 @@ private:
   void SuggestIsovalue(dsm::Messenger& messenger);
   bool LacksSuggestion() const;
   vtkDSMVolumeLook GetLook() const { return { this->Mapper, this->Prop }; }
+  /// Of what is there: see vtkDSMVolumeLook::GetShown.
+  std::vector<vtkDSMVolumeData::Choice> GetShown() const;
+  ///@{
+  /// The array of the isosurfaces, slices, or of the medium's opacities; the one that colors these; null where there is none.
+  std::shared_ptr<Published> GetIso() const
+  {
+    return this->Arrays.empty() ? nullptr : this->Arrays.front();
+  }
+  std::shared_ptr<Published> GetColor() const
+  {
+    return this->Arrays.size() > 1 ? this->Arrays[1] : nullptr;
+  }
+  ///@}
+  /// What has the values that colors are of: slices alone, and most media, are colored by the array that they are of.
+  const Published& GetColoring() const { return *this->Arrays[this->Arrays.size() > 1 ? 1 : 0]; }
   /// At the level of detail that is shown.
-  rt::LatticeField GetField(std::size_t lattice, const glm::dmat4& dataToWorld) const;
-  /// One medium for each of the volume's lattices.
+  rt::LatticeField GetField(
+    const Published& array, std::size_t lattice, const glm::dmat4& dataToWorld) const;
+  /// Whether each of the arrays is a medium of its own.
+  bool HasSeveralMedia() const
+  {
+    return this->GetLook().GetComponents(this->Data->GetArrays()) ==
+      vtkDSMVolumeLook::Components::Independent;
+  }
   void AddMedia(const vtkDSMVolumeLook& look, rt::Scene& scene);
+  /// One medium, of one of the arrays, for each of the volume's lattices. `groups`: of the lattices' media; 0: none yet.
+  void AddMedium(const vtkDSMVolumeLook& look, std::size_t number, const glm::dmat4& dataToWorld,
+    std::vector<int>& groups, rt::Scene& scene);
   /// Whether a lattice's medium has the colors of another array than that of its opacities.
   bool HasOwnColors(std::size_t lattice) const;
-  /// The medium's colors, with the opacities of the same values or without.
+  /// Whether that array's values are colors.
+  bool HasDirectColors() const;
+  /// The medium's colors, with the opacities of the same values or without; of the first one of several.
   std::shared_ptr<const rt::ColorMap> GetMediumColors(bool hasOpacity);
   /// Of the level of detail that is shown.
   std::shared_ptr<const bricks::VoxelField> GetColorValues(std::size_t lattice) const;
@@ -103,17 +133,18 @@ private:
   std::vector<vtkDSMVolumeData::Choice> SeenShown;
   bool Taken = false;
   std::unique_ptr<vtkDSMVolumeData> Data;
-  std::shared_ptr<Published> Iso;
-  std::shared_ptr<Published> Color;
+  /// What became of the arrays of GetShown, in their order. May be the same.
+  std::vector<std::shared_ptr<Published>> Arrays;
   /// Of values that were there before, during Update.
   std::vector<std::shared_ptr<Published>> Stale;
   std::optional<double> Suggested; ///< isovalue
   vtkDSMVolumeData::Choice SuggestedFor;
   bricks::ValueRange SuggestedFrom{}; ///< of the values that suggested it
-  vtkDSMKept<vtkDSMVolumeLook::MediumKey, vtkDSMVolumeLook::MediumMaker> MakeMedium;
+  /// One for each of the arrays.
+  vtkDSMKept<vtkDSMVolumeLook::MediumKey, vtkDSMVolumeLook::MediumMaker> MakeMedium[MostArrays];
   using KeptColors = std::shared_ptr<const rt::ColorMap>;
-  /// By the property and its time, the range of values, and whether there are opacities.
-  vtkDSMKept<std::tuple<vtkVolumeProperty*, vtkMTimeType, float, float, bool>, KeptColors>
+  /// By the property and its time, the component, the range of values, and whether there are opacities.
+  vtkDSMKept<std::tuple<vtkVolumeProperty*, vtkMTimeType, int, float, float, bool>, KeptColors>
     MediumColors;
   /// By the map, and the opacity function and its time.
   vtkDSMKept<std::tuple<KeptColors, vtkPiecewiseFunction*, vtkMTimeType>, KeptColors> SliceColors;

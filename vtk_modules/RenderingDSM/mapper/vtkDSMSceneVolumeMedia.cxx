@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkDSMSceneVolume.h"
 
+#include "vtkDSMImagePiece.h"
 #include "vtkDSMTranslation.h"
 
 #include "vtkProp3D.h"
@@ -10,28 +11,38 @@
 #include <glm/geometric.hpp>
 #include <glm/mat3x3.hpp>
 
+#include <optional>
+#include <string>
 #include <utility>
 #include <variant>
 
 bool vtkDSMSceneVolume::HasOwnColors(std::size_t lattice) const
 {
-  return this->Color && !this->Color->GetFields().empty() && this->Color->GetFields()[lattice];
+  const std::shared_ptr<Published> color = this->HasSeveralMedia() ? nullptr : this->GetColor();
+  return color && !color->GetFields().empty() && color->GetFields()[lattice];
+}
+
+bool vtkDSMSceneVolume::HasDirectColors() const
+{
+  return this->GetColoring().Choice.Component == vtkDSMImagePiece::Color;
 }
 
 std::shared_ptr<const rt::ColorMap> vtkDSMSceneVolume::GetMediumColors(bool hasOpacity)
 {
   vtkVolumeProperty* const property = vtkVolume::SafeDownCast(this->Prop)->GetProperty();
-  const bool hasOwnColors = this->Color && !this->Color->GetFields().empty();
-  const bricks::ValueRange range = (hasOwnColors ? this->Color : this->Iso)->GetRange();
+  const bool isFirst = this->HasSeveralMedia() || this->GetColoring().GetFields().empty();
+  const Published& array = isFirst ? *this->GetIso() : this->GetColoring();
+  const int component = this->HasSeveralMedia() ? array.Choice.Component : 0;
+  const bricks::ValueRange range = array.GetRange();
   return this->MediumColors.Get(
-    { property, property->GetMTime(), range.First, range.Last, hasOpacity },
+    { property, property->GetMTime(), component, range.First, range.Last, hasOpacity },
     [&]
     {
-      auto colors =
-        std::make_shared<rt::ColorMap>(vtkDSMTranslation::ToOpaqueColors(property, range));
+      auto colors = std::make_shared<rt::ColorMap>(
+        vtkDSMTranslation::ToOpaqueColors(property, component, range));
       if (hasOpacity)
       {
-        vtkDSMTranslation::SetOpacity(property->GetScalarOpacity(0), *colors);
+        vtkDSMTranslation::SetOpacity(property->GetScalarOpacity(component), *colors);
       }
       return colors;
     });
@@ -39,15 +50,45 @@ std::shared_ptr<const rt::ColorMap> vtkDSMSceneVolume::GetMediumColors(bool hasO
 
 void vtkDSMSceneVolume::AddMedia(const vtkDSMVolumeLook& look, rt::Scene& scene)
 {
-  const bricks::ValueRange range = this->Iso->GetRange();
+  look.FindMissingFeatures(this->Data->GetArrays(), this->Warnings);
+  if (look.GetComponents(this->Data->GetArrays()) == vtkDSMVolumeLook::Components::Refused)
+  {
+    this->Messages.push_back(
+      "The volume's components are to be colors and opacities, but its array '" +
+      this->GetIso()->Choice.Name + "' has " +
+      std::to_string(this->Data->GetArrays().CountComponents(this->GetIso()->Choice)) +
+      ", so nothing is drawn. Two (color and opacity) or four (red, green, blue and opacity) are "
+      "needed. In ParaView, turn on Map Scalars and turn off Multi Components Mapping; in VTK, "
+      "call "
+      "IndependentComponentsOn() of the property.");
+    return;
+  }
+  this->Prop->ComputeMatrix();
+  const glm::dmat4 dataToWorld = vtkDSMTranslation::ToMatrix(this->Prop->GetMatrix());
+  const std::size_t count = this->HasSeveralMedia() ? this->Arrays.size() : 1;
+  std::vector<int> groups(this->Data->GetNumberOfLattices());
+  for (std::size_t number = 0; number < count; ++number)
+  {
+    this->AddMedium(look, number, dataToWorld, groups, scene);
+  }
+  const bricks::ValueRange range = this->GetIso()->GetRange();
+  if (range.First <= range.Last)
+  {
+    this->AddCaps(look, dataToWorld, scene);
+  }
+}
+
+void vtkDSMSceneVolume::AddMedium(const vtkDSMVolumeLook& look, std::size_t number,
+  const glm::dmat4& dataToWorld, std::vector<int>& groups, rt::Scene& scene)
+{
+  const Published& array = *this->Arrays[number];
+  const bricks::ValueRange range = array.GetRange();
   if (!(range.First <= range.Last))
   {
     return;
   }
-  look.FindMissingFeatures(
-    this->Data->CountComponents((this->Color ? this->Color : this->Iso)->Choice), this->Warnings);
-  this->Prop->ComputeMatrix();
-  const glm::dmat4 dataToWorld = vtkDSMTranslation::ToMatrix(this->Prop->GetMatrix());
+  const std::optional<int> component =
+    this->HasSeveralMedia() ? std::optional<int>(array.Choice.Component) : std::nullopt;
   const rt::ClipRegion clipping = look.GetClipRegion(dataToWorld);
   double bounds[6];
   this->Data->GetBounds(bounds);
@@ -56,14 +97,14 @@ void vtkDSMSceneVolume::AddMedia(const vtkDSMVolumeLook& look, rt::Scene& scene)
   const double diagonal = glm::length(glm::dmat3(dataToWorld) * (upper - lower));
   for (std::size_t lattice = 0; lattice < this->Data->GetNumberOfLattices(); ++lattice)
   {
-    if (!this->Iso->GetFields()[lattice])
+    if (!array.GetFields()[lattice])
     {
       continue;
     }
-    const rt::LatticeField field = this->GetField(lattice, dataToWorld);
-    const auto key = look.GetMediumKey(range, field.GetFinestLength(), diagonal);
+    const rt::LatticeField field = this->GetField(array, lattice, dataToWorld);
+    const auto key = look.GetMediumKey(range, field.GetFinestLength(), diagonal, component);
     const auto& make =
-      this->MakeMedium.Get(key, [&] { return vtkDSMVolumeLook::GetMediumMaker(key); });
+      this->MakeMedium[number].Get(key, [&] { return vtkDSMVolumeLook::GetMediumMaker(key); });
     if (!make)
     {
       this->Messages.push_back(
@@ -78,33 +119,45 @@ void vtkDSMSceneVolume::AddMedia(const vtkDSMVolumeLook& look, rt::Scene& scene)
       if (this->HasOwnColors(lattice))
       {
         lit->ColorValues = this->GetColorValues(lattice);
-        lit->Colors = this->GetMediumColors(false);
+        lit->Colors = this->HasDirectColors() ? nullptr : this->GetMediumColors(false);
+      }
+      if (this->HasSeveralMedia() && this->Arrays.size() > 1)
+      {
+        int& group = groups[lattice];
+        group = group == 0 ? static_cast<int>(scene.Media.size()) + 1 : group;
+        lit->Group = group;
       }
     }
     scene.Media.push_back(std::move(medium));
   }
-  this->AddCaps(look, dataToWorld, scene);
 }
 
 void vtkDSMSceneVolume::AddCaps(
   const vtkDSMVolumeLook& look, const glm::dmat4& dataToWorld, rt::Scene& scene)
 {
-  const auto& fields = this->Iso->GetFields();
+  const auto& fields = this->GetIso()->GetFields();
   for (std::size_t lattice = 0; this->Mapper->GetCapping() && lattice < fields.size(); ++lattice)
   {
     if (fields[lattice])
     {
       rt::LatticeSlice face;
-      face.Field = this->GetField(lattice, dataToWorld);
+      face.Field = this->GetField(*this->GetIso(), lattice, dataToWorld);
       face.ColorValues =
         this->HasOwnColors(lattice) ? this->GetColorValues(lattice) : face.Field.Voxels;
       face.Clipping = look.GetClipRegion(dataToWorld);
       face.Planes = vtkDSMVolumeLook::GetFaces(face.Clipping);
       face.Look.Surface.Lighting = false;
-      // Slices look up colors and opacities by the same values.
-      const bool hasOpacity =
-        this->Mapper->GetCapOpacity() && face.ColorValues == face.Field.Voxels;
-      face.Look.Colors = *this->GetMediumColors(hasOpacity);
+      if (this->HasOwnColors(lattice) && this->HasDirectColors())
+      {
+        face.Look.ColoredBy = rt::IsosurfaceLook::Coloring::OpaqueColors;
+      }
+      else
+      {
+        // Slices look up colors and opacities by the same values.
+        const bool hasOpacity =
+          this->Mapper->GetCapOpacity() && face.ColorValues == face.Field.Voxels;
+        face.Look.Colors = *this->GetMediumColors(hasOpacity);
+      }
       scene.Objects.push_back(std::move(face));
     }
   }

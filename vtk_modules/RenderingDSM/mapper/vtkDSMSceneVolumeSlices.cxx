@@ -12,12 +12,12 @@ rt::LatticeSlice vtkDSMSceneVolume::CreateSlice(
   const vtkDSMVolumeLook& look, const glm::dmat4& dataToWorld, std::size_t lattice, bool isLit)
 {
   rt::LatticeSlice slice;
-  slice.Field = this->GetField(lattice, dataToWorld);
+  slice.Field = this->GetField(*this->GetIso(), lattice, dataToWorld);
   slice.Clipping = look.GetClipRegion(dataToWorld);
   slice.Look.Blocks = this->CreateBlockLooks(lattice);
   look.SetSliceLook(isLit, slice);
-  const std::shared_ptr<Published>& color = this->Color ? this->Color : this->Iso;
-  if (look.HasColoredSlices() && !color->GetFields().empty() && color->GetFields()[lattice])
+  const vtkDSMVolumeData::Fields& colors = this->GetColoring().GetFields();
+  if (look.HasColoredSlices() && !colors.empty() && colors[lattice])
   {
     this->SetColors(lattice, slice.ColorValues, slice.Look);
     vtkPiecewiseFunction* const opacity = this->Mapper->GetSliceOpacity();
@@ -40,7 +40,7 @@ rt::LatticeSlice vtkDSMSceneVolume::CreateSlice(
 void vtkDSMSceneVolume::AddSlices(
   const vtkDSMVolumeLook& look, const glm::dmat4& dataToWorld, rt::Scene& scene)
 {
-  const auto& fields = this->Iso->GetFields();
+  const auto& fields = this->GetIso()->GetFields();
   for (int number = 0; number < this->Mapper->GetNumberOfSlices() && !fields.empty(); ++number)
   {
     const int axis = this->Mapper->GetSliceAxis(number);
@@ -73,7 +73,7 @@ void vtkDSMSceneVolume::AddSlices(
 void vtkDSMSceneVolume::AddCaps(const vtkDSMVolumeLook& look, const glm::dmat4& dataToWorld,
   const std::vector<double>& isovalues, rt::Scene& scene)
 {
-  const auto& fields = this->Iso->GetFields();
+  const auto& fields = this->GetIso()->GetFields();
   for (std::size_t lattice = 0; this->Mapper->GetCapping() && lattice < fields.size(); ++lattice)
   {
     if (fields[lattice])

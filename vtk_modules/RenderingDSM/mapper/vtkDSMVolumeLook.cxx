@@ -98,8 +98,8 @@ void vtkDSMVolumeLook::SetSliceLook(bool isLit, rt::LatticeSlice& slice) const
   }
 }
 
-vtkDSMVolumeLook::MediumKey vtkDSMVolumeLook::GetMediumKey(
-  const bricks::ValueRange& range, double cellLength, double diagonal) const
+vtkDSMVolumeLook::MediumKey vtkDSMVolumeLook::GetMediumKey(const bricks::ValueRange& range,
+  double cellLength, double diagonal, const std::optional<int>& component) const
 {
   vtkVolumeProperty* const property = vtkVolume::SafeDownCast(this->Prop)->GetProperty();
   const double* const averaged = this->Mapper->GetAverageIPScalarRange();
@@ -108,24 +108,26 @@ vtkDSMVolumeLook::MediumKey vtkDSMVolumeLook::GetMediumKey(
   return { range.First, range.Last,
     isComposite || mode == vtkVolumeMapper::AVERAGE_INTENSITY_BLEND ? cellLength : 0.0,
     isComposite ? diagonal : 0.0, property, property->GetMTime(), mode,
-    { averaged[0], averaged[1] } };
+    { averaged[0], averaged[1] }, component.value_or(0),
+    component ? property->GetComponentWeight(*component) : 1.0 };
 }
 
 vtkDSMVolumeLook::MediumMaker vtkDSMVolumeLook::GetMediumMaker(const MediumKey& key)
 {
-  const auto& [first, last, cellLength, diagonal, property, time, mode, averaged] = key;
+  const auto& [first, last, cellLength, diagonal, property, time, mode, averaged, component,
+    weight] = key;
   switch (mode)
   {
     case vtkVolumeMapper::COMPOSITE_BLEND:
-      return [function =
-                 vtkDSMTranslation::ToTransferFunction(property, first, last, cellLength, diagonal),
-               look = vtkDSMTranslation::ToMediumLook(property, last - first)](
+      return [function = vtkDSMTranslation::ToTransferFunction(
+                property, component, weight, first, last, cellLength, diagonal),
+               look = vtkDSMTranslation::ToMediumLook(property, component, last - first)](
                const rt::LatticeField& field, const rt::ClipRegion& clipping) {
         return rt::LatticeMedium{ field, function, look, clipping };
       };
     case vtkVolumeMapper::MAXIMUM_INTENSITY_BLEND:
     case vtkVolumeMapper::MINIMUM_INTENSITY_BLEND:
-      return [colors = vtkDSMTranslation::ToColorMap(property, first, last),
+      return [colors = vtkDSMTranslation::ToColorMap(property, component, first, last),
                isMinimum = mode == vtkVolumeMapper::MINIMUM_INTENSITY_BLEND](
                const rt::LatticeField& field, const rt::ClipRegion& clipping) {
         return rt::LatticeExtremum{ field, colors, isMinimum, clipping };
@@ -146,7 +148,28 @@ vtkDSMVolumeLook::MediumMaker vtkDSMVolumeLook::GetMediumMaker(const MediumKey& 
   }
 }
 
-void vtkDSMVolumeLook::FindMissingFeatures(int components, std::vector<std::string>& warnings) const
+vtkDSMVolumeLook::Components vtkDSMVolumeLook::GetComponents(const vtkDSMImageArrays& arrays) const
+{
+  // Another component, or the magnitude, is asked for by itself.
+  if (!this->IsMedium() || this->Mapper->GetBlendMode() != vtkVolumeMapper::COMPOSITE_BLEND ||
+    !this->Mapper->GetOpacityArray().empty() || this->Mapper->GetIsoComponent() != 0)
+  {
+    return Components::One;
+  }
+  const int components = arrays.CountComponents({ this->GetIsoArray(), 0 });
+  if (components <= 1)
+  {
+    return Components::One;
+  }
+  if (vtkVolume::SafeDownCast(this->Prop)->GetProperty()->GetIndependentComponents())
+  {
+    return components <= VTK_MAX_VRCOMP ? Components::Independent : Components::One;
+  }
+  return components == 2 || components == 4 ? Components::Dependent : Components::Refused;
+}
+
+void vtkDSMVolumeLook::FindMissingFeatures(
+  const vtkDSMImageArrays& arrays, std::vector<std::string>& warnings) const
 {
   vtkVolumeProperty* const property = vtkVolume::SafeDownCast(this->Prop)->GetProperty();
   const auto warn = [&](bool isMissing, const char* feature, const char* remedy)
@@ -160,10 +183,17 @@ void vtkDSMVolumeLook::FindMissingFeatures(int components, std::vector<std::stri
   };
   warn(property->GetTransferFunctionMode() == vtkVolumeProperty::TF_2D,
     "a two-dimensional transfer function", "Call SetTransferFunctionModeTo1D().");
+  if (this->HasOpacityArray() || this->GetComponents(arrays) != Components::One)
+  {
+    return;
+  }
+  const int components = arrays.CountComponents({ this->GetIsoArray(), 0 });
   warn(components > 1 && property->GetIndependentComponents() == 0,
-    "colors or opacities that are other components of the array",
-    "Call IndependentComponentsOn(), or use VTK's own mapper; in ParaView, turn on Map Scalars and "
-    "turn off Multi Components Mapping, or use the representation Volume.");
+    "colors or opacities that are other components of the array, in this blend mode or of this "
+    "component",
+    "Call SetBlendModeToComposite(), and SetIsoComponent(0) of the mapper, or "
+    "IndependentComponentsOn(); in ParaView, turn on Map Scalars and turn off Multi Components "
+    "Mapping, or use the representation Volume.");
   const auto isWeighted = [&]
   {
     for (int component = 1; component < std::min(components, VTK_MAX_VRCOMP); ++component)
@@ -177,7 +207,7 @@ void vtkDSMVolumeLook::FindMissingFeatures(int components, std::vector<std::stri
   };
   warn(property->GetIndependentComponents() != 0 && this->Mapper->GetIsoComponent() == 0 &&
       isWeighted(),
-    "all components of the array at once",
+    "all components of the array at once, in this blend mode or of more than four",
     "The first component is drawn. Call SetComponentWeight(COMPONENT, 0.0) for the others, or "
     "SetIsoComponent() of the mapper for another one, or the magnitude (-1).");
 }
@@ -204,7 +234,8 @@ int vtkDSMVolumeLook::GetColorComponent() const
                                                                  : vtkDSMImagePiece::Magnitude;
 }
 
-std::vector<vtkDSMVolumeData::Choice> vtkDSMVolumeLook::GetShown() const
+std::vector<vtkDSMVolumeData::Choice> vtkDSMVolumeLook::GetShown(
+  const vtkDSMImageArrays& arrays) const
 {
   vtkDSMVolumeMapper* mapper = this->Mapper;
   std::vector<vtkDSMVolumeData::Choice> shown;
@@ -212,6 +243,28 @@ std::vector<vtkDSMVolumeData::Choice> vtkDSMVolumeLook::GetShown() const
   {
     return { { mapper->GetOpacityArray(), mapper->GetOpacityComponent() },
       { this->GetIsoArray(), mapper->GetIsoComponent() } };
+  }
+  const Components kind = this->GetComponents(arrays);
+  const int components = arrays.CountComponents({ this->GetIsoArray(), 0 });
+  if (kind == Components::Dependent)
+  {
+    return { { this->GetIsoArray(), components - 1 },
+      { this->GetIsoArray(), components == 2 ? 0 : vtkDSMImagePiece::Color } };
+  }
+  if (kind == Components::Independent)
+  {
+    vtkVolumeProperty* const property = vtkVolume::SafeDownCast(this->Prop)->GetProperty();
+    for (int component = 0; component < components; ++component)
+    {
+      if (property->GetComponentWeight(component) > 0.0)
+      {
+        shown.push_back({ this->GetIsoArray(), component });
+      }
+    }
+    if (!shown.empty())
+    {
+      return shown;
+    }
   }
   const bool isColored = !this->IsMedium() && this->HasColorArray();
   if (!isColored || !this->IsSlicesOnly())

@@ -32,13 +32,28 @@ public:
   /// Whether there are slices, or may be, and no isosurfaces.
   bool IsSlicesOnly() const;
   bool HasIsosurfaces() const { return !this->IsMedium() && !this->IsSlicesOnly(); }
+  /// What a medium shows of its array's components: one, or the magnitude; each one by its own functions, as a medium of
+  /// its own; colors by the first ones and opacities by the last one; or nothing, for there are not so many.
+  enum class Components
+  {
+    One,
+    Independent,
+    Dependent,
+    Refused
+  };
+  /// `arrays`: those that there are.
+  Components GetComponents(const vtkDSMImageArrays& arrays) const;
   /// Tells what the property asks for, of an array of so many components, that media do not have yet.
-  void FindMissingFeatures(int components, std::vector<std::string>& warnings) const;
+  void FindMissingFeatures(
+    const vtkDSMImageArrays& arrays, std::vector<std::string>& warnings) const;
   /// All that the colors and opacities of the medium depend on: the values' range, the length of a cell, that of
-  /// the medium, the property and its time, the blend mode and the range of an average.
+  /// the medium, the property and its time, the blend mode and the range of an average, the component whose functions are
+  /// taken and its weight.
   using MediumKey = std::tuple<double, double, double, double, vtkVolumeProperty*, vtkMTimeType,
-    int, std::array<double, 2>>;
-  MediumKey GetMediumKey(const bricks::ValueRange& range, double cellLength, double diagonal) const;
+    int, std::array<double, 2>, int, double>;
+  /// `component`: one of several independent ones, or none (std::nullopt).
+  MediumKey GetMediumKey(const bricks::ValueRange& range, double cellLength, double diagonal,
+    const std::optional<int>& component) const;
   /// Whether another array says how dense the medium is.
   bool HasOpacityArray() const;
   /// Makes the medium that has the values of a field, within a region.
@@ -47,8 +62,9 @@ public:
   /// Of the blend mode. Expensive: keep it as long as the key is the same. Empty where the mode is none that is drawn.
   static MediumMaker GetMediumMaker(const MediumKey& key);
   /// The arrays that are to be shown, as the mapper names them: that of the isosurfaces, and that of the colours, if any.
-  /// Of slices alone the one that colors them, if any.
-  std::vector<vtkDSMVolumeData::Choice> GetShown() const;
+  /// Of slices alone the one that colors them, if any. Of a medium that of the opacities, and that of the colors; or, where
+  /// its components are independent, each of these. `arrays`: those that there are.
+  std::vector<vtkDSMVolumeData::Choice> GetShown(const vtkDSMImageArrays& arrays) const;
   /// Whether the cells' scalars are asked for, of which there are no isosurfaces.
   bool TakesPointsForCells() const;
   /// Finite, ascending, each once; `suggested` where none is chosen and the mapper takes what data suggest. Adds what is

@@ -89,7 +89,9 @@ public:
 
   ///@{
   /**
-   * The array's component; -1, or the number of components, is the magnitude. Default 0.
+   * The array's component; -1, or the number of components, is the magnitude. Default 0: for a volume, in the blend mode
+   * composite, all components as its property's IndependentComponents and ComponentWeight say, as
+   * vtkGPUVolumeRayCastMapper does. With three, or more than four, that depend on one another, an error says so.
    */
   vtkSetMacro(IsoComponent, int);
   vtkGetMacro(IsoComponent, int);

@@ -101,21 +101,21 @@ void Widen(double& first, double& last)
   }
 }
 
-/// The color and opacity functions of a volume property's first component. Keeps references.
+/// The color and opacity functions of a volume property's component. Keeps references.
 class VolumeFunctions
 {
 public:
-  explicit VolumeFunctions(vtkVolumeProperty* property)
-    : Opacity(property->GetScalarOpacity(0))
+  VolumeFunctions(vtkVolumeProperty* property, int component)
+    : Opacity(property->GetScalarOpacity(component))
   {
     // To ask for the other one would make it the one that counts.
-    if (property->GetColorChannels(0) == 1)
+    if (property->GetColorChannels(component) == 1)
     {
-      this->Gray = property->GetGrayTransferFunction(0);
+      this->Gray = property->GetGrayTransferFunction(component);
     }
     else
     {
-      this->Colors = property->GetRGBTransferFunction(0);
+      this->Colors = property->GetRGBTransferFunction(component);
     }
   }
 
@@ -308,49 +308,53 @@ rt::Material vtkDSMTranslation::ToMaterial(vtkVolumeProperty* property, double i
 }
 
 std::shared_ptr<const rt::TransferFunction> vtkDSMTranslation::ToTransferFunction(
-  vtkVolumeProperty* property, double first, double last, double cellLength, double diagonal)
+  vtkVolumeProperty* property, int component, double weight, double first, double last,
+  double cellLength, double diagonal)
 {
-  const VolumeFunctions functions(property);
+  const VolumeFunctions functions(property, component);
   functions.Narrow(first, last);
   std::vector<glm::dvec4> samples =
     functions.Sample(first, last, functions.CountBins(first, last) + 1);
-  const double unit = property->GetScalarOpacityUnitDistance(0);
+  const double unit = property->GetScalarOpacityUnitDistance(component);
   for (glm::dvec4& sample : samples)
   {
     // What cannot be seen though the whole way lies in it is skipped.
-    const double extinction = -std::log1p(-std::clamp(sample.w, 0.0, MostOpacity)) / unit;
+    const double extinction = -weight * std::log1p(-std::clamp(sample.w, 0.0, MostOpacity)) / unit;
     sample.w = extinction * diagonal < LeastDepth ? 0.0 : extinction;
   }
   return std::make_shared<const rt::TransferFunction>(first, last, samples, cellLength);
 }
 
-rt::MediumLook vtkDSMTranslation::ToMediumLook(vtkVolumeProperty* property, double range)
+rt::MediumLook vtkDSMTranslation::ToMediumLook(
+  vtkVolumeProperty* property, int component, double range)
 {
   rt::MediumLook look;
+  // As VTK's mapper, which shades all components, or none, each by its own coefficients.
   look.Shade = property->GetShade(0) != 0;
-  look.Surface.Ambient = static_cast<float>(property->GetAmbient(0));
-  look.Surface.Diffuse = static_cast<float>(property->GetDiffuse(0));
-  look.Surface.Specular = static_cast<float>(property->GetSpecular(0));
-  look.Surface.SpecularPower = static_cast<float>(property->GetSpecularPower(0));
+  look.Surface.Ambient = static_cast<float>(property->GetAmbient(component));
+  look.Surface.Diffuse = static_cast<float>(property->GetDiffuse(component));
+  look.Surface.Specular = static_cast<float>(property->GetSpecular(component));
+  look.Surface.SpecularPower = static_cast<float>(property->GetSpecularPower(component));
   constexpr double most = 0.99; // at 1, all light goes straight on
   look.Anisotropy = std::clamp<double>(property->GetScatteringAnisotropy(), -most, most);
-  if (property->HasGradientOpacity(0) && range > 0.0)
+  if (property->HasGradientOpacity(component) && range > 0.0)
   {
     // As VTK's mapper, which takes what values do in a cell to be a quarter of their range at most.
     constexpr int count = 1024;
     rt::GradientOpacity opacity;
     opacity.Last = 0.25 * range;
     opacity.Factors.resize(count);
-    property->GetGradientOpacity(0)->GetTable(0.0, opacity.Last, count, opacity.Factors.data());
+    property->GetGradientOpacity(component)->GetTable(
+      0.0, opacity.Last, count, opacity.Factors.data());
     look.Gradients = std::make_shared<const rt::GradientOpacity>(std::move(opacity));
   }
   return look;
 }
 
 std::shared_ptr<const rt::ColorMap> vtkDSMTranslation::ToColorMap(
-  vtkVolumeProperty* property, double first, double last)
+  vtkVolumeProperty* property, int component, double first, double last)
 {
-  const VolumeFunctions functions(property);
+  const VolumeFunctions functions(property, component);
   functions.Narrow(first, last);
   auto map = std::make_shared<rt::ColorMap>();
   map->First = first;
@@ -368,12 +372,12 @@ std::shared_ptr<const rt::ColorMap> vtkDSMTranslation::ToColorMap(
 }
 
 rt::ColorMap vtkDSMTranslation::ToOpaqueColors(
-  vtkVolumeProperty* property, const bricks::ValueRange& range)
+  vtkVolumeProperty* property, int component, const bricks::ValueRange& range)
 {
   // To ask for the other one would make it the one that counts.
-  rt::ColorMap map = property->GetColorChannels(0) == 1
-    ? *ToColorMap(property, range.First, range.Last)
-    : ToColorMap(property->GetRGBTransferFunction(0));
+  rt::ColorMap map = property->GetColorChannels(component) == 1
+    ? *ToColorMap(property, component, range.First, range.Last)
+    : ToColorMap(property->GetRGBTransferFunction(component));
   for (glm::vec4& color : map.Table)
   {
     color.w = 1.0f;
@@ -388,7 +392,7 @@ std::shared_ptr<const rt::TransferFunction> vtkDSMTranslation::ToSum(vtkVolumePr
   double first, double last, const std::array<double, 2>& counted, double unit)
 {
   Widen(first, last);
-  const VolumeFunctions functions(property);
+  const VolumeFunctions functions(property, 0);
   const int bins = functions.CountBins(first, last);
   const std::vector<glm::dvec4> looks = functions.Sample(first, last, bins + 1);
   std::vector<rt::LatticeSum::Sample> samples;

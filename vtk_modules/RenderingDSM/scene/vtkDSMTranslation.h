@@ -44,20 +44,22 @@ public:
   /// Gives all colors of a map the opacities of their values, but that of what is not a number.
   static void SetOpacity(vtkPiecewiseFunction* opacity, rt::ColorMap& map);
 
-  /// The color and opacity functions of a property's first component, and its unit distance, for a medium whose values are
-  /// from `first` to `last`. `cellLength` and `diagonal`: of a cell's edge, and of the medium, in world space.
-  static std::shared_ptr<const rt::TransferFunction> ToTransferFunction(
-    vtkVolumeProperty* property, double first, double last, double cellLength, double diagonal);
+  /// The color and opacity functions of a property's component, and its unit distance, for a medium whose values are
+  /// from `first` to `last`. `weight`: of its opacities. `cellLength` and `diagonal`: of a cell's edge, and of the medium, in
+  /// world space.
+  static std::shared_ptr<const rt::TransferFunction> ToTransferFunction(vtkVolumeProperty* property,
+    int component, double weight, double first, double last, double cellLength, double diagonal);
 
-  /// The shading of a property's first component, and its gradient opacity, for a medium whose values differ so much.
-  static rt::MediumLook ToMediumLook(vtkVolumeProperty* property, double range);
+  /// The shading of a property's component, and its gradient opacity, for a medium whose values differ so much.
+  static rt::MediumLook ToMediumLook(vtkVolumeProperty* property, int component, double range);
   /// The same functions as colors and opacities of single values.
   static std::shared_ptr<const rt::ColorMap> ToColorMap(
-    vtkVolumeProperty* property, double first, double last);
-  /// The color function alone, as the legend of a property's first component shows it, for values of a range. What is not a
+    vtkVolumeProperty* property, int component, double first, double last);
+  /// The color function alone, as the legend of a property's component shows it, for values of a range. What is not a
   /// number is transparent.
-  static rt::ColorMap ToOpaqueColors(vtkVolumeProperty* property, const bricks::ValueRange& range);
-  /// The values, 0 to 1 in that range, times their opacities, which LatticeSum adds up over `unit` of world length. In a mean,
+  static rt::ColorMap ToOpaqueColors(
+    vtkVolumeProperty* property, int component, const bricks::ValueRange& range);
+  /// The values, 0 to 1 in that range, times their opacities of a property's first component, which LatticeSum adds up over `unit` of world length. In a mean,
   /// the values between the two that are `counted` count.
   static std::shared_ptr<const rt::TransferFunction> ToSum(vtkVolumeProperty* property,
     double first, double last, const std::array<double, 2>& counted, double unit);
