@@ -182,3 +182,55 @@ check(not get_covered(render(view)).any(), "of a transparent volume, nothing is 
 display.Representation = REPRESENTATION
 check(get_covered(render(view)).mean() > 0.05, "its isosurface is")
 check(sum(row["Accesses"] for row in get_rows(display)) > 0, "and bricks of that are counted, too")
+
+# Translucent geometry of ParaView's is where it is in a volume: fog, whose color and those of planes in it are known.
+simple.Hide(source, view)
+FOG, COLORS, DENSITY = np.array([0.9, 0.5, 0.1]), np.array([[0.1, 0.9, 0.4], [0.2, 0.2, 1.0]]), 0.05
+# Of each plane: z at x = 0, how that grows along x, how far it reaches along x and y, opacity.
+PLANES = [(0.0, 0.0, 9.05, 13.05, 0.5), (1.1, 0.6, 10.1, 7.05, 0.4)]
+fog = image_source("image.SetOrigin(-12, -12, -12)\nimage.SetExtent(piece)\nadd(image, points(piece)[0], 'fog')\n")
+display = simple.Show(fog, view)
+display.Representation = "DSM Volume"
+simple.ColorBy(display, ("POINTS", "fog"))
+display.ScalarOpacityUnitDistance = 1.0
+simple.GetColorTransferFunction("fog").RGBPoints = [0.0, *FOG, 24.0, *FOG]
+simple.GetOpacityTransferFunction("fog").Points = [0.0, DENSITY, 0.5, 0.0, 24.0, DENSITY, 0.5, 0.0]
+view.UseFXAA = 0
+view.CameraParallelProjection, view.CameraParallelScale = 1, 16.0
+view.CameraPosition, view.CameraFocalPoint, view.CameraViewUp = [0, 0, 70], [0, 0, 0], [0, 1, 0]
+
+
+def get_fog(planes, shape):
+    size = np.array(shape[:2])[:, None, None]
+    y, x = 16.0 * (2 * np.mgrid[: shape[0], : shape[1]] + 1 - size) / shape[0]
+    depths = np.array([np.clip(z + growth * x, -12, 12) for z, growth, _, _, _ in planes])
+    covers = np.array([opacity * ((abs(x) < right) & (abs(y) < top)) for _, _, right, top, opacity in planes])
+    order = np.argsort(-depths, axis=0)
+    before, color, left = 12.0, 0.0, 1.0
+    for depth, cover, through in [
+        *zip(np.take_along_axis(depths, order, 0), np.take_along_axis(covers, order, 0), COLORS[order]),
+        (np.full(x.shape, -12.0), np.zeros(x.shape), 0.0),
+    ]:
+        misty = (1 - (1 - DENSITY) ** (before - depth)) * ((abs(x) < 12) & (abs(y) < 12))
+        for part, its_color in ((misty, FOG), (cover, through)):
+            color = color + (left * part)[:, :, None] * its_color
+            left = left * (1 - part)
+        before = depth
+    return 255 * (color + left[:, :, None] * np.array(view.Background))
+
+
+def check_fog(pixels, planes, what, mean=1.0):
+    difference = abs(pixels - get_fog(planes, pixels.shape)).mean()
+    check(difference < mean, f"{what}: {difference:.2f} of 255 from what it has to be")
+
+
+for count, (z, growth, right, top, opacity) in enumerate(PLANES):
+    left_end, right_end = z - growth * right, z + growth * right
+    corners = [-right, -top, left_end], [right, -top, right_end], [-right, top, left_end]
+    plane = show_surface(simple.Plane(Origin=corners[0], Point1=corners[1], Point2=corners[2]), view)
+    plane.AmbientColor = COLORS[count]
+    plane.Ambient, plane.Diffuse, plane.Specular, plane.Opacity = 1.0, 0.0, 0.0, opacity
+    check_fog(render(view, f"Planes{count + 1}"), PLANES[: count + 1], f"{count + 1} translucent planes in fog")
+view.LODThreshold, view.LODResolution = 0.0, 0.5
+view.SMProxy.InteractiveRender()
+check_fog(grab(view, "PlanesMoving"), PLANES, "while the camera moves", 3.0)
