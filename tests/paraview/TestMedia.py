@@ -188,7 +188,9 @@ simple.Hide(source, view)
 FOG, COLORS, DENSITY = np.array([0.9, 0.5, 0.1]), np.array([[0.1, 0.9, 0.4], [0.2, 0.2, 1.0]]), 0.05
 # Of each plane: z at x = 0, how that grows along x, how far it reaches along x and y, opacity.
 PLANES = [(0.0, 0.0, 9.05, 13.05, 0.5), (1.1, 0.6, 10.1, 7.05, 0.4)]
-fog = image_source("image.SetOrigin(-12, -12, -12)\nimage.SetExtent(piece)\nadd(image, points(piece)[0], 'fog')\n")
+fog = image_source(
+    "image.SetOrigin(-12, -12, -12)\nimage.SetExtent(piece)\nadd(image, points(piece)[0], 'fog')\n", in_parts=True
+)
 display = simple.Show(fog, view)
 display.Representation = "DSM Volume"
 simple.ColorBy(display, ("POINTS", "fog"))
@@ -196,6 +198,24 @@ display.ScalarOpacityUnitDistance = 1.0
 simple.GetColorTransferFunction("fog").RGBPoints = [0.0, *FOG, 24.0, *FOG]
 simple.GetOpacityTransferFunction("fog").Points = [0.0, DENSITY, 0.5, 0.0, 24.0, DENSITY, 0.5, 0.0]
 view.UseFXAA = 0
+render(view)
+place_camera(view)
+
+# What is selected of each rank's part is drawn in the volume, too.
+bare = render(view)
+simple.SelectCellsThrough(Rectangle=[130, 100, 170, 140], View=view)
+marked = render(view)[:, :, 2] > 80
+simple.SaveScreenshot(os.path.join(OUTPUT, f"FogSelected.{get_ranks()}.png"), view)
+saved = os.path.join(OUTPUT, "marked.npy")
+if get_ranks() == 1:
+    np.save(saved, marked)
+expected = np.load(saved)
+check(expected.sum() > 100, "a selection is marked")
+share = (marked & expected).sum() / expected.sum()
+check(share > 0.99, f"{share:.3f} of it as on one rank")
+simple.ClearSelection(fog)
+check_equal(render(view), bare, "without the selection")
+
 view.CameraParallelProjection, view.CameraParallelScale = 1, 16.0
 view.CameraPosition, view.CameraFocalPoint, view.CameraViewUp = [0, 0, 70], [0, 0, 0], [0, 1, 0]
 
@@ -203,14 +223,14 @@ view.CameraPosition, view.CameraFocalPoint, view.CameraViewUp = [0, 0, 70], [0, 
 def get_fog(planes, shape):
     size = np.array(shape[:2])[:, None, None]
     y, x = 16.0 * (2 * np.mgrid[: shape[0], : shape[1]] + 1 - size) / shape[0]
+    planes = planes or [(0.0, 0.0, 0.0, 0.0, 0.0)]
     depths = np.array([np.clip(z + growth * x, -12, 12) for z, growth, _, _, _ in planes])
     covers = np.array([opacity * ((abs(x) < right) & (abs(y) < top)) for _, _, right, top, opacity in planes])
     order = np.argsort(-depths, axis=0)
+    depths, covers = (np.take_along_axis(values, order, 0) for values in (depths, covers))
     before, color, left = 12.0, 0.0, 1.0
-    for depth, cover, through in [
-        *zip(np.take_along_axis(depths, order, 0), np.take_along_axis(covers, order, 0), COLORS[order]),
-        (np.full(x.shape, -12.0), np.zeros(x.shape), 0.0),
-    ]:
+    # Behind all, a plane that is not seen.
+    for depth, cover, through in [*zip(depths, covers, COLORS[order]), (np.full(x.shape, -12.0), 0.0 * x, 0.0)]:
         misty = (1 - (1 - DENSITY) ** (before - depth)) * ((abs(x) < 12) & (abs(y) < 12))
         for part, its_color in ((misty, FOG), (cover, through)):
             color = color + (left * part)[:, :, None] * its_color
@@ -224,6 +244,7 @@ def check_fog(pixels, planes, what, mean=1.0):
     check(difference < mean, f"{what}: {difference:.2f} of 255 from what it has to be")
 
 
+check_fog(render(view), PLANES[:0], "fog")
 for count, (z, growth, right, top, opacity) in enumerate(PLANES):
     left_end, right_end = z - growth * right, z + growth * right
     corners = [-right, -top, left_end], [right, -top, right_end], [-right, top, left_end]

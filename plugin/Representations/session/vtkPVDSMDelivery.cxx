@@ -108,13 +108,40 @@ int GetReduction(double resolution)
   return static_cast<int>(std::lround(std::pow(coarsest, 1.0 - resolution)));
 }
 
-/// Whether the view shows any dataset in another way than ours. Selections, axes and text, which are
+/// Whether a representation shows what is selected of a dataset, and anything is. The same on every rank.
+bool ShowsSelection(vtkPVDataRepresentation* shown)
+{
+  if (!shown || !shown->GetVisibility() || !shown->IsA("vtkGeometryRepresentation"))
+  {
+    return false;
+  }
+  const auto getInput = [](vtkAlgorithm* algorithm)
+  {
+    const bool hasInput =
+      algorithm->GetNumberOfInputPorts() > 0 && algorithm->GetNumberOfInputConnections(0) > 0;
+    return hasInput ? algorithm->GetInputAlgorithm(0, 0) : nullptr;
+  };
+  vtkAlgorithm* source = getInput(shown);
+  if (source && source->IsA("vtkPVPostFilter"))
+  {
+    source = getInput(source);
+  }
+  return source && source->IsA("vtkPVExtractSelection") &&
+    source->GetNumberOfInputConnections(1) > 0;
+}
+
+/// Whether the view shows any dataset in another way than ours, or a selection. Axes and text, which are
 /// no composite representations, do not count.
 bool ShowsOthers(vtkView* view)
 {
   for (int number = 0; view && number < view->GetNumberOfRepresentations(); ++number)
   {
-    auto* composite = vtkCompositeRepresentation::SafeDownCast(view->GetRepresentation(number));
+    vtkDataRepresentation* const known = view->GetRepresentation(number);
+    auto* composite = vtkCompositeRepresentation::SafeDownCast(known);
+    if (!composite && ShowsSelection(vtkPVDataRepresentation::SafeDownCast(known)))
+    {
+      return true;
+    }
     vtkPVDataRepresentation* shown =
       composite && composite->GetVisibility() ? composite->GetActiveRepresentation() : nullptr;
     if (shown && shown->GetVisibility() && !shown->IsA("vtkPVDSMImageRepresentation") &&
