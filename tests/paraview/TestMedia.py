@@ -239,8 +239,8 @@ def get_fog(planes, shape):
     return 255 * (color + left[:, :, None] * np.array(view.Background))
 
 
-def check_fog(pixels, planes, what, mean=1.0):
-    difference = abs(pixels - get_fog(planes, pixels.shape)).mean()
+def check_fog(pixels, planes, what, mean=1.0, part=np.s_[:, :]):
+    difference = abs(pixels - get_fog(planes, pixels.shape))[part].mean()
     check(difference < mean, f"{what}: {difference:.2f} of 255 from what it has to be")
 
 
@@ -254,4 +254,5 @@ for count, (z, growth, right, top, opacity) in enumerate(PLANES):
     check_fog(render(view, f"Planes{count + 1}"), PLANES[: count + 1], f"{count + 1} translucent planes in fog")
 view.LODThreshold, view.LODResolution = 0.0, 0.5
 view.SMProxy.InteractiveRender()
-check_fog(grab(view, "PlanesMoving"), PLANES, "while the camera moves", 3.0)
+# The fewer pixels are traced, the longer they take; so not at the planes' borders.
+check_fog(grab(view, "PlanesMoving"), PLANES, "while the camera moves", 2.0, np.s_[80:160, 96:204])
