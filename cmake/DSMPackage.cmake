@@ -45,8 +45,12 @@ install(DIRECTORY docs examples
 
 set(CPACK_PACKAGE_NAME dsmraytracer)
 set(CPACK_PACKAGE_VENDOR "The DSM Ray Tracer developers")
-set(CPACK_PACKAGE_DESCRIPTION_SUMMARY
-  "Ray traces isosurfaces and meshes larger than one machine's memory, in ParaView and VTK")
+set(CPACK_PACKAGE_CONTACT "The DSM Ray Tracer developers <dsmraytracer@localhost>")
+set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "${PROJECT_DESCRIPTION}")
+set(CPACK_DEBIAN_PACKAGE_DESCRIPTION
+  "The ranks of a ParaView server pool their memory and share data as bricks. The plugin adds the representations
+DSM Ray Traced, DSM Volume and DSM Slices, and a reader of volumes in HDF5, Zarr, NRRD and MetaImage files that are
+larger than memory. VTK mappers, a CMake package and Python classes are included.")
 set(CPACK_RESOURCE_FILE_LICENSE "${PROJECT_SOURCE_DIR}/LICENSE")
 set(CPACK_STRIP_FILES ON)
 if (EXISTS "/etc/debian_version")
@@ -55,7 +59,7 @@ if (EXISTS "/etc/debian_version")
   set(CPACK_PACKAGING_INSTALL_PREFIX "/usr")
   set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
   set(CPACK_DEBIAN_PACKAGE_SECTION science)
-  set(CPACK_DEBIAN_PACKAGE_MAINTAINER "The DSM Ray Tracer developers <dsmraytracer@localhost>")
+  set(CPACK_DEBIAN_PACKAGE_MAINTAINER "${CPACK_PACKAGE_CONTACT}")
   set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
   # Our own libraries are in the package.
   set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS_PRIVATE_DIRS "${CMAKE_LIBRARY_OUTPUT_DIRECTORY}")
