@@ -8,7 +8,7 @@ Blocks of one document and language are run in a folder of that document's, one 
 the compiler with the flags of the tests. There, `build` is the build folder, `../examples` the
 examples. LANGUAGE `marks` checks that every block has one of these languages, and that those which
 are not run are named in not_run.txt and say so in the document; `links`, that what documents link to
-within the project is there, with its heading."""
+within the project is there, with its heading; `style`, that pages are short and spelled as in America."""
 
 import glob
 import json
@@ -27,6 +27,12 @@ LANGUAGES = ("python", "bash", "cpp")
 MARK = re.compile(r"\*Not run by the tests: (.+)\.\*")
 LINK = re.compile(r"\]\(([^)\s]+)\)")
 HEADING = re.compile(r"^#+ +(.+)$", re.MULTILINE)
+# Lines that a page may have; 250 where it is not named.
+LENGTHS = {"README.md": 120, "docs/performance.md": 100, "docs/limits.md": 80, "docs/architecture.md": 200}
+BRITISH = re.compile(
+    r"colour|neighbour|behaviour|honour|favour|flavour|\bcentre|\bmetre|\bgrey|licence|catalogue|modell|labell|travell"
+    r"|(organ|optim|recogn|normal|initial|synchron|real|visual|parallel|serial|minim|maxim|general|final)is(e|ing|ation)"
+    r"|analyse\b", re.IGNORECASE)
 
 
 class Block:
@@ -123,6 +129,17 @@ def check_links(documents):
     check(count > 0, f"{count} links lead somewhere")
 
 
+def check_style(documents):
+    for document in documents:
+        with open(os.path.join(PROJECT, document), encoding="utf-8") as text:
+            lines = text.read().splitlines()
+        limit = LENGTHS.get(document, 250)
+        check(len(lines) <= limit, f"{document}: {len(lines)} lines, at most {limit}")
+        british = [f"{number}: {match.group()}" for number, line in enumerate(lines, 1)
+                   for match in BRITISH.finditer(line)]
+        check(not british, f"{document}: is spelled as in America {' '.join(british)}")
+
+
 def make_folder(document):
     """Where the document's blocks run: the same for all languages, so that files are handed on."""
     root = os.path.dirname(OUTPUT)
@@ -212,6 +229,9 @@ def main():
         return
     if LANGUAGE == "links":
         check_links([*documents, "CONTRIBUTING.md", "CHANGELOG.md"])
+        return
+    if LANGUAGE == "style":
+        check_style([*documents, "CONTRIBUTING.md", "CHANGELOG.md"])
         return
     for document, blocks in documents.items():
         chosen = [block for block in blocks if block.language == LANGUAGE and not block.mark]
