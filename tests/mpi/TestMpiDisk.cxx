@@ -53,7 +53,7 @@ TEST_P(DiskOverMpi, DiskThatDoesNotAnswerFailsTheFrameOnly)
   disks.Disk->SetStuck(stuck);
   const std::string text = dsm_test::GetErrorText([&] { disks.ReadAll(); });
   const std::string brick = "Brick " + std::to_string(stuck) + " of the test's disk ";
-  EXPECT_NE(text.find(brick + "has not come for 1.5 s"), std::string::npos) << text;
+  EXPECT_NE(text.find(brick + "did not arrive within 1.5 s"), std::string::npos) << text;
   disks.Disk->SetStuck(dsm_test::NoBlock);
   disks.ReadAll();
 }
@@ -70,7 +70,7 @@ TEST_P(DiskOverMpi, DiskThatDoesNotAnswerIsNamedAsItIsNow)
     std::vector<bool>(disks.Segment->GetDirectory().GetCount(), true));
   next->SetStuck(0);
   const std::string text = dsm_test::GetErrorText([&] { disks.ReadAll(); });
-  EXPECT_NE(text.find("Brick 0 of the next disk has not come for 1.5 s"), std::string::npos)
+  EXPECT_NE(text.find("Brick 0 of the next disk did not arrive within 1.5 s"), std::string::npos)
     << text;
   next->SetStuck(dsm_test::NoBlock);
   disks.ReadAll();

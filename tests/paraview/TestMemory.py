@@ -51,7 +51,7 @@ check(not any(word in messages.text for word in ("DSM Ray Tracer", "ERR", "arnin
 check(get_covered(picture).any(), "the surface is there")
 with open(log, encoding="utf-8") as text:
     said = text.read()
-check(said.count("memory organisation is replicated: all data take") == (1 if several else 0),
+check(said.count("memory organization is replicated: all data take") == (1 if several else 0),
       "what was chosen is logged once: " + said)
 check_report(display, "Replicated")
 
@@ -88,7 +88,7 @@ for organization in ORGANIZATIONS[1:]:
 display.DSMCacheSize = 256
 for organization, remedy in (("Object based", "ranks with as much memory"),
                              ("Page based", "ranks with as much memory"),
-                             ("Replicated", "object based memory organisation")):
+                             ("Replicated", "object based memory organization")):
     display.DSMMemoryOrganization = "Automatic"
     display.DSMMemory = 0
     check_equal(render(view), picture, "the surface is there", tolerance=0)

@@ -30,7 +30,7 @@ def check_scratch(display, expected, memory, what, is_told=False):
         pictures = go_round()
     check("ERROR" not in messages.text, f"{what}: no error: {messages.text}")
     if is_told and get_ranks() > 1:
-        check(messages.text.count("is in scratch files") == 1, f"{what}: that scratch files are used is said, once")
+        check(messages.text.count("are in scratch files") == 1, f"{what}: that scratch files are used is said, once")
     check(all((a == b).all() for a, b in zip(pictures, expected)), f"{what}: the same pictures, bit for bit")
     for row in get_rows(display):
         check("scratch files" in row["Explanation"], f"{what}: {row['Explanation']}")

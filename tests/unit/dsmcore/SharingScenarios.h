@@ -258,7 +258,7 @@ inline void AutomaticFollowsTheData(dsm::Messenger& messenger)
   const auto two = PublishPattern(messenger, store, directory);
   EXPECT_EQ(store.GetOrganization(), dsm::MemoryOrganization::ObjectBased);
   EXPECT_NE(store.GetExplanation().find("object based: all data take 1 MiB on a rank, "
-                                        "which do not fit the 1 MiB"),
+                                        "which exceeds the limit of 1 MiB"),
     std::string::npos)
     << store.GetExplanation();
   EXPECT_TRUE(store.LacksMemory());

@@ -215,8 +215,8 @@ TEST_F(BlockRequestsTest, BlocksOfOtherOwnersAreNotHandedOut)
     dsm::AttachTail(name, id);
     this->Messengers[0]->Post(1, dsm::MessageKind::BlockRequest, std::move(name));
   };
-  for (const auto& [segment, id, words] : { std::tuple(1u, 2u, "rank 2 owns"),
-         std::tuple(1u, 12u, "does not know"), std::tuple(2u, 1u, "does not know") })
+  for (const auto& [segment, id, words] : { std::tuple(1u, 2u, "rank 2 owns it"),
+         std::tuple(1u, 12u, "has no such block"), std::tuple(2u, 1u, "has no such block") })
   {
     post(segment, id);
     try

@@ -248,7 +248,7 @@ TEST(ConcurrentFragmentSource, ThreadThatCannotBeStartedIsAnErrorOfNext)
     dsm::ConcurrentFragmentSource source(std::move(sources));
     dsm::Fragment fragment;
     const std::string text = dsm_test::GetErrorText([&] { source.Next(fragment); });
-    EXPECT_NE(text.find("could not be started"), std::string::npos) << text;
+    EXPECT_NE(text.find("Cannot start a thread"), std::string::npos) << text;
   };
   EXPECT_EXIT(dsm_test::RunAndExit(check), testing::ExitedWithCode(dsm_test::Good), "");
 }

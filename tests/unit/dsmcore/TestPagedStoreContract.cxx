@@ -162,7 +162,7 @@ TEST(PagedStore, OnlyWorkersThatEnteredMayWait)
       dsm::PagedStore::Worker& worker = store.GetWorker(0);
       store.BeginFrame();
       EXPECT_NE(dsm_test::GetErrorText([&] { store.Acquire(worker, *segment, remote); })
-                  .find("without having entered"),
+                  .find("before it entered"),
         std::string::npos);
       store.Enter(worker);
       EXPECT_NE(dsm_test::GetErrorText([&] { store.Acquire(worker, *segment, remote); })

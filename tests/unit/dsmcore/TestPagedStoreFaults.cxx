@@ -269,7 +269,7 @@ TEST_P(PagedStoreFaults, ChildThatGoesOnWithTheStoreIsTold)
       if (child == 0)
       {
         const std::string text = dsm_test::GetErrorText([&] { store.BeginFrame(); });
-        std::_Exit(text.find("made by fork") != std::string::npos ? Good : EXIT_FAILURE);
+        std::_Exit(text.find("forked process") != std::string::npos ? Good : EXIT_FAILURE);
       }
       int status = 0;
       EXPECT_EQ(waitpid(child, &status, 0), child);

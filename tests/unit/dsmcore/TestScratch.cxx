@@ -168,7 +168,7 @@ TEST_P(Scratch, HoldsWhatDoesNotFitTheMemory)
 
       const auto segment = Publish(messenger, store, Place::Scratch);
       const std::string& text = store.GetExplanation();
-      EXPECT_NE(text.find("is in scratch files"), std::string::npos) << text;
+      EXPECT_NE(text.find("are in scratch files"), std::string::npos) << text;
       EXPECT_TRUE(store.LacksMemory());
       for (int frame = 0; frame < 2; ++frame)
       {
@@ -227,7 +227,7 @@ TEST_P(Scratch, FaultsAreToldAndPass)
   rlimit low = limit;
   low.rlim_cur = BlocksOfRank * Bytes - 1;
   ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &low), 0);
-  expect(this->Disk.Path, "File too large. Free room on its disk");
+  expect(this->Disk.Path, "File too large. Free space on its disk");
   ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &limit), 0);
 }
 
@@ -246,7 +246,7 @@ TEST_P(Scratch, DamageIsSeenAndTheNextFrameWorks)
       messenger.Barrier();
       const std::string text = dsm_test::GetErrorText([&] { ReadAll(messenger, store, *segment); });
       EXPECT_NE(text.find("Brick "), std::string::npos) << text;
-      EXPECT_NE(text.find("its checksum is wrong"), std::string::npos) << text;
+      EXPECT_NE(text.find("has a wrong checksum"), std::string::npos) << text;
       messenger.Barrier();
       store.Retire(segment);
       const auto again = Publish(messenger, store, Place::Scratch);

@@ -254,7 +254,7 @@ TEST(BlockStore, MoreCopiesThanTheMemoryHoldsAreRefusedWithTheNumberOfBytes)
       dsm_test::PatternSink sink;
       const std::string text =
         dsm_test::GetErrorText([&] { store.Publish("Loading", directory, source, sink); });
-      EXPECT_EQ(text.find("Loading: All data on every rank take "), 0u) << text;
+      EXPECT_EQ(text.find("Loading: A copy of all data on every rank takes "), 0u) << text;
       EXPECT_NE(text.find(std::to_string(need) + " bytes) of rank 1's"), std::string::npos) << text;
       EXPECT_TRUE(sink.Begun.empty());
       store.SetSettings(dsm_test::MakeStoreSettings(replicated, need));

@@ -71,8 +71,8 @@ void ReaderThreads::Add(std::function<void()> job)
     {
       if (this->Threads.empty())
       {
-        throw Error(std::string("A thread that reads files could not be started (") + error.what() +
-          "). Let the process have more threads (ulimit -u) or more memory.");
+        throw Error(std::string("Cannot start a thread to read files (") + error.what() +
+          "). Raise the process's limit of threads (ulimit -u) or free memory.");
       }
     }
     this->Jobs.push_back(std::move(job));

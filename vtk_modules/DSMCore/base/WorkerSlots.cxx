@@ -83,9 +83,8 @@ void CheckWorkerCount(int count)
 {
   if (count < 1 || count > std::numeric_limits<std::uint16_t>::max())
   {
-    throw Error("A rank cannot trace with " + std::to_string(count) +
-      " threads. Set the number of threads (DSMThreads) to 0 for an automatic choice, or to at "
-      "least 1.");
+    throw Error("DSMThreads: " + std::to_string(count) +
+      " is not a valid number of threads. Use 0 (automatic) or at least 1.");
   }
 }
 

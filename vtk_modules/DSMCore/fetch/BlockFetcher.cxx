@@ -30,7 +30,7 @@ void BlockFetcher::PrepareToAdd(std::size_t count)
 {
   if (this->IsInFrame())
   {
-    throw Error("Blocks cannot be published within a frame.");
+    throw Error("Blocks cannot be published during a frame.");
   }
   const std::lock_guard<std::mutex> lock(this->Guard);
   this->Segments.MakeRoom(count);
@@ -52,7 +52,7 @@ std::shared_ptr<BlockSegment> BlockFetcher::Retire(const BlockSegment& segment)
   }
   if (this->Phase != FramePhase::Closed)
   {
-    throw Error("A segment cannot be retired within a frame.");
+    throw Error("A segment cannot be retired during a frame.");
   }
   this->Expected.NoteRetired(segment, [&] { return this->ListCached(segment); });
   this->Forget(segment);
@@ -63,7 +63,7 @@ void BlockFetcher::Refresh(const BlockSegment& segment, const std::vector<bool>&
 {
   if (this->IsInFrame())
   {
-    throw Error("Blocks cannot change within a frame.");
+    throw Error("Blocks cannot change during a frame.");
   }
   {
     const std::lock_guard<std::mutex> lock(this->Guard);
@@ -103,7 +103,7 @@ void BlockFetcher::CheckCache(std::size_t cacheBytes, std::size_t largest) const
   {
     throw Error("The cache of " + std::to_string(cacheBytes) +
       " bytes is smaller than one brick (" + std::to_string(footprint) + " bytes)" +
-      (own > 0 ? " and one of the rank's own (" + std::to_string(own) + " bytes)" : "") +
+      (own > 0 ? " plus one brick that the rank owns (" + std::to_string(own) + " bytes)" : "") +
       ". Raise the cache size (DSMCacheSize).");
   }
 }
@@ -127,7 +127,7 @@ void BlockFetcher::BeginFrame(bool agreed)
 {
   if (!agreed)
   {
-    this->Messages.RunTogether("The frame cannot begin",
+    this->Messages.RunTogether("Cannot begin the frame",
       [this]
       {
         if (this->Phase != FramePhase::Closed)
@@ -311,8 +311,8 @@ void BlockFetcher::Arrive(const BlockWant& block, const std::byte* bytes, BlockM
     [&](const Read& other) { return other.Block == block; });
   if (read == this->Reads.end())
   {
-    throw Error("A source of blocks brought block " + std::to_string(block.Id) +
-      ", which nobody asked it for. This is a defect of the program.");
+    throw Error("A block source delivered block " + std::to_string(block.Id) +
+      ", which was not requested. This is a bug in the program.");
   }
   // When this throws, the read is given up with the frame.
   this->Land(block, bytes, memory);

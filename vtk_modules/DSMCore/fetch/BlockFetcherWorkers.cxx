@@ -161,8 +161,8 @@ void BlockFetcher::Refuse(const BlockSegment& segment) const
     throw Error(this->Cause);
   }
   throw Error(this->Segments.Has(segment)
-      ? "A block of another rank was read outside of a frame. This is a defect of the tracer."
-      : "A block of a retired segment was read. This is a defect of the tracer.");
+      ? "A block owned by another rank was read outside a frame. This is a bug in the tracer."
+      : "A block of a retired segment was read. This is a bug in the tracer.");
 }
 
 bool BlockFetcher::TryAdvise(const BlockWant& block, std::vector<BlockId>& advised)

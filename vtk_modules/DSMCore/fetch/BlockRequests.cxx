@@ -96,9 +96,8 @@ BlockWant BlockRequests::Find(const BlockName& name, int source, const char* dee
   {
     throw Error("Rank " + std::to_string(source) + " " + deed + " block " +
       std::to_string(name.Id) + " of segment " + std::to_string(name.Segment) + " in session " +
-      std::to_string(name.FrameSession) + ", which rank " +
-      std::to_string(this->Messages.GetRank()) +
-      " does not know. Do all ranks run the same build?");
+      std::to_string(name.FrameSession) + ", but rank " + std::to_string(this->Messages.GetRank()) +
+      " has no such block. Do all ranks run the same build?");
   }
   return { segment, name.Id };
 }
@@ -111,14 +110,14 @@ void BlockRequests::Serve(const Message& message)
     {
       continue;
     }
-    const BlockWant block = this->Find(name, message.Source, "asked for");
+    const BlockWant block = this->Find(name, message.Source, "requested");
     const BlockDirectory& directory = block.From->GetDirectory();
     if (directory.GetOwner(name.Id) != this->Messages.GetRank())
     {
-      throw Error("Rank " + std::to_string(message.Source) + " asked rank " +
-        std::to_string(this->Messages.GetRank()) + " for block " + std::to_string(name.Id) +
-        ", which rank " + std::to_string(directory.GetOwner(name.Id)) +
-        " owns. Do all ranks run the same build?");
+      throw Error("Rank " + std::to_string(message.Source) + " requested block " +
+        std::to_string(name.Id) + " from rank " + std::to_string(this->Messages.GetRank()) +
+        ", but rank " + std::to_string(directory.GetOwner(name.Id)) +
+        " owns it. Do all ranks run the same build?");
     }
     this->ReplyWhenPossible({ block, message.Source }, this->Store.FindOwned(block));
   }
@@ -230,8 +229,8 @@ void BlockRequests::Receive(Message& message)
   {
     throw Error("Rank " + std::to_string(message.Source) + " sent " +
       std::to_string(message.Payload.size()) + " bytes as block " + std::to_string(name.Id) +
-      ", which rank " + std::to_string(this->Messages.GetRank()) +
-      " did not ask it for or knows with " + std::to_string(bytes) +
+      ", but rank " + std::to_string(this->Messages.GetRank()) +
+      " did not request it, or expects " + std::to_string(bytes) +
       " bytes. Do all ranks run the same build?");
   }
   // When it throws, the block is still pending: who abandons the frame sets it free.

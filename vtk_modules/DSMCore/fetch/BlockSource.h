@@ -74,9 +74,8 @@ public:
   /// from other ranks.
   virtual void Read(BlockId, std::byte*, std::size_t) const
   {
-    throw Error(
-      "Blocks that come within frames only were read outside of one. This is a defect of the "
-      "program.");
+    throw Error("Blocks that are available only during frames were read outside a frame. This is a "
+                "bug in the program.");
   }
   /// The blocks of one owner, in ascending order of id, one at a time.
   void ForEach(const BlockDirectory& directory, int owner, const BlockSegment::Visit& visit) const

@@ -53,8 +53,9 @@ struct LineStatus
   {
     if (!this->MayMoveTo(next))
     {
-      throw Error("A block cannot go from state " + std::to_string(static_cast<int>(this->State)) +
-        " to " + std::to_string(static_cast<int>(next)) + ". This is a defect of the program.");
+      throw Error("A block cannot change from state " +
+        std::to_string(static_cast<int>(this->State)) + " to " +
+        std::to_string(static_cast<int>(next)) + ". This is a bug in the program.");
     }
     this->State = next;
   }

@@ -156,10 +156,10 @@ void ReadingSource::CheckDisk()
     char seconds[32];
     std::snprintf(seconds, sizeof(seconds), "%g", limit);
     throw Error("Brick " + std::to_string(oldest->Block.Id) + " of " + this->Name +
-      " has not come for " + seconds +
-      " s: the disk or the network behind it does not answer, or is too slow. The next picture "
-      "asks for it again; where it may take longer, raise the limit, of which this is three "
-      "quarters (DSMSilenceLimit; 0: none).");
+      " did not arrive within " + seconds +
+      " s (three quarters of the silence limit). The disk or network does not respond or is too "
+      "slow. The next frame requests the brick again. To wait longer, raise the silence limit "
+      "(DSMSilenceLimit; 0 waits forever).");
   }
 }
 

@@ -21,23 +21,23 @@ namespace
 
 std::string DescribeRefusal(std::size_t bytes, int cause)
 {
-  const std::string need =
-    std::to_string(bytes) + " bytes of address space are needed for the blocks of all ranks, but ";
+  const std::string need = std::to_string(bytes) +
+    " bytes of address space are required for the blocks of all ranks, but ";
   const std::string remedy =
-    ", or choose the object based memory organisation (DSMMemoryOrganization).";
+    ", or choose the object based memory organization (DSMMemoryOrganization).";
   rlimit limit{};
   if (cause == EAGAIN && getrlimit(RLIMIT_MEMLOCK, &limit) == 0)
   {
-    return need + "the process locks all that it maps, and may lock no more than " +
+    return need + "the process locks all mapped memory and its limit is " +
       std::to_string(limit.rlim_cur) + " bytes (RLIMIT_MEMLOCK). Raise the limit (ulimit -l)" +
       remedy;
   }
   if (getrlimit(RLIMIT_AS, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY)
   {
-    return need + "the process is limited to " + std::to_string(limit.rlim_cur) +
+    return need + "the limit of the process is " + std::to_string(limit.rlim_cur) +
       " bytes (RLIMIT_AS). Raise the limit (ulimit -v)" + remedy;
   }
-  return need + "the system refuses them (" + std::strerror(cause) +
+  return need + "the system denies the request (" + std::strerror(cause) +
     "). Use more ranks or smaller data" + remedy;
 }
 

@@ -41,10 +41,11 @@ ScratchFile::~ScratchFile()
 
 void ScratchFile::RefuseRoom(int error) const
 {
-  throw Error("The scratch directory '" + this->Directory +
-    "' (DSMScratchDirectory) cannot take the " + FormatMebibytes(this->Bytes) + " (" +
-    std::to_string(this->Bytes) + " bytes) that this rank needs there: " + std::strerror(error) +
-    ". Free room on its disk, choose another directory, or raise the memory per rank (DSMMemory).");
+  throw Error("Scratch directory '" + this->Directory +
+    "' (DSMScratchDirectory): cannot reserve the " + FormatMebibytes(this->Bytes) + " (" +
+    std::to_string(this->Bytes) + " bytes) that this rank needs: " + std::strerror(error) +
+    ". Free space on its disk, choose another directory, or raise the memory per rank "
+    "(DSMMemory).");
 }
 
 void ScratchFile::Open()
@@ -69,10 +70,11 @@ void ScratchFile::Open()
     {
       this->RefuseRoom(error);
     }
-    throw Error("No file can be made in the scratch directory '" + this->Directory +
-      "' (DSMScratchDirectory), where this rank needs " + FormatMebibytes(this->Bytes) + " (" +
-      std::to_string(this->Bytes) + " bytes): " + std::strerror(error) +
-      ". It must exist on the node of every rank, and be writable.");
+    throw Error("Scratch directory '" + this->Directory +
+      "' (DSMScratchDirectory): cannot create a file, for which this rank needs " +
+      FormatMebibytes(this->Bytes) + " (" + std::to_string(this->Bytes) +
+      " bytes): " + std::strerror(error) +
+      ". The directory must exist and be writable on the node of every rank.");
   }
 }
 
@@ -133,10 +135,10 @@ void ScratchFile::Read(std::uint64_t offset, std::byte* bytes, std::size_t count
     }
     if (done <= 0)
     {
-      throw Error("The scratch file in '" + this->Directory +
-        "' (DSMScratchDirectory) cannot be read at byte " + std::to_string(offset) + ": " +
-        (done < 0 ? std::strerror(errno) : "it ends there") +
-        ". Is its disk in order? Choose another directory.");
+      throw Error("Scratch directory '" + this->Directory +
+        "' (DSMScratchDirectory): cannot read the scratch file at byte " + std::to_string(offset) +
+        ": " + (done < 0 ? std::strerror(errno) : "end of file") +
+        ". Check the disk, or choose another directory.");
     }
     offset += static_cast<std::uint64_t>(done);
     bytes += done;

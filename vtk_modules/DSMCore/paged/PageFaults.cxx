@@ -97,12 +97,12 @@ std::uint64_t ToNumber(const std::byte* address)
 
 [[noreturn]] void Refuse(int cause)
 {
-  const char* const why = cause == ENOSYS ? "this kernel lacks it"
-    : cause == EPERM
-    ? "allow it in the seccomp profile of the container, or, on Linux before 5.11, set the sysctl "
-      "vm.unprivileged_userfaultfd to 1"
-    : "the system refuses it";
-  throw Error(std::string("Page based memory needs the system call userfaultfd, which fails (") +
+  const char* const why = cause == ENOSYS ? "this kernel does not have it"
+    : cause == EPERM ? "allow it in the container's seccomp profile or, on Linux before 5.11, set "
+                       "the sysctl vm.unprivileged_userfaultfd to 1"
+                     : "the system denies it";
+  throw Error(
+    std::string("Page based memory requires the system call userfaultfd, which failed (") +
     std::strerror(cause) + "): " + why + ". " + Remedy);
 }
 

@@ -68,10 +68,9 @@ void PagedStore::Internals::Wait(Worker& worker, const Segment& segment, BlockId
   if (thread == 0 || thread == this->CommunicationThread)
   {
     throw Error(thread == 0
-        ? "A worker missed a block without having entered the frame. This is a defect of the "
-          "tracer."
-        : "The communication thread missed a block, for which it alone can send. This is a defect "
-          "of the tracer.");
+        ? "A worker missed a block before it entered the frame. This is a bug in the tracer."
+        : "The communication thread missed a block that only it can request. This is a bug in the "
+          "tracer.");
   }
   if (segment.Lines[id].State == LineState::Cached) // it came in the meantime: a hit after all
   {
@@ -106,7 +105,7 @@ void PagedStore::Internals::Configure(const Settings& settings)
   CheckWorkerCount(settings.Workers);
   if (this->Phase != FramePhase::Closed)
   {
-    throw Error("The settings of a store cannot change within a frame.");
+    throw Error("The settings of a store cannot change during a frame.");
   }
   if (this->Messages.GetSize() > 1 && !this->Faults)
   {
@@ -138,9 +137,8 @@ void PagedStore::Internals::CheckFaults() const
 {
   if (getpid() != this->Process)
   {
-    throw Error("A process made by fork cannot use the paged memory of its parent. Start a new "
-                "program, or choose the object based memory organisation "
-                "(DSMMemoryOrganization).");
+    throw Error("A forked process cannot use the paged memory of its parent. Start a new program, "
+                "or choose the object based memory organization (DSMMemoryOrganization).");
   }
   if (!this->FaultsRefusal.empty())
   {

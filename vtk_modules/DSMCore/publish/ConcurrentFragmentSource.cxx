@@ -28,8 +28,8 @@ ConcurrentFragmentSource::ConcurrentFragmentSource(
   catch (const std::system_error& error)
   {
     this->Stop(std::make_exception_ptr(
-      Error(std::string("A thread that prepares the data could not be started (") + error.what() +
-        "). Let the process have more threads (ulimit -u) or more memory, or use fewer ranks on "
+      Error(std::string("Cannot start a thread to prepare the data (") + error.what() +
+        "). Raise the process's limit of threads (ulimit -u), free memory, or use fewer ranks on "
         "the host.")));
   }
   catch (...)

@@ -40,7 +40,7 @@ HostGroups HostGroups::Separate(int ranks)
 
 std::shared_ptr<const HostGroups> HostGroups::Find(Messenger& messenger, bool wanted)
 {
-  constexpr const char* what = "Sharing memory within the hosts";
+  constexpr const char* what = "Sharing memory within hosts";
   const auto size = static_cast<std::size_t>(messenger.GetSize());
   const auto own = static_cast<std::size_t>(messenger.GetRank());
   std::vector<int> hosts;

@@ -11,7 +11,7 @@ namespace dsm
 std::shared_ptr<const void> Publications::FindAny(
   Messenger& messenger, std::type_index type, std::uint64_t content)
 {
-  const auto all = messenger.GatherTogether("Looking for what is published",
+  const auto all = messenger.GatherTogether("Finding published data",
     [&]
     {
       this->Entries.erase(std::remove_if(this->Entries.begin(), this->Entries.end(),

@@ -104,8 +104,8 @@ void SegmentPublisher::Check(
   if (std::count(fingerprints.begin(), fingerprints.end(), fingerprints.front()) !=
     this->Messages.GetSize())
   {
-    throw Error("The ranks disagree about the number, the sizes or the owners of the blocks. Do "
-                "all ranks see the same extent of the data?");
+    throw Error("The ranks disagree on the number, sizes or owners of the blocks. Do all ranks see "
+                "the same extent of the data?");
   }
   for (BlockId id = 0; id < directory.GetCount(); ++id)
   {
@@ -124,9 +124,9 @@ void SegmentPublisher::CheckMemory(
 {
   if (bytes > available / static_cast<std::uint64_t>(ranksOnHost))
   {
-    throw Error("out of memory: " + FormatMebibytes(bytes) + " are needed for each of " +
+    throw Error("out of memory: " + FormatMebibytes(bytes) + " are required for each of " +
       std::to_string(ranksOnHost) + " ranks on the host, which has " + FormatMebibytes(available) +
-      " left. " + this->Store.Remedy);
+      " available. " + this->Store.Remedy);
   }
 }
 

@@ -33,7 +33,7 @@ public:
     FunctionRef<std::shared_ptr<BlockSegment>(std::uint32_t number, BlockDirectory&& directory)>
       Create;
     /// What the user can do when memory does not suffice: a sentence.
-    const char* Remedy = "Use more hosts, so that each holds fewer bytes, or smaller data.";
+    const char* Remedy = "Use more hosts or smaller data.";
   };
 
   /// `what` names the publication in errors.

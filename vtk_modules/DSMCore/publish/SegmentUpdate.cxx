@@ -91,7 +91,7 @@ std::vector<bool> SegmentUpdate::Run(Messenger& messenger, std::string_view what
     if (!chosen[id])
     {
       throw Error("A fragment was produced for block " + std::to_string(id) +
-        ", which is to stay as it is. This is a defect of the program.");
+        ", which must not change. This is a bug in the program.");
     }
     sink.Absorb(id, segment.GetOwned(id), directory.GetBytes(id), bytes, count);
   };

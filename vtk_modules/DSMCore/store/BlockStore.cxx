@@ -83,8 +83,8 @@ void BlockStore::SetSettings(const Settings& settings)
   const Settings& old = this->Current;
   if (!this->Segments.IsEmpty() && IsPaged(settings.Organization) != IsPaged(this->InForce))
   {
-    throw Error("The page based memory organisation can be entered and left only while nothing is "
-                "published.");
+    throw Error(
+      "The memory organization cannot change to or from page based while data are published.");
   }
   if (settings.Organization != old.Organization || settings.MemoryBytes != old.MemoryBytes ||
     settings.CacheBytes != old.CacheBytes || settings.SourceCacheBytes != old.SourceCacheBytes ||
@@ -119,7 +119,7 @@ int BlockStore::CountWorkers() const
 {
   if (this->Current.Overlap < 1)
   {
-    throw Error("There cannot be fewer than one worker for each that traces.");
+    throw Error("The number of workers per tracing thread must be at least 1.");
   }
   const bool waits = this->Messages.GetSize() > 1 || this->IsAnyFromSource();
   return this->Current.Workers * (waits ? this->Current.Overlap : 1);
@@ -260,8 +260,8 @@ MemoryPlan BlockStore::MakePlan(
     if (stances[rank].Choice != stances.front().Choice)
     {
       throw Error("Rank " + std::to_string(rank) +
-        " and rank 0 disagree about the blocks or about how they are to be kept. Do all ranks see "
-        "the same extent of the data, and the same settings?");
+        " and rank 0 disagree on the blocks or the memory settings. Do all ranks have the same "
+        "extent of the data and the same settings?");
     }
     budgets.push_back(stances[rank].Budget);
   }
@@ -300,7 +300,7 @@ void BlockStore::PutInForce(Decision&& decision)
 void BlockStore::Settle()
 {
   Decision fallback;
-  Decision decision = this->Decide("The data cannot be kept as they should", nullptr, fallback);
+  Decision decision = this->Decide("Cannot apply the memory settings", nullptr, fallback);
   this->MoveTo(decision, std::move(fallback));
   this->PutInForce(std::move(decision));
 }

@@ -274,25 +274,26 @@ void MemoryPlan::Refuse(MemoryOrganization organization, int rank) const
   const bool replicated = organization == MemoryOrganization::Replicated;
   const bool allOnDisk = std::all_of(this->Segments.begin(), this->Segments.end(),
     [](const BlockDirectory* segment) { return segment->IsFromSource(); });
-  std::string text = replicated ? "All data on every rank take "
-    : allOnDisk
-    ? "What must be in memory of data on a disk, for tables, messages and a few bricks, takes "
-    : "The part of the data that rank " + std::to_string(rank) + " owns takes ";
+  std::string text = replicated ? "A copy of all data on every rank takes "
+    : allOnDisk ? "Data on a disk need memory for tables, messages and a few bricks, which takes "
+                : "The data owned by rank " + std::to_string(rank) + " take ";
   text += FormatMebibytes(need) + " (" + std::to_string(need) + " bytes" +
-    (replicated || allOnDisk ? "" : ", a cache of one brick and messages included") + ") of rank " +
-    std::to_string(rank) + "'s memory, which may take " +
+    (replicated || allOnDisk ? "" : ", including a cache of one brick and messages") +
+    ") of rank " + std::to_string(rank) + "'s memory. The limit is " +
     FormatMebibytes(replicated ? budget.Bytes : budget.Limit) +
     ". Raise the memory per rank (DSMMemory), " +
-    (this->AnyOnOwnersDisk || allOnDisk ? "" : "let bricks go to a disk (DSMScratchDirectory), ");
+    (this->AnyOnOwnersDisk || allOnDisk
+        ? ""
+        : "set a scratch directory on a disk (DSMScratchDirectory), ");
   if (replicated)
   {
     throw MemoryShortage(
-      text + "or choose the object based memory organisation (DSMMemoryOrganization).");
+      text + "or choose the object based memory organization (DSMMemoryOrganization).");
   }
   const int ranks = this->FindRankCount(organization);
   throw MemoryShortage(text +
     (ranks > 0 ? "or use at least " + std::to_string(ranks) + " ranks with as much memory."
-               : std::string("since no number of ranks would do.")));
+               : std::string("because more ranks do not help.")));
 }
 
 std::string MemoryPlan::Explain(MemoryOrganization wanted, MemoryOrganization chosen) const
@@ -301,15 +302,15 @@ std::string MemoryPlan::Explain(MemoryOrganization wanted, MemoryOrganization ch
   {
     const bool byAll = wanted == MemoryOrganization::Replicated;
     const std::string scratch = this->AnyOnOwnersDisk
-      ? "what does not fit the memory is in scratch files (DSMScratchDirectory), and "
+      ? "data that exceed the memory limit are in scratch files (DSMScratchDirectory), and "
       : "";
-    return std::string("The memory organisation is ") + GetText(byAll ? wanted : chosen) +
+    return std::string("The memory organization is ") + GetText(byAll ? wanted : chosen) +
       (wanted == MemoryOrganization::Automatic ? "" : ", as chosen") + ": " + scratch +
-      "bricks that are on a disk come to memory when they are needed, read from it " +
+      "bricks on a disk are read on demand, " +
       (byAll ? "by each rank that needs them" : "once for all ranks") +
-      (byAll && this->AnyOnOwnersDisk ? ", those in scratch files once for all." : ".");
+      (byAll && this->AnyOnOwnersDisk ? ", and bricks in scratch files once for all ranks." : ".");
   }
-  std::string text = std::string("The memory organisation is ") + GetText(chosen);
+  std::string text = std::string("The memory organization is ") + GetText(chosen);
   if (wanted != MemoryOrganization::Automatic)
   {
     return text + ", as chosen.";
@@ -326,9 +327,9 @@ std::string MemoryPlan::Explain(MemoryOrganization wanted, MemoryOrganization ch
   text += ": all data take " +
     (this->LargestGroup == 1
         ? each
-        : FormatMebibytes(this->Blocks.Total) + " on a host, once for the up to " +
-          std::to_string(this->LargestGroup) + " ranks that run there, so " + each) +
-    (fits ? "fit" : "do not fit") + " the " + FormatMebibytes(least) + " that it may take";
+        : FormatMebibytes(this->Blocks.Total) + " on a host, shared by up to " +
+          std::to_string(this->LargestGroup) + " ranks, or " + each) +
+    (fits ? "is within" : "exceeds") + " the limit of " + FormatMebibytes(least);
   if (fits && chosen != MemoryOrganization::Replicated)
   {
     text += ", but copying them failed";

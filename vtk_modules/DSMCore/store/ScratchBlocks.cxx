@@ -109,9 +109,7 @@ void ScratchBlocks::Read(BlockId id, std::byte* block, std::size_t bytes) const
   {
     throw Error("Brick " + std::to_string(id) + " in the scratch file in '" +
       this->File->GetDirectory() +
-      "' (DSMScratchDirectory) is not what was written there: its checksum is wrong. Is the disk "
-      "in "
-      "order? Choose another directory.");
+      "' (DSMScratchDirectory) has a wrong checksum. Check the disk, or choose another directory.");
   }
 }
 

@@ -244,9 +244,8 @@ void BlockTable::CheckViews() const
     const auto index = static_cast<std::size_t>(mate);
     if (mate != this->Rank && !(this->CopyViews[index].GetData() && this->Views[index].GetData()))
     {
-      throw Error("The memory of rank " + std::to_string(mate) +
-        ", which runs on the same host, cannot be mapped. Switch off host sharing "
-        "(DSMHostSharing).");
+      throw Error("Cannot map the memory of rank " + std::to_string(mate) +
+        ", which runs on the same host. Turn off host sharing (DSMHostSharing).");
     }
   }
 }

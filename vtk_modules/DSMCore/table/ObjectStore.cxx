@@ -119,8 +119,8 @@ void ObjectStore::Announce(Worker& worker)
 {
   if (worker.Pins != 0)
   {
-    throw Error("A worker announced a quiescent point while it held a block. This is a defect of "
-                "the tracer.");
+    throw Error(
+      "A worker announced a quiescent point while it held a block. This is a bug in the tracer.");
   }
   if (worker.Epoch.load(std::memory_order_relaxed) != Worker::Offline)
   {

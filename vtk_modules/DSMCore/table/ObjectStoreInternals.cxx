@@ -49,13 +49,12 @@ const std::byte* ObjectStore::Internals::Wait(Worker& worker, const Segment& seg
 {
   if (worker.Pins != 0)
   {
-    throw Error("A worker that holds a block would wait for another; it must let go of the first. "
-                "This is a defect of the tracer.");
+    throw Error("A worker requested a block while it held another. This is a bug in the tracer.");
   }
   if (worker.Epoch.load(std::memory_order_relaxed) == Worker::Offline)
   {
-    throw Error("A worker missed a block without having entered the frame. This is a defect of "
-                "the tracer.");
+    throw Error(
+      "A worker missed a block before it entered the frame. This is a bug in the tracer.");
   }
   BlockLine& line = segment.Lines[id];
   std::unique_lock<std::mutex> lock(this->Guard);
@@ -105,7 +104,7 @@ void ObjectStore::Internals::Configure(const Settings& settings)
   const std::lock_guard<std::mutex> lock(this->Guard);
   if (this->Phase != FramePhase::Closed)
   {
-    throw Error("The settings of a store cannot change within a frame.");
+    throw Error("The settings of a store cannot change during a frame.");
   }
   this->Current = settings;
   this->Workers.Resize<Worker>(settings.Workers);

@@ -23,7 +23,7 @@ void ReplicatedStore::SetSettings(const Settings& settings)
   CheckWorkerCount(settings.Workers);
   if (this->InFrame)
   {
-    throw Error("The settings of a store cannot change within a frame.");
+    throw Error("The settings of a store cannot change during a frame.");
   }
   this->Current = settings;
   this->Workers.resize(static_cast<std::size_t>(settings.Workers));
@@ -50,7 +50,7 @@ std::shared_ptr<BlockSegment> ReplicatedStore::Publish(std::string_view what,
   {
     if (this->InFrame)
     {
-      throw Error("Blocks cannot be published within a frame.");
+      throw Error("Blocks cannot be published during a frame.");
     }
     this->Segments.MakeRoom(1);
     return blocks.GetResidentBytes(rank) + BlockTable::CountReplicaBytes(blocks, *groups, rank);
@@ -58,9 +58,8 @@ std::shared_ptr<BlockSegment> ReplicatedStore::Publish(std::string_view what,
   const auto create = [&](std::uint32_t number, BlockDirectory&& blocks)
   { return std::make_shared<BlockTable>(number, std::move(blocks), rank, *groups); };
   const SegmentPublisher::Steps steps{ count, create,
-    "Choose the object based memory organisation (DSMMemoryOrganization), which shares the data "
-    "out "
-    "between the ranks, or smaller data." };
+    "Choose the object based memory organization (DSMMemoryOrganization), which distributes the "
+    "data to the ranks, or use smaller data." };
   auto table =
     std::static_pointer_cast<BlockTable>(SegmentPublisher(this->Messages, what, steps)
                                            .Run(std::move(directory), source, sink, progress));
@@ -77,7 +76,7 @@ void ReplicatedStore::Retire(const std::shared_ptr<BlockSegment>& segment)
   }
   if (this->InFrame)
   {
-    throw Error("A segment cannot be retired within a frame.");
+    throw Error("A segment cannot be retired during a frame.");
   }
   this->Segments.Remove(*segment)->DropReplicas();
 }

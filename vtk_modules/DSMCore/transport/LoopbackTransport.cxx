@@ -33,8 +33,8 @@ std::vector<std::unique_ptr<Transport>> LoopbackTransport::CreateGroup(int size)
 {
   if (size < 1)
   {
-    throw Error("A loopback group of " + std::to_string(size) +
-      " ranks was asked for; it needs at least one.");
+    throw Error(
+      "Invalid loopback group of " + std::to_string(size) + " ranks. Use at least one rank.");
   }
   const auto group = std::make_shared<Group>(size);
   std::vector<std::unique_ptr<Transport>> transports;
@@ -67,7 +67,7 @@ void LoopbackTransport::Post(int destination, Message message)
 {
   if (destination < 0 || destination >= this->GetSize())
   {
-    throw Error("A message for rank " + std::to_string(destination) +
+    throw Error("Invalid destination: a message for rank " + std::to_string(destination) +
       " was posted, but there are " + std::to_string(this->GetSize()) + " ranks.");
   }
   message.Source = this->Rank;

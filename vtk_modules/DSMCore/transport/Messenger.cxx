@@ -73,7 +73,7 @@ bool Messenger::Internals::Progress()
 {
   if (this->Dispatching)
   {
-    throw Error("A message handler waited for messages; only the code around it may.");
+    throw Error("A message handler must not wait for messages. This is a bug in the program.");
   }
   if (this->Deferred)
   {
@@ -375,7 +375,7 @@ void Messenger::SetHandler(MessageKind kind, Handler handler)
 {
   if (kind == MessageKind::Collective)
   {
-    throw Error("Collective messages are the messenger's own.");
+    throw Error("Only the messenger can handle collective messages.");
   }
   this->Self->Handlers[Internals::IndexOf(kind)] = std::move(handler);
   this->Self->Changed = true;
@@ -450,8 +450,7 @@ std::string Messenger::DescribeException()
   }
   catch (const std::bad_alloc&)
   {
-    return "out of memory. Use more ranks or more hosts, so that each rank holds fewer bytes, or "
-           "a smaller cache.";
+    return "out of memory. Use more ranks, more hosts, or a smaller cache.";
   }
   catch (const std::exception& exception)
   {

@@ -290,7 +290,7 @@ std::vector<std::vector<std::byte>> Messenger::GatherPieces(
   }
   std::vector<std::vector<std::byte>> parts;
   std::vector<Stream> streams;
-  this->RunTogether("What the ranks give cannot be gathered",
+  this->RunTogether("Cannot gather the ranks' data",
     [&]
     {
       streams.resize(size);
@@ -383,7 +383,7 @@ void Messenger::Sum(std::vector<std::uint64_t>& numbers)
   const auto counts = this->AllGatherValue(static_cast<std::uint64_t>(numbers.size()));
   if (std::count(counts.begin(), counts.end(), counts.front()) != this->GetSize())
   {
-    throw Error("The ranks add up different numbers of numbers. Do all ranks run the same build?");
+    throw Error("The ranks sum arrays of different lengths. Do all ranks run the same build?");
   }
   Internals& self = *this->Self;
   const Tree tree(this->GetRank(), this->GetSize());

@@ -127,14 +127,14 @@ void Messenger::Internals::ThrowIfLost()
       std::snprintf(seconds, sizeof(seconds), "%g", this->SilenceLimit);
       const std::string name = "Rank " + std::to_string(rank);
       const std::string what = this->Loss.IsStuck != 0
-        ? name + " is stuck: none of its tracing threads has done anything for " + seconds + " s."
-        : name + " has given no sign of life for " + seconds +
-          " s: it is stopped, hangs, or its host is gone.";
+        ? name + " is stuck: its tracing threads made no progress for " + seconds + " s."
+        : name + " did not respond for " + seconds +
+          " s: it is stopped, hangs, or its host failed.";
       lost.emplace(Status{ rank,
         what +
-          " The other ranks do not wait for it any longer; nothing can be drawn until the program "
-          "(of a server: pvserver) is restarted. Where ranks may take longer, raise the limit "
-          "(DSMSilenceLimit; 0: none).",
+          " The other ranks stopped waiting. Restart the program (pvserver, if connected to a "
+          "server) to draw again. To wait longer, raise the limit (DSMSilenceLimit; 0 waits "
+          "forever).",
         false });
     });
   throw *lost;

@@ -124,7 +124,7 @@ public:
     {
       throw Error("A message of " + std::to_string(message.Payload.size()) +
         " bytes cannot be sent from rank " + std::to_string(this->Rank) + " to rank " +
-        std::to_string(destination) + ": 2 GiB is the most. Use smaller blocks.");
+        std::to_string(destination) + ": the maximum is 2 GiB. Use smaller blocks.");
     }
     const MessageKind kind = message.Kind;
     Sending sending{ kind, message.Payload.size(), std::move(message.Payload) };
@@ -464,8 +464,7 @@ private:
       const std::string text = "out of memory: a message of " +
         std::to_string(receiving.WireBytes) + " bytes from rank " +
         std::to_string(receiving.Arrived.Source) +
-        " could not be taken in. Use more ranks or more hosts, so that each rank holds fewer "
-        "bytes.";
+        " could not be received. Use more ranks or more hosts.";
       queue.pop_front();
       throw Error(text);
     }
@@ -495,8 +494,8 @@ private:
     {
       throw Error("Rank " + std::to_string(this->Rank) + " received a message of " +
         std::to_string(message.Payload.size()) + " bytes from rank " +
-        std::to_string(message.Source) + " that claims to have " +
-        std::to_string(header.PayloadBytes) + ". Do all ranks run the same build?");
+        std::to_string(message.Source) + " that declares " + std::to_string(header.PayloadBytes) +
+        ". Do all ranks run the same build?");
     }
     message.Kind = static_cast<MessageKind>(header.Kind);
     message.Session = header.Session;
@@ -604,7 +603,7 @@ MpiTransport::Environment::Environment(int& argc, char**& argv)
     int provided = MPI_THREAD_SINGLE;
     if (MPI_Init_thread(&argc, &argv, MPI_THREAD_SINGLE, &provided) != MPI_SUCCESS)
     {
-      throw Error("MPI_Init_thread failed. Start the program with mpirun, or alone.");
+      throw Error("MPI_Init_thread failed. Start the program with mpirun, or without MPI.");
     }
     this->Owner = true;
   }
