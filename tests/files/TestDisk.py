@@ -141,7 +141,7 @@ os.replace(path + ".away", path)
 # One that is written to: not a mixture of old and new, but an error until it is reloaded.
 last = render(view)
 (0.9 * values).astype(numpy.float32).tofile(path)
-expect_failure("a file that is written to", last, name, "was written to since it was opened. Reload it.")
+expect_failure("a file that is written to", last, name, "changed after it was opened. Reload it.")
 simple.ReloadFiles(source)
 with Messages() as messages:
     pictures = go_round(display)

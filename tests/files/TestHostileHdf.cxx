@@ -380,7 +380,7 @@ TEST(HostileHdf, ValuesInAPipeAreRefused)
     H5Pset_external(creation.Get(), (folder / "pipe").c_str(), 0, H5F_UNLIMITED);
     file.Add("a", { 4, 4, 4 }, {}, H5T_NATIVE_UINT8, creation);
   }
-  ExpectRefusal(folder / "external.h5", { "pipe", "not there, or is no file" });
+  ExpectRefusal(folder / "external.h5", { "pipe", "does not exist or is not a regular file" });
   {
     Writer file(folder / "linked.vtkhdf");
     file.AddImage({ 0, 3, 0, 3, 0, 3 });
@@ -395,7 +395,7 @@ TEST(HostileHdf, ValuesInAPipeAreRefused)
     H5Pset_virtual(creation.Get(), space.Get(), "pipe", "a", space.Get());
     file.Add("a", shape, {}, H5T_NATIVE_UINT8, creation);
   }
-  ExpectRefusal(folder / "virtual.h5", { "pipe", "not there" });
+  ExpectRefusal(folder / "virtual.h5", { "pipe", "does not exist" });
 }
 
 /// As h5py writes them with libver="latest", and programs of detectors do.

@@ -215,7 +215,7 @@ odd = simple.DSMVolumeReader(FileName=[*get_series("nhdr")[:2], os.path.join(FIL
 with Messages() as messages:
     odd.UpdatePipeline(2.0)
 if get_ranks() == 1:
-    check("detached.nhdr" in messages.text and "no time step" in messages.text, "it is named")
+    check("detached.nhdr" in messages.text and "cannot be a time step" in messages.text, "it is named")
 with Messages() as messages:
     odd.UpdatePipeline(1.0)
 check("ERROR" not in messages.text, f"the next step: {messages.text}")

@@ -177,7 +177,7 @@ with open(path("taken.h5.part.lock"), "wb") as lock:
     expect_refusal("a conversion that is running", "is being written by another process")
 os.remove(path("taken.h5.part.lock"))
 os.remove(path("taken.h5.part.json"))
-expect_refusal("another program's files", "in the way")
+expect_refusal("another program's files", "this program did not create it")
 os.remove(path("taken.h5.part"))
 expect_refusal("another program's level", "taken.h5.part.level1")
 os.remove(path("taken.h5.part.level1"))

@@ -226,7 +226,7 @@ TEST(VolumeFiles, ADatasetIsChosenOnlyWhereThereAreDatasets)
   }
   EXPECT_EQ(
     vol::OpenVolumeFile((GetFolder() / "ball.h5").string(), options)->GetArrays().size(), 1u);
-  ExpectRefusal("deflate.h5", options, "such dataset as 'f'. There are: 'deep/er/f', 'other'.");
+  ExpectRefusal("deflate.h5", options, "no dataset 'f'. Valid datasets: 'deep/er/f', 'other'.");
 }
 
 TEST(VolumeFiles, AChunkThatManyThreadsWantIsReadOnce)

@@ -151,8 +151,8 @@ with h5py.File(path("image.vtkhdf"), "r") as one, h5py.File(path("arrays.vtkhdf"
         check(np.array_equal(one["VTKHDF"][name], other["VTKHDF"][name]), f"{name} of several arrays")
     check((one["VTKHDF"].attrs["Direction"] == other["VTKHDF"].attrs["Direction"]).all(), "the direction")
     check(other["DSM/PointData/v/ValueRanges"].shape == (4, 4), "ranges of three components and the magnitude")
-for option, value, words in (("--dataset", "f", "no datasets to choose 'f' from"), ("--raw-size", "9,9,9", "--raw-size is for bare values"),
-                             ("--spacing", "1,1,2", "--spacing is for bare values")):
+for option, value, words in (("--dataset", "f", "does not support choosing a dataset ('f')"), ("--raw-size", "9,9,9", "--raw-size applies to .raw files only"),
+                             ("--spacing", "1,1,2", "--spacing applies to .raw files only")):
     done = convert(option, value, path("image.vtkhdf"), path("none.vtkhdf"))
     check(done.returncode != 0 and words in done.stderr, f"{option} of no use is refused: {done.stderr.strip()}")
 done = convert("--quiet", "--arrays", "nothing", path("image.vtkhdf"), path("none.vtkhdf"))
@@ -162,7 +162,7 @@ check(done.returncode != 0 and "--spacing" in done.stderr, f"no spacing: {done.s
 
 # The names the wrong way round: what was to be read is not replaced.
 done = convert("--quiet", path("image.vtkhdf"), path("convert.raw"))
-check(done.returncode != 0 and "let it end in .vtkhdf" in done.stderr, f"another format: {done.stderr.strip()}")
+check(done.returncode != 0 and "Use .vtkhdf" in done.stderr, f"another format: {done.stderr.strip()}")
 check(os.path.getsize(path("convert.raw")) == values.nbytes, "and the file of that name is as it was")
 
 # Each number of how far it is, once.
@@ -318,14 +318,14 @@ with h5py.File(path("big.vtkhdf"), "r") as file:
     check(np.array_equal(file["VTKHDF/PointData/p_a"][...], big + 1), f"the other one is begun anew {done.stderr}")
 os.remove(path("big.vtkhdf"))
 done = convert("--quiet", path("alike.h5"), path("big.vtkhdf"))
-check(done.returncode == 1 and "'p/a' and 'p_a' would both be called 'p_a'" in done.stderr, f"both: {done.stderr.strip()}")
+check(done.returncode == 1 and "'p/a' and 'p_a' would both be named 'p_a'" in done.stderr, f"both: {done.stderr.strip()}")
 
 # What is read is not written over, whatever is named.
 for name, origin in (("detached.nhdr", "detached.raw"), ("detached.mhd", "detached.bin"), ("raw_float32.zarr", "raw_float32.zarr/0.0.0"),
                      ("origins/virtual.h5", "origins/a.bin"), ("origins/link.h5", "origins/d.bin")):
     before = open(path(origin), "rb").read()
     done = convert("--quiet", path(name), path(origin))
-    check(done.returncode == 1 and "would be written over what is read" in done.stderr, f"{name}: {done.stderr.strip()}")
+    check(done.returncode == 1 and "would overwrite the source" in done.stderr, f"{name}: {done.stderr.strip()}")
     check(open(path(origin), "rb").read() == before, f"{origin} is as it was")
 
 # Levels go on, too, or are made anew with what they are of.
@@ -360,7 +360,7 @@ check(first.wait(100) == 0, f"the first goes on: {first.stderr.read().strip()}")
 compare_big("of the first of two")
 os.remove(path("big.vtkhdf"))
 os.mkfifo(path("pipe"))
-for place, words in ((FOLDER, "a folder or a device"), (path("pipe"), "a folder or a device"), ("", "no name")):
+for place, words in ((FOLDER, "a folder or a device"), (path("pipe"), "a folder or a device"), ("", "name of the file to write is empty")):
     done = convert(*BIG[:-1], place)
     check(done.returncode == 1 and words in done.stderr, f"to '{place}': {done.stderr.strip()}")
 os.remove(path("pipe"))

@@ -211,8 +211,9 @@ TEST(PagedStore, RefusalOfTheSystemIsAnErrorOfAllRanksWithARemedy)
         const std::string text =
           dsm_test::GetErrorText([&] { store.Publish("Loading", directory, source, sink); });
         EXPECT_EQ(
-          text.find("Loading: Rank 1: Page based memory needs the system call userfaultfd, "
-                    "which fails (Operation not permitted): allow it in the seccomp profile"),
+          text.find(
+            "Loading: Rank 1: Page based memory requires the system call userfaultfd, "
+            "which failed (Operation not permitted): allow it in the container's seccomp profile"),
           0u)
           << text;
         EXPECT_NE(text.find("Choose Object based or Automatic"), std::string::npos) << text;

@@ -293,7 +293,7 @@ void MemoryPlan::Refuse(MemoryOrganization organization, int rank) const
   const int ranks = this->FindRankCount(organization);
   throw MemoryShortage(text +
     (ranks > 0 ? "or use at least " + std::to_string(ranks) + " ranks with as much memory."
-               : std::string("because more ranks do not help.")));
+               : std::string("or use smaller data. More ranks do not help.")));
 }
 
 std::string MemoryPlan::Explain(MemoryOrganization wanted, MemoryOrganization chosen) const

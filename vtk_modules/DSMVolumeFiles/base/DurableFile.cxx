@@ -57,7 +57,7 @@ void WriteAll(Descriptor& file, const std::string& path, const void* bytes, std:
   }
   if (!S_ISREG(state.st_mode))
   {
-    throw FileError(path, "cannot be written: it is a device or a pipe.");
+    throw FileError(path, "cannot be written because it is a device or a pipe.");
   }
   const auto* const first = static_cast<const char*>(bytes);
   for (std::size_t done = 0; done < count;)

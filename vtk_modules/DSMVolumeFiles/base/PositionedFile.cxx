@@ -69,7 +69,7 @@ PositionedFile::PositionedFile(std::string path)
   if (!S_ISREG(state.st_mode) && !S_ISDIR(state.st_mode)) // a folder has a stamp, too
   {
     close(this->Descriptor);
-    throw FileError(this->Path, "cannot be read in parts: it is a device or a pipe.");
+    throw FileError(this->Path, "cannot be read in parts because it is a device or a pipe.");
   }
   this->OfDirectory = S_ISDIR(state.st_mode);
   this->Bytes = static_cast<std::uint64_t>(state.st_size);
@@ -115,7 +115,7 @@ void PositionedFile::CheckUnchanged() const
 {
   if (!this->IsUnchanged())
   {
-    throw FileError(this->Path, "was written to since it was opened. Reload it.");
+    throw FileError(this->Path, "changed after it was opened. Reload it.");
   }
 }
 
@@ -196,7 +196,7 @@ void PositionedFile::ReadUnchecked(std::uint64_t offset, std::byte* out, std::si
       this->CheckUnchanged();
       throw FileError(this->Path,
         "ends" + place(offset + done) + ", where " + std::to_string(bytes - done) +
-          " more bytes of values are expected: it is truncated, or its header is wrong.");
+          " more bytes of values are expected. The file is truncated or its header is wrong.");
     }
     done += static_cast<std::size_t>(got);
   }

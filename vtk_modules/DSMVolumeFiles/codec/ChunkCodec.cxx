@@ -57,7 +57,7 @@ ByteBuffer Do(const CodecStep& step, ByteBuffer bytes)
 {
   if (!step.What->Encode)
   {
-    Refuse("This compression or checksum is read, but not written.");
+    Refuse("this compression or checksum can be read but not written.");
   }
   return step.What->Encode(std::move(bytes), step.Width);
 }
@@ -75,7 +75,7 @@ CodecStep::CodecStep(const Codec* what, std::size_t width)
 {
   if (!what)
   {
-    throw std::logic_error("there is no codec of this name");
+    throw std::logic_error("unknown codec name");
   }
 }
 
@@ -86,16 +86,16 @@ ChunkCodec::ChunkCodec(std::vector<CodecStep> steps)
     static_cast<std::size_t>(std::count_if(this->Steps.begin(), this->Steps.end(), &Compresses));
   if (this->Steps.size() > FileLimits::Filters || compressors > FileLimits::Compressors)
   {
-    Refuse("its chunks have " + std::to_string(this->Steps.size()) + " filters, " +
-      std::to_string(compressors) + " of them compressors; at most " +
+    Refuse("Its chunks have " + std::to_string(this->Steps.size()) + " filters, " +
+      std::to_string(compressors) + " of which are compressors; at most " +
       std::to_string(FileLimits::Filters) + ", " + std::to_string(FileLimits::Compressors) +
-      " of them compressors, are supported.");
+      " of which are compressors, are supported.");
   }
   for (const CodecStep& step : this->Steps)
   {
     if (step.Width == 0)
     {
-      Refuse("a filter of its chunks has elements of 0 bytes.");
+      Refuse("A filter of its chunks has elements of 0 bytes.");
     }
     if (!step.What->LackingPackage.empty())
     {

@@ -46,7 +46,8 @@ public:
       array.GetSampleBytes();
     if (this->File->IsDirectory())
     {
-      throw FileError(path, "has its values in '" + values.Path + "', which is a directory.");
+      throw FileError(
+        path, "refers to '" + values.Path + "' for its values, which is a directory.");
     }
     const std::uint64_t has = this->File->GetBytes();
     this->First =
@@ -55,9 +56,9 @@ public:
     if (this->First < least || this->First > has || need > has - this->First)
     {
       throw FileError(values.Path,
-        "has " + std::to_string(has) + " bytes, but " + std::to_string(need) +
-          " of values behind " + std::to_string(std::max(least, this->First)) +
-          " of header are expected. Check the sizes and the type of the values.");
+        "has " + std::to_string(has) + " bytes, but " + std::to_string(need) + " of values after " +
+          std::to_string(std::max(least, this->First)) +
+          " of header are expected. Check the dimensions and the type of the values.");
     }
     // What is kept of values that were read in another way is not of these.
     const std::uint64_t manner[] = { this->File->GetStamp(), this->First,

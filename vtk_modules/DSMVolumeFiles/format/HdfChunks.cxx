@@ -85,7 +85,8 @@ haddr_t FindHdfValuesPlace(
   if (first > has || !needed || *needed > has - first)
   {
     throw FileError(file.GetPath(),
-      "ends before the values of its dataset '" + array.Name + "': it is truncated, or damaged.");
+      "ends before the values of its dataset '" + array.Name +
+        "'. The file is truncated or damaged.");
   }
   return first;
 }
@@ -99,7 +100,7 @@ void CheckHdfCompact(hid_t dataset, const std::string& path, const std::string& 
     { static_cast<std::uint64_t>(std::max<hssize_t>(0, count)), H5Tget_size(type.Get()) });
   if (count < 0 || !needed)
   {
-    RefuseDamaged(path, name, "fewer values than its shape says");
+    RefuseDamaged(path, name, "fewer values than its shape declares");
   }
 }
 
@@ -126,7 +127,7 @@ std::optional<HdfChunkTable> FindHdfChunks(hid_t dataset, const PositionedFile& 
     if (!product)
     {
       throw FileError(file.GetPath(),
-        "has an invalid header: the dataset '" + name + "' has more chunks than can be counted.");
+        "has an invalid header: the dataset '" + name + "' declares too many chunks.");
     }
     all = *product;
   }

@@ -202,7 +202,9 @@ private:
     HdfHandle file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), &H5Fclose);
     if (!file.IsOpen())
     {
-      throw FileError(path, "is no HDF5 file, or is damaged, or is open for writing.");
+      throw FileError(path,
+        "cannot be opened as HDF5. It is another kind of file, is damaged, or is open for "
+        "writing.");
     }
     return file;
   }
@@ -247,9 +249,8 @@ private:
     this->FindArrays(group.Get(), "PointData", false, this->Geometry.Points);
     this->FindArrays(group.Get(), "CellData", true, cells);
     this->FindActive();
-    this->Missing =
-      "array of numbers in PointData or CellData that has as many samples along z, y and x as its "
-      "WholeExtent tells of.";
+    this->Missing = "numeric array in PointData or CellData with the number of samples along z, y "
+                    "and x that WholeExtent declares.";
   }
 
   void FindArrays(hid_t parent, const char* name, bool onCells, const bricks::Index3& samples)
@@ -263,7 +264,7 @@ private:
     if (!group.IsOpen() || H5Gget_info(group.Get(), &info) < 0)
     {
       throw FileError(
-        this->Path, std::string("is no VTKHDF: what it calls ") + name + " is no group.");
+        this->Path, std::string("is not a valid VTKHDF file: '") + name + "' is not a group.");
     }
     CheckLimit(this->Path, "arrays", info.nlinks, FileLimits::Arrays);
     for (hsize_t index = 0; index < info.nlinks; ++index)
@@ -277,7 +278,7 @@ private:
       if (link.empty())
       {
         throw FileError(this->Path,
-          std::string("has an array in ") + name + " whose name cannot be read, or has more than " +
+          std::string("has an array in ") + name + " whose name cannot be read or has more than " +
             std::to_string(FileLimits::NameBytes) + " bytes.");
       }
       HdfHandle dataset = OpenHdfDataset(group.Get(), link);
@@ -333,7 +334,7 @@ private:
     {
       throw FileError(this->Path,
         "has " + std::to_string(this->Steps) + " time steps, but its array of '" + offsets +
-          "' does not have values for all of them.");
+          "' does not cover all of them.");
     }
     return frames;
   }
@@ -342,7 +343,7 @@ private:
   {
     const std::vector<std::string> names =
       wanted.empty() ? FindHdfDatasets(this->File.Get()) : std::vector<std::string>{ wanted };
-    this->Missing = "dataset of numbers with three axes.";
+    this->Missing = "numeric dataset with three axes.";
     std::map<std::string, HdfAxes> volumes;
     for (const std::string& name : names)
     {
@@ -360,14 +361,14 @@ private:
       }
       else if (!wanted.empty() && !dataset.IsOpen())
       {
-        this->Missing = "such dataset as '" + wanted +
-          "'. There are: " + ListHdfNames(FindHdfDatasets(this->File.Get()));
+        this->Missing = "dataset '" + wanted +
+          "'. Valid datasets: " + ListHdfNames(FindHdfDatasets(this->File.Get()));
       }
       else if (!wanted.empty())
       {
         this->Missing = "volume in its dataset '" + wanted +
-          "': that must have numbers along three axes (z, y, x), and may have a first axis of time "
-          "steps, and a last one of components.";
+          "'. A volume has numbers along three axes (z, y, x). It may have a first axis of time "
+          "steps and a last axis of components.";
       }
     }
     VolumeShape largest;
@@ -573,7 +574,7 @@ private:
       const std::string lack = FindLackingHdfFilter(dataset);
       throw FileError({ this->Path, array.Name, chunk },
         "cannot be read by the HDF5 library: " +
-          (lack.empty() ? "it is damaged, or a file that it refers to is not there." : lack));
+          (lack.empty() ? "it is damaged, or a file that it refers to does not exist." : lack));
     }
   }
 

@@ -33,8 +33,8 @@ std::vector<double> ReadTimes(hid_t group, const std::string& path)
   if (!areNumbers || !std::is_sorted(times.begin(), times.end(), std::less_equal<>()))
   {
     throw FileError(path,
-      std::string("has invalid times of steps: Steps/Values ") +
-        (areNumbers ? "do not ascend." : "has values that are not finite numbers."));
+      std::string("has invalid time steps: Steps/Values ") +
+        (areNumbers ? "is not in ascending order." : "contains values that are not finite."));
   }
   return times;
 }
@@ -48,7 +48,8 @@ HdfImage HdfImage::Read(hid_t group, const std::string& path)
   if (!ReadHdfAttribute(group, "WholeExtent", H5T_NATIVE_LLONG, extent, 6))
   {
     throw FileError(path,
-      "is VTKHDF, but has no image data (no WholeExtent). Open it with ParaView's own reader.");
+      "is a VTKHDF file without image data (no WholeExtent). Open it with ParaView's VTKHDF "
+      "reader.");
   }
   FileGeometry& geometry = image.Geometry;
   ReadHdfAttribute(group, "Origin", H5T_NATIVE_DOUBLE, geometry.Origin, 3);

@@ -132,8 +132,9 @@ bool HdfOrigins::Add(const std::string& path, hid_t file, hid_t dataset)
     const auto found = FindFile(name, fs::path(in).parent_path(), "HDF5_EXTFILE_PREFIX");
     if (!found)
     {
-      throw FileError(
-        path, "has values in the file '" + name + "', which is not there, or is no file.");
+      throw FileError(path,
+        "refers to the file '" + name +
+          "' for values. That file does not exist or is not a regular file.");
     }
     this->Keep(*found);
   }
@@ -183,8 +184,8 @@ void HdfOrigins::AddSources(const std::string& path, hid_t properties)
     if (!found || (!isNumbered && !HasDataset(*found, WithNumber(dataset, 0))))
     {
       throw FileError(path,
-        "has values of the dataset '" + dataset + "' of the file '" + file +
-          "', which is not there, or cannot be read.");
+        "refers to the dataset '" + dataset + "' of the file '" + file +
+          "' for values. It does not exist or cannot be read.");
     }
     if (*found != path)
     {
@@ -240,9 +241,8 @@ void HdfOrigins::CheckUnchanged() const
   const std::string changed = this->FindChanged();
   if (!changed.empty())
   {
-    throw FileError(changed,
-      "was written to, or is gone, since it was opened, and others have values from it. Reload "
-      "them.");
+    throw FileError(
+      changed, "changed or was deleted after it was opened. Reload the files that refer to it.");
   }
 }
 

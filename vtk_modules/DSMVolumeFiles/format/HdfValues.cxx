@@ -132,9 +132,9 @@ std::string FindLackingHdfFilter(hid_t dataset)
       &flags, &parameterCount, nullptr, sizeof(name) - 1, name, nullptr);
     if (H5Zfilter_avail(filter) <= 0)
     {
-      return "it has no filter " + std::to_string(filter) + " (" + name +
-        "). Install its plugin where HDF5_PLUGIN_PATH says, or write the file with deflate, as "
-        "'h5repack -f GZIP=3' does.";
+      return "the HDF5 filter " + std::to_string(filter) + " (" + name +
+        ") is not available. Install its plugin in a directory of HDF5_PLUGIN_PATH, or convert the "
+        "file to deflate: 'h5repack -f GZIP=3'.";
     }
   }
   return {};

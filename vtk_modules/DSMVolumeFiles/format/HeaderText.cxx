@@ -170,7 +170,7 @@ std::vector<std::int64_t> HeaderText::GetIntegers(
       const std::string range =
         least == -MostInteger ? "" : " from " + std::to_string(least) + " on";
       this->Refuse("its field '" + name + "' is " + Quote(this->Get(name)) +
-        "; it has to have integers" + range + ".");
+        "; integers are required" + range + ".");
     }
     integers.push_back(*integer);
   }
@@ -202,7 +202,7 @@ std::vector<double> HeaderText::ToNumbers(const std::string& name, const std::st
     if (parsed.ec != std::errc() || parsed.ptr != last)
     {
       this->Refuse(Quote(word) + " in its field '" + name + "' is not a number" +
-        (parsed.ec == std::errc::result_out_of_range ? " that double precision has." : "."));
+        (parsed.ec == std::errc::result_out_of_range ? " in the range of double precision." : "."));
     }
     numbers.push_back(number);
   }
@@ -214,12 +214,12 @@ std::string HeaderText::FindValues(const std::string& name) const
   const std::string place = this->Get(name);
   if (place.size() > FileLimits::NameBytes || place.find('\0') != std::string::npos)
   {
-    this->Refuse("its field '" + name + "' is not the name of a file: " + Quote(place) + ".");
+    this->Refuse("its field '" + name + "' is not a file name: " + Quote(place) + ".");
   }
   const std::string path = (std::filesystem::path(this->What).parent_path() / place).string();
   if (MeansSeveralFiles(place) && FindPathKind(path) == PathKind::Nothing)
   {
-    this->Refuse("its values are in several files, which is not supported. Save it as one file.");
+    this->Refuse("its values are in several files, which is not supported. Save them as one file.");
   }
   return path;
 }

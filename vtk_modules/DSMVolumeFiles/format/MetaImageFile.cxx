@@ -34,7 +34,7 @@ bricks::ScalarType ParseType(const HeaderText& header)
   const auto known = types.find(name);
   if (known == types.end())
   {
-    header.Refuse("values of the type " + Quote(header.Get("elementtype")) + " are not supported.");
+    header.Refuse("scalar type " + Quote(header.Get("elementtype")) + " is not supported.");
   }
   return known->second;
 }
@@ -59,16 +59,16 @@ std::shared_ptr<const VolumeFile> OpenMetaImage(const std::string& path)
   }
   if (header.Get("elementdatafile").empty() || header.Get("ndims") != "3")
   {
-    header.Refuse("it is not a MetaImage of three dimensions.");
+    header.Refuse("it is not a three-dimensional MetaImage.");
   }
   if (IsTrue(header, "compresseddata"))
   {
-    header.Refuse("its values are compressed as a whole, and cannot be read in parts. Save it "
-                  "without compression.");
+    header.Refuse("its values are compressed in one piece, so they cannot be read in parts. Save "
+                  "the file without compression.");
   }
   if (header.Has("binarydata") && !IsTrue(header, "binarydata"))
   {
-    header.Refuse("its values are text, and cannot be read in parts. Save it as binary.");
+    header.Refuse("its values are text, so they cannot be read in parts. Save the file as binary.");
   }
   BareValues values;
   values.Name = "values";
@@ -88,7 +88,7 @@ std::shared_ptr<const VolumeFile> OpenMetaImage(const std::string& path)
   {
     if (lines.HasEnded())
     {
-      header.Refuse("the file ends with its header, and has no values.");
+      header.Refuse("the file ends after its header and has no values.");
     }
     values.Path = path;
     values.Least = lines.GetPlace();

@@ -39,7 +39,7 @@ bricks::ScalarType ParseType(const HeaderText& header)
   const auto known = types.find(HeaderText::ToLower(header.Get("type")));
   if (known == types.end())
   {
-    header.Refuse("values of the type " + Quote(header.Get("type")) + " are not supported.");
+    header.Refuse("scalar type " + Quote(header.Get("type")) + " is not supported.");
   }
   return known->second;
 }
@@ -62,7 +62,7 @@ std::vector<std::vector<double>> ParseVectors(const HeaderText& header, const st
     {
       if (end == std::string::npos)
       {
-        header.Refuse("its field '" + name + "' has a vector without an end.");
+        header.Refuse("its field '" + name + "' has a vector without a closing parenthesis.");
       }
       std::string inner = text.substr(at + 1, end - at - 1);
       std::replace(inner.begin(), inner.end(), ',', ' ');
@@ -95,7 +95,7 @@ std::vector<std::size_t> FindDomain(const HeaderText& header, std::size_t axes)
                                   : axes < 4 || axis > 0;
     if (isDomain && kind == "time")
     {
-      header.Refuse("one of its axes is time. Save each time step as a file of its own.");
+      header.Refuse("one of its axes is time. Save each time step as a separate file.");
     }
     if (isDomain)
     {
@@ -172,7 +172,7 @@ std::shared_ptr<const VolumeFile> OpenNrrd(const std::string& path)
   lines.Next(line);
   if (line.rfind("NRRD000", 0) != 0)
   {
-    header.Refuse("it does not begin with NRRD.");
+    header.Refuse("it does not start with NRRD.");
   }
   while (lines.Next(line) && !HeaderText::Trim(line).empty())
   {
@@ -187,7 +187,8 @@ std::shared_ptr<const VolumeFile> OpenNrrd(const std::string& path)
   if (encoding != "raw")
   {
     header.Refuse("its encoding is " + Quote(encoding) +
-      ", and only 'raw' can be read in parts. Convert it, for example with 'unu save -e raw'.");
+      ", but only 'raw' can be read in parts. Convert the file, for example with 'unu save -e "
+      "raw'.");
   }
   const std::vector<std::int64_t> sizes = header.GetIntegers("sizes");
   const std::vector<std::size_t> domain = FindDomain(header, sizes.size());
@@ -196,13 +197,12 @@ std::shared_ptr<const VolumeFile> OpenNrrd(const std::string& path)
   {
     header.Refuse("it has " + std::to_string(sizes.size()) + " axes, " +
       std::to_string(domain.size()) +
-      " of them in space; volumes have three, and may have components.");
+      " of them spatial. A volume has three spatial axes and may have one axis of components.");
   }
   if (hasComponents && domain.front() == 0)
   {
-    header.Refuse("its components do not lie together: their axis is not the first. Change that, "
-                  "for example with "
-                  "'unu permute'.");
+    header.Refuse("its axis of components is not the first axis. Reorder the axes, for example "
+                  "with 'unu permute'.");
   }
   BareValues values;
   values.Name = header.Get("content").empty() ? "values" : header.Get("content");
@@ -217,15 +217,14 @@ std::shared_ptr<const VolumeFile> OpenNrrd(const std::string& path)
   values.Offset = header.GetInteger("byte skip", 0, -1);
   if (header.GetInteger("line skip", 0) > 0)
   {
-    header.Refuse("it skips lines of text, which is not supported.");
+    header.Refuse("it sets 'line skip', which is not supported.");
   }
   const std::string separate = header.Get("data file");
   if (separate.empty())
   {
     if (lines.HasEnded())
     {
-      header.Refuse(
-        "the file ends with its header: there is no empty line, and no values behind it.");
+      header.Refuse("the file ends after its header: the empty line and the values are missing.");
     }
     values.Path = path;
     values.Least = lines.GetPlace();

@@ -173,7 +173,7 @@ private:
       });
     if (!same)
     {
-      this->Refuse(file, "it does not have the same arrays. Open it alone.");
+      this->Refuse(file, "its arrays differ. Open it separately.");
     }
     for (std::size_t array = 0; array < this->Arrays.size(); ++array)
     {
@@ -182,23 +182,23 @@ private:
       if (mine != other)
       {
         this->Refuse(file,
-          "its array '" + file.GetArrays()[array].Name + "' is in chunks of " +
-            DescribeShape(other) + " samples, not of " + DescribeShape(mine) +
-            " (large ones that are not compressed count as several). Write all steps with the same "
-            "chunks and compression, or open it alone.");
+          "its array '" + file.GetArrays()[array].Name + "' has chunks of " + DescribeShape(other) +
+            " samples instead of " + DescribeShape(mine) +
+            " (large uncompressed chunks count as several). Write all steps with the same chunks "
+            "and compression, or open it separately.");
       }
     }
     if (!IsSamePlace(this->Geometry, file.GetGeometry()))
     {
       this->Refuse(
-        file, "its first index, origin, spacing or direction is another. Open it alone.");
+        file, "its first index, origin, spacing or direction differs. Open it separately.");
     }
   }
 
   [[noreturn]] void Refuse(const VolumeFile& file, const std::string& why) const
   {
     throw FileError(file.GetPath(),
-      "is no time step of the series that begins with '" + this->Path + "': " + why);
+      "cannot be a time step of the series that starts with '" + this->Path + "': " + why);
   }
 
   /// Values that were read of it are still about: they must not meet others. `known`: the stamp when it was opened
@@ -207,8 +207,7 @@ private:
   {
     if (known.value_or(file.GetStamp()) != file.GetStamp())
     {
-      throw FileError(file.GetPath(),
-        "was written to, or another took its place, since it was opened first. Reload it.");
+      throw FileError(file.GetPath(), "changed or was replaced after it was opened. Reload it.");
     }
     known = file.GetStamp();
   }
@@ -228,7 +227,7 @@ std::shared_ptr<const VolumeFile> OpenVolumeSeries(
 {
   if (paths.empty())
   {
-    throw dsm::Error("No file is chosen.");
+    throw dsm::Error("No file name is set.");
   }
   return paths.size() == 1 ? OpenVolumeFile(paths.front(), options)
                            : std::make_shared<SeriesFile>(paths, options);

@@ -183,15 +183,15 @@ void StoredFile::CheckStored(std::size_t array, const Place& place, std::size_t 
   const std::uint64_t has = place.File->GetBytes();
   if (place.Offset > has || place.Bytes > has - place.Offset)
   {
-    throw dsm::Error("it has " + std::to_string(place.Bytes) + " bytes from byte " +
-      std::to_string(place.Offset) + " on, beyond the end of the file, which has " +
-      std::to_string(has) + " bytes: it is truncated, or its header is wrong.");
+    throw dsm::Error("it has " + std::to_string(place.Bytes) + " bytes at offset " +
+      std::to_string(place.Offset) + ", which exceeds the file's " + std::to_string(has) +
+      " bytes. The file is truncated or its header is wrong.");
   }
   if (storage.Codec.CountMostDecoded(place.Bytes) < bytes)
   {
     throw dsm::Error("it has " + std::to_string(place.Bytes) + " bytes instead of " +
       std::to_string(bytes) +
-      (storage.Codec.KeepsPlaces() ? "." : ", more than they can be unpacked to."));
+      (storage.Codec.KeepsPlaces() ? "." : ", more than it can expand to."));
   }
 }
 

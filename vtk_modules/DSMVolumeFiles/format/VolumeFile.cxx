@@ -116,9 +116,9 @@ std::shared_ptr<const VolumeFile> OpenRaw(const std::string& path, const OpenOpt
   if (glm::any(glm::lessThanEqual(options.Samples, bricks::Index3(0))))
   {
     throw dsm::Error("Enter Raw Dimensions in the Properties panel and press Apply: '" + path +
-      "' has no header that gives its number of samples along x, y and z. Check Raw Scalar Type, "
-      "Components, Big Endian, "
-      "Header Bytes and Spacing, too. (Python: RawDimensions; dsm_convert: --raw-size.)");
+      "' has no header that declares its number of samples along x, y and z. Also check Raw Scalar "
+      "Type, Components, Big Endian, Header Bytes and Spacing. (Python: RawDimensions; "
+      "dsm_convert: --raw-size.)");
   }
   BareValues values;
   values.Path = path;
@@ -171,16 +171,17 @@ std::shared_ptr<const VolumeFile> OpenAsItIs(const std::string& path, const Open
   if (kind == PathKind::File && ReadBeginning(path, 4) == "PK\x03\x04")
   {
     throw FileError(path,
-      "is a ZIP archive, and cannot be read. Unpack it, and open what it has: a Zarr's folder.");
+      "is a ZIP archive, which cannot be read. Unpack it and open the Zarr folder that it "
+      "contains.");
   }
   if (kind == PathKind::File && PositionedFile(path).GetBytes() == 0)
   {
     throw FileError(path, "is empty.");
   }
   throw FileError(path,
-    "has a format that is not known, or is damaged at its beginning. HDF5, Zarr (a folder), NRRD, "
-    "MetaImage (.mhd, .mha) and .raw are known. Whatever else ParaView opens as an image, its Save "
-    "Data writes as a volume in bricks.");
+    "has an unknown format or a damaged header. Supported formats: HDF5, Zarr (a folder), NRRD, "
+    "MetaImage (.mhd, .mha) and .raw. For other image formats, open the file in ParaView and use "
+    "Save Data to write a volume in bricks.");
 }
 
 /// Gives what other libraries throw the file's name.
@@ -193,11 +194,11 @@ std::shared_ptr<const VolumeFile> OpenGuarded(const std::string& path, const Ope
   }
   catch (const std::bad_alloc&)
   {
-    why = "there is not enough memory";
+    why = "out of memory";
   }
   catch (const std::length_error&)
   {
-    why = "there is not enough memory";
+    why = "out of memory";
   }
   catch (const std::filesystem::filesystem_error& error)
   {
@@ -237,7 +238,7 @@ void CheckSizes(const std::string& path, const FileArray& array, std::size_t sli
   CheckLimit(path, "bytes of an array's name", array.Name.size(), FileLimits::NameBytes);
   if (array.Name.find('\0') != std::string::npos)
   {
-    refuse("an array whose name has a byte 0");
+    refuse("an array name with a zero byte");
   }
   if (array.Components < 1)
   {
@@ -269,16 +270,16 @@ void CheckGeometry(const std::string& path, const FileGeometry& geometry)
   };
   if (!areFinite(geometry.Origin, 3))
   {
-    refuse("origin", "a number is infinite or not a number");
+    refuse("origin", "a number is not finite");
   }
   if (!areFinite(geometry.Spacing, 3))
   {
-    refuse("spacing", "a number is infinite or not a number");
+    refuse("spacing", "a number is not finite");
   }
   const double* const m = geometry.Direction;
   if (!areFinite(m, 9))
   {
-    refuse("direction matrix", "a number is infinite or not a number");
+    refuse("direction matrix", "a number is not finite");
   }
   // Of axes of length 1, the volume that they span. What is left of rounding is less than this.
   constexpr double least = 1e-9;
@@ -298,7 +299,7 @@ void CheckGeometry(const std::string& path, const FileGeometry& geometry)
     x[1] * (y[0] * z[2] - y[2] * z[0]) + x[2] * (y[0] * z[1] - y[1] * z[0]);
   if (!(std::abs(determinant) >= least))
   {
-    refuse("direction matrix", "its axes lie in one plane, so that it has no inverse");
+    refuse("direction matrix", "the matrix is singular");
   }
 }
 
@@ -311,14 +312,14 @@ std::shared_ptr<const VolumeFile> OpenVolumeFile(
   {
     throw FileError(path,
       "has no level " + std::to_string(options.Level) +
-        ": it has no coarser levels of detail. The only valid level is 0.");
+        ": it has no coarser levels. The only valid level is 0.");
   }
   const std::vector<FileArray>& arrays = file->GetArrays();
   if (!options.Dataset.empty() && (arrays.size() > 1 || arrays.front().Name != options.Dataset))
   {
     throw FileError(path,
-      "has no datasets to choose '" + options.Dataset +
-        "' from: only HDF5 files that are not VTK's have. Choose among its arrays.");
+      "does not support choosing a dataset ('" + options.Dataset +
+        "'): only HDF5 files other than VTKHDF do. Choose among the file's arrays.");
   }
   return file;
 }

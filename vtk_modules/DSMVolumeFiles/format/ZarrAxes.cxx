@@ -60,9 +60,9 @@ bool MayBe(const Json& named, std::size_t first, const std::string& order)
     names += (names.empty() ? "" : ", ") + GetText(axis, "name");
   }
   throw FileError(folder,
-    "is no volume with its axes " + Quote(names) +
-      ": its last three axes, and no others, must be in space, in the order z, y, x or x, y, z; "
-      "one of channels may be behind them. Write it with its axes in that order.");
+    "is not a volume that can be read. Its axes are " + Quote(names) +
+      ". It needs exactly three spatial axes, in the order z, y, x or x, y, z, and after them at "
+      "most one axis of channels. Write it with its axes in that order.");
 }
 
 } // namespace

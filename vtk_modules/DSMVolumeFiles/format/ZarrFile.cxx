@@ -39,7 +39,7 @@ std::string JoinInside(const std::string& folder, const std::string& name)
   {
     throw FileError(folder,
       "has invalid metadata: the path " + Quote(name) +
-        " of a dataset leads outside of the folder, or is empty.");
+        " of a dataset is empty or leads outside the folder.");
   }
   return folder + "/" + name;
 }
@@ -296,8 +296,8 @@ private:
     {
       const std::string inner = this->FindInnerGroup();
       throw FileError(this->Path,
-        "has no Zarr array of three axes." + (refused.empty() ? "" : " " + refused) +
-          (inner.empty() ? "" : " There may be one in '" + inner + "'; open that."));
+        "has no Zarr array with three axes." + (refused.empty() ? "" : " " + refused) +
+          (inner.empty() ? "" : " The folder '" + inner + "' may have one; open it."));
     }
     for (const auto& [name, shape] : found)
     {
@@ -313,12 +313,13 @@ private:
     std::optional<ZarrMetadata> data = ReadZarrMetadata(folder);
     if (!data)
     {
-      throw FileError(folder, "is no Zarr array: it has neither .zarray nor zarr.json.");
+      throw FileError(folder, "is not a Zarr array: it has neither .zarray nor zarr.json.");
     }
     if (!data->IsVolume())
     {
-      throw FileError(
-        folder, "is no volume: it has no samples, or far too many, or not 3 to 5 axes.");
+      throw FileError(folder,
+        "is not a volume that can be read: it has no samples, too many samples, or a number of "
+        "axes outside 3 to 5.");
     }
     return std::make_shared<const ZarrMetadata>(std::move(*data));
   }
@@ -339,13 +340,10 @@ private:
       shape += (shape.empty() ? "" : " x ") + std::to_string(length);
     }
     throw FileError(folder,
-      "has channels on its last axis, and chunks of " + shape +
-        (data.FortranOrder ? " in the order of Fortran" : "") +
-        ": it can be read where each "
-        "has all " +
+      "has channels on its last axis and chunks of " + shape +
+        (data.FortranOrder ? " in Fortran order" : "") + ". Each chunk must have all " +
         std::to_string(components) +
-        " channels, in the order of C. Write it so, or with "
-        "the axis of channels first.");
+        " channels, in C order. Write it so, or with the channel axis first.");
   }
 
   /// A chunk that cannot be read in parts is read whole.
@@ -362,9 +360,8 @@ private:
           { chunk.x, chunk.y, chunk.z, storage.Slices, array.GetSampleBytes() }))
     {
       throw FileError(folder,
-        "has chunks of " + DescribeShape(array.Grid.ChunkSamples) +
-          " samples, which are more than " + std::to_string(FileLimits::ChunkBytes) +
-          " bytes. Write it with smaller chunks.");
+        "has chunks of " + DescribeShape(array.Grid.ChunkSamples) + " samples, which exceed " +
+          std::to_string(FileLimits::ChunkBytes) + " bytes. Write it with smaller chunks.");
     }
   }
 
@@ -383,12 +380,10 @@ private:
     if (channels > MostChannels)
     {
       throw FileError(folder,
-        "has " + std::to_string(channels) +
-          " channels, of which each would be an array; no more than " +
+        "has " + std::to_string(channels) + " channels, each of which becomes an array; at most " +
           std::to_string(MostChannels) +
-          " can be. If one of its axes is time, let its name say so (\"time\", in dimension_names "
-          "or "
-          "_ARRAY_DIMENSIONS).");
+          " are supported. If one of its axes is time, name that axis \"time\" (in dimension_names "
+          "or _ARRAY_DIMENSIONS).");
     }
     const std::int64_t times = axes.Time >= 0 ? getLength(axes.Time) : 1;
     CheckLimit(folder, "time steps", static_cast<std::uint64_t>(times), FileLimits::Steps);
@@ -429,8 +424,8 @@ private:
       if (data->FortranOrder && storage.Slices > 1)
       {
         throw FileError(folder,
-          "has several times or channels in a chunk, in the order of Fortran, which is not "
-          "supported. Write it with order='C'.");
+          "has several times or channels in a chunk, in Fortran order, which is not supported. "
+          "Write it with order='C'.");
       }
       CutPlainChunks(array, storage);
       CheckChunkBytes(folder, array, storage);
@@ -483,7 +478,7 @@ private:
       this->Parts.CheckNeverThere(path);
       if (!MayBeZarr(source.Folder))
       {
-        throw FileError(source.Folder, "is no longer there.");
+        throw FileError(source.Folder, "was deleted after it was opened.");
       }
       return std::nullopt;
     }
@@ -520,7 +515,7 @@ private:
     }
     if (offset > place->Bytes || bytes > place->Bytes - offset)
     {
-      throw FileError(place->File->GetPath(), "is truncated, or its index is wrong.");
+      throw FileError(place->File->GetPath(), "is truncated or its index is wrong.");
     }
     place->Offset = offset;
     place->Bytes = static_cast<std::size_t>(bytes);

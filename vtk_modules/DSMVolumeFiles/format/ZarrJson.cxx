@@ -110,7 +110,7 @@ std::vector<std::int64_t> ZarrJson::GetIntegers(const std::string& folder,
   const Json& found = Find(object, name);
   if (!found.is_array())
   {
-    Refuse(folder, "its '" + std::string(name) + "' is missing, or not an array.");
+    Refuse(folder, "its '" + std::string(name) + "' is missing or not an array.");
   }
   CheckLimit(folder, "numbers in '" + std::string(name) + "'", found.size(), count);
   std::vector<std::int64_t> numbers;

@@ -30,7 +30,7 @@ using ZarrJson::Refuse;
 /// Refuses a type of values that this library does not have.
 [[noreturn]] void RefuseType(const std::string& folder, const std::string& text)
 {
-  Refuse(folder, "values of the type " + Quote(text) + " are not supported.");
+  Refuse(folder, "scalar type " + Quote(text) + " is not supported.");
 }
 
 /// Version 2: "<f4". Returns whether the bytes are the other way round than the machine's.
@@ -159,7 +159,7 @@ std::vector<std::byte> ParseFill(
         Refuse(folder,
           "its fill value " +
             Quote(value.is_number() ? value.dump() : std::string(value.type_name())) +
-            " is not one of its type.");
+            " does not fit its scalar type.");
       }
       std::vector<std::byte> bytes(sizeof(T));
       std::memcpy(bytes.data(), &*fill, sizeof(T));
@@ -171,15 +171,14 @@ CodecStep ParseCodec(const std::string& folder, const std::string& name)
 {
   if (name == "sharding_indexed")
   {
-    Refuse(folder,
-      "its shards have shards in them, or codecs before or behind them, which is not supported.");
+    Refuse(folder, "its shards are nested or combined with other codecs, which is not supported.");
   }
   const Codec* const codec = FindZarrCodec(name);
   if (!codec)
   {
     Refuse(folder,
       "its filter or compressor " + Quote(name) +
-        " is not supported; blosc, gzip, zlib, zstd and crc32c are.");
+        " is not supported. Supported are blosc, gzip, zlib, zstd and crc32c.");
   }
   return CodecStep(codec);
 }
@@ -253,7 +252,7 @@ ZarrMetadata ParseVersion2(const std::string& folder, const Json& json)
   std::vector<CodecStep> steps;
   if (!ZarrJson::Find(json, "dtype").is_string())
   {
-    Refuse(folder, "its values are records of several fields, which is not supported.");
+    Refuse(folder, "its values are records with several fields, which is not supported.");
   }
   if (ParseType2(folder, ZarrJson::GetText(folder, json, "dtype"), data.Type))
   {
@@ -306,8 +305,7 @@ void Transpose(const std::string& folder, const Json& configuration, std::vector
   if (axes.size() != count || order.size() != count)
   {
     Refuse(folder,
-      "its axes are transposed as those of another array; it has " + std::to_string(count) +
-        " axes.");
+      "its transpose codec does not match its number of axes (" + std::to_string(count) + ").");
   }
 }
 
@@ -318,7 +316,7 @@ std::vector<CodecStep> ParseCodecs3(const std::string& folder, const Json& codec
 {
   if (!codecs.is_array())
   {
-    Refuse(folder, "its 'codecs' are missing, or not an array.");
+    Refuse(folder, "its 'codecs' are missing or not an array.");
   }
   CheckLimit(folder, "codecs", codecs.size(), FileLimits::Filters);
   std::vector<CodecStep> steps;
@@ -348,7 +346,7 @@ std::vector<CodecStep> ParseCodecs3(const std::string& folder, const Json& codec
   if (!fortranOrder && !std::is_sorted(axes.begin(), axes.end()))
   {
     Refuse(folder,
-      "some of its axes are transposed in the file, which is not supported; only all can be.");
+      "only some of its axes are transposed, which is not supported. Transpose all axes or none.");
   }
   return steps;
 }
@@ -367,8 +365,8 @@ std::size_t CountChunks(const std::string& folder, const std::vector<std::int64_
     if (!isWhole || !product)
     {
       Refuse(folder,
-        "its shards are not made of chunks, or of far too many: at most " +
-          std::to_string(FileLimits::ShardChunks) + " in each are supported.");
+        "its shards do not consist of whole chunks, or have too many chunks: at most " +
+          std::to_string(FileLimits::ShardChunks) + " chunks per shard are supported.");
     }
     count = *product;
   }
@@ -414,8 +412,8 @@ ZarrMetadata ParseVersion3(const std::string& folder, const Json& json)
   const Json& grid = ZarrJson::Find(json, "chunk_grid");
   if (GetName(folder, grid) != "regular")
   {
-    Refuse(
-      folder, "its chunks are not all alike (chunk grid " + Quote(GetName(folder, grid)) + ").");
+    Refuse(folder,
+      "its chunks do not have a regular grid (chunk grid " + Quote(GetName(folder, grid)) + ").");
   }
   // A shard may be larger than the array.
   constexpr std::int64_t mostOfShard = std::int64_t(1) << 52;

@@ -32,8 +32,7 @@ void ZarrParts::CheckUnchanged(const PositionedFile& file)
   const auto known = this->Stamps.emplace(file.GetPath(), file.GetStamp()).first;
   if (known->second != file.GetStamp())
   {
-    throw FileError(file.GetPath(),
-      "was written to, or another took its place, since it was opened first. Reload it.");
+    throw FileError(file.GetPath(), "changed or was replaced after it was opened. Reload it.");
   }
 }
 
@@ -42,7 +41,7 @@ void ZarrParts::CheckNeverThere(const std::string& path)
   const std::lock_guard<std::mutex> lock(this->Guard);
   if (this->Stamps.count(path) != 0)
   {
-    throw FileError(path, "is no longer there.");
+    throw FileError(path, "was deleted after it was opened.");
   }
 }
 
@@ -99,7 +98,7 @@ ZarrParts::Index ZarrParts::ReadIndex(
   catch (const dsm::Error& error)
   {
     throw FileError(
-      file.GetPath(), "is a shard whose index cannot be used: " + std::string(error.what()));
+      file.GetPath(), "is a shard with an invalid index: " + std::string(error.what()));
   }
   return offsets;
 }

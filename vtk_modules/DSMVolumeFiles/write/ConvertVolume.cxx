@@ -59,8 +59,8 @@ void CheckTarget(const VolumeFile& from, int step, const std::string& path)
     if (isIn)
     {
       throw FileError(path,
-        "would be written over what is read: the values of '" + from.GetPath() + "' come from '" +
-          origin + "'. Choose another name.");
+        "would overwrite the source: the values of '" + from.GetPath() + "' come from '" + origin +
+          "'. Choose another name.");
     }
   }
 }
@@ -81,8 +81,8 @@ public:
     if (this->Step < 0 || this->Step >= this->File->GetSteps())
     {
       throw FileError(this->File->GetPath(),
-        "has the steps 0 to " + std::to_string(this->File->GetSteps() - 1) + ", and not " +
-          std::to_string(this->Step) + ".");
+        "has no step " + std::to_string(this->Step) + "; valid steps are 0 to " +
+          std::to_string(this->File->GetSteps() - 1) + ".");
     }
     for (const std::size_t number : this->Numbers)
     {
@@ -178,8 +178,8 @@ void CheckName(const std::string& path)
   if (std::count(std::begin(others), std::end(others), extension) > 0)
   {
     throw FileError(path,
-      "is the name of a file of another format, and HDF5 is written: let it end in .vtkhdf or "
-      ".h5. The file to read is named first.");
+      "has the extension of another format, but HDF5 is written. Use .vtkhdf or .h5. Name the file "
+      "to read first.");
   }
 }
 

@@ -85,8 +85,8 @@ void PartFiles::CheckOwn(const std::string& path)
     if (fs::exists(there) && (!hasState || !fs::is_regular_file(there)))
     {
       throw FileError(name,
-        "is in the way: it is needed to write '" + path +
-          "', but is not a file that this program has begun. Rename or delete it.");
+        "is required as a temporary file to write '" + path +
+          "', but this program did not create it. Rename or delete it.");
     }
   };
   check(GetState(path));

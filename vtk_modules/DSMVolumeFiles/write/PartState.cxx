@@ -152,8 +152,8 @@ void PartState::CheckNothingIsLost() const
   {
     const std::string part = PartFiles::GetPart(this->Self->Path);
     throw FileError(part,
-      "belongs to a conversion that was interrupted and can be resumed. Run dsm_convert again to "
-      "finish it, or delete '" +
+      "belongs to an interrupted conversion, which can be resumed. Run dsm_convert again to finish "
+      "it, delete '" +
         part + "' and '" + PartFiles::GetState(this->Self->Path) + "', or choose another name.");
   }
 }

@@ -25,13 +25,13 @@ void CheckReplaceable(const std::string& path)
 {
   if (path.empty())
   {
-    throw dsm::Error("The file to write has no name.");
+    throw dsm::Error("The name of the file to write is empty.");
   }
   std::error_code failure;
   const std::filesystem::file_status there = std::filesystem::status(path, failure);
   if (std::filesystem::exists(there) && !std::filesystem::is_regular_file(there))
   {
-    throw FileError(path, "is a folder or a device, and no file that can be replaced.");
+    throw FileError(path, "cannot be replaced because it is a folder or a device.");
   }
 }
 
@@ -73,13 +73,14 @@ PathClaim::PathClaim(const std::string& path)
     {
       close(std::exchange(this->Lock, -1));
       throw FileError(this->LockPath,
-        "is in the way: it is needed to write '" + path +
-          "', but is not a lock of this program. Rename or delete it.");
+        "is required as a lock file to write '" + path +
+          "', but this program did not create it. Rename or delete it.");
     }
     if (flock(this->Lock, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK)
     {
       close(std::exchange(this->Lock, -1));
-      throw FileError(path, "is being written by another process. Wait until it ends, or end it.");
+      throw FileError(
+        path, "is being written by another process. Wait for that process, or end it.");
     }
   } while (!IsAt(this->Lock, this->LockPath));
 }

@@ -124,7 +124,8 @@ public:
   {
     if (count > (this->Bytes.size() - this->At) / bytes)
     {
-      throw dsm::Error("A message with chunks of a brick file is shorter than it says.");
+      throw dsm::Error(
+        "A message with chunks of a brick file is truncated. Do all ranks run the same build?");
     }
   }
 
@@ -227,8 +228,8 @@ BrickFileLayout CreateLayout(const ValueOrigin& from, const WriteOptions& option
     : bricks::BrickLattice::GetDefaultEdge(from.GetArrays().front().Type);
   if (layout.BrickEdge < 1 || layout.BrickEdge > bricks::BrickLattice::LargestEdge)
   {
-    throw dsm::Error("A brick has from 1 to " + std::to_string(bricks::BrickLattice::LargestEdge) +
-      " cells along an axis, and not " + std::to_string(layout.BrickEdge) + ".");
+    throw dsm::Error("A brick must have 1 to " + std::to_string(bricks::BrickLattice::LargestEdge) +
+      " cells along an axis, not " + std::to_string(layout.BrickEdge) + ".");
   }
   for (FileArray array : from.GetArrays())
   {
@@ -240,7 +241,7 @@ BrickFileLayout CreateLayout(const ValueOrigin& from, const WriteOptions& option
     {
       const auto before = static_cast<std::size_t>(same - layout.Arrays.begin());
       throw dsm::Error("The arrays '" + from.GetArrays()[before].Name + "' and '" + name +
-        "' would both be called '" + array.Name + "'. Leave one out.");
+        "' would both be named '" + array.Name + "'. Omit or rename one.");
     }
     array.Grid.ChunkSamples = glm::min(bricks::Index3(layout.BrickEdge), array.Grid.Samples);
     layout.Arrays.push_back(std::move(array));
@@ -254,7 +255,7 @@ std::vector<std::vector<std::byte>> FindIndices(const std::string& path,
   const BrickFileLayout& layout, const WriteOptions& options, dsm::Messenger& messenger,
   const std::function<void(double)>& tell)
 {
-  const char* const what = "Looking through the bricks";
+  const char* const what = "Indexing the bricks";
   // It holds the file open, which cannot be written until no rank does.
   ChunkCache cache(options.MemoryBytes / 2);
   std::shared_ptr<const VolumeFile> file;
@@ -280,7 +281,7 @@ std::vector<std::vector<std::byte>> FindIndices(const std::string& path,
           [&](const FileArray& one) { return one.Name == array.Name && !one.OnCells; });
         if (found == arrays.end() || found->Type != array.Type || found->Components != 1)
         {
-          throw FileError(path, "lacks the array '" + array.Name + "' that was written.");
+          throw FileError(path, "is missing the array '" + array.Name + "' that was written.");
         }
         lattice.emplace(points, array.Type, false, layout.BrickEdge);
         reader = std::make_shared<bricks::VoxelBrickReader>(*lattice,
@@ -468,7 +469,7 @@ void WriteBrickFile(std::unique_ptr<ValueOrigin> from, const std::string& path,
   }
   catch (const dsm::Error& error) // the same on every rank
   {
-    throw dsm::Error(error.what() + (" If '" + part + "' is damaged, delete it, and begin anew."));
+    throw dsm::Error(error.what() + (" If '" + part + "' is damaged, delete it and start again."));
   }
   const int levels = WriteLevels(path, layout, source, options, messenger,
     [&](double part) { tell(finest + (1.0 - finest) * part); });
