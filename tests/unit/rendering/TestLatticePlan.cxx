@@ -107,7 +107,8 @@ TEST(LatticePlan, FlatDataAreRefusedByAxis)
   }
   catch (const dsm::Error& error)
   {
-    EXPECT_NE(std::string(error.what()).find("no cells in y"), std::string::npos) << error.what();
+    EXPECT_NE(std::string(error.what()).find("no cells along y"), std::string::npos)
+      << error.what();
   }
   const std::vector<bricks::PieceInfo> none;
   EXPECT_TRUE(bricks::LatticePlan(none).GetLattices().empty());

@@ -15,7 +15,8 @@ BrickBvh::BrickBvh(const std::vector<BoundingBox>& bricks)
   if (bricks.size() > largest)
   {
     throw dsm::Error("A mesh of " + std::to_string(bricks.size()) +
-      " bricks cannot be traced; there may be " + std::to_string(largest) + ". Use larger bricks.");
+      " bricks cannot be traced; the maximum is " + std::to_string(largest) +
+      ". Use larger bricks.");
   }
   WideBvhBuilder<std::uint32_t> builder(1);
   builder.Build(bricks);

@@ -130,8 +130,8 @@ void RefuseImpossiblePlace(const PieceInfo& piece)
   const auto refuse = [](const std::string& what, double value)
   {
     const char* const is = value == 0.0 ? "0" : std::isnan(value) ? "not a number" : "infinite";
-    throw dsm::Error("The dataset's " + what + " is " + is +
-      ", so its samples are nowhere. Correct it where the dataset comes from.");
+    throw dsm::Error("Invalid image: its " + what + " is " + is +
+      ". Fix the dataset's source or its file's header.");
   };
   for (int axis = 0; axis < 3; ++axis)
   {
@@ -194,9 +194,9 @@ void RefuseFlatData(const std::vector<PieceInfo>& pieces)
     if (std::all_of(pieces.begin(), pieces.end(),
           [axis](const PieceInfo& piece) { return piece.Max[axis] <= piece.Min[axis]; }))
     {
-      throw dsm::Error(std::string("The dataset has no cells in ") + "xyz"[axis] +
-        "; an isosurface needs a volume, with at least two points on every axis. Use Contour for "
-        "images of two dimensions.");
+      throw dsm::Error(std::string("The image has no cells along ") + "xyz"[axis] +
+        ". An isosurface requires a volume with at least two points along each axis. Use Contour "
+        "for two-dimensional images.");
     }
   }
 }

@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <cstring>
 #include <limits>
 
@@ -100,8 +101,8 @@ void TriangleMeshBuilder::AgreeOnPieces()
     {
       throw dsm::Error(std::string(this->What) + ": The pieces of the mesh on ranks " +
         std::to_string(first) + " and " + std::to_string(rank) +
-        " differ in having normals, values, colours, texture coordinates or edge flags. Give all "
-        "pieces the same arrays.");
+        " differ in their normals, values, colors, texture coordinates or edge flags. All pieces "
+        "must have the same arrays.");
     }
   }
 }
@@ -140,12 +141,12 @@ void TriangleMeshBuilder::CheckMemory()
       if (own + share > static_cast<double>(available))
       {
         throw dsm::Error("The mesh has " + std::to_string(this->Mesh->Triangles) +
-          " triangles. To put them in bricks this rank needs about " +
+          " triangles. To cut them into bricks, this rank needs about " +
           dsm::FormatMebibytes(static_cast<std::uint64_t>(own + share)) + ", but has " +
           dsm::FormatMebibytes(available) + ". Use at least " +
           std::to_string(static_cast<std::uint64_t>(
             std::ceil(all * (OwnTriangleBytes + each) / static_cast<double>(available)))) +
-          " ranks with as much memory, each with a part of the mesh, or a mesh of fewer "
+          " ranks with as much memory, each with a part of the mesh, or a mesh with fewer "
           "triangles.");
       }
     });
@@ -204,10 +205,10 @@ void TriangleMeshBuilder::SetOrigin(const glm::dvec3& lower, const glm::dvec3& u
   }
   if (farthest > LargestCoordinate)
   {
-    throw dsm::Error(std::string(this->What) + ": The mesh has a coordinate of size " +
-      std::to_string(farthest) +
-      "; at most 1e18 can be traced. Scale the dataset, or remove the "
-      "point.");
+    char size[32];
+    std::snprintf(size, sizeof(size), "%g", farthest);
+    throw dsm::Error(std::string(this->What) + ": The mesh has a coordinate of size " + size +
+      "; the maximum is 1e18. Scale the dataset or remove the point.");
   }
   for (int axis = 0; axis < 3; ++axis)
   {
@@ -315,7 +316,7 @@ void TriangleMeshBuilder::GatherBricks(BricksOfCells bricksOfCells)
           if (next[owner] + sizeof(summary) > all[owner].size())
           {
             throw dsm::Error("Rank " + std::to_string(owner) +
-              " has not built all its bricks. Do all ranks run the same build?");
+              " did not build all its bricks. Do all ranks run the same build?");
           }
           std::memcpy(&summary, all[owner].data() + next[owner], sizeof(summary));
           next[owner] += sizeof(summary);

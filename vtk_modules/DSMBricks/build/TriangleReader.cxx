@@ -65,8 +65,8 @@ bool TriangleReader::ReadPositions(
   {
     if (points[corner] >= source.GetPointCount())
     {
-      throw dsm::Error("Triangle " + std::to_string(triangle) + " of the mesh has point " +
-        std::to_string(points[corner]) + ", but there are only " +
+      throw dsm::Error("Triangle " + std::to_string(triangle) + " of the mesh refers to point " +
+        std::to_string(points[corner]) + ", but the mesh has only " +
         std::to_string(source.GetPointCount()) + " points. Check the dataset's cells.");
     }
     double* position = positions + 3 * corner;

@@ -117,8 +117,8 @@ VoxelFragmentSource::VoxelFragmentSource(
   {
     if (this->Pieces[this->Piece]->HasCellMask() && !lattice.HasCellMask())
     {
-      throw dsm::Error("A piece of the volume has blanked cells, but its bricks were laid out "
-                       "without a cell mask. All ranks must agree on blanking beforehand.");
+      throw dsm::Error("A piece of the volume has blanked cells, but its bricks have no cell mask. "
+                       "All ranks must agree on blanking in advance.");
     }
     this->CellsTotal += this->GetPieceCells().GetCount();
   }
@@ -222,7 +222,7 @@ void VoxelBrickSink::Begin(dsm::BlockId id, std::byte* block, std::size_t bytes)
   {
     throw dsm::Error("Voxel brick " + std::to_string(id) + " needs " +
       std::to_string(header.BlockBytes) + " bytes, but its block has " + std::to_string(bytes) +
-      ". Publish with the lattice's own directory.");
+      ". Publish with the directory of the lattice.");
   }
   std::memcpy(block, &header, sizeof(header));
 }

@@ -20,8 +20,8 @@ VoxelBrickReader::VoxelBrickReader(
   if (lattice.HasCellMask() || this->Source->HasCellMask() ||
     Intersect(this->Source->GetCells(), all).GetCount() != all.GetCount())
   {
-    throw dsm::Error("Bricks can be cut from a file only where it has all of the volume, without "
-                     "blanked cells.");
+    throw dsm::Error(
+      "Bricks can be read from a file only if it contains the entire volume and no blanked cells.");
   }
 }
 

@@ -149,7 +149,7 @@ std::vector<bool> VoxelIndex::Compare(const std::vector<dsm::ByteDigest>& digest
 VoxelIndex VoxelIndex::Find(dsm::Messenger& messenger, const BrickLattice& lattice,
   const dsm::BlockReader& reader, const Pass& pass, dsm::FunctionRef<void(double)> progress)
 {
-  const char* const what = "Looking through the volume";
+  const char* const what = "Indexing the volume";
   const auto self = static_cast<std::size_t>(messenger.GetRank());
   const int threads = std::max(1, pass.Threads);
   const bool hasSeen = pass.Seen && pass.Seen->Lattice == lattice;

@@ -31,16 +31,14 @@ BrickLattice::BrickLattice(const Index3& points, ScalarType type, bool cellMask,
     {
       throw dsm::Error("A volume of " + std::to_string(points.x) + " x " +
         std::to_string(points.y) + " x " + std::to_string(points.z) +
-        " points cannot be ray traced: at least 2 points are needed on every axis, and at most "
-        "2147483647. Use a volume, not a slice.");
+        " points cannot be ray traced. Each axis must have 2 to 2147483647 points. Use a volume, "
+        "not a slice.");
     }
   }
   if (edge < 1 || edge > LargestEdge)
   {
-    throw dsm::Error("A brick edge of " + std::to_string(edge) +
-      " cells was asked for; it must be "
-      "from 1 to " +
-      std::to_string(LargestEdge) + ".");
+    throw dsm::Error("Invalid brick edge of " + std::to_string(edge) +
+      " cells; valid edges are 1 to " + std::to_string(LargestEdge) + ".");
   }
   this->Bricks = (this->GetCells() + Index3(edge - 1)) / Index3(edge);
 }

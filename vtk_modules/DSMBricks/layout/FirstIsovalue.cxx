@@ -60,7 +60,7 @@ IsovalueSurvey LookThrough(
   const std::vector<std::shared_ptr<const VoxelField>>& fields, dsm::Messenger& messenger)
 {
   IsovalueSurvey mine;
-  messenger.RunTogether("Looking through the macrocells",
+  messenger.RunTogether("Surveying the macrocells",
     [&]
     {
       for (const auto& field : fields)

@@ -40,7 +40,7 @@ std::vector<ValueRange> Unpack(
     if (next[owner] + sizeof(ValueRange) > all[owner].size())
     {
       throw dsm::Error("Rank " + std::to_string(owner) +
-        " does not have all the bricks that it owns. Do all ranks run the same build?");
+        " is missing bricks that it owns. Do all ranks run the same build?");
     }
     std::memcpy(&ranges[id], all[owner].data() + next[owner], sizeof(ValueRange));
     next[owner] += sizeof(ValueRange);
@@ -115,8 +115,9 @@ MacrocellHierarchy::MacrocellHierarchy(const BrickLattice& lattice, std::vector<
   }
   if (bricks.size() != lattice.GetBrickCount())
   {
-    throw dsm::Error("The ranges of " + std::to_string(bricks.size()) + " bricks were given for " +
-      std::to_string(lattice.GetBrickCount()) + ". Publish the lattice that the bricks belong to.");
+    throw dsm::Error("The ranges of " + std::to_string(bricks.size()) +
+      " bricks do not match the lattice's " + std::to_string(lattice.GetBrickCount()) +
+      " bricks. Publish the lattice of these bricks.");
   }
   finest.Ranges = std::move(bricks);
   this->Levels.push_back(std::move(finest));

@@ -80,7 +80,7 @@ public:
     if (fragmentBytes > bytes - RecordOffset - filled)
     {
       throw dsm::Error("Cell " + std::to_string(id) +
-        " got more records than were counted. Do all ranks run the same build?");
+        " received more records than expected. Do all ranks run the same build?");
     }
     std::memcpy(block + RecordOffset + filled, fragment, fragmentBytes);
     filled += fragmentBytes;
@@ -93,7 +93,7 @@ public:
     if (RecordOffset + filled != bytes)
     {
       throw dsm::Error("Cell " + std::to_string(id) +
-        " got fewer records than were counted. Did the dataset change meanwhile?");
+        " received fewer records than expected. Did the dataset change in the meantime?");
     }
   }
 };
@@ -164,8 +164,8 @@ RecordBlocks::RecordBlocks(std::string_view what, const SortedCells& cells,
         if (needed > std::numeric_limits<std::uint32_t>::max() - dsm::BlockAlignment)
         {
           throw dsm::Error(std::to_string(cells.GetPrimitiveCount(cell)) + " " + reader.GetNames() +
-            " have their centroid in one place. Remove duplicate " + reader.GetNames() +
-            ", or points that are far from the others.");
+            " have the same centroid. Remove duplicate " + reader.GetNames() +
+            " or outlier points.");
         }
         bytes.push_back(static_cast<std::uint32_t>(needed));
       }
@@ -206,7 +206,7 @@ void BlockSink::Absorb(dsm::BlockId id, std::byte* block, std::size_t bytes,
   {
     throw dsm::Error("Block " + std::to_string(id) + " has " + std::to_string(bytes) +
       " bytes, but " + std::to_string(fragmentBytes) +
-      " came for it. Do all ranks run the same build?");
+      " arrived for it. Do all ranks run the same build?");
   }
   std::memcpy(block, fragment, fragmentBytes);
 }
