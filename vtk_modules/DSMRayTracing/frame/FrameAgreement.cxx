@@ -36,7 +36,7 @@ T TakeTail(std::vector<std::byte>& bytes)
 {
   if (bytes.size() < sizeof(T))
   {
-    throw dsm::Error("A report on a frame has " + std::to_string(bytes.size()) + " bytes where " +
+    throw dsm::Error("The report on a frame has " + std::to_string(bytes.size()) + " bytes, but " +
       std::to_string(sizeof(T)) + " were expected. Do all ranks run the same build?");
   }
   T value;

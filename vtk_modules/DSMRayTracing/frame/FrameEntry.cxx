@@ -39,9 +39,8 @@ FrameEntry FrameEntry::Create(
 
 void FrameEntry::Refuse(std::size_t rank)
 {
-  throw dsm::Error("Rank " + std::to_string(rank) +
-    " was asked to draw another picture than rank 0 (camera, "
-    "size, objects, their look, or the lights differ); the frame was left out.");
+  throw dsm::Error("Scene or camera on rank " + std::to_string(rank) +
+    " differs from rank 0 (camera, size, objects, materials or lights); frame skipped.");
 }
 
 void FrameEntry::Check(const std::vector<FrameEntry>& entries, const FrameRequest& request)

@@ -244,7 +244,8 @@ Picture GatherFrame(dsm::Messenger& messenger, const Frame& frame)
   if (filled != pixels)
   {
     throw dsm::Error("The ranks traced " + std::to_string(filled) + " of " +
-      std::to_string(pixels) + " pixels: a tile was lost or traced twice.");
+      std::to_string(pixels) +
+      " pixels: a tile was lost or traced twice. This is a bug in the program.");
   }
   return picture;
 }

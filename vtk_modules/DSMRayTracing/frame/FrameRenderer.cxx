@@ -75,7 +75,7 @@ void FrameRenderer::RenderTiles(dsm::BlockStore& store, const Scene& scene,
   if (records.Entries.empty())
   {
     gathered = this->Messenger.GatherValueTogether(
-      "The frame cannot begin", [&] { return FrameEntry::Create(store, scene, request, last); });
+      "Cannot begin the frame", [&] { return FrameEntry::Create(store, scene, request, last); });
   }
   const std::vector<FrameEntry>& entries = records.Entries.empty() ? gathered : records.Entries;
   FrameEntry::Check(entries, request);

@@ -120,8 +120,8 @@ public:
     }
     if (!outcome.IsOk())
     {
-      throw dsm::Error("The frame could not be traced. Rank " + std::to_string(outcome.FailedRank) +
-        ": " + outcome.Cause);
+      throw dsm::Error("Cannot trace the frame. Rank " + std::to_string(outcome.FailedRank) + ": " +
+        outcome.Cause);
     }
     frame = std::move(this->Traced);
     frame.IsAborted = this->Agreement.IsAborted();

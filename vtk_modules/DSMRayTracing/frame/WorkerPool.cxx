@@ -38,8 +38,8 @@ void WorkerPool::Start(int count, std::function<void(int)> task, std::function<v
   catch (const std::system_error& error)
   {
     throw dsm::Error("Only " + std::to_string(this->Threads.size()) + " of " +
-      std::to_string(count) + " tracing threads could be started (" + error.what() +
-      "). Ask for fewer (DSMThreads).");
+      std::to_string(count) + " tracing threads started (" + error.what() +
+      "). Lower the number of threads (DSMThreads).");
   }
   {
     const std::lock_guard<std::mutex> lock(this->Mutex);

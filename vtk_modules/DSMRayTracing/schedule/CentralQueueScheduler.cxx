@@ -91,7 +91,8 @@ void CentralQueueScheduler::Receive(dsm::Message&& message)
   if (grant.Count < 0 ||
     (grant.Count > 0 && (grant.First < 0 || grant.First + grant.Count > this->Tiles)))
   {
-    throw dsm::Error("Rank 0 granted tiles that the frame does not have.");
+    throw dsm::Error(
+      "Rank 0 assigned tiles that the frame does not have. Do all ranks run the same build?");
   }
   {
     const std::lock_guard<std::mutex> lock(this->Mutex);

@@ -174,7 +174,7 @@ void WorkStealingScheduler::Receive(dsm::Message&& message)
   {
     if (tile < 0 || tile >= this->Tiles)
     {
-      throw dsm::Error("Rank " + std::to_string(message.Source) + " handed over tile " +
+      throw dsm::Error("Rank " + std::to_string(message.Source) + " transferred tile " +
         std::to_string(tile) + ", which the frame does not have. Do all ranks run the same build?");
     }
   }
