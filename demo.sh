@@ -15,7 +15,7 @@ if [ $# -eq 1 ] || [ $# -gt 3 ]; then
 fi
 arguments=()
 if [ $# -ge 2 ]; then
-  [ -r "$1" ] || fail "the file $1 cannot be read"
+  [ -r "$1" ] || fail "cannot read the file $1"
   arguments=(--file "$(realpath "$1")" --isovalue "$2")
   [ $# -lt 3 ] || arguments+=(--array "$3")
 fi
@@ -27,4 +27,4 @@ rm -f "$picture"
 start_ranks "${DSM_RANKS:-4}" timeout 3600 \
   pvbatch "$project/examples/demo.py" --plugin "$(plugin_directory)/DSMRayTracer.so" \
   --size "${DSM_SIZE:-256}" --output "$picture" "${arguments[@]}"
-[ -s "$picture" ] || fail "no picture was made; the messages above say why"
+[ -s "$picture" ] || fail "the demo did not write a picture; the messages above explain why"

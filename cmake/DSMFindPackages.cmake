@@ -18,13 +18,13 @@ function (dsm_find_format_library name lack)
   message(STATUS "${name} was not found: ${lack}")
 endfunction ()
 if (PkgConfig_FOUND)
-  set(unread "files that need it will not be read")
+  set(unread "files that need it cannot be read")
   dsm_find_format_library(HDF5 "${unread}" hdf5-serial hdf5)
   dsm_find_format_library(ZLIB "${unread}" zlib)
   dsm_find_format_library(BLOSC "${unread}" blosc)
   dsm_find_format_library(ZSTD "${unread}" libzstd)
   if (TARGET DSM::ZLIB)
-    dsm_find_format_library(LIBDEFLATE "zlib takes its place, and longer" libdeflate)
+    dsm_find_format_library(LIBDEFLATE "the slower zlib is used instead" libdeflate)
   endif ()
 endif ()
 find_package(nlohmann_json REQUIRED)
@@ -73,8 +73,8 @@ if (DSM_BUILD_PARAVIEW_PLUGIN AND PARAVIEW_USE_QT)
     dsm_add_targets_of_qt("Qt${PARAVIEW_QT_MAJOR_VERSION}")
   else ()
     unset(DSM_HAS_QT_HEADERS_OF_VTK CACHE) # so that it is looked for again once it is installed
-    message(STATUS "The panel Ray Tracing Memory will not be built: it needs the development files of "
-      "Qt ${PARAVIEW_QT_MAJOR_VERSION}, and VTK's for it")
+    message(STATUS "The panel Ray Tracing Memory is not built: it requires the development files of "
+      "Qt ${PARAVIEW_QT_MAJOR_VERSION} and of VTK's Qt support")
   endif ()
 endif ()
 
@@ -88,8 +88,8 @@ if (DSM_WRAP_PYTHON AND VTK_WRAP_PYTHON AND TARGET Python3::Module)
   endif ()
 endif ()
 if (DSM_WRAP_PYTHON AND NOT DSM_HAS_PYTHON)
-  message(STATUS "The classes will not be importable from Python: that needs a VTK with its Python "
-    "wrapping, and Python's development files")
+  message(STATUS "The Python modules are not built: they require VTK's Python "
+    "wrapping and the development files of Python")
 endif ()
 
 set(DSM_HAS_MPI OFF)

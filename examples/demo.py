@@ -20,13 +20,13 @@ def say(text):
 
 
 class DemoError(Exception):
-    """What is wrong with what the user asked for."""
+    """An error in the user's request."""
 
 
 def open_input(arguments):
     """The source, the point array and the isovalue."""
     if not arguments.file:
-        say(f"generating a noisy sphere of {arguments.size}^3 samples, each rank its own piece")
+        say(f"generating a noisy sphere of {arguments.size}^3 samples; each rank generates its own piece")
         source = simple.DSMSampleVolume(Dimensions=[arguments.size] * 3)
         source.UpdatePipeline()
         return source, "f", 0.5
@@ -37,12 +37,12 @@ def open_input(arguments):
     source.UpdatePipeline()
     data = source.GetDataInformation()
     if not data.DataInformation.IsDataStructured() and not data.IsCompositeDataSet():
-        raise DemoError(f"{arguments.file} is a {data.GetDataSetTypeAsString()}, not image data; resample it "
-             "to an image (filter Resample To Image) and save that")
+        raise DemoError(f"{arguments.file} is a {data.GetDataSetTypeAsString()}, not image data. Resample it "
+             "to an image (filter Resample To Image) and save the image.")
     names = [array.Name for array in source.PointData]
     if not names:
-        raise DemoError(f"{arguments.file} has no arrays on its points; if it has some on its cells, apply Cell "
-             "Data to Point Data and save that")
+        raise DemoError(f"{arguments.file} has no point arrays. If it has cell arrays, apply Cell "
+             "Data to Point Data and save the result.")
     array = arguments.array or names[0]
     if array not in names:
         raise DemoError(f"{arguments.file} has no point array {array}; it has: {', '.join(names)}")
@@ -50,7 +50,7 @@ def open_input(arguments):
 
 
 def print_statistics(representation):
-    """What each rank holds, and did for the last frame."""
+    """Prints each rank's memory use, and its counters for the last frame."""
     representation.SMProxy.UpdatePropertyInformation()
     seconds = representation.SMProxy.GetProperty("DSMFrameTime").GetElement(0)
     ranks = json.loads(representation.SMProxy.GetProperty("DSMStatistics").GetElement(0))
@@ -97,9 +97,9 @@ def main():
     camera.Elevation(20)
     camera.Dolly(1.4)
     view.CameraViewUp = camera.GetViewUp()
-    say("cutting the volume into bricks, and tracing the first frame")
+    say("cutting the volume into bricks and tracing the first frame")
     simple.Render(view)
-    say("tracing a second frame, with warm caches")
+    say("tracing a second frame with warm caches")
     simple.Render(view)
     simple.SaveScreenshot(arguments.output, view)
     say(f"the picture is {arguments.output}")

@@ -42,13 +42,13 @@ missing_packages() {
 # Installs what is missing of the packages named; says what it needs when it cannot.
 install_packages() {
   command -v dpkg-query >/dev/null ||
-    fail "this script installs Debian packages, and this is not Debian. Install the equivalents of: $*"
+    fail "this script installs Debian packages, but this system is not Debian. Install the equivalents of: $*"
   local missing as_root=()
   missing=$(missing_packages "$@" $(packages_of_paraview))
   [ -n "$missing" ] || return 0
   if [ "$(id -u)" -ne 0 ]; then
     command -v sudo >/dev/null ||
-      fail "these packages are missing, and neither root nor sudo is at hand to install them: $missing
+      fail "these packages are missing, and neither root nor sudo is available to install them: $missing
        Ask an administrator for: apt-get install --no-install-recommends $missing"
     as_root=(sudo)
   fi
@@ -59,7 +59,7 @@ install_packages() {
       apt-get install --yes --no-install-recommends $missing $(packages_of_paraview); } \
     >"$build/packages.log" 2>&1; then
     tail -n 20 "$build/packages.log" >&2
-    fail "the packages could not be installed; the whole log is $build/packages.log. They are: $missing"
+    fail "cannot install the packages; the complete log is $build/packages.log. Packages: $missing"
   fi
 }
 
@@ -78,13 +78,13 @@ build_project() {
       -DDSM_BUILD_TESTING=$tests -DDSM_WARNINGS_AS_ERRORS="${DSM_WARNINGS_AS_ERRORS:-OFF}" >"$build/configure.log" 2>&1 || {
       tail -n 30 "$build/configure.log" >&2
       rm -f "$build/build.ninja"
-      fail "the project could not be configured; the whole log is $build/configure.log"
+      fail "cannot configure the project; the complete log is $build/configure.log"
     }
   fi
   say "Building (only what has changed) ..."
   cmake --build "$build" >"$build/build.log" 2>&1 || {
     grep -E -A 5 'error|FAILED' "$build/build.log" | head -n 60 >&2
-    fail "the project could not be built; the whole log is $build/build.log"
+    fail "cannot build the project; the complete log is $build/build.log"
   }
 }
 

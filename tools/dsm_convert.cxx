@@ -55,7 +55,8 @@ void AddThree(CLI::App& app, const std::string& name, T* numbers, const std::str
     if (given.size() != 3 ||
       !std::all_of(given.begin(), given.end(), [](T number) { return number > 0; }))
     {
-      throw CLI::ValidationError(name, "takes three numbers above 0 with commas, such as 1,1,2");
+      throw CLI::ValidationError(
+        name, "requires three positive numbers separated by commas, such as 1,1,2");
     }
     std::copy(given.begin(), given.end(), numbers);
   };
@@ -73,59 +74,64 @@ Options Parse(CLI::App& app, int argc, char** argv)
   std::size_t mebibytes = 0;
   app
     .add_option("IN", options.In,
-      "any volume that DSM Volume Reader reads: HDF5, Zarr (its folder), NRRD, MetaImage, raw")
+      "volume to read, in a format of DSM Volume Reader: HDF5, Zarr (its folder), NRRD, MetaImage, "
+      "raw")
     ->required();
   app
-    .add_option("OUT", options.Out,
-      "the file to write, such as volume.vtkhdf or volume.h5: VTK's ImageData in HDF5")
+    .add_option(
+      "OUT", options.Out, "file to write (VTKHDF image data), such as volume.vtkhdf or volume.h5")
     ->required();
-  app.add_option("--arrays", convert.Arrays, "only these arrays, with commas (default: all)")
+  app
+    .add_option("--arrays", convert.Arrays,
+      "names of the arrays to write, separated by commas (default: all)")
     ->delimiter(',')
     ->allow_extra_args(false);
   CLI::Option* const step =
-    app.add_option("--step", convert.Step, "of a file with several time steps (default 0)")
-      ->check(atLeastZero);
-  app
-    .add_option("--level", options.Open.Level,
-      "of a file with several levels of detail (default 0, the finest)")
+    app.add_option("--step", convert.Step, "time step to read (default: 0)")->check(atLeastZero);
+  app.add_option("--level", options.Open.Level, "level of detail to read (default: 0, the finest)")
     ->check(atLeastZero);
-  app.add_option("--dataset", options.Open.Dataset, "of an HDF5 file that is not VTK's");
+  app.add_option(
+    "--dataset", options.Open.Dataset, "dataset to read in an HDF5 file that is not VTKHDF");
   app
     .add_option("--levels", convert.Levels,
-      "coarser ones to write beside the values, each with half the samples along each axis, for "
-      "while the camera moves; all: until one is a single brick (default 0)")
+      "number of coarser levels to write, each with half the samples along each axis, for display "
+      "while the camera moves; 'all' ends with a level of one brick (default: 0)")
     ->transform(
       CLI::Transformer(std::map<std::string, int>{ { "all", vol::WriteOptions::AllLevels } }))
     ->check(atLeastZero);
   AddChoice<vol::Compression>(app, "--compression", convert.Pressed,
     { { "none", vol::Compression::None }, { "zstd", vol::Compression::Zstd },
       { "deflate", vol::Compression::Deflate } },
-    "none (default), zstd, or deflate, which programs without HDF5's plugin for zstd read");
+    "compression: none (default), zstd, or deflate; for zstd, other programs need the HDF5 plugin");
   app
     .add_option("--brick", convert.BrickEdge,
-      "cells along an axis of a brick (default: the renderer's own, 16 to 32)")
+      "cells along each axis of a brick (default: as in the renderer, 16 to 32)")
     ->check(CLI::Range(1, Most, "N"));
-  app.add_option("--memory", mebibytes, "MiB of values in memory, on each rank (default 512)")
+  app.add_option("--memory", mebibytes, "memory for values in MiB per rank (default: 512)")
     ->check(CLI::Range(std::size_t(1), MostMebibytes, "MIB"));
   app
-    .add_option(
-      "--threads", convert.Threads, "of each rank (default: the cores of its host, shared out)")
+    .add_option("--threads", convert.Threads,
+      "threads per rank (default: the host's cores divided by its ranks)")
     ->check(CLI::Range(1, MostThreads, "N"));
-  app.add_flag("--quiet", options.IsQuiet, "tell nothing of how far it is");
+  app.add_flag("--quiet", options.IsQuiet, "do not print progress");
 
-  CLI::App& raw = *app.add_option_group("Of a file of bare values");
-  AddThree(raw, "--raw-size", &bare.Samples[0], "its samples along each axis, with commas");
+  CLI::App& raw = *app.add_option_group("Options for .raw files");
+  AddThree(
+    raw, "--raw-size", &bare.Samples[0], "number of samples along x, y and z, separated by commas");
   using Type = bricks::ScalarType;
   AddChoice<Type>(raw, "--raw-type", bare.Type,
     { { "int8", Type::Int8 }, { "uint8", Type::UInt8 }, { "int16", Type::Int16 },
       { "uint16", Type::UInt16 }, { "int32", Type::Int32 }, { "uint32", Type::UInt32 },
       { "int64", Type::Int64 }, { "uint64", Type::UInt64 }, { "float32", Type::Float32 },
       { "float64", Type::Float64 } },
-    "of its values");
-  raw.add_option("--raw-header", bare.HeaderBytes, "bytes before the first value (default 0)")
+    "scalar type of the values");
+  raw
+    .add_option(
+      "--raw-header", bare.HeaderBytes, "number of bytes before the first value (default: 0)")
     ->check(CLI::Range(std::int64_t(0), std::numeric_limits<std::int64_t>::max(), "BYTES"));
-  raw.add_flag("--raw-big-endian", bare.BigEndian, "the high byte comes first");
-  AddThree(raw, "--spacing", bare.Spacing, "of its samples, with commas (default 1,1,1)");
+  raw.add_flag("--raw-big-endian", bare.BigEndian, "values are big-endian");
+  AddThree(raw, "--spacing", bare.Spacing,
+    "distance between samples along x, y and z, separated by commas (default: 1,1,1)");
 
   app.parse(argc, argv);
   convert.MemoryBytes = mebibytes > 0 ? mebibytes << 20 : convert.MemoryBytes;
@@ -163,8 +169,8 @@ void Convert(Options& options, dsm::Messenger& messenger)
       file = vol::OpenVolumeFile(options.In, options.Open);
       if (!options.OfBareValues.empty() && !vol::IsBareFile(options.In))
       {
-        throw dsm::Error(options.OfBareValues + " is for bare values (.raw); '" + options.In +
-          "' tells itself what it has.");
+        throw dsm::Error(
+          options.OfBareValues + " applies to .raw files only; '" + options.In + "' has a header.");
       }
     });
   if (options.Convert.Threads == 0)
@@ -177,7 +183,7 @@ void Convert(Options& options, dsm::Messenger& messenger)
   {
     std::cerr << "dsm_convert: '" << options.In << "' has " << file->GetSteps()
               << " time steps (0 to " << file->GetSteps() - 1
-              << "); only step 0 is written. Use --step to write another one to a file of its own."
+              << "); only step 0 is written. Use --step to write another step to a separate file."
               << std::endl;
   }
   vol::ConvertVolume(file, options.Out, options.Convert, messenger, tell);
@@ -194,8 +200,8 @@ void Convert(Options& options, dsm::Messenger& messenger)
 bool Run(int argc, char** argv, dsm::Messenger& messenger)
 {
   CLI::App app(
-    "Writes a volume in bricks, so that its first picture reads only what it shows, alone or under "
-    "mpirun. When it is ended early, the same call goes on where it was.");
+    "Writes a volume in bricks, so that the first picture reads only the visible bricks. Runs with "
+    "or without mpirun. If it is interrupted, run the same command again to resume.");
   std::string failure;
   try
   {
@@ -210,7 +216,7 @@ bool Run(int argc, char** argv, dsm::Messenger& messenger)
   }
   catch (const std::bad_alloc&)
   {
-    failure = "Out of memory. Lower --memory or --threads, or use more hosts.";
+    failure = "out of memory. Lower --memory or --threads, or use more hosts.";
   }
   catch (const std::exception& error)
   {

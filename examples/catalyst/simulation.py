@@ -21,7 +21,7 @@ TIME_STEP = 1.0
 
 
 class GrayScott:
-    """A rank's slab of the two concentrations, indexed [z, y, x], with a layer of each neighbour."""
+    """A rank's slab of the two concentrations, indexed [z, y, x], with a layer of each neighbor."""
 
     def __init__(self, comm, size):
         self.comm, self.size = comm, size
@@ -38,7 +38,7 @@ class GrayScott:
         self.exchange()
 
     def exchange(self):
-        """Brings the neighbours' layers; the domain is periodic."""
+        """Exchanges layers with the neighbors. The domain is periodic."""
         below, above = (self.comm.rank - 1) % self.comm.size, (self.comm.rank + 1) % self.comm.size
         for field in (self.u, self.v):
             self.comm.Sendrecv(field[-2], above, recvbuf=field[0], source=below)
@@ -95,9 +95,9 @@ def parse_arguments():
     parser.add_argument("--pipeline", required=True, help="the Catalyst script")
     parser.add_argument("--steps", type=int, default=200)
     parser.add_argument("--size", type=int, default=64, help="grid points along an axis")
-    parser.add_argument("--substeps", type=int, default=10, help="of the model, in a step")
-    parser.add_argument("--still-from", type=int, help="step from which on nothing changes any more")
-    parser.add_argument("--memory-every", type=int, default=0, help="print it every so many steps")
+    parser.add_argument("--substeps", type=int, default=10, help="substeps of the model per step")
+    parser.add_argument("--still-from", type=int, help="step after which the fields no longer change")
+    parser.add_argument("--memory-every", type=int, default=0, help="print memory use every N steps")
     return parser.parse_args()
 
 

@@ -20,7 +20,7 @@ def parse_numbers(text):
 def parse_arguments():
     parser = argparse.ArgumentParser()
     parser.add_argument("--plugin", required=True, type=os.path.abspath)
-    parser.add_argument("--files", nargs="+", required=True, help="image data, one file a step")
+    parser.add_argument("--files", nargs="+", required=True, help="image data, one file per time step")
     parser.add_argument("--array", required=True)
     parser.add_argument("--isovalues", type=parse_numbers, required=True)
     parser.add_argument("--output", required=True)

@@ -21,7 +21,7 @@ def parse_numbers(text):
 def parse_arguments():
     parser = argparse.ArgumentParser()
     parser.add_argument("--plugin", required=True, type=os.path.abspath)
-    parser.add_argument("--output", required=True, help="the database's folder, named *.cdb")
+    parser.add_argument("--output", required=True, help="folder of the database, named *.cdb")
     parser.add_argument("--file", help="image data; without it, a noisy sphere is generated")
     parser.add_argument("--array", default="f")
     parser.add_argument("--isovalues", type=parse_numbers, default=[0.3, 0.5])
