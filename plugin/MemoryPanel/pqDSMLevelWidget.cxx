@@ -56,8 +56,9 @@ void pqDSMLevelWidget::Fill(int level)
   }
   if (level < 0 || level >= this->List->count())
   {
-    this->List->addItem(
-      names.isEmpty() ? QString::number(level) : this->tr("%1: not in the file").arg(level), level);
+    this->List->addItem(names.isEmpty() ? QString::number(level)
+                                        : this->tr("%1: not available in the file").arg(level),
+      level);
   }
   this->List->setCurrentIndex(this->List->findData(level));
 }

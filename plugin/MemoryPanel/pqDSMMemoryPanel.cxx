@@ -237,7 +237,7 @@ void pqDSMMemoryPanel::Update()
   this->Ranks->SetRanks(ranks);
   this->Table->setEnabled(!ranks.isEmpty());
   const QString words = !ranks.isEmpty() ? ranks.first().toObject().value("Explanation").toString()
-    : display                            ? this->tr("No picture of this view has been traced yet.")
-              : this->tr("The active view shows nothing as DSM Ray Traced.");
+    : display                            ? this->tr("This view has no traced picture yet.")
+              : this->tr("The active view has no DSM Ray Traced datasets.");
   this->Words->setText(words);
 }

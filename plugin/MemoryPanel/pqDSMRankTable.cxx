@@ -34,8 +34,8 @@ struct Column
 
 #define DSM_COLUMN(title, unit, hasTotal, description, ...)                                        \
   { title, unit, hasTotal, description, { __VA_ARGS__ } },
-const Column Columns[] = { { "Rank", Unit::Name, false, "Number of the rank in MPI.", { "Rank" } },
-  { "Host", Unit::Name, false, "Host on which the rank runs.", { "Host" } },
+const Column Columns[] = { { "Rank", Unit::Name, false, "MPI rank.", { "Rank" } },
+  { "Host", Unit::Name, false, "Host that runs the rank.", { "Host" } },
   DSM_PANEL_COLUMNS(DSM_COLUMN) };
 
 constexpr int NumberOfColumns = static_cast<int>(std::size(Columns));

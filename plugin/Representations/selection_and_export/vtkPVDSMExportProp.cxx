@@ -125,9 +125,9 @@ std::vector<vtkSmartPointer<vtkActor>> vtkPVDSMExportProp::MakeActors()
   const vtkTypeInt64 count = information->GetNumberOfPolygons();
   if (count > MostPolygons)
   {
-    vtkErrorMacro("A surface that is DSM Ray Traced has "
-      << count << " polygons, and is left out of what is exported, which may have " << MostPolygons
-      << " of it. Use Contour, Decimate and Save Data instead, or Extract Subset before.");
+    vtkErrorMacro("A DSM Ray Traced surface has "
+      << count << " polygons and is not exported; the maximum is " << MostPolygons
+      << ". Use Contour, Decimate and Save Data, or apply Extract Subset first.");
   }
   if (count == 0 || count > MostPolygons)
   {
@@ -135,7 +135,7 @@ std::vector<vtkSmartPointer<vtkActor>> vtkPVDSMExportProp::MakeActors()
   }
   if (count > ManyPolygons)
   {
-    vtkWarningMacro("A surface that is DSM Ray Traced is exported as " << count << " polygons.");
+    vtkWarningMacro("A DSM Ray Traced surface is exported as " << count << " polygons.");
   }
   information->SetWithTriangles(true);
   gather();

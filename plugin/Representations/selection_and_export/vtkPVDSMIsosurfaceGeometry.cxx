@@ -416,10 +416,10 @@ void AddImage(vtkDSMVolumeMapper* mapper, vtkImageData* image, vtkDataObject* so
   if (!colored && image->GetNumberOfCells() > vtkPVDSMIsosurfaceGeometry::MostCellsOfSelection)
   {
     vtkErrorWithObjectMacro(mapper,
-      "Nothing can be selected in a block of " << image->GetNumberOfCells()
-                                               << " cells on one rank; at most "
-                                               << vtkPVDSMIsosurfaceGeometry::MostCellsOfSelection
-                                               << " can. Take more ranks, or extract a part.");
+      "Selection is not available in a block of "
+        << image->GetNumberOfCells() << " cells on one rank; the maximum is "
+        << vtkPVDSMIsosurfaceGeometry::MostCellsOfSelection
+        << ". Use more ranks or extract a subset.");
     return;
   }
   auto* counted = vtkImageData::SafeDownCast(source);
@@ -440,10 +440,9 @@ void AddImage(vtkDSMVolumeMapper* mapper, vtkImageData* image, vtkDataObject* so
     if (collector.GetCount() > vtkPVDSMIsosurfaceGeometry::MostTriangles)
     {
       vtkErrorWithObjectMacro(mapper,
-        "Nothing can be " << (colored ? "exported of" : "selected in")
-                          << " surfaces that have more than "
-                          << vtkPVDSMIsosurfaceGeometry::MostTriangles
-                          << " triangles on one rank. Take more ranks, or extract a part.");
+        "Surfaces cannot be " << (colored ? "exported" : "selected") << ": they have more than "
+                              << vtkPVDSMIsosurfaceGeometry::MostTriangles
+                              << " triangles on one rank. Use more ranks or extract a subset.");
       return;
     }
   }

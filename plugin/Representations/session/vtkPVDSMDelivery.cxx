@@ -45,19 +45,19 @@ std::string FindObstacle()
 {
   if (!HasRole(vtkPVSession::DATA_SERVER))
   {
-    return "DSM Ray Traced traces where the data are, but here data and pictures have different "
-           "servers. Start pvserver in the place of pvdataserver and pvrenderserver.";
+    return "DSM Ray Tracer traces on the data server, but this session has separate data and "
+           "render servers. Start pvserver instead of pvdataserver and pvrenderserver.";
   }
   if (vtkRemotingCoreConfiguration::GetInstance()->GetIsInCave())
   {
-    return "In a CAVE, nothing is shown as DSM Ray Traced: each screen has a camera of its own, "
-           "and the ranks "
-           "trace one picture together. Show it as Surface, or as Contour.";
+    return "DSM Ray Traced is not supported in a CAVE: each screen has its own camera, but the "
+           "ranks trace one picture together. Use the representation Surface or the filter "
+           "Contour.";
   }
   if (!vtkPVDSMDrawing::IsPossible())
   {
-    return "There is no display to draw on, and ParaView is going to stop. Start it with: "
-           "xvfb-run -a -s \"-noreset -screen 0 1280x1024x24\" COMMAND";
+    return "No display is available, so ParaView will stop. Start it with: xvfb-run -a -s "
+           "\"-noreset -screen 0 1280x1024x24\" COMMAND";
   }
   return {};
 }

@@ -29,9 +29,8 @@ void vtkPVDSMVersionCheck::Run(vtkSMSession* session)
   {
     return;
   }
-  vtkGenericWarningMacro("The DSM Ray Tracer of this client has version "
-    << client << ", that of the server " << server
-    << ". Properties that only one of them knows have no effect. Load the same version on both "
-       "sides: "
-       "'Tools > Manage Plugins' shows which file each has loaded.");
+  vtkGenericWarningMacro("DSM Ray Tracer has version "
+    << client << " on this client and version " << server
+    << " on the server. Properties that exist on one side only have no effect. Load the same "
+       "version on both sides: 'Tools > Manage Plugins' shows the loaded files.");
 }
