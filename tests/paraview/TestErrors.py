@@ -79,7 +79,7 @@ for scale in (1e51, 1e-60):
     expect_then_delete(image_source(scaled), [], isovalues=[0.7 * scale], empty=False)
 
 expect_then_delete(image_source("image.SetExtent(piece)\nadd(image, points(piece)[0])\n",
-                                (0, 20, 0, 20, 3, 3)), ["no cells in z", "volume"])
+                                (0, 20, 0, 20, 3, 3)), ["no cells along z", "volume"])
 expect_then_delete(image_source("image.SetExtent(0, -1, 0, -1, 0, -1)\n"), [])
 
 # Samples that are nowhere. ParaView itself cannot know where to look then.
@@ -126,7 +126,7 @@ with Messages() as messages:
     place_camera(view)
     pixels = render(view)
     text = messages.text
-check("colour array 'onCells'" in text and "Cell Data to Point Data" in text, "points have no such array: " + text)
+check("color array 'onCells'" in text and "Cell Data to Point Data" in text, "points have no such array: " + text)
 check("Warning" in text and "ERROR" not in text, "that is a warning, as the surface is there")
 check(get_covered(pixels).any(), "the surface is still drawn")
 with Messages() as messages:
@@ -134,13 +134,13 @@ with Messages() as messages:
     check_equal(render(view), pixels, "the points' array of the name does not colour it either")
     text = messages.text
 check("ERROR" not in text, "which is a warning, too: ParaView's Surface says nothing")
-check("colour array 'f' does not exist" in text and "'five', 'onCells'" in text, "the cells' array is meant: " + text)
+check("color array 'f' does not exist" in text and "'five', 'onCells'" in text, "the cells' array is meant: " + text)
 with Messages() as messages:
     display.ColorArrayName = ["CELLS", "five"]
     display.MapScalars = 0
     check_equal(render(view), pixels, "five numbers are no colour")
     text = messages.text
-check("'five' holds no colours" in text and "Map Scalars" in text, "that is said: " + text)
+check("'five' does not contain colors" in text and "Map Scalars" in text, "that is said: " + text)
 simple.Delete(both)
 
 # After all that, the same view still draws.

@@ -46,7 +46,7 @@ small.DSMMemory = display.DSMMemory = 1
 simple.Show(large, view)
 large.PhiResolution = 301
 pixels, text = render_and_listen()
-check("the surface: The part of the data that rank " in text, "it is said what is too large: " + text)
+check("the surface: The data owned by rank " in text, "it is said what is too large: " + text)
 check("DSMMemory" in text and " bytes" in text, "how much is needed, and what to change")
 check("use at least" in text and "ranks with as much memory" in text, "how many ranks would do")
 check_alone(pixels, "A surface that does not fit the memory")
@@ -77,7 +77,7 @@ with Messages() as messages:
     solid = render(view)
 check(get_covered(solid)[:, middle:].any(), "without a colour array it is drawn")
 for array, words in (("short", ["'short' has 7 values", "shown without them"]),
-                     ("names", ["'names' holds text", "categories"]),
+                     ("names", ["'names' contains text", "Categories"]),
                      ("nothing", ["'nothing' does not exist", "'short'"])):
     display.ColorArrayName = ["CELLS", array]
     pixels, text = render_and_listen()

@@ -149,7 +149,7 @@ display.DSMClip = 0
 with Messages() as messages:
     set_slices(x=99)
     nothing = render(view)
-    check(get_ranks() > 1 or "Slice 99 along x is outside of the volume" in messages.text, "a slice outside is reported")
+    check(get_ranks() > 1 or "Slice 99 along x is outside the volume" in messages.text, "a slice outside is reported")
 check(not get_covered(nothing).any(), "and not shown")
 set_slices()
 check(not get_covered(render(view)).any(), "without slices, nothing is shown")

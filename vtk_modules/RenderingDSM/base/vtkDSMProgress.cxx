@@ -15,7 +15,7 @@ void vtkDSMProgress::Tell(vtkAlgorithm* mapper, double part)
   mapper->UpdateProgress(part);
   if (mapper->GetAbortExecute())
   {
-    throw dsm::Error("It was aborted, and is not shown. Update the dataset to show it after all.");
+    throw dsm::Error("The update was aborted. The dataset is not shown. Update it to try again.");
   }
 }
 

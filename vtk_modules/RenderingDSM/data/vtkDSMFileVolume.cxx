@@ -150,7 +150,8 @@ std::shared_ptr<const vol::VolumeFile> OpenAs(
   Opening opening{};
   if (bytes.size() <= sizeof(opening) || bytes.back() != '\0')
   {
-    throw dsm::Error("Another rank does not say how to open the volume's file.");
+    throw dsm::Error("Another rank did not send the options to open the volume's file. Do all "
+                     "ranks run the same build?");
   }
   std::memcpy(&opening, bytes.data(), sizeof(opening));
   options.Level = opening.Level;
@@ -278,9 +279,8 @@ void vtkDSMFileVolume::CheckSameEverywhere(dsm::Messenger& messenger) const
   if (std::any_of(
         stamps.begin(), stamps.end(), [&](std::uint64_t stamp) { return stamp != stamps.front(); }))
   {
-    throw vol::FileError(origin.Path,
-      "was written to, or another took its place, since some of the ranks opened it: they would "
-      "not show the same. Reload it.");
+    throw vol::FileError(
+      origin.Path, "changed or was replaced while the ranks opened it. Reload it.");
   }
 }
 
@@ -500,7 +500,7 @@ bricks::VoxelIndex vtkDSMFileVolume::FindIndex(dsm::Messenger& messenger,
   const bricks::BrickLattice& lattice, const vtkDSMFileValues* own, int threads,
   const std::function<void(double)>& progress) const
 {
-  const char* const what = "Looking through the volume";
+  const char* const what = "Indexing the volume";
   const std::optional<bricks::SeenBricks> seen = own ? own->TakeSeen() : std::nullopt;
   std::vector<std::byte> bytes;
   messenger.RunTogether(what,

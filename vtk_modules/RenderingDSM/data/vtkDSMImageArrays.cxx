@@ -140,8 +140,8 @@ void vtkDSMImageArrays::Refuse(
   }
   const std::string array = "The " + purpose + " '" + choice.Name + "'";
   const std::string remedy = !list.empty() ? " Choose one of " + list + "."
-    : choice.OnCells                       ? " The dataset has no cell array of numbers."
-                                           : " The dataset has no point array of numbers.";
+    : choice.OnCells                       ? " The dataset has no numeric cell array."
+                                           : " The dataset has no numeric point array.";
   const auto is = [&](State state)
   {
     return std::any_of(
@@ -149,7 +149,7 @@ void vtkDSMImageArrays::Refuse(
   };
   if (is(State::NotNumeric))
   {
-    throw dsm::Error(array + " holds text, not numbers." + remedy);
+    throw dsm::Error(array + " contains text, not numbers." + remedy);
   }
   if (is(State::NoSuchComponent))
   {
@@ -163,14 +163,14 @@ void vtkDSMImageArrays::Refuse(
   if (is(State::NoColors))
   {
     throw dsm::Error(array +
-      " holds no colours: those have up to four components, of another type than char. Switch on "
-      "Map Scalars.");
+      " does not contain colors: colors have up to four components and a type other than char. "
+      "Turn on Map Scalars.");
   }
   if (is(State::OnCells))
   {
     throw Missing(
-      (choice.Name.empty() ? "The dataset has cell data only" : array + " belongs to the cells") +
-      ", but values at the points are needed. Apply Cell Data to Point Data first.");
+      (choice.Name.empty() ? "The dataset has only cell data" : array + " is a cell array") +
+      ", but point data are required. Apply Cell Data to Point Data first.");
   }
   throw Missing((choice.Name.empty() ? "No " + purpose + " is chosen."
                                      : array + " does not exist in the dataset.") +

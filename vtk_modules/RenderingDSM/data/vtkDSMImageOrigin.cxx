@@ -83,7 +83,8 @@ std::vector<ArrayNote> Decode(const std::vector<std::byte>& bytes)
   {
     if (count > bytes.size() - at)
     {
-      throw dsm::Error("A message about the arrays of an image is shorter than it says.");
+      throw dsm::Error(
+        "A message about the arrays of an image is truncated. Do all ranks run the same build?");
     }
     std::copy_n(bytes.data() + at, count, static_cast<std::byte*>(to));
     at += count;
@@ -239,7 +240,7 @@ void vtkDSMImageOrigin::GatherArrays(
   if (this->Arrays.empty())
   {
     throw dsm::Error(
-      "There is nothing to write: no array of numbers is in every piece of the image.");
+      "There is nothing to write: the pieces of the image have no numeric array in common.");
   }
 }
 
@@ -251,8 +252,8 @@ void vtkDSMImageOrigin::CheckCover() const
     if (!bricks::LatticePlan::IsCovered(whole, this->GetPieces(array)))
     {
       throw dsm::Error("The array '" + this->Arrays[array].Name +
-        "' cannot be written: the pieces of the image leave out a part of the box around them. "
-        "Apply Resample To Image first.");
+        "' cannot be written: the pieces of the image do not fill their bounding box. Apply "
+        "Resample To Image first.");
     }
   }
 }

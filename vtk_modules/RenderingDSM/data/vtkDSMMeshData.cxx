@@ -98,7 +98,7 @@ vtkDSMMeshData::vtkDSMMeshData(std::shared_ptr<vtkDSMRankGroup> group, vtkDSMMes
       this->Blocks = this->Input.CollectBlocks();
       if (this->Blocks.size() != content.Blocks.size())
       {
-        throw dsm::Error("The blocks of a surface changed while it was read.");
+        throw dsm::Error("The blocks of the surface changed while they were read.");
       }
     });
   this->FormGroups();
@@ -289,9 +289,9 @@ void vtkDSMMeshData::CheckSolids(const vtkDSMTubesAndSpheres& solids) const
   if (triangles > available / SolidTriangleBytes)
   {
     throw dsm::Error("Lines and points would become " + std::to_string(triangles) +
-      " triangles of tubes and spheres, for which this rank has not enough memory (" +
+      " triangles of tubes and spheres, which exceed the memory of this rank (" +
       dsm::FormatMebibytes(available) +
-      "). Set the line or point radius to a negative number to leave them out, or use more ranks.");
+      "). Set the line or point radius to a negative number to hide them, or use more ranks.");
   }
 }
 
@@ -350,7 +350,7 @@ void vtkDSMMeshData::CheckColors(const std::vector<ColorReport>& mine)
   dsm::Messenger& messenger = this->Group->GetMessenger();
   const auto reports = vtkDSMGather::Items(messenger, mine);
   const char* name = this->Input.Mapper->GetArrayName();
-  const std::string array = std::string("The colour array '") + (name ? name : "") + "'";
+  const std::string array = std::string("The color array '") + (name ? name : "") + "'";
   bool usable = false;
   bool missing = false;
   for (const ColorReport& report : reports)
@@ -361,13 +361,13 @@ void vtkDSMMeshData::CheckColors(const std::vector<ColorReport>& mine)
     {
       this->Message = array + " has " + std::to_string(report.Length) + " values, but " +
         std::to_string(report.ExpectedLength) +
-        " are needed; the surface is shown without them. Check the dataset's source.";
+        " are required; the surface is shown without them. Check the dataset's source.";
     }
     if (report.State == State::Text && this->Message.empty())
     {
       this->Message = array +
-        " holds text, for which the colour map has no colours; the surface is shown without them. "
-        "Let the colour map interpret values as categories, or choose an array of numbers.";
+        " contains text, for which the color map has no colors; the surface is shown without them. "
+        "Turn on Interpret Values As Categories in the color map, or choose a numeric array.";
     }
   }
   if (missing && !usable && this->Message.empty())
@@ -407,7 +407,7 @@ std::string vtkDSMMeshData::ListArrays() const
   {
     list += (list.empty() ? " Choose one of '" : ", '") + name + "'";
   }
-  return list.empty() ? std::string(" It has no arrays of that kind.") : list + ".";
+  return list.empty() ? std::string(" The dataset has no arrays of this kind.") : list + ".";
 }
 
 void vtkDSMMeshData::Publish()

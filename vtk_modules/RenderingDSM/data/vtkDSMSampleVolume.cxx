@@ -57,7 +57,7 @@ int vtkDSMSampleVolume::RequestInformation(
     {
       vtkErrorMacro("Dimensions of " << this->Dimensions[0] << " x " << this->Dimensions[1] << " x "
                                      << this->Dimensions[2]
-                                     << " make no volume; use at least 2 samples on each axis.");
+                                     << " are invalid; use at least 2 samples along each axis.");
       return 0;
     }
   }

@@ -192,8 +192,8 @@ void vtkDSMTriangleList::CheckPoints(vtkIdType cell, vtkIdType size, const vtkId
   {
     if (points[corner] < 0 || points[corner] >= this->Data->GetNumberOfPoints())
     {
-      throw dsm::Error("Cell " + std::to_string(cell) + " of the surface has point " +
-        std::to_string(points[corner]) + ", but there are only " +
+      throw dsm::Error("Cell " + std::to_string(cell) + " of the surface refers to point " +
+        std::to_string(points[corner]) + ", but the surface has only " +
         std::to_string(this->Data->GetNumberOfPoints()) + " points. Check the dataset's cells.");
     }
   }

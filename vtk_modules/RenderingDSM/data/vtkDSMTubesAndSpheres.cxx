@@ -48,8 +48,7 @@ vtkDataArray* FindRadii(vtkPolyData* data, const std::string& name)
     radii->GetNumberOfTuples() != data->GetNumberOfPoints())
   {
     throw dsm::Error("The radius array '" + name +
-      "' is not a point array of the dataset with one number for every point. Choose another, or "
-      "none.");
+      "' must be a point array with one number per point. Choose another array or none.");
   }
   return radii;
 }

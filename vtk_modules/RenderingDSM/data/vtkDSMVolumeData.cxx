@@ -53,7 +53,7 @@ void vtkDSMVolumeData::SeparateBlocks(const std::vector<Choice>& shown)
   dsm::Messenger& messenger = this->Group->GetMessenger();
   std::vector<bricks::LatticePlan::Seam> seams;
   messenger.RunTogether(
-    "Looking for blocks that touch", [&] { seams = this->Plan.FindSeams(this->Pieces); });
+    "Finding adjacent blocks", [&] { seams = this->Plan.FindSeams(this->Pieces); });
   this->Seams = !seams.empty();
   if (!this->Seams)
   {
@@ -160,7 +160,7 @@ void vtkDSMVolumeData::CollectImages(vtkDataObject* data)
   if (!tree || vtkUniformGridAMR::SafeDownCast(data))
   {
     throw dsm::Error(std::string("A dataset of type ") + data->GetClassName() +
-      " cannot be ray traced: image data (or blocks of image data) is needed. Apply Resample To "
+      " cannot be ray traced. Image data or blocks of image data are required. Apply Resample To "
       "Image first.");
   }
   vtkSmartPointer<vtkCompositeDataIterator> leaf;
@@ -173,8 +173,8 @@ void vtkDSMVolumeData::CollectImages(vtkDataObject* data)
   }
   if (anyOther && this->Images.empty())
   {
-    throw dsm::Error("The blocks of the dataset are not image data, which ray tracing needs. Apply "
-                     "Resample To Image first.");
+    throw dsm::Error("The blocks of the dataset are not image data, which ray tracing requires. "
+                     "Apply Resample To Image first.");
   }
 }
 
@@ -449,7 +449,7 @@ std::shared_ptr<bricks::VoxelField> vtkDSMVolumeData::CreateField(std::size_t nu
   if (types.size() > 1)
   {
     throw dsm::Error("The pieces of the " + purpose + " '" + choice.Name +
-      "' do not all have the same type. Convert them to one type, for example with Calculator.");
+      "' have different scalar types. Convert them to one type, for example with Calculator.");
   }
   const bricks::Box whole{ bricks::Index3(0), lattice.Points - bricks::Index3(1) };
   masked = masked || !bricks::LatticePlan::IsCovered(whole, parts);

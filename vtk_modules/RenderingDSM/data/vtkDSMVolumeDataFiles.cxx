@@ -23,10 +23,10 @@ void TellOfLargeChunks(const std::string& name, std::uint64_t need, std::uint64_
   if (told.insert(name).second)
   {
     vtkGenericWarningMacro("The chunks of "
-      << name << " are so large that a brick of it needs up to " << dsm::FormatMebibytes(need)
-      << " of them together, and they may take " << dsm::FormatMebibytes(room)
-      << ". Each is read, and unpacked, many times, which takes long. Allow more memory "
-         "(DSMMemory), or convert the file with dsm_convert.");
+      << name << " are large: a brick needs up to " << dsm::FormatMebibytes(need)
+      << " of chunks at once, but the limit is " << dsm::FormatMebibytes(room)
+      << ". Each chunk is read and decompressed many times, which is slow. Raise the memory per "
+         "rank (DSMMemory), or convert the file with dsm_convert.");
   }
 }
 

@@ -147,7 +147,7 @@ void vtkDSMVolumeWriter::Join(dsm::Messenger& messenger, bool hasImage)
     {
       if (!hasImage)
       {
-        throw dsm::Error("It has no image to write.");
+        throw dsm::Error("There is no image to write.");
       }
     });
 }
@@ -173,7 +173,7 @@ void vtkDSMVolumeWriter::WriteImage()
   this->Join(messenger, true);
   if (this->FileName.empty())
   {
-    throw dsm::Error("The file to write has no name. Set FileName.");
+    throw dsm::Error("The name of the file to write is empty. Set FileName.");
   }
   auto origin =
     std::make_unique<vtkDSMImageOrigin>(messenger, vtkImageData::SafeDownCast(this->GetInput()));
@@ -184,9 +184,9 @@ void vtkDSMVolumeWriter::WriteImage()
     {
       names += (names.empty() ? "'" : ", '") + name + "'";
     }
-    vtkWarningMacro("Left out of '" << this->FileName << "': " << names
-                                    << ", which are not arrays of numbers that are the same in "
-                                       "every piece of the image.");
+    vtkWarningMacro("Not written to '"
+      << this->FileName << "': " << names
+      << ". These arrays are not numeric, or differ between the pieces of the image.");
   }
   vol::WriteOptions options;
   options.IsResumable = false; // the image is gone when the session ends

@@ -69,8 +69,8 @@ void TakeRoom(std::size_t bytes, const Take& take)
   const dsm::HostTurn turn;
   if (bytes > dsm::GetAvailableHostMemory() / 2)
   {
-    throw dsm::Error("is wanted as a whole, and its " + dsm::FormatMebibytes(bytes) +
-      " do not fit half of the memory that is left. Extract a subset first.");
+    throw dsm::Error("must be read entirely, but its " + dsm::FormatMebibytes(bytes) +
+      " exceed half of the available memory. Extract a subset first.");
   }
   take();
 }
@@ -137,7 +137,7 @@ void vtkDSMFileArray<ValueTypeT>::SetValues(std::shared_ptr<const vtkDSMFileValu
 template <class ValueTypeT>
 bool vtkDSMFileArray<ValueTypeT>::RefuseToWrite()
 {
-  this->Report("cannot be changed: its values are in a file. Copy it first.");
+  this->Report("is read-only because its values are in a file. Copy it first.");
   return false;
 }
 
@@ -156,8 +156,8 @@ const ValueTypeT* vtkDSMFileArray<ValueTypeT>::Find(vtkIdType tuple) const
   if (tuple < 0 || tuple * this->NumberOfComponents > this->MaxId)
   {
     this->Report("has values for " + std::to_string(this->Values->GetCount()) +
-      " points or cells, and that of number " + std::to_string(tuple) +
-      " was asked for: a filter has given it to a dataset of another size.");
+      " points or cells, but the value of number " + std::to_string(tuple) +
+      " was requested: a filter assigned the array to a dataset of another size.");
     return nullptr;
   }
   const bricks::Index3 sample = this->Values->GetSample(tuple);
@@ -186,7 +186,7 @@ const ValueTypeT* vtkDSMFileArray<ValueTypeT>::Find(vtkIdType tuple) const
   }
   catch (const std::exception& error)
   {
-    this->Report("could not be read: " + DescribeError(error));
+    this->Report("cannot be read: " + DescribeError(error));
     return nullptr;
   }
 }
@@ -268,7 +268,7 @@ const vol::ValueRanges* vtkDSMFileArray<ValueTypeT>::FindRanges() const
   }
   catch (const std::exception& error)
   {
-    this->Report("could not be read: " + DescribeError(error));
+    this->Report("cannot be read: " + DescribeError(error));
     return nullptr;
   }
 }

@@ -88,8 +88,8 @@ void CheckExtent(const vol::VolumeFile& file)
       first + points > INT_MAX)
     {
       throw dsm::Error("'" + file.GetPath() + "' has " + std::to_string(points) +
-        " points from index " + std::to_string(first) + " on along the " + "xyz"[axis] +
-        " axis; VTK's indices go from " + std::to_string(INT_MIN) + " to " +
+        " points from index " + std::to_string(first) + " along the " + "xyz"[axis] +
+        " axis; VTK supports indices from " + std::to_string(INT_MIN) + " to " +
         std::to_string(INT_MAX - 1) + ".");
     }
   }
@@ -344,11 +344,11 @@ void vtkDSMVolumeReader::TellOfRest() const
   const std::uint64_t has = std::filesystem::file_size(file.GetPath(), failure);
   if (!failure && has > header + values)
   {
-    vtkWarningMacro(
-      "The file '" << file.GetPath() << "' has " << has << " bytes, and " << has - header - values
-                   << " of them are not read, behind " << header << " of header and " << values
-                   << " of values. If the picture is not what it should be, check Raw "
-                      "Dimensions, Scalar Type, Components and Header Bytes.");
+    vtkWarningMacro("The file '" << file.GetPath() << "' has " << has << " bytes, but "
+                                 << has - header - values << " bytes are not used after " << header
+                                 << " bytes of header and " << values
+                                 << " bytes of values. If the picture looks wrong, check Raw "
+                                    "Dimensions, Raw Scalar Type, Components and Header Bytes.");
   }
 }
 

@@ -166,20 +166,20 @@ std::vector<vtkDSMFrameNotes::Entry> vtkDSMFrameNotes::CreateLegend(
       if (ranks > MostEntries)
       {
         legend.push_back(
-          { PanelColor, "and " + std::to_string(ranks - MostEntries) + " ranks more" });
+          { PanelColor, "and " + std::to_string(ranks - MostEntries) + " more ranks" });
       }
       break;
     }
     case rt::DebugView::Brick:
       legend = { { rt::GetNumberColor(0), "brick 0" }, { rt::GetNumberColor(1), "brick 1" },
-        { rt::GetNumberColor(2), "brick 2, and so on" } };
+        { rt::GetNumberColor(2), "brick 2, etc." } };
       break;
     case rt::DebugView::TileTime:
       for (const double part : { 0.0, 0.25, 0.5, 0.75, 1.0 })
       {
         const auto microseconds = static_cast<int>(1e6 * part * rt::LongTileSeconds + 0.5);
         legend.push_back({ rt::GetHeatColor(part),
-          (part < 1.0 ? "" : ">= ") + std::to_string(microseconds) + " us for the tile" });
+          (part < 1.0 ? "" : ">= ") + std::to_string(microseconds) + " us per tile" });
       }
       break;
     case rt::DebugView::Normal:
@@ -191,15 +191,15 @@ std::vector<vtkDSMFrameNotes::Entry> vtkDSMFrameNotes::CreateLegend(
         { glm::vec3(0.0f), "at the far plane" } };
       break;
     case rt::DebugView::NewTiles:
-      legend = { { rt::GetNewTileColor(), "tile of another rank before" },
-        { glm::vec3(1.0f), "tile of the same rank" } };
+      legend = { { rt::GetNewTileColor(), "tile traced by another rank before" },
+        { glm::vec3(1.0f), "tile traced by the same rank before" } };
       break;
     case rt::DebugView::Misses:
       for (const double part : { 0.0, 0.25, 0.5, 0.75, 1.0 })
       {
         const auto bricks = static_cast<int>(part * rt::ManyMisses + 0.5);
         legend.push_back({ rt::GetHeatColor(part),
-          (part < 1.0 ? "" : ">= ") + std::to_string(bricks) + " bricks waited for" });
+          (part < 1.0 ? "" : ">= ") + std::to_string(bricks) + " bricks missed" });
       }
       break;
     case rt::DebugView::Off:

@@ -276,12 +276,12 @@ std::string vtkDSMStatistics::GetSummary() const
   text << this->Organization << ", MiB: " << toMebibytes(sum.BytesResident) << " owned"
        << (sum.BytesShared > 0 ? ", shared on hosts,\n" : ",\n") << toMebibytes(sum.BytesCopied)
        << " copied, " << toMebibytes(sum.BytesCached) << " cached\n";
-  text << sum.Accesses << " look-ups of bricks,\n"
+  text << sum.Accesses << " brick accesses,\n"
        << toPercent(static_cast<double>(sum.Misses), static_cast<double>(sum.Accesses))
-       << " % missed, " << toMebibytes(sum.BytesReceived) << " MiB fetched\n";
-  text << "waited " << toPercent(sum.WaitSeconds, sum.Seconds) << " %, busiest rank "
+       << " % misses, " << toMebibytes(sum.BytesReceived) << " MiB fetched\n";
+  text << "waiting " << toPercent(sum.WaitSeconds, sum.Seconds) << " %, busiest rank "
        << std::setprecision(2) << (sum.Seconds > 0.0 ? longest * threads / sum.Seconds : 1.0)
-       << " of mean";
+       << " x mean";
   return text.str();
 }
 

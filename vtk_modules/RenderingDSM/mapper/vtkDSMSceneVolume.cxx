@@ -306,20 +306,20 @@ void vtkDSMSceneVolume::Update(const std::shared_ptr<vtkDSMRankGroup>& group, bo
   const std::shared_ptr<Published> oldIso = known.empty() ? nullptr : known.front();
   const bool hasIsosurfaces = this->GetLook().HasIsosurfaces();
   const char* const purpose = hasIsosurfaces ? "isosurface array"
-    : this->GetLook().IsMedium()             ? "volume's array"
-                                             : "array of the slices";
+    : this->GetLook().IsMedium()             ? "volume array"
+                                             : "slice array";
   for (const vtkDSMVolumeData::Choice& choice : this->GetShown())
   {
     const bool isOfColors = !this->Arrays.empty() && !this->HasSeveralMedia();
     this->Arrays.push_back(this->Require(
-      choice, isOfColors ? "colour array" : purpose, group->GetRetryVersion(), known));
+      choice, isOfColors ? "color array" : purpose, group->GetRetryVersion(), known));
     known.push_back(this->Arrays.back());
   }
   if (this->GetLook().TakesPointsForCells())
   {
     this->Messages.push_back(
-      "The scalar mode asks for cell data, but isosurfaces and volumes need values at the "
-      "points; those are taken. Use vtkCellDataToPointData.");
+      "The scalar mode selects cell data, but isosurfaces and volumes require point data. Point "
+      "data are used. Apply vtkCellDataToPointData.");
   }
   if (this->LacksSuggestion() || (this->GetIso() != oldIso && hasIsosurfaces))
   {
@@ -399,14 +399,14 @@ void vtkDSMSceneVolume::TakeCoarser(const std::shared_ptr<vtkDSMRankGroup>&, boo
         vtkDSMVolumeMapper* mapper = this->Mapper;
         vtkDSMProgress::Begin(mapper);
         published->Coarser = this->Data->PublishCoarser(*published->Publication, published->Choice,
-          published == this->GetIso() ? "isosurface array" : "colour array",
+          published == this->GetIso() ? "isosurface array" : "color array",
           [mapper](double part) { vtkDSMProgress::Tell(mapper, part); });
       }
       catch (const dsm::Error& error)
       {
         published->Coarser = std::make_shared<vtkDSMVolumeData::Coarser>();
         published->CoarserFailure =
-          std::string("No coarser data stand in while the camera moves: ") + error.what();
+          std::string("Coarser data are not available while the camera moves: ") + error.what();
       }
     }
     if (!published->CoarserFailure.empty())
@@ -545,7 +545,7 @@ void vtkDSMSceneVolume::AddTo(rt::Scene& scene)
     !this->GetIso()->GetFields().empty())
   {
     this->Messages.push_back("The isosurface array '" + this->GetIso()->Choice.Name +
-      "' has the same value everywhere, or none, so there is no surface to show. Choose another "
+      "' has the same value everywhere or no valid values, so it has no surface. Choose another "
       "array.");
   }
   if (isovalues.empty() || this->GetIso()->GetFields().empty())

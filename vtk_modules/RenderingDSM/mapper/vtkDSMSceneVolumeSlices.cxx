@@ -53,7 +53,7 @@ void vtkDSMSceneVolume::AddSlices(
     if (index < 0 || index >= most)
     {
       this->Messages.push_back("Slice " + std::to_string(index) + " along " + "xyz"[axis] +
-        " is outside of the volume and is not shown. Valid slices are 0 to " +
+        " is outside the volume and is not shown. Valid slices are 0 to " +
         std::to_string(most - 1) + ".");
     }
   }

@@ -176,8 +176,8 @@ void vtkDSMVolumeLook::FindMissingFeatures(
   {
     if (isMissing)
     {
-      warnings.push_back(std::string("The volume's property asks for ") + feature +
-        ", which the DSM ray tracer does not have for volumes yet. The volume is drawn without. " +
+      warnings.push_back(std::string("The volume's property specifies ") + feature +
+        ", which DSM Ray Tracer does not support for volumes. The volume is drawn without it. " +
         remedy);
     }
   };
@@ -189,10 +189,10 @@ void vtkDSMVolumeLook::FindMissingFeatures(
   }
   const int components = arrays.CountComponents({ this->GetIsoArray(), 0 });
   warn(components > 1 && property->GetIndependentComponents() == 0,
-    "colors or opacities that are other components of the array, in this blend mode or of this "
+    "colors or opacities from other components of the array, in this blend mode or with this "
     "component",
-    "Call SetBlendModeToComposite(), and SetIsoComponent(0) of the mapper, or "
-    "IndependentComponentsOn(); in ParaView, turn on Map Scalars and turn off Multi Components "
+    "Call SetBlendModeToComposite() and SetIsoComponent(0) on the mapper, or call "
+    "IndependentComponentsOn(). In ParaView, turn on Map Scalars and turn off Multi Components "
     "Mapping, or use the representation Volume.");
   const auto isWeighted = [&]
   {
@@ -207,9 +207,9 @@ void vtkDSMVolumeLook::FindMissingFeatures(
   };
   warn(property->GetIndependentComponents() != 0 && this->Mapper->GetIsoComponent() == 0 &&
       isWeighted(),
-    "all components of the array at once, in this blend mode or of more than four",
-    "The first component is drawn. Call SetComponentWeight(COMPONENT, 0.0) for the others, or "
-    "SetIsoComponent() of the mapper for another one, or the magnitude (-1).");
+    "all components of the array at once, in this blend mode or where there are more than four",
+    "The first component is drawn. Call SetComponentWeight(COMPONENT, 0.0) for the others, or call "
+    "SetIsoComponent() on the mapper to draw another component or the magnitude (-1).");
 }
 
 bool vtkDSMVolumeLook::HasOpacityArray() const
@@ -363,14 +363,14 @@ std::vector<double> vtkDSMVolumeLook::GetIsovalues(
     else if (chosen.empty() && !mapper->GetAutomaticIsoValue())
     {
       messages.push_back(
-        "The mapper has no isovalue, so nothing is drawn. Call SetIsoValue(0, VALUE), "
-        "or AutomaticIsoValueOn() for one that the data suggest.");
+        "The mapper has no isovalue, so nothing is drawn. Call SetIsoValue(0, VALUE), or call "
+        "AutomaticIsoValueOn() to choose an isovalue from the data.");
     }
     if (mapper->GetBlendMode() != vtkVolumeMapper::COMPOSITE_BLEND)
     {
       messages.push_back(
-        "The mapper has isovalues, so it draws isosurfaces, whatever the blend mode. "
-        "Call SetNumberOfIsoValues(0) and AutomaticIsoValueOff() to draw a volume.");
+        "The mapper has isovalues, so it ignores the blend mode and draws isosurfaces. Call "
+        "SetNumberOfIsoValues(0) and AutomaticIsoValueOff() to draw a volume.");
     }
   }
   std::vector<double> values;
@@ -387,7 +387,7 @@ std::vector<double> vtkDSMVolumeLook::GetIsovalues(
         ? "The isovalue"
         : "Isovalue " + std::to_string(index + 1) + " of " + std::to_string(chosen.size());
       messages.push_back(which + " is " + (std::isnan(value) ? "not a number" : "infinite") +
-        " and was left out. Enter a finite value.");
+        " and is ignored. Enter a finite value.");
     }
   }
   std::sort(values.begin(), values.end());

@@ -124,7 +124,7 @@ void vtkDSMVolumeMapper::AddSlice(int axis, int index)
 {
   if (axis < 0 || axis > 2)
   {
-    vtkErrorMacro("AddSlice: axis " << axis << " is not valid; use 0, 1 or 2. No slice is added.");
+    vtkErrorMacro("AddSlice: axis " << axis << " is invalid; use 0, 1 or 2. No slice is added.");
     return;
   }
   const std::pair<int, int> slice(axis, index);

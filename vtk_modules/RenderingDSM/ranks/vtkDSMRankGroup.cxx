@@ -90,7 +90,7 @@ std::shared_ptr<vtkDSMRankGroup> vtkDSMRankGroup::Get(vtkMultiProcessController*
   if (!communicator && controller && controller->GetNumberOfProcesses() > 1)
   {
     throw dsm::Error("The " + std::to_string(controller->GetNumberOfProcesses()) +
-      " processes do not communicate over MPI, which DSM Ray Tracer needs.");
+      " processes do not communicate over MPI, which DSM Ray Tracer requires.");
   }
   auto& known = groups[GetKey(communicator)];
   auto group = known.lock();
@@ -179,7 +179,7 @@ std::uint64_t vtkDSMRankGroup::WidenRoomForChunks(std::uint64_t bytes, std::uint
   this->LeastForChunks = std::max(this->LeastForChunks, least);
   dsm::BlockStore::Settings settings = this->Store.GetSettings();
   const auto ranksOnHost = static_cast<std::uint64_t>(this->Messenger.GetRanksOnHost());
-  const auto memory = this->Messenger.GatherValueTogether("Making room for chunks of a file",
+  const auto memory = this->Messenger.GatherValueTogether("Allocating the chunk cache",
     [&]
     {
       return settings.MemoryBytes != 0 ? settings.MemoryBytes

@@ -43,15 +43,14 @@ void CheckPass(vtkRenderer* renderer)
   }
   if (pass && pass->IsA("vtkOSPRayPass"))
   {
-    throw dsm::Error(
-      "VTK's own ray tracing (OSPRay) draws this view, and leaves out what is DSM Ray "
-      "Traced. Switch off Enable Ray Tracing in the view's properties.");
+    throw dsm::Error("VTK's ray tracing (OSPRay) draws this view and does not show DSM Ray Traced "
+                     "datasets. Turn off Enable Ray Tracing in the view's properties.");
   }
   if (pass && pass->IsA("vtkValuePass"))
   {
-    throw dsm::Error("Images of values (the extractor Recolorable Image) are made of geometry, and "
-                     "leave out what is DSM Ray Traced. Show it as Surface, or with the filter "
-                     "Contour, for these.");
+    throw dsm::Error(
+      "Value images (the extractor Recolorable Image) require geometry and do not show DSM Ray "
+      "Traced datasets. Use the representation Surface or the filter Contour.");
   }
 }
 
@@ -133,7 +132,7 @@ void vtkDSMScene::DrawWithoutScene(vtkRenderer* renderer, vtkObject* mapper)
         << controller->GetNumberOfProcesses()
         << " processes render, but the renderer has no scene. "
         << "Call vtkDSMScene::ForRenderer(renderer) on every rank before the first frame, and keep "
-        << "what it returns.");
+        << "the scene that it returns.");
     }
     return;
   }
@@ -349,8 +348,8 @@ bool vtkDSMScene::TraceImage(int width, int height, vtkImageData* image, bool tr
   Internals& self = *this->Self;
   if (!self.Renderer || self.Tracing || Internals::TracingTiles || width < 1 || height < 1)
   {
-    vtkErrorMacro(<< "A picture of " << width << " x " << height
-                  << " pixels cannot be traced now.");
+    vtkErrorMacro(<< "Cannot trace a picture of " << width << " x " << height
+                  << " pixels: the size is invalid, or a frame is in progress.");
     return false;
   }
   const vtkSmartPointer<vtkDSMScene> tracing = this; // as Trace
@@ -406,7 +405,7 @@ bool vtkDSMScene::TraceFrame()
   }
   catch (const std::bad_alloc&)
   {
-    failure = "Out of memory while drawing.";
+    failure = "Out of memory while rendering.";
   }
   catch (const std::exception& error)
   {

@@ -139,13 +139,13 @@ void vtkDSMScene::Internals::CheckHoldings(const Records& records)
     const auto other = Read<Holdings>(record);
     if (other.Datasets != first.Datasets)
     {
-      throw dsm::Error("The ranks do not show the same datasets; the frame was left out.");
+      throw dsm::Error("The ranks do not show the same datasets; frame skipped.");
     }
     if (other.Settings != first.Settings)
     {
-      throw dsm::Error("The ranks have different settings of the memory (DSMMemoryOrganization, "
-                       "DSMHostSharing, DSMMemory, DSMCacheSize, DSMScratchDirectory, "
-                       "DSMCoarserDataWhileMoving); the frame was left out. Set them alike.");
+      throw dsm::Error("The ranks have different memory settings; frame skipped. Use the same "
+                       "DSMMemoryOrganization, DSMHostSharing, DSMMemory, DSMCacheSize, "
+                       "DSMScratchDirectory and DSMCoarserDataWhileMoving on all ranks.");
     }
   }
 }
@@ -287,7 +287,8 @@ int vtkDSMScene::Internals::AgreeOnView(
 void vtkDSMScene::Internals::LimitRays(rt::FrameRequest& request, bool cutsMedia)
 {
   const std::size_t pixels = static_cast<std::size_t>(request.Width) * request.Height;
-  const auto all = this->Group->GetMessenger().GatherTogether("Drawing what is in front of volumes",
+  const auto all = this->Group->GetMessenger().GatherTogether(
+    "Drawing surfaces in front of volumes",
     [&]
     {
       const std::vector<vtkProp*> others = this->Members.FindOthers(this->Renderer);

@@ -230,8 +230,8 @@ void vtkDSMScene::Internals::CheckImage(int ranksOnHost) const
   {
     throw dsm::Error("A picture of " + std::to_string(this->Image->Width) + " x " +
       std::to_string(this->Image->Height) + " pixels takes " + dsm::FormatMebibytes(needed) +
-      " of each rank, and the host has " + dsm::FormatMebibytes(available) +
-      " for it. Make a smaller one.");
+      " per rank, but the host has " + dsm::FormatMebibytes(available) +
+      " per rank. Use a smaller picture.");
   }
 }
 

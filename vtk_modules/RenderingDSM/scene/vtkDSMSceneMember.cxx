@@ -42,7 +42,7 @@ std::vector<const vtkDSMSceneMember*> vtkDSMSceneMember::FreeOutdated(dsm::Messe
 {
   std::vector<vtkDSMSceneMember*> sharers;
   std::vector<std::byte> mine;
-  messenger.RunTogether("Looking for old data",
+  messenger.RunTogether("Finding old data",
     [&]
     {
       for (vtkDSMSceneMember* member : GetAll())
