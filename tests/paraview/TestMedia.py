@@ -143,6 +143,23 @@ for name, last in (("x2", 1.0), ("x4", 1.0), ("x4bytes", 255.0)):
     check(abs(capped - direct).mean() > 1.0, f"{name}: the cap is seen")
     display.DSMCap = display.DSMClip = 0
     display.MultiComponentsMapping = 0
+hints = display.SMProxy.GetProperty("MultiComponentsMapping").GetHints()
+kinds = [hints.GetNestedElement(number).GetAttribute("type") for number in range(hints.GetNumberOfNestedElements())]
+check("CompositeDecorator" in kinds, "the panel has it for DSM Volume, too")
+path = os.path.join(OUTPUT, "components.vtkhdf")
+if get_ranks() == 1:
+    simple.SaveData(path, proxy=source)
+stored = simple.DSMVolumeReader(FileName=path)
+of_file = simple.Show(stored, view)
+of_file.Representation = "DSM Volume"
+opacities = list(several.Points)
+simple.ColorBy(of_file, ("POINTS", "x4bytes"))  # it scales them
+several.Points = opacities
+of_file.MapScalars, of_file.ScalarOpacityUnitDistance = 0, 1.0
+simple.Hide(source, view)
+check_equal(render(view), direct, "components in a file are what they are in memory")
+simple.Delete(stored)
+simple.Show(source, view)
 simple.ColorBy(display, ("POINTS", "x3"))
 display.MapScalars = 0
 with Messages() as messages:

@@ -143,9 +143,9 @@ private:
   /// One for each of the arrays.
   vtkDSMKept<vtkDSMVolumeLook::MediumKey, vtkDSMVolumeLook::MediumMaker> MakeMedium[MostArrays];
   using KeptColors = std::shared_ptr<const rt::ColorMap>;
-  /// By the property and its time, the component, the range of values, and whether there are opacities.
-  vtkDSMKept<std::tuple<vtkVolumeProperty*, vtkMTimeType, int, float, float, bool>, KeptColors>
-    MediumColors;
+  /// Without opacities, and with; by the property and its time, the component, and the range of values.
+  vtkDSMKept<std::tuple<vtkVolumeProperty*, vtkMTimeType, int, float, float>, KeptColors>
+    MediumColors[2];
   /// By the map, and the opacity function and its time.
   vtkDSMKept<std::tuple<KeptColors, vtkPiecewiseFunction*, vtkMTimeType>, KeptColors> SliceColors;
   std::string DataFailure;

@@ -34,8 +34,8 @@ std::shared_ptr<const rt::ColorMap> vtkDSMSceneVolume::GetMediumColors(bool hasO
   const Published& array = isFirst ? *this->GetIso() : this->GetColoring();
   const int component = this->HasSeveralMedia() ? array.Choice.Component : 0;
   const bricks::ValueRange range = array.GetRange();
-  return this->MediumColors.Get(
-    { property, property->GetMTime(), component, range.First, range.Last, hasOpacity },
+  return this->MediumColors[hasOpacity ? 1 : 0].Get(
+    { property, property->GetMTime(), component, range.First, range.Last },
     [&]
     {
       auto colors = std::make_shared<rt::ColorMap>(

@@ -43,7 +43,7 @@ public:
   };
   /// `arrays`: those that there are.
   Components GetComponents(const vtkDSMImageArrays& arrays) const;
-  /// Tells what the property asks for, of an array of so many components, that media do not have yet.
+  /// Tells what the property asks for, of the array's components, that media do not have yet.
   void FindMissingFeatures(
     const vtkDSMImageArrays& arrays, std::vector<std::string>& warnings) const;
   /// All that the colors and opacities of the medium depend on: the values' range, the length of a cell, that of
