@@ -66,7 +66,7 @@ class Slab:
     """A rank's part of the simulation's grid as vtkImageData that shares the simulation's arrays."""
 
     def __init__(self, model):
-        last = min(model.end, model.size - 1)  # neighbours share a layer, so no cells are missing
+        last = min(model.end, model.size - 1)  # neighbors share a layer, so no cells are missing
         self.image = vtkImageData()
         self.image.SetExtent(0, model.size - 1, 0, model.size - 1, model.first, last)
         self.image.SetSpacing([1.0 / (model.size - 1)] * 3)

@@ -34,10 +34,10 @@ public:
   ~pqDSMMemoryPanel() override;
 
   int GetNumberOfRanks() const;
-  /// Whether the sum says that rays met bricks.
+  /// Returns whether the totals show that rays met bricks.
   bool IsTraced() const;
   QString GetWords() const;
-  /// Whether it is a tab beside another dock.
+  /// Returns whether the panel is a tab beside another dock.
   bool IsTab() const;
 
 private:

@@ -25,10 +25,11 @@ struct Column
 {
   const char* Title;
   Unit Is;
-  /// What ranks share on a host is each one's, but not several times the host's.
+  /// False for memory that the ranks of a host share: each rank shows it, but it exists once on the
+  /// host.
   bool HasTotal;
   const char* Description;
-  /// What is added up.
+  /// Keys of the summands.
   QStringList Keys;
 };
 
@@ -72,7 +73,7 @@ void pqDSMRankTable::SetRanks(const QJsonArray& ranks)
     this->endResetModel();
     return;
   }
-  // What is selected, and where the table is scrolled to, stays.
+  // Selection and scroll position of the table stay.
   this->Ranks = ranks;
   if (!ranks.isEmpty())
   {

@@ -14,7 +14,7 @@ class pqDSMRankTable : public QAbstractTableModel
   Q_OBJECT
 
 public:
-  /// What a cell is worth when rows are put in order; the text of a cell is its DisplayRole.
+  /// Role of a cell's value for sorting rows; the text of a cell is its DisplayRole.
   static constexpr int ValueRole = Qt::UserRole;
   /// The only column of names that may be long.
   static constexpr int HostColumn = 1;
@@ -24,7 +24,7 @@ public:
   /// One object for each rank; none: no frame.
   void SetRanks(const QJsonArray& ranks);
   int GetNumberOfRanks() const { return this->Ranks.size(); }
-  /// Whether the row is the ranks' sum. It stays below them, however they are sorted.
+  /// Returns whether the row is the ranks' total. It stays below them in any sort order.
   bool IsTotal(int row) const { return row == this->Ranks.size(); }
 
   int rowCount(const QModelIndex& parent = QModelIndex()) const override;

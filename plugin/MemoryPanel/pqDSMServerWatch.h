@@ -6,9 +6,9 @@
 
 class pqServer;
 
-/// A server that the application connects to is told to load DSMRayTracer, by its name, where it is on the server's
-/// plugin search paths: ParaView tells only the first one of --plugins. Where it is not, nothing happens, and ParaView
-/// asks for it. The application's thread.
+/// Makes a server that the application connects to load DSMRayTracer, by name, if it is on the server's
+/// plugin search paths: ParaView itself does this only for the first one of --plugins. If the plugin is not
+/// there, nothing happens, and ParaView asks for it. The application's thread.
 class pqDSMServerWatch : public QObject
 {
   Q_OBJECT
@@ -17,7 +17,7 @@ public:
   explicit pqDSMServerWatch(QObject* parent = nullptr);
   ~pqDSMServerWatch() override;
 
-  // Of an auto start plugin.
+  // Interface of an auto start plugin.
   void OnStartup();
   void OnShutdown();
 

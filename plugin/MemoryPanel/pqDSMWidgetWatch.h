@@ -20,11 +20,11 @@ public:
   explicit pqDSMWidgetWatch(QObject* parent = nullptr);
   ~pqDSMWidgetWatch() override;
 
-  // Of an auto start plugin.
+  // Interface of an auto start plugin.
   void OnStartup();
   void OnShutdown();
 
-  /// Of the application.
+  /// Event filter of the application.
   bool eventFilter(QObject* watched, QEvent* event) override;
 };
 

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-/// The paper's Table 1: what a hit and a miss cost, in every organisation, against a raw array and a
+/// The paper's Table 1: what a hit and a miss cost, in every organization, against a raw array and a
 /// bare exchange of messages. Rank 0 reads, the others serve.
 class AccessBenchmark
 {

@@ -29,7 +29,7 @@ struct Camera
   glm::dvec3 ViewDirection;
 };
 
-/// Looks at the volume's centre, view angle 30 degrees.
+/// Looks at the volume's center, view angle 30 degrees.
 Camera GetCamera(const rt::LatticeIsosurface& object, double aspect, const Position& position);
 
 #endif

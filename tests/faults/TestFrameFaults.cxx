@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// From data to picture on 1 to 3 ranks, in every organisation of memory: each allocation, mapping,
+// From data to picture on 1 to 3 ranks, in every organization of memory: each allocation, mapping,
 // protection of pages, thread and message of one rank fails in turn. All ranks end with one text, or with
 // the picture; and the next time there is the right picture.
 //

@@ -94,7 +94,7 @@ check(levels[-1] == 0, f"bricks that have come take the place of coarser ones: {
 rows = get_rows(display)
 check(all(row["BytesOfTables"] + row["CacheCapacity"] <= row["MemoryBudget"] for row in rows), "within the memory")
 
-# Coloured by itself, clipped, twice in the view: the same holds.
+# Colored by itself, clipped, twice in the view: the same holds.
 display.DSMMemory = MEMORY
 simple.ColorBy(display, ("POINTS", "values"))
 display.DSMIsoValues = [0.8, -0.4]

@@ -113,7 +113,7 @@ for organization in ("Object based", "Page based", "Replicated"):
         check(all(count > 0 for count in fetched[1:2] + fetched[3:]), f"what changed: {told}")
         check(all(count <= most for count, most in zip(fetched[1:], allowed[1:])), f"one brick, no more: {told}")
 
-# With colours of another array, in two views, in the least memory that there may be.
+# With colors of another array, in two views, in the least memory that there may be.
 tinted = os.path.join(FILES, "tinted.vtkhdf")
 colors = simple.GetColorTransferFunction("tint")
 colors.RescaleTransferFunction(-1.0, 2.0)

@@ -297,7 +297,7 @@ TEST(VolumeFiles, RangesOfSharesArePutTogether)
     vol::KeepRanges(
       *file, 1, 0, share, *vol::FindRanges(file, 1, 0, share, 1, [](double) { return true; }));
   };
-  // Cut in x, and one half of it in y; neighbours share a plane of samples.
+  // Cut in x, and one half of it in y; neighbors share a plane of samples.
   const bricks::Index3 middle = samples / std::int64_t(2);
   keepShare({ bricks::Index3(0), { middle.x + 1, samples.y, samples.z } });
   EXPECT_FALSE(vol::LoadRanges(*file, 1, 0, whole, true));

@@ -55,7 +55,7 @@ def write_floats(name, chunk=64):
 
 failed = False
 hashes = set()
-# Of compressed chunks, also the neighbours of those that a rank's bricks begin with are unpacked as a whole, for one
+# Of compressed chunks, also the neighbors of those that a rank's bricks begin with are unpacked as a whole, for one
 # layer of samples, and counted so; but for brick files, where a chunk has these with it, or behind it.
 for name, path, isovalue, most in (
     ("floats32", lambda: write_floats("floats32", 32), 1.0, 1.1),

@@ -221,7 +221,7 @@ with h5py.File(path("level_2.vtkhdf"), "r") as one, h5py.File(path("levels_1.vtk
 done = convert("--quiet", "--level", 4, path("levels_1.vtkhdf"), path("none.vtkhdf"))
 check(done.returncode != 0 and "has no level 4; valid levels are 0 to 3" in done.stderr, "one that is not there is named")
 
-# Integers are rounded, vectors go by component, cells have that at their centre; the direction counts.
+# Integers are rounded, vectors go by component, cells have that at their center; the direction counts.
 done = convert("--quiet", "--levels", 1, "--brick", 4, path("image.vtkhdf"), path("arrays_levels.vtkhdf"))
 check(done.returncode == 0, f"levels of several arrays {done.stderr}")
 with h5py.File(path("arrays_levels.vtkhdf"), "r") as file:

@@ -43,7 +43,7 @@ std::uint64_t GetReference()
   return hash;
 }
 
-/// The organisation, and whether ranks of a host read one another's bricks in place.
+/// The organization, and whether ranks of a host read one another's bricks in place.
 class FrameOverMpi : public testing::TestWithParam<std::tuple<dsm::MemoryOrganization, bool>>
 {
 protected:

@@ -6,7 +6,7 @@ from dsm_testing import *
 
 load_plugin()
 view = create_view()
-view.UseFXAA = 0  # it would mix colours along the edges
+view.UseFXAA = 0  # it would mix colors along the edges
 source = image_source("""
 image.SetExtent(piece)
 i, j, k = points(piece)
@@ -23,7 +23,7 @@ middle = solid.shape[0] // 2
 def color_by(array, component=None):
     simple.ColorBy(display, ("POINTS", array) + ((component,) if component else ()))
     display.RescaleTransferFunctionToDataRange(False, True)
-    # On: the colour is the map's, without shading that would blur the comparison.
+    # On: the color is the map's, without shading that would blur the comparison.
     return simple.GetColorTransferFunction(array)
 
 
@@ -68,7 +68,7 @@ table.UseBelowRangeColor = 0
 table.RescaleTransferFunction(0.0, 24.0)
 surface = flying_edges(source, [0.8])
 simple.Hide(source, view)
-# The same colours as ParaView gives to triangles with interpolated values of the array.
+# The same colors as ParaView gives to triangles with interpolated values of the array.
 probe = simple.ResampleWithDataset(SourceDataArrays=source, DestinationMesh=surface)
 triangles = simple.Show(probe, view)
 simple.ColorBy(triangles, ("POINTS", "i"))
@@ -104,7 +104,7 @@ check((abs(colors - colors[0]).max(axis=0) <= 3).all(), "its own array has one v
 display.ColorArrayName = [None, ""]
 check_equal(render(view), flat, "solid again")
 
-# Arrays of the cells: the colour of the cell, exactly, as Contour passes it on; in one image, with ghost layers, and
+# Arrays of the cells: the color of the cell, exactly, as Contour passes it on; in one image, with ghost layers, and
 # in blocks.
 simple.Delete(source)
 CELLS = """
@@ -176,7 +176,7 @@ check_colors(cells, "ByCellOfTheSameName", "f", "CELLS")
 check_colors(ghosts, "ByCellWithGhosts", "n", "CELLS")
 check_colors(blocks, "ByCellInBlocks", "n", "CELLS")
 
-# Map Scalars off: the array's values are colours.
+# Map Scalars off: the array's values are colors.
 check_colors(cells, "ColoursOfCells", "colours", "CELLS", False)
 check_colors(cells, "ColoursOfPoints", "smooth", "POINTS", False)
 check_colors(cells, "ShadesOfPoints", "shades", "POINTS", False)
@@ -189,7 +189,7 @@ check((abs(front - [0, 0, 51]).max(axis=1) > 2).any() and (front[:, 2] >= front[
       "an opacity among the colours lets the background through")
 display.MapScalars = 1
 
-# Values that are no numbers have their colour and opacity.
+# Values that are no numbers have their color and opacity.
 holes = image_source(CELLS + """
 of_cells[::3] = np.nan
 array = numpy_to_vtk(of_cells, deep=True); array.SetName('holes')
@@ -202,7 +202,7 @@ for opacity in (1.0, 0.0):
     table.NanOpacity = opacity
     check_colors(holes, f"NotANumber{opacity:.0f}", "holes", "CELLS")
 
-# Infinite values of points have the first and the last colour.
+# Infinite values of points have the first and the last color.
 endless = image_source(CELLS + """
 f = image.GetPointData().GetArray("f")
 n = f.GetNumberOfTuples()
@@ -265,7 +265,7 @@ for name, array, place, mapped, opacity, interpolation in (
         different = (abs(pictures[0] - pictures[1]).max(axis=2) > 8).mean()
         check(different < 0.005, f"{name}: {100 * different:.2f} % of the pixels differ from Surface")
 
-# Categories: each value has a colour of its own. Between two samples it is that of the nearer one, where Contour makes
+# Categories: each value has a color of its own. Between two samples it is that of the nearer one, where Contour makes
 # values that are of no category.
 PALETTE = numpy.array([[255, 0, 0], [0, 255, 0], [0, 0, 255], [0, 255, 255], [255, 0, 255], [255, 128, 0], [0, 128, 255]])
 NO_CATEGORY = [255, 255, 255]

@@ -121,7 +121,7 @@ check(get_covered(pictures[1]).mean() > 0.1, "the mesh shows")
 check((difference > 30).any(axis=2).mean() < 0.002, "a translucent mesh over a surface")
 check(difference.mean() < 0.3, f"which differs by {difference.mean():.2f} from Surface")
 
-# The same by a colour map that has an opacity: of a mesh, and of an isosurface.
+# The same by a color map that has an opacity: of a mesh, and of an isosurface.
 waves = simple.Elevation(ball, LowPoint=[12.0, 3.0, 12.0], HighPoint=[12.0, 21.0, 12.0])
 simple.Hide(ball, view)
 pictures = []

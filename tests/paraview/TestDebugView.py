@@ -60,7 +60,7 @@ check((misses[covered].max() > 0) == (get_ranks() > 1), "tiles wait for what oth
 draw("Normal", "normal")
 draw("Depth", "depth")
 
-# The legend says which colour is whose, at the lower left, and the figures stand above.
+# The legend says which color is whose, at the lower left, and the figures stand above.
 without = draw("Owner of the data")
 display.DSMShowLegend = 1
 legend = render(view)

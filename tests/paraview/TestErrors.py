@@ -112,7 +112,7 @@ grid.GetPointData().SetScalars(array)
 """
 expect_then_delete(grid, ["vtkRectilinearGrid", "Resample To Image"], [60.0])
 
-# A colour array that cannot be one: the surface appears, in its solid colour.
+# A color array that cannot be one: the surface appears, in its solid color.
 both = image_source(GOOD + """
 array = numpy_to_vtk(np.zeros(image.GetNumberOfCells()), deep=True); array.SetName('onCells')
 image.GetCellData().AddArray(array)

@@ -55,7 +55,7 @@ check(said.count("memory organization is replicated: all data take") == (1 if se
       "what was chosen is logged once: " + said)
 check_report(display, "Replicated")
 
-# Every organisation, with and without the memory of the others on the host.
+# Every organization, with and without the memory of the others on the host.
 for sharing in (0, 1):
     display.DSMHostSharing = sharing
     for organization in ORGANIZATIONS:

@@ -55,7 +55,7 @@ pixels, text = render_and_listen()
 check("ERROR" not in text, "with enough memory nothing is wrong: " + text)
 check(get_covered(pixels)[:, middle:].any(), "and it is drawn")
 
-# Arrays that cannot colour it: the surface appears in its solid colour.
+# Arrays that cannot color it: the surface appears in its solid color.
 ARRAYS = """
 from vtkmodules.vtkCommonCore import vtkDoubleArray, vtkStringArray
 output = self.GetOutputDataObject(0)

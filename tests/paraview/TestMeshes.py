@@ -101,7 +101,7 @@ version = simple.GetParaViewVersion()
 if version < (5, 13) or version >= (6, 0):
     compare("Textured", plane, lambda d: setattr(d, "Texture", texture), shading=5.0)
 
-# Colour: mapped per pixel, or at the corners; vectors; colours of the data themselves.
+# Color: mapped per pixel, or at the corners; vectors; colors of the data themselves.
 normals = simple.Elevation(Input=simple.Sphere(ThetaResolution=12, PhiResolution=9),
                            LowPoint=[0, -0.5, 0], HighPoint=[0, 0.5, 0])
 compare("MappedPerPixel", normals, lambda d: color_by(d, "POINTS", "Elevation"), shading=6.0)

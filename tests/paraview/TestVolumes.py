@@ -173,7 +173,7 @@ check(part.sum() > 0.2 * expected.sum() and not part[~expected].any() and expect
 display.BlockSelectors = ["/"]
 check_equal(render(view), whole, "all are shown again", tolerance=0)
 
-# They agree on what is shown where they touch, but not on an array that colours them.
+# They agree on what is shown where they touch, but not on an array that colors them.
 simple.ColorBy(display, ("POINTS", "block"))
 check((render(view, "BlocksByNumber") != whole).any(), "they can be coloured by what they disagree about")
 simple.ColorBy(display, None)

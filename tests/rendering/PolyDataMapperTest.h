@@ -38,7 +38,7 @@
 /// Of the window.
 constexpr int Size = 200;
 
-/// Colours of the pixels, from the lower left one, three channels each.
+/// Colors of the pixels, from the lower left one, three channels each.
 using Picture = std::vector<int>;
 
 /// A fine ball, whose point array grows along z.

@@ -213,7 +213,7 @@ TEST_F(SeveralRanks, OutOfMemoryOfOneIsReportedByAllAndTheNextFrameIsDrawn)
       EXPECT_EQ(report, "");
       break;
     }
-    // Automatic memory organisation may go on without the memory; else it is said.
+    // Automatic memory organization may go on without the memory; else it is said.
     if (this->Scene->GetStatistics()->GetFrameSeconds() == 0.0)
     {
       ++failures;

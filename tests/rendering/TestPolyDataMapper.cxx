@@ -125,7 +125,7 @@ TEST_F(PolyDataMapper, ColoursAreVtks)
   this->Mapper->SetScalarModeToUsePointFieldData();
   this->Mapper->SelectColorArray("direct");
   ExpectAlike(this->Render(), this->RenderWithTriangles(ball), 0.02);
-  // Colour by component, and by the length of the vector.
+  // Color by component, and by the length of the vector.
   this->Mapper->SetColorModeToMapScalars();
   this->Mapper->GetLookupTable()->SetVectorModeToComponent();
   this->Mapper->SetScalarRange(0.0, 255.0);

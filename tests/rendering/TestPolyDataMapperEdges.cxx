@@ -66,7 +66,7 @@ protected:
     this->Actor->GetProperty()->SetColor(0.9, 0.8, 0.3);
   }
 
-  /// World coordinates from -1 to 1, flat colours.
+  /// World coordinates from -1 to 1, flat colors.
   void LookStraightOn()
   {
     this->Renderer->GetActiveCamera()->SetPosition(0.0, 0.0, 4.0);

@@ -61,7 +61,7 @@ Picture Render(vtkRenderer* renderer)
   return picture;
 }
 
-/// Both cover the same pixels but for the rim, and are of like colour where both do.
+/// Both cover the same pixels but for the rim, and are of like color where both do.
 void ExpectAlike(const Picture& ours, const Picture& theirs)
 {
   int covered = 0;
@@ -169,7 +169,7 @@ TEST(Replacement, OfThePolyDataMapperShowsItsSurface)
   ExpectAlike(DrawBall<vtkDSMPolyDataMapper>(true), DrawBall<vtkPolyDataMapper>(true));
 }
 
-/// A cube with a picture of values that are no colours, lit from the camera.
+/// A cube with a picture of values that are no colors, lit from the camera.
 template <typename Mapper>
 vtkSmartPointer<vtkActor> MakeCube()
 {

@@ -95,7 +95,7 @@ protected:
     file.write(reinterpret_cast<const char*>(values.data()), FileBytes);
   }
 
-  /// The colours of a picture of all that is new but the file.
+  /// The colors of a picture of all that is new but the file.
   std::vector<unsigned char> Render(
     const std::string& name = "ball.raw", const char* array = "values", int mebibytes = 128)
   {

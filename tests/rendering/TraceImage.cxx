@@ -149,7 +149,7 @@ void CompareWithWindow(Stage& stage)
   window->RemoveRenderer(stage.Renderer);
 }
 
-/// Colours over the background, transparent ones, and depths, one after the other.
+/// Colors over the background, transparent ones, and depths, one after the other.
 std::string TraceAll(Stage& stage, int rank)
 {
   vtkNew<vtkImageData> image;

@@ -175,7 +175,7 @@ inline Mesh Strip(Mesh mesh)
   return mesh;
 }
 
-/// Normals, values and colours of triangles in place of points: those of their first corners.
+/// Normals, values and colors of triangles in place of points: those of their first corners.
 inline Mesh MoveToTriangles(const Mesh& mesh)
 {
   Mesh moved = mesh;

@@ -15,7 +15,7 @@
 namespace Generated
 {
 
-/// A 32-bit integer finaliser with low bias (C. Wellons, hash-prospector), of several numbers.
+/// A 32-bit integer finalizer with low bias (C. Wellons, hash-prospector), of several numbers.
 inline std::uint32_t Hash(std::int64_t a, std::int64_t b = 0, std::int64_t c = 0, unsigned seed = 0)
 {
   std::uint32_t hash = seed;

@@ -143,7 +143,7 @@ void AddTransport(Scenes& scenes)
 
 void AddShadows(Scenes& scenes)
 {
-  // Tinted shadows of what has colours of several opacities.
+  // Tinted shadows of what has colors of several opacities.
   scenes.push_back({ "shadow.ColorMap",
     [](SceneStage& stage)
     {

@@ -17,7 +17,7 @@ struct RecordedScene
   bool ShowsRanks = false;
 };
 
-/// Types, shapes, missing data, bricks and colours of volumes.
+/// Types, shapes, missing data, bricks and colors of volumes.
 void AddVolumeScenes(std::vector<RecordedScene>& scenes);
 /// Media: types, shapes, transfer functions, media in one another and with surfaces, and the light that gets through.
 void AddMediumScenes(std::vector<RecordedScene>& scenes);

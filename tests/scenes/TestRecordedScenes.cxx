@@ -8,10 +8,10 @@
 //   scene_pictures --record             prints the hashes
 //   scene_pictures --show NAME FILE     writes the picture of a scene, on white, as a PPM file
 //
-// A hash is GetPictureHash: of the size, the 8-bit colours and the bits of the depths. What is traced
-// is made of sums, products, quotients and roots alone, none of them contracted. Only colours use the
-// mathematical library: pow (highlights, cones), log10 (colour maps), sin and cos (directions of
-// random light rays). The last bit of these may be another on another machine; colours are rounded
+// A hash is GetPictureHash: of the size, the 8-bit colors and the bits of the depths. What is traced
+// is made of sums, products, quotients and roots alone, none of them contracted. Only colors use the
+// mathematical library: pow (highlights, cones), log10 (color maps), sin and cos (directions of
+// random light rays). The last bit of these may be another on another machine; colors are rounded
 // to 8 bits, so that this all but never shows.
 #include "tests/scenes/RecordedScenes.h"
 #include "tests/support/LoopbackCluster.h"

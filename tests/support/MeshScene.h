@@ -7,7 +7,7 @@
 
 #include "DSMBricks/build/TriangleMeshBuilder.h"
 
-/// The noisy sphere's isosurfaces, a blob of triangles that cuts through them, and a coloured
+/// The noisy sphere's isosurfaces, a blob of triangles that cuts through them, and a colored
 /// terrain of squares below, with edges, shadows and translucency across the objects.
 namespace MeshScene
 {

@@ -10,12 +10,12 @@ class vtkAbstractMapper;
 class vtkMatrix4x4;
 class vtkPolyData;
 
-/// What a representation shows of its dataset: the side of a plane, the inside of a box.
+/// Visible region of a representation's dataset: the side of a plane, the inside of a box.
 class vtkPVDSMClipping
 {
 public:
   bool Clips = false;
-  std::array<double, 3> Origin{ 0.0, 0.0, 0.0 }; ///< of the plane, world
+  std::array<double, 3> Origin{ 0.0, 0.0, 0.0 }; ///< point of the plane, world
   std::array<double, 3> Normal{ 1.0, 0.0, 0.0 }; ///< to the side that is shown
   bool Crops = false;
   /// x, y and z from, to; in the dataset's coordinates. ParaView's interactive box moves, turns (degrees
@@ -29,7 +29,7 @@ public:
   /// Gives the mapper its clipping planes, `dataToWorld` being where the dataset is.
   void ApplyTo(vtkAbstractMapper* mapper, vtkMatrix4x4* dataToWorld) const;
 
-  /// What is shown of polygons in the dataset's coordinates.
+  /// Returns the visible part of polygons in the dataset's coordinates.
   vtkSmartPointer<vtkPolyData> Clip(vtkPolyData* polygons, vtkMatrix4x4* dataToWorld) const;
 };
 

@@ -130,7 +130,7 @@ bool vtkPVDSMGeometryRepresentation::IsTranslucent()
   const bool isColored = array && *array != '\0';
   vtkScalarsToColors* map = this->Mapper->GetLookupTable();
   vtkTexture* texture = this->Actor->GetTexture();
-  // Colours that are taken as they are may have an opacity on another rank.
+  // Colors that are taken as they are may have an opacity on another rank.
   return this->Property->GetOpacity() < 1.0 ||
     std::any_of(this->BlockOpacities.begin(), this->BlockOpacities.end(),
       [](const auto& block) { return block.second < 1.0; }) ||

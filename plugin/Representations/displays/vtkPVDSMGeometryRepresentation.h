@@ -3,7 +3,7 @@
  * @class   vtkPVDSMGeometryRepresentation
  * @brief   shows the surface of any dataset, ray traced by all ranks
  *
- * A Surface representation (the same geometry filter, properties, blocks and colouring) whose mapper
+ * A Surface representation (the same geometry filter, properties, blocks and coloring) whose mapper
  * is a vtkDSMPolyDataMapper. The geometry never leaves the rank: what is delivered is an empty
  * placeholder, and the view is asked to render where the data are. Keeps the view's vtkDSMScene alive
  * on the processes that render.
@@ -85,7 +85,7 @@ public:
 
   ///@{
   /**
-   * Shadows, ambient occlusion, mirrors and samples; memory organisation, sizes and threads.
+   * Shadows, ambient occlusion, mirrors and samples; memory organization, sizes and threads.
    */
   void SetLightOptions(vtkPVDSMLightOptions* options);
   void SetMemoryOptions(vtkPVDSMMemoryOptions* options);

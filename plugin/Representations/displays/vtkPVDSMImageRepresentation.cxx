@@ -44,7 +44,7 @@ public:
     , IsKnown(tree && vtkDataAssemblyUtilities::GenerateHierarchy(tree, this->Assembly))
   {
   }
-  /// Whether there are blocks that have paths.
+  /// Returns whether there are blocks with paths.
   bool Any() const { return this->IsKnown; }
   std::vector<unsigned int> Find(const std::vector<std::string>& paths) const
   {
@@ -337,7 +337,7 @@ bool vtkPVDSMImageRepresentation::IsTranslucent() const
 {
   const bool isColored = this->Mapper->GetScalarVisibility();
   const bool isMapped = isColored || this->Mapper->GetBlockScalarVisibility();
-  // Colours that are taken as they are may have an opacity on another rank.
+  // Colors that are taken as they are may have an opacity on another rank.
   vtkProperty* const front = this->Mapper->GetSurfaceProperty();
   vtkProperty* const back = this->Mapper->GetBackfaceProperty();
   return front->GetOpacity() < 1.0 || front->GetBackfaceCulling() || front->GetFrontfaceCulling() ||

@@ -54,7 +54,7 @@ public:
   void SetVisibility(bool visible) override;
   void SetPickable(bool pickable) { this->Display->SetPickable(pickable); }
   /**
-   * The blocks that are shown, with ParaView's numbers of them: what the panel offers to colour by.
+   * The blocks that are shown, with ParaView's numbers of them: what the panel offers to color by.
    */
   vtkDataObject* GetRenderedDataObject(int port) override;
 
@@ -69,7 +69,7 @@ public:
 
   ///@{
   /**
-   * Colours and opacities of the blocks that a path leads to, in place of the surfaces'; later ones count.
+   * Colors and opacities of the blocks that a path leads to, in place of the surfaces'; later ones count.
    */
   void SetBlockColor(const char* selector, double r, double g, double b);
   void RemoveAllBlockColors();
@@ -78,11 +78,11 @@ public:
   ///@}
 
   /**
-   * So many colours take turns where ParaView's array vtkBlockColors colours the blocks, as it numbers them.
+   * So many colors take turns where ParaView's array vtkBlockColors colors the blocks, as it numbers them.
    */
   void SetBlockColorsDistinctValues(int number);
   /**
-   * Index 0: the array that colours the surfaces, of points or of cells; one of the whole dataset colours each block by
+   * Index 0: the array that colors the surfaces, of points or of cells; one of the whole dataset colors each block by
    * the first value that it has there.
    */
   void SetInputArrayToProcess(
@@ -128,7 +128,7 @@ public:
   ///@{
   /**
    * How the sides of the surfaces look where values are above the isovalue, as of vtkGeometryRepresentationWithFaces: as the
-   * others, not at all, they alone, or in a colour and with an opacity of their own.
+   * others, not at all, they alone, or in a color and with an opacity of their own.
    */
   void SetBackfaceRepresentation(int representation);
   void SetBackfaceAmbientColor(double r, double g, double b);
@@ -210,14 +210,14 @@ public:
 
   ///@{
   /**
-   * Shadows, ambient occlusion, mirrors and samples; memory organisation, sizes and threads.
+   * Shadows, ambient occlusion, mirrors and samples; memory organization, sizes and threads.
    */
   void SetLightOptions(vtkPVDSMLightOptions* options);
   void SetMemoryOptions(vtkPVDSMMemoryOptions* options);
   ///@}
 
   /**
-   * The isosurfaces of this rank's data as triangles, with the array that colours them; those of blocks that look alike
+   * The isosurfaces of this rank's data as triangles, with the array that colors them; those of blocks that look alike
    * together, with a vtkPVDSMExportLook.
    */
   std::vector<vtkSmartPointer<vtkPolyData>> GetTriangles() override;
@@ -236,9 +236,9 @@ protected:
     vtkInformation* request, vtkInformationVector** input, vtkInformationVector* output) override;
   bool AddToView(vtkView* view) override;
   bool RemoveFromView(vtkView* view) override;
-  /// Whether light gets through what is shown: the same on every rank.
+  /// Returns whether any shown data let light through: the same on every rank.
   virtual bool IsTranslucent() const;
-  /// What selections draw, of this rank's part of the dataset, which may be null.
+  /// Makes the dataset for selections, from this rank's part of the dataset, which may be null.
   virtual vtkSmartPointer<vtkDataObject> MakeSelectable(vtkDataObject* data);
   /// On all ranks, before each render.
   virtual void PrepareSelection(vtkDSMScene*, vtkRenderer*, bool) {}
@@ -252,7 +252,7 @@ private:
 
   /// Shows a copy of the structure of `source`, which may be null.
   void TakeInput(vtkDataObject* source);
-  /// What ProcessViewRequest does and returns.
+  /// Implements ProcessViewRequest, and returns its result.
   int Process(vtkInformationRequestKey* request, vtkInformation* inInfo, vtkInformation* outInfo);
   void ChooseIsoValues();
   /// Tells the mapper, whose surfaces' look may have changed since.
@@ -268,7 +268,7 @@ private:
   std::vector<std::pair<std::string, std::array<double, 3>>> BlockColors;
   std::vector<std::pair<std::string, double>> BlockOpacities;
   int BlockColorsDistinctValues = 7;
-  std::string BlockArray; ///< that colours whole blocks; empty: none
+  std::string BlockArray; ///< that colors whole blocks; empty: none
   bool BlockLooksAreOld = true;
   std::vector<double> IsoValues;
   double SingleIsoValue = 0.0;

@@ -14,13 +14,14 @@ public:
   struct Axis
   {
     bool IsShown = true;
-    /// Of the samples along the axis, from 0; less: not known yet, nothing is shown.
+    /// Index of the slice among the samples along the axis, from 0; negative: unknown yet, no slice
+    /// is shown.
     int Index = -1;
     std::vector<int> Further; ///< further indices, shown in any case
   };
   std::array<Axis, 3> Axes;
   bool HasPlane = false;
-  std::array<double, 3> Origin{ 0.0, 0.0, 0.0 }; ///< of the plane, world
+  std::array<double, 3> Origin{ 0.0, 0.0, 0.0 }; ///< point of the plane, world
   std::array<double, 3> Normal{ 1.0, 0.0, 0.0 };
 
   /// Gives the mapper its slices.

@@ -32,9 +32,9 @@ class vtkRenderer;
 class vtkScalarsToColors;
 class vtkView;
 
-/// What our representations have in common: the prop that is traced gets into a view, with its scene
-/// where the process renders, when it is first visible there; its data stay on their rank; it is clipped,
-/// can be selected, and tells of the view's frames.
+/// Common part of the plugin's representations. It adds the traced prop, with its scene where the
+/// process renders, to a view when the prop first becomes visible there; it keeps the data on their
+/// rank; it clips them, makes them selectable, and reports the view's frames.
 class vtkPVDSMTracedDisplay
 {
 public:
@@ -54,13 +54,13 @@ public:
   std::function<void(vtkDSMScene* scene, vtkRenderer* renderer, bool selecting)> PrepareSelection;
 
   ///@{
-  /// Of the representation's methods of these names, what is the same for all.
+  /// Common implementation of the representation's methods of these names.
   bool AddToView(vtkView* view);
   bool RemoveFromView(vtkView* view);
   void SetVisibility(bool visible);
   void SetPickable(bool pickable);
 
-  /// Whether a colour map, which may be null, lets light through anywhere.
+  /// Returns whether a color map, which may be null, lets light through anywhere.
   static bool HasOpacity(vtkScalarsToColors* map);
   void SetFrameReport(vtkPVDSMFrameReport* report);
   void SetLightOptions(vtkObject* options);
@@ -71,10 +71,10 @@ public:
   /// view's cache of time steps would skip takes place.
   bool Process(vtkInformationRequestKey* request, vtkInformation* inInfo, vtkInformation* outInfo);
 
-  /// For RequestData, which says so.
+  /// Called by RequestData.
   void NoteUpdate() { this->IsUpdated = true; }
 
-  /// For REQUEST_UPDATE: `bounds` are in the world, null or not initialised where nothing is known;
+  /// For REQUEST_UPDATE: `bounds` are in the world, null or not initialized where nothing is known;
   /// `isTranslucent` is the same on every rank; `data` this rank's.
   void KeepData(const double* bounds, bool isTranslucent, vtkDataObject* data,
     vtkInformation* inInfo, vtkInformation* outInfo);
@@ -87,7 +87,7 @@ private:
   void ShareOptions();
   vtkSmartPointer<vtkActor> MakeExportActor(vtkPolyData* polygons) const;
   void ConnectFrameReport();
-  /// Of what happens while the view renders; ParaView watches the representation, only.
+  /// Forwards progress events while the view renders; ParaView observes the representation only.
   void ForwardProgress();
 
   vtkPVDataRepresentation* Representation;
@@ -99,9 +99,9 @@ private:
   vtkWeakPointer<vtkPVRenderView> View; ///< from AddToView to RemoveFromView
   bool IsInView = false;
   vtkNew<vtkPartitionedDataSet> Placeholder;
-  vtkNew<vtkPVDSMExportProp> ExportProp;            ///< what exporters see
-  vtkNew<vtkPVDSMSelectionActor> SelectionActor;    ///< what selections see
-  vtkSmartPointer<vtkDSMScene> Scene;               ///< where the process renders
+  vtkNew<vtkPVDSMExportProp> ExportProp;            ///< for exporters
+  vtkNew<vtkPVDSMSelectionActor> SelectionActor;    ///< for selections
+  vtkSmartPointer<vtkDSMScene> Scene;               ///< null where the process does not render
   vtkSmartPointer<vtkPVDSMRefinement> Refinement;   ///< on the client
   vtkSmartPointer<vtkPVDSMFrameReport> FrameReport; ///< on the servers
   vtkSmartPointer<vtkObject> LightOptions;

@@ -19,7 +19,7 @@
 namespace
 {
 
-/// What colors a dataset, and what the dataset has.
+/// Array that colors a dataset, and arrays of the dataset.
 class Coloring
 {
 public:

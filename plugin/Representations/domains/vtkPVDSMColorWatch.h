@@ -10,9 +10,9 @@
 
 class vtkSMProxy;
 
-/// The arrays that color a view's datasets, on the client. ParaView colors a new dataset by its active scalars. When the
-/// data do not have that array any more, they are colored by the scalars that they have, or not at all, before they are
-/// rendered. An array other than the active scalars is somebody's choice, and stays.
+/// Watches the arrays that color a view's datasets, on the client. ParaView colors a new dataset by its
+/// active scalars. When the data lose that array, they are colored by their current scalars, or not at all,
+/// before they are rendered. An array other than the active scalars is the user's choice, and stays.
 class vtkPVDSMColorWatch
 {
 public:

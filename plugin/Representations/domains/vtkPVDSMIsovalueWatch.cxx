@@ -35,7 +35,7 @@ constexpr const char* OfSlices = "DSMSliceLighting";
 /// After what depends on a property, as ranges do, has heard of it.
 constexpr float Late = -1.0f;
 
-/// What that property's range depends on.
+/// Properties that the range of that property depends on.
 constexpr const char* Choices[] = { "DSMIsoArray", "DSMIsoComponent" };
 
 /// Null for a mesh, which has no isovalue.
@@ -45,7 +45,7 @@ vtkSMDSMImageRepresentationProxy* FindVolume(vtkSMProxy* representation)
   return vtkSMDSMImageRepresentationProxy::SafeDownCast(single ? single->GetParent() : nullptr);
 }
 
-/// Of the values among which an isovalue is chosen, least and greatest, where they are known.
+/// Returns the range of the values from which an isovalue is chosen, if it is known.
 std::optional<std::array<double, 2>> FindRange(vtkSMProperty* single)
 {
   auto* const range = single->FindDomain<vtkSMDoubleRangeDomain>();
@@ -56,8 +56,8 @@ std::optional<std::array<double, 2>> FindRange(vtkSMProperty* single)
                                   : std::nullopt;
 }
 
-/// What stands there where the data suggest no isovalue: the middle of their range, which is the value of those that are
-/// the same everywhere; without a range, 0.
+/// Returns the placeholder for data that suggest no isovalue: the middle of their range, which is
+/// the value itself for constant data; 0 without a range.
 double FindStandIn(vtkSMProperty* single)
 {
   const auto [least, most] = FindRange(single).value_or(std::array<double, 2>{ 0.0, 0.0 });
@@ -165,15 +165,16 @@ void vtkPVDSMIsovalueWatch::OnEvent(vtkSMProperty* property, unsigned long event
   {
     this->Choice = property;
   }
-  else if (property == this->Choice) // what depends on it knows it now
+  else if (property == this->Choice) // properties that depend on it are up to date now
   {
     this->Choice = nullptr;
     this->OnOtherArray(proxy);
   }
 }
 
-/// Another array has another isovalue, which its data suggest with the next render, unless somebody who knows it has just
-/// set it: scripts may do so before they set the array. What is set after the array counts in any case.
+/// Another array has another isovalue, which its data suggest with the next render, unless the user
+/// has just set it: scripts may do so before they set the array. An isovalue that is set after the
+/// array is always kept.
 void vtkPVDSMIsovalueWatch::OnOtherArray(vtkSMProxy* representation)
 {
   vtkSMDSMImageRepresentationProxy* const volume = FindVolume(representation);
@@ -192,7 +193,7 @@ void vtkPVDSMIsovalueWatch::OnList(vtkSMProperty* list, unsigned long event)
   const vtkSMUncheckedPropertyHelper panel(list);
   if (event == vtkCommand::ModifiedEvent && values.GetNumberOfElements() == 0)
   {
-    // What the panel shows depends on this; ParaView tells it of values that are set, but not that there are none.
+    // The panel depends on this: ParaView reports values that are set, but not that there are none.
     list->ClearUncheckedElements();
   }
   else if (values.GetNumberOfElements() == 0 && panel.GetNumberOfElements() == 1 &&
@@ -202,7 +203,8 @@ void vtkPVDSMIsovalueWatch::OnList(vtkSMProperty* list, unsigned long event)
   }
 }
 
-/// A first value that the panel adds is 0, which a script may mean, but here is nobody's choice.
+/// The first value that the panel adds to a list is 0. A script may want that value, but here the
+/// user has not chosen it.
 void vtkPVDSMIsovalueWatch::BeginList(vtkSMProxy* representation)
 {
   vtkSMProperty* const list = representation->GetProperty(List);
@@ -249,7 +251,7 @@ void vtkPVDSMIsovalueWatch::OnSlider(vtkSMProperty* single)
   this->Changed();
 }
 
-/// Of the ways to show a dataset, which share the property, it matters to the slices.
+/// All representations of a dataset share the property, but it affects the slices only.
 void vtkPVDSMIsovalueWatch::OnSliceIndex(vtkSMProperty* index)
 {
   const int shown = vtkSMUncheckedPropertyHelper(index).GetAsInt();

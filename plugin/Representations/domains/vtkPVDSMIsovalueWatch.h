@@ -10,10 +10,10 @@
 class vtkSMProperty;
 class vtkSMProxy;
 
-/// The isovalues of a view's datasets, on the client. An automatic isovalue becomes the one that the data suggest and the
-/// picture shows. Where the data suggest none, it is the middle of their range. The isovalue of another array is automatic.
-/// While the panel's slider of an isovalue or of a slice's index is dragged, the datasets already have the value that it is
-/// at, which the property gets when it is let go.
+/// Watches the isovalues of a view's datasets, on the client. An automatic isovalue is set to the value that
+/// the data suggest and the image shows. If the data suggest none, it is the middle of their range. When
+/// another array is selected, its isovalue is automatic. While the user drags the panel's slider of an
+/// isovalue or of a slice index, the datasets already show its value; the property gets it on release.
 class vtkPVDSMIsovalueWatch
 {
 public:
@@ -33,7 +33,8 @@ private:
   void OnEvent(vtkSMProperty* property, unsigned long event);
   void OnSlider(vtkSMProperty* single);
   void OnSliceIndex(vtkSMProperty* index);
-  /// Whether a slider is dragged, or was until now. `differs`: it shows another value than is set.
+  /// Returns whether a slider is being dragged, or was until now. `differs`: it shows another value
+  /// than the property has.
   bool IsDragged(vtkSMProperty* property, bool differs);
   void OnList(vtkSMProperty* list, unsigned long event);
   void BeginList(vtkSMProxy* representation);
@@ -41,9 +42,10 @@ private:
 
   std::function<void()> Changed;
   vtkSmartPointer<vtkCommand> Observer;
-  vtkSMProperty* Choice = nullptr;  ///< of an array or a component, while it becomes another
-  vtkSMProperty* Begun = nullptr;   ///< a list to which the panel has added a first value
-  vtkSMProperty* Dragged = nullptr; ///< what a slider shows another value of than is set
+  vtkSMProperty* Choice = nullptr; ///< choice of an array or component, while it is changing
+  vtkSMProperty* Begun = nullptr;  ///< a list to which the panel has added a first value
+  vtkSMProperty* Dragged =
+    nullptr; ///< property whose slider shows another value than the property has
 };
 
 #endif

@@ -28,7 +28,8 @@ constexpr const char* Component = "DSMIsoComponent";
 constexpr const char* Range = "DSMValueRange";
 constexpr const char* Box = "DSMCroppingBox";
 
-/// Whether a box is as large as data that are not there: upside down, or, since ParaView 6, of no extent.
+/// Returns whether the bounds are those of missing data: inverted or, since ParaView 6, without
+/// extent.
 bool IsOfNothing(const vtkSMPropertyHelper& bounds)
 {
   const auto isFlat = [&](unsigned int axis)
@@ -184,7 +185,7 @@ void vtkSMDSMImageRepresentationProxy::ViewUpdated(vtkSMProxy* view)
   isAny = (IsOfNothing(vtkSMPropertyHelper(box)) && box->ResetToDomainDefaults()) || isAny;
   if (this->Components == 0)
   {
-    this->Components = CountComponents(array); // of a state file, whose component stays
+    this->Components = CountComponents(array); // from a state file, whose component stays
   }
   isAny = this->ChooseComponent() || isAny;
   if (isAny)

@@ -77,7 +77,7 @@ private:
   bool IsChoosing = false; ///< properties change that nobody has set
   bool IsLoading = false;  ///< all properties become what they were
   bool IsNew = false;
-  int Components = 0; ///< of the isosurface array; 0: not known
+  int Components = 0; ///< of the isosurface array; 0: unknown
 };
 
 #endif

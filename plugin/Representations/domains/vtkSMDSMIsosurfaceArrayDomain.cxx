@@ -15,7 +15,7 @@
 
 namespace
 {
-/// Where the selection of an array has it, and its name behind it.
+/// Index of the association in the selection of an array; the array's name follows.
 constexpr unsigned int Association = 3;
 }
 

@@ -12,7 +12,8 @@
 
 namespace
 {
-/// Where a single isovalue begins, as a part of the range: an even fraction could be what somebody enters.
+/// Initial position of a single isovalue, as a fraction of the range: a user could enter an even
+/// fraction.
 constexpr double Beginning = 0.5 + 0.01 / 3.14159265358979;
 }
 

@@ -7,7 +7,7 @@
 class vtkPVDSMDrawing
 {
 public:
-  /// Whether this process can draw, in any version.
+  /// Returns whether this process can draw, with any version of ParaView.
   static bool IsPossible();
 };
 

@@ -38,7 +38,7 @@ public:
   vtkGetMacro(NumberOfPolygons, vtkTypeInt64);
 
   /**
-   * The triangles of all ranks, in the dataset's coordinates, with the arrays that colour them; those that look alike
+   * The triangles of all ranks, in the dataset's coordinates, with the arrays that color them; those that look alike
    * (vtkPVDSMExportLook) together.
    */
   std::vector<vtkSmartPointer<vtkPolyData>> GetTriangles() const;

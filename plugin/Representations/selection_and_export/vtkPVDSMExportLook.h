@@ -17,7 +17,7 @@ class vtkPolyData;
 /// data of the blocks' polygons.
 struct vtkPVDSMExportLook
 {
-  std::optional<std::array<double, 3>> Color; ///< in place of the colour array as well
+  std::optional<std::array<double, 3>> Color; ///< in place of the color array as well
   std::optional<double> Opacity;
 
   bool operator<(const vtkPVDSMExportLook& other) const
@@ -25,7 +25,7 @@ struct vtkPVDSMExportLook
     return this->Color != other.Color ? this->Color < other.Color : this->Opacity < other.Opacity;
   }
 
-  /// What the polygons were given; nothing of its own where they were not.
+  /// Returns the look that GiveTo stored in the polygons; an empty one if there is none.
   static vtkPVDSMExportLook Get(vtkPolyData* polygons);
   void GiveTo(vtkPolyData* polygons) const;
   /// To an actor that has the look of the rest.

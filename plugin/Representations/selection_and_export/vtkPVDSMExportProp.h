@@ -24,16 +24,16 @@ public:
 
   /// More would fill the memory of client and exporter, and no viewer of such files would take them.
   static constexpr vtkTypeInt64 MostPolygons = 10000000;
-  /// From here on, the size is told.
+  /// Exports with more polygons report their size.
   static constexpr vtkTypeInt64 ManyPolygons = 1000000;
 
   /// Makes an actor that shows polygons as the representation would.
   using ActorMaker = std::function<vtkSmartPointer<vtkActor>(vtkPolyData* polygons)>;
 
-  /// Whose surface; has to live as long.
+  /// Sets the representation whose surface is exported; it must outlive this prop.
   void SetRepresentation(vtkPVDataRepresentation* representation, ActorMaker make);
 
-  /// What was extracted is not the view's any more.
+  /// Discards the extracted actors, because the view has changed.
   void Forget() { this->Actors.reset(); }
 
   void GetActors(vtkPropCollection* actors) override;
@@ -47,12 +47,13 @@ private:
   vtkPVDSMExportProp(const vtkPVDSMExportProp&) = delete;
   void operator=(const vtkPVDSMExportProp&) = delete;
 
-  /// One for each look of blocks. Of nothing, and of too much, which is an error, none.
+  /// Makes one actor for each look of blocks. Returns none if there are no polygons, or too many, which is an
+  /// error.
   std::vector<vtkSmartPointer<vtkActor>> MakeActors();
 
   vtkPVDataRepresentation* Representation = nullptr;
   ActorMaker Make;
-  std::optional<std::vector<vtkSmartPointer<vtkActor>>> Actors; ///< of the last picture
+  std::optional<std::vector<vtkSmartPointer<vtkActor>>> Actors; ///< actors of the last image
 };
 
 #endif

@@ -147,7 +147,7 @@ vtkSmartPointer<vtkDoubleArray> GetValues(
   return values;
 }
 
-/// The array of points or cells that colours the surface; null without any.
+/// The array of points or cells that colors the surface; null without any.
 vtkDataArray* FindColors(vtkDSMVolumeMapper* mapper, vtkImageData* image, bool onCells)
 {
   if (!mapper->GetScalarVisibility() || mapper->GetColorArrayOnCells() != onCells)
@@ -267,7 +267,7 @@ vtkIdType FindPoint(vtkImageData* image, const double point[3])
   return vtkStructuredData::ComputePointId(image->GetDimensions(), sample);
 }
 
-/// Whether both are parts of one lattice.
+/// Returns whether both are parts of one lattice.
 bool HaveOneLattice(vtkImageData* a, vtkImageData* b)
 {
   const double* const directions[2] = { a->GetDirectionMatrix()->GetData(),
@@ -293,7 +293,8 @@ public:
 
   vtkIdType GetCount() const { return this->Triangles->GetNumberOfCells(); }
 
-  /// Of those in the cells of a box: triangles may be of a box that is larger. Not in ghost and hidden cells.
+  /// Adds the triangles in the cells of a box: `triangles` may be of a larger box. Omits ghost and
+  /// hidden cells.
   void Add(vtkPolyData* triangles, const CellBox& box)
   {
     if (this->Points->GetNumberOfPoints() == 0)

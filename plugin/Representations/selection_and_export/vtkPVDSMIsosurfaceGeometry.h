@@ -12,15 +12,16 @@ class vtkDataObject;
 class vtkMultiBlockDataSet;
 class vtkPolyData;
 
-/// The triangles of the isosurfaces of this rank's data. For selections, they know the cells that they are in, and the
-/// nearest points; for exports, they have normals and what colours them. Of the data, a small part at a time is copied:
-/// they may be in a file, and larger than the memory.
+/// Extracts the triangles of the isosurfaces of this rank's data. For selections, they have the ids of their
+/// cells and of the nearest points; for exports, they have normals and the array that colors them. A small
+/// part of the data is copied at a time: they may be in a file, and larger than the memory.
 class vtkPVDSMIsosurfaceGeometry
 {
 public:
-  /// Of a dataset from which ParaView then extracts what is selected: that takes 10 bytes and more for each of its cells.
+  /// Largest number of cells in a dataset from which ParaView extracts a selection; the extraction
+  /// takes 10 bytes or more for each cell.
   static constexpr vtkIdType MostCellsOfSelection = vtkIdType(1) << 27;
-  /// What a rank should hold at once, about 0.8 GiB.
+  /// Largest number of triangles that a rank should hold at once, about 0.8 GiB.
   static constexpr vtkIdType MostTriangles = 10'000'000;
 
   /// Null where there is nothing, or too much, which is reported as the mapper's error. Triangles of
@@ -29,7 +30,7 @@ public:
   static vtkSmartPointer<vtkMultiBlockDataSet> Make(
     vtkDSMVolumeMapper* mapper, vtkDataObject* source);
 
-  /// The same with the values of the colour array, and normals; of blocks that look alike together, with a
+  /// The same with the values of the color array, and normals; of blocks that look alike together, with a
   /// vtkPVDSMExportLook.
   static std::vector<vtkSmartPointer<vtkPolyData>> MakeColored(vtkDSMVolumeMapper* mapper);
 };

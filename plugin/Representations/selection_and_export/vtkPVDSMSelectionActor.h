@@ -6,7 +6,7 @@
 
 class vtkPropCollection;
 
-/// What selections see of a dataset that is traced. Exporters do not: they have vtkPVDSMExportProp.
+/// Actor of a traced dataset for selections. Exporters do not see it: they use vtkPVDSMExportProp.
 class vtkPVDSMSelectionActor : public vtkOpenGLActor
 {
 public:

@@ -88,7 +88,7 @@ void vtkPVDSMVolumePlaces::AddImage(vtkImageData* image, unsigned block,
   {
     return;
   }
-  constexpr double slack = 1e-3; // of a cell
+  constexpr double slack = 1e-3; // relative to a cell
   constexpr int hidden =
     vtkDataSetAttributes::DUPLICATECELL | static_cast<int>(vtkDataSetAttributes::HIDDENCELL);
   vtkUnsignedCharArray* const ghosts = image->GetCellGhostArray();

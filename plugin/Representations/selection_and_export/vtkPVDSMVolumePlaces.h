@@ -23,7 +23,7 @@ public:
   void Find(vtkDSMScene* scene, vtkRenderer* renderer);
   void Forget();
 
-  /// Of this rank's data, an image or a composite dataset of images.
+  /// Makes the points of this rank's data, an image or a composite dataset of images.
   vtkSmartPointer<vtkMultiBlockDataSet> MakePoints(
     vtkDataObject* data, vtkMatrix4x4* dataToWorld) const;
 

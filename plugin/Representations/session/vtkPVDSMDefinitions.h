@@ -4,9 +4,11 @@
 
 #include "vtkRepresentationsDSMModule.h" // for the export macro
 
-/// What the plugin adds to ParaView's own displays, and its settings: definitions of proxies of which client and server
-/// need the classes. A client takes all definitions from its server, and ParaView ends with one whose class it does not
-/// know, with the first dataset that is shown. So a server has these only when its client has asked for them, which a
+/// Proxy definitions that the plugin adds to ParaView's own displays and settings. Client and
+/// server both need their classes. A client takes all definitions from its server, and ParaView
+/// crashes at the first dataset shown if it does not know the class of one. So a server loads these
+/// definitions only when its client has asked for them; a client with the plugin does. All other
+/// clients see no change.
 /// client does that has the plugin, too; on all others nothing changes.
 class VTKREPRESENTATIONSDSM_EXPORT vtkPVDSMDefinitions
 {

@@ -83,7 +83,8 @@ public:
 /// Seconds that a render takes at most to add samples to a still picture, if one takes less.
 constexpr double SecondsPerFrame = 0.15;
 
-/// What is kept is not only looked at in passing, and so is what two eyes see in turns.
+/// Returns whether the image may be refined after it is shown. A captured image is kept, so it must
+/// be complete at once; stereo renders both eyes in turns.
 bool CanRefine(vtkPVRenderView* view)
 {
   return view && !AskedView::IsCapturing(view) && !view->GetRenderWindow()->GetStereoRender();
@@ -108,7 +109,7 @@ int GetReduction(double resolution)
   return static_cast<int>(std::lround(std::pow(coarsest, 1.0 - resolution)));
 }
 
-/// Whether a representation shows what is selected of a dataset, and anything is. The same on every rank.
+/// Returns whether a representation shows a selection that is not empty. The result is the same on every rank.
 bool ShowsSelection(vtkPVDataRepresentation* shown)
 {
   if (!shown || !shown->GetVisibility() || !shown->IsA("vtkGeometryRepresentation"))
@@ -130,8 +131,8 @@ bool ShowsSelection(vtkPVDataRepresentation* shown)
     source->GetNumberOfInputConnections(1) > 0;
 }
 
-/// Whether the view shows any dataset in another way than ours, or a selection. Axes and text, which are
-/// no composite representations, do not count.
+/// Returns whether the view shows any dataset in another representation than the plugin's, or a selection. Axes and text
+/// are not composite representations and are ignored.
 bool ShowsOthers(vtkView* view)
 {
   for (int number = 0; view && number < view->GetNumberOfRepresentations(); ++number)
@@ -346,7 +347,7 @@ void vtkPVDSMDelivery::Choose(
   }
   else if (view->GetUseSSAO())
   {
-    // Ambient occlusion looks at the neighbours of a pixel, before the ranks' pictures are merged.
+    // Ambient occlusion looks at the neighbors of a pixel, before the ranks' pictures are merged.
     scene->DeliverEverywhere([](vtkCamera*) { return true; });
   }
   else

@@ -27,15 +27,16 @@ public:
   /// the view relies on its cache of time steps, but that holds our placeholder, not the data.
   static void UpdateInSpiteOfCache(vtkPVDataRepresentation* representation);
 
-  /// Whether it is the way that its dataset is shown in a view, or will be once it is no longer hidden.
+  /// Returns whether this delivery is used for the dataset in a view, or will be once it is
+  /// visible.
   static bool IsChosen(vtkPVDataRepresentation* representation, vtkView* view);
 
-  /// What a representation shows.
+  /// Data that a representation shows.
   struct Shown
   {
     const double* Bounds;          ///< world; null where nothing is known
     bool IsTranslucent = false;    ///< the same on every rank
-    vtkDataObject* Data = nullptr; ///< of this rank, whose size is that of what the view shows
+    vtkDataObject* Data = nullptr; ///< this rank's data; their size is that of the shown data
   };
 
   /// For REQUEST_UPDATE: a placeholder is delivered, and every rank renders. When other objects of the
@@ -47,7 +48,7 @@ public:
   /// For REQUEST_RENDER: whether the view is going to draw for a selection, until the next request.
   static bool IsSelecting(vtkView* view);
 
-  /// Whether the view renders a picture that is kept, such as a screenshot.
+  /// Returns whether the view renders an image that is kept, such as a screenshot.
   static bool IsCapturing(vtkView* view);
 
   /// For REQUEST_RENDER: the way that suits what else the view shows, and what it renders for.

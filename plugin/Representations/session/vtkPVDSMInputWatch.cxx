@@ -56,7 +56,7 @@ public:
   Internals(const Internals&) = delete;
   void operator=(const Internals&) = delete;
 
-  /// What has come is known.
+  /// Discards the events received so far.
   void Begin()
   {
     this->Read();
@@ -128,7 +128,7 @@ private:
     }
   }
 
-  /// Whether the keyboard is another application's. Nobody knows without a window manager.
+  /// Returns whether another application has the keyboard focus. Unknown without a window manager.
   bool IsElsewhere() const
   {
     const ErrorGuard guard;

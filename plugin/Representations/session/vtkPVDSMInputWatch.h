@@ -4,9 +4,10 @@
 
 #include <memory>
 
-/// Whether the user has pressed or released a mouse button or a key, turned the wheel or dragged, and the application has
-/// not heard of it yet, because it is busy. The X server tells of each event, however short, by a connection of its
-/// own. What is typed or pressed in another application does not count. Without X11 and its input extension, nobody ever
+/// Detects whether the user has pressed or released a mouse button or a key, turned the wheel or
+/// dragged while the application is busy and has not received the event yet. The X server reports
+/// each event, however short, over a separate connection. Input to another application is ignored.
+/// Without X11 and its input extension, no input is ever detected. One thread.
 /// has. One thread.
 class vtkPVDSMInputWatch
 {
@@ -16,9 +17,9 @@ public:
   vtkPVDSMInputWatch(const vtkPVDSMInputWatch&) = delete;
   void operator=(const vtkPVDSMInputWatch&) = delete;
 
-  /// What has happened until now does not count.
+  /// Ignores all input until now.
   void Begin();
-  /// Whether anything has happened since. Takes microseconds.
+  /// Returns whether there was any input since Begin. Takes microseconds.
   bool HasPressed();
 
 private:

@@ -36,8 +36,9 @@ void vtkPVDSMProgressGuard::Watch(vtkPVProgressHandler* handler, vtkRenderWindow
 
 void vtkPVDSMProgressGuard::Begin()
 {
-  // What is shown within a render must not begin another one: then the first is guarded already. Out of a render
-  // there is nothing to go on with, and what the application draws meanwhile stays as it is.
+  // Events shown within a render must not begin another render; the first one is guarded already.
+  // Outside of a render there is nothing to continue, and other drawing of the application stays as
+  // it is.
   if (!this->Guard && this->Window && this->Window->CheckInRenderStatus())
   {
     this->Guard.emplace(this->Window);

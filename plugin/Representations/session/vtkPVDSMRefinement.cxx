@@ -52,7 +52,7 @@ vtkSMRenderViewProxy* FindProxy(vtkPVRenderView* view)
     : nullptr;
 }
 
-/// Whether the dataset is traced.
+/// Returns whether the dataset is traced.
 bool IsTraced(vtkSMProxy* representation)
 {
   const auto helper = [=](const char* name)
@@ -224,7 +224,7 @@ void vtkPVDSMRefinement::LeaveInteractor()
   }
 }
 
-/// Whether the application handles events, so that timers expire.
+/// Returns whether the application handles events, so that timers expire.
 bool vtkPVDSMRefinement::CanGoOn() const
 {
   return this->Interactor && this->Interactor->IsA("QVTKInteractor") &&
@@ -266,7 +266,7 @@ void vtkPVDSMRefinement::OnRenderEnds(vtkObject*, unsigned long, void* interacti
   const bool isStill = *static_cast<int*>(interactive) == 0;
   // More samples of a picture are of the same data: a server is not asked again.
   const bool isSame = this->IsRefining && this->Samples > 0;
-  // Of several clients, one says what the others show.
+  // With several clients, the master decides what the others show.
   if (isStill && !isSame &&
     (!session->IsMultiClients() || session->GetCollaborationManager()->IsMaster()))
   {
@@ -342,7 +342,8 @@ void vtkPVDSMRefinement::TellInteracting()
   }
 }
 
-/// The panel's slider says so many times while it is dragged; a render that waits already shows the last.
+/// The panel's slider sends this event many times while it is dragged; a pending render already
+/// shows the last value.
 void vtkPVDSMRefinement::OnIsovalue()
 {
   if (this->Timer == 0 && this->View)
@@ -363,7 +364,7 @@ void vtkPVDSMRefinement::OnTimer(vtkObject*, unsigned long, void* timer)
     this->RenderLater(LongDelay);
     return;
   }
-  // What the application has not heard of comes first.
+  // Events that the application has not received yet come first.
   if (this->Input.HasPressed())
   {
     this->Input.Begin();

@@ -21,21 +21,20 @@ class vtkRenderWindowInteractor;
 class vtkSMProxy;
 class vtkSMRenderViewProxy;
 
-/// Lets the pictures of a view get better while nothing happens: in the ParaView application, a still
-/// render takes few samples of each pixel, and whenever the application has nothing else to do, the
-/// next ones are added, until there are as many as asked for. Lives on the client, once for each view
-/// that shows anything of ours; its thread is the application's. Where no application handles events
-/// between renders (pvpython, pvbatch), and with several clients, renders take all samples as usual; but while the
-/// user moves the camera, as in a browser, each takes one.
-/// An isovalue that changes is shown at once.
-/// Where the client itself traces, a render ends early when the user presses anything.
+/// Refines the images of a view while the application is idle: in the ParaView application, a still render
+/// takes few samples of each pixel, and each idle period adds the next samples, until all requested samples
+/// are there. There is one on the client for each view with a traced dataset; its thread is the
+/// application's. If no application handles events between renders (pvpython, pvbatch), or with several
+/// clients, renders take all samples at once; but while the user moves the camera, as in a browser, each
+/// takes one. A changed isovalue is shown at once. If the client itself traces, a render ends early when the
+/// user presses anything.
 class vtkPVDSMRefinement : public vtkObject
 {
 public:
   vtkTypeMacro(vtkPVDSMRefinement, vtkObject);
 
-  /// The view's; made when there is none, for as long as somebody holds it. Null where this process is
-  /// no client, or the view has no proxy.
+  /// Returns the view's object; creates one if there is none, and keeps it as long as it is referenced. Null
+  /// if this process is not a client, or if the view has no proxy.
   static vtkSmartPointer<vtkPVDSMRefinement> Follow(vtkPVRenderView* view);
 
 protected:
@@ -79,7 +78,7 @@ private:
   bool IsRefining = false; ///< in a render of its own
   bool CanAbort = false;   ///< in a still render, which is to be looked at
   bool IsAborted = false;  ///< by the user, the last render
-  int Samples = 0;         ///< of the last picture
+  int Samples = 0;         ///< samples of the last image
   int Standstill = 0;      ///< renders of its own that added nothing
   int Timer = 0;           ///< 0: none is set
 };

@@ -41,7 +41,7 @@ struct vtkPVDSMSharedOptions::Registry
     return registry;
   }
 
-  /// What goes with the options may be an owner, too.
+  /// An object that is destroyed with the options may be an owner, too.
   static void Forget(vtkObject* owner)
   {
     if (!IsOver())
@@ -86,7 +86,7 @@ vtkSmartPointer<vtkSMProxy> CreateValues(vtkSMProxy* like)
   return values;
 }
 
-/// Whether a proxy has been given the value: it is neither its default nor the settings page's.
+/// Returns whether the proxy has a value of its own: neither its default nor the settings page's.
 bool IsGiven(vtkSMProxy* proxy, const char* name)
 {
   vtkSMProxy* page = FindPage(proxy);

@@ -46,7 +46,7 @@ private:
   void Spread(vtkSMProxy* from, const std::string& name);
   void UpdateObjects();
 
-  std::vector<std::string> Names; ///< of the properties
+  std::vector<std::string> Names; ///< names of the properties
   /// The first keeps the values while displays join and leave.
   std::vector<vtkSmartPointer<vtkSMProxy>> Proxies;
   vtkSmartPointer<vtkCommand> Observer;

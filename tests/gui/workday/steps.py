@@ -154,7 +154,7 @@ events_only("Set view direction to +X", [("pqClientMainWindow/cameraToolbar/acti
 events_only("Isometric view", [("pqClientMainWindow/cameraToolbar/actionIsometricView", "activate", "")])
 events_only("Reset", [("pqClientMainWindow/cameraToolbar/actionResetCamera", "activate", "")])
 
-# -- Colours and materials ------------------------------------------------------------------------------
+# -- Colors and materials ------------------------------------------------------------------------------
 
 
 @step("Color By the isosurface's own array")

@@ -6,7 +6,7 @@
 namespace
 {
 
-/// The builtin GUI never initialises MPI; it must get along without.
+/// The builtin GUI never initializes MPI; it must get along without.
 TEST(MpiTransport, IsAbsentUnlessMpiWasInitialised)
 {
   EXPECT_EQ(dsm::MpiTransport::Create(nullptr), nullptr);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Blocks that are read from a disk when they are needed, in every memory organisation: within a memory that
+// Blocks that are read from a disk when they are needed, in every memory organization: within a memory that
 // does not hold them all, with disks that are slow, fail, or hang.
 #include "tests/unit/dsmcore/DiskScenarios.h"
 

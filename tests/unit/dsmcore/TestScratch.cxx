@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Blocks that do not fit the memory go to a scratch directory, in every memory organisation: the same bytes, within
+// Blocks that do not fit the memory go to a scratch directory, in every memory organization: the same bytes, within
 // the memory, and what is wrong with the directory is said on every rank.
 #include "DSMCore/fetch/ReadingSource.h"
 #include "DSMCore/store/BlockStore.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Blocks of a segment get other contents, in every memory organisation: all ranks read the new bytes, only what
+// Blocks of a segment get other contents, in every memory organization: all ranks read the new bytes, only what
 // changed moves, and what fails on one rank fails on all, and leaves room for the next.
 #include "DSMCore/publish/FragmentDigests.h"
 #include "DSMCore/store/BlockStore.h"

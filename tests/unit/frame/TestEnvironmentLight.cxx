@@ -33,7 +33,7 @@ rt::Environment CreateEnvironment(const glm::dvec3& up)
   return environment;
 }
 
-/// Light of which the upper colour has `part`.
+/// Light of which the upper color has `part`.
 glm::dvec3 Mix(double part)
 {
   return glm::mix(glm::dvec3(Lower), glm::dvec3(Upper), part);

@@ -131,7 +131,7 @@ protected:
   rt::ChannelSet Channels;
 };
 
-/// The square [-1, 1]^2 at a height, its front towards the camera; values and colours grow with x.
+/// The square [-1, 1]^2 at a height, its front towards the camera; values and colors grow with x.
 TestMesh::Mesh CreateSquare(double height)
 {
   TestMesh::Mesh mesh;

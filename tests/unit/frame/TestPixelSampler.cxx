@@ -165,7 +165,7 @@ TEST_F(LightTransportTest, ShadowOfATranslucentBallIsDimmedAndTinted)
   scene.Lights = { GetSlantedLight() };
   scene.Transport.Shadows = true;
   const rt::Picture picture = this->Trace(scene);
-  // Where the light through the ball's centre meets the floor.
+  // Where the light through the ball's center meets the floor.
   const glm::dvec3 way = scene.Lights.front().Direction;
   const glm::dvec3 place = BallCenter + way * ((FloorHeight - BallCenter.z) / way.z);
   const auto pixel = static_cast<std::size_t>(std::floor((place.y + 1.0) * Size / 2.0)) * Size +

@@ -32,7 +32,7 @@ void CheckHit(const rt::MeshHit& hit, bool flagged)
   }
 }
 
-/// A packet of rays straight down on neighbouring places.
+/// A packet of rays straight down on neighboring places.
 std::vector<rt::Ray> CreatePacket()
 {
   std::vector<rt::Ray> rays(rt::MeshPacket::Size);

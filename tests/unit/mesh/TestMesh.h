@@ -105,7 +105,7 @@ inline Mesh CreateSoup(int triangles, unsigned seed)
   return mesh;
 }
 
-/// A height field of 2 n^2 triangles over [0, 1]^2, with values, colours, normals and texture.
+/// A height field of 2 n^2 triangles over [0, 1]^2, with values, colors, normals and texture.
 inline Mesh CreateTerrain(int n)
 {
   Mesh mesh;

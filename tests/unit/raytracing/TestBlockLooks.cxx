@@ -13,7 +13,7 @@ namespace
 
 using Block = rt::BlockLooks::Block;
 
-/// Boxes that fill a lattice of 24^3 cells, some of them left out, in any order; each has a colour of its own.
+/// Boxes that fill a lattice of 24^3 cells, some of them left out, in any order; each has a color of its own.
 std::vector<Block> MakeBlocks(std::mt19937& random, std::int64_t edge)
 {
   std::vector<Block> blocks;

@@ -434,6 +434,6 @@ TEST(TestIsosurfaceSearchCases, EachBrickIsAcquiredOnceAVisit)
   rt::LatticeHit hit;
   ASSERT_TRUE(bench.Search.Intersect(object, CreateRay({ -5, 8.5, 8.5 }, { 70, 8.5, 8.5 }), hit));
   EXPECT_NEAR(hit.At.IndexPoint.x, 62.5, 1e-12);
-  // Empty bricks are leapt over; the hit's neighbourhood lies in its brick.
+  // Empty bricks are leapt over; the hit's neighborhood lies in its brick.
   EXPECT_EQ(bench.Worker.Accesses, 1);
 }

@@ -104,7 +104,7 @@ TEST(ImagePiece, ReadsOneComponentOfInterleavedTuples)
 TEST(ImagePiece, KeepsAll64BitsOfIntegersInEitherLayout)
 {
   const auto image = MakeImage();
-  // Neighbours in int64 that a double cannot tell apart.
+  // Neighbors in int64 that a double cannot tell apart.
   const auto widen = [](double value)
   { return (std::int64_t(1) << 60) + static_cast<std::int64_t>(value); };
   const auto expected = GetExpected<std::int64_t>(widen);

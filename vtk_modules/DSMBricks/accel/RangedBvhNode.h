@@ -18,7 +18,7 @@ struct RangedBvhNode : WideBvhNode<Reference>
 {
   ValueRange Ranges[WideBvhWidth];
 
-  /// Of all children.
+  /// Returns the range over all children.
   ValueRange GetRange() const
   {
     ValueRange all = ValueRange::GetEmpty();

@@ -162,7 +162,7 @@ bool WideBvhBuilder<Reference>::FindPlane(const Range& range, int& bestAxis, int
       ++counts[axis][bin[axis]];
     }
   }
-  // What is intersected together costs as much as one.
+  // Items that are intersected together cost as much as one.
   const auto cost = [&](const BoundingBox& box, std::uint32_t count)
   { return box.GetArea() * static_cast<float>((count + this->LeafSize - 1) / this->LeafSize); };
   float best = std::numeric_limits<float>::infinity();
@@ -224,7 +224,7 @@ void WideBvhBuilder<Reference>::SetBounds(
   Node& node, const BoundingBox& box, const Range* children, int count) const
 {
   constexpr double largest = 255.0;
-  // Of floats; smaller ones are not normal.
+  // Of single precision; smaller exponents are not normal numbers.
   constexpr int bias = 127;
   constexpr int smallestExponent = -126;
   float lower[4];

@@ -15,7 +15,7 @@ namespace bricks
 /// 2007); a node splits its largest child until it has eight. One for each thread; keeps its
 /// storage from one hierarchy to the next.
 ///
-/// What it builds is a function of the boxes and their order alone.
+/// The result depends on the boxes and their order alone.
 template <class Reference>
 class WideBvhBuilder
 {
@@ -50,7 +50,7 @@ private:
     std::uint32_t Begin = 0;
     std::uint32_t End = 0;
     BoundingBox Box;
-    BoundingBox Centers; ///< of twice the centres of the items' boxes
+    BoundingBox Centers; ///< of the items' boxes, times two
 
     std::uint32_t GetCount() const { return this->End - this->Begin; }
   };

@@ -24,8 +24,8 @@ public:
     std::copy_n(lower, 3, this->Lower);
   }
 
-  /// Of the centroid of a triangle of nine coordinates. Places outside of the cube count to its
-  /// border.
+  /// Returns the code of the centroid of a triangle with nine coordinates. Centroids outside of the
+  /// cube are clamped to its border.
   std::uint64_t GetOfTriangle(const float corners[9]) const
   {
     std::uint64_t code = 0;

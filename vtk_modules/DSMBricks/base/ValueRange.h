@@ -28,8 +28,9 @@ struct ValueRange
     this->Last = std::max(this->Last, other.Last);
   }
 
-  /// Whether a surface of this isovalue may pass. A value equal to the isovalue counts as inside of
-  /// the surface, so First must be below it; that skips an integer volume's flat background.
+  /// Returns whether a surface of this isovalue may pass. A value equal to the isovalue is inside
+  /// of the surface, so First must be below it; this skips the flat background of an integer
+  /// volume.
   bool MayHold(double isovalue) const
   {
     return static_cast<double>(this->First) < isovalue &&

@@ -14,26 +14,26 @@
 namespace bricks
 {
 
-/// What is found of a brick by looking at it once. Plain.
+/// Data about a brick, found in one pass over it. Plain.
 struct SeenBrick
 {
   ValueRange Range;
   dsm::ByteDigest Digest;
 };
 
-/// What one rank has seen of a volume's bricks, by itself.
+/// Bricks that one rank has examined by itself, with their data.
 struct SeenBricks
 {
   BrickLattice Lattice;
   Box Bricks;                  ///< which, on the lattice of bricks
   std::vector<SeenBrick> Seen; ///< x fastest
-  IsovalueSurvey Survey;       ///< of all of them
+  IsovalueSurvey Survey;       ///< over all of these bricks
 
   bool Has(const Index3& brick) const
   {
     return !Intersect(this->Bricks, { brick, brick + Index3(1) }).IsEmpty();
   }
-  /// Where in Seen a brick is that is among them.
+  /// Returns the index in Seen of a brick, which must be among Bricks.
   std::size_t Find(const Index3& brick) const
   {
     const Index3 at = brick - this->Bricks.Min;
@@ -52,9 +52,9 @@ public:
 
   /// The block of a brick, which stays until the thread's next one. Throws what the reader does.
   const std::byte* Read(dsm::BlockId id, int thread);
-  /// Of the brick that the thread has read; each counts once in the survey.
+  /// Returns the data of the brick that the thread has read. Each brick counts once in the survey.
   SeenBrick See(dsm::BlockId id, int thread);
-  /// Of all that was seen.
+  /// Returns the survey of all bricks that were passed to See.
   IsovalueSurvey GetSurvey() const;
 
 private:

@@ -48,7 +48,7 @@ bool HasSameAxes(const PieceInfo& a, const PieceInfo& b)
     [](double x, double y) { return std::abs(x - y) <= SpacingTolerance; });
 }
 
-/// Whether b's points are among a's; `shift` takes b's indices to a's.
+/// Returns whether the points of b are among those of a; `shift` maps b's indices to a's.
 bool IsAligned(const PieceInfo& a, const PieceInfo& b, Index3& shift)
 {
   if (!HasSameAxes(a, b))
@@ -83,7 +83,7 @@ struct Group
   std::vector<Placed> Members;
 };
 
-/// Whether two boxes of cells have a point in common.
+/// Returns whether two boxes of cells have a point in common.
 bool Touches(const Box& a, const Box& b)
 {
   for (int axis = 0; axis < 3; ++axis)
@@ -290,7 +290,7 @@ bool LatticePlan::IsCovered(const Box& box, const std::vector<Box>& parts)
     {
       continue;
     }
-    // What the part leaves over: two slabs an axis, each axis narrowing the rest.
+    // Divide the rest of the box: two slabs for each axis, each axis narrowing the rest.
     Box rest = box;
     for (int axis = 0; axis < 3; ++axis)
     {

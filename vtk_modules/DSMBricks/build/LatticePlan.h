@@ -15,7 +15,7 @@
 namespace bricks
 {
 
-/// Where one piece of image data lies; plain, so that it travels between ranks.
+/// Placement of one piece of image data; plain, for messages between ranks.
 struct PieceInfo
 {
   double Origin[3]; ///< world position of index (0, 0, 0), as vtkImageData's
@@ -57,16 +57,16 @@ public:
 
   const std::vector<Lattice>& GetLattices() const { return this->Lattices; }
 
-  /// Where pieces of two blocks are in one lattice, and have points in common.
+  /// Points that pieces of two blocks share in one lattice.
   struct Seam
   {
     std::size_t Lattice;
-    std::array<std::size_t, 2> Members; ///< of the lattice
+    std::array<std::size_t, 2> Members; ///< members of the lattice
     Box Points;                         ///< in lattice indices
   };
   std::vector<Seam> FindSeams(const std::vector<PieceInfo>& pieces) const;
 
-  /// Whether every cell of `box` lies in one of `parts`.
+  /// Returns whether every cell of `box` lies in one of `parts`.
   static bool IsCovered(const Box& box, const std::vector<Box>& parts);
 
 private:

@@ -25,10 +25,10 @@ constexpr std::size_t ChunkSize = std::size_t(1) << 16;
 /// Beyond this, products of coordinates leave the range of floats.
 constexpr double LargestCoordinate = 1e18;
 
-/// What a triangle of a rank's own piece takes while it is sorted.
+/// Memory for each triangle of a rank's own piece during sorting, in bytes.
 constexpr double OwnTriangleBytes = 32.0;
 
-/// What every rank tells of its piece.
+/// Summary of a rank's piece, for all ranks.
 struct PieceSummary
 {
   std::uint64_t Triangles = 0;

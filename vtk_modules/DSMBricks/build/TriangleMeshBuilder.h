@@ -24,11 +24,12 @@ namespace bricks
 
 struct TriangleMeshSettings
 {
-  /// What a brick takes on the average, about.
+  /// Average size of a brick in bytes, approximately.
   std::uint32_t BrickBytes = std::uint32_t(32) << 10;
   /// Threads on this rank that sort and build, the calling one included.
   int Threads = 1;
-  /// What a mesh may take on this rank while it is built; 0: this rank's part of the host's memory.
+  /// Memory limit in bytes on this rank while the mesh is built; 0: this rank's part of the host's
+  /// memory.
   std::uint64_t MemoryBytes = 0;
 };
 
@@ -47,7 +48,7 @@ public:
   /// hierarchy over the bricks of all. `progress` may be empty.
   void BuildBricks(dsm::FunctionRef<void(double)> progress);
 
-  /// Of the bricks of all ranks; can be taken once, as can what follows.
+  /// Directory of the bricks of all ranks. It can be taken once; so can the results below.
   dsm::BlockDirectory TakeBrickDirectory();
   /// This rank's bricks.
   std::unique_ptr<dsm::FragmentSource> TakeBrickSource() { return std::move(this->Bricks); }
@@ -56,7 +57,7 @@ public:
   std::shared_ptr<TriangleMesh> TakeMesh() { return std::move(this->Mesh); }
 
 private:
-  /// Of a brick, as ranks tell one another.
+  /// Summary of a brick, for messages between ranks.
   struct BrickSummary
   {
     float Lower[3];
@@ -86,7 +87,7 @@ private:
   std::uint32_t LargestTriangles = 0;
   std::optional<TriangleReader> Reader;
   std::optional<SortedCells> Cells;
-  std::vector<std::uint32_t> BrickBytes; ///< of all ranks
+  std::vector<std::uint32_t> BrickBytes; ///< for the bricks of all ranks
   std::unique_ptr<BlockSource> Bricks;   ///< this rank's
 };
 
@@ -99,7 +100,7 @@ std::shared_ptr<TriangleMesh> PublishMesh(std::string_view what, const TriangleS
   dsm::FunctionRef<void(double)> progress = {})
 {
   using Progress = dsm::FunctionRef<void(double)>;
-  // Where the time goes, about: reading, building, copying.
+  // Approximate shares of the time: reading, building, copying.
   const auto ofBuilding = [&](double done) { progress(0.2 + 0.3 * done); };
   const auto ofCopying = [&](double done) { progress(0.9 + 0.1 * done); };
   TriangleMeshBuilder builder(what, source, settings, messenger);

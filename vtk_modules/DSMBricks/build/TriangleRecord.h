@@ -17,7 +17,7 @@ namespace bricks
 ///   three words       packed normals of the corners (OctahedralNormal), if the mesh has normals; those
 ///                     of the triangle three times
 ///   one or three      values (float): of the triangle, or of the corners
-///   one or three      colours (red in the lowest byte): of the triangle, or of the corners
+///   one or three      colors (red in the lowest byte): of the triangle, or of the corners
 ///   six floats        texture coordinates of the corners
 ///   one word          edge flags, in its lowest three bits, of the corners as they are turned
 ///

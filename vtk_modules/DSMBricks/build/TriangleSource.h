@@ -17,7 +17,7 @@ class TriangleSource
 public:
   virtual ~TriangleSource() = default;
 
-  /// Of a piece without triangles it does not matter.
+  /// Ignored for a piece without triangles.
   virtual MeshAttributes GetAttributes() const = 0;
 
   virtual std::uint64_t GetTriangleCount() const = 0;
@@ -30,8 +30,8 @@ public:
 
   // -- Each only when the piece has the attribute --------------------------------------------------
 
-  /// Of a point or triangle. Of any length; where it is zero or not finite, the surface is shaded
-  /// flat.
+  /// Normal of a point or triangle, of any length. Where it is zero or not finite, the surface is
+  /// shaded flat.
   virtual void GetNormal(std::uint64_t element, double normal[3]) const = 0;
   /// `element` is a point or a triangle, as the attachment says.
   virtual double GetValue(std::uint64_t element) const = 0;

@@ -20,8 +20,8 @@ public:
   /// Throws dsm::Error when a piece has a cell mask and the lattice has none.
   VoxelFragmentSource(
     const BrickLattice& lattice, std::vector<std::shared_ptr<const VoxelSource>> pieces);
-  /// From now on only fragments of the bricks of which `bricks` says so, which must outlive it. Before the
-  /// first.
+  /// Restricts the fragments to the bricks for which `bricks` is true. Call before the first fragment;
+  /// `bricks` must outlive the builder.
   void Restrict(const std::vector<bool>& bricks) { this->Only = &bricks; }
   bool Next(dsm::Fragment& fragment) override;
   double GetProgress() const override;

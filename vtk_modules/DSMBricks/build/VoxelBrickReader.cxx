@@ -27,7 +27,7 @@ VoxelBrickReader::VoxelBrickReader(
 
 void VoxelBrickReader::Read(dsm::BlockId id, std::byte* block, std::size_t bytes) const
 {
-  std::fill_n(block, bytes, std::byte{ 0 }); // what lies between the parts counts, too
+  std::fill_n(block, bytes, std::byte{ 0 }); // gaps between the parts are part of the digest, too
   VoxelBrickSink sink(this->Lattice);
   sink.Begin(id, block, bytes);
   VoxelBrickHeader header;

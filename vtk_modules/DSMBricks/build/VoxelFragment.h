@@ -11,9 +11,9 @@
 namespace bricks
 {
 
-/// What a fragment of a voxel brick begins with: the cells that it covers, in the brick. The samples
-/// at their corners follow, or those of the cells themselves if `OfCells`, x fastest; then, if `HasMask`,
-/// one byte a cell, 1 where it holds data.
+/// Header of a fragment of a voxel brick: the cells that it covers, in brick indices. The samples
+/// at their corners follow, or those of the cells themselves if `OfCells`, x fastest; then, if
+/// `HasMask`, one byte for each cell, 1 where it holds data.
 struct VoxelFragmentHeader
 {
   std::int32_t Min[3];
@@ -26,7 +26,7 @@ struct VoxelFragmentHeader
     return { Index3(this->Min[0], this->Min[1], this->Min[2]),
       Index3(this->Max[0], this->Max[1], this->Max[2]) };
   }
-  /// Where the samples are, as points of the brick.
+  /// Returns the positions of the samples, as points of the brick.
   Box GetSamples() const
   {
     const Box cells = this->GetCells();

@@ -19,7 +19,7 @@ namespace bricks
 namespace
 {
 
-/// The ranks ask one another so often whether to go on.
+/// Number of times that the ranks agree whether to continue.
 constexpr std::size_t Rounds = 64;
 
 std::uint64_t Hash(const std::byte* bytes, std::size_t count)
@@ -29,11 +29,13 @@ std::uint64_t Hash(const std::byte* bytes, std::size_t count)
   return hash.Get();
 }
 
-/// Who tells of which bricks: a rank of those that it has seen, and of its part of those that no rank has.
+/// Assigns bricks to ranks: a rank reports those that it has seen, and its part of those that no
+/// rank has seen.
 class Division
 {
 public:
-  /// `seen`: of each rank. Of ranks that have seen the same bricks, the first tells of them.
+  /// `seen`: boxes of all ranks. If several ranks have seen the same bricks, the first one reports
+  /// them.
   Division(
     const BrickLattice& lattice, const std::vector<dsm::BlockId>& order, std::vector<Box> seen)
     : Seen(std::move(seen))

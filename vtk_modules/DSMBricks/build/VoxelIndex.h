@@ -18,13 +18,13 @@
 namespace bricks
 {
 
-/// What must be known of a volume's bricks before any is read: found once by looking through all of them,
-/// and then kept.
+/// Data about a volume's bricks that are needed before any brick is read. They are found once, in a
+/// pass over all bricks, and then kept.
 struct VoxelIndex
 {
   std::vector<ValueRange> Bricks;       ///< by id
-  IsovalueSurvey Survey;                ///< of all
-  std::vector<dsm::ByteDigest> Digests; ///< of the bricks' bytes, by id
+  IsovalueSurvey Survey;                ///< over all bricks
+  std::vector<dsm::ByteDigest> Digests; ///< digests of the bricks' bytes, by id
 
   /// Which bricks are not known to have the same bytes in both, of as many.
   static std::vector<bool> Compare(const std::vector<dsm::ByteDigest>& digests,
@@ -42,18 +42,20 @@ struct VoxelIndex
   {
     /// Bricks in the order in which they are best read: all of them, the same on every rank.
     std::vector<dsm::BlockId> Order;
-    /// What this rank has seen of them, of this lattice or another; may be null. These are not read.
+    /// Bricks that this rank has examined before, of this lattice or another; may be null. These
+    /// are not read again.
     const SeenBricks* Seen = nullptr;
     int Threads = 1;
   };
 
-  /// Collective: each rank reads its part of the bricks that none has seen, a few at a time. `progress` (may be empty) is told
-  /// the part done, in [0, 1]; what it or the reader throws becomes an Error on every rank.
+  /// Collective: each rank reads its part of the bricks that no rank has seen, a few at a time. `progress`
+  /// (may be empty) receives the completed part, in [0, 1]. An exception of it or of the reader becomes an
+  /// Error on every rank.
   static VoxelIndex Find(dsm::Messenger& messenger, const BrickLattice& lattice,
     const dsm::BlockReader& reader, const Pass& pass, dsm::FunctionRef<void(double)> progress);
 
 private:
-  /// Whether Find can have produced these numbers, which may come from a file.
+  /// Returns whether Find can have produced these numbers, which may come from a file.
   bool IsValid() const;
 };
 

@@ -25,7 +25,7 @@ public:
   /// fastest, in the lattice's scalar type, native byte order. `out` has room for all of them.
   virtual void ReadSamples(const Box& points, std::byte* out) const = 0;
 
-  /// Whether some cells of the box do not hold data (blanked).
+  /// Returns whether any cells of the box hold no data (blanked cells).
   virtual bool HasCellMask() const { return false; }
 
   /// One byte a cell of `cells`, x fastest: 1 holds data, 0 does not. Only when HasCellMask.

@@ -14,7 +14,7 @@ namespace bricks
 {
 
 /// How a volume is cut into bricks: cubes of `edge` cells on one lattice that starts at point 0 and
-/// does not depend on the rank count. Neighbouring bricks share the samples on their common face,
+/// does not depend on the rank count. Neighboring bricks share the samples on their common face,
 /// so no cell spans two bricks. Index order is x fastest everywhere; ids too.
 class BrickLattice
 {
@@ -31,7 +31,7 @@ public:
   /// The brick edge in cells that makes blocks of about the paper's 32 KB.
   static int GetDefaultEdge(ScalarType type);
 
-  /// Whether both cut volumes into the same bricks.
+  /// Returns whether both divide volumes into the same bricks.
   bool operator==(const BrickLattice& other) const
   {
     return this->Points == other.Points && this->Type == other.Type &&

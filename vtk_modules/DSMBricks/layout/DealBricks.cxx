@@ -15,7 +15,7 @@ namespace
 {
 
 /// Bricks, or chunks where these are larger, along an edge of the largest box. Chunks at its faces are read by
-/// several owners, since bricks have the first samples of their neighbours, too.
+/// several owners, since bricks have the first samples of their neighbors, too.
 constexpr std::int64_t LargestBox = 8;
 /// So many boxes for each rank balance what the ranks read.
 constexpr std::int64_t BoxesOfRank = 32;
@@ -29,7 +29,7 @@ struct Boxes
   Index3 First;
   Index3 Widths;
 
-  /// Of each brick, by its place along an axis.
+  /// Returns a number for each brick, by its position along an axis.
   std::vector<std::uint32_t> Number(int axis) const
   {
     std::vector<std::uint32_t> numbers;

@@ -8,7 +8,7 @@
 namespace bricks
 {
 
-/// Deals the bricks of a volume whose owners cut them out of chunks of a file. Neighbouring bricks are cut out of
+/// Deals the bricks of a volume whose owners cut them out of chunks of a file. Neighboring bricks are cut out of
 /// the same chunks, so they are dealt in boxes: as small ones as it takes for each rank to get several, which
 /// a surface then meets about as often as another rank's; and of whole chunks, unless these are so large that
 /// some rank would get too few. `chunk`: its samples along each axis; `first`: index of the lattice's

@@ -19,7 +19,7 @@ constexpr double OpenPenalty = 0.35;
 /// Worths that are this near to the best are as good; the middle of them is taken.
 constexpr double Tolerance = 0.02;
 
-/// Of each border, how much its surface is worth; negative where there is none.
+/// Returns the worth of the surface at each border; negative where there is none.
 std::array<double, IsovalueSurvey::Intervals> FindWorths(const IsovalueSurvey& survey)
 {
   const std::size_t intervals = survey.CountIntervals();
@@ -55,7 +55,7 @@ std::array<double, IsovalueSurvey::Intervals> FindWorths(const IsovalueSurvey& s
   return worths;
 }
 
-/// Collective. Of those that nobody has looked through yet.
+/// Collective. Surveys the fields that have no survey yet.
 IsovalueSurvey LookThrough(
   const std::vector<std::shared_ptr<const VoxelField>>& fields, dsm::Messenger& messenger)
 {

@@ -14,7 +14,7 @@ namespace
 
 constexpr int LowestExponent = -1000;
 
-/// Of a value in intervals of a width.
+/// Returns the interval of a value, for intervals of equal width.
 std::int64_t FindInterval(double value, double perWidth)
 {
   const double place = value * perWidth;
@@ -47,7 +47,7 @@ std::int64_t FindExponent(double least, double greatest)
   return exponent;
 }
 
-/// Of the macrocells of a brick that hold data, told to visit(range, macrocell, atBorder).
+/// Calls visit(range, macrocell, atBorder) for the macrocells of a brick that hold data.
 template <class T, class Visit>
 void ForEachMacrocell(
   const VoxelBrick<T>& brick, const Box& cells, const Index3& end, const Visit& visit)
@@ -95,7 +95,8 @@ void Move(
   counts = moved;
 }
 
-/// Whether at most `most` macrocells cross each border, and none crosses the last. `counts` are not accumulated.
+/// Returns whether at most `most` macrocells cross each border, and none crosses the last. `counts`
+/// are not accumulated.
 bool AreCrossings(const IsovalueSurvey::Counts& counts, std::size_t intervals, std::int64_t most)
 {
   std::int64_t crossed = 0;

@@ -13,18 +13,19 @@
 namespace bricks
 {
 
-/// How many macrocells of a volume have which values, in intervals of equal width: what FindFirstIsovalue chooses
-/// by. Nobody needs to know the range of the values before: intervals are 2^Exponent wide, begin at multiples of
-/// that, and become wider as values come that they do not reach. So it depends on what was counted only, and not
-/// on the order. Plain, so that it travels between ranks, and is kept. Any thread, one at a time.
+/// Histogram of a volume's macrocells over their values, in intervals of equal width; FindFirstIsovalue uses
+/// it. The range of the values need not be known before: intervals are 2^Exponent wide, begin at multiples of
+/// that, and become wider when values outside of them are added. So the result depends on the counted values
+/// only, and not on their order. Plain, for messages between ranks and for files. Any thread, one at a time.
 struct IsovalueSurvey
 {
   /// At most so many have something in them, and at least half as many where the values are not all the same.
   static constexpr int Intervals = 512;
   using Counts = std::array<std::int64_t, Intervals>;
 
-  /// Whether CountBrick and Add can have produced these numbers from at most `mostMacrocells` macrocells. A survey that
-  /// was copied out of a file must pass before any other call. Returns false after Accumulate.
+  /// Returns whether CountBrick and Add can have produced these numbers from at most
+  /// `mostMacrocells` macrocells. A survey that was copied out of a file must pass before any other
+  /// call. Returns false after Accumulate.
   bool IsValid(std::int64_t mostMacrocells) const;
 
   /// Counts the macrocells of a brick.
@@ -40,14 +41,14 @@ struct IsovalueSurvey
   double GetBorder(double border) const;
 
   Counts Values{}; ///< four of each macrocell, which divide its range evenly
-  /// Of the borders between an interval and the next: a surface passes.
+  /// Macrocells whose surface crosses the border between an interval and the next.
   Counts Crossed{};
   Counts CutOpen{}; ///< so it does, and the volume ends there
   std::int64_t All = 0;
   std::int64_t AtBorder = 0;
   std::int64_t First = 0; ///< the first interval begins at First * 2^Exponent
   std::int64_t Exponent = 0;
-  double Least = std::numeric_limits<double>::max(); ///< of all that was counted
+  double Least = std::numeric_limits<double>::max(); ///< range of all counted values
   double Greatest = std::numeric_limits<double>::lowest();
 
 private:

@@ -15,7 +15,7 @@ void AddToLanes(const T* samples, int count, T* least, T* greatest, T* check)
 {
   for (int lane = 0; lane < count; ++lane)
   {
-    // Of values, not of references to them, GCC makes vectors.
+    // GCC vectorizes the loop for values, but not for references to them.
     const T sample = samples[lane];
     const T low = least[lane];
     const T high = greatest[lane];

@@ -90,7 +90,8 @@ MacrocellRange<T> FindCellRange(const VoxelBrick<T>& brick, const CellBox& box)
   return range;
 }
 
-/// What the samples of a row of macrocells have over y and z, at each x: found for many x at a time.
+/// Ranges of the samples of a row of macrocells over y and z, for each x. Many x are computed at a
+/// time.
 template <class T>
 class RowOfRanges
 {

@@ -26,7 +26,7 @@ public:
   struct Level
   {
     int Size[3];
-    double Edge; ///< of a macrocell, in cells
+    double Edge; ///< edge length of a macrocell, in cells
     double InverseEdge;
     std::vector<ValueRange> Ranges;
   };
@@ -38,7 +38,7 @@ public:
   /// Local: builds the levels over the ranges of all bricks, in order of their ids.
   MacrocellHierarchy(const BrickLattice& lattice, std::vector<ValueRange> bricks);
 
-  /// What the levels take.
+  /// Returns the bytes of all levels.
   static std::uint64_t CountBytes(const BrickLattice& lattice);
 
   /// Level 0 is the finest.

@@ -7,7 +7,7 @@
 namespace bricks
 {
 
-/// What the numbers of an attribute belong to.
+/// Element that the values of an attribute belong to.
 enum class Attachment : std::uint8_t
 {
   None,     ///< the mesh does not have the attribute
@@ -19,14 +19,14 @@ enum class Attachment : std::uint8_t
 /// next one: whether it is an edge of the dataset's polygons, or a cut through one.
 constexpr unsigned AllEdges = 7;
 
-/// What the triangles of a mesh carry beside their positions; the same for all its pieces.
+/// Attributes of a mesh beside the positions; the same for all its pieces.
 struct MeshAttributes
 {
   Attachment Normals = Attachment::None;
   Attachment Values = Attachment::None;
   Attachment Colors = Attachment::None;
-  bool TextureCoordinates = false; ///< of the points
-  bool EdgeFlags = false;          ///< of the triangles; without, they are AllEdges
+  bool TextureCoordinates = false; ///< at the points
+  bool EdgeFlags = false;          ///< of the triangles; without them, all triangles have AllEdges
 
   bool operator==(const MeshAttributes& other) const
   {

@@ -10,8 +10,8 @@
 namespace bricks
 {
 
-/// What a triangle brick's block begins with: a treelet of a mesh with all that is needed to
-/// intersect and to shade it. The block's layout, in this order:
+/// Header of a triangle brick's block. The brick is a treelet of a mesh, with all data for
+/// intersection and shading. Layout of the block, in this order:
 ///
 ///   this header            64 bytes
 ///   nodes                  80 bytes each (WideBvhNode); the first one is the root
@@ -19,14 +19,14 @@ namespace bricks
 ///   triangles              three 16-bit vertex numbers each, in the order of the tree's leaves;
 ///                          three more triangles of zeros, so that four can be read from any
 ///   values                 one float a vertex or a triangle, if the mesh has values
-///   colours                four bytes a vertex or a triangle, red first, if it has colours
+///   colors                 four bytes a vertex or a triangle, red first, if it has colors
 ///   texture coordinates    two floats a vertex, if it has texture coordinates
 ///   edge flags             three bits a triangle, ten triangles in a 32-bit word, the first in its
 ///                          lowest bits, if it has edge flags (AllEdges)
 ///
 /// Every part starts at a multiple of 16 bytes. Offsets are from the start of the block, so it can
 /// lie anywhere; an offset of 0 means that the part is not there. Vertices are shared between
-/// triangles within the brick and repeated in neighbouring bricks, bit for bit.
+/// triangles within the brick and repeated in neighboring bricks, bit for bit.
 struct TriangleBrickHeader
 {
   std::uint32_t BlockBytes;

@@ -52,7 +52,7 @@ public:
   int GetOffset(int x, int y, int z) const { return x + y * this->Row + z * this->Slice; }
   T GetSample(int x, int y, int z) const { return this->Samples[this->GetOffset(x, y, z)]; }
 
-  /// Whether the mask lets the cell hold data; its corners may still not be finite.
+  /// Returns whether the mask allows the cell to hold data; its corners may still not be finite.
   bool IsCovered(int x, int y, int z) const
   {
     if (this->Header.MaskOffset == 0)
@@ -64,7 +64,7 @@ public:
     return (mask[cell >> 3] >> (cell & 7) & 1) != 0;
   }
 
-  /// Whether all corners of the cell are numbers.
+  /// Returns whether the values at all corners of the cell are finite.
   bool HasFiniteCorners(int x, int y, int z) const
   {
     if constexpr (std::is_floating_point_v<T>)

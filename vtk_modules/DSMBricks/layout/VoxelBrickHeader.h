@@ -14,7 +14,7 @@ namespace bricks
 /// Macrocells inside a brick are cubes of this many cells, the last ones of a row smaller.
 constexpr int MacrocellEdge = 4;
 
-/// What a voxel brick's block begins with. The block's layout, in this order:
+/// Header of a voxel brick's block. Layout of the block, in this order:
 ///
 ///   this header                                64 bytes
 ///   macrocells: Min, Max in the sample type    x fastest; Min > Max where no cell holds data

@@ -19,7 +19,7 @@ struct VoxelField
   BrickLattice Lattice;
   std::shared_ptr<dsm::BlockSegment> Segment;
   MacrocellHierarchy Hierarchy;
-  /// Of all bricks, the same on every rank, where they need not be looked through for it.
+  /// Survey of all bricks, the same on every rank; empty if the bricks have to be examined for it.
   std::optional<IsovalueSurvey> Survey;
 };
 

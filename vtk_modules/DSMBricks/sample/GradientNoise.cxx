@@ -9,7 +9,7 @@ namespace bricks
 namespace
 {
 
-/// A 32-bit integer finaliser with low bias (C. Wellons, hash-prospector).
+/// A 32-bit integer finalizer with low bias (C. Wellons, hash-prospector).
 std::uint32_t Mix(std::uint32_t x)
 {
   x ^= x >> 16;

@@ -40,7 +40,7 @@ private:
 };
 
 /// The records of the cells that this rank owns, in no order within a cell. In memory of their own,
-/// not in the store: they are read once, by their owner, whatever organisation the bricks will have.
+/// not in the store: they are read once, by their owner, whatever organization the bricks will have.
 class RecordBlocks
 {
 public:

@@ -17,7 +17,7 @@ class RecordReader
 public:
   virtual ~RecordReader() = default;
 
-  /// What the primitives are, in the plural: for messages.
+  /// Returns a plural noun for the primitives, for messages.
   virtual const char* GetNames() const = 0;
   virtual std::uint64_t GetCount() const = 0;
   /// A multiple of 4.

@@ -125,7 +125,7 @@ std::vector<std::uint64_t> SortedCells::Divide(const Cell& cell, int bits) const
 
 void SortedCells::FindCells(std::uint64_t largestCount, dsm::Messenger& messenger)
 {
-  // Of one generation, all have as many bits.
+  // All cells of one generation have the same number of bits.
   std::vector<Cell> open;
   std::vector<Cell> next;
   std::vector<std::uint64_t> counts;

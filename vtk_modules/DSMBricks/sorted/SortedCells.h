@@ -43,7 +43,7 @@ private:
   };
   struct Cell
   {
-    std::uint64_t Code; ///< of its first place
+    std::uint64_t Code; ///< code of the first position in the cell
     int Bits;           ///< how many of the code's bits all its places share
     std::uint64_t Begin;
     std::uint64_t End;
@@ -53,7 +53,8 @@ private:
   void ReadKeys(const RecordReader& reader, const MortonCode& order, int threads);
   void SortKeys(int threads);
   void FindCells(std::uint64_t largestCount, dsm::Messenger& messenger);
-  /// Where the parts of a cell that share `bits` more bits begin, and the last one ends.
+  /// Returns the begins of the parts of a cell that share `bits` more bits, and the end of the last
+  /// part.
   std::vector<std::uint64_t> Divide(const Cell& cell, int bits) const;
 
   std::vector<Key> Keys;

@@ -20,7 +20,7 @@ constexpr std::size_t AlignBlock(std::size_t bytes)
   return (bytes + BlockAlignment - 1) / BlockAlignment * BlockAlignment;
 }
 
-/// What a block takes of memory, at least one unit of BlockAlignment.
+/// Memory that a block occupies, in bytes: at least one unit of BlockAlignment.
 constexpr std::size_t GetBlockFootprint(std::size_t bytes)
 {
   return AlignBlock(bytes > 0 ? bytes : 1);

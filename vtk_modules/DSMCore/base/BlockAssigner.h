@@ -14,7 +14,7 @@ namespace dsm
 {
 
 /// Which rank each block of a segment belongs to: they are dealt one by one, round robin, or, where they lie on
-/// a grid and neighbours had better belong to the same rank, in boxes of blocks. Either way no rank gets more
+/// a grid and neighbors had better belong to the same rank, in boxes of blocks. Either way no rank gets more
 /// than one block, or box, more than another. Cheap to copy.
 class BlockAssigner
 {

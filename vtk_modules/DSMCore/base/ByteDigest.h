@@ -9,8 +9,8 @@
 namespace dsm
 {
 
-/// XXH3 of 64 bits, which is the same on all machines, of bytes that nobody made up to deceive it. `seed`: such as the
-/// hash of what is before them.
+/// Returns the 64-bit XXH3 hash of bytes; the same on all machines. It is not safe against crafted input.
+/// `seed`: for example the hash of the bytes before.
 std::uint64_t HashBytes(const void* data, std::size_t bytes, std::uint64_t seed = 0);
 
 /// A hash of 128 bits (XXH3): equal, for all practical purposes, only for equal bytes that were added in equal parts.

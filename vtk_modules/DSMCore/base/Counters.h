@@ -7,7 +7,7 @@
 namespace dsm
 {
 
-/// What one worker did with the store during one frame. Plain numbers: only that worker writes.
+/// Store activity of one worker during one frame. Plain numbers: only that worker writes them.
 struct WorkerCounters
 {
   std::uint64_t Accesses = 0;
@@ -28,7 +28,7 @@ struct WorkerCounters
   }
 };
 
-/// What one rank's store did during one frame, and what it holds.
+/// Activity of one rank's store during one frame, and the memory that it holds.
 struct StoreCounters
 {
   WorkerCounters Workers; ///< sum over the rank's workers
@@ -45,15 +45,14 @@ struct StoreCounters
   std::uint64_t SharedBytes = 0;
   /// Copies for good of other ranks' blocks, in this rank's memory (ReplicatedStore).
   std::uint64_t ReplicaBytes = 0;
-  /// What it takes on this rank to find blocks: tables, directories, and the index of those who
-  /// published.
+  /// Memory on this rank for finding blocks: tables, directories, and the publishers' indices.
   std::uint64_t TableBytes = 0;
   /// Memory that remote blocks take now: those held, those evicted whose memory is not free yet, and
   /// the room set aside for those requested. Never more than CacheCapacity.
   std::uint64_t CachedBytes = 0;
   std::uint64_t PeakCachedBytes = 0; ///< the most during the frame
   std::uint64_t CacheCapacity = 0;
-  /// What the rank may take for all of these (see BlockStore); 0 where nobody said.
+  /// Memory limit of the rank for all of these (see BlockStore); 0 if none was set.
   std::uint64_t MemoryBudget = 0;
   /// How often something was cut into bricks, since the ranks came together.
   std::uint64_t Publications = 0;

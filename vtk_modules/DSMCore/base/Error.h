@@ -28,17 +28,17 @@ struct Status
 {
   /// The first failing rank, or -1 when every rank succeeded.
   int FailedRank = -1;
-  /// What went wrong there; empty when nothing did.
+  /// Reason of the failure on that rank; empty if the rank did not fail.
   std::string Cause;
-  /// Whether every rank failed for this reason.
+  /// True if every rank failed for this reason.
   bool IsEverywhere = false;
 
   bool IsOk() const { return this->FailedRank < 0; }
 };
 
-/// Another rank has failed where this one was not asked how it fares: all ranks give up what they do
-/// together (Messenger::RunStep). Not an Error, which may be the failure of a part: this is to be let
-/// through.
+/// Thrown when another rank has failed at a point where this rank was not waiting for its status: all ranks
+/// abandon their common step (Messenger::RunStep). It is not an Error, which may be the failure of a part:
+/// callers have to let it pass.
 class StepAborted : public std::runtime_error
 {
 public:

@@ -7,8 +7,8 @@
 namespace dsm
 {
 
-/// What goes wrong on a rank first while others count on it: it is kept, at the expense of no memory,
-/// until the ranks agree again (Messenger::RunTogether). One thread.
+/// Keeps the first failure of a rank while other ranks depend on it, until the ranks agree again
+/// (Messenger::RunTogether). Allocates no memory. One thread.
 class FirstFailure
 {
 public:

@@ -12,8 +12,8 @@
 namespace dsm
 {
 
-/// Threads that read what a process takes from files, so that no other has to wait for a disk. They are
-/// shared by all sources: a file system that hangs keeps some of them, and nobody else. Any thread.
+/// Threads that read files for the process, so that no other thread has to wait for a disk. All sources share
+/// them: a file system that hangs blocks some of them, but no other thread. Any thread.
 class ReaderThreads
 {
 public:

@@ -24,11 +24,11 @@ public:
 
   /// Waits for a slot, to begin something new.
   void Take();
-  /// Gives the slot to whoever waits for one.
+  /// Gives the slot to a worker that waits for one.
   void Give();
-  /// Waits for a slot, to go on with something begun.
+  /// Waits for a slot, to continue interrupted work.
   void Resume();
-  /// Between two things: gives the slot to those that would go on, and takes another one.
+  /// Call between two pieces of work: gives the slot to workers that want to resume, and takes another one.
   void LetOthersResume();
 
   /// The time that slots were free in this frame, while any was taken later; summed over the slots.

@@ -13,7 +13,7 @@ namespace dsm
 namespace
 {
 
-/// Reads for blocks that nobody waits for begin as long as there are not so many under way.
+/// Limit of pending reads, above which no reads begin for blocks that no worker waits for.
 constexpr std::size_t MostReadsAhead = 256;
 
 } // namespace
@@ -158,7 +158,7 @@ void BlockFetcher::BeginFrame(bool agreed)
           this->Advise(segment, std::move(advised));
         }
       }
-      catch (const std::bad_alloc&) // what is wanted will be asked for one by one
+      catch (const std::bad_alloc&) // wanted blocks will be requested one by one
       {
       }
     });

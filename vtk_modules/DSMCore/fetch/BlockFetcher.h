@@ -27,16 +27,17 @@
 namespace dsm
 {
 
-/// The way of a miss, the same for every store that fetches blocks: queues, states of lines, room,
-/// sources, and the frame around them. A block that is missed first is queued; workers that miss it
-/// later join. The communication thread takes the queue in order: it sets memory aside (evicting if it
-/// must, and waiting if it cannot), then lets the block's source read it, so what comes always finds
-/// room. What workers foresee, or a frame begins by foreseeing since the last ones needed it
-/// (ExpectedBlocks), waits in a queue of its own, which is looked at when nothing is wanted.
-/// What other ranks ask for and is not in memory is wanted like what a worker waits for.
+/// Handles cache misses for every store that fetches blocks: queues, line states, room in the
+/// cache, sources, and the frame around them. A missed block is queued; workers that miss it later
+/// join. The communication thread processes the queue in order: it reserves memory (evicting if
+/// necessary, waiting if eviction is impossible) and then lets the block's source read it, so a
+/// block that arrives always finds room. Blocks that workers foresee, or that a frame expects
+/// because recent frames needed them (ExpectedBlocks), wait in a separate queue, which is served
+/// when no block is wanted. A block that another rank requests and that is not in memory is wanted
+/// like a block that a worker waits for.
 ///
-/// A store derives from it, and says where bytes land, and how a block is shown to workers and taken
-/// away.
+/// A store derives from this class. It defines where the bytes are stored, and how a block is
+/// published to workers and withdrawn.
 class BlockFetcher
 {
 public:
@@ -46,14 +47,14 @@ public:
 
   // -- Between frames, on the communication thread --
 
-  /// Where the ranks agree afterwards: whether a segment may be added. Throws when it may not; else
-  /// Add will not fail.
+  /// Checks whether `count` segments may be added. Throws when they may not; otherwise Add will not fail. The
+  /// caller has to let the ranks agree afterwards.
   void PrepareToAdd(std::size_t count = 1);
   void Add(std::shared_ptr<BlockSegment> segment);
   /// Returns what was retired; null when there is no such segment. Throws Error within a frame.
   std::shared_ptr<BlockSegment> Retire(const BlockSegment& segment);
-  /// Blocks of which `which` says so have other contents now: what is cached of them goes. Throws within a
-  /// frame.
+  /// The contents of the blocks for which `which` is true have changed: drops their cached copies. Throws
+  /// within a frame.
   void Refresh(const BlockSegment& segment, const std::vector<bool>& which);
 
   // -- The frame, on the communication thread; see ObjectStore --
@@ -101,11 +102,12 @@ protected:
   // -- What a store says; under the lock unless it says otherwise --
 
   virtual LineStatus& GetLine(const BlockWant& block) const = 0;
-  /// What so many bytes of a block take of the cache.
+  /// Returns the number of bytes of the cache that a block of `bytes` bytes occupies.
   virtual std::size_t CountFootprint(std::size_t bytes) const = 0;
   /// Null when the block is not in memory. Communication thread, no lock.
   virtual const std::byte* FindOwned(const BlockWant& block) const = 0;
-  /// Whether this rank's own source brings a block that is not in memory, not another rank.
+  /// Returns whether this rank's own source, rather than another rank, reads a block that is not in
+  /// memory.
   virtual bool IsOwned(const BlockWant& block) const
   {
     return block.From->GetDirectory().GetOwner(block.Id) == this->Messages.GetRank();
@@ -119,7 +121,7 @@ protected:
   virtual BlockSource* FindSourceForWorkers(const BlockWant&) const { return nullptr; }
   /// Sets room for a block aside; false when that must wait.
   virtual bool MakeRoom(const BlockWant& block) = 0;
-  /// The same where nothing has to leave for it.
+  /// The same, but evicts nothing.
   virtual bool TakeRoom(const BlockWant&) { return false; }
   /// The block will not come.
   virtual void GiveRoomBack(const BlockWant& block) noexcept = 0;
@@ -137,7 +139,7 @@ protected:
   virtual void Forget(const BlockSegment& segment) = 0;
   /// The same for some of its blocks; may throw.
   virtual void Forget(const BlockSegment& segment, const std::vector<bool>& which) = 0;
-  /// Whether a block that was foreseen is under way or here, and nobody has used it.
+  /// Returns whether a foreseen block is pending or cached, and no worker has used it.
   virtual bool IsUnused(const BlockWant& block) const = 0;
   /// The frame is over: it becomes an ordinary block. Whether it was here and unused.
   virtual bool Settle(const BlockWant& block) = 0;
@@ -151,7 +153,8 @@ protected:
   virtual void Closed() {}
   /// Before the queues are looked at. Returns whether it did anything.
   virtual bool BeginService() { return false; }
-  /// Whether there is something for it without the queues. No lock.
+  /// Returns whether the store has work for the communication thread apart from the queues. No
+  /// lock.
   virtual bool NeedsService() const { return false; }
   /// Behind BeginService and the queues; no lock.
   virtual void EndService() {}
@@ -161,9 +164,10 @@ protected:
   /// Queues a block that is absent, or joins those who wait for it. Returns whether it joined, or the system was
   /// advised of the block before.
   bool Want(const BlockWant& block);
-  /// A worker misses a block, and reads it by itself, without the lock, where nobody brings it yet, there is
-  /// room, and nothing has to be waited for: it spares threads that wake one another. Returns whether the block is
-  /// here now; else the worker must have it wanted, if the frame is still open, for others may wait by now.
+  /// Lets a worker that misses a block read it by itself, without the lock. This requires that no other
+  /// thread reads it, that there is room, and that the read does not wait; it avoids waking threads. Returns
+  /// whether the block is here now. If not, the worker has to call Want, if the frame is still open, because
+  /// others may wait by now.
   bool ReadAtOnce(FetchWorker& worker, const BlockWant& block, std::unique_lock<std::mutex>& lock);
   /// A worker misses a block, and waits until it is here or the frame is open no more. `keeps`: the
   /// block stays until the worker has its slot back.
@@ -195,9 +199,9 @@ protected:
   StoreCounters FrameCounters;
   PrefetchLedger Prefetches;
   std::vector<Read> Reads; ///< communication thread only
-  /// What reads from other ranks may take of the cache. Where ranks have blocks in memory for a time
-  /// only, a rank must always find room for its own: two that wait for one another's would wait for
-  /// ever if all their room were set aside for what they wait for.
+  /// Upper bound, in bytes of the cache, for reads from other ranks. Where blocks stay in memory
+  /// only for a time, a rank must always find room for its own blocks: two ranks that wait for each
+  /// other's blocks would deadlock if all their room were reserved for these.
   std::size_t RoomForOthers = std::numeric_limits<std::size_t>::max();
   BlockRequests Requests;
 
@@ -216,15 +220,17 @@ private:
   void AbandonPrefetches();
   void SettlePrefetches();
   void UpdateQueuedCount();
-  /// Of those that are absent: the system is to be advised of blocks that workers can read by themselves then, which go
-  /// to `advised`; the others are queued, as far as there may be so many. Returns whether any was queued.
+  /// Handles the absent blocks among `ids`. Blocks that workers can read by themselves are appended
+  /// to `advised`, so that the system is advised of them later. The others are queued, up to the
+  /// limit for prefetches. Returns whether any block was queued.
   bool QueuePrefetches(const BlockSegment& segment, const BlockId* ids, std::size_t count,
     std::vector<BlockId>& advised);
   bool TryAdvise(const BlockWant& block, std::vector<BlockId>& advised);
   /// With or without the lock.
   void Advise(const BlockSegment& segment, std::vector<BlockId> ids) const;
 
-  /// Of other ranks, and own ones, which come first: others may wait for them.
+  /// Wanted blocks of other ranks, and of this rank (WantedOwn). The latter are served first: other
+  /// ranks may wait for them.
   std::deque<BlockWant> Wanted;
   std::deque<BlockWant> WantedOwn;
   /// Room set aside for reads from other ranks.
@@ -232,11 +238,12 @@ private:
   ExpectedBlocks Expected;
   /// Some may have become wanted, or come, since they were queued.
   std::deque<BlockWant> PrefetchQueue;
-  /// Of these queues; lets Service look without the lock.
+  /// Number of blocks in these queues; lets Service check without the lock.
   std::atomic<std::size_t> QueuedCount{ 0 };
   /// Foreseen, and not queued: the system was advised of them.
   std::vector<BlockWant> Advised;
-  /// Of them, in this frame: wanted later. Each counts as prefetched, and whoever wants it as joining.
+  /// Number of advised blocks that were wanted later in this frame. Each counts as prefetched, and each
+  /// worker that wants it as joining.
   std::uint64_t AdvisedUsed = 0;
   /// Workers may have read blocks that other ranks asked for.
   std::atomic<bool> MayHaveDebtsHere{ false };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What workers do: they miss blocks, and have them prefetched.
+// Functions of workers: they miss blocks, and prefetch them.
 #include "DSMCore/fetch/BlockFetcher.h"
 
 #include "DSMCore/base/Error.h"
@@ -25,7 +25,7 @@ bool IsCutFromFile(const BlockDirectory& directory)
   return directory.IsFromSource() && !directory.IsOnOwnersDisk();
 }
 
-/// Whether the system was advised of a block that nobody has wanted yet.
+/// Returns whether the system was advised of a block that no worker has wanted yet.
 bool IsAdvised(const LineStatus& line)
 {
   return line.State == LineState::Foreseen &&

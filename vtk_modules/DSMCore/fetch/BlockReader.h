@@ -19,16 +19,18 @@ public:
   /// Fills `block` (its `bytes` are those of the directory; aligned for any number) with what the block
   /// is, always the same. May take long. Throws Error, which names the file and the place in it.
   virtual void Read(BlockId id, std::byte* block, std::size_t bytes) const = 0;
-  /// The same where it takes no longer than a copy, since the block was read ahead. Else returns false, and
-  /// has done nothing.
+  /// The same if it takes no longer than a copy, because the block was read ahead. Otherwise returns false,
+  /// and has no effect.
   virtual bool TryRead(BlockId, std::byte*, std::size_t) const { return false; }
-  /// The same where all that it takes is in memory, the system's included: it may have to be unpacked, but nothing
-  /// is waited for. Else, and where reading fails, returns false; what `block` holds then means nothing.
+  /// The same if all required data are in memory, including the system's cache: the block may have to be
+  /// unpacked, but the call does not wait. Otherwise, and if reading fails, returns false; then `block` is
+  /// undefined.
   virtual bool ReadWithoutWaiting(BlockId id, std::byte* block, std::size_t bytes) const
   {
     return this->TryRead(id, block, bytes);
   }
-  /// Whether ReadWithoutWaiting can be expected to succeed where Prefetch was called some time before.
+  /// Returns whether ReadWithoutWaiting is likely to succeed if Prefetch was called some time
+  /// before.
   virtual bool MayPrefetch() const { return false; }
   /// These blocks will probably be read soon: the system may bring what they take to its own cache, in one piece
   /// where they lie near one another. Does not wait for it. Throws nothing.

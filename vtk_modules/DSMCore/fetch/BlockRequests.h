@@ -27,7 +27,7 @@ namespace dsm
 class BlockRequests final : public BlockSource
 {
 public:
-  /// What the store does for it; called within Messenger::Progress.
+  /// Functions of the store that this class calls, within Messenger::Progress.
   struct Callbacks
   {
     /// A published segment by its number, or null.
@@ -40,13 +40,13 @@ public:
     std::function<void(const BlockWant& block, const std::byte* bytes)> Take;
   };
 
-  /// Of replies that have not left, unless SetReplyBytes says otherwise.
+  /// Default limit in bytes for replies that have not been sent (see SetReplyBytes).
   static constexpr std::size_t MostReplyBytes = std::size_t(8) << 20;
 
   BlockRequests(Messenger& messenger, Callbacks callbacks);
 
-  /// What the bytes of replies that have not left may come to; others wait until some have. One at a
-  /// time is always sent. Between frames.
+  /// Sets the limit in bytes for replies that have not been sent; further replies wait. A single
+  /// reply is always sent, whatever its size. Call between frames.
   void SetReplyBytes(std::size_t bytes) { this->ReplyBytes = bytes; }
 
   /// Collective in order: from now on this rank serves others, and may ask.
@@ -66,7 +66,7 @@ public:
   void Answer(const BlockWant& block, const std::byte* bytes);
   /// Often: answers those who wait for other replies to leave. Returns whether it did anything.
   bool AnswerLater();
-  /// Whether anybody asked for blocks that were not in memory. Any thread.
+  /// Returns whether other ranks asked for blocks that were not in memory. Any thread.
   bool HasDebts() const { return this->DebtCount.load() != 0; }
   /// Blocks may have come to memory without Answer: those who asked for them get them. What is still to come is
   /// brought.
@@ -77,7 +77,7 @@ public:
   /// Bytes of blocks, in this frame.
   std::uint64_t GetBytesSent() const { return this->BytesSent; }
   std::uint64_t GetBytesReceived() const { return this->BytesReceived; }
-  /// Of those, what came from this owner.
+  /// Returns the bytes of blocks received from this owner, in this frame.
   std::uint64_t GetBytesFrom(int owner) const
   {
     return this->BytesFrom[static_cast<std::size_t>(owner)];

@@ -26,9 +26,9 @@ struct BlockWant
   }
 };
 
-/// Where blocks come from that are not in this rank's memory: other ranks (BlockRequests), or whatever
-/// can bring a rank's own blocks again after they have left memory. Nothing of it waits: reads begin,
-/// and are asked after. What it throws becomes the frame's error on all ranks.
+/// Source of blocks that are not in this rank's memory: other ranks (BlockRequests), or a reader
+/// that can bring a rank's own blocks again after they have left memory. No function waits: reads
+/// begin, and are polled. An exception becomes the frame's error on all ranks.
 ///
 /// Within frames, on the communication thread. A source may have threads of its own, which call
 /// Messenger::WakeUp when there is something to Poll; they touch nothing of the store.
@@ -53,14 +53,14 @@ public:
   /// Gives up all that is under way: when it returns, nothing of it will be delivered.
   virtual void Abandon() noexcept = 0;
 
-  /// Any thread, for itself: reads a block, of whichever rank, where nothing has to be waited for. Else, and
-  /// where it fails, returns false: what is wrong is told by the read that begins then.
+  /// Any thread, for itself: reads a block of any rank, if the call does not have to wait. Otherwise, and if
+  /// it fails, returns false: the regular read that follows reports the error.
   virtual bool ReadWithoutWaiting(BlockId, std::byte* /*block*/, std::size_t /*bytes*/) const
   {
     return false;
   }
 
-  /// Whether that can be expected to succeed where Prefetch was called some time before. Any thread.
+  /// Returns whether that is likely to succeed if Prefetch was called some time before. Any thread.
   virtual bool MayPrefetch() const { return false; }
   /// Any thread: these blocks will probably be read; the system may bring what they take to its own cache
   /// meanwhile. Does not wait for it. May throw.

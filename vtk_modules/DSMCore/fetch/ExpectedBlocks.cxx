@@ -47,7 +47,8 @@ void ExpectedBlocks::NoteAdded(const BlockSegment& segment) noexcept
   {
     return;
   }
-  // Of several alike the last: a volume's colours go before its isosurface does, and come after it.
+  // Of several equal fingerprints, take the last: a volume's colors are retired before its
+  // isosurface array, and published after it.
   const std::uint64_t fingerprint = segment.GetDirectory().GetFingerprint();
   const auto like = std::find_if(this->Gone.rbegin(), this->Gone.rend(),
     [=](const Retired& retired) { return retired.Fingerprint == fingerprint; });

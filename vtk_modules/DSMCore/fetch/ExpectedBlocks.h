@@ -13,10 +13,10 @@
 namespace dsm
 {
 
-/// What a frame will probably need of blocks that have just left memory: those of a segment that another
-/// like it has taken the place of since the last frame, as a time step does of the one before, and those
-/// whose contents have changed. Each rank knows its own. Under the store's lock; nothing here fails: for
-/// want of memory less is expected.
+/// Blocks that left memory recently and that a frame will probably need: those of a segment that
+/// replaces a similar one since the last frame, as a time step replaces the one before, and those
+/// whose contents have changed. Each rank knows its own. Under the store's lock. Does not fail: it
+/// expects fewer blocks if memory is short.
 class ExpectedBlocks
 {
 public:

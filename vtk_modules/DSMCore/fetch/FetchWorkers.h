@@ -58,7 +58,7 @@ public:
   void BeginFrame();
   /// Workers may come and go afterwards: the counters are those of the frame. Needs no memory.
   void EndFrame();
-  /// Of the frame, or of the last one.
+  /// Returns the counters of each worker, for the current frame or for the last one.
   std::vector<WorkerCounters> GetCounters(bool isInFrame) const;
 
   void WakeAll() const;

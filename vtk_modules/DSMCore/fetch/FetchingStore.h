@@ -16,16 +16,16 @@ namespace dsm
 
 class BlockFetcher;
 
-/// What stores that fetch blocks (ObjectStore, PagedStore) have in common: the course of a frame.
+/// Base of the stores that fetch blocks (ObjectStore, PagedStore): the course of a frame.
 class FetchingStore
 {
 public:
   FetchingStore(const FetchingStore&) = delete;
   FetchingStore& operator=(const FetchingStore&) = delete;
 
-  /// Collective, between frames, when SegmentUpdate has changed those blocks of a segment of which
-  /// `changed` says so: what this rank has cached of them is forgotten, and fetched again when it is
-  /// needed. Throws the same Error on every rank.
+  /// Collective, between frames, after SegmentUpdate has changed the blocks of a segment for which `changed`
+  /// is true: drops this rank's cached copies; they are fetched again on demand. Throws the same Error on
+  /// every rank.
   void Refresh(
     std::string_view what, const BlockSegment& segment, const std::vector<bool>& changed);
 
@@ -55,9 +55,10 @@ public:
   bool MayPrefetch() const;
   /// The worker: how often it has waited for a block in this frame.
   std::uint64_t GetMisses(const FetchWorker& worker) const;
-  /// Of the frame so far; after EndFrame, of the last frame. Communication thread.
+  /// Returns the counters of the frame so far; after EndFrame, those of the last frame.
+  /// Communication thread.
   StoreCounters GetCounters() const;
-  /// Likewise: how many bytes of blocks came from this rank.
+  /// Returns the bytes of blocks received from this owner, in the same frame.
   std::uint64_t GetBytesFrom(int owner) const;
   /// Per worker of the last frame.
   std::vector<WorkerCounters> GetWorkerCounters() const;

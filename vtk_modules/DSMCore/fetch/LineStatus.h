@@ -11,10 +11,10 @@
 namespace dsm
 {
 
-/// Where a block stands, seen from one rank; the same in object and page based memory, for blocks of
-/// this rank that their source can bring again, and for those of others. There is no state for a block
-/// that is being evicted: it is absent, and may be asked for again, while its old memory waits for the
-/// last reader (BlockCache).
+/// State of a block as seen from one rank. Object and page based memory use the same states, for
+/// this rank's blocks that their source can bring again and for blocks of other ranks. No state
+/// exists for a block that is being evicted: it is absent, and may be requested again, while its
+/// old memory waits for the last reader (BlockCache).
 enum class LineState : std::uint8_t
 {
   Absent,   ///< not here, and nobody asked for it
@@ -28,7 +28,7 @@ enum class LineState : std::uint8_t
   Replica   ///< a copy is on this host, until the store that replicates hands the block over
 };
 
-/// What the cache knows of a block's use; CLOCK's reference bit, and a third state.
+/// Use of a block as known to the cache: CLOCK's reference bit, and a third state.
 enum class BlockUse : std::uint8_t
 {
   Idle,      ///< not used since the clock's hand passed
@@ -36,7 +36,7 @@ enum class BlockUse : std::uint8_t
   Prefetched ///< nobody has used it yet; before it is here, too
 };
 
-/// What the way of a miss knows of a block, under the store's lock.
+/// Status of a block for the handling of misses; under the store's lock.
 struct LineStatus
 {
   /// Workers that wait for the block, or were woken and are not on their way with it yet: while there

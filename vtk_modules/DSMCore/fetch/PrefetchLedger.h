@@ -11,11 +11,10 @@
 namespace dsm
 {
 
-/// The blocks that a store fetches before anybody needs them, until somebody does: their share of the
-/// cache is limited, so that what was foreseen wrongly cannot displace what is in use. Whether a block
-/// is still unused only its line knows, which workers mark without a lock; so the ledger looks at its
-/// blocks in turn, a few with every block that is added. It also counts what becomes of them. Under the
-/// store's lock.
+/// Prefetched blocks that no worker has used yet. Their share of the cache is limited, so that wrong
+/// predictions cannot displace blocks in use. Only a block's line knows whether the block is still unused,
+/// and workers mark it without a lock; so the ledger checks its blocks in turn, a few with every block that
+/// is added. It also counts how many were used. Under the store's lock.
 class PrefetchLedger
 {
 public:
@@ -28,8 +27,8 @@ public:
     this->Joined = 0;
   }
 
-  /// Adds a block that takes `footprint` bytes; false when there are as many as there may be.
-  /// `isUnused(block)`: whether it is under way or here, and nobody has used it.
+  /// Adds a block that takes `footprint` bytes; returns false when the limit is reached. `isUnused(block)`:
+  /// whether it is pending or cached, and no worker has used it.
   template <class IsUnused>
   bool TryAdd(const BlockWant& block, std::size_t footprint, const IsUnused& isUnused)
   {
@@ -57,9 +56,9 @@ public:
 
   /// A worker waits for one that is under way.
   void CountJoin() { ++this->Joined; }
-  /// One has come that nobody waits for.
+  /// Counts a block that has arrived and that no worker waits for.
   void CountArrival() { ++this->Arrived; }
-  /// So many were evicted that nobody has used.
+  /// Counts evicted blocks that no worker has used.
   void CountLosses(std::size_t count) { this->Lost += count; }
 
   /// Forgets all blocks; returns how many have been used in the frame. `settle(block)` is called for each
@@ -83,13 +82,13 @@ private:
     std::size_t Footprint;
   };
 
-  /// The cache is divided by it for blocks that nobody has used.
+  /// Divisor of the cache's size for the share of unused blocks.
   static constexpr std::size_t CacheDivisor = 4;
   /// Blocks that are looked at for each one that is added: two, so that room is found again.
   static constexpr int Steps = 2;
 
   std::deque<Entry> Entries;
-  std::size_t Bytes = 0; ///< of the entries
+  std::size_t Bytes = 0; ///< footprints of all entries
   std::size_t Limit = 0;
   std::uint64_t Arrived = 0;
   std::uint64_t Lost = 0;

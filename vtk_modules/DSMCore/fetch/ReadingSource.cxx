@@ -23,7 +23,7 @@ constexpr double LongestPause = 1.0;
 
 } // namespace
 
-/// What the source and the threads share; it lives for as long as a read that was given up.
+/// State that the source and the threads share; it lives as long as an abandoned read.
 struct ReadingSource::Shared
 {
   struct Done

@@ -40,8 +40,8 @@ public:
   void NoteKept(const BlockWant& block) override;
   void Read(BlockId id, std::byte* block, std::size_t bytes) const override;
 
-  /// Between frames: other contents, of blocks of the same sizes, and what errors call them from now on. Whoever
-  /// has blocks of the old ones has to be told (BlockStore::Refresh).
+  /// Between frames: replaces the contents, for blocks of the same sizes, and their name in errors. The
+  /// caller has to drop copies of the old blocks (BlockStore::Refresh).
   void SetReader(std::shared_ptr<const BlockReader> reader, std::string name)
   {
     this->Reader = std::move(reader);

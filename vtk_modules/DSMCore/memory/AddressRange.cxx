@@ -52,8 +52,7 @@ AddressRange::AddressRange(std::size_t bytes)
   {
     throw Error(DescribeRefusal(this->Bytes, errno));
   }
-  // Where the application has locked all future memory (mlockall), these pages must stay free to
-  // come and go.
+  // If the application has locked all future memory (mlockall), these pages must stay evictable.
   munlock(data, this->Bytes);
   this->Data = static_cast<std::byte*>(data);
 }

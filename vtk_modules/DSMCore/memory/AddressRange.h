@@ -7,8 +7,8 @@
 namespace dsm
 {
 
-/// Addresses that are set aside: they take no memory, may not be touched, and are nobody else's.
-/// What is mapped into them goes with them.
+/// Reserved range of addresses. It takes no memory, may not be touched, and nothing else is mapped
+/// there. Memory that is mapped into the range is unmapped with it.
 class AddressRange
 {
 public:

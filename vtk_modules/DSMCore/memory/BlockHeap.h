@@ -15,7 +15,7 @@ namespace dsm
 {
 
 /// Memory for blocks that come and go one by one: cut from a few large arenas, so that a block costs no call
-/// of the system, and lies in large pages where there are any. Neighbours that are free become one
+/// of the system, and lies in large pages where there are any. Neighbors that are free become one
 /// extent again, so blocks of all sizes share the memory. An arena without a block goes back to the system.
 ///
 /// Any thread.
@@ -36,7 +36,7 @@ public:
   /// Gives the pages of all that is free back to the system.
   void ReturnFreePages() noexcept;
 
-  /// Of the blocks that are allocated, and of the arenas that they are in.
+  /// Returns the bytes of the allocated blocks; GetArenaBytes those of the arenas that hold them.
   std::size_t GetBlockBytes() const;
   std::size_t GetArenaBytes() const;
 

@@ -19,8 +19,8 @@ struct FreeBlock
   }
 };
 
-/// Memory of its own for one block, aligned to BlockAlignment. Whoever makes a block allocates it, and
-/// hands it on to whoever keeps the block: no bytes are copied.
+/// Owned memory of one block, aligned to BlockAlignment. The producer of a block allocates it, and passes it
+/// to the keeper of the block: no bytes are copied.
 using BlockMemory = std::unique_ptr<std::byte, FreeBlock>;
 
 /// Its bytes are not set. Any thread. Throws std::bad_alloc.

@@ -9,8 +9,8 @@
 namespace dsm
 {
 
-/// What `ulimit -f` lets files of this process have, those in memory, too: to grow beyond it would end the process by a
-/// signal. Any thread.
+/// Returns the largest size in bytes that `ulimit -f` allows for files of this process, files in
+/// memory included. A file that grows beyond it ends the process by a signal. Any thread.
 inline std::uint64_t GetMostFileBytes()
 {
   rlimit limit{};

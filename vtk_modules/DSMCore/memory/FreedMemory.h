@@ -12,8 +12,8 @@ class FreedMemory
 public:
   /// Gives it back to the system; takes milliseconds.
   static void Return();
-  /// The same, and once more a second later, on a thread of its own: when data go, those who showed them let go of
-  /// what they had beside them after us, and nobody calls us then.
+  /// The same, and again a second later on a separate thread: when data are removed, their users release
+  /// their own memory after this code, and nothing calls it then.
   static void ReturnNowAndSoon();
 };
 

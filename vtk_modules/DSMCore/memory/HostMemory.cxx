@@ -37,7 +37,8 @@ std::uint64_t ReadNamed(const std::string& path, const std::string& wanted)
   return 0;
 }
 
-/// What a control group's limit leaves; files that it has read do not count, they can be dropped.
+/// Returns the bytes left below a control group's limit. Cached files do not count, because the
+/// system can drop them.
 std::uint64_t GetLeft(
   const std::string& folder, const char* limitFile, const char* usageFile, const char* cacheName)
 {

@@ -8,10 +8,10 @@
 namespace dsm
 {
 
-/// What the host, and the control group that the process is in, can still give without taking it
-/// from running programs, swap of the host included; the largest number where the system does not
-/// tell. Linux grants more than it has and later ends a process that uses it, so whoever wants to
-/// fail with a message must ask before.
+/// Returns the bytes that the host, and the control group of the process, can still provide without
+/// taking memory from running programs; the host's swap is included. Returns the largest number if
+/// the system does not report it. Linux grants more memory than it has and later kills a process
+/// that uses it, so code that must fail with a message has to ask first.
 std::uint64_t GetAvailableHostMemory();
 
 /// "12 MiB", rounded up.

@@ -21,10 +21,10 @@ namespace dsm
 namespace
 {
 
-/// Of the processors that we know; a wrong guess costs speed only.
+/// Size of a large page on common processors; a wrong guess costs speed only.
 constexpr std::size_t LargePage = std::size_t(2) << 20;
 
-// What older kernel headers lack.
+// Older kernel headers do not define it.
 #ifdef MADV_COLLAPSE
 constexpr int Collapse = MADV_COLLAPSE;
 #else

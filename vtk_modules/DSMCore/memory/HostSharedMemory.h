@@ -18,7 +18,7 @@ namespace dsm
 class HostSharedMemory
 {
 public:
-  /// What another rank needs to find the memory; a plain value, to be sent.
+  /// Data that another rank needs to find the memory; a plain value, for messages.
   struct Ticket
   {
     std::uint64_t Process = 0;
@@ -56,7 +56,7 @@ public:
   /// Aligned to BlockAlignment; null only if there is none.
   std::byte* GetData() const { return this->Shared ? this->Shared : this->Own.GetData(); }
   Ticket GetTicket() const { return this->Own.GetData() ? Ticket{} : this->Name; }
-  /// Nobody can map it any more; who has, keeps it.
+  /// Prevents further mappings; existing ones stay.
   void CloseDoor();
 
   /// Nothing when the memory cannot be mapped here: another host, another container, a limit.

@@ -7,10 +7,10 @@
 namespace dsm
 {
 
-/// While it lives, no other process of this user on this host has one, and no other thread of this process: ranks that ask
-/// how much memory is left, and take some of it, do so one after another. Any thread. To be held for a short time only: who
-/// has waited for so long goes on without, such as for a process that is stopped; so does everybody where no file
-/// /dev/shm/dsm-UID.lock can be had that only this user can open.
+/// Lock that one thread of one process of this user on this host holds at a time, so that ranks query and
+/// take memory one after another. Any thread. Hold it for a short time only: a process that has waited too
+/// long continues without it, for example when the holder is stopped. All processes continue without it if
+/// /dev/shm/dsm-UID.lock cannot be opened by this user exclusively.
 class HostTurn
 {
 public:

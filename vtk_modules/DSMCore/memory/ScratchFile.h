@@ -9,8 +9,8 @@
 namespace dsm
 {
 
-/// Room on a disk for what does not fit the memory. The file has no name, so it goes with the process,
-/// whatever happens, and nobody else opens it.
+/// Space on a disk for blocks that do not fit the memory. The file has no name, so it disappears with the
+/// process in any case, and no other process opens it.
 class ScratchFile
 {
 public:

@@ -31,7 +31,7 @@ public:
     std::size_t Footprint = 0;
     Time Placed;
     bool IsSpared = false;  ///< the hand has passed it once, prefetched and unused
-    bool WasUnused = false; ///< of what was evicted: prefetched, and never used
+    bool WasUnused = false; ///< for an evicted block: prefetched, and never used
   };
 
   void SetCapacity(std::size_t bytes) { this->Capacity = bytes; }
@@ -46,17 +46,17 @@ public:
   bool TryReserve(std::size_t footprint);
   /// The room of a block that will not come.
   void Release(std::size_t footprint) { this->Used -= footprint; }
-  /// What a block that is under way needs, so that Insert will not fail. Throws std::bad_alloc.
+  /// Allocates a slot for a pending block, so that Insert will not fail. Throws std::bad_alloc.
   void PrepareSlot();
   /// Puts a block into the room that was set aside for it.
   void Insert(const Slot& slot);
 
-  /// Takes a block out that nobody waits for, and that was placed at `before` or earlier; false when
+  /// Takes out a block that no worker waits for, and that was placed at `before` or earlier; returns false if
   /// there is none.
   bool TryEvict(Time before, Slot& evicted);
   std::vector<BlockId> List(const PagedStore::Segment& segment) const;
-  /// Takes out all blocks of a segment; `visit` is called for each.
-  /// `which` (null: all): only blocks of which it says so.
+  /// Takes out all blocks of a segment; `visit` is called for each. `which` (null: all): only blocks for
+  /// which it is true.
   void Forget(const PagedStore::Segment& segment, const std::function<void(const Slot&)>& visit,
     const std::vector<bool>* which = nullptr);
 

@@ -27,7 +27,7 @@ namespace dsm
 namespace
 {
 
-// What older kernel headers lack.
+// Older kernel headers do not define it.
 #ifdef UFFD_USER_MODE_ONLY
 constexpr int UserModeOnly = UFFD_USER_MODE_ONLY;
 #else

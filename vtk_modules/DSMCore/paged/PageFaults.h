@@ -45,12 +45,12 @@ public:
 
   /// Takes over whole pages of an AddressRange; all are absent. Throws Error, std::bad_alloc.
   void Attach(std::byte* begin, std::size_t bytes);
-  /// The pages may no longer be touched. Exactly what was attached; nobody waits there. Does nothing
-  /// in a process made by fork.
+  /// Detaches exactly a range that was attached. Its pages may no longer be touched, and no thread may wait
+  /// there. Does nothing in a process made by fork.
   void Detach(std::byte* begin) noexcept;
 
-  /// Absent pages become these `count` bytes, and zeros up to the end of the last page. Threads that
-  /// wait for them go on. Throws std::bad_alloc, Error; the pages are absent then.
+  /// Fills absent pages with these `count` bytes, and with zeros up to the end of the last page. Threads that
+  /// wait for them continue. Throws std::bad_alloc or Error; then the pages are absent.
   void Place(std::byte* begin, const std::byte* bytes, std::size_t count);
   /// Absent pages become zeros, at the expense of no memory. Throws as Place.
   void PlaceZeros(std::byte* begin, std::size_t bytes);
@@ -73,7 +73,7 @@ private:
   int Descriptor = -1;
   int StopDescriptor = -1; ///< eventfd
   std::map<std::byte*, std::size_t> Ranges;
-  std::vector<std::byte> LastPage; ///< of a block that does not end at a page's end
+  std::vector<std::byte> LastPage; ///< buffer for a block's partly filled last page
 };
 
 } // namespace dsm

@@ -7,9 +7,10 @@
 namespace dsm
 {
 
-/// What a worker reads of a block before it touches its pages, in the low bits of the block's entry
-/// (which are free, an address being a multiple of the page size). A hint: to wait without a fault,
-/// and to tell the clock which blocks are in use. Pages may go at any moment, and then fault.
+/// Hint that a worker reads before it touches the pages of a block. It occupies the low bits of the
+/// block's entry, which are free because an address is a multiple of the page size. With it a
+/// worker waits without a fault, and the clock knows which blocks are in use. Pages may be evicted
+/// at any moment, and then fault.
 enum class PageHint : std::uintptr_t
 {
   Absent = 0,

@@ -12,10 +12,10 @@
 namespace dsm
 {
 
-/// Where each block of a segment lies in the segment's range of addresses, every one at a multiple
-/// of the page size, without gaps. The blocks of one owner lie together, in ascending order of id:
-/// so what a rank owns is one run of memory (large pages, few mappings), and what it does not own
-/// two.
+/// Offset of each block of a segment in the segment's address range. Every offset is a multiple of
+/// the page size; there are no gaps. The blocks of one owner are contiguous, in ascending order of
+/// id: a rank's own blocks are one run of memory (large pages, few mappings), and the other ranks'
+/// blocks are two.
 class PageLayout
 {
 public:
@@ -24,7 +24,7 @@ public:
   /// exceeds 64 bits.
   PageLayout(const BlockDirectory& directory, int owners, std::size_t pageBytes);
 
-  /// Of the layout's own memory, for each block.
+  /// Memory of the layout itself, in bytes per block.
   static constexpr std::size_t BytesPerBlock = sizeof(std::uint64_t) + sizeof(BlockId);
 
   std::uint64_t GetOffset(BlockId id) const { return this->Offsets[id]; }
@@ -36,9 +36,9 @@ public:
       this->PageBytes;
   }
 
-  /// Of the whole range.
+  /// Returns the size of the whole range in bytes.
   std::uint64_t GetBytes() const { return this->ShareBegins.back(); }
-  /// Where an owner's blocks begin and end.
+  /// Offsets at which an owner's blocks begin and end.
   std::uint64_t GetShareBegin(int owner) const { return this->ShareBegins[owner]; }
   std::uint64_t GetShareEnd(int owner) const { return this->ShareBegins[owner + 1]; }
 

@@ -16,7 +16,7 @@ namespace dsm
 namespace
 {
 
-/// Of the processors that we know. What a rank owns begins at a multiple of it.
+/// Size of a large page on common processors. A rank's own blocks begin at a multiple of it.
 constexpr std::size_t LargePageBytes = std::size_t(2) << 20;
 
 } // namespace

@@ -63,7 +63,8 @@ public:
     int Workers = 1;
     /// Never look whether a block is here before it is read.
     bool PureFaulting = false;
-    /// Who of them runs: a worker gives its slot to others while it waits. Null: all run.
+    /// Limits the number of workers that run: a worker gives its slot to others while it waits.
+    /// Null: no limit.
     std::shared_ptr<WorkerSlots> Slots = nullptr;
     /// See Prefetch.
     bool Prefetch = true;
@@ -146,7 +147,7 @@ public:
   void Unseal() override { this->Protect(true); }
   void Reseal() override { this->Protect(false); }
 
-  /// What finding the blocks takes of every rank's memory.
+  /// Returns the bytes that the tables for finding the blocks take on every rank.
   static std::uint64_t CountTableBytes(const BlockDirectory& directory)
   {
     constexpr std::size_t entry = sizeof(std::atomic<std::uintptr_t>) + sizeof(LineStatus);
@@ -157,14 +158,14 @@ private:
   friend class PageCache;
   friend class PagedStore;
 
-  /// Whether the blocks that this rank owns may be written from now on. Throws std::bad_alloc.
+  /// Makes the blocks that this rank owns writable or read only. Throws std::bad_alloc.
   void Protect(bool writable);
   std::byte* GetAddress(BlockId id) const { return this->Base + this->Layout.GetOffset(id); }
   PageHint GetHint(BlockId id) const;
   void SetHint(BlockId id, PageHint hint) const;
   /// A worker uses a block that is idle or was prefetched; false when it is neither.
   bool TryMarkRecent(BlockId id) const;
-  /// Whether a block has nothing to wait for: owned, or of no bytes.
+  /// Returns whether a worker never waits for the block: this rank owns it, or it is empty.
   bool IsAlwaysHere(BlockId id) const;
   /// Sets all hints by where the blocks stand. With `pure`, they say that all is here.
   void ResetHints(bool pure);
@@ -175,7 +176,7 @@ private:
   {
     return !this->Source && this->GetDirectory().GetOwner(id) == this->Rank;
   }
-  /// Where the memory of the blocks that it has for good begins and ends.
+  /// Offsets at which the blocks that this rank keeps permanently begin and end.
   std::uint64_t GetOwnedBegin() const
   {
     return this->Source ? 0 : this->Layout.GetShareBegin(this->Rank);
@@ -184,7 +185,8 @@ private:
   {
     return this->Source ? 0 : this->Layout.GetShareEnd(this->Rank);
   }
-  /// Whether the address is in a page of a block that comes and goes.
+  /// Returns whether the address is in a page of a block that may be evicted, and sets `id` to that
+  /// block.
   bool FindRemote(const std::byte* address, BlockId& id) const;
   bool Contains(const std::byte* address) const;
   /// Those of others can no longer be read.

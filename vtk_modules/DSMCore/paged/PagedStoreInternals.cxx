@@ -383,7 +383,7 @@ void PagedStore::Internals::Closed()
   {
     return;
   }
-  this->EndService(); // what an exception may have left
+  this->EndService(); // work that an exception may have left
   if (this->Phase == FramePhase::Cancelled)
   {
     for (const Stopped& stopped : this->Waiting)

@@ -137,7 +137,7 @@ private:
   int CommunicationThread = 0;
   PageCache Cache;
   std::vector<Stopped> Waiting;
-  /// Of the listening thread; the communication thread fails the frame for it.
+  /// Exception of the listening thread; the communication thread fails the frame with it.
   std::exception_ptr ListenersFailure;
   std::atomic<bool> HasListenerFailed{ false };
   std::condition_variable HasClosed; ///< or was cancelled: Phase is Open no more

@@ -15,7 +15,7 @@ namespace dsm
 class BlockDirectory
 {
 public:
-  /// `indexBytes`: what whoever publishes keeps on every rank besides, to find its way to the blocks.
+  /// `indexBytes`: bytes of the publisher's own index of the blocks, on every rank.
   BlockDirectory(
     std::vector<std::uint32_t> bytes, BlockAssigner assigner, std::uint64_t indexBytes = 0);
 
@@ -31,16 +31,16 @@ public:
   bool IsOnOwnersDisk() const { return this->OnOwnersDisk; }
   /// The largest block; 0 when there is none.
   std::uint32_t GetLargest() const { return this->Largest; }
-  /// What is in the owner's memory for good: the sum over its blocks, each rounded up to a multiple of
-  /// `unit`.
+  /// Returns the bytes that stay in the owner's memory permanently: the sum over its blocks, each
+  /// rounded up to a multiple of `unit`.
   std::uint64_t GetResidentBytes(int owner, std::size_t unit = BlockAlignment) const;
   std::uint64_t GetTotalBytes() const;
-  /// Whoever publishes keeps so much more on every rank.
+  /// Adds to the bytes that the publisher keeps on every rank.
   void AddIndexBytes(std::uint64_t bytes) { this->IndexBytes += bytes; }
   /// Its blocks are read through a cache that all such sources share: BlockStore::Settings::SourceCacheBytes.
   void SetReadThroughCache() { this->ReadThroughCache = true; }
   bool IsReadThroughCache() const { return this->ReadThroughCache; }
-  /// What the directory, and the index of those who published, take on every rank.
+  /// Returns the bytes of the directory and of the publishers' indices, on every rank.
   std::uint64_t GetOwnBytes() const
   {
     return this->GetCount() * sizeof(std::uint32_t) + this->IndexBytes;
@@ -50,7 +50,7 @@ public:
 
 private:
   std::vector<std::uint32_t> Bytes;
-  std::uint32_t Largest; ///< of these: it is asked for with every brick that is prefetched
+  std::uint32_t Largest; ///< largest block, in bytes: needed for every brick that is prefetched
   BlockAssigner Assigner;
   std::uint64_t IndexBytes = 0;
   bool FromSource = false;

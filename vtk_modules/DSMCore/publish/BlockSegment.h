@@ -36,15 +36,15 @@ public:
   void CountUpdate() { ++this->Version; }
   const BlockDirectory& GetDirectory() const { return this->Directory; }
 
-  /// Visits the blocks that this rank owns, in ascending order of id. Those that are not in memory for good
-  /// are read for it one by one, which may take long, and may throw.
+  /// Visits the blocks that this rank owns, in ascending order of id. Blocks that are not permanently in
+  /// memory are read for it one by one, which may take long, and may throw.
   using Visit = std::function<void(BlockId, const std::byte*, std::size_t)>;
   virtual void ForEachResident(const Visit& visit) const = 0;
   virtual std::uint64_t GetResidentBytes() const = 0;
 
-  // -- For whoever publishes it (SegmentPublisher) --
+  // -- For the publisher (SegmentPublisher) --
 
-  /// Where a block lies that this rank owns; zeros, until somebody fills it.
+  /// Returns the address of a block that this rank owns. The block is zero until it is filled.
   virtual std::byte* GetOwned(BlockId id) const = 0;
   /// Collective, when all ranks have set out their memory: they may look at one another's. What one
   /// of them lacks for it, Seal says.

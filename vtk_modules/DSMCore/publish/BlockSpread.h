@@ -19,7 +19,7 @@ namespace dsm
 class BlockSpread
 {
 public:
-  /// Where a block lies that this rank owns, or holds a copy of.
+  /// Returns the address of a block that this rank owns, or holds a copy of.
   using Source = FunctionRef<const std::byte*(BlockId)>;
   using Destination = FunctionRef<std::byte*(BlockId)>;
 

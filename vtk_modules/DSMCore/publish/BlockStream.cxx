@@ -87,8 +87,8 @@ bool BlockStream::TellEnd()
   return true;
 }
 
-/// The own messages must have left, too: whoever waits for them gets no help from this rank while it
-/// goes about something else.
+/// This rank's messages must have been sent, too: ranks that wait for them get no help from this
+/// rank while it does something else.
 bool BlockStream::IsOver() const
 {
   return this->Finished == this->Messages.GetSize() &&

@@ -13,8 +13,8 @@
 namespace dsm
 {
 
-/// What a rank contributes to each block of a segment, in a few bytes a block: whoever publishes such
-/// blocks again learns from it which of them its part has changed of.
+/// Digests of this rank's contributions to the blocks of a segment, a few bytes for each block.
+/// When the blocks are published again, they show which contributions have changed.
 class FragmentDigests
 {
 public:
@@ -27,12 +27,13 @@ public:
   BlockId GetCount() const { return this->Digests.size(); }
   /// The order of a block's fragments counts. One of a block that there is not is left out.
   void Add(const Fragment& fragment);
-  /// Whether the two are of the same fragments of a block. Both have as many blocks.
+  /// Returns whether both have the same fragments of a block. Both must have the same number of
+  /// blocks.
   bool IsSame(const FragmentDigests& other, BlockId id) const
   {
     return this->Digests[id] == other.Digests[id];
   }
-  /// What they take of a rank's memory: one, and another while both are compared.
+  /// Returns the bytes on a rank, for this object and for another one that it is compared with.
   static std::uint64_t CountBytes(BlockId count) { return 2 * count * sizeof(ByteDigest); }
 
 private:

@@ -21,8 +21,8 @@ public:
   /// A fragment of a block that this rank owns; may throw.
   using Absorb = FunctionRef<void(BlockId id, const std::byte* bytes, std::size_t count)>;
 
-  /// Collective; begins a session. `progress` (may be empty) is told this rank's part done, below 1.
-  /// Returns what has gone wrong on this rank; it is for the caller to let the ranks agree.
+  /// Collective; begins a session. `progress` (may be empty) receives this rank's completed part, below 1.
+  /// Returns this rank's failure; the caller has to let the ranks agree.
   static FirstFailure Run(Messenger& messenger, const BlockDirectory& directory,
     FragmentSource& source, Absorb absorb, FunctionRef<void(double)> progress);
 };

@@ -78,7 +78,8 @@ std::shared_ptr<const HostGroups> HostGroups::Find(Messenger& messenger, bool wa
     {
       std::vector<int> leaders(size);
       std::iota(leaders.begin(), leaders.end(), 0);
-      // Of a host, those who offered memory; one pair that fails undoes the host.
+      // Group the ranks of a host that offered memory; one pair that fails dissolves the host's
+      // group.
       std::vector<bool> whole(size, true); // by lowest rank of the host
       const auto areMates = [&](std::size_t a, std::size_t b)
       { return hosts[a] == hosts[b] && tickets[a].File >= 0 && tickets[b].File >= 0; };

@@ -40,10 +40,10 @@ public:
   int GetGroupCount() const { return static_cast<int>(this->Groups.size()); }
   bool AreTogether(int a, int b) const { return this->GetGroup(a) == this->GetGroup(b); }
 
-  /// Who in a group holds a block when all groups have all blocks: its owner, or, where that is in
-  /// another group, the members in turn.
+  /// Returns the member of a group that holds a block if all groups hold all blocks: the owner if
+  /// it is in the group, otherwise the members in turn.
   int GetHolder(BlockId id, int owner, int group) const;
-  /// Whose turn that is, in a group of so many members.
+  /// Returns the index of that member, in a group of so many members.
   std::size_t GetTurn(BlockId id, std::size_t members) const
   {
     // Divided by the number of ranks first: else one owner's blocks would all go to one member.

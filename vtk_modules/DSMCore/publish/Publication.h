@@ -10,7 +10,7 @@
 namespace dsm
 {
 
-/// What this rank contributes to one block; what the bytes mean is between source and sink.
+/// Contribution of this rank to one block. Source and sink define the meaning of the bytes.
 struct Fragment
 {
   BlockId Block = 0;

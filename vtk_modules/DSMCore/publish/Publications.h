@@ -12,9 +12,9 @@
 namespace dsm
 {
 
-/// What the ranks of a group have published, by what it was made of: who would publish the same takes
-/// what is there, so that two views of a dataset share its bricks. Keeps nothing alive. Communication
-/// thread only.
+/// Publications of a group's ranks, by the data that they were made of. A publisher of the same
+/// data shares the existing publication, so that two views of a dataset share its bricks. Keeps
+/// nothing alive. Communication thread only.
 class Publications
 {
 public:

@@ -22,17 +22,17 @@ namespace dsm
 class SegmentPublisher
 {
 public:
-  /// What the store does on this rank; each may throw, then all ranks fail. What it refers to outlives
-  /// the publisher.
+  /// Functions of the store on this rank. Each may throw; then all ranks fail. The objects that
+  /// they refer to must outlive the publisher.
   struct Steps
   {
-    /// What the segment takes of this rank's memory.
+    /// Returns the bytes of this rank's memory that the segment takes.
     FunctionRef<std::uint64_t(const BlockDirectory& directory)> CountBytes;
     /// Sets out zeroed memory for the blocks that this rank owns. The number names the segment, on
     /// all ranks, among those of all stores that share the messenger.
     FunctionRef<std::shared_ptr<BlockSegment>(std::uint32_t number, BlockDirectory&& directory)>
       Create;
-    /// What the user can do when memory does not suffice: a sentence.
+    /// Advice for the user if memory does not suffice: a sentence.
     const char* Remedy = "Use more hosts or smaller data.";
   };
 

@@ -13,20 +13,20 @@
 namespace dsm
 {
 
-/// The collective steps by which some of a segment's blocks get other contents, where their owners have
-/// them in memory: nobody else has a block of it in use. Communication thread, between frames.
+/// Collective steps that change some of a segment's blocks in their owners' memory. No other user may have a
+/// block of the segment in use. Communication thread, between frames.
 namespace SegmentUpdate
 {
-/// Collective. `chosen`: for each block, whether it is made anew, out of all ranks' fragments, as when it
-/// was published; the same on every rank. `source` yields no fragments of others. Returns which blocks
-/// are not as they were, which is known by their hashes on their owners; the same on every rank. Copies
-/// that other ranks have of those are not touched. Throws the same Error on every rank when any rank
-/// fails; then the chosen blocks have any contents, and the segment is of no use any more.
+/// Collective. `chosen`: for each block, whether it is built again out of all ranks' fragments, as when it
+/// was published; the same on every rank. `source` yields no fragments of other blocks. Returns the blocks
+/// that differ from before, determined by hashes on their owners; the same on every rank. Copies of these on
+/// other ranks are not touched. Throws the same Error on every rank when any rank fails; then the contents of
+/// the chosen blocks are undefined, and the segment must not be used any more.
 std::vector<bool> Run(Messenger& messenger, std::string_view what, BlockSegment& segment,
   const std::vector<bool>& chosen, FragmentSource& source, FragmentSink& sink,
   FunctionRef<void(double)> progress);
 
-/// Collective: by block, whether any rank says so. `mine` may throw; then all do.
+/// Collective: returns for each block whether it is true on any rank. `mine` may throw; then all ranks throw.
 std::vector<bool> GatherAny(
   Messenger& messenger, std::string_view what, FunctionRef<std::vector<bool>()> mine);
 }

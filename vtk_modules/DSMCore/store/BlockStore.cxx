@@ -384,8 +384,8 @@ std::shared_ptr<BlockSegment> BlockStore::Publish(std::string_view what, BlockDi
   const auto publish = [&](auto& store)
   { return store.Publish(what, std::move(directory), source, sink, progress); };
   std::shared_ptr<BlockSegment> segment;
-  // What Automatic wants to replicate is published object based first: should there be no memory for
-  // the copies, nothing is lost.
+  // If Automatic wants to replicate the data, they are published object based first. Then nothing
+  // is lost if there is no memory for the copies.
   if (this->Current.Organization == MemoryOrganization::Automatic &&
     decision.Chosen == MemoryOrganization::Replicated)
   {

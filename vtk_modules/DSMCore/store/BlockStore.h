@@ -27,11 +27,11 @@
 namespace dsm
 {
 
-/// Keeps blocks in the organisation that the user chose, within the memory that the user gave; the
-/// one interface to the three stores for all that publish. Whoever reads blocks does so through the
-/// store that has them, which Visit hands over: one switch a frame, none on an access.
+/// Keeps blocks in the organization and within the memory that the user has chosen. It is the one interface
+/// to the three stores for all publishers. Readers of blocks use the store that has them, which Visit
+/// provides: one switch in each frame, none on an access.
 ///
-/// All that is published is in one organisation at a time. It changes between frames, when settings
+/// All that is published is in one organization at a time. It changes between frames, when settings
 /// or data do: segments pass from the object based to the replicated store and back as they are.
 /// Communication thread only.
 class BlockStore
@@ -41,13 +41,14 @@ public:
   struct Settings
   {
     MemoryOrganization Organization = MemoryOrganization::Automatic;
-    /// What a rank may take for its own blocks, copies and cache; 0: half of what its host has left
-    /// when first asked, shared out between the ranks there, and more when its own blocks need it.
+    /// Memory limit of a rank in bytes, for its own blocks, copies and cache. 0: half of the memory
+    /// that the host has left at the first publication, divided among its ranks, and more if a
+    /// rank's own blocks need it.
     std::uint64_t MemoryBytes = 0;
     /// The most that the cache may take of it, unless sources bring blocks: then it is the resident set, too.
     std::size_t CacheBytes = SIZE_MAX;
-    /// What of it sources of blocks keep in a cache of their own, all together, while there are any such
-    /// (BlockDirectory::SetReadThroughCache).
+    /// Part of MemoryBytes that sources of blocks use for a cache of their own, for all such
+    /// sources together, while there are any (BlockDirectory::SetReadThroughCache).
     std::uint64_t SourceCacheBytes = 0;
     /// Number of workers that trace at a time.
     int Workers = 1;
@@ -71,20 +72,21 @@ public:
   BlockStore(const BlockStore&) = delete;
   BlockStore& operator=(const BlockStore&) = delete;
 
-  /// Between frames; local: another organisation or budget has its effect with the next Settle or
-  /// Publish. Throws Error for less than one worker, and when the page based organisation is to be
+  /// Between frames; local: another organization or budget has its effect with the next Settle or
+  /// Publish. Throws Error for less than one worker, and when the page based organization is to be
   /// entered or left while anything is published: retire it, and publish it again.
   void SetSettings(const Settings& settings);
   const Settings& GetSettings() const { return this->Current; }
 
-  /// Whether there is nothing for Settle to do here; when a rank has something, all must settle.
+  /// Returns whether Settle has nothing to do on this rank. If any rank has something to do, all
+  /// ranks must settle.
   bool IsSettled() const { return this->Settled; }
-  /// Collective, between frames: chooses anew, where Automatic, and rearranges what is published.
-  /// Throws the same Error on every rank when the memory does not suffice; then nothing has changed,
+  /// Collective, between frames: chooses the organization again, if Automatic, and rearranges the published
+  /// blocks. Throws the same Error on every rank when the memory does not suffice; then nothing has changed,
   /// and the next Settle tries again.
   void Settle();
 
-  /// Where the blocks of a publication are kept.
+  /// Storage of the blocks of a publication.
   enum class Place
   {
     Memory,
@@ -105,28 +107,29 @@ public:
   std::shared_ptr<BlockSegment> Publish(
     std::string_view what, BlockDirectory directory, std::shared_ptr<BlockSource> source);
 
-  /// Local, between frames: whether Update may be called. Not of blocks that leave memory, and not while there
-  /// is something for Settle to do. All ranks must say so.
+  /// Local, between frames: returns whether Update may be called. False for blocks that leave memory, and
+  /// while Settle has something to do. All ranks must agree.
   bool MayUpdate(const std::shared_ptr<BlockSegment>& segment) const;
-  /// Collective, between frames. Other contents for the blocks of which `chosen` says so (the same on every rank),
-  /// out of the fragments of `source`, which has none of others. What other ranks have of blocks that turn out to be
-  /// as they were stays.
-  /// Throws the same Error on every rank; then the segment is of no use any more, and must be retired.
+  /// Collective, between frames. Changes the blocks for which `chosen` is true (the same on every rank), from
+  /// the fragments of `source`, which has none of other blocks. Other ranks keep their copies of blocks that
+  /// turn out to be equal. Throws the same Error on every rank; then the segment must not be used any more,
+  /// and must be retired.
   void Update(std::string_view what, const std::shared_ptr<BlockSegment>& segment,
     const std::vector<bool>& chosen, FragmentSource& source, FragmentSink& sink,
     FunctionRef<void(double)> progress = {});
 
   /// Local, between frames: the same of Refresh.
   bool MayRefresh(const std::shared_ptr<BlockSegment>& segment) const;
-  /// Collective, between frames. The source of these blocks brings other contents from now on, for those of which
-  /// `changed` says so (the same on every rank): what ranks have of them leaves memory. Throws as Update does.
+  /// Collective, between frames. The source of these blocks has other contents from now on, for the blocks
+  /// for which `changed` is true (the same on every rank): the ranks drop them from memory. Throws as Update
+  /// does.
   void Refresh(std::string_view what, const std::shared_ptr<BlockSegment>& segment,
     const std::vector<bool>& changed);
 
   /// Collective in order (no message is exchanged), between frames.
   void Retire(const std::shared_ptr<BlockSegment>& segment);
 
-  /// The organisation in force: never Automatic. Replicated, too, where each rank has the bricks that it
+  /// The organization in force: never Automatic. Replicated, too, where each rank has the bricks that it
   /// needs read for itself.
   MemoryOrganization GetOrganization() const
   {
@@ -136,7 +139,7 @@ public:
   bool LacksMemory() const { return this->IsShort; }
   /// A sentence for the user: what is in force, and why.
   const std::string& GetExplanation() const { return this->Explanation; }
-  /// What this rank may take; 0 before anything was published.
+  /// Returns the memory limit of this rank in bytes; 0 before the first publication.
   std::uint64_t GetMemoryBytes() const { return this->Budget.Bytes; }
 
   /// Calls `use` with the ObjectStore, PagedStore or ReplicatedStore that has all segments.
@@ -154,7 +157,7 @@ public:
     }
   }
 
-  /// Of those that trace at a time. To be taken while a worker traces.
+  /// Slots for the workers that trace at the same time. A worker takes one while it traces.
   WorkerSlots& GetSlots() { return *this->Slots; }
 
   /// See ObjectStore; of the store in force.
@@ -164,7 +167,7 @@ public:
   std::vector<WorkerCounters> GetWorkerCounters();
 
 private:
-  /// What the ranks tell one another before they decide.
+  /// Data that the ranks exchange before they decide.
   struct Stance
   {
     MemoryPlan::Budget Budget;
@@ -172,13 +175,13 @@ private:
     std::uint64_t LacksHostMemory; ///< 1: what comes next is more than the host has left
   };
 
-  /// How things are to be kept, agreed by all ranks, and what the user is told.
+  /// Organization that all ranks have agreed on, and its explanation for the user.
   struct Decision
   {
     MemoryOrganization Chosen = MemoryOrganization::ObjectBased;
-    MemoryPlan::Room Room; ///< of this rank
+    MemoryPlan::Room Room; ///< room on this rank
     std::string Explanation;
-    bool IsShort = false; ///< of memory
+    bool IsShort = false; ///< true if memory is short
   };
 
   /// Collective: for what is published and, unless null, for what is to be, which may then be added
@@ -191,7 +194,7 @@ private:
     FragmentSource& source, FragmentSink& sink, FunctionRef<void(double)> progress);
   MemoryPlan MakePlan(const std::vector<Stance>& stances, const BlockDirectory* next) const;
   void FindBudget();
-  /// Of the stores that fetch.
+  /// Returns the number of workers of the stores that fetch.
   int CountWorkers() const;
   bool IsAnyFromSource() const;
   /// Collective: moves segments between the stores, or makes up its mind otherwise where it may.

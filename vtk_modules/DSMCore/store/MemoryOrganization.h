@@ -5,7 +5,7 @@
 namespace dsm
 {
 
-/// Where the blocks are that a rank does not own, and how they are reached.
+/// How a rank accesses blocks owned by other ranks.
 enum class MemoryOrganization
 {
   Automatic,   ///< Replicated where everything fits, else ObjectBased

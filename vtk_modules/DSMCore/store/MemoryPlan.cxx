@@ -108,7 +108,7 @@ void MemoryPlan::CountCopies(const HostGroups& groups)
       }
       const std::vector<int>& members = groups.GetMembers(owner);
       const int instead = members[groups.GetTurn(id, members.size())];
-      this->Copies[static_cast<std::size_t>(instead)] -= bytes; // what is added below is not less
+      this->Copies[static_cast<std::size_t>(instead)] -= bytes; // at least as much is added below
     }
   }
   for (int rank = 0; rank < groups.GetRankCount(); ++rank)

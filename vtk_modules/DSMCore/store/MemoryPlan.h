@@ -19,12 +19,13 @@ namespace dsm
 class MemoryPlan
 {
 public:
-  /// What one rank may take.
+  /// Memory limits of one rank.
   struct Budget
   {
-    /// What is asked for, or thought fit.
+    /// Requested limit, or the default.
     std::uint64_t Bytes = 0;
-    /// What is taken when the resident set needs it: the same, when it was asked for.
+    /// Limit that applies if the resident set needs more than Bytes; equal to Bytes if that was
+    /// requested.
     std::uint64_t Limit = 0;
   };
 
@@ -32,22 +33,22 @@ public:
   static constexpr int MostRanks = 1 << 20;
 
   /// `segments`: of all that is published, what comes next included. `budgets`: by rank.
-  /// `page`: blocks take multiples of it in the page based organisation. `sourceCache`: bytes, counted once where
+  /// `page`: blocks take multiples of it in the page based organization. `sourceCache`: bytes, counted once where
   /// any segment is read through it.
   MemoryPlan(std::vector<const BlockDirectory*> segments, const HostGroups& groups,
     std::vector<Budget> budgets, std::size_t page, std::uint64_t sourceCache = 0);
 
   /// `wanted`, or what Automatic comes to. Where sources bring blocks, what would be replicated is object
   /// based, too. Throws MemoryShortage when a rank's memory does not suffice, with
-  /// the number needed and, of the organisations that share the data out, the number of ranks that
+  /// the number needed and, of the organizations that share the data out, the number of ranks that
   /// would do.
   MemoryOrganization Decide(MemoryOrganization wanted) const;
 
   /// A sentence: what was chosen, and why.
   std::string Explain(MemoryOrganization wanted, MemoryOrganization chosen) const;
 
-  /// Whether memory is what keeps the blocks from being replicated: some are in scratch files, or Automatic has not
-  /// replicated them.
+  /// Returns whether lack of memory keeps the blocks from being replicated: some are in scratch
+  /// files, or Automatic has not replicated them.
   bool LacksMemory(MemoryOrganization wanted, MemoryOrganization chosen) const
   {
     return this->AnyOnOwnersDisk ||
@@ -55,12 +56,12 @@ public:
         chosen != MemoryOrganization::Replicated);
   }
 
-  /// What the resident set, or everything, and the tables take of a rank; where blocks are fetched,
-  /// also a cache of one block, a reply with one, and one that has just come; where sources bring blocks,
-  /// one more of the rank's own.
+  /// Returns the bytes that a rank needs: its resident set (or all blocks, if replicated) and the
+  /// tables. If blocks are fetched, also a cache of one block, a reply with one block, and one
+  /// block that has just arrived. If sources bring blocks, also one of the rank's own.
   std::uint64_t GetNeed(MemoryOrganization organization, int rank) const;
 
-  /// What is left of a rank's memory when its own blocks and the tables are there.
+  /// Memory of a rank that remains after its own blocks and the tables.
   struct Room
   {
     std::uint64_t CacheBytes = 0;
@@ -77,7 +78,7 @@ private:
   /// rank, and in a message that has come and is being put into the cache.
   static constexpr std::uint64_t LeastRoom = 3;
 
-  /// Of the blocks in memory, in units of BlockAlignment or of pages.
+  /// Sizes of the blocks in memory, in units of BlockAlignment or of pages.
   struct Sums
   {
     explicit Sums(std::size_t unit)
@@ -103,7 +104,7 @@ private:
   void CountCopies(const HostGroups& groups);
   /// In bytes.
   std::uint64_t GetLeastRoom(const Sums& sums) const;
-  /// Whether any block may have to come from another rank.
+  /// Returns whether any block may have to be fetched from another rank.
   bool Fetches(MemoryOrganization organization) const;
   /// The rank that lacks most; -1 when all have enough.
   int FindPoorest(MemoryOrganization organization) const;

@@ -30,7 +30,7 @@ public:
   /// Those of `rank` among `ranks`, to which blocks are dealt in turn.
   ScratchBlocks(const BlockDirectory& directory, int rank, int ranks);
 
-  /// What it takes of the memory of the rank that takes most, but for blocks.
+  /// Returns the bytes of the tables, without blocks, on the rank that needs most.
   static std::uint64_t CountTableBytes(const BlockDirectory& directory, int ranks);
 
   // -- While they are put together, on the communication thread, in this order; all throw Error --
@@ -70,7 +70,7 @@ private:
 
   BlockId Rank;
   BlockId Ranks;
-  std::vector<Entry> Entries; ///< of this rank's blocks, ascending
+  std::vector<Entry> Entries; ///< this rank's blocks, in ascending order
   std::uint64_t FileBytes = 0;
   std::unique_ptr<ScratchFile> File;
   std::vector<Slot> Slots;

@@ -20,9 +20,9 @@
 namespace dsm
 {
 
-/// What every store offers, for those who are templates over it, and checked by the compiler where it
-/// is instantiated. No base class: a hit shall be a load. What the members mean is said in
-/// ObjectStore.h and FetchingStore.h.
+/// Interface that every store implements, for templates over the store. The compiler checks it at
+/// instantiation. It is not a base class, because a hit must cost no more than a load.
+/// ObjectStore.h and FetchingStore.h document the members.
 template <class Store>
 class StoreInterface
 {

@@ -31,7 +31,7 @@ public:
   struct Evictions
   {
     std::size_t Count = 0;
-    std::size_t Unused = 0; ///< of them: prefetched, and never used
+    std::size_t Unused = 0; ///< evicted blocks that were prefetched and never used
   };
 
   void SetCapacity(std::size_t bytes) { this->Capacity = bytes; }
@@ -46,10 +46,10 @@ public:
   bool TryReserve(std::size_t blockBytes);
   /// The room of a block that will not come.
   void Release(std::size_t blockBytes);
-  /// What the block that is inserted next needs, so that this will not fail. Throws std::bad_alloc.
+  /// Allocates a slot for the next block, so that Insert will not fail. Throws std::bad_alloc.
   void PrepareSlot();
-  /// Takes over the memory, for which room was set aside, and publishes its address; a block that was
-  /// prefetched, and that nobody waits for, stays marked so.
+  /// Takes over the memory, for which room was reserved, and publishes its address. A prefetched block that
+  /// no worker waits for stays marked as such.
   void Insert(BlockLine& line, BlockMemory memory);
 
   /// Evicts until a block of this size, and `spareBytes` on top, will fit once memory in limbo is
@@ -60,10 +60,10 @@ public:
   bool Reclaim(std::uint64_t oldestEpoch);
   bool HasLimbo() const { return !this->Limbo.empty(); }
 
-  /// Of `count` lines from `first` on, those whose blocks are cached: their places behind `first`.
+  /// Returns the cached blocks among `count` lines from `first` on, as offsets from `first`.
   std::vector<BlockId> List(const BlockLine* first, std::size_t count) const;
-  /// Between frames: drops the cached blocks among `count` lines from `first` on; `which` (null: all): only those
-  /// of which it says so, by their place behind `first`.
+  /// Between frames: drops the cached blocks among `count` lines from `first` on; `which` (null: all): only
+  /// blocks for which it is true, by offset from `first`.
   void Forget(const BlockLine* first, std::size_t count, const std::vector<bool>* which = nullptr);
   /// Between frames: evicts and frees until the budget is met.
   void Shrink();
@@ -83,7 +83,7 @@ private:
     std::uint64_t Epoch = 0;
   };
 
-  /// Between frames: as EvictSlot, but nobody can be reading the block.
+  /// Between frames: as EvictSlot, but no worker can be reading the block.
   void Drop(std::size_t slot);
   void EvictSlot(std::size_t slot, std::uint64_t epoch);
 

@@ -14,8 +14,8 @@ namespace dsm
 namespace
 {
 
-/// Where the next block of each rank lies in the memory where that rank's blocks follow one another,
-/// in ascending order of id.
+/// Offset of each rank's next block in memory where the rank's blocks are contiguous, in ascending
+/// order of id.
 class Offsets
 {
 public:
@@ -173,7 +173,7 @@ void BlockTable::Replicate(Messenger& messenger, std::string_view what)
   const int group = this->Groups.GetGroup(this->Rank);
   HostSharedMemory copies;
   std::uint64_t bytes = 0;
-  std::vector<std::uint64_t> places; // of each block in its holder's copies
+  std::vector<std::uint64_t> places; // offset of each block in its holder's copies
   messenger.RunTogether(what,
     [&]
     {

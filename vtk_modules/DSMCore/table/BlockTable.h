@@ -30,7 +30,7 @@ public:
   /// Sets out zeroed memory for the blocks of `rank`. Throws std::bad_alloc.
   BlockTable(std::uint32_t number, BlockDirectory directory, int rank, HostGroups groups);
 
-  /// As above, but `source` brings the blocks of `rank` when they are needed; nobody shares memory.
+  /// As above, but `source` brings the blocks of `rank` on demand; no memory is shared.
   BlockTable(std::uint32_t number, BlockDirectory directory, int rank, int ranks,
     std::shared_ptr<BlockSource> source);
 
@@ -45,13 +45,13 @@ public:
   /// Between frames, of blocks that a source brings; the same on every rank: whether each rank has its own
   /// source read what it needs. Else the owner reads a block, once for all.
   void SetReadByAll(bool all) { this->ReadByAll = all; }
-  /// Where a block is on this host; null when it is not.
+  /// Returns the address of a block on this host; null if it is not there.
   const std::byte* Find(BlockId id) const
   {
     return this->Lines[id].Address.load(std::memory_order_acquire);
   }
-  /// Whether any of these blocks is not here; ids that there are not are passed by. Any thread: mostly all is here, and
-  /// then no lock is taken.
+  /// Returns whether any of these blocks is absent; ids out of range are ignored. Any thread. Takes
+  /// no lock, because usually all blocks are present.
   bool IsAnyAbsent(const BlockId* ids, std::size_t count) const
   {
     return std::any_of(ids, ids + count,
@@ -62,28 +62,29 @@ public:
       });
   }
 
-  /// Of other ranks of the group, mapped here; blocks that they own, and copies.
+  /// Returns the bytes of other ranks' memory in the group that is mapped here: blocks that they
+  /// own, and copies.
   std::uint64_t GetSharedBytes() const { return this->SharedBytes + this->SharedCopyBytes; }
 
-  /// Whether blocks must be fetched.
+  /// Returns whether all blocks are on this host, so that none must be fetched.
   bool IsWhole() const { return this->Missing == 0; }
 
-  /// What finding the blocks takes of every rank's memory.
+  /// Returns the bytes that the tables for finding the blocks take on every rank.
   static std::uint64_t CountTableBytes(const BlockDirectory& directory)
   {
     return directory.GetCount() * sizeof(BlockLine) + directory.GetOwnBytes();
   }
-  /// What replicating takes of `rank`'s memory, beyond the blocks that it owns.
+  /// Returns the bytes that replication takes on `rank`, beyond the blocks that it owns.
   static std::uint64_t CountReplicaBytes(
     const BlockDirectory& directory, const HostGroups& groups, int rank);
   /// Collective, when the blocks are complete and nothing is cached: from now on every block is
   /// here. Throws the same Error, which begins with `what`, on every rank; then nothing has changed.
   void Replicate(Messenger& messenger, std::string_view what);
-  /// Collective, while it is replicated: the copies of these blocks are made anew. Throws the same Error on
-  /// every rank; then some are, and some are not.
+  /// Collective, while it is replicated: copies these blocks again. Throws the same Error on every rank; then
+  /// only some of the copies are new.
   void UpdateReplicas(
     Messenger& messenger, std::string_view what, const std::vector<bool>& changed) const;
-  /// Local: lets go of the copies.
+  /// Local: releases the copies.
   void DropReplicas();
   bool IsReplicated() const { return this->Replicated; }
   /// Copies in this rank's memory.

@@ -51,9 +51,10 @@ public:
     /// Ranks of one host read one another's blocks in place: such accesses are hits, and take
     /// nothing of the cache. For what is published from then on; the same on every rank.
     bool HostSharing = false;
-    /// Who shares; null: found out with every publication.
+    /// Ranks that share memory; null: determined with every publication.
     std::shared_ptr<const HostGroups> Groups = nullptr;
-    /// Who of them runs: a worker gives its slot to others while it waits. Null: all run.
+    /// Limits the number of workers that run: a worker gives its slot to others while it waits.
+    /// Null: no limit.
     std::shared_ptr<WorkerSlots> Slots = nullptr;
     /// See Prefetch.
     bool Prefetch = true;

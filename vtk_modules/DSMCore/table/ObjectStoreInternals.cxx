@@ -135,7 +135,7 @@ std::size_t ObjectStore::Internals::GetLargestBlock() const
   std::size_t largest = 0;
   for (const auto& segment : this->Segments)
   {
-    // What is all here needs no cache.
+    // A segment that is completely here needs no cache.
     const bool isWhole = static_cast<const Segment&>(*segment).IsWhole();
     largest = std::max(largest, isWhole ? 0 : std::size_t(segment->GetDirectory().GetLargest()));
   }

@@ -24,7 +24,7 @@
 namespace dsm
 {
 
-/// Every block on every rank: the yardstick by which the paper measures its two organisations, and
+/// Every block on every rank: the yardstick by which the paper measures its two organizations, and
 /// the fast way when it fits. An access is one load of a table; there are no misses, and within a
 /// frame no messages. With host sharing the ranks of a host have one copy between them.
 ///
@@ -38,7 +38,7 @@ public:
     int Workers = 1;
     /// See ObjectStore.
     bool HostSharing = false;
-    /// Who shares; null: found out with every publication.
+    /// Ranks that share memory; null: determined with every publication.
     std::shared_ptr<const HostGroups> Groups = nullptr;
   };
 
@@ -65,7 +65,7 @@ public:
   /// Collective in order, between frames.
   void Retire(const std::shared_ptr<BlockSegment>& segment);
 
-  /// See ObjectStore; the copies are made anew.
+  /// See ObjectStore; copies the blocks again.
   void Refresh(
     std::string_view what, const BlockSegment& segment, const std::vector<bool>& changed);
 
@@ -81,7 +81,7 @@ public:
   void BeginFrame(bool agreed = false);
   /// Nothing to do.
   bool Service() { return false; }
-  /// Nobody waits.
+  /// Does nothing: no worker ever waits.
   void Cancel(const std::string&) {}
   bool Drain() { return true; }
   void EndFrame();

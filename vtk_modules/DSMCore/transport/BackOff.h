@@ -29,7 +29,7 @@ public:
   /// Nothing happened: waits a little more than the last time, until WakeUp at most. The waiting
   /// thread.
   void Wait();
-  /// Any thread: ends the wait, or the next one. Cheap while nobody sleeps.
+  /// Any thread: ends the wait, or the next one. Cheap while no thread sleeps.
   void WakeUp();
 
 private:

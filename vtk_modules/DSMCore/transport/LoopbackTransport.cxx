@@ -86,8 +86,8 @@ bool LoopbackTransport::Progress(const Deliver& deliver)
     const std::lock_guard<std::mutex> lock(self.Guard);
     count = self.Mailbox.size();
   }
-  // What `deliver` posts to this rank waits for the next Progress, else two handlers could keep
-  // each other busy for ever.
+  // Messages that `deliver` posts to this rank wait for the next Progress; otherwise two handlers
+  // could keep each other busy forever.
   for (std::size_t i = 0; i < count; ++i)
   {
     Message* message = nullptr; // stays where it is, whatever is put behind it

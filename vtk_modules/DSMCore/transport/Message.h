@@ -13,7 +13,7 @@
 namespace dsm
 {
 
-/// What a message says; its receiver dispatches on this.
+/// Kind of a message; its receiver dispatches on this.
 enum class MessageKind : std::uint32_t
 {
   Collective = 1,

@@ -22,7 +22,7 @@ constexpr std::size_t ReserveBytes = std::size_t(1) << 20;
 constexpr int MostAttempts = 1000;
 constexpr std::chrono::milliseconds AttemptPause(10);
 
-/// Of a collective, on their way out before a rank makes more.
+/// Limit of unsent bytes of a collective; above it, a rank makes no more.
 constexpr std::size_t MaximumUnsentBytes = std::size_t(8) << 20;
 
 /// Equal exactly for ranks on one running machine: names repeat between containers and clusters,
@@ -252,7 +252,7 @@ void Messenger::Internals::Await(FunctionRef<bool()> done, FunctionRef<bool()> w
     }
     catch (const std::bad_alloc&)
     {
-      // Of the transport; it has lost nothing, and takes it in the next time.
+      // The transport has no memory. It has lost nothing, and receives the message the next time.
     }
     catch (...)
     {

@@ -37,8 +37,8 @@ class Messenger
 public:
   using Handler = std::function<void(Message&&)>;
 
-  /// Of a collective, the most that one message carries; larger ones go in pieces. Smaller than what a
-  /// transport keeps for a rank without memory.
+  /// Largest number of bytes in one message of a collective; more data are sent in pieces. It is
+  /// smaller than the buffer that a transport keeps for a rank without memory.
   static constexpr std::size_t DefaultPieceBytes = std::size_t(1) << 19;
 
   /// `pieceBytes`: the same on every rank.
@@ -72,7 +72,7 @@ public:
   /// Seconds that a rank may be silent; 0: for ever. Between steps; the same on every rank.
   void SetSilenceLimit(double seconds);
   double GetSilenceLimit() const;
-  /// This rank cannot go on: all, itself included, give it up.
+  /// Reports that this rank cannot continue: all ranks, itself included, treat it as failed.
   void GiveUpThisRank();
 
   /// From here on every rank serves the others, and computes nothing for long, until EndServing. Each

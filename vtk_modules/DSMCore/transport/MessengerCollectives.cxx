@@ -16,7 +16,7 @@ namespace dsm
 namespace
 {
 
-/// Of a rank's text that all others hear, the most.
+/// Largest length of a rank's error text that is sent to all others.
 constexpr std::size_t LongestCause = std::size_t(16) << 10;
 
 /// Behind what a rank gives: how much it has, in all.
@@ -82,7 +82,8 @@ private:
   int Lowest;
 };
 
-/// What a message carries of `count` units from unit `first` on, where `most` fit.
+/// Returns the number of units in the message that begins with unit `first`, of `count` in all, if
+/// `most` fit into one message.
 std::size_t GetPiece(std::size_t first, std::size_t count, std::size_t most)
 {
   return std::min(count - first, std::max<std::size_t>(most, 1));
@@ -95,7 +96,7 @@ std::string ToText(const std::byte* bytes, std::size_t count)
 
 } // namespace
 
-/// What the ranks gave; nothing when any has failed.
+/// Contributions of the ranks; empty if any rank has failed.
 struct Messenger::Gathered
 {
   Status Outcome;
@@ -133,7 +134,8 @@ std::vector<int> Messenger::GetChildren() const
 namespace
 {
 
-/// What rank 0 tells all, of what it has heard from all; every rank's bytes only where they are few.
+/// Returns rank 0's message to all ranks about their contributions; it includes every rank's bytes
+/// only if they are few.
 std::vector<std::byte> Judge(const std::vector<const std::vector<std::byte>*>& heard,
   std::uint64_t left, std::size_t pieceBytes)
 {
@@ -267,12 +269,13 @@ Messenger::Gathered Messenger::Exchange(
   return gathered;
 }
 
-/// From every rank along a tree of its own, or to rank 0 at once, all at the same time; pieces of a rank come in order.
-/// What is on its way is in the result already, so that a rank takes no other memory than for the pieces that it posts.
+/// Gathers from every rank along a tree of its own, or to rank 0 directly, all at the same time;
+/// the pieces of a rank arrive in order. Pieces that pass through this rank are stored in the
+/// result, so a rank takes no other memory than for the pieces that it posts.
 std::vector<std::vector<std::byte>> Messenger::GatherPieces(
   std::vector<std::byte>&& mine, std::vector<std::uint64_t> sizes, Receivers receivers)
 {
-  /// Of the bytes of one rank, how many have come, and who gets which next.
+  /// Progress of one rank's bytes: the number received, and the ranks that get the next ones.
   struct Stream
   {
     std::size_t Arrived = 0;
@@ -528,7 +531,7 @@ std::vector<std::byte> Messenger::ToCause(const FirstFailure& failure)
   return bytes;
 }
 
-/// Of this rank alone.
+/// For this rank alone.
 Status Messenger::ToStatus(const FirstFailure& failure)
 {
   Status status;

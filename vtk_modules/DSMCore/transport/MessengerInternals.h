@@ -24,8 +24,9 @@ inline std::int32_t Distance(std::uint32_t from, std::uint32_t to)
   return static_cast<std::int32_t>(to - from);
 }
 
-/// What came and is not dealt with yet, and whom it goes to. Messages lie in lists, so that none needs
-/// memory, and none can be lost for the lack of it, once it is here.
+/// Received messages that have not been processed, and their handlers. Messages are kept in lists,
+/// so that moving one needs no memory: a message that has arrived cannot be lost for lack of
+/// memory.
 class Messenger::Internals
 {
 public:
@@ -55,7 +56,7 @@ public:
   void PostCopy(int destination, const std::byte* bytes, std::size_t count);
   /// Rank 0's bytes to all, along a binomial tree.
   void SpreadFromRankZero(std::vector<std::byte>& bytes);
-  /// Whether there is room for one more piece on its way out.
+  /// Returns whether there is room for one more outgoing piece.
   bool MaySend() const;
 
   std::unique_ptr<Transport> Carrier;
@@ -63,15 +64,15 @@ public:
   std::size_t PieceBytes;
   double SilenceLimit = DefaultSilenceLimit; ///< seconds
   std::uint32_t Session = 0;
-  std::list<Message> Received; ///< of the collective under way
-  bool Changed = false;        ///< whether a message in the inbox may have become due
+  std::list<Message> Received; ///< messages of the current collective
+  bool Changed = false;        ///< true if a message in the inbox may have become due
   std::vector<int> Hosts;      ///< empty: not compared yet
   BackOff Idle;
 
 private:
   using Clock = std::chrono::steady_clock;
 
-  /// What a rank says by a sign of life.
+  /// Content of a heartbeat message.
   enum class Life : std::int32_t
   {
     Waiting,

@@ -27,10 +27,11 @@ namespace
 {
 
 constexpr int Tag = 0;
-/// Of messages that the receiver confirms when it begins to take them. MPI_Issend would do the same, but
-/// in Open MPI 5.0.7 it loses messages between ranks of a host, for which the sender then waits for ever.
+/// Tag of messages that the receiver confirms when it begins to receive them. MPI_Issend would do
+/// the same, but in Open MPI 5.0.7 it loses messages between ranks of a host, and the sender then
+/// waits forever.
 constexpr int ConfirmedTag = 1;
-/// What a rank tells another about those; it is not delivered.
+/// Kind of the message that confirms those; it is not delivered.
 constexpr auto ReceiptKind =
   static_cast<MessageKind>(static_cast<std::uint32_t>(MessageKind::Last) + 1);
 /// Matched messages that may be under way to this rank before it looks for more.
@@ -48,7 +49,7 @@ struct WireHeader
   std::uint64_t PayloadBytes;
 };
 
-/// What a rank has begun to take of another's messages since it last told.
+/// Messages of another rank that this rank has begun to receive since its last confirmation.
 struct Receipt
 {
   std::uint64_t Messages = 0;
@@ -182,7 +183,8 @@ public:
 private:
   Transmission(Transmission&&) = default; ///< MPI's buffers stay where they are
 
-  /// What this rank has ended, and not closed. They close, at the latest, before MPI ends.
+  /// Transmissions that this rank has ended, but not closed. They are closed before MPI is
+  /// finalized at the latest.
   static std::vector<std::unique_ptr<Transmission>>& GetEnded()
   {
     static std::vector<std::unique_ptr<Transmission>> ended;
@@ -454,7 +456,8 @@ private:
     return any;
   }
 
-  /// Whether the message at the head of `queue` has arrived. Throws, and takes it out, when it is lost.
+  /// Returns whether the message at the head of `queue` has arrived. Throws, and removes it, if it
+  /// is lost.
   bool Finish(Receiving& receiving, std::list<Receiving>& queue)
   {
     int arrived = 0;
@@ -544,15 +547,16 @@ private:
   /// MPI_Testsome wants the requests side by side; see MakeRoomToSend.
   std::vector<MPI_Request> Requests;
   std::vector<Sending> Outgoing;
-  std::vector<int> Done; ///< what MPI_Testsome writes; has room for all requests
+  std::vector<int> Done; ///< output of MPI_Testsome; has room for all requests
   std::size_t UnsentBytes = 0;
   std::array<std::size_t, static_cast<std::size_t>(MessageKind::Last) + 1> UnsentMessages{};
-  Receipt Unconfirmed; ///< of what was posted, what its receivers have not begun to take
+  Receipt Unconfirmed; ///< posted messages that their receivers have not begun to receive
   std::vector<std::list<Receiving>> Arriving; ///< per source
   std::vector<Confirming> Receipts;           ///< per source
   int OpenReceipts = 0;       ///< ranks that are owed some, or to which some are on their way
   std::list<Receiving> Spare; ///< one, made before MPI is asked for a message
-  MPI_Message Matched = MPI_MESSAGE_NULL; ///< of Spare, as long as there is no memory for it
+  MPI_Message Matched =
+    MPI_MESSAGE_NULL; ///< message of Spare, as long as there is no memory for it
   std::size_t ArrivingBytes = 0;
   std::deque<Message> ToSelf;
   bool IsEnded = false;           ///< what was under way is with another, or is closed
@@ -599,7 +603,7 @@ MpiTransport::Environment::Environment(int& argc, char**& argv)
   MPI_Initialized(&initialized);
   if (!initialized)
   {
-    // SINGLE, as ParaView has it: whoever tests us tests what users run.
+    // SINGLE, as in ParaView, so that tests run what users run.
     int provided = MPI_THREAD_SINGLE;
     if (MPI_Init_thread(&argc, &argv, MPI_THREAD_SINGLE, &provided) != MPI_SUCCESS)
     {

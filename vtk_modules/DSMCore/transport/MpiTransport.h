@@ -15,13 +15,13 @@ class MpiTransport
 {
 public:
   /// Collective over the communicator. `communicator` points to an MPI_Comm (kept opaque so that
-  /// no header needs MPI); null means MPI_COMM_WORLD. Returns null when MPI is not initialised or
+  /// no header needs MPI); null means MPI_COMM_WORLD. Returns null when MPI is not initialized or
   /// the library was built without it. The destructor is not collective: the duplicate is freed by the next Create, or
   /// before MPI is finalized. Throws Error with MPI's own text.
   static std::unique_ptr<Transport> Create(const void* communicator);
 
-  /// For programs that have no other owner of MPI (tests, dsm_bench): initialise now and finalise
-  /// on destruction. Does nothing when MPI is absent or was initialised by somebody else.
+  /// For programs without another owner of MPI (tests, dsm_bench): initializes MPI now and finalizes it on
+  /// destruction. Does nothing when MPI is absent or already initialized.
   class Environment
   {
   public:

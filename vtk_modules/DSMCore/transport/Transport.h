@@ -12,7 +12,7 @@ namespace dsm
 
 /// Carries messages between ranks. Two messages from one rank to another arrive in the order they
 /// were posted. Only the thread that renders (the communication thread of the frame) may call it:
-/// ParaView initialises MPI with MPI_THREAD_SINGLE.
+/// ParaView initializes MPI with MPI_THREAD_SINGLE.
 class Transport
 {
 public:
@@ -34,9 +34,9 @@ public:
   /// Bytes posted that the receivers have not begun to take; what flow control watches.
   virtual std::size_t GetUnsentBytes() const = 0;
 
-  /// Whether a message of this kind, or what tells its sender that it is being taken, still needs this
-  /// rank's Progress to leave it. A rank that ends a collective step and then computes for long would
-  /// keep the others waiting.
+  /// Returns whether a message of this kind, or the acknowledgment for its sender, still needs this
+  /// rank's Progress to be sent. A rank that ends a collective step and then computes for long
+  /// would delay the others.
   virtual bool HasUnsent(MessageKind kind) const = 0;
 };
 

@@ -20,7 +20,7 @@ public:
   FixedList(const FixedList&) = delete;
   FixedList& operator=(const FixedList&) = delete;
 
-  /// One more, at the end, which has only what its members' initialisers set; there has to be room.
+  /// One more, at the end, which has only what its members' initializers set; there has to be room.
   T& Add() { return *new (this->Bytes + sizeof(T) * this->Count++) T; }
 
   T& operator[](int index)

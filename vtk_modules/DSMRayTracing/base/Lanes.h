@@ -15,7 +15,7 @@ struct IntegerLanes
   Half Low;  ///< x, y
   Half High; ///< z, idle
 
-  /// Whether a comparison holds somewhere.
+  /// Returns whether the comparison holds in any lane.
   bool IsAny() const
   {
     const Half any = this->Low | this->High;

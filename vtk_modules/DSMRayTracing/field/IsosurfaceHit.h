@@ -7,7 +7,8 @@
 namespace rt
 {
 
-/// Where a ray meets an isosurface of a field first. `Place` says where that is in the field's own terms.
+/// First intersection of a ray with an isosurface of a field. `Place` is the position in the
+/// field's own coordinates.
 template <class Place>
 struct IsosurfaceHit
 {

@@ -12,11 +12,12 @@ namespace rt
 /// World space; both sides are alike.
 struct SectionPlane
 {
-  glm::dvec3 Normal{ 0.0 }; ///< of any length but 0
+  glm::dvec3 Normal{ 0.0 }; ///< any length but 0
   glm::dvec3 Point{ 0.0 };
 };
 
-/// Where a ray meets a plane within a field. `Place` says where that is in the field's own terms.
+/// Intersection of a ray with a plane within a field. `Place` is the position in the field's own
+/// coordinates.
 template <class PlaceType>
 struct SectionHit
 {

@@ -15,9 +15,10 @@ namespace rt
 namespace
 {
 
-/// Of the brightest light, what a faint shadow leaves.
+/// Part of the brightest light that remains in a faint shadow.
 constexpr double LeftInFaintShadow = 0.4;
-/// Of the angle to a surface's normal: a faint shadow begins at the first, and is whole at the second.
+/// Cosines of the angle to a surface's normal at which a faint shadow begins, and at which it is
+/// full.
 constexpr double GrazingCosine = 0.15;
 constexpr double FullCosine = 0.6;
 
@@ -88,7 +89,7 @@ std::vector<glm::dvec3> ArrivingLight::FindVisibility(
     this->FindVisibility(*brightest, paths, count, points, first);
     for (int number = 0; number < count; ++number)
     {
-      // Where light grazes a surface, its coarse shape would cast shadows onto its smooth shading.
+      // At grazing angles, the surface's coarse shape would cast shadows onto its smooth shading.
       const Incidence incidence = GetIncidence(*brightest, points[number].Position);
       const double cosine = -glm::dot(incidence.Direction, points[number].Normal);
       const double taken = (1.0 - LeftInFaintShadow) *

@@ -17,7 +17,7 @@ BeamHistory::BeamHistory(int width, int height, std::size_t objects, const BeamH
   if (last && last->Columns == this->Columns && last->Rows == this->Rows &&
     last->Objects == objects)
   {
-    // What another rank traced in the last frame, this one may have traced before.
+    // This rank may have traced a beam before that another rank traced in the last frame.
     std::transform(last->Now.begin(), last->Now.end(), last->Last.begin(), this->Last.begin(),
       [](const std::atomic<Depth>& now, Depth before)
       {

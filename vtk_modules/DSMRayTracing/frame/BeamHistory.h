@@ -18,15 +18,15 @@ namespace rt
 class BeamHistory
 {
 public:
-  /// Of a picture of so many pixels with so many objects. `last`: of the view's last frame, or null; it
-  /// counts when its picture was as large and had as many objects.
+  /// History for an image of so many pixels with so many objects. `last`: history of the view's
+  /// last frame, or null; ignored unless its image had the same size and number of objects.
   BeamHistory(int width, int height, std::size_t objects, const BeamHistory* last = nullptr);
 
   /// How many bricks an object's beam at a pixel will probably need: as many as the beams there and around it went
   /// through, those of this frame where they are traced. None where nothing is known.
   std::size_t Predict(int x, int y, std::size_t object) const;
 
-  /// What an object's beam at a pixel has come to (ObjectBeam::Reached).
+  /// Records the progress of an object's beam at a pixel (ObjectBeam::Reached).
   void Record(int x, int y, std::size_t object, std::size_t reached);
 
   /// Pixels along the edge of a square whose beams share a record.

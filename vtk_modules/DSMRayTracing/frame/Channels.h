@@ -26,15 +26,15 @@ struct ChannelSet
   std::uint32_t Value = Always;
 
   bool Has(Bits channel) const { return ((this->Value | Always) & channel) != 0; }
-  /// Whether there are more than those of Always.
+  /// Returns whether there are more channels than those of Always.
   bool HasMore() const { return (this->Value & ~std::uint32_t{ Always }) != 0; }
 };
 
-/// What the pixels of a tile or a picture show, channel by channel: row by row from the bottom, x fastest, and layer
-/// after layer. A new channel is a member, a bit, and a line in ForEach.
+/// Values of the pixels of a tile or an image, channel by channel: row by row from the bottom, x
+/// fastest, and layer after layer. A new channel is a member, a bit, and a line in ForEach.
 struct Channels
 {
-  /// Those that have values.
+  /// Channels that have values.
   ChannelSet Present;
 
   /// Four bytes a pixel, red first, alpha premultiplied; alpha 0 where nothing was hit.

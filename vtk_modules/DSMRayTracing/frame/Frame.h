@@ -24,7 +24,7 @@ class BeamHistory;
 /// are what each contributes to the pixel through those before it: their sum is the pixel.
 struct Tile : Channels
 {
-  int X = 0; ///< of the lower left pixel in the frame
+  int X = 0; ///< lower left pixel in the frame
   int Y = 0;
   int Width = 0;
   int Height = 0;
@@ -33,41 +33,42 @@ struct Tile : Channels
   int Samples = 0;          ///< that Sum has
   bool IsNew = false;       ///< another rank traced it in the last frame
   std::uint64_t Misses = 0; ///< that its tracing waited for
-  double Seconds = 0.0;     ///< of processor time that its tracing took
+  double Seconds = 0.0;     ///< processor time of tracing it, in seconds
   /// Shadow and occlusion rays that were traced for it.
   std::uint64_t LightRays = 0;
-  /// Premultiplied colours, summed over the samples so far, in order: what further samples are
+  /// Premultiplied colors, summed over the samples so far, in order: what further samples are
   /// added to.
   std::vector<glm::vec4> Sum;
   /// The same of channels on request, which are there only if they were asked for.
   std::vector<glm::vec4> AlbedoSum;
   std::vector<glm::vec3> NormalSum;
-  /// What neighbors' ambient occlusion adds to Sum in previews; empty: nothing.
+  /// Light that neighbors' ambient occlusion adds to Sum in previews; empty: none.
   std::vector<glm::vec3> Shared;
 };
 
-/// What this rank has of a frame: the tiles that it traced. Together the ranks have all of them.
+/// Part of a frame on this rank: the tiles that it traced. Together the ranks have all tiles.
 struct Frame
 {
   int Width = 0;
   int Height = 0;
   int TileSize = 0;
-  ChannelSet Channels; ///< of the tiles
+  ChannelSet Channels; ///< channels of the tiles
   std::vector<Tile> Tiles;
-  /// Of the frames of a group of ranks: the same on every rank. 0: there is no frame.
+  /// Number of the frame in its group of ranks: the same on every rank. 0: there is no frame.
   std::uint32_t Number = 0;
   bool IsAborted = false;   ///< on every rank; tiles, or samples of tiles, are missing
   double BusySeconds = 0.0; ///< from the start to the end of this rank's last tile
-  /// From the collective start to the collective end; where adding samples was aborted and goes on, of all its parts.
+  /// Seconds from the collective start to the collective end. If adding samples was aborted and resumed, the
+  /// sum over all parts.
   double Seconds = 0.0;
   /// How the bricks were kept; never Automatic.
   dsm::MemoryOrganization Organization = dsm::MemoryOrganization::ObjectBased;
   std::string Explanation; ///< a sentence: why they are kept so
   dsm::StoreCounters Counters;
   std::vector<dsm::WorkerCounters> WorkerCounters;
-  /// What the next frame of the view prefetches bricks by; null where none are fetched.
+  /// Beams by which the next frame of the view prefetches bricks; null if blocks are not fetched.
   std::shared_ptr<const BeamHistory> Beams;
-  /// Of all ranks, in rank order; see FrameRenderer::Records.
+  /// Reports of all ranks, in rank order; see FrameRenderer::Records.
   std::vector<std::vector<std::byte>> Reports;
   /// That threads had nothing to trace, before this rank's last tile was done; summed over them.
   std::uint64_t IdleNanoseconds = 0;

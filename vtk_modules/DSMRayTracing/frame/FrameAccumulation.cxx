@@ -18,7 +18,7 @@ FrameAccumulation::Offer FrameAccumulation::CreateOffer(dsm::BlockStore& store, 
     this->SamplesUnderWay, wanted, pace.Samples, pace.Seconds };
 }
 
-/// Whether all ranks have samples of what is to be shown, and the same.
+/// Returns whether all ranks have samples of the frame that is to be shown, and equally many.
 bool FrameAccumulation::IsSame(const std::vector<Offer>& offers, std::uint64_t digest) const
 {
   return this->Samples > 0 && digest == this->Digest &&

@@ -19,7 +19,7 @@ namespace rt
 class FrameAccumulation
 {
 public:
-  /// Who traces.
+  /// Ranks and resources that trace.
   struct Ranks
   {
     dsm::Messenger& Messenger;
@@ -34,16 +34,16 @@ public:
     double Seconds = 0.0; ///< more than Samples, as long as they take less, when added to others
   };
 
-  /// What a rank tells the others before Trace: what it has, and what it is to add. Plain, so that it travels between
-  /// ranks.
+  /// State of a rank before Trace, and its request: sent to all ranks. Plain, for messages.
   struct Offer
   {
     FrameEntry Entry;
-    /// What there is to add to, which a rank may have lost that the others have not.
+    /// Digest of the frame that samples are added to; a rank may have lost it while others have
+    /// not.
     std::uint64_t Digest;
     std::int64_t Samples;
     std::int64_t SamplesUnderWay;
-    // What must be equal.
+    // These must be equal on all ranks.
     std::int64_t Wanted;
     std::int64_t PaceSamples;
     double PaceSeconds;
@@ -71,18 +71,19 @@ public:
 
   const Frame& GetFrame() const { return this->Traced; }
 
-  /// Whether the frame has what was wanted, or there is none; the same on every rank.
+  /// Returns whether the frame has all requested samples, or there is no frame; the same on every
+  /// rank.
   bool IsComplete() const { return this->Samples >= this->Wanted && this->SamplesUnderWay == 0; }
 
-  /// Of each pixel; 0 without a frame.
+  /// Returns the samples of each pixel; 0 without a frame.
   int GetSamples() const { return this->Samples; }
   int GetWanted() const { return this->Wanted; }
 
-  /// What one sample of a pixel took in the last render; 0 where nothing is known. `lastSeconds`: as in
-  /// Trace.
+  /// Returns the seconds for one sample of each pixel in the last render; 0 if unknown.
+  /// `lastSeconds`: as for Trace.
   double GetSecondsPerPixel(double lastSeconds) const;
 
-  /// Begins anew with the next frame, which ranks start with the tiles that they have.
+  /// Starts again with the next frame; ranks begin with their current tiles.
   void Restart();
   /// The same without the tiles.
   void Clear();
@@ -96,10 +97,11 @@ private:
   int CountNext(const Pace& pace, double lastSeconds) const;
 
   Frame Traced;
-  std::uint64_t Digest = 0; ///< of what it shows; 0: a single sample, to which none is added
-  int Samples = 0;          ///< that it has; 0 when there is nothing to add to
-  int SamplesUnderWay = 0;  ///< that some tiles have got already: their adding was aborted
-  int LastSamples = 0;      ///< that were added last
+  std::uint64_t Digest =
+    0;             ///< digest of the frame's content; 0: a single sample, to which none is added
+  int Samples = 0; ///< that it has; 0 when there is nothing to add to
+  int SamplesUnderWay = 0; ///< that some tiles have got already: their adding was aborted
+  int LastSamples = 0;     ///< that were added last
   int Wanted = 0;
 };
 

@@ -32,7 +32,7 @@ public:
   /// This rank has failed, for a cause that is not empty; the first one counts. Before or after it is
   /// done: it may fail while it serves the others.
   void ReportFailure(const std::string& cause);
-  /// Whether this rank has said so.
+  /// Returns whether this rank has reported a failure.
   bool HasFailed() const { return this->Failed; }
   /// Rank 0, before the frame is over: no rank begins anything more.
   void Abort();
@@ -40,14 +40,15 @@ public:
   void ReportDone(std::vector<std::byte> report = {});
   bool IsDone() const { return this->Done; }
 
-  /// Whether all ranks have stopped.
+  /// Returns whether all ranks have stopped.
   bool IsOver() const { return this->Over; }
   /// The frame's outcome, the same on every rank; valid once it is over. What fails when the last rank
   /// is done counts no more.
   const dsm::Status& GetOutcome() const { return this->Outcome; }
-  /// Likewise: whether it was aborted.
+  /// Returns, likewise, whether the frame was aborted.
   bool IsAborted() const { return this->Aborted; }
-  /// Likewise: every rank's report, in rank order. None of a frame that failed or was aborted.
+  /// Returns, likewise, every rank's report, in rank order. There are none for a frame that failed or was
+  /// aborted.
   std::vector<std::vector<std::byte>> TakeReports() { return std::move(this->Reports); }
 
 private:

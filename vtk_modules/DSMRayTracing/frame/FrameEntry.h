@@ -14,7 +14,7 @@
 namespace rt
 {
 
-/// What a rank tells the others before a frame. Plain, so that it travels between ranks.
+/// State of a rank before a frame, sent to all ranks. Plain, for messages.
 struct FrameEntry
 {
   /// Everything that must be equal on all ranks for a frame to make sense.
@@ -28,9 +28,9 @@ struct FrameEntry
   };
 
   Digest Request;
-  std::uint64_t Settled;    ///< whether the rank's store is
-  std::uint64_t MayBegin;   ///< whether its store may begin the frame without asking others
-  std::uint64_t LastNumber; ///< of the last frame, when it had the same tiles; else 0
+  std::uint64_t Settled;    ///< 1 if the rank's store is settled
+  std::uint64_t MayBegin;   ///< 1 if its store may begin the frame without asking others
+  std::uint64_t LastNumber; ///< number of the last frame, if it had the same tiles; else 0
   std::uint64_t LastTiles;  ///< that the rank traced of it
   double LastBusySeconds;
 
@@ -45,7 +45,8 @@ struct FrameEntry
   /// The error for a rank whose frame is another than rank 0's.
   [[noreturn]] static void Refuse(std::size_t rank);
 
-  /// What the ranks know together of the last frame, and which of its tiles this rank traced. Nothing without `last`.
+  /// Creates the plan from the ranks' common knowledge of the last frame, and the tiles of it that
+  /// this rank traced. Empty without `last`.
   static TilePlan CreatePlan(
     const std::vector<FrameEntry>& entries, const FrameRequest& request, const Frame* last);
 };

@@ -138,7 +138,7 @@ std::size_t Unpack(const std::vector<std::byte>& bytes, Picture& picture)
   return pixels;
 }
 
-/// Whether any of a rank's packed tiles has several layers.
+/// Returns whether any of a rank's packed tiles has several layers.
 bool HasLayers(const std::vector<std::byte>& bytes, const Picture& picture)
 {
   bool has = false;
@@ -151,7 +151,7 @@ bool HasLayers(const std::vector<std::byte>& bytes, const Picture& picture)
   return has;
 }
 
-/// Of each pixel in part covered, its place in the picture, and its channels.
+/// Packs each partly covered pixel: its position in the image, and its channels.
 std::vector<std::byte> PackEdges(const Frame& frame)
 {
   std::vector<std::byte> bytes;

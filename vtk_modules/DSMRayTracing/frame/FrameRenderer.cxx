@@ -23,7 +23,7 @@ double SecondsSince(std::chrono::steady_clock::time_point start)
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-/// What this rank's store did for the frame so far.
+/// Describes this rank's store and its activity in the frame so far.
 void Describe(dsm::BlockStore& store, Frame& frame)
 {
   frame.Counters = store.GetCounters();

@@ -37,8 +37,9 @@ public:
   /// have to tell one another may go with these.
   struct Records
   {
-    /// Of all ranks, in rank order, where they have exchanged them already: FrameEntry::Create of what the frame is to
-    /// show, or of as much of it as is not agreed otherwise. Empty: the renderer gathers them.
+    /// Entries of all ranks, in rank order, if they have been exchanged already: FrameEntry::Create
+    /// for the frame's content, or for the part of it that is not agreed otherwise. Empty: the
+    /// renderer gathers them.
     std::vector<FrameEntry> Entries;
     /// Local: called when this rank has traced its part of the frame, before the ranks agree on how it went. What it returns
     /// comes to all ranks (Frame::Reports); what it throws is the frame's failure. Not always called when the frame is
@@ -63,10 +64,10 @@ public:
   void Refine(dsm::BlockStore& store, const Scene& scene, const FrameRequest& request, Frame& frame,
     const Records& records = {});
 
-  /// Called on rank 0, by the calling thread, again and again during a frame, with about the part of it that is
-  /// traced, 0 to 1, as rank 0 can tell by its own tiles. Returns whether the frame is to be aborted. The ranks then
-  /// finish the tiles that they are tracing, and every rank's frame says so: one that was rendered is of no use,
-  /// one that was refined can be refined again.
+  /// Sets a function that rank 0's calling thread calls repeatedly during a frame. `part`: the approximate
+  /// part of the frame that is traced, 0 to 1, estimated from rank 0's own tiles. The function returns
+  /// whether to abort the frame. The ranks then finish their current tiles, and every rank's frame is marked
+  /// as aborted: a rendered frame is useless, a refined one can be refined again.
   void SetWatch(std::function<bool(double part)> watch) { this->Watch = std::move(watch); }
 
 private:

@@ -26,7 +26,7 @@ struct FrameRequest
   int PixelSize = 1;
   int TileSize = 16;
   /// Samples [FirstSample, FirstSample + Samples) of every pixel are averaged. Sample 0 is the
-  /// pixel's centre; the others are spread over the pixel.
+  /// pixel's center; the others are spread over the pixel.
   int FirstSample = 0;
   int Samples = 1;
   /// Further samples, or a still picture, are to follow. Until then, pixels share the light of ambient occlusion's
@@ -43,7 +43,7 @@ struct FrameRequest
   /// Window depths at which media are cut into layers: where something translucent is that is not in the scene. As many
   /// pictures of Width x Height, one after the other, as there are in any pixel; from front to back, then 1. Null: nowhere.
   std::shared_ptr<const std::vector<float>> MediumCuts;
-  /// What the picture has of each pixel.
+  /// Channels of each pixel of the image.
   ChannelSet Channels;
   TileScheduling Scheduling = TileScheduling::WorkStealing;
 };

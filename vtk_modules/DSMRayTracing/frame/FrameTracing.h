@@ -45,7 +45,8 @@ template <class Store>
 class FrameTracing
 {
 public:
-  /// What all of the frame's ranks have alike, and what this rank has for it. Kept by reference.
+  /// Data that all of the frame's ranks have in common, and this rank's resources. Kept by
+  /// reference.
   struct Input
   {
     dsm::Messenger& Messenger;
@@ -54,7 +55,7 @@ public:
     const std::function<bool(double)>& Watch; ///< see FrameRenderer::SetWatch
     const rt::Scene& Scene;
     const FrameRequest& Request;
-    const BeamHistory* Last; ///< of the view's last frame; may be null
+    const BeamHistory* Last; ///< history of the view's last frame; may be null
     TileSource& Tiles;
     /// For all ranks, when this one has traced its part; see FrameRenderer::Records.
     dsm::FunctionRef<std::vector<std::byte>(Frame&)> Report;
@@ -107,10 +108,11 @@ public:
     lost.Throw();
   }
 
-  /// What this rank has traced. Throws the same dsm::Error on every rank when one has failed. Collective.
+  /// Moves this rank's tiles and figures to `frame`. Throws the same dsm::Error on every rank when
+  /// one has failed. Collective.
   void GiveTo(Frame& frame)
   {
-    // What was posted last must leave before the application goes about something else.
+    // The last messages must be sent before the application continues with something else.
     this->In.Messenger.Flush();
     const dsm::Status& outcome = this->Agreement.GetOutcome();
     if (!outcome.IsOk() || this->Agreement.IsAborted())
@@ -224,14 +226,14 @@ private:
     this->In.Messenger.WakeUp();
   }
 
-  /// Whether another rank traced the tile in the last frame.
+  /// Returns whether another rank traced the tile in the last frame.
   bool IsNew(const Tile& tile) const
   {
     return this->Plan.HasHistory &&
       !std::binary_search(this->Mine.begin(), this->Mine.end(), tile.Index);
   }
 
-  /// What a whole tile is tinted with.
+  /// Returns the tint of a whole tile.
   glm::vec3 GetTint(const Tile& tile) const
   {
     switch (this->In.Scene.View)
@@ -369,7 +371,7 @@ private:
   const Input In;
   const int Workers;
   FrameAgreement Agreement;
-  const std::uint32_t Number; ///< of the frame
+  const std::uint32_t Number; ///< number of the frame
   const Clock::time_point Start = Clock::now();
   SharedFailure Failure;
   std::atomic<bool> Stopped{ false };
@@ -378,7 +380,7 @@ private:
   std::optional<PixelRays> Rays;
   std::shared_ptr<BeamHistory> Beams;
   TilePlan Plan;
-  std::vector<int> Mine; ///< of the plan, ascending
+  std::vector<int> Mine; ///< this rank's tiles in the plan, ascending
 
   std::vector<std::vector<Tile>> TilesOfWorker;
   std::atomic<int> TracedTiles{ 0 };

@@ -5,8 +5,9 @@
 namespace rt
 {
 
-/// What light rays found at a translucent surface of a path. The surfaces behind it borrow this value as long
-/// as they contribute little to the path together: a ray from each of many sheets costs more than it shows.
+/// Result of light rays at a translucent surface of a path. The surfaces behind it borrow this
+/// value as long as they contribute little to the path together: a ray from each of many sheets
+/// costs more than it shows.
 ///
 /// Has no value until Set; trivial, so that paths cost nothing where it is not used.
 template <class T>
@@ -19,8 +20,8 @@ public:
     this->Borrowed = 0.0;
   }
 
-  /// Whether the next surface may borrow the value. `contribution`: the largest color, in [0, 1], that the
-  /// path gets from this light at that surface.
+  /// Returns whether the next surface may borrow the value. `contribution`: the largest color, in
+  /// [0, 1], that the path gets from this light at that surface.
   bool Lend(double contribution)
   {
     this->Borrowed += contribution;

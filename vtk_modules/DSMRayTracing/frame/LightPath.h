@@ -22,7 +22,7 @@ namespace rt
 /// come to.
 struct LightPath
 {
-  int Index = 0; ///< of its ray in the batch
+  int Index = 0; ///< index of its ray in the batch
   SurfacePoint Point;
   glm::dvec3 ToViewer{ 0.0 };
   SampleSequence Random;
@@ -33,7 +33,7 @@ struct LightPath
   /// The picture that the ray belongs to.
   const PictureView* View = nullptr;
   std::int32_t Object = -1; ///< see PixelSample; of the surface that it has come to
-  std::uint64_t Number = 0; ///< what a debug view of owners or bricks shows of the surface
+  std::uint64_t Number = 0; ///< owner or brick of the surface, for a debug view
   unsigned KnownLamps = 0;  ///< bit *i*: Lamps[i] has a value
   bool KnowsAmbient = false;
   // Last, so that what all paths use is together.
@@ -43,10 +43,10 @@ struct LightPath
   static constexpr int MaxKnownLamps = 8;
   KnownLight<glm::dvec3> Lamps[MaxKnownLamps];
 
-  /// What the surface contributes to the colour.
+  /// Returns the contribution of the surface to the color.
   float GetWeight() const { return (1.0f - this->Color.w) * this->Point.Color.w; }
   bool GoesOn() const { return this->Color.w < OpaqueEnough; }
-  /// Moves the start of the ray, which goes on behind the surface until `last`.
+  /// Moves the start of the ray behind the surface, and its end to `last`.
   void Pass(Ray& ray, double last) const
   {
     ray.Min = this->Point.T + this->Point.Clearance / glm::length(ray.Direction);
@@ -54,7 +54,7 @@ struct LightPath
   }
 
 private:
-  /// What lies behind contributes less than half a step of an 8-bit channel.
+  /// Opacity from which anything behind contributes less than half a step of an 8-bit channel.
   static constexpr float OpaqueEnough = 1.0f - 0.5f / 255.0f;
 };
 

@@ -16,8 +16,8 @@
 namespace rt
 {
 
-/// What pieces of media look like in the light that arrives at them. How much light arrives is found at a few places of
-/// each ray, where there is most to be seen; they differ from sample to sample of a pixel. One for each worker.
+/// Lights pieces of media. The light that arrives is computed at a few positions of each ray, where
+/// most is visible; the positions differ between samples of a pixel. One for each worker.
 class MediumLighting
 {
 public:
@@ -41,7 +41,7 @@ private:
   };
   struct Places
   {
-    double Share = 0.0; ///< of all pieces of the ray that have a look
+    double Share = 0.0; ///< share of all pieces of the ray that have a look
     std::vector<Place> All;
   };
 

@@ -26,8 +26,8 @@ public:
   /// Rank 0, while it is traced: whether to give it up. Cheap to ask again and again.
   bool IsTooLong(dsm::BlockStore& store);
 
-  /// What came of it: the level that was shown, how often it waited for a brick, and what it took; the same on every
-  /// rank.
+  /// Records the result of a try: the level that was shown, the number of brick misses, and the
+  /// time in seconds; the same on every rank.
   void Note(int level, std::int64_t misses, double seconds);
 
 private:

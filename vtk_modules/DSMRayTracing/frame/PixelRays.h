@@ -20,7 +20,7 @@ namespace rt
 class PixelRays
 {
 public:
-  /// Whether the matrix can be inverted.
+  /// Returns whether the matrix can be inverted.
   static bool CanBeMade(const glm::dmat4& worldToClip);
   /// Throws dsm::Error when it cannot.
   explicit PixelRays(const FrameRequest& request);
@@ -29,7 +29,7 @@ public:
   static constexpr double Last = 1.0;
 
   /// World space, from the near plane (T = 0) to the far plane (T = Last), or to where FrameRequest::Limits end it.
-  /// `position` in the pixel is in [0, 1), its centre being at one half.
+  /// `position` in the pixel is in [0, 1), its center being at one half.
   Ray GetRay(int x, int y, const glm::dvec2& position = glm::dvec2(0.5)) const;
 
   /// Max of such a ray.
@@ -45,7 +45,7 @@ public:
   /// OpenGL window depth in [0, 1] of a world point.
   float GetDepth(const glm::dvec3& point) const;
 
-  /// Where the picture shows points of the world.
+  /// Returns the projection of world points to the image.
   const PictureView& GetView() const { return this->View; }
 
 private:
@@ -56,8 +56,8 @@ private:
   PictureView View;
   int Width;
   int Height;
-  std::shared_ptr<const std::vector<float>> Limits;     ///< of FrameRequest
-  std::shared_ptr<const std::vector<float>> MediumCuts; ///< of FrameRequest
+  std::shared_ptr<const std::vector<float>> Limits;     ///< from FrameRequest
+  std::shared_ptr<const std::vector<float>> MediumCuts; ///< from FrameRequest
 };
 
 } // namespace rt

@@ -13,15 +13,16 @@
 namespace rt
 {
 
-/// Colour, premultiplied, and window depth of what a sample of a pixel shows.
+/// Color, premultiplied, and window depth of what a sample of a pixel shows.
 struct PixelSample
 {
   static constexpr int MaxLayers = FrameRequest::MaxLayers;
 
   glm::ivec2 Pixel{ 0 };
   glm::vec4 Color{ 0.0f };
-  glm::vec3 Shared{ 0.0f }; ///< what neighbors' ambient occlusion adds to Color in previews
-  /// Of the nearest surface; of media in front, where half of it all is covered.
+  glm::vec3 Shared{ 0.0f }; ///< light that neighbors' ambient occlusion adds to Color in previews
+  /// Depth of the nearest surface, or of the position in media in front of it where half of the
+  /// final coverage is reached.
   float Depth = 1.0f;
   int LightRays = 0; ///< shadow and occlusion rays that were traced for it
 
@@ -30,7 +31,7 @@ struct PixelSample
   glm::vec3 Normal{ 0.0f };
   std::int32_t Object = -1;
 
-  /// The same surface by surface, front to back: its depth, and what it contributes to the colour.
+  /// The same surface by surface, front to back: its depth, and what it contributes to the color.
   /// The last one stands for all behind it.
   int Layers = 0;
   float LayerDepths[MaxLayers];

@@ -42,7 +42,7 @@ glm::ivec2 GetPlace(int ray)
   return { edge * (block % columns) + pixel % edge, edge * (block / columns) + pixel / edge };
 }
 
-/// What a debug view of owners or bricks numbers.
+/// Returns the number that a debug view of owners or bricks shows.
 std::uint64_t GetNumber(DebugView view, const ObjectTracer::Brick& brick)
 {
   return brick.Segment && view == DebugView::Owner
@@ -67,7 +67,8 @@ void DescribeSurface(const LightPath& path, float weight)
 
 } // namespace
 
-/// What mirrors show, on its way. Not on the stack: mirrors may show mirrors many times over.
+/// Light from mirrors while it is gathered. Not on the stack: mirrors may reflect mirrors many
+/// times over.
 struct PixelSampler::Mirrored
 {
   // Does not write to what is not used.
@@ -421,7 +422,7 @@ glm::vec3 PixelSampler::ShowForDebugging(const glm::dvec3& place) const
 
 glm::vec3 PixelSampler::ShowForDebugging(const LightPath& path) const
 {
-  // What faces the viewer is brighter, so that the shape can be seen.
+  // Surfaces that face the viewer are brighter, so that the shape is visible.
   const SurfacePoint& point = path.Point;
   const float facing =
     static_cast<float>(0.4 + 0.6 * std::abs(glm::dot(point.Normal, path.ToViewer)));

@@ -29,11 +29,11 @@ public:
   PixelSampler(const SceneTracers& tracers, const Scene& scene, const PixelRays& rays,
     bool isPreview = false, ChannelSet channels = {});
 
-  /// What the pixels of a box have in common: for Sample. Usable or not, it can be used; but where it is
-  /// not, a smaller box may be.
+  /// Finds the beam of a box of pixels, for Sample. A beam that is not usable is still valid, but a
+  /// smaller box may have a usable one.
   SceneBeam FindBeam(int x, int y, int width, int height) const;
 
-  /// What pixels show, those that show nothing left out.
+  /// Samples of pixels; empty ones are left out.
   using Samples = FixedList<PixelSample, MaxRays>;
 
   /// Adds samples of that number of the pixels of a box, at most BoxEdge wide and high. `beam`: of pixels
@@ -66,7 +66,8 @@ private:
 
   /// Adds what media contribute in front of the surfaces that rays have met.
   void AddMedia(SceneBeam* beam, const Ray* rays, RayMask wanted, LightPath* const* paths) const;
-  /// Of parts of such rays. `cut`: those that begin or end at one of FrameRequest::MediumCuts.
+  /// Adds the light of parts of such rays. `cut`: parts that begin or end at one of
+  /// FrameRequest::MediumCuts.
   void AddPart(SceneBeam* beam, const Ray* rays, RayMask wanted, LightPath* const* paths,
     RayMask cut, MediumLight& light) const;
 
@@ -79,7 +80,7 @@ private:
   void AddReflections(LightPath* const* paths, int count, const ShadingPoint* points, int bounces,
     glm::vec3* colors) const;
   glm::vec3 ShowForDebugging(const LightPath& path) const;
-  /// Of media, by the place that stands for them.
+  /// Color for media, from the position that stands for them.
   glm::vec3 ShowForDebugging(const glm::dvec3& place) const;
 
   std::vector<const BeamFinder*> Finders;

@@ -13,8 +13,8 @@ namespace rt
 namespace
 {
 
-/// Of the pixels that share the walk through the levels above the bricks. Fewer rays than that are
-/// traced at once, so that what is known of them stays in the nearest cache.
+/// Edge of the square of pixels that share the walk through the levels above the bricks. Smaller
+/// blocks of rays are traced together, so that their data stay in the nearest cache.
 constexpr int BeamEdge = BeamHistory::Edge;
 constexpr int SmallestBeamEdge = PixelSampler::BlockEdge;
 

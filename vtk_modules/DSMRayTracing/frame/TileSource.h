@@ -17,7 +17,7 @@
 namespace rt
 {
 
-/// Where the workers of a rank get the tiles of one frame from. Threads as in TileScheduler.
+/// Source of the tiles of one frame for the workers of a rank. Threads as in TileScheduler.
 class TileSource
 {
 public:

@@ -13,7 +13,8 @@ namespace rt
 struct Environment
 {
   glm::dvec3 Up{ 0.0, 1.0, 0.0 }; ///< unit
-  /// Of the directions straight down and straight up; in between by the cosine. Black: none.
+  /// Colors of the directions straight down and straight up; in between they are interpolated by
+  /// the cosine. Black: no environment.
   glm::vec3 Lower{ 0.0f };
   glm::vec3 Upper{ 0.0f };
 

@@ -7,7 +7,7 @@
 namespace rt
 {
 
-/// World space. Colour includes the intensity.
+/// World space. Color includes the intensity.
 struct Light
 {
   enum class Kind

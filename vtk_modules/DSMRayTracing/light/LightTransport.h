@@ -9,7 +9,7 @@
 namespace rt
 {
 
-/// What is done beyond the first hit of each ray.
+/// Settings for the rays beyond each ray's first hit.
 struct LightTransport
 {
   bool Shadows = false;
@@ -27,7 +27,7 @@ struct LightTransport
   Environment Surroundings;
   /// How often a ray may be mirrored.
   int MaxBounces = 1;
-  /// What a mirrored ray sees where it meets nothing.
+  /// Color of a mirrored ray that hits nothing.
   glm::vec3 Background{ 0.0f };
 };
 

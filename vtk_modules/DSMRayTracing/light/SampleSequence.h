@@ -22,8 +22,9 @@ public:
   {
   }
 
-  /// Where in any pixel a sample lies, each in [0, 1): the first one in the centre, the others on
-  /// the additive sequence of the plastic number (M. Roberts, 2018), which fills the pixel evenly.
+  /// Returns the position of a sample in any pixel, each coordinate in [0, 1). The first one is in
+  /// the center; the others follow the additive sequence of the plastic number (M. Roberts, 2018),
+  /// which fills the pixel evenly.
   static glm::dvec2 GetPositionInPixel(int sample)
   {
     constexpr double StepX = 0.7548776662466927;
@@ -33,9 +34,9 @@ public:
     return { x - std::floor(x), y - std::floor(y) };
   }
 
-  /// The next number, uniform in [0, 1). Of successive samples of a pixel, the n-th numbers fill the
-  /// interval evenly, and the n-th pairs of numbers the square (steps of Richtmyer's sequence); where
-  /// they begin is as good as random from pixel to pixel and from number to number.
+  /// Returns the next number, uniform in [0, 1). For successive samples of a pixel, the n-th numbers fill the
+  /// interval evenly, and the n-th pairs of numbers the square (steps of Richtmyer's sequence); their starts
+  /// are pseudorandom from pixel to pixel and from number to number.
   double Next()
   {
     constexpr double Steps[2] = { 0.4142135623730951, 0.7320508075688772 }; // of sqrt(2), sqrt(3)
@@ -46,7 +47,7 @@ public:
   }
 
 private:
-  /// A 32-bit integer finaliser with low bias (C. Wellons, hash-prospector).
+  /// A 32-bit integer finalizer with low bias (C. Wellons, hash-prospector).
   static std::uint32_t Mix(std::uint32_t value)
   {
     value ^= value >> 16;

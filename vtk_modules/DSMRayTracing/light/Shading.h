@@ -16,7 +16,7 @@
 namespace rt
 {
 
-/// What of a light arrives at a point, were nothing in between.
+/// Light that arrives at a point if nothing is in between.
 struct Incidence
 {
   glm::dvec3 Direction{ 0.0 }; ///< unit, from the light to the point
@@ -31,10 +31,10 @@ Incidence GetIncidence(const Light& light, const glm::dvec3& point);
 struct ShadingPoint
 {
   glm::dvec3 Position{ 0.0 };
-  /// Of the side that is seen. At silhouettes an interpolated one may turn away from the viewer.
+  /// Normal of the visible side. At silhouettes an interpolated one may point away from the viewer.
   glm::dvec3 Normal{ 0.0 };
   glm::dvec3 ToViewer{ 0.0 };
-  /// Takes the place of the diffuse colour, and, as in VTK, when it comes from an array also of the
+  /// Takes the place of the diffuse color, and, as in VTK, when it comes from an array also of the
   /// ambient one.
   glm::vec3 Color{ 1.0f };
   bool ColorIsFromArray = false;
@@ -46,25 +46,25 @@ struct ShadingPoint
   glm::dvec3 Surroundings{ 0.0 };
   bool HasSurroundings = false;
   /// A line on the surface, and how much of the point it covers, in [0, 1]. There the surface shows the
-  /// line's colour in place of ambient and diffuse light, as in VTK.
+  /// line's color in place of ambient and diffuse light, as in VTK.
   glm::vec3 LineColor{ 0.0f };
   double LineCover = 0.0;
 };
 
-/// Whether light from there makes the surface brighter, unless something is in between.
+/// Returns whether light from there makes the surface brighter, unless something is in between.
 inline bool Arrives(const Incidence& incidence, const ShadingPoint& point)
 {
   return -glm::dot(point.Normal, incidence.Direction) > 0.0 && incidence.Attenuation > 0.0;
 }
 
-/// The colour, in [0, 1], that a surface sends to the viewer; the formula of VTK's OpenGL polydata
+/// The color, in [0, 1], that a surface sends to the viewer; the formula of VTK's OpenGL polydata
 /// mapper (Phong, for any number of lights):
 ///
 ///   ambient + sum over lights of attenuation * light * (diffuse * N.L + specular * (R.V)^power)
 ///
 /// with (N.L)^power for a lone headlight, as there, and diffuse times the light from all around. Without
 /// lighting, or without any light, the surface shows ambient + diffuse. `visibility(light, incidence)`
-/// is called for lights that face the surface: the part of each colour that arrives (glm::dvec3).
+/// is called for lights that face the surface: the part of each color that arrives (glm::dvec3).
 template <class Visibility>
 glm::vec3 Shade(const std::vector<Light>& lights, const Material& surface,
   const ShadingPoint& point, Visibility&& visibility)

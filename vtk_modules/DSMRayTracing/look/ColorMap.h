@@ -11,7 +11,7 @@
 namespace rt
 {
 
-/// A sampled colour map. Colours are linear in the value between First and Last, entry 0 belonging
+/// A sampled color map. Colors are linear in the value between First and Last, entry 0 belonging
 /// to First; nearest entry. Or categories. Not premultiplied.
 struct ColorMap
 {
@@ -29,8 +29,8 @@ struct ColorMap
     double Value;
     glm::vec4 Color;
   };
-  /// Where there are, in ascending order of their values, only these have colours, whatever the table has; all else is as
-  /// what is not a number.
+  /// If set, in ascending order of value: only these values have colors, whatever the table has.
+  /// All other values are treated as NaN.
   std::optional<std::vector<Category>> Categories;
 
   glm::vec4 Map(double value) const;
@@ -39,7 +39,7 @@ struct ColorMap
   /// The table shows no value up to this one, or, `fromAbove`, no value down to it; infinite where it shows all, or none.
   /// Below and Above are to be as the first and the last entry.
   double FindUnseenEnd(bool fromAbove) const;
-  /// Whether it has no colour that light gets through.
+  /// Returns whether no color of the map lets light through.
   bool IsOpaque() const;
 };
 

@@ -7,7 +7,7 @@
 namespace rt
 {
 
-/// As vtkProperty: colours in [0, 1], coefficients as there.
+/// As vtkProperty: colors in [0, 1], coefficients as there.
 struct Material
 {
   float Ambient = 0.0f;
@@ -18,9 +18,9 @@ struct Material
   glm::vec3 DiffuseColor{ 1.0f };
   glm::vec3 SpecularColor{ 1.0f };
   float Opacity = 1.0f;
-  /// Part of the light that is mirrored; the rest is the surface's own colour.
+  /// Part of the light that is mirrored; the rest is the surface's own color.
   float Reflectivity = 0.0f;
-  /// Off: the surface shows its colour as it is.
+  /// Off: the surface shows its color as it is.
   bool Lighting = true;
 };
 

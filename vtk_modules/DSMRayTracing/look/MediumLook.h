@@ -31,7 +31,8 @@ struct GradientOpacity
 /// How a medium looks, besides its color and extinction.
 struct MediumLook
 {
-  /// Whether lamps light the medium as a surface across the gradient; else it shines by itself.
+  /// True: lights shade the medium like a surface across the gradient. False: the medium emits
+  /// light by itself.
   bool Shade = false;
   /// How they do, in the medium's own colors.
   Material Surface;

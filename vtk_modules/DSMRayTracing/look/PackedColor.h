@@ -10,7 +10,7 @@
 namespace rt
 {
 
-/// A colour as a sample of a field: red, green, blue and opacity, in this order in memory, a byte each.
+/// A color as a sample of a field: red, green, blue and opacity, in this order in memory, a byte each.
 struct PackedColor
 {
   static std::uint32_t Make(const std::uint8_t rgba[4])

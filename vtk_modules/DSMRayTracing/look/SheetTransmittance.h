@@ -22,7 +22,8 @@ inline glm::dvec3 GetSheetTransmittance(const glm::vec4& color)
   return (1.0 - opacity) * (1.0 + scattered);
 }
 
-/// Whether a ray of light with that transmittance adds less than half a step to an 8-bit channel.
+/// Returns whether a ray of light with that transmittance adds less than half a step to an 8-bit
+/// channel.
 inline bool IsDark(const glm::dvec3& transmittance)
 {
   return !(std::max({ transmittance.x, transmittance.y, transmittance.z }) > 0.5 / 255.0);

@@ -13,7 +13,7 @@ namespace rt
 namespace
 {
 
-/// Of a row of `size` texels the one at `place`, which may be far outside, or not a number.
+/// Returns the texel at `place` in a row of `size` texels. `place` may be far outside, or NaN.
 std::size_t Wrap(double place, int size, bool repeat)
 {
   const double whole = std::floor(place);

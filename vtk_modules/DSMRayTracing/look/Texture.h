@@ -19,7 +19,7 @@ struct Texture
   int Height = 0;
   /// Four bytes a texel, red first, from the lower left one, row by row; alpha is opacity.
   std::vector<std::uint8_t> Texels;
-  /// Off: beyond the picture its border goes on.
+  /// False: the border of the image is repeated beyond it.
   bool Repeat = true;
   /// Off: the nearest texel.
   bool Interpolate = false;

@@ -18,7 +18,7 @@ namespace
 
 constexpr int BinsOfGroup = 16;
 
-/// Of either.
+/// Returns the larger of each number.
 TransferFunction::Behavior GetLarger(
   const TransferFunction::Behavior& one, const TransferFunction::Behavior& other)
 {
@@ -50,7 +50,7 @@ TransferFunction::TransferFunction(
       samples[static_cast<std::size_t>(std::clamp(sample, 0, this->AllBins - 2))];
     return glm::dvec4(glm::dvec3(one) * one.w, one.w);
   };
-  // Where nothing is at one end of a bin, it has the color of the other.
+  // If one end of a bin is transparent, the bin has the color of the other end.
   const auto getTinge = [&](int bin)
   {
     const auto& before =

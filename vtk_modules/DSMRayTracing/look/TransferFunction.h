@@ -14,13 +14,14 @@
 namespace rt
 {
 
-/// What a medium emits and absorbs where it has a value. Values beyond the function's range are as those at its ends.
-/// The function is integrated over values beforehand, so that a ray between two values misses none of the values between
-/// them (Engel et al., "High-quality pre-integrated volume rendering", 2001). Any number of threads may ask.
+/// Emission and absorption of a medium as a function of its value. Values outside of the function's
+/// range are clamped to it. The function is integrated over the values beforehand, so a ray between
+/// two values misses none of the values in between (Engel et al., "High-quality pre-integrated
+/// volume rendering", 2001). Any number of threads may call it.
 class TransferFunction
 {
 public:
-  /// Of the range of values, that suffice for most functions.
+  /// Number of bins in the range of values. Sufficient for most functions.
   static constexpr int Bins = 4096;
 
   /// `samples`: one more than bins, evenly spaced from `first` to `last`, which is greater. Red, green, blue (straight), and
@@ -64,7 +65,7 @@ public:
   };
   Behavior FindBehavior(double begin, double end) const;
 
-  /// Whether any value from `first` to `last` is seen.
+  /// Returns whether any value from `first` to `last` is visible.
   bool IsSeen(double first, double last) const
   {
     return first <= last &&
@@ -90,7 +91,7 @@ private:
 
   double First;
   double Scale;
-  double Last; ///< of the range, in bins from First
+  double Last; ///< end of the range, in bins from First
   int AllBins;
   std::vector<Bin> Table;
   std::vector<int> SeenBefore; ///< bins before each that are seen; one more at the end

@@ -34,8 +34,9 @@ struct MediumOf
   std::shared_ptr<const TransferFunction> Function; ///< not null
   MediumLook Look;
   ClipRegion Clipping;
-  /// What the colors come from by `Colors`, or, without, are (PackedColor, whose opacities do not count); then the function
-  /// only says how dense the medium is. Null: the function has the colors.
+  /// Values that define the colors: by `Colors` or, without it, directly (PackedColor, whose
+  /// opacities are ignored). The function then defines only the density of the medium. Null: the
+  /// function defines the colors, too.
   std::shared_ptr<const typename FieldType::Values> ColorValues = nullptr;
   std::shared_ptr<const ColorMap> Colors = nullptr;
   int Group = 0; ///< MediumTracer::GetGroup; of up to four media

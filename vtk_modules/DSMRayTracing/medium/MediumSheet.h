@@ -16,7 +16,7 @@ namespace rt
 /// Gives to `light` what a sheet across a ray adds, as thin as can be: its color (not premultiplied) and opacity.
 inline void AddSheet(MediumLight& light, int ray, double t, const glm::dvec3& color, double opacity)
 {
-  // What is behind that much is not seen anyway.
+  // Anything behind such an opacity is invisible anyway.
   constexpr double most = 1.0 - 1e-15;
   const double depth = -std::log1p(-std::clamp(opacity, 0.0, most));
   const glm::dvec3 emission = depth * color;

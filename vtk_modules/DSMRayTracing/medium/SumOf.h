@@ -41,7 +41,7 @@ struct SumOf
   struct Sample
   {
     double Value;
-    double Weight; ///< of the mean; 0 or 1
+    double Weight; ///< weight in the mean: 0 or 1
   };
   /// `samples`: as TransferFunction has them; values are sums over a unit of world length.
   static std::shared_ptr<const TransferFunction> CreateFunction(

@@ -19,29 +19,30 @@
 namespace rt
 {
 
-/// Where a ray meets a mesh first. World space; normals are unit and not turned to the viewer.
+/// First intersection of a ray with a mesh. World space; normals are unit length and not turned to
+/// the viewer.
 struct MeshHit
 {
   double T = 0.0;
-  /// Of the triangle's plane; its corners are counter-clockwise seen from the side it points to,
-  /// in the mesh's space (a mirroring matrix does not turn the surface inside out).
+  /// Normal of the triangle's plane. The corners are counter-clockwise, in the mesh's space, seen
+  /// from the side it points to (a mirroring matrix does not turn the surface inside out).
   glm::dvec3 GeometricNormal{ 0.0 };
   /// Interpolated from the points' normals; where they have none, the geometric one.
   glm::dvec3 Normal{ 0.0 };
-  /// Whether the ray comes from the side to which the geometric normal points.
+  /// True if the ray comes from the side that the geometric normal points to.
   bool Front = true;
   double Value = 0.0;                  ///< interpolated, or the triangle's; NaN without values
   glm::dvec3 CornerValues{ 0.0 };      ///< in the order of Weights; NaN without values
-  glm::vec4 Color{ 1.0f };             ///< in [0, 1], not premultiplied; white without colours
+  glm::vec4 Color{ 1.0f };             ///< in [0, 1], not premultiplied; white without colors
   glm::dvec2 TextureCoordinate{ 0.0 }; ///< 0 without
-  /// Of the corners as the brick has them: the smallest position first.
+  /// Barycentric weights of the corners in the brick's order: the smallest position first.
   glm::dvec3 Weights{ 0.0 };
   glm::vec3 Corners[3]; ///< in that order, relative to the mesh's origin
   unsigned EdgeFlags = bricks::AllEdges;
   dsm::BlockId Brick = 0;
-  std::uint32_t Triangle = 0; ///< of the brick
+  std::uint32_t Triangle = 0; ///< index in the brick
 
-  /// What `ray` finds in a triangle that it meets there.
+  /// Sets the hit from a triangle that `ray` intersects.
   void Set(const MeshInstance& instance, const Ray& ray, const TriangleHit& triangle,
     const TriangleAttributes& attributes)
   {

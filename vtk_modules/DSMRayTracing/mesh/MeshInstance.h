@@ -85,7 +85,7 @@ private:
 
   std::shared_ptr<const bricks::TriangleMesh> Shape;
   glm::dmat4 MeshToWorld;
-  glm::dvec3 WorldOrigin; ///< of the positions in bricks
+  glm::dvec3 WorldOrigin; ///< origin of the positions in bricks
   glm::dmat3 WorldToMesh;
   glm::dmat3 NormalToWorld;
   glm::dvec3 AxisLengths; ///< in the world, of units of the mesh's axes

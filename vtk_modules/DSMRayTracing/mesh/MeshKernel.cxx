@@ -72,7 +72,7 @@ private:
     {
     }
 
-    /// Whether a ray has found something nearer.
+    /// Returns whether the triangle is the ray's nearest hit so far.
     HWY_INLINE bool Try(int index, std::uint32_t triangle)
     {
       NearestTriangle& nearest = this->Packet.Nearest[index];

@@ -21,7 +21,7 @@ namespace rt
 /// Pure, but for what a visitor does; any thread.
 struct MeshKernel
 {
-  /// What is done with a brick.
+  /// Operation on a brick.
   class Visitor
   {
   public:

@@ -19,10 +19,10 @@ class ObjectDigest;
 template <class Store>
 class MeshTracer;
 
-/// What a mesh looks like.
+/// Appearance of a mesh.
 struct MeshLook
 {
-  /// Where a point of the surface has its color from.
+  /// Source of the color at a point of the surface.
   enum class Coloring
   {
     Material,     ///< the diffuse color
@@ -31,14 +31,15 @@ struct MeshLook
     Colors        ///< the mesh's own colors
   };
   Coloring ColoredBy = Coloring::Material;
-  /// Of the values; not null when they give the color.
+  /// Color map for the values; not null when they define the color.
   std::shared_ptr<const ColorMap> Colors;
   /// Times the color, where the mesh has texture coordinates; may be null.
   std::shared_ptr<const Texture> Picture;
   /// Shaded by the triangles' planes, also where points have normals.
   bool Flat = false;
   Material Surface;
-  /// Of the side from which a triangle's corners are clockwise; without, both sides are alike.
+  /// Material of the side from which a triangle's corners are clockwise; if empty, both sides are
+  /// alike.
   std::optional<Material> BackSurface;
   std::optional<EdgeLines> Edges;
 };
@@ -53,8 +54,8 @@ struct MeshObject
   MeshLook Look;
   ClipRegion Clipping;
 
-  /// Whether it lets no light through anywhere. Colors of its own and a texture are not looked through:
-  /// with such it may.
+  /// Returns whether the mesh lets no light through anywhere. Colors of its own and a texture are
+  /// not examined: a mesh with these counts as translucent.
   bool IsOpaque() const;
   /// All that a picture of it depends on.
   void AddTo(ObjectDigest& digest) const;

@@ -29,7 +29,7 @@ struct MeshPacket
   alignas(64) double Max[Size];
 
   // BoxRay:
-  bool Backward[3]; ///< whether the rays move towards smaller coordinates
+  bool Backward[3]; ///< true if the rays move towards smaller coordinates
   alignas(64) float Start[3][Size];
   alignas(64) float Inverse[3][Size];
   alignas(64) float Margin[3][Size];
@@ -41,7 +41,7 @@ struct MeshPacket
   alignas(64) double BoxesPerT[Size];
   alignas(64) float Uncertainty[Size];
 
-  /// Of the brick that is being searched.
+  /// Filters for the brick that is being searched.
   FilterRay Filters[Size];
   NearestTriangle Nearest[Size];
   MeshCulling Culling;

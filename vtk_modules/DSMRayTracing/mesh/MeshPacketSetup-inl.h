@@ -160,7 +160,7 @@ private:
     return GetBits(hn::And(meets, hn::Le(enter, leave)));
   }
 
-  /// What all rays of the packet have to have in common with this one.
+  /// Sets the properties that all rays of the packet must share with this one.
   void SetCommon(int index)
   {
     int largest = 0;
@@ -198,7 +198,7 @@ private:
       const Vector inverse = hn::Load(tag, this->Inverse[axis] + first);
       const Lanes backward = hn::Lt(inverse, hn::Zero(tag));
       alike = packet.Backward[axis] ? hn::And(alike, backward) : hn::AndNot(backward, alike);
-      // Of axes along which a ray moves as much, the first one counts.
+      // Among axes along which a ray moves equally far, the first one is taken.
       const Lanes less =
         axis < largest ? hn::Lt(hn::Abs(direction), most) : hn::Le(hn::Abs(direction), most);
       alike = hn::And(alike, less);
@@ -231,7 +231,7 @@ private:
   MeshPacket& Packet;
   const MeshInstance& Instance;
   Mask Wanted;
-  // Of the world at first, then of the mesh.
+  // In world space at first, then in the mesh's space.
   HWY_ALIGN double Origin[3][Size];
   HWY_ALIGN double Direction[3][Size];
   HWY_ALIGN double Inverse[3][Size];

@@ -79,7 +79,7 @@ struct MeshRay
     return true;
   }
 
-  /// What lies behind `t` need not be visited any more.
+  /// Ends the ray at `t`: boxes behind it need not be visited.
   void Shorten(double t)
   {
     this->Triangles.Max = t;
@@ -101,7 +101,8 @@ struct MeshRay
 
   /// A ray that moves less than this part of its way along an axis is parallel to its planes.
   static constexpr double SmallestSlope = 1e-15;
-  /// Of the extent of the mesh, its distance, and a place on the ray: what rounding can amount to.
+  /// Bounds of the rounding error, relative to the extent of the mesh, its distance, and a place on
+  /// the ray.
   static constexpr double ExtentPart = 0x1p-20;
   static constexpr double DistancePart = 0x1p-46;
   static constexpr double PlacePart = 0x1p-20;

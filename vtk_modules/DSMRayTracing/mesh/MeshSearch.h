@@ -39,8 +39,8 @@ public:
   RayMask Intersect(
     const MeshInstance& instance, const Ray* rays, RayMask wanted, const Take& take) const;
 
-  /// Whether there is any hit in [ray.Min, ray.Max]: whether Intersect finds one. May wait for
-  /// bricks.
+  /// Returns whether there is any hit in [ray.Min, ray.Max], that is, whether Intersect finds one.
+  /// May wait for bricks.
   bool IsOccluded(const MeshInstance& instance, const Ray& ray) const;
 
   /// The same for those of a batch of rays that are `wanted`.

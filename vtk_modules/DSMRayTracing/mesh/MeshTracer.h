@@ -72,8 +72,9 @@ public:
   }
 
 private:
-  /// Of the distances of a mesh's hit and of its ray's origin from the origin of the world: what the
-  /// test in double precision can be off by, a few 1e-16 of them, and enough for rays at low angles.
+  /// Bound of the error of a hit, relative to the distances of the hit and of the ray's origin from
+  /// the world's origin. The test in double precision is off by a few 1e-16; this suffices for rays
+  /// at low angles.
   static constexpr double HitError = 1e-13;
 
   void Describe(const MeshHit& hit, const Ray& ray, SurfacePoint& point) const

@@ -20,7 +20,7 @@ struct NearestTriangle
   TriangleHit Hit;
   bool Found = false;
 
-  /// Whether a ray meets a triangle of a brick, at `hit`.
+  /// Returns whether a ray intersects a triangle of a brick, and sets `hit`.
   static bool Meets(const TriangleRay& ray, const MeshCulling& culling,
     const bricks::TriangleBrick& brick, std::uint32_t triangle, TriangleHit& hit)
   {
@@ -31,8 +31,8 @@ struct NearestTriangle
       !(hit.Front ? culling.Front : culling.Back);
   }
 
-  /// Whether a triangle of a brick is the nearest so far. If so the ray ends there: ray.Max is to be
-  /// lowered to Hit.T.
+  /// Returns whether a triangle of a brick is the nearest so far. If so, the ray ends there: the
+  /// caller has to lower ray.Max to Hit.T.
   bool Try(const TriangleRay& ray, const MeshCulling& culling, const bricks::TriangleBrick& brick,
     std::uint32_t number, std::uint32_t triangle)
   {

@@ -28,8 +28,8 @@ public:
   {
   }
 
-  /// Whether the brick has a nearer hit than those so far, or one as near that comes first. Hits
-  /// shorten the ray.
+  /// Returns whether the brick has a nearer hit than those so far, or an equally near one that
+  /// comes first. Hits shorten the ray.
   bool Intersect(MeshRay& ray, NearestTriangle& nearest) const
   {
     switch (ray.Triangles.Axes[2])
@@ -43,7 +43,7 @@ public:
     }
   }
 
-  /// Whether the brick has any hit; if so the ray ends.
+  /// Returns whether the brick has any hit; if so, the ray ends.
   bool IsOccluded(MeshRay& ray) const
   {
     switch (ray.Triangles.Axes[2])

@@ -17,7 +17,8 @@
 namespace rt
 {
 
-/// What the corners of one triangle carry, taken out of its brick, so that the brick can be let go.
+/// Attributes at the corners of one triangle, copied out of its brick so that the brick can be
+/// released.
 struct TriangleAttributes
 {
   std::uint32_t Normals[3];

@@ -7,21 +7,23 @@
 namespace rt
 {
 
-/// Where a ray meets a triangle.
+/// Intersection of a ray with a triangle.
 struct TriangleHit
 {
   double T = 0.0;
   /// Weights of the corners; not negative, their sum is 1.
   double Weights[3] = { 0.0, 0.0, 0.0 };
   float Corners[3][3] = {}; ///< relative to the mesh's origin
-  bool Front = false;       ///< whether the ray comes from where the corners are counter-clockwise
+  bool Front =
+    false; ///< true if the ray comes from the side where the corners are counter-clockwise
   std::uint32_t Brick = 0;
-  std::uint32_t Triangle = 0; ///< of the brick
+  std::uint32_t Triangle = 0; ///< index in the brick
 };
 
-/// Whether `a` comes before `b` among hits at the same T: the lexicographically smaller corners. A
-/// rule of geometry, so that where a ray meets an edge, the order in which triangles are tried makes
-/// no difference; of triangles that are in the mesh twice, the first in the order of the bricks.
+/// Returns whether `a` comes before `b` among hits at the same T: the one with the
+/// lexicographically smaller corners. The rule is geometric, so the order in which triangles are
+/// tried makes no difference where a ray meets an edge. Among duplicate triangles of a mesh, the
+/// first in the order of the bricks is taken.
 inline bool ComesFirst(const TriangleHit& a, const TriangleHit& b)
 {
   for (int corner = 0; corner < 3; ++corner)

@@ -11,14 +11,14 @@
 namespace rt
 {
 
-/// What objects and media have in common for the rooms above: beams of rays, and the bricks that these need.
+/// Common interface of objects and media: beams of rays, and the bricks that these need.
 class BeamFinder
 {
 public:
   virtual ~BeamFinder() = default;
 
-  /// What rays between those of `corners`, in order around them, have in common. Null: there is nothing to
-  /// tell.
+  /// Finds the data that all rays between the four `corners`, in order around the beam, have in
+  /// common. Null: none.
   virtual std::unique_ptr<ObjectBeam> FindBeam(const Ray corners[4]) const = 0;
 
   /// Has the first `count` bricks that a beam meets prefetched, ahead of the search; returns whether any was absent.

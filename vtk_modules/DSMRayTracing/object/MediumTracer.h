@@ -30,17 +30,19 @@ public:
   /// The brick that has a place's values (world space); of no segment, where the medium is not.
   virtual ObjectTracer::Brick FindBrick(const glm::dvec3& place) const = 0;
 
-  /// Whether the light of lamps is dimmed on its way through: else the medium is only for the eye.
+  /// Returns whether the medium attenuates the light of lamps. If not, only rays from the camera
+  /// see it.
   virtual bool DimsLamps() const { return true; }
 
   /// Media of the same group, if it is not 0, are looks of one: where several are, what they emit adds up, and their depth is
   /// the mean of their depths, weighted by these.
   virtual int GetGroup() const { return 0; }
 
-  /// Whether pieces have to be kept, and described.
+  /// Returns whether pieces have to be kept, and described.
   virtual bool IsDescribed() const { return false; }
   ///@{
-  /// What is only known then: how light makes them shine, and how dense they are.
+  /// Results of Describe: whether light makes the pieces shine, and whether their density is known
+  /// only then.
   virtual bool IsLit() const { return false; }
   virtual bool HasLateExtinction() const { return false; }
   ///@}

@@ -7,8 +7,8 @@
 namespace rt
 {
 
-/// What an object knows beforehand of the rays of a beam. Each kind of object adds what it knows. Belongs
-/// to the worker that has the beam.
+/// Data about the rays of a beam that an object finds beforehand. Each kind of object derives its
+/// own. Belongs to the worker that has the beam.
 struct ObjectBeam
 {
   virtual ~ObjectBeam() = default;

@@ -46,7 +46,7 @@ public:
   {
     this->AddIf(value ? &*value : nullptr);
   }
-  /// What is there, or that there is nothing.
+  /// Adds the value, or that there is none.
   template <class T>
   void AddIf(const T* value)
   {

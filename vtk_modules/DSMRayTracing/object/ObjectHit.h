@@ -49,7 +49,7 @@ public:
     }
   }
 
-  /// What the object has said.
+  /// Returns the hit that the object has stored.
   template <class Hit>
   const Hit& Get() const
   {

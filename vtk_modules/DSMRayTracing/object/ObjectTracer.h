@@ -33,7 +33,8 @@ public:
   std::int32_t GetNumber() const { return this->Number; }
   void SetNumber(std::int32_t number) { this->Number = number; }
 
-  /// Whether the object lets no light through anywhere, so that any hit decides on a ray of light.
+  /// Returns whether the object lets no light through anywhere, so that any hit blocks a ray of
+  /// light.
   virtual bool IsOpaque() const = 0;
 
   /// Finds the first hits of those rays that are `wanted` in [ray.Min, ray.Max], and gives them to

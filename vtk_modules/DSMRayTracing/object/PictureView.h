@@ -11,7 +11,7 @@
 namespace rt
 {
 
-/// Where a picture shows points of the world: what is as wide on the screen everywhere needs it.
+/// Projection of world points to the picture, for details of constant width on the screen.
 struct PictureView
 {
   /// Takes a world point (with a fourth coordinate of 1) to the picture: x and y in pixels, both times

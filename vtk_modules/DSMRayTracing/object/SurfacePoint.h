@@ -10,7 +10,7 @@
 namespace rt
 {
 
-/// Where a ray meets the scene first, and what is there.
+/// First intersection of a ray with the scene, and the surface's properties there.
 struct SurfacePoint
 {
   double T = 0.0;
@@ -18,7 +18,7 @@ struct SurfacePoint
   glm::dvec3 Normal{ 0.0 }; ///< unit, world
   /// Normal or its opposite: that of the side from which the ray comes.
   glm::dvec3 Facing{ 0.0 };
-  /// Of the surface itself, before light; straight (not premultiplied), alpha is opacity.
+  /// Color of the surface itself, before light; straight (not premultiplied), alpha is opacity.
   glm::vec4 Color{ 1.0f };
   bool ColorIsFromArray = false;
   const Material* Surface = nullptr;

@@ -23,7 +23,7 @@ struct BoxRay
   float Inverse[4];
   /// How far the planes are moved, in units of t.
   float Margin[4];
-  /// Where in WideBvhNode::Bounds the planes stand that the ray meets first, and last, in bytes.
+  /// Offsets in bytes, in WideBvhNode::Bounds, of the planes that the ray meets first, and last.
   std::size_t Near[3];
   std::size_t Far[3];
 

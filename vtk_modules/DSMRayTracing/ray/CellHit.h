@@ -7,11 +7,11 @@
 namespace rt
 {
 
-/// Where a ray meets an isosurface within a brick.
+/// Intersection of a ray with an isosurface within a brick.
 struct CellHit
 {
   double T = 0.0;
-  int Cell[3] = { 0, 0, 0 };         ///< of the brick
+  int Cell[3] = { 0, 0, 0 };         ///< position in the brick
   Lanes Local{ 0.0, 0.0, 0.0, 0.0 }; ///< within the cell, in [0, 1]
   bool FromInside = false;           ///< the ray comes from values that are not below the isovalue
 };

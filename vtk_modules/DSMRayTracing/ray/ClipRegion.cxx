@@ -60,7 +60,8 @@ public:
   {
   }
 
-  /// Where it goes from one box to another within a part, ascending; returns how often.
+  /// Finds the T, ascending, at which the ray goes from one box to another within a part; returns
+  /// their number.
   int FindBorders(const ClipRegion::Interval& part, double borders[6]) const
   {
     int count = 0;
@@ -84,7 +85,7 @@ public:
     return count;
   }
 
-  /// Whether the box is kept that it crosses in a part.
+  /// Returns whether the box that the ray crosses in a part is kept.
   bool IsKept(const ClipRegion::Interval& part) const
   {
     const double middle =

@@ -24,7 +24,7 @@ public:
   /// World space; keeps the points p with dot(Normal, p - Point) >= 0.
   struct HalfSpace
   {
-    glm::dvec3 Normal{ 0.0 }; ///< of any length
+    glm::dvec3 Normal{ 0.0 }; ///< any length
     glm::dvec3 Point{ 0.0 };
   };
 
@@ -32,7 +32,7 @@ public:
   struct Grid
   {
     glm::dmat4 WorldToGrid{ 1.0 }; ///< affine
-    /// Where the boxes meet, in the grid's space.
+    /// Planes between the boxes, in the grid's space.
     glm::dvec3 Lower{ 0.0 };
     glm::dvec3 Upper{ 0.0 };
     std::uint32_t Kept = 0; ///< bit x + 3 y + 9 z
@@ -48,7 +48,7 @@ public:
   /// A line crosses seven of the boxes at most.
   static constexpr int MaxParts = 4;
 
-  /// What is in all of them is kept.
+  /// Keeps the points that are in all of them.
   std::vector<HalfSpace> HalfSpaces;
   /// If set, and is in a box that is kept.
   std::optional<Grid> Boxes;

@@ -27,7 +27,7 @@ struct MediumPiece
   double End;
   /// Red, green and blue that the medium emits there, and its optical depth.
   Lanes Amount;
-  /// What it adds to the opacity of the ray, were its medium the only one.
+  /// Opacity that the piece adds to the ray if its medium is the only one.
   double Share = 0.0;
   /// Which light makes it shine; null: it shines by itself.
   const MediumLook* Look = nullptr;
@@ -38,9 +38,10 @@ struct MediumPiece
   double GetMiddle() const { return 0.5 * (this->Begin + this->End); }
 };
 
-/// What the rays of a batch get from media between two surfaces, from the front: the emission-absorption integral of
-/// Max, "Optical models for direct volume rendering" (1995). One medium that shines by itself adds to the sums as it is
-/// met; of others, pieces are kept first, lit, and merged.
+/// Light that the rays of a batch receive from media between two surfaces, front to back: the
+/// emission-absorption integral of Max, "Optical models for direct volume rendering" (1995). A
+/// single medium that emits light by itself adds to the sums directly. For other media, pieces are
+/// kept first, lit, and merged.
 class MediumLight
 {
 public:
@@ -58,7 +59,7 @@ public:
   /// Pieces that add less need no description.
   static constexpr double LeastShare = 1.0 / 65536.0;
 
-  /// Of those of the rays that are `wanted`.
+  /// Begins with the `wanted` rays of `rays`.
   void Begin(const Ray* rays, RayMask wanted)
   {
     ForEachRay(wanted,
@@ -146,7 +147,7 @@ public:
   /// T of a place with as much of the way through all that a ray meets before it as behind it.
   double GetHalfWay(int ray) const { return 0.5 * (this->First[ray] + this->Last[ray]); }
   bool IsDark(int ray) const { return this->Transmittance[ray] < this->DarkBelow; }
-  /// What arrives at the ray's begin.
+  /// Returns the color that arrives at the ray's origin.
   glm::dvec3 GetColor(int ray) const
   {
     return { this->Sum[ray][0], this->Sum[ray][1], this->Sum[ray][2] };
@@ -154,18 +155,18 @@ public:
 
   /// For each ray:
   double Length[MaxRays];        ///< world length of a unit of T
-  double Transmittance[MaxRays]; ///< what gets through what was met so far
+  double Transmittance[MaxRays]; ///< transmittance of all pieces so far
   double First[MaxRays];         ///< T where there is anything first; infinite: nowhere
   double Last[MaxRays];          ///< T where the last of it ends, where there is anything
   double Middle[MaxRays];        ///< T where half of the light is gone; infinite: nowhere
 
-  /// Whether pieces are kept, too.
+  /// True if pieces are kept in addition to the sums.
   bool KeepsPieces = false;
   std::vector<MediumPiece> Pieces[MaxRays];
-  std::size_t FirstPiece[MaxRays]; ///< of the medium that is met
+  std::size_t FirstPiece[MaxRays]; ///< index of the first piece of the current medium
   /// World length up to which thin pieces that follow one another are joined into one.
   double JoinedLength = 0.0;
-  /// Transmittance of rays that need not go on in the medium that is met.
+  /// Rays with less transmittance than this end in the current medium.
   double DarkBelow = Dark;
 
 private:

@@ -13,7 +13,7 @@ namespace rt
 /// the largest one with the opposite sign.
 struct RayExtrema
 {
-  /// Of those of the rays that are `wanted`: only values that are beyond `limit` (times the sign) count.
+  /// Begins with the `wanted` rays. Only values beyond `limit` (times the sign) count.
   RayExtrema(RayMask wanted, bool isMinimum, double limit, double goal)
     : Sign(isMinimum ? -1.0 : 1.0)
     , Goal(goal)
@@ -32,7 +32,7 @@ struct RayExtrema
   double Sign;
   double Goal;           ///< a ray that has met this value (times the sign) is done
   double Value[MaxRays]; ///< times the sign
-  double T[MaxRays];     ///< of rays in Found
+  double T[MaxRays];     ///< valid for rays in Found
   RayMask Found = 0;     ///< rays that have met any value that counts
 };
 

@@ -14,7 +14,7 @@ constexpr int MaxRays = 64;
 using RayMask = std::uint64_t;
 static_assert(8 * sizeof(RayMask) == MaxRays, "a bit for each ray");
 
-/// Of one ray, or, where that is false, of none.
+/// Returns the mask of one ray, or an empty mask if `there` is false.
 inline RayMask GetBit(int ray, bool there = true)
 {
   return RayMask{ there } << ray;
@@ -26,7 +26,7 @@ inline int GetLowest(RayMask rays)
   return __builtin_ctzll(rays);
 }
 
-/// Of the rays of a mask those from `first` on, at most 31.
+/// Returns the bits of `count` rays from `first` on, at most 31.
 inline std::uint32_t GetPart(RayMask rays, int first, int count)
 {
   return static_cast<std::uint32_t>(rays >> first) & ((std::uint32_t{ 1 } << count) - 1);

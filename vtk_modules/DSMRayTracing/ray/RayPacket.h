@@ -22,25 +22,25 @@ struct RayPacket
   alignas(64) double Origin[3][Size];
   alignas(64) double Direction[3][Size];
   alignas(64) double Inverse[3][Size];
-  /// Where the ray is in the volume.
+  /// T at which the ray enters and leaves the volume.
   alignas(64) double Enter[Size];
   alignas(64) double Leave[Size];
-  /// Where it is in the brick that it was last asked about.
+  /// The same for the brick that the ray was last tested with.
   alignas(64) double BrickEnter[Size];
   alignas(64) double BrickLeave[Size];
-  /// Whether the rays move towards larger coordinates.
+  /// True for each axis along which the rays move towards larger coordinates.
   bool Forward[3];
-  /// Those that are there; the numbers of the others mean nothing.
+  /// Valid rays; the numbers of the others are undefined.
   Mask Rays = 0;
 };
 
-/// Where rays of a packet meet an isosurface within a brick, in any order; see CellHit.
+/// Intersections of a packet's rays with an isosurface within a brick, in any order; see CellHit.
 struct PacketHits
 {
   int Count = 0;
   int Ray[RayPacket::Size];
   alignas(64) double T[RayPacket::Size];
-  alignas(64) double Cell[3][RayPacket::Size];  ///< of the brick; whole numbers
+  alignas(64) double Cell[3][RayPacket::Size];  ///< position in the brick; integers
   alignas(64) double Local[3][RayPacket::Size]; ///< within the cell, in [0, 1]
   std::uint64_t FromInside = 0;                 ///< bit i is hit i
 

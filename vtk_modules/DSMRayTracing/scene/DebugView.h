@@ -11,8 +11,9 @@
 namespace rt
 {
 
-/// What the surfaces' colours tell instead of their look. Pictures of TracingRank and TileTime differ
-/// from frame to frame, and with the number of ranks, as what they show does; NewTiles and Misses too.
+/// Diagnostic quantity that colors the surfaces instead of their material. Images of TracingRank
+/// and TileTime depend on the frame and on the number of ranks, because the quantities do; so do
+/// NewTiles and Misses.
 enum class DebugView
 {
   Off,
@@ -32,13 +33,13 @@ constexpr double LongTileSeconds = 0.002;
 /// A tile that waited for as many bricks, or more, is white.
 constexpr std::uint64_t ManyMisses = 16;
 
-/// Of a tile that another rank traced in the last frame.
+/// Color of a tile that another rank traced in the last frame.
 inline glm::vec3 GetNewTileColor()
 {
   return { 1.0f, 0.2f, 0.1f };
 }
 
-/// Colours of numbers: neighbouring numbers differ much (hues at steps of the golden ratio).
+/// Colors of numbers: neighboring numbers differ much (hues at steps of the golden ratio).
 inline glm::vec3 GetNumberColor(std::uint64_t number)
 {
   const double hue = std::fmod(0.61803398874989484 * static_cast<double>(number), 1.0);

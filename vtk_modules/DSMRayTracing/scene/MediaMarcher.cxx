@@ -13,7 +13,7 @@ namespace rt
 namespace
 {
 
-/// What pieces of media hold in the same part of a ray.
+/// Sum over the pieces of media in the same part of a ray.
 class PartSum
 {
 public:
@@ -56,7 +56,7 @@ private:
   {
     int Number;
     Lanes Sum;
-    double Squares; ///< of its depths
+    double Squares; ///< sum of the squares of its depths
   };
 
   Lanes Sum{ 0.0 };

@@ -23,9 +23,10 @@ public:
 
   bool IsEmpty() const { return this->Media.empty(); }
 
-  /// What those of a batch of rays that are `wanted` get from media in [ray.Min, ray.Max]. `beam`: with all of the rays
-  /// within; null: they go where they like. `shine(light)` is called between, if media are lit: it gives the pieces that
-  /// have a look the color that they have in the light that arrives.
+  /// Finds the light that the `wanted` rays of a batch receive from media in [ray.Min, ray.Max].
+  /// `beam`: contains all of the rays; null: the rays have any direction. `shine(light)` is called
+  /// in between if media are lit: it gives the pieces that have a look their color in the light
+  /// that arrives.
   template <class Shine>
   void March(
     const Ray* rays, RayMask wanted, SceneBeam* beam, MediumLight& light, const Shine& shine) const
@@ -54,8 +55,8 @@ private:
   void Merge(RayMask wanted, MediumLight& light) const;
 
   const MediumTracers& Media;
-  std::size_t FirstBeam; ///< of SceneBeam
-  bool IsLit;            ///< what any medium looks like depends on light
+  std::size_t FirstBeam; ///< index in SceneBeam
+  bool IsLit;            ///< true if light affects any medium
   bool KeepsPieces;
 };
 

@@ -24,7 +24,7 @@ struct Scene
   LightTransport Transport;
   DebugView View = DebugView::Off;
 
-  /// Whether nothing lets light through.
+  /// Returns whether no object lets light through.
   bool IsOpaque() const
   {
     return this->Media.empty() &&

@@ -11,20 +11,21 @@
 namespace rt
 {
 
-/// What the objects and media of a scene know beforehand of the rays of a beam.
+/// Data about the rays of a beam that the objects and media of a scene find beforehand.
 struct SceneBeam
 {
-  /// Of each of SceneTracers::GetBeamFinders; null where it has nothing to tell.
+  /// Beam of each of SceneTracers::GetBeamFinders; null where there is none.
   std::vector<std::unique_ptr<ObjectBeam>> Objects;
 
-  /// Whether the rays may meet anything.
+  /// Returns whether the rays may hit anything.
   bool MayMeet() const
   {
     return std::any_of(this->Objects.begin(), this->Objects.end(),
       [](const auto& object) { return !object || object->MayMeet(); });
   }
 
-  /// Whether rays gain from being traced together; else those of a smaller beam may.
+  /// Returns whether tracing the rays together is faster. If not, it may be for the rays of a
+  /// smaller beam.
   bool IsUsable() const
   {
     return std::all_of(this->Objects.begin(), this->Objects.end(),

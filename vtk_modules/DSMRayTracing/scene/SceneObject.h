@@ -18,7 +18,7 @@ using LatticeSlice = SliceOf<LatticeField>;
 /// The table of the kinds of objects. A kind has
 /// - a description, named here, with IsOpaque, AddTo and the name of
 /// - its Tracer, an ObjectTracer for a store, whose header CreateSceneTracers includes.
-/// Of surfaces that are equally near, that of the kind that comes first here is seen.
+/// Among surfaces that are equally near, that of the kind that comes first here is visible.
 using SceneObject = std::variant<LatticeIsosurface, MeshObject, LatticeSlice>;
 
 } // namespace rt

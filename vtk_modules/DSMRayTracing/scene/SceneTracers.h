@@ -26,11 +26,11 @@
 namespace rt
 {
 
-/// Of the objects of a scene, in the order in which they are asked for hits: kind by kind.
+/// Tracers of a scene's objects, grouped by kind; the tracer queries them in this order.
 using ObjectTracers = std::vector<std::unique_ptr<const ObjectTracer>>;
 using MediumTracers = std::vector<std::unique_ptr<const MediumTracer>>;
 
-/// Of all that is in a scene, for one worker.
+/// Tracers of everything in a scene, for one worker.
 struct SceneTracers
 {
   ObjectTracers Objects;

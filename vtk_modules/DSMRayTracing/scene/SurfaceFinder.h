@@ -15,7 +15,7 @@ namespace rt
 class SurfaceFinder
 {
 public:
-  /// Those that are asked, in this order; kept by reference.
+  /// `objects`: tracers to query, in this order; kept by reference.
   explicit SurfaceFinder(std::vector<const ObjectTracer*> objects);
 
   bool HasObjects() const { return !this->Objects.empty(); }

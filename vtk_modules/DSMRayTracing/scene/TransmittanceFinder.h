@@ -13,7 +13,7 @@
 namespace rt
 {
 
-/// How much of each colour of light gets along rays: none where an opaque surface is anywhere on the
+/// How much of each color of light gets along rays: none where an opaque surface is anywhere on the
 /// way; translucent surfaces dim and tint it (GetSheetTransmittance), media dim it. One for each worker.
 class TransmittanceFinder
 {

@@ -38,7 +38,7 @@ private:
   int Tiles = 0;
   int Workers = 1;
 
-  /// Supervisor: the next tile nobody has. Its own workers take from here without a message.
+  /// Supervisor: the next tile that no rank has. Its own workers take tiles from here without a message.
   std::atomic<int> Next{ 0 };
 
   /// Other ranks: what rank 0 gave and no worker took yet.

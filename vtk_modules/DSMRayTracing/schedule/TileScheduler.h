@@ -22,7 +22,7 @@ enum class TileScheduling
 struct TilePlan
 {
   int Tiles = 0;   ///< numbered 0 .. Tiles - 1, row by row
-  int Columns = 1; ///< of tiles
+  int Columns = 1; ///< tiles in a row
   /// The last frame had the same tiles, and Mine are those that this rank traced; each was traced by
   /// one rank.
   bool HasHistory = false;

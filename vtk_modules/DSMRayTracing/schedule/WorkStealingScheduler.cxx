@@ -28,7 +28,7 @@ std::uint32_t Spread(std::uint32_t x)
   return (x | x << 1) & 0x55555555u;
 }
 
-/// Neighbours on the curve are near one another.
+/// Neighbors on the curve are near one another.
 void SortAlongCurve(std::vector<int>& tiles, int columns)
 {
   const auto place = [=](int tile)
@@ -150,7 +150,7 @@ void WorkStealingScheduler::Give(dsm::Message&& request)
 {
   if (request.Session != this->Messenger.GetSession())
   {
-    return; // of a frame that failed
+    return; // the message belongs to a frame that failed
   }
   std::vector<std::int32_t> tiles;
   {

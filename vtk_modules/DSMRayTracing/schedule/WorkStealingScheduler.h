@@ -57,7 +57,7 @@ private:
   std::vector<int> Victims;
   bool RequestUnderWay = false;
   bool AwaitsGift = false;
-  /// To be sent when the frame has begun; negative: to nobody.
+  /// Rank that gets the tiles when the frame has begun; negative: none.
   int GiftReceiver = -1;
   std::vector<std::int32_t> Gift;
 

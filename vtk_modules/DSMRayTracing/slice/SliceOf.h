@@ -40,14 +40,14 @@ struct SliceOf
   double Most = std::numeric_limits<double>::infinity();
   ClipRegion Clipping;
 
-  /// Whether values decide where the planes are.
+  /// Returns whether the planes are limited by values.
   bool DependsOnValues() const
   {
     constexpr double infinity = std::numeric_limits<double>::infinity();
     return this->Least > -infinity || this->Most < infinity;
   }
 
-  /// Whether they let no light through where they are.
+  /// Returns whether the planes are opaque wherever they exist.
   bool IsOpaque() const
   {
     return this->Look.Surface.Opacity >= 1.0f &&

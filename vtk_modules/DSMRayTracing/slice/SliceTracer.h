@@ -140,7 +140,7 @@ public:
   }
 
 private:
-  /// Of the shortest edge of a cell.
+  /// Relative to the shortest edge of a cell.
   static constexpr double ClearancePart = 1e-4;
 
   /// Finds the first hits of those of the rays that are `wanted`; returns which have one.

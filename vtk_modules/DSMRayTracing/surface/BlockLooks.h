@@ -15,39 +15,39 @@ namespace rt
 
 class ObjectDigest;
 
-/// What the blocks that make up a volume look like, where they are not to look like the rest of it. Any number of
-/// threads may ask.
+/// Appearance of the blocks of a volume that look different from the rest of it. Any number of
+/// threads may call it.
 class BlockLooks
 {
 public:
   struct Look
   {
-    std::optional<glm::vec4> Color; ///< in place of the material's and of the colour array's
+    std::optional<glm::vec4> Color; ///< in place of the material's and of the color array's
     std::optional<float> Opacity;   ///< in place of the material's
   };
   struct Block
   {
-    bricks::Box Cells; ///< of the lattice
+    bricks::Box Cells; ///< in lattice indices
     Look Appearance;
   };
 
-  /// Blocks without cells are left out. Of those that overlap, either may be found.
+  /// Omits blocks without cells. If blocks overlap, either may be found.
   explicit BlockLooks(std::vector<Block> blocks);
 
   /// Null: as the rest.
   const Look* Find(const bricks::Index3& cell) const;
-  /// Whether none lets more light through than the rest.
+  /// Returns whether no block lets more light through than the rest.
   bool AreOpaque() const;
-  /// Whether one is to be seen even where the rest is not.
+  /// Returns whether any block is visible even where the rest is not.
   bool AnyIsSeen() const;
   void AddTo(ObjectDigest& digest) const;
 
 private:
-  /// A box around some of the blocks, and how to go on: half of them each, or the blocks.
+  /// Node of a hierarchy: a box around some of the blocks, with two children, or with the blocks.
   struct Node
   {
     bricks::Box Cells;
-    std::size_t First = 0; ///< of the blocks
+    std::size_t First = 0; ///< index of the first block
     std::size_t Last = 0;  ///< behind them
     std::size_t Second =
       0; ///< the node of the other half (the one half's follows); 0: the blocks are to be asked

@@ -15,14 +15,15 @@ namespace rt
 
 class ObjectDigest;
 
-/// What isosurfaces look like, whatever field they are of.
+/// Appearance of isosurfaces of any field.
 struct IsosurfaceLook
 {
   /// One for each isovalue, times the material's; empty: 1.
   std::vector<float> Opacities;
-  /// Of the values that color the surfaces, if there are any (IsosurfaceOf::ColorValues).
+  /// Color map for the values that color the surfaces, if there are any
+  /// (IsosurfaceOf::ColorValues).
   ColorMap Colors;
-  /// What these values are.
+  /// Kind of these values.
   enum class Coloring
   {
     Values,       ///< for Colors
@@ -31,7 +32,7 @@ struct IsosurfaceLook
   };
   Coloring ColoredBy = Coloring::Values;
   Material Surface;
-  /// Of the side where values are above the isovalue; without, both sides are alike.
+  /// Material of the side where values are above the isovalue; if empty, both sides are alike.
   std::optional<Material> BackSurface;
   /// Light passes through the side that values below the isovalue are on, or the other, and it is not seen.
   bool CullsFront = false;
@@ -41,18 +42,21 @@ struct IsosurfaceLook
   /// Lit by the normals of the surface that is in each cell, not by smooth ones.
   bool Flat = false;
 
-  /// Whether the surfaces let no light through anywhere, but for what colors them.
+  /// Returns whether the surfaces let no light through anywhere, apart from the values that color
+  /// them.
   bool IsOpaque() const;
-  /// Whether what colors the surfaces lets no light through anywhere. `hasHoles`: it has places without a color.
+  /// Returns whether the colors from values are opaque everywhere. `hasHoles`: some positions have
+  /// no color.
   bool HasOpaqueColors(bool hasHoles) const;
-  /// Whether any part of the surfaces is seen at all.
+  /// Returns whether any part of the surfaces is visible at all.
   bool IsSeen() const;
-  /// Whether all of a surface, and both of its sides, look alike, but for what colors it.
+  /// Returns whether all of a surface, and both of its sides, look alike, apart from the values
+  /// that color it.
   bool IsAlikeEverywhere() const;
   /// All that a picture depends on.
   void AddTo(ObjectDigest& digest) const;
 
-  /// What the surface is made of as it is seen from a side. Null: it is not seen.
+  /// Returns the material of the surface as seen from a side. Null: that side is invisible.
   const Material* GetSurface(bool fromBack) const
   {
     return (fromBack ? this->CullsBack : this->CullsFront) ? nullptr

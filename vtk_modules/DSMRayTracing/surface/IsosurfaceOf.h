@@ -38,7 +38,7 @@ struct IsosurfaceOf : LevelSets<FieldType>
   IsosurfaceLook Look;
   ClipRegion Clipping;
 
-  /// Whether they let no light through anywhere.
+  /// Returns whether the surfaces let no light through anywhere.
   bool IsOpaque() const
   {
     return this->Look.IsOpaque() &&

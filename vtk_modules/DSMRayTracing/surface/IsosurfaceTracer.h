@@ -83,7 +83,7 @@ public:
     SurfacePoint* const* points) const override
   {
     const IsosurfaceLook& look = this->Object.Look;
-    // Where all of the surface looks alike, nobody asks for the places.
+    // If the whole surface looks alike, no code needs the places.
     const bool asksForPlaces = look.Flat || look.Blocks || this->Object.ColorValues;
     Place places[MaxRays];
     if (asksForPlaces)
@@ -145,7 +145,7 @@ public:
   }
 
 private:
-  /// Of the shortest edge of a cell. Roots are found to 1e-7 of the way through a cell.
+  /// Relative to the shortest edge of a cell. Roots are found to 1e-7 of the way through a cell.
   static constexpr double ClearancePart = 1e-4;
 
   const IsosurfaceOf<FieldType>& Object;

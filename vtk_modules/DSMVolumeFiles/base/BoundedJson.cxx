@@ -48,7 +48,7 @@ public:
 
   bool parse_error(std::size_t place, const std::string&, const Json::exception&) override
   {
-    // What the parser says repeats the text, which may be long or not UTF-8.
+    // The parser's message repeats the text, which may be long or not UTF-8.
     throw dsm::Error("it is not valid JSON at byte " + std::to_string(place));
   }
 

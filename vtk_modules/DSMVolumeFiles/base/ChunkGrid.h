@@ -41,7 +41,7 @@ struct ChunkGrid
     const bricks::Index3 counts = this->GetCounts();
     return { number % counts.x, number / counts.x % counts.y, number / (counts.x * counts.y) };
   }
-  /// Whether a box has all samples, and no others.
+  /// Returns whether a box has all samples of the grid, and no others.
   bool IsWhole(const bricks::Box& box) const
   {
     return box.Min == bricks::Index3(0) && box.Max == this->Samples;
@@ -52,7 +52,7 @@ struct ChunkGrid
     const bricks::Index3 first = chunk * this->ChunkSamples;
     return { first, glm::min(first + this->ChunkSamples, this->Samples) };
   }
-  /// And the first samples of its upper neighbours along each axis: what a brick that begins with it has.
+  /// And the first samples of its upper neighbors along each axis: what a brick that begins with it has.
   bricks::Box GetBoxWithHalo(const bricks::Index3& chunk) const
   {
     const bricks::Index3 first = chunk * this->ChunkSamples;

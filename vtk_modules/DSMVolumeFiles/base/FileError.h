@@ -11,7 +11,7 @@
 namespace vol
 {
 
-/// What is wrong with a file, or a folder of files, and where in it. The place is put into words here alone.
+/// Error in a file, or in a folder of files, with its place. Only this class words the place.
 class FileError final : public dsm::Error
 {
 public:

@@ -22,7 +22,7 @@ namespace FileLimits
 constexpr std::uint64_t Samples = 0x7fffffff; ///< along an axis: VTK's indices are int
 constexpr std::uint64_t ArrayBytes = std::uint64_t(1) << 62;
 constexpr std::uint64_t ChunkBytes = std::uint64_t(4) << 30; ///< HDF5's own limit
-constexpr std::uint64_t Components = 1 << 16;                ///< of a sample
+constexpr std::uint64_t Components = 1 << 16;                ///< per sample
 constexpr std::uint64_t Steps = 1 << 20;                     ///< time steps
 constexpr std::uint64_t Arrays = 1 << 16;
 constexpr std::uint64_t Objects = 1
@@ -32,14 +32,14 @@ constexpr std::uint64_t Axes = 32;        ///< HDF5's own limit
 constexpr std::uint64_t Filters = 32;     ///< HDF5's own limit; also codecs of a Zarr array
 constexpr std::uint64_t Compressors =
   4; ///< among the filters: each may need more memory than the one before
-constexpr std::uint64_t Levels = 64;      ///< of detail
+constexpr std::uint64_t Levels = 64;      ///< levels of detail
 constexpr std::uint64_t Chunks = 1 << 26; ///< that are stored, of an array
 constexpr std::uint64_t ShardChunks = 1
   << 21; ///< in a shard of a Zarr array, whose index is read whole
-constexpr std::uint64_t Sources = 1 << 16;   ///< of a virtual dataset
-constexpr std::size_t NameBytes = 1 << 12;   ///< of an array, a path or a link
-constexpr std::size_t HeaderBytes = 1 << 20; ///< of NRRD and MetaImage
-constexpr std::size_t JsonBytes = 8 << 20;   ///< of a file of Zarr's metadata
+constexpr std::uint64_t Sources = 1 << 16;   ///< sources of a virtual dataset
+constexpr std::size_t NameBytes = 1 << 12;   ///< length of the name of an array, a path or a link
+constexpr std::size_t HeaderBytes = 1 << 20; ///< header of a NRRD or MetaImage file
+constexpr std::size_t JsonBytes = 8 << 20;   ///< file of Zarr metadata
 constexpr std::size_t JsonValues = 1 << 17;  ///< in it, without its copies of other files
 constexpr std::size_t JsonDepth = 64;
 

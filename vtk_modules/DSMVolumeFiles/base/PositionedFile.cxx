@@ -29,7 +29,7 @@ constexpr std::uint64_t MostTogether = std::uint64_t(1) << 20;
 /// A smaller file is soon in memory as a whole.
 constexpr std::uint64_t SmallestWithReadAhead = std::uint64_t(64) << 20;
 
-/// What disks are asked for in one piece, where it is scattered: less costs hardly less.
+/// Size of a disk read for scattered pieces, in bytes: smaller reads are hardly faster.
 constexpr std::uint64_t Window = std::uint64_t(32) << 10;
 
 std::uint64_t GetStampOf(const struct stat& state)

@@ -30,16 +30,16 @@ public:
   std::uint64_t GetStamp() const { return this->Stamp; }
   /// That of what is at a path now; 0: there is nothing.
   static std::uint64_t FindStampOf(const std::string& path);
-  /// Whether nobody has written to it since it was opened.
+  /// Returns whether the file is unchanged since it was opened.
   bool IsUnchanged() const;
-  /// Throws dsm::Error when somebody has.
+  /// Throws dsm::Error when the file has changed.
   void CheckUnchanged() const;
 
   /// Reads so many bytes from `offset` on; throws dsm::Error, which names file and place, when there are
   /// fewer, when reading fails, or when the file was written to since it was opened; WouldWait (WithoutWaiting).
   void Read(std::uint64_t offset, std::byte* out, std::size_t bytes) const;
 
-  /// Likewise, also when the file was written to since it was opened.
+  /// Likewise, but also reads a file that has changed since it was opened.
   void ReadUnchecked(std::uint64_t offset, std::byte* out, std::size_t bytes) const;
 
   struct Piece
@@ -47,15 +47,15 @@ public:
     std::uint64_t Offset;
     std::size_t Bytes;
   };
-  /// Likewise, of many pieces, whose offsets ascend: their bytes come one piece behind the other. Pieces
-  /// with less than two pages between them are read together, with what is between: rows of a box are many,
-  /// and small.
+  /// Likewise, for many pieces in ascending order of offset; their bytes are stored one piece behind the
+  /// other. Pieces with less than two pages between them are read together, including the gap: the rows of a
+  /// box are many, and small.
   void Read(const std::vector<Piece>& pieces, std::byte* out) const;
 
   /// The system may read them to its own cache already, of a large file with what is in the same 32 KiB; does not
   /// wait for it.
   void Prefetch(std::uint64_t offset, std::size_t bytes) const;
-  /// Likewise, in any order, as Read takes them together.
+  /// Likewise, for pieces in any order, grouped as by Read.
   void Prefetch(std::vector<Piece> pieces) const;
 
 private:

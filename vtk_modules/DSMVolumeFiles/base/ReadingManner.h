@@ -47,8 +47,8 @@ public:
   static bool AreInForce() { return Get() >= Kind::Scattered; }
 };
 
-/// Likewise, and what is read has to be in memory already, the system's cache included: where a disk, or another
-/// thread, would have to be waited for, WouldWait is thrown.
+/// Likewise, but the data have to be in memory already, including the system's cache: if the read had to wait
+/// for a disk, or for another thread, it throws WouldWait.
 class WithoutWaiting : private ReadingManner
 {
 public:
@@ -59,7 +59,7 @@ public:
   static bool IsInForce() { return Get() == Kind::WithoutWaiting; }
 };
 
-/// Not an error: nobody is told.
+/// Not an error: it is not reported.
 struct WouldWait
 {
   bool Always = false; ///< whatever is in memory: the file system cannot tell

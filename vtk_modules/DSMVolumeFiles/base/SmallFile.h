@@ -8,7 +8,7 @@
 namespace vol
 {
 
-/// What a path leads to, links followed.
+/// Kind of file at a path. Links are followed.
 enum class PathKind
 {
   Nothing,

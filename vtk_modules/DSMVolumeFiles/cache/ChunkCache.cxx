@@ -354,7 +354,7 @@ void ChunkCache::Prefetch(const std::shared_ptr<const VolumeFile>& file, std::si
     std::vector<VolumeFile::ChunkPart> parts;
     for (const bricks::Box& box : boxes)
     {
-      // What bricks need beyond their own cells is another one's, too.
+      // Samples that a brick needs beyond its own cells belong to another brick, too.
       const bricks::Box own{ box.Min,
         glm::max(box.Min + bricks::Index3(1), box.Max - bricks::Index3(Overlap)) };
       ForEachChunk(what.Grid, own,
@@ -386,7 +386,7 @@ std::shared_ptr<ByteBuffer> ChunkCache::Evict(std::size_t bytes)
     this->Order.pop_back();
     if (!left && chunk->size() == bytes && chunk.use_count() == 1)
     {
-      // Who used it last has read all that it wanted.
+      // Synchronize with the last user, which has finished reading.
       std::atomic_thread_fence(std::memory_order_acquire);
       left = std::const_pointer_cast<ByteBuffer>(chunk);
     }

@@ -19,9 +19,9 @@
 namespace vol
 {
 
-/// The chunks of files that were read last, up to a number of bytes. Any thread; a chunk that two threads want at
-/// the same time is read once. Those that are being read and unpacked are among these bytes: where several would be
-/// more, one waits for the other.
+/// The most recently read chunks of files, up to a number of bytes. Any thread; a chunk that two threads want
+/// at the same time is read once. Chunks that are being read and unpacked count, too: if several exceed the
+/// limit, one waits for the other.
 class ChunkCache
 {
 public:
@@ -32,19 +32,20 @@ public:
   {
   }
 
-  /// What all files of the process share.
+  /// Returns the cache that all files of the process share.
   static ChunkCache& GetShared();
 
   /// From now on. What is in use stays in memory until it is not.
   void SetLimit(std::size_t bytes);
   std::size_t GetLimit() const;
-  /// What a cache has to hold, lest it reads all chunks that a box of so many samples along each axis lies in anew for
-  /// each box: these, and what two threads read of others meanwhile.
+  /// Returns the bytes that a cache needs so that consecutive boxes of so many samples along each axis do not read
+  /// their common chunks again: the chunks that one box lies in, and those that two threads read meanwhile.
   static std::uint64_t CountBytesTogether(const FileArray& array, std::int64_t samples);
-  /// At least so much where the limit is less, until that is set anew: somebody needs chunks together that are as large.
+  /// Raises the limit to at least so many bytes, until SetLimit is called: a reader needs chunks of that size
+  /// together.
   void Widen(std::size_t bytes);
-  /// Less than the limit, from now on, for whoever must keep to an amount of memory; the limit itself stays.
-  /// Returns what holds then.
+  /// Lowers the effective limit from now on, for a caller with a limited amount of memory; GetLimit stays.
+  /// Returns the effective limit.
   std::size_t Restrict(std::size_t bytes);
   /// That, or less where it is restricted.
   std::size_t GetRoom() const;
@@ -76,8 +77,8 @@ public:
   void ReadBoxes(const std::shared_ptr<const VolumeFile>& file, std::size_t array, int step,
     const std::vector<bricks::Box>& boxes, const std::vector<std::byte*>& outs, int threads);
 
-  /// Boxes will probably be read soon: the system is told of what is not here, without what boxes side by side
-  /// have in common. What goes wrong is said when it is read.
+  /// Boxes will probably be read soon: advises the system of their chunks that are not cached, each one once.
+  /// Errors are reported when the boxes are read.
   void Prefetch(const std::shared_ptr<const VolumeFile>& file, std::size_t array, int step,
     const std::vector<bricks::Box>& boxes) const;
 
@@ -119,8 +120,8 @@ private:
   {
     return std::min(std::max(this->Limit, this->Together), this->Restriction);
   }
-  /// Under the lock. Returns the memory of one that has left and that nobody uses, if it has so many bytes: memory
-  /// that the system gives anew has to be filled with zeros first.
+  /// Under the lock. Returns the memory of an evicted and unused chunk, if it has so many bytes: new memory
+  /// from the system has to be filled with zeros first.
   std::shared_ptr<ByteBuffer> Evict(std::size_t bytes = 0);
 
   mutable std::mutex Guard;
@@ -128,15 +129,15 @@ private:
   std::size_t Together = 0; ///< see Widen
   std::size_t Restriction = SIZE_MAX;
   std::size_t Bytes = 0;
-  std::size_t Lent = 0;   ///< of them
-  std::size_t InHand = 0; ///< of them: being read
+  std::size_t Lent = 0;   ///< part of Bytes that is in use
+  std::size_t InHand = 0; ///< part of Bytes that is being read
   std::condition_variable HandsFree;
   std::uint64_t BytesRead = 0;
-  std::list<Key> Order; ///< of those that are here, the last used first
+  std::list<Key> Order; ///< keys of the cached chunks, the most recently used first
   std::unordered_map<Key, Entry, KeyHash> Entries;
 };
 
-/// As OpenVolumeSeries; when the last who has it lets go, its chunks leave the shared cache with it.
+/// As OpenVolumeSeries; when its last user releases the volume, its chunks leave the shared cache.
 std::shared_ptr<const VolumeFile> OpenCachedVolume(
   const std::vector<std::string>& paths, const OpenOptions& options);
 

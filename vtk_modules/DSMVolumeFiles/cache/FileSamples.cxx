@@ -12,7 +12,7 @@ namespace vol
 namespace
 {
 
-/// What samples of several components have.
+/// Number of samples, and of their components.
 struct Samples
 {
   std::int64_t Count;

@@ -18,7 +18,7 @@ class FileSamples final : public bricks::VoxelSource
 {
 public:
   static constexpr int Magnitude = -1;
-  /// What of the array.
+  /// Part of the array to read.
   struct Part
   {
     bricks::Box Samples; ///< in the file's indices; those of the source count from the first one

@@ -21,7 +21,7 @@ namespace vol
 namespace
 {
 
-/// What is read ahead takes this part of the cache's room at most.
+/// Divisor for the part of the cache's room that bricks read ahead may take.
 constexpr std::size_t RoomDivisor = 2;
 
 /// After a frame its picture is still drawn and delivered, and ParaView's processes talk to one another: on a host without
@@ -85,7 +85,7 @@ struct ReadAhead::Shared : std::enable_shared_from_this<Shared>
   {
   }
 
-  /// Whether the brick was not added before.
+  /// Notes the brick. Returns whether it was not added before.
   static bool Note(Step& step, dsm::BlockId id)
   {
     const std::lock_guard<std::mutex> lock(step.Self->Guard);

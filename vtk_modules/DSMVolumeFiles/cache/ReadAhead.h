@@ -14,10 +14,10 @@
 namespace vol
 {
 
-/// Reads bricks of a time step that will probably be shown next, one after the other, on one of the process's
-/// ReaderThreads, while nobody else is busy, and keeps them until they are taken. They count as part of a chunk
-/// cache, and take at most half of its room; of what would take more, the system is told. What cannot be read is
-/// passed by, as whoever needs it will be told. Any thread.
+/// Reads bricks of the time step that will probably be shown next, one after the other, on one of the
+/// process's ReaderThreads, while no other reads are pending, and keeps them until they are taken. They count
+/// as part of a chunk cache, and take at most half of its room; the system is advised of further bricks.
+/// Unreadable bricks are skipped, because their reader will report the error. Any thread.
 class ReadAhead
 {
   struct Shared;
@@ -27,8 +27,8 @@ public:
   struct Way
   {
     std::shared_ptr<const dsm::BlockReader> Reader;
-    /// Whether a brick is as that of the step before, so that it will not be taken; by one thread at a time. May
-    /// be empty: none is known to be.
+    /// Returns whether a brick is equal to that of the previous step, so that it will not be taken. Called by one
+    /// thread at a time. May be empty: then no brick is known to be equal.
     std::function<bool(dsm::BlockId)> IsSame;
   };
 
@@ -57,13 +57,13 @@ public:
   /// The cache must outlive the read that is under way, and the steps.
   explicit ReadAhead(ChunkCache& cache);
 
-  /// What has been read ahead of the step that `key` stands for; null: nothing.
+  /// Returns the bricks read ahead for the step with this `key`; null if there are none.
   std::shared_ptr<Step> Find(std::uint64_t key) const;
   /// The same, ready to take in more. Throws std::bad_alloc, as Add does.
   std::shared_ptr<Step> Open(std::uint64_t key, Way way);
   /// A brick of a step will probably be wanted; not one that was added before.
   void Add(const std::shared_ptr<Step>& step, dsm::BlockId id, std::size_t bytes);
-  /// Forgets steps that nobody has any more: call it when those who may take over have had time to.
+  /// Drops steps without users: call it when possible users have had time to take over.
   void Tidy();
 
   /// As long as there is one, and for a moment afterwards, no read begins: a frame is being made.
@@ -80,7 +80,7 @@ public:
   };
 
 private:
-  /// What the reads under way have, too.
+  /// State that pending reads share.
   std::shared_ptr<Shared> State;
 };
 

@@ -110,7 +110,7 @@ bool ChunkCodec::Decode(
   ByteBuffer stored, unsigned skipped, std::byte* out, std::size_t bytes, ByteBuffer* halo) const
 {
   std::optional<ByteBuffer> beside;
-  // What was there before each step: at most so many bytes.
+  // Upper bounds of the bytes before each step.
   std::vector<std::uint64_t> most{ bytes };
   std::vector<std::uint64_t> mostBeside{ halo ? halo->size() : 0 };
   for (const CodecStep& step : this->Steps)

@@ -40,10 +40,10 @@ public:
   bool Decode(ByteBuffer stored, unsigned skipped, std::byte* out, std::size_t bytes,
     ByteBuffer* halo = nullptr) const;
 
-  /// What a file has for these samples: all steps, the first one first. Throws dsm::Error for codecs
-  /// that are only read. `halo`: further samples, for Decode; other programs pass over them, since they lie behind
-  /// the end of what is compressed: of Zstandard in a skippable frame (RFC 8878, section 3.1.2), of deflate behind
-  /// the stream (RFC 1950), which tells its end. Only where KeepsHalo().
+  /// Returns the stored bytes of these samples: applies all steps, the first one first. Throws dsm::Error for
+  /// codecs that this build only reads. `halo`: further samples, for Decode. They lie behind the end of the
+  /// compressed data, so other programs skip them: in a skippable frame for Zstandard (RFC 8878, section 3.1.2),
+  /// behind the end of the stream for deflate (RFC 1950). Only if KeepsHalo().
   ByteBuffer Encode(ByteBuffer samples, ByteBuffer halo = {}) const;
 
   /// Returns an upper bound for the stored size of a chunk and its halo. A stored chunk that is larger is damaged.
@@ -52,12 +52,13 @@ public:
   /// Returns an upper bound for the size that a chunk of this stored size can unpack to. Saturates.
   std::uint64_t CountMostDecoded(std::uint64_t stored) const;
 
-  /// Whether there is a place for a halo: behind a Zstandard frame or a deflate stream, where it is the only compressor.
+  /// Returns whether a halo can be stored: behind a Zstandard frame or a deflate stream, if it is the only
+  /// compressor.
   bool KeepsHalo() const;
 
   bool IsPlain() const { return this->Steps.empty(); }
-  /// Whether each sample lies where it would lie plain, with its bytes in whatever order: any of them may be decoded by
-  /// themselves.
+  /// Returns whether each sample is at the same offset as in plain data, in any byte order, so that any of them can
+  /// be decoded alone.
   bool KeepsPlaces() const;
 
 private:

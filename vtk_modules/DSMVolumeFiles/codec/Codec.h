@@ -22,7 +22,7 @@ struct Codec
   std::vector<std::string_view> ZarrNames = {};
   int HdfFilter = 0; ///< HDF5's number; 0: it has none
 
-  /// What to install where this build lacks the library; empty: it does not.
+  /// Package to install if this build lacks the library; empty if it has the library.
   std::string_view LackingPackage = {};
 
   bool IsCompressor = false;

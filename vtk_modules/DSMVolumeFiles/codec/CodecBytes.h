@@ -10,7 +10,7 @@
 #include <cstdint>
 #include <optional>
 
-/// What codecs share.
+/// Helpers that the codecs share.
 namespace vol::CodecBytes
 {
 

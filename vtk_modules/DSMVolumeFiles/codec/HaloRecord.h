@@ -16,7 +16,7 @@ namespace vol
 namespace HaloRecord
 {
 
-/// What a record takes whose halo is of at most so many bytes.
+/// Returns the size in bytes of a record whose halo has at most `haloBytes` bytes.
 std::size_t GetBytes(std::size_t haloBytes);
 /// `number`: which chunk of its array; `bytes`: GetBytes of the largest halo.
 ByteBuffer Make(std::int64_t number, const ByteBuffer& halo, std::size_t bytes);

@@ -23,7 +23,7 @@ ByteBuffer Shuffle(ByteBuffer samples, std::size_t width)
       bytes[byte * count + element] = samples[element * width + byte];
     }
   }
-  // What is left over behind the last element stays where it is.
+  // Bytes behind the last whole element stay where they are.
   std::copy_n(
     samples.data() + count * width, samples.size() - count * width, bytes.data() + count * width);
   return bytes;
@@ -42,7 +42,7 @@ ByteBuffer Unshuffle(ByteBuffer stored, std::size_t width, std::size_t)
         to[element * elementBytes + byte] = from[byte * count + element];
       }
     }
-    // What is left over behind the last element stays where it is.
+    // Bytes behind the last whole element stay where they are.
     std::copy(from + count * elementBytes, from + all, to + count * elementBytes);
   };
   // Compilers make vectors of a width that they know.

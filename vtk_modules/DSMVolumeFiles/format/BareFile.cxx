@@ -17,10 +17,10 @@ namespace vol
 namespace
 {
 
-/// Of chunks of rows.
+/// Size in bytes of chunks of rows.
 constexpr std::int64_t ChunkBytes = 1 << 18;
 
-/// Of boxes: rows of so many bytes, and so many of them each way.
+/// Size of chunks that are boxes: bytes of a row, and number of rows along y and z.
 constexpr std::int64_t RowBytes = 1024;
 constexpr std::int64_t Rows = 32;
 
@@ -60,7 +60,8 @@ public:
           std::to_string(std::max(least, this->First)) +
           " of header are expected. Check the dimensions and the type of the values.");
     }
-    // What is kept of values that were read in another way is not of these.
+    // The stamp depends on how the values are read, so results kept for another description do not
+    // apply.
     const std::uint64_t manner[] = { this->File->GetStamp(), this->First,
       static_cast<std::uint64_t>(values.Type), static_cast<std::uint64_t>(values.Components),
       values.BigEndian ? 1u : 0u };

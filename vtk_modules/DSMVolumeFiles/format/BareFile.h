@@ -11,18 +11,18 @@
 namespace vol
 {
 
-/// Where the values of one array are, x fastest, uncompressed, in one piece.
+/// Description of the values of one array in a file: x fastest, uncompressed, contiguous.
 struct BareValues
 {
   std::string Path;
-  std::string Name; ///< of the array
+  std::string Name; ///< name of the array
   bricks::Index3 Samples{ 0 };
   bricks::ScalarType Type = bricks::ScalarType::UInt8;
   std::int64_t Components = 1; ///< as declared
   bool BigEndian = false;
   /// Before the first value; negative: the values are at the end of the file.
   std::int64_t Offset = 0;
-  /// Where they may begin: of a file that has its header, behind that.
+  /// Smallest valid offset: the end of the header, if the file itself has one.
   std::int64_t Least = 0;
 };
 

@@ -27,7 +27,7 @@ struct HdfAxes
   std::size_t GetBeforeSpace() const { return this->Frames > 0 ? 1 : 0; }
   enum class Time
   {
-    Unknown, ///< of four axes, the last has components where it is short; else the first is time
+    Unknown, ///< if there are four axes: a short last axis has components, otherwise the first axis is time
     None,
     First
   };

@@ -13,7 +13,8 @@ namespace vol
 namespace
 {
 
-/// What the index of an array's bricks takes, which the file has in one piece; 0 where that cannot be.
+/// Returns the bytes of the index of an array's bricks, which is contiguous in the file; 0 if it is
+/// impossible.
 std::uint64_t CountBytes(const FileArray& array, int edge, std::uint64_t fileBytes)
 {
   if (edge < 1)

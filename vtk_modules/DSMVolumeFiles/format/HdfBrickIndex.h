@@ -14,7 +14,8 @@ namespace vol
 /// `root`: of the file, or of a coarser level. The caller has GetHdfLock, here and below.
 HdfHandle OpenHdfBrickIndex(hid_t root, const FileArray& array);
 
-/// What that group says; empty where there is none, or where a part is larger than a file of so many bytes can have.
+/// Reads the index from that group. Returns an empty index if there is none, or if a part is too large for a file
+/// of `fileBytes` bytes.
 VolumeFile::Index ReadHdfBrickIndex(hid_t root, const FileArray& array, std::uint64_t fileBytes);
 
 } // namespace vol

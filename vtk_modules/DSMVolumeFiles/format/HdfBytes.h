@@ -15,8 +15,9 @@ namespace vol
 /// An address that leads nowhere.
 constexpr std::uint64_t HdfUndefined = UINT64_MAX;
 
-/// A piece of an HDF5 file's own structures ("HDF5 File Format Specification", version 3), where numbers are
-/// little-endian and addresses take 8 bytes. Whoever gets a number checks with Has that the piece contains it.
+/// A piece of an HDF5 file's own structures ("HDF5 File Format Specification", version 3), with little-endian
+/// numbers and addresses of 8 bytes. Before getting a number, the caller has to check with Has that the piece
+/// contains it.
 class HdfBytes
 {
 public:
@@ -24,8 +25,8 @@ public:
   static std::optional<HdfBytes> Read(
     const PositionedFile& file, std::uint64_t offset, std::uint64_t count);
 
-  /// Likewise, of a structure that begins with a signature of four letters and a version, and ends with a checksum.
-  /// Returns nothing where one of them is wrong, too.
+  /// Likewise, for a structure that begins with a signature of four letters and a version, and ends with a
+  /// checksum. Also returns nothing if one of them is wrong.
   static std::optional<HdfBytes> ReadChecked(const PositionedFile& file, std::uint64_t offset,
     std::uint64_t count, const char* signature, std::uint64_t version = 0);
 
@@ -50,7 +51,7 @@ public:
     return (this->Get(place + bit / 8, 1) >> (7 - bit % 8) & 1) != 0;
   }
   bool Begins(const char* signature) const;
-  /// Whether the last 4 bytes are the checksum of those before.
+  /// Returns whether the last 4 bytes are the checksum of the bytes before.
   bool HasRightChecksum() const;
 
 private:

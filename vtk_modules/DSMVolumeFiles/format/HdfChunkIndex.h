@@ -12,7 +12,7 @@
 namespace vol
 {
 
-/// Where a chunk of an HDF5 dataset is in the file.
+/// Place of a chunk of an HDF5 dataset in the file.
 struct HdfChunk
 {
   std::uint64_t First = 0;

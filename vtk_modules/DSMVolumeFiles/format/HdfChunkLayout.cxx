@@ -68,7 +68,7 @@ private:
   {
     std::uint64_t First;
     std::uint64_t Count;
-    std::size_t Before; ///< of it, before the messages
+    std::size_t Before; ///< its bytes before the messages
   };
 
   void Add(std::uint64_t first, std::uint64_t count, std::size_t before)
@@ -162,7 +162,8 @@ private:
     }
   }
 
-  /// Whether it is one that is known here. Its parameters stand in the header of the index, too, but for a single chunk's.
+  /// Returns whether the kind of index is known here. Its parameters are repeated in the header of
+  /// the index, except for a single chunk's.
   template <class Take>
   static bool ReadIndexKind(const Take& take, std::uint64_t flags, HdfChunkLayout& layout)
   {
@@ -196,7 +197,7 @@ private:
   }
 
   const PositionedFile& File;
-  bool IsCompact = false; ///< of the newer format, with checksums
+  bool IsCompact = false; ///< true for the newer format, with checksums
   std::size_t Prefix = 8; ///< bytes before a message
   bool IsCut = false;     ///< the message is shorter than it has to be
   std::vector<Part> Parts;

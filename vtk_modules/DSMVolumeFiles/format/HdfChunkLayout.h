@@ -27,9 +27,9 @@ struct HdfChunkLayout
   };
   Index Kind = Index::Tree1;
   std::uint64_t Address =
-    HdfUndefined; ///< of the index, or of the chunks; undefined: no chunk is there
+    HdfUndefined; ///< address of the index or of the chunks; undefined: no chunk is stored
   std::vector<std::uint64_t> Edges; ///< samples along each axis of a chunk, then bytes of a sample
-  bool IsFiltered = false;          ///< of a single chunk: it is, and has
+  bool IsFiltered = false;          ///< for a single chunk: it is filtered, and has
   std::uint64_t SingleBytes = 0;    ///< so many bytes,
   std::uint32_t SingleSkippedFilters = 0; ///< without these filters (bits)
 

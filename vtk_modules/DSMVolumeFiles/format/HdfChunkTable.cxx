@@ -39,7 +39,7 @@ bool HdfChunkTable::Sort()
 
 const HdfChunk* HdfChunkTable::Find(std::uint64_t number) const
 {
-  // Where all chunks are there, each is at its number.
+  // If all chunks are present, each is at its own number.
   const auto begin = this->Entries.begin();
   const std::size_t last = this->Entries.size();
   if (number < last && this->Entries[number].Number == number)

@@ -11,8 +11,8 @@
 namespace vol
 {
 
-/// Where the chunks of an HDF5 dataset are, in memory: of those that are there only, so that it takes as much memory as
-/// the file has entries for them, whatever its dimensions say.
+/// Table of the chunks of an HDF5 dataset, in memory. It has entries for stored chunks only, so its size depends on
+/// the entries in the file, whatever the dimensions are.
 class HdfChunkTable
 {
 public:
@@ -27,7 +27,7 @@ public:
 
   std::size_t GetCount() const { return this->Entries.size(); }
   std::uint64_t GetBytes() const;
-  /// Of filters that chunks were written without: the bits of one filter more in front of all.
+  /// Shifts the bits of skipped filters by one, for a filter that is put in front of all others.
   void AddFilterInFront();
 
 private:

@@ -15,7 +15,7 @@ namespace vol
 namespace
 {
 
-/// What the function takes has another name in each release of the library.
+/// The function's parameter type has another name in each release of the library.
 template <class Info>
 haddr_t FindHeader(herr_t (*ask)(hid_t, Info*, unsigned), hid_t dataset)
 {
@@ -23,7 +23,7 @@ haddr_t FindHeader(herr_t (*ask)(hid_t, Info*, unsigned), hid_t dataset)
   return ask(dataset, &info, H5O_INFO_BASIC) < 0 ? HADDR_UNDEF : info.addr;
 }
 
-/// Whether places in the file count from its first byte, in 8 bytes.
+/// Returns whether addresses in the file count from its first byte, in 8 bytes.
 bool IsPlain(hid_t dataset)
 {
   const HdfHandle file(H5Iget_file_id(dataset), &H5Fclose);

@@ -21,8 +21,9 @@ namespace vol
 std::vector<hsize_t> GetHdfChunkEdges(
   hid_t dataset, const std::string& path, const std::string& name);
 
-/// Where the values of a dataset that is in one piece begin; HADDR_UNDEF where none have been written. `frames`: along its
-/// axis of time, 0 where it has none. Throws dsm::Error where the file ends before the values do.
+/// Returns the offset of the values of a contiguous dataset; HADDR_UNDEF if none have been written. `frames`:
+/// number of time steps along its time axis, 0 if it has none. Throws dsm::Error if the file ends before the values
+/// do.
 haddr_t FindHdfValuesPlace(
   hid_t dataset, const PositionedFile& file, const FileArray& array, std::uint64_t frames);
 
@@ -30,9 +31,9 @@ haddr_t FindHdfValuesPlace(
 /// would read beyond them.
 void CheckHdfCompact(hid_t dataset, const std::string& path, const std::string& name);
 
-/// Where the chunks of a dataset are. Nothing where the file has an index of another kind, or with other sizes of addresses:
-/// then only the library can read the values. Throws dsm::Error where the index is damaged, or `goesOn`, which is asked
-/// now and then, says no.
+/// Reads the places of the chunks of a dataset. Returns nothing if the file has an index of another kind, or
+/// addresses of another size: then only the library can read the values. Throws dsm::Error if the index is damaged,
+/// or if `goesOn`, which is called now and then, returns false.
 std::optional<HdfChunkTable> FindHdfChunks(hid_t dataset, const PositionedFile& file,
   const std::string& name, const std::vector<hsize_t>& edges, const std::function<bool()>& goesOn);
 

@@ -55,7 +55,7 @@ public:
       throw FileError(path, "has no " + this->Missing);
     }
     this->GoesOn = nullptr; // whoever opens the file may be gone later
-    // What is kept of a level is not another's.
+    // Results kept for one level must not be used for another.
     this->Stamp =
       this->Origins.GetStamp(this->Bytes->GetStamp() + static_cast<std::uint64_t>(level));
   }
@@ -165,9 +165,10 @@ private:
     HdfHandle Id;
     bool ReadByLibrary = false;
     haddr_t First = HADDR_UNDEF;         ///< of contiguous values
-    std::optional<HdfChunkTable> Chunks; ///< of all times; none where values are contiguous
+    std::optional<HdfChunkTable> Chunks; ///< chunks of all times; none where values are contiguous
     HdfAxes Shape;
-    std::vector<int> Frames; ///< of the steps, along the axis of time; empty: each has its own
+    std::vector<int>
+      Frames; ///< position of each step along the time axis; empty: each step has its own chunks
 
     std::size_t GetFrame(int step) const
     {
@@ -185,7 +186,8 @@ private:
     return *opened;
   }
 
-  /// What the library has open of it, the file last. Then nothing can be read by the library.
+  /// Closes all identifiers of the library, the file last. Then the library can read nothing any
+  /// more.
   void Close()
   {
     for (Dataset& dataset : this->Kept)
@@ -299,7 +301,7 @@ private:
     }
   }
 
-  /// What a brick file says of the scalars, or VTK's own attribute.
+  /// Finds the active scalars: those that a brick file names, or VTK's own attribute.
   void FindActive()
   {
     for (const char* const group : { "DSM/PointData", "VTKHDF/PointData" })
@@ -316,7 +318,8 @@ private:
     }
   }
 
-  /// Where each step is along an array's axis of time; empty: the steps are there in turn.
+  /// Returns the position of each step along an array's time axis; empty: the steps follow one
+  /// another.
   std::vector<int> FindFrames(hid_t image, const std::string& offsets, const HdfAxes& axes) const
   {
     std::vector<int> frames;
@@ -503,7 +506,7 @@ private:
     }
   }
 
-  /// What a brick file has of its chunks' halos.
+  /// Finds the halos of a brick file's chunks.
   void FindHalo(const FileArray& array, Storage& storage) const
   {
     int halo = 0;

@@ -11,11 +11,11 @@
 namespace vol
 {
 
-/// What VTK's own group in an HDF5 file says of the image ("VTKHDF File Format", ImageData).
+/// Description of the image in the VTKHDF group of an HDF5 file ("VTKHDF File Format", ImageData).
 struct HdfImage
 {
   FileGeometry Geometry;
-  std::vector<double> Times; ///< of the steps, ascending; empty: there are none
+  std::vector<double> Times; ///< times of the steps, ascending; empty if there are no steps
 
   /// `group`: VTKHDF. Throws dsm::Error, which names the file at `path`. The caller has GetHdfLock.
   static HdfImage Read(hid_t group, const std::string& path);

@@ -85,7 +85,7 @@ bool HdfIndexReader::AddNumbered(std::uint64_t number, const HdfChunk& chunk)
     const std::uint64_t along = this->Most[axis];
     if (along == 0 || along == UINT64_MAX)
     {
-      return false; // of two axes that grow without a limit, chunks have no numbers
+      return false; // chunks have no numbers if two axes grow without a limit
     }
     this->Place[axis] = number % along;
     number /= along;

@@ -12,8 +12,8 @@
 namespace vol
 {
 
-/// What the readers of the kinds of chunk indices (HdfChunkIndex) share: the blocks of the file, the entries for chunks,
-/// and the order of numbered chunks.
+/// Functions that the readers of all kinds of chunk indices (HdfChunkIndex) share: blocks of the file, entries for
+/// chunks, and the order of numbered chunks.
 class HdfIndexReader
 {
 public:
@@ -26,7 +26,7 @@ public:
   std::optional<HdfBytes> Read(std::uint64_t offset, std::uint64_t count);
   std::optional<HdfBytes> ReadChecked(
     std::uint64_t offset, std::uint64_t count, const char* signature);
-  /// Of a block that has a checksum, but no signature.
+  /// The same for a block that has a checksum, but no signature.
   std::optional<HdfBytes> ReadPage(std::uint64_t offset, std::uint64_t count);
 
   /// Visits the chunk at a place. False: the visitor, or damage, ends it.
@@ -61,11 +61,11 @@ private:
   std::vector<std::uint64_t> Edges;
   std::vector<std::uint64_t> Most;  ///< chunks along each axis; UINT64_MAX: any number
   std::vector<std::size_t> Order;   ///< axes of numbered chunks, the slowest first
-  std::vector<std::uint64_t> Place; ///< of the chunk that is visited
+  std::vector<std::uint64_t> Place; ///< position of the chunk that is visited
   std::uint64_t Left;               ///< bytes that may still be read
   std::uint32_t PlainBytes = 0;
 
-  /// Whether so many bytes may still be read; then they are counted.
+  /// Counts so many bytes as read. Returns false if they exceed what may still be read.
   bool Spend(std::uint64_t count);
   bool ReadNode1(std::uint64_t address, int level);
 };

@@ -12,7 +12,7 @@ namespace
 
 constexpr std::size_t AddressBytes = 8;
 constexpr std::size_t ChecksumBytes = 4;
-constexpr std::size_t PrefixBytes = 4 + 1 + 1; ///< of a node: signature, version, what it is for
+constexpr std::size_t PrefixBytes = 4 + 1 + 1; ///< prefix of a node: signature, version, type
 constexpr std::uint64_t MostLevels = 32;
 
 /// Bytes that hold any number up to this one, as the library counts them.
@@ -50,7 +50,7 @@ public:
   }
 
 private:
-  /// Of nodes of a level, 0 for the leaves.
+  /// Properties of the nodes of a level; level 0 has the leaves.
   struct Level
   {
     std::uint64_t MostRecords = 0;
@@ -138,8 +138,8 @@ private:
   std::uint64_t NodeBytes;
   std::size_t RecordBytes;
   std::uint64_t Depth;
-  std::size_t EntryBytes = 0; ///< of a record, without the chunk's place
-  std::size_t CountBytes = 0; ///< of the number of records in a pointer
+  std::size_t EntryBytes = 0; ///< bytes of a record, without the chunk's place
+  std::size_t CountBytes = 0; ///< bytes of the number of records in a pointer
   std::vector<Level> Levels;
   std::vector<std::uint64_t> Place;
   bool IsRight = false;

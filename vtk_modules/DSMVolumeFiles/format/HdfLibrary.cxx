@@ -17,9 +17,9 @@ namespace
 
 std::atomic<bool> Ending{ false };
 
-// What the library tells of an object, or a link, has another type in each of its releases.
+// The library's information about an object, or a link, has another type in each of its releases.
 
-/// What a visit of all objects of a file finds. In a damaged file groups may contain one another.
+/// Result of a visit of all objects of a file. In a damaged file groups may contain one another.
 struct Visit
 {
   std::vector<std::string> Names;

@@ -18,7 +18,7 @@
 namespace vol
 {
 
-/// Of a brick file: the group of coarser levels, numbered from 1 on, of which each is as a brick file.
+/// Group of coarser levels in a brick file. They are numbered from 1 on; each is like a brick file.
 constexpr char HdfLevels[] = "DSM/Levels";
 /// Attribute of what it has beside an array's values: samples by which a chunk's halo reaches beyond it.
 constexpr char HdfHalo[] = "HaloSamples";
@@ -34,8 +34,8 @@ std::mutex& GetHdfLock();
 /// The library's name of the machine's own form of a type.
 hid_t GetHdfType(bricks::ScalarType type);
 
-/// Whether a type is that of numbers whose bits, and the fields of a float, are within its bytes. The library (1.10) does
-/// not check it, and converts with memory that is not the number's. Under the lock.
+/// Returns whether a type is a number whose bits, and the fields of a float, are within its bytes. The library
+/// (1.10) does not check this, and converts with memory outside of the number. Under the lock.
 bool IsHdfNumber(hid_t type);
 
 /// The names of what may be datasets, in all groups of a file, and behind external links. Under the lock.
@@ -45,7 +45,8 @@ std::string ListHdfNames(const std::vector<std::string>& names);
 
 /// After the library's first use: from then on the end of the process is noticed.
 void WatchHdfEnd();
-/// Whether the process ends, and the library closes all that is open by itself, perhaps has done so.
+/// Returns whether the process is exiting, so that the library closes all open identifiers by itself or has done
+/// so.
 bool IsHdfEnding();
 
 /// An identifier of the library's, closed with it. Under the lock.
@@ -53,7 +54,7 @@ class HdfHandle
 {
 public:
   using Closer = herr_t (*)(hid_t);
-  /// Of nothing: not open.
+  /// An empty handle: not open.
   HdfHandle() = default;
   HdfHandle(hid_t id, Closer closer)
     : Id(id)
@@ -116,8 +117,8 @@ bool ReadHdfWhole(
   return true;
 }
 
-/// Returns a text that the library writes to where it is told to, when asked for its length first: `get(to, size)`. Empty
-/// where it cannot be got, or is longer than FileLimits::NameBytes. Under the lock.
+/// Returns a text from a function of the library that first returns the text's length: `get(to, size)`. Empty
+/// if it fails, or if the text is longer than FileLimits::NameBytes. Under the lock.
 template <class Get>
 std::string GetHdfText(const Get& get)
 {
@@ -150,7 +151,7 @@ bool ReadHdfAttribute(hid_t object, const char* name, hid_t type, T* out, hssize
 /// An attribute's text; empty where there is no such attribute, or it is no text. Under the lock.
 std::string ReadHdfText(hid_t object, const char* name);
 
-/// The library prints its errors, unless it is told not to; what went wrong is said by us.
+/// Suppresses the library's own error output; this code reports the errors.
 class HdfSilence
 {
 public:

@@ -27,7 +27,8 @@ std::string GetFileName(hid_t object)
   return GetHdfText([=](char* to, std::size_t size) { return H5Fget_name(object, to, size); });
 }
 
-/// Where the library looks for a file that another names, first in folders of the environment's; none: nowhere.
+/// Finds a file that another names, as the library does: first in folders of the environment
+/// variable. Returns nothing if there is none.
 std::optional<std::string> FindFile(
   const std::string& name, const fs::path& folder, const char* variable)
 {

@@ -16,8 +16,8 @@ namespace vol
 /// it cannot be opened. Under GetHdfLock.
 HdfHandle OpenHdfDataset(hid_t group, const std::string& name);
 
-/// The other files that an HDF5 file's datasets have values from: behind external links, the bare bytes of external
-/// storage, the sources of virtual datasets. Of these the files of the sources are not looked into.
+/// Other files that an HDF5 file's datasets take values from: targets of external links, files of external
+/// storage, and sources of virtual datasets. The files that the sources refer to are not examined.
 class HdfOrigins
 {
 public:

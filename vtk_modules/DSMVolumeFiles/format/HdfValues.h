@@ -23,11 +23,11 @@ struct HdfValues
   bool IsPlain = true; ///< else the library has to make that type of what is stored
 };
 
-/// Of a dataset; none for what is no number. Names of truth values and the like (enumerations) count as their numbers.
-/// The caller of all of these has GetHdfLock.
+/// Returns the value type of a dataset; nothing if its values are not numbers. Enumerations (truth values and the
+/// like) count as their numbers. The caller of all of these has GetHdfLock.
 std::optional<HdfValues> FindHdfValues(hid_t dataset);
 
-/// What a sample of a dataset has where nothing was written.
+/// Returns the value of a sample that was never written.
 std::vector<std::byte> GetHdfFill(hid_t dataset, bricks::ScalarType type, int components);
 
 /// Reads the samples of a box, dense and x fastest, by the library. `frame`: along a first axis of time, where there is one.
@@ -35,10 +35,10 @@ std::vector<std::byte> GetHdfFill(hid_t dataset, bricks::ScalarType type, int co
 bool ReadHdfBox(hid_t dataset, bricks::ScalarType type, int components,
   std::optional<std::size_t> frame, const bricks::Box& box, std::byte* out);
 
-/// The filters that a dataset with these properties has, as steps of ours. False when one is not known here.
+/// Converts the filters of a dataset with these properties to codec steps. Returns false if one is unknown.
 bool FindHdfSteps(hid_t properties, std::vector<CodecStep>& steps);
 
-/// What is to be said of a filter of a dataset that the library does not find; empty where it has all.
+/// Returns a message about a filter of a dataset that the library does not find; empty if it has all.
 std::string FindLackingHdfFilter(hid_t dataset);
 
 } // namespace vol

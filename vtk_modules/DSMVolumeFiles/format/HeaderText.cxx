@@ -54,7 +54,7 @@ bool MeansSeveralFiles(const std::string& place)
       std::all_of(words.begin() + 1, words.begin() + 3, isNumber));
 }
 
-/// Of a field: one for each axis, or a matrix.
+/// Limit for the numbers in a field: one for each axis, or a matrix.
 constexpr std::size_t MostNumbers = FileLimits::Axes;
 
 /// Most headers are shorter.

@@ -21,9 +21,9 @@ public:
 
   /// The next line, without its end. False at the end of the file. Throws dsm::Error when the header is too long.
   bool Next(std::string& line);
-  /// Whether the file ends with the last line, so that no values can follow it.
+  /// Returns whether the file ends with the last line, so that no values can follow it.
   bool HasEnded() const { return this->Ended; }
-  /// Where the next line, or the values, begin.
+  /// Returns the offset in the file at which the next line, or the values, begin.
   std::int64_t GetPlace() const { return static_cast<std::int64_t>(this->Place); }
 
 private:
@@ -55,13 +55,13 @@ public:
   /// Throw dsm::Error for what is not a number, in any locale, and, when `count` is not 0, for another count; empty
   /// where there is no such name.
   std::vector<double> GetNumbers(const std::string& name, std::size_t count = 0) const;
-  /// Likewise, also for what is not an integer, or less than `least`.
+  /// Likewise; also throws for a number that is not an integer, or is less than `least`.
   std::vector<std::int64_t> GetIntegers(
     const std::string& name, std::size_t count = 0, std::int64_t least = -MostInteger) const;
   /// A single one; `usual` where there is no such name.
   std::int64_t GetInteger(
     const std::string& name, std::int64_t usual, std::int64_t least = -MostInteger) const;
-  /// Of a part of the field `name`.
+  /// Converts a part of the field `name` to numbers.
   std::vector<double> ToNumbers(const std::string& name, const std::string& text) const;
 
   /// The path of the file with the values, which a field names from the header's folder on. Throws dsm::Error where the

@@ -105,7 +105,8 @@ std::vector<std::size_t> FindDomain(const HeaderText& header, std::size_t axes)
   return domain;
 }
 
-/// Where it has no vectors: "axis mins" are of the first samples, or of where these begin.
+/// Sets origin and spacing along an axis of a header without vectors. "axis mins" are the positions
+/// of the first samples, or of where their cells begin.
 void LocateByAxis(
   const HeaderText& header, std::size_t axis, std::int64_t samples, FileGeometry& geometry, int to)
 {
@@ -176,7 +177,7 @@ std::shared_ptr<const VolumeFile> OpenNrrd(const std::string& path)
   }
   while (lines.Next(line) && !HeaderText::Trim(line).empty())
   {
-    // What a user adds is "key:=value", and no field.
+    // "key:=value" lines are the user's own, not fields.
     const std::size_t colon = line.find(':');
     if (line[0] != '#' && line.compare(colon == std::string::npos ? 0 : colon, 2, ":=") != 0)
     {

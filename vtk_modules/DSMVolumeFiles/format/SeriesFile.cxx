@@ -21,10 +21,10 @@ namespace vol
 namespace
 {
 
-/// Files that stay open: those of a step, its neighbours, and of who still reads another.
+/// Files that stay open: those of a step, its neighbors, and of who still reads another.
 constexpr std::size_t MostOpen = 6;
 
-/// Of what is where a step was expected.
+/// Returns the stamp of the file at a step's path.
 std::uint64_t FindStampOfStep(const std::string& path, const OpenOptions& options)
 {
   bricks::ByteHash hash;
@@ -34,7 +34,7 @@ std::uint64_t FindStampOfStep(const std::string& path, const OpenOptions& option
     const std::uint64_t stamp = FindStamp(path, options);
     hash.Add(&stamp, sizeof(stamp));
   }
-  catch (const std::exception&) // what is not there is refused when it is shown
+  catch (const std::exception&) // a missing file is rejected when it is shown
   {
     return hash.Get();
   }
@@ -215,7 +215,7 @@ private:
   std::vector<std::string> Paths;
   OpenOptions Options;
   mutable std::mutex Guard;
-  mutable std::vector<std::optional<std::uint64_t>> Stamps; ///< of the steps
+  mutable std::vector<std::optional<std::uint64_t>> Stamps; ///< one for each step
   /// Steps and their files, the last used first.
   mutable std::list<std::pair<int, std::shared_ptr<const VolumeFile>>> Open;
 };

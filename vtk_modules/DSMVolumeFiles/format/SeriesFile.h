@@ -11,10 +11,10 @@
 namespace vol
 {
 
-/// Files that are the time steps of one volume, in order; of each the first step counts. The first is opened, the
-/// others when something of them is wanted, and only the last few stay open. What does not have the first one's
-/// arrays, samples and chunks is refused, by its name, when it is opened. Of one path: OpenVolumeFile. Throws
-/// dsm::Error.
+/// Opens files as the time steps of one volume, in order; the first step of each is used. The first file is
+/// opened at once, the others on demand; only the last few stay open. A file whose arrays, samples or chunks
+/// differ from the first one's is rejected by name when it is opened. For a single path: OpenVolumeFile.
+/// Throws dsm::Error.
 std::shared_ptr<const VolumeFile> OpenVolumeSeries(
   const std::vector<std::string>& paths, const OpenOptions& options = {});
 

@@ -18,11 +18,11 @@ namespace vol
 namespace
 {
 
-/// Where chunks that a box of so many samples lies in take more than this together, they are cut.
+/// Chunks are cut if those that a box of so many samples lies in take more than this together.
 constexpr std::int64_t BoxSamples = 33;
 constexpr std::uint64_t MostTogether = std::uint64_t(16) << 20;
 
-/// What has so many planes, or longer rows, is cut into boxes.
+/// Chunks with at least so many planes, or with longer rows, are cut into boxes.
 constexpr std::int64_t LeastPlanes = 16;
 constexpr std::uint64_t LongestRow = std::uint64_t(1) << 20;
 
@@ -111,7 +111,7 @@ void StoredFile::ReadChunk(
     stored.Min == box.Min && stored.Max == box.Max && storage.Slices == 1 && !storage.IsReversed;
   try
   {
-    // What is not wanted of a large chunk that lies plain in the file is not read.
+    // Unwanted parts of a large uncompressed chunk are not read.
     const bool inRows =
       storage.StoredSamples != bricks::Index3(0) || (!isAll && allBytes > MostTogether);
     const auto rows =
@@ -171,7 +171,7 @@ void StoredFile::CheckStored(std::size_t array, const Place& place, std::size_t 
 {
   const Storage& storage = this->Storages[array];
   const FileArray& what = this->Arrays[array];
-  // Whether there is a halo is only known once the chunk is unpacked.
+  // Only the decoder knows whether the chunk has a halo.
   const std::uint64_t most = storage.Codec.CountMostStored(
     bytes, storage.Codec.KeepsHalo() ? what.Grid.CountMostOfHalo() * what.GetSampleBytes() : 0);
   if (place.Bytes > most)

@@ -30,13 +30,13 @@ public:
 protected:
   using VolumeFile::VolumeFile;
 
-  /// Where the bytes of a chunk are.
+  /// Place of the bytes of a chunk.
   struct Place
   {
     std::shared_ptr<const PositionedFile> File;
     std::uint64_t Offset = 0;
     std::size_t Bytes = 0;
-    unsigned SkippedSteps = 0; ///< of the codec
+    unsigned SkippedSteps = 0; ///< bits of the codec steps that were skipped
     std::size_t Slice = 0;     ///< which of Storage::Slices
   };
 
@@ -44,7 +44,7 @@ protected:
   struct Storage
   {
     ChunkCodec Codec;
-    /// Of a chunk that is nowhere: one sample, or one component where all are alike.
+    /// Value of a chunk that is not stored: one sample, or one component if all are equal.
     std::vector<std::byte> Fill;
     /// Samples along each axis of a chunk in the file, where it is shown as several (CutPlainChunks); else 0.
     bricks::Index3 StoredSamples{ 0 };
@@ -57,7 +57,7 @@ protected:
     std::size_t Slices = 1;
     /// Chunks, which are whole ones then, and of one slice, probably have a halo.
     bool HasHalo = false;
-    /// Of HaloRecord, behind each chunk; 0: the halo is in the chunk.
+    /// Size of the HaloRecord behind each chunk, in bytes; 0: the halo is in the chunk.
     std::size_t HaloRecordBytes = 0;
   };
 
@@ -68,11 +68,12 @@ protected:
   /// How the array is cut in the file.
   ChunkGrid GetStoredGrid(std::size_t array) const;
 
-  /// Shows each chunk as several, of neighbouring rows, where the chunks that a brick lies in are large together, as
-  /// slices are, and rows of a chunk can be read by themselves: nobody has to hold more of it than he needs.
+  /// Divides each chunk into several of neighboring rows, if the chunks that a brick lies in are large
+  /// together, as slices are, and if rows of a chunk can be read separately. Then readers hold only the rows
+  /// that they need.
   static void CutPlainChunks(FileArray& array, Storage& storage);
 
-  std::vector<Storage> Storages; ///< of the arrays
+  std::vector<Storage> Storages; ///< one for each array
 
 private:
   /// Repeats the bytes of `fill` until `out` has so many bytes.
@@ -87,7 +88,7 @@ private:
   /// The rows of a part of a chunk of the file; none where that can only be read as a whole.
   std::vector<PositionedFile::Piece> FindPieces(std::size_t array, const Place& place,
     const bricks::Index3& whole, const bricks::Box& part) const;
-  /// Of so many bytes together.
+  /// Reads pieces that have so many bytes in total.
   static void ReadPieces(const Storage& storage, const Place& place,
     const std::vector<PositionedFile::Piece>& pieces, std::byte* out, std::size_t bytes);
 };

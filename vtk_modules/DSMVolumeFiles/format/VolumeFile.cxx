@@ -144,7 +144,7 @@ std::shared_ptr<const VolumeFile> OpenAsItIs(const std::string& path, const Open
   }
   if (kind != PathKind::Directory)
   {
-    // What cannot be read would look like nothing that is known.
+    // An unreadable file would be reported as an unknown format.
     const PositionedFile readable(path);
   }
   switch (FindFormat(path))
@@ -281,7 +281,7 @@ void CheckGeometry(const std::string& path, const FileGeometry& geometry)
   {
     refuse("direction matrix", "a number is not finite");
   }
-  // Of axes of length 1, the volume that they span. What is left of rounding is less than this.
+  // Find the volume spanned by axes of length 1. Rounding errors are below this limit.
   constexpr double least = 1e-9;
   double axes[3][3];
   for (int axis = 0; axis < 3; ++axis)

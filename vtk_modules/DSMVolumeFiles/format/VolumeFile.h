@@ -39,7 +39,7 @@ std::string DescribeShape(const bricks::Index3& samples);
 /// `slices`: boxes of samples in what is stored as one chunk.
 void CheckSizes(const std::string& path, const FileArray& array, std::size_t slices = 1);
 
-/// Where the samples are in the world, as vtkImageData has it.
+/// Placement of the samples in world space, as in vtkImageData.
 struct FileGeometry
 {
   double Origin[3] = { 0.0, 0.0, 0.0 };
@@ -99,7 +99,7 @@ public:
   virtual void ReadChunk(
     std::size_t array, int step, const bricks::Index3& chunk, std::byte* out) const = 0;
 
-  /// What it has in memory, as long as it is open, of where chunks are.
+  /// Returns the bytes in memory, while the file is open, of the tables of its chunks.
   virtual std::uint64_t GetTableBytes() const { return 0; }
 
   /// The samples of a part of a chunk, likewise, where no more than these need be read for them; else false, and
@@ -126,8 +126,8 @@ public:
   /// chunk where a part cannot be read alone. Throws dsm::Error.
   virtual void Prefetch(std::size_t, int, const std::vector<ChunkPart>&) const {}
 
-  /// What a file that dsm_convert wrote tells of an array beside its values (docs/files.md); empty where it does
-  /// not. Throws std::bad_alloc.
+  /// Data about an array that dsm_convert writes beside its values (docs/files.md); empty if the file has none.
+  /// Throws std::bad_alloc.
   struct Index
   {
     /// For each component, and, where there are several, for the magnitude: least and greatest value, and the
@@ -146,7 +146,7 @@ protected:
   FileGeometry Geometry;
   std::vector<FileArray> Arrays;
   int Steps = 1;
-  std::vector<double> Times; ///< of the steps, or empty
+  std::vector<double> Times; ///< times of the steps, or empty
   int Levels = 1;
   std::uint64_t Stamp = 0;
 
@@ -154,19 +154,20 @@ private:
   std::uint64_t Number;
 };
 
-/// What a file's own header does not tell, or leaves open.
+/// Options for what the header of a file does not define, or leaves open.
 struct OpenOptions
 {
-  /// Of a Zarr group with several scales, or a brick file with several levels: 0 is the finest.
+  /// Level of detail, for a Zarr group with several scales or a brick file with several levels: 0 is the finest.
   int Level = 0;
-  /// Of an HDF5 file without VTKHDF: the dataset to take; empty: those of the largest shape of three axes in space.
+  /// Dataset to read, for an HDF5 file without VTKHDF; empty: the datasets with the largest shape of three axes in
+  /// space.
   std::string Dataset;
 
-  /// Asked now and then while a file is being opened, by the calling thread, as an index of many chunks takes a moment:
-  /// where it says no, opening ends with dsm::Error. Empty: nobody asks.
+  /// Called now and then by the opening thread while a file is being opened, because an index of many chunks
+  /// takes time. If it returns false, opening ends with dsm::Error. May be empty.
   std::function<bool()> GoesOn;
 
-  /// Of a file of bare values (.raw).
+  /// Description of a file of bare values (.raw).
   struct Raw
   {
     bricks::Index3 Samples{ 0 };
@@ -188,10 +189,10 @@ std::shared_ptr<const VolumeFile> OpenVolumeFile(
 /// have values in them, nothing is read for it. Throws dsm::Error.
 std::uint64_t FindStamp(const std::string& path, const OpenOptions& options = {});
 
-/// Whether it has bare values, so that OpenOptions::Raw has to tell of them. Throws nothing.
+/// Returns whether the file has bare values, so that OpenOptions::Raw has to describe them. Does not throw.
 bool IsBareFile(const std::string& path);
 
-/// Whether its name and first bytes look like one of the formats; cheap, and throws nothing.
+/// Returns whether its name and first bytes look like one of the formats. Fast; does not throw.
 bool MayBeVolumeFile(const std::string& path);
 
 } // namespace vol

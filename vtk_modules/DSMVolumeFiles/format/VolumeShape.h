@@ -12,7 +12,7 @@
 namespace vol
 {
 
-/// Of several arrays beside one another, those of the largest shape are one volume.
+/// Shape of an array. The arrays with the largest shape in a group form one volume.
 struct VolumeShape
 {
   bricks::Index3 Samples{ 0 };
@@ -31,7 +31,8 @@ struct VolumeShape
     return count(*this) > count(other) ||
       (this->Samples == other.Samples && this->Times > other.Times);
   }
-  /// Whether it belongs to the volume of the largest: what has no time is there at all times.
+  /// Returns whether the array belongs to the volume of the largest shape. An array without a time axis is present
+  /// at all times.
   bool BelongsTo(const VolumeShape& largest) const
   {
     return this->Samples == largest.Samples && (this->Times == 0 || this->Times == largest.Times);

@@ -38,7 +38,7 @@ std::string FindType(const Json& axis)
                                                 : "";
 }
 
-/// Whether nothing says that the axes from this one on are not these three.
+/// Returns whether the names allow the axes from this one on to be these three.
 bool MayBe(const Json& named, std::size_t first, const std::string& order)
 {
   const std::string known = "xyz";

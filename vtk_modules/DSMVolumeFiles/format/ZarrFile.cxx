@@ -44,7 +44,7 @@ std::string JoinInside(const std::string& folder, const std::string& name)
   return folder + "/" + name;
 }
 
-/// What lies in a folder. Throws dsm::Error where the system cannot tell what it is.
+/// Lists the entries of a folder. Throws dsm::Error if the system cannot determine their kind.
 std::vector<std::filesystem::path> FindFolders(const std::string& path)
 {
   std::vector<std::filesystem::path> found;
@@ -140,7 +140,7 @@ protected:
   }
 
 private:
-  /// Where an array of ours comes from.
+  /// Origin of one of this file's arrays.
   struct Source
   {
     std::string Folder;
@@ -149,8 +149,8 @@ private:
     std::vector<std::int64_t> Channel; ///< along the leading axes; of time, 0
   };
 
-  /// Of the arrays' own files, and of what was made of the attributes, which others may have: axes, time, channels, their
-  /// names, and where the samples are.
+  /// Computes the stamp from the arrays' own files and from the results of the attributes, which
+  /// may be in other files: axes, time, channels, their names, and the positions of the samples.
   std::uint64_t MakeStamp() const
   {
     bricks::ByteHash hash;
@@ -446,7 +446,7 @@ private:
     return unique;
   }
 
-  /// Of a folder that has groups of arrays, or images.
+  /// Returns an inner folder with groups of arrays, or images.
   std::string FindInnerGroup() const
   {
     for (const std::filesystem::path& folder : FindFolders(this->Path))
@@ -522,7 +522,7 @@ private:
     return place;
   }
 
-  std::vector<Source> Sources; ///< of the arrays
+  std::vector<Source> Sources; ///< one for each array
   std::unordered_set<std::string> Names;
   mutable ZarrParts Parts;
 };

@@ -245,7 +245,7 @@ ZarrMetadata ParseVersion2(const std::string& folder, const Json& json)
   ZarrMetadata data;
   data.Shape = GetShape(folder, json, "shape", MostSamples);
   data.ChunkShape = GetShape(folder, json, "chunks", MostSamples);
-  // Old nested stores do not say so.
+  // Old nested stores do not declare it.
   const bool looksNested = FindPathKind(folder + "/0") == PathKind::Directory;
   data.Separator = GetSeparator(folder, json, "dimension_separator", looksNested ? "/" : ".");
   data.FortranOrder = ZarrJson::GetText(folder, json, "order") == "F";
@@ -309,8 +309,8 @@ void Transpose(const std::string& folder, const Json& configuration, std::vector
   }
 }
 
-/// Of version 3, but for sharding, of an array of so many axes. `fortranOrder`: whether all are transposed, after all
-/// transpositions, which follow one another.
+/// Parses the codecs of version 3, except for sharding, of an array with so many axes.
+/// `fortranOrder`: set to whether consecutive transpositions result in a reversal of all axes.
 std::vector<CodecStep> ParseCodecs3(const std::string& folder, const Json& codecs,
   std::size_t width, std::size_t count, bool& fortranOrder)
 {

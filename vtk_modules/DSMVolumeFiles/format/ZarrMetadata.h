@@ -15,7 +15,7 @@
 namespace vol
 {
 
-/// What the metadata of one Zarr array say, whichever version.
+/// Metadata of one Zarr array, of either version.
 struct ZarrMetadata
 {
   /// Chunks of a chunk, which share a file, behind or before an index of where they are.
@@ -39,11 +39,13 @@ struct ZarrMetadata
   std::string Separator = ".";
   std::string Prefix;
 
-  /// Whether it has samples, in chunks, no more along an axis than an int counts, and three to five axes.
+  /// Returns whether the array has samples, in chunks, at most as many along an axis as an int counts, and three to
+  /// five axes.
   bool IsVolume() const;
 };
 
-/// Of the array in a folder; none where there is no array. Throws dsm::Error for what this build cannot read.
+/// Reads the metadata of the array in a folder; returns nothing if there is no array. Throws dsm::Error if this
+/// build cannot read it.
 std::optional<ZarrMetadata> ReadZarrMetadata(const std::string& folder);
 
 /// The attributes of an array or a group, which may be empty.

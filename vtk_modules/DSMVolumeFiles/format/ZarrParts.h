@@ -17,7 +17,7 @@
 namespace vol
 {
 
-/// What is remembered of the files in a Zarr folder, which are opened anew for each chunk: what they were, and the
+/// Cached data about the files in a Zarr folder, which are opened again for each chunk: their stamps, and the
 /// indices of shards, up to some megabytes of either. Any thread.
 class ZarrParts
 {
@@ -30,10 +30,10 @@ public:
   void CheckUnchanged(const PositionedFile& file);
   /// Throws dsm::Error when there was a file that is no longer there: what chunks without one have is not its.
   void CheckNeverThere(const std::string& path);
-  /// Of a file that is unchanged. Throws dsm::Error when it is truncated or damaged.
+  /// Returns the index of an unchanged file. Throws dsm::Error when it is truncated or damaged.
   Index GetIndex(const ZarrMetadata::Sharding& shards, const PositionedFile& file);
 
-  /// What it takes at most when there are so many files.
+  /// Returns an upper bound of the memory in bytes for so many files.
   static std::uint64_t CountBytes(std::uint64_t files, std::uint64_t indexBytes);
 
 private:

@@ -21,7 +21,8 @@ namespace vol
 namespace
 {
 
-/// What nobody has used for so long is of a file that has changed, or is gone.
+/// Kept files that were not used for so long are removed: the volume has probably changed, or is
+/// gone.
 constexpr auto LongestUnused = std::chrono::hours(24) * 180;
 
 void RemoveUnused(const std::filesystem::path& folder)
@@ -41,7 +42,8 @@ void RemoveUnused(const std::filesystem::path& folder)
   }
 }
 
-/// What the names of files that are kept of an array begin with, the folder included; empty where there is no folder.
+/// Returns the path prefix of files that are kept for an array, with the folder; empty if there is
+/// no folder.
 std::filesystem::path GetBeginning(
   const VolumeFile& file, std::size_t array, int step, const std::string& kind)
 {

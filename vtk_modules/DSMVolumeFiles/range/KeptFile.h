@@ -12,8 +12,8 @@
 namespace vol
 {
 
-/// What was found out about a part of an array by reading all of it, in the user's cache directory
-/// ($XDG_CACHE_HOME or ~/.cache): known as long as the file is what it was. Any thread.
+/// Results of a pass over a part of an array, kept in the user's cache directory ($XDG_CACHE_HOME or ~/.cache).
+/// They are valid as long as the file is unchanged. Any thread.
 class KeptFile
 {
 public:
@@ -38,7 +38,7 @@ private:
   {
     std::uint64_t Magic;
     std::uint64_t Bytes;
-    std::uint64_t Checksum; ///< of the kept bytes and the file's own name
+    std::uint64_t Checksum; ///< checksum of the kept bytes and the file's own name
   };
   Header MakeHeader(const std::byte* bytes, std::size_t count) const;
 

@@ -90,7 +90,7 @@ std::vector<dsm::BlockId> OrderBricks(const bricks::BrickLattice& lattice,
 
 bool CanLookAtBricks(const FileArray& array)
 {
-  constexpr std::int64_t leastWidth = 3; // of narrower columns most chunks would be read twice
+  constexpr std::int64_t leastWidth = 3; // columns that are narrower would read most chunks twice
   const bricks::Index3& samples = array.Grid.Samples;
   return array.Components == 1 && !array.OnCells &&
     std::min({ samples.x, samples.y, samples.z }) > 1 && FindColumnWidth(array) >= leastWidth;
@@ -112,7 +112,7 @@ std::optional<Look> LookThrough(const std::shared_ptr<const VolumeFile>& file, s
   std::vector<ValueRanges> parts(static_cast<std::size_t>(threads), look.Ranges);
   std::atomic<std::size_t> done{ 0 };
   std::atomic<bool> stopped{ false };
-  constexpr std::size_t together = 64; // who goes on is not asked more often
+  constexpr std::size_t together = 64; // the caller is asked whether to go on once for so many
   bricks::ParallelForChunks(threads, order.size(), together,
     [&](std::size_t begin, std::size_t end, std::size_t, int thread)
     {

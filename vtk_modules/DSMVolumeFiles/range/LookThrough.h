@@ -19,14 +19,14 @@ namespace vol
 std::vector<dsm::BlockId> OrderBricks(const bricks::BrickLattice& lattice,
   const bricks::Box& bricks, const FileArray& array, const bricks::Index3& first);
 
-/// Whether the bricks that an array is drawn with can be looked at in the same reading as its ranges are found: they
-/// have samples in common with their neighbours, so the shared cache has to hold the chunks of many.
+/// Returns whether the bricks that an array is drawn with can be examined in the same pass that finds its ranges.
+/// Bricks share samples with their neighbors, so the shared cache has to hold the chunks of many bricks.
 bool CanLookAtBricks(const FileArray& array);
 
-/// What all of a box of an array was read for.
+/// Results of one pass over a box of an array.
 struct Look
 {
-  ValueRanges Ranges; ///< of the samples of the box
+  ValueRanges Ranges; ///< ranges of the samples in the box
   /// The bricks, of all of the array, of which the first cell is among the box's cells.
   bricks::SeenBricks Bricks;
 };

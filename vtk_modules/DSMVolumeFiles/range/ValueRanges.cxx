@@ -20,7 +20,7 @@ namespace vol
 namespace
 {
 
-/// What is kept, and in which layout.
+/// Kind of the kept file, with the version of its layout.
 constexpr const char* Kind = "ranges4";
 
 void Add(ValueRanges& ranges, std::size_t number, double value)
@@ -87,8 +87,8 @@ void AddRow(ValueRanges& ranges, const T* row, std::int64_t samples, int compone
   }
 }
 
-/// Of the shared cache's room, for as many threads as it is enough for: a chunk of each, and its bytes as the file has
-/// them.
+/// Divides the room of the shared cache among as many threads as it suffices for: each needs a
+/// chunk, and the chunk's stored bytes.
 class Room
 {
 public:
@@ -285,7 +285,7 @@ std::optional<ValueRanges> LoadKept(
     : std::nullopt;
 }
 
-/// What of `box` is outside of `other`, in boxes that share nothing.
+/// Adds the part of `box` outside of `other`, as disjoint boxes.
 void AddOutside(bricks::Box box, const bricks::Box& other, std::vector<bricks::Box>& out)
 {
   for (int axis = 0; axis < 3 && !box.IsEmpty(); ++axis)
@@ -306,7 +306,8 @@ void AddOutside(bricks::Box box, const bricks::Box& other, std::vector<bricks::B
   }
 }
 
-/// Of kept boxes, the smallest first, that together have all of a box; nothing where they do not.
+/// Merges kept boxes, the smallest first, that together cover a box; returns nothing if they do
+/// not.
 std::optional<ValueRanges> LoadCovering(
   const VolumeFile& file, std::size_t array, int step, const bricks::Box& box)
 {

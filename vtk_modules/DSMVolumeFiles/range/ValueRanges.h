@@ -32,26 +32,27 @@ struct ValueRange
   bool IsEmpty() const { return this->Least > this->Greatest; }
 };
 
-/// Of an array's samples: of each component, and behind these, where there are several, of the magnitude. What is
-/// not a number does not count.
+/// Ranges of an array's samples: one for each component and, if there are several, one for the magnitude at the
+/// end. NaN is ignored.
 struct ValueRanges
 {
   std::vector<ValueRange> All;
   std::vector<ValueRange> Finite; ///< without infinite values
 
-  /// Of no samples.
+  /// Ranges of no samples: empty.
   explicit ValueRanges(int components);
-  /// Whether samples of a type can have these ranges. Ranges that were copied out of a file must pass before they are
-  /// used.
+  /// Returns whether samples of a type can have these ranges. Ranges that were copied out of a file must pass
+  /// before they are used.
   bool IsValid(bricks::ScalarType type) const;
   void Add(const ValueRanges& other);
-  /// Of a dense array of the samples of `have`, those of `want`.
+  /// Adds the samples in `want` from a dense array of the samples in `have`.
   void Add(const FileArray& array, const std::byte* samples, const bricks::Box& have,
     const bricks::Box& want);
 };
 
-/// Reads all of a box of an array, with so many threads, or fewer where their chunks would not fit the shared cache. `goesOn(part)`, on the calling thread, is told how much is
-/// done; when it says no, nothing is returned. Throws dsm::Error when the file cannot be read.
+/// Reads all of a box of an array, with so many threads, or fewer if their chunks would not fit the shared
+/// cache. `goesOn(part)` receives the completed part on the calling thread; when it returns false, nothing is
+/// returned. Throws dsm::Error when the file cannot be read.
 std::optional<ValueRanges> FindRanges(const std::shared_ptr<const VolumeFile>& file,
   std::size_t array, int step, const bricks::Box& box, int threads,
   const std::function<bool(double)>& goesOn);

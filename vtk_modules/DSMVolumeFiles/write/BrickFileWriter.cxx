@@ -26,7 +26,8 @@ namespace
 /// Entries of a node of the index of chunks: large nodes are found and read with few steps.
 constexpr unsigned IndexNodeEntries = 1024;
 
-/// What a level may take beyond its file, which has as many groups: the library aligns some of it.
+/// Bytes that a level may take beyond its own file, with the same number of groups: the library
+/// aligns some of them.
 constexpr std::uint64_t RoomForGroups = 1 << 16;
 
 std::vector<hsize_t> GetShape(const bricks::Index3& samples, int components)
@@ -210,7 +211,7 @@ private:
 
   void WriteRest(const std::vector<std::vector<std::byte>>& indices, int levels)
   {
-    // What a level has is long to copy, and behind the end of what a later call goes on with.
+    // Copying a level takes long. It goes behind the end of the data that a later call resumes.
     this->File.Check(this->File.Open() ? 0 : -1);
     for (int level = 1; level <= levels; ++level)
     {

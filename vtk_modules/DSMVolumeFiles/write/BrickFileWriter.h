@@ -22,7 +22,7 @@ enum class Compression
   Zstd     ///< smaller and faster; others need HDF5's plugin for it
 };
 
-/// What a brick file is to hold.
+/// Contents of a brick file.
 struct BrickFileLayout
 {
   FileGeometry Geometry;
@@ -30,16 +30,17 @@ struct BrickFileLayout
   std::vector<FileArray> Arrays;
   int BrickEdge = 16;
   Compression Pressed = Compression::None;
-  /// Of chunks that are not compressed: whether they have a halo, too. One that lies behind its chunk does not when the
-  /// array is copied to another file.
+  /// Whether uncompressed chunks also have a halo. A halo that lies behind its chunk is lost when the array is
+  /// copied to another file.
   bool HasHaloRecords = true;
 
-  /// What the chunks of an array go through. Throws dsm::Error when this build lacks the compression.
+  /// Returns the codec for the chunks of an array. Throws dsm::Error when this build lacks the compression.
   ChunkCodec CreateCodec(std::size_t array) const;
-  /// Whether the chunks of an array, which begin bricks, have a halo (ChunkGrid::GetHalo): so a brick is read in
-  /// one piece.
+  /// Returns whether the chunks of an array, which begin bricks, have a halo (ChunkGrid::GetHalo), so that a brick
+  /// is read in one piece.
   bool HasHalo(std::size_t array) const;
-  /// Of HaloRecord, behind each chunk; 0: none, as where the halo is in the chunk.
+  /// Returns the size of the HaloRecord behind each chunk, in bytes; 0 if there is none, or if the halo is in the
+  /// chunk.
   std::size_t GetHaloRecordBytes(std::size_t array) const;
 };
 
@@ -47,7 +48,7 @@ struct BrickFileLayout
 struct EncodedChunk
 {
   ByteBuffer Bytes;
-  ByteBuffer HaloRecord; ///< where the layout has them
+  ByteBuffer HaloRecord; ///< empty if the layout has no halo records
 };
 
 /// Writes a volume that any HDF5 reader opens, as VTK's ImageData (VTKHDF), with an index of ranges beside it (the
@@ -55,16 +56,16 @@ struct EncodedChunk
 class BrickFileWriter
 {
 public:
-  /// What happens to the files of a writer that does not finish.
+  /// Handling of the files of a writer that does not finish.
   enum class Unfinished
   {
     Keep,  ///< A later process resumes.
     Remove ///< The destructor removes them, and the constructor refuses to replace files that a process can resume.
   };
 
-  /// Goes on with PATH.part when that was begun for the same layout and `source` (a text that tells of which
-  /// values) and is whole up to where it has come; else begins anew. Throws dsm::Error; then it has removed what it has
-  /// begun, and has not touched the files of another process or program.
+  /// Resumes PATH.part if it was begun for the same layout and `source` (a text that identifies the values)
+  /// and is complete up to its end; otherwise starts again. Throws dsm::Error; then it has removed its own
+  /// new files, and has not touched the files of another process or program.
   BrickFileWriter(std::string path, const BrickFileLayout& layout, const std::string& source,
     Unfinished unfinished);
   ~BrickFileWriter();

@@ -41,7 +41,7 @@ std::vector<std::size_t> FindArrays(const VolumeFile& from, const std::vector<st
   return found;
 }
 
-/// What a file is read from must not be written over. Where those of a folder are, there is none to be.
+/// Throws if the target would overwrite one of the source files, or lies in a source folder.
 void CheckTarget(const VolumeFile& from, int step, const std::string& path)
 {
   namespace fs = std::filesystem;
@@ -96,7 +96,7 @@ public:
   {
     std::string text = this->File->GetPath() + " " + std::to_string(this->File->GetStamp()) +
       " step " + std::to_string(this->Step);
-    for (const FileArray& array : this->Arrays) // what is written may be called otherwise
+    for (const FileArray& array : this->Arrays) // the written arrays may have other names
     {
       text += " " + array.Name;
     }
@@ -131,7 +131,8 @@ private:
   using Key = std::array<std::int64_t, 3>;
   static Key GetKey(const bricks::Box& box) { return { box.Min.x, box.Min.y, box.Min.z }; }
 
-  /// Where the cache cannot hold the chunks that a box lies in, all boxes of this rank are read chunk by chunk.
+  /// If the cache cannot hold the chunks that a box lies in, all boxes of this rank are read chunk
+  /// by chunk.
   void Gather(
     std::size_t array, const std::vector<bricks::Box>& boxes, const std::vector<int>& ranks)
   {
@@ -165,7 +166,7 @@ private:
   dsm::Messenger& Messenger;
   int Threads;
   mutable ChunkCache Cache;
-  std::map<Key, ByteBuffer> Gathered; ///< of the boxes that were dealt last, to this rank
+  std::map<Key, ByteBuffer> Gathered; ///< boxes that were dealt last to this rank
 };
 
 /// By the name of another format programs would not open it; and when the names are given the wrong way round, what was to

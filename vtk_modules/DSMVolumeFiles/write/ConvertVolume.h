@@ -21,9 +21,9 @@ struct ConvertOptions : WriteOptions
   int Step = 0;
 };
 
-/// Writes a brick file (BrickFileWriter) of a volume at `path`, or goes on where an earlier call was ended. Collective;
-/// every rank opens the file by itself; rank 0 writes. `tell(part)` is called on rank 0 with how much is done. Throws
-/// the same dsm::Error on every rank.
+/// Writes a brick file (BrickFileWriter) of a volume at `path`, or resumes an interrupted call. Collective;
+/// every rank opens the file by itself; rank 0 writes. `tell(part)` receives the completed part on rank 0.
+/// Throws the same dsm::Error on every rank.
 void ConvertVolume(const std::shared_ptr<const VolumeFile>& from, const std::string& path,
   const ConvertOptions& options, dsm::Messenger& messenger,
   const std::function<void(double)>& tell);

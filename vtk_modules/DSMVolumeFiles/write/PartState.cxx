@@ -109,7 +109,7 @@ public:
 
   std::string Path;
   bool IsResumable;
-  std::vector<std::int64_t> MostChunks; ///< of each array
+  std::vector<std::int64_t> MostChunks; ///< for each array
   Json Description;
 };
 

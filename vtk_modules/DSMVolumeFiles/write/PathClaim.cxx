@@ -42,7 +42,8 @@ bool IsLock(int file)
   return file >= 0 && fstat(file, &opened) == 0 && S_ISREG(opened.st_mode) && opened.st_size == 0;
 }
 
-/// Whether the file that is open is still the one at the path: who had it may have removed it meanwhile.
+/// Returns whether the open file is still the one at the path: its owner may have removed it
+/// meanwhile.
 bool IsAt(int file, const std::string& path)
 {
   struct stat opened = {};
@@ -67,7 +68,7 @@ PathClaim::PathClaim(const std::string& path)
       open(this->LockPath.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NONBLOCK | O_NOFOLLOW, 0666);
     if (this->Lock < 0 && errno != EISDIR && errno != ELOOP && errno != ENXIO)
     {
-      return; // where no file can be written, the writer says so
+      return; // the writer reports a folder that is not writable
     }
     if (!IsLock(this->Lock))
     {

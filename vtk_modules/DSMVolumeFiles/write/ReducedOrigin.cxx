@@ -86,7 +86,7 @@ void Average(const T* fine, const bricks::Box& fineBox, const bricks::Index3& fa
               }
             }
           }
-          // Of none, NaN again.
+          // Without any value, NaN remains.
           *out++ = count > 0
             ? ToValue<T>(sum, count)
             : fine[((first.z * has.y + first.y) * has.x + first.x) * components + component];
@@ -175,7 +175,7 @@ bricks::Box ReducedOrigin::GetFineBox(std::size_t array, const bricks::Box& box)
     const bricks::Index3 end = this->File->GetArrays()[array].Grid.Samples;
     return { box.Min * this->Factors, glm::min(box.Max * this->Factors, end) };
   }
-  // Of the file's cells, cell 2 i + 1 has its centre where cell i of this has it.
+  // The center of cell i of this array is that of cell 2 i + 1 of the file.
   const bricks::Index3 centre = this->Factors - bricks::Index3(1);
   return { box.Min * this->Factors + centre,
     (box.Max - bricks::Index3(1)) * this->Factors + centre + bricks::Index3(1) };

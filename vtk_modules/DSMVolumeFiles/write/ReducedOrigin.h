@@ -17,7 +17,7 @@ namespace vol
 /// is the mean of the file's 2 x 2 x 2 points around it, so it lies half a sample further than the first of them: linear
 /// functions stay as they are, and thin things fade instead of breaking up. A last point without a partner stands
 /// alone, so that nothing of the volume is cut off. Numbers count, not NaN; integers are rounded. A cell's value is that
-/// of the file's cell at its centre: what cells have are often names, not amounts.
+/// of the file's cell at its center: what cells have are often names, not amounts.
 class ReducedOrigin final : public ValueOrigin
 {
 public:
@@ -25,7 +25,7 @@ public:
   ReducedOrigin(
     std::shared_ptr<const VolumeFile> file, std::string source, int ranks, std::size_t cacheBytes);
 
-  /// Whether any axis is long enough to be halved.
+  /// Returns whether any axis is long enough to be halved.
   static bool CanReduce(const FileGeometry& geometry);
 
   const FileGeometry& GetGeometry() const override { return this->Geometry; }

@@ -11,7 +11,7 @@
 namespace vol
 {
 
-/// Where the values come from that a brick file is made of: each rank can tell some of them.
+/// Origin of the values of a brick file. Each rank can provide some of them.
 class ValueOrigin
 {
 public:
@@ -19,7 +19,7 @@ public:
 
   /// The same on every rank, as all but Read.
   virtual const FileGeometry& GetGeometry() const = 0;
-  /// Of their grids, the samples count; how they are cut into chunks is for the file to choose.
+  /// Only the samples of their grids matter; the file chooses its own chunks.
   virtual const std::vector<FileArray>& GetArrays() const = 0;
   /// Tells, for a later process, which values these are.
   virtual std::string Describe() const = 0;

@@ -48,7 +48,7 @@ public:
   }
 
   /// The samples that a chunk is made of: those that the brick that begins here has, so the first ones of its
-  /// neighbours, too.
+  /// neighbors, too.
   bricks::Box GetSource(std::int64_t chunk) const
   {
     return this->Array.Grid.GetBoxWithHalo(this->Array.Grid.GetChunk(chunk));
@@ -96,7 +96,7 @@ private:
   std::size_t HaloRecordBytes;
 };
 
-/// What a rank has made, as it goes to rank 0.
+/// Serializes a rank's results for rank 0.
 template <class T>
 void Put(std::vector<std::byte>& bytes, const T* values, std::size_t count)
 {
@@ -186,7 +186,7 @@ void FromBytes(
   }
 }
 
-/// What all ranks have made, in the file's order.
+/// Merges the results of all ranks, in the file's order.
 std::vector<EncodedChunk> Merge(
   const std::vector<std::vector<std::byte>>& parts, ValueRanges& ranges)
 {

@@ -24,19 +24,20 @@ struct WriteOptions
   /// are until one is a single brick.
   int Levels = 0;
   static constexpr int AllLevels = std::numeric_limits<int>::max();
-  /// Of values and chunks in memory, on each rank; what the HDF5 library keeps of the index comes on top.
+  /// Memory limit in bytes for values and chunks, on each rank; memory of the HDF5 library for the index is not
+  /// included.
   std::size_t MemoryBytes = std::size_t(512) << 20;
-  int Threads = 1; ///< of each rank
-  /// Whether a later call can resume one that fails or is interrupted. If not, a call that fails removes its files.
+  int Threads = 1; ///< on each rank
+  /// Allows a later call to resume one that fails or is interrupted. If false, a call that fails removes its files.
   bool IsResumable = true;
   /// See BrickFileLayout.
   bool HasHaloRecords = true;
 };
 
-/// Writes a brick file (BrickFileWriter) at `path`, or goes on where an earlier call with the same values was ended.
-/// Collective; rank 0 writes, and every rank looks through the bricks in the end, so all must see the file. The origin
-/// goes when its values are written; what it has in memory should be at most half of MemoryBytes. `tell(part)` is called
-/// on rank 0 with how much is done. Throws the same dsm::Error on every rank.
+/// Writes a brick file (BrickFileWriter) at `path`, or resumes an interrupted call with the same values.
+/// Collective; rank 0 writes, and every rank examines the bricks at the end, so all must have access to the
+/// file. The origin is destroyed when its values are written; its memory should be at most half of
+/// MemoryBytes. `tell(part)` receives the completed part on rank 0. Throws the same dsm::Error on every rank.
 void WriteBrickFile(std::unique_ptr<ValueOrigin> from, const std::string& path,
   const WriteOptions& options, dsm::Messenger& messenger, const std::function<void(double)>& tell);
 

@@ -48,10 +48,10 @@ public:
   void Divert();
 
 private:
-  /// What the library knows of the file goes to it only when it is told to, so that in between the file is as it
-  /// was then, with what has been added behind its end.
+  /// Holds the library's metadata in memory until they are flushed. In between, the file is as it was at the last
+  /// flush, with the data added since behind its end.
   void HoldMetadata() const;
-  /// Of the system; -1 when it is closed.
+  /// Returns the file descriptor; -1 when the file is closed.
   int GetDescriptor() const;
 
   std::string Path;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Where the versions of VTK differ: 9.1, as in Debian 12, to 9.6. Nothing else in these modules asks for the version.
+/// Differences between the versions of VTK, from 9.1 (as in Debian 12) to 9.6. No other file of
+/// these modules tests the version.
 #ifndef vtkDSMCompatibility_h
 #define vtkDSMCompatibility_h
 
@@ -13,7 +14,7 @@
 #include <type_traits>
 #include <utility>
 
-/// Of virtual methods that there are since 9.2: ranges of arrays without ghosts.
+/// Override specifier of virtual methods that exist since 9.2: ranges of arrays without ghosts.
 #if VTK_MAJOR_VERSION > 9 || VTK_MINOR_VERSION >= 2
 #define vtkDSMOverrideSince92 override
 #else
@@ -67,7 +68,7 @@ inline double GetEdgeOpacity(vtkProperty* property)
   return EdgeOpacity<vtkProperty>::Get(property);
 }
 
-/// Where an actor keeps what turns its texture coordinates; since 9.6 under another name.
+/// Key of an actor's texture transform; it has another name since 9.6.
 template <class Prop, class = void>
 struct TextureTransform
 {

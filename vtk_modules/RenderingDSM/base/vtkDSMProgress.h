@@ -4,8 +4,8 @@
 
 class vtkAlgorithm;
 
-/// How a mapper tells of the building of its bricks, and hears that nobody wants to wait for them; and of the tracing of
-/// what it shows.
+/// Progress of a mapper: reports the building of its bricks, whose observers may abort it, and the tracing of
+/// its data.
 namespace vtkDSMProgress
 {
 /// Before the building: an earlier wish to stop is over.
@@ -15,7 +15,8 @@ void Begin(vtkAlgorithm* mapper);
 /// then; where bricks are built, that ends the building on all ranks.
 void Tell(vtkAlgorithm* mapper, double part);
 
-/// The same of a frame's tiles; until it returns, the mapper's ProgressText says so. Nothing is aborted.
+/// Reports the progress of a frame's tiles; the mapper's ProgressText describes it until the call returns. It
+/// cannot be aborted.
 void TellOfTracing(vtkAlgorithm* mapper, double part);
 }
 

@@ -6,12 +6,13 @@
 #include <map>
 #include <optional>
 
-/// What was set for a block of a dataset of images; a plain value, that travels between ranks.
+/// Appearance that was set for a block of a dataset of images; a plain value, for messages between
+/// ranks.
 struct vtkDSMBlockLook
 {
-  std::optional<std::array<double, 3>> Color; ///< in place of the colour array as well
+  std::optional<std::array<double, 3>> Color; ///< in place of the color array as well
   std::optional<double> Opacity;
-  std::optional<double> Value; ///< what the lookup table colours the block by
+  std::optional<double> Value; ///< value by which the lookup table colors the block
 
   bool operator==(const vtkDSMBlockLook& other) const
   {

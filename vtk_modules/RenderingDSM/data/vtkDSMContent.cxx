@@ -28,7 +28,7 @@ struct Bytes
   std::size_t Size;
 };
 
-/// Where the values are; false where they do not lie one after the other.
+/// Finds the memory of the values; false if they are not contiguous.
 bool FindBytes(vtkDataArray* array, Bytes& bytes)
 {
   const auto values = static_cast<std::size_t>(array->GetNumberOfValues());
@@ -82,8 +82,8 @@ TupleCopier FindComponents(vtkDataArray* array, int threads)
     } };
 }
 
-/// Of any array, as of those whose values are computed when they are asked for: VTK's implicit arrays,
-/// among them the offsets of cells that are all of one size.
+/// For any array, also those that compute their values on demand: VTK's implicit arrays, among them
+/// the offsets of cells of equal size.
 TupleCopier FindCopier(vtkDataArray* array, int threads)
 {
   TupleCopier copier{ 1, nullptr };

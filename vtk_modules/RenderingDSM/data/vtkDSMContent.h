@@ -10,9 +10,9 @@ class vtkAbstractArray;
 /// called Modified: a simulation may write to the same memory, a reader may read the same again.
 namespace vtkDSMContent
 {
-/// Local. Of the array's type, shape and values: equal, for all practical purposes, only for equal
-/// ones. An array of what is no number is unlike any other and unlike itself. Null is an array, too. Reads
-/// with as many threads, but values that are computed by one.
+/// Local. Returns a hash of the array's type, shape and values: equal, for all practical purposes, only for
+/// equal arrays. The hash of an array that is not numeric differs from any other, also of the same array.
+/// Null is an array, too. Reads with as many threads, but with one if the array computes its values.
 std::uint64_t Hash(vtkAbstractArray* array, int threads);
 }
 

@@ -531,7 +531,7 @@ bricks::VoxelIndex vtkDSMFileVolume::FindIndex(dsm::Messenger& messenger,
         this->Values->GetArray(), this->Values->GetBox().Min);
     });
   bricks::VoxelIndex found = bricks::VoxelIndex::Find(messenger, lattice, *reader, pass, progress);
-  dsm::FreedMemory::Return(); // of the threads that looked
+  dsm::FreedMemory::Return(); // memory of the threads that examined bricks
   messenger.RunTogether(what,
     [&]
     {

@@ -26,10 +26,10 @@ class vtkImageData;
 class vtkDSMFileVolume
 {
 public:
-  /// Of all bricks, by id.
+  /// Digests of all bricks, by id.
   using Digests = std::vector<dsm::ByteDigest>;
 
-  /// What the other ranks need to know of an image's values; plain, so that it travels.
+  /// Data about an image's values that the other ranks need; plain, for messages.
   struct Seat
   {
     std::int32_t InFile; ///< else nothing else counts
@@ -56,12 +56,12 @@ public:
   /// Collective. The first coarser level is 1. Null, on all ranks, where a rank cannot open it, or it has no such array,
   /// or does not fill the same place.
   std::unique_ptr<vtkDSMFileVolume> FindCoarser(dsm::Messenger& messenger, int level) const;
-  /// What the cache of chunks has to hold for a brick.
+  /// Returns the bytes that the cache of chunks needs for one brick.
   std::uint64_t CountChunkBytesOfBrick(const bricks::BrickLattice& lattice) const
   {
     return vol::ChunkCache::CountBytesTogether(this->Values->GetArray(), lattice.GetEdge() + 1);
   }
-  /// Of all samples of the file's array.
+  /// Returns the bytes of all samples of the file's array.
   std::uint64_t CountBytes() const
   {
     const vol::FileArray& array = this->Values->GetArray();
@@ -75,13 +75,14 @@ public:
   glm::dmat4 GetIndexOf(const vtkDSMFileVolume& other) const;
 
   const std::string& GetPath() const;
-  /// What the file itself takes of each rank's memory, but for chunks.
+  /// Returns the memory in bytes that the file itself takes on each rank, without chunks.
   std::uint64_t GetTableBytes() const;
 
-  /// Whether there are other time steps, so that it is worth while to know its bricks from theirs.
+  /// Returns whether the file has several time steps, so that comparing the digests of their bricks
+  /// is useful.
   bool HasSteps() const;
 
-  /// What these take of a rank's memory: those of a step, and of the next.
+  /// Returns the bytes of the digests on a rank: those of a step, and of the next.
   static std::uint64_t CountDigestBytes(const bricks::BrickLattice& lattice)
   {
     return 2 * lattice.GetBrickCount() * sizeof(dsm::ByteDigest);
@@ -95,7 +96,8 @@ public:
   std::shared_ptr<const dsm::BlockReader> CreateSteppingReader(
     const bricks::BrickLattice& lattice, std::shared_ptr<const Digests> digests) const;
 
-  /// Of these bricks, of which each rank gets such as are cut out of the same chunks.
+  /// Creates the directory of these bricks. Bricks that are cut out of the same chunks have the
+  /// same owner.
   dsm::BlockDirectory CreateDirectory(const bricks::BrickLattice& lattice, int ranks) const;
 
   /// Collective: kept since an earlier time, or found by reading once what the ranks' own values, `own`, have not
@@ -111,24 +113,25 @@ private:
     dsm::Messenger& messenger, std::unique_ptr<vtkDSMFileVolume> volume);
   /// Collective: that the ranks opened the same file for the step.
   void CheckSameEverywhere(dsm::Messenger& messenger) const;
-  /// Whether it has all of the array's samples.
+  /// Returns whether the volume has all of the array's samples.
   bool IsWhole() const;
   /// Local; null where there is no such level.
   std::unique_ptr<vtkDSMFileVolume> OpenCoarser(int level) const;
   /// From indices of samples to the world, by the file.
   glm::dmat4 GetIndexToWorld() const;
 
-  /// Of the lattice's bricks, as the file itself has it (vol::VolumeFile::Index); else empty.
+  /// Returns the index of the lattice's bricks from the file itself (vol::VolumeFile::Index), or an
+  /// empty one.
   std::vector<std::byte> ReadIndex(const bricks::BrickLattice& lattice) const;
   vol::KeptFile GetKept(const bricks::BrickLattice& lattice) const;
   /// That, or what was kept since an earlier time, or empty.
   std::vector<std::byte> LoadIndex(const bricks::BrickLattice& lattice) const;
   /// Local: which bricks are not known to have these digests. One of a step that cannot be read is no failure.
   std::vector<bool> FindChanges(const bricks::BrickLattice& lattice, const Digests& digests) const;
-  /// What is read ahead of this step has it.
+  /// Returns the key of the bricks that are read ahead for this step.
   std::uint64_t GetKey(const bricks::BrickLattice& lattice) const;
 
-  std::shared_ptr<const vtkDSMFileValues> Values; ///< of all of the lattice
+  std::shared_ptr<const vtkDSMFileValues> Values; ///< values of the whole lattice
   int Component;                                  ///< vtkDSMImagePiece::Magnitude for the magnitude
 };
 

@@ -35,7 +35,7 @@ public:
     }
   };
 
-  /// What an image has of a choice.
+  /// Result of looking for a choice in an image.
   enum class State : std::int32_t
   {
     Usable,
@@ -49,7 +49,7 @@ public:
   struct Info
   {
     State Found = State::Missing;
-    bricks::ScalarType Type = bricks::ScalarType::Float32; ///< of the bricks that it would become
+    bricks::ScalarType Type = bricks::ScalarType::Float32; ///< type of the resulting bricks
     std::int32_t Components = 0;
 
     bool IsUsable() const { return this->Found == State::Usable; }
@@ -75,7 +75,7 @@ public:
   Choice Normalize(const Choice& choice) const;
   /// How many components the array has; 0 where there is none. The same on every rank.
   int CountComponents(const Choice& choice) const;
-  /// Whether what is chosen as colours may have opacities. The same on every rank.
+  /// Returns whether the array chosen as colors may have opacities. The same on every rank.
   bool HasOpacity(const Choice& choice) const;
   /// Throws a dsm::Error (Missing, where it is that) that says why the choice is not usable, and what is. `infos`: of all ranks' images; `purpose` names
   /// the array ("isosurface array").

@@ -272,7 +272,7 @@ std::vector<int> vtkDSMImageOrigin::Deal(std::size_t array, const std::vector<br
   const int rank = this->Messenger.GetRank();
   std::vector<int> dealt;
   std::vector<std::size_t> shared;
-  // Of a box that lies in no piece, every rank tells what it has.
+  // For a box that lies in no single piece, every rank contributes its part.
   const auto parts = this->Messenger.GatherTogether(what,
     [&]
     {

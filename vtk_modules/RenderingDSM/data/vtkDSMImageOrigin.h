@@ -26,7 +26,7 @@ public:
 
   const vol::FileGeometry& GetGeometry() const override { return this->Geometry; }
   const std::vector<vol::FileArray>& GetArrays() const override { return this->Arrays; }
-  /// Of no other process's: values in memory are gone with it.
+  /// Differs for every process: values in memory are lost when it ends.
   std::string Describe() const override;
   std::vector<int> Deal(std::size_t array, const std::vector<bricks::Box>& boxes) override;
   void Read(std::size_t array, const bricks::Box& box, std::byte* out) const override;
@@ -40,7 +40,7 @@ private:
   /// Collective.
   void GatherArrays(vtkImageData* image, const std::vector<vol::FileGeometry>& pieces);
   void CheckCover() const;
-  /// Of this rank's piece.
+  /// Copies from this rank's piece.
   void Copy(std::size_t array, const bricks::Box& box, std::byte* out) const;
 
   /// Which of an array's samples each rank has; counted from the whole image's first.
@@ -53,12 +53,12 @@ private:
   vol::FileGeometry Geometry;
   std::vector<vol::FileArray> Arrays;
   std::vector<std::string> LeftOut;
-  std::vector<vtkSmartPointer<vtkDataArray>> Values; ///< of this rank's piece; null without one
+  std::vector<vtkSmartPointer<vtkDataArray>> Values; ///< this rank's piece; null without one
   std::vector<bricks::Box> PointsOfRanks;
   std::vector<bricks::Box> CellsOfRanks;
   /// Boxes of which no piece has all, that were dealt to this rank, by their first sample.
   std::map<std::vector<std::int64_t>, std::vector<std::byte>> Gathered;
-  mutable std::mutex Lock; ///< of arrays that compute what they are asked for
+  mutable std::mutex Lock; ///< for arrays that compute their values on demand
 };
 
 #endif

@@ -14,22 +14,22 @@ class vtkImageData;
 class vtkUnsignedCharArray;
 
 /// One vtkImageData of this rank as a piece of a lattice: one component of an array of its points or cells, the
-/// magnitude of all, or the colours that they are (rt::PackedColor). Copies nothing; reading is safe from any
+/// magnitude of all, or the colors that they are (rt::PackedColor). Copies nothing; reading is safe from any
 /// thread while the image is not modified.
 class vtkDSMImagePiece final : public bricks::VoxelSource
 {
 public:
   /// Component that stands for the magnitude of all components.
   static constexpr int Magnitude = vol::FileSamples::Magnitude;
-  /// Component that stands for the colour that all components make, as VTK takes colours from arrays: gray, gray
-  /// and opacity, colour, colour and opacity.
+  /// Component that stands for the color that all components make, as VTK takes colors from arrays: gray, gray
+  /// and opacity, color, color and opacity.
   static constexpr int Color = -2;
 
-  /// What the other ranks need to know of an image: ghost cells are trimmed off; ghost and blanked
-  /// cells that remain make a mask.
+  /// Returns the data about an image that the other ranks need. Ghost cells are trimmed off; ghost
+  /// and blanked cells that remain make a mask.
   static bricks::PieceInfo Describe(vtkImageData* image, int leaf);
 
-  /// Arrays keep their type; the magnitude is float where that holds it, else double; colours are packed.
+  /// Arrays keep their type; the magnitude is float where that holds it, else double; colors are packed.
   static bricks::ScalarType GetScalarType(vtkDataArray* array, int component);
 
   vtkDSMImagePiece(vtkImageData* image, vtkDataArray* array, int component,

@@ -12,20 +12,21 @@ class vtkPolyData;
 /// One vtkPolyData of a dataset, and how it differs from the others.
 struct vtkDSMMeshBlock
 {
-  /// What was set for the block or for one around it; a plain value, compared as such.
+  /// Appearance that was set for the block or for one around it; a plain value, compared as such.
   struct Look
   {
     std::int32_t Visible = 1;
     /// Negative: not set.
     float Opacity = -1.0f;
-    /// Negative: not set. In place of the colour array as well.
+    /// Negative: not set. In place of the color array as well.
     float Color[3] = { -1.0f, -1.0f, -1.0f };
 
     bool operator<(const Look& other) const;
   };
 
   vtkPolyData* Data = nullptr;
-  /// Of the block in the dataset's tree: the same on every rank, and for all pieces of one surface.
+  /// Number of the block in the dataset's tree: the same on every rank, and for all pieces of one
+  /// surface.
   std::uint32_t Number = 0;
   Look Appearance;
 

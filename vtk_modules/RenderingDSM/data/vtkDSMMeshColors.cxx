@@ -14,11 +14,11 @@
 namespace
 {
 
-/// What vtkAbstractMapper::GetAbstractScalars calls the owner of an array.
+/// Values of vtkAbstractMapper::GetAbstractScalars for the owner of an array.
 constexpr int CellField = 1;
 constexpr int WholeField = 2;
 
-/// Whether the array's numbers are colours already.
+/// Returns whether the array's numbers already are colors.
 bool HoldsColors(vtkMapper* mapper, vtkAbstractArray* array)
 {
   switch (mapper->GetColorMode())

@@ -15,8 +15,8 @@ class vtkMapper;
 class vtkPolyData;
 class vtkUnsignedCharArray;
 
-/// What colours one vtkPolyData, as the mapper's settings choose it: values, which the colour map
-/// turns into colours where a ray hits, or colours of the points or cells themselves.
+/// Source of the colors of one vtkPolyData, as the mapper's settings choose it: values, which the
+/// color map turns into colors where a ray hits, or colors of the points or cells themselves.
 class vtkDSMMeshColors
 {
 public:
@@ -26,7 +26,7 @@ public:
     Usable,
     Missing,
     WrongLength,
-    Text ///< and the colour map has no colours for words
+    Text ///< and the color map has no colors for words
   };
 
   vtkDSMMeshColors() = default;
@@ -42,17 +42,17 @@ public:
   bricks::Attachment GetValues() const;
   bricks::Attachment GetColors() const;
 
-  /// Of a point or cell; may be called by several threads at a time.
+  /// Returns the value of a point or cell. Several threads may call it at the same time.
   double GetValue(vtkIdType element) const;
   void GetColor(vtkIdType element, std::uint8_t rgba[4]) const;
 
   /// The array that the mapper names, or null.
   static vtkAbstractArray* FindArray(vtkMapper* mapper, vtkPolyData* data, int& field);
-  /// Whether the colours, not only what they are made of, depend on the lookup table.
+  /// Returns whether the colors themselves, and not only their source, depend on the lookup table.
   static bool DependsOnTable(vtkMapper* mapper, vtkAbstractArray* array);
 
 private:
-  /// Null when the colours are the array's own.
+  /// Null when the colors are the array's own.
   vtkSmartPointer<vtkDataArray> Values;
   vtkSmartPointer<vtkUnsignedCharArray> Colors;
   bricks::Attachment Attached = bricks::Attachment::None;

@@ -35,7 +35,7 @@ std::vector<std::uint64_t> vtkDSMMeshContent::GetStamp(const vtkDSMMeshInput& in
       hash.Add(identity, sizeof(identity));
       return hash.Get();
     }).Whole;
-  // Who writes new values to an old array need not say so at the array.
+  // A filter that writes new values to an old array may not mark the array as modified.
   for (const vtkDSMMeshBlock& block : input.CollectBlocks())
   {
     numbers.push_back(block.Data->GetMTime());

@@ -10,11 +10,13 @@
 
 class vtkAbstractArray;
 
-/// What one rank's surfaces, and what is read of them, hold. Where it is the same on every rank, so would be the meshes.
+/// Digest of one rank's surfaces and of the arrays that are read from them. If it is the same on
+/// every rank, so are the meshes.
 struct vtkDSMMeshContent
 {
   std::vector<std::uint64_t> Whole;
-  std::vector<std::vector<std::uint64_t>> Blocks; ///< of each, in vtkDSMMeshBlock::Collect's order
+  std::vector<std::vector<std::uint64_t>>
+    Blocks; ///< for each surface, in vtkDSMMeshBlock::Collect's order
 
   /// Local, quick: numbers that are others when anything may be.
   static std::vector<std::uint64_t> GetStamp(const vtkDSMMeshInput& input);
@@ -23,7 +25,7 @@ struct vtkDSMMeshContent
   /// read of them are.
   static vtkDSMMeshContent Hash(const vtkDSMMeshInput& input, int threads);
 
-  /// What else a mesh depends on.
+  /// Adds another number that a mesh depends on.
   static void AddNumber(std::vector<std::uint64_t>& numbers, double number);
 
 private:

@@ -26,11 +26,11 @@
 namespace
 {
 
-/// The part of the data's diagonal that lines and points are thick when nobody says how thick.
+/// Default thickness of lines and points, as a part of the data's diagonal.
 constexpr double DefaultRadiusPart = 1.0 / 300.0;
 
-/// What a triangle that stands for a part of a line or a point takes, arrays included, until it is in
-/// its brick.
+/// Bytes, arrays included, of a triangle that stands for a part of a line or a point, until it is
+/// in its brick.
 constexpr std::uint64_t SolidTriangleBytes = 200;
 
 /// Up to so many blocks have meshes of their own, so that a new look for one of them leaves all bricks
@@ -47,7 +47,7 @@ void HideEdges(vtkPolyData* data)
   data->GetPointData()->SetAttribute(flags, vtkDataSetAttributes::EDGEFLAG);
 }
 
-/// Where a mesh is published.
+/// Store in which a mesh is published.
 struct PlacedStore
 {
   dsm::BlockStore& Store;
@@ -62,13 +62,13 @@ struct PlacedStore
 
 double ChooseRadius(double radius, double diagonal)
 {
-  // What is all at one place has no size; alone in a view, VTK shows about so much around it.
+  // Data at a single point have no size; alone in a view, VTK shows about so much around them.
   return radius == 0.0 ? DefaultRadiusPart * (diagonal > 0.0 ? diagonal : 1.0) : radius;
 }
 
 } // namespace
 
-/// What one rank knows of the colour array of one surface.
+/// Data of one rank about the color array of one surface.
 struct vtkDSMMeshData::ColorReport
 {
   vtkDSMMeshColors::State State;
@@ -482,7 +482,8 @@ std::shared_ptr<const bricks::TriangleMesh> vtkDSMMeshData::PublishMesh(
   return shared;
 }
 
-/// Of all that this rank's part of a mesh depends on; the number of its group says nothing.
+/// Returns a digest of all data that this rank's part of a mesh depends on, apart from the number
+/// of its group.
 std::uint64_t vtkDSMMeshData::HashSource(const Key& kind, const vtkDSMMeshWish& wish) const
 {
   bricks::ByteHash hash;

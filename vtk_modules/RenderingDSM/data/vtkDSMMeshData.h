@@ -28,10 +28,10 @@ class vtkPolyData;
 class vtkDSMMeshData
 {
 public:
-  /// What tells meshes apart; plain, so that ranks can exchange it.
+  /// Key by which meshes are separated; plain, for messages between ranks.
   struct Key
   {
-    std::uint32_t Group = 0; ///< of blocks
+    std::uint32_t Group = 0; ///< group of blocks
     std::uint32_t Normals = 0;
     std::uint32_t Values = 0;
     std::uint32_t Colors = 0;
@@ -42,8 +42,7 @@ public:
   struct Part
   {
     vtkDSMMeshBlock::Look Appearance;
-    /// Leaves the store when its last user lets go, which must happen in the same order on every
-    /// rank.
+    /// Leaves the store when its last user releases it, which must happen in the same order on every rank.
     std::shared_ptr<const bricks::TriangleMesh> Mesh;
     Key Kind;
     /// Describes what this rank's part of the mesh was made of.
@@ -62,11 +61,13 @@ public:
   const std::vector<Part>& GetParts() const { return this->Parts; }
   /// Without edge flags, the meshes may yet have them: those that were taken over.
   const vtkDSMMeshWish& GetWish() const { return this->Input.Wish; }
-  /// Of all ranks' visible blocks; uninitialised bounds (min > max) without any.
+  /// Returns the bounds of all ranks' visible blocks; uninitialized bounds (min > max) if there are
+  /// none.
   const double* GetBounds() const { return this->Bounds; }
-  /// What is wrong, but can be shown in another way; empty when nothing is. The same on every rank.
+  /// Returns a warning about data that are shown in another way than requested; empty if there is
+  /// none. The same on every rank.
   const std::string& GetMessage() const { return this->Message; }
-  /// Empty but where there is no such colour array. The same on every rank.
+  /// Empty but where there is no such color array. The same on every rank.
   const std::string& GetWarning() const { return this->Warning; }
 
 private:
@@ -96,15 +97,15 @@ private:
 
   std::shared_ptr<vtkDSMRankGroup> Group;
   vtkDSMMeshInput Input;
-  // Of this rank, while its data are read:
+  // Valid on this rank, while its data are read:
   std::vector<vtkDSMMeshBlock> Blocks;
-  std::vector<std::uint32_t> Groups; ///< of each block
+  std::vector<std::uint32_t> Groups; ///< group of each block
   std::vector<Surface> Surfaces;
-  std::map<std::uint32_t, std::vector<std::uint64_t>> Sources; ///< of each group
+  std::map<std::uint32_t, std::vector<std::uint64_t>> Sources; ///< for each group
 
   /// Groups are blocks, and not looks.
   bool OwnMeshes = true;
-  std::map<std::uint32_t, vtkDSMMeshBlock::Look> Looks; ///< of each group, of all ranks
+  std::map<std::uint32_t, vtkDSMMeshBlock::Look> Looks; ///< of each group, on all ranks
   /// Groups in which edge flags are wanted, and not all would be bricks::AllEdges.
   std::set<std::uint32_t> Flagged;
   std::vector<Part> Parts;

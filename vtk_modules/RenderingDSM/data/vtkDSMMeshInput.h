@@ -15,9 +15,9 @@ class vtkCompositeDataDisplayAttributes;
 /// Surfaces as a mapper has them, and what it asks for.
 struct vtkDSMMeshInput
 {
-  /// Whose dataset and settings of colours are read, and who tells of progress.
+  /// Mapper with the dataset and the settings of colors; it also reports progress.
   vtkMapper* Mapper = nullptr;
-  /// Of the dataset's blocks; may be null.
+  /// Attributes of the dataset's blocks; may be null.
   vtkCompositeDataDisplayAttributes* BlockAttributes = nullptr;
   /// As vtkDSMPolyDataMapper has them.
   double LineRadius = 0.0;
@@ -31,7 +31,7 @@ struct vtkDSMMeshInput
     return this->Mapper->GetNumberOfInputConnections(0) > 0 ? this->Mapper->GetInputDataObject(0, 0)
                                                             : nullptr;
   }
-  /// Of this rank, in order; as vtkDSMMeshBlock::Collect.
+  /// Returns this rank's blocks, in order; see vtkDSMMeshBlock::Collect.
   std::vector<vtkDSMMeshBlock> CollectBlocks() const
   {
     return vtkDSMMeshBlock::Collect(this->GetData(), this->BlockAttributes);

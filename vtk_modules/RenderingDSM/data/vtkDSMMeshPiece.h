@@ -14,7 +14,7 @@
 class vtkDataArray;
 class vtkPolyData;
 
-/// What is wanted of a mesh beside what its points and cells have, and are coloured by.
+/// Requested attributes of a mesh, apart from those of its points and cells, and its colors.
 struct vtkDSMMeshWish
 {
   bool TextureCoordinates = false;
@@ -26,7 +26,7 @@ struct vtkDSMMeshWish
 class vtkDSMMeshPiece final : public bricks::TriangleSource
 {
 public:
-  /// What a mesh made of the data would carry.
+  /// Returns the attributes of a mesh made of the data.
   static bricks::MeshAttributes GetAttributes(
     vtkPolyData* data, const vtkDSMMeshColors& colors, const vtkDSMMeshWish& wish);
 

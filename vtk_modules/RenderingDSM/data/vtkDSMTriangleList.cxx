@@ -80,8 +80,8 @@ bool vtkDSMTriangleList::UseInPlace()
   {
     return false;
   }
-  // What array it is counts, not what kind of storage: cells of a fixed size, as VTK has them since 9.6,
-  // have the same numbers, and any other array is possible there, too.
+  // The test is for the type of the array, not for the kind of storage: cells of a fixed size, as
+  // in VTK since 9.6, have the same numbers, and any other array is possible there, too.
   vtkDataArray* corners = polygons->GetConnectivityArray();
   if (auto* wide = vtkAOSDataArrayTemplate<vtkTypeInt64>::FastDownCast(corners))
   {

@@ -32,7 +32,7 @@ public:
   /// strips all sides are, as VTK draws them.
   unsigned GetEdgeFlags(std::uint64_t triangle) const;
 
-  /// Whether the data may have triangles with sides that are no edges.
+  /// Returns whether the data may have triangles with sides that are not edges.
   static bool NeedsEdgeFlags(vtkPolyData* data);
 
   /// At most so many triangles, found without reading the cells.
@@ -46,11 +46,11 @@ private:
   void AddPolygons();
   void AddStrips();
   void AddPolygon(vtkIdType cell, vtkIdType size, const vtkIdType* points);
-  /// Of the polygon's corners with these numbers.
+  /// Adds the triangle between three corners of the polygon, given by number.
   void AddTriangle(
     vtkIdType cell, vtkIdType size, const vtkIdType* points, vtkIdType a, vtkIdType b, vtkIdType c);
   void CheckPoints(vtkIdType cell, vtkIdType size, const vtkIdType* points) const;
-  /// Whether the triangles of a fan around the first point do not overlap.
+  /// Returns whether the triangles of a fan around the first point do not overlap.
   bool IsFan(vtkIdType size, const vtkIdType* points) const;
   bool IsGhost(vtkIdType cell) const
   {
@@ -58,15 +58,15 @@ private:
   }
 
   vtkSmartPointer<vtkPolyData> Data;
-  const std::uint8_t* Ghosts = nullptr; ///< of the cells
+  const std::uint8_t* Ghosts = nullptr; ///< flags of the cells
   std::uint64_t Count = 0;
   vtkIdType FirstCell = 0;
-  /// Where three numbers a triangle lie: at most one of the two, or Corners.
+  /// Three point numbers for each triangle. They are in one of these two, or in Corners.
   const vtkTypeInt32* InPlace32 = nullptr;
   const vtkTypeInt64* InPlace64 = nullptr;
   std::vector<vtkIdType> Corners;
   std::vector<vtkIdType> Cells;
-  std::vector<std::uint8_t> Edges;  ///< of each triangle; empty: all are
+  std::vector<std::uint8_t> Edges;  ///< for each triangle; empty: all sides are edges
   vtkUnsignedCharArray* PointFlags; ///< the data's edge flags, or null
 };
 

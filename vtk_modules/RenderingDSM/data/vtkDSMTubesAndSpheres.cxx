@@ -21,7 +21,7 @@ namespace
 constexpr int TubeSides = 12;
 constexpr int SphereTheta = 12;
 constexpr int SpherePhi = 9;
-/// Of a sphere of that resolution: two fans, and rows of quads between them.
+/// Triangles of a sphere of that resolution: two fans, and rows of quads between them.
 constexpr int SphereTriangles = 2 * SphereTheta * (SpherePhi - 2);
 
 /// The data's arrays that have as many tuples as there are elements; others cannot be followed.

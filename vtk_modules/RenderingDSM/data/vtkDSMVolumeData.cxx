@@ -286,7 +286,7 @@ std::shared_ptr<const vtkDSMVolumeData::Coarser> vtkDSMVolumeData::PublishCoarse
   {
     return known;
   }
-  std::optional<int> mine; // of all lattices that have bricks
+  std::optional<int> mine; // over all lattices that have bricks
   for (std::size_t lattice = 0; lattice < finest.Bricks.size(); ++lattice)
   {
     const auto& file = finest.Files[lattice];
@@ -362,7 +362,7 @@ void vtkDSMVolumeData::PublishLattice(Publication& published, std::size_t number
   }
   published.Bricks.back() = field;
   const std::string what = "the " + purpose + " '" + choice.Name + "'";
-  // Values of points; what colours by cells or by colours themselves is cut by the ranks that have it.
+  // Values of points; what colors by cells or by colors themselves is cut by the ranks that have it.
   const bool canBeRead =
     !field->Lattice.HasCellMask() && !choice.OnCells && choice.Component != vtkDSMImagePiece::Color;
   if (canBeRead)

@@ -24,31 +24,31 @@
 class vtkDataObject;
 class vtkImageData;
 
-/// A dataset of images that is spread over the ranks, seen as lattices, and its arrays as fields of
-/// bricks. Keeps the images alive, without a copy. Every method that says so is collective; a rank
-/// without data takes part. Failures are dsm::Error, the same on every rank.
+/// A dataset of images that is distributed over the ranks, as lattices, with its arrays as fields of bricks.
+/// Keeps the images alive, without a copy. Methods documented as collective need every rank; a rank without
+/// data takes part. Failures are dsm::Error, the same on every rank.
 class vtkDSMVolumeData
 {
 public:
   using Choice = vtkDSMImageArrays::Choice;
   /// One field a lattice; null where no piece of the lattice has the array.
   using Fields = std::vector<std::shared_ptr<const bricks::VoxelField>>;
-  /// What an array became.
+  /// Result of publishing an array.
   struct Publication
   {
     /// Its last user may take these apart.
     mutable Fields Bricks;
-    /// Of each lattice: the file that it is in, or null.
+    /// For each lattice: the file that it is in, or null.
     std::vector<std::shared_ptr<const vtkDSMFileVolume>> Files;
     std::uint64_t Content = 0; ///< see HashContent
 
-    /// What it takes to put other values into a lattice's bricks.
+    /// Data for putting other values into a lattice's bricks.
     struct Part
     {
       std::shared_ptr<bricks::VoxelField> Field;
-      dsm::FragmentDigests Digests; ///< of what this rank has contributed
-      /// Of a lattice in a file, instead: what brings its bricks, and, where there are other time steps, what is
-      /// known of these (else none).
+      dsm::FragmentDigests Digests; ///< digests of this rank's contributions
+      /// For a lattice in a file, instead: the source of its bricks and, if there are several time
+      /// steps, the digests of these bricks (else null).
       std::shared_ptr<dsm::ReadingSource> Source;
       std::shared_ptr<const vtkDSMFileVolume::Digests> Bricks;
     };
@@ -79,32 +79,32 @@ public:
     const Chooser& choose, const vtkDSMBlockLooks& looks);
   ~vtkDSMVolumeData();
 
-  /// Whether it depends on the arrays which blocks are one volume.
+  /// Returns whether the division of blocks into volumes depends on the arrays.
   bool HasSeams() const { return this->Seams; }
   std::size_t GetNumberOfLattices() const { return this->Plan.GetLattices().size(); }
   const glm::dmat4& GetIndexToWorld(std::size_t lattice) const
   {
     return this->Plan.GetLattices()[lattice].IndexToWorld;
   }
-  /// What was set for the cells of a lattice.
+  /// Appearance that was set for some cells of a lattice.
   struct Block
   {
     bricks::Box Cells;
     vtkDSMBlockLook Look;
   };
-  /// Of all ranks' pieces of a lattice.
+  /// Returns the blocks of a lattice, from all ranks' pieces.
   std::vector<Block> GetBlocks(std::size_t lattice) const;
   const vtkDSMImageArrays& GetArrays() const { return this->Arrays; }
   /// Local, reads the data. Of all that this rank's part of a field depends on: equal only where Publish would make
   /// the same again.
   std::uint64_t HashContent(const Choice& choice) const;
-  /// Of all ranks' pieces; uninitialised bounds (min > max) without any.
+  /// Returns the bounds of all ranks' pieces; uninitialized bounds (min > max) if there are none.
   void GetBounds(double bounds[6]) const;
 
-  /// Collective. Cuts an array into bricks and hands them to their owners, or finds what others made of
-  /// the same values. `purpose` names the array in messages ("isosurface array"). The fields leave the
-  /// store when their last user lets go, which must happen in the same order on every rank. `old` may be null:
-  /// what it has is to be taken over (MayTakeOver); only bricks that differ are made again then, and move.
+  /// Collective. Cuts an array into bricks and sends them to their owners, or finds the publication of the
+  /// same values by another scene. `purpose` names the array in messages ("isosurface array"). The fields
+  /// leave the store when their last user releases them, which must happen in the same order on every rank.
+  /// `old` (may be null) is taken over (MayTakeOver): then only bricks that differ are built and sent again.
   std::shared_ptr<const Publication> Publish(const Choice& choice, const std::string& purpose,
     const std::function<void(double)>& progress,
     std::shared_ptr<const Publication> old = nullptr) const;
@@ -123,10 +123,11 @@ private:
   void SeparateBlocks(const std::vector<Choice>& shown);
   /// Local: a piece's image, if it is this rank's; else null.
   vtkImageData* FindOwn(const bricks::LatticePlan::Member& member) const;
-  /// Local. Of a piece's values at points of its lattice, in the arrays that are shown.
+  /// Local. Returns a hash of a piece's values at points of its lattice, in the shown arrays.
   std::uint64_t HashPoints(const bricks::LatticePlan::Member& member, const bricks::Box& points,
     const std::vector<Choice>& shown) const;
-  /// Of this rank's first piece of a lattice that has the array in a file; null when none has.
+  /// Returns the values of this rank's first piece of a lattice that has the array in a file; null
+  /// if there is none.
   const vtkDSMFileValues* FindFileValues(std::size_t lattice, const Choice& choice) const;
   /// Collective: a lattice that is in a file, for which `part` has a field. Its bricks come to memory when rays meet
   /// them. `old`: what is there of another step, or empty; bricks that are equal stay in memory.
@@ -153,13 +154,13 @@ private:
 
   std::shared_ptr<vtkDSMRankGroup> Group;
   bricks::LatticePlan Plan;
-  std::vector<bricks::PieceInfo> Pieces; ///< of all ranks, in rank order
-  std::vector<vtkDSMBlockLook> Looks;    ///< of the pieces, in their order
+  std::vector<bricks::PieceInfo> Pieces; ///< all ranks' pieces, in rank order
+  std::vector<vtkDSMBlockLook> Looks;    ///< looks of the pieces, in their order
   int FirstOwnPiece = 0;
   bool Seams = false;
   std::set<std::int32_t> Apart;                      ///< blocks that are volumes of their own
-  std::vector<vtkSmartPointer<vtkImageData>> Images; ///< of this rank
-  std::vector<int> Leaves;                           ///< of this rank's images
+  std::vector<vtkSmartPointer<vtkImageData>> Images; ///< this rank's images
+  std::vector<int> Leaves;                           ///< leaf index of each of this rank's images
   vtkDSMImageArrays Arrays;
 };
 

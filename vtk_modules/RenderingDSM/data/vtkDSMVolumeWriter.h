@@ -93,7 +93,7 @@ private:
   vtkDSMVolumeWriter(const vtkDSMVolumeWriter&) = delete;
   void operator=(const vtkDSMVolumeWriter&) = delete;
 
-  /// Collective: nobody writes where one has nothing. Throws dsm::Error.
+  /// Collective: no rank writes if one has no image. Throws dsm::Error.
   void Join(dsm::Messenger& messenger, bool hasImage);
   /// Collective. Throws dsm::Error.
   void WriteImage();

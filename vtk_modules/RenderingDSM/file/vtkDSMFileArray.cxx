@@ -28,7 +28,7 @@ constexpr std::size_t RecentChunks = 4;
 
 struct Recent
 {
-  std::uint64_t Owner = 0; ///< of the array with that number; 0: of none
+  std::uint64_t Owner = 0; ///< array with that number; 0: none
   vtkDSMFileValues::Place Place;
 };
 
@@ -48,7 +48,7 @@ bool Contains(const bricks::Box& box, const bricks::Index3& sample)
     sample.y < box.Max.y && sample.z >= box.Min.z && sample.z < box.Max.z;
 }
 
-/// What messages about an array begin with.
+/// Returns the beginning of messages about an array.
 std::string DescribeArray(const vtkDSMFileValues& values)
 {
   return "The array '" + values.GetArray().Name + "' of the file '" + values.GetFile()->GetPath() +
@@ -82,12 +82,13 @@ void ReadAll(const vtkDSMFileValues& values, void* out)
 
 } // namespace
 
-/// As many bytes of zeros as one likes, which take no memory as long as nobody writes.
+/// Any number of zero bytes, which take no memory as long as they are not written to.
 template <class ValueTypeT>
 class vtkDSMFileArray<ValueTypeT>::Zeros
 {
 public:
-  /// Of more than a process can address there are fewer; no loop comes to their end.
+  /// Provides fewer bytes than requested if a process cannot address so many; no loop reaches their
+  /// end.
   explicit Zeros(std::size_t bytes)
     : Bytes(bytes)
   {
@@ -331,7 +332,7 @@ bool vtkDSMFileArray<ValueTypeT>::ComputeFiniteVectorRange(double range[2])
 namespace
 {
 
-/// Calls `use` with a null pointer to VTK's type for one of ours.
+/// Calls `use` with a null pointer to the VTK type of a scalar type.
 template <class Use>
 auto DispatchType(bricks::ScalarType type, const Use& use)
 {

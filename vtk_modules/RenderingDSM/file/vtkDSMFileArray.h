@@ -40,7 +40,7 @@ public:
   const vtkDSMFileValues& GetFileValues() const { return *this->Values; }
 
   ///@{
-  /// Of vtkGenericDataArray.
+  /// Interface of vtkGenericDataArray.
   ValueType GetValue(vtkIdType index) const
   {
     return this->GetTypedComponent(
@@ -53,11 +53,11 @@ public:
   void SetTypedComponent(vtkIdType, int, ValueType) { this->RefuseToWrite(); }
   ///@}
 
-  /// Of a copy of all, as of GetVoidPointer.
+  /// Iterates over a copy of all values, like GetVoidPointer.
   vtkArrayIterator* NewIterator() override;
   void* GetVoidPointer(vtkIdType index) override;
   void ExportToVoidPointer(void* out) override;
-  /// Of what is in memory for this array alone.
+  /// Returns the size, in KiB, of the memory for this array alone.
   unsigned long GetActualMemorySize() const override;
 
 protected:
@@ -105,15 +105,15 @@ private:
 
   bool RefuseToWrite();
   void Report(const std::string& what) const;
-  /// Where the components of a tuple are, for as long as the thread asks for no other array's; null when they
-  /// cannot be read.
+  /// Returns the components of a tuple; null when they cannot be read. The pointer is valid until
+  /// the thread asks for a tuple of another array.
   const ValueType* Find(vtkIdType tuple) const;
   /// Null where they are not known.
   const vol::ValueRanges* FindRanges() const;
 
   std::shared_ptr<const vtkDSMFileValues> Values;
   std::uint64_t Number; ///< no other array has had it
-  std::mutex CopyLock;  ///< of Copy and NoValues
+  std::mutex CopyLock;  ///< guards Copy and NoValues
   std::vector<ValueType> Copy;
   std::unique_ptr<Zeros> NoValues; ///< in place of Copy
   mutable std::atomic<bool> Reported{ false };

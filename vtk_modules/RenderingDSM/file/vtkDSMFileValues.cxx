@@ -92,7 +92,7 @@ const vol::ValueRanges* vtkDSMFileValues::FindRanges(
   if (!this->Ranges)
   {
     this->ReadRanges(goesOn, withBricks && vol::CanLookAtBricks(this->GetArray()));
-    dsm::FreedMemory::Return(); // of the threads that looked
+    dsm::FreedMemory::Return(); // memory of the threads that examined bricks
     if (this->Ranges)
     {
       vol::KeepRanges(*this->File, this->Array, this->Step, this->Box, *this->Ranges);

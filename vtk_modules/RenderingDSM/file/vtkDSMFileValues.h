@@ -40,7 +40,7 @@ public:
   /// together. Throws dsm::Error.
   void ReadBox(const bricks::Box& box, std::byte* out) const;
 
-  /// The samples of boxes will probably be needed soon: the system is told. Nothing fails.
+  /// Advises the system that the samples of boxes will probably be needed soon. Does not fail.
   void Prefetch(std::vector<bricks::Box> boxes) const;
 
   /// The part is what a rank has of all of the array: FindRanges may find those of more (vol::LoadRanges).
@@ -62,15 +62,16 @@ public:
     return { number % size.x, number / size.x % size.y, number / (size.x * size.y) };
   }
 
-  /// Of all values; found when first asked for, unless they were kept. Nothing when `goesOn` says no. `withBricks`: all
-  /// that is read for it is looked at as bricks, too, where that is possible (vol::LookThrough). Throws dsm::Error.
+  /// Returns the ranges of all values; computed on the first call, unless they were kept. Returns
+  /// null when `goesOn` returns false. `withBricks`: the values are also examined as bricks in the
+  /// same pass, if possible (vol::LookThrough). Throws dsm::Error.
   const vol::ValueRanges* FindRanges(
     const std::function<bool(double)>& goesOn, bool withBricks = false) const;
-  /// What was seen of bricks then, once: they are not kept here any longer.
+  /// Returns the bricks examined in that pass, once; this object does not keep them any longer.
   std::optional<bricks::SeenBricks> TakeSeen() const;
 
 private:
-  /// Under the lock; leaves Ranges unset when `goesOn` says no.
+  /// Under the lock; leaves Ranges unset when `goesOn` returns false.
   void ReadRanges(const std::function<bool(double)>& goesOn, bool withBricks) const;
 
   std::shared_ptr<const vol::VolumeFile> File;

@@ -64,7 +64,8 @@ void Silence(vtkExecutive* executive)
   executive->AddObserver(vtkCommand::ErrorEvent, command);
 }
 
-/// Whether all of the data are wanted, by this rank or by several, of which each has its part.
+/// Returns whether all of the data are requested, by this rank or by several ranks that each have a
+/// part.
 bool IsShare(vtkInformation* information)
 {
   using Pipeline = vtkStreamingDemandDrivenPipeline;
@@ -254,7 +255,7 @@ const char* vtkDSMVolumeReader::GetLevelNames()
   {
     self.LevelNamesAt = this->GetMTime();
     self.LevelNames.clear();
-    // What fails is reported when the level is asked for.
+    // A failure is reported when the level is requested.
     vtkDSMErrorGuard::Try("opening", this->GetFileName(),
       [&]
       {
@@ -307,7 +308,7 @@ void vtkDSMVolumeReader::Open()
   };
   const auto file = vol::OpenCachedVolume(this->FileNames, abortable);
   CheckExtent(*file);
-  // What was chosen of another file holds for arrays of the same names.
+  // The choice for another file applies to arrays of the same names.
   for (const bool onCells : { false, true })
   {
     std::vector<const char*> names;
@@ -420,7 +421,7 @@ bool vtkDSMVolumeReader::IsChosen(const vol::FileArray& array) const
 
 const vol::FileArray* vtkDSMVolumeReader::FindScalars() const
 {
-  // What the file says; else the first of one component; else the first.
+  // Prefer the array that the file names; then the first with one component; then the first.
   const auto getRank = [](const vol::FileArray& array) {
     return array.IsActive ? 2 : array.Components == 1 ? 1 : 0;
   };
@@ -454,7 +455,7 @@ void vtkDSMVolumeReader::AddArrays(vtkImageData* image, int step, bool isShare)
   const bricks::Index3 first = file->GetGeometry().First;
   const auto& arrays = file->GetArrays();
   const vol::FileArray* const scalars =
-    this->FindScalars(); // what is drawn, unless something else is chosen
+    this->FindScalars(); // scalars for drawing, unless another array is selected
   std::vector<std::pair<const vol::FileArray*, vtkSmartPointer<vtkDataArray>>> found;
   for (std::size_t index = 0; index < arrays.size(); ++index)
   {

@@ -153,7 +153,7 @@ private:
   void TellOfRest() const;
   /// The extent, the place in the world, the scalars and the time steps of the open file.
   void TellOfFile(vtkInformation* information) const;
-  /// What of the open file is asked for. Throws dsm::Error.
+  /// Fills the image with the requested part of the open file. Throws dsm::Error.
   void FillImage(vtkImageData* image, vtkInformation* information);
   bool IsChosen(const vol::FileArray& array) const;
   /// The image's: the first chosen array of points that has one component, or else the first one. Null: there is none.

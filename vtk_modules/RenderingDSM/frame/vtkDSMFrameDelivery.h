@@ -23,13 +23,14 @@ public:
 
   /// Each rank draws its own tiles.
   void UseTiles();
-  /// Each rank draws everything, but colour only where `drawsColor` says so, and of surfaces that are
+  /// Each rank draws everything, but color only where `drawsColor` says so, and of surfaces that are
   /// kept apart, where `drawsPlace` is set, those for whose place that says so.
   void UseWholeFrames(ColorChoice drawsColor, PlaceChoice drawsPlace = nullptr);
 
-  /// Whether surfaces can be kept apart when there are so many ranks.
+  /// Returns whether surfaces can be kept in separate layers with so many ranks.
   bool CanSeparate(int ranks) const { return ranks == 1 || this->DrawsPlace; }
-  /// Whether the application blends the ranks' pictures; otherwise the nearest of them counts.
+  /// Returns whether the application blends the ranks' images; otherwise the nearest of them is
+  /// visible.
   bool AreBlended() const { return static_cast<bool>(this->DrawsColor); }
 
   /// Local, before Gather: of this rank's part of a frame, as much of what it draws as needs no other ranks; else nothing.

@@ -15,7 +15,7 @@
 namespace
 {
 
-/// The colour of a row of the background, in bytes, as a graphics card makes it.
+/// The color of a row of the background, in bytes, as a graphics card makes it.
 void GetBackground(const rt::Environment& background, int row, int height, std::uint8_t color[3])
 {
   const float up = (static_cast<float>(row) + 0.5f) / static_cast<float>(height);
@@ -26,7 +26,7 @@ void GetBackground(const rt::Environment& background, int row, int height, std::
   }
 }
 
-/// A premultiplied pixel over a colour.
+/// A premultiplied pixel over a color.
 void Blend(const std::uint8_t* pixel, const std::uint8_t under[3], std::uint8_t* out)
 {
   const int left = 255 - pixel[3];

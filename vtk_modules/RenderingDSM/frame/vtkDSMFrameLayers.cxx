@@ -145,7 +145,7 @@ void vtkDSMFrameLayers::Separate(rt::Picture& picture)
   const std::size_t pixels = static_cast<std::size_t>(picture.Width) * picture.Height;
   for (std::size_t pixel = 0; pixel < pixels; ++pixel)
   {
-    int left = 255; // of what lies behind
+    int left = 255; // remaining light from behind
     for (int layer = 0; layer < picture.Layers; ++layer)
     {
       std::uint8_t* color = &picture.Color[4 * (pixels * layer + pixel)];

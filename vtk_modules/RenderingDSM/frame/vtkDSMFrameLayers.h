@@ -23,7 +23,7 @@ public:
   vtkDSMFrameLayers(const vtkDSMFrameLayers&) = delete;
   void operator=(const vtkDSMFrameLayers&) = delete;
 
-  /// Turns what each layer contributes to a pixel into its own colour and opacity: what has to be
+  /// Turns what each layer contributes to a pixel into its own color and opacity: what has to be
   /// blended, back to front, to get the same pixel.
   static void Separate(rt::Picture& picture);
 

@@ -72,7 +72,7 @@ public:
   int GetWidth() const { return this->Size[0]; }
   int GetHeight() const { return this->Size[1]; }
 
-  /// Lower left corner at (x, y), over the panel's colour.
+  /// Lower left corner at (x, y), over the panel's color.
   void Draw(rt::Picture& picture, int x, int y) const
   {
     // The text's lower left corner: some fonts and sizes put it below 0.

@@ -10,8 +10,8 @@
 
 class vtkDSMStatistics;
 
-/// What is written into a picture: the figures of the frame, and what a debug view's colours mean. As
-/// pixels that are nearer than anything, so that they get to the screen the way the picture does.
+/// Annotations in the image: the figures of the frame, and the legend of a debug view's colors.
+/// They are pixels nearer than anything else, so they reach the screen the same way as the image.
 class vtkDSMFrameNotes
 {
 public:
@@ -22,7 +22,7 @@ public:
     std::string Text;
   };
 
-  /// What the colours of a debug view stand for; ranks are those of `statistics`.
+  /// Creates the legend of a debug view's colors; ranks are those of `statistics`.
   static std::vector<Entry> CreateLegend(rt::DebugView view, const vtkDSMStatistics* statistics);
 
   /// Each into a corner on the left: the text above, the legend below. What is empty, or does not fit,

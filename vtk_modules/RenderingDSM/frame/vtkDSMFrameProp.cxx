@@ -28,7 +28,7 @@
 namespace
 {
 
-/// What of the frame is drawn.
+/// Parts of the frame to draw.
 enum Part
 {
   Everything,
@@ -91,7 +91,7 @@ void main()
 }
 )";
 
-/// Whether what is drawn to has more than colours.
+/// Returns whether the current framebuffer has more than a color buffer.
 bool TakesPlaces(vtkOpenGLState* state)
 {
   int second = GL_NONE;
@@ -99,8 +99,8 @@ bool TakesPlaces(vtkOpenGLState* state)
   return second != GL_NONE;
 }
 
-/// Where the rectangle that was traced lies in the viewport that is drawn to now, in pixels. The two
-/// differ while IceT renders a reduced image, which it puts into the lower left corner by way of the
+/// Returns the rectangle of the traced image in the current viewport, in pixels. The two differ
+/// while IceT renders a reduced image, which it puts into the lower left corner with the
 /// projection.
 std::array<int, 4> GetTarget(
   vtkMatrix4x4* traced, vtkMatrix4x4* drawn, const std::array<int, 4>& viewport)

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class   vtkDSMFrameProp
- * @brief   writes traced tiles, colour and depth, into the frame buffer
+ * @brief   writes traced tiles, color and depth, into the frame buffer
  *
  * Belongs to a vtkDSMScene, which adds it to the renderer. Local: each rank draws what it was given;
  * the compositing of the application merges the ranks' pictures by depth. Draws in the opaque pass,
@@ -47,7 +47,7 @@ public:
 
   /**
    * The same for a frame whose surfaces have been kept apart: they are drawn one by one among the
-   * renderer's translucent geometry. Colours and alpha are those of the surfaces (not premultiplied).
+   * renderer's translucent geometry. Colors and alpha are those of the surfaces (not premultiplied).
    */
   void SetLayers(const rt::Picture& frame, vtkMatrix4x4* projection, const double bounds[6]);
 

@@ -11,12 +11,12 @@
 class vtkOpenGLRenderWindow;
 class vtkWindow;
 
-/// The pixels of a traced picture, or of one of its layers, and their textures: colour and depth. Local;
+/// The pixels of a traced picture, or of one of its layers, and their textures: color and depth. Local;
 /// rendering thread only.
 class vtkDSMFrameTextures
 {
 public:
-  /// Four bytes of colour, and an OpenGL window depth, for each pixel; row by row from the bottom.
+  /// Four bytes of color, and an OpenGL window depth, for each pixel; row by row from the bottom.
   /// Without pixels there is nothing to draw.
   void SetPixels(
     int width, int height, std::vector<std::uint8_t> colors, std::vector<float> depths);

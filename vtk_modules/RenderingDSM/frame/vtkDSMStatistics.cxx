@@ -94,7 +94,7 @@ struct vtkDSMStatistics::WorkerRow
   }
 };
 
-/// What a rank has received from one owner; behind the rows of its report.
+/// Data that a rank has received from one owner; behind the rows of its report.
 struct vtkDSMStatistics::Delivery
 {
   std::int64_t Owner;

@@ -121,7 +121,7 @@ private:
   std::string Explanation;
   std::string Organization;
   std::vector<RankRow> Rows;
-  std::vector<WorkerRow> Workers; ///< of all ranks, in rank order
+  std::vector<WorkerRow> Workers; ///< all ranks' workers, in rank order
 };
 
 #endif

@@ -17,7 +17,7 @@ vtkDataObject* GetData(vtkAlgorithm* mapper)
   return mapper->GetNumberOfInputConnections(0) > 0 ? mapper->GetInputDataObject(0, 0) : nullptr;
 }
 
-/// Of the last change to anything in the pipeline in front of a mapper.
+/// Returns the time of the last change to anything in the pipeline in front of a mapper.
 vtkMTimeType GetPipelineTime(vtkAlgorithm* mapper)
 {
   if (mapper->GetNumberOfInputConnections(0) == 0)
@@ -68,7 +68,7 @@ void vtkDSMKnownBounds::Clear()
 bool vtkDSMKnownBounds::IsOutOfDate(vtkAlgorithm* mapper)
 {
   vtkDataObject* data = GetData(mapper);
-  // What hands on data that somebody else has is younger than they are, and never behind them.
+  // A producer that passes on other objects' data is newer than the data, and never out of date.
   return data && !vtkTrivialProducer::SafeDownCast(mapper->GetInputAlgorithm(0, 0)) &&
     GetPipelineTime(mapper) > std::max(data->GetUpdateTime(), data->GetMTime());
 }

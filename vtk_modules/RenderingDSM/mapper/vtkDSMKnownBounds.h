@@ -13,7 +13,7 @@ class vtkDSMKnownBounds
 public:
   vtkDSMKnownBounds();
 
-  /// Of the data that the mapper has now.
+  /// Sets the bounds of the mapper's current data.
   void Set(vtkAlgorithm* mapper, const double bounds[6]);
 
   /// Null when there are none, or when the mapper's input is other than it was: other data, or a change
@@ -23,7 +23,8 @@ public:
 
   void Clear();
 
-  /// Whether the pipeline in front of a mapper has changed since it made what the mapper has.
+  /// Returns whether the pipeline in front of a mapper has changed since it produced the mapper's
+  /// data.
   static bool IsOutOfDate(vtkAlgorithm* mapper);
 
 private:

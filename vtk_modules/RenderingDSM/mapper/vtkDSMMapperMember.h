@@ -8,8 +8,8 @@
 
 #include <memory>
 
-/// What a scene keeps of a mapper of one class, which has options of light and memory and can be asked
-/// for a piece.
+/// State that a scene keeps for a mapper of one class, which has options of light and memory and
+/// can be asked for a piece.
 template <class MapperClass>
 class vtkDSMMapperMember : public vtkDSMSceneMember
 {

@@ -7,7 +7,7 @@
 
 #include <algorithm>
 
-/// What a mapper's input was made from, and when; keeps nothing alive. Local.
+/// Original data of a mapper's input, and their time; keeps nothing alive. Local.
 class vtkDSMOriginalData
 {
 public:
@@ -16,7 +16,7 @@ public:
     this->Data = data;
     this->Time = data ? GetTime(data) : 0;
   }
-  /// Whether there are other data by now. False where nothing is known.
+  /// Returns whether the original data have changed. False if unknown.
   bool HasChanged() const
   {
     return this->Time > 0 && (!this->Data || GetTime(this->Data) != this->Time);

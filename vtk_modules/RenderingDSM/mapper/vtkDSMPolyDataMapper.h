@@ -6,16 +6,16 @@
  * Used by a vtkActor in place of any other vtkPolyDataMapper. The input is this rank's part of the
  * dataset: vtkPolyData, or a composite dataset of vtkPolyData, or nothing. What it looks like comes
  * from the actor's property and backface property and from the mapper's own settings, as usual:
- * ScalarVisibility, ScalarMode, the colour array (SelectColorArray), ColorMode, LookupTable,
+ * ScalarVisibility, ScalarMode, the color array (SelectColorArray), ColorMode, LookupTable,
  * UseLookupTableScalarRange and ScalarRange, InterpolateScalarsBeforeMapping, Static. Culling,
  * interpolation (flat, or by the points' normals), opacity and lighting are the property's. A
  * property's representation (points, wireframe) is not used. With EdgeVisibility, the edges of the
  * input's polygons are drawn on the surface, in EdgeColor and LineWidth pixels wide. The actor's
  * texture, whole on every rank, is laid on the surface by its texture coordinates.
  *
- * Values are mapped to colours where a ray meets the surface, so a change of the colour map, the
+ * Values are mapped to colors where a ray meets the surface, so a change of the color map, the
  * material, the edges or the actor's matrix takes effect at once; a change of points, cells, the
- * colour array or a block's look puts the mesh in bricks anew, and so does EdgeVisibility the first
+ * color array or a block's look puts the mesh in bricks anew, and so does EdgeVisibility the first
  * time that it is on, where there are polygons other than triangles.
  *
  * The mapper draws nothing itself: the renderer's vtkDSMScene traces all that it shows together when
@@ -58,7 +58,7 @@ public:
 
   ///@{
   /**
-   * Visibility, colour and opacity of the blocks of a composite dataset, by their data objects, for
+   * Visibility, color and opacity of the blocks of a composite dataset, by their data objects, for
    * blocks in blocks as well. Null (the default): all blocks are alike.
    */
   void SetCompositeDataDisplayAttributes(vtkCompositeDataDisplayAttributes* attributes);

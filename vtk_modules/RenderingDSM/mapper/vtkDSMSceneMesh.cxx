@@ -22,7 +22,7 @@
 namespace
 {
 
-/// What was set for a block takes the place of what the property says.
+/// Settings of a block override those of the property.
 void Apply(const vtkDSMMeshBlock::Look& look, rt::Material& material)
 {
   if (look.Opacity >= 0.0f)
@@ -132,7 +132,7 @@ bool vtkDSMSceneMesh::HasNewData()
   return this->LacksEdges();
 }
 
-/// What was refused may succeed with other settings of the memory.
+/// Data that were refused may fit with other memory settings.
 bool vtkDSMSceneMesh::NeedsRanks(const vtkDSMRankGroup& group, bool) const
 {
   return !this->Failure.empty() && this->FailureVersion != group.GetRetryVersion();

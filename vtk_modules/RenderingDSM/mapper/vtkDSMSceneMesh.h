@@ -46,16 +46,16 @@ private:
     std::vector<std::uint64_t> Stamp;
     vtkDSMMeshContent Content;
   };
-  State Seen;      ///< of what was taken in, or is the same; see vtkDSMMeshData
-  State Found;     ///< of what HasNewData found to be new, until it is taken in
+  State Seen;      ///< state of the data that were taken in, or are equal; see vtkDSMMeshData
+  State Found;     ///< new state found by HasNewData, until it is taken in
   int Threads = 1; ///< to look for changes with
   bool Taken = false;
   std::unique_ptr<vtkDSMMeshData> Data;
   std::string Failure;
   unsigned FailureVersion = 0;  ///< the group's when it was tried
-  unsigned ReportedVersion = 0; ///< of its settings
+  unsigned ReportedVersion = 0; ///< the group's settings version then
   std::shared_ptr<const rt::Texture> Picture;
-  /// Of the texture, its image and what places it.
+  /// Stamps of the texture, its image and its transform.
   std::vector<std::uint64_t> PictureSource;
 };
 

@@ -46,7 +46,7 @@ vtkMTimeType GetDataTime(vtkDataObject* data)
   return time;
 }
 
-/// Whether two ranges have at least half of the values in common that either has.
+/// Returns whether two ranges have at least half of the values in common that either has.
 bool AreAlike(const bricks::ValueRange& one, const bricks::ValueRange& other)
 {
   const auto getWidth = [](float first, float last)
@@ -69,7 +69,7 @@ bool vtkDSMSceneVolume::HasOtherData() const
   return data != this->SeenData || GetDataTime(data) != this->SeenTime;
 }
 
-// Of another scene, whose prop may be gone.
+// May be called for a member of another scene, whose prop may be gone.
 bool vtkDSMSceneVolume::IsOutdated()
 {
   return !this->Mapper || this->Mapper->HasOldData() || this->HasOtherData();
@@ -116,7 +116,7 @@ std::vector<vtkDSMVolumeData::Choice> vtkDSMSceneVolume::GetShown() const
   return this->GetLook().GetShown(this->Data->GetArrays());
 }
 
-/// What was a medium, or slices, before has none.
+/// A volume that was a medium, or had slices only, has no suggestion before.
 bool vtkDSMSceneVolume::LacksSuggestion() const
 {
   return this->GetIso() && this->GetLook().HasIsosurfaces() &&
@@ -242,7 +242,8 @@ std::shared_ptr<const vtkDSMVolumeData::Publication> vtkDSMSceneVolume::TakeStal
   return found;
 }
 
-// What has changed goes before its successor comes, or is taken over: there may not be room for both.
+// Old data are released before the new ones arrive, or are taken over: memory may not suffice for
+// both.
 void vtkDSMSceneVolume::KeepUnchanged(dsm::Messenger& messenger)
 {
   struct Flags
@@ -337,7 +338,7 @@ void vtkDSMSceneVolume::Update(const std::shared_ptr<vtkDSMRankGroup>& group, bo
       {
         this->Reported.clear(); // whoever has changed the settings shall know that it did not help
       }
-      // Without its colours a surface is there, and ParaView's own says nothing then.
+      // Without its colors a surface is there, and ParaView's own says nothing then.
       const bool isShown = published->IsMissing && published != this->GetIso();
       (isShown ? this->Warnings : this->Messages).push_back(published->Failure);
     }
@@ -351,7 +352,7 @@ vtkDSMVolumeMapper::SurfaceTest vtkDSMSceneVolume::MakeSurfaceTest() const
   {
     toIndex.push_back(glm::inverse(this->Data->GetIndexToWorld(lattice)));
   }
-  // Who lets go of the bricks shall not have to think of it.
+  // Keeps no bricks alive, so it does not matter to code that releases them.
   return [toIndex = std::move(toIndex), mapper = this->Mapper.GetPointer(), data = this->SeenData,
            time = this->SeenTime, array = this->Mapper->GetIsoArray(),
            component = this->Mapper->GetIsoComponent(),

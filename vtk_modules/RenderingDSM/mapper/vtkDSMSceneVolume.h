@@ -36,7 +36,7 @@ public:
   void AddTo(rt::Scene& scene) override;
 
 private:
-  /// Whether the mapper has other data than were taken in.
+  /// Returns whether the mapper has other data than were taken in.
   bool HasOtherData() const;
 
   struct Published
@@ -48,12 +48,13 @@ private:
     unsigned RetryVersion = 0;                                ///< the group's when it was tried
     std::shared_ptr<const vtkDSMVolumeData::Coarser> Coarser; ///< null until they are wanted
     std::string CoarserFailure;
-    /// Whether it is what became of the array, and would become of it again.
+    /// Returns whether this is the result of publishing the array, and publishing it again would
+    /// give the same.
     bool IsOf(const vtkDSMVolumeData::Choice& choice, unsigned retryVersion) const;
     /// Empty when it failed.
     const vtkDSMVolumeData::Fields& GetFields() const;
     std::size_t CountCoarser() const { return this->Coarser ? this->Coarser->Levels.size() : 0; }
-    /// Of all values; without any, its First is greater than its Last.
+    /// Returns the range of all values; without any, its First is greater than its Last.
     bricks::ValueRange GetRange() const;
   };
 
@@ -62,9 +63,10 @@ private:
 
   /// Collective. Takes in the mapper's dataset; bricks of arrays that hold what they held are kept.
   void TakeData(const std::shared_ptr<vtkDSMRankGroup>& group);
-  /// Sets aside what may be taken over by values that differ, and lets go of the rest.
+  /// Keeps publications that other values may take over, and releases the rest.
   void KeepUnchanged(dsm::Messenger& messenger);
-  /// What Publish may take over. Lets go of all that is stale when there is nothing: there may not be room.
+  /// Returns the publication that Publish may take over. Releases all stale publications if there
+  /// is none, because memory may be short.
   std::shared_ptr<const vtkDSMVolumeData::Publication> TakeStale(
     const vtkDSMVolumeData::Choice& choice);
   std::shared_ptr<Published> Require(const vtkDSMVolumeData::Choice& choice, const char* purpose,
@@ -75,7 +77,7 @@ private:
   void SuggestIsovalue(dsm::Messenger& messenger);
   bool LacksSuggestion() const;
   vtkDSMVolumeLook GetLook() const { return { this->Mapper, this->Prop }; }
-  /// Of what is there: see vtkDSMVolumeLook::GetShown.
+  /// Returns the shown arrays among the available ones: see vtkDSMVolumeLook::GetShown.
   std::vector<vtkDSMVolumeData::Choice> GetShown() const;
   ///@{
   /// The array of the isosurfaces, slices, or of the medium's opacities; the one that colors these; null where there is none.
@@ -88,12 +90,13 @@ private:
     return this->Arrays.size() > 1 ? this->Arrays[1] : nullptr;
   }
   ///@}
-  /// What has the values that colors are of: slices alone, and most media, are colored by the array that they are of.
+  /// Returns the array whose values the colors represent: slices alone, and most media, are colored
+  /// by their own array.
   const Published& GetColoring() const { return *this->Arrays[this->Arrays.size() > 1 ? 1 : 0]; }
   /// At the level of detail that is shown.
   rt::LatticeField GetField(
     const Published& array, std::size_t lattice, const glm::dmat4& dataToWorld) const;
-  /// Whether each of the arrays is a medium of its own.
+  /// Returns whether each of the arrays is a medium of its own.
   bool HasSeveralMedia() const
   {
     return this->GetLook().GetComponents(this->Data->GetArrays()) ==
@@ -103,13 +106,13 @@ private:
   /// One medium, of one of the arrays, for each of the volume's lattices. `groups`: of the lattices' media; 0: none yet.
   void AddMedium(const vtkDSMVolumeLook& look, std::size_t number, const glm::dmat4& dataToWorld,
     std::vector<int>& groups, rt::Scene& scene);
-  /// Whether a lattice's medium has the colors of another array than that of its opacities.
+  /// Returns whether a lattice's medium takes its colors from another array than its opacities.
   bool HasOwnColors(std::size_t lattice) const;
-  /// Whether that array's values are colors.
+  /// Returns whether that array's values are colors.
   bool HasDirectColors() const;
   /// The medium's colors, with the opacities of the same values or without; of the first one of several.
   std::shared_ptr<const rt::ColorMap> GetMediumColors(bool hasOpacity);
-  /// Of the level of detail that is shown.
+  /// Returns the values of the color array, at the current level of detail.
   std::shared_ptr<const bricks::VoxelField> GetColorValues(std::size_t lattice) const;
   /// Sets the colors of a surface by the color array, at the level of detail that is shown.
   void SetColors(std::size_t lattice, std::shared_ptr<const bricks::VoxelField>& values,
@@ -121,10 +124,10 @@ private:
     const std::vector<double>& isovalues, rt::Scene& scene);
   /// The same of the medium.
   void AddCaps(const vtkDSMVolumeLook& look, const glm::dmat4& dataToWorld, rt::Scene& scene);
-  /// What slices and faces of isosurfaces have in common.
+  /// Creates a slice with the settings that slices and faces of isosurfaces share.
   rt::LatticeSlice CreateSlice(
     const vtkDSMVolumeLook& look, const glm::dmat4& dataToWorld, std::size_t lattice, bool isLit);
-  /// What blocks look like that are not to look like the rest; null where there are none.
+  /// Creates the looks of blocks that differ from the rest; null if there are none.
   std::shared_ptr<const rt::BlockLooks> CreateBlockLooks(std::size_t lattice) const;
 
   const vtkDataObject* SeenData = nullptr;
@@ -133,13 +136,13 @@ private:
   std::vector<vtkDSMVolumeData::Choice> SeenShown;
   bool Taken = false;
   std::unique_ptr<vtkDSMVolumeData> Data;
-  /// What became of the arrays of GetShown, in their order. May be the same.
+  /// Publications of the arrays of GetShown, in their order. Several may be the same one.
   std::vector<std::shared_ptr<Published>> Arrays;
-  /// Of values that were there before, during Update.
+  /// Publications of the previous values, during Update.
   std::vector<std::shared_ptr<Published>> Stale;
   std::optional<double> Suggested; ///< isovalue
   vtkDSMVolumeData::Choice SuggestedFor;
-  bricks::ValueRange SuggestedFrom{}; ///< of the values that suggested it
+  bricks::ValueRange SuggestedFrom{}; ///< range of the values that suggested it
   /// One for each of the arrays.
   vtkDSMKept<vtkDSMVolumeLook::MediumKey, vtkDSMVolumeLook::MediumMaker> MakeMedium[MostArrays];
   using KeptColors = std::shared_ptr<const rt::ColorMap>;

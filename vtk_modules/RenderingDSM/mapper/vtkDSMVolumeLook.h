@@ -18,22 +18,26 @@ class vtkDSMVolumeMapper;
 class vtkProp3D;
 class vtkVolumeProperty;
 
-/// What a volume's mapper and prop ask for now, in the ray tracer's words. Owns neither; local, the same on every rank where
-/// they are.
+/// Current settings of a volume's mapper and prop, translated for the ray tracer. Owns neither;
+/// local, the same on every rank where they are.
 class vtkDSMVolumeLook
 {
 public:
   vtkDSMVolumeLook(vtkDSMVolumeMapper* mapper, vtkProp3D* prop);
 
-  /// Whether isovalues and look come from the volume's property; else they are the mapper's.
+  /// Returns whether isovalues and look come from the volume's property; otherwise they are the
+  /// mapper's.
   bool IsLikeRayCastMapper() const;
-  /// Whether the volume is a medium, as its property and the blend mode say, and there are no isosurfaces and slices.
+  /// Returns whether the volume is a medium: its property and blend mode select one, and there are
+  /// no isosurfaces and slices.
   bool IsMedium() const;
-  /// Whether there are slices, or may be, and no isosurfaces.
+  /// Returns whether there are slices, or may be, and no isosurfaces.
   bool IsSlicesOnly() const;
   bool HasIsosurfaces() const { return !this->IsMedium() && !this->IsSlicesOnly(); }
-  /// What a medium shows of its array's components: one, or the magnitude; each one by its own functions, as a medium of
-  /// its own; colors by the first ones and opacities by the last one; or nothing, for there are not so many.
+  /// Components of the array that a medium shows. One: a single component, or the magnitude.
+  /// Independent: each component with its own functions, as a separate medium. Dependent: the first
+  /// ones define the colors, the last one the opacities. Refused: nothing is shown, because the
+  /// number of components does not fit.
   enum class Components
   {
     One,
@@ -54,25 +58,27 @@ public:
   /// `component`: one of several independent ones, or none (std::nullopt).
   MediumKey GetMediumKey(const bricks::ValueRange& range, double cellLength, double diagonal,
     const std::optional<int>& component) const;
-  /// Whether another array says how dense the medium is.
+  /// Returns whether another array defines the density of the medium.
   bool HasOpacityArray() const;
   /// Makes the medium that has the values of a field, within a region.
   using MediumMaker =
     std::function<rt::SceneMedium(const rt::LatticeField&, const rt::ClipRegion&)>;
-  /// Of the blend mode. Expensive: keep it as long as the key is the same. Empty where the mode is none that is drawn.
+  /// Returns the maker for the blend mode. Expensive: keep the result as long as the key is the
+  /// same. Empty if the blend mode is not supported.
   static MediumMaker GetMediumMaker(const MediumKey& key);
-  /// The arrays that are to be shown, as the mapper names them: that of the isosurfaces, and that of the colours, if any.
-  /// Of slices alone the one that colors them, if any. Of a medium that of the opacities, and that of the colors; or, where
-  /// its components are independent, each of these. `arrays`: those that there are.
+  /// Returns the shown arrays, as the mapper names them. Isosurfaces: their array and, if any, that
+  /// of the colors. Slices alone: the array that colors them, if any. Media: the array of the
+  /// opacities and that of the colors; if the components are independent, each component. `arrays`:
+  /// the available arrays.
   std::vector<vtkDSMVolumeData::Choice> GetShown(const vtkDSMImageArrays& arrays) const;
-  /// Whether the cells' scalars are asked for, of which there are no isosurfaces.
+  /// Returns whether cell scalars are requested, which have no isosurfaces.
   bool TakesPointsForCells() const;
   /// Finite, ascending, each once; `suggested` where none is chosen and the mapper takes what data suggest. Adds what is
   /// wrong with them to the messages.
   std::vector<double> GetIsovalues(
     const std::optional<double>& suggested, std::vector<std::string>& messages) const;
   void SetMaterials(double isovalue, rt::IsosurfaceLook& look) const;
-  /// Whether the slices, and the faces of isosurfaces, have the colors of an array.
+  /// Returns whether the slices, and the faces of isosurfaces, have the colors of an array.
   bool HasColoredSlices() const;
   /// The slices of a lattice of so many points, in world space; `toWorld`: from its indices. Slices by an index that the
   /// lattice does not have are left out.

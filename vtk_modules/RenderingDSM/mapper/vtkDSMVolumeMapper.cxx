@@ -28,7 +28,8 @@
 namespace
 {
 
-/// Of the whole image that a pipeline tells of before it makes it. False when it does not tell.
+/// Returns the bounds of the whole image that a pipeline announces before it creates it. False if
+/// it announces none.
 bool GetAnnouncedBounds(vtkAlgorithm* producer, int port, double bounds[6])
 {
   producer->UpdateInformation();
@@ -39,7 +40,7 @@ bool GetAnnouncedBounds(vtkAlgorithm* producer, int port, double bounds[6])
   {
     return false;
   }
-  vtkNew<vtkImageData> image; // of no memory: it has no arrays
+  vtkNew<vtkImageData> image; // takes no memory: it has no arrays
   image->SetExtent(info->Get(Pipeline::WHOLE_EXTENT()));
   image->SetOrigin(info->Get(vtkDataObject::ORIGIN()));
   image->SetSpacing(info->Get(vtkDataObject::SPACING()));
@@ -293,7 +294,7 @@ double* vtkDSMVolumeMapper::GetBounds()
     vtkAlgorithm* producer = this->GetInputAlgorithm(0, 0, port);
     GetAnnouncedBounds(producer, port, this->Bounds);
   }
-  // vtkVolume would make a box of uninitialised bounds.
+  // vtkVolume would make a box of uninitialized bounds.
   return vtkMath::AreBoundsInitialized(this->Bounds) ? this->Bounds : nullptr;
 }
 

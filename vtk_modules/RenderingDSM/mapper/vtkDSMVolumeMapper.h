@@ -16,7 +16,7 @@
  * the mapper's own: IsoArray, IsoValues, ColorArray, and a vtkProperty, the
  * surface property. After SetBlendModeToIsoSurface() they are instead where vtkGPUVolumeRayCastMapper
  * has them, which it then stands in for: ScalarMode and SelectScalarArray() choose the point array, and
- * the vtkVolume's vtkVolumeProperty gives the isovalues (GetIsoSurfaceValues), and for each its colour
+ * the vtkVolume's vtkVolumeProperty gives the isovalues (GetIsoSurfaceValues), and for each its color
  * and opacity by the transfer functions of the first component, and the shading. Interpolation is
  * trilinear always.
  *
@@ -24,7 +24,7 @@
  * colored as isosurfaces are: by the lookup table when ScalarVisibility is on. With Capping, the faces that clipping
  * planes cut out of isosurfaces and of the medium are shown, too.
  *
- * vtkVolumeMapper's cropping is honoured; its planes are in the data's coordinates, without the volume's
+ * vtkVolumeMapper's cropping is honored; its planes are in the data's coordinates, without the volume's
  * transform. So are the mapper's clipping planes, which are in world coordinates.
  *
  * The mapper draws nothing itself: the renderer's vtkDSMScene traces all of its volumes together
@@ -250,7 +250,7 @@ public:
 
   ///@{
   /**
-   * The array that colours the surfaces through the lookup table, when ScalarVisibility is on
+   * The array that colors the surfaces through the lookup table, when ScalarVisibility is on
    * (off by default). For an array of several components, the lookup table's vector mode and vector
    * component choose what is shown. Values of points are interpolated.
    */
@@ -266,7 +266,7 @@ public:
   ///@{
   /**
    * Whether the cells' array of the name ColorArray is meant, not the points'. Off by default. A surface has
-   * in each cell that it goes through the colour of the cell's value.
+   * in each cell that it goes through the color of the cell's value.
    */
   vtkSetMacro(ColorArrayOnCells, bool);
   vtkGetMacro(ColorArrayOnCells, bool);
@@ -274,7 +274,7 @@ public:
 
   ///@{
   /**
-   * Whether the colour array's values become colours by the lookup table (the default), or are colours: gray,
+   * Whether the color array's values become colors by the lookup table (the default), or are colors: gray,
    * gray and opacity, red, green and blue, or those and opacity, as vtkMapper takes them directly.
    */
   vtkSetMacro(MapScalars, bool);
@@ -284,9 +284,9 @@ public:
 
   ///@{
   /**
-   * How blocks of a composite dataset look that are not to look like the rest: their colour, in place of that of the
-   * surface property and of the colour array; their opacity, in place of the property's; a value, by which the lookup
-   * table colours the block while BlockScalarVisibility is on (off by default) and it has no colour of its own. Blocks
+   * How blocks of a composite dataset look that are not to look like the rest: their color, in place of that of the
+   * surface property and of the color array; their opacity, in place of the property's; a value, by which the lookup
+   * table colors the block while BlockScalarVisibility is on (off by default) and it has no color of its own. Blocks
    * are numbered as vtkCompositeDataIterator does (GetCurrentFlatIndex) in this rank's part of the dataset; a dataset
    * that is one image is block 0.
    */
@@ -301,7 +301,7 @@ public:
   ///@}
 
   /**
-   * Colours and coefficients of the surfaces; never null. With flat interpolation, they are lit by the normals of
+   * Colors and coefficients of the surfaces; never null. With flat interpolation, they are lit by the normals of
    * the surface that is in each cell; else by smooth ones. Front faces are the sides where values are below the isovalue;
    * what is culled lets light through, too.
    */
@@ -309,7 +309,7 @@ public:
 
   ///@{
   /**
-   * Colours and coefficients of back faces; null (the default): they are as the others. Opacities of blocks count for both.
+   * Colors and coefficients of back faces; null (the default): they are as the others. Opacities of blocks count for both.
    */
   void SetBackfaceProperty(vtkProperty* property);
   vtkProperty* GetBackfaceProperty() const;
@@ -421,7 +421,7 @@ public:
   vtkMTimeType GetMTime() override;
 
   /**
-   * Of a mapper of this class, all that was set, its input, and, in common with it, its table of colours, properties and
+   * Of a mapper of this class, all that was set, its input, and, in common with it, its table of colors, properties and
    * options; of other volume mappers, what they have as well.
    */
   void ShallowCopy(vtkAbstractMapper* mapper) override;

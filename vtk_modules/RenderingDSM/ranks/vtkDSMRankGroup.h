@@ -22,13 +22,14 @@ class vtkMultiProcessController;
 class vtkDSMRankGroup
 {
 public:
-  /// Who publishes blocks, or uses what others published: a scene. On every rank the same ones, which joined in the same order.
+  /// A scene, which publishes blocks or uses blocks of other scenes. Every rank has the same
+  /// publishers, which joined in the same order.
   class Publisher
   {
   public:
     virtual ~Publisher() = default;
-    /// The blocks are to be kept in another way: lets go of all it uses, which is retired with its last
-    /// user. It publishes again when it draws the next time.
+    /// Releases all blocks that the publisher uses, because their organization changes; the last user retires
+    /// them. The publisher publishes again at its next render.
     virtual void GiveUpBlocks() = 0;
     /// A time: of the last frame that showed the oldest of what it has blocks of but does not show;
     /// 0 without any. In the same order on every rank.
@@ -37,9 +38,9 @@ public:
     virtual void GiveUpOldestHidden() = 0;
   };
 
-  /// The group of a controller, made at the first call and kept until its last user lets go. Without
-  /// MPI, or with one process, a group of one. Collective over the controller when the group does
-  /// not exist yet. Throws dsm::Error.
+  /// Returns the group of a controller. The first call creates it, and it exists until its last user releases
+  /// it. Without MPI, or with one process, it is a group of one. Collective over the controller if the group
+  /// does not exist yet. Throws dsm::Error.
   static std::shared_ptr<vtkDSMRankGroup> Get(vtkMultiProcessController* controller);
 
   explicit vtkDSMRankGroup(std::unique_ptr<dsm::Transport> transport);
@@ -49,7 +50,7 @@ public:
   dsm::Messenger& GetMessenger() { return this->Messenger; }
   dsm::BlockStore& GetStore() { return this->Store; }
   rt::FrameRenderer& GetFrameRenderer() { return this->FrameRenderer; }
-  /// What is in the store, for all who would publish the same.
+  /// Returns the publications in the store, for all publishers of the same data.
   dsm::Publications& GetPublications() { return this->Publications; }
 
   /// Local, in the same order on every rank.
@@ -58,9 +59,9 @@ public:
 
   /// How the ranks keep their bricks, for all of their publishers.
   vtkDSMMemoryOptions* GetOptions() const { return this->Options; }
-  /// The options as they are now have their effect with the next publication or frame. All publishers give up their
-  /// blocks when these cannot pass to the new organization as they are. Between frames; local, in the same order on
-  /// every rank. Throws dsm::Error.
+  /// Applies the current options to the next publication or frame. All publishers give up their blocks if
+  /// these cannot pass to the new organization unchanged. Between frames; local, in the same order on every
+  /// rank. Throws dsm::Error.
   void Configure();
 
   /// Collective. Calls `work`, which throws dsm::Error on all ranks where memory is short, and again for
@@ -85,8 +86,8 @@ public:
     }
   }
 
-  /// Collective, likewise, for `publish`, which is told where the blocks are to be: in a scratch directory,
-  /// where the user has given one and nothing else makes room in memory.
+  /// Collective, likewise, for `publish`, which receives the place of the blocks: a scratch directory, if the
+  /// user has set one and nothing else makes room in memory.
   template <class Publish>
   auto PublishWithRoom(const Publish& publish)
   {
@@ -137,9 +138,10 @@ public:
 
 private:
   bool MakeRoom();
-  /// What chunks may take of so much memory.
+  /// Returns the largest part of so much memory that chunks may take.
   std::uint64_t GetMostForChunks(std::uint64_t memoryBytes) const;
-  /// Of the cache of chunks, which keeps within that from now on; 0: the memory is what it has found.
+  /// Limits the cache of chunks to its part of the memory, and returns the limit in bytes; 0: the
+  /// memory is the amount found by the store.
   std::uint64_t RestrictRoomForChunks(std::uint64_t memoryBytes) const;
 
   std::uint64_t LeastForChunks = 0; ///< see WidenRoomForChunks

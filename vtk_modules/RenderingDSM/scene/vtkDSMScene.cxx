@@ -149,10 +149,11 @@ void vtkDSMScene::EndWithRenderer()
   const vtkSmartPointer<vtkDSMScene> rendering = std::move(this->Self->Rendering);
 }
 
-/// Who looks between frames for all there is must not see what was added to the bounds for the frame's delivery.
-/// One process finds the objects themselves, whose data may be newer than the last picture. Of several, none knows
-/// where the others' objects are that are not traced: there ParaView takes a camera's clipping range from less
-/// than there is, were it not for the last picture.
+/// Restores the prop's bounds, which were extended for the frame's delivery. Code that examines the
+/// renderer's props between frames must not see the extended bounds. A single process finds the
+/// objects themselves, whose data may be newer than the last image. With several processes, none
+/// knows the bounds of the others' objects that are not traced; without the last image's bounds,
+/// ParaView would compute the camera's clipping range from too little.
 void vtkDSMScene::EndFrame()
 {
   Internals& self = *this->Self;
@@ -168,7 +169,8 @@ void vtkDSMScene::EndFrame()
   this->EndReading();
 }
 
-/// What was published for the frame has found what was read ahead for it; the rest is of no use.
+/// Publications of the frame have taken the bricks that were read ahead for it; the rest is
+/// useless.
 void vtkDSMScene::EndReading()
 {
   vol::ReadAhead::GetShared().Tidy();

@@ -4,7 +4,7 @@
  * @brief   traces all volumes and actors of a renderer that have one of our mappers, once a frame
  *
  * One for each renderer. Hears the renderer's StartEvent with priority -1, after the camera has been
- * synchronised between the ranks, and then, on all ranks at once, takes in data that changed, traces
+ * synchronized between the ranks, and then, on all ranks at once, takes in data that changed, traces
  * the frame, and gives it to its vtkDSMFrameProp, which draws it when the renderer comes to it. Every
  * rank that renders must hold the scene, also one that has no data; a process that only displays
  * (ParaView's client) must not.
@@ -83,7 +83,7 @@ public:
   vtkDSMLightOptions* GetLightOptions() const;
 
   /**
-   * How the frame reaches the picture. By default each rank draws the tiles that it traced, colour
+   * How the frame reaches the picture. By default each rank draws the tiles that it traced, color
    * and depth, and the application composites by depth.
    */
   void DeliverTiles();
@@ -95,9 +95,9 @@ public:
   void DeliverEverywhere();
 
   /**
-   * Every rank gets the whole frame and draws its depth; colour only where `drawsColor`, asked once a
+   * Every rank gets the whole frame and draws its depth; color only where `drawsColor`, asked once a
    * frame, says so. For an application that blends the ranks' pictures in order: the farthest rank
-   * draws the colour, and what lies behind it is hidden on the others. Same call on every rank.
+   * draws the color, and what lies behind it is hidden on the others. Same call on every rank.
    */
   void DeliverEverywhere(std::function<bool(vtkCamera*)> drawsColor);
 
@@ -116,7 +116,7 @@ public:
    * show in the renderer, from its active camera (clipping range included), with its lights, of which there is a
    * headlight where there are none, and with all samples. `image` gets `width` x `height` points, row 0 the lowest,
    * with the scalars "color", 4 bytes, and the array "depth", a float as in a window's depth buffer, 1 where nothing
-   * is. Colours lie over the renderer's background, or, if `transparent`, have the opacity of what is shown, and are
+   * is. Colors lie over the renderer's background, or, if `transparent`, have the opacity of what is shown, and are
    * not multiplied by it. What others draw in the renderer is left out. The pixels are those that a window of this
    * size shows; how the frame reaches windows makes no difference. A renderer without a window needs no more than
    * VTK's libraries.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the ranks tell one another before a frame, and what follows from it.
+// Messages between the ranks before a frame, and their consequences.
 #include "vtkDSMSceneInternals.h"
 
 #include "vtkMatrix4x4.h"
@@ -17,7 +17,7 @@
 namespace
 {
 
-/// Whether matrices differ by rounding only.
+/// Returns whether matrices differ by rounding only.
 bool IsNearly(const glm::dmat4& a, const glm::dmat4& b)
 {
   constexpr double tolerance = 1e-9;
@@ -33,8 +33,8 @@ bool IsNearly(const glm::dmat4& a, const glm::dmat4& b)
   return difference <= tolerance * largest;
 }
 
-/// What a rank tells of its data and of the memory's settings, before a flag for each of its datasets: whether it has
-/// new data.
+/// Data of a rank and its memory settings, sent to all ranks. A flag for each of its datasets
+/// follows: whether it has new data.
 struct Holdings
 {
   /// To publish in step, the ranks must agree on the settings of the memory; threads may differ.
@@ -87,7 +87,7 @@ bool HasNewData(const std::vector<std::byte>& record, std::size_t dataset)
 
 } // namespace
 
-/// What a rank tells of its view, before its lights.
+/// View of a rank, sent to all ranks. Its lights follow.
 struct vtkDSMScene::Internals::View
 {
   rt::FrameAccumulation::Offer Offer; ///< without what rank 0 decides: camera, background, lights
@@ -218,7 +218,7 @@ std::vector<std::byte> vtkDSMScene::Internals::EncodeView(
     this->Members.AreBesideOthers(this->Renderer);
   view.Coarser = this->CountCoarser();
   view.HasObjects = !scene.Objects.empty() || !scene.Media.empty();
-  // Of windows that show one picture together, none has all of it.
+  // Windows that show one image together have no complete image each.
   view.LimitsRays = !scene.Media.empty() && !this->Image &&
     this->Display.Tiles[0] * this->Display.Tiles[1] == 1 &&
     this->Members.AreBesideOthers(this->Renderer);
@@ -342,7 +342,8 @@ void vtkDSMScene::Internals::Draw(bool& isOver)
   rt::FrameRequest request;
   vtkNew<vtkMatrix4x4> projection;
   const int ranksOnHost = this->Image ? messenger.GetRanksOnHost() : 1;
-  std::size_t place = sizeof(Holdings) + this->Members.GetShown().size(); // of the View in a record
+  std::size_t place =
+    sizeof(Holdings) + this->Members.GetShown().size(); // offset of the View in a record
   Records records = messenger.GatherTogether(what,
     [&]
     {
@@ -408,7 +409,7 @@ void vtkDSMScene::Internals::Draw(bool& isOver)
   {
     const auto isMedium = [](const rt::SceneMedium& medium)
     { return std::holds_alternative<rt::LatticeMedium>(medium); };
-    // What shows one value of a ray has no layers.
+    // Media that show a single value of each ray have no layers.
     this->LimitRays(
       request, request.Layers > 1 && std::any_of(scene.Media.begin(), scene.Media.end(), isMedium));
   }

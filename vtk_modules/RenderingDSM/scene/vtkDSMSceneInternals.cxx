@@ -29,7 +29,7 @@ constexpr double InteractiveRate = 1.0;
 constexpr double InteractiveSeconds = 0.07;
 constexpr int LargestReduction = 8;
 
-/// A pixel's colour and depth, in a picture without a window: as tiles, as the message with them, as the messages of all
+/// A pixel's color and depth, in a picture without a window: as tiles, as the message with them, as the messages of all
 /// ranks, and as the picture or, later, the image.
 constexpr std::uint64_t BytesOfImagePixel = 4 * (4 + sizeof(float));
 
@@ -129,7 +129,7 @@ std::string vtkDSMScene::Internals::MakeFrame(const dsm::FirstFailure& earlier)
     return failure;
   }
   this->IsTraced = false;
-  this->GiveUpBlocks(); // what the ranks have of them may differ now
+  this->GiveUpBlocks(); // the ranks may have different bricks now
   this->Group->GetPublications().Forget();
   return failure;
 }
@@ -251,7 +251,7 @@ void vtkDSMScene::Internals::DrawPicture(rt::Picture picture, const rt::FrameReq
   double bounds[6];
   std::copy_n(this->Bounds, 6, bounds);
   this->Delivery.Prepare(request, picture);
-  // Where the ranks' pictures are blended, each has the notes; where the nearest counts, one does.
+  // If the ranks' images are blended, each has the notes; if the nearest is shown, only one does.
   const bool writesNotes =
     this->Delivery.AreBlended() || this->Group->GetMessenger().GetRank() == 0;
   rt::Picture unseen;

@@ -29,7 +29,7 @@
 #include <string>
 #include <vector>
 
-/// What a scene is made of. What takes part in a frame is collective: on every rank, in this order,
+/// Private state of a scene. Functions of a frame are collective: on every rank, in this order,
 /// Members.Find, FindGroup and MakeFrame.
 class vtkDSMScene::Internals : public vtkDSMRankGroup::Publisher
 {
@@ -53,7 +53,7 @@ public:
   /// Into the target's image, where there is one; without pixels, nothing but background.
   void FillImage(const rt::Picture& picture) const;
 
-  /// A picture for nobody's window.
+  /// Image that is rendered for no window.
   struct Target
   {
     int Width;
@@ -69,10 +69,10 @@ public:
   vtkSmartPointer<vtkDSMScene>
     Rendering;                ///< the scene itself, from the start of a render to its end
   bool DrawsAgain = false;    ///< it was made in the middle of a frame
-  rt::Environment Background; ///< of this rank's renderer, as the application set it
+  rt::Environment Background; ///< of this rank's renderer, as set by the application
   vtkSmartPointer<vtkMultiProcessController> Controller;
   vtkNew<vtkDSMFrameProp> Prop;
-  double Bounds[6] = { 0.0, 0.0, 0.0, 0.0, 0.0, 0.0 }; ///< of what the prop shows
+  double Bounds[6] = { 0.0, 0.0, 0.0, 0.0, 0.0, 0.0 }; ///< bounds of all that the prop shows
   vtkNew<vtkDSMStatistics> Statistics;
   std::shared_ptr<vtkDSMRankGroup> Group;
   vtkNew<vtkDSMLightOptions> Light;
@@ -83,19 +83,19 @@ public:
   vtkDSMDepthReader DepthReader;
   std::string LateFailure;     ///< of the last frame, on this rank alone
   std::string Failure;         ///< that was reported last
-  unsigned FailureVersion = 0; ///< of the group's settings then
+  unsigned FailureVersion = 0; ///< the group's settings version then
   bool Tracing = false;
   /// Tiles of any scene: while they are traced, there is no other frame.
   inline static bool TracingTiles = false;
   bool IsTraced =
     false; ///< the frame, of data that were taken in: should it fail, the last picture stays
-  rt::FrameAccumulation::Pace Pace; ///< of still pictures
+  rt::FrameAccumulation::Pace Pace; ///< pace of still images
   int InteractiveReduction = 0;
   bool AlwaysFinest = false;
   vtkDSMTranslation::TileDisplay Display;
   /// Nothing is read ahead until the renderer has drawn the frame.
   std::optional<vol::ReadAhead::Pause> Busy;
-  unsigned SettledVersion = 0; ///< of the group's settings
+  unsigned SettledVersion = 0; ///< version of the group's settings
 
 private:
   using Records = std::vector<std::vector<std::byte>>;

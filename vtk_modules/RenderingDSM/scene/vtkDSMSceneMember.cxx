@@ -18,7 +18,8 @@ std::vector<vtkDSMSceneMember::Maker>& GetKinds()
   return kinds;
 }
 
-/// Of all scenes, in the order in which they were made. Outlives scenes that are ended with the program.
+/// Returns the members of all scenes, in the order of their creation. Outlives scenes that are
+/// destroyed at program exit.
 std::vector<vtkDSMSceneMember*>& GetAll()
 {
   static auto* const all = new std::vector<vtkDSMSceneMember*>;

@@ -18,7 +18,7 @@ class vtkDSMMemoryOptions;
 class vtkProp3D;
 class vtkScalarsToColors;
 
-/// What a scene keeps of one mapper: its data in bricks, and what was wrong with it.
+/// State that a scene keeps for one mapper: its data in bricks, and its messages.
 class vtkDSMSceneMember
 {
 public:
@@ -33,13 +33,13 @@ public:
   /// A kind of mapper says what is kept of it, before one is first drawn; again does nothing.
   static void AddKind(Maker make);
 
-  /// Of any kind of mapper; null for what is not traced.
+  /// Creates a member for any kind of mapper; null if the mapper is not traced.
   static std::unique_ptr<vtkDSMSceneMember> Create(vtkAlgorithm* mapper);
 
-  /// Whose data these are; null once it is gone.
+  /// Returns the mapper; null once it is deleted.
   virtual vtkAlgorithm* GetAlgorithm() const = 0;
 
-  /// What the mapper asks for.
+  /// Options of the mapper.
   virtual vtkDSMMemoryOptions* GetMemoryOptions() const = 0;
   virtual vtkDSMLightOptions* GetLightOptions() const = 0;
 
@@ -49,8 +49,9 @@ public:
   /// Local: whether this rank's data are other than what was taken in. True also where that would
   /// only be found out by reading all of them.
   virtual bool HasNewData() = 0;
-  /// Local, likewise, without new data: whether Update, or TakeCoarser with the same `wantsCoarser`, has anything to do
-  /// together with the other ranks, or to give up. Else both are local, and change nothing that the ranks share.
+  /// Local, without new data: returns whether Update, or TakeCoarser with the same `wantsCoarser`, has
+  /// anything to do together with the other ranks, or to give up. If not, both are local, and change nothing
+  /// that the ranks share.
   virtual bool NeedsRanks(const vtkDSMRankGroup& group, bool wantsCoarser) const = 0;
 
   /// Local, also while the scene has not looked at its props: whether what was taken in is of data that are not there
@@ -94,16 +95,17 @@ public:
   void ReportMessages();
 
 protected:
-  /// The table's colours; sampled again when it has changed.
+  /// The table's colors; sampled again when it has changed.
   std::shared_ptr<const rt::ColorMap> SampleColors(vtkScalarsToColors* table);
 
   int GetCoarser() const { return this->Coarser; }
 
   vtkProp3D* Prop = nullptr;
-  /// Of the last Update and AddTo: errors, and warnings of what is shown, but not in the colours that were asked for.
+  /// Messages of the last Update and AddTo: errors, and warnings about data that are shown in other
+  /// colors than requested.
   std::vector<std::string> Messages;
   std::vector<std::string> Warnings;
-  std::vector<std::string> Reported; ///< of both
+  std::vector<std::string> Reported; ///< messages of both kinds
 
 private:
   int Coarser = 0;

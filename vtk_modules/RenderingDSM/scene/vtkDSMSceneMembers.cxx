@@ -29,7 +29,7 @@ struct Part
 {
   vtkProp* Prop;
   vtkProp* Whole;      ///< that the renderer has
-  vtkMatrix4x4* Place; ///< of a part; null: the prop says itself
+  vtkMatrix4x4* Place; ///< matrix of a part; null: the prop has its own
 
   bool IsVisible() const { return this->Prop->GetVisibility() && this->Whole->GetVisibility(); }
 };
@@ -125,7 +125,7 @@ void vtkDSMSceneMembers::Find(vtkRenderer* renderer)
         this->Shown.push_back({ prop, kept.back().get(), part.Place });
       }
     });
-  // What is left belonged to props that were removed; their bricks leave the store.
+  // The remaining members belonged to props that were removed; their bricks leave the store.
   std::swap(this->States, kept);
   if (std::any_of(kept.begin(), kept.end(), [](const auto& left) { return left != nullptr; }))
   {
@@ -200,7 +200,7 @@ std::vector<vtkProp*> vtkDSMSceneMembers::FindOthers(vtkRenderer* renderer) cons
     [&](const Part& part)
     {
       const auto isProp = [&](const Member& member) { return member.Prop == part.Prop; };
-      // What has no bounds of its own is no object.
+      // Props without bounds of their own are not objects.
       if (vtkProp3D::SafeDownCast(part.Prop) && part.IsVisible() && part.Prop->GetUseBounds() &&
         HasBounds(part.Prop) && std::none_of(this->Shown.begin(), this->Shown.end(), isProp) &&
         (others.empty() || others.back() != part.Whole))

@@ -24,35 +24,37 @@ public:
   {
     vtkProp3D* Prop;
     vtkDSMSceneMember* State;
-    /// Of a part of an assembly: where it is in the world; null: where the prop itself says.
+    /// For a part of an assembly: its matrix in world space; null: the prop's own matrix.
     vtkSmartPointer<vtkMatrix4x4> Place;
   };
 
-  /// Looks through the renderer's props, and through their assemblies. What belongs to props that were
-  /// removed is let go; what is hidden is kept, but not shown.
+  /// Traverses the renderer's props and their assemblies. Releases members of removed props; keeps members of
+  /// hidden props, but does not show them.
   void Find(vtkRenderer* renderer);
 
-  /// Those that are visible, in the renderer's order.
+  /// Returns the visible members, in the renderer's order.
   const std::vector<Member>& GetShown() const { return this->Shown; }
   /// With those that are hidden.
   std::size_t GetCount() const { return this->States.size(); }
 
   void GiveUpBlocks();
-  /// Of the hidden ones that have bricks, the one that was shown the longest ago; null without any.
+  /// Returns the hidden member with bricks that was shown the longest ago; null if there is none.
   vtkDSMSceneMember* FindOldestHidden() const;
 
-  /// What is shown becomes the objects of the scene, at the finest level of detail (0), or so many below it.
+  /// Adds the shown members' objects to the scene, at the finest level of detail (0), or so many
+  /// levels below it.
   void AddTo(rt::Scene& scene, int coarser) const;
   /// The most levels below the finest that anything has.
   int CountCoarser() const;
 
-  /// Of what is shown, in world space; not initialised where nothing is.
+  /// Finds the bounds of the shown members, in world space; not initialized if there are none.
   void GetBounds(double bounds[6]) const;
 
-  /// What is set for the mappers that are shown has its effect on the light and the memory of all.
+  /// Applies the options of the shown mappers to the light and the memory of all.
   void ForwardOptions(vtkDSMLightOptions* light, vtkDSMMemoryOptions* memory) const;
 
-  /// Whether the renderer has anything else to show, that may be behind, or between, translucent surfaces.
+  /// Returns whether the renderer shows anything else, which may be behind, or between, translucent
+  /// surfaces.
   bool AreBesideOthers(vtkRenderer* renderer) const { return !this->FindOthers(renderer).empty(); }
   /// These; of assemblies, the whole.
   std::vector<vtkProp*> FindOthers(vtkRenderer* renderer) const;

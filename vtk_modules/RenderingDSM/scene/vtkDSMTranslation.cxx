@@ -37,7 +37,7 @@
 namespace
 {
 
-/// Entries of a sampled colour map: well above the 256 of ParaView's discretised ones.
+/// Entries of a sampled color map: well above the 256 of ParaView's discretised ones.
 constexpr std::size_t ColorMapEntries = 4096;
 
 /// Default length of ambient occlusion rays, over the diagonal of what is shown.
@@ -70,7 +70,7 @@ glm::vec4 MapValue(vtkScalarsToColors* table, double value)
   return { color[0], color[1], color[2], table->GetOpacity(value) };
 }
 
-/// Of the annotations that are numbers.
+/// Returns the annotations that are numbers.
 std::vector<rt::ColorMap::Category> ToCategories(vtkScalarsToColors* table)
 {
   std::vector<rt::ColorMap::Category> categories;
@@ -90,7 +90,7 @@ std::vector<rt::ColorMap::Category> ToCategories(vtkScalarsToColors* table)
   return categories;
 }
 
-/// Where there is one value only, makes it any range around.
+/// Widens a range of a single value.
 void Widen(double& first, double& last)
 {
   if (!(first < last))
@@ -119,8 +119,8 @@ public:
     }
   }
 
-  /// Where both functions stay as they are at their ends, takes what is between these of a range of values. There is some
-  /// range after that.
+  /// If both functions are clamped, limits a range of values to that of the functions. The result
+  /// is never empty.
   void Narrow(double& first, double& last) const
   {
     const bool areClamped = this->Opacity->GetClamping() != 0 &&
@@ -137,7 +137,7 @@ public:
     Widen(first, last);
   }
 
-  /// Whether the functions are spread over the decades of values from `first` on.
+  /// Returns whether the functions are spread over the decades of values from `first` on.
   bool AreLogarithmic(double first) const
   {
     return first > 0.0 && (this->Opacity->GetUseLogScale() || this->HasLogColors());
@@ -233,8 +233,8 @@ void SetCamera(
   set(camera);
   if (!rt::PixelRays::CanBeMade(request.WorldToClip))
   {
-    // Where all is behind the camera, VTK's clipping range is all but nothing. There is nothing to be seen, but
-    // rays must have a direction.
+    // If everything is behind the camera, VTK's clipping range is almost empty. Nothing is visible
+    // then, but rays must have a direction.
     vtkNew<vtkCamera> other;
     other->DeepCopy(camera);
     other->SetClippingRange(camera->GetDistance(), 2.0 * camera->GetDistance());
@@ -296,7 +296,7 @@ rt::Material vtkDSMTranslation::ToMaterial(vtkVolumeProperty* property, double i
   }
   rt::Material material;
   material.Lighting = property->GetShade(0) != 0;
-  // Without shading, the transfer function's colour as it is.
+  // Without shading, the transfer function's color as it is.
   material.Ambient = material.Lighting ? static_cast<float>(property->GetAmbient(0)) : 1.0f;
   material.Diffuse = material.Lighting ? static_cast<float>(property->GetDiffuse(0)) : 0.0f;
   material.Specular = static_cast<float>(property->GetSpecular(0));
@@ -318,7 +318,7 @@ std::shared_ptr<const rt::TransferFunction> vtkDSMTranslation::ToTransferFunctio
   const double unit = property->GetScalarOpacityUnitDistance(component);
   for (glm::dvec4& sample : samples)
   {
-    // What cannot be seen though the whole way lies in it is skipped.
+    // Skip values that are invisible even if the whole length of a ray has them.
     const double extinction = -weight * std::log1p(-std::clamp(sample.w, 0.0, MostOpacity)) / unit;
     sample.w = extinction * diagonal < LeastDepth ? 0.0 : extinction;
   }
@@ -416,7 +416,7 @@ std::shared_ptr<const rt::Texture> vtkDSMTranslation::ToTexture(
   {
     return nullptr;
   }
-  // Bytes are colours, unless they are to be mapped; other values are mapped, as VTK does.
+  // Bytes are colors, unless they are to be mapped; other values are mapped, as VTK does.
   auto* const bytes = texture->GetColorMode() != VTK_COLOR_MODE_MAP_SCALARS
     ? vtkUnsignedCharArray::SafeDownCast(scalars)
     : nullptr;
@@ -434,7 +434,7 @@ std::shared_ptr<const rt::Texture> vtkDSMTranslation::ToTexture(
   {
     const unsigned char* from = colors + texel * static_cast<std::size_t>(components);
     std::uint8_t* to = &picture->Texels[4 * texel];
-    // Gray, gray and alpha, colour, colour and alpha.
+    // Gray, gray and alpha, color, color and alpha.
     to[0] = from[0];
     to[1] = components > 2 ? from[1] : from[0];
     to[2] = components > 2 ? from[2] : from[0];

@@ -64,7 +64,7 @@ public:
   static std::shared_ptr<const rt::TransferFunction> ToSum(vtkVolumeProperty* property,
     double first, double last, const std::array<double, 2>& counted, double unit);
 
-  /// What a mapper's clipping planes leave, in world space.
+  /// Returns the region that a mapper's clipping planes keep, in world space.
   static rt::ClipRegion ToClipRegion(vtkAbstractMapper* mapper);
 
   /// `bounds` are those of what is shown, in world space. A picture in passing goes without the rays of a first look.

@@ -24,9 +24,9 @@ struct BeamBricks final : ObjectBeam
     double Upper[3]; ///< the planes at its end; the volume's end may come before
   };
 
-  /// Whether all rays move towards larger coordinates.
+  /// True for each axis along which all rays move towards larger coordinates.
   bool Forward[3] = { false, false, false };
-  std::vector<Brick> Bricks; ///< where the beam is not usable, it is empty, and means nothing
+  std::vector<Brick> Bricks; ///< empty and without meaning if the beam is not usable
 
   bool MayMeet() const override { return !this->Usable || !this->Bricks.empty(); }
 

@@ -16,8 +16,8 @@
 namespace rt
 {
 
-/// Takes a beam down through the levels above the bricks, nearer macrocells first. `Predicate` tells of a
-/// ValueRange whether what the rays look for may be there; see IsovaluePredicate.
+/// Takes a beam down through the levels above the bricks, nearer macrocells first. `Predicate` decides from a
+/// ValueRange whether the rays may find anything there; see IsovaluePredicate.
 template <class Predicate>
 class BeamDescent
 {
@@ -116,7 +116,7 @@ private:
   const std::vector<bricks::MacrocellHierarchy::Level>& Levels;
   const Predicate& MayHold;
   const RayBeam& Beam;
-  std::vector<RayBeam::Cubes> Cubes; ///< of each level
+  std::vector<RayBeam::Cubes> Cubes; ///< one for each level
 };
 
 /// The bricks of a lattice that hold what rays between those of `corners`, in order around them, look for.

@@ -38,7 +38,7 @@ Vector ClampToUnit(Vector value)
   return hn::IfThenElse(hn::Lt(raised, one), raised, one);
 }
 
-/// What the transfer function of a medium does in the macrocells that rays are in; see PacketPart.
+/// Behavior of a medium's transfer function in the macrocells that rays are in; see PacketPart.
 template <class D>
 struct MediumBehavior
 {
@@ -51,13 +51,13 @@ struct MediumBehavior
 template <class D>
 struct CrossedCells
 {
-  const std::size_t* Ray; ///< of each lane
+  const std::size_t* Ray; ///< ray of each lane
   std::uint32_t There;    ///< bits
   /// Rays that go through their cell, and do not only touch it, where the cell holds data.
   hn::Mask<D> Crossing;
   hn::Vec<D> Corners[8]; ///< less what the brick subtracts
-  hn::Vec<D> Place[3];   ///< of the cell in the brick
-  hn::Vec<D> Enter;      ///< of the ray
+  hn::Vec<D> Place[3];   ///< cell's position in the brick
+  hn::Vec<D> Enter;      ///< T at which the ray enters
   hn::Vec<D> Exit;
   hn::Vec<D> Start[3]; ///< within the cell, in [0, 1]
   hn::Vec<D> End[3];
@@ -70,7 +70,8 @@ struct PassedMacrocells
 {
   const std::size_t* Ray;
   std::uint32_t There;
-  hn::Vec<D> Enter; ///< of the ray; not below Exit: it only touches the macrocell
+  hn::Vec<D>
+    Enter; ///< T at which the ray enters; not below Exit: the ray only touches the macrocell
   hn::Vec<D> Exit;
   hn::Vec<D> First; ///< values, less what the brick subtracts: where the ray enters
   hn::Vec<D> Middle;
@@ -514,7 +515,7 @@ private:
     cells.Crossing = this->Brick.Floats.First
       ? this->LoadCorners(place, cells.Corners)
       : this->AskForCorners(batch.GetLanes(), place, cells.Corners);
-    // Those that only touch the cell do not cross it.
+    // Rays that only touch the cell do not cross it.
     cells.Crossing = hn::And(cells.Crossing, hn::Lt(enter, exit));
     for (int axis = 0; axis < 3; ++axis)
     {
@@ -557,7 +558,7 @@ private:
   WaitingRays ForMacrocell;
   WaitingRays ForCell;
   HWY_ALIGN std::uint64_t
-    Macrocells[RayPacket::Size];                  ///< of each ray: those that it has yet to cross
+    Macrocells[RayPacket::Size];                  ///< macrocells that each ray has yet to cross
   HWY_ALIGN std::uint64_t Cells[RayPacket::Size]; ///< the same in the first of its macrocells
 };
 

@@ -94,7 +94,7 @@ private:
   /// In macrocells, along the longest axis.
   static constexpr int SmallestTop = 8;
 
-  /// Where the walk is on a level.
+  /// Position of the walk on one level.
   struct Place
   {
     GridWalk Walk;

@@ -30,7 +30,8 @@ void CellNeighbourhood::CoverWithin(const bricks::Index3& cell, const bricks::In
   }
 }
 
-/// Whether a cell that has the edge from the sample (x, y, z) to the next one on `axis` is covered.
+/// Returns whether any cell with the edge from sample (x, y, z) to the next one on `axis` is
+/// covered.
 bool CellNeighbourhood::IsEdgeCovered(int axis, int x, int y, int z) const
 {
   const int sample[3] = { x, y, z };

@@ -18,7 +18,8 @@ namespace rt
 class CellNeighbourhood
 {
 public:
-  /// Whether a brick has all of it, and no mask. `cell` is the brick's.
+  /// Returns whether a brick has all samples of the neighborhood, and no mask. `cell` is in brick
+  /// indices.
   template <class T>
   static bool IsWithin(const bricks::VoxelBrick<T>& brick, const int cell[3])
   {
@@ -97,7 +98,7 @@ public:
 
 private:
   /// The derivative along an axis at the sample with the given place in Samples. The fast form
-  /// assumes that both neighbours are there.
+  /// assumes that both neighbors are there.
   double GetCarefulDifference(int axis, int x, int y, int z) const;
   bool IsEdgeCovered(int axis, int x, int y, int z) const;
 

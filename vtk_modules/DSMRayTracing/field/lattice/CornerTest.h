@@ -16,8 +16,8 @@ template <class T>
 class CornerTest
 {
 public:
-  /// Whether some corners of the cell whose first corner is given are `first` or above, and some
-  /// are below. `row` and `slice` lead to the next corner on y and z.
+  /// Returns whether some corners of a cell are `first` or above, and some are below. `corner` is
+  /// the cell's first corner; `row` and `slice` are the offsets of the next corner along y and z.
   static bool IsSeparated(const T* corner, std::ptrdiff_t row, std::ptrdiff_t slice, T first)
   {
     const T* upper = corner + slice;

@@ -24,9 +24,9 @@ namespace HWY_NAMESPACE
 {
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// Of BrickSearch, for rays that look for their largest value, or their smallest one. A ray never finds more than the
-/// largest corner of a cell has, so that bricks and macrocells whose values are not larger can be left out: whether
-/// they are, which depends on the other rays, makes no difference.
+/// Visitor for BrickSearch, for rays that look for their largest or smallest value. A ray never
+/// finds a larger value than that of a cell's largest corner, so bricks and macrocells without
+/// larger values can be skipped. Skipping depends on the other rays, but the result does not.
 template <class D>
 class ExtremumCells
 {

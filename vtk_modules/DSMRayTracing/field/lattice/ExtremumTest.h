@@ -39,7 +39,7 @@ private:
   double Limit;
 };
 
-/// What TypedPacketBrick asks about an extremum; see IsovalueTest.
+/// Test of TypedPacketBrick for an extremum; see IsovalueTest.
 template <class T>
 class ExtremumTest
 {

@@ -15,9 +15,9 @@ namespace rt
 /// A ray in index space: sample (i, j, k) lies at the point (i, j, k), so the planes between cells
 /// are the whole numbers. T is that of the world ray.
 ///
-/// Where a ray crosses a plane is a function of the ray and the plane alone (GetPlaneT), never a sum
-/// of steps. So cells, macrocells, bricks and coarser boxes agree bit for bit where they meet, and
-/// what a ray finds does not depend on how the volume is cut.
+/// The position where a ray crosses a plane is a function of the ray and the plane alone
+/// (GetPlaneT), never a sum of steps. So cells, macrocells, bricks and coarser boxes agree bit for
+/// bit where they meet, and the result for a ray does not depend on how the volume is divided.
 ///
 /// The idle lane is an axis along which the ray does not move.
 struct GridRay
@@ -33,8 +33,8 @@ struct GridRay
   /// -1, 0 or 1.
   Lanes Step;
 
-  IntegerLanes Backward; ///< where Step is negative
-  IntegerLanes Moving;   ///< where it is not 0
+  IntegerLanes Backward; ///< axes along which Step is negative
+  IntegerLanes Moving;   ///< axes along which Step is not 0
 
   /// Returns false when the ray has no direction or is not finite.
   bool Set(const double origin[3], const double direction[3])

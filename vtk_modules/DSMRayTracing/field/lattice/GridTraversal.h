@@ -14,8 +14,8 @@
 namespace rt
 {
 
-/// A ray in one brick: over its macrocells, then over the cells of those that the isovalue is in.
-/// `Access` is told what is read; see BrickAccess.
+/// Traverses one brick along a ray: its macrocells, then the cells of those whose range contains the
+/// isovalue. `Access` is notified of all reads; see BrickAccess.
 template <class T, class Access>
 class GridTraversal
 {
@@ -41,7 +41,7 @@ public:
       { return this->IntersectCell(level, cells, corner, in, out, hit); });
   }
 
-  /// Whether there is a hit in [enter, leave].
+  /// Returns whether there is a hit in [enter, leave].
   bool HasHit(const IsovalueLevel<T>& level, double enter, double leave) const
   {
     return this->Walk(level, enter, leave, leave,
@@ -127,8 +127,8 @@ private:
     }
   }
 
-  /// Where the ray is in a cell at t, given its point there: exactly 0 or 1 where it meets a plane
-  /// of the cell.
+  /// Returns the position of the ray in a cell at t, given its point there: exactly 0 or 1 where
+  /// the ray meets a plane of the cell.
   Lanes GetLocal(const Lanes& cell, double t) const
   {
     const Lanes zero(0.0);
@@ -138,7 +138,8 @@ private:
     return Select(this->Line.GetPlaneT(cell + one) == Lanes(t), one, lower);
   }
 
-  /// Whether the cell holds data, and where it does its corners less the isovalue.
+  /// Returns whether the cell holds data. If it does, `corners` are its corner values minus the
+  /// isovalue.
   bool GetCorners(
     const IsovalueLevel<T>& level, const T* corner, const Lanes& cell, double corners[8]) const
   {
@@ -165,8 +166,8 @@ private:
     return std::is_integral_v<T> || check == 0.0;
   }
 
-  /// What is known of the cell with the given first corner, which the ray crosses from enter to
-  /// leave; false when it holds no data.
+  /// Finds the corners, the start and the end in the cell with the given first corner, which the
+  /// ray crosses from enter to leave. Returns false when the cell holds no data.
   bool EnterCell(const IsovalueLevel<T>& level, const GridWalk& cells, const T* corner,
     double enter, double leave, double corners[8], Lanes& start, Lanes& end) const
   {

@@ -26,7 +26,7 @@ struct NodeStrides
 struct NodeGrid
 {
   Lanes First; ///< the lower planes of the box, in cells
-  double Edge; ///< of a node, in cells
+  double Edge; ///< edge length of a node, in cells
   double InverseEdge;
   Lanes Counts; ///< nodes per axis
   const NodeStrides& Strides;
@@ -40,8 +40,8 @@ class GridWalk
 public:
   GridWalk() = default;
 
-  /// Starts where the ray, which is in the box, goes on at t: planes that are met at t or before
-  /// count as crossed. Returns the node's index from that of the box's first node.
+  /// Starts at t on a ray that is in the box then; planes that are met at t or before count as crossed.
+  /// Returns the index of the node relative to the box's first node.
   std::int64_t Start(const GridRay& ray, double t, const NodeGrid& grid)
   {
     // Mostly the ray stands on a plane that it has just crossed; a little ahead, rounding does not
@@ -64,7 +64,7 @@ public:
     return static_cast<std::int64_t>((nodes * grid.Strides.Real).GetSum());
   }
 
-  /// Where the ray leaves the current node.
+  /// Returns the T at which the ray leaves the current node.
   double GetExit() const { return this->PlaneT.GetMin(); }
 
   /// Goes on to the node after `exit`; returns the change of the index.
@@ -83,11 +83,12 @@ public:
   }
 
 private:
-  /// What GetPlaneT says decides where the ray is, not the rounding of its point.
+  /// Moves the start to the node that GetPlaneT defines; the rounding of the ray's point may define
+  /// another one.
   void Correct(const GridRay& ray, double t, const NodeGrid& grid, Lanes& nodes);
 
   Lanes Plane;  ///< coordinate of the plane through which the ray leaves on each axis
-  Lanes PlaneT; ///< where it meets that plane
+  Lanes PlaneT; ///< T at which it meets that plane
   Lanes PlaneStrides;
   IntegerLanes IndexStrides;
 };

@@ -22,8 +22,8 @@ namespace rt
 class HitGradient
 {
 public:
-  /// Where all samples that it needs are in the brick of the hit, are numbers, and none is masked;
-  /// else returns false.
+  /// Returns false unless all samples that it needs are in the brick of the hit, are finite, and
+  /// none is masked.
   template <class T>
   static bool FindWithin(const bricks::VoxelBrick<T>& brick, const CellHit& hit,
     const IsovalueLevel<T>& level, double gradient[3])
@@ -61,7 +61,7 @@ public:
   }
 
 private:
-  /// Where no sample is missing; else returns false.
+  /// Returns false if any sample is missing.
   template <class T, class Store>
   static bool FindAcrossFaces(Store& store, typename Store::Worker& worker,
     const bricks::VoxelField& field, const bricks::Index3& home, const CellHit& cell,
@@ -110,7 +110,7 @@ private:
         bricks::Index3 next = home;
         next[axis] += side == 0 ? -1 : 1;
         int sample[3] = { cell.Cell[0], cell.Cell[1], cell.Cell[2] };
-        // Neighbours share the samples between them.
+        // Neighbors share the samples between them.
         sample[axis] = side == 0 ? edge - 1 : 1;
         const typename Store::Pin pin = store.Acquire(worker, *field.Segment, lattice.GetId(next));
         const bricks::VoxelBrick<T> brick(pin.GetData());

@@ -23,7 +23,7 @@ public:
   {
   }
 
-  /// Of the index space, in world space.
+  /// Returns the origin of the index space in world space.
   const glm::dvec3& GetOrigin() const { return this->WorldOrigin; }
   /// Takes differences of world points to index space.
   const glm::dmat3& GetWorldToIndex() const { return this->WorldToIndex; }
@@ -42,7 +42,7 @@ public:
   glm::dvec3 GetNormal(const double gradient[3], const glm::dvec3& rayDirection) const;
 
 private:
-  glm::dvec3 WorldOrigin; ///< of the index space
+  glm::dvec3 WorldOrigin; ///< origin of the index space
   glm::dmat3 WorldToIndex;
 };
 

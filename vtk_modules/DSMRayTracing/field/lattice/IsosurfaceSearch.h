@@ -39,8 +39,8 @@ public:
   {
   }
 
-  /// The first hit in [ray.Min, ray.Max], normal included. May wait for bricks. Of several
-  /// isovalues the nearest hit counts, of equally near ones the lowest isovalue.
+  /// Finds the first hit in [ray.Min, ray.Max], with its normal. May wait for bricks. With several isovalues,
+  /// the nearest hit is taken; among equally near ones, that of the lowest isovalue.
   bool Intersect(const Sets& sets, const Ray& ray, Hit& hit) const;
 
   /// The same for each ray of a batch that is `wanted`. Returns those that hit something, and calls
@@ -64,8 +64,8 @@ public:
       });
   }
 
-  /// Whether there is any hit in [ray.Min, ray.Max]: whether Intersect finds one. May wait for
-  /// bricks.
+  /// Returns whether there is any hit in [ray.Min, ray.Max], that is, whether Intersect finds one.
+  /// May wait for bricks.
   bool IsOccluded(const Sets& sets, const Ray& ray) const;
 
   /// Multiplies `transmittance` by those of all surfaces in [ray.Min, ray.Max]: `sheets` has one for each isovalue.
@@ -86,8 +86,9 @@ private:
   bool IntersectBrick(const Sets& sets, const GridRay& line, const Walk& walk, CellHit& cell,
     int& isovalue, double gradient[3], bool& hasGradient) const;
 
-  /// Calls `isDone(sample, traversal, range, walk)` for the bricks on the ray, front to back, until it says so, and returns
-  /// whether it did. `sample` has the type of the samples; `range` is that of the brick's values.
+  /// Calls `isDone(sample, traversal, range, walk)` for the bricks on the ray, front to back, until it
+  /// returns true; returns whether it did. `sample` has the type of the samples; `range` is that of the
+  /// brick's values.
   template <class IsDone>
   bool SearchBricks(const Sets& sets, const Ray& ray, const IsDone& isDone) const;
 

@@ -61,7 +61,7 @@ public:
   bool IsReachable() const { return this->Reachable; }
   bool IsInside(T sample) const { return sample >= this->First; }
 
-  /// Whether samples from `min` to `max` are on both sides; false when the range is empty.
+  /// Returns whether samples from `min` to `max` are on both sides; false when the range is empty.
   bool Separates(T min, T max) const
   {
     return min < this->First && max >= this->First && this->Reachable;

@@ -16,7 +16,8 @@
 namespace rt
 {
 
-/// What TypedPacketBrick asks about an isovalue. Bit x + 4 y + 16 z is that of a macrocell or a cell. Keeps references.
+/// Test of TypedPacketBrick for an isovalue. Bit x + 4 y + 16 z stands for a macrocell or a cell.
+/// Keeps references.
 template <class T>
 class IsovalueTest
 {
@@ -27,7 +28,7 @@ public:
   {
   }
 
-  /// Of 4 x 4 x 4 macrocells those that may hold the surface; see MacrocellComparison.
+  /// Returns those of 4 x 4 x 4 macrocells that may hold the surface; see MacrocellComparison.
   std::uint64_t FindMacrocells(
     const bricks::MacrocellRange<T>* ranges, std::ptrdiff_t row, std::ptrdiff_t slice) const
   {
@@ -40,8 +41,8 @@ public:
     return this->Level.Separates(range.Min, range.Max);
   }
 
-  /// Of the macrocell whose first cell is `first`, with so many cells on each axis, those that have corners on both
-  /// sides.
+  /// Returns the cells of a macrocell that have corners on both sides. The macrocell's first cell
+  /// is `first`, and it has `counts` cells on each axis.
   std::uint64_t FindCells(
     const bricks::VoxelBrick<T>& brick, const int first[3], const int counts[3]) const
   {
@@ -71,7 +72,7 @@ public:
   /// Surfaces are looked for in cells.
   void Describe(const bricks::VoxelBrick<T>&, const int*, const int*, int, PacketPart&) const {}
 
-  /// What corners have subtracted.
+  /// Returns the value that is subtracted from the corners.
   double GetSubtracted() const { return this->Level.GetIsovalue(); }
   Lanes::Half SubtractPair(const T* samples) const { return this->Level.SubtractPair(samples); }
 
@@ -79,8 +80,8 @@ private:
   /// Bits from one row of samples to the next within a word.
   static constexpr int RowBits = 6;
 
-  /// Of the cells that have the samples of a slice as corners: whether some of those are inside,
-  /// and whether all are.
+  /// Flags of cells that have samples of a slice as corners: whether any of these samples is
+  /// inside, and whether all are.
   struct Slice
   {
     std::uint32_t Any;

@@ -31,7 +31,8 @@ class LatticeSections;
 /// IsosurfaceOf says what one has to offer.
 struct LatticeField
 {
-  /// What is sampled. Of several with the same points, one may give the surfaces and another their colors.
+  /// Sampled values. If several fields have the same points, one may define the surfaces and
+  /// another their colors.
   using Values = bricks::VoxelField;
   using Place = LatticePlace;
   template <class Store>
@@ -73,7 +74,7 @@ struct LatticeField
   /// All that a picture depends on.
   void AddTo(ObjectDigest& digest) const;
 
-  /// Whether there are places within that have no value.
+  /// Returns whether any positions within the field have no value.
   static bool HasHoles(const Values& values) { return values.Lattice.HasCellMask(); }
   static void AddTo(ObjectDigest& digest, const Values& values);
 };

@@ -138,7 +138,8 @@ private:
     return longest;
   }
 
-  /// Of places in the same brick. Returns those whose samples are not all there.
+  /// Finds gradients at positions in the same brick. Returns the positions whose samples are not
+  /// all in the brick.
   template <class T, class Iterator>
   std::vector<const Asked*> FindGradientsWithin(const LatticeField& field, Iterator begin,
     Iterator end, std::vector<glm::dvec3>& gradients) const

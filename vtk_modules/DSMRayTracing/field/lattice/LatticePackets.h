@@ -46,9 +46,10 @@ inline int MoveAlongAll(const LatticeField& field, const Ray& ray, Ray& moved)
   return side;
 }
 
-/// Makes packets of those of a batch of rays that are `wanted`: of rays that move to the same sides, or of a lone ray.
-/// Calls `visit(bricks, packet)` for each, with the bricks where `mayHold` says so of their values; it returns some of
-/// the rays, as this does. `beam`: with all of the rays within; null, or not usable: the bricks are looked for.
+/// Divides the `wanted` rays of a batch into packets of rays whose directions have the same signs, or of a
+/// single ray. Calls `visit(bricks, packet)` for each, with the bricks whose values satisfy `mayHold`;
+/// `visit` returns some of the rays, and the function returns all of these. `beam`: contains all of the rays;
+/// null, or not usable: each packet searches for its bricks.
 template <class Predicate, class Visit>
 RayMask ForEachPacket(const LatticeField& field, const Predicate& mayHold,
   const PacketKernel& kernel, BeamBricks* beam, const Ray* rays, RayMask wanted, const Visit& visit)

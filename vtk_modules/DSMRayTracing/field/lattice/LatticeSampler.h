@@ -42,7 +42,8 @@ public:
   void FindGradients(const bricks::VoxelField& field, const LatticePlace* places, RayMask wanted,
     glm::dvec3* gradients) const;
 
-  /// Of fields whose samples are colors (PackedColor), each channel by itself. Returns the places that have data.
+  /// Samples fields of colors (PackedColor), each channel separately. Returns the places that have
+  /// data.
   RayMask FindColors(const bricks::VoxelField& field, const LatticePlace* places, RayMask wanted,
     glm::vec4* colors) const;
 
@@ -51,8 +52,8 @@ private:
   class Reader;
   enum class Corners
   {
-    Finite, ///< of a cell that holds data
-    Any     ///< of any cell that is there
+    Finite, ///< corners of a cell that holds data
+    Any     ///< corners of any existing cell
   };
 
   /// Calls `visit(reader, index)` for the wanted places, those of a brick one after the other.

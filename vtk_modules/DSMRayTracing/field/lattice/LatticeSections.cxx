@@ -151,8 +151,8 @@ LatticeSections::Beam LatticeSections::FindBeam(const Ray corners[4]) const
       section.Bounds.Lower = glm::min(section.Bounds.Lower, place - room);
       section.Bounds.Upper = glm::max(section.Bounds.Upper, place + room);
     }
-    // Where all of the corner rays come to the plane from the same side, those between them meet it between the corners;
-    // where all go away from it, none does.
+    // If all corner rays approach the plane from the same side, the rays between them meet it
+    // between the corners. If all move away from it, none of them meets it.
     if (!isFinite || forward % 4 != 0 || ahead % 4 != 0)
     {
       beam.IsKnown = false;

@@ -36,8 +36,9 @@ public:
   /// The ray in the lattice's index space; false where it cannot be traced.
   bool GetLine(const Ray& ray, Line& line) const { return this->Space.GetGridRay(ray, line); }
 
-  /// Finds the first place in [ray.Min, ray.Max], behind the one that `hit` has, where the ray meets a plane within the
-  /// lattice's box. Of places that are equally near, that of the first plane comes first. Returns whether there is one.
+  /// Finds the first position in [ray.Min, ray.Max], behind the one in `hit`, where the ray meets a plane
+  /// within the lattice's box. Among equally near positions, that of the first plane comes first. Returns
+  /// whether there is one.
   bool FindNext(const Ray& ray, const Line& line, Hit& hit) const;
 
   /// The bricks that the planes pass through within a beam.
@@ -56,7 +57,7 @@ public:
         found == this->Bricks.end() ? 0 : static_cast<std::size_t>(found - begin) + 1;
     }
   };
-  /// Of the rays between those of `corners`, in order around them.
+  /// Finds the beam of all rays between the four `corners`, which are in order around it.
   Beam FindBeam(const Ray corners[4]) const;
 
 private:

@@ -80,8 +80,8 @@ private:
   /// Bricks in a row are neighbors when they are in the same part of it, of so many.
   static constexpr std::int64_t PartOfRow = 8;
 
-  /// What lies beside a brick in its row, and so in most files, as far as it may have to do with the surface: a disk
-  /// brings it along for little.
+  /// Adds the neighbors of a brick in its row that may have part of the surface. In most files they
+  /// are stored next to the brick, so a disk reads them along at low cost.
   static void AddNeighbors(const Sets& sets, dsm::BlockId id, std::vector<dsm::BlockId>& neighbors)
   {
     const bricks::VoxelField& field = *sets.Field.Voxels;

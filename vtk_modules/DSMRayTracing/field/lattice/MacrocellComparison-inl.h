@@ -68,9 +68,9 @@ private:
   static std::uint64_t FindCells(
     const T* samples, int x, std::ptrdiff_t row, std::ptrdiff_t slice, T first)
   {
-    // Rows of samples lie 8 bits apart. A cell has its corners where its own bit is, on the next one,
-    // and on those of the next row.
-    // What follows the last row may not be there: vectors end with the row.
+    // Rows of samples are 8 bits apart. A cell has its corners at its own bit and the next one, and
+    // at the same bits of the next row. Memory behind the last row may be invalid, so vectors end
+    // with the row.
     const bool isWide =
       hn::MaxLanes(hn::CappedTag<T, std::min<std::size_t>(Lanes, RowSamples)>()) > Edge;
     const int begin = isWide ? std::min(x, static_cast<int>(row) - RowSamples) : x;

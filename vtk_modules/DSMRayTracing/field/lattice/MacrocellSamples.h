@@ -16,10 +16,10 @@ struct MacrocellSamples
   static constexpr int Edge = bricks::MacrocellEdge + 1;
   static constexpr int RowLength = 10; ///< so that 8 can be read from each of the first three
 
-  int Counts[3]; ///< of cells
+  int Counts[3]; ///< cells on each axis
   float Values[Edge][Edge][RowLength] = {};
 
-  /// Of cells from `first` on. Returns false where a sample is not finite.
+  /// Copies the samples of the cells from `first` on. Returns false if a sample is not finite.
   template <class T>
   bool Set(const bricks::VoxelBrick<T>& brick, const int first[3], const int counts[3])
   {

@@ -11,10 +11,9 @@
 namespace rt
 {
 
-/// Takes a ray through the macrocells of a brick, whose first cell is `origin`, from `enter` on until
-/// `leave`, which are not the same and lie in the brick, or `limit`. Calls `visit(walk, enter, leave)`
-/// for those of whose range `mayHold` says so, until it says that it has found something; returns
-/// whether it has.
+/// Takes a ray through the macrocells of a brick, whose first cell is `origin`, from `enter` to `leave`,
+/// which differ and lie in the brick, or to `limit`. Calls `visit(walk, enter, leave)` for macrocells whose
+/// range satisfies `mayHold`, until it returns true; returns whether it did.
 template <class T, class Predicate, class Visit>
 bool VisitMacrocells(const GridRay& line, const bricks::VoxelBrick<T>& brick, const Lanes& origin,
   double enter, double leave, double limit, const Predicate& mayHold, const Visit& visit)

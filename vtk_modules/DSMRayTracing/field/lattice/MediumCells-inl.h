@@ -119,9 +119,10 @@ private:
   hn::Vec<Tag> Part[Parts];
 };
 
-/// Of BrickSearch, for rays through a medium. Within a cell, the value along a ray is a cubic. It is cut into so many
-/// pieces that it is nearly linear in each, as far as the transfer function makes a difference, and each piece is
-/// integrated over its values. Where values hardly bend, that is done for a macrocell as a whole.
+/// Visitor for BrickSearch, for rays through a medium. Within a cell, the value along a ray is a
+/// cubic. It is divided into enough pieces that it is nearly linear in each, as far as the transfer
+/// function makes a difference; each piece is integrated over its values. A macrocell in which
+/// values hardly bend is integrated as a whole.
 template <class D>
 class MediumCells
 {
@@ -174,10 +175,10 @@ public:
 
 private:
   static constexpr double MostPieces = 64.0;
-  /// Of optical depth, in a cell.
+  /// Error tolerance for the optical depth in a cell.
   static constexpr double Tolerance = 1.0 / 2048.0;
   static constexpr double BendFactor = 0.125 / Tolerance;
-  /// Of the color that a piece shows, because what is behind in it is hidden by what is before.
+  /// Error tolerance for the color of a piece: the front of a piece hides part of its back.
   static constexpr double ColorTolerance = 1.0 / 1024.0;
   static constexpr double ColorFactor = 1.0 / (12.0 * ColorTolerance);
   /// Pieces that are described for a unit of optical depth.
@@ -189,10 +190,10 @@ private:
   struct Pieces
   {
     Vector Cubic[4];       ///< values: of the way, from 0 to 1
-    Vector Part;           ///< of a piece, of the whole
+    Vector Part;           ///< share of the whole that one piece has
     Vector Length;         ///< world, of a piece
     Vector Place;          ///< in bins: where the last piece ended
-    Lanes Integral[Width]; ///< of the function up to there
+    Lanes Integral[Width]; ///< integral of the function up to Place
   };
 
   /// Bins of places, and the ways in them.
@@ -273,7 +274,7 @@ private:
     return ended;
   }
 
-  /// Of pieces. `range`: of values, in bins.
+  /// Returns the number of pieces. `range`: extent of the values, in bins.
   static HWY_INLINE Vector GetCount(
     Vector length, Vector bend, Vector range, const MediumBehavior<D>& behavior)
   {
@@ -286,7 +287,7 @@ private:
     return hn::Min(hn::Max(count, hn::Set(tag, 1.0)), hn::Set(tag, MostPieces));
   }
 
-  /// What the function does between the corners of cells, of those of `lanes`.
+  /// Finds the behavior of the function between the values at the corners of the cells of `lanes`.
   HWY_INLINE void FindBehavior(
     const Vector corners[8], std::uint32_t lanes, MediumBehavior<D>& found) const
   {

@@ -8,8 +8,8 @@
 namespace rt
 {
 
-/// Bit x + 4 y + 16 z is set where `mayHold(range)` says so of a macrocell of 4 x 4 x 4; `row` and `slice` lead to the next
-/// one on y and z.
+/// Returns the macrocells of 4 x 4 x 4 for which `mayHold(range)` is true, in bits x + 4 y + 16 z. `row` and
+/// `slice` are the offsets of the next macrocell along y and z.
 template <class Range, class MayHold>
 std::uint64_t FindEachMacrocell(
   const Range* ranges, std::ptrdiff_t row, std::ptrdiff_t slice, const MayHold& mayHold)
@@ -55,7 +55,7 @@ public:
   }
 
 private:
-  /// Neighbouring groups of `bits` bits; those of `lower` are the lower ones.
+  /// Neighboring groups of `bits` bits; those of `lower` are the lower ones.
   static std::uint64_t Swap(std::uint64_t word, int bits, std::uint64_t lower)
   {
     return (word >> bits & lower) | (word & lower) << bits;
@@ -64,7 +64,8 @@ private:
   int Flip;
 };
 
-/// Of nodes that are counted towards larger coordinates, those of a box at the first one, with so many on each axis.
+/// Returns the bits of a box of nodes that begins at the first node and has so many nodes on each
+/// axis. Nodes are counted towards larger coordinates.
 inline std::uint64_t GetNodeBox(const int counts[3])
 {
   std::uint64_t box = 0;

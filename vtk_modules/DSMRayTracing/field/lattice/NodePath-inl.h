@@ -99,7 +99,7 @@ Numbers GetLowestBits(Numbers words)
     hn::Set(numbers, std::uint64_t{ 63 }));
 }
 
-/// Of the node with that number (NodeOrder).
+/// Returns the coordinate of the node with that number (NodeOrder).
 template <class Numbers>
 HWY_INLINE Numbers GetCoordinate(Numbers nodes, int axis)
 {

@@ -7,15 +7,15 @@
 namespace rt
 {
 
-/// What is known of 4 x 4 x 4 macrocells of a brick. Bit, and place, x + 4 y + 16 z is that of a
-/// macrocell of the part, or of a cell of the macrocell, counted in the order of NodeOrder.
+/// Data about 4 x 4 x 4 macrocells of a brick. Bit (or index) x + 4 y + 16 z stands for a macrocell
+/// of the part, or for a cell of the macrocell, counted in the order of NodeOrder.
 struct PacketPart
 {
   std::uint64_t Macrocells; ///< those that may hold the surface
   std::uint64_t Known;      ///< those of which Cells tells something
-  std::uint64_t Cells[64];  ///< of each macrocell: those that have corners on both sides
+  std::uint64_t Cells[64];  ///< for each macrocell: its cells that have corners on both sides
   ///@{
-  /// Of media: TransferFunction::Behavior in each macrocell.
+  /// For media: TransferFunction::Behavior in each macrocell.
   double Extinction[64];
   double Change[64];
   double Tinge[64];
@@ -24,8 +24,8 @@ struct PacketPart
   std::uint64_t Smooth;
 };
 
-/// What a packet asks of a brick and an isovalue, whatever the type of the samples. Coordinates are
-/// the brick's.
+/// Queries of a packet about a brick and an isovalue, independent of the type of the samples.
+/// Coordinates are brick indices.
 class PacketBrick
 {
 public:

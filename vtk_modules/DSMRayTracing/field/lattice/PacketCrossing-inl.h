@@ -28,11 +28,10 @@ struct Bracket
   hn::Vec<D> EndValue;
 };
 
-/// FindFirstCrossing of TrilinearIsosurface.h, and what it rests on in TrilinearCell.h, for a vector
-/// of rays: the same operations in the same order, so that the results are equal bit for bit. What
-/// is a branch there is a choice here, or a loop that goes on while any ray needs it. That a ray
-/// crosses is known before it is known where: so the last, long part can wait until many rays are at
-/// that point.
+/// FindFirstCrossing of TrilinearIsosurface.h, and its basis in TrilinearCell.h, for a vector of rays: the
+/// same operations in the same order, so that the results are equal bit for bit. A branch there becomes a
+/// selection here, or a loop that continues while any ray needs it. It is known that a ray crosses before the
+/// position is known: so the last, long part can wait until many rays have reached that point.
 template <class D>
 class PacketCrossing
 {
@@ -156,7 +155,7 @@ public:
     return hn::Add(count, hn::IfThenElseZero(change, this->One));
   }
 
-  /// Where in their brackets `rays` cross; undefined for the others.
+  /// Returns the crossings of `rays` in their brackets; undefined for the other rays.
   Vector Refine(Mask rays, const Bracket<D>& bracket) const
   {
     const D tag = this->Tag;

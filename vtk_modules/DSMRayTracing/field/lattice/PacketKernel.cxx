@@ -188,7 +188,7 @@ private:
     return hn::LoadMaskBits(D(), bits);
   }
 
-  /// Where exactly rays meet the surface.
+  /// Finds the exact intersections of rays with the surface.
   static void Refine(const CellCrossings& crossings, PacketHits& hits)
   {
     using Number = CellCrossings::Number;

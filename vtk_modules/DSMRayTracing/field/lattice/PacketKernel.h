@@ -38,7 +38,8 @@ struct PacketKernel
   RayPacket::Mask (*MeetBrick)(
     RayPacket& packet, RayPacket::Mask rays, const double lower[3], const double upper[3]);
 
-  /// Where `rays` meet the surface in the brick that they are in. `origin` is the brick's first cell.
+  /// Finds the intersections of `rays` with the surface in their current brick. `origin` is the
+  /// brick's first cell.
   void (*SearchBrick)(const RayPacket& packet, RayPacket::Mask rays, const PacketBrick& brick,
     const double origin[3], PacketHits& hits);
 
@@ -60,7 +61,7 @@ struct PacketKernel
   RayPacket::Mask (*FindExtrema)(const RayPacket& packet, RayPacket::Mask rays,
     const PacketBrick& brick, const double origin[3], RayExtrema& extrema);
 
-  /// Of finite samples: how much the values along a line can bend, see Roughness.
+  /// Returns the largest bend of the values along a line, for finite samples; see Roughness.
   double (*FindRoughness)(const MacrocellSamples& samples);
 
   /// For TypedPacketBrick.

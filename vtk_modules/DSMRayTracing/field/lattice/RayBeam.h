@@ -24,14 +24,14 @@ public:
   /// one.
   void Set(const RayPacket& packet);
 
-  /// Whether all rays of the beam move towards larger coordinates.
+  /// Returns for each axis whether all rays of the beam move towards larger coordinates.
   const bool* GetForward() const { return this->Forward; }
 
   /// Cubes of `edge`, on one lattice.
   struct Cubes
   {
     double Least[4];    ///< for each side: normal * lower corner of a cube that may be met
-    double InverseX[4]; ///< of each side's normal, in cubes
+    double InverseX[4]; ///< for each side's normal, in cubes
     int First[3];       ///< cubes before have no part of the beam
     int Last[3];
   };
@@ -68,8 +68,8 @@ private:
   struct Side
   {
     double Normal[3];
-    double InverseX; ///< of the normal; finite
-    double Least;    ///< of normal * point within the beam
+    double InverseX; ///< inverse of the normal's x; finite
+    double Least;    ///< minimum of normal * point within the beam
   };
 
   Side Sides[4];

@@ -105,7 +105,7 @@ private:
       Vector& own = this->Parts[part / Width];
       own = hn::Max(own, hn::Abs(change));
     }
-    /// Of the first `count`.
+    /// Returns the largest of the first `count`.
     float GetMost(int count) const
     {
       HWY_ALIGN float sizes[RowSamples];

@@ -11,8 +11,9 @@
 namespace rt
 {
 
-/// Whether bricks that a box of world space meets (xmin, xmax, ymin, ...) may have a surface of one of the isovalues, which
-/// are in ascending order: by what is known of the bricks, none of their values are needed. Any thread, not collective.
+/// Returns whether bricks that overlap a box in world space (xmin, xmax, ymin, ...) may have a
+/// surface of one of the isovalues, which are in ascending order. Uses the bricks' ranges only,
+/// none of their values. Any thread, not collective.
 bool MayHaveSurface(const bricks::VoxelField& field, const glm::dmat4& worldToIndex,
   const double bounds[6], const std::vector<double>& isovalues);
 

@@ -36,15 +36,15 @@ struct CellCrossings
     BeginValue,
     EndS,
     EndValue,
-    Enter, ///< where the ray is in the cell
+    Enter, ///< T at which the ray enters the cell
     Leave,
     Start, ///< 3
     Way = Start + 3,
-    Cell = Way + 3, ///< of the brick
+    Cell = Way + 3, ///< position in the brick
     Numbers = Cell + 3
   };
 
-  /// Of the rays of a vector.
+  /// Numbers of the rays in a vector.
   template <class D>
   struct Vectors
   {
@@ -74,7 +74,7 @@ struct CellCrossings
   HWY_ALIGN double Values[Numbers][RayPacket::Size];
 };
 
-/// Of BrickSearch, for rays that end where they first meet the surface.
+/// Visitor for BrickSearch, for rays that end at their first crossing of the surface.
 template <class D>
 class FirstCrossings
 {
@@ -123,7 +123,8 @@ private:
   CellCrossings* Crossings;
 };
 
-/// Of BrickSearch, for rays that go on: adds to `counts`, by ray, how often each meets the surface.
+/// Visitor for BrickSearch, for rays that pass through the surface: adds each ray's number of
+/// crossings to `counts`.
 template <class D>
 class CrossingCounts
 {

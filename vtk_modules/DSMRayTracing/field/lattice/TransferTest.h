@@ -34,7 +34,7 @@ private:
   const TransferFunction& Function;
 };
 
-/// What TypedPacketBrick asks about a medium; see IsovalueTest. Keeps a reference.
+/// Test of TypedPacketBrick for a medium; see IsovalueTest. Keeps a reference.
 template <class T>
 class TransferTest
 {
@@ -100,7 +100,7 @@ public:
   }
 
 private:
-  /// Of optical depth, in a macrocell.
+  /// Error tolerance for the optical depth in a macrocell.
   static constexpr double Tolerance = 1.0 / 2048.0;
 
   const TransferFunction& Function;

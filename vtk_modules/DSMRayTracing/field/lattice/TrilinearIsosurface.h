@@ -20,7 +20,7 @@ bool FindFirstCrossing(const double corners[8], const Lanes& start, const Lanes&
 /// How often the function changes its side on that way: 0 to 3.
 int CountCrossings(const double corners[8], const Lanes& start, const Lanes& end);
 
-/// Whether FindFirstCrossing finds a place, which it does not look for.
+/// Returns whether FindFirstCrossing would find a crossing, without computing its position.
 bool HasCrossing(const double corners[8], const Lanes& start, const Lanes& end);
 
 } // namespace rt

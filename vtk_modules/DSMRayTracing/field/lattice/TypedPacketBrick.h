@@ -16,7 +16,7 @@ namespace rt
 {
 
 /// A brick of samples of type T as rays see it that move `forward` or not on each axis. Remembers what
-/// it has found in a part, since neighbouring rays ask for the same. Keeps references; for one thread.
+/// it has found in a part, since neighboring rays ask for the same. Keeps references; for one thread.
 ///
 /// `RangeTest` says what rays look for; see IsovalueTest.
 template <class T, class RangeTest>
