@@ -313,8 +313,8 @@ TEST_F(DamagedFile, WithSizesThatCannotBeIsRefused)
   };
   ExpectWords(Read(transposed({ { 1, 2, 0 }, { 1, 2, 0 } })), { "some of its axes" });
   ExpectWords(Read(transposed({ { 2, 1, 0 }, { 1, 0, 2 } })), { "some of its axes" });
-  ExpectWords(Read(transposed({ { 1, 0 } })), { "transposed", "3 axes" });
-  ExpectWords(Read(transposed({ { 0, 0, 0 } })), { "transposed", "3 axes" });
+  ExpectWords(Read(transposed({ { 1, 0 } })), { "transpose codec", "3 axes" });
+  ExpectWords(Read(transposed({ { 0, 0, 0 } })), { "transpose codec", "3 axes" });
   Json ofIndex = Json::parse(R"([{"name": "sharding_indexed", "configuration": {
     "chunk_shape": [2, 5, 4], "codecs": ["bytes"], "index_codecs": [
     {"name": "transpose", "configuration": {"order": [3, 2, 1, 0]}}, "bytes"]}}])");
@@ -371,7 +371,8 @@ TEST_F(DamagedFile, WithOtherChunksThanItsSeriesSaysSo)
   catch (const dsm::Error& error)
   {
     ExpectWords(error.what(),
-      { "contiguous.h5' is no time step", "chunks of 21 x 13 x 10 samples, not of 8 x 5 x 4" });
+      { "contiguous.h5' cannot be a time step",
+        "chunks of 21 x 13 x 10 samples instead of 8 x 5 x 4" });
   }
 }
 

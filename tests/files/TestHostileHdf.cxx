@@ -386,7 +386,7 @@ TEST(HostileHdf, ValuesInAPipeAreRefused)
     file.AddImage({ 0, 3, 0, 3, 0, 3 });
     H5Lcreate_external("pipe", "/a", file.Get(), "VTKHDF/PointData/a", H5P_DEFAULT, H5P_DEFAULT);
   }
-  ExpectRefusal(folder / "linked.vtkhdf", { "no array" });
+  ExpectRefusal(folder / "linked.vtkhdf", { "no numeric array" });
   {
     Writer file(folder / "virtual.h5", 0, true);
     const Shape shape{ 4, 4, 4 };

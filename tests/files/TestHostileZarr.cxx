@@ -195,7 +195,7 @@ TEST(HostileZarr, ManyAxesAndFiltersAreRefused)
   ExpectRefusal(filters, { "300 filters" });
   ExpectRefusal(Write2("fewerfilters", { { "filters", repeat(zlib, 30) } }), { "30 filters" });
   ExpectRefusal(Write3("codecs", { { "codecs", repeat("crc32c", 300) } }), { "300 codecs" });
-  ExpectRefusal(Write3("zstds", { { "codecs", repeat("zstd", 30) } }), { "30 of them" });
+  ExpectRefusal(Write3("zstds", { { "codecs", repeat("zstd", 30) } }), { "30 of which" });
   for (const Json& width : { Json(-1), Json(1e300), Json(0.5), Json("4") })
   {
     const Json shuffle = { { "id", "shuffle" }, { "elementsize", width } };

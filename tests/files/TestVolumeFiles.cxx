@@ -222,7 +222,7 @@ TEST(VolumeFiles, ADatasetIsChosenOnlyWhereThereAreDatasets)
   options.Dataset = "f";
   for (const char* name : { "ball.mha", "calm_000.nhdr", "ball.zarr", "image.vtkhdf" })
   {
-    ExpectRefusal(name, options, "to choose 'f' from");
+    ExpectRefusal(name, options, "choosing a dataset ('f')");
   }
   EXPECT_EQ(
     vol::OpenVolumeFile((GetFolder() / "ball.h5").string(), options)->GetArrays().size(), 1u);

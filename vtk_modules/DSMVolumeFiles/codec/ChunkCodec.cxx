@@ -86,7 +86,7 @@ ChunkCodec::ChunkCodec(std::vector<CodecStep> steps)
     static_cast<std::size_t>(std::count_if(this->Steps.begin(), this->Steps.end(), &Compresses));
   if (this->Steps.size() > FileLimits::Filters || compressors > FileLimits::Compressors)
   {
-    Refuse("Its chunks have " + std::to_string(this->Steps.size()) + " filters, " +
+    Refuse("its chunks have " + std::to_string(this->Steps.size()) + " filters, " +
       std::to_string(compressors) + " of which are compressors; at most " +
       std::to_string(FileLimits::Filters) + ", " + std::to_string(FileLimits::Compressors) +
       " of which are compressors, are supported.");
@@ -95,11 +95,11 @@ ChunkCodec::ChunkCodec(std::vector<CodecStep> steps)
   {
     if (step.Width == 0)
     {
-      Refuse("A filter of its chunks has elements of 0 bytes.");
+      Refuse("a filter of its chunks has elements of 0 bytes.");
     }
     if (!step.What->LackingPackage.empty())
     {
-      Refuse("Its values are compressed with " + std::string(step.What->Name) +
+      Refuse("its values are compressed with " + std::string(step.What->Name) +
         ", which this build cannot read. Install the package " +
         std::string(step.What->LackingPackage) + " and build again.");
     }

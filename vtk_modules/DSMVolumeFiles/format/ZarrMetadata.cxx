@@ -304,8 +304,7 @@ void Transpose(const std::string& folder, const Json& configuration, std::vector
   }
   if (axes.size() != count || order.size() != count)
   {
-    Refuse(folder,
-      "its transpose codec does not match its number of axes (" + std::to_string(count) + ").");
+    Refuse(folder, "its transpose codec does not match its " + std::to_string(count) + " axes.");
   }
 }
 
