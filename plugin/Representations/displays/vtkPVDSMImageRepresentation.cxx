@@ -7,6 +7,7 @@
 #include "vtkPVDSMIsosurfaceGeometry.h"
 #include "vtkPVDSMLightOptions.h"
 #include "vtkPVDSMMemoryOptions.h"
+#include "vtkPVDSMVolumePlaces.h"
 
 #include "vtkActor.h"
 #include "vtkCompositeDataIterator.h"
@@ -112,9 +113,6 @@ vtkPVDSMImageRepresentation::vtkPVDSMImageRepresentation()
       const bool hasInput = this->GetNumberOfInputConnections(0) > 0;
       return this->MakeSelectable(hasInput ? this->GetInputDataObject(0, 0) : nullptr);
     });
-  this->Display->PrepareSelection = [this](
-                                      vtkDSMScene* scene, vtkRenderer* renderer, bool selecting)
-  { this->PrepareSelection(scene, renderer, selecting); };
   this->Display->SetLook = [this](vtkActor* actor, vtkMapper* mapper)
   {
     actor->SetProperty(this->Mapper->GetSurfaceProperty());
@@ -330,7 +328,30 @@ int vtkPVDSMImageRepresentation::Process(
 
 vtkSmartPointer<vtkDataObject> vtkPVDSMImageRepresentation::MakeSelectable(vtkDataObject* data)
 {
-  return vtkPVDSMIsosurfaceGeometry::Make(this->Mapper, data);
+  if (!this->Places)
+  {
+    return vtkPVDSMIsosurfaceGeometry::Make(this->Mapper, data);
+  }
+  this->Volume->ComputeMatrix();
+  return this->Places->MakePoints(
+    data ? data : this->Mapper->GetDataObjectInput(), this->Volume->GetMatrix());
+}
+
+void vtkPVDSMImageRepresentation::SelectByPlaces()
+{
+  this->Places = std::make_unique<vtkPVDSMVolumePlaces>();
+  this->Display->PrepareSelection = [this](
+                                      vtkDSMScene* scene, vtkRenderer* renderer, bool selecting)
+  {
+    if (selecting)
+    {
+      this->Places->Find(scene, renderer);
+    }
+    else
+    {
+      this->Places->Forget();
+    }
+  };
 }
 
 bool vtkPVDSMImageRepresentation::IsTranslucent() const

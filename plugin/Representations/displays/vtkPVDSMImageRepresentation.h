@@ -28,15 +28,14 @@
 #include <utility> // for ivars
 #include <vector>  // for ivars
 
-class vtkDSMScene;
 class vtkDSMVolumeMapper;
 class vtkDataObject;
 class vtkPVDSMFrameReport;
 class vtkPVDSMLightOptions;
 class vtkPVDSMMemoryOptions;
+class vtkPVDSMVolumePlaces;
 class vtkPolyData;
 class vtkProperty;
-class vtkRenderer;
 class vtkScalarsToColors;
 class vtkVolume;
 
@@ -238,10 +237,8 @@ protected:
   bool RemoveFromView(vtkView* view) override;
   /// Returns whether any shown data let light through: the same on every rank.
   virtual bool IsTranslucent() const;
-  /// Makes the dataset for selections, from this rank's part of the dataset, which may be null.
-  virtual vtkSmartPointer<vtkDataObject> MakeSelectable(vtkDataObject* data);
-  /// On all ranks, before each render.
-  virtual void PrepareSelection(vtkDSMScene*, vtkRenderer*, bool) {}
+  /// For constructors: selections find the places that the pixels of a picture show, and no isosurfaces.
+  void SelectByPlaces();
 
   vtkNew<vtkVolume> Volume;
   vtkNew<vtkDSMVolumeMapper> Mapper;
@@ -254,6 +251,8 @@ private:
   void TakeInput(vtkDataObject* source);
   /// Implements ProcessViewRequest, and returns its result.
   int Process(vtkInformationRequestKey* request, vtkInformation* inInfo, vtkInformation* outInfo);
+  /// What selections draw, of this rank's part of the dataset, which may be null.
+  vtkSmartPointer<vtkDataObject> MakeSelectable(vtkDataObject* data);
   void ChooseIsoValues();
   /// Tells the mapper, whose surfaces' look may have changed since.
   void ChooseBackfaces();
@@ -275,6 +274,7 @@ private:
   bool AutomaticIsoValue = true;
   vtkPVDSMSlicing Slicing;
   std::unique_ptr<vtkPVDSMTracedDisplay> Display;
+  std::unique_ptr<vtkPVDSMVolumePlaces> Places; ///< null: selections draw isosurfaces
 };
 
 #endif

@@ -12,6 +12,7 @@ vtkPVDSMSliceRepresentation::vtkPVDSMSliceRepresentation()
 {
   this->Mapper->AutomaticIsoValueOff();
   this->Mapper->SlicingOn();
+  this->SelectByPlaces();
 }
 
 vtkPVDSMSliceRepresentation::~vtkPVDSMSliceRepresentation() = default;

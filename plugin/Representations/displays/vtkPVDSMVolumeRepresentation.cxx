@@ -2,12 +2,8 @@
 #include "vtkPVDSMVolumeRepresentation.h"
 
 #include "vtkDSMVolumeMapper.h"
-#include "vtkPVDSMVolumePlaces.h"
 
 #include "vtkColorTransferFunction.h"
-#include "vtkDataObject.h"
-#include "vtkMatrix4x4.h"
-#include "vtkMultiBlockDataSet.h"
 #include "vtkObjectFactory.h"
 #include "vtkPiecewiseFunction.h"
 #include "vtkProperty.h"
@@ -17,8 +13,8 @@
 vtkStandardNewMacro(vtkPVDSMVolumeRepresentation);
 
 vtkPVDSMVolumeRepresentation::vtkPVDSMVolumeRepresentation()
-  : Places(std::make_unique<vtkPVDSMVolumePlaces>())
 {
+  this->SelectByPlaces();
   this->Volume->SetProperty(this->Property);
   this->Mapper->AutomaticIsoValueOff();
   this->Mapper->SurfacesOnlyOff();
@@ -131,24 +127,4 @@ void vtkPVDSMVolumeRepresentation::SelectOpacityArrayComponent(int component)
 void vtkPVDSMVolumeRepresentation::UpdateOpacityArray()
 {
   this->Mapper->SetOpacityArray(this->UseSeparateOpacityArray ? this->OpacityArray : "");
-}
-
-vtkSmartPointer<vtkDataObject> vtkPVDSMVolumeRepresentation::MakeSelectable(vtkDataObject* data)
-{
-  this->Volume->ComputeMatrix();
-  return this->Places->MakePoints(
-    data ? data : this->Mapper->GetDataObjectInput(), this->Volume->GetMatrix());
-}
-
-void vtkPVDSMVolumeRepresentation::PrepareSelection(
-  vtkDSMScene* scene, vtkRenderer* renderer, bool selecting)
-{
-  if (selecting)
-  {
-    this->Places->Find(scene, renderer);
-  }
-  else
-  {
-    this->Places->Forget();
-  }
 }

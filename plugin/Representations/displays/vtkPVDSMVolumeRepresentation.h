@@ -13,10 +13,8 @@
 #include "vtkPVDSMImageRepresentation.h"
 #include "vtkRepresentationsDSMModule.h" // for the export macro
 
-#include <memory> // for ivars
 #include <string> // for ivars
 
-class vtkPVDSMVolumePlaces;
 class vtkPiecewiseFunction;
 class vtkVolumeProperty;
 
@@ -77,8 +75,6 @@ protected:
   ~vtkPVDSMVolumeRepresentation() override;
 
   bool IsTranslucent() const override { return true; }
-  vtkSmartPointer<vtkDataObject> MakeSelectable(vtkDataObject* data) override;
-  void PrepareSelection(vtkDSMScene* scene, vtkRenderer* renderer, bool selecting) override;
 
 private:
   vtkPVDSMVolumeRepresentation(const vtkPVDSMVolumeRepresentation&) = delete;
@@ -90,7 +86,6 @@ private:
   bool UseSeparateOpacityArray = false;
   std::string OpacityArray;
   bool MultiComponentsMapping = false;
-  std::unique_ptr<vtkPVDSMVolumePlaces> Places;
 };
 
 #endif
