@@ -55,7 +55,7 @@ texts = vtkStringArray(); texts.SetName('names')
 texts.SetNumberOfValues(image.GetNumberOfPoints())
 image.GetPointData().AddArray(texts)
 """
-expect_then_delete(image_source(TEXTS), ["'names' holds text", "'f'"], array="names")
+expect_then_delete(image_source(TEXTS), ["'names' contains text", "'f'"], array="names")
 
 CELLS = """
 image.SetExtent(piece)
