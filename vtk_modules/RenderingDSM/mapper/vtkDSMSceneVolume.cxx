@@ -312,8 +312,8 @@ void vtkDSMSceneVolume::Update(const std::shared_ptr<vtkDSMRankGroup>& group, bo
   for (const vtkDSMVolumeData::Choice& choice : this->GetShown())
   {
     const bool isOfColors = !this->Arrays.empty() && !this->HasSeveralMedia();
-    this->Arrays.push_back(this->Require(
-      choice, isOfColors ? "color array" : purpose, group->GetRetryVersion(), known));
+    this->Arrays.push_back(
+      this->Require(choice, isOfColors ? "color array" : purpose, group->GetRetryVersion(), known));
     known.push_back(this->Arrays.back());
   }
   if (this->GetLook().TakesPointsForCells())

@@ -287,25 +287,25 @@ int vtkDSMScene::Internals::AgreeOnView(
 void vtkDSMScene::Internals::LimitRays(rt::FrameRequest& request, bool cutsMedia)
 {
   const std::size_t pixels = static_cast<std::size_t>(request.Width) * request.Height;
-  const auto all = this->Group->GetMessenger().GatherTogether(
-    "Drawing surfaces in front of volumes",
-    [&]
-    {
-      const std::vector<vtkProp*> others = this->Members.FindOthers(this->Renderer);
-      std::vector<float> own = this->DepthReader.ReadOpaque(
-        this->Renderer, others, request.Width, request.Height, request.PixelSize);
-      const std::vector<float> translucent = cutsMedia
-        ? this->DepthReader.ReadTranslucent(
-            this->Renderer, others, request.Width, request.Height, request.PixelSize)
-        : std::vector<float>();
-      if (!translucent.empty())
+  const auto all =
+    this->Group->GetMessenger().GatherTogether("Drawing surfaces in front of volumes",
+      [&]
       {
-        own.resize(pixels, 1.0f);
-        own.insert(own.end(), translucent.begin(), translucent.end());
-      }
-      const auto* const bytes = reinterpret_cast<const std::byte*>(own.data());
-      return std::vector<std::byte>(bytes, bytes + own.size() * sizeof(float));
-    });
+        const std::vector<vtkProp*> others = this->Members.FindOthers(this->Renderer);
+        std::vector<float> own = this->DepthReader.ReadOpaque(
+          this->Renderer, others, request.Width, request.Height, request.PixelSize);
+        const std::vector<float> translucent = cutsMedia
+          ? this->DepthReader.ReadTranslucent(
+              this->Renderer, others, request.Width, request.Height, request.PixelSize)
+          : std::vector<float>();
+        if (!translucent.empty())
+        {
+          own.resize(pixels, 1.0f);
+          own.insert(own.end(), translucent.begin(), translucent.end());
+        }
+        const auto* const bytes = reinterpret_cast<const std::byte*>(own.data());
+        return std::vector<std::byte>(bytes, bytes + own.size() * sizeof(float));
+      });
   auto nearest = std::make_shared<std::vector<float>>(pixels, 1.0f);
   std::vector<float> cuts;
   for (const std::vector<std::byte>& bytes : all)
