@@ -101,7 +101,7 @@ TEST(HostSharing, MemoryThatCannotBeMappedStaysRemote)
       EXPECT_EQ(table.Find(static_cast<dsm::BlockId>(1 - messenger.GetRank())), nullptr);
       const std::string text =
         dsm_test::GetErrorText([&] { table.Replicate(messenger, "Copying"); });
-      EXPECT_EQ(text.find("Copying: Rank 0: The memory of rank 1"), 0u) << text;
+      EXPECT_EQ(text.find("Copying: Rank 0: Cannot map the memory of rank 1"), 0u) << text;
       EXPECT_NE(text.find("DSMHostSharing"), std::string::npos) << text;
       EXPECT_FALSE(table.IsReplicated());
     });
