@@ -61,7 +61,8 @@ def main():
 
     def rate(kind, store, **more):
         result = measure(kind, options.samples, store=store, **{"frames": 10, "repeat": 2, **more})
-        return f"{result['rays_per_second'] / 1e6:.1f}"
+        rays = result["rays_per_second"] / 1e6
+        return f"{rays:.1f}" if rays >= 1 else f"{rays:.2f}"
 
     print_table(f"Million primary rays per second, one rank, {cores} threads, all bricks in memory",
                 ("volume", *(title for title, _ in ORGANIZATIONS)),

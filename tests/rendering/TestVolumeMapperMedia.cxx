@@ -89,20 +89,11 @@ TEST_F(VolumeMapper, StandsInForTheRayCastMapper)
     this->Volume->SetProperty(property);
     vtkNew<vtkFixedPointVolumeRayCastMapper> theirs;
     vtkNew<vtkDSMVolumeMapper> ours; // the class name, and nothing else
-    const auto draw = [&](vtkVolumeMapper* mapper)
-    {
-      mapper->SetInputDataObject(MakeBall());
-      this->Volume->SetMapper(mapper);
-      this->Window->Render();
-      vtkNew<vtkUnsignedCharArray> pixels;
-      this->Window->GetPixelData(0, 0, Size - 1, Size - 1, 0, pixels);
-      return vtkSmartPointer<vtkUnsignedCharArray>(pixels);
-    };
-    const auto found = draw(ours);
+    const auto found = this->Draw(ours);
     EXPECT_EQ(property->GetColorChannels(), isGray ? 1 : 3);
-    EXPECT_LT(GetDifference(found, draw(theirs)), 1.5);
+    EXPECT_LT(GetDifference(found, this->Draw(theirs)), 1.5);
     property->SetScalarOpacityUnitDistance(1e6);
-    EXPECT_GT(GetDifference(found, draw(ours)), 5.0) << "little is seen";
+    EXPECT_GT(GetDifference(found, this->Draw(ours)), 5.0) << "little is seen";
     this->Volume->SetMapper(this->Mapper); // the others go
   }
 }
@@ -187,24 +178,15 @@ TEST_F(VolumeMapper, IsShadedAsTheRayCastMapper)
   theirs->SetAutoAdjustSampleDistances(0);
   theirs->SetSampleDistance(0.25f);
   vtkNew<vtkDSMVolumeMapper> ours;
-  const auto draw = [&](vtkVolumeMapper* mapper)
-  {
-    mapper->SetInputDataObject(MakeBall());
-    this->Volume->SetMapper(mapper);
-    this->Window->Render();
-    vtkNew<vtkUnsignedCharArray> pixels;
-    this->Window->GetPixelData(0, 0, Size - 1, Size - 1, 0, pixels);
-    return vtkSmartPointer<vtkUnsignedCharArray>(pixels);
-  };
-  const auto plain = draw(ours);
+  const auto plain = this->Draw(ours);
   property->ShadeOn();
-  const auto shaded = draw(ours);
+  const auto shaded = this->Draw(ours);
   EXPECT_GT(GetDifference(shaded, plain), 5.0);
-  EXPECT_LT(GetDifference(shaded, draw(theirs)), 3.0);
+  EXPECT_LT(GetDifference(shaded, this->Draw(theirs)), 3.0);
   property->SetGradientOpacity(gradientOpacity);
-  const auto edges = draw(ours);
+  const auto edges = this->Draw(ours);
   EXPECT_GT(GetDifference(edges, shaded), 2.0);
-  EXPECT_LT(GetDifference(edges, draw(theirs)), 3.0);
+  EXPECT_LT(GetDifference(edges, this->Draw(theirs)), 3.0);
   this->Volume->SetMapper(this->Mapper); // the others go
 }
 

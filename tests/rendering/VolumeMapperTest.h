@@ -19,7 +19,9 @@
 #include "vtkRenderWindow.h"
 #include "vtkRenderer.h"
 #include "vtkSmartPointer.h"
+#include "vtkUnsignedCharArray.h"
 #include "vtkVolume.h"
+#include "vtkVolumeMapper.h"
 
 #include <gtest/gtest.h>
 
@@ -73,6 +75,17 @@ protected:
     this->Renderer->GetActiveCamera()->SetPosition(20.0, 30.0, 60.0);
     this->Renderer->GetActiveCamera()->SetFocalPoint(0.0, 0.0, 0.0);
     this->Renderer->ResetCameraClippingRange(-16.0, 16.0, -16.0, 16.0, -16.0, 16.0);
+  }
+
+  /// Draws the ball with another mapper of the volume; returns the colors of the window's pixels.
+  vtkSmartPointer<vtkUnsignedCharArray> Draw(vtkVolumeMapper* mapper)
+  {
+    mapper->SetInputDataObject(MakeBall());
+    this->Volume->SetMapper(mapper);
+    this->Window->Render();
+    auto pixels = vtkSmartPointer<vtkUnsignedCharArray>::New();
+    this->Window->GetPixelData(0, 0, Size - 1, Size - 1, 0, pixels);
+    return pixels;
   }
 
   /// Distances from the eye along the view direction; infinite where nothing was drawn.
