@@ -83,7 +83,8 @@ IsovalueSurvey LookThrough(
 } // namespace
 
 std::optional<double> FindFirstIsovalue(
-  const std::vector<std::shared_ptr<const VoxelField>>& fields, dsm::Messenger& messenger)
+  const std::vector<std::shared_ptr<const VoxelField>>& fields, dsm::Messenger& messenger,
+  const IsovalueSurvey* others)
 {
   // The same on every rank.
   const auto isAny = [&](const auto& holds)
@@ -93,7 +94,7 @@ std::optional<double> FindFirstIsovalue(
   };
   const auto mayHaveSurface = [](const VoxelField& field)
   { return field.Hierarchy.GetRange().First < field.Hierarchy.GetRange().Last; };
-  if (!isAny(mayHaveSurface))
+  if (!isAny(mayHaveSurface) && !(others && others->Least < others->Greatest))
   {
     return std::nullopt;
   }
@@ -108,6 +109,10 @@ std::optional<double> FindFirstIsovalue(
     {
       all.Add(*field->Survey);
     }
+  }
+  if (others)
+  {
+    all.Add(*others);
   }
   all.Accumulate();
   const auto worths = FindWorths(all);

@@ -16,10 +16,11 @@ namespace bricks
 /// the volume into two parts whose values differ most (Otsu, A Threshold Selection Method from Gray-Level
 /// Histograms, 1979). It prefers surfaces that the volume's border does not cut open. Both criteria use the
 /// ranges of the macrocells, so no sample is read; every rank examines the bricks that it owns. The result
-/// depends on the values only, not on the number of ranks. `fields`: one for each lattice, some null. Returns
-/// nothing if no surface passes at any value.
+/// depends on the values only, not on the number of ranks. `fields`: one for each lattice, some null. `others`: a survey of further
+/// bricks, the same on every rank; null: none. Returns nothing if no surface passes at any value.
 std::optional<double> FindFirstIsovalue(
-  const std::vector<std::shared_ptr<const VoxelField>>& fields, dsm::Messenger& messenger);
+  const std::vector<std::shared_ptr<const VoxelField>>& fields, dsm::Messenger& messenger,
+  const IsovalueSurvey* others = nullptr);
 
 } // namespace bricks
 

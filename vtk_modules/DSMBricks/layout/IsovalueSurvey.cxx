@@ -187,9 +187,12 @@ void IsovalueSurvey::Widen(std::int64_t exponent)
 void IsovalueSurvey::CountBrick(
   const BrickLattice& lattice, dsm::BlockId id, const std::byte* block)
 {
-  const Box cells = lattice.GetCellsOfBrick(id);
-  const Index3 end = lattice.GetCells();
-  Dispatch(lattice.GetScalarType(),
+  this->CountBrick(lattice.GetCellsOfBrick(id), lattice.GetCells(), block);
+}
+
+void IsovalueSurvey::CountBrick(const Box& cells, const Index3& end, const std::byte* block)
+{
+  Dispatch(reinterpret_cast<const VoxelBrickHeader*>(block)->Type,
     [&](auto sample)
     {
       using T = decltype(sample);

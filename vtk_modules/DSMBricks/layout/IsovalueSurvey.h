@@ -30,6 +30,8 @@ struct IsovalueSurvey
 
   /// Counts the macrocells of a brick.
   void CountBrick(const BrickLattice& lattice, dsm::BlockId id, const std::byte* block);
+  /// The same of a brick of these cells, of a lattice of cells from 0 to `end`.
+  void CountBrick(const Box& cells, const Index3& end, const std::byte* block);
   /// Both surveys must be valid.
   void Add(const IsovalueSurvey& other);
   /// When all is counted: entries of Crossed and CutOpen are numbers from then on, no more what changes there.

@@ -6,12 +6,15 @@
 
 #include <cstring>
 #include <string>
+#include <utility>
 
 namespace bricks
 {
 
 namespace
 {
+
+constexpr const char* Building = "Building the macrocells";
 
 /// The ranges of this rank's own bricks in ascending order of id; since all know who owns what, no
 /// id need travel.
@@ -85,10 +88,17 @@ MacrocellHierarchy::Level Coarsen(const MacrocellHierarchy::Level& fine)
 MacrocellHierarchy::MacrocellHierarchy(
   const BrickLattice& lattice, const dsm::BlockSegment& segment, dsm::Messenger& messenger)
 {
-  const char* const what = "Building the macrocells";
-  const auto all = messenger.GatherTogether(what, [&] { return PackOwnRanges(segment); });
-  messenger.RunTogether(
-    what, [&] { *this = MacrocellHierarchy(lattice, Unpack(all, segment.GetDirectory())); });
+  std::vector<ValueRange> ranges = GatherRanges(segment, messenger);
+  messenger.RunTogether(Building, [&] { *this = MacrocellHierarchy(lattice, std::move(ranges)); });
+}
+
+std::vector<ValueRange> MacrocellHierarchy::GatherRanges(
+  const dsm::BlockSegment& segment, dsm::Messenger& messenger)
+{
+  const auto all = messenger.GatherTogether(Building, [&] { return PackOwnRanges(segment); });
+  std::vector<ValueRange> ranges;
+  messenger.RunTogether(Building, [&] { ranges = Unpack(all, segment.GetDirectory()); });
+  return ranges;
 }
 
 std::uint64_t MacrocellHierarchy::CountBytes(const BrickLattice& lattice)

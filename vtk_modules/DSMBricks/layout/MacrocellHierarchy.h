@@ -38,6 +38,10 @@ public:
   /// Local: builds the levels over the ranges of all bricks, in order of their ids.
   MacrocellHierarchy(const BrickLattice& lattice, std::vector<ValueRange> bricks);
 
+  /// Collective: the ranges that the bricks of a segment of voxel bricks know of themselves, by number.
+  static std::vector<ValueRange> GatherRanges(
+    const dsm::BlockSegment& segment, dsm::Messenger& messenger);
+
   /// Returns the bytes of all levels.
   static std::uint64_t CountBytes(const BrickLattice& lattice);
 

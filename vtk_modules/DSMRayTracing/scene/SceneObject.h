@@ -3,6 +3,7 @@
 #define rt_SceneObject_h
 
 #include "DSMRayTracing/field/lattice/LatticeField.h"
+#include "DSMRayTracing/field/levels/LevelField.h"
 #include "DSMRayTracing/mesh/MeshObject.h"
 #include "DSMRayTracing/slice/SliceOf.h"
 #include "DSMRayTracing/surface/IsosurfaceOf.h"
@@ -13,13 +14,14 @@ namespace rt
 {
 
 using LatticeIsosurface = IsosurfaceOf<LatticeField>;
+using LevelIsosurface = IsosurfaceOf<LevelField>;
 using LatticeSlice = SliceOf<LatticeField>;
 
 /// The table of the kinds of objects. A kind has
 /// - a description, named here, with IsOpaque, AddTo and the name of
 /// - its Tracer, an ObjectTracer for a store, whose header CreateSceneTracers includes.
 /// Among surfaces that are equally near, that of the kind that comes first here is visible.
-using SceneObject = std::variant<LatticeIsosurface, MeshObject, LatticeSlice>;
+using SceneObject = std::variant<LatticeIsosurface, LevelIsosurface, MeshObject, LatticeSlice>;
 
 } // namespace rt
 

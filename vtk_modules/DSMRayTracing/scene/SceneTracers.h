@@ -7,6 +7,8 @@
 #include "DSMRayTracing/field/lattice/LatticeSampler.h"
 #include "DSMRayTracing/field/lattice/LatticeSections.h"
 #include "DSMRayTracing/field/lattice/LatticeSurfaces.h"
+#include "DSMRayTracing/field/levels/LevelSampler.h"
+#include "DSMRayTracing/field/levels/LevelSurfaces.h"
 #include "DSMRayTracing/mesh/MeshTracer.h"
 #include "DSMRayTracing/object/BeamFinder.h"
 #include "DSMRayTracing/object/MediumTracer.h"

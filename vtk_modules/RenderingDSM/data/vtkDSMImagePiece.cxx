@@ -61,9 +61,9 @@ public:
     return this->Cells &&
       (this->Cells->GetValue(this->GetCellId(cell)) & vtkDataSetAttributes::DUPLICATECELL);
   }
-  bool HoldsData(const Index3& cell) const
+  bool HoldsData(const Index3& cell, unsigned char without = CellsWithoutData) const
   {
-    if (this->Cells && (this->Cells->GetValue(this->GetCellId(cell)) & CellsWithoutData))
+    if (this->Cells && (this->Cells->GetValue(this->GetCellId(cell)) & without))
     {
       return false;
     }
@@ -218,6 +218,17 @@ bricks::PieceInfo vtkDSMImagePiece::Describe(vtkImageData* image, int leaf)
     info.Max[axis] = cells.Max[axis];
   }
   return info;
+}
+
+std::vector<std::uint8_t> vtkDSMImagePiece::FindShown(vtkImageData* image, const Box& cells)
+{
+  constexpr unsigned char without = CellsWithoutData & ~vtkDataSetAttributes::REFINEDCELL;
+  std::vector<std::uint8_t> shown;
+  shown.reserve(static_cast<std::size_t>(cells.GetCount()));
+  const CellFlags flags(image);
+  ForEachIndex(
+    cells, [&](const Index3& cell) { shown.push_back(flags.HoldsData(cell, without) ? 1 : 0); });
+  return shown;
 }
 
 bricks::ScalarType vtkDSMImagePiece::GetScalarType(vtkDataArray* array, int component)

@@ -9,6 +9,9 @@
 
 #include "vtkSmartPointer.h"
 
+#include <cstdint>
+#include <vector>
+
 class vtkDataArray;
 class vtkImageData;
 class vtkUnsignedCharArray;
@@ -28,6 +31,10 @@ public:
   /// Returns the data about an image that the other ranks need. Ghost cells are trimmed off; ghost
   /// and blanked cells that remain make a mask.
   static bricks::PieceInfo Describe(vtkImageData* image, int leaf);
+
+  /// One byte a cell of a box in the image's own indices, x fastest: 0 for blanked cells and copies of other pieces' cells,
+  /// else 1. Cells that are marked as refined count as any others.
+  static std::vector<std::uint8_t> FindShown(vtkImageData* image, const bricks::Box& cells);
 
   /// Arrays keep their type; the magnitude is float where that holds it, else double; colors are packed.
   static bricks::ScalarType GetScalarType(vtkDataArray* array, int component);

@@ -15,7 +15,6 @@
 #include "vtkDataObjectTree.h"
 #include "vtkImageData.h"
 #include "vtkPointData.h"
-#include "vtkUniformGridAMR.h"
 
 #include <algorithm>
 #include <map>
@@ -42,7 +41,21 @@ vtkDSMVolumeData::vtkDSMVolumeData(std::shared_ptr<vtkDSMRankGroup> group, vtkDa
     });
   this->Pieces = vtkDSMGather::Items(messenger, mine, this->FirstOwnPiece);
   this->Looks = vtkDSMGather::Items(messenger, myLooks);
-  this->Arrays = vtkDSMImageArrays(messenger, this->Images);
+  std::vector<vtkSmartPointer<vtkImageData>> all;
+  std::uint8_t hasLevels = 0;
+  messenger.RunTogether("Reading the volume",
+    [&]
+    {
+      all = this->Images;
+      all.insert(all.end(), this->LevelBlocks.begin(), this->LevelBlocks.end());
+      hasLevels = this->LevelBlocks.empty() ? 0 : 1;
+    });
+  this->Arrays = vtkDSMImageArrays(messenger, all);
+  const std::vector<std::uint8_t> haveLevels = messenger.AllGatherValue(hasLevels);
+  if (std::find(haveLevels.begin(), haveLevels.end(), 1) != haveLevels.end())
+  {
+    this->Levels = std::make_unique<vtkDSMLevelData>(this->Group, this->LevelBlocks);
+  }
   messenger.RunTogether(
     "Joining the volume's pieces", [&] { this->Plan = bricks::LatticePlan(this->Pieces); });
   this->SeparateBlocks(choose(this->Arrays));
@@ -156,8 +169,13 @@ void vtkDSMVolumeData::CollectImages(vtkDataObject* data)
   {
     return;
   }
+  if (vtkDSMLevelData::IsOfLevels(data))
+  {
+    this->LevelBlocks = vtkDSMLevelData::GetBlocks(data);
+    return;
+  }
   auto* tree = vtkDataObjectTree::SafeDownCast(data);
-  if (!tree || vtkUniformGridAMR::SafeDownCast(data))
+  if (!tree)
   {
     throw dsm::Error(std::string("A dataset of type ") + data->GetClassName() +
       " cannot be ray traced. Image data or blocks of image data are required. Apply Resample To "
@@ -201,7 +219,21 @@ void vtkDSMVolumeData::GetBounds(double bounds[6]) const
       box.AddPoint(point.x, point.y, point.z);
     }
   }
+  if (this->Levels)
+  {
+    double ofLevels[6];
+    this->Levels->GetBounds(ofLevels);
+    box.AddBounds(ofLevels);
+  }
   box.GetBounds(bounds);
+}
+
+vtkDSMVolumeData::Choice vtkDSMVolumeData::ChooseOfLevels(const Choice& choice) const
+{
+  const Choice ofCells{ choice.Name, choice.Component, true };
+  const bool isOfCells =
+    this->Arrays.CountComponents(choice) == 0 && this->Arrays.CountComponents(ofCells) > 0;
+  return isOfCells ? this->Arrays.Normalize(ofCells) : choice;
 }
 
 std::uint64_t vtkDSMVolumeData::HashContent(const Choice& choice) const
@@ -228,6 +260,17 @@ std::uint64_t vtkDSMVolumeData::HashContent(const Choice& choice) const
     add(image->GetPointData()->GetAbstractArray(ghosts));
     add(image->GetCellData()->GetAbstractArray(ghosts));
   }
+  if (this->Levels)
+  {
+    const std::vector<bricks::PieceInfo>& pieces = this->Levels->GetPieces();
+    hash.Add(pieces.data(), pieces.size() * sizeof(bricks::PieceInfo));
+  }
+  for (vtkImageData* block : this->LevelBlocks)
+  {
+    vtkDSMImageArrays::Info info;
+    add(vtkDSMImageArrays::Find(block, this->ChooseOfLevels(choice), info));
+    add(block->GetCellData()->GetAbstractArray(vtkDataSetAttributes::GhostArrayName()));
+  }
   return hash.Get();
 }
 
@@ -239,6 +282,7 @@ std::shared_ptr<const vtkDSMVolumeData::Publication> vtkDSMVolumeData::Publish(c
   std::vector<vtkDSMImageArrays::Info> mine(this->Images.size());
   const auto published = std::make_shared<Publication>();
   std::vector<vtkDSMFileVolume::Seat> mySeats(this->Images.size());
+  std::vector<vtkDSMImageArrays::Info> myLevels(this->LevelBlocks.size());
   messenger.RunTogether("Reading the " + purpose,
     [&]
     {
@@ -247,14 +291,22 @@ std::shared_ptr<const vtkDSMVolumeData::Publication> vtkDSMVolumeData::Publish(c
         vtkDataArray* array = vtkDSMImageArrays::Find(this->Images[index], choice, mine[index]);
         mySeats[index] = vtkDSMFileVolume::Describe(this->Images[index], array, choice.OnCells);
       }
+      for (std::size_t index = 0; index < this->LevelBlocks.size(); ++index)
+      {
+        vtkDSMImageArrays::Find(
+          this->LevelBlocks[index], this->ChooseOfLevels(choice), myLevels[index]);
+      }
       published->Content = this->HashContent(choice);
     });
   const std::vector<vtkDSMImageArrays::Info> infos = vtkDSMGather::Items(messenger, mine);
   const auto seats = vtkDSMGather::Items(messenger, mySeats);
+  const auto levels = vtkDSMGather::Items(messenger, myLevels);
+  std::vector<vtkDSMImageArrays::Info> all = infos;
+  all.insert(all.end(), levels.begin(), levels.end());
   const auto isUsable = [](const vtkDSMImageArrays::Info& info) { return info.IsUsable(); };
-  if (!infos.empty() && std::none_of(infos.begin(), infos.end(), isUsable))
+  if (!all.empty() && std::none_of(all.begin(), all.end(), isUsable))
   {
-    this->Arrays.Refuse(choice, purpose, infos);
+    this->Arrays.Refuse(choice, purpose, all);
   }
 
   dsm::Publications& publications = this->Group->GetPublications();
@@ -271,6 +323,11 @@ std::shared_ptr<const vtkDSMVolumeData::Publication> vtkDSMVolumeData::Publish(c
     }
     this->PublishLattice(
       *published, lattice, choice, purpose, infos, seats, progress, std::move(known));
+  }
+  if (this->Levels)
+  {
+    published->Levels =
+      this->Levels->Publish(this->ChooseOfLevels(choice), purpose, levels, progress);
   }
   publications.Add<Publication>(published->Content, published);
   return published;

@@ -10,6 +10,7 @@
 #include "vtkDSMBlockLooks.h"
 #include "vtkDSMFileVolume.h"
 #include "vtkDSMImageArrays.h"
+#include "vtkDSMLevelData.h"
 #include "vtkDSMRankGroup.h"
 
 #include "vtkSmartPointer.h"
@@ -24,7 +25,7 @@
 class vtkDataObject;
 class vtkImageData;
 
-/// A dataset of images that is distributed over the ranks, as lattices, with its arrays as fields of bricks.
+/// A dataset of images that is distributed over the ranks, as lattices or as levels, with its arrays as fields of bricks.
 /// Keeps the images alive, without a copy. Methods documented as collective need every rank; a rank without
 /// data takes part. Failures are dsm::Error, the same on every rank.
 class vtkDSMVolumeData
@@ -40,7 +41,8 @@ public:
     mutable Fields Bricks;
     /// For each lattice: the file that it is in, or null.
     std::vector<std::shared_ptr<const vtkDSMFileVolume>> Files;
-    std::uint64_t Content = 0; ///< see HashContent
+    std::shared_ptr<const bricks::LevelVoxels> Levels; ///< null where there are none
+    std::uint64_t Content = 0;                         ///< see HashContent
 
     /// Data for putting other values into a lattice's bricks.
     struct Part
@@ -94,6 +96,8 @@ public:
   };
   /// Returns the blocks of a lattice, from all ranks' pieces.
   std::vector<Block> GetBlocks(std::size_t lattice) const;
+  /// The levels that the dataset has besides lattices; null if it has none.
+  const vtkDSMLevelData* GetLevels() const { return this->Levels.get(); }
   const vtkDSMImageArrays& GetArrays() const { return this->Arrays; }
   /// Local, reads the data. Of all that this rank's part of a field depends on: equal only where Publish would make
   /// the same again.
@@ -119,6 +123,8 @@ public:
 
 private:
   void CollectImages(vtkDataObject* data);
+  /// Local. The choice as the levels have it: of points, if there is such an array, else of cells.
+  Choice ChooseOfLevels(const Choice& choice) const;
   /// Collective: takes apart what is no one volume.
   void SeparateBlocks(const std::vector<Choice>& shown);
   /// Local: a piece's image, if it is this rank's; else null.
@@ -161,6 +167,9 @@ private:
   std::set<std::int32_t> Apart;                      ///< blocks that are volumes of their own
   std::vector<vtkSmartPointer<vtkImageData>> Images; ///< this rank's images
   std::vector<int> Leaves;                           ///< leaf index of each of this rank's images
+  /// This rank's blocks of levels.
+  std::vector<vtkSmartPointer<vtkImageData>> LevelBlocks;
+  std::unique_ptr<vtkDSMLevelData> Levels;
   vtkDSMImageArrays Arrays;
 };
 

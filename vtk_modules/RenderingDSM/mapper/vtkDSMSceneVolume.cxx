@@ -153,6 +153,10 @@ bricks::ValueRange vtkDSMSceneVolume::Published::GetRange() const
       all.Last = std::max(all.Last, field->Hierarchy.GetRange().Last);
     }
   }
+  if (const auto levels = this->GetLevels())
+  {
+    all.Add(levels->Hierarchy.GetRange());
+  }
   return all;
 }
 
@@ -361,8 +365,9 @@ vtkDSMVolumeMapper::SurfaceTest vtkDSMSceneVolume::MakeSurfaceTest() const
   {
     vtkDataObject* now = mapper->GetDataObjectInput();
     const auto iso = weak.lock();
-    if (!iso || iso->GetFields().empty() || now != data || GetDataTime(now) != time ||
-      mapper->GetIsoArray() != array || mapper->GetIsoComponent() != component)
+    if (!iso || iso->GetFields().empty() || iso->GetLevels() || now != data ||
+      GetDataTime(now) != time || mapper->GetIsoArray() != array ||
+      mapper->GetIsoComponent() != component)
     {
       return true;
     }
@@ -438,7 +443,9 @@ void vtkDSMSceneVolume::SuggestIsovalue(dsm::Messenger& messenger)
   {
     this->SuggestedFor = this->GetIso()->Choice;
     this->SuggestedFrom = range;
-    this->Suggested = bricks::FindFirstIsovalue(this->GetIso()->GetFields(), messenger);
+    const auto levels = this->GetIso()->GetLevels();
+    this->Suggested = bricks::FindFirstIsovalue(
+      this->GetIso()->GetFields(), messenger, levels ? &levels->Survey : nullptr);
   }
   this->Mapper->SetSuggestedIsoValue(this->Suggested.value_or(vtkMath::Nan()));
 }
@@ -518,6 +525,44 @@ rt::LatticeField vtkDSMSceneVolume::GetField(
   return field;
 }
 
+void vtkDSMSceneVolume::AddLevels(const vtkDSMVolumeLook& look, const glm::dmat4& dataToWorld,
+  const std::vector<double>& isovalues, rt::Scene& scene)
+{
+  const auto levels = this->GetIso()->GetLevels();
+  if (!levels)
+  {
+    return;
+  }
+  const std::shared_ptr<Published> color = this->GetColor();
+  std::vector<std::vector<double>> groups{ isovalues };
+  if (look.IsLikeRayCastMapper())
+  {
+    groups.clear();
+    for (const double isovalue : isovalues)
+    {
+      groups.push_back({ isovalue });
+    }
+  }
+  for (const std::vector<double>& group : groups)
+  {
+    rt::LevelIsosurface object;
+    object.Field.Voxels = levels;
+    object.Field.SetIndexToWorld(dataToWorld * this->Data->GetLevels()->GetIndexToWorld());
+    object.Isovalues = group;
+    look.SetMaterials(group.front(), object.Look);
+    object.Clipping = look.GetClipRegion(dataToWorld);
+    if (color && color->GetLevels())
+    {
+      object.ColorValues = color->GetLevels();
+      if (this->Mapper->GetLookupTable())
+      {
+        object.Look.Colors = *this->SampleColors(this->Mapper->GetLookupTable());
+      }
+    }
+    scene.Objects.push_back(std::move(object));
+  }
+}
+
 void vtkDSMSceneVolume::AddTo(rt::Scene& scene)
 {
   if (!this->Data || !this->GetIso())
@@ -542,14 +587,18 @@ void vtkDSMSceneVolume::AddTo(rt::Scene& scene)
   }
   const std::vector<double> isovalues = look.GetIsovalues(this->Suggested, this->Messages);
   if (!look.IsLikeRayCastMapper() && this->Mapper->GetNumberOfIsoValues() == 0 &&
-    this->Mapper->GetAutomaticIsoValue() && !this->Suggested &&
-    !this->GetIso()->GetFields().empty())
+    this->Mapper->GetAutomaticIsoValue() && !this->Suggested && this->GetIso()->HasAny())
   {
     this->Messages.push_back("The isosurface array '" + this->GetIso()->Choice.Name +
       "' has the same value everywhere or no valid values, so it has no surface. Choose another "
       "array.");
   }
-  if (isovalues.empty() || this->GetIso()->GetFields().empty())
+  if (isovalues.empty() || !this->GetIso()->HasAny())
+  {
+    return;
+  }
+  this->AddLevels(look, dataToWorld, isovalues, scene);
+  if (this->GetIso()->GetFields().empty())
   {
     return;
   }

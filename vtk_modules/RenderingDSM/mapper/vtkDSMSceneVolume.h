@@ -53,6 +53,13 @@ private:
     bool IsOf(const vtkDSMVolumeData::Choice& choice, unsigned retryVersion) const;
     /// Empty when it failed.
     const vtkDSMVolumeData::Fields& GetFields() const;
+    /// Null when it failed, or where there are none.
+    std::shared_ptr<const bricks::LevelVoxels> GetLevels() const
+    {
+      return this->Publication ? this->Publication->Levels : nullptr;
+    }
+    /// Returns whether there is anything to show.
+    bool HasAny() const { return !this->GetFields().empty() || this->GetLevels(); }
     std::size_t CountCoarser() const { return this->Coarser ? this->Coarser->Levels.size() : 0; }
     /// Returns the range of all values; without any, its First is greater than its Last.
     bricks::ValueRange GetRange() const;
@@ -102,6 +109,9 @@ private:
     return this->GetLook().GetComponents(this->Data->GetArrays()) ==
       vtkDSMVolumeLook::Components::Independent;
   }
+  /// The isosurfaces of levels.
+  void AddLevels(const vtkDSMVolumeLook& look, const glm::dmat4& dataToWorld,
+    const std::vector<double>& isovalues, rt::Scene& scene);
   void AddMedia(const vtkDSMVolumeLook& look, rt::Scene& scene);
   /// One medium, of one of the arrays, for each of the volume's lattices. `groups`: of the lattices' media; 0: none yet.
   void AddMedium(const vtkDSMVolumeLook& look, std::size_t number, const glm::dmat4& dataToWorld,

@@ -21,10 +21,11 @@ namespace rt
 
 /// Makes `moved` move along all three axes, as rays of a packet do. A ray that does not, moves so little that it stays at
 /// its place for all that can be seen. Returns the sides to which the ray moves, a bit for each axis.
-inline int MoveAlongAll(const LatticeField& field, const Ray& ray, Ray& moved)
+inline int MoveAlongAll(
+  const IndexSpace& space, const glm::dmat4& indexToWorld, const Ray& ray, Ray& moved)
 {
   constexpr double least = 1e-10;
-  glm::dvec3 direction = field.GetIndexSpace().GetWorldToIndex() * ray.Direction;
+  glm::dvec3 direction = space.GetWorldToIndex() * ray.Direction;
   const glm::dvec3 size = glm::abs(direction);
   const double small = least * std::max({ size.x, size.y, size.z });
   int side = 0;
@@ -41,7 +42,7 @@ inline int MoveAlongAll(const LatticeField& field, const Ray& ray, Ray& moved)
   moved = ray;
   if (isMoved)
   {
-    moved.Direction = glm::dmat3(field.IndexToWorld) * direction;
+    moved.Direction = glm::dmat3(indexToWorld) * direction;
   }
   return side;
 }
@@ -72,7 +73,9 @@ RayMask ForEachPacket(const LatticeField& field, const Predicate& mayHold,
   Ray moved[MaxRays];
   RayMask sides[8] = {};
   ForEachRay(left,
-    [&](int index) { sides[MoveAlongAll(field, rays[index], moved[index])] |= GetBit(index); });
+    [&](int index) {
+      sides[MoveAlongAll(space, field.IndexToWorld, rays[index], moved[index])] |= GetBit(index);
+    });
   for (int side = 0; side < 8; ++side)
   {
     if (sides[side] == 0)

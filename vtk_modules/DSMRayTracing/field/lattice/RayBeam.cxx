@@ -31,6 +31,7 @@ bool RayBeam::Set(const GridRay corners[4])
     this->Lower[axis] = -HUGE_VAL;
     this->Upper[axis] = HUGE_VAL;
     this->Forward[axis] = corners[0].Step[axis] > 0.0;
+    this->Way[axis] = corners[0].Direction[axis] + corners[2].Direction[axis];
     for (int corner = 0; corner < 4; ++corner)
     {
       if (corners[corner].Step[axis] == 0.0 || corners[corner].Step[axis] != corners[0].Step[axis])
@@ -101,6 +102,10 @@ void RayBeam::Set(const RayPacket& packet)
         sum[axis] += std::abs(direction);
       }
     });
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    this->Way[axis] = this->Forward[axis] ? sum[axis] : -sum[axis];
+  }
   // The axis along which the rays move most: on both planes across it at the ends of the beam the
   // rays fill a rectangle, and between them they stay between the rectangles.
   const int most = sum.x >= sum.y && sum.x >= sum.z ? 0 : (sum.y >= sum.z ? 1 : 2);

@@ -61,6 +61,42 @@ public:
     return first <= last;
   }
 
+  /// Returns whether rays may meet a box; also true for some near the beam.
+  bool MayMeetBox(const double lower[3], const double upper[3]) const
+  {
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      if (lower[axis] > this->Upper[axis] || upper[axis] < this->Lower[axis])
+      {
+        return false;
+      }
+    }
+    for (const Side& side : this->Sides)
+    {
+      double most = 0.0;
+      for (int axis = 0; axis < 3; ++axis)
+      {
+        most += side.Normal[axis] * (side.Normal[axis] > 0.0 ? upper[axis] : lower[axis]);
+      }
+      if (most < side.Least)
+      {
+        return false;
+      }
+    }
+    return true;
+  }
+
+  /// Of two boxes, rays mostly enter the one first of which this is less.
+  double GetEntry(const double lower[3], const double upper[3]) const
+  {
+    double entry = 0.0;
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      entry += this->Way[axis] * (this->Forward[axis] ? lower[axis] : upper[axis]);
+    }
+    return entry;
+  }
+
 private:
   void SetSide(int number, const double normal[3], double least);
 
@@ -76,6 +112,7 @@ private:
   double Lower[3];
   double Upper[3];
   bool Forward[3];
+  double Way[3]; ///< of all rays together
 };
 
 } // namespace rt

@@ -1,0 +1,288 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "DSMBricks/levels/LevelNodes.h"
+
+#include "DSMCore/base/Error.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace bricks
+{
+
+namespace
+{
+
+Index3 GetCornerOf(int corner)
+{
+  return { corner & 1, corner >> 1 & 1, corner >> 2 };
+}
+
+int GetNumber(const Index3& corner)
+{
+  return static_cast<int>(corner.x + 2 * corner.y + 4 * corner.z);
+}
+
+} // namespace
+
+LevelNodes::LevelNodes(const LevelLattice& lattice, dsm::BlockId id, bool ofPoints)
+  : Lattice(lattice)
+  , Brick(lattice.GetBrick(id))
+  , OfPoints(ofPoints)
+  , Around{ this->Brick.Cells.Min - Index3(1), this->Brick.Cells.Max + Index3(1) }
+  , AroundSize(this->Around.GetSize())
+  , Levels(static_cast<std::size_t>(this->Around.GetCount()), std::int8_t{ Nothing })
+{
+  const Box points{ this->Brick.Cells.Min, this->Brick.Cells.Max + Index3(1) };
+  this->Values.resize(static_cast<std::size_t>(points.GetCount()));
+  if (ofPoints)
+  {
+    this->Known.resize(this->Values.size(), std::int8_t{ Nothing });
+  }
+  else
+  {
+    this->CellValues.resize(this->Levels.size());
+  }
+}
+
+double LevelNodes::GetSize(int level) const
+{
+  const glm::dvec3 scale(this->Lattice.GetScales().Get(level));
+  return 1.0 / std::cbrt(scale.x * scale.y * scale.z);
+}
+
+void LevelNodes::AddLeaves(const Box& box, const double* values, const std::uint8_t* isLeaf)
+{
+  const Box cells = Intersect(box, this->Around);
+  const Index3 size = box.GetSize();
+  ForEachIndex(cells,
+    [&](const Index3& cell)
+    {
+      const Index3 at = cell - box.Min;
+      const auto number = static_cast<std::size_t>(at.x + size.x * (at.y + size.y * at.z));
+      if (isLeaf[number] == 0)
+      {
+        return;
+      }
+      const std::size_t place = this->GetAround(cell);
+      this->Levels[place] = static_cast<std::int8_t>(this->Brick.Level);
+      if (!this->OfPoints)
+      {
+        this->CellValues[place] = values[number];
+        return;
+      }
+      for (int corner = 0; corner < 8; ++corner)
+      {
+        const Index3 from = at + GetCornerOf(corner);
+        const double value = values[from.x + (size.x + 1) * (from.y + (size.y + 1) * from.z)];
+        this->OfferValue(cell + GetCornerOf(corner), this->Brick.Level, value);
+      }
+    });
+}
+
+void LevelNodes::OfferValue(const Index3& point, int level, double value)
+{
+  const Box points{ this->Brick.Cells.Min, this->Brick.Cells.Max + Index3(1) };
+  if (Intersect(points, { point, point + Index3(1) }).IsEmpty())
+  {
+    return;
+  }
+  const std::size_t place = this->GetPoint(point);
+  std::int8_t& known = this->Known[place];
+  // Where blocks disagree, the result does not depend on which came first.
+  if (level > known || (level == known && this->Round(value) < this->Values[place]))
+  {
+    known = static_cast<std::int8_t>(level);
+    this->Values[place] = this->Round(value);
+  }
+}
+
+double LevelNodes::Round(double value) const
+{
+  return this->Lattice.GetScalarType() == ScalarType::Float32
+    ? static_cast<double>(static_cast<float>(value))
+    : value;
+}
+
+bool LevelNodes::TouchesLeaf(const Index3& cell) const
+{
+  bool touches = false;
+  ForEachIndex(Intersect({ cell - Index3(1), cell + Index3(2) }, this->Brick.Cells),
+    [&](const Index3& near) { touches = touches || this->IsLeaf(near); });
+  return touches;
+}
+
+void LevelNodes::AddLeaf(const ForeignLeaf& leaf)
+{
+  const LevelScales& scales = this->Lattice.GetScales();
+  const Index3 cell(leaf.Cell[0], leaf.Cell[1], leaf.Cell[2]);
+  if (leaf.Level < this->Brick.Level)
+  {
+    const Index3 ratio = scales.GetRatio(leaf.Level, this->Brick.Level);
+    const Box covered{ cell * ratio, (cell + Index3(1)) * ratio };
+    ForEachIndex(Intersect(covered, this->Around),
+      [&](const Index3& part)
+      {
+        const std::size_t place = this->GetAround(part);
+        this->Levels[place] = static_cast<std::int8_t>(leaf.Level);
+        if (!this->OfPoints)
+        {
+          this->CellValues[place] = leaf.Values[0];
+        }
+      });
+    return;
+  }
+  const Index3 ratio = scales.GetRatio(this->Brick.Level, leaf.Level);
+  const Index3 home = DivideDown(cell, ratio);
+  if (Intersect(this->Around, { home, home + Index3(1) }).IsEmpty() || !this->TouchesLeaf(home))
+  {
+    return;
+  }
+  const std::size_t place = this->GetAround(home);
+  this->Levels[place] = Smaller;
+  const Index3 at = cell - home * ratio;
+  for (int corner = 0; corner < 8; ++corner)
+  {
+    // Only a leaf in a corner of the cell touches that point.
+    const Index3 side = GetCornerOf(corner);
+    if (at != side * (ratio - Index3(1)))
+    {
+      continue;
+    }
+    this->Smalls[place][static_cast<std::size_t>(corner)] = { leaf.Values[corner], leaf.Level };
+    if (this->OfPoints)
+    {
+      this->OfferValue(home + side, leaf.Level, leaf.Values[corner]);
+    }
+  }
+}
+
+LevelNodes::Corner LevelNodes::GetOctant(const Index3& point, int octant) const
+{
+  const Index3 side = GetCornerOf(octant);
+  const std::size_t place = this->GetAround(point - Index3(1) + side);
+  const int level = this->Levels[place];
+  if (level == Smaller)
+  {
+    const int corner = GetNumber(Index3(1) - side);
+    return this->Smalls.at(place)[static_cast<std::size_t>(corner)];
+  }
+  return { this->OfPoints || level == Nothing ? 0.0 : this->CellValues[place], level };
+}
+
+void LevelNodes::FindMeans()
+{
+  ForEachIndex({ this->Brick.Cells.Min, this->Brick.Cells.Max + Index3(1) },
+    [this](const Index3& point) { this->FindMean(point); });
+}
+
+void LevelNodes::FindMean(const Index3& point)
+{
+  Corner octants[8];
+  int coarsest = Smaller;
+  bool isOfLeaf = false;
+  for (int octant = 0; octant < 8; ++octant)
+  {
+    octants[octant] = this->GetOctant(point, octant);
+    const int level = octants[octant].Level;
+    coarsest = level == Nothing ? coarsest : std::min(coarsest, level);
+    isOfLeaf = isOfLeaf || level == this->Brick.Level;
+  }
+  if (!isOfLeaf)
+  {
+    return;
+  }
+  if (coarsest < this->Brick.Level)
+  {
+    const Index3 ratio = this->Lattice.GetScales().GetRatio(coarsest, this->Brick.Level);
+    if (DivideDown(point, ratio) * ratio != point)
+    {
+      this->Hanging.push_back(point);
+      return;
+    }
+  }
+  if (this->OfPoints)
+  {
+    return;
+  }
+  double sum = 0.0;
+  double weights = 0.0;
+  for (const Corner& octant : octants)
+  {
+    if (octant.Level != Nothing)
+    {
+      const double weight = this->GetSize(coarsest) / this->GetSize(octant.Level);
+      sum += weight * octant.Value;
+      weights += weight;
+    }
+  }
+  this->Values[this->GetPoint(point)] = this->Round(sum / weights);
+}
+
+void LevelNodes::AddCorners(const ForeignLeaf& leaf)
+{
+  const Index3 cell(leaf.Cell[0], leaf.Cell[1], leaf.Cell[2]);
+  std::array<double, 8>& corners = this->Larger[GetPlace(leaf.Level, cell)];
+  std::copy_n(leaf.Values, 8, corners.begin());
+}
+
+bool LevelNodes::Interpolate(
+  const Index3& point, int level, const Index3& leaf, double& value) const
+{
+  const auto found = this->Larger.find(GetPlace(level, leaf));
+  if (found == this->Larger.end())
+  {
+    return false;
+  }
+  const Index3 ratio = this->Lattice.GetScales().GetRatio(level, this->Brick.Level);
+  const glm::dvec3 at = glm::dvec3(point - leaf * ratio) / glm::dvec3(ratio);
+  const auto mix = [](double a, double b, double part) { return (1.0 - part) * a + part * b; };
+  const std::array<double, 8>& c = found->second;
+  const double front = mix(mix(c[0], c[1], at.x), mix(c[2], c[3], at.x), at.y);
+  const double back = mix(mix(c[4], c[5], at.x), mix(c[6], c[7], at.x), at.y);
+  value = mix(front, back, at.z);
+  return true;
+}
+
+void LevelNodes::FindHanging()
+{
+  for (const Index3& point : this->Hanging)
+  {
+    // Of leaves that are equally large, all have the same value: the first in the order of octants counts.
+    int coarsest = this->Brick.Level;
+    Index3 leaf(0);
+    for (int octant = 0; octant < 8; ++octant)
+    {
+      const int level = this->GetOctant(point, octant).Level;
+      if (level != Nothing && level < coarsest)
+      {
+        coarsest = level;
+        leaf = DivideDown(point - Index3(1) + GetCornerOf(octant),
+          this->Lattice.GetScales().GetRatio(level, this->Brick.Level));
+      }
+    }
+    double value = 0.0;
+    if (!this->Interpolate(point, coarsest, leaf, value))
+    {
+      throw dsm::Error("The corners of a cell of level " + std::to_string(coarsest) +
+        " are missing. Do all ranks run the same build?");
+    }
+    this->Values[this->GetPoint(point)] = this->Round(value);
+  }
+}
+
+ForeignLeaf LevelNodes::GetLeaf(const Index3& cell) const
+{
+  ForeignLeaf leaf{};
+  leaf.Level = this->Brick.Level;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    leaf.Cell[axis] = static_cast<std::int32_t>(cell[axis]);
+  }
+  for (int corner = 0; corner < 8; ++corner)
+  {
+    leaf.Values[corner] = this->Values[this->GetPoint(cell + GetCornerOf(corner))];
+  }
+  return leaf;
+}
+
+} // namespace bricks

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef rt_LevelField_h
+#define rt_LevelField_h
+
+#include "DSMBricks/levels/LevelVoxels.h"
+#include "DSMRayTracing/field/lattice/IndexSpace.h"
+#include "DSMRayTracing/field/lattice/LatticePlace.h"
+#include "DSMRayTracing/object/ObjectTracer.h"
+
+#include <glm/mat4x4.hpp>
+#include <glm/matrix.hpp>
+#include <glm/vec3.hpp>
+
+#include <memory>
+
+namespace rt
+{
+
+class ObjectDigest;
+template <class Store>
+class LevelSampler;
+template <class Store>
+class LevelSurfaces;
+
+/// Values at the points of lattices of several levels, as of AMR and of hyper tree grids: one continuous function, see
+/// bricks::LevelNodes. A kind of field: IsosurfaceOf says what one has to offer. A Place is in the index space of its brick's
+/// level, all else in that of level 0.
+struct LevelField
+{
+  using Values = bricks::LevelVoxels;
+  using Place = LatticePlace;
+  template <class Store>
+  using Sampler = LevelSampler<Store>;
+  template <class Store>
+  using Surfaces = LevelSurfaces<Store>;
+
+  /// Point index space of level 0 to world; affine, invertible.
+  glm::dmat4 IndexToWorld{ 1.0 };
+  /// Its inverse; SetIndexToWorld keeps the two together.
+  glm::dmat4 WorldToIndex{ 1.0 };
+  void SetIndexToWorld(const glm::dmat4& matrix)
+  {
+    this->IndexToWorld = matrix;
+    this->WorldToIndex = glm::inverse(matrix);
+  }
+  std::shared_ptr<const Values> Voxels;
+  const Values& GetValues() const { return *this->Voxels; }
+
+  IndexSpace GetIndexSpace() const { return IndexSpace(this->IndexToWorld, this->WorldToIndex); }
+  /// The unit normal, in world space, of a surface where the values grow so fast on each axis of the index space.
+  glm::dvec3 GetNormal(const glm::dvec3& gradient, const glm::dvec3& rayDirection) const
+  {
+    return this->GetIndexSpace().GetNormal(&gradient.x, rayDirection);
+  }
+  /// World length of the shortest edge of a cell of the finest level.
+  double GetFinestLength() const;
+  /// All that a picture depends on.
+  void AddTo(ObjectDigest& digest) const;
+
+  /// Returns whether any positions within the field have no value.
+  static bool HasHoles(const Values&) { return true; }
+  static void AddTo(ObjectDigest& digest, const Values& values);
+};
+
+} // namespace rt
+
+#endif
