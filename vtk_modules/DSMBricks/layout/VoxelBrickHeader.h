@@ -36,7 +36,12 @@ struct VoxelBrickHeader
   float First;
   float Last;
   ScalarType Type;
-  std::uint8_t Unused[31];
+  /// For bricks of levels: where smaller or larger cells are next to cells that hold data. Bit 2 axis is the brick's lower
+  /// side, bit 2 axis + 1 the upper one; InnerBorder is within the brick.
+  std::uint8_t Borders;
+  std::uint8_t Unused[30];
+
+  static constexpr std::uint8_t InnerBorder = 64;
 
   static constexpr std::uint32_t MacrocellOffset = 64;
 };

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "DSMBricks/levels/LevelNodes.h"
 
+#include "DSMBricks/layout/VoxelBrickHeader.h"
 #include "DSMCore/base/Error.h"
 
 #include <algorithm>
@@ -239,7 +240,10 @@ bool LevelNodes::Interpolate(
   const std::array<double, 8>& c = found->second;
   const double front = mix(mix(c[0], c[1], at.x), mix(c[2], c[3], at.x), at.y);
   const double back = mix(mix(c[4], c[5], at.x), mix(c[6], c[7], at.x), at.y);
-  value = mix(front, back, at.z);
+  // Rounding does not lead out of what the leaf has, by which rays skip it.
+  const auto [least, most] = std::minmax_element(c.begin(), c.end());
+  const double exact = mix(front, back, at.z);
+  value = exact < *least ? *least : (exact > *most ? *most : exact);
   return true;
 }
 
@@ -268,6 +272,27 @@ void LevelNodes::FindHanging()
     }
     this->Values[this->GetPoint(point)] = this->Round(value);
   }
+}
+
+std::uint8_t LevelNodes::FindBorders() const
+{
+  std::uint8_t borders = 0;
+  ForEachIndex(this->Brick.Cells,
+    [&](const Index3& cell)
+    {
+      for (int side = 0; side < 6 && this->IsLeaf(cell); ++side)
+      {
+        Index3 next = cell;
+        next[side / 2] += side % 2 == 0 ? -1 : 1;
+        const int level = this->Levels[this->GetAround(next)];
+        if (level != Nothing && level != this->Brick.Level)
+        {
+          borders |= this->Brick.Has(next) ? VoxelBrickHeader::InnerBorder
+                                           : static_cast<std::uint8_t>(1 << side);
+        }
+      }
+    });
+  return borders;
 }
 
 ForeignLeaf LevelNodes::GetLeaf(const Index3& cell) const

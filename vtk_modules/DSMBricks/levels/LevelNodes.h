@@ -77,6 +77,8 @@ public:
   {
     return this->Levels[this->GetAround(cell)] == this->Brick.Level;
   }
+  /// When all leaves are there. See VoxelBrickHeader.
+  std::uint8_t FindBorders() const;
   /// At the points of the brick, x fastest. Those that no leaf touches are 0.
   const std::vector<double>& GetValues() const { return this->Values; }
 

@@ -386,7 +386,8 @@ private:
 template <class T>
 void FillBrick(const LevelNodes& nodes, std::byte* block)
 {
-  const auto& header = *reinterpret_cast<const VoxelBrickHeader*>(block);
+  auto& header = *reinterpret_cast<VoxelBrickHeader*>(block);
+  header.Borders = nodes.FindBorders();
   std::transform(nodes.GetValues().begin(), nodes.GetValues().end(),
     reinterpret_cast<T*>(block + header.SampleOffset),
     [](double value) { return static_cast<T>(value); });

@@ -62,6 +62,8 @@ struct CrossedCells
   hn::Vec<D> Start[3]; ///< within the cell, in [0, 1]
   hn::Vec<D> End[3];
   MediumBehavior<D> Behavior; ///< set for visitors that take macrocells
+  const PacketBrick* Brick;
+  const bool* Forward;
 };
 
 /// Rays of a vector in macrocells that they go through as a whole; as CrossedCells.
@@ -512,6 +514,8 @@ private:
     cells.There = batch.GetLanes();
     cells.Enter = enter;
     cells.Exit = exit;
+    cells.Brick = &this->Brick;
+    cells.Forward = this->Forward;
     cells.Crossing = this->Brick.Floats.First
       ? this->LoadCorners(place, cells.Corners)
       : this->AskForCorners(batch.GetLanes(), place, cells.Corners);

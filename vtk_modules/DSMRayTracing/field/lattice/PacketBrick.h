@@ -2,6 +2,10 @@
 #ifndef rt_PacketBrick_h
 #define rt_PacketBrick_h
 
+#include "DSMBricks/layout/VoxelBrickHeader.h"
+
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
 
 namespace rt
@@ -54,9 +58,59 @@ public:
   };
   FloatSamples Floats;
 
+  /// Whether a cell has data. Its coordinates may lie outside of the brick.
+  virtual bool HasCell(const int cell[3]) const = 0;
+
+  /// For bricks of levels, next to cells of another size: values there agree but for the rounding of samples, so a ray
+  /// could slip through between a value that is just above the isovalue and one that is just below.
+  struct LevelBorder
+  {
+    std::uint8_t Sides = 0; ///< VoxelBrickHeader::Borders
+    double Isovalue = 0.0;
+    double Rounding = 0.0; ///< of a value of 1
+    double Largest = 0.0;  ///< value of the brick
+
+    /// Returns whether that is where a ray leaves the cell, which has no crossing. `corners` and `end`: as in CrossedCells,
+    /// `value`: where the ray leaves; it is less than the rounding of Largest.
+    bool MayHide(const PacketBrick& brick, const double corners[8], const int cell[3],
+      const double end[3], const bool forward[3], double value) const;
+  };
+  LevelBorder Border;
+
 protected:
   ~PacketBrick() = default;
 };
+
+inline bool PacketBrick::LevelBorder::MayHide(const PacketBrick& brick, const double corners[8],
+  const int cell[3], const double end[3], const bool forward[3], double value) const
+{
+  double largest = 0.0;
+  for (int corner = 0; corner < 8; ++corner)
+  {
+    largest = std::max(largest, std::abs(corners[corner] + this->Isovalue));
+  }
+  if (std::abs(value) > this->Rounding * largest)
+  {
+    return false;
+  }
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    if (end[axis] != (forward[axis] ? 1.0 : 0.0))
+    {
+      continue;
+    }
+    int next[3] = { cell[0], cell[1], cell[2] };
+    next[axis] += forward[axis] ? 1 : -1;
+    const bool isInside = next[axis] >= 0 && next[axis] < brick.GetCells(axis);
+    const int bit =
+      isInside ? bricks::VoxelBrickHeader::InnerBorder : 1 << (2 * axis + (forward[axis] ? 1 : 0));
+    if ((this->Sides & bit) != 0 && !brick.HasCell(next))
+    {
+      return true;
+    }
+  }
+  return false;
+}
 
 } // namespace rt
 

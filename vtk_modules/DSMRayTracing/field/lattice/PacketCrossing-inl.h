@@ -77,6 +77,9 @@ public:
     coefficients[3] = this->C3;
   }
 
+  /// The value at the end of the way.
+  const Vector& GetLast() const { return this->Last; }
+
   /// The largest value on the way, and where it is first.
   void FindLargest(Vector& value, Vector& place) const
   {

@@ -74,6 +74,59 @@ struct CellCrossings
   HWY_ALIGN double Values[Numbers][RayPacket::Size];
 };
 
+/// Those of a vector's rays (bits), which do not cross the surface in their cells, that may do so where they leave these:
+/// see PacketBrick::LevelBorder.
+template <class D>
+HWY_INLINE std::uint32_t FindHidden(
+  const CrossedCells<D>& cells, const PacketCrossing<D>& crossing, std::uint32_t rays)
+{
+  const D tag;
+  const PacketBrick::LevelBorder& border = cells.Brick->Border;
+  if (border.Sides == 0)
+  {
+    return 0;
+  }
+  const auto isNear =
+    hn::Le(hn::Abs(crossing.GetLast()), hn::Set(tag, border.Rounding * border.Largest));
+  std::uint32_t near = GetMaskBits(tag, hn::And(isNear, cells.Crossing)) & rays;
+  if (near == 0)
+  {
+    return 0;
+  }
+  HWY_ALIGN double values[8 + 3 + 3 + 1][hn::MaxLanes(tag)];
+  for (int corner = 0; corner < 8; ++corner)
+  {
+    hn::Store(cells.Corners[corner], tag, values[corner]);
+  }
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    hn::Store(cells.Place[axis], tag, values[8 + axis]);
+    hn::Store(cells.End[axis], tag, values[11 + axis]);
+  }
+  hn::Store(crossing.GetLast(), tag, values[14]);
+  std::uint32_t hidden = 0;
+  for (; near != 0; near &= near - 1)
+  {
+    const int lane = __builtin_ctz(near);
+    double corners[8];
+    for (int corner = 0; corner < 8; ++corner)
+    {
+      corners[corner] = values[corner][lane];
+    }
+    int cell[3];
+    double end[3];
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      cell[axis] = static_cast<int>(values[8 + axis][lane]);
+      end[axis] = values[11 + axis][lane];
+    }
+    const bool isHidden =
+      border.MayHide(*cells.Brick, corners, cell, end, cells.Forward, values[14][lane]);
+    hidden |= std::uint32_t{ isHidden } << lane;
+  }
+  return hidden;
+}
+
 /// Visitor for BrickSearch, for rays that end at their first crossing of the surface.
 template <class D>
 class FirstCrossings
@@ -91,8 +144,13 @@ public:
   {
     const PacketCrossing<D> crossing(D(), cells.Corners, cells.Start, cells.End);
     Bracket<D> bracket;
-    const std::uint32_t found =
+    std::uint32_t found =
       GetMaskBits(D(), crossing.FindFirst(cells.Crossing, bracket)) & cells.There;
+    if (const std::uint32_t hidden = FindHidden(cells, crossing, cells.There & ~found))
+    {
+      this->EndThere(hidden, bracket);
+      found |= hidden;
+    }
     if (this->Crossings && found != 0)
     {
       CellCrossings::Vectors<D> numbers;
@@ -120,6 +178,20 @@ public:
   }
 
 private:
+  /// Puts the crossings of those rays (bits) to the ends of their ways.
+  static void EndThere(std::uint32_t rays, Bracket<D>& bracket)
+  {
+    const D tag;
+    const std::uint8_t bits[8] = { static_cast<std::uint8_t>(rays) };
+    const auto chosen = hn::LoadMaskBits(tag, bits);
+    const auto one = hn::Set(tag, 1.0);
+    const auto isInside = hn::Ge(bracket.BeginValue, hn::Zero(tag));
+    bracket.BeginS = hn::IfThenElse(chosen, one, bracket.BeginS);
+    bracket.EndS = hn::IfThenElse(chosen, one, bracket.EndS);
+    bracket.EndValue =
+      hn::IfThenElse(chosen, hn::IfThenElse(isInside, hn::Neg(one), one), bracket.EndValue);
+  }
+
   CellCrossings* Crossings;
 };
 
@@ -141,10 +213,17 @@ public:
     const PacketCrossing<D> crossing(D(), cells.Corners, cells.Start, cells.End);
     HWY_ALIGN double numbers[hn::MaxLanes(D())];
     hn::Store(crossing.Count(cells.Crossing), D(), numbers);
+    std::uint32_t uncrossed = 0;
     for (std::uint32_t left = cells.There; left != 0; left &= left - 1)
     {
       const int lane = __builtin_ctz(left);
-      this->Counts[cells.Ray[lane]] += static_cast<int>(numbers[lane]);
+      const int count = static_cast<int>(numbers[lane]);
+      this->Counts[cells.Ray[lane]] += count;
+      uncrossed |= std::uint32_t{ count == 0 } << lane;
+    }
+    for (std::uint32_t left = FindHidden(cells, crossing, uncrossed); left != 0; left &= left - 1)
+    {
+      ++this->Counts[cells.Ray[__builtin_ctz(left)]];
     }
     return 0;
   }

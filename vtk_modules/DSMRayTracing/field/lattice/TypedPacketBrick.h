@@ -41,6 +41,18 @@ public:
   int GetMacrocells(int axis) const override { return this->Brick.GetMacrocells(axis); }
   int GetCells(int axis) const override { return this->Brick.GetCells(axis); }
 
+  bool HasCell(const int cell[3]) const override
+  {
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      if (cell[axis] < 0 || cell[axis] >= this->Brick.GetCells(axis))
+      {
+        return false;
+      }
+    }
+    return this->Brick.HoldsData(cell[0], cell[1], cell[2]);
+  }
+
   const PacketPart& FindPart(const int part[3]) const override
   {
     this->Part.Macrocells = this->Order.TurnAll(this->ComparePart(part));

@@ -12,6 +12,7 @@
 #include "DSMRayTracing/look/SheetTransmittance.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 namespace rt
@@ -98,7 +99,11 @@ void LevelSurfaces<Store>::SearchBricks(const Sets& sets, BeamBricks& bricks, Le
       {
         const IsovalueLevel<T> level(sets.Isovalues[index]);
         const IsovalueTest<T> test(level, this->Kernel.Macrocells.template Get<T>());
-        const TypedPacketBrick<T, IsovalueTest<T>> surface(voxels, test, packet.Forward);
+        TypedPacketBrick<T, IsovalueTest<T>> surface(voxels, test, packet.Forward);
+        surface.Border = { voxels.GetHeader().Borders, sets.Isovalues[index],
+          std::numeric_limits<T>::epsilon() * (sizeof(T) == 4 ? 1.0 : 16.0),
+          std::max(std::abs(static_cast<double>(range.First)),
+            std::abs(static_cast<double>(range.Last))) };
         search(packet, open, index, surface, brick, voxels, level);
       }
     }
