@@ -64,6 +64,17 @@ int CountIn(const LevelCube& cube, const Box& parts)
 
 } // namespace
 
+void LevelCube::Count(const Index3& cell)
+{
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    this->Min[axis] = std::min(this->Min[axis], static_cast<std::uint8_t>(cell[axis]));
+    this->Max[axis] = std::max(this->Max[axis], static_cast<std::uint8_t>(cell[axis] + 1));
+  }
+  const Index3 part = cell / Index3(LevelLattice::PartEdge);
+  ++this->Leaves[part.x + Parts * (part.y + Parts * part.z)];
+}
+
 Index3 DivideDown(const Index3& number, const Index3& by)
 {
   Index3 result;

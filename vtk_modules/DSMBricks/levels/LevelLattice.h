@@ -56,6 +56,9 @@ struct LevelCube
   /// Number of leaves in each part of LevelLattice::PartEdge cells, x fastest.
   std::uint8_t Leaves[64];
   std::uint8_t Unused[2];
+
+  /// Counts a leaf; `cell`: of the cube.
+  void Count(const Index3& cell);
 };
 
 /// A brick of one level: a box of cells, some of which may be no leaves.

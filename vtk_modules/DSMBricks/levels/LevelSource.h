@@ -6,10 +6,35 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <map>
+#include <tuple>
 #include <vector>
 
 namespace bricks
 {
+
+/// Cubes, each once, in the order in which they were first asked for.
+class LevelCubes
+{
+public:
+  /// The number of the cube of a level that has a cell, which must not be negative. Adds one without leaves if there is none.
+  std::size_t Find(int level, const Index3& cell);
+  const std::vector<LevelCube>& GetAll() const { return this->All; }
+  /// Counts a leaf of cube `number`; `cell`: of the level.
+  void Count(std::size_t number, const Index3& cell)
+  {
+    this->All[number].Count(cell - GetFirst(this->All[number]));
+  }
+  /// The first cell of a cube, in cells of its level.
+  static Index3 GetFirst(const LevelCube& cube)
+  {
+    return Index3(cube.Place[0], cube.Place[1], cube.Place[2]) * Index3(LevelLattice::Edge);
+  }
+
+private:
+  std::vector<LevelCube> All;
+  std::map<std::tuple<int, std::int64_t, std::int64_t, std::int64_t>, std::size_t> Numbers;
+};
 
 /// The leaves that one rank has, with their values. Implemented over VTK's AMR and hyper tree grids. Reading is safe from one
 /// thread at a time.

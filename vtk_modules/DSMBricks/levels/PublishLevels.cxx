@@ -28,11 +28,6 @@ namespace
 
 constexpr Index3 CubeSize{ LevelLattice::Edge };
 
-Index3 GetFirst(const LevelCube& cube)
-{
-  return Index3(cube.Place[0], cube.Place[1], cube.Place[2]) * CubeSize;
-}
-
 template <class T>
 void Append(std::vector<std::byte>& bytes, const T* items, std::size_t count)
 {
@@ -233,7 +228,7 @@ private:
   /// To bricks of the same level.
   void SendLeaves(dsm::BlockStream& stream, const LevelCube& cube)
   {
-    const Index3 first = GetFirst(cube);
+    const Index3 first = LevelCubes::GetFirst(cube);
     const Box whole{ first, first + CubeSize };
     const Index3 stride = CubeSize + Index3(this->Source.IsOfPoints() ? 1 : 0);
     this->Lattice.ForEachTouching(cube.Level, whole, cube.Level,
@@ -269,7 +264,7 @@ private:
   {
     ForeignLeaf leaf{};
     leaf.Level = cube.Level;
-    const Index3 cell = GetFirst(cube) + at;
+    const Index3 cell = LevelCubes::GetFirst(cube) + at;
     const bool ofPoints = this->Source.IsOfPoints();
     const Index3 stride = CubeSize + Index3(ofPoints ? 1 : 0);
     for (int axis = 0; axis < 3; ++axis)
@@ -289,7 +284,7 @@ private:
   void SendToOtherLevels(dsm::BlockStream& stream, const LevelCube& cube)
   {
     const LevelScales& scales = this->Lattice.GetScales();
-    const Index3 first = GetFirst(cube);
+    const Index3 first = LevelCubes::GetFirst(cube);
     const Index3 own = scales.Get(cube.Level);
     const Box filled{ first + Index3(cube.Min[0], cube.Min[1], cube.Min[2]),
       first + Index3(cube.Max[0], cube.Max[1], cube.Max[2]) };

@@ -4,29 +4,31 @@
 #include "vtkDSMGather.h"
 #include "vtkDSMImagePiece.h"
 
-#include "vtkCellData.h"
 #include "vtkDataArray.h"
-#include "vtkImageData.h"
-#include "vtkPointData.h"
+#include "vtkDataObject.h"
+#include "vtkDataSetAttributes.h"
 
 #include <algorithm>
 #include <cstring>
 
-vtkDataArray* vtkDSMImageArrays::Find(vtkImageData* image, const Choice& choice, Info& info)
+vtkDataArray* vtkDSMImageArrays::Find(vtkDataObject* part, const Choice& choice, Info& info)
 {
-  vtkDataSetAttributes* attributes = image->GetPointData();
-  if (choice.OnCells)
+  const int type = choice.OnCells ? vtkDataObject::CELL : vtkDataObject::POINT;
+  vtkDataSetAttributes* const attributes = part->GetAttributes(type);
+  if (!attributes)
   {
-    attributes = image->GetCellData();
+    info.Found = State::Missing;
+    return nullptr;
   }
   vtkAbstractArray* found = choice.Name.empty()
     ? static_cast<vtkAbstractArray*>(attributes->GetScalars())
     : attributes->GetAbstractArray(choice.Name.c_str());
   if (!found)
   {
-    const bool onCells = choice.Name.empty() ? image->GetPointData()->GetNumberOfArrays() == 0 &&
-        image->GetCellData()->GetNumberOfArrays() > 0
-                                             : image->GetCellData()->HasArray(choice.Name.c_str());
+    vtkDataSetAttributes* const ofCells = part->GetAttributes(vtkDataObject::CELL);
+    const bool onCells = choice.Name.empty()
+      ? attributes->GetNumberOfArrays() == 0 && ofCells->GetNumberOfArrays() > 0
+      : ofCells->HasArray(choice.Name.c_str());
     info.Found = onCells && !choice.OnCells ? State::OnCells : State::Missing;
     return nullptr;
   }
@@ -48,8 +50,7 @@ vtkDataArray* vtkDSMImageArrays::Find(vtkImageData* image, const Choice& choice,
     info.Found = State::NoSuchComponent;
     return nullptr;
   }
-  if (array->GetNumberOfTuples() !=
-    (choice.OnCells ? image->GetNumberOfCells() : image->GetNumberOfPoints()))
+  if (array->GetNumberOfTuples() != part->GetNumberOfElements(type))
   {
     info.Found = State::WrongLength;
     return nullptr;
@@ -60,13 +61,17 @@ vtkDataArray* vtkDSMImageArrays::Find(vtkImageData* image, const Choice& choice,
 }
 
 vtkDSMImageArrays::vtkDSMImageArrays(
-  dsm::Messenger& messenger, const std::vector<vtkSmartPointer<vtkImageData>>& images)
+  dsm::Messenger& messenger, const std::vector<vtkSmartPointer<vtkDataObject>>& parts)
 {
   std::vector<char> mine;
   const auto append = [&mine](const std::string& text)
   { mine.insert(mine.end(), text.c_str(), text.c_str() + text.size() + 1); };
   const auto appendAll = [&append](vtkDataSetAttributes* attributes, const char* place)
   {
+    if (!attributes)
+    {
+      return;
+    }
     if (vtkDataArray* active = attributes->GetScalars())
     {
       append(place);
@@ -85,10 +90,10 @@ vtkDSMImageArrays::vtkDSMImageArrays(
       }
     }
   };
-  for (vtkImageData* image : images)
+  for (vtkDataObject* part : parts)
   {
-    appendAll(image->GetPointData(), "0");
-    appendAll(image->GetCellData(), "1");
+    appendAll(part->GetAttributes(vtkDataObject::POINT), "0");
+    appendAll(part->GetAttributes(vtkDataObject::CELL), "1");
   }
   const std::vector<char> all = vtkDSMGather::Items(messenger, mine);
   for (auto place = all.begin(); place != all.end();)

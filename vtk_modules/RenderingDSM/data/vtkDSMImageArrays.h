@@ -14,7 +14,7 @@
 #include <vector>
 
 class vtkDataArray;
-class vtkImageData;
+class vtkDataObject;
 
 /// The arrays of numbers of a dataset of images that is spread over the ranks: which there are, and whether one serves as what
 /// the user chose it for.
@@ -63,12 +63,12 @@ public:
   };
 
   vtkDSMImageArrays() = default;
-  /// Collective. `images`: this rank's.
+  /// Collective. `parts`: this rank's, with attributes of points or of cells, or of both.
   vtkDSMImageArrays(
-    dsm::Messenger& messenger, const std::vector<vtkSmartPointer<vtkImageData>>& images);
+    dsm::Messenger& messenger, const std::vector<vtkSmartPointer<vtkDataObject>>& parts);
 
-  /// Null where the image's array is not usable; `info` says why.
-  static vtkDataArray* Find(vtkImageData* image, const Choice& choice, Info& info);
+  /// Null where the part's array is not usable; `info` says why.
+  static vtkDataArray* Find(vtkDataObject* part, const Choice& choice, Info& info);
 
   /// The choice with its component made definite: an array of one component has but one. The same on
   /// every rank, also where there is no data.

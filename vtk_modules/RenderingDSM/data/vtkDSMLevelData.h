@@ -2,8 +2,9 @@
 #ifndef vtkDSMLevelData_h
 #define vtkDSMLevelData_h
 
-#include "DSMBricks/build/LatticePlan.h"
+#include "DSMBricks/base/ByteHash.h"
 #include "DSMBricks/levels/LevelLattice.h"
+#include "DSMBricks/levels/LevelSource.h"
 #include "DSMBricks/levels/LevelVoxels.h"
 #include "vtkDSMImageArrays.h"
 #include "vtkDSMRankGroup.h"
@@ -18,60 +19,50 @@
 #include <vector>
 
 class vtkDataObject;
-class vtkImageData;
 
-/// A dataset of images of several sizes of cells that lie within one another, such as AMR, distributed over the ranks in any
-/// way: its levels are found by the spacing of its blocks. Cells that a finer block covers are not shown, nor are ghost and
-/// blanked cells; where no finer block is there, a cell that is marked as refined is shown. Keeps the images alive, without a
-/// copy. Methods documented as collective need every rank. Failures are dsm::Error, the same on every rank.
+/// The parts of a dataset whose cells are of several sizes that lie within one another, distributed over the ranks in any way.
+/// Keeps the parts alive, without a copy. Methods documented as collective need every rank. Failures are dsm::Error, the same
+/// on every rank.
 class vtkDSMLevelData
 {
 public:
   using Choice = vtkDSMImageArrays::Choice;
+  using Parts = std::vector<vtkSmartPointer<vtkDataObject>>;
 
-  /// Local: whether a dataset is of this kind.
-  static bool IsOfLevels(vtkDataObject* data);
-  /// Local: its blocks that have points.
-  static std::vector<vtkSmartPointer<vtkImageData>> GetBlocks(vtkDataObject* data);
-
-  /// Collective. `blocks`: this rank's.
-  vtkDSMLevelData(const std::shared_ptr<vtkDSMRankGroup>& group,
-    std::vector<vtkSmartPointer<vtkImageData>> blocks);
-  ~vtkDSMLevelData();
+  /// Local: the parts of such a dataset, which have points or cells; none if the data are of another kind. Throws dsm::Error
+  /// where parts of different kinds are together.
+  static Parts GetParts(vtkDataObject* data);
+  /// Collective. `parts`: this rank's; null if no rank has any.
+  static std::unique_ptr<vtkDSMLevelData> Create(
+    const std::shared_ptr<vtkDSMRankGroup>& group, const Parts& parts);
+  virtual ~vtkDSMLevelData();
 
   /// From the index space of the coarsest level.
   const glm::dmat4& GetIndexToWorld() const { return this->IndexToWorld; }
-  /// Returns the bounds of all ranks' blocks; uninitialized bounds (min > max) if there are none.
+  /// Returns the bounds of all ranks' parts; uninitialized bounds (min > max) if there are none.
   void GetBounds(double bounds[6]) const;
-  /// Returns all ranks' blocks, whose order says which of those that overlap counts.
-  const std::vector<bricks::PieceInfo>& GetPieces() const { return this->Pieces; }
+  /// Local: adds where this rank's cells are.
+  virtual void AddPlaces(bricks::ByteHash& hash) const = 0;
 
-  /// Collective. Cuts an array into bricks: `infos` tell of all ranks' blocks. Null where no block has it.
+  /// Collective. Cuts an array into bricks: `infos` tell of all ranks' parts. Null where no part has it.
   std::shared_ptr<const bricks::LevelVoxels> Publish(const Choice& choice,
     const std::string& purpose, const std::vector<vtkDSMImageArrays::Info>& infos,
     const std::function<void(double)>& progress) const;
 
-private:
-  class Source;
-  /// A block of any rank.
-  struct Place
-  {
-    int Level;
-    bricks::Box Cells; ///< of the level, without ghosts
-  };
-
-  void FindLevels();
-  void FindPlaces();
-  /// Local: for each cell of an own block whether it is a leaf.
-  std::vector<std::uint8_t> FindLeaves(std::size_t own) const;
+protected:
+  explicit vtkDSMLevelData(std::shared_ptr<vtkDSMRankGroup> group);
+  /// Local: this rank's leaves, with the values of an array.
+  virtual std::unique_ptr<bricks::LevelSource> CreateSource(const Choice& choice) const = 0;
+  /// Sets the place of the coarsest level. `origin`: of its point (0, 0, 0).
+  void SetPlace(const glm::dvec3& origin, const glm::dmat3& direction, const glm::dvec3& spacing);
 
   std::shared_ptr<vtkDSMRankGroup> Group;
-  std::vector<vtkSmartPointer<vtkImageData>> Blocks;
-  std::vector<bricks::PieceInfo> Pieces; ///< all ranks' blocks, in rank order
-  std::vector<Place> Places;             ///< likewise
-  int FirstOwn = 0;
   bricks::LevelScales Scales;
-  std::vector<std::array<double, 3>> Spacings; ///< of the levels
+  /// Bounds of all cells, in cells of the coarsest level; empty without any.
+  glm::dvec3 Lower;
+  glm::dvec3 Upper;
+
+private:
   glm::dmat4 IndexToWorld{ 1.0 };
 };
 

@@ -41,21 +41,15 @@ vtkDSMVolumeData::vtkDSMVolumeData(std::shared_ptr<vtkDSMRankGroup> group, vtkDa
     });
   this->Pieces = vtkDSMGather::Items(messenger, mine, this->FirstOwnPiece);
   this->Looks = vtkDSMGather::Items(messenger, myLooks);
-  std::vector<vtkSmartPointer<vtkImageData>> all;
-  std::uint8_t hasLevels = 0;
+  std::vector<vtkSmartPointer<vtkDataObject>> all;
   messenger.RunTogether("Reading the volume",
     [&]
     {
-      all = this->Images;
-      all.insert(all.end(), this->LevelBlocks.begin(), this->LevelBlocks.end());
-      hasLevels = this->LevelBlocks.empty() ? 0 : 1;
+      all = this->LevelParts;
+      all.insert(all.end(), this->Images.begin(), this->Images.end());
     });
   this->Arrays = vtkDSMImageArrays(messenger, all);
-  const std::vector<std::uint8_t> haveLevels = messenger.AllGatherValue(hasLevels);
-  if (std::find(haveLevels.begin(), haveLevels.end(), 1) != haveLevels.end())
-  {
-    this->Levels = std::make_unique<vtkDSMLevelData>(this->Group, this->LevelBlocks);
-  }
+  this->Levels = vtkDSMLevelData::Create(this->Group, this->LevelParts);
   messenger.RunTogether(
     "Joining the volume's pieces", [&] { this->Plan = bricks::LatticePlan(this->Pieces); });
   this->SeparateBlocks(choose(this->Arrays));
@@ -169,9 +163,9 @@ void vtkDSMVolumeData::CollectImages(vtkDataObject* data)
   {
     return;
   }
-  if (vtkDSMLevelData::IsOfLevels(data))
+  this->LevelParts = vtkDSMLevelData::GetParts(data);
+  if (!this->LevelParts.empty())
   {
-    this->LevelBlocks = vtkDSMLevelData::GetBlocks(data);
     return;
   }
   auto* tree = vtkDataObjectTree::SafeDownCast(data);
@@ -262,14 +256,14 @@ std::uint64_t vtkDSMVolumeData::HashContent(const Choice& choice) const
   }
   if (this->Levels)
   {
-    const std::vector<bricks::PieceInfo>& pieces = this->Levels->GetPieces();
-    hash.Add(pieces.data(), pieces.size() * sizeof(bricks::PieceInfo));
+    this->Levels->AddPlaces(hash);
   }
-  for (vtkImageData* block : this->LevelBlocks)
+  for (vtkDataObject* part : this->LevelParts)
   {
     vtkDSMImageArrays::Info info;
-    add(vtkDSMImageArrays::Find(block, this->ChooseOfLevels(choice), info));
-    add(block->GetCellData()->GetAbstractArray(vtkDataSetAttributes::GhostArrayName()));
+    add(vtkDSMImageArrays::Find(part, this->ChooseOfLevels(choice), info));
+    add(part->GetAttributes(vtkDataObject::CELL)
+          ->GetAbstractArray(vtkDataSetAttributes::GhostArrayName()));
   }
   return hash.Get();
 }
@@ -282,7 +276,7 @@ std::shared_ptr<const vtkDSMVolumeData::Publication> vtkDSMVolumeData::Publish(c
   std::vector<vtkDSMImageArrays::Info> mine(this->Images.size());
   const auto published = std::make_shared<Publication>();
   std::vector<vtkDSMFileVolume::Seat> mySeats(this->Images.size());
-  std::vector<vtkDSMImageArrays::Info> myLevels(this->LevelBlocks.size());
+  std::vector<vtkDSMImageArrays::Info> myLevels(this->LevelParts.size());
   messenger.RunTogether("Reading the " + purpose,
     [&]
     {
@@ -291,10 +285,10 @@ std::shared_ptr<const vtkDSMVolumeData::Publication> vtkDSMVolumeData::Publish(c
         vtkDataArray* array = vtkDSMImageArrays::Find(this->Images[index], choice, mine[index]);
         mySeats[index] = vtkDSMFileVolume::Describe(this->Images[index], array, choice.OnCells);
       }
-      for (std::size_t index = 0; index < this->LevelBlocks.size(); ++index)
+      for (std::size_t index = 0; index < this->LevelParts.size(); ++index)
       {
         vtkDSMImageArrays::Find(
-          this->LevelBlocks[index], this->ChooseOfLevels(choice), myLevels[index]);
+          this->LevelParts[index], this->ChooseOfLevels(choice), myLevels[index]);
       }
       published->Content = this->HashContent(choice);
     });

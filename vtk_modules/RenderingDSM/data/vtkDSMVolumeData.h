@@ -167,8 +167,8 @@ private:
   std::set<std::int32_t> Apart;                      ///< blocks that are volumes of their own
   std::vector<vtkSmartPointer<vtkImageData>> Images; ///< this rank's images
   std::vector<int> Leaves;                           ///< leaf index of each of this rank's images
-  /// This rank's blocks of levels.
-  std::vector<vtkSmartPointer<vtkImageData>> LevelBlocks;
+  /// This rank's parts of levels.
+  vtkDSMLevelData::Parts LevelParts;
   std::unique_ptr<vtkDSMLevelData> Levels;
   vtkDSMImageArrays Arrays;
 };

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef vtkDSMAmrData_h
+#define vtkDSMAmrData_h
+
+#include "DSMBricks/build/LatticePlan.h"
+#include "vtkDSMLevelData.h"
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+class vtkImageData;
+
+/// Adaptively refined blocks. Levels are found by the blocks' spacing. Cells that a finer block covers are not shown, nor are
+/// ghost and blanked cells. Where no finer block is there, a cell that is marked as refined is shown. Of blocks of a level that
+/// overlap, the first one counts.
+class vtkDSMAmrData final : public vtkDSMLevelData
+{
+public:
+  /// Collective. `parts`: this rank's images.
+  vtkDSMAmrData(const std::shared_ptr<vtkDSMRankGroup>& group, const Parts& parts);
+  ~vtkDSMAmrData() override;
+
+  void AddPlaces(bricks::ByteHash& hash) const override;
+
+private:
+  class Source;
+  /// A block of any rank.
+  struct Place
+  {
+    int Level;
+    bricks::Box Cells; ///< of the level, without ghosts
+  };
+
+  std::unique_ptr<bricks::LevelSource> CreateSource(const Choice& choice) const override;
+  void FindLevels();
+  void FindPlaces();
+  /// Local: for each cell of an own block whether it is a leaf.
+  std::vector<std::uint8_t> FindLeaves(std::size_t own) const;
+
+  std::vector<vtkSmartPointer<vtkImageData>> Blocks;
+  std::vector<bricks::PieceInfo> Pieces; ///< all ranks' blocks, in rank order
+  std::vector<Place> Places;             ///< likewise
+  int FirstOwn = 0;
+  std::vector<std::array<double, 3>> Spacings; ///< of the levels
+};
+
+#endif

@@ -1,0 +1,292 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkDSMTreeData.h"
+
+#include "vtkDSMGather.h"
+#include "vtkDSMImagePiece.h"
+
+#include "vtkBitArray.h"
+#include "vtkCellData.h"
+#include "vtkDataArray.h"
+#include "vtkDataSetAttributes.h"
+#include "vtkHyperTree.h"
+#include "vtkHyperTreeGrid.h"
+#include "vtkHyperTreeGridNonOrientedCursor.h"
+#include "vtkNew.h"
+#include "vtkUnsignedCharArray.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace
+{
+
+using bricks::Index3;
+
+/// Calls `visit(level, cell, id)` for the leaves of a grid that are shown: cells of their level, and the number of their values.
+class LeafWalk
+{
+public:
+  explicit LeafWalk(vtkHyperTreeGrid* grid)
+    : Grid(grid)
+    , Branching(grid->GetBranchFactor())
+    , Ghosts(vtkUnsignedCharArray::SafeDownCast(
+        grid->GetCellData()->GetAbstractArray(vtkDataSetAttributes::GhostArrayName())))
+  {
+  }
+
+  template <class Visit>
+  void Run(const Visit& visit)
+  {
+    vtkHyperTreeGrid::vtkHyperTreeGridIterator trees;
+    trees.Initialize(this->Grid);
+    vtkIdType index = 0;
+    while (trees.GetNextTree(index))
+    {
+      unsigned int root[3];
+      this->Grid->GetLevelZeroCoordinatesFromIndex(index, root[0], root[1], root[2]);
+      this->Grid->InitializeNonOrientedCursor(this->Cursor, index);
+      this->Descend(0, Index3(root[0], root[1], root[2]), visit);
+    }
+  }
+
+private:
+  template <class Visit>
+  void Descend(int level, const Index3& cell, const Visit& visit)
+  {
+    if (this->Cursor->IsMasked())
+    {
+      return;
+    }
+    const vtkIdType id = this->Cursor->GetGlobalNodeIndex();
+    if (this->Cursor->IsLeaf())
+    {
+      constexpr unsigned char hidden =
+        vtkDataSetAttributes::DUPLICATECELL | vtkDataSetAttributes::HIDDENCELL;
+      if (!this->Ghosts || (this->Ghosts->GetValue(id) & hidden) == 0)
+      {
+        visit(level, cell, id);
+      }
+      return;
+    }
+    unsigned char child = 0;
+    bricks::ForEachIndex({ Index3(0), Index3(this->Branching) },
+      [&](const Index3& part)
+      {
+        this->Cursor->ToChild(child++);
+        this->Descend(level + 1, cell * Index3(this->Branching) + part, visit);
+        this->Cursor->ToParent();
+      });
+  }
+
+  vtkHyperTreeGrid* Grid;
+  std::int64_t Branching;
+  vtkUnsignedCharArray* Ghosts;
+  vtkNew<vtkHyperTreeGridNonOrientedCursor> Cursor;
+};
+
+} // namespace
+
+/// This rank's leaves, with the values of one array.
+class vtkDSMTreeData::Source final : public bricks::LevelSource
+{
+public:
+  Source(const vtkDSMTreeData& data, const Choice& choice)
+    : Component(choice.Component)
+  {
+    for (std::size_t own = 0; own < data.Grids.size(); ++own)
+    {
+      vtkDSMImageArrays::Info info;
+      vtkDataArray* const array = vtkDSMImageArrays::Find(data.Grids[own], choice, info);
+      this->Arrays.emplace_back(array);
+      if (!array)
+      {
+        continue;
+      }
+      LeafWalk(data.Grids[own])
+        .Run(
+          [&](int level, const Index3& cell, vtkIdType id) {
+            this->Add(level, cell + data.FirstRoots[own] * data.Scales.Get(level), { id, own, 0 });
+          });
+    }
+  }
+
+  const std::vector<bricks::LevelCube>& GetCubes() const override { return this->Cubes.GetAll(); }
+  bool IsOfPoints() const override { return false; }
+
+  void ReadCube(std::size_t number, double* values, std::uint8_t* isLeaf) const override
+  {
+    constexpr std::int64_t edge = bricks::LevelLattice::Edge;
+    std::fill_n(isLeaf, edge * edge * edge, std::uint8_t{ 0 });
+    for (const Leaf& leaf : this->Leaves[number])
+    {
+      isLeaf[leaf.Place] = 1;
+      values[leaf.Place] = this->GetValue(leaf);
+    }
+  }
+
+private:
+  struct Leaf
+  {
+    vtkIdType Id;
+    std::size_t Grid;
+    std::uint16_t Place; ///< in the cube
+  };
+
+  double GetValue(const Leaf& leaf) const
+  {
+    vtkDataArray* const array = this->Arrays[leaf.Grid];
+    if (this->Component != vtkDSMImagePiece::Magnitude)
+    {
+      return array->GetComponent(leaf.Id, this->Component);
+    }
+    double sum = 0.0;
+    for (int component = 0; component < array->GetNumberOfComponents(); ++component)
+    {
+      const double value = array->GetComponent(leaf.Id, component);
+      sum += value * value;
+    }
+    return std::sqrt(sum);
+  }
+
+  void Add(int level, const Index3& cell, Leaf leaf)
+  {
+    constexpr std::int64_t edge = bricks::LevelLattice::Edge;
+    const std::size_t number = this->Cubes.Find(level, cell);
+    this->Leaves.resize(this->Cubes.GetAll().size());
+    this->Cubes.Count(number, cell);
+    const Index3 at = cell % Index3(edge);
+    leaf.Place = static_cast<std::uint16_t>(at.x + edge * (at.y + edge * at.z));
+    this->Leaves[number].push_back(leaf);
+  }
+
+  int Component;
+  std::vector<vtkSmartPointer<vtkDataArray>> Arrays; ///< of the grids; some null
+  bricks::LevelCubes Cubes;
+  std::vector<std::vector<Leaf>> Leaves; ///< of the cubes
+};
+
+vtkDSMTreeData::vtkDSMTreeData(const std::shared_ptr<vtkDSMRankGroup>& group, const Parts& parts)
+  : vtkDSMLevelData(group)
+{
+  dsm::Messenger& messenger = this->Group->GetMessenger();
+  std::vector<Roots> mine;
+  messenger.RunTogether("Reading the hyper trees",
+    [&]
+    {
+      for (const auto& part : parts)
+      {
+        vtkHyperTreeGrid* const grid = vtkHyperTreeGrid::SafeDownCast(part);
+        this->Grids.emplace_back(grid);
+        mine.push_back(Describe(grid));
+      }
+    });
+  int first = 0;
+  const std::vector<Roots> all = vtkDSMGather::Items(messenger, mine, first);
+  messenger.RunTogether("Joining the hyper trees", [&] { this->Place(all, first); });
+}
+
+vtkDSMTreeData::~vtkDSMTreeData() = default;
+
+vtkDSMTreeData::Roots vtkDSMTreeData::Describe(vtkHyperTreeGrid* grid)
+{
+  if (grid->GetDimension() != 3)
+  {
+    throw dsm::Error("A hyper tree grid of " + std::to_string(grid->GetDimension()) +
+      " dimensions has no isosurfaces. Show its surface.");
+  }
+  Roots roots{};
+  vtkDataArray* const axes[3] = { grid->GetXCoordinates(), grid->GetYCoordinates(),
+    grid->GetZCoordinates() };
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    const vtkIdType last = axes[axis]->GetNumberOfTuples() - 1;
+    roots.Cells[axis] = last;
+    roots.Origin[axis] = axes[axis]->GetComponent(0, 0);
+    const double length = axes[axis]->GetComponent(last, 0) - roots.Origin[axis];
+    roots.Spacing[axis] = length / static_cast<double>(last);
+    for (vtkIdType point = 0; point <= last; ++point)
+    {
+      const double even = roots.Origin[axis] + static_cast<double>(point) * roots.Spacing[axis];
+      if (!(std::abs(axes[axis]->GetComponent(point, 0) - even) <= 1e-3 * roots.Spacing[axis]))
+      {
+        throw dsm::Error("The roots of the hyper tree grid are not equally spaced, which ray "
+                         "tracing requires. Apply "
+                         "Resample To Image first.");
+      }
+    }
+  }
+  roots.Branching = grid->GetBranchFactor();
+  roots.Levels = static_cast<std::int64_t>(grid->GetNumberOfLevels());
+  return roots;
+}
+
+void vtkDSMTreeData::Place(const std::vector<Roots>& all, int firstOwn)
+{
+  const Roots& one = all.front();
+  const glm::dvec3 spacing(one.Spacing[0], one.Spacing[1], one.Spacing[2]);
+  const glm::dvec3 anchor(one.Origin[0], one.Origin[1], one.Origin[2]);
+  std::vector<Index3> firsts;
+  Index3 least(0);
+  std::int64_t levels = 1;
+  for (const Roots& roots : all)
+  {
+    Index3 first;
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      const double exact = (roots.Origin[axis] - anchor[axis]) / spacing[axis];
+      first[axis] = std::llround(exact);
+      if (!(std::abs(exact - static_cast<double>(first[axis])) < 0.05) ||
+        !(std::abs(roots.Spacing[axis] - spacing[axis]) < 1e-3 * spacing[axis]) ||
+        roots.Branching != one.Branching)
+      {
+        throw dsm::Error("The hyper tree grids of the dataset have different roots. Show them "
+                         "apart, for example with "
+                         "Extract Block.");
+      }
+    }
+    firsts.push_back(first);
+    least = glm::min(least, first);
+    levels = std::max(levels, roots.Levels);
+  }
+  std::vector<Index3> scales{ Index3(1) };
+  while (static_cast<std::int64_t>(scales.size()) < levels)
+  {
+    scales.push_back(scales.back() * Index3(one.Branching));
+  }
+  this->Scales = bricks::LevelScales(std::move(scales));
+  for (std::size_t number = 0; number < all.size(); ++number)
+  {
+    const Index3 first = firsts[number] - least;
+    const Index3 end =
+      first + Index3(all[number].Cells[0], all[number].Cells[1], all[number].Cells[2]);
+    this->Lower = glm::min(this->Lower, glm::dvec3(first));
+    this->Upper = glm::max(this->Upper, glm::dvec3(end));
+    const std::size_t begin = static_cast<std::size_t>(firstOwn);
+    if (number >= begin && number < begin + this->Grids.size())
+    {
+      this->FirstRoots.push_back(first);
+    }
+  }
+  this->SetPlace(anchor + glm::dvec3(least) * spacing, glm::dmat3(1.0), spacing);
+}
+
+void vtkDSMTreeData::AddPlaces(bricks::ByteHash& hash) const
+{
+  for (std::size_t own = 0; own < this->Grids.size(); ++own)
+  {
+    const Roots roots = Describe(this->Grids[own]);
+    hash.Add(&roots, sizeof(roots));
+    LeafWalk(this->Grids[own])
+      .Run(
+        [&](int level, const Index3& cell, vtkIdType id)
+        {
+          const std::int64_t leaf[] = { level, cell.x, cell.y, cell.z, id };
+          hash.Add(leaf, sizeof(leaf));
+        });
+  }
+}
+
+std::unique_ptr<bricks::LevelSource> vtkDSMTreeData::CreateSource(const Choice& choice) const
+{
+  return std::make_unique<Source>(*this, choice);
+}
