@@ -26,6 +26,11 @@ vtkDSMLevelData::vtkDSMLevelData(std::shared_ptr<vtkDSMRankGroup> group)
 
 vtkDSMLevelData::~vtkDSMLevelData() = default;
 
+bool vtkDSMLevelData::IsOfLevels(vtkDataObject* data)
+{
+  return vtkUniformGridAMR::SafeDownCast(data) || vtkHyperTreeGrid::SafeDownCast(data);
+}
+
 vtkDSMLevelData::Parts vtkDSMLevelData::GetParts(vtkDataObject* data)
 {
   Parts parts;
@@ -35,11 +40,12 @@ vtkDSMLevelData::Parts vtkDSMLevelData::GetParts(vtkDataObject* data)
   {
     auto* image = vtkImageData::SafeDownCast(object);
     auto* trees = vtkHyperTreeGrid::SafeDownCast(object);
-    if (trees || (isAmr && image && image->GetNumberOfPoints() > 0))
+    const bool isTree = trees && trees->GetNumberOfElements(vtkDataObject::CELL) > 0;
+    if (isTree || (isAmr && image && image->GetNumberOfPoints() > 0))
     {
       parts.emplace_back(object);
     }
-    isMixed = isMixed || (object && !trees && !isAmr);
+    isMixed = isMixed || (object && !isAmr && !trees);
   };
   auto* composite = vtkCompositeDataSet::SafeDownCast(data);
   if (!composite)

@@ -29,10 +29,12 @@ public:
   using Choice = vtkDSMImageArrays::Choice;
   using Parts = std::vector<vtkSmartPointer<vtkDataObject>>;
 
+  /// Local: whether a dataset is AMR or a hyper tree grid; it may have no cells on this rank.
+  static bool IsOfLevels(vtkDataObject* data);
   /// Local: the parts of such a dataset, which have points or cells; none if the data are of another kind. Throws dsm::Error
   /// where parts of different kinds are together.
   static Parts GetParts(vtkDataObject* data);
-  /// Collective. `parts`: this rank's; null if no rank has any.
+  /// Collective. `parts`: this rank's. Returns null if no rank has any.
   static std::unique_ptr<vtkDSMLevelData> Create(
     const std::shared_ptr<vtkDSMRankGroup>& group, const Parts& parts);
   virtual ~vtkDSMLevelData();

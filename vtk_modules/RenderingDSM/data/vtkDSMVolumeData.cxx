@@ -164,7 +164,7 @@ void vtkDSMVolumeData::CollectImages(vtkDataObject* data)
     return;
   }
   this->LevelParts = vtkDSMLevelData::GetParts(data);
-  if (!this->LevelParts.empty())
+  if (!this->LevelParts.empty() || vtkDSMLevelData::IsOfLevels(data))
   {
     return;
   }
