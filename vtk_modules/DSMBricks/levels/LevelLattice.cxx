@@ -161,7 +161,9 @@ void LevelLattice::Cut(const LevelCube& cube, Box parts)
 
 dsm::BlockId LevelLattice::Find(int level, const Index3& cell) const
 {
-  const auto found = this->Cubes.find(Key{ level, DivideDown(cell, Index3(Edge)) });
+  static_assert(Edge == 1 << EdgeShift);
+  const auto found = this->Cubes.find(
+    Key{ level, Index3(cell.x >> EdgeShift, cell.y >> EdgeShift, cell.z >> EdgeShift) });
   if (found != this->Cubes.end())
   {
     for (dsm::BlockId id = found->second.first; id < found->second.second; ++id)

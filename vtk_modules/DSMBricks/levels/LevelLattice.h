@@ -82,6 +82,7 @@ class LevelLattice
 {
 public:
   static constexpr std::int64_t Edge = 16;
+  static constexpr int EdgeShift = 4;
   static constexpr std::int64_t PartEdge = 4;
 
   LevelLattice() = default;

@@ -53,6 +53,10 @@ public:
   /// then those of coarser and of finer ones, nearer levels first. False where there are no data.
   bool FindPoint(int level, const bricks::Index3& point, double& value)
   {
+    if (this->FindPointInBrick(level, point, value))
+    {
+      return true;
+    }
     const int levels = this->Field.Lattice.GetScales().GetCount();
     for (int apart = 0; apart < levels; ++apart)
     {
@@ -66,6 +70,33 @@ public:
   }
 
 private:
+  /// The same in the brick that was read last, if it is of that level.
+  bool FindPointInBrick(int level, const bricks::Index3& point, double& value)
+  {
+    if (!this->Pin)
+    {
+      return false;
+    }
+    const bricks::LevelBrick& brick = this->Field.Lattice.GetBrick(this->Brick);
+    const glm::ivec3 at(point - brick.Cells.Min);
+    const glm::ivec3 cells(brick.Cells.Max - brick.Cells.Min);
+    if (brick.Level != level || glm::any(glm::lessThan(at, glm::ivec3(0))) ||
+      glm::any(glm::greaterThan(at, cells)))
+    {
+      return false;
+    }
+    const bricks::VoxelBrick<T> voxels(this->Pin->GetData());
+    bool isCorner = !brick.HasMask;
+    for (int octant = 0; octant < 8 && !isCorner; ++octant)
+    {
+      const glm::ivec3 cell = at - glm::ivec3(octant & 1, octant >> 1 & 1, octant >> 2);
+      isCorner = glm::all(glm::greaterThanEqual(cell, glm::ivec3(0))) &&
+        glm::all(glm::lessThan(cell, cells)) && voxels.IsCovered(cell.x, cell.y, cell.z);
+    }
+    value = isCorner ? static_cast<double>(voxels.GetSample(at.x, at.y, at.z)) : value;
+    return isCorner;
+  }
+
   /// The same among the leaves of level `other`.
   bool FindPointOf(int other, int level, const bricks::Index3& point, double& value)
   {
