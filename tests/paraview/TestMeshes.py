@@ -79,6 +79,48 @@ fixed = get_ranks() == 1 or simple.GetParaViewVersion() < (5, 13)
 compare("HyperTreeGrid" if fixed else None, simple.HyperTreeGridRandom(),
         lambda d: color_by(d, "CELLS", "Depth"), share=0.01, shading=5.0)
 
+# Of image data, isosurfaces are what is shown unless Show says otherwise.
+def show_outer_surface(display):
+    check(display.DSMShow == "Isosurfaces", "isosurfaces are the default of image data")
+    display.DSMShow = "Surface"
+    color_by(display, "POINTS", "RTData")
+
+
+def show_edges_of_image(display):
+    show_outer_surface(display)
+    display.DSMShowEdges = 1
+    transform(display, [0.3, 0.2, -0.1], [20.0, 30.0, 40.0], [1.0, 0.4, 2.0])
+
+
+compare("ImageSurface", wavelet(), show_outer_surface)
+compare("ImageEdges", wavelet(), show_edges_of_image, shading=8.0, reference="Surface With Edges")
+blocks = simple.GroupDatasets(
+    Input=[wavelet(), simple.Wavelet(WholeExtent=[12, 20, -8, 8, -8, 8])], BlockNames=["one", "other"])
+
+
+def show_one_block(display):
+    show_outer_surface(display)
+    display.BlockSelectors = ["/Root/other"]
+    display.BlockColors = ["/Root/other", "1.0", "0.5", "0.0"]
+
+
+compare("ImageBlocks", blocks, show_one_block)
+
+# What is not shown has no bricks.
+image = wavelet()
+display = show_traced(image, view, DSMIsoValues=[150.0])
+place_camera(view)
+isosurfaces = render(view)
+published = get_rows(display)[0]["BytesPublished"]
+display.DSMShow = "Surface"
+check((render(view) != isosurfaces).any(), "the surface is shown in place of the isosurfaces")
+surface = get_rows(display)[0]
+check(surface["Publications"] == 1 and surface["BytesPublished"] != published, "and only it has bricks")
+display.DSMShow = "Isosurfaces"
+check_equal(render(view), isosurfaces, "and they in place of the surface", tolerance=0)
+check(get_rows(display)[0]["Publications"] == 1, "as have they")
+simple.Delete(image)
+
 # Textures, also where each rank has a part of the surface.
 CHECKS = os.path.join(OUTPUT, f"checks.{get_ranks()}.png")
 if vtkMultiProcessController.GetGlobalController().GetLocalProcessId() == 0:

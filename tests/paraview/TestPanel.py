@@ -32,7 +32,7 @@ view = create_view()
 SLICES = [f"DSMSlice{axis}{part}" for axis in "XYZ" for part in ("", "Index", "Indices")] + ["DSMSlicePlane"]
 LIGHT = ["DSMShadows", "DSMAmbientOcclusionSamples", "DSMSamplesPerPixel"]
 for source, own in (
-    (simple.Wavelet(), ["DSMIsoArray", "DSMIsoArrayAutomatic", "DSMIsoComponent", "DSMIsoValue", "DSMIsoValueAutomatic",
+    (simple.Wavelet(), ["DSMShow", "DSMIsoArray", "DSMIsoArrayAutomatic", "DSMIsoComponent", "DSMIsoValue", "DSMIsoValueAutomatic",
                         "DSMValueRange", "DSMIsoValues", *SLICES]),
     (simple.Cone(), []),
 ):

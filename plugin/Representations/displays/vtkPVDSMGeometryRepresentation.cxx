@@ -44,22 +44,29 @@ vtkPVDSMGeometryRepresentation::vtkPVDSMGeometryRepresentation()
   this->Display = std::make_unique<vtkPVDSMTracedDisplay>(
     this, this->Actor, mapper, "Cutting the surface into bricks");
   this->Display->SelectionMapper->SetCompositeDataDisplayAttributes(attributes);
-  this->Display->SelectionMapper->SetSource(
-    [this]() -> vtkSmartPointer<vtkDataObject> { return this->GetRenderedDataObject(0); });
+  this->Display->SelectionMapper->SetSource([this] { return this->MakeSelectable(); });
   this->Display->SetLook = [this](vtkActor* actor, vtkMapper* look)
-  {
-    this->UpdateColoringParameters();
-    actor->SetProperty(this->Property);
-    look->SetLookupTable(this->Mapper->GetLookupTable());
-    look->UseLookupTableScalarRangeOn();
-    look->SetScalarVisibility(this->Mapper->GetScalarVisibility());
-    look->SetScalarMode(this->Mapper->GetScalarMode());
-    look->SelectColorArray(this->Mapper->GetArrayName());
-    look->SetColorMode(this->Mapper->GetColorMode());
-  };
+  { this->SetExportLook(actor, look); };
 }
 
 vtkPVDSMGeometryRepresentation::~vtkPVDSMGeometryRepresentation() = default;
+
+vtkSmartPointer<vtkDataObject> vtkPVDSMGeometryRepresentation::MakeSelectable()
+{
+  return this->GetRenderedDataObject(0);
+}
+
+void vtkPVDSMGeometryRepresentation::SetExportLook(vtkActor* actor, vtkMapper* mapper)
+{
+  this->UpdateColoringParameters();
+  actor->SetProperty(this->Property);
+  mapper->SetLookupTable(this->Mapper->GetLookupTable());
+  mapper->UseLookupTableScalarRangeOn();
+  mapper->SetScalarVisibility(this->Mapper->GetScalarVisibility());
+  mapper->SetScalarMode(this->Mapper->GetScalarMode());
+  mapper->SelectColorArray(this->Mapper->GetArrayName());
+  mapper->SetColorMode(this->Mapper->GetColorMode());
+}
 
 vtkDSMPolyDataMapper* vtkPVDSMGeometryRepresentation::GetMapper() const
 {

@@ -20,7 +20,10 @@
 #include <memory> // for ivars
 #include <vector>
 
+class vtkActor;
 class vtkDSMPolyDataMapper;
+class vtkDataObject;
+class vtkMapper;
 class vtkPVDSMFrameReport;
 class vtkPVDSMLightOptions;
 class vtkPVDSMMemoryOptions;
@@ -114,17 +117,26 @@ protected:
   /// Its data are not redistributed.
   bool NeedsOrderedCompositing() override { return false; }
 
+  ///@{
+  /// Parts of ProcessViewRequest.
+  virtual void PrepareUpdate(vtkInformation* inInfo, vtkInformation* outInfo);
+  virtual void PrepareRender(vtkInformation* inInfo);
+  ///@}
+  /// Returns whether any shown data let light through: the same on every rank.
+  virtual bool IsTranslucent();
+  /// Returns what selections draw of this rank's data; may be null.
+  virtual vtkSmartPointer<vtkDataObject> MakeSelectable();
+  /// Gives an actor, which exporters are to have, the look of what is traced.
+  virtual void SetExportLook(vtkActor* actor, vtkMapper* mapper);
+  vtkDSMPolyDataMapper* GetMapper() const;
+
+  std::unique_ptr<vtkPVDSMTracedDisplay> Display;
+
 private:
   vtkPVDSMGeometryRepresentation(const vtkPVDSMGeometryRepresentation&) = delete;
   void operator=(const vtkPVDSMGeometryRepresentation&) = delete;
 
-  vtkDSMPolyDataMapper* GetMapper() const;
-  void PrepareUpdate(vtkInformation* inInfo, vtkInformation* outInfo);
-  void PrepareRender(vtkInformation* inInfo);
-  bool IsTranslucent();
-
   bool ShowEdges = false;
-  std::unique_ptr<vtkPVDSMTracedDisplay> Display;
 };
 
 #endif

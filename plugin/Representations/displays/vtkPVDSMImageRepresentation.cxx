@@ -2,6 +2,7 @@
 #include "vtkPVDSMImageRepresentation.h"
 
 #include "vtkDSMErrorGuard.h"
+#include "vtkDSMPolyDataMapper.h"
 #include "vtkDSMVolumeMapper.h"
 #include "vtkPVDSMFrameReport.h"
 #include "vtkPVDSMIsosurfaceGeometry.h"
@@ -10,6 +11,7 @@
 #include "vtkPVDSMVolumePlaces.h"
 
 #include "vtkActor.h"
+#include "vtkAlgorithmOutput.h"
 #include "vtkCompositeDataIterator.h"
 #include "vtkDataArray.h"
 #include "vtkDataAssembly.h"
@@ -22,7 +24,7 @@
 #include "vtkMatrix4x4.h"
 #include "vtkMultiBlockDataSet.h"
 #include "vtkObjectFactory.h"
-#include "vtkPVRenderView.h"
+#include "vtkPVLODActor.h"
 #include "vtkPartitionedDataSetCollection.h"
 #include "vtkPolyData.h"
 #include "vtkPolyDataMapper.h"
@@ -36,25 +38,47 @@
 namespace
 {
 
-/// Finds a dataset's blocks by the paths that ParaView's Multiblock Inspector names them by.
+/// Finds a dataset's blocks by the paths that ParaView's Multiblock Inspector names them by. Only datasets of these two
+/// classes have paths that lead to blocks.
 class BlockPaths
 {
 public:
-  explicit BlockPaths(vtkDataObjectTree* tree)
-    : Tree(tree)
-    , IsKnown(tree && vtkDataAssemblyUtilities::GenerateHierarchy(tree, this->Assembly))
+  explicit BlockPaths(vtkDataObject* data)
+    : Collection(vtkPartitionedDataSetCollection::SafeDownCast(data))
+    , IsKnown((this->Collection || vtkMultiBlockDataSet::SafeDownCast(data)) &&
+        vtkDataAssemblyUtilities::GenerateHierarchy(
+          vtkCompositeDataSet::SafeDownCast(data), this->Assembly))
   {
   }
   /// Returns whether there are blocks with paths.
   bool Any() const { return this->IsKnown; }
   std::vector<unsigned int> Find(const std::vector<std::string>& paths) const
   {
-    return vtkDataAssemblyUtilities::GetSelectedCompositeIds(
-      paths, this->Assembly, vtkPartitionedDataSetCollection::SafeDownCast(this->Tree), true);
+    const auto found = vtkDataAssemblyUtilities::GetSelectedCompositeIds(
+      paths, this->Assembly, this->Collection, !this->Collection);
+    return this->Collection ? this->FindPartitions(found) : found;
   }
 
 private:
-  vtkDataObjectTree* Tree;
+  /// VTK finds the nodes of a collection only: it, or its partitioned datasets.
+  std::vector<unsigned int> FindPartitions(const std::vector<unsigned int>& nodes) const
+  {
+    const auto has = [&](unsigned int node)
+    { return std::find(nodes.begin(), nodes.end(), node) != nodes.end(); };
+    std::vector<unsigned int> partitions;
+    for (unsigned int set = 0; set < this->Collection->GetNumberOfPartitionedDataSets(); ++set)
+    {
+      const bool isFound = has(0) || has(this->Collection->GetCompositeIndex(set));
+      for (unsigned int part = 0; isFound && part < this->Collection->GetNumberOfPartitions(set);
+           ++part)
+      {
+        partitions.push_back(this->Collection->GetCompositeIndex(set, part));
+      }
+    }
+    return partitions;
+  }
+
+  vtkPartitionedDataSetCollection* Collection;
   vtkNew<vtkDataAssembly> Assembly;
   bool IsKnown;
 };
@@ -100,52 +124,94 @@ void NumberBlocks(vtkDataObjectTree* tree, unsigned int distinctNumbers)
 vtkStandardNewMacro(vtkPVDSMImageRepresentation);
 
 vtkPVDSMImageRepresentation::vtkPVDSMImageRepresentation()
-  : Display(std::make_unique<vtkPVDSMTracedDisplay>(
-      this, this->Volume, this->Mapper, "Cutting the volume into bricks"))
 {
-  this->Volume->SetMapper(this->Mapper);
-  this->Mapper->MakesSceneOff(); // on ParaView's client there shall be none
-  this->Mapper->AutomaticIsoValueOn();
-  this->Mapper->SurfacesOnlyOn();
-  this->Display->SelectionMapper->SetSource(
-    [this]() -> vtkSmartPointer<vtkDataObject>
-    {
-      const bool hasInput = this->GetNumberOfInputConnections(0) > 0;
-      return this->MakeSelectable(hasInput ? this->GetInputDataObject(0, 0) : nullptr);
-    });
-  this->Display->SetLook = [this](vtkActor* actor, vtkMapper* mapper)
-  {
-    actor->SetProperty(this->Mapper->GetSurfaceProperty());
-    mapper->SetLookupTable(this->Mapper->GetLookupTable());
-    mapper->UseLookupTableScalarRangeOn();
-    mapper->SetScalarVisibility(this->Mapper->GetScalarVisibility());
-    mapper->SetScalarMode(this->Mapper->GetColorArrayOnCells()
-        ? VTK_SCALAR_MODE_USE_CELL_FIELD_DATA
-        : VTK_SCALAR_MODE_USE_POINT_FIELD_DATA);
-    mapper->SelectColorArray(this->Mapper->GetColorArray().c_str());
-    mapper->SetColorMode(
-      this->Mapper->GetMapScalars() ? VTK_COLOR_MODE_MAP_SCALARS : VTK_COLOR_MODE_DIRECT_SCALARS);
-  };
+  this->Volume->SetMapper(this->VolumeMapper);
+  this->VolumeMapper->MakesSceneOff(); // on ParaView's client there shall be none
+  this->VolumeMapper->AutomaticIsoValueOn();
+  this->VolumeMapper->SurfacesOnlyOn();
+  this->VolumeMapper->SetSurfaceProperty(this->Property);
+  this->ShowVolume();
 }
 
 vtkPVDSMImageRepresentation::~vtkPVDSMImageRepresentation() = default;
 
-int vtkPVDSMImageRepresentation::FillInputPortInformation(int, vtkInformation* info)
+void vtkPVDSMImageRepresentation::ShowVolume()
 {
-  info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkDataObject");
-  info->Set(vtkAlgorithm::INPUT_IS_OPTIONAL(), 1);
-  return 1;
+  this->Display->Show(this->Volume, this->VolumeMapper, "Cutting the volume into bricks");
+  this->Display->SelectionMapper->SetCompositeDataDisplayAttributes(nullptr);
+}
+
+void vtkPVDSMImageRepresentation::SetShow(int part)
+{
+  if (part == this->Shown)
+  {
+    return;
+  }
+  this->Shown = part;
+  if (this->ShowsSurface())
+  {
+    this->Display->Show(this->Actor, this->GetMapper(), "Cutting the surface into bricks");
+    this->Display->SelectionMapper->SetCompositeDataDisplayAttributes(
+      this->GetMapper()->GetCompositeDataDisplayAttributes());
+    this->TakeInput(nullptr);
+  }
+  else
+  {
+    this->ShowVolume();
+    this->ReleaseSurface();
+  }
+  this->MarkModified();
+}
+
+void vtkPVDSMImageRepresentation::ReleaseSurface()
+{
+  this->GetMapper()->SetInputDataObject(nullptr);
+  this->GetMapper()->SetOriginalData(nullptr);
+  vtkAlgorithmOutput* const input = this->GeometryFilter->GetNumberOfInputConnections(0) > 0
+    ? this->GeometryFilter->GetInputConnection(0, 0)
+    : nullptr;
+  if (input)
+  {
+    input->GetProducer()->GetOutputDataObject(input->GetIndex())->Initialize();
+    this->GeometryFilter->GetOutputDataObject(0)->Initialize();
+    this->MultiBlockMaker->GetOutputDataObject(0)->Initialize();
+  }
+}
+
+/// Isosurfaces need no ghost cells, and get the data as they are.
+int vtkPVDSMImageRepresentation::RequestUpdateExtent(
+  vtkInformation* request, vtkInformationVector** input, vtkInformationVector* output)
+{
+  this->RequestGhostCellsIfNeeded = this->ShowsSurface();
+  return this->Superclass::RequestUpdateExtent(request, input, output);
 }
 
 int vtkPVDSMImageRepresentation::RequestData(
   vtkInformation* request, vtkInformationVector** input, vtkInformationVector* output)
 {
+  if (this->ShowsSurface())
+  {
+    this->RestoreSurfaceInput(vtkDataObject::GetData(input[0], 0));
+    return this->Superclass::RequestData(request, input, output);
+  }
   return vtkDSMErrorGuard::Run(this, "updating", this->GetLogName().c_str(),
     [&]
     {
       this->TakeInput(vtkDataObject::GetData(input[0], 0)); // null without an input
-      return this->Superclass::RequestData(request, input, output);
+      return this->vtkPVDataRepresentation::RequestData(request, input, output);
     });
+}
+
+/// Fills the superclass's copy of the input, which ReleaseSurface has emptied.
+void vtkPVDSMImageRepresentation::RestoreSurfaceInput(vtkDataObject* data)
+{
+  vtkAlgorithmOutput* const port = data ? this->GetInternalOutputPort() : nullptr;
+  vtkDataObject* const copy =
+    port ? port->GetProducer()->GetOutputDataObject(port->GetIndex()) : nullptr;
+  if (copy && copy->IsA(data->GetClassName()))
+  {
+    copy->ShallowCopy(data);
+  }
 }
 
 void vtkPVDSMImageRepresentation::TakeInput(vtkDataObject* source)
@@ -163,26 +229,27 @@ void vtkPVDSMImageRepresentation::TakeInput(vtkDataObject* source)
       NumberBlocks(tree, this->BlockColorsDistinctValues);
     }
   }
-  this->Mapper->SetInputData(data);
-  this->Mapper->SetOriginalData(source);
+  this->VolumeMapper->SetInputData(data);
+  this->VolumeMapper->SetOriginalData(source);
   this->BlockLooksAreOld = true;
   this->Display->NoteUpdate();
 }
 
-vtkDataObject* vtkPVDSMImageRepresentation::GetRenderedDataObject(int)
+vtkDataObject* vtkPVDSMImageRepresentation::GetRenderedDataObject(int port)
 {
-  return this->Mapper->GetInputDataObject(0, 0);
+  return this->ShowsSurface() ? this->Superclass::GetRenderedDataObject(port)
+                              : this->VolumeMapper->GetInputDataObject(0, 0);
 }
 
 void vtkPVDSMImageRepresentation::RemoveHiddenBlocks(vtkDataObject* data) const
 {
   auto* tree = vtkDataObjectTree::SafeDownCast(data);
-  const BlockPaths paths(this->BlockSelectors.empty() ? nullptr : tree);
+  const BlockPaths paths(this->ShownBlocks.empty() ? nullptr : tree);
   if (!paths.Any())
   {
     return;
   }
-  const std::vector<unsigned int> shown = paths.Find(this->BlockSelectors);
+  const std::vector<unsigned int> shown = paths.Find(this->ShownBlocks);
   vtkSmartPointer<vtkCompositeDataIterator> leaf;
   leaf.TakeReference(tree->NewIterator());
   for (leaf->InitTraversal(); !leaf->IsDoneWithTraversal(); leaf->GoToNextItem())
@@ -196,73 +263,79 @@ void vtkPVDSMImageRepresentation::RemoveHiddenBlocks(vtkDataObject* data) const
 
 void vtkPVDSMImageRepresentation::AddBlockSelector(const char* selector)
 {
-  this->BlockSelectors.emplace_back(selector);
+  this->Superclass::AddBlockSelector(selector);
+  this->ShownBlocks.emplace_back(selector);
   this->MarkModified();
 }
 
 void vtkPVDSMImageRepresentation::RemoveAllBlockSelectors()
 {
-  this->BlockSelectors.clear();
+  this->Superclass::RemoveAllBlockSelectors();
+  this->ShownBlocks.clear();
   this->MarkModified();
 }
 
 void vtkPVDSMImageRepresentation::SetBlockColor(const char* selector, double r, double g, double b)
 {
-  this->BlockColors.push_back({ selector, { r, g, b } });
+  this->Superclass::SetBlockColor(selector, r, g, b);
+  this->ColorsOfBlocks.push_back({ selector, { r, g, b } });
   this->BlockLooksAreOld = true;
 }
 
 void vtkPVDSMImageRepresentation::RemoveAllBlockColors()
 {
-  this->BlockColors.clear();
+  this->Superclass::RemoveAllBlockColors();
+  this->ColorsOfBlocks.clear();
   this->BlockLooksAreOld = true;
 }
 
 void vtkPVDSMImageRepresentation::SetBlockOpacity(const char* selector, double opacity)
 {
-  this->BlockOpacities.emplace_back(selector, opacity);
+  this->Superclass::SetBlockOpacity(selector, opacity);
+  this->OpacitiesOfBlocks.emplace_back(selector, opacity);
   this->BlockLooksAreOld = true;
 }
 
 void vtkPVDSMImageRepresentation::RemoveAllBlockOpacities()
 {
-  this->BlockOpacities.clear();
+  this->Superclass::RemoveAllBlockOpacities();
+  this->OpacitiesOfBlocks.clear();
   this->BlockLooksAreOld = true;
 }
 
 void vtkPVDSMImageRepresentation::SetBlockColorsDistinctValues(int number)
 {
   this->BlockColorsDistinctValues = std::max(number, 1);
-  this->MarkModified();
+  this->Superclass::SetBlockColorsDistinctValues(this->BlockColorsDistinctValues);
 }
 
 void vtkPVDSMImageRepresentation::ChooseBlockLooks()
 {
   this->BlockLooksAreOld = false;
-  this->Mapper->RemoveBlockLooks();
-  vtkDataObject* data = this->Mapper->GetInputDataObject(0, 0);
+  this->VolumeMapper->RemoveBlockLooks();
+  vtkDataObject* data = this->VolumeMapper->GetInputDataObject(0, 0);
   if (data && !this->BlockArray.empty())
   {
     this->ColorBlocksByArray(data);
   }
-  const bool areChosen = !this->BlockColors.empty() || !this->BlockOpacities.empty();
-  const BlockPaths paths(areChosen ? vtkDataObjectTree::SafeDownCast(data) : nullptr);
+  const bool areChosen = !this->ColorsOfBlocks.empty() || !this->OpacitiesOfBlocks.empty();
+  const BlockPaths paths(areChosen ? data : nullptr);
   if (!paths.Any())
   {
     return;
   }
-  for (const auto& [selector, color] : this->BlockColors)
+  for (const auto& [selector, color] : this->ColorsOfBlocks)
   {
     for (const unsigned int block : paths.Find({ selector }))
     {
-      this->Mapper->SetBlockColor(block, color[0], color[1], color[2]);
+      this->VolumeMapper->SetBlockColor(block, color[0], color[1], color[2]);
     }
   }
-  for (const auto& [selector, opacity] : this->BlockOpacities)
+  for (const auto& [selector, opacity] : this->OpacitiesOfBlocks)
   {
     for (const unsigned int block : paths.Find({ selector }))
     {
-      this->Mapper->SetBlockOpacity(block, opacity);
+      this->VolumeMapper->SetBlockOpacity(block, opacity);
     }
   }
 }
@@ -274,7 +347,7 @@ void vtkPVDSMImageRepresentation::ColorBlocksByArray(vtkDataObject* data)
     vtkDataArray* array = image->GetFieldData()->GetArray(this->BlockArray.c_str());
     if (array && array->GetNumberOfTuples() > 0)
     {
-      this->Mapper->SetBlockValue(block, array->GetComponent(0, 0));
+      this->VolumeMapper->SetBlockValue(block, array->GetComponent(0, 0));
     }
   };
   auto* tree = vtkDataObjectTree::SafeDownCast(data);
@@ -291,50 +364,71 @@ void vtkPVDSMImageRepresentation::ColorBlocksByArray(vtkDataObject* data)
   }
 }
 
-int vtkPVDSMImageRepresentation::ProcessViewRequest(
-  vtkInformationRequestKey* request, vtkInformation* inInfo, vtkInformation* outInfo)
+void vtkPVDSMImageRepresentation::PrepareUpdate(vtkInformation* inInfo, vtkInformation* outInfo)
 {
-  return vtkDSMErrorGuard::Run(this, "preparing", this->GetLogName().c_str(),
-    [&] { return this->Process(request, inInfo, outInfo); });
+  if (this->ShowsSurface())
+  {
+    this->Superclass::PrepareUpdate(inInfo, outInfo);
+    return;
+  }
+  this->ChooseLook();
+  if (this->BlockLooksAreOld)
+  {
+    this->ChooseBlockLooks();
+  }
+  this->Display->KeepData(this->Volume->GetBounds(), this->IsTranslucent(),
+    this->VolumeMapper->GetInputDataObject(0, 0), inInfo, outInfo);
 }
 
-int vtkPVDSMImageRepresentation::Process(
-  vtkInformationRequestKey* request, vtkInformation* inInfo, vtkInformation* outInfo)
+void vtkPVDSMImageRepresentation::PrepareRender(vtkInformation* inInfo)
 {
-  if (!this->Display->Process(request, inInfo, outInfo))
+  if (this->ShowsSurface())
   {
-    return 0;
+    this->Superclass::PrepareRender(inInfo);
+    return;
   }
-  this->ChooseBackfaces();
-  if (this->Mapper->GetSlicing())
+  this->ChooseLook();
+  if (this->VolumeMapper->GetSlicing())
   {
-    this->Slicing.ApplyTo(this->Mapper);
+    this->Slicing.ApplyTo(this->VolumeMapper);
   }
-  if (request == vtkPVView::REQUEST_UPDATE())
-  {
-    if (this->BlockLooksAreOld)
-    {
-      this->ChooseBlockLooks();
-    }
-    this->Display->KeepData(this->Volume->GetBounds(), this->IsTranslucent(),
-      this->Mapper->GetInputDataObject(0, 0), inInfo, outInfo);
-  }
-  else if (request == vtkPVView::REQUEST_RENDER())
-  {
-    this->Display->PrepareRender(this->Mapper->GetBounds(), inInfo);
-  }
-  return 1;
+  this->Display->PrepareRender(this->VolumeMapper->GetBounds(), inInfo);
 }
 
-vtkSmartPointer<vtkDataObject> vtkPVDSMImageRepresentation::MakeSelectable(vtkDataObject* data)
+vtkSmartPointer<vtkDataObject> vtkPVDSMImageRepresentation::MakeSelectable()
 {
+  if (this->ShowsSurface())
+  {
+    return this->Superclass::MakeSelectable();
+  }
+  const bool hasInput = this->GetNumberOfInputConnections(0) > 0;
+  vtkDataObject* const data = hasInput ? this->GetInputDataObject(0, 0) : nullptr;
   if (!this->Places)
   {
-    return vtkPVDSMIsosurfaceGeometry::Make(this->Mapper, data);
+    return vtkPVDSMIsosurfaceGeometry::Make(this->VolumeMapper, data);
   }
   this->Volume->ComputeMatrix();
   return this->Places->MakePoints(
-    data ? data : this->Mapper->GetDataObjectInput(), this->Volume->GetMatrix());
+    data ? data : this->VolumeMapper->GetDataObjectInput(), this->Volume->GetMatrix());
+}
+
+void vtkPVDSMImageRepresentation::SetExportLook(vtkActor* actor, vtkMapper* mapper)
+{
+  if (this->ShowsSurface())
+  {
+    this->Superclass::SetExportLook(actor, mapper);
+    return;
+  }
+  actor->SetProperty(this->VolumeMapper->GetSurfaceProperty());
+  mapper->SetLookupTable(this->VolumeMapper->GetLookupTable());
+  mapper->UseLookupTableScalarRangeOn();
+  mapper->SetScalarVisibility(this->VolumeMapper->GetScalarVisibility());
+  mapper->SetScalarMode(this->VolumeMapper->GetColorArrayOnCells()
+      ? VTK_SCALAR_MODE_USE_CELL_FIELD_DATA
+      : VTK_SCALAR_MODE_USE_POINT_FIELD_DATA);
+  mapper->SelectColorArray(this->VolumeMapper->GetColorArray().c_str());
+  mapper->SetColorMode(this->VolumeMapper->GetMapScalars() ? VTK_COLOR_MODE_MAP_SCALARS
+                                                           : VTK_COLOR_MODE_DIRECT_SCALARS);
 }
 
 void vtkPVDSMImageRepresentation::SelectByPlaces()
@@ -354,34 +448,32 @@ void vtkPVDSMImageRepresentation::SelectByPlaces()
   };
 }
 
-bool vtkPVDSMImageRepresentation::IsTranslucent() const
+bool vtkPVDSMImageRepresentation::IsTranslucent()
 {
-  const bool isColored = this->Mapper->GetScalarVisibility();
-  const bool isMapped = isColored || this->Mapper->GetBlockScalarVisibility();
+  if (this->ShowsSurface())
+  {
+    return this->Superclass::IsTranslucent();
+  }
+  const bool isColored = this->VolumeMapper->GetScalarVisibility();
+  const bool isMapped = isColored || this->VolumeMapper->GetBlockScalarVisibility();
   // Colors that are taken as they are may have an opacity on another rank.
-  vtkProperty* const front = this->Mapper->GetSurfaceProperty();
-  vtkProperty* const back = this->Mapper->GetBackfaceProperty();
+  vtkProperty* const front = this->VolumeMapper->GetSurfaceProperty();
+  vtkProperty* const back = this->VolumeMapper->GetBackfaceProperty();
   return front->GetOpacity() < 1.0 || front->GetBackfaceCulling() || front->GetFrontfaceCulling() ||
-    (back && back->GetOpacity() < 1.0) || (isColored && !this->Mapper->GetMapScalars()) ||
-    (isMapped && vtkPVDSMTracedDisplay::HasOpacity(this->Mapper->GetLookupTable())) ||
-    std::any_of(this->BlockOpacities.begin(), this->BlockOpacities.end(),
+    (back && back->GetOpacity() < 1.0) || (isColored && !this->VolumeMapper->GetMapScalars()) ||
+    (isMapped && vtkPVDSMTracedDisplay::HasOpacity(this->VolumeMapper->GetLookupTable())) ||
+    std::any_of(this->OpacitiesOfBlocks.begin(), this->OpacitiesOfBlocks.end(),
       [](const auto& block) { return block.second < 1.0; });
-}
-
-bool vtkPVDSMImageRepresentation::AddToView(vtkView* view)
-{
-  return this->Display->AddToView(view) && this->Superclass::AddToView(view);
-}
-
-bool vtkPVDSMImageRepresentation::RemoveFromView(vtkView* view)
-{
-  return this->Display->RemoveFromView(view) && this->Superclass::RemoveFromView(view);
 }
 
 void vtkPVDSMImageRepresentation::SetVisibility(bool visible)
 {
   this->Superclass::SetVisibility(visible);
-  this->Display->SetVisibility(visible);
+  if (!this->ShowsSurface())
+  {
+    this->Actor->VisibilityOff();
+    this->BackfaceActor->VisibilityOff();
+  }
 }
 
 void vtkPVDSMImageRepresentation::SetInputArrayToProcess(
@@ -393,21 +485,21 @@ void vtkPVDSMImageRepresentation::SetInputArrayToProcess(
     const bool isOfPlaces = association != vtkDataObject::FIELD_ASSOCIATION_NONE;
     this->BlockArray = isOfPlaces || !name ? "" : name;
     this->BlockLooksAreOld = true;
-    this->Mapper->SetBlockScalarVisibility(!this->BlockArray.empty());
-    this->Mapper->SetColorArray(isOfPlaces && name ? name : "");
-    this->Mapper->SetColorArrayOnCells(association == vtkDataObject::FIELD_ASSOCIATION_CELLS);
-    this->Mapper->SetScalarVisibility(isOfPlaces && name && name[0]);
+    this->VolumeMapper->SetBlockScalarVisibility(!this->BlockArray.empty());
+    this->VolumeMapper->SetColorArray(isOfPlaces && name ? name : "");
+    this->VolumeMapper->SetColorArrayOnCells(association == vtkDataObject::FIELD_ASSOCIATION_CELLS);
+    this->VolumeMapper->SetScalarVisibility(isOfPlaces && name && name[0]);
   }
 }
 
 void vtkPVDSMImageRepresentation::SelectIsoArray(int, int, int, int, const char* name)
 {
-  this->Mapper->SetIsoArray(name ? name : "");
+  this->VolumeMapper->SetIsoArray(name ? name : "");
 }
 
 void vtkPVDSMImageRepresentation::SetIsoComponent(int component)
 {
-  this->Mapper->SetIsoComponent(component);
+  this->VolumeMapper->SetIsoComponent(component);
 }
 
 void vtkPVDSMImageRepresentation::SetNumberOfIsoValues(int number)
@@ -445,142 +537,86 @@ void vtkPVDSMImageRepresentation::ChooseIsoValues()
     shown.push_back(this->SingleIsoValue);
   }
   const int number = static_cast<int>(shown.size());
-  this->Mapper->SetNumberOfIsoValues(number);
+  this->VolumeMapper->SetNumberOfIsoValues(number);
   for (int index = 0; index < number; ++index)
   {
-    this->Mapper->SetIsoValue(index, shown[index]);
+    this->VolumeMapper->SetIsoValue(index, shown[index]);
   }
 }
 
 void vtkPVDSMImageRepresentation::SetCap(bool cap)
 {
-  this->Mapper->SetCapping(cap);
+  this->VolumeMapper->SetCapping(cap);
 }
 
 void vtkPVDSMImageRepresentation::SetCapSide(int side)
 {
-  this->Mapper->SetCapSide(side);
+  this->VolumeMapper->SetCapSide(side);
 }
 
 void vtkPVDSMImageRepresentation::SetCapOpacityFromMap(bool fromMap)
 {
-  this->Mapper->SetCapOpacity(fromMap);
+  this->VolumeMapper->SetCapOpacity(fromMap);
 }
 
 void vtkPVDSMImageRepresentation::SetLookupTable(vtkScalarsToColors* table)
 {
-  this->Mapper->SetLookupTable(table);
+  this->Superclass::SetLookupTable(table);
+  this->VolumeMapper->SetLookupTable(table);
 }
 
-void vtkPVDSMImageRepresentation::SetMapScalars(bool map)
+void vtkPVDSMImageRepresentation::SetMapScalars(int map)
 {
-  this->Mapper->SetMapScalars(map);
+  this->Superclass::SetMapScalars(map);
+  this->VolumeMapper->SetMapScalars(map != 0);
 }
 
-void vtkPVDSMImageRepresentation::SetAmbientColor(double r, double g, double b)
+void vtkPVDSMImageRepresentation::ChooseLook()
 {
-  this->Mapper->GetSurfaceProperty()->SetAmbientColor(r, g, b);
-}
-
-void vtkPVDSMImageRepresentation::SetDiffuseColor(double r, double g, double b)
-{
-  this->Mapper->GetSurfaceProperty()->SetDiffuseColor(r, g, b);
-}
-
-void vtkPVDSMImageRepresentation::SetSpecularColor(double r, double g, double b)
-{
-  this->Mapper->GetSurfaceProperty()->SetSpecularColor(r, g, b);
-}
-
-void vtkPVDSMImageRepresentation::SetAmbient(double value)
-{
-  this->Mapper->GetSurfaceProperty()->SetAmbient(value);
-}
-
-void vtkPVDSMImageRepresentation::SetDiffuse(double value)
-{
-  this->Mapper->GetSurfaceProperty()->SetDiffuse(value);
-}
-
-void vtkPVDSMImageRepresentation::SetSpecular(double value)
-{
-  this->Mapper->GetSurfaceProperty()->SetSpecular(value);
-}
-
-void vtkPVDSMImageRepresentation::SetSpecularPower(double value)
-{
-  this->Mapper->GetSurfaceProperty()->SetSpecularPower(value);
-}
-
-void vtkPVDSMImageRepresentation::SetOpacity(double value)
-{
-  this->Mapper->GetSurfaceProperty()->SetOpacity(value);
-}
-
-void vtkPVDSMImageRepresentation::SetInterpolation(int value)
-{
-  this->Mapper->GetSurfaceProperty()->SetInterpolation(value);
-}
-
-void vtkPVDSMImageRepresentation::SetBackfaceRepresentation(int representation)
-{
-  this->BackfaceRepresentation = representation;
-}
-
-void vtkPVDSMImageRepresentation::SetBackfaceAmbientColor(double r, double g, double b)
-{
-  this->BackfaceProperty->SetAmbientColor(r, g, b);
-}
-
-void vtkPVDSMImageRepresentation::SetBackfaceDiffuseColor(double r, double g, double b)
-{
-  this->BackfaceProperty->SetDiffuseColor(r, g, b);
-}
-
-void vtkPVDSMImageRepresentation::SetBackfaceOpacity(double value)
-{
-  this->BackfaceProperty->SetOpacity(value);
-}
-
-void vtkPVDSMImageRepresentation::ChooseBackfaces()
-{
-  using Faces = vtkGeometryRepresentationWithFaces;
-  vtkProperty* const front = this->Mapper->GetSurfaceProperty();
+  vtkProperty* const front = this->VolumeMapper->GetSurfaceProperty();
   vtkProperty* const back = this->BackfaceProperty;
+  front->SetAmbient(this->Ambient);
+  front->SetDiffuse(this->Diffuse);
+  front->SetSpecular(this->Specular);
   back->SetAmbient(front->GetAmbient());
   back->SetDiffuse(front->GetDiffuse());
   back->SetSpecular(front->GetSpecular());
   back->SetSpecularColor(front->GetSpecularColor());
   back->SetSpecularPower(front->GetSpecularPower());
-  front->SetBackfaceCulling(this->BackfaceRepresentation == Faces::CULL_BACKFACE);
-  front->SetFrontfaceCulling(this->BackfaceRepresentation == Faces::CULL_FRONTFACE);
-  const bool isOwn = this->BackfaceRepresentation >= VTK_POINTS &&
-    this->BackfaceRepresentation < Faces::FOLLOW_FRONTFACE;
-  this->Mapper->SetBackfaceProperty(isOwn ? back : nullptr);
+  front->SetBackfaceCulling(this->BackfaceRepresentation == CULL_BACKFACE);
+  front->SetFrontfaceCulling(this->BackfaceRepresentation == CULL_FRONTFACE);
+  const bool isOwn =
+    this->BackfaceRepresentation >= VTK_POINTS && this->BackfaceRepresentation < FOLLOW_FRONTFACE;
+  this->VolumeMapper->SetBackfaceProperty(isOwn ? back : nullptr);
 }
 
 void vtkPVDSMImageRepresentation::SetPosition(double x, double y, double z)
 {
+  this->Superclass::SetPosition(x, y, z);
   this->Volume->SetPosition(x, y, z);
 }
 
 void vtkPVDSMImageRepresentation::SetOrientation(double x, double y, double z)
 {
+  this->Superclass::SetOrientation(x, y, z);
   this->Volume->SetOrientation(x, y, z);
 }
 
 void vtkPVDSMImageRepresentation::SetOrigin(double x, double y, double z)
 {
+  this->Superclass::SetOrigin(x, y, z);
   this->Volume->SetOrigin(x, y, z);
 }
 
 void vtkPVDSMImageRepresentation::SetScale(double x, double y, double z)
 {
+  this->Superclass::SetScale(x, y, z);
   this->Volume->SetScale(x, y, z);
 }
 
 void vtkPVDSMImageRepresentation::SetUserTransform(const double matrix[16])
 {
+  this->Superclass::SetUserTransform(matrix);
   vtkNew<vtkMatrix4x4> transform;
   transform->DeepCopy(matrix);
   this->Volume->SetUserMatrix(transform);
@@ -588,33 +624,35 @@ void vtkPVDSMImageRepresentation::SetUserTransform(const double matrix[16])
 
 std::vector<vtkSmartPointer<vtkPolyData>> vtkPVDSMImageRepresentation::GetTriangles()
 {
-  return vtkPVDSMIsosurfaceGeometry::MakeColored(this->Mapper);
+  return this->ShowsSurface() ? this->Superclass::GetTriangles()
+                              : vtkPVDSMIsosurfaceGeometry::MakeColored(this->VolumeMapper);
 }
 
 void vtkPVDSMImageRepresentation::SetLightOptions(vtkPVDSMLightOptions* options)
 {
-  this->Mapper->SetLightOptions(options);
-  this->Display->SetLightOptions(options);
+  this->Superclass::SetLightOptions(options);
+  this->VolumeMapper->SetLightOptions(options);
 }
 
 void vtkPVDSMImageRepresentation::SetMemoryOptions(vtkPVDSMMemoryOptions* options)
 {
-  this->Mapper->SetMemoryOptions(options);
-  this->Display->SetMemoryOptions(options);
+  this->Superclass::SetMemoryOptions(options);
+  this->VolumeMapper->SetMemoryOptions(options);
 }
 
 void vtkPVDSMImageRepresentation::SetFrameReport(vtkPVDSMFrameReport* report)
 {
-  this->Display->SetFrameReport(report);
+  this->Superclass::SetFrameReport(report);
   if (report)
   {
-    report->SetVolume(this->Mapper);
+    report->SetVolume(this->VolumeMapper);
   }
 }
 
 void vtkPVDSMImageRepresentation::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
-  os << indent << "Mapper:\n";
-  this->Mapper->PrintSelf(os, indent.GetNextIndent());
+  os << indent << "Shown: " << this->Shown << "\n";
+  os << indent << "VolumeMapper:\n";
+  this->VolumeMapper->PrintSelf(os, indent.GetNextIndent());
 }

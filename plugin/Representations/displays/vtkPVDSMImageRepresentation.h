@@ -1,26 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class   vtkPVDSMImageRepresentation
- * @brief   shows isosurfaces of image data, ray traced by all ranks
+ * @brief   shows isosurfaces of grids of values, or their outer surface, ray traced by all ranks
  *
- * Holds the input and a vtkVolume with a vtkDSMVolumeMapper, and keeps the view's vtkDSMScene alive
- * on the processes that render. The data never leave the rank: what is delivered is an empty
- * placeholder, and the view is asked to render where the data are.
- *
- * Of ParaView's volume representation, it needs nothing but the method GetActor, which Python asks all that shows data
- * for when a scene is exported for vtk.js. The actor is in no view.
+ * The outer surface is its superclass's. Isosurfaces are those of a vtkVolume with a vtkDSMVolumeMapper, which has a
+ * shallow copy of the input. One of the two is shown; the other takes no time and holds no data.
  */
 
 #ifndef vtkPVDSMImageRepresentation_h
 #define vtkPVDSMImageRepresentation_h
 
-#include "vtkGeometryRepresentationWithFaces.h" // for ivars
-#include "vtkNew.h"                             // for ivars
-#include "vtkPVDSMExportSource.h"
+#include "vtkNew.h" // for ivars
+#include "vtkPVDSMGeometryRepresentation.h"
 #include "vtkPVDSMSlicing.h"             // for ivars
-#include "vtkPVDSMTracedDisplay.h"       // for ivars
 #include "vtkRepresentationsDSMModule.h" // for the export macro
-#include "vtkVolumeRepresentation.h"
 
 #include <array>   // for ivars
 #include <memory>  // for ivars
@@ -30,28 +23,29 @@
 
 class vtkDSMVolumeMapper;
 class vtkDataObject;
-class vtkPVDSMFrameReport;
-class vtkPVDSMLightOptions;
-class vtkPVDSMMemoryOptions;
 class vtkPVDSMVolumePlaces;
-class vtkPolyData;
-class vtkProperty;
 class vtkScalarsToColors;
 class vtkVolume;
 
 class VTKREPRESENTATIONSDSM_EXPORT vtkPVDSMImageRepresentation
-  : public vtkVolumeRepresentation
-  , public vtkPVDSMExportSource
+  : public vtkPVDSMGeometryRepresentation
 {
 public:
   static vtkPVDSMImageRepresentation* New();
-  vtkTypeMacro(vtkPVDSMImageRepresentation, vtkVolumeRepresentation);
+  vtkTypeMacro(vtkPVDSMImageRepresentation, vtkPVDSMGeometryRepresentation);
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
-  int ProcessViewRequest(
-    vtkInformationRequestKey* request, vtkInformation* inInfo, vtkInformation* outInfo) override;
+  enum ShownParts
+  {
+    SHOW_ISOSURFACES = 0,
+    SHOW_SURFACE = 1
+  };
+  /**
+   * What is shown of the dataset: its isosurfaces (the default) or its outer surface.
+   */
+  void SetShow(int part);
+
   void SetVisibility(bool visible) override;
-  void SetPickable(bool pickable) { this->Display->SetPickable(pickable); }
   /**
    * The blocks that are shown, with ParaView's numbers of them: what the panel offers to color by.
    */
@@ -94,8 +88,8 @@ public:
    */
   void SelectIsoArray(int index, int port, int connection, int association, const char* name);
   void SetIsoComponent(int component);
-  void SetLookupTable(vtkScalarsToColors* table);
-  void SetMapScalars(bool map);
+  void SetLookupTable(vtkScalarsToColors* table) override;
+  void SetMapScalars(int map) override;
   ///@}
 
   ///@{
@@ -111,68 +105,13 @@ public:
 
   ///@{
   /**
-   * Forwarded to the surfaces' vtkProperty.
+   * Forwarded to vtkVolume, too.
    */
-  void SetAmbientColor(double r, double g, double b);
-  void SetDiffuseColor(double r, double g, double b);
-  void SetSpecularColor(double r, double g, double b);
-  void SetAmbient(double value);
-  void SetDiffuse(double value);
-  void SetSpecular(double value);
-  void SetSpecularPower(double value);
-  void SetOpacity(double value);
-  void SetInterpolation(int value);
-  ///@}
-
-  ///@{
-  /**
-   * How the sides of the surfaces look where values are above the isovalue, as of vtkGeometryRepresentationWithFaces: as the
-   * others, not at all, they alone, or in a color and with an opacity of their own.
-   */
-  void SetBackfaceRepresentation(int representation);
-  void SetBackfaceAmbientColor(double r, double g, double b);
-  void SetBackfaceDiffuseColor(double r, double g, double b);
-  void SetBackfaceOpacity(double value);
-  ///@}
-
-  ///@{
-  /**
-   * Forwarded to vtkVolume.
-   */
-  void SetPosition(double x, double y, double z);
-  void SetOrientation(double x, double y, double z);
-  void SetOrigin(double x, double y, double z);
-  void SetScale(double x, double y, double z);
-  void SetUserTransform(const double matrix[16]);
-  ///@}
-
-  ///@{
-  /**
-   * What is shown of the dataset: the side of a plane (world coordinates) that its normal points to,
-   * the inside of a box (x, y and z from, to; in the dataset's coordinates), which may be moved, turned
-   * and scaled.
-   */
-  void SetClip(bool clip) { this->Display->Clipping.Clips = clip; }
-  void SetClipOrigin(double x, double y, double z) { this->Display->Clipping.Origin = { x, y, z }; }
-  void SetClipNormal(double x, double y, double z) { this->Display->Clipping.Normal = { x, y, z }; }
-  void SetCropping(bool crop) { this->Display->Clipping.Crops = crop; }
-  void SetCroppingBox(const double box[6])
-  {
-    this->Display->Clipping.Box = { box[0], box[1], box[2], box[3], box[4], box[5] };
-  }
-  void SetCroppingUsesBox(bool uses) { this->Display->Clipping.UsesBox = uses; }
-  void SetCroppingPosition(double x, double y, double z)
-  {
-    this->Display->Clipping.BoxPosition = { x, y, z };
-  }
-  void SetCroppingRotation(double x, double y, double z)
-  {
-    this->Display->Clipping.BoxRotation = { x, y, z };
-  }
-  void SetCroppingScale(double x, double y, double z)
-  {
-    this->Display->Clipping.BoxScale = { x, y, z };
-  }
+  void SetPosition(double x, double y, double z) override;
+  void SetOrientation(double x, double y, double z) override;
+  void SetOrigin(double x, double y, double z) override;
+  void SetScale(double x, double y, double z) override;
+  void SetUserTransform(const double matrix[16]) override;
   ///@}
 
   ///@{
@@ -230,18 +169,20 @@ protected:
   vtkPVDSMImageRepresentation();
   ~vtkPVDSMImageRepresentation() override;
 
-  int FillInputPortInformation(int port, vtkInformation* info) override;
+  int RequestUpdateExtent(
+    vtkInformation* request, vtkInformationVector** input, vtkInformationVector* output) override;
   int RequestData(
     vtkInformation* request, vtkInformationVector** input, vtkInformationVector* output) override;
-  bool AddToView(vtkView* view) override;
-  bool RemoveFromView(vtkView* view) override;
-  /// Returns whether any shown data let light through: the same on every rank.
-  virtual bool IsTranslucent() const;
+  void PrepareUpdate(vtkInformation* inInfo, vtkInformation* outInfo) override;
+  void PrepareRender(vtkInformation* inInfo) override;
+  bool IsTranslucent() override;
+  vtkSmartPointer<vtkDataObject> MakeSelectable() override;
+  void SetExportLook(vtkActor* actor, vtkMapper* mapper) override;
   /// For constructors: selections find the places that the pixels of a picture show, and no isosurfaces.
   void SelectByPlaces();
 
   vtkNew<vtkVolume> Volume;
-  vtkNew<vtkDSMVolumeMapper> Mapper;
+  vtkNew<vtkDSMVolumeMapper> VolumeMapper;
 
 private:
   vtkPVDSMImageRepresentation(const vtkPVDSMImageRepresentation&) = delete;
@@ -249,23 +190,23 @@ private:
 
   /// Shows a copy of the structure of `source`, which may be null.
   void TakeInput(vtkDataObject* source);
-  /// Implements ProcessViewRequest, and returns its result.
-  int Process(vtkInformationRequestKey* request, vtkInformation* inInfo, vtkInformation* outInfo);
-  /// What selections draw, of this rank's part of the dataset, which may be null.
-  vtkSmartPointer<vtkDataObject> MakeSelectable(vtkDataObject* data);
+  bool ShowsSurface() const { return this->Shown == SHOW_SURFACE; }
+  void ShowVolume();
+  void ReleaseSurface();
+  void RestoreSurfaceInput(vtkDataObject* data);
   void ChooseIsoValues();
-  /// Tells the mapper, whose surfaces' look may have changed since.
-  void ChooseBackfaces();
+  /// Gives the surfaces the coefficients of the superclass, and their backs their look.
+  void ChooseLook();
   void RemoveHiddenBlocks(vtkDataObject* data) const;
   /// Tells the mapper how the blocks look that its data have now.
   void ChooseBlockLooks();
   void ColorBlocksByArray(vtkDataObject* data);
 
-  vtkNew<vtkProperty> BackfaceProperty;
-  int BackfaceRepresentation = vtkGeometryRepresentationWithFaces::FOLLOW_FRONTFACE;
-  std::vector<std::string> BlockSelectors;
-  std::vector<std::pair<std::string, std::array<double, 3>>> BlockColors;
-  std::vector<std::pair<std::string, double>> BlockOpacities;
+  int Shown = SHOW_ISOSURFACES;
+  // Of the isosurfaces, where later ones count.
+  std::vector<std::string> ShownBlocks;
+  std::vector<std::pair<std::string, std::array<double, 3>>> ColorsOfBlocks;
+  std::vector<std::pair<std::string, double>> OpacitiesOfBlocks;
   int BlockColorsDistinctValues = 7;
   std::string BlockArray; ///< that colors whole blocks; empty: none
   bool BlockLooksAreOld = true;
@@ -273,7 +214,6 @@ private:
   double SingleIsoValue = 0.0;
   bool AutomaticIsoValue = true;
   vtkPVDSMSlicing Slicing;
-  std::unique_ptr<vtkPVDSMTracedDisplay> Display;
   std::unique_ptr<vtkPVDSMVolumePlaces> Places; ///< null: selections draw isosurfaces
 };
 

@@ -10,8 +10,8 @@ vtkStandardNewMacro(vtkPVDSMSliceRepresentation);
 
 vtkPVDSMSliceRepresentation::vtkPVDSMSliceRepresentation()
 {
-  this->Mapper->AutomaticIsoValueOff();
-  this->Mapper->SlicingOn();
+  this->VolumeMapper->AutomaticIsoValueOff();
+  this->VolumeMapper->SlicingOn();
   this->SelectByPlaces();
 }
 
@@ -31,20 +31,20 @@ void vtkPVDSMSliceRepresentation::SetOpacityFromMap(bool fromMap)
 
 void vtkPVDSMSliceRepresentation::ChooseOpacity()
 {
-  this->Mapper->SetSliceOpacity(this->OpacityFromMap ? this->ScalarOpacity.Get() : nullptr);
+  this->VolumeMapper->SetSliceOpacity(this->OpacityFromMap ? this->ScalarOpacity.Get() : nullptr);
 }
 
 void vtkPVDSMSliceRepresentation::SetSliceLighting(bool isLit)
 {
-  this->Mapper->SetSliceLighting(isLit);
+  this->VolumeMapper->SetSliceLighting(isLit);
 }
 
 void vtkPVDSMSliceRepresentation::SetInterpolateSlices(bool interpolate)
 {
-  this->Mapper->SetInterpolateSlices(interpolate);
+  this->VolumeMapper->SetInterpolateSlices(interpolate);
 }
 
-bool vtkPVDSMSliceRepresentation::IsTranslucent() const
+bool vtkPVDSMSliceRepresentation::IsTranslucent()
 {
-  return this->Superclass::IsTranslucent() || this->Mapper->GetSliceOpacity();
+  return this->Superclass::IsTranslucent() || this->VolumeMapper->GetSliceOpacity();
 }

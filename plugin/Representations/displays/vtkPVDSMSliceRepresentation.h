@@ -41,7 +41,7 @@ protected:
   vtkPVDSMSliceRepresentation();
   ~vtkPVDSMSliceRepresentation() override;
 
-  bool IsTranslucent() const override;
+  bool IsTranslucent() override;
 
 private:
   vtkPVDSMSliceRepresentation(const vtkPVDSMSliceRepresentation&) = delete;

@@ -25,12 +25,8 @@
 vtkPVDSMTracedDisplay::vtkPVDSMTracedDisplay(vtkPVDataRepresentation* representation,
   vtkProp3D* prop, vtkAbstractMapper* mapper, const char* work)
   : Representation(representation)
-  , Prop(prop)
-  , Mapper(mapper)
-  , Work(work)
-  , ProgressObserver(
-      mapper->AddObserver(vtkCommand::ProgressEvent, this, &vtkPVDSMTracedDisplay::ForwardProgress))
 {
+  this->Take(prop, mapper, work);
   this->SelectionActor->SetMapper(this->SelectionMapper);
   this->SelectionActor->UseBoundsOff();
   this->ExportProp->SetRepresentation(
@@ -40,6 +36,25 @@ vtkPVDSMTracedDisplay::vtkPVDSMTracedDisplay(vtkPVDataRepresentation* representa
 vtkPVDSMTracedDisplay::~vtkPVDSMTracedDisplay()
 {
   this->Mapper->RemoveObserver(this->ProgressObserver);
+}
+
+void vtkPVDSMTracedDisplay::Take(vtkProp3D* prop, vtkAbstractMapper* mapper, const char* work)
+{
+  this->Prop = prop;
+  this->Mapper = mapper;
+  this->Work = work;
+  this->ProgressObserver =
+    mapper->AddObserver(vtkCommand::ProgressEvent, this, &vtkPVDSMTracedDisplay::ForwardProgress);
+}
+
+void vtkPVDSMTracedDisplay::Show(vtkProp3D* prop, vtkAbstractMapper* mapper, const char* work)
+{
+  this->Leave();
+  this->Prop->VisibilityOff();
+  prop->SetPickable(this->Prop->GetPickable());
+  this->Mapper->RemoveObserver(this->ProgressObserver);
+  this->Take(prop, mapper, work);
+  this->SetVisibility(this->Representation->GetVisibility());
 }
 
 bool vtkPVDSMTracedDisplay::AddToView(vtkView* view)

@@ -46,6 +46,9 @@ public:
   vtkPVDSMTracedDisplay(const vtkPVDSMTracedDisplay&) = delete;
   vtkPVDSMTracedDisplay& operator=(const vtkPVDSMTracedDisplay&) = delete;
 
+  /// Shows another prop with another mapper from now on; the last one's bricks are given up.
+  void Show(vtkProp3D* prop, vtkAbstractMapper* mapper, const char* work);
+
   vtkPVDSMClipping Clipping;
   /// Gives an actor, which exporters are to have, the look of what is traced.
   std::function<void(vtkActor* actor, vtkMapper* mapper)> SetLook;
@@ -83,6 +86,7 @@ public:
   void PrepareRender(const double* dataBounds, vtkInformation* inInfo);
 
 private:
+  void Take(vtkProp3D* prop, vtkAbstractMapper* mapper, const char* work);
   void Leave();
   void ShareOptions();
   vtkSmartPointer<vtkActor> MakeExportActor(vtkPolyData* polygons) const;
@@ -93,8 +97,8 @@ private:
   vtkPVDataRepresentation* Representation;
   vtkSmartPointer<vtkProp3D> Prop;
   vtkSmartPointer<vtkAbstractMapper> Mapper;
-  const char* Work;
-  unsigned long ProgressObserver;
+  const char* Work = nullptr;
+  unsigned long ProgressObserver = 0;
   bool IsUpdated = false;               ///< during the view's current request
   vtkWeakPointer<vtkPVRenderView> View; ///< from AddToView to RemoveFromView
   bool IsInView = false;

@@ -15,9 +15,9 @@ vtkStandardNewMacro(vtkPVDSMVolumeRepresentation);
 vtkPVDSMVolumeRepresentation::vtkPVDSMVolumeRepresentation()
 {
   this->SelectByPlaces();
-  this->Volume->SetProperty(this->Property);
-  this->Mapper->AutomaticIsoValueOff();
-  this->Mapper->SurfacesOnlyOff();
+  this->Volume->SetProperty(this->VolumeProperty);
+  this->VolumeMapper->AutomaticIsoValueOff();
+  this->VolumeMapper->SurfacesOnlyOff();
 }
 
 vtkPVDSMVolumeRepresentation::~vtkPVDSMVolumeRepresentation() = default;
@@ -27,28 +27,27 @@ int vtkPVDSMVolumeRepresentation::ProcessViewRequest(
 {
   // As ParaView's Volume does.
   const bool areDependent = !this->UseSeparateOpacityArray &&
-    (!this->Mapper->GetMapScalars() || this->MultiComponentsMapping);
-  this->Property->SetIndependentComponents(!areDependent);
+    (!this->VolumeMapper->GetMapScalars() || this->MultiComponentsMapping);
+  this->VolumeProperty->SetIndependentComponents(!areDependent);
   if (areDependent)
   {
-    this->Mapper->SetIsoComponent(0);
+    this->VolumeMapper->SetIsoComponent(0);
   }
-  else if (auto* const map = this->Mapper->GetLookupTable())
+  else if (auto* const map = this->VolumeMapper->GetLookupTable())
   {
     const bool isOne = map->GetVectorMode() == vtkScalarsToColors::COMPONENT;
-    this->Mapper->SetIsoComponent(isOne ? map->GetVectorComponent() : -1);
+    this->VolumeMapper->SetIsoComponent(isOne ? map->GetVectorComponent() : -1);
     // As vtkSmartVolumeMapper does: the others are not asked for.
     for (int component = 0; component < VTK_MAX_VRCOMP; ++component)
     {
-      this->Property->SetComponentWeight(
+      this->VolumeProperty->SetComponentWeight(
         component, isOne && component != map->GetVectorComponent() ? 0.0 : 1.0);
     }
   }
-  vtkProperty* const surface = this->Mapper->GetSurfaceProperty();
-  this->Property->SetAmbient(surface->GetAmbient());
-  this->Property->SetDiffuse(surface->GetDiffuse());
-  this->Property->SetSpecular(surface->GetSpecular());
-  this->Property->SetSpecularPower(surface->GetSpecularPower());
+  this->VolumeProperty->SetAmbient(this->Ambient);
+  this->VolumeProperty->SetDiffuse(this->Diffuse);
+  this->VolumeProperty->SetSpecular(this->Specular);
+  this->VolumeProperty->SetSpecularPower(this->Property->GetSpecularPower());
   return this->Superclass::ProcessViewRequest(request, inInfo, outInfo);
 }
 
@@ -58,7 +57,7 @@ void vtkPVDSMVolumeRepresentation::SetInputArrayToProcess(
   this->Superclass::SetInputArrayToProcess(index, port, connection, association, name);
   if (index == 0)
   {
-    this->Mapper->SetIsoArray(name ? name : "");
+    this->VolumeMapper->SetIsoArray(name ? name : "");
   }
 }
 
@@ -67,38 +66,38 @@ void vtkPVDSMVolumeRepresentation::SetLookupTable(vtkScalarsToColors* table)
   this->Superclass::SetLookupTable(table);
   if (auto* const function = vtkColorTransferFunction::SafeDownCast(table))
   {
-    this->Property->SetColor(function);
+    this->VolumeProperty->SetColor(function);
   }
 }
 
 void vtkPVDSMVolumeRepresentation::SetScalarOpacity(vtkPiecewiseFunction* function)
 {
-  this->Property->SetScalarOpacity(function);
+  this->VolumeProperty->SetScalarOpacity(function);
 }
 
 void vtkPVDSMVolumeRepresentation::SetScalarOpacityUnitDistance(double distance)
 {
-  this->Property->SetScalarOpacityUnitDistance(distance);
+  this->VolumeProperty->SetScalarOpacityUnitDistance(distance);
 }
 
 void vtkPVDSMVolumeRepresentation::SetShade(bool shade)
 {
-  this->Property->SetShade(shade);
+  this->VolumeProperty->SetShade(shade);
 }
 
-void vtkPVDSMVolumeRepresentation::SetAnisotropy(double anisotropy)
+void vtkPVDSMVolumeRepresentation::SetVolumeAnisotropy(double anisotropy)
 {
-  this->Property->SetScatteringAnisotropy(static_cast<float>(anisotropy));
+  this->VolumeProperty->SetScatteringAnisotropy(static_cast<float>(anisotropy));
 }
 
 void vtkPVDSMVolumeRepresentation::SetScattering(double part)
 {
-  this->Mapper->SetScattering(part);
+  this->VolumeMapper->SetScattering(part);
 }
 
 void vtkPVDSMVolumeRepresentation::SetBlendMode(int mode)
 {
-  this->Mapper->SetBlendMode(mode);
+  this->VolumeMapper->SetBlendMode(mode);
 }
 
 void vtkPVDSMVolumeRepresentation::SetMultiComponentsMapping(bool maps)
@@ -121,10 +120,10 @@ void vtkPVDSMVolumeRepresentation::SelectOpacityArray(
 
 void vtkPVDSMVolumeRepresentation::SelectOpacityArrayComponent(int component)
 {
-  this->Mapper->SetOpacityComponent(component);
+  this->VolumeMapper->SetOpacityComponent(component);
 }
 
 void vtkPVDSMVolumeRepresentation::UpdateOpacityArray()
 {
-  this->Mapper->SetOpacityArray(this->UseSeparateOpacityArray ? this->OpacityArray : "");
+  this->VolumeMapper->SetOpacityArray(this->UseSeparateOpacityArray ? this->OpacityArray : "");
 }

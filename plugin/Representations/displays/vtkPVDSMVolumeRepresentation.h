@@ -38,11 +38,11 @@ public:
   /**
    * Forwarded to the volume's property. The map's vector mode chooses the array's component.
    */
-  void SetLookupTable(vtkScalarsToColors* table);
+  void SetLookupTable(vtkScalarsToColors* table) override;
   void SetScalarOpacity(vtkPiecewiseFunction* function);
   void SetScalarOpacityUnitDistance(double distance);
   void SetShade(bool shade);
-  void SetAnisotropy(double anisotropy);
+  void SetVolumeAnisotropy(double anisotropy);
   ///@}
 
   /**
@@ -74,7 +74,7 @@ protected:
   vtkPVDSMVolumeRepresentation();
   ~vtkPVDSMVolumeRepresentation() override;
 
-  bool IsTranslucent() const override { return true; }
+  bool IsTranslucent() override { return true; }
 
 private:
   vtkPVDSMVolumeRepresentation(const vtkPVDSMVolumeRepresentation&) = delete;
@@ -82,7 +82,7 @@ private:
 
   void UpdateOpacityArray();
 
-  vtkNew<vtkVolumeProperty> Property;
+  vtkNew<vtkVolumeProperty> VolumeProperty;
   bool UseSeparateOpacityArray = false;
   std::string OpacityArray;
   bool MultiComponentsMapping = false;

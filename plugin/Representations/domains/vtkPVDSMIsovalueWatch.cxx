@@ -92,7 +92,7 @@ vtkPVDSMIsovalueWatch::~vtkPVDSMIsovalueWatch()
 void vtkPVDSMIsovalueWatch::TakeSuggestion(vtkSMProxy* representation)
 {
   vtkSMDSMImageRepresentationProxy* const volume = FindVolume(representation);
-  if (!volume)
+  if (!volume || !volume->ShowsIsosurfaces())
   {
     return;
   }

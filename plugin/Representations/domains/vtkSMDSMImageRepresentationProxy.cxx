@@ -26,6 +26,8 @@ constexpr const char* IsovalueAutomatic = "DSMIsoValueAutomatic";
 constexpr const char* Isovalues = "DSMIsoValues";
 constexpr const char* Component = "DSMIsoComponent";
 constexpr const char* Range = "DSMValueRange";
+constexpr const char* Show = "DSMShow";
+constexpr int Isosurfaces = 0; // of DSMShow
 constexpr const char* Box = "DSMCroppingBox";
 
 /// Returns whether the bounds are those of missing data: inverted or, since ParaView 6, without
@@ -81,9 +83,25 @@ void vtkSMDSMImageRepresentationProxy::SetAutomatic(
   {
     const Flag choosing(self->IsChoosing);
     choose();
+    if (property == self->GetProperty(Show))
+    {
+      self->IsShownAutomatic = true;
+      return;
+    }
     const bool isArray = property == self->GetProperty(Array);
     vtkSMPropertyHelper(self, isArray ? ArrayAutomatic : IsovalueAutomatic).Set(1);
   }
+}
+
+bool vtkSMDSMImageRepresentationProxy::HasIsosurfaceArrays()
+{
+  auto* const arrays = this->GetProperty(Array)->FindDomain<vtkSMArrayListDomain>();
+  return arrays && arrays->GetNumberOfStrings() > 0;
+}
+
+bool vtkSMDSMImageRepresentationProxy::ShowsIsosurfaces()
+{
+  return vtkSMPropertyHelper(this, Show).GetAsInt() == Isosurfaces;
 }
 
 bool vtkSMDSMImageRepresentationProxy::IsIsovalueAutomatic()
@@ -123,6 +141,7 @@ int vtkSMDSMImageRepresentationProxy::ReadXMLAttributes(
   {
     vtkSMPropertyHelper(this, name).Set(1);
   }
+  vtkSMPropertyHelper(this, Show).Set(Isosurfaces);
   return isRead;
 }
 
@@ -142,6 +161,10 @@ void vtkSMDSMImageRepresentationProxy::SetPropertyModifiedFlag(const char* name,
     this->IsNew = true;
     vtkSMPropertyHelper(this, IsovalueAutomatic).Set(0);
   }
+  else if (std::string(name) == Show && !this->IsChoosing)
+  {
+    this->IsShownAutomatic = false;
+  }
 }
 
 void vtkSMDSMImageRepresentationProxy::OnArray()
@@ -151,6 +174,13 @@ void vtkSMDSMImageRepresentationProxy::OnArray()
     vtkSMPropertyHelper(this, ArrayAutomatic).Set(0);
   }
   this->ChooseComponent();
+}
+
+bool vtkSMDSMImageRepresentationProxy::ChooseShown()
+{
+  const bool isOther =
+    this->IsShownAutomatic && !this->ShowsIsosurfaces() && this->HasIsosurfaceArrays();
+  return isOther && this->GetProperty(Show)->ResetToDomainDefaults();
 }
 
 bool vtkSMDSMImageRepresentationProxy::ChooseComponent()
@@ -188,6 +218,7 @@ void vtkSMDSMImageRepresentationProxy::ViewUpdated(vtkSMProxy* view)
     this->Components = CountComponents(array); // from a state file, whose component stays
   }
   isAny = this->ChooseComponent() || isAny;
+  isAny = this->ChooseShown() || isAny;
   if (isAny)
   {
     const vtkPVDSMNoUndo noUndo;

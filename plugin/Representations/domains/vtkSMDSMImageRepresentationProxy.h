@@ -33,9 +33,20 @@ public:
   vtkTypeMacro(vtkSMDSMImageRepresentationProxy, vtkSMRepresentationProxy);
 
   /**
-   * Calls `choose`, which sets the array or the isovalue of a proxy of this class, and switches on that it is automatic.
+   * Calls `choose`, which sets the array, the isovalue or what is shown of a proxy of this class, and switches on that it
+   * is automatic.
    */
   static void SetAutomatic(vtkSMProperty* property, const std::function<void()>& choose);
+
+  /**
+   * Returns whether the data have any array that the isosurfaces may be of.
+   */
+  bool HasIsosurfaceArrays();
+
+  /**
+   * Returns whether isosurfaces are shown, and not the outer surface.
+   */
+  bool ShowsIsosurfaces();
 
   bool IsIsovalueAutomatic();
   /**
@@ -70,6 +81,8 @@ private:
   void operator=(const vtkSMDSMImageRepresentationProxy&) = delete;
 
   void OnArray();
+  /// Shows isosurfaces of data that had no array for them when their display was made. Returns whether it does.
+  bool ChooseShown();
   /// The magnitude, or the only component, where their number is another. Returns whether it is.
   bool ChooseComponent();
   void TellRange();
@@ -77,7 +90,8 @@ private:
   bool IsChoosing = false; ///< properties change that nobody has set
   bool IsLoading = false;  ///< all properties become what they were
   bool IsNew = false;
-  int Components = 0; ///< of the isosurface array; 0: unknown
+  bool IsShownAutomatic = false; ///< what is shown is the data's default
+  int Components = 0;            ///< of the isosurface array; 0: unknown
 };
 
 #endif

@@ -230,6 +230,16 @@ void vtkDSMVolumeMapper::RemoveBlockLooks()
   }
 }
 
+void vtkDSMVolumeMapper::SetSurfaceProperty(vtkProperty* property)
+{
+  if (property != this->SurfaceProperty)
+  {
+    this->SurfaceProperty =
+      property ? vtkSmartPointer<vtkProperty>(property) : vtkSmartPointer<vtkProperty>::New();
+    this->Modified();
+  }
+}
+
 vtkProperty* vtkDSMVolumeMapper::GetSurfaceProperty() const
 {
   return this->SurfaceProperty;

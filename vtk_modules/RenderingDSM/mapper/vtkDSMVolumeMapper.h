@@ -300,12 +300,15 @@ public:
   vtkBooleanMacro(BlockScalarVisibility, bool);
   ///@}
 
+  ///@{
   /**
-   * Colors and coefficients of the surfaces; never null. With flat interpolation, they are lit by the normals of
+   * Colors and coefficients of the surfaces; never null. Null makes a new one. With flat interpolation, they are lit by the normals of
    * the surface that is in each cell; else by smooth ones. Front faces are the sides where values are below the isovalue;
    * what is culled lets light through, too.
    */
+  void SetSurfaceProperty(vtkProperty* property);
   vtkProperty* GetSurfaceProperty() const;
+  ///@}
 
   ///@{
   /**
