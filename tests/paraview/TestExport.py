@@ -137,6 +137,23 @@ check(sorted(own) == [(0.25, 0.5, 1.0, 1.0), (1.0, 1.0, 1.0, 0.5)], f"each has i
 check(sum(own.values()) == sum(alike.values()), "and nothing is lost")
 simple.Hide(blocks, view)
 
+# The outer surface of image data.
+simple.Hide(wavelet, view)
+box = simple.Wavelet()
+outside = show_traced(box, view, DSMShow="Surface")
+render(view)
+found = read_gltf(export("surface.gltf"))[1]
+check(found == 6 * 2 * 20 * 20, f"the outer surface has {found} triangles")
+simple.Delete(box)
+if get_ranks() == 1 and len(sys.argv) == 3:
+    trees = simple.HyperTreeGridRandom()
+    show_traced(trees, view, DSMShow="Isosurfaces")
+    with Messages() as messages:
+        render(view)
+        simple.ExportView(os.path.join(OUTPUT, "trees.gltf"), view=view)
+    check("vtkHyperTreeGrid are not exported. Apply Contour" in messages.text, f"a reason: {messages.text.strip()}")
+    simple.Delete(trees)
+
 # A mesh.
 ball = simple.Sphere(ThetaResolution=32, PhiResolution=24)
 mesh = show_traced(ball, view)

@@ -73,11 +73,11 @@ compare("Structured", bent, lambda d: color_by(d, "POINTS", "RTData"), share=0.0
 
 # AMR and trees show the surface of their cells.
 compare("Amr", simple.AMRGaussianPulseSource(),
-        lambda d: color_by(d, "CELLS", "Gaussian-Pulse"), share=0.01, shading=5.0)
+        lambda d: (setattr(d, "DSMShow", "Surface"), color_by(d, "CELLS", "Gaussian-Pulse")), share=0.01, shading=5.0)
 # Since ParaView 5.13 at the latest, the random trees are others on another number of ranks.
 fixed = get_ranks() == 1 or simple.GetParaViewVersion() < (5, 13)
 compare("HyperTreeGrid" if fixed else None, simple.HyperTreeGridRandom(),
-        lambda d: color_by(d, "CELLS", "Depth"), share=0.01, shading=5.0)
+        lambda d: (setattr(d, "DSMShow", "Surface"), color_by(d, "CELLS", "Depth")), share=0.01, shading=5.0)
 
 # Of image data, isosurfaces are what is shown unless Show says otherwise.
 def show_outer_surface(display):

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """A state file brings back the representation with all of its settings, and the same picture."""
 
+from xml.etree import ElementTree
+
 from dsm_testing import *
 
 load_plugin()
@@ -63,6 +65,40 @@ if can_load_states():
     check(find("ConeSource").GetPropertyValue("DSMClip") == 0, "and is not clipped")
     view.UseFXAA = 0  # a setting, which ParaView's states leave alone
     check_equal(render(view), reference, "the picture is the same", 0)
+
+    # What is shown is in the state. One that was made before there was a choice shows what it did then: isosurfaces of
+    # images, and the outer surface of AMR data and trees.
+    simple.ResetSession()
+    load_plugin()
+    view = create_view()
+    kinds = {
+        "RTAnalyticSource": (simple.Wavelet(WholeExtent=[-4, 4] * 3), "Isosurfaces", "Surface"),
+        "CellDataToPointData": (simple.CellDatatoPointData(Input=simple.AMRGaussianPulseSource()), "Surface", "Isosurfaces"),
+        "RandomHyperTreeGridSource": (simple.HyperTreeGridRandom(), "Surface", "Isosurfaces"),
+    }
+    for source, _, saved in kinds.values():
+        display = simple.Show(source, view)
+        display.Representation = REPRESENTATION
+        display.DSMShow = saved
+    simple.SaveState(path)
+    tree = ElementTree.parse(path)
+    for name in ("new", "old"):
+        if name == "old":
+            for proxy in tree.getroot().iter("Proxy"):
+                for entry in proxy.findall("Property"):
+                    if entry.get("name") == "DSMShow":
+                        proxy.remove(entry)
+            tree.write(path)
+        simple.ResetSession()
+        load_plugin()
+        simple.LoadState(path)
+        for kind, (_, old, saved) in kinds.items():
+            shown = find(kind).DSMShow
+            check(shown == (old if name == "old" else saved), f"{kind} in the {name} state: {shown}")
+        if name == "old":
+            with Messages() as messages:
+                simple.Render(simple.GetActiveView())
+            check(not messages.text, f"nothing is amiss: {messages.text}")
 
 # The settings page and the displays have the same memory and threads: the last word counts.
 simple.ResetSession()

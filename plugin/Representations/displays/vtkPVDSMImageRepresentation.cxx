@@ -224,7 +224,8 @@ void vtkPVDSMImageRepresentation::TakeInput(vtkDataObject* source)
     data.TakeReference(source->NewInstance());
     data->ShallowCopy(source);
     this->RemoveHiddenBlocks(data);
-    if (auto* tree = vtkDataObjectTree::SafeDownCast(data))
+    auto* const tree = vtkDataObjectTree::SafeDownCast(data);
+    if (tree && !tree->IsA("vtkUniformGridAMR")) // which is one since VTK 9.5
     {
       NumberBlocks(tree, this->BlockColorsDistinctValues);
     }

@@ -119,7 +119,7 @@ void vtkPVDSMIsovalueWatch::Watch(vtkSMProxy* representation, bool isInApplicati
   }
   const auto observe = [this](vtkSMProperty* property, unsigned long event)
   {
-    if (!property->HasObserver(event, this->Observer))
+    if (property && !property->HasObserver(event, this->Observer))
     {
       property->AddObserver(event, this->Observer, Late);
     }

@@ -7,6 +7,7 @@
 #include "vtkObjectFactory.h"
 #include "vtkPVArrayInformation.h"
 #include "vtkPVDataInformation.h"
+#include "vtkPVXMLElement.h"
 #include "vtkSMArrayListDomain.h"
 #include "vtkSMDoubleRangeDomain.h"
 #include "vtkSMProperty.h"
@@ -131,7 +132,8 @@ void vtkSMDSMImageRepresentationProxy::LoadState(
   this->Components = CountComponents(this->GetProperty(Array));
 }
 
-/// Their definitions have no default, so that Python states have them in any case.
+/// Their definitions have no default, so that Python states have them in any case. The default of what is shown comes from
+/// the data; a state file without it shows what it did before there was a choice.
 int vtkSMDSMImageRepresentationProxy::ReadXMLAttributes(
   vtkSMSessionProxyManager* manager, vtkPVXMLElement* element)
 {
@@ -141,7 +143,9 @@ int vtkSMDSMImageRepresentationProxy::ReadXMLAttributes(
   {
     vtkSMPropertyHelper(this, name).Set(1);
   }
-  vtkSMPropertyHelper(this, Show).Set(Isosurfaces);
+  int shown = Isosurfaces;
+  element->GetScalarAttribute("shown_by_old_states", &shown);
+  vtkSMPropertyHelper(this, Show).Set(shown);
   return isRead;
 }
 

@@ -323,7 +323,8 @@ public:
       }
       int cell[3];
       FindCell(this->Image, center, cell);
-      constexpr int hidden = vtkDataSetAttributes::DUPLICATECELL | vtkDataSetAttributes::HIDDENCELL;
+      constexpr int hidden = vtkDataSetAttributes::DUPLICATECELL |
+        vtkDataSetAttributes::HIDDENCELL | vtkDataSetAttributes::REFINEDCELL;
       if (!box.Has(cell) ||
         (ghosts &&
           (ghosts->GetValue(vtkStructuredData::ComputeCellId(this->Image->GetDimensions(), cell)) &
@@ -400,9 +401,17 @@ void AttachColors(vtkDataArray* colors, vtkPolyData* triangles)
   triangles->GetCellData()->AddArray(values);
 }
 
-void AddImage(vtkDSMVolumeMapper* mapper, vtkImageData* image, vtkDataObject* source,
+void AddBlock(vtkDSMVolumeMapper* mapper, vtkDataObject* part, vtkDataObject* source,
   unsigned block, bool colored, vtkMultiBlockDataSet* geometry)
 {
+  auto* const image = vtkImageData::SafeDownCast(part);
+  if (part && !image && colored)
+  {
+    vtkErrorWithObjectMacro(mapper,
+      "Isosurfaces of a dataset of type "
+        << part->GetClassName()
+        << " are not exported. Apply Contour to the dataset and export the result.");
+  }
   if (!image || image->GetNumberOfCells() == 0)
   {
     return;
@@ -467,14 +476,13 @@ vtkSmartPointer<vtkMultiBlockDataSet> MakeBlocks(
     auto* sources = vtkCompositeDataSet::SafeDownCast(source);
     for (leaf->InitTraversal(); !leaf->IsDoneWithTraversal(); leaf->GoToNextItem())
     {
-      AddImage(mapper, vtkImageData::SafeDownCast(leaf->GetCurrentDataObject()),
-        sources ? sources->GetDataSet(leaf) : nullptr, leaf->GetCurrentFlatIndex(), colored,
-        geometry);
+      AddBlock(mapper, leaf->GetCurrentDataObject(), sources ? sources->GetDataSet(leaf) : nullptr,
+        leaf->GetCurrentFlatIndex(), colored, geometry);
     }
   }
   else
   {
-    AddImage(mapper, vtkImageData::SafeDownCast(data), source, 0, colored, geometry);
+    AddBlock(mapper, data, source, 0, colored, geometry);
   }
   return geometry;
 }

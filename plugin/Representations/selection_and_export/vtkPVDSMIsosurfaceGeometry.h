@@ -31,7 +31,7 @@ public:
     vtkDSMVolumeMapper* mapper, vtkDataObject* source);
 
   /// The same with the values of the color array, and normals; of blocks that look alike together, with a
-  /// vtkPVDSMExportLook.
+  /// vtkPVDSMExportLook. Other data than images are reported as the mapper's error.
   static std::vector<vtkSmartPointer<vtkPolyData>> MakeColored(vtkDSMVolumeMapper* mapper);
 };
 
