@@ -100,5 +100,11 @@ def main():
         difference = abs(picture - contour).mean(axis=2)[covered & expected].mean()
         check(difference < 12, f"{name}: its colours differ by {difference:.1f} of 255 on average")
 
+    check((read_picture("isosurfaces.png") == read_picture("traced.png")).all(), "isosurfaces are back as they were")
+    outside, surface = read_picture("outside.png"), read_picture("surface.png")
+    check((outside != read_picture("traced.png")).any(axis=2).mean() > 0.05, "the outer surface is another picture")
+    difference = abs(outside - surface).mean()
+    check(difference < 1, f"and differs from Surface by {difference:.2f} of 255 on average")
+
 
 main()

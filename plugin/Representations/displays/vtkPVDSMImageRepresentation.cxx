@@ -55,7 +55,7 @@ public:
   std::vector<unsigned int> Find(const std::vector<std::string>& paths) const
   {
     const auto found = vtkDataAssemblyUtilities::GetSelectedCompositeIds(
-      paths, this->Assembly, this->Collection, !this->Collection);
+      paths, this->Assembly, nullptr, !this->Collection);
     return this->Collection ? this->FindPartitions(found) : found;
   }
 
