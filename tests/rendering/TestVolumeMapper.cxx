@@ -9,17 +9,22 @@
 #include "vtkAutoInit.h"
 #include "vtkCallbackCommand.h"
 #include "vtkCamera.h"
+#include "vtkCellData.h"
+#include "vtkCellDataToPointData.h"
 #include "vtkLookupTable.h"
 #include "vtkMath.h"
 #include "vtkMatrix4x4.h"
 #include "vtkNew.h"
+#include "vtkPiecewiseFunction.h"
 #include "vtkPlane.h"
+#include "vtkPointDataToCellData.h"
 #include "vtkProperty.h"
 #include "vtkRenderWindow.h"
 #include "vtkTable.h"
 #include "vtkTestErrorObserver.h"
 #include "vtkTransform.h"
 #include "vtkUnsignedCharArray.h"
+#include "vtkVolumeProperty.h"
 
 #include <gtest/gtest.h>
 
@@ -58,6 +63,97 @@ TEST_F(VolumeMapper, DrawsTheSurfaceAndDepthOfFlyingEdges)
 {
   this->Place();
   ExpectAlike(this->RenderTraced(), this->RenderTriangles());
+}
+
+/// The ball by values of its cells, and what vtkCellDataToPointData makes of them.
+struct BallOfCells
+{
+  BallOfCells()
+  {
+    vtkNew<vtkPointDataToCellData> toCells;
+    toCells->SetInputData(MakeBall());
+    toCells->Update();
+    this->Cells->ShallowCopy(toCells->GetOutput());
+    vtkNew<vtkCellDataToPointData> toPoints;
+    toPoints->SetInputData(this->Cells);
+    toPoints->Update();
+    this->Points->ShallowCopy(toPoints->GetOutput());
+  }
+  vtkNew<vtkImageData> Cells;
+  vtkNew<vtkImageData> Points;
+};
+
+TEST_F(VolumeMapper, IsosurfacesOfCellsAreThoseOfTheirMeansAtPoints)
+{
+  const BallOfCells ball;
+  this->Mapper->SetInputData(ball.Points);
+  const std::vector<double> expected = this->RenderTraced();
+  EXPECT_GT(CountCovered(expected), 2000);
+  this->Mapper->SetInputData(ball.Cells);
+  EXPECT_EQ(CountCovered(this->RenderTraced()), 0); // there is no such array of points
+  this->Mapper->SetIsoArrayOnCells(true);
+  EXPECT_EQ(this->RenderTraced(), expected);
+  vtkNew<vtkDSMVolumeMapper> copy;
+  copy->ShallowCopy(this->Mapper);
+  this->Volume->SetMapper(copy);
+  EXPECT_EQ(this->RenderTraced(), expected);
+  this->Volume->SetMapper(this->Mapper);
+
+  // Without a name: active scalars of points, or else of cells.
+  this->Mapper->SetIsoArrayOnCells(false);
+  this->Mapper->SetIsoArray("");
+  EXPECT_EQ(this->RenderTraced(), expected);
+
+  // Values that change.
+  vtkDataArray* const distances = ball.Cells->GetCellData()->GetScalars();
+  for (vtkIdType cell = 0; cell < Edge * Edge * Edge; cell += Edge + 1)
+  {
+    distances->SetComponent(cell, 0, 0.0);
+  }
+  ball.Cells->Modified();
+  EXPECT_NE(this->RenderTraced(), expected);
+}
+
+TEST_F(VolumeMapper, MediaOfCellsAreThoseOfTheirMeansAtPoints)
+{
+  const BallOfCells ball;
+  vtkNew<vtkPiecewiseFunction> opacity;
+  opacity->AddPoint(0.0, 0.5);
+  opacity->AddPoint(0.6, 0.0);
+  this->Volume->GetProperty()->SetScalarOpacity(opacity);
+  vtkNew<vtkPiecewiseFunction> gray;
+  gray->AddPoint(0.0, 1.0);
+  gray->AddPoint(0.6, 0.5);
+  this->Volume->GetProperty()->SetColor(gray);
+  this->Renderer->AddVolume(this->Volume);
+  vtkNew<vtkDSMVolumeMapper> mapper;
+  this->Volume->SetMapper(mapper);
+  const auto draw = [&](vtkImageData* data)
+  {
+    mapper->SetInputData(data);
+    this->Window->Render();
+    vtkNew<vtkUnsignedCharArray> pixels;
+    this->Window->GetPixelData(0, 0, Size - 1, Size - 1, 0, pixels);
+    return std::vector<unsigned char>(
+      pixels->GetPointer(0), pixels->GetPointer(0) + pixels->GetNumberOfValues());
+  };
+  const auto expected = draw(ball.Points);
+  EXPECT_EQ(draw(ball.Cells), expected); // there are no scalars of points
+  ball.Cells->GetPointData()->SetScalars(MakeBall()->GetPointData()->GetScalars());
+  EXPECT_NE(draw(ball.Cells), expected);
+  mapper->SetScalarModeToUseCellData();
+  EXPECT_EQ(draw(ball.Cells), expected);
+  mapper->SetScalarModeToUseCellFieldData();
+  mapper->SelectScalarArray("distance");
+  EXPECT_EQ(draw(ball.Cells), expected);
+  mapper->SelectScalarArray(0);
+  EXPECT_EQ(draw(ball.Cells), expected);
+  mapper->SetScalarModeToUsePointData();
+  mapper->SetOpacityArray("distance");
+  const auto ofPoints = draw(ball.Points);
+  mapper->SetScalarModeToUseCellData();
+  mapper->SetOpacityArrayOnCells(true);
+  EXPECT_EQ(draw(ball.Cells), ofPoints);
 }
 
 TEST_F(VolumeMapper, ClipsAsVtkClipsTriangles)

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "CellScenarios.h"
 #include "DSMBricks/build/VoxelBrickBuilder.h"
 #include "DSMBricks/layout/MacrocellBuilder.h"
 #include "DSMBricks/layout/VoxelBrick.h"
 #include "DSMCore/base/Error.h"
+#include "RandomCuts.h"
 #include "TestVolume.h"
+#include "tests/support/LoopbackCluster.h"
 
 #include <gtest/gtest.h>
 
@@ -14,29 +17,6 @@
 
 namespace
 {
-
-/// Cuts a box at random planes until `cuts` are made; pieces may be one cell thick.
-std::vector<bricks::Box> CutAtRandom(const bricks::Box& whole, int cuts, std::mt19937& random)
-{
-  std::vector<bricks::Box> boxes{ whole };
-  for (int cut = 0; cut < cuts; ++cut)
-  {
-    const std::size_t which = random() % boxes.size();
-    const int axis = static_cast<int>(random() % 3);
-    const std::int64_t size = boxes[which].GetSize()[axis];
-    if (size < 2)
-    {
-      continue;
-    }
-    const std::int64_t plane = boxes[which].Min[axis] + 1 + random() % (size - 1);
-    bricks::Box upper = boxes[which];
-    boxes[which].Max[axis] = plane;
-    upper.Min[axis] = plane;
-    boxes.push_back(upper);
-  }
-  std::shuffle(boxes.begin(), boxes.end(), random);
-  return boxes;
-}
 
 template <class T>
 TestVolume<T> CreateRandomVolume(const bricks::Index3& points, std::mt19937& random)
@@ -278,4 +258,20 @@ TEST(TestVoxelBrickSink, RefusesFragmentsThatDoNotFit)
   bricks::VoxelFragmentSource foreign(wider, GetWhole(wide));
   ASSERT_TRUE(foreign.Next(fragment));
   EXPECT_THROW(absorb(fragment.Bytes.size()), dsm::Error);
+}
+
+TEST(CellAverages, DoNotDependOnPieces)
+{
+  for (const int ranks : { 1, 2, 4 })
+  {
+    RunOnCluster(ranks, &dsm_test::AveragesDoNotDependOnPieces);
+  }
+}
+
+TEST(CellAverages, CopiesStandInForMissingPieces)
+{
+  for (const int ranks : { 1, 3 })
+  {
+    RunOnCluster(ranks, &dsm_test::CopiesStandInForMissingPieces);
+  }
 }

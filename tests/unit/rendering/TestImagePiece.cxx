@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "DSMBricks/build/CellAverages.h"
+#include "vtkDSMCellPiece.h"
 #include "vtkDSMImagePiece.h"
 
 #include "vtkBitArray.h"
 #include "vtkCellData.h"
+#include "vtkCellDataToPointData.h"
 #include "vtkDataArray.h"
 #include "vtkDataSetAttributes.h"
 #include "vtkFloatArray.h"
@@ -10,6 +13,7 @@
 #include "vtkNew.h"
 #include "vtkPointData.h"
 #include "vtkSOADataArrayTemplate.h"
+#include "vtkUniformGrid.h"
 #include "vtkUnsignedCharArray.h"
 
 #include <gtest/gtest.h>
@@ -200,6 +204,81 @@ TEST(ImagePiece, DuplicateCellsAreTrimmedAndHiddenPointsMasked)
   std::vector<std::uint8_t> mask(2 * 2 * 2);
   piece.ReadCellMask(piece.GetCells(), mask.data());
   EXPECT_EQ(mask, (std::vector<std::uint8_t>{ 1, 1, 1, 1, 1, 1, 1, 0 }));
+}
+
+/// Values of all points of a grid, from a cell array.
+std::vector<double> Average(vtkImageData* image, vtkDataArray* array, int component)
+{
+  const bricks::PieceInfo info = vtkDSMImagePiece::Describe(image, 0);
+  const bricks::LatticePlan::Member place = MakePlace(info);
+  const bricks::CellAverages averages(
+    std::make_shared<vtkDSMCellPiece>(image, array, component, place, info.HasMask != 0),
+    place.Cells);
+  const bricks::Box points{ place.Cells.Min, place.Cells.Max + bricks::Index3(1) };
+  const bricks::ScalarType type = vtkDSMImagePiece::GetScalarType(array, component);
+  std::vector<std::byte> samples(
+    static_cast<std::size_t>(points.GetCount()) * bricks::GetBytes(type));
+  averages.ReadSamples(points, samples.data());
+  return bricks::Dispatch(type,
+    [&](auto sample)
+    {
+      const auto* values = reinterpret_cast<const decltype(sample)*>(samples.data());
+      return std::vector<double>(values, values + points.GetCount());
+    });
+}
+
+TEST(CellPiece, AveragesAreThoseOfCellDataToPointData)
+{
+  for (const bool isBlanked : { false, true })
+  {
+    for (const int type : { VTK_SIGNED_CHAR, VTK_UNSIGNED_CHAR, VTK_SHORT, VTK_UNSIGNED_INT,
+           VTK_LONG_LONG, VTK_FLOAT, VTK_DOUBLE })
+    {
+      vtkNew<vtkUniformGrid> grid;
+      grid->SetExtent(const_cast<int*>(Extent));
+      vtkSmartPointer<vtkDataArray> array;
+      array.TakeReference(vtkDataArray::CreateDataArray(type));
+      array->SetName("values");
+      array->SetNumberOfComponents(3);
+      array->SetNumberOfTuples(grid->GetNumberOfCells());
+      for (vtkIdType value = 0; value < 3 * grid->GetNumberOfCells(); ++value)
+      {
+        array->SetComponent(value / 3, value % 3, (value * 37 + value / 5) % 99 / 0.7 - 30.0);
+      }
+      grid->GetCellData()->AddArray(array);
+      if (isBlanked)
+      {
+        grid->BlankCell(0, 1, 1);
+        grid->BlankCell(1, 0, 0);
+        grid->BlankPoint(3, 2, 2);
+      }
+      vtkNew<vtkUniformGrid> copy; // the filter takes the blanked points out of its input
+      copy->DeepCopy(grid);
+      vtkNew<vtkCellDataToPointData> filter;
+      filter->SetInputData(copy);
+      filter->Update();
+      vtkDataArray* expected =
+        vtkDataSet::SafeDownCast(filter->GetOutput())->GetPointData()->GetArray("values");
+      ASSERT_EQ(expected->GetDataType(), type);
+      for (int component = vtkDSMImagePiece::Magnitude; component < 3; ++component)
+      {
+        const std::vector<double> averages = Average(grid, array, component);
+        for (vtkIdType point = 0; point < grid->GetNumberOfPoints(); ++point)
+        {
+          const double* const tuple = expected->GetTuple(point);
+          const double length =
+            std::sqrt(tuple[0] * tuple[0] + tuple[1] * tuple[1] + tuple[2] * tuple[2]);
+          const bool isDouble =
+            vtkDSMImagePiece::GetScalarType(array, component) == bricks::ScalarType::Float64;
+          EXPECT_EQ(averages[static_cast<std::size_t>(point)],
+            component >= 0 ? tuple[component]
+              : isDouble   ? length
+                           : static_cast<float>(length))
+            << expected->GetClassName() << " component " << component << " point " << point;
+        }
+      }
+    }
+  }
 }
 
 } // namespace

@@ -114,12 +114,12 @@ vtkDSMImageArrays::Choice vtkDSMImageArrays::Normalize(const Choice& choice) con
   }
   if (components == 1)
   {
-    return { choice.Name, 0, choice.OnCells };
+    return { choice.Name, 0, choice.OnCells, choice.IsAveraged };
   }
   // ParaView's panels number the magnitude after the last component.
   return { choice.Name,
-    choice.Component == components ? vtkDSMImagePiece::Magnitude : choice.Component,
-    choice.OnCells };
+    choice.Component == components ? vtkDSMImagePiece::Magnitude : choice.Component, choice.OnCells,
+    choice.IsAveraged };
 }
 
 int vtkDSMImageArrays::CountComponents(const Choice& choice) const
@@ -171,11 +171,22 @@ void vtkDSMImageArrays::Refuse(
       " does not contain colors: colors have up to four components and a type other than char. "
       "Turn on Map Scalars.");
   }
+  if (is(State::OnCells) && !choice.Name.empty())
+  {
+    throw Missing(array +
+      " is a cell array, but a point array of that name is chosen. Choose the cell array: "
+      "['CELLS', '" +
+      choice.Name + "'] in ParaView, SetIsoArrayOnCells(true) or the like in VTK.");
+  }
   if (is(State::OnCells))
   {
-    throw Missing(
-      (choice.Name.empty() ? "The dataset has only cell data" : array + " is a cell array") +
-      ", but point data are required. Apply Cell Data to Point Data first.");
+    std::string cells;
+    for (const auto& [name, components] : this->Components[1])
+    {
+      cells += name.empty() ? "" : (cells.empty() ? "'" : ", '") + name + "'";
+    }
+    throw Missing("No " + purpose + " is chosen. The dataset has only cell arrays. Choose one of " +
+      cells + ".");
   }
   throw Missing((choice.Name.empty() ? "No " + purpose + " is chosen."
                                      : array + " does not exist in the dataset.") +

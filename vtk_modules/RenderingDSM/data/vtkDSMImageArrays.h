@@ -27,11 +27,14 @@ public:
     std::string Name;     ///< empty: the active scalars
     int Component = 0;    ///< also vtkDSMImagePiece::Magnitude and Color
     bool OnCells = false; ///< the cells' array of this name, not the points', is meant
+    /// Of an array of cells: the values at points are the means of the cells around them, as for isosurfaces and media;
+    /// else each cell has its value.
+    bool IsAveraged = false;
 
     bool operator==(const Choice& other) const
     {
       return this->Name == other.Name && this->Component == other.Component &&
-        this->OnCells == other.OnCells;
+        this->OnCells == other.OnCells && this->IsAveraged == other.IsAveraged;
     }
   };
 

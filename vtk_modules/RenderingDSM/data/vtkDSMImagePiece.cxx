@@ -28,7 +28,7 @@ namespace
 using bricks::Box;
 using bricks::Index3;
 
-constexpr unsigned char CellsWithoutData = vtkDataSetAttributes::DUPLICATECELL |
+constexpr unsigned char HiddenCells =
   vtkDataSetAttributes::HIDDENCELL | vtkDataSetAttributes::REFINEDCELL;
 
 vtkUnsignedCharArray* GetGhosts(vtkDataSetAttributes* attributes)
@@ -61,9 +61,13 @@ public:
     return this->Cells &&
       (this->Cells->GetValue(this->GetCellId(cell)) & vtkDataSetAttributes::DUPLICATECELL);
   }
-  bool HoldsData(const Index3& cell, unsigned char without = CellsWithoutData) const
+  bool HoldsData(const Index3& cell) const
   {
-    if (this->Cells && (this->Cells->GetValue(this->GetCellId(cell)) & without))
+    return !this->IsDuplicate(cell) && this->IsVisible(cell);
+  }
+  bool IsVisible(const Index3& cell, unsigned char hidden = HiddenCells) const
+  {
+    if (this->Cells && (this->Cells->GetValue(this->GetCellId(cell)) & hidden))
     {
       return false;
     }
@@ -194,6 +198,33 @@ double GetMagnitude(vtkDataArray* array, vtkIdType tuple)
   return std::sqrt(sum);
 }
 
+void ReadColors(vtkDataArray* array, const Box& all, const Box& samples, std::byte* out)
+{
+  vtkSmartPointer<vtkDataArray> values;
+  values.TakeReference(array->NewInstance());
+  values->SetNumberOfComponents(array->GetNumberOfComponents());
+  values->SetNumberOfTuples(samples.GetCount());
+  const Index3 size = all.GetSize();
+  const std::int64_t row = samples.GetSize().x;
+  vtkIdType target = 0;
+  for (std::int64_t k = samples.Min.z; k < samples.Max.z; ++k)
+  {
+    for (std::int64_t j = samples.Min.y; j < samples.Max.y; ++j, target += row)
+    {
+      const Index3 first = Index3(samples.Min.x, j, k) - all.Min;
+      values->InsertTuples(target, row, first.x + size.x * (first.y + size.y * first.z), array);
+    }
+  }
+  vtkNew<vtkScalarsToColors> conversion;
+  vtkSmartPointer<vtkUnsignedCharArray> colors;
+  colors.TakeReference(conversion->MapScalars(values, VTK_COLOR_MODE_DIRECT_SCALARS, 0));
+  for (std::int64_t sample = 0; sample < samples.GetCount(); ++sample)
+  {
+    const std::uint32_t packed = rt::PackedColor::Make(colors->GetPointer(4 * sample));
+    std::memcpy(out + sample * sizeof(packed), &packed, sizeof(packed));
+  }
+}
+
 } // namespace
 
 bricks::PieceInfo vtkDSMImagePiece::Describe(vtkImageData* image, int leaf)
@@ -222,12 +253,16 @@ bricks::PieceInfo vtkDSMImagePiece::Describe(vtkImageData* image, int leaf)
 
 std::vector<std::uint8_t> vtkDSMImagePiece::FindShown(vtkImageData* image, const Box& cells)
 {
-  constexpr unsigned char without = CellsWithoutData & ~vtkDataSetAttributes::REFINEDCELL;
   std::vector<std::uint8_t> shown;
   shown.reserve(static_cast<std::size_t>(cells.GetCount()));
   const CellFlags flags(image);
-  ForEachIndex(
-    cells, [&](const Index3& cell) { shown.push_back(flags.HoldsData(cell, without) ? 1 : 0); });
+  ForEachIndex(cells,
+    [&](const Index3& cell)
+    {
+      const bool isShown =
+        !flags.IsDuplicate(cell) && flags.IsVisible(cell, vtkDataSetAttributes::HIDDENCELL);
+      shown.push_back(isShown ? 1 : 0);
+    });
   return shown;
 }
 
@@ -255,7 +290,6 @@ vtkDSMImagePiece::vtkDSMImagePiece(vtkImageData* image, vtkDataArray* array, int
   , Component(array->GetNumberOfComponents() == 1 && component != Color ? 0 : component)
   , Place(place)
   , Masked(hasMask)
-  , Type(GetScalarType(array, component))
   , Samples(GetCellBox(image))
 {
   this->Samples.Min += place.IndexToLattice;
@@ -266,62 +300,39 @@ vtkDSMImagePiece::~vtkDSMImagePiece() = default;
 
 void vtkDSMImagePiece::ReadSamples(const Box& points, std::byte* out) const
 {
-  vtkDataArray* array = this->Array;
-  if (this->Component == Color)
+  ReadSamples(this->Array, this->Component, this->Samples, points, out);
+}
+
+void vtkDSMImagePiece::ReadSamples(
+  vtkDataArray* array, int component, const Box& all, const Box& part, std::byte* out)
+{
+  if (component == Color)
   {
-    this->ReadColors(points, out);
+    ReadColors(array, all, part, out);
     return;
   }
-  if (this->Component == Magnitude)
+  if (component == Magnitude)
   {
     const auto read = [array](vtkIdType tuple) { return GetMagnitude(array, tuple); };
-    if (this->Type == bricks::ScalarType::Float32)
+    if (GetScalarType(array, component) == bricks::ScalarType::Float32)
     {
-      Gather<float>(points, this->Samples, out, read);
+      Gather<float>(part, all, out, read);
     }
     else
     {
-      Gather<double>(points, this->Samples, out, read);
+      Gather<double>(part, all, out, read);
     }
     return;
   }
   if (array->GetDataType() == VTK_BIT)
   {
-    Gather<std::uint8_t>(points, this->Samples, out,
-      [&](vtkIdType tuple) { return array->GetComponent(tuple, this->Component); });
+    Gather<std::uint8_t>(
+      part, all, out, [&](vtkIdType tuple) { return array->GetComponent(tuple, component); });
     return;
   }
   switch (array->GetDataType())
   {
-    vtkTemplateMacro((GatherComponent<VTK_TT>(array, this->Component, points, this->Samples, out)));
-  }
-}
-
-void vtkDSMImagePiece::ReadColors(const Box& samples, std::byte* out) const
-{
-  vtkSmartPointer<vtkDataArray> values;
-  values.TakeReference(this->Array->NewInstance());
-  values->SetNumberOfComponents(this->Array->GetNumberOfComponents());
-  values->SetNumberOfTuples(samples.GetCount());
-  const Index3 size = this->Samples.GetSize();
-  const std::int64_t row = samples.GetSize().x;
-  vtkIdType target = 0;
-  for (std::int64_t k = samples.Min.z; k < samples.Max.z; ++k)
-  {
-    for (std::int64_t j = samples.Min.y; j < samples.Max.y; ++j, target += row)
-    {
-      const Index3 first = Index3(samples.Min.x, j, k) - this->Samples.Min;
-      values->InsertTuples(
-        target, row, first.x + size.x * (first.y + size.y * first.z), this->Array);
-    }
-  }
-  vtkNew<vtkScalarsToColors> conversion;
-  vtkSmartPointer<vtkUnsignedCharArray> colors;
-  colors.TakeReference(conversion->MapScalars(values, VTK_COLOR_MODE_DIRECT_SCALARS, 0));
-  for (std::int64_t sample = 0; sample < samples.GetCount(); ++sample)
-  {
-    const std::uint32_t packed = rt::PackedColor::Make(colors->GetPointer(4 * sample));
-    std::memcpy(out + sample * sizeof(packed), &packed, sizeof(packed));
+    vtkTemplateMacro((GatherComponent<VTK_TT>(array, component, part, all, out)));
   }
 }
 
@@ -331,4 +342,18 @@ void vtkDSMImagePiece::ReadCellMask(const Box& cells, std::uint8_t* out) const
   ForEachIndex(cells,
     [&](const Index3& cell)
     { *out++ = flags.HoldsData(cell - this->Place.IndexToLattice) ? 1 : 0; });
+}
+
+void vtkDSMImagePiece::ReadCellStates(const Box& cells, std::uint8_t* out) const
+{
+  const CellFlags flags(this->Image);
+  ForEachIndex(cells,
+    [&](const Index3& cell)
+    {
+      const Index3 own = cell - this->Place.IndexToLattice;
+      using State = bricks::CellReader::State;
+      *out++ = !flags.IsVisible(own) ? State::NoData
+        : flags.IsDuplicate(own)     ? State::Copy
+                                     : State::Own;
+    });
 }

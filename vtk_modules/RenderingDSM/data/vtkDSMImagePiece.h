@@ -3,6 +3,7 @@
 #define vtkDSMImagePiece_h
 
 #include "DSMBricks/base/ScalarType.h"
+#include "DSMBricks/build/CellReader.h"
 #include "DSMBricks/build/LatticePlan.h"
 #include "DSMBricks/build/VoxelSource.h"
 #include "DSMVolumeFiles/cache/FileSamples.h"
@@ -47,16 +48,20 @@ public:
   void ReadSamples(const bricks::Box& points, std::byte* out) const override;
   bool HasCellMask() const override { return this->Masked; }
   void ReadCellMask(const bricks::Box& cells, std::uint8_t* out) const override;
+  /// The box of the samples that the array has, also those of ghost cells, in lattice indices.
+  const bricks::Box& GetSamples() const { return this->Samples; }
+  /// For each cell of `cells`, which may be ghost cells, its bricks::CellReader::State.
+  void ReadCellStates(const bricks::Box& cells, std::uint8_t* out) const;
+  /// The samples at `part` of an array that has those of the box `all`; see GetScalarType.
+  static void ReadSamples(vtkDataArray* array, int component, const bricks::Box& all,
+    const bricks::Box& part, std::byte* out);
 
 private:
-  void ReadColors(const bricks::Box& samples, std::byte* out) const;
-
   vtkSmartPointer<vtkImageData> Image;
   vtkSmartPointer<vtkDataArray> Array;
   int Component;
   bricks::LatticePlan::Member Place;
   bool Masked;
-  bricks::ScalarType Type;
   bricks::Box Samples; ///< that the array has, in lattice indices
 };
 

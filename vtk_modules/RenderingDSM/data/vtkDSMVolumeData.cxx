@@ -123,13 +123,18 @@ std::uint64_t vtkDSMVolumeData::HashPoints(const bricks::LatticePlan::Member& me
   {
     const Choice choice = this->Arrays.Normalize(wanted);
     vtkDSMImageArrays::Info info;
-    vtkDataArray* array = choice.OnCells ? nullptr : vtkDSMImageArrays::Find(image, choice, info);
+    const bool isFlat = choice.OnCells && !choice.IsAveraged;
+    vtkDataArray* array = isFlat ? nullptr : vtkDSMImageArrays::Find(image, choice, info);
     hash.Add(&info.Found, sizeof(info.Found));
     if (!array)
     {
       continue;
     }
     hash.Add(&info.Type, sizeof(info.Type));
+    if (choice.OnCells)
+    {
+      continue; // whatever cells hold, those of one block may continue those of another
+    }
     if (vtkDSMGetFileValues(array))
     {
       // One volume in one file needs not be read to be shown.
@@ -236,6 +241,7 @@ std::uint64_t vtkDSMVolumeData::HashContent(const Choice& choice) const
   bricks::ByteHash hash;
   hash.Add(&choice.Component, sizeof(choice.Component));
   hash.Add(&choice.OnCells, sizeof(choice.OnCells));
+  hash.Add(&choice.IsAveraged, sizeof(choice.IsAveraged));
   hash.Add(this->Pieces.data(), this->Pieces.size() * sizeof(bricks::PieceInfo));
   for (const std::int32_t block : this->Apart)
   {
@@ -403,7 +409,10 @@ void vtkDSMVolumeData::PublishLattice(Publication& published, std::size_t number
       field = this->CreateField(number, choice, purpose, infos);
       if (field)
       {
-        sources = this->CreateSources(number, choice);
+        if (!choice.IsAveraged)
+        {
+          sources = this->CreateSources(number, choice);
+        }
         part.Digests = dsm::FragmentDigests(field->Lattice.GetBrickCount());
       }
     });
@@ -429,6 +438,10 @@ void vtkDSMVolumeData::PublishLattice(Publication& published, std::size_t number
       published.Files.back() = std::move(file);
       return;
     }
+  }
+  if (choice.IsAveraged)
+  {
+    sources = this->AverageCells(number, choice, infos, "Averaging the cells of the " + purpose);
   }
   if (old.Field && !old.Source && old.Field->Lattice == field->Lattice)
   {
@@ -507,7 +520,7 @@ std::shared_ptr<bricks::VoxelField> vtkDSMVolumeData::CreateField(std::size_t nu
 
   std::shared_ptr<bricks::VoxelField> field = this->MakeField();
   field->Lattice = bricks::BrickLattice(lattice.Points, *types.begin(), masked);
-  if (choice.OnCells)
+  if (choice.OnCells && !choice.IsAveraged)
   {
     field->Lattice = field->Lattice.OfCells();
   }

@@ -157,6 +157,10 @@ private:
   /// Local. This rank's pieces of a lattice.
   std::vector<std::shared_ptr<const bricks::VoxelSource>> CreateSources(
     std::size_t lattice, const Choice& choice) const;
+  /// Collective. The same for averages of cells, which other pieces have a part in. `infos`: of all ranks' pieces.
+  std::vector<std::shared_ptr<const bricks::VoxelSource>> AverageCells(std::size_t lattice,
+    const Choice& choice, const std::vector<vtkDSMImageArrays::Info>& infos,
+    const std::string& what) const;
 
   std::shared_ptr<vtkDSMRankGroup> Group;
   bricks::LatticePlan Plan;

@@ -320,12 +320,6 @@ void vtkDSMSceneVolume::Update(const std::shared_ptr<vtkDSMRankGroup>& group, bo
       this->Require(choice, isOfColors ? "color array" : purpose, group->GetRetryVersion(), known));
     known.push_back(this->Arrays.back());
   }
-  if (this->GetLook().TakesPointsForCells())
-  {
-    this->Messages.push_back(
-      "The scalar mode selects cell data, but isosurfaces and volumes require point data. Point "
-      "data are used. Apply vtkCellDataToPointData.");
-  }
   if (this->LacksSuggestion() || (this->GetIso() != oldIso && hasIsosurfaces))
   {
     this->SuggestIsovalue(group->GetMessenger());
@@ -357,16 +351,18 @@ vtkDSMVolumeMapper::SurfaceTest vtkDSMSceneVolume::MakeSurfaceTest() const
     toIndex.push_back(glm::inverse(this->Data->GetIndexToWorld(lattice)));
   }
   // Keeps no bricks alive, so it does not matter to code that releases them.
-  return [toIndex = std::move(toIndex), mapper = this->Mapper.GetPointer(), data = this->SeenData,
-           time = this->SeenTime, array = this->Mapper->GetIsoArray(),
-           component = this->Mapper->GetIsoComponent(),
-           weak = std::weak_ptr<const Published>(this->GetIso())](
-           const double bounds[6], std::vector<double> isovalues)
+  return
+    [toIndex = std::move(toIndex), mapper = this->Mapper.GetPointer(), data = this->SeenData,
+      time = this->SeenTime, array = this->Mapper->GetIsoArray(),
+      onCells = this->Mapper->GetIsoArrayOnCells(), component = this->Mapper->GetIsoComponent(),
+      weak = std::weak_ptr<const Published>(this->GetIso())](
+      const double bounds[6], std::vector<double> isovalues)
   {
     vtkDataObject* now = mapper->GetDataObjectInput();
     const auto iso = weak.lock();
     if (!iso || iso->GetFields().empty() || iso->GetLevels() || now != data ||
       GetDataTime(now) != time || mapper->GetIsoArray() != array ||
+      mapper->GetIsoArrayOnCells() != onCells ||
       mapper->GetIsoComponent() != component)
     {
       return true;

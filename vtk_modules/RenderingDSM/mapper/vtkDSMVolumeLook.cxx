@@ -6,6 +6,7 @@
 #include "vtkDSMTranslation.h"
 #include "vtkDSMVolumeMapper.h"
 
+#include "vtkCellData.h"
 #include "vtkContourValues.h"
 #include "vtkDataSet.h"
 #include "vtkPlane.h"
@@ -156,7 +157,7 @@ vtkDSMVolumeLook::Components vtkDSMVolumeLook::GetComponents(const vtkDSMImageAr
   {
     return Components::One;
   }
-  const int components = arrays.CountComponents({ this->GetIsoArray(), 0 });
+  const int components = arrays.CountComponents(this->GetIsoChoice(arrays));
   if (components <= 1)
   {
     return Components::One;
@@ -187,7 +188,7 @@ void vtkDSMVolumeLook::FindMissingFeatures(
   {
     return;
   }
-  const int components = arrays.CountComponents({ this->GetIsoArray(), 0 });
+  const int components = arrays.CountComponents(this->GetIsoChoice(arrays));
   warn(components > 1 && property->GetIndependentComponents() == 0,
     "colors or opacities from other components of the array, in this blend mode or with this "
     "component",
@@ -239,17 +240,23 @@ std::vector<vtkDSMVolumeData::Choice> vtkDSMVolumeLook::GetShown(
 {
   vtkDSMVolumeMapper* mapper = this->Mapper;
   std::vector<vtkDSMVolumeData::Choice> shown;
+  const vtkDSMVolumeData::Choice iso = this->GetIsoChoice(arrays);
+  const auto ofIso = [&iso](int component)
+  {
+    vtkDSMVolumeData::Choice choice = iso;
+    choice.Component = component;
+    return choice;
+  };
   if (this->HasOpacityArray())
   {
-    return { { mapper->GetOpacityArray(), mapper->GetOpacityComponent() },
-      { this->GetIsoArray(), mapper->GetIsoComponent() } };
+    const bool onCells = mapper->GetOpacityArrayOnCells();
+    return { { mapper->GetOpacityArray(), mapper->GetOpacityComponent(), onCells, onCells }, iso };
   }
   const Components kind = this->GetComponents(arrays);
-  const int components = arrays.CountComponents({ this->GetIsoArray(), 0 });
+  const int components = arrays.CountComponents(iso);
   if (kind == Components::Dependent)
   {
-    return { { this->GetIsoArray(), components - 1 },
-      { this->GetIsoArray(), components == 2 ? 0 : vtkDSMImagePiece::Color } };
+    return { ofIso(components - 1), ofIso(components == 2 ? 0 : vtkDSMImagePiece::Color) };
   }
   if (kind == Components::Independent)
   {
@@ -258,7 +265,7 @@ std::vector<vtkDSMVolumeData::Choice> vtkDSMVolumeLook::GetShown(
     {
       if (property->GetComponentWeight(component) > 0.0)
       {
-        shown.push_back({ this->GetIsoArray(), component });
+        shown.push_back(ofIso(component));
       }
     }
     if (!shown.empty())
@@ -269,7 +276,7 @@ std::vector<vtkDSMVolumeData::Choice> vtkDSMVolumeLook::GetShown(
   const bool isColored = !this->IsMedium() && this->HasColorArray();
   if (!isColored || !this->IsSlicesOnly())
   {
-    shown.push_back({ this->GetIsoArray(), mapper->GetIsoComponent() });
+    shown.push_back(iso);
   }
   if (isColored)
   {
@@ -279,32 +286,44 @@ std::vector<vtkDSMVolumeData::Choice> vtkDSMVolumeLook::GetShown(
   return shown;
 }
 
-bool vtkDSMVolumeLook::TakesPointsForCells() const
+vtkDSMVolumeData::Choice vtkDSMVolumeLook::GetIsoChoice(const vtkDSMImageArrays& arrays) const
 {
-  const int mode = this->Mapper->GetScalarMode();
-  return this->Mapper->GetIsoArray().empty() && (this->IsLikeRayCastMapper() || this->IsMedium()) &&
-    (mode == VTK_SCALAR_MODE_USE_CELL_DATA || mode == VTK_SCALAR_MODE_USE_CELL_FIELD_DATA);
+  vtkDSMVolumeData::Choice choice = this->GetNamedIsoChoice();
+  const vtkDSMVolumeData::Choice ofCells{ "", 0, true };
+  if (choice.Name.empty() && !choice.OnCells &&
+    this->Mapper->GetScalarMode() != VTK_SCALAR_MODE_USE_POINT_DATA &&
+    arrays.CountComponents(choice) == 0 && arrays.CountComponents(ofCells) > 0)
+  {
+    choice.OnCells = true;
+  }
+  choice.IsAveraged = choice.OnCells;
+  return choice;
 }
 
-/// Empty: the active scalars.
-std::string vtkDSMVolumeLook::GetIsoArray() const
+vtkDSMVolumeData::Choice vtkDSMVolumeLook::GetNamedIsoChoice() const
 {
   vtkDSMVolumeMapper* mapper = this->Mapper;
+  const int component = mapper->GetIsoComponent();
   if (!mapper->GetIsoArray().empty() || !(this->IsLikeRayCastMapper() || this->IsMedium()))
   {
-    return mapper->GetIsoArray();
+    return { mapper->GetIsoArray(), component, mapper->GetIsoArrayOnCells() };
   }
-  if (mapper->GetScalarMode() != VTK_SCALAR_MODE_USE_POINT_FIELD_DATA)
+  const int mode = mapper->GetScalarMode();
+  const bool onCells =
+    mode == VTK_SCALAR_MODE_USE_CELL_DATA || mode == VTK_SCALAR_MODE_USE_CELL_FIELD_DATA;
+  if (mode != VTK_SCALAR_MODE_USE_POINT_FIELD_DATA && mode != VTK_SCALAR_MODE_USE_CELL_FIELD_DATA)
   {
-    return {};
+    return { "", component, onCells };
   }
-  if (mapper->GetArrayAccessMode() == VTK_GET_ARRAY_BY_NAME)
+  const char* name = mapper->GetArrayName();
+  if (mapper->GetArrayAccessMode() != VTK_GET_ARRAY_BY_NAME)
   {
-    return mapper->GetArrayName() ? mapper->GetArrayName() : "";
+    auto* data = vtkDataSet::SafeDownCast(mapper->GetDataObjectInput());
+    name = !data ? nullptr
+      : onCells  ? data->GetCellData()->GetArrayName(mapper->GetArrayId())
+                 : data->GetPointData()->GetArrayName(mapper->GetArrayId());
   }
-  auto* data = vtkDataSet::SafeDownCast(mapper->GetDataObjectInput());
-  const char* name = data ? data->GetPointData()->GetArrayName(mapper->GetArrayId()) : nullptr;
-  return name ? name : "";
+  return { name ? name : "", component, onCells };
 }
 
 void vtkDSMVolumeLook::SetMaterials(double isovalue, rt::IsosurfaceLook& look) const

@@ -71,8 +71,6 @@ public:
   /// opacities and that of the colors; if the components are independent, each component. `arrays`:
   /// the available arrays.
   std::vector<vtkDSMVolumeData::Choice> GetShown(const vtkDSMImageArrays& arrays) const;
-  /// Returns whether cell scalars are requested, which have no isosurfaces.
-  bool TakesPointsForCells() const;
   /// Finite, ascending, each once; `suggested` where none is chosen and the mapper takes what data suggest. Adds what is
   /// wrong with them to the messages.
   std::vector<double> GetIsovalues(
@@ -93,7 +91,10 @@ public:
 private:
   bool HasColorArray() const;
   int GetColorComponent() const;
-  std::string GetIsoArray() const;
+  /// Returns the array of the isosurfaces or of the medium. Without a name: the active scalars.
+  vtkDSMVolumeData::Choice GetIsoChoice(const vtkDSMImageArrays& arrays) const;
+  /// The same as the mapper names it.
+  vtkDSMVolumeData::Choice GetNamedIsoChoice() const;
 
   vtkDSMVolumeMapper* Mapper;
   vtkProp3D* Prop;

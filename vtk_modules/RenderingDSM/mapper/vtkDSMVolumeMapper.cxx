@@ -415,12 +415,14 @@ void vtkDSMVolumeMapper::CopyOwn(vtkDSMVolumeMapper* other)
 {
   *this->Original = *other->Original;
   this->IsoArray = other->IsoArray;
+  this->IsoArrayOnCells = other->IsoArrayOnCells;
   this->IsoComponent = other->IsoComponent;
   this->IsoValues = other->IsoValues;
   this->AutomaticIsoValue = other->AutomaticIsoValue;
   this->SurfacesOnly = other->SurfacesOnly;
   this->Scattering = other->Scattering;
   this->OpacityArray = other->OpacityArray;
+  this->OpacityArrayOnCells = other->OpacityArrayOnCells;
   this->OpacityComponent = other->OpacityComponent;
   this->Slicing = other->Slicing;
   this->Slices = other->Slices;
@@ -467,6 +469,7 @@ void vtkDSMVolumeMapper::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
   os << indent << "IsoArray: " << this->IsoArray << "\n";
+  os << indent << "IsoArrayOnCells: " << this->IsoArrayOnCells << "\n";
   os << indent << "IsoComponent: " << this->IsoComponent << "\n";
   os << indent << "IsoValues:";
   for (const double value : this->IsoValues)
@@ -479,6 +482,7 @@ void vtkDSMVolumeMapper::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "SurfacesOnly: " << this->SurfacesOnly << "\n";
   os << indent << "Scattering: " << this->Scattering << "\n";
   os << indent << "OpacityArray: " << this->OpacityArray << "\n";
+  os << indent << "OpacityArrayOnCells: " << this->OpacityArrayOnCells << "\n";
   os << indent << "OpacityComponent: " << this->OpacityComponent << "\n";
   os << indent << "Slicing: " << this->Slicing << "\n";
   os << indent << "Slices: " << this->Slices.size() << "\n";

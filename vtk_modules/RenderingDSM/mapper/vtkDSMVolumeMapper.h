@@ -8,14 +8,14 @@
  *
  * It stands in for vtkGPUVolumeRayCastMapper: the blend mode Composite (the default) shows the volume as a medium, by the
  * color and opacity functions and the unit distance of the vtkVolume's vtkVolumeProperty. Maximum, minimum, average (of
- * AverageIPScalarRange) and additive show what they show there. ScalarMode and SelectScalarArray() choose the point array.
+ * AverageIPScalarRange) and additive show what they show there. ScalarMode and SelectScalarArray() choose the array.
  * Interpolation is trilinear always. Shading is VTK's, also gradient opacity; with shadows and ambient occlusion of the
  * light options, volumes shade themselves. The blend mode Slice is not there yet, and the mapper says so.
  *
  * With an isovalue, with AutomaticIsoValue or with SurfacesOnly, isosurfaces are shown instead. Isovalues and look are
  * the mapper's own: IsoArray, IsoValues, ColorArray, and a vtkProperty, the
  * surface property. After SetBlendModeToIsoSurface() they are instead where vtkGPUVolumeRayCastMapper
- * has them, which it then stands in for: ScalarMode and SelectScalarArray() choose the point array, and
+ * has them, which it then stands in for: ScalarMode and SelectScalarArray() choose the array, and
  * the vtkVolume's vtkVolumeProperty gives the isovalues (GetIsoSurfaceValues), and for each its color
  * and opacity by the transfer functions of the first component, and the shading. Interpolation is
  * trilinear always.
@@ -81,10 +81,20 @@ public:
 
   ///@{
   /**
-   * The point array whose isosurfaces are drawn. Empty (the default) means the active scalars.
+   * The array whose isosurfaces are drawn. Empty (the default) means the active scalars of the points or, without
+   * any, those of the cells.
    */
   vtkSetMacro(IsoArray, std::string);
   vtkGetMacro(IsoArray, std::string);
+  ///@}
+
+  ///@{
+  /**
+   * Whether the cells' array of the name IsoArray is meant, not the points'. Off by default. The value of a point is the
+   * mean of the cells around it, as vtkCellDataToPointData makes it.
+   */
+  vtkSetMacro(IsoArrayOnCells, bool);
+  vtkGetMacro(IsoArrayOnCells, bool);
   ///@}
 
   ///@{
@@ -137,11 +147,13 @@ public:
 
   ///@{
   /**
-   * The point array, and its component (-1: its magnitude), whose values the opacity function maps; the color function
-   * maps those that are shown else. Empty (the default): both map the same.
+   * The array, of points or of cells, and its component (-1: its magnitude), whose values the opacity function maps; the
+   * color function maps those that are shown else. Empty (the default): both map the same.
    */
   vtkSetMacro(OpacityArray, std::string);
   vtkGetMacro(OpacityArray, std::string);
+  vtkSetMacro(OpacityArrayOnCells, bool);
+  vtkGetMacro(OpacityArrayOnCells, bool);
   vtkSetMacro(OpacityComponent, int);
   vtkGetMacro(OpacityComponent, int);
   ///@}
@@ -443,6 +455,7 @@ private:
   void CopyOwn(vtkDSMVolumeMapper* other);
 
   std::string IsoArray;
+  bool IsoArrayOnCells = false;
   int IsoComponent = 0;
   std::vector<double> IsoValues;
   bool AutomaticIsoValue = false;
@@ -450,6 +463,7 @@ private:
   bool SurfacesOnly = false;
   double Scattering = 0.0;
   std::string OpacityArray;
+  bool OpacityArrayOnCells = false;
   int OpacityComponent = 0;
   bool Slicing = false;
   std::vector<std::pair<int, int>> Slices; ///< axis, index; ascending
