@@ -62,7 +62,7 @@ image.SetExtent(piece)
 array = numpy_to_vtk(np.zeros(image.GetNumberOfCells()), deep=True); array.SetName('onCells')
 image.GetCellData().AddArray(array)
 """
-expect_then_delete(image_source(CELLS), ["'onCells'", "Cell Data to Point Data"], array="onCells")
+expect_then_delete(image_source(CELLS), ["'onCells' is a cell array", "['CELLS', 'onCells']"], array="onCells")
 
 expect_then_delete(image_source(GOOD), ["Isovalue 2 of 2 is not a number"],
                    isovalues=[0.7, float("nan")], empty=False)
@@ -126,7 +126,7 @@ with Messages() as messages:
     place_camera(view)
     pixels = render(view)
     text = messages.text
-check("color array 'onCells'" in text and "Cell Data to Point Data" in text, "points have no such array: " + text)
+check("color array 'onCells'" in text and "['CELLS', 'onCells']" in text, "points have no such array: " + text)
 check("Warning" in text and "ERROR" not in text, "that is a warning, as the surface is there")
 check(get_covered(pixels).any(), "the surface is still drawn")
 with Messages() as messages:

@@ -110,6 +110,17 @@ check(wrong <= 0.01 * whole.GetNumberOfPoints(),
       f"{wrong} of {whole.GetNumberOfPoints()} points or normals are not those of all at once")
 simple.Hide(large, view)
 
+# Means of cells; on several ranks those of each rank's cells.
+cells = simple.PointDatatoCellData(simple.Wavelet())
+of_cells = show_traced(cells, view, DSMIsoArray=["CELLS", "RTData"], DSMIsoValues=[150.0])
+render(view)
+means = simple.Contour(simple.CellDatatoPointData(cells), ContourBy=["POINTS", "RTData"], Isosurfaces=[150.0])
+means.UpdatePipeline()
+expected = means.GetDataInformation().GetNumberOfCells()
+triangles = read_gltf(export("cells.gltf"))[1]
+check(abs(triangles - expected) <= (0 if get_ranks() == 1 else 0.02 * expected), f"{triangles} triangles of {expected}")
+simple.Hide(cells, view)
+
 # Blocks that have a look of their own.
 halves = [simple.Wavelet(WholeExtent=[low, low + 10, -10, 10, -10, 10]) for low in (-10, 0)]
 blocks = simple.GroupDatasets(Input=halves, BlockNames=["one", "two"])

@@ -273,3 +273,49 @@ view.LODThreshold, view.LODResolution = 0.0, 0.5
 view.SMProxy.InteractiveRender()
 # The fewer pixels are traced, the longer they take; so not at the planes' borders.
 check_fog(grab(view, "PlanesMoving"), PLANES, "while the camera moves", 2.0, np.s_[80:160, 96:204])
+
+# Values of cells are those of points that have their means.
+view = create_view()
+cells = image_source(
+    """
+image.SetExtent(piece)
+values = np.cos(3.0 * distance([piece[0], piece[1] - 1, piece[2], piece[3] - 1, piece[4], piece[5] - 1]))
+for name, array in {'waves': values, 'other': values ** 2}.items():
+    array = numpy_to_vtk(array, deep=True)
+    array.SetName(name)
+    image.GetCellData().AddArray(array)
+""",
+    in_parts=True,
+)
+display = simple.Show(cells, view)
+display.ColorArrayName = [None, ""]
+place_camera(view)
+display.ScalarOpacityUnitDistance = 1.7
+check(get_covered(show_as("DSM Volume")).mean() > 0.1, "a volume of cells is shown")
+check(list(display.ColorArrayName) == ["CELLS", "other"], f"by an array: {display.ColorArrayName}")
+means = simple.CellDatatoPointData(cells)
+
+
+def show_means(name, opacity=None):
+    """Several ranks show what one rank does, and that shows what points do."""
+    pictures = []
+    for source, association in ((cells, "CELLS"), (means, "POINTS"))[: 1 if get_ranks() > 1 else 2]:
+        display = simple.Show(source, view)
+        display.ColorArrayName = [association, "waves"]
+        display.LookupTable = simple.GetColorTransferFunction("waves")
+        display.ScalarOpacityFunction = simple.GetOpacityTransferFunction("waves")
+        display.ScalarOpacityUnitDistance = 1.7
+        display.OpacityArrayName = [association, "other"]
+        display.UseSeparateOpacityArray = 1 if opacity else 0
+        pictures.append(show_as_volume(display, name if source is cells else None))
+        simple.Hide(source, view)
+    check_equal(pictures[0], pictures[-1], name + " is what the means at points show", tolerance=0)
+
+
+def show_as_volume(display, name):
+    display.Representation = "DSM Volume"
+    return render(view, name)
+
+
+show_means("Cells")
+show_means("CellsWithOpacityArray", "other")

@@ -111,6 +111,72 @@ else:
     ),
 )
 
+# Values of cells: as Cell Data to Point Data makes them values of points, whatever the pieces are.
+CELLS = """
+{place}
+def add_cells(values, name):
+    array = numpy_to_vtk(values, deep=True); array.SetName(name)
+    image.GetCellData().AddArray(array)
+extent = list(image.GetExtent())
+if image.GetNumberOfCells() > 0:
+    cells = [extent[0], extent[1] - 1, extent[2], extent[3] - 1, extent[4], extent[5] - 1]
+    i, j, k = points(cells)
+    values = distance(cells) + 0.1 * np.sin(i * 1.7) * np.cos(j * 2.3)
+    ghost = np.zeros(len(i), np.uint8)
+    {ghosts}
+    add_cells(values, 'c')
+    add_cells(np.stack([i - 12.0, j - 12.0, k - 12.0], axis=1) / 12.0, 'vector')
+    add_cells(np.int16(100.0 * values), 'integers')
+    if ghost.any():
+        add_cells(ghost, 'vtkGhostType')
+"""
+WHOLE = CELLS.format(place="image.SetExtent(piece)", ghosts="")
+
+
+def compare_cells(name, source, isovalue=0.7, array="c", reference=WHOLE, **properties):
+    """Several ranks show what one rank does, and that shows the surface of points that have the cells' means."""
+    display = show_traced(source, view, DSMIsoArray=["CELLS", array], DSMIsoValues=[isovalue], **properties)
+    place_camera(view)
+    picture = render(view, name)
+    check(get_covered(picture).mean() > 0.05, name + ": something is shown")
+    if get_ranks() == 1:
+        simple.Hide(source, view)
+        input = image_source(reference)
+        means = simple.CellDatatoPointData(input)
+        show(means, view, [isovalue], array, **properties)
+        check_equal(render(view), picture, name + " is what the means at points show", tolerance=0)
+        simple.Delete(means)
+        simple.Delete(input)
+    simple.Delete(source)
+
+
+compare_cells("Cells", image_source(WHOLE, in_parts=True))
+compare_cells("CellsMagnitude", image_source(WHOLE, in_parts=True), array="vector", DSMIsoComponent=3)
+compare_cells("CellsOfIntegers", image_source(WHOLE, in_parts=True), 70.5, "integers")
+WIDER = WITH_GHOSTS[:WITH_GHOSTS.index("# What lies")]
+# Each piece has copies of cells of others; what they hold is wrong, and must not be seen.
+COPIES = """
+    for axis, p in enumerate((i, j, k)):
+        ghost[(p < piece[2 * axis]) | (p >= piece[2 * axis + 1])] = 1
+    values[ghost > 0] = 5.0
+"""
+compare_cells("CellsWithGhosts", image_source(CELLS.format(place=WIDER, ghosts=COPIES), in_parts=True))
+ONE = """
+if rank == ranks - 1:
+    image.SetExtent(whole)
+else:
+    image.SetExtent(0, -1, 0, -1, 0, -1)
+"""
+compare_cells("CellsOnOneRank", image_source(CELLS.format(place=ONE, ghosts="")))
+
+source = image_source(WHOLE)
+display = show_traced(source, view)
+place_camera(view)
+simple.Render(view)
+check(list(display.DSMIsoArray) == ["CELLS", "c"], "of cell arrays only, one is chosen")
+check(0.1 < display.DSMIsoValue < 2.0, f"and an isovalue: {display.DSMIsoValue}")
+simple.Delete(source)
+
 compare(
     "PiecesOneCellThick",
     image_source(

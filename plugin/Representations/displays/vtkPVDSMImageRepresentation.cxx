@@ -493,9 +493,10 @@ void vtkPVDSMImageRepresentation::SetInputArrayToProcess(
   }
 }
 
-void vtkPVDSMImageRepresentation::SelectIsoArray(int, int, int, int, const char* name)
+void vtkPVDSMImageRepresentation::SelectIsoArray(int, int, int, int association, const char* name)
 {
   this->VolumeMapper->SetIsoArray(name ? name : "");
+  this->VolumeMapper->SetIsoArrayOnCells(association == vtkDataObject::FIELD_ASSOCIATION_CELLS);
 }
 
 void vtkPVDSMImageRepresentation::SetIsoComponent(int component)

@@ -4,6 +4,7 @@
 #include "vtkDSMVolumeMapper.h"
 
 #include "vtkColorTransferFunction.h"
+#include "vtkDataObject.h"
 #include "vtkObjectFactory.h"
 #include "vtkPiecewiseFunction.h"
 #include "vtkProperty.h"
@@ -58,6 +59,7 @@ void vtkPVDSMVolumeRepresentation::SetInputArrayToProcess(
   if (index == 0)
   {
     this->VolumeMapper->SetIsoArray(name ? name : "");
+    this->VolumeMapper->SetIsoArrayOnCells(association == vtkDataObject::FIELD_ASSOCIATION_CELLS);
   }
 }
 
@@ -112,9 +114,10 @@ void vtkPVDSMVolumeRepresentation::SetUseSeparateOpacityArray(bool use)
 }
 
 void vtkPVDSMVolumeRepresentation::SelectOpacityArray(
-  int, int, int, int vtkNotUsed(association), const char* name)
+  int, int, int, int association, const char* name)
 {
   this->OpacityArray = name ? name : "";
+  this->Mapper->SetOpacityArrayOnCells(association == vtkDataObject::FIELD_ASSOCIATION_CELLS);
   this->UpdateOpacityArray();
 }
 

@@ -3,7 +3,6 @@
 
 #include "vtkPVDSMNoUndo.h"
 
-#include "vtkDataObject.h"
 #include "vtkObjectFactory.h"
 #include "vtkPVArrayInformation.h"
 #include "vtkPVDataInformation.h"
@@ -45,10 +44,28 @@ int CountComponents(vtkSMProperty* property)
 {
   auto* const arrays = property->FindDomain<vtkSMArrayListDomain>();
   vtkPVDataInformation* const data = arrays ? arrays->GetInputDataInformation("Input") : nullptr;
-  const char* const name = vtkSMPropertyHelper(property).GetInputArrayNameToProcess();
+  const vtkSMPropertyHelper chosen(property);
+  const char* const name = chosen.GetInputArrayNameToProcess();
   vtkPVArrayInformation* const array =
-    data && name ? data->GetArrayInformation(name, vtkDataObject::POINT) : nullptr;
+    data && name ? data->GetArrayInformation(name, chosen.GetInputArrayAssociation()) : nullptr;
   return array ? array->GetNumberOfComponents() : 0;
+}
+
+/// Returns whether the data have the array that a property selects.
+bool HasArray(vtkSMProperty* property)
+{
+  auto* const arrays = property->FindDomain<vtkSMArrayListDomain>();
+  const vtkSMPropertyHelper chosen(property);
+  const char* const name = chosen.GetInputArrayNameToProcess();
+  for (unsigned int index = 0; name && index < arrays->GetNumberOfStrings(); ++index)
+  {
+    if (std::string(name) == arrays->GetString(index) &&
+      arrays->GetFieldAssociation(index) == chosen.GetInputArrayAssociation())
+    {
+      return true;
+    }
+  }
+  return false;
 }
 
 /// While it lives, a value is true.
@@ -206,10 +223,8 @@ void vtkSMDSMImageRepresentationProxy::ViewUpdated(vtkSMProxy* view)
   this->Superclass::ViewUpdated(view);
   vtkSMProperty* const array = this->GetProperty(Array);
   const char* const name = vtkSMPropertyHelper(array).GetInputArrayNameToProcess();
-  auto* const arrays = array->FindDomain<vtkSMArrayListDomain>();
-  unsigned int index = 0;
-  const bool isMissing = !name || !*name ||
-    (vtkSMPropertyHelper(this, ArrayAutomatic).GetAsInt() && !arrays->IsInDomain(name, index));
+  const bool isMissing =
+    !name || !*name || (vtkSMPropertyHelper(this, ArrayAutomatic).GetAsInt() && !HasArray(array));
   bool isAny = isMissing && array->ResetToDomainDefaults();
   if (isAny && this->IsIsovalueAutomatic())
   {

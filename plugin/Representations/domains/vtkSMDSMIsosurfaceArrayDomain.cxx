@@ -54,25 +54,35 @@ int vtkSMDSMIsosurfaceArrayDomain::SetDefault(vtkSMProperty* property, bool useU
   {
     return isSet;
   }
-  const std::string name = chosen.GetAsString(Association + 1);
-  vtkPVDataSetAttributesInformation* const points =
-    data->GetAttributeInformation(vtkDataObject::POINT);
-  vtkPVArrayInformation* const scalars =
-    points ? points->GetAttributeInformation(vtkDataSetAttributes::SCALARS) : nullptr;
-  if (scalars && scalars->GetName() && name == scalars->GetName())
+  if (this->GetNumberOfStrings() == 0)
   {
     return isSet;
   }
-  for (unsigned int number = 0; number < this->GetNumberOfStrings(); ++number)
+  // Arrays of points come first.
+  const int association = this->GetFieldAssociation(0);
+  const std::string name = chosen.GetAsString(Association + 1);
+  vtkPVDataSetAttributesInformation* const attributes = data->GetAttributeInformation(association);
+  vtkPVArrayInformation* const scalars =
+    attributes ? attributes->GetAttributeInformation(vtkDataSetAttributes::SCALARS) : nullptr;
+  if (scalars && scalars->GetName() && name == scalars->GetName() &&
+    chosen.GetAsInt(Association) == association)
+  {
+    return isSet;
+  }
+  for (unsigned int number = 0;
+       number < this->GetNumberOfStrings() && this->GetFieldAssociation(number) == association;
+       ++number)
   {
     vtkPVArrayInformation* const array =
-      data->GetArrayInformation(this->GetString(number), this->GetFieldAssociation(number));
+      data->GetArrayInformation(this->GetString(number), association);
     if (array && array->GetNumberOfComponents() == 1)
     {
-      chosen.Set(Association, this->GetFieldAssociation(number));
+      chosen.Set(Association, association);
       chosen.Set(Association + 1, this->GetString(number));
       return 1;
     }
   }
-  return isSet;
+  chosen.Set(Association, association);
+  chosen.Set(Association + 1, this->GetString(0));
+  return 1;
 }

@@ -13,7 +13,6 @@
 #include "vtkSMPropertyHelper.h"
 
 #include <string>
-#include <vector>
 
 vtkStandardNewMacro(vtkSMDSMVolumeRepresentationProxy);
 
@@ -105,7 +104,7 @@ void vtkSMDSMVolumeRepresentationProxy::ChooseSlices()
   this->UpdateVTKObjects();
 }
 
-/// The first one of points; slices may show one of cells.
+/// The first one of points, or else of cells.
 void vtkSMDSMVolumeRepresentationProxy::ChooseArray(vtkSMPVRepresentationProxy* display)
 {
   vtkSMProperty* const property = display->GetProperty("ColorArrayName");
@@ -116,12 +115,7 @@ void vtkSMDSMVolumeRepresentationProxy::ChooseArray(vtkSMPVRepresentationProxy* 
   {
     return;
   }
-  std::vector<int> associations{ vtkDataObject::POINT };
-  if (this->GetXMLName() == std::string("DSMSliceRepresentation"))
-  {
-    associations.push_back(vtkDataObject::CELL);
-  }
-  for (const int association : associations)
+  for (const int association : { vtkDataObject::POINT, vtkDataObject::CELL })
   {
     for (unsigned int index = 0; index < count; ++index)
     {

@@ -11,6 +11,7 @@
 #include "vtkDataSetAttributes.h"
 #include "vtkDoubleArray.h"
 #include "vtkFlyingEdges3D.h"
+#include "vtkIdList.h"
 #include "vtkIdTypeArray.h"
 #include "vtkImageData.h"
 #include "vtkMatrix3x3.h"
@@ -119,32 +120,99 @@ void ForEachSample(vtkImageData* image, vtkImageData* box, const Use& use)
   }
 }
 
+/// The mean of the cells around a point, as vtkCellDataToPointData makes it, of those that the image has.
+class CellMean
+{
+public:
+  CellMean(vtkImageData* image, vtkDataArray* array)
+    : Image(image)
+    , Array(array)
+    , HasGhosts(image->GetCellGhostArray() || image->GetPointGhostArray())
+  {
+  }
+  void MoveTo(vtkIdType point)
+  {
+    this->Image->GetPointCells(point, this->Cells);
+    for (vtkIdType number = this->HasGhosts ? this->Cells->GetNumberOfIds() : 0; number-- > 0;)
+    {
+      const vtkIdType cell = this->Cells->GetId(number);
+      if (!this->Image->IsCellVisible(cell))
+      {
+        this->Cells->DeleteId(cell);
+      }
+    }
+  }
+  double Get(int component) const
+  {
+    const vtkIdType count = this->Cells->GetNumberOfIds();
+    double sum = 0.0;
+    for (vtkIdType number = 0; number < count; ++number)
+    {
+      sum += 1.0 / static_cast<double>(count) *
+        this->Array->GetComponent(this->Cells->GetId(number), component);
+    }
+    const int type = this->Array->GetDataType();
+    return type == VTK_DOUBLE ? sum : type == VTK_FLOAT ? static_cast<float>(sum) : std::round(sum);
+  }
+
+private:
+  vtkImageData* Image;
+  vtkDataArray* Array;
+  bool HasGhosts;
+  vtkNew<vtkIdList> Cells;
+};
+
+/// The array of points or cells whose isosurfaces are shown.
+struct IsoArray
+{
+  vtkDataArray* Values;
+  bool OnCells;
+};
+
 /// One component, or the magnitude, as double: differences of unsigned integers would wrap around.
 vtkSmartPointer<vtkDoubleArray> GetValues(
-  vtkImageData* image, vtkImageData* box, vtkDataArray* array, int component)
+  vtkImageData* image, vtkImageData* box, const IsoArray& array, int component)
 {
   auto values = vtkSmartPointer<vtkDoubleArray>::New();
   values->SetName("values");
   values->SetNumberOfTuples(box->GetNumberOfPoints());
-  const int components = array->GetNumberOfComponents();
+  const int components = array.Values->GetNumberOfComponents();
+  CellMean mean(image, array.Values);
+  const auto get = [&](vtkIdType place, int part)
+  { return array.OnCells ? mean.Get(part) : array.Values->GetComponent(place, part); };
   ForEachSample(image, box,
     [&](vtkIdType number, vtkIdType place)
     {
+      if (array.OnCells)
+      {
+        mean.MoveTo(place);
+      }
       double value = 0.0;
       if (component >= 0 && component < components)
       {
-        value = array->GetComponent(place, component);
+        value = get(place, component);
       }
       else
       {
         for (int part = 0; part < components; ++part)
         {
-          value = std::hypot(value, array->GetComponent(place, part));
+          value = std::hypot(value, get(place, part));
         }
       }
       values->SetValue(number, value);
     });
   return values;
+}
+
+IsoArray FindIsoArray(vtkDSMVolumeMapper* mapper, vtkImageData* image)
+{
+  const std::string name = mapper->GetIsoArray();
+  const auto find = [&](vtkDataSetAttributes* data)
+  { return name.empty() ? data->GetScalars() : data->GetArray(name.c_str()); };
+  vtkDataArray* const points = mapper->GetIsoArrayOnCells() ? nullptr : find(image->GetPointData());
+  // Without a name: active scalars of points, or else of cells.
+  const bool onCells = mapper->GetIsoArrayOnCells() || (!points && name.empty());
+  return { onCells ? find(image->GetCellData()) : points, onCells };
 }
 
 /// The array of points or cells that colors the surface; null without any.
@@ -189,7 +257,7 @@ bool MayHoldAny(vtkDoubleArray* values, const std::vector<double>& isovalues)
 
 /// The triangles in the cells of a box; null where there are none.
 vtkSmartPointer<vtkPolyData> Extract(vtkDSMVolumeMapper* mapper, vtkImageData* image,
-  vtkDataArray* array, const std::vector<double>& isovalues, const CellBox& cells, bool colored)
+  const IsoArray& array, const std::vector<double>& isovalues, const CellBox& cells, bool colored)
 {
   const vtkSmartPointer<vtkImageData> box = CutOut(image, cells);
   if (!mapper->MayHaveSurface(box->GetBounds(), isovalues))
@@ -416,10 +484,8 @@ void AddBlock(vtkDSMVolumeMapper* mapper, vtkDataObject* part, vtkDataObject* so
   {
     return;
   }
-  const std::string name = mapper->GetIsoArray();
-  vtkPointData* data = image->GetPointData();
-  vtkDataArray* array = name.empty() ? data->GetScalars() : data->GetArray(name.c_str());
-  if (!array)
+  const IsoArray array = FindIsoArray(mapper, image);
+  if (!array.Values)
   {
     return;
   }
