@@ -117,7 +117,7 @@ void vtkPVDSMVolumeRepresentation::SelectOpacityArray(
   int, int, int, int association, const char* name)
 {
   this->OpacityArray = name ? name : "";
-  this->Mapper->SetOpacityArrayOnCells(association == vtkDataObject::FIELD_ASSOCIATION_CELLS);
+  this->VolumeMapper->SetOpacityArrayOnCells(association == vtkDataObject::FIELD_ASSOCIATION_CELLS);
   this->UpdateOpacityArray();
 }
 
