@@ -11,7 +11,7 @@
 #include <optional>
 
 /// The first hit by the slowest and plainest way: every cell of the volume, in long double, its
-/// cubic halved between its extrema. Index space is world space.
+/// cubic halved between its extrema. Index (or grid) space is world space.
 template <class T>
 class Oracle
 {
@@ -19,10 +19,11 @@ public:
   using Real = long double;
 
   /// Of the isosurface of `isovalue + shift`; kept apart, as the sum may need too many bits.
-  Oracle(const TestVolume<T>& volume, Real isovalue, Real shift = 0)
+  Oracle(const TestVolume<T>& volume, Real isovalue, Real shift = 0, Planes planes = nullptr)
     : Volume(volume)
     , Isovalue(isovalue)
     , Shift(shift)
+    , Grid(std::move(planes))
   {
   }
 
@@ -70,7 +71,9 @@ public:
     Real local[3];
     for (int axis = 0; axis < 3; ++axis)
     {
-      local[axis] = Real(ray.Origin[axis]) + t * Real(ray.Direction[axis]) - Real(cell[axis]);
+      const Real lower = this->GetPlane(axis, cell[axis]);
+      local[axis] = (Real(ray.Origin[axis]) + t * Real(ray.Direction[axis]) - lower) /
+        (this->GetPlane(axis, cell[axis] + 1) - lower);
       // A ray that runs in a face, or ends on one, has that face's values.
       for (const Real end : { Real(0), Real(1) })
       {
@@ -91,6 +94,11 @@ public:
   }
 
 private:
+  Real GetPlane(int axis, std::int64_t plane) const
+  {
+    return this->Grid ? this->Grid->GetPlace(axis, static_cast<double>(plane)) : Real(plane);
+  }
+
   Real GetCorner(const bricks::Index3& cell, int corner) const
   {
     return Real(this->Volume.At(
@@ -106,17 +114,18 @@ private:
     {
       const Real origin = ray.Origin[axis];
       const Real direction = ray.Direction[axis];
-      const Real lower = cell[axis];
+      const Real lower = this->GetPlane(axis, cell[axis]);
+      const Real upper = this->GetPlane(axis, cell[axis] + 1);
       if (direction == 0)
       {
-        if (origin < lower || origin > lower + 1)
+        if (origin < lower || origin > upper)
         {
           return false;
         }
         continue;
       }
       const Real a = (lower - origin) / direction;
-      const Real b = (lower + 1 - origin) / direction;
+      const Real b = (upper - origin) / direction;
       enter = std::max(enter, std::min(a, b));
       leave = std::min(leave, std::max(a, b));
     }
@@ -177,6 +186,7 @@ private:
   const TestVolume<T>& Volume;
   Real Isovalue;
   Real Shift;
+  Planes Grid;
 };
 
 #endif

@@ -3,6 +3,7 @@
 #define tests_RandomRays_h
 
 #include "DSMBricks/base/Box.h"
+#include "DSMBricks/layout/GridPlanes.h"
 #include "DSMRayTracing/ray/Ray.h"
 
 #include <glm/geometric.hpp>
@@ -26,8 +27,10 @@ public:
     Count
   };
 
-  RandomRays(const bricks::Index3& cells, unsigned seed)
+  /// `planes`: where planes between cells are; null: at whole numbers.
+  RandomRays(const bricks::Index3& cells, unsigned seed, const bricks::GridPlanes* planes = nullptr)
     : Cells(cells)
+    , Planes(planes)
     , Random(seed)
   {
   }
@@ -59,7 +62,10 @@ public:
     ray.Max = 1000.0;
     if (kind == Kind::AlongPlane || kind == Kind::ThroughCorner)
     {
-      ray.Origin = glm::round(target) - 64.0 * ray.Direction;
+      const glm::dvec3 corner = this->Planes
+        ? this->Planes->ToPlace(glm::round(this->Planes->ToIndex(target)))
+        : glm::round(target);
+      ray.Origin = corner - 64.0 * ray.Direction;
     }
     if (kind == Kind::FromInside || kind == Kind::Short)
     {
@@ -75,9 +81,10 @@ public:
 
   glm::dvec3 GetPoint()
   {
-    return { this->Get(0, static_cast<double>(this->Cells.x)),
-      this->Get(0, static_cast<double>(this->Cells.y)),
-      this->Get(0, static_cast<double>(this->Cells.z)) };
+    const double x = this->Get(0, static_cast<double>(this->Cells.x));
+    const double y = this->Get(0, static_cast<double>(this->Cells.y));
+    const double z = this->Get(0, static_cast<double>(this->Cells.z));
+    return this->Planes ? this->Planes->ToPlace(glm::dvec3(x, y, z)) : glm::dvec3(x, y, z);
   }
   double Get(double low, double high)
   {
@@ -87,6 +94,7 @@ public:
 
 private:
   bricks::Index3 Cells;
+  const bricks::GridPlanes* Planes;
   std::mt19937 Random;
 };
 

@@ -7,6 +7,8 @@
 #include "DSMRayTracing/scene/Scene.h"
 #include "MemoryStore.h"
 
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <cstring>
 #include <functional>
@@ -179,12 +181,41 @@ std::shared_ptr<bricks::VoxelField> CreateField(
   return field;
 }
 
+/// Null, or where planes between cells are.
+using Planes = std::shared_ptr<const bricks::GridPlanes>;
+
+/// Planes of cells whose widths differ by up to `ratio`: they grow along x, are random along y, and fall along z, where
+/// coordinates fall, too.
+inline Planes CreatePlanes(const bricks::Index3& cells, double ratio, unsigned seed)
+{
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<double> uniform(0.0, 1.0);
+  bricks::GridPlanes::Coordinates coordinates;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    double place = 5.0;
+    coordinates[axis].push_back(place);
+    for (std::int64_t cell = 0; cell < cells[axis]; ++cell)
+    {
+      const double part = axis == 1 ? uniform(random)
+                                    : static_cast<double>(cell) /
+          static_cast<double>(std::max<std::int64_t>(cells[axis] - 1, 1));
+      const double width = std::pow(ratio, axis == 2 ? -part : part);
+      place += axis == 2 ? -width : width;
+      coordinates[axis].push_back(place);
+    }
+  }
+  return std::make_shared<bricks::GridPlanes>(coordinates);
+}
+
 template <class T>
-rt::LatticeIsosurface CreateObject(
-  MemoryStore& store, const TestVolume<T>& volume, std::vector<double> isovalues, int edge = 0)
+rt::LatticeIsosurface CreateObject(MemoryStore& store, const TestVolume<T>& volume,
+  std::vector<double> isovalues, int edge = 0, const Planes& planes = nullptr)
 {
   rt::LatticeIsosurface object;
-  object.Field.Voxels = CreateField(store, volume, edge);
+  const auto field = CreateField(store, volume, edge);
+  field->Planes = planes;
+  object.Field.Voxels = field;
   object.Isovalues = std::move(isovalues);
   return object;
 }

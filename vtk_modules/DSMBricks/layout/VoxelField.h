@@ -3,6 +3,7 @@
 #define bricks_VoxelField_h
 
 #include "DSMBricks/layout/BrickLattice.h"
+#include "DSMBricks/layout/GridPlanes.h"
 #include "DSMBricks/layout/IsovalueSurvey.h"
 #include "DSMBricks/layout/MacrocellHierarchy.h"
 #include "DSMCore/publish/BlockSegment.h"
@@ -19,6 +20,8 @@ struct VoxelField
   BrickLattice Lattice;
   std::shared_ptr<dsm::BlockSegment> Segment;
   MacrocellHierarchy Hierarchy;
+  /// Where the planes between cells are; null: at equal distances.
+  std::shared_ptr<const GridPlanes> Planes;
   /// Survey of all bricks, the same on every rank; empty if the bricks have to be examined for it.
   std::optional<IsovalueSurvey> Survey;
 };

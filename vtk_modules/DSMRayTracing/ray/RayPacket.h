@@ -7,6 +7,11 @@
 
 #include <cstdint>
 
+namespace bricks
+{
+class GridPlanes;
+}
+
 namespace rt
 {
 
@@ -30,6 +35,8 @@ struct RayPacket
   alignas(64) double BrickLeave[Size];
   /// True for each axis along which the rays move towards larger coordinates.
   bool Forward[3];
+  /// Planes between the cells of a rectilinear grid, in whose grid space the rays are then; null: at whole numbers.
+  const bricks::GridPlanes* Planes = nullptr;
   /// Valid rays; the numbers of the others are undefined.
   Mask Rays = 0;
 };

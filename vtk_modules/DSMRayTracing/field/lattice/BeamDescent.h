@@ -2,6 +2,7 @@
 #ifndef rt_BeamDescent_h
 #define rt_BeamDescent_h
 
+#include "DSMBricks/layout/GridPlanes.h"
 #include "DSMBricks/layout/MacrocellHierarchy.h"
 #include "DSMRayTracing/field/lattice/BeamBricks.h"
 #include "DSMRayTracing/field/lattice/LatticeField.h"
@@ -22,16 +23,17 @@ template <class Predicate>
 class BeamDescent
 {
 public:
-  /// All is kept by reference.
-  BeamDescent(
-    const bricks::MacrocellHierarchy& hierarchy, const Predicate& mayHold, const RayBeam& beam)
+  /// All is kept by reference. `planes`: of a rectilinear grid; null: at whole numbers.
+  BeamDescent(const bricks::MacrocellHierarchy& hierarchy, const Predicate& mayHold,
+    const RayBeam& beam, const bricks::GridPlanes* planes = nullptr)
     : Levels(hierarchy.GetLevels())
+    , Planes(planes)
     , MayHold(mayHold)
     , Beam(beam)
   {
     for (const bricks::MacrocellHierarchy::Level& level : this->Levels)
     {
-      this->Cubes.push_back(beam.GetCubes(level.Edge));
+      this->Cubes.push_back(this->GetCubes(level.Edge));
     }
   }
 
@@ -71,7 +73,7 @@ private:
         const int y = forward[1] ? first[1] + j : last[1] - 1 - j;
         int low = first[0];
         int high = last[0] - 1;
-        if (!this->Beam.ClipRow(cubes, y * level.Edge, z * level.Edge, low, high))
+        if (!this->ClipRow(level.Edge, cubes, y, z, low, high))
         {
           continue;
         }
@@ -86,6 +88,49 @@ private:
         }
       }
     }
+  }
+
+  RayBeam::Cubes GetCubes(double edge) const
+  {
+    RayBeam::Cubes cubes = this->Beam.GetCubes(edge);
+    for (int axis = 0; this->Planes && axis < 3; ++axis)
+    {
+      const double lower = this->Beam.GetLower(axis);
+      const double upper = this->Beam.GetUpper(axis);
+      const bool isOutside =
+        upper < 0.0 || lower > static_cast<double>(this->Planes->GetCells(axis));
+      cubes.First[axis] = this->FindNode(edge, axis, lower);
+      cubes.Last[axis] = isOutside ? -1 : this->FindNode(edge, axis, upper);
+    }
+    return cubes;
+  }
+
+  /// Nodes `low` to `high` of a row: shortens it to those that rays may meet. Returns false if there are none.
+  bool ClipRow(double edge, const RayBeam::Cubes& cubes, int y, int z, int& low, int& high) const
+  {
+    if (!this->Planes)
+    {
+      return this->Beam.ClipRow(cubes, y * edge, z * edge, low, high);
+    }
+    const double lower[2] = { this->Planes->GetPlace(1, y * edge),
+      this->Planes->GetPlace(2, z * edge) };
+    const double upper[2] = { this->Planes->GetPlace(1, (y + 1) * edge),
+      this->Planes->GetPlace(2, (z + 1) * edge) };
+    double begin;
+    double end;
+    if (!this->Beam.FindRow(lower, upper, begin, end))
+    {
+      return false;
+    }
+    low = std::max(low, this->FindNode(edge, 0, begin));
+    high = std::min(high, this->FindNode(edge, 0, end));
+    return low <= high;
+  }
+
+  /// The node of `edge` cells that a place of a rectilinear grid is in.
+  int FindNode(double edge, int axis, double place) const
+  {
+    return static_cast<int>(static_cast<double>(this->Planes->FindCell(axis, place)) / edge);
   }
 
   struct Place
@@ -114,6 +159,7 @@ private:
   }
 
   const std::vector<bricks::MacrocellHierarchy::Level>& Levels;
+  const bricks::GridPlanes* Planes; ///< of a rectilinear grid, or null
   const Predicate& MayHold;
   const RayBeam& Beam;
   std::vector<RayBeam::Cubes> Cubes; ///< one for each level
@@ -133,8 +179,11 @@ BeamBricks FindBeamBricks(const LatticeField& field, const Predicate& mayHold, c
     }
   }
   RayBeam beam;
-  return beam.Set(lines) ? BeamDescent<Predicate>(field.Voxels->Hierarchy, mayHold, beam).Find()
-                         : BeamBricks();
+  if (!beam.Set(lines))
+  {
+    return BeamBricks();
+  }
+  return BeamDescent<Predicate>(field.Voxels->Hierarchy, mayHold, beam, space.GetPlanes()).Find();
 }
 
 } // namespace rt

@@ -10,6 +10,7 @@
 #include "DSMBricks/layout/VoxelBrickHeader.h"
 #include "DSMRayTracing/base/MaskBits-inl.h"
 #include "DSMRayTracing/field/lattice/NodePath-inl.h"
+#include "DSMRayTracing/field/lattice/NodePlanes-inl.h"
 #include "DSMRayTracing/field/lattice/PacketBrick.h"
 #include "DSMRayTracing/ray/RayPacket.h"
 
@@ -88,7 +89,8 @@ struct PassedMacrocells
 ///
 /// `Visitor` says what is looked for: `Visit(const CrossedCells<D>&)` returns the lanes (bits) whose ray's search ends.
 /// If it `TakesMacrocells`, `Pass(const PassedMacrocells<D>&)` gets those that are smooth (PacketPart), and returns the same.
-template <class D, class Visitor>
+/// `Planes`: UniformPlanes or StretchedPlanes.
+template <class D, class Visitor, class Planes = UniformPlanes<D>>
 class BrickSearch
 {
 public:
@@ -105,6 +107,7 @@ public:
     , Brick(brick)
     , Origin(origin)
     , Look(visitor)
+    , Grid(packet)
     , Forward(packet.Forward)
   {
   }
@@ -249,9 +252,10 @@ private:
     {
       entry[axis] = hn::Set(tag, this->Start[axis]);
     }
-    const Numbers crossed = FindCrossedNodes(lines, this->Forward, entry, bricks::MacrocellEdge,
-      hn::Load(tag, this->Packet.BrickEnter + first),
-      hn::Load(tag, this->Packet.BrickLeave + first));
+    const Numbers crossed =
+      FindCrossedNodes<D>(lines, typename Planes::Box(this->Grid, entry, bricks::MacrocellEdge),
+        hn::Load(tag, this->Packet.BrickEnter + first),
+        hn::Load(tag, this->Packet.BrickLeave + first));
     hn::Store(hn::And(crossed, hn::Set(NumberTag(), known.Macrocells)), NumberTag(),
       this->Macrocells + first);
     for (; some != 0; some &= some - 1)
@@ -287,7 +291,7 @@ private:
     }
     std::uint32_t passed = 0;
     std::uint32_t ended = 0;
-    if constexpr (Visitor::TakesMacrocells)
+    if constexpr (Visitor::TakesMacrocells && Planes::AreUniform)
     {
       for (int lane = 0; lane < batch.Count; ++lane)
       {
@@ -303,7 +307,7 @@ private:
         }
       }
     }
-    const Numbers crossed = FindCrossedNodes(lines, this->Forward, entry, 1.0,
+    const Numbers crossed = FindCrossedNodes<D>(lines, typename Planes::Box(this->Grid, entry, 1),
       Load(batch, this->Packet.BrickEnter), Load(batch, this->Packet.BrickLeave));
     HWY_ALIGN std::uint64_t cells[Width];
     hn::Store(
@@ -491,21 +495,27 @@ private:
     const Vector one = hn::Set(tag, 1.0);
     Vector enter = Load(batch, this->Packet.BrickEnter);
     Vector exit = Load(batch, this->Packet.BrickLeave);
-    Vector lower[3];
+    const auto getIndex = [&](int axis)
+    {
+      const Vector steps = ToReal(
+        hn::Or(hn::ShiftLeft<2>(GetCoordinate(macrocells, axis)), GetCoordinate(nodes, axis)));
+      const Vector start = hn::Set(tag, this->Start[axis]);
+      return this->Forward[axis] ? hn::Add(start, steps) : hn::Sub(hn::Sub(start, steps), one);
+    };
+    const Vector index[3] = { getIndex(0), getIndex(1), getIndex(2) };
+    using Cell = typename Planes::Cell;
+    const Cell sides[3] = { Cell(this->Grid, 0, index[0]), Cell(this->Grid, 1, index[1]),
+      Cell(this->Grid, 2, index[2]) };
     Vector place[3];
     Vector in[3];
     Vector out[3];
     for (int axis = 0; axis < 3; ++axis)
     {
       const bool forward = this->Forward[axis];
-      const Vector steps = ToReal(
-        hn::Or(hn::ShiftLeft<2>(GetCoordinate(macrocells, axis)), GetCoordinate(nodes, axis)));
-      const Vector start = hn::Set(tag, this->Start[axis]);
-      lower[axis] = forward ? hn::Add(start, steps) : hn::Sub(hn::Sub(start, steps), one);
-      place[axis] = hn::Sub(lower[axis], hn::Set(tag, this->Origin[axis]));
-      const Vector upper = hn::Add(lower[axis], one);
-      in[axis] = lines.GetPlaneT(axis, forward ? lower[axis] : upper);
-      out[axis] = lines.GetPlaneT(axis, forward ? upper : lower[axis]);
+      place[axis] = hn::Sub(index[axis], hn::Set(tag, this->Origin[axis]));
+      const Cell& side = sides[axis];
+      in[axis] = lines.GetPlaneT(axis, forward ? side.Lower : side.Upper);
+      out[axis] = lines.GetPlaneT(axis, forward ? side.Upper : side.Lower);
       enter = hn::Max(enter, in[axis]);
       exit = hn::Min(exit, out[axis]);
     }
@@ -530,7 +540,7 @@ private:
       {
         // Exactly 0 or 1 where they meet a plane of the cell.
         const Vector point = hn::Add(origin, hn::Mul(t, direction));
-        return hn::IfThenElse(hn::Eq(planeT, t), plane, ClampToUnit(hn::Sub(point, lower[axis])));
+        return hn::IfThenElse(hn::Eq(planeT, t), plane, ClampToUnit(sides[axis].GetWithin(point)));
       };
       cells.Place[axis] = place[axis];
       cells.Start[axis] = getLocal(enter, in[axis], entry);
@@ -555,6 +565,7 @@ private:
   const PacketBrick& Brick;
   const double* Origin;
   Visitor& Look;
+  Planes Grid;
   const bool* Forward;
   int Part[3];
   double Start[3]; ///< planes through which rays enter the part

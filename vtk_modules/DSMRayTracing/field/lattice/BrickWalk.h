@@ -17,13 +17,13 @@ namespace rt
 /// Space leaping over the levels above the bricks: yields, front to back, the bricks on a ray that
 /// may hold what it looks for. Walks each level within the macrocell of the one above, and enters only
 /// those macrocells that may. `Predicate` tells that of a ValueRange; see IsovaluePredicate.
-template <class Predicate>
+template <class Predicate, class Ray = GridRay>
 class BrickWalk
 {
 public:
   /// The ray is followed from `enter` to `leave`, within the volume. All is kept by reference.
-  BrickWalk(const bricks::MacrocellHierarchy& hierarchy, const GridRay& ray,
-    const Predicate& mayHold, double enter, double leave)
+  BrickWalk(const bricks::MacrocellHierarchy& hierarchy, const Ray& ray, const Predicate& mayHold,
+    double enter, double leave)
     : Levels(hierarchy.GetLevels())
     , Line(ray)
     , MayHold(mayHold)
@@ -131,7 +131,7 @@ private:
   }
 
   const std::vector<bricks::MacrocellHierarchy::Level>& Levels;
-  const GridRay& Line;
+  const Ray& Line;
   const Predicate& MayHold;
   int Top;
   int Level;

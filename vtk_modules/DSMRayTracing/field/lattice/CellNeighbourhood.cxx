@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "DSMRayTracing/field/lattice/CellNeighbourhood.h"
 
+#include "DSMRayTracing/field/lattice/CellSteps.h"
+
 #include <cmath>
 
 namespace rt
@@ -58,9 +60,12 @@ bool CellNeighbourhood::IsEdgeCovered(int axis, int x, int y, int z) const
   return false;
 }
 
-double CellNeighbourhood::GetCarefulDifference(int axis, int x, int y, int z) const
+template <class Steps>
+double CellNeighbourhood::GetCarefulDifference(
+  const Steps& steps, int axis, int x, int y, int z) const
 {
   const int stride = SampleStrides[axis];
+  const int corner = (axis == 0 ? x : axis == 1 ? y : z) - 1;
   const double* sample = this->Samples + x + 4 * y + 16 * z;
   const bool before =
     this->IsEdgeCovered(axis, x - (axis == 0), y - (axis == 1), z - (axis == 2)) &&
@@ -68,12 +73,16 @@ double CellNeighbourhood::GetCarefulDifference(int axis, int x, int y, int z) co
   const bool after = this->IsEdgeCovered(axis, x, y, z) && std::isfinite(sample[stride]);
   if (before && after)
   {
-    return 0.5 * (sample[stride] - sample[-stride]);
+    return steps.GetCentral(axis, corner) * (sample[stride] - sample[-stride]);
   }
-  return after ? sample[stride] - sample[0] : before ? sample[0] - sample[-stride] : 0.0;
+  return after ? steps.GetAlong(axis, corner) * (sample[stride] - sample[0])
+    : before   ? steps.GetAlong(axis, corner - 1) * (sample[0] - sample[-stride])
+               : 0.0;
 }
 
-void CellNeighbourhood::GetGradient(const Lanes& local, double gradient[3]) const
+template <class Steps>
+void CellNeighbourhood::GetGradient(
+  const Lanes& local, const Steps& steps, double gradient[3]) const
 {
   const bool complete =
     std::all_of(this->Covered, this->Covered + 27, [](bool covered) { return covered; });
@@ -88,7 +97,8 @@ void CellNeighbourhood::GetGradient(const Lanes& local, double gradient[3]) cons
       {
         const double* sample =
           this->Samples + 21 + (corner & 1) + 4 * (corner >> 1 & 1) + 16 * (corner >> 2);
-        differences[corner] = 0.5 * (sample[stride] - sample[-stride]);
+        differences[corner] =
+          steps.GetCentral(axis, corner >> axis & 1) * (sample[stride] - sample[-stride]);
         careful = careful || !std::isfinite(differences[corner]);
       }
     }
@@ -97,7 +107,7 @@ void CellNeighbourhood::GetGradient(const Lanes& local, double gradient[3]) cons
       for (int corner = 0; corner < 8; ++corner)
       {
         differences[corner] = this->GetCarefulDifference(
-          axis, 1 + (corner & 1), 1 + (corner >> 1 & 1), 1 + (corner >> 2));
+          steps, axis, 1 + (corner & 1), 1 + (corner >> 1 & 1), 1 + (corner >> 2));
       }
     }
     const Pair rows[2][2] = { { { differences[0], differences[1] },
@@ -106,5 +116,8 @@ void CellNeighbourhood::GetGradient(const Lanes& local, double gradient[3]) cons
     gradient[axis] = Interpolate(rows, local);
   }
 }
+
+template void CellNeighbourhood::GetGradient(const Lanes&, const UnitSteps&, double[3]) const;
+template void CellNeighbourhood::GetGradient(const Lanes&, const CellSteps&, double[3]) const;
 
 } // namespace rt

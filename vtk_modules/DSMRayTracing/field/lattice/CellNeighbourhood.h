@@ -93,13 +93,15 @@ public:
 
   /// The gradient, in index space, at a point of the cell: trilinear between those at the corners,
   /// hence continuous across cells. At the corners it is the central difference; one-sided at the
-  /// border of the volume, and next to samples that are missing or not finite.
-  void GetGradient(const Lanes& local, double gradient[3]) const;
+  /// border of the volume, and next to samples that are missing or not finite. `Steps`: UnitSteps or CellSteps.
+  template <class Steps>
+  void GetGradient(const Lanes& local, const Steps& steps, double gradient[3]) const;
 
 private:
   /// The derivative along an axis at the sample with the given place in Samples. The fast form
   /// assumes that both neighbors are there.
-  double GetCarefulDifference(int axis, int x, int y, int z) const;
+  template <class Steps>
+  double GetCarefulDifference(const Steps& steps, int axis, int x, int y, int z) const;
   bool IsEdgeCovered(int axis, int x, int y, int z) const;
 
   double Samples[64];

@@ -57,7 +57,9 @@ public:
 
   /// As CellNeighbourhood::GetGradient, with the same operations. Returns false when a sample is not
   /// finite.
-  [[gnu::always_inline]] bool GetGradient(const Lanes& local, double gradient[3]) const
+  template <class Steps>
+  [[gnu::always_inline]] bool GetGradient(
+    const Lanes& local, const Steps& steps, double gradient[3]) const
   {
     Pair differences[3][2][2];
     for (int z = 0; z < 2; ++z)
@@ -65,16 +67,20 @@ public:
       for (int y = 0; y < 2; ++y)
       {
         const Pair& corner = this->Corners[z][y];
-        differences[0][z][y] =
-          0.5 * (Pair{ corner[1], this->X[1][z][y] } - Pair{ this->X[0][z][y], corner[0] });
+        differences[0][z][y] = Pair{ steps.GetCentral(0, 0), steps.GetCentral(0, 1) } *
+          (Pair{ corner[1], this->X[1][z][y] } - Pair{ this->X[0][z][y], corner[0] });
       }
     }
     for (int other = 0; other < 2; ++other)
     {
-      differences[1][other][0] = 0.5 * (this->Corners[other][1] - this->Y[0][other]);
-      differences[1][other][1] = 0.5 * (this->Y[1][other] - this->Corners[other][0]);
-      differences[2][0][other] = 0.5 * (this->Corners[1][other] - this->Z[0][other]);
-      differences[2][1][other] = 0.5 * (this->Z[1][other] - this->Corners[0][other]);
+      differences[1][other][0] =
+        steps.GetCentral(1, 0) * (this->Corners[other][1] - this->Y[0][other]);
+      differences[1][other][1] =
+        steps.GetCentral(1, 1) * (this->Y[1][other] - this->Corners[other][0]);
+      differences[2][0][other] =
+        steps.GetCentral(2, 0) * (this->Corners[1][other] - this->Z[0][other]);
+      differences[2][1][other] =
+        steps.GetCentral(2, 1) * (this->Z[1][other] - this->Corners[0][other]);
     }
     for (int axis = 0; axis < 3; ++axis)
     {

@@ -74,6 +74,10 @@ struct GridRay
     return (planes - this->PlaneOrigin) * this->Inverse;
   }
   Lanes GetPoint(double t) const { return this->Origin + Lanes(t) * this->Direction; }
+  /// The index of a point of the ray, or of one a little ahead of it.
+  Lanes GetIndex(const Lanes& point) const { return point; }
+  /// Where in a cell the point at t is, from 0 to 1 but for rounding.
+  Lanes GetWithin(const Lanes& cell, double t) const { return this->GetPoint(t) - cell; }
 
   /// Shortens [enter, leave] to the part inside of the box from 0 to `cells`; false when none of
   /// positive length is left.

@@ -16,13 +16,13 @@ namespace rt
 
 /// Traverses one brick along a ray: its macrocells, then the cells of those whose range contains the
 /// isovalue. `Access` is notified of all reads; see BrickAccess.
-template <class T, class Access>
+template <class T, class Access, class Ray = GridRay>
 class GridTraversal
 {
 public:
   /// `origin`: the brick's first cell.
-  GridTraversal(const GridRay& ray, const bricks::VoxelBrick<T>& brick, const Lanes& origin,
-    const Access& access)
+  GridTraversal(
+    const Ray& ray, const bricks::VoxelBrick<T>& brick, const Lanes& origin, const Access& access)
     : Line(ray)
     , Brick(brick)
     , Reads(access)
@@ -133,7 +133,7 @@ private:
   {
     const Lanes zero(0.0);
     const Lanes one(1.0);
-    const Lanes inside = Clamp(this->Line.GetPoint(t) - cell, zero, one);
+    const Lanes inside = Clamp(this->Line.GetWithin(cell, t), zero, one);
     const Lanes lower = Select(this->Line.GetPlaneT(cell) == Lanes(t), zero, inside);
     return Select(this->Line.GetPlaneT(cell + one) == Lanes(t), one, lower);
   }
@@ -201,7 +201,7 @@ private:
     return true;
   }
 
-  const GridRay& Line;
+  const Ray& Line;
   const bricks::VoxelBrick<T>& Brick;
   const Access& Reads;
   Lanes Origin;

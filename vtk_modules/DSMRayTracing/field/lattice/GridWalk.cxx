@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "DSMRayTracing/field/lattice/GridWalk.h"
 
+#include "DSMRayTracing/field/lattice/StretchedRay.h"
+
 namespace rt
 {
 
-void GridWalk::Correct(const GridRay& ray, double t, const NodeGrid& grid, Lanes& nodes)
+template <class Line>
+void GridWalk::Correct(const Line& ray, double t, const NodeGrid& grid, Lanes& nodes)
 {
   for (int axis = 0; axis < 3; ++axis)
   {
@@ -29,5 +32,8 @@ void GridWalk::Correct(const GridRay& ray, double t, const NodeGrid& grid, Lanes
   this->Plane = grid.First + (nodes + ray.Forward) * Lanes(grid.Edge);
   this->PlaneT = ray.GetPlaneT(this->Plane);
 }
+
+template void GridWalk::Correct(const GridRay&, double, const NodeGrid&, Lanes&);
+template void GridWalk::Correct(const StretchedRay&, double, const NodeGrid&, Lanes&);
 
 } // namespace rt

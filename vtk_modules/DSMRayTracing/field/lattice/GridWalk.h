@@ -32,9 +32,8 @@ struct NodeGrid
   const NodeStrides& Strides;
 };
 
-/// Walks the nodes of a box in the order in which a ray meets them. Where the ray passes through an
-/// edge or a corner it steps over all planes at once, so that no node is visited for a single
-/// point.
+/// Walks the nodes of a box in the order in which a ray (GridRay or StretchedRay) meets them. Where the ray passes
+/// through an edge or a corner it steps over all planes at once, so that no node is visited for a single point.
 class GridWalk
 {
 public:
@@ -42,12 +41,14 @@ public:
 
   /// Starts at t on a ray that is in the box then; planes that are met at t or before count as crossed.
   /// Returns the index of the node relative to the box's first node.
-  std::int64_t Start(const GridRay& ray, double t, const NodeGrid& grid)
+  template <class Line>
+  std::int64_t Start(const Line& ray, double t, const NodeGrid& grid)
   {
     // Mostly the ray stands on a plane that it has just crossed; a little ahead, rounding does not
     // put the place on either side by chance.
     const Lanes ahead = ray.Step * Lanes(1e-9);
-    const Lanes place = (ray.GetPoint(t) + ahead - grid.First) * Lanes(grid.InverseEdge);
+    const Lanes point = ray.GetIndex(ray.GetPoint(t) + ahead);
+    const Lanes place = (point - grid.First) * Lanes(grid.InverseEdge);
     const Lanes last = grid.Counts - Lanes(1.0);
     Lanes nodes = Round(Clamp(place - Lanes(0.5), Lanes(0.0), last));
     const Lanes edge(grid.Edge);
@@ -68,7 +69,8 @@ public:
   double GetExit() const { return this->PlaneT.GetMin(); }
 
   /// Goes on to the node after `exit`; returns the change of the index.
-  std::int64_t Advance(const GridRay& ray, double exit)
+  template <class Line>
+  std::int64_t Advance(const Line& ray, double exit)
   {
     const IntegerLanes crossed = this->PlaneT <= Lanes(exit);
     this->Plane = this->Plane + (this->PlaneStrides & crossed);
@@ -85,7 +87,8 @@ public:
 private:
   /// Moves the start to the node that GetPlaneT defines; the rounding of the ray's point may define
   /// another one.
-  void Correct(const GridRay& ray, double t, const NodeGrid& grid, Lanes& nodes);
+  template <class Line>
+  void Correct(const Line& ray, double t, const NodeGrid& grid, Lanes& nodes);
 
   Lanes Plane;  ///< coordinate of the plane through which the ray leaves on each axis
   Lanes PlaneT; ///< T at which it meets that plane

@@ -6,6 +6,7 @@
 #include "DSMBricks/layout/VoxelField.h"
 #include "DSMCore/base/Block.h"
 #include "DSMRayTracing/field/lattice/CellNeighbourhood.h"
+#include "DSMRayTracing/field/lattice/CellSteps.h"
 #include "DSMRayTracing/field/lattice/GradientStencil.h"
 #include "DSMRayTracing/field/lattice/IsovalueLevel.h"
 #include "DSMRayTracing/ray/CellHit.h"
@@ -17,16 +18,17 @@
 namespace rt
 {
 
-/// The gradient, in index space, of a field at a hit: see CellNeighbourhood::GetGradient, whose
+/// The gradient, in index or grid space, of a field at a hit: see CellNeighbourhood::GetGradient, whose
 /// operations these are, so that the bits do not depend on where a brick ends.
 class HitGradient
 {
 public:
   /// Returns false unless all samples that it needs are in the brick of the hit, are finite, and
-  /// none is masked.
+  /// none is masked. `id`: the brick's, in the field.
   template <class T>
-  static bool FindWithin(const bricks::VoxelBrick<T>& brick, const CellHit& hit,
-    const IsovalueLevel<T>& level, double gradient[3])
+  static bool FindWithin(const bricks::VoxelField& field, dsm::BlockId id,
+    const bricks::VoxelBrick<T>& brick, const CellHit& hit, const IsovalueLevel<T>& level,
+    double gradient[3])
   {
     if (!CellNeighbourhood::IsWithin(brick, hit.Cell))
     {
@@ -44,7 +46,8 @@ public:
     stencil.SetFace(1, 1, first + 2 * row, row, slice, level);
     stencil.SetFace(2, 0, first - slice, row, slice, level);
     stencil.SetFace(2, 1, first + 2 * slice, row, slice, level);
-    return stencil.GetGradient(hit.Local, gradient);
+    return Evaluate(
+      stencil, field, [&] { return field.Lattice.GetBrick(id); }, hit, gradient);
   }
 
   /// At any hit; acquires the bricks that it needs, so no pin may be held.
@@ -61,6 +64,21 @@ public:
   }
 
 private:
+  /// The gradient of samples around a cell. `getBrick`: position of the brick that has it.
+  template <class Samples, class GetBrick>
+  [[gnu::always_inline]] static auto Evaluate(const Samples& samples,
+    const bricks::VoxelField& field, const GetBrick& getBrick, const CellHit& cell,
+    double gradient[3])
+  {
+    if (!field.Planes)
+    {
+      return samples.GetGradient(cell.Local, UnitSteps(), gradient);
+    }
+    const bricks::Index3 place = getBrick() * bricks::Index3(field.Lattice.GetEdge()) +
+      bricks::Index3(cell.Cell[0], cell.Cell[1], cell.Cell[2]);
+    return samples.GetGradient(cell.Local, CellSteps(*field.Planes, place), gradient);
+  }
+
   /// Returns false if any sample is missing.
   template <class T, class Store>
   static bool FindAcrossFaces(Store& store, typename Store::Worker& worker,
@@ -119,7 +137,8 @@ private:
           brick.GetSlice(), level);
       }
     }
-    return stencil.GetGradient(cell.Local, gradient);
+    return Evaluate(
+      stencil, field, [&] { return home; }, cell, gradient);
   }
 
   /// Whatever is missing.
@@ -167,7 +186,8 @@ private:
         }
       }
     }
-    samples.GetGradient(cell.Local, gradient);
+    Evaluate(
+      samples, field, [&] { return home; }, cell, gradient);
   }
 };
 

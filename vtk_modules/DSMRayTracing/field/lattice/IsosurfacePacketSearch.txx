@@ -31,7 +31,8 @@ template <class Store>
 BeamBricks IsosurfacePacketSearch<Store>::FindBricks(const Sets& sets, const RayBeam& beam)
 {
   const IsovaluePredicate mayHold(sets.Isovalues);
-  return BeamDescent<IsovaluePredicate>(sets.Field.Voxels->Hierarchy, mayHold, beam).Find();
+  const bricks::VoxelField& field = *sets.Field.Voxels;
+  return BeamDescent<IsovaluePredicate>(field.Hierarchy, mayHold, beam, field.Planes.get()).Find();
 }
 
 template <class Store>
@@ -144,7 +145,8 @@ void IsosurfacePacketSearch<Store>::SearchBrick(
       cell = candidates.Get(number);
       progress.Isovalue[index] = static_cast<int>(isovalue);
       progress.Hit |= bit;
-      const bool within = HitGradient::FindWithin(voxels, cell, level, &progress.Gradient[index].x);
+      const bool within = HitGradient::FindWithin(
+        *sets.Field.Voxels, brick.Id, voxels, cell, level, &progress.Gradient[index].x);
       progress.WithoutGradient =
         within ? progress.WithoutGradient & ~bit : progress.WithoutGradient | bit;
     }

@@ -74,16 +74,18 @@ public:
     glm::dvec3& transmittance) const;
 
 private:
-  using Walk = BrickWalk<IsovaluePredicate>;
+  /// `Line`: see IndexSpace::VisitLine.
+  template <class Line>
+  using Walk = BrickWalk<IsovaluePredicate, Line>;
 
-  template <class T>
-  bool IntersectBricks(const Sets& sets, const GridRay& line, double enter, double leave, Hit& hit,
+  template <class T, class Line>
+  bool IntersectBricks(const Sets& sets, const Line& line, double enter, double leave, Hit& hit,
     double gradient[3]) const;
 
   /// Searches the brick of the walk for all isovalues of its range; `hasGradient` tells that the
   /// gradient was found too, as it is when its samples are all in the brick.
-  template <class T>
-  bool IntersectBrick(const Sets& sets, const GridRay& line, const Walk& walk, CellHit& cell,
+  template <class T, class Line>
+  bool IntersectBrick(const Sets& sets, const Line& line, const Walk<Line>& walk, CellHit& cell,
     int& isovalue, double gradient[3], bool& hasGradient) const;
 
   /// Calls `isDone(sample, traversal, range, walk)` for the bricks on the ray, front to back, until it

@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <limits>
+#include <type_traits>
 
 namespace rt
 {
@@ -20,34 +21,37 @@ bool IsosurfaceSearch<Store, Access>::Intersect(const Sets& sets, const Ray& ray
 {
   const IndexSpace space = sets.Field.GetIndexSpace();
   const bricks::BrickLattice& lattice = sets.Field.Voxels->Lattice;
-  GridRay line;
-  double enter = ray.Min;
-  double leave = ray.Max;
-  if (!space.GetGridRay(ray, line) || !line.Clip(lattice.GetCells(), enter, leave))
-  {
-    return false;
-  }
-  return bricks::Dispatch(lattice.GetScalarType(),
-    [&](auto sample)
+  return space.VisitLine(ray,
+    [&](const auto& line)
     {
-      double gradient[3];
-      if (!this->IntersectBricks<decltype(sample)>(sets, line, enter, leave, hit, gradient))
+      double enter = ray.Min;
+      double leave = ray.Max;
+      if (!line.Clip(lattice.GetCells(), enter, leave))
       {
         return false;
       }
-      hit.Normal = space.GetNormal(gradient, ray.Direction);
-      return true;
+      return bricks::Dispatch(lattice.GetScalarType(),
+        [&](auto sample)
+        {
+          double gradient[3];
+          if (!this->IntersectBricks<decltype(sample)>(sets, line, enter, leave, hit, gradient))
+          {
+            return false;
+          }
+          hit.Normal = space.GetNormal(gradient, ray.Direction);
+          return true;
+        });
     });
 }
 
 template <class Store, template <class> class Access>
-template <class T>
-bool IsosurfaceSearch<Store, Access>::IntersectBricks(const Sets& sets, const GridRay& line,
+template <class T, class Line>
+bool IsosurfaceSearch<Store, Access>::IntersectBricks(const Sets& sets, const Line& line,
   double enter, double leave, Hit& hit, double gradient[3]) const
 {
   const bricks::VoxelField& field = *sets.Field.Voxels;
   const IsovaluePredicate mayHold(sets.Isovalues);
-  Walk walk(field.Hierarchy, line, mayHold, enter, leave);
+  Walk<Line> walk(field.Hierarchy, line, mayHold, enter, leave);
   while (walk.Next())
   {
     CellHit cell;
@@ -75,16 +79,16 @@ bool IsosurfaceSearch<Store, Access>::IntersectBricks(const Sets& sets, const Gr
 }
 
 template <class Store, template <class> class Access>
-template <class T>
-bool IsosurfaceSearch<Store, Access>::IntersectBrick(const Sets& sets, const GridRay& line,
-  const Walk& walk, CellHit& cell, int& isovalue, double gradient[3], bool& hasGradient) const
+template <class T, class Line>
+bool IsosurfaceSearch<Store, Access>::IntersectBrick(const Sets& sets, const Line& line,
+  const Walk<Line>& walk, CellHit& cell, int& isovalue, double gradient[3], bool& hasGradient) const
 {
   const typename Store::Pin pin =
     this->Blocks.Acquire(this->Self, *sets.Field.Voxels->Segment, walk.GetId());
   const bricks::VoxelBrick<T> voxels(pin.GetData());
   const bricks::ValueRange range{ voxels.GetHeader().First, voxels.GetHeader().Last };
   const Access<Store> access(this->Blocks, this->Self, *sets.Field.Voxels->Segment, walk.GetId());
-  const GridTraversal<T, Access<Store>> traversal(line, voxels, walk.GetOrigin(), access);
+  const GridTraversal<T, Access<Store>, Line> traversal(line, voxels, walk.GetOrigin(), access);
   bool found = false;
   double limit = std::numeric_limits<double>::infinity();
   for (std::size_t index = 0; index < sets.Isovalues.size(); ++index)
@@ -105,8 +109,8 @@ bool IsosurfaceSearch<Store, Access>::IntersectBrick(const Sets& sets, const Gri
   {
     return false;
   }
-  hasGradient =
-    HitGradient::FindWithin(voxels, cell, IsovalueLevel<T>(sets.Isovalues[isovalue]), gradient);
+  hasGradient = HitGradient::FindWithin(*sets.Field.Voxels, walk.GetId(), voxels, cell,
+    IsovalueLevel<T>(sets.Isovalues[isovalue]), gradient);
   return true;
 }
 
@@ -114,7 +118,7 @@ template <class Store, template <class> class Access>
 bool IsosurfaceSearch<Store, Access>::IsOccluded(const Sets& sets, const Ray& ray) const
 {
   return this->SearchBricks(sets, ray,
-    [&](auto sample, const auto& traversal, const bricks::ValueRange& range, const Walk& walk)
+    [&](auto sample, const auto& traversal, const bricks::ValueRange& range, const auto& walk)
     {
       return std::any_of(sets.Isovalues.begin(), sets.Isovalues.end(),
         [&](double isovalue)
@@ -131,7 +135,7 @@ bool IsosurfaceSearch<Store, Access>::Attenuate(const Sets& sets,
   const std::vector<glm::dvec3>& sheets, const Ray& ray, glm::dvec3& transmittance) const
 {
   return this->SearchBricks(sets, ray,
-    [&](auto sample, const auto& traversal, const bricks::ValueRange& range, const Walk& walk)
+    [&](auto sample, const auto& traversal, const bricks::ValueRange& range, const auto& walk)
     {
       for (std::size_t index = 0; index < sheets.size(); ++index)
       {
@@ -156,33 +160,38 @@ bool IsosurfaceSearch<Store, Access>::SearchBricks(
 {
   const IndexSpace space = sets.Field.GetIndexSpace();
   const bricks::VoxelField& field = *sets.Field.Voxels;
-  GridRay line;
-  double enter = ray.Min;
-  double leave = ray.Max;
-  if (!space.GetGridRay(ray, line) || !line.Clip(field.Lattice.GetCells(), enter, leave))
-  {
-    return false;
-  }
-  return bricks::Dispatch(field.Lattice.GetScalarType(),
-    [&](auto sample)
+  return space.VisitLine(ray,
+    [&](const auto& line)
     {
-      using T = decltype(sample);
-      const dsm::BlockSegment& segment = *field.Segment;
-      const IsovaluePredicate mayHold(sets.Isovalues);
-      Walk walk(field.Hierarchy, line, mayHold, enter, leave);
-      while (walk.Next())
+      using Line = std::decay_t<decltype(line)>;
+      double enter = ray.Min;
+      double leave = ray.Max;
+      if (!line.Clip(field.Lattice.GetCells(), enter, leave))
       {
-        const typename Store::Pin pin = this->Blocks.Acquire(this->Self, segment, walk.GetId());
-        const bricks::VoxelBrick<T> voxels(pin.GetData());
-        const bricks::ValueRange range{ voxels.GetHeader().First, voxels.GetHeader().Last };
-        const Access<Store> access(this->Blocks, this->Self, segment, walk.GetId());
-        const GridTraversal<T, Access<Store>> traversal(line, voxels, walk.GetOrigin(), access);
-        if (isDone(sample, traversal, range, walk))
-        {
-          return true;
-        }
+        return false;
       }
-      return false;
+      return bricks::Dispatch(field.Lattice.GetScalarType(),
+        [&](auto sample)
+        {
+          using T = decltype(sample);
+          const dsm::BlockSegment& segment = *field.Segment;
+          const IsovaluePredicate mayHold(sets.Isovalues);
+          Walk<Line> walk(field.Hierarchy, line, mayHold, enter, leave);
+          while (walk.Next())
+          {
+            const typename Store::Pin pin = this->Blocks.Acquire(this->Self, segment, walk.GetId());
+            const bricks::VoxelBrick<T> voxels(pin.GetData());
+            const bricks::ValueRange range{ voxels.GetHeader().First, voxels.GetHeader().Last };
+            const Access<Store> access(this->Blocks, this->Self, segment, walk.GetId());
+            const GridTraversal<T, Access<Store>, Line> traversal(
+              line, voxels, walk.GetOrigin(), access);
+            if (isDone(sample, traversal, range, walk))
+            {
+              return true;
+            }
+          }
+          return false;
+        });
     });
 }
 

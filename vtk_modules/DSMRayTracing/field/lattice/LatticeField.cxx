@@ -19,6 +19,10 @@ LatticePlace LatticeField::GetPlace(const glm::dvec3& point) const
   LatticePlace place;
   place.IndexPoint = glm::clamp(
     space.GetWorldToIndex() * (point - space.GetOrigin()), glm::dvec3(0.0), glm::dvec3(cells));
+  if (space.GetPlanes())
+  {
+    place.IndexPoint = space.GetPlanes()->ToIndex(place.IndexPoint);
+  }
   const bricks::Index3 cell =
     glm::min(bricks::Index3(glm::floor(place.IndexPoint)), cells - bricks::Index3(1));
   place.Cell = glm::ivec3(cell);
@@ -37,16 +41,26 @@ double LatticeField::GetGrowth(const glm::dvec3& gradient) const
 double LatticeField::GetFinestLength() const
 {
   const glm::dmat3 edges(this->IndexToWorld);
-  return std::min({ glm::length(edges[0]), glm::length(edges[1]), glm::length(edges[2]) });
+  glm::dvec3 lengths(glm::length(edges[0]), glm::length(edges[1]), glm::length(edges[2]));
+  if (const bricks::GridPlanes* const planes = this->GetIndexSpace().GetPlanes())
+  {
+    lengths *=
+      glm::dvec3(planes->GetLeastWidth(0), planes->GetLeastWidth(1), planes->GetLeastWidth(2));
+  }
+  return std::min({ lengths.x, lengths.y, lengths.z });
 }
 
 ObjectTracer::Brick LatticeField::FindBrick(const glm::dvec3& place) const
 {
   constexpr double slack = 1e-3; // a ray begins and ends at the border
-  const glm::dvec3 point(this->WorldToIndex * glm::dvec4(place, 1.0));
+  glm::dvec3 point(this->WorldToIndex * glm::dvec4(place, 1.0));
   const glm::dvec3 end(this->Voxels->Lattice.GetCells());
   const bool isInside = glm::all(glm::greaterThanEqual(point, glm::dvec3(-slack))) &&
     glm::all(glm::lessThanEqual(point, end + slack));
+  if (const bricks::GridPlanes* const planes = this->GetIndexSpace().GetPlanes())
+  {
+    point = planes->ToIndex(point);
+  }
   return { isInside ? this->Voxels->Segment.get() : nullptr,
     this->Voxels->Lattice.FindBrick(point) };
 }
@@ -61,6 +75,10 @@ void LatticeField::AddTo(ObjectDigest& digest, const Values& values)
 {
   digest.Add(values.Segment->GetNumber());
   digest.Add(values.Segment->GetVersion());
+  if (values.Planes)
+  {
+    digest.Add(values.Planes->GetHash());
+  }
 }
 
 } // namespace rt

@@ -27,8 +27,8 @@ template <class Store>
 class LatticeSurfaces;
 class LatticeSections;
 
-/// Values at the points of a uniform lattice, in bricks of voxels, and where they are in the world. A kind of field:
-/// IsosurfaceOf says what one has to offer.
+/// Values at the points of a lattice, uniform or rectilinear, in bricks of voxels, and where they are in the world. A
+/// kind of field: IsosurfaceOf says what one has to offer.
 struct LatticeField
 {
   /// Sampled values. If several fields have the same points, one may define the surfaces and
@@ -45,7 +45,8 @@ struct LatticeField
   template <class Store>
   using Extrema = LatticeExtrema<Store>;
 
-  /// Point index space (sample (i,j,k) at (i,j,k) of the lattice) to world; affine, invertible.
+  /// Point index space (sample (i,j,k) at (i,j,k) of the lattice) to world; affine, invertible. Where Voxels has Planes, it
+  /// is grid space instead of index space, here and in what is called so below.
   glm::dmat4 IndexToWorld{ 1.0 };
   /// Its inverse; SetIndexToWorld keeps the two together.
   glm::dmat4 WorldToIndex{ 1.0 };
@@ -57,7 +58,11 @@ struct LatticeField
   std::shared_ptr<const Values> Voxels;
   const Values& GetValues() const { return *this->Voxels; }
 
-  IndexSpace GetIndexSpace() const { return IndexSpace(this->IndexToWorld, this->WorldToIndex); }
+  IndexSpace GetIndexSpace() const
+  {
+    return IndexSpace(
+      this->IndexToWorld, this->WorldToIndex, this->Voxels ? this->Voxels->Planes.get() : nullptr);
+  }
   /// The unit normal, in world space, of a surface where the values grow so fast on each axis of the index space.
   glm::dvec3 GetNormal(const glm::dvec3& gradient, const glm::dvec3& rayDirection) const
   {

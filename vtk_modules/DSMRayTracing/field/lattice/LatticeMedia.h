@@ -23,6 +23,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <limits>
 #include <memory>
 #include <tuple>
 #include <vector>
@@ -123,9 +124,13 @@ private:
     asked.Cell.Local = Lanes(inside.x, inside.y, inside.z, 0.0);
   }
 
-  /// Through a cell, in world space.
+  /// Through a cell, in world space; infinite where cells differ, so that rays go through macrocells cell by cell.
   static double GetLongestWay(const LatticeField& field)
   {
+    if (field.Voxels->Planes)
+    {
+      return std::numeric_limits<double>::infinity();
+    }
     const glm::dmat3 edges(field.IndexToWorld);
     double longest = 0.0;
     for (const double y : { -1.0, 1.0 })
@@ -151,7 +156,8 @@ private:
     const bricks::VoxelBrick<T> voxels(pin.GetData());
     for (auto asked = begin; asked != end; ++asked)
     {
-      if (!HitGradient::FindWithin(voxels, asked->Cell, level, &gradients[asked->Number].x))
+      if (!HitGradient::FindWithin(
+            *field.Voxels, asked->Brick, voxels, asked->Cell, level, &gradients[asked->Number].x))
       {
         beyond.push_back(&*asked);
       }

@@ -91,7 +91,8 @@ RayMask ForEachPacket(const LatticeField& field, const Predicate& mayHold,
     {
       RayBeam own;
       own.Set(packet);
-      BeamBricks bricks = BeamDescent<Predicate>(field.Voxels->Hierarchy, mayHold, own).Find();
+      BeamBricks bricks =
+        BeamDescent<Predicate>(field.Voxels->Hierarchy, mayHold, own, space.GetPlanes()).Find();
       found |= visit(bricks, packet);
     }
   }

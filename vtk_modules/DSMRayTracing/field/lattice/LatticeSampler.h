@@ -38,7 +38,7 @@ public:
   RayMask FindNearestValues(const bricks::VoxelField& field, const LatticePlace* places,
     RayMask wanted, double* values) const;
 
-  /// How fast the trilinear value grows on each axis of the index space, in cells that hold data.
+  /// How fast the trilinear value grows on each axis of the index (or grid) space, in cells that hold data.
   void FindGradients(const bricks::VoxelField& field, const LatticePlace* places, RayMask wanted,
     glm::dvec3* gradients) const;
 

@@ -239,6 +239,11 @@ void LatticeSampler<Store>::FindGradients(const bricks::VoxelField& field,
           const glm::dvec3 inside = places[index].IndexPoint - glm::dvec3(places[index].Cell);
           DifferentiateTrilinear(
             numbers, Lanes(inside.x, inside.y, inside.z, 0.0), &gradients[index].x);
+          for (int axis = 0; field.Planes && axis < 3; ++axis)
+          {
+            gradients[index][axis] *= field.Planes->GetInverseWidths(
+              axis)[static_cast<std::size_t>(places[index].Cell[axis])];
+          }
         });
     });
 }

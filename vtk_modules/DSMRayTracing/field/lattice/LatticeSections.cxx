@@ -60,8 +60,13 @@ LatticeSections::LatticeSections(const LatticeField& field, const std::vector<Se
     indexed.IsAlongAxes = std::abs(indexed.Normal[(axis + 1) % 3]) < Flat &&
       std::abs(indexed.Normal[(axis + 2) % 3]) < Flat;
     indexed.Coordinate = indexed.Offset / indexed.Normal[axis];
+    const double place = indexed.Coordinate;
+    if (place >= 0.0 && place <= size[axis])
+    {
+      indexed.Coordinate = this->ToIndex(axis, place);
+    }
     const double nearest = std::round(indexed.Coordinate);
-    if (std::abs(indexed.Coordinate - nearest) < NearSamples * size[axis])
+    if (std::abs(place - this->ToPlace(axis, nearest)) < NearSamples * size[axis])
     {
       indexed.Coordinate = nearest;
     }
@@ -83,9 +88,10 @@ bool LatticeSections::FindPlace(
     {
       return false;
     }
-    place.IndexPoint[axis] = coordinate;
+    const double index = isKnown ? coordinate : this->ToIndex(axis, coordinate);
+    place.IndexPoint[axis] = index;
     place.Cell[axis] =
-      static_cast<int>(std::min(static_cast<std::int64_t>(coordinate), cells[axis] - 1));
+      static_cast<int>(std::min(static_cast<std::int64_t>(index), cells[axis] - 1));
   }
   place.Brick = lattice.GetId(place.GetCell() / bricks::Index3(lattice.GetEdge()));
   return true;
@@ -171,7 +177,7 @@ LatticeSections::Beam LatticeSections::FindBeam(const Ray corners[4]) const
   return beam;
 }
 
-/// Those that the plane passes through in a box of index space.
+/// Those that the plane passes through in a box.
 void LatticeSections::AddBricks(
   const IndexPlane& plane, const Box& box, std::vector<dsm::BlockId>& bricks) const
 {
@@ -183,15 +189,21 @@ void LatticeSections::AddBricks(
   const int steepest = plane.Steepest;
   if (plane.IsAlongAxes)
   {
-    lower[steepest] = std::max(plane.Coordinate, 0.0);
-    upper[steepest] = std::min(plane.Coordinate, size[steepest]);
+    const double place = plane.Coordinate >= 0.0 && plane.Coordinate <= size[steepest]
+      ? this->ToPlace(steepest, plane.Coordinate)
+      : plane.Coordinate;
+    lower[steepest] = std::max(place, 0.0);
+    upper[steepest] = std::min(place, size[steepest]);
   }
   if (lower.x > upper.x || lower.y > upper.y || lower.z > upper.z)
   {
     return;
   }
   const auto getBrick = [&](double coordinate, int axis)
-  { return std::min(static_cast<std::int64_t>(coordinate / edge), lattice.GetBricks()[axis] - 1); };
+  {
+    return std::min(static_cast<std::int64_t>(this->ToIndex(axis, coordinate) / edge),
+      lattice.GetBricks()[axis] - 1);
+  };
   const int first = (steepest + 1) % 3;
   const int second = (steepest + 2) % 3;
   bricks::Index3 brick;
@@ -212,7 +224,8 @@ void LatticeSections::AddBricks(
         {
           const auto get = [&](int axis, bool isUpper)
           {
-            const double end = edge * static_cast<double>(brick[axis] + (isUpper ? 1 : 0));
+            const double end =
+              this->ToPlace(axis, edge * static_cast<double>(brick[axis] + (isUpper ? 1 : 0)));
             return std::clamp(end, lower[axis], upper[axis]);
           };
           const double height = (plane.Offset - plane.Normal[first] * get(first, corner & 1) -

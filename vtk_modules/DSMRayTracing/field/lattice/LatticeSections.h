@@ -61,21 +61,34 @@ public:
   Beam FindBeam(const Ray corners[4]) const;
 
 private:
-  /// A plane in index space: the points x with dot(Normal, x) == Offset.
+  /// A plane in index (or grid) space: the points x with dot(Normal, x) == Offset.
   struct IndexPlane
   {
     glm::dvec3 Normal; ///< its largest component is 1 or -1
     double Offset;
-    int Steepest;      ///< the axis of this component
-    bool IsAlongAxes;  ///< the others are 0
-    double Coordinate; ///< on that axis, then; a whole number where the plane goes through samples
+    int Steepest;     ///< the axis of this component
+    bool IsAlongAxes; ///< the others are 0
+    double
+      Coordinate; ///< on that axis, then: an index; a whole number where the plane goes through samples
   };
 
+  /// In index or grid space.
   struct Box
   {
     glm::dvec3 Lower;
     glm::dvec3 Upper;
   };
+
+  double ToIndex(int axis, double place) const
+  {
+    const bricks::GridPlanes* const planes = this->Space.GetPlanes();
+    return planes ? planes->ToIndex(axis, place) : place;
+  }
+  double ToPlace(int axis, double index) const
+  {
+    const bricks::GridPlanes* const planes = this->Space.GetPlanes();
+    return planes ? planes->ToPlace(axis, index) : index;
+  }
 
   bool FindPlace(const Line& line, double t, const IndexPlane& plane, LatticePlace& place) const;
   void AddBricks(const IndexPlane& plane, const Box& box, std::vector<dsm::BlockId>& bricks) const;

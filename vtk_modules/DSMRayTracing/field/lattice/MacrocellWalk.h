@@ -14,8 +14,8 @@ namespace rt
 /// Takes a ray through the macrocells of a brick, whose first cell is `origin`, from `enter` to `leave`,
 /// which differ and lie in the brick, or to `limit`. Calls `visit(walk, enter, leave)` for macrocells whose
 /// range satisfies `mayHold`, until it returns true; returns whether it did.
-template <class T, class Predicate, class Visit>
-bool VisitMacrocells(const GridRay& line, const bricks::VoxelBrick<T>& brick, const Lanes& origin,
+template <class T, class Line, class Predicate, class Visit>
+bool VisitMacrocells(const Line& line, const bricks::VoxelBrick<T>& brick, const Lanes& origin,
   double enter, double leave, double limit, const Predicate& mayHold, const Visit& visit)
 {
   const int rows = brick.GetMacrocells(0);

@@ -136,29 +136,27 @@ struct RayLines
   }
 };
 
-/// The nodes (NodeOrder) that rays, from `enter` to `leave`, cross of a box of 4 x 4 x 4 that they come
-/// into through the planes `entry`; each ray has a box of its own. They are those that GridWalk steps
+/// The nodes (NodeOrder) that rays, from `enter` to `leave`, cross of a box of 4 x 4 x 4; each ray may have a box of its
+/// own. `getPlane(axis, number)`: the planes of the boxes, from 0, through which rays come in, to 4. They are those that GridWalk steps
 /// through: where a ray meets several planes at once, it goes through all of them together. Nodes
 /// that a ray only touches may be added.
 ///
 /// A ray is on all three axes between two planes at a time when it is so on each two of them: so every
 /// two planes tell, by which of them is met first, that some nodes are never come to.
-template <class D, class Vector = hn::Vec<D>>
-HWY_INLINE hn::Vec<hn::RebindToUnsigned<D>> FindCrossedNodes(const RayLines<D>& lines,
-  const bool forward[3], const Vector entry[3], double edge, Vector enter, Vector leave)
+template <class D, class GetPlane, class Vector = hn::Vec<D>>
+HWY_INLINE hn::Vec<hn::RebindToUnsigned<D>> FindCrossedNodes(
+  const RayLines<D>& lines, const GetPlane& getPlane, Vector enter, Vector leave)
 {
-  const D tag;
   const hn::RebindToUnsigned<D> numbers;
   Vector between[3][3];
   for (int axis = 0; axis < 3; ++axis)
   {
-    const double step = forward[axis] ? edge : -edge;
-    enter = hn::Max(enter, lines.GetPlaneT(axis, entry[axis]));
-    leave = hn::Min(leave, lines.GetPlaneT(axis, hn::Add(entry[axis], hn::Set(tag, 4.0 * step))));
+    enter = hn::Max(enter, lines.GetPlaneT(axis, getPlane(axis, 0)));
+    leave = hn::Min(leave, lines.GetPlaneT(axis, getPlane(axis, 4)));
+#pragma GCC unroll 3
     for (int plane = 0; plane < 3; ++plane)
     {
-      between[axis][plane] =
-        lines.GetPlaneT(axis, hn::Add(entry[axis], hn::Set(tag, (plane + 1) * step)));
+      between[axis][plane] = lines.GetPlaneT(axis, getPlane(axis, plane + 1));
     }
   }
   auto nodes = hn::Set(numbers, ~std::uint64_t{ 0 });

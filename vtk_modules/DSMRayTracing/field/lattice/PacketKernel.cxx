@@ -14,6 +14,7 @@
 #include "DSMRayTracing/field/lattice/MacrocellComparison-inl.h"
 #include "DSMRayTracing/field/lattice/MediumCells-inl.h"
 #include "DSMRayTracing/field/lattice/NodePath-inl.h"
+#include "DSMRayTracing/field/lattice/NodePlanes-inl.h"
 #include "DSMRayTracing/field/lattice/Roughness-inl.h"
 #include "DSMRayTracing/field/lattice/SurfaceCells-inl.h"
 
@@ -99,6 +100,7 @@ public:
       fitting |= RayPacket::Mask{ GetBits(fits) } << first;
       crossing |= RayPacket::Mask{ GetBits(hn::And(fits, hn::Lt(enter, leave))) } << first;
     }
+    packet.Planes = space.GetPlanes();
     packet.Rays = crossing;
     return wanted & ~fitting;
   }
@@ -120,8 +122,10 @@ public:
       for (int axis = 0; axis < 3; ++axis)
       {
         const bool forward = packet.Forward[axis];
-        const Vector entry = hn::Set(tag, forward ? lower[axis] : upper[axis]);
-        const Vector end = hn::Set(tag, forward ? upper[axis] : lower[axis]);
+        const auto getPlace = [&](double plane)
+        { return hn::Set(tag, packet.Planes ? packet.Planes->GetPlace(axis, plane) : plane); };
+        const Vector entry = getPlace(forward ? lower[axis] : upper[axis]);
+        const Vector end = getPlace(forward ? upper[axis] : lower[axis]);
         enter = hn::Max(enter, lines.GetPlaneT(axis, entry));
         leave = hn::Min(leave, lines.GetPlaneT(axis, end));
       }
@@ -137,7 +141,7 @@ public:
   {
     CellCrossings crossings;
     FirstCrossings<D> first(&crossings);
-    BrickSearch<D, FirstCrossings<D>>(packet, brick, origin, first).Search(rays);
+    Search(packet, rays, brick, origin, first);
     Refine(crossings, hits);
   }
 
@@ -145,14 +149,14 @@ public:
     const RayPacket& packet, RayPacket::Mask rays, const PacketBrick& brick, const double origin[3])
   {
     FirstCrossings<D> first(nullptr);
-    return BrickSearch<D, FirstCrossings<D>>(packet, brick, origin, first).Search(rays);
+    return Search(packet, rays, brick, origin, first);
   }
 
   static void CountCrossings(const RayPacket& packet, RayPacket::Mask rays,
     const PacketBrick& brick, const double origin[3], int* counts)
   {
     CrossingCounts<D> counted(counts);
-    BrickSearch<D, CrossingCounts<D>>(packet, brick, origin, counted).Search(rays);
+    Search(packet, rays, brick, origin, counted);
   }
 
   static RayPacket::Mask March(const RayPacket& packet, RayPacket::Mask rays,
@@ -160,17 +164,26 @@ public:
     MediumLight& light)
   {
     MediumCells<D> cells(function, light);
-    return BrickSearch<D, MediumCells<D>>(packet, brick, origin, cells).Search(rays);
+    return Search(packet, rays, brick, origin, cells);
   }
 
   static RayPacket::Mask FindExtrema(const RayPacket& packet, RayPacket::Mask rays,
     const PacketBrick& brick, const double origin[3], RayExtrema& extrema)
   {
     ExtremumCells<D> cells(extrema);
-    return BrickSearch<D, ExtremumCells<D>>(packet, brick, origin, cells).Search(rays);
+    return Search(packet, rays, brick, origin, cells);
   }
 
 private:
+  template <class Visitor>
+  static RayPacket::Mask Search(const RayPacket& packet, RayPacket::Mask rays,
+    const PacketBrick& brick, const double origin[3], Visitor& visitor)
+  {
+    return packet.Planes
+      ? BrickSearch<D, Visitor, StretchedPlanes<D>>(packet, brick, origin, visitor).Search(rays)
+      : BrickSearch<D, Visitor, UniformPlanes<D>>(packet, brick, origin, visitor).Search(rays);
+  }
+
   /// A row of a matrix times a vector, in the order of glm's.
   static Vector Multiply(const glm::dmat3& matrix, int row, const Vector vector[3])
   {

@@ -11,7 +11,7 @@
 namespace rt
 {
 
-/// The space, in a volume's index space, that rays pass through which have something in common.
+/// The space, in a volume's index or grid space, that rays pass through which have something in common.
 class RayBeam
 {
 public:
@@ -96,6 +96,26 @@ public:
     }
     return entry;
   }
+
+  /// The part of a row of boxes, all of which are from `lower` to `upper` on y and z, that rays may meet: its ends on x.
+  /// Returns false when there is none. May keep too much, but only near the beam.
+  bool FindRow(const double lower[2], const double upper[2], double& low, double& high) const
+  {
+    low = this->Lower[0];
+    high = this->Upper[0];
+    for (const Side& side : this->Sides)
+    {
+      const double inside = std::max(side.Normal[1] * lower[0], side.Normal[1] * upper[0]) +
+        std::max(side.Normal[2] * lower[1], side.Normal[2] * upper[1]);
+      const double x = (side.Least - inside) * side.InverseX;
+      low = side.Normal[0] > 0.0 ? std::max(low, x) : low;
+      high = side.Normal[0] < 0.0 ? std::min(high, x) : high;
+    }
+    return low <= high;
+  }
+  /// The beam's ends on an axis.
+  double GetLower(int axis) const { return this->Lower[axis]; }
+  double GetUpper(int axis) const { return this->Upper[axis]; }
 
 private:
   void SetSide(int number, const double normal[3], double least);

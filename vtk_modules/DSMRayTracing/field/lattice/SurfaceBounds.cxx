@@ -25,6 +25,11 @@ bricks::Box FindBricks(
     low = glm::min(low, place);
     high = glm::max(high, place);
   }
+  if (field.Planes)
+  {
+    low = field.Planes->ToIndex(low);
+    high = field.Planes->ToIndex(high);
+  }
   // A cell more on each side, for what rounding does.
   const double edge = field.Lattice.GetEdge();
   return bricks::Intersect({ bricks::Index3(glm::floor((low - 1.0) / edge)),
