@@ -98,6 +98,74 @@ TEST(LatticePlan, OverlappingBlocksAreDifferentVolumesButCopiesOfOneImageAreNot)
     bricks::LatticePlan({ MakePiece(cells, 1), MakePiece(shifted, 1) }).GetLattices().size(), 1u);
 }
 
+/// Rectilinear pieces and the coordinates of their points.
+struct Grids
+{
+  std::vector<bricks::PieceInfo> Pieces;
+  std::vector<bricks::GridPlanes::Coordinates> Coordinates;
+
+  /// The part of all planes from `first` to `last`, whose own indices begin at `index`.
+  void Add(const std::vector<double>& planes, std::int64_t first, std::int64_t last,
+    std::int64_t index, int leaf)
+  {
+    bricks::PieceInfo piece = MakePiece({ index, index + last - first, 0, 2, 5, 7 }, leaf);
+    piece.Coordinates = 1;
+    this->Pieces.push_back(piece);
+    this->Coordinates.push_back(
+      { std::vector<double>(planes.begin() + first, planes.begin() + last + 1), { 1.0, 2.5, 3.0 },
+        { 9.0, 8.0, 4.0 } });
+  }
+  bricks::LatticePlan Plan() const
+  {
+    return bricks::LatticePlan(this->Pieces, {}, this->Coordinates);
+  }
+};
+
+TEST(LatticePlan, RectilinearPiecesContinueOneAnotherByTheirCoordinates)
+{
+  const std::vector<double> planes = { -3.0, -1.0, 0.5, 0.6, 4.0, 20.0, 21.0 };
+  Grids grids;
+  grids.Add(planes, 0, 2, 0, 1);
+  grids.Add(planes, 4, 6, 7, 2); // touches nothing before the next one
+  grids.Add(planes, 2, 4, 0, 3);
+  const bricks::LatticePlan plan = grids.Plan();
+  ASSERT_EQ(plan.GetLattices().size(), 1u);
+  const auto& lattice = plan.GetLattices()[0];
+  EXPECT_EQ(lattice.Points, bricks::Index3(7, 3, 3));
+  ASSERT_TRUE(lattice.Planes);
+  EXPECT_EQ(GetCorner(lattice), glm::dvec3(-3.0, 1.0, 9.0));
+  for (int plane = 0; plane < 7; ++plane)
+  {
+    const glm::dvec4 place(lattice.Planes->GetPlace(0, plane), 0.0, 0.0, 1.0);
+    EXPECT_NEAR((lattice.IndexToWorld * place).x, planes[plane], 1e-13);
+  }
+  // Coordinates that fall.
+  EXPECT_EQ((lattice.IndexToWorld * glm::dvec4(0, 0, lattice.Planes->GetPlace(2, 1), 1)).z, 8.0);
+  for (const auto& member : lattice.Members)
+  {
+    const std::int64_t first[3] = { 0, 4, 2 };
+    EXPECT_EQ(member.Cells.Min, bricks::Index3(first[member.Piece], 0, 0));
+    EXPECT_EQ(member.IndexToLattice.x, first[member.Piece] - grids.Pieces[member.Piece].Min[0]);
+    EXPECT_EQ(member.IndexToLattice.z, -5);
+  }
+}
+
+TEST(LatticePlan, RectilinearPiecesOfOtherPlanesStayApart)
+{
+  const std::vector<double> planes = { -3.0, -1.0, 0.5, 0.6, 4.0 };
+  Grids grids;
+  grids.Add(planes, 0, 2, 0, 1);
+  grids.Add({ 0.5, 0.6, 4.0 }, 0, 2, 0, 2); // continues it
+  grids.Add({ -1.0, 0.4, 4.0 }, 0, 2, 0, 3);
+  grids.Add({ 4.0, 5.0, 6.0 }, 0, 2, 0, 4);
+  grids.Coordinates.back()[1][1] = 2.4;
+  grids.Pieces.push_back(MakePiece({ 0, 4, 0, 4, 0, 4 }, 5)); // image data
+  grids.Coordinates.emplace_back();
+  EXPECT_EQ(grids.Plan().GetLattices().size(), 4u);
+  grids.Coordinates.front()[2][1] = 9.0;
+  EXPECT_THROW(grids.Plan(), dsm::Error);
+}
+
 TEST(LatticePlan, FlatDataAreRefusedByAxis)
 {
   try

@@ -8,7 +8,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <map>
 #include <string>
+#include <utility>
 
 namespace bricks
 {
@@ -69,6 +72,169 @@ bool IsAligned(const PieceInfo& a, const PieceInfo& b, Index3& shift)
   return true;
 }
 
+/// Finds the number of planes of a that lie before the first plane of b, by coordinates on one axis. Returns false unless
+/// they have planes in common, and the same planes wherever both have some.
+bool FindShift(const std::vector<double>& a, const std::vector<double>& b, std::int64_t& shift)
+{
+  const auto begin = std::find(a.begin(), a.end(), b.front());
+  if (begin == a.end())
+  {
+    const auto other = std::find(b.begin(), b.end(), a.front());
+    shift = -(other - b.begin());
+    return other != b.end() &&
+      std::equal(other, other + std::min(b.end() - other, a.end() - a.begin()), a.begin());
+  }
+  shift = begin - a.begin();
+  return std::equal(begin, begin + std::min(a.end() - begin, b.end() - b.begin()), b.begin());
+}
+
+/// Returns whether the ranges of two lists that rise or fall have anything in common.
+bool Overlap(const std::vector<double>& a, const std::vector<double>& b)
+{
+  const auto getRange = [](const std::vector<double>& from) {
+    return std::minmax({ from.front(), from.back() });
+  };
+  const std::pair<double, double> one = getRange(a);
+  const std::pair<double, double> other = getRange(b);
+  return one.first <= other.second && other.first <= one.second;
+}
+
+/// Where rectilinear pieces are that continue one another.
+class RectilinearPlaces
+{
+public:
+  struct Place
+  {
+    int Class = -1; ///< the piece in whose indices it is
+    Index3 Shift{ 0 };
+  };
+
+  RectilinearPlaces(
+    const std::vector<PieceInfo>& pieces, const std::vector<GridPlanes::Coordinates>& coordinates)
+    : Pieces(pieces)
+    , Coordinates(coordinates)
+    , Places(pieces.size())
+  {
+    for (std::size_t piece = 0; piece < pieces.size(); ++piece)
+    {
+      if (this->IsRectilinear(piece))
+      {
+        GridPlanes check(coordinates[piece]);
+      }
+    }
+    for (std::size_t piece = 0; piece < pieces.size(); ++piece)
+    {
+      if (this->IsRectilinear(piece) && this->Places[piece].Class < 0)
+      {
+        this->Collect(static_cast<int>(piece));
+      }
+    }
+  }
+
+  const Place& Get(int piece) const { return this->Places[static_cast<std::size_t>(piece)]; }
+
+private:
+  /// Coordinates of the planes by their indices.
+  using Known = std::array<std::map<std::int64_t, double>, 3>;
+
+  bool IsRectilinear(std::size_t piece) const
+  {
+    const PieceInfo& info = this->Pieces[piece];
+    return info.Coordinates != 0 && info.Min[0] < info.Max[0] && info.Min[1] < info.Max[1] &&
+      info.Min[2] < info.Max[2];
+  }
+
+  /// Adds a piece's planes to those that are known; returns false if they do not fit.
+  bool Enter(int piece, const Index3& shift, Known& known) const
+  {
+    const GridPlanes::Coordinates& own = this->Coordinates[static_cast<std::size_t>(piece)];
+    Known all = known;
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      const std::int64_t first =
+        this->Pieces[static_cast<std::size_t>(piece)].Min[axis] + shift[axis];
+      for (std::size_t plane = 0; plane < own[axis].size(); ++plane)
+      {
+        const auto entry =
+          all[axis].emplace(first + static_cast<std::int64_t>(plane), own[axis][plane]).first;
+        if (entry->second != own[axis][plane])
+        {
+          return false;
+        }
+      }
+      const auto steps = [&](auto isStep)
+      {
+        return std::adjacent_find(all[axis].begin(), all[axis].end(),
+                 [&](const auto& x, const auto& y)
+                 { return !isStep(x.second, y.second); }) == all[axis].end();
+      };
+      if (!steps(std::less<double>()) && !steps(std::greater<double>()))
+      {
+        return false;
+      }
+    }
+    known = std::move(all);
+    return true;
+  }
+
+  /// Finds all pieces that continue the first one, or one another from there on.
+  void Collect(int first)
+  {
+    Known known;
+    std::vector<int> found;
+    const auto add = [&](int piece, const Index3& shift)
+    {
+      if (this->Enter(piece, shift, known))
+      {
+        this->Places[static_cast<std::size_t>(piece)] = { first, shift };
+        found.push_back(piece);
+      }
+    };
+    add(first, Index3(0));
+    for (std::size_t next = 0; next < found.size(); ++next)
+    {
+      const int from = found[next];
+      for (std::size_t piece = 0; piece < this->Pieces.size(); ++piece)
+      {
+        Index3 shift;
+        if (this->IsRectilinear(piece) && this->Places[piece].Class < 0 &&
+          this->IsContinued(from, static_cast<int>(piece), shift))
+        {
+          add(static_cast<int>(piece), shift + this->Get(from).Shift);
+        }
+      }
+    }
+  }
+
+  /// `shift` maps the indices of piece b to those of a.
+  bool IsContinued(int a, int b, Index3& shift) const
+  {
+    const GridPlanes::Coordinates& one = this->Coordinates[static_cast<std::size_t>(a)];
+    const GridPlanes::Coordinates& other = this->Coordinates[static_cast<std::size_t>(b)];
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      if (!Overlap(one[axis], other[axis]))
+      {
+        return false;
+      }
+    }
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      if (!FindShift(one[axis], other[axis], shift[axis]))
+      {
+        return false;
+      }
+      shift[axis] += this->Pieces[static_cast<std::size_t>(a)].Min[axis] -
+        this->Pieces[static_cast<std::size_t>(b)].Min[axis];
+    }
+    return true;
+  }
+
+  const std::vector<PieceInfo>& Pieces;
+  const std::vector<GridPlanes::Coordinates>& Coordinates;
+  std::vector<Place> Places;
+};
+
 struct Placed
 {
   int Piece;
@@ -124,6 +290,28 @@ bool CanJoin(const Group& a, const Group& b, const std::set<std::int32_t>& apart
   return touches;
 }
 
+/// The planes of a group of rectilinear pieces, whose cells are `box`, and the matrix from their grid space.
+std::shared_ptr<const GridPlanes> JoinPlanes(const Group& group, const Box& box,
+  const std::vector<GridPlanes::Coordinates>& coordinates, glm::dmat4& toWorld)
+{
+  GridPlanes::Coordinates all;
+  toWorld = glm::dmat4(1.0);
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    all[axis].resize(static_cast<std::size_t>(box.GetSize()[axis] + 1));
+    for (const Placed& member : group.Members)
+    {
+      const std::vector<double>& own = coordinates[static_cast<std::size_t>(member.Piece)][axis];
+      std::copy(
+        own.begin(), own.end(), all[axis].begin() + (member.Cells.Min[axis] - box.Min[axis]));
+    }
+    toWorld[axis][axis] =
+      (all[axis].back() - all[axis].front()) / static_cast<double>(box.GetSize()[axis]);
+    toWorld[3][axis] = all[axis].front();
+  }
+  return std::make_shared<GridPlanes>(all);
+}
+
 /// Throws where numbers that say where the samples are make no sense.
 void RefuseImpossiblePlace(const PieceInfo& piece)
 {
@@ -154,8 +342,10 @@ void RefuseImpossiblePlace(const PieceInfo& piece)
   }
 }
 
-std::vector<Placed> Place(const std::vector<PieceInfo>& pieces)
+std::vector<Placed> Place(
+  const std::vector<PieceInfo>& pieces, const std::vector<GridPlanes::Coordinates>& coordinates)
 {
+  const RectilinearPlaces rectilinear(pieces, coordinates);
   std::vector<Placed> placed;
   std::vector<int> classes;
   for (int index = 0; index < static_cast<int>(pieces.size()); ++index)
@@ -168,17 +358,25 @@ std::vector<Placed> Place(const std::vector<PieceInfo>& pieces)
     {
       continue;
     }
-    RefuseImpossiblePlace(piece);
-    const auto known = std::find_if(classes.begin(), classes.end(),
-      [&](int candidate) { return IsAligned(pieces[candidate], piece, entry.Shift); });
-    if (known == classes.end())
+    if (piece.Coordinates != 0)
     {
-      classes.push_back(index);
-      entry.Shift = Index3(0);
+      entry.Class = rectilinear.Get(index).Class;
+      entry.Shift = rectilinear.Get(index).Shift;
     }
     else
     {
-      entry.Class = *known;
+      RefuseImpossiblePlace(piece);
+      const auto known = std::find_if(classes.begin(), classes.end(),
+        [&](int candidate) { return IsAligned(pieces[candidate], piece, entry.Shift); });
+      if (known == classes.end())
+      {
+        classes.push_back(index);
+        entry.Shift = Index3(0);
+      }
+      else
+      {
+        entry.Class = *known;
+      }
     }
     entry.Cells.Min += entry.Shift;
     entry.Cells.Max += entry.Shift;
@@ -203,10 +401,11 @@ void RefuseFlatData(const std::vector<PieceInfo>& pieces)
 
 } // namespace
 
-LatticePlan::LatticePlan(const std::vector<PieceInfo>& pieces, const std::set<std::int32_t>& apart)
+LatticePlan::LatticePlan(const std::vector<PieceInfo>& pieces, const std::set<std::int32_t>& apart,
+  const std::vector<GridPlanes::Coordinates>& coordinates)
 {
   std::vector<Group> groups;
-  for (const Placed& entry : Place(pieces))
+  for (const Placed& entry : Place(pieces, coordinates))
   {
     Group joined{ { entry } };
     for (auto group = groups.begin(); group != groups.end();)
@@ -238,8 +437,16 @@ LatticePlan::LatticePlan(const std::vector<PieceInfo>& pieces, const std::set<st
     }
     Lattice lattice;
     lattice.Points = box.GetSize() + Index3(1);
-    lattice.IndexToWorld = GetIndexToWorld(pieces[group.Members.front().Class]);
-    lattice.IndexToWorld[3] = lattice.IndexToWorld * glm::dvec4(glm::dvec3(box.Min), 1.0);
+    const PieceInfo& first = pieces[group.Members.front().Class];
+    if (first.Coordinates != 0)
+    {
+      lattice.Planes = JoinPlanes(group, box, coordinates, lattice.IndexToWorld);
+    }
+    else
+    {
+      lattice.IndexToWorld = GetIndexToWorld(first);
+      lattice.IndexToWorld[3] = lattice.IndexToWorld * glm::dvec4(glm::dvec3(box.Min), 1.0);
+    }
     for (const Placed& member : group.Members)
     {
       lattice.Members.push_back({ member.Piece, member.Shift - box.Min,

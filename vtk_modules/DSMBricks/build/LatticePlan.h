@@ -3,21 +3,25 @@
 #define bricks_LatticePlan_h
 
 #include "DSMBricks/base/Box.h"
+#include "DSMBricks/layout/GridPlanes.h"
 
 #include <glm/mat4x4.hpp>
 
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <set>
 #include <vector>
 
 namespace bricks
 {
 
-/// Placement of one piece of image data; plain, for messages between ranks.
+/// Placement of one piece of image data or of a rectilinear grid; plain, for messages between ranks.
 struct PieceInfo
 {
+  /// Hash of the coordinates of a rectilinear piece, whose Origin, Spacing and Direction mean nothing; 0: image data.
+  std::uint64_t Coordinates;
   double Origin[3]; ///< world position of index (0, 0, 0), as vtkImageData's
   double Spacing[3];
   double Direction[9]; ///< row-major
@@ -31,7 +35,8 @@ struct PieceInfo
 };
 
 /// Finds which pieces, of all ranks, continue one another: pieces on the same sampling points that
-/// touch form one lattice, unless they are of blocks that are to stay apart. The result depends on the
+/// touch form one lattice, unless they are of blocks that are to stay apart. Rectilinear pieces are on the same points where
+/// all their coordinates are equal, bit for bit, in the ranges that they share. The result depends on the
 /// pieces' order, which is the same everywhere.
 class LatticePlan
 {
@@ -45,15 +50,20 @@ public:
   struct Lattice
   {
     Index3 Points;
-    glm::dmat4 IndexToWorld;
+    glm::dmat4 IndexToWorld; ///< from grid space, if there are Planes
+    /// Of rectilinear pieces; else null.
+    std::shared_ptr<const GridPlanes> Planes;
     std::vector<Member> Members;
   };
 
   LatticePlan() = default;
   /// Throws dsm::Error when there are pieces, but none has a cell, and when one that has is at no place: its spacing is 0,
-  /// or a number of spacing, origin or direction is not finite. `apart`: blocks that join no other.
-  explicit LatticePlan(
-    const std::vector<PieceInfo>& pieces, const std::set<std::int32_t>& apart = {});
+  /// or a number of spacing, origin or direction is not finite, or its coordinates do not rise or fall everywhere.
+  /// `apart`: blocks that join no other. `coordinates`: of the points around the cells of each piece, which may be left out if
+  /// none is rectilinear.
+  explicit LatticePlan(const std::vector<PieceInfo>& pieces,
+    const std::set<std::int32_t>& apart = {},
+    const std::vector<GridPlanes::Coordinates>& coordinates = {});
 
   const std::vector<Lattice>& GetLattices() const { return this->Lattices; }
 

@@ -15,7 +15,7 @@
 #include "vtkDSMGather.h"
 #include "vtkDSMImagePiece.h"
 
-#include "vtkImageData.h"
+#include "vtkDataSet.h"
 
 #include <algorithm>
 #include <cmath>
@@ -178,11 +178,11 @@ std::shared_ptr<const vol::VolumeFile> OpenAs(
 } // namespace
 
 vtkDSMFileVolume::Seat vtkDSMFileVolume::Describe(
-  vtkImageData* image, vtkAbstractArray* array, bool onCells)
+  vtkDataSet* image, vtkAbstractArray* array, bool onCells)
 {
   Seat seat{};
   int extent[6];
-  image->GetExtent(extent);
+  vtkDSMImagePiece::GetExtent(image, extent);
   const int ends = onCells ? 0 : 1;
   const Index3 size(
     extent[1] - extent[0] + ends, extent[3] - extent[2] + ends, extent[5] - extent[4] + ends);

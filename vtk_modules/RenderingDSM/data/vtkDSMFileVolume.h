@@ -19,7 +19,7 @@
 #include <vector>
 
 class vtkAbstractArray;
-class vtkImageData;
+class vtkDataSet;
 
 /// A lattice whose samples are all in one file, so that any rank can cut any of its bricks at any time. What
 /// says that it is collective is for all ranks; failures are dsm::Error, the same on every rank.
@@ -41,7 +41,7 @@ public:
   };
 
   /// Local. `array`, of the image's points or cells, may be null.
-  static Seat Describe(vtkImageData* image, vtkAbstractArray* array, bool onCells);
+  static Seat Describe(vtkDataSet* image, vtkAbstractArray* array, bool onCells);
 
   /// Collective. Null, on all ranks, where the members' values are not all of one array of one file, or a rank
   /// cannot open it. `seats`: of all pieces of all ranks; `own`: the values of this rank's first member, or null;

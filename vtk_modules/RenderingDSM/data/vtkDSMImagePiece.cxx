@@ -1,17 +1,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkDSMImagePiece.h"
 
+#include "DSMBricks/base/ByteHash.h"
 #include "DSMRayTracing/look/PackedColor.h"
 #include "vtkDSMFileArray.h"
 #include "vtkDSMScalarType.h"
 
 #include "vtkCellData.h"
 #include "vtkDataArray.h"
+#include "vtkDataSet.h"
 #include "vtkDataSetAttributes.h"
 #include "vtkImageData.h"
 #include "vtkMatrix3x3.h"
 #include "vtkNew.h"
 #include "vtkPointData.h"
+#include "vtkRectilinearGrid.h"
 #include "vtkSOADataArrayTemplate.h"
 #include "vtkScalarsToColors.h"
 #include "vtkUnsignedCharArray.h"
@@ -38,10 +41,10 @@ vtkUnsignedCharArray* GetGhosts(vtkDataSetAttributes* attributes)
 }
 
 /// The image's cells in its own indices.
-Box GetCellBox(vtkImageData* image)
+Box GetCellBox(vtkDataSet* image)
 {
   int extent[6];
-  image->GetExtent(extent);
+  vtkDSMImagePiece::GetExtent(image, extent);
   return { { extent[0], extent[2], extent[4] }, { extent[1], extent[3], extent[5] } };
 }
 
@@ -49,7 +52,7 @@ Box GetCellBox(vtkImageData* image)
 class CellFlags
 {
 public:
-  explicit CellFlags(vtkImageData* image)
+  explicit CellFlags(vtkDataSet* image)
     : Box(GetCellBox(image))
     , Cells(GetGhosts(image->GetCellData()))
     , Points(GetGhosts(image->GetPointData()))
@@ -227,12 +230,51 @@ void ReadColors(vtkDataArray* array, const Box& all, const Box& samples, std::by
 
 } // namespace
 
-bricks::PieceInfo vtkDSMImagePiece::Describe(vtkImageData* image, int leaf)
+vtkDataSet* vtkDSMImagePiece::FindImage(vtkDataObject* data)
+{
+  return vtkImageData::SafeDownCast(data) || vtkRectilinearGrid::SafeDownCast(data)
+    ? vtkDataSet::SafeDownCast(data)
+    : nullptr;
+}
+
+void vtkDSMImagePiece::GetExtent(vtkDataSet* image, int extent[6])
+{
+  auto* const grid = vtkRectilinearGrid::SafeDownCast(image);
+  const int* const own = grid ? grid->GetExtent() : vtkImageData::SafeDownCast(image)->GetExtent();
+  std::copy_n(own, 6, extent);
+}
+
+bricks::GridPlanes::Coordinates vtkDSMImagePiece::GetCoordinates(
+  vtkDataSet* image, const bricks::PieceInfo& info)
+{
+  bricks::GridPlanes::Coordinates coordinates;
+  auto* const grid = vtkRectilinearGrid::SafeDownCast(image);
+  if (!grid)
+  {
+    return coordinates;
+  }
+  vtkDataArray* const arrays[3] = { grid->GetXCoordinates(), grid->GetYCoordinates(),
+    grid->GetZCoordinates() };
+  const int* const extent = grid->GetExtent();
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    for (std::int64_t plane = info.Min[axis]; plane <= info.Max[axis]; ++plane)
+    {
+      coordinates[axis].push_back(arrays[axis]->GetComponent(plane - extent[2 * axis], 0));
+    }
+  }
+  return coordinates;
+}
+
+bricks::PieceInfo vtkDSMImagePiece::Describe(vtkDataSet* image, int leaf)
 {
   bricks::PieceInfo info{};
-  image->GetOrigin(info.Origin);
-  image->GetSpacing(info.Spacing);
-  std::copy_n(image->GetDirectionMatrix()->GetData(), 9, info.Direction);
+  if (auto* const uniform = vtkImageData::SafeDownCast(image))
+  {
+    uniform->GetOrigin(info.Origin);
+    uniform->GetSpacing(info.Spacing);
+    std::copy_n(uniform->GetDirectionMatrix()->GetData(), 9, info.Direction);
+  }
   info.Leaf = leaf;
   Box cells = GetCellBox(image);
   const CellFlags flags(image);
@@ -248,10 +290,16 @@ bricks::PieceInfo vtkDSMImagePiece::Describe(vtkImageData* image, int leaf)
     info.Min[axis] = cells.Min[axis];
     info.Max[axis] = cells.Max[axis];
   }
+  bricks::ByteHash hash;
+  for (const std::vector<double>& planes : GetCoordinates(image, info))
+  {
+    hash.Add(planes.data(), planes.size() * sizeof(double));
+  }
+  info.Coordinates = vtkRectilinearGrid::SafeDownCast(image) ? hash.Get() | 1 : 0;
   return info;
 }
 
-std::vector<std::uint8_t> vtkDSMImagePiece::FindShown(vtkImageData* image, const Box& cells)
+std::vector<std::uint8_t> vtkDSMImagePiece::FindShown(vtkDataSet* image, const Box& cells)
 {
   std::vector<std::uint8_t> shown;
   shown.reserve(static_cast<std::size_t>(cells.GetCount()));
@@ -283,7 +331,7 @@ bricks::ScalarType vtkDSMImagePiece::GetScalarType(vtkDataArray* array, int comp
   return type;
 }
 
-vtkDSMImagePiece::vtkDSMImagePiece(vtkImageData* image, vtkDataArray* array, int component,
+vtkDSMImagePiece::vtkDSMImagePiece(vtkDataSet* image, vtkDataArray* array, int component,
   const bricks::LatticePlan::Member& place, bool hasMask, bool ofCells)
   : Image(image)
   , Array(array)

@@ -14,10 +14,11 @@
 #include <vector>
 
 class vtkDataArray;
-class vtkImageData;
+class vtkDataObject;
+class vtkDataSet;
 class vtkUnsignedCharArray;
 
-/// One vtkImageData of this rank as a piece of a lattice: one component of an array of its points or cells, the
+/// One vtkImageData or vtkRectilinearGrid of this rank ("image") as a piece of a lattice: one component of an array of its points or cells, the
 /// magnitude of all, or the colors that they are (rt::PackedColor). Copies nothing; reading is safe from any
 /// thread while the image is not modified.
 class vtkDSMImagePiece final : public bricks::VoxelSource
@@ -29,18 +30,27 @@ public:
   /// and opacity, color, color and opacity.
   static constexpr int Color = -2;
 
+  /// The data set, if it is an image; else null.
+  static vtkDataSet* FindImage(vtkDataObject* data);
+  static void GetExtent(vtkDataSet* image, int extent[6]);
+
   /// Returns the data about an image that the other ranks need. Ghost cells are trimmed off; ghost
   /// and blanked cells that remain make a mask.
-  static bricks::PieceInfo Describe(vtkImageData* image, int leaf);
+  static bricks::PieceInfo Describe(vtkDataSet* image, int leaf);
+
+  /// Returns the coordinates of the points around the cells of a rectilinear grid, as Describe has trimmed them; none of other
+  /// images.
+  static bricks::GridPlanes::Coordinates GetCoordinates(
+    vtkDataSet* image, const bricks::PieceInfo& info);
 
   /// One byte a cell of a box in the image's own indices, x fastest: 0 for blanked cells and copies of other pieces' cells,
   /// else 1. Cells that are marked as refined count as any others.
-  static std::vector<std::uint8_t> FindShown(vtkImageData* image, const bricks::Box& cells);
+  static std::vector<std::uint8_t> FindShown(vtkDataSet* image, const bricks::Box& cells);
 
   /// Arrays keep their type; the magnitude is float where that holds it, else double; colors are packed.
   static bricks::ScalarType GetScalarType(vtkDataArray* array, int component);
 
-  vtkDSMImagePiece(vtkImageData* image, vtkDataArray* array, int component,
+  vtkDSMImagePiece(vtkDataSet* image, vtkDataArray* array, int component,
     const bricks::LatticePlan::Member& place, bool hasMask, bool ofCells = false);
   ~vtkDSMImagePiece() override;
 
@@ -57,7 +67,7 @@ public:
     const bricks::Box& part, std::byte* out);
 
 private:
-  vtkSmartPointer<vtkImageData> Image;
+  vtkSmartPointer<vtkDataSet> Image;
   vtkSmartPointer<vtkDataArray> Array;
   int Component;
   bricks::LatticePlan::Member Place;

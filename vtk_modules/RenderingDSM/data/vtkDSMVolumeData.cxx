@@ -13,7 +13,7 @@
 #include "vtkCompositeDataIterator.h"
 #include "vtkDataArray.h"
 #include "vtkDataObjectTree.h"
-#include "vtkImageData.h"
+#include "vtkDataSet.h"
 #include "vtkPointData.h"
 
 #include <algorithm>
@@ -27,6 +27,7 @@ vtkDSMVolumeData::vtkDSMVolumeData(std::shared_ptr<vtkDSMRankGroup> group, vtkDa
 {
   dsm::Messenger& messenger = this->Group->GetMessenger();
   std::vector<bricks::PieceInfo> mine;
+  std::vector<double> myCoordinates;
   std::vector<vtkDSMBlockLook> myLooks;
   messenger.RunTogether("Reading the volume",
     [&]
@@ -35,11 +36,17 @@ vtkDSMVolumeData::vtkDSMVolumeData(std::shared_ptr<vtkDSMRankGroup> group, vtkDa
       for (std::size_t index = 0; index < this->Images.size(); ++index)
       {
         mine.push_back(vtkDSMImagePiece::Describe(this->Images[index], this->Leaves[index]));
+        for (const auto& planes :
+          vtkDSMImagePiece::GetCoordinates(this->Images[index], mine.back()))
+        {
+          myCoordinates.insert(myCoordinates.end(), planes.begin(), planes.end());
+        }
         const auto look = looks.find(static_cast<unsigned int>(this->Leaves[index]));
         myLooks.push_back(look != looks.end() ? look->second : vtkDSMBlockLook());
       }
     });
   this->Pieces = vtkDSMGather::Items(messenger, mine, this->FirstOwnPiece);
+  this->SetCoordinates(vtkDSMGather::Items(messenger, myCoordinates));
   this->Looks = vtkDSMGather::Items(messenger, myLooks);
   std::vector<vtkSmartPointer<vtkDataObject>> all;
   messenger.RunTogether("Reading the volume",
@@ -50,9 +57,24 @@ vtkDSMVolumeData::vtkDSMVolumeData(std::shared_ptr<vtkDSMRankGroup> group, vtkDa
     });
   this->Arrays = vtkDSMImageArrays(messenger, all);
   this->Levels = vtkDSMLevelData::Create(this->Group, this->LevelParts);
-  messenger.RunTogether(
-    "Joining the volume's pieces", [&] { this->Plan = bricks::LatticePlan(this->Pieces); });
+  messenger.RunTogether("Joining the volume's pieces",
+    [&] { this->Plan = bricks::LatticePlan(this->Pieces, {}, this->Coordinates); });
   this->SeparateBlocks(choose(this->Arrays));
+}
+
+void vtkDSMVolumeData::SetCoordinates(const std::vector<double>& all)
+{
+  auto next = all.begin();
+  for (const bricks::PieceInfo& piece : this->Pieces)
+  {
+    bricks::GridPlanes::Coordinates& own = this->Coordinates.emplace_back();
+    for (int axis = 0; piece.Coordinates != 0 && axis < 3; ++axis)
+    {
+      const auto end = next + (piece.Max[axis] - piece.Min[axis] + 1);
+      own[axis].assign(next, end);
+      next = end;
+    }
+  }
 }
 
 void vtkDSMVolumeData::SeparateBlocks(const std::vector<Choice>& shown)
@@ -103,11 +125,11 @@ void vtkDSMVolumeData::SeparateBlocks(const std::vector<Choice>& shown)
   if (!this->Apart.empty())
   {
     messenger.RunTogether("Joining the volume's pieces",
-      [&] { this->Plan = bricks::LatticePlan(this->Pieces, this->Apart); });
+      [&] { this->Plan = bricks::LatticePlan(this->Pieces, this->Apart, this->Coordinates); });
   }
 }
 
-vtkImageData* vtkDSMVolumeData::FindOwn(const bricks::LatticePlan::Member& member) const
+vtkDataSet* vtkDSMVolumeData::FindOwn(const bricks::LatticePlan::Member& member) const
 {
   const int own = member.Piece - this->FirstOwnPiece;
   return own >= 0 && own < static_cast<int>(this->Images.size()) ? this->Images[own].Get()
@@ -117,7 +139,7 @@ vtkImageData* vtkDSMVolumeData::FindOwn(const bricks::LatticePlan::Member& membe
 std::uint64_t vtkDSMVolumeData::HashPoints(const bricks::LatticePlan::Member& member,
   const bricks::Box& points, const std::vector<Choice>& shown) const
 {
-  vtkImageData* image = this->FindOwn(member);
+  vtkDataSet* image = this->FindOwn(member);
   bricks::ByteHash hash;
   for (const Choice& wanted : shown)
   {
@@ -156,7 +178,7 @@ void vtkDSMVolumeData::CollectImages(vtkDataObject* data)
 {
   const auto add = [this](vtkDataObject* object, int leaf)
   {
-    auto* image = vtkImageData::SafeDownCast(object);
+    vtkDataSet* const image = vtkDSMImagePiece::FindImage(object);
     if (image && image->GetNumberOfPoints() > 0)
     {
       this->Images.emplace_back(image);
@@ -177,8 +199,9 @@ void vtkDSMVolumeData::CollectImages(vtkDataObject* data)
   if (!tree)
   {
     throw dsm::Error(std::string("A dataset of type ") + data->GetClassName() +
-      " cannot be ray traced. Image data or blocks of image data are required. Apply Resample To "
-      "Image first.");
+      " cannot be ray traced. Image data, rectilinear grids, or blocks of these are required. "
+      "Apply "
+      "Resample To Image first.");
   }
   vtkSmartPointer<vtkCompositeDataIterator> leaf;
   leaf.TakeReference(tree->NewIterator());
@@ -190,8 +213,9 @@ void vtkDSMVolumeData::CollectImages(vtkDataObject* data)
   }
   if (anyOther && this->Images.empty())
   {
-    throw dsm::Error("The blocks of the dataset are not image data, which ray tracing requires. "
-                     "Apply Resample To Image first.");
+    throw dsm::Error(
+      "The blocks of the dataset are neither image data nor rectilinear grids, which "
+      "ray tracing requires. Apply Resample To Image first.");
   }
 }
 
@@ -252,7 +276,7 @@ std::uint64_t vtkDSMVolumeData::HashContent(const Choice& choice) const
     const std::uint64_t value = vtkDSMContent::Hash(array, threads);
     hash.Add(&value, sizeof(value));
   };
-  for (vtkImageData* image : this->Images)
+  for (vtkDataSet* image : this->Images)
   {
     vtkDSMImageArrays::Info info;
     const char* const ghosts = vtkDataSetAttributes::GhostArrayName();
@@ -456,6 +480,7 @@ void vtkDSMVolumeData::PublishLattice(Publication& published, std::size_t number
       return bricks::PublishVolume(what, field->Lattice, sources, this->Group->GetStore(),
         messenger, { place, &part.Digests }, progress);
     });
+  field->Planes = this->Plan.GetLattices()[number].Planes;
 }
 
 const vtkDSMFileValues* vtkDSMVolumeData::FindFileValues(
@@ -463,7 +488,7 @@ const vtkDSMFileValues* vtkDSMVolumeData::FindFileValues(
 {
   for (const auto& member : this->Plan.GetLattices()[lattice].Members)
   {
-    if (vtkImageData* image = this->FindOwn(member))
+    if (vtkDataSet* image = this->FindOwn(member))
     {
       vtkDSMImageArrays::Info info;
       vtkDataArray* const array = vtkDSMImageArrays::Find(image, choice, info);
@@ -520,6 +545,7 @@ std::shared_ptr<bricks::VoxelField> vtkDSMVolumeData::CreateField(std::size_t nu
 
   std::shared_ptr<bricks::VoxelField> field = this->MakeField();
   field->Lattice = bricks::BrickLattice(lattice.Points, *types.begin(), masked);
+  field->Planes = lattice.Planes;
   if (choice.OnCells && !choice.IsAveraged)
   {
     field->Lattice = field->Lattice.OfCells();
@@ -533,7 +559,7 @@ std::vector<std::shared_ptr<const bricks::VoxelSource>> vtkDSMVolumeData::Create
   std::vector<std::shared_ptr<const bricks::VoxelSource>> sources;
   for (const auto& member : this->Plan.GetLattices()[lattice].Members)
   {
-    if (vtkImageData* image = this->FindOwn(member))
+    if (vtkDataSet* image = this->FindOwn(member))
     {
       vtkDSMImageArrays::Info info;
       if (vtkDataArray* array = vtkDSMImageArrays::Find(image, choice, info))

@@ -23,7 +23,7 @@
 #include <vector>
 
 class vtkDataObject;
-class vtkImageData;
+class vtkDataSet;
 
 /// A dataset of images that is distributed over the ranks, as lattices or as levels, with its arrays as fields of bricks.
 /// Keeps the images alive, without a copy. Methods documented as collective need every rank; a rank without
@@ -74,7 +74,7 @@ public:
   /// Which arrays are to be shown, of those that there are.
   using Chooser = std::function<std::vector<Choice>(const vtkDSMImageArrays&)>;
 
-  /// Collective. `data` is this rank's part: vtkImageData, a composite dataset of images, or null; `looks` are of its blocks.
+  /// Collective. `data` is this rank's part: vtkImageData, vtkRectilinearGrid, a composite dataset of such images, or null; `looks` are of its blocks.
   /// Blocks that continue one another are taken for one volume, where the arrays that `choose` names agree at the points
   /// that the blocks have in common.
   vtkDSMVolumeData(std::shared_ptr<vtkDSMRankGroup> group, vtkDataObject* data,
@@ -125,10 +125,12 @@ private:
   void CollectImages(vtkDataObject* data);
   /// Local. The choice as the levels have it: of points, if there is such an array, else of cells.
   Choice ChooseOfLevels(const Choice& choice) const;
+  /// Distributes the coordinates of all rectilinear pieces, one piece and axis after the other.
+  void SetCoordinates(const std::vector<double>& all);
   /// Collective: takes apart what is no one volume.
   void SeparateBlocks(const std::vector<Choice>& shown);
   /// Local: a piece's image, if it is this rank's; else null.
-  vtkImageData* FindOwn(const bricks::LatticePlan::Member& member) const;
+  vtkDataSet* FindOwn(const bricks::LatticePlan::Member& member) const;
   /// Local. Returns a hash of a piece's values at points of its lattice, in the shown arrays.
   std::uint64_t HashPoints(const bricks::LatticePlan::Member& member, const bricks::Box& points,
     const std::vector<Choice>& shown) const;
@@ -164,13 +166,14 @@ private:
 
   std::shared_ptr<vtkDSMRankGroup> Group;
   bricks::LatticePlan Plan;
-  std::vector<bricks::PieceInfo> Pieces; ///< all ranks' pieces, in rank order
-  std::vector<vtkDSMBlockLook> Looks;    ///< looks of the pieces, in their order
+  std::vector<bricks::PieceInfo> Pieces;                    ///< all ranks' pieces, in rank order
+  std::vector<bricks::GridPlanes::Coordinates> Coordinates; ///< of the pieces that are rectilinear
+  std::vector<vtkDSMBlockLook> Looks;                       ///< looks of the pieces, in their order
   int FirstOwnPiece = 0;
   bool Seams = false;
-  std::set<std::int32_t> Apart;                      ///< blocks that are volumes of their own
-  std::vector<vtkSmartPointer<vtkImageData>> Images; ///< this rank's images
-  std::vector<int> Leaves;                           ///< leaf index of each of this rank's images
+  std::set<std::int32_t> Apart;                    ///< blocks that are volumes of their own
+  std::vector<vtkSmartPointer<vtkDataSet>> Images; ///< this rank's images
+  std::vector<int> Leaves;                         ///< leaf index of each of this rank's images
   /// This rank's parts of levels.
   vtkDSMLevelData::Parts LevelParts;
   std::unique_ptr<vtkDSMLevelData> Levels;

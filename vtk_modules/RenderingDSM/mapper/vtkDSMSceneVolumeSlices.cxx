@@ -63,8 +63,8 @@ void vtkDSMSceneVolume::AddSlices(
     {
       rt::LatticeSlice slice =
         this->CreateSlice(look, dataToWorld, lattice, this->Mapper->GetSliceLighting());
-      slice.Planes = look.GetSlices(
-        dataToWorld * this->Data->GetIndexToWorld(lattice), fields[lattice]->Lattice.GetPoints());
+      slice.Planes =
+        look.GetSlices(dataToWorld * this->Data->GetIndexToWorld(lattice), *fields[lattice]);
       scene.Objects.push_back(std::move(slice));
     }
   }

@@ -58,8 +58,9 @@ bool vtkDSMVolumeLook::HasColoredSlices() const
 }
 
 std::vector<rt::SectionPlane> vtkDSMVolumeLook::GetSlices(
-  const glm::dmat4& toWorld, const bricks::Index3& points) const
+  const glm::dmat4& toWorld, const bricks::VoxelField& field) const
 {
+  const bricks::Index3 points = field.Lattice.GetPoints();
   std::vector<rt::SectionPlane> slices;
   const glm::dmat3 toIndex = glm::inverse(glm::dmat3(toWorld));
   for (int number = 0; number < this->Mapper->GetNumberOfSlices(); ++number)
@@ -69,7 +70,7 @@ std::vector<rt::SectionPlane> vtkDSMVolumeLook::GetSlices(
     if (index >= 0 && index < points[axis])
     {
       glm::dvec4 place(0.0, 0.0, 0.0, 1.0);
-      place[axis] = index;
+      place[axis] = field.Planes ? field.Planes->GetPlace(axis, index) : index;
       glm::dvec3 normal(0.0);
       normal[axis] = 1.0;
       slices.push_back({ glm::normalize(normal * toIndex), glm::dvec3(toWorld * place) });

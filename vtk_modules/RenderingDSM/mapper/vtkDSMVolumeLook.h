@@ -78,10 +78,10 @@ public:
   void SetMaterials(double isovalue, rt::IsosurfaceLook& look) const;
   /// Returns whether the slices, and the faces of isosurfaces, have the colors of an array.
   bool HasColoredSlices() const;
-  /// The slices of a lattice of so many points, in world space; `toWorld`: from its indices. Slices by an index that the
-  /// lattice does not have are left out.
+  /// The slices of a lattice, in world space; `toWorld`: from its index or grid space. Slices by an index that the lattice
+  /// does not have are left out.
   std::vector<rt::SectionPlane> GetSlices(
-    const glm::dmat4& toWorld, const bricks::Index3& points) const;
+    const glm::dmat4& toWorld, const bricks::VoxelField& field) const;
   /// Sets how slices and faces of isosurfaces look, but for their colors.
   void SetSliceLook(bool isLit, rt::LatticeSlice& slice) const;
   rt::ClipRegion GetClipRegion(const glm::dmat4& dataToWorld) const;
