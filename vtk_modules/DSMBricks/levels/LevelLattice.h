@@ -196,6 +196,13 @@ private:
   std::uint64_t Leaves = 0;
 };
 
+/// Calls `function(T{})` with the C++ type of the lattice's samples.
+template <class Function>
+decltype(auto) DispatchSamples(const LevelLattice& lattice, Function&& function)
+{
+  return lattice.GetScalarType() == ScalarType::Float32 ? function(float{}) : function(double{});
+}
+
 } // namespace bricks
 
 #endif

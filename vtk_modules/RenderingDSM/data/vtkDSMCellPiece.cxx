@@ -4,11 +4,11 @@
 #include "vtkDSMImagePiece.h"
 
 #include "vtkDataArray.h"
-#include "vtkImageData.h"
+#include "vtkDataSet.h"
 
 #include <cstring>
 
-vtkDSMCellPiece::vtkDSMCellPiece(vtkImageData* image, vtkDataArray* array, int component,
+vtkDSMCellPiece::vtkDSMCellPiece(vtkDataSet* image, vtkDataArray* array, int component,
   const bricks::LatticePlan::Member& place, bool hasMask)
   : Array(array)
   , Component(component)

@@ -11,15 +11,15 @@
 
 class vtkDSMImagePiece;
 class vtkDataArray;
-class vtkImageData;
+class vtkDataSet;
 
-/// A cell array of one vtkImageData of this rank: of one component, or of all those that a magnitude or a color is made
+/// A cell array of one vtkDataSet of this rank: of one component, or of all those that a magnitude or a color is made
 /// of. Copies nothing.
 class vtkDSMCellPiece final : public bricks::CellReader
 {
 public:
   /// `component`: see vtkDSMImagePiece; `hasMask`: its PieceInfo's.
-  vtkDSMCellPiece(vtkImageData* image, vtkDataArray* array, int component,
+  vtkDSMCellPiece(vtkDataSet* image, vtkDataArray* array, int component,
     const bricks::LatticePlan::Member& place, bool hasMask);
   ~vtkDSMCellPiece() override;
 

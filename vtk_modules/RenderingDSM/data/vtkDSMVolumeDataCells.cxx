@@ -7,7 +7,7 @@
 #include "vtkDSMGather.h"
 
 #include "vtkDataArray.h"
-#include "vtkImageData.h"
+#include "vtkDataSet.h"
 
 #include <map>
 
@@ -36,7 +36,7 @@ std::vector<std::shared_ptr<const bricks::VoxelSource>> vtkDSMVolumeData::Averag
         const bool hasMask = this->Pieces[member.Piece].HasMask != 0;
         pieces.push_back(
           { 0, infos[member.Piece].IsUsable(), hasMask, member.Cells, member.Cells });
-        vtkImageData* const image = this->FindOwn(member);
+        vtkDataSet* const image = this->FindOwn(member);
         vtkDSMImageArrays::Info info;
         vtkDataArray* const array = image ? vtkDSMImageArrays::Find(image, choice, info) : nullptr;
         if (array)

@@ -30,6 +30,17 @@ public:
     const bricks::VoxelBrick<T>& brick, const CellHit& hit, const IsovalueLevel<T>& level,
     double gradient[3])
   {
+    GradientStencil stencil;
+    return FillWithin(brick, hit, level, stencil) &&
+      Evaluate(
+        stencil, field, [&] { return field.Lattice.GetBrick(id); }, hit, gradient);
+  }
+
+  /// The samples that it needs; false unless they are all in the brick, and none is masked.
+  template <class T>
+  static bool FillWithin(const bricks::VoxelBrick<T>& brick, const CellHit& hit,
+    const IsovalueLevel<T>& level, GradientStencil& stencil)
+  {
     if (!CellNeighbourhood::IsWithin(brick, hit.Cell))
     {
       return false;
@@ -38,7 +49,6 @@ public:
     const std::ptrdiff_t slice = brick.GetSlice();
     const T* const first =
       brick.GetSamples() + brick.GetOffset(hit.Cell[0], hit.Cell[1], hit.Cell[2]);
-    GradientStencil stencil;
     stencil.SetCorners(first, row, slice, level);
     stencil.SetFace(0, 0, first - 1, row, slice, level);
     stencil.SetFace(0, 1, first + 2, row, slice, level);
@@ -46,8 +56,7 @@ public:
     stencil.SetFace(1, 1, first + 2 * row, row, slice, level);
     stencil.SetFace(2, 0, first - slice, row, slice, level);
     stencil.SetFace(2, 1, first + 2 * slice, row, slice, level);
-    return Evaluate(
-      stencil, field, [&] { return field.Lattice.GetBrick(id); }, hit, gradient);
+    return true;
   }
 
   /// At any hit; acquires the bricks that it needs, so no pin may be held.

@@ -154,7 +154,7 @@ RayMask LevelSampler<Store>::VisitCells(const bricks::LevelVoxels& field,
   const LatticePlace* places, RayMask wanted, const Evaluate& evaluate) const
 {
   RayMask found = 0;
-  bricks::Dispatch(field.Lattice.GetScalarType(),
+  bricks::DispatchSamples(field.Lattice,
     [&](auto sample)
     {
       Reader<decltype(sample)> reader(*this, field);
@@ -231,7 +231,7 @@ void LevelSampler<Store>::FindSmoothGradient(
   const bricks::LevelVoxels& field, const LatticePlace& place, glm::dvec3& gradient) const
 {
   gradient = glm::dvec3(0.0);
-  bricks::Dispatch(field.Lattice.GetScalarType(),
+  bricks::DispatchSamples(field.Lattice,
     [&](auto sample)
     {
       Reader<decltype(sample)> reader(*this, field);

@@ -122,7 +122,7 @@ RayMask LevelSurfaces<Store>::Intersect(
     [&](BeamBricks& bricks, LevelPackets& packets)
     {
       Nearest nearest;
-      bricks::Dispatch(field.Lattice.GetScalarType(),
+      bricks::DispatchSamples(field.Lattice,
         [&](auto sample)
         {
           this->SearchBricks<decltype(sample)>(
@@ -153,8 +153,10 @@ RayMask LevelSurfaces<Store>::Intersect(
                 nearest.Cells[ray] = candidates.Get(number);
                 nearest.Isovalue[ray] = static_cast<int>(isovalue);
                 nearest.Brick[ray] = brick.Id;
-                const bool within = HitGradient::FindWithin(
-                  voxels, nearest.Cells[ray], level, &nearest.Gradient[ray].x);
+                const CellHit& cell = nearest.Cells[ray];
+                GradientStencil stencil;
+                const bool within = HitGradient::FillWithin(voxels, cell, level, stencil) &&
+                  stencil.GetGradient(cell.Local, UnitSteps(), &nearest.Gradient[ray].x);
                 nearest.WithoutGradient &= ~GetBit(ray);
                 nearest.WithoutGradient |= GetBit(ray, !within);
                 const int ofBrick = field.Lattice.GetBrick(brick.Id).Level;
@@ -200,7 +202,7 @@ RayMask LevelSurfaces<Store>::FindOccluded(const Sets& sets, const Ray* rays, Ra
     [&](BeamBricks& bricks, LevelPackets& packets)
     {
       RayMask found = 0;
-      bricks::Dispatch(sets.Field.Voxels->Lattice.GetScalarType(),
+      bricks::DispatchSamples(sets.Field.Voxels->Lattice,
         [&](auto sample)
         {
           this->SearchBricks<decltype(sample)>(
@@ -223,7 +225,7 @@ RayMask LevelSurfaces<Store>::Attenuate(const Sets& sets, const std::vector<glm:
     {
       // Counted first: products depend on the order of their factors, and the bricks have none.
       std::vector<int> counts(sets.Isovalues.size() * RayPacket::Size);
-      bricks::Dispatch(sets.Field.Voxels->Lattice.GetScalarType(),
+      bricks::DispatchSamples(sets.Field.Voxels->Lattice,
         [&](auto sample)
         {
           this->SearchBricks<decltype(sample)>(
