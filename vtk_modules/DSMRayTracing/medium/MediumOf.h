@@ -167,25 +167,27 @@ private:
     {
       const auto count = static_cast<int>(std::min<std::size_t>(MaxRays, points.size() - first));
       typename FieldType::Place places[MaxRays];
-      for (int index = 0; index < count; ++index)
-      {
-        places[index] =
-          this->Medium.Field.GetPlace(points[first + static_cast<std::size_t>(index)]);
-      }
       const RayMask all = ~RayMask{ 0 } >> (MaxRays - count);
       glm::vec4 colors[MaxRays];
+      const RayMask there = FindRays(all,
+        [&](int index)
+        {
+          colors[index] = glm::vec4(0.0f);
+          return this->Sampler.FindPlace(
+            this->Medium.Field, points[first + static_cast<std::size_t>(index)], places[index]);
+        });
       if (this->Medium.Colors)
       {
         double values[MaxRays];
-        this->Sampler.FindValues(*this->Medium.ColorValues, places, all, values);
+        this->Sampler.FindValues(*this->Medium.ColorValues, places, there, values);
         ForEachRay(
-          all, [&](int index) { colors[index] = this->Medium.Colors->Map(values[index]); });
+          there, [&](int index) { colors[index] = this->Medium.Colors->Map(values[index]); });
       }
       else
       {
         const RayMask found =
-          this->Sampler.FindColors(*this->Medium.ColorValues, places, all, colors);
-        ForEachRay(all & ~found, [&](int index) { colors[index] = glm::vec4(0.0f); });
+          this->Sampler.FindColors(*this->Medium.ColorValues, places, there, colors);
+        ForEachRay(there & ~found, [&](int index) { colors[index] = glm::vec4(0.0f); });
       }
       for (int index = 0; index < count; ++index)
       {

@@ -16,12 +16,14 @@ namespace rt
 using LatticeIsosurface = IsosurfaceOf<LatticeField>;
 using LevelIsosurface = IsosurfaceOf<LevelField>;
 using LatticeSlice = SliceOf<LatticeField>;
+using LevelSlice = SliceOf<LevelField>;
 
 /// The table of the kinds of objects. A kind has
 /// - a description, named here, with IsOpaque, AddTo and the name of
 /// - its Tracer, an ObjectTracer for a store, whose header CreateSceneTracers includes.
 /// Among surfaces that are equally near, that of the kind that comes first here is visible.
-using SceneObject = std::variant<LatticeIsosurface, LevelIsosurface, MeshObject, LatticeSlice>;
+using SceneObject =
+  std::variant<LatticeIsosurface, LevelIsosurface, MeshObject, LatticeSlice, LevelSlice>;
 
 } // namespace rt
 

@@ -162,13 +162,15 @@ private:
   }
 
   /// Those of the hits where the plane is there.
-  RayMask FindShown(const Hit* hits, RayMask wanted) const
+  RayMask FindShown(Hit* hits, RayMask wanted) const
   {
     Place places[MaxRays];
     ForEachRay(wanted, [&](int index) { places[index] = hits[index].At; });
+    const auto& field = this->Object.Field.GetValues();
+    const RayMask there = this->Values.FindPlaces(field, places, wanted);
+    ForEachRay(there, [&](int index) { hits[index].At = places[index]; });
     double values[MaxRays];
-    const RayMask covered =
-      this->Values.FindValues(this->Object.Field.GetValues(), places, wanted, values);
+    const RayMask covered = this->Values.FindValues(field, places, there, values);
     return !this->Object.DependsOnValues()
       ? covered
       : FindRays(covered,

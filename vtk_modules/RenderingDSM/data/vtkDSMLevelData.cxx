@@ -3,6 +3,7 @@
 
 #include "DSMBricks/levels/PublishLevels.h"
 #include "vtkDSMAmrData.h"
+#include "vtkDSMImagePiece.h"
 #include "vtkDSMTreeData.h"
 
 #include "vtkBoundingBox.h"
@@ -124,6 +125,11 @@ std::shared_ptr<const bricks::LevelVoxels> vtkDSMLevelData::Publish(const Choice
   const std::function<void(double)>& progress) const
 {
   dsm::Messenger& messenger = this->Group->GetMessenger();
+  if (choice.Component == vtkDSMImagePiece::Color)
+  {
+    throw dsm::Error("The colors in the array '" + choice.Name +
+      "' cannot be shown as they are on AMR and hyper tree grids. Turn on Map Scalars.");
+  }
   bool isThere = false;
   bricks::ScalarType type = bricks::ScalarType::Float32;
   for (const vtkDSMImageArrays::Info& info : infos)

@@ -362,8 +362,7 @@ vtkDSMVolumeMapper::SurfaceTest vtkDSMSceneVolume::MakeSurfaceTest() const
     const auto iso = weak.lock();
     if (!iso || iso->GetFields().empty() || iso->GetLevels() || now != data ||
       GetDataTime(now) != time || mapper->GetIsoArray() != array ||
-      mapper->GetIsoArrayOnCells() != onCells ||
-      mapper->GetIsoComponent() != component)
+      mapper->GetIsoArrayOnCells() != onCells || mapper->GetIsoComponent() != component)
     {
       return true;
     }
@@ -454,12 +453,10 @@ std::shared_ptr<const bricks::VoxelField> vtkDSMSceneVolume::GetColorValues(
   return level > 0 ? color.Coarser->Levels[level - 1][lattice].Field : color.GetFields()[lattice];
 }
 
-void vtkDSMSceneVolume::SetColors(
-  std::size_t lattice, std::shared_ptr<const bricks::VoxelField>& values, rt::IsosurfaceLook& look)
+void vtkDSMSceneVolume::SetColors(rt::IsosurfaceLook& look)
 {
   using Coloring = rt::IsosurfaceLook::Coloring;
   const vtkDSMVolumeData::Choice& choice = this->GetColoring().Choice;
-  values = this->GetColorValues(lattice);
   if (this->Mapper->GetLookupTable())
   {
     look.Colors = *this->SampleColors(this->Mapper->GetLookupTable());
@@ -471,10 +468,14 @@ void vtkDSMSceneVolume::SetColors(
   }
 }
 
-std::shared_ptr<const rt::BlockLooks> vtkDSMSceneVolume::CreateBlockLooks(std::size_t lattice) const
+std::shared_ptr<const rt::BlockLooks> vtkDSMSceneVolume::CreateBlockLooks(std::size_t part) const
 {
+  if (part >= this->Data->GetNumberOfLattices())
+  {
+    return nullptr;
+  }
   std::vector<rt::BlockLooks::Block> blocks;
-  for (const vtkDSMVolumeData::Block& block : this->Data->GetBlocks(lattice))
+  for (const vtkDSMVolumeData::Block& block : this->Data->GetBlocks(part))
   {
     rt::BlockLooks::Look look;
     if (block.Look.Color)
@@ -521,44 +522,6 @@ rt::LatticeField vtkDSMSceneVolume::GetField(
   return field;
 }
 
-void vtkDSMSceneVolume::AddLevels(const vtkDSMVolumeLook& look, const glm::dmat4& dataToWorld,
-  const std::vector<double>& isovalues, rt::Scene& scene)
-{
-  const auto levels = this->GetIso()->GetLevels();
-  if (!levels)
-  {
-    return;
-  }
-  const std::shared_ptr<Published> color = this->GetColor();
-  std::vector<std::vector<double>> groups{ isovalues };
-  if (look.IsLikeRayCastMapper())
-  {
-    groups.clear();
-    for (const double isovalue : isovalues)
-    {
-      groups.push_back({ isovalue });
-    }
-  }
-  for (const std::vector<double>& group : groups)
-  {
-    rt::LevelIsosurface object;
-    object.Field.Voxels = levels;
-    object.Field.SetIndexToWorld(dataToWorld * this->Data->GetLevels()->GetIndexToWorld());
-    object.Isovalues = group;
-    look.SetMaterials(group.front(), object.Look);
-    object.Clipping = look.GetClipRegion(dataToWorld);
-    if (color && color->GetLevels())
-    {
-      object.ColorValues = color->GetLevels();
-      if (this->Mapper->GetLookupTable())
-      {
-        object.Look.Colors = *this->SampleColors(this->Mapper->GetLookupTable());
-      }
-    }
-    scene.Objects.push_back(std::move(object));
-  }
-}
-
 void vtkDSMSceneVolume::AddTo(rt::Scene& scene)
 {
   if (!this->Data || !this->GetIso())
@@ -593,11 +556,6 @@ void vtkDSMSceneVolume::AddTo(rt::Scene& scene)
   {
     return;
   }
-  this->AddLevels(look, dataToWorld, isovalues, scene);
-  if (this->GetIso()->GetFields().empty())
-  {
-    return;
-  }
   const rt::ClipRegion clipping = look.GetClipRegion(dataToWorld);
   // A property's transfer functions may give each isovalue a look of its own.
   std::vector<std::vector<double>> groups;
@@ -612,28 +570,29 @@ void vtkDSMSceneVolume::AddTo(rt::Scene& scene)
   {
     groups.push_back(isovalues);
   }
-  const std::shared_ptr<Published> color = this->GetColor();
-  for (std::size_t lattice = 0; lattice < this->Data->GetNumberOfLattices(); ++lattice)
-  {
-    if (!this->GetIso()->GetFields()[lattice])
+  this->ForEachField(*this->GetIso(), dataToWorld,
+    [&](const auto& field, std::size_t part)
     {
-      continue;
-    }
-    const auto blocks = this->CreateBlockLooks(lattice);
-    for (const std::vector<double>& group : groups)
-    {
-      rt::LatticeIsosurface object;
-      object.Look.Blocks = blocks;
-      object.Field = this->GetField(*this->GetIso(), lattice, dataToWorld);
-      object.Isovalues = group;
-      look.SetMaterials(group.front(), object.Look);
-      object.Clipping = clipping;
-      if (color && !color->GetFields().empty() && color->GetFields()[lattice])
+      using FieldType = std::decay_t<decltype(field)>;
+      const auto blocks = this->CreateBlockLooks(part);
+      for (const std::vector<double>& group : groups)
       {
-        this->SetColors(lattice, object.ColorValues, object.Look);
+        rt::IsosurfaceOf<FieldType> object;
+        object.Look.Blocks = blocks;
+        object.Field = field;
+        object.Isovalues = group;
+        look.SetMaterials(group.front(), object.Look);
+        object.Clipping = clipping;
+        if (this->GetColor())
+        {
+          object.ColorValues = this->FindColorValues<FieldType>(part);
+        }
+        if (object.ColorValues)
+        {
+          this->SetColors(object.Look);
+        }
+        scene.Objects.push_back(std::move(object));
       }
-      scene.Objects.push_back(std::move(object));
-    }
-  }
+    });
   this->AddCaps(look, dataToWorld, isovalues, scene);
 }

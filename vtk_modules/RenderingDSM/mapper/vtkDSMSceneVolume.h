@@ -15,6 +15,7 @@
 #include <optional>
 #include <string>
 #include <tuple>
+#include <type_traits>
 #include <vector>
 
 /// A volume of a scene.
@@ -32,7 +33,7 @@ public:
   void Update(const std::shared_ptr<vtkDSMRankGroup>& group, bool newData) override;
   void TakeCoarser(const std::shared_ptr<vtkDSMRankGroup>& group, bool wanted) override;
   int CountCoarser() const override;
-  /// One object, or medium, for each of the volume's lattices, and of the components that are shown at once.
+  /// One object, or medium, for each of the volume's parts, and of the components that are shown at once.
   void AddTo(rt::Scene& scene) override;
 
 private:
@@ -103,30 +104,66 @@ private:
   /// At the level of detail that is shown.
   rt::LatticeField GetField(
     const Published& array, std::size_t lattice, const glm::dmat4& dataToWorld) const;
+  /// Calls `visit(field, part)` for each part of the dataset that has the array: the lattices, in their order, and then the
+  /// levels, if there are any.
+  template <class Visit>
+  void ForEachField(const Published& array, const glm::dmat4& dataToWorld, const Visit& visit) const
+  {
+    const vtkDSMVolumeData::Fields& fields = array.GetFields();
+    for (std::size_t lattice = 0; lattice < fields.size(); ++lattice)
+    {
+      if (fields[lattice])
+      {
+        visit(this->GetField(array, lattice, dataToWorld), lattice);
+      }
+    }
+    if (const auto levels = array.GetLevels())
+    {
+      rt::LevelField field;
+      field.Voxels = levels;
+      field.SetIndexToWorld(dataToWorld * this->Data->GetLevels()->GetIndexToWorld());
+      visit(field, this->Data->GetNumberOfLattices());
+    }
+  }
+  /// Returns the values of the color array in a part, at the current level of detail; null if it has none there.
+  template <class FieldType>
+  std::shared_ptr<const typename FieldType::Values> FindColorValues(std::size_t part) const
+  {
+    if constexpr (std::is_same_v<FieldType, rt::LatticeField>)
+    {
+      const vtkDSMVolumeData::Fields& fields = this->GetColoring().GetFields();
+      return fields.empty() || !fields[part] ? nullptr : this->GetColorValues(part);
+    }
+    else
+    {
+      return this->GetColoring().GetLevels();
+    }
+  }
+  /// The same, if a medium takes its colors from another array than its opacities.
+  template <class FieldType>
+  std::shared_ptr<const typename FieldType::Values> FindOwnColors(std::size_t part) const
+  {
+    const bool hasOwn = !this->HasSeveralMedia() && this->GetColor();
+    return hasOwn ? this->FindColorValues<FieldType>(part) : nullptr;
+  }
   /// Returns whether each of the arrays is a medium of its own.
   bool HasSeveralMedia() const
   {
     return this->GetLook().GetComponents(this->Data->GetArrays()) ==
       vtkDSMVolumeLook::Components::Independent;
   }
-  /// The isosurfaces of levels.
-  void AddLevels(const vtkDSMVolumeLook& look, const glm::dmat4& dataToWorld,
-    const std::vector<double>& isovalues, rt::Scene& scene);
   void AddMedia(const vtkDSMVolumeLook& look, rt::Scene& scene);
-  /// One medium, of one of the arrays, for each of the volume's lattices. `groups`: of the lattices' media; 0: none yet.
+  /// One medium, of one of the arrays, for each of the volume's parts. `groups`: of the parts' media; 0: none yet.
   void AddMedium(const vtkDSMVolumeLook& look, std::size_t number, const glm::dmat4& dataToWorld,
     std::vector<int>& groups, rt::Scene& scene);
-  /// Returns whether a lattice's medium takes its colors from another array than its opacities.
-  bool HasOwnColors(std::size_t lattice) const;
   /// Returns whether that array's values are colors.
   bool HasDirectColors() const;
   /// The medium's colors, with the opacities of the same values or without; of the first one of several.
   std::shared_ptr<const rt::ColorMap> GetMediumColors(bool hasOpacity);
   /// Returns the values of the color array, at the current level of detail.
   std::shared_ptr<const bricks::VoxelField> GetColorValues(std::size_t lattice) const;
-  /// Sets the colors of a surface by the color array, at the level of detail that is shown.
-  void SetColors(std::size_t lattice, std::shared_ptr<const bricks::VoxelField>& values,
-    rt::IsosurfaceLook& look);
+  /// Sets the colors of a surface by the color array.
+  void SetColors(rt::IsosurfaceLook& look);
   /// Slices alone, or with isosurfaces.
   void AddSlices(const vtkDSMVolumeLook& look, const glm::dmat4& dataToWorld, rt::Scene& scene);
   /// The faces that clipping planes cut out of isosurfaces of these values, which ascend.
@@ -135,10 +172,11 @@ private:
   /// The same of the medium.
   void AddCaps(const vtkDSMVolumeLook& look, const glm::dmat4& dataToWorld, rt::Scene& scene);
   /// Creates a slice with the settings that slices and faces of isosurfaces share.
-  rt::LatticeSlice CreateSlice(
-    const vtkDSMVolumeLook& look, const glm::dmat4& dataToWorld, std::size_t lattice, bool isLit);
-  /// Creates the looks of blocks that differ from the rest; null if there are none.
-  std::shared_ptr<const rt::BlockLooks> CreateBlockLooks(std::size_t lattice) const;
+  template <class FieldType>
+  rt::SliceOf<FieldType> CreateSlice(const vtkDSMVolumeLook& look, const glm::dmat4& dataToWorld,
+    const FieldType& field, std::size_t part, bool isLit);
+  /// Creates the looks of a part's blocks that differ from the rest; null if there are none.
+  std::shared_ptr<const rt::BlockLooks> CreateBlockLooks(std::size_t part) const;
 
   const vtkDataObject* SeenData = nullptr;
   vtkMTimeType SeenTime = 0;

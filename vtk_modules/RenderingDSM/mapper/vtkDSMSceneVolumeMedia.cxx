@@ -16,12 +16,6 @@
 #include <utility>
 #include <variant>
 
-bool vtkDSMSceneVolume::HasOwnColors(std::size_t lattice) const
-{
-  const std::shared_ptr<Published> color = this->HasSeveralMedia() ? nullptr : this->GetColor();
-  return color && !color->GetFields().empty() && color->GetFields()[lattice];
-}
-
 bool vtkDSMSceneVolume::HasDirectColors() const
 {
   return this->GetColoring().Choice.Component == vtkDSMImagePiece::Color;
@@ -30,7 +24,7 @@ bool vtkDSMSceneVolume::HasDirectColors() const
 std::shared_ptr<const rt::ColorMap> vtkDSMSceneVolume::GetMediumColors(bool hasOpacity)
 {
   vtkVolumeProperty* const property = vtkVolume::SafeDownCast(this->Prop)->GetProperty();
-  const bool isFirst = this->HasSeveralMedia() || this->GetColoring().GetFields().empty();
+  const bool isFirst = this->HasSeveralMedia() || !this->GetColoring().HasAny();
   const Published& array = isFirst ? *this->GetIso() : this->GetColoring();
   const int component = this->HasSeveralMedia() ? array.Choice.Component : 0;
   const bricks::ValueRange range = array.GetRange();
@@ -66,7 +60,7 @@ void vtkDSMSceneVolume::AddMedia(const vtkDSMVolumeLook& look, rt::Scene& scene)
   this->Prop->ComputeMatrix();
   const glm::dmat4 dataToWorld = vtkDSMTranslation::ToMatrix(this->Prop->GetMatrix());
   const std::size_t count = this->HasSeveralMedia() ? this->Arrays.size() : 1;
-  std::vector<int> groups(this->Data->GetNumberOfLattices());
+  std::vector<int> groups(this->Data->GetNumberOfLattices() + 1);
   for (std::size_t number = 0; number < count; ++number)
   {
     this->AddMedium(look, number, dataToWorld, groups, scene);
@@ -95,59 +89,59 @@ void vtkDSMSceneVolume::AddMedium(const vtkDSMVolumeLook& look, std::size_t numb
   const glm::dvec3 lower(bounds[0], bounds[2], bounds[4]);
   const glm::dvec3 upper(bounds[1], bounds[3], bounds[5]);
   const double diagonal = glm::length(glm::dmat3(dataToWorld) * (upper - lower));
-  for (std::size_t lattice = 0; lattice < this->Data->GetNumberOfLattices(); ++lattice)
-  {
-    if (!array.GetFields()[lattice])
+  this->ForEachField(array, dataToWorld,
+    [&](const auto& field, std::size_t part)
     {
-      continue;
-    }
-    const rt::LatticeField field = this->GetField(array, lattice, dataToWorld);
-    const auto key = look.GetMediumKey(range, field.GetFinestLength(), diagonal, component);
-    const auto& make =
-      this->MakeMedium[number].Get(key, [&] { return vtkDSMVolumeLook::GetMediumMaker(key); });
-    if (!make)
-    {
-      this->Messages.push_back(
-        "The mapper does not draw volumes in the blend mode Slice, so nothing is "
-        "drawn. Call SetBlendMode() with another one, or use VTK's own mapper.");
-      return;
-    }
-    rt::SceneMedium medium = make(field, clipping);
-    if (auto* const lit = std::get_if<rt::LatticeMedium>(&medium))
-    {
-      lit->Look.Scattering = this->Mapper->GetScattering();
-      if (this->HasOwnColors(lattice))
+      using FieldType = std::decay_t<decltype(field)>;
+      const auto key = look.GetMediumKey(range, field.GetFinestLength(), diagonal, component);
+      const auto& make =
+        this->MakeMedium[number].Get(key, [&] { return vtkDSMVolumeLook::GetMediumMaker(key); });
+      if (!make)
       {
-        lit->ColorValues = this->GetColorValues(lattice);
-        lit->Colors = this->HasDirectColors() ? nullptr : this->GetMediumColors(false);
+        this->Messages.push_back(
+          "The mapper does not draw volumes in the blend mode Slice, so nothing is "
+          "drawn. Call SetBlendMode() with another one, or use VTK's own mapper.");
+        return;
       }
-      if (this->HasSeveralMedia() && this->Arrays.size() > 1)
+      rt::SceneMedium medium = make(field, clipping);
+      if (auto* const lit = std::get_if<rt::MediumOf<FieldType>>(&medium))
       {
-        int& group = groups[lattice];
-        group = group == 0 ? static_cast<int>(scene.Media.size()) + 1 : group;
-        lit->Group = group;
+        lit->Look.Scattering = this->Mapper->GetScattering();
+        lit->ColorValues = this->FindOwnColors<FieldType>(part);
+        if (lit->ColorValues)
+        {
+          lit->Colors = this->HasDirectColors() ? nullptr : this->GetMediumColors(false);
+        }
+        if (this->HasSeveralMedia() && this->Arrays.size() > 1)
+        {
+          int& group = groups[part];
+          group = group == 0 ? static_cast<int>(scene.Media.size()) + 1 : group;
+          lit->Group = group;
+        }
       }
-    }
-    scene.Media.push_back(std::move(medium));
-  }
+      scene.Media.push_back(std::move(medium));
+    });
 }
 
 void vtkDSMSceneVolume::AddCaps(
   const vtkDSMVolumeLook& look, const glm::dmat4& dataToWorld, rt::Scene& scene)
 {
-  const auto& fields = this->GetIso()->GetFields();
-  for (std::size_t lattice = 0; this->Mapper->GetCapping() && lattice < fields.size(); ++lattice)
+  if (!this->Mapper->GetCapping())
   {
-    if (fields[lattice])
+    return;
+  }
+  this->ForEachField(*this->GetIso(), dataToWorld,
+    [&](const auto& field, std::size_t part)
     {
-      rt::LatticeSlice face;
-      face.Field = this->GetField(*this->GetIso(), lattice, dataToWorld);
-      face.ColorValues =
-        this->HasOwnColors(lattice) ? this->GetColorValues(lattice) : face.Field.Voxels;
+      using FieldType = std::decay_t<decltype(field)>;
+      rt::SliceOf<FieldType> face;
+      face.Field = field;
+      const auto own = this->FindOwnColors<FieldType>(part);
+      face.ColorValues = own ? own : face.Field.Voxels;
       face.Clipping = look.GetClipRegion(dataToWorld);
       face.Planes = vtkDSMVolumeLook::GetFaces(face.Clipping);
       face.Look.Surface.Lighting = false;
-      if (this->HasOwnColors(lattice) && this->HasDirectColors())
+      if (own && this->HasDirectColors())
       {
         face.Look.ColoredBy = rt::IsosurfaceLook::Coloring::OpaqueColors;
       }
@@ -159,6 +153,5 @@ void vtkDSMSceneVolume::AddCaps(
         face.Look.Colors = *this->GetMediumColors(hasOpacity);
       }
       scene.Objects.push_back(std::move(face));
-    }
-  }
+    });
 }

@@ -8,18 +8,22 @@
 #include <algorithm>
 #include <utility>
 
-rt::LatticeSlice vtkDSMSceneVolume::CreateSlice(
-  const vtkDSMVolumeLook& look, const glm::dmat4& dataToWorld, std::size_t lattice, bool isLit)
+template <class FieldType>
+rt::SliceOf<FieldType> vtkDSMSceneVolume::CreateSlice(const vtkDSMVolumeLook& look,
+  const glm::dmat4& dataToWorld, const FieldType& field, std::size_t part, bool isLit)
 {
-  rt::LatticeSlice slice;
-  slice.Field = this->GetField(*this->GetIso(), lattice, dataToWorld);
+  rt::SliceOf<FieldType> slice;
+  slice.Field = field;
   slice.Clipping = look.GetClipRegion(dataToWorld);
-  slice.Look.Blocks = this->CreateBlockLooks(lattice);
+  slice.Look.Blocks = this->CreateBlockLooks(part);
   look.SetSliceLook(isLit, slice);
-  const vtkDSMVolumeData::Fields& colors = this->GetColoring().GetFields();
-  if (look.HasColoredSlices() && !colors.empty() && colors[lattice])
+  if (look.HasColoredSlices())
   {
-    this->SetColors(lattice, slice.ColorValues, slice.Look);
+    slice.ColorValues = this->FindColorValues<FieldType>(part);
+  }
+  if (slice.ColorValues)
+  {
+    this->SetColors(slice.Look);
     vtkPiecewiseFunction* const opacity = this->Mapper->GetSliceOpacity();
     if (opacity && this->Mapper->GetLookupTable())
     {
@@ -40,15 +44,23 @@ rt::LatticeSlice vtkDSMSceneVolume::CreateSlice(
 void vtkDSMSceneVolume::AddSlices(
   const vtkDSMVolumeLook& look, const glm::dmat4& dataToWorld, rt::Scene& scene)
 {
-  const auto& fields = this->GetIso()->GetFields();
-  for (int number = 0; number < this->Mapper->GetNumberOfSlices() && !fields.empty(); ++number)
+  std::vector<bricks::Index3> points;
+  for (const auto& lattice : this->GetIso()->GetFields())
+  {
+    points.push_back(lattice ? lattice->Lattice.GetPoints() : bricks::Index3(0));
+  }
+  if (const auto levels = this->GetIso()->GetLevels())
+  {
+    points.push_back(bricks::Index3(glm::ceil(levels->Lattice.GetBounds()[1])) + bricks::Index3(1));
+  }
+  for (int number = 0; number < this->Mapper->GetNumberOfSlices() && !points.empty(); ++number)
   {
     const int axis = this->Mapper->GetSliceAxis(number);
     const int index = this->Mapper->GetSliceIndex(number);
     std::int64_t most = 0;
-    for (const auto& field : fields)
+    for (const bricks::Index3& one : points)
     {
-      most = std::max<std::int64_t>(most, field ? field->Lattice.GetPoints()[axis] : 0);
+      most = std::max(most, one[axis]);
     }
     if (index < 0 || index >= most)
     {
@@ -57,30 +69,38 @@ void vtkDSMSceneVolume::AddSlices(
         std::to_string(most - 1) + ".");
     }
   }
-  for (std::size_t lattice = 0; lattice < fields.size(); ++lattice)
-  {
-    if (fields[lattice])
+  this->ForEachField(*this->GetIso(), dataToWorld,
+    [&](const auto& field, std::size_t part)
     {
-      rt::LatticeSlice slice =
-        this->CreateSlice(look, dataToWorld, lattice, this->Mapper->GetSliceLighting());
-      slice.Planes =
-        look.GetSlices(dataToWorld * this->Data->GetIndexToWorld(lattice), *fields[lattice]);
+      auto slice =
+        this->CreateSlice(look, dataToWorld, field, part, this->Mapper->GetSliceLighting());
+      if constexpr (std::is_same_v<std::decay_t<decltype(field)>, rt::LatticeField>)
+      {
+        // By the indices of the finest level of detail.
+        slice.Planes = look.GetSlices(dataToWorld * this->Data->GetIndexToWorld(part), points[part],
+          this->GetIso()->GetFields()[part]->Planes.get());
+      }
+      else
+      {
+        slice.Planes = look.GetSlices(field.IndexToWorld, points.back(), nullptr);
+      }
       scene.Objects.push_back(std::move(slice));
-    }
-  }
+    });
 }
 
 void vtkDSMSceneVolume::AddCaps(const vtkDSMVolumeLook& look, const glm::dmat4& dataToWorld,
   const std::vector<double>& isovalues, rt::Scene& scene)
 {
-  const auto& fields = this->GetIso()->GetFields();
-  for (std::size_t lattice = 0; this->Mapper->GetCapping() && lattice < fields.size(); ++lattice)
+  if (!this->Mapper->GetCapping())
   {
-    if (fields[lattice])
+    return;
+  }
+  this->ForEachField(*this->GetIso(), dataToWorld,
+    [&](const auto& field, std::size_t part)
     {
       // A face of one color shows its shape by light, colors of values are to be read.
-      rt::LatticeSlice face = this->CreateSlice(
-        look, dataToWorld, lattice, this->Mapper->GetSliceLighting() || !look.HasColoredSlices());
+      auto face = this->CreateSlice(look, dataToWorld, field, part,
+        this->Mapper->GetSliceLighting() || !look.HasColoredSlices());
       face.Planes = vtkDSMVolumeLook::GetFaces(face.Clipping);
       if (this->Mapper->GetCapSide() == vtkDSMVolumeMapper::ValuesAbove)
       {
@@ -91,6 +111,5 @@ void vtkDSMSceneVolume::AddCaps(const vtkDSMVolumeLook& look, const glm::dmat4& 
         face.Most = isovalues.back();
       }
       scene.Objects.push_back(std::move(face));
-    }
-  }
+    });
 }

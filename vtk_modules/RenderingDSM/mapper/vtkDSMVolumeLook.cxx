@@ -24,6 +24,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <type_traits>
+#include <variant>
 
 vtkDSMVolumeLook::vtkDSMVolumeLook(vtkDSMVolumeMapper* mapper, vtkProp3D* prop)
   : Mapper(mapper)
@@ -58,9 +60,8 @@ bool vtkDSMVolumeLook::HasColoredSlices() const
 }
 
 std::vector<rt::SectionPlane> vtkDSMVolumeLook::GetSlices(
-  const glm::dmat4& toWorld, const bricks::VoxelField& field) const
+  const glm::dmat4& toWorld, const bricks::Index3& points, const bricks::GridPlanes* grid) const
 {
-  const bricks::Index3 points = field.Lattice.GetPoints();
   std::vector<rt::SectionPlane> slices;
   const glm::dmat3 toIndex = glm::inverse(glm::dmat3(toWorld));
   for (int number = 0; number < this->Mapper->GetNumberOfSlices(); ++number)
@@ -70,7 +71,7 @@ std::vector<rt::SectionPlane> vtkDSMVolumeLook::GetSlices(
     if (index >= 0 && index < points[axis])
     {
       glm::dvec4 place(0.0, 0.0, 0.0, 1.0);
-      place[axis] = field.Planes ? field.Planes->GetPlace(axis, index) : index;
+      place[axis] = grid ? grid->GetPlace(axis, index) : index;
       glm::dvec3 normal(0.0);
       normal[axis] = 1.0;
       slices.push_back({ glm::normalize(normal * toIndex), glm::dvec3(toWorld * place) });
@@ -84,20 +85,6 @@ std::vector<rt::SectionPlane> vtkDSMVolumeLook::GetSlices(
     slices.push_back({ { normal[0], normal[1], normal[2] }, { origin[0], origin[1], origin[2] } });
   }
   return slices;
-}
-
-void vtkDSMVolumeLook::SetSliceLook(bool isLit, rt::LatticeSlice& slice) const
-{
-  this->SetMaterials(0.0, slice.Look);
-  slice.NearestValues = !this->Mapper->GetInterpolateSlices();
-  if (!isLit)
-  {
-    rt::Material& surface = slice.Look.Surface;
-    surface.Lighting = false;
-    surface.Ambient = 0.0f;
-    surface.Diffuse = 1.0f;
-    surface.Reflectivity = 0.0f;
-  }
 }
 
 vtkDSMVolumeLook::MediumKey vtkDSMVolumeLook::GetMediumKey(const bricks::ValueRange& range,
@@ -124,15 +111,26 @@ vtkDSMVolumeLook::MediumMaker vtkDSMVolumeLook::GetMediumMaker(const MediumKey& 
       return [function = vtkDSMTranslation::ToTransferFunction(
                 property, component, weight, first, last, cellLength, diagonal),
                look = vtkDSMTranslation::ToMediumLook(property, component, last - first)](
-               const rt::LatticeField& field, const rt::ClipRegion& clipping) {
-        return rt::LatticeMedium{ field, function, look, clipping };
+               const AnyField& any, const rt::ClipRegion& clipping)
+      {
+        return std::visit(
+          [&](const auto& field) -> rt::SceneMedium {
+            return rt::MediumOf<std::decay_t<decltype(field)>>{ field, function, look, clipping };
+          },
+          any);
       };
     case vtkVolumeMapper::MAXIMUM_INTENSITY_BLEND:
     case vtkVolumeMapper::MINIMUM_INTENSITY_BLEND:
       return [colors = vtkDSMTranslation::ToColorMap(property, component, first, last),
                isMinimum = mode == vtkVolumeMapper::MINIMUM_INTENSITY_BLEND](
-               const rt::LatticeField& field, const rt::ClipRegion& clipping) {
-        return rt::LatticeExtremum{ field, colors, isMinimum, clipping };
+               const AnyField& any, const rt::ClipRegion& clipping)
+      {
+        return std::visit(
+          [&](const auto& field) -> rt::SceneMedium {
+            return rt::ExtremumOf<std::decay_t<decltype(field)>>{ field, colors, isMinimum,
+              clipping };
+          },
+          any);
       };
     case vtkVolumeMapper::AVERAGE_INTENSITY_BLEND:
     case vtkVolumeMapper::ADDITIVE_BLEND:
@@ -141,8 +139,13 @@ vtkDSMVolumeLook::MediumMaker vtkDSMVolumeLook::GetMediumMaker(const MediumKey& 
       const auto function = vtkDSMTranslation::ToSum(property, first, last,
         isMean ? averaged : std::array<double, 2>{ first, last },
         isMean ? cellLength : property->GetScalarOpacityUnitDistance(0));
-      return [=](const rt::LatticeField& field, const rt::ClipRegion& clipping) {
-        return rt::LatticeSum{ field, function, isMean, clipping };
+      return [=](const AnyField& any, const rt::ClipRegion& clipping)
+      {
+        return std::visit(
+          [&](const auto& field) -> rt::SceneMedium {
+            return rt::SumOf<std::decay_t<decltype(field)>>{ field, function, isMean, clipping };
+          },
+          any);
       };
     }
     default:

@@ -4,6 +4,7 @@
 
 #include "DSMRayTracing/scene/Scene.h"
 #include "vtkDSMVolumeData.h"
+#include "vtkDSMVolumeMapper.h"
 
 #include <glm/mat4x4.hpp>
 
@@ -12,6 +13,7 @@
 #include <optional>
 #include <string>
 #include <tuple>
+#include <variant>
 #include <vector>
 
 class vtkDSMVolumeMapper;
@@ -60,9 +62,10 @@ public:
     const std::optional<int>& component) const;
   /// Returns whether another array defines the density of the medium.
   bool HasOpacityArray() const;
+  /// A field of any kind that a volume may have.
+  using AnyField = std::variant<rt::LatticeField, rt::LevelField>;
   /// Makes the medium that has the values of a field, within a region.
-  using MediumMaker =
-    std::function<rt::SceneMedium(const rt::LatticeField&, const rt::ClipRegion&)>;
+  using MediumMaker = std::function<rt::SceneMedium(const AnyField&, const rt::ClipRegion&)>;
   /// Returns the maker for the blend mode. Expensive: keep the result as long as the key is the
   /// same. Empty if the blend mode is not supported.
   static MediumMaker GetMediumMaker(const MediumKey& key);
@@ -78,12 +81,25 @@ public:
   void SetMaterials(double isovalue, rt::IsosurfaceLook& look) const;
   /// Returns whether the slices, and the faces of isosurfaces, have the colors of an array.
   bool HasColoredSlices() const;
-  /// The slices of a lattice, in world space; `toWorld`: from its index or grid space. Slices by an index that the lattice
-  /// does not have are left out.
+  /// The slices of a lattice with that many points, in world space; `toWorld`: from its index or grid space; `grid`: its planes,
+  /// or null. Slices by an index that the lattice does not have are left out.
   std::vector<rt::SectionPlane> GetSlices(
-    const glm::dmat4& toWorld, const bricks::VoxelField& field) const;
+    const glm::dmat4& toWorld, const bricks::Index3& points, const bricks::GridPlanes* grid) const;
   /// Sets how slices and faces of isosurfaces look, but for their colors.
-  void SetSliceLook(bool isLit, rt::LatticeSlice& slice) const;
+  template <class FieldType>
+  void SetSliceLook(bool isLit, rt::SliceOf<FieldType>& slice) const
+  {
+    this->SetMaterials(0.0, slice.Look);
+    slice.NearestValues = !this->Mapper->GetInterpolateSlices();
+    if (!isLit)
+    {
+      rt::Material& surface = slice.Look.Surface;
+      surface.Lighting = false;
+      surface.Ambient = 0.0f;
+      surface.Diffuse = 1.0f;
+      surface.Reflectivity = 0.0f;
+    }
+  }
   rt::ClipRegion GetClipRegion(const glm::dmat4& dataToWorld) const;
   /// The planes of a region's half spaces.
   static std::vector<rt::SectionPlane> GetFaces(const rt::ClipRegion& region);

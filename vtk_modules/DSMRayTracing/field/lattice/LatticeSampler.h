@@ -4,6 +4,7 @@
 
 #include "DSMBricks/layout/VoxelField.h"
 #include "DSMRayTracing/base/Lanes.h"
+#include "DSMRayTracing/field/lattice/LatticeField.h"
 #include "DSMRayTracing/field/lattice/LatticePlace.h"
 #include "DSMRayTracing/ray/RayMask.h"
 
@@ -27,6 +28,18 @@ public:
     : Blocks(store)
     , Self(worker)
   {
+  }
+
+  /// The place of a point in world space; always found: of the nearest cell, beyond the lattice.
+  bool FindPlace(const LatticeField& field, const glm::dvec3& point, LatticePlace& place) const
+  {
+    place = field.GetPlace(point);
+    return true;
+  }
+  /// Places are whole.
+  RayMask FindPlaces(const bricks::VoxelField&, LatticePlace*, RayMask wanted) const
+  {
+    return wanted;
   }
 
   /// NaN where there are no data; infinite between infinite values of one sign. Returns the places that are in cells that

@@ -5,6 +5,8 @@
 #include "DSMBricks/levels/LevelVoxels.h"
 #include "DSMRayTracing/field/lattice/BeamBricks.h"
 #include "DSMRayTracing/field/lattice/RayBeam.h"
+#include "DSMRayTracing/field/levels/LevelField.h"
+#include "DSMRayTracing/ray/Ray.h"
 
 #include <algorithm>
 #include <cmath>
@@ -81,6 +83,23 @@ BeamBricks FindLevelBricks(
     found.Bricks.push_back(brick);
   }
   return found;
+}
+
+/// The same for the rays between those of `corners`, in order around them. Not usable where these go to different sides.
+template <class Predicate>
+BeamBricks FindLevelBricks(const LevelField& field, const Predicate& mayHold, const Ray corners[4])
+{
+  const IndexSpace space = field.GetIndexSpace();
+  GridRay lines[4];
+  for (int corner = 0; corner < 4; ++corner)
+  {
+    if (!space.GetGridRay(corners[corner], lines[corner]))
+    {
+      return BeamBricks();
+    }
+  }
+  RayBeam beam;
+  return beam.Set(lines) ? FindLevelBricks(*field.Voxels, mayHold, beam) : BeamBricks();
 }
 
 } // namespace rt

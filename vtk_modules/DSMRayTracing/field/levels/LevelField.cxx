@@ -11,6 +11,32 @@
 namespace rt
 {
 
+double LevelField::GetGrowth(const glm::dvec3& gradient) const
+{
+  const bricks::LevelScales& scales = this->Voxels->Lattice.GetScales();
+  const glm::dvec3 finest(scales.Get(scales.GetCount() - 1));
+  const glm::dmat3 edges(this->IndexToWorld);
+  const glm::dvec3 lengths(glm::length(edges[0]), glm::length(edges[1]), glm::length(edges[2]));
+  const glm::dvec3 cell = lengths / finest;
+  return glm::length(gradient / lengths) * (cell.x + cell.y + cell.z) / 3.0;
+}
+
+ObjectTracer::Brick LevelField::FindBrick(const glm::dvec3& place) const
+{
+  const bricks::LevelLattice& lattice = this->Voxels->Lattice;
+  const glm::dvec3 point = this->ToIndex(place);
+  for (int level = lattice.GetScales().GetCount() - 1; level >= 0; --level)
+  {
+    const glm::dvec3 there = point * glm::dvec3(lattice.GetScales().Get(level));
+    const dsm::BlockId id = lattice.Find(level, bricks::Index3(glm::floor(there)));
+    if (id != bricks::LevelLattice::None)
+    {
+      return { this->Voxels->Segment.get(), id };
+    }
+  }
+  return { nullptr, 0 };
+}
+
 double LevelField::GetFinestLength() const
 {
   const bricks::LevelScales& scales = this->Voxels->Lattice.GetScales();

@@ -18,9 +18,14 @@ namespace rt
 
 class ObjectDigest;
 template <class Store>
+class LevelExtrema;
+template <class Store>
+class LevelMedia;
+template <class Store>
 class LevelSampler;
 template <class Store>
 class LevelSurfaces;
+class LevelSections;
 
 /// Values at the points of lattices of several levels, as of AMR and of hyper tree grids: one continuous function, see
 /// bricks::LevelNodes. A kind of field: IsosurfaceOf says what one has to offer. A Place is in the index space of its brick's
@@ -33,6 +38,11 @@ struct LevelField
   using Sampler = LevelSampler<Store>;
   template <class Store>
   using Surfaces = LevelSurfaces<Store>;
+  template <class Store>
+  using Media = LevelMedia<Store>;
+  using Sections = LevelSections;
+  template <class Store>
+  using Extrema = LevelExtrema<Store>;
 
   /// Point index space of level 0 to world; affine, invertible.
   glm::dmat4 IndexToWorld{ 1.0 };
@@ -52,6 +62,15 @@ struct LevelField
   {
     return this->GetIndexSpace().GetNormal(&gradient.x, rayDirection);
   }
+  /// A point in world space, in the index space of level 0.
+  glm::dvec3 ToIndex(const glm::dvec3& point) const
+  {
+    return glm::dmat3(this->WorldToIndex) * (point - glm::dvec3(this->IndexToWorld[3]));
+  }
+  /// How much values grow in a cell of the finest level, of mean size, where they grow so fast on each axis of the index space.
+  double GetGrowth(const glm::dvec3& gradient) const;
+  /// A brick that has a place (world space) in its box, of the finest level of such; of no segment, where none is.
+  ObjectTracer::Brick FindBrick(const glm::dvec3& place) const;
   /// World length of the shortest edge of a cell of the finest level.
   double GetFinestLength() const;
   /// All that a picture depends on.

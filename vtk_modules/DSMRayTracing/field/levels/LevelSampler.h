@@ -4,6 +4,7 @@
 
 #include "DSMBricks/levels/LevelVoxels.h"
 #include "DSMRayTracing/field/lattice/LatticePlace.h"
+#include "DSMRayTracing/field/levels/LevelField.h"
 #include "DSMRayTracing/ray/RayMask.h"
 
 #include <glm/vec3.hpp>
@@ -24,6 +25,19 @@ public:
     : Blocks(store)
     , Self(worker)
   {
+  }
+
+  /// Finds the leaf that a point in world space is in; false where there is none.
+  bool FindPlace(const LevelField& field, const glm::dvec3& point, LatticePlace& place) const
+  {
+    return this->FindLeaf(*field.Voxels, field.ToIndex(point), place);
+  }
+  /// Finds the leaves of places that are points in the index space of level 0 so far; returns those that have one.
+  RayMask FindPlaces(const bricks::LevelVoxels& field, LatticePlace* places, RayMask wanted) const
+  {
+    return FindRays(wanted,
+      [&](int index)
+      { return this->FindLeaf(field, glm::dvec3(places[index].IndexPoint), places[index]); });
   }
 
   /// NaN where there are no data. Returns the places that are in cells that are there.
@@ -52,6 +66,10 @@ public:
 private:
   template <class T>
   class Reader;
+
+  /// `point`: in the index space of level 0.
+  bool FindLeaf(
+    const bricks::LevelVoxels& field, const glm::dvec3& point, LatticePlace& place) const;
 
   /// `evaluate(corners, local)`
   template <class Evaluate>

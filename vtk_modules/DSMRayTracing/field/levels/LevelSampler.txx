@@ -27,6 +27,14 @@ public:
   {
   }
 
+  /// Returns whether a cell of a brick is a leaf.
+  bool IsLeaf(dsm::BlockId id, const bricks::Index3& cell)
+  {
+    const bricks::LevelBrick& brick = this->Field.Lattice.GetBrick(id);
+    const glm::ivec3 at(cell - brick.Cells.Min);
+    return !brick.HasMask || this->Enter(id).IsCovered(at.x, at.y, at.z);
+  }
+
   /// The corners of a leaf of a brick; false where the cell is none, or has a corner that is not finite.
   bool GetCorners(dsm::BlockId id, const bricks::Index3& cell, double corners[8])
   {
@@ -147,6 +155,41 @@ private:
   dsm::BlockId Brick = bricks::LevelLattice::None;
   std::unique_ptr<typename Store::Pin> Pin; ///< pins cannot be moved
 };
+
+template <class Store>
+bool LevelSampler<Store>::FindLeaf(
+  const bricks::LevelVoxels& field, const glm::dvec3& point, LatticePlace& place) const
+{
+  const bricks::LevelLattice& lattice = field.Lattice;
+  return bricks::DispatchSamples(lattice,
+    [&](auto sample)
+    {
+      Reader<decltype(sample)> reader(*this, field);
+      for (int level = lattice.GetScales().GetCount() - 1; level >= 0; --level)
+      {
+        const glm::dvec3 there = point * glm::dvec3(lattice.GetScales().Get(level));
+        const bricks::Index3 base(glm::floor(there));
+        // A point on a face is in the cells on both sides.
+        for (int octant = 0; octant < 8; ++octant)
+        {
+          const bricks::Index3 back(octant & 1, octant >> 1 & 1, octant >> 2);
+          const glm::dvec3 beyond = glm::dvec3(back) * (there - glm::dvec3(base));
+          if (beyond != glm::dvec3(0.0))
+          {
+            continue;
+          }
+          const bricks::Index3 cell = base - back;
+          const dsm::BlockId id = lattice.Find(level, cell);
+          if (id != bricks::LevelLattice::None && reader.IsLeaf(id, cell))
+          {
+            place = { there, glm::ivec3(cell), id };
+            return true;
+          }
+        }
+      }
+      return false;
+    });
+}
 
 template <class Store>
 template <class Evaluate>

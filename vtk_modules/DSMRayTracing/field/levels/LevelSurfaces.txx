@@ -49,19 +49,8 @@ template <class Store>
 std::unique_ptr<ObjectBeam> LevelSurfaces<Store>::FindBeam(
   const Sets& sets, const Ray corners[4]) const
 {
-  const IndexSpace space = sets.Field.GetIndexSpace();
-  GridRay lines[4];
-  for (int corner = 0; corner < 4; ++corner)
-  {
-    if (!space.GetGridRay(corners[corner], lines[corner]))
-    {
-      return std::make_unique<BeamBricks>();
-    }
-  }
-  RayBeam beam;
-  const IsovaluePredicate mayHold(sets.Isovalues);
   return std::make_unique<BeamBricks>(
-    beam.Set(lines) ? FindLevelBricks(*sets.Field.Voxels, mayHold, beam) : BeamBricks());
+    FindLevelBricks(sets.Field, IsovaluePredicate(sets.Isovalues), corners));
 }
 
 template <class Store>

@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef rt_LevelMedia_h
+#define rt_LevelMedia_h
+
+#include "DSMBricks/layout/VoxelBrick.h"
+#include "DSMRayTracing/field/lattice/PacketKernel.h"
+#include "DSMRayTracing/field/lattice/TransferTest.h"
+#include "DSMRayTracing/field/lattice/TypedPacketBrick.h"
+#include "DSMRayTracing/field/levels/LevelPackets.h"
+#include "DSMRayTracing/field/levels/LevelSampler.h"
+#include "DSMRayTracing/look/TransferFunction.h"
+#include "DSMRayTracing/ray/MediumLight.h"
+#include "DSMRayTracing/ray/Ray.h"
+
+#include <glm/geometric.hpp>
+#include <glm/mat3x3.hpp>
+#include <glm/vec3.hpp>
+
+#include <algorithm>
+#include <cstddef>
+#include <memory>
+#include <vector>
+
+namespace rt
+{
+
+/// Takes batches of rays through a medium whose values are those of levels. What LatticeMedia is for a lattice. Bricks of
+/// different levels may lie around one another, so the pieces that a ray meets are put in order before they count.
+template <class Store>
+class LevelMedia
+{
+public:
+  LevelMedia(Store& store, typename Store::Worker& worker)
+    : Blocks(store)
+    , Self(worker)
+    , Values(store, worker)
+    , Kernel(PacketKernel::GetBest())
+    , Unsorted(std::make_unique<MediumLight>())
+  {
+  }
+
+  /// See BeamFinder.
+  std::unique_ptr<ObjectBeam> FindBeam(
+    const LevelField& field, const TransferFunction& function, const Ray corners[4]) const
+  {
+    return std::make_unique<BeamBricks>(
+      FindLevelBricks(field, TransferPredicate(function), corners));
+  }
+
+  /// See BeamFinder.
+  bool Prefetch(const LevelField& field, const ObjectBeam& beam, std::size_t count) const
+  {
+    const std::vector<dsm::BlockId> ids = static_cast<const BeamBricks&>(beam).GetFirst(count);
+    return this->Blocks.Prefetch(*field.Voxels->Segment, ids.data(), ids.size(), {});
+  }
+
+  /// See MediumTracer.
+  RayMask March(const LevelField& field, const TransferFunction& function, ObjectBeam* beam,
+    const Ray* rays, RayMask wanted, MediumLight& light) const
+  {
+    MediumLight& all = *this->Unsorted;
+    all.Begin(rays, wanted);
+    all.KeepsPieces = true;
+    all.JoinedLength = 0.0;
+    all.DarkBelow = 0.0;
+    ForEachRay(wanted, [&](int ray) { all.FirstPiece[ray] = 0; });
+    ForEachLevelPacket(field, TransferPredicate(function), this->Kernel,
+      static_cast<BeamBricks*>(beam), rays, wanted,
+      [&](BeamBricks& bricks, LevelPackets& packets)
+      {
+        this->MarchPacket(field, function, bricks, packets, all);
+        return RayMask{ 0 };
+      });
+    return FindRays(wanted,
+      [&](int ray)
+      {
+        std::vector<MediumPiece>& pieces = all.Pieces[ray];
+        std::sort(pieces.begin(), pieces.end(),
+          [](const MediumPiece& one, const MediumPiece& other) { return one.Begin < other.Begin; });
+        for (const MediumPiece& piece : pieces)
+        {
+          if (light.IsDark(ray))
+          {
+            break;
+          }
+          light.Add(ray, piece);
+        }
+        return light.IsDark(ray);
+      });
+  }
+
+  /// How fast values grow on each axis of the index space of level 0 at points in world space.
+  void FindGradients(const LevelField& field, const std::vector<glm::dvec3>& points,
+    std::vector<glm::dvec3>& gradients) const
+  {
+    for (std::size_t number = 0; number < points.size(); ++number)
+    {
+      LatticePlace place;
+      if (this->Values.FindPlace(field, points[number], place))
+      {
+        this->Values.FindSmoothGradient(*field.Voxels, place, gradients[number]);
+      }
+    }
+  }
+
+private:
+  /// Through a cell of level 0, in world space.
+  static double GetLongestWay(const LevelField& field)
+  {
+    const glm::dmat3 edges(field.IndexToWorld);
+    double longest = 0.0;
+    for (const double y : { -1.0, 1.0 })
+    {
+      for (const double z : { -1.0, 1.0 })
+      {
+        longest = std::max(longest, glm::length(edges[0] + y * edges[1] + z * edges[2]));
+      }
+    }
+    return longest;
+  }
+
+  void MarchPacket(const LevelField& field, const TransferFunction& function, BeamBricks& bricks,
+    LevelPackets& packets, MediumLight& light) const
+  {
+    const bricks::LevelLattice& lattice = field.Voxels->Lattice;
+    const double longest = GetLongestWay(field);
+    bricks::DispatchSamples(lattice,
+      [&](auto sample)
+      {
+        using T = decltype(sample);
+        for (std::size_t place = 0; place < bricks.Bricks.size(); ++place)
+        {
+          const BeamBricks::Brick& brick = bricks.Bricks[place];
+          const int level = lattice.GetBrick(brick.Id).Level;
+          RayPacket& packet = packets.Get(level);
+          const RayMask meets =
+            this->Kernel.MeetBrick(packet, packet.Rays, brick.Lower, brick.Upper);
+          if (meets == 0)
+          {
+            continue;
+          }
+          bricks.Reached = std::max(bricks.Reached, place + 1);
+          const typename Store::Pin pin =
+            this->Blocks.Acquire(this->Self, *field.Voxels->Segment, brick.Id);
+          const bricks::VoxelBrick<T> voxels(pin.GetData());
+          const bricks::Index3& scale = lattice.GetScales().Get(level);
+          const TransferTest<T> test(function, this->Kernel,
+            longest / static_cast<double>(std::min({ scale.x, scale.y, scale.z })));
+          const TypedPacketBrick<T, TransferTest<T>> medium(voxels, test, packet.Forward);
+          this->Kernel.March(packet, meets, medium, brick.Lower, function, light);
+        }
+      });
+  }
+
+  Store& Blocks;
+  typename Store::Worker& Self;
+  LevelSampler<Store> Values;
+  const PacketKernel& Kernel;
+  std::unique_ptr<MediumLight> Unsorted; ///< during March; kept for its memory
+};
+
+} // namespace rt
+
+#endif
