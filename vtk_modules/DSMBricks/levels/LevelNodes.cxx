@@ -32,17 +32,24 @@ LevelNodes::LevelNodes(const LevelLattice& lattice, dsm::BlockId id, bool ofPoin
   , Around{ this->Brick.Cells.Min - Index3(1), this->Brick.Cells.Max + Index3(1) }
   , AroundSize(this->Around.GetSize())
   , Levels(static_cast<std::size_t>(this->Around.GetCount()), std::int8_t{ Nothing })
+  , CellValues(lattice.GetScalarType())
+  , Values(lattice.GetScalarType())
 {
-  const Box points{ this->Brick.Cells.Min, this->Brick.Cells.Max + Index3(1) };
-  this->Values.resize(static_cast<std::size_t>(points.GetCount()));
   if (ofPoints)
   {
-    this->Known.resize(this->Values.size(), std::int8_t{ Nothing });
+    this->Values.Assign(this->CountPoints());
+    this->Known.resize(this->Values.GetCount(), std::int8_t{ Nothing });
   }
   else
   {
-    this->CellValues.resize(this->Levels.size());
+    this->CellValues.Assign(this->Levels.size());
   }
+}
+
+std::size_t LevelNodes::CountPoints() const
+{
+  const Box points{ this->Brick.Cells.Min, this->Brick.Cells.Max + Index3(1) };
+  return static_cast<std::size_t>(points.GetCount());
 }
 
 double LevelNodes::GetSize(int level) const
@@ -68,7 +75,7 @@ void LevelNodes::AddLeaves(const Box& box, const double* values, const std::uint
       this->Levels[place] = static_cast<std::int8_t>(this->Brick.Level);
       if (!this->OfPoints)
       {
-        this->CellValues[place] = values[number];
+        this->CellValues.Set(place, values[number]);
         return;
       }
       for (int corner = 0; corner < 8; ++corner)
@@ -90,18 +97,11 @@ void LevelNodes::OfferValue(const Index3& point, int level, double value)
   const std::size_t place = this->GetPoint(point);
   std::int8_t& known = this->Known[place];
   // Where blocks disagree, the result does not depend on which came first.
-  if (level > known || (level == known && this->Round(value) < this->Values[place]))
+  if (level > known || (level == known && value < this->Values.Get(place)))
   {
     known = static_cast<std::int8_t>(level);
-    this->Values[place] = this->Round(value);
+    this->Values.Set(place, value);
   }
-}
-
-double LevelNodes::Round(double value) const
-{
-  return this->Lattice.GetScalarType() == ScalarType::Float32
-    ? static_cast<double>(static_cast<float>(value))
-    : value;
 }
 
 bool LevelNodes::TouchesLeaf(const Index3& cell) const
@@ -127,7 +127,7 @@ void LevelNodes::AddLeaf(const ForeignLeaf& leaf)
         this->Levels[place] = static_cast<std::int8_t>(leaf.Level);
         if (!this->OfPoints)
         {
-          this->CellValues[place] = leaf.Values[0];
+          this->CellValues.Set(place, leaf.Values[0]);
         }
       });
     return;
@@ -167,13 +167,24 @@ LevelNodes::Corner LevelNodes::GetOctant(const Index3& point, int octant) const
     const int corner = GetNumber(Index3(1) - side);
     return this->Smalls.at(place)[static_cast<std::size_t>(corner)];
   }
-  return { this->OfPoints || level == Nothing ? 0.0 : this->CellValues[place], level };
+  return { this->OfPoints || level == Nothing ? 0.0 : this->CellValues.Get(place), level };
+}
+
+int LevelNodes::GetOctantLevel(const Index3& point, int octant) const
+{
+  const std::size_t place = this->GetAround(point - Index3(1) + GetCornerOf(octant));
+  return this->Levels[place];
 }
 
 void LevelNodes::FindMeans()
 {
+  if (!this->OfPoints)
+  {
+    this->Values.Assign(this->CountPoints());
+  }
   ForEachIndex({ this->Brick.Cells.Min, this->Brick.Cells.Max + Index3(1) },
     [this](const Index3& point) { this->FindMean(point); });
+  this->CellValues.Free();
 }
 
 void LevelNodes::FindMean(const Index3& point)
@@ -216,7 +227,7 @@ void LevelNodes::FindMean(const Index3& point)
       weights += weight;
     }
   }
-  this->Values[this->GetPoint(point)] = this->Round(sum / weights);
+  this->Values.Set(this->GetPoint(point), sum / weights);
 }
 
 void LevelNodes::AddCorners(const ForeignLeaf& leaf)
@@ -256,7 +267,7 @@ void LevelNodes::FindHanging()
     Index3 leaf(0);
     for (int octant = 0; octant < 8; ++octant)
     {
-      const int level = this->GetOctant(point, octant).Level;
+      const int level = this->GetOctantLevel(point, octant);
       if (level != Nothing && level < coarsest)
       {
         coarsest = level;
@@ -270,7 +281,7 @@ void LevelNodes::FindHanging()
       throw dsm::Error("The corners of a cell of level " + std::to_string(coarsest) +
         " are missing. Do all ranks run the same build?");
     }
-    this->Values[this->GetPoint(point)] = this->Round(value);
+    this->Values.Set(this->GetPoint(point), value);
   }
 }
 
@@ -305,7 +316,7 @@ ForeignLeaf LevelNodes::GetLeaf(const Index3& cell) const
   }
   for (int corner = 0; corner < 8; ++corner)
   {
-    leaf.Values[corner] = this->Values[this->GetPoint(cell + GetCornerOf(corner))];
+    leaf.Values[corner] = this->Values.Get(this->GetPoint(cell + GetCornerOf(corner)));
   }
   return leaf;
 }

@@ -22,6 +22,45 @@ struct ForeignLeaf
   double Values[8];
 };
 
+/// Numbers in the type of samples that is Float32 or Float64.
+class LevelNumbers
+{
+public:
+  explicit LevelNumbers(ScalarType type)
+    : IsFloat(type == ScalarType::Float32)
+  {
+  }
+  /// Sets all of them to 0.
+  void Assign(std::size_t count)
+  {
+    this->Floats.assign(this->IsFloat ? count : 0, 0.0f);
+    this->Doubles.assign(this->IsFloat ? 0 : count, 0.0);
+  }
+  /// Gives the memory back.
+  void Free() { *this = LevelNumbers(this->IsFloat ? ScalarType::Float32 : ScalarType::Float64); }
+  std::size_t GetCount() const { return this->Floats.size() + this->Doubles.size(); }
+  double Get(std::size_t index) const
+  {
+    return this->IsFloat ? static_cast<double>(this->Floats[index]) : this->Doubles[index];
+  }
+  void Set(std::size_t index, double value)
+  {
+    if (this->IsFloat)
+    {
+      this->Floats[index] = static_cast<float>(value);
+    }
+    else
+    {
+      this->Doubles[index] = value;
+    }
+  }
+
+private:
+  bool IsFloat;
+  std::vector<float> Floats;
+  std::vector<double> Doubles;
+};
+
 /// The values at the points of a brick's leaves, from those of the leaves around them.
 ///
 /// All leaves together carry one continuous function, which is trilinear in each of them: like the conforming spaces of
@@ -80,7 +119,7 @@ public:
   /// When all leaves are there. See VoxelBrickHeader.
   std::uint8_t FindBorders() const;
   /// At the points of the brick, x fastest. Those that no leaf touches are 0.
-  const std::vector<double>& GetValues() const { return this->Values; }
+  const LevelNumbers& GetValues() const { return this->Values; }
 
 private:
   enum Special : std::int8_t
@@ -116,12 +155,13 @@ private:
   ForeignLeaf GetLeaf(const Index3& cell) const;
   /// What fills the octant of a point.
   Corner GetOctant(const Index3& point, int octant) const;
+  /// Its level, or Smaller.
+  int GetOctantLevel(const Index3& point, int octant) const;
+  std::size_t CountPoints() const;
   /// The value that a leaf of a coarser level has at the point; false if it is not known.
   bool Interpolate(const Index3& point, int level, const Index3& leaf, double& value) const;
   void FindMean(const Index3& point);
   double GetSize(int level) const;
-  /// To the type of the samples.
-  double Round(double value) const;
 
   const LevelLattice& Lattice;
   LevelBrick Brick;
@@ -129,11 +169,12 @@ private:
   Box Around; ///< the brick's cells and one more on each side
   Index3 AroundSize;
   std::vector<std::int8_t> Levels; ///< of the leaf that has a cell of Around, or Special
-  std::vector<double> CellValues;  ///< of those that one leaf has; empty if values are of points
+  LevelNumbers
+    CellValues; ///< of those that one leaf has, until FindMeans; none if values are of points
   std::map<std::size_t, std::array<Corner, 8>>
     Smalls;                                      ///< at the corners of cells of smaller leaves
   std::map<Place, std::array<double, 8>> Larger; ///< corners' values of larger leaves
-  std::vector<double> Values;
+  LevelNumbers Values;
   std::vector<std::int8_t>
     Known; ///< of points: level of the leaf whose value it is, for values of points
   std::vector<Index3> Hanging;

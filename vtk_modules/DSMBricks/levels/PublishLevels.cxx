@@ -383,9 +383,11 @@ void FillBrick(const LevelNodes& nodes, std::byte* block)
 {
   auto& header = *reinterpret_cast<VoxelBrickHeader*>(block);
   header.Borders = nodes.FindBorders();
-  std::transform(nodes.GetValues().begin(), nodes.GetValues().end(),
-    reinterpret_cast<T*>(block + header.SampleOffset),
-    [](double value) { return static_cast<T>(value); });
+  auto* const samples = reinterpret_cast<T*>(block + header.SampleOffset);
+  for (std::size_t point = 0; point < nodes.GetValues().GetCount(); ++point)
+  {
+    samples[point] = static_cast<T>(nodes.GetValues().Get(point));
+  }
   if (header.MaskOffset != 0)
   {
     std::int64_t bit = 0;
