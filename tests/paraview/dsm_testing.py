@@ -65,7 +65,7 @@ def show_traced(source, view, **properties):
 
 def show(source, view, isovalues, array=None, **properties):
     chosen = {"DSMIsoArray": ["POINTS", array]} if array else {}
-    return show_traced(source, view, **chosen, DSMIsoValues=isovalues, **properties)
+    return show_traced(source, view, DSMShow="Isosurfaces", **chosen, DSMIsoValues=isovalues, **properties)
 
 
 def show_surface(source, view):

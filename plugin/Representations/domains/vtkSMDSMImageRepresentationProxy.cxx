@@ -68,6 +68,12 @@ bool HasArray(vtkSMProperty* property)
   return false;
 }
 
+/// Returns whether samples lie in a plane, or on a line. Without an extent, it is inverted.
+bool IsFlat(const int extent[6])
+{
+  return extent[0] == extent[1] || extent[2] == extent[3] || extent[4] == extent[5];
+}
+
 /// While it lives, a value is true.
 class Flag
 {
@@ -111,10 +117,11 @@ void vtkSMDSMImageRepresentationProxy::SetAutomatic(
   }
 }
 
-bool vtkSMDSMImageRepresentationProxy::HasIsosurfaceArrays()
+bool vtkSMDSMImageRepresentationProxy::CanHaveIsosurfaces()
 {
   auto* const arrays = this->GetProperty(Array)->FindDomain<vtkSMArrayListDomain>();
-  return arrays && arrays->GetNumberOfStrings() > 0;
+  vtkPVDataInformation* const data = arrays ? arrays->GetInputDataInformation("Input") : nullptr;
+  return data && arrays->GetNumberOfStrings() > 0 && !IsFlat(data->GetExtent());
 }
 
 bool vtkSMDSMImageRepresentationProxy::ShowsIsosurfaces()
@@ -200,7 +207,7 @@ void vtkSMDSMImageRepresentationProxy::OnArray()
 bool vtkSMDSMImageRepresentationProxy::ChooseShown()
 {
   const bool isOther =
-    this->IsShownAutomatic && !this->ShowsIsosurfaces() && this->HasIsosurfaceArrays();
+    this->IsShownAutomatic && !this->ShowsIsosurfaces() && this->CanHaveIsosurfaces();
   return isOther && this->GetProperty(Show)->ResetToDomainDefaults();
 }
 

@@ -39,9 +39,9 @@ public:
   static void SetAutomatic(vtkSMProperty* property, const std::function<void()>& choose);
 
   /**
-   * Returns whether the data have any array that the isosurfaces may be of.
+   * Returns whether the data have any array that the isosurfaces may be of, and are not flat.
    */
-  bool HasIsosurfaceArrays();
+  bool CanHaveIsosurfaces();
 
   /**
    * Returns whether isosurfaces are shown, and not the outer surface.

@@ -19,7 +19,7 @@ int vtkSMDSMShowDomain::SetDefaultValues(vtkSMProperty* property, bool useUnchec
   {
     return this->Superclass::SetDefaultValues(property, useUncheckedValues);
   }
-  const int part = this->GetEntryValue(display->HasIsosurfaceArrays() ? 0 : 1);
+  const int part = this->GetEntryValue(display->CanHaveIsosurfaces() ? 0 : 1);
   if (useUncheckedValues)
   {
     vtkSMPropertyHelper unchecked(property);
