@@ -80,6 +80,7 @@ display = show_traced(flat, view)
 render(view)
 check(0.4 < display.DSMIsoValue < 0.9, f"a flat image: the isovalue is {display.DSMIsoValue}")
 check(display.DSMIsoValueAutomatic == 1, "which is automatic")
+check(display.DSMShow == "Surface", "its outer surface is shown")
 stand_in = display.DSMIsoValue
 display.DSMIsoValue = 0.25
 display.DSMIsoValue = stand_in
@@ -98,6 +99,24 @@ with Messages():
     render(view)
 check(display.DSMIsoValue == 0.0, f"data of cells only: the isovalue is {display.DSMIsoValue}")
 simple.Delete(cells)
+
+# Data without an array show their outer surface; once they have one, its isosurfaces, unless that was chosen.
+for chosen in (False, True):
+    empty = image_source("image.SetExtent(piece)\n")
+    display = show_traced(empty, view)
+    place_camera(view)
+    outside = render(view)
+    check(display.DSMShow == "Surface" and get_covered(outside).any(), "without an array, the outer surface is shown")
+    if chosen:
+        display.DSMShow = "Isosurfaces"
+        display.DSMShow = "Surface"
+    change(empty, "distance(piece)")
+    picture = render(view)
+    expected = "Surface" if chosen else "Isosurfaces"
+    check(display.DSMShow == expected, f"with an array: {display.DSMShow}")
+    picture = render(view)
+    check((picture == outside).all() == chosen and get_covered(picture).any(), "which is what is seen")
+    simple.Delete(empty)
 
 # Memory that is too small, and then raised.
 volume = simple.DSMSampleVolume(Dimensions=[96, 96, 96])
