@@ -48,6 +48,20 @@ simple.Render(view)
 check(get_selected(ball, "cells", everything)[0] == 0, "what cannot be picked is not selected")
 mesh.Pickable = 1
 
+# The outer surface of image data.
+simple.Hide(ball, view)
+image = simple.Wavelet(WholeExtent=[-8, 8] * 3)
+display = show_traced(image, view, DSMShow="Surface")
+for kind in ("cells", "points"):
+    results = []
+    for representation in (REPRESENTATION, "Surface"):
+        display.Representation = representation
+        simple.Render(view)
+        results.append(get_selected(image, kind, region))
+    check(results[0] == results[1] and results[0][0] > 3, f"as many {kind} of an image as of its Surface: {results}")
+simple.Delete(image)
+simple.Show(ball, view)
+
 # Translucent, with something else in the view, so that several ranks divide the space between them.
 cone = simple.Cone(Height=30.0, Radius=4.0, Resolution=40)
 show_surface(cone, view)

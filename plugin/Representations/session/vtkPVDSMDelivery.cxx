@@ -145,8 +145,7 @@ bool ShowsOthers(vtkView* view)
     }
     vtkPVDataRepresentation* shown =
       composite && composite->GetVisibility() ? composite->GetActiveRepresentation() : nullptr;
-    if (shown && shown->GetVisibility() && !shown->IsA("vtkPVDSMImageRepresentation") &&
-      !shown->IsA("vtkPVDSMGeometryRepresentation"))
+    if (shown && shown->GetVisibility() && !shown->IsA("vtkPVDSMGeometryRepresentation"))
     {
       return true;
     }
