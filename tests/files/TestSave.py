@@ -20,6 +20,9 @@ k, j, i = (axis.ravel() for axis in np.meshgrid(*cells, indexing='ij'))
 array = numpy_to_vtk((i + 100 * j + 10000 * k).astype('i4'), deep=True)
 array.SetName('cell')
 image.GetCellData().AddArray(array)
+array = numpy_to_vtk(np.stack([np.sin(i / 5.0), j / 30.0, k / 40.0], axis=1).astype('f4'), deep=True)
+array.SetName('cells')
+image.GetCellData().AddArray(array)
 """, EXTENT, in_parts=True)
 source.UpdatePipeline()
 
@@ -48,6 +51,22 @@ first = show_traced(source, view, DSMIsoArray=["POINTS", "f"], DSMIsoValues=[0.8
 place_camera(view, (1.0, 0.3, 0.3))
 expected = render(view)
 check(get_covered(expected).any(), "the image is drawn")
+OF_CELLS = [{"DSMIsoArray": ["CELLS", "cell"], "DSMIsoValues": [285000.0]},
+            {"DSMIsoArray": ["CELLS", "cells"], "DSMIsoComponent": 0, "DSMIsoValues": [0.5]},
+            {"DSMIsoArray": ["CELLS", "cells"], "DSMIsoComponent": 3, "DSMIsoValues": [1.4]}]
+
+
+def render_cells(display):
+    pictures = []
+    for properties in OF_CELLS:
+        for name, value in properties.items():
+            setattr(display, name, value)
+        pictures.append(render(view))
+        check(get_covered(pictures[-1]).mean() > 0.02, f"{properties} shows something")
+    return pictures
+
+
+expected_cells = render_cells(first)
 for name, properties in (("plain.h5", {}), ("pressed.h5", {"Compression": "Deflate"}),
                          ("zstd.h5", {"Compression": "Zstandard"})):
     said = save(name, **properties)
@@ -63,8 +82,11 @@ for name, properties in (("plain.h5", {}), ("pressed.h5", {"Compression": "Defla
     simple.Hide(source, view)
     shown = show_traced(reader, view, DSMIsoArray=["POINTS", "f"], DSMIsoValues=[0.8])
     check_equal(render(view), expected, f"{name}: the same picture", tolerance=0)
+    for picture, one in zip(render_cells(shown), expected_cells):
+        check_equal(picture, one, f"{name}: the same picture of cells", tolerance=0)
     simple.Hide(reader, view)
     simple.Show(source, view)
+first.DSMIsoArray, first.DSMIsoValues = ["POINTS", "f"], [0.8]
 check(os.path.getsize(os.path.join(FOLDER, "pressed.h5")) < os.path.getsize(os.path.join(FOLDER, "plain.h5")),
       "compressed files are smaller")
 

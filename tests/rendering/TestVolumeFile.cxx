@@ -6,8 +6,14 @@
 #include "vtkDSMScene.h"
 #include "vtkDSMVolumeMapper.h"
 #include "vtkDSMVolumeReader.h"
+#ifdef DSM_HAS_HDF5
+#include "vtkDSMVolumeWriter.h"
+#endif
 
 #include "vtkCamera.h"
+#include "vtkCellData.h"
+#include "vtkFloatArray.h"
+#include "vtkImageData.h"
 #include "vtkNew.h"
 #include "vtkRenderWindow.h"
 #include "vtkRenderer.h"
@@ -96,8 +102,8 @@ protected:
   }
 
   /// The colors of a picture of all that is new but the file.
-  std::vector<unsigned char> Render(
-    const std::string& name = "ball.raw", const char* array = "values", int mebibytes = 128)
+  std::vector<unsigned char> Render(const std::string& name = "ball.raw",
+    const char* array = "values", int mebibytes = 128, bool onCells = false)
   {
     vtkDSMVolumeReader::SetCacheMebibytes(0); // forgets what is there
     vtkDSMVolumeReader::SetCacheMebibytes(mebibytes);
@@ -115,6 +121,7 @@ protected:
     vtkNew<vtkDSMVolumeMapper> mapper;
     mapper->SetInputConnection(reader->GetOutputPort());
     mapper->SetIsoArray(array);
+    mapper->SetIsoArrayOnCells(onCells);
     mapper->SetIsoValue(0, 0.15);
     mapper->GetMemoryOptions()->SetNumberOfThreads(2);
     vtkNew<vtkVolume> volume;
@@ -144,6 +151,35 @@ TEST_F(VolumeFile, LaterPicturesReadWhatRaysMeet)
   EXPECT_GT(
     std::count_if(first.begin(), first.end(), [](unsigned char c) { return c != 0; }), 1000);
 }
+
+#ifdef DSM_HAS_HDF5
+TEST_F(VolumeFile, OfCellsReadsWhatRaysMeet)
+{
+  vtkNew<vtkImageData> image;
+  image->SetDimensions(Edge + 1, Edge + 1, Edge + 1);
+  vtkNew<vtkFloatArray> values;
+  values->SetName("ofCells");
+  values->SetNumberOfTuples(image->GetNumberOfCells());
+  std::ifstream ball(this->Folder / "ball.raw", std::ios::binary);
+  ball.read(reinterpret_cast<char*>(values->GetPointer(0)), FileBytes);
+  image->GetCellData()->AddArray(values);
+  vtkNew<vtkDSMVolumeWriter> writer;
+  writer->SetFileName((this->Folder / "cells.vtkhdf").c_str());
+  writer->SetInputData(image);
+  ASSERT_EQ(writer->Write(), 1);
+  const auto render = [this] { return this->Render("cells.vtkhdf", "ofCells", 128, true); };
+  vtkTypeUInt64 before = vtkDSMVolumeReader::GetBytesRead();
+  const auto first = render();
+  EXPECT_GE(vtkDSMVolumeReader::GetBytesRead() - before, FileBytes) << "all is looked through once";
+  before = vtkDSMVolumeReader::GetBytesRead();
+  EXPECT_EQ(render(), first);
+  const vtkTypeUInt64 read = vtkDSMVolumeReader::GetBytesRead() - before;
+  EXPECT_GT(read, 0u);
+  EXPECT_LT(read, FileBytes * 2 / 3) << "the ball is in the middle";
+  EXPECT_GT(
+    std::count_if(first.begin(), first.end(), [](unsigned char c) { return c != 0; }), 1000);
+}
+#endif
 
 /// Planes that can only be read as a whole, as of compressed slices: a brick needs as many as it has samples along z.
 TEST_F(VolumeFile, ChunksThatABrickNeedsTogetherAreReadOnce)

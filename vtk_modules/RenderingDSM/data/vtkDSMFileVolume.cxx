@@ -2,12 +2,14 @@
 #include "vtkDSMFileVolume.h"
 
 #include "DSMBricks/base/ByteHash.h"
+#include "DSMBricks/build/CellAverages.h"
 #include "DSMBricks/layout/DealBricks.h"
 #include "DSMCore/base/Error.h"
 #include "DSMCore/memory/FreedMemory.h"
 #include "DSMVolumeFiles/base/FileError.h"
 #include "DSMVolumeFiles/cache/ChunkCache.h"
 #include "DSMVolumeFiles/cache/FileBrickReader.h"
+#include "DSMVolumeFiles/cache/FileCells.h"
 #include "DSMVolumeFiles/cache/FileSamples.h"
 #include "DSMVolumeFiles/cache/ReadAhead.h"
 #include "DSMVolumeFiles/range/LookThrough.h"
@@ -201,15 +203,17 @@ vtkDSMFileVolume::Seat vtkDSMFileVolume::Describe(
   return seat;
 }
 
-vtkDSMFileVolume::vtkDSMFileVolume(std::shared_ptr<const vtkDSMFileValues> values, int component)
+vtkDSMFileVolume::vtkDSMFileVolume(
+  std::shared_ptr<const vtkDSMFileValues> values, int component, bool onCells)
   : Values(std::move(values))
   , Component(this->Values->GetArray().Components == 1 ? 0 : component)
+  , OnCells(onCells)
 {
 }
 
 std::unique_ptr<vtkDSMFileVolume> vtkDSMFileVolume::Find(dsm::Messenger& messenger,
   const bricks::LatticePlan::Lattice& lattice, const std::vector<Seat>& seats,
-  const vtkDSMFileValues* own, bool isFirst, int component)
+  const vtkDSMFileValues* own, bool isFirst, int component, bool onCells)
 {
   const auto getPlace = [&](const bricks::LatticePlan::Member& member)
   {
@@ -243,7 +247,7 @@ std::unique_ptr<vtkDSMFileVolume> vtkDSMFileVolume::Find(dsm::Messenger& messeng
     const auto file = own ? own->GetFile() : OpenAs(opening, options);
     const Index3 first(std::get<4>(place), std::get<5>(place), std::get<6>(place));
     const auto array = static_cast<std::size_t>(std::get<2>(place));
-    const Box box{ first, first + lattice.Points };
+    const Box box{ first, first + lattice.Points - Index3(onCells ? 1 : 0) };
     if (file->GetStamp() == std::get<3>(place) && array < file->GetArrays().size() &&
       bricks::Intersect(box, { Index3(0), file->GetArrays()[array].Grid.Samples }).GetCount() ==
         box.GetCount())
@@ -251,7 +255,7 @@ std::unique_ptr<vtkDSMFileVolume> vtkDSMFileVolume::Find(dsm::Messenger& messeng
       const int nextStep = seats[members.front().Piece].NextStep;
       volume.reset(new vtkDSMFileVolume(
         std::make_shared<vtkDSMFileValues>(file, array, std::get<1>(place), box, nextStep, options),
-        component));
+        component, onCells));
     }
   }
   catch (const std::exception&) // the pieces' own ranks read them then
@@ -343,7 +347,7 @@ std::unique_ptr<vtkDSMFileVolume> vtkDSMFileVolume::OpenCoarser(int level) const
     std::make_shared<vtkDSMFileValues>(file, static_cast<std::size_t>(found - arrays.begin()),
       this->Values->GetStep(), Box{ Index3(0), found->Grid.Samples }, vtkDSMFileValues::None,
       options),
-    this->Component));
+    this->Component, this->OnCells));
   // Not every file says how large a level's samples are.
   const glm::dmat4 toThis = this->GetIndexOf(*volume);
   for (int axis = 0; axis < 3; ++axis)
@@ -400,12 +404,29 @@ bool vtkDSMFileVolume::HasSteps() const
 std::shared_ptr<const dsm::BlockReader> vtkDSMFileVolume::CreateReader(
   const bricks::BrickLattice& lattice, bool scattered) const
 {
+  const auto& values = this->Values;
+  const vol::FileSamples::Part part{ values->GetBox(), this->Component, lattice.GetScalarType() };
+  vol::ChunkCache& cache = vol::ChunkCache::GetShared();
+  if (!this->OnCells)
+  {
+    return std::make_shared<vol::FileBrickReader>(lattice,
+      std::make_shared<vol::FileSamples>(
+        values->GetFile(), values->GetArrayNumber(), values->GetStep(), part, cache, scattered),
+      [values](std::vector<Box> boxes) { values->Prefetch(std::move(boxes)); });
+  }
+  const Box cells{ Index3(0), lattice.GetCells() };
+  const auto reader = std::make_shared<vol::FileCells>(
+    values->GetFile(), values->GetArrayNumber(), values->GetStep(), part, cache, scattered);
   return std::make_shared<vol::FileBrickReader>(lattice,
-    std::make_shared<vol::FileSamples>(this->Values->GetFile(), this->Values->GetArrayNumber(),
-      this->Values->GetStep(),
-      vol::FileSamples::Part{ this->Values->GetBox(), this->Component, lattice.GetScalarType() },
-      vol::ChunkCache::GetShared(), scattered),
-    [values = this->Values](std::vector<Box> boxes) { values->Prefetch(std::move(boxes)); });
+    std::make_shared<bricks::CellAverages>(reader, cells),
+    [values, cells](std::vector<Box> boxes)
+    {
+      for (Box& box : boxes) // of points
+      {
+        box = bricks::Intersect({ box.Min - Index3(1), box.Max }, cells);
+      }
+      values->Prefetch(std::move(boxes));
+    });
 }
 
 std::uint64_t vtkDSMFileVolume::GetKey(const bricks::BrickLattice& lattice) const
@@ -428,7 +449,7 @@ std::shared_ptr<const dsm::BlockReader> vtkDSMFileVolume::CreateSteppingReader(
     const auto values = std::make_shared<vtkDSMFileValues>(this->Values->GetFile(),
       this->Values->GetArrayNumber(), this->Values->GetNextStep(), this->Values->GetBox(),
       vtkDSMFileValues::None, this->Values->GetOptions());
-    const vtkDSMFileVolume volume(values, this->Component);
+    const vtkDSMFileVolume volume(values, this->Component, this->OnCells);
     vol::ReadAhead::Way way;
     way.Reader = volume.CreateReader(lattice, true);
     way.IsSame = [volume, lattice, digests, differ = std::vector<bool>()](dsm::BlockId id) mutable
@@ -470,7 +491,7 @@ dsm::BlockDirectory vtkDSMFileVolume::CreateDirectory(
 
 std::vector<std::byte> vtkDSMFileVolume::ReadIndex(const bricks::BrickLattice& lattice) const
 {
-  if (this->Values->GetArray().Components != 1 || !this->IsWhole())
+  if (this->Values->GetArray().Components != 1 || this->OnCells || !this->IsWhole())
   {
     return {};
   }

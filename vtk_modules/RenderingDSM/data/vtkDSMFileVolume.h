@@ -21,7 +21,8 @@
 class vtkAbstractArray;
 class vtkDataSet;
 
-/// A lattice whose samples are all in one file, so that any rank can cut any of its bricks at any time. What
+/// A lattice whose samples are all in one file, so that any rank can cut any of its bricks at any time: values of points,
+/// or of cells, of which bricks have the means at points. What
 /// says that it is collective is for all ranks; failures are dsm::Error, the same on every rank.
 class vtkDSMFileVolume
 {
@@ -45,10 +46,11 @@ public:
 
   /// Collective. Null, on all ranks, where the members' values are not all of one array of one file, or a rank
   /// cannot open it. `seats`: of all pieces of all ranks; `own`: the values of this rank's first member, or null;
-  /// `isFirst`: it is the lattice's first member, and the others open the file by its name.
+  /// `isFirst`: it is the lattice's first member, and the others open the file by its name. `onCells`: the values are
+  /// those of cells.
   static std::unique_ptr<vtkDSMFileVolume> Find(dsm::Messenger& messenger,
     const bricks::LatticePlan::Lattice& lattice, const std::vector<Seat>& seats,
-    const vtkDSMFileValues* own, bool isFirst, int component);
+    const vtkDSMFileValues* own, bool isFirst, int component, bool onCells);
 
   /// Levels of detail that the file has below the one that was opened; 0 where the lattice is but a part of the
   /// file's samples.
@@ -59,7 +61,8 @@ public:
   /// Returns the bytes that the cache of chunks needs for one brick.
   std::uint64_t CountChunkBytesOfBrick(const bricks::BrickLattice& lattice) const
   {
-    return vol::ChunkCache::CountBytesTogether(this->Values->GetArray(), lattice.GetEdge() + 1);
+    return vol::ChunkCache::CountBytesTogether(
+      this->Values->GetArray(), lattice.GetEdge() + (this->OnCells ? 2 : 1));
   }
   /// Returns the bytes of all samples of the file's array.
   std::uint64_t CountBytes() const
@@ -69,8 +72,11 @@ public:
              bricks::Box{ bricks::Index3(0), array.Grid.Samples }.GetCount()) *
       array.GetSampleBytes();
   }
-  /// Samples along each axis.
-  bricks::Index3 GetPoints() const { return this->Values->GetBox().GetSize(); }
+  /// Points along each axis.
+  bricks::Index3 GetPoints() const
+  {
+    return this->Values->GetBox().GetSize() + bricks::Index3(this->OnCells ? 1 : 0);
+  }
   /// From indices of another level's samples to those of this one's.
   glm::dmat4 GetIndexOf(const vtkDSMFileVolume& other) const;
 
@@ -106,7 +112,7 @@ public:
     const vtkDSMFileValues* own, int threads, const std::function<void(double)>& progress) const;
 
 private:
-  vtkDSMFileVolume(std::shared_ptr<const vtkDSMFileValues> values, int component);
+  vtkDSMFileVolume(std::shared_ptr<const vtkDSMFileValues> values, int component, bool onCells);
 
   /// Collective. Null, on all ranks, where any has null.
   static std::unique_ptr<vtkDSMFileVolume> KeepIfEverywhere(
@@ -133,6 +139,7 @@ private:
 
   std::shared_ptr<const vtkDSMFileValues> Values; ///< values of the whole lattice
   int Component;                                  ///< vtkDSMImagePiece::Magnitude for the magnitude
+  bool OnCells;
 };
 
 #endif

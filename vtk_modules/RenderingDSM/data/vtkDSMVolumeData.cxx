@@ -446,16 +446,16 @@ void vtkDSMVolumeData::PublishLattice(Publication& published, std::size_t number
   }
   published.Bricks.back() = field;
   const std::string what = "the " + purpose + " '" + choice.Name + "'";
-  // Values of points; what colors by cells or by colors themselves is cut by the ranks that have it.
-  const bool canBeRead =
-    !field->Lattice.HasCellMask() && !choice.OnCells && choice.Component != vtkDSMImagePiece::Color;
+  // Values at points; what colors by cells or by colors themselves is cut by the ranks that have it.
+  const bool canBeRead = !field->Lattice.HasCellMask() && !field->Lattice.IsOfCells() &&
+    choice.Component != vtkDSMImagePiece::Color;
   if (canBeRead)
   {
     const bricks::LatticePlan::Lattice& lattice = this->Plan.GetLattices()[number];
     const vtkDSMFileValues* const own = this->FindFileValues(number, choice);
     const bool isFirst = this->FindOwn(lattice.Members.front());
-    if (std::shared_ptr<const vtkDSMFileVolume> file =
-          vtkDSMFileVolume::Find(messenger, lattice, seats, own, isFirst && own, choice.Component))
+    if (std::shared_ptr<const vtkDSMFileVolume> file = vtkDSMFileVolume::Find(
+          messenger, lattice, seats, own, isFirst && own, choice.Component, choice.OnCells))
     {
       part.Digests = {};
       this->PublishFile(*file, false, own, what, progress, part, std::move(old));
