@@ -109,6 +109,18 @@ simple.Render(view)
 check(get_selected(source, "cells", everything)[0] == 0, "what cannot be picked is not selected")
 traced.Pickable = 1
 
+# The isosurface of an array of cells is selected as that of their means.
+simple.Hide(source, view)
+in_cells = simple.PointDatatoCellData(source)
+means = simple.CellDatatoPointData(in_cells)
+results = []
+for data, association in ((in_cells, "CELLS"), (means, "POINTS")):
+    show_traced(data, view, DSMIsoArray=[association, "f"], DSMIsoValues=[0.8])
+    simple.Render(view)
+    results.append([get_selected(data, kind, region) for kind in ("cells", "points")])
+    simple.Hide(data, view)
+check(results[0][0][0] > 10 and results[0] == results[1], f"voxels of an isosurface of cells are selected: {results}")
+
 # Another filter may have the source made again, with more ghost cells, in which cells have other numbers.
 simple.Hide(source, view)
 parts = simple.Wavelet()

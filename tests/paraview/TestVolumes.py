@@ -169,6 +169,44 @@ else:
 """
 compare_cells("CellsOnOneRank", image_source(CELLS.format(place=ONE, ghosts="")))
 
+# Values change beside what another rank has.
+source = image_source(WHOLE, in_parts=True)
+show_traced(source, view, DSMIsoArray=["CELLS", "c"], DSMIsoValues=[0.7])
+place_camera(view)
+before = render(view)
+for layer in (16, 15, 8):
+    source.Script = IMAGE_SOURCE.format(extent=", ".join(["0, 24"] * 3), script=WHOLE).replace(
+        "add_cells(values, 'c')", f"add_cells(np.where({layer} == np.stack((i, j, k)).min(axis=0), 0.5, values), 'c')")
+    check((render(view, f"CellsChanged{layer}") != before).any(), "other values are shown")
+simple.Delete(source)
+
+# Blocks of cells that continue one another are one volume.
+CELL_BLOCKS = """
+from vtkmodules.vtkCommonDataModel import vtkImageData
+output = self.GetOutputDataObject(0)
+bounds = [0, 7, 16, 24]
+for block in range(3):
+    if {all} or block % ranks == rank:
+        part = [bounds[block], bounds[block + 1], 0, 24, 0, 24] if not {all} else whole
+        child = vtkImageData()
+        child.SetExtent(part)
+        array = numpy_to_vtk(distance([part[0], part[1] - 1, 0, 23, 0, 23]), deep=True); array.SetName('c')
+        child.GetCellData().AddArray(array)
+        output.SetBlock(block, child)
+        if {all}:
+            break
+"""
+pictures = []
+for is_one in (0, 1):
+    source = simple.ProgrammableSource(OutputDataSetType="vtkMultiblockDataSet")
+    source.Script = IMAGE_SOURCE.format(extent=", ".join(["0, 24"] * 3), script=CELL_BLOCKS.format(all=is_one)).replace(
+        "request.Get(vtkStreamingDemandDrivenPipeline.UPDATE_EXTENT(), piece)", "")
+    show_traced(source, view, DSMIsoArray=["CELLS", "c"], DSMIsoValues=[0.7])
+    place_camera(view)
+    pictures.append(render(view, f"CellsInBlocks{is_one}"))
+    simple.Delete(source)
+check_equal(pictures[0], pictures[1], "blocks of cells look like one", tolerance=0)
+
 source = image_source(WHOLE)
 display = show_traced(source, view)
 place_camera(view)
