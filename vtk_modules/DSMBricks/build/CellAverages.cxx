@@ -67,6 +67,26 @@ T Round(double value)
   }
 }
 
+/// Four cells beside one another, in the order of vtkStructuredData::GetPointCells: first of them all the one before.
+struct Around
+{
+  const double* Cells[4];
+};
+
+/// Cells that do not count have the value 0.
+inline double Add(const Around& around, double weight)
+{
+  double sum = 0.0;
+  for (int side = 0; side < 2; ++side)
+  {
+    for (const double* const cell : around.Cells)
+    {
+      sum += weight * cell[side];
+    }
+  }
+  return sum;
+}
+
 } // namespace
 
 CellAverages::CellAverages(std::shared_ptr<const CellReader> piece, const Box& cells)
@@ -220,24 +240,30 @@ void CellAverages::Average(const Box& points, std::byte* out) const
     }
   };
 
-  std::vector<double> weights(pointCount);
-  double weightOf[9] = {};
-  for (int number = 1; number <= 8; ++number)
+  // Where all cells count, each has an eighth.
+  const bool isWhole =
+    std::all_of(counts.begin(), counts.end(), [](std::uint8_t one) { return one != 0; });
+  std::vector<double> weights(isWhole ? 0 : pointCount);
+  if (!isWhole)
   {
-    weightOf[number] = 1.0 / number;
-  }
-  forEachRow(
-    [&](std::size_t cell, std::size_t point)
+    double weightOf[9] = {};
+    for (int number = 1; number <= 8; ++number)
     {
-      const std::uint8_t* const near = &counts[cell];
-      const std::uint8_t* const far = near + sliceOfCells;
-      for (std::size_t x = 0; x < rowOfPoints; ++x)
+      weightOf[number] = 1.0 / number;
+    }
+    forEachRow(
+      [&](std::size_t cell, std::size_t point)
       {
-        const std::size_t y = x + rowOfCells;
-        weights[point + x] = weightOf[near[x] + near[x + 1] + near[y] + near[y + 1] + far[x] +
-          far[x + 1] + far[y] + far[y + 1]];
-      }
-    });
+        const std::uint8_t* const near = &counts[cell];
+        const std::uint8_t* const far = near + sliceOfCells;
+        for (std::size_t x = 0; x < rowOfPoints; ++x)
+        {
+          const std::size_t y = x + rowOfCells;
+          weights[point + x] = weightOf[near[x] + near[x + 1] + near[y] + near[y + 1] + far[x] +
+            far[x + 1] + far[y] + far[y + 1]];
+        }
+      });
+  }
 
   const int components = this->Piece->CountComponents();
   std::vector<T> averages(pointCount * static_cast<std::size_t>(components));
@@ -270,29 +296,24 @@ void CellAverages::Average(const Box& points, std::byte* out) const
       }
     }
     T* const result = &averages[pointCount * static_cast<std::size_t>(component)];
-    forEachRow(
-      [&](std::size_t cell, std::size_t point)
-      {
-        // Cells are added in the order of vtkStructuredData::GetPointCells. Those that do not count add 0.
-        const double* const yz = &values[cell]; // (y - 1, z - 1)
-        const double* const z = yz + rowOfCells;
-        const double* const y = yz + sliceOfCells;
-        const double* const at = y + rowOfCells;
-        for (std::size_t x = 0; x < rowOfPoints; ++x)
+    const auto addAll = [&](const auto& getWeight)
+    {
+      forEachRow(
+        [&](std::size_t cell, std::size_t point)
         {
-          const double weight = weights[point + x];
-          double sum = 0.0;
-          sum += weight * at[x];
-          sum += weight * y[x];
-          sum += weight * yz[x];
-          sum += weight * z[x];
-          sum += weight * at[x + 1];
-          sum += weight * y[x + 1];
-          sum += weight * yz[x + 1];
-          sum += weight * z[x + 1];
-          result[point + x] = Round<T>(sum);
-        }
-      });
+          const double* const yz = &values[cell]; // (y - 1, z - 1)
+          const double* const z = yz + rowOfCells;
+          const double* const y = yz + sliceOfCells;
+          const double* const at = y + rowOfCells;
+          T* const row = result + point;
+          for (std::size_t x = 0; x < rowOfPoints; ++x)
+          {
+            row[x] = Round<T>(Add({ { at + x, y + x, yz + x, z + x } }, getWeight(point + x)));
+          }
+        });
+    };
+    isWhole ? addAll([](std::size_t) { return 0.125; })
+            : addAll([&](std::size_t point) { return weights[point]; });
   }
   this->Piece->Combine(pointCount, reinterpret_cast<const std::byte*>(averages.data()), out);
 }
