@@ -169,6 +169,18 @@ else:
 """
 compare_cells("CellsOnOneRank", image_source(CELLS.format(place=ONE, ghosts="")))
 
+# Hidden cells show nothing, and have no part in the means.
+HIDDEN = "ghost[(i > 16) & (k > 10)] = 32; values[ghost > 0] = 5.0"
+pictures = []
+for name, ghosts in (("CellsWhole", ""), ("CellsHidden", HIDDEN)):
+    source = image_source(CELLS.format(place="image.SetExtent(piece)", ghosts=ghosts), in_parts=True)
+    show_traced(source, view, DSMIsoArray=["CELLS", "c"], DSMIsoValues=[0.7])
+    place_camera(view)
+    pictures.append(render(view, name))
+    simple.Delete(source)
+share = (abs(pictures[0] - pictures[1]).max(axis=2) > 8).sum() / get_covered(pictures[0]).sum()
+check(0.1 < share < 0.5, f"where cells are hidden, the inside is seen: {share:.2f} of the pixels")
+
 # Values change beside what another rank has.
 source = image_source(WHOLE, in_parts=True)
 show_traced(source, view, DSMIsoArray=["CELLS", "c"], DSMIsoValues=[0.7])
