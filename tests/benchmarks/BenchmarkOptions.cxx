@@ -6,7 +6,7 @@ void BenchmarkOptions::AddTo(CLI::App& app)
   app
     .add_option("--volume", this->Volume,
       "sphere:N:TYPE, rm:N:TYPE (N^3 samples of char, uchar, short, ushort, int, uint, long, "
-      "ulong, float, double), or a .vti "
+      "ulong, float, double; with :rectilinear, planes in tables), or a .vti "
       "file, or a file that stays where it is (HDF5, Zarr, ...), with a cache of --memory")
     ->capture_default_str();
   app.add_option("--isovalue", this->Isovalues, "isovalues, with commas (default 0.5)")

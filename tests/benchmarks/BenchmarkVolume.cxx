@@ -31,6 +31,7 @@ struct Input
   bricks::Index3 Points;
   bricks::ScalarType Type;
   glm::dmat4 IndexToWorld{ 1.0 };
+  std::shared_ptr<const bricks::GridPlanes> Planes;
   std::function<std::shared_ptr<const bricks::VoxelSource>(const bricks::Box& cells)> CreatePiece;
 };
 
@@ -108,9 +109,12 @@ Input GenerateVolume(const std::string& description)
   std::string type;
   std::getline(stream, kind, ':');
   std::getline(stream, size, ':');
-  std::getline(stream, type);
+  std::getline(stream, type, ':');
+  std::string steps;
+  std::getline(stream, steps);
   const int points = std::atoi(size.c_str());
-  if ((kind != "sphere" && kind != "rm") || points < 2)
+  if ((kind != "sphere" && kind != "rm") || points < 2 ||
+    (!steps.empty() && steps != "rectilinear"))
   {
     throw dsm::Error("\"" + description +
       "\" is neither a file that can be read nor a sample volume such as sphere:256:float or "
@@ -119,11 +123,20 @@ Input GenerateVolume(const std::string& description)
   const bricks::SampleVolume volume(
     kind == "sphere" ? bricks::SampleVolume::Kind::Sphere : bricks::SampleVolume::Kind::MixingLayer,
     bricks::Index3(points));
-  Input input{ volume.GetPoints(), ToScalarType(type), glm::dmat4(1.0), {} };
+  Input input{ volume.GetPoints(), ToScalarType(type), glm::dmat4(1.0), {}, {} };
+  bricks::GridPlanes::Coordinates coordinates;
   for (int axis = 0; axis < 3; ++axis)
   {
     input.IndexToWorld[axis][axis] = volume.GetSpacing();
     input.IndexToWorld[3][axis] = volume.GetOrigin()[axis];
+    for (int plane = 0; plane < points; ++plane)
+    {
+      coordinates[axis].push_back(plane);
+    }
+  }
+  if (!steps.empty())
+  {
+    input.Planes = std::make_shared<bricks::GridPlanes>(coordinates);
   }
   input.CreatePiece = [volume, scalars = input.Type](const bricks::Box& cells)
   { return std::make_shared<bricks::SampleVolumeSource>(volume, cells, scalars); };
@@ -155,7 +168,7 @@ Input ReadVolume(const std::string& file, int rank, int ranks)
   double origin[3];
   image->TransformIndexToPhysicalPoint(whole[0], whole[2], whole[4], origin);
   Input input{ bricks::Index3(whole[1], whole[3], whole[5]) - first + bricks::Index3(1),
-    ToScalarType(scalars), glm::dmat4(1.0), {} };
+    ToScalarType(scalars), glm::dmat4(1.0), {}, {} };
   for (int axis = 0; axis < 3; ++axis)
   {
     for (int row = 0; row < 3; ++row)
@@ -223,7 +236,9 @@ rt::LatticeIsosurface PublishBenchmarkVolume(const std::string& description, int
   settings.IsConcurrent = true;
   rt::LatticeIsosurface object;
   object.Field.SetIndexToWorld(input.IndexToWorld);
-  object.Field.Voxels =
+  const auto field =
     bricks::PublishVolume(description, lattice, pieces, store, messenger, settings);
+  field->Planes = input.Planes;
+  object.Field.Voxels = field;
   return object;
 }

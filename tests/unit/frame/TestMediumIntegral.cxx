@@ -73,8 +73,14 @@ protected:
   void Add(const std::function<double(const glm::dvec3&)>& values, const Nodes& nodes,
     Blending blending = Blending::Composite, const rt::MediumLook& look = {})
   {
-    const rt::LatticeField field =
+    rt::LatticeField field =
       FunctionVolume::Publish(Points, values, this->Messenger, this->Store).Field;
+    if (this->Planes)
+    {
+      const auto stretched = std::make_shared<bricks::VoxelField>(*field.Voxels);
+      stretched->Planes = this->Planes;
+      field.Voxels = stretched;
+    }
     const double first = nodes.front().first;
     const double last = nodes.back().first;
     std::vector<glm::dvec4> samples;
@@ -201,6 +207,8 @@ protected:
   }
 
   rt::Scene World;
+  /// Where planes between cells are; null: at equal distances.
+  std::shared_ptr<const bricks::GridPlanes> Planes;
 
 private:
   struct Part
@@ -331,8 +339,9 @@ private:
     return density * glm::dvec4(lit, amount.w);
   }
 
-  static double Interpolate(const std::vector<double>& values, const glm::dvec3& place)
+  double Interpolate(const std::vector<double>& values, const glm::dvec3& at) const
   {
+    const glm::dvec3 place = this->Planes ? this->Planes->ToIndex(at) : at;
     const glm::ivec3 cell = glm::min(glm::ivec3(place), glm::ivec3(Points - 2));
     const glm::dvec3 within = place - glm::dvec3(cell);
     double sum = 0.0;
@@ -429,6 +438,33 @@ rt::MediumLook GetShaded()
   look.Surface.Specular = 0.3f;
   look.Surface.SpecularPower = 12.0f;
   return look;
+}
+
+TEST_F(TestMediumIntegral, OfRectilinearGrids)
+{
+  bricks::GridPlanes::Coordinates coordinates;
+  for (int plane = 0; plane < Points; ++plane)
+  {
+    coordinates[0].push_back(std::pow(1.12, plane));
+    coordinates[1].push_back(plane + 0.45 * std::sin(5.0 * plane));
+    coordinates[2].push_back(-std::pow(0.8, plane));
+  }
+  this->Planes = std::make_shared<bricks::GridPlanes>(coordinates);
+  for (const Blending blending :
+    { Blending::Composite, Blending::Maximum, Blending::Minimum, Blending::Sum })
+  {
+    for (const bool isNoise : { false, true })
+    {
+      if (isNoise && (blending == Blending::Maximum || blending == Blending::Minimum))
+      {
+        continue; // the sum's samples miss extrema in thin cells
+      }
+      this->Add(isNoise ? GetNoise : GetWaves, Fog, blending);
+      EXPECT_LT(this->Compare(GetPerspective()), 1.0) << static_cast<int>(blending) << isNoise;
+      EXPECT_LT(this->Compare(GetAlongZ()), 1.0) << static_cast<int>(blending) << isNoise;
+      this->Clear();
+    }
+  }
 }
 
 TEST_F(TestMediumIntegral, OfShadedMedia)
