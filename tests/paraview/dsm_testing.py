@@ -222,11 +222,11 @@ def add(image, values, name='f'):
 """
 
 
-def image_source(script, extent=(0, 24, 0, 24, 0, 24), in_parts=False):
+def image_source(script, extent=(0, 24, 0, 24, 0, 24), in_parts=False, kind="vtkImageData"):
     """An image data source: `script` fills `image` with its `piece` of the whole extent. In parts: each rank is asked
     for one of its own; else all are asked for the whole."""
     text = ", ".join(str(value) for value in extent)
-    source = simple.ProgrammableSource(OutputDataSetType="vtkImageData")
+    source = simple.ProgrammableSource(OutputDataSetType=kind)
     source.ScriptRequestInformation = IMAGE_SOURCE_INFORMATION % text + (IMAGE_SOURCE_IN_PARTS if in_parts else "")
     source.Script = IMAGE_SOURCE.format(extent=text, script=script)
     return source

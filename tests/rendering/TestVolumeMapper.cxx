@@ -11,14 +11,18 @@
 #include "vtkCamera.h"
 #include "vtkCellData.h"
 #include "vtkCellDataToPointData.h"
+#include "vtkDoubleArray.h"
+#include "vtkExtractVOI.h"
 #include "vtkLookupTable.h"
 #include "vtkMath.h"
 #include "vtkMatrix4x4.h"
+#include "vtkMultiBlockDataSet.h"
 #include "vtkNew.h"
 #include "vtkPiecewiseFunction.h"
 #include "vtkPlane.h"
 #include "vtkPointDataToCellData.h"
 #include "vtkProperty.h"
+#include "vtkRectilinearGrid.h"
 #include "vtkRenderWindow.h"
 #include "vtkTable.h"
 #include "vtkTestErrorObserver.h"
@@ -154,6 +158,44 @@ TEST_F(VolumeMapper, MediaOfCellsAreThoseOfTheirMeansAtPoints)
   mapper->SetScalarModeToUseCellData();
   mapper->SetOpacityArrayOnCells(true);
   EXPECT_EQ(draw(ball.Cells), ofPoints);
+}
+
+TEST_F(VolumeMapper, ShowsImageDataBesideARectilinearGrid)
+{
+  this->Place();
+  const vtkSmartPointer<vtkImageData> ball = MakeBall();
+  int extent[6];
+  ball->GetExtent(extent);
+  const int middle = (extent[4] + extent[5]) / 2;
+  vtkNew<vtkExtractVOI> lower;
+  lower->SetInputData(ball);
+  lower->SetVOI(extent[0], extent[1], extent[2], extent[3], extent[4], middle);
+  lower->Update();
+  vtkNew<vtkExtractVOI> upper;
+  upper->SetInputData(ball);
+  upper->SetVOI(extent[0], extent[1], extent[2], extent[3], middle, extent[5]);
+  upper->Update();
+  vtkNew<vtkRectilinearGrid> grid;
+  grid->SetExtent(upper->GetOutput()->GetExtent());
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    vtkNew<vtkDoubleArray> coordinates;
+    const int* const own = grid->GetExtent();
+    for (int plane = own[2 * axis]; plane <= own[2 * axis + 1]; ++plane)
+    {
+      coordinates->InsertNextValue(ball->GetOrigin()[axis] + plane * ball->GetSpacing()[axis]);
+    }
+    void (vtkRectilinearGrid::*const set[3])(
+      vtkDataArray*) = { &vtkRectilinearGrid::SetXCoordinates, &vtkRectilinearGrid::SetYCoordinates,
+      &vtkRectilinearGrid::SetZCoordinates };
+    (grid.GetPointer()->*set[axis])(coordinates);
+  }
+  grid->GetPointData()->ShallowCopy(upper->GetOutput()->GetPointData());
+  vtkNew<vtkMultiBlockDataSet> both;
+  both->SetBlock(0, lower->GetOutput());
+  both->SetBlock(1, grid);
+  this->Mapper->SetInputDataObject(both);
+  ExpectAlike(this->RenderTraced(), this->RenderTriangles());
 }
 
 TEST_F(VolumeMapper, ClipsAsVtkClipsTriangles)

@@ -3,6 +3,7 @@
 
 #include "vtkDSMVolumeMapper.h"
 #include "vtkPVDSMExportLook.h"
+#include "vtkPVDSMGridPlace.h"
 
 #include "vtkCellArray.h"
 #include "vtkCellData.h"
@@ -14,12 +15,13 @@
 #include "vtkIdList.h"
 #include "vtkIdTypeArray.h"
 #include "vtkImageData.h"
-#include "vtkMatrix3x3.h"
 #include "vtkMultiBlockDataSet.h"
 #include "vtkNew.h"
 #include "vtkPointData.h"
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
+#include "vtkRectilinearGrid.h"
+#include "vtkRectilinearSynchronizedTemplates.h"
 #include "vtkScalarsToColors.h"
 #include "vtkStructuredData.h"
 #include "vtkUnsignedCharArray.h"
@@ -86,32 +88,52 @@ CellBox Grow(CellBox box, const int points[3])
 }
 
 /// The samples of the points of some cells.
-vtkSmartPointer<vtkImageData> CutOut(vtkImageData* image, const CellBox& cells)
+vtkSmartPointer<vtkDataSet> CutOut(vtkDataSet* image, const CellBox& cells)
 {
-  auto box = vtkSmartPointer<vtkImageData>::New();
-  box->CopyStructure(image);
+  const int* const whole = vtkPVDSMGridPlace::GetExtent(image);
   int extent[6];
   for (int axis = 0; axis < 3; ++axis)
   {
-    extent[2 * axis] = image->GetExtent()[2 * axis] + cells.First[axis];
-    extent[2 * axis + 1] = image->GetExtent()[2 * axis] + cells.Last[axis];
+    extent[2 * axis] = whole[2 * axis] + cells.First[axis];
+    extent[2 * axis + 1] = whole[2 * axis] + cells.Last[axis];
   }
+  if (auto* const grid = vtkRectilinearGrid::SafeDownCast(image))
+  {
+    auto box = vtkSmartPointer<vtkRectilinearGrid>::New();
+    box->SetExtent(extent);
+    const auto cut = [&](vtkDataArray* all, int axis)
+    {
+      vtkNew<vtkDoubleArray> some;
+      for (int plane = cells.First[axis]; plane <= cells.Last[axis]; ++plane)
+      {
+        some->InsertNextValue(all->GetComponent(plane, 0));
+      }
+      return vtkSmartPointer<vtkDataArray>(some);
+    };
+    box->SetXCoordinates(cut(grid->GetXCoordinates(), 0));
+    box->SetYCoordinates(cut(grid->GetYCoordinates(), 1));
+    box->SetZCoordinates(cut(grid->GetZCoordinates(), 2));
+    return box;
+  }
+  auto box = vtkSmartPointer<vtkImageData>::New();
+  box->CopyStructure(image);
   box->SetExtent(extent);
   return box;
 }
 
 /// `use(number, place)`: of each sample of a box, in its order, where it is in an array of the image.
 template <class Use>
-void ForEachSample(vtkImageData* image, vtkImageData* box, const Use& use)
+void ForEachSample(vtkDataSet* image, vtkDataSet* box, const Use& use)
 {
-  const int* const extent = box->GetExtent();
+  const int* const extent = vtkPVDSMGridPlace::GetExtent(box);
   vtkIdType number = 0;
   for (int z = extent[4]; z <= extent[5]; ++z)
   {
     for (int y = extent[2]; y <= extent[3]; ++y)
     {
       int sample[3] = { extent[0], y, z };
-      const vtkIdType row = image->ComputePointId(sample);
+      const vtkIdType row =
+        vtkStructuredData::ComputePointIdForExtent(vtkPVDSMGridPlace::GetExtent(image), sample);
       for (int x = extent[0]; x <= extent[1]; ++x)
       {
         use(number++, row + x - extent[0]);
@@ -124,7 +146,7 @@ void ForEachSample(vtkImageData* image, vtkImageData* box, const Use& use)
 class CellMean
 {
 public:
-  CellMean(vtkImageData* image, vtkDataArray* array)
+  CellMean(vtkDataSet* image, vtkDataArray* array)
     : Image(image)
     , Array(array)
     , HasGhosts(image->GetCellGhostArray() || image->GetPointGhostArray())
@@ -136,7 +158,7 @@ public:
     for (vtkIdType number = this->HasGhosts ? this->Cells->GetNumberOfIds() : 0; number-- > 0;)
     {
       const vtkIdType cell = this->Cells->GetId(number);
-      if (!this->Image->IsCellVisible(cell))
+      if (!this->IsVisible(cell))
       {
         this->Cells->DeleteId(cell);
       }
@@ -156,7 +178,14 @@ public:
   }
 
 private:
-  vtkImageData* Image;
+  bool IsVisible(vtkIdType cell) const
+  {
+    auto* const grid = vtkRectilinearGrid::SafeDownCast(this->Image);
+    return grid ? grid->IsCellVisible(cell) != 0
+                : static_cast<vtkImageData*>(this->Image)->IsCellVisible(cell) != 0;
+  }
+
+  vtkDataSet* Image;
   vtkDataArray* Array;
   bool HasGhosts;
   vtkNew<vtkIdList> Cells;
@@ -171,7 +200,7 @@ struct IsoArray
 
 /// One component, or the magnitude, as double: differences of unsigned integers would wrap around.
 vtkSmartPointer<vtkDoubleArray> GetValues(
-  vtkImageData* image, vtkImageData* box, const IsoArray& array, int component)
+  vtkDataSet* image, vtkDataSet* box, const IsoArray& array, int component)
 {
   auto values = vtkSmartPointer<vtkDoubleArray>::New();
   values->SetName("values");
@@ -204,7 +233,7 @@ vtkSmartPointer<vtkDoubleArray> GetValues(
   return values;
 }
 
-IsoArray FindIsoArray(vtkDSMVolumeMapper* mapper, vtkImageData* image)
+IsoArray FindIsoArray(vtkDSMVolumeMapper* mapper, vtkDataSet* image)
 {
   const std::string name = mapper->GetIsoArray();
   const auto find = [&](vtkDataSetAttributes* data)
@@ -216,7 +245,7 @@ IsoArray FindIsoArray(vtkDSMVolumeMapper* mapper, vtkImageData* image)
 }
 
 /// The array of points or cells that colors the surface; null without any.
-vtkDataArray* FindColors(vtkDSMVolumeMapper* mapper, vtkImageData* image, bool onCells)
+vtkDataArray* FindColors(vtkDSMVolumeMapper* mapper, vtkDataSet* image, bool onCells)
 {
   if (!mapper->GetScalarVisibility() || mapper->GetColorArrayOnCells() != onCells)
   {
@@ -256,10 +285,10 @@ bool MayHoldAny(vtkDoubleArray* values, const std::vector<double>& isovalues)
 }
 
 /// The triangles in the cells of a box; null where there are none.
-vtkSmartPointer<vtkPolyData> Extract(vtkDSMVolumeMapper* mapper, vtkImageData* image,
+vtkSmartPointer<vtkPolyData> Extract(vtkDSMVolumeMapper* mapper, vtkDataSet* image,
   const IsoArray& array, const std::vector<double>& isovalues, const CellBox& cells, bool colored)
 {
-  const vtkSmartPointer<vtkImageData> box = CutOut(image, cells);
+  const vtkSmartPointer<vtkDataSet> box = CutOut(image, cells);
   if (!mapper->MayHaveSurface(box->GetBounds(), isovalues))
   {
     return nullptr;
@@ -270,11 +299,8 @@ vtkSmartPointer<vtkPolyData> Extract(vtkDSMVolumeMapper* mapper, vtkImageData* i
     return nullptr;
   }
   box->GetPointData()->SetScalars(values);
-  vtkNew<vtkFlyingEdges3D> edges;
-  edges->SetInputData(box);
-  edges->SetComputeNormals(colored);
-  edges->ComputeScalarsOff();
-  if (vtkDataArray* colors = colored ? FindColors(mapper, image, false) : nullptr)
+  vtkDataArray* const colors = colored ? FindColors(mapper, image, false) : nullptr;
+  if (colors)
   {
     vtkSmartPointer<vtkDataArray> some;
     some.TakeReference(colors->NewInstance());
@@ -284,65 +310,66 @@ vtkSmartPointer<vtkPolyData> Extract(vtkDSMVolumeMapper* mapper, vtkImageData* i
     ForEachSample(image, box,
       [&](vtkIdType number, vtkIdType place) { some->SetTuple(number, place, colors); });
     box->GetPointData()->AddArray(some);
-    edges->InterpolateAttributesOn();
   }
-  for (std::size_t index = 0; index < isovalues.size(); ++index)
+  const auto extract = [&](auto* filter)
   {
-    edges->SetValue(static_cast<int>(index), isovalues[index]);
+    filter->SetInputData(box);
+    filter->SetComputeNormals(colored);
+    filter->ComputeScalarsOff();
+    for (std::size_t index = 0; index < isovalues.size(); ++index)
+    {
+      filter->SetValue(static_cast<int>(index), isovalues[index]);
+    }
+    filter->Update();
+    return vtkSmartPointer<vtkPolyData>(filter->GetOutput());
+  };
+  if (vtkRectilinearGrid::SafeDownCast(box))
+  {
+    vtkNew<vtkRectilinearSynchronizedTemplates> templates;
+    templates->SetArrayComponent(0);
+    return extract(templates.GetPointer()); // attributes are always interpolated
   }
-  edges->Update();
-  return edges->GetOutput();
+  vtkNew<vtkFlyingEdges3D> edges;
+  edges->SetInterpolateAttributes(colors != nullptr);
+  return extract(edges.GetPointer());
 }
 
-/// The place of a point among the image's samples, from its first one on.
-void GetPlace(vtkImageData* image, const double point[3], double place[3])
+/// Points along each axis.
+std::array<int, 3> GetDimensions(vtkDataSet* image)
 {
-  image->TransformPhysicalPointToContinuousIndex(point, place);
-  for (int axis = 0; axis < 3; ++axis)
-  {
-    place[axis] -= image->GetExtent()[2 * axis];
-  }
+  const int* const extent = vtkPVDSMGridPlace::GetExtent(image);
+  return { extent[1] - extent[0] + 1, extent[3] - extent[2] + 1, extent[5] - extent[4] + 1 };
 }
 
-void FindCell(vtkImageData* image, const double point[3], int cell[3])
+void FindCell(vtkDataSet* image, const double point[3], int cell[3])
 {
   double place[3];
-  GetPlace(image, point, place);
+  vtkPVDSMGridPlace::Find(image, point, place);
   for (int axis = 0; axis < 3; ++axis)
   {
-    const int last = std::max(image->GetDimensions()[axis] - 2, 0);
+    const int last = std::max(GetDimensions(image)[axis] - 2, 0);
     cell[axis] = std::clamp(static_cast<int>(std::floor(place[axis])), 0, last);
   }
 }
 
-vtkIdType FindCell(vtkImageData* image, const double point[3])
+vtkIdType FindCell(vtkDataSet* image, const double point[3])
 {
   int cell[3];
   FindCell(image, point, cell);
-  return vtkStructuredData::ComputeCellId(image->GetDimensions(), cell);
+  return vtkStructuredData::ComputeCellId(GetDimensions(image).data(), cell);
 }
 
-vtkIdType FindPoint(vtkImageData* image, const double point[3])
+vtkIdType FindPoint(vtkDataSet* image, const double point[3])
 {
   double place[3];
-  GetPlace(image, point, place);
+  vtkPVDSMGridPlace::Find(image, point, place);
   int sample[3];
   for (int axis = 0; axis < 3; ++axis)
   {
     sample[axis] =
-      std::clamp(static_cast<int>(std::lround(place[axis])), 0, image->GetDimensions()[axis] - 1);
+      std::clamp(static_cast<int>(std::lround(place[axis])), 0, GetDimensions(image)[axis] - 1);
   }
-  return vtkStructuredData::ComputePointId(image->GetDimensions(), sample);
-}
-
-/// Returns whether both are parts of one lattice.
-bool HaveOneLattice(vtkImageData* a, vtkImageData* b)
-{
-  const double* const directions[2] = { a->GetDirectionMatrix()->GetData(),
-    b->GetDirectionMatrix()->GetData() };
-  return std::equal(a->GetOrigin(), a->GetOrigin() + 3, b->GetOrigin()) &&
-    std::equal(a->GetSpacing(), a->GetSpacing() + 3, b->GetSpacing()) &&
-    std::equal(directions[0], directions[0] + 9, directions[1]);
+  return vtkStructuredData::ComputePointId(GetDimensions(image).data(), sample);
 }
 
 /// The triangles of an image, box by box. Each knows which cell of `counted` it is in, and each point which sample is
@@ -350,7 +377,7 @@ bool HaveOneLattice(vtkImageData* a, vtkImageData* b)
 class Collector
 {
 public:
-  Collector(vtkImageData* image, vtkImageData* counted, unsigned block)
+  Collector(vtkDataSet* image, vtkDataSet* counted, unsigned block)
     : Image(image)
     , Counted(counted)
     , Block(block)
@@ -395,7 +422,8 @@ public:
         vtkDataSetAttributes::HIDDENCELL | vtkDataSetAttributes::REFINEDCELL;
       if (!box.Has(cell) ||
         (ghosts &&
-          (ghosts->GetValue(vtkStructuredData::ComputeCellId(this->Image->GetDimensions(), cell)) &
+          (ghosts->GetValue(
+             vtkStructuredData::ComputeCellId(GetDimensions(this->Image).data(), cell)) &
             hidden) != 0))
       {
         continue;
@@ -442,8 +470,8 @@ private:
     return number;
   }
 
-  vtkImageData* Image;
-  vtkImageData* Counted;
+  vtkDataSet* Image;
+  vtkDataSet* Counted;
   unsigned Block;
   vtkNew<vtkPolyData> Result;
   vtkNew<vtkPoints> Points;
@@ -472,7 +500,7 @@ void AttachColors(vtkDataArray* colors, vtkPolyData* triangles)
 void AddBlock(vtkDSMVolumeMapper* mapper, vtkDataObject* part, vtkDataObject* source,
   unsigned block, bool colored, vtkMultiBlockDataSet* geometry)
 {
-  auto* const image = vtkImageData::SafeDownCast(part);
+  vtkDataSet* const image = vtkPVDSMGridPlace::FindImage(part);
   if (part && !image && colored)
   {
     vtkErrorWithObjectMacro(mapper,
@@ -498,17 +526,17 @@ void AddBlock(vtkDSMVolumeMapper* mapper, vtkDataObject* part, vtkDataObject* so
         << ". Use more ranks or extract a subset.");
     return;
   }
-  auto* counted = vtkImageData::SafeDownCast(source);
-  if (!counted || counted->GetNumberOfCells() == 0 || !HaveOneLattice(image, counted))
+  vtkDataSet* counted = vtkPVDSMGridPlace::FindImage(source);
+  if (!counted || !vtkPVDSMGridPlace::HaveOneLattice(image, counted))
   {
     counted = image;
   }
   Collector collector(image, counted, block);
   const std::vector<double> isovalues = GetIsovalues(mapper);
-  for (const CellBox& box : CutIntoBoxes(image->GetDimensions()))
+  for (const CellBox& box : CutIntoBoxes(GetDimensions(image).data()))
   {
     // Normals at a box's sides depend on what is beyond, and so may in which cell a triangle is taken to be.
-    const CellBox more = Grow(box, image->GetDimensions());
+    const CellBox more = Grow(box, GetDimensions(image).data());
     if (const auto triangles = Extract(mapper, image, array, isovalues, more, colored))
     {
       collector.Add(triangles, box);

@@ -2,6 +2,7 @@
 #include "vtkPVDSMVolumePlaces.h"
 
 #include "vtkDSMScene.h"
+#include "vtkPVDSMGridPlace.h"
 
 #include "vtkCamera.h"
 #include "vtkCellArray.h"
@@ -19,6 +20,7 @@
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
 #include "vtkRenderer.h"
+#include "vtkStructuredData.h"
 #include "vtkUnsignedCharArray.h"
 #include "vtkUnsignedIntArray.h"
 
@@ -81,10 +83,10 @@ void vtkPVDSMVolumePlaces::Find(vtkDSMScene* scene, vtkRenderer* renderer)
   }
 }
 
-void vtkPVDSMVolumePlaces::AddImage(vtkImageData* image, unsigned block,
+void vtkPVDSMVolumePlaces::AddImage(vtkDataSet* image, unsigned block,
   const std::vector<Place>& places, vtkMultiBlockDataSet* geometry)
 {
-  if (!image || image->GetNumberOfCells() == 0)
+  if (!image)
   {
     return;
   }
@@ -100,11 +102,11 @@ void vtkPVDSMVolumePlaces::AddImage(vtkImageData* image, unsigned block,
   cellIds->SetName("vtkOriginalCellIds");
   vtkNew<vtkUnsignedIntArray> blocks;
   blocks->SetName("vtkCompositeIndex");
-  const int* const extent = image->GetExtent();
+  const int* const extent = vtkPVDSMGridPlace::GetExtent(image);
   for (const Place& place : places)
   {
     double index[3];
-    image->TransformPhysicalPointToContinuousIndex(place.data(), index);
+    vtkPVDSMGridPlace::Find(image, place.data(), index);
     int cell[3];
     int point[3];
     bool isInside = true;
@@ -112,6 +114,7 @@ void vtkPVDSMVolumePlaces::AddImage(vtkImageData* image, unsigned block,
     {
       const int first = extent[2 * axis];
       const int last = extent[2 * axis + 1];
+      index[axis] += first;
       isInside = isInside && index[axis] >= first - slack && index[axis] <= last + slack;
       cell[axis] =
         std::clamp(static_cast<int>(std::floor(index[axis])), first, std::max(first, last - 1));
@@ -121,7 +124,7 @@ void vtkPVDSMVolumePlaces::AddImage(vtkImageData* image, unsigned block,
     {
       continue;
     }
-    const vtkIdType cellId = image->ComputeCellId(cell);
+    const vtkIdType cellId = vtkStructuredData::ComputeCellIdForExtent(extent, cell);
     if (ghosts && (ghosts->GetValue(cellId) & hidden) != 0)
     {
       continue;
@@ -129,7 +132,7 @@ void vtkPVDSMVolumePlaces::AddImage(vtkImageData* image, unsigned block,
     const vtkIdType vertex = points->InsertNextPoint(place.data());
     vertices->InsertNextCell(1, &vertex);
     cellIds->InsertNextValue(cellId);
-    pointIds->InsertNextValue(image->ComputePointId(point));
+    pointIds->InsertNextValue(vtkStructuredData::ComputePointIdForExtent(extent, point));
     blocks->InsertNextValue(block);
   }
   vtkNew<vtkPolyData> found;
@@ -155,15 +158,15 @@ vtkSmartPointer<vtkMultiBlockDataSet> vtkPVDSMVolumePlaces::MakePoints(
   auto* const composite = vtkCompositeDataSet::SafeDownCast(data);
   if (!composite)
   {
-    AddImage(vtkImageData::SafeDownCast(data), 0, places, geometry);
+    AddImage(vtkPVDSMGridPlace::FindImage(data), 0, places, geometry);
     return geometry;
   }
   vtkSmartPointer<vtkCompositeDataIterator> leaf;
   leaf.TakeReference(composite->NewIterator());
   for (leaf->InitTraversal(); !leaf->IsDoneWithTraversal(); leaf->GoToNextItem())
   {
-    AddImage(vtkImageData::SafeDownCast(leaf->GetCurrentDataObject()), leaf->GetCurrentFlatIndex(),
-      places, geometry);
+    AddImage(vtkPVDSMGridPlace::FindImage(leaf->GetCurrentDataObject()),
+      leaf->GetCurrentFlatIndex(), places, geometry);
   }
   return geometry;
 }

@@ -9,7 +9,7 @@
 
 class vtkDSMScene;
 class vtkDataObject;
-class vtkImageData;
+class vtkDataSet;
 class vtkMatrix4x4;
 class vtkMultiBlockDataSet;
 class vtkRenderer;
@@ -29,7 +29,7 @@ public:
 
 private:
   using Place = std::array<double, 3>;
-  static void AddImage(vtkImageData* image, unsigned block, const std::vector<Place>& places,
+  static void AddImage(vtkDataSet* image, unsigned block, const std::vector<Place>& places,
     vtkMultiBlockDataSet* geometry);
 
   std::vector<Place> Places; ///< world
