@@ -147,9 +147,11 @@ if os.path.exists(DATA):
     flow = simple.XMLRectilinearGridReader(FileName=[DATA])
     for isovalue in (1.0, 3.0, 5.2):
         compare_with_contour(f"Flow{isovalue}", flow, isovalue, "scalars", angle=15.0)
+    simple.Delete(flow)
 
 # Selections know cells and points of the grid.
 show(grid, view, [0.7], "f")
+view.CameraViewAngle = 30.0
 place_camera(view)
 render(view)
 simple.SelectSurfaceCells(Rectangle=[130, 100, 170, 140], View=view)

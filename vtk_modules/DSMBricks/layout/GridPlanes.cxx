@@ -111,11 +111,4 @@ double GridPlanes::ToPlace(int axis, double index) const
   return (1.0 - part) * own.Places[at] + part * own.Places[at + 1];
 }
 
-double GridPlanes::GetLeastWidth(int axis) const
-{
-  const Axis& own = this->Axes[axis];
-  const double most = *std::max_element(own.Inverse.begin(), own.Inverse.end());
-  return 1.0 / most;
-}
-
 } // namespace bricks

@@ -62,8 +62,6 @@ public:
     return { this->ToPlace(0, index.x), this->ToPlace(1, index.y), this->ToPlace(2, index.z) };
   }
 
-  /// Least width of a cell, in grid space.
-  double GetLeastWidth(int axis) const;
   /// Equal for equal planes.
   std::uint64_t GetHash() const { return this->Hash; }
 

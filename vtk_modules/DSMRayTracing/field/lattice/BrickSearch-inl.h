@@ -291,7 +291,7 @@ private:
     }
     std::uint32_t passed = 0;
     std::uint32_t ended = 0;
-    if constexpr (Visitor::TakesMacrocells && Planes::AreUniform)
+    if constexpr (Visitor::TakesMacrocells)
     {
       for (int lane = 0; lane < batch.Count; ++lane)
       {
@@ -354,14 +354,20 @@ private:
       const bool forward = this->Forward[axis];
       const Vector edge = hn::Set(tag, bricks::MacrocellEdge);
       const Vector leave = forward ? hn::Add(entry[axis], edge) : hn::Sub(entry[axis], edge);
-      passed.Enter = hn::Max(passed.Enter, lines.GetPlaneT(axis, entry[axis]));
-      passed.Exit = hn::Min(passed.Exit, lines.GetPlaneT(axis, leave));
+      passed.Enter =
+        hn::Max(passed.Enter, lines.GetPlaneT(axis, this->Grid.GetPlace(axis, entry[axis])));
+      passed.Exit = hn::Min(passed.Exit, lines.GetPlaneT(axis, this->Grid.GetPlace(axis, leave)));
       direction[axis] = Load(batch, this->Packet.Direction[axis]);
       const Vector origin = hn::Set(tag, this->Origin[axis]);
       lowest[axis] = hn::Sub(forward ? entry[axis] : leave, origin);
       highest[axis] = hn::Min(hn::Sub(forward ? leave : entry[axis], origin),
         hn::Set(tag, static_cast<double>(this->Brick.GetCells(axis))));
     }
+    using Macrocell = typename Planes::Macrocell;
+    const auto getMacrocell = [&](int axis) {
+      return Macrocell(this->Grid, axis, hn::Add(lowest[axis], hn::Set(tag, this->Origin[axis])));
+    };
+    const Macrocell macrocells[3] = { getMacrocell(0), getMacrocell(1), getMacrocell(2) };
     // Values, less what the brick subtracts, at T.
     const auto getValues = [&](Vector t)
     {
@@ -369,11 +375,21 @@ private:
       Vector within[3];
       for (int axis = 0; axis < 3; ++axis)
       {
-        const Vector point = hn::Sub(hn::Add(lines.Origin[axis], hn::Mul(t, direction[axis])),
-          hn::Set(tag, this->Origin[axis]));
+        const Vector origin = hn::Set(tag, this->Origin[axis]);
+        const Vector way = hn::Add(lines.Origin[axis], hn::Mul(t, direction[axis]));
         const Vector last = hn::Sub(highest[axis], hn::Set(tag, 1.0));
-        place[axis] = hn::Min(hn::Max(hn::Floor(point), lowest[axis]), last);
-        within[axis] = ClampToUnit(hn::Sub(point, place[axis]));
+        if constexpr (Planes::AreUniform)
+        {
+          const Vector point = hn::Sub(way, origin);
+          place[axis] = hn::Min(hn::Max(macrocells[axis].FindCell(point), lowest[axis]), last);
+          within[axis] = ClampToUnit(hn::Sub(point, place[axis]));
+        }
+        else
+        {
+          place[axis] = hn::Min(hn::Sub(macrocells[axis].FindCell(way), origin), last);
+          const typename Planes::Cell cell(this->Grid, axis, hn::Add(place[axis], origin));
+          within[axis] = ClampToUnit(cell.GetWithin(way));
+        }
       }
       Vector corners[8];
       if (this->Brick.Floats.First)

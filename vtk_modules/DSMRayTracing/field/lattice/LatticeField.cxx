@@ -41,13 +41,7 @@ double LatticeField::GetGrowth(const glm::dvec3& gradient) const
 double LatticeField::GetFinestLength() const
 {
   const glm::dmat3 edges(this->IndexToWorld);
-  glm::dvec3 lengths(glm::length(edges[0]), glm::length(edges[1]), glm::length(edges[2]));
-  if (const bricks::GridPlanes* const planes = this->GetIndexSpace().GetPlanes())
-  {
-    lengths *=
-      glm::dvec3(planes->GetLeastWidth(0), planes->GetLeastWidth(1), planes->GetLeastWidth(2));
-  }
-  return std::min({ lengths.x, lengths.y, lengths.z });
+  return std::min({ glm::length(edges[0]), glm::length(edges[1]), glm::length(edges[2]) });
 }
 
 ObjectTracer::Brick LatticeField::FindBrick(const glm::dvec3& place) const

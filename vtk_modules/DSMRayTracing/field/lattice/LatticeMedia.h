@@ -23,7 +23,6 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <limits>
 #include <memory>
 #include <tuple>
 #include <vector>
@@ -124,25 +123,6 @@ private:
     asked.Cell.Local = Lanes(inside.x, inside.y, inside.z, 0.0);
   }
 
-  /// Through a cell, in world space; infinite where cells differ, so that rays go through macrocells cell by cell.
-  static double GetLongestWay(const LatticeField& field)
-  {
-    if (field.Voxels->Planes)
-    {
-      return std::numeric_limits<double>::infinity();
-    }
-    const glm::dmat3 edges(field.IndexToWorld);
-    double longest = 0.0;
-    for (const double y : { -1.0, 1.0 })
-    {
-      for (const double z : { -1.0, 1.0 })
-      {
-        longest = std::max(longest, glm::length(edges[0] + y * edges[1] + z * edges[2]));
-      }
-    }
-    return longest;
-  }
-
   /// Finds gradients at positions in the same brick. Returns the positions whose samples are not
   /// all in the brick.
   template <class T, class Iterator>
@@ -173,7 +153,6 @@ private:
       [&](auto sample)
       {
         using T = decltype(sample);
-        const TransferTest<T> test(function, this->Kernel, GetLongestWay(field));
         for (std::size_t place = 0; place < bricks.Bricks.size() && open != 0; ++place)
         {
           const BeamBricks::Brick& brick = bricks.Bricks[place];
@@ -186,6 +165,8 @@ private:
           const typename Store::Pin pin =
             this->Blocks.Acquire(this->Self, *field.Voxels->Segment, brick.Id);
           const bricks::VoxelBrick<T> voxels(pin.GetData());
+          const TransferTest<T> test(function, this->Kernel, glm::dmat3(field.IndexToWorld),
+            field.Voxels->Planes.get(), brick.Lower);
           const TypedPacketBrick<T, TransferTest<T>> medium(voxels, test, packet.Forward);
           open &= ~this->Kernel.March(packet, meets, medium, brick.Lower, function, light);
         }

@@ -19,6 +19,29 @@ struct MacrocellSamples
   int Counts[3]; ///< cells on each axis
   float Values[Edge][Edge][RowLength] = {};
 
+  /// Of a rectilinear grid, for each inner plane of the macrocell (from 0 on): what the differences behind and before it are
+  /// multiplied by, so that their difference is what the values' slope changes by, over the wider of the two cells; 1 where
+  /// widths are equal.
+  bool IsStretched = false;
+  float Behind[3][RowLength] = {};
+  float Before[3][RowLength] = {};
+
+  /// `inverse`: reciprocals of the widths of the cells on an axis.
+  void SetWidths(int axis, const double* inverse)
+  {
+    this->IsStretched = true;
+    for (int plane = 0; plane + 1 < this->Counts[axis]; ++plane)
+    {
+      const double before = inverse[plane];
+      const double behind = inverse[plane + 1];
+      const double least = std::min(before, behind);
+      // 2 widest^2 / (sum of both widths), over the width of each.
+      const double factor = 2.0 * before * behind / (least * least * (before + behind));
+      this->Before[axis][plane] = static_cast<float>(factor * before);
+      this->Behind[axis][plane] = static_cast<float>(factor * behind);
+    }
+  }
+
   /// Copies the samples of the cells from `first` on. Returns false if a sample is not finite.
   template <class T>
   bool Set(const bricks::VoxelBrick<T>& brick, const int first[3], const int counts[3])

@@ -26,7 +26,37 @@ namespace hn = hwy::HWY_NAMESPACE;
 template <int Lanes>
 class Roughness
 {
+  static constexpr int RowSamples = 8; ///< that are looked at, though only five are there
+  using Tag = hn::CappedTag<float, std::min(Lanes, RowSamples)>;
+  using Vector = hn::Vec<Tag>;
+  static constexpr int Width = static_cast<int>(hn::MaxLanes(Tag()));
+
 public:
+  static double Find(const MacrocellSamples& samples)
+  {
+    return samples.IsStretched ? Find<true>(samples) : Find<false>(samples);
+  }
+
+private:
+  /// How much two differences that follow one another differ; `plane`: the one between them, or the first of a vector.
+  template <bool IsStretched>
+  static HWY_INLINE Vector GetChange(
+    const MacrocellSamples& samples, int axis, int plane, Vector behind, Vector before)
+  {
+    if constexpr (IsStretched)
+    {
+      const auto load = [&](const float* factors)
+      { return axis == 0 ? hn::LoadU(Tag(), factors + plane) : hn::Set(Tag(), factors[plane]); };
+      return hn::Sub(
+        hn::Mul(load(samples.Behind[axis]), behind), hn::Mul(load(samples.Before[axis]), before));
+    }
+    else
+    {
+      return hn::Sub(behind, before);
+    }
+  }
+
+  template <bool IsStretched>
   static double Find(const MacrocellSamples& samples)
   {
     const int* const counts = samples.Counts;
@@ -48,14 +78,17 @@ public:
           const Vector here = get(0, 0, part, 0);
           const Vector next = get(0, 0, part, 1);
           const Vector along = hn::Sub(next, here);
-          xx.Raise(part, hn::Sub(hn::Sub(get(0, 0, part, 2), next), along));
+          xx.Raise(part,
+            GetChange<IsStretched>(samples, 0, part, hn::Sub(get(0, 0, part, 2), next), along));
           if (y < counts[1])
           {
             const Vector beside = get(1, 0, part, 0);
             xy.Raise(part, hn::Sub(hn::Sub(get(1, 0, part, 1), beside), along));
             if (y + 1 < counts[1])
             {
-              yy.Raise(part, hn::Sub(hn::Sub(get(2, 0, part, 0), beside), hn::Sub(beside, here)));
+              yy.Raise(part,
+                GetChange<IsStretched>(
+                  samples, 1, y, hn::Sub(get(2, 0, part, 0), beside), hn::Sub(beside, here)));
             }
           }
           if (z < counts[2])
@@ -64,7 +97,9 @@ public:
             xz.Raise(part, hn::Sub(hn::Sub(get(0, 1, part, 1), above), along));
             if (z + 1 < counts[2])
             {
-              zz.Raise(part, hn::Sub(hn::Sub(get(0, 2, part, 0), above), hn::Sub(above, here)));
+              zz.Raise(part,
+                GetChange<IsStretched>(
+                  samples, 2, z, hn::Sub(get(0, 2, part, 0), above), hn::Sub(above, here)));
             }
             if (y < counts[1])
             {
@@ -82,12 +117,6 @@ public:
     return std::max({ twice[0] + mixed[0] + mixed[1], twice[1] + mixed[0] + mixed[2],
       twice[2] + mixed[1] + mixed[2] });
   }
-
-private:
-  static constexpr int RowSamples = 8; ///< that are looked at, though only five are there
-  using Tag = hn::CappedTag<float, std::min(Lanes, RowSamples)>;
-  using Vector = hn::Vec<Tag>;
-  static constexpr int Width = static_cast<int>(hn::MaxLanes(Tag()));
 
   /// The largest sizes so far.
   class Sizes

@@ -2,6 +2,7 @@
 #ifndef rt_TransferTest_h
 #define rt_TransferTest_h
 
+#include "DSMBricks/layout/GridPlanes.h"
 #include "DSMBricks/layout/MacrocellHierarchy.h"
 #include "DSMBricks/layout/VoxelBrick.h"
 #include "DSMRayTracing/base/Lanes.h"
@@ -10,6 +11,10 @@
 #include "DSMRayTracing/field/lattice/PacketKernel.h"
 #include "DSMRayTracing/look/TransferFunction.h"
 
+#include <glm/geometric.hpp>
+#include <glm/mat3x3.hpp>
+
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 
@@ -39,11 +44,16 @@ template <class T>
 class TransferTest
 {
 public:
-  /// `cellLength`: the longest way through a cell, in world space.
-  TransferTest(const TransferFunction& function, const PacketKernel& kernel, double cellLength)
+  /// `axes`: from index or grid space to the world. `planes`: of a rectilinear grid, or null; `origin`: the brick's first
+  /// cell there.
+  TransferTest(const TransferFunction& function, const PacketKernel& kernel, const glm::dmat3& axes,
+    const bricks::GridPlanes* planes, const double origin[3])
     : Function(function)
     , Kernel(kernel)
-    , CellLength(cellLength)
+    , Axes(axes)
+    , Planes(planes)
+    , Origin(origin)
+    , CellLength(GetLongestWay(axes))
   {
   }
 
@@ -82,12 +92,14 @@ public:
     part.Extinction[macrocell] = behavior.Extinction;
     part.Change[macrocell] = behavior.Change;
     part.Tinge[macrocell] = behavior.Tinge;
-    const double factor = edge * this->CellLength * behavior.Change * scale * 0.125;
     if (brick.GetHeader().MaskOffset == 0)
     {
       MacrocellSamples samples;
-      const bool isSmooth = samples.Set(brick, first, counts) &&
-        factor * this->Kernel.FindRoughness(samples) <= Tolerance;
+      const bool isFinite = samples.Set(brick, first, counts);
+      const double length =
+        this->Planes ? this->SetWidths(samples, first, counts) : edge * this->CellLength;
+      const double factor = length * behavior.Change * scale * 0.125;
+      const bool isSmooth = isFinite && factor * this->Kernel.FindRoughness(samples) <= Tolerance;
       part.Smooth |= std::uint64_t{ isSmooth } << macrocell;
     }
   }
@@ -100,12 +112,44 @@ public:
   }
 
 private:
+  /// Through a cell with such edges.
+  static double GetLongestWay(const glm::dmat3& edges)
+  {
+    double longest = 0.0;
+    for (const double y : { -1.0, 1.0 })
+    {
+      for (const double z : { -1.0, 1.0 })
+      {
+        longest = std::max(longest, glm::length(edges[0] + y * edges[1] + z * edges[2]));
+      }
+    }
+    return longest;
+  }
+
+  /// Tells a rectilinear macrocell's samples about its widths; returns the longest way through it.
+  double SetWidths(MacrocellSamples& samples, const int first[3], const int counts[3]) const
+  {
+    glm::dmat3 edges = this->Axes;
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      const auto begin =
+        static_cast<std::size_t>(this->Origin[axis]) + static_cast<std::size_t>(first[axis]);
+      const double* const places = this->Planes->GetPlaces(axis) + begin;
+      edges[axis] *= places[counts[axis]] - places[0];
+      samples.SetWidths(axis, this->Planes->GetInverseWidths(axis) + begin);
+    }
+    return GetLongestWay(edges);
+  }
+
   /// Error tolerance for the optical depth in a macrocell.
   static constexpr double Tolerance = 1.0 / 2048.0;
 
   const TransferFunction& Function;
   const PacketKernel& Kernel;
-  double CellLength;
+  glm::dmat3 Axes;
+  const bricks::GridPlanes* Planes;
+  const double* Origin;
+  double CellLength; ///< longest way through a cell of a uniform lattice, in world space
 };
 
 } // namespace rt
