@@ -12,7 +12,6 @@
 #include "DSMRayTracing/ray/MediumLight.h"
 #include "DSMRayTracing/ray/Ray.h"
 
-#include <glm/geometric.hpp>
 #include <glm/mat3x3.hpp>
 #include <glm/vec3.hpp>
 
@@ -104,26 +103,10 @@ public:
   }
 
 private:
-  /// Through a cell of level 0, in world space.
-  static double GetLongestWay(const LevelField& field)
-  {
-    const glm::dmat3 edges(field.IndexToWorld);
-    double longest = 0.0;
-    for (const double y : { -1.0, 1.0 })
-    {
-      for (const double z : { -1.0, 1.0 })
-      {
-        longest = std::max(longest, glm::length(edges[0] + y * edges[1] + z * edges[2]));
-      }
-    }
-    return longest;
-  }
-
   void MarchPacket(const LevelField& field, const TransferFunction& function, BeamBricks& bricks,
     LevelPackets& packets, MediumLight& light) const
   {
     const bricks::LevelLattice& lattice = field.Voxels->Lattice;
-    const double longest = GetLongestWay(field);
     bricks::DispatchSamples(lattice,
       [&](auto sample)
       {
@@ -143,9 +126,13 @@ private:
           const typename Store::Pin pin =
             this->Blocks.Acquire(this->Self, *field.Voxels->Segment, brick.Id);
           const bricks::VoxelBrick<T> voxels(pin.GetData());
-          const bricks::Index3& scale = lattice.GetScales().Get(level);
-          const TransferTest<T> test(function, this->Kernel,
-            longest / static_cast<double>(std::min({ scale.x, scale.y, scale.z })));
+          const glm::dvec3 scale(lattice.GetScales().Get(level));
+          glm::dmat3 axes(field.IndexToWorld);
+          for (int axis = 0; axis < 3; ++axis)
+          {
+            axes[axis] /= scale[axis];
+          }
+          const TransferTest<T> test(function, this->Kernel, axes, nullptr, brick.Lower);
           const TypedPacketBrick<T, TransferTest<T>> medium(voxels, test, packet.Forward);
           this->Kernel.March(packet, meets, medium, brick.Lower, function, light);
         }
