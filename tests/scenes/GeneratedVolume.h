@@ -4,12 +4,14 @@
 
 #include "DSMBricks/build/VoxelSource.h"
 #include "DSMBricks/layout/BrickLattice.h"
+#include "DSMBricks/layout/GridPlanes.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <cstring>
 #include <limits>
+#include <memory>
 
 /// Data with the same bits on every machine: made of integers, sums, products and roots alone.
 namespace Generated
@@ -87,8 +89,33 @@ struct Recipe
   int BrickEdge = 8;
   Hole Holes = Hole::None;
   bool Blanked = false; ///< some cells do not hold data
+  /// Of a rectilinear volume: widths of cells on x, each over that of the one before it, and on z the other way round;
+  /// those on y are random. 1: uniform.
+  double Growth = 1.0;
   unsigned Seed = 1;
 };
+
+/// Where planes between cells are; null: at equal distances.
+inline std::shared_ptr<const bricks::GridPlanes> CreatePlanes(const Recipe& recipe)
+{
+  if (recipe.Growth == 1.0)
+  {
+    return nullptr;
+  }
+  bricks::GridPlanes::Coordinates coordinates;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    double place = 0.0;
+    double width = 1.0;
+    for (std::int64_t plane = 0; plane < recipe.Points[axis]; ++plane)
+    {
+      coordinates[axis].push_back(place);
+      place += axis == 1 ? 0.1 + Random(plane, 0, 0, recipe.Seed) : width;
+      width = axis == 0 ? width * recipe.Growth : width / recipe.Growth;
+    }
+  }
+  return std::make_shared<bricks::GridPlanes>(coordinates);
+}
 
 inline double Evaluate(const Recipe& recipe, const bricks::Index3& point)
 {

@@ -82,7 +82,10 @@ public:
       cells.Max.z = cells.Max.z * (rank + 1) / parts;
       pieces.push_back(std::make_shared<Generated::Volume>(recipe, cells));
     }
-    return bricks::PublishVolume("volume", lattice, pieces, this->Store, this->Messenger);
+    const auto field =
+      bricks::PublishVolume("volume", lattice, pieces, this->Store, this->Messenger);
+    field->Planes = Generated::CreatePlanes(recipe);
+    return field;
   }
 
   /// The longest axis is [-1, 1], and `place` comes after that; `levels` in [0, 100].

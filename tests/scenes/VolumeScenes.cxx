@@ -160,6 +160,36 @@ void AddFieldColors(Scenes& scenes)
     } });
 }
 
+void AddRectilinear(Scenes& scenes)
+{
+  Recipe waves;
+  waves.Growth = 1.3;
+  Recipe rough = waves;
+  rough.Form = Recipe::Shape::Rough;
+  rough.Points = { 12, 11, 10 };
+  rough.Growth = 3.5; // a million in eleven cells
+  for (const auto& [name, recipe] : Named<Recipe>{ { "Waves", waves }, { "Rough", rough } })
+  {
+    for (const auto camera : { SceneStage::Camera::Perspective, SceneStage::Camera::AgainstZ })
+    {
+      const bool isAlong = camera == SceneStage::Camera::AgainstZ;
+      scenes.push_back({ "rectilinear." + name + (isAlong ? ".AgainstZ" : ".Perspective"),
+        [recipe = recipe, camera](SceneStage& stage)
+        {
+          stage.LookFrom(camera);
+          stage.World.Transport.Shadows = true;
+          stage.Add(stage.CreateIsosurface(recipe, { 30.0, 50.0 }));
+        } });
+    }
+    scenes.push_back({ "rectilinear." + name + ".Medium",
+      [recipe = recipe](SceneStage& stage)
+      {
+        stage.Add(stage.CreateMedium(
+          recipe, { { 20.0, { 0.2, 0.2, 1.0, 0.4 } }, { 70.0, { 1.0, 0.6, 0.2, 2.0 } } }));
+      } });
+  }
+}
+
 } // namespace
 
 void AddVolumeScenes(std::vector<RecordedScene>& scenes)
@@ -169,4 +199,5 @@ void AddVolumeScenes(std::vector<RecordedScene>& scenes)
   AddMissingData(scenes);
   AddBricks(scenes);
   AddFieldColors(scenes);
+  AddRectilinear(scenes);
 }
