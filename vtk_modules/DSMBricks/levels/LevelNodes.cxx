@@ -97,7 +97,10 @@ void LevelNodes::OfferValue(const Index3& point, int level, double value)
   const std::size_t place = this->GetPoint(point);
   std::int8_t& known = this->Known[place];
   // Where blocks disagree, the result does not depend on which came first.
-  if (level > known || (level == known && value < this->Values.Get(place)))
+  const double now = this->Values.Get(place);
+  const bool isLess = value < now || (!std::isnan(value) && std::isnan(now)) ||
+    (value == now && std::signbit(value) && !std::signbit(now));
+  if (level > known || (level == known && isLess))
   {
     known = static_cast<std::int8_t>(level);
     this->Values.Set(place, value);

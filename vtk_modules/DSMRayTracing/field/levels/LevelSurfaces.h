@@ -27,11 +27,12 @@ public:
   using Sets = LevelSets<LevelField>;
   using Hit = LatticeHit;
 
-  LevelSurfaces(Store& store, typename Store::Worker& worker)
+  LevelSurfaces(Store& store, typename Store::Worker& worker,
+    const PacketKernel& kernel = PacketKernel::GetBest())
     : Blocks(store)
     , Self(worker)
     , Values(store, worker)
-    , Kernel(PacketKernel::GetBest())
+    , Kernel(kernel)
   {
   }
 
