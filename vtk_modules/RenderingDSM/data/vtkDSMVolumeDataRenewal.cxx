@@ -9,7 +9,8 @@
 
 bool vtkDSMVolumeData::MayTakeOver(const std::shared_ptr<const Publication>& old) const
 {
-  if (!old || old.use_count() != 1 || old->Levels || this->Levels || old->Parts.size() != this->GetNumberOfLattices())
+  if (!old || old.use_count() != 1 || old->Levels || this->Levels ||
+    old->Parts.size() != this->GetNumberOfLattices())
   {
     return false;
   }
