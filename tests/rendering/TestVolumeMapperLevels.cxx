@@ -277,7 +277,12 @@ TEST_F(VolumeMapperLevels, HyperTreeGridsOfBothBranchings)
   for (const int branching : { 2, 3 })
   {
     SCOPED_TRACE(branching);
-    this->ExpectBall(this->Render(MakeTrees(branching)));
+    // The camera may be placed before anything is rendered.
+    const auto trees = MakeTrees(branching);
+    this->Mapper->SetInputDataObject(trees);
+    ASSERT_TRUE(this->Mapper->GetBounds());
+    EXPECT_EQ(this->Mapper->GetBounds()[0], -16.0);
+    this->ExpectBall(this->Render(trees));
     const std::vector<double> half = this->Render(MakeTrees(branching, true));
     EXPECT_FALSE(this->Errors->GetError());
     EXPECT_GT(CountCovered(half), 3000);

@@ -10,6 +10,7 @@
 
 #include "vtkCompositeDataSet.h"
 #include "vtkDataSet.h"
+#include "vtkHyperTreeGrid.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
 #include "vtkMath.h"
@@ -293,6 +294,10 @@ double* vtkDSMVolumeMapper::GetBounds()
   if (auto* dataSet = vtkDataSet::SafeDownCast(data))
   {
     dataSet->GetBounds(this->Bounds);
+  }
+  else if (auto* trees = vtkHyperTreeGrid::SafeDownCast(data))
+  {
+    trees->GetBounds(this->Bounds);
   }
   else if (auto* composite = vtkCompositeDataSet::SafeDownCast(data))
   {
