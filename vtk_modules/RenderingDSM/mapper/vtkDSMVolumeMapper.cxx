@@ -297,7 +297,11 @@ double* vtkDSMVolumeMapper::GetBounds()
   }
   else if (auto* trees = vtkHyperTreeGrid::SafeDownCast(data))
   {
-    trees->GetBounds(this->Bounds);
+    // One without cells has a point at the origin.
+    if (trees->GetNumberOfElements(vtkDataObject::CELL) > 0)
+    {
+      trees->GetBounds(this->Bounds);
+    }
   }
   else if (auto* composite = vtkCompositeDataSet::SafeDownCast(data))
   {
