@@ -16,7 +16,7 @@ SHARED = ("ScalarOpacityUnitDistance", "Shade", "VolumeAnisotropy", "UseSeparate
           "OpacityComponent")  # of ParaView's Volume
 # Rows in the order of the definitions.
 TABLES = {
-    "isosurfaces": r"DSMShow|DSM(IsoArray|IsoComponent|IsoValue|ValueRange)\w*",
+    "isosurfaces": r"DSMShow|DSM(IsoArray|IsoComponent|IgnoreValues|ValidRange|IsoValue|ValueRange)\w*",
     "volumes": r"DSMBlendMode|DSMScattering|" + "|".join(SHARED),
     "slices": r"DSMSlice(X|XIndex|XIndices|Plane|Origin|Normal|OpacityFromMap|Interpolate|Lighting)",
     "clipping": r"DSM(Clip|Crop|Cap)\w*",
@@ -28,7 +28,8 @@ FROM_DATA = {"mid": "center of the data", "data_bounds": "bounds of the data", "
 
 def read_properties():
     properties = {}
-    for name in ("dsm_image_properties.xml.in", "dsm_representations.xml.in", "dsm_common_properties.xml.in", "dsm_geometry.xml.in"):
+    for name in ("dsm_image_properties.xml.in", "dsm_representations.xml.in", "dsm_common_properties.xml.in",
+                 "dsm_geometry.xml.in"):
         text = (PROJECT / "xml" / name).read_text(encoding="utf-8")
         text = re.sub(r"<!--.*?-->", "", text, flags=re.DOTALL)
         for element in ElementTree.fromstring(f"<all>{text}</all>").iter():

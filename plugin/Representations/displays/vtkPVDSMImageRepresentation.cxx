@@ -504,6 +504,16 @@ void vtkPVDSMImageRepresentation::SetIsoComponent(int component)
   this->VolumeMapper->SetIsoComponent(component);
 }
 
+void vtkPVDSMImageRepresentation::SetIgnoreValues(bool ignore)
+{
+  this->VolumeMapper->SetIgnoreValues(ignore);
+}
+
+void vtkPVDSMImageRepresentation::SetValidRange(double lowest, double highest)
+{
+  this->VolumeMapper->SetValidRange(lowest, highest);
+}
+
 void vtkPVDSMImageRepresentation::SetNumberOfIsoValues(int number)
 {
   this->IsoValues.resize(std::max(number, 0), 0.0);

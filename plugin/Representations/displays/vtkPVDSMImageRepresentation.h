@@ -88,6 +88,8 @@ public:
    */
   void SelectIsoArray(int index, int port, int connection, int association, const char* name);
   void SetIsoComponent(int component);
+  void SetIgnoreValues(bool ignore);
+  void SetValidRange(double lowest, double highest);
   void SetLookupTable(vtkScalarsToColors* table) override;
   void SetMapScalars(int map) override;
   ///@}

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "CellScenarios.h"
+#include "DSMBricks/build/ValidSource.h"
 #include "DSMBricks/build/VoxelBrickBuilder.h"
+#include "DSMBricks/build/VoxelBrickReader.h"
 #include "DSMBricks/layout/MacrocellBuilder.h"
 #include "DSMBricks/layout/VoxelBrick.h"
 #include "DSMCore/base/Error.h"
@@ -12,8 +14,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <limits>
 #include <random>
+#include <vector>
 
 namespace
 {
@@ -131,6 +135,78 @@ TYPED_TEST(TestVoxelBrickBuilder, MacrocellsSpanTheirCorners)
     EXPECT_EQ(brick.GetMacrocellRanges()[macrocell].Min, low);
     EXPECT_EQ(brick.GetMacrocellRanges()[macrocell].Max, high);
   }
+}
+
+TYPED_TEST(TestVoxelBrickBuilder, CellsWithAMissingValueHoldNoData)
+{
+  using T = TypeParam;
+  std::mt19937 random(8);
+  auto volume = CreateRandomVolume<T>({ 14, 10, 12 }, random);
+  volume.Blank(3, 4, 5);
+  const bricks::ScalarType type = GetScalarType<T>();
+  bricks::ValidValues valid;
+  EXPECT_FALSE(valid.Exclude(type));
+  valid.Lowest = 0.0;
+  valid.Highest = 98.0;
+  valid.Fill = 7.0;
+  EXPECT_TRUE(valid.Exclude(type));
+  const auto isValid = [](T value) { return value >= T(0) && value <= T(98) && value != T(7); };
+  const bricks::BrickLattice lattice(volume.Points, type, true, 5);
+  Pieces pieces;
+  for (const auto& piece : GetWhole(volume))
+  {
+    pieces.push_back(bricks::ValidSource::Make(piece, lattice, valid));
+  }
+  MemoryStore store;
+  const auto segment = PublishPieces(store, lattice, pieces);
+  const bricks::VoxelBrickReader reader(lattice, pieces.front());
+  for (dsm::BlockId id = 0; id < lattice.GetBrickCount(); ++id)
+  {
+    std::vector<std::byte> read(lattice.GetBlockBytes(id));
+    reader.Read(id, read.data(), read.size());
+    ASSERT_EQ(std::memcmp(read.data(), segment->GetBlock(id), read.size()), 0) << "brick " << id;
+    const bricks::Box cells = lattice.GetCellsOfBrick(id);
+    const bricks::VoxelBrick<T> brick(segment->GetBlock(id));
+    EXPECT_TRUE(brick.GetHeader().First > brick.GetHeader().Last ||
+      (brick.GetHeader().First >= 0.0f && brick.GetHeader().Last <= 98.0f));
+    bricks::ForEachIndex(cells,
+      [&](const bricks::Index3& cell)
+      {
+        bool holdsData = volume.IsCovered(cell.x, cell.y, cell.z);
+        bricks::ForEachIndex({ cell, cell + bricks::Index3(2) },
+          [&](const bricks::Index3& at)
+          { holdsData = holdsData && isValid(volume.At(at.x, at.y, at.z)); });
+        const bricks::Index3 in = cell - cells.Min;
+        EXPECT_EQ(brick.HoldsData(in.x, in.y, in.z), holdsData);
+      });
+  }
+}
+
+TEST(TestValidValues, FloatingPointGiantsStandForWhatIsBeyondThem)
+{
+  bricks::ValidValues valid;
+  valid.Fill = 9.969209968386869e36; // as netCDF has it, for float and double
+  const bricks::MissingTest<float> isMissing(valid);
+  EXPECT_TRUE(isMissing(9.96921e36f));
+  EXPECT_TRUE(isMissing(1e38f));
+  EXPECT_FALSE(isMissing(9.9e36f));
+  EXPECT_FALSE(isMissing(-9.96921e36f));
+  valid.Fill = -1e20;
+  EXPECT_TRUE(bricks::MissingTest<float>(valid)(-1e20f));
+  EXPECT_TRUE(bricks::MissingTest<double>(valid)(-1e21));
+  EXPECT_FALSE(bricks::MissingTest<double>(valid)(1e20));
+  valid.Fill = -9999.9;
+  EXPECT_TRUE(bricks::MissingTest<float>(valid)(-9999.9f));
+  EXPECT_FALSE(bricks::MissingTest<float>(valid)(-10000.0f));
+  valid.Fill = -9999.0;
+  EXPECT_FALSE(valid.Exclude(bricks::ScalarType::UInt8));
+  EXPECT_TRUE(bricks::MissingTest<std::int16_t>(valid)(-9999));
+  EXPECT_FALSE(bricks::MissingTest<std::int16_t>(valid)(-10000));
+  std::vector<double> values{ 1.0, -9999.0 };
+  bricks::ReplaceMissing(
+    valid, bricks::ScalarType::Float64, reinterpret_cast<std::byte*>(values.data()), values.size());
+  EXPECT_EQ(values[0], 1.0);
+  EXPECT_TRUE(std::isnan(values[1]));
 }
 
 TEST(TestVoxelBrick, CellsWithoutDataAreLeftOutOfTheRange)

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cstring>
 #include <utility>
+#include <vector>
 
 namespace bricks
 {
@@ -17,7 +18,7 @@ VoxelBrickReader::VoxelBrickReader(
   , Source(std::move(source))
 {
   const Box all{ Index3(0), lattice.GetCells() };
-  if (lattice.HasCellMask() || this->Source->HasCellMask() ||
+  if ((this->Source->HasCellMask() && !lattice.HasCellMask()) ||
     Intersect(this->Source->GetCells(), all).GetCount() != all.GetCount())
   {
     throw dsm::Error(
@@ -34,6 +35,15 @@ void VoxelBrickReader::Read(dsm::BlockId id, std::byte* block, std::size_t bytes
   std::memcpy(&header, block, sizeof(header));
   const Box cells = this->Lattice.GetCellsOfBrick(id);
   this->Source->ReadSamples({ cells.Min, cells.Max + Index3(1) }, block + header.SampleOffset);
+  if (header.MaskOffset != 0)
+  {
+    std::vector<std::uint8_t> holdsData(static_cast<std::size_t>(cells.GetCount()));
+    this->Source->ReadCellMask(cells, holdsData.data());
+    for (std::size_t cell = 0; cell < holdsData.size(); ++cell)
+    {
+      block[header.MaskOffset + (cell >> 3)] |= std::byte{ holdsData[cell] } << (cell & 7);
+    }
+  }
   sink.Finish(id, block, bytes);
 }
 

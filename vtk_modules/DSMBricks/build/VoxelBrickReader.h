@@ -17,7 +17,7 @@ namespace bricks
 class VoxelBrickReader final : public dsm::BlockReader
 {
 public:
-  /// The lattice has no cell mask. Throws dsm::Error when the source has not all of its cells.
+  /// Throws dsm::Error when the source has not all of the lattice's cells, or a cell mask that the lattice lacks.
   VoxelBrickReader(const BrickLattice& lattice, std::shared_ptr<const VoxelSource> source);
   void Read(dsm::BlockId id, std::byte* block, std::size_t bytes) const override;
 

@@ -90,6 +90,7 @@ public:
     if (this->Kept[array].ReadByLibrary)
     {
       this->ReadByLibrary(array, step, chunk, out);
+      this->ReplaceMissing(array, out, this->Arrays[array].Grid.GetBox(chunk).GetCount());
     }
     else
     {
@@ -99,6 +100,10 @@ public:
 
   Index ReadIndex(std::size_t array, int) const override
   {
+    if (this->Arrays[array].Valid.Exclude(this->Arrays[array].Type))
+    {
+      return {}; // it was made before values were declared missing
+    }
     const std::lock_guard<std::mutex> lock(GetHdfLock());
     const HdfSilence silence;
     return ReadHdfBrickIndex(this->Root, this->Arrays[array], this->Bytes->GetBytes());
@@ -410,6 +415,13 @@ private:
     }
     array.Type = values->Type;
     array.Grid.Samples = axes.Samples;
+    for (const char* const missing : MissingValueAttributes)
+    {
+      if (ReadHdfAttribute(id.Get(), missing, H5T_NATIVE_DOUBLE, &array.Valid.Fill, 1))
+      {
+        break;
+      }
+    }
     CheckSizes(this->Path, array);
     const bool isElsewhere = this->Origins.Add(this->Path, this->File.Get(), id.Get());
     array.Grid = CutIntoRows(axes.Samples, array.GetSampleBytes());

@@ -89,7 +89,24 @@ bricks::Box StoredFile::GetStoredBox(std::size_t array, const bricks::Index3& wh
                                               : box;
 }
 
+void StoredFile::ReplaceMissing(std::size_t array, std::byte* samples, std::int64_t count) const
+{
+  const FileArray& what = this->Arrays[array];
+  if (what.Valid.Exclude(what.Type))
+  {
+    bricks::ReplaceMissing(what.Valid, what.Type, samples,
+      static_cast<std::size_t>(count) * static_cast<std::size_t>(what.Components));
+  }
+}
+
 void StoredFile::ReadChunk(
+  std::size_t array, int step, const bricks::Index3& chunk, std::byte* out) const
+{
+  this->ReadStored(array, step, chunk, out);
+  this->ReplaceMissing(array, out, this->Arrays[array].Grid.GetBox(chunk).GetCount());
+}
+
+void StoredFile::ReadStored(
   std::size_t array, int step, const bricks::Index3& chunk, std::byte* out) const
 {
   const FileArray& what = this->Arrays[array];
@@ -258,6 +275,7 @@ bool StoredFile::ReadPart(std::size_t array, int step, const bricks::Index3& chu
   {
     throw FileError({ place->File->GetPath(), this->Arrays[array].Name, whole }, error);
   }
+  this->ReplaceMissing(array, out, part.GetCount());
   return true;
 }
 
@@ -314,6 +332,7 @@ bool StoredFile::ReadWithHalo(
     CopyBox(part, from, part, out, all, sampleBytes);
     from += static_cast<std::size_t>(part.GetCount()) * sampleBytes;
   }
+  this->ReplaceMissing(array, out, all.GetCount());
   return true;
 }
 

@@ -75,7 +75,12 @@ protected:
 
   std::vector<Storage> Storages; ///< one for each array
 
+  /// To be called with so many samples of an array that were read.
+  void ReplaceMissing(std::size_t array, std::byte* samples, std::int64_t count) const;
+
 private:
+  /// As ReadChunk, with missing values as they are stored.
+  void ReadStored(std::size_t array, int step, const bricks::Index3& chunk, std::byte* out) const;
   /// Repeats the bytes of `fill` until `out` has so many bytes.
   static void FillWith(const std::vector<std::byte>& fill, std::byte* out, std::size_t bytes);
   /// Throws dsm::Error when the stored size of a chunk cannot be right for its `bytes`. Called before memory is

@@ -3,6 +3,7 @@
 #define vol_VolumeFile_h
 
 #include "DSMBricks/base/ScalarType.h"
+#include "DSMBricks/base/ValidValues.h"
 #include "DSMVolumeFiles/base/ChunkGrid.h"
 
 #include <cstddef>
@@ -15,6 +16,9 @@
 namespace vol
 {
 
+/// The attributes of an array that declare a value missing; the first that is a number counts.
+constexpr const char* MissingValueAttributes[] = { "_FillValue", "missing_value" };
+
 /// One array of a volume file.
 struct FileArray
 {
@@ -24,6 +28,8 @@ struct FileArray
   bool OnCells = false;  ///< else on the points
   bool IsActive = false; ///< the points' scalars, where the file says so
   ChunkGrid Grid;
+  /// By the array's own attributes. Floating point values that are missing are read as NaN.
+  bricks::ValidValues Valid;
 
   std::size_t GetSampleBytes() const
   {

@@ -163,6 +163,7 @@ private:
         this->Arrays[array].Components, static_cast<std::int64_t>(name.size()) };
       hash.Add(numbers, sizeof(numbers));
       hash.Add(name.data(), name.size());
+      hash.Add(&source.Data->Missing, sizeof(double));
       hash.Add(source.Channel.data(), source.Channel.size() * sizeof(std::int64_t));
       for (const char* metadata : { "/.zarray", "/zarr.json" })
       {
@@ -408,6 +409,7 @@ private:
         }
       }
       array.Type = data->Type;
+      array.Valid.Fill = data->Missing;
       array.Components = static_cast<int>(axes.GetComponents(data->Shape));
       array.Grid = { this->Geometry.Points, axes.GetSpace(data->ChunkShape) };
       Storage storage;

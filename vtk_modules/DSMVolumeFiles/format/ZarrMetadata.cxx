@@ -4,6 +4,7 @@
 #include "DSMCore/base/Error.h"
 #include "DSMVolumeFiles/base/FileLimits.h"
 #include "DSMVolumeFiles/base/SmallFile.h"
+#include "DSMVolumeFiles/format/VolumeFile.h"
 #include "DSMVolumeFiles/format/ZarrJson.h"
 
 #include <algorithm>
@@ -439,6 +440,20 @@ ZarrMetadata ParseVersion3(const std::string& folder, const Json& json)
   return data;
 }
 
+double FindMissing(const Json& attributes)
+{
+  for (const char* const name : MissingValueAttributes)
+  {
+    const Json& found = ZarrJson::Find(attributes, name);
+    const Json& value = found.is_array() && found.size() == 1 ? found.front() : found;
+    if (value.is_number())
+    {
+      return value.get<double>();
+    }
+  }
+  return std::numeric_limits<double>::quiet_NaN();
+}
+
 } // namespace
 
 bool ZarrMetadata::IsVolume() const
@@ -465,10 +480,12 @@ std::optional<ZarrMetadata> ReadZarrMetadata(const std::string& folder)
     }
     ZarrMetadata data =
       version2.is_null() ? ParseVersion3(folder, version3) : ParseVersion2(folder, version2);
+    const Json attributes = ReadZarrAttributes(folder);
     if (!version2.is_null()) // as xarray writes them
     {
-      data.Axes = ZarrJson::Find(ReadZarrAttributes(folder), "_ARRAY_DIMENSIONS");
+      data.Axes = ZarrJson::Find(attributes, "_ARRAY_DIMENSIONS");
     }
+    data.Missing = FindMissing(attributes);
     return data;
   }
   catch (const Json::exception& error)

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -31,7 +32,9 @@ struct ZarrMetadata
   std::vector<std::int64_t> ChunkShape;
   nlohmann::json Axes; ///< their names, where these are told
   bricks::ScalarType Type = bricks::ScalarType::UInt8;
-  std::vector<std::byte> Fill; ///< one value
+  std::vector<std::byte> Fill; ///< one value, of chunks that are not stored
+  double Missing =
+    std::numeric_limits<double>::quiet_NaN(); ///< by the array's attributes; NaN: none
   ChunkCodec Codec;
   bool FortranOrder = false; ///< within a chunk the first axis is the fastest
   std::optional<Sharding> Shards;

@@ -67,6 +67,10 @@ std::filesystem::path GetBeginning(
   hash.Add(kept.Name.data(), kept.Name.size());
   hash.Add(kind.data(), kind.size());
   hash.Add(numbers, sizeof(numbers));
+  if (kept.Valid.Exclude(kept.Type))
+  {
+    hash.Add(&kept.Valid, sizeof(kept.Valid));
+  }
   return folder / "dsm-ray-tracer" / (kind + "-" + std::to_string(hash.Get()) + "-");
 }
 

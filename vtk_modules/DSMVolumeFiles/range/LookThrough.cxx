@@ -2,6 +2,7 @@
 #include "DSMVolumeFiles/range/LookThrough.h"
 
 #include "DSMBricks/base/ParallelFor.h"
+#include "DSMBricks/build/ValidSource.h"
 #include "DSMBricks/build/VoxelBrickReader.h"
 #include "DSMBricks/layout/VoxelBrickHeader.h"
 #include "DSMVolumeFiles/cache/FileSamples.h"
@@ -100,9 +101,12 @@ std::optional<Look> LookThrough(const std::shared_ptr<const VolumeFile>& file, s
   int step, const bricks::Box& box, int threads, const std::function<bool(double)>& goesOn)
 {
   const FileArray& array = file->GetArrays()[number];
-  const bricks::BrickLattice lattice(array.Grid.Samples, array.Type, /*cellMask=*/false);
-  const bricks::VoxelBrickReader reader(
-    lattice, std::make_shared<FileSamples>(file, number, step, ChunkCache::GetShared()));
+  const bricks::BrickLattice lattice(
+    array.Grid.Samples, array.Type, /*cellMask=*/array.Valid.Exclude(array.Type));
+  const bricks::VoxelBrickReader reader(lattice,
+    bricks::ValidSource::Make(
+      std::make_shared<FileSamples>(file, number, step, ChunkCache::GetShared()), lattice,
+      array.Valid));
   Look look{ ValueRanges(1), { lattice, FindOwnBricks(lattice, box), {}, {} } };
   bricks::SeenBricks& bricks = look.Bricks;
   bricks.Seen.resize(static_cast<std::size_t>(bricks.Bricks.GetCount()));

@@ -12,6 +12,8 @@
 #include <atomic>
 #include <cmath>
 #include <cstring>
+#include <limits>
+#include <type_traits>
 #include <utility>
 
 namespace vol
@@ -58,11 +60,15 @@ bool FindFinite(const T* values, std::int64_t count, T& least, T& greatest)
 }
 
 template <class T>
-void AddRow(ValueRanges& ranges, const T* row, std::int64_t samples, int components)
+void AddRow(ValueRanges& ranges, const T* row, std::int64_t samples, const FileArray& array)
 {
+  const int components = array.Components;
+  // Missing floating point numbers are NaN already.
+  const bool hasMissing = std::is_integral_v<T> && array.Valid.Exclude(array.Type);
+  const bricks::MissingTest<T> isMissing(array.Valid);
   T least;
   T greatest;
-  if (components == 1 && samples > 0 && FindFinite(row, samples, least, greatest))
+  if (!hasMissing && components == 1 && samples > 0 && FindFinite(row, samples, least, greatest))
   {
     for (ValueRange* range : { &ranges.All.front(), &ranges.Finite.front() })
     {
@@ -76,7 +82,9 @@ void AddRow(ValueRanges& ranges, const T* row, std::int64_t samples, int compone
     double sum = 0.0;
     for (int component = 0; component < components; ++component)
     {
-      const auto value = static_cast<double>(row[sample * components + component]);
+      const T stored = row[sample * components + component];
+      const auto value = hasMissing && isMissing(stored) ? std::numeric_limits<double>::quiet_NaN()
+                                                         : static_cast<double>(stored);
       Add(ranges, static_cast<std::size_t>(component), value);
       sum += value * value;
     }
@@ -181,7 +189,7 @@ void ValueRanges::Add(const FileArray& array, const std::byte* samples, const br
       const bricks::Index3 size = have.GetSize();
       if (want.Min == have.Min && want.Max == have.Max)
       {
-        AddRow(*this, values, have.GetCount(), array.Components);
+        AddRow(*this, values, have.GetCount(), array);
         return;
       }
       for (std::int64_t z = want.Min.z; z < want.Max.z; ++z)
@@ -190,7 +198,7 @@ void ValueRanges::Add(const FileArray& array, const std::byte* samples, const br
         {
           const std::int64_t first =
             ((z - have.Min.z) * size.y + y - have.Min.y) * size.x + want.Min.x - have.Min.x;
-          AddRow(*this, values + first * array.Components, want.GetSize().x, array.Components);
+          AddRow(*this, values + first * array.Components, want.GetSize().x, array);
         }
       }
     });

@@ -51,6 +51,7 @@ public:
   Source(const vtkDSMAmrData& data, const Choice& choice)
     : Data(data)
     , OfPoints(!choice.OnCells)
+    , Valid(choice.Valid)
   {
     for (std::size_t own = 0; own < data.Blocks.size(); ++own)
     {
@@ -95,6 +96,7 @@ public:
         {
           using T = decltype(sample);
           const auto* from = reinterpret_cast<const T*>(bytes.data());
+          const bricks::MissingTest<T> isMissing(this->Valid);
           const Index3 row = samples.GetSize();
           const Index3 stride = size + more;
           // Only values of leaves: blocks may overlap.
@@ -113,7 +115,9 @@ public:
                   const Index3 to = point - first;
                   const Index3 in = point - samples.Min;
                   values[to.x + stride.x * (to.y + stride.y * to.z)] =
-                    static_cast<double>(from[in.x + row.x * (in.y + row.y * in.z)]);
+                    isMissing(from[in.x + row.x * (in.y + row.y * in.z)])
+                    ? std::numeric_limits<double>::quiet_NaN()
+                    : static_cast<double>(from[in.x + row.x * (in.y + row.y * in.z)]);
                 });
             });
         });
@@ -162,6 +166,7 @@ private:
 
   const vtkDSMAmrData& Data;
   bool OfPoints;
+  bricks::ValidValues Valid;
   std::vector<Block> Blocks;
   bricks::LevelCubes Cubes;
   std::vector<std::vector<std::size_t>> BlocksOfCubes;

@@ -9,10 +9,11 @@
 #include <cstring>
 
 vtkDSMCellPiece::vtkDSMCellPiece(vtkDataSet* image, vtkDataArray* array, int component,
-  const bricks::LatticePlan::Member& place, bool hasMask)
+  const bricks::LatticePlan::Member& place, bool hasMask, const bricks::ValidValues& valid)
   : Array(array)
   , Component(component)
-  , Masked(hasMask)
+  , Masked(hasMask || valid.Exclude(vtkDSMImagePiece::GetScalarType(array, component)))
+  , Valid(valid)
 {
   const bool isOne = component >= 0 || array->GetNumberOfComponents() == 1;
   for (int part = 0; part < (isOne ? 1 : array->GetNumberOfComponents()); ++part)
@@ -37,6 +38,26 @@ bricks::Box vtkDSMCellPiece::GetReach() const
 void vtkDSMCellPiece::ReadStates(const bricks::Box& cells, std::uint8_t* out) const
 {
   this->Parts.front().ReadCellStates(cells, out);
+  const bricks::ScalarType type = vtkDSMImagePiece::GetScalarType(this->Array, this->Component);
+  if (!this->Valid.Exclude(type))
+  {
+    return;
+  }
+  const auto count = static_cast<std::size_t>(cells.GetCount());
+  std::vector<std::byte> samples(count * bricks::GetBytes(type));
+  vtkDSMImagePiece::ReadSamples(
+    this->Array, this->Component, this->GetReach(), cells, samples.data());
+  bricks::Dispatch(type,
+    [&](auto zero)
+    {
+      using T = decltype(zero);
+      const bricks::MissingTest<T> isMissing(this->Valid);
+      const auto* const values = reinterpret_cast<const T*>(samples.data());
+      for (std::size_t cell = 0; cell < count; ++cell)
+      {
+        out[cell] = isMissing(values[cell]) ? std::uint8_t{ NoData } : out[cell];
+      }
+    });
 }
 
 int vtkDSMCellPiece::CountComponents() const

@@ -2,6 +2,7 @@
 #ifndef vtkDSMCellPiece_h
 #define vtkDSMCellPiece_h
 
+#include "DSMBricks/base/ValidValues.h"
 #include "DSMBricks/build/CellReader.h"
 #include "DSMBricks/build/LatticePlan.h"
 
@@ -18,9 +19,9 @@ class vtkDataSet;
 class vtkDSMCellPiece final : public bricks::CellReader
 {
 public:
-  /// `component`: see vtkDSMImagePiece; `hasMask`: its PieceInfo's.
+  /// `component`: see vtkDSMImagePiece; `hasMask`: its PieceInfo's. Cells with a missing value hold no data.
   vtkDSMCellPiece(vtkDataSet* image, vtkDataArray* array, int component,
-    const bricks::LatticePlan::Member& place, bool hasMask);
+    const bricks::LatticePlan::Member& place, bool hasMask, const bricks::ValidValues& valid = {});
   ~vtkDSMCellPiece() override;
 
   bricks::Box GetCells() const override;
@@ -36,6 +37,7 @@ private:
   vtkSmartPointer<vtkDataArray> Array;
   int Component;
   bool Masked;
+  bricks::ValidValues Valid;
   std::vector<vtkDSMImagePiece> Parts; ///< one a component
 };
 

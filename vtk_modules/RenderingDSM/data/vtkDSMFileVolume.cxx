@@ -3,6 +3,7 @@
 
 #include "DSMBricks/base/ByteHash.h"
 #include "DSMBricks/build/CellAverages.h"
+#include "DSMBricks/build/ValidSource.h"
 #include "DSMBricks/layout/DealBricks.h"
 #include "DSMCore/base/Error.h"
 #include "DSMCore/memory/FreedMemory.h"
@@ -203,17 +204,19 @@ vtkDSMFileVolume::Seat vtkDSMFileVolume::Describe(
   return seat;
 }
 
-vtkDSMFileVolume::vtkDSMFileVolume(
-  std::shared_ptr<const vtkDSMFileValues> values, int component, bool onCells)
+vtkDSMFileVolume::vtkDSMFileVolume(std::shared_ptr<const vtkDSMFileValues> values, int component,
+  bool onCells, const bricks::ValidValues& valid)
   : Values(std::move(values))
   , Component(this->Values->GetArray().Components == 1 ? 0 : component)
   , OnCells(onCells)
+  , Valid(valid)
 {
 }
 
 std::unique_ptr<vtkDSMFileVolume> vtkDSMFileVolume::Find(dsm::Messenger& messenger,
   const bricks::LatticePlan::Lattice& lattice, const std::vector<Seat>& seats,
-  const vtkDSMFileValues* own, bool isFirst, int component, bool onCells)
+  const vtkDSMFileValues* own, bool isFirst, int component, bool onCells,
+  const bricks::ValidValues& valid)
 {
   const auto getPlace = [&](const bricks::LatticePlan::Member& member)
   {
@@ -255,7 +258,7 @@ std::unique_ptr<vtkDSMFileVolume> vtkDSMFileVolume::Find(dsm::Messenger& messeng
       const int nextStep = seats[members.front().Piece].NextStep;
       volume.reset(new vtkDSMFileVolume(
         std::make_shared<vtkDSMFileValues>(file, array, std::get<1>(place), box, nextStep, options),
-        component, onCells));
+        component, onCells, valid));
     }
   }
   catch (const std::exception&) // the pieces' own ranks read them then
@@ -337,7 +340,7 @@ std::unique_ptr<vtkDSMFileVolume> vtkDSMFileVolume::OpenCoarser(int level) const
     [&](const vol::FileArray& one)
     {
       return one.Name == array.Name && one.OnCells == array.OnCells && one.Type == array.Type &&
-        one.Components == array.Components;
+        one.Components == array.Components && one.Valid == array.Valid;
     });
   if (found == arrays.end() || this->Values->GetStep() >= file->GetSteps())
   {
@@ -347,7 +350,7 @@ std::unique_ptr<vtkDSMFileVolume> vtkDSMFileVolume::OpenCoarser(int level) const
     std::make_shared<vtkDSMFileValues>(file, static_cast<std::size_t>(found - arrays.begin()),
       this->Values->GetStep(), Box{ Index3(0), found->Grid.Samples }, vtkDSMFileValues::None,
       options),
-    this->Component, this->OnCells));
+    this->Component, this->OnCells, this->Valid));
   // Not every file says how large a level's samples are.
   const glm::dmat4 toThis = this->GetIndexOf(*volume);
   for (int axis = 0; axis < 3; ++axis)
@@ -410,8 +413,10 @@ std::shared_ptr<const dsm::BlockReader> vtkDSMFileVolume::CreateReader(
   if (!this->OnCells)
   {
     return std::make_shared<vol::FileBrickReader>(lattice,
-      std::make_shared<vol::FileSamples>(
-        values->GetFile(), values->GetArrayNumber(), values->GetStep(), part, cache, scattered),
+      bricks::ValidSource::Make(
+        std::make_shared<vol::FileSamples>(
+          values->GetFile(), values->GetArrayNumber(), values->GetStep(), part, cache, scattered),
+        lattice, this->Valid),
       [values](std::vector<Box> boxes) { values->Prefetch(std::move(boxes)); });
   }
   const Box cells{ Index3(0), lattice.GetCells() };
@@ -436,6 +441,7 @@ std::uint64_t vtkDSMFileVolume::GetKey(const bricks::BrickLattice& lattice) cons
     static_cast<std::uint64_t>(lattice.GetScalarType()) };
   bricks::ByteHash hash;
   hash.Add(numbers, sizeof(numbers));
+  hash.Add(&this->Valid, sizeof(this->Valid));
   return hash.Get();
 }
 
@@ -449,7 +455,7 @@ std::shared_ptr<const dsm::BlockReader> vtkDSMFileVolume::CreateSteppingReader(
     const auto values = std::make_shared<vtkDSMFileValues>(this->Values->GetFile(),
       this->Values->GetArrayNumber(), this->Values->GetNextStep(), this->Values->GetBox(),
       vtkDSMFileValues::None, this->Values->GetOptions());
-    const vtkDSMFileVolume volume(values, this->Component, this->OnCells);
+    const vtkDSMFileVolume volume(values, this->Component, this->OnCells, this->Valid);
     vol::ReadAhead::Way way;
     way.Reader = volume.CreateReader(lattice, true);
     way.IsSame = [volume, lattice, digests, differ = std::vector<bool>()](dsm::BlockId id) mutable
@@ -491,7 +497,8 @@ dsm::BlockDirectory vtkDSMFileVolume::CreateDirectory(
 
 std::vector<std::byte> vtkDSMFileVolume::ReadIndex(const bricks::BrickLattice& lattice) const
 {
-  if (this->Values->GetArray().Components != 1 || this->OnCells || !this->IsWhole())
+  if (this->Values->GetArray().Components != 1 || this->OnCells || !this->IsWhole() ||
+    this->HasOwnMissing())
   {
     return {};
   }
@@ -502,9 +509,16 @@ std::vector<std::byte> vtkDSMFileVolume::ReadIndex(const bricks::BrickLattice& l
 
 vol::KeptFile vtkDSMFileVolume::GetKept(const bricks::BrickLattice& lattice) const
 {
+  std::string kind =
+    "bricks3-" + std::to_string(lattice.GetEdge()) + "-" + std::to_string(this->Component);
+  if (this->HasOwnMissing())
+  {
+    bricks::ByteHash hash;
+    hash.Add(&this->Valid, sizeof(this->Valid));
+    kind += "-" + std::to_string(hash.Get());
+  }
   return { *this->Values->GetFile(), this->Values->GetArrayNumber(), this->Values->GetStep(),
-    this->Values->GetBox(),
-    "bricks3-" + std::to_string(lattice.GetEdge()) + "-" + std::to_string(this->Component) };
+    this->Values->GetBox(), kind };
 }
 
 std::vector<std::byte> vtkDSMFileVolume::LoadIndex(const bricks::BrickLattice& lattice) const
@@ -542,7 +556,7 @@ bricks::VoxelIndex vtkDSMFileVolume::FindIndex(dsm::Messenger& messenger,
   }
   bricks::VoxelIndex::Pass pass;
   pass.Threads = threads;
-  pass.Seen = seen ? &*seen : nullptr;
+  pass.Seen = seen && !this->HasOwnMissing() ? &*seen : nullptr;
   std::shared_ptr<const dsm::BlockReader> reader;
   messenger.RunTogether(what,
     [&]

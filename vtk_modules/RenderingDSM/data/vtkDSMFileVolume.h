@@ -2,6 +2,7 @@
 #ifndef vtkDSMFileVolume_h
 #define vtkDSMFileVolume_h
 
+#include "DSMBricks/base/ValidValues.h"
 #include "DSMBricks/build/LatticePlan.h"
 #include "DSMBricks/build/VoxelBrickReader.h"
 #include "DSMBricks/build/VoxelIndex.h"
@@ -47,10 +48,11 @@ public:
   /// Collective. Null, on all ranks, where the members' values are not all of one array of one file, or a rank
   /// cannot open it. `seats`: of all pieces of all ranks; `own`: the values of this rank's first member, or null;
   /// `isFirst`: it is the lattice's first member, and the others open the file by its name. `onCells`: the values are
-  /// those of cells.
+  /// those of cells, of which none is missing. `valid`: see vtkDSMImageArrays::Info.
   static std::unique_ptr<vtkDSMFileVolume> Find(dsm::Messenger& messenger,
     const bricks::LatticePlan::Lattice& lattice, const std::vector<Seat>& seats,
-    const vtkDSMFileValues* own, bool isFirst, int component, bool onCells);
+    const vtkDSMFileValues* own, bool isFirst, int component, bool onCells,
+    const bricks::ValidValues& valid);
 
   /// Levels of detail that the file has below the one that was opened; 0 where the lattice is but a part of the
   /// file's samples.
@@ -94,7 +96,7 @@ public:
     return 2 * lattice.GetBrickCount() * sizeof(dsm::ByteDigest);
   }
 
-  /// Bricks of the lattice; it has no cell mask. `scattered`: they are read as rays meet them, not all in turn.
+  /// Bricks of the lattice. `scattered`: they are read as rays meet them, not all in turn.
   std::shared_ptr<const dsm::BlockReader> CreateReader(
     const bricks::BrickLattice& lattice, bool scattered) const;
   /// The same as rays meet them. What is read or kept is read ahead of the next time step, too, but for bricks that
@@ -112,7 +114,8 @@ public:
     const vtkDSMFileValues* own, int threads, const std::function<void(double)>& progress) const;
 
 private:
-  vtkDSMFileVolume(std::shared_ptr<const vtkDSMFileValues> values, int component, bool onCells);
+  vtkDSMFileVolume(std::shared_ptr<const vtkDSMFileValues> values, int component, bool onCells,
+    const bricks::ValidValues& valid);
 
   /// Collective. Null, on all ranks, where any has null.
   static std::unique_ptr<vtkDSMFileVolume> KeepIfEverywhere(
@@ -137,9 +140,13 @@ private:
   /// Returns the key of the bricks that are read ahead for this step.
   std::uint64_t GetKey(const bricks::BrickLattice& lattice) const;
 
+  /// Returns whether other values are missing than the file declares.
+  bool HasOwnMissing() const { return !(this->Valid == this->Values->GetArray().Valid); }
+
   std::shared_ptr<const vtkDSMFileValues> Values; ///< values of the whole lattice
   int Component;                                  ///< vtkDSMImagePiece::Magnitude for the magnitude
   bool OnCells;
+  bricks::ValidValues Valid; ///< see vtkDSMImageArrays::Info
 };
 
 #endif

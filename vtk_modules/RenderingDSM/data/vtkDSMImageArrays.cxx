@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkDSMImageArrays.h"
 
+#include "vtkDSMFileArray.h"
 #include "vtkDSMGather.h"
 #include "vtkDSMImagePiece.h"
 
@@ -10,6 +11,27 @@
 
 #include <algorithm>
 #include <cstring>
+
+namespace
+{
+
+bricks::ValidValues FindValid(vtkDataArray* array, const vtkDSMImageArrays::Choice& choice)
+{
+  if (choice.Component == vtkDSMImagePiece::Color)
+  {
+    return {};
+  }
+  bricks::ValidValues valid = choice.Valid;
+  const vtkDSMFileValues* const file = vtkDSMGetFileValues(array);
+  const bool isOne = array->GetNumberOfComponents() == 1 || choice.Component >= 0;
+  if (file && isOne)
+  {
+    valid.Fill = file->GetArray().Valid.Fill;
+  }
+  return valid;
+}
+
+} // namespace
 
 vtkDataArray* vtkDSMImageArrays::Find(vtkDataObject* part, const Choice& choice, Info& info)
 {
@@ -57,6 +79,7 @@ vtkDataArray* vtkDSMImageArrays::Find(vtkDataObject* part, const Choice& choice,
   }
   info.Found = State::Usable;
   info.Type = vtkDSMImagePiece::GetScalarType(array, choice.Component);
+  info.Valid = FindValid(array, choice);
   return array;
 }
 
@@ -114,12 +137,12 @@ vtkDSMImageArrays::Choice vtkDSMImageArrays::Normalize(const Choice& choice) con
   }
   if (components == 1)
   {
-    return { choice.Name, 0, choice.OnCells, choice.IsAveraged };
+    return { choice.Name, 0, choice.OnCells, choice.IsAveraged, choice.Valid };
   }
   // ParaView's panels number the magnitude after the last component.
   return { choice.Name,
     choice.Component == components ? vtkDSMImagePiece::Magnitude : choice.Component, choice.OnCells,
-    choice.IsAveraged };
+    choice.IsAveraged, choice.Valid };
 }
 
 int vtkDSMImageArrays::CountComponents(const Choice& choice) const

@@ -3,6 +3,7 @@
 #define vtkDSMImageArrays_h
 
 #include "DSMBricks/base/ScalarType.h"
+#include "DSMBricks/base/ValidValues.h"
 #include "DSMCore/base/Error.h"
 #include "DSMCore/transport/Messenger.h"
 
@@ -30,11 +31,14 @@ public:
     /// Of an array of cells: the values at points are the means of the cells around them, as for isosurfaces and media;
     /// else each cell has its value.
     bool IsAveraged = false;
+    /// The user's; a file's own missing value is in Info.
+    bricks::ValidValues Valid = {};
 
     bool operator==(const Choice& other) const
     {
       return this->Name == other.Name && this->Component == other.Component &&
-        this->OnCells == other.OnCells && this->IsAveraged == other.IsAveraged;
+        this->OnCells == other.OnCells && this->IsAveraged == other.IsAveraged &&
+        this->Valid == other.Valid;
     }
   };
 
@@ -54,6 +58,8 @@ public:
     State Found = State::Missing;
     bricks::ScalarType Type = bricks::ScalarType::Float32; ///< type of the resulting bricks
     std::int32_t Components = 0;
+    /// By the choice and the array's file.
+    bricks::ValidValues Valid = {};
 
     bool IsUsable() const { return this->Found == State::Usable; }
   };

@@ -16,6 +16,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace
 {
@@ -92,6 +93,7 @@ class vtkDSMTreeData::Source final : public bricks::LevelSource
 public:
   Source(const vtkDSMTreeData& data, const Choice& choice)
     : Component(choice.Component)
+    , IsMissing(choice.Valid)
   {
     for (std::size_t own = 0; own < data.Grids.size(); ++own)
     {
@@ -120,7 +122,9 @@ public:
     for (const Leaf& leaf : this->Leaves[number])
     {
       isLeaf[leaf.Place] = 1;
-      values[leaf.Place] = this->GetValue(leaf);
+      const double value = this->GetValue(leaf);
+      values[leaf.Place] =
+        this->IsMissing(value) ? std::numeric_limits<double>::quiet_NaN() : value;
     }
   }
 
@@ -160,6 +164,7 @@ private:
   }
 
   int Component;
+  bricks::MissingTest<double> IsMissing;
   std::vector<vtkSmartPointer<vtkDataArray>> Arrays; ///< of the grids; some null
   bricks::LevelCubes Cubes;
   std::vector<std::vector<Leaf>> Leaves; ///< of the cubes

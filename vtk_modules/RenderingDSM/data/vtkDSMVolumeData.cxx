@@ -3,6 +3,7 @@
 
 #include "DSMBricks/base/ByteHash.h"
 #include "DSMBricks/build/PublishVolume.h"
+#include "DSMBricks/build/ValidSource.h"
 #include "vtkDSMContent.h"
 #include "vtkDSMFileArray.h"
 #include "vtkDSMGather.h"
@@ -253,7 +254,8 @@ void vtkDSMVolumeData::GetBounds(double bounds[6]) const
 
 vtkDSMVolumeData::Choice vtkDSMVolumeData::ChooseOfLevels(const Choice& choice) const
 {
-  const Choice ofCells{ choice.Name, choice.Component, true };
+  Choice ofCells{ choice.Name, choice.Component, true };
+  ofCells.Valid = choice.Valid;
   const bool isOfCells =
     this->Arrays.CountComponents(choice) == 0 && this->Arrays.CountComponents(ofCells) > 0;
   return isOfCells ? this->Arrays.Normalize(ofCells) : choice;
@@ -266,6 +268,7 @@ std::uint64_t vtkDSMVolumeData::HashContent(const Choice& choice) const
   hash.Add(&choice.Component, sizeof(choice.Component));
   hash.Add(&choice.OnCells, sizeof(choice.OnCells));
   hash.Add(&choice.IsAveraged, sizeof(choice.IsAveraged));
+  hash.Add(&choice.Valid, sizeof(choice.Valid));
   hash.Add(this->Pieces.data(), this->Pieces.size() * sizeof(bricks::PieceInfo));
   for (const std::int32_t block : this->Apart)
   {
@@ -401,8 +404,8 @@ std::shared_ptr<const vtkDSMVolumeData::Coarser> vtkDSMVolumeData::PublishCoarse
         [&]
         {
           part.Field = this->MakeField();
-          part.Field->Lattice =
-            bricks::BrickLattice(file->GetPoints(), fine->Lattice.GetScalarType(), false);
+          part.Field->Lattice = bricks::BrickLattice(
+            file->GetPoints(), fine->Lattice.GetScalarType(), fine->Lattice.HasCellMask());
           lattices[lattice] = { part.Field, finest.Files[lattice]->GetIndexOf(*file) };
         });
       this->PublishFile(*file, true, this->FindFileValues(lattice, choice),
@@ -435,7 +438,7 @@ void vtkDSMVolumeData::PublishLattice(Publication& published, std::size_t number
       {
         if (!choice.IsAveraged)
         {
-          sources = this->CreateSources(number, choice);
+          sources = this->CreateSources(number, field->Lattice, choice);
         }
         part.Digests = dsm::FragmentDigests(field->Lattice.GetBrickCount());
       }
@@ -446,16 +449,20 @@ void vtkDSMVolumeData::PublishLattice(Publication& published, std::size_t number
   }
   published.Bricks.back() = field;
   const std::string what = "the " + purpose + " '" + choice.Name + "'";
-  // Values at points; what colors by cells or by colors themselves is cut by the ranks that have it.
-  const bool canBeRead = !field->Lattice.HasCellMask() && !field->Lattice.IsOfCells() &&
-    choice.Component != vtkDSMImagePiece::Color;
+  // Values at points; what colors by cells or by colors themselves is cut by the ranks that have it, and so are means of
+  // cells of which some are missing.
+  const bricks::ValidValues& valid =
+    infos[this->Plan.GetLattices()[number].Members.front().Piece].Valid;
+  const bool canBeRead = !this->HasGaps(number, infos) && !field->Lattice.IsOfCells() &&
+    choice.Component != vtkDSMImagePiece::Color &&
+    !(choice.OnCells && valid.Exclude(field->Lattice.GetScalarType()));
   if (canBeRead)
   {
     const bricks::LatticePlan::Lattice& lattice = this->Plan.GetLattices()[number];
     const vtkDSMFileValues* const own = this->FindFileValues(number, choice);
     const bool isFirst = this->FindOwn(lattice.Members.front());
     if (std::shared_ptr<const vtkDSMFileVolume> file = vtkDSMFileVolume::Find(
-          messenger, lattice, seats, own, isFirst && own, choice.Component, choice.OnCells))
+          messenger, lattice, seats, own, isFirst && own, choice.Component, choice.OnCells, valid))
     {
       part.Digests = {};
       this->PublishFile(*file, false, own, what, progress, part, std::move(old));
@@ -514,24 +521,43 @@ std::shared_ptr<bricks::VoxelField> vtkDSMVolumeData::MakeField() const
     } };
 }
 
+bool vtkDSMVolumeData::HasGaps(
+  std::size_t number, const std::vector<vtkDSMImageArrays::Info>& infos) const
+{
+  const bricks::LatticePlan::Lattice& lattice = this->Plan.GetLattices()[number];
+  std::vector<bricks::Box> parts;
+  for (const auto& member : lattice.Members)
+  {
+    if (infos[member.Piece].IsUsable())
+    {
+      if (this->Pieces[member.Piece].HasMask != 0)
+      {
+        return true;
+      }
+      parts.push_back(member.Cells);
+    }
+  }
+  const bricks::Box whole{ bricks::Index3(0), lattice.Points - bricks::Index3(1) };
+  return !bricks::LatticePlan::IsCovered(whole, parts);
+}
+
 std::shared_ptr<bricks::VoxelField> vtkDSMVolumeData::CreateField(std::size_t number,
   const Choice& choice, const std::string& purpose,
   const std::vector<vtkDSMImageArrays::Info>& infos) const
 {
   const bricks::LatticePlan::Lattice& lattice = this->Plan.GetLattices()[number];
-  std::vector<bricks::Box> parts;
   std::set<bricks::ScalarType> types;
-  bool masked = false;
+  bool masked = this->HasGaps(number, infos);
   for (const auto& member : lattice.Members)
   {
     if (infos[member.Piece].IsUsable())
     {
-      parts.push_back(member.Cells);
-      types.insert(infos[member.Piece].Type);
-      masked = masked || this->Pieces[member.Piece].HasMask != 0;
+      const vtkDSMImageArrays::Info& info = infos[member.Piece];
+      types.insert(info.Type);
+      masked = masked || info.Valid.Exclude(info.Type);
     }
   }
-  if (parts.empty())
+  if (types.empty())
   {
     return nullptr;
   }
@@ -540,9 +566,6 @@ std::shared_ptr<bricks::VoxelField> vtkDSMVolumeData::CreateField(std::size_t nu
     throw dsm::Error("The pieces of the " + purpose + " '" + choice.Name +
       "' have different scalar types. Convert them to one type, for example with Calculator.");
   }
-  const bricks::Box whole{ bricks::Index3(0), lattice.Points - bricks::Index3(1) };
-  masked = masked || !bricks::LatticePlan::IsCovered(whole, parts);
-
   std::shared_ptr<bricks::VoxelField> field = this->MakeField();
   field->Lattice = bricks::BrickLattice(lattice.Points, *types.begin(), masked);
   field->Planes = lattice.Planes;
@@ -554,18 +577,20 @@ std::shared_ptr<bricks::VoxelField> vtkDSMVolumeData::CreateField(std::size_t nu
 }
 
 std::vector<std::shared_ptr<const bricks::VoxelSource>> vtkDSMVolumeData::CreateSources(
-  std::size_t lattice, const Choice& choice) const
+  std::size_t number, const bricks::BrickLattice& bricks, const Choice& choice) const
 {
   std::vector<std::shared_ptr<const bricks::VoxelSource>> sources;
-  for (const auto& member : this->Plan.GetLattices()[lattice].Members)
+  for (const auto& member : this->Plan.GetLattices()[number].Members)
   {
     if (vtkDataSet* image = this->FindOwn(member))
     {
       vtkDSMImageArrays::Info info;
       if (vtkDataArray* array = vtkDSMImageArrays::Find(image, choice, info))
       {
-        sources.push_back(std::make_shared<vtkDSMImagePiece>(image, array, choice.Component, member,
-          this->Pieces[member.Piece].HasMask != 0, choice.OnCells));
+        sources.push_back(bricks::ValidSource::Make(
+          std::make_shared<vtkDSMImagePiece>(image, array, choice.Component, member,
+            this->Pieces[member.Piece].HasMask != 0, choice.OnCells),
+          bricks, info.Valid));
       }
     }
   }

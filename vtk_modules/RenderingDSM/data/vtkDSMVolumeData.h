@@ -156,9 +156,11 @@ private:
   /// Local. A lattice's field without its bricks; null where no piece has the array.
   std::shared_ptr<bricks::VoxelField> CreateField(std::size_t lattice, const Choice& choice,
     const std::string& purpose, const std::vector<vtkDSMImageArrays::Info>& infos) const;
+  /// Local. Whether some cells of a lattice have no value in an array, whatever the values are.
+  bool HasGaps(std::size_t lattice, const std::vector<vtkDSMImageArrays::Info>& infos) const;
   /// Local. This rank's pieces of a lattice.
   std::vector<std::shared_ptr<const bricks::VoxelSource>> CreateSources(
-    std::size_t lattice, const Choice& choice) const;
+    std::size_t lattice, const bricks::BrickLattice& bricks, const Choice& choice) const;
   /// Collective. The same for averages of cells, which other pieces have a part in. `infos`: of all ranks' pieces.
   std::vector<std::shared_ptr<const bricks::VoxelSource>> AverageCells(std::size_t lattice,
     const Choice& choice, const std::vector<vtkDSMImageArrays::Info>& infos,

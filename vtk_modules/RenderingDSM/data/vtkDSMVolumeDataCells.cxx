@@ -33,16 +33,16 @@ std::vector<std::shared_ptr<const bricks::VoxelSource>> vtkDSMVolumeData::Averag
       for (std::size_t index = 0; index < lattice.Members.size(); ++index)
       {
         const bricks::LatticePlan::Member& member = lattice.Members[index];
-        const bool hasMask = this->Pieces[member.Piece].HasMask != 0;
-        pieces.push_back(
-          { 0, infos[member.Piece].IsUsable(), hasMask, member.Cells, member.Cells });
+        const vtkDSMImageArrays::Info& all = infos[member.Piece];
+        const bool hasMask = this->Pieces[member.Piece].HasMask != 0 || all.Valid.Exclude(all.Type);
+        pieces.push_back({ 0, all.IsUsable(), hasMask, member.Cells, member.Cells });
         vtkDataSet* const image = this->FindOwn(member);
         vtkDSMImageArrays::Info info;
         vtkDataArray* const array = image ? vtkDSMImageArrays::Find(image, choice, info) : nullptr;
         if (array)
         {
           const auto piece = std::make_shared<const vtkDSMCellPiece>(
-            image, array, choice.Component, member, hasMask);
+            image, array, choice.Component, member, hasMask, info.Valid);
           mine.push_back({ static_cast<std::int64_t>(index), messenger.GetRank(),
             bricks::Intersect(piece->GetReach(), whole) });
           own[index] = std::make_shared<bricks::CellAverages>(piece, whole);

@@ -351,18 +351,21 @@ vtkDSMVolumeMapper::SurfaceTest vtkDSMSceneVolume::MakeSurfaceTest() const
     toIndex.push_back(glm::inverse(this->Data->GetIndexToWorld(lattice)));
   }
   // Keeps no bricks alive, so it does not matter to code that releases them.
-  return
-    [toIndex = std::move(toIndex), mapper = this->Mapper.GetPointer(), data = this->SeenData,
-      time = this->SeenTime, array = this->Mapper->GetIsoArray(),
-      onCells = this->Mapper->GetIsoArrayOnCells(), component = this->Mapper->GetIsoComponent(),
-      weak = std::weak_ptr<const Published>(this->GetIso())](
-      const double bounds[6], std::vector<double> isovalues)
+  return [toIndex = std::move(toIndex), mapper = this->Mapper.GetPointer(), data = this->SeenData,
+           time = this->SeenTime, array = this->Mapper->GetIsoArray(),
+           onCells = this->Mapper->GetIsoArrayOnCells(),
+           component = this->Mapper->GetIsoComponent(), ignores = this->Mapper->GetIgnoreValues(),
+           lowest = this->Mapper->GetValidRange()[0], highest = this->Mapper->GetValidRange()[1],
+           weak = std::weak_ptr<const Published>(this->GetIso())](
+           const double bounds[6], std::vector<double> isovalues)
   {
     vtkDataObject* now = mapper->GetDataObjectInput();
     const auto iso = weak.lock();
     if (!iso || iso->GetFields().empty() || iso->GetLevels() || now != data ||
       GetDataTime(now) != time || mapper->GetIsoArray() != array ||
-      mapper->GetIsoArrayOnCells() != onCells || mapper->GetIsoComponent() != component)
+      mapper->GetIsoArrayOnCells() != onCells || mapper->GetIsoComponent() != component ||
+      mapper->GetIgnoreValues() != ignores || mapper->GetValidRange()[0] != lowest ||
+      mapper->GetValidRange()[1] != highest)
     {
       return true;
     }

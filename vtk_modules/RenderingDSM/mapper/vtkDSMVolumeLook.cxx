@@ -284,8 +284,14 @@ std::vector<vtkDSMVolumeData::Choice> vtkDSMVolumeLook::GetShown(
   }
   if (isColored)
   {
-    shown.push_back(
-      { mapper->GetColorArray(), this->GetColorComponent(), mapper->GetColorArrayOnCells() });
+    vtkDSMVolumeData::Choice color{ mapper->GetColorArray(), this->GetColorComponent(),
+      mapper->GetColorArrayOnCells() };
+    const bool isIso = color.Name == iso.Name && color.OnCells == iso.OnCells;
+    if (isIso || this->IsSlicesOnly())
+    {
+      color.Valid = iso.Valid;
+    }
+    shown.push_back(color);
   }
   return shown;
 }
@@ -301,6 +307,12 @@ vtkDSMVolumeData::Choice vtkDSMVolumeLook::GetIsoChoice(const vtkDSMImageArrays&
     choice.OnCells = true;
   }
   choice.IsAveraged = choice.OnCells;
+  if (this->Mapper->GetIgnoreValues())
+  {
+    const double* const range = this->Mapper->GetValidRange();
+    choice.Valid.Lowest = range[0];
+    choice.Valid.Highest = range[1];
+  }
   return choice;
 }
 

@@ -426,6 +426,8 @@ void vtkDSMVolumeMapper::CopyOwn(vtkDSMVolumeMapper* other)
   this->IsoArray = other->IsoArray;
   this->IsoArrayOnCells = other->IsoArrayOnCells;
   this->IsoComponent = other->IsoComponent;
+  this->IgnoreValues = other->IgnoreValues;
+  std::copy_n(other->ValidRange, 2, this->ValidRange);
   this->IsoValues = other->IsoValues;
   this->AutomaticIsoValue = other->AutomaticIsoValue;
   this->SurfacesOnly = other->SurfacesOnly;
@@ -480,6 +482,8 @@ void vtkDSMVolumeMapper::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "IsoArray: " << this->IsoArray << "\n";
   os << indent << "IsoArrayOnCells: " << this->IsoArrayOnCells << "\n";
   os << indent << "IsoComponent: " << this->IsoComponent << "\n";
+  os << indent << "IgnoreValues: " << this->IgnoreValues << "\n";
+  os << indent << "ValidRange: " << this->ValidRange[0] << " " << this->ValidRange[1] << "\n";
   os << indent << "IsoValues:";
   for (const double value : this->IsoValues)
   {

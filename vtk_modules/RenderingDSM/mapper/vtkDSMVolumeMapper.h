@@ -109,6 +109,24 @@ public:
 
   ///@{
   /**
+   * Whether values of the array outside of ValidRange are missing, as NaN is: cells with such a corner, or of such a
+   * value, have no surface, medium, or slice, and do not count for the automatic isovalue. Off by default.
+   */
+  vtkSetMacro(IgnoreValues, bool);
+  vtkGetMacro(IgnoreValues, bool);
+  vtkBooleanMacro(IgnoreValues, bool);
+  ///@}
+
+  ///@{
+  /**
+   * The lowest and the highest value that is not missing. All finite values by default.
+   */
+  vtkSetVector2Macro(ValidRange, double);
+  vtkGetVector2Macro(ValidRange, double);
+  ///@}
+
+  ///@{
+  /**
    * The isovalues, in any order.
    */
   void SetNumberOfIsoValues(int number);
@@ -457,6 +475,8 @@ private:
   std::string IsoArray;
   bool IsoArrayOnCells = false;
   int IsoComponent = 0;
+  bool IgnoreValues = false;
+  double ValidRange[2] = { VTK_DOUBLE_MIN, VTK_DOUBLE_MAX };
   std::vector<double> IsoValues;
   bool AutomaticIsoValue = false;
   double SuggestedIsoValue = vtkMath::Nan();
