@@ -80,6 +80,31 @@ if get_ranks() == 1:
 else:
     check_equal(pictures[0], numpy.load(reference), "the picture is what one rank draws")
 
+# Values that an attribute declares missing are as NaN: in pictures, in the range, and for the suggested isovalue.
+def show_missing(name, array, isovalue):
+    source = simple.DSMVolumeReader(FileName=os.path.join(FILES, name))
+    display = show(source, view, [isovalue], array)
+    place_camera(view)
+    pixels = render(view)
+    display.DSMIsoValues = []
+    simple.Render(view)
+    display.UpdatePropertyInformation()
+    found = pixels, source.PointData[array].GetRange(0), display.GetPropertyValue("DSMSuggestedIsoValue")
+    simple.Delete(source)
+    return found
+
+
+MISSING = (("nan", 0.7, (("missing.h5", "float"), ("missing.h5", "double"), ("missing_float.zarr", "missing_float"))),
+           ("whole nan", 70.5, (("missing.h5", "short"), ("missing.h5", "byte"), ("missing_short.zarr", "missing_short"))))
+for reference_name, isovalue, arrays in MISSING:
+    expected, range_, suggested = show_missing("missing.h5", reference_name, isovalue)
+    check(get_covered(expected).mean() > 0.05, f"{reference_name}: something is shown")
+    for name, array in arrays:
+        traced, found_range, found = show_missing(name, array, isovalue)
+        check_equal(traced, expected, f"{name}, {array}: as NaN")
+        check(numpy.allclose(found_range, range_), f"{name}, {array}: the range of its values: {found_range}, {range_}")
+        check(abs(found - suggested) < 1e-3, f"{name}, {array}: the isovalue that NaN suggest: {found}, {suggested}")
+
 # What dsm_convert writes is ParaView's own, too.
 for name in ("ball.vtkhdf", "ball_deflate.vtkhdf"):
     theirs = simple.VTKHDFReader(FileName=os.path.join(FILES, name))

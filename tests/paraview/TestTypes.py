@@ -108,3 +108,46 @@ for kind in (REPRESENTATION, "DSM Volume", "DSM Slices"):
         check((shell != expected_of_cells).any(), f"{kind}, {array}: values that are not ignored are there")
         traced, _ = picture_missing(missing, ("CELLS", array), kind, **IGNORED)
         check_equal(traced, expected_of_cells, f"{kind}, {array}: as blanked cells")
+
+# The same of cells of several sizes.
+NAN_LEAVES = """
+from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
+import numpy as np
+data, out = self.GetInputDataObject(0, 0), self.GetOutputDataObject(0)
+isTree = data.IsA('vtkHyperTreeGrid')
+(out.DeepCopy if isTree else out.RecursiveShallowCopy if IS_OLD else out.ShallowCopy)(data)
+parts = [out] if isTree else []
+leaf = None if isTree else out.NewIterator()
+while leaf and not leaf.IsDoneWithTraversal():
+    parts.append(leaf.GetCurrentDataObject())
+    leaf.GoToNextItem()
+for part in parts:
+    values = vtk_to_numpy(part.GetCellData().GetArray(NAME)).astype('f8')
+    values[values > HIGHEST] = np.nan
+    array = numpy_to_vtk(values, deep=True)
+    array.SetName(NAME)
+    part.GetCellData().AddArray(array)
+"""
+
+
+def picture_leaves(source, name, isovalue, **properties):
+    show_traced(source, view, DSMShow="Isosurfaces", DSMIsoArray=("CELLS", name), DSMIsoValues=[isovalue], **properties)
+    simple.Render(view)  # the bounds of trees are known then
+    place_camera(view)
+    pixels = render(view)
+    simple.Hide(source, view)
+    return pixels
+
+
+for create, name, isovalue, highest in (
+    (simple.AMRGaussianPulseSource, "Gaussian-Pulse", 0.12, 0.29), (simple.HyperTreeGridRandom, "Depth", 2.5, 4.5)
+):
+    leaves = create()
+    nan = simple.ProgrammableFilter(Input=leaves, CopyArrays=0)
+    is_old = simple.GetParaViewVersion() < (5, 12)
+    nan.Script = f"NAME, HIGHEST, IS_OLD = {name!r}, {highest}, {is_old}" + NAN_LEAVES
+    everything = picture_leaves(leaves, name, isovalue, DSMIgnoreValues=0)
+    expected = picture_leaves(nan, name, isovalue)
+    traced = picture_leaves(leaves, name, isovalue, DSMIgnoreValues=1, DSMValidRange=[0.0, highest])
+    check(get_covered(expected).any() and (everything != expected).any(), f"{name}: a part is shown")
+    check_equal(traced, expected, f"{name}: as NaN")

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Balls to be looked at, in several formats, and such as change with time. Importing it makes the files."""
 
+import json
+
 import h5py
 import numpy as np
 from numcodecs import Blosc
@@ -20,6 +22,28 @@ ball = np.sqrt(x * x + y * y + z * z).astype("<f4")
 with h5py.File(path("ball.h5"), "w") as file:
     file.create_dataset("f", data=ball, chunks=(16, 10, 13), compression="gzip", shuffle=True)
 save_zarr("ball.zarr", ball, compressor=Blosc("zstd"), chunks=(9, 40, 20))
+# Missing values: NaN, and values that an attribute declares missing, of several types.
+is_missing = np.broadcast_to(x + 0.3 * y > 0.25, ball.shape)
+with h5py.File(path("missing.h5"), "w") as file:
+    for name, dtype, scale, value, attribute in (
+        ("nan", "<f4", 1, np.nan, None),
+        ("float", "<f4", 1, 9.96921e36, "_FillValue"),
+        ("double", ">f8", 1, -1e20, "missing_value"),
+        ("whole nan", "<f4", 100, np.nan, None),
+        ("short", "<i2", 100, -9999, "_FillValue"),
+        ("byte", "|u1", 100, 255, "missing_value"),
+    ):
+        stored = ball if scale == 1 else np.round(scale * ball)
+        stored = np.where(is_missing, value, stored).astype(dtype)
+        dataset = file.create_dataset(name, data=stored, chunks=(16, 10, 13), compression="gzip")
+        if attribute:
+            # As netCDF-4 has it: an array of one number.
+            dataset.attrs[attribute] = np.array([value], dtype)
+for name, dtype, value, attribute in (("float", "<f4", 1e20, "missing_value"), ("short", "<i2", -9999, "_FillValue")):
+    stored = np.where(is_missing, value, ball if dtype == "<f4" else np.round(100 * ball)).astype(dtype)
+    save_zarr(f"missing_{name}.zarr", stored, compressor=Blosc("zstd"), chunks=(9, 40, 20))
+    with open(path(f"missing_{name}.zarr/.zattrs"), "w", encoding="utf-8") as file:
+        json.dump({attribute: value}, file)
 image = vtkImageData()
 image.SetDimensions(*edges)
 image.GetPointData().SetScalars(numpy_to_vtk(ball.ravel(), deep=True))
