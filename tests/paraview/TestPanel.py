@@ -32,8 +32,8 @@ view = create_view()
 SLICES = [f"DSMSlice{axis}{part}" for axis in "XYZ" for part in ("", "Index", "Indices")] + ["DSMSlicePlane"]
 LIGHT = ["DSMShadows", "DSMAmbientOcclusionSamples", "DSMSamplesPerPixel"]
 for source, own in (
-    (simple.Wavelet(), ["DSMShow", "DSMIsoArray", "DSMIsoArrayAutomatic", "DSMIsoComponent", "DSMIsoValue", "DSMIsoValueAutomatic",
-                        "DSMValueRange", "DSMIsoValues", *SLICES]),
+    (simple.Wavelet(), ["DSMShow", "DSMIsoArray", "DSMIsoArrayAutomatic", "DSMIsoComponent", "DSMIgnoreValues",
+                        "DSMValidRange", "DSMIsoValue", "DSMIsoValueAutomatic", "DSMValueRange", "DSMIsoValues", *SLICES]),
     (simple.Cone(), []),
 ):
     names = list_panel(simple.Show(source, view))

@@ -97,7 +97,8 @@ cells = image_source(CELLS)
 display = show_traced(cells, view)
 with Messages():
     render(view)
-check(display.DSMIsoValue == 0.0, f"data of cells only: the isovalue is {display.DSMIsoValue}")
+check(display.DSMIsoArray[1] == "c", f"data of cells only: the array is {display.DSMIsoArray}")
+check(display.DSMIsoValue > 0.0, f"data of cells only: the isovalue is {display.DSMIsoValue}")
 simple.Delete(cells)
 
 # Data without an array show their outer surface; once they have one, its isosurfaces, unless that was chosen.
