@@ -141,9 +141,11 @@ compare_with_contour("Blocks", blocks, 0.7, "f")
 for source in (blocks, *halves):
     simple.Delete(source)
 
-# Real data, where they are.
-DATA = "/work/shared/data/grids/rectilinear_flow.vtr"
-if os.path.exists(DATA):
+# Real data, in the folder that DSM_TEST_GRIDS names.
+DATA = os.path.join(os.environ.get("DSM_TEST_GRIDS", ""), "rectilinear_flow.vtr")
+if not os.path.exists(DATA):
+    print("skipped: DSM_TEST_GRIDS names no folder with rectilinear_flow.vtr")
+else:
     flow = simple.XMLRectilinearGridReader(FileName=[DATA])
     for isovalue in (1.0, 3.0, 5.2):
         compare_with_contour(f"Flow{isovalue}", flow, isovalue, "scalars", angle=15.0)
