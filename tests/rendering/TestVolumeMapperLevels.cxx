@@ -47,7 +47,7 @@ double GetDistance(const dvec3& place)
   return glm::length(place) / Edge;
 }
 
-/// `extentAtGhosts`: cells are counted from the first that is no ghost, so that extents begin below 0.
+/// `extentAtGhosts`: the first cell that is no ghost has index 0, so extents begin below 0.
 vtkSmartPointer<vtkUniformGrid> Make(const Block& block, bool extentAtGhosts = false, int ratio = 2,
   const char* name = "distance", bool asInteger = false)
 {

@@ -89,8 +89,8 @@ struct Recipe
   int BrickEdge = 8;
   Hole Holes = Hole::None;
   bool Blanked = false; ///< some cells do not hold data
-  /// Of a rectilinear volume: widths of cells on x, each over that of the one before it, and on z the other way round;
-  /// those on y are random. 1: uniform.
+  /// Makes a rectilinear volume unless it is 1: each cell is so many times as wide as the one before it on x, and as the
+  /// one after it on z. Widths on y are random.
   double Growth = 1.0;
   unsigned Seed = 1;
 };

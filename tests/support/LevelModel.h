@@ -31,7 +31,7 @@ public:
   {
   }
 
-  /// Makes leaves of level `to` (or nothing) out of a leaf of level `from`. Does nothing if there is no such leaf.
+  /// Divides a leaf of level `from` into leaves of level `to`, or removes it. Does nothing if there is no such leaf.
   void Replace(int from, const Index3& cell, int to)
   {
     if (this->GetLevel(cell * this->GetParts(from)) == from)
@@ -103,7 +103,7 @@ public:
   Index3 Size; ///< of the finest lattice
   bool OfPoints = false;
   bricks::ScalarType Type = bricks::ScalarType::Float32;
-  /// Of the level, and of a place.
+  /// The value of a leaf of a level at a place.
   std::function<double(int, const glm::dvec3&)> Function = [](int, const glm::dvec3& place)
   { return glm::length(place); };
 

@@ -205,7 +205,7 @@ private:
   void ColorBlocksByArray(vtkDataObject* data);
 
   int Shown = SHOW_ISOSURFACES;
-  // Of the isosurfaces, where later ones count.
+  // The isosurfaces' own blocks: a later choice for a block replaces an earlier one.
   std::vector<std::string> ShownBlocks;
   std::vector<std::pair<std::string, std::array<double, 3>>> ColorsOfBlocks;
   std::vector<std::pair<std::string, double>> OpacitiesOfBlocks;

@@ -5,6 +5,7 @@
 #include "DSMCore/base/Error.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <string>
 #include <tuple>
@@ -89,6 +90,16 @@ Index3 DivideDown(const Index3& number, const Index3& by)
 Index3 DivideUp(const Index3& number, const Index3& by)
 {
   return -DivideDown(-number, by);
+}
+
+LevelScales::LevelScales(std::vector<Index3> scales)
+  : Scales(std::move(scales))
+{
+  for (const Index3& cells : this->Scales)
+  {
+    const glm::dvec3 scale(cells);
+    this->Sizes.push_back(1.0 / std::cbrt(scale.x * scale.y * scale.z));
+  }
 }
 
 LevelLattice::LevelLattice(LevelScales scales, const std::vector<LevelCube>& cubes, ScalarType type)

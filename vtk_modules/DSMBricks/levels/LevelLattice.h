@@ -24,19 +24,19 @@ class LevelScales
 public:
   LevelScales() = default;
   /// `scales`: cells of a level on each axis for one of level 0; those of a level are multiples of those before.
-  explicit LevelScales(std::vector<Index3> scales)
-    : Scales(std::move(scales))
-  {
-  }
+  explicit LevelScales(std::vector<Index3> scales);
 
   int GetCount() const { return static_cast<int>(this->Scales.size()); }
   const Index3& Get(int level) const { return this->Scales[static_cast<std::size_t>(level)]; }
+  /// Edge length of a cube with as much volume as a cell of a level, where one of level 0 has 1.
+  double GetSize(int level) const { return this->Sizes[static_cast<std::size_t>(level)]; }
   /// Cells of the finer level for one of the coarser, on each axis.
   Index3 GetRatio(int coarser, int finer) const { return this->Get(finer) / this->Get(coarser); }
   bool operator==(const LevelScales& other) const { return this->Scales == other.Scales; }
 
 private:
   std::vector<Index3> Scales;
+  std::vector<double> Sizes;
 };
 
 /// Rounds towards minus infinity.

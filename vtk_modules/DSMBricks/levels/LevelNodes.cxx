@@ -52,12 +52,6 @@ std::size_t LevelNodes::CountPoints() const
   return static_cast<std::size_t>(points.GetCount());
 }
 
-double LevelNodes::GetSize(int level) const
-{
-  const glm::dvec3 scale(this->Lattice.GetScales().Get(level));
-  return 1.0 / std::cbrt(scale.x * scale.y * scale.z);
-}
-
 void LevelNodes::AddLeaves(const Box& box, const double* values, const std::uint8_t* isLeaf)
 {
   const Box cells = Intersect(box, this->Around);
@@ -225,7 +219,8 @@ void LevelNodes::FindMean(const Index3& point)
   {
     if (octant.Level != Nothing)
     {
-      const double weight = this->GetSize(coarsest) / this->GetSize(octant.Level);
+      const LevelScales& scales = this->Lattice.GetScales();
+      const double weight = scales.GetSize(coarsest) / scales.GetSize(octant.Level);
       sum += weight * octant.Value;
       weights += weight;
     }

@@ -161,7 +161,6 @@ private:
   /// The value that a leaf of a coarser level has at the point; false if it is not known.
   bool Interpolate(const Index3& point, int level, const Index3& leaf, double& value) const;
   void FindMean(const Index3& point);
-  double GetSize(int level) const;
 
   const LevelLattice& Lattice;
   LevelBrick Brick;

@@ -22,8 +22,6 @@ public:
   vtkDSMAmrData(const std::shared_ptr<vtkDSMRankGroup>& group, const Parts& parts);
   ~vtkDSMAmrData() override;
 
-  void AddPlaces(bricks::ByteHash& hash) const override;
-
 private:
   class Source;
   /// A block of any rank.
@@ -33,6 +31,7 @@ private:
     bricks::Box Cells; ///< of the level, without ghosts
   };
 
+  void AddPlaces(bricks::ByteHash& hash) const override;
   std::unique_ptr<bricks::LevelSource> CreateSource(const Choice& choice) const override;
   void FindLevels();
   void FindPlaces();

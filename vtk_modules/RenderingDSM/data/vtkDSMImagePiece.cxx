@@ -190,17 +190,6 @@ void GatherComponent(
   }
 }
 
-double GetMagnitude(vtkDataArray* array, vtkIdType tuple)
-{
-  double sum = 0.0;
-  for (int component = 0; component < array->GetNumberOfComponents(); ++component)
-  {
-    const double value = array->GetComponent(tuple, component);
-    sum += value * value;
-  }
-  return std::sqrt(sum);
-}
-
 void ReadColors(vtkDataArray* array, const Box& all, const Box& samples, std::byte* out)
 {
   vtkSmartPointer<vtkDataArray> values;
@@ -312,6 +301,17 @@ std::vector<std::uint8_t> vtkDSMImagePiece::FindShown(vtkDataSet* image, const B
       shown.push_back(isShown ? 1 : 0);
     });
   return shown;
+}
+
+double vtkDSMImagePiece::GetMagnitude(vtkDataArray* array, vtkIdType tuple)
+{
+  double sum = 0.0;
+  for (int component = 0; component < array->GetNumberOfComponents(); ++component)
+  {
+    const double value = array->GetComponent(tuple, component);
+    sum += value * value;
+  }
+  return std::sqrt(sum);
 }
 
 bricks::ScalarType vtkDSMImagePiece::GetScalarType(vtkDataArray* array, int component)

@@ -9,6 +9,7 @@
 #include "DSMVolumeFiles/cache/FileSamples.h"
 
 #include "vtkSmartPointer.h"
+#include "vtkType.h"
 
 #include <cstdint>
 #include <vector>
@@ -46,6 +47,9 @@ public:
   /// One byte a cell of a box in the image's own indices, x fastest: 0 for blanked cells and copies of other pieces' cells,
   /// else 1. Cells that are marked as refined count as any others.
   static std::vector<std::uint8_t> FindShown(vtkDataSet* image, const bricks::Box& cells);
+
+  /// Returns the magnitude of a tuple.
+  static double GetMagnitude(vtkDataArray* array, vtkIdType tuple);
 
   /// Arrays keep their type; the magnitude is float where that holds it, else double; colors are packed.
   static bricks::ScalarType GetScalarType(vtkDataArray* array, int component);

@@ -96,6 +96,17 @@ std::unique_ptr<vtkDSMLevelData> vtkDSMLevelData::Create(
   }
 }
 
+std::uint64_t vtkDSMLevelData::HashPlaces() const
+{
+  if (!this->PlacesHash)
+  {
+    bricks::ByteHash hash;
+    this->AddPlaces(hash);
+    this->PlacesHash = hash.Get();
+  }
+  return *this->PlacesHash;
+}
+
 void vtkDSMLevelData::SetPlace(
   const glm::dvec3& origin, const glm::dmat3& direction, const glm::dvec3& spacing)
 {

@@ -13,8 +13,10 @@
 
 #include <glm/mat4x4.hpp>
 
+#include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -43,8 +45,8 @@ public:
   const glm::dmat4& GetIndexToWorld() const { return this->IndexToWorld; }
   /// Returns the bounds of all ranks' parts; uninitialized bounds (min > max) if there are none.
   void GetBounds(double bounds[6]) const;
-  /// Local: adds where this rank's cells are.
-  virtual void AddPlaces(bricks::ByteHash& hash) const = 0;
+  /// Local: a hash of where this rank's cells are.
+  std::uint64_t HashPlaces() const;
 
   /// Collective. Cuts an array into bricks: `infos` tell of all ranks' parts. Null where no part has it.
   std::shared_ptr<const bricks::LevelVoxels> Publish(const Choice& choice,
@@ -55,6 +57,8 @@ protected:
   explicit vtkDSMLevelData(std::shared_ptr<vtkDSMRankGroup> group);
   /// Local: this rank's leaves, with the values of an array.
   virtual std::unique_ptr<bricks::LevelSource> CreateSource(const Choice& choice) const = 0;
+  /// Local: adds where this rank's cells are.
+  virtual void AddPlaces(bricks::ByteHash& hash) const = 0;
   /// Sets the place of the coarsest level. `origin`: of its point (0, 0, 0).
   void SetPlace(const glm::dvec3& origin, const glm::dmat3& direction, const glm::dvec3& spacing);
 
@@ -66,6 +70,7 @@ protected:
 
 private:
   glm::dmat4 IndexToWorld{ 1.0 };
+  mutable std::optional<std::uint64_t> PlacesHash; ///< set when it is first asked for
 };
 
 #endif

@@ -139,17 +139,9 @@ private:
   double GetValue(const Leaf& leaf) const
   {
     vtkDataArray* const array = this->Arrays[leaf.Grid];
-    if (this->Component != vtkDSMImagePiece::Magnitude)
-    {
-      return array->GetComponent(leaf.Id, this->Component);
-    }
-    double sum = 0.0;
-    for (int component = 0; component < array->GetNumberOfComponents(); ++component)
-    {
-      const double value = array->GetComponent(leaf.Id, component);
-      sum += value * value;
-    }
-    return std::sqrt(sum);
+    return this->Component == vtkDSMImagePiece::Magnitude
+      ? vtkDSMImagePiece::GetMagnitude(array, leaf.Id)
+      : array->GetComponent(leaf.Id, this->Component);
   }
 
   void Add(int level, const Index3& cell, Leaf leaf)

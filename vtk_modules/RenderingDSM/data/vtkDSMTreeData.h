@@ -17,8 +17,6 @@ public:
   vtkDSMTreeData(const std::shared_ptr<vtkDSMRankGroup>& group, const Parts& parts);
   ~vtkDSMTreeData() override;
 
-  void AddPlaces(bricks::ByteHash& hash) const override;
-
 private:
   class Source;
   /// Where a grid's roots are; plain, for messages between ranks.
@@ -33,6 +31,7 @@ private:
   static Roots Describe(vtkHyperTreeGrid* grid);
   void Place(const std::vector<Roots>& all, int firstOwn);
 
+  void AddPlaces(bricks::ByteHash& hash) const override;
   std::unique_ptr<bricks::LevelSource> CreateSource(const Choice& choice) const override;
 
   std::vector<vtkSmartPointer<vtkHyperTreeGrid>> Grids;

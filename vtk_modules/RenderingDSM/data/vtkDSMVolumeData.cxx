@@ -289,7 +289,8 @@ std::uint64_t vtkDSMVolumeData::HashContent(const Choice& choice) const
   }
   if (this->Levels)
   {
-    this->Levels->AddPlaces(hash);
+    const std::uint64_t places = this->Levels->HashPlaces();
+    hash.Add(&places, sizeof(places));
   }
   for (vtkDataObject* part : this->LevelParts)
   {

@@ -3,6 +3,8 @@
 #define rt_BeamBricks_h
 
 #include "DSMCore/base/Block.h"
+#include "DSMCore/base/FunctionRef.h"
+#include "DSMCore/publish/BlockSegment.h"
 #include "DSMRayTracing/object/ObjectBeam.h"
 
 #include <algorithm>
@@ -41,6 +43,16 @@ struct BeamBricks final : ObjectBeam
     return ids;
   }
 };
+
+/// BeamFinder::Prefetch of a beam's bricks, which are a segment's. `addNeighbors`: see the store's Prefetch; may be empty.
+template <class Store>
+bool PrefetchFirst(Store& store, const dsm::BlockSegment& segment, const ObjectBeam& beam,
+  std::size_t count,
+  dsm::FunctionRef<void(dsm::BlockId, std::vector<dsm::BlockId>&)> addNeighbors = {})
+{
+  const std::vector<dsm::BlockId> ids = static_cast<const BeamBricks&>(beam).GetFirst(count);
+  return store.Prefetch(segment, ids.data(), ids.size(), addNeighbors);
+}
 
 } // namespace rt
 

@@ -170,16 +170,8 @@ template <class Predicate>
 BeamBricks FindBeamBricks(const LatticeField& field, const Predicate& mayHold, const Ray corners[4])
 {
   const IndexSpace space = field.GetIndexSpace();
-  GridRay lines[4];
-  for (int corner = 0; corner < 4; ++corner)
-  {
-    if (!space.GetGridRay(corners[corner], lines[corner]))
-    {
-      return BeamBricks();
-    }
-  }
   RayBeam beam;
-  if (!beam.Set(lines))
+  if (!beam.Set(space, corners))
   {
     return BeamBricks();
   }

@@ -74,8 +74,8 @@ struct LatticeField
   double GetGrowth(const glm::dvec3& gradient) const;
   /// The brick that has a place's values (world space); of no segment, outside of the lattice.
   ObjectTracer::Brick FindBrick(const glm::dvec3& place) const;
-  /// World length of a cell's shortest edge; of a rectilinear grid, of a cell of mean size: a hit is no more exact than its
-  /// large cells are.
+  /// World length of a cell's shortest edge. A rectilinear grid gives that of a cell of mean size, because hits in its large
+  /// cells are no more exact.
   double GetFinestLength() const;
   /// All that a picture depends on.
   void AddTo(ObjectDigest& digest) const;

@@ -48,23 +48,21 @@ inline int MoveAlongAll(
 }
 
 /// Divides the `wanted` rays of a batch into packets of rays whose directions have the same signs, or of a
-/// single ray. Calls `visit(bricks, packet)` for each, with the bricks whose values satisfy `mayHold`;
-/// `visit` returns some of the rays, and the function returns all of these. `beam`: contains all of the rays;
-/// null, or not usable: each packet searches for its bricks.
-template <class Predicate, class Visit>
-RayMask ForEachPacket(const LatticeField& field, const Predicate& mayHold,
-  const PacketKernel& kernel, BeamBricks* beam, const Ray* rays, RayMask wanted, const Visit& visit)
+/// single ray. For each, fills `packet`, in the index space with so many cells, and calls `visit(bricks)`, which returns some
+/// of the rays; the function returns all of these. `beam`: contains all of the rays; null, or not usable: `find(RayBeam)`
+/// returns the bricks for each packet.
+template <class Find, class Visit>
+RayMask FillPackets(RayPacket& packet, const IndexSpace& space, const glm::dmat4& indexToWorld,
+  const bricks::Index3& cells, const PacketKernel& kernel, BeamBricks* beam, const Ray* rays,
+  RayMask wanted, const Find& find, const Visit& visit)
 {
   RayMask found = 0;
   RayMask left = wanted;
-  RayPacket packet;
-  const IndexSpace space = field.GetIndexSpace();
-  const bricks::Index3 cells = field.Voxels->Lattice.GetCells();
   if (beam && beam->Usable)
   {
     std::copy_n(beam->Forward, 3, packet.Forward);
     left = kernel.SetRays(packet, rays, wanted, space, cells);
-    found |= visit(*beam, packet);
+    found |= visit(*beam);
   }
   if (left == 0)
   {
@@ -73,9 +71,8 @@ RayMask ForEachPacket(const LatticeField& field, const Predicate& mayHold,
   Ray moved[MaxRays];
   RayMask sides[8] = {};
   ForEachRay(left,
-    [&](int index) {
-      sides[MoveAlongAll(space, field.IndexToWorld, rays[index], moved[index])] |= GetBit(index);
-    });
+    [&](int index)
+    { sides[MoveAlongAll(space, indexToWorld, rays[index], moved[index])] |= GetBit(index); });
   for (int side = 0; side < 8; ++side)
   {
     if (sides[side] == 0)
@@ -91,12 +88,27 @@ RayMask ForEachPacket(const LatticeField& field, const Predicate& mayHold,
     {
       RayBeam own;
       own.Set(packet);
-      BeamBricks bricks =
-        BeamDescent<Predicate>(field.Voxels->Hierarchy, mayHold, own, space.GetPlanes()).Find();
-      found |= visit(bricks, packet);
+      BeamBricks bricks = find(own);
+      found |= visit(bricks);
     }
   }
   return found;
+}
+
+/// FillPackets for a lattice: calls `visit(bricks, packet)` with the bricks whose values satisfy `mayHold`.
+template <class Predicate, class Visit>
+RayMask ForEachPacket(const LatticeField& field, const Predicate& mayHold,
+  const PacketKernel& kernel, BeamBricks* beam, const Ray* rays, RayMask wanted, const Visit& visit)
+{
+  RayPacket packet;
+  const IndexSpace space = field.GetIndexSpace();
+  return FillPackets(
+    packet, space, field.IndexToWorld, field.Voxels->Lattice.GetCells(), kernel, beam, rays, wanted,
+    [&](const RayBeam& own) {
+      return BeamDescent<Predicate>(field.Voxels->Hierarchy, mayHold, own, space.GetPlanes())
+        .Find();
+    },
+    [&](BeamBricks& bricks) { return visit(bricks, packet); });
 }
 
 } // namespace rt

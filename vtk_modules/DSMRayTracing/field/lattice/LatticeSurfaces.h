@@ -42,8 +42,7 @@ public:
   /// See ObjectTracer.
   bool Prefetch(const Sets& sets, const ObjectBeam& beam, std::size_t count) const
   {
-    const std::vector<dsm::BlockId> ids = static_cast<const BeamBricks&>(beam).GetFirst(count);
-    return this->Blocks.Prefetch(*sets.Field.Voxels->Segment, ids.data(), ids.size(),
+    return PrefetchFirst(this->Blocks, *sets.Field.Voxels->Segment, beam, count,
       [&](dsm::BlockId id, std::vector<dsm::BlockId>& neighbors)
       { AddNeighbors(sets, id, neighbors); });
   }

@@ -63,6 +63,19 @@ bool RayBeam::Set(const GridRay corners[4])
   return true;
 }
 
+bool RayBeam::Set(const IndexSpace& space, const Ray corners[4])
+{
+  GridRay lines[4];
+  for (int corner = 0; corner < 4; ++corner)
+  {
+    if (!space.GetGridRay(corners[corner], lines[corner]))
+    {
+      return false;
+    }
+  }
+  return this->Set(lines);
+}
+
 void RayBeam::SetSide(int number, const double normal[3], double least)
 {
   Side& side = this->Sides[number];

@@ -3,6 +3,8 @@
 #define rt_RayBeam_h
 
 #include "DSMRayTracing/field/lattice/GridRay.h"
+#include "DSMRayTracing/field/lattice/IndexSpace.h"
+#include "DSMRayTracing/ray/Ray.h"
 #include "DSMRayTracing/ray/RayPacket.h"
 
 #include <algorithm>
@@ -19,6 +21,8 @@ public:
   /// camera. `corners`: in order around the beam. Returns false when it is of no use: corners that move to
   /// different sides or not at all on an axis, or that are not apart.
   bool Set(const GridRay corners[4]);
+  /// The same of rays in world space; also false when one of them cannot be traced.
+  bool Set(const IndexSpace& space, const Ray corners[4]);
 
   /// The rays of a packet, from where they enter the volume to where they leave it. There is at least
   /// one.

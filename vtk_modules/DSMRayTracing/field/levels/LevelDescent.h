@@ -89,17 +89,9 @@ BeamBricks FindLevelBricks(
 template <class Predicate>
 BeamBricks FindLevelBricks(const LevelField& field, const Predicate& mayHold, const Ray corners[4])
 {
-  const IndexSpace space = field.GetIndexSpace();
-  GridRay lines[4];
-  for (int corner = 0; corner < 4; ++corner)
-  {
-    if (!space.GetGridRay(corners[corner], lines[corner]))
-    {
-      return BeamBricks();
-    }
-  }
   RayBeam beam;
-  return beam.Set(lines) ? FindLevelBricks(*field.Voxels, mayHold, beam) : BeamBricks();
+  return beam.Set(field.GetIndexSpace(), corners) ? FindLevelBricks(*field.Voxels, mayHold, beam)
+                                                  : BeamBricks();
 }
 
 } // namespace rt

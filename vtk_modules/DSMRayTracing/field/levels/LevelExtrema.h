@@ -41,8 +41,7 @@ public:
   /// See BeamFinder.
   bool Prefetch(const LevelField& field, const ObjectBeam& beam, std::size_t count) const
   {
-    const std::vector<dsm::BlockId> ids = static_cast<const BeamBricks&>(beam).GetFirst(count);
-    return this->Blocks.Prefetch(*field.Voxels->Segment, ids.data(), ids.size(), {});
+    return PrefetchFirst(this->Blocks, *field.Voxels->Segment, beam, count);
   }
 
   /// See LatticeExtrema.

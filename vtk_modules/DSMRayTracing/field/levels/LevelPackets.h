@@ -61,56 +61,22 @@ private:
   std::vector<std::unique_ptr<RayPacket>> Scaled;
 };
 
-/// As ForEachPacket of a lattice: calls `visit(bricks, packets)`.
+/// FillPackets for levels: calls `visit(bricks, packets)` with the bricks whose values satisfy `mayHold`.
 template <class Predicate, class Visit>
 RayMask ForEachLevelPacket(const LevelField& field, const Predicate& mayHold,
   const PacketKernel& kernel, BeamBricks* beam, const Ray* rays, RayMask wanted, const Visit& visit)
 {
-  RayMask found = 0;
-  RayMask left = wanted;
   const bricks::LevelLattice& lattice = field.Voxels->Lattice;
   LevelPackets packets(lattice.GetScales());
-  RayPacket& packet = packets.GetCoarsest();
-  const IndexSpace space = field.GetIndexSpace();
   const bricks::Index3 cells(glm::ceil(lattice.GetBounds()[1]));
-  if (beam && beam->Usable)
-  {
-    std::copy_n(beam->Forward, 3, packet.Forward);
-    left = kernel.SetRays(packet, rays, wanted, space, cells);
-    packets.Begin();
-    found |= visit(*beam, packets);
-  }
-  if (left == 0)
-  {
-    return found;
-  }
-  Ray moved[MaxRays];
-  RayMask sides[8] = {};
-  ForEachRay(left,
-    [&](int index) {
-      sides[MoveAlongAll(space, field.IndexToWorld, rays[index], moved[index])] |= GetBit(index);
-    });
-  for (int side = 0; side < 8; ++side)
-  {
-    if (sides[side] == 0)
-    {
-      continue;
-    }
-    for (int axis = 0; axis < 3; ++axis)
-    {
-      packet.Forward[axis] = (side >> axis & 1) != 0;
-    }
-    kernel.SetRays(packet, moved, sides[side], space, cells);
-    if (packet.Rays != 0)
+  return FillPackets(
+    packets.GetCoarsest(), field.GetIndexSpace(), field.IndexToWorld, cells, kernel, beam, rays,
+    wanted, [&](const RayBeam& own) { return FindLevelBricks(*field.Voxels, mayHold, own); },
+    [&](BeamBricks& bricks)
     {
       packets.Begin();
-      RayBeam own;
-      own.Set(packet);
-      BeamBricks bricks = FindLevelBricks(*field.Voxels, mayHold, own);
-      found |= visit(bricks, packets);
-    }
-  }
-  return found;
+      return visit(bricks, packets);
+    });
 }
 
 } // namespace rt

@@ -57,9 +57,7 @@ template <class Store>
 bool LevelSurfaces<Store>::Prefetch(
   const Sets& sets, const ObjectBeam& beam, std::size_t count) const
 {
-  const std::vector<dsm::BlockId> ids = static_cast<const BeamBricks&>(beam).GetFirst(count);
-  return this->Blocks.Prefetch(*sets.Field.Voxels->Segment, ids.data(), ids.size(),
-    [](dsm::BlockId, std::vector<dsm::BlockId>&) {});
+  return PrefetchFirst(this->Blocks, *sets.Field.Voxels->Segment, beam, count);
 }
 
 template <class Store>
