@@ -5,6 +5,7 @@ std::vector<RecordedScene> CreateRecordedScenes()
 {
   std::vector<RecordedScene> scenes;
   AddVolumeScenes(scenes);
+  AddLevelScenes(scenes);
   AddMeshScenes(scenes);
   AddLightScenes(scenes);
   AddMediumScenes(scenes);

@@ -19,6 +19,8 @@ struct RecordedScene
 
 /// Types, shapes, missing data, bricks and colors of volumes.
 void AddVolumeScenes(std::vector<RecordedScene>& scenes);
+/// Levels of leaves, with every jump and holes: isosurfaces, slices, media.
+void AddLevelScenes(std::vector<RecordedScene>& scenes);
 /// Media: types, shapes, transfer functions, media in one another and with surfaces, and the light that gets through.
 void AddMediumScenes(std::vector<RecordedScene>& scenes);
 /// Planes through volumes: types, shapes, looks, clip regions, and with isosurfaces and media.

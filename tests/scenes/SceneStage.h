@@ -52,6 +52,9 @@ public:
     this->AddLight({ -0.48, -0.6, -0.64 });
   }
 
+  dsm::Messenger& GetMessenger() { return this->Messenger; }
+  dsm::BlockStore& GetStore() { return this->Store; }
+
   rt::Scene World;
   rt::FrameRequest Request;
   /// In how many parts the samples of a pixel are traced.
