@@ -22,7 +22,7 @@ using LevelSum = SumOf<LevelField>;
 
 /// The table of the kinds of media. A kind has
 /// - a description, named here, with AddTo and the name of
-/// - its Tracer, a MediumTracer for a store, whose header CreateSceneTracers includes.
+/// - its Tracer, a MediumTracer for a store, whose header SceneTracers-inl.h includes.
 using SceneMedium =
   std::variant<LatticeMedium, LatticeExtremum, LatticeSum, LevelMedium, LevelExtremum, LevelSum>;
 

@@ -20,7 +20,7 @@ using LevelSlice = SliceOf<LevelField>;
 
 /// The table of the kinds of objects. A kind has
 /// - a description, named here, with IsOpaque, AddTo and the name of
-/// - its Tracer, an ObjectTracer for a store, whose header CreateSceneTracers includes.
+/// - its Tracer, an ObjectTracer for a store, whose header SceneTracers-inl.h includes.
 /// Among surfaces that are equally near, that of the kind that comes first here is visible.
 using SceneObject =
   std::variant<LatticeIsosurface, LevelIsosurface, MeshObject, LatticeSlice, LevelSlice>;
