@@ -12,12 +12,18 @@
 #include "vtkAutoInit.h"
 #include "vtkCallbackCommand.h"
 #include "vtkCamera.h"
+#include "vtkCellData.h"
 #include "vtkCommand.h"
+#include "vtkDoubleArray.h"
 #include "vtkFloatArray.h"
+#include "vtkHyperTreeGrid.h"
+#include "vtkHyperTreeGridNonOrientedCursor.h"
 #include "vtkImageData.h"
 #include "vtkMPIController.h"
+#include "vtkMultiBlockDataSet.h"
 #include "vtkNew.h"
 #include "vtkPointData.h"
+#include "vtkPolyData.h"
 #include "vtkPropCollection.h"
 #include "vtkRenderWindow.h"
 #include "vtkRenderer.h"
@@ -118,6 +124,46 @@ vtkSmartPointer<vtkImageData> MakeSlab(int rank, int ranks)
   return image;
 }
 
+/// Roots only, from 2 to 3 edges along x, with the distance from the middle.
+vtkSmartPointer<vtkHyperTreeGrid> MakeTrees()
+{
+  constexpr unsigned roots = 6;
+  auto grid = vtkSmartPointer<vtkHyperTreeGrid>::New();
+  const unsigned points[] = { roots + 1, roots + 1, roots + 1 };
+  grid->SetDimensions(points);
+  grid->SetBranchFactor(2);
+  vtkNew<vtkDoubleArray> axes[3];
+  for (unsigned point = 0; point <= roots; ++point)
+  {
+    const double place = static_cast<double>(Edge) * point / roots;
+    axes[0]->InsertNextValue(2.0 * Edge + place);
+    axes[1]->InsertNextValue(place);
+    axes[2]->InsertNextValue(place);
+  }
+  grid->SetXCoordinates(axes[0]);
+  grid->SetYCoordinates(axes[1]);
+  grid->SetZCoordinates(axes[2]);
+  vtkNew<vtkDoubleArray> distance;
+  distance->SetName("distance");
+  vtkNew<vtkHyperTreeGridNonOrientedCursor> cursor;
+  for (vtkIdType tree = 0; tree < grid->GetMaxNumberOfTrees(); ++tree)
+  {
+    grid->InitializeNonOrientedCursor(cursor, tree, true);
+    cursor->SetGlobalIndexStart(tree);
+    unsigned at[3];
+    grid->GetLevelZeroCoordinatesFromIndex(tree, at[0], at[1], at[2]);
+    double square = 0.0;
+    for (const unsigned root : at)
+    {
+      const double apart = Edge * ((root + 0.5) / roots - 0.5);
+      square += apart * apart;
+    }
+    distance->InsertValue(tree, std::sqrt(square));
+  }
+  grid->GetCellData()->AddArray(distance);
+  return grid;
+}
+
 class SeveralRanks : public testing::Test
 {
 protected:
@@ -192,6 +238,37 @@ protected:
   vtkNew<vtkTest::ErrorObserver> Errors;
   int TimesGiven = 0;
 };
+
+TEST_F(SeveralRanks, KindsThatOneRankHasAreShownByAll)
+{
+  const int rank = this->Controller->GetLocalProcessId();
+  const int last = this->Controller->GetNumberOfProcesses() - 1;
+  const auto trees = MakeTrees();
+  vtkNew<vtkMultiBlockDataSet> blocks;
+  if (rank == 0)
+  {
+    blocks->SetBlock(0, MakeSlab(0, 1));
+  }
+  if (rank == last)
+  {
+    blocks->SetBlock(1, trees);
+  }
+  this->Mapper->SetInputData(blocks);
+  EXPECT_EQ(this->Trace(), "");
+  ASSERT_TRUE(this->Mapper->GetBounds());
+  EXPECT_EQ(this->Mapper->GetBounds()[0], 0.0);
+  EXPECT_EQ(this->Mapper->GetBounds()[1], 3.0 * Edge);
+  // Only one rank has anything that can be shown.
+  vtkNew<vtkMultiBlockDataSet> others;
+  others->SetBlock(0, vtkSmartPointer<vtkPolyData>::New());
+  this->Mapper->SetInputData(rank > 0 ? others.Get() : blocks.Get());
+  EXPECT_EQ(this->Trace(), "");
+  // A failure of one is one of all.
+  trees->GetXCoordinates()->SetTuple1(1, 1.3 * Edge);
+  this->Mapper->SetInputData(blocks);
+  EXPECT_NE(
+    this->Trace().find("roots of the hyper tree grid are not equally spaced"), std::string::npos);
+}
 
 TEST_F(SeveralRanks, OutOfMemoryOfOneIsReportedByAllAndTheNextFrameIsDrawn)
 {

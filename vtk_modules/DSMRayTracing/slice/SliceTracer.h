@@ -103,7 +103,8 @@ public:
       [&](int index)
       {
         places[index] = hits[index].Get<Hit>().At;
-        ofBlocks[index] = look.Blocks ? look.Blocks->Find(places[index].GetCell()) : nullptr;
+        ofBlocks[index] =
+          look.Blocks ? look.Blocks->Find(this->Object.Field.GetBlockCell(places[index])) : nullptr;
       });
     const auto hasOwnColor = [&](int index) { return ofBlocks[index] && ofBlocks[index]->Color; };
     glm::vec4 colors[MaxRays];

@@ -25,7 +25,7 @@ class IsosurfaceTracer;
 /// - Values, what is sampled, and Place, where;
 /// - Surfaces, which finds the isosurfaces, and Sampler, which reads values, both for a store (LatticeSurfaces and
 ///   LatticeSampler say what for);
-/// - GetValues, GetNormal, GetFinestLength and AddTo; HasHoles and AddTo of values.
+/// - GetValues, GetNormal, GetBlockCell, GetFinestLength and AddTo; HasHoles and AddTo of values.
 template <class FieldType>
 struct IsosurfaceOf : LevelSets<FieldType>
 {

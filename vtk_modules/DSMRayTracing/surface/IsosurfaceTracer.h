@@ -102,7 +102,7 @@ public:
       uncolored = FindRays(wanted,
         [&](int index)
         {
-          ofBlocks[index] = look.Blocks->Find(places[index].GetCell());
+          ofBlocks[index] = look.Blocks->Find(this->Object.Field.GetBlockCell(places[index]));
           return !ofBlocks[index] || !ofBlocks[index]->Color;
         });
     }

@@ -173,16 +173,16 @@ private:
 };
 
 vtkDSMAmrData::vtkDSMAmrData(const std::shared_ptr<vtkDSMRankGroup>& group, const Parts& parts)
-  : vtkDSMLevelData(group)
+  : vtkDSMLevelData(group, parts)
 {
   dsm::Messenger& messenger = this->Group->GetMessenger();
   std::vector<bricks::PieceInfo> mine;
   messenger.RunTogether("Reading the levels",
     [&]
     {
-      for (const auto& part : parts)
+      for (const Part& part : parts)
       {
-        vtkImageData* const block = vtkImageData::SafeDownCast(part);
+        vtkImageData* const block = vtkImageData::SafeDownCast(part.Data);
         this->Blocks.emplace_back(block);
         mine.push_back(vtkDSMImagePiece::Describe(block, 0));
       }

@@ -3,97 +3,67 @@
 
 #include "DSMBricks/levels/PublishLevels.h"
 #include "vtkDSMAmrData.h"
+#include "vtkDSMContent.h"
 #include "vtkDSMImagePiece.h"
 #include "vtkDSMTreeData.h"
 
 #include "vtkBoundingBox.h"
-#include "vtkCompositeDataIterator.h"
-#include "vtkCompositeDataSet.h"
+#include "vtkDataArray.h"
+#include "vtkDataSetAttributes.h"
 #include "vtkHyperTreeGrid.h"
-#include "vtkImageData.h"
-#include "vtkUniformGridAMR.h"
 
 #include <algorithm>
 #include <cstdint>
 #include <limits>
 #include <utility>
 
-vtkDSMLevelData::vtkDSMLevelData(std::shared_ptr<vtkDSMRankGroup> group)
+namespace
+{
+
+std::vector<vtkSmartPointer<vtkDataObject>> GetData(const vtkDSMLevelData::Parts& parts)
+{
+  std::vector<vtkSmartPointer<vtkDataObject>> data;
+  for (const vtkDSMLevelData::Part& part : parts)
+  {
+    data.push_back(part.Data);
+  }
+  return data;
+}
+
+} // namespace
+
+vtkDSMLevelData::vtkDSMLevelData(std::shared_ptr<vtkDSMRankGroup> group, const Parts& parts)
   : Group(std::move(group))
   , Lower(std::numeric_limits<double>::infinity())
   , Upper(-std::numeric_limits<double>::infinity())
+  , Own(GetData(parts))
+  , Arrays(this->Group->GetMessenger(), this->Own)
 {
 }
 
 vtkDSMLevelData::~vtkDSMLevelData() = default;
 
-bool vtkDSMLevelData::IsOfLevels(vtkDataObject* data)
-{
-  return vtkUniformGridAMR::SafeDownCast(data) || vtkHyperTreeGrid::SafeDownCast(data);
-}
-
-vtkDSMLevelData::Parts vtkDSMLevelData::GetParts(vtkDataObject* data)
-{
-  Parts parts;
-  const bool isAmr = vtkUniformGridAMR::SafeDownCast(data);
-  bool isMixed = false;
-  const auto add = [&](vtkDataObject* object)
-  {
-    auto* image = vtkImageData::SafeDownCast(object);
-    auto* trees = vtkHyperTreeGrid::SafeDownCast(object);
-    const bool isTree = trees && trees->GetNumberOfElements(vtkDataObject::CELL) > 0;
-    if (isTree || (isAmr && image && image->GetNumberOfPoints() > 0))
-    {
-      parts.emplace_back(object);
-    }
-    isMixed = isMixed || (object && !isAmr && !trees);
-  };
-  auto* composite = vtkCompositeDataSet::SafeDownCast(data);
-  if (!composite)
-  {
-    add(data);
-  }
-  else
-  {
-    vtkSmartPointer<vtkCompositeDataIterator> leaf;
-    leaf.TakeReference(composite->NewIterator());
-    for (leaf->InitTraversal(); !leaf->IsDoneWithTraversal(); leaf->GoToNextItem())
-    {
-      add(leaf->GetCurrentDataObject());
-    }
-  }
-  if (isMixed && !parts.empty())
-  {
-    throw dsm::Error("The dataset has hyper tree grids and other blocks. Show them apart, for "
-                     "example with Extract Block.");
-  }
-  return parts;
-}
-
-std::unique_ptr<vtkDSMLevelData> vtkDSMLevelData::Create(
+std::vector<std::unique_ptr<vtkDSMLevelData>> vtkDSMLevelData::Create(
   const std::shared_ptr<vtkDSMRankGroup>& group, const Parts& parts)
 {
-  enum Kind : std::uint8_t
+  Parts images;
+  Parts trees;
+  for (const Part& part : parts)
   {
-    Nothing,
-    Amr,
-    Trees
-  };
-  Kind mine = parts.empty() ? Nothing : Amr;
-  if (!parts.empty() && vtkHyperTreeGrid::SafeDownCast(parts.front()))
-  {
-    mine = Trees;
+    (vtkHyperTreeGrid::SafeDownCast(part.Data) ? trees : images).push_back(part);
   }
-  const std::vector<Kind> all = group->GetMessenger().AllGatherValue(mine);
-  switch (*std::max_element(all.begin(), all.end()))
+  std::vector<std::unique_ptr<vtkDSMLevelData>> all;
+  const std::vector<std::uint8_t> haveAmr =
+    group->GetMessenger().AllGatherValue(std::uint8_t(images.empty() ? 0 : 1));
+  if (*std::max_element(haveAmr.begin(), haveAmr.end()) != 0)
   {
-    case Amr:
-      return std::make_unique<vtkDSMAmrData>(group, parts);
-    case Trees:
-      return std::make_unique<vtkDSMTreeData>(group, parts);
-    default:
-      return nullptr;
+    all.push_back(std::make_unique<vtkDSMAmrData>(group, images));
   }
+  for (const Parts& joined : vtkDSMTreeData::Join(group->GetMessenger(), trees))
+  {
+    all.push_back(std::make_unique<vtkDSMTreeData>(group, joined));
+  }
+  return all;
 }
 
 std::uint64_t vtkDSMLevelData::HashPlaces() const
@@ -105,6 +75,43 @@ std::uint64_t vtkDSMLevelData::HashPlaces() const
     this->PlacesHash = hash.Get();
   }
   return *this->PlacesHash;
+}
+
+vtkDSMLevelData::Choice vtkDSMLevelData::Find(const Choice& choice) const
+{
+  Choice ofCells{ choice.Name, choice.Component, true };
+  ofCells.Valid = choice.Valid;
+  const bool isOfCells =
+    this->Arrays.CountComponents(choice) == 0 && this->Arrays.CountComponents(ofCells) > 0;
+  return isOfCells ? this->Arrays.Normalize(ofCells) : choice;
+}
+
+std::vector<vtkDSMImageArrays::Info> vtkDSMLevelData::FindArrays(const Choice& choice) const
+{
+  std::vector<vtkDSMImageArrays::Info> infos(this->Own.size());
+  for (std::size_t own = 0; own < this->Own.size(); ++own)
+  {
+    vtkDSMImageArrays::Find(this->Own[own], this->Find(choice), infos[own]);
+  }
+  return infos;
+}
+
+void vtkDSMLevelData::AddContent(const Choice& choice, int threads, bricks::ByteHash& hash) const
+{
+  const auto add = [&](vtkAbstractArray* array)
+  {
+    const std::uint64_t value = vtkDSMContent::Hash(array, threads);
+    hash.Add(&value, sizeof(value));
+  };
+  const std::uint64_t places = this->HashPlaces();
+  hash.Add(&places, sizeof(places));
+  for (vtkDataObject* part : this->Own)
+  {
+    vtkDSMImageArrays::Info info;
+    add(vtkDSMImageArrays::Find(part, this->Find(choice), info));
+    add(part->GetAttributes(vtkDataObject::CELL)
+          ->GetAbstractArray(vtkDataSetAttributes::GhostArrayName()));
+  }
 }
 
 void vtkDSMLevelData::SetPlace(
@@ -131,11 +138,12 @@ void vtkDSMLevelData::GetBounds(double bounds[6]) const
   box.GetBounds(bounds);
 }
 
-std::shared_ptr<const bricks::LevelVoxels> vtkDSMLevelData::Publish(const Choice& choice,
+std::shared_ptr<const bricks::LevelVoxels> vtkDSMLevelData::Publish(const Choice& wanted,
   const std::string& purpose, const std::vector<vtkDSMImageArrays::Info>& infos,
   const std::function<void(double)>& progress) const
 {
   dsm::Messenger& messenger = this->Group->GetMessenger();
+  const Choice choice = this->Find(wanted);
   if (choice.Component == vtkDSMImagePiece::Color)
   {
     throw dsm::Error("The colors in the array '" + choice.Name +

@@ -2,10 +2,12 @@
 #ifndef vtkDSMLevelData_h
 #define vtkDSMLevelData_h
 
+#include "DSMBricks/base/Box.h"
 #include "DSMBricks/base/ByteHash.h"
 #include "DSMBricks/levels/LevelLattice.h"
 #include "DSMBricks/levels/LevelSource.h"
 #include "DSMBricks/levels/LevelVoxels.h"
+#include "vtkDSMBlockLooks.h"
 #include "vtkDSMImageArrays.h"
 #include "vtkDSMRankGroup.h"
 
@@ -22,22 +24,32 @@
 
 class vtkDataObject;
 
-/// The parts of a dataset whose cells are of several sizes that lie within one another, distributed over the ranks in any way.
-/// Keeps the parts alive, without a copy. Methods documented as collective need every rank. Failures are dsm::Error, the same
-/// on every rank.
+/// Parts of a dataset whose cells are of several sizes that lie within one another, with one coarsest level in common,
+/// distributed over the ranks in any way. Keeps the parts alive, without a copy. Methods documented as collective need every
+/// rank. Failures are dsm::Error, the same on every rank.
 class vtkDSMLevelData
 {
 public:
   using Choice = vtkDSMImageArrays::Choice;
-  using Parts = std::vector<vtkSmartPointer<vtkDataObject>>;
+  struct Part
+  {
+    vtkSmartPointer<vtkDataObject> Data; ///< a hyper tree grid with cells, or an image of AMR
+    /// Flat index of what it is a piece of, in the rank's composite dataset; 0 if the dataset is no multi-block. Pieces
+    /// of one hyper tree grid have the same on all ranks.
+    std::int64_t Dataset = 0;
+    vtkDSMBlockLook Look = {};
+  };
+  using Parts = std::vector<Part>;
+  /// Appearance that was set for some cells, in indices of the coarsest level.
+  struct Block
+  {
+    bricks::Box Cells;
+    vtkDSMBlockLook Look;
+  };
 
-  /// Local: whether a dataset is AMR or a hyper tree grid; it may have no cells on this rank.
-  static bool IsOfLevels(vtkDataObject* data);
-  /// Local: the parts of such a dataset, which have points or cells; none if the data are of another kind. Throws dsm::Error
-  /// where parts of different kinds are together.
-  static Parts GetParts(vtkDataObject* data);
-  /// Collective. `parts`: this rank's. Returns null if no rank has any.
-  static std::unique_ptr<vtkDSMLevelData> Create(
+  /// Collective. `parts`: this rank's. AMR is one; hyper tree grids are one where their roots are on one lattice and do not
+  /// overlap.
+  static std::vector<std::unique_ptr<vtkDSMLevelData>> Create(
     const std::shared_ptr<vtkDSMRankGroup>& group, const Parts& parts);
   virtual ~vtkDSMLevelData();
 
@@ -45,16 +57,22 @@ public:
   const glm::dmat4& GetIndexToWorld() const { return this->IndexToWorld; }
   /// Returns the bounds of all ranks' parts; uninitialized bounds (min > max) if there are none.
   void GetBounds(double bounds[6]) const;
-  /// Local: a hash of where this rank's cells are.
-  std::uint64_t HashPlaces() const;
+  /// All ranks' blocks.
+  const std::vector<Block>& GetBlocks() const { return this->BlockLooks; }
+  /// Local: adds this rank's cells and their values.
+  void AddContent(const Choice& choice, int threads, bricks::ByteHash& hash) const;
 
-  /// Collective. Cuts an array into bricks: `infos` tell of all ranks' parts. Null where no part has it.
+  /// Local: whether this rank's parts have an array.
+  std::vector<vtkDSMImageArrays::Info> FindArrays(const Choice& choice) const;
+  /// Collective. Cuts an array into bricks: `infos` is FindArrays of all ranks. Null where no part has it. An array of points
+  /// that the parts do not have is the array of cells of that name.
   std::shared_ptr<const bricks::LevelVoxels> Publish(const Choice& choice,
     const std::string& purpose, const std::vector<vtkDSMImageArrays::Info>& infos,
     const std::function<void(double)>& progress) const;
 
 protected:
-  explicit vtkDSMLevelData(std::shared_ptr<vtkDSMRankGroup> group);
+  /// Collective.
+  vtkDSMLevelData(std::shared_ptr<vtkDSMRankGroup> group, const Parts& parts);
   /// Local: this rank's leaves, with the values of an array.
   virtual std::unique_ptr<bricks::LevelSource> CreateSource(const Choice& choice) const = 0;
   /// Local: adds where this rank's cells are.
@@ -67,8 +85,15 @@ protected:
   /// Bounds of all cells, in cells of the coarsest level; empty without any.
   glm::dvec3 Lower;
   glm::dvec3 Upper;
+  std::vector<Block> BlockLooks;
 
 private:
+  /// The array as the parts have it.
+  Choice Find(const Choice& choice) const;
+  std::uint64_t HashPlaces() const;
+
+  std::vector<vtkSmartPointer<vtkDataObject>> Own;
+  vtkDSMImageArrays Arrays;
   glm::dmat4 IndexToWorld{ 1.0 };
   mutable std::optional<std::uint64_t> PlacesHash; ///< set when it is first asked for
 };

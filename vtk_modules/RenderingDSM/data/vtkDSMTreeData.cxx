@@ -17,6 +17,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 namespace
 {
@@ -163,18 +164,17 @@ private:
 };
 
 vtkDSMTreeData::vtkDSMTreeData(const std::shared_ptr<vtkDSMRankGroup>& group, const Parts& parts)
-  : vtkDSMLevelData(group)
+  : vtkDSMLevelData(group, parts)
 {
   dsm::Messenger& messenger = this->Group->GetMessenger();
   std::vector<Roots> mine;
   messenger.RunTogether("Reading the hyper trees",
     [&]
     {
-      for (const auto& part : parts)
+      for (const Part& part : parts)
       {
-        vtkHyperTreeGrid* const grid = vtkHyperTreeGrid::SafeDownCast(part);
-        this->Grids.emplace_back(grid);
-        mine.push_back(Describe(grid));
+        this->Grids.emplace_back(vtkHyperTreeGrid::SafeDownCast(part.Data));
+        mine.push_back(Describe(part));
       }
     });
   int first = 0;
@@ -184,8 +184,95 @@ vtkDSMTreeData::vtkDSMTreeData(const std::shared_ptr<vtkDSMRankGroup>& group, co
 
 vtkDSMTreeData::~vtkDSMTreeData() = default;
 
-vtkDSMTreeData::Roots vtkDSMTreeData::Describe(vtkHyperTreeGrid* grid)
+std::vector<vtkDSMLevelData::Parts> vtkDSMTreeData::Join(
+  dsm::Messenger& messenger, const Parts& parts)
 {
+  std::vector<Roots> mine;
+  messenger.RunTogether("Reading the hyper trees",
+    [&]
+    {
+      for (const Part& part : parts)
+      {
+        mine.push_back(Describe(part));
+      }
+    });
+  int firstOwn = 0;
+  const std::vector<Roots> all = vtkDSMGather::Items(messenger, mine, firstOwn);
+  std::vector<std::size_t> order(all.size());
+  std::iota(order.begin(), order.end(), std::size_t(0));
+  std::stable_sort(order.begin(), order.end(),
+    [&](std::size_t a, std::size_t b) { return all[a].Dataset < all[b].Dataset; });
+
+  struct Joined
+  {
+    std::vector<std::size_t> Grids;
+    std::vector<bricks::Box> Trees; ///< of datasets, on the lattice of the first grid
+    const Roots& GetFirst(const std::vector<Roots>& roots) const { return roots[this->Grids[0]]; }
+  };
+  std::vector<Joined> datasets;
+  for (const std::size_t grid : order)
+  {
+    const auto same = std::find_if(datasets.begin(), datasets.end(),
+      [&](const Joined& one)
+      {
+        return one.GetFirst(all).Dataset == all[grid].Dataset &&
+          FindFirst(all[grid], one.GetFirst(all));
+      });
+    if (same == datasets.end())
+    {
+      datasets.push_back({ { grid }, { all[grid].Trees } });
+      continue;
+    }
+    const Index3 first = *FindFirst(all[grid], same->GetFirst(all));
+    bricks::Box& trees = same->Trees.front();
+    trees.Min = glm::min(trees.Min, all[grid].Trees.Min + first);
+    trees.Max = glm::max(trees.Max, all[grid].Trees.Max + first);
+    same->Grids.push_back(grid);
+  }
+  std::vector<Joined> unions;
+  for (const Joined& dataset : datasets)
+  {
+    bool isJoined = false;
+    for (Joined& one : unions)
+    {
+      const auto first = FindFirst(dataset.GetFirst(all), one.GetFirst(all));
+      const bricks::Box& own = dataset.Trees.front();
+      const bricks::Box trees{ own.Min + first.value_or(Index3(0)),
+        own.Max + first.value_or(Index3(0)) };
+      isJoined = first &&
+        std::all_of(one.Trees.begin(), one.Trees.end(),
+          [&](const bricks::Box& other) { return bricks::Intersect(trees, other).IsEmpty(); });
+      if (isJoined)
+      {
+        one.Trees.push_back(trees);
+        one.Grids.insert(one.Grids.end(), dataset.Grids.begin(), dataset.Grids.end());
+        break;
+      }
+    }
+    if (!isJoined)
+    {
+      unions.push_back(dataset);
+    }
+  }
+  std::vector<Parts> joined;
+  for (const Joined& one : unions)
+  {
+    Parts& own = joined.emplace_back();
+    for (const std::size_t grid : one.Grids)
+    {
+      const auto number = static_cast<std::int64_t>(grid) - firstOwn;
+      if (number >= 0 && number < static_cast<std::int64_t>(parts.size()))
+      {
+        own.push_back(parts[static_cast<std::size_t>(number)]);
+      }
+    }
+  }
+  return joined;
+}
+
+vtkDSMTreeData::Roots vtkDSMTreeData::Describe(const Part& part)
+{
+  auto* const grid = vtkHyperTreeGrid::SafeDownCast(part.Data);
   if (grid->GetDimension() != 3)
   {
     throw dsm::Error("A hyper tree grid of " + std::to_string(grid->GetDimension()) +
@@ -214,7 +301,38 @@ vtkDSMTreeData::Roots vtkDSMTreeData::Describe(vtkHyperTreeGrid* grid)
   }
   roots.Branching = grid->GetBranchFactor();
   roots.Levels = static_cast<std::int64_t>(grid->GetNumberOfLevels());
+  roots.Trees = { Index3(std::numeric_limits<std::int64_t>::max()), Index3(0) };
+  vtkHyperTreeGrid::vtkHyperTreeGridIterator trees;
+  trees.Initialize(grid);
+  vtkIdType index = 0;
+  while (trees.GetNextTree(index))
+  {
+    unsigned int root[3];
+    grid->GetLevelZeroCoordinatesFromIndex(index, root[0], root[1], root[2]);
+    roots.Trees.Min = glm::min(roots.Trees.Min, Index3(root[0], root[1], root[2]));
+    roots.Trees.Max = glm::max(roots.Trees.Max, Index3(root[0], root[1], root[2]) + Index3(1));
+  }
+  roots.Dataset = part.Dataset;
+  roots.Look = part.Look;
   return roots;
+}
+
+std::optional<Index3> vtkDSMTreeData::FindFirst(const Roots& roots, const Roots& other)
+{
+  Index3 first;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    const double spacing = other.Spacing[axis];
+    const double exact = (roots.Origin[axis] - other.Origin[axis]) / spacing;
+    first[axis] = std::llround(exact);
+    if (!(std::abs(exact - static_cast<double>(first[axis])) < 0.05) ||
+      !(std::abs(roots.Spacing[axis] - spacing) < 1e-3 * spacing) ||
+      roots.Branching != other.Branching)
+    {
+      return std::nullopt;
+    }
+  }
+  return first;
 }
 
 void vtkDSMTreeData::Place(const std::vector<Roots>& all, int firstOwn)
@@ -227,20 +345,7 @@ void vtkDSMTreeData::Place(const std::vector<Roots>& all, int firstOwn)
   std::int64_t levels = 1;
   for (const Roots& roots : all)
   {
-    Index3 first;
-    for (int axis = 0; axis < 3; ++axis)
-    {
-      const double exact = (roots.Origin[axis] - anchor[axis]) / spacing[axis];
-      first[axis] = std::llround(exact);
-      if (!(std::abs(exact - static_cast<double>(first[axis])) < 0.05) ||
-        !(std::abs(roots.Spacing[axis] - spacing[axis]) < 1e-3 * spacing[axis]) ||
-        roots.Branching != one.Branching)
-      {
-        throw dsm::Error("The hyper tree grids of the dataset have different roots. Show them "
-                         "apart, for example with "
-                         "Extract Block.");
-      }
-    }
+    const Index3 first = *FindFirst(roots, one);
     firsts.push_back(first);
     least = glm::min(least, first);
     levels = std::max(levels, roots.Levels);
@@ -256,6 +361,8 @@ void vtkDSMTreeData::Place(const std::vector<Roots>& all, int firstOwn)
     const Index3 first = firsts[number] - least;
     const Index3 end =
       first + Index3(all[number].Cells[0], all[number].Cells[1], all[number].Cells[2]);
+    this->BlockLooks.push_back(
+      { { all[number].Trees.Min + first, all[number].Trees.Max + first }, all[number].Look });
     this->Lower = glm::min(this->Lower, glm::dvec3(first));
     this->Upper = glm::max(this->Upper, glm::dvec3(end));
     const std::size_t begin = static_cast<std::size_t>(firstOwn);
@@ -269,10 +376,14 @@ void vtkDSMTreeData::Place(const std::vector<Roots>& all, int firstOwn)
 
 void vtkDSMTreeData::AddPlaces(bricks::ByteHash& hash) const
 {
+  const int levels = this->Scales.GetCount();
+  const Index3 finest = this->Scales.Get(levels - 1);
+  hash.Add(&levels, sizeof(levels));
+  hash.Add(&finest, sizeof(finest));
   for (std::size_t own = 0; own < this->Grids.size(); ++own)
   {
-    const Roots roots = Describe(this->Grids[own]);
-    hash.Add(&roots, sizeof(roots));
+    const Index3& first = this->FirstRoots[own];
+    hash.Add(&first, sizeof(first));
     LeafWalk(this->Grids[own])
       .Run(
         [&](int level, const Index3& cell, vtkIdType id)

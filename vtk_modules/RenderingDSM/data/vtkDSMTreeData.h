@@ -2,20 +2,26 @@
 #ifndef vtkDSMTreeData_h
 #define vtkDSMTreeData_h
 
+#include "DSMBricks/base/Box.h"
 #include "vtkDSMLevelData.h"
 
 #include <memory>
+#include <optional>
 #include <vector>
 
 class vtkHyperTreeGrid;
 
-/// Hyper tree grids in three dimensions, whose roots are equally spaced. Masked and ghost cells are not shown.
+/// Hyper tree grids in three dimensions, whose roots are on one lattice, equally spaced. Masked and ghost cells are not shown.
 class vtkDSMTreeData final : public vtkDSMLevelData
 {
 public:
-  /// Collective. `parts`: this rank's hyper tree grids.
+  /// Collective. `parts`: this rank's hyper tree grids, which Join has put together.
   vtkDSMTreeData(const std::shared_ptr<vtkDSMRankGroup>& group, const Parts& parts);
   ~vtkDSMTreeData() override;
+
+  /// Collective. Returns this rank's grids sorted into those that are one; some have none on this rank. Grids whose roots
+  /// are on one lattice are one if they are pieces of the same dataset, or if there is no root where several have a tree.
+  static std::vector<Parts> Join(dsm::Messenger& messenger, const Parts& parts);
 
 private:
   class Source;
@@ -27,8 +33,13 @@ private:
     std::int64_t Cells[3];
     std::int64_t Branching;
     std::int64_t Levels;
+    bricks::Box Trees;    ///< around the roots that have a tree
+    std::int64_t Dataset; ///< see Part
+    vtkDSMBlockLook Look;
   };
-  static Roots Describe(vtkHyperTreeGrid* grid);
+  static Roots Describe(const Part& part);
+  /// Finds where the first root of a grid is on the lattice of another one's. Nothing where it is not on it.
+  static std::optional<bricks::Index3> FindFirst(const Roots& roots, const Roots& other);
   void Place(const std::vector<Roots>& all, int firstOwn);
 
   void AddPlaces(bricks::ByteHash& hash) const override;

@@ -11,9 +11,7 @@
 
 #include "vtkBoundingBox.h"
 #include "vtkCellData.h"
-#include "vtkCompositeDataIterator.h"
 #include "vtkDataArray.h"
-#include "vtkDataObjectTree.h"
 #include "vtkDataSet.h"
 #include "vtkPointData.h"
 
@@ -29,11 +27,10 @@ vtkDSMVolumeData::vtkDSMVolumeData(std::shared_ptr<vtkDSMRankGroup> group, vtkDa
   dsm::Messenger& messenger = this->Group->GetMessenger();
   std::vector<bricks::PieceInfo> mine;
   std::vector<double> myCoordinates;
-  std::vector<vtkDSMBlockLook> myLooks;
+  const std::vector<vtkDSMBlockLook> myLooks = this->Collect(data, looks);
   messenger.RunTogether("Reading the volume",
     [&]
     {
-      this->CollectImages(data);
       for (std::size_t index = 0; index < this->Images.size(); ++index)
       {
         mine.push_back(vtkDSMImagePiece::Describe(this->Images[index], this->Leaves[index]));
@@ -42,8 +39,6 @@ vtkDSMVolumeData::vtkDSMVolumeData(std::shared_ptr<vtkDSMRankGroup> group, vtkDa
         {
           myCoordinates.insert(myCoordinates.end(), planes.begin(), planes.end());
         }
-        const auto look = looks.find(static_cast<unsigned int>(this->Leaves[index]));
-        myLooks.push_back(look != looks.end() ? look->second : vtkDSMBlockLook());
       }
     });
   this->Pieces = vtkDSMGather::Items(messenger, mine, this->FirstOwnPiece);
@@ -53,8 +48,11 @@ vtkDSMVolumeData::vtkDSMVolumeData(std::shared_ptr<vtkDSMRankGroup> group, vtkDa
   messenger.RunTogether("Reading the volume",
     [&]
     {
-      all = this->LevelParts;
-      all.insert(all.end(), this->Images.begin(), this->Images.end());
+      all.assign(this->Images.begin(), this->Images.end());
+      for (const vtkDSMLevelData::Part& part : this->LevelParts)
+      {
+        all.push_back(part.Data);
+      }
     });
   this->Arrays = vtkDSMImageArrays(messenger, all);
   this->Levels = vtkDSMLevelData::Create(this->Group, this->LevelParts);
@@ -175,61 +173,6 @@ std::uint64_t vtkDSMVolumeData::HashPoints(const bricks::LatticePlan::Member& me
 
 vtkDSMVolumeData::~vtkDSMVolumeData() = default;
 
-void vtkDSMVolumeData::CollectImages(vtkDataObject* data)
-{
-  const auto add = [this](vtkDataObject* object, int leaf)
-  {
-    vtkDataSet* const image = vtkDSMImagePiece::FindImage(object);
-    if (image && image->GetNumberOfPoints() > 0)
-    {
-      this->Images.emplace_back(image);
-      this->Leaves.push_back(leaf);
-    }
-    return image != nullptr;
-  };
-  if (!data || add(data, 0))
-  {
-    return;
-  }
-  this->LevelParts = vtkDSMLevelData::GetParts(data);
-  if (!this->LevelParts.empty() || vtkDSMLevelData::IsOfLevels(data))
-  {
-    return;
-  }
-  auto* tree = vtkDataObjectTree::SafeDownCast(data);
-  if (!tree)
-  {
-    throw dsm::Error(std::string("A dataset of type ") + data->GetClassName() +
-      " cannot be ray traced. Image data, rectilinear grids, or blocks of these are required. "
-      "Apply "
-      "Resample To Image first.");
-  }
-  vtkSmartPointer<vtkCompositeDataIterator> leaf;
-  leaf.TakeReference(tree->NewIterator());
-  bool anyOther = false;
-  for (leaf->InitTraversal(); !leaf->IsDoneWithTraversal(); leaf->GoToNextItem())
-  {
-    anyOther =
-      !add(leaf->GetCurrentDataObject(), static_cast<int>(leaf->GetCurrentFlatIndex())) || anyOther;
-  }
-  if (anyOther && this->Images.empty())
-  {
-    throw dsm::Error(
-      "The blocks of the dataset are neither image data nor rectilinear grids, which "
-      "ray tracing requires. Apply Resample To Image first.");
-  }
-}
-
-std::vector<vtkDSMVolumeData::Block> vtkDSMVolumeData::GetBlocks(std::size_t lattice) const
-{
-  std::vector<Block> blocks;
-  for (const bricks::LatticePlan::Member& member : this->Plan.GetLattices()[lattice].Members)
-  {
-    blocks.push_back({ member.Cells, this->Looks[member.Piece] });
-  }
-  return blocks;
-}
-
 void vtkDSMVolumeData::GetBounds(double bounds[6]) const
 {
   vtkBoundingBox box;
@@ -243,22 +186,13 @@ void vtkDSMVolumeData::GetBounds(double bounds[6]) const
       box.AddPoint(point.x, point.y, point.z);
     }
   }
-  if (this->Levels)
+  for (const auto& levels : this->Levels)
   {
     double ofLevels[6];
-    this->Levels->GetBounds(ofLevels);
+    levels->GetBounds(ofLevels);
     box.AddBounds(ofLevels);
   }
   box.GetBounds(bounds);
-}
-
-vtkDSMVolumeData::Choice vtkDSMVolumeData::ChooseOfLevels(const Choice& choice) const
-{
-  Choice ofCells{ choice.Name, choice.Component, true };
-  ofCells.Valid = choice.Valid;
-  const bool isOfCells =
-    this->Arrays.CountComponents(choice) == 0 && this->Arrays.CountComponents(ofCells) > 0;
-  return isOfCells ? this->Arrays.Normalize(ofCells) : choice;
 }
 
 std::uint64_t vtkDSMVolumeData::HashContent(const Choice& choice) const
@@ -287,17 +221,9 @@ std::uint64_t vtkDSMVolumeData::HashContent(const Choice& choice) const
     add(image->GetPointData()->GetAbstractArray(ghosts));
     add(image->GetCellData()->GetAbstractArray(ghosts));
   }
-  if (this->Levels)
+  for (const auto& levels : this->Levels)
   {
-    const std::uint64_t places = this->Levels->HashPlaces();
-    hash.Add(&places, sizeof(places));
-  }
-  for (vtkDataObject* part : this->LevelParts)
-  {
-    vtkDSMImageArrays::Info info;
-    add(vtkDSMImageArrays::Find(part, this->ChooseOfLevels(choice), info));
-    add(part->GetAttributes(vtkDataObject::CELL)
-          ->GetAbstractArray(vtkDataSetAttributes::GhostArrayName()));
+    levels->AddContent(choice, threads, hash);
   }
   return hash.Get();
 }
@@ -310,7 +236,7 @@ std::shared_ptr<const vtkDSMVolumeData::Publication> vtkDSMVolumeData::Publish(c
   std::vector<vtkDSMImageArrays::Info> mine(this->Images.size());
   const auto published = std::make_shared<Publication>();
   std::vector<vtkDSMFileVolume::Seat> mySeats(this->Images.size());
-  std::vector<vtkDSMImageArrays::Info> myLevels(this->LevelParts.size());
+  std::vector<std::vector<vtkDSMImageArrays::Info>> ofLevels;
   messenger.RunTogether("Reading the " + purpose,
     [&]
     {
@@ -319,18 +245,20 @@ std::shared_ptr<const vtkDSMVolumeData::Publication> vtkDSMVolumeData::Publish(c
         vtkDataArray* array = vtkDSMImageArrays::Find(this->Images[index], choice, mine[index]);
         mySeats[index] = vtkDSMFileVolume::Describe(this->Images[index], array, choice.OnCells);
       }
-      for (std::size_t index = 0; index < this->LevelParts.size(); ++index)
+      for (const auto& levels : this->Levels)
       {
-        vtkDSMImageArrays::Find(
-          this->LevelParts[index], this->ChooseOfLevels(choice), myLevels[index]);
+        ofLevels.push_back(levels->FindArrays(choice));
       }
       published->Content = this->HashContent(choice);
     });
   const std::vector<vtkDSMImageArrays::Info> infos = vtkDSMGather::Items(messenger, mine);
   const auto seats = vtkDSMGather::Items(messenger, mySeats);
-  const auto levels = vtkDSMGather::Items(messenger, myLevels);
   std::vector<vtkDSMImageArrays::Info> all = infos;
-  all.insert(all.end(), levels.begin(), levels.end());
+  for (auto& levels : ofLevels)
+  {
+    levels = vtkDSMGather::Items(messenger, levels);
+    all.insert(all.end(), levels.begin(), levels.end());
+  }
   const auto isUsable = [](const vtkDSMImageArrays::Info& info) { return info.IsUsable(); };
   if (!all.empty() && std::none_of(all.begin(), all.end(), isUsable))
   {
@@ -352,10 +280,10 @@ std::shared_ptr<const vtkDSMVolumeData::Publication> vtkDSMVolumeData::Publish(c
     this->PublishLattice(
       *published, lattice, choice, purpose, infos, seats, progress, std::move(known));
   }
-  if (this->Levels)
+  for (std::size_t number = 0; number < this->Levels.size(); ++number)
   {
-    published->Levels =
-      this->Levels->Publish(this->ChooseOfLevels(choice), purpose, levels, progress);
+    published->Levels.push_back(
+      this->Levels[number]->Publish(choice, purpose, ofLevels[number], progress));
   }
   publications.Add<Publication>(published->Content, published);
   return published;

@@ -25,8 +25,8 @@
 class vtkDataObject;
 class vtkDataSet;
 
-/// A dataset of images that is distributed over the ranks, as lattices or as levels, with its arrays as fields of bricks.
-/// Keeps the images alive, without a copy. Methods documented as collective need every rank; a rank without
+/// A dataset of images and of hyper tree grids, or AMR, that is distributed over the ranks, as lattices and as levels, with its
+/// arrays as fields of bricks. A part is a lattice, or one of the level data: lattices are numbered first. Keeps the data alive, without a copy. Methods documented as collective need every rank; a rank without
 /// data takes part. Failures are dsm::Error, the same on every rank.
 class vtkDSMVolumeData
 {
@@ -41,8 +41,9 @@ public:
     mutable Fields Bricks;
     /// For each lattice: the file that it is in, or null.
     std::vector<std::shared_ptr<const vtkDSMFileVolume>> Files;
-    std::shared_ptr<const bricks::LevelVoxels> Levels; ///< null where there are none
-    std::uint64_t Content = 0;                         ///< see HashContent
+    /// One of each of the level data; null where these do not have the array.
+    std::vector<std::shared_ptr<const bricks::LevelVoxels>> Levels;
+    std::uint64_t Content = 0; ///< see HashContent
 
     /// Data for putting other values into a lattice's bricks.
     struct Part
@@ -74,7 +75,8 @@ public:
   /// Which arrays are to be shown, of those that there are.
   using Chooser = std::function<std::vector<Choice>(const vtkDSMImageArrays&)>;
 
-  /// Collective. `data` is this rank's part: vtkImageData, vtkRectilinearGrid, a composite dataset of such images, or null; `looks` are of its blocks.
+  /// Collective. `data` is this rank's part: vtkImageData, vtkRectilinearGrid, vtkHyperTreeGrid, AMR, a composite dataset of any
+  /// but AMR, whose other blocks are left out, or null; `looks` are of its blocks.
   /// Blocks that continue one another are taken for one volume, where the arrays that `choose` names agree at the points
   /// that the blocks have in common.
   vtkDSMVolumeData(std::shared_ptr<vtkDSMRankGroup> group, vtkDataObject* data,
@@ -88,16 +90,11 @@ public:
   {
     return this->Plan.GetLattices()[lattice].IndexToWorld;
   }
-  /// Appearance that was set for some cells of a lattice.
-  struct Block
-  {
-    bricks::Box Cells;
-    vtkDSMBlockLook Look;
-  };
-  /// Returns the blocks of a lattice, from all ranks' pieces.
-  std::vector<Block> GetBlocks(std::size_t lattice) const;
-  /// The levels that the dataset has besides lattices; null if it has none.
-  const vtkDSMLevelData* GetLevels() const { return this->Levels.get(); }
+  const vtkDSMLevelData& GetLevels(std::size_t number) const { return *this->Levels[number]; }
+  std::size_t GetNumberOfParts() const { return this->GetNumberOfLattices() + this->Levels.size(); }
+  using Block = vtkDSMLevelData::Block;
+  /// Returns the blocks of a part, from all ranks' pieces.
+  std::vector<Block> GetBlocks(std::size_t part) const;
   const vtkDSMImageArrays& GetArrays() const { return this->Arrays; }
   /// Local, reads the data. Of all that this rank's part of a field depends on: equal only where Publish would make
   /// the same again.
@@ -122,9 +119,8 @@ public:
     const std::string& purpose, const std::function<void(double)>& progress) const;
 
 private:
-  void CollectImages(vtkDataObject* data);
-  /// Local. The choice as the levels have it: of points, if there is such an array, else of cells.
-  Choice ChooseOfLevels(const Choice& choice) const;
+  /// Collective. Sorts this rank's data into images and parts of levels. Returns the looks of the images.
+  std::vector<vtkDSMBlockLook> Collect(vtkDataObject* data, const vtkDSMBlockLooks& looks);
   /// Distributes the coordinates of all rectilinear pieces, one piece and axis after the other.
   void SetCoordinates(const std::vector<double>& all);
   /// Collective: takes apart what is no one volume.
@@ -176,9 +172,8 @@ private:
   std::set<std::int32_t> Apart;                    ///< blocks that are volumes of their own
   std::vector<vtkSmartPointer<vtkDataSet>> Images; ///< this rank's images
   std::vector<int> Leaves;                         ///< leaf index of each of this rank's images
-  /// This rank's parts of levels.
-  vtkDSMLevelData::Parts LevelParts;
-  std::unique_ptr<vtkDSMLevelData> Levels;
+  vtkDSMLevelData::Parts LevelParts;               ///< this rank's
+  std::vector<std::unique_ptr<vtkDSMLevelData>> Levels;
   vtkDSMImageArrays Arrays;
 };
 

@@ -9,7 +9,7 @@
 
 bool vtkDSMVolumeData::MayTakeOver(const std::shared_ptr<const Publication>& old) const
 {
-  if (!old || old.use_count() != 1 || old->Levels || this->Levels ||
+  if (!old || old.use_count() != 1 || !old->Levels.empty() || !this->Levels.empty() ||
     old->Parts.size() != this->GetNumberOfLattices())
   {
     return false;

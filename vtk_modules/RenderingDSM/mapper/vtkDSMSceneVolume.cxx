@@ -135,6 +135,13 @@ const vtkDSMVolumeData::Fields& vtkDSMSceneVolume::Published::GetFields() const
   return this->Publication ? this->Publication->Bricks : none;
 }
 
+const std::vector<std::shared_ptr<const bricks::LevelVoxels>>&
+vtkDSMSceneVolume::Published::GetLevels() const
+{
+  static const std::vector<std::shared_ptr<const bricks::LevelVoxels>> none;
+  return this->Publication ? this->Publication->Levels : none;
+}
+
 void vtkDSMSceneVolume::GiveUpBlocks()
 {
   this->Arrays.clear();
@@ -153,9 +160,12 @@ bricks::ValueRange vtkDSMSceneVolume::Published::GetRange() const
       all.Last = std::max(all.Last, field->Hierarchy.GetRange().Last);
     }
   }
-  if (const auto levels = this->GetLevels())
+  for (const auto& levels : this->GetLevels())
   {
-    all.Add(levels->Hierarchy.GetRange());
+    if (levels)
+    {
+      all.Add(levels->Hierarchy.GetRange());
+    }
   }
   return all;
 }
@@ -361,7 +371,7 @@ vtkDSMVolumeMapper::SurfaceTest vtkDSMSceneVolume::MakeSurfaceTest() const
   {
     vtkDataObject* now = mapper->GetDataObjectInput();
     const auto iso = weak.lock();
-    if (!iso || iso->GetFields().empty() || iso->GetLevels() || now != data ||
+    if (!iso || iso->GetFields().empty() || !iso->GetLevels().empty() || now != data ||
       GetDataTime(now) != time || mapper->GetIsoArray() != array ||
       mapper->GetIsoArrayOnCells() != onCells || mapper->GetIsoComponent() != component ||
       mapper->GetIgnoreValues() != ignores || mapper->GetValidRange()[0] != lowest ||
@@ -441,9 +451,20 @@ void vtkDSMSceneVolume::SuggestIsovalue(dsm::Messenger& messenger)
   {
     this->SuggestedFor = this->GetIso()->Choice;
     this->SuggestedFrom = range;
-    const auto levels = this->GetIso()->GetLevels();
+    std::optional<bricks::IsovalueSurvey> ofLevels;
+    for (const auto& levels : this->GetIso()->GetLevels())
+    {
+      if (levels && !ofLevels)
+      {
+        ofLevels = levels->Survey;
+      }
+      else if (levels)
+      {
+        ofLevels->Add(levels->Survey);
+      }
+    }
     this->Suggested = bricks::FindFirstIsovalue(
-      this->GetIso()->GetFields(), messenger, levels ? &levels->Survey : nullptr);
+      this->GetIso()->GetFields(), messenger, ofLevels ? &*ofLevels : nullptr);
   }
   this->Mapper->SetSuggestedIsoValue(this->Suggested.value_or(vtkMath::Nan()));
 }
@@ -473,10 +494,6 @@ void vtkDSMSceneVolume::SetColors(rt::IsosurfaceLook& look)
 
 std::shared_ptr<const rt::BlockLooks> vtkDSMSceneVolume::CreateBlockLooks(std::size_t part) const
 {
-  if (part >= this->Data->GetNumberOfLattices())
-  {
-    return nullptr;
-  }
   std::vector<rt::BlockLooks::Block> blocks;
   for (const vtkDSMVolumeData::Block& block : this->Data->GetBlocks(part))
   {

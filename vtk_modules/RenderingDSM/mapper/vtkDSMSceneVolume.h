@@ -54,13 +54,10 @@ private:
     bool IsOf(const vtkDSMVolumeData::Choice& choice, unsigned retryVersion) const;
     /// Empty when it failed.
     const vtkDSMVolumeData::Fields& GetFields() const;
-    /// Null when it failed, or where there are none.
-    std::shared_ptr<const bricks::LevelVoxels> GetLevels() const
-    {
-      return this->Publication ? this->Publication->Levels : nullptr;
-    }
+    /// Empty when it failed.
+    const std::vector<std::shared_ptr<const bricks::LevelVoxels>>& GetLevels() const;
     /// Returns whether there is anything to show.
-    bool HasAny() const { return !this->GetFields().empty() || this->GetLevels(); }
+    bool HasAny() const { return !this->GetFields().empty() || !this->GetLevels().empty(); }
     std::size_t CountCoarser() const { return this->Coarser ? this->Coarser->Levels.size() : 0; }
     /// Returns the range of all values; without any, its First is greater than its Last.
     bricks::ValueRange GetRange() const;
@@ -104,8 +101,7 @@ private:
   /// At the level of detail that is shown.
   rt::LatticeField GetField(
     const Published& array, std::size_t lattice, const glm::dmat4& dataToWorld) const;
-  /// Calls `visit(field, part)` for each part of the dataset that has the array: the lattices, in their order, and then the
-  /// levels, if there are any.
+  /// Calls `visit(field, part)` for each part of the dataset that has the array, in their order.
   template <class Visit>
   void ForEachField(const Published& array, const glm::dmat4& dataToWorld, const Visit& visit) const
   {
@@ -117,12 +113,15 @@ private:
         visit(this->GetField(array, lattice, dataToWorld), lattice);
       }
     }
-    if (const auto levels = array.GetLevels())
+    for (std::size_t number = 0; number < array.GetLevels().size(); ++number)
     {
-      rt::LevelField field;
-      field.Voxels = levels;
-      field.SetIndexToWorld(dataToWorld * this->Data->GetLevels()->GetIndexToWorld());
-      visit(field, this->Data->GetNumberOfLattices());
+      if (const auto& levels = array.GetLevels()[number])
+      {
+        rt::LevelField field;
+        field.Voxels = levels;
+        field.SetIndexToWorld(dataToWorld * this->Data->GetLevels(number).GetIndexToWorld());
+        visit(field, this->Data->GetNumberOfLattices() + number);
+      }
     }
   }
   /// Returns the values of the color array in a part, at the current level of detail; null if it has none there.
@@ -136,7 +135,8 @@ private:
     }
     else
     {
-      return this->GetColoring().GetLevels();
+      const auto& levels = this->GetColoring().GetLevels();
+      return levels.empty() ? nullptr : levels[part - this->Data->GetNumberOfLattices()];
     }
   }
   /// The same, if a medium takes its colors from another array than its opacities.

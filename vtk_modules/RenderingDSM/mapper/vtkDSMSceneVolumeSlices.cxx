@@ -49,9 +49,11 @@ void vtkDSMSceneVolume::AddSlices(
   {
     points.push_back(lattice ? lattice->Lattice.GetPoints() : bricks::Index3(0));
   }
-  if (const auto levels = this->GetIso()->GetLevels())
+  for (const auto& levels : this->GetIso()->GetLevels())
   {
-    points.push_back(bricks::Index3(glm::ceil(levels->Lattice.GetBounds()[1])) + bricks::Index3(1));
+    points.push_back(levels
+        ? bricks::Index3(glm::ceil(levels->Lattice.GetBounds()[1])) + bricks::Index3(1)
+        : bricks::Index3(0));
   }
   for (int number = 0; number < this->Mapper->GetNumberOfSlices() && !points.empty(); ++number)
   {
@@ -82,7 +84,7 @@ void vtkDSMSceneVolume::AddSlices(
       }
       else
       {
-        slice.Planes = look.GetSlices(field.IndexToWorld, points.back(), nullptr);
+        slice.Planes = look.GetSlices(field.IndexToWorld, points[part], nullptr);
       }
       scene.Objects.push_back(std::move(slice));
     });

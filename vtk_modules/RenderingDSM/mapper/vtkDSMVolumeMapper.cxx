@@ -8,6 +8,8 @@
 #include "vtkDSMScene.h"
 #include "vtkDSMSceneVolume.h"
 
+#include "vtkBoundingBox.h"
+#include "vtkCompositeDataIterator.h"
 #include "vtkCompositeDataSet.h"
 #include "vtkDataSet.h"
 #include "vtkHyperTreeGrid.h"
@@ -51,6 +53,35 @@ bool GetAnnouncedBounds(vtkAlgorithm* producer, int port, double bounds[6])
   }
   image->GetBounds(bounds);
   return vtkMath::AreBoundsInitialized(bounds);
+}
+
+/// Adds the bounds of a dataset, which may be null, or of its blocks.
+void AddBounds(vtkDataObject* data, vtkBoundingBox& box)
+{
+  double bounds[6];
+  if (auto* dataSet = vtkDataSet::SafeDownCast(data))
+  {
+    dataSet->GetBounds(bounds);
+    box.AddBounds(bounds);
+  }
+  else if (auto* trees = vtkHyperTreeGrid::SafeDownCast(data))
+  {
+    // One without cells has a point at the origin.
+    if (trees->GetNumberOfElements(vtkDataObject::CELL) > 0)
+    {
+      trees->GetBounds(bounds);
+      box.AddBounds(bounds);
+    }
+  }
+  else if (auto* composite = vtkCompositeDataSet::SafeDownCast(data))
+  {
+    vtkSmartPointer<vtkCompositeDataIterator> leaf;
+    leaf.TakeReference(composite->NewIterator());
+    for (leaf->InitTraversal(); !leaf->IsDoneWithTraversal(); leaf->GoToNextItem())
+    {
+      AddBounds(leaf->GetCurrentDataObject(), box);
+    }
+  }
 }
 
 } // namespace
@@ -289,24 +320,10 @@ double* vtkDSMVolumeMapper::GetBounds()
     std::copy_n(known, 6, this->Bounds);
     return this->Bounds;
   }
-  vtkMath::UninitializeBounds(this->Bounds);
   vtkDataObject* data = vtkDSMKnownBounds::IsOutOfDate(this) ? nullptr : this->GetDataObjectInput();
-  if (auto* dataSet = vtkDataSet::SafeDownCast(data))
-  {
-    dataSet->GetBounds(this->Bounds);
-  }
-  else if (auto* trees = vtkHyperTreeGrid::SafeDownCast(data))
-  {
-    // One without cells has a point at the origin.
-    if (trees->GetNumberOfElements(vtkDataObject::CELL) > 0)
-    {
-      trees->GetBounds(this->Bounds);
-    }
-  }
-  else if (auto* composite = vtkCompositeDataSet::SafeDownCast(data))
-  {
-    composite->GetBounds(this->Bounds);
-  }
+  vtkBoundingBox box;
+  AddBounds(data, box);
+  box.GetBounds(this->Bounds);
   if (!vtkMath::AreBoundsInitialized(this->Bounds) && this->GetNumberOfInputConnections(0) > 0)
   {
     int port = 0;

@@ -4,7 +4,8 @@
  * @brief   ray traces a volume that is spread over the ranks, or isosurfaces of it
  *
  * Used by a vtkVolume, which gives its transform and visibility. The input is this rank's part of
- * the dataset: vtkImageData, or a composite dataset of images, or nothing.
+ * the dataset: vtkImageData, vtkRectilinearGrid, vtkHyperTreeGrid, AMR, a composite dataset whose blocks are
+ * any of these but AMR, or nothing. Ranks may have different ones. Other blocks are not shown.
  *
  * It stands in for vtkGPUVolumeRayCastMapper: the blend mode Composite (the default) shows the volume as a medium, by the
  * color and opacity functions and the unit distance of the vtkVolume's vtkVolumeProperty. Maximum, minimum, average (of

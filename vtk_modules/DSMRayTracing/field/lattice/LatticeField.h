@@ -68,6 +68,8 @@ struct LatticeField
   {
     return this->GetIndexSpace().GetNormal(&gradient.x, rayDirection);
   }
+  /// The cell that tells which block of BlockLooks has a place.
+  bricks::Index3 GetBlockCell(const LatticePlace& place) const { return place.GetCell(); }
   /// The place of a point in world space; of the nearest cell, beyond the lattice.
   LatticePlace GetPlace(const glm::dvec3& point) const;
   /// How much values grow in a cell of mean size where they grow so fast on each axis of the index space.

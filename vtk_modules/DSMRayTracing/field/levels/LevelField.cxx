@@ -21,6 +21,13 @@ double LevelField::GetGrowth(const glm::dvec3& gradient) const
   return glm::length(gradient / lengths) * (cell.x + cell.y + cell.z) / 3.0;
 }
 
+bricks::Index3 LevelField::GetBlockCell(const LatticePlace& place) const
+{
+  const bricks::LevelLattice& lattice = this->Voxels->Lattice;
+  const int level = lattice.GetBrick(place.Brick).Level;
+  return bricks::DivideDown(place.GetCell(), lattice.GetScales().Get(level));
+}
+
 ObjectTracer::Brick LevelField::FindBrick(const glm::dvec3& place) const
 {
   const bricks::LevelLattice& lattice = this->Voxels->Lattice;

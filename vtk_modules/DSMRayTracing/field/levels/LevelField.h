@@ -62,6 +62,8 @@ struct LevelField
   {
     return this->GetIndexSpace().GetNormal(&gradient.x, rayDirection);
   }
+  /// The cell of level 0 that tells which block of BlockLooks has a place.
+  bricks::Index3 GetBlockCell(const LatticePlace& place) const;
   /// A point in world space, in the index space of level 0.
   glm::dvec3 ToIndex(const glm::dvec3& point) const
   {
