@@ -2,17 +2,14 @@
 #ifndef rt_FrameTracing_h
 #define rt_FrameTracing_h
 
-#include "DSMCore/base/FirstFailure.h"
 #include "DSMCore/base/FunctionRef.h"
 #include "DSMCore/base/WorkerSlots.h"
 #include "DSMCore/transport/Messenger.h"
 #include "DSMRayTracing/frame/BeamHistory.h"
 #include "DSMRayTracing/frame/Frame.h"
-#include "DSMRayTracing/frame/FrameAgreement.h"
 #include "DSMRayTracing/frame/FrameRequest.h"
 #include "DSMRayTracing/frame/PixelRays.h"
-#include "DSMRayTracing/frame/SharedFailure.h"
-#include "DSMRayTracing/frame/Standstill.h"
+#include "DSMRayTracing/frame/ServedWork.h"
 #include "DSMRayTracing/frame/TileSampler.h"
 #include "DSMRayTracing/frame/TileSource.h"
 #include "DSMRayTracing/frame/WorkerPool.h"
@@ -26,23 +23,19 @@
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
-#include <exception>
 #include <functional>
 #include <iterator>
 #include <memory>
 #include <optional>
-#include <string>
 #include <utility>
 #include <vector>
 
 namespace rt
 {
 
-/// The tracing of one frame's tiles on one rank, from the store's BeginFrame to its EndFrame: workers trace, and the
-/// thread that makes this serves the other ranks. It leaves the frame with all others only: whatever fails in between
-/// is kept, and reported (FrameAgreement).
+/// The tracing of one frame's tiles on one rank, from the store's BeginFrame to its EndFrame.
 template <class Store>
-class FrameTracing
+class FrameTracing final : private ServedWork<Store>
 {
 public:
   /// Data that all of the frame's ranks have in common, and this rank's resources. Kept by
@@ -61,70 +54,27 @@ public:
     dsm::FunctionRef<std::vector<std::byte>(Frame&)> Report;
   };
 
-  /// Collective; the store's BeginFrame is called before, its EndFrame after.
+  /// Collective; the store's BeginFrame is called before.
   FrameTracing(Store& store, const Input& input)
-    : Blocks(store)
+    : ServedWork<Store>(store, input.Messenger, input.Pool)
     , In(input)
     , Workers(store.GetSettings().Workers)
-    , Agreement(
-        input.Messenger, [this] { this->Stop(); }, [this] { this->In.Tiles.Cancel(); })
-    , Number(input.Messenger.BeginSession())
     , Share(input.Tiles.EstimateShare(input.Messenger.GetSize()))
-    , NoProgress(input.Messenger.GetSilenceLimit())
   {
-    this->In.Messenger.BeginServing();
   }
 
-  /// Traces tiles until all ranks have stopped. Throws only when a rank is lost, and with it all that is collective.
-  /// `makePlan` may fail.
+  /// Traces tiles until all ranks have stopped, and ends the store's frame. Throws only when a rank is lost, and with it all
+  /// that is collective. `makePlan` may fail.
   void Trace(dsm::FunctionRef<TilePlan()> makePlan)
   {
-    try
-    {
-      this->Prepare(makePlan);
-      this->In.Pool.Start(
-        this->Workers, [this](int index) { this->Work(index); }, [this] { this->FinishWorker(); });
-    }
-    catch (...)
-    {
-      this->Fail(std::current_exception());
-    }
-    dsm::FirstFailure lost;
-    try
-    {
-      this->In.Messenger.ServeUntil([this] { return this->Agreement.IsOver(); },
-        [this] { return this->Service(); },
-        [this](std::exception_ptr cause) { this->Fail(cause); });
-    }
-    catch (...)
-    {
-      lost.Keep(std::current_exception());
-      this->In.Messenger.Insist([this] { this->Blocks.Cancel(this->Failure.GetText()); });
-    }
-    this->In.Messenger.EndServing();
-    this->In.Pool.Wait();
-    this->In.Tiles.End();
-    this->Blocks.EndFrame();
-    lost.Throw();
+    this->Run(this->Workers, [&] { this->Prepare(makePlan); });
   }
 
   /// Moves this rank's tiles and figures to `frame`. Throws the same dsm::Error on every rank when
   /// one has failed. Collective.
   void GiveTo(Frame& frame)
   {
-    // The last messages must be sent before the application continues with something else.
-    this->In.Messenger.Flush();
-    const dsm::Status& outcome = this->Agreement.GetOutcome();
-    if (!outcome.IsOk() || this->Agreement.IsAborted())
-    {
-      // A rank that gave up may not have taken what it had asked for; it takes it while it waits here.
-      this->In.Messenger.Barrier();
-    }
-    if (!outcome.IsOk())
-    {
-      throw dsm::Error("Cannot trace the frame. Rank " + std::to_string(outcome.FailedRank) + ": " +
-        outcome.Cause);
-    }
+    this->Finish("Cannot trace the frame.");
     frame = std::move(this->Traced);
     frame.IsAborted = this->Agreement.IsAborted();
     frame.BusySeconds = this->BusySeconds;
@@ -145,23 +95,6 @@ private:
     return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
   }
 
-  /// Another rank has failed, which that rank reports.
-  void Stop()
-  {
-    this->Stopped = true;
-    this->In.Tiles.Cancel();
-  }
-
-  /// Any thread of this rank has failed.
-  void Fail(std::exception_ptr cause)
-  {
-    if (!this->Stopped)
-    {
-      this->Failure.Keep(cause);
-    }
-    this->In.Tiles.Cancel();
-  }
-
   void Prepare(dsm::FunctionRef<TilePlan()> makePlan)
   {
     const FrameRequest& request = this->In.Request;
@@ -178,53 +111,46 @@ private:
     this->In.Tiles.Begin(this->Plan, this->Workers);
   }
 
-  /// A worker's thread, until there are no more tiles.
-  void Work(int index)
+  /// Until there are no more tiles.
+  void Work(int index) override
   {
     auto& worker = this->Blocks.GetWorker(index);
     const dsm::WorkerSlots::Hold slot(this->In.Slots);
-    try
+    std::uint64_t misses = 0; // of the tiles before
+    bool looksAhead = true;   // as long as bricks are absent
+    const SceneTracers tracers = CreateSceneTracers(this->Blocks, worker, this->In.Scene);
+    const TileSampler sampler(
+      tracers, this->In.Scene, *this->Rays, this->In.Request, this->Beams.get());
+    while (std::optional<Tile> tile = this->In.Tiles.Pop(this->In.Slots))
     {
-      std::uint64_t misses = 0; // of the tiles before
-      bool looksAhead = true;   // as long as bricks are absent
-      const SceneTracers tracers = CreateSceneTracers(this->Blocks, worker, this->In.Scene);
-      const TileSampler sampler(
-        tracers, this->In.Scene, *this->Rays, this->In.Request, this->Beams.get());
-      while (std::optional<Tile> tile = this->In.Tiles.Pop(this->In.Slots))
+      const double start = GetThreadSeconds();
+      this->Blocks.Enter(worker);
+      if (this->Beams && looksAhead)
       {
-        const double start = GetThreadSeconds();
-        this->Blocks.Enter(worker);
-        if (this->Beams && looksAhead)
-        {
-          const std::optional<Tile> later = this->In.Tiles.Peek(LeadOfWorker * this->Workers);
-          looksAhead = later && sampler.Prefetch(*later);
-        }
-        sampler.Trace(*tile);
-        this->Blocks.Leave(worker);
-        tile->Seconds = GetThreadSeconds() - start;
-        const std::uint64_t before = std::exchange(misses, this->Blocks.GetMisses(worker));
-        tile->Misses += misses - before;
-        looksAhead = looksAhead || misses > before;
-        tile->IsNew = tile->IsNew || this->IsNew(*tile);
-        sampler.Finish(*tile, this->GetTint(*tile));
-        this->TilesOfWorker[static_cast<std::size_t>(index)].push_back(std::move(*tile));
-        ++this->TracedTiles;
-        this->In.Slots.LetOthersResume();
+        const std::optional<Tile> later = this->In.Tiles.Peek(LeadOfWorker * this->Workers);
+        looksAhead = later && sampler.Prefetch(*later);
       }
-    }
-    catch (...)
-    {
+      sampler.Trace(*tile);
       this->Blocks.Leave(worker);
-      this->Fail(std::current_exception());
+      tile->Seconds = GetThreadSeconds() - start;
+      const std::uint64_t before = std::exchange(misses, this->Blocks.GetMisses(worker));
+      tile->Misses += misses - before;
+      looksAhead = looksAhead || misses > before;
+      tile->IsNew = tile->IsNew || this->IsNew(*tile);
+      sampler.Finish(*tile, this->GetTint(*tile));
+      this->TilesOfWorker[static_cast<std::size_t>(index)].push_back(std::move(*tile));
+      ++this->TracedTiles;
+      this->In.Slots.LetOthersResume();
     }
   }
 
-  /// A worker's thread, behind all that it has to do.
-  void FinishWorker()
+  void FinishWorker() override
   {
     this->BusySeconds = std::chrono::duration<double>(Clock::now() - this->Start).count();
-    this->In.Messenger.WakeUp();
   }
+
+  void Cancel() override { this->In.Tiles.Cancel(); }
+  void End() override { this->In.Tiles.End(); }
 
   /// Returns whether another rank traced the tile in the last frame.
   bool IsNew(const Tile& tile) const
@@ -251,48 +177,15 @@ private:
     }
   }
 
-  /// The communication thread, again and again until all ranks have stopped; returns whether it did anything.
-  bool Service()
+  /// Other ranks' requests for tiles, and the user's wish to end the frame.
+  bool ServeMore() override
   {
-    const bool didSomething = this->Serve();
-    const bool idle =
-      this->In.Pool.GetRunning() == 0; // asked first: a worker fails before it stops
-    if (!idle && this->NoProgress.IsOver([this] { return this->GetWork(); }))
+    const bool didSomething = this->In.Tiles.Service();
+    const bool isWatched = this->In.Watch && this->In.Messenger.GetRank() == 0;
+    if (isWatched && !this->Agreement.IsAborted() && !this->Agreement.IsOver() &&
+      this->In.Watch(this->GetPart()))
     {
-      this->In.Messenger.GiveUpThisRank();
-    }
-    this->CancelIfFailed();
-    const bool isThrough = !this->Agreement.IsDone() && idle && this->Blocks.Drain();
-    if (isThrough)
-    {
-      this->Collect();
-    }
-    this->ReportFailure();
-    if (isThrough)
-    {
-      this->Agreement.ReportDone(std::move(this->Report));
-    }
-    return didSomething || isThrough;
-  }
-
-  /// Other ranks' requests, and the user's wish to end the frame.
-  bool Serve()
-  {
-    bool didSomething = false;
-    try
-    {
-      didSomething = this->Blocks.Service();
-      didSomething = this->In.Tiles.Service() || didSomething;
-      const bool isWatched = this->In.Watch && this->In.Messenger.GetRank() == 0;
-      if (isWatched && !this->Agreement.IsAborted() && !this->Agreement.IsOver() &&
-        this->In.Watch(this->GetPart()))
-      {
-        this->Agreement.Abort();
-      }
-    }
-    catch (...)
-    {
-      this->Fail(std::current_exception());
+      this->Agreement.Abort();
     }
     return didSomething;
   }
@@ -303,79 +196,33 @@ private:
     return this->Share > 0.0 ? std::min(1.0, this->TracedTiles / this->Share) : 1.0;
   }
 
-  std::pair<double, std::uint64_t> GetWork() const
+  std::vector<std::byte> Collect() override
   {
-    return { this->In.Pool.GetProcessorSeconds(), this->Blocks.GetCounters().BytesReceived };
+    std::vector<Tile>& tiles = this->Traced.Tiles;
+    std::size_t count = this->In.Tiles.CountRest();
+    for (const auto& some : this->TilesOfWorker)
+    {
+      count += some.size();
+    }
+    tiles.reserve(count);
+    for (auto& some : this->TilesOfWorker)
+    {
+      std::move(some.begin(), some.end(), std::back_inserter(tiles));
+      some.clear();
+    }
+    this->In.Tiles.TakeRest(tiles);
+    this->Traced.Width = this->In.Request.Width;
+    this->Traced.Height = this->In.Request.Height;
+    this->Traced.TileSize = this->In.Request.TileSize;
+    this->Traced.Channels = this->In.Request.Channels;
+    this->Traced.Number = this->Number;
+    this->Traced.Beams = this->Beams;
+    return this->IsInVain() ? std::vector<std::byte>() : this->In.Report(this->Traced);
   }
 
-  /// Workers that wait for bricks wait no longer.
-  void CancelIfFailed()
-  {
-    if ((this->Stopped || !this->Failure.IsEmpty()) && !this->Cancelled)
-    {
-      this->In.Messenger.Insist(
-        [this]
-        {
-          this->Blocks.Cancel(
-            this->Failure.IsEmpty() ? "another rank has failed" : this->Failure.GetText());
-        });
-      this->Cancelled = true;
-    }
-  }
-
-  void Collect()
-  {
-    try
-    {
-      std::vector<Tile>& tiles = this->Traced.Tiles;
-      std::size_t count = this->In.Tiles.CountRest();
-      for (const auto& some : this->TilesOfWorker)
-      {
-        count += some.size();
-      }
-      tiles.reserve(count);
-      for (auto& some : this->TilesOfWorker)
-      {
-        std::move(some.begin(), some.end(), std::back_inserter(tiles));
-        some.clear();
-      }
-      this->In.Tiles.TakeRest(tiles);
-      this->Traced.Width = this->In.Request.Width;
-      this->Traced.Height = this->In.Request.Height;
-      this->Traced.TileSize = this->In.Request.TileSize;
-      this->Traced.Channels = this->In.Request.Channels;
-      this->Traced.Number = this->Number;
-      this->Traced.Beams = this->Beams;
-      if (this->Failure.IsEmpty() && !this->Stopped && !this->Agreement.IsAborted())
-      {
-        this->Report = this->In.Report(this->Traced);
-      }
-    }
-    catch (...)
-    {
-      this->Fail(std::current_exception());
-    }
-  }
-
-  void ReportFailure()
-  {
-    if (!this->Failure.IsEmpty() && !this->Agreement.HasFailed())
-    {
-      std::string cause;
-      this->In.Messenger.Insist([&] { cause = this->Failure.GetText(); });
-      this->Agreement.ReportFailure(cause);
-    }
-  }
-
-  Store& Blocks;
   const Input In;
   const int Workers;
-  FrameAgreement Agreement;
-  const std::uint32_t Number; ///< number of the frame
   const Clock::time_point Start = Clock::now();
-  SharedFailure Failure;
-  std::atomic<bool> Stopped{ false };
-  bool Cancelled = false;
 
   std::optional<PixelRays> Rays;
   std::shared_ptr<BeamHistory> Beams;
@@ -386,9 +233,7 @@ private:
   std::atomic<int> TracedTiles{ 0 };
   std::atomic<double> BusySeconds{ 0.0 };
   const double Share; ///< tiles that this rank will trace, about
-  Standstill NoProgress;
-  Frame Traced;                  ///< this rank's part
-  std::vector<std::byte> Report; ///< for all ranks
+  Frame Traced;       ///< this rank's part
 };
 
 } // namespace rt
