@@ -7,8 +7,10 @@
 #include "vtkDSMStatistics.h"
 
 #include "vtkAutoInit.h"
+#include "vtkBoundingBox.h"
 #include "vtkCallbackCommand.h"
 #include "vtkCamera.h"
+#include "vtkCell.h"
 #include "vtkCellData.h"
 #include "vtkCellDataToPointData.h"
 #include "vtkDoubleArray.h"
@@ -21,12 +23,14 @@
 #include "vtkPiecewiseFunction.h"
 #include "vtkPlane.h"
 #include "vtkPointDataToCellData.h"
+#include "vtkPolyData.h"
 #include "vtkProperty.h"
 #include "vtkRectilinearGrid.h"
 #include "vtkRenderWindow.h"
 #include "vtkTable.h"
 #include "vtkTestErrorObserver.h"
 #include "vtkTransform.h"
+#include "vtkTriangle.h"
 #include "vtkUnsignedCharArray.h"
 #include "vtkVolumeProperty.h"
 
@@ -405,44 +409,54 @@ TEST_F(VolumeMapper, WithoutIsovaluesDrawsWhatTheDataSuggest)
   EXPECT_EQ(this->Mapper->GetSuggestedIsoValue(), suggested);
 }
 
-TEST_F(VolumeMapper, KnowsWhereThereIsNoSurface)
+TEST_F(VolumeMapper, IsosurfacesAreTrianglesForExports)
 {
   const vtkSmartPointer<vtkImageData> image = MakeBall();
-  vtkNew<vtkDoubleArray> along; // x, and so the bricks of one half hold no value of the other's
-  along->SetName("along");
-  for (vtkIdType point = 0; point < image->GetNumberOfPoints(); ++point)
-  {
-    along->InsertNextValue(image->GetPoint(point)[0]);
-  }
-  image->GetPointData()->AddArray(along);
+  vtkDataArray* const distances = image->GetPointData()->GetScalars();
+  const vtkIdType missing = image->FindPoint(10.0, 0.0, 0.0);
+  distances->SetComponent(missing, 0, vtkMath::Nan());
   this->Mapper->SetInputData(image);
-  this->Mapper->SetIsoArray("along");
-  this->Mapper->SetIsoValue(0, 10.0);
-  this->Place(); // the boxes are those of the data
-  const double left[6] = { -15.0, -2.0, -9.0, 9.0, -4.0, 4.0 };
-  const double right[6] = { 2.0, 5.0, -9.0, 9.0, -4.0, 4.0 };
-  const double both[6] = { -5.0, 5.0, -9.0, 9.0, -4.0, 4.0 };
-  const double outside[6] = { 20.0, 30.0, -9.0, 9.0, -4.0, 4.0 };
-  EXPECT_TRUE(this->Mapper->MayHaveSurface(left, { 10.0 })) << "before there is a picture";
-  this->RenderTraced();
-  EXPECT_FALSE(this->Mapper->MayHaveSurface(left, { 10.0 }));
-  EXPECT_TRUE(this->Mapper->MayHaveSurface(left, { 10.0, -7.0 })) << "in any order";
-  EXPECT_TRUE(this->Mapper->MayHaveSurface(right, { 10.0 }));
-  EXPECT_FALSE(this->Mapper->MayHaveSurface(right, { -10.0 }));
-  EXPECT_TRUE(this->Mapper->MayHaveSurface(both, { 10.0 }));
-  EXPECT_FALSE(this->Mapper->MayHaveSurface(both, { 100.0 }));
-  EXPECT_FALSE(this->Mapper->MayHaveSurface(outside, { 10.0 }));
-
-  this->Mapper->SetIsoArray("distance");
-  EXPECT_TRUE(this->Mapper->MayHaveSurface(left, { 10.0 })) << "another array";
-  this->Mapper->SetIsoArray("along");
-  EXPECT_FALSE(this->Mapper->MayHaveSurface(left, { 10.0 }));
-  along->SetValue(0, 50.0);
-  along->Modified();
-  image->Modified();
-  EXPECT_TRUE(this->Mapper->MayHaveSurface(left, { 10.0 })) << "other values";
-  this->Mapper->SetInputData(MakeBall());
-  EXPECT_TRUE(this->Mapper->MayHaveSurface(left, { 10.0 })) << "other data";
+  this->Mapper->SetIsoValue(0, 0.3);
+  this->Renderer->AddVolume(this->Volume);
+  for (const double spacing : { 1.0, -1.0 })
+  {
+    image->SetSpacing(spacing, 1.0, 0.5);
+    vtkNew<vtkMultiBlockDataSet> surfaces;
+    ASSERT_TRUE(this->Scene->ExtractIsosurfaces(this->Mapper, false, surfaces));
+    ASSERT_EQ(surfaces->GetNumberOfBlocks(), 1u);
+    auto* const triangles = vtkPolyData::SafeDownCast(surfaces->GetBlock(0));
+    ASSERT_GT(triangles->GetNumberOfCells(), 1000);
+    vtkDataArray* const cells = triangles->GetCellData()->GetArray("vtkOriginalCellIds");
+    vtkDataArray* const normals = triangles->GetPointData()->GetNormals();
+    for (vtkIdType number = 0; number < triangles->GetNumberOfCells(); ++number)
+    {
+      vtkCell* const triangle = triangles->GetCell(number);
+      double center[3];
+      double parameters[3];
+      double normal[3];
+      double weights[8];
+      triangle->GetParametricCenter(parameters);
+      int part = 0;
+      triangle->EvaluateLocation(part, parameters, center, weights);
+      vtkCell* const voxel = image->GetCell(static_cast<vtkIdType>(cells->GetTuple1(number)));
+      EXPECT_FALSE(voxel->GetPointIds()->IsId(missing) >= 0) << "a corner is missing";
+      EXPECT_TRUE(vtkBoundingBox(voxel->GetBounds()).ContainsPoint(center));
+      double corners[3][3];
+      for (int corner = 0; corner < 3; ++corner)
+      {
+        triangle->GetPoints()->GetPoint(corner, corners[corner]);
+      }
+      vtkTriangle::ComputeNormal(corners[0], corners[1], corners[2], normal);
+      EXPECT_GT(vtkMath::Dot(normal, normals->GetTuple(triangle->GetPointId(0))), 0.5);
+    }
+    for (vtkIdType point = 0; point < triangles->GetNumberOfPoints(); ++point)
+    {
+      double place[3];
+      triangles->GetPoint(point, place);
+      const double index[3] = { place[0] / spacing, place[1], place[2] / 0.5 };
+      EXPECT_NEAR(vtkMath::Norm(index), 0.3 * Edge, 0.05);
+    }
+  }
 }
 
 TEST_F(VolumeMapper, TheSceneIsTheRenderersAndEndsWithItsLastHolder)

@@ -5,16 +5,21 @@
 #include "vtkActor.h"
 #include "vtkCamera.h"
 #include "vtkCommand.h"
+#include "vtkCommunicator.h"
 #include "vtkDSMLightOptions.h"
+#include "vtkDSMMemoryOptions.h"
 #include "vtkDSMPolyDataMapper.h"
 #include "vtkDSMSampleVolume.h"
 #include "vtkDSMScene.h"
 #include "vtkDSMVolumeMapper.h"
 #include "vtkFloatArray.h"
+#include "vtkFlyingEdges3D.h"
 #include "vtkImageData.h"
 #include "vtkMPIController.h"
+#include "vtkMultiBlockDataSet.h"
 #include "vtkNew.h"
 #include "vtkPointData.h"
+#include "vtkPolyData.h"
 #include "vtkProperty.h"
 #include "vtkRenderWindow.h"
 #include "vtkRenderer.h"
@@ -178,6 +183,38 @@ void ExpectTooLarge(Stage& stage, const char* what)
     errors->GetErrorMessage().c_str());
 }
 
+/// All ranks' triangles together are those of the whole volume, whichever way bricks come to the ranks.
+void ExtractTogether(Stage& stage, vtkMultiProcessController* ranks)
+{
+  vtkNew<vtkDSMSampleVolume> whole;
+  whole->SetDimensions(40, 40, 40);
+  vtkNew<vtkFlyingEdges3D> edges;
+  edges->SetInputConnection(whole->GetOutputPort());
+  edges->SetValue(0, 0.5);
+  edges->Update();
+  vtkDSMMemoryOptions* const options = stage.Mapper->GetMemoryOptions();
+  options->HostSharingOff();
+  options->SetNumberOfThreads(2);
+  for (const int organization : { vtkDSMMemoryOptions::Replicated, vtkDSMMemoryOptions::ObjectBased,
+         vtkDSMMemoryOptions::PageBased })
+  {
+    options->SetMemoryOrganization(organization);
+    vtkNew<vtkMultiBlockDataSet> surfaces;
+    Expect(stage.Scene->ExtractIsosurfaces(stage.Mapper, false, surfaces), "triangles");
+    auto* const mine = vtkPolyData::SafeDownCast(surfaces->GetBlock(0));
+    const vtkIdType count = mine ? mine->GetNumberOfPolys() : 0;
+    vtkIdType all = 0;
+    ranks->AllReduce(&count, &all, 1, vtkCommunicator::SUM_OP);
+    Expect(all == edges->GetOutput()->GetNumberOfPolys(), "as many as of the whole volume");
+    Expect(count < all || ranks->GetNumberOfProcesses() == 1, "each rank has its own");
+  }
+  vtkNew<vtkDSMVolumeMapper> other;
+  vtkNew<vtkMultiBlockDataSet> nothing;
+  Expect(
+    stage.Scene->ExtractIsosurfaces(other, false, nothing) && nothing->GetNumberOfBlocks() == 0,
+    "none of a mapper that the renderer does not show");
+}
+
 void Run(const std::string& mode, const char* file, int rank)
 {
   Stage stage;
@@ -195,6 +232,7 @@ void Run(const std::string& mode, const char* file, int rank)
     Expect(expected == bytes, "the bits of the picture that has a display");
     ExpectTooLarge(stage, "a picture that fits no memory is refused");
     Expect(stage.Scene->TraceImage(Width, Height, nullptr), "a rank may leave the picture out");
+    ExtractTogether(stage, vtkMultiProcessController::GetGlobalController());
     stage.Volume->VisibilityOff();
     vtkNew<vtkImageData> image;
     Expect(stage.Scene->TraceImage(2, 1, image) &&

@@ -12,6 +12,7 @@
 
 #include "vtkActor.h"
 #include "vtkAlgorithmOutput.h"
+#include "vtkCellData.h"
 #include "vtkCompositeDataIterator.h"
 #include "vtkDataArray.h"
 #include "vtkDataAssembly.h"
@@ -130,6 +131,8 @@ vtkPVDSMImageRepresentation::vtkPVDSMImageRepresentation()
   this->VolumeMapper->AutomaticIsoValueOn();
   this->VolumeMapper->SurfacesOnlyOn();
   this->VolumeMapper->SetSurfaceProperty(this->Property);
+  this->Display->PrepareSelection = [this](vtkDSMScene* scene, vtkRenderer*, bool selecting)
+  { this->PrepareSelection(scene, selecting); };
   this->ShowVolume();
 }
 
@@ -402,15 +405,33 @@ vtkSmartPointer<vtkDataObject> vtkPVDSMImageRepresentation::MakeSelectable()
   {
     return this->Superclass::MakeSelectable();
   }
-  const bool hasInput = this->GetNumberOfInputConnections(0) > 0;
-  vtkDataObject* const data = hasInput ? this->GetInputDataObject(0, 0) : nullptr;
   if (!this->Places)
   {
-    return vtkPVDSMIsosurfaceGeometry::Make(this->VolumeMapper, data);
+    return this->Selectable;
   }
+  vtkDataObject* const data = this->FindInput();
   this->Volume->ComputeMatrix();
   return this->Places->MakePoints(
     data ? data : this->VolumeMapper->GetDataObjectInput(), this->Volume->GetMatrix());
+}
+
+vtkDataObject* vtkPVDSMImageRepresentation::FindInput()
+{
+  return this->GetNumberOfInputConnections(0) > 0 ? this->GetInputDataObject(0, 0) : nullptr;
+}
+
+/// Once for all passes of a selection.
+void vtkPVDSMImageRepresentation::PrepareSelection(vtkDSMScene* scene, bool selecting)
+{
+  if (!selecting || this->ShowsSurface())
+  {
+    this->Selectable = nullptr;
+  }
+  else if (!this->Selectable)
+  {
+    this->Selectable =
+      vtkPVDSMIsosurfaceGeometry::Make(scene, this->VolumeMapper, this->FindInput());
+  }
 }
 
 void vtkPVDSMImageRepresentation::SetExportLook(vtkActor* actor, vtkMapper* mapper)
@@ -424,10 +445,12 @@ void vtkPVDSMImageRepresentation::SetExportLook(vtkActor* actor, vtkMapper* mapp
   mapper->SetLookupTable(this->VolumeMapper->GetLookupTable());
   mapper->UseLookupTableScalarRangeOn();
   mapper->SetScalarVisibility(this->VolumeMapper->GetScalarVisibility());
-  mapper->SetScalarMode(this->VolumeMapper->GetColorArrayOnCells()
-      ? VTK_SCALAR_MODE_USE_CELL_FIELD_DATA
-      : VTK_SCALAR_MODE_USE_POINT_FIELD_DATA);
-  mapper->SelectColorArray(this->VolumeMapper->GetColorArray().c_str());
+  const char* const colors = this->VolumeMapper->GetColorArray().c_str();
+  auto* const triangles = vtkPolyData::SafeDownCast(mapper->GetInputDataObject(0, 0));
+  const bool onCells = triangles && triangles->GetCellData()->HasArray(colors);
+  mapper->SetScalarMode(
+    onCells ? VTK_SCALAR_MODE_USE_CELL_FIELD_DATA : VTK_SCALAR_MODE_USE_POINT_FIELD_DATA);
+  mapper->SelectColorArray(colors);
   mapper->SetColorMode(this->VolumeMapper->GetMapScalars() ? VTK_COLOR_MODE_MAP_SCALARS
                                                            : VTK_COLOR_MODE_DIRECT_SCALARS);
 }
@@ -637,7 +660,9 @@ void vtkPVDSMImageRepresentation::SetUserTransform(const double matrix[16])
 std::vector<vtkSmartPointer<vtkPolyData>> vtkPVDSMImageRepresentation::GetTriangles()
 {
   return this->ShowsSurface() ? this->Superclass::GetTriangles()
-                              : vtkPVDSMIsosurfaceGeometry::MakeColored(this->VolumeMapper);
+    : this->Display->GetScene()
+    ? vtkPVDSMIsosurfaceGeometry::MakeColored(this->Display->GetScene(), this->VolumeMapper)
+    : std::vector<vtkSmartPointer<vtkPolyData>>();
 }
 
 void vtkPVDSMImageRepresentation::SetLightOptions(vtkPVDSMLightOptions* options)

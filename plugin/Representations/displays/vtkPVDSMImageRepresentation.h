@@ -203,6 +203,9 @@ private:
   /// Tells the mapper how the blocks look that its data have now.
   void ChooseBlockLooks();
   void ColorBlocksByArray(vtkDataObject* data);
+  /// Null without an input.
+  vtkDataObject* FindInput();
+  void PrepareSelection(vtkDSMScene* scene, bool selecting);
 
   int Shown = SHOW_ISOSURFACES;
   // The isosurfaces' own blocks: a later choice for a block replaces an earlier one.
@@ -217,6 +220,7 @@ private:
   bool AutomaticIsoValue = true;
   vtkPVDSMSlicing Slicing;
   std::unique_ptr<vtkPVDSMVolumePlaces> Places; ///< null: selections draw isosurfaces
+  vtkSmartPointer<vtkDataObject> Selectable;    ///< isosurfaces, while ParaView selects
 };
 
 #endif

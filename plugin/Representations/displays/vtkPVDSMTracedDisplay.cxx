@@ -170,6 +170,11 @@ void vtkPVDSMTracedDisplay::SetFrameReport(vtkPVDSMFrameReport* report)
   this->ConnectFrameReport();
 }
 
+vtkDSMScene* vtkPVDSMTracedDisplay::GetScene() const
+{
+  return this->Scene;
+}
+
 void vtkPVDSMTracedDisplay::ConnectFrameReport()
 {
   if (this->FrameReport)
@@ -227,7 +232,8 @@ void vtkPVDSMTracedDisplay::PrepareRender(const double* dataBounds, vtkInformati
   const bool selecting = vtkPVDSMDelivery::IsSelecting(this->Representation->GetView());
   if (this->PrepareSelection && this->View)
   {
-    this->PrepareSelection(this->Scene, this->View->GetRenderer(), selecting);
+    this->PrepareSelection(
+      this->Scene, this->View->GetRenderer(), selecting && this->Prop->GetPickable() != 0);
   }
   this->SelectionMapper->SetClippingPlanes(this->Mapper->GetClippingPlanes());
   this->SelectionMapper->SetSelecting(selecting);

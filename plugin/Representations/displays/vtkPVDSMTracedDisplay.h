@@ -53,7 +53,7 @@ public:
   /// Gives an actor, which exporters are to have, the look of what is traced.
   std::function<void(vtkActor* actor, vtkMapper* mapper)> SetLook;
   vtkNew<vtkPVDSMSelectionMapper> SelectionMapper; ///< gets its source from the representation
-  /// Called on all ranks before a render, if set; `selecting`: it is for a selection.
+  /// Called on all ranks before a render, if set; `selecting`: it is for a selection, of this display, too.
   std::function<void(vtkDSMScene* scene, vtkRenderer* renderer, bool selecting)> PrepareSelection;
 
   ///@{
@@ -69,6 +69,9 @@ public:
   void SetLightOptions(vtkObject* options);
   void SetMemoryOptions(vtkObject* options);
   ///@}
+
+  /// Returns the scene of the view; null where the process does not render, and while the display is in no view.
+  vtkDSMScene* GetScene() const;
 
   /// Begins the representation's ProcessViewRequest: false where it ends at once. An update that the
   /// view's cache of time steps would skip takes place.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "DSMRayTracing/frame/FrameRenderer.h"
 
+#include "DSMRayTracing/frame/FieldReading.h"
 #include "DSMRayTracing/frame/FrameTracing.h"
 #include "DSMRayTracing/frame/TileGrid.h"
 #include "DSMRayTracing/frame/TileSource.h"
@@ -8,6 +9,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <type_traits>
 #include <utility>
@@ -63,6 +65,25 @@ void FrameRenderer::Refine(dsm::BlockStore& store, const Scene& scene, const Fra
   frame.Tiles.clear();
   frame.Number = 0; // as long as it has no tiles
   this->RenderTiles(store, scene, request, nullptr, records, tiles, frame);
+}
+
+void FrameRenderer::Read(
+  const char* what, dsm::BlockStore& store, dsm::FunctionRef<void(FieldReader&)> read)
+{
+  const auto settled = this->Messenger.AllGatherValue(std::uint8_t{ store.IsSettled() });
+  if (std::find(settled.begin(), settled.end(), 0) != settled.end())
+  {
+    store.Settle();
+  }
+  dsm::WorkerSlots& slots = store.GetSlots();
+  slots.BeginFrame(store.GetSettings().Workers);
+  store.Visit(
+    [&](auto& blocks)
+    {
+      blocks.BeginFrame();
+      FieldReading<std::decay_t<decltype(blocks)>>(blocks, this->Messenger, this->Pool, slots)
+        .Read(what, read);
+    });
 }
 
 void FrameRenderer::RenderTiles(dsm::BlockStore& store, const Scene& scene,

@@ -5,6 +5,7 @@
 #include "DSMCore/base/FunctionRef.h"
 #include "DSMCore/store/BlockStore.h"
 #include "DSMCore/transport/Messenger.h"
+#include "DSMRayTracing/frame/FieldReader.h"
 #include "DSMRayTracing/frame/Frame.h"
 #include "DSMRayTracing/frame/FrameEntry.h"
 #include "DSMRayTracing/frame/FrameRequest.h"
@@ -63,6 +64,10 @@ public:
   /// then only tiles that lack them are traced.
   void Refine(dsm::BlockStore& store, const Scene& scene, const FrameRequest& request, Frame& frame,
     const Records& records = {});
+
+  /// Collective, between frames; settles the store first. Calls `read` on one thread of this rank, while all ranks serve one
+  /// another. What it throws on any rank is thrown as the same dsm::Error on every rank; `what` begins its text.
+  void Read(const char* what, dsm::BlockStore& store, dsm::FunctionRef<void(FieldReader&)> read);
 
   /// Sets a function that rank 0's calling thread calls repeatedly during a frame. `part`: the approximate
   /// part of the frame that is traced, 0 to 1, estimated from rank 0's own tiles. The function returns

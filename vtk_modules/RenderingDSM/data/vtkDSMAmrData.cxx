@@ -6,6 +6,7 @@
 #include "vtkDSMImagePiece.h"
 
 #include "vtkImageData.h"
+#include "vtkStructuredData.h"
 
 #include <glm/mat3x3.hpp>
 #include <glm/matrix.hpp>
@@ -45,7 +46,7 @@ bool IsEmpty(const bricks::PieceInfo& piece)
 } // namespace
 
 /// This rank's leaves, with the values of one array.
-class vtkDSMAmrData::Source final : public bricks::LevelSource
+class vtkDSMAmrData::Source final : public vtkDSMLevelSource
 {
 public:
   Source(const vtkDSMAmrData& data, const Choice& choice)
@@ -66,7 +67,7 @@ public:
       const bricks::PieceInfo& piece = data.Pieces[number];
       const bricks::LatticePlan::Member member{ 0,
         place.Cells.Min - Index3(piece.Min[0], piece.Min[1], piece.Min[2]), place.Cells };
-      this->Blocks.push_back({ place, data.FindLeaves(own), info.Type,
+      this->Blocks.push_back({ own, place, data.FindLeaves(own), info.Type,
         std::make_unique<vtkDSMImagePiece>(
           data.Blocks[own], array, choice.Component, member, false, choice.OnCells) });
       this->AddCubes(this->Blocks.size() - 1);
@@ -124,9 +125,40 @@ public:
     }
   }
 
+  std::vector<Cell> ReadCells(std::size_t number) const override
+  {
+    const bricks::LevelCube& cube = this->Cubes.GetAll()[number];
+    const Index3 size(bricks::LevelLattice::Edge);
+    const Index3 first = bricks::LevelCubes::GetFirst(cube);
+    std::vector<Cell> found(static_cast<std::size_t>(size.x * size.y * size.z));
+    for (const std::size_t index : this->BlocksOfCubes[number])
+    {
+      const Block& block = this->Blocks[index];
+      const bricks::PieceInfo& piece =
+        this->Data.Pieces[static_cast<std::size_t>(this->Data.FirstOwn) + block.Own];
+      const Index3 toOwn = Index3(piece.Min[0], piece.Min[1], piece.Min[2]) - block.At.Cells.Min;
+      bricks::ForEachIndex(bricks::Intersect(block.At.Cells, { first, first + size }),
+        [&](const Index3& cell)
+        {
+          if (block.IsLeaf(cell))
+          {
+            const Index3 at = cell - first;
+            const glm::ivec3 own(cell + toOwn);
+            found[static_cast<std::size_t>(at.x + size.x * (at.y + size.y * at.z))] = {
+              static_cast<int>(block.Own),
+              vtkStructuredData::ComputeCellIdForExtent(
+                this->Data.Blocks[block.Own]->GetExtent(), &own.x)
+            };
+          }
+        });
+    }
+    return found;
+  }
+
 private:
   struct Block
   {
+    std::size_t Own; ///< index into the rank's own
     Place At;
     std::vector<std::uint8_t> Leaves;
     bricks::ScalarType Type;
@@ -340,7 +372,7 @@ void vtkDSMAmrData::AddPlaces(bricks::ByteHash& hash) const
   hash.Add(this->Pieces.data(), this->Pieces.size() * sizeof(bricks::PieceInfo));
 }
 
-std::unique_ptr<bricks::LevelSource> vtkDSMAmrData::CreateSource(const Choice& choice) const
+std::unique_ptr<vtkDSMLevelSource> vtkDSMAmrData::CreateSource(const Choice& choice) const
 {
   return std::make_unique<Source>(*this, choice);
 }

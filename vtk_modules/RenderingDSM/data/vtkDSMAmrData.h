@@ -22,6 +22,8 @@ public:
   vtkDSMAmrData(const std::shared_ptr<vtkDSMRankGroup>& group, const Parts& parts);
   ~vtkDSMAmrData() override;
 
+  std::unique_ptr<vtkDSMLevelSource> CreateSource(const Choice& choice) const override;
+
 private:
   class Source;
   /// A block of any rank.
@@ -32,7 +34,6 @@ private:
   };
 
   void AddPlaces(bricks::ByteHash& hash) const override;
-  std::unique_ptr<bricks::LevelSource> CreateSource(const Choice& choice) const override;
   void FindLevels();
   void FindPlaces();
   /// Local: for each cell of an own block whether it is a leaf.

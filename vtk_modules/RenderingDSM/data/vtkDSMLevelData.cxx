@@ -167,7 +167,7 @@ std::shared_ptr<const bricks::LevelVoxels> vtkDSMLevelData::Publish(const Choice
     return nullptr;
   }
   const std::string what = "the " + purpose + " '" + choice.Name + "'";
-  std::unique_ptr<bricks::LevelSource> source;
+  std::unique_ptr<vtkDSMLevelSource> source;
   messenger.RunTogether("Preparing the " + purpose, [&] { source = this->CreateSource(choice); });
   const bricks::LevelLattice lattice =
     bricks::DivideLevels(what, this->Scales, type, *source, messenger);

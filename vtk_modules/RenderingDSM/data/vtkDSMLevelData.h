@@ -12,9 +12,11 @@
 #include "vtkDSMRankGroup.h"
 
 #include "vtkSmartPointer.h"
+#include "vtkType.h"
 
 #include <glm/mat4x4.hpp>
 
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -23,6 +25,20 @@
 #include <vector>
 
 class vtkDataObject;
+
+/// The leaves that one rank has, and which cells of its parts they are.
+class vtkDSMLevelSource : public bricks::LevelSource
+{
+public:
+  /// A cell of a part.
+  struct Cell
+  {
+    int Part = -1; ///< index into vtkDSMLevelData::GetParts; -1: the part is no leaf of this rank
+    vtkIdType Id = -1;
+  };
+  /// Reads which cells of this rank's parts are the cells of cube `number` of GetCubes: Edge^3, x fastest.
+  virtual std::vector<Cell> ReadCells(std::size_t number) const = 0;
+};
 
 /// Parts of a dataset whose cells are of several sizes that lie within one another, with one coarsest level in common,
 /// distributed over the ranks in any way. Keeps the parts alive, without a copy. Methods documented as collective need every
@@ -64,6 +80,13 @@ public:
 
   /// Local: whether this rank's parts have an array.
   std::vector<vtkDSMImageArrays::Info> FindArrays(const Choice& choice) const;
+  /// Local: this rank's leaves in the parts that have an array, with its values.
+  std::unique_ptr<vtkDSMLevelSource> FindLeaves(const Choice& choice) const
+  {
+    return this->CreateSource(this->Find(choice));
+  }
+  /// Local: this rank's parts.
+  const std::vector<vtkSmartPointer<vtkDataObject>>& GetParts() const { return this->Own; }
   /// Collective. Cuts an array into bricks: `infos` is FindArrays of all ranks. Null where no part has it. An array of points
   /// that the parts do not have is the array of cells of that name.
   std::shared_ptr<const bricks::LevelVoxels> Publish(const Choice& choice,
@@ -73,8 +96,8 @@ public:
 protected:
   /// Collective.
   vtkDSMLevelData(std::shared_ptr<vtkDSMRankGroup> group, const Parts& parts);
-  /// Local: this rank's leaves, with the values of an array.
-  virtual std::unique_ptr<bricks::LevelSource> CreateSource(const Choice& choice) const = 0;
+  /// Local: the same, of an array as the parts have it.
+  virtual std::unique_ptr<vtkDSMLevelSource> CreateSource(const Choice& choice) const = 0;
   /// Local: adds where this rank's cells are.
   virtual void AddPlaces(bricks::ByteHash& hash) const = 0;
   /// Sets the place of the coarsest level. `origin`: of its point (0, 0, 0).

@@ -89,7 +89,7 @@ private:
 } // namespace
 
 /// This rank's leaves, with the values of one array.
-class vtkDSMTreeData::Source final : public bricks::LevelSource
+class vtkDSMTreeData::Source final : public vtkDSMLevelSource
 {
 public:
   Source(const vtkDSMTreeData& data, const Choice& choice)
@@ -127,6 +127,17 @@ public:
       values[leaf.Place] =
         this->IsMissing(value) ? std::numeric_limits<double>::quiet_NaN() : value;
     }
+  }
+
+  std::vector<Cell> ReadCells(std::size_t number) const override
+  {
+    constexpr std::int64_t edge = bricks::LevelLattice::Edge;
+    std::vector<Cell> found(edge * edge * edge);
+    for (const Leaf& leaf : this->Leaves[number])
+    {
+      found[leaf.Place] = { static_cast<int>(leaf.Grid), leaf.Id };
+    }
+    return found;
   }
 
 private:
@@ -394,7 +405,7 @@ void vtkDSMTreeData::AddPlaces(bricks::ByteHash& hash) const
   }
 }
 
-std::unique_ptr<bricks::LevelSource> vtkDSMTreeData::CreateSource(const Choice& choice) const
+std::unique_ptr<vtkDSMLevelSource> vtkDSMTreeData::CreateSource(const Choice& choice) const
 {
   return std::make_unique<Source>(*this, choice);
 }

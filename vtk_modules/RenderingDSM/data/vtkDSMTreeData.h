@@ -43,7 +43,7 @@ private:
   void Place(const std::vector<Roots>& all, int firstOwn);
 
   void AddPlaces(bricks::ByteHash& hash) const override;
-  std::unique_ptr<bricks::LevelSource> CreateSource(const Choice& choice) const override;
+  std::unique_ptr<vtkDSMLevelSource> CreateSource(const Choice& choice) const override;
 
   std::vector<vtkSmartPointer<vtkHyperTreeGrid>> Grids;
   std::vector<bricks::Index3> FirstRoots; ///< of this rank's grids, among those of all

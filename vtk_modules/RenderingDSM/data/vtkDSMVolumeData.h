@@ -95,6 +95,30 @@ public:
   using Block = vtkDSMLevelData::Block;
   /// Returns the blocks of a part, from all ranks' pieces.
   std::vector<Block> GetBlocks(std::size_t part) const;
+  /// An image of this rank.
+  struct OwnImage
+  {
+    vtkDataSet* Image;
+    std::size_t Lattice;
+    bricks::Index3 IndexToLattice; ///< add to the image's own index
+    bricks::Box Cells;             ///< of the lattice, without ghosts around them
+  };
+  /// Local: this rank's images that have cells.
+  std::vector<OwnImage> GetOwnImages() const
+  {
+    std::vector<OwnImage> images;
+    for (std::size_t lattice = 0; lattice < this->GetNumberOfLattices(); ++lattice)
+    {
+      for (const bricks::LatticePlan::Member& member : this->Plan.GetLattices()[lattice].Members)
+      {
+        if (vtkDataSet* image = this->FindOwn(member))
+        {
+          images.push_back({ image, lattice, member.IndexToLattice, member.Cells });
+        }
+      }
+    }
+    return images;
+  }
   const vtkDSMImageArrays& GetArrays() const { return this->Arrays; }
   /// Local, reads the data. Of all that this rank's part of a field depends on: equal only where Publish would make
   /// the same again.

@@ -7,7 +7,6 @@
 
 #include "DSMBricks/layout/FirstIsovalue.h"
 #include "DSMBricks/layout/MacrocellHierarchy.h"
-#include "DSMRayTracing/field/lattice/SurfaceBounds.h"
 
 #include "vtkCompositeDataIterator.h"
 #include "vtkCompositeDataSet.h"
@@ -305,7 +304,6 @@ void vtkDSMSceneVolume::Update(const std::shared_ptr<vtkDSMRankGroup>& group, bo
 {
   this->Messages.clear();
   this->Warnings.clear();
-  vtkDSMVolumeMapper* mapper = this->Mapper;
   if (newData)
   {
     this->TakeData(group);
@@ -335,7 +333,6 @@ void vtkDSMSceneVolume::Update(const std::shared_ptr<vtkDSMRankGroup>& group, bo
     this->SuggestIsovalue(group->GetMessenger());
   }
   this->Stale.clear();
-  mapper->SetSurfaceTest(this->MakeSurfaceTest());
   const bool isConfigured = this->SettingsVersion != group->GetSettingsVersion();
   this->SettingsVersion = group->GetSettingsVersion();
   for (const auto& published : this->Arrays)
@@ -351,46 +348,6 @@ void vtkDSMSceneVolume::Update(const std::shared_ptr<vtkDSMRankGroup>& group, bo
       (isShown ? this->Warnings : this->Messages).push_back(published->Failure);
     }
   }
-}
-
-vtkDSMVolumeMapper::SurfaceTest vtkDSMSceneVolume::MakeSurfaceTest() const
-{
-  std::vector<glm::dmat4> toIndex;
-  for (std::size_t lattice = 0; lattice < this->Data->GetNumberOfLattices(); ++lattice)
-  {
-    toIndex.push_back(glm::inverse(this->Data->GetIndexToWorld(lattice)));
-  }
-  // Keeps no bricks alive, so it does not matter to code that releases them.
-  return [toIndex = std::move(toIndex), mapper = this->Mapper.GetPointer(), data = this->SeenData,
-           time = this->SeenTime, array = this->Mapper->GetIsoArray(),
-           onCells = this->Mapper->GetIsoArrayOnCells(),
-           component = this->Mapper->GetIsoComponent(), ignores = this->Mapper->GetIgnoreValues(),
-           lowest = this->Mapper->GetValidRange()[0], highest = this->Mapper->GetValidRange()[1],
-           weak = std::weak_ptr<const Published>(this->GetIso())](
-           const double bounds[6], std::vector<double> isovalues)
-  {
-    vtkDataObject* now = mapper->GetDataObjectInput();
-    const auto iso = weak.lock();
-    if (!iso || iso->GetFields().empty() || !iso->GetLevels().empty() || now != data ||
-      GetDataTime(now) != time || mapper->GetIsoArray() != array ||
-      mapper->GetIsoArrayOnCells() != onCells || mapper->GetIsoComponent() != component ||
-      mapper->GetIgnoreValues() != ignores || mapper->GetValidRange()[0] != lowest ||
-      mapper->GetValidRange()[1] != highest)
-    {
-      return true;
-    }
-    std::sort(isovalues.begin(), isovalues.end());
-    const auto& fields = iso->GetFields();
-    for (std::size_t lattice = 0; lattice < fields.size(); ++lattice)
-    {
-      if (fields[lattice] &&
-        rt::MayHaveSurface(*fields[lattice], toIndex[lattice], bounds, isovalues))
-      {
-        return true;
-      }
-    }
-    return false;
-  };
 }
 
 void vtkDSMSceneVolume::TakeCoarser(const std::shared_ptr<vtkDSMRankGroup>&, bool wanted)

@@ -35,8 +35,12 @@ public:
   int CountCoarser() const override;
   /// One object, or medium, for each of the volume's parts, and of the components that are shown at once.
   void AddTo(rt::Scene& scene) override;
+  void ExtractIsosurfaces(
+    vtkDSMRankGroup& group, Purpose purpose, vtkMultiBlockDataSet* surfaces) override;
 
 private:
+  class TriangleMaker;
+
   /// Returns whether the mapper has other data than were taken in.
   bool HasOtherData() const;
 
@@ -76,8 +80,6 @@ private:
     const vtkDSMVolumeData::Choice& choice);
   std::shared_ptr<Published> Require(const vtkDSMVolumeData::Choice& choice, const char* purpose,
     unsigned retryVersion, const std::vector<std::shared_ptr<Published>>& known);
-  /// As it is now.
-  vtkDSMVolumeMapper::SurfaceTest MakeSurfaceTest() const;
   /// Collective. Finds the isovalue for a first look at the array, unless the last one still suits its values.
   void SuggestIsovalue(dsm::Messenger& messenger);
   bool LacksSuggestion() const;

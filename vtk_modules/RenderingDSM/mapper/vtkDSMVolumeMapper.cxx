@@ -344,17 +344,6 @@ void vtkDSMVolumeMapper::SetSuggestedIsoValue(double value)
   this->SuggestedIsoValue = value;
 }
 
-void vtkDSMVolumeMapper::SetSurfaceTest(SurfaceTest test)
-{
-  this->Test = std::move(test);
-}
-
-bool vtkDSMVolumeMapper::MayHaveSurface(
-  const double bounds[6], const std::vector<double>& isovalues) const
-{
-  return !this->Test || this->Test(bounds, isovalues);
-}
-
 void vtkDSMVolumeMapper::UpdatePiece(int piece, int numberOfPieces)
 {
   if (this->GetNumberOfInputConnections(0) == 0)

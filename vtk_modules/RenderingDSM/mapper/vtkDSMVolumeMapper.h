@@ -42,11 +42,10 @@
 #include "vtkSmartPointer.h"       // for ivars
 #include "vtkVolumeMapper.h"
 
-#include <functional> // for SurfaceTest
-#include <memory>     // for ivars
-#include <string>     // for ivars
-#include <utility>    // for ivars
-#include <vector>     // for ivars
+#include <memory>  // for ivars
+#include <string>  // for ivars
+#include <utility> // for ivars
+#include <vector>  // for ivars
 
 class vtkDSMKnownBounds;
 class vtkDSMLightOptions;
@@ -384,24 +383,6 @@ public:
   void SetSuggestedIsoValue(double value);
 
   /**
-   * Whether surfaces of some values may pass through a box, in the data's coordinates (without the volume's transform).
-   */
-  using SurfaceTest =
-    std::function<bool(const double bounds[6], const std::vector<double>& isovalues)>;
-
-  /**
-   * For the scene, which knows what the bricks of all data hold. The test is for what the mapper has and is asked for
-   * then, too.
-   */
-  void SetSurfaceTest(SurfaceTest test);
-
-  /**
-   * False where it is known that no such surface of the array IsoArray passes: so of data that are in a file, or large,
-   * not all must be read. True before the first frame, and after any change to the data or to the choice of the array.
-   */
-  bool MayHaveSurface(const double bounds[6], const std::vector<double>& isovalues) const;
-
-  /**
    * Brings the input up to date; each rank asks its pipeline for its own piece.
    */
   using vtkVolumeMapper::Update;
@@ -520,7 +501,6 @@ private:
   int Pieces = 1; ///< as many as the input was last asked for
   std::unique_ptr<vtkDSMKnownBounds> GlobalBounds;
   std::unique_ptr<vtkDSMOriginalData> Original;
-  SurfaceTest Test;
 };
 
 #endif

@@ -4,9 +4,11 @@
 #include "vtkDSMOpenGLGuard.h"
 #include "vtkDSMSceneInternals.h"
 
+#include "vtkAlgorithm.h"
 #include "vtkCamera.h"
 #include "vtkCameraPass.h"
 #include "vtkCommand.h"
+#include "vtkMultiBlockDataSet.h"
 #include "vtkObjectFactory.h"
 #include "vtkRenderPass.h"
 #include "vtkRenderWindow.h"
@@ -361,6 +363,39 @@ bool vtkDSMScene::TraceImage(int width, int height, vtkImageData* image, bool tr
   this->EndReading();
   self.Image.reset();
   return traced;
+}
+
+bool vtkDSMScene::ExtractIsosurfaces(
+  vtkAlgorithm* mapper, bool forSelection, vtkMultiBlockDataSet* surfaces)
+{
+  Internals& self = *this->Self;
+  if (!self.Renderer || self.Tracing || Internals::TracingTiles)
+  {
+    vtkErrorMacro(<< "Cannot extract isosurfaces while a frame is in progress.");
+    return false;
+  }
+  const vtkSmartPointer<vtkDSMScene> extracting = this; // as Trace
+  self.Tracing = true;
+  dsm::FirstFailure found;
+  found.Try([&] { self.Members.Find(self.Renderer); });
+  std::string failure;
+  try
+  {
+    self.FindGroup(this->GetController());
+    failure = self.Extract(found, mapper,
+      forSelection ? vtkDSMSceneMember::Purpose::Selection : vtkDSMSceneMember::Purpose::Export,
+      surfaces);
+  }
+  catch (const std::exception& error)
+  {
+    failure = error.what();
+  }
+  self.Tracing = false;
+  if (!failure.empty())
+  {
+    vtkErrorMacro(<< failure);
+  }
+  return failure.empty();
 }
 
 bool vtkDSMScene::FillWithBackground()

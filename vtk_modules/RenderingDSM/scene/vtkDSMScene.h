@@ -32,11 +32,13 @@
 #include <memory>     // for ivars
 #include <string>     // for ivars
 
+class vtkAlgorithm;
 class vtkCamera;
 class vtkDSMFrameProp;
 class vtkDSMLightOptions;
 class vtkDSMStatistics;
 class vtkImageData;
+class vtkMultiBlockDataSet;
 class vtkMultiProcessController;
 class vtkRenderer;
 
@@ -125,6 +127,28 @@ public:
    * its `image` is null. False, with an error as for a frame, where there is none; the same on every rank.
    */
   bool TraceImage(int width, int height, vtkImageData* image, bool transparent = false);
+
+  ///@{
+  /**
+   * Makes the triangles of the isosurfaces that a mapper shows in the renderer, from the values that pictures are traced
+   * from: on any number of ranks, and around missing values, they are where the picture has surfaces. `surfaces`, which is
+   * empty, gets a vtkPolyData for each image, block of AMR or hyper tree grid of this rank, with the triangles in its own
+   * cells, ghost cells excluded, in the data's coordinates. Their cells have vtkOriginalCellIds, and their points
+   * vtkOriginalPointIds, the nearest points of the dataset (of a hyper tree grid: -1); of a composite dataset, both have
+   * vtkCompositeIndex. For exports they have normals and the array that colors the surface: as in the dataset, or, of
+   * AMR and hyper tree grids, the mapped component at the points.
+   *
+   * Where levels of AMR or trees meet, triangles of both sides may leave narrow gaps. For selections, hyper tree grids have
+   * no triangles: VTK extracts none of their cells.
+   *
+   * Collective, between frames. False, with an error on every rank, when that fails, also if any rank would have more
+   * than MostTriangles, or, for a selection, an image more than MostCellsOfSelection cells: ParaView takes 10 bytes or
+   * more for each of its cells.
+   */
+  bool ExtractIsosurfaces(vtkAlgorithm* mapper, bool forSelection, vtkMultiBlockDataSet* surfaces);
+  static constexpr vtkIdType MostTriangles = 10'000'000;
+  static constexpr vtkIdType MostCellsOfSelection = vtkIdType(1) << 27;
+  ///@}
 
   /**
    * While it is hidden the scene neither traces nor draws, and keeps what it has: for renders that are

@@ -80,6 +80,13 @@ void AddCuts(const std::vector<std::byte>& record, std::size_t first, std::size_
   }
 }
 
+/// Returns whether any rank's Holdings say so.
+bool NeedsUpdate(const std::vector<std::vector<std::byte>>& records)
+{
+  return std::any_of(records.begin(), records.end(),
+    [](const auto& record) { return Read<Holdings>(record).NeedsUpdate != 0; });
+}
+
 bool HasNewData(const std::vector<std::byte>& record, std::size_t dataset)
 {
   return record[sizeof(Holdings) + dataset] != std::byte(0);
@@ -173,6 +180,22 @@ void vtkDSMScene::Internals::Update(const Records& records)
       freed.insert(outdated.begin(), outdated.end());
     }
     this->Update(*member, newData);
+  }
+}
+
+/// Collective: the data and arrays that the mappers have and name now.
+void vtkDSMScene::Internals::TakeIn()
+{
+  const Records records = this->Group->GetMessenger().GatherTogether("Taking in data",
+    [&]
+    {
+      bool needsUpdate = false;
+      return this->EncodeHoldings(needsUpdate);
+    });
+  CheckHoldings(records);
+  if (NeedsUpdate(records))
+  {
+    this->Update(records);
   }
 }
 
@@ -362,8 +385,7 @@ void vtkDSMScene::Internals::Draw(bool& isOver)
       return bytes;
     });
   CheckHoldings(records);
-  if (std::any_of(records.begin(), records.end(),
-        [](const auto& record) { return Read<Holdings>(record).NeedsUpdate != 0; }))
+  if (NeedsUpdate(records))
   {
     scene = {}; // bricks are given up by all ranks, or by none
     this->Update(records);

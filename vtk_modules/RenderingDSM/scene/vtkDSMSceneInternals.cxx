@@ -53,6 +53,13 @@ private:
   bool& Flag;
 };
 
+/// Returns the text of a failure.
+std::string Describe(const dsm::Status& outcome)
+{
+  return outcome.IsEverywhere ? outcome.Cause
+                              : "Rank " + std::to_string(outcome.FailedRank) + ": " + outcome.Cause;
+}
+
 } // namespace
 
 vtkDSMScene::Internals::~Internals()
@@ -118,20 +125,48 @@ std::string vtkDSMScene::Internals::MakeFrame(const dsm::FirstFailure& earlier)
     this->Group->TellOrganization();
     return {};
   }
-  if (outcome.IsEverywhere)
+  if (isOver && !outcome.IsEverywhere)
   {
-    return outcome.Cause;
-  }
-  const std::string failure = "Rank " + std::to_string(outcome.FailedRank) + ": " + outcome.Cause;
-  if (isOver)
-  {
+    std::string failure = Describe(outcome);
     this->LateFailure = std::move(outcome.Cause);
     return failure;
   }
-  this->IsTraced = false;
-  this->GiveUpBlocks(); // the ranks may have different bricks now
-  this->Group->GetPublications().Forget();
-  return failure;
+  return this->Conclude(outcome);
+}
+
+std::string vtkDSMScene::Internals::Extract(const dsm::FirstFailure& earlier, vtkAlgorithm* mapper,
+  vtkDSMSceneMember::Purpose purpose, vtkMultiBlockDataSet* surfaces)
+{
+  const bool isOver = false;
+  const dsm::Status outcome = this->Group->GetMessenger().RunStep(
+    [&]
+    {
+      earlier.Throw();
+      this->TakeIn();
+      for (const auto& member : this->Members.GetShown())
+      {
+        if (member.State->GetAlgorithm() == mapper)
+        {
+          member.State->ExtractIsosurfaces(*this->Group, purpose, surfaces);
+          return; // other props may show the same
+        }
+      }
+    },
+    isOver);
+  this->Group->ReturnMemoryOfFiles();
+  return outcome.IsOk() ? std::string() : this->Conclude(outcome);
+}
+
+/// After a failure of any rank. Returns its text.
+std::string vtkDSMScene::Internals::Conclude(const dsm::Status& outcome)
+{
+  if (!outcome.IsEverywhere)
+  {
+    this->IsTraced = false;
+    this->GiveUpBlocks(); // the ranks may have different bricks now
+    this->Group->GetPublications().Forget();
+  }
+  return Describe(outcome);
 }
 
 /// Collective: the scene's objects come in again where they are shown at another level of detail. `picture`: what this rank

@@ -44,6 +44,10 @@ public:
   /// Takes in data that changed, traces the frame, and gives it to the prop; or does nothing, because of
   /// what has failed earlier. Returns why there is no frame, the same on every rank, if there is none.
   std::string MakeFrame(const dsm::FirstFailure& earlier);
+  /// Likewise: takes in data that changed, and adds the isosurfaces of a mapper in this rank's data to `surfaces`. Returns
+  /// why there are none, the same on every rank, if that fails.
+  std::string Extract(const dsm::FirstFailure& earlier, vtkAlgorithm* mapper,
+    vtkDSMSceneMember::Purpose purpose, vtkMultiBlockDataSet* surfaces);
   /// Nothing is shown.
   void Clear();
   /// The last picture stays, though the camera may be another: until the frame ends, all of it is what the ranks exchange.
@@ -102,6 +106,8 @@ private:
   using Offers = std::vector<rt::FrameAccumulation::Offer>;
   struct View;
   void Draw(bool& isOver);
+  std::string Conclude(const dsm::Status& outcome);
+  void TakeIn();
   std::vector<std::byte> EncodeHoldings(bool& needsUpdate);
   static void CheckHoldings(const Records& records);
   void Update(const Records& records);

@@ -15,6 +15,7 @@
 class vtkAlgorithm;
 class vtkDSMLightOptions;
 class vtkDSMMemoryOptions;
+class vtkMultiBlockDataSet;
 class vtkProp3D;
 class vtkScalarsToColors;
 
@@ -78,6 +79,16 @@ public:
   virtual int CountCoarser() const { return 0; }
   /// At which level AddTo shows the data: the finest (0), or so many below it, or the coarsest there is.
   void SetCoarser(int level) { this->Coarser = level; }
+
+  /// What surfaces are extracted for; see vtkDSMScene::ExtractIsosurfaces.
+  enum class Purpose
+  {
+    Selection,
+    Export
+  };
+  /// Collective, after Update: adds the isosurfaces in this rank's data to `surfaces`. Throws the same dsm::Error on every
+  /// rank.
+  virtual void ExtractIsosurfaces(vtkDSMRankGroup&, Purpose, vtkMultiBlockDataSet* /*surfaces*/) {}
 
   /// Local: what the prop shows.
   virtual void AddTo(rt::Scene& scene) = 0;

@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef rt_FieldReading_h
+#define rt_FieldReading_h
+
+#include "DSMBricks/layout/VoxelBrick.h"
+#include "DSMCore/base/WorkerSlots.h"
+#include "DSMRayTracing/field/lattice/LatticeMedia.h"
+#include "DSMRayTracing/field/levels/LevelMedia.h"
+#include "DSMRayTracing/field/levels/LevelSampler.h"
+#include "DSMRayTracing/frame/FieldReader.h"
+#include "DSMRayTracing/frame/ServedWork.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+
+namespace rt
+{
+
+/// A FieldReader for one worker of a store.
+template <class Store>
+class StoreFieldReader final : public FieldReader
+{
+public:
+  StoreFieldReader(Store& store, typename Store::Worker& worker)
+    : Blocks(store)
+    , Self(worker)
+    , Lattices(store, worker)
+    , Levels(store, worker)
+    , Values(store, worker)
+  {
+  }
+
+  void ReadBricks(const dsm::BlockSegment& segment, bricks::ScalarType type,
+    const std::vector<dsm::BlockId>& ids,
+    dsm::FunctionRef<void(dsm::BlockId, const Brick&)> visit) override
+  {
+    Brick brick;
+    for (std::size_t place = 0; place < ids.size(); ++place)
+    {
+      if (place % Lead == 0)
+      {
+        this->Blocks.Prefetch(segment, ids.data() + place, std::min(2 * Lead, ids.size() - place));
+      }
+      bricks::Dispatch(type,
+        [&](auto sample)
+        {
+          const typename Store::Pin pin = this->Blocks.Acquire(this->Self, segment, ids[place]);
+          Copy(bricks::VoxelBrick<decltype(sample)>(pin.GetData()), brick);
+        });
+      this->Blocks.Quiesce(this->Self);
+      visit(ids[place], brick);
+    }
+  }
+
+  std::vector<glm::dvec3> FindGradients(
+    const LatticeField& field, const std::vector<glm::dvec3>& points) override
+  {
+    std::vector<glm::dvec3> gradients(points.size(), glm::dvec3(0.0));
+    this->Lattices.FindGradients(field, points, gradients);
+    return gradients;
+  }
+  std::vector<glm::dvec3> FindGradients(
+    const LevelField& field, const std::vector<glm::dvec3>& points) override
+  {
+    std::vector<glm::dvec3> gradients(points.size(), glm::dvec3(0.0));
+    this->Levels.FindGradients(field, points, gradients);
+    return gradients;
+  }
+
+  std::vector<double> FindValues(
+    const LevelField& field, const std::vector<glm::dvec3>& points) override
+  {
+    std::vector<double> values(points.size(), std::numeric_limits<double>::quiet_NaN());
+    for (std::size_t number = 0; number < points.size(); ++number)
+    {
+      LatticePlace place;
+      if (this->Values.FindPlace(field, points[number], place))
+      {
+        this->Values.FindValues(*field.Voxels, &place, 1, &values[number]);
+      }
+    }
+    return values;
+  }
+
+private:
+  /// Bricks are asked for at most twice as many before they are read.
+  static constexpr std::size_t Lead = 16;
+
+  template <class T>
+  static void Copy(const bricks::VoxelBrick<T>& from, Brick& to)
+  {
+    to.Cells = { from.GetCells(0), from.GetCells(1), from.GetCells(2) };
+    const bricks::Index3 points = to.Cells + bricks::Index3(1);
+    to.Samples.assign(from.GetSamples(), from.GetSamples() + points.x * points.y * points.z);
+    to.HoldsData.clear();
+    bricks::ForEachIndex({ bricks::Index3(0), to.Cells },
+      [&](const bricks::Index3& cell)
+      {
+        const glm::ivec3 at(cell);
+        to.HoldsData.push_back(from.HoldsData(at.x, at.y, at.z) ? 1 : 0);
+      });
+  }
+
+  Store& Blocks;
+  typename Store::Worker& Self;
+  LatticeMedia<Store> Lattices;
+  LevelMedia<Store> Levels;
+  LevelSampler<Store> Values;
+};
+
+/// One thread of each rank reads fields.
+template <class Store>
+class FieldReading final : private ServedWork<Store>
+{
+public:
+  /// Collective; the store's BeginFrame is called before. Keeps references.
+  FieldReading(Store& store, dsm::Messenger& messenger, WorkerPool& pool, dsm::WorkerSlots& slots)
+    : ServedWork<Store>(store, messenger, pool)
+    , Slots(slots)
+  {
+  }
+
+  /// Collective: see FrameRenderer::Read.
+  void Read(const char* what, dsm::FunctionRef<void(FieldReader&)> read)
+  {
+    this->Reads = read;
+    this->Run(1, [] {});
+    this->Finish(what);
+  }
+
+private:
+  void Work(int index) override
+  {
+    auto& worker = this->Blocks.GetWorker(index);
+    const dsm::WorkerSlots::Hold slot(this->Slots);
+    this->Blocks.Enter(worker);
+    StoreFieldReader<Store> reader(this->Blocks, worker);
+    this->Reads(reader);
+    this->Blocks.Leave(worker);
+  }
+
+  dsm::WorkerSlots& Slots;
+  dsm::FunctionRef<void(FieldReader&)> Reads;
+};
+
+} // namespace rt
+
+#endif
