@@ -156,8 +156,8 @@ distances = []
 while not leaf.IsDoneWithTraversal():
     block = leaf.GetCurrentDataObject()
     for cell in selected[selected[:, 0] == leaf.GetCurrentFlatIndex(), 2]:
-        center = numpy.array(block.GetCell(int(cell)).GetBounds()).reshape(3, 2).mean(axis=1)
-        distances.append(abs(numpy.linalg.norm(center) - radius) / block.GetSpacing()[0])
+        middle = numpy.array(block.GetCell(int(cell)).GetBounds()).reshape(3, 2).mean(axis=1)
+        distances.append(abs(numpy.linalg.norm(middle) - radius) / block.GetSpacing()[0])
     leaf.GoToNextItem()
 check(len(distances) == len(selected) > 30, f"{len(distances)} cells are selected, of {len(selected)}")
 check(len(set(selected[:, 0])) > 1 and max(distances) < 1.0, f"in several blocks, up to {max(distances)} of a cell away")
