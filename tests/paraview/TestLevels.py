@@ -38,3 +38,90 @@ check((colored != several).any(), "Pulse: colors by another array")
 
 trees = simple.HyperTreeGridRandom()
 show_levels(trees, "Trees", is_recorded=False)  # its values depend on the number of ranks
+simple.Hide(trees, view)
+
+# Blocks of several kinds: isosurfaces of some, the surface of the others.
+RECTILINEAR = """
+from vtkmodules.util.numpy_support import numpy_to_vtk
+import numpy as np
+image, grid = self.GetInputDataObject(0, 0), self.GetOutputDataObject(0)
+extent = image.GetExtent()
+grid.SetExtent(extent)
+for axis, set in enumerate((grid.SetXCoordinates, grid.SetYCoordinates, grid.SetZCoordinates)):
+    place = np.arange(extent[2 * axis], extent[2 * axis + 1] + 1.0)
+    set(numpy_to_vtk(place + 0.02 * place * abs(place) + (20.0 if axis == 0 else 0.0), deep=True))
+grid.GetPointData().ShallowCopy(image.GetPointData())
+"""
+# A tree's values depend on its place, and not on the number of ranks.
+NAMED = """
+from vtkmodules.vtkCommonCore import vtkDoubleArray
+from vtkmodules.vtkCommonDataModel import vtkHyperTreeGridNonOrientedGeometryCursor
+out = self.GetOutputDataObject(0)
+out.DeepCopy(self.GetInputDataObject(0, 0))
+values = vtkDoubleArray()
+values.SetName('RTData')
+values.SetNumberOfTuples(out.GetNumberOfElements(1))
+cursor = vtkHyperTreeGridNonOrientedGeometryCursor()
+def walk(walk, cursor, values):
+    place = [0.0] * 3
+    cursor.GetPoint(place)
+    x, y, z = place
+    values.SetTuple1(cursor.GetGlobalNodeIndex(), 30.0 * (x * x + (y - 20.0) ** 2 + z * z) ** 0.5)
+    for child in range(0 if cursor.IsLeaf() else cursor.GetNumberOfChildren()):
+        cursor.ToChild(child)
+        walk(walk, cursor, values)
+        cursor.ToParent()
+for tree in range(out.GetMaxNumberOfTrees()):
+    if out.GetTree(tree):
+        out.InitializeNonOrientedGeometryCursor(cursor, tree)
+        walk(walk, cursor, values)
+out.GetCellData().AddArray(values)
+"""
+wavelet = simple.Wavelet(WholeExtent=[-8, 8] * 3)
+rectilinear = simple.ProgrammableFilter(Input=wavelet, OutputDataSetType="vtkRectilinearGrid", Script=RECTILINEAR)
+few = simple.HyperTreeGridRandom(Dimensions=[6] * 3, OutputBounds=[-8, 8, 12, 28, -8, 8], MaxDepth=3)
+named = simple.ProgrammableFilter(Input=few, OutputDataSetType="vtkHyperTreeGrid", CopyArrays=0, Script=NAMED)
+sphere = simple.Sphere(Center=[20, 20, 0], Radius=6)
+
+
+def show_blocks(name, sources, default):
+    group = simple.GroupDatasets(Input=sources)
+    with Messages() as messages:
+        display = show_traced(group, view)
+        check(display.DSMShow == default, f"{name}: shows its {display.DSMShow}")
+        display.DSMShow, display.DSMIsoArray, display.DSMIsoValues = "Isosurfaces", ["POINTS", "RTData"], [150.0]
+        render(view)  # the bounds of trees are known then
+        place_camera(view)
+        together = render(view, name)
+        hierarchy = group.GetDataInformation().DataInformation.GetHierarchy()
+        paths = [f"/Root/{hierarchy.GetNodeName(node)}" for node in hierarchy.GetChildNodes(0)]
+        for hidden in range(len(sources)):
+            display.BlockSelectors = paths[:hidden] + paths[hidden + 1:]
+            left = render(view)
+            changed = (abs(left - together).max(axis=2) > 3).mean()
+            check(0.01 < changed < 0.2, f"{name}: block {hidden} is hidden in {changed} of the picture")
+        display.BlockSelectors = ["/"]
+        colors = (["1", "0", "0"], ["0", "1", "0"], ["0", "0", "1"], ["1", "1", "0"])
+        display.BlockColors = [word for path, color in zip(paths, colors) for word in [path] + color]
+        display.BlockOpacities = [paths[0], "0.4", paths[-1], "0.3"]
+        render(view, name + "Colors")
+        display.BlockColors, display.BlockOpacities = [], []
+        simple.ColorBy(display, ("POINTS", "Normals"))  # of the sphere only
+        render(view)
+        display.ColorArrayName = [None, ""]
+        check_equal(render(view), together, f"{name}: all blocks, in one color")
+        simple.Hide(group, view)
+    reports = [word for word in ("Warning:", "ERROR:") if word in messages.text]
+    check(not reports, f"{name}: no message: {messages.text if reports else ''}")
+    for source in sources:
+        if source is sphere:
+            show_traced(source, view)
+        else:
+            show(source, view, [150.0], "RTData")
+    check_equal(render(view), together, f"{name}: as apart")
+    for source in sources:
+        simple.Hide(source, view)
+
+
+show_blocks("Blocks", [wavelet, rectilinear, sphere], "Surface")
+show_blocks("BlocksWithTrees", [wavelet, rectilinear, named, sphere], "Isosurfaces")

@@ -31,21 +31,20 @@ def list_panel(display):
 view = create_view()
 SLICES = [f"DSMSlice{axis}{part}" for axis in "XYZ" for part in ("", "Index", "Indices")] + ["DSMSlicePlane"]
 LIGHT = ["DSMShadows", "DSMAmbientOcclusionSamples", "DSMSamplesPerPixel"]
-for source, own in (
-    (simple.Wavelet(), ["DSMShow", "DSMIsoArray", "DSMIsoArrayAutomatic", "DSMIsoComponent", "DSMIgnoreValues",
-                        "DSMValidRange", "DSMIsoValue", "DSMIsoValueAutomatic", "DSMValueRange", "DSMIsoValues", *SLICES]),
-    (simple.Cone(), []),
-):
+ISOSURFACES = ["DSMShow", "DSMIsoArray", "DSMIsoArrayAutomatic", "DSMIsoComponent", "DSMIgnoreValues", "DSMValidRange",
+               "DSMIsoValue", "DSMIsoValueAutomatic", "DSMValueRange", "DSMIsoValues"]
+# Of surfaces, the panel shows DSMShow, and what depends on it, only where there are blocks that have isosurfaces.
+for source, own, is_pictured in ((simple.Wavelet(), ISOSURFACES + SLICES, True), (simple.Cone(), ISOSURFACES, False)):
     names = list_panel(simple.Show(source, view))
     first = names.index("Representation")
     expected = own + LIGHT
     check(names[first + 1 : first + 1 + len(expected)] == expected, f"{source.GetXMLName()}: {names[: first + 9]}")
     switches = [("DSMClip", "DSMClipOrigin"), ("DSMCropping", "DSMCroppingPosition")]
-    for switch, control in switches + ([("DSMCap", "DSMCapSide")] if own else []):
+    for switch, control in switches + [("DSMCap", "DSMCapSide")]:
         below = names[names.index(switch) + 1]
         check(below == control, f"what {switch} switches on stands directly below: {below}")
     proxy = simple.GetRepresentation(source, view).SMProxy
-    if own:
+    if is_pictured:
         # What says where slices are is there for slices only.
         visible = [name for name in names[first:]
                    if proxy.GetProperty(name).GetPanelVisibility() == "default" and name not in SLICES]

@@ -53,7 +53,7 @@ vtkPVDSMGeometryRepresentation::~vtkPVDSMGeometryRepresentation() = default;
 
 vtkSmartPointer<vtkDataObject> vtkPVDSMGeometryRepresentation::MakeSelectable()
 {
-  return this->GetRenderedDataObject(0);
+  return this->GetSurface();
 }
 
 void vtkPVDSMGeometryRepresentation::SetExportLook(vtkActor* actor, vtkMapper* mapper)
@@ -107,17 +107,23 @@ int vtkPVDSMGeometryRepresentation::ProcessViewRequest(
     });
 }
 
-void vtkPVDSMGeometryRepresentation::PrepareUpdate(vtkInformation* inInfo, vtkInformation* outInfo)
+vtkBoundingBox vtkPVDSMGeometryRepresentation::GetShownBounds()
 {
   this->ComputeVisibleDataBounds();
-  vtkNew<vtkMatrix4x4> matrix;
-  this->Actor->GetMatrix(matrix);
   vtkBoundingBox bounds(this->VisibleDataBounds);
   if (bounds.IsValid())
   {
     bounds.Inflate(
       std::max({ this->GetMapper()->GetLineRadius(), this->GetMapper()->GetPointRadius(), 0.0 }));
   }
+  return bounds;
+}
+
+void vtkPVDSMGeometryRepresentation::PrepareUpdate(vtkInformation* inInfo, vtkInformation* outInfo)
+{
+  vtkNew<vtkMatrix4x4> matrix;
+  this->Actor->GetMatrix(matrix);
+  const vtkBoundingBox bounds = this->GetShownBounds();
   vtkBoundingBox inWorld;
   for (int corner = 0; bounds.IsValid() && corner < 8; ++corner)
   {
@@ -147,9 +153,9 @@ bool vtkPVDSMGeometryRepresentation::IsTranslucent()
     (texture && texture->IsTranslucent());
 }
 
-void vtkPVDSMGeometryRepresentation::PrepareRender(vtkInformation* inInfo)
+void vtkPVDSMGeometryRepresentation::PrepareSurface()
 {
-  vtkDataObject* data = this->GetRenderedDataObject(0);
+  vtkDataObject* data = this->GetSurface();
   this->GetMapper()->SetInputDataObject(data);
   this->UpdateColoringParameters();
   if (data && (this->BlockAttributeTime < data->GetMTime() || this->BlockAttrChanged))
@@ -158,6 +164,11 @@ void vtkPVDSMGeometryRepresentation::PrepareRender(vtkInformation* inInfo)
     this->BlockAttributeTime.Modified();
     this->BlockAttrChanged = false;
   }
+}
+
+void vtkPVDSMGeometryRepresentation::PrepareRender(vtkInformation* inInfo)
+{
+  this->PrepareSurface();
   this->Display->PrepareRender(this->VisibleDataBounds, inInfo);
 }
 
@@ -249,7 +260,7 @@ std::vector<vtkSmartPointer<vtkPolyData>> vtkPVDSMGeometryRepresentation::GetTri
       parts.Add(polygons, look);
     }
   };
-  vtkDataObject* data = this->GetRenderedDataObject(0);
+  vtkDataObject* data = this->GetSurface();
   if (auto* composite = vtkCompositeDataSet::SafeDownCast(data))
   {
     vtkSmartPointer<vtkCompositeDataIterator> leaf;

@@ -21,6 +21,7 @@
 #include <vector>
 
 class vtkActor;
+class vtkBoundingBox;
 class vtkDSMPolyDataMapper;
 class vtkDataObject;
 class vtkMapper;
@@ -122,6 +123,12 @@ protected:
   virtual void PrepareUpdate(vtkInformation* inInfo, vtkInformation* outInfo);
   virtual void PrepareRender(vtkInformation* inInfo);
   ///@}
+  /// Gives the mapper the surface, and the look of its blocks.
+  void PrepareSurface();
+  /// Returns this rank's surface, in blocks; may be null.
+  vtkDataObject* GetSurface() { return this->vtkGeometryRepresentation::GetRenderedDataObject(0); }
+  /// Returns the bounds of what is shown of this rank's data, without the transform.
+  virtual vtkBoundingBox GetShownBounds();
   /// Returns whether any shown data let light through: the same on every rank.
   virtual bool IsTranslucent();
   /// Returns what selections draw of this rank's data; may be null.

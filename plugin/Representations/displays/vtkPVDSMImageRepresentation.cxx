@@ -12,6 +12,7 @@
 
 #include "vtkActor.h"
 #include "vtkAlgorithmOutput.h"
+#include "vtkBoundingBox.h"
 #include "vtkCellData.h"
 #include "vtkCompositeDataIterator.h"
 #include "vtkDataArray.h"
@@ -205,7 +206,6 @@ int vtkPVDSMImageRepresentation::RequestData(
     });
 }
 
-/// Fills the superclass's copy of the input, which ReleaseSurface has emptied.
 void vtkPVDSMImageRepresentation::RestoreSurfaceInput(vtkDataObject* data)
 {
   vtkAlgorithmOutput* const port = data ? this->GetInternalOutputPort() : nullptr;
@@ -233,10 +233,15 @@ void vtkPVDSMImageRepresentation::TakeInput(vtkDataObject* source)
       NumberBlocks(tree, this->BlockColorsDistinctValues);
     }
   }
-  this->VolumeMapper->SetInputData(data);
+  this->VolumeMapper->SetInputData(this->ChooseVolumes(data));
   this->VolumeMapper->SetOriginalData(source);
   this->BlockLooksAreOld = true;
   this->Display->NoteUpdate();
+}
+
+vtkSmartPointer<vtkDataObject> vtkPVDSMImageRepresentation::ChooseVolumes(vtkDataObject* shown)
+{
+  return shown;
 }
 
 vtkDataObject* vtkPVDSMImageRepresentation::GetRenderedDataObject(int port)
@@ -368,20 +373,27 @@ void vtkPVDSMImageRepresentation::ColorBlocksByArray(vtkDataObject* data)
   }
 }
 
-void vtkPVDSMImageRepresentation::PrepareUpdate(vtkInformation* inInfo, vtkInformation* outInfo)
+vtkBoundingBox vtkPVDSMImageRepresentation::GetShownBounds()
 {
   if (this->ShowsSurface())
   {
-    this->Superclass::PrepareUpdate(inInfo, outInfo);
-    return;
+    return this->Superclass::GetShownBounds();
   }
-  this->ChooseLook();
-  if (this->BlockLooksAreOld)
+  const double* const bounds = this->VolumeMapper->GetBounds(); // null where nothing is known
+  return bounds ? vtkBoundingBox(bounds) : vtkBoundingBox();
+}
+
+void vtkPVDSMImageRepresentation::PrepareUpdate(vtkInformation* inInfo, vtkInformation* outInfo)
+{
+  if (!this->ShowsSurface())
   {
-    this->ChooseBlockLooks();
+    this->ChooseLook();
+    if (this->BlockLooksAreOld)
+    {
+      this->ChooseBlockLooks();
+    }
   }
-  this->Display->KeepData(this->Volume->GetBounds(), this->IsTranslucent(),
-    this->VolumeMapper->GetInputDataObject(0, 0), inInfo, outInfo);
+  this->Superclass::PrepareUpdate(inInfo, outInfo);
 }
 
 void vtkPVDSMImageRepresentation::PrepareRender(vtkInformation* inInfo)
@@ -396,7 +408,9 @@ void vtkPVDSMImageRepresentation::PrepareRender(vtkInformation* inInfo)
   {
     this->Slicing.ApplyTo(this->VolumeMapper);
   }
-  this->Display->PrepareRender(this->VolumeMapper->GetBounds(), inInfo);
+  double bounds[6];
+  this->GetShownBounds().GetBounds(bounds);
+  this->Display->PrepareRender(bounds, inInfo);
 }
 
 vtkSmartPointer<vtkDataObject> vtkPVDSMImageRepresentation::MakeSelectable()

@@ -180,6 +180,15 @@ protected:
   bool IsTranslucent() override;
   vtkSmartPointer<vtkDataObject> MakeSelectable() override;
   void SetExportLook(vtkActor* actor, vtkMapper* mapper) override;
+  vtkBoundingBox GetShownBounds() override;
+  bool ShowsSurface() const { return this->Shown == SHOW_SURFACE; }
+  virtual void ShowVolume();
+  /// Shows a copy of the structure of `source`, which may be null.
+  void TakeInput(vtkDataObject* source);
+  /// Returns the part of the shown blocks, which may be null, that the volume's mapper gets. May be null.
+  virtual vtkSmartPointer<vtkDataObject> ChooseVolumes(vtkDataObject* shown);
+  /// Fills the superclass's copy of the input, which ReleaseSurface has emptied.
+  void RestoreSurfaceInput(vtkDataObject* data);
   /// For constructors: selections find the places that the pixels of a picture show, and no isosurfaces.
   void SelectByPlaces();
 
@@ -190,12 +199,7 @@ private:
   vtkPVDSMImageRepresentation(const vtkPVDSMImageRepresentation&) = delete;
   void operator=(const vtkPVDSMImageRepresentation&) = delete;
 
-  /// Shows a copy of the structure of `source`, which may be null.
-  void TakeInput(vtkDataObject* source);
-  bool ShowsSurface() const { return this->Shown == SHOW_SURFACE; }
-  void ShowVolume();
   void ReleaseSurface();
-  void RestoreSurfaceInput(vtkDataObject* data);
   void ChooseIsoValues();
   /// Gives the surfaces the coefficients of the superclass, and their backs their look.
   void ChooseLook();

@@ -51,9 +51,23 @@ void vtkPVDSMTracedDisplay::Show(vtkProp3D* prop, vtkAbstractMapper* mapper, con
 {
   this->Leave();
   this->Prop->VisibilityOff();
+  if (this->Beside)
+  {
+    this->Beside->VisibilityOff();
+    this->Beside = nullptr;
+    this->BesideMapper = nullptr;
+  }
   prop->SetPickable(this->Prop->GetPickable());
   this->Mapper->RemoveObserver(this->ProgressObserver);
   this->Take(prop, mapper, work);
+  this->SetVisibility(this->Representation->GetVisibility());
+}
+
+void vtkPVDSMTracedDisplay::ShowBeside(vtkProp3D* prop, vtkAbstractMapper* mapper)
+{
+  this->Leave();
+  this->Beside = prop;
+  this->BesideMapper = mapper;
   this->SetVisibility(this->Representation->GetVisibility());
 }
 
@@ -78,6 +92,10 @@ bool vtkPVDSMTracedDisplay::RemoveFromView(vtkView* view)
 void vtkPVDSMTracedDisplay::SetVisibility(bool visible)
 {
   this->Prop->SetVisibility(visible);
+  if (this->Beside)
+  {
+    this->Beside->SetVisibility(visible);
+  }
   this->SelectionActor->SetVisibility(visible);
   if (!visible && this->View && !vtkPVDSMDelivery::IsChosen(this->Representation, this->View))
   {
@@ -93,6 +111,10 @@ void vtkPVDSMTracedDisplay::SetVisibility(bool visible)
   if (this->Scene)
   {
     this->View->GetRenderer()->AddViewProp(this->Prop);
+    if (this->Beside)
+    {
+      this->View->GetRenderer()->AddViewProp(this->Beside);
+    }
     this->View->GetRenderer()->AddViewProp(this->SelectionActor);
   }
   // A mesh that is drawn here is an actor for exporters, too.
@@ -121,6 +143,10 @@ void vtkPVDSMTracedDisplay::Leave()
   if (this->IsInView && this->View)
   {
     this->View->GetRenderer()->RemoveViewProp(this->Prop);
+    if (this->Beside)
+    {
+      this->View->GetRenderer()->RemoveViewProp(this->Beside);
+    }
     this->View->GetRenderer()->RemoveViewProp(this->SelectionActor);
     this->View->GetRenderer()->RemoveViewProp(this->ExportProp);
     this->View->UnRegisterPropForHardwareSelection(this->Representation, this->SelectionActor);
@@ -229,6 +255,10 @@ void vtkPVDSMTracedDisplay::PrepareRender(const double* dataBounds, vtkInformati
   vtkNew<vtkMatrix4x4> matrix;
   this->Prop->GetMatrix(matrix);
   this->Clipping.ApplyTo(this->Mapper, matrix);
+  if (this->BesideMapper)
+  {
+    this->Clipping.ApplyTo(this->BesideMapper, matrix);
+  }
   const bool selecting = vtkPVDSMDelivery::IsSelecting(this->Representation->GetView());
   if (this->PrepareSelection && this->View)
   {

@@ -48,6 +48,10 @@ public:
 
   /// Shows another prop with another mapper from now on; the last one's bricks are given up.
   void Show(vtkProp3D* prop, vtkAbstractMapper* mapper, const char* work);
+  /// Shows a second prop together with the one, until Show is called again. Both have the same transform.
+  void ShowBeside(vtkProp3D* prop, vtkAbstractMapper* mapper);
+  /// Returns whether this process has the props in its renderer.
+  bool IsDrawnHere() const { return this->Scene != nullptr; }
 
   vtkPVDSMClipping Clipping;
   /// Gives an actor, which exporters are to have, the look of what is traced.
@@ -100,6 +104,8 @@ private:
   vtkPVDataRepresentation* Representation;
   vtkSmartPointer<vtkProp3D> Prop;
   vtkSmartPointer<vtkAbstractMapper> Mapper;
+  vtkSmartPointer<vtkProp3D> Beside; ///< null: one prop is shown
+  vtkSmartPointer<vtkAbstractMapper> BesideMapper;
   const char* Work = nullptr;
   unsigned long ProgressObserver = 0;
   bool IsUpdated = false;               ///< during the view's current request

@@ -15,6 +15,7 @@
 #include "vtkUnsignedCharArray.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numeric>
@@ -23,6 +24,21 @@ namespace
 {
 
 using bricks::Index3;
+
+/// Calls `visit(index, root)` for the trees of a grid.
+template <class Visit>
+void ForEachTree(vtkHyperTreeGrid* grid, const Visit& visit)
+{
+  vtkHyperTreeGrid::vtkHyperTreeGridIterator trees;
+  trees.Initialize(grid);
+  vtkIdType index = 0;
+  while (trees.GetNextTree(index))
+  {
+    unsigned int root[3];
+    grid->GetLevelZeroCoordinatesFromIndex(index, root[0], root[1], root[2]);
+    visit(index, Index3(root[0], root[1], root[2]));
+  }
+}
 
 /// Calls `visit(level, cell, id)` for the leaves of a grid that are shown: cells of their level, and the number of their values.
 class LeafWalk
@@ -36,19 +52,24 @@ public:
   {
   }
 
+  /// Without the trees that are in `repeated`.
   template <class Visit>
-  void Run(const Visit& visit)
+  void Run(const std::set<vtkIdType>& repeated, const Visit& visit)
   {
-    vtkHyperTreeGrid::vtkHyperTreeGridIterator trees;
-    trees.Initialize(this->Grid);
-    vtkIdType index = 0;
-    while (trees.GetNextTree(index))
-    {
-      unsigned int root[3];
-      this->Grid->GetLevelZeroCoordinatesFromIndex(index, root[0], root[1], root[2]);
-      this->Grid->InitializeNonOrientedCursor(this->Cursor, index);
-      this->Descend(0, Index3(root[0], root[1], root[2]), visit);
-    }
+    ForEachTree(this->Grid,
+      [&](vtkIdType index, const Index3& root)
+      {
+        if (repeated.count(index) == 0)
+        {
+          this->RunTree(index, root, visit);
+        }
+      });
+  }
+  template <class Visit>
+  void RunTree(vtkIdType index, const Index3& root, const Visit& visit)
+  {
+    this->Grid->InitializeNonOrientedCursor(this->Cursor, index);
+    this->Descend(0, root, visit);
   }
 
 private:
@@ -106,7 +127,7 @@ public:
         continue;
       }
       LeafWalk(data.Grids[own])
-        .Run(
+        .Run(data.Repeated[own],
           [&](int level, const Index3& cell, vtkIdType id) {
             this->Add(level, cell + data.FirstRoots[own] * data.Scales.Get(level), { id, own, 0 });
           });
@@ -191,6 +212,7 @@ vtkDSMTreeData::vtkDSMTreeData(const std::shared_ptr<vtkDSMRankGroup>& group, co
   int first = 0;
   const std::vector<Roots> all = vtkDSMGather::Items(messenger, mine, first);
   messenger.RunTogether("Joining the hyper trees", [&] { this->Place(all, first); });
+  this->FindRepeated(first);
 }
 
 vtkDSMTreeData::~vtkDSMTreeData() = default;
@@ -313,16 +335,12 @@ vtkDSMTreeData::Roots vtkDSMTreeData::Describe(const Part& part)
   roots.Branching = grid->GetBranchFactor();
   roots.Levels = static_cast<std::int64_t>(grid->GetNumberOfLevels());
   roots.Trees = { Index3(std::numeric_limits<std::int64_t>::max()), Index3(0) };
-  vtkHyperTreeGrid::vtkHyperTreeGridIterator trees;
-  trees.Initialize(grid);
-  vtkIdType index = 0;
-  while (trees.GetNextTree(index))
-  {
-    unsigned int root[3];
-    grid->GetLevelZeroCoordinatesFromIndex(index, root[0], root[1], root[2]);
-    roots.Trees.Min = glm::min(roots.Trees.Min, Index3(root[0], root[1], root[2]));
-    roots.Trees.Max = glm::max(roots.Trees.Max, Index3(root[0], root[1], root[2]) + Index3(1));
-  }
+  ForEachTree(grid,
+    [&](vtkIdType, const Index3& root)
+    {
+      roots.Trees.Min = glm::min(roots.Trees.Min, root);
+      roots.Trees.Max = glm::max(roots.Trees.Max, root + Index3(1));
+    });
   roots.Dataset = part.Dataset;
   roots.Look = part.Look;
   return roots;
@@ -385,6 +403,71 @@ void vtkDSMTreeData::Place(const std::vector<Roots>& all, int firstOwn)
   this->SetPlace(anchor + glm::dvec3(least) * spacing, glm::dmat3(1.0), spacing);
 }
 
+void vtkDSMTreeData::FindRepeated(int firstOwn)
+{
+  struct Tree
+  {
+    Index3 Root;
+    std::int64_t Grid; ///< among those of all ranks
+    std::uint64_t Leaves;
+    std::int64_t Index;
+  };
+  dsm::Messenger& messenger = this->Group->GetMessenger();
+  std::vector<Tree> mine;
+  messenger.RunTogether("Comparing the hyper trees",
+    [&]
+    {
+      for (std::size_t own = 0; own < this->Grids.size(); ++own)
+      {
+        const std::size_t number = static_cast<std::size_t>(firstOwn) + own;
+        ForEachTree(this->Grids[own],
+          [&](vtkIdType index, const Index3& inGrid)
+          {
+            const Index3 root = inGrid + this->FirstRoots[own];
+            const bricks::Box box{ root, root + Index3(1) };
+            bool isBeside = false;
+            for (std::size_t other = 0; other < this->BlockLooks.size() && !isBeside; ++other)
+            {
+              isBeside =
+                other != number && !bricks::Intersect(this->BlockLooks[other].Cells, box).IsEmpty();
+            }
+            if (!isBeside)
+            {
+              return;
+            }
+            bricks::ByteHash hash;
+            bool isAny = false;
+            LeafWalk(this->Grids[own])
+              .RunTree(index, root,
+                [&](int level, const Index3& cell, vtkIdType)
+                {
+                  const std::int64_t leaf[] = { level, cell.x, cell.y, cell.z };
+                  hash.Add(leaf, sizeof(leaf));
+                  isAny = true;
+                });
+            if (isAny)
+            {
+              mine.push_back({ root, static_cast<std::int64_t>(number), hash.Get(), index });
+            }
+          });
+      }
+    });
+  this->Repeated.resize(this->Grids.size());
+  std::set<std::array<std::int64_t, 4>> known;
+  for (const Tree& tree : vtkDSMGather::Items(messenger, mine))
+  {
+    const bool isFirst =
+      known
+        .insert({ tree.Root.x, tree.Root.y, tree.Root.z, static_cast<std::int64_t>(tree.Leaves) })
+        .second;
+    const std::int64_t own = tree.Grid - firstOwn;
+    if (!isFirst && own >= 0 && own < static_cast<std::int64_t>(this->Grids.size()))
+    {
+      this->Repeated[static_cast<std::size_t>(own)].insert(tree.Index);
+    }
+  }
+}
+
 void vtkDSMTreeData::AddPlaces(bricks::ByteHash& hash) const
 {
   const int levels = this->Scales.GetCount();
@@ -396,7 +479,7 @@ void vtkDSMTreeData::AddPlaces(bricks::ByteHash& hash) const
     const Index3& first = this->FirstRoots[own];
     hash.Add(&first, sizeof(first));
     LeafWalk(this->Grids[own])
-      .Run(
+      .Run(this->Repeated[own],
         [&](int level, const Index3& cell, vtkIdType id)
         {
           const std::int64_t leaf[] = { level, cell.x, cell.y, cell.z, id };

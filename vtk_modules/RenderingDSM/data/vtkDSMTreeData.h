@@ -7,6 +7,7 @@
 
 #include <memory>
 #include <optional>
+#include <set>
 #include <vector>
 
 class vtkHyperTreeGrid;
@@ -41,12 +42,16 @@ private:
   /// Finds where the first root of a grid is on the lattice of another one's. Nothing where it is not on it.
   static std::optional<bricks::Index3> FindFirst(const Roots& roots, const Roots& other);
   void Place(const std::vector<Roots>& all, int firstOwn);
+  /// Collective. Some sources make trees on several ranks when they are asked for ghost cells, and do not mark them. Of equal
+  /// trees, the first one counts.
+  void FindRepeated(int firstOwn);
 
   void AddPlaces(bricks::ByteHash& hash) const override;
   std::unique_ptr<vtkDSMLevelSource> CreateSource(const Choice& choice) const override;
 
   std::vector<vtkSmartPointer<vtkHyperTreeGrid>> Grids;
-  std::vector<bricks::Index3> FirstRoots; ///< of this rank's grids, among those of all
+  std::vector<bricks::Index3> FirstRoots;    ///< of this rank's grids, among those of all
+  std::vector<std::set<vtkIdType>> Repeated; ///< trees of this rank's grids that do not count
 };
 
 #endif
