@@ -472,6 +472,13 @@ void vtkDSMVolumeMapper::CopyOwn(vtkDSMVolumeMapper* other)
   this->MaxMemoryInBytes = other->MaxMemoryInBytes;
   this->MaxMemoryFraction = other->MaxMemoryFraction;
   this->ReportProgress = other->ReportProgress;
+  this->RequestedRenderMode = other->RequestedRenderMode;
+  this->InterpolationMode = other->InterpolationMode;
+  std::copy_n(other->NumberOfSamples, 3, this->NumberOfSamples);
+  this->RequestedResamplingMode = other->RequestedResamplingMode;
+  this->FreezeFocalPoint = other->FreezeFocalPoint;
+  this->ResamplerUpdateTolerance = other->ResamplerUpdateTolerance;
+  this->UseDefaultThreading = other->UseDefaultThreading;
   this->Modified();
 }
 

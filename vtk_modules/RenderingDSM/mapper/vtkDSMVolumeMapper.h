@@ -7,7 +7,7 @@
  * the dataset: vtkImageData, vtkRectilinearGrid, vtkHyperTreeGrid, AMR, a composite dataset whose blocks are
  * any of these but AMR, or nothing. Ranks may have different ones. Other blocks are not shown.
  *
- * It stands in for vtkGPUVolumeRayCastMapper: the blend mode Composite (the default) shows the volume as a medium, by the
+ * It stands in for vtkGPUVolumeRayCastMapper and, of AMR, for vtkAMRVolumeMapper: the blend mode Composite (the default) shows the volume as a medium, by the
  * color and opacity functions and the unit distance of the vtkVolume's vtkVolumeProperty. Maximum, minimum, average (of
  * AverageIPScalarRange) and additive show what they show there. ScalarMode and SelectScalarArray() choose the array.
  * Interpolation is trilinear always. Shading is VTK's, also gradient opacity; with shadows and ambient occlusion of the
@@ -428,6 +428,49 @@ public:
   vtkGetMacro(ReportProgress, bool);
   ///@}
 
+  ///@{
+  /**
+   * What vtkAMRVolumeMapper is told about the uniform grid that it resamples AMR to, and about the mapper that shows
+   * it. Kept, and without effect: AMR is shown as it is, at all of its levels.
+   */
+  enum RenderModes
+  {
+    DefaultRenderMode,
+    RayCastAndTextureRenderMode,
+    RayCastRenderMode,
+    TextureRenderMode,
+    GPURenderMode
+  };
+  vtkSetMacro(RequestedRenderMode, int);
+  vtkGetMacro(RequestedRenderMode, int);
+  void SetRequestedRenderModeToDefault() { this->SetRequestedRenderMode(DefaultRenderMode); }
+  void SetRequestedRenderModeToRayCastAndTexture()
+  {
+    this->SetRequestedRenderMode(RayCastAndTextureRenderMode);
+  }
+  void SetRequestedRenderModeToRayCast() { this->SetRequestedRenderMode(RayCastRenderMode); }
+  void SetRequestedRenderModeToTexture() { this->SetRequestedRenderMode(TextureRenderMode); }
+  void SetRequestedRenderModeToGPU() { this->SetRequestedRenderMode(GPURenderMode); }
+  vtkSetMacro(InterpolationMode, int);
+  vtkGetMacro(InterpolationMode, int);
+  void SetInterpolationModeToNearestNeighbor()
+  {
+    this->SetInterpolationMode(VTK_NEAREST_INTERPOLATION);
+  }
+  void SetInterpolationModeToLinear() { this->SetInterpolationMode(VTK_LINEAR_INTERPOLATION); }
+  void SetInterpolationModeToCubic() { this->SetInterpolationMode(VTK_CUBIC_INTERPOLATION); }
+  vtkSetVector3Macro(NumberOfSamples, int);
+  vtkGetVector3Macro(NumberOfSamples, int);
+  vtkSetMacro(RequestedResamplingMode, int);
+  vtkGetMacro(RequestedResamplingMode, int);
+  vtkSetMacro(FreezeFocalPoint, bool);
+  vtkGetMacro(FreezeFocalPoint, bool);
+  vtkSetMacro(ResamplerUpdateTolerance, double);
+  vtkGetMacro(ResamplerUpdateTolerance, double);
+  vtkSetMacro(UseDefaultThreading, bool);
+  vtkGetMacro(UseDefaultThreading, bool);
+  ///@}
+
   /**
    * Draws nothing: the scene's vtkDSMFrameProp does. The first time, see MakesScene.
    */
@@ -498,6 +541,13 @@ private:
   vtkIdType MaxMemoryInBytes = 0;
   float MaxMemoryFraction = 0.75f;
   bool ReportProgress = true;
+  int RequestedRenderMode = DefaultRenderMode;
+  int InterpolationMode = VTK_CUBIC_INTERPOLATION;
+  int NumberOfSamples[3] = { 128, 128, 128 };
+  int RequestedResamplingMode = 0;
+  bool FreezeFocalPoint = false;
+  double ResamplerUpdateTolerance = 1e-7;
+  bool UseDefaultThreading = false;
   int Pieces = 1; ///< as many as the input was last asked for
   std::unique_ptr<vtkDSMKnownBounds> GlobalBounds;
   std::unique_ptr<vtkDSMOriginalData> Original;
