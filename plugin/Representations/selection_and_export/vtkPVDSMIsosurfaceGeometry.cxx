@@ -58,24 +58,46 @@ unsigned int GetBlock(vtkPolyData* triangles)
                                                    : 0;
 }
 
-/// Returns the image with a flat index, or the data, which are one; null if there is none.
-vtkDataSet* FindImage(vtkDataObject* data, unsigned int block)
+/// Calls `visit(dataset, block)` for the data, or the blocks of composite data with their flat indices.
+template <class Visit>
+void ForEachBlock(vtkDataObject* data, const Visit& visit)
 {
   auto* const all = vtkCompositeDataSet::SafeDownCast(data);
   if (!all)
   {
-    return vtkPVDSMGridPlace::FindImage(data);
+    visit(data, 0u);
+    return;
   }
   vtkSmartPointer<vtkCompositeDataIterator> leaf;
   leaf.TakeReference(all->NewIterator());
   for (leaf->InitTraversal(); !leaf->IsDoneWithTraversal(); leaf->GoToNextItem())
   {
-    if (leaf->GetCurrentFlatIndex() == block)
-    {
-      return vtkPVDSMGridPlace::FindImage(leaf->GetCurrentDataObject());
-    }
+    visit(leaf->GetCurrentDataObject(), leaf->GetCurrentFlatIndex());
   }
-  return nullptr;
+}
+
+bool HasTrees(vtkDataObject* data)
+{
+  bool has = false;
+  ForEachBlock(data,
+    [&](vtkDataObject* dataset, unsigned int)
+    { has = has || vtkHyperTreeGrid::SafeDownCast(dataset); });
+  return has;
+}
+
+/// Returns the image with a flat index, or the data, which are one; null if there is none.
+vtkDataSet* FindImage(vtkDataObject* data, unsigned int block)
+{
+  vtkDataSet* image = nullptr;
+  ForEachBlock(data,
+    [&](vtkDataObject* dataset, unsigned int index)
+    {
+      if (dataset == data || index == block)
+      {
+        image = vtkPVDSMGridPlace::FindImage(dataset);
+      }
+    });
+  return image;
 }
 
 vtkPVDSMExportLook FindLook(vtkDSMVolumeMapper* mapper, unsigned block)
@@ -104,12 +126,11 @@ vtkSmartPointer<vtkMultiBlockDataSet> vtkPVDSMIsosurfaceGeometry::Make(
   vtkDSMScene* scene, vtkDSMVolumeMapper* mapper, vtkDataObject* source)
 {
   vtkDataObject* const data = mapper->GetDataObjectInput();
-  if (vtkHyperTreeGrid::SafeDownCast(data))
+  if (HasTrees(data))
   {
-    vtkWarningWithObjectMacro(mapper,
+    vtkWarningWithObjectMacro(scene,
       "Isosurfaces of hyper tree grids cannot be selected, because ParaView does not extract their "
-      "cells. "
-      "Apply HyperTreeGridToUnstructuredGrid and Contour, and select on the result.");
+      "cells. Apply HyperTreeGrid To UnstructuredGrid and Contour, and select on the result.");
   }
   auto surfaces = vtkSmartPointer<vtkMultiBlockDataSet>::New();
   if (!scene->ExtractIsosurfaces(mapper, true, surfaces))
