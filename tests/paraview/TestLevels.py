@@ -29,6 +29,20 @@ low, high = pulse.CellData.GetArray("Gaussian-Pulse").GetRange()
 check(low < display.DSMIsoValue < high, f"Pulse: isovalue {display.DSMIsoValue} is chosen")
 _, several = show_levels(pulse, "PulseSeveral", "Gaussian-Pulse", [0.05, 0.15, 0.3])
 check((several != first).any(), "Pulse: several isovalues")
+# Blocks are chosen by their levels. Where finer ones are hidden, coarser ones are there.
+chosen = {}
+for name, path in (("Coarse", "/Root/Level0"), ("Fine", "/Root/Level1")):
+    display.BlockSelectors = [path]
+    chosen[name] = render(view, f"Pulse{name}")
+for name, pixels in chosen.items():
+    part = get_covered(pixels).sum() / get_covered(several).sum()
+    check(0.9 < part < 1.0 and (pixels != several).any(), f"Pulse: {name} levels alone: {part} of all")
+check((chosen["Coarse"] != chosen["Fine"]).any(), "Pulse: levels differ")
+display.BlockSelectors = ["/"]
+display.BlockColors = ["/Root", "1", "0", "0"]
+check((render(view)[get_covered(several)][:, 1:] < 60).all(), "Pulse: all is red")
+display.BlockColors = []
+check_equal(render(view), several, "Pulse: all levels again")
 with Messages() as messages:
     simple.ColorBy(display, ("CELLS", "Centroid"))
     render(view)

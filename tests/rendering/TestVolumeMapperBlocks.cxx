@@ -6,6 +6,7 @@
 #include "vtkCompositeDataIterator.h"
 #include "vtkLookupTable.h"
 #include "vtkMultiBlockDataSet.h"
+#include "vtkNonOverlappingAMR.h"
 #include "vtkPartitionedDataSetCollection.h"
 #include "vtkPiecewiseFunction.h"
 #include "vtkPlane.h"
@@ -185,6 +186,38 @@ TEST_F(VolumeMapperBlocks, HyperTreeGridsAreOneWhereTheirRootsAre)
   nested->SetBlock(0, MakeTrees(2));
   nested->SetBlock(1, larger);
   this->ExpectSameAsApart(nested);
+  EXPECT_FALSE(this->Errors->GetError()) << this->Errors->GetErrorMessage();
+}
+
+TEST_F(VolumeMapperBlocks, HiddenBlocksAreNotThere)
+{
+  const auto blocks = MakeAllKinds();
+  this->Mapper->SetInputDataObject(blocks);
+  this->Renderer->ResetCamera(this->Mapper->GetBounds());
+  vtkSmartPointer<vtkCompositeDataIterator> leaf;
+  leaf.TakeReference(blocks->NewIterator());
+  for (leaf->InitTraversal(); !leaf->IsDoneWithTraversal(); leaf->GoToNextItem())
+  {
+    this->Mapper->SetBlockVisibility(leaf->GetCurrentFlatIndex(), false);
+    const std::vector<unsigned char> hidden = this->Draw(blocks);
+    this->Mapper->RemoveBlockLooks();
+    vtkNew<vtkMultiBlockDataSet> others;
+    others->ShallowCopy(blocks);
+    others->SetDataSet(leaf, nullptr);
+    EXPECT_EQ(this->Draw(others), hidden) << leaf->GetCurrentFlatIndex();
+  }
+  // Of AMR, coarser blocks are where finer ones are hidden.
+  const auto amr =
+    MakeAmr<vtkOverlappingAMR>([](std::size_t number) { return Make(Blocks[number]); });
+  const auto coarse = MakeAmr<vtkNonOverlappingAMR>([](std::size_t number)
+    { return number == 0 ? Make(Blocks[number]) : vtkSmartPointer<vtkUniformGrid>(); });
+  for (const unsigned int block : { 1, 2, 3 })
+  {
+    this->Mapper->SetBlockVisibility(block, false);
+  }
+  const std::vector<unsigned char> hidden = this->Draw(amr);
+  this->Mapper->RemoveBlockLooks();
+  EXPECT_EQ(this->Draw(coarse), hidden);
   EXPECT_FALSE(this->Errors->GetError()) << this->Errors->GetErrorMessage();
 }
 

@@ -4,6 +4,7 @@
 #include "vtkDSMErrorGuard.h"
 #include "vtkDSMPolyDataMapper.h"
 #include "vtkDSMVolumeMapper.h"
+#include "vtkPVDSMBlockPaths.h"
 #include "vtkPVDSMFrameReport.h"
 #include "vtkPVDSMIsosurfaceGeometry.h"
 #include "vtkPVDSMLightOptions.h"
@@ -16,8 +17,6 @@
 #include "vtkCellData.h"
 #include "vtkCompositeDataIterator.h"
 #include "vtkDataArray.h"
-#include "vtkDataAssembly.h"
-#include "vtkDataAssemblyUtilities.h"
 #include "vtkDataObject.h"
 #include "vtkDataObjectTree.h"
 #include "vtkFieldData.h"
@@ -27,101 +26,13 @@
 #include "vtkMultiBlockDataSet.h"
 #include "vtkObjectFactory.h"
 #include "vtkPVLODActor.h"
-#include "vtkPartitionedDataSetCollection.h"
 #include "vtkPolyData.h"
 #include "vtkPolyDataMapper.h"
 #include "vtkProperty.h"
 #include "vtkScalarsToColors.h"
-#include "vtkUnsignedIntArray.h"
 #include "vtkVolume.h"
 
 #include <algorithm>
-
-namespace
-{
-
-/// Finds a dataset's blocks by the paths that ParaView's Multiblock Inspector names them by. Only datasets of these two
-/// classes have paths that lead to blocks.
-class BlockPaths
-{
-public:
-  explicit BlockPaths(vtkDataObject* data)
-    : Collection(vtkPartitionedDataSetCollection::SafeDownCast(data))
-    , IsKnown((this->Collection || vtkMultiBlockDataSet::SafeDownCast(data)) &&
-        vtkDataAssemblyUtilities::GenerateHierarchy(
-          vtkCompositeDataSet::SafeDownCast(data), this->Assembly))
-  {
-  }
-  /// Returns whether there are blocks with paths.
-  bool Any() const { return this->IsKnown; }
-  std::vector<unsigned int> Find(const std::vector<std::string>& paths) const
-  {
-    const auto found = vtkDataAssemblyUtilities::GetSelectedCompositeIds(
-      paths, this->Assembly, nullptr, !this->Collection);
-    return this->Collection ? this->FindPartitions(found) : found;
-  }
-
-private:
-  /// VTK finds the nodes of a collection only: it, or its partitioned datasets.
-  std::vector<unsigned int> FindPartitions(const std::vector<unsigned int>& nodes) const
-  {
-    const auto has = [&](unsigned int node)
-    { return std::find(nodes.begin(), nodes.end(), node) != nodes.end(); };
-    std::vector<unsigned int> partitions;
-    for (unsigned int set = 0; set < this->Collection->GetNumberOfPartitionedDataSets(); ++set)
-    {
-      const bool isFound = has(0) || has(this->Collection->GetCompositeIndex(set));
-      for (unsigned int part = 0; isFound && part < this->Collection->GetNumberOfPartitions(set);
-           ++part)
-      {
-        partitions.push_back(this->Collection->GetCompositeIndex(set, part));
-      }
-    }
-    return partitions;
-  }
-
-  vtkPartitionedDataSetCollection* Collection;
-  vtkNew<vtkDataAssembly> Assembly;
-  bool IsKnown;
-};
-
-/// Gives each block the number that a Surface gives it, in ParaView's array vtkBlockColors; so many numbers take turns.
-void NumberBlocks(vtkDataObjectTree* tree, unsigned int distinctNumbers)
-{
-  const auto add = [distinctNumbers](vtkDataObject* image, unsigned int number)
-  {
-    if (!image || image->GetFieldData()->HasArray("vtkBlockColors"))
-    {
-      return;
-    }
-    vtkNew<vtkUnsignedIntArray> array;
-    array->SetName("vtkBlockColors");
-    array->InsertNextValue(number % distinctNumbers);
-    image->GetFieldData()->AddArray(array);
-  };
-  // As ParaView counts: leaves, also empty ones; but all parts of a partitioned dataset in a collection are one.
-  if (auto* collection = vtkPartitionedDataSetCollection::SafeDownCast(tree))
-  {
-    for (unsigned int set = 0; set < collection->GetNumberOfPartitionedDataSets(); ++set)
-    {
-      for (unsigned int part = 0; part < collection->GetNumberOfPartitions(set); ++part)
-      {
-        add(collection->GetPartitionAsDataObject(set, part), set);
-      }
-    }
-    return;
-  }
-  vtkSmartPointer<vtkCompositeDataIterator> leaf;
-  leaf.TakeReference(tree->NewIterator());
-  leaf->SkipEmptyNodesOff();
-  unsigned int number = 0;
-  for (leaf->InitTraversal(); !leaf->IsDoneWithTraversal(); leaf->GoToNextItem())
-  {
-    add(leaf->GetCurrentDataObject(), number++);
-  }
-}
-
-} // namespace
 
 vtkStandardNewMacro(vtkPVDSMImageRepresentation);
 
@@ -227,11 +138,7 @@ void vtkPVDSMImageRepresentation::TakeInput(vtkDataObject* source)
     data.TakeReference(source->NewInstance());
     data->ShallowCopy(source);
     this->RemoveHiddenBlocks(data);
-    auto* const tree = vtkDataObjectTree::SafeDownCast(data);
-    if (tree && !tree->IsA("vtkUniformGridAMR")) // which is one since VTK 9.5
-    {
-      NumberBlocks(tree, this->BlockColorsDistinctValues);
-    }
+    vtkPVDSMBlockPaths::NumberBlocks(data, this->BlockColorsDistinctValues);
   }
   this->VolumeMapper->SetInputData(this->ChooseVolumes(data));
   this->VolumeMapper->SetOriginalData(source);
@@ -253,10 +160,10 @@ vtkDataObject* vtkPVDSMImageRepresentation::GetRenderedDataObject(int port)
 void vtkPVDSMImageRepresentation::RemoveHiddenBlocks(vtkDataObject* data) const
 {
   auto* tree = vtkDataObjectTree::SafeDownCast(data);
-  const BlockPaths paths(this->ShownBlocks.empty() ? nullptr : tree);
-  if (!paths.Any())
+  const vtkPVDSMBlockPaths paths(this->ShownBlocks.empty() ? nullptr : tree);
+  if (!paths.Any() || paths.AreOfAmr())
   {
-    return;
+    return; // ChooseBlockLooks hides levels of AMR
   }
   const std::vector<unsigned int> shown = paths.Find(this->ShownBlocks);
   vtkSmartPointer<vtkCompositeDataIterator> leaf;
@@ -327,11 +234,14 @@ void vtkPVDSMImageRepresentation::ChooseBlockLooks()
   {
     this->ColorBlocksByArray(data);
   }
-  const bool areChosen = !this->ColorsOfBlocks.empty() || !this->OpacitiesOfBlocks.empty();
-  const BlockPaths paths(areChosen ? data : nullptr);
+  const vtkPVDSMBlockPaths paths(data);
   if (!paths.Any())
   {
     return;
+  }
+  for (const unsigned int block : paths.FindHiddenOfAmr(this->ShownBlocks))
+  {
+    this->VolumeMapper->SetBlockVisibility(block, false);
   }
   for (const auto& [selector, color] : this->ColorsOfBlocks)
   {

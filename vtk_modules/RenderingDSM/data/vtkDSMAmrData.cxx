@@ -209,6 +209,7 @@ vtkDSMAmrData::vtkDSMAmrData(const std::shared_ptr<vtkDSMRankGroup>& group, cons
 {
   dsm::Messenger& messenger = this->Group->GetMessenger();
   std::vector<bricks::PieceInfo> mine;
+  std::vector<vtkDSMBlockLook> looks;
   messenger.RunTogether("Reading the levels",
     [&]
     {
@@ -216,15 +217,20 @@ vtkDSMAmrData::vtkDSMAmrData(const std::shared_ptr<vtkDSMRankGroup>& group, cons
       {
         vtkImageData* const block = vtkImageData::SafeDownCast(part.Data);
         this->Blocks.emplace_back(block);
+        looks.push_back(part.Look);
         mine.push_back(vtkDSMImagePiece::Describe(block, 0));
       }
     });
   this->Pieces = vtkDSMGather::Items(messenger, mine, this->FirstOwn);
+  looks = vtkDSMGather::Items(messenger, looks);
   messenger.RunTogether("Joining the levels",
     [&]
     {
       this->FindLevels();
       this->FindPlaces();
+      // All are the same.
+      const glm::dvec3 end = glm::max(glm::ceil(this->Upper), glm::dvec3(0.0));
+      this->BlockLooks.push_back({ { Index3(0), Index3(end) }, looks.front() });
     });
 }
 

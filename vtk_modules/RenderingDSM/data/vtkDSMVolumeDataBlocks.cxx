@@ -66,6 +66,10 @@ std::vector<vtkDSMBlockLook> vtkDSMVolumeData::Collect(
     auto* const trees = vtkHyperTreeGrid::SafeDownCast(object);
     vtkDataSet* const image = vtkDSMImagePiece::FindImage(object);
     const bool isBlock = object != data;
+    if (FindLook(looks, leaf).IsHidden)
+    {
+      return;
+    }
     if (trees && trees->GetNumberOfElements(vtkDataObject::CELL) > 0 &&
       (!isBlock || trees->GetDimension() == 3))
     {
@@ -88,11 +92,12 @@ std::vector<vtkDSMBlockLook> vtkDSMVolumeData::Collect(
       if (amr)
       {
         ForEachLeaf(amr,
-          [&](vtkDataObject* image, int, int)
+          [&](vtkDataObject* image, int leaf, int)
           {
-            if (image->GetNumberOfElements(vtkDataObject::POINT) > 0)
+            if (image->GetNumberOfElements(vtkDataObject::POINT) > 0 &&
+              !FindLook(looks, leaf).IsHidden)
             {
-              this->LevelParts.push_back({ image });
+              this->LevelParts.push_back({ image, 0, FindLook(looks, 0) });
             }
           });
       }

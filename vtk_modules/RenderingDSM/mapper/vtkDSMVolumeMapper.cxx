@@ -253,6 +253,12 @@ void vtkDSMVolumeMapper::SetBlockValue(unsigned int block, double value)
   this->Modified();
 }
 
+void vtkDSMVolumeMapper::SetBlockVisibility(unsigned int block, bool visible)
+{
+  this->BlockLooks[block].IsHidden = !visible;
+  this->Modified();
+}
+
 void vtkDSMVolumeMapper::RemoveBlockLooks()
 {
   if (!this->BlockLooks.empty())

@@ -316,13 +316,15 @@ public:
   /**
    * How blocks of a composite dataset look that are not to look like the rest: their color, in place of that of the
    * surface property and of the color array; their opacity, in place of the property's; a value, by which the lookup
-   * table colors the block while BlockScalarVisibility is on (off by default) and it has no color of its own. Blocks
-   * are numbered as vtkCompositeDataIterator does (GetCurrentFlatIndex) in this rank's part of the dataset; a dataset
-   * that is one image is block 0.
+   * table colors the block while BlockScalarVisibility is on (off by default) and it has no color of its own; and whether
+   * they are shown at all (the default). Blocks are numbered as vtkCompositeDataIterator does (GetCurrentFlatIndex) in this
+   * rank's part of the dataset; a dataset that is one image is block 0. AMR as a whole has the color and the opacity of
+   * block 0; where a block of AMR is hidden, cells of coarser ones are shown.
    */
   void SetBlockColor(unsigned int block, double r, double g, double b);
   void SetBlockOpacity(unsigned int block, double opacity);
   void SetBlockValue(unsigned int block, double value);
+  void SetBlockVisibility(unsigned int block, bool visible);
   void RemoveBlockLooks();
   const vtkDSMBlockLooks& GetBlockLooks() const { return this->BlockLooks; }
   vtkSetMacro(BlockScalarVisibility, bool);
