@@ -211,9 +211,11 @@ TEST_F(VolumeMapperBlocks, HiddenBlocksAreNotThere)
     MakeAmr<vtkOverlappingAMR>([](std::size_t number) { return Make(Blocks[number]); });
   const auto coarse = MakeAmr<vtkNonOverlappingAMR>([](std::size_t number)
     { return number == 0 ? Make(Blocks[number]) : vtkSmartPointer<vtkUniformGrid>(); });
-  for (const unsigned int block : { 1, 2, 3 })
+  leaf.TakeReference(amr->NewIterator());
+  leaf->InitTraversal();
+  for (leaf->GoToNextItem(); !leaf->IsDoneWithTraversal(); leaf->GoToNextItem())
   {
-    this->Mapper->SetBlockVisibility(block, false);
+    this->Mapper->SetBlockVisibility(leaf->GetCurrentFlatIndex(), false);
   }
   const std::vector<unsigned char> hidden = this->Draw(amr);
   this->Mapper->RemoveBlockLooks();

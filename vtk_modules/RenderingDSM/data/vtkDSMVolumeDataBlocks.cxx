@@ -26,7 +26,8 @@ void ForEachLeaf(vtkCompositeDataSet* data, const Visit& visit)
   int dataset = 0; // flat index of these
   vtkSmartPointer<vtkCompositeDataIterator> node;
   node.TakeReference(data->NewIterator());
-  if (auto* tree = vtkDataObjectTreeIterator::SafeDownCast(node))
+  auto* const tree = vtkDataObjectTreeIterator::SafeDownCast(node);
+  if (tree && !vtkUniformGridAMR::SafeDownCast(data))
   {
     tree->VisitOnlyLeavesOff();
   }
