@@ -9,6 +9,7 @@
 #include "vtkDataObjectTreeIterator.h"
 #include "vtkDataSet.h"
 #include "vtkHyperTreeGrid.h"
+#include "vtkImageData.h"
 #include "vtkPartitionedDataSet.h"
 #include "vtkUniformGridAMR.h"
 
@@ -98,6 +99,12 @@ std::vector<vtkDSMBlockLook> vtkDSMVolumeData::Collect(
             if (image->GetNumberOfElements(vtkDataObject::POINT) > 0 &&
               !FindLook(looks, leaf).IsHidden)
             {
+              if (!vtkImageData::SafeDownCast(image))
+              {
+                throw dsm::Error(std::string("A block of the AMR dataset is of type ") +
+                  image->GetClassName() +
+                  "; ray tracing requires blocks of image data. Apply Resample To Image first.");
+              }
               this->LevelParts.push_back({ image, 0, FindLook(looks, 0) });
             }
           });
