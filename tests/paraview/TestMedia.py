@@ -146,7 +146,7 @@ for name, last in (("x2", 1.0), ("x4", 1.0), ("x4bytes", 255.0)):
 hints = display.SMProxy.GetProperty("MultiComponentsMapping").GetHints()
 kinds = [hints.GetNestedElement(number).GetAttribute("type") for number in range(hints.GetNumberOfNestedElements())]
 check("CompositeDecorator" in kinds, "the panel has it for DSM Volume, too")
-path = os.path.join(OUTPUT, "components.vtkhdf")
+path = os.path.join(OUTPUT, "components.h5")
 if get_ranks() == 1:
     simple.SaveData(path, proxy=source)
 stored = simple.DSMVolumeReader(FileName=path)
