@@ -234,7 +234,10 @@ void vtkPVDSMImageRepresentation::ChooseBlockLooks()
   {
     this->ColorBlocksByArray(data);
   }
-  const vtkPVDSMBlockPaths paths(data);
+  const bool mayHideLevels = !this->ShownBlocks.empty() && data && data->IsA("vtkUniformGridAMR");
+  const bool areChosen =
+    mayHideLevels || !this->ColorsOfBlocks.empty() || !this->OpacitiesOfBlocks.empty();
+  const vtkPVDSMBlockPaths paths(areChosen ? data : nullptr);
   if (!paths.Any())
   {
     return;
@@ -583,10 +586,16 @@ void vtkPVDSMImageRepresentation::SetUserTransform(const double matrix[16])
 
 std::vector<vtkSmartPointer<vtkPolyData>> vtkPVDSMImageRepresentation::GetTriangles()
 {
-  return this->ShowsSurface() ? this->Superclass::GetTriangles()
-    : this->Display->GetScene()
-    ? vtkPVDSMIsosurfaceGeometry::MakeColored(this->Display->GetScene(), this->VolumeMapper)
-    : std::vector<vtkSmartPointer<vtkPolyData>>();
+  if (this->ShowsSurface())
+  {
+    return this->Superclass::GetTriangles();
+  }
+  vtkDSMScene* const scene = this->Display->GetScene();
+  if (!scene)
+  {
+    return {};
+  }
+  return vtkPVDSMIsosurfaceGeometry::MakeColored(scene, this->VolumeMapper);
 }
 
 void vtkPVDSMImageRepresentation::SetLightOptions(vtkPVDSMLightOptions* options)
