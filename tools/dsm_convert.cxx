@@ -186,6 +186,13 @@ void Convert(Options& options, dsm::Messenger& messenger)
               << "); only step 0 is written. Use --step to write another step to a separate file."
               << std::endl;
   }
+  if (messenger.GetRank() == 0)
+  {
+    for (const std::string& warning : file->GetWarnings())
+    {
+      std::cerr << "dsm_convert: '" << options.In << "' " << warning << std::endl;
+    }
+  }
   vol::ConvertVolume(file, options.Out, options.Convert, messenger, tell);
   if (messenger.GetRank() == 0 && !options.IsQuiet)
   {

@@ -77,6 +77,7 @@ public:
     this->Geometry = first->GetGeometry();
     this->Arrays = first->GetArrays();
     this->Levels = first->GetLevels();
+    this->Warnings = first->GetWarnings();
     this->Steps = static_cast<int>(paths.size());
     this->Stamps.resize(paths.size());
     this->Stamps.front() = first->GetStamp();

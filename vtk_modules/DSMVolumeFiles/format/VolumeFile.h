@@ -94,6 +94,9 @@ public:
   virtual StepOrigin GetOrigin(int step) const { return { this->Path, this->Stamp, step }; }
   /// Number of levels of detail, of which one was opened.
   int GetLevels() const { return this->Levels; }
+  /// What the file says and is not honored, each a sentence after the file's name that names the attribute, such as
+  /// "has 'scanner' as its space, which is taken for left-posterior-superior.".
+  const std::vector<std::string>& GetWarnings() const { return this->Warnings; }
   /// Differs, for all practical purposes, when the file's contents do.
   std::uint64_t GetStamp() const { return this->Stamp; }
   /// No other one of this process has it, or had it before.
@@ -154,6 +157,7 @@ protected:
   int Steps = 1;
   std::vector<double> Times; ///< times of the steps, or empty
   int Levels = 1;
+  std::vector<std::string> Warnings;
   std::uint64_t Stamp = 0;
 
 private:

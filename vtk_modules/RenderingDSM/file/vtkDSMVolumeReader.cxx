@@ -325,15 +325,22 @@ void vtkDSMVolumeReader::Open()
   this->Self->File = file;
   this->Self->Options = options;
   this->Self->OpenedAt = this->GetMTime();
-  this->TellOfRest();
+  auto* const controller = vtkMultiProcessController::GetGlobalController();
+  if (!controller || controller->GetLocalProcessId() == 0)
+  {
+    this->TellOfRest();
+    for (const std::string& warning : file->GetWarnings())
+    {
+      vtkWarningMacro("The file '" << file->GetPath() << "' " << warning);
+    }
+  }
 }
 
 void vtkDSMVolumeReader::TellOfRest() const
 {
   const vol::VolumeFile& file = *this->Self->File;
   const vol::FileArray& array = file.GetArrays().front();
-  auto* const controller = vtkMultiProcessController::GetGlobalController();
-  if (!vol::IsBareFile(file.GetPath()) || (controller && controller->GetLocalProcessId() != 0))
+  if (!vol::IsBareFile(file.GetPath()))
   {
     return;
   }

@@ -149,7 +149,7 @@ private:
   int Attempt(const char* doing, const std::function<void()>& work);
   vol::OpenOptions GetOptions() const;
   void Open();
-  /// Warns of bytes behind the values of a bare file: what was entered may be wrong. On the first rank.
+  /// Warns of bytes behind the values of a bare file: what was entered may be wrong.
   void TellOfRest() const;
   /// The extent, the place in the world, the scalars and the time steps of the open file.
   void TellOfFile(vtkInformation* information) const;
